@@ -1,0 +1,79 @@
+# A thin front of CMake: installs what Debian lacks, configures, builds, runs. `make help` lists the targets.
+BUILD      ?= build
+PREFIX     ?= /usr/local
+JOBS       ?= $(shell nproc 2>/dev/null || echo 2)
+TEST_JOBS  ?= 2
+CASE       ?= cases/cantilever
+RUN        ?= runs/$(notdir $(CASE))
+TALUS      := $(BUILD)/talus
+SANITIZE   := $(BUILD)-sanitize
+OPTIONS    := -DTALUS_PORTABLE=$(if $(PORTABLE),ON,OFF) $(CMAKE_ARGS)
+SOURCES     = $(shell find src include tests bench docs -name '*.[ch]' 2>/dev/null)
+MAKEFLAGS  += --no-print-directory
+
+# Open MPI asks for this where the user is root, as in containers.
+export OMPI_ALLOW_RUN_AS_ROOT := 1
+export OMPI_ALLOW_RUN_AS_ROOT_CONFIRM := 1
+
+.PHONY: build help deps configure run test test-sanitize bench verify install docs format format-check tidy clean
+
+build: configure ## Build the program, build/talus, and its tests (the default). PORTABLE=1: for any machine
+	@cmake --build $(BUILD) --parallel $(JOBS)
+
+help: ## This list
+	@awk -F ':.*## ' '/^[a-z-]+:.*## / {printf "  make %-14s %s\n", $$1, $$2}' $(MAKEFILE_LIST)
+
+deps: ## Install the Debian packages that are missing, through apt
+	@cmake/debian-packages.sh build
+
+configure: deps
+	@cmake -S . -B $(BUILD) -G Ninja --log-level=WARNING -DCMAKE_BUILD_TYPE=Release $(OPTIONS) >/dev/null
+
+run: build ## Run a case and draw it: CASE=cases/cantilever, into RUN=runs/cantilever
+	@$(TALUS) run $(CASE)/case.yaml --out $(RUN) --force
+	@$(TALUS) plot $(RUN)
+	@echo "pictures:"; find $(RUN) -name '*.png' | sort
+
+test: build ## Run all tests
+	@cmake/run-tests.sh $(BUILD) $(TEST_JOBS) $(TEST_ARGS)
+
+test-sanitize: deps ## The same tests under AddressSanitizer and UndefinedBehaviorSanitizer
+	@cmake -S . -B $(SANITIZE) -G Ninja --log-level=WARNING -DCMAKE_BUILD_TYPE=RelWithDebInfo -DTALUS_SANITIZE=ON \
+	  $(OPTIONS) >/dev/null
+	@cmake --build $(SANITIZE) --parallel $(JOBS)
+	@cmake/run-tests.sh $(SANITIZE) $(TEST_JOBS) $(TEST_ARGS)
+
+bench: build ## Build and run the performance benchmarks
+	@cmake --build $(BUILD) --parallel $(JOBS) --target bench
+	@if [ -f bench/run.sh ]; then OPENBLAS_NUM_THREADS=1 sh bench/run.sh $(BUILD); else echo "bench/run.sh is not there"; exit 1; fi
+
+verify: build ## Verify every case that has reference values; FULL=1: on the finest grids too
+	@status=0; for reference in cases/*/reference.yaml; do \
+	  [ -f "$$reference" ] || continue; \
+	  $(TALUS) verify $(if $(FULL),--full) "$$(dirname "$$reference")" || status=$$?; \
+	done; exit $$status
+
+install: build ## Install program, library, header and package files under PREFIX=/usr/local
+	@cmake --install $(BUILD) --prefix $(abspath $(PREFIX))
+
+docs: ## Reference of the public header, in build/docs/html
+	@cmake/debian-packages.sh build docs
+	@$(MAKE) configure
+	@cmake --build $(BUILD) --target docs
+
+format: ## Format all sources in place
+	@cmake/debian-packages.sh format
+	@clang-format -i $(SOURCES)
+
+format-check: ## Say which sources `make format` would change
+	@cmake/debian-packages.sh format
+	@clang-format --dry-run -Werror $(SOURCES)
+
+tidy: configure ## Look for mistakes with clang-tidy; silent if there are none
+	@cmake/debian-packages.sh tidy
+	@cmake --build $(BUILD) --target talus_version
+	@find src -name '*.c' | sort | xargs -P $(JOBS) -n 1 clang-tidy -p $(BUILD) --quiet --warnings-as-errors='*' \
+	  2>$(BUILD)/tidy-log.txt
+
+clean: ## Remove what `make` built (not the runs)
+	@rm -rf $(BUILD) $(SANITIZE)

@@ -1,0 +1,85 @@
+# Flags that every target shares.
+add_library(talus_flags INTERFACE)
+target_include_directories(talus_flags INTERFACE ${PROJECT_SOURCE_DIR}/src ${PROJECT_SOURCE_DIR}/include ${PROJECT_BINARY_DIR}/generated)
+target_link_libraries(talus_flags INTERFACE PkgConfig::PETSC MPI::MPI_C PkgConfig::HDF5 PkgConfig::FYAML m)
+target_compile_definitions(talus_flags INTERFACE _GNU_SOURCE)
+target_compile_options(talus_flags INTERFACE -Wall -Wextra -Wshadow -fno-math-errno -fno-trapping-math
+  -fno-semantic-interposition)
+if(NOT TALUS_PORTABLE)
+  target_compile_options(talus_flags INTERFACE -march=native)
+endif()
+if(TALUS_SANITIZE)
+  target_compile_options(talus_flags INTERFACE -fsanitize=address,undefined -fno-omit-frame-pointer -fno-sanitize-recover=undefined)
+  target_link_options(talus_flags INTERFACE -fsanitize=address,undefined)
+endif()
+
+# One object library a room; a test links the rooms up to its own and no further, so that a room
+# that reaches upward does not link.
+macro(talus_rooms)
+  set(TALUS_ROOMS "")
+  foreach(room ${ARGN})
+    file(GLOB sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/src/${room}/*.c)
+    if(sources)
+      add_library(talus_${room} OBJECT ${sources})
+      target_link_libraries(talus_${room} PRIVATE talus_flags)
+      add_dependencies(talus_${room} talus_version)
+      list(APPEND TALUS_ROOMS ${room})
+    endif()
+  endforeach()
+endmacro()
+
+# One thread a rank, Open MPI willing to start as root and with more ranks than cores.
+set(TALUS_TEST_ENVIRONMENT OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 OMPI_MCA_rmaps_base_oversubscribe=1
+  OPENBLAS_NUM_THREADS=1 OMPI_MCA_pml=ob1)
+set(TALUS_TEST_PATIENCE 1) # times the usual time limits
+if(TALUS_SANITIZE)
+  set(TALUS_TEST_PATIENCE 4)
+  # Full unwinding, since MPI's libraries keep no frame pointers and their leaks are told by name.
+  list(APPEND TALUS_TEST_ENVIRONMENT
+    ASAN_OPTIONS=fast_unwind_on_malloc=0:handle_segv=2:detect_stack_use_after_return=1
+    LSAN_OPTIONS=suppressions=${PROJECT_SOURCE_DIR}/cmake/lsan.supp:print_suppressions=0
+    UBSAN_OPTIONS=print_stacktrace=1)
+endif()
+
+# talus_test(room/test_name [RANKS 1 2 3] [TIMEOUT s]): builds tests/room/test_name.c and runs it on the ranks given.
+function(talus_test path)
+  cmake_parse_arguments(arg "" "TIMEOUT" "RANKS" ${ARGN})
+  get_filename_component(room ${path} DIRECTORY)
+  get_filename_component(name ${path} NAME)
+  string(REPLACE "/" "_" target "${room}_${name}")
+  # A test that is listed and not there fails, and keeps nobody from configuring.
+  file(GLOB source CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/tests/${path}.c)
+  if(NOT source)
+    message(WARNING "tests/${path}.c is listed and not there")
+    add_test(NAME ${path} COMMAND ${CMAKE_COMMAND} -E false)
+    return()
+  endif()
+  add_executable(${target} ${path}.c)
+  foreach(lower ${TALUS_ROOMS})
+    target_sources(${target} PRIVATE $<TARGET_OBJECTS:talus_${lower}>)
+    if(lower STREQUAL room)
+      break()
+    endif()
+  endforeach()
+  target_link_libraries(${target} PRIVATE talus_flags PkgConfig::CMOCKA)
+  target_compile_definitions(${target} PRIVATE TALUS_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
+  set_target_properties(${target} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/tests/bin)
+  if(NOT arg_RANKS)
+    set(arg_RANKS 1)
+  endif()
+  if(NOT arg_TIMEOUT)
+    set(arg_TIMEOUT 120)
+  endif()
+  math(EXPR arg_TIMEOUT "${TALUS_TEST_PATIENCE} * ${arg_TIMEOUT}")
+  foreach(ranks ${arg_RANKS})
+    if(ranks EQUAL 1)
+      add_test(NAME ${path} COMMAND ${target})
+      set(test_name ${path})
+    else()
+      set(test_name ${path}_${ranks})
+      add_test(NAME ${test_name} COMMAND ${MPIEXEC_EXECUTABLE} --oversubscribe -n ${ranks} $<TARGET_FILE:${target}>)
+      set_tests_properties(${test_name} PROPERTIES PROCESSORS 2)
+    endif()
+    set_tests_properties(${test_name} PROPERTIES TIMEOUT ${arg_TIMEOUT} ENVIRONMENT "${TALUS_TEST_ENVIRONMENT}")
+  endforeach()
+endfunction()

@@ -1,0 +1,49 @@
+/* Diagnostics: mistakes of the user, collected and printed with their place in the case file.
+ *
+ * A mistake is named by the *path* of the value that it concerns, written as in `--set`:
+ * "bodies[0].shape.box.min". The room that found it need not know where that value stands in the
+ * file: a resolver (installed by the case reader) turns the path into file:line:column. */
+#pragma once
+#include <petscsys.h>
+#include <stdio.h>
+
+typedef struct Diag Diag;
+
+typedef enum { DIAG_NOTE, DIAG_WARNING, DIAG_ERROR } DiagSeverity;
+
+typedef struct {
+  const char *file; /* name as the user gave it */
+  const char *text; /* the source line, without its newline; NULL if there is none */
+  int line, column; /* counted from 1; 0: unknown */
+  int width;        /* how many characters the caret underlines, at least 1 */
+} DiagPlace;
+
+/* Find where `path` (or its nearest existing parent) stands. */
+typedef void (*DiagResolver)(void *context, const char *path, DiagPlace *place);
+
+PetscErrorCode DiagCreate(Diag **diag);
+PetscErrorCode DiagDestroy(Diag **diag);
+PetscErrorCode DiagSetResolver(Diag *diag, DiagResolver resolver, void *context);
+/* Hand the resolver's context over: DiagDestroy (or the next resolver) calls `destroy` on it. */
+PetscErrorCode DiagOwnContext(Diag *diag, void (*destroy)(void *));
+
+/* Record a message about the value at `path` (NULL: about the case as a whole). */
+void DiagError(Diag *diag, const char *path, const char *format, ...) PETSC_ATTRIBUTE_FORMAT(3, 4);
+void DiagWarning(Diag *diag, const char *path, const char *format, ...) PETSC_ATTRIBUTE_FORMAT(3, 4);
+/* The same with a place that the caller knows (a mesh file, a syntax error). */
+void DiagAt(Diag *diag, DiagSeverity severity, const DiagPlace *place, const char *format, ...)
+  PETSC_ATTRIBUTE_FORMAT(4, 5);
+/* A second line under the newest message: "did you mean 'young'?". */
+void DiagHint(Diag *diag, const char *format, ...) PETSC_ATTRIBUTE_FORMAT(2, 3);
+
+PetscInt DiagErrors(const Diag *diag); /* number of errors so far on this rank */
+PetscInt DiagWarnings(const Diag *diag);
+
+/* Collective: number of errors over all ranks; messages of other ranks travel to rank 0. */
+PetscErrorCode DiagReduce(MPI_Comm comm, Diag *diag, PetscInt *errors);
+/* Print all messages in the order of their lines and forget them:
+ * `case.yaml:12:7: error: ...`, the line, a caret, the hint. Rank 0 prints, others forget. */
+PetscErrorCode DiagFlush(Diag *diag, FILE *out);
+
+/* The word of a NULL-terminated list nearest to `word` (Damerau-Levenshtein), NULL if none is near. */
+const char *DiagNearest(const char *word, const char *const *words);

@@ -1,0 +1,49 @@
+#include "base/diag.h"
+#include <ctype.h>
+#include <string.h>
+
+#define LONGEST 64 /* words beyond this are never near each other */
+
+static int Plain(char c) { return c == '_' ? '-' : tolower((unsigned char)c); }
+
+static int Least(int a, int b) { return a < b ? a : b; }
+
+/* Damerau-Levenshtein (optimal string alignment); case and '_' against '-' do not count. */
+static int Distance(const char *a, const char *b)
+{
+  const int n = (int)strlen(a), m = (int)strlen(b);
+  int row[3][LONGEST + 1];
+  int *before = row[0], *last = row[1], *now = row[2];
+  for (int j = 0; j <= m; ++j) last[j] = j;
+  for (int i = 1; i <= n; ++i) {
+    now[0] = i;
+    for (int j = 1; j <= m; ++j) {
+      const int differ = Plain(a[i - 1]) != Plain(b[j - 1]);
+      now[j] = Least(Least(last[j] + 1, now[j - 1] + 1), last[j - 1] + differ);
+      if (i > 1 && j > 1 && Plain(a[i - 1]) == Plain(b[j - 2]) && Plain(a[i - 2]) == Plain(b[j - 1]))
+        now[j] = Least(now[j], before[j - 2] + 1);
+    }
+    int *free_row = before;
+    before = last;
+    last = now;
+    now = free_row;
+  }
+  return last[m];
+}
+
+const char *DiagNearest(const char *word, const char *const *words)
+{
+  const char *best = NULL;
+  const size_t length = word ? strlen(word) : 0;
+  int least = 1 + (int)(length + 1) / 3;
+  if (length == 0 || length > LONGEST) return NULL;
+  for (; *words; ++words) {
+    if (strlen(*words) > LONGEST) continue;
+    const int distance = Distance(word, *words);
+    if (distance < least) {
+      least = distance;
+      best = *words;
+    }
+  }
+  return best;
+}

@@ -1,0 +1,2 @@
+talus_test(base/test_diag RANKS 1 2 3)
+talus_test(base/test_eigen)
