@@ -1,0 +1,33 @@
+#include "case/case.h"
+
+PetscReal amplitude_value(const Amplitude *a, PetscReal t, PetscReal fallback)
+{
+  PetscInt low = 0, high = a->n - 1;
+  if (a->n == 0) return fallback;
+  if (t <= a->time[low]) return a->value[low];
+  if (t >= a->time[high]) return a->value[high];
+  while (high - low > 1) {
+    const PetscInt middle = low + (high - low) / 2;
+    if (t < a->time[middle]) high = middle;
+    else low = middle;
+  }
+  const PetscReal s = (t - a->time[low]) / (a->time[high] - a->time[low]);
+  return (1 - s) * a->value[low] + s * a->value[high];
+}
+
+/* Integral from the first entry's time to t, for any t. */
+static PetscReal IntegralFromFirst(const Amplitude *a, PetscReal t)
+{
+  PetscReal sum = 0;
+  if (t <= a->time[0]) return (t - a->time[0]) * a->value[0];
+  for (PetscInt i = 1; i < a->n; ++i) {
+    if (t <= a->time[i]) return sum + 0.5 * (t - a->time[i - 1]) * (a->value[i - 1] + amplitude_value(a, t, 0));
+    sum += 0.5 * (a->time[i] - a->time[i - 1]) * (a->value[i - 1] + a->value[i]);
+  }
+  return sum + (t - a->time[a->n - 1]) * a->value[a->n - 1];
+}
+
+PetscReal amplitude_integral(const Amplitude *a, PetscReal t, PetscReal fallback)
+{
+  return a->n == 0 ? fallback * t : IntegralFromFirst(a, t) - IntegralFromFirst(a, 0);
+}

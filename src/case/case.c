@@ -1,0 +1,120 @@
+#include "case/case.h"
+
+static PetscErrorCode AmplitudeClear(Amplitude *amplitude)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscFree(amplitude->time));
+  PetscCall(PetscFree(amplitude->value));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode ShapeClear(Shape *shape)
+{
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < shape->n_children; ++i) PetscCall(ShapeClear(&shape->children[i]));
+  PetscCall(PetscFree(shape->children));
+  PetscCall(PetscFree(shape->vertices));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode SelectorClear(Selector *on)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscFree(on->boundary));
+  PetscCall(PetscFree(on->body));
+  PetscCall(ShapeClear(&on->shape));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode NamedValuesClear(PetscInt n, NamedValue **values)
+{
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < n; ++i) PetscCall(PetscFree((*values)[i].name));
+  PetscCall(PetscFree(*values));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode StringsClear(PetscInt n, char ***strings)
+{
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < n; ++i) PetscCall(PetscFree((*strings)[i]));
+  PetscCall(PetscFree(*strings));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode BodiesClear(Case *c)
+{
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < c->n_bodies; ++i) {
+    BodySpec *body = &c->bodies[i];
+    PetscCall(PetscFree(body->name));
+    PetscCall(PetscFree(body->material));
+    PetscCall(PetscFree(body->region));
+    PetscCall(PetscFree(body->mesh));
+    PetscCall(ShapeClear(&body->shape));
+  }
+  PetscCall(PetscFree(c->bodies));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode MaterialsClear(Case *c)
+{
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < c->n_materials; ++i) {
+    PetscCall(PetscFree(c->materials[i].name));
+    PetscCall(PetscFree(c->materials[i].law));
+    PetscCall(NamedValuesClear(c->materials[i].n_parameters, &c->materials[i].parameters));
+  }
+  PetscCall(PetscFree(c->materials));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode BoundaryAndLoadsClear(Case *c)
+{
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < c->n_boundary; ++i) {
+    PetscCall(SelectorClear(&c->boundary[i].on));
+    PetscCall(AmplitudeClear(&c->boundary[i].amplitude));
+    PetscCall(PetscFree(c->boundary[i].name));
+  }
+  PetscCall(PetscFree(c->boundary));
+  for (PetscInt i = 0; i < c->n_loads; ++i) {
+    PetscCall(SelectorClear(&c->loads[i].on));
+    PetscCall(AmplitudeClear(&c->loads[i].amplitude));
+  }
+  PetscCall(PetscFree(c->loads));
+  PetscCall(AmplitudeClear(&c->gravity_amplitude));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode MeasuresClear(Case *c)
+{
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < c->n_measures; ++i) {
+    PetscCall(PetscFree(c->measures[i].name));
+    PetscCall(PetscFree(c->measures[i].body));
+  }
+  PetscCall(PetscFree(c->measures));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode CaseDestroy(Case **c)
+{
+  PetscFunctionBeginUser;
+  if (!*c) PetscFunctionReturn(0);
+  PetscCall(PetscFree((*c)->file));
+  PetscCall(PetscFree((*c)->folder));
+  PetscCall(PetscFree((*c)->title));
+  PetscCall(PetscFree((*c)->method));
+  PetscCall(PetscFree((*c)->formulation));
+  PetscCall(PetscFree((*c)->grid.mesh));
+  PetscCall(NamedValuesClear((*c)->grid.n_parameters, &(*c)->grid.parameters));
+  PetscCall(BodiesClear(*c));
+  PetscCall(MaterialsClear(*c));
+  PetscCall(BoundaryAndLoadsClear(*c));
+  PetscCall(MeasuresClear(*c));
+  PetscCall(StringsClear((*c)->output.n_fields, &(*c)->output.fields));
+  PetscCall(StringsClear((*c)->n_petsc, &(*c)->petsc));
+  PetscCall(PetscFree(*c));
+  PetscFunctionReturn(0);
+}

@@ -1,0 +1,226 @@
+/* The case: what a user asked for, as plain validated data. No YAML, no PETSc objects.
+ *
+ * SI units; angles in radians here (degrees in files). Names that the program looks up in a registry
+ * (law, method) stay strings: this room knows no other. Strings and arrays belong to the case. */
+#pragma once
+#include <petscsys.h>
+
+typedef enum { KINEMATICS_PLANE_STRAIN, KINEMATICS_AXISYMMETRIC, KINEMATICS_3D } Kinematics;
+typedef enum { ANALYSIS_STATIC, ANALYSIS_DYNAMIC } AnalysisType;
+typedef enum { CELL_TRIANGLE, CELL_QUADRILATERAL, CELL_TETRAHEDRON, CELL_HEXAHEDRON } CellType;
+typedef enum { DIAGONAL_RIGHT, DIAGONAL_LEFT, DIAGONAL_ALTERNATING, DIAGONAL_CROSSED } Diagonal;
+typedef enum { OUTSIDE_STOP, OUTSIDE_REMOVE, OUTSIDE_KEEP } OutsidePolicy;
+typedef enum { LINEAR_AUTO, LINEAR_DIRECT, LINEAR_ITERATIVE } LinearChoice;
+typedef enum { WEIGHTS_AUTO, WEIGHTS_EQUAL, WEIGHTS_GAUSS } PointWeights;
+
+/* A function of time, linear between its entries and constant outside them. n = 0: not given. */
+typedef struct {
+  PetscInt n;
+  PetscReal *time, *value;
+} Amplitude;
+
+typedef enum {
+  SHAPE_BOX,
+  SHAPE_BALL,
+  SHAPE_POLYGON,
+  SHAPE_HALF_SPACE,
+  SHAPE_UNION,
+  SHAPE_DIFFERENCE,
+  SHAPE_INTERSECTION
+} ShapeKind;
+
+/* A set of positions. A difference is its first child without all the others. */
+typedef struct Shape {
+  ShapeKind kind;
+  PetscReal min[3], max[3];      /* box */
+  PetscReal centre[3], radius;   /* ball: a circle in 2D */
+  PetscReal point[3], normal[3]; /* half-space: all x with (x - point) . normal <= 0 */
+  PetscInt n_vertices;           /* polygon, 2D, closed by itself */
+  PetscReal *vertices;           /* n_vertices x 2 */
+  PetscInt n_children;
+  struct Shape *children;
+} Shape;
+
+typedef struct {
+  char *name;
+  PetscReal value;
+} NamedValue;
+
+typedef enum { GRID_BOX, GRID_MESH } GridKind;
+
+typedef struct {
+  GridKind kind;
+  CellType cell;
+  Diagonal diagonal;
+  PetscReal min[3], max[3];
+  PetscInt counts[3];    /* cells along each axis, resolved from `size` or `counts` */
+  PetscReal grading[3];  /* size of the last cell over the first along each axis, 1 = uniform */
+  char *mesh;            /* .msh or .geo, resolved against the folder of the case */
+  PetscInt n_parameters; /* numbers handed to a .geo */
+  NamedValue *parameters;
+  OutsidePolicy outside;
+} GridSpec;
+
+typedef struct {
+  char *name;
+  char *law;
+  PetscReal density;     /* kg/m3, of the undeformed body */
+  PetscInt n_parameters; /* as the file gives them; the law resolves them */
+  NamedValue *parameters;
+} MaterialSpec;
+
+typedef struct {
+  char *name, *material;
+  PetscBool has_shape;
+  Shape shape;
+  char *region; /* a physical group of the grid's mesh, or NULL */
+  char *mesh;   /* a mesh of its own that only seeds points, or NULL */
+  PetscInt points_per_cell;
+  PointWeights weights;
+  PetscReal velocity[3];             /* initial: v + spin x (x - centre) */
+  PetscReal spin[3], spin_centre[3]; /* rad/s; 2D uses spin[2] */
+  PetscBool has_k0;                  /* geostatic: sigma_v = -density g (surface - height), sigma_h = k0 sigma_v */
+  PetscReal k0, surface;             /* surface: height of the free surface against gravity, m */
+} BodySpec;
+
+/* Where something acts: every condition given must hold. */
+typedef struct {
+  PetscBool has[3];
+  PetscReal min[3], max[3]; /* m; x: 0 gives min = max */
+  char *boundary;           /* a physical group of the mesh, or left right bottom top front back of a box */
+  char *body;               /* for loads on a body: its boundary */
+  PetscBool has_shape;
+  Shape shape;
+} Selector;
+
+typedef enum { MOTION_FIXED, MOTION_DISPLACEMENT, MOTION_VELOCITY, MOTION_ROTATION } MotionKind;
+
+/* Prescribed motion of the nodes selected. Components not in `component` stay free. */
+typedef struct {
+  Selector on;
+  MotionKind kind;
+  PetscBool component[3];
+  PetscReal value[3];                 /* m or m/s, times the amplitude */
+  PetscReal centre[3], axis[3], rate; /* rotation, rad/s (times the amplitude) */
+  Amplitude amplitude;
+  char *name; /* for measures and messages; NULL if it has none */
+} MotionSpec;
+
+typedef enum { LOAD_TRACTION, LOAD_POINT } LoadKind;
+
+typedef struct {
+  LoadKind kind;
+  Selector on;        /* traction: boundary faces of the grid, or of a body (carried by it) */
+  PetscReal at[3];    /* point load: the material position at the start */
+  PetscReal value[3]; /* N/m2 of undeformed boundary, or N */
+  Amplitude amplitude;
+} LoadSpec;
+
+typedef enum {
+  MEASURE_DISPLACEMENT,
+  MEASURE_POSITION,
+  MEASURE_VELOCITY, /* of a tracer */
+  MEASURE_EXTENT,   /* max or min coordinate of a body */
+  MEASURE_MASS,
+  MEASURE_MOMENTUM,
+  MEASURE_ANGULAR_MOMENTUM,
+  MEASURE_KINETIC_ENERGY,
+  MEASURE_ELASTIC_ENERGY,
+  MEASURE_DISSIPATED_ENERGY,
+  MEASURE_EXTERNAL_WORK,
+  MEASURE_DAMPED_ENERGY,
+  MEASURE_TRANSFER_ENERGY,
+  MEASURE_ENERGY_BALANCE, /* of the whole model */
+  MEASURE_REACTION,
+  MEASURE_SURFACE_FRONT,
+  MEASURE_SURFACE_HEIGHT,
+  MEASURE_SURFACE_SLOPE, /* of the interpolated free surface, 2D */
+  MEASURE_RUN_OUT_TIME   /* when the front last moved faster than `speed` */
+} MeasureKind;
+
+typedef enum { FRONT_POINTS, FRONT_SURFACE } FrontKind;
+
+typedef struct {
+  char *name;
+  MeasureKind kind;
+  PetscInt component;  /* 0 1 2 */
+  PetscBool maximum;   /* extent, run-out time: max, else min */
+  PetscReal tracer[3]; /* material position of the tracer at the start */
+  char *body;          /* NULL: all */
+  PetscInt boundary;   /* reaction: index into boundary[] of the case */
+  PetscBool has_at;
+  PetscReal at;    /* surface height: x, m */
+  PetscReal speed; /* run-out time: a slower front has come to rest, m/s */
+  FrontKind front; /* run-out time: whose front */
+} MeasureSpec;
+
+typedef struct {
+  AnalysisType type;
+  PetscReal end;               /* s; statics: pseudo-time, 1 */
+  PetscReal step;              /* s, the first and (without growth) largest step */
+  PetscReal smallest, largest; /* s, bounds of step control */
+  PetscReal beta, gamma;       /* Newmark */
+  PetscReal bossak;            /* alpha_B in [-1/3, 0] */
+  PetscReal damping;           /* Rayleigh, mass proportional, 1/s */
+} AnalysisSpec;
+
+typedef struct {
+  PetscReal residual, residual_absolute;   /* relative to the largest force met; N */
+  PetscReal increment, increment_absolute; /* relative to the step's displacement; m */
+  PetscInt max_iterations;
+  PetscInt ease; /* a step that needs at most so many iterations lets the next grow */
+} NewtonSpec;
+
+typedef struct {
+  PetscReal stiffness, mass; /* see docs/theory.md, cells that are not full */
+} StabilisationSpec;
+
+typedef struct {
+  PetscInt n_fields;
+  char **fields;
+  PetscReal every;   /* s between states; 0: only the end; < 0: every |every| steps */
+  PetscReal history; /* the same for history.csv; -1: every accepted step */
+  PetscBool grid;    /* write the grid's fields too */
+} OutputSpec;
+
+typedef struct {
+  char *file;   /* as the user named it */
+  char *folder; /* where it stands, "." at least: relative names start here */
+  char *title;
+  Kinematics kinematics;
+  char *method;
+  char *formulation; /* "displacement" */
+  AnalysisSpec analysis;
+  GridSpec grid;
+  PetscInt n_bodies;
+  BodySpec *bodies;
+  PetscInt n_materials;
+  MaterialSpec *materials;
+  PetscInt n_boundary;
+  MotionSpec *boundary;
+  PetscReal gravity[3];
+  Amplitude gravity_amplitude;
+  PetscInt n_loads;
+  LoadSpec *loads;
+  PetscInt n_measures;
+  MeasureSpec *measures;
+  NewtonSpec newton;
+  LinearChoice linear;
+  StabilisationSpec stabilisation;
+  OutputSpec output;
+  PetscInt n_petsc; /* options of the petsc: block, in order: "-name value" */
+  char **petsc;
+} Case;
+
+static inline PetscInt kinematics_dim(Kinematics k) { return k == KINEMATICS_3D ? 3 : 2; }
+
+PetscErrorCode CaseDestroy(Case **c);
+
+/* Value at time t; `fallback` if the amplitude was not given. */
+PetscReal amplitude_value(const Amplitude *amplitude, PetscReal t, PetscReal fallback);
+/* Integral over [0, t], for prescribed velocities. */
+PetscReal amplitude_integral(const Amplitude *amplitude, PetscReal t, PetscReal fallback);
+/* Is x (2 or 3 coordinates) in the shape? Its surface belongs to it, within `tolerance` m. */
+PetscBool shape_contains(const Shape *shape, PetscInt dim, const PetscReal *x, PetscReal tolerance);
+/* Smallest box around the shape; unbounded sides are +-PETSC_MAX_REAL. */
+void shape_bounds(const Shape *shape, PetscInt dim, PetscReal min[3], PetscReal max[3]);

@@ -1,0 +1,31 @@
+#include "case/fields.h"
+#include <string.h>
+
+#define P PETSC_TRUE, PETSC_FALSE /* points only */
+#define PG PETSC_TRUE, PETSC_TRUE /* points and grid */
+
+const OutputField output_fields[] = {
+  {"displacement", "m", "displacement from the start", 3, PG},
+  {"velocity", "m/s", "velocity", 3, PG},
+  {"acceleration", "m/s2", "acceleration", 3, PG},
+  {"stress", "Pa", "Cauchy stress, tension positive: xx yy zz xy yz zx", 6, P},
+  {"pressure", "Pa", "minus a third of the trace of the stress, compression positive", 1, P},
+  {"mises", "Pa", "von Mises equivalent stress", 1, P},
+  {"deformation_gradient", "", "deformation gradient, row by row", 9, P},
+  {"equivalent_plastic_strain", "", "accumulated plastic strain, 0 for elastic laws", 1, P},
+  {"mass", "kg", "mass of a point; on the grid the mass gathered at a node", 1, PG},
+  {"density", "kg/m3", "current density", 1, P},
+  {"volume", "m3", "current volume (for unit thickness in plane strain)", 1, P},
+  {"energy", "J/m3", "stored elastic energy per undeformed volume", 1, P},
+  {"id", "", "number of the point, the same through the whole run", 1, P},
+  {"body", "", "index of the body in the case file", 1, P},
+  {"material", "", "index of the material in the case file", 1, P},
+  {NULL, NULL, NULL, 0, PETSC_FALSE, PETSC_FALSE},
+};
+
+const OutputField *OutputFieldFind(const char *name)
+{
+  for (const OutputField *field = output_fields; field->name; ++field)
+    if (!strcmp(field->name, name)) return field;
+  return NULL;
+}

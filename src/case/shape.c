@@ -1,0 +1,134 @@
+#include "case/case.h"
+
+static PetscBool BoxContains(const Shape *s, PetscInt dim, const PetscReal *x, PetscReal tolerance)
+{
+  for (PetscInt d = 0; d < dim; ++d)
+    if (x[d] < s->min[d] - tolerance || x[d] > s->max[d] + tolerance) return PETSC_FALSE;
+  return PETSC_TRUE;
+}
+
+static PetscBool BallContains(const Shape *s, PetscInt dim, const PetscReal *x, PetscReal tolerance)
+{
+  PetscReal square = 0;
+  for (PetscInt d = 0; d < dim; ++d) square += (x[d] - s->centre[d]) * (x[d] - s->centre[d]);
+  return PetscSqrtReal(square) <= s->radius + tolerance ? PETSC_TRUE : PETSC_FALSE;
+}
+
+static PetscBool HalfSpaceContains(const Shape *s, PetscInt dim, const PetscReal *x, PetscReal tolerance)
+{
+  PetscReal along = 0, length = 0;
+  for (PetscInt d = 0; d < dim; ++d) {
+    along += (x[d] - s->point[d]) * s->normal[d];
+    length += s->normal[d] * s->normal[d];
+  }
+  return along <= tolerance * PetscSqrtReal(length) ? PETSC_TRUE : PETSC_FALSE;
+}
+
+static PetscReal DistanceToSegment(const PetscReal *a, const PetscReal *b, const PetscReal *x)
+{
+  const PetscReal e[2] = {b[0] - a[0], b[1] - a[1]}, v[2] = {x[0] - a[0], x[1] - a[1]};
+  const PetscReal square = e[0] * e[0] + e[1] * e[1];
+  const PetscReal raw = square > 0 ? (v[0] * e[0] + v[1] * e[1]) / square : 0;
+  const PetscReal s = PetscMax(0, PetscMin(1, raw));
+  return PetscSqrtReal(PetscSqr(v[0] - s * e[0]) + PetscSqr(v[1] - s * e[1]));
+}
+
+/* Even-odd rule; a position on an edge belongs to the polygon, or not if the tolerance is negative. */
+static PetscBool PolygonContains(const Shape *s, const PetscReal *x, PetscReal tolerance)
+{
+  PetscBool inside = PETSC_FALSE;
+  for (PetscInt i = 0, j = s->n_vertices - 1; i < s->n_vertices; j = i++) {
+    const PetscReal *a = s->vertices + 2 * i, *b = s->vertices + 2 * j;
+    if (DistanceToSegment(a, b, x) <= PetscAbsReal(tolerance)) return tolerance < 0 ? PETSC_FALSE : PETSC_TRUE;
+    if ((a[1] > x[1]) != (b[1] > x[1]) && x[0] < (b[0] - a[0]) * (x[1] - a[1]) / (b[1] - a[1]) + a[0]) inside = !inside;
+  }
+  return inside;
+}
+
+static PetscBool ChildrenContain(const Shape *s, PetscInt dim, const PetscReal *x, PetscReal tolerance)
+{
+  PetscInt hits = 0;
+  if (s->kind == SHAPE_DIFFERENCE) {
+    if (!shape_contains(&s->children[0], dim, x, tolerance)) return PETSC_FALSE;
+    /* What is cut away gives its surface back to the rest. */
+    for (PetscInt i = 1; i < s->n_children; ++i)
+      if (shape_contains(&s->children[i], dim, x, -tolerance)) return PETSC_FALSE;
+    return PETSC_TRUE;
+  }
+  for (PetscInt i = 0; i < s->n_children; ++i) hits += shape_contains(&s->children[i], dim, x, tolerance) ? 1 : 0;
+  return s->kind == SHAPE_UNION ? (hits > 0 ? PETSC_TRUE : PETSC_FALSE)
+                                : (hits == s->n_children ? PETSC_TRUE : PETSC_FALSE);
+}
+
+PetscBool shape_contains(const Shape *s, PetscInt dim, const PetscReal *x, PetscReal tolerance)
+{
+  switch (s->kind) {
+  case SHAPE_BOX: return BoxContains(s, dim, x, tolerance);
+  case SHAPE_BALL: return BallContains(s, dim, x, tolerance);
+  case SHAPE_POLYGON: return PolygonContains(s, x, tolerance);
+  case SHAPE_HALF_SPACE: return HalfSpaceContains(s, dim, x, tolerance);
+  default: return ChildrenContain(s, dim, x, tolerance);
+  }
+}
+
+static void HalfSpaceBounds(const Shape *s, PetscInt dim, PetscReal min[3], PetscReal max[3])
+{
+  for (PetscInt d = 0; d < dim; ++d) {
+    PetscBool aligned = s->normal[d] != 0 ? PETSC_TRUE : PETSC_FALSE;
+    for (PetscInt e = 0; e < dim; ++e)
+      if (e != d && s->normal[e] != 0) aligned = PETSC_FALSE;
+    if (aligned && s->normal[d] > 0) max[d] = s->point[d];
+    if (aligned && s->normal[d] < 0) min[d] = s->point[d];
+  }
+}
+
+static void ChildrenBounds(const Shape *s, PetscInt dim, PetscReal min[3], PetscReal max[3])
+{
+  const PetscInt n = s->kind == SHAPE_DIFFERENCE ? 1 : s->n_children;
+  for (PetscInt i = 0; i < n; ++i) {
+    PetscReal low[3], high[3];
+    shape_bounds(&s->children[i], dim, low, high);
+    for (PetscInt d = 0; d < dim; ++d) {
+      const PetscBool narrow = s->kind == SHAPE_INTERSECTION ? PETSC_TRUE : PETSC_FALSE;
+      min[d] = i == 0 ? low[d] : narrow ? PetscMax(min[d], low[d]) : PetscMin(min[d], low[d]);
+      max[d] = i == 0 ? high[d] : narrow ? PetscMin(max[d], high[d]) : PetscMax(max[d], high[d]);
+    }
+  }
+}
+
+static void PolygonBounds(const Shape *s, PetscReal min[3], PetscReal max[3])
+{
+  for (PetscInt d = 0; d < 2; ++d) {
+    min[d] = PETSC_MAX_REAL;
+    max[d] = -PETSC_MAX_REAL;
+    for (PetscInt i = 0; i < s->n_vertices; ++i) {
+      min[d] = PetscMin(min[d], s->vertices[2 * i + d]);
+      max[d] = PetscMax(max[d], s->vertices[2 * i + d]);
+    }
+  }
+}
+
+void shape_bounds(const Shape *s, PetscInt dim, PetscReal min[3], PetscReal max[3])
+{
+  for (PetscInt d = 0; d < 3; ++d) {
+    min[d] = d < dim ? -PETSC_MAX_REAL : 0;
+    max[d] = d < dim ? PETSC_MAX_REAL : 0;
+  }
+  switch (s->kind) {
+  case SHAPE_BOX:
+    for (PetscInt d = 0; d < dim; ++d) {
+      min[d] = s->min[d];
+      max[d] = s->max[d];
+    }
+    break;
+  case SHAPE_BALL:
+    for (PetscInt d = 0; d < dim; ++d) {
+      min[d] = s->centre[d] - s->radius;
+      max[d] = s->centre[d] + s->radius;
+    }
+    break;
+  case SHAPE_POLYGON: PolygonBounds(s, min, max); break;
+  case SHAPE_HALF_SPACE: HalfSpaceBounds(s, dim, min, max); break;
+  default: ChildrenBounds(s, dim, min, max);
+  }
+}

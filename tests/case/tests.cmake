@@ -1,0 +1,2 @@
+talus_test(case/test_shape)
+talus_test(case/test_amplitude)
