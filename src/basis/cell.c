@@ -1,0 +1,101 @@
+/* The four cells: tables, and the kernels for a type known only at run time. */
+#include "basis/cell_kernels.h"
+
+const Cell cells[4] = {
+  [CELL_TRIANGLE] = {.name = "triangle",
+                     .help = "3 nodes, constant strain",
+                     .dim = 2,
+                     .nodes = 3,
+                     .faces = 3,
+                     .face_nodes = 2,
+                     .reference_volume = 0.5,
+                     .reference = {{0, 0}, {1, 0}, {0, 1}},
+                     .face = {{0, 1}, {1, 2}, {2, 0}},
+                     .vtk_type = 5},
+  [CELL_QUADRILATERAL] = {.name = "quadrilateral",
+                          .help = "4 nodes, bilinear",
+                          .dim = 2,
+                          .nodes = 4,
+                          .faces = 4,
+                          .face_nodes = 2,
+                          .reference_volume = 4.0,
+                          .reference = {{-1, -1}, {1, -1}, {1, 1}, {-1, 1}},
+                          .face = {{0, 1}, {1, 2}, {2, 3}, {3, 0}},
+                          .vtk_type = 9},
+  [CELL_TETRAHEDRON] = {.name = "tetrahedron",
+                        .help = "4 nodes, constant strain",
+                        .dim = 3,
+                        .nodes = 4,
+                        .faces = 4,
+                        .face_nodes = 3,
+                        .reference_volume = 1.0 / 6.0,
+                        .reference = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}},
+                        .face = {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {0, 3, 2}},
+                        .vtk_type = 10},
+  [CELL_HEXAHEDRON] =
+    {.name = "hexahedron",
+     .help = "8 nodes, trilinear",
+     .dim = 3,
+     .nodes = 8,
+     .faces = 6,
+     .face_nodes = 4,
+     .reference_volume = 8.0,
+     .reference = {{-1, -1, -1}, {1, -1, -1}, {1, 1, -1}, {-1, 1, -1}, {-1, -1, 1}, {1, -1, 1}, {1, 1, 1}, {-1, 1, 1}},
+     .face = {{0, 3, 2, 1}, {4, 5, 6, 7}, {0, 1, 5, 4}, {1, 2, 6, 5}, {2, 3, 7, 6}, {3, 0, 4, 7}},
+     .vtk_type = 12},
+};
+
+/* Each case hands a literal to the kernel, which is then compiled for that cell alone. */
+void cell_shape(CellType type, const PetscReal *xi, PetscReal *N, PetscReal *dN)
+{
+  switch (type) {
+  case CELL_TRIANGLE: cell_kernel_shape(CELL_TRIANGLE, xi, N, dN); break;
+  case CELL_QUADRILATERAL: cell_kernel_shape(CELL_QUADRILATERAL, xi, N, dN); break;
+  case CELL_TETRAHEDRON: cell_kernel_shape(CELL_TETRAHEDRON, xi, N, dN); break;
+  case CELL_HEXAHEDRON: cell_kernel_shape(CELL_HEXAHEDRON, xi, N, dN); break;
+  }
+}
+
+PetscReal cell_gradients(CellType type, const PetscReal *x, const PetscReal *xi, PetscReal *N, PetscReal *dNdx)
+{
+  switch (type) {
+  case CELL_TRIANGLE: return cell_kernel_gradients(CELL_TRIANGLE, x, xi, N, dNdx);
+  case CELL_QUADRILATERAL: return cell_kernel_gradients(CELL_QUADRILATERAL, x, xi, N, dNdx);
+  case CELL_TETRAHEDRON: return cell_kernel_gradients(CELL_TETRAHEDRON, x, xi, N, dNdx);
+  case CELL_HEXAHEDRON: return cell_kernel_gradients(CELL_HEXAHEDRON, x, xi, N, dNdx);
+  }
+  return 0.0;
+}
+
+static PetscReal simplex_outside(PetscInt dim, const PetscReal *xi)
+{
+  PetscReal sum = -1.0, outside = -PETSC_MAX_REAL;
+  for (PetscInt d = 0; d < dim; ++d) {
+    sum += xi[d];
+    outside = PetscMax(outside, -xi[d]);
+  }
+  return PetscMax(outside, sum);
+}
+
+static PetscReal cube_outside(PetscInt dim, const PetscReal *xi)
+{
+  PetscReal outside = -1.0;
+  for (PetscInt d = 0; d < dim; ++d) outside = PetscMax(outside, PetscAbsReal(xi[d]) - 1.0);
+  return outside;
+}
+
+PetscReal cell_outside(CellType type, const PetscReal *xi)
+{
+  const PetscInt dim = cells[type].dim;
+  return cell_kernel_affine(type) ? simplex_outside(dim, xi) : cube_outside(dim, xi);
+}
+
+/* det dx/dxi is constant, linear or at most quadratic in each direction: these rules are exact. */
+PetscReal cell_volume(CellType type, const PetscReal *x)
+{
+  const PetscInt n = type == CELL_HEXAHEDRON ? 8 : 1;
+  PetscReal xi[8 * 3], weight[8], N[CELL_MAX_NODES], dNdx[CELL_MAX_NODES * 3], volume = 0.0;
+  cell_quadrature(type, n, xi, weight);
+  for (PetscInt p = 0; p < n; ++p) volume += weight[p] * cell_gradients(type, x, xi + p * cells[type].dim, N, dNdx);
+  return volume;
+}

@@ -1,0 +1,2 @@
+talus_test(basis/test_cell)
+talus_test(basis/test_quadrature)
