@@ -1,0 +1,62 @@
+/* Any two elastic constants -> all five, by way of Lamé's two (no formula here cancels digits near
+ * incompressibility). */
+#include "material/elasticity.h"
+#include <math.h>
+
+const ElasticConstant elastic_constants[ELASTIC_CONSTANTS] = {
+  {"young", "Pa", "Young's modulus", 0.0, INFINITY},
+  {"poisson", "", "Poisson's ratio", -1.0, 0.5},
+  {"bulk", "Pa", "bulk modulus", 0.0, INFINITY},
+  {"shear", "Pa", "shear modulus", 0.0, INFINITY},
+  {"lame", "Pa", "Lame's first constant", -INFINITY, INFINITY},
+};
+
+enum { YOUNG, POISSON, BULK, SHEAR, LAME };
+#define PAIR(a, b) (1u << (a) | 1u << (b))
+
+typedef struct {
+  PetscReal lame, shear;
+} Lame;
+
+static Lame from_young_lame(PetscReal E, PetscReal l)
+{
+  const PetscReal root = sqrt(E * E + 9.0 * l * l + 2.0 * E * l);
+  return (Lame){l, 0.25 * (E - 3.0 * l + root)};
+}
+
+static Lame lame_from_two(unsigned given, const PetscReal *value)
+{
+  const PetscReal E = value[YOUNG], nu = value[POISSON], K = value[BULK], G = value[SHEAR], l = value[LAME];
+  switch (given) {
+  case PAIR(YOUNG, POISSON): return (Lame){E * nu / ((1.0 + nu) * (1.0 - 2.0 * nu)), 0.5 * E / (1.0 + nu)};
+  case PAIR(YOUNG, BULK): return (Lame){3.0 * K * (3.0 * K - E) / (9.0 * K - E), 3.0 * K * E / (9.0 * K - E)};
+  case PAIR(YOUNG, SHEAR): return (Lame){G * (E - 2.0 * G) / (3.0 * G - E), G};
+  case PAIR(YOUNG, LAME): return from_young_lame(E, l);
+  case PAIR(POISSON, BULK): return (Lame){3.0 * K * nu / (1.0 + nu), 1.5 * K * (1.0 - 2.0 * nu) / (1.0 + nu)};
+  case PAIR(POISSON, SHEAR): return (Lame){2.0 * G * nu / (1.0 - 2.0 * nu), G};
+  case PAIR(POISSON, LAME): return (Lame){l, 0.5 * l * (1.0 - 2.0 * nu) / nu};
+  case PAIR(BULK, SHEAR): return (Lame){K - 2.0 * G / 3.0, G};
+  case PAIR(BULK, LAME): return (Lame){l, 1.5 * (K - l)};
+  case PAIR(SHEAR, LAME): return (Lame){l, G};
+  default: return (Lame){NAN, NAN};
+  }
+}
+
+PetscBool elasticity_from_two(unsigned given, const PetscReal value[ELASTIC_CONSTANTS], Elasticity *elastic)
+{
+  const Lame two = lame_from_two(given, value);
+  const PetscReal l = two.lame, G = two.shear;
+  PetscReal all[ELASTIC_CONSTANTS] = {
+    [YOUNG] = G * (3.0 * l + 2.0 * G) / (l + G),
+    [POISSON] = 0.5 * l / (l + G),
+    [BULK] = l + 2.0 * G / 3.0,
+    [SHEAR] = G,
+    [LAME] = l,
+  };
+  for (int k = 0; k < ELASTIC_CONSTANTS; ++k)
+    if (given >> k & 1) all[k] = value[k];
+  *elastic = (Elasticity){all[YOUNG], all[POISSON], all[BULK], all[SHEAR], all[LAME]};
+  for (int k = 0; k < ELASTIC_CONSTANTS; ++k)
+    if (!(all[k] > elastic_constants[k].min && all[k] < elastic_constants[k].max)) return PETSC_FALSE;
+  return PETSC_TRUE;
+}

@@ -1,0 +1,17 @@
+/* The five elastic constants, of which any two give the others. */
+#pragma once
+#include "material/law.h"
+
+#define ELASTIC_CONSTANTS 5
+
+typedef struct {
+  const char *name, *unit, *help;
+  PetscReal min, max; /* open range */
+} ElasticConstant;
+
+/* young, poisson, bulk, shear, lame: the order of struct Elasticity. */
+extern const ElasticConstant elastic_constants[ELASTIC_CONSTANTS];
+
+/* All five from two: `given` has the bits (1 << index) of the two, `value` their numbers. The two given are kept
+ * as they are. PETSC_FALSE if they contradict each other or a stable solid (bulk and shear positive). */
+PetscBool elasticity_from_two(unsigned given, const PetscReal value[ELASTIC_CONSTANTS], Elasticity *elastic);

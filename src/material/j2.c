@@ -1,0 +1,252 @@
+/* J2 plasticity in large strains (thesis section 3.2, algorithm 3): radial return on the volume-preserving elastic left
+ * Cauchy-Green tensor bbar, with linear isotropic hardening.
+ *
+ *   tau = q I + s,  q = J U'(J),  s = mu dev bbar
+ *   f   = |s| - sqrt(2/3) (sigma_Y + H alpha) <= 0
+ *   c   = c_vol + (1 - beta1) c_dev - 2 mubar n x (beta3 n + beta4 dev n^2)     (thesis 3.93, not symmetrised)
+ *
+ * with mubar = mu tr bbar / 3 and c_dev = 2 mubar (I_sym - I x I / 3) - 2/3 |s| (n x I + I x n) of the trial state.
+ * State: bbar, J, alpha. The algorithm keeps the trace of bbar and not its determinant, so J is stored apart; the
+ * elastic energy of shape is mu/2 (tr bbar - 3 (det bbar)^(1/3)), whose second term grows with the dissipation.
+ * Volumetric laws as in neo_hookean_split.c: j2 with p = K (J - 1), j2-log with p = K ln J / J. */
+#include "material/lanes.h"
+#include "material/shape.h"
+
+enum { BULK, MU, YIELD, HARDENING };
+
+#define N_STATE 8 /* bbar, J, alpha */
+
+/* q = J U' and dq = J dq/dJ. */
+LANES_INLINE void volume_of(VolumeLaw law, PetscReal K, const Lanes *J, Lanes *q, Lanes *dq)
+{
+  if (law == VOLUME_LOG) {
+    lanes_log(J, q);
+    *q *= K;
+    *dq = 0.0 * *J + K;
+  } else {
+    *q = K * *J * (*J - 1.0);
+    *dq = K * *J * (2.0 * *J - 1.0);
+  }
+}
+
+/* |s| of a deviator, and 1 / |s| (0 for 0). */
+LANES_INLINE void norm_of(const Lanes s[6], Lanes *norm, Lanes *inverse)
+{
+  const Lanes norm2 = s[0] * s[0] + s[1] * s[1] + s[2] * s[2] + 2.0 * (s[3] * s[3] + s[4] * s[4] + s[5] * s[5]);
+  lanes_sqrt(&norm2, norm);
+  for (int l = 0; l < LANES; ++l) (*inverse)[l] = (*norm)[l] > 0.0 ? 1.0 / (*norm)[l] : 0.0;
+}
+
+/* Plastic multiplier, and x = 1 / (1 + H / 3 mubar) where there is flow (else 0). Rounding does not flow. */
+LANES_INLINE void flow_of(const PetscReal *parameters, const Lanes *norm, const Lanes *mubar, const Lanes *alpha,
+                          Lanes *gamma, Lanes *x)
+{
+  const PetscReal H = parameters[HARDENING], root = sqrt(2.0 / 3.0);
+  const Lanes f = *norm - root * (parameters[YIELD] + H * *alpha);
+  const Lanes slope = *mubar / (*mubar + H / 3.0), full = 0.5 * f / *mubar * slope;
+  for (int l = 0; l < LANES; ++l) {
+    const int plastic = f[l] > 16.0 * PETSC_MACHINE_EPSILON * (*mubar)[l];
+    (*gamma)[l] = plastic ? full[l] : 0.0;
+    (*x)[l] = plastic ? slope[l] : 0.0;
+  }
+}
+
+/* c = a I x I + 2 g I_sym + r (n x I + I x n) + n x w of one point. */
+LANES_INLINE void tangent_point(const PetscReal point[15], PetscReal *c)
+{
+  const PetscReal *n = point, *w = point + 6, a = point[12], g = point[13], r = point[14];
+  PetscReal row[6];
+  for (int k = 0; k < 6; ++k) row[k] = w[k] + (k < 3 ? r : 0.0);
+  for (int i = 0; i < 6; ++i)
+    for (int j = 0; j < 6; ++j) {
+      const PetscReal identity = i < 3 ? r * n[j] + (j < 3 ? a : 0.0) : 0.0;
+      c[6 * i + j] = n[i] * row[j] + identity + (i == j ? (i < 3 ? 2.0 * g : g) : 0.0);
+    }
+}
+
+/* Trial norm, direction, mubar; multiplier and x: everything that c needs. */
+typedef struct {
+  Lanes q, dq, norm, n[6], mubar, gamma, x;
+} Return;
+
+LANES_INLINE void tangent_lanes(const Return *t, PetscInt count, PetscReal *c)
+{
+  const Lanes *n = t->n, ratio = t->norm / t->mubar;
+  const Lanes beta1 = ratio * 0.0 + 2.0 * t->mubar * t->gamma / (t->norm + 1e-300);
+  const Lanes beta3 = t->x - beta1 + (2.0 / 3.0) * (1.0 - t->x) * ratio * t->gamma;
+  const Lanes beta4 = (t->x - beta1) * ratio, u = (1.0 - beta1) * t->mubar;
+  PetscReal point[LANES * 15];
+  Lanes all[15], n2[6];
+  n2[0] = n[0] * n[0] + n[3] * n[3] + n[5] * n[5];
+  n2[1] = n[3] * n[3] + n[1] * n[1] + n[4] * n[4];
+  n2[2] = n[5] * n[5] + n[4] * n[4] + n[2] * n[2];
+  n2[3] = n[0] * n[3] + n[3] * n[1] + n[5] * n[4];
+  n2[4] = n[3] * n[5] + n[1] * n[4] + n[4] * n[2];
+  n2[5] = n[5] * n[0] + n[4] * n[3] + n[2] * n[5];
+  const Lanes mean = (n2[0] + n2[1] + n2[2]) / 3.0;
+  for (int k = 0; k < 6; ++k) {
+    all[k] = n[k];
+    all[6 + k] = -2.0 * t->mubar * (beta3 * n[k] + beta4 * (k < 3 ? n2[k] - mean : n2[k]));
+  }
+  all[12] = t->dq - (2.0 / 3.0) * u;
+  all[13] = u - t->q;
+  all[14] = (-2.0 / 3.0) * (1.0 - beta1) * t->norm;
+  lanes_store(15, LANES, all, point);
+  for (PetscInt l = 0; l < count; ++l) tangent_point(point + 15 * l, c + 36 * l);
+}
+
+LANES_INLINE LawStatus update_lanes(VolumeLaw law, const PetscReal *parameters, PetscInt n, const PetscReal *dF,
+                                    const PetscReal *old, PetscReal *state, PetscReal *tau, PetscReal *c)
+{
+  const PetscReal mu = parameters[MU];
+  Lanes f[9], now[N_STATE], b[6], s[6], t[7], det_f, root, inverse;
+  Return r;
+  lanes_load(9, n, dF, f);
+  lanes_load(N_STATE, n, old, now);
+  lanes_push_forward(f, now, b);
+  lanes_det(f, &det_f);
+  lanes_cbrt(&det_f, &root);
+  now[6] *= det_f;
+  volume_of(law, parameters[BULK], &now[6], &r.q, &r.dq);
+  for (int k = 0; k < 6; ++k) b[k] /= root * root;
+  const Lanes mean = (b[0] + b[1] + b[2]) / 3.0;
+  r.mubar = mu * mean;
+  for (int k = 0; k < 6; ++k) s[k] = mu * (k < 3 ? b[k] - mean : b[k]);
+  norm_of(s, &r.norm, &inverse);
+  flow_of(parameters, &r.norm, &r.mubar, &now[7], &r.gamma, &r.x);
+  for (int k = 0; k < 6; ++k) {
+    r.n[k] = s[k] * inverse;
+    const Lanes back = 2.0 * r.mubar * r.gamma * r.n[k];
+    now[k] = b[k] - back / mu;
+    t[k] = s[k] - back + (k < 3 ? r.q : 0.0 * r.q);
+  }
+  now[7] += sqrt(2.0 / 3.0) * r.gamma;
+  lanes_store(N_STATE, n, now, state);
+  lanes_store(6, n, t, tau);
+  if (c) tangent_lanes(&r, n < LANES ? n : LANES, c);
+  t[6] = r.dq + r.mubar;
+  return lanes_status(&det_f, 7, t);
+}
+
+LANES_INLINE LawStatus update_batch(VolumeLaw law, const PetscReal *parameters, PetscInt n, const PetscReal *dF,
+                                    const PetscReal *old, PetscReal *state, PetscReal *tau, PetscReal *c)
+{
+  LawStatus worst = LAW_OK;
+  for (PetscInt p = 0; p < n; p += LANES) {
+    const LawStatus status = update_lanes(law, parameters, n - p, dF + 9 * p, old + N_STATE * p, state + N_STATE * p,
+                                          tau + 6 * p, c ? c + 36 * p : NULL);
+    worst = PetscMax(worst, status);
+  }
+  return worst;
+}
+
+static LawStatus update_linear(const PetscReal *parameters, PetscInt n, const PetscReal *dF, const PetscReal *old,
+                               PetscReal *state, PetscReal *tau, PetscReal *c)
+{
+  return update_batch(VOLUME_LINEAR, parameters, n, dF, old, state, tau, c);
+}
+
+static LawStatus update_log(const PetscReal *parameters, PetscInt n, const PetscReal *dF, const PetscReal *old,
+                            PetscReal *state, PetscReal *tau, PetscReal *c)
+{
+  return update_batch(VOLUME_LOG, parameters, n, dF, old, state, tau, c);
+}
+
+static PetscReal energy(VolumeLaw law, const PetscReal *parameters, const PetscReal *state)
+{
+  const PetscReal shape = state[0] + state[1] + state[2] - 3.0 * cbrt(sym_det(state));
+  return volume_energy(law, parameters[BULK], state[6]) + 0.5 * parameters[MU] * shape;
+}
+
+static PetscReal energy_linear(const PetscReal *parameters, const PetscReal *state)
+{
+  return energy(VOLUME_LINEAR, parameters, state);
+}
+
+static PetscReal energy_log(const PetscReal *parameters, const PetscReal *state)
+{
+  return energy(VOLUME_LOG, parameters, state);
+}
+
+/* PETSC_FALSE outside the yield surface. */
+static PetscBool initial_stress(VolumeLaw law, const PetscReal *parameters, const PetscReal sigma[6], PetscReal *state)
+{
+  const PetscReal mean = (sigma[0] + sigma[1] + sigma[2]) / 3.0, mu = parameters[MU];
+  const PetscReal J = volume_from_pressure(law, parameters[BULK], mean);
+  PetscReal norm2 = 0.0;
+  for (int k = 0; k < 6; ++k) norm2 += (k < 3 ? 1.0 : 2.0) * pow(sigma[k] - (k < 3 ? mean : 0.0), 2);
+  if (!(J * sqrt(norm2) <= sqrt(2.0 / 3.0) * parameters[YIELD] + 16.0 * PETSC_MACHINE_EPSILON * mu)) return PETSC_FALSE;
+  state[6] = J;
+  state[7] = 0.0;
+  return shape_from_stress(mu, J, sigma, state);
+}
+
+static PetscBool initial_stress_linear(const PetscReal *parameters, const PetscReal sigma[6], PetscReal *state)
+{
+  return initial_stress(VOLUME_LINEAR, parameters, sigma, state);
+}
+
+static PetscBool initial_stress_log(const PetscReal *parameters, const PetscReal sigma[6], PetscReal *state)
+{
+  return initial_stress(VOLUME_LOG, parameters, sigma, state);
+}
+
+static void prepare(const Elasticity *elastic, const PetscReal *given, PetscReal *packed)
+{
+  packed[BULK] = elastic->bulk;
+  packed[MU] = elastic->shear;
+  packed[YIELD] = given[0];
+  packed[HARDENING] = given[1];
+}
+
+static const LawParameter parameters[] = {
+  {.name = "yield_stress",
+   .unit = "Pa",
+   .help = "stress at which a tension test yields",
+   .min = 0,
+   .max = PETSC_MAX_REAL,
+   .min_open = PETSC_TRUE,
+   .fallback = NAN},
+  {.name = "hardening",
+   .unit = "Pa",
+   .help = "linear isotropic hardening modulus",
+   .min = 0,
+   .max = PETSC_MAX_REAL,
+   .fallback = 0},
+  {.name = NULL},
+};
+
+static const LawField fields[] = {
+  {"elastic_shape", "", "volume-preserving elastic left Cauchy-Green tensor", 6, {1, 1, 1, 0, 0, 0}},
+  {"volume_ratio", "", "J, current over undeformed volume", 1, {1}},
+  {"equivalent_plastic_strain", "", "accumulated sqrt(2/3) |d eps^p|", 1, {0}},
+  {.name = NULL},
+};
+
+const Law law_j2 = {
+  .name = "j2",
+  .help = "J2 (von Mises) plasticity, linear isotropic hardening, p = K (J - 1)",
+  .parameters = parameters,
+  .fields = fields,
+  .n_state = N_STATE,
+  .symmetric = PETSC_FALSE,
+  .yields = PETSC_TRUE,
+  .update = update_linear,
+  .energy = energy_linear,
+  .initial_stress = initial_stress_linear,
+  .prepare = prepare,
+};
+
+const Law law_j2_log = {
+  .name = "j2-log",
+  .help = "J2 (von Mises) plasticity, linear isotropic hardening, p = K ln J / J",
+  .parameters = parameters,
+  .fields = fields,
+  .n_state = N_STATE,
+  .symmetric = PETSC_FALSE,
+  .yields = PETSC_TRUE,
+  .update = update_log,
+  .energy = energy_log,
+  .initial_stress = initial_stress_log,
+  .prepare = prepare,
+};

@@ -1,0 +1,92 @@
+/* Eight points side by side: a law written once for `Lanes` runs on vector registers of any width.
+ *
+ * A batch is always worked off in whole lanes (the last point fills those left over), so that a point's result does not
+ * depend on the batch it came in, to the last bit. Arrays of points stand in memory point by point; here each component
+ * is one Lanes. GCC and Clang both know vector_size; lanes are passed by pointer, because the calling convention for
+ * vectors wider than the machine's is not settled. */
+#pragma once
+#include "base/tensor.h"
+#include "material/law.h"
+#include <math.h>
+
+#define LANES 8
+#define LANES_INLINE static inline __attribute__((always_inline))
+
+typedef PetscReal Lanes __attribute__((vector_size(LANES * sizeof(PetscReal))));
+
+/* to[k] = component k of the n points at `from`, `components` numbers each. */
+LANES_INLINE void lanes_load(int components, PetscInt n, const PetscReal *from, Lanes *to)
+{
+  const PetscReal *point[LANES];
+  for (int l = 0; l < LANES; ++l) point[l] = from + (n >= LANES || l < n ? l : n - 1) * components;
+  for (int k = 0; k < components; ++k)
+    to[k] =
+      (Lanes){point[0][k], point[1][k], point[2][k], point[3][k], point[4][k], point[5][k], point[6][k], point[7][k]};
+}
+
+LANES_INLINE void lanes_store(int components, PetscInt n, const Lanes *from, PetscReal *to)
+{
+  if (n >= LANES) {
+    for (int l = 0; l < LANES; ++l)
+      for (int k = 0; k < components; ++k) to[l * components + k] = from[k][l];
+    return;
+  }
+  for (int l = 0; l < n; ++l)
+    for (int k = 0; k < components; ++k) to[l * components + k] = from[k][l];
+}
+
+LANES_INLINE void lanes_log(const Lanes *x, Lanes *y)
+{
+  for (int l = 0; l < LANES; ++l) (*y)[l] = log((*x)[l]);
+}
+
+LANES_INLINE void lanes_sqrt(const Lanes *x, Lanes *y)
+{
+  for (int l = 0; l < LANES; ++l) (*y)[l] = sqrt((*x)[l]);
+}
+
+LANES_INLINE void lanes_cbrt(const Lanes *x, Lanes *y)
+{
+  for (int l = 0; l < LANES; ++l) (*y)[l] = cbrt((*x)[l]);
+}
+
+LANES_INLINE void lanes_det(const Lanes a[9], Lanes *det)
+{
+  *det = a[0] * (a[4] * a[8] - a[5] * a[7]) - a[1] * (a[3] * a[8] - a[5] * a[6]) + a[2] * (a[3] * a[7] - a[4] * a[6]);
+}
+
+LANES_INLINE void lanes_sym_det(const Lanes s[6], Lanes *det)
+{
+  *det = s[0] * (s[1] * s[2] - s[4] * s[4]) - s[3] * (s[3] * s[2] - s[4] * s[5]) + s[5] * (s[3] * s[4] - s[1] * s[5]);
+}
+
+/* pushed = f s f^T. */
+LANES_INLINE void lanes_push_forward(const Lanes f[9], const Lanes s[6], Lanes pushed[6])
+{
+  Lanes fs[9];
+  for (int i = 0; i < 9; i += 3) {
+    fs[i] = f[i] * s[0] + f[i + 1] * s[3] + f[i + 2] * s[5];
+    fs[i + 1] = f[i] * s[3] + f[i + 1] * s[1] + f[i + 2] * s[4];
+    fs[i + 2] = f[i] * s[5] + f[i + 1] * s[4] + f[i + 2] * s[2];
+  }
+  pushed[0] = fs[0] * f[0] + fs[1] * f[1] + fs[2] * f[2];
+  pushed[1] = fs[3] * f[3] + fs[4] * f[4] + fs[5] * f[5];
+  pushed[2] = fs[6] * f[6] + fs[7] * f[7] + fs[8] * f[8];
+  pushed[3] = fs[0] * f[3] + fs[1] * f[4] + fs[2] * f[5];
+  pushed[4] = fs[3] * f[6] + fs[4] * f[7] + fs[5] * f[8];
+  pushed[5] = fs[6] * f[0] + fs[7] * f[1] + fs[8] * f[2];
+}
+
+/* Worst status of points with increments f (whose determinants are det_f) and n results. */
+LANES_INLINE LawStatus lanes_status(const Lanes *det_f, int n, const Lanes *result)
+{
+  Lanes sum = *det_f * 0.0; /* 0, or NaN if anything is infinite or NaN */
+  int inverted = 0, not_finite = 0;
+  for (int k = 0; k < n; ++k) sum += result[k] * 0.0;
+  for (int l = 0; l < LANES; ++l) {
+    const int lane_inverted = (*det_f)[l] <= 0.0;
+    inverted |= lane_inverted;
+    not_finite |= !lane_inverted & (sum[l] != 0.0);
+  }
+  return not_finite ? LAW_NOT_FINITE : (inverted ? LAW_INVERTED : LAW_OK);
+}

@@ -1,0 +1,73 @@
+/* A material law, seen from outside: a const struct of data and functions.
+ *
+ * To add one, copy neo_hookean.c, and add its name to laws.inc. Laws are three-dimensional inside;
+ * plane strain and axisymmetry embed their kinematics. A law works on a batch of points at once,
+ * so that nothing is called through a pointer inside the loop over points. */
+#pragma once
+#include "base/diag.h"
+#include "case/case.h"
+
+#define LAW_MAX_PARAMETERS 16
+#define LAW_MAX_STATE 24
+#define LAW_BATCH 32 /* most points of one update call */
+
+typedef enum { LAW_OK = 0, LAW_INVERTED, LAW_NOT_CONVERGED, LAW_NOT_FINITE } LawStatus;
+
+typedef struct {
+  const char *name, *unit, *help; /* key in the case file; unit "" if none, "deg" is converted to rad */
+  PetscReal min, max;             /* closed range */
+  PetscBool min_open, max_open;   /* the bound itself is excluded */
+  PetscReal fallback;             /* default; NAN: must be given */
+} LawParameter;
+
+typedef struct {
+  const char *name, *unit, *help;
+  PetscInt components; /* 1 or 6 (symmetric tensor, Voigt) */
+  PetscReal initial[6];
+} LawField;
+
+/* Any two elastic constants of: young, poisson, bulk, shear, lame. */
+typedef struct {
+  PetscReal young, poisson, bulk, shear, lame;
+} Elasticity;
+
+typedef struct Law {
+  const char *name, *help;
+  const LawParameter *parameters; /* ended by name = NULL; elastic constants and density stand apart */
+  const LawField *fields;         /* stored state, ended by name = NULL */
+  PetscInt n_state;               /* sum of the fields' components */
+  PetscBool symmetric;            /* is the tangent symmetric? */
+  PetscBool yields;               /* can it lose its stiffness? */
+  /* Update n points. dF: n x 9, increment of the deformation gradient x_(n+1)/x_n; old, state: n x n_state;
+   * tau: n x 6 Kirchhoff stress, Pa; c: n x 36 with L_v tau = c : d, or NULL if not wanted. Never touches old
+   * (which may not overlap state). Returns the worst status of the batch. */
+  LawStatus (*update)(const PetscReal *parameters, PetscInt n, const PetscReal *dF, const PetscReal *old,
+                      PetscReal *state, PetscReal *tau, PetscReal *c);
+  /* Stored elastic energy per undeformed volume, J/m3. */
+  PetscReal (*energy)(const PetscReal *parameters, const PetscReal *state);
+  /* State that carries the Cauchy stress sigma (6) with no shear history; PETSC_FALSE if there is none. */
+  PetscBool (*initial_stress)(const PetscReal *parameters, const PetscReal sigma[6], PetscReal *state);
+  /* Turn the user's constants into the packed parameters; complain through diag at `path`. */
+  void (*prepare)(const Elasticity *elastic, const PetscReal *given, PetscReal *packed);
+  /* What is wrong with parameters that are each in their range, or NULL. May itself be NULL. */
+  const char *(*check)(const PetscReal *given);
+} Law;
+
+/* A material of a case: a law with its packed parameters. */
+typedef struct {
+  const char *name;
+  const Law *law;
+  PetscReal density; /* kg/m3 */
+  Elasticity elastic;
+  PetscReal wave_modulus; /* lambda + 2 mu, Pa: the P-wave modulus, for time scales and stabilisation */
+  PetscReal parameters[LAW_MAX_PARAMETERS];
+} Material;
+
+/* All laws, ended by NULL. */
+extern const Law *const laws[];
+const Law *LawFind(const char *name);
+
+/* Resolve materials[index] of the case; mistakes go to diag with their paths. */
+PetscErrorCode MaterialResolve(const Case *c, PetscInt index, Diag *diag, Material *material);
+/* Write the initial state of one point, n_state numbers. */
+void law_initial_state(const Law *law, PetscReal *state);

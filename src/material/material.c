@@ -1,0 +1,196 @@
+/* From what the case says about a material to a law with its packed parameters. */
+#include "material/elasticity.h"
+#include <math.h>
+#include <string.h>
+
+#define MAX_PATH 256
+#define MAX_NAMES 64
+
+typedef struct {
+  const MaterialSpec *spec;
+  Diag *diag;
+} Resolver;
+
+/* "materials.rubber.young"; key NULL: the material itself. */
+static const char *path_of(const Resolver *r, const char *key, char path[MAX_PATH])
+{
+  snprintf(path, MAX_PATH, "materials.%s%s%s", r->spec->name, key ? "." : "", key ? key : "");
+  return path;
+}
+
+static const NamedValue *find_value(const MaterialSpec *spec, const char *key)
+{
+  for (PetscInt i = 0; i < spec->n_parameters; ++i)
+    if (!strcmp(spec->parameters[i].name, key)) return &spec->parameters[i];
+  return NULL;
+}
+
+static const Law *find_law(const Resolver *r)
+{
+  const char *names[MAX_NAMES] = {NULL}, *nearest;
+  char path[MAX_PATH];
+  const Law *law = LawFind(r->spec->law);
+  if (law) return law;
+  for (int i = 0; laws[i] && i < MAX_NAMES - 1; ++i) names[i] = laws[i]->name;
+  DiagError(r->diag, path_of(r, "law", path), "there is no law '%s'", r->spec->law ? r->spec->law : "");
+  nearest = r->spec->law ? DiagNearest(r->spec->law, names) : NULL;
+  if (nearest) DiagHint(r->diag, "did you mean '%s'?", nearest);
+  else DiagHint(r->diag, "`talus list laws` shows all laws");
+  return NULL;
+}
+
+static int law_parameter_index(const Law *law, const char *key)
+{
+  for (int i = 0; law->parameters[i].name; ++i)
+    if (!strcmp(law->parameters[i].name, key)) return i;
+  return -1;
+}
+
+static int elastic_index(const char *key)
+{
+  for (int i = 0; i < ELASTIC_CONSTANTS; ++i)
+    if (!strcmp(elastic_constants[i].name, key)) return i;
+  return -1;
+}
+
+/* Keys that this law has no use for. */
+static void refuse_unknown(const Resolver *r, const Law *law)
+{
+  const char *names[ELASTIC_CONSTANTS + LAW_MAX_PARAMETERS + 1] = {NULL};
+  char path[MAX_PATH];
+  int n = 0;
+  for (int i = 0; i < ELASTIC_CONSTANTS; ++i) names[n++] = elastic_constants[i].name;
+  for (int i = 0; law->parameters[i].name; ++i) names[n++] = law->parameters[i].name;
+  for (PetscInt i = 0; i < r->spec->n_parameters; ++i) {
+    const char *key = r->spec->parameters[i].name;
+    if (elastic_index(key) >= 0 || law_parameter_index(law, key) >= 0) continue;
+    DiagError(r->diag, path_of(r, key, path), "the law %s has no parameter '%s'", law->name, key);
+    const char *nearest = DiagNearest(key, names);
+    if (nearest) DiagHint(r->diag, "did you mean '%s'?", nearest);
+  }
+}
+
+static const char *unit_of(const char *unit) { return unit && unit[0] ? unit : "no unit"; }
+
+/* Is the constant usable by itself? */
+static PetscBool check_constant(const Resolver *r, int index, PetscReal value)
+{
+  const ElasticConstant *constant = &elastic_constants[index];
+  char path[MAX_PATH];
+  if (isfinite(value) && value > constant->min && value < constant->max) return PETSC_TRUE;
+  path_of(r, constant->name, path);
+  if (!isfinite(value)) DiagError(r->diag, path, "%s must be a finite number, not %g", constant->help, value);
+  else if (isfinite(constant->max))
+    DiagError(r->diag, path, "%s must lie between %g and %g (both excluded), not %g", constant->help, constant->min,
+              constant->max, value);
+  else DiagError(r->diag, path, "%s must be positive (%s), not %g", constant->help, unit_of(constant->unit), value);
+  if (!strcmp(constant->name, "poisson") && value == 0.5)
+    DiagHint(r->diag, "an incompressible solid has no finite bulk modulus; come close to it, as with 0.4999");
+  return PETSC_FALSE;
+}
+
+/* Append "young, bulk" to text: the constants whose bits are set. */
+static void list_constants(unsigned given, char *text, size_t size)
+{
+  text[0] = 0;
+  for (int k = 0; k < ELASTIC_CONSTANTS; ++k) {
+    const size_t used = strlen(text);
+    if (given >> k & 1) snprintf(text + used, size - used, "%s%s", used ? ", " : "", elastic_constants[k].name);
+  }
+}
+
+/* Exactly two constants, each in its range, together a stable solid. */
+static PetscBool resolve_elastic(const Resolver *r, Elasticity *elastic)
+{
+  PetscReal value[ELASTIC_CONSTANTS] = {0};
+  PetscBool good = PETSC_TRUE;
+  unsigned given = 0;
+  int n = 0;
+  char path[MAX_PATH], names[128];
+  for (int k = 0; k < ELASTIC_CONSTANTS; ++k) {
+    const NamedValue *found = find_value(r->spec, elastic_constants[k].name);
+    if (!found) continue;
+    given |= 1u << k;
+    value[k] = found->value;
+    ++n;
+    if (!check_constant(r, k, value[k])) good = PETSC_FALSE;
+  }
+  list_constants(given, names, sizeof names);
+  if (n != 2) {
+    DiagError(r->diag, path_of(r, NULL, path), "needs exactly two elastic constants, has %d%s%s%s", n, n ? " (" : "",
+              names, n ? ")" : "");
+    DiagHint(r->diag, "give any two of young, poisson, bulk, shear, lame: they define the others");
+    return PETSC_FALSE;
+  }
+  if (!good) return PETSC_FALSE;
+  if (elasticity_from_two(given, value, elastic)) return PETSC_TRUE;
+  DiagError(r->diag, path_of(r, NULL, path),
+            "these %s give a bulk modulus of %g Pa and a shear modulus of %g Pa: not a stable solid", names,
+            elastic->bulk, elastic->shear);
+  return PETSC_FALSE;
+}
+
+static PetscBool in_range(const LawParameter *p, PetscReal value)
+{
+  const PetscBool low = (PetscBool)(p->min_open ? value > p->min : value >= p->min);
+  const PetscBool high = (PetscBool)(p->max_open ? value < p->max : value <= p->max);
+  return (PetscBool)(isfinite(value) && low && high);
+}
+
+/* One parameter of the law in SI units, angles in radians. */
+static void resolve_parameter(const Resolver *r, const Law *law, const LawParameter *p, PetscReal *value)
+{
+  const NamedValue *given = find_value(r->spec, p->name);
+  char path[MAX_PATH];
+  *value = given ? given->value : p->fallback;
+  if (!given && isnan(p->fallback)) {
+    DiagError(r->diag, path_of(r, NULL, path), "the law %s needs '%s': %s (%s)", law->name, p->name, p->help,
+              unit_of(p->unit));
+    return;
+  }
+  if (given && !in_range(p, *value))
+    DiagError(r->diag, path_of(r, p->name, path), "%s must lie in %c%g, %g%c (%s), not %g", p->help,
+              p->min_open ? '(' : '[', p->min, p->max, p->max_open ? ')' : ']', unit_of(p->unit), *value);
+  if (p->unit && !strcmp(p->unit, "deg")) *value *= PETSC_PI / 180.0;
+}
+
+static void check_together(const Resolver *r, const Law *law, const PetscReal *given)
+{
+  const char *complaint = law->check ? law->check(given) : NULL;
+  char path[MAX_PATH];
+  if (complaint) DiagError(r->diag, path_of(r, NULL, path), "%s", complaint);
+}
+
+static void check_density(const Resolver *r)
+{
+  char path[MAX_PATH];
+  if (isfinite(r->spec->density) && r->spec->density > 0.0) return;
+  DiagError(r->diag, path_of(r, "density", path), "density must be positive and finite (kg/m3), not %g",
+            r->spec->density);
+}
+
+PetscErrorCode MaterialResolve(const Case *c, PetscInt index, Diag *diag, Material *material)
+{
+  const Resolver r = {&c->materials[index], diag};
+  PetscReal given[LAW_MAX_PARAMETERS] = {0};
+  const PetscInt before = DiagErrors(diag);
+
+  PetscFunctionBeginUser;
+  PetscCheck(index >= 0 && index < c->n_materials, PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE,
+             "no material %" PetscInt_FMT, index);
+  PetscCall(PetscMemzero(material, sizeof *material));
+  material->name = r.spec->name;
+  material->density = r.spec->density;
+  check_density(&r);
+  material->law = find_law(&r);
+  const PetscBool elastic = resolve_elastic(&r, &material->elastic);
+  if (!material->law) PetscFunctionReturn(0);
+  refuse_unknown(&r, material->law);
+  for (int i = 0; material->law->parameters[i].name; ++i)
+    resolve_parameter(&r, material->law, &material->law->parameters[i], &given[i]);
+  if (DiagErrors(diag) == before) check_together(&r, material->law, given);
+  if (!elastic || DiagErrors(diag) > before) PetscFunctionReturn(0);
+  material->wave_modulus = material->elastic.lame + 2.0 * material->elastic.shear;
+  material->law->prepare(&material->elastic, given, material->parameters);
+  PetscFunctionReturn(0);
+}

@@ -1,0 +1,172 @@
+/* Neo-Hookean solid split into shape and volume (thesis 3.43):
+ *
+ *   Psi = K U(J) + mu/2 (tr bbar - 3),  bbar = J^(-2/3) b
+ *   tau = q I + s,  q = J p = K J U',  s = mu dev bbar
+ *   c   = dq I x I - 2 q I_sym + m (I_sym - I x I / 3) - 2/3 (s x I + I x s)
+ *
+ * with dq = J dq/dJ = J (p + J dp/dJ) and m = 2/3 mu tr bbar. (The thesis' 3.51 holds the pressure fixed, as a mixed
+ * formulation does; the term J^2 dp/dJ makes it the tangent of displacements.) Two laws, by their volumetric part:
+ *
+ *   neo-hookean-split       U = (J - 1)^2 / 2    p = K (J - 1)
+ *   neo-hookean-split-log   U = (ln J)^2 / 2     p = K ln J / J */
+#include "material/lanes.h"
+#include "material/shape.h"
+
+enum { BULK, MU };
+
+/* q and dq from J^2. */
+LANES_INLINE void volume_lanes(VolumeLaw law, PetscReal K, const Lanes *J2, Lanes *q, Lanes *dq)
+{
+  Lanes y;
+  if (law == VOLUME_LOG) {
+    lanes_log(J2, &y);
+    *q = 0.5 * K * y;
+    *dq = 0.0 * y + K;
+  } else {
+    lanes_sqrt(J2, &y);
+    *q = K * y * (y - 1.0);
+    *dq = K * y * (2.0 * y - 1.0);
+  }
+}
+
+/* c = a I x I + 2 g I_sym - 2/3 (s x I + I x s) of one point. */
+LANES_INLINE void tangent_point(PetscReal a, PetscReal g, const PetscReal s[6], PetscReal *c)
+{
+  PetscReal r[6];
+  for (int k = 0; k < 6; ++k) r[k] = -2.0 / 3.0 * s[k];
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) {
+      c[6 * i + j] = a + r[i] + r[j] + (i == j ? 2.0 * g : 0.0);
+      c[6 * i + j + 3] = r[j + 3];
+      c[6 * (i + 3) + j] = r[i + 3];
+      c[6 * (i + 3) + j + 3] = i == j ? g : 0.0;
+    }
+}
+
+LANES_INLINE LawStatus update_lanes(VolumeLaw law, const PetscReal *parameters, PetscInt n, const PetscReal *dF,
+                                    const PetscReal *old, PetscReal *state, PetscReal *tau, PetscReal *c)
+{
+  const PetscReal mu = parameters[MU];
+  Lanes f[9], b_old[6], b[6], s[6], t[9], det_f, det_b, root, q, dq;
+  lanes_load(9, n, dF, f);
+  lanes_load(6, n, old, b_old);
+  lanes_push_forward(f, b_old, b);
+  lanes_det(f, &det_f);
+  lanes_sym_det(b, &det_b);
+  lanes_cbrt(&det_b, &root);
+  volume_lanes(law, parameters[BULK], &det_b, &q, &dq);
+  const Lanes scale = mu / root, m = (b[0] + b[1] + b[2]) * scale * (2.0 / 3.0);
+  for (int k = 0; k < 3; ++k) {
+    s[k] = scale * b[k] - 0.5 * m;
+    s[k + 3] = scale * b[k + 3];
+    t[k] = s[k] + q;
+    t[k + 3] = s[k + 3];
+  }
+  lanes_store(6, n, b, state);
+  lanes_store(6, n, t, tau);
+  const Lanes a = dq - m / 3.0, g = 0.5 * m - q;
+  if (c) {
+    const PetscInt count = n < LANES ? n : LANES;
+    PetscReal point[LANES * 6];
+    lanes_store(6, LANES, s, point);
+    for (PetscInt l = 0; l < count; ++l) tangent_point(a[l], g[l], point + 6 * l, c + 36 * l);
+  }
+  t[6] = a;
+  return lanes_status(&det_f, 7, t);
+}
+
+LANES_INLINE LawStatus update_batch(VolumeLaw law, const PetscReal *parameters, PetscInt n, const PetscReal *dF,
+                                    const PetscReal *old, PetscReal *state, PetscReal *tau, PetscReal *c)
+{
+  LawStatus worst = LAW_OK;
+  for (PetscInt p = 0; p < n; p += LANES) {
+    const LawStatus status =
+      update_lanes(law, parameters, n - p, dF + 9 * p, old + 6 * p, state + 6 * p, tau + 6 * p, c ? c + 36 * p : NULL);
+    worst = PetscMax(worst, status);
+  }
+  return worst;
+}
+
+static LawStatus update_linear(const PetscReal *parameters, PetscInt n, const PetscReal *dF, const PetscReal *old,
+                               PetscReal *state, PetscReal *tau, PetscReal *c)
+{
+  return update_batch(VOLUME_LINEAR, parameters, n, dF, old, state, tau, c);
+}
+
+static LawStatus update_log(const PetscReal *parameters, PetscInt n, const PetscReal *dF, const PetscReal *old,
+                            PetscReal *state, PetscReal *tau, PetscReal *c)
+{
+  return update_batch(VOLUME_LOG, parameters, n, dF, old, state, tau, c);
+}
+
+static PetscReal energy(VolumeLaw law, const PetscReal *parameters, const PetscReal *b)
+{
+  const PetscReal det = sym_det(b);
+  return volume_energy(law, parameters[BULK], sqrt(det)) +
+         0.5 * parameters[MU] * ((b[0] + b[1] + b[2]) / cbrt(det) - 3.0);
+}
+
+static PetscReal energy_linear(const PetscReal *parameters, const PetscReal *b)
+{
+  return energy(VOLUME_LINEAR, parameters, b);
+}
+
+static PetscReal energy_log(const PetscReal *parameters, const PetscReal *b)
+{
+  return energy(VOLUME_LOG, parameters, b);
+}
+
+static PetscBool initial_stress(VolumeLaw law, const PetscReal *parameters, const PetscReal sigma[6], PetscReal *b)
+{
+  const PetscReal J = volume_from_pressure(law, parameters[BULK], (sigma[0] + sigma[1] + sigma[2]) / 3.0);
+  if (!(J > 0.0) || !shape_from_stress(parameters[MU], J, sigma, b)) return PETSC_FALSE;
+  for (int k = 0; k < 6; ++k) b[k] *= cbrt(J * J);
+  return PETSC_TRUE;
+}
+
+static PetscBool initial_stress_linear(const PetscReal *parameters, const PetscReal sigma[6], PetscReal *b)
+{
+  return initial_stress(VOLUME_LINEAR, parameters, sigma, b);
+}
+
+static PetscBool initial_stress_log(const PetscReal *parameters, const PetscReal sigma[6], PetscReal *b)
+{
+  return initial_stress(VOLUME_LOG, parameters, sigma, b);
+}
+
+static void prepare(const Elasticity *elastic, const PetscReal *given, PetscReal *packed)
+{
+  (void)given;
+  packed[BULK] = elastic->bulk;
+  packed[MU] = elastic->shear;
+}
+
+static const LawParameter parameters_none[] = {{.name = NULL}};
+static const LawField fields[] = {{"elastic_strain", "", "elastic left Cauchy-Green tensor b", 6, {1, 1, 1, 0, 0, 0}},
+                                  {.name = NULL}};
+
+const Law law_neo_hookean_split = {
+  .name = "neo-hookean-split",
+  .help = "Neo-Hookean solid, shape and volume apart, p = K (J - 1)",
+  .parameters = parameters_none,
+  .fields = fields,
+  .n_state = 6,
+  .symmetric = PETSC_TRUE,
+  .update = update_linear,
+  .energy = energy_linear,
+  .initial_stress = initial_stress_linear,
+  .prepare = prepare,
+};
+
+const Law law_neo_hookean_split_log = {
+  .name = "neo-hookean-split-log",
+  .help = "Neo-Hookean solid, shape and volume apart, p = K ln J / J",
+  .parameters = parameters_none,
+  .fields = fields,
+  .n_state = 6,
+  .symmetric = PETSC_TRUE,
+  .update = update_log,
+  .energy = energy_log,
+  .initial_stress = initial_stress_log,
+  .prepare = prepare,
+};

@@ -1,0 +1,104 @@
+/* Every law through the conformance suite: one line each (a few for different parameters). */
+#include "../conformance/law_suite.h"
+
+#define ELASTIC(E, nu)                              \
+  2,                                                \
+  {                                                 \
+    {(char *)"young", E}, { (char *)"poisson", nu } \
+  }
+
+#define J2(E, nu, sigma_Y, H)                                                                                    \
+  4,                                                                                                             \
+  {                                                                                                              \
+    {(char *)"young", E}, {(char *)"poisson", nu}, {(char *)"yield_stress", sigma_Y}, { (char *)"hardening", H } \
+  }
+
+#define MOHR_COULOMB(E, nu, phi, psi, c)                                                                              \
+  5,                                                                                                                  \
+  {                                                                                                                   \
+    {(char *)"young", E}, {(char *)"poisson", nu}, {(char *)"friction_angle", phi}, {(char *)"dilatancy_angle", psi}, \
+    {                                                                                                                 \
+      (char *)"cohesion", c                                                                                           \
+    }                                                                                                                 \
+  }
+
+#define CUT_OFF(E, nu, phi, psi, c, T)                                                                                \
+  6,                                                                                                                  \
+  {                                                                                                                   \
+    {(char *)"young", E}, {(char *)"poisson", nu}, {(char *)"friction_angle", phi}, {(char *)"dilatancy_angle", psi}, \
+      {(char *)"cohesion", c},                                                                                        \
+    {                                                                                                                 \
+      (char *)"tension_cutoff", T                                                                                     \
+    }                                                                                                                 \
+  }
+
+static const LawUnderTest list[] = {
+  {"neo-hookean", ELASTIC(90e6, 0.0), .strain = 0.3, .hyperelastic = PETSC_TRUE},
+  {"neo-hookean", ELASTIC(70.0, 0.4999), .strain = 0.3, .hyperelastic = PETSC_TRUE},
+  {"neo-hookean", ELASTIC(1e6, -0.5), .strain = 0.2, .hyperelastic = PETSC_TRUE},
+  {"neo-hookean-split", ELASTIC(200e9, 0.3), .strain = 0.3, .hyperelastic = PETSC_TRUE},
+  {"neo-hookean-split", ELASTIC(1.0, 0.49), .strain = 0.3, .hyperelastic = PETSC_TRUE},
+  {"neo-hookean-split-log", ELASTIC(200e9, 0.3), .strain = 0.3, .hyperelastic = PETSC_TRUE},
+  {"neo-hookean-split-log", ELASTIC(1.0, 0.49), .strain = 0.3, .hyperelastic = PETSC_TRUE},
+  {"j2", J2(196.2e9, 0.3, 150e6, 0.0), .strain = 0.3},
+  {"j2", J2(206.9e9, 0.29, 450e6, 129e6), .strain = 1e-3},
+  {"j2", J2(1.0, 0.49, 0.05, 0.2), .strain = 0.3},
+  {"j2-log", J2(196.2e9, 0.3, 150e6, 0.0), .strain = 1e-2},
+  {"j2-log", J2(1.0, 0.4999, 0.1, 0.0), .strain = 0.1},
+  {"mohr-coulomb", MOHR_COULOMB(1.8e6, 0.3, 25, 0, 5e3), .strain = 0.01},
+  {"mohr-coulomb", MOHR_COULOMB(0.84e6, 0.3, 31, 1, 0), .strain = 0.3},
+  {"mohr-coulomb", MOHR_COULOMB(1e6, 0.3, 39, 0, 16), .strain = 0.05},
+  {"mohr-coulomb", MOHR_COULOMB(5e7, 0.25, 30, 30, 2e4), .strain = 0.3},
+  {"mohr-coulomb", MOHR_COULOMB(1e4, 0.495, 0, 0, 100), .strain = 0.3},
+  {"mohr-coulomb", MOHR_COULOMB(1e6, -0.3, 45, 10, 1e5), .strain = 0.3},
+  {"mohr-coulomb", CUT_OFF(2e6, 0.2, 35, 12, 4e4, 2e4), .strain = 0.1},
+  {"mohr-coulomb", CUT_OFF(1e4, 0.4, 0, 0, 100, 0), .strain = 0.1},
+};
+
+static void test_suite(void **state)
+{
+  (void)state;
+  for (size_t i = 0; i < sizeof list / sizeof list[0]; ++i) law_suite_run(&list[i]);
+}
+
+/* No law is forgotten here. */
+static void test_every_law_is_listed(void **state)
+{
+  (void)state;
+  for (const Law *const *law = laws; *law; ++law) {
+    PetscBool found = PETSC_FALSE;
+    for (size_t i = 0; i < sizeof list / sizeof list[0]; ++i)
+      if (!strcmp(list[i].law, (*law)->name)) found = PETSC_TRUE;
+    if (!found) fail_msg("%s has not been through the conformance suite", (*law)->name);
+  }
+}
+
+/* What `talus list laws` and the case reader rely on. */
+static void test_registry(void **state)
+{
+  (void)state;
+  assert_null(LawFind("no-such-law"));
+  assert_null(LawFind(NULL));
+  for (const Law *const *law = laws; *law; ++law) {
+    PetscInt n_state = 0, n_parameters = 0;
+    assert_ptr_equal(LawFind((*law)->name), *law);
+    assert_true((*law)->help && strlen((*law)->help) > 10);
+    for (const LawField *field = (*law)->fields; field->name; ++field) n_state += field->components;
+    for (const LawParameter *p = (*law)->parameters; p->name; ++p, ++n_parameters)
+      assert_true(p->help && p->unit && p->min < p->max);
+    assert_int_equal(n_state, (*law)->n_state);
+    assert_true(n_state <= LAW_MAX_STATE && n_parameters <= LAW_MAX_PARAMETERS);
+  }
+}
+
+int main(int argc, char **argv)
+{
+  const struct CMUnitTest tests[] = {
+    cmocka_unit_test(test_suite),
+    cmocka_unit_test(test_every_law_is_listed),
+    cmocka_unit_test(test_registry),
+  };
+  if (PetscInitialize(&argc, &argv, NULL, NULL)) return 1;
+  const int failures = cmocka_run_group_tests(tests, NULL, NULL);
+  return PetscFinalize() ? 1 : failures;
+}
