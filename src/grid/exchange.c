@@ -1,0 +1,51 @@
+/* Ghost exchange of nodal arrays. */
+#include "grid/grid_private.h"
+
+/* PETSc sums blocks of reals, but not a block of one: that is a real itself. */
+static PetscErrorCode BlockType(PetscInt components, MPI_Datatype *type)
+{
+  PetscMPIInt n;
+
+  PetscFunctionBeginUser;
+  if (components == 1) {
+    *type = MPIU_REAL;
+    PetscFunctionReturn(0);
+  }
+  PetscCall(PetscMPIIntCast(components, &n));
+  PetscCallMPI(MPI_Type_contiguous(n, MPIU_REAL, type));
+  PetscCallMPI(MPI_Type_commit(type));
+  PetscFunctionReturn(0);
+}
+
+/* With no node shared anywhere there is nothing to say. */
+static PetscBool alone(const Grid *grid)
+{
+  PetscMPIInt size;
+  return MPI_Comm_size(grid->comm, &size) == MPI_SUCCESS && size == 1 ? PETSC_TRUE : PETSC_FALSE;
+}
+
+PetscErrorCode GridToGhosts(const Grid *grid, PetscInt components, PetscReal *values)
+{
+  MPI_Datatype type;
+
+  PetscFunctionBeginUser;
+  if (alone(grid) || !components) PetscFunctionReturn(0);
+  PetscCall(BlockType(components, &type));
+  PetscCall(PetscSFBcastBegin(grid->node_sf, type, values, values, MPI_REPLACE));
+  PetscCall(PetscSFBcastEnd(grid->node_sf, type, values, values, MPI_REPLACE));
+  if (type != MPIU_REAL) PetscCallMPI(MPI_Type_free(&type));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode GridSumToOwners(const Grid *grid, PetscInt components, PetscReal *values)
+{
+  MPI_Datatype type;
+
+  PetscFunctionBeginUser;
+  if (alone(grid) || !components) PetscFunctionReturn(0);
+  PetscCall(BlockType(components, &type));
+  PetscCall(PetscSFReduceBegin(grid->node_sf, type, values, values, MPI_SUM));
+  PetscCall(PetscSFReduceEnd(grid->node_sf, type, values, values, MPI_SUM));
+  if (type != MPIU_REAL) PetscCallMPI(MPI_Type_free(&type));
+  PetscFunctionReturn(0);
+}

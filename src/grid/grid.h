@@ -1,0 +1,94 @@
+/* The background grid (mpm) or the mesh (fem): cells, nodes, regions, and who owns what.
+ *
+ * Each rank holds its own cells and every node they touch. Local nodes are numbered owned first,
+ * ghosts after; `node_sf` ties the ghosts to their owners. Two builders fill the same struct: box.c
+ * by arithmetic (no rank ever holds more than its part) and gmsh.c from a file that rank 0
+ * reads. */
+#pragma once
+#include <petscsf.h>
+#include <petscdmplex.h>
+#include "basis/cell.h"
+#include "base/diag.h"
+#include "case/case.h"
+
+/* A named set: of nodes and faces (boundary) or of cells (region). A box has left right (x), bottom top
+ * (y) and in 3D front (lowest z) back (highest z); a mesh has its physical groups. */
+typedef struct {
+  char *name;
+  PetscInt n_nodes, *nodes;                 /* local nodes, ghosts too */
+  PetscInt n_faces, *face_cell, *face_side; /* local cell and its side; each face on one rank only */
+  PetscInt n_cells, *cells;
+} GridSet;
+
+typedef struct GridBins GridBins; /* search structure of unstructured grids */
+typedef struct GridBox GridBox;   /* counts, coordinate lines and sub-boxes of box grids */
+
+typedef struct Grid {
+  MPI_Comm comm;
+  PetscInt dim;
+  CellType type;
+  PetscInt nodes_per_cell;
+  PetscInt n_cells;          /* of this rank */
+  PetscInt n_owned, n_nodes; /* nodes owned; owned and ghosts */
+  PetscInt n_cells_global, n_nodes_global;
+  PetscInt *cell_node;   /* n_cells x nodes_per_cell, local nodes */
+  PetscReal *x;          /* n_nodes x dim; fem moves them */
+  PetscInt *global_node; /* n_nodes: owner's first + its local number */
+  PetscInt *global_cell; /* n_cells: its place in the file, or in the box (x fastest), from 0; whatever the ranks */
+  PetscSF node_sf;       /* roots: owned nodes; leaves: ghosts, as local nodes */
+  PetscInt n_sets;
+  GridSet *sets;               /* same names in the same order on every rank */
+  GridSet outer;               /* the whole outer boundary: nodes and faces; has no name */
+  PetscReal min[3], max[3];    /* of the whole grid */
+  PetscReal smallest;          /* smallest cell size over all ranks, m */
+  GridBox *box;                /* NULL for a mesh */
+  GridBins *bins;              /* NULL for a box */
+  PetscReal (*rank_bounds)[6]; /* per rank: min[3], max[3] of its cells; who might know a lost point */
+} Grid;
+
+/* Weight of a cell with this centre in the partition (points it will carry); NULL: all alike. */
+typedef PetscReal (*GridWeight)(void *context, const PetscReal *centre);
+
+/* Collective. Mistakes of the user (unreadable mesh, inverted cells...) go to diag, and *grid stays
+ * NULL. */
+PetscErrorCode GridCreate(MPI_Comm comm, const Case *c, GridWeight weight, void *context, Diag *diag, Grid **grid);
+/* The same from a mesh file alone (spec->mesh, spec->parameters); mistakes are reported at `path`
+ * of the case: for bodies that bring their own mesh. Collective. */
+PetscErrorCode GridCreateMesh(MPI_Comm comm, const GridSpec *spec, PetscInt dim, const char *path, GridWeight weight,
+                              void *context, Diag *diag, Grid **grid);
+PetscErrorCode GridDestroy(Grid **grid);
+
+const GridSet *GridFindSet(const Grid *grid, const char *name);
+/* Names of all sets, NULL-terminated, to be freed with PetscFree (not the names). */
+PetscErrorCode GridSetNames(const Grid *grid, const char ***names);
+
+/* Local nodes that the selector takes (sorted). With no condition at all: the whole outer boundary. */
+PetscErrorCode GridSelectNodes(const Grid *grid, const Selector *on, PetscInt *n, PetscInt **nodes);
+/* Faces on the outer boundary that the selector takes, each on one rank only. */
+PetscErrorCode GridSelectFaces(const Grid *grid, const Selector *on, PetscInt *n, PetscInt **cell, PetscInt **side);
+
+/* The search below stands on the positions that the nodes had when the grid was made: do not use it
+ * once fem has moved them.
+ *
+ * Local cell that holds the position x, or -1; `guess` is tried first (-1: none). xi gets the
+ * reference position (dim). A position on a face between cells belongs to one of them, the same at
+ * every call. */
+PetscInt GridLocate(const Grid *grid, const PetscReal *x, PetscInt guess, PetscReal *xi);
+/* The nearest position inside the grid as a whole (for `outside: keep-on-boundary`): of a box
+ * exactly; of a mesh the nearest boundary face of this rank. */
+void GridClamp(const Grid *grid, PetscReal *x);
+/* Ranks other than this one whose cells may hold x, at most `max`; returns how many. O(1) on boxes. */
+PetscInt GridCandidates(const Grid *grid, const PetscReal *x, PetscInt max, PetscMPIInt *ranks);
+
+/* Ghost exchange for an array of n_nodes x components: owner to ghosts, and the sum of all copies
+ * to the owner (the ghosts keep their part). Collective. */
+PetscErrorCode GridToGhosts(const Grid *grid, PetscInt components, PetscReal *values);
+PetscErrorCode GridSumToOwners(const Grid *grid, PetscInt components, PetscReal *values);
+
+/* Node positions of a cell, nodes_per_cell x dim. */
+static inline void grid_cell_x(const Grid *grid, PetscInt cell, PetscReal *x)
+{
+  const PetscInt nn = grid->nodes_per_cell, dim = grid->dim, *node = grid->cell_node + cell * nn;
+  for (PetscInt i = 0; i < nn; ++i)
+    for (PetscInt d = 0; d < dim; ++d) x[i * dim + d] = grid->x[node[i] * dim + d];
+}

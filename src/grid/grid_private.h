@@ -1,0 +1,116 @@
+/* What the files of this room share and no other room sees. */
+#pragma once
+#include "grid/grid.h"
+
+/* A block of voxels (or lattice nodes): lo <= index < hi along each axis. Axes beyond the dimension
+ * are 0 .. 1. */
+typedef struct {
+  PetscInt lo[3], hi[3];
+} VoxelBlock;
+
+#define VOXEL_MAX_CELLS 6
+#define VOXEL_CENTRE 8 /* code of the node in the middle of a crossed voxel */
+
+/* How a voxel is cut into cells. A corner's code has bit d set where it lies at the upper end of
+ * axis d. */
+typedef struct {
+  PetscInt n_cells;
+  PetscInt code[VOXEL_MAX_CELLS][CELL_MAX_NODES];
+  PetscReal origin[VOXEL_MAX_CELLS][3];  /* simplices: first node in the unit voxel */
+  PetscReal inverse[VOXEL_MAX_CELLS][9]; /* and inverse of its edge matrix, row by row */
+} VoxelPattern;
+
+/* A box grid knows every rank's block, so that owners and global numbers need no messages. */
+struct GridBox {
+  PetscInt dim, counts[3];
+  PetscReal *line[3];      /* counts + 1 coordinates along each axis */
+  PetscReal per_length[3]; /* voxels per metre; 0 where the axis is graded */
+  PetscReal tolerance;     /* how far outside a position still belongs, m */
+  PetscMPIInt rank, size;
+  VoxelBlock *block;        /* per rank, in voxels */
+  PetscInt *cut_axis, *cut; /* the bisection: entry m parts the ranks below m from those from m on */
+  PetscInt *first_node;     /* size + 1: first global node of each rank */
+  VoxelPattern pattern[2];  /* [1]: the odd voxels of alternating diagonals */
+};
+
+static inline PetscInt block_size(const VoxelBlock *b)
+{
+  return (b->hi[0] - b->lo[0]) * (b->hi[1] - b->lo[1]) * (b->hi[2] - b->lo[2]);
+}
+
+/* Lexicographic number of a member of the block, first axis fastest. */
+static inline PetscInt block_index(const VoxelBlock *b, const PetscInt ijk[3])
+{
+  const PetscInt nx = b->hi[0] - b->lo[0], ny = b->hi[1] - b->lo[1];
+  return ((ijk[2] - b->lo[2]) * ny + ijk[1] - b->lo[1]) * nx + ijk[0] - b->lo[0];
+}
+
+static inline PetscBool block_has(const VoxelBlock *b, const PetscInt ijk[3])
+{
+  for (int d = 0; d < 3; ++d)
+    if (ijk[d] < b->lo[d] || ijk[d] >= b->hi[d]) return PETSC_FALSE;
+  return PETSC_TRUE;
+}
+
+/* Is this an odd voxel of a chequered pattern? */
+static inline int voxel_odd(const PetscInt ijk[3]) { return (int)((ijk[0] + ijk[1] + ijk[2]) & 1); }
+
+/* box.c, box_pattern.c, box_locate.c */
+PetscErrorCode GridCreate_Box(MPI_Comm comm, const Case *c, GridWeight weight, void *context, Diag *diag, Grid **grid);
+PetscErrorCode GridBoxDestroy(GridBox **box);
+/* The patterns of even and odd voxels (both the same but for alternating diagonals). */
+void voxel_patterns(CellType type, Diagonal diagonal, VoxelPattern pattern[2]);
+/* The rank that owns a voxel. */
+PetscMPIInt box_owner(const GridBox *box, const PetscInt ijk[3]);
+/* The voxel that holds x; PETSC_FALSE outside the grid. */
+PetscBool box_voxel(const GridBox *box, const PetscReal *x, PetscInt ijk[3]);
+PetscInt box_locate(const Grid *grid, const PetscReal *x, PetscReal *xi);
+PetscInt box_candidates(const GridBox *box, const PetscReal *x, PetscInt max, PetscMPIInt *ranks);
+
+/* partition.c: weighted recursive coordinate bisection of the voxels. Fills the block of each of
+ * the comm's ranks and the cuts (entries 1 .. size-1). Collective. */
+PetscErrorCode PartitionVoxels(MPI_Comm comm, PetscInt dim, const PetscInt counts[3], PetscReal *const line[3],
+                               GridWeight weight, void *context, VoxelBlock *block, PetscInt *cut_axis, PetscInt *cut);
+
+/* sets.c */
+PetscErrorCode GridSetDestroy(GridSet *set);
+/* Fill grid->outer of a box from its sides. */
+PetscErrorCode GridOuterFromSets(Grid *grid);
+PetscErrorCode GridSortUnique(PetscInt *n, PetscInt *values);
+
+/* grid.c: what every builder ends with. Collective. */
+PetscErrorCode GridFinish(Grid *grid);
+
+/* A mistake of the user, the same on all ranks: said once. */
+#define GridError(comm, diag, path, ...)                          \
+  do {                                                            \
+    PetscMPIInt grid_error_rank;                                  \
+    PetscCallMPI(MPI_Comm_rank((comm), &grid_error_rank));        \
+    if (!grid_error_rank) DiagError((diag), (path), __VA_ARGS__); \
+  } while (0)
+
+/* search.c: everything that only unstructured grids need besides their cells. */
+typedef struct BoxTree BoxTree;
+struct GridBins {
+  PetscInt *neighbour; /* n_cells x faces: local cell beyond, -1 outside the grid, -2 - r on rank r */
+  BoxTree *cell_tree;  /* bounding boxes of the cells */
+  BoxTree *face_tree;  /* and of the faces on the outer boundary, as grid->outer lists them */
+  PetscReal tolerance; /* how far outside a cell a position still belongs, in reference units */
+};
+PetscErrorCode GridBinsCreate(Grid *grid, PetscInt *neighbour);
+PetscErrorCode GridBinsDestroy(GridBins **bins);
+PetscInt mesh_locate(const Grid *grid, const PetscReal *x, PetscInt guess, PetscReal *xi);
+PetscInt mesh_candidates(const Grid *grid, const PetscReal *x, PetscInt max, PetscMPIInt *ranks);
+void mesh_clamp(const Grid *grid, PetscReal *x);
+
+/* box_tree.c: bounding boxes (6 numbers each: min[3], max[3]; axes beyond dim 0) in a balanced
+ * tree. Cells of very different sizes cost no more than equal ones, as they would in uniform bins. */
+PetscErrorCode BoxTreeCreate(PetscInt n, PetscReal (*bounds)[6], BoxTree **tree);
+PetscErrorCode BoxTreeDestroy(BoxTree **tree);
+/* Call `visit` for the boxes that hold x, until it returns PETSC_FALSE. */
+typedef PetscBool (*BoxVisit)(void *context, PetscInt index);
+void box_tree_holding(const BoxTree *tree, const PetscReal x[3], BoxVisit visit, void *context);
+/* The nearest object, by `distance` (squared), which is never less than that of its box; -1: there
+ * is none. */
+typedef PetscReal (*BoxDistance)(void *context, PetscInt index);
+PetscInt box_tree_nearest(const BoxTree *tree, const PetscReal x[3], BoxDistance distance, void *context);
