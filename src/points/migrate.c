@@ -1,0 +1,268 @@
+/* Messages between ranks: who holds a position, and the points themselves.
+ *
+ * Nobody knows beforehand who will write to him, so each exchange opens with PetscCommBuildTwoSided: every
+ * rank names the ranks it writes to and how much, and learns who writes to it. All traffic is among
+ * neighbours. */
+#include "points/migrate.h"
+#include "points/fields.h"
+
+/* One two-sided exchange: partners and numbers of items each way. */
+typedef struct {
+  MPI_Comm comm;
+  PetscMPIInt tag;
+  PetscMPIInt n_to, *to, n_from, *from;
+  PetscInt *to_count, *from_count;
+  PetscInt *to_start, *from_start; /* one more than the partners: where each message begins */
+} Exchange;
+
+static PetscErrorCode Offsets(PetscInt n, const PetscInt *count, PetscInt **start)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(n + 1, start));
+  (*start)[0] = 0;
+  for (PetscInt i = 0; i < n; ++i) (*start)[i + 1] = (*start)[i] + count[i];
+  PetscFunctionReturn(0);
+}
+
+/* per_rank: items for each rank. On return slot[r] is the message's number, -1 if nothing goes to r. */
+static PetscErrorCode ExchangeCreate(MPI_Comm comm, PetscMPIInt size, const PetscInt *per_rank, PetscMPIInt *slot,
+                                     Exchange *e)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscMemzero(e, sizeof *e));
+  PetscCall(PetscCommDuplicate(comm, &e->comm, &e->tag));
+  PetscCall(PetscMalloc2(size, &e->to, size, &e->to_count));
+  for (PetscMPIInt r = 0; r < size; ++r) {
+    slot[r] = per_rank[r] ? e->n_to : -1;
+    if (per_rank[r]) e->to[e->n_to] = r, e->to_count[e->n_to++] = per_rank[r];
+  }
+  PetscCall(
+    PetscCommBuildTwoSided(e->comm, 1, MPIU_INT, e->n_to, e->to, e->to_count, &e->n_from, &e->from, &e->from_count));
+  PetscCall(PetscSortMPIIntWithIntArray(e->n_from, e->from, e->from_count)); /* the same order at every run */
+  PetscCall(Offsets(e->n_to, e->to_count, &e->to_start));
+  PetscCall(Offsets(e->n_from, e->from_count, &e->from_start));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode ExchangeDestroy(Exchange *e)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscFree2(e->to, e->to_count));
+  PetscCall(PetscFree(e->from));
+  PetscCall(PetscFree(e->from_count));
+  PetscCall(PetscFree(e->to_start));
+  PetscCall(PetscFree(e->from_start));
+  PetscCall(PetscCommDestroy(&e->comm));
+  PetscFunctionReturn(0);
+}
+
+/* Items of so many bytes; out in the order of the messages to, in of those from. Back: the other way round. */
+static PetscErrorCode ExchangeItems(const Exchange *e, size_t bytes, PetscBool back, char *out, char *in)
+{
+  const PetscMPIInt n_out = back ? e->n_from : e->n_to, n_in = back ? e->n_to : e->n_from;
+  const PetscMPIInt *to = back ? e->from : e->to, *from = back ? e->to : e->from;
+  const PetscInt *out_start = back ? e->from_start : e->to_start, *in_start = back ? e->to_start : e->from_start;
+  MPI_Datatype item;
+  MPI_Request *request;
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Type_contiguous((int)bytes, MPI_BYTE, &item));
+  PetscCallMPI(MPI_Type_commit(&item));
+  PetscCall(PetscMalloc1((size_t)(n_out + n_in), &request));
+  for (PetscMPIInt i = 0; i < n_in; ++i) {
+    PetscCallMPI(MPI_Irecv(in + bytes * (size_t)in_start[i], (int)(in_start[i + 1] - in_start[i]), item, from[i],
+                           e->tag, e->comm, request + i));
+  }
+  for (PetscMPIInt i = 0; i < n_out; ++i) {
+    PetscCallMPI(MPI_Isend(out + bytes * (size_t)out_start[i], (int)(out_start[i + 1] - out_start[i]), item, to[i],
+                           e->tag, e->comm, request + n_in + i));
+  }
+  PetscCallMPI(MPI_Waitall(n_out + n_in, request, MPI_STATUSES_IGNORE));
+  PetscCall(PetscFree(request));
+  PetscCallMPI(MPI_Type_free(&item));
+  PetscFunctionReturn(0);
+}
+
+/* Which ranks each leaver asks: rank[start[i] .. start[i+1]). */
+typedef struct {
+  PetscInt *start;
+  PetscMPIInt *rank;
+  PetscInt *per_rank; /* questions for each rank */
+} Questions;
+
+static PetscInt candidates(const Leavers *l, PetscInt i, const Points *points, const Grid *grid, PetscMPIInt size,
+                           PetscMPIInt *ranks)
+{
+  const PetscReal *x = point_real(points, POINT_X, l->point[i]);
+  if (l->owner[i] != -1 || !position_is_finite(points->dim, x)) return 0;
+  return GridCandidates(grid, x, size, ranks);
+}
+
+static PetscErrorCode QuestionsCreate(const Leavers *l, const Points *points, const Grid *grid, PetscMPIInt size,
+                                      Questions *q)
+{
+  PetscMPIInt *ranks;
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(size, &ranks));
+  PetscCall(PetscMalloc1(l->n + 1, &q->start));
+  PetscCall(PetscCalloc1(size, &q->per_rank));
+  q->start[0] = 0;
+  for (PetscInt i = 0; i < l->n; ++i) q->start[i + 1] = q->start[i] + candidates(l, i, points, grid, size, ranks);
+  PetscCall(PetscMalloc1(q->start[l->n], &q->rank));
+  for (PetscInt i = 0; i < l->n; ++i) {
+    const PetscInt n = candidates(l, i, points, grid, size, ranks);
+    for (PetscInt k = 0; k < n; ++k) {
+      q->rank[q->start[i] + k] = ranks[k];
+      ++q->per_rank[ranks[k]];
+    }
+  }
+  PetscCall(PetscFree(ranks));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode QuestionsDestroy(Questions *q)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscFree(q->start));
+  PetscCall(PetscFree(q->rank));
+  PetscCall(PetscFree(q->per_rank));
+  PetscFunctionReturn(0);
+}
+
+/* place[k]: where question k stands in the messages; x gets its position there. */
+static PetscErrorCode FillQuestions(const Leavers *l, const Points *points, const Questions *q, const PetscMPIInt *slot,
+                                    const Exchange *e, PetscInt *place, PetscReal *x)
+{
+  const PetscInt dim = points->dim;
+  PetscInt *next;
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(e->n_to + 1, &next));
+  PetscCall(PetscArraycpy(next, e->to_start, e->n_to + 1));
+  for (PetscInt i = 0; i < l->n; ++i) {
+    for (PetscInt k = q->start[i]; k < q->start[i + 1]; ++k) {
+      place[k] = next[slot[q->rank[k]]]++;
+      memcpy(x + place[k] * dim, point_real(points, POINT_X, l->point[i]), sizeof *x * (size_t)dim);
+    }
+  }
+  PetscCall(PetscFree(next));
+  PetscFunctionReturn(0);
+}
+
+/* Send the questions, answer those of others: yes[place] tells whether the rank asked holds the position. */
+static PetscErrorCode Ask(const Exchange *e, const Grid *grid, PetscReal *x, char *yes)
+{
+  const PetscInt n_asked = e->from_start[e->n_from], dim = grid->dim;
+  PetscReal *asked, xi[3];
+  char *answer;
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc2((size_t)(n_asked * dim), &asked, n_asked, &answer));
+  PetscCall(ExchangeItems(e, sizeof *x * (size_t)dim, PETSC_FALSE, (char *)x, (char *)asked));
+  for (PetscInt k = 0; k < n_asked; ++k) answer[k] = GridLocate(grid, asked + k * dim, -1, xi) >= 0;
+  PetscCall(ExchangeItems(e, 1, PETSC_TRUE, answer, yes));
+  PetscCall(PetscFree2(asked, answer));
+  PetscFunctionReturn(0);
+}
+
+static void choose_owners(const Leavers *l, const Questions *q, const PetscInt *place, const char *yes)
+{
+  for (PetscInt i = 0; i < l->n; ++i) {
+    for (PetscInt k = q->start[i]; k < q->start[i + 1]; ++k) {
+      const PetscMPIInt rank = q->rank[k];
+      if (yes[place[k]] && (l->owner[i] < 0 || rank < l->owner[i])) l->owner[i] = rank;
+    }
+  }
+}
+
+PetscErrorCode LeaversFindOwners(const Leavers *leavers, const Points *points, const Grid *grid)
+{
+  PetscMPIInt size, *slot;
+  PetscInt *place;
+  PetscReal *x;
+  char *yes;
+  Questions q;
+  Exchange e;
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_size(grid->comm, &size));
+  if (size == 1) PetscFunctionReturn(0);
+  PetscCall(PetscMalloc1(size, &slot));
+  PetscCall(QuestionsCreate(leavers, points, grid, size, &q));
+  PetscCall(ExchangeCreate(grid->comm, size, q.per_rank, slot, &e));
+  const PetscInt n = q.start[leavers->n];
+  PetscCall(PetscMalloc3(n, &place, (size_t)(n * points->dim), &x, n, &yes));
+  PetscCall(FillQuestions(leavers, points, &q, slot, &e, place, x));
+  PetscCall(Ask(&e, grid, x, yes));
+  choose_owners(leavers, &q, place, yes);
+  PetscCall(PetscFree3(place, x, yes));
+  PetscCall(ExchangeDestroy(&e));
+  PetscCall(QuestionsDestroy(&q));
+  PetscCall(PetscFree(slot));
+  PetscFunctionReturn(0);
+}
+
+/* The leavers' points in the order of the messages, packed message by message. */
+static PetscErrorCode PackLeavers(const Leavers *l, const Points *points, const PetscMPIInt *slot, const Exchange *e,
+                                  char *buffer)
+{
+  const size_t bytes = points_bytes(points);
+  PetscInt *next, *order;
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc2(e->n_to + 1, &next, e->to_start[e->n_to], &order));
+  PetscCall(PetscArraycpy(next, e->to_start, e->n_to + 1));
+  for (PetscInt i = 0; i < l->n; ++i)
+    if (l->owner[i] >= 0) order[next[slot[l->owner[i]]]++] = l->point[i];
+  for (PetscMPIInt m = 0; m < e->n_to; ++m) {
+    points_pack(points, e->to_count[m], order + e->to_start[m], buffer + bytes * (size_t)e->to_start[m]);
+  }
+  PetscCall(PetscFree2(next, order));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LeaversSend(const Leavers *leavers, const Points *points, const Grid *grid, Arrivals *arrivals)
+{
+  const size_t bytes = points_bytes(points);
+  PetscMPIInt size, *slot;
+  PetscInt *per_rank;
+  char *buffer;
+  Exchange e;
+  PetscFunctionBeginUser;
+  PetscCall(PetscMemzero(arrivals, sizeof *arrivals));
+  PetscCallMPI(MPI_Comm_size(grid->comm, &size));
+  if (size == 1) PetscFunctionReturn(0);
+  PetscCall(PetscMalloc1(size, &slot));
+  PetscCall(PetscCalloc1(size, &per_rank));
+  for (PetscInt i = 0; i < leavers->n; ++i)
+    if (leavers->owner[i] >= 0) ++per_rank[leavers->owner[i]];
+  PetscCall(ExchangeCreate(grid->comm, size, per_rank, slot, &e));
+  arrivals->n = e.from_start[e.n_from];
+  arrivals->n_messages = e.n_from;
+  PetscCall(PetscMalloc1(bytes * (size_t)e.to_start[e.n_to], &buffer));
+  PetscCall(PetscMalloc1(bytes * (size_t)arrivals->n, &arrivals->data));
+  PetscCall(PetscMalloc1(e.n_from, &arrivals->count));
+  PetscCall(PetscArraycpy(arrivals->count, e.from_count, e.n_from));
+  PetscCall(PackLeavers(leavers, points, slot, &e, buffer));
+  PetscCall(ExchangeItems(&e, bytes, PETSC_FALSE, buffer, arrivals->data));
+  PetscCall(PetscFree(buffer));
+  PetscCall(PetscFree(per_rank));
+  PetscCall(PetscFree(slot));
+  PetscCall(ExchangeDestroy(&e));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ArrivalsUnpack(Arrivals *arrivals, Points *points, const Grid *grid)
+{
+  const PetscInt first = points->n;
+  const char *data = arrivals->data;
+  PetscFunctionBeginUser;
+  PetscCall(PointsReserveMore(points, arrivals->n));
+  for (PetscInt m = 0; m < arrivals->n_messages; ++m) {
+    PetscCall(PointsUnpack(points, arrivals->count[m], data));
+    data += points_bytes(points) * (size_t)arrivals->count[m];
+  }
+  for (PetscInt p = first; p < points->n; ++p) {
+    points->cell[p] = GridLocate(grid, point_real(points, POINT_X, p), -1, point_real(points, POINT_XI, p));
+    PetscCheck(points->cell[p] >= 0, PETSC_COMM_SELF, PETSC_ERR_PLIB,
+               "a point arrived that this rank had claimed, and is not here");
+  }
+  PetscCall(PetscFree(arrivals->data));
+  PetscCall(PetscFree(arrivals->count));
+  PetscFunctionReturn(0);
+}

@@ -1,0 +1,112 @@
+/* Material points (and tracers, and carriers of loads: points without mass): structure of arrays.
+ *
+ * Every field stands in one table, so that migration, sorting, output and checkpoints treat all alike.
+ * A real field f has components[f] numbers a point: data = real[f] + p * components[f]. */
+#pragma once
+#include "grid/grid.h"
+
+typedef enum {
+  POINT_X,      /* position, m: dim */
+  POINT_U,      /* displacement since the start, m: dim */
+  POINT_V,      /* velocity, m/s: dim */
+  POINT_A,      /* acceleration, m/s2: dim */
+  POINT_MASS,   /* kg (per m of thickness in plane strain): 1 */
+  POINT_VOLUME, /* undeformed volume, m3: 1 */
+  POINT_F, /* deformation gradient: 9 in 3D; xx xy yx yy zz (5) otherwise. In extreme flow its entries grow without bound and its
+                   * determinant means nothing any more: take POINT_J */
+  POINT_J,   /* volume over undeformed volume, the product of the steps' det dF: 1 */
+  POINT_TAU, /* Kirchhoff stress of the state, Pa: 6 in 3D; xx yy zz xy (4) otherwise */
+  POINT_WORK, /* energy stored at the start and work of the stress since then, J: what is not stored now has been dissipated: 1 */
+  POINT_XI,    /* reference position in the cell: dim */
+  POINT_STATE, /* the law's stored state: the largest n_state of the case */
+  POINT_FORCE, /* dead force of a load carrier, N: dim (0 components for material points) */
+  POINT_N_REAL
+} PointReal;
+
+typedef struct Points {
+  PetscInt dim, n, capacity;
+  PetscInt components[POINT_N_REAL];
+  PetscReal *real[POINT_N_REAL];
+  PetscInt64 *id;     /* unique over all ranks, for life; does not depend on the number of ranks */
+  PetscInt *cell;     /* local cell, -1 if lost */
+  PetscInt *body;     /* index into the case's bodies (tracers: the measure, carriers: the load) */
+  PetscInt *material; /* index into the case's materials */
+} Points;
+
+/* n_state: components of POINT_STATE; force: components of POINT_FORCE. */
+PetscErrorCode PointsCreate(PetscInt dim, PetscInt n_state, PetscInt n_force, Points **points);
+PetscErrorCode PointsDestroy(Points **points);
+/* Make room for `capacity` points; existing ones stay. */
+PetscErrorCode PointsReserve(Points *points, PetscInt capacity);
+/* Append one point with all fields zero (F = I, J = 1, cell -1); returns its index. */
+PetscErrorCode PointsAppend(Points *points, PetscInt *index);
+/* Forget the points with drop[p], keeping the order of the others. */
+PetscErrorCode PointsCompact(Points *points, const PetscBool *drop);
+/* Order by cell, then material, then id: what the point loop wants. */
+PetscErrorCode PointsSort(Points *points);
+
+static inline PetscReal *point_real(const Points *points, PointReal field, PetscInt p)
+{
+  return points->real[field] + p * points->components[field];
+}
+
+/* F of point p as a full 3 x 3. */
+static inline void point_F(const Points *points, PetscInt p, PetscReal F[9])
+{
+  const PetscReal *f = point_real(points, POINT_F, p);
+  if (points->dim == 3) {
+    for (int i = 0; i < 9; ++i) F[i] = f[i];
+  } else {
+    const PetscReal full[9] = {f[0], f[1], 0, f[2], f[3], 0, 0, 0, f[4]};
+    for (int i = 0; i < 9; ++i) F[i] = full[i];
+  }
+}
+
+/* Kirchhoff stress of point p with all components. */
+static inline void point_tau(const Points *points, PetscInt p, PetscReal tau[6])
+{
+  const PetscInt n = points->components[POINT_TAU];
+  for (PetscInt k = 0; k < 6; ++k) tau[k] = k < n ? point_real(points, POINT_TAU, p)[k] : 0;
+}
+
+static inline void point_set_tau(Points *points, PetscInt p, const PetscReal tau[6])
+{
+  for (PetscInt k = 0; k < points->components[POINT_TAU]; ++k) point_real(points, POINT_TAU, p)[k] = tau[k];
+}
+
+static inline void point_set_F(Points *points, PetscInt p, const PetscReal F[9])
+{
+  PetscReal *f = point_real(points, POINT_F, p);
+  if (points->dim == 3) {
+    for (int i = 0; i < 9; ++i) f[i] = F[i];
+  } else {
+    f[0] = F[0], f[1] = F[1], f[2] = F[3], f[3] = F[4], f[4] = F[8];
+  }
+}
+
+/* Seed the bodies: points at the Gauss points of each body's cells, that is, of the cells of the grid (or of the body's own
+ * mesh) whose centre lies in its shape or region. Fills x, cell, xi, mass, volume, v, id, body, material and the law's initial
+ * state. `density` and `initial` come per material. Collective. */
+typedef struct {
+  PetscReal density;
+  PetscInt n_state;
+  const PetscReal *initial; /* n_state numbers */
+} PointSeed;
+/* Initial velocity of a body at x: translation and rotation. */
+void body_velocity(const BodySpec *body, PetscInt dim, const PetscReal *x, PetscReal *v);
+PetscErrorCode PointsSeed(Points *points, const Grid *grid, const Case *c, const PointSeed *per_material, Diag *diag);
+
+/* A point found outside the grid. */
+typedef struct {
+  PetscInt64 id;
+  PetscReal x[3], v[3];
+  PetscInt last_cell; /* the user's number */
+} LostPoint;
+
+/* Find every point's cell again after it moved, send those that left this rank's part to their new owner (messages only
+ * among ranks whose cells may hold them), and treat those outside the grid by the policy. Collective.
+ * lost (n_lost of them, over all ranks on each, at most 16 kept) describes what left the grid; PetscFree it. Points kept
+ * on the boundary do not count. A position that is no number is lost under every policy: it is listed first, and stays
+ * in the table with cell -1. */
+PetscErrorCode PointsRelocate(Points *points, const Grid *grid, OutsidePolicy policy, PetscInt *n_lost,
+                              LostPoint **lost);

@@ -1,0 +1,37 @@
+/* One body being seeded, for this room only. */
+#pragma once
+#include "points/points.h"
+
+#define SEED_MAX_RULE 64
+
+typedef struct {
+  const Case *c;
+  const Grid *grid; /* where the points live */
+  Diag *diag;
+  PetscInt b; /* the body */
+  const BodySpec *body;
+  PetscInt material;
+  const Grid *source;       /* whose cells give the points: the grid, or the body's own mesh */
+  PetscInt n_cells, *cells; /* local cells of the source that belong to the body */
+  PetscInt n_rule;
+  PetscReal xi[3 * SEED_MAX_RULE], weight[SEED_MAX_RULE];
+  PetscBool equal; /* a cell's volume is shared equally among its points */
+  PetscInt64 first_id;
+} Seeding;
+
+/* Volume that a cell stands for: area times unit thickness, or the full circle. */
+PetscReal seed_cell_volume(const Seeding *s, PetscInt cell);
+
+/* Collective. After the cells were chosen: errors for a body without a cell, a warning where whole cells
+ * represent the shape badly. */
+PetscErrorCode SeedCheckVolume(const Seeding *s);
+/* Collective. taken: per local cell of the grid the body that has it, -1 none; marks this body's cells, and
+ * complains of overlap. */
+PetscErrorCode SeedClaimCells(const Seeding *s, PetscInt *taken);
+/* Collective. After points of own meshes were located: errors for bodies that reach beyond the grid. */
+PetscErrorCode SeedCheckLocated(const Points *points, const Grid *grid, const Case *c, Diag *diag);
+
+/* The path of a key of body number `body`; of the body itself if key is "". */
+void seed_path(PetscInt body, const char *key, size_t size, char *path);
+/* A mistake that all ranks know is told by one: is it this one? */
+PetscBool seed_tells(const Grid *grid);

@@ -1,0 +1,101 @@
+/* Points in the order of their cells: the point loop then meets a cell's nodes once, and neighbours in
+ * memory are neighbours in space. A counting sort over the cells, so that the cost is linear; lost points
+ * stand last. */
+#include <stdlib.h>
+#include "points/fields.h"
+
+/* Lost points get the largest key. */
+static inline PetscInt sort_key(const Points *points, PetscInt p)
+{
+  return points->cell[p] < 0 ? PETSC_MAX_INT : points->cell[p];
+}
+
+/* The order inside a cell. */
+static inline int before(const Points *points, PetscInt p, PetscInt q)
+{
+  if (points->material[p] != points->material[q]) return points->material[p] < points->material[q];
+  return points->id[p] < points->id[q];
+}
+
+static PetscBool is_sorted(const Points *points)
+{
+  for (PetscInt p = 1; p < points->n; ++p) {
+    const PetscInt a = sort_key(points, p - 1), b = sort_key(points, p);
+    if (a > b || (a == b && before(points, p, p - 1))) return PETSC_FALSE;
+  }
+  return PETSC_TRUE;
+}
+
+static int compare(const void *a, const void *b, void *points)
+{
+  const PetscInt p = *(const PetscInt *)a, q = *(const PetscInt *)b;
+  return before(points, q, p) - before(points, p, q);
+}
+
+/* Order the points of one cell. They are few and mostly in order already: insertion, unless there are many. */
+static void sort_run(Points *points, PetscInt n, PetscInt *order)
+{
+  if (n > 64) {
+    qsort_r(order, (size_t)n, sizeof *order, compare, points);
+    return;
+  }
+  for (PetscInt i = 1; i < n; ++i) {
+    const PetscInt p = order[i];
+    PetscInt j = i;
+    for (; j > 0 && before(points, p, order[j - 1]); --j) order[j] = order[j - 1];
+    order[j] = p;
+  }
+}
+
+/* order[k]: which point belongs at place k. count has room for n_keys + 1. */
+static void counting_order(Points *points, PetscInt n_keys, PetscInt *count, PetscInt *order)
+{
+  const PetscInt lost = n_keys - 1;
+  for (PetscInt p = 0; p < points->n; ++p) ++count[PetscMin(sort_key(points, p), lost) + 1];
+  for (PetscInt c = 0; c < n_keys; ++c) count[c + 1] += count[c];
+  for (PetscInt p = 0; p < points->n; ++p) order[count[PetscMin(sort_key(points, p), lost)]++] = p;
+  for (PetscInt c = 0, start = 0; c < n_keys; start = count[c++]) sort_run(points, count[c] - start, order + start);
+}
+
+/* Only [first, first + n) is out of place; the buffer holds n points of the widest field. */
+static void permute(Points *points, PetscInt first, PetscInt n, const PetscInt *order, char *buffer)
+{
+  for (int f = 0; f < N_FIELDS; ++f) {
+    size_t bytes;
+    char *data = points_field(points, f, &bytes);
+    if (!bytes) continue;
+    field_gather(buffer, data, bytes, n, order + first);
+    memcpy(data + bytes * (size_t)first, buffer, bytes * (size_t)n);
+  }
+}
+
+static size_t widest(const Points *points)
+{
+  size_t most = 0, bytes;
+  for (int f = 0; f < N_FIELDS; ++f) {
+    (void)points_field(points, f, &bytes);
+    most = PetscMax(most, bytes);
+  }
+  return most;
+}
+
+PetscErrorCode PointsSort(Points *points)
+{
+  PetscInt n_keys = 0, *count, *order, first = 0, end = points->n;
+  char *buffer;
+  PetscFunctionBeginUser;
+  if (is_sorted(points)) PetscFunctionReturn(0);
+  for (PetscInt p = 0; p < points->n; ++p) n_keys = PetscMax(n_keys, points->cell[p] + 1);
+  ++n_keys; /* the lost */
+  PetscCall(PetscCalloc1(n_keys + 1, &count));
+  PetscCall(PetscMalloc1(points->n, &order));
+  counting_order(points, n_keys, count, order);
+  while (order[first] == first) ++first;
+  while (order[end - 1] == end - 1) --end;
+  PetscCall(PetscMalloc1(widest(points) * (size_t)(end - first), &buffer));
+  permute(points, first, end - first, order, buffer);
+  PetscCall(PetscFree(buffer));
+  PetscCall(PetscFree(order));
+  PetscCall(PetscFree(count));
+  PetscFunctionReturn(0);
+}

@@ -1,0 +1,135 @@
+/* Support of points that sit in cells: N and dN/dx at every point, one group a cell. */
+#include "basis/cell_kernels.h"
+#include "points/support.h"
+
+PetscErrorCode SupportCreate(Support **support)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscNew(support));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode SupportDestroy(Support **support)
+{
+  Support *s = *support;
+  PetscFunctionBeginUser;
+  if (!s) PetscFunctionReturn(0);
+  PetscCall(PetscFree3(s->point_start, s->node_start, s->value_start));
+  PetscCall(PetscFree(s->node));
+  PetscCall(PetscFree2(s->N, s->dN));
+  PetscCall(PetscFree(*support));
+  PetscFunctionReturn(0);
+}
+
+/* Half more than is needed or was there, so that a slowly growing table is not copied at every step. */
+static inline PetscInt grown(PetscInt needed, PetscInt capacity) { return PetscMax(needed, capacity + capacity / 2); }
+
+/* Nothing is kept: the arrays are filled anew at every step. */
+static PetscErrorCode Reserve(Support *s, PetscInt groups, PetscInt nodes, PetscInt values, PetscInt dim)
+{
+  PetscFunctionBeginUser;
+  if (groups > s->capacity_groups || !s->point_start) {
+    const PetscInt n = s->capacity_groups = grown(groups, s->capacity_groups);
+    PetscCall(PetscFree3(s->point_start, s->node_start, s->value_start));
+    PetscCall(PetscMalloc3(n + 1, &s->point_start, n + 1, &s->node_start, n + 1, &s->value_start));
+  }
+  if (nodes > s->capacity_nodes) {
+    s->capacity_nodes = grown(nodes, s->capacity_nodes);
+    PetscCall(PetscFree(s->node));
+    PetscCall(PetscMalloc1(s->capacity_nodes, &s->node));
+  }
+  if (values > s->capacity_values) {
+    s->capacity_values = grown(values, s->capacity_values);
+    PetscCall(PetscFree2(s->N, s->dN));
+    PetscCall(PetscMalloc2(s->capacity_values, &s->N, (size_t)s->capacity_values * (size_t)dim, &s->dN));
+  }
+  PetscFunctionReturn(0);
+}
+
+/* Groups and points in cells; lost points stand last and have no group. */
+static void count_groups(const Points *points, PetscInt *groups, PetscInt *located)
+{
+  PetscInt p = 0, n = 0;
+  for (PetscInt last = -1; p < points->n && points->cell[p] >= 0; ++p) {
+    n += points->cell[p] != last;
+    last = points->cell[p];
+  }
+  *groups = n;
+  *located = p;
+}
+
+static void fill_groups(Support *s, const Points *points, const Grid *grid, PetscInt located)
+{
+  const PetscInt nn = grid->nodes_per_cell;
+  PetscInt g = 0;
+  for (PetscInt p = 0, last = -1; p < located; ++p) {
+    const PetscInt cell = points->cell[p];
+    if (cell == last) continue;
+    last = cell;
+    s->point_start[g] = p;
+    s->node_start[g] = g * nn;
+    s->value_start[g] = p * nn;
+    for (PetscInt i = 0; i < nn; ++i) s->node[g * nn + i] = grid->cell_node[cell * nn + i];
+    ++g;
+  }
+  s->point_start[g] = located;
+  s->node_start[g] = g * nn;
+  s->value_start[g] = located * nn;
+}
+
+/* A simplex has one gradient for all its points. */
+CELL_INLINE void evaluate_affine(CellType type, const PetscReal *x, const PetscReal *xi, PetscInt n, PetscReal *N,
+                                 PetscReal *dN)
+{
+  const int dim = cell_kernel_dim(type), nn = cell_kernel_nodes(type);
+  PetscReal gradient[CELL_MAX_NODES * 3], reference[CELL_MAX_NODES * 3];
+  (void)cell_kernel_gradients(type, x, xi, N, gradient);
+  for (PetscInt k = 0; k < n; ++k) {
+    cell_kernel_shape(type, xi + k * dim, N + k * nn, reference);
+    for (int i = 0; i < nn * dim; ++i) dN[k * nn * dim + i] = gradient[i];
+  }
+}
+
+CELL_INLINE void evaluate_group(CellType type, const PetscReal *x, const PetscReal *xi, PetscInt n, PetscReal *N,
+                                PetscReal *dN)
+{
+  const int dim = cell_kernel_dim(type), nn = cell_kernel_nodes(type);
+  if (cell_kernel_affine(type)) {
+    evaluate_affine(type, x, xi, n, N, dN);
+    return;
+  }
+  for (PetscInt k = 0; k < n; ++k) (void)cell_kernel_gradients(type, x, xi + k * dim, N + k * nn, dN + k * nn * dim);
+}
+
+CELL_INLINE void evaluate(CellType type, const Support *s, const PetscReal *grid_x, const PetscReal *xi)
+{
+  const int dim = cell_kernel_dim(type), nn = cell_kernel_nodes(type);
+  for (PetscInt g = 0; g < s->n_groups; ++g) {
+    const PetscInt *node = s->node + g * nn, first = s->point_start[g], n = s->point_start[g + 1] - first;
+    PetscReal x[CELL_MAX_NODES * 3];
+    for (int i = 0; i < nn; ++i)
+      for (int d = 0; d < dim; ++d) x[i * dim + d] = grid_x[node[i] * dim + d];
+    evaluate_group(type, x, xi + first * dim, n, s->N + first * nn, s->dN + first * nn * dim);
+  }
+}
+
+PetscErrorCode SupportFromCells(Support *support, const Points *points, const Grid *grid)
+{
+  const PetscReal *xi = points->real[POINT_XI];
+  PetscInt groups, located;
+  PetscFunctionBeginUser;
+  PetscCheck(points->dim == grid->dim, PETSC_COMM_SELF, PETSC_ERR_ARG_SIZ,
+             "points of %" PetscInt_FMT " dimensions in a grid of %" PetscInt_FMT, points->dim, grid->dim);
+  count_groups(points, &groups, &located);
+  PetscCall(Reserve(support, groups, groups * grid->nodes_per_cell, located * grid->nodes_per_cell, grid->dim));
+  support->n_groups = groups;
+  support->uniform = grid->nodes_per_cell;
+  fill_groups(support, points, grid, located);
+  switch (grid->type) { /* a literal in each case: the kernels are compiled for that cell */
+  case CELL_TRIANGLE: evaluate(CELL_TRIANGLE, support, grid->x, xi); break;
+  case CELL_QUADRILATERAL: evaluate(CELL_QUADRILATERAL, support, grid->x, xi); break;
+  case CELL_TETRAHEDRON: evaluate(CELL_TETRAHEDRON, support, grid->x, xi); break;
+  case CELL_HEXAHEDRON: evaluate(CELL_HEXAHEDRON, support, grid->x, xi); break;
+  }
+  PetscFunctionReturn(0);
+}

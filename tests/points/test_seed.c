@@ -1,0 +1,309 @@
+/* Seeding: volumes and masses to round-off, the same points on any number of ranks, mistakes that are told. */
+#include <string.h>
+#include "points_test.h"
+
+static const PetscReal area = 6, volume = 12; /* of the test grid */
+
+static void free_all(TestCase *t, Grid *grid, Points *points)
+{
+  CALL(PointsDestroy(&points));
+  CALL(GridDestroy(&grid));
+  CALL(PetscFree(t));
+}
+
+static void check_rule(TestCase *t, Grid *grid, PetscInt n, PointWeights weights)
+{
+  const PetscReal whole = grid->dim == 3 ? volume : area;
+  t->body[0].points_per_cell = n;
+  t->body[0].weights = weights;
+  Points *points = seed_points(t, grid);
+  CHECK(count_over_ranks(points->n) == n * grid->n_cells_global);
+  CHECK_CLOSE(total(points, POINT_VOLUME), whole, 1e-12 * whole);
+  CHECK_CLOSE(total(points, POINT_MASS), 1500 * whole, 1500e-12 * whole);
+  check_ids_unique(points);
+  check_located(points, grid);
+  for (PetscInt p = 0; p < points->n; ++p) {
+    CHECK(*point_real(points, POINT_VOLUME, p) > 0);
+    CHECK(point_real(points, POINT_STATE, p)[0] == 0.25 && point_real(points, POINT_STATE, p)[1] == -7);
+    if (weights == WEIGHTS_GAUSS) continue;
+    CHECK_CLOSE(*point_real(points, POINT_VOLUME, p), whole / (PetscReal)(n * grid->n_cells_global), 1e-14);
+  }
+  CALL(PointsDestroy(&points));
+}
+
+static void every_rule_fills_the_volume(void **state)
+{
+  (void)state;
+  for (int type = 0; type < 4; ++type) {
+    TestCase *t = test_case((CellType)type, 4, 3, 2);
+    Grid *grid = make_grid(PETSC_COMM_WORLD, &t->c);
+    for (const PetscInt *n = cell_rules((CellType)type); *n; ++n) {
+      check_rule(t, grid, *n, WEIGHTS_EQUAL);
+      check_rule(t, grid, *n, WEIGHTS_GAUSS);
+    }
+    free_all(t, grid, NULL);
+  }
+}
+
+/* 6 triangle points have two weights; mpm shares the mass equally, fem does not. */
+static void method_chooses_the_weights(void **state)
+{
+  static char fem[] = "fem", mpm[] = "mpm", gmm[] = "gmm";
+  char *const methods[3] = {fem, mpm, gmm};
+  (void)state;
+  for (int m = 0; m < 3; ++m) {
+    TestCase *t = test_case(CELL_TRIANGLE, 3, 2, 1);
+    t->body[0].points_per_cell = 6;
+    t->c.method = methods[m];
+    Grid *grid = make_grid(PETSC_COMM_WORLD, &t->c);
+    Points *points = seed_points(t, grid);
+    PetscReal spread = 0;
+    for (PetscInt p = 0; p < points->n; ++p)
+      spread = PetscMax(spread, PetscAbsReal(*point_real(points, POINT_VOLUME, p) - 0.5 / 6));
+    if (m) CHECK(spread < 1e-15);
+    else CHECK(points->n == 0 || spread > 0.01);
+    free_all(t, grid, points);
+  }
+}
+
+static void grading_keeps_the_volume(void **state)
+{
+  (void)state;
+  TestCase *t = test_case(CELL_HEXAHEDRON, 5, 4, 3);
+  t->c.grid.grading[0] = 4;
+  t->c.grid.grading[2] = 0.3;
+  Grid *grid = make_grid(PETSC_COMM_WORLD, &t->c);
+  for (int w = WEIGHTS_AUTO; w <= WEIGHTS_GAUSS; ++w) {
+    t->body[0].weights = (PointWeights)w;
+    Points *points = seed_points(t, grid);
+    CHECK_CLOSE(total(points, POINT_VOLUME), volume, 1e-12 * volume);
+    CALL(PointsDestroy(&points));
+  }
+  free_all(t, grid, NULL);
+}
+
+/* A cylinder of radius 3 and height 2. */
+static void axisymmetric_volume_is_the_full_circle(void **state)
+{
+  (void)state;
+  for (int type = CELL_TRIANGLE; type <= CELL_QUADRILATERAL; ++type) {
+    TestCase *t = test_case((CellType)type, 6, 4, 1);
+    t->c.kinematics = KINEMATICS_AXISYMMETRIC;
+    Grid *grid = make_grid(PETSC_COMM_WORLD, &t->c);
+    for (int w = WEIGHTS_EQUAL; w <= WEIGHTS_GAUSS; ++w) {
+      t->body[0].weights = (PointWeights)w;
+      Points *points = seed_points(t, grid);
+      CHECK_CLOSE(total(points, POINT_VOLUME), 18 * PETSC_PI, 1e-12 * 18 * PETSC_PI);
+      CALL(PointsDestroy(&points));
+    }
+    free_all(t, grid, NULL);
+  }
+}
+
+/* Two materials side by side, and a third body apart. */
+static TestCase *three_bodies(CellType type)
+{
+  TestCase *t = test_case(type, 12, 8, 4);
+  t->c.n_bodies = 3;
+  set_box(t->body, 0, 0, 1, 1);
+  set_box(t->body + 1, 1, 0, 2, 1);
+  set_box(t->body + 2, 0, 1.5, 3, 2);
+  t->body[2].points_per_cell = 1;
+  t->body[2].velocity[0] = 0.5;
+  t->body[2].spin[2] = 2;
+  t->body[2].spin_centre[0] = 1;
+  return t;
+}
+
+static void check_body(const Points *points, PetscInt p)
+{
+  const PetscReal *x = point_real(points, POINT_X, p), *v = point_real(points, POINT_V, p);
+  const PetscReal *state = point_real(points, POINT_STATE, p);
+  const PetscInt body = points->body[p];
+  CHECK(points->material[p] == (body == 1));
+  CHECK(state[0] == (body == 1 ? 0 : 0.25));
+  CHECK((x[0] > 1 && x[1] < 1) == (body == 1));
+  CHECK((x[1] > 1.5) == (body == 2));
+  CHECK_CLOSE(v[0], body == 2 ? 0.5 - 2 * x[1] : 0, 1e-15);
+  CHECK_CLOSE(v[1], body == 2 ? 2 * (x[0] - 1) : 0, 1e-15);
+  CHECK_CLOSE(*point_real(points, POINT_MASS, p), *point_real(points, POINT_VOLUME, p) * (body == 1 ? 2000 : 1500),
+              1e-12);
+}
+
+static void bodies_stand_side_by_side(void **state)
+{
+  (void)state;
+  for (int type = 0; type < 4; ++type) {
+    TestCase *t = three_bodies((CellType)type);
+    Grid *grid = make_grid(PETSC_COMM_WORLD, &t->c);
+    Points *points = seed_points(t, grid);
+    PetscReal mass[3] = {0};
+    for (PetscInt p = 0; p < points->n; ++p) {
+      check_body(points, p);
+      mass[points->body[p]] += *point_real(points, POINT_MASS, p);
+    }
+    const PetscReal depth = grid->dim == 3 ? 2 : 1, expected[3] = {1500, 2000, 2250};
+    for (int b = 0; b < 3; ++b) CHECK_CLOSE(sum_over_ranks(mass[b]), expected[b] * depth, 1e-12 * expected[b]);
+    check_ids_unique(points);
+    check_located(points, grid);
+    free_all(t, grid, points);
+  }
+}
+
+static PetscBool same_point(const Points *a, PetscInt p, const Points *b, PetscInt q)
+{
+  static const PointReal fields[] = {POINT_X, POINT_V, POINT_MASS, POINT_VOLUME, POINT_F, POINT_STATE};
+  PetscBool same = (PetscBool)(a->body[p] == b->body[q] && a->material[p] == b->material[q]);
+  for (size_t f = 0; f < sizeof fields / sizeof *fields; ++f)
+    for (PetscInt k = 0; k < a->components[fields[f]]; ++k)
+      if (point_real(a, fields[f], p)[k] != point_real(b, fields[f], q)[k]) same = PETSC_FALSE;
+  return same;
+}
+
+/* What one rank seeds alone is what all seed together. */
+static void ranks_do_not_matter(void **state)
+{
+  (void)state;
+  for (int type = 0; type < 4; ++type) {
+    TestCase *t = three_bodies((CellType)type);
+    Grid *grid = make_grid(PETSC_COMM_WORLD, &t->c), *alone = make_grid(PETSC_COMM_SELF, &t->c);
+    Points *points = seed_points(t, grid), *reference = seed_points(t, alone);
+    PetscInt *index;
+    PetscInt64 last = 0;
+    for (PetscInt p = 0; p < reference->n; ++p) last = PetscMax(last, reference->id[p]);
+    CALL(PetscCalloc1((size_t)last + 1, &index));
+    for (PetscInt p = 0; p < reference->n; ++p) index[reference->id[p]] = p + 1;
+    CHECK(count_over_ranks(points->n) == reference->n);
+    for (PetscInt p = 0; p < points->n; ++p) {
+      CHECK(points->id[p] <= last && index[points->id[p]] > 0);
+      CHECK(same_point(points, p, reference, index[points->id[p]] - 1));
+    }
+    CALL(PetscFree(index));
+    CALL(GridDestroy(&alone));
+    CALL(PointsDestroy(&reference));
+    free_all(t, grid, points);
+  }
+}
+
+/* All that the seeding has to say, on rank 0; the number of errors and warnings on all. */
+static PetscInt messages(const TestCase *t, size_t size, char *text, PetscInt *warnings)
+{
+  Grid *grid = make_grid(PETSC_COMM_WORLD, &t->c);
+  Points *points = make_points(t);
+  Diag *diag = NULL;
+  PetscInt errors = 0;
+  FILE *out = tmpfile();
+  CHECK(out != NULL);
+  CALL(DiagCreate(&diag));
+  CALL(PointsSeed(points, grid, &t->c, t->seed, diag));
+  CALL(DiagReduce(PETSC_COMM_WORLD, diag, &errors));
+  if (warnings) *warnings = count_over_ranks(DiagWarnings(diag));
+  CALL(DiagFlush(diag, out));
+  rewind(out);
+  text[fread(text, 1, size - 1, out)] = 0;
+  fclose(out);
+  CALL(DiagDestroy(&diag));
+  CALL(PointsDestroy(&points));
+  CALL(GridDestroy(&grid));
+  return errors;
+}
+
+static void check_says(const TestCase *t, PetscInt errors, const char *const *words)
+{
+  char text[4096];
+  PetscMPIInt rank;
+  MPI_Comm_rank(PETSC_COMM_WORLD, &rank);
+  CHECK(messages(t, sizeof text, text, NULL) == errors);
+  for (; *words && rank == 0; ++words) {
+    if (!strstr(text, *words)) fprintf(stderr, "'%s' is not in:\n%s\n", *words, text);
+    CHECK(strstr(text, *words) != NULL);
+  }
+}
+
+#define SAYS(t, errors, ...) check_says(t, errors, (const char *const[]){__VA_ARGS__, NULL})
+
+static void mistakes_are_told(void **state)
+{
+  static char nowhere[] = "nowhere", lefd[] = "lefd", left[] = "left", gold[] = "gold";
+  (void)state;
+  TestCase *t = test_case(CELL_QUADRILATERAL, 12, 8, 1);
+  t->body[0].points_per_cell = 5;
+  SAYS(t, 1, "no rule places 5 points in a quadrilateral", "1, 4, 9, 16");
+  t->body[0].points_per_cell = -1;
+  SAYS(t, 1, "no rule places -1 points");
+  t->body[0].points_per_cell = 4;
+  set_box(t->body, 5, 0, 6, 1);
+  SAYS(t, 1, "body 'first' holds the centre of no cell", "[5, 6] x [0, 1]", "[0, 3] x [0, 2]", "outside the grid");
+  set_box(t->body, 0.3, 0, 0.31, 2);
+  SAYS(t, 1, "thinner than a cell", "0.25");
+  t->body[0].has_shape = PETSC_FALSE;
+  t->body[0].region = nowhere;
+  SAYS(t, 1, "no region 'nowhere'");
+  t->body[0].region = lefd;
+  SAYS(t, 1, "no region 'lefd'", "did you mean 'left'?");
+  t->body[0].region = left;
+  SAYS(t, 1, "'left' is a boundary, not a region");
+  t->body[0].region = NULL;
+  t->body[0].material = gold;
+  SAYS(t, 1, "no material 'gold'");
+  CALL(PetscFree(t));
+}
+
+static void overlap_is_told(void **state)
+{
+  (void)state;
+  TestCase *t = test_case(CELL_QUADRILATERAL, 12, 8, 1);
+  t->c.n_bodies = 2;
+  set_box(t->body, 0, 0, 1, 1);
+  set_box(t->body + 1, 0.5, 0.5, 2, 1);
+  SAYS(t, 1, "bodies 'first' and 'second' overlap: 4 cells");
+  CALL(PetscFree(t));
+}
+
+static void bad_volume_is_told(void **state)
+{
+  char text[4096];
+  PetscInt warnings;
+  PetscMPIInt rank;
+  (void)state;
+  MPI_Comm_rank(PETSC_COMM_WORLD, &rank);
+  TestCase *t = test_case(CELL_QUADRILATERAL, 12, 8, 1);
+  set_box(t->body, 0, 0, 1.1, 1);
+  CHECK(messages(t, sizeof text, text, &warnings) == 0 && warnings == 1);
+  CHECK(rank || (strstr(text, "they hold 1 m2, its shape 1.1 m2 (-9.1 %)") && strstr(text, "smaller cells")));
+  set_box(t->body, 2, 0, 4, 1);
+  SAYS(t, 1, "body 'first' reaches outside the grid", "[2, 4] x [0, 1]", "[0, 3] x [0, 2]");
+  t->body[0].shape = (Shape){.kind = SHAPE_BALL, .centre = {1.5, 1}, .radius = 0.4};
+  CHECK(messages(t, sizeof text, text, &warnings) == 0 && warnings == 1);
+  CHECK(rank || strstr(text, "its shape 0.502655 m2"));
+  set_box(t->body, 0, 0, 3, 1);
+  CHECK(messages(t, sizeof text, text, &warnings) == 0 && warnings == 0);
+  CALL(PetscFree(t));
+}
+
+static void polygon_volume_is_known(void **state)
+{
+  PetscReal vertices[8] = {0, 0, 2, 0, 2, 1, 0, 1};
+  char text[4096];
+  PetscInt warnings;
+  (void)state;
+  TestCase *t = test_case(CELL_QUADRILATERAL, 12, 8, 1);
+  t->body[0].has_shape = PETSC_TRUE;
+  t->body[0].shape = (Shape){.kind = SHAPE_POLYGON, .n_vertices = 4, .vertices = vertices};
+  CHECK(messages(t, sizeof text, text, &warnings) == 0 && warnings == 0);
+  vertices[2] = vertices[4] = 2.1;
+  CHECK(messages(t, sizeof text, text, &warnings) == 0 && warnings == 1);
+  CALL(PetscFree(t));
+}
+
+int main(int argc, char **argv)
+{
+  const struct CMUnitTest tests[] = {
+    cmocka_unit_test(every_rule_fills_the_volume), cmocka_unit_test(method_chooses_the_weights),
+    cmocka_unit_test(grading_keeps_the_volume),    cmocka_unit_test(axisymmetric_volume_is_the_full_circle),
+    cmocka_unit_test(bodies_stand_side_by_side),   cmocka_unit_test(ranks_do_not_matter),
+    cmocka_unit_test(mistakes_are_told),           cmocka_unit_test(overlap_is_told),
+    cmocka_unit_test(bad_volume_is_told),          cmocka_unit_test(polygon_volume_is_known),
+  };
+  return run_point_tests(argc, argv, tests, sizeof tests / sizeof *tests);
+}

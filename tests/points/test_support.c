@@ -1,0 +1,117 @@
+/* Support from cells: partition of unity, sum of x dN = I, groups that cover the points; on every cell
+ * type, distorted too. */
+#include "points_test.h"
+
+/* Move the inner nodes, so that no Jacobian is constant. A function of the place alone: ghosts move as
+ * their owners do. */
+static void distort(Grid *grid)
+{
+  for (PetscInt n = 0; n < grid->n_nodes; ++n) {
+    PetscReal *x = grid->x + n * grid->dim, y[3];
+    for (PetscInt d = 0; d < grid->dim; ++d)
+      y[d] = x[d] + 0.04 * sin(3 * x[(d + 1) % grid->dim] + (double)d) * cos(2 * x[d]);
+    for (PetscInt d = 0; d < grid->dim; ++d) x[d] = y[d];
+  }
+}
+
+static void check_point(const Grid *grid, const PetscInt *node, const PetscReal *N, const PetscReal *dN,
+                        const PetscReal *x)
+{
+  const PetscInt dim = grid->dim, nn = grid->nodes_per_cell;
+  PetscReal one = 0, place[3] = {0}, zero[3] = {0}, identity[9] = {0};
+  for (PetscInt i = 0; i < nn; ++i) {
+    const PetscReal *xn = grid->x + node[i] * dim;
+    one += N[i];
+    for (PetscInt a = 0; a < dim; ++a) {
+      place[a] += N[i] * xn[a];
+      zero[a] += dN[i * dim + a];
+      for (PetscInt b = 0; b < dim; ++b) identity[3 * a + b] += xn[a] * dN[i * dim + b];
+    }
+  }
+  CHECK_CLOSE(one, 1, 1e-14);
+  for (PetscInt a = 0; a < dim; ++a) {
+    CHECK_CLOSE(zero[a], 0, 1e-12);
+    if (x) CHECK_CLOSE(place[a], x[a], 1e-13);
+    for (PetscInt b = 0; b < dim; ++b) CHECK_CLOSE(identity[3 * a + b], a == b ? 1.0 : 0.0, 1e-12);
+  }
+}
+
+static void check_support(const Support *s, const Points *points, const Grid *grid, PetscBool at_x)
+{
+  const PetscInt nn = grid->nodes_per_cell, dim = grid->dim;
+  CHECK(s->uniform == nn && s->point_start[0] == 0 && s->node_start[0] == 0 && s->value_start[0] == 0);
+  for (PetscInt g = 0; g < s->n_groups; ++g) {
+    const PetscInt cell = points->cell[s->point_start[g]], *node = s->node + s->node_start[g];
+    CHECK(g == 0 || points->cell[s->point_start[g] - 1] < cell);
+    CHECK(s->node_start[g + 1] - s->node_start[g] == nn);
+    for (PetscInt i = 0; i < nn; ++i) CHECK(node[i] == grid->cell_node[cell * nn + i]);
+    for (PetscInt p = s->point_start[g]; p < s->point_start[g + 1]; ++p) {
+      const PetscInt value = s->value_start[g] + (p - s->point_start[g]) * nn;
+      CHECK(points->cell[p] == cell);
+      check_point(grid, node, s->N + value, s->dN + dim * value, at_x ? point_real(points, POINT_X, p) : NULL);
+    }
+    CHECK(s->value_start[g + 1] - s->value_start[g] == nn * (s->point_start[g + 1] - s->point_start[g]));
+  }
+}
+
+static void every_cell_type(void **state)
+{
+  (void)state;
+  for (int type = 0; type < 4; ++type) {
+    TestCase *t = test_case((CellType)type, 5, 4, 3);
+    Grid *grid = make_grid(PETSC_COMM_WORLD, &t->c);
+    Points *points = seed_points(t, grid);
+    Support *s = NULL;
+    CALL(SupportCreate(&s));
+    for (int repeat = 0; repeat < 2; ++repeat) {
+      CALL(SupportFromCells(s, points, grid));
+      CHECK(s->n_groups == grid->n_cells && s->point_start[s->n_groups] == points->n);
+      check_support(s, points, grid, (PetscBool)(repeat == 0));
+      distort(grid);
+    }
+    CALL(SupportDestroy(&s));
+    CHECK(s == NULL);
+    CALL(PointsDestroy(&points));
+    CALL(GridDestroy(&grid));
+    CALL(PetscFree(t));
+  }
+}
+
+/* More and fewer points than before, lost ones, and none. */
+static void arrays_are_reused(void **state)
+{
+  (void)state;
+  TestCase *t = test_case(CELL_QUADRILATERAL, 10, 10, 1);
+  Grid *grid = make_grid(PETSC_COMM_WORLD, &t->c);
+  Points *points = seed_points(t, grid);
+  Support *s = NULL;
+  CALL(SupportCreate(&s));
+  CALL(SupportFromCells(s, points, grid));
+  const PetscReal *N = s->N;
+  const PetscInt n = points->n;
+  for (PetscInt p = 0; p < n; p += 3) points->cell[p] = -1;
+  CALL(PointsSort(points));
+  CALL(SupportFromCells(s, points, grid));
+  CHECK(s->N == N && s->point_start[s->n_groups] == n - (n + 2) / 3);
+  check_support(s, points, grid, PETSC_TRUE);
+  points->n = 0;
+  CALL(SupportFromCells(s, points, grid));
+  CHECK(s->n_groups == 0 && s->point_start[0] == 0);
+  CALL(SupportDestroy(&s));
+  CALL(SupportCreate(&s));
+  CALL(SupportFromCells(s, points, grid));
+  CHECK(s->n_groups == 0 && s->point_start[0] == 0);
+  CALL(SupportDestroy(&s));
+  CALL(PointsDestroy(&points));
+  CALL(GridDestroy(&grid));
+  CALL(PetscFree(t));
+}
+
+int main(int argc, char **argv)
+{
+  const struct CMUnitTest tests[] = {
+    cmocka_unit_test(every_cell_type),
+    cmocka_unit_test(arrays_are_reused),
+  };
+  return run_point_tests(argc, argv, tests, sizeof tests / sizeof *tests);
+}
