@@ -1,0 +1,295 @@
+/* Displacement formulation in finite strains, updated Lagrangian (thesis eq. 4.31).
+ *
+ * Points run in batches of one material: first the increments of the deformation gradient of the whole batch, then one
+ * call of the law, then forces and stiffness. What a group (a cell) gathers is scattered once. */
+#include "formulation/formulation.h"
+#include "formulation/displacement_kernels.h"
+
+/* What one cell gathers before it is scattered. */
+typedef struct {
+  PetscReal du[3 * CELL_MAX_NODES];                 /* nn x dim */
+  PetscReal a[3 * CELL_MAX_NODES];                  /* dim rows, effective acceleration */
+  PetscReal f[3 * CELL_MAX_NODES];                  /* dim rows */
+  PetscReal M[CELL_MAX_NODES * CELL_MAX_NODES];     /* nn rows */
+  PetscReal K[9 * CELL_MAX_NODES * CELL_MAX_NODES]; /* nn x dim x dim rows */
+} CellWork;
+
+typedef struct {
+  PetscInt n, first, group; /* points first .. first + n - 1; the group of the first */
+  PetscReal dF[9 * LAW_BATCH], tau[6 * LAW_BATCH], c[36 * LAW_BATCH];
+  PetscReal old[LAW_MAX_STATE * LAW_BATCH], state[LAW_MAX_STATE * LAW_BATCH];
+} Batch;
+
+KERNEL void cell_load(const int dim, const int nn, const WeakFormInput *in, PetscInt group, CellWork *w)
+{
+  const PetscInt *node = in->support->node + group * nn;
+  const int width = row_width(nn);
+  for (int I = 0; I < nn; ++I)
+    for (int d = 0; d < dim; ++d) {
+      const PetscInt k = node[I] * dim + d;
+      w->du[I * dim + d] = in->du[k];
+      w->a[d * width + I] = in->inertia * in->du[k] + in->history[k];
+    }
+  for (int i = 0; i < dim * width; ++i) w->f[i] = 0;
+  for (int i = 0; i < nn * width; ++i) w->M[i] = 0;
+  for (int i = 0; i < dim * dim * nn * width; ++i) w->K[i] = 0;
+}
+
+/* Ties the nodes of a hardly filled cell: s (du_I - mean), no force on a translation. */
+KERNEL void cell_soften(const int dim, const int nn, PetscReal s, PetscBool tangent, CellWork *w)
+{
+  for (int d = 0; d < dim; ++d) {
+    PetscReal mean = 0;
+    for (int I = 0; I < nn; ++I) mean += w->du[I * dim + d] / nn;
+    for (int I = 0; I < nn; ++I) w->f[d * row_width(nn) + I] += s * (w->du[I * dim + d] - mean);
+  }
+  if (!tangent) return;
+  for (int I = 0; I < nn; ++I)
+    for (int d = 0; d < dim; ++d)
+      for (int J = 0; J < nn; ++J) w->K[((I * dim + d) * dim + d) * row_width(nn) + J] += s * ((I == J) - 1.0 / nn);
+}
+
+/* Rows and columns of prescribed dofs are cut; lifting moves their columns to the right-hand side. */
+KERNEL void cell_cut(const int dim, const int nn, const WeakFormInput *in, const PetscInt *node, CellWork *w)
+{
+  for (int J = 0; J < nn; ++J)
+    for (int b = 0; b < dim; ++b) {
+      const PetscInt column = node[J] * dim + b;
+      if (!in->fixed[column]) continue;
+      const PetscReal lift = in->lift ? in->lift[column] : 0;
+      for (int I = 0; I < nn; ++I)
+        for (int a = 0; a < dim; ++a) {
+          PetscReal *k = &w->K[((I * dim + a) * dim + b) * row_width(nn) + J];
+          if (!in->fixed[node[I] * dim + a]) w->f[a * row_width(nn) + I] += *k * lift;
+          *k = 0;
+          w->K[((J * dim + b) * dim + a) * row_width(nn) + I] = 0;
+        }
+    }
+}
+
+KERNEL void cell_store(const int dim, const int nn, const WeakFormInput *in, PetscInt group, CellWork *w,
+                       WeakFormOutput *out)
+{
+  const PetscInt *node = in->support->node + group * nn;
+  if (in->soft && in->soft[group] > 0) cell_soften(dim, nn, in->soft[group], out->values != NULL, w);
+  if (out->values) {
+    const PetscInt *slot = out->slot + group * nn * nn;
+    int cut = 0;
+    for (int I = 0; I < nn; ++I)
+      for (int d = 0; d < dim; ++d) {
+        cut |= in->fixed[node[I] * dim + d];
+        for (int J = 0; J < nn; ++J)
+          w->K[((I * dim + d) * dim + d) * row_width(nn) + J] += in->inertia * w->M[I * row_width(nn) + J];
+      }
+    if (cut) cell_cut(dim, nn, in, node, w);
+    for (int I = 0; I < nn; ++I)
+      for (int J = 0; J < nn; ++J) {
+        PetscReal *restrict block = out->values + slot[I * nn + J] * dim * dim;
+        for (int ab = 0; ab < dim * dim; ++ab) block[ab] += w->K[(I * dim * dim + ab) * row_width(nn) + J];
+      }
+  }
+  for (int I = 0; I < nn; ++I)
+    for (int d = 0; d < dim; ++d) out->force[node[I] * dim + d] += w->f[d * row_width(nn) + I];
+}
+
+/* Lost points stand last and are in no group. */
+static PetscInt points_in_groups(const Support *support)
+{
+  return support->n_groups ? support->point_start[support->n_groups] : 0;
+}
+
+/* As many points as one call of the law takes, all of one material. */
+static PetscInt batch_length(const Points *points, PetscInt first, PetscInt end)
+{
+  PetscInt n = 1;
+  while (n < LAW_BATCH && first + n < end && points->material[first + n] == points->material[first]) ++n;
+  return n;
+}
+
+KERNEL LawStatus batch_update(const int dim, const int nn, const WeakFormInput *in, PetscBool tangent, Batch *b)
+{
+  const Points *points = in->points;
+  const Support *support = in->support;
+  const Material *material = &in->materials[points->material[b->first]];
+  const PetscInt n_state = material->law->n_state, stride = points->components[POINT_STATE];
+  const PetscReal *old = points->real[POINT_STATE] + b->first * stride;
+  PetscReal du[3 * CELL_MAX_NODES];
+  PetscInt group = -1, next = b->group;
+
+  for (PetscInt k = 0; k < b->n; ++k) {
+    const PetscInt p = b->first + k;
+    while (group < 0 || p >= support->point_start[group + 1]) {
+      group = next++;
+      for (int I = 0; I < nn; ++I)
+        for (int d = 0; d < dim; ++d) du[I * dim + d] = in->du[support->node[group * nn + I] * dim + d];
+    }
+    increment_gradient(dim, nn, support->dN + p * nn * dim, du, b->dF + 9 * k);
+  }
+  if (stride != n_state) {
+    for (PetscInt k = 0; k < b->n; ++k)
+      for (PetscInt s = 0; s < n_state; ++s) b->old[k * n_state + s] = old[k * stride + s];
+    old = b->old;
+  }
+  return material->law->update(material->parameters, b->n, b->dF, old, b->state, b->tau, tangent ? b->c : NULL);
+}
+
+KERNEL void assemble_points(const int dim, const int nn, const WeakFormInput *in, WeakFormOutput *out)
+{
+  const Points *points = in->points;
+  const Support *support = in->support;
+  const PetscBool tangent = out->values ? PETSC_TRUE : PETSC_FALSE;
+  PetscReal g[3 * CELL_MAX_NODES], N[CELL_MAX_NODES];
+  CellWork w;
+  Batch b;
+  const PetscInt n = points_in_groups(support);
+  PetscInt group = 0;
+
+  cell_load(dim, nn, in, group, &w);
+  for (PetscInt first = 0; first < n; first += b.n) {
+    b.first = first;
+    b.group = group;
+    while (first >= support->point_start[b.group + 1]) ++b.group;
+    b.n = batch_length(points, first, n);
+    const LawStatus status = batch_update(dim, nn, in, tangent, &b);
+    if (status > out->status) {
+      out->status = status;
+      out->bad_point = first;
+    }
+    if (out->status != LAW_OK) return; /* the step is cut, nothing here counts */
+    for (PetscInt k = 0; k < b.n; ++k) {
+      const PetscInt p = first + k;
+      while (p >= support->point_start[group + 1]) {
+        cell_store(dim, nn, in, group++, &w, out);
+        cell_load(dim, nn, in, group, &w);
+      }
+      const PetscReal volume = points->real[POINT_VOLUME][p], mass = points->real[POINT_MASS][p];
+      const PetscReal lumping = in->lumping ? in->lumping[group] : 0;
+      row_load(nn, 1, support->N + p * nn, N);
+      current_gradients(dim, nn, support->dN + p * nn * dim, b.dF + 9 * k, g);
+      add_internal_force(dim, nn, g, b.tau + 6 * k, volume, w.f);
+      add_inertia_force(dim, nn, N, w.a, mass, lumping, w.f);
+      if (!tangent) continue;
+      add_stiffness(dim, nn, g, b.tau + 6 * k, b.c + 36 * k, volume, w.K);
+      if (in->inertia > 0) add_mass(nn, N, mass, lumping, w.M);
+    }
+  }
+  cell_store(dim, nn, in, group, &w, out);
+}
+
+/* Work of the stress per undeformed volume by the trapezoidal rule along the straight path of the step: at both ends the velocity gradient
+ * times dt is (dF - 1) dF_end^-1. It is the work of the nodal forces at t_n and t_(n+1), so that Newmark's trapezoidal rule closes the
+ * balance of energy. */
+static inline PetscReal stress_work(const PetscReal dF[9], const PetscReal old[6], const PetscReal tau[6])
+{
+  PetscReal inverse[9], work = 0;
+  tensor_inverse(dF, inverse);
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) {
+      const int k = voigt_of[i][j], one = i == j;
+      work += 0.5 * (old[k] * (dF[3 * i + j] - one) + tau[k] * (one - inverse[3 * i + j]));
+    }
+  return work;
+}
+
+static inline void commit_point(Points *points, PetscInt p, const PetscReal dF[9], const PetscReal tau[6])
+{
+  PetscReal F[9], updated[9], old[6];
+  point_tau(points, p, old);
+  point_F(points, p, F);
+  tensor_multiply(dF, F, updated);
+  point_set_F(points, p, updated);
+  points->real[POINT_J][p] *= tensor_det(dF);
+  points->real[POINT_WORK][p] += points->real[POINT_VOLUME][p] * stress_work(dF, old, tau);
+  point_set_tau(points, p, tau);
+}
+
+KERNEL LawStatus commit_points(const int dim, const int nn, const WeakFormInput *in, Points *points)
+{
+  const PetscInt stride = points->components[POINT_STATE], n = points_in_groups(in->support);
+  Batch b;
+  for (PetscInt first = 0, group = 0; first < n; first += b.n) {
+    while (first >= in->support->point_start[group + 1]) ++group;
+    b.first = first;
+    b.group = group;
+    b.n = batch_length(points, first, n);
+    const LawStatus status = batch_update(dim, nn, in, PETSC_FALSE, &b);
+    if (status != LAW_OK) return status;
+    const PetscInt n_state = in->materials[points->material[first]].law->n_state;
+    for (PetscInt k = 0; k < b.n; ++k) {
+      commit_point(points, first + k, b.dF + 9 * k, b.tau + 6 * k);
+      PetscReal *state = points->real[POINT_STATE] + (first + k) * stride;
+      for (PetscInt i = 0; i < n_state; ++i) state[i] = b.state[k * n_state + i];
+    }
+  }
+  return LAW_OK;
+}
+
+#define KERNELS(dim, nn)                                                           \
+  static void assemble_##dim##d_##nn(const WeakFormInput *in, WeakFormOutput *out) \
+  {                                                                                \
+    assemble_points(dim, nn, in, out);                                             \
+  }                                                                                \
+  static LawStatus commit_##dim##d_##nn(const WeakFormInput *in, Points *points)   \
+  {                                                                                \
+    return commit_points(dim, nn, in, points);                                     \
+  }
+KERNELS(2, 3)
+KERNELS(2, 4)
+KERNELS(3, 4)
+KERNELS(3, 8)
+
+typedef struct {
+  PetscInt dim, nn;
+  void (*assemble)(const WeakFormInput *in, WeakFormOutput *out);
+  LawStatus (*commit)(const WeakFormInput *in, Points *points);
+} Kernels;
+
+static const Kernels kernels[] = {
+  {2, 3, assemble_2d_3, commit_2d_3},
+  {2, 4, assemble_2d_4, commit_2d_4},
+  {3, 4, assemble_3d_4, commit_3d_4},
+  {3, 8, assemble_3d_8, commit_3d_8},
+};
+
+/* NULL where there are no points to work on. */
+static PetscErrorCode FindKernels(const WeakFormInput *in, const Kernels **found)
+{
+  const PetscInt dim = in->points->dim, nn = in->support->uniform;
+
+  PetscFunctionBeginUser;
+  *found = NULL;
+  if (!points_in_groups(in->support)) PetscFunctionReturn(0);
+  for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(kernels); ++k)
+    if (kernels[k].dim == dim && kernels[k].nn == nn) *found = &kernels[k];
+  PetscCheck(*found, PETSC_COMM_SELF, PETSC_ERR_SUP, "no kernel for %d nodes in %dD", (int)nn, (int)dim);
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode DisplacementAssemble(const WeakFormInput *in, WeakFormOutput *out)
+{
+  const Kernels *k;
+
+  PetscFunctionBeginUser;
+  out->status = LAW_OK;
+  out->bad_point = -1;
+  PetscCall(FindKernels(in, &k));
+  if (k) k->assemble(in, out);
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode DisplacementCommit(const WeakFormInput *in, Points *points, LawStatus *status)
+{
+  const Kernels *k;
+
+  PetscFunctionBeginUser;
+  PetscCall(FindKernels(in, &k));
+  *status = k ? k->commit(in, points) : LAW_OK;
+  PetscFunctionReturn(0);
+}
+
+const Formulation formulation_displacement = {
+  .name = "displacement",
+  .help = "displacements as the only unknowns (thesis ch. 4)",
+  .assemble = DisplacementAssemble,
+  .commit = DisplacementCommit,
+};

@@ -1,0 +1,51 @@
+/* Residual and tangent of the points' weak form, shared by all methods (phase b).
+ *
+ *   R_I = sum_p V0 tau grad N_I + sum_p m N_I (a_h - b)          thesis eqs. 4.27, 4.31
+ *   K_IJ = sum_p V0 [grad N_I . c . grad N_J + (grad N_I . tau grad N_J) 1] + sum_p c0 m N_I N_J 1
+ *
+ * with grad N at x_(n+1), tau and c from the law, a_h = sum_J N_J a_J the consistent inertia.
+ * The effective nodal acceleration is a_I = c0 du_I + h_I; time integration chooses c0 and h (gravity goes into h). */
+#pragma once
+#include "material/law.h"
+#include "points/support.h"
+
+typedef struct {
+  Kinematics kinematics;
+  const Points *points;
+  const Support *support;
+  const Material *materials;
+  const PetscReal *du;        /* n_nodes x dim: displacement since the start of the step, m */
+  const PetscReal *history;   /* n_nodes x dim: h, m/s2 */
+  PetscReal inertia;          /* c0, 1/s2; 0 in statics */
+  const PetscReal *lumping;   /* per group: share of the mass that is lumped, or NULL (0) */
+  const PetscReal *soft;      /* per group: stiffness that ties a hardly filled cell's nodes together, N/m, or NULL */
+  const unsigned char *fixed; /* n_nodes x dim: prescribed degrees of freedom; their rows and columns stay empty */
+  const PetscReal *lift;      /* n_nodes x dim or NULL: adds K lift on the free rows, for fixed columns */
+} WeakFormInput;
+
+typedef struct {
+  PetscReal *force;     /* n_nodes x dim, added to; rows of prescribed dofs too (reactions) */
+  PetscReal *values;    /* matrix blocks, added to; NULL: residual only */
+  const PetscInt *slot; /* per group nn x nn: block of the pair of nodes in values */
+  LawStatus status;     /* worst of all points */
+  PetscInt bad_point;   /* a point of that status */
+} WeakFormOutput;
+
+typedef struct {
+  const char *name, *help;
+  PetscErrorCode (*assemble)(const WeakFormInput *in, WeakFormOutput *out);
+  /* Accept the step: new state, F, J, stress and work of every point. `state` of the points is overwritten. */
+  PetscErrorCode (*commit)(const WeakFormInput *in, Points *points, LawStatus *status);
+} Formulation;
+
+extern const Formulation formulation_displacement;
+
+/* Increment of the deformation gradient of one point with nodes' increments du (nn x dim). */
+static inline void increment_gradient(PetscInt dim, PetscInt nn, const PetscReal *dN, const PetscReal *du,
+                                      PetscReal dF[9])
+{
+  for (int i = 0; i < 9; ++i) dF[i] = (i % 4 == 0) ? 1.0 : 0.0;
+  for (PetscInt I = 0; I < nn; ++I)
+    for (PetscInt i = 0; i < dim; ++i)
+      for (PetscInt j = 0; j < dim; ++j) dF[3 * i + j] += du[I * dim + i] * dN[I * dim + j];
+}

@@ -1,0 +1,1 @@
+talus_test(formulation/test_tangent)
