@@ -1,0 +1,35 @@
+/* Prescribed motion of grid nodes and the reactions to it.
+ *
+ * Motions are increments over a step. On a grid that is restored every step (mpm) they belong to places, on a mesh that moves (fem)
+ * to the nodes selected at the start; either way a rotation turns the node's present position about its centre. */
+#pragma once
+#include "grid/grid.h"
+
+typedef struct {
+  PetscInt n, *node; /* local nodes, ghosts too */
+} MotionNodes;
+
+/* Increment over [t0, t1] of a node that stands at x (dim) at t0, m, in place of what the case prescribes: a field of motion that no
+ * list of entries could give, such as a uniform deformation. */
+typedef void (*MotionField)(void *context, const PetscReal *x, PetscReal t0, PetscReal t1, PetscReal *increment);
+
+typedef struct Boundary {
+  const Case *c;
+  PetscInt dim, n_nodes;
+  MotionNodes *motion;  /* one per entry of the case's boundary */
+  unsigned char *fixed; /* n_nodes x dim */
+  PetscInt *entry;      /* n_nodes x dim: the entry that prescribes the dof, -1 if none */
+  MotionField field;    /* NULL: as the case says */
+  void *field_context;
+} Boundary;
+
+/* Collective. Unknown boundaries, entries that select nothing, and contradictory entries go to diag. */
+PetscErrorCode BoundaryCreate(const Grid *grid, const Case *c, Diag *diag, Boundary **boundary);
+PetscErrorCode BoundaryDestroy(Boundary **boundary);
+
+/* Increments over [t0, t1] of all prescribed dofs (others untouched), n_nodes x dim, m. */
+void boundary_increments(const Boundary *boundary, const Grid *grid, PetscReal t0, PetscReal t1, PetscReal *increment);
+
+/* Collective. Sum over the nodes of one entry of nodal forces (n_nodes x dim, owners count), N. */
+PetscErrorCode BoundarySum(const Boundary *boundary, const Grid *grid, PetscInt entry, const PetscReal *force,
+                           PetscReal sum[3]);

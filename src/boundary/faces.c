@@ -1,0 +1,164 @@
+#include "boundary/faces.h"
+
+/* Position on a face from its own coordinates: edges s in [-1, 1], triangles (s, t) barycentric, quadrilaterals [-1, 1]^2. */
+static void face_shape(PetscInt face_nodes, PetscReal s, PetscReal t, PetscReal N[4], PetscReal dN[8])
+{
+  if (face_nodes == 2) {
+    N[0] = (1 - s) / 2, N[1] = (1 + s) / 2;
+    dN[0] = -0.5, dN[1] = 0.5, dN[2] = dN[3] = 0;
+  } else if (face_nodes == 3) {
+    N[0] = 1 - s - t, N[1] = s, N[2] = t;
+    dN[0] = -1, dN[1] = 1, dN[2] = 0;
+    dN[3] = -1, dN[4] = 0, dN[5] = 1;
+  } else {
+    const PetscReal a[4] = {-1, 1, 1, -1}, b[4] = {-1, -1, 1, 1};
+    for (int i = 0; i < 4; ++i) {
+      N[i] = (1 + a[i] * s) * (1 + b[i] * t) / 4;
+      dN[i] = a[i] * (1 + b[i] * t) / 4;
+      dN[4 + i] = b[i] * (1 + a[i] * s) / 4;
+    }
+  }
+}
+
+/* Length or area per unit of the face's own coordinates. */
+static PetscReal face_jacobian(PetscInt dim, PetscInt nf, PetscReal x[4][3], const PetscReal dN[8])
+{
+  PetscReal u[3] = {0, 0, 0}, v[3] = {0, 0, 0};
+  for (PetscInt i = 0; i < nf; ++i)
+    for (PetscInt d = 0; d < dim; ++d) {
+      u[d] += dN[i] * x[i][d];
+      v[d] += dN[nf + i] * x[i][d];
+    }
+  if (dim == 2) return PetscSqrtReal(u[0] * u[0] + u[1] * u[1]);
+  const PetscReal n[3] = {u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]};
+  return PetscSqrtReal(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
+}
+
+PetscInt face_quadrature(const Grid *grid, PetscInt cell, PetscInt side, FacePoint *q)
+{
+  static const PetscReal third[3][2] = {{1. / 6, 1. / 6}, {2. / 3, 1. / 6}, {1. / 6, 2. / 3}};
+  const PetscReal g = 0.57735026918962576451;
+  const PetscReal square[4][2] = {{-g, -g}, {g, -g}, {g, g}, {-g, g}};
+  const Cell *type = &cells[grid->type];
+  const PetscInt nf = type->face_nodes, *node = grid->cell_node + cell * type->nodes;
+  PetscReal x[4][3], N[4], dN[8];
+
+  for (PetscInt i = 0; i < nf; ++i)
+    for (PetscInt d = 0; d < grid->dim; ++d) x[i][d] = grid->x[node[type->face[side][i]] * grid->dim + d];
+  for (PetscInt k = 0; k < nf; ++k) {
+    const PetscReal s = nf == 2 ? (k ? g : -g) : nf == 3 ? third[k][0] : square[k][0];
+    const PetscReal t = nf == 2 ? 0 : nf == 3 ? third[k][1] : square[k][1];
+    face_shape(nf, s, t, N, dN);
+    for (int d = 0; d < 3; ++d) {
+      q[k].x[d] = q[k].xi[d] = 0;
+      if (d >= grid->dim) continue;
+      for (PetscInt i = 0; i < nf; ++i) {
+        q[k].x[d] += N[i] * x[i][d];
+        q[k].xi[d] += N[i] * type->reference[type->face[side][i]][d];
+      }
+    }
+    q[k].area = face_jacobian(grid->dim, nf, x, dN) * (nf == 3 ? 1. / 6 : 1);
+  }
+  return nf;
+}
+
+static PetscBool face_selected(const Grid *grid, const Selector *on, const PetscInt *node, PetscInt nf,
+                               const PetscInt *face)
+{
+  const PetscReal tolerance = 1e-9 * PetscMax(grid->max[0] - grid->min[0], grid->max[1] - grid->min[1]);
+  for (PetscInt i = 0; i < nf; ++i) {
+    const PetscReal *x = grid->x + node[face[i]] * grid->dim;
+    for (PetscInt d = 0; d < grid->dim; ++d)
+      if (on->has[d] && (x[d] < on->min[d] - tolerance || x[d] > on->max[d] + tolerance)) return PETSC_FALSE;
+    if (on->has_shape && !shape_contains(&on->shape, grid->dim, x, tolerance)) return PETSC_FALSE;
+  }
+  return PETSC_TRUE;
+}
+
+/* A face's identity on all ranks: its three lowest global nodes (two on an edge). */
+static void face_key(const Grid *grid, const PetscInt *node, PetscInt nf, const PetscInt *face, PetscInt key[4])
+{
+  PetscInt all[4] = {-1, -1, -1, -1};
+  for (PetscInt i = 0; i < nf; ++i) all[i] = grid->global_node[node[face[i]]];
+  PetscSortInt(nf, all);
+  for (PetscInt i = 0; i < 4; ++i) key[i] = i < nf ? all[i] : -1;
+}
+
+static int compare_keys(const void *a, const void *b)
+{
+  const PetscInt *x = a, *y = b;
+  for (int i = 0; i < 4; ++i)
+    if (x[i] != y[i]) return x[i] < y[i] ? -1 : 1;
+  return 0;
+}
+
+/* All ranks' keys, sorted: a face that stands twice lies inside the body. Only selected faces of this body's cells take part. */
+static PetscErrorCode GatherKeys(MPI_Comm comm, PetscInt n, const PetscInt *keys, PetscInt *n_all, PetscInt **all)
+{
+  PetscMPIInt size, mine, *count, *start;
+
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_size(comm, &size));
+  PetscCall(PetscMPIIntCast(4 * n, &mine));
+  PetscCall(PetscMalloc2(size, &count, size + 1, &start));
+  PetscCallMPI(MPI_Allgather(&mine, 1, MPI_INT, count, 1, MPI_INT, comm));
+  start[0] = 0;
+  for (PetscMPIInt r = 0; r < size; ++r) start[r + 1] = start[r] + count[r];
+  *n_all = start[size] / 4;
+  PetscCall(PetscMalloc1(4 * *n_all, all));
+  PetscCallMPI(MPI_Allgatherv(keys, mine, MPIU_INT, *all, count, start, MPIU_INT, comm));
+  qsort(*all, (size_t)*n_all, 4 * sizeof(PetscInt), compare_keys);
+  PetscCall(PetscFree2(count, start));
+  PetscFunctionReturn(0);
+}
+
+static PetscInt count_key(PetscInt n, const PetscInt *all, const PetscInt key[4])
+{
+  const PetscInt *found = bsearch(key, all, (size_t)n, 4 * sizeof(PetscInt), compare_keys);
+  if (!found) return 0;
+  PetscInt i = (PetscInt)(found - all) / 4, count = 0;
+  while (i > 0 && !compare_keys(all + 4 * (i - 1), key)) --i;
+  for (; i < n && !compare_keys(all + 4 * i, key); ++i) ++count;
+  return count;
+}
+
+PetscErrorCode BodyFaces(const Grid *grid, const Points *points, PetscInt body, const Selector *on, PetscInt *n,
+                         PetscInt **cell, PetscInt **side)
+{
+  const Cell *type = &cells[grid->type];
+  PetscBool *inside;
+  PetscInt size = 0, n_all, *keys, *all;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(grid->n_cells, &inside));
+  for (PetscInt p = 0; p < points->n; ++p)
+    if (points->body[p] == body && points->cell[p] >= 0 && !inside[points->cell[p]]) {
+      inside[points->cell[p]] = PETSC_TRUE;
+      size += type->faces;
+    }
+  PetscCall(PetscMalloc1(4 * size, &keys));
+  PetscCall(PetscMalloc1(size, cell));
+  PetscCall(PetscMalloc1(size, side));
+  *n = 0;
+  for (PetscInt c = 0; c < grid->n_cells; ++c) {
+    const PetscInt *node = grid->cell_node + c * type->nodes;
+    for (PetscInt s = 0; inside[c] && s < type->faces; ++s) {
+      if (!face_selected(grid, on, node, type->face_nodes, type->face[s])) continue;
+      face_key(grid, node, type->face_nodes, type->face[s], keys + 4 * *n);
+      (*cell)[*n] = c;
+      (*side)[(*n)++] = s;
+    }
+  }
+  PetscCall(GatherKeys(grid->comm, *n, keys, &n_all, &all));
+  PetscInt kept = 0;
+  for (PetscInt f = 0; f < *n; ++f) {
+    if (count_key(n_all, all, keys + 4 * f) > 1) continue;
+    (*cell)[kept] = (*cell)[f];
+    (*side)[kept++] = (*side)[f];
+  }
+  *n = kept;
+  PetscCall(PetscFree(all));
+  PetscCall(PetscFree(inside));
+  PetscCall(PetscFree(keys));
+  PetscFunctionReturn(0);
+}

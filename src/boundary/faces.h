@@ -1,0 +1,18 @@
+/* Faces: their quadrature, and the boundary of a body made of whole cells. */
+#pragma once
+#include "points/points.h"
+
+#define FACE_MAX_POINTS 4
+
+typedef struct {
+  PetscReal x[3], xi[3]; /* position, and reference position in the cell */
+  PetscReal area;        /* weight: m2, or m times the unit thickness */
+} FacePoint;
+
+/* Gauss points of a side of a cell (2 on an edge, 3 on a triangle, 4 on a quadrilateral); returns how many. */
+PetscInt face_quadrature(const Grid *grid, PetscInt cell, PetscInt side, FacePoint *q);
+
+/* Collective. Faces between the cells that hold points of the body and all others, as far as the selector's coordinates and shape take
+ * all their nodes. */
+PetscErrorCode BodyFaces(const Grid *grid, const Points *points, PetscInt body, const Selector *on, PetscInt *n,
+                         PetscInt **cell, PetscInt **side);

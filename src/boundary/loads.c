@@ -1,0 +1,189 @@
+#include "boundary/loads.h"
+#include "boundary/faces.h"
+
+PetscBool touched_shape(const Grid *grid, PetscInt cell, const PetscReal *xi, const unsigned char *touched,
+                        PetscReal *N)
+{
+  const PetscInt nn = grid->nodes_per_cell, *node = grid->cell_node + cell * nn;
+  PetscReal dN[3 * CELL_MAX_NODES], sum = 0;
+  cell_shape(grid->type, xi, N, dN);
+  for (PetscInt I = 0; I < nn; ++I) {
+    if (!touched[node[I]]) N[I] = 0;
+    sum += N[I];
+  }
+  if (sum <= 1e-12) return PETSC_FALSE;
+  for (PetscInt I = 0; I < nn; ++I) N[I] /= sum;
+  return PETSC_TRUE;
+}
+
+static PetscErrorCode AddCarrier(Loads *loads, PetscInt load, PetscInt cell, const PetscReal *x, const PetscReal *xi,
+                                 const PetscReal *force)
+{
+  Points *p = loads->carriers;
+  PetscInt i;
+
+  PetscFunctionBeginUser;
+  PetscCall(PointsAppend(p, &i));
+  p->cell[i] = cell;
+  p->body[i] = load;
+  p->id[i] = ((PetscInt64)load << 40) + i;
+  for (PetscInt d = 0; d < loads->dim; ++d) {
+    point_real(p, POINT_X, i)[d] = x[d];
+    point_real(p, POINT_XI, i)[d] = xi[d];
+    point_real(p, POINT_FORCE, i)[d] = force[d];
+  }
+  PetscFunctionReturn(0);
+}
+
+/* A point force: the lowest rank that holds the position carries it. */
+static PetscErrorCode PointLoad(Loads *loads, const Grid *grid, PetscInt load, const char *path, Diag *diag)
+{
+  const LoadSpec *spec = &loads->c->loads[load];
+  PetscReal xi[3];
+  PetscMPIInt rank, mine, first, size;
+
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_rank(grid->comm, &rank));
+  PetscCallMPI(MPI_Comm_size(grid->comm, &size));
+  const PetscInt cell = GridLocate(grid, spec->at, -1, xi);
+  mine = cell >= 0 ? rank : size;
+  PetscCallMPI(MPI_Allreduce(&mine, &first, 1, MPI_INT, MPI_MIN, grid->comm));
+  if (first == rank) PetscCall(AddCarrier(loads, load, cell, spec->at, xi, spec->value));
+  if (first == size) DiagError(diag, path, "the force acts at a position outside the grid");
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode GridTraction(Loads *loads, const Grid *grid, PetscInt load, PetscInt *n_faces)
+{
+  LoadFaces *faces = &loads->faces[load];
+  const PetscInt nn = grid->nodes_per_cell;
+  PetscInt *side;
+  FacePoint q[FACE_MAX_POINTS];
+  PetscReal N[CELL_MAX_NODES], dN[3 * CELL_MAX_NODES];
+
+  PetscFunctionBeginUser;
+  PetscCall(GridSelectFaces(grid, &loads->c->loads[load].on, &faces->n, &faces->cell, &side));
+  PetscCall(PetscCalloc1(faces->n * nn, &faces->N));
+  for (PetscInt f = 0; f < faces->n; ++f) {
+    const PetscInt nq = face_quadrature(grid, faces->cell[f], side[f], q);
+    for (PetscInt k = 0; k < nq; ++k) {
+      cell_shape(grid->type, q[k].xi, N, dN);
+      for (PetscInt I = 0; I < nn; ++I) faces->N[f * nn + I] += N[I] * q[k].area;
+    }
+  }
+  PetscCall(MPIU_Allreduce(&faces->n, n_faces, 1, MPIU_INT, MPI_SUM, grid->comm));
+  PetscCall(PetscFree(side));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode BodyTraction(Loads *loads, const Grid *grid, const Points *points, PetscInt load,
+                                   PetscInt *n_faces)
+{
+  const LoadSpec *spec = &loads->c->loads[load];
+  PetscInt n, *cell, *side, body = 0;
+  FacePoint q[FACE_MAX_POINTS];
+  PetscReal force[3];
+
+  PetscFunctionBeginUser;
+  while (body < loads->c->n_bodies && strcmp(loads->c->bodies[body].name, spec->on.body)) ++body;
+  PetscCall(BodyFaces(grid, points, body, &spec->on, &n, &cell, &side));
+  for (PetscInt f = 0; f < n; ++f) {
+    const PetscInt nq = face_quadrature(grid, cell[f], side[f], q);
+    for (PetscInt k = 0; k < nq; ++k) {
+      for (PetscInt d = 0; d < loads->dim; ++d) force[d] = q[k].area * spec->value[d];
+      PetscCall(AddCarrier(loads, load, cell[f], q[k].x, q[k].xi, force));
+    }
+  }
+  PetscCall(MPIU_Allreduce(&n, n_faces, 1, MPIU_INT, MPI_SUM, grid->comm));
+  PetscCall(PetscFree(cell));
+  PetscCall(PetscFree(side));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LoadsCreate(const Grid *grid, const Case *c, const Points *points, Diag *diag, Loads **loads)
+{
+  Loads *l;
+  PetscInt faces, tractions = 0, forces = 0;
+  char path[64];
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscNew(&l));
+  l->c = c;
+  l->dim = grid->dim;
+  l->n_nodes = grid->n_nodes;
+  PetscCall(PetscCalloc1(c->n_loads, &l->faces));
+  PetscCall(PointsCreate(l->dim, 0, l->dim, &l->carriers));
+  for (PetscInt k = 0; k < c->n_loads; ++k) {
+    if (c->loads[k].kind == LOAD_POINT) {
+      PetscCall(PetscSNPrintf(path, sizeof path, "loads.points[%d].at", (int)forces++));
+      PetscCall(PointLoad(l, grid, k, path, diag));
+      continue;
+    }
+    if (c->loads[k].on.body) PetscCall(BodyTraction(l, grid, points, k, &faces));
+    else PetscCall(GridTraction(l, grid, k, &faces));
+    PetscCall(PetscSNPrintf(path, sizeof path, "loads.tractions[%d].on", (int)tractions++));
+    if (!faces)
+      DiagError(diag, path, "selects no face%s",
+                c->loads[k].on.body ? " of the body's boundary" : " of the grid's boundary");
+  }
+  PetscCall(PointsSort(l->carriers));
+  *loads = l;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LoadsDestroy(Loads **loads)
+{
+  PetscFunctionBeginUser;
+  if (!*loads) PetscFunctionReturn(0);
+  for (PetscInt k = 0; k < (*loads)->c->n_loads; ++k) {
+    PetscCall(PetscFree((*loads)->faces[k].cell));
+    PetscCall(PetscFree((*loads)->faces[k].N));
+  }
+  PetscCall(PetscFree((*loads)->faces));
+  PetscCall(PointsDestroy(&(*loads)->carriers));
+  PetscCall(PetscFree(*loads));
+  PetscFunctionReturn(0);
+}
+
+/* Loads grow with pseudo-time in statics and stand at once in dynamics, unless an amplitude says otherwise. */
+static PetscReal load_factor(const Case *c, const LoadSpec *spec, PetscReal t)
+{
+  return amplitude_value(&spec->amplitude, t, c->analysis.type == ANALYSIS_STATIC ? t / c->analysis.end : 1);
+}
+
+static void add_faces(const LoadFaces *faces, const Grid *grid, const PetscReal *value, PetscReal factor,
+                      const unsigned char *filled, PetscReal *sum)
+{
+  const PetscInt nn = grid->nodes_per_cell, dim = grid->dim;
+  for (PetscInt f = 0; f < faces->n; ++f) {
+    const PetscInt *node = grid->cell_node + faces->cell[f] * nn;
+    if (!filled[faces->cell[f]]) continue;
+    for (PetscInt I = 0; I < nn; ++I)
+      for (PetscInt d = 0; d < dim; ++d) sum[node[I] * dim + d] += factor * faces->N[f * nn + I] * value[d];
+  }
+}
+
+PetscErrorCode LoadsAdd(const Loads *l, const Grid *grid, PetscReal t, const unsigned char *filled,
+                        const unsigned char *touched, PetscReal *force)
+{
+  const PetscInt dim = l->dim, nn = grid->nodes_per_cell;
+  PetscReal N[CELL_MAX_NODES], *sum;
+
+  PetscFunctionBeginUser;
+  if (!l->c->n_loads) PetscFunctionReturn(0);
+  PetscCall(PetscCalloc1(l->n_nodes * dim, &sum));
+  for (PetscInt k = 0; k < l->c->n_loads; ++k)
+    add_faces(&l->faces[k], grid, l->c->loads[k].value, load_factor(l->c, &l->c->loads[k], t), filled, sum);
+  for (PetscInt p = 0; p < l->carriers->n; ++p) {
+    const PetscReal factor = load_factor(l->c, &l->c->loads[l->carriers->body[p]], t);
+    const PetscInt cell = l->carriers->cell[p], *node = grid->cell_node + cell * nn;
+    if (cell < 0 || !touched_shape(grid, cell, point_real(l->carriers, POINT_XI, p), touched, N)) continue;
+    for (PetscInt I = 0; I < nn; ++I)
+      for (PetscInt d = 0; d < dim; ++d)
+        sum[node[I] * dim + d] += factor * N[I] * point_real(l->carriers, POINT_FORCE, p)[d];
+  }
+  PetscCall(GridSumToOwners(grid, dim, sum));
+  for (PetscInt i = 0; i < grid->n_owned * dim; ++i) force[i] += sum[i];
+  PetscCall(PetscFree(sum));
+  PetscFunctionReturn(0);
+}

@@ -1,0 +1,33 @@
+/* Dead loads: tractions on faces of the grid, and loads carried by points that move with the material.
+ *
+ * A carrier is a point without mass that holds a force: at the quadrature points of a body's boundary (a traction), or at one
+ * material position (a point force). Its force goes to the nodes of its cell that hold material. */
+#pragma once
+#include "points/points.h"
+
+/* Faces of the grid under one load: their cells, and the integral of each of the cell's shape functions over the face. */
+typedef struct {
+  PetscInt n, *cell;
+  PetscReal *N; /* n x nodes_per_cell, m2 */
+} LoadFaces;
+
+typedef struct Loads {
+  const Case *c;
+  PetscInt dim, n_nodes;
+  LoadFaces *faces; /* one per load */
+  Points *carriers; /* POINT_FORCE at amplitude 1; body = index of the load */
+} Loads;
+
+/* Collective. `points` tells which cells each body fills. */
+PetscErrorCode LoadsCreate(const Grid *grid, const Case *c, const Points *points, Diag *diag, Loads **loads);
+PetscErrorCode LoadsDestroy(Loads **loads);
+
+/* Collective. Add the nodal forces at time t to force (n_nodes x dim; sums over ranks stand with the owners). Faces of
+ * the grid are loaded where their cell is filled[cell] by material: beside a body there is nothing to push. Carried forces go to nodes
+ * with touched[node] != 0. */
+PetscErrorCode LoadsAdd(const Loads *loads, const Grid *grid, PetscReal t, const unsigned char *filled,
+                        const unsigned char *touched, PetscReal *force);
+
+/* Shape functions of a carrier or tracer among touched nodes only, scaled to sum to one; PETSC_FALSE if there is none. */
+PetscBool touched_shape(const Grid *grid, PetscInt cell, const PetscReal *xi, const unsigned char *touched,
+                        PetscReal *N);
