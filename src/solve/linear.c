@@ -1,0 +1,59 @@
+#include "solve/linear.h"
+
+static PetscErrorCode UseDirect(KSP ksp, PetscBool symmetric, const char **what)
+{
+  PC pc;
+  PetscFunctionBeginUser;
+  PetscCall(KSPGetPC(ksp, &pc));
+  PetscCall(KSPSetType(ksp, KSPPREONLY));
+  PetscCall(PCSetType(pc, symmetric ? PCCHOLESKY : PCLU));
+  PetscCall(PCFactorSetMatSolverType(pc, MATSOLVERMUMPS));
+  *what = symmetric ? "direct (MUMPS, symmetric)" : "direct (MUMPS)";
+  PetscFunctionReturn(0);
+}
+
+/* The mass dominates: a cheap preconditioner on each rank's part. Symmetric Gauss-Seidel by Eisenstat's trick costs no more than the
+ * product with the matrix, needs no set-up and cannot be indefinite, as incomplete factorisations can. */
+static PetscErrorCode UseKrylov(KSP ksp, const LinearProblem *p, const char **what)
+{
+  PC pc;
+  PetscFunctionBeginUser;
+  PetscCall(KSPGetPC(ksp, &pc));
+  PetscCall(KSPSetType(ksp, p->symmetric ? KSPCG : KSPBCGS));
+  if (!p->symmetric) PetscCall(PCSetType(pc, PCBJACOBI));
+  else
+    PetscCall(
+      PCSetType(pc, p->idle_ranks ? PCSOR : PCEISENSTAT)); /* PETSc 3.18's trick fails where a rank has no rows */
+  *what = p->symmetric ? "conjugate gradients, symmetric Gauss-Seidel" : "BiCGStab, block Jacobi with ILU(0)";
+  PetscCall(KSPSetTolerances(ksp, 1e-4, PETSC_DEFAULT, PETSC_DEFAULT, 500));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode UseMultigrid(KSP ksp, const LinearProblem *p, const char **what)
+{
+  PC pc;
+  PetscFunctionBeginUser;
+  PetscCall(KSPGetPC(ksp, &pc));
+  PetscCall(KSPSetType(ksp, p->symmetric ? KSPCG : KSPGMRES));
+  PetscCall(PCSetType(pc, PCGAMG));
+  PetscCall(KSPSetTolerances(ksp, 1e-8, PETSC_DEFAULT, PETSC_DEFAULT, 1000));
+  *what = p->symmetric ? "conjugate gradients, algebraic multigrid" : "GMRES, algebraic multigrid";
+  PetscFunctionReturn(0);
+}
+
+/* Fill-in makes a factorisation of a 3D matrix costly much earlier than of a 2D one. */
+static PetscBool direct_pays(const LinearProblem *p)
+{
+  if (p->dynamic && p->courant < 20) return PETSC_FALSE;
+  return p->unknowns < (p->dim == 2 ? 1000000 : 100000) ? PETSC_TRUE : PETSC_FALSE;
+}
+
+PetscErrorCode LinearConfigure(KSP ksp, const LinearProblem *p, PetscBool *direct, const char **what)
+{
+  PetscFunctionBeginUser;
+  *direct = p->choice == LINEAR_DIRECT || (p->choice == LINEAR_AUTO && direct_pays(p)) ? PETSC_TRUE : PETSC_FALSE;
+  if (*direct) PetscCall(UseDirect(ksp, p->symmetric, what));
+  else if (p->dynamic) PetscCall(UseKrylov(ksp, p, what));
+  else PetscCall(UseMultigrid(ksp, p, what));
+  PetscFunctionReturn(0);
+}

@@ -1,0 +1,18 @@
+/* Which linear solver suits the problem: `linear: auto`.
+ *
+ * Measured (docs/decisions.md): statics in 2D wants a direct solver up to about a million unknowns; dynamics whose step is short
+ * beside the time a wave takes through a cell has a matrix ruled by the mass, and conjugate gradients win. */
+#pragma once
+#include <petscksp.h>
+#include "case/case.h"
+
+typedef struct {
+  LinearChoice choice;
+  PetscInt dim, unknowns;
+  PetscBool symmetric, dynamic;
+  PetscBool idle_ranks; /* does a rank hold no unknowns? */
+  PetscReal courant;    /* wave speed * dt / h */
+} LinearProblem;
+
+/* Choose a solver, set it on ksp (the options database still overrides it); `what` gets a short name for the log. */
+PetscErrorCode LinearConfigure(KSP ksp, const LinearProblem *problem, PetscBool *direct, const char **what);

@@ -1,0 +1,46 @@
+/* Newton's method on one step, through PETSc SNES.
+ *
+ * Residual and tangent come from the same pass over the points. Full steps, halved only where a point would be turned inside out:
+ * from rest a good iteration lets the residual grow by two orders before it falls (docs/decisions.md). */
+#pragma once
+#include <petscsnes.h>
+#include "formulation/formulation.h"
+#include "solve/linear.h"
+#include "solve/system.h"
+
+#define NEWTON_HISTORY 64
+
+/* The step to be solved; arrays are n_nodes x dim over local nodes. */
+typedef struct {
+  const Grid *grid;
+  System *system;
+  const Formulation *formulation;
+  WeakFormInput in;            /* du, fixed and lift are set here by Newton */
+  const unsigned char *fixed;  /* prescribed, or on a node that no material touches */
+  const PetscReal *prescribed; /* increment of fixed dofs, m */
+  const PetscReal *external;   /* dead nodal forces, N; owners' values count */
+  PetscReal *du;               /* in: first guess; out: solution */
+  PetscReal *force;            /* out: residual with the rows of fixed dofs: reactions, on owners */
+  PetscReal weight, inertia;   /* norms of nodal gravity and of the inertia that would stop the motion, N: scales */
+} StepProblem;
+
+typedef struct {
+  PetscBool converged;
+  PetscInt iterations, linear_iterations;
+  PetscReal residual[NEWTON_HISTORY]; /* |R| / reference after each iteration; [0] at the first guess */
+  PetscReal reference;                /* N */
+  const char *reason;                 /* why it stopped, in words */
+  LawStatus status;
+  PetscInt bad_point; /* local, of that status; -1 */
+} NewtonReport;
+
+typedef struct Newton Newton;
+
+PetscErrorCode NewtonCreate(MPI_Comm comm, const NewtonSpec *spec, Newton **newton);
+PetscErrorCode NewtonDestroy(Newton **newton);
+/* Collective. Solve; du and force hold the solution only if report->converged. */
+PetscErrorCode NewtonSolve(Newton *newton, StepProblem *problem, const LinearProblem *linear, NewtonReport *report);
+/* Name of the linear solver in use, for the log. */
+const char *NewtonLinearName(const Newton *newton);
+/* Seconds spent so far: points and scatter, matrix filling, linear solves. */
+void NewtonTimes(const Newton *newton, PetscReal *points, PetscReal *matrix, PetscReal *linear);

@@ -1,0 +1,265 @@
+#include "solve/system.h"
+
+PetscErrorCode SystemCreate(MPI_Comm comm, PetscInt dim, System **system)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscNew(system));
+  (*system)->comm = comm;
+  (*system)->dim = dim;
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode SystemFreePattern(System *s)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscFree(s->active));
+  PetscCall(PetscFree(s->number));
+  PetscCall(PetscFree(s->row));
+  PetscCall(PetscFree(s->row_start));
+  PetscCall(PetscFree(s->column));
+  PetscCall(PetscFree(s->diagonal));
+  PetscCall(PetscFree(s->values));
+  PetscCall(MatDestroy(&s->matrix));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode SystemDestroy(System **system)
+{
+  PetscFunctionBeginUser;
+  if (!*system) PetscFunctionReturn(0);
+  PetscCall(SystemFreePattern(*system));
+  PetscCall(PetscFree((*system)->slot));
+  PetscCall(PetscFree(*system));
+  PetscFunctionReturn(0);
+}
+
+/* A node carries unknowns if a cell of any rank holds it. */
+static PetscErrorCode SystemNumber(System *s, const Grid *grid, PetscInt n_entries, const PetscInt *node)
+{
+  PetscReal *used;
+  PetscInt first = 0;
+
+  PetscFunctionBeginUser;
+  s->n_nodes = grid->n_nodes;
+  PetscCall(PetscCalloc1(s->n_nodes, &used));
+  for (PetscInt i = 0; i < n_entries; ++i) used[node[i]] = 1;
+  PetscCall(GridSumToOwners(grid, 1, used));
+  s->n_active = 0;
+  for (PetscInt i = 0; i < grid->n_owned; ++i) s->n_active += used[i] > 0;
+  PetscCall(PetscMalloc1(s->n_active, &s->active));
+  PetscCall(PetscMalloc1(s->n_nodes, &s->number));
+  PetscCallMPI(MPI_Exscan(&s->n_active, &first, 1, MPIU_INT, MPI_SUM, s->comm));
+  PetscCall(MPIU_Allreduce(&s->n_active, &s->n_active_global, 1, MPIU_INT, MPI_SUM, s->comm));
+  PetscCall(MPIU_Allreduce(&s->n_active, &s->n_active_least, 1, MPIU_INT, MPI_MIN, s->comm));
+  for (PetscInt i = 0, k = 0; i < grid->n_owned; ++i) {
+    s->number[i] = used[i] > 0 ? first + k : -1;
+    if (used[i] > 0) s->active[k++] = i;
+    used[i] = (PetscReal)s->number[i];
+  }
+  PetscCall(GridToGhosts(grid, 1, used));
+  for (PetscInt i = grid->n_owned; i < s->n_nodes; ++i) s->number[i] = (PetscInt)used[i];
+  PetscCall(PetscFree(used));
+  PetscFunctionReturn(0);
+}
+
+/* Cells around each local row: CSR of cell numbers. */
+static PetscErrorCode RowCells(const System *s, PetscInt n_cells, PetscInt nn, const PetscInt *cell_node,
+                               PetscInt **start, PetscInt **cell)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(s->n_rows + 1, start));
+  PetscCall(PetscMalloc1(n_cells * nn, cell));
+  for (PetscInt i = 0; i < n_cells * nn; ++i) ++(*start)[s->row[cell_node[i]] + 1];
+  for (PetscInt r = 0; r < s->n_rows; ++r) (*start)[r + 1] += (*start)[r];
+  for (PetscInt i = 0; i < n_cells * nn; ++i) (*cell)[(*start)[s->row[cell_node[i]]]++] = i / nn;
+  for (PetscInt r = s->n_rows; r > 0; --r) (*start)[r] = (*start)[r - 1];
+  (*start)[0] = 0;
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode SystemPattern(System *s, PetscInt n_cells, PetscInt nn, const PetscInt *cell_node)
+{
+  PetscInt *start, *cell, *mark, *rows, size = 0;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(s->n_nodes, &s->row));
+  for (PetscInt i = 0; i < s->n_nodes; ++i) s->row[i] = -1;
+  for (PetscInt i = 0; i < n_cells * nn; ++i) s->row[cell_node[i]] = 0;
+  for (PetscInt k = 0; k < s->n_active; ++k) s->row[s->active[k]] = 0; /* owned, even if only others' cells hold it */
+  s->n_rows = 0;
+  for (PetscInt i = 0; i < s->n_nodes; ++i)
+    if (s->row[i] == 0) s->row[i] = s->n_rows++;
+  PetscCall(RowCells(s, n_cells, nn, cell_node, &start, &cell));
+  PetscCall(PetscMalloc1(s->n_rows, &rows));
+  for (PetscInt i = 0; i < s->n_nodes; ++i)
+    if (s->row[i] >= 0) rows[s->row[i]] = i;
+  PetscCall(PetscMalloc1(s->n_nodes, &mark));
+  for (PetscInt i = 0; i < s->n_nodes; ++i) mark[i] = -1;
+  PetscCall(PetscMalloc1(n_cells * nn * nn + s->n_rows, &s->column)); /* an upper bound, trimmed below */
+  PetscCall(PetscMalloc1(s->n_rows + 1, &s->row_start));
+  PetscCall(PetscMalloc1(s->n_rows, &s->diagonal));
+  for (PetscInt r = 0; r < s->n_rows; ++r) {
+    s->row_start[r] = size;
+    mark[rows[r]] = r;
+    s->column[size++] = rows[r];
+    for (PetscInt k = start[r]; k < start[r + 1]; ++k)
+      for (PetscInt J = 0; J < nn; ++J) {
+        const PetscInt node = cell_node[cell[k] * nn + J];
+        if (mark[node] == r) continue;
+        mark[node] = r;
+        s->column[size++] = node;
+      }
+    PetscCall(PetscSortInt(size - s->row_start[r], s->column + s->row_start[r]));
+    for (PetscInt k = s->row_start[r]; k < size; ++k)
+      if (s->column[k] == rows[r]) s->diagonal[r] = k;
+  }
+  s->row_start[s->n_rows] = size;
+  PetscCall(PetscRealloc((size_t)size * sizeof(PetscInt), &s->column));
+  PetscCall(PetscCalloc1(size * s->dim * s->dim, &s->values));
+  PetscCall(PetscFree(start));
+  PetscCall(PetscFree(cell));
+  PetscCall(PetscFree(mark));
+  PetscCall(PetscFree(rows));
+  PetscFunctionReturn(0);
+}
+
+/* One COO entry for each number in `values`: the matrix is filled by one call, ghost rows travel inside it. */
+static PetscErrorCode SystemMatrix(System *s)
+{
+  const PetscInt dim = s->dim, n = s->n_active * dim, pairs = s->row_start[s->n_rows];
+  PetscInt *i, *j, *rows;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc3(pairs * dim * dim, &i, pairs * dim * dim, &j, s->n_rows, &rows));
+  for (PetscInt node = 0; node < s->n_nodes; ++node)
+    if (s->row[node] >= 0) rows[s->row[node]] = node;
+  for (PetscInt r = 0, e = 0; r < s->n_rows; ++r)
+    for (PetscInt k = s->row_start[r]; k < s->row_start[r + 1]; ++k)
+      for (PetscInt a = 0; a < dim; ++a)
+        for (PetscInt b = 0; b < dim; ++b, ++e) {
+          i[e] = s->number[rows[r]] * dim + a;
+          j[e] = s->number[s->column[k]] * dim + b;
+        }
+  PetscCall(MatCreate(s->comm, &s->matrix));
+  PetscCall(MatSetSizes(s->matrix, n, n, PETSC_DETERMINE, PETSC_DETERMINE));
+  PetscCall(MatSetBlockSize(s->matrix, dim));
+  PetscCall(MatSetType(s->matrix, MATAIJ));
+  PetscCall(MatSetPreallocationCOO(s->matrix, pairs * dim * dim, i, j));
+  PetscCall(PetscFree3(i, j, rows));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode SystemBuild(System *s, const Grid *grid, PetscInt n_cells, PetscInt nn, const PetscInt *cell_node)
+{
+  PetscFunctionBeginUser;
+  PetscCall(SystemFreePattern(s));
+  PetscCall(SystemNumber(s, grid, n_cells * nn, cell_node));
+  PetscCall(SystemPattern(s, n_cells, nn, cell_node));
+  PetscCall(SystemMatrix(s));
+  ++s->builds;
+  PetscFunctionReturn(0);
+}
+
+/* Place of the pair (row of node I, node J) in the pattern. Rows are so short that counting the columns before J, without a branch,
+ * is faster than bisection. */
+static inline PetscInt pair_slot(const System *s, PetscInt I, PetscInt J)
+{
+  const PetscInt row = s->row[I], end = s->row_start[row + 1];
+  PetscInt slot = s->row_start[row];
+  for (PetscInt k = slot; k < end; ++k) slot += s->column[k] < J;
+  return slot;
+}
+
+PetscErrorCode SystemSlots(System *s, const Support *support)
+{
+  PetscFunctionBeginUser;
+  PetscInt size = 0, e = 0;
+  for (PetscInt g = 0; g < support->n_groups; ++g) {
+    const PetscInt nn = support->node_start[g + 1] - support->node_start[g];
+    size += nn * nn;
+  }
+  if (size > s->n_slots) {
+    PetscCall(PetscFree(s->slot));
+    s->n_slots = size + size / 4;
+    PetscCall(PetscMalloc1(s->n_slots, &s->slot));
+  }
+  for (PetscInt g = 0; g < support->n_groups; ++g) {
+    const PetscInt nn = support->node_start[g + 1] - support->node_start[g],
+                   *node = support->node + support->node_start[g];
+    for (PetscInt I = 0; I < nn; ++I)
+      for (PetscInt J = 0; J < nn; ++J) s->slot[e++] = pair_slot(s, node[I], node[J]);
+  }
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode SystemZero(System *s)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscArrayzero(s->values, s->row_start[s->n_rows] * s->dim * s->dim));
+  PetscFunctionReturn(0);
+}
+
+/* Rows of prescribed dofs are empty. They get a diagonal of the size of the others', which keeps the matrix's scale. */
+static PetscErrorCode DiagonalScale(const System *s, PetscReal *scale)
+{
+  PetscReal largest = 0;
+
+  PetscFunctionBeginUser;
+  for (PetscInt r = 0; r < s->n_rows; ++r)
+    for (PetscInt a = 0; a < s->dim; ++a)
+      largest = PetscMax(largest, s->values[(s->diagonal[r] * s->dim + a) * s->dim + a]);
+  PetscCall(MPIU_Allreduce(&largest, scale, 1, MPIU_REAL, MPIU_MAX, s->comm));
+  if (*scale == 0) *scale = 1;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode SystemToMatrix(System *s, const unsigned char *fixed)
+{
+  const PetscInt dim = s->dim;
+  PetscReal scale;
+
+  PetscFunctionBeginUser;
+  PetscCall(DiagonalScale(s, &scale));
+  for (PetscInt k = 0; k < s->n_active; ++k) {
+    const PetscInt node = s->active[k], d = s->diagonal[s->row[node]];
+    for (PetscInt a = 0; a < dim; ++a)
+      if (fixed[node * dim + a]) s->values[(d * dim + a) * dim + a] = scale;
+  }
+  PetscCall(MatSetValuesCOO(s->matrix, s->values, INSERT_VALUES));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode SystemCreateVec(const System *s, Vec *x)
+{
+  PetscFunctionBeginUser;
+  PetscCall(MatCreateVecs(s->matrix, x, NULL));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode SystemToNodes(const System *s, const Grid *grid, Vec x, PetscReal *nodes)
+{
+  const PetscInt dim = s->dim;
+  const PetscReal *v;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscArrayzero(nodes, s->n_nodes * dim));
+  PetscCall(VecGetArrayRead(x, &v));
+  for (PetscInt k = 0; k < s->n_active; ++k)
+    for (PetscInt a = 0; a < dim; ++a) nodes[s->active[k] * dim + a] = v[k * dim + a];
+  PetscCall(VecRestoreArrayRead(x, &v));
+  PetscCall(GridToGhosts(grid, dim, nodes));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode SystemFromNodes(const System *s, const PetscReal *nodes, Vec x)
+{
+  const PetscInt dim = s->dim;
+  PetscReal *v;
+
+  PetscFunctionBeginUser;
+  PetscCall(VecGetArrayWrite(x, &v));
+  for (PetscInt k = 0; k < s->n_active; ++k)
+    for (PetscInt a = 0; a < dim; ++a) v[k * dim + a] = nodes[s->active[k] * dim + a];
+  PetscCall(VecRestoreArrayWrite(x, &v));
+  PetscFunctionReturn(0);
+}

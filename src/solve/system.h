@@ -1,0 +1,41 @@
+/* The linear system of a step: which nodes carry unknowns, the sparse pattern, and group -> matrix slots.
+ *
+ * Unknowns sit on the nodes of the cells handed to SystemBuild; those that no material touches get nothing but a diagonal, so that the pattern (and the symbolic factorisation) may be padded and kept over many steps. */
+#pragma once
+#include <petscksp.h>
+#include "points/support.h"
+
+typedef struct System {
+  MPI_Comm comm;
+  PetscInt dim, n_nodes;                    /* local nodes of the grid or cloud */
+  PetscInt n_active;                        /* owned nodes that carry unknowns */
+  PetscInt n_active_global, n_active_least; /* over all ranks: sum and smallest */
+  PetscInt *active;                         /* n_active local nodes, ascending */
+  PetscInt *number;                         /* n_nodes: global number of the node's unknowns, -1 if none */
+  PetscInt n_rows;                          /* local nodes with unknowns, ghosts too: rows of the local pattern */
+  PetscInt *row;                            /* n_nodes: row of the local pattern, -1 if none */
+  PetscInt *row_start, *column;             /* pattern of node pairs: n_rows + 1, and local nodes, ascending in a row */
+  PetscInt *diagonal;                       /* n_rows: place of the diagonal pair */
+  PetscReal *values;                        /* dim x dim block of pair k at k * dim * dim */
+  PetscInt n_slots, *slot;                  /* SystemSlots: nn x nn pairs of each group */
+  Mat matrix;
+  PetscInt builds; /* how often the pattern was made */
+} System;
+
+PetscErrorCode SystemCreate(MPI_Comm comm, PetscInt dim, System **system);
+PetscErrorCode SystemDestroy(System **system);
+
+/* Collective. Unknowns on the nodes of the cells (n_cells x nn local nodes), coupled cell by cell. */
+PetscErrorCode SystemBuild(System *system, const Grid *grid, PetscInt n_cells, PetscInt nn, const PetscInt *cell_node);
+/* Look up the slots of every group of the support; all its nodes must carry unknowns. */
+PetscErrorCode SystemSlots(System *system, const Support *support);
+PetscErrorCode SystemZero(System *system);
+
+/* Collective. Diagonal entries for the dofs in fixed (prescribed, or on a node that no material touches), then
+ * values -> matrix. */
+PetscErrorCode SystemToMatrix(System *system, const unsigned char *fixed);
+
+/* Vec of unknowns <-> local array n_nodes x dim. ToNodes zeroes nodes without unknowns and fills ghosts; FromNodes takes owners. */
+PetscErrorCode SystemToNodes(const System *system, const Grid *grid, Vec x, PetscReal *nodes);
+PetscErrorCode SystemFromNodes(const System *system, const PetscReal *nodes, Vec x);
+PetscErrorCode SystemCreateVec(const System *system, Vec *x);
