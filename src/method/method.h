@@ -1,0 +1,52 @@
+/* A method: how nodes get their kinematics before the solve (phase a), and how the solution moves nodes and points (phase c).
+ * Phase b, the solve itself, is shared by all. To add one: a new file, and a line in methods.inc. */
+#pragma once
+#include "boundary/boundary.h"
+#include "boundary/loads.h"
+#include "material/law.h"
+#include "points/support.h"
+#include "solve/newmark.h"
+
+/* What a method works on. Nodal arrays go over the local nodes of the grid. */
+typedef struct Stage {
+  const Case *c;
+  Grid *grid;
+  Points *points, *tracers;
+  Loads *loads;
+  const Material *materials;
+  PetscBool started; /* has initialise run before? */
+  Support *support;
+  unsigned char *filled;  /* n_cells: does the cell hold points? */
+  unsigned char *touched; /* n_nodes: does material reach the node? on every rank that knows it */
+  PetscReal *mass;        /* n_nodes, kg */
+  PetscReal *v, *a;       /* n_nodes x dim at t_n: what the solve starts from, m/s, m/s2 */
+  PetscReal *v_points;    /* n_nodes x dim: v as the points gave it, before prescribed motion replaced it */
+  PetscReal *v1, *a1;     /* n_nodes x dim at t_(n+1), of an accepted step */
+  PetscInt group_capacity;
+  PetscReal *lumping, *soft; /* per group, see WeakFormInput */
+  PetscInt n_lost;           /* points that left the grid in the last convection, all ranks */
+  LostPoint *lost;           /* at most 16 of them */
+} Stage;
+
+typedef struct Method {
+  const char *name, *help;
+  PetscBool points_move; /* do points cross cells? */
+  /* Phase a, collective: sorted points, support, touched, mass, v, a. Called once before every step (and before output of nodal
+   * fields); leaves points alone otherwise. */
+  PetscErrorCode (*initialise)(Stage *stage);
+  /* Phase c, collective: the step is accepted, v1 and a1 are known, du holds the increments. State and F are committed already. */
+  PetscErrorCode (*convect)(Stage *stage, const PetscReal *du);
+} Method;
+
+extern const Method *const methods[]; /* ended by NULL */
+const Method *MethodFind(const char *name);
+
+PetscErrorCode StageCreate(const Case *c, Grid *grid, Points *points, Points *tracers, Loads *loads,
+                           const Material *materials, Stage **stage);
+PetscErrorCode StageDestroy(Stage **stage);
+
+/* Steps that methods share. */
+PetscErrorCode StageTouch(Stage *stage);     /* filled and touched from the support */
+PetscErrorCode StageNodalMass(Stage *stage); /* m_I = sum N m_p, on all copies */
+PetscErrorCode StageMoveCarried(Stage *stage, Points *carried,
+                                const PetscReal *du); /* tracers and carriers follow the field */

@@ -1,0 +1,160 @@
+/* Implicit material point method (thesis algorithm 1): a fixed grid, restored after every step. */
+#include "method/method.h"
+
+#define UNROLLED static inline __attribute__((always_inline))
+
+/* A loop over points, with dimension and nodes of a cell known to the compiler where that pays most. */
+#define WITH_SIZES(loop, dim, nn, ...)                         \
+  do {                                                         \
+    if ((dim) == 2 && (nn) == 4) loop(2, 4, __VA_ARGS__);      \
+    else if ((dim) == 3 && (nn) == 8) loop(3, 8, __VA_ARGS__); \
+    else loop(dim, nn, __VA_ARGS__);                           \
+  } while (0)
+
+UNROLLED void gather_motion(const PetscInt dim, const PetscInt nn, Stage *s)
+{
+  const Support *w = s->support;
+  for (PetscInt g = 0; g < w->n_groups; ++g) {
+    const PetscInt *node = w->node + g * nn;
+    PetscReal momentum[3 * CELL_MAX_NODES] = {0}, force[3 * CELL_MAX_NODES] = {0};
+    for (PetscInt p = w->point_start[g]; p < w->point_start[g + 1]; ++p) {
+      const PetscReal *v = point_real(s->points, POINT_V, p), *a = point_real(s->points, POINT_A, p);
+      for (PetscInt I = 0; I < nn; ++I) {
+        const PetscReal m = w->N[p * nn + I] * s->points->real[POINT_MASS][p];
+        for (PetscInt d = 0; d < dim; ++d) {
+          momentum[I * dim + d] += m * v[d];
+          force[I * dim + d] += m * a[d];
+        }
+      }
+    }
+    for (PetscInt I = 0; I < nn; ++I)
+      for (PetscInt d = 0; d < dim; ++d) {
+        s->v[node[I] * dim + d] += momentum[I * dim + d];
+        s->a[node[I] * dim + d] += force[I * dim + d];
+      }
+  }
+}
+
+/* q_I = sum N m v, f_I = sum N m a (eqs. 2.6-2.9). A node so far from all points that its mass vanishes starts at rest: its
+ * velocity counts for nothing. */
+static PetscErrorCode Project(Stage *s)
+{
+  const Grid *grid = s->grid;
+  const PetscInt dim = grid->dim, dofs = grid->n_nodes * dim;
+
+  PetscFunctionBeginUser;
+  PetscCall(StageNodalMass(s));
+  PetscCall(PetscArrayzero(s->v, dofs));
+  PetscCall(PetscArrayzero(s->a, dofs));
+  WITH_SIZES(gather_motion, dim, s->support->uniform, s);
+  PetscCall(GridSumToOwners(grid, dim, s->v));
+  PetscCall(GridSumToOwners(grid, dim, s->a));
+  for (PetscInt node = 0; node < grid->n_owned; ++node) {
+    if (s->mass[node] == 0) continue;
+    const PetscReal inverse = s->mass[node] > 1e-300 ? 1 / s->mass[node] : 0;
+    for (PetscInt i = node * dim; i < (node + 1) * dim; ++i) {
+      s->v[i] *= inverse;
+      s->a[i] *= inverse;
+    }
+  }
+  PetscCall(GridToGhosts(grid, dim, s->v));
+  PetscCall(GridToGhosts(grid, dim, s->a));
+  PetscCall(PetscArraycpy(s->v_points, s->v, dofs));
+  PetscFunctionReturn(0);
+}
+
+/* A cell that its points fill only partly leaves motions of its nodes without stiffness and mass. In the measure in which it is not
+ * full, part of its mass is lumped and its nodes are tied by a weak stiffness (docs/theory.md, "Cells that are not full"). */
+static PetscErrorCode Stabilise(Stage *s)
+{
+  const Support *w = s->support;
+  const PetscInt dim = s->grid->dim;
+  PetscReal x[3 * CELL_MAX_NODES];
+
+  PetscFunctionBeginUser;
+  if (w->n_groups > s->group_capacity) {
+    PetscCall(PetscFree(s->lumping));
+    PetscCall(PetscFree(s->soft));
+    s->group_capacity = w->n_groups + w->n_groups / 4;
+    PetscCall(PetscMalloc1(s->group_capacity, &s->lumping));
+    PetscCall(PetscMalloc1(s->group_capacity, &s->soft));
+  }
+  for (PetscInt g = 0; g < w->n_groups; ++g) {
+    PetscReal filled = 0, modulus = 0;
+    for (PetscInt p = w->point_start[g]; p < w->point_start[g + 1]; ++p) {
+      filled += PetscMin(1, s->points->real[POINT_J][p]) * s->points->real[POINT_VOLUME][p];
+      modulus = PetscMax(modulus, s->materials[s->points->material[p]].wave_modulus);
+    }
+    grid_cell_x(s->grid, s->points->cell[w->point_start[g]], x);
+    const PetscReal volume = cell_volume(s->grid->type, x), lack = PetscMax(0, 1 - filled / volume);
+    const PetscReal size = lack > 0 ? PetscPowReal(volume, 1.0 / (PetscReal)dim) : 1;
+    s->lumping[g] = s->c->stabilisation.mass * lack;
+    s->soft[g] = s->c->stabilisation.stiffness * lack * modulus * volume / (size * size);
+  }
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode MpmInitialise(Stage *s)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PointsSort(s->points));
+  PetscCall(SupportFromCells(s->support, s->points, s->grid));
+  PetscCall(StageTouch(s));
+  PetscCall(Project(s));
+  PetscCall(Stabilise(s));
+  PetscFunctionReturn(0);
+}
+
+/* Points take the change of the nodes' velocity, measured from what the points had given them: where the boundary stops a node, it stops
+ * its points too (eq. 2.16 as printed would let them keep their velocity for ever; docs/theory.md). */
+UNROLLED void move_points(const PetscInt dim, const PetscInt nn, Stage *s, const PetscReal *du)
+{
+  const Support *w = s->support;
+  for (PetscInt g = 0; g < w->n_groups; ++g) {
+    const PetscInt *node = w->node + g * nn;
+    for (PetscInt p = w->point_start[g]; p < w->point_start[g + 1]; ++p) {
+      const PetscReal *N = w->N + p * nn;
+      PetscReal *x = point_real(s->points, POINT_X, p), *u = point_real(s->points, POINT_U, p);
+      PetscReal *v = point_real(s->points, POINT_V, p), *a = point_real(s->points, POINT_A, p);
+      for (PetscInt d = 0; d < dim; ++d) {
+        PetscReal move = 0, gain = 0, acceleration = 0;
+        for (PetscInt I = 0; I < nn; ++I) {
+          const PetscInt i = node[I] * dim + d;
+          move += N[I] * du[i];
+          gain += N[I] * (s->v1[i] - s->v_points[i]);
+          acceleration += N[I] * s->a1[i];
+        }
+        x[d] += move;
+        u[d] += move;
+        v[d] += gain;
+        a[d] = acceleration;
+      }
+    }
+  }
+}
+
+static PetscErrorCode MpmConvect(Stage *s, const PetscReal *du)
+{
+  LostPoint *ignored;
+  PetscInt n_ignored;
+
+  PetscFunctionBeginUser;
+  WITH_SIZES(move_points, s->grid->dim, s->support->uniform, s, du);
+  PetscCall(StageMoveCarried(s, s->tracers, du));
+  PetscCall(StageMoveCarried(s, s->loads->carriers, du));
+  PetscCall(PetscFree(s->lost));
+  PetscCall(PointsRelocate(s->points, s->grid, s->c->grid.outside, &s->n_lost, &s->lost));
+  PetscCall(PointsRelocate(s->tracers, s->grid, OUTSIDE_KEEP, &n_ignored, &ignored));
+  PetscCall(PetscFree(ignored));
+  PetscCall(PointsRelocate(s->loads->carriers, s->grid, OUTSIDE_KEEP, &n_ignored, &ignored));
+  PetscCall(PetscFree(ignored));
+  PetscFunctionReturn(0);
+}
+
+const Method method_mpm = {
+  .name = "mpm",
+  .help = "material point method: points move through a grid that is restored every step",
+  .points_move = PETSC_TRUE,
+  .initialise = MpmInitialise,
+  .convect = MpmConvect,
+};
