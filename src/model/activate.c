@@ -1,0 +1,102 @@
+/* Which cells' nodes carry unknowns: those that hold material, and rings around them that let the pattern live for a while. */
+#include "model/model_private.h"
+
+static void flag_occupied(const Model *m, unsigned char *cell)
+{
+  const Support *w = m->stage->support;
+  for (PetscInt c = 0; c < m->grid->n_cells; ++c) cell[c] = 0;
+  for (PetscInt g = 0; g < w->n_groups; ++g) cell[m->points->cell[w->point_start[g]]] = 1;
+}
+
+/* Add all cells that share a node with a flagged one, on any rank. */
+static PetscErrorCode AddRing(const Model *m, unsigned char *cell)
+{
+  const Grid *grid = m->grid;
+  const PetscInt nn = grid->nodes_per_cell;
+  PetscReal *near;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(grid->n_nodes, &near));
+  for (PetscInt i = 0; i < grid->n_cells * nn; ++i)
+    if (cell[i / nn]) near[grid->cell_node[i]] = 1;
+  PetscCall(GridSumToOwners(grid, 1, near));
+  PetscCall(GridToGhosts(grid, 1, near));
+  for (PetscInt i = 0; i < grid->n_cells * nn; ++i)
+    if (near[grid->cell_node[i]] > 0) cell[i / nn] = 1;
+  PetscCall(PetscFree(near));
+  PetscFunctionReturn(0);
+}
+
+/* The system still fits if every occupied cell is enabled, and not too many enabled cells are empty. */
+static PetscErrorCode StillFits(const Model *m, const unsigned char *occupied, PetscBool *fits)
+{
+  PetscInt local[3] = {0, 0, 0}, all[3];
+
+  PetscFunctionBeginUser;
+  for (PetscInt c = 0; c < m->grid->n_cells; ++c) {
+    local[0] += occupied[c] && !m->enabled[c];
+    local[1] += occupied[c];
+    local[2] += m->enabled[c];
+  }
+  PetscCall(MPIU_Allreduce(local, all, 3, MPIU_INT, MPI_SUM, m->comm));
+  *fits = m->system->matrix && !all[0] && all[2] <= 3 * all[1] + 200 ? PETSC_TRUE : PETSC_FALSE;
+  PetscFunctionReturn(0);
+}
+
+/* Rings of empty cells cost less than the patterns that they save while they add a tenth of the cells at most; the first one is always
+ * there, since without it a moving body would need a new pattern at every step. */
+static PetscErrorCode AddRings(const Model *m, const unsigned char *occupied, unsigned char *cell)
+{
+  PetscInt local[2], all[2];
+
+  PetscFunctionBeginUser;
+  for (PetscInt k = 0; k < 8; ++k) {
+    PetscCall(AddRing(m, cell));
+    local[0] = local[1] = 0;
+    for (PetscInt c = 0; c < m->grid->n_cells; ++c) {
+      local[0] += occupied[c];
+      local[1] += cell[c];
+    }
+    PetscCall(MPIU_Allreduce(local, all, 2, MPIU_INT, MPI_SUM, m->comm));
+    const PetscInt per_ring = (all[1] - all[0]) / (k + 1);
+    if (10 * (all[1] + per_ring) > 11 * all[0]) break;
+  }
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode Enable(Model *m)
+{
+  const PetscInt nn = m->grid->nodes_per_cell;
+  PetscInt n = 0, *node;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(m->grid->n_cells * nn, &node));
+  for (PetscInt c = 0; c < m->grid->n_cells; ++c)
+    if (m->enabled[c]) {
+      PetscCall(PetscArraycpy(node + n * nn, m->grid->cell_node + c * nn, nn));
+      ++n;
+    }
+  PetscCall(SystemBuild(m->system, m->grid, n, nn, node));
+  PetscCall(PetscFree(node));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ModelActivate(Model *m)
+{
+  const AnalysisSpec *analysis = &m->c->analysis;
+  unsigned char *occupied;
+  PetscBool fits;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(m->grid->n_cells, &occupied));
+  flag_occupied(m, occupied);
+  PetscCall(StillFits(m, occupied, &fits));
+  if (!fits) {
+    PetscCall(PetscArraycpy(m->enabled, occupied, m->grid->n_cells));
+    if (m->method->points_move && analysis->step < analysis->end) PetscCall(AddRings(m, occupied, m->enabled));
+    PetscCall(Enable(m));
+  }
+  PetscCall(PetscFree(occupied));
+  PetscCall(SystemSlots(m->system, m->stage->support));
+  PetscFunctionReturn(0);
+}

@@ -1,0 +1,184 @@
+/* Where the energy goes: work put in, stress work, damping, and what is lost between points and grid (docs/theory.md, "Energy").
+ *
+ * All work is taken by the trapezoidal rule between the step's start and end. */
+#include "model/model_private.h"
+
+/* Dimension and nodes of a cell are constants at each call below, so that the inner loops unroll. */
+#define UNROLLED static inline __attribute__((always_inline))
+UNROLLED PetscReal product_sized(const PetscInt dim, const PetscInt nn, const Model *m, const PetscReal *u,
+                                 const PetscReal *w)
+{
+  const Support *support = m->stage->support;
+  PetscReal sum = 0;
+  for (PetscInt g = 0; g < support->n_groups; ++g) {
+    const PetscInt *node = support->node + g * nn;
+    const PetscReal lumped = m->stage->lumping ? m->stage->lumping[g] : 0;
+    PetscReal at_node[CELL_MAX_NODES];
+    for (PetscInt I = 0; I < nn; ++I) {
+      at_node[I] = 0;
+      for (PetscInt d = 0; d < dim; ++d) at_node[I] += u[node[I] * dim + d] * w[node[I] * dim + d];
+    }
+    for (PetscInt p = support->point_start[g]; p < support->point_start[g + 1]; ++p) {
+      const PetscReal *N = support->N + p * nn;
+      PetscReal uh[3] = {0, 0, 0}, wh[3] = {0, 0, 0}, nodes = 0;
+      for (PetscInt I = 0; I < nn; ++I) {
+        nodes += N[I] * at_node[I];
+        for (PetscInt d = 0; d < dim; ++d) {
+          uh[d] += N[I] * u[node[I] * dim + d];
+          wh[d] += N[I] * w[node[I] * dim + d];
+        }
+      }
+      sum += m->points->real[POINT_MASS][p] *
+             ((1 - lumped) * (uh[0] * wh[0] + uh[1] * wh[1] + uh[2] * wh[2]) + lumped * nodes);
+    }
+  }
+  return sum;
+}
+
+/* The sum u M w over this rank's points, with the mass matrix of the step: part of a cell's mass may be lumped. */
+static PetscReal mass_product(const Model *m, const PetscReal *u, const PetscReal *w)
+{
+  const PetscInt dim = m->dim, nn = m->stage->support->uniform;
+  if (dim == 2 && nn == 4) return product_sized(2, 4, m, u, w);
+  if (dim == 3 && nn == 8) return product_sized(3, 8, m, u, w);
+  return product_sized(dim, nn, m, u, w);
+}
+
+static PetscReal points_kinetic(const Model *m)
+{
+  PetscReal sum = 0;
+  for (PetscInt p = 0; p < m->points->n; ++p) {
+    const PetscReal *v = point_real(m->points, POINT_V, p);
+    for (PetscInt d = 0; d < m->dim; ++d) sum += 0.5 * m->points->real[POINT_MASS][p] * v[d] * v[d];
+  }
+  return sum;
+}
+
+static PetscReal points_work(const Model *m)
+{
+  PetscReal sum = 0;
+  for (PetscInt p = 0; p < m->points->n; ++p) sum += m->points->real[POINT_WORK][p];
+  return sum;
+}
+
+PetscErrorCode EnergyStart(Model *m)
+{
+  static const PetscReal identity[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
+  PetscReal state[LAW_MAX_STATE], tau[6], local;
+
+  PetscFunctionBeginUser;
+  for (PetscInt p = 0; p < m->points->n; ++p) {
+    const Material *material = &m->materials[m->points->material[p]];
+    const PetscReal *old = point_real(m->points, POINT_STATE, p);
+    material->law->update(material->parameters, 1, identity, old, state, tau, NULL);
+    point_set_tau(m->points, p, tau);
+    m->points->real[POINT_WORK][p] =
+      m->points->real[POINT_VOLUME][p] * material->law->energy(material->parameters, old);
+  }
+  local = points_kinetic(m) + points_work(m);
+  PetscCall(MPIU_Allreduce(&local, &m->start_energy, 1, MPIU_REAL, MPI_SUM, m->comm));
+  PetscFunctionReturn(0);
+}
+
+/* Dead forces at the nodes at the step's start: the same places, another time. */
+static PetscErrorCode ForcesBefore(const Model *m, PetscReal **force)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(m->grid->n_nodes * m->dim, force));
+  if (m->c->n_loads) PetscCall(LoadsAdd(m->loads, m->grid, m->time, m->stage->filled, m->stage->touched, *force));
+  PetscCall(AddBodyForce(m, m->time, *force));
+  PetscFunctionReturn(0);
+}
+
+/* What stops points where they meet prescribed nodes acts within no time: its work is the impulse times the velocity of the boundary. */
+static PetscReal impulse_work(const Model *m, PetscInt i, PetscReal dt)
+{
+  const Stage *s = m->stage;
+  if (m->c->analysis.type != ANALYSIS_DYNAMIC) return 0;
+  return s->mass[i / m->dim] * (s->v[i] - s->v_points[i]) * m->du[i] / dt;
+}
+
+/* Work of inertia, with Newmark's effective acceleration at both ends. */
+static PetscReal inertia_work(const Model *m)
+{
+  const Stage *s = m->stage;
+  const PetscReal alpha = m->c->analysis.bossak;
+  return 0.5 * ((1 + alpha) * mass_product(m, m->du, s->a) + (1 - alpha) * mass_product(m, m->du, s->a1));
+}
+
+/* Nodes that gather their motion from points start neither with the energy of the points nor with the acceleration that balances the
+ * forces there. What the first takes is a difference of kinetic energies; the second adds or takes the work of the forces out of balance,
+ * which is what the work of all forces leaves over. `held`: work of the boundary without impulses. */
+static PetscReal transfer_of_nodes(const Model *m, const EnergyStep *e, PetscReal held)
+{
+  const Stage *s = m->stage;
+  PetscReal sum = 0;
+  if (m->c->analysis.type == ANALYSIS_DYNAMIC)
+    sum = points_kinetic(m) + 0.5 * (mass_product(m, s->v1, s->v1) - mass_product(m, s->v, s->v));
+  if (!m->method->points_move) return sum;
+  if (m->c->analysis.type == ANALYSIS_DYNAMIC) sum -= inertia_work(m);
+  return sum + e->external + held - e->damped + points_work(m);
+}
+
+PetscErrorCode EnergyOfNodes(Model *m, PetscReal dt, EnergyStep *e)
+{
+  const PetscReal damping = m->c->analysis.type == ANALYSIS_DYNAMIC ? m->c->analysis.damping : 0;
+  const Stage *s = m->stage;
+  PetscReal g0[3], g1[3], *before, held = 0, impulse = 0;
+
+  PetscFunctionBeginUser;
+  *e = (EnergyStep){0};
+  PetscCall(ForcesBefore(m, &before));
+  gravity_at(m->c, m->time, g0);
+  gravity_at(m->c, m->time + dt, g1);
+  for (PetscInt i = 0; i < m->grid->n_owned * m->dim; ++i) {
+    const PetscInt d = i % m->dim;
+    e->external += 0.5 * (s->mass[i / m->dim] * (g0[d] + g1[d]) + before[i] + m->external[i]) * m->du[i];
+    if (!m->boundary->fixed[i]) continue;
+    held += 0.5 * (m->held[i] + m->force[i]) * m->du[i];
+    impulse += impulse_work(m, i, dt);
+  }
+  PetscCall(PetscFree(before));
+  if (damping > 0) e->damped = 0.5 * damping * (mass_product(m, m->du, s->v) + mass_product(m, m->du, s->v1));
+  e->boundary = held + impulse;
+  e->transfer = impulse + transfer_of_nodes(m, e, held);
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode EnergyClose(Model *m, EnergyStep *e)
+{
+  PetscReal local[4], sum[4];
+
+  PetscFunctionBeginUser;
+  if (m->c->analysis.type == ANALYSIS_DYNAMIC) e->transfer -= points_kinetic(m);
+  if (m->method->points_move) e->transfer -= points_work(m); /* the step's work; and that of points that are gone */
+  local[0] = e->external, local[1] = e->boundary, local[2] = e->damped, local[3] = e->transfer;
+  PetscCall(MPIU_Allreduce(local, sum, 4, MPIU_REAL, MPI_SUM, m->comm));
+  m->external_work += sum[0];
+  m->boundary_work += sum[1];
+  m->damped_energy += sum[2];
+  m->transfer_energy += sum[3];
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ModelEnergies(Model *m, Energies *e)
+{
+  PetscReal local[3] = {points_kinetic(m), 0, points_work(m)}, sum[3];
+
+  PetscFunctionBeginUser;
+  for (PetscInt p = 0; p < m->points->n; ++p) {
+    const Material *material = &m->materials[m->points->material[p]];
+    local[1] += m->points->real[POINT_VOLUME][p] *
+                material->law->energy(material->parameters, point_real(m->points, POINT_STATE, p));
+  }
+  PetscCall(MPIU_Allreduce(local, sum, 3, MPIU_REAL, MPI_SUM, m->comm));
+  *e = (Energies){.kinetic = sum[0],
+                  .elastic = sum[1],
+                  .dissipated = sum[2] - sum[1],
+                  .external = m->external_work,
+                  .boundary = m->boundary_work,
+                  .damped = m->damped_energy,
+                  .transfer = m->transfer_energy,
+                  .start = m->start_energy};
+  PetscFunctionReturn(0);
+}

@@ -1,0 +1,199 @@
+#include "model/model.h"
+#include "model/model_private.h"
+
+/* Points that a cell with this centre will carry: balances the partition. */
+static PetscReal cell_weight(void *context, const PetscReal *centre)
+{
+  const Case *c = context;
+  const PetscInt dim = kinematics_dim(c->kinematics);
+  for (PetscInt b = 0; b < c->n_bodies; ++b)
+    if (c->bodies[b].has_shape && shape_contains(&c->bodies[b].shape, dim, centre, 0))
+      return (PetscReal)c->bodies[b].points_per_cell;
+  return 0;
+}
+
+static void check_supported(const Case *c, Diag *diag)
+{
+  if (c->kinematics == KINEMATICS_AXISYMMETRIC)
+    DiagError(diag, "kinematics", "axisymmetric kinematics are not part of this version; plane-strain and 3d are");
+  if (!MethodFind(c->method))
+    DiagError(diag, "method", "method '%s' is not part of this version; mpm and fem are", c->method);
+  if (strcmp(c->formulation, "displacement"))
+    DiagError(diag, "formulation", "formulation '%s' is not part of this version; displacement is", c->formulation);
+  for (PetscInt b = 0; b < c->n_bodies; ++b) {
+    char path[64];
+    PetscSNPrintf(path, sizeof path, "bodies[%d].mesh", (int)b);
+    if (c->bodies[b].mesh && !strcmp(c->method, "fem"))
+      DiagError(diag, path, "a body with a mesh of its own needs method mpm; for fem give that mesh as grid.mesh");
+  }
+}
+
+static PetscErrorCode CreateMaterials(Model *m, Diag *diag)
+{
+  const Case *c = m->c;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(c->n_materials, &m->materials));
+  m->symmetric = PETSC_TRUE;
+  for (PetscInt i = 0; i < c->n_materials; ++i) {
+    Material *material = &m->materials[i];
+    PetscCall(MaterialResolve(c, i, diag, material));
+    if (!material->law) continue;
+    m->n_state = PetscMax(m->n_state, material->law->n_state);
+    if (!material->law->symmetric) m->symmetric = PETSC_FALSE;
+    m->courant_speed = PetscMax(m->courant_speed, PetscSqrtReal(material->wave_modulus / material->density));
+  }
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode CreatePoints(Model *m, Diag *diag)
+{
+  const Case *c = m->c;
+  PointSeed *seed;
+  PetscReal *initial;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc2(c->n_materials, &seed, c->n_materials * LAW_MAX_STATE, &initial));
+  for (PetscInt i = 0; i < c->n_materials; ++i) {
+    seed[i] = (PointSeed){.density = m->materials[i].density,
+                          .n_state = m->materials[i].law->n_state,
+                          .initial = initial + i * LAW_MAX_STATE};
+    law_initial_state(m->materials[i].law, initial + i * LAW_MAX_STATE);
+  }
+  PetscCall(PointsCreate(m->dim, m->n_state, 0, &m->points));
+  PetscCall(PointsSeed(m->points, m->grid, c, seed, diag));
+  PetscCall(PetscFree2(seed, initial));
+  PetscFunctionReturn(0);
+}
+
+static PetscBool is_of_tracer(const MeasureSpec *s)
+{
+  return s->kind == MEASURE_DISPLACEMENT || s->kind == MEASURE_POSITION || s->kind == MEASURE_VELOCITY ? PETSC_TRUE
+                                                                                                       : PETSC_FALSE;
+}
+
+/* One tracer per measure that follows one; the lowest rank whose cells hold it keeps it. */
+static PetscErrorCode CreateTracers(Model *m, Diag *diag)
+{
+  PetscMPIInt rank, size, mine, first;
+  PetscReal xi[3];
+  char path[256];
+  PetscInt i;
+
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_rank(m->comm, &rank));
+  PetscCallMPI(MPI_Comm_size(m->comm, &size));
+  PetscCall(PointsCreate(m->dim, 0, 0, &m->tracers));
+  for (PetscInt k = 0; k < m->c->n_measures; ++k) {
+    const MeasureSpec *s = &m->c->measures[k];
+    if (!is_of_tracer(s)) continue;
+    const PetscInt cell = GridLocate(m->grid, s->tracer, -1, xi);
+    mine = cell >= 0 ? rank : size;
+    PetscCallMPI(MPI_Allreduce(&mine, &first, 1, MPI_INT, MPI_MIN, m->comm));
+    if (first == size) {
+      PetscCall(PetscSNPrintf(path, sizeof path, "measures.%s.of.tracer", s->name));
+      DiagError(diag, path, "the tracer starts outside the grid");
+    }
+    if (first != rank) continue;
+    PetscCall(PointsAppend(m->tracers, &i));
+    m->tracers->cell[i] = cell;
+    m->tracers->id[i] = k;
+    m->tracers->body[i] = k;
+    for (PetscInt d = 0; d < m->dim; ++d) {
+      point_real(m->tracers, POINT_X, i)[d] = s->tracer[d];
+      point_real(m->tracers, POINT_XI, i)[d] = xi[d];
+    }
+  }
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode CreateFields(Model *m)
+{
+  const PetscInt dofs = m->grid->n_nodes * m->dim;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(m->grid->n_cells, &m->enabled));
+  PetscCall(PetscCalloc1(dofs, &m->fixed));
+  PetscCall(PetscCalloc7(dofs, &m->du, dofs, &m->force, dofs, &m->external, dofs, &m->history, dofs, &m->prescribed,
+                         dofs, &m->reaction, dofs, &m->held));
+  PetscFunctionReturn(0);
+}
+
+/* Everything after the parts that stand alone; each may find mistakes that make the next meaningless. */
+static PetscErrorCode Build(Model *m, Diag *diag)
+{
+  PetscInt errors;
+
+  PetscFunctionBeginUser;
+  check_supported(m->c, diag);
+  PetscCall(CreateMaterials(m, diag));
+  PetscCall(DiagReduce(m->comm, diag, &errors));
+  if (errors) PetscFunctionReturn(0);
+  m->method = MethodFind(m->c->method);
+  m->formulation = &formulation_displacement;
+  PetscCall(GridCreate(m->comm, m->c, cell_weight, (void *)m->c, diag, &m->grid));
+  if (!m->grid) PetscFunctionReturn(0);
+  PetscCall(CreatePoints(m, diag));
+  PetscCall(DiagReduce(m->comm, diag, &errors));
+  if (errors) PetscFunctionReturn(0);
+  PetscCall(InitialStress(m, diag));
+  PetscCall(BoundaryCreate(m->grid, m->c, diag, &m->boundary));
+  PetscCall(LoadsCreate(m->grid, m->c, m->points, diag, &m->loads));
+  PetscCall(CreateTracers(m, diag));
+  PetscCall(DiagReduce(m->comm, diag, &errors));
+  if (errors) PetscFunctionReturn(0);
+  PetscCall(CreateFields(m));
+  PetscCall(StageCreate(m->c, m->grid, m->points, m->tracers, m->loads, m->materials, &m->stage));
+  PetscCall(SystemCreate(m->comm, m->dim, &m->system));
+  PetscCall(NewtonCreate(m->comm, &m->c->newton, &m->newton));
+  m->dt = m->c->analysis.step;
+  PetscCall(m->method->initialise(m->stage));
+  if (m->c->analysis.type == ANALYSIS_DYNAMIC) PetscCall(InitialAcceleration(m));
+  PetscCall(EnergyStart(m));
+  PetscCall(MeasuresStart(m));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ModelCreate(MPI_Comm comm, const Case *c, Diag *diag, Model **model)
+{
+  Model *m;
+  PetscInt errors;
+
+  PetscFunctionBeginUser;
+  *model = NULL;
+  PetscCall(PetscNew(&m));
+  m->comm = comm;
+  m->c = c;
+  m->dim = kinematics_dim(c->kinematics);
+  PetscCall(OptionsApply(m));
+  PetscCall(OptionsCheck(m, diag));
+  PetscCall(Build(m, diag));
+  PetscCall(DiagReduce(comm, diag, &errors));
+  if (errors || !m->stage) PetscCall(ModelDestroy(&m));
+  *model = m;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ModelDestroy(Model **model)
+{
+  Model *m = *model;
+
+  PetscFunctionBeginUser;
+  if (!m) PetscFunctionReturn(0);
+  PetscCall(OptionsForget(m));
+  PetscCall(NewtonDestroy(&m->newton));
+  PetscCall(SystemDestroy(&m->system));
+  PetscCall(StageDestroy(&m->stage));
+  if (m->loads) PetscCall(LoadsDestroy(&m->loads));
+  if (m->boundary) PetscCall(BoundaryDestroy(&m->boundary));
+  if (m->tracers) PetscCall(PointsDestroy(&m->tracers));
+  if (m->points) PetscCall(PointsDestroy(&m->points));
+  if (m->grid) PetscCall(GridDestroy(&m->grid));
+  PetscCall(PetscFree(m->materials));
+  PetscCall(PetscFree(m->enabled));
+  PetscCall(PetscFree(m->fixed));
+  PetscCall(PetscFree7(m->du, m->force, m->external, m->history, m->prescribed, m->reaction, m->held));
+  PetscCall(PetscFree(m->memory));
+  PetscCall(PetscFree(*model));
+  PetscFunctionReturn(0);
+}

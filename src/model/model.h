@@ -1,0 +1,93 @@
+/* The model: everything that a case becomes, and the step that advances it.
+ *
+ * A step that fails leaves the model as it was: state is committed only on acceptance. */
+#pragma once
+#include "base/phase.h"
+#include "method/method.h"
+#include "solve/newton.h"
+
+typedef struct {
+  PetscReal kinetic, elastic;   /* now, J */
+  PetscReal dissipated;         /* stress work that is not stored, since the start, J */
+  PetscReal external, boundary; /* work of gravity and loads, and of prescribed motion, since the start, J */
+  PetscReal damped, transfer;   /* lost by damping, and between points and grid, since the start, J (docs/theory.md) */
+  PetscReal start;              /* kinetic and elastic at the start, J */
+} Energies;
+
+/* What a measure remembers from step to step. */
+typedef struct {
+  PetscReal front; /* m, after the last step */
+  PetscReal moved; /* last time at which it was fast, s */
+} MeasureMemory;
+
+/* Body force per mass at the undeformed position X (dim) and time t, m/s2, besides gravity: a centrifuge, a manufactured solution. */
+typedef void (*BodyForce)(void *context, const PetscReal *X, PetscReal t, PetscReal *b);
+
+typedef struct Model {
+  MPI_Comm comm;
+  const Case *c;
+  PetscInt dim;
+  const Method *method;
+  const Formulation *formulation;
+  Material *materials;
+  PetscInt n_state;
+  Grid *grid;
+  Points *points;
+  Points *tracers; /* body = index of the measure */
+  Boundary *boundary;
+  Loads *loads;
+  Stage *stage;
+  System *system;
+  Newton *newton;
+  unsigned char *enabled;                                  /* n_cells: cells whose nodes carry unknowns */
+  unsigned char *fixed;                                    /* n_nodes x dim */
+  PetscReal *du, *force, *external, *history, *prescribed; /* n_nodes x dim */
+  PetscReal *reaction;  /* n_nodes x dim on owners: force of the boundary on the body at the end of the last step, N */
+  PetscReal *held;      /* n_nodes x dim on owners: the reaction without the impulse that stopped points, N */
+  BodyForce body_force; /* NULL: gravity alone */
+  void *body_force_context;
+  PetscReal time, dt; /* s; dt: the next step to try */
+  PetscInt step;
+  PetscBool *option_set;   /* which of the case's PETSc options the model put into the database */
+  PetscBool symmetric;     /* are all tangents symmetric? */
+  PetscReal courant_speed; /* largest sqrt(M / density), m/s */
+  PetscReal external_work, boundary_work, damped_energy, transfer_energy, start_energy; /* see Energies */
+  MeasureMemory *memory;                                                                /* one per measure */
+  PetscInt cuts, total_iterations; /* steps halved, Newton iterations, since the start */
+  PetscReal seconds[PHASE_N];      /* see ModelTimes */
+} Model;
+
+typedef enum { STEP_ACCEPTED, STEP_TOO_SMALL, STEP_POINTS_LOST } StepOutcome;
+
+typedef struct {
+  StepOutcome outcome;
+  PetscReal dt;        /* of the accepted step */
+  PetscInt cuts;       /* how often the step was halved */
+  NewtonReport newton; /* of the last try */
+  char reason[512];    /* why the run gives up, in words */
+} StepReport;
+
+/* Collective. Build from a case (which must outlive the model); the user's mistakes go to diag and *model stays NULL. */
+PetscErrorCode ModelCreate(MPI_Comm comm, const Case *c, Diag *diag, Model **model);
+PetscErrorCode ModelDestroy(Model **model);
+
+/* Collective. Body force besides gravity, NULL for none. Before the first step it also enters the initial acceleration. */
+PetscErrorCode ModelSetBodyForce(Model *model, BodyForce force, void *context);
+
+/* Collective. Make the linear system fit the cells that hold material now; ModelStep does it by itself. */
+PetscErrorCode ModelActivate(Model *model);
+/* Collective. One step of at most `limit` s; halves it until Newton converges. */
+PetscErrorCode ModelStep(Model *model, PetscReal limit, StepReport *report);
+
+/* Collective. Value of one measure of the case now. */
+PetscErrorCode ModelMeasure(Model *model, const MeasureSpec *measure, PetscInt index, PetscReal *value);
+const char *measure_unit(const MeasureSpec *measure);
+PetscErrorCode ModelEnergies(Model *model, Energies *energies);
+
+/* Seconds that this rank spent in each phase since the start. */
+void ModelTimes(const Model *model, PetscReal seconds[PHASE_N]);
+
+/* Number of points over all ranks. */
+PetscErrorCode ModelCountPoints(const Model *model, PetscInt *n);
+/* Cauchy stress (Voigt) of one point, from its state. */
+PetscErrorCode ModelPointStress(const Model *model, PetscInt p, PetscReal sigma[6]);

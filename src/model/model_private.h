@@ -1,0 +1,33 @@
+/* What the files of this room share. */
+#pragma once
+#include "model/model.h"
+
+/* Put the case's PETSc options into the database, and take them out again. */
+PetscErrorCode OptionsApply(Model *model);
+PetscErrorCode OptionsCheck(const Model *model, Diag *diag);
+PetscErrorCode OptionsForget(Model *model);
+/* Geostatic stress of bodies that ask for it, as their law's state. */
+PetscErrorCode InitialStress(Model *model, Diag *diag);
+/* Acceleration at t = 0 from the balance of momentum with lumped mass, so that a body in free fall falls from the first step on. */
+PetscErrorCode InitialAcceleration(Model *model);
+/* Collective. Body force of the points at time t, gathered at the nodes and added to force (owners). */
+PetscErrorCode AddBodyForce(const Model *model, PetscReal t, PetscReal *force);
+/* Gravity times its amplitude at time t, m/s2. */
+void gravity_at(const Case *c, PetscReal t, PetscReal g[3]);
+/* Collective. Stress and stored energy of the points as the start of all work, and what measures remember. */
+PetscErrorCode EnergyStart(Model *model);
+PetscErrorCode MeasuresStart(Model *model);
+/* Collective. After every accepted step of dt, whether or not a row of the history is written. */
+PetscErrorCode MeasuresRemember(Model *model, PetscReal dt);
+
+/* This rank's share of the energies of a step that is being accepted, J. */
+typedef struct {
+  PetscReal external, boundary, damped, transfer;
+} EnergyStep;
+
+/* Collective. The nodes know the step's end (force, v1, a1), the points still stand at its start. */
+PetscErrorCode EnergyOfNodes(Model *model, PetscReal dt, EnergyStep *step);
+/* Collective. Points have their new state and have moved: close the step's account. */
+PetscErrorCode EnergyClose(Model *model, EnergyStep *step);
+/* Input of the weak form for the model's present arrays. */
+WeakFormInput weak_form_of(const Model *model, PetscReal inertia);

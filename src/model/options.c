@@ -1,0 +1,67 @@
+/* PETSc options of the case's `petsc:` block. The command line wins; they last as long as the model. */
+#include "model/model_private.h"
+
+/* "-name value" -> name (with its dash) and value: NULL if there is none, or it is `true`, which switches on flags and viewers alike. */
+static PetscErrorCode Split(const char *option, char name[256], const char **value)
+{
+  const char *blank = strchr(option, ' ');
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscStrncpy(name, option, blank ? PetscMin((size_t)(blank - option) + 1, 256) : 256));
+  *value = blank && strcmp(blank, " true") ? blank + 1 : NULL;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode OptionsApply(Model *m)
+{
+  char name[256];
+  const char *value = NULL;
+  PetscBool given;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(m->c->n_petsc, &m->option_set));
+  for (PetscInt k = 0; k < m->c->n_petsc; ++k) {
+    PetscCall(Split(m->c->petsc[k], name, &value));
+    PetscCall(PetscOptionsHasName(NULL, NULL, name, &given));
+    if (given) continue;
+    PetscCall(PetscOptionsSetValue(NULL, name, value));
+    m->option_set[k] = PETSC_TRUE;
+  }
+  PetscFunctionReturn(0);
+}
+
+/* What SNES, KSP and PC make of the options, tried on solvers that are thrown away: PETSc's own error is an internal one, with a trace. */
+PetscErrorCode OptionsCheck(const Model *m, Diag *diag)
+{
+  SNES snes;
+  const char *text;
+  char *detail;
+
+  PetscFunctionBeginUser;
+  PetscCall(SNESCreate(m->comm, &snes));
+  PetscCall(PetscPushErrorHandler(PetscReturnErrorHandler, NULL));
+  const PetscErrorCode code = SNESSetFromOptions(snes);
+  PetscCall(PetscPopErrorHandler());
+  if (code) {
+    PetscCall(PetscErrorMessage(code, &text, &detail));
+    DiagError(diag, "petsc", "PETSc refuses an option of this block or of the command line: %s",
+              detail && detail[0] ? detail : text);
+  }
+  PetscCall(SNESDestroy(&snes));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode OptionsForget(Model *m)
+{
+  char name[256];
+  const char *value = NULL;
+
+  PetscFunctionBeginUser;
+  for (PetscInt k = 0; m->option_set && k < m->c->n_petsc; ++k) {
+    if (!m->option_set[k]) continue;
+    PetscCall(Split(m->c->petsc[k], name, &value));
+    PetscCall(PetscOptionsClearValue(NULL, name));
+  }
+  PetscCall(PetscFree(m->option_set));
+  PetscFunctionReturn(0);
+}
