@@ -1,0 +1,58 @@
+/* The command line: a table of subcommands (main.c), one file for each, and one parser of options.
+ *
+ * A subcommand gets its own arguments: argv[0] is its name, and PETSc's options (single dash) have already gone to
+ * PetscInitialize. It runs on every rank of PETSC_COMM_WORLD and sets the exit code that all ranks return. */
+#pragma once
+#include <petscsys.h>
+#include "base/diag.h"
+
+/* Exit codes, the same for every subcommand. */
+typedef enum { CLI_DONE = 0, CLI_GAVE_UP = 1, CLI_BAD_INPUT = 2, CLI_OUT_OF_TOLERANCE = 3 } CliExit;
+
+PetscErrorCode CliRun(int argc, char **argv, int *exit_code);
+PetscErrorCode CliCheck(int argc, char **argv, int *exit_code);
+PetscErrorCode CliList(int argc, char **argv, int *exit_code);
+PetscErrorCode CliSchema(int argc, char **argv, int *exit_code);
+PetscErrorCode CliVerify(int argc, char **argv, int *exit_code);
+PetscErrorCode CliPlot(int argc, char **argv, int *exit_code);
+PetscErrorCode CliVersion(int argc, char **argv, int *exit_code);
+
+/* An option --name; `value` names what follows it ("DIR"), NULL for a flag. */
+typedef struct {
+  const char *name, *value, *help;
+} CliOption;
+
+/* How a subcommand is used. */
+typedef struct {
+  const char *usage;        /* "talus run CASE [options]" */
+  const char *help;         /* what it does, a sentence or a paragraph */
+  const CliOption *options; /* ended by name = NULL; --help is always there */
+  int min_words, max_words; /* how many words that are no options */
+} CliUsage;
+
+#define CLI_MAX_ARGUMENTS 256
+
+/* What was given. Nothing here is copied: the strings belong to argv. */
+typedef struct {
+  int n_words;
+  const char *words[CLI_MAX_ARGUMENTS];
+  int n_options;
+  const char *names[CLI_MAX_ARGUMENTS];  /* as in CliOption, the same pointer */
+  const char *values[CLI_MAX_ARGUMENTS]; /* "" for flags */
+} CliArguments;
+
+/* Sort argv into words and options; --name=value and --name value are the same. PETSC_FALSE in *go_on:
+ * help was asked for or something is wrong, it has been printed (once), *exit_code is set, and the subcommand returns. */
+PetscErrorCode CliParse(const CliUsage *usage, int argc, char **argv, CliArguments *arguments, PetscBool *go_on,
+                        int *exit_code);
+
+/* Value of the last --name, NULL if it was not given. */
+const char *CliValue(const CliArguments *arguments, const char *name);
+PetscBool CliFlag(const CliArguments *arguments, const char *name);
+/* All values of --name in order (--set); at most CLI_MAX_ARGUMENTS. Returns how many. */
+PetscInt CliValues(const CliArguments *arguments, const char *name, const char **values);
+
+/* Print `error: ...` and a hint (or NULL) on rank 0 and set the exit code for bad usage. */
+PetscErrorCode CliUsageError(int *exit_code, const char *hint, const char *format, ...) PETSC_ATTRIBUTE_FORMAT(3, 4);
+/* Is this the rank that prints? */
+PetscBool CliPrints(void);

@@ -1,0 +1,128 @@
+/* talus plot: pictures of a run. */
+#include <ctype.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include "cli/cli.h"
+#include "io/plot.h"
+
+static const CliOption options_known[] = {
+  {"field", "NAME", "the field that gives the colours (default: displacement)"},
+  {"component", "WORD", "x y z, xx yy zz xy yz zx, magnitude, mises, mean (default: magnitude, mises of a tensor)"},
+  {"time", "T|last", "the state nearest to this time in seconds (default: last)"},
+  {"grid", NULL, "draw the grid as well"},
+  {"range", "A:B", "values of the first and the last colour"},
+  {"size", "WxH", "pixels, for example 1200x800 (default: to suit the body)"},
+  {"up", "x|y|z", "the axis that points up in a picture in space (default: z)"},
+  {"out", "FILE", "the picture of the state (default: RUN_DIR/pictures/state_...png)"},
+  {NULL, NULL, NULL},
+};
+
+static const CliUsage usage = {
+  .usage = "talus plot RUN_DIR [options]",
+  .help =
+    "Draws a state of a run coloured by a field, and the histories of its measures, as PNG pictures in "
+    "RUN_DIR/pictures.",
+  .options = options_known,
+  .min_words = 1,
+  .max_words = 1,
+};
+
+static PetscBool Number(const char *text, PetscReal *value)
+{
+  char *end;
+  *value = (PetscReal)strtod(text, &end);
+  return end != text && !*end && !PetscIsInfOrNanReal(*value) ? PETSC_TRUE : PETSC_FALSE;
+}
+
+static PetscBool Range(const char *text, PetscReal range[2])
+{
+  char first[64];
+  const size_t n = strcspn(text, ":");
+  if (!text[n] || n == 0 || n >= sizeof first) return PETSC_FALSE;
+  memcpy(first, text, n);
+  first[n] = 0;
+  return Number(first, &range[0]) && Number(text + n + 1, &range[1]) && range[0] < range[1] ? PETSC_TRUE : PETSC_FALSE;
+}
+
+static PetscBool Size(const char *text, int *width, int *height)
+{
+  char *end;
+  const long w = strtol(text, &end, 10);
+  if (*end != 'x' || w < 200 || w > 10000) return PETSC_FALSE;
+  const long h = strtol(end + 1, &end, 10);
+  if (*end || h < 150 || h > 10000) return PETSC_FALSE;
+  *width = (int)w;
+  *height = (int)h;
+  return PETSC_TRUE;
+}
+
+/* From words to options; a complaint and PETSC_FALSE in *ok if they make no sense. */
+static PetscErrorCode Understand(const CliArguments *arguments, PlotOptions *options, PetscBool *ok, int *exit_code)
+{
+  const char *time = CliValue(arguments, "time"), *range = CliValue(arguments, "range"),
+             *size = CliValue(arguments, "size");
+  const char *up = CliValue(arguments, "up");
+
+  PetscFunctionBeginUser;
+  *ok = PETSC_FALSE;
+  options->run = arguments->words[0];
+  options->field = CliValue(arguments, "field");
+  options->component = CliValue(arguments, "component");
+  options->out = CliValue(arguments, "out");
+  options->grid = CliFlag(arguments, "grid");
+  options->has_range = range ? PETSC_TRUE : PETSC_FALSE;
+  options->at_time = time && strcmp(time, "last") ? PETSC_TRUE : PETSC_FALSE;
+  options->up = up ? tolower((unsigned char)up[0]) - 'x' : 2;
+  if (options->at_time && !Number(time, &options->time))
+    PetscCall(CliUsageError(exit_code, NULL, "--time wants seconds or 'last', not '%s'", time));
+  else if (range && !Range(range, options->range))
+    PetscCall(CliUsageError(exit_code, "for example --range 0:2.5e6",
+                            "--range wants two numbers A:B with A < B, not '%s'", range));
+  else if (size && !Size(size, &options->width, &options->height))
+    PetscCall(
+      CliUsageError(exit_code, "from 200x150 to 10000x10000", "--size wants pixels as in 1200x800, not '%s'", size));
+  else if (up && (options->up < 0 || options->up > 2 || up[1]))
+    PetscCall(CliUsageError(exit_code, NULL, "--up wants x, y or z, not '%s'", up));
+  else *ok = PETSC_TRUE;
+  PetscFunctionReturn(0);
+}
+
+static void Say(const char *path) { printf("picture = %s\n", path); }
+
+static PetscErrorCode Draw(const PlotOptions *options, int *exit_code)
+{
+  char picture[PETSC_MAX_PATH_LEN] = "";
+  struct stat status;
+  Diag *diag;
+
+  PetscFunctionBeginUser;
+  PetscCall(DiagCreate(&diag));
+  if (stat(options->run, &status) || !S_ISDIR(status.st_mode))
+    DiagError(diag, NULL, "there is no run directory '%s'", options->run);
+  else PetscCall(PlotState(options, diag, picture));
+  if (picture[0]) {
+    Say(picture);
+    PetscCall(PlotHistories(options, diag, Say));
+  }
+  *exit_code = DiagErrors(diag) ? CLI_BAD_INPUT : CLI_DONE;
+  PetscCall(DiagFlush(diag, stderr));
+  PetscCall(DiagDestroy(&diag));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode CliPlot(int argc, char **argv, int *exit_code)
+{
+  CliArguments arguments;
+  PlotOptions options = {0};
+  PetscBool go_on;
+
+  PetscFunctionBeginUser;
+  PetscCall(CliParse(&usage, argc, argv, &arguments, &go_on, exit_code));
+  if (!go_on) PetscFunctionReturn(0);
+  PetscCall(Understand(&arguments, &options, &go_on, exit_code));
+  if (!go_on) PetscFunctionReturn(0);
+  if (CliPrints()) PetscCall(Draw(&options, exit_code)); /* one process draws, the others learn how it went */
+  PetscCallMPI(MPI_Bcast(exit_code, 1, MPI_INT, 0, PETSC_COMM_WORLD));
+  PetscFunctionReturn(0);
+}

@@ -1,0 +1,163 @@
+#include <errno.h>
+#include <stdio_ext.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+#include "io/run_dir_files.h"
+#include "io/run_dir_impl.h"
+
+/* A name with a comma or a quote is quoted, as spreadsheets want it. */
+static void WriteName(FILE *out, const char *name, const char *unit)
+{
+  const PetscBool quote = strpbrk(name, ",\"") ? PETSC_TRUE : PETSC_FALSE;
+  if (quote) fputc('"', out);
+  for (const char *c = name; *c; ++c) fputs(*c == '"' ? "\"\"" : (char[2]){*c, 0}, out);
+  if (unit && unit[0]) fprintf(out, " [%s]", unit);
+  if (quote) fputc('"', out);
+}
+
+static void WriteHeader(FILE *out, PetscInt n, const char *const *names, const char *const *units)
+{
+  fputs("time [s],step", out);
+  for (PetscInt i = 0; i < n; ++i) {
+    fputc(',', out);
+    WriteName(out, names[i], units ? units[i] : NULL);
+  }
+  fputc('\n', out);
+}
+
+static int Open(RunDir *dir, const char *mode)
+{
+  char path[FILE_PATH];
+  snprintf(path, sizeof path, "%s/history.csv", dir->path);
+  if (dir->history) fclose(dir->history);
+  dir->history = fopen(path, mode);
+  return dir->history ? 0 : errno;
+}
+
+/* Push the row to the system: a run that dies has its history. A row that did not fit is cut off again. */
+static int Flush(FILE *file, off_t before)
+{
+  errno = 0;
+  if (!fflush(file) && !ferror(file)) return 0;
+  const int error = errno ? errno : EIO;
+  __fpurge(file);
+  clearerr(file);
+  return before > 0 && ftruncate(fileno(file), before) ? errno : error;
+}
+
+PetscErrorCode HistoryOpen(RunDir *dir, PetscInt n, const char *const *names, const char *const *units)
+{
+  int error = 0;
+
+  PetscFunctionBeginUser;
+  dir->n_measures = n;
+  if (dir->rank == 0) {
+    error = Open(dir, "w");
+    if (!error) WriteHeader(dir->history, n, names, units);
+    if (!error) error = Flush(dir->history, 0);
+  }
+  const PetscErrorCode status = RunDirAgree(dir, "history.csv", error);
+  PetscFunctionReturn(status);
+}
+
+/* Copy the rows before `time`; a last row that was cut off is dropped too. */
+static int CopyRows(FILE *old, FILE *out, PetscReal time)
+{
+  const PetscReal before = time - 1e-12 * PetscAbsReal(time);
+  char *line = NULL, *end;
+  size_t size = 0;
+  for (ssize_t n = getline(&line, &size, old); n > 0; n = getline(&line, &size, old)) {
+    const double t = strtod(line, &end);
+    if (end != line && *end == ',' && line[n - 1] == '\n' && t < before) fputs(line, out);
+  }
+  free(line);
+  return ferror(old) ? EIO : 0;
+}
+
+/* Does the old file start with our header? */
+static PetscBool SameHeader(FILE *old, const char *header)
+{
+  char *line = NULL;
+  size_t size = 0;
+  const PetscBool same = getline(&line, &size, old) > 0 && !strcmp(line, header) ? PETSC_TRUE : PETSC_FALSE;
+  free(line);
+  return same;
+}
+
+static int KeepRows(const char *path, const char *header, PetscReal time, Diag *diag)
+{
+  char unfinished[FILE_PATH + 16];
+  FILE *old = fopen(path, "r"), *out = NULL;
+  int error = 0;
+  snprintf(unfinished, sizeof unfinished, "%s" FILE_UNFINISHED, path);
+  if (!old && errno != ENOENT) return errno;
+  if (old && !SameHeader(old, header)) {
+    DiagError(diag, NULL, "the measures differ from those of '%s': the run cannot go on there", path);
+  } else {
+    out = fopen(unfinished, "w");
+    error = out ? 0 : errno;
+  }
+  if (out) {
+    fputs(header, out);
+    if (old) error = CopyRows(old, out, time);
+    const int closing = file_finish_stream(out);
+    error = file_commit(unfinished, path, error ? error : closing);
+  }
+  if (old) fclose(old);
+  return error;
+}
+
+static int OpenFrom(RunDir *dir, PetscInt n, const char *const *names, const char *const *units, PetscReal time,
+                    Diag *diag)
+{
+  char path[FILE_PATH], *header = NULL;
+  size_t size;
+  FILE *memory = open_memstream(&header, &size);
+  if (!memory) return errno;
+  WriteHeader(memory, n, names, units);
+  fclose(memory);
+  snprintf(path, sizeof path, "%s/history.csv", dir->path);
+  const PetscInt errors = DiagErrors(diag);
+  int error = KeepRows(path, header, time, diag);
+  free(header);
+  if (!error && DiagErrors(diag) == errors) error = Open(dir, "a");
+  return error;
+}
+
+PetscErrorCode HistoryOpenFrom(RunDir *dir, PetscInt n, const char *const *names, const char *const *units,
+                               PetscReal time, Diag *diag)
+{
+  PetscFunctionBeginUser;
+  dir->n_measures = n;
+  const PetscErrorCode status =
+    RunDirAgree(dir, "history.csv", dir->rank ? 0 : OpenFrom(dir, n, names, units, time, diag));
+  PetscFunctionReturn(status);
+}
+
+static void WriteRow(FILE *out, PetscReal time, PetscInt step, PetscInt n, const PetscReal *values)
+{
+  char number[32];
+  file_format_real(time, number);
+  fprintf(out, "%s,%" PetscInt_FMT, number, step);
+  for (PetscInt i = 0; i < n; ++i) {
+    file_format_real(values[i], number);
+    fprintf(out, ",%s", number);
+  }
+  fputc('\n', out);
+}
+
+PetscErrorCode HistoryWrite(RunDir *dir, PetscReal time, PetscInt step, const PetscReal *values)
+{
+  int error = 0;
+
+  PetscFunctionBeginUser;
+  if (dir->rank == 0) {
+    const off_t before = dir->history ? ftello(dir->history) : 0;
+    error = dir->history ? 0 : EBADF;
+    if (!error) WriteRow(dir->history, time, step, dir->n_measures, values);
+    if (!error) error = Flush(dir->history, before);
+  }
+  const PetscErrorCode status = RunDirAgree(dir, "history.csv", error);
+  PetscFunctionReturn(status);
+}

@@ -1,0 +1,17 @@
+/* Reading history.csv back. */
+#pragma once
+#include <petscsys.h>
+
+typedef struct {
+  PetscInt n_rows, n_columns;
+  char **names;      /* n_columns, without their units: "time", "step", then the measures */
+  char **units;      /* "" if none */
+  PetscReal *values; /* n_rows x n_columns */
+} History;
+
+/* PETSC_ERR_FILE_OPEN (returned plainly, with a reason) if the file is missing or is no history. A last
+ * row that was cut off is left out. Not collective. */
+PetscErrorCode HistoryRead(const char *path, History *history, char reason[256]);
+PetscErrorCode HistoryFree(History *history);
+/* Column of that name, -1 if there is none. */
+PetscInt HistoryColumn(const History *history, const char *name);

@@ -1,0 +1,30 @@
+/* Pictures of a run: a state coloured by a field, and the histories of its measures. */
+#pragma once
+#include <petscsys.h>
+#include "base/diag.h"
+
+typedef struct {
+  const char *run;       /* the run directory */
+  const char *field;     /* NULL: displacement, or the first that there is */
+  const char *component; /* NULL: magnitude of a vector, mises of a tensor */
+  PetscBool at_time;     /* the state nearest to `time`; otherwise the last one */
+  PetscReal time;        /* s */
+  PetscBool grid;        /* draw the grid too */
+  PetscBool has_range;
+  PetscReal range[2]; /* of the colours, in the field's own unit */
+  int width, height;  /* pixels; 0: chosen to suit the body */
+  PetscInt up;        /* axis that points up in a picture in space: 0 1 2 */
+  const char *out;    /* PNG; NULL: RUN/pictures/state_... */
+} PlotOptions;
+
+/* Draw a state. Mistakes go to diag, and picture is "" if there is none. One process. */
+PetscErrorCode PlotState(const PlotOptions *options, Diag *diag, char picture[PETSC_MAX_PATH_LEN]);
+
+/* RUN/pictures/history_NAME.png for every measure of history.csv. `said` is called with the path of
+ * each. */
+PetscErrorCode PlotHistories(const PlotOptions *options, Diag *diag, void (*said)(const char *path));
+
+/* RUN/pictures/, made if it is not there; PETSC_FALSE and a diagnostic if it cannot be. */
+PetscBool plot_folder(const char *run, Diag *diag);
+/* Turn what a file name should not hold into '_'. */
+void plot_file_name(char *name);

@@ -1,0 +1,85 @@
+#include "io/plot_scene.h"
+#include <math.h>
+
+/* The eye looks down from the front right: azimuth -55 degrees, elevation 22 degrees. */
+void plot_project(const PlotScene *scene, const PetscReal *x, PetscReal shown[3])
+{
+  const PetscReal azimuth = -55 * PETSC_PI / 180, elevation = 22 * PETSC_PI / 180;
+  const PetscReal ca = cos(azimuth), sa = sin(azimuth), ce = cos(elevation), se = sin(elevation);
+  if (scene->dim == 2) {
+    shown[0] = x[0], shown[1] = x[1], shown[2] = 0;
+    return;
+  }
+  const PetscReal a = x[(scene->up + 1) % 3], b = x[(scene->up + 2) % 3], c = x[scene->up];
+  shown[0] = -sa * a + ca * b;
+  shown[1] = -se * (ca * a + sa * b) + ce * c;
+  shown[2] = ce * (ca * a + sa * b) + se * c;
+}
+
+/* What the corners of the box span on the page. */
+static void Extent(const PlotScene *scene, PetscReal min[2], PetscReal max[2])
+{
+  for (int corner = 0; corner < 8; ++corner) {
+    PetscReal x[3], shown[3];
+    for (int d = 0; d < 3; ++d) x[d] = corner >> d & 1 ? scene->box_max[d] : scene->box_min[d];
+    plot_project(scene, x, shown);
+    for (int d = 0; d < 2; ++d) {
+      min[d] = corner ? PetscMin(min[d], shown[d]) : shown[d];
+      max[d] = corner ? PetscMax(max[d], shown[d]) : shown[d];
+    }
+  }
+}
+
+/* Air around what is shown; in space more, for the ticks. */
+static void AddAir(const PlotScene *scene, PetscReal min[2], PetscReal max[2])
+{
+  const PetscReal longest = PetscMax(max[0] - min[0], max[1] - min[1]), size = longest > 0 ? longest : 1;
+  const PetscReal share[2] = {scene->dim == 3 ? 0.13 : 0.04, scene->dim == 3 ? 0.11 : 0.04};
+  for (int d = 0; d < 2; ++d) {
+    const PetscReal air = PetscMax(share[d] * size, 0.5 * (0.02 * size - (max[d] - min[d])));
+    min[d] -= air, max[d] += air;
+  }
+}
+
+/* Rows above and below, columns left and right of the field. */
+static void Margins(const PlotPage *page, PetscBool space, int margin[4])
+{
+  margin[0] = space ? 20 : 95;                                /* left */
+  margin[1] = page->bar_below ? 40 : 150;                     /* right */
+  margin[2] = (space ? 15 : 70) + (page->bar_below ? 90 : 0); /* bottom */
+  margin[3] = 55;                                             /* top */
+}
+
+/* Equal scales: the field takes the shape of what it shows, in the middle of the room that it has. */
+static void PlaceField(PlotPage *page, const int margin[4])
+{
+  const PetscReal wide = page->max[0] - page->min[0], high = page->max[1] - page->min[1];
+  const int room_w = PetscMax(page->width - margin[0] - margin[1], 50),
+            room_h = PetscMax(page->height - margin[2] - margin[3], 30);
+  const PetscReal scale = PetscMin(room_w / wide, room_h / high);
+  page->w = PetscMax((int)lround(wide * scale), 2);
+  page->h = PetscMax((int)lround(high * scale), 2);
+  page->left = margin[0] + (room_w - page->w) / 2;
+  page->bottom = margin[2] + (room_h - page->h) / 2;
+  /* whole pixels: the upper bounds follow the field */
+  page->max[0] = page->min[0] + page->w / scale;
+  page->max[1] = page->min[1] + page->h / scale;
+}
+
+void plot_lay_out(const PlotScene *scene, int width, int height, PlotPage *page)
+{
+  int margin[4];
+  Extent(scene, page->min, page->max);
+  AddAir(scene, page->min, page->max);
+  const PetscReal aspect = (page->max[0] - page->min[0]) / (page->max[1] - page->min[1]);
+  page->bar_below = aspect > 2.2 ? PETSC_TRUE : PETSC_FALSE;
+  page->width = width ? width : 1200;
+  page->height = height;
+  Margins(page, scene->dim == 3, margin);
+  if (!height) {
+    const PetscReal field = (page->width - margin[0] - margin[1]) / aspect;
+    page->height = PetscMin(PetscMax((int)lround(field), 60), 800) + margin[2] + margin[3];
+    if (!width && field > 800) page->width = PetscMax((int)lround(800 * aspect), 300) + margin[0] + margin[1];
+  }
+  PlaceField(page, margin);
+}

@@ -1,0 +1,55 @@
+/* The run directory: created once, never overwritten by mistake; log, timings, history.
+ *
+ *   case.yaml     the resolved case (every key with its value)      history.csv   measures
+ *   log.txt       what the run said                                 timings.txt   where the time went
+ *   version.txt   talus, PETSc, MPI, compiler, number of ranks      pictures/     of talus plot
+ *   points_000000.hdf ... points.hdf.series, grid_000000.hdf ... grid.hdf.series */
+#pragma once
+#include <petscsys.h>
+#include <stdio.h>
+#include "base/diag.h"
+
+typedef struct RunDir RunDir;
+
+/* Collective. Refuses a directory that holds a run unless `force` (which removes that run's files, and
+ * nothing else), and one that cannot be written: a diagnostic, *dir stays NULL. quiet: nothing on the
+ * terminal; log: the file of --log, or NULL for log.txt. */
+PetscErrorCode RunDirCreate(MPI_Comm comm, const char *path, PetscBool force, PetscBool quiet, const char *log,
+                            Diag *diag, RunDir **dir);
+/* Collective. Go on in the directory of an earlier run: nothing is removed, the log grows. A diagnostic
+ * if there is no run. */
+PetscErrorCode RunDirOpen(MPI_Comm comm, const char *path, PetscBool quiet, const char *log, Diag *diag, RunDir **dir);
+PetscErrorCode RunDirDestroy(RunDir **dir);
+/* Collective. Take a run back that could not start: its files go, and *dir with them. */
+PetscErrorCode RunDirDiscard(RunDir **dir);
+const char *RunDirPath(const RunDir *dir);
+
+/* A line for the log and the terminal (rank 0): plain `key = value` text. */
+PetscErrorCode RunDirLog(RunDir *dir, const char *format, ...) PETSC_ATTRIBUTE_FORMAT(2, 3);
+
+/* Progress after an accepted step: a bar with the time left on a terminal, otherwise a plain line now
+ * and then. */
+typedef struct {
+  PetscInt step, iterations;
+  PetscReal time, end, dt; /* s */
+  PetscReal residual;      /* relative, at the end of Newton */
+  PetscInt points;         /* global */
+} RunProgress;
+PetscErrorCode RunDirProgress(RunDir *dir, const RunProgress *progress);
+
+/* history.csv: `time [s],step,name [unit],...`. Rank 0 writes, flushed row by row. Collective. What the
+ * disk refuses comes back plainly as PETSC_ERR_FILE_WRITE on every rank, after a line in the log that
+ * says why. */
+PetscErrorCode HistoryOpen(RunDir *dir, PetscInt n, const char *const *names, const char *const *units);
+/* Resume: keep the rows before `time` and drop the others; the caller writes the row of `time` again. A
+ * history of other measures is a diagnostic, and the file stays as it is. */
+PetscErrorCode HistoryOpenFrom(RunDir *dir, PetscInt n, const char *const *names, const char *const *units,
+                               PetscReal time, Diag *diag);
+PetscErrorCode HistoryWrite(RunDir *dir, PetscReal time, PetscInt step, const PetscReal *values);
+
+/* A text file written atomically (case.yaml, version.txt, timings.txt). Rank 0 writes. Collective.
+ * Errors as for the history. */
+PetscErrorCode RunDirWriteText(RunDir *dir, const char *name, const char *text);
+
+/* After PETSC_ERR_FILE_WRITE, on every rank: which file could not be written, and why. */
+const char *RunDirReason(const RunDir *dir);

@@ -1,0 +1,21 @@
+/* What run_dir.c, progress.c and history.c share. Streams are open on rank 0 only. */
+#pragma once
+#include "io/progress.h"
+#include "io/run_dir.h"
+
+struct RunDir {
+  MPI_Comm comm;
+  PetscMPIInt rank;
+  char path[PETSC_MAX_PATH_LEN];
+  char reason[PETSC_MAX_PATH_LEN + 128]; /* of the last refusal */
+  FILE *log, *history;
+  PetscInt n_measures;
+  PetscBool quiet, terminal;
+  PetscBool bar;   /* a progress bar stands on the terminal's last line */
+  PetscReal start; /* of the run, on the monotonic clock, s */
+  ProgressClock clock;
+  PetscReal last_shown; /* when progress was last printed, s since the clock's start; < 0: never */
+};
+
+/* Share rank 0's errno for the file of this name; a refusal is logged and kept for RunDirReason. Collective. */
+PetscErrorCode RunDirAgree(RunDir *dir, const char *name, int error);

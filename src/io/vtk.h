@@ -1,0 +1,35 @@
+/* VTKHDF 1.0 UnstructuredGrid files (.hdf) and their time series (.hdf.series), as ParaView 5.11 opens
+ * them.
+ *
+ * All ranks write one file collectively, one partition each (empty ones too). A file is written under a
+ * temporary name and renamed when it is complete: a reader never sees half of one. */
+#pragma once
+#include <petscsys.h>
+
+typedef struct {
+  const char *name, *unit; /* the unit becomes an attribute */
+  PetscInt components;
+  const PetscReal *data; /* n x components of this rank */
+} VtkField;
+
+typedef struct {
+  PetscInt n_points;
+  const PetscReal *x; /* n_points x 3 */
+  PetscInt n_cells;
+  const PetscInt *connectivity; /* n_cells x nodes_per_cell, local points; NULL: one vertex a point */
+  PetscInt nodes_per_cell;
+  int vtk_type; /* of all cells */
+  PetscInt n_point_fields, n_cell_fields;
+  const VtkField *point_fields, *cell_fields;
+  const PetscInt64 *point_id; /* field "id", or NULL */
+  PetscReal time;             /* s, kept as an attribute too */
+} VtkData;
+
+/* Collective. Errors of the file system (full disk, no permission) come back as PETSC_ERR_FILE_WRITE on
+ * every rank, with the unfinished file removed; the caller reports and goes on or stops. `reason` (256
+ * characters) says why. */
+PetscErrorCode VtkWrite(MPI_Comm comm, const char *path, const VtkData *data, char reason[256]);
+/* Append (or replace from this time on) an entry of DIR/NAME.hdf.series; atomic. Rank 0 writes.
+ * Collective. file NULL: only forget the entries from this time on. */
+PetscErrorCode VtkSeriesAppend(MPI_Comm comm, const char *folder, const char *name, const char *file, PetscReal time,
+                               char reason[256]);

@@ -1,0 +1,122 @@
+/* The list of files and their times that ParaView reads: JSON with one entry a line, so that it is
+ * edited without a parser. */
+#include "io/vtk_series.h"
+#include <errno.h>
+#include <stdlib.h>
+#include <string.h>
+#include "io/run_dir_files.h"
+#include "io/vtk.h"
+
+/* `{"name": "points_000001.hdf", "time": 0.5},` */
+static PetscBool ParseEntry(const char *line, char file[VTK_SERIES_NAME], PetscReal *time)
+{
+  const char *name = strstr(line, "\"name\":"), *at = strstr(line, "\"time\":");
+  char *end;
+  if (!name || !at || !(name = strchr(name + 7, '"'))) return PETSC_FALSE;
+  const size_t n = strcspn(name + 1, "\"");
+  if (n == 0 || n >= VTK_SERIES_NAME) return PETSC_FALSE;
+  memcpy(file, name + 1, n);
+  file[n] = 0;
+  *time = (PetscReal)strtod(at + 7, &end);
+  return end == at + 7 ? PETSC_FALSE : PETSC_TRUE;
+}
+
+static void WriteEntry(FILE *out, PetscBool first, const char *file, PetscReal time)
+{
+  char number[32];
+  file_format_real(time, number);
+  fprintf(out, "%s    {\"name\": \"%s\", \"time\": %s}", first ? "" : ",\n", file, number);
+}
+
+/* Entries before `time` (but for the last bits of a sum of steps), then the new one. */
+static void Rewrite(FILE *old, FILE *out, const char *file, PetscReal time)
+{
+  const PetscReal before = time - 1e-12 * PetscAbsReal(time);
+  char line[1024], name[VTK_SERIES_NAME];
+  PetscBool first = PETSC_TRUE;
+  PetscReal t;
+  fputs("{\n  \"file-series-version\": \"1.0\",\n  \"files\": [\n", out);
+  while (old && fgets(line, sizeof line, old)) {
+    if (!ParseEntry(line, name, &t) || !(t < before)) continue;
+    WriteEntry(out, first, name, t);
+    first = PETSC_FALSE;
+  }
+  if (file) WriteEntry(out, first, file, time);
+  fputs("\n  ]\n}\n", out);
+}
+
+static int RewriteFile(const char *path, const char *file, PetscReal time)
+{
+  char unfinished[FILE_PATH];
+  snprintf(unfinished, sizeof unfinished, "%s" FILE_UNFINISHED, path);
+  FILE *old = fopen(path, "r");
+  if (!old && (errno != ENOENT || !file)) return errno == ENOENT ? 0 : errno;
+  FILE *out = fopen(unfinished, "w");
+  int error = out ? 0 : errno;
+  if (out) {
+    Rewrite(old, out, file, time);
+    error = file_finish_stream(out);
+    error = file_commit(unfinished, path, error);
+  }
+  if (old) fclose(old);
+  return error;
+}
+
+PetscErrorCode VtkSeriesAppend(MPI_Comm comm, const char *folder, const char *name, const char *file, PetscReal time,
+                               char reason[256])
+{
+  char path[PETSC_MAX_PATH_LEN];
+  PetscMPIInt rank;
+  int error = 0;
+
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_rank(comm, &rank));
+  PetscCall(PetscSNPrintf(path, sizeof path, "%s/%s.hdf.series", folder, name));
+  if (rank == 0) error = RewriteFile(path, file, time);
+  PetscCallMPI(MPI_Bcast(&error, 1, MPI_INT, 0, comm));
+  reason[0] = 0;
+  if (error) {
+    snprintf(reason, 256, "%s", strerror(error));
+    PetscFunctionReturn(PETSC_ERR_FILE_WRITE);
+  }
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode AddState(VtkSeries *series, PetscInt *capacity, const char *file, PetscReal time)
+{
+  PetscFunctionBeginUser;
+  if (series->n == *capacity) {
+    *capacity = 2 * *capacity + 16;
+    PetscCall(PetscRealloc((size_t)*capacity * sizeof *series->states, &series->states));
+  }
+  VtkState *state = &series->states[series->n++];
+  snprintf(state->file, sizeof state->file, "%s", file);
+  state->time = time;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode VtkSeriesRead(const char *folder, const char *name, VtkSeries *series)
+{
+  char path[PETSC_MAX_PATH_LEN], line[1024], file[VTK_SERIES_NAME];
+  PetscInt capacity = 0;
+  PetscReal time;
+
+  PetscFunctionBeginUser;
+  series->n = 0;
+  series->states = NULL;
+  PetscCall(PetscSNPrintf(path, sizeof path, "%s/%s.hdf.series", folder, name));
+  FILE *in = fopen(path, "r");
+  if (!in) PetscFunctionReturn(0);
+  while (fgets(line, sizeof line, in))
+    if (ParseEntry(line, file, &time)) PetscCall(AddState(series, &capacity, file, time));
+  fclose(in);
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode VtkSeriesFree(VtkSeries *series)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscFree(series->states));
+  series->n = 0;
+  PetscFunctionReturn(0);
+}

@@ -1,0 +1,177 @@
+#include "run/check.h"
+#include <stdarg.h>
+
+/* What is known of each body over all ranks. */
+typedef struct {
+  PetscReal mass, volume;
+  PetscInt points, on_faces, cells;
+} BodyCount;
+
+static PETSC_ATTRIBUTE_FORMAT(3, 4) void say(const Model *m, FILE *out, const char *format, ...)
+{
+  PetscMPIInt rank;
+  va_list arguments;
+  MPI_Comm_rank(m->comm, &rank);
+  if (rank) return;
+  va_start(arguments, format);
+  vfprintf(out, format, arguments);
+  va_end(arguments);
+}
+
+/* A point on a face belongs to two cells: which one it feels is a matter of round-off. */
+static PetscBool is_on_face(const Model *m, PetscInt p)
+{
+  return PetscAbsReal(cell_outside(m->grid->type, point_real(m->points, POINT_XI, p))) < 1e-9 ? PETSC_TRUE
+                                                                                              : PETSC_FALSE;
+}
+
+static PetscErrorCode CountBodies(const Model *m, BodyCount *count)
+{
+  const PetscInt n = m->c->n_bodies;
+  PetscReal *sum;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(5 * n, &sum));
+  for (PetscInt p = 0; p < m->points->n; ++p) {
+    PetscReal *s = sum + 5 * m->points->body[p];
+    s[0] += m->points->real[POINT_MASS][p];
+    s[1] += m->points->real[POINT_VOLUME][p];
+    s[2] += 1;
+    s[3] += is_on_face(m, p);
+    s[4] += p == 0 || m->points->cell[p] != m->points->cell[p - 1];
+  }
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sum, (PetscMPIInt)(5 * n), MPIU_REAL, MPI_SUM, m->comm));
+  for (PetscInt b = 0; b < n; ++b)
+    count[b] = (BodyCount){.mass = sum[5 * b],
+                           .volume = sum[5 * b + 1],
+                           .points = (PetscInt)sum[5 * b + 2],
+                           .on_faces = (PetscInt)sum[5 * b + 3],
+                           .cells = (PetscInt)sum[5 * b + 4]};
+  PetscCall(PetscFree(sum));
+  PetscFunctionReturn(0);
+}
+
+/* Cells whose centre lies in the body's shape and that hold no point: gaps that the grid would see as cracks. */
+static PetscErrorCode CountGaps(const Model *m, PetscInt body, PetscInt *gaps)
+{
+  const BodySpec *spec = &m->c->bodies[body];
+  PetscInt local = 0;
+  PetscReal x[3 * CELL_MAX_NODES], centre[3];
+  PetscBool *filled;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(m->grid->n_cells, &filled));
+  for (PetscInt p = 0; p < m->points->n; ++p) filled[m->points->cell[p]] = PETSC_TRUE;
+  for (PetscInt c = 0; spec->has_shape && c < m->grid->n_cells; ++c) {
+    const PetscInt nn = m->grid->nodes_per_cell;
+    grid_cell_x(m->grid, c, x);
+    for (PetscInt d = 0; d < m->dim; ++d) {
+      centre[d] = 0;
+      for (PetscInt i = 0; i < nn; ++i) centre[d] += x[i * m->dim + d] / (PetscReal)nn;
+    }
+    local += !filled[c] && shape_contains(&spec->shape, m->dim, centre, 0);
+  }
+  PetscCall(MPIU_Allreduce(&local, gaps, 1, MPIU_INT, MPI_SUM, m->comm));
+  PetscCall(PetscFree(filled));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode ReportBodies(const Model *m, Diag *diag, FILE *out)
+{
+  BodyCount *count;
+  PetscInt gaps;
+  char path[64];
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(m->c->n_bodies, &count));
+  PetscCall(CountBodies(m, count));
+  for (PetscInt b = 0; b < m->c->n_bodies; ++b) {
+    const char *name = m->c->bodies[b].name;
+    say(m, out, "#   body %s: %d points in %d cells, volume %g m3, mass %g kg\n", name, (int)count[b].points,
+        (int)count[b].cells, (double)count[b].volume, (double)count[b].mass);
+    PetscCall(CountGaps(m, b, &gaps));
+    PetscCall(PetscSNPrintf(path, sizeof path, "bodies[%d]", (int)b));
+    PetscMPIInt rank;
+    PetscCallMPI(MPI_Comm_rank(m->comm, &rank));
+    if (rank) continue;
+    if (count[b].on_faces)
+      DiagWarning(diag, path, "%d material points of '%s' lie on faces between cells", (int)count[b].on_faces, name);
+    if (gaps) {
+      DiagWarning(diag, path, "%d cells inside '%s' hold no material point: the grid will see gaps there", (int)gaps,
+                  name);
+      DiagHint(diag, "use more points_per_cell, a finer mesh of the body, or a coarser grid");
+    }
+  }
+  PetscCall(PetscFree(count));
+  PetscFunctionReturn(0);
+}
+
+/* Bytes per rank, roughly: points, support, matrix, and the factor of a direct solver by nested dissection's growth. */
+static PetscReal estimated_memory(const Model *m, PetscInt points, PetscInt unknowns, PetscInt pairs)
+{
+  const PetscReal dim = (PetscReal)m->dim, nn = (PetscReal)m->grid->nodes_per_cell,
+                  n = (PetscReal)PetscMax(unknowns, 2);
+  PetscReal per_point = 24 + 8 * nn * (1 + dim);
+  for (PetscInt f = 0; f < POINT_N_REAL; ++f) per_point += 8 * (PetscReal)m->points->components[f];
+  const PetscReal matrix = (PetscReal)pairs * dim * dim * (8 + 8 + 4 + 8 + 8);
+  const PetscReal factor = m->dim == 2 ? 8 * 5 * n * PetscLog2Real(n) : 8 * 6 * PetscPowReal(n, 4.0 / 3.0);
+  const PetscReal direct = m->c->linear != LINEAR_ITERATIVE && m->c->analysis.type == ANALYSIS_STATIC ? factor : 0;
+  return (PetscReal)points * per_point + matrix + direct + 120 * (PetscReal)m->grid->n_nodes_global;
+}
+
+static PetscErrorCode ReportSizes(Model *m, FILE *out)
+{
+  PetscInt points, pairs, all_pairs;
+
+  PetscFunctionBeginUser;
+  PetscCall(ModelActivate(m));
+  PetscCall(ModelCountPoints(m, &points));
+  pairs = m->system->row_start[m->system->n_rows];
+  PetscCall(MPIU_Allreduce(&pairs, &all_pairs, 1, MPIU_INT, MPI_SUM, m->comm));
+  const PetscInt unknowns = m->system->n_active_global * m->dim;
+  say(m, out, "# the model\n#   grid: %d cells (%s), %d nodes, from (%g, %g, %g) to (%g, %g, %g) m\n",
+      (int)m->grid->n_cells_global, cells[m->grid->type].name, (int)m->grid->n_nodes_global, (double)m->grid->min[0],
+      (double)m->grid->min[1], m->dim == 3 ? (double)m->grid->min[2] : 0, (double)m->grid->max[0],
+      (double)m->grid->max[1], m->dim == 3 ? (double)m->grid->max[2] : 0);
+  say(m, out, "#   points: %d; unknowns at the start: %d\n", (int)points, (int)unknowns);
+  say(m, out, "#   memory: about %.3g MB\n", (double)estimated_memory(m, points, unknowns, all_pairs) / 1e6);
+  if (m->c->analysis.type == ANALYSIS_DYNAMIC)
+    say(m, out, "#   waves: %g m/s, %.3g cells in a step of %g s\n", (double)m->courant_speed,
+        (double)(m->courant_speed * m->dt / m->grid->smallest), (double)m->dt);
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode ReportSets(const Model *m, FILE *out)
+{
+  PetscFunctionBeginUser;
+  for (PetscInt s = 0; s < m->grid->n_sets; ++s) {
+    const GridSet *set = &m->grid->sets[s];
+    PetscInt local[3] = {0, set->n_faces, set->n_cells}, all[3];
+    for (PetscInt k = 0; k < set->n_nodes; ++k) local[0] += set->nodes[k] < m->grid->n_owned;
+    PetscCall(MPIU_Allreduce(local, all, 3, MPIU_INT, MPI_SUM, m->comm));
+    if (all[2]) say(m, out, "#   region %s: %d cells\n", set->name, (int)all[2]);
+    else say(m, out, "#   boundary %s: %d nodes, %d faces\n", set->name, (int)all[0], (int)all[1]);
+  }
+  for (PetscInt k = 0; k < m->c->n_boundary; ++k) {
+    PetscInt local = 0, all;
+    for (PetscInt i = 0; i < m->boundary->motion[k].n; ++i) local += m->boundary->motion[k].node[i] < m->grid->n_owned;
+    PetscCall(MPIU_Allreduce(&local, &all, 1, MPIU_INT, MPI_SUM, m->comm));
+    say(m, out, "#   boundary[%d]: moves %d nodes\n", (int)k, (int)all);
+  }
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode CheckModel(MPI_Comm comm, const Case *c, Diag *diag, FILE *out)
+{
+  Model *m;
+
+  PetscFunctionBeginUser;
+  PetscCall(ModelCreate(comm, c, diag, &m));
+  if (!m) PetscFunctionReturn(0);
+  PetscCall(ReportSizes(m, out));
+  PetscCall(ReportSets(m, out));
+  PetscCall(ReportBodies(m, diag, out));
+  PetscCall(ModelDestroy(&m));
+  fflush(out);
+  PetscFunctionReturn(0);
+}

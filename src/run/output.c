@@ -1,0 +1,234 @@
+#include "run/output.h"
+#include <unistd.h>
+#include "case/fields.h"
+#include "io/vtk.h"
+
+#define MAX_FIELDS 32
+
+struct Output {
+  const char *folder;
+  PetscInt count; /* states written */
+  PetscReal *x0;  /* node positions at the start */
+};
+
+PetscErrorCode OutputCreate(const Model *m, const char *folder, Output **output)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscNew(output));
+  (*output)->folder = folder;
+  PetscCall(PetscMalloc1(m->grid->n_nodes * m->dim, &(*output)->x0));
+  PetscCall(PetscArraycpy((*output)->x0, m->grid->x, m->grid->n_nodes * m->dim));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode OutputDestroy(Output **output)
+{
+  PetscFunctionBeginUser;
+  if (!*output) PetscFunctionReturn(0);
+  PetscCall(PetscFree((*output)->x0));
+  PetscCall(PetscFree(*output));
+  PetscFunctionReturn(0);
+}
+
+/* Copy n x dim into n x 3. */
+static void widen(PetscInt n, PetscInt dim, const PetscReal *from, PetscReal *to)
+{
+  for (PetscInt i = 0; i < n; ++i)
+    for (PetscInt d = 0; d < 3; ++d) to[3 * i + d] = d < dim ? from[i * dim + d] : 0;
+}
+
+static PetscReal mises(const PetscReal s[6])
+{
+  const PetscReal a = s[0] - s[1], b = s[1] - s[2], c = s[2] - s[0];
+  return PetscSqrtReal(0.5 * (a * a + b * b + c * c) + 3 * (s[3] * s[3] + s[4] * s[4] + s[5] * s[5]));
+}
+
+/* First number of a named field of the point's state, or NULL if its law has none. */
+static const PetscReal *state_field(const Model *m, PetscInt p, const char *name)
+{
+  const PetscReal *state = point_real(m->points, POINT_STATE, p);
+  for (const LawField *f = m->materials[m->points->material[p]].law->fields; f->name; ++f) {
+    if (!strcmp(f->name, name)) return state;
+    state += f->components;
+  }
+  return NULL;
+}
+
+/* One field of one point. */
+static PetscErrorCode PointValue(const Model *m, PetscInt p, const char *name, PetscReal *out)
+{
+  const Points *points = m->points;
+  const Material *material = &m->materials[points->material[p]];
+  PetscReal sigma[6], F[9];
+
+  PetscFunctionBeginUser;
+  const PetscReal volume = points->real[POINT_J][p] * points->real[POINT_VOLUME][p];
+  if (!strcmp(name, "stress")) PetscCall(ModelPointStress(m, p, out));
+  else if (!strcmp(name, "pressure") || !strcmp(name, "mises")) {
+    PetscCall(ModelPointStress(m, p, sigma));
+    *out = name[0] == 'p' ? -(sigma[0] + sigma[1] + sigma[2]) / 3 : mises(sigma);
+  } else if (!strcmp(name, "deformation_gradient")) {
+    point_F(points, p, F);
+    PetscCall(PetscArraycpy(out, F, 9));
+  } else if (!strcmp(name, "mass")) *out = points->real[POINT_MASS][p];
+  else if (!strcmp(name, "volume")) *out = volume;
+  else if (!strcmp(name, "density")) *out = points->real[POINT_MASS][p] / volume;
+  else if (!strcmp(name, "energy"))
+    *out = material->law->energy(material->parameters, point_real(points, POINT_STATE, p));
+  else if (!strcmp(name, "body")) *out = (PetscReal)points->body[p];
+  else if (!strcmp(name, "material")) *out = (PetscReal)points->material[p];
+  else {
+    const PetscReal *state = state_field(m, p, name);
+    *out = state ? *state : 0;
+  }
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode OutputPointField(const Model *m, const OutputField *field, PetscReal *data)
+{
+  const PetscInt n = m->points->n, k = field->components;
+
+  PetscFunctionBeginUser;
+  if (!strcmp(field->name, "displacement")) widen(n, m->dim, m->points->real[POINT_U], data);
+  else if (!strcmp(field->name, "velocity")) widen(n, m->dim, m->points->real[POINT_V], data);
+  else if (!strcmp(field->name, "acceleration")) widen(n, m->dim, m->points->real[POINT_A], data);
+  else
+    for (PetscInt p = 0; p < n; ++p) PetscCall(PointValue(m, p, field->name, data + p * k));
+  PetscFunctionReturn(0);
+}
+
+static PetscBool is_asked(const Case *c, const char *name)
+{
+  for (PetscInt f = 0; f < c->output.n_fields; ++f)
+    if (!strcmp(c->output.fields[f], name)) return PETSC_TRUE;
+  return PETSC_FALSE;
+}
+
+/* Put the file in place and enter it in its series. */
+static PetscErrorCode WriteState(Output *o, MPI_Comm comm, const char *name, const VtkData *data, PetscBool *ok,
+                                 char reason[256])
+{
+  char file[64], path[PETSC_MAX_PATH_LEN];
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscSNPrintf(file, sizeof file, "%s_%06d.hdf", name, (int)o->count));
+  PetscCall(PetscSNPrintf(path, sizeof path, "%s/%s", o->folder, file));
+  PetscErrorCode code = VtkWrite(comm, path, data, reason);
+  if (!code) {
+    code = VtkSeriesAppend(comm, o->folder, name, file, data->time, reason);
+    if (code) unlink(path); /* a state that no series names would be found by nobody */
+  }
+  if (code) *ok = PETSC_FALSE;
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode WritePoints(Output *o, Model *m, PetscBool *ok, char reason[256])
+{
+  VtkField fields[MAX_FIELDS];
+  PetscReal *data[MAX_FIELDS], *x;
+  PetscInt n = 0;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(3 * m->points->n, &x));
+  widen(m->points->n, m->dim, m->points->real[POINT_X], x);
+  for (const OutputField *f = output_fields; f->name && n < MAX_FIELDS; ++f) {
+    if (!f->points || !strcmp(f->name, "id") || !is_asked(m->c, f->name)) continue;
+    PetscCall(PetscMalloc1(m->points->n * f->components, &data[n]));
+    PetscCall(OutputPointField(m, f, data[n]));
+    fields[n] = (VtkField){.name = f->name, .unit = f->unit, .components = f->components, .data = data[n]};
+    ++n;
+  }
+  const VtkData vtk = {.n_points = m->points->n,
+                       .x = x,
+                       .n_cells = m->points->n,
+                       .nodes_per_cell = 1,
+                       .vtk_type = 1,
+                       .n_point_fields = n,
+                       .point_fields = fields,
+                       .point_id = m->points->id,
+                       .time = m->time};
+  PetscCall(WriteState(o, m->comm, "points", &vtk, ok, reason));
+  for (PetscInt f = 0; f < n; ++f) PetscCall(PetscFree(data[f]));
+  PetscCall(PetscFree(x));
+  PetscFunctionReturn(0);
+}
+
+/* Displacement of nodes: their own where the mesh moves, the points' average where it does not. */
+static PetscErrorCode NodalDisplacement(const Output *o, const Model *m, PetscReal *u)
+{
+  const PetscInt dim = m->dim, dofs = m->grid->n_nodes * dim;
+  const Support *w = m->stage->support;
+
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < dofs; ++i) u[i] = m->method->points_move ? 0 : m->grid->x[i] - o->x0[i];
+  if (!m->method->points_move) PetscFunctionReturn(0);
+  for (PetscInt g = 0, nn = w->uniform; g < w->n_groups; ++g)
+    for (PetscInt p = w->point_start[g]; p < w->point_start[g + 1]; ++p)
+      for (PetscInt i = 0; i < nn * dim; ++i)
+        u[w->node[g * nn + i / dim] * dim + i % dim] +=
+          w->N[p * nn + i / dim] * m->points->real[POINT_MASS][p] * point_real(m->points, POINT_U, p)[i % dim];
+  PetscCall(GridSumToOwners(m->grid, dim, u));
+  PetscCall(GridToGhosts(m->grid, dim, u));
+  for (PetscInt i = 0; i < dofs; ++i) u[i] = m->stage->mass[i / dim] > 1e-300 ? u[i] / m->stage->mass[i / dim] : 0;
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode GridField(const Output *o, const Model *m, const OutputField *field, PetscReal **data)
+{
+  const PetscInt n = m->grid->n_nodes;
+  PetscReal *u;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(n * field->components, data));
+  if (!strcmp(field->name, "velocity")) widen(n, m->dim, m->stage->v, *data);
+  else if (!strcmp(field->name, "acceleration")) widen(n, m->dim, m->stage->a, *data);
+  else if (!strcmp(field->name, "mass")) PetscCall(PetscArraycpy(*data, m->stage->mass, n));
+  else {
+    PetscCall(PetscMalloc1(n * m->dim, &u));
+    PetscCall(NodalDisplacement(o, m, u));
+    widen(n, m->dim, u, *data);
+    PetscCall(PetscFree(u));
+  }
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode WriteGrid(Output *o, Model *m, PetscBool *ok, char reason[256])
+{
+  const Grid *grid = m->grid;
+  VtkField fields[MAX_FIELDS];
+  PetscReal *data[MAX_FIELDS], *x;
+  PetscInt n = 0;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(3 * grid->n_nodes, &x));
+  widen(grid->n_nodes, m->dim, grid->x, x);
+  for (const OutputField *f = output_fields; f->name && n < MAX_FIELDS; ++f) {
+    if (!f->grid || !is_asked(m->c, f->name)) continue;
+    PetscCall(GridField(o, m, f, &data[n]));
+    fields[n] = (VtkField){.name = f->name, .unit = f->unit, .components = f->components, .data = data[n]};
+    ++n;
+  }
+  const VtkData vtk = {.n_points = grid->n_nodes,
+                       .x = x,
+                       .n_cells = grid->n_cells,
+                       .connectivity = grid->cell_node,
+                       .nodes_per_cell = grid->nodes_per_cell,
+                       .vtk_type = cells[grid->type].vtk_type,
+                       .n_point_fields = n,
+                       .point_fields = fields,
+                       .time = m->time};
+  PetscCall(WriteState(o, m->comm, "grid", &vtk, ok, reason));
+  for (PetscInt f = 0; f < n; ++f) PetscCall(PetscFree(data[f]));
+  PetscCall(PetscFree(x));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode OutputWrite(Output *o, Model *m, PetscBool *ok, char reason[256])
+{
+  PetscFunctionBeginUser;
+  *ok = PETSC_TRUE;
+  PetscCall(WritePoints(o, m, ok, reason));
+  if (*ok && m->c->output.grid) PetscCall(WriteGrid(o, m, ok, reason));
+  ++o->count;
+  PetscFunctionReturn(0);
+}

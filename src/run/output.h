@@ -1,0 +1,15 @@
+/* States of a model as VTKHDF files. */
+#pragma once
+#include "case/fields.h"
+#include "model/model.h"
+
+typedef struct Output Output;
+
+PetscErrorCode OutputCreate(const Model *model, const char *folder, Output **output);
+PetscErrorCode OutputDestroy(Output **output);
+/* Collective. points_NNNNNN.hdf (and grid_NNNNNN.hdf if the case asks) of the present state, and their series. If the file system
+ * refuses, *ok is false and reason says why; files written before stay whole. */
+PetscErrorCode OutputWrite(Output *output, Model *model, PetscBool *ok, char reason[256]);
+
+/* A field of this rank's points: n x components numbers, vectors with three components in 2D too. */
+PetscErrorCode OutputPointField(const Model *model, const OutputField *field, PetscReal *data);

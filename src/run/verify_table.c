@@ -1,0 +1,88 @@
+/* The table of a study on a terminal: one line a row, as it is done. */
+#include <string.h>
+#include "run/verify_private.h"
+
+/* A number, or a dash where there is none. */
+static const char *cell(const char *format, PetscReal value, char text[40])
+{
+  if (PetscIsNanReal(value)) strcpy(text, "-");
+  else PetscSNPrintf(text, 40, format, (double)value);
+  return text;
+}
+
+static void write_source(FILE *out, const Source *source)
+{
+  fprintf(out, "%s", source->text);
+  if (source->confidence) fprintf(out, " [%s]", confidence_words[source->confidence]);
+}
+
+static void write_exact(FILE *out, const StudySpec *study)
+{
+  const ExactSpec *exact = &study->exact;
+  fputs("  exact: ", out);
+  if (exact->has_value) fprintf(out, "%.9g", (double)exact->value);
+  for (PetscInt i = 0; i < exact->n_values; ++i)
+    fprintf(out, "%s%s %.9g", i ? ", " : "", exact->values[i].name, (double)exact->values[i].value);
+  fputs("; ", out);
+  write_source(out, exact->source.text ? &exact->source : &study->source);
+  fputc('\n', out);
+}
+
+void verify_table_head(FILE *out, const Verification *v, PetscInt first)
+{
+  const VerifyRow *r = &v->rows[first];
+  const StudySpec *study = r->study;
+  char variable[80];
+  fprintf(out, "\n%s: %s\n  measure %s%s%s%s over %s %s%s%s%s\n", study->name, study->title, study->measure,
+          r->unit[0] ? " [" : "", r->unit, r->unit[0] ? "]" : "", study->sweep.name, study->sweep.symbol,
+          study->sweep.unit ? " [" : "", study->sweep.unit ? study->sweep.unit : "", study->sweep.unit ? "]" : "");
+  if (study->source.text) {
+    fputs("  reference: ", out);
+    write_source(out, &study->source);
+    fputc('\n', out);
+  }
+  if (study->has_exact) write_exact(out, study);
+  PetscSNPrintf(variable, sizeof variable, "%s", study->sweep.symbol);
+  fprintf(out, "\n  %-12s %9s %13s %15s %9s", "series", variable, "reference", "value", "off by");
+  if (verify_has_errors(study)) fprintf(out, " %9s %6s", "error", "order");
+  fprintf(out, " %6s %6s %8s  result\n", "steps", "Newton", "s");
+  fflush(out);
+}
+
+void verify_table_row(FILE *out, const VerifyRow *r)
+{
+  char a[40], b[40], c[40], d[40], e[40], seconds[40] = "shared";
+  fprintf(out, "  %-12s %9s %13s %15s %9s", r->series->name, r->row->at, cell("%.9g", r->reference, a),
+          cell("%.10g", r->value, b), cell("%.1e", r->deviation, c));
+  if (verify_has_errors(r->study)) fprintf(out, " %9s %6s", cell("%.2e", r->error, d), cell("%.3f", r->order, e));
+  if (!r->shared) cell("%.2f", r->seconds, seconds);
+  fprintf(out, " %6d %6d %8s  %s\n", (int)r->summary.steps, (int)r->summary.iterations, seconds,
+          r->pass ? "pass" : "FAIL");
+  if (!r->pass) fprintf(out, "  %-12s %9s ^ %s\n", "", "", r->why);
+  fflush(out);
+}
+
+static void write_agreement(FILE *out, const Verification *v, PetscInt first, PetscInt last, const AgreeSpec *agree)
+{
+  PetscReal worst = -1;
+  for (PetscInt k = first; k < last; ++k)
+    if (!strcmp(v->rows[k].series->name, agree->series) && !PetscIsNanReal(v->rows[k].difference))
+      worst = PetscMax(worst, v->rows[k].difference);
+  if (worst >= 0)
+    fprintf(out, "  %s agrees with %s to %.1e (allowed %.0e)\n", agree->series, agree->with, (double)worst,
+            (double)agree->tolerance);
+}
+
+void verify_table_foot(FILE *out, const Verification *v, PetscInt first, PetscInt last)
+{
+  const StudySpec *study = v->rows[first].study;
+  PetscReal seconds = 0;
+  PetscInt passed = 0;
+  for (PetscInt k = first; k < last; ++k) {
+    seconds += v->rows[k].seconds;
+    passed += v->rows[k].pass ? 1 : 0;
+  }
+  for (PetscInt i = 0; i < study->n_agree; ++i) write_agreement(out, v, first, last, &study->agree[i]);
+  fprintf(out, "  %d of %d rows pass, %.1f s\n", (int)passed, (int)(last - first), (double)seconds);
+  fflush(out);
+}

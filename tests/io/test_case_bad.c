@@ -1,0 +1,375 @@
+/* Bad input: each gets an error that says where and what, and all errors of a file are told. */
+#include "test_case.h"
+
+typedef struct {
+  const char *name, *text;
+  const char *said[4]; /* every one of these stands in what is printed */
+} Bad;
+
+#define WITH_BODY(body) PLAIN_TOP PLAIN_GRID "bodies: [" body "]\n" PLAIN_MATERIALS
+#define WITH_MATERIAL(constants) PLAIN_TOP PLAIN_GRID PLAIN_BODIES "materials: {rubber: {" constants "}}\n"
+#define WITH_GRID(grid) PLAIN_TOP "grid: {" grid "}\n" PLAIN_BODIES PLAIN_MATERIALS
+#define WITH_ANALYSIS(analysis) \
+  "kinematics: plane-strain\nmethod: mpm\nanalysis: {" analysis "}\n" PLAIN_GRID PLAIN_BODIES PLAIN_MATERIALS
+#define BOX "box: {min: [0, 0], max: [4, 2]}"
+#define SQUARE "shape: {box: {min: [0, 0], max: [1, 1]}}"
+
+static const Bad bads[] = {
+  /* files that are no case */
+  {"empty", "", {"F: error: the file is empty"}},
+  {"comment only", "# nothing\n\n", {"F: error: the file is empty"}},
+  {"list", "- a\n- b\n", {"F:1:1: error: a case file consists of `key: value` lines"}},
+  {"word", "hello\n", {"F:1:1: error: a case file consists of"}},
+  {"garbage", "\x01\x02\xff\xfe\x80", {"F:1:1: error: byte 0x01 is no text in UTF-8"}},
+  {"latin 1", "title: caf\xe9\n", {"F:1:11: error: byte 0xE9 is no text in UTF-8"}},
+  {"elf",
+   "\x7f"
+   "ELF",
+   {"byte 0x7F"}},
+  /* syntax */
+  {"tab", PLAIN_TOP "grid:\n\tsize: 1\n", {"F:5:1: error: syntax: ", "hint: indent with spaces"}},
+  {"open quote", "title: \"abc\n", {"F:1:9: error: syntax: "}},
+  {"open bracket", "title: [a, b\n", {"error: syntax: "}},
+  {"two documents", PLAIN "---\ntitle: b\n", {"a second document begins here"}},
+  {"tag", "title: !foo a\n", {"F:1:13: error: a case file has no tags"}},
+  {"list as key", "? [a, b]\n: c\n", {"F:1:3: error: a key must be a single word"}},
+  {"unknown alias", "title: *nope\n", {"there is no anchor"}},
+  {"alias in itself", "title: &x [*x]\n", {"an alias may not stand inside its own anchor"}},
+  {"duplicate key", PLAIN "method: fem\n", {"F:9:1: error: key 'method' stands twice in the file (first in line 2)"}},
+  /* keys */
+  {"unknown key",
+   WITH_MATERIAL("law: neo-hookean, density: 1, yung: 1, young: 1, poisson: 0"),
+   {"F:7:52: error: key 'yung' of materials.rubber is not known\n", "  hint: did you mean 'young'?", "^~~~"}},
+  {"unknown key at the top",
+   PLAIN "analyse: 1\n",
+   {"F:9:1: error: key 'analyse' of the file is not known", "did you mean 'analysis'?"}},
+  {"missing keys",
+   "title: a\n",
+   {"F: error: key 'kinematics' of the file is missing", "key 'bodies' of the file is missing", "key 'materials'",
+    "key 'grid'"}},
+  {"merge key", PLAIN "newton: {<<: 1}\n", {"key '<<' of newton is not known"}},
+  {"empty key", PLAIN "newton: {residual: }\n", {"newton.residual must be a number >= 0, not empty"}},
+  /* types */
+  {"text for number",
+   WITH_MATERIAL("law: neo-hookean, density: heavy, young: 1, poisson: 0"),
+   {"F:7:49: error: materials.rubber.density must be a number > 0 in kg/m3, not 'heavy'"}},
+  {"quoted number",
+   WITH_MATERIAL("law: neo-hookean, density: \"1000\", young: 1, poisson: 0"),
+   {"in quotes", "hint: leave the quotes out"}},
+  {"number with unit",
+   WITH_MATERIAL("law: neo-hookean, density: 1, young: 90 MPa, poisson: 0"),
+   {"not '90 MPa'", "its unit is Pa"}},
+  {"decimal comma", WITH_MATERIAL("law: neo-hookean, density: 1, young: '9', poisson: 0"), {"leave the quotes out"}},
+  {"nan",
+   WITH_MATERIAL("law: neo-hookean, density: nan, young: 1, poisson: 0"),
+   {"materials.rubber.density must be a number > 0", "a finite number"}},
+  {"inf",
+   WITH_MATERIAL("law: neo-hookean, density: .inf, young: 1, poisson: 0"),
+   {"materials.rubber.density must be a number > 0", "'.inf'"}},
+  {"huge",
+   WITH_MATERIAL("law: neo-hookean, density: 1e999, young: 1, poisson: 0"),
+   {"materials.rubber.density must be", "too large"}},
+  {"hexadecimal",
+   WITH_MATERIAL("law: neo-hookean, density: 0x10, young: 1, poisson: 0"),
+   {"materials.rubber.density must be a number > 0"}},
+  {"negative density",
+   WITH_MATERIAL("law: neo-hookean, density: -1, young: 1, poisson: 0"),
+   {"materials.rubber.density must be a number > 0 in kg/m3, not '-1'"}},
+  {"zero density", WITH_MATERIAL("law: neo-hookean, density: 0, young: 1, poisson: 0"), {"not '0'"}},
+  {"list for number", PLAIN "newton: {residual: [1]}\n", {"newton.residual must be a number >= 0, not a list"}},
+  {"mapping for word", PLAIN "linear: {a: 1}\n", {"linear must be one of auto, direct or iterative, not a mapping"}},
+  {"number for mapping", PLAIN "newton: 3\n", {"newton must be a mapping {key: value, ...}, not '3'"}},
+  {"mapping for list", PLAIN "boundary: {on: {}, fix: [x]}\n", {"boundary must be a list of mappings, not a mapping"}},
+  {"word for item", PLAIN "boundary: [left]\n", {"boundary[0] must be a mapping"}},
+  {"fraction",
+   PLAIN "newton: {max_iterations: 2.5}\n",
+   {"newton.max_iterations must be a whole number >= 1, not '2.5'"}},
+  {"yes", PLAIN "output: {grid: yes}\n", {"output.grid must be true or false, not 'yes'"}},
+  {"wrong word", PLAIN "linear: dircet\n", {"linear must be one of", "did you mean 'direct'?"}},
+  {"wrong method", "method: mmp\n", {"method must be one of mpm, fem or gmm, not 'mmp'", "did you mean 'mpm'?"}},
+  {"bad name",
+   WITH_BODY("{name: a.b, " SQUARE ", material: rubber}"),
+   {"the name 'a.b' may not hold the character '.'"}},
+  {"name twice",
+   WITH_BODY("{name: a, " SQUARE ", material: rubber}, {name: a, " SQUARE ", material: rubber}"),
+   {"the name 'a' is taken by bodies[0]"}},
+  /* vectors and dimensions */
+  {"long vector",
+   PLAIN "loads: {gravity: [0, 0, -9.81]}\n",
+   {"loads.gravity must have 2 entries (this case is two-dimensional), not 3"}},
+  {"bad component", PLAIN "loads: {gravity: [0, down]}\n", {"loads.gravity[1] must be a number in m/s2, not 'down'"}},
+  {"z in the plane", PLAIN "boundary: [{on: {x: 0}, fix: [z]}]\n", {"boundary[0].fix[0] must be x or y, not 'z'"}},
+  {"z of a selector",
+   PLAIN "boundary: [{on: {z: 0}, fix: [x]}]\n",
+   {"key 'z' of boundary[0].on belongs to kinematics: 3d"}},
+  {"axis twice", PLAIN "boundary: [{on: {x: 0}, fix: [x, x]}]\n", {"boundary[0].fix[1] stands twice"}},
+  {"sphere in the plane",
+   WITH_BODY("{name: a, shape: {sphere: {centre: [0, 0], radius: 1}}, material: rubber}"),
+   {"key 'sphere'", "there is 'circle'"}},
+  /* analysis */
+  {"dynamic without step", WITH_ANALYSIS("type: dynamic, end: 1"), {"key 'step' of analysis is missing"}},
+  {"dynamic without end", WITH_ANALYSIS("type: dynamic, step: 1"), {"key 'end' of analysis is missing"}},
+  {"steps and step", WITH_ANALYSIS("type: static, steps: 2, step: 0.5"), {"analysis has both 'steps' and 'step'"}},
+  {"step beyond end", WITH_ANALYSIS("type: dynamic, step: 2, end: 1"), {"analysis.step is larger than analysis.end"}},
+  {"smallest above step",
+   WITH_ANALYSIS("type: dynamic, step: 0.1, end: 1, smallest: 1"),
+   {"analysis.smallest is larger than the step"}},
+  {"bossak",
+   WITH_ANALYSIS("type: dynamic, step: 0.1, end: 1, bossak: 0.1"),
+   {"analysis.bossak must be a number >= -0.333333 and <= 0, not '0.1'"}},
+  /* grid */
+  {"size that does not divide",
+   WITH_GRID(BOX ", size: 0.3"),
+   {"grid.size 0.3 does not divide the box along x, which is 4 m long",
+    "near it are 0.3076923077 (13 cells) and 0.2857142857 (14 cells)", "along y"}},
+  {"size too large", WITH_GRID(BOX ", size: 3"), {"the largest cell possible is 2"}},
+  {"size zero", WITH_GRID(BOX ", size: 0"), {"grid.size must be a number, or one for each axis > 0 in m, not '0'"}},
+  {"no size", WITH_GRID(BOX), {"key 'size' of grid is missing"}},
+  {"size and counts", WITH_GRID(BOX ", size: 1, counts: [4, 2]"), {"grid has both 'size' and 'counts'"}},
+  {"box and mesh", WITH_GRID(BOX ", size: 1, mesh: a.msh"), {"grid has both 'box' and 'mesh'"}},
+  {"empty box",
+   WITH_GRID("box: {min: [0, 0], max: [0, 2]}, size: 1"),
+   {"grid.box: max must be larger than min, along x 0 is not larger than 0"}},
+  {"cell of another dimension",
+   WITH_GRID(BOX ", size: 1, cell: tetrahedron"),
+   {"has 3 dimensions, this case has 2", "quadrilateral or triangle"}},
+  {"size of a mesh", WITH_GRID("mesh: a.msh, size: 1"), {"key 'size' of grid means something only beside 'box'"}},
+  {"too many cells", WITH_GRID(BOX ", counts: [1000000, 1000000]"), {"more than this build can number"}},
+  /* bodies */
+  {"no shape",
+   WITH_BODY("{name: a, material: rubber}"),
+   {"bodies[0] needs at least one of 'shape', 'region' or 'mesh'"}},
+  {"two shapes",
+   WITH_BODY(
+     "{name: a, shape: {circle: {centre: [0, 0], radius: 1}, box: {min: [0, 0], max: [1, 1]}}, material: rubber}"),
+   {"bodies[0].shape has both 'box' and 'circle'"}},
+  {"flat polygon",
+   WITH_BODY("{name: a, shape: {polygon: [[0, 0], [1, 1], [2, 2]]}, material: rubber}"),
+   {"the polygon has no area"}},
+  {"two corners",
+   WITH_BODY("{name: a, shape: {polygon: [[0, 0], [1, 1]]}, material: rubber}"),
+   {"bodies[0].shape.polygon must be a list of three corners or more"}},
+  {"unknown material",
+   WITH_BODY("{name: a, " SQUARE ", material: ruber}"),
+   {"there is no 'ruber' in materials", "did you mean 'rubber'?"}},
+  {"unknown rule",
+   WITH_BODY("{name: a, " SQUARE ", material: rubber, points_per_cell: 5}"),
+   {"no Gauss rule of a quadrilateral has 5 points; there are 1, 4, 9, 16"}},
+  {"region of a box",
+   WITH_BODY("{name: a, region: soil, material: rubber}"),
+   {"bodies[0].region: a box grid has no regions"}},
+  {"k0 without surface",
+   WITH_BODY("{name: a, " SQUARE ", material: rubber, k0: 0.5}"),
+   {"key 'surface' of bodies[0] is missing"}},
+  {"no bodies", PLAIN_TOP PLAIN_GRID "bodies: []\n" PLAIN_MATERIALS, {"bodies is an empty list"}},
+  /* materials */
+  {"unknown law",
+   WITH_MATERIAL("law: neo-hokean, density: 1, young: 1, poisson: 0"),
+   {"there is no law 'neo-hokean'", "did you mean 'neo-hookean'?"}},
+  {"incompressible",
+   WITH_MATERIAL("law: neo-hookean, density: 1, young: 1, poisson: 0.5"),
+   {"Poisson's ratio 0.5 cannot be solved for displacements alone", "`formulation: mixed`"}},
+  {"poisson too large",
+   WITH_MATERIAL("law: neo-hookean, density: 1, young: 1, poisson: 0.51"),
+   {"materials.rubber.poisson must be a number > -1 and <= 0.5, not '0.51'"}},
+  {"one constant",
+   WITH_MATERIAL("law: neo-hookean, density: 1, young: 1"),
+   {"materials.rubber needs two elastic constants, it has one", "any two of"}},
+  {"three constants",
+   WITH_MATERIAL("law: neo-hookean, density: 1, young: 1, poisson: 0, shear: 1"),
+   {"has 3 elastic constants; exactly two"}},
+  {"impossible pair",
+   WITH_MATERIAL("law: neo-hookean, density: 1, young: 9, shear: 1"),
+   {"no stable elastic material has young = 9 together with shear = 1"}},
+  {"ambiguous pair",
+   WITH_MATERIAL("law: neo-hookean, density: 1, poisson: 0, lame: 1"),
+   {"no stable elastic material"}},
+  /* boundary, loads */
+  {"no motion",
+   PLAIN "boundary: [{on: {x: 0}}]\n",
+   {"boundary[0] needs one of 'fix', 'displacement', 'velocity' or 'rotation'"}},
+  {"two motions",
+   PLAIN "boundary: [{on: {x: 0}, fix: [x], velocity: {y: 1}}]\n",
+   {"boundary[0] has both 'fix' and 'velocity'"}},
+  {"unknown side",
+   PLAIN "boundary: [{on: {boundary: lefd}, fix: [x]}]\n",
+   {"a box has no boundary 'lefd'", "did you mean 'left'?"}},
+  {"side of 3d", PLAIN "boundary: [{on: {boundary: front}, fix: [x]}]\n", {"a box has no boundary 'front'"}},
+  {"motion of a body",
+   PLAIN "boundary: [{on: {body: beam}, fix: [x]}]\n",
+   {"motion is prescribed on the grid, not on a body"}},
+  {"unknown body",
+   PLAIN "loads: {tractions: [{on: {body: bem}, value: [0, 1]}]}\n",
+   {"loads.tractions[0].on.body: there is no 'bem' in bodies", "did you mean 'beam'?"}},
+  {"reversed interval", PLAIN "boundary: [{on: {x: [2, 1]}, fix: [x]}]\n", {"the first number must not be larger"}},
+  {"amplitude backwards",
+   PLAIN "loads: {gravity: [0, -1], gravity_amplitude: [[1, 0], [0, 1]]}\n",
+   {"times must grow from pair to pair"}},
+  {"amplitude no pair",
+   PLAIN "loads: {gravity_amplitude: [[1, 0, 3]]}\n",
+   {"loads.gravity_amplitude[0] must be a pair"}},
+  {"displacement of nothing", PLAIN "boundary: [{on: {x: 0}, displacement: {}}]\n", {"needs at least one of"}},
+  /* measures, output */
+  {"measure of nothing",
+   PLAIN "measures: {tip: {displacement: y}}\n",
+   {"key 'of' of measures.tip is missing", "of: {tracer: [x, y]}"}},
+  {"measure of the wrong thing",
+   PLAIN "measures: {tip: {displacement: y, of: {body: beam}}}\n",
+   {"measures.tip.of must name a tracer"}},
+  {"measure of unknown body",
+   PLAIN "measures: {a: {extent: {max: x}, of: {body: beem}}}\n",
+   {"there is no 'beem' in bodies"}},
+  {"surface without a place",
+   PLAIN "measures: {a: {surface: height}}\n",
+   {"key 'at' of measures.a is missing", "surface: height, at: x"}},
+  {"place without a height",
+   PLAIN "measures: {a: {surface: front, at: 1}}\n",
+   {"measures.a.at makes sense only with surface: height"}},
+  {"front without a speed", PLAIN "measures: {a: {run_out_time: {max: x}}}\n", {"speed"}},
+  {"speed of nothing",
+   PLAIN "measures: {a: {run_out_time: {max: x, speed: 0}}}\n",
+   {"measures.a.run_out_time.speed", "> 0"}},
+  {"surface that goes left",
+   PLAIN "measures: {a: {run_out_time: {min: x, speed: 1, front: surface}}}\n",
+   {"the surface's front is max: x"}},
+  {"transfer of a body",
+   PLAIN "measures: {a: {energy: transfer, of: {body: beam}}}\n",
+   {"measures.a.of: this energy is known for the whole model only"}},
+  {"reaction index", PLAIN "measures: {a: {reaction: x, of: {boundary: 3}}}\n", {"boundary has 0 entries"}},
+  {"unknown field",
+   PLAIN "output: {fields: [displacment]}\n",
+   {"there is no field 'displacment'", "did you mean 'displacement'?"}},
+  {"never", PLAIN "output: {every: 0}\n", {"output.every must be `end`, a time in s above 0, or {steps: n}, not '0'"}},
+};
+
+static void Table(void **state)
+{
+  (void)state;
+  for (size_t i = 0; i < sizeof(bads) / sizeof(bads[0]); ++i) {
+    char *said;
+    Case *c = read_text(bads[i].text, &said);
+    if (c) fail_msg("%s: was taken for good", bads[i].name);
+    for (int k = 0; k < 4 && bads[i].said[k]; ++k)
+      if (!strstr(said, bads[i].said[k])) fail_msg("%s: no '%s' in:\n%s", bads[i].name, bads[i].said[k], said);
+    free(said);
+  }
+}
+
+static int Count(const char *text, const char *word)
+{
+  int n = 0;
+  while ((text = strstr(text, word))) ++n, ++text;
+  return n;
+}
+
+/* One pass tells all of them, in the order of the lines, and nothing else. */
+static void AllAtOnce(void **state)
+{
+  char *said;
+  Case *c =
+    read_text(PLAIN_TOP "grid: {" BOX
+                        ", size: 0.3}\n"
+                        "bodies:\n  - {name: a, " SQUARE
+                        ", material: x}\n  - {name: b, material: rubber}\n"
+                        "materials: {rubber: {law: neo-hookean, density: nan, yung: 1, poisson: 2}}\nlinear: no\n",
+              &said);
+  (void)state;
+  assert_null(c);
+  assert_int_equal(Count(said, ": error: "),
+                   9); /* size along x and y, material, shape, density, yung, poisson, one elastic constant, linear */
+  assert_true(strstr(said, "F:4:") < strstr(said, "F:6:") && strstr(said, "F:6:") < strstr(said, "F:7:") &&
+              strstr(said, "F:8:") < strstr(said, "F:9:"));
+  free(said);
+}
+
+static void Deep(void **state)
+{
+  static char text[200000];
+  char *said;
+  (void)state;
+  memset(text, '[', sizeof(text) - 1);
+  memcpy(text, "grid: ", 6);
+  assert_null(read_text(text, &said));
+  assert_non_null(strstr(said, "nested too deeply"));
+  free(said);
+}
+
+/* Ten lines of aliases that would make nine to the twelfth values. */
+static void Bomb(void **state)
+{
+  char text[2000] = "a: &a [1, 1, 1, 1, 1, 1, 1, 1, 1]\n", line[200], *said;
+  (void)state;
+  for (char k = 'b'; k < 'n'; ++k) {
+    const char p = (char)(k - 1);
+    snprintf(line, sizeof(line), "%c: &%c [*%c, *%c, *%c, *%c, *%c, *%c, *%c, *%c, *%c]\n", k, k, p, p, p, p, p, p, p,
+             p, p);
+    strcat(text, line);
+  }
+  assert_null(read_text(text, &said));
+  assert_non_null(strstr(said, "aliases of aliases"));
+  free(said);
+}
+
+static void NulBytes(void **state)
+{
+  char *said;
+  (void)state;
+  assert_null(read_bytes("title: a\0b\n", 11, 0, NULL, &said));
+  assert_non_null(strstr(said, "F:1:9: error: byte 0x00"));
+  free(said);
+}
+
+/* Every prefix of a good file, and the file with one byte changed: an answer, never a crash. */
+static void Truncated(void **state)
+{
+  char text[] = PLAIN "loads: {gravity: [0, -9.81]}\noutput: {every: {steps: 2}}\n", *said;
+  const size_t size = strlen(text);
+  (void)state;
+  for (size_t n = 0; n < size; n += 3) {
+    Case *c = read_bytes(text, n, 0, NULL, &said);
+    CaseDestroy(&c);
+    free(said);
+  }
+  for (size_t n = 0; n < size; ++n) {
+    const char kept = text[n];
+    text[n] = "{}[]:,&*!|>'\"%@`#-?\n\t x0"[n % 24];
+    Case *c = read_bytes(text, size, 0, NULL, &said);
+    CaseDestroy(&c);
+    free(said);
+    text[n] = kept;
+  }
+}
+
+static void NoFile(void **state)
+{
+  const char *const names[] = {"/tmp/talus/no/such/file.yaml", "/tmp", "/dev/null"}, *const said[] = {
+                                                                                       "there is no such file",
+                                                                                       "this is a directory",
+                                                                                       "no plain file"};
+  (void)state;
+  for (int i = 0; i < 3; ++i) {
+    char *text = NULL;
+    size_t size;
+    Diag *diag;
+    Case *c;
+    DiagCreate(&diag);
+    assert_int_equal(CaseRead(PETSC_COMM_WORLD, names[i], 0, NULL, diag, &c), 0);
+    assert_null(c);
+    FILE *out = open_memstream(&text, &size);
+    DiagFlush(diag, out);
+    fclose(out);
+    assert_non_null(strstr(text, said[i]));
+    free(text);
+    DiagDestroy(&diag);
+  }
+}
+
+int main(int argc, char **argv)
+{
+  const struct CMUnitTest tests[] = {cmocka_unit_test(Table), cmocka_unit_test(AllAtOnce), cmocka_unit_test(Deep),
+                                     cmocka_unit_test(Bomb),  cmocka_unit_test(NulBytes),  cmocka_unit_test(Truncated),
+                                     cmocka_unit_test(NoFile)};
+  if (PetscInitialize(&argc, &argv, NULL, NULL)) return 1;
+  const int failed = cmocka_run_group_tests(tests, NULL, NULL);
+  return PetscFinalize() || failed;
+}

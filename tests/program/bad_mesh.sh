@@ -1,0 +1,96 @@
+#!/bin/sh
+# Meshes that cannot be used: said with the file's name (and its line where that helps), exit code 2, nothing written.
+. "$(dirname "$0")/library.sh"
+
+cat >case.yaml <<'END'
+kinematics: plane-strain
+method: fem
+analysis: {type: static, steps: 1}
+grid: {mesh: plate.msh}
+bodies:
+  - {name: plate, region: soil, points_per_cell: 4, material: rubber}
+materials:
+  rubber: {law: neo-hookean, density: 1000, young: 1e6, poisson: 0.3}
+boundary:
+  - {on: {boundary: wall}, fix: [x, y]}
+measures:
+  tip: {displacement: y, of: {tracer: [2, 1]}}
+END
+
+# Two squares; $1 is a sed expression that spoils them.
+plate() {
+  cat <<'END' | sed "$1"
+$MeshFormat
+2.2 0 8
+$EndMeshFormat
+$PhysicalNames
+2
+1 1 "wall"
+2 2 "soil"
+$EndPhysicalNames
+$Nodes
+6
+1 0 0 0
+2 1 0 0
+3 2 0 0
+4 0 1 0
+5 1 1 0
+6 2 1 0
+$EndNodes
+$Elements
+3
+1 1 2 1 1 1 4
+2 3 2 2 2 1 2 5 4
+3 3 2 2 2 2 3 6 5
+$EndElements
+END
+}
+
+# refused NAME SED-EXPRESSION TEXT...: the plate with a change.
+refused() {
+  what=$1
+  plate "$2" >plate.msh
+  shift 2
+  check "$what" "$@"
+}
+
+# check NAME TEXT...: what stands there is refused with these texts.
+check() {
+  what=$1
+  shift
+  expect "$what" 2 "$talus" run case.yaml --out result
+  says err.txt "$@"
+  [ ! -e result ] || fail "$what: something was written"
+  rm -rf result
+}
+
+plate '' >plate.msh
+expect "good mesh" 0 "$talus" run case.yaml --out good --quiet
+refused "inverted cell" 's/^3 3 2 2 2 2 3 6 5/3 3 2 2 2 2 6 3 5/' "plate.msh" "cell"
+refused "flat cell" 's/^6 2 1 0/6 1.5 0.5 0/' "plate.msh"
+refused "unknown node" 's/^3 3 2 2 2 2 3 6 5/3 3 2 2 2 2 3 66 5/' "plate.msh" "element 3 names node 66"
+refused "half a mesh" '/^3 3 2/,$d' "plate.msh"
+refused "no number" 's/^5 1 1 0/5 1 one 0/' "plate.msh:15" "one"
+refused "nan" 's/^5 1 1 0/5 1 nan 0/' "plate.msh:15"
+refused "no cells" '/^[23] 3/d; s/^3$/1/' "plate.msh"
+refused "another format" 's/^2.2 0 8/9.9 0 8/' "plate.msh:2" "9.9"
+head -c 500 "$talus" >plate.msh
+check "binary" "plate.msh"
+: >plate.msh
+check "empty mesh" "plate.msh"
+rm plate.msh
+check "no mesh" "case.yaml:4:14: error: " "plate.msh"
+mkdir plate.msh
+check "mesh is a directory" "plate.msh" "not a file"
+rmdir plate.msh
+plate '' >plate.msh
+cp case.yaml good.yaml
+sed 's/region: soil/region: soyl/' good.yaml >case.yaml
+check "unknown region" "case.yaml:6:27: error: " "'soyl'" "did you mean 'soil'?"
+sed 's/boundary: wall/boundary: wal/' good.yaml >case.yaml
+check "unknown boundary" "case.yaml:10:" "'wal'" "did you mean 'wall'?"
+printf 'Point(1) = {0, 0, 0;\n' >wrong.geo
+sed 's/plate.msh/wrong.geo/' good.yaml >case.yaml
+check "wrong geo" "wrong.geo"
+
+finish

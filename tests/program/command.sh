@@ -1,0 +1,97 @@
+#!/bin/sh
+# The command line: help, mistakes with the nearest word, options, exit codes.
+. "$(dirname "$0")/library.sh"
+cantilever >case.yaml
+
+expect "help" 0 "$talus" --help
+says out.txt "usage: talus COMMAND" "Exit codes: 0 done, 1 the solver gave up, 2 bad input or usage, 3 a verification"
+commands=$(sed -n '/^commands:/,/^$/s/^  \([a-z]*\) .*/\1/p' out.txt)
+[ "$(echo $commands)" = "run check list schema verify plot version" ] || fail "help: commands are '$commands'"
+for command in $commands; do
+  expect "$command --help" 0 "$talus" $command --help
+  says out.txt "usage: talus $command" "options:" "--help"
+  expect "$command --hlep" 2 "$talus" $command --hlep
+  says err.txt "option --hlep is not known" "did you mean --help?"
+  [ ! -s out.txt ] || fail "$name: something on standard output"
+done
+expect "nothing" 2 "$talus"
+says err.txt "usage: talus COMMAND"
+expect "unknown command" 2 "$talus" rnu case.yaml
+says err.txt "'rnu' is no command" "did you mean 'talus run'?"
+expect "case as a command" 2 "$talus" case.yaml
+says err.txt "to run a case: talus run case.yaml"
+expect "no case" 2 "$talus" run
+says err.txt "there is no CASE on the command line" "usage: talus run CASE"
+expect "two cases" 2 "$talus" run case.yaml b.yaml
+says err.txt "'b.yaml' is one word too many"
+expect "unknown option" 2 "$talus" run case.yaml --otu x
+says err.txt "option --otu is not known" "did you mean --out?"
+expect "no value" 2 "$talus" run case.yaml --out
+says err.txt "option --out needs a value"
+expect "value of a flag" 2 "$talus" run case.yaml --quiet=yes
+says err.txt "option --quiet takes no value"
+expect "single dash" 2 "$talus" run case.yaml -out x
+says err.txt "did you mean --out?"
+expect "version" 0 "$talus" --version
+says out.txt "talus 0." "PETSc 3." "MPI " "HDF5 "
+
+# Lists and the schema
+for list in laws:neo-hookean methods:fem cells:hexahedron measures:angular_momentum fields:deformation_gradient; do
+  expect "list ${list%:*}" 0 "$talus" list "${list%:*}"
+  says out.txt "${list#*:}"
+done
+expect "list of nothing" 2 "$talus" list field
+says err.txt "did you mean 'fields'?"
+expect "schema" 0 "$talus" schema
+says out.txt "points_per_cell" "kg/m3"
+expect "schema as JSON" 0 "$talus" schema --json
+says out.txt '"$schema"' '"kinematics"'
+if command -v python3 >/dev/null; then python3 -m json.tool out.txt >/dev/null || fail "schema: no JSON"; fi
+expect "schema twice" 2 "$talus" schema --json --markdown
+
+# check: the resolved case is a case, and says the same of itself
+expect "check" 0 "$talus" check case.yaml
+says out.txt "cells" "memory: about" "body beam: 128 points in 32 cells, volume 8 m3, mass 8000 kg" "boundary left:"
+cp out.txt resolved.yaml
+expect "check what check said" 0 "$talus" check resolved.yaml
+grep -v '^#' resolved.yaml >a.txt
+grep -v '^#' out.txt >b.txt
+cmp -s a.txt b.txt || fail "$name: it changed"
+expect "check of a mistake" 2 "$talus" check case.yaml --set materials.rubber.yung=1
+says err.txt "--set materials.rubber.yung=1: error: key 'yung' of materials.rubber is not known"
+[ ! -e runs ] || fail "check wrote something"
+
+# Options of run
+expect "run" 0 "$talus" run case.yaml
+[ -s runs/case/history.csv ] || fail "run: no runs/case"
+says out.txt "method = mpm" "step = 1 time = 1 " "tip = -0.5996591864 m" "weight = 78480 N"
+expect "quiet" 0 "$talus" run case.yaml --out quiet --quiet --log here.txt
+[ ! -s out.txt ] && [ ! -s err.txt ] || fail "quiet: it speaks"
+says here.txt "tip = -0.5996591864 m"
+[ ! -e quiet/log.txt ] || fail "--log: log.txt is there too"
+expect "set" 0 "$talus" run case.yaml --out set --quiet --set materials.rubber.young=180e6 --set 'measures.tip.of.tracer=[8, 1]'
+says set/case.yaml "young: 1.8e+08"
+expect "set nothing" 2 "$talus" run case.yaml --set grid.size
+says err.txt "there is no '='"
+expect "options of PETSc" 0 "$talus" run case.yaml --out monitor --quiet -snes_monitor
+says out.txt "0 SNES Function norm"
+expect "options of PETSc before the command" 0 "$talus" -snes_monitor run case.yaml --out monitor --quiet --force
+says out.txt "0 SNES Function norm"
+expect "options of PETSc in the case" 0 "$talus" run case.yaml --out monitor --quiet --force --set petsc.snes_monitor=true
+says out.txt "0 SNES Function norm"
+expect "the command line wins" 2 "$talus" run case.yaml --out monitor --quiet --force --set petsc.ksp_type=preonly -ksp_type nonsense
+says err.txt "nonsense"
+expect "solver gives up" 1 "$talus" run case.yaml --out soft --quiet --set newton.max_iterations=1
+says err.txt "case.yaml: error: the run gave up: Newton did not converge" "is kept in soft"
+says soft/log.txt "gave up = Newton did not converge"
+[ "$(wc -l <soft/history.csv)" -ge 2 ] && [ -s soft/points.hdf.series ] || fail "$name: the state is not there"
+expect "point leaves the grid" 1 "$talus" run case.yaml --out lost --quiet --set grid.box.min='[0, -0.5]' --set materials.rubber.young=30e6
+says err.txt "left the grid: point" "with velocity" "outside: remove"
+
+# A reader that goes away
+"$talus" list fields | head -n 1 >out.txt 2>err.txt
+"$talus" run case.yaml --out pipe 2>err.txt | head -n 1 >out.txt
+name="a pipe that closes"
+[ ! -s err.txt ] || fail "$name: it complains"
+
+finish

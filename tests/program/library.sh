@@ -1,0 +1,107 @@
+# What the tests of the whole program share. Sourced by a script that got the program as its first argument: works in a
+# folder of its own that vanishes, collects failures, and ends with `finish`.
+talus=$1
+work=$(mktemp -d "${TMPDIR:-/tmp}/talus-test.XXXXXX") || exit 1
+trap 'rm -rf "$work"' EXIT
+cd "$work" || exit 1
+ulimit -c 0
+# No daemon behind a single rank, and no search for networks, which takes longer than a run.
+export OMPI_MCA_ess_singleton_isolated=1 OMPI_MCA_pml=ob1
+failures=0
+
+fail() {
+  failures=$((failures + 1))
+  echo "FAILED $*"
+  if [ -s out.txt ]; then sed 's/^/    out: /' out.txt | head -n 20; fi
+  if [ -s err.txt ]; then sed 's/^/    err: /' err.txt | head -n 20; fi
+}
+
+finish() {
+  [ "$failures" -eq 0 ] || { echo "$failures failed"; exit 1; }
+  exit 0
+}
+
+# expect NAME CODE COMMAND...: the command's output goes to out.txt and err.txt; its exit code must be CODE, and PETSc
+# must not have printed a trace.
+expect() {
+  name=$1 wanted=$2
+  shift 2
+  "$@" >out.txt 2>err.txt </dev/null
+  code=$?
+  [ "$code" -eq "$wanted" ] || fail "$name: exit code $code, expected $wanted"
+  if grep -q -e 'PETSC ERROR' -e 'MPI_ABORT' err.txt; then fail "$name: a trace"; fi
+}
+
+# says FILE TEXT...: the file holds every text.
+says() {
+  file=$1
+  shift
+  for text; do
+    grep -q -F -e "$text" "$file" || fail "$name: no '$text' in $file"
+  done
+}
+
+lacks() {
+  file=$1
+  shift
+  for text; do
+    if grep -q -F -e "$text" "$file"; then fail "$name: '$text' in $file"; fi
+  done
+}
+
+# A ranks' prefix: on 1 the plain program.
+on_ranks() {
+  ranks=$1
+  shift
+  if [ "$ranks" -eq 1 ]; then "$@"; else mpiexec --oversubscribe -n "$ranks" "$@"; fi
+}
+
+# The cantilever of the case book on a coarse grid.
+cantilever() {
+  cat <<'END'
+title: Cantilever under its own weight
+kinematics: plane-strain
+method: mpm
+analysis: {type: static, steps: 1}
+grid: {box: {min: [0, -1.5], max: [8.5, 1.5]}, size: 0.5}
+bodies:
+  - {name: beam, shape: {box: {min: [0, 0], max: [8, 1]}}, points_per_cell: 4, material: rubber}
+materials:
+  rubber: {law: neo-hookean, density: 1000, young: 90e6, poisson: 0}
+boundary:
+  - {on: {x: 0}, fix: [x, y]}
+loads: {gravity: [0, -9.81]}
+measures:
+  tip: {displacement: y, of: {tracer: [8, 0.5]}}
+  weight: {reaction: y, of: {boundary: 0}}
+END
+}
+
+# A spinning block that flies to the right, falls on the floor and bounces; it crosses the cells of every rank.
+block() {
+  cat <<'END'
+title: Elastic block falls and bounces
+kinematics: plane-strain
+method: mpm
+analysis: {type: dynamic, step: 2e-3, end: 0.4}
+grid: {box: {min: [0, 0], max: [3, 2]}, size: 0.05}
+bodies:
+  - {name: block, shape: {box: {min: [0.5, 0.5], max: [1.5, 1]}}, points_per_cell: 4, material: rubber,
+     velocity: [1.5, -1], spin: -1, spin_centre: [1, 0.75]}
+materials:
+  rubber: {law: neo-hookean, density: 1000, young: 2e5, poisson: 0.3}
+boundary:
+  - {on: {boundary: bottom}, fix: [x, y]}
+loads: {gravity: [0, -9.81]}
+measures:
+  corner: {position: x, of: {tracer: [1.5, 1]}}
+  low: {extent: {min: y}, of: {body: block}}
+  momentum: {momentum: x}
+  turn: {angular_momentum: z}
+  kinetic: {energy: kinetic}
+  elastic: {energy: elastic}
+  external: {energy: external}
+  floor: {reaction: y, of: {boundary: 0}}
+output: {every: 0.1}
+END
+}

@@ -1,0 +1,48 @@
+#!/bin/sh
+# What a run leaves: every file that the guide promises, readable by others.
+. "$(dirname "$0")/library.sh"
+block | sed 's/end: 0.4/end: 0.1/; s/every: 0.1/every: 0.02, history: {steps: 5}/' >block.yaml
+expect "run" 0 on_ranks 2 "$talus" run block.yaml --out run
+cp out.txt screen.txt
+for file in case.yaml log.txt version.txt timings.txt history.csv points.hdf.series grid.hdf.series; do
+  [ -s run/$file ] || fail "run: no $file"
+done
+if ls run | grep -q unfinished; then fail "run: an unfinished file"; fi
+
+# History: a row each 5 steps and the last; states at their times
+[ "$(sed -n 1p run/history.csv | cut -d, -f1-4)" = 'time [s],step,corner [m],low [m]' ] || fail "history: header"
+[ "$(cut -d, -f2 run/history.csv | tr '\n' ' ')" = 'step 0 5 10 15 20 25 30 35 40 45 50 ' ] || fail "history: rows"
+[ "$(tail -n 1 run/history.csv | cut -d, -f1 | cut -c1-3)" = 0.1 ] || fail "history: the last row"
+[ "$(grep -c '"name"' run/points.hdf.series)" -eq 6 ] || fail "series: states"
+for file in $(sed -n 's/.*"name": "\([^"]*\)".*/\1/p' run/*.hdf.series); do
+  [ "$(dd if=run/$file bs=1 skip=1 count=3 2>/dev/null)" = HDF ] || fail "series: $file is not HDF5"
+done
+if command -v python3 >/dev/null; then
+  for series in run/*.hdf.series; do python3 -m json.tool "$series" >/dev/null || fail "$series: no JSON"; done
+fi
+if command -v h5dump >/dev/null; then h5dump -H run/points_000005.hdf | grep -q PointData || fail "h5dump: no PointData"; fi
+
+# The log: plain lines that programs can read, the same as on the screen and more
+says run/log.txt "method = mpm" "ranks = 2" "step = 50 time = 0.1 " "seconds ="
+says screen.txt "step = 50 time = 0.1 "
+if grep -q "$(printf '\r')" run/log.txt screen.txt; then fail "log: a carriage return"; fi
+[ "$(grep -c '^step = ' run/log.txt)" -eq 50 ] || fail "log: not every step"
+says run/version.txt "talus = " "petsc = " "mpi = " "ranks = 2"
+says run/timings.txt "total [s] = " "linear [s] = "
+
+# The resolved case runs and gives the same
+expect "resolved case" 0 on_ranks 2 "$talus" run run/case.yaml --out again --quiet
+cmp -s run/history.csv again/history.csv || fail "resolved case: another history"
+
+# Pictures
+expect "plot" 0 "$talus" plot run
+says out.txt "picture = run/pictures/state_" "picture = run/pictures/history_"
+for picture in $(sed -n 's/^picture = //p' out.txt); do
+  [ "$(dd if=$picture bs=1 skip=1 count=3 2>/dev/null)" = PNG ] || fail "plot: $picture is no PNG"
+done
+expect "plot of an unknown field" 2 "$talus" plot run --field stres
+says err.txt "stres" "stress"
+expect "plot of nothing" 2 "$talus" plot nowhere
+says err.txt "there is no run directory 'nowhere'"
+
+finish

@@ -1,0 +1,220 @@
+/* Whole verifications of a small cantilever: right, off, given up, wrongly asked for; on any number of ranks. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+/* cmocka wants those before it */
+#include <cmocka.h>
+#include "run/verify.h"
+
+#define OK(call) assert_int_equal((call), 0)
+
+static char root[256]; /* a folder of this test, the same on all ranks */
+static PetscMPIInt rank;
+
+static const char reference[] =
+  "title: A short beam\n"
+  "studies:\n"
+  "  tip:\n"
+  "    title: The tip\n"
+  "    measure: tip\n"
+  "    sweep: {name: cell size, symbol: h, unit: m, set: {grid.size: $h}}\n"
+  "    series: {fem: {set: {method: fem}}, mpm: {set: {method: mpm}}}\n"
+  "    tolerance: 2e-6\n"
+  "    source: independent program\n"
+  "    rows:\n"
+  "      - {at: 0.5, reference: %s}\n"
+  "      - {at: 0.25, reference: -0.6539116%s}\n"
+  "      - {at: 0.125, reference: -0.6691249, full: true}\n"
+  "    exact: {value: -0.674365, order: 2, between: [0.1, 0.3]}\n"
+  "    agree: [{series: mpm, with: fem, tolerance: 1e-10}]\n"
+  "    limits: {iterations-per-step: 6}\n"
+  "    figure: values\n"
+  "  again:\n"
+  "    title: The same runs\n"
+  "    measure: tip\n"
+  "    sweep: {name: cell size, symbol: h, set: {grid.size: $h}}\n"
+  "    series: {fem: {set: {method: fem}}}\n"
+  "    tolerance: 1e-3\n"
+  "    source: independent program\n"
+  "    rows: [{at: 0.5, reference: -0.6}]\n"
+  "  way:\n"
+  "    title: Distance from u = 0.1 - 0.8 t + 0.1 t^2, which is -0.6 at the end\n"
+  "    measure: tip\n"
+  "    course: {constant: 0.1, linear: -0.8, quadratic: 0.1}\n"
+  "    sweep: {name: cell size, symbol: h, set: {grid.size: $h}}\n"
+  "    series: {mpm: {set: {method: mpm}}}\n"
+  "    tolerance: 1e-3\n"
+  "    source: independent program\n"
+  "    rows: [{at: 0.5, reference: 3.408e-4}]\n";
+
+static void write_file(const char *folder, const char *name, const char *text)
+{
+  char path[512];
+  snprintf(path, sizeof path, "%s/%s/%s", root, folder, name);
+  FILE *out = fopen(path, "w");
+  assert_non_null(out);
+  fputs(text, out);
+  fclose(out);
+}
+
+static PetscBool is_there(const char *path)
+{
+  char whole[512];
+  snprintf(whole, sizeof whole, "%s/%s", root, path);
+  return access(whole, F_OK) ? PETSC_FALSE : PETSC_TRUE;
+}
+
+static void copy_case(const char *folder)
+{
+  static char text[8192];
+  FILE *in = fopen(TALUS_SOURCE_DIR "/cases/cantilever/case.yaml", "r");
+  assert_non_null(in);
+  text[fread(text, 1, sizeof text - 1, in)] = '\0';
+  fclose(in);
+  write_file(folder, "case.yaml", text);
+}
+
+/* A folder with the cantilever and a reference; `value` of the first row, `more` keys for the second. */
+static void make_case(const char *name, const char *value, const char *more)
+{
+  char text[4096], path[512];
+  if (rank == 0) {
+    snprintf(path, sizeof path, "%s/%s", root, name);
+    mkdir(path, 0777);
+    copy_case(name);
+    snprintf(text, sizeof text, reference, value, more);
+    write_file(name, "reference.yaml", text);
+  }
+  MPI_Barrier(PETSC_COMM_WORLD);
+}
+
+/* Run it; what was printed and complained about is in `text` on rank 0. */
+static VerifyOutcome verify(const char *name, VerifyOptions options, char **text)
+{
+  char folder[512], out[512];
+  VerifyOutcome outcome;
+  size_t size;
+  Diag *diag;
+  snprintf(folder, sizeof folder, "%s/%s", root, name);
+  snprintf(out, sizeof out, "%s/out-%s", root, name);
+  options.folder = folder;
+  options.out = out;
+  FILE *stream = open_memstream(text, &size);
+  OK(DiagCreate(&diag));
+  OK(VerifyCase(PETSC_COMM_WORLD, &options, stream, diag, &outcome));
+  OK(DiagFlush(diag, stream));
+  OK(DiagDestroy(&diag));
+  fclose(stream);
+  MPI_Barrier(PETSC_COMM_WORLD);
+  return outcome;
+}
+
+/* Rank 0 printed this. */
+#define SAYS(text, part)                                                           \
+  do {                                                                             \
+    if (rank == 0 && !strstr(text, part)) fail_msg("no '%s' in:\n%s", part, text); \
+  } while (0)
+
+static void right_values_pass(void **state)
+{
+  (void)state;
+  char *text;
+  make_case("right", "-0.5996592", "");
+  assert_int_equal(verify("right", (VerifyOptions){.keep = PETSC_TRUE}, &text), VERIFY_PASSED);
+  SAYS(text, "4 of 4 rows pass");
+  SAYS(text, "mpm agrees with fem to");
+  SAYS(text, "1 of 1 rows pass");
+  SAYS(text, "0.000340813"); /* |tip + 0.6|: one step, so one row after the start */
+  assert_true(is_there("out-right/verification.md") && is_there("out-right/tip.png"));
+  assert_true(is_there("out-right/tip/mpm/h_0.25/history.csv") &&
+              is_there("out-right/tip/mpm/h_0.25/points.hdf.series"));
+  assert_false(is_there("out-right/again/fem/h_0.5")); /* ran already */
+  free(text);
+  assert_int_equal(verify("right", (VerifyOptions){.full = PETSC_TRUE, .only = "tip"}, &text), VERIFY_PASSED);
+  SAYS(text, "6 of 6 rows pass");
+  SAYS(text, "1.965"); /* the order */
+  assert_false(is_there("out-right/tip/mpm/h_0.25/points.hdf.series"));
+  assert_true(is_there("out-right/tip/mpm/h_0.25/log.txt"));
+  free(text);
+}
+
+static void wrong_values_fail(void **state)
+{
+  (void)state;
+  char *text;
+  make_case("off", "-0.5996", "");
+  assert_int_equal(verify("off", (VerifyOptions){.only = "tip"}, &text), VERIFY_OFF);
+  SAYS(text, "FAIL");
+  SAYS(text, "off the reference, allowed 2e-06");
+  SAYS(text, "2 of 4 rows pass");
+  free(text);
+}
+
+static void a_run_that_gives_up_is_told(void **state)
+{
+  (void)state;
+  char *text;
+  make_case("hard", "-0.5996592", ", set: {newton.max_iterations: 1, analysis.smallest: 0.4}");
+  assert_int_equal(verify("hard", (VerifyOptions){.only = "tip"}, &text), VERIFY_GAVE_UP);
+  SAYS(text, "the run gave up, see");
+  SAYS(text, "2 of 4 rows pass");
+  free(text);
+}
+
+static void bad_input_runs_nothing(void **state)
+{
+  (void)state;
+  char *text;
+  make_case("bad", "-0.5996592", ", set: {materials.rubber.young: -1}");
+  assert_int_equal(verify("bad", (VerifyOptions){.full = PETSC_TRUE}, &text), VERIFY_BAD_INPUT);
+  SAYS(text, "--set materials.rubber.young=-1");
+  SAYS(text, "reference.yaml:12:9: error: the case of this row cannot be read (study tip, series fem, h = 0.25)");
+  assert_false(is_there("out-bad"));
+  free(text);
+  assert_int_equal(verify("bad", (VerifyOptions){.only = "tap"}, &text), VERIFY_BAD_INPUT);
+  SAYS(text, "did you mean 'tip'?");
+  free(text);
+  assert_int_equal(verify("nowhere", (VerifyOptions){.full = PETSC_FALSE}, &text), VERIFY_BAD_INPUT);
+  SAYS(text, "there is no such file");
+  free(text);
+  assert_int_equal(verify("bad", (VerifyOptions){.record = PETSC_TRUE}, &text), VERIFY_BAD_INPUT);
+  SAYS(text, "cannot record in");
+  free(text);
+}
+
+static int make_root(void **state)
+{
+  (void)state;
+  const char *base = getenv("TMPDIR");
+  MPI_Comm_rank(PETSC_COMM_WORLD, &rank);
+  snprintf(root, sizeof root, "%s/talus-verify-XXXXXX", base ? base : "/tmp");
+  if (rank == 0 && !mkdtemp(root)) return 1;
+  MPI_Bcast(root, sizeof root, MPI_CHAR, 0, PETSC_COMM_WORLD);
+  return 0;
+}
+
+static int remove_root(void **state)
+{
+  char command[300];
+  (void)state;
+  MPI_Barrier(PETSC_COMM_WORLD);
+  snprintf(command, sizeof command, "rm -r '%s'", root);
+  return rank == 0 ? system(command) : 0;
+}
+
+int main(int argc, char **argv)
+{
+  const struct CMUnitTest tests[] = {
+    cmocka_unit_test(right_values_pass),
+    cmocka_unit_test(wrong_values_fail),
+    cmocka_unit_test(a_run_that_gives_up_is_told),
+    cmocka_unit_test(bad_input_runs_nothing),
+  };
+  if (PetscInitialize(&argc, &argv, NULL, NULL)) return 1;
+  const int failed = cmocka_run_group_tests(tests, make_root, remove_root);
+  return PetscFinalize() || failed;
+}
