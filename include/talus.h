@@ -1,0 +1,270 @@
+/**
+ * @file talus.h
+ * @brief talus, an implicit large-deformation solver for solids and granular matter, as a library.
+ *
+ * A case file becomes a #TalusCase. It is run as a whole with TalusRunCase(), which writes the same
+ * directory of results as `talus run`, or it becomes a #TalusModel that the caller advances step by step
+ * and looks into.
+ *
+ * - **Errors.** Every function that can fail returns an `int`: #TALUS_OK (0) or one of #TalusError;
+ *   talus_error_string() says it in words. After an error the results asked for are untouched, except that
+ *   handles to be created are NULL. A solver that gives up is no error but an outcome.
+ * - **Mistakes in a case** are told with file, line and column. Functions that find them take `messages`:
+ *   NULL prints the text to the standard error stream (on the first rank), otherwise the caller gets it
+ *   (NULL if there is nothing to say; warnings come with #TALUS_OK) and gives it back with TalusTextFree().
+ * - **Handles** are opaque. What creates one sets the pointer, what destroys one sets it to NULL and does
+ *   nothing for NULL.
+ * - **Parallel runs.** Functions marked collective must be called by all ranks of the run with the same
+ *   arguments; the others work on this rank alone. Not thread-safe: one thread at a time.
+ * - **Units** are SI. Stress is positive in tension, pressure in compression; symmetric tensors are stored
+ *   in the order xx yy zz xy yz zx. Plane strain has unit thickness.
+ *
+ * @example ten_lines.c
+ * Runs the case file that its argument names and prints the final value of every measure.
+ */
+#ifndef TALUS_H
+#define TALUS_H
+
+#include <stddef.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/** What a function returns. */
+typedef enum TalusError {
+  TALUS_OK = 0,             /**< Done. */
+  TALUS_ERROR_ARGUMENT = 1, /**< An argument is NULL, out of range, or too small to hold the result. */
+  TALUS_ERROR_STATE = 2,    /**< TalusInitialize() is missing, or came twice, or after TalusFinalize(). */
+  TALUS_ERROR_INPUT = 3,    /**< The case has mistakes, or the run directory cannot be used; the messages say which. */
+  TALUS_ERROR_UNKNOWN = 4,  /**< There is no measure or field of this name. */
+  TALUS_ERROR_OUTPUT = 5,   /**< A result could not be written; log.txt in the run directory says why. */
+  TALUS_ERROR_MEMORY = 6,   /**< No memory. */
+  TALUS_ERROR_INTERNAL = 7  /**< A fault of talus or of a library; PETSc has printed where. */
+} TalusError;
+
+/** How a run ended. */
+typedef enum TalusOutcome {
+  TALUS_DONE = 0,   /**< The end time was reached. */
+  TALUS_GAVE_UP = 1 /**< No convergence, a point left the grid, the disk refused, or a signal came. */
+} TalusOutcome;
+
+/** What became of a step. */
+typedef enum TalusStep {
+  TALUS_STEP_ACCEPTED = 0,   /**< The model is one step further. */
+  TALUS_STEP_AT_END = 1,     /**< The case's end time was reached before; nothing happened. */
+  TALUS_STEP_TOO_SMALL = 2,  /**< No convergence down to the smallest step; the model is as it was. */
+  TALUS_STEP_POINTS_LOST = 3 /**< Accepted, but points left the grid and the case says to stop. */
+} TalusStep;
+
+/** Flags of TalusRunCase(), to be combined with `|`. */
+enum TalusRunFlag {
+  TALUS_RUN_FORCE = 1, /**< Replace a run that is in the directory already. */
+  TALUS_RUN_QUIET = 2  /**< Nothing on the terminal; the log is written all the same. */
+};
+
+/** A validated case. */
+typedef struct TalusCase TalusCase;
+/** A run that has ended: its outcome and the final values of its measures. */
+typedef struct TalusRun TalusRun;
+/** The state of a case in time. */
+typedef struct TalusModel TalusModel;
+
+/**
+ * @brief Body force per mass besides gravity, m/s2.
+ * @param context  what was handed to TalusModelSetBodyForce()
+ * @param X        undeformed position, m; X[2] = 0 in plane strain
+ * @param t        time, s
+ * @param b        result, zero on entry; b[2] counts for nothing in plane strain
+ */
+typedef void (*TalusBodyForce)(void *context, const double X[3], double t, double b[3]);
+
+/** @name Session
+ * @{ */
+
+/**
+ * @brief Start MPI and PETSc, unless the program did. Collective over all ranks.
+ *
+ * PETSc's options (`-snes_monitor`, `-log_view`) are read from the command line, PETSC_OPTIONS and its
+ * files. A program that calls PetscInitialize itself calls neither this nor TalusFinalize(); one that has
+ * only called MPI_Init calls both.
+ * @param argc  of main, or NULL
+ * @param argv  of main, or NULL
+ * @return #TALUS_OK, or #TALUS_ERROR_STATE if PETSc runs already or has been finalised
+ */
+int TalusInitialize(int *argc, char ***argv);
+
+/**
+ * @brief End what TalusInitialize() started; all handles must be gone. Collective over all ranks.
+ * @return #TALUS_OK, or #TALUS_ERROR_STATE if PETSc does not run
+ */
+int TalusFinalize(void);
+
+/**
+ * @brief This process among those of the run. Not collective.
+ * @param rank  result, from 0, or NULL
+ * @param size  result, number of ranks, or NULL
+ */
+int TalusRanks(int *rank, int *size);
+
+/** @brief Version of the library, "major.minor.patch". Needs no TalusInitialize(). */
+const char *TalusVersion(void);
+
+/** @brief A #TalusError in words, never NULL. Needs no TalusInitialize(). */
+const char *talus_error_string(int error);
+
+/** @brief Give back a text that the library handed out; *text becomes NULL. */
+void TalusTextFree(char **text);
+
+/** @}
+ * @name Case
+ * @{ */
+
+/**
+ * @brief Read and validate a case file. Collective.
+ * @param file      the case file
+ * @param n_set     number of entries in set
+ * @param set       n_set strings "path.to.key=value" that change the case before it is validated, as
+ * `--set` does; or NULL
+ * @param c         result; NULL after an error
+ * @param messages  NULL to print, or result; see above
+ * @return #TALUS_OK; #TALUS_ERROR_INPUT: unreadable, or mistakes in it
+ */
+int TalusCaseOpen(const char *file, int n_set, const char *const *set, TalusCase **c, char **messages);
+
+/** @brief Forget a case; its models must be gone before it. Collective. */
+int TalusCaseClose(TalusCase **c);
+
+/**
+ * @brief Number of measures that the case asks for. Not collective.
+ * @param c  the case
+ * @param n  result
+ */
+int TalusCaseCountMeasures(const TalusCase *c, int *n);
+
+/**
+ * @brief Name and unit of a measure. Not collective.
+ * @param c     the case, which owns both strings
+ * @param i     0 to the number of measures less one
+ * @param name  result, or NULL
+ * @param unit  result, such as "m", or NULL
+ */
+int TalusCaseMeasureName(const TalusCase *c, int i, const char **name, const char **unit);
+
+/** @}
+ * @name Running a case as a whole
+ * @{ */
+
+/**
+ * @brief Run a case from start to end and write its directory of results, as `talus run` does. Collective.
+ *
+ * SIGINT and SIGTERM end the run after the step in hand, with its state written.
+ * @param c         the case
+ * @param out       directory of results, made if it is not there
+ * @param flags     of #TalusRunFlag, or 0
+ * @param run       result; NULL after an error
+ * @param messages  NULL to print, or result; see above
+ * @return #TALUS_OK, also if the solver gave up; #TALUS_ERROR_INPUT: mistakes that show only when the case
+ * is set up, or a directory that cannot be used (nothing is written then)
+ */
+int TalusRunCase(TalusCase *c, const char *out, unsigned flags, TalusRun **run, char **messages);
+
+/** @brief How the run ended. Not collective. */
+int TalusRunOutcome(const TalusRun *run, TalusOutcome *outcome);
+
+/**
+ * @brief Final value of a measure of the case. Not collective: every rank knows it.
+ * @param run    the run
+ * @param name   name of the measure in the case
+ * @param value  result, in the measure's unit
+ * @return #TALUS_OK, or #TALUS_ERROR_UNKNOWN
+ */
+int TalusRunMeasure(const TalusRun *run, const char *name, double *value);
+
+/** @brief Forget a run; its files stay. Not collective. */
+int TalusRunDestroy(TalusRun **run);
+
+/** @}
+ * @name Stepping a model
+ * @{ */
+
+/**
+ * @brief Set a case up at its start time. Nothing is written to disk. Collective.
+ * @param c         the case, which must outlive the model
+ * @param model     result; NULL after an error
+ * @param messages  NULL to print, or result; see above
+ * @return #TALUS_OK; #TALUS_ERROR_INPUT: mistakes that show only here, such as a body outside its grid
+ */
+int TalusModelCreate(TalusCase *c, TalusModel **model, char **messages);
+
+/** @brief Forget a model. Collective. */
+int TalusModelDestroy(TalusModel **model);
+
+/**
+ * @brief Add a body force to gravity, from the next step on. Collective.
+ *
+ * It is called for every material point with the time at the end of the step, once for every try of a step. Set
+ * before the first step of a dynamic case it also enters the initial acceleration.
+ * @param model    the model
+ * @param force    the function, called on every rank for its points, or NULL for none
+ * @param context  handed to it
+ */
+int TalusModelSetBodyForce(TalusModel *model, TalusBodyForce force, void *context);
+
+/**
+ * @brief Advance by one step, halved until Newton's method converges. Collective.
+ * @param model  the model
+ * @param limit  s, the longest step to take, even beyond the end of the case; 0: as the case's step control
+ * chooses, and up to its end
+ * @param step   result; anything but #TALUS_STEP_ACCEPTED ends the loop of most programs
+ * @return #TALUS_OK, also where the step failed; #TALUS_ERROR_ARGUMENT for a limit that is negative or no
+ * number
+ */
+int TalusModelStep(TalusModel *model, double limit, TalusStep *step);
+
+/** @brief Why the last step failed, in words; "" if it did not. The model owns it until its next step. */
+const char *TalusModelReason(const TalusModel *model);
+
+/**
+ * @brief Time of the present state. Not collective.
+ * @param model  the model
+ * @param time   result, s, or NULL
+ * @param end    result, the end time of the case, s, or NULL
+ */
+int TalusModelTime(const TalusModel *model, double *time, double *end);
+
+/**
+ * @brief Value of a measure of the case now. Collective; every rank gets it.
+ * @param model  the model
+ * @param name   name of the measure in the case
+ * @param value  result, in the measure's unit
+ * @return #TALUS_OK, or #TALUS_ERROR_UNKNOWN
+ */
+int TalusModelMeasure(const TalusModel *model, const char *name, double *value);
+
+/**
+ * @brief A field of this rank's material points. Not collective.
+ *
+ * Fields are those of `talus list fields`, and "position": position, displacement, velocity, acceleration
+ * (3 components, also in plane strain), stress (6), deformation_gradient (9, row by row), and mass, volume,
+ * density, pressure, mises, energy, id, body, material and others (1). The order of points changes from
+ * step to step, and in parallel runs points change ranks; "id" tells them apart.
+ * @param model       the model
+ * @param field       name of the field
+ * @param n           result, number of points of this rank, or NULL
+ * @param components  result, numbers a point, or NULL
+ * @param buffer      result, n times components numbers, point by point; NULL to ask for the sizes only
+ * @param capacity    how many numbers buffer holds
+ * @return #TALUS_OK; #TALUS_ERROR_UNKNOWN; #TALUS_ERROR_ARGUMENT if buffer is too small (n and components
+ * are set, buffer is not)
+ */
+int TalusModelPoints(const TalusModel *model, const char *field, int *n, int *components, double *buffer,
+                     size_t capacity);
+
+/** @} */
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

@@ -1,0 +1,23 @@
+/* What the files of the public interface share. A public function checks its arguments, calls a function that returns a
+ * PetscErrorCode like all others of this program, and translates the code. */
+#pragma once
+#include <petscsys.h>
+#include "talus.h"
+#include "io/case_file.h"
+#include "model/model.h"
+
+_Static_assert(sizeof(PetscReal) == sizeof(double), "the public interface is written for PETSc with double precision");
+
+struct TalusCase {
+  Case *c;
+  Diag *diag; /* knows where in the file each value stands */
+};
+
+/* PETSc's code as one of ours. */
+int talus_code(PetscErrorCode code);
+/* Does PETSc run? Before anything else of PETSc may be called. */
+PetscBool talus_is_running(void);
+/* Collective. Print what was collected on stderr, or hand it to all ranks as text. */
+PetscErrorCode TalusTell(Diag *diag, char **messages);
+/* Index of the measure, -1 if there is none. */
+PetscInt talus_measure_index(const Case *c, const char *name);

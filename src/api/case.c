@@ -1,0 +1,68 @@
+/* Cases: from a file to a handle, and what they ask for. */
+#include <string.h>
+#include "api/api.h"
+
+static PetscErrorCode Close(TalusCase **c)
+{
+  PetscFunctionBeginUser;
+  PetscCall(CaseDestroy(&(*c)->c));
+  PetscCall(DiagDestroy(&(*c)->diag));
+  PetscCall(PetscFree(*c));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode Open(const char *file, PetscInt n_set, const char *const *set, TalusCase **c, char **messages)
+{
+  TalusCase *opened;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscNew(&opened));
+  PetscCall(DiagCreate(&opened->diag));
+  PetscCall(CaseRead(PETSC_COMM_WORLD, file, n_set, set, opened->diag, &opened->c));
+  PetscCall(TalusTell(opened->diag, messages));
+  if (opened->c) *c = opened;
+  else PetscCall(Close(&opened));
+  PetscFunctionReturn(0);
+}
+
+int TalusCaseOpen(const char *file, int n_set, const char *const *set, TalusCase **c, char **messages)
+{
+  if (messages) *messages = NULL;
+  if (!c) return TALUS_ERROR_ARGUMENT;
+  *c = NULL;
+  if (!talus_is_running()) return TALUS_ERROR_STATE;
+  if (!file || n_set < 0 || (n_set > 0 && !set)) return TALUS_ERROR_ARGUMENT;
+  for (int i = 0; i < n_set; ++i)
+    if (!set[i]) return TALUS_ERROR_ARGUMENT;
+  const int error = talus_code(Open(file, n_set, set, c, messages));
+  if (error) return error;
+  return *c ? TALUS_OK : TALUS_ERROR_INPUT;
+}
+
+int TalusCaseClose(TalusCase **c)
+{
+  if (!c || !*c) return TALUS_OK;
+  return talus_is_running() ? talus_code(Close(c)) : TALUS_ERROR_STATE;
+}
+
+int TalusCaseCountMeasures(const TalusCase *c, int *n)
+{
+  if (!c || !n) return TALUS_ERROR_ARGUMENT;
+  *n = (int)c->c->n_measures;
+  return TALUS_OK;
+}
+
+int TalusCaseMeasureName(const TalusCase *c, int i, const char **name, const char **unit)
+{
+  if (!c || i < 0 || i >= c->c->n_measures) return TALUS_ERROR_ARGUMENT;
+  if (name) *name = c->c->measures[i].name;
+  if (unit) *unit = measure_unit(&c->c->measures[i]);
+  return TALUS_OK;
+}
+
+PetscInt talus_measure_index(const Case *c, const char *name)
+{
+  for (PetscInt i = 0; i < c->n_measures; ++i)
+    if (!strcmp(c->measures[i].name, name)) return i;
+  return -1;
+}

@@ -1,0 +1,150 @@
+/* A model that the caller steps and looks into. */
+#include <math.h>
+#include <string.h>
+#include "api/api.h"
+#include "case/fields.h"
+#include "run/output.h"
+
+struct TalusModel {
+  Model *model;
+  StepReport report;
+  TalusBodyForce force;
+  void *force_context;
+};
+
+static PetscErrorCode Destroy(TalusModel **model)
+{
+  PetscFunctionBeginUser;
+  PetscCall(ModelDestroy(&(*model)->model));
+  PetscCall(PetscFree(*model));
+  PetscFunctionReturn(0);
+}
+
+int TalusModelDestroy(TalusModel **model)
+{
+  if (!model || !*model) return TALUS_OK;
+  return talus_is_running() ? talus_code(Destroy(model)) : TALUS_ERROR_STATE;
+}
+
+static PetscErrorCode Create(TalusCase *c, TalusModel **model, char **messages)
+{
+  TalusModel *made;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscNew(&made));
+  PetscCall(ModelCreate(PETSC_COMM_WORLD, c->c, c->diag, &made->model));
+  PetscCall(TalusTell(c->diag, messages));
+  if (made->model) *model = made;
+  else PetscCall(Destroy(&made));
+  PetscFunctionReturn(0);
+}
+
+int TalusModelCreate(TalusCase *c, TalusModel **model, char **messages)
+{
+  if (messages) *messages = NULL;
+  if (!model) return TALUS_ERROR_ARGUMENT;
+  *model = NULL;
+  if (!talus_is_running()) return TALUS_ERROR_STATE;
+  if (!c) return TALUS_ERROR_ARGUMENT;
+  const int error = talus_code(Create(c, model, messages));
+  if (error) return error;
+  return *model ? TALUS_OK : TALUS_ERROR_INPUT;
+}
+
+/* The model's points have dim coordinates, the public ones three. */
+static void body_force(void *context, const PetscReal *X, PetscReal t, PetscReal *b)
+{
+  const TalusModel *m = context;
+  double position[3] = {0, 0, 0}, force[3] = {0, 0, 0};
+  for (PetscInt d = 0; d < m->model->dim; ++d) position[d] = X[d];
+  m->force(m->force_context, position, t, force);
+  for (PetscInt d = 0; d < m->model->dim; ++d) b[d] = force[d];
+}
+
+int TalusModelSetBodyForce(TalusModel *model, TalusBodyForce force, void *context)
+{
+  if (!model) return TALUS_ERROR_ARGUMENT;
+  model->force = force;
+  model->force_context = context;
+  return talus_code(ModelSetBodyForce(model->model, force ? body_force : NULL, model));
+}
+
+static TalusStep step_of(StepOutcome outcome)
+{
+  switch (outcome) {
+  case STEP_TOO_SMALL: return TALUS_STEP_TOO_SMALL;
+  case STEP_POINTS_LOST: return TALUS_STEP_POINTS_LOST;
+  case STEP_ACCEPTED: break;
+  }
+  return TALUS_STEP_ACCEPTED;
+}
+
+int TalusModelStep(TalusModel *model, double limit, TalusStep *step)
+{
+  if (!model || !step || !(limit >= 0)) return TALUS_ERROR_ARGUMENT;
+  const PetscReal end = model->model->c->analysis.end;
+  if (limit == 0 && model->model->time >= end * (1 - 1e-12)) {
+    model->report.reason[0] = '\0';
+    *step = TALUS_STEP_AT_END;
+    return TALUS_OK;
+  }
+  const int error = talus_code(ModelStep(model->model, limit > 0 ? limit : end - model->model->time, &model->report));
+  if (!error) *step = step_of(model->report.outcome);
+  return error;
+}
+
+const char *TalusModelReason(const TalusModel *model) { return model ? model->report.reason : ""; }
+
+int TalusModelTime(const TalusModel *model, double *time, double *end)
+{
+  if (!model) return TALUS_ERROR_ARGUMENT;
+  if (time) *time = model->model->time;
+  if (end) *end = model->model->c->analysis.end;
+  return TALUS_OK;
+}
+
+int TalusModelMeasure(const TalusModel *model, const char *name, double *value)
+{
+  PetscReal now;
+  if (!model || !name || !value) return TALUS_ERROR_ARGUMENT;
+  const PetscInt i = talus_measure_index(model->model->c, name);
+  if (i < 0) return TALUS_ERROR_UNKNOWN;
+  const int error = talus_code(ModelMeasure(model->model, &model->model->c->measures[i], i, &now));
+  if (!error) *value = now;
+  return error;
+}
+
+/* Numbers a point, 0 if there is no such field. Positions and ids are no output fields: every file has them. */
+static PetscInt field_components(const char *name)
+{
+  if (!strcmp(name, "position")) return 3;
+  const OutputField *field = OutputFieldFind(name);
+  return field && field->points ? field->components : 0;
+}
+
+static PetscErrorCode CopyField(const Model *m, const char *name, double *buffer)
+{
+  const Points *points = m->points;
+
+  PetscFunctionBeginUser;
+  if (!strcmp(name, "position")) {
+    for (PetscInt i = 0; i < 3 * points->n; ++i)
+      buffer[i] = i % 3 < m->dim ? point_real(points, POINT_X, i / 3)[i % 3] : 0;
+  } else if (!strcmp(name, "id")) {
+    for (PetscInt p = 0; p < points->n; ++p) buffer[p] = (double)points->id[p];
+  } else PetscCall(OutputPointField(m, OutputFieldFind(name), buffer));
+  PetscFunctionReturn(0);
+}
+
+int TalusModelPoints(const TalusModel *model, const char *field, int *n, int *components, double *buffer,
+                     size_t capacity)
+{
+  if (!model || !field) return TALUS_ERROR_ARGUMENT;
+  const PetscInt k = field_components(field), count = model->model->points->n;
+  if (!k) return TALUS_ERROR_UNKNOWN;
+  if (n) *n = (int)count;
+  if (components) *components = (int)k;
+  if (!buffer) return TALUS_OK;
+  if (capacity < (size_t)count * (size_t)k) return TALUS_ERROR_ARGUMENT;
+  return talus_code(CopyField(model->model, field, buffer));
+}

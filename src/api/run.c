@@ -1,0 +1,91 @@
+/* A case run as a whole. */
+#include <stdlib.h>
+#include <string.h>
+#include "api/api.h"
+#include "run/run.h"
+
+/* Owns copies of the names, so that it may outlive its case. The C library's memory: it may also outlive PETSc. */
+struct TalusRun {
+  TalusOutcome outcome;
+  PetscInt n;
+  char **names;
+  double *values;
+};
+
+int TalusRunDestroy(TalusRun **run)
+{
+  if (!run || !*run) return TALUS_OK;
+  for (PetscInt i = 0; (*run)->names && i < (*run)->n; ++i) free((*run)->names[i]);
+  free((*run)->names);
+  free((*run)->values);
+  free(*run);
+  *run = NULL;
+  return TALUS_OK;
+}
+
+static TalusRun *create_run(const Case *c)
+{
+  TalusRun *run = calloc(1, sizeof(*run));
+  if (!run) return NULL;
+  const size_t n = (size_t)c->n_measures;
+  run->n = c->n_measures;
+  run->names = calloc(n + 1, sizeof(char *));
+  run->values = calloc(n + 1, sizeof(double));
+  PetscBool complete = run->names && run->values ? PETSC_TRUE : PETSC_FALSE;
+  for (size_t i = 0; complete && i < n; ++i)
+    complete = (run->names[i] = strdup(c->measures[i].name)) ? PETSC_TRUE : PETSC_FALSE;
+  if (!complete) TalusRunDestroy(&run);
+  return run;
+}
+
+static PetscErrorCode Run(TalusCase *c, const RunOptions *options, TalusRun *run, RunResult *result, char **messages)
+{
+  RunSummary summary = {0};
+  RunOptions asked = *options;
+
+  PetscFunctionBeginUser;
+  asked.summary = &summary;
+  PetscCall(RunCase(PETSC_COMM_WORLD, c->c, &asked, c->diag, run->values, result));
+  if (summary.reason[0]) DiagError(c->diag, NULL, "%s", summary.reason);
+  PetscCall(TalusTell(c->diag, messages));
+  PetscFunctionReturn(0);
+}
+
+int TalusRunCase(TalusCase *c, const char *out, unsigned flags, TalusRun **run, char **messages)
+{
+  const RunOptions options = {
+    .out = out, .force = (PetscBool) !!(flags & TALUS_RUN_FORCE), .quiet = (PetscBool) !!(flags & TALUS_RUN_QUIET)};
+  RunResult result = RUN_BAD_INPUT;
+
+  if (messages) *messages = NULL;
+  if (!run) return TALUS_ERROR_ARGUMENT;
+  *run = NULL;
+  if (!talus_is_running()) return TALUS_ERROR_STATE;
+  if (!c || !out || !*out || (flags & ~(unsigned)(TALUS_RUN_FORCE | TALUS_RUN_QUIET))) return TALUS_ERROR_ARGUMENT;
+  TalusRun *made = create_run(c->c);
+  if (!made) return TALUS_ERROR_MEMORY;
+  int error = talus_code(Run(c, &options, made, &result, messages));
+  if (!error && result == RUN_BAD_INPUT) error = TALUS_ERROR_INPUT;
+  made->outcome = result == RUN_DONE ? TALUS_DONE : TALUS_GAVE_UP;
+  if (error) TalusRunDestroy(&made);
+  *run = made;
+  return error;
+}
+
+int TalusRunOutcome(const TalusRun *run, TalusOutcome *outcome)
+{
+  if (!run || !outcome) return TALUS_ERROR_ARGUMENT;
+  *outcome = run->outcome;
+  return TALUS_OK;
+}
+
+int TalusRunMeasure(const TalusRun *run, const char *name, double *value)
+{
+  if (!run || !name || !value) return TALUS_ERROR_ARGUMENT;
+  for (PetscInt i = 0; i < run->n; ++i) {
+    if (strcmp(run->names[i], name)) continue;
+    *value = run->values[i];
+    return TALUS_OK;
+  }
+  return TALUS_ERROR_UNKNOWN;
+}

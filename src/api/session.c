@@ -1,0 +1,110 @@
+/* Start and end, errors in words, texts. */
+#include <limits.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include "api/api.h"
+#include "base/threads.h"
+#include "talus_version.h"
+
+const char *TalusVersion(void) { return TALUS_VERSION; }
+
+const char *talus_error_string(int error)
+{
+  switch (error) {
+  case TALUS_OK: return "done";
+  case TALUS_ERROR_ARGUMENT: return "an argument is NULL, out of range, or too small to hold the result";
+  case TALUS_ERROR_STATE: return "TalusInitialize is missing, or was called twice or after TalusFinalize";
+  case TALUS_ERROR_INPUT: return "the case has mistakes, or the run directory cannot be used";
+  case TALUS_ERROR_UNKNOWN: return "there is no measure or field of this name";
+  case TALUS_ERROR_OUTPUT: return "a result could not be written";
+  case TALUS_ERROR_MEMORY: return "no memory";
+  case TALUS_ERROR_INTERNAL: return "a fault of talus or of a library";
+  default: return "no error code of talus";
+  }
+}
+
+int talus_code(PetscErrorCode code)
+{
+  switch (code) {
+  case 0: return TALUS_OK;
+  case PETSC_ERR_MEM: return TALUS_ERROR_MEMORY;
+  case PETSC_ERR_FILE_OPEN:
+  case PETSC_ERR_FILE_WRITE: return TALUS_ERROR_OUTPUT;
+  default: return TALUS_ERROR_INTERNAL;
+  }
+}
+
+PetscBool talus_is_running(void)
+{
+  PetscBool started = PETSC_FALSE, ended = PETSC_FALSE;
+  if (PetscInitialized(&started) || PetscFinalized(&ended)) return PETSC_FALSE;
+  return started && !ended ? PETSC_TRUE : PETSC_FALSE;
+}
+
+int TalusInitialize(int *argc, char ***argv)
+{
+  PetscBool started, ended;
+  if (PetscInitialized(&started) || PetscFinalized(&ended) || started || ended) return TALUS_ERROR_STATE;
+  threads_one_per_rank();
+  if (!argc || !argv) return talus_code(PetscInitializeNoArguments());
+  return talus_code(PetscInitialize(argc, argv, NULL, NULL));
+}
+
+int TalusFinalize(void)
+{
+  if (!talus_is_running()) return TALUS_ERROR_STATE;
+  return talus_code(PetscFinalize());
+}
+
+int TalusRanks(int *rank, int *size)
+{
+  PetscMPIInt r, s;
+  if (!talus_is_running()) return TALUS_ERROR_STATE;
+  if (MPI_Comm_rank(PETSC_COMM_WORLD, &r) || MPI_Comm_size(PETSC_COMM_WORLD, &s)) return TALUS_ERROR_INTERNAL;
+  if (rank) *rank = r;
+  if (size) *size = s;
+  return TALUS_OK;
+}
+
+void TalusTextFree(char **text)
+{
+  if (!text) return;
+  free(*text);
+  *text = NULL;
+}
+
+/* The first rank's text for all ranks; NULL if it is empty. `text` is the C library's memory. */
+static PetscErrorCode ShareText(char **text, size_t length)
+{
+  unsigned long long n = length;
+
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Bcast(&n, 1, MPI_UNSIGNED_LONG_LONG, 0, PETSC_COMM_WORLD));
+  PetscCheck(n < INT_MAX, PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE, "messages too long to be sent");
+  if (n != length || !n) TalusTextFree(text);
+  if (!n) PetscFunctionReturn(0);
+  if (!*text) *text = calloc(n + 1, 1);
+  PetscCheck(*text, PETSC_COMM_SELF, PETSC_ERR_MEM, "no memory for messages");
+  PetscCallMPI(MPI_Bcast(*text, (PetscMPIInt)n, MPI_CHAR, 0, PETSC_COMM_WORLD));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode TalusTell(Diag *diag, char **messages)
+{
+  PetscInt errors;
+  size_t length = 0;
+
+  PetscFunctionBeginUser;
+  PetscCall(DiagReduce(PETSC_COMM_WORLD, diag, &errors));
+  if (!messages) {
+    PetscCall(DiagFlush(diag, stderr));
+    PetscFunctionReturn(0);
+  }
+  *messages = NULL;
+  FILE *out = open_memstream(messages, &length);
+  PetscCheck(out, PETSC_COMM_SELF, PETSC_ERR_MEM, "no memory for messages");
+  PetscCall(DiagFlush(diag, out));
+  fclose(out);
+  PetscCall(ShareText(messages, length));
+  PetscFunctionReturn(0);
+}

@@ -1,0 +1,449 @@
+/* The public interface as a user's program sees it: only talus.h. The tests run in order; the first starts MPI and
+ * PETSc, the last ends them. */
+#include <math.h>
+#include <mpi.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+#include <cmocka.h>
+#include "talus.h"
+
+#define BLOCK TALUS_SOURCE_DIR "/tests/api/block.yaml"
+#define FOLDER 64
+
+/* A rank that failed must not leave the others waiting in a collective call. */
+static void check(int good, const char *what, int line)
+{
+  int size = 1, running;
+  if (good) return;
+  MPI_Initialized(&running);
+  if (running) MPI_Comm_size(MPI_COMM_WORLD, &size);
+  fprintf(stderr, "%s:%d: failed: %s\n", __FILE__, line, what);
+  if (size > 1) MPI_Abort(MPI_COMM_WORLD, 1);
+  _fail(__FILE__, line);
+}
+
+#define CHECK(condition) check(!!(condition), #condition, __LINE__)
+#define CHECK_ERROR(call, error) CHECK((call) == (error))
+#define CALL(call) CHECK_ERROR(call, TALUS_OK)
+#define CHECK_CLOSE(a, b, tolerance) CHECK(fabs((a) - (b)) <= (tolerance))
+
+static TalusCase *open_block(int n_set, const char *const *set)
+{
+  TalusCase *c = NULL;
+  CALL(TalusCaseOpen(BLOCK, n_set, set, &c, NULL));
+  CHECK(c != NULL);
+  return c;
+}
+
+static TalusModel *create_model(TalusCase *c)
+{
+  TalusModel *model = NULL;
+  CALL(TalusModelCreate(c, &model, NULL));
+  CHECK(model != NULL);
+  return model;
+}
+
+static int run_to_end(TalusModel *model)
+{
+  TalusStep step = TALUS_STEP_ACCEPTED;
+  int steps = -1;
+  while (step == TALUS_STEP_ACCEPTED) {
+    CALL(TalusModelStep(model, 0, &step));
+    ++steps;
+  }
+  CHECK(step == TALUS_STEP_AT_END);
+  return steps;
+}
+
+static int my_rank(void)
+{
+  int rank = -1;
+  CALL(TalusRanks(&rank, NULL));
+  return rank;
+}
+
+/* A folder that the first rank makes, and that goes with all in it. */
+static void make_folder(char folder[FOLDER])
+{
+  snprintf(folder, FOLDER, "/tmp/talus-api-XXXXXX");
+  if (my_rank() == 0) CHECK(mkdtemp(folder) != NULL);
+  MPI_Bcast(folder, FOLDER, MPI_CHAR, 0, MPI_COMM_WORLD);
+}
+
+static void remove_folder(const char *folder)
+{
+  char command[FOLDER + 16];
+  MPI_Barrier(MPI_COMM_WORLD);
+  snprintf(command, sizeof command, "rm -rf '%s'", folder);
+  if (my_rank() == 0) CHECK(system(command) == 0);
+}
+
+static void test_session(void **state)
+{
+  TalusCase *c = NULL;
+  int rank, size;
+  (void)state;
+  CHECK_ERROR(TalusFinalize(), TALUS_ERROR_STATE);
+  CHECK_ERROR(TalusRanks(&rank, &size), TALUS_ERROR_STATE);
+  CHECK_ERROR(TalusCaseOpen(BLOCK, 0, NULL, &c, NULL), TALUS_ERROR_STATE);
+  CHECK(strchr(TalusVersion(), '.') != NULL);
+  CALL(TalusInitialize(NULL, NULL));
+  CHECK_ERROR(TalusInitialize(NULL, NULL), TALUS_ERROR_STATE);
+  CALL(TalusRanks(&rank, &size));
+  CHECK(rank >= 0 && rank < size);
+  CALL(TalusRanks(NULL, NULL));
+}
+
+static void test_errors_in_words(void **state)
+{
+  (void)state;
+  for (int a = -1; a <= TALUS_ERROR_INTERNAL + 1; ++a) {
+    CHECK(talus_error_string(a)[0] != '\0');
+    for (int b = 0; b < a && a <= TALUS_ERROR_INTERNAL; ++b)
+      CHECK(strcmp(talus_error_string(a), talus_error_string(b)));
+  }
+}
+
+/* Opening must fail, and the message must hold `what` on every rank. */
+static void expect_mistake(const char *file, const char *set, const char *what)
+{
+  TalusCase *c = (TalusCase *)&c;
+  char *messages = NULL;
+  CHECK_ERROR(TalusCaseOpen(file, set ? 1 : 0, &set, &c, &messages), TALUS_ERROR_INPUT);
+  CHECK(c == NULL);
+  CHECK(messages && strstr(messages, what));
+  TalusTextFree(&messages);
+  CHECK(messages == NULL);
+}
+
+static void test_mistakes(void **state)
+{
+  char folder[FOLDER], file[FOLDER + 16];
+  (void)state;
+  make_folder(folder);
+  snprintf(file, sizeof file, "%s/bad.yaml", folder);
+  expect_mistake(file, NULL, "no such file");
+  expect_mistake(folder, NULL, "directory");
+  if (my_rank() == 0) {
+    FILE *out = fopen(file, "w");
+    fputs("kinematics: plane-strain\nmethod: mpm\nmaterials:\n  rubber: {law: neo-hookean, yung: 1e6}\n", out);
+    fclose(out);
+  }
+  MPI_Barrier(MPI_COMM_WORLD);
+  expect_mistake(file, NULL, "bad.yaml:4:");
+  expect_mistake(file, NULL, "yung");
+  expect_mistake(BLOCK, "materials.rubber.density=-1", "density");
+  expect_mistake(BLOCK, "materials.rubber.colour=red", "colour");
+  remove_folder(folder);
+}
+
+/* Mistakes that show only when the grid is there. */
+static void test_mistakes_of_a_model(void **state)
+{
+  const char *const set[] = {"grid.box.min=[5, -0.5]", "grid.box.max=[7, 1.5]"};
+  TalusModel *model = (TalusModel *)&model;
+  TalusRun *run = (TalusRun *)&run;
+  char *messages = NULL, folder[FOLDER], out[FOLDER + 8], log[FOLDER + 16];
+  (void)state;
+  TalusCase *c = open_block(2, set);
+  CHECK_ERROR(TalusModelCreate(c, &model, &messages), TALUS_ERROR_INPUT);
+  CHECK(model == NULL && messages && strstr(messages, "block.yaml:7:") && strstr(messages, "block"));
+  TalusTextFree(&messages);
+  make_folder(folder);
+  snprintf(out, sizeof out, "%s/run", folder);
+  snprintf(log, sizeof log, "%s/log.txt", out);
+  CHECK_ERROR(TalusRunCase(c, out, TALUS_RUN_QUIET, &run, &messages), TALUS_ERROR_INPUT);
+  CHECK(run == NULL && messages && strstr(messages, "block.yaml:7:"));
+  CHECK(access(log, F_OK) != 0); /* nothing was written */
+  TalusTextFree(&messages);
+  remove_folder(folder);
+  CALL(TalusCaseClose(&c));
+}
+
+static void test_null(void **state)
+{
+  TalusCase *c = NULL;
+  TalusModel *model = NULL;
+  TalusRun *run = NULL;
+  TalusOutcome outcome;
+  TalusStep step;
+  double value;
+  int n;
+  (void)state;
+  CHECK_ERROR(TalusCaseOpen(NULL, 0, NULL, &c, NULL), TALUS_ERROR_ARGUMENT);
+  CHECK_ERROR(TalusCaseOpen(BLOCK, 0, NULL, NULL, NULL), TALUS_ERROR_ARGUMENT);
+  CHECK_ERROR(TalusCaseOpen(BLOCK, 1, NULL, &c, NULL), TALUS_ERROR_ARGUMENT);
+  CHECK_ERROR(TalusCaseOpen(BLOCK, -1, NULL, &c, NULL), TALUS_ERROR_ARGUMENT);
+  CHECK_ERROR(TalusCaseCountMeasures(NULL, &n), TALUS_ERROR_ARGUMENT);
+  CHECK_ERROR(TalusCaseMeasureName(NULL, 0, NULL, NULL), TALUS_ERROR_ARGUMENT);
+  CHECK_ERROR(TalusRunCase(NULL, "x", 0, &run, NULL), TALUS_ERROR_ARGUMENT);
+  CHECK_ERROR(TalusRunOutcome(NULL, &outcome), TALUS_ERROR_ARGUMENT);
+  CHECK_ERROR(TalusRunMeasure(NULL, "top", &value), TALUS_ERROR_ARGUMENT);
+  CHECK_ERROR(TalusModelCreate(NULL, &model, NULL), TALUS_ERROR_ARGUMENT);
+  CHECK_ERROR(TalusModelStep(NULL, 0, &step), TALUS_ERROR_ARGUMENT);
+  CHECK_ERROR(TalusModelTime(NULL, &value, NULL), TALUS_ERROR_ARGUMENT);
+  CHECK_ERROR(TalusModelMeasure(NULL, "top", &value), TALUS_ERROR_ARGUMENT);
+  CHECK_ERROR(TalusModelPoints(NULL, "mass", &n, NULL, NULL, 0), TALUS_ERROR_ARGUMENT);
+  CHECK_ERROR(TalusModelSetBodyForce(NULL, NULL, NULL), TALUS_ERROR_ARGUMENT);
+  CHECK(TalusModelReason(NULL)[0] == '\0');
+  CALL(TalusModelDestroy(&model)); /* destroying nothing is fine */
+  CALL(TalusRunDestroy(&run));
+  CALL(TalusCaseClose(&c));
+  CALL(TalusCaseClose(NULL));
+  TalusTextFree(NULL);
+}
+
+static void test_names(void **state)
+{
+  const char *name, *unit;
+  double value = 7;
+  int n;
+  (void)state;
+  TalusCase *c = open_block(0, NULL);
+  CALL(TalusCaseCountMeasures(c, &n));
+  CHECK(n == 3);
+  CALL(TalusCaseMeasureName(c, 0, &name, &unit));
+  CHECK(!strcmp(name, "top") && !strcmp(unit, "m"));
+  CHECK_ERROR(TalusCaseMeasureName(c, 3, &name, &unit), TALUS_ERROR_ARGUMENT);
+  CHECK_ERROR(TalusCaseMeasureName(c, -1, &name, &unit), TALUS_ERROR_ARGUMENT);
+  TalusModel *model = create_model(c);
+  CHECK_ERROR(TalusModelMeasure(model, "bottom", &value), TALUS_ERROR_UNKNOWN);
+  CHECK_ERROR(TalusModelPoints(model, "colour", &n, NULL, NULL, 0), TALUS_ERROR_UNKNOWN);
+  CHECK(value == 7 && n == 3);
+  CALL(TalusModelMeasure(model, "mass", &value));
+  CHECK_CLOSE(value, 1000, 1e-9);
+  CALL(TalusModelDestroy(&model));
+  CHECK(model == NULL);
+  CALL(TalusCaseClose(&c));
+  CHECK(c == NULL);
+}
+
+/* Stepping by hand and running give the same numbers to the last bit. */
+static void test_steps_equal_run(void **state)
+{
+  static const char *const names[] = {"top", "falling", "mass"};
+  char folder[FOLDER], out[FOLDER + 8], history[FOLDER + 24], *messages = NULL;
+  double run_value, model_value, time, end;
+  TalusOutcome outcome;
+  TalusRun *run;
+  (void)state;
+  make_folder(folder);
+  snprintf(out, sizeof out, "%s/run", folder);
+  snprintf(history, sizeof history, "%s/history.csv", out);
+  TalusCase *c = open_block(0, NULL);
+  CALL(TalusRunCase(c, out, TALUS_RUN_QUIET, &run, NULL));
+  CALL(TalusRunOutcome(run, &outcome));
+  CHECK(outcome == TALUS_DONE && access(history, R_OK) == 0);
+  TalusModel *model = create_model(c);
+  CHECK(run_to_end(model) == 5);
+  CALL(TalusModelTime(model, &time, &end));
+  CHECK_CLOSE(time, 0.01, 1e-12);
+  CHECK(end == 0.01);
+  for (int i = 0; i < 3; ++i) {
+    CALL(TalusRunMeasure(run, names[i], &run_value));
+    CALL(TalusModelMeasure(model, names[i], &model_value));
+    CHECK(run_value == model_value);
+  }
+  CALL(
+    TalusModelMeasure(model, "top", &model_value)); /* the free top falls freely, news from the bottom takes 0.027 s */
+  CHECK_CLOSE(model_value, -0.5 * 9.81 * 0.01 * 0.01, 2e-5);
+  CHECK_ERROR(TalusRunMeasure(run, "bottom", &run_value), TALUS_ERROR_UNKNOWN);
+  CALL(TalusRunDestroy(&run));
+  /* What is there is not replaced unasked, and flags that do not exist are refused. */
+  CHECK_ERROR(TalusRunCase(c, out, TALUS_RUN_QUIET, &run, &messages), TALUS_ERROR_INPUT);
+  CHECK(run == NULL && messages && messages[0]);
+  TalusTextFree(&messages);
+  CHECK_ERROR(TalusRunCase(c, out, 1u << 20, &run, NULL), TALUS_ERROR_ARGUMENT);
+  CALL(TalusRunCase(c, out, TALUS_RUN_QUIET | TALUS_RUN_FORCE, &run, NULL));
+  CALL(TalusRunDestroy(&run));
+  CALL(TalusModelDestroy(&model));
+  CALL(TalusCaseClose(&c));
+  remove_folder(folder);
+}
+
+static void test_limits(void **state)
+{
+  TalusStep step = TALUS_STEP_AT_END;
+  double time;
+  (void)state;
+  TalusCase *c = open_block(0, NULL);
+  TalusModel *model = create_model(c);
+  CHECK_ERROR(TalusModelStep(model, -1, &step), TALUS_ERROR_ARGUMENT);
+  CHECK_ERROR(TalusModelStep(model, nan(""), &step), TALUS_ERROR_ARGUMENT);
+  CALL(TalusModelStep(model, 0.0005, &step));
+  CALL(TalusModelTime(model, &time, NULL));
+  CHECK(step == TALUS_STEP_ACCEPTED && time == 0.0005);
+  run_to_end(model);
+  CALL(TalusModelStep(model, 0.001, &step)); /* asked for, a model goes on beyond the end of its case */
+  CALL(TalusModelTime(model, &time, NULL));
+  CHECK(step == TALUS_STEP_ACCEPTED);
+  CHECK_CLOSE(time, 0.011, 1e-12);
+  CALL(TalusModelDestroy(&model));
+  CALL(TalusCaseClose(&c));
+}
+
+/* A step that cannot converge says so in words and leaves the model as it was. */
+static void test_failed_step(void **state)
+{
+  const char *const set[] = {"analysis.smallest=0.0015", "newton.max_iterations=1", "newton.residual=1e-14",
+                             "materials.rubber.young=1e3"};
+  TalusStep step = TALUS_STEP_ACCEPTED;
+  double time, top = 7;
+  (void)state;
+  TalusCase *c = open_block(4, set);
+  TalusModel *model = create_model(c);
+  CHECK(TalusModelReason(model)[0] == '\0');
+  CALL(TalusModelStep(model, 0, &step));
+  CHECK(step == TALUS_STEP_TOO_SMALL && strstr(TalusModelReason(model), "converge"));
+  CALL(TalusModelTime(model, &time, NULL));
+  CALL(TalusModelMeasure(model, "top", &top));
+  CHECK(time == 0 && top == 0);
+  CALL(TalusModelDestroy(&model));
+  CALL(TalusCaseClose(&c));
+}
+
+/* A field of this rank's points, to be freed. */
+static double *get_field(const TalusModel *model, const char *name, int expected_components, int *n)
+{
+  int components;
+  CALL(TalusModelPoints(model, name, n, &components, NULL, 0));
+  CHECK(components == expected_components);
+  const size_t size = (size_t)*n * (size_t)components;
+  double *values = malloc((size + 1) * sizeof(double));
+  if (size > 0) CHECK_ERROR(TalusModelPoints(model, name, NULL, NULL, values, size - 1), TALUS_ERROR_ARGUMENT);
+  CALL(TalusModelPoints(model, name, NULL, NULL, values, size));
+  return values;
+}
+
+static void test_points(void **state)
+{
+  double local[3] = {0, 0, 0}, sum[3];
+  int n;
+  (void)state;
+  TalusCase *c = open_block(0, NULL);
+  TalusModel *model = create_model(c);
+  run_to_end(model);
+  double *x = get_field(model, "position", 3, &n), *u = get_field(model, "displacement", 3, &n),
+         *id = get_field(model, "id", 1, &n);
+  double *mass = get_field(model, "mass", 1, &n), *F = get_field(model, "deformation_gradient", 9, &n);
+  double *volume = get_field(model, "volume", 1, &n), *stress = get_field(model, "stress", 6, &n);
+  for (int p = 0; p < n; ++p) {
+    const double X = x[3 * p] - u[3 * p], Y = x[3 * p + 1] - u[3 * p + 1],
+                 J = F[9 * p] * F[9 * p + 4] - F[9 * p + 1] * F[9 * p + 3];
+    CHECK(X > 0.25 && X < 1.25 && Y > 0 && Y < 1 && x[3 * p + 2] == 0 && u[3 * p + 2] == 0);
+    CHECK_CLOSE(volume[p], J / 64, 1e-12); /* 16 cells of 4 points */
+    CHECK(F[9 * p + 8] == 1 && stress[6 * p + 4] == 0 && stress[6 * p + 5] == 0);
+    local[0] += mass[p];
+    local[1] += mass[p] * u[3 * p + 1];
+    ++local[2];
+    for (int q = 0; q < p; ++q) CHECK(id[q] != id[p]);
+  }
+  MPI_Allreduce(local, sum, 3, MPI_DOUBLE, MPI_SUM, MPI_COMM_WORLD);
+  CHECK_CLOSE(sum[0], 1000, 1e-9);
+  CHECK(sum[1] < 0 && sum[2] == 64);
+  free(x), free(u), free(id), free(mass), free(F), free(volume), free(stress);
+  CALL(TalusModelDestroy(&model));
+  CALL(TalusCaseClose(&c));
+}
+
+/* A body under its own weight starts with just the stress that carries it, in the volume it was seeded with. */
+static void test_geostatic_stress(void **state)
+{
+  const char *const set[] = {"bodies[0].k0=0.5", "bodies[0].surface=1", "materials.rubber.young=1e5"};
+  int n;
+  (void)state;
+  TalusCase *c = open_block(3, set);
+  TalusModel *model = create_model(c);
+  double *x = get_field(model, "position", 3, &n), *stress = get_field(model, "stress", 6, &n),
+         *volume = get_field(model, "volume", 1, &n);
+  for (int p = 0; p < n; ++p) {
+    const double vertical = -1000 * 9.81 * (1 - x[3 * p + 1]);
+    CHECK_CLOSE(stress[6 * p + 1], vertical, 1e-8);
+    CHECK_CLOSE(stress[6 * p], 0.5 * vertical, 1e-8);
+    CHECK_CLOSE(stress[6 * p + 2], 0.5 * vertical, 1e-8);
+    CHECK_CLOSE(volume[p], 1. / 64, 1e-15);
+  }
+  free(x), free(stress), free(volume);
+  CALL(TalusModelDestroy(&model));
+  CALL(TalusCaseClose(&c));
+}
+
+typedef struct {
+  double b[2];
+  int calls;
+} Pull;
+
+static void pull(void *context, const double X[3], double t, double b[3])
+{
+  Pull *p = context;
+  ++p->calls;
+  if (X[2] == 0 && t >= 0 && b[2] == 0) b[0] = p->b[0], b[1] = p->b[1];
+}
+
+/* A constant body force is gravity: the same motion, from the initial acceleration on. */
+static void test_body_force(void **state)
+{
+  const char *set = "loads.gravity=[0, 0]";
+  Pull context = {.b = {0, -9.81}};
+  double with_gravity, with_force;
+  int n;
+  (void)state;
+  TalusCase *heavy = open_block(0, NULL), *light = open_block(1, &set);
+  TalusModel *a = create_model(heavy), *b = create_model(light);
+  CALL(TalusModelSetBodyForce(b, pull, &context));
+  double *acceleration = get_field(b, "acceleration", 3, &n);
+  for (int p = 0; p < n; ++p) CHECK(acceleration[3 * p + 1] < 0);
+  free(acceleration);
+  CHECK(run_to_end(a) == run_to_end(b));
+  for (int k = 0; k < 2; ++k) {
+    CALL(TalusModelMeasure(a, k ? "falling" : "top", &with_gravity));
+    CALL(TalusModelMeasure(b, k ? "falling" : "top", &with_force));
+    CHECK_CLOSE(with_gravity, with_force, 1e-9 * fabs(with_gravity));
+  }
+  CHECK(context.calls > 0 || n == 0);
+  CALL(TalusModelSetBodyForce(b, NULL, NULL));
+  context.calls = 0;
+  TalusStep step;
+  CALL(TalusModelStep(b, 0.001, &step));
+  CHECK(step == TALUS_STEP_ACCEPTED && context.calls == 0);
+  CALL(TalusModelDestroy(&a));
+  CALL(TalusModelDestroy(&b));
+  CALL(TalusCaseClose(&heavy));
+  CALL(TalusCaseClose(&light));
+}
+
+static void test_end(void **state)
+{
+  TalusCase *c = NULL;
+  (void)state;
+  CALL(TalusFinalize());
+  CHECK_ERROR(TalusFinalize(), TALUS_ERROR_STATE);
+  CHECK_ERROR(TalusInitialize(NULL, NULL), TALUS_ERROR_STATE);
+  CHECK_ERROR(TalusCaseOpen(BLOCK, 0, NULL, &c, NULL), TALUS_ERROR_STATE);
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {
+    cmocka_unit_test(test_session),
+    cmocka_unit_test(test_errors_in_words),
+    cmocka_unit_test(test_null),
+    cmocka_unit_test(test_mistakes),
+    cmocka_unit_test(test_mistakes_of_a_model),
+    cmocka_unit_test(test_names),
+    cmocka_unit_test(test_steps_equal_run),
+    cmocka_unit_test(test_limits),
+    cmocka_unit_test(test_failed_step),
+    cmocka_unit_test(test_points),
+    cmocka_unit_test(test_geostatic_stress),
+    cmocka_unit_test(test_body_force),
+    cmocka_unit_test(test_end),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
