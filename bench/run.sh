@@ -1,0 +1,31 @@
+#!/bin/sh
+# run.sh BUILD: all benchmarks of this folder, as `make bench` runs them. What the numbers mean stands in README.md.
+set -eu
+bench=${1:-build}/bench
+export OPENBLAS_NUM_THREADS=1 OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
+
+title() { printf '\n== %s\n' "$*"; }
+
+# Milliseconds a step of the best of three runs on so many ranks.
+best_step() {
+  mpiexec --oversubscribe -n "$1" "$bench/bench_dynamic" -points 100000 -steps 20 -repeat 3 |
+    awk '/per step/ {for (i = 1; i < NF; ++i) if ($i == "all") print $(i + 1), substr($(i + 2), 2)}'
+}
+
+title "laws"
+"$bench/bench_law"
+
+title "statics"
+"$bench/bench_static"
+
+title "dynamics in 2D: an elastic block lands and bounces"
+"$bench/bench_dynamic" -points 10000,100000,1000000 -steps 20 -repeat "${REPEAT:-2}"
+
+title "dynamics in 3D"
+"$bench/bench_dynamic" -dim 3 -points 100000 -steps 20
+
+title "ranks: 2D, 100,000 points, best of 3"
+one=$(best_step 1)
+two=$(best_step 2)
+echo "$one $two" | awk '{printf "  1 rank %.2f ms a step, 2 ranks %.2f ms: %.2f times faster   [target 1.7, on two free cores]\n" \
+  "  (other work on the machine took a core away for %d %% and %d %% of the time)\n", $1, $3, $1 / $3, $2, $4}'
