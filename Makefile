@@ -3,7 +3,7 @@ BUILD      ?= build
 PREFIX     ?= /usr/local
 JOBS       ?= $(shell nproc 2>/dev/null || echo 2)
 TEST_JOBS  ?= 2
-CASE       ?= cases/cantilever
+CASE       ?= cases/granular-collapse
 RUN        ?= runs/$(notdir $(CASE))
 TALUS      := $(BUILD)/talus
 SANITIZE   := $(BUILD)-sanitize
@@ -29,7 +29,7 @@ deps: ## Install the Debian packages that are missing, through apt
 configure: deps
 	@cmake -S . -B $(BUILD) -G Ninja --log-level=WARNING -DCMAKE_BUILD_TYPE=Release $(OPTIONS) >/dev/null
 
-run: build ## Run a case and draw it: CASE=cases/cantilever, into RUN=runs/cantilever
+run: build ## Run a case and draw it: CASE=cases/granular-collapse, into RUN=runs/granular-collapse
 	@$(TALUS) run $(CASE)/case.yaml --out $(RUN) --force
 	@$(TALUS) plot $(RUN)
 	@echo "pictures:"; find $(RUN) -name '*.png' | sort

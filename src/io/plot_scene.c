@@ -44,10 +44,10 @@ static void AddAir(const PlotScene *scene, PetscReal min[2], PetscReal max[2])
 /* Rows above and below, columns left and right of the field. */
 static void Margins(const PlotPage *page, PetscBool space, int margin[4])
 {
-  margin[0] = space ? 20 : 95;                                /* left */
-  margin[1] = page->bar_below ? 40 : 150;                     /* right */
-  margin[2] = (space ? 15 : 70) + (page->bar_below ? 90 : 0); /* bottom */
-  margin[3] = 55;                                             /* top */
+  margin[0] = space ? 20 : 120;                                /* left */
+  margin[1] = page->bar_below ? 40 : 150;                      /* right */
+  margin[2] = (space ? 15 : 80) + (page->bar_below ? 105 : 0); /* bottom */
+  margin[3] = 55;                                              /* top */
 }
 
 /* Equal scales: the field takes the shape of what it shows, in the middle of the room that it has. */
