@@ -30,7 +30,7 @@ endmacro()
 
 # One thread a rank, Open MPI willing to start as root and with more ranks than cores.
 set(TALUS_TEST_ENVIRONMENT OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 OMPI_MCA_rmaps_base_oversubscribe=1
-  OPENBLAS_NUM_THREADS=1 OMPI_MCA_pml=ob1)
+  OPENBLAS_NUM_THREADS=1 OMPI_MCA_pml=ob1 OMPI_MCA_mpi_yield_when_idle=1)
 set(TALUS_TEST_PATIENCE 1) # times the usual time limits
 if(TALUS_SANITIZE)
   set(TALUS_TEST_PATIENCE 4)
@@ -68,7 +68,7 @@ function(talus_test path)
     set(arg_RANKS 1)
   endif()
   if(NOT arg_TIMEOUT)
-    set(arg_TIMEOUT 120)
+    set(arg_TIMEOUT 400)
   endif()
   math(EXPR arg_TIMEOUT "${TALUS_TEST_PATIENCE} * ${arg_TIMEOUT}")
   foreach(ranks ${arg_RANKS})
