@@ -24,28 +24,35 @@ static PetscBool alone(const Grid *grid)
   return MPI_Comm_size(grid->comm, &size) == MPI_SUCCESS && size == 1 ? PETSC_TRUE : PETSC_FALSE;
 }
 
-PetscErrorCode GridToGhosts(const Grid *grid, PetscInt components, PetscReal *values)
+/* Owners to ghosts, or the sum of all to the owners. */
+static PetscErrorCode Exchange(const Grid *grid, PetscBool sum, PetscInt components, PetscReal *values)
 {
   MPI_Datatype type;
 
   PetscFunctionBeginUser;
   if (alone(grid) || !components) PetscFunctionReturn(0);
   PetscCall(BlockType(components, &type));
-  PetscCall(PetscSFBcastBegin(grid->node_sf, type, values, values, MPI_REPLACE));
-  PetscCall(PetscSFBcastEnd(grid->node_sf, type, values, values, MPI_REPLACE));
+  if (sum) {
+    PetscCall(PetscSFReduceBegin(grid->node_sf, type, values, values, MPI_SUM));
+    PetscCall(PetscSFReduceEnd(grid->node_sf, type, values, values, MPI_SUM));
+  } else {
+    PetscCall(PetscSFBcastBegin(grid->node_sf, type, values, values, MPI_REPLACE));
+    PetscCall(PetscSFBcastEnd(grid->node_sf, type, values, values, MPI_REPLACE));
+  }
   if (type != MPIU_REAL) PetscCallMPI(MPI_Type_free(&type));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode GridToGhosts(const Grid *grid, PetscInt components, PetscReal *values)
+{
+  PetscFunctionBeginUser;
+  PetscCall(Exchange(grid, PETSC_FALSE, components, values));
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode GridSumToOwners(const Grid *grid, PetscInt components, PetscReal *values)
 {
-  MPI_Datatype type;
-
   PetscFunctionBeginUser;
-  if (alone(grid) || !components) PetscFunctionReturn(0);
-  PetscCall(BlockType(components, &type));
-  PetscCall(PetscSFReduceBegin(grid->node_sf, type, values, values, MPI_SUM));
-  PetscCall(PetscSFReduceEnd(grid->node_sf, type, values, values, MPI_SUM));
-  if (type != MPIU_REAL) PetscCallMPI(MPI_Type_free(&type));
+  PetscCall(Exchange(grid, PETSC_TRUE, components, values));
   PetscFunctionReturn(0);
 }

@@ -9,25 +9,11 @@
  * State: bbar, J, alpha. The algorithm keeps the trace of bbar and not its determinant, so J is stored apart; the
  * elastic energy of shape is mu/2 (tr bbar - 3 (det bbar)^(1/3)), whose second term grows with the dissipation.
  * Volumetric laws as in neo_hookean_split.c: j2 with p = K (J - 1), j2-log with p = K ln J / J. */
-#include "material/lanes.h"
-#include "material/shape.h"
+#include "material/volume.h"
 
 enum { BULK, MU, YIELD, HARDENING };
 
 #define N_STATE 8 /* bbar, J, alpha */
-
-/* q = J U' and dq = J dq/dJ. */
-LANES_INLINE void volume_of(VolumeLaw law, PetscReal K, const Lanes *J, Lanes *q, Lanes *dq)
-{
-  if (law == VOLUME_LOG) {
-    lanes_log(J, q);
-    *q *= K;
-    *dq = 0.0 * *J + K;
-  } else {
-    *q = K * *J * (*J - 1.0);
-    *dq = K * *J * (2.0 * *J - 1.0);
-  }
-}
 
 /* |s| of a deviator, and 1 / |s| (0 for 0). */
 LANES_INLINE void norm_of(const Lanes s[6], Lanes *norm, Lanes *inverse)
@@ -107,7 +93,7 @@ LANES_INLINE LawStatus update_lanes(VolumeLaw law, const PetscReal *parameters, 
   lanes_det(f, &det_f);
   lanes_cbrt(&det_f, &root);
   now[6] *= det_f;
-  volume_of(law, parameters[BULK], &now[6], &r.q, &r.dq);
+  volume_lanes(law, parameters[BULK], &now[6], &r.q, &r.dq);
   for (int k = 0; k < 6; ++k) b[k] /= root * root;
   const Lanes mean = (b[0] + b[1] + b[2]) / 3.0;
   r.mubar = mu * mean;

@@ -9,25 +9,9 @@
  *
  *   neo-hookean-split       U = (J - 1)^2 / 2    p = K (J - 1)
  *   neo-hookean-split-log   U = (ln J)^2 / 2     p = K ln J / J */
-#include "material/lanes.h"
-#include "material/shape.h"
+#include "material/volume.h"
 
 enum { BULK, MU };
-
-/* q and dq from J^2. */
-LANES_INLINE void volume_lanes(VolumeLaw law, PetscReal K, const Lanes *J2, Lanes *q, Lanes *dq)
-{
-  Lanes y;
-  if (law == VOLUME_LOG) {
-    lanes_log(J2, &y);
-    *q = 0.5 * K * y;
-    *dq = 0.0 * y + K;
-  } else {
-    lanes_sqrt(J2, &y);
-    *q = K * y * (y - 1.0);
-    *dq = K * y * (2.0 * y - 1.0);
-  }
-}
 
 /* c = a I x I + 2 g I_sym - 2/3 (s x I + I x s) of one point. */
 LANES_INLINE void tangent_point(PetscReal a, PetscReal g, const PetscReal s[6], PetscReal *c)
@@ -47,14 +31,15 @@ LANES_INLINE LawStatus update_lanes(VolumeLaw law, const PetscReal *parameters, 
                                     const PetscReal *old, PetscReal *state, PetscReal *tau, PetscReal *c)
 {
   const PetscReal mu = parameters[MU];
-  Lanes f[9], b_old[6], b[6], s[6], t[9], det_f, det_b, root, q, dq;
+  Lanes f[9], b_old[6], b[6], s[6], t[9], det_f, det_b, J, root, q, dq;
   lanes_load(9, n, dF, f);
   lanes_load(6, n, old, b_old);
   lanes_push_forward(f, b_old, b);
   lanes_det(f, &det_f);
   lanes_sym_det(b, &det_b);
   lanes_cbrt(&det_b, &root);
-  volume_lanes(law, parameters[BULK], &det_b, &q, &dq);
+  lanes_sqrt(&det_b, &J);
+  volume_lanes(law, parameters[BULK], &J, &q, &dq);
   const Lanes scale = mu / root, m = (b[0] + b[1] + b[2]) * scale * (2.0 / 3.0);
   for (int k = 0; k < 3; ++k) {
     s[k] = scale * b[k] - 0.5 * m;
