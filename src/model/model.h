@@ -87,6 +87,9 @@ PetscErrorCode ModelEnergies(Model *model, Energies *energies);
 /* Seconds that this rank spent in each phase since the start. */
 void ModelTimes(const Model *model, PetscReal seconds[PHASE_N]);
 
+/* After the run: a warning for each PETSc option, of the case or of the command line, that nobody asked for. */
+PetscErrorCode ModelUnusedOptions(const Model *model, Diag *diag);
+
 /* Number of points over all ranks. */
 PetscErrorCode ModelCountPoints(const Model *model, PetscInt *n);
 /* Cauchy stress (Voigt) of one point, from its state. */

@@ -51,6 +51,50 @@ PetscErrorCode OptionsCheck(const Model *m, Diag *diag)
   PetscFunctionReturn(0);
 }
 
+/* PETSc reads these when it ends, so none of them was used yet. */
+static PetscBool is_for_the_end(const char *name)
+{
+  static const char *const words[] = {"log_",   "malloc",          "options_",      "mpidump", "objects_dump",
+                                      "memory", "get_total_flops", "petsc_options", "saws",    NULL};
+  for (int k = 0; words[k]; ++k)
+    if (!strncmp(name, words[k], strlen(words[k]))) return PETSC_TRUE;
+  return PETSC_FALSE;
+}
+
+/* Does the option stand in the case's own block? */
+static PetscErrorCode IsOfCase(const Model *m, const char *option, PetscBool *is)
+{
+  char name[256];
+  const char *value;
+
+  PetscFunctionBeginUser;
+  *is = PETSC_FALSE;
+  for (PetscInt k = 0; k < m->c->n_petsc && !*is; ++k) {
+    PetscCall(Split(m->c->petsc[k], name, &value));
+    *is = !strcmp(name + 1, option) && m->option_set[k] ? PETSC_TRUE : PETSC_FALSE;
+  }
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ModelUnusedOptions(const Model *m, Diag *diag)
+{
+  PetscInt n;
+  PetscBool of_case;
+  char **names, **values, path[300];
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscOptionsLeftGet(NULL, &n, &names, &values));
+  for (PetscInt k = 0; k < n; ++k) {
+    if (is_for_the_end(names[k])) continue;
+    PetscCall(IsOfCase(m, names[k], &of_case));
+    PetscCall(PetscSNPrintf(path, sizeof path, "petsc.%s", names[k]));
+    DiagWarning(diag, of_case ? path : NULL, "nothing in this run asked for the PETSc option -%s", names[k]);
+    DiagHint(diag, "it is misspelled, or belongs to a solver that was not used (-snes_view tells which were)");
+  }
+  PetscCall(PetscOptionsLeftRestore(NULL, &n, &names, &values));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode OptionsForget(Model *m)
 {
   char name[256];

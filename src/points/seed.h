@@ -22,8 +22,8 @@ typedef struct {
 /* Volume that a cell stands for: area times unit thickness, or the full circle. */
 PetscReal seed_cell_volume(const Seeding *s, PetscInt cell);
 
-/* Collective. After the cells were chosen: errors for a body without a cell, a warning where whole cells
- * represent the shape badly. */
+/* Collective. After the cells were chosen: errors for a body without a cell, warnings where whole cells
+ * represent the shape badly, or have a single point that leaves them soft. */
 PetscErrorCode SeedCheckVolume(const Seeding *s);
 /* Collective. taken: per local cell of the grid the body that has it, -1 none; marks this body's cells, and
  * complains of overlap. */

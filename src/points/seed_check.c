@@ -125,6 +125,19 @@ static PetscBool tell_outside_shape(const Seeding *s)
   return PETSC_TRUE;
 }
 
+/* Its middle is the only place where a quadrilateral or hexahedron with one point is felt: it may bend into an hourglass at no cost. */
+static void tell_hourglass(const Seeding *s)
+{
+  const CellType type = s->source->type;
+  char path[128];
+  if (s->n_rule > 1 || s->source != s->grid || (type != CELL_QUADRILATERAL && type != CELL_HEXAHEDRON)) return;
+  seed_path(s->b, "points_per_cell", sizeof path, path);
+  DiagWarning(s->diag, path, "with one point in each %s of '%s' nothing resists its hourglass motions",
+              cells[type].name, s->body->name);
+  DiagHint(s->diag, "use %d points, or %ss", type == CELL_HEXAHEDRON ? 8 : 4,
+           cells[type == CELL_HEXAHEDRON ? CELL_TETRAHEDRON : CELL_TRIANGLE].name);
+}
+
 PetscErrorCode SeedCheckVolume(const Seeding *s)
 {
   PetscReal mine[2] = {(PetscReal)s->n_cells, 0}, sum[2];
@@ -134,7 +147,10 @@ PetscErrorCode SeedCheckVolume(const Seeding *s)
   if (!seed_tells(s->grid)) PetscFunctionReturn(0);
   if (sum[0] == 0) tell_empty(s);
   else if (tell_outside_shape(s)) PetscFunctionReturn(0);
-  else compare_volume(s, sum[1]);
+  else {
+    compare_volume(s, sum[1]);
+    tell_hourglass(s);
+  }
   PetscFunctionReturn(0);
 }
 

@@ -119,9 +119,18 @@ static PetscReal estimated_memory(const Model *m, PetscInt points, PetscInt unkn
   return (PetscReal)points * per_point + matrix + direct + 120 * (PetscReal)m->grid->n_nodes_global;
 }
 
+/* "(0, 0)" or "(0, 0, 0)" */
+static const char *corner(PetscInt dim, const PetscReal *x, char text[80])
+{
+  if (dim == 3) snprintf(text, 80, "(%g, %g, %g)", (double)x[0], (double)x[1], (double)x[2]);
+  else snprintf(text, 80, "(%g, %g)", (double)x[0], (double)x[1]);
+  return text;
+}
+
 static PetscErrorCode ReportSizes(Model *m, FILE *out)
 {
   PetscInt points, pairs, all_pairs;
+  char from[80], to[80];
 
   PetscFunctionBeginUser;
   PetscCall(ModelActivate(m));
@@ -129,10 +138,9 @@ static PetscErrorCode ReportSizes(Model *m, FILE *out)
   pairs = m->system->row_start[m->system->n_rows];
   PetscCall(MPIU_Allreduce(&pairs, &all_pairs, 1, MPIU_INT, MPI_SUM, m->comm));
   const PetscInt unknowns = m->system->n_active_global * m->dim;
-  say(m, out, "# the model\n#   grid: %d cells (%s), %d nodes, from (%g, %g, %g) to (%g, %g, %g) m\n",
-      (int)m->grid->n_cells_global, cells[m->grid->type].name, (int)m->grid->n_nodes_global, (double)m->grid->min[0],
-      (double)m->grid->min[1], m->dim == 3 ? (double)m->grid->min[2] : 0, (double)m->grid->max[0],
-      (double)m->grid->max[1], m->dim == 3 ? (double)m->grid->max[2] : 0);
+  say(m, out, "# the model\n#   grid: %d cells (%s), %d nodes, from %s to %s m\n", (int)m->grid->n_cells_global,
+      cells[m->grid->type].name, (int)m->grid->n_nodes_global, corner(m->dim, m->grid->min, from),
+      corner(m->dim, m->grid->max, to));
   say(m, out, "#   points: %d; unknowns at the start: %d\n", (int)points, (int)unknowns);
   say(m, out, "#   memory: about %.3g MB\n", (double)estimated_memory(m, points, unknowns, all_pairs) / 1e6);
   if (m->c->analysis.type == ANALYSIS_DYNAMIC)

@@ -227,6 +227,7 @@ PetscErrorCode RunCase(MPI_Comm comm, const Case *c, const RunOptions *options, 
     PetscCall(Advance(&run));
     PetscCall(PetscTime(&end));
     PetscCall(Close(&run, end - start, measures));
+    PetscCall(ModelUnusedOptions(run.model, diag));
     *result = run.failed ? RUN_GAVE_UP : RUN_DONE;
     if (options->summary) *options->summary = run.summary;
   }

@@ -51,7 +51,7 @@ expect "schema twice" 2 "$talus" schema --json --markdown
 
 # check: the resolved case is a case, and says the same of itself
 expect "check" 0 "$talus" check case.yaml
-says out.txt "cells" "memory: about" "body beam: 128 points in 32 cells, volume 8 m3, mass 8000 kg" "boundary left:"
+says out.txt "nodes, from (0, -1.5) to (8.5, 1.5) m" "memory: about" "body beam: 128 points in 32 cells, volume 8 m3, mass 8000 kg" "boundary left:"
 cp out.txt resolved.yaml
 expect "check what check said" 0 "$talus" check resolved.yaml
 grep -v '^#' resolved.yaml >a.txt
@@ -60,6 +60,13 @@ cmp -s a.txt b.txt || fail "$name: it changed"
 expect "check of a mistake" 2 "$talus" check case.yaml --set materials.rubber.yung=1
 says err.txt "--set materials.rubber.yung=1: error: key 'yung' of materials.rubber is not known"
 [ ! -e runs ] || fail "check wrote something"
+for command in check "run --quiet --out single"; do
+  expect "one point in a cell: $command" 0 "$talus" $command case.yaml --set 'bodies[0].points_per_cell=1'
+  says err.txt "warning: with one point in each quadrilateral of 'beam' nothing resists its hourglass motions" "use 4 points, or triangles"
+  expect "one point in a triangle: $command" 0 "$talus" $command case.yaml --set 'bodies[0].points_per_cell=1' --set grid.cell=triangle \
+    $([ "$command" = check ] || echo --force)
+  [ ! -s err.txt ] || fail "$name: a warning"
+done
 
 # Options of run
 expect "run" 0 "$talus" run case.yaml
@@ -79,6 +86,11 @@ expect "options of PETSc before the command" 0 "$talus" -snes_monitor run case.y
 says out.txt "0 SNES Function norm"
 expect "options of PETSc in the case" 0 "$talus" run case.yaml --out monitor --quiet --force --set petsc.snes_monitor=true
 says out.txt "0 SNES Function norm"
+expect "a misspelled option of PETSc" 0 "$talus" run case.yaml --out monitor --quiet --force -snes_monitr
+says err.txt "warning: nothing in this run asked for the PETSc option -snes_monitr"
+[ "$(grep -c warning err.txt)" = 1 ] || fail "$name: more than one warning"
+expect "a misspelled option in the case" 0 "$talus" run case.yaml --out monitor --quiet --force --set petsc.snes_monitr=true
+says err.txt "petsc.snes_monitr=true: warning: nothing in this run asked for the PETSc option -snes_monitr"
 expect "the command line wins" 2 "$talus" run case.yaml --out monitor --quiet --force --set petsc.ksp_type=preonly -ksp_type nonsense
 says err.txt "nonsense"
 expect "solver gives up" 1 "$talus" run case.yaml --out soft --quiet --set newton.max_iterations=1
