@@ -3,6 +3,7 @@
 #include "run/verify.h"
 
 static const CliOption options_known[] = {
+  {"run", "RUN_DIR", "run nothing: compare this run with the rows whose case it is"},
   {"full", NULL, "also the rows that take long"},
   {"only", "STUDY", "one study of reference.yaml"},
   {"out", "DIR", "where runs, tables and figures go; default: runs/verify/<case>"},
@@ -15,11 +16,28 @@ static const CliUsage usage = {
   .usage = "talus verify CASE_DIR [options]",
   .help =
     "Runs every row of CASE_DIR/reference.yaml, compares it with its reference, and draws the figures.\n"
+    "With --run it only looks at a run that is there already.\n"
     "The exit code is 3 if a row is off, 1 if a run gave up. docs/verification.md tells the language of the file.",
   .options = options_known,
   .min_words = 1,
   .max_words = 1,
 };
+
+/* A row that is not in the file cannot be compared. */
+static PetscErrorCode CompareRun(const VerifyOptions *options, Diag *diag, VerifyOutcome *outcome)
+{
+  PetscInt n;
+
+  PetscFunctionBeginUser;
+  PetscCall(VerifyRun(PETSC_COMM_WORLD, options, stdout, diag, &n, outcome));
+  if (n || *outcome == VERIFY_BAD_INPUT) PetscFunctionReturn(0);
+  if (CliPrints()) {
+    DiagError(diag, NULL, "no row of %s/reference.yaml has the case of '%s'", options->folder, options->run);
+    DiagHint(diag, "a run is compared if all its values, but for title, output and petsc, are those of a row");
+  }
+  *outcome = VERIFY_BAD_INPUT;
+  PetscFunctionReturn(0);
+}
 
 PetscErrorCode CliVerify(int argc, char **argv, int *exit_code)
 {
@@ -35,12 +53,18 @@ PetscErrorCode CliVerify(int argc, char **argv, int *exit_code)
     .folder = arguments.words[0],
     .out = CliValue(&arguments, "out"),
     .only = CliValue(&arguments, "only"),
+    .run = CliValue(&arguments, "run"),
     .full = CliFlag(&arguments, "full"),
     .keep = CliFlag(&arguments, "keep"),
     .record = CliFlag(&arguments, "record"),
   };
+  if (options.run && (options.out || options.full || options.keep || options.record)) {
+    PetscCall(CliUsageError(exit_code, "only --only goes with it", "--run writes nothing and runs nothing"));
+    PetscFunctionReturn(0);
+  }
   PetscCall(DiagCreate(&diag));
-  PetscCall(VerifyCase(PETSC_COMM_WORLD, &options, stdout, diag, &outcome));
+  if (options.run) PetscCall(CompareRun(&options, diag, &outcome));
+  else PetscCall(VerifyCase(PETSC_COMM_WORLD, &options, stdout, diag, &outcome));
   PetscCall(DiagFlush(diag, stderr));
   PetscCall(DiagDestroy(&diag));
   *exit_code = (int)outcome;

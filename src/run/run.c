@@ -194,11 +194,11 @@ static PetscErrorCode Close(Run *r, PetscReal seconds, PetscReal *measures)
   PetscCall(WriteRow(r));
   PetscCall(WriteState(r));
   if (measures) PetscCall(PetscArraycpy(measures, r->values, r->c->n_measures));
-  PetscCall(Written(r, SummaryEnd(r->model, r->dir, seconds, r->values)));
   r->summary.steps = r->model->step;
   r->summary.halvings = r->model->cuts;
   r->summary.iterations = r->model->total_iterations;
   r->summary.seconds = seconds;
+  PetscCall(Written(r, SummaryEnd(r->model, r->dir, &r->summary, r->values)));
   PetscFunctionReturn(0);
 }
 

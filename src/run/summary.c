@@ -33,8 +33,9 @@ PetscErrorCode SummaryBegin(Model *m, RunDir *dir)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode SummaryEnd(Model *m, RunDir *dir, PetscReal seconds, const PetscReal *values)
+PetscErrorCode SummaryEnd(Model *m, RunDir *dir, const RunSummary *summary, const PetscReal *values)
 {
+  const PetscReal seconds = summary->seconds;
   PetscReal phase[PHASE_N], rest = seconds;
   char text[1024];
   size_t end = 0;
@@ -46,8 +47,8 @@ PetscErrorCode SummaryEnd(Model *m, RunDir *dir, PetscReal seconds, const PetscR
   for (PetscInt k = 0; k < m->c->n_measures; ++k)
     PetscCall(
       RunDirLog(dir, "%s = %.10g %s", m->c->measures[k].name, (double)values[k], measure_unit(&m->c->measures[k])));
-  PetscCall(RunDirLog(dir, "steps = %d iterations = %d halvings = %d seconds = %.3g", (int)m->step,
-                      (int)m->total_iterations, (int)m->cuts, (double)seconds));
+  PetscCall(RunDirLog(dir, "steps = %d iterations = %d halvings = %d seconds = %.3g", (int)summary->steps,
+                      (int)summary->iterations, (int)summary->halvings, (double)seconds));
   PetscCall(PetscSNPrintf(text, sizeof text, "total [s] = %.6g\n", (double)seconds));
   for (int k = 0; k < PHASE_N; ++k) {
     end = strlen(text);
@@ -55,9 +56,32 @@ PetscErrorCode SummaryEnd(Model *m, RunDir *dir, PetscReal seconds, const PetscR
     rest -= phase[k];
   }
   end = strlen(text);
-  PetscCall(PetscSNPrintf(text + end, sizeof text - end,
-                          "rest [s] = %.6g\nsteps = %d\niterations = %d\nhalvings = %d\npatterns = %d\n", (double)rest,
-                          (int)m->step, (int)m->total_iterations, (int)m->cuts, (int)m->system->builds));
+  PetscCall(
+    PetscSNPrintf(text + end, sizeof text - end,
+                  "rest [s] = %.6g\nsteps = %d\niterations = %d\nmost iterations in a step = %d\nhalvings = %d\n"
+                  "patterns = %d\n",
+                  (double)rest, (int)summary->steps, (int)summary->iterations, (int)summary->iterations_per_step,
+                  (int)summary->halvings, (int)m->system->builds));
   const PetscErrorCode status = RunDirWriteText(dir, "timings.txt", text);
   PetscFunctionReturn(status);
+}
+
+void summary_read(const char *folder, RunSummary *summary)
+{
+  char path[PETSC_MAX_PATH_LEN], line[256];
+  double value;
+  PetscSNPrintf(path, sizeof path, "%s/timings.txt", folder);
+  *summary = (RunSummary){0};
+  FILE *in = fopen(path, "r");
+  while (in && fgets(line, sizeof line, in)) {
+    const char *equals = strstr(line, " = ");
+    if (!equals || sscanf(equals + 3, "%lf", &value) != 1) continue;
+    const size_t n = (size_t)(equals - line);
+    if (!strncmp(line, "total [s]", n)) summary->seconds = value;
+    else if (!strncmp(line, "steps", n)) summary->steps = (PetscInt)value;
+    else if (!strncmp(line, "iterations", n)) summary->iterations = (PetscInt)value;
+    else if (!strncmp(line, "most iterations in a step", n)) summary->iterations_per_step = (PetscInt)value;
+    else if (!strncmp(line, "halvings", n)) summary->halvings = (PetscInt)value;
+  }
+  if (in) fclose(in);
 }

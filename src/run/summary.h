@@ -2,10 +2,13 @@
 #pragma once
 #include "io/run_dir.h"
 #include "model/model.h"
+#include "run/run.h"
 
 /* version.txt */
 PetscErrorCode SummaryVersion(MPI_Comm comm, RunDir *dir);
 /* Sizes of the model, logged. Collective. */
 PetscErrorCode SummaryBegin(Model *model, RunDir *dir);
 /* Measures and timings, logged and in timings.txt. Collective. */
-PetscErrorCode SummaryEnd(Model *model, RunDir *dir, PetscReal seconds, const PetscReal *values);
+PetscErrorCode SummaryEnd(Model *model, RunDir *dir, const RunSummary *summary, const PetscReal *values);
+/* The numbers of timings.txt again; what is not there is 0. */
+void summary_read(const char *folder, RunSummary *summary);

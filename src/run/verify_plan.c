@@ -43,7 +43,7 @@ static PetscErrorCode AddRow(Verification *v, const StudySpec *study, const Seri
 
 static PetscErrorCode AddStudy(Verification *v, const StudySpec *study)
 {
-  const PetscBool full = v->options->full;
+  const PetscBool full = v->options->full || v->options->run ? PETSC_TRUE : PETSC_FALSE;
 
   PetscFunctionBeginUser;
   for (PetscInt s = 0; s < study->n_series; ++s)
@@ -63,13 +63,11 @@ static void UnknownMeasure(const Verification *v, const VerifyRow *r, const Case
   if (nearest) DiagHint(diag, "did you mean '%s'?", nearest);
 }
 
-/* Read the row's case; what it says of itself comes first, then which row it was. */
-static PetscErrorCode TryRow(Verification *v, VerifyRow *r, Diag *diag)
+PetscErrorCode VerifyPlanRow(Verification *v, VerifyRow *r, Diag *diag, Case **read)
 {
-  Case *c;
-
   PetscFunctionBeginUser;
-  PetscCall(CaseRead(v->comm, v->file, r->set.n, (const char *const *)r->set.text, diag, &c));
+  PetscCall(CaseRead(v->comm, v->file, r->set.n, (const char *const *)r->set.text, diag, read));
+  const Case *c = *read;
   if (!c) {
     YamlError(v->reference->document, diag, r->row->node, PETSC_FALSE,
               "the case of this row cannot be read (study %s, series %s, %s = %s)", r->study->name, r->series->name,
@@ -84,7 +82,6 @@ static PetscErrorCode TryRow(Verification *v, VerifyRow *r, Diag *diag)
     PetscCall(PetscStrncpy(r->unit, measure_unit(&c->measures[r->measure]), sizeof r->unit));
     PetscCall(PetscCalloc1(r->n_measures, &r->measures));
   }
-  PetscCall(CaseDestroy(&c));
   PetscFunctionReturn(0);
 }
 
@@ -98,7 +95,7 @@ static void UnknownStudy(const Verification *v, Diag *diag)
   else if (words[0]) DiagHint(diag, "for example --only %s", words[0]);
 }
 
-PetscErrorCode VerifyPlan(Verification *v, Diag *diag)
+PetscErrorCode VerifyPlanAll(Verification *v, Diag *diag)
 {
   const char *only = v->options->only;
   PetscBool found = PETSC_FALSE;
@@ -110,18 +107,35 @@ PetscErrorCode VerifyPlan(Verification *v, Diag *diag)
     PetscCall(AddStudy(v, &v->reference->studies[k]));
   }
   if (!found) UnknownStudy(v, diag);
-  else if (v->n == 0) DiagError(diag, NULL, "there is nothing to run without --full");
-  for (PetscInt k = 0; k < v->n && !DiagErrors(diag); ++k) PetscCall(TryRow(v, &v->rows[k], diag));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode VerifyPlan(Verification *v, Diag *diag)
+{
+  Case *c;
+
+  PetscFunctionBeginUser;
+  PetscCall(VerifyPlanAll(v, diag));
+  if (v->n == 0 && !DiagErrors(diag)) DiagError(diag, NULL, "there is nothing to run without --full");
+  for (PetscInt k = 0; k < v->n && !DiagErrors(diag); ++k) {
+    PetscCall(VerifyPlanRow(v, &v->rows[k], diag, &c));
+    PetscCall(CaseDestroy(&c));
+  }
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode VerifyRowClear(VerifyRow *r)
+{
+  PetscFunctionBeginUser;
+  PetscCall(SettingListClear(&r->set));
+  PetscCall(PetscFree(r->measures));
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode VerifyPlanClear(Verification *v)
 {
   PetscFunctionBeginUser;
-  for (PetscInt k = 0; k < v->n; ++k) {
-    PetscCall(SettingListClear(&v->rows[k].set));
-    PetscCall(PetscFree(v->rows[k].measures));
-  }
+  for (PetscInt k = 0; k < v->n; ++k) PetscCall(VerifyRowClear(&v->rows[k]));
   PetscCall(PetscFree(v->rows));
   v->n = 0;
   PetscFunctionReturn(0);

@@ -42,7 +42,11 @@ typedef struct {
 
 /* verify_plan.c: the rows to be run, each tried by reading its case. */
 PetscErrorCode VerifyPlan(Verification *v, Diag *diag);
+/* Its two halves: all rows by name, and one of them by its case (to be destroyed; NULL and a message if it cannot be read). */
+PetscErrorCode VerifyPlanAll(Verification *v, Diag *diag);
+PetscErrorCode VerifyPlanRow(Verification *v, VerifyRow *r, Diag *diag, Case **read);
 PetscErrorCode VerifyPlanClear(Verification *v);
+PetscErrorCode VerifyRowClear(VerifyRow *r);
 
 /* verify_value.c: Collective. The value of a row that has run: the measure at the end, or the distance
  * of its history from a course. */
@@ -57,6 +61,8 @@ PetscBool verify_has_errors(const StudySpec *study);
 void verify_table_head(FILE *out, const Verification *v, PetscInt first);
 void verify_table_row(FILE *out, const VerifyRow *r);
 void verify_table_foot(FILE *out, const Verification *v, PetscInt first, PetscInt last);
+/* All rows, of one run. */
+void verify_table_run(FILE *out, const Verification *v);
 
 /* verify_markdown.c: all studies; with the names of the figures if `figures`. */
 PetscErrorCode VerifyMarkdown(const Verification *v, PetscBool figures, char **text);

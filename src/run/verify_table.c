@@ -86,3 +86,43 @@ void verify_table_foot(FILE *out, const Verification *v, PetscInt first, PetscIn
   fprintf(out, "  %d of %d rows pass, %.1f s\n", (int)passed, (int)(last - first), (double)seconds);
   fflush(out);
 }
+
+/* "30 %", "0.025 m", "1 % + 0.05 m"; a dash where the study compares nothing. */
+static const char *allowed(const VerifyRow *r, char text[64])
+{
+  const PetscReal relative = 100 * reference_tolerance(r->study, r->row, r->series), absolute = r->study->absolute;
+  if (absolute == 0) snprintf(text, 64, "%g %%", (double)relative);
+  else if (relative == 0) snprintf(text, 64, "%g %s", (double)absolute, r->unit);
+  else snprintf(text, 64, "%g %% + %g %s", (double)relative, (double)absolute, r->unit);
+  return text;
+}
+
+/* The value beside one number: signed distance in per cent, and the verdict where there is one. */
+static void write_comparison(FILE *out, const VerifyRow *r, PetscReal reference, const char *band, const char *verdict)
+{
+  char name[80], off[40] = "-";
+  snprintf(name, sizeof name, r->unit[0] ? "%.40s [%s]" : "%.40s%s", r->study->measure, r->unit);
+  if (reference != 0) snprintf(off, sizeof off, "%+.2g %%", (double)(100 * (r->value / reference - 1)));
+  fprintf(out, "  %-16s %12.6g %12.6g %10s %12s  %-5s  %s\n", name, (double)r->value, (double)reference, off, band,
+          verdict, r->study->title);
+}
+
+void verify_table_run(FILE *out, const Verification *v)
+{
+  PetscInt compared = 0, passed = 0;
+  char band[64];
+  fprintf(out, "\ncompared with %s/reference.yaml\n  %-16s %12s %12s %10s %12s\n", v->options->folder, "measure",
+          "here", "reference", "off by", "allowed");
+  for (PetscInt k = 0; k < v->n; ++k) {
+    const VerifyRow *r = &v->rows[k];
+    const PetscReal exact = reference_exact(r->study, r->series);
+    if (!PetscIsNanReal(r->reference)) write_comparison(out, r, r->reference, allowed(r, band), r->pass ? "ok" : "OFF");
+    if (!PetscIsNanReal(exact)) write_comparison(out, r, exact, "-", "limit");
+    if (!r->pass) fprintf(out, "  %-16s ^ %s\n", "", r->why);
+    if (PetscIsNanReal(r->reference) && r->pass) continue;
+    ++compared;
+    passed += r->pass ? 1 : 0;
+  }
+  fprintf(out, "  %d of %d within what is allowed; that file tells the sources\n", (int)passed, (int)compared);
+  fflush(out);
+}

@@ -154,6 +154,71 @@ static void wrong_values_fail(void **state)
   free(text);
 }
 
+/* Compare what `run` holds with the references of `name`. */
+static VerifyOutcome compare(const char *name, const char *run, PetscInt *n, char **text)
+{
+  char folder[512], path[512];
+  VerifyOutcome outcome;
+  size_t size;
+  Diag *diag;
+  snprintf(folder, sizeof folder, "%s/%s", root, name);
+  snprintf(path, sizeof path, "%s/%s", root, run);
+  const VerifyOptions options = {.folder = folder, .run = path};
+  FILE *stream = open_memstream(text, &size);
+  OK(DiagCreate(&diag));
+  OK(VerifyRun(PETSC_COMM_WORLD, &options, stream, diag, n, &outcome));
+  OK(DiagFlush(diag, stream));
+  OK(DiagDestroy(&diag));
+  fclose(stream);
+  return outcome;
+}
+
+/* A run knows its rows by its case, in whatever study and series they stand. */
+static void a_run_is_compared_with_its_rows(void **state)
+{
+  (void)state;
+  PetscInt n;
+  char *text;
+  make_case("known", "-0.5996592", "");
+  assert_int_equal(verify("known", (VerifyOptions){.full = PETSC_TRUE}, &text), VERIFY_PASSED);
+  free(text);
+  assert_int_equal(compare("known", "out-known/tip/mpm/h_0.5", &n, &text), VERIFY_PASSED);
+  assert_int_equal(n, 2); /* tip and way */
+  SAYS(text, "2 of 2 within what is allowed");
+  SAYS(text, "-0.599659");
+  SAYS(text, "0.00034081");
+  SAYS(text, "limit");
+  free(text);
+  assert_int_equal(compare("known", "out-known/tip/fem/h_0.125", &n, &text), VERIFY_PASSED);
+  assert_int_equal(n, 1); /* a row of --full */
+  free(text);
+  make_case("other", "-0.5996", ", set: {materials.rubber.poisson: 0.1}");
+  assert_int_equal(compare("other", "out-known/tip/fem/h_0.5", &n, &text), VERIFY_OFF);
+  assert_int_equal(n, 2); /* tip and again */
+  SAYS(text, "off the reference, allowed 2e-06");
+  SAYS(text, "1 of 2 within what is allowed");
+  free(text);
+  assert_int_equal(compare("other", "out-known/tip/fem/h_0.25", &n, &text), VERIFY_PASSED);
+  assert_int_equal(n, 0); /* its row has another material */
+  free(text);
+}
+
+static void what_is_no_whole_run_is_not_compared(void **state)
+{
+  (void)state;
+  PetscInt n;
+  char *text;
+  make_case("short", "-0.5996592", ", set: {newton.max_iterations: 1, analysis.smallest: 0.4}");
+  assert_int_equal(verify("short", (VerifyOptions){.only = "tip"}, &text), VERIFY_GAVE_UP);
+  free(text);
+  assert_int_equal(compare("short", "out-short/tip/fem/h_0.25", &n, &text), VERIFY_BAD_INPUT);
+  SAYS(text, "ended at 0 s, before its 1 s: there is nothing to compare");
+  free(text);
+  assert_int_equal(compare("short", "short/nowhere", &n, &text), VERIFY_BAD_INPUT);
+  SAYS(text, "is no run directory");
+  free(text);
+}
+
 static void a_run_that_gives_up_is_told(void **state)
 {
   (void)state;
@@ -213,6 +278,8 @@ int main(int argc, char **argv)
     cmocka_unit_test(wrong_values_fail),
     cmocka_unit_test(a_run_that_gives_up_is_told),
     cmocka_unit_test(bad_input_runs_nothing),
+    cmocka_unit_test(a_run_is_compared_with_its_rows),
+    cmocka_unit_test(what_is_no_whole_run_is_not_compared),
   };
   if (PetscInitialize(&argc, &argv, NULL, NULL)) return 1;
   const int failed = cmocka_run_group_tests(tests, make_root, remove_root);
