@@ -9,7 +9,9 @@
 static const CliOption options_known[] = {
   {"field", "NAME", "the field that gives the colours (default: displacement)"},
   {"component", "WORD", "x y z, xx yy zz xy yz zx, magnitude, mises, mean (default: magnitude, mises of a tensor)"},
-  {"time", "T|last", "the state nearest to this time in seconds (default: last)"},
+  {"time", "T[,T...]",
+   "the states nearest to these times in seconds, or 'all' (default: last); several stand side by side"},
+  {"columns", "N", "of several states (default: what makes a picture as wide as a screen)"},
   {"grid", NULL, "draw the grid as well"},
   {"range", "A:B", "values of the first and the last colour"},
   {"size", "WxH", "pixels, for example 1200x800 (default: to suit the body)"},
@@ -21,8 +23,8 @@ static const CliOption options_known[] = {
 static const CliUsage usage = {
   .usage = "talus plot RUN_DIR [options]",
   .help =
-    "Draws a state of a run coloured by a field, and the histories of its measures, as PNG pictures in "
-    "RUN_DIR/pictures.",
+    "Draws a state of a run coloured by a field, or several side by side, and the histories of its measures, as PNG\n"
+    "pictures in RUN_DIR/pictures.",
   .options = options_known,
   .min_words = 1,
   .max_words = 1,
@@ -57,12 +59,33 @@ static PetscBool Size(const char *text, int *width, int *height)
   return PETSC_TRUE;
 }
 
+/* "0,0.1,0.2", "last", "all" */
+static PetscBool Times(const char *text, PlotOptions *options)
+{
+  char *end;
+  options->all_times = !strcmp(text, "all") ? PETSC_TRUE : PETSC_FALSE;
+  if (options->all_times || !strcmp(text, "last")) return PETSC_TRUE;
+  for (;; text = end + 1) {
+    const PetscReal time = (PetscReal)strtod(text, &end);
+    if (end == text || PetscIsInfOrNanReal(time) || options->n_times == PLOT_MAX_STATES) return PETSC_FALSE;
+    options->times[options->n_times++] = time;
+    if (*end != ',') return *end ? PETSC_FALSE : PETSC_TRUE;
+  }
+}
+
+static PetscBool Columns(const char *text, PetscInt *columns)
+{
+  char *end;
+  *columns = (PetscInt)strtol(text, &end, 10);
+  return end != text && !*end && *columns >= 1 && *columns <= PLOT_MAX_STATES ? PETSC_TRUE : PETSC_FALSE;
+}
+
 /* From words to options; a complaint and PETSC_FALSE in *ok if they make no sense. */
 static PetscErrorCode Understand(const CliArguments *arguments, PlotOptions *options, PetscBool *ok, int *exit_code)
 {
   const char *time = CliValue(arguments, "time"), *range = CliValue(arguments, "range"),
              *size = CliValue(arguments, "size");
-  const char *up = CliValue(arguments, "up");
+  const char *up = CliValue(arguments, "up"), *columns = CliValue(arguments, "columns");
 
   PetscFunctionBeginUser;
   *ok = PETSC_FALSE;
@@ -72,10 +95,13 @@ static PetscErrorCode Understand(const CliArguments *arguments, PlotOptions *opt
   options->out = CliValue(arguments, "out");
   options->grid = CliFlag(arguments, "grid");
   options->has_range = range ? PETSC_TRUE : PETSC_FALSE;
-  options->at_time = time && strcmp(time, "last") ? PETSC_TRUE : PETSC_FALSE;
   options->up = up ? tolower((unsigned char)up[0]) - 'x' : 2;
-  if (options->at_time && !Number(time, &options->time))
-    PetscCall(CliUsageError(exit_code, NULL, "--time wants seconds or 'last', not '%s'", time));
+  if (time && !Times(time, options))
+    PetscCall(
+      CliUsageError(exit_code, "for example --time 0,0.5,1", "--time wants seconds, 'last' or 'all', not '%s'", time));
+  else if (columns && !Columns(columns, &options->columns))
+    PetscCall(
+      CliUsageError(exit_code, NULL, "--columns wants a number from 1 to %d, not '%s'", PLOT_MAX_STATES, columns));
   else if (range && !Range(range, options->range))
     PetscCall(CliUsageError(exit_code, "for example --range 0:2.5e6",
                             "--range wants two numbers A:B with A < B, not '%s'", range));

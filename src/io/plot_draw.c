@@ -20,8 +20,8 @@ static void WriteColourBar(FILE *out, const PlotScene *scene, const PlotPage *pa
   const double w = page->width, h = page->height, middle = page->bottom + 0.5 * page->h;
   WritePalette(out, scene);
   if (page->bar_below) {
-    const double length = PetscMin(page->w, 620), left = page->left + 0.5 * (page->w - length),
-                 top = page->bottom - (scene->dim == 3 ? 15 : 75);
+    const double all = page->w + (page->columns - 1) * page->step_x, length = PetscMin(all, 620),
+                 left = page->left + 0.5 * (all - length), top = page->bottom - (scene->dim == 3 ? 15 : 75);
     fprintf(out, "\nset colorbox horizontal user origin screen %.6f,%.6f size screen %.6f,%.6f\n", left / w,
             (top - 16) / h, length / w, 16 / h);
   } else {
@@ -31,48 +31,67 @@ static void WriteColourBar(FILE *out, const PlotScene *scene, const PlotPage *pa
   }
 }
 
-static void WriteField(FILE *out, const PlotScene *scene, const PlotPage *page)
+/* The lower left corner of a frame's field; frames are read as words are. */
+static void Corner(const PlotPage *page, PetscInt frame, int *left, int *bottom)
+{
+  const int row = (int)frame / page->columns, column = (int)frame % page->columns;
+  *left = page->left + column * page->step_x;
+  *bottom = page->bottom + (page->rows - 1 - row) * page->step_y;
+}
+
+/* Names of the axes where they are nobody else's: at the left, and where no field lies below. */
+static void WriteAxes(FILE *out, const PlotScene *scene, const PlotPage *page, PetscInt frame)
+{
+  const PetscBool left = frame % page->columns == 0 ? PETSC_TRUE : PETSC_FALSE,
+                  last = frame + page->columns >= scene->n_frames ? PETSC_TRUE : PETSC_FALSE;
+  if (scene->dim == 3) {
+    fputs("unset border\nunset tics\nset cbtics\n", out);
+    return;
+  }
+  fprintf(out,
+          "set border 15 lw 1 lc rgb '#444444'\nset tics out nomirror scale 0.6 textcolor rgb '#000000'\nset xlabel "
+          "'%s' offset 0,0.4\nset "
+          "ylabel '%s'\nset format x '%s'\nset format y '%s'\n",
+          last ? "x [m]" : "", left ? "y [m]" : "", last ? "%g" : "", left ? "%g" : "");
+  if (page->h < 160)
+    fprintf(out, "set ytics %.3g\n",
+            pow(10, floor(log10((double)(page->max[1] - page->min[1])))) * (page->h < 80 ? 1 : 0.5));
+}
+
+static void WriteField(FILE *out, const PlotScene *scene, const PlotPage *page, PetscInt frame)
 {
   const double w = page->width, h = page->height;
+  int left, bottom;
+  Corner(page, frame, &left, &bottom);
   fprintf(
     out,
     "set lmargin at screen %.9f\nset rmargin at screen %.9f\nset bmargin at screen %.9f\nset tmargin at screen %.9f\n",
-    page->left / w, (page->left + page->w) / w, page->bottom / h, (page->bottom + page->h) / h);
+    left / w, (left + page->w) / w, bottom / h, (bottom + page->h) / h);
   fprintf(out, "set xrange [%.15g:%.15g]\nset yrange [%.15g:%.15g]\nset title ", (double)page->min[0],
           (double)page->max[0], (double)page->min[1], (double)page->max[1]);
-  gnuplot_quote(out, scene->title);
-  fputs("\nunset key\n", out);
-  if (scene->dim == 3) {
-    fputs("unset border\nunset tics\nset cbtics\n", out);
-  } else {
-    fputs(
-      "set border 15 lw 1 lc rgb '#444444'\nset tics out nomirror textcolor rgb '#000000'\nset xlabel 'x [m]'\nset "
-      "ylabel 'y [m]'\n",
-      out);
-    if (page->h < 160)
-      fprintf(out, "set ytics %.3g\n",
-              pow(10, floor(log10((double)(page->max[1] - page->min[1])))) * (page->h < 80 ? 1 : 0.5));
-  }
+  gnuplot_quote(out, scene->frames[frame].title);
+  fprintf(out, " offset 0,%g\nunset key\n", scene->n_frames > 1 ? -0.5 : 0.);
+  WriteAxes(out, scene, page, frame);
 }
 
-static void WriteEdges(FILE *out, const PlotScene *scene)
+static void WriteEdges(FILE *out, const PlotFrame *f)
 {
   fputs("$grid << EOD\n", out);
-  for (PetscInt i = 0; i < scene->n_edges; ++i) {
-    const PetscReal *e = scene->edges + 4 * i;
+  for (PetscInt i = 0; i < f->n_edges; ++i) {
+    const PetscReal *e = f->edges + 4 * i;
     fprintf(out, "%.7g %.7g\n%.7g %.7g\n\n", (double)e[0], (double)e[1], (double)e[2], (double)e[3]);
   }
   fputs("EOD\n", out);
 }
 
 /* The image is made to lie on the pixels of the field; the invisible point brings the colour bar. */
-static void WritePlot(FILE *out, const PlotScene *scene, const PlotPage *page, const unsigned char *rgba)
+static void WritePlot(FILE *out, const PlotFrame *f, const PlotPage *page, const unsigned char *rgba)
 {
   const double dx = (double)(page->max[0] - page->min[0]) / page->w,
                dy = (double)(page->max[1] - page->min[1]) / page->h;
-  if (scene->n_edges) WriteEdges(out, scene);
+  if (f->n_edges) WriteEdges(out, f);
   fputs("plot ", out);
-  if (scene->n_edges) fputs("$grid with lines lw 0.7 lc rgb '#b8b8b8', ", out);
+  if (f->n_edges) fputs("$grid with lines lw 0.7 lc rgb '#b8b8b8', ", out);
   fprintf(
     out,
     "'-' binary array=(%d,%d) origin=(%.15g,%.15g) dx=%.15g dy=%.15g format='%%uchar' using 1:2:3:4 with rgbalpha, ",
@@ -82,25 +101,25 @@ static void WritePlot(FILE *out, const PlotScene *scene, const PlotPage *page, c
   fputc('\n', out);
 }
 
-static PetscErrorCode MakeImage(const PlotScene *scene, const PlotPage *page, unsigned char **rgba)
+static PetscErrorCode MakeImage(const PlotScene *scene, const PlotFrame *f, const PlotPage *page, unsigned char *rgba)
 {
   const PetscReal span = scene->high - scene->low;
   PetscReal *colour;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1((size_t)page->w * (size_t)page->h * 4, rgba));
-  PetscCall(PetscMalloc1(scene->n, &colour));
-  for (PetscInt i = 0; i < scene->n; ++i) colour[i] = (scene->value[i] - scene->low) / span;
-  const RasterScene raster = {.n = scene->n,
-                              .x = scene->x,
-                              .radius = scene->radius,
+  PetscCall(PetscMalloc1(f->n, &colour));
+  for (PetscInt i = 0; i < f->n; ++i) colour[i] = (f->value[i] - scene->low) / span;
+  const RasterScene raster = {.n = f->n,
+                              .x = f->x,
+                              .radius = f->radius,
                               .value = colour,
                               .shaded = scene->dim == 3,
+                              .gap = scene->gap,
                               .min = {page->min[0], page->min[1]},
                               .max = {page->max[0], page->max[1]},
                               .width = page->w,
                               .height = page->h};
-  PetscCall(RasterDraw(&raster, *rgba));
+  PetscCall(RasterDraw(&raster, rgba));
   PetscCall(PetscFree(colour));
   PetscFunctionReturn(0);
 }
@@ -113,12 +132,18 @@ PetscErrorCode PlotDraw(PlotScene *scene, int width, int height, const char *png
 
   PetscFunctionBeginUser;
   plot_lay_out(scene, width, height, &page);
-  PetscCall(MakeImage(scene, &page, &rgba));
+  PetscCall(PetscMalloc1((size_t)page.w * (size_t)page.h * 4, &rgba));
   PetscCall(GnuplotBegin(&script, png, page.width, page.height));
-  WriteField(script.out, scene, &page);
   WriteColourBar(script.out, scene, &page);
   if (scene->dim == 3) plot_draw_box(script.out, scene);
-  WritePlot(script.out, scene, &page, rgba);
+  if (scene->n_frames > 1) fputs("set multiplot\n", script.out);
+  for (PetscInt k = 0; k < scene->n_frames; ++k) {
+    PetscCall(MakeImage(scene, &scene->frames[k], &page, rgba));
+    if (k == 1) fputs("unset colorbox\n", script.out); /* one serves all */
+    WriteField(script.out, scene, &page, k);
+    WritePlot(script.out, &scene->frames[k], &page, rgba);
+  }
+  if (scene->n_frames > 1) fputs("unset multiplot\n", script.out);
   PetscCall(PetscFree(rgba));
   PetscCall(GnuplotEnd(&script, png, diag, done));
   PetscFunctionReturn(0);

@@ -64,6 +64,69 @@ static void DrawBall(const RasterScene *scene, Canvas *canvas, PetscInt p)
     }
 }
 
+/* Fills of gaps are kept apart from balls until they are known to stay: point p is noted as -2 - p. */
+static PetscInt fill_of(PetscInt p) { return -2 - p; }
+
+/* Claim the empty samples within `reach` of the ball for its point, the nearest point winning. The border of the image stays empty, so
+ * that the body ends there. */
+static void ClaimAround(const RasterScene *scene, Canvas *canvas, PetscInt p, PetscReal reach)
+{
+  PetscReal c[2], radius;
+  Place(scene, canvas, p, c, &radius);
+  if (!(fabs(c[0]) < 1e8 && fabs(c[1]) < 1e8)) return;
+  radius += reach;
+  const int i0 = PetscMax((int)ceil(c[0] - radius), 1), i1 = PetscMin((int)floor(c[0] + radius), canvas->width - 2);
+  const int j0 = PetscMax((int)ceil(c[1] - radius), 1), j1 = PetscMin((int)floor(c[1] + radius), canvas->height - 2);
+  for (int j = j0; j <= j1; ++j)
+    for (int i = i0; i <= i1; ++i) {
+      const PetscReal d2 = (i - c[0]) * (i - c[0]) + (j - c[1]) * (j - c[1]);
+      const size_t at = (size_t)j * (size_t)canvas->width + (size_t)i;
+      if (canvas->point[at] >= 0 || d2 > radius * radius) continue;
+      if (canvas->point[at] <= fill_of(0) && canvas->front[at] <= (float)d2) continue;
+      canvas->front[at] = (float)d2;
+      canvas->point[at] = fill_of(p);
+    }
+}
+
+/* Is the sample empty, with a claimed one beside it? */
+static PetscBool IsRim(const Canvas *canvas, int i, int j)
+{
+  const PetscInt *point = canvas->point + (size_t)j * (size_t)canvas->width + (size_t)i;
+  if (*point != -1) return PETSC_FALSE;
+  return (i > 0 && point[-1] < -1) || (i + 1 < canvas->width && point[1] < -1) ||
+             (j > 0 && point[-canvas->width] < -1) || (j + 1 < canvas->height && point[canvas->width] < -1)
+           ? PETSC_TRUE
+           : PETSC_FALSE;
+}
+
+/* Mark the claims within `reach` of a sample that stayed empty: they lie outside the body, not in a gap. */
+static void Withdraw(Canvas *canvas, int i, int j, int reach, unsigned char *outside)
+{
+  for (int b = PetscMax(j - reach, 0); b <= PetscMin(j + reach, canvas->height - 1); ++b)
+    for (int a = PetscMax(i - reach, 0); a <= PetscMin(i + reach, canvas->width - 1); ++a)
+      if ((a - i) * (a - i) + (b - j) * (b - j) <= reach * reach)
+        outside[(size_t)b * (size_t)canvas->width + (size_t)a] = 1;
+}
+
+/* Where flow has drawn points apart, the body between them is shown too: grown by the gap, then shrunk by it. */
+static PetscErrorCode FillGaps(const RasterScene *scene, Canvas *canvas)
+{
+  const PetscReal gap = PetscMin(scene->gap * canvas->scale, 30 * SAMPLES);
+  const size_t n = (size_t)canvas->width * (size_t)canvas->height;
+  unsigned char *outside;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(n, &outside));
+  for (PetscInt p = 0; p < scene->n; ++p) ClaimAround(scene, canvas, p, gap);
+  for (int j = 0; j < canvas->height; ++j)
+    for (int i = 0; i < canvas->width; ++i)
+      if (IsRim(canvas, i, j)) Withdraw(canvas, i, j, (int)ceil(gap), outside);
+  for (size_t i = 0; i < n; ++i)
+    if (canvas->point[i] < -1) canvas->point[i] = outside[i] ? -1 : fill_of(canvas->point[i]);
+  PetscCall(PetscFree(outside));
+  PetscFunctionReturn(0);
+}
+
 /* Light from the upper left, in front. */
 static PetscReal Shade(const RasterScene *scene, const Canvas *canvas, PetscInt p, int i, int j)
 {
@@ -99,6 +162,7 @@ PetscErrorCode RasterDraw(const RasterScene *scene, unsigned char *rgba)
   PetscFunctionBeginUser;
   PetscCall(CanvasCreate(scene, &canvas));
   for (PetscInt p = 0; p < scene->n; ++p) DrawBall(scene, &canvas, p);
+  if (scene->gap > 0 && !scene->shaded) PetscCall(FillGaps(scene, &canvas));
   for (int row = 0; row < scene->height; ++row)
     for (int column = 0; column < scene->width; ++column)
       Pixel(scene, &canvas, column, row, rgba + 4 * ((size_t)row * (size_t)scene->width + (size_t)column));

@@ -14,6 +14,7 @@ typedef struct {
   const PetscReal *radius;  /* n, m */
   const PetscReal *value;   /* n, in [0, 1]; NaN is grey */
   PetscBool shaded;         /* as balls in space; otherwise flat */
+  PetscReal gap;            /* m; gaps between balls up to twice this wide are filled (flat images only) */
   PetscReal min[2], max[2]; /* what the image shows, m */
   int width, height;        /* pixels */
 } RasterScene;

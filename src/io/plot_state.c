@@ -4,11 +4,8 @@
 #include <string.h>
 #include "io/figure.h"
 #include "io/plot.h"
-#include "io/plot_field.h"
 #include "io/plot_scene.h"
-#include "io/plot_spacing.h"
 #include "io/run_dir_files.h"
-#include "io/vtk_read.h"
 #include "io/vtk_series.h"
 
 PetscBool plot_folder(const char *run, Diag *diag)
@@ -26,24 +23,37 @@ void plot_file_name(char *name)
     if (!isalnum((unsigned char)*c) && *c != '-' && *c != '.') *c = '_';
 }
 
-/* The state to draw: the last, or the nearest to the time asked for. */
-static PetscErrorCode FindState(const PlotOptions *options, Diag *diag, VtkState *state, PetscBool *found)
+/* The state nearest to a time, with a word if it is not near. */
+static VtkState Nearest(const VtkSeries *series, PetscReal time, Diag *diag)
+{
+  PetscInt best = 0;
+  for (PetscInt i = 1; i < series->n; ++i)
+    if (fabs(series->states[i].time - time) < fabs(series->states[best].time - time)) best = i;
+  const PetscReal found = series->states[best].time;
+  if (fabs(found - time) > 1e-9 * PetscMax(fabs(time), fabs(found)))
+    DiagWarning(diag, NULL, "there is no state at %.9g s: the nearest is drawn, at %.9g s", (double)time,
+                (double)found);
+  return series->states[best];
+}
+
+/* The states to draw: the last, all, or the nearest to the times asked for. */
+static PetscErrorCode FindStates(const PlotOptions *options, Diag *diag, PetscInt *n, VtkState *states)
 {
   VtkSeries series;
-  PetscInt best;
 
   PetscFunctionBeginUser;
+  *n = 0;
   PetscCall(VtkSeriesRead(options->run, "points", &series));
-  *found = series.n > 0 ? PETSC_TRUE : PETSC_FALSE;
-  if (!*found) DiagError(diag, NULL, "there is no state of a run in '%s' (no points.hdf.series)", options->run);
-  best = series.n - 1;
-  for (PetscInt i = 0; options->at_time && i < series.n; ++i)
-    if (fabs(series.states[i].time - options->time) < fabs(series.states[best].time - options->time)) best = i;
-  if (*found) *state = series.states[best];
-  if (*found && options->at_time &&
-      fabs(state->time - options->time) > 1e-9 * PetscMax(fabs(options->time), fabs(state->time)))
-    DiagWarning(diag, NULL, "there is no state at %.9g s: the nearest is drawn, at %.9g s", (double)options->time,
-                (double)state->time);
+  if (series.n == 0) DiagError(diag, NULL, "there is no state of a run in '%s' (no points.hdf.series)", options->run);
+  else if (options->all_times && series.n > PLOT_MAX_STATES) {
+    DiagError(diag, NULL, "the run has %d states, a picture holds %d at most", (int)series.n, PLOT_MAX_STATES);
+    DiagHint(diag, "name some: --time 0,%g,%g", (double)series.states[series.n / 2].time,
+             (double)series.states[series.n - 1].time);
+  } else if (options->all_times)
+    for (; *n < series.n; ++*n) states[*n] = series.states[*n];
+  else
+    for (; *n < options->n_times; ++*n) states[*n] = Nearest(&series, options->times[*n], diag);
+  if (series.n > 0 && !options->all_times && *n == 0) states[(*n)++] = series.states[series.n - 1];
   PetscCall(VtkSeriesFree(&series));
   PetscFunctionReturn(0);
 }
@@ -90,37 +100,21 @@ static PetscErrorCode FindField(const VtkFile *file, const char *name, Diag *dia
   PetscFunctionReturn(0);
 }
 
-/* Copy the points that have a place; a run that broke may hold others. */
-static void TakePoints(PlotScene *scene, PetscInt n, const PetscReal *x, const PlotScalar *scalar, PetscInt components,
-                       const PetscReal *data)
-{
-  scene->n = 0;
-  for (PetscInt i = 0; i < n; ++i) {
-    const PetscReal *p = x + 3 * i;
-    if (!(fabs(p[0]) < 1e30 && fabs(p[1]) < 1e30 && fabs(p[2]) < 1e30)) continue;
-    for (int d = 0; d < 3; ++d) {
-      scene->box_min[d] = scene->n ? PetscMin(scene->box_min[d], p[d]) : p[d];
-      scene->box_max[d] = scene->n ? PetscMax(scene->box_max[d], p[d]) : p[d];
-    }
-    memcpy(scene->x + 3 * scene->n, p, 3 * sizeof *p);
-    scene->value[scene->n++] = plot_scalar_value(scalar, components, data + i * components);
-  }
-  const PetscReal wide = PetscMax(scene->box_max[0] - scene->box_min[0], scene->box_max[1] - scene->box_min[1]);
-  scene->dim = scene->box_max[2] - scene->box_min[2] > 1e-9 * wide ? 3 : 2;
-}
-
 /* Colours from the smallest to the largest value, or as asked for; in a unit that suits. */
 static void ChooseColours(PlotScene *scene, const PlotOptions *options, const char *unit, const char *what)
 {
   char prefixed[64];
   scene->low = PETSC_MAX_REAL, scene->high = -PETSC_MAX_REAL;
-  for (PetscInt i = 0; i < scene->n; ++i)
-    if (fabs(scene->value[i]) < 1e300)
-      scene->low = PetscMin(scene->low, scene->value[i]), scene->high = PetscMax(scene->high, scene->value[i]);
+  for (PetscInt k = 0; k < scene->n_frames; ++k)
+    for (PetscInt i = 0; i < scene->frames[k].n; ++i) {
+      const PetscReal value = scene->frames[k].value[i];
+      if (fabs(value) < 1e300) scene->low = PetscMin(scene->low, value), scene->high = PetscMax(scene->high, value);
+    }
   if (scene->low > scene->high) scene->low = 0, scene->high = 1;
   if (options->has_range) scene->low = options->range[0], scene->high = options->range[1];
   const PetscReal factor = figure_unit(unit, PetscMax(fabs(scene->low), fabs(scene->high)), prefixed);
-  for (PetscInt i = 0; i < scene->n; ++i) scene->value[i] *= factor;
+  for (PetscInt k = 0; k < scene->n_frames; ++k)
+    for (PetscInt i = 0; i < scene->frames[k].n; ++i) scene->frames[k].value[i] *= factor;
   scene->low *= factor, scene->high *= factor;
   const PetscReal middle = 0.5 * (scene->low + scene->high), least = middle != 0 ? 1e-6 * fabs(middle) : 1e-12;
   if (scene->high - scene->low < least) scene->low = middle - least, scene->high = middle + least;
@@ -128,161 +122,121 @@ static void ChooseColours(PlotScene *scene, const PlotOptions *options, const ch
   else snprintf(scene->label, sizeof scene->label, "%.60s", what);
 }
 
-/* Lines between a cell's corners in the order of VTK; n pairs. */
-static PetscInt CellLines(int vtk_type, const int **pairs)
-{
-  static const int polygon[] = {0, 1, 1, 2, 2, 3, 3, 0}, triangle[] = {0, 1, 1, 2, 2, 0};
-  *pairs = vtk_type == 9 ? polygon : triangle;
-  return vtk_type == 9 ? 4 : vtk_type == 5 ? 3 : 0;
-}
-
-static PetscErrorCode TakeGridLines(PlotScene *scene, VtkFile *file)
-{
-  const PetscInt n = VtkReadCells(file), points = VtkReadPoints(file);
-  PetscInt *start, *node;
-  PetscReal *x;
-  const int *pairs;
-  int *type;
-
-  PetscFunctionBeginUser;
-  PetscCall(VtkReadCoordinates(file, &x));
-  PetscCall(VtkReadTopology(file, &start, &node, &type));
-  for (PetscInt i = 0; i < points; ++i)
-    for (int d = 0; d < scene->dim; ++d) {
-      scene->box_min[d] = PetscMin(scene->box_min[d], x[3 * i + d]);
-      scene->box_max[d] = PetscMax(scene->box_max[d], x[3 * i + d]);
-    }
-  PetscCall(PetscMalloc1(scene->dim == 2 ? 16 * (size_t)n : 0, &scene->edges));
-  for (PetscInt c = 0; c < n && scene->dim == 2; ++c)
-    for (PetscInt k = 0, lines = CellLines(type[c], &pairs); k < lines; ++k) {
-      const PetscReal *a = x + 3 * node[start[c] + pairs[2 * k]], *b = x + 3 * node[start[c] + pairs[2 * k + 1]];
-      PetscReal *edge = scene->edges + 4 * scene->n_edges++;
-      edge[0] = a[0], edge[1] = a[1], edge[2] = b[0], edge[3] = b[1];
-    }
-  PetscCall(PetscFree(x));
-  PetscCall(PetscFree(start));
-  PetscCall(PetscFree(node));
-  PetscCall(PetscFree(type));
-  PetscFunctionReturn(0);
-}
-
 /* grid_000012.hdf beside points_000012.hdf; without one, the grid is left out with a word. */
-static PetscErrorCode AddGrid(PlotScene *scene, const PlotOptions *options, const VtkState *state, Diag *diag)
+static PetscErrorCode AddGrid(PlotScene *scene, PlotFrame *frame, const char *run, const VtkState *state, Diag *diag)
 {
   char path[FILE_PATH], reason[256];
   const char *number = strchr(state->file, '_');
   VtkFile *file;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscSNPrintf(path, sizeof path, "%s/grid%s", options->run, number ? number : ".hdf"));
+  PetscCall(PetscSNPrintf(path, sizeof path, "%s/grid%s", run, number ? number : ".hdf"));
   if (VtkReadOpen(path, &file, reason)) {
     DiagWarning(diag, NULL, "the grid is not drawn: '%s': %s", path, reason);
     PetscFunctionReturn(0);
   }
-  PetscCall(TakeGridLines(scene, file));
+  PetscCall(PlotFrameGrid(file, scene, frame));
   PetscCall(VtkReadClose(&file));
   PetscFunctionReturn(0);
 }
 
-/* The body is as large as its balls, and seen from where the eye is. */
-static PetscErrorCode ShapeBody(PlotScene *scene)
+/* What is drawn: a field of the states, and its name, unit and component. */
+typedef struct {
+  VtkFieldInfo field;
+  PlotScalar scalar;
+  char words[192]; /* "velocity magnitude" */
+} PlotSubject;
+
+static void name_subject(PlotSubject *s)
 {
-  PetscReal largest = 0, shown[3];
+  const PlotScalar *scalar = &s->scalar;
+  if (scalar->reduction == PLOT_MISES || scalar->reduction == PLOT_MEAN)
+    snprintf(s->words, sizeof s->words, "%s %s", scalar->name, s->field.name);
+  else snprintf(s->words, sizeof s->words, "%s%s%s", s->field.name, scalar->name[0] ? " " : "", scalar->name);
+  for (char *c = s->words; *c; ++c)
+    if (*c == '_') *c = ' ';
+}
+
+/* The next frame of the scene. A mistake leaves the scene as it is. */
+static PetscErrorCode AddFrame(const PlotOptions *options, const VtkState *state, PlotSubject *subject,
+                               PlotScene *scene, Diag *diag)
+{
+  char path[FILE_PATH + VTK_SERIES_NAME], reason[256];
+  const VtkFieldInfo *field;
+  VtkFile *file;
 
   PetscFunctionBeginUser;
-  PetscCall(PlotSpacing(scene->dim, scene->n, scene->x, scene->radius));
-  for (PetscInt i = 0; i < scene->n; ++i) {
-    largest = PetscMax(largest, scene->radius[i]);
-    plot_project(scene, scene->x + 3 * i, shown);
-    memcpy(scene->x + 3 * i, shown, sizeof shown);
+  PetscCall(PetscSNPrintf(path, sizeof path, "%s/%s", options->run, state->file));
+  if (VtkReadOpen(path, &file, reason)) {
+    DiagError(diag, NULL, "cannot read '%s': %s", path, reason);
+    PetscFunctionReturn(0);
   }
-  for (int d = 0; d < scene->dim; ++d) scene->box_min[d] -= 0.9 * largest, scene->box_max[d] += 0.9 * largest;
+  PetscCall(FindField(file, options->field, diag, &field));
+  if (field && plot_scalar_choose(field->name, field->components, options->component, diag, &subject->scalar)) {
+    subject->field = *field;
+    name_subject(subject);
+    PetscCall(PlotFrameRead(file, field, &subject->scalar, scene));
+    if (scene->frames[scene->n_frames - 1].n == 0)
+      DiagError(diag, NULL, "the state at %.9g s has no points", (double)state->time);
+  }
+  PetscCall(VtkReadClose(&file));
   PetscFunctionReturn(0);
 }
 
 /* Everything of the picture but its place on the page. */
-static PetscErrorCode FillScene(const PlotOptions *options, VtkFile *file, const VtkState *state,
-                                const VtkFieldInfo *field, const PlotScalar *scalar, Diag *diag, PlotScene *scene)
+static PetscErrorCode FillScene(const PlotOptions *options, PetscInt n, const VtkState *states, PlotSubject *subject,
+                                Diag *diag, PlotScene *scene)
 {
-  const PetscInt n = VtkReadPoints(file);
-  PetscReal *x, *data;
-  char what[192];
-
   PetscFunctionBeginUser;
   scene->up = options->up;
-  PetscCall(VtkReadCoordinates(file, &x));
-  PetscCall(VtkReadField(file, field->name, &data));
-  PetscCall(PetscMalloc3(3 * (size_t)n, &scene->x, n, &scene->value, n, &scene->radius));
-  TakePoints(scene, n, x, scalar, field->components, data);
-  PetscCall(PetscFree(x));
-  PetscCall(PetscFree(data));
-  if (scalar->reduction == PLOT_MISES || scalar->reduction == PLOT_MEAN)
-    snprintf(what, sizeof what, "%s %s", scalar->name, field->name);
-  else snprintf(what, sizeof what, "%s%s%s", field->name, scalar->name[0] ? " " : "", scalar->name);
-  for (char *c = what; *c; ++c)
-    if (*c == '_') *c = ' ';
-  snprintf(scene->title, sizeof scene->title, "%s at t = %.6g s", what, (double)state->time);
-  ChooseColours(scene, options, field->unit, what);
-  PetscCall(ShapeBody(scene));
-  if (options->grid) PetscCall(AddGrid(scene, options, state, diag));
+  scene->columns = options->columns;
+  for (PetscInt k = 0; k < n && !DiagErrors(diag); ++k) {
+    PetscCall(AddFrame(options, &states[k], subject, scene, diag));
+    char *title = scene->frames[k].title;
+    if (n == 1) snprintf(title, 256, "%s at t = %.6g s", subject->words, (double)states[k].time);
+    else snprintf(title, 256, "t = %.6g s", (double)states[k].time);
+  }
+  if (DiagErrors(diag)) PetscFunctionReturn(0);
+  ChooseColours(scene, options, subject->field.unit, subject->words);
+  PetscCall(PlotFramesShape(scene));
+  for (PetscInt k = 0; k < n && options->grid; ++k)
+    PetscCall(AddGrid(scene, &scene->frames[k], options->run, &states[k], diag));
   PetscFunctionReturn(0);
 }
 
-/* state_displacement_magnitude_000012.png */
-static void PictureName(const PlotOptions *options, const VtkState *state, const char *field, const PlotScalar *scalar,
+/* state_displacement_magnitude_000012.png; states_displacement_magnitude.png for several. */
+static void PictureName(const PlotOptions *options, PetscInt n, const VtkState *state, const PlotSubject *subject,
                         char *path)
 {
   char name[256];
-  const char *number = strchr(state->file, '_');
-  const int digits = number ? (int)strcspn(number + 1, ".") : 0;
-  snprintf(name, sizeof name, "state_%.120s%s%.30s_%.*s.png", field, scalar->name[0] ? "_" : "", scalar->name,
-           PetscMin(digits, 12), number ? number + 1 : "");
+  const PlotScalar *scalar = &subject->scalar;
+  const char *number = n == 1 ? strchr(state->file, '_') : NULL;
+  const int digits = number ? (int)strcspn(number, ".") : 0;
+  snprintf(name, sizeof name, "state%s_%.120s%s%.30s%.*s.png", n == 1 ? "" : "s", subject->field.name,
+           scalar->name[0] ? "_" : "", scalar->name, PetscMin(digits, 13), number ? number : "");
   plot_file_name(name);
   if (options->out) snprintf(path, PETSC_MAX_PATH_LEN, "%s", options->out);
   else snprintf(path, PETSC_MAX_PATH_LEN, "%s/pictures/%s", options->run, name);
 }
 
-static PetscErrorCode DrawFile(const PlotOptions *options, VtkFile *file, const VtkState *state, Diag *diag,
-                               char *picture)
-{
-  const VtkFieldInfo *field;
-  PlotScene scene = {0};
-  PlotScalar scalar;
-  PetscBool done = PETSC_FALSE;
-
-  PetscFunctionBeginUser;
-  PetscCall(FindField(file, options->field, diag, &field));
-  if (!field || !plot_scalar_choose(field->name, field->components, options->component, diag, &scalar))
-    PetscFunctionReturn(0);
-  PetscCall(FillScene(options, file, state, field, &scalar, diag, &scene));
-  if (scene.n == 0) DiagError(diag, NULL, "the state at %.9g s has no points", (double)state->time);
-  if (scene.n > 0 && (options->out || plot_folder(options->run, diag))) {
-    PictureName(options, state, field->name, &scalar, picture);
-    PetscCall(PlotDraw(&scene, options->width, options->height, picture, diag, &done));
-  }
-  if (!done) picture[0] = 0;
-  PetscCall(PetscFree3(scene.x, scene.value, scene.radius));
-  PetscCall(PetscFree(scene.edges));
-  PetscFunctionReturn(0);
-}
-
 PetscErrorCode PlotState(const PlotOptions *options, Diag *diag, char picture[PETSC_MAX_PATH_LEN])
 {
-  char path[FILE_PATH + VTK_SERIES_NAME], reason[256];
-  VtkState state;
-  VtkFile *file;
-  PetscBool found = PETSC_FALSE;
+  VtkState states[PLOT_MAX_STATES];
+  PlotSubject subject;
+  PlotScene scene = {0};
+  PetscBool done = PETSC_FALSE;
+  PetscInt n;
 
   PetscFunctionBeginUser;
   picture[0] = 0;
-  PetscCall(FindState(options, diag, &state, &found));
-  if (!found) PetscFunctionReturn(0);
-  PetscCall(PetscSNPrintf(path, sizeof path, "%s/%s", options->run, state.file));
-  if (VtkReadOpen(path, &file, reason)) {
-    DiagError(diag, NULL, "cannot read '%s': %s", path, reason);
-    PetscFunctionReturn(0);
+  PetscCall(FindStates(options, diag, &n, states));
+  if (n == 0) PetscFunctionReturn(0);
+  PetscCall(FillScene(options, n, states, &subject, diag, &scene));
+  if (!DiagErrors(diag) && (options->out || plot_folder(options->run, diag))) {
+    PictureName(options, n, states, &subject, picture);
+    PetscCall(PlotDraw(&scene, options->width, options->height, picture, diag, &done));
   }
-  PetscCall(DrawFile(options, file, &state, diag, picture));
-  PetscCall(VtkReadClose(&file));
+  if (!done) picture[0] = 0;
+  PetscCall(PlotFramesFree(&scene));
   PetscFunctionReturn(0);
 }

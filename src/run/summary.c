@@ -1,4 +1,5 @@
 #include "run/summary.h"
+#include <stdlib.h>
 #include "talus_version.h"
 
 PetscErrorCode SummaryVersion(MPI_Comm comm, RunDir *dir)
@@ -69,13 +70,14 @@ PetscErrorCode SummaryEnd(Model *m, RunDir *dir, const RunSummary *summary, cons
 void summary_read(const char *folder, RunSummary *summary)
 {
   char path[PETSC_MAX_PATH_LEN], line[256];
-  double value;
+  char *end;
   PetscSNPrintf(path, sizeof path, "%s/timings.txt", folder);
   *summary = (RunSummary){0};
   FILE *in = fopen(path, "r");
   while (in && fgets(line, sizeof line, in)) {
     const char *equals = strstr(line, " = ");
-    if (!equals || sscanf(equals + 3, "%lf", &value) != 1) continue;
+    const double value = equals ? strtod(equals + 3, &end) : 0;
+    if (!equals || end == equals + 3) continue;
     const size_t n = (size_t)(equals - line);
     if (!strncmp(line, "total [s]", n)) summary->seconds = value;
     else if (!strncmp(line, "steps", n)) summary->steps = (PetscInt)value;

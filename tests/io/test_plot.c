@@ -84,6 +84,37 @@ static void test_raster_depth(void **state)
   assert_int_equal(rgba[4 * 12], 253);
 }
 
+/* Two columns of balls, 0.1 in radius, with 0.4 between them: the gap is filled from both sides, and nothing beyond the outline. */
+static void test_raster_gap(void **state)
+{
+  enum { W = 100, H = 100 };
+  static unsigned char rgba[4 * W * H], plain[4 * W * H];
+  static PetscReal x[3 * 40], radius[40], value[40];
+  (void)state;
+  for (int i = 0; i < 40; ++i) {
+    x[3 * i] = i < 20 ? 0.2 : 0.8;
+    x[3 * i + 1] = 0.025 + 0.05 * (i % 20);
+    radius[i] = 0.1;
+    value[i] = i < 20 ? 0 : 1;
+  }
+  RasterScene scene = {
+    .n = 40, .x = x, .radius = radius, .value = value, .min = {0, 0}, .max = {1, 1}, .width = W, .height = H};
+  assert_int_equal(RasterDraw(&scene, plain), 0);
+  scene.gap = 0.25;
+  assert_int_equal(RasterDraw(&scene, rgba), 0);
+  for (int column = 2; column < W - 2; ++column) {
+    const unsigned char *before = plain + 4 * (50 * W + column), *after = rgba + 4 * (50 * W + column);
+    const int between = column > 31 && column < 68;
+    if (!between && column > 27 && column < 72) continue;
+    assert_int_equal(after[3], between ? 255 : before[3]);
+    if (between) assert_int_equal(before[3], 0);
+    if (between) assert_int_equal(after[0], column < 50 ? 68 : 253);
+  }
+  scene.gap = 0.15; /* too little to close it */
+  assert_int_equal(RasterDraw(&scene, rgba), 0);
+  assert_int_equal(rgba[4 * (50 * W + 50) + 3], 0);
+}
+
 static void test_scalars(void **state)
 {
   const PetscReal stress[6] = {3, 0, 0, 0, 0, 2}, vector[3] = {2, 3, 6};
@@ -205,6 +236,33 @@ static void test_state_in_the_plane(void **state)
   TestRemove(folder);
 }
 
+/* Side by side, or one below the other. */
+static void test_several_states(void **state)
+{
+  char folder[64], picture[PETSC_MAX_PATH_LEN];
+  int width, height, tall_width, tall_height;
+  (void)state;
+  TestFolder(folder);
+  for (int k = 0; k < 4; ++k) WriteState(folder, 2, k, 0.5 * k);
+  PlotOptions options = {.run = folder, .up = 2, .n_times = 3, .times = {0, 0.5, 1.5}};
+  char *text = Plot(&options, picture);
+  assert_string_equal(text, "");
+  assert_non_null(strstr(picture, "/pictures/states_displacement_magnitude.png"));
+  assert_true(CheckPng(picture, &width, &height) > 10000 && width > height);
+  free(text);
+  options.columns = 1;
+  text = Plot(&options, picture);
+  assert_string_equal(text, "");
+  assert_true(CheckPng(picture, &tall_width, &tall_height) > 10000 && tall_height > tall_width);
+  free(text);
+  options = (PlotOptions){.run = folder, .up = 2, .all_times = PETSC_TRUE};
+  text = Plot(&options, picture);
+  assert_string_equal(text, "");
+  assert_true(CheckPng(picture, &width, &height) > 10000);
+  free(text);
+  TestRemove(folder);
+}
+
 static void test_state_in_space(void **state)
 {
   char folder[64], picture[PETSC_MAX_PATH_LEN];
@@ -278,13 +336,13 @@ static void test_mistakes(void **state)
   options.out = "/proc/no/such.png";
   Refused(&options, "gnuplot could not draw");
   options.out = NULL;
-  options.at_time = PETSC_TRUE;
-  options.time = 0.1;
+  options.n_times = 1;
+  options.times[0] = 0.1;
   char *text = Plot(&options, picture);
   assert_non_null(strstr(text, "no state at 0.1 s: the nearest is drawn, at 0 s"));
   assert_non_null(strstr(picture, "000000.png"));
   free(text);
-  options.at_time = PETSC_FALSE;
+  options.n_times = 0;
   snprintf(damaged, sizeof damaged, "%s/points_000001.hdf", folder);
   assert_int_equal(truncate(damaged, 3000), 0);
   Refused(&options, "cannot read");
@@ -331,11 +389,13 @@ static void test_convergence(void **state)
 
 static int Tests(void)
 {
-  const struct CMUnitTest tests[] = {
-    cmocka_unit_test(test_spacing),        cmocka_unit_test(test_raster),     cmocka_unit_test(test_raster_depth),
-    cmocka_unit_test(test_scalars),        cmocka_unit_test(test_units),      cmocka_unit_test(test_state_in_the_plane),
-    cmocka_unit_test(test_state_in_space), cmocka_unit_test(test_histories),  cmocka_unit_test(test_mistakes),
-    cmocka_unit_test(test_no_gnuplot),     cmocka_unit_test(test_convergence)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_spacing),        cmocka_unit_test(test_raster),
+                                     cmocka_unit_test(test_raster_depth),   cmocka_unit_test(test_raster_gap),
+                                     cmocka_unit_test(test_several_states), cmocka_unit_test(test_scalars),
+                                     cmocka_unit_test(test_units),          cmocka_unit_test(test_state_in_the_plane),
+                                     cmocka_unit_test(test_state_in_space), cmocka_unit_test(test_histories),
+                                     cmocka_unit_test(test_mistakes),       cmocka_unit_test(test_no_gnuplot),
+                                     cmocka_unit_test(test_convergence)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
 
