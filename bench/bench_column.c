@@ -1,0 +1,143 @@
+/* The dry column of cases/granular-collapse (aspect ratio 1.2, mesh 2): what a step and a Newton iteration cost, and how many 0.5 s of
+ * collapse take with fixed steps and with steps under control.
+ *
+ *   build/bench/bench_column [-full] [-case cases/granular-collapse/case.yaml]
+ *
+ * Seconds are those in which a core worked for this process. Steps of 0.1 ms go to 0.05 s, with -full to 0.5 s. */
+#include "bench.h"
+#include "io/case_file.h"
+
+#define THESIS_SECONDS 290.0 /* the code of the thesis, for the same 0.5 s, on this kind of machine */
+#define END 0.5
+
+typedef struct {
+  const char *name;
+  PetscReal step, largest, end; /* s; largest = step: fixed */
+} Plan;
+
+typedef struct {
+  PetscReal seconds, phase[PHASE_N], front, time;
+  PetscInt steps, iterations, cuts;
+  PetscBool gave_up;
+} Outcome;
+
+static PetscErrorCode ReadCase(const char *file, const Plan *plan, Diag *diag, Case **c)
+{
+  char text[3][64];
+  const char *const set[3] = {text[0], text[1], text[2]};
+
+  PetscFunctionBeginUser;
+  snprintf(text[0], sizeof text[0], "analysis.step=%.15g", (double)plan->step);
+  snprintf(text[1], sizeof text[1], "analysis.largest=%.15g", (double)plan->largest);
+  snprintf(text[2], sizeof text[2], "analysis.end=%.15g", (double)END);
+  PetscCall(CaseRead(PETSC_COMM_WORLD, file, 3, set, diag, c));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode Advance(Model *m, PetscReal end, Outcome *o)
+{
+  StepReport report;
+
+  PetscFunctionBeginUser;
+  *o = (Outcome){0};
+  const PetscReal start = processor_now();
+  while (m->time < end * (1 - 1e-12) && !o->gave_up) {
+    PetscCall(ModelStep(m, end - m->time, &report));
+    o->gave_up = report.outcome != STEP_ACCEPTED ? PETSC_TRUE : PETSC_FALSE;
+  }
+  o->seconds = processor_now() - start;
+  o->steps = m->step;
+  o->iterations = m->total_iterations;
+  o->cuts = m->cuts;
+  o->time = m->time;
+  ModelTimes(m, o->phase);
+  PetscFunctionReturn(0);
+}
+
+/* The farthest point of the case's own measure `front`. */
+static PetscErrorCode Front(Model *m, PetscReal *front)
+{
+  PetscFunctionBeginUser;
+  for (PetscInt k = 0; k < m->c->n_measures; ++k)
+    if (!strcmp(m->c->measures[k].name, "front")) PetscCall(ModelMeasure(m, &m->c->measures[k], k, front));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode Measure(const char *file, const Plan *plan, Outcome *o, PetscInt *points)
+{
+  Model *m = NULL;
+  Diag *diag;
+  Case *c;
+
+  PetscFunctionBeginUser;
+  PetscCall(DiagCreate(&diag));
+  PetscCall(ReadCase(file, plan, diag, &c));
+  if (c) PetscCall(ModelCreate(PETSC_COMM_WORLD, c, diag, &m));
+  PetscCall(DiagFlush(diag, stderr));
+  PetscCheck(m, PETSC_COMM_WORLD, PETSC_ERR_USER, "the benchmark's case has mistakes: %s", file);
+  PetscCall(ModelCountPoints(m, points));
+  PetscCall(Advance(m, plan->end, o));
+  PetscCall(Front(m, &o->front));
+  PetscCall(ModelDestroy(&m));
+  PetscCall(CaseDestroy(&c));
+  PetscCall(DiagDestroy(&diag));
+  PetscFunctionReturn(0);
+}
+
+/* Shares of the phases, by the clock. */
+static void print_phases(const Outcome *o)
+{
+  PetscReal clock = 0;
+  for (int k = 0; k < PHASE_N; ++k) clock += o->phase[k];
+  const PetscReal scale = 100 / clock;
+  printf("     of a step [%%]:");
+  for (int k = 0; k < PHASE_N; ++k) printf(" %s %.1f ", phase_names[k], (double)(scale * o->phase[k]));
+  printf("\n");
+}
+
+static void print_row(const Plan *plan, const Outcome *o, PetscInt fixed_steps)
+{
+  const double steps = (double)o->steps, iterations = (double)PetscMax(o->iterations, 1);
+  printf("%-24s %5.3g s %6d %7d %6.2f %4d %7.2f %8.3f %9.3f  %8.4f", plan->name, (double)o->time, (int)o->steps,
+         (int)o->iterations, iterations / steps, (int)o->cuts, (double)o->seconds, 1e3 * o->seconds / steps,
+         1e3 * o->seconds / iterations, (double)o->front);
+  if (plan->end == END) printf(" %7.0f", THESIS_SECONDS / o->seconds);
+  else printf(" %7s", "-");
+  if (plan->end == END && fixed_steps > 0) printf(" %6.2f", steps / (double)fixed_steps);
+  printf("%s\n", o->gave_up ? "  GAVE UP" : "");
+  print_phases(o);
+  fflush(stdout);
+}
+
+int main(int argc, char **argv)
+{
+  const Plan plans[] = {{"fixed, 1 ms", 1e-3, 1e-3, END},
+                        {"fixed, 2 ms", 2e-3, 2e-3, END},
+                        {"control, 1 to 4 ms", 1e-3, 4e-3, END},
+                        {"control, 1 to 10 ms", 1e-3, 1e-2, END},
+                        {"fixed, 0.1 ms", 1e-4, 1e-4, 0.1 * END}};
+  char file[PETSC_MAX_PATH_LEN] = "cases/granular-collapse/case.yaml";
+  PetscInt points, fixed_steps = 0;
+  PetscBool full;
+  Outcome o;
+
+  PetscCall(PetscInitialize(&argc, &argv, NULL, NULL));
+  PetscCall(PetscOptionsHasName(NULL, NULL, "-full", &full));
+  PetscCall(PetscOptionsGetString(NULL, NULL, "-case", file, sizeof file, NULL));
+  for (size_t k = 0; k < sizeof plans / sizeof plans[0]; ++k) {
+    Plan plan = plans[k];
+    if (full) plan.end = END;
+    PetscCall(Measure(file, &plan, &o, &points));
+    if (k == 0)
+      printf(
+        "%d points; ratio: the thesis's code takes %g s for the same 0.5 s [target 50]; steps: beside fixed steps of 1 "
+        "ms\n\n"
+        "%-24s %7s %6s %7s %6s %4s %7s %8s %9s  %8s %7s %6s\n",
+        (int)points, THESIS_SECONDS, "", "to", "steps", "Newton", "a step", "cuts", "seconds", "ms/step", "ms/Newton",
+        "front [m]", "ratio", "steps");
+    print_row(&plan, &o, fixed_steps);
+    if (k == 0) fixed_steps = o.steps;
+  }
+  PetscCall(PetscFinalize());
+  return 0;
+}
