@@ -9,7 +9,7 @@
  *            r = (tau_A - tau_B) / x,  x = eps_A - eps_B,
  *
  * all others zero. The second form has no cancellation once the law supplies the divided difference r, which stays
- * within [0, 2 mu]. It takes the place of the thesis' 3.147, whose terms all grow like 1 / (b_A - b_B)^2. */
+ * within [0, 2 mu]. It takes the place of the thesis' 3.147, whose terms grow like 1 / x and cancel. */
 #pragma once
 #include "base/eigen.h"
 #include "base/tensor.h"
