@@ -10,7 +10,8 @@ static const CliOption options_known[] = {
   {"field", "NAME", "the field that gives the colours (default: displacement)"},
   {"component", "WORD", "x y z, xx yy zz xy yz zx, magnitude, mises, mean (default: magnitude, mises of a tensor)"},
   {"time", "T[,T...]",
-   "the states nearest to these times in seconds, or 'all' (default: last); several stand side by side"},
+   "the states nearest to these times in seconds, or 'all'; several stand side by side (default: the last, and six on "
+   "the way to it)"},
   {"columns", "N", "of several states (default: what makes a picture as wide as a screen)"},
   {"grid", NULL, "draw the grid as well"},
   {"range", "A:B", "values of the first and the last colour"},
@@ -116,6 +117,20 @@ static PetscErrorCode Understand(const CliArguments *arguments, PlotOptions *opt
 
 static void Say(const char *path) { printf("picture = %s\n", path); }
 
+/* Who asks for nothing special sees the course of the run as well. */
+static PetscErrorCode DrawCourse(const PlotOptions *options, Diag *diag)
+{
+  PlotOptions course = *options;
+  char picture[PETSC_MAX_PATH_LEN];
+
+  PetscFunctionBeginUser;
+  if (options->n_times || options->all_times || options->out) PetscFunctionReturn(0);
+  course.even = 6;
+  PetscCall(PlotState(&course, diag, picture));
+  if (picture[0]) Say(picture);
+  PetscFunctionReturn(0);
+}
+
 static PetscErrorCode Draw(const PlotOptions *options, int *exit_code)
 {
   char picture[PETSC_MAX_PATH_LEN] = "";
@@ -129,6 +144,7 @@ static PetscErrorCode Draw(const PlotOptions *options, int *exit_code)
   else PetscCall(PlotState(options, diag, picture));
   if (picture[0]) {
     Say(picture);
+    PetscCall(DrawCourse(options, diag));
     PetscCall(PlotHistories(options, diag, Say));
   }
   *exit_code = DiagErrors(diag) ? CLI_BAD_INPUT : CLI_DONE;

@@ -11,9 +11,11 @@ typedef struct {
   const char *component;            /* NULL: magnitude of a vector, mises of a tensor */
   PetscInt n_times;                 /* the states nearest to these; 0: the last one */
   PetscReal times[PLOT_MAX_STATES]; /* s */
-  PetscBool all_times;              /* every state instead */
-  PetscInt columns;                 /* of several states; 0: chosen */
-  PetscBool grid;                   /* draw the grid too */
+  PetscInt
+    even; /* so many of all states instead, from the first to the last; no picture where there are less than three */
+  PetscBool all_times; /* every state instead */
+  PetscInt columns;    /* of several states; 0: chosen */
+  PetscBool grid;      /* draw the grid too */
   PetscBool has_range;
   PetscReal range[2]; /* of the colours, in the field's own unit */
   int width, height;  /* pixels; 0: chosen to suit the body */

@@ -39,6 +39,13 @@ static void Corner(const PlotPage *page, PetscInt frame, int *left, int *bottom)
   *bottom = page->bottom + (page->rows - 1 - row) * page->step_y;
 }
 
+/* 1, 2 or 5 times a power of ten: the smallest that leaves so many pixels between ticks of a range that takes `all` pixels. */
+static double TickStep(PetscReal range, int all, int pixels)
+{
+  const double least = (double)range * pixels / all, power = pow(10, floor(log10(least))), share = least / power;
+  return power * (share <= 1 ? 1 : share <= 2 ? 2 : share <= 5 ? 5 : 10);
+}
+
 /* Names of the axes where they are nobody else's: at the left, and where no field lies below. */
 static void WriteAxes(FILE *out, const PlotScene *scene, const PlotPage *page, PetscInt frame)
 {
@@ -53,7 +60,10 @@ static void WriteAxes(FILE *out, const PlotScene *scene, const PlotPage *page, P
           "'%s' offset 0,0.4\nset "
           "ylabel '%s'\nset format x '%s'\nset format y '%s'\n",
           last ? "x [m]" : "", left ? "y [m]" : "", last ? "%g" : "", left ? "%g" : "");
-  if (page->h < 160)
+  if (scene->n_frames > 1)
+    fprintf(out, "set xtics %.6g\nset ytics %.6g\n", TickStep(page->max[0] - page->min[0], page->w, 45),
+            TickStep(page->max[1] - page->min[1], page->h, 30));
+  else if (page->h < 160)
     fprintf(out, "set ytics %.3g\n",
             pow(10, floor(log10((double)(page->max[1] - page->min[1])))) * (page->h < 80 ? 1 : 0.5));
 }

@@ -51,9 +51,12 @@ static PetscErrorCode FindStates(const PlotOptions *options, Diag *diag, PetscIn
              (double)series.states[series.n - 1].time);
   } else if (options->all_times)
     for (; *n < series.n; ++*n) states[*n] = series.states[*n];
-  else
+  else if (options->even) {
+    const PetscInt most = series.n < 3 ? 0 : PetscMin(options->even, series.n);
+    for (; *n < most; ++*n) states[*n] = series.states[*n * (series.n - 1) / (most - 1)];
+  } else
     for (; *n < options->n_times; ++*n) states[*n] = Nearest(&series, options->times[*n], diag);
-  if (series.n > 0 && !options->all_times && *n == 0) states[(*n)++] = series.states[series.n - 1];
+  if (series.n > 0 && !options->all_times && !options->even && *n == 0) states[(*n)++] = series.states[series.n - 1];
   PetscCall(VtkSeriesFree(&series));
   PetscFunctionReturn(0);
 }

@@ -23,9 +23,10 @@ static void add_curve(Curves *c, const Verification *v, PetscInt first, PetscInt
                       PetscBool reference, FigureStyle style)
 {
   const PetscBool errors = v->rows[first].study->figure == VERIFY_FIGURE_CONVERGENCE ? PETSC_TRUE : PETSC_FALSE;
+  const SeriesSpec *spec = v->rows[first].series;
+  const char *title = spec->title ? spec->title : spec->name;
   FigureSeries *s = &c->series[c->n++];
-  *s = (FigureSeries){
-    .name = reference ? NULL : v->rows[first].series->name, .style = style, .x = c->x + c->used, .y = c->y + c->used};
+  *s = (FigureSeries){.name = reference ? NULL : title, .style = style, .x = c->x + c->used, .y = c->y + c->used};
   for (PetscInt k = first; k < last; ++k) {
     const VerifyRow *r = &v->rows[k];
     if (!r->ran || r->result != RUN_DONE || PetscIsNanReal(r->row->x)) continue;

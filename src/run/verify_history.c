@@ -33,8 +33,9 @@ static PetscErrorCode ReadCurve(const VerifyRow *r, FigureSeries *s, PetscReal *
 /* "a3, mesh = 2", or the series alone if the study has one row. */
 static void name_curve(const VerifyRow *r, char *name, size_t size)
 {
-  if (r->study->n_rows == 1) PetscSNPrintf(name, size, "%s", r->series->name);
-  else PetscSNPrintf(name, size, "%s, %s = %s", r->series->name, r->study->sweep.symbol, r->row->at);
+  const char *title = r->series->title ? r->series->title : r->series->name;
+  if (r->study->n_rows == 1) PetscSNPrintf(name, size, "%s", title);
+  else PetscSNPrintf(name, size, "%s, %s = %s", title, r->study->sweep.symbol, r->row->at);
 }
 
 static PetscErrorCode Draw(const Verification *v, const VerifyRow *r, PetscInt n, const FigureSeries *series,

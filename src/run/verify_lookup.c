@@ -54,6 +54,7 @@ static PetscErrorCode SeriesClear(StudySpec *study)
   PetscFunctionBeginUser;
   for (PetscInt s = 0; s < study->n_series; ++s) {
     PetscCall(PetscFree(study->series[s].name));
+    PetscCall(PetscFree(study->series[s].title));
     PetscCall(PetscFree(study->series[s].source.text));
     PetscCall(SettingsClear(&study->series[s].set));
   }

@@ -89,6 +89,7 @@ static const SchemaTable sweep_table = {
   .name = "sweep", .help = "The variable of the rows.", .entries = sweep_entries, .size = sizeof(SweepSpec)};
 
 static const SchemaEntry series_entries[] = {
+  {.key = "title", .type = TYPE_TEXT, .help = "in pictures; default: its name", AT(SeriesSpec, title)},
   SET_ENTRY(SeriesSpec),
   {.key = "full", .type = TYPE_BOOLEAN, .fallback = "false", .help = "only with --full", AT(SeriesSpec, full)},
   {.key = "time-scale",

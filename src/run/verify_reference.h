@@ -27,6 +27,7 @@ typedef struct {
 
 typedef struct {
   char *name;
+  char *title; /* in pictures; NULL: the name */
   Settings set;
   PetscBool full;       /* only with --full */
   PetscReal time_scale; /* s, unit of time in a picture of its history */
