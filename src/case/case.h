@@ -176,6 +176,10 @@ typedef struct {
 } StabilisationSpec;
 
 typedef struct {
+  PetscReal stabilisation; /* of the pressure, alpha: the term is alpha / G */
+} MixedSpec;
+
+typedef struct {
   PetscInt n_fields;
   char **fields;
   PetscReal every;   /* s between states; 0: only the end; < 0: every |every| steps */
@@ -189,7 +193,8 @@ typedef struct {
   char *title;
   Kinematics kinematics;
   char *method;
-  char *formulation; /* "displacement" */
+  char *formulation; /* "displacement", "mixed" */
+  MixedSpec mixed;
   AnalysisSpec analysis;
   GridSpec grid;
   PetscInt n_bodies;
@@ -213,6 +218,9 @@ typedef struct {
 } Case;
 
 static inline PetscInt kinematics_dim(Kinematics k) { return k == KINEMATICS_3D ? 3 : 2; }
+
+/* Is the pressure an unknown beside the displacements? */
+PetscBool case_is_mixed(const Case *c);
 
 PetscErrorCode CaseDestroy(Case **c);
 
