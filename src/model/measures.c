@@ -74,9 +74,7 @@ static PetscErrorCode ExtentValue(const Model *m, const MeasureSpec *s, PetscRea
 
 static PetscReal stored_energy(const Model *m, PetscInt p)
 {
-  const Material *material = &m->materials[m->points->material[p]];
-  return m->points->real[POINT_VOLUME][p] *
-         material->law->energy(material->parameters, point_real(m->points, POINT_STATE, p));
+  return m->points->real[POINT_VOLUME][p] * model_point_energy(m, p);
 }
 
 /* Contribution of one point to a sum. */

@@ -58,7 +58,6 @@ static const PetscReal *state_field(const Model *m, PetscInt p, const char *name
 static PetscErrorCode PointValue(const Model *m, PetscInt p, const char *name, PetscReal *out)
 {
   const Points *points = m->points;
-  const Material *material = &m->materials[points->material[p]];
   PetscReal sigma[6], F[9];
 
   PetscFunctionBeginUser;
@@ -73,8 +72,7 @@ static PetscErrorCode PointValue(const Model *m, PetscInt p, const char *name, P
   } else if (!strcmp(name, "mass")) *out = points->real[POINT_MASS][p];
   else if (!strcmp(name, "volume")) *out = volume;
   else if (!strcmp(name, "density")) *out = points->real[POINT_MASS][p] / volume;
-  else if (!strcmp(name, "energy"))
-    *out = material->law->energy(material->parameters, point_real(points, POINT_STATE, p));
+  else if (!strcmp(name, "energy")) *out = model_point_energy(m, p);
   else if (!strcmp(name, "body")) *out = (PetscReal)points->body[p];
   else if (!strcmp(name, "material")) *out = (PetscReal)points->material[p];
   else {

@@ -44,6 +44,7 @@ static PetscErrorCode UseMultigrid(KSP ksp, const LinearProblem *p, const char *
 /* Fill-in makes a factorisation of a 3D matrix costly much earlier than of a 2D one. */
 static PetscBool direct_pays(const LinearProblem *p)
 {
+  if (p->mixed) return PETSC_TRUE;
   if (p->dynamic && p->courant < 20) return PETSC_FALSE;
   return p->unknowns < (p->dim == 2 ? 1000000 : 100000) ? PETSC_TRUE : PETSC_FALSE;
 }

@@ -10,6 +10,7 @@ typedef struct {
   LinearChoice choice;
   PetscInt dim, unknowns;
   PetscBool symmetric, dynamic;
+  PetscBool mixed;      /* is the last unknown of every block a pressure? */
   PetscBool idle_ranks; /* does a rank hold no unknowns? */
   PetscReal courant;    /* wave speed * dt / h */
 } LinearProblem;
