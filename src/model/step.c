@@ -256,6 +256,7 @@ PetscErrorCode ModelStep(Model *m, PetscReal limit, StepReport *report)
       .unknowns = m->system->n_active_global * m->system->block,
       .symmetric = m->symmetric,
       .mixed = m->formulation->pressure,
+      .undetermined = m->c->mixed.stabilisation == 0 ? PETSC_TRUE : PETSC_FALSE,
       .idle_ranks = m->system->n_active_least ? PETSC_FALSE : PETSC_TRUE,
       .dynamic = m->c->analysis.type == ANALYSIS_DYNAMIC ? PETSC_TRUE : PETSC_FALSE,
       .courant = m->courant_speed * dt / m->grid->smallest,

@@ -246,6 +246,7 @@ static PetscErrorCode NewtonSetUp(Newton *n, StepProblem *p, const LinearProblem
   PetscCall(SNESLineSearchShellSetUserFunc(search, LineSearchDescend, &n->search));
   PetscCall(SNESGetKSP(n->snes, &ksp));
   LinearProblem chosen = *linear;
+  PetscCall(KSPSetOperators(ksp, p->system->matrix, p->system->matrix));
   if (n->retry || n->failures >= 3) chosen.choice = LINEAR_DIRECT;
   PetscCall(LinearConfigure(ksp, &chosen, &n->direct, &n->linear));
   PetscCall(SNESSetFromOptions(n->snes));
