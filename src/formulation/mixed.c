@@ -240,7 +240,7 @@ KERNEL LawStatus commit_points(const int dim, const int nn, const WeakFormInput 
     const PetscInt n_state = in->materials[points->material[first]].law->n_state;
     for (PetscInt k = 0; k < b.n; ++k) {
       commit_point(points, first + k, b.dF + 9 * k, b.s.tau + 6 * k);
-      points->real[POINT_PRESSURE][first + k] = b.p[k];
+      points->real[POINT_PRESSURE][first + k] = b.s.pressure[k];
       PetscReal *state = points->real[POINT_STATE] + (first + k) * stride;
       for (PetscInt i = 0; i < n_state; ++i) state[i] = b.state[k * n_state + i];
     }

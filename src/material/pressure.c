@@ -40,6 +40,7 @@ static LawStatus update_apart(const Material *m, PetscInt n, const PetscReal *dF
   if (status != LAW_OK) return status;
   for (PetscInt k = 0; k < n; ++k) {
     const PetscReal J = s->theta[k]; /* left there by the caller */
+    s->pressure[k] = p[k];
     s->rate[k] = m->volume == VOLUME_LINEAR ? J : 1.0;
     s->theta[k] = m->volume == VOLUME_LINEAR ? J - 1.0 : log(J);
     replace_mean(m->volume, s->rate[k] * p[k], s->tau + 6 * k, tangent ? s->c + 36 * k : NULL);
@@ -72,6 +73,8 @@ static LawStatus update_coupled(const Material *m, PetscInt n, const PetscReal *
   }
   const LawStatus status = m->law->update(m->parameters, n, scaled, old, state, s->tau, tangent ? s->c : NULL);
   if (status != LAW_OK) return status;
+  m->law->volume(n, state, s->pressure);
+  for (PetscInt k = 0; k < n; ++k) s->pressure[k] = log(s->pressure[k]) / m->compliance;
   m->law->scale(n, back, state); /* the state keeps the volume of the displacements */
   for (PetscInt k = 0; tangent && k < n; ++k) couple(m->compliance, s->tau + 6 * k, s->c + 36 * k, s->coupling + 6 * k);
   return LAW_OK;
@@ -97,9 +100,13 @@ PetscReal pressure_of_state(const Material *m, const PetscReal *state, const Pet
 
 PetscReal pressure_energy(const Material *m, const PetscReal *state, PetscReal p)
 {
-  PetscReal J;
-  if (m->volume == VOLUME_COUPLED) return m->law->energy(m->parameters, state);
+  PetscReal J, copy[LAW_MAX_STATE];
   m->law->volume(1, state, &J);
-  return m->law->energy(m->deviatoric, state) - volume_energy(m->volume, m->elastic.shear, J) +
-         0.5 * p * p * m->compliance;
+  if (m->volume != VOLUME_COUPLED)
+    return m->law->energy(m->deviatoric, state) - volume_energy(m->volume, m->elastic.shear, J) +
+           0.5 * p * p * m->compliance;
+  const PetscReal factor = exp((p * m->compliance - log(J)) / 3.0);
+  for (PetscInt k = 0; k < m->law->n_state; ++k) copy[k] = state[k];
+  m->law->scale(1, &factor, copy);
+  return m->law->energy(m->parameters, copy);
 }

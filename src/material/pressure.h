@@ -12,6 +12,7 @@
 /* What one batch gives. */
 typedef struct {
   PetscReal theta[LAW_BATCH], rate[LAW_BATCH]; /* volumetric strain, and its derivative by tr d */
+  PetscReal pressure[LAW_BATCH]; /* after the flow, which may take some of a coupled law's pressure away */
   PetscReal tau[6 * LAW_BATCH];
   PetscReal c[36 * LAW_BATCH];       /* L_v tau = c : d at constant p */
   PetscReal coupling[6 * LAW_BATCH]; /* d tau / d p at constant deformation */
@@ -24,5 +25,5 @@ LawStatus pressure_update(const Material *material, PetscInt n, const PetscReal 
 /* Pressure unknown that belongs to a stress state of the law itself: its Kirchhoff stress, and the volume of its state. */
 PetscReal pressure_of_state(const Material *material, const PetscReal *state, const PetscReal tau[6]);
 
-/* Stored energy per undeformed volume: that of shape from the state, that of volume from p; of a coupled law that of its state. */
+/* Stored energy per undeformed volume: that of shape from the state, that of volume from the pressure after the flow. */
 PetscReal pressure_energy(const Material *material, const PetscReal *state, PetscReal p);
