@@ -42,6 +42,9 @@ typedef struct {
   PetscErrorCode (*assemble)(const WeakFormInput *in, WeakFormOutput *out);
   /* Accept the step: new state, F, J, stress and work of every point. `state` of the points is overwritten. */
   PetscErrorCode (*commit)(const WeakFormInput *in, Points *points, LawStatus *status);
+  /* With a pressure: add to each node (n_nodes) a stand-in of the Schur complement's diagonal in an elastic body at rest, N/m; NULL
+   * without. */
+  void (*schur)(const WeakFormInput *in, PetscReal *nodes);
 } Formulation;
 
 extern const Formulation *const formulations[]; /* ended by NULL */

@@ -311,10 +311,25 @@ static PetscErrorCode MixedCommit(const WeakFormInput *in, Points *points, LawSt
   PetscFunctionReturn(0);
 }
 
+/* Mass over G + 1/K, lumped: B A^-1 B^T of a body with the stiffness 2G against shear is the mass over G up to a factor near 1. */
+static void mixed_schur(const WeakFormInput *in, PetscReal *nodes)
+{
+  const Support *w = in->support;
+  const PetscReal scale2 = in->pressure_scale * in->pressure_scale;
+  for (PetscInt g = 0, nn = w->uniform; g < w->n_groups; ++g)
+    for (PetscInt p = w->point_start[g]; p < w->point_start[g + 1]; ++p) {
+      const Material *material = &in->materials[in->points->material[p]];
+      const PetscReal softness = 1 / material->elastic.shear + material->compliance;
+      for (PetscInt I = 0; I < nn; ++I)
+        nodes[w->node[g * nn + I]] += scale2 * softness * in->points->real[POINT_VOLUME][p] * w->N[p * nn + I];
+    }
+}
+
 const Formulation formulation_mixed = {
   .name = "mixed",
   .help = "displacements and pressure, stabilised (thesis ch. 5)",
   .pressure = PETSC_TRUE,
   .assemble = MixedAssemble,
   .commit = MixedCommit,
+  .schur = mixed_schur,
 };

@@ -60,7 +60,7 @@ static PetscErrorCode UseMultigrid(KSP ksp, const LinearProblem *p, const char *
 /* Fill-in makes a factorisation of a 3D matrix costly much earlier than of a 2D one. */
 static PetscBool direct_pays(const LinearProblem *p)
 {
-  if (p->mixed) return PETSC_TRUE;
+  if (p->mixed) return p->unknowns < (p->dim == 2 ? 500000 : 20000) ? PETSC_TRUE : PETSC_FALSE;
   if (p->dynamic && p->courant < 20) return PETSC_FALSE;
   return p->unknowns < (p->dim == 2 ? 1000000 : 100000) ? PETSC_TRUE : PETSC_FALSE;
 }
@@ -72,6 +72,10 @@ PetscErrorCode LinearConfigure(KSP ksp, const LinearProblem *p, PetscBool *direc
   if (*direct) PetscCall(UseDirect(ksp, p->symmetric, what));
   if (*direct && p->mixed) PetscCall(PrepareSaddlePoint(ksp, p->undetermined));
   if (*direct) PetscFunctionReturn(0);
+  if (p->mixed) { /* saddle.c does the rest */
+    *what = "GMRES, Schur complement, algebraic multigrid";
+    PetscFunctionReturn(0);
+  }
   if (p->dynamic) PetscCall(UseKrylov(ksp, p, what));
   else PetscCall(UseMultigrid(ksp, p, what));
   PetscFunctionReturn(0);

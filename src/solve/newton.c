@@ -1,5 +1,6 @@
 #include "solve/newton.h"
 #include "solve/line_search.h"
+#include "solve/saddle.h"
 #include <petsctime.h>
 
 struct Newton {
@@ -9,6 +10,7 @@ struct Newton {
   Vec x, f;
   PetscInt built; /* system->builds that snes was set up for */
   LineSearchMemory search;
+  Saddle saddle;
   PetscBool direct;
   PetscInt failures; /* of the iterative solver; after a few the direct one stays */
   PetscBool retry;   /* this try takes the direct solver */
@@ -35,6 +37,7 @@ static PetscErrorCode NewtonReset(Newton *n)
 {
   PetscFunctionBeginUser;
   PetscCall(SNESDestroy(&n->snes));
+  PetscCall(SaddleClear(&n->saddle));
   PetscCall(VecDestroy(&n->x));
   PetscCall(VecDestroy(&n->f));
   PetscFunctionReturn(0);
@@ -249,6 +252,7 @@ static PetscErrorCode NewtonSetUp(Newton *n, StepProblem *p, const LinearProblem
   PetscCall(KSPSetOperators(ksp, p->system->matrix, p->system->matrix));
   if (n->retry || n->failures >= 3) chosen.choice = LINEAR_DIRECT;
   PetscCall(LinearConfigure(ksp, &chosen, &n->direct, &n->linear));
+  if (chosen.mixed && !n->direct) PetscCall(SaddleConfigure(&n->saddle, ksp, p->system, p->grid, chosen.dynamic));
   PetscCall(SNESSetFromOptions(n->snes));
   n->built = p->system->builds;
   PetscFunctionReturn(0);
@@ -304,6 +308,22 @@ static PetscErrorCode LiftPrescribed(Newton *n)
   PetscFunctionReturn(0);
 }
 
+/* Points have moved since the last step: so has what stands in for the Schur complement. */
+static PetscErrorCode UpdateSaddle(Newton *n)
+{
+  const StepProblem *p = n->problem;
+  PetscReal *nodes;
+
+  PetscFunctionBeginUser;
+  if (!n->saddle.schur) PetscFunctionReturn(0);
+  PetscCall(PetscCalloc1(p->grid->n_nodes, &nodes));
+  p->formulation->schur(&p->in, nodes);
+  PetscCall(GridSumToOwners(p->grid, 1, nodes));
+  PetscCall(SaddleUpdate(&n->saddle, p->system, nodes));
+  PetscCall(PetscFree(nodes));
+  PetscFunctionReturn(0);
+}
+
 static const char *reason_in_words(SNESConvergedReason reason, LawStatus status)
 {
   switch (reason) {
@@ -332,6 +352,7 @@ static PetscErrorCode NewtonTry(Newton *n, NewtonReport *report)
   PetscCall(PetscMemzero(report, sizeof(*report)));
   report->bad_point = -1;
   PetscCall(PetscTime(&start));
+  PetscCall(UpdateSaddle(n));
   PetscCall(LiftPrescribed(n));
   PetscCall(GetUnknowns(n, n->x));
   PetscCall(SNESSetTolerances(n->snes, 0, 0, 0, n->spec.max_iterations - report->iterations, PETSC_MAX_INT));

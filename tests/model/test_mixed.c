@@ -435,6 +435,44 @@ static void test_ranks(void **state)
   ranks("mpm", CELL_TETRAHEDRON, &solids[0], PETSC_FALSE);
 }
 
+/* --- linear solvers --- */
+/* The iterative solver gives the direct one's answer, in statics and dynamics, with few iterations. */
+static void solvers(const char *method, CellType cell, PetscInt cells_per_side, const Solid *solid, PetscBool dynamic)
+{
+  Model *m[2];
+  Bench b[2];
+  for (int k = 0; k < 2; ++k) {
+    bench_init(&b[k], method, cell, cells_per_side);
+    use_solid(&b[k], solid);
+    b[k].c.newton.residual = 1e-10;
+    b[k].c.linear = k ? LINEAR_ITERATIVE : LINEAR_DIRECT;
+    b[k].c.gravity[1] = -50;
+    if (dynamic) bench_dynamic(&b[k], 0.01, 0.002);
+    bench_motion(&b[k], 1, 0, MOTION_FIXED, 7);
+    m[k] = bench_model(&b[k], PETSC_COMM_WORLD);
+    for (int step = 0; step < (dynamic ? 3 : 1); ++step) {
+      const StepReport r = model_step(m[k], 1);
+      CHECK(r.cuts == 0, "the step was halved");
+      if (k) CHECK(strstr(NewtonLinearName(m[k]->newton), "GMRES"), "%s", NewtonLinearName(m[k]->newton));
+      CHECK(r.newton.linear_iterations <= 60 * r.newton.iterations, "%d linear iterations in %d of Newton",
+            (int)r.newton.linear_iterations, (int)r.newton.iterations);
+    }
+  }
+  PetscReal off = 0;
+  for (PetscInt p = 0; p < m[0]->points->n * m[0]->dim; ++p)
+    off = PetscMax(off, PetscAbsReal(m[0]->points->real[POINT_U][p] - m[1]->points->real[POINT_U][p]));
+  CHECK(off <= 1e-8, "displacements differ by %g m", (double)off);
+  for (int k = 0; k < 2; ++k) CALL(ModelDestroy(&m[k]));
+}
+
+static void test_solvers(void **state)
+{
+  (void)state;
+  solvers("fem", CELL_TETRAHEDRON, 4, &solids[1], PETSC_FALSE);
+  solvers("fem", CELL_HEXAHEDRON, 4, &solids[0], PETSC_FALSE);
+  solvers("mpm", CELL_TRIANGLE, 8, &solids[3], PETSC_TRUE);
+}
+
 /* --- what is refused --- */
 static void test_refused(void **state)
 {
@@ -462,7 +500,8 @@ int main(int argc, char **argv)
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(test_patch),    cmocka_unit_test(test_tangent),        cmocka_unit_test(test_cook),
     cmocka_unit_test(test_newton),   cmocka_unit_test(test_incompressible), cmocka_unit_test(test_checkerboard),
-    cmocka_unit_test(test_momentum), cmocka_unit_test(test_ranks),          cmocka_unit_test(test_refused),
+    cmocka_unit_test(test_momentum), cmocka_unit_test(test_ranks),          cmocka_unit_test(test_solvers),
+    cmocka_unit_test(test_refused),
   };
   return run_model_tests(argc, argv, tests);
 }
