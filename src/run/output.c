@@ -181,6 +181,8 @@ static PetscErrorCode GridField(const Output *o, const Model *m, const OutputFie
   if (!strcmp(field->name, "velocity")) widen(n, m->dim, m->stage->v, *data);
   else if (!strcmp(field->name, "acceleration")) widen(n, m->dim, m->stage->a, *data);
   else if (!strcmp(field->name, "mass")) PetscCall(PetscArraycpy(*data, m->stage->mass, n));
+  else if (!strcmp(field->name, "pressure"))
+    for (PetscInt i = 0; i < n; ++i) (*data)[i] = -m->stage->pressure[i];
   else {
     PetscCall(PetscMalloc1(n * m->dim, &u));
     PetscCall(NodalDisplacement(o, m, u));
@@ -202,6 +204,7 @@ static PetscErrorCode WriteGrid(Output *o, Model *m, PetscBool *ok, char reason[
   widen(grid->n_nodes, m->dim, grid->x, x);
   for (const OutputField *f = output_fields; f->name && n < MAX_FIELDS; ++f) {
     if (!f->grid || !is_asked(m->c, f->name)) continue;
+    if (!strcmp(f->name, "pressure") && !m->pressure) continue; /* nodes know none */
     PetscCall(GridField(o, m, f, &data[n]));
     fields[n] = (VtkField){.name = f->name, .unit = f->unit, .components = f->components, .data = data[n]};
     ++n;
