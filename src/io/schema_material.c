@@ -1,4 +1,5 @@
 /* Materials: which keys are allowed depends on the law, and any two elastic constants are accepted. */
+#include <math.h>
 #include <string.h>
 #include "io/schema.h"
 #include "material/elasticity.h"
@@ -44,7 +45,7 @@ static PetscBool IsInfinite(const YamlNode *node)
 static PetscBool ParseConstant(const YamlNode *node, PetscReal *value)
 {
   if (!IsInfinite(node)) return SchemaParseNumber(node, value);
-  *value = PETSC_INFINITY;
+  *value = INFINITY;
   return PETSC_TRUE;
 }
 
@@ -84,7 +85,7 @@ static PetscErrorCode ReadConstants(SchemaReader *r, const Law *law, const YamlN
     if (!strcmp(node->key, "law") || !strcmp(node->key, "density")) continue;
     if (p || elastic) {
       const SchemaEntry entry = p ? SchemaLawEntry(p) : *elastic;
-      if (IsInfinite(node)) PetscCall(Add(material, node->key, PETSC_INFINITY));
+      if (IsInfinite(node)) PetscCall(Add(material, node->key, INFINITY));
       else if (SchemaNumber(r, &entry, node, &value)) PetscCall(Add(material, node->key, value));
     } else if (law) UnknownKey(r, law, mapping, node); /* without a law nobody knows which keys it has */
   }

@@ -198,6 +198,25 @@ static const char solid[] =
   "boundary: [{on: {boundary: foot, z: 0}, fix: [x, y, z]}, {on: {z: 1}, rotation: {centre: [0, 0, 0], rate: 1, axis: "
   "[0, 1, 1]}}]\n";
 
+/* Incompressible materials, given before the key that allows them. */
+static const char soft[] =
+  "materials: {a: {law: j2, density: 1, shear: 3, bulk: inf, yield_stress: 1}, b: {law: neo-hookean-split, density: 1, "
+  "young: 3, "
+  "poisson: 0.5}}\nmixed: {stabilisation: 2.5}\nformulation: mixed\n" PLAIN_TOP PLAIN_GRID
+  "bodies: [{name: one, shape: {box: {min: [0, 0], max: [2, 1]}}, material: a}]\n";
+
+static void Mixed(void **state)
+{
+  Case *c = read_good(soft);
+  (void)state;
+  assert_string_equal(c->formulation, "mixed");
+  assert_true(case_is_mixed(c));
+  ASSERT_NEAR(c->mixed.stabilisation, 2.5, 0);
+  assert_string_equal(c->materials[0].parameters[1].name, "bulk");
+  assert_true(c->materials[0].parameters[1].value == INFINITY);
+  assert_int_equal(CaseDestroy(&c), 0);
+}
+
 static void Mesh3D(void **state)
 {
   Case *c = read_good(solid);
@@ -223,9 +242,9 @@ static char *ToYaml(const Case *c)
 /* What is written reads back to the same: the second text equals the first, and the numbers agree to the last bit. */
 static void RoundTrip(void **state)
 {
-  const char *const texts[] = {everything, PLAIN, solid};
+  const char *const texts[] = {everything, PLAIN, solid, soft};
   (void)state;
-  for (int i = 0; i < 3; ++i) {
+  for (int i = 0; i < 4; ++i) {
     Case *first = read_good(texts[i]), *second;
     char *once = ToYaml(first), *twice;
     second = read_good(once);
@@ -300,6 +319,7 @@ int main(int argc, char **argv)
                                      cmocka_unit_test(MotionAndLoads),
                                      cmocka_unit_test(MeasuresAndOutput),
                                      cmocka_unit_test(Defaults),
+                                     cmocka_unit_test(Mixed),
                                      cmocka_unit_test(Mesh3D),
                                      cmocka_unit_test(RoundTrip),
                                      cmocka_unit_test(RoundTripOddValues),
