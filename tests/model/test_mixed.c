@@ -435,6 +435,49 @@ static void test_ranks(void **state)
   ranks("mpm", CELL_TETRAHEDRON, &solids[0], PETSC_FALSE);
 }
 
+/* --- geostatic start --- */
+/* A layer that starts with the stress of its weight stays where it is; without that it would settle by millimetres. */
+static void geostatic(const char *method, const Solid *solid, PetscReal k0, PetscReal alpha)
+{
+  Bench b;
+  PetscReal largest = 0, off = 0;
+  bench_init(&b, method, CELL_TRIANGLE, 4);
+  use_solid(&b, solid);
+  b.c.mixed.stabilisation = alpha; /* incompressible: just enough to determine all pressures */
+  b.c.newton.residual = 1e-10;
+  b.c.gravity[1] = -10;
+  b.c.gravity_amplitude = (Amplitude){.n = 1, .time = (PetscReal[]){0}, .value = (PetscReal[]){1}};
+  b.body[0].has_k0 = PETSC_TRUE;
+  b.body[0].k0 = k0;
+  b.body[0].surface = 1;
+  bench_motion(&b, 1, 0, MOTION_FIXED, 3);
+  for (int side = 0; side < 2; ++side) bench_motion(&b, 0, side, MOTION_FIXED, 1);
+  Model *m = bench_model(&b, PETSC_COMM_WORLD);
+  CHECK(model_step(m, 1).cuts == 0, "the step was halved");
+  for (PetscInt p = 0; p < m->points->n; ++p) {
+    PetscReal sigma[6];
+    CALL(ModelPointStress(m, p, sigma));
+    off = PetscMax(off, PetscAbsReal(sigma[1] + 1e4 * (1 - point_real(m->points, POINT_X, p)[1])));
+    for (int d = 0; d < 2; ++d) largest = PetscMax(largest, PetscAbsReal(point_real(m->points, POINT_U, p)[d]));
+  }
+  /* in a corner that belongs to one triangle only the stabilisation tells an incompressible body's pressure */
+  CHECK(largest <= (alpha > 0 ? 5e-6 : 1e-8), "%s: moved by %g m", solid->law, (double)largest);
+  CHECK(off <= (alpha > 0 ? 150 : 0.1), "%s: stress off by %g Pa", solid->law, (double)off);
+  CALL(ModelDestroy(&m));
+}
+
+static void test_geostatic(void **state)
+{
+  static const char *const method[] = {"fem", "mpm"};
+  (void)state;
+  for (int k = 0; k < 2; ++k) {
+    geostatic(method[k], &solids[0], 0.4, 0);
+    geostatic(method[k], &solids[1], 1, 0.01);
+    geostatic(method[k], &solids[5], 1, 0.01);
+    geostatic(method[k], &solids[6], 0.8, 0);
+  }
+}
+
 /* --- linear solvers --- */
 /* The iterative solver gives the direct one's answer, in statics and dynamics, with few iterations. */
 static void solvers(const char *method, CellType cell, PetscInt cells_per_side, const Solid *solid, PetscBool dynamic)
@@ -500,8 +543,8 @@ int main(int argc, char **argv)
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(test_patch),    cmocka_unit_test(test_tangent),        cmocka_unit_test(test_cook),
     cmocka_unit_test(test_newton),   cmocka_unit_test(test_incompressible), cmocka_unit_test(test_checkerboard),
-    cmocka_unit_test(test_momentum), cmocka_unit_test(test_ranks),          cmocka_unit_test(test_solvers),
-    cmocka_unit_test(test_refused),
+    cmocka_unit_test(test_momentum), cmocka_unit_test(test_ranks),          cmocka_unit_test(test_geostatic),
+    cmocka_unit_test(test_solvers),  cmocka_unit_test(test_refused),
   };
   return run_model_tests(argc, argv, tests);
 }
