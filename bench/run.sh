@@ -18,6 +18,9 @@ title "laws"
 title "statics"
 "$bench/bench_static"
 
+title "mixed formulation in 3D"
+"$bench/bench_mixed"
+
 title "dynamics in 2D: an elastic block lands and bounces"
 "$bench/bench_dynamic" -points 10000,100000,1000000 -steps 20 -repeat "${REPEAT:-2}"
 
