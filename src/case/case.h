@@ -135,7 +135,8 @@ typedef enum {
   MEASURE_SURFACE_FRONT,
   MEASURE_SURFACE_HEIGHT,
   MEASURE_SURFACE_SLOPE, /* of the interpolated free surface, 2D */
-  MEASURE_RUN_OUT_TIME   /* when the front last moved faster than `speed` */
+  MEASURE_RUN_OUT_TIME,  /* when the front last moved faster than `speed` */
+  MEASURE_ROUGHNESS      /* of the pressure */
 } MeasureKind;
 
 typedef enum { FRONT_POINTS, FRONT_SURFACE } FrontKind;

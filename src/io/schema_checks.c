@@ -306,6 +306,10 @@ PetscErrorCode SchemaCheckMeasure(SchemaReader *r, const YamlNode *mapping, void
     SchemaKeyError(r, of, "%s.of: this energy is known for the whole model only", path);
     PetscFunctionReturn(0);
   }
+  if (of && m->kind == MEASURE_ROUGHNESS) {
+    SchemaKeyError(r, of, "%s.of: roughness is known for the whole model only", path);
+    PetscFunctionReturn(0);
+  }
   if (!of && !tracer && !reaction) PetscFunctionReturn(0);
   if (of && YamlFind(of, wanted)) PetscFunctionReturn(0);
   if (!of) SchemaKeyError(r, mapping, "key 'of' of %s is missing", path);

@@ -22,6 +22,7 @@ const char *measure_unit(const MeasureSpec *s)
   case MEASURE_EXTERNAL_WORK: return "J";
   case MEASURE_SURFACE_SLOPE: return "deg";
   case MEASURE_RUN_OUT_TIME: return "s";
+  case MEASURE_ROUGHNESS:
   case MEASURE_ENERGY_BALANCE: return "";
   case MEASURE_REACTION: return "N";
   }
@@ -198,6 +199,7 @@ PetscErrorCode ModelMeasure(Model *m, const MeasureSpec *s, PetscInt index, Pets
   case MEASURE_SURFACE_HEIGHT:
   case MEASURE_SURFACE_SLOPE: PetscCall(SurfaceValue(m, s, value)); break;
   case MEASURE_RUN_OUT_TIME: *value = m->memory[index].moved; break;
+  case MEASURE_ROUGHNESS: PetscCall(RoughnessValue(m, value)); break;
   case MEASURE_REACTION:
     PetscCall(BoundarySum(m->boundary, m->grid, s->boundary, m->reaction, sum));
     *value = sum[s->component];

@@ -20,6 +20,9 @@ PetscErrorCode MeasuresStart(Model *model);
 /* Collective. After every accepted step of dt, whether or not a row of the history is written. */
 PetscErrorCode MeasuresRemember(Model *model, PetscReal dt);
 
+/* Collective. How much of the pressure one averaging over neighbours takes away, docs/theory.md. */
+PetscErrorCode RoughnessValue(const Model *model, PetscReal *value);
+
 /* This rank's share of the energies of a step that is being accepted, J. */
 typedef struct {
   PetscReal external, boundary, damped, transfer;

@@ -59,6 +59,7 @@ static const char everything[] =
   "  stop: {run_out_time: {max: x, speed: 0.01}, of: {body: soil}}\n"
   "  stop2: {run_out_time: {max: x, speed: 0.1, front: surface}}\n"
   "  stop3: {run_out_time: {min: y, speed: 0.1}}\n"
+  "  rough: {roughness: pressure}\n"
   "newton: {residual: 1e-9, max_iterations: 12}\n"
   "linear: direct\n"
   "stabilisation: {stiffness: 0}\n"
@@ -136,11 +137,12 @@ static void MeasuresAndOutput(void **state)
                                MEASURE_SURFACE_SLOPE,
                                MEASURE_RUN_OUT_TIME,
                                MEASURE_RUN_OUT_TIME,
-                               MEASURE_RUN_OUT_TIME};
+                               MEASURE_RUN_OUT_TIME,
+                               MEASURE_ROUGHNESS};
   Case *c = read_good(everything);
   (void)state;
-  assert_int_equal(c->n_measures, 18);
-  for (PetscInt i = 0; i < 18; ++i) assert_int_equal(c->measures[i].kind, kinds[i]);
+  assert_int_equal(c->n_measures, 19);
+  for (PetscInt i = 0; i < 19; ++i) assert_int_equal(c->measures[i].kind, kinds[i]);
   assert_int_equal(c->measures[0].component, 1);
   assert_true(c->measures[1].maximum && !c->measures[2].maximum);
   assert_null(c->measures[3].body);
