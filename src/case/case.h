@@ -98,6 +98,7 @@ typedef enum { MOTION_FIXED, MOTION_DISPLACEMENT, MOTION_VELOCITY, MOTION_ROTATI
 /* Prescribed motion of the nodes selected. Components not in `component` stay free. */
 typedef struct {
   Selector on;
+  PetscBool moves; /* does the place `on` take part in the motion, on a grid that is restored? */
   MotionKind kind;
   PetscBool component[3];
   PetscReal value[3];                 /* m or m/s, times the amplitude */

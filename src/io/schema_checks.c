@@ -258,6 +258,11 @@ PetscErrorCode SchemaCheckMotion(SchemaReader *r, const YamlNode *mapping, void 
                    YamlPath(mapping, path, sizeof(path)));
     DiagHint(r->diag, "select by x, y, boundary or shape");
   }
+  if (m->moves && (m->kind == MOTION_FIXED || m->on.boundary)) {
+    SchemaKeyError(r, YamlFind(mapping, "moves"), "%s.moves: %s", YamlPath(mapping, path, sizeof(path)),
+                   m->on.boundary ? "a boundary of the grid stays where it is" : "what is fixed does not move");
+    DiagHint(r->diag, m->on.boundary ? "select by x, y or shape" : "leave it away");
+  }
   if (m->kind == MOTION_ROTATION) {
     for (PetscInt d = 0; d < r->dim; ++d) m->component[d] = PETSC_TRUE;
     if (r->dim == 2) m->axis[2] = 1;

@@ -247,6 +247,7 @@ PetscErrorCode ModelStep(Model *m, PetscReal limit, StepReport *report)
   PetscCall(PetscTime(&clock));
   PetscCall(PetscMemzero(report, sizeof *report));
   PetscCall(ModelActivate(m));
+  if (m->method->points_move) PetscCall(BoundaryMove(m->boundary, m->grid, m->time));
   mark_fixed(m);
   PetscCall(PhaseEnd(m->seconds, PHASE_PATTERN, &clock));
   for (PetscReal dt = PetscMin(m->dt, limit);; dt /= 2) {

@@ -32,7 +32,7 @@ static const char everything[] =
   "boundary:\n"
   "  - {name: wall, on: {x: -1}, fix: [x, y]}\n"
   "  - {on: {boundary: top, x: [0, 1]}, displacement: {y: -0.1}, amplitude: [[0, 0], [1, 1], [2, 0.5]]}\n"
-  "  - {on: {shape: {circle: {centre: [3, 2], radius: 0.1}}}, rotation: {centre: [3, 2], rate: 0.5}}\n"
+  "  - {on: {shape: {circle: {centre: [3, 2], radius: 0.1}}}, rotation: {centre: [3, 2], rate: 0.5}, moves: true}\n"
   "  - {on: {}, velocity: {x: 0.1, y: 0}}\n"
   "loads:\n"
   "  gravity: [0, -9.81]\n"
@@ -107,6 +107,7 @@ static void MotionAndLoads(void **state)
   assert_int_equal(c->boundary[1].kind, MOTION_DISPLACEMENT);
   assert_true(!c->boundary[1].component[0] && c->boundary[1].component[1]);
   assert_int_equal(c->boundary[1].amplitude.n, 3);
+  assert_true(!c->boundary[1].moves && c->boundary[2].moves);
   assert_int_equal(c->boundary[2].kind, MOTION_ROTATION);
   ASSERT_NEAR(c->boundary[2].axis[2], 1, 0);
   assert_int_equal(c->boundary[3].kind, MOTION_VELOCITY);
