@@ -359,6 +359,23 @@ static PetscReal roughness(int kind, PetscInt cells_per_side)
   return value;
 }
 
+/* The oscillation that triangles of equal order leave free: 1, -1, 0 at the nodes of each, nothing at their centres. */
+static PetscReal nodal_roughness(PetscReal constant, PetscReal amplitude)
+{
+  Bench b;
+  bench_init(&b, "fem", CELL_TRIANGLE, 6);
+  b.c.formulation = (char *)"mixed";
+  b.body[0].points_per_cell = 1;
+  Model *m = bench_model(&b, PETSC_COMM_WORLD);
+  for (PetscInt i = 0; i < m->grid->n_nodes; ++i) {
+    const PetscInt colour = (PetscInt)(6 * (m->grid->x[2 * i] + m->grid->x[2 * i + 1]) + 0.5) % 3;
+    m->pressure[i] = constant + amplitude * (PetscReal)(colour - 1);
+  }
+  const PetscReal value = model_sum(m, MEASURE_ROUGHNESS, 0);
+  CALL(ModelDestroy(&m));
+  return value;
+}
+
 static void test_roughness(void **state)
 {
   (void)state;
@@ -367,6 +384,9 @@ static void test_roughness(void **state)
   CHECK(roughness(1, 8) < 0.5 * roughness(1, 4), "and smoother on finer cells");
   /* inside, six triangles about a node cancel; at the rim each node sees two of one sign and one of the other */
   CHECK_CLOSE(roughness(2, 8), 1, 0.05);
+  CHECK_CLOSE(nodal_roughness(0, 3), 1, 1e-14);
+  CHECK_CLOSE(nodal_roughness(3, 0), 0, 1e-14);
+  CHECK(nodal_roughness(3, 0.1) < 0.05, "a ripple on a large pressure");
   CHECK_CLOSE(roughness(2, 16), 1, 0.5 * PetscAbsReal(roughness(2, 8) - 1));
 }
 
