@@ -144,7 +144,7 @@ static inline PetscErrorCode PassMeasure(Model *m, PetscReal inertia, PetscInt r
     PetscCall(SystemZero(m->system));
     PetscCall(m->formulation->assemble(&in, &out));
     const PetscReal assembled = seconds_now();
-    PetscCall(SystemToMatrix(m->system, m->fixed));
+    PetscCall(SystemToMatrix(m->system, m->fixed, m->idle));
     const PetscReal end = seconds_now();
     pass->points = PetscMin(pass->points, assembled - start);
     pass->matrix = PetscMin(pass->matrix, end - assembled);

@@ -21,6 +21,9 @@ title "a collapsing column: aspect ratio 1.2, mesh 2, 0.5 s"
 title "statics"
 "$bench/bench_static"
 
+title "mixed formulation in 3D"
+"$bench/bench_mixed"
+
 title "dynamics in 2D: an elastic block lands and bounces"
 "$bench/bench_dynamic" -points 10000,100000,1000000 -steps 20 -repeat "${REPEAT:-2}"
 

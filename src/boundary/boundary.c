@@ -1,44 +1,5 @@
 #include "boundary/boundary.h"
-
-/* Displacement that the entry asks for at time t, in component d; zero at the start whatever the amplitude. */
-static PetscReal displacement_at(const Case *c, const MotionSpec *m, PetscInt d, PetscReal t)
-{
-  if (t <= 0) return 0;
-  const PetscReal ramp = c->analysis.type == ANALYSIS_STATIC ? t / c->analysis.end : 1;
-  return m->value[d] * amplitude_value(&m->amplitude, t, ramp);
-}
-
-/* Turn x about the axis through centre by the angle; returns the displacement of component d. */
-static PetscReal rotation(const MotionSpec *m, PetscInt dim, const PetscReal *x, PetscReal angle, PetscInt d)
-{
-  PetscReal r[3] = {0, 0, 0}, axis[3] = {0, 0, 1}, norm = 0;
-  for (PetscInt i = 0; i < dim; ++i) r[i] = x[i] - m->centre[i];
-  if (dim == 3)
-    for (PetscInt i = 0; i < 3; ++i) axis[i] = m->axis[i];
-  for (PetscInt i = 0; i < 3; ++i) norm += axis[i] * axis[i];
-  norm = PetscSqrtReal(norm);
-  PetscReal along = 0;
-  for (PetscInt i = 0; i < 3; ++i) along += (axis[i] /= norm) * r[i];
-  const PetscInt j = (d + 1) % 3, k = (d + 2) % 3;
-  const PetscReal cross = axis[j] * r[k] - axis[k] * r[j];
-  /* Rodrigues: r' = r cos + (n x r) sin + n (n.r)(1 - cos); 1 - cos without cancellation */
-  const PetscReal s = PetscSinReal(angle / 2), one_less_cos = 2 * s * s;
-  return PetscSinReal(angle) * cross + one_less_cos * (axis[d] * along - r[d]);
-}
-
-static PetscReal increment_of(const Case *c, const MotionSpec *m, const PetscReal *x, PetscInt d, PetscReal t0,
-                              PetscReal t1)
-{
-  const PetscInt dim = kinematics_dim(c->kinematics);
-  const PetscReal span = amplitude_integral(&m->amplitude, t1, 1) - amplitude_integral(&m->amplitude, t0, 1);
-  switch (m->kind) {
-  case MOTION_DISPLACEMENT: return displacement_at(c, m, d, t1) - displacement_at(c, m, d, t0);
-  case MOTION_VELOCITY: return m->value[d] * span;
-  case MOTION_ROTATION: return rotation(m, dim, x, m->rate * span, d);
-  case MOTION_FIXED: break;
-  }
-  return 0;
-}
+#include "boundary/motion.h"
 
 void boundary_increments(const Boundary *b, const Grid *grid, PetscReal t0, PetscReal t1, PetscReal *increment)
 {
@@ -50,7 +11,7 @@ void boundary_increments(const Boundary *b, const Grid *grid, PetscReal t0, Pets
       increment[i] = field[i % b->dim];
     } else {
       increment[i] =
-        increment_of(b->c, &b->c->boundary[b->entry[i]], grid->x + (i / b->dim) * b->dim, i % b->dim, t0, t1);
+        motion_increment(b->c, &b->c->boundary[b->entry[i]], grid->x + (i / b->dim) * b->dim, i % b->dim, t0, t1);
     }
   }
 }
@@ -61,7 +22,7 @@ static PetscBool motions_agree(const Case *c, const MotionSpec *a, const MotionS
   static const PetscReal part[] = {0.0101, 0.1, 0.37, 0.5, 0.77, 1};
   for (PetscInt k = 0; k < 6; ++k) {
     const PetscReal t = part[k] * c->analysis.end;
-    const PetscReal u = increment_of(c, a, x, d, 0, t), v = increment_of(c, b, x, d, 0, t);
+    const PetscReal u = motion_increment(c, a, x, d, 0, t), v = motion_increment(c, b, x, d, 0, t);
     if (PetscAbsReal(u - v) > 1e-12 * (PetscAbsReal(u) + PetscAbsReal(v))) return PETSC_FALSE;
   }
   return PETSC_TRUE;
@@ -88,11 +49,11 @@ static void report_contradiction(const Boundary *b, const Grid *grid, PetscInt n
   DiagHint(diag, "leave the node out of one of the two selections");
 }
 
-/* Mark the dofs of one entry; the first contradiction with an earlier entry is reported. */
+/* Mark the dofs of one entry; the first contradiction with an earlier entry is reported, if there is a diag. */
 static void mark_entry(Boundary *b, const Grid *grid, PetscInt entry, Diag *diag)
 {
   const MotionSpec *m = &b->c->boundary[entry];
-  PetscBool reported = PETSC_FALSE;
+  PetscBool reported = diag ? PETSC_FALSE : PETSC_TRUE;
   for (PetscInt k = 0; k < b->motion[entry].n; ++k) {
     const PetscInt node = b->motion[entry].node[k];
     for (PetscInt d = 0; d < b->dim; ++d) {
@@ -167,6 +128,33 @@ PetscErrorCode BoundaryDestroy(Boundary **boundary)
   PetscCall(PetscFree(b->fixed));
   PetscCall(PetscFree(b->entry));
   PetscCall(PetscFree(*boundary));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode BoundaryMove(Boundary *b, const Grid *grid, PetscReal t)
+{
+  const PetscInt dofs = b->n_nodes * b->dim;
+  PetscReal X[3];
+  PetscBool any = PETSC_FALSE;
+
+  PetscFunctionBeginUser;
+  for (PetscInt k = 0; k < b->c->n_boundary; ++k) any |= b->c->boundary[k].moves;
+  if (!any) PetscFunctionReturn(0);
+  PetscCall(PetscArrayzero(b->fixed, dofs));
+  for (PetscInt i = 0; i < dofs; ++i) b->entry[i] = -1;
+  for (PetscInt k = 0; k < b->c->n_boundary; ++k) {
+    MotionNodes *motion = &b->motion[k];
+    if (b->c->boundary[k].moves) {
+      PetscCall(PetscFree(motion->node));
+      PetscCall(PetscMalloc1(b->n_nodes, &motion->node));
+      motion->n = 0;
+      for (PetscInt node = 0; node < b->n_nodes; ++node) {
+        motion_origin(b->c, &b->c->boundary[k], grid->x + node * b->dim, t, X);
+        if (GridTakes(grid, &b->c->boundary[k].on, X)) motion->node[motion->n++] = node;
+      }
+    }
+    mark_entry(b, grid, k, NULL);
+  }
   PetscFunctionReturn(0);
 }
 

@@ -1,7 +1,8 @@
 /* Prescribed motion of grid nodes and the reactions to it.
  *
- * Motions are increments over a step. On a grid that is restored every step (mpm) they belong to places, on a mesh that moves (fem)
- * to the nodes selected at the start; either way a rotation turns the node's present position about its centre. */
+ * Motions are increments over a step. On a grid that is restored every step (mpm) they belong to places, which stay or take part in the
+ * motion (`moves`); on a mesh that moves (fem) to the nodes selected at the start. Either way a rotation turns the node's present position
+ * about its centre. */
 #pragma once
 #include "grid/grid.h"
 
@@ -26,6 +27,10 @@ typedef struct Boundary {
 /* Collective. Unknown boundaries, entries that select nothing, and contradictory entries go to diag. */
 PetscErrorCode BoundaryCreate(const Grid *grid, const Case *c, Diag *diag, Boundary **boundary);
 PetscErrorCode BoundaryDestroy(Boundary **boundary);
+
+/* For a grid that is restored: choose anew, at time t, the nodes of the places that move. Where entries have come to overlap, the first of
+ * them prescribes. */
+PetscErrorCode BoundaryMove(Boundary *boundary, const Grid *grid, PetscReal t);
 
 /* Increments over [t0, t1] of all prescribed dofs (others untouched), n_nodes x dim, m. */
 void boundary_increments(const Boundary *boundary, const Grid *grid, PetscReal t0, PetscReal t1, PetscReal *increment);

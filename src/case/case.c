@@ -1,4 +1,5 @@
 #include "case/case.h"
+#include <string.h>
 
 static PetscErrorCode AmplitudeClear(Amplitude *amplitude)
 {
@@ -118,3 +119,5 @@ PetscErrorCode CaseDestroy(Case **c)
   PetscCall(PetscFree(*c));
   PetscFunctionReturn(0);
 }
+
+PetscBool case_is_mixed(const Case *c) { return (PetscBool)(c->formulation && !strcmp(c->formulation, "mixed")); }

@@ -98,6 +98,7 @@ typedef enum { MOTION_FIXED, MOTION_DISPLACEMENT, MOTION_VELOCITY, MOTION_ROTATI
 /* Prescribed motion of the nodes selected. Components not in `component` stay free. */
 typedef struct {
   Selector on;
+  PetscBool moves; /* does the place `on` take part in the motion, on a grid that is restored? */
   MotionKind kind;
   PetscBool component[3];
   PetscReal value[3];                 /* m or m/s, times the amplitude */
@@ -135,7 +136,8 @@ typedef enum {
   MEASURE_SURFACE_FRONT,
   MEASURE_SURFACE_HEIGHT,
   MEASURE_SURFACE_SLOPE, /* of the interpolated free surface, 2D */
-  MEASURE_RUN_OUT_TIME   /* when the front last moved faster than `speed` */
+  MEASURE_RUN_OUT_TIME,  /* when the front last moved faster than `speed` */
+  MEASURE_ROUGHNESS      /* of the pressure */
 } MeasureKind;
 
 typedef enum { FRONT_POINTS, FRONT_SURFACE } FrontKind;
@@ -176,6 +178,10 @@ typedef struct {
 } StabilisationSpec;
 
 typedef struct {
+  PetscReal stabilisation; /* of the pressure, alpha: the term is alpha / G */
+} MixedSpec;
+
+typedef struct {
   PetscInt n_fields;
   char **fields;
   PetscReal every;   /* s between states; 0: only the end; < 0: every |every| steps */
@@ -189,7 +195,8 @@ typedef struct {
   char *title;
   Kinematics kinematics;
   char *method;
-  char *formulation; /* "displacement" */
+  char *formulation; /* "displacement", "mixed" */
+  MixedSpec mixed;
   AnalysisSpec analysis;
   GridSpec grid;
   PetscInt n_bodies;
@@ -213,6 +220,9 @@ typedef struct {
 } Case;
 
 static inline PetscInt kinematics_dim(Kinematics k) { return k == KINEMATICS_3D ? 3 : 2; }
+
+/* Is the pressure an unknown beside the displacements? */
+PetscBool case_is_mixed(const Case *c);
 
 PetscErrorCode CaseDestroy(Case **c);
 

@@ -21,10 +21,15 @@ typedef struct {
   const PetscReal *soft;      /* per group: stiffness that ties a hardly filled cell's nodes together, N/m, or NULL */
   const unsigned char *fixed; /* n_nodes x dim: prescribed degrees of freedom; their rows and columns stay empty */
   const PetscReal *lift;      /* n_nodes x dim or NULL: adds K lift on the free rows, for fixed columns */
+  const PetscReal *pressure;  /* mixed: n_nodes, the unknown pressure over pressure_scale, m */
+  PetscReal pressure_scale;   /* mixed: Pa/m, gives both unknowns the same unit, and both equations N */
+  PetscReal alpha;            /* mixed: stabilisation of the pressure is alpha / G */
+  const PetscReal *tie;       /* mixed: per group, ties the pressures of a hardly filled cell, m3/Pa, or NULL */
 } WeakFormInput;
 
 typedef struct {
   PetscReal *force;     /* n_nodes x dim, added to; rows of prescribed dofs too (reactions) */
+  PetscReal *volume;    /* mixed: n_nodes, residual of the pressure equation, N, added to */
   PetscReal *values;    /* matrix blocks, added to; NULL: residual only */
   const PetscInt *slot; /* per group nn x nn: block of the pair of nodes in values */
   LawStatus status;     /* worst of all points */
@@ -33,12 +38,18 @@ typedef struct {
 
 typedef struct {
   const char *name, *help;
+  PetscBool pressure; /* is there an unknown pressure at the nodes, behind the displacements in each block? */
   PetscErrorCode (*assemble)(const WeakFormInput *in, WeakFormOutput *out);
   /* Accept the step: new state, F, J, stress and work of every point. `state` of the points is overwritten. */
   PetscErrorCode (*commit)(const WeakFormInput *in, Points *points, LawStatus *status);
+  /* With a pressure: add to each node (n_nodes) a stand-in of the Schur complement's diagonal in an elastic body at rest, N/m; NULL
+   * without. */
+  void (*schur)(const WeakFormInput *in, PetscReal *nodes);
 } Formulation;
 
-extern const Formulation formulation_displacement;
+extern const Formulation *const formulations[]; /* ended by NULL */
+const Formulation *FormulationFind(const char *name);
+extern const Formulation formulation_displacement, formulation_mixed;
 
 /* Increment of the deformation gradient of one point with nodes' increments du (nn x dim). */
 static inline void increment_gradient(PetscInt dim, PetscInt nn, const PetscReal *dN, const PetscReal *du,

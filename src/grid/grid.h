@@ -64,6 +64,8 @@ PetscErrorCode GridSetNames(const Grid *grid, const char ***names);
 
 /* Local nodes that the selector takes (sorted). With no condition at all: the whole outer boundary. */
 PetscErrorCode GridSelectNodes(const Grid *grid, const Selector *on, PetscInt *n, PetscInt **nodes);
+/* Does a place in space, that is, the selector's ranges and shape, hold x? */
+PetscBool GridTakes(const Grid *grid, const Selector *on, const PetscReal *x);
 /* Faces on the outer boundary that the selector takes, each on one rank only. */
 PetscErrorCode GridSelectFaces(const Grid *grid, const Selector *on, PetscInt *n, PetscInt **cell, PetscInt **side);
 

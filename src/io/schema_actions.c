@@ -33,6 +33,12 @@ static const SchemaEntry motion_entries[] = {
   KEY("rotation", TABLE, NULL, "rigid rotation about a point", .table = &rotation, TAG(MOTION_ROTATION)),
   KEY("amplitude", AMPLITUDE, NULL, "factor over time: [[time, factor], ...], linear between",
       .note = "1, or time / end for a displacement", AT(MotionSpec, amplitude)),
+  KEY("moves", BOOLEAN, NULL,
+      "on a grid that is restored every step (mpm): does the place `on` take part in the motion, so that it is a rigid "
+      "body that goes through the grid? Let it reach a cell into the material, so that it holds the nodes of the cells "
+      "that its surface cuts. Else the place stays, and material flows away from it. With fem the nodes chosen at the "
+      "start move in any case",
+      .fallback = "false", AT(MotionSpec, moves)),
   {.key = NULL},
 };
 static const SchemaGroup motion_groups[] = {{GROUP_ONE, {"fix", "displacement", "velocity", "rotation", NULL}},

@@ -258,6 +258,11 @@ PetscErrorCode SchemaCheckMotion(SchemaReader *r, const YamlNode *mapping, void 
                    YamlPath(mapping, path, sizeof(path)));
     DiagHint(r->diag, "select by x, y, boundary or shape");
   }
+  if (m->moves && (m->kind == MOTION_FIXED || m->on.boundary)) {
+    SchemaKeyError(r, YamlFind(mapping, "moves"), "%s.moves: %s", YamlPath(mapping, path, sizeof(path)),
+                   m->on.boundary ? "a boundary of the grid stays where it is" : "what is fixed does not move");
+    DiagHint(r->diag, m->on.boundary ? "select by x, y or shape" : "leave it away");
+  }
   if (m->kind == MOTION_ROTATION) {
     for (PetscInt d = 0; d < r->dim; ++d) m->component[d] = PETSC_TRUE;
     if (r->dim == 2) m->axis[2] = 1;
@@ -304,6 +309,10 @@ PetscErrorCode SchemaCheckMeasure(SchemaReader *r, const YamlNode *mapping, void
   CheckFront(r, mapping, m, path);
   if (of && m->kind >= MEASURE_EXTERNAL_WORK && m->kind <= MEASURE_ENERGY_BALANCE) {
     SchemaKeyError(r, of, "%s.of: this energy is known for the whole model only", path);
+    PetscFunctionReturn(0);
+  }
+  if (of && m->kind == MEASURE_ROUGHNESS) {
+    SchemaKeyError(r, of, "%s.of: roughness is known for the whole model only", path);
     PetscFunctionReturn(0);
   }
   if (!of && !tracer && !reaction) PetscFunctionReturn(0);

@@ -1,4 +1,5 @@
 /* Materials: which keys are allowed depends on the law, and any two elastic constants are accepted. */
+#include <math.h>
 #include <string.h>
 #include "io/schema.h"
 #include "material/elasticity.h"
@@ -32,6 +33,20 @@ static const SchemaEntry *FindElastic(const char *key)
   for (const SchemaEntry *e = schema_elastic; e->key; ++e)
     if (!strcmp(e->key, key)) return e;
   return NULL;
+}
+
+/* `bulk: inf`: the one number that may be infinite. */
+static PetscBool IsInfinite(const YamlNode *node)
+{
+  const char *text = node->kind == YAML_SCALAR && node->plain ? node->text : "";
+  return !strcmp(node->key, "bulk") && (!strcmp(text, "inf") || !strcmp(text, ".inf")) ? PETSC_TRUE : PETSC_FALSE;
+}
+
+static PetscBool ParseConstant(const YamlNode *node, PetscReal *value)
+{
+  if (!IsInfinite(node)) return SchemaParseNumber(node, value);
+  *value = INFINITY;
+  return PETSC_TRUE;
 }
 
 static PetscErrorCode Add(MaterialSpec *material, const char *name, PetscReal value)
@@ -70,7 +85,8 @@ static PetscErrorCode ReadConstants(SchemaReader *r, const Law *law, const YamlN
     if (!strcmp(node->key, "law") || !strcmp(node->key, "density")) continue;
     if (p || elastic) {
       const SchemaEntry entry = p ? SchemaLawEntry(p) : *elastic;
-      if (SchemaNumber(r, &entry, node, &value)) PetscCall(Add(material, node->key, value));
+      if (IsInfinite(node)) PetscCall(Add(material, node->key, INFINITY));
+      else if (SchemaNumber(r, &entry, node, &value)) PetscCall(Add(material, node->key, value));
     } else if (law) UnknownKey(r, law, mapping, node); /* without a law nobody knows which keys it has */
   }
   PetscFunctionReturn(0);
@@ -94,28 +110,32 @@ static PetscErrorCode FillParameters(SchemaReader *r, const Law *law, const Yaml
   PetscFunctionReturn(0);
 }
 
-static void Incompressible(SchemaReader *r, const YamlNode *mapping)
+static void Incompressible(SchemaReader *r, const YamlNode *node)
 {
   char path[512];
-  SchemaError(
-    r, YamlFind(mapping, "poisson"),
-    "%s: Poisson's ratio 0.5 cannot be solved for displacements alone: the material cannot change its volume, "
-    "so the pressure is an unknown of its own",
-    YamlPath(mapping, path, sizeof(path)));
-  DiagHint(r->diag, "`formulation: mixed` will allow it; until then stay below, for example 0.49");
+  SchemaError(r, node,
+              "%s: %s cannot be solved for displacements alone: the material cannot change its volume, "
+              "so the pressure is an unknown of its own",
+              YamlPath(node, path, sizeof(path)),
+              strcmp(node->key, "bulk") ? "Poisson's ratio 0.5" : "an infinite bulk modulus");
+  DiagHint(r->diag, "`formulation: mixed` allows it; otherwise stay below, for example at poisson: 0.49");
 }
 
 static void CheckPair(SchemaReader *r, const YamlNode *mapping, int first, int second)
 {
   const char *a_name = schema_elastic[first].key, *b_name = schema_elastic[second].key;
-  const YamlNode *b_node = YamlFind(mapping, b_name);
-  PetscReal value[ELASTIC_CONSTANTS] = {0}, poisson = 0;
+  const YamlNode *a_node = YamlFind(mapping, a_name), *b_node = YamlFind(mapping, b_name);
+  PetscReal value[ELASTIC_CONSTANTS] = {0};
+  const unsigned given = 1u << first | 1u << second;
   Elasticity all;
   char path[512];
-  if (!SchemaParseNumber(YamlFind(mapping, a_name), &value[first]) || !SchemaParseNumber(b_node, &value[second]))
-    return;
-  if (SchemaParseNumber(YamlFind(mapping, "poisson"), &poisson) && poisson == 0.5) Incompressible(r, mapping);
-  else if (!elasticity_from_two(1u << first | 1u << second, value, &all))
+  if (!ParseConstant(a_node, &value[first]) || !ParseConstant(b_node, &value[second])) return;
+  const YamlNode *poisson = YamlFind(mapping, "poisson"), *bulk = YamlFind(mapping, "bulk");
+  const PetscBool half = poisson && value[poisson == a_node ? first : second] == 0.5 ? PETSC_TRUE : PETSC_FALSE;
+  const PetscBool mixed = case_is_mixed(r->c);
+  if (!mixed && (half || (bulk && IsInfinite(bulk)))) Incompressible(r, half ? poisson : bulk);
+  else if (mixed && elasticity_incompressible(given, value, &all)) return;
+  else if (!elasticity_from_two(given, value, &all))
     SchemaError(r, b_node, "%s: no stable elastic material has %s = %g together with %s = %g",
                 YamlPath(mapping, path, sizeof(path)), a_name, (double)value[first], b_name, (double)value[second]);
 }

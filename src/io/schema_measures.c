@@ -30,6 +30,13 @@ static const SchemaWord front_words[] = {{"points", FRONT_POINTS, "the farthest 
                                          {"surface", FRONT_SURFACE, "the front of the free surface, with max: x in 2D"},
                                          {NULL, 0, NULL}};
 
+static const SchemaWord roughness_words[] = {
+  {"pressure", MEASURE_ROUGHNESS,
+   "of the whole model's pressure: its root mean square distance from itself averaged over neighbours, over its own "
+   "root mean square: 1 for a checkerboard, and for a smooth pressure less with every refinement"},
+  {NULL, 0, NULL},
+};
+
 static const SchemaEntry of_entries[] = {
   KEY("tracer", VECTOR, "m", "a massless point carried by the material, by its position at the start",
       AT(MeasureSpec, tracer)),
@@ -95,13 +102,14 @@ static const SchemaEntry measure_entries[] = {
   KEY("at", NUMBER, "m", "x for surface: height", .with = "surface", AT(MeasureSpec, at), GIVEN(MeasureSpec, has_at)),
   KEY("run_out_time", TABLE, "s", "when a body's front came to rest: {max: x, speed: 0.01}", .table = &run_out,
       TAG(MEASURE_RUN_OUT_TIME)),
+  KEY("roughness", WORD, "", "how rough a field is", .words = roughness_words, AT(MeasureSpec, kind)),
   KEY("of", TABLE, NULL, "which tracer, body or boundary", .table = &of),
   {.key = NULL},
 };
 static const SchemaGroup measure_groups[] = {
   {GROUP_ONE,
    {"displacement", "position", "velocity", "extent", "mass", "momentum", "angular_momentum", "energy", "reaction",
-    "surface", "run_out_time", NULL}},
+    "surface", "run_out_time", "roughness", NULL}},
   {GROUP_NONE, {NULL}}};
 static PetscBool HideInMeasure(const SchemaEntry *e, const void *source)
 {
@@ -112,6 +120,7 @@ static PetscBool HideInMeasure(const SchemaEntry *e, const void *source)
     m->kind >= MEASURE_SURFACE_FRONT && m->kind <= MEASURE_SURFACE_SLOPE ? PETSC_TRUE : PETSC_FALSE;
   if (!strcmp(e->key, "energy")) return energy ? PETSC_FALSE : PETSC_TRUE;
   if (!strcmp(e->key, "surface")) return surface ? PETSC_FALSE : PETSC_TRUE;
+  if (!strcmp(e->key, "roughness")) return m->kind == MEASURE_ROUGHNESS ? PETSC_FALSE : PETSC_TRUE;
   if (!strcmp(e->key, "at")) return m->has_at ? PETSC_FALSE : PETSC_TRUE;
   if (!strcmp(e->key, "of")) return IsTracer(m) || m->body || m->kind == MEASURE_REACTION ? PETSC_FALSE : PETSC_TRUE;
   return PETSC_FALSE;

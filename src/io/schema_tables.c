@@ -14,8 +14,11 @@ const SchemaWord schema_methods[] = {
   {"gmm", 2, "Galerkin meshfree method: a cloud of nodes and points moves, without cells"},
   {NULL, 0, NULL},
 };
-static const SchemaWord formulation_words[] = {{"displacement", 0, "displacements are the only unknowns"},
-                                               {NULL, 0, NULL}};
+static const SchemaWord formulation_words[] = {
+  {"displacement", 0, "displacements are the only unknowns"},
+  {"mixed", 1, "displacements and pressure: for nearly or exactly incompressible materials"},
+  {NULL, 0, NULL},
+};
 static const SchemaWord analysis_words[] = {
   {"static", ANALYSIS_STATIC, "equilibrium at every step, no inertia"},
   {"dynamic", ANALYSIS_DYNAMIC, "Newmark in time, with inertia"},
@@ -101,6 +104,15 @@ static const SchemaEntry stabilisation_entries[] = {
 static const SchemaTable stabilisation = {
   .name = "stabilisation", .help = "What keeps cells solvable that are not full.", .entries = stabilisation_entries};
 
+static const SchemaEntry mixed_entries[] = {
+  KEY("stabilisation", NUMBER, NULL,
+      "alpha: pressures that vary inside a cell are held by alpha / shear modulus; 0: off", .fallback = "8",
+      AT_LEAST(0), AT(MixedSpec, stabilisation)),
+  {.key = NULL},
+};
+static const SchemaTable mixed = {
+  .name = "mixed", .help = "Numbers of `formulation: mixed`; others have no use for them.", .entries = mixed_entries};
+
 static const SchemaEntry output_entries[] = {
   KEY("fields", FIELDS, NULL, "fields to write, see `talus list fields`",
       .fallback = "[displacement, velocity, stress]", AT(OutputSpec, fields), .count = offsetof(OutputSpec, n_fields)),
@@ -119,6 +131,7 @@ static const SchemaEntry case_entries[] = {
   KEY("method", WORD_TEXT, NULL, "numerical method", .words = schema_methods, REQUIRED, AT(Case, method)),
   KEY("formulation", WORD_TEXT, NULL, "unknowns of the equations", .words = formulation_words,
       .fallback = "displacement", AT(Case, formulation)),
+  KEY("mixed", TABLE, NULL, "numbers of the mixed formulation", .table = &mixed, ALWAYS, AT(Case, mixed)),
   KEY("analysis", TABLE, NULL, "statics or dynamics, steps", .table = &analysis, REQUIRED, AT(Case, analysis)),
   KEY("grid", TABLE, NULL, "background grid or mesh", .table = &schema_grid, REQUIRED, AT(Case, grid)),
   KEY("bodies", LIST, NULL, "pieces of material", .table = &schema_body, REQUIRED, AT(Case, bodies),

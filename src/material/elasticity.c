@@ -60,3 +60,14 @@ PetscBool elasticity_from_two(unsigned given, const PetscReal value[ELASTIC_CONS
     if (!(all[k] > elastic_constants[k].min && all[k] < elastic_constants[k].max)) return PETSC_FALSE;
   return PETSC_TRUE;
 }
+
+PetscBool elasticity_incompressible(unsigned given, const PetscReal value[ELASTIC_CONSTANTS], Elasticity *elastic)
+{
+  const unsigned volume = given & (1u << POISSON | 1u << BULK), shape = given & (1u << YOUNG | 1u << SHEAR);
+  if (volume != 1u << POISSON && volume != 1u << BULK) return PETSC_FALSE;
+  if (shape != 1u << YOUNG && shape != 1u << SHEAR) return PETSC_FALSE;
+  if (volume == 1u << POISSON ? value[POISSON] != 0.5 : !(value[BULK] == INFINITY)) return PETSC_FALSE;
+  const PetscReal G = shape == 1u << SHEAR ? value[SHEAR] : value[YOUNG] / 3.0;
+  *elastic = (Elasticity){shape == 1u << YOUNG ? value[YOUNG] : 3.0 * G, 0.5, INFINITY, G, INFINITY};
+  return (PetscBool)(G > 0.0 && isfinite(G));
+}

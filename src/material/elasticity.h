@@ -15,3 +15,6 @@ extern const ElasticConstant elastic_constants[ELASTIC_CONSTANTS];
 /* All five from two: `given` has the bits (1 << index) of the two, `value` their numbers. The two given are kept
  * as they are. PETSC_FALSE if they contradict each other or a stable solid (bulk and shear positive). */
 PetscBool elasticity_from_two(unsigned given, const PetscReal value[ELASTIC_CONSTANTS], Elasticity *elastic);
+/* The same of an exactly incompressible solid: one of the two is poisson 0.5 or an infinite bulk modulus, the other young or shear.
+ * bulk and lame are infinite. PETSC_FALSE if it is none. */
+PetscBool elasticity_incompressible(unsigned given, const PetscReal value[ELASTIC_CONSTANTS], Elasticity *elastic);

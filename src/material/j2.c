@@ -185,6 +185,23 @@ static void prepare(const Elasticity *elastic, const PetscReal *given, PetscReal
   packed[HARDENING] = given[1];
 }
 
+static void volume(PetscInt n, const PetscReal *state, PetscReal *J)
+{
+  for (PetscInt p = 0; p < n; ++p) J[p] = state[p * N_STATE + 6];
+}
+
+static VolumeLaw volume_linear(const PetscReal *parameters)
+{
+  (void)parameters;
+  return VOLUME_LINEAR;
+}
+
+static VolumeLaw volume_log(const PetscReal *parameters)
+{
+  (void)parameters;
+  return VOLUME_LOG;
+}
+
 static const LawParameter parameters[] = {
   {.name = "yield_stress",
    .unit = "Pa",
@@ -220,6 +237,8 @@ const Law law_j2 = {
   .update = update_linear,
   .energy = energy_linear,
   .initial_stress = initial_stress_linear,
+  .volume = volume,
+  .volume_law = volume_linear,
   .prepare = prepare,
 };
 
@@ -234,5 +253,7 @@ const Law law_j2_log = {
   .update = update_log,
   .energy = energy_log,
   .initial_stress = initial_stress_log,
+  .volume = volume,
+  .volume_law = volume_log,
   .prepare = prepare,
 };

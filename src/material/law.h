@@ -26,6 +26,13 @@ typedef struct {
   PetscReal initial[6];
 } LawField;
 
+/* How a law's stress depends on its volume, for the mixed formulation (material/pressure.h). */
+typedef enum {
+  VOLUME_COUPLED, /* shape and volume, or pressure and flow, act on each other */
+  VOLUME_LINEAR,  /* apart: U = (J - 1)^2 / 2, p = K (J - 1) */
+  VOLUME_LOG      /* apart: U = (ln J)^2 / 2, p = K ln J / J */
+} VolumeLaw;
+
 /* Any two elastic constants of: young, poisson, bulk, shear, lame. */
 typedef struct {
   PetscReal young, poisson, bulk, shear, lame;
@@ -49,6 +56,11 @@ typedef struct Law {
   PetscBool (*initial_stress)(const PetscReal *parameters, const PetscReal sigma[6], PetscReal *state);
   /* Turn the user's constants into the packed parameters; complain through diag at `path`. */
   void (*prepare)(const Elasticity *elastic, const PetscReal *given, PetscReal *packed);
+  /* What the mixed formulation needs; NULL: the law has no mixed form. Elastic volume ratio of n states; volumetric part; and, only where
+   * that may be VOLUME_COUPLED, states whose lengths are multiplied by factor (n). */
+  void (*volume)(PetscInt n, const PetscReal *state, PetscReal *J);
+  VolumeLaw (*volume_law)(const PetscReal *parameters);
+  void (*scale)(PetscInt n, const PetscReal *factor, PetscReal *state);
   /* What is wrong with parameters that are each in their range, or NULL. May itself be NULL. */
   const char *(*check)(const PetscReal *given);
 } Law;
@@ -61,6 +73,9 @@ typedef struct {
   Elasticity elastic;
   PetscReal wave_modulus; /* lambda + 2 mu, Pa: the P-wave modulus, for time scales and stabilisation */
   PetscReal parameters[LAW_MAX_PARAMETERS];
+  VolumeLaw volume;                         /* how the mixed formulation takes the law apart */
+  PetscReal compliance;                     /* 1 / K, 1/Pa: 0 if exactly incompressible */
+  PetscReal deviatoric[LAW_MAX_PARAMETERS]; /* the parameters with K = G, where the mean stress is taken away again */
 } Material;
 
 /* All laws, ended by NULL. */

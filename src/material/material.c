@@ -9,6 +9,7 @@
 typedef struct {
   const MaterialSpec *spec;
   Diag *diag;
+  PetscBool mixed; /* is the pressure an unknown of its own? */
 } Resolver;
 
 /* "materials.rubber.young"; key NULL: the material itself. */
@@ -84,8 +85,8 @@ static PetscBool check_constant(const Resolver *r, int index, PetscReal value)
     DiagError(r->diag, path, "%s must lie between %g and %g (both excluded), not %g", constant->help, constant->min,
               constant->max, value);
   else DiagError(r->diag, path, "%s must be positive (%s), not %g", constant->help, unit_of(constant->unit), value);
-  if (!strcmp(constant->name, "poisson") && value == 0.5)
-    DiagHint(r->diag, "an incompressible solid has no finite bulk modulus; come close to it, as with 0.4999");
+  if ((!strcmp(constant->name, "poisson") && value == 0.5) || (!strcmp(constant->name, "bulk") && value == INFINITY))
+    DiagHint(r->diag, "an incompressible solid has no finite bulk modulus: it needs `formulation: mixed`");
   return PETSC_FALSE;
 }
 
@@ -113,8 +114,10 @@ static PetscBool resolve_elastic(const Resolver *r, Elasticity *elastic)
     given |= 1u << k;
     value[k] = found->value;
     ++n;
-    if (!check_constant(r, k, value[k])) good = PETSC_FALSE;
   }
+  if (r->mixed && n == 2 && elasticity_incompressible(given, value, elastic)) return PETSC_TRUE;
+  for (int k = 0; k < ELASTIC_CONSTANTS; ++k)
+    if (given >> k & 1 && !check_constant(r, k, value[k])) good = PETSC_FALSE;
   list_constants(given, names, sizeof names);
   if (n != 2) {
     DiagError(r->diag, path_of(r, NULL, path), "needs exactly two elastic constants, has %d%s%s%s", n, n ? " (" : "",
@@ -169,9 +172,40 @@ static void check_density(const Resolver *r)
             r->spec->density);
 }
 
+/* What the mixed formulation needs, and whether this law can give it. An incompressible material has no other parameters. */
+static void prepare_mixed(const Resolver *r, const PetscReal *given, Material *m)
+{
+  Elasticity middle = m->elastic;
+  char path[MAX_PATH];
+  if (!m->law->volume) {
+    DiagError(r->diag, path_of(r, "law", path), "the law %s has no mixed form", m->law->name);
+    return;
+  }
+  middle.bulk = middle.shear;
+  middle.lame = middle.shear / 3.0;
+  m->law->prepare(&middle, given, m->deviatoric);
+  m->volume = m->law->volume_law(m->deviatoric);
+  m->compliance = 1.0 / m->elastic.bulk;
+  if (isfinite(m->elastic.bulk)) return;
+  memcpy(m->parameters, m->deviatoric, sizeof m->parameters);
+  if (m->volume != VOLUME_COUPLED) return;
+  DiagError(r->diag, path_of(r, NULL, path),
+            "the law %s cannot be exactly incompressible here: it couples volume and shape", m->law->name);
+  DiagHint(r->diag, "%s",
+           "give a finite bulk modulus (poisson: 0.4999), or take a law that keeps them apart: neo-hookean-split, j2, "
+           "mohr-coulomb without friction and cut-off");
+}
+
+/* The P-wave modulus; of a mixed formulation no larger than with poisson 0.3, since what it scales is shear. */
+static PetscReal wave_modulus(const Elasticity *elastic, PetscBool mixed)
+{
+  const PetscReal limit = 13.0 / 6.0 * elastic->shear;
+  return (mixed ? PetscMin(elastic->bulk, limit) : elastic->bulk) + 4.0 / 3.0 * elastic->shear;
+}
+
 PetscErrorCode MaterialResolve(const Case *c, PetscInt index, Diag *diag, Material *material)
 {
-  const Resolver r = {&c->materials[index], diag};
+  const Resolver r = {&c->materials[index], diag, case_is_mixed(c)};
   PetscReal given[LAW_MAX_PARAMETERS] = {0};
   const PetscInt before = DiagErrors(diag);
 
@@ -190,7 +224,8 @@ PetscErrorCode MaterialResolve(const Case *c, PetscInt index, Diag *diag, Materi
     resolve_parameter(&r, material->law, &material->law->parameters[i], &given[i]);
   if (DiagErrors(diag) == before) check_together(&r, material->law, given);
   if (!elastic || DiagErrors(diag) > before) PetscFunctionReturn(0);
-  material->wave_modulus = material->elastic.lame + 2.0 * material->elastic.shear;
+  material->wave_modulus = wave_modulus(&material->elastic, r.mixed);
   material->law->prepare(&material->elastic, given, material->parameters);
+  if (r.mixed) prepare_mixed(&r, given, material);
   PetscFunctionReturn(0);
 }

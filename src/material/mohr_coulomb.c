@@ -134,6 +134,16 @@ static PetscBool initial_stress(const PetscReal *p, const PetscReal sigma[6], Pe
   return PETSC_TRUE;
 }
 
+static void volume(PetscInt n, const PetscReal *state, PetscReal *J) { volume_of_b(n, N_STATE, state, J); }
+
+static void scale(PetscInt n, const PetscReal *factor, PetscReal *state) { scale_b(n, N_STATE, factor, state); }
+
+/* Without friction, dilatancy and cut-off (Tresca) the flow neither feels the pressure nor changes the volume. */
+static VolumeLaw volume_law(const PetscReal *p)
+{
+  return p[MC_K] == 1.0 && p[MC_M] == 1.0 && p[MC_CUT] == INFINITY ? VOLUME_LOG : VOLUME_COUPLED;
+}
+
 static void prepare(const Elasticity *elastic, const PetscReal *given, PetscReal *p)
 {
   const PetscReal lambda = elastic->lame, mu = elastic->shear;
@@ -198,6 +208,9 @@ const Law law_mohr_coulomb = {
   .update = update,
   .energy = energy,
   .initial_stress = initial_stress,
+  .volume = volume,
+  .volume_law = volume_law,
+  .scale = scale,
   .prepare = prepare,
   .check = check,
 };

@@ -7,6 +7,7 @@
  * State: the elastic left Cauchy-Green tensor b; J comes from its determinant. Use this file as the starting
  * point for a law of your own: the kernel for eight points at once is `update_lanes`, the rest is what every law has. */
 #include "material/lanes.h"
+#include "material/shape.h"
 
 enum { LAMBDA, MU };
 
@@ -112,6 +113,17 @@ static PetscBool initial_stress(const PetscReal *parameters, const PetscReal sig
   return PETSC_TRUE;
 }
 
+static void volume(PetscInt n, const PetscReal *state, PetscReal *J) { volume_of_b(n, 6, state, J); }
+
+static void scale(PetscInt n, const PetscReal *factor, PetscReal *state) { scale_b(n, 6, factor, state); }
+
+/* The mean stress of the term mu (b - I) depends on shape. */
+static VolumeLaw volume_law(const PetscReal *parameters)
+{
+  (void)parameters;
+  return VOLUME_COUPLED;
+}
+
 static void prepare(const Elasticity *elastic, const PetscReal *given, PetscReal *packed)
 {
   (void)given;
@@ -130,5 +142,8 @@ const Law law_neo_hookean = {
   .update = update,
   .energy = energy,
   .initial_stress = initial_stress,
+  .volume = volume,
+  .volume_law = volume_law,
+  .scale = scale,
   .prepare = prepare,
 };

@@ -126,6 +126,20 @@ static void prepare(const Elasticity *elastic, const PetscReal *given, PetscReal
   packed[MU] = elastic->shear;
 }
 
+static void volume(PetscInt n, const PetscReal *state, PetscReal *J) { volume_of_b(n, 6, state, J); }
+
+static VolumeLaw volume_linear(const PetscReal *parameters)
+{
+  (void)parameters;
+  return VOLUME_LINEAR;
+}
+
+static VolumeLaw volume_log(const PetscReal *parameters)
+{
+  (void)parameters;
+  return VOLUME_LOG;
+}
+
 static const LawParameter parameters_none[] = {{.name = NULL}};
 static const LawField fields[] = {{"elastic_strain", "", "elastic left Cauchy-Green tensor b", 6, {1, 1, 1, 0, 0, 0}},
                                   {.name = NULL}};
@@ -140,6 +154,8 @@ const Law law_neo_hookean_split = {
   .update = update_linear,
   .energy = energy_linear,
   .initial_stress = initial_stress_linear,
+  .volume = volume,
+  .volume_law = volume_linear,
   .prepare = prepare,
 };
 
@@ -153,5 +169,7 @@ const Law law_neo_hookean_split_log = {
   .update = update_log,
   .energy = energy_log,
   .initial_stress = initial_stress_log,
+  .volume = volume,
+  .volume_law = volume_log,
   .prepare = prepare,
 };

@@ -1,9 +1,8 @@
 /* Shape and volume apart: what the laws with p = K (J - 1) or p = K ln J / J share, off the hot path. */
 #pragma once
 #include "base/tensor.h"
+#include "material/law.h"
 #include <math.h>
-
-typedef enum { VOLUME_LINEAR, VOLUME_LOG } VolumeLaw;
 
 /* bbar = s / mu + x I with s = J dev sigma, where x > 0 makes det bbar = 1. That determinant, x^3 - j2 x + j3, is
  * convex above its largest root and positive at the start: Newton comes down to it without overshoot. */
@@ -54,4 +53,16 @@ static inline PetscReal volume_energy(VolumeLaw law, PetscReal K, PetscReal J)
 {
   const PetscReal x = law == VOLUME_LOG ? log(J) : J - 1.0;
   return 0.5 * K * x * x;
+}
+
+/* Elastic volume, and a change of it, of states that begin with b. */
+static inline void volume_of_b(PetscInt n, PetscInt n_state, const PetscReal *state, PetscReal *J)
+{
+  for (PetscInt p = 0; p < n; ++p) J[p] = sqrt(sym_det(state + p * n_state));
+}
+
+static inline void scale_b(PetscInt n, PetscInt n_state, const PetscReal *factor, PetscReal *state)
+{
+  for (PetscInt p = 0; p < n; ++p)
+    for (int k = 0; k < 6; ++k) state[p * n_state + k] *= factor[p] * factor[p];
 }

@@ -13,6 +13,7 @@ static PetscErrorCode FemStart(Stage *s)
   PetscCall(SupportFromCells(s->support, s->points, s->grid));
   PetscCall(StageTouch(s));
   PetscCall(StageNodalMass(s));
+  if (s->pressure) PetscCall(StageNodalPressure(s)); /* of the initial state; from then on nodes keep theirs */
   PetscCall(PetscCalloc1(s->grid->n_nodes * dim, &q));
   for (PetscInt g = 0, nn = s->support->uniform; g < s->support->n_groups; ++g)
     for (PetscInt p = s->support->point_start[g]; p < s->support->point_start[g + 1]; ++p)

@@ -24,6 +24,8 @@ typedef struct Stage {
   PetscReal *v1, *a1;     /* n_nodes x dim at t_(n+1), of an accepted step */
   PetscInt group_capacity;
   PetscReal *lumping, *soft; /* per group, see WeakFormInput */
+  PetscReal *pressure;       /* mixed: n_nodes at t_n, tension positive, Pa; otherwise NULL */
+  PetscReal *tie;            /* mixed: per group, see WeakFormInput */
   PetscInt n_lost;           /* points that left the grid in the last convection, all ranks */
   LostPoint *lost;           /* at most 16 of them */
 } Stage;
@@ -48,5 +50,7 @@ PetscErrorCode StageDestroy(Stage **stage);
 /* Steps that methods share. */
 PetscErrorCode StageTouch(Stage *stage);     /* filled and touched from the support */
 PetscErrorCode StageNodalMass(Stage *stage); /* m_I = sum N m_p, on all copies */
+PetscErrorCode StageNodalPressure(
+  Stage *stage); /* p_I = sum N m_p p / m_I (thesis eq. 5.20), on all copies; after StageNodalMass */
 PetscErrorCode StageMoveCarried(Stage *stage, Points *carried,
                                 const PetscReal *du); /* tracers and carriers follow the field */

@@ -78,18 +78,22 @@ static PetscErrorCode Stabilise(Stage *s)
     s->group_capacity = w->n_groups + w->n_groups / 4;
     PetscCall(PetscMalloc1(s->group_capacity, &s->lumping));
     PetscCall(PetscMalloc1(s->group_capacity, &s->soft));
+    PetscCall(PetscFree(s->tie));
+    if (s->pressure) PetscCall(PetscMalloc1(s->group_capacity, &s->tie));
   }
   for (PetscInt g = 0; g < w->n_groups; ++g) {
-    PetscReal filled = 0, modulus = 0;
+    PetscReal filled = 0, modulus = 0, shear = 0;
     for (PetscInt p = w->point_start[g]; p < w->point_start[g + 1]; ++p) {
       filled += PetscMin(1, s->points->real[POINT_J][p]) * s->points->real[POINT_VOLUME][p];
       modulus = PetscMax(modulus, s->materials[s->points->material[p]].wave_modulus);
+      shear = PetscMax(shear, s->materials[s->points->material[p]].elastic.shear);
     }
     grid_cell_x(s->grid, s->points->cell[w->point_start[g]], x);
     const PetscReal volume = cell_volume(s->grid->type, x), lack = PetscMax(0, 1 - filled / volume);
     const PetscReal size = lack > 0 ? PetscPowReal(volume, 1.0 / (PetscReal)dim) : 1;
     s->lumping[g] = s->c->stabilisation.mass * lack;
     s->soft[g] = s->c->stabilisation.stiffness * lack * modulus * volume / (size * size);
+    if (s->tie) s->tie[g] = s->c->stabilisation.stiffness * lack * volume / shear;
   }
   PetscFunctionReturn(0);
 }
@@ -101,6 +105,7 @@ static PetscErrorCode MpmInitialise(Stage *s)
   PetscCall(SupportFromCells(s->support, s->points, s->grid));
   PetscCall(StageTouch(s));
   PetscCall(Project(s));
+  if (s->pressure) PetscCall(StageNodalPressure(s));
   PetscCall(Stabilise(s));
   PetscFunctionReturn(0);
 }

@@ -19,6 +19,7 @@ PetscErrorCode StageCreate(const Case *c, Grid *grid, Points *points, Points *tr
   PetscCall(PetscCalloc1(grid->n_nodes, &s->touched));
   PetscCall(PetscCalloc1(grid->n_nodes, &s->mass));
   PetscCall(PetscCalloc5(dofs, &s->v, dofs, &s->a, dofs, &s->v_points, dofs, &s->v1, dofs, &s->a1));
+  if (case_is_mixed(c)) PetscCall(PetscCalloc1(grid->n_nodes, &s->pressure));
   *stage = s;
   PetscFunctionReturn(0);
 }
@@ -36,6 +37,8 @@ PetscErrorCode StageDestroy(Stage **stage)
   PetscCall(PetscFree5(s->v, s->a, s->v_points, s->v1, s->a1));
   PetscCall(PetscFree(s->lumping));
   PetscCall(PetscFree(s->soft));
+  PetscCall(PetscFree(s->pressure));
+  PetscCall(PetscFree(s->tie));
   PetscCall(PetscFree(s->lost));
   PetscCall(PetscFree(*stage));
   PetscFunctionReturn(0);
@@ -74,6 +77,27 @@ PetscErrorCode StageNodalMass(Stage *s)
   }
   PetscCall(GridSumToOwners(s->grid, 1, s->mass));
   PetscCall(GridToGhosts(s->grid, 1, s->mass));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode StageNodalPressure(Stage *s)
+{
+  const Support *w = s->support;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscArrayzero(s->pressure, s->grid->n_nodes));
+  for (PetscInt g = 0; g < w->n_groups; ++g) {
+    const PetscInt nn = w->node_start[g + 1] - w->node_start[g], *node = w->node + w->node_start[g];
+    for (PetscInt p = w->point_start[g]; p < w->point_start[g + 1]; ++p) {
+      const PetscReal *N = w->N + w->value_start[g] + (p - w->point_start[g]) * nn;
+      const PetscReal mp = s->points->real[POINT_MASS][p] * s->points->real[POINT_PRESSURE][p];
+      for (PetscInt I = 0; I < nn; ++I) s->pressure[node[I]] += N[I] * mp;
+    }
+  }
+  PetscCall(GridSumToOwners(s->grid, 1, s->pressure));
+  for (PetscInt node = 0; node < s->grid->n_owned; ++node)
+    s->pressure[node] = s->mass[node] > 1e-300 ? s->pressure[node] / s->mass[node] : 0;
+  PetscCall(GridToGhosts(s->grid, 1, s->pressure));
   PetscFunctionReturn(0);
 }
 

@@ -1,6 +1,7 @@
 /* Where the energy goes: work put in, stress work, damping, and what is lost between points and grid (docs/theory.md, "Energy").
  *
  * All work is taken by the trapezoidal rule between the step's start and end. */
+#include "material/pressure.h"
 #include "model/model_private.h"
 
 /* Dimension and nodes of a cell are constants at each call below, so that the inner loops unroll. */
@@ -54,6 +55,14 @@ static PetscReal points_kinetic(const Model *m)
   return sum;
 }
 
+PetscReal model_point_energy(const Model *m, PetscInt p)
+{
+  const Material *material = &m->materials[m->points->material[p]];
+  const PetscReal *state = point_real(m->points, POINT_STATE, p);
+  if (m->pressure) return pressure_energy(material, state, m->points->real[POINT_PRESSURE][p]);
+  return material->law->energy(material->parameters, state);
+}
+
 static PetscReal points_work(const Model *m)
 {
   PetscReal sum = 0;
@@ -70,10 +79,15 @@ PetscErrorCode EnergyStart(Model *m)
   for (PetscInt p = 0; p < m->points->n; ++p) {
     const Material *material = &m->materials[m->points->material[p]];
     const PetscReal *old = point_real(m->points, POINT_STATE, p);
-    material->law->update(material->parameters, 1, identity, old, state, tau, NULL);
-    point_set_tau(m->points, p, tau);
-    m->points->real[POINT_WORK][p] =
-      m->points->real[POINT_VOLUME][p] * material->law->energy(material->parameters, old);
+    if (m->pressure) {
+      PressureStress s;
+      pressure_update(material, 1, identity, m->points->real[POINT_PRESSURE] + p, old, state, PETSC_FALSE, &s);
+      point_set_tau(m->points, p, s.tau);
+    } else {
+      material->law->update(material->parameters, 1, identity, old, state, tau, NULL);
+      point_set_tau(m->points, p, tau);
+    }
+    m->points->real[POINT_WORK][p] = m->points->real[POINT_VOLUME][p] * model_point_energy(m, p);
   }
   local = points_kinetic(m) + points_work(m);
   PetscCall(MPIU_Allreduce(&local, &m->start_energy, 1, MPIU_REAL, MPI_SUM, m->comm));
@@ -166,11 +180,7 @@ PetscErrorCode ModelEnergies(Model *m, Energies *e)
   PetscReal local[3] = {points_kinetic(m), 0, points_work(m)}, sum[3];
 
   PetscFunctionBeginUser;
-  for (PetscInt p = 0; p < m->points->n; ++p) {
-    const Material *material = &m->materials[m->points->material[p]];
-    local[1] += m->points->real[POINT_VOLUME][p] *
-                material->law->energy(material->parameters, point_real(m->points, POINT_STATE, p));
-  }
+  for (PetscInt p = 0; p < m->points->n; ++p) local[1] += m->points->real[POINT_VOLUME][p] * model_point_energy(m, p);
   PetscCall(MPIU_Allreduce(local, sum, 3, MPIU_REAL, MPI_SUM, m->comm));
   *e = (Energies){.kinetic = sum[0],
                   .elastic = sum[1],

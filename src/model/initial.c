@@ -1,4 +1,5 @@
 /* State at t = 0: geostatic stress and the first acceleration. */
+#include "material/pressure.h"
 #include "model/model_private.h"
 
 void gravity_at(const Case *c, PetscReal t, PetscReal g[3])
@@ -31,18 +32,39 @@ static void geostatic(const Case *c, const BodySpec *body, PetscReal density, Pe
 static void compress(Points *points, PetscInt p, const Material *material, const PetscReal sigma[6])
 {
   static const PetscReal identity[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
-  PetscReal state[LAW_MAX_STATE], tau[6], F[9], work = 0, norm2 = 0;
-  material->law->update(material->parameters, 1, identity, point_real(points, POINT_STATE, p), state, tau, NULL);
+  PetscReal *old = point_real(points, POINT_STATE, p), state[LAW_MAX_STATE], tau[6], F[9], work = 0, norm2 = 0;
+  material->law->update(material->parameters, 1, identity, old, state, tau, NULL);
   for (int k = 0; k < 6; ++k) {
     work += tau[k] * sigma[k];
     norm2 += sigma[k] * sigma[k];
   }
   if (norm2 == 0) return;
+  if (points->components[POINT_PRESSURE]) points->real[POINT_PRESSURE][p] = pressure_of_state(material, old, tau);
   const PetscReal J = work / norm2, stretch = PetscPowReal(J, 1.0 / 3.0);
   for (int i = 0; i < 9; ++i) F[i] = stretch * identity[i];
   point_set_F(points, p, F);
   points->real[POINT_J][p] = J;
   points->real[POINT_VOLUME][p] /= J;
+}
+
+/* Shape alone carries the deviator, the pressure the mean: nothing is compressed. */
+static PetscBool stress_incompressible(Points *points, PetscInt p, const Material *material, PetscReal sigma[6])
+{
+  const PetscReal mean = (sigma[0] + sigma[1] + sigma[2]) / 3;
+  for (int k = 0; k < 3; ++k) sigma[k] -= mean;
+  points->real[POINT_PRESSURE][p] = mean;
+  return material->law->initial_stress(material->deviatoric, sigma, point_real(points, POINT_STATE, p));
+}
+
+static PetscBool stress_point(Points *points, PetscInt p, const Material *material, PetscReal sigma[6])
+{
+  if (!material->law->initial_stress) return PETSC_FALSE;
+  if (points->components[POINT_PRESSURE] && material->compliance == 0)
+    return stress_incompressible(points, p, material, sigma);
+  if (!material->law->initial_stress(material->parameters, sigma, point_real(points, POINT_STATE, p)))
+    return PETSC_FALSE;
+  compress(points, p, material, sigma);
+  return PETSC_TRUE;
 }
 
 PetscErrorCode InitialStress(Model *m, Diag *diag)
@@ -57,10 +79,7 @@ PetscErrorCode InitialStress(Model *m, Diag *diag)
     PetscReal sigma[6];
     if (!body->has_k0) continue;
     geostatic(m->c, body, material->density, m->dim, point_real(m->points, POINT_X, p), sigma);
-    if (!material->law->initial_stress ||
-        !material->law->initial_stress(material->parameters, sigma, point_real(m->points, POINT_STATE, p)))
-      failed = m->points->body[p];
-    else compress(m->points, p, material, sigma);
+    if (!stress_point(m->points, p, material, sigma)) failed = m->points->body[p];
   }
   if (failed >= 0) {
     PetscCall(PetscSNPrintf(path, sizeof path, "bodies[%d].k0", (int)failed));
@@ -83,6 +102,7 @@ PetscErrorCode InitialAcceleration(Model *m)
   PetscCall(LoadsAdd(m->loads, m->grid, 0, s->filled, s->touched, m->external));
   PetscCall(AddBodyForce(m, 0, m->external));
   PetscCall(PetscArrayzero(m->force, dofs));
+  pressure_guess(m);
   WeakFormInput in = weak_form_of(m, 0);
   WeakFormOutput out = {.force = m->force};
   PetscCall(m->formulation->assemble(&in, &out));

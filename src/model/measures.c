@@ -22,6 +22,7 @@ const char *measure_unit(const MeasureSpec *s)
   case MEASURE_EXTERNAL_WORK: return "J";
   case MEASURE_SURFACE_SLOPE: return "deg";
   case MEASURE_RUN_OUT_TIME: return "s";
+  case MEASURE_ROUGHNESS:
   case MEASURE_ENERGY_BALANCE: return "";
   case MEASURE_REACTION: return "N";
   }
@@ -74,9 +75,7 @@ static PetscErrorCode ExtentValue(const Model *m, const MeasureSpec *s, PetscRea
 
 static PetscReal stored_energy(const Model *m, PetscInt p)
 {
-  const Material *material = &m->materials[m->points->material[p]];
-  return m->points->real[POINT_VOLUME][p] *
-         material->law->energy(material->parameters, point_real(m->points, POINT_STATE, p));
+  return m->points->real[POINT_VOLUME][p] * model_point_energy(m, p);
 }
 
 /* Contribution of one point to a sum. */
@@ -200,6 +199,7 @@ PetscErrorCode ModelMeasure(Model *m, const MeasureSpec *s, PetscInt index, Pets
   case MEASURE_SURFACE_HEIGHT:
   case MEASURE_SURFACE_SLOPE: PetscCall(SurfaceValue(m, s, value)); break;
   case MEASURE_RUN_OUT_TIME: *value = m->memory[index].moved; break;
+  case MEASURE_ROUGHNESS: PetscCall(RoughnessValue(m, value)); break;
   case MEASURE_REACTION:
     PetscCall(BoundarySum(m->boundary, m->grid, s->boundary, m->reaction, sum));
     *value = sum[s->component];

@@ -18,8 +18,9 @@ static void check_supported(const Case *c, Diag *diag)
     DiagError(diag, "kinematics", "axisymmetric kinematics are not part of this version; plane-strain and 3d are");
   if (!MethodFind(c->method))
     DiagError(diag, "method", "method '%s' is not part of this version; mpm and fem are", c->method);
-  if (strcmp(c->formulation, "displacement"))
-    DiagError(diag, "formulation", "formulation '%s' is not part of this version; displacement is", c->formulation);
+  if (!FormulationFind(c->formulation))
+    DiagError(diag, "formulation", "formulation '%s' is not part of this version; displacement and mixed are",
+              c->formulation);
   for (PetscInt b = 0; b < c->n_bodies; ++b) {
     char path[64];
     PetscSNPrintf(path, sizeof path, "bodies[%d].mesh", (int)b);
@@ -40,7 +41,8 @@ static PetscErrorCode CreateMaterials(Model *m, Diag *diag)
     PetscCall(MaterialResolve(c, i, diag, material));
     if (!material->law) continue;
     m->n_state = PetscMax(m->n_state, material->law->n_state);
-    if (!material->law->symmetric) m->symmetric = PETSC_FALSE;
+    if (!material->law->symmetric || (case_is_mixed(c) && material->volume == VOLUME_COUPLED))
+      m->symmetric = PETSC_FALSE;
     m->courant_speed = PetscMax(m->courant_speed, PetscSqrtReal(material->wave_modulus / material->density));
   }
   PetscFunctionReturn(0);
@@ -61,6 +63,7 @@ static PetscErrorCode CreatePoints(Model *m, Diag *diag)
     law_initial_state(m->materials[i].law, initial + i * LAW_MAX_STATE);
   }
   PetscCall(PointsCreate(m->dim, m->n_state, 0, &m->points));
+  if (m->formulation->pressure) m->points->components[POINT_PRESSURE] = 1; /* nothing is stored yet */
   PetscCall(PointsSeed(m->points, m->grid, c, seed, diag));
   PetscCall(PetscFree2(seed, initial));
   PetscFunctionReturn(0);
@@ -114,6 +117,13 @@ static PetscErrorCode CreateFields(Model *m)
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc1(m->grid->n_cells, &m->enabled));
   PetscCall(PetscCalloc1(dofs, &m->fixed));
+  PetscCall(PetscCalloc1(m->grid->n_nodes, &m->idle));
+  if (m->formulation->pressure) {
+    PetscCall(PetscCalloc1(m->grid->n_nodes, &m->pressure));
+    PetscCall(PetscCalloc1(m->grid->n_nodes, &m->volume));
+    for (PetscInt i = 0; i < m->c->n_materials; ++i)
+      m->pressure_scale = PetscMax(m->pressure_scale, m->materials[i].elastic.shear / m->grid->smallest);
+  }
   PetscCall(PetscCalloc7(dofs, &m->du, dofs, &m->force, dofs, &m->external, dofs, &m->history, dofs, &m->prescribed,
                          dofs, &m->reaction, dofs, &m->held));
   PetscFunctionReturn(0);
@@ -130,7 +140,7 @@ static PetscErrorCode Build(Model *m, Diag *diag)
   PetscCall(DiagReduce(m->comm, diag, &errors));
   if (errors) PetscFunctionReturn(0);
   m->method = MethodFind(m->c->method);
-  m->formulation = &formulation_displacement;
+  m->formulation = FormulationFind(m->c->formulation);
   PetscCall(GridCreate(m->comm, m->c, cell_weight, (void *)m->c, diag, &m->grid));
   if (!m->grid) PetscFunctionReturn(0);
   PetscCall(CreatePoints(m, diag));
@@ -144,7 +154,7 @@ static PetscErrorCode Build(Model *m, Diag *diag)
   if (errors) PetscFunctionReturn(0);
   PetscCall(CreateFields(m));
   PetscCall(StageCreate(m->c, m->grid, m->points, m->tracers, m->loads, m->materials, &m->stage));
-  PetscCall(SystemCreate(m->comm, m->dim, &m->system));
+  PetscCall(SystemCreate(m->comm, m->dim, m->dim + (m->formulation->pressure ? 1 : 0), &m->system));
   PetscCall(NewtonCreate(m->comm, &m->c->newton, &m->newton));
   m->dt = m->c->analysis.step;
   PetscCall(m->method->initialise(m->stage));
@@ -191,6 +201,9 @@ PetscErrorCode ModelDestroy(Model **model)
   if (m->grid) PetscCall(GridDestroy(&m->grid));
   PetscCall(PetscFree(m->materials));
   PetscCall(PetscFree(m->enabled));
+  PetscCall(PetscFree(m->idle));
+  PetscCall(PetscFree(m->pressure));
+  PetscCall(PetscFree(m->volume));
   PetscCall(PetscFree(m->fixed));
   PetscCall(PetscFree7(m->du, m->force, m->external, m->history, m->prescribed, m->reaction, m->held));
   PetscCall(PetscFree(m->memory));

@@ -42,6 +42,9 @@ typedef struct Model {
   unsigned char *enabled;                                  /* n_cells: cells whose nodes carry unknowns */
   unsigned char *fixed;                                    /* n_nodes x dim */
   PetscReal *du, *force, *external, *history, *prescribed; /* n_nodes x dim */
+  PetscReal *pressure, *volume; /* mixed: n_nodes, see WeakFormInput and StepProblem, otherwise NULL */
+  PetscReal pressure_scale;     /* mixed: Pa/m */
+  unsigned char *idle;          /* n_nodes: no material touches the node */
   PetscReal *reaction;  /* n_nodes x dim on owners: force of the boundary on the body at the end of the last step, N */
   PetscReal *held;      /* n_nodes x dim on owners: the reaction without the impulse that stopped points, N */
   BodyForce body_force; /* NULL: gravity alone */
@@ -92,5 +95,7 @@ PetscErrorCode ModelUnusedOptions(const Model *model, Diag *diag);
 
 /* Number of points over all ranks. */
 PetscErrorCode ModelCountPoints(const Model *model, PetscInt *n);
+/* Stored energy of one point per undeformed volume, J/m3. */
+PetscReal model_point_energy(const Model *model, PetscInt p);
 /* Cauchy stress (Voigt) of one point, from its state. */
 PetscErrorCode ModelPointStress(const Model *model, PetscInt p, PetscReal sigma[6]);

@@ -20,6 +20,9 @@ PetscErrorCode MeasuresStart(Model *model);
 /* Collective. After every accepted step of dt, whether or not a row of the history is written. */
 PetscErrorCode MeasuresRemember(Model *model, PetscReal dt);
 
+/* Collective. How much of the pressure one averaging over neighbours takes away, docs/theory.md. */
+PetscErrorCode RoughnessValue(const Model *model, PetscReal *value);
+
 /* This rank's share of the energies of a step that is being accepted, J. */
 typedef struct {
   PetscReal external, boundary, damped, transfer;
@@ -29,5 +32,7 @@ typedef struct {
 PetscErrorCode EnergyOfNodes(Model *model, PetscReal dt, EnergyStep *step);
 /* Collective. Points have their new state and have moved: close the step's account. */
 PetscErrorCode EnergyClose(Model *model, EnergyStep *step);
+/* Nodal pressures of the step's start as unknowns; nothing without a mixed formulation. */
+void pressure_guess(const Model *model);
 /* Input of the weak form for the model's present arrays. */
 WeakFormInput weak_form_of(const Model *model, PetscReal inertia);

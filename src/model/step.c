@@ -14,14 +14,26 @@ WeakFormInput weak_form_of(const Model *m, PetscReal inertia)
     .lumping = m->stage->lumping,
     .soft = m->stage->soft,
     .fixed = m->fixed,
+    .pressure = m->pressure,
+    .pressure_scale = m->pressure_scale,
+    .alpha = m->c->mixed.stabilisation,
+    .tie = m->stage->tie,
   };
+}
+
+void pressure_guess(const Model *m)
+{
+  for (PetscInt node = 0; m->pressure && node < m->grid->n_nodes; ++node)
+    m->pressure[node] = m->stage->pressure[node] / m->pressure_scale;
 }
 
 /* Prescribed dofs, and nodes with unknowns that no material touches. */
 static void mark_fixed(Model *m)
 {
-  for (PetscInt node = 0, i = 0; node < m->grid->n_nodes; ++node)
-    for (PetscInt d = 0; d < m->dim; ++d, ++i) m->fixed[i] = m->boundary->fixed[i] || !m->stage->touched[node];
+  for (PetscInt node = 0, i = 0; node < m->grid->n_nodes; ++node) {
+    m->idle[node] = !m->stage->touched[node];
+    for (PetscInt d = 0; d < m->dim; ++d, ++i) m->fixed[i] = m->boundary->fixed[i] || m->idle[node];
+  }
 }
 
 /* A prescribed node moves as prescribed from the start of the step on: where the grid is restored its velocity comes from the points
@@ -118,7 +130,11 @@ static PetscErrorCode Prepare(Model *m, PetscReal dt, StepProblem *p)
     .external = m->external,
     .du = m->du,
     .force = m->force,
+    .pressure = m->pressure,
+    .volume = m->volume,
+    .idle = m->idle,
   };
+  pressure_guess(m);
   PetscCall(ForceScales(m, g, dt, &p->weight, &p->inertia));
   PetscFunctionReturn(0);
 }
@@ -156,6 +172,8 @@ static PetscErrorCode Accept(Model *m, PetscReal dt, StepReport *report)
   WeakFormInput in = weak_form_of(m, 0);
   PetscCall(m->formulation->commit(&in, m->points, &status));
   PetscCheck(status == LAW_OK, PETSC_COMM_SELF, PETSC_ERR_PLIB, "a converged state could not be committed");
+  for (PetscInt node = 0; m->pressure && node < m->grid->n_nodes; ++node)
+    s->pressure[node] = m->pressure_scale * m->pressure[node];
   PetscCall(PhaseEnd(m->seconds, PHASE_COMMIT, &clock));
   PetscCall(m->method->convect(s, m->du));
   PetscCall(PhaseEnd(m->seconds, PHASE_MOVE, &clock));
@@ -213,6 +231,7 @@ static PetscErrorCode Solve(Model *m, PetscReal dt, const LinearProblem *linear,
   PetscCall(PhaseEnd(m->seconds, PHASE_PREPARE, &clock));
   for (PetscInt guess = 0; guess < (linear->dynamic ? 2 : 1); ++guess) {
     if (guess) PetscCall(PetscArrayzero(m->du, m->grid->n_nodes * m->dim));
+    if (guess) pressure_guess(m);
     PetscCall(NewtonSolve(m->newton, &problem, linear, &report->newton));
     m->total_iterations += report->newton.iterations;
     if (report->newton.converged) break;
@@ -228,14 +247,17 @@ PetscErrorCode ModelStep(Model *m, PetscReal limit, StepReport *report)
   PetscCall(PetscTime(&clock));
   PetscCall(PetscMemzero(report, sizeof *report));
   PetscCall(ModelActivate(m));
+  if (m->method->points_move) PetscCall(BoundaryMove(m->boundary, m->grid, m->time));
   mark_fixed(m);
   PetscCall(PhaseEnd(m->seconds, PHASE_PATTERN, &clock));
   for (PetscReal dt = PetscMin(m->dt, limit);; dt /= 2) {
     const LinearProblem linear = {
       .choice = m->c->linear,
       .dim = m->dim,
-      .unknowns = m->system->n_active_global * m->dim,
+      .unknowns = m->system->n_active_global * m->system->block,
       .symmetric = m->symmetric,
+      .mixed = m->formulation->pressure,
+      .undetermined = m->c->mixed.stabilisation == 0 ? PETSC_TRUE : PETSC_FALSE,
       .idle_ranks = m->system->n_active_least ? PETSC_FALSE : PETSC_TRUE,
       .dynamic = m->c->analysis.type == ANALYSIS_DYNAMIC ? PETSC_TRUE : PETSC_FALSE,
       .courant = m->courant_speed * dt / m->grid->smallest,

@@ -46,6 +46,7 @@ PetscErrorCode PointsCreate(PetscInt dim, PetscInt n_state, PetscInt n_force, Po
   new->components[POINT_F] = dim == 3 ? 9 : 5;
   new->components[POINT_TAU] = dim == 3 ? 6 : 4;
   new->components[POINT_STATE] = n_state;
+  new->components[POINT_PRESSURE] = 0;
   new->components[POINT_FORCE] = n_force;
   *points = new;
   PetscFunctionReturn(0);

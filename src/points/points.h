@@ -19,6 +19,7 @@ typedef enum {
   POINT_WORK, /* energy stored at the start and work of the stress since then, J: what is not stored now has been dissipated: 1 */
   POINT_XI,    /* reference position in the cell: dim */
   POINT_STATE, /* the law's stored state: the largest n_state of the case */
+  POINT_PRESSURE, /* the mixed formulation's pressure at the point, tension positive, Pa: 1 there, otherwise 0 components */
   POINT_FORCE, /* dead force of a load carrier, N: dim (0 components for material points) */
   POINT_N_REAL
 } PointReal;

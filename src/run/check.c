@@ -110,10 +110,10 @@ static PetscErrorCode ReportBodies(const Model *m, Diag *diag, FILE *out)
 static PetscReal estimated_memory(const Model *m, PetscInt points, PetscInt unknowns, PetscInt pairs)
 {
   const PetscReal dim = (PetscReal)m->dim, nn = (PetscReal)m->grid->nodes_per_cell,
-                  n = (PetscReal)PetscMax(unknowns, 2);
+                  n = (PetscReal)PetscMax(unknowns, 2), block = (PetscReal)m->system->block;
   PetscReal per_point = 24 + 8 * nn * (1 + dim);
   for (PetscInt f = 0; f < POINT_N_REAL; ++f) per_point += 8 * (PetscReal)m->points->components[f];
-  const PetscReal matrix = (PetscReal)pairs * dim * dim * (8 + 8 + 4 + 8 + 8);
+  const PetscReal matrix = (PetscReal)pairs * block * block * (8 + 8 + 4 + 8 + 8);
   const PetscReal factor = m->dim == 2 ? 8 * 5 * n * PetscLog2Real(n) : 8 * 6 * PetscPowReal(n, 4.0 / 3.0);
   const PetscReal direct = m->c->linear != LINEAR_ITERATIVE && m->c->analysis.type == ANALYSIS_STATIC ? factor : 0;
   return (PetscReal)points * per_point + matrix + direct + 120 * (PetscReal)m->grid->n_nodes_global;
@@ -137,7 +137,7 @@ static PetscErrorCode ReportSizes(Model *m, FILE *out)
   PetscCall(ModelCountPoints(m, &points));
   pairs = m->system->row_start[m->system->n_rows];
   PetscCall(MPIU_Allreduce(&pairs, &all_pairs, 1, MPIU_INT, MPI_SUM, m->comm));
-  const PetscInt unknowns = m->system->n_active_global * m->dim;
+  const PetscInt unknowns = m->system->n_active_global * m->system->block;
   say(m, out, "# the model\n#   grid: %d cells (%s), %d nodes, from %s to %s m\n", (int)m->grid->n_cells_global,
       cells[m->grid->type].name, (int)m->grid->n_nodes_global, corner(m->dim, m->grid->min, from),
       corner(m->dim, m->grid->max, to));

@@ -58,7 +58,6 @@ static const PetscReal *state_field(const Model *m, PetscInt p, const char *name
 static PetscErrorCode PointValue(const Model *m, PetscInt p, const char *name, PetscReal *out)
 {
   const Points *points = m->points;
-  const Material *material = &m->materials[points->material[p]];
   PetscReal sigma[6], F[9];
 
   PetscFunctionBeginUser;
@@ -73,8 +72,7 @@ static PetscErrorCode PointValue(const Model *m, PetscInt p, const char *name, P
   } else if (!strcmp(name, "mass")) *out = points->real[POINT_MASS][p];
   else if (!strcmp(name, "volume")) *out = volume;
   else if (!strcmp(name, "density")) *out = points->real[POINT_MASS][p] / volume;
-  else if (!strcmp(name, "energy"))
-    *out = material->law->energy(material->parameters, point_real(points, POINT_STATE, p));
+  else if (!strcmp(name, "energy")) *out = model_point_energy(m, p);
   else if (!strcmp(name, "body")) *out = (PetscReal)points->body[p];
   else if (!strcmp(name, "material")) *out = (PetscReal)points->material[p];
   else {
@@ -183,6 +181,8 @@ static PetscErrorCode GridField(const Output *o, const Model *m, const OutputFie
   if (!strcmp(field->name, "velocity")) widen(n, m->dim, m->stage->v, *data);
   else if (!strcmp(field->name, "acceleration")) widen(n, m->dim, m->stage->a, *data);
   else if (!strcmp(field->name, "mass")) PetscCall(PetscArraycpy(*data, m->stage->mass, n));
+  else if (!strcmp(field->name, "pressure"))
+    for (PetscInt i = 0; i < n; ++i) (*data)[i] = -m->stage->pressure[i];
   else {
     PetscCall(PetscMalloc1(n * m->dim, &u));
     PetscCall(NodalDisplacement(o, m, u));
@@ -204,6 +204,7 @@ static PetscErrorCode WriteGrid(Output *o, Model *m, PetscBool *ok, char reason[
   widen(grid->n_nodes, m->dim, grid->x, x);
   for (const OutputField *f = output_fields; f->name && n < MAX_FIELDS; ++f) {
     if (!f->grid || !is_asked(m->c, f->name)) continue;
+    if (!strcmp(f->name, "pressure") && !m->pressure) continue; /* nodes know none */
     PetscCall(GridField(o, m, f, &data[n]));
     fields[n] = (VtkField){.name = f->name, .unit = f->unit, .components = f->components, .data = data[n]};
     ++n;

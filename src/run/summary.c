@@ -44,7 +44,7 @@ PetscErrorCode SummaryEnd(Model *m, RunDir *dir, const RunSummary *summary, cons
   PetscFunctionBeginUser;
   ModelTimes(m, phase);
   PetscCall(RunDirLog(dir, "linear = %s unknowns = %d", NewtonLinearName(m->newton),
-                      (int)(m->system->n_active_global * m->dim)));
+                      (int)(m->system->n_active_global * m->system->block)));
   for (PetscInt k = 0; k < m->c->n_measures; ++k)
     PetscCall(
       RunDirLog(dir, "%s = %.10g %s", m->c->measures[k].name, (double)values[k], measure_unit(&m->c->measures[k])));

@@ -49,7 +49,7 @@ PetscErrorCode VerifyPlanClear(Verification *v);
 PetscErrorCode VerifyRowClear(VerifyRow *r);
 
 /* verify_value.c: Collective. The value of a row that has run: the measure at the end, or the distance
- * of its history from a course. */
+ * of its history from a course, or the measure at a moment. */
 PetscErrorCode VerifyValue(const Verification *v, VerifyRow *r, Diag *diag);
 
 /* verify_judge.c: compare rows[k], which has run, with its reference and with the rows before it. */

@@ -255,6 +255,7 @@ static void CheckRows(SchemaReader *r, const StudySpec *study, PetscBool numeric
     const RowSpec *row = &study->rows[i];
     CheckSeriesNames(r, study, YamlFind(row->node, "references"));
     CheckSeriesNames(r, study, YamlFind(row->node, "sets"));
+    if (study->moments && !(row->x >= 0)) SchemaError(r, YamlFind(row->node, "at"), "a moment is a time in s");
     if (numeric && !(row->x > 0))
       SchemaError(r, YamlFind(row->node, "at"), "an order or a figure of convergence needs numbers above 0 here");
     for (PetscInt s = 0; s < study->n_series; ++s) {
@@ -277,6 +278,8 @@ static PetscErrorCode CheckStudy(SchemaReader *r, const YamlNode *mapping, void 
 
   PetscFunctionBeginUser;
   study->node = mapping;
+  if (study->moments && study->has_course)
+    SchemaError(r, YamlFind(mapping, "moments"), "the distance from a course belongs to the whole run");
   CheckRows(r, study, study->exact.order > 0 || study->figure == VERIFY_FIGURE_CONVERGENCE);
   if (study->has_exact) {
     CheckSeriesNames(r, study, YamlFind(exact, "values"));
@@ -310,6 +313,11 @@ static const SchemaEntry study_entries[] = {
    .help = "the value is the root of the sum of squared distances of the history from this course",
    AT(StudySpec, course),
    GIVEN(StudySpec, has_course)},
+  {.key = "moments",
+   .type = TYPE_BOOLEAN,
+   .fallback = "false",
+   .help = "the rows are moments, in s, of one run: the value is the measure then",
+   AT(StudySpec, moments)},
   {.key = "sweep",
    .type = TYPE_TABLE,
    .table = &sweep_table,

@@ -97,6 +97,7 @@ typedef struct {
   SweepSpec sweep;
   PetscBool has_course; /* the value is the distance from it, not the measure at the end */
   CourseSpec course;
+  PetscBool moments; /* the rows are times of the history, s */
   PetscInt n_series;
   SeriesSpec *series;
   PetscInt n_rows;

@@ -15,8 +15,21 @@ static PetscReal distance(const History *history, PetscInt column, const CourseS
   return PetscSqrtReal(sum);
 }
 
+/* The column at time t, linear between rows; NaN outside them. */
+static PetscReal moment(const History *history, PetscInt column, PetscReal t)
+{
+  for (PetscInt i = 0; i < history->n_rows; ++i) {
+    const PetscReal *after = history->values + i * history->n_columns;
+    const PetscReal *before = after - (i ? history->n_columns : 0), span = after[0] - before[0];
+    if (after[0] < t - 1e-9 * PetscAbsReal(t)) continue;
+    if (!i) return after[0] > t ? NAN : after[column];
+    return after[column] - (after[0] > t && span > 0 ? (after[0] - t) / span : 0) * (after[column] - before[column]);
+  }
+  return NAN;
+}
+
 /* Of one rank; NaN if there is no such history. */
-static PetscErrorCode ReadDistance(const VerifyRow *r, Diag *diag, PetscReal *value)
+static PetscErrorCode ReadValue(const VerifyRow *r, Diag *diag, PetscReal *value)
 {
   char path[PETSC_MAX_PATH_LEN], reason[256];
   History history;
@@ -29,7 +42,8 @@ static PetscErrorCode ReadDistance(const VerifyRow *r, Diag *diag, PetscReal *va
     PetscFunctionReturn(0);
   }
   const PetscInt column = HistoryColumn(&history, r->study->measure);
-  if (column >= 0) *value = distance(&history, column, &r->study->course);
+  if (column >= 0)
+    *value = r->study->moments ? moment(&history, column, r->row->x) : distance(&history, column, &r->study->course);
   PetscCall(HistoryFree(&history));
   PetscFunctionReturn(0);
 }
@@ -38,8 +52,8 @@ PetscErrorCode VerifyValue(const Verification *v, VerifyRow *r, Diag *diag)
 {
   PetscFunctionBeginUser;
   r->value = r->measures[r->measure];
-  if (!r->study->has_course || r->result != RUN_DONE) PetscFunctionReturn(0);
-  if (v->rank == 0) PetscCall(ReadDistance(r, diag, &r->value));
+  if (!(r->study->has_course || r->study->moments) || r->result != RUN_DONE) PetscFunctionReturn(0);
+  if (v->rank == 0) PetscCall(ReadValue(r, diag, &r->value));
   PetscCallMPI(MPI_Bcast(&r->value, 1, MPIU_REAL, 0, v->comm));
   PetscFunctionReturn(0);
 }

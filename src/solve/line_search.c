@@ -7,15 +7,39 @@
 
 typedef struct {
   SNES snes;
+  PetscInt block;         /* see LineSearchMemory */
   Vec x, f, y, w;         /* start, residual, direction (x - lambda y is the new place), work */
   PetscReal lambda, norm; /* the last place tried; norm infinite where the law fails */
   PetscReal slope;        /* y . F there: the work that is left along the direction */
 } Search;
 
+/* Work of F along y. A saddle point has no minimum: with the sign of the pressure equations turned the tangent is positive semi-definite
+ * where that of the displacements is, and the work left over falls with the length as it does without pressures. */
+static PetscErrorCode Work(const Search *s, Vec f, PetscReal *work)
+{
+  const PetscReal *fv, *yv;
+  PetscInt n;
+  PetscReal local = 0;
+  PetscScalar dot;
+
+  PetscFunctionBeginUser;
+  if (!s->block) {
+    PetscCall(VecDot(s->y, f, &dot));
+    *work = PetscRealPart(dot);
+    PetscFunctionReturn(0);
+  }
+  PetscCall(VecGetLocalSize(f, &n));
+  PetscCall(VecGetArrayRead(f, &fv));
+  PetscCall(VecGetArrayRead(s->y, &yv));
+  for (PetscInt i = 0; i < n; ++i) local += (i % s->block == s->block - 1 ? -1 : 1) * fv[i] * yv[i];
+  PetscCall(VecRestoreArrayRead(s->y, &yv));
+  PetscCall(VecRestoreArrayRead(f, &fv));
+  PetscCall(MPIU_Allreduce(&local, work, 1, MPIU_REAL, MPI_SUM, PetscObjectComm((PetscObject)f)));
+  PetscFunctionReturn(0);
+}
+
 static PetscErrorCode Try(Search *s, PetscReal lambda)
 {
-  PetscScalar slope;
-
   PetscFunctionBeginUser;
   s->lambda = lambda;
   PetscCall(VecWAXPY(s->w, -lambda, s->y, s->x));
@@ -26,8 +50,7 @@ static PetscErrorCode Try(Search *s, PetscReal lambda)
     s->norm = PETSC_INFINITY;
     PetscFunctionReturn(0);
   }
-  PetscCall(VecDot(s->y, s->f, &slope));
-  s->slope = PetscRealPart(slope);
+  PetscCall(Work(s, s->f, &s->slope));
   PetscFunctionReturn(0);
 }
 
@@ -70,17 +93,17 @@ PetscErrorCode LineSearchDescend(SNESLineSearch search, void *memory)
   Search s;
   Vec unused;
   PetscInt iteration;
-  PetscReal xnorm, ynorm, norm0;
-  PetscScalar slope0;
+  PetscReal xnorm, ynorm, norm0, slope0;
 
   PetscFunctionBeginUser;
   PetscCall(SNESLineSearchGetSNES(search, &s.snes));
   PetscCall(SNESLineSearchGetVecs(search, &s.x, &s.f, &s.y, &s.w, &unused));
   PetscCall(SNESGetIterationNumber(s.snes, &iteration));
-  PetscCall(VecDot(s.y, s.f, &slope0));
+  s.block = ((LineSearchMemory *)memory)->block;
+  PetscCall(Work(&s, s.f, &slope0));
   PetscCall(VecNorm(s.f, NORM_2, &norm0));
   PetscCall(Try(&s, first_length(memory, iteration, norm0)));
-  if (iteration || s.norm == PETSC_INFINITY) PetscCall(Bracket(&s, PetscRealPart(slope0), norm0));
+  if (iteration || s.norm == PETSC_INFINITY) PetscCall(Bracket(&s, slope0, norm0));
   if (s.norm == PETSC_INFINITY) {
     PetscCall(SNESLineSearchSetReason(search, SNES_LINESEARCH_FAILED_NANORINF));
     PetscFunctionReturn(0);

@@ -6,6 +6,7 @@
 typedef struct {
   PetscReal best; /* smallest residual of this step */
   PetscInt stale; /* iterations since it was met */
+  PetscInt block; /* unknowns per node of which the last is a pressure; 0: none is */
 } LineSearchMemory;
 
 /* For SNESLineSearchShellSetUserFunc, with a LineSearchMemory as context. The first direction of a step is taken in full, unless a point would

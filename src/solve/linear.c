@@ -29,6 +29,22 @@ static PetscErrorCode UseKrylov(KSP ksp, const LinearProblem *p, const char **wh
   PetscFunctionReturn(0);
 }
 
+/* The last front of a saddle point may hold pressures that nothing but each other fixes. Spread over the ranks by ScaLAPACK it is
+ * factorised without pivots of two rows, and fails there; on one rank it is not. Without stabilisation the matrix may be singular for
+ * pressures that no point feels (docs/theory.md, "Mixed formulation"): these are set to 0. */
+static PetscErrorCode PrepareSaddlePoint(KSP ksp, PetscBool undetermined)
+{
+  PC pc;
+  Mat factor;
+  PetscFunctionBeginUser;
+  PetscCall(KSPGetPC(ksp, &pc));
+  PetscCall(PCFactorSetUpMatSolverType(pc));
+  PetscCall(PCFactorGetMatrix(pc, &factor));
+  PetscCall(MatMumpsSetIcntl(factor, 13, 1));
+  PetscCall(MatMumpsSetIcntl(factor, 24, undetermined));
+  PetscFunctionReturn(0);
+}
+
 static PetscErrorCode UseMultigrid(KSP ksp, const LinearProblem *p, const char **what)
 {
   PC pc;
@@ -44,6 +60,7 @@ static PetscErrorCode UseMultigrid(KSP ksp, const LinearProblem *p, const char *
 /* Fill-in makes a factorisation of a 3D matrix costly much earlier than of a 2D one. */
 static PetscBool direct_pays(const LinearProblem *p)
 {
+  if (p->mixed) return p->unknowns < (p->dim == 2 ? 500000 : 20000) ? PETSC_TRUE : PETSC_FALSE;
   if (p->dynamic && p->courant < 20) return PETSC_FALSE;
   return p->unknowns < (p->dim == 2 ? 1000000 : 100000) ? PETSC_TRUE : PETSC_FALSE;
 }
@@ -53,7 +70,13 @@ PetscErrorCode LinearConfigure(KSP ksp, const LinearProblem *p, PetscBool *direc
   PetscFunctionBeginUser;
   *direct = p->choice == LINEAR_DIRECT || (p->choice == LINEAR_AUTO && direct_pays(p)) ? PETSC_TRUE : PETSC_FALSE;
   if (*direct) PetscCall(UseDirect(ksp, p->symmetric, what));
-  else if (p->dynamic) PetscCall(UseKrylov(ksp, p, what));
+  if (*direct && p->mixed) PetscCall(PrepareSaddlePoint(ksp, p->undetermined));
+  if (*direct) PetscFunctionReturn(0);
+  if (p->mixed) { /* saddle.c does the rest */
+    *what = "GMRES, Schur complement, algebraic multigrid";
+    PetscFunctionReturn(0);
+  }
+  if (p->dynamic) PetscCall(UseKrylov(ksp, p, what));
   else PetscCall(UseMultigrid(ksp, p, what));
   PetscFunctionReturn(0);
 }

@@ -10,9 +10,11 @@ typedef struct {
   LinearChoice choice;
   PetscInt dim, unknowns;
   PetscBool symmetric, dynamic;
-  PetscBool idle_ranks; /* does a rank hold no unknowns? */
-  PetscReal courant;    /* wave speed * dt / h */
+  PetscBool mixed;        /* is the last unknown of every block a pressure? */
+  PetscBool undetermined; /* mixed without stabilisation: some pressures may be anything */
+  PetscBool idle_ranks;   /* does a rank hold no unknowns? */
+  PetscReal courant;      /* wave speed * dt / h */
 } LinearProblem;
 
-/* Choose a solver, set it on ksp (the options database still overrides it); `what` gets a short name for the log. */
+/* Choose a solver, set it on ksp, whose operators are known (the options database still overrides it); `what` gets a short name for the log. */
 PetscErrorCode LinearConfigure(KSP ksp, const LinearProblem *problem, PetscBool *direct, const char **what);

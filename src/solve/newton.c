@@ -1,5 +1,6 @@
 #include "solve/newton.h"
 #include "solve/line_search.h"
+#include "solve/saddle.h"
 #include <petsctime.h>
 
 struct Newton {
@@ -9,6 +10,7 @@ struct Newton {
   Vec x, f;
   PetscInt built; /* system->builds that snes was set up for */
   LineSearchMemory search;
+  Saddle saddle;
   PetscBool direct;
   PetscInt failures; /* of the iterative solver; after a few the direct one stays */
   PetscBool retry;   /* this try takes the direct solver */
@@ -35,6 +37,7 @@ static PetscErrorCode NewtonReset(Newton *n)
 {
   PetscFunctionBeginUser;
   PetscCall(SNESDestroy(&n->snes));
+  PetscCall(SaddleClear(&n->saddle));
   PetscCall(VecDestroy(&n->x));
   PetscCall(VecDestroy(&n->f));
   PetscFunctionReturn(0);
@@ -86,9 +89,11 @@ static PetscErrorCode Assemble(Newton *n)
   PetscFunctionBeginUser;
   PetscCall(PetscTime(&start));
   PetscCall(PetscArrayzero(p->force, p->grid->n_nodes * dim));
+  if (p->volume) PetscCall(PetscArrayzero(p->volume, p->grid->n_nodes));
   PetscCall(SystemZero(p->system));
-  WeakFormOutput out = {.force = p->force, .values = p->system->values, .slot = p->system->slot};
+  WeakFormOutput out = {.force = p->force, .volume = p->volume, .values = p->system->values, .slot = p->system->slot};
   p->in.du = p->du;
+  p->in.pressure = p->pressure;
   p->in.fixed = p->fixed;
   PetscCall(p->formulation->assemble(&p->in, &out));
   PetscInt status = (PetscInt)out.status, worst;
@@ -96,6 +101,7 @@ static PetscErrorCode Assemble(Newton *n)
   n->report->status = (LawStatus)worst;
   n->report->bad_point = out.bad_point;
   PetscCall(GridSumToOwners(p->grid, dim, p->force));
+  if (p->volume) PetscCall(GridSumToOwners(p->grid, 1, p->volume));
   for (PetscInt i = 0; i < p->grid->n_owned * dim; ++i) p->force[i] -= p->external[i];
   PetscCall(ForceNorms(n));
   PetscCall(PetscTime(&end));
@@ -103,14 +109,26 @@ static PetscErrorCode Assemble(Newton *n)
   PetscFunctionReturn(0);
 }
 
-/* Unknowns -> du, keeping what is prescribed. */
+/* du and pressure -> unknowns. */
+static PetscErrorCode GetUnknowns(const Newton *n, Vec x)
+{
+  const StepProblem *p = n->problem;
+
+  PetscFunctionBeginUser;
+  PetscCall(SystemFromNodes(p->system, p->du, 0, p->system->dim, x));
+  if (p->pressure) PetscCall(SystemFromNodes(p->system, p->pressure, p->system->dim, 1, x));
+  PetscFunctionReturn(0);
+}
+
+/* Unknowns -> du and pressure, keeping what is prescribed. */
 static PetscErrorCode SetIncrements(Newton *n, Vec x)
 {
   StepProblem *p = n->problem;
   const PetscInt dofs = p->grid->n_nodes * p->grid->dim;
 
   PetscFunctionBeginUser;
-  PetscCall(SystemToNodes(p->system, p->grid, x, p->du));
+  PetscCall(SystemToNodes(p->system, p->grid, x, 0, p->system->dim, p->du));
+  if (p->pressure) PetscCall(SystemToNodes(p->system, p->grid, x, p->system->dim, 1, p->pressure));
   for (PetscInt i = 0; i < dofs; ++i)
     if (p->fixed[i]) p->du[i] = p->prescribed[i];
   PetscFunctionReturn(0);
@@ -119,7 +137,7 @@ static PetscErrorCode SetIncrements(Newton *n, Vec x)
 static PetscErrorCode GetResidual(Newton *n, Vec f)
 {
   const StepProblem *p = n->problem;
-  const PetscInt dim = p->grid->dim;
+  const PetscInt dim = p->grid->dim, block = p->system->block;
   PetscReal *v;
 
   PetscFunctionBeginUser;
@@ -128,11 +146,11 @@ static PetscErrorCode GetResidual(Newton *n, Vec f)
     PetscFunctionReturn(0);
   }
   PetscCall(VecGetArrayWrite(f, &v));
-  for (PetscInt k = 0; k < p->system->n_active; ++k)
-    for (PetscInt d = 0; d < dim; ++d) {
-      const PetscInt i = p->system->active[k] * dim + d;
-      v[k * dim + d] = p->fixed[i] ? 0 : p->force[i];
-    }
+  for (PetscInt k = 0; k < p->system->n_active; ++k) {
+    const PetscInt node = p->system->active[k];
+    for (PetscInt d = 0; d < dim; ++d) v[k * block + d] = p->fixed[node * dim + d] ? 0 : p->force[node * dim + d];
+    if (p->pressure) v[k * block + dim] = p->idle[node] ? 0 : p->volume[node];
+  }
   PetscCall(VecRestoreArrayWrite(f, &v));
   PetscFunctionReturn(0);
 }
@@ -156,7 +174,7 @@ static PetscErrorCode Jacobian(SNES snes, Vec x, Mat matrix, Mat preconditioner,
   (void)snes, (void)matrix, (void)preconditioner;
   PetscFunctionBeginUser;
   PetscCall(PetscTime(&start));
-  PetscCall(SystemToMatrix(n->problem->system, n->problem->fixed));
+  PetscCall(SystemToMatrix(n->problem->system, n->problem->fixed, n->problem->idle));
   PetscCall(PetscTime(&end));
   n->t_matrix += end - start;
   (void)x;
@@ -178,7 +196,7 @@ static PetscReal reference_force(const Newton *n, PetscReal first)
  * floor of its own round-off, whatever tolerance was asked for. */
 static PetscBool at_floor(const Newton *n, PetscReal xnorm, PetscReal snorm)
 {
-  const PetscReal dofs = (PetscReal)(n->problem->system->n_active_global * n->problem->grid->dim);
+  const PetscReal dofs = (PetscReal)(n->problem->system->n_active_global * n->problem->system->block);
   return snorm <= 1e-9 * xnorm || snorm <= 1e-12 * n->problem->grid->smallest * PetscSqrtReal(dofs) ? PETSC_TRUE
                                                                                                     : PETSC_FALSE;
 }
@@ -218,6 +236,7 @@ static PetscErrorCode NewtonSetUp(Newton *n, StepProblem *p, const LinearProblem
   if (n->built == p->system->builds) PetscFunctionReturn(0);
   PetscCall(NewtonReset(n));
   PetscCall(MatSetOption(p->system->matrix, MAT_SYMMETRIC, linear->symmetric));
+  n->search.block = p->pressure ? p->system->block : 0;
   PetscCall(SystemCreateVec(p->system, &n->x));
   PetscCall(VecDuplicate(n->x, &n->f));
   PetscCall(SNESCreate(n->comm, &n->snes));
@@ -230,8 +249,10 @@ static PetscErrorCode NewtonSetUp(Newton *n, StepProblem *p, const LinearProblem
   PetscCall(SNESLineSearchShellSetUserFunc(search, LineSearchDescend, &n->search));
   PetscCall(SNESGetKSP(n->snes, &ksp));
   LinearProblem chosen = *linear;
+  PetscCall(KSPSetOperators(ksp, p->system->matrix, p->system->matrix));
   if (n->retry || n->failures >= 3) chosen.choice = LINEAR_DIRECT;
   PetscCall(LinearConfigure(ksp, &chosen, &n->direct, &n->linear));
+  if (chosen.mixed && !n->direct) PetscCall(SaddleConfigure(&n->saddle, ksp, p->system, p->grid, chosen.dynamic));
   PetscCall(SNESSetFromOptions(n->snes));
   n->built = p->system->builds;
   PetscFunctionReturn(0);
@@ -268,12 +289,12 @@ static PetscErrorCode LiftPrescribed(Newton *n)
   PetscCall(GetResidual(n, n->f));
   if (n->report->status == LAW_OK) {
     PetscCall(PetscTime(&start));
-    PetscCall(SystemToMatrix(p->system, p->fixed));
+    PetscCall(SystemToMatrix(p->system, p->fixed, p->idle));
     PetscCall(SNESGetKSP(n->snes, &ksp));
     PetscCall(KSPSetOperators(ksp, p->system->matrix, p->system->matrix));
     PetscCall(VecDuplicate(n->x, &y));
     PetscCall(KSPSolve(ksp, n->f, y));
-    PetscCall(SystemFromNodes(p->system, p->du, n->x));
+    PetscCall(GetUnknowns(n, n->x));
     PetscCall(VecAXPY(n->x, -1, y));
     PetscCall(VecDestroy(&y));
     PetscCall(SetIncrements(n, n->x));
@@ -284,6 +305,22 @@ static PetscErrorCode LiftPrescribed(Newton *n)
     PetscCall(VecNorm(n->f, NORM_2, &n->report->reference));
   }
   PetscCall(PetscFree(lift));
+  PetscFunctionReturn(0);
+}
+
+/* Points have moved since the last step: so has what stands in for the Schur complement. */
+static PetscErrorCode UpdateSaddle(Newton *n)
+{
+  const StepProblem *p = n->problem;
+  PetscReal *nodes;
+
+  PetscFunctionBeginUser;
+  if (!n->saddle.schur) PetscFunctionReturn(0);
+  PetscCall(PetscCalloc1(p->grid->n_nodes, &nodes));
+  p->formulation->schur(&p->in, nodes);
+  PetscCall(GridSumToOwners(p->grid, 1, nodes));
+  PetscCall(SaddleUpdate(&n->saddle, p->system, nodes));
+  PetscCall(PetscFree(nodes));
   PetscFunctionReturn(0);
 }
 
@@ -305,7 +342,7 @@ static const char *reason_in_words(SNESConvergedReason reason, LawStatus status)
   }
 }
 
-static PetscErrorCode NewtonTry(Newton *n, StepProblem *p, NewtonReport *report)
+static PetscErrorCode NewtonTry(Newton *n, NewtonReport *report)
 {
   SNESConvergedReason reason;
   PetscInt its;
@@ -315,8 +352,9 @@ static PetscErrorCode NewtonTry(Newton *n, StepProblem *p, NewtonReport *report)
   PetscCall(PetscMemzero(report, sizeof(*report)));
   report->bad_point = -1;
   PetscCall(PetscTime(&start));
+  PetscCall(UpdateSaddle(n));
   PetscCall(LiftPrescribed(n));
-  PetscCall(SystemFromNodes(p->system, p->du, n->x));
+  PetscCall(GetUnknowns(n, n->x));
   PetscCall(SNESSetTolerances(n->snes, 0, 0, 0, n->spec.max_iterations - report->iterations, PETSC_MAX_INT));
   PetscCall(SNESSolve(n->snes, NULL, n->x));
   PetscCall(SNESGetConvergedReason(n->snes, &reason));
@@ -335,21 +373,24 @@ static PetscErrorCode NewtonTry(Newton *n, StepProblem *p, NewtonReport *report)
 
 PetscErrorCode NewtonSolve(Newton *n, StepProblem *p, const LinearProblem *linear, NewtonReport *report)
 {
-  PetscReal *guess;
+  const PetscInt nodes = p->grid->n_nodes, dofs = nodes * p->grid->dim;
+  PetscReal *guess, *pressure;
 
   PetscFunctionBeginUser;
   n->problem = p;
   n->report = report;
-  PetscCall(PetscMalloc1(p->grid->n_nodes * p->grid->dim, &guess));
-  PetscCall(PetscArraycpy(guess, p->du, p->grid->n_nodes * p->grid->dim));
+  PetscCall(PetscMalloc2(dofs, &guess, p->pressure ? nodes : 0, &pressure));
+  PetscCall(PetscArraycpy(guess, p->du, dofs));
+  if (p->pressure) PetscCall(PetscArraycpy(pressure, p->pressure, nodes));
   PetscCall(NewtonSetUp(n, p, linear));
-  PetscCall(NewtonTry(n, p, report));
+  PetscCall(NewtonTry(n, report));
   if (n->retry) { /* once more, with the direct solver */
-    PetscCall(PetscArraycpy(p->du, guess, p->grid->n_nodes * p->grid->dim));
+    PetscCall(PetscArraycpy(p->du, guess, dofs));
+    if (p->pressure) PetscCall(PetscArraycpy(p->pressure, pressure, nodes));
     PetscCall(NewtonSetUp(n, p, linear));
-    PetscCall(NewtonTry(n, p, report));
+    PetscCall(NewtonTry(n, report));
     n->built = n->failures < 3 ? -1 : n->built;
   }
-  PetscCall(PetscFree(guess));
+  PetscCall(PetscFree2(guess, pressure));
   PetscFunctionReturn(0);
 }

@@ -21,7 +21,10 @@ typedef struct {
   const PetscReal *external;   /* dead nodal forces, N; owners' values count */
   PetscReal *du;               /* in: first guess; out: solution */
   PetscReal *force;            /* out: residual with the rows of fixed dofs: reactions, on owners */
-  PetscReal weight, inertia;   /* norms of nodal gravity and of the inertia that would stop the motion, N: scales */
+  PetscReal *pressure; /* mixed: n_nodes, like du; m, see WeakFormInput. NULL: displacements alone, as the next two */
+  PetscReal *volume;   /* mixed: n_nodes, residual of the pressure equation, N */
+  const unsigned char *idle; /* mixed: n_nodes, no material touches the node: no pressure there */
+  PetscReal weight, inertia; /* norms of nodal gravity and of the inertia that would stop the motion, N: scales */
 } StepProblem;
 
 typedef struct {

@@ -1,11 +1,12 @@
 #include "solve/system.h"
 
-PetscErrorCode SystemCreate(MPI_Comm comm, PetscInt dim, System **system)
+PetscErrorCode SystemCreate(MPI_Comm comm, PetscInt dim, PetscInt block, System **system)
 {
   PetscFunctionBeginUser;
   PetscCall(PetscNew(system));
   (*system)->comm = comm;
   (*system)->dim = dim;
+  (*system)->block = block;
   PetscFunctionReturn(0);
 }
 
@@ -115,7 +116,7 @@ static PetscErrorCode SystemPattern(System *s, PetscInt n_cells, PetscInt nn, co
   }
   s->row_start[s->n_rows] = size;
   PetscCall(PetscRealloc((size_t)size * sizeof(PetscInt), &s->column));
-  PetscCall(PetscCalloc1(size * s->dim * s->dim, &s->values));
+  PetscCall(PetscCalloc1(size * s->block * s->block, &s->values));
   PetscCall(PetscFree(start));
   PetscCall(PetscFree(cell));
   PetscCall(PetscFree(mark));
@@ -126,25 +127,25 @@ static PetscErrorCode SystemPattern(System *s, PetscInt n_cells, PetscInt nn, co
 /* One COO entry for each number in `values`: the matrix is filled by one call, ghost rows travel inside it. */
 static PetscErrorCode SystemMatrix(System *s)
 {
-  const PetscInt dim = s->dim, n = s->n_active * dim, pairs = s->row_start[s->n_rows];
+  const PetscInt size = s->block, n = s->n_active * size, pairs = s->row_start[s->n_rows];
   PetscInt *i, *j, *rows;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc3(pairs * dim * dim, &i, pairs * dim * dim, &j, s->n_rows, &rows));
+  PetscCall(PetscMalloc3(pairs * size * size, &i, pairs * size * size, &j, s->n_rows, &rows));
   for (PetscInt node = 0; node < s->n_nodes; ++node)
     if (s->row[node] >= 0) rows[s->row[node]] = node;
   for (PetscInt r = 0, e = 0; r < s->n_rows; ++r)
     for (PetscInt k = s->row_start[r]; k < s->row_start[r + 1]; ++k)
-      for (PetscInt a = 0; a < dim; ++a)
-        for (PetscInt b = 0; b < dim; ++b, ++e) {
-          i[e] = s->number[rows[r]] * dim + a;
-          j[e] = s->number[s->column[k]] * dim + b;
+      for (PetscInt a = 0; a < size; ++a)
+        for (PetscInt b = 0; b < size; ++b, ++e) {
+          i[e] = s->number[rows[r]] * size + a;
+          j[e] = s->number[s->column[k]] * size + b;
         }
   PetscCall(MatCreate(s->comm, &s->matrix));
   PetscCall(MatSetSizes(s->matrix, n, n, PETSC_DETERMINE, PETSC_DETERMINE));
-  PetscCall(MatSetBlockSize(s->matrix, dim));
+  PetscCall(MatSetBlockSize(s->matrix, size));
   PetscCall(MatSetType(s->matrix, MATAIJ));
-  PetscCall(MatSetPreallocationCOO(s->matrix, pairs * dim * dim, i, j));
+  PetscCall(MatSetPreallocationCOO(s->matrix, pairs * size * size, i, j));
   PetscCall(PetscFree3(i, j, rows));
   PetscFunctionReturn(0);
 }
@@ -195,7 +196,7 @@ PetscErrorCode SystemSlots(System *s, const Support *support)
 PetscErrorCode SystemZero(System *s)
 {
   PetscFunctionBeginUser;
-  PetscCall(PetscArrayzero(s->values, s->row_start[s->n_rows] * s->dim * s->dim));
+  PetscCall(PetscArrayzero(s->values, s->row_start[s->n_rows] * s->block * s->block));
   PetscFunctionReturn(0);
 }
 
@@ -207,15 +208,15 @@ static PetscErrorCode DiagonalScale(const System *s, PetscReal *scale)
   PetscFunctionBeginUser;
   for (PetscInt r = 0; r < s->n_rows; ++r)
     for (PetscInt a = 0; a < s->dim; ++a)
-      largest = PetscMax(largest, s->values[(s->diagonal[r] * s->dim + a) * s->dim + a]);
+      largest = PetscMax(largest, s->values[(s->diagonal[r] * s->block + a) * s->block + a]);
   PetscCall(MPIU_Allreduce(&largest, scale, 1, MPIU_REAL, MPIU_MAX, s->comm));
   if (*scale == 0) *scale = 1;
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode SystemToMatrix(System *s, const unsigned char *fixed)
+PetscErrorCode SystemToMatrix(System *s, const unsigned char *fixed, const unsigned char *idle)
 {
-  const PetscInt dim = s->dim;
+  const PetscInt dim = s->dim, block = s->block;
   PetscReal scale;
 
   PetscFunctionBeginUser;
@@ -223,7 +224,8 @@ PetscErrorCode SystemToMatrix(System *s, const unsigned char *fixed)
   for (PetscInt k = 0; k < s->n_active; ++k) {
     const PetscInt node = s->active[k], d = s->diagonal[s->row[node]];
     for (PetscInt a = 0; a < dim; ++a)
-      if (fixed[node * dim + a]) s->values[(d * dim + a) * dim + a] = scale;
+      if (fixed[node * dim + a]) s->values[(d * block + a) * block + a] = scale;
+    if (block > dim && idle[node]) s->values[(d * block + dim) * block + dim] = -scale;
   }
   PetscCall(MatSetValuesCOO(s->matrix, s->values, INSERT_VALUES));
   PetscFunctionReturn(0);
@@ -236,30 +238,28 @@ PetscErrorCode SystemCreateVec(const System *s, Vec *x)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode SystemToNodes(const System *s, const Grid *grid, Vec x, PetscReal *nodes)
+PetscErrorCode SystemToNodes(const System *s, const Grid *grid, Vec x, PetscInt first, PetscInt n, PetscReal *nodes)
 {
-  const PetscInt dim = s->dim;
   const PetscReal *v;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscArrayzero(nodes, s->n_nodes * dim));
+  PetscCall(PetscArrayzero(nodes, s->n_nodes * n));
   PetscCall(VecGetArrayRead(x, &v));
   for (PetscInt k = 0; k < s->n_active; ++k)
-    for (PetscInt a = 0; a < dim; ++a) nodes[s->active[k] * dim + a] = v[k * dim + a];
+    for (PetscInt a = 0; a < n; ++a) nodes[s->active[k] * n + a] = v[k * s->block + first + a];
   PetscCall(VecRestoreArrayRead(x, &v));
-  PetscCall(GridToGhosts(grid, dim, nodes));
+  PetscCall(GridToGhosts(grid, n, nodes));
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode SystemFromNodes(const System *s, const PetscReal *nodes, Vec x)
+PetscErrorCode SystemFromNodes(const System *s, const PetscReal *nodes, PetscInt first, PetscInt n, Vec x)
 {
-  const PetscInt dim = s->dim;
   PetscReal *v;
 
   PetscFunctionBeginUser;
-  PetscCall(VecGetArrayWrite(x, &v));
+  PetscCall(VecGetArray(x, &v));
   for (PetscInt k = 0; k < s->n_active; ++k)
-    for (PetscInt a = 0; a < dim; ++a) v[k * dim + a] = nodes[s->active[k] * dim + a];
-  PetscCall(VecRestoreArrayWrite(x, &v));
+    for (PetscInt a = 0; a < n; ++a) v[k * s->block + first + a] = nodes[s->active[k] * n + a];
+  PetscCall(VecRestoreArray(x, &v));
   PetscFunctionReturn(0);
 }

@@ -7,8 +7,9 @@
 
 typedef struct System {
   MPI_Comm comm;
-  PetscInt dim, n_nodes;                    /* local nodes of the grid or cloud */
-  PetscInt n_active;                        /* owned nodes that carry unknowns */
+  PetscInt dim, block; /* displacements, and all unknowns, per node: dim, or dim + 1 with a pressure */
+  PetscInt n_nodes;    /* local nodes of the grid or cloud */
+  PetscInt n_active;   /* owned nodes that carry unknowns */
   PetscInt n_active_global, n_active_least; /* over all ranks: sum and smallest */
   PetscInt *active;                         /* n_active local nodes, ascending */
   PetscInt *number;                         /* n_nodes: global number of the node's unknowns, -1 if none */
@@ -16,13 +17,13 @@ typedef struct System {
   PetscInt *row;                            /* n_nodes: row of the local pattern, -1 if none */
   PetscInt *row_start, *column;             /* pattern of node pairs: n_rows + 1, and local nodes, ascending in a row */
   PetscInt *diagonal;                       /* n_rows: place of the diagonal pair */
-  PetscReal *values;                        /* dim x dim block of pair k at k * dim * dim */
+  PetscReal *values;                        /* block x block numbers of pair k at k * block * block */
   PetscInt n_slots, *slot;                  /* SystemSlots: nn x nn pairs of each group */
   Mat matrix;
   PetscInt builds; /* how often the pattern was made */
 } System;
 
-PetscErrorCode SystemCreate(MPI_Comm comm, PetscInt dim, System **system);
+PetscErrorCode SystemCreate(MPI_Comm comm, PetscInt dim, PetscInt block, System **system);
 PetscErrorCode SystemDestroy(System **system);
 
 /* Collective. Unknowns on the nodes of the cells (n_cells x nn local nodes), coupled cell by cell. */
@@ -31,11 +32,13 @@ PetscErrorCode SystemBuild(System *system, const Grid *grid, PetscInt n_cells, P
 PetscErrorCode SystemSlots(System *system, const Support *support);
 PetscErrorCode SystemZero(System *system);
 
-/* Collective. Diagonal entries for the dofs in fixed (prescribed, or on a node that no material touches), then
- * values -> matrix. */
-PetscErrorCode SystemToMatrix(System *system, const unsigned char *fixed);
+/* Collective. Diagonal entries for the displacements in fixed (n_nodes x dim: prescribed, or on a node that no material touches) and for
+ * the pressures of idle nodes (n_nodes; NULL without pressures), then values -> matrix. */
+PetscErrorCode SystemToMatrix(System *system, const unsigned char *fixed, const unsigned char *idle);
 
-/* Vec of unknowns <-> local array n_nodes x dim. ToNodes zeroes nodes without unknowns and fills ghosts; FromNodes takes owners. */
-PetscErrorCode SystemToNodes(const System *system, const Grid *grid, Vec x, PetscReal *nodes);
-PetscErrorCode SystemFromNodes(const System *system, const PetscReal *nodes, Vec x);
+/* Components first .. first + n - 1 of the unknowns in a Vec <-> local array n_nodes x n. ToNodes zeroes nodes without unknowns and fills
+ * ghosts; FromNodes takes owners. */
+PetscErrorCode SystemToNodes(const System *system, const Grid *grid, Vec x, PetscInt first, PetscInt n,
+                             PetscReal *nodes);
+PetscErrorCode SystemFromNodes(const System *system, const PetscReal *nodes, PetscInt first, PetscInt n, Vec x);
 PetscErrorCode SystemCreateVec(const System *system, Vec *x);

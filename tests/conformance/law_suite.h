@@ -8,7 +8,7 @@
 #include <string.h>
 #include <cmocka.h>
 #include "base/tensor.h"
-#include "material/law.h"
+#include "material/pressure.h"
 #include "random.h"
 
 #define LAW_SUITE_STATES 10000
@@ -28,11 +28,13 @@ typedef struct {
   const Law *law;
   Material material;
   Random random;
+  PetscBool mixed; /* updates take the pressure of the point instead of the law's own */
 } LawSuite;
 
 /* One update and all that it gives. */
 typedef struct {
   PetscReal dF[9], old[LAW_MAX_STATE], state[LAW_MAX_STATE], tau[6], c[36];
+  PetscReal pressure, theta, rate, coupling[6]; /* mixed only */
   LawStatus status;
 } LawPoint;
 
@@ -43,7 +45,7 @@ static inline void law_suite_open(LawSuite *suite, const LawUnderTest *test)
                        .density = 1000.0,
                        .n_parameters = test->n_parameters,
                        .parameters = (NamedValue *)test->parameters};
-  Case c = {.n_materials = 1, .materials = &spec};
+  Case c = {.n_materials = 1, .materials = &spec, .formulation = (char *)"mixed"};
   Diag *diag = NULL;
   *suite = (LawSuite){.test = test, .random = {12345}};
   if (DiagCreate(&diag) || MaterialResolve(&c, 0, diag, &suite->material)) fail_msg("%s: not resolved", test->law);
@@ -53,6 +55,7 @@ static inline void law_suite_open(LawSuite *suite, const LawUnderTest *test)
   }
   if (DiagDestroy(&diag)) fail();
   suite->law = suite->material.law;
+  suite->material.wave_modulus = suite->material.elastic.lame + 2 * suite->material.elastic.shear;
 }
 
 static inline PetscReal law_suite_largest(PetscInt n, const PetscReal *v)
@@ -78,8 +81,24 @@ static inline void law_suite_near(const LawSuite *suite, const char *what, Petsc
                expected[k], tolerance);
 }
 
+static inline void law_suite_update_mixed(const LawSuite *suite, LawPoint *p)
+{
+  PressureStress s;
+  p->status = pressure_update(&suite->material, 1, p->dF, &p->pressure, p->old, p->state, PETSC_TRUE, &s);
+  if (p->status != LAW_OK) return;
+  memcpy(p->tau, s.tau, sizeof p->tau);
+  memcpy(p->c, s.c, sizeof p->c);
+  memcpy(p->coupling, s.coupling, sizeof p->coupling);
+  p->theta = s.theta[0];
+  p->rate = s.rate[0];
+}
+
 static inline void law_suite_update(const LawSuite *suite, LawPoint *p)
 {
+  if (suite->mixed) {
+    law_suite_update_mixed(suite, p);
+    return;
+  }
   p->status = suite->law->update(suite->material.parameters, 1, p->dF, p->old, p->state, p->tau, p->c);
 }
 
@@ -112,7 +131,7 @@ static inline void law_suite_coaxial_increment(LawSuite *suite, PetscReal dF[9])
 
 /* A point at a state that the law itself reached in two steps, with a third increment done; or (one in four) after one
  * coaxial increment from rest. Always the first try for laws that never fail; others may refuse some. */
-static inline void law_suite_random_point(LawSuite *suite, LawPoint *p)
+static inline void law_suite_random_law_point(LawSuite *suite, LawPoint *p)
 {
   for (int tries = 0; tries < 100; ++tries) {
     const PetscBool coaxial = (PetscBool)(random_real(&suite->random, 0, 4) < 1);
@@ -129,6 +148,27 @@ static inline void law_suite_random_point(LawSuite *suite, LawPoint *p)
     if (steps == wanted) return;
   }
   fail_msg("%s: no valid state in 100 tries", suite->law->name);
+}
+
+/* The same, in mixed form with a pressure of the size of the point's own. */
+static inline void law_suite_random_point(LawSuite *suite, LawPoint *p)
+{
+  const PetscBool mixed = suite->mixed;
+  suite->mixed = PETSC_FALSE;
+  law_suite_random_law_point(suite, p);
+  suite->mixed = mixed;
+  if (!mixed) return;
+  p->pressure = 0;
+  law_suite_update(suite, p);
+  assert_int_equal(p->status, LAW_OK);
+  const PetscReal own = p->theta / suite->material.compliance,
+                  noise = suite->test->strain * suite->material.wave_modulus;
+  for (PetscReal share = 1;; share /= 2) { /* a law may refuse extremes */
+    p->pressure = share * own * random_real(&suite->random, 0.5, 1.5) + noise * random_real(&suite->random, -1, 1);
+    law_suite_update(suite, p);
+    if (p->status == LAW_OK) return;
+    assert_true(share > 1e-3);
+  }
 }
 
 /* d: unit strain rate of Voigt component k (engineering shear 1); f = (I + h d) f0. */
@@ -258,6 +298,7 @@ static inline void law_suite_objectivity(LawSuite *suite)
     tensor_multiply(q, p.dF, qf);
     tensor_multiply(qf, rt, turned.dF);
     law_suite_rotate_state(suite->law, r, p.old, turned.old);
+    turned.pressure = p.pressure;
     law_suite_update(suite, &turned);
     assert_int_equal(turned.status, LAW_OK);
     sym_push_forward(q, p.tau, tau);
@@ -447,6 +488,73 @@ static inline void law_suite_initial_stress(LawSuite *suite)
   }
 }
 
+/* With the pressure that the law itself has, K theta, the mixed form is the law: stress, and tangent once the pressure is
+ * eliminated. */
+static inline void law_suite_pressure_is_own(LawSuite *suite)
+{
+  for (int s = 0; s < 1000; ++s) {
+    LawPoint p = {0}, own;
+    PetscReal c[36];
+    law_suite_random_law_point(suite, &p);
+    own = p;
+    law_suite_update_mixed(suite, &own);
+    own.pressure = own.theta / suite->material.compliance;
+    law_suite_update_mixed(suite, &own);
+    assert_int_equal(own.status, LAW_OK);
+    const PetscReal size = 1e-11 * (law_suite_modulus(suite, &p) + fabs(own.pressure));
+    law_suite_near(suite, "stress at its own pressure", 6, own.tau, p.tau, size);
+    law_suite_near(suite, "state at its own pressure", suite->law->n_state, own.state, p.state,
+                   1e-11 * (1 + law_suite_largest(suite->law->n_state, p.state)));
+    for (int k = 0; k < 36; ++k)
+      c[k] = own.c[k] + (k % 6 < 3 ? own.coupling[k / 6] * own.rate / suite->material.compliance : 0);
+    law_suite_near(suite, "tangent at its own pressure", 36, c, p.c, 1e-9 * law_suite_modulus(suite, &p));
+  }
+}
+
+/* Slopes by the pressure, and of the volumetric strain; a kink may stand between two differences. */
+static inline void law_suite_pressure_slopes(LawSuite *suite)
+{
+  PetscInt kinks = 0;
+  for (int s = 0; s < 1000; ++s) {
+    LawPoint p = {0}, plus, minus;
+    PetscReal slope[6], error = 0;
+    law_suite_random_point(suite, &p);
+    const PetscReal h = 1e-6 * suite->material.wave_modulus, tolerance = 1e-6 * (1 + law_suite_largest(6, p.coupling));
+    plus = minus = p;
+    plus.pressure += h;
+    minus.pressure -= h;
+    law_suite_update(suite, &plus);
+    law_suite_update(suite, &minus);
+    for (int k = 0; k < 6; ++k) slope[k] = (plus.tau[k] - minus.tau[k]) / (2 * h);
+    for (int k = 0; k < 6; ++k) error = fmax(error, fabs(slope[k] - p.coupling[k]));
+    if (suite->test->hyperelastic) law_suite_near(suite, "slope by the pressure", 6, p.coupling, slope, tolerance);
+    kinks += error > tolerance;
+    for (PetscInt k = 0; k < 6; ++k) {
+      plus = minus = p;
+      law_suite_strain(k, LAW_SUITE_STEP, p.dF, plus.dF);
+      law_suite_strain(k, -LAW_SUITE_STEP, p.dF, minus.dF);
+      law_suite_update(suite, &plus);
+      law_suite_update(suite, &minus);
+      const PetscReal rate = (plus.theta - minus.theta) / (2 * LAW_SUITE_STEP), expected = k < 3 ? p.rate : 0;
+      law_suite_near(suite, "slope of the volumetric strain", 1, &rate, &expected, 1e-8 * (1 + p.rate));
+    }
+  }
+  if (kinks > 20) fail_msg("%s: %d of 1000 slopes by the pressure are wrong", suite->law->name, (int)kinks);
+}
+
+/* The mixed form: tangents, objectivity, agreement with the law. Symmetric where shape and volume stand apart. */
+static inline void law_suite_pressure(LawSuite *suite)
+{
+  if (!suite->law->volume) return;
+  law_suite_pressure_is_own(suite);
+  suite->mixed = PETSC_TRUE;
+  law_suite_pressure_slopes(suite);
+  law_suite_objectivity(suite);
+  law_suite_tangent(suite);
+  if (suite->material.volume != VOLUME_COUPLED) law_suite_symmetry(suite);
+  suite->mixed = PETSC_FALSE;
+}
+
 static inline void law_suite_run(const LawUnderTest *test)
 {
   LawSuite suite;
@@ -462,4 +570,5 @@ static inline void law_suite_run(const LawUnderTest *test)
   law_suite_bad_increments(&suite);
   law_suite_batches(&suite);
   law_suite_initial_stress(&suite);
+  law_suite_pressure(&suite);
 }

@@ -32,7 +32,7 @@ static const char everything[] =
   "boundary:\n"
   "  - {name: wall, on: {x: -1}, fix: [x, y]}\n"
   "  - {on: {boundary: top, x: [0, 1]}, displacement: {y: -0.1}, amplitude: [[0, 0], [1, 1], [2, 0.5]]}\n"
-  "  - {on: {shape: {circle: {centre: [3, 2], radius: 0.1}}}, rotation: {centre: [3, 2], rate: 0.5}}\n"
+  "  - {on: {shape: {circle: {centre: [3, 2], radius: 0.1}}}, rotation: {centre: [3, 2], rate: 0.5}, moves: true}\n"
   "  - {on: {}, velocity: {x: 0.1, y: 0}}\n"
   "loads:\n"
   "  gravity: [0, -9.81]\n"
@@ -59,6 +59,7 @@ static const char everything[] =
   "  stop: {run_out_time: {max: x, speed: 0.01}, of: {body: soil}}\n"
   "  stop2: {run_out_time: {max: x, speed: 0.1, front: surface}}\n"
   "  stop3: {run_out_time: {min: y, speed: 0.1}}\n"
+  "  rough: {roughness: pressure}\n"
   "newton: {residual: 1e-9, max_iterations: 12}\n"
   "linear: direct\n"
   "stabilisation: {stiffness: 0}\n"
@@ -106,6 +107,7 @@ static void MotionAndLoads(void **state)
   assert_int_equal(c->boundary[1].kind, MOTION_DISPLACEMENT);
   assert_true(!c->boundary[1].component[0] && c->boundary[1].component[1]);
   assert_int_equal(c->boundary[1].amplitude.n, 3);
+  assert_true(!c->boundary[1].moves && c->boundary[2].moves);
   assert_int_equal(c->boundary[2].kind, MOTION_ROTATION);
   ASSERT_NEAR(c->boundary[2].axis[2], 1, 0);
   assert_int_equal(c->boundary[3].kind, MOTION_VELOCITY);
@@ -136,11 +138,12 @@ static void MeasuresAndOutput(void **state)
                                MEASURE_SURFACE_SLOPE,
                                MEASURE_RUN_OUT_TIME,
                                MEASURE_RUN_OUT_TIME,
-                               MEASURE_RUN_OUT_TIME};
+                               MEASURE_RUN_OUT_TIME,
+                               MEASURE_ROUGHNESS};
   Case *c = read_good(everything);
   (void)state;
-  assert_int_equal(c->n_measures, 18);
-  for (PetscInt i = 0; i < 18; ++i) assert_int_equal(c->measures[i].kind, kinds[i]);
+  assert_int_equal(c->n_measures, 19);
+  for (PetscInt i = 0; i < 19; ++i) assert_int_equal(c->measures[i].kind, kinds[i]);
   assert_int_equal(c->measures[0].component, 1);
   assert_true(c->measures[1].maximum && !c->measures[2].maximum);
   assert_null(c->measures[3].body);
@@ -198,6 +201,25 @@ static const char solid[] =
   "boundary: [{on: {boundary: foot, z: 0}, fix: [x, y, z]}, {on: {z: 1}, rotation: {centre: [0, 0, 0], rate: 1, axis: "
   "[0, 1, 1]}}]\n";
 
+/* Incompressible materials, given before the key that allows them. */
+static const char soft[] =
+  "materials: {a: {law: j2, density: 1, shear: 3, bulk: inf, yield_stress: 1}, b: {law: neo-hookean-split, density: 1, "
+  "young: 3, "
+  "poisson: 0.5}}\nmixed: {stabilisation: 2.5}\nformulation: mixed\n" PLAIN_TOP PLAIN_GRID
+  "bodies: [{name: one, shape: {box: {min: [0, 0], max: [2, 1]}}, material: a}]\n";
+
+static void Mixed(void **state)
+{
+  Case *c = read_good(soft);
+  (void)state;
+  assert_string_equal(c->formulation, "mixed");
+  assert_true(case_is_mixed(c));
+  ASSERT_NEAR(c->mixed.stabilisation, 2.5, 0);
+  assert_string_equal(c->materials[0].parameters[1].name, "bulk");
+  assert_true(c->materials[0].parameters[1].value == INFINITY);
+  assert_int_equal(CaseDestroy(&c), 0);
+}
+
 static void Mesh3D(void **state)
 {
   Case *c = read_good(solid);
@@ -223,9 +245,9 @@ static char *ToYaml(const Case *c)
 /* What is written reads back to the same: the second text equals the first, and the numbers agree to the last bit. */
 static void RoundTrip(void **state)
 {
-  const char *const texts[] = {everything, PLAIN, solid};
+  const char *const texts[] = {everything, PLAIN, solid, soft};
   (void)state;
-  for (int i = 0; i < 3; ++i) {
+  for (int i = 0; i < 4; ++i) {
     Case *first = read_good(texts[i]), *second;
     char *once = ToYaml(first), *twice;
     second = read_good(once);
@@ -300,6 +322,7 @@ int main(int argc, char **argv)
                                      cmocka_unit_test(MotionAndLoads),
                                      cmocka_unit_test(MeasuresAndOutput),
                                      cmocka_unit_test(Defaults),
+                                     cmocka_unit_test(Mixed),
                                      cmocka_unit_test(Mesh3D),
                                      cmocka_unit_test(RoundTrip),
                                      cmocka_unit_test(RoundTripOddValues),

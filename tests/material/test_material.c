@@ -151,7 +151,7 @@ static void test_bad_constants(void **state)
   const NamedValue half[] = {P("young", 1), P("poisson", 0.5)}, minus_one[] = {P("young", 1), P("poisson", -1)};
   const NamedValue negative[] = {P("young", -1), P("poisson", 0.3)}, zero[] = {P("young", 0), P("poisson", 0.3)};
   const NamedValue nan[] = {P("young", NAN), P("poisson", 0.3)}, infinite[] = {P("young", INFINITY), P("poisson", 0.3)};
-  expect("neo-hookean", 1, 2, half, "materials.rubber.poisson", "0.4999");
+  expect("neo-hookean", 1, 2, half, "materials.rubber.poisson", "`formulation: mixed`");
   expect("neo-hookean", 1, 2, minus_one, "materials.rubber.poisson", "between -1 and 0.5");
   expect("neo-hookean", 1, 2, negative, "materials.rubber.young", "positive");
   expect("neo-hookean", 1, 2, zero, "materials.rubber.young", "positive");

@@ -242,9 +242,11 @@ static inline PetscBool on_plane(PetscReal x, PetscInt n, const PetscReal *plane
   return PETSC_FALSE;
 }
 
-/* Replace the box grid of the case by a Gmsh file of the same cells whose nodes are displaced at random by up to `amount` of the
- * smallest cell; nodes on one of the planes (of any axis) stay. Collective; bench_end removes the file. */
-static inline void bench_distort(Bench *b, PetscReal amount, PetscInt n_planes, const PetscReal *plane)
+/* Replace the box grid of the case by a Gmsh file of the same cells whose nodes are put elsewhere. Collective; bench_end removes the
+ * file. */
+typedef void (*BenchPlace)(void *context, PetscInt dim, PetscReal size, PetscReal *x);
+
+static inline void bench_mesh(Bench *b, BenchPlace place, void *context)
 {
   static const int msh_type[] = {2, 3, 4, 5};
   PetscMPIInt rank;
@@ -253,7 +255,6 @@ static inline void bench_distort(Bench *b, PetscReal amount, PetscInt n_planes, 
   if (!rank) {
     Diag *diag;
     Grid *grid = NULL;
-    Random random = {7};
     CALL(DiagCreate(&diag));
     CALL(GridCreate(PETSC_COMM_SELF, &b->c, NULL, NULL, diag, &grid));
     CHECK(grid, "no grid");
@@ -263,12 +264,9 @@ static inline void bench_distort(Bench *b, PetscReal amount, PetscInt n_planes, 
     fprintf(out, "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n%d\n", (int)grid->n_nodes);
     for (PetscInt i = 0; i < grid->n_nodes; ++i) {
       PetscReal *x = grid->x + i * grid->dim;
-      PetscBool keep = PETSC_FALSE;
-      for (PetscInt d = 0; d < grid->dim; ++d) keep |= on_plane(x[d], n_planes, plane);
+      place(context, grid->dim, grid->smallest, x);
       fprintf(out, "%d", (int)i + 1);
-      for (PetscInt d = 0; d < 3; ++d)
-        fprintf(out, " %.17g",
-                d < grid->dim ? x[d] + (keep ? 0 : amount * grid->smallest * random_real(&random, -1, 1)) : 0.0);
+      for (PetscInt d = 0; d < 3; ++d) fprintf(out, " %.17g", d < grid->dim ? x[d] : 0.0);
       fprintf(out, "\n");
     }
     fprintf(out, "$EndNodes\n$Elements\n%d\n", (int)grid->n_cells);
@@ -286,6 +284,28 @@ static inline void bench_distort(Bench *b, PetscReal amount, PetscInt n_planes, 
   MPI_Bcast(b->mesh, sizeof b->mesh, MPI_CHAR, 0, PETSC_COMM_WORLD);
   b->c.grid.kind = GRID_MESH;
   b->c.grid.mesh = b->mesh;
+}
+
+typedef struct {
+  Random random;
+  PetscReal amount;
+  PetscInt n_planes;
+  const PetscReal *plane;
+} BenchDistortion;
+
+static inline void bench_shake(void *context, PetscInt dim, PetscReal size, PetscReal *x)
+{
+  BenchDistortion *d = context;
+  PetscBool keep = PETSC_FALSE;
+  for (PetscInt i = 0; i < dim; ++i) keep |= on_plane(x[i], d->n_planes, d->plane);
+  for (PetscInt i = 0; i < dim && !keep; ++i) x[i] += d->amount * size * random_real(&d->random, -1, 1);
+}
+
+/* Nodes displaced at random by up to `amount` of the smallest cell; those on one of the planes (of any axis) stay. */
+static inline void bench_distort(Bench *b, PetscReal amount, PetscInt n_planes, const PetscReal *plane)
+{
+  BenchDistortion distortion = {.random = {7}, .amount = amount, .n_planes = n_planes, .plane = plane};
+  bench_mesh(b, bench_shake, &distortion);
 }
 
 static inline void bench_end(Bench *b)

@@ -341,14 +341,69 @@ static void test_ranks_agree(void **state)
   }
 }
 
+/* Give the points of triangles a pressure: 0 uniform, 1 linear, 2 of both signs by turns. */
+static PetscReal roughness(int kind, PetscInt cells_per_side)
+{
+  Bench b;
+  bench_init(&b, "fem", CELL_TRIANGLE, cells_per_side);
+  b.body[0].points_per_cell = 1;
+  Model *m = bench_model(&b, PETSC_COMM_WORLD);
+  for (PetscInt p = 0; p < m->points->n; ++p) {
+    const PetscReal x = point_real(m->points, POINT_X, p)[0];
+    const PetscReal turn = m->grid->global_cell[m->points->cell[p]] % 2 ? 1 : -1;
+    const PetscReal pressure = kind == 0 ? 7 : kind == 1 ? 7 * x : 7 * turn;
+    point_set_tau(m->points, p, (PetscReal[]){-pressure - 2, -pressure + 3, -pressure - 1, 5, 0, 0});
+  }
+  const PetscReal value = model_sum(m, MEASURE_ROUGHNESS, 0);
+  CALL(ModelDestroy(&m));
+  return value;
+}
+
+/* The oscillation that triangles of equal order leave free: 1, -1, 0 at the nodes of each, nothing at their centres. */
+static PetscReal nodal_roughness(PetscReal constant, PetscReal amplitude)
+{
+  Bench b;
+  bench_init(&b, "fem", CELL_TRIANGLE, 6);
+  b.c.formulation = (char *)"mixed";
+  b.body[0].points_per_cell = 1;
+  Model *m = bench_model(&b, PETSC_COMM_WORLD);
+  for (PetscInt i = 0; i < m->grid->n_nodes; ++i) {
+    const PetscInt colour = (PetscInt)(6 * (m->grid->x[2 * i] + m->grid->x[2 * i + 1]) + 0.5) % 3;
+    m->pressure[i] = constant + amplitude * (PetscReal)(colour - 1);
+  }
+  const PetscReal value = model_sum(m, MEASURE_ROUGHNESS, 0);
+  CALL(ModelDestroy(&m));
+  return value;
+}
+
+static void test_roughness(void **state)
+{
+  (void)state;
+  CHECK_CLOSE(roughness(0, 4), 0, 1e-14);
+  CHECK(roughness(1, 4) < 0.1, "a linear pressure is smooth");
+  CHECK(roughness(1, 8) < 0.5 * roughness(1, 4), "and smoother on finer cells");
+  /* inside, six triangles about a node cancel; at the rim each node sees two of one sign and one of the other */
+  CHECK_CLOSE(roughness(2, 8), 1, 0.05);
+  CHECK_CLOSE(nodal_roughness(0, 3), 1, 1e-14);
+  CHECK_CLOSE(nodal_roughness(3, 0), 0, 1e-14);
+  CHECK(nodal_roughness(3, 0.1) < 0.05, "a ripple on a large pressure");
+  CHECK_CLOSE(roughness(2, 16), 1, 0.5 * PetscAbsReal(roughness(2, 8) - 1));
+}
+
 int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {
-    cmocka_unit_test(test_surface_of_a_triangle), cmocka_unit_test(test_run_out_time),
-    cmocka_unit_test(test_volume_ratio),          cmocka_unit_test(test_elastic_balance),
-    cmocka_unit_test(test_plastic_balance),       cmocka_unit_test(test_shear_dissipation),
-    cmocka_unit_test(test_static_work),           cmocka_unit_test(test_impact_is_told),
-    cmocka_unit_test(test_removed_points),        cmocka_unit_test(test_ranks_agree),
+    cmocka_unit_test(test_surface_of_a_triangle),
+    cmocka_unit_test(test_run_out_time),
+    cmocka_unit_test(test_volume_ratio),
+    cmocka_unit_test(test_elastic_balance),
+    cmocka_unit_test(test_plastic_balance),
+    cmocka_unit_test(test_shear_dissipation),
+    cmocka_unit_test(test_static_work),
+    cmocka_unit_test(test_impact_is_told),
+    cmocka_unit_test(test_removed_points),
+    cmocka_unit_test(test_ranks_agree),
+    cmocka_unit_test(test_roughness),
   };
   return run_model_tests(argc, argv, tests);
 }

@@ -49,7 +49,16 @@ static const char reference[] =
   "    series: {mpm: {set: {method: mpm}}}\n"
   "    tolerance: 1e-3\n"
   "    source: independent program\n"
-  "    rows: [{at: 0.5, reference: 3.408e-4}]\n";
+  "    rows: [{at: 0.5, reference: 3.408e-4}]\n"
+  "  moments:\n"
+  "    title: Half of the step's way at half of its time, and nothing after its end\n"
+  "    measure: tip\n"
+  "    moments: true\n"
+  "    sweep: {name: time, symbol: t, unit: s, set: {}}\n"
+  "    series: {mpm: {set: {method: mpm, grid.size: 0.5}}}\n"
+  "    tolerance: 1e-6\n"
+  "    source: independent program\n"
+  "    rows: [{at: 0.5, reference: -0.2998296}, {at: 1, reference: -0.5996592}, {at: 0, reference: 0}]\n";
 
 static void write_file(const char *folder, const char *name, const char *text)
 {
@@ -128,6 +137,7 @@ static void right_values_pass(void **state)
   SAYS(text, "4 of 4 rows pass");
   SAYS(text, "mpm agrees with fem to");
   SAYS(text, "1 of 1 rows pass");
+  SAYS(text, "3 of 3 rows pass");
   SAYS(text, "0.000340813"); /* |tip + 0.6|: one step, so one row after the start */
   assert_true(is_there("out-right/verification.md") && is_there("out-right/tip.png"));
   assert_true(is_there("out-right/tip/mpm/h_0.25/history.csv") &&

@@ -1,0 +1,27 @@
+// A square plate of 0.05 m in unstructured triangles of size h, in a margin of empty cells into which material points may move.
+DefineConstant[ h = {0.001, Min 0, Name "cell size"} ];
+side = 0.05;
+margin = 0.002;
+Point(1) = {0, 0, 0, h};
+Point(2) = {side, 0, 0, h};
+Point(3) = {side, side, 0, h};
+Point(4) = {0, side, 0, h};
+Line(1) = {1, 2};
+Line(2) = {2, 3};
+Line(3) = {3, 4};
+Line(4) = {4, 1};
+Curve Loop(1) = {1, 2, 3, 4};
+Plane Surface(1) = {1};
+Physical Surface("plate") = {1};
+Point(5) = {-margin, 0, 0, h};
+Point(6) = {side + margin, 0, 0, h};
+Point(7) = {side + margin, side + margin, 0, h};
+Point(8) = {-margin, side + margin, 0, h};
+Line(5) = {5, 1};
+Line(6) = {2, 6};
+Line(7) = {6, 7};
+Line(8) = {7, 8};
+Line(9) = {8, 5};
+Curve Loop(2) = {6, 7, 8, 9, 5, -4, -3, -2};
+Plane Surface(2) = {2};
+Physical Surface("margin") = {2};

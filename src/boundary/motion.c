@@ -1,0 +1,54 @@
+#include "boundary/motion.h"
+
+/* Displacement that the entry asks for at time t, in component d; zero at the start whatever the amplitude. */
+static PetscReal displacement_at(const Case *c, const MotionSpec *m, PetscInt d, PetscReal t)
+{
+  if (t <= 0) return 0;
+  const PetscReal ramp = c->analysis.type == ANALYSIS_STATIC ? t / c->analysis.end : 1;
+  return m->value[d] * amplitude_value(&m->amplitude, t, ramp);
+}
+
+/* Turn x about the axis through centre by the angle; returns the displacement of component d. */
+static PetscReal rotation(const MotionSpec *m, PetscInt dim, const PetscReal *x, PetscReal angle, PetscInt d)
+{
+  PetscReal r[3] = {0, 0, 0}, axis[3] = {0, 0, 1}, norm = 0;
+  for (PetscInt i = 0; i < dim; ++i) r[i] = x[i] - m->centre[i];
+  if (dim == 3)
+    for (PetscInt i = 0; i < 3; ++i) axis[i] = m->axis[i];
+  for (PetscInt i = 0; i < 3; ++i) norm += axis[i] * axis[i];
+  norm = PetscSqrtReal(norm);
+  PetscReal along = 0;
+  for (PetscInt i = 0; i < 3; ++i) along += (axis[i] /= norm) * r[i];
+  const PetscInt j = (d + 1) % 3, k = (d + 2) % 3;
+  const PetscReal cross = axis[j] * r[k] - axis[k] * r[j];
+  /* Rodrigues: r' = r cos + (n x r) sin + n (n.r)(1 - cos); 1 - cos without cancellation */
+  const PetscReal s = PetscSinReal(angle / 2), one_less_cos = 2 * s * s;
+  return PetscSinReal(angle) * cross + one_less_cos * (axis[d] * along - r[d]);
+}
+
+PetscReal motion_increment(const Case *c, const MotionSpec *m, const PetscReal *x, PetscInt d, PetscReal t0,
+                           PetscReal t1)
+{
+  const PetscInt dim = kinematics_dim(c->kinematics);
+  const PetscReal span = amplitude_integral(&m->amplitude, t1, 1) - amplitude_integral(&m->amplitude, t0, 1);
+  switch (m->kind) {
+  case MOTION_DISPLACEMENT: return displacement_at(c, m, d, t1) - displacement_at(c, m, d, t0);
+  case MOTION_VELOCITY: return m->value[d] * span;
+  case MOTION_ROTATION: return rotation(m, dim, x, m->rate * span, d);
+  case MOTION_FIXED: break;
+  }
+  return 0;
+}
+
+void motion_origin(const Case *c, const MotionSpec *m, const PetscReal *x, PetscReal t, PetscReal *X)
+{
+  const PetscInt dim = kinematics_dim(c->kinematics);
+  const PetscReal span = amplitude_integral(&m->amplitude, t, 1);
+  for (PetscInt d = 0; d < dim; ++d) {
+    PetscReal moved = 0;
+    if (m->kind == MOTION_DISPLACEMENT && m->component[d]) moved = displacement_at(c, m, d, t);
+    if (m->kind == MOTION_VELOCITY && m->component[d]) moved = m->value[d] * span;
+    if (m->kind == MOTION_ROTATION) moved = -rotation(m, dim, x, -m->rate * span, d); /* turned back */
+    X[d] = x[d] - moved;
+  }
+}
