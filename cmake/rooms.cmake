@@ -1,7 +1,7 @@
 # Flags that every target shares.
 add_library(talus_flags INTERFACE)
 target_include_directories(talus_flags INTERFACE ${PROJECT_SOURCE_DIR}/src ${PROJECT_SOURCE_DIR}/include ${PROJECT_BINARY_DIR}/generated)
-target_link_libraries(talus_flags INTERFACE PkgConfig::PETSC MPI::MPI_C PkgConfig::HDF5 PkgConfig::FYAML m)
+target_link_libraries(talus_flags INTERFACE PkgConfig::PETSC MPI::MPI_C PkgConfig::HDF5 PkgConfig::FYAML PkgConfig::ZLIB m)
 target_compile_definitions(talus_flags INTERFACE _GNU_SOURCE)
 target_compile_options(talus_flags INTERFACE -Wall -Wextra -Wshadow -fno-math-errno -fno-trapping-math
   -fno-semantic-interposition)
