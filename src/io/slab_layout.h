@@ -16,6 +16,7 @@ typedef struct {
   SlabType type;
   PetscInt components; /* numbers a row */
   PetscBool matrix;    /* two-dimensional even with one component */
+  PetscBool whole;     /* for the writer: every reader wants all rows */
   PetscInt64 rows, first, total;
   const void *data;  /* rows x components */
   PetscInt64 offset; /* in the file, bytes; -1: nothing to write */
