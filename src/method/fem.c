@@ -53,10 +53,22 @@ static PetscErrorCode FemConvect(Stage *s, const PetscReal *du)
   PetscFunctionReturn(0);
 }
 
+static PetscReal *node_position(Stage *s) { return s->grid->x; }
+static PetscReal *node_velocity(Stage *s) { return s->v; }
+static PetscReal *node_acceleration(Stage *s) { return s->a; }
+
+static const MethodField fields[] = {
+  {"position", "m", node_position},
+  {"velocity", "m/s", node_velocity},
+  {"acceleration", "m/s2", node_acceleration},
+  {NULL, NULL, NULL},
+};
+
 const Method method_fem = {
   .name = "fem",
   .help = "updated Lagrangian finite elements: the mesh moves with the body",
   .points_move = PETSC_FALSE,
   .initialise = FemInitialise,
   .convect = FemConvect,
+  .fields = fields,
 };
