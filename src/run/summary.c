@@ -33,7 +33,7 @@ PetscErrorCode SummaryBegin(Model *m, RunDir *dir)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode SummaryEnd(Model *m, RunDir *dir, PetscReal seconds, const PetscReal *values)
+PetscErrorCode SummaryEnd(Model *m, RunDir *dir, PetscBool gave_up, PetscReal seconds, const PetscReal *values)
 {
   PetscReal phase[PHASE_N], rest = seconds;
   char text[1024];
@@ -56,8 +56,9 @@ PetscErrorCode SummaryEnd(Model *m, RunDir *dir, PetscReal seconds, const PetscR
   }
   end = strlen(text);
   PetscCall(PetscSNPrintf(text + end, sizeof text - end,
-                          "rest [s] = %.6g\nsteps = %d\niterations = %d\nhalvings = %d\npatterns = %d\n", (double)rest,
-                          (int)m->step, (int)m->total_iterations, (int)m->cuts, (int)m->system->builds));
+                          "rest [s] = %.6g\nsteps = %d\niterations = %d\nhalvings = %d\npatterns = %d\noutcome = %s\n",
+                          (double)rest, (int)m->step, (int)m->total_iterations, (int)m->cuts, (int)m->system->builds,
+                          gave_up ? "gave up" : "done"));
   const PetscErrorCode status = RunDirWriteText(dir, "timings.txt", text);
   PetscFunctionReturn(status);
 }

@@ -8,4 +8,4 @@ PetscErrorCode SummaryVersion(MPI_Comm comm, RunDir *dir);
 /* Sizes of the model, logged. Collective. */
 PetscErrorCode SummaryBegin(Model *model, RunDir *dir);
 /* Measures and timings, logged and in timings.txt. Collective. */
-PetscErrorCode SummaryEnd(Model *model, RunDir *dir, PetscReal seconds, const PetscReal *values);
+PetscErrorCode SummaryEnd(Model *model, RunDir *dir, PetscBool gave_up, PetscReal seconds, const PetscReal *values);
