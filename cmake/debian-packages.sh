@@ -12,6 +12,7 @@ packages_of() {
     docs) echo doxygen ;;
     format) echo clang-format ;;
     tidy) echo clang-tidy ;;
+    fuzz) echo clang libclang-rt-dev ;;
     *) echo "debian-packages.sh: unknown group '$1'" >&2; exit 2 ;;
   esac
 }
