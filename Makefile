@@ -4,6 +4,8 @@ PREFIX     ?= /usr/local
 JOBS       ?= $(shell nproc 2>/dev/null || echo 2)
 TEST_JOBS  ?= 2
 CASE       ?= cases/granular-collapse
+KILLS      ?= 50
+FUZZ_SECONDS ?= 60
 RUN        ?= runs/$(notdir $(CASE))
 TALUS      := $(BUILD)/talus
 SANITIZE   := $(BUILD)-sanitize
@@ -15,7 +17,7 @@ MAKEFLAGS  += --no-print-directory
 export OMPI_ALLOW_RUN_AS_ROOT := 1
 export OMPI_ALLOW_RUN_AS_ROOT_CONFIRM := 1
 
-.PHONY: build help deps configure run test test-sanitize bench verify install docs format format-check tidy clean
+.PHONY: build help deps configure run test test-sanitize test-kill fuzz bench verify install docs format format-check tidy clean
 
 build: configure ## Build the program, build/talus, and its tests (the default). PORTABLE=1: for any machine
 	@cmake --build $(BUILD) --parallel $(JOBS)
@@ -42,6 +44,17 @@ test-sanitize: deps ## The same tests under AddressSanitizer and UndefinedBehavi
 	  $(OPTIONS) >/dev/null
 	@cmake --build $(SANITIZE) --parallel $(JOBS)
 	@cmake/run-tests.sh $(SANITIZE) $(TEST_JOBS) $(TEST_ARGS)
+
+test-kill: build ## Kill a run 50 times at random moments on one rank, 50 times on two, and compare: KILLS=50
+	@OPENBLAS_NUM_THREADS=1 sh tests/program/kill.sh $(abspath $(TALUS)) 1 $(KILLS)
+	@OPENBLAS_NUM_THREADS=1 sh tests/program/kill.sh $(abspath $(TALUS)) 2 $(KILLS)
+
+fuzz: ## Throw random bytes at the readers of cases, meshes and checkpoints: FUZZ_SECONDS=60 each
+	@cmake/debian-packages.sh build fuzz
+	@cmake -S . -B $(BUILD)-fuzz -G Ninja --log-level=WARNING -DCMAKE_BUILD_TYPE=RelWithDebInfo -DCMAKE_C_COMPILER=clang \
+	  -DTALUS_FUZZ=ON $(OPTIONS) >/dev/null
+	@cmake --build $(BUILD)-fuzz --parallel $(JOBS) --target fuzzers
+	@sh tests/fuzz/run.sh $(BUILD)-fuzz $(FUZZ_SECONDS)
 
 bench: build ## Build and run the performance benchmarks
 	@cmake --build $(BUILD) --parallel $(JOBS) --target bench
@@ -76,4 +89,4 @@ tidy: configure ## Look for mistakes with clang-tidy; silent if there are none
 	  2>$(BUILD)/tidy-log.txt
 
 clean: ## Remove what `make` built (not the runs)
-	@rm -rf $(BUILD) $(SANITIZE)
+	@rm -rf $(BUILD) $(SANITIZE) $(BUILD)-fuzz

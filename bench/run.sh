@@ -35,3 +35,8 @@ one=$(best_step 1)
 two=$(best_step 2)
 echo "$one $two" | awk '{printf "  1 rank %.2f ms a step, 2 ranks %.2f ms: %.2f times faster   [target 1.7, on two free cores]\n" \
   "  (other work on the machine took a core away for %d %% and %d %% of the time)\n", $1, $3, $1 / $3, $2, $4}'
+
+title "checkpoints: written, fsync included, and read back"
+"$bench/bench_checkpoint"
+"$bench/bench_checkpoint" -dim 3
+mpiexec --oversubscribe -n 2 "$bench/bench_checkpoint"

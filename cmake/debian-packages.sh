@@ -7,11 +7,12 @@ packages_of() {
     build)
       echo build-essential cmake ninja-build pkg-config
       echo petsc-dev libopenmpi-dev openmpi-bin libhdf5-openmpi-dev libopenblas-dev
-      echo libfyaml-dev libcmocka-dev gmsh gnuplot-nox
+      echo libfyaml-dev zlib1g-dev libcmocka-dev gmsh gnuplot-nox
       ;;
     docs) echo doxygen ;;
     format) echo clang-format ;;
     tidy) echo clang-tidy ;;
+    fuzz) echo clang libclang-rt-dev ;;
     *) echo "debian-packages.sh: unknown group '$1'" >&2; exit 2 ;;
   esac
 }

@@ -13,6 +13,19 @@ if(TARGET talus_library)
   endforeach()
 endif()
 
+# Fuzzers: tests/fuzz/fuzz_*.c, with a library of their own flags (make fuzz).
+if(TALUS_FUZZ)
+  file(GLOB fuzz_sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/tests/fuzz/fuzz_*.c)
+  foreach(source ${fuzz_sources})
+    get_filename_component(name ${source} NAME_WE)
+    add_executable(${name} EXCLUDE_FROM_ALL ${source})
+    target_link_libraries(${name} PRIVATE talus_library)
+    target_link_options(${name} PRIVATE -fsanitize=fuzzer)
+    list(APPEND fuzzers ${name})
+  endforeach()
+  add_custom_target(fuzzers DEPENDS ${fuzzers})
+endif()
+
 configure_file(${PROJECT_SOURCE_DIR}/docs/Doxyfile.in ${PROJECT_BINARY_DIR}/Doxyfile @ONLY)
 add_custom_target(docs COMMAND doxygen ${PROJECT_BINARY_DIR}/Doxyfile WORKING_DIRECTORY ${PROJECT_SOURCE_DIR}
   COMMENT "Reference of the public header: ${PROJECT_BINARY_DIR}/docs/html/index.html" VERBATIM)

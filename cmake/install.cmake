@@ -15,7 +15,7 @@ foreach(library talus_library talus_shared)
   set_target_properties(${library} PROPERTIES OUTPUT_NAME talus LINKER_LANGUAGE C)
 endforeach()
 target_link_libraries(talus_library PUBLIC $<INSTALL_INTERFACE:PkgConfig::TALUS_HDF5>
-  $<INSTALL_INTERFACE:PkgConfig::TALUS_FYAML> $<INSTALL_INTERFACE:m>)
+  $<INSTALL_INTERFACE:PkgConfig::TALUS_FYAML> $<INSTALL_INTERFACE:PkgConfig::TALUS_ZLIB> $<INSTALL_INTERFACE:m>)
 target_link_options(talus_shared PRIVATE -Wl,--version-script=${PROJECT_SOURCE_DIR}/cmake/talus.map)
 set_target_properties(talus_library PROPERTIES EXPORT_NAME static)
 set_target_properties(talus_shared PROPERTIES EXPORT_NAME talus

@@ -1,12 +1,16 @@
 # Flags that every target shares.
 add_library(talus_flags INTERFACE)
 target_include_directories(talus_flags INTERFACE ${PROJECT_SOURCE_DIR}/src ${PROJECT_SOURCE_DIR}/include ${PROJECT_BINARY_DIR}/generated)
-target_link_libraries(talus_flags INTERFACE PkgConfig::PETSC MPI::MPI_C PkgConfig::HDF5 PkgConfig::FYAML m)
+target_link_libraries(talus_flags INTERFACE PkgConfig::PETSC MPI::MPI_C PkgConfig::HDF5 PkgConfig::FYAML PkgConfig::ZLIB m)
 target_compile_definitions(talus_flags INTERFACE _GNU_SOURCE)
 target_compile_options(talus_flags INTERFACE -Wall -Wextra -Wshadow -fno-math-errno -fno-trapping-math
   -fno-semantic-interposition)
 if(NOT TALUS_PORTABLE)
   target_compile_options(talus_flags INTERFACE -march=native)
+endif()
+if(TALUS_FUZZ)
+  target_compile_options(talus_flags INTERFACE -fsanitize=fuzzer-no-link,address,undefined -fno-sanitize-recover=undefined)
+  target_link_options(talus_flags INTERFACE -fsanitize=address,undefined)
 endif()
 if(TALUS_SANITIZE)
   target_compile_options(talus_flags INTERFACE -fsanitize=address,undefined -fno-omit-frame-pointer -fno-sanitize-recover=undefined)

@@ -189,6 +189,13 @@ typedef struct {
   PetscBool grid;    /* write the grid's fields too */
 } OutputSpec;
 
+/* When the state is put away so that a run can go on after an accident. */
+typedef struct {
+  PetscInt steps;    /* after so many steps; 0: not by steps */
+  PetscReal minutes; /* after so much time of the clock; 0: not by the clock */
+  PetscInt keep;     /* how many checkpoints are kept */
+} CheckpointSpec;
+
 typedef struct {
   char *file;   /* as the user named it */
   char *folder; /* where it stands, "." at least: relative names start here */
@@ -215,6 +222,7 @@ typedef struct {
   LinearChoice linear;
   StabilisationSpec stabilisation;
   OutputSpec output;
+  CheckpointSpec checkpoint;
   PetscInt n_petsc; /* options of the petsc: block, in order: "-name value" */
   char **petsc;
 } Case;

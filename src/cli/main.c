@@ -111,7 +111,7 @@ static void Split(int argc, char **argv, int *n_own, char **own, int *n_petsc, c
 /* `-out runs/a` would vanish in PETSc's option table without a word. */
 static const char *SingleDashMistake(int n, char **petsc)
 {
-  static const char *const ours[] = {"set", "out", "quiet", "force", "log", "full", "json", "markdown", NULL};
+  static const char *const ours[] = {"set", "out", "quiet", "force", "resume", "log", "full", "json", "markdown", NULL};
   for (int i = 1; i < n; ++i)
     for (int k = 0; ours[k]; ++k)
       if (petsc[i][0] == '-' && !strcmp(petsc[i] + 1, ours[k])) return ours[k];

@@ -1,6 +1,8 @@
 /* talus run: from a case file to a directory of results. */
-#include "cli/cli.h"
+#include <errno.h>
+#include <string.h>
 #include <unistd.h>
+#include "cli/cli.h"
 #include "io/case_file.h"
 #include "run/run.h"
 #include "run/verify.h"
@@ -9,20 +11,40 @@ static const CliOption options_known[] = {
   {"set", "PATH=VALUE", "change a value of the case, e.g. --set materials.rubber.young=1e6; may be given often"},
   {"out", "DIR", "where the results go; default: runs/<name of the case>"},
   {"force", NULL, "replace a run that is in DIR already"},
+  {"resume", "DIR", "go on with the run in DIR from its newest checkpoint, on any number of ranks; no CASE then"},
   {"quiet", NULL, "nothing on the terminal but errors"},
   {"log", "FILE", "write the log there instead of to DIR/log.txt"},
   {NULL, NULL, NULL},
 };
 
 static const CliUsage usage = {
-  .usage = "talus run CASE [options]",
+  .usage = "talus run CASE [options], or talus run --resume DIR [options]",
   .help =
-    "Runs a case file and writes states (.hdf, for ParaView), history.csv and a log into a run directory.\n"
+    "Runs a case file and writes states (.hdf, for ParaView), history.csv and a log into a run directory. Every ten\n"
+    "minutes (checkpoint: in the case) and at SIGINT and SIGTERM the whole state is put away there; with --resume a "
+    "run\n"
+    "that was cut off goes on as if nothing had been. Then --set may change checkpoint, newton, linear, petsc,\n"
+    "analysis.smallest and .largest, grid.outside and, in dynamics, analysis.end.\n"
     "If the case has a reference.yaml beside it that knows this very case, the results are compared with it.",
   .options = options_known,
-  .min_words = 1,
+  .min_words = 0,
   .max_words = 1,
 };
+
+/* What a resumed run may change: how it is solved, not what. */
+static const char *const may_change[] = {
+  "checkpoint",       "newton",       "linear",       "petsc", "analysis.smallest",
+  "analysis.largest", "analysis.end", "grid.outside", NULL};
+
+/* PATH=VALUE names one of these, or a key below it. */
+static PetscBool MayChange(const char *set)
+{
+  for (int i = 0; may_change[i]; ++i) {
+    const size_t n = strlen(may_change[i]);
+    if (!strncmp(set, may_change[i], n) && (set[n] == '=' || set[n] == '.')) return PETSC_TRUE;
+  }
+  return PETSC_FALSE;
+}
 
 /* runs/cantilever for cases/cantilever/case.yaml and for cantilever.yaml. */
 static void default_out(const char *file, char *out, size_t size)
@@ -62,38 +84,95 @@ static PetscErrorCode Compare(const char *file, const char *out)
   PetscFunctionReturn(0);
 }
 
+/* CASE or --resume, and what may stand beside it; *ok is false after a complaint. */
+static PetscErrorCode CheckArguments(const CliArguments *a, PetscInt n_set, const char *const *set, PetscBool *ok,
+                                     int *exit_code)
+{
+  const char *folder = CliValue(a, "resume");
+
+  PetscFunctionBeginUser;
+  *ok = PETSC_FALSE;
+  if (!folder && !a->n_words)
+    PetscCall(CliUsageError(exit_code,
+                            "usage: talus run CASE [options] (options of PETSc go to the end: they take the "
+                            "word behind them)",
+                            "there is no CASE on the command line"));
+  else if (folder && (a->n_words || CliFlag(a, "out") || CliFlag(a, "force")))
+    PetscCall(CliUsageError(exit_code, "talus run --resume DIR",
+                            "--resume goes on in DIR with the case that is there: CASE, --out and --force make no "
+                            "sense beside it"));
+  else *ok = PETSC_TRUE;
+  for (PetscInt i = 0; folder && *ok && i < n_set; ++i) {
+    if (MayChange(set[i])) continue;
+    PetscCall(CliUsageError(exit_code,
+                            "it may change checkpoint, newton, linear, petsc, analysis.smallest, "
+                            "analysis.largest, analysis.end and grid.outside; for all else start a new run",
+                            "a resumed run cannot change %.*s", (int)strcspn(set[i], "="), set[i]));
+    *ok = PETSC_FALSE;
+  }
+  PetscFunctionReturn(0);
+}
+
+/* The case: the file given, or the one that the run to be resumed has kept. */
+static void choose_files(const CliArguments *a, char file[PETSC_MAX_PATH_LEN], char out[PETSC_MAX_PATH_LEN])
+{
+  const char *folder = CliValue(a, "resume"), *asked = CliValue(a, "out");
+  if (folder) {
+    PetscSNPrintf(file, PETSC_MAX_PATH_LEN, "%s/case.yaml", folder);
+    PetscStrncpy(out, folder, PETSC_MAX_PATH_LEN);
+  } else {
+    PetscStrncpy(file, a->words[0], PETSC_MAX_PATH_LEN);
+    if (asked) PetscStrncpy(out, asked, PETSC_MAX_PATH_LEN);
+    else default_out(file, out, PETSC_MAX_PATH_LEN);
+  }
+}
+
+static PetscErrorCode ReadAndRun(const CliArguments *a, PetscInt n_set, const char *const *set, int *exit_code)
+{
+  char file[PETSC_MAX_PATH_LEN], out[PETSC_MAX_PATH_LEN];
+  RunResult result = RUN_BAD_INPUT;
+  RunSummary summary = {0};
+  Diag *diag;
+  Case *c = NULL;
+
+  PetscFunctionBeginUser;
+  choose_files(a, file, out);
+  PetscCall(DiagCreate(&diag));
+  if (CliFlag(a, "resume") && access(file, R_OK)) {
+    DiagError(diag, NULL, "there is no run to resume in '%s': %s: %s", out, file, strerror(errno));
+    DiagHint(diag, "a run that was cut off before it began is started again, with --force");
+  } else PetscCall(CaseRead(PETSC_COMM_WORLD, file, n_set, set, diag, &c));
+  if (c) {
+    const RunOptions run = {.out = out,
+                            .resume = CliFlag(a, "resume"),
+                            .force = CliFlag(a, "force"),
+                            .quiet = CliFlag(a, "quiet"),
+                            .log = CliValue(a, "log"),
+                            .summary = &summary};
+    PetscCall(RunCase(PETSC_COMM_WORLD, c, &run, diag, NULL, &result));
+    if (summary.reason[0]) DiagError(diag, NULL, "%s", summary.reason);
+    if (summary.resumable)
+      DiagHint(diag, "talus run --resume %s goes on from step %d", out, (int)summary.checkpoint_step);
+  }
+  PetscCall(DiagFlush(diag, stderr));
+  if (result == RUN_DONE && !CliFlag(a, "quiet")) PetscCall(Compare(file, out));
+  *exit_code = (int)result;
+  PetscCall(CaseDestroy(&c));
+  PetscCall(DiagDestroy(&diag));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode CliRun(int argc, char **argv, int *exit_code)
 {
   CliArguments arguments;
   PetscBool go_on;
   const char *set[CLI_MAX_ARGUMENTS];
-  char out[PETSC_MAX_PATH_LEN];
-  RunResult result = RUN_BAD_INPUT;
-  RunSummary summary = {0};
-  Diag *diag;
-  Case *c;
 
   PetscFunctionBeginUser;
   PetscCall(CliParse(&usage, argc, argv, &arguments, &go_on, exit_code));
   if (!go_on) PetscFunctionReturn(0);
   const PetscInt n_set = CliValues(&arguments, "set", set);
-  PetscCall(DiagCreate(&diag));
-  PetscCall(CaseRead(PETSC_COMM_WORLD, arguments.words[0], n_set, set, diag, &c));
-  if (c) {
-    default_out(arguments.words[0], out, sizeof out);
-    const RunOptions run = {.out = CliValue(&arguments, "out") ? CliValue(&arguments, "out") : out,
-                            .force = CliFlag(&arguments, "force"),
-                            .quiet = CliFlag(&arguments, "quiet"),
-                            .log = CliValue(&arguments, "log"),
-                            .summary = &summary};
-    PetscCall(RunCase(PETSC_COMM_WORLD, c, &run, diag, NULL, &result));
-    if (summary.reason[0]) DiagError(diag, NULL, "%s", summary.reason);
-  }
-  PetscCall(DiagFlush(diag, stderr));
-  if (result == RUN_DONE && !CliFlag(&arguments, "quiet"))
-    PetscCall(Compare(arguments.words[0], CliValue(&arguments, "out") ? CliValue(&arguments, "out") : out));
-  *exit_code = (int)result;
-  PetscCall(CaseDestroy(&c));
-  PetscCall(DiagDestroy(&diag));
+  PetscCall(CheckArguments(&arguments, n_set, set, &go_on, exit_code));
+  if (go_on) PetscCall(ReadAndRun(&arguments, n_set, set, exit_code));
   PetscFunctionReturn(0);
 }

@@ -139,7 +139,7 @@ static void read_format(MshReader *r)
     msh_fail(r, "MSH version %g is not read; write 2.2 or 4.1 (gmsh -format msh41)", (double)version);
   if (binary != 0 && binary != 1) msh_fail(r, "%lld is no file type of Gmsh", (long long)binary);
   if (bytes != 8) msh_fail(r, "numbers of %lld bytes are not read", (long long)bytes);
-  r->major = (PetscInt)version;
+  r->major = version == 2.2 ? 2 : 4;
   if (r->failed || !binary) return;
   int32_t one;
   msh_skip_line(r);

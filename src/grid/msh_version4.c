@@ -57,6 +57,7 @@ PetscErrorCode MshReadNodes4(MshReader *r)
     const PetscInt64 dim = msh_int(r);
     (void)msh_int(r);
     const PetscInt64 parameters = msh_int(r) ? dim : 0, in_block = msh_size(r);
+    if (dim < 0 || dim > 3) msh_fail(r, "a block of nodes has dimension %lld", (long long)dim);
     if (in_block < 0 || in_block > n - done) msh_fail(r, "a block has more nodes than the file says");
     for (PetscInt k = done; k < done + in_block && !r->failed; ++k)
       r->msh->node_tag[k] = msh_tag(r, msh_size(r), "node");

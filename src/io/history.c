@@ -61,18 +61,22 @@ PetscErrorCode HistoryOpen(RunDir *dir, PetscInt n, const char *const *names, co
   PetscFunctionReturn(status);
 }
 
-/* Copy the rows before `time`; a last row that was cut off is dropped too. */
-static int CopyRows(FILE *old, FILE *out, PetscReal time)
+/* Copy the rows up to that of `last`; a row that was cut off is dropped too. Returns the step of the last one copied, -1 if there is none. */
+static long long CopyRows(FILE *old, FILE *out, PetscInt last)
 {
-  const PetscReal before = time - 1e-12 * PetscAbsReal(time);
   char *line = NULL, *end;
   size_t size = 0;
+  long long copied = -1;
   for (ssize_t n = getline(&line, &size, old); n > 0; n = getline(&line, &size, old)) {
-    const double t = strtod(line, &end);
-    if (end != line && *end == ',' && line[n - 1] == '\n' && t < before) fputs(line, out);
+    (void)strtod(line, &end);
+    if (end == line || *end != ',' || line[n - 1] != '\n') continue;
+    const long long step = strtoll(end + 1, NULL, 10);
+    if (step > last) continue;
+    fputs(line, out);
+    copied = step;
   }
   free(line);
-  return ferror(old) ? EIO : 0;
+  return copied;
 }
 
 /* Does the old file start with our header? */
@@ -85,30 +89,38 @@ static PetscBool SameHeader(FILE *old, const char *header)
   return same;
 }
 
-static int KeepRows(const char *path, const char *header, PetscReal time, Diag *diag)
+static int KeepRows(const char *path, const char *header, PetscInt step, Diag *diag)
 {
   char unfinished[FILE_PATH + 16];
   FILE *old = fopen(path, "r"), *out = NULL;
+  long long copied = -1;
   int error = 0;
   snprintf(unfinished, sizeof unfinished, "%s" FILE_UNFINISHED, path);
   if (!old && errno != ENOENT) return errno;
   if (old && !SameHeader(old, header)) {
     DiagError(diag, NULL, "the measures differ from those of '%s': the run cannot go on there", path);
-  } else {
-    out = fopen(unfinished, "w");
-    error = out ? 0 : errno;
+    fclose(old);
+    return 0;
   }
+  out = fopen(unfinished, "w");
+  error = out ? 0 : errno;
   if (out) {
     fputs(header, out);
-    if (old) error = CopyRows(old, out, time);
+    if (old) copied = CopyRows(old, out, step);
+    if (old && ferror(old)) error = EIO;
     const int closing = file_finish_stream(out);
-    error = file_commit(unfinished, path, error ? error : closing);
+    if (!error) error = closing;
   }
   if (old) fclose(old);
-  return error;
+  if (!error && step >= 0 && copied != step) {
+    DiagError(diag, NULL, "'%s' has lost rows: the one of step %lld is missing", path, (long long)step);
+    unlink(unfinished);
+    return 0;
+  }
+  return file_commit(unfinished, path, error);
 }
 
-static int OpenFrom(RunDir *dir, PetscInt n, const char *const *names, const char *const *units, PetscReal time,
+static int OpenFrom(RunDir *dir, PetscInt n, const char *const *names, const char *const *units, PetscInt step,
                     Diag *diag)
 {
   char path[FILE_PATH], *header = NULL;
@@ -119,19 +131,29 @@ static int OpenFrom(RunDir *dir, PetscInt n, const char *const *names, const cha
   fclose(memory);
   snprintf(path, sizeof path, "%s/history.csv", dir->path);
   const PetscInt errors = DiagErrors(diag);
-  int error = KeepRows(path, header, time, diag);
+  int error = KeepRows(path, header, step, diag);
   free(header);
   if (!error && DiagErrors(diag) == errors) error = Open(dir, "a");
   return error;
 }
 
 PetscErrorCode HistoryOpenFrom(RunDir *dir, PetscInt n, const char *const *names, const char *const *units,
-                               PetscReal time, Diag *diag)
+                               PetscInt step, Diag *diag)
 {
   PetscFunctionBeginUser;
   dir->n_measures = n;
   const PetscErrorCode status =
-    RunDirAgree(dir, "history.csv", dir->rank ? 0 : OpenFrom(dir, n, names, units, time, diag));
+    RunDirAgree(dir, "history.csv", dir->rank ? 0 : OpenFrom(dir, n, names, units, step, diag));
+  PetscFunctionReturn(status);
+}
+
+PetscErrorCode HistorySync(RunDir *dir)
+{
+  int error = 0;
+
+  PetscFunctionBeginUser;
+  if (dir->rank == 0 && dir->history && fsync(fileno(dir->history)) && errno != EINVAL) error = errno;
+  const PetscErrorCode status = RunDirAgree(dir, "history.csv", error);
   PetscFunctionReturn(status);
 }
 

@@ -2,9 +2,11 @@
 #include <errno.h>
 #include <fnmatch.h>
 #include <dirent.h>
+#include <fcntl.h>
 #include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/file.h>
 #include <time.h>
 #include <unistd.h>
 #include "io/run_dir_files.h"
@@ -12,9 +14,18 @@
 
 static const char unfinished[] = "*" FILE_UNFINISHED;
 /* What a run leaves behind, and what `--force` removes. */
-static const char *const run_files[] = {
-  "case.yaml",       "log.txt",      "version.txt",    "timings.txt", "history.csv", "points_[0-9]*.hdf",
-  "grid_[0-9]*.hdf", "*.hdf.series", "checkpoint*.h5", unfinished,    NULL};
+static const char *const run_files[] = {"case.yaml",
+                                        "log.txt",
+                                        "version.txt",
+                                        "timings.txt",
+                                        "history.csv",
+                                        "points_[0-9]*.hdf",
+                                        "grid_[0-9]*.hdf",
+                                        "*.hdf.series",
+                                        "checkpoint_[0-9]*.h5",
+                                        "checkpoint_[0-9]*.h5.damaged",
+                                        unfinished,
+                                        NULL};
 static const char *const picture_files[] = {"state_*.png", "history_*.png", unfinished, NULL};
 /* Any of these tells a run. A case.yaml alone may be the user's own. */
 static const char *const run_marks[] = {"log.txt", "version.txt", "history.csv", "points.hdf.series", NULL};
@@ -72,7 +83,8 @@ static PetscBool CheckFolder(const char *path, PetscBool force, Diag *diag)
   if (HoldsRun(path)) {
     if (force) return PETSC_TRUE;
     DiagError(diag, NULL, "the output directory '%s' already holds a run", path);
-    DiagHint(diag, "--out names another directory, --force replaces the run that is there");
+    DiagHint(diag, "--out names another directory, --force replaces the run that is there, --resume %s goes on with it",
+             path);
     return PETSC_FALSE;
   }
   if (file_exists(path, "case.yaml")) {
@@ -95,10 +107,21 @@ static FILE *OpenLog(const char *folder, const char *log, const char *mode, Diag
   return file;
 }
 
-/* Rank 0; the log is opened before anything is removed if it stands outside. */
-static FILE *Prepare(const char *path, PetscBool force, const char *log, Diag *diag)
+/* A run at work holds a lock on its directory, which the system takes away when the process ends, however it ends. */
+static PetscBool Lock(const char *path, Diag *diag, int *lock)
 {
-  if (!CheckFolder(path, force, diag)) return NULL;
+  *lock = open(path, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (*lock < 0 || !flock(*lock, LOCK_EX | LOCK_NB) || errno != EWOULDBLOCK) return PETSC_TRUE;
+  close(*lock);
+  *lock = -1;
+  DiagError(diag, NULL, "another run is at work in the output directory '%s'", path);
+  return PETSC_FALSE;
+}
+
+/* Rank 0; the log is opened before anything is removed if it stands outside. */
+static FILE *Prepare(const char *path, PetscBool force, const char *log, Diag *diag, int *lock)
+{
+  if (!CheckFolder(path, force, diag) || !Lock(path, diag, lock)) return NULL;
   FILE *file = log ? OpenLog(path, log, "w", diag) : NULL;
   if (log && !file) return NULL;
   const int error = force ? RemoveRun(path) : 0;
@@ -123,7 +146,7 @@ static PetscBool OnTerminal(void)
 }
 
 /* The same answer on all ranks: a directory with the open log, or none. */
-static PetscErrorCode Finish(MPI_Comm comm, PetscMPIInt rank, const char *path, PetscBool quiet, FILE *log,
+static PetscErrorCode Finish(MPI_Comm comm, PetscMPIInt rank, const char *path, PetscBool quiet, FILE *log, int lock,
                              RunDir **dir)
 {
   struct timespec now;
@@ -132,12 +155,14 @@ static PetscErrorCode Finish(MPI_Comm comm, PetscMPIInt rank, const char *path, 
   PetscFunctionBeginUser;
   *dir = NULL;
   PetscCallMPI(MPI_Bcast(&ok, 1, MPI_INT, 0, comm));
+  if (!ok && lock >= 0) close(lock);
   if (!ok) PetscFunctionReturn(0);
   PetscCall(PetscNew(dir));
   PetscCallMPI(MPI_Comm_dup(comm, &(*dir)->comm));
   clock_gettime(CLOCK_MONOTONIC, &now);
   (*dir)->rank = rank;
   (*dir)->log = log;
+  (*dir)->lock = lock;
   (*dir)->quiet = quiet;
   (*dir)->terminal = OnTerminal();
   (*dir)->start = (PetscReal)now.tv_sec + 1e-9 * (PetscReal)now.tv_nsec;
@@ -150,16 +175,18 @@ PetscErrorCode RunDirCreate(MPI_Comm comm, const char *path, PetscBool force, Pe
                             Diag *diag, RunDir **dir)
 {
   PetscMPIInt rank;
+  int lock = -1;
 
   PetscFunctionBeginUser;
   PetscCallMPI(MPI_Comm_rank(comm, &rank));
-  PetscCall(Finish(comm, rank, path, quiet, rank ? NULL : Prepare(path, force, log, diag), dir));
+  FILE *file = rank ? NULL : Prepare(path, force, log, diag, &lock);
+  PetscCall(Finish(comm, rank, path, quiet, file, lock, dir));
   PetscFunctionReturn(0);
 }
 
-static FILE *PrepareOpen(const char *path, const char *log, Diag *diag)
+static FILE *PrepareOpen(const char *path, const char *log, Diag *diag, int *lock)
 {
-  if (HoldsRun(path)) return OpenLog(path, log, "a", diag);
+  if (HoldsRun(path)) return Lock(path, diag, lock) ? OpenLog(path, log, "a", diag) : NULL;
   DiagError(diag, NULL, "there is no run to resume in '%s'", path);
   return NULL;
 }
@@ -167,10 +194,12 @@ static FILE *PrepareOpen(const char *path, const char *log, Diag *diag)
 PetscErrorCode RunDirOpen(MPI_Comm comm, const char *path, PetscBool quiet, const char *log, Diag *diag, RunDir **dir)
 {
   PetscMPIInt rank;
+  int lock = -1;
 
   PetscFunctionBeginUser;
   PetscCallMPI(MPI_Comm_rank(comm, &rank));
-  PetscCall(Finish(comm, rank, path, quiet, rank ? NULL : PrepareOpen(path, log, diag), dir));
+  FILE *file = rank ? NULL : PrepareOpen(path, log, diag, &lock);
+  PetscCall(Finish(comm, rank, path, quiet, file, lock, dir));
   PetscFunctionReturn(0);
 }
 
@@ -181,6 +210,7 @@ PetscErrorCode RunDirDestroy(RunDir **dir)
   if ((*dir)->bar) puts("");
   if ((*dir)->log) fclose((*dir)->log);
   if ((*dir)->history) fclose((*dir)->history);
+  if ((*dir)->lock >= 0) close((*dir)->lock);
   PetscCallMPI(MPI_Comm_free(&(*dir)->comm));
   PetscCall(PetscFree(*dir));
   PetscFunctionReturn(0);
@@ -226,7 +256,8 @@ PetscErrorCode RunDirAgree(RunDir *dir, const char *name, int error)
   PetscFunctionBeginUser;
   PetscCallMPI(MPI_Bcast(&error, 1, MPI_INT, 0, dir->comm));
   if (!error) PetscFunctionReturn(0);
-  snprintf(dir->reason, sizeof dir->reason, "cannot write %s/%s: %s", dir->path, name, strerror(error));
+  snprintf(dir->reason, sizeof dir->reason, "cannot write %s%s%s: %s", dir->path, name[0] ? "/" : "", name,
+           strerror(error));
   PetscCall(RunDirLog(dir, "error = %s", dir->reason));
   PetscFunctionReturn(PETSC_ERR_FILE_WRITE);
 }

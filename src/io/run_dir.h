@@ -3,7 +3,10 @@
  *   case.yaml     the resolved case (every key with its value)      history.csv   measures
  *   log.txt       what the run said                                 timings.txt   where the time went
  *   version.txt   talus, PETSc, MPI, compiler, number of ranks      pictures/     of talus plot
- *   points_000000.hdf ... points.hdf.series, grid_000000.hdf ... grid.hdf.series */
+ *   points_000000.hdf ... points.hdf.series, grid_000000.hdf ... grid.hdf.series
+ *   checkpoint_000000100.h5 ...   the state after so many steps (io/checkpoint.h)
+ *
+ * As long as a run is at work the directory is locked: a second one in the same place is refused. */
 #pragma once
 #include <petscsys.h>
 #include <stdio.h>
@@ -41,10 +44,12 @@ PetscErrorCode RunDirProgress(RunDir *dir, const RunProgress *progress);
  * disk refuses comes back plainly as PETSC_ERR_FILE_WRITE on every rank, after a line in the log that
  * says why. */
 PetscErrorCode HistoryOpen(RunDir *dir, PetscInt n, const char *const *names, const char *const *units);
-/* Resume: keep the rows before `time` and drop the others; the caller writes the row of `time` again. A
- * history of other measures is a diagnostic, and the file stays as it is. */
+/* Resume: keep the rows up to that of `step`, which must be there unless it is negative, and drop the others. A
+ * history of other measures, or one that has lost rows, is a diagnostic, and the file stays as it is. */
 PetscErrorCode HistoryOpenFrom(RunDir *dir, PetscInt n, const char *const *names, const char *const *units,
-                               PetscReal time, Diag *diag);
+                               PetscInt step, Diag *diag);
+/* Rows on the disk, not only with the system: what a checkpoint counts on. */
+PetscErrorCode HistorySync(RunDir *dir);
 PetscErrorCode HistoryWrite(RunDir *dir, PetscReal time, PetscInt step, const PetscReal *values);
 
 /* A text file written atomically (case.yaml, version.txt, timings.txt). Rank 0 writes. Collective.
@@ -53,3 +58,14 @@ PetscErrorCode RunDirWriteText(RunDir *dir, const char *name, const char *text);
 
 /* After PETSC_ERR_FILE_WRITE, on every rank: which file could not be written, and why. */
 const char *RunDirReason(const RunDir *dir);
+
+/* Where the checkpoint after so many steps stands. */
+#define CHECKPOINT_PATH (PETSC_MAX_PATH_LEN + 64)
+void RunDirCheckpointPath(const RunDir *dir, PetscInt step, char path[CHECKPOINT_PATH]);
+/* Collective. Steps of the checkpoints that are there, newest first; free with PetscFree. */
+PetscErrorCode RunDirCheckpoints(RunDir *dir, PetscInt *n, PetscInt **steps);
+/* Collective. Remove all but the newest. */
+PetscErrorCode RunDirKeepCheckpoints(RunDir *dir, PetscInt keep);
+/* Collective. Take back what a run did after a checkpoint: states from number `states` on and unfinished files go, checkpoints after `step` are
+ * set aside as `.damaged`. Errors as for the history. */
+PetscErrorCode RunDirRewind(RunDir *dir, PetscInt states, PetscInt step);

@@ -66,6 +66,16 @@ int file_finish(int fd)
   return error;
 }
 
+int file_sync_folder(const char *path)
+{
+  char folder[PETSC_MAX_PATH_LEN];
+  const char *slash = strrchr(path, '/');
+  const int n = snprintf(folder, sizeof folder, "%.*s", slash ? (int)PetscMax(1, slash - path) : 1, slash ? path : ".");
+  if (n >= (int)sizeof folder) return ENAMETOOLONG;
+  const int fd = open(folder, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  return fd < 0 ? errno : file_finish(fd);
+}
+
 int file_finish_stream(FILE *file)
 {
   int error = 0;

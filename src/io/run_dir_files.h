@@ -19,6 +19,8 @@ int file_write_at(int fd, const void *bytes, size_t n, off_t offset);
 int file_finish(int fd);
 /* Flush and close a stream; tells of anything that failed before. */
 int file_finish_stream(FILE *file);
+/* Flush the folder in which this file stands, so that its name is on the disk too. */
+int file_sync_folder(const char *path);
 /* `path` gets the text, atomically. */
 int file_write_text(const char *path, const char *text);
 /* Let `unfinished` become `path`, or remove it if `error` is not 0. Returns error, or that of the

@@ -9,6 +9,7 @@ struct RunDir {
   char path[PETSC_MAX_PATH_LEN];
   char reason[PETSC_MAX_PATH_LEN + 128]; /* of the last refusal */
   FILE *log, *history;
+  int lock; /* the open directory, -1: none */
   PetscInt n_measures;
   PetscBool quiet, terminal;
   PetscBool bar;   /* a progress bar stands on the terminal's last line */

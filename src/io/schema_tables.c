@@ -124,6 +124,19 @@ static const SchemaEntry output_entries[] = {
 };
 static const SchemaTable output = {.name = "output", .help = "What is written, and when.", .entries = output_entries};
 
+static const SchemaEntry checkpoint_entries[] = {
+  KEY("steps", INTEGER, NULL, "after so many steps; 0: not by steps", .fallback = "0", AT_LEAST(0),
+      AT(CheckpointSpec, steps)),
+  KEY("minutes", NUMBER, "min", "after so many minutes of the clock; 0: not by the clock", .fallback = "10",
+      AT_LEAST(0), AT(CheckpointSpec, minutes)),
+  KEY("keep", INTEGER, NULL, "how many are kept, the newest ones", .fallback = "2", AT_LEAST(1),
+      AT(CheckpointSpec, keep)),
+  {.key = NULL},
+};
+static const SchemaTable checkpoint = {.name = "checkpoint",
+                                       .help = "When the whole state is put away, for `talus run --resume`.",
+                                       .entries = checkpoint_entries};
+
 /* --- the whole file --- */
 static const SchemaEntry case_entries[] = {
   KEY("title", TEXT, NULL, "a line for people", .fallback = "", AT(Case, title)),
@@ -148,6 +161,7 @@ static const SchemaEntry case_entries[] = {
   KEY("stabilisation", TABLE, NULL, "cells that are not full", .table = &stabilisation, ALWAYS,
       AT(Case, stabilisation)),
   KEY("output", TABLE, NULL, "what is written", .table = &output, ALWAYS, AT(Case, output)),
+  KEY("checkpoint", TABLE, NULL, "state to resume from", .table = &checkpoint, ALWAYS, AT(Case, checkpoint)),
   KEY("petsc", OPTIONS, NULL, "options of PETSc: {snes_monitor: true, ksp_type: cg}", AT(Case, petsc),
       .count = offsetof(Case, n_petsc)),
   {.key = NULL},

@@ -28,42 +28,45 @@ static void WriteEntry(FILE *out, PetscBool first, const char *file, PetscReal t
   fprintf(out, "%s    {\"name\": \"%s\", \"time\": %s}", first ? "" : ",\n", file, number);
 }
 
-/* Entries before `time` (but for the last bits of a sum of steps), then the new one. */
-static void Rewrite(FILE *old, FILE *out, const char *file, PetscReal time)
+/* Entries before `time` (but for the last bits of a sum of steps) and at most `most` of them, then the new one. */
+static PetscInt Rewrite(FILE *old, FILE *out, const char *file, PetscReal time, PetscInt most)
 {
   const PetscReal before = time - 1e-12 * PetscAbsReal(time);
   char line[1024], name[VTK_SERIES_NAME];
-  PetscBool first = PETSC_TRUE;
+  PetscInt kept = 0;
   PetscReal t;
   fputs("{\n  \"file-series-version\": \"1.0\",\n  \"files\": [\n", out);
-  while (old && fgets(line, sizeof line, old)) {
+  while (old && kept < most && fgets(line, sizeof line, old)) {
     if (!ParseEntry(line, name, &t) || !(t < before)) continue;
-    WriteEntry(out, first, name, t);
-    first = PETSC_FALSE;
+    WriteEntry(out, kept == 0, name, t);
+    ++kept;
   }
-  if (file) WriteEntry(out, first, file, time);
+  if (file) WriteEntry(out, kept == 0, file, time);
   fputs("\n  ]\n}\n", out);
+  return kept;
 }
 
-static int RewriteFile(const char *path, const char *file, PetscReal time)
+/* ENODATA: there were less than `least` entries. */
+static int RewriteFile(const char *path, const char *file, PetscReal time, PetscInt least, PetscInt most)
 {
   char unfinished[FILE_PATH];
   snprintf(unfinished, sizeof unfinished, "%s" FILE_UNFINISHED, path);
   FILE *old = fopen(path, "r");
-  if (!old && (errno != ENOENT || !file)) return errno == ENOENT ? 0 : errno;
+  if (!old && (errno != ENOENT || !file)) return errno != ENOENT ? errno : least ? ENODATA : 0;
   FILE *out = fopen(unfinished, "w");
   int error = out ? 0 : errno;
   if (out) {
-    Rewrite(old, out, file, time);
+    const PetscInt kept = Rewrite(old, out, file, time, most);
     error = file_finish_stream(out);
+    if (!error && kept < least) error = ENODATA;
     error = file_commit(unfinished, path, error);
   }
   if (old) fclose(old);
   return error;
 }
 
-PetscErrorCode VtkSeriesAppend(MPI_Comm comm, const char *folder, const char *name, const char *file, PetscReal time,
-                               char reason[256])
+static PetscErrorCode Edit(MPI_Comm comm, const char *folder, const char *name, const char *file, PetscReal time,
+                           PetscInt least, PetscInt most, char reason[256])
 {
   char path[PETSC_MAX_PATH_LEN];
   PetscMPIInt rank;
@@ -72,14 +75,29 @@ PetscErrorCode VtkSeriesAppend(MPI_Comm comm, const char *folder, const char *na
   PetscFunctionBeginUser;
   PetscCallMPI(MPI_Comm_rank(comm, &rank));
   PetscCall(PetscSNPrintf(path, sizeof path, "%s/%s.hdf.series", folder, name));
-  if (rank == 0) error = RewriteFile(path, file, time);
+  if (rank == 0) error = RewriteFile(path, file, time, least, most);
   PetscCallMPI(MPI_Bcast(&error, 1, MPI_INT, 0, comm));
   reason[0] = 0;
   if (error) {
-    snprintf(reason, 256, "%s", strerror(error));
+    snprintf(reason, 256, "%s", error == ENODATA ? "entries are missing" : strerror(error));
     PetscFunctionReturn(PETSC_ERR_FILE_WRITE);
   }
   PetscFunctionReturn(0);
+}
+
+PetscErrorCode VtkSeriesAppend(MPI_Comm comm, const char *folder, const char *name, const char *file, PetscReal time,
+                               char reason[256])
+{
+  PetscFunctionBeginUser;
+  const PetscErrorCode code = Edit(comm, folder, name, file, time, 0, PETSC_MAX_INT, reason);
+  PetscFunctionReturn(code);
+}
+
+PetscErrorCode VtkSeriesKeep(MPI_Comm comm, const char *folder, const char *name, PetscInt n, char reason[256])
+{
+  PetscFunctionBeginUser;
+  const PetscErrorCode code = Edit(comm, folder, name, NULL, PETSC_MAX_REAL, n, n, reason);
+  PetscFunctionReturn(code);
 }
 
 static PetscErrorCode AddState(VtkSeries *series, PetscInt *capacity, const char *file, PetscReal time)

@@ -54,10 +54,24 @@ static PetscErrorCode FemConvect(Stage *s, const PetscReal *du)
   PetscFunctionReturn(0);
 }
 
+static PetscReal *node_position(Stage *s) { return s->grid->x; }
+static PetscReal *node_velocity(Stage *s) { return s->v; }
+static PetscReal *node_acceleration(Stage *s) { return s->a; }
+static PetscReal *node_pressure(Stage *s) { return s->pressure; }
+
+static const MethodField fields[] = {
+  {"position", "m", 0, node_position},
+  {"velocity", "m/s", 0, node_velocity},
+  {"acceleration", "m/s2", 0, node_acceleration},
+  {"pressure", "Pa", 1, node_pressure},
+  {NULL, NULL, 0, NULL},
+};
+
 const Method method_fem = {
   .name = "fem",
   .help = "updated Lagrangian finite elements: the mesh moves with the body",
   .points_move = PETSC_FALSE,
   .initialise = FemInitialise,
   .convect = FemConvect,
+  .fields = fields,
 };

@@ -30,6 +30,13 @@ typedef struct Stage {
   LostPoint *lost;           /* at most 16 of them */
 } Stage;
 
+/* A nodal array (n_nodes x components) that a method carries from step to step: it goes into checkpoints. */
+typedef struct {
+  const char *name, *unit;
+  PetscInt components;                /* 0: dim */
+  PetscReal *(*values)(Stage *stage); /* NULL: the formulation has no such field */
+} MethodField;
+
 typedef struct Method {
   const char *name, *help;
   PetscBool points_move; /* do points cross cells? */
@@ -38,6 +45,7 @@ typedef struct Method {
   PetscErrorCode (*initialise)(Stage *stage);
   /* Phase c, collective: the step is accepted, v1 and a1 are known, du holds the increments. State and F are committed already. */
   PetscErrorCode (*convect)(Stage *stage, const PetscReal *du);
+  const MethodField *fields; /* ended by name = NULL; NULL: nodes remember nothing */
 } Method;
 
 extern const Method *const methods[]; /* ended by NULL */

@@ -64,7 +64,7 @@ static PetscErrorCode AddRings(const Model *m, const unsigned char *occupied, un
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode Enable(Model *m)
+PetscErrorCode ModelEnable(Model *m)
 {
   const PetscInt nn = m->grid->nodes_per_cell;
   PetscInt n = 0, *node;
@@ -94,7 +94,7 @@ PetscErrorCode ModelActivate(Model *m)
   if (!fits) {
     PetscCall(PetscArraycpy(m->enabled, occupied, m->grid->n_cells));
     if (m->method->points_move && analysis->step < analysis->end) PetscCall(AddRings(m, occupied, m->enabled));
-    PetscCall(Enable(m));
+    PetscCall(ModelEnable(m));
   }
   PetscCall(PetscFree(occupied));
   PetscCall(SystemSlots(m->system, m->stage->support));

@@ -247,9 +247,9 @@ PetscErrorCode LeaversSend(const Leavers *leavers, const Points *points, const G
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode ArrivalsUnpack(Arrivals *arrivals, Points *points, const Grid *grid)
+/* Append all messages; their memory goes. */
+static PetscErrorCode AppendArrivals(Arrivals *arrivals, Points *points)
 {
-  const PetscInt first = points->n;
   const char *data = arrivals->data;
   PetscFunctionBeginUser;
   PetscCall(PointsReserveMore(points, arrivals->n));
@@ -257,12 +257,33 @@ PetscErrorCode ArrivalsUnpack(Arrivals *arrivals, Points *points, const Grid *gr
     PetscCall(PointsUnpack(points, arrivals->count[m], data));
     data += points_bytes(points) * (size_t)arrivals->count[m];
   }
+  PetscCall(PetscFree(arrivals->data));
+  PetscCall(PetscFree(arrivals->count));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LeaversMove(const Leavers *leavers, Points *points, const Grid *grid, const PetscBool *gone)
+{
+  PetscMPIInt size;
+  Arrivals arrivals;
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_size(grid->comm, &size));
+  if (size == 1) PetscFunctionReturn(0); /* all are here */
+  PetscCall(LeaversSend(leavers, points, grid, &arrivals));
+  PetscCall(PointsCompact(points, gone));
+  PetscCall(AppendArrivals(&arrivals, points));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ArrivalsUnpack(Arrivals *arrivals, Points *points, const Grid *grid)
+{
+  const PetscInt first = points->n;
+  PetscFunctionBeginUser;
+  PetscCall(AppendArrivals(arrivals, points));
   for (PetscInt p = first; p < points->n; ++p) {
     points->cell[p] = GridLocate(grid, point_real(points, POINT_X, p), -1, point_real(points, POINT_XI, p));
     PetscCheck(points->cell[p] >= 0, PETSC_COMM_SELF, PETSC_ERR_PLIB,
                "a point arrived that this rank had claimed, and is not here");
   }
-  PetscCall(PetscFree(arrivals->data));
-  PetscCall(PetscFree(arrivals->count));
   PetscFunctionReturn(0);
 }

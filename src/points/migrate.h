@@ -37,3 +37,6 @@ PetscErrorCode LeaversKeepOnBoundary(const Leavers *leavers, Points *points, con
 PetscErrorCode LeaversSend(const Leavers *leavers, const Points *points, const Grid *grid, Arrivals *arrivals);
 /* Append what arrived, each point with its cell and reference position. */
 PetscErrorCode ArrivalsUnpack(Arrivals *arrivals, Points *points, const Grid *grid);
+/* Collective: send the leavers that have an owner, drop the points with gone[p], and append what arrived as it is: the cells are those of the
+ * receiver already. */
+PetscErrorCode LeaversMove(const Leavers *leavers, Points *points, const Grid *grid, const PetscBool *gone);

@@ -3,6 +3,7 @@
  * Every field stands in one table, so that migration, sorting, output and checkpoints treat all alike.
  * A real field f has components[f] numbers a point: data = real[f] + p * components[f]. */
 #pragma once
+#include "base/table.h"
 #include "grid/grid.h"
 
 typedef enum {
@@ -111,3 +112,10 @@ typedef struct {
  * in the table with cell -1. */
 PetscErrorCode PointsRelocate(Points *points, const Grid *grid, OutsidePolicy policy, PetscInt *n_lost,
                               LostPoint **lost);
+
+/* The points as a table, every field of them. Columns stand over the points' own arrays where they can. */
+PetscErrorCode PointsToTable(const Points *points, const Grid *grid, const char *name, Tables *tables);
+/* Collective. Points in place of those that are there, from such a table, however its rows are shared: each goes to the rank that has its cell,
+ * and keeps its place among those that go there. reason is left empty, or says on every rank what is wrong with the table. */
+PetscErrorCode PointsFromTable(Points *points, const Grid *grid, const Table *table, PetscInt n_bodies,
+                               PetscInt n_materials, char reason[256]);

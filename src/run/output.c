@@ -230,6 +230,10 @@ PetscErrorCode OutputWrite(Output *o, Model *m, PetscBool *ok, char reason[256])
   *ok = PETSC_TRUE;
   PetscCall(WritePoints(o, m, ok, reason));
   if (*ok && m->c->output.grid) PetscCall(WriteGrid(o, m, ok, reason));
-  ++o->count;
+  if (*ok) ++o->count;
   PetscFunctionReturn(0);
 }
+
+PetscInt OutputCount(const Output *o) { return o->count; }
+
+void OutputSetCount(Output *o, PetscInt count) { o->count = count; }

@@ -11,5 +11,9 @@ PetscErrorCode OutputDestroy(Output **output);
  * refuses, *ok is false and reason says why; files written before stay whole. */
 PetscErrorCode OutputWrite(Output *output, Model *model, PetscBool *ok, char reason[256]);
 
+/* How many states were written; the next one gets this number. */
+PetscInt OutputCount(const Output *output);
+void OutputSetCount(Output *output, PetscInt count);
+
 /* A field of this rank's points: n x components numbers, vectors with three components in 2D too. */
 PetscErrorCode OutputPointField(const Model *model, const OutputField *field, PetscReal *data);

@@ -9,12 +9,15 @@ typedef struct {
   PetscInt iterations, iterations_per_step; /* Newton's: all of the run, and most of one step */
   PetscReal seconds;                        /* from the model's first state to its last */
   PetscBool interrupted;                    /* by a signal */
+  PetscBool resumable;                      /* ended early, and has a checkpoint... */
+  PetscInt checkpoint_step;                 /* ...of this step */
   char reason[1024];                        /* why the run ended early, empty if it did not */
 } RunSummary;
 
 typedef struct {
-  const char *out; /* run directory */
-  PetscBool force; /* replace a run that is there */
+  const char *out;  /* run directory */
+  PetscBool resume; /* go on in it, from its newest checkpoint; the case is that of the directory */
+  PetscBool force;  /* replace a run that is there */
   PetscBool quiet;
   const char *log;     /* file, or NULL: log.txt in the run directory */
   RunSummary *summary; /* out: filled in unless NULL; the same on all ranks but for the seconds */
@@ -23,7 +26,8 @@ typedef struct {
 typedef enum { RUN_DONE = 0, RUN_GAVE_UP = 1, RUN_BAD_INPUT = 2 } RunResult;
 
 /* Collective. Mistakes found while the model is built go to diag with RUN_BAD_INPUT, and nothing is written then. A run that gives up or is
- * interrupted (SIGINT, SIGTERM: the step is finished first) writes its state and says why. `measures` (n_measures numbers, or NULL) gets the
+ * interrupted (SIGINT, SIGTERM: the step is finished first) writes a checkpoint and its state and says why. A resumed run goes on as if it had never
+ * been cut off: on the same number of ranks it ends with the same bits. `measures` (n_measures numbers, or NULL) gets the
  * final values. */
 PetscErrorCode RunCase(MPI_Comm comm, const Case *c, const RunOptions *options, Diag *diag, PetscReal *measures,
                        RunResult *result);

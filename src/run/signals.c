@@ -23,12 +23,17 @@ void signals_forget(void)
   signal(SIGTERM, SIG_DFL);
 }
 
-PetscErrorCode SignalsAsked(MPI_Comm comm, PetscBool *asked)
+PetscErrorCode SignalsAsked(MPI_Comm comm, PetscBool *due, PetscBool *asked)
 {
-  int mine = asked_by != 0, any;
+  PetscMPIInt rank;
+  int any[2];
 
   PetscFunctionBeginUser;
-  PetscCallMPI(MPI_Allreduce(&mine, &any, 1, MPI_INT, MPI_MAX, comm));
-  *asked = any ? PETSC_TRUE : PETSC_FALSE;
+  PetscCallMPI(MPI_Comm_rank(comm, &rank));
+  any[0] = asked_by != 0;
+  any[1] = !rank && *due;
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, any, 2, MPI_INT, MPI_MAX, comm));
+  *asked = any[0] ? PETSC_TRUE : PETSC_FALSE;
+  *due = any[1] ? PETSC_TRUE : PETSC_FALSE;
   PetscFunctionReturn(0);
 }

@@ -60,9 +60,9 @@ PetscErrorCode SummaryEnd(Model *m, RunDir *dir, const RunSummary *summary, cons
   PetscCall(
     PetscSNPrintf(text + end, sizeof text - end,
                   "rest [s] = %.6g\nsteps = %d\niterations = %d\nmost iterations in a step = %d\nhalvings = %d\n"
-                  "patterns = %d\n",
+                  "patterns = %d\noutcome = %s\n",
                   (double)rest, (int)summary->steps, (int)summary->iterations, (int)summary->iterations_per_step,
-                  (int)summary->halvings, (int)m->system->builds));
+                  (int)summary->halvings, (int)m->system->builds, summary->reason[0] ? "gave up" : "done"));
   const PetscErrorCode status = RunDirWriteText(dir, "timings.txt", text);
   PetscFunctionReturn(status);
 }

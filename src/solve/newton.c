@@ -8,7 +8,10 @@ struct Newton {
   NewtonSpec spec;
   SNES snes;
   Vec x, f;
-  PetscInt built; /* system->builds that snes was set up for */
+  PetscInt built;      /* system->builds that snes was set up for */
+  PetscReal courant;   /* of the step that it was set up in */
+  PetscBool learns;    /* the preconditioner keeps something of earlier matrices: it is made anew for every solve */
+  PetscInt remembered; /* system->builds whose solver was chosen with this courant before a checkpoint; -1: none */
   LineSearchMemory search;
   Saddle saddle;
   PetscBool direct;
@@ -28,7 +31,7 @@ PetscErrorCode NewtonCreate(MPI_Comm comm, const NewtonSpec *spec, Newton **newt
   PetscCall(PetscNew(newton));
   (*newton)->comm = comm;
   (*newton)->spec = *spec;
-  (*newton)->built = -1;
+  (*newton)->built = (*newton)->remembered = -1;
   (*newton)->linear = "";
   PetscFunctionReturn(0);
 }
@@ -59,6 +62,19 @@ void NewtonTimes(const Newton *n, PetscReal *points, PetscReal *matrix, PetscRea
   *points = n->t_points;
   *matrix = n->t_matrix;
   *linear = n->t_linear;
+}
+
+void NewtonGetMemory(const Newton *n, const System *system, NewtonMemory *memory)
+{
+  memory->courant = system->matrix && n->built == system->builds && !n->learns ? n->courant : -1;
+  memory->failures = n->failures;
+}
+
+void NewtonSetMemory(Newton *n, const System *system, const NewtonMemory *memory)
+{
+  n->failures = memory->failures;
+  n->courant = memory->courant;
+  n->remembered = system->matrix && memory->courant >= 0 ? system->builds : -1;
 }
 
 /* Norms of reactions and of external forces over owned dofs. */
@@ -227,13 +243,27 @@ static PetscErrorCode Converged(SNES snes, PetscInt it, PetscReal xnorm, PetscRe
   PetscFunctionReturn(0);
 }
 
+/* Factorisations and point methods depend on their matrix alone. Algebraic multigrid builds its interpolation once and keeps it as long as the
+ * pattern lives, so that a step would depend on all steps before it, and a resumed run would be another one. */
+static PetscErrorCode Learns(KSP ksp, PetscBool *learns)
+{
+  PC pc;
+
+  PetscFunctionBeginUser;
+  PetscCall(KSPGetPC(ksp, &pc));
+  PetscCall(PetscObjectTypeCompareAny((PetscObject)pc, learns, PCNONE, PCJACOBI, PCPBJACOBI, PCVPBJACOBI, PCSOR,
+                                      PCEISENSTAT, PCILU, PCICC, PCLU, PCCHOLESKY, PCBJACOBI, PCASM, ""));
+  *learns = *learns ? PETSC_FALSE : PETSC_TRUE;
+  PetscFunctionReturn(0);
+}
+
 static PetscErrorCode NewtonSetUp(Newton *n, StepProblem *p, const LinearProblem *linear)
 {
   KSP ksp;
   SNESLineSearch search;
 
   PetscFunctionBeginUser;
-  if (n->built == p->system->builds) PetscFunctionReturn(0);
+  if (n->built == p->system->builds && !n->learns) PetscFunctionReturn(0);
   PetscCall(NewtonReset(n));
   PetscCall(MatSetOption(p->system->matrix, MAT_SYMMETRIC, linear->symmetric));
   n->search.block = p->pressure ? p->system->block : 0;
@@ -250,10 +280,14 @@ static PetscErrorCode NewtonSetUp(Newton *n, StepProblem *p, const LinearProblem
   PetscCall(SNESGetKSP(n->snes, &ksp));
   LinearProblem chosen = *linear;
   PetscCall(KSPSetOperators(ksp, p->system->matrix, p->system->matrix));
+  if (n->remembered == p->system->builds) chosen.courant = n->courant;
+  n->courant = chosen.courant;
+  n->remembered = -1;
   if (n->retry || n->failures >= 3) chosen.choice = LINEAR_DIRECT;
   PetscCall(LinearConfigure(ksp, &chosen, &n->direct, &n->linear));
   if (chosen.mixed && !n->direct) PetscCall(SaddleConfigure(&n->saddle, ksp, p->system, p->grid, chosen.dynamic));
   PetscCall(SNESSetFromOptions(n->snes));
+  PetscCall(Learns(ksp, &n->learns));
   n->built = p->system->builds;
   PetscFunctionReturn(0);
 }

@@ -43,6 +43,16 @@ PetscErrorCode NewtonCreate(MPI_Comm comm, const NewtonSpec *spec, Newton **newt
 PetscErrorCode NewtonDestroy(Newton **newton);
 /* Collective. Solve; du and force hold the solution only if report->converged. */
 PetscErrorCode NewtonSolve(Newton *newton, StepProblem *problem, const LinearProblem *linear, NewtonReport *report);
+/* What Newton's method remembers from step to step: which linear solver it chose when the pattern was made, and how often the iterative one
+ * failed. */
+typedef struct {
+  PetscReal courant; /* that the choice was made with; < 0: the next step chooses anew */
+  PetscInt failures;
+} NewtonMemory;
+
+void NewtonGetMemory(const Newton *newton, const System *system, NewtonMemory *memory);
+/* For a Newton that has solved nothing yet, and the pattern that the system has now. */
+void NewtonSetMemory(Newton *newton, const System *system, const NewtonMemory *memory);
 /* Name of the linear solver in use, for the log. */
 const char *NewtonLinearName(const Newton *newton);
 /* Seconds spent so far: points and scatter, matrix filling, linear solves. */

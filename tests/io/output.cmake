@@ -1,6 +1,7 @@
 talus_test(io/test_vtk RANKS 1 2 3)
 talus_test(io/test_vtk_disk RANKS 1 2 3)
 talus_test(io/test_run_dir RANKS 1 2)
+talus_test(io/test_checkpoint RANKS 1 2 3)
 talus_test(io/test_history RANKS 1 2)
 talus_test(io/test_progress)
 talus_test(io/test_plot TIMEOUT 300)

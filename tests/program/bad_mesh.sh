@@ -93,4 +93,9 @@ printf 'Point(1) = {0, 0, 0;\n' >wrong.geo
 sed 's/plate.msh/wrong.geo/' good.yaml >case.yaml
 check "wrong geo" "wrong.geo"
 
+# Found by fuzzing: a dimension that asks for 1e18 parameters of each node, though the file has ended. It took for ever.
+cp good.yaml case.yaml
+printf '$MeshFormat\n4.1 0 8\n$EndMeshFormat\n$Nodes\n1 1 1 1\n999999999999999999 1 1 1\n1\n0 0 0\n$EndNodes\n' >plate.msh
+check "a block of many dimensions" "plate.msh" "a block of nodes has dimension 999999999999999999"
+
 finish

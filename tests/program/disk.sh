@@ -23,7 +23,7 @@ echo mine >run/notes.txt
 cp -r run kept
 expect "second run" 2 "$talus" run case.yaml --out run --set grid.size=0.25
 says err.txt "the output directory 'run' already holds a run" "--force"
-lacks err.txt "--resume"
+says err.txt "--resume run goes on with it"
 diff -r run kept || fail "second run: the first one was touched"
 expect "forced with a mistake" 2 "$talus" run case.yaml --out run --force --set grid.size=0.3
 diff -r run kept || fail "a forced run that cannot start destroyed the first one"

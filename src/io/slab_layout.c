@@ -1,4 +1,4 @@
-#include "io/vtk_layout.h"
+#include "io/slab_layout.h"
 #include <hdf5.h>
 #include <stdlib.h>
 #include <string.h>
@@ -27,50 +27,58 @@ static herr_t WriteNumbers(hid_t object, const char *name, hid_t type, hsize_t n
   return status;
 }
 
-static herr_t MakeGroups(hid_t root, PetscReal time)
+static hid_t MemoryType(SlabType type)
 {
-  static const char *const names[] = {"PointData", "CellData", "FieldData"};
-  const PetscInt64 version[2] = {1, 0};
-  const double seconds = (double)time;
-  herr_t status = WriteNumbers(root, "Version", H5T_NATIVE_INT64, 2, version);
-  status |= WriteString(root, "Type", "UnstructuredGrid");
-  status |= WriteNumbers(root, "Time", H5T_NATIVE_DOUBLE, 1, &seconds);
-  for (int i = 0; i < 3; ++i) {
-    const hid_t group = H5Gcreate2(root, names[i], H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
+  const hid_t types[] = {H5T_NATIVE_DOUBLE, H5T_NATIVE_INT64, H5T_NATIVE_INT32, H5T_NATIVE_UINT8};
+  return types[type];
+}
+
+static herr_t MakeHead(hid_t root, const SlabHead *head)
+{
+  herr_t status = 0;
+  for (PetscInt i = 0; i < head->n_attributes; ++i) {
+    const SlabAttribute *a = &head->attributes[i];
+    status |= a->text ? WriteString(root, a->name, a->text)
+                      : WriteNumbers(root, a->name, MemoryType(a->type), (hsize_t)a->n, a->values);
+  }
+  for (int i = 0; head->groups && head->groups[i]; ++i) {
+    const hid_t group = H5Gcreate2(root, head->groups[i], H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
     status |= group < 0 ? -1 : H5Gclose(group);
   }
   return status;
 }
 
 /* A contiguous dataset gets its place now, and no fill values: all of it is written. */
-static herr_t PlaceSlab(hid_t root, hid_t creation, VtkSlab *slab)
+static herr_t PlaceSlab(hid_t root, hid_t creation, const SlabHead *head, Slab *slab)
 {
-  const hid_t types[] = {H5T_NATIVE_DOUBLE, H5T_NATIVE_INT64, H5T_NATIVE_UINT8};
   const hsize_t size[2] = {(hsize_t)slab->total, (hsize_t)slab->components};
   const hid_t space = H5Screate_simple(slab->matrix || slab->components > 1 ? 2 : 1, size, NULL);
-  const hid_t set = H5Dcreate2(root, slab->path, types[slab->type], space, H5P_DEFAULT, creation, H5P_DEFAULT);
+  const hid_t set = H5Dcreate2(root, slab->path, MemoryType(slab->type), space, H5P_DEFAULT, creation, H5P_DEFAULT);
   herr_t status = set < 0 ? -1 : 0;
   slab->offset = -1;
   if (set >= 0) {
-    const haddr_t place = H5Dget_offset(set);
-    if (place != HADDR_UNDEF) slab->offset = (PetscInt64)place;
-    if (place == HADDR_UNDEF && slab->total > 0) status = -1;
+    const haddr_t place = slab->total > 0 ? H5Dget_offset(set) : 0;
+    const PetscBool placed = place != HADDR_UNDEF && place >= head->user_block ? PETSC_TRUE : PETSC_FALSE;
+    if (slab->total > 0 && placed) slab->offset = (PetscInt64)place;
+    if (slab->total > 0 && !placed) status = -1;
     if (slab->unit && slab->unit[0]) status |= WriteString(set, "unit", slab->unit);
+    if (head->checksums) status |= WriteNumbers(set, "crc32", H5T_NATIVE_UINT32, 1, &slab->crc);
     status |= H5Dclose(set);
   }
   H5Sclose(space);
   return status;
 }
 
-static herr_t FillFile(hid_t file, PetscInt n, VtkSlab *slabs, PetscReal time)
+static herr_t FillFile(hid_t file, const SlabHead *head, PetscInt n, Slab *slabs)
 {
-  const hid_t root = H5Gcreate2(file, "VTKHDF", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
+  const hid_t root = H5Gcreate2(file, head->group, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
   if (root < 0) return -1;
   const hid_t creation = H5Pcreate(H5P_DATASET_CREATE);
   H5Pset_alloc_time(creation, H5D_ALLOC_TIME_EARLY);
   H5Pset_fill_time(creation, H5D_FILL_TIME_NEVER);
-  herr_t status = MakeGroups(root, time);
-  for (PetscInt i = 0; i < n; ++i) status |= PlaceSlab(root, creation, &slabs[i]);
+  H5Pset_obj_track_times(creation, 0); /* the same state gives the same bytes */
+  herr_t status = MakeHead(root, head);
+  for (PetscInt i = 0; i < n; ++i) status |= PlaceSlab(root, creation, head, &slabs[i]);
   H5Pclose(creation);
   return status | H5Gclose(root);
 }
@@ -78,7 +86,7 @@ static herr_t FillFile(hid_t file, PetscInt n, VtkSlab *slabs, PetscReal time)
 /* The memory of HDF5's file in memory is ours: it is there still when that file has been closed. */
 static void *Resize(void *bytes, size_t n, H5FD_file_image_op_t operation, void *context)
 {
-  VtkFrame *frame = context;
+  SlabFrame *frame = context;
   void *grown = realloc(bytes, n);
   (void)operation;
   if (grown) frame->bytes = grown, frame->n = n;
@@ -106,7 +114,7 @@ static herr_t ReleaseContext(void *context)
 
 /* A file in memory with all that is not raw data in one block at its start, so that no memory is spent
  * on the numbers. */
-static hid_t CreateInMemory(PetscInt n_slabs, VtkFrame *frame)
+static hid_t CreateInMemory(PetscInt n_slabs, size_t user_block, SlabFrame *frame)
 {
   H5FD_file_image_callbacks_t callbacks = {.image_malloc = Allocate,
                                            .image_realloc = Resize,
@@ -114,35 +122,37 @@ static hid_t CreateInMemory(PetscInt n_slabs, VtkFrame *frame)
                                            .udata_copy = ShareContext,
                                            .udata_free = ReleaseContext,
                                            .udata = frame};
-  const hsize_t block = 4096 + 768 * (hsize_t)n_slabs;
-  const hid_t access = H5Pcreate(H5P_FILE_ACCESS);
+  const hsize_t block = 4096 + 1024 * (hsize_t)n_slabs;
+  const hid_t access = H5Pcreate(H5P_FILE_ACCESS), creation = H5Pcreate(H5P_FILE_CREATE);
   H5Pset_fapl_core(access, 16384, 0);
   H5Pset_file_image_callbacks(access, &callbacks);
   H5Pset_meta_block_size(access, block);
-  const hid_t file = H5Fcreate("talus-frame", H5F_ACC_TRUNC, H5P_DEFAULT, access);
+  if (user_block) H5Pset_userblock(creation, user_block);
+  const hid_t file = H5Fcreate("talus-frame", H5F_ACC_TRUNC, creation, access);
+  H5Pclose(creation);
   H5Pclose(access);
   return file;
 }
 
-static herr_t LayOut(PetscInt n, VtkSlab *slabs, PetscReal time, VtkFrame *frame)
+static herr_t LayOut(const SlabHead *head, PetscInt n, Slab *slabs, SlabFrame *frame)
 {
   hsize_t size = 0;
-  const hid_t file = CreateInMemory(n, frame);
+  const hid_t file = CreateInMemory(n, head->user_block, frame);
   if (file < 0) return -1;
-  herr_t status = FillFile(file, n, slabs, time);
+  herr_t status = FillFile(file, head, n, slabs);
   status |= H5Fget_filesize(file, &size);
   frame->size = (PetscInt64)size;
   return status | H5Fclose(file);
 }
 
-PetscBool vtk_layout(PetscInt n, VtkSlab *slabs, PetscReal time, VtkFrame *frame)
+PetscBool slab_layout(const SlabHead *head, PetscInt n, Slab *slabs, SlabFrame *frame)
 {
   H5E_auto2_t report;
   void *context;
   memset(frame, 0, sizeof *frame);
   H5Eget_auto2(H5E_DEFAULT, &report, &context);
   H5Eset_auto2(H5E_DEFAULT, NULL, NULL);
-  const herr_t status = LayOut(n, slabs, time, frame);
+  const herr_t status = LayOut(head, n, slabs, frame);
   H5Eset_auto2(H5E_DEFAULT, report, context);
   if (frame->n > (size_t)frame->size) frame->n = (size_t)frame->size;
   if (status >= 0 && frame->bytes) return PETSC_TRUE;

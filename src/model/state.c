@@ -1,0 +1,226 @@
+#include "model/state.h"
+#include "grid/directory.h"
+#include "model/model_private.h"
+
+/* Numbers of the model as a whole: one line each, for writing and reading. */
+static const struct {
+  const char *name, *unit;
+  size_t offset;
+} reals[] = {
+  {"time", "s", offsetof(Model, time)},
+  {"next_step", "s", offsetof(Model, dt)},
+  {"external_work", "J", offsetof(Model, external_work)},
+  {"boundary_work", "J", offsetof(Model, boundary_work)},
+  {"damped_energy", "J", offsetof(Model, damped_energy)},
+  {"transfer_energy", "J", offsetof(Model, transfer_energy)},
+  {"start_energy", "J", offsetof(Model, start_energy)},
+};
+static const struct {
+  const char *name;
+  size_t offset;
+} counts[] = {
+  {"step", offsetof(Model, step)},
+  {"halvings", offsetof(Model, cuts)},
+  {"iterations", offsetof(Model, total_iterations)},
+};
+/* What measures remember. */
+static const struct {
+  const char *name, *unit;
+  size_t offset;
+} memories[] = {
+  {"front", "m", offsetof(MeasureMemory, front)},
+  {"moved", "s", offsetof(MeasureMemory, moved)},
+};
+/* What the grid must be for the rest to mean anything: numbers of the grid as it was made. */
+#define GRID_NUMBERS 9
+
+static void grid_numbers(const Grid *grid, PetscReal number[GRID_NUMBERS])
+{
+  number[0] = (PetscReal)grid->n_cells_global;
+  number[1] = (PetscReal)grid->n_nodes_global;
+  number[2] = grid->smallest;
+  for (PetscInt d = 0; d < 3; ++d) {
+    number[3 + d] = d < grid->dim ? grid->min[d] : 0;
+    number[6 + d] = d < grid->dim ? grid->max[d] : 0;
+  }
+}
+
+static PetscErrorCode WholeToTables(Model *m, Tables *tables)
+{
+  Table *table;
+  Column *column;
+  NewtonMemory newton;
+
+  PetscFunctionBeginUser;
+  PetscCall(TablesAdd(tables, "model", PETSC_TRUE, 1, &table));
+  for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(reals); ++i)
+    PetscCall(TableAdd(table, reals[i].name, reals[i].unit, COLUMN_REAL, 1, (char *)m + reals[i].offset, NULL));
+  for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(counts); ++i) {
+    PetscCall(TableAdd(table, counts[i].name, NULL, COLUMN_INT64, 1, NULL, &column));
+    *(PetscInt64 *)column->data = *(PetscInt *)((char *)m + counts[i].offset);
+  }
+  PetscCall(TableAdd(table, "grid", NULL, COLUMN_REAL, GRID_NUMBERS, NULL, &column));
+  grid_numbers(m->grid, column->data);
+  NewtonGetMemory(m->newton, m->system, &newton);
+  PetscCall(TableAdd(table, "solver_courant", NULL, COLUMN_REAL, 1, NULL, &column));
+  *(PetscReal *)column->data = newton.courant;
+  PetscCall(TableAdd(table, "solver_failures", NULL, COLUMN_INT64, 1, NULL, &column));
+  *(PetscInt64 *)column->data = newton.failures;
+  PetscCall(TablesAdd(tables, "measures", PETSC_TRUE, m->c->n_measures, &table));
+  for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(memories); ++i) {
+    PetscCall(TableAdd(table, memories[i].name, memories[i].unit, COLUMN_REAL, 1, NULL, &column));
+    for (PetscInt k = 0; k < m->c->n_measures; ++k)
+      ((PetscReal *)column->data)[k] = *(PetscReal *)((char *)&m->memory[k] + memories[i].offset);
+  }
+  PetscFunctionReturn(0);
+}
+
+/* Forces of the boundary, kept on the nodes whose motion is prescribed. */
+static PetscErrorCode Reactions(Model *m, NodalField field[2], unsigned char **take)
+{
+  PetscFunctionBeginUser;
+  field[0] = (NodalField){"reaction", "N", m->dim, m->reaction};
+  field[1] = (NodalField){"held", "N", m->dim, m->held};
+  if (!take) PetscFunctionReturn(0);
+  PetscCall(PetscCalloc1(m->grid->n_nodes, take));
+  for (PetscInt i = 0; i < m->grid->n_nodes * m->dim; ++i) (*take)[i / m->dim] |= m->boundary->fixed[i];
+  PetscFunctionReturn(0);
+}
+
+/* Nodal fields of the method. */
+static PetscInt method_fields(const Model *m, NodalField field[8])
+{
+  PetscInt n = 0;
+  for (const MethodField *f = m->method->fields; f && f->name && n < 8; ++f) {
+    PetscReal *values = f->values(m->stage);
+    if (values) field[n++] = (NodalField){f->name, f->unit, f->components ? f->components : m->dim, values};
+  }
+  return n;
+}
+
+PetscErrorCode ModelToTables(Model *m, Tables *tables)
+{
+  NodalField field[8];
+  unsigned char *take;
+
+  PetscFunctionBeginUser;
+  PetscCall(WholeToTables(m, tables));
+  PetscCall(PointsToTable(m->points, m->grid, "points", tables));
+  PetscCall(PointsToTable(m->tracers, m->grid, "tracers", tables));
+  PetscCall(PointsToTable(m->loads->carriers, m->grid, "carriers", tables));
+  const PetscInt n = method_fields(m, field);
+  if (n) PetscCall(NodesToTable(m->grid, NULL, n, field, "nodes", tables));
+  PetscCall(Reactions(m, field, &take));
+  PetscCall(NodesToTable(m->grid, take, 2, field, "boundary", tables));
+  PetscCall(PetscFree(take));
+  PetscCall(CellsToTable(m->grid, m->enabled, "pattern", tables));
+  PetscFunctionReturn(0);
+}
+
+/* One number of a table that is everywhere. */
+static PetscReal real_of(const Table *table, const char *name, char reason[256])
+{
+  const PetscReal *data = TableData(table, name, COLUMN_REAL, 1, reason);
+  return data && table->rows == 1 ? *data : 0;
+}
+
+static PetscInt count_of(const Table *table, const char *name, char reason[256])
+{
+  const PetscInt64 *data = TableData(table, name, COLUMN_INT64, 1, reason);
+  const PetscInt64 value = data && table->rows == 1 ? *data : 0;
+  if (value < 0 || value > PETSC_MAX_INT) snprintf(reason, 256, "%s/%s makes no sense", table->name, name);
+  return (PetscInt)value;
+}
+
+static void check_grid(const Model *m, const Table *table, char reason[256])
+{
+  PetscReal mine[GRID_NUMBERS];
+  const PetscReal *kept = TableData(table, "grid", COLUMN_REAL, GRID_NUMBERS, reason);
+  if (!kept) return;
+  grid_numbers(m->grid, mine);
+  for (int i = 0; i < GRID_NUMBERS; ++i)
+    if (mine[i] != kept[i]) snprintf(reason, 256, "the grid of the case is not the one of the run");
+}
+
+static void whole_from_tables(Model *m, const Table *table, const Table *measures, char reason[256])
+{
+  if (table->rows != 1) snprintf(reason, 256, "%s has %d rows", table->name, (int)table->rows);
+  if (measures->rows != m->c->n_measures) snprintf(reason, 256, "the measures of the case are not those of the run");
+  if (reason[0]) return;
+  check_grid(m, table, reason);
+  for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(reals); ++i)
+    *(PetscReal *)((char *)m + reals[i].offset) = real_of(table, reals[i].name, reason);
+  for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(counts); ++i)
+    *(PetscInt *)((char *)m + counts[i].offset) = count_of(table, counts[i].name, reason);
+  if (!(m->time >= 0 && m->dt > 0)) snprintf(reason, 256, "its time or step makes no sense");
+  for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(memories); ++i) {
+    const PetscReal *data = TableData(measures, memories[i].name, COLUMN_REAL, 1, reason);
+    for (PetscInt k = 0; data && k < m->c->n_measures; ++k)
+      *(PetscReal *)((char *)&m->memory[k] + memories[i].offset) = data[k];
+  }
+}
+
+static PetscErrorCode NodesBack(Model *m, const Tables *tables, char reason[256])
+{
+  NodalField field[8];
+  const PetscInt n = method_fields(m, field);
+
+  PetscFunctionBeginUser;
+  if (n) PetscCall(NodesFromTable(m->grid, PETSC_TRUE, n, field, TablesFind(tables, "nodes"), reason));
+  PetscCall(Reactions(m, field, NULL));
+  if (!reason[0]) PetscCall(NodesFromTable(m->grid, PETSC_FALSE, 2, field, TablesFind(tables, "boundary"), reason));
+  if (!reason[0]) PetscCall(CellsFromTable(m->grid, m->enabled, TablesFind(tables, "pattern"), reason));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode PointsBack(Model *m, const Tables *tables, char reason[256])
+{
+  const Case *c = m->c;
+
+  PetscFunctionBeginUser;
+  PetscCall(PointsFromTable(m->points, m->grid, TablesFind(tables, "points"), c->n_bodies, c->n_materials, reason));
+  if (reason[0]) PetscFunctionReturn(0);
+  PetscCall(PointsFromTable(m->tracers, m->grid, TablesFind(tables, "tracers"), c->n_measures, c->n_materials, reason));
+  if (reason[0]) PetscFunctionReturn(0);
+  PetscCall(
+    PointsFromTable(m->loads->carriers, m->grid, TablesFind(tables, "carriers"), c->n_loads, c->n_materials, reason));
+  PetscFunctionReturn(0);
+}
+
+/* The pattern is that of the enabled cells, and the solver is chosen as it was. */
+static PetscErrorCode SolverBack(Model *m, const Table *table, char reason[256])
+{
+  PetscInt local = 0, any;
+  NewtonMemory newton = {.courant = real_of(table, "solver_courant", reason),
+                         .failures = count_of(table, "solver_failures", reason)};
+
+  PetscFunctionBeginUser;
+  for (PetscInt c = 0; c < m->grid->n_cells; ++c) local += m->enabled[c];
+  PetscCall(MPIU_Allreduce(&local, &any, 1, MPIU_INT, MPI_SUM, m->comm));
+  if (any) PetscCall(ModelEnable(m));
+  NewtonSetMemory(m->newton, m->system, &newton);
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ModelFromTables(Model *m, const Tables *tables, char reason[256])
+{
+  static const char *const needed[] = {"model",    "measures", "points",  "tracers",
+                                       "carriers", "boundary", "pattern", NULL};
+
+  PetscFunctionBeginUser;
+  reason[0] = 0;
+  for (int i = 0; needed[i]; ++i)
+    if (!TablesFind(tables, needed[i])) snprintf(reason, 256, "%s is missing", needed[i]);
+  if (m->method->fields && !TablesFind(tables, "nodes")) snprintf(reason, 256, "nodes is missing");
+  if (reason[0]) PetscFunctionReturn(0); /* all ranks know the same tables */
+  whole_from_tables(m, TablesFind(tables, "model"), TablesFind(tables, "measures"), reason);
+  PetscCall(ReasonShare(m->comm, reason));
+  if (!reason[0]) PetscCall(PointsBack(m, tables, reason));
+  if (!reason[0]) PetscCall(NodesBack(m, tables, reason));
+  if (reason[0]) PetscFunctionReturn(0);
+  PetscCall(PointsSort(m->points));
+  PetscCall(SolverBack(m, TablesFind(tables, "model"), reason));
+  PetscCall(ReasonShare(m->comm, reason));
+  if (!reason[0]) PetscCall(m->method->initialise(m->stage));
+  PetscFunctionReturn(0);
+}

@@ -1,0 +1,115 @@
+/* Points as a table, and back on any number of ranks: every field of points/fields.h, the cell by its number in the whole grid. */
+#include "grid/directory.h"
+#include "points/fields.h"
+#include "points/migrate.h"
+
+static const struct {
+  const char *name, *unit;
+} reals[POINT_N_REAL] = {
+  [POINT_X] = {"position", "m"},
+  [POINT_U] = {"displacement", "m"},
+  [POINT_V] = {"velocity", "m/s"},
+  [POINT_A] = {"acceleration", "m/s2"},
+  [POINT_MASS] = {"mass", "kg"},
+  [POINT_VOLUME] = {"undeformed_volume", "m3"},
+  [POINT_F] = {"deformation_gradient", NULL},
+  [POINT_J] = {"volume_ratio", NULL},
+  [POINT_TAU] = {"kirchhoff_stress", "Pa"},
+  [POINT_WORK] = {"stress_work", "J"},
+  [POINT_XI] = {"cell_position", NULL},
+  [POINT_STATE] = {"state", NULL},
+  [POINT_PRESSURE] = {"pressure", "Pa"},
+  [POINT_FORCE] = {"force", "N"},
+};
+
+PetscErrorCode PointsToTable(const Points *points, const Grid *grid, const char *name, Tables *tables)
+{
+  Table *table;
+  Column *cell, *body, *material;
+
+  PetscFunctionBeginUser;
+  PetscCall(TablesAdd(tables, name, PETSC_FALSE, points->n, &table));
+  PetscCall(TableAdd(table, "id", NULL, COLUMN_INT64, 1, points->n ? points->id : NULL, NULL));
+  PetscCall(TableAdd(table, "cell", NULL, COLUMN_INT64, 1, NULL, &cell));
+  PetscCall(TableAdd(table, "body", NULL, COLUMN_INT32, 1, NULL, &body));
+  PetscCall(TableAdd(table, "material", NULL, COLUMN_INT32, 1, NULL, &material));
+  for (PetscInt p = 0; p < points->n; ++p) {
+    ((PetscInt64 *)cell->data)[p] = points->cell[p] < 0 ? -1 : grid->global_cell[points->cell[p]];
+    ((int32_t *)body->data)[p] = (int32_t)points->body[p];
+    ((int32_t *)material->data)[p] = (int32_t)points->material[p];
+  }
+  for (int f = 0; f < POINT_N_REAL; ++f)
+    if (points->components[f])
+      PetscCall(TableAdd(table, reals[f].name, reals[f].unit, COLUMN_REAL, points->components[f],
+                         points->n ? points->real[f] : NULL, NULL));
+  PetscFunctionReturn(0);
+}
+
+/* This rank's rows of the table behind those in points; cells are still those of the whole grid. No index is trusted. */
+static PetscErrorCode TakeRows(Points *points, const Table *table, PetscInt n_cells, PetscInt n_bodies,
+                               PetscInt n_materials, char reason[256])
+{
+  const PetscInt n = (PetscInt)table->rows, components = 1;
+  const PetscInt64 *id = TableData(table, "id", COLUMN_INT64, components, reason),
+                   *cell = TableData(table, "cell", COLUMN_INT64, components, reason);
+  const int32_t *body = TableData(table, "body", COLUMN_INT32, components, reason),
+                *material = TableData(table, "material", COLUMN_INT32, components, reason);
+
+  PetscFunctionBeginUser;
+  if (reason[0]) PetscFunctionReturn(0);
+  PetscCall(PointsReserve(points, n));
+  for (PetscInt p = 0; p < n; ++p) {
+    if (cell[p] < -1 || cell[p] >= n_cells || body[p] < 0 || body[p] >= n_bodies || material[p] < 0 ||
+        material[p] >= n_materials)
+      snprintf(reason, 256, "%s: point %lld is in a cell or of a body that the case does not have", table->name,
+               (long long)id[p]);
+    points->id[p] = id[p];
+    points->cell[p] = (PetscInt)cell[p];
+    points->body[p] = body[p];
+    points->material[p] = material[p];
+  }
+  for (int f = 0; f < POINT_N_REAL; ++f) {
+    const PetscInt width = points->components[f];
+    const PetscReal *data = width ? TableData(table, reals[f].name, COLUMN_REAL, width, reason) : NULL;
+    if (data && n) PetscCall(PetscArraycpy(points->real[f], data, n * width));
+  }
+  points->n = n;
+  PetscFunctionReturn(0);
+}
+
+/* Every point to the rank that has its cell; a lost one stays where it is. */
+static PetscErrorCode SendHome(Points *points, const Grid *grid, const char *name, char reason[256])
+{
+  const PetscInt n = points->n;
+  DirectoryPlace *place;
+  Leavers leavers = {.n = n};
+  PetscBool *gone;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc3(n, &place, n, &gone, n, &leavers.point));
+  PetscCall(PetscMalloc1(n, &leavers.owner));
+  PetscCall(DirectoryFind(grid->comm, grid->n_cells_global, grid->n_cells, grid->global_cell, n, points->cell, place));
+  for (PetscInt p = 0; p < n; ++p) {
+    if (points->cell[p] >= 0 && place[p].rank < 0)
+      snprintf(reason, 256, "%s: no rank has cell %d", name, (int)points->cell[p]);
+    points->cell[p] = place[p].index;
+    leavers.point[p] = p;
+    leavers.owner[p] = (PetscMPIInt)place[p].rank;
+    gone[p] = place[p].rank >= 0 ? PETSC_TRUE : PETSC_FALSE;
+  }
+  PetscCall(ReasonShare(grid->comm, reason));
+  if (!reason[0]) PetscCall(LeaversMove(&leavers, points, grid, gone));
+  PetscCall(PetscFree(leavers.owner));
+  PetscCall(PetscFree3(place, gone, leavers.point));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode PointsFromTable(Points *points, const Grid *grid, const Table *table, PetscInt n_bodies,
+                               PetscInt n_materials, char reason[256])
+{
+  PetscFunctionBeginUser;
+  PetscCall(TakeRows(points, table, grid->n_cells_global, n_bodies, n_materials, reason));
+  PetscCall(ReasonShare(grid->comm, reason));
+  if (!reason[0]) PetscCall(SendHome(points, grid, table->name, reason));
+  PetscFunctionReturn(0);
+}

@@ -1,0 +1,198 @@
+/* Checkpoints of a run: when, what besides the model, and the way back. */
+#include <string.h>
+#include "base/hash.h"
+#include "io/case_file.h"
+#include "io/checkpoint.h"
+#include "model/state.h"
+#include "run/run_private.h"
+
+/* One line each, for writing and reading. */
+static const struct {
+  const char *name;
+  size_t offset;
+} counts[] = {
+  {"states_due", offsetof(RunMemory, states)},      {"rows_due", offsetof(RunMemory, rows)},
+  {"states_written", offsetof(RunMemory, written)}, {"state_step", offsetof(RunMemory, state_step)},
+  {"row_step", offsetof(RunMemory, row_step)},      {"iterations_per_step", offsetof(RunMemory, iterations_per_step)},
+};
+
+/* What a resumed run may change without becoming another one does not count. */
+static PetscErrorCode Fingerprint(const Case *c, PetscInt64 *value)
+{
+  Case copy = *c;
+  char *yaml;
+
+  PetscFunctionBeginUser;
+  copy.title = NULL;
+  copy.newton = (NewtonSpec){0};
+  copy.linear = LINEAR_AUTO;
+  copy.checkpoint = (CheckpointSpec){.keep = 1};
+  copy.n_petsc = 0;
+  copy.grid.outside = OUTSIDE_STOP;
+  copy.analysis.smallest = copy.analysis.largest = copy.analysis.step;
+  if (c->analysis.type == ANALYSIS_DYNAMIC) copy.analysis.end = 1;
+  PetscCall(CaseToYaml(&copy, &yaml));
+  *value = (PetscInt64)hash_text(yaml);
+  PetscCall(PetscFree(yaml));
+  PetscFunctionReturn(0);
+}
+
+static RunMemory memory_of(const Run *r)
+{
+  return (RunMemory){.states = r->states.count,
+                     .rows = r->rows.count,
+                     .written = OutputCount(r->output),
+                     .state_step = r->state_step,
+                     .row_step = r->row_step,
+                     .iterations_per_step = r->summary.iterations_per_step,
+                     .seconds = r->before + (MPI_Wtime() - r->start)};
+}
+
+static PetscErrorCode MemoryToTables(const Run *r, Tables *tables)
+{
+  RunMemory memory = memory_of(r);
+  Table *table;
+  Column *column;
+
+  PetscFunctionBeginUser;
+  PetscCall(TablesAdd(tables, "run", PETSC_TRUE, 1, &table));
+  PetscCall(TableAdd(table, "case", NULL, COLUMN_INT64, 1, NULL, &column));
+  PetscCall(Fingerprint(r->c, column->data));
+  PetscCall(TableAdd(table, "seconds", "s", COLUMN_REAL, 1, NULL, &column));
+  *(PetscReal *)column->data = memory.seconds;
+  for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(counts); ++i) {
+    PetscCall(TableAdd(table, counts[i].name, NULL, COLUMN_INT64, 1, NULL, &column));
+    *(PetscInt64 *)column->data = *(PetscInt *)((char *)&memory + counts[i].offset);
+  }
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode MemoryFromTables(Run *r, const Tables *tables, RunMemory *memory, char reason[256])
+{
+  const Table *table = TablesFind(tables, "run");
+  PetscInt64 fingerprint;
+
+  PetscFunctionBeginUser;
+  reason[0] = 0;
+  if (!table || table->rows != 1) snprintf(reason, 256, "run is missing");
+  if (reason[0]) PetscFunctionReturn(0);
+  const PetscInt64 *kept = TableData(table, "case", COLUMN_INT64, 1, reason);
+  const PetscReal *seconds = TableData(table, "seconds", COLUMN_REAL, 1, reason);
+  PetscCall(Fingerprint(r->c, &fingerprint));
+  if (kept && *kept != fingerprint) snprintf(reason, 256, "it is of another case than the case.yaml beside it");
+  memory->seconds = seconds ? *seconds : 0;
+  for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(counts); ++i) {
+    const PetscInt64 *data = TableData(table, counts[i].name, COLUMN_INT64, 1, reason);
+    if (!data) continue;
+    if (*data < -1 || *data > PETSC_MAX_INT) snprintf(reason, 256, "run/%s makes no sense", counts[i].name);
+    *(PetscInt *)((char *)memory + counts[i].offset) = (PetscInt)*data;
+  }
+  PetscFunctionReturn(0);
+}
+
+PetscBool checkpoint_by_clock(const Run *r)
+{
+  const PetscReal minutes = r->c->checkpoint.minutes;
+  return minutes > 0 && MPI_Wtime() - r->last_checkpoint >= 60 * minutes ? PETSC_TRUE : PETSC_FALSE;
+}
+
+PetscBool checkpoint_by_step(const Run *r)
+{
+  const PetscInt steps = r->c->checkpoint.steps;
+  return steps > 0 && r->model->step % steps == 0 ? PETSC_TRUE : PETSC_FALSE;
+}
+
+static PetscErrorCode Write(Run *r, const char *path, char reason[256], PetscErrorCode *code)
+{
+  Tables *tables;
+
+  PetscFunctionBeginUser;
+  PetscCall(TablesCreate(&tables));
+  PetscCall(ModelToTables(r->model, tables));
+  PetscCall(MemoryToTables(r, tables));
+  *code = CheckpointWrite(r->comm, path, tables, reason);
+  PetscCall(TablesDestroy(&tables));
+  if (*code != PETSC_ERR_FILE_WRITE) PetscCall(*code);
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode CheckpointSave(Run *r)
+{
+  char path[CHECKPOINT_PATH], reason[256];
+  PetscErrorCode code = 0;
+  const double start = MPI_Wtime();
+
+  PetscFunctionBeginUser;
+  if (r->checkpoint_step == r->model->step || r->model->step == 0)
+    PetscFunctionReturn(0); /* a run that has done nothing starts again */
+  RunDirCheckpointPath(r->dir, r->model->step, path);
+  PetscCall(RunWritten(r, HistorySync(r->dir)));
+  PetscCall(Write(r, path, reason, &code));
+  r->last_checkpoint = MPI_Wtime();
+  if (code) {
+    PetscCall(RunDirLog(r->dir, "warning = cannot write the checkpoint at step %d: %s", (int)r->model->step, reason));
+    PetscFunctionReturn(0);
+  }
+  r->checkpoint_step = r->model->step;
+  ++r->n_written;
+  PetscCall(RunDirKeepCheckpoints(r->dir, PetscMax(1, r->c->checkpoint.keep)));
+  PetscCall(RunDirLog(r->dir, "checkpoint = step %d time = %.9g seconds = %.3g", (int)r->model->step,
+                      (double)r->model->time, r->last_checkpoint - start));
+  PetscFunctionReturn(0);
+}
+
+static void remember(Run *r, const RunMemory *memory)
+{
+  r->states.count = memory->states;
+  r->rows.count = memory->rows;
+  r->state_step = memory->state_step;
+  r->row_step = memory->row_step;
+  r->summary.iterations_per_step = memory->iterations_per_step;
+  r->before = memory->seconds;
+  r->checkpoint_step = r->model->step;
+  OutputSetCount(r->output, memory->written);
+}
+
+/* The newest that is whole, others are told of in the log; *tables NULL if there is none. */
+static PetscErrorCode ReadNewest(Run *r, PetscInt *step, Tables **tables)
+{
+  char path[CHECKPOINT_PATH], reason[256];
+  PetscInt n, *steps;
+
+  PetscFunctionBeginUser;
+  *tables = NULL;
+  *step = -1;
+  PetscCall(RunDirCheckpoints(r->dir, &n, &steps));
+  for (PetscInt i = 0; i < n && !*tables; ++i) {
+    RunDirCheckpointPath(r->dir, steps[i], path);
+    const PetscErrorCode code = CheckpointRead(r->comm, path, tables, reason);
+    if (code && code != PETSC_ERR_FILE_UNEXPECTED && code != PETSC_ERR_FILE_OPEN) PetscCall(code);
+    if (code) PetscCall(RunDirLog(r->dir, "warning = the checkpoint %s cannot be used: %s", path, reason));
+    else *step = steps[i];
+  }
+  PetscCall(PetscFree(steps));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode CheckpointLoad(Run *r, Diag *diag, PetscInt *step, PetscBool *fits)
+{
+  Tables *tables;
+  RunMemory memory;
+  char path[CHECKPOINT_PATH], reason[256];
+
+  PetscFunctionBeginUser;
+  *fits = PETSC_TRUE;
+  PetscCall(ReadNewest(r, step, &tables));
+  if (!tables) PetscFunctionReturn(0);
+  PetscCall(MemoryFromTables(r, tables, &memory, reason));
+  if (!reason[0]) PetscCall(ModelFromTables(r->model, tables, reason));
+  PetscCall(TablesDestroy(&tables));
+  if (!reason[0]) {
+    remember(r, &memory);
+    PetscFunctionReturn(0);
+  }
+  RunDirCheckpointPath(r->dir, *step, path);
+  DiagError(diag, NULL, "the checkpoint '%s' does not fit: %s", path, reason);
+  *fits = PETSC_FALSE;
+  PetscFunctionReturn(0);
+}

@@ -1,0 +1,143 @@
+/* How a run begins: in a directory of its own, or where another one was cut off. */
+#include <string.h>
+#include "io/case_file.h"
+#include "io/run_dir_files.h"
+#include "io/vtk.h"
+#include "run/run_private.h"
+#include "run/summary.h"
+
+/* Open the history: a new one, or (diag given) that of the run that is resumed. */
+static PetscErrorCode OpenHistory(Run *r, Diag *diag)
+{
+  const char **names, **units;
+  const PetscInt n = r->c->n_measures;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc2(n, &names, n, &units));
+  PetscCall(PetscCalloc1(n, &r->values));
+  for (PetscInt k = 0; k < n; ++k) {
+    names[k] = r->c->measures[k].name;
+    units[k] = measure_unit(&r->c->measures[k]);
+  }
+  PetscCall(RunWritten(
+    r, diag ? HistoryOpenFrom(r->dir, n, names, units, r->row_step, diag) : HistoryOpen(r->dir, n, names, units)));
+  PetscCall(PetscFree2(names, units));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode WriteCase(Run *r)
+{
+  char *yaml;
+
+  PetscFunctionBeginUser;
+  PetscCall(CaseToYaml(r->c, &yaml));
+  PetscCall(RunWritten(r, RunDirWriteText(r->dir, "case.yaml", yaml)));
+  PetscCall(PetscFree(yaml));
+  if (!r->failed) PetscCall(RunWritten(r, SummaryVersion(r->comm, r->dir)));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode RunOpen(Run *r, const RunOptions *options, Diag *diag)
+{
+  PetscFunctionBeginUser;
+  PetscCall(RunDirCreate(r->comm, options->out, options->force, options->quiet, options->log, diag, &r->dir));
+  if (!r->dir) PetscFunctionReturn(0);
+  PetscCall(WriteCase(r));
+  if (!r->failed) PetscCall(OpenHistory(r, NULL));
+  if (r->failed) PetscFunctionReturn(0);
+  if (!r->output) PetscCall(OutputCreate(r->model, RunDirPath(r->dir), &r->output));
+  PetscCall(SummaryBegin(r->model, r->dir));
+  PetscCall(RunWriteRow(r));
+  if (r->c->output.every != 0 && !r->failed) PetscCall(RunWriteState(r));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode KeepSeries(Run *r, const char *name, PetscInt n, Diag *diag)
+{
+  char reason[256];
+  PetscMPIInt rank;
+
+  PetscFunctionBeginUser;
+  const PetscErrorCode code = VtkSeriesKeep(r->comm, RunDirPath(r->dir), name, n, reason);
+  if (code && code != PETSC_ERR_FILE_WRITE) PetscCall(code);
+  PetscCallMPI(MPI_Comm_rank(r->comm, &rank));
+  if (code && !rank) DiagError(diag, NULL, "cannot go on with %s/%s.hdf.series: %s", RunDirPath(r->dir), name, reason);
+  PetscFunctionReturn(0);
+}
+
+/* Files as they were when the checkpoint was written. */
+static PetscErrorCode Rewind(Run *r, PetscInt step, Diag *diag)
+{
+  const PetscInt states = OutputCount(r->output);
+  PetscInt errors;
+
+  PetscFunctionBeginUser;
+  PetscCall(OpenHistory(r, diag));
+  PetscCall(KeepSeries(r, "points", states, diag));
+  if (r->c->output.grid) PetscCall(KeepSeries(r, "grid", states, diag));
+  PetscCall(DiagReduce(r->comm, diag, &errors));
+  if (errors || r->failed) PetscFunctionReturn(0);
+  PetscCall(RunWritten(r, RunDirRewind(r->dir, states, step)));
+  if (!r->failed) PetscCall(WriteCase(r));
+  PetscFunctionReturn(0);
+}
+
+/* A run that has ended said so in its timings. */
+static PetscErrorCode IsComplete(const Run *r, PetscBool *complete)
+{
+  PetscMPIInt rank;
+  char path[FILE_PATH], line[128];
+  int found = 0;
+
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_rank(r->comm, &rank));
+  snprintf(path, sizeof path, "%s/timings.txt", RunDirPath(r->dir));
+  FILE *in = rank ? NULL : fopen(path, "r");
+  while (in && fgets(line, sizeof line, in))
+    if (!strcmp(line, "outcome = done\n")) found = 1;
+  if (in) fclose(in);
+  PetscCallMPI(MPI_Bcast(&found, 1, MPI_INT, 0, r->comm));
+  *complete = found ? PETSC_TRUE : PETSC_FALSE;
+  PetscFunctionReturn(0);
+}
+
+/* No checkpoint is there: a run that is complete stays as it is, any other one starts again. */
+static PetscErrorCode StartAgain(Run *r, const RunOptions *options, Diag *diag, PetscBool *complete)
+{
+  RunOptions again = *options;
+
+  PetscFunctionBeginUser;
+  PetscCall(IsComplete(r, complete));
+  if (*complete) PetscCall(RunDirLog(r->dir, "the run is complete and has left no checkpoint: nothing to resume"));
+  if (*complete) PetscFunctionReturn(0);
+  PetscCall(OutputDestroy(&r->output));
+  PetscCall(RunDirDestroy(&r->dir));
+  again.force = PETSC_TRUE;
+  PetscCall(RunOpen(r, &again, diag));
+  if (r->dir) PetscCall(RunDirLog(r->dir, "warning = there was no checkpoint to resume from: the run starts again"));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode RunResume(Run *r, const RunOptions *options, Diag *diag, PetscBool *complete)
+{
+  PetscMPIInt size;
+  PetscInt step, errors;
+  PetscBool fits;
+
+  PetscFunctionBeginUser;
+  PetscCall(RunDirOpen(r->comm, options->out, options->quiet, options->log, diag, &r->dir));
+  if (!r->dir) PetscFunctionReturn(0);
+  PetscCall(OutputCreate(r->model, RunDirPath(r->dir), &r->output)); /* node positions at the start */
+  PetscCall(CheckpointLoad(r, diag, &step, &fits));
+  if (fits && step < 0) PetscCall(StartAgain(r, options, diag, complete));
+  if (fits && step >= 0) PetscCall(Rewind(r, step, diag));
+  PetscCall(DiagReduce(r->comm, diag, &errors));
+  if (errors || !r->dir || step < 0) {
+    if (errors) PetscCall(RunDirDestroy(&r->dir));
+    PetscFunctionReturn(0);
+  }
+  PetscCallMPI(MPI_Comm_size(r->comm, &size));
+  PetscCall(
+    RunDirLog(r->dir, "resumed = step %d time = %.9g ranks = %d", (int)step, (double)r->model->time, (int)size));
+  PetscFunctionReturn(0);
+}

@@ -1,0 +1,56 @@
+/* What the files that make a run share. */
+#pragma once
+#include "run/output.h"
+#include "run/run.h"
+
+/* When something happens again: every so many seconds (> 0), every so many steps (< 0), or at the end only (0). */
+typedef struct {
+  PetscReal every;
+  PetscInt count; /* how often it happened after the start */
+} Schedule;
+
+/* What a run remembers besides its model. It counts only what was due: the row and the state of a run that was interrupted are extras. */
+typedef struct {
+  PetscInt states, rows;         /* counts of the schedules */
+  PetscInt written;              /* state files */
+  PetscInt state_step, row_step; /* of the newest state and row, -1 if none */
+  PetscInt iterations_per_step;  /* most of one step */
+  PetscReal seconds;             /* of the clock, spent by the run and those that it resumes */
+} RunMemory;
+
+typedef struct {
+  MPI_Comm comm;
+  const Case *c;
+  Model *model;
+  RunDir *dir;
+  Output *output;
+  Schedule states, rows;
+  PetscInt state_step, row_step; /* step of the newest state and row, -1 if none */
+  PetscReal *values;
+  PetscBool failed; /* gave up */
+  RunSummary summary;
+  double start;                        /* of this process, on MPI's clock */
+  PetscReal before;                    /* seconds spent by the runs that this one resumes */
+  double last_checkpoint;              /* on MPI's clock */
+  PetscInt checkpoint_step, n_written; /* step of the newest checkpoint, -1 if none; how many there were */
+} Run;
+
+/* The run ends early; the first reason counts. */
+void run_stop(Run *r, const char *reason);
+/* A file that the disk refused ends the run; the log has said so. */
+PetscErrorCode RunWritten(Run *r, PetscErrorCode code);
+PetscErrorCode RunWriteRow(Run *r);
+PetscErrorCode RunWriteState(Run *r);
+
+/* Collective. Directory, history, output and first row of a run from its start. */
+PetscErrorCode RunOpen(Run *r, const RunOptions *options, Diag *diag);
+/* Collective. The same for a run that goes on from its newest checkpoint that is whole. *complete: there is nothing to do. */
+PetscErrorCode RunResume(Run *r, const RunOptions *options, Diag *diag, PetscBool *complete);
+
+/* Is it time for a checkpoint by the clock? On rank 0, who alone knows the time. */
+PetscBool checkpoint_by_clock(const Run *r);
+PetscBool checkpoint_by_step(const Run *r);
+/* Collective. One that cannot be written is told in the log, and the run goes on. */
+PetscErrorCode CheckpointSave(Run *r);
+/* Collective. Bring the model and the run back to the newest checkpoint that is whole; *step = -1 if there is none. */
+PetscErrorCode CheckpointLoad(Run *r, Diag *diag, PetscInt *step, PetscBool *fits);

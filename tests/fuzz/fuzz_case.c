@@ -1,0 +1,51 @@
+/* Any bytes as a case file. What is accepted must be accepted again when it is written down and read back. */
+#include "fuzz.h"
+#include "io/case_file.h"
+
+static FILE *nowhere;
+
+int LLVMFuzzerInitialize(int *argc, char ***argv)
+{
+  (void)argc, (void)argv;
+  fuzz_start();
+  nowhere = fopen("/dev/null", "w");
+  return 0;
+}
+
+static Case *Read(const uint8_t *data, size_t n)
+{
+  char path[64];
+  Diag *diag;
+  Case *c;
+  const int fd = fuzz_file(data, n, path);
+  FUZZ_CALL(DiagCreate(&diag));
+  FUZZ_CALL(CaseRead(PETSC_COMM_SELF, path, 0, NULL, diag, &c));
+  if (!c && !DiagErrors(diag)) abort(); /* refused without a word */
+  FUZZ_CALL(DiagFlush(diag, nowhere));
+  FUZZ_CALL(DiagDestroy(&diag));
+  close(fd);
+  return c;
+}
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t n)
+{
+  char *yaml, *again;
+  Case *c = Read(data, n);
+  if (!c) return 0;
+  FUZZ_CALL(CaseToYaml(c, &yaml));
+  FUZZ_CALL(CaseDestroy(&c));
+  c = Read((const uint8_t *)yaml, strlen(yaml));
+  if (!c) {
+    fputs(yaml, stderr);
+    abort();
+  }
+  FUZZ_CALL(CaseToYaml(c, &again));
+  if (strcmp(yaml, again)) {
+    fprintf(stderr, "%s\nis read back as\n%s", yaml, again);
+    abort();
+  }
+  FUZZ_CALL(CaseDestroy(&c));
+  FUZZ_CALL(PetscFree(yaml));
+  FUZZ_CALL(PetscFree(again));
+  return 0;
+}

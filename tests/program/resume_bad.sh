@@ -1,0 +1,122 @@
+#!/bin/sh
+# What may be wrong with a checkpoint, a run directory or a command line when a run is to go on.
+compare="$(cd "$(dirname "$0")" && pwd)/compare.awk"
+. "$(dirname "$0")/library.sh"
+block | sed 's/end: 0.4/end: 0.08/; s/every: 0.1/every: 0.02/' >block.yaml
+expect "whole" 0 "$talus" run block.yaml --out whole --quiet --set checkpoint.steps=10 --set checkpoint.keep=3
+[ "$(ls whole/checkpoint_*.h5 | wc -l)" -eq 3 ] || fail "keep: not three checkpoints"
+newest=checkpoint_000000040.h5 older=checkpoint_000000030.h5
+
+# same NAME: the run in cut/ ended as the whole one did.
+same() {
+  cmp -s whole/history.csv cut/history.csv || fail "$1: another history"
+  for file in $(cd whole && ls *.hdf *.series); do cmp -s whole/$file cut/$file || fail "$1: $file differs"; done
+}
+
+# Damage of every kind: the older one is used, with a warning, and the damaged one is set aside
+damaged() {
+  expect "$1" 0 "$talus" run --resume cut
+  says cut/log.txt "warning = the checkpoint cut/$newest cannot be used: $2" "resumed = step 30"
+  says out.txt "warning = the checkpoint"
+  [ -e cut/$newest.damaged ] || fail "$1: the damaged one is gone"
+  same "$1"
+  rm -r cut
+}
+cp -r whole cut
+size=$(wc -c <cut/$newest)
+printf '\377' | dd of=cut/$newest bs=1 seek=$((size - 3000)) conv=notrunc 2>/dev/null
+damaged "a wrong byte" "the checksum of "
+cp -r whole cut
+printf '7' | dd of=cut/$newest bs=1 seek=60 conv=notrunc 2>/dev/null
+damaged "a wrong byte in the contents" "the checksum of its contents is wrong"
+cp -r whole cut
+head -c $((size - 100)) whole/$newest >cut/$newest
+damaged "cut off" "it is $((size - 100)) bytes long and should have $size"
+cp -r whole cut
+head -c 300 whole/$newest >cut/$newest
+damaged "cut off in the contents" "its contents are cut off"
+cp -r whole cut
+: >cut/$newest
+damaged "empty" "it is no checkpoint of talus"
+cp -r whole cut
+rm cut/$newest && mkdir cut/$newest
+damaged "a folder" "Is a directory"
+cp -r whole cut
+dd if=/dev/zero of=cut/$newest bs=$size count=1 2>/dev/null
+damaged "zeros" "it is no checkpoint of talus"
+
+# None is whole: from the start, and to the same end. Two ranks agree on that too.
+cp -r whole cut
+for file in cut/checkpoint_*.h5; do echo 'talus checkpoint' >$file; done
+mv cut/timings.txt kept.txt
+expect "all damaged" 0 "$talus" run --resume cut --quiet
+says cut/log.txt "the run starts again"
+same "all damaged"
+rm cut/checkpoint_* cut/timings.txt
+expect "none there, two ranks" 0 mpiexec --oversubscribe -n 2 "$talus" run --resume cut --quiet
+says cut/log.txt "the run starts again"
+awk -f "$compare" whole/history.csv cut/history.csv || fail "$name: differs"
+
+# A run that is complete stays so
+cp -r whole again
+expect "complete" 0 "$talus" run --resume again --quiet
+rm -r cut && mv again cut
+same "complete"
+rm cut/checkpoint_*
+cp -r cut kept
+expect "complete, no checkpoint" 0 "$talus" run --resume cut
+says out.txt "the run is complete and has left no checkpoint"
+rm cut/log.txt kept/log.txt
+diff -r cut kept || fail "$name: something changed"
+rm -r kept
+
+# A later end: as if it had been asked for at once
+expect "longer" 0 "$talus" run block.yaml --out longer --quiet --set analysis.end=0.12 --set checkpoint.steps=10
+rm -r cut && cp -r whole cut
+expect "a later end" 0 "$talus" run --resume cut --quiet --set analysis.end=0.12
+awk -f "$compare" longer/history.csv cut/history.csv || fail "$name: differs"
+says cut/case.yaml "end: 0.12"
+[ "$(grep -c '"name"' cut/points.hdf.series)" -eq 7 ] || fail "$name: states"
+
+# What makes no sense is said, and nothing is touched
+rm -r cut && cp -r whole cut
+expect "another material" 2 "$talus" run --resume cut --set materials.rubber.young=1e6
+says err.txt "a resumed run cannot change materials.rubber.young" "checkpoint, newton"
+expect "with a case" 2 "$talus" run block.yaml --resume cut
+says err.txt "--resume goes on in DIR"
+expect "with a directory" 2 "$talus" run --resume cut --out other
+expect "nothing" 2 "$talus" run
+says err.txt "there is no CASE on the command line"
+expect "nowhere" 2 "$talus" run --resume nowhere
+says err.txt "there is no run to resume in 'nowhere'"
+mkdir empty && cp block.yaml empty/case.yaml
+expect "a case, no run" 2 "$talus" run --resume empty
+says err.txt "there is no run to resume in 'empty'"
+sed -i 's/young: 200000/young: 300000/; s/young: 2e+05/young: 300000/' cut/case.yaml
+expect "another case.yaml" 2 "$talus" run --resume cut
+says err.txt "does not fit: it is of another case than the case.yaml beside it"
+cp whole/case.yaml cut/case.yaml
+rm cut/log.txt && cp whole/log.txt cut/log.txt
+sed -i '20,$d' cut/history.csv
+expect "a history that lost rows" 2 "$talus" run --resume cut
+says err.txt "history.csv' has lost rows: the one of step 40 is missing"
+cp whole/history.csv cut/history.csv
+sed -i '/000002/d' cut/points.hdf.series
+expect "a series that lost entries" 2 "$talus" run --resume cut
+says err.txt "cannot go on with cut/points.hdf.series: entries are missing"
+
+# Two runs in one directory: the second is refused, by --resume and by --force
+block | sed 's/end: 0.4/end: 1000/' >long.yaml
+"$talus" run long.yaml --out busy --quiet >/dev/null 2>&1 </dev/null &
+job=$!
+for i in $(seq 200); do [ -s busy/history.csv ] && break; sleep 0.05; done
+expect "resume of a run at work" 2 "$talus" run --resume busy
+says err.txt "another run is at work in the output directory 'busy'"
+expect "force on a run at work" 2 "$talus" run block.yaml --out busy --force
+says err.txt "another run is at work"
+kill -TERM $job
+wait $job
+[ $? -eq 1 ] || fail "the run at work was harmed"
+[ "$(ls busy/checkpoint_*.h5 | wc -l)" -eq 1 ] || fail "SIGTERM: no checkpoint"
+
+finish

@@ -1,0 +1,203 @@
+/* A model put away in a file and brought back takes the same steps: bit by bit on the same ranks, to round-off on one. */
+#include "../model/case_builder.h"
+#include "io/checkpoint.h"
+#include "model/state.h"
+
+static char path[PETSC_MAX_PATH_LEN];
+
+static void put_away(Model *m)
+{
+  Tables *tables;
+  char reason[256];
+  CALL(TablesCreate(&tables));
+  CALL(ModelToTables(m, tables));
+  CALL(CheckpointWrite(m->comm, path, tables, reason));
+  CALL(TablesDestroy(&tables));
+}
+
+static Model *bring_back(Bench *b, MPI_Comm comm)
+{
+  Model *m = bench_model(b, comm);
+  Tables *tables;
+  char reason[256];
+  CALL(CheckpointRead(comm, path, &tables, reason));
+  CALL(ModelFromTables(m, tables, reason));
+  CHECK(!reason[0], "%s", reason);
+  CALL(TablesDestroy(&tables));
+  return m;
+}
+
+static void same_bits(const Points *p, const Points *q, const char *what)
+{
+  CHECK(p->n == q->n, "%s: %d and %d points", what, (int)p->n, (int)q->n);
+  for (int f = 0; f < POINT_N_REAL; ++f)
+    CHECK(!p->n || !p->components[f] ||
+            !memcmp(p->real[f], q->real[f], sizeof(PetscReal) * (size_t)(p->n * p->components[f])),
+          "%s: field %d differs", what, f);
+  for (PetscInt i = 0; i < p->n; ++i)
+    CHECK(
+      p->id[i] == q->id[i] && p->cell[i] == q->cell[i] && p->body[i] == q->body[i] && p->material[i] == q->material[i],
+      "%s: point %d is another one", what, (int)i);
+}
+
+static void same_models(const Model *m, const Model *n)
+{
+  const size_t dofs = (size_t)(m->grid->n_owned * m->dim) * sizeof(PetscReal);
+  same_bits(m->points, n->points, "points");
+  same_bits(m->tracers, n->tracers, "tracers");
+  same_bits(m->loads->carriers, n->loads->carriers, "carriers");
+  CHECK(!memcmp(m->grid->x, n->grid->x, dofs), "nodes have moved");
+  CHECK(!memcmp(m->stage->v, n->stage->v, dofs) && !memcmp(m->stage->a, n->stage->a, dofs), "nodal motion differs");
+  CHECK(!memcmp(m->reaction, n->reaction, dofs) && !memcmp(m->held, n->held, dofs), "reactions differ");
+  CHECK(m->time == n->time && m->dt == n->dt && m->step == n->step && m->cuts == n->cuts, "time or step differ");
+  CHECK(m->external_work == n->external_work && m->transfer_energy == n->transfer_energy, "energies differ");
+  CHECK(m->total_iterations == n->total_iterations, "other iterations");
+}
+
+/* bits: does the solver promise the same bits on several ranks? */
+static void check(Bench *b, PetscInt before, PetscInt after, PetscBool bits)
+{
+  Model *whole = bench_model(b, PETSC_COMM_WORLD);
+  for (PetscInt k = 0; k < before; ++k) model_step(whole, PETSC_MAX_REAL);
+  put_away(whole);
+  Model *again = bring_back(b, PETSC_COMM_WORLD), *alone = bring_back(b, PETSC_COMM_SELF);
+  same_models(whole, again);
+  for (PetscInt k = 0; k < after; ++k) {
+    model_step(whole, PETSC_MAX_REAL);
+    model_step(again, PETSC_MAX_REAL);
+    model_step(alone, PETSC_MAX_REAL);
+  }
+  if (bits) same_models(whole, again);
+  for (int f = 0; f < POINT_TAU; ++f) {
+    const PetscReal off = points_difference(whole, alone, (PointReal)f);
+    CHECK(off <= 1e-9, "alone, field %d is off by %g", f, (double)off);
+  }
+  CALL(ModelDestroy(&whole));
+  CALL(ModelDestroy(&again));
+  CALL(ModelDestroy(&alone));
+}
+
+static PetscBool on_one_rank(void)
+{
+  PetscMPIInt size;
+  MPI_Comm_size(PETSC_COMM_WORLD, &size);
+  return size == 1 ? PETSC_TRUE : PETSC_FALSE;
+}
+
+/* A body that falls, turns and crosses from rank to rank, with a load that it carries and a tracer. */
+static void flying(const char *method, CellType cell, PetscReal size)
+{
+  Bench b;
+  bench_init(&b, method, cell, 0);
+  if (strcmp(method, "fem")) {
+    bench_grid(&b, (PetscReal[]){0, 0, 0}, (PetscReal[]){3, 2, 2}, size);
+    bench_box(&b, 0, (PetscReal[]){0.5, 0.5, 0.5}, (PetscReal[]){1.5, 1, 1});
+  } else {
+    bench_grid(&b, (PetscReal[]){0.5, 0.5, 0.5}, (PetscReal[]){1.5, 1, 1}, size);
+    bench_box(&b, 0, (PetscReal[]){0.5, 0.5, 0.5}, (PetscReal[]){1.5, 1, 1});
+  }
+  bench_dynamic(&b, 1, 2e-3);
+  b.c.linear = LINEAR_ITERATIVE;
+  b.body[0].velocity[0] = 5;
+  b.body[0].spin[2] = 3;
+  b.c.gravity[1] = -9.81;
+  bench_traction(&b, 0, 1.5, strcmp(method, "fem") ? "body" : NULL, 1e3, 2e3, 0);
+  bench_tracer(&b, MEASURE_DISPLACEMENT, 1, 1.4, 0.9, 0.9);
+  if (!strcmp(method, "fem")) bench_motion(&b, 0, 0.5, MOTION_FIXED, 7);
+  check(&b, 7, 6, PETSC_TRUE);
+}
+
+static void test_mpm_2d(void **state)
+{
+  (void)state;
+  flying("mpm", CELL_QUADRILATERAL, 0.125);
+  flying("mpm", CELL_TRIANGLE, 0.25);
+}
+
+static void test_mpm_3d(void **state)
+{
+  (void)state;
+  flying("mpm", CELL_HEXAHEDRON, 0.25);
+}
+
+static void test_fem(void **state)
+{
+  (void)state;
+  flying("fem", CELL_QUADRILATERAL, 0.125);
+  flying("fem", CELL_HEXAHEDRON, 0.25);
+}
+
+/* Statics in steps with factorisations, whose bits depend on the arrival of messages where there are several ranks. */
+static void test_static(void **state)
+{
+  Bench b;
+  (void)state;
+  bench_init(&b, "mpm", CELL_QUADRILATERAL, 0);
+  bench_grid(&b, (PetscReal[]){0, -1, 0}, (PetscReal[]){4.5, 1.5, 1}, 0.25);
+  bench_box(&b, 0, (PetscReal[]){0, 0, 0}, (PetscReal[]){4, 1, 1});
+  bench_motion(&b, 0, 0, MOTION_FIXED, 3);
+  b.c.gravity[1] = -1;
+  b.c.analysis.step = b.c.analysis.largest = 0.2;
+  b.c.analysis.smallest = 0.01;
+  check(&b, 2, 2, on_one_rank());
+  bench_motion(&b, 0, 4, MOTION_DISPLACEMENT, 1)->value[0] = 0.1;
+  b.c.method = (char *)"fem";
+  bench_grid(&b, (PetscReal[]){0, 0, 0}, (PetscReal[]){4, 1, 1}, 0.25);
+  check(&b, 2, 2, on_one_rank());
+}
+
+/* After the first step, which starts from accelerations of its own. */
+static void test_at_start(void **state)
+{
+  Bench b;
+  (void)state;
+  bench_init(&b, "mpm", CELL_QUADRILATERAL, 4);
+  bench_motion(&b, 1, 0, MOTION_FIXED, 3);
+  b.c.gravity[1] = -1;
+  bench_dynamic(&b, 1, 1e-2);
+  b.c.linear = LINEAR_ITERATIVE;
+  check(&b, 1, 3, PETSC_TRUE);
+}
+
+/* Tables of another model are refused, on all ranks and without harm. */
+static void test_other_model(void **state)
+{
+  Bench b;
+  Tables *tables;
+  char reason[256];
+  (void)state;
+  bench_init(&b, "mpm", CELL_QUADRILATERAL, 8);
+  Model *m = bench_model(&b, PETSC_COMM_WORLD);
+  put_away(m);
+  CALL(ModelDestroy(&m));
+  for (int k = 0; k < 3; ++k) {
+    bench_init(&b, k == 1 ? "fem" : "mpm", CELL_QUADRILATERAL, k == 0 ? 4 : 8);
+    if (k == 2) bench_tracer(&b, MEASURE_DISPLACEMENT, 1, 0.4, 0.9, 0.9);
+    m = bench_model(&b, PETSC_COMM_WORLD);
+    CALL(CheckpointRead(PETSC_COMM_WORLD, path, &tables, reason));
+    CALL(ModelFromTables(m, tables, reason));
+    CHECK(strstr(reason, k == 0   ? "the grid of the case is not the one of the run"
+                         : k == 1 ? "nodes is missing"
+                                  : "the measures of the case are not those of the run"),
+          "%d: %s", k, reason);
+    CALL(TablesDestroy(&tables));
+    CALL(ModelDestroy(&m));
+  }
+}
+
+int main(int argc, char **argv)
+{
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_mpm_2d),   cmocka_unit_test(test_mpm_3d),
+                                     cmocka_unit_test(test_fem),      cmocka_unit_test(test_static),
+                                     cmocka_unit_test(test_at_start), cmocka_unit_test(test_other_model)};
+  PetscMPIInt rank;
+  int pid;
+  if (PetscInitialize(&argc, &argv, NULL, NULL)) return 1;
+  MPI_Comm_rank(PETSC_COMM_WORLD, &rank);
+  pid = (int)getpid();
+  MPI_Bcast(&pid, 1, MPI_INT, 0, PETSC_COMM_WORLD);
+  snprintf(path, sizeof path, "%s/talus-state-%d.h5", getenv("TMPDIR") ? getenv("TMPDIR") : "/tmp", pid);
+  const int failed = cmocka_run_group_tests(tests, NULL, NULL);
+  if (!rank) unlink(path);
+  return PetscFinalize() || failed;
+}
