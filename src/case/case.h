@@ -172,7 +172,7 @@ typedef struct {
 } NewtonSpec;
 
 typedef struct {
-  PetscReal stiffness, mass; /* see docs/theory.md, cells that are not full */
+  PetscReal stiffness, mass, inertia; /* see docs/theory.md, cells that are not full */
 } StabilisationSpec;
 
 typedef struct {

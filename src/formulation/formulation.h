@@ -19,6 +19,7 @@ typedef struct {
   PetscReal inertia;          /* c0, 1/s2; 0 in statics */
   const PetscReal *lumping;   /* per group: share of the mass that is lumped, or NULL (0) */
   const PetscReal *soft;      /* per group: stiffness that ties a hardly filled cell's nodes together, N/m, or NULL */
+  const PetscReal *tie;       /* per group: inertia that ties them together, kg, or NULL */
   const unsigned char *fixed; /* n_nodes x dim: prescribed degrees of freedom; their rows and columns stay empty */
   const PetscReal *lift;      /* n_nodes x dim or NULL: adds K lift on the free rows, for fixed columns */
 } WeakFormInput;

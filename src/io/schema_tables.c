@@ -96,6 +96,9 @@ static const SchemaEntry stabilisation_entries[] = {
       AT_LEAST(0), AT(StabilisationSpec, stiffness)),
   KEY("mass", NUMBER, NULL, "share of the mass that is lumped at the nodes, times the empty part of the cell",
       .note = "1 if a law of the case yields, 0.1 if all are elastic", BETWEEN(0, 1), AT(StabilisationSpec, mass)),
+  KEY("inertia", NUMBER, NULL,
+      "share of the mass that resists what moves the nodes of a cell apart, times its empty part",
+      .note = "0.01 if a law of the case yields, 0 if all are elastic", BETWEEN(0, 1), AT(StabilisationSpec, inertia)),
   {.key = NULL},
 };
 static const SchemaTable stabilisation = {

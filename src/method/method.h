@@ -23,9 +23,9 @@ typedef struct Stage {
   PetscReal *v_points;    /* n_nodes x dim: v as the points gave it, before prescribed motion replaced it */
   PetscReal *v1, *a1;     /* n_nodes x dim at t_(n+1), of an accepted step */
   PetscInt group_capacity;
-  PetscReal *lumping, *soft; /* per group, see WeakFormInput */
-  PetscInt n_lost;           /* points that left the grid in the last convection, all ranks */
-  LostPoint *lost;           /* at most 16 of them */
+  PetscReal *lumping, *soft, *tie; /* per group, see WeakFormInput */
+  PetscInt n_lost;                 /* points that left the grid in the last convection, all ranks */
+  LostPoint *lost;                 /* at most 16 of them */
 } Stage;
 
 typedef struct Method {

@@ -64,7 +64,7 @@ static PetscErrorCode Project(Stage *s)
 }
 
 /* A cell that its points fill only partly leaves motions of its nodes without stiffness and mass. In the measure in which it is not
- * full, part of its mass is lumped and its nodes are tied by a weak stiffness (docs/theory.md, "Cells that are not full"). */
+ * full, part of its mass is lumped and its nodes are tied by a weak stiffness and a little inertia (docs/theory.md, "Cells that are not full"). */
 static PetscErrorCode Stabilise(Stage *s)
 {
   const Support *w = s->support;
@@ -73,22 +73,22 @@ static PetscErrorCode Stabilise(Stage *s)
 
   PetscFunctionBeginUser;
   if (w->n_groups > s->group_capacity) {
-    PetscCall(PetscFree(s->lumping));
-    PetscCall(PetscFree(s->soft));
+    PetscCall(PetscFree3(s->lumping, s->soft, s->tie));
     s->group_capacity = w->n_groups + w->n_groups / 4;
-    PetscCall(PetscMalloc1(s->group_capacity, &s->lumping));
-    PetscCall(PetscMalloc1(s->group_capacity, &s->soft));
+    PetscCall(PetscMalloc3(s->group_capacity, &s->lumping, s->group_capacity, &s->soft, s->group_capacity, &s->tie));
   }
   for (PetscInt g = 0; g < w->n_groups; ++g) {
-    PetscReal filled = 0, modulus = 0;
+    PetscReal filled = 0, modulus = 0, mass = 0;
     for (PetscInt p = w->point_start[g]; p < w->point_start[g + 1]; ++p) {
       filled += PetscMin(1, s->points->real[POINT_J][p]) * s->points->real[POINT_VOLUME][p];
+      mass += s->points->real[POINT_MASS][p];
       modulus = PetscMax(modulus, s->materials[s->points->material[p]].wave_modulus);
     }
     grid_cell_x(s->grid, s->points->cell[w->point_start[g]], x);
     const PetscReal volume = cell_volume(s->grid->type, x), lack = PetscMax(0, 1 - filled / volume);
     const PetscReal size = lack > 0 ? PetscPowReal(volume, 1.0 / (PetscReal)dim) : 1;
     s->lumping[g] = s->c->stabilisation.mass * lack;
+    s->tie[g] = s->c->stabilisation.inertia * lack * mass;
     s->soft[g] = s->c->stabilisation.stiffness * lack * modulus * volume / (size * size);
   }
   PetscFunctionReturn(0);

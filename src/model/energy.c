@@ -5,6 +5,20 @@
 
 /* Dimension and nodes of a cell are constants at each call below, so that the inner loops unroll. */
 #define UNROLLED static inline __attribute__((always_inline))
+
+/* The part of u M w that ties the nodes of one cell together: their deviations from the mean. */
+UNROLLED PetscReal tied_product(const PetscInt dim, const PetscInt nn, const PetscInt *node, const PetscReal *u,
+                                const PetscReal *w)
+{
+  PetscReal sum = 0;
+  for (PetscInt d = 0; d < dim; ++d) {
+    PetscReal u_mean = 0;
+    for (PetscInt I = 0; I < nn; ++I) u_mean += u[node[I] * dim + d] / (PetscReal)nn;
+    for (PetscInt I = 0; I < nn; ++I) sum += (u[node[I] * dim + d] - u_mean) * w[node[I] * dim + d];
+  }
+  return sum;
+}
+
 UNROLLED PetscReal product_sized(const PetscInt dim, const PetscInt nn, const Model *m, const PetscReal *u,
                                  const PetscReal *w)
 {
@@ -18,6 +32,7 @@ UNROLLED PetscReal product_sized(const PetscInt dim, const PetscInt nn, const Mo
       at_node[I] = 0;
       for (PetscInt d = 0; d < dim; ++d) at_node[I] += u[node[I] * dim + d] * w[node[I] * dim + d];
     }
+    if (m->stage->tie && m->stage->tie[g] > 0) sum += m->stage->tie[g] * tied_product(dim, nn, node, u, w);
     for (PetscInt p = support->point_start[g]; p < support->point_start[g + 1]; ++p) {
       const PetscReal *N = support->N + p * nn;
       PetscReal uh[3] = {0, 0, 0}, wh[3] = {0, 0, 0}, nodes = 0;
@@ -35,7 +50,7 @@ UNROLLED PetscReal product_sized(const PetscInt dim, const PetscInt nn, const Mo
   return sum;
 }
 
-/* The sum u M w over this rank's points, with the mass matrix of the step: part of a cell's mass may be lumped. */
+/* The sum u M w over this rank's points, with the mass matrix of the step: cells that are not full have part of it lumped, and are tied. */
 static PetscReal mass_product(const Model *m, const PetscReal *u, const PetscReal *w)
 {
   const PetscInt dim = m->dim, nn = m->stage->support->uniform;

@@ -13,6 +13,7 @@ WeakFormInput weak_form_of(const Model *m, PetscReal inertia)
     .inertia = inertia,
     .lumping = m->stage->lumping,
     .soft = m->stage->soft,
+    .tie = m->stage->tie,
     .fixed = m->fixed,
   };
 }
