@@ -22,6 +22,7 @@ typedef struct Stage {
   PetscReal *v, *a;       /* n_nodes x dim at t_n: what the solve starts from, m/s, m/s2 */
   PetscReal *v_points;    /* n_nodes x dim: v as the points gave it, before prescribed motion replaced it */
   PetscReal *v1, *a1;     /* n_nodes x dim at t_(n+1), of an accepted step */
+  PetscReal fade;         /* share of a point's velocity beyond the nodes' that Rayleigh damping takes in the step */
   PetscInt group_capacity;
   PetscReal *lumping, *soft, *tie; /* per group, see WeakFormInput */
   PetscInt n_lost;                 /* points that left the grid in the last convection, all ranks */

@@ -106,7 +106,8 @@ static PetscErrorCode MpmInitialise(Stage *s)
 }
 
 /* Points take the change of the nodes' velocity, measured from what the points had given them: where the boundary stops a node, it stops
- * its points too (eq. 2.16 as printed would let them keep their velocity for ever; docs/theory.md). */
+ * its points too (eq. 2.16 as printed would let them keep their velocity for ever; docs/theory.md). Rayleigh damping acts on all motion:
+ * on what nodes carry through the balance, on the rest of a point's velocity, which no node sees, here. */
 UNROLLED void move_points(const PetscInt dim, const PetscInt nn, Stage *s, const PetscReal *du)
 {
   const Support *w = s->support;
@@ -117,16 +118,17 @@ UNROLLED void move_points(const PetscInt dim, const PetscInt nn, Stage *s, const
       PetscReal *x = point_real(s->points, POINT_X, p), *u = point_real(s->points, POINT_U, p);
       PetscReal *v = point_real(s->points, POINT_V, p), *a = point_real(s->points, POINT_A, p);
       for (PetscInt d = 0; d < dim; ++d) {
-        PetscReal move = 0, gain = 0, acceleration = 0;
+        PetscReal move = 0, gain = 0, acceleration = 0, seen = 0;
         for (PetscInt I = 0; I < nn; ++I) {
           const PetscInt i = node[I] * dim + d;
           move += N[I] * du[i];
           gain += N[I] * (s->v1[i] - s->v_points[i]);
           acceleration += N[I] * s->a1[i];
+          seen += N[I] * s->v_points[i];
         }
         x[d] += move;
         u[d] += move;
-        v[d] += gain;
+        v[d] += gain - s->fade * (v[d] - seen);
         a[d] = acceleration;
       }
     }

@@ -135,6 +135,26 @@ static PetscReal transfer_of_nodes(const Model *m, const EnergyStep *e, PetscRea
   return sum + e->external + held - e->damped + points_work(m);
 }
 
+/* What damping takes from the velocity of points beyond that of the nodes: mpm's points fade towards what the nodes see of them. */
+static PetscReal faded(const Model *m)
+{
+  const Stage *s = m->stage;
+  const PetscInt dim = m->dim, nn = s->support->uniform;
+  PetscReal sum = 0;
+  for (PetscInt g = 0; g < s->support->n_groups; ++g)
+    for (PetscInt p = s->support->point_start[g]; p < s->support->point_start[g + 1]; ++p)
+      for (PetscInt d = 0; d < dim; ++d) {
+        PetscReal v = point_real(m->points, POINT_V, p)[d], unseen = v;
+        for (PetscInt I = 0; I < nn; ++I) {
+          const PetscInt i = s->support->node[g * nn + I] * dim + d;
+          v += s->support->N[p * nn + I] * (s->v1[i] - s->v_points[i]);
+          unseen -= s->support->N[p * nn + I] * s->v_points[i];
+        }
+        sum += m->points->real[POINT_MASS][p] * s->fade * unseen * (v - 0.5 * s->fade * unseen);
+      }
+  return sum;
+}
+
 PetscErrorCode EnergyOfNodes(Model *m, PetscReal dt, EnergyStep *e)
 {
   const PetscReal damping = m->c->analysis.type == ANALYSIS_DYNAMIC ? m->c->analysis.damping : 0;
@@ -157,6 +177,11 @@ PetscErrorCode EnergyOfNodes(Model *m, PetscReal dt, EnergyStep *e)
   if (damping > 0) e->damped = 0.5 * damping * (mass_product(m, m->du, s->v) + mass_product(m, m->du, s->v1));
   e->boundary = held + impulse;
   e->transfer = impulse + transfer_of_nodes(m, e, held);
+  if (m->method->points_move && s->fade > 0) {
+    const PetscReal more = faded(m);
+    e->damped += more;
+    e->transfer -= more;
+  }
   PetscFunctionReturn(0);
 }
 

@@ -152,6 +152,7 @@ static PetscErrorCode Accept(Model *m, PetscReal dt, StepReport *report)
       s->a1[i] = newmark_acceleration(&newmark, m->du[i], s->v[i], s->a[i]);
       s->v1[i] = newmark_velocity(&newmark, s->v[i], s->a[i], s->a1[i]);
     }
+  s->fade = m->c->analysis.type == ANALYSIS_DYNAMIC ? 1 - PetscExpReal(-m->c->analysis.damping * dt) : 0;
   PetscCall(EnergyOfNodes(m, dt, &energy));
   store_reactions(m, dt);
   WeakFormInput in = weak_form_of(m, 0);
