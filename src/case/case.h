@@ -161,6 +161,7 @@ typedef struct {
   PetscReal end;               /* s; statics: pseudo-time, 1 */
   PetscReal step;              /* s, the first and (without growth) largest step */
   PetscReal smallest, largest; /* s, bounds of step control */
+  PetscReal travel;            /* most cells that a point may cross in a step that has grown; 0: any */
   PetscReal beta, gamma;       /* Newmark */
   PetscReal bossak;            /* alpha_B in [-1/3, 0] */
   PetscReal damping;           /* Rayleigh, mass proportional, 1/s */
@@ -174,7 +175,7 @@ typedef struct {
 } NewtonSpec;
 
 typedef struct {
-  PetscReal stiffness, mass; /* see docs/theory.md, cells that are not full */
+  PetscReal stiffness, mass, inertia; /* see docs/theory.md, cells that are not full */
 } StabilisationSpec;
 
 typedef struct {

@@ -50,6 +50,19 @@ KERNEL void cell_soften(const int dim, const int nn, PetscReal s, PetscBool tang
       for (int J = 0; J < nn; ++J) w->K[((I * dim + d) * dim + d) * row_width(nn) + J] += s * ((I == J) - 1.0 / nn);
 }
 
+/* The same with inertia: s (a_I - mean), no force on a uniform acceleration. */
+KERNEL void cell_tie(const int dim, const int nn, PetscReal s, CellWork *w)
+{
+  const int width = row_width(nn);
+  for (int d = 0; d < dim; ++d) {
+    PetscReal mean = 0;
+    for (int I = 0; I < nn; ++I) mean += w->a[d * width + I] / nn;
+    for (int I = 0; I < nn; ++I) w->f[d * width + I] += s * (w->a[d * width + I] - mean);
+  }
+  for (int I = 0; I < nn; ++I)
+    for (int J = 0; J < nn; ++J) w->M[I * width + J] += s * ((I == J) - 1.0 / nn);
+}
+
 /* Rows and columns of prescribed dofs are cut; lifting moves their columns to the right-hand side. */
 KERNEL void cell_cut(const int dim, const int nn, const WeakFormInput *in, const PetscInt *node, CellWork *w)
 {
@@ -73,6 +86,7 @@ KERNEL void cell_store(const int dim, const int nn, const WeakFormInput *in, Pet
 {
   const PetscInt *node = in->support->node + group * nn;
   if (in->soft && in->soft[group] > 0) cell_soften(dim, nn, in->soft[group], out->values != NULL, w);
+  if (in->tie && in->tie[group] > 0) cell_tie(dim, nn, in->tie[group], w);
   if (out->values) {
     const PetscInt *slot = out->slot + group * nn * nn;
     int cut = 0;

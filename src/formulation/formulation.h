@@ -19,12 +19,13 @@ typedef struct {
   PetscReal inertia;          /* c0, 1/s2; 0 in statics */
   const PetscReal *lumping;   /* per group: share of the mass that is lumped, or NULL (0) */
   const PetscReal *soft;      /* per group: stiffness that ties a hardly filled cell's nodes together, N/m, or NULL */
+  const PetscReal *tie;       /* per group: inertia that ties them together, kg, or NULL */
   const unsigned char *fixed; /* n_nodes x dim: prescribed degrees of freedom; their rows and columns stay empty */
   const PetscReal *lift;      /* n_nodes x dim or NULL: adds K lift on the free rows, for fixed columns */
   const PetscReal *pressure;  /* mixed: n_nodes, the unknown pressure over pressure_scale, m */
   PetscReal pressure_scale;   /* mixed: Pa/m, gives both unknowns the same unit, and both equations N */
   PetscReal alpha;            /* mixed: stabilisation of the pressure is alpha / G */
-  const PetscReal *tie;       /* mixed: per group, ties the pressures of a hardly filled cell, m3/Pa, or NULL */
+  const PetscReal *pressure_tie; /* mixed: per group, ties the pressures of a hardly filled cell, m3/Pa, or NULL */
 } WeakFormInput;
 
 typedef struct {

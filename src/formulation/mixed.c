@@ -45,7 +45,7 @@ KERNEL void cell_load(const int dim, const int nn, const WeakFormInput *in, Pets
   for (int i = 0; i < nn * width; ++i) w->M[i] = w->Kpp[i] = 0;
   for (int i = 0; i < dim * nn * width; ++i) w->Kup[i] = w->Kpu[i] = 0;
   for (int i = 0; i < dim * dim * nn * width; ++i) w->K[i] = 0;
-  w->hold = in->tie ? in->tie[group] : 0;
+  w->hold = in->pressure_tie ? in->pressure_tie[group] : 0;
 }
 
 /* Ties the nodes of a hardly filled cell: s (du_I - mean), no force on a translation. */
@@ -60,6 +60,19 @@ KERNEL void cell_soften(const int dim, const int nn, PetscReal s, CellWork *w)
       for (int J = 0; J < nn; ++J) w->K[((I * dim + d) * dim + d) * width + J] += s * ((I == J) - 1.0 / nn);
     }
   }
+}
+
+/* The same with inertia: s (a_I - mean), no force on a uniform acceleration. */
+KERNEL void cell_tie(const int dim, const int nn, PetscReal s, CellWork *w)
+{
+  const int width = row_width(nn);
+  for (int d = 0; d < dim; ++d) {
+    PetscReal mean = 0;
+    for (int I = 0; I < nn; ++I) mean += w->a[d * width + I] / nn;
+    for (int I = 0; I < nn; ++I) w->f[d * width + I] += s * (w->a[d * width + I] - mean);
+  }
+  for (int I = 0; I < nn; ++I)
+    for (int J = 0; J < nn; ++J) w->M[I * width + J] += s * ((I == J) - 1.0 / nn);
 }
 
 /* The projection's integral is that over the cell, whatever the number of its points. */
@@ -120,6 +133,7 @@ KERNEL void cell_store(const int dim, const int nn, const WeakFormInput *in, Pet
   const PetscInt *node = in->support->node + group * nn;
   const int width = row_width(nn);
   if (in->soft && in->soft[group] > 0) cell_soften(dim, nn, in->soft[group], w);
+  if (in->tie && in->tie[group] > 0) cell_tie(dim, nn, in->tie[group], w);
   cell_project(dim, nn, in->pressure_scale, w);
   if (out->values) {
     int cut = 0;

@@ -85,15 +85,22 @@ static PetscInt PeekDimensions(const YamlNode *root)
   return !strcmp(kinematics->text, "plane-strain") || !strcmp(kinematics->text, "axisymmetric") ? 2 : 0;
 }
 
-/* Measured (docs/theory.md, section 9): elastic bodies keep angular momentum and energy best with a tenth, while at the front of a
- * flow, where yielded points carry next to nothing, only full lumping keeps Newton's method alive. */
-static PetscReal LumpedShare(const Case *c)
+static PetscBool AnythingYields(const Case *c)
 {
   for (PetscInt m = 0; m < c->n_materials; ++m) {
     const Law *law = c->materials[m].law ? LawFind(c->materials[m].law) : NULL;
-    if (law && law->yields) return 1;
+    if (law && law->yields) return PETSC_TRUE;
   }
-  return 0.1;
+  return PETSC_FALSE;
+}
+
+/* Measured (docs/theory.md, section 9): elastic bodies keep angular momentum and energy best with a tenth of the mass lumped and no tie,
+ * while at the front of a flow, where yielded points carry next to nothing, only both keep Newton's method alive. */
+static void ResolveStabilisation(const YamlNode *given, Case *c)
+{
+  const PetscBool yields = AnythingYields(c);
+  if (!YamlFind(given, "mass")) c->stabilisation.mass = yields ? 1 : 0.1;
+  if (!YamlFind(given, "inertia")) c->stabilisation.inertia = yields ? 0.01 : 0;
 }
 
 static PetscErrorCode ReadDocument(const char *file, YamlDocument *document, Diag *diag, Case **c)
@@ -106,7 +113,7 @@ static PetscErrorCode ReadDocument(const char *file, YamlDocument *document, Dia
   PetscCall(FolderOf(file, &(*c)->folder));
   reader.c = *c;
   PetscCall(SchemaReadTable(&reader, &schema_case, document->root, *c));
-  if (!YamlFind(YamlFind(document->root, "stabilisation"), "mass")) (*c)->stabilisation.mass = LumpedShare(*c);
+  ResolveStabilisation(YamlFind(document->root, "stabilisation"), *c);
   PetscFunctionReturn(0);
 }
 

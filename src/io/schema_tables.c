@@ -43,6 +43,9 @@ static const SchemaEntry analysis_entries[] = {
       AT(AnalysisSpec, smallest)),
   KEY("largest", NUMBER, "s", "steps grow up to this after easy ones", .note = "step", ABOVE(0),
       AT(AnalysisSpec, largest)),
+  KEY("travel", NUMBER, NULL,
+      "steps larger than `step` carry no point farther than this share of the smallest cell; 0: as far as it goes",
+      .fallback = "0.3", AT_LEAST(0), AT(AnalysisSpec, travel)),
   KEY("beta", NUMBER, NULL, "Newmark parameter", .note = "0.25; with bossak (1 - bossak)^2 / 4", .bounded = PETSC_TRUE,
       .min = 0, .max = 1, .min_open = PETSC_TRUE, AT(AnalysisSpec, beta)),
   KEY("gamma", NUMBER, NULL, "Newmark parameter", .note = "0.5; with bossak 0.5 - bossak", BETWEEN(0, 1),
@@ -99,6 +102,9 @@ static const SchemaEntry stabilisation_entries[] = {
       AT_LEAST(0), AT(StabilisationSpec, stiffness)),
   KEY("mass", NUMBER, NULL, "share of the mass that is lumped at the nodes, times the empty part of the cell",
       .note = "1 if a law of the case yields, 0.1 if all are elastic", BETWEEN(0, 1), AT(StabilisationSpec, mass)),
+  KEY("inertia", NUMBER, NULL,
+      "share of the mass that resists what moves the nodes of a cell apart, times its empty part",
+      .note = "0.01 if a law of the case yields, 0 if all are elastic", BETWEEN(0, 1), AT(StabilisationSpec, inertia)),
   {.key = NULL},
 };
 static const SchemaTable stabilisation = {

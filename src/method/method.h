@@ -22,12 +22,13 @@ typedef struct Stage {
   PetscReal *v, *a;       /* n_nodes x dim at t_n: what the solve starts from, m/s, m/s2 */
   PetscReal *v_points;    /* n_nodes x dim: v as the points gave it, before prescribed motion replaced it */
   PetscReal *v1, *a1;     /* n_nodes x dim at t_(n+1), of an accepted step */
+  PetscReal fade;         /* share of a point's velocity beyond the nodes' that Rayleigh damping takes in the step */
   PetscInt group_capacity;
-  PetscReal *lumping, *soft; /* per group, see WeakFormInput */
-  PetscReal *pressure;       /* mixed: n_nodes at t_n, tension positive, Pa; otherwise NULL */
-  PetscReal *tie;            /* mixed: per group, see WeakFormInput */
-  PetscInt n_lost;           /* points that left the grid in the last convection, all ranks */
-  LostPoint *lost;           /* at most 16 of them */
+  PetscReal *lumping, *soft, *tie; /* per group, see WeakFormInput */
+  PetscReal *pressure;             /* mixed: n_nodes at t_n, tension positive, Pa; otherwise NULL */
+  PetscReal *pressure_tie;         /* mixed: per group, see WeakFormInput */
+  PetscInt n_lost;                 /* points that left the grid in the last convection, all ranks */
+  LostPoint *lost;                 /* at most 16 of them */
 } Stage;
 
 /* A nodal array (n_nodes x components) that a method carries from step to step: it goes into checkpoints. */

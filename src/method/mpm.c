@@ -64,7 +64,7 @@ static PetscErrorCode Project(Stage *s)
 }
 
 /* A cell that its points fill only partly leaves motions of its nodes without stiffness and mass. In the measure in which it is not
- * full, part of its mass is lumped and its nodes are tied by a weak stiffness (docs/theory.md, "Cells that are not full"). */
+ * full, part of its mass is lumped and its nodes are tied by a weak stiffness and a little inertia (docs/theory.md, "Cells that are not full"). */
 static PetscErrorCode Stabilise(Stage *s)
 {
   const Support *w = s->support;
@@ -73,18 +73,17 @@ static PetscErrorCode Stabilise(Stage *s)
 
   PetscFunctionBeginUser;
   if (w->n_groups > s->group_capacity) {
-    PetscCall(PetscFree(s->lumping));
-    PetscCall(PetscFree(s->soft));
+    PetscCall(PetscFree3(s->lumping, s->soft, s->tie));
     s->group_capacity = w->n_groups + w->n_groups / 4;
-    PetscCall(PetscMalloc1(s->group_capacity, &s->lumping));
-    PetscCall(PetscMalloc1(s->group_capacity, &s->soft));
-    PetscCall(PetscFree(s->tie));
-    if (s->pressure) PetscCall(PetscMalloc1(s->group_capacity, &s->tie));
+    PetscCall(PetscMalloc3(s->group_capacity, &s->lumping, s->group_capacity, &s->soft, s->group_capacity, &s->tie));
+    PetscCall(PetscFree(s->pressure_tie));
+    if (s->pressure) PetscCall(PetscMalloc1(s->group_capacity, &s->pressure_tie));
   }
   for (PetscInt g = 0; g < w->n_groups; ++g) {
-    PetscReal filled = 0, modulus = 0, shear = 0;
+    PetscReal filled = 0, modulus = 0, shear = 0, mass = 0;
     for (PetscInt p = w->point_start[g]; p < w->point_start[g + 1]; ++p) {
       filled += PetscMin(1, s->points->real[POINT_J][p]) * s->points->real[POINT_VOLUME][p];
+      mass += s->points->real[POINT_MASS][p];
       modulus = PetscMax(modulus, s->materials[s->points->material[p]].wave_modulus);
       shear = PetscMax(shear, s->materials[s->points->material[p]].elastic.shear);
     }
@@ -92,8 +91,9 @@ static PetscErrorCode Stabilise(Stage *s)
     const PetscReal volume = cell_volume(s->grid->type, x), lack = PetscMax(0, 1 - filled / volume);
     const PetscReal size = lack > 0 ? PetscPowReal(volume, 1.0 / (PetscReal)dim) : 1;
     s->lumping[g] = s->c->stabilisation.mass * lack;
+    s->tie[g] = s->c->stabilisation.inertia * lack * mass;
     s->soft[g] = s->c->stabilisation.stiffness * lack * modulus * volume / (size * size);
-    if (s->tie) s->tie[g] = s->c->stabilisation.stiffness * lack * volume / shear;
+    if (s->pressure_tie) s->pressure_tie[g] = s->c->stabilisation.stiffness * lack * volume / shear;
   }
   PetscFunctionReturn(0);
 }
@@ -111,7 +111,8 @@ static PetscErrorCode MpmInitialise(Stage *s)
 }
 
 /* Points take the change of the nodes' velocity, measured from what the points had given them: where the boundary stops a node, it stops
- * its points too (eq. 2.16 as printed would let them keep their velocity for ever; docs/theory.md). */
+ * its points too (eq. 2.16 as printed would let them keep their velocity for ever; docs/theory.md). Rayleigh damping acts on all motion:
+ * on what nodes carry through the balance, on the rest of a point's velocity, which no node sees, here. */
 UNROLLED void move_points(const PetscInt dim, const PetscInt nn, Stage *s, const PetscReal *du)
 {
   const Support *w = s->support;
@@ -122,16 +123,17 @@ UNROLLED void move_points(const PetscInt dim, const PetscInt nn, Stage *s, const
       PetscReal *x = point_real(s->points, POINT_X, p), *u = point_real(s->points, POINT_U, p);
       PetscReal *v = point_real(s->points, POINT_V, p), *a = point_real(s->points, POINT_A, p);
       for (PetscInt d = 0; d < dim; ++d) {
-        PetscReal move = 0, gain = 0, acceleration = 0;
+        PetscReal move = 0, gain = 0, acceleration = 0, seen = 0;
         for (PetscInt I = 0; I < nn; ++I) {
           const PetscInt i = node[I] * dim + d;
           move += N[I] * du[i];
           gain += N[I] * (s->v1[i] - s->v_points[i]);
           acceleration += N[I] * s->a1[i];
+          seen += N[I] * s->v_points[i];
         }
         x[d] += move;
         u[d] += move;
-        v[d] += gain;
+        v[d] += gain - s->fade * (v[d] - seen);
         a[d] = acceleration;
       }
     }

@@ -35,10 +35,9 @@ PetscErrorCode StageDestroy(Stage **stage)
   PetscCall(PetscFree(s->touched));
   PetscCall(PetscFree(s->mass));
   PetscCall(PetscFree5(s->v, s->a, s->v_points, s->v1, s->a1));
-  PetscCall(PetscFree(s->lumping));
-  PetscCall(PetscFree(s->soft));
+  PetscCall(PetscFree3(s->lumping, s->soft, s->tie));
   PetscCall(PetscFree(s->pressure));
-  PetscCall(PetscFree(s->tie));
+  PetscCall(PetscFree(s->pressure_tie));
   PetscCall(PetscFree(s->lost));
   PetscCall(PetscFree(*stage));
   PetscFunctionReturn(0);

@@ -6,6 +6,20 @@
 
 /* Dimension and nodes of a cell are constants at each call below, so that the inner loops unroll. */
 #define UNROLLED static inline __attribute__((always_inline))
+
+/* The part of u M w that ties the nodes of one cell together: their deviations from the mean. */
+UNROLLED PetscReal tied_product(const PetscInt dim, const PetscInt nn, const PetscInt *node, const PetscReal *u,
+                                const PetscReal *w)
+{
+  PetscReal sum = 0;
+  for (PetscInt d = 0; d < dim; ++d) {
+    PetscReal u_mean = 0;
+    for (PetscInt I = 0; I < nn; ++I) u_mean += u[node[I] * dim + d] / (PetscReal)nn;
+    for (PetscInt I = 0; I < nn; ++I) sum += (u[node[I] * dim + d] - u_mean) * w[node[I] * dim + d];
+  }
+  return sum;
+}
+
 UNROLLED PetscReal product_sized(const PetscInt dim, const PetscInt nn, const Model *m, const PetscReal *u,
                                  const PetscReal *w)
 {
@@ -19,6 +33,7 @@ UNROLLED PetscReal product_sized(const PetscInt dim, const PetscInt nn, const Mo
       at_node[I] = 0;
       for (PetscInt d = 0; d < dim; ++d) at_node[I] += u[node[I] * dim + d] * w[node[I] * dim + d];
     }
+    if (m->stage->tie && m->stage->tie[g] > 0) sum += m->stage->tie[g] * tied_product(dim, nn, node, u, w);
     for (PetscInt p = support->point_start[g]; p < support->point_start[g + 1]; ++p) {
       const PetscReal *N = support->N + p * nn;
       PetscReal uh[3] = {0, 0, 0}, wh[3] = {0, 0, 0}, nodes = 0;
@@ -36,7 +51,7 @@ UNROLLED PetscReal product_sized(const PetscInt dim, const PetscInt nn, const Mo
   return sum;
 }
 
-/* The sum u M w over this rank's points, with the mass matrix of the step: part of a cell's mass may be lumped. */
+/* The sum u M w over this rank's points, with the mass matrix of the step: cells that are not full have part of it lumped, and are tied. */
 static PetscReal mass_product(const Model *m, const PetscReal *u, const PetscReal *w)
 {
   const PetscInt dim = m->dim, nn = m->stage->support->uniform;
@@ -134,6 +149,26 @@ static PetscReal transfer_of_nodes(const Model *m, const EnergyStep *e, PetscRea
   return sum + e->external + held - e->damped + points_work(m);
 }
 
+/* What damping takes from the velocity of points beyond that of the nodes: mpm's points fade towards what the nodes see of them. */
+static PetscReal faded(const Model *m)
+{
+  const Stage *s = m->stage;
+  const PetscInt dim = m->dim, nn = s->support->uniform;
+  PetscReal sum = 0;
+  for (PetscInt g = 0; g < s->support->n_groups; ++g)
+    for (PetscInt p = s->support->point_start[g]; p < s->support->point_start[g + 1]; ++p)
+      for (PetscInt d = 0; d < dim; ++d) {
+        PetscReal v = point_real(m->points, POINT_V, p)[d], unseen = v;
+        for (PetscInt I = 0; I < nn; ++I) {
+          const PetscInt i = s->support->node[g * nn + I] * dim + d;
+          v += s->support->N[p * nn + I] * (s->v1[i] - s->v_points[i]);
+          unseen -= s->support->N[p * nn + I] * s->v_points[i];
+        }
+        sum += m->points->real[POINT_MASS][p] * s->fade * unseen * (v - 0.5 * s->fade * unseen);
+      }
+  return sum;
+}
+
 PetscErrorCode EnergyOfNodes(Model *m, PetscReal dt, EnergyStep *e)
 {
   const PetscReal damping = m->c->analysis.type == ANALYSIS_DYNAMIC ? m->c->analysis.damping : 0;
@@ -156,6 +191,11 @@ PetscErrorCode EnergyOfNodes(Model *m, PetscReal dt, EnergyStep *e)
   if (damping > 0) e->damped = 0.5 * damping * (mass_product(m, m->du, s->v) + mass_product(m, m->du, s->v1));
   e->boundary = held + impulse;
   e->transfer = impulse + transfer_of_nodes(m, e, held);
+  if (m->method->points_move && s->fade > 0) {
+    const PetscReal more = faded(m);
+    e->damped += more;
+    e->transfer -= more;
+  }
   PetscFunctionReturn(0);
 }
 

@@ -156,7 +156,7 @@ static PetscErrorCode Build(Model *m, Diag *diag)
   PetscCall(StageCreate(m->c, m->grid, m->points, m->tracers, m->loads, m->materials, &m->stage));
   PetscCall(SystemCreate(m->comm, m->dim, m->dim + (m->formulation->pressure ? 1 : 0), &m->system));
   PetscCall(NewtonCreate(m->comm, &m->c->newton, &m->newton));
-  m->dt = m->c->analysis.step;
+  step_control_start(&m->control, m->c->analysis.step);
   PetscCall(m->method->initialise(m->stage));
   if (m->c->analysis.type == ANALYSIS_DYNAMIC) PetscCall(InitialAcceleration(m));
   PetscCall(EnergyStart(m));

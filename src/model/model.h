@@ -5,6 +5,7 @@
 #include "base/phase.h"
 #include "method/method.h"
 #include "solve/newton.h"
+#include "solve/step_control.h"
 
 typedef struct {
   PetscReal kinetic, elastic;   /* now, J */
@@ -49,7 +50,8 @@ typedef struct Model {
   PetscReal *held;      /* n_nodes x dim on owners: the reaction without the impulse that stopped points, N */
   BodyForce body_force; /* NULL: gravity alone */
   void *body_force_context;
-  PetscReal time, dt; /* s; dt: the next step to try */
+  PetscReal time; /* s */
+  StepControl control;
   PetscInt step;
   PetscBool *option_set;   /* which of the case's PETSc options the model put into the database */
   PetscBool symmetric;     /* are all tangents symmetric? */

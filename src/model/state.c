@@ -8,7 +8,8 @@ static const struct {
   size_t offset;
 } reals[] = {
   {"time", "s", offsetof(Model, time)},
-  {"next_step", "s", offsetof(Model, dt)},
+  {"next_step", "s", offsetof(Model, control.next)},
+  {"failed_step", "s", offsetof(Model, control.failed)},
   {"external_work", "J", offsetof(Model, external_work)},
   {"boundary_work", "J", offsetof(Model, boundary_work)},
   {"damped_energy", "J", offsetof(Model, damped_energy)},
@@ -22,6 +23,9 @@ static const struct {
   {"step", offsetof(Model, step)},
   {"halvings", offsetof(Model, cuts)},
   {"iterations", offsetof(Model, total_iterations)},
+  {"control_wait", offsetof(Model, control.wait)},
+  {"control_patience", offsetof(Model, control.patience)},
+  {"control_since", offsetof(Model, control.since)},
 };
 /* What measures remember. */
 static const struct {
@@ -66,6 +70,8 @@ static PetscErrorCode WholeToTables(Model *m, Tables *tables)
   *(PetscReal *)column->data = newton.courant;
   PetscCall(TableAdd(table, "solver_failures", NULL, COLUMN_INT64, 1, NULL, &column));
   *(PetscInt64 *)column->data = newton.failures;
+  PetscCall(TableAdd(table, "solver_steps_since", NULL, COLUMN_INT64, 1, NULL, &column));
+  *(PetscInt64 *)column->data = newton.since;
   PetscCall(TablesAdd(tables, "measures", PETSC_TRUE, m->c->n_measures, &table));
   for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(memories); ++i) {
     PetscCall(TableAdd(table, memories[i].name, memories[i].unit, COLUMN_REAL, 1, NULL, &column));
@@ -152,7 +158,7 @@ static void whole_from_tables(Model *m, const Table *table, const Table *measure
     *(PetscReal *)((char *)m + reals[i].offset) = real_of(table, reals[i].name, reason);
   for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(counts); ++i)
     *(PetscInt *)((char *)m + counts[i].offset) = count_of(table, counts[i].name, reason);
-  if (!(m->time >= 0 && m->dt > 0)) snprintf(reason, 256, "its time or step makes no sense");
+  if (!(m->time >= 0 && m->control.next > 0)) snprintf(reason, 256, "its time or step makes no sense");
   for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(memories); ++i) {
     const PetscReal *data = TableData(measures, memories[i].name, COLUMN_REAL, 1, reason);
     for (PetscInt k = 0; data && k < m->c->n_measures; ++k)
@@ -192,7 +198,8 @@ static PetscErrorCode SolverBack(Model *m, const Table *table, char reason[256])
 {
   PetscInt local = 0, any;
   NewtonMemory newton = {.courant = real_of(table, "solver_courant", reason),
-                         .failures = count_of(table, "solver_failures", reason)};
+                         .failures = count_of(table, "solver_failures", reason),
+                         .since = count_of(table, "solver_steps_since", reason)};
 
   PetscFunctionBeginUser;
   for (PetscInt c = 0; c < m->grid->n_cells; ++c) local += m->enabled[c];

@@ -13,11 +13,12 @@ WeakFormInput weak_form_of(const Model *m, PetscReal inertia)
     .inertia = inertia,
     .lumping = m->stage->lumping,
     .soft = m->stage->soft,
+    .tie = m->stage->tie,
     .fixed = m->fixed,
     .pressure = m->pressure,
     .pressure_scale = m->pressure_scale,
     .alpha = m->c->mixed.stabilisation,
-    .tie = m->stage->tie,
+    .pressure_tie = m->stage->pressure_tie,
   };
 }
 
@@ -167,6 +168,7 @@ static PetscErrorCode Accept(Model *m, PetscReal dt, StepReport *report)
       s->a1[i] = newmark_acceleration(&newmark, m->du[i], s->v[i], s->a[i]);
       s->v1[i] = newmark_velocity(&newmark, s->v[i], s->a[i], s->a1[i]);
     }
+  s->fade = m->c->analysis.type == ANALYSIS_DYNAMIC ? 1 - PetscExpReal(-m->c->analysis.damping * dt) : 0;
   PetscCall(EnergyOfNodes(m, dt, &energy));
   store_reactions(m, dt);
   WeakFormInput in = weak_form_of(m, 0);
@@ -204,13 +206,32 @@ static void describe_lost(const Model *m, StepReport *report)
            " make the grid larger, or say grid: {outside: remove} or {outside: keep-on-boundary}");
 }
 
-/* After a step that cost few iterations the next may be larger. */
-static void choose_next_step(Model *m, const StepReport *report)
+/* The step in which the fastest point travels as far as it may; without limit where points stay in their cells. */
+static PetscReal reach_of(const Model *m, PetscReal speed)
 {
   const AnalysisSpec *a = &m->c->analysis;
-  if (report->newton.iterations <= m->c->newton.ease && !report->cuts)
-    m->dt = PetscMax(m->dt, PetscMin(2 * report->dt, a->largest));
-  else if (report->cuts) m->dt = report->dt;
+  const PetscBool flows = m->method->points_move && a->type == ANALYSIS_DYNAMIC ? PETSC_TRUE : PETSC_FALSE;
+  return flows && a->travel > 0 && speed > 0 ? a->travel * m->grid->smallest / speed : PETSC_MAX_REAL;
+}
+
+static PetscErrorCode ChooseNextStep(Model *m, PetscBool shortened, const StepReport *report)
+{
+  PetscReal fastest = 0, speed;
+
+  PetscFunctionBeginUser;
+  for (PetscInt p = 0; p < m->points->n; ++p) {
+    const PetscReal *v = point_real(m->points, POINT_V, p);
+    PetscReal square = 0;
+    for (PetscInt d = 0; d < m->dim; ++d) square += v[d] * v[d];
+    fastest = PetscMax(fastest, square);
+  }
+  PetscCall(MPIU_Allreduce(&fastest, &speed, 1, MPIU_REAL, MPIU_MAX, m->comm));
+  const StepTaken taken = {.dt = report->dt,
+                           .iterations = report->newton.iterations,
+                           .shortened = shortened,
+                           .reach = reach_of(m, PetscSqrtReal(speed))};
+  step_control_accept(&m->control, &m->c->analysis, m->c->newton.ease, &taken);
+  PetscFunctionReturn(0);
 }
 
 void ModelTimes(const Model *m, PetscReal seconds[PHASE_N])
@@ -250,7 +271,8 @@ PetscErrorCode ModelStep(Model *m, PetscReal limit, StepReport *report)
   if (m->method->points_move) PetscCall(BoundaryMove(m->boundary, m->grid, m->time));
   mark_fixed(m);
   PetscCall(PhaseEnd(m->seconds, PHASE_PATTERN, &clock));
-  for (PetscReal dt = PetscMin(m->dt, limit);; dt /= 2) {
+  const PetscBool shortened = limit < m->control.next ? PETSC_TRUE : PETSC_FALSE;
+  for (PetscReal dt = PetscMin(m->control.next, limit);; dt = step_control_cut(&m->control, dt)) {
     const LinearProblem linear = {
       .choice = m->c->linear,
       .dim = m->dim,
@@ -277,7 +299,7 @@ PetscErrorCode ModelStep(Model *m, PetscReal limit, StepReport *report)
              (double)dt, report->newton.reason, (double)m->c->analysis.smallest);
     PetscFunctionReturn(0);
   }
-  choose_next_step(m, report);
+  PetscCall(ChooseNextStep(m, shortened && !report->cuts ? PETSC_TRUE : PETSC_FALSE, report));
   if (m->stage->n_lost && m->c->grid.outside == OUTSIDE_STOP) {
     report->outcome = STEP_POINTS_LOST;
     describe_lost(m, report);

@@ -145,7 +145,7 @@ static PetscErrorCode ReportSizes(Model *m, FILE *out)
   say(m, out, "#   memory: about %.3g MB\n", (double)estimated_memory(m, points, unknowns, all_pairs) / 1e6);
   if (m->c->analysis.type == ANALYSIS_DYNAMIC)
     say(m, out, "#   waves: %g m/s, %.3g cells in a step of %g s\n", (double)m->courant_speed,
-        (double)(m->courant_speed * m->dt / m->grid->smallest), (double)m->dt);
+        (double)(m->courant_speed * m->control.next / m->grid->smallest), (double)m->control.next);
   PetscFunctionReturn(0);
 }
 

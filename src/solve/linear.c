@@ -24,8 +24,32 @@ static PetscErrorCode UseKrylov(KSP ksp, const LinearProblem *p, const char **wh
   else
     PetscCall(
       PCSetType(pc, p->idle_ranks ? PCSOR : PCEISENSTAT)); /* PETSc 3.18's trick fails where a rank has no rows */
-  *what = p->symmetric ? "conjugate gradients, symmetric Gauss-Seidel" : "BiCGStab, block Jacobi with ILU(0)";
+  *what = p->symmetric ? "conjugate gradients, symmetric Gauss-Seidel" : "BiCGStab, block Jacobi with ILU";
   PetscCall(KSPSetTolerances(ksp, 1e-4, PETSC_DEFAULT, PETSC_DEFAULT, 500));
+  PetscFunctionReturn(0);
+}
+
+/* A step in which waves cross several cells couples neighbours so strongly that fill of the first level pays. The blocks exist only once
+ * the preconditioner is set up; what the user asked for stays. */
+PetscErrorCode LinearRefine(KSP ksp, Mat matrix, const LinearProblem *p)
+{
+  PC pc, block;
+  KSP *blocks;
+  PetscInt n;
+  PetscBool is_blocks, asked;
+
+  PetscFunctionBeginUser;
+  PetscCall(KSPGetPC(ksp, &pc));
+  PetscCall(PetscObjectTypeCompare((PetscObject)pc, PCBJACOBI, &is_blocks));
+  PetscCall(PetscOptionsHasName(NULL, NULL, "-sub_pc_factor_levels", &asked));
+  if (!is_blocks || asked || p->symmetric || p->courant < 3) PetscFunctionReturn(0);
+  PetscCall(KSPSetOperators(ksp, matrix, matrix));
+  PetscCall(PCSetUp(pc));
+  PetscCall(PCBJacobiGetSubKSP(pc, &n, NULL, &blocks));
+  for (PetscInt k = 0; k < n; ++k) {
+    PetscCall(KSPGetPC(blocks[k], &block));
+    PetscCall(PCFactorSetLevels(block, 1));
+  }
   PetscFunctionReturn(0);
 }
 

@@ -18,3 +18,5 @@ typedef struct {
 
 /* Choose a solver, set it on ksp, whose operators are known (the options database still overrides it); `what` gets a short name for the log. */
 PetscErrorCode LinearConfigure(KSP ksp, const LinearProblem *problem, PetscBool *direct, const char **what);
+/* Collective. After the options were read and with the matrix of the system: what needs its blocks. */
+PetscErrorCode LinearRefine(KSP ksp, Mat matrix, const LinearProblem *problem);

@@ -47,7 +47,7 @@ PetscErrorCode NewtonSolve(Newton *newton, StepProblem *problem, const LinearPro
  * failed. */
 typedef struct {
   PetscReal courant; /* that the choice was made with; < 0: the next step chooses anew */
-  PetscInt failures;
+  PetscInt failures, since; /* of the iterative solver, and steps since the last */
 } NewtonMemory;
 
 void NewtonGetMemory(const Newton *newton, const System *system, NewtonMemory *memory);

@@ -1,4 +1,4 @@
-/* The assembled tangent against differences of the residual, for every kernel, at a random state with inertia, lumping and soft ties;
+/* The assembled tangent against differences of the residual, for every kernel, at a random state with inertia, lumping and ties;
  * its symmetry; and what cutting and lifting of prescribed degrees of freedom do. */
 #include <math.h>
 #include <setjmp.h>
@@ -20,7 +20,7 @@ typedef struct {
   Material material[2];
   PetscInt dofs;
   PetscInt *slot;
-  PetscReal *lumping, *soft, *history, *du, *lift;
+  PetscReal *lumping, *soft, *tie, *history, *du, *lift;
   unsigned char *fixed;
   Random random;
 } Patch;
@@ -87,6 +87,7 @@ static WeakFormInput input_of(const Patch *p, PetscReal inertia, const PetscReal
                          .inertia = inertia,
                          .lumping = p->lumping,
                          .soft = p->soft,
+                         .tie = p->tie,
                          .fixed = p->fixed};
 }
 
@@ -105,12 +106,13 @@ static void patch_begin(Patch *p, CellType cell)
   CALL(SupportCreate(&p->support));
   CALL(SupportFromCells(p->support, p->points, p->grid));
   dense_slots(p);
-  CALL(PetscCalloc5(p->dofs, &p->history, p->dofs, &p->du, p->dofs, &p->lift, p->support->n_groups, &p->lumping,
-                    p->support->n_groups, &p->soft));
+  CALL(PetscCalloc6(p->dofs, &p->history, p->dofs, &p->du, p->dofs, &p->lift, p->support->n_groups, &p->lumping,
+                    p->support->n_groups, &p->soft, p->support->n_groups, &p->tie));
   CALL(PetscCalloc1(p->dofs, &p->fixed));
   for (PetscInt g = 0; g < p->support->n_groups; ++g) {
     p->lumping[g] = random_real(&p->random, 0, 1);
     p->soft[g] = random_real(&p->random, 0, 1e3);
+    p->tie[g] = random_real(&p->random, 0, 1e2);
   }
   fill(p, p->history, 10);
   fill(p, p->du, 0.08);
@@ -124,7 +126,7 @@ static void patch_begin(Patch *p, CellType cell)
 static void patch_end(Patch *p)
 {
   CALL(PetscFree(p->slot));
-  CALL(PetscFree5(p->history, p->du, p->lift, p->lumping, p->soft));
+  CALL(PetscFree6(p->history, p->du, p->lift, p->lumping, p->soft, p->tie));
   CALL(PetscFree(p->fixed));
   CALL(SupportDestroy(&p->support));
   CALL(PointsDestroy(&p->points));
@@ -177,7 +179,7 @@ static void check_tangent(CellType cell, PetscReal inertia, PetscBool stabilised
   Patch p;
   PetscReal *force, *values, *direction, *slope, *product, skew = 0, largest = 0;
   patch_begin(&p, cell);
-  for (PetscInt g = 0; !stabilised && g < p.support->n_groups; ++g) p.lumping[g] = p.soft[g] = 0;
+  for (PetscInt g = 0; !stabilised && g < p.support->n_groups; ++g) p.lumping[g] = p.soft[g] = p.tie[g] = 0;
   CALL(PetscMalloc5(p.dofs, &force, p.dofs * p.dofs, &values, p.dofs, &direction, p.dofs, &slope, p.dofs, &product));
   assemble(&p, inertia, p.du, NULL, force, values);
   for (int trial = 0; trial < 3; ++trial) {

@@ -187,6 +187,7 @@ static void Defaults(void **state)
   assert_int_equal(c->output.n_fields, 3);
   assert_int_equal(c->linear, LINEAR_AUTO);
   ASSERT_NEAR(c->stabilisation.mass, 0.1, 0);
+  ASSERT_NEAR(c->stabilisation.inertia, 0, 0);
   ASSERT_NEAR(c->newton.residual, 1e-8, 0);
   assert_int_equal(c->n_measures, 0);
   assert_string_equal(c->title, "");

@@ -69,7 +69,7 @@ static void slide(CellType cell, PetscBool stabilised)
   b.body[0].velocity[0] = v[0];
   b.c.gravity[1] = -9.81;
   b.c.gravity_amplitude = (Amplitude){.n = 2, .time = (PetscReal[]){0, 0.5}, .value = (PetscReal[]){0, 1}};
-  if (!stabilised) b.c.stabilisation = (StabilisationSpec){0, 0};
+  if (!stabilised) b.c.stabilisation = (StabilisationSpec){0};
   bench_motion(&b, 1, 0, MOTION_FIXED, 2);
   if (b.c.kinematics == KINEMATICS_3D) {
     bench_motion(&b, 2, 0, MOTION_FIXED, 4);
@@ -104,7 +104,7 @@ static void creep(CellType cell, PetscInt points_per_cell, PetscReal step, Petsc
   b.c.analysis = (AnalysisSpec){.type = ANALYSIS_STATIC, .end = 200, .step = 1, .smallest = 1. / 64, .largest = 1};
   b.c.gravity[1] = -9.81;
   b.c.gravity_amplitude = (Amplitude){.n = 2, .time = (PetscReal[]){0, 10}, .value = (PetscReal[]){0, 1}};
-  if (!stabilised) b.c.stabilisation = (StabilisationSpec){0, 0};
+  if (!stabilised) b.c.stabilisation = (StabilisationSpec){0};
   MotionSpec *foot = bench_motion(&b, 1, 0, MOTION_VELOCITY, 3);
   foot->value[0] = size * step;
   const Course c = run(&b, v, (PetscInt)(200. / 37 / step));
@@ -147,7 +147,7 @@ static void spray(CellType cell, PetscBool stabilised)
   b.body[0].velocity[0] = 0.9;
   b.body[0].velocity[1] = 1.1;
   b.c.gravity[1] = -9.81;
-  if (!stabilised) b.c.stabilisation = (StabilisationSpec){0, 0};
+  if (!stabilised) b.c.stabilisation = (StabilisationSpec){0};
   Model *m = bench_model(&b, PETSC_COMM_WORLD);
   CALL(PetscCalloc1(m->points->n, &drop));
   for (PetscInt p = 0; p < m->points->n; ++p) { /* keep every third cell in each direction */

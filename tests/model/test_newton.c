@@ -130,7 +130,7 @@ static void test_halved_is_small(void **state)
     Model *m = bench_model(&b, PETSC_COMM_WORLD), *n = bench_model(&c, PETSC_COMM_SELF);
     const StepReport first = model_step(m, 1), small = model_step(n, 1);
     CHECK(first.cuts == 1 && small.cuts == 0, "%d and %d cuts", (int)first.cuts, (int)small.cuts);
-    CHECK(first.dt == 0.5 && m->time == 0.5 && m->dt == 0.5, "a step of %g s", (double)first.dt);
+    CHECK(first.dt == 0.5 && m->time == 0.5 && m->control.next == 0.5, "a step of %g s", (double)first.dt);
     CHECK(m->cuts == 1, "%d cuts", (int)m->cuts);
     CHECK_CLOSE(points_difference(m, n, POINT_X), 0, 1e-13);
     CHECK_CLOSE(points_difference(m, n, POINT_STATE), 0, 1e-12);
@@ -152,7 +152,7 @@ static void test_growth(void **state)
   for (size_t k = 0; k < sizeof expected / sizeof *expected; ++k)
     CHECK_CLOSE(model_step(m, 1 - m->time).dt, expected[k], 1e-12);
   CHECK_CLOSE(m->time, 1, 1e-12);
-  CHECK(m->dt == 0.3, "the short last step must not shorten the next: %g", (double)m->dt);
+  CHECK(m->control.next == 0.3, "the short last step must not shorten the next: %g", (double)m->control.next);
   CALL(ModelDestroy(&m));
 }
 

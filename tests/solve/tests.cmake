@@ -1,0 +1,1 @@
+talus_test(solve/test_step_control)
