@@ -213,11 +213,17 @@ static PetscErrorCode NewtonSetUp(Newton *n, StepProblem *p, const LinearProblem
 {
   KSP ksp;
   SNESLineSearch search;
+  SystemForm form;
+  double start, end;
 
   PetscFunctionBeginUser;
   if (n->built == p->system->builds) PetscFunctionReturn(0);
+  PetscCall(PetscTime(&start));
   PetscCall(NewtonReset(n));
-  PetscCall(MatSetOption(p->system->matrix, MAT_SYMMETRIC, linear->symmetric));
+  LinearProblem chosen = *linear;
+  if (n->retry || n->failures >= 3) chosen.choice = LINEAR_DIRECT;
+  PetscCall(LinearForm(&chosen, &form));
+  PetscCall(SystemUse(p->system, form, linear->symmetric));
   PetscCall(SystemCreateVec(p->system, &n->x));
   PetscCall(VecDuplicate(n->x, &n->f));
   PetscCall(SNESCreate(n->comm, &n->snes));
@@ -229,11 +235,11 @@ static PetscErrorCode NewtonSetUp(Newton *n, StepProblem *p, const LinearProblem
   PetscCall(SNESLineSearchSetType(search, SNESLINESEARCHSHELL));
   PetscCall(SNESLineSearchShellSetUserFunc(search, LineSearchDescend, &n->search));
   PetscCall(SNESGetKSP(n->snes, &ksp));
-  LinearProblem chosen = *linear;
-  if (n->retry || n->failures >= 3) chosen.choice = LINEAR_DIRECT;
   PetscCall(LinearConfigure(ksp, &chosen, &n->direct, &n->linear));
   PetscCall(SNESSetFromOptions(n->snes));
   n->built = p->system->builds;
+  PetscCall(PetscTime(&end));
+  n->t_matrix += end - start;
   PetscFunctionReturn(0);
 }
 

@@ -5,6 +5,9 @@
 #include <petscksp.h>
 #include "points/support.h"
 
+/* What the linear solver works on: a matrix of PETSc, or blocks in single precision for symmetric Gauss-Seidel (solve/blocks.h). */
+typedef enum { SYSTEM_ASSEMBLED, SYSTEM_BLOCKS } SystemForm;
+
 typedef struct System {
   MPI_Comm comm;
   PetscInt dim, n_nodes;                    /* local nodes of the grid or cloud */
@@ -18,8 +21,10 @@ typedef struct System {
   PetscInt *diagonal;                       /* n_rows: place of the diagonal pair */
   PetscReal *values;                        /* dim x dim block of pair k at k * dim * dim */
   PetscInt n_slots, *slot;                  /* SystemSlots: nn x nn pairs of each group */
-  Mat matrix;
-  PetscInt builds; /* how often the pattern was made */
+  SystemForm form;
+  Mat matrix;            /* what the linear solver gets: assembled, or a shell over blocks; made by SystemUse */
+  struct Blocks *blocks; /* of that shell */
+  PetscInt builds;       /* how often the pattern was made */
 } System;
 
 PetscErrorCode SystemCreate(MPI_Comm comm, PetscInt dim, System **system);
@@ -31,6 +36,8 @@ PetscErrorCode SystemBuild(System *system, const Grid *grid, PetscInt n_cells, P
 PetscErrorCode SystemSlots(System *system, const Support *support);
 PetscErrorCode SystemZero(System *system);
 
+/* Collective. Make the matrix in this form, if it is not there yet. */
+PetscErrorCode SystemUse(System *system, SystemForm form, PetscBool symmetric);
 /* Collective. Diagonal entries for the dofs in fixed (prescribed, or on a node that no material touches), then
  * values -> matrix. */
 PetscErrorCode SystemToMatrix(System *system, const unsigned char *fixed);
