@@ -102,7 +102,7 @@ PetscErrorCode BlocksCreate(const System *s, PetscBool symmetric, Blocks **block
   m->symmetric = symmetric;
   PetscCall(BlocksHaloCreate(s, &m->n_columns, &m->halo));
   PetscCall(BlocksPattern(m, s));
-  PetscCall(PetscMalloc1(m->n_columns * m->dim * m->dim, &m->scale));
+  PetscCall(PetscMalloc1(m->n_columns * m->dim * m->dim + BLOCK_PADDING, &m->scale));
   *blocks = m;
   PetscFunctionReturn(0);
 }
@@ -154,19 +154,20 @@ PetscErrorCode BlocksExchange(const Blocks *m, float *vector)
 /* S = C^-1 with D = C C^T; false if D is not positive definite. */
 KERNEL PetscBool scale_symmetric(const int dim, const PetscReal *D, float *S)
 {
-  PetscReal C[9], inverse[9];
+  PetscReal C[9], inverse[9], pivot[3];
   for (int i = 0; i < dim; ++i)
     for (int j = 0; j <= i; ++j) {
       PetscReal sum = D[i * dim + j];
       for (int k = 0; k < j; ++k) sum -= C[i * dim + k] * C[j * dim + k];
       if (i == j && !(sum > 0)) return PETSC_FALSE;
-      C[i * dim + j] = i == j ? PetscSqrtReal(sum) : sum / C[j * dim + j];
+      if (i == j) pivot[i] = 1 / PetscSqrtReal(sum);
+      else C[i * dim + j] = sum * pivot[j];
     }
   for (int j = 0; j < dim; ++j)
     for (int i = 0; i < dim; ++i) {
       PetscReal sum = i == j;
       for (int k = j; k < i; ++k) sum -= C[i * dim + k] * inverse[k * dim + j];
-      inverse[i * dim + j] = i < j ? 0 : sum / C[i * dim + i];
+      inverse[i * dim + j] = i < j ? 0 : sum * pivot[i];
     }
   for (int i = 0; i < dim * dim; ++i) S[i] = (float)inverse[i];
   return PETSC_TRUE;
@@ -205,11 +206,28 @@ KERNEL PetscBool find_scales(const int dim, Blocks *m, const System *s, const un
   return regular;
 }
 
+/* The same as below for lower triangles S, in four lanes. */
+static inline void scale_block_2d(const PetscReal *values, const float *S, const float *other, float *block)
+{
+  const Doubles v = *(const FourDoubles *)values, none = {0, 0, 0, 0};
+  const Doubles s = __builtin_convertvector(*(const Lanes *)S, Doubles);
+  const Doubles o = __builtin_convertvector(*(const Lanes *)other, Doubles);
+  const Doubles left = __builtin_shufflevector(s, s, 0, 0, 3, 3) * v +
+                       __builtin_shufflevector(s, none, 4, 4, 2, 2) * __builtin_shufflevector(v, v, 0, 1, 0, 1);
+  const Doubles product = left * __builtin_shufflevector(o, o, 0, 3, 0, 3) +
+                          __builtin_shufflevector(left, left, 0, 0, 2, 2) * __builtin_shufflevector(o, o, 1, 2, 1, 2);
+  *(Lanes *)block = __builtin_convertvector(product, Lanes);
+}
+
 /* block = S_row values T_column, in the order of the kernels: 2 x 2 row by row, 3 x 3 column by column. */
 KERNEL void scale_block(const int dim, const PetscReal *values, const float *S, const float *other, PetscBool symmetric,
                         float *block)
 {
   PetscReal left[9];
+  if (dim == 2 && symmetric) {
+    scale_block_2d(values, S, other, block);
+    return;
+  }
   for (int i = 0; i < dim; ++i)
     for (int j = 0; j < dim; ++j) {
       left[i * dim + j] = 0;
