@@ -234,6 +234,15 @@ PetscErrorCode SystemZero(System *s)
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode SystemZeroNodes(const System *s, PetscReal *nodes)
+{
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < s->n_nodes; ++i)
+    if (s->row[i] >= 0)
+      for (PetscInt d = 0; d < s->dim; ++d) nodes[i * s->dim + d] = 0;
+  PetscFunctionReturn(0);
+}
+
 /* Rows of prescribed dofs are empty. They get a diagonal of the size of the others', which keeps the matrix's scale. */
 static PetscErrorCode DiagonalScale(const System *s, PetscReal *scale)
 {
@@ -273,21 +282,6 @@ PetscErrorCode SystemCreateVec(const System *s, Vec *x)
 {
   PetscFunctionBeginUser;
   PetscCall(VecCreateMPI(s->comm, s->n_active * s->dim, PETSC_DETERMINE, x));
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode SystemToNodes(const System *s, const Grid *grid, Vec x, PetscReal *nodes)
-{
-  const PetscInt dim = s->dim;
-  const PetscReal *v;
-
-  PetscFunctionBeginUser;
-  PetscCall(PetscArrayzero(nodes, s->n_nodes * dim));
-  PetscCall(VecGetArrayRead(x, &v));
-  for (PetscInt k = 0; k < s->n_active; ++k)
-    for (PetscInt a = 0; a < dim; ++a) nodes[s->active[k] * dim + a] = v[k * dim + a];
-  PetscCall(VecRestoreArrayRead(x, &v));
-  PetscCall(GridToGhosts(grid, dim, nodes));
   PetscFunctionReturn(0);
 }
 

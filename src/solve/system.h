@@ -35,6 +35,8 @@ PetscErrorCode SystemBuild(System *system, const Grid *grid, PetscInt n_cells, P
 /* Look up the slots of every group of the support; all its nodes must carry unknowns. */
 PetscErrorCode SystemSlots(System *system, const Support *support);
 PetscErrorCode SystemZero(System *system);
+/* Zero an array of n_nodes x dim where nodes have unknowns, ghosts too. */
+PetscErrorCode SystemZeroNodes(const System *system, PetscReal *nodes);
 
 /* Collective. Make the matrix in this form, if it is not there yet. */
 PetscErrorCode SystemUse(System *system, SystemForm form, PetscBool symmetric);
@@ -42,7 +44,6 @@ PetscErrorCode SystemUse(System *system, SystemForm form, PetscBool symmetric);
  * values -> matrix. */
 PetscErrorCode SystemToMatrix(System *system, const unsigned char *fixed);
 
-/* Vec of unknowns <-> local array n_nodes x dim. ToNodes zeroes nodes without unknowns and fills ghosts; FromNodes takes owners. */
-PetscErrorCode SystemToNodes(const System *system, const Grid *grid, Vec x, PetscReal *nodes);
+/* Local array n_nodes x dim -> Vec of unknowns, from the owners. */
 PetscErrorCode SystemFromNodes(const System *system, const PetscReal *nodes, Vec x);
 PetscErrorCode SystemCreateVec(const System *system, Vec *x);
