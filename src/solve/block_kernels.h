@@ -1,7 +1,9 @@
 /* Sweeps over rows of small blocks in single precision, with the size of a block known at compile time.
  *
- * A node's numbers are one register of four lanes. 2 x 2 blocks are stored row by row and fill it; 3 x 3 blocks are stored column by column, and the
- * fourth lane is zeroed in the end: vectors keep four numbers a node then, and every array of blocks ends with room for one load too many. Registers are the compiler's vectors, as in formulation/displacement_kernels.h. */
+ * A node's numbers are one register of four lanes. 2 x 2 blocks are stored row by row and fill it; 3 x 3 blocks are
+ * stored column by column, and the fourth lane is zeroed in the end: vectors keep four numbers a node then, and every
+ * array of blocks ends with room for one load too many. Registers are the compiler's vectors, as in
+ * formulation/displacement_kernels.h. */
 #pragma once
 #include <petscsys.h>
 

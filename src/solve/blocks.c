@@ -5,10 +5,10 @@
 typedef struct {
   const System *s;
   const BlocksHalo *halo;
-  PetscInt next;          /* shared row to come */
-  PetscInt n;             /* blocks of this row */
-  const PetscInt *column; /* of a shared row; NULL: node gives the columns */
-  const PetscInt *node;
+  PetscInt next; /* shared row to come */
+  PetscInt n;    /* blocks of this row */
+  PetscBool shared;
+  const PetscInt *column; /* of a shared row; else the nodes of the columns */
   const PetscReal *values;
 } Row;
 
@@ -19,21 +19,21 @@ static inline void row_take(Row *row, PetscInt r)
   if (row->next < h->n_shared && h->shared_row[row->next] == r) {
     const PetscInt first = h->start[row->next++];
     row->n = h->start[row->next] - first;
+    row->shared = PETSC_TRUE;
     row->column = h->column + first;
-    row->node = NULL;
     row->values = h->values + first * bs;
   } else {
     const PetscInt first = row->s->row_start[r];
     row->n = row->s->row_start[r + 1] - first;
-    row->column = NULL;
-    row->node = row->s->column + first;
+    row->shared = PETSC_FALSE;
+    row->column = row->s->column + first;
     row->values = row->s->values + first * bs;
   }
 }
 
 static inline PetscInt row_column(const Row *row, PetscInt k)
 {
-  return row->column ? row->column[k] : row->s->row[row->node[k]];
+  return row->shared ? row->column[k] : row->s->row[row->column[k]];
 }
 
 static PetscErrorCode RowsReserve(BlockRows *rows, PetscInt n, PetscInt blocks, PetscInt size)

@@ -1,11 +1,12 @@
-/* The matrix of a System as rows of blocks in single precision, made for conjugate gradients with symmetric Gauss-Seidel.
+/* The matrix of a System as rows of blocks in single precision, made for conjugate gradients with symmetric Gauss-
+ * Seidel.
  *
- * Rows and columns are scaled so that the blocks of the diagonal are identities: A^ = S A T = 1 + L + U + O, with O the columns that
- * other ranks own. S T is the inverse of the diagonal block; where A is symmetric T = S^T, else T = 1. Gauss-Seidel on each rank's part is
- * (1 + L)(1 + U), and by Eisenstat's trick
+ * Rows and columns are scaled so that the blocks of the diagonal are identities: A^ = S A T = 1 + L + U + O, with O
+ * the columns that other ranks own. S D T = 1 for a block D of the diagonal; where A is symmetric T = S^T, else T =
+ * 1. Gauss-Seidel on each rank's part is (1 + L)(1 + U), and by Eisenstat's trick
  *   (1 + L)^-1 A^ (1 + U)^-1 p = t + (1 + L)^-1 (p - t + O t),   t = (1 + U)^-1 p
- * needs no product with the matrix. Single precision moves half the bytes and makes Newton inexact by 1e-7 of the matrix; residuals stay
- * double (docs/decisions.md). */
+ * needs no product with the matrix. Single precision moves half the bytes and makes Newton inexact by 1e-7 of the
+ * matrix; residuals stay double (docs/decisions.md). */
 #pragma once
 #include "solve/block_kernels.h"
 #include "solve/system.h"

@@ -1,7 +1,7 @@
 /* Rows that several ranks assemble, and columns that other ranks own.
  *
- * A rank's cells fill rows of nodes that another rank owns; their blocks go to the owner. There they may meet columns which the owner's own
- * cells do not couple, or nodes that its part of the grid does not even hold. */
+ * A rank's cells fill rows of nodes that another rank owns; their blocks go to the owner. There they may meet columns
+ * which the owner's own cells do not couple, or nodes that its part of the grid does not even hold. */
 #include "solve/blocks.h"
 
 /* Ghost rows stand behind the owned ones: row n + g. Which node is theirs, as a global number? */

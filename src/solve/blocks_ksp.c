@@ -1,7 +1,7 @@
 /* Conjugate gradients and BiCGStab on Blocks, as a KSP: tolerances, monitors and views are PETSc's.
  *
- * Both work on the matrix between the two halves of Gauss-Seidel and on the right-hand side divided by its norm, which keeps single
- * precision within its range. Sums are double. */
+ * Both work on the matrix between the two halves of Gauss-Seidel and on the right-hand side divided by its norm,
+ * which keeps single precision within its range. Sums are double. */
 #include <petsc/private/kspimpl.h>
 #include "base/denormals.h"
 #include "solve/block_vectors.h"

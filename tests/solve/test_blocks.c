@@ -1,5 +1,5 @@
-/* The matrix as scaled blocks in single precision against PETSc's: products, solutions, rows that ranks share, ranks without rows,
- * prescribed dofs, right-hand sides of any size, and matrices that it must refuse. */
+/* The matrix as scaled blocks in single precision against PETSc's: products, solutions, rows that ranks share, ranks
+ * without rows, prescribed dofs, right-hand sides of any size, and matrices that it must refuse. */
 #include "../model/case_builder.h"
 #include "solve/blocks.h"
 
