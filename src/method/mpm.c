@@ -89,7 +89,7 @@ static PetscErrorCode Stabilise(Stage *s)
     }
     grid_cell_x(s->grid, s->points->cell[w->point_start[g]], x);
     const PetscReal volume = cell_volume(s->grid->type, x), lack = PetscMax(0, 1 - filled / volume);
-    const PetscReal size = lack > 0 ? PetscPowReal(volume, 1.0 / (PetscReal)dim) : 1;
+    const PetscReal size = dim == 2 ? PetscSqrtReal(volume) : cbrt(volume);
     s->lumping[g] = s->c->stabilisation.mass * lack;
     s->tie[g] = s->c->stabilisation.inertia * lack * mass;
     s->soft[g] = s->c->stabilisation.stiffness * lack * modulus * volume / (size * size);

@@ -39,7 +39,7 @@ static PetscErrorCode StillFits(const Model *m, const unsigned char *occupied, P
     local[2] += m->enabled[c];
   }
   PetscCall(MPIU_Allreduce(local, all, 3, MPIU_INT, MPI_SUM, m->comm));
-  *fits = m->system->matrix && !all[0] && all[2] <= 3 * all[1] + 200 ? PETSC_TRUE : PETSC_FALSE;
+  *fits = m->system->builds && !all[0] && all[2] <= 3 * all[1] + 200 ? PETSC_TRUE : PETSC_FALSE;
   PetscFunctionReturn(0);
 }
 

@@ -4,44 +4,53 @@
 #include "material/pressure.h"
 #include "model/model_private.h"
 
+/* Sum of two nodal arrays with factors: one pass over the points then serves two products. */
+typedef struct {
+  const PetscReal *x[2];
+  PetscReal factor[2];
+} NodalField;
+
 /* Dimension and nodes of a cell are constants at each call below, so that the inner loops unroll. */
 #define UNROLLED static inline __attribute__((always_inline))
 
 /* The part of u M w that ties the nodes of one cell together: their deviations from the mean. */
-UNROLLED PetscReal tied_product(const PetscInt dim, const PetscInt nn, const PetscInt *node, const PetscReal *u,
-                                const PetscReal *w)
+UNROLLED PetscReal tied_product(const PetscInt dim, const PetscInt nn, const PetscReal *u, const PetscReal *w)
 {
   PetscReal sum = 0;
   for (PetscInt d = 0; d < dim; ++d) {
     PetscReal u_mean = 0;
-    for (PetscInt I = 0; I < nn; ++I) u_mean += u[node[I] * dim + d] / (PetscReal)nn;
-    for (PetscInt I = 0; I < nn; ++I) sum += (u[node[I] * dim + d] - u_mean) * w[node[I] * dim + d];
+    for (PetscInt I = 0; I < nn; ++I) u_mean += u[I * dim + d] / (PetscReal)nn;
+    for (PetscInt I = 0; I < nn; ++I) sum += (u[I * dim + d] - u_mean) * w[I * dim + d];
   }
   return sum;
 }
 
-UNROLLED PetscReal product_sized(const PetscInt dim, const PetscInt nn, const Model *m, const PetscReal *u,
-                                 const PetscReal *w)
+UNROLLED PetscReal product_sized(const PetscInt dim, const PetscInt nn, const Model *m, const NodalField *u,
+                                 const NodalField *w)
 {
   const Support *support = m->stage->support;
   PetscReal sum = 0;
   for (PetscInt g = 0; g < support->n_groups; ++g) {
     const PetscInt *node = support->node + g * nn;
     const PetscReal lumped = m->stage->lumping ? m->stage->lumping[g] : 0;
-    PetscReal at_node[CELL_MAX_NODES];
+    PetscReal at_node[CELL_MAX_NODES], un[3 * CELL_MAX_NODES], wn[3 * CELL_MAX_NODES];
     for (PetscInt I = 0; I < nn; ++I) {
       at_node[I] = 0;
-      for (PetscInt d = 0; d < dim; ++d) at_node[I] += u[node[I] * dim + d] * w[node[I] * dim + d];
+      for (PetscInt d = 0, k = I * dim, i = node[I] * dim; d < dim; ++d, ++k, ++i) {
+        un[k] = u->factor[0] * u->x[0][i] + u->factor[1] * u->x[1][i];
+        wn[k] = w->factor[0] * w->x[0][i] + w->factor[1] * w->x[1][i];
+        at_node[I] += un[k] * wn[k];
+      }
     }
-    if (m->stage->tie && m->stage->tie[g] > 0) sum += m->stage->tie[g] * tied_product(dim, nn, node, u, w);
+    if (m->stage->tie && m->stage->tie[g] > 0) sum += m->stage->tie[g] * tied_product(dim, nn, un, wn);
     for (PetscInt p = support->point_start[g]; p < support->point_start[g + 1]; ++p) {
       const PetscReal *N = support->N + p * nn;
       PetscReal uh[3] = {0, 0, 0}, wh[3] = {0, 0, 0}, nodes = 0;
       for (PetscInt I = 0; I < nn; ++I) {
         nodes += N[I] * at_node[I];
         for (PetscInt d = 0; d < dim; ++d) {
-          uh[d] += N[I] * u[node[I] * dim + d];
-          wh[d] += N[I] * w[node[I] * dim + d];
+          uh[d] += N[I] * un[I * dim + d];
+          wh[d] += N[I] * wn[I * dim + d];
         }
       }
       sum += m->points->real[POINT_MASS][p] *
@@ -52,12 +61,12 @@ UNROLLED PetscReal product_sized(const PetscInt dim, const PetscInt nn, const Mo
 }
 
 /* The sum u M w over this rank's points, with the mass matrix of the step: cells that are not full have part of it lumped, and are tied. */
-static PetscReal mass_product(const Model *m, const PetscReal *u, const PetscReal *w)
+static PetscReal mass_product(const Model *m, NodalField u, NodalField w)
 {
   const PetscInt dim = m->dim, nn = m->stage->support->uniform;
-  if (dim == 2 && nn == 4) return product_sized(2, 4, m, u, w);
-  if (dim == 3 && nn == 8) return product_sized(3, 8, m, u, w);
-  return product_sized(dim, nn, m, u, w);
+  if (dim == 2 && nn == 4) return product_sized(2, 4, m, &u, &w);
+  if (dim == 3 && nn == 8) return product_sized(3, 8, m, &u, &w);
+  return product_sized(dim, nn, m, &u, &w);
 }
 
 static PetscReal points_kinetic(const Model *m)
@@ -132,7 +141,8 @@ static PetscReal inertia_work(const Model *m)
 {
   const Stage *s = m->stage;
   const PetscReal alpha = m->c->analysis.bossak;
-  return 0.5 * ((1 + alpha) * mass_product(m, m->du, s->a) + (1 - alpha) * mass_product(m, m->du, s->a1));
+  const NodalField du = {{m->du, m->du}, {1, 0}}, a = {{s->a, s->a1}, {0.5 * (1 + alpha), 0.5 * (1 - alpha)}};
+  return mass_product(m, du, a);
 }
 
 /* Nodes that gather their motion from points start neither with the energy of the points nor with the acceleration that balances the
@@ -141,9 +151,10 @@ static PetscReal inertia_work(const Model *m)
 static PetscReal transfer_of_nodes(const Model *m, const EnergyStep *e, PetscReal held)
 {
   const Stage *s = m->stage;
+  const NodalField mean = {{s->v, s->v1}, {0.5, 0.5}}, gain = {{s->v1, s->v}, {1, -1}};
   PetscReal sum = 0;
   if (m->c->analysis.type == ANALYSIS_DYNAMIC)
-    sum = points_kinetic(m) + 0.5 * (mass_product(m, s->v1, s->v1) - mass_product(m, s->v, s->v));
+    sum = points_kinetic(m) + mass_product(m, mean, gain); /* |v1|^2 / 2 - |v|^2 / 2 */
   if (!m->method->points_move) return sum;
   if (m->c->analysis.type == ANALYSIS_DYNAMIC) sum -= inertia_work(m);
   return sum + e->external + held - e->damped + points_work(m);
@@ -188,7 +199,10 @@ PetscErrorCode EnergyOfNodes(Model *m, PetscReal dt, EnergyStep *e)
     impulse += impulse_work(m, i, dt);
   }
   PetscCall(PetscFree(before));
-  if (damping > 0) e->damped = 0.5 * damping * (mass_product(m, m->du, s->v) + mass_product(m, m->du, s->v1));
+  if (damping > 0) {
+    const NodalField du = {{m->du, m->du}, {1, 0}}, mean = {{s->v, s->v1}, {0.5, 0.5}};
+    e->damped = damping * mass_product(m, du, mean);
+  }
   e->boundary = held + impulse;
   e->transfer = impulse + transfer_of_nodes(m, e, held);
   if (m->method->points_move && s->fade > 0) {

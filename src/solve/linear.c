@@ -1,4 +1,7 @@
 #include "solve/linear.h"
+#include "solve/blocks.h"
+
+#define REFINE_ABOVE 3 /* cells that a wave crosses in a step from which on unsymmetric systems take ILU of the first level */
 
 static PetscErrorCode UseDirect(KSP ksp, PetscBool symmetric, const char **what)
 {
@@ -12,8 +15,22 @@ static PetscErrorCode UseDirect(KSP ksp, PetscBool symmetric, const char **what)
   PetscFunctionReturn(0);
 }
 
-/* The mass dominates: a cheap preconditioner on each rank's part. Symmetric Gauss-Seidel by Eisenstat's trick costs no more than the
- * product with the matrix, needs no set-up and cannot be indefinite, as incomplete factorisations can. */
+/* The mass dominates: a cheap preconditioner on each rank's part, and as few bytes as possible. Symmetric Gauss-Seidel by Eisenstat's
+ * trick costs no more than the product with the matrix, needs no set-up and cannot be indefinite, as incomplete factorisations can. */
+static PetscErrorCode UseBlocks(KSP ksp, const LinearProblem *p, const char **what)
+{
+  PC pc;
+  PetscFunctionBeginUser;
+  PetscCall(BlocksRegister());
+  PetscCall(KSPGetPC(ksp, &pc));
+  PetscCall(PCSetType(pc, PCNONE)); /* it is in the method */
+  PetscCall(KSPSetType(ksp, KSPBLOCKS));
+  PetscCall(KSPSetTolerances(ksp, 1e-4, PETSC_DEFAULT, PETSC_DEFAULT, 500));
+  *what = p->symmetric ? "conjugate gradients, symmetric Gauss-Seidel" : "BiCGStab, symmetric Gauss-Seidel";
+  PetscFunctionReturn(0);
+}
+
+/* The same with PETSc's matrix and methods, where options ask for one. */
 static PetscErrorCode UseKrylov(KSP ksp, const LinearProblem *p, const char **what)
 {
   PC pc;
@@ -42,7 +59,7 @@ PetscErrorCode LinearRefine(KSP ksp, Mat matrix, const LinearProblem *p)
   PetscCall(KSPGetPC(ksp, &pc));
   PetscCall(PetscObjectTypeCompare((PetscObject)pc, PCBJACOBI, &is_blocks));
   PetscCall(PetscOptionsHasName(NULL, NULL, "-sub_pc_factor_levels", &asked));
-  if (!is_blocks || asked || p->symmetric || p->courant < 3) PetscFunctionReturn(0);
+  if (!is_blocks || asked || p->symmetric || p->courant < REFINE_ABOVE) PetscFunctionReturn(0);
   PetscCall(KSPSetOperators(ksp, matrix, matrix));
   PetscCall(PCSetUp(pc));
   PetscCall(PCBJacobiGetSubKSP(pc, &n, NULL, &blocks));
@@ -89,10 +106,31 @@ static PetscBool direct_pays(const LinearProblem *p)
   return p->unknowns < (p->dim == 2 ? 1000000 : 100000) ? PETSC_TRUE : PETSC_FALSE;
 }
 
+static PetscBool takes_direct(const LinearProblem *p)
+{
+  return p->choice == LINEAR_DIRECT || (p->choice == LINEAR_AUTO && direct_pays(p)) ? PETSC_TRUE : PETSC_FALSE;
+}
+
+PetscErrorCode LinearForm(const LinearProblem *p, SystemForm *form)
+{
+  PetscBool method, preconditioner;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscOptionsHasName(NULL, NULL, "-ksp_type", &method));
+  PetscCall(PetscOptionsHasName(NULL, NULL, "-pc_type", &preconditioner));
+  const PetscBool short_steps = p->symmetric || p->courant < REFINE_ABOVE ? PETSC_TRUE : PETSC_FALSE;
+  *form = p->dynamic && short_steps && !p->mixed && !takes_direct(p) && !method && !preconditioner ? SYSTEM_BLOCKS
+                                                                                                    : SYSTEM_ASSEMBLED;
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode LinearConfigure(KSP ksp, const LinearProblem *p, PetscBool *direct, const char **what)
 {
+  SystemForm form;
+
   PetscFunctionBeginUser;
-  *direct = p->choice == LINEAR_DIRECT || (p->choice == LINEAR_AUTO && direct_pays(p)) ? PETSC_TRUE : PETSC_FALSE;
+  PetscCall(LinearForm(p, &form));
+  *direct = takes_direct(p);
   if (*direct) PetscCall(UseDirect(ksp, p->symmetric, what));
   if (*direct && p->mixed) PetscCall(PrepareSaddlePoint(ksp, p->undetermined));
   if (*direct) PetscFunctionReturn(0);
@@ -100,7 +138,8 @@ PetscErrorCode LinearConfigure(KSP ksp, const LinearProblem *p, PetscBool *direc
     *what = "GMRES, Schur complement, algebraic multigrid";
     PetscFunctionReturn(0);
   }
-  if (p->dynamic) PetscCall(UseKrylov(ksp, p, what));
+  if (form == SYSTEM_BLOCKS) PetscCall(UseBlocks(ksp, p, what));
+  else if (p->dynamic) PetscCall(UseKrylov(ksp, p, what));
   else PetscCall(UseMultigrid(ksp, p, what));
   PetscFunctionReturn(0);
 }

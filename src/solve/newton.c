@@ -28,7 +28,8 @@ struct Newton {
   StepProblem *problem;
   NewtonReport *report;
   PetscReal reaction, external; /* norms at the last assembly, N */
-  PetscReal last;               /* norm of the residual one iteration ago, N */
+  PetscReal last, before;       /* norms of the residual one iteration ago, and two, N; before: 0 if there was none */
+  PetscBool tangent;            /* do the system's values belong to du? */
   double t_points, t_matrix, t_linear;
 };
 
@@ -73,7 +74,7 @@ void NewtonTimes(const Newton *n, PetscReal *points, PetscReal *matrix, PetscRea
 
 void NewtonGetMemory(const Newton *n, const System *system, NewtonMemory *memory)
 {
-  memory->courant = system->matrix && n->built == system->builds && !n->learns ? n->courant : -1;
+  memory->courant = system->builds > 0 && n->built == system->builds && !n->learns ? n->courant : -1;
   memory->failures = n->failures;
   memory->since = n->since;
 }
@@ -83,21 +84,24 @@ void NewtonSetMemory(Newton *n, const System *system, const NewtonMemory *memory
   n->failures = memory->failures;
   n->since = memory->since;
   n->courant = memory->courant;
-  n->remembered = system->matrix && memory->courant >= 0 ? system->builds : -1;
+  n->remembered = system->builds > 0 && memory->courant >= 0 ? system->builds : -1;
 }
 
-/* Norms of reactions and of external forces over owned dofs. */
-static PetscErrorCode ForceNorms(Newton *n)
+/* Internal and inertia forces -> residual, and the norms of reactions and external forces, over owned dofs. Nodes without unknowns have
+ * no forces: they are often most of a grid, and are left alone. */
+static PetscErrorCode Balance(Newton *n)
 {
   const StepProblem *p = n->problem;
   const PetscInt dim = p->grid->dim;
   PetscReal local[2] = {0, 0}, sum[2];
 
   PetscFunctionBeginUser;
-  for (PetscInt i = 0; i < p->grid->n_owned * dim; ++i) {
-    if (p->fixed[i]) local[0] += p->force[i] * p->force[i];
-    else local[1] += p->external[i] * p->external[i];
-  }
+  for (PetscInt k = 0; k < p->system->n_active; ++k)
+    for (PetscInt d = 0, i = p->system->active[k] * dim; d < dim; ++d, ++i) {
+      p->force[i] -= p->external[i];
+      if (p->fixed[i]) local[0] += p->force[i] * p->force[i];
+      else local[1] += p->external[i] * p->external[i];
+    }
   PetscCall(MPIU_Allreduce(local, sum, 2, MPIU_REAL, MPI_SUM, n->comm));
   n->reaction = PetscSqrtReal(sum[0]);
   n->external = PetscSqrtReal(sum[1]);
@@ -105,7 +109,7 @@ static PetscErrorCode ForceNorms(Newton *n)
 }
 
 /* Residual (and tangent values) at problem->du. A point that fails makes the status of all ranks bad. */
-static PetscErrorCode Assemble(Newton *n)
+static PetscErrorCode Assemble(Newton *n, PetscBool tangent)
 {
   StepProblem *p = n->problem;
   const PetscInt dim = p->grid->dim;
@@ -113,10 +117,12 @@ static PetscErrorCode Assemble(Newton *n)
 
   PetscFunctionBeginUser;
   PetscCall(PetscTime(&start));
-  PetscCall(PetscArrayzero(p->force, p->grid->n_nodes * dim));
+  PetscCall(SystemZeroNodes(p->system, p->force));
   if (p->volume) PetscCall(PetscArrayzero(p->volume, p->grid->n_nodes));
-  PetscCall(SystemZero(p->system));
-  WeakFormOutput out = {.force = p->force, .volume = p->volume, .values = p->system->values, .slot = p->system->slot};
+  if (tangent) PetscCall(SystemZero(p->system));
+  n->tangent = tangent;
+  WeakFormOutput out = {
+    .force = p->force, .volume = p->volume, .values = tangent ? p->system->values : NULL, .slot = p->system->slot};
   p->in.du = p->du;
   p->in.pressure = p->pressure;
   p->in.fixed = p->fixed;
@@ -127,8 +133,7 @@ static PetscErrorCode Assemble(Newton *n)
   n->report->bad_point = out.bad_point;
   PetscCall(GridSumToOwners(p->grid, dim, p->force));
   if (p->volume) PetscCall(GridSumToOwners(p->grid, 1, p->volume));
-  for (PetscInt i = 0; i < p->grid->n_owned * dim; ++i) p->force[i] -= p->external[i];
-  PetscCall(ForceNorms(n));
+  PetscCall(Balance(n));
   PetscCall(PetscTime(&end));
   n->t_points += end - start;
   PetscFunctionReturn(0);
@@ -145,17 +150,34 @@ static PetscErrorCode GetUnknowns(const Newton *n, Vec x)
   PetscFunctionReturn(0);
 }
 
+/* Where no unknowns are, a step has no forces, and only what is prescribed moves. */
+static void rest_without_unknowns(const StepProblem *p)
+{
+  const PetscInt dim = p->grid->dim;
+  for (PetscInt node = 0; node < p->grid->n_nodes; ++node) {
+    if (p->system->row[node] >= 0) continue;
+    for (PetscInt d = 0, i = node * dim; d < dim; ++d, ++i) {
+      p->force[i] = 0;
+      if (p->fixed[i]) p->du[i] = p->prescribed[i];
+    }
+  }
+}
+
 /* Unknowns -> du and pressure, keeping what is prescribed. */
 static PetscErrorCode SetIncrements(Newton *n, Vec x)
 {
   StepProblem *p = n->problem;
-  const PetscInt dofs = p->grid->n_nodes * p->grid->dim;
+  const PetscInt dim = p->grid->dim;
+  const PetscReal *v;
 
   PetscFunctionBeginUser;
-  PetscCall(SystemToNodes(p->system, p->grid, x, 0, p->system->dim, p->du));
-  if (p->pressure) PetscCall(SystemToNodes(p->system, p->grid, x, p->system->dim, 1, p->pressure));
-  for (PetscInt i = 0; i < dofs; ++i)
-    if (p->fixed[i]) p->du[i] = p->prescribed[i];
+  PetscCall(VecGetArrayRead(x, &v));
+  for (PetscInt k = 0; k < p->system->n_active; ++k)
+    for (PetscInt d = 0, i = p->system->active[k] * dim; d < dim; ++d, ++i)
+      p->du[i] = p->fixed[i] ? p->prescribed[i] : v[k * p->system->block + d];
+  PetscCall(VecRestoreArrayRead(x, &v));
+  PetscCall(GridToGhosts(p->grid, dim, p->du));
+  if (p->pressure) PetscCall(SystemToNodes(p->system, p->grid, x, dim, 1, p->pressure));
   PetscFunctionReturn(0);
 }
 
@@ -180,13 +202,31 @@ static PetscErrorCode GetResidual(Newton *n, Vec f)
   PetscFunctionReturn(0);
 }
 
+/* The scale of a residual: the loads, the residual at the first guess, and (for motion driven by its boundary or by inertia)
+ * a small part of reactions and inertia, well above their round-off. */
+static PetscReal reference_force(const Newton *n, PetscReal first)
+{
+  const StepProblem *p = n->problem;
+  PetscReal reference = PetscMax(first, PetscMax(p->weight, n->external));
+  reference = PetscMax(reference, 1e-4 * n->reaction);
+  reference = PetscMax(reference, 1e-5 * p->inertia);
+  return reference > 0 ? reference : 1;
+}
+
+/* If the residual falls by the same factor once more it is far below the tolerance: no tangent will be asked for. */
+static PetscBool is_last(const Newton *n)
+{
+  const PetscReal enough = n->spec.residual * reference_force(n, n->report->reference);
+  return n->before > 0 && n->last * n->last < 0.1 * enough * n->before ? PETSC_TRUE : PETSC_FALSE;
+}
+
 static PetscErrorCode Function(SNES snes, Vec x, Vec f, void *context)
 {
   Newton *n = context;
   (void)snes;
   PetscFunctionBeginUser;
   PetscCall(SetIncrements(n, x));
-  PetscCall(Assemble(n));
+  PetscCall(Assemble(n, !is_last(n)));
   PetscCall(GetResidual(n, f));
   PetscFunctionReturn(0);
 }
@@ -198,23 +238,13 @@ static PetscErrorCode Jacobian(SNES snes, Vec x, Mat matrix, Mat preconditioner,
 
   (void)snes, (void)matrix, (void)preconditioner;
   PetscFunctionBeginUser;
+  if (!n->tangent) PetscCall(Assemble(n, PETSC_TRUE)); /* du is still where the residual was taken */
   PetscCall(PetscTime(&start));
   PetscCall(SystemToMatrix(n->problem->system, n->problem->fixed, n->problem->idle));
   PetscCall(PetscTime(&end));
   n->t_matrix += end - start;
   (void)x;
   PetscFunctionReturn(0);
-}
-
-/* The scale of a residual: the loads, the residual at the first guess, and (for motion driven by its boundary or by inertia)
- * a small part of reactions and inertia, well above their round-off. */
-static PetscReal reference_force(const Newton *n, PetscReal first)
-{
-  const StepProblem *p = n->problem;
-  PetscReal reference = PetscMax(first, PetscMax(p->weight, n->external));
-  reference = PetscMax(reference, 1e-4 * n->reaction);
-  reference = PetscMax(reference, 1e-5 * p->inertia);
-  return reference > 0 ? reference : 1;
 }
 
 /* Is the increment round-off, of the step's displacement or of the size of a cell? Then a residual that falls no more has reached the
@@ -260,6 +290,7 @@ static PetscErrorCode Converged(SNES snes, PetscInt it, PetscReal xnorm, PetscRe
   else if (still || floored) *reason = SNES_CONVERGED_SNORM_RELATIVE;
   else if (k > 2 && relative > 1e8) *reason = SNES_DIVERGED_DTOL;
   else if (is_stuck(r->residual, k)) *reason = SNES_DIVERGED_LOCAL_MIN;
+  n->before = it > 0 ? n->last : 0;
   n->last = fnorm;
   PetscFunctionReturn(0);
 }
@@ -282,11 +313,20 @@ static PetscErrorCode NewtonSetUp(Newton *n, StepProblem *p, const LinearProblem
 {
   KSP ksp;
   SNESLineSearch search;
+  SystemForm form;
+  double start, end;
 
   PetscFunctionBeginUser;
   if (n->built == p->system->builds && !n->learns) PetscFunctionReturn(0);
+  PetscCall(PetscTime(&start));
   PetscCall(NewtonReset(n));
-  PetscCall(MatSetOption(p->system->matrix, MAT_SYMMETRIC, linear->symmetric));
+  LinearProblem chosen = *linear;
+  if (n->remembered == p->system->builds) chosen.courant = n->courant;
+  n->courant = chosen.courant;
+  n->remembered = -1;
+  if (n->retry || n->failures >= 3) chosen.choice = LINEAR_DIRECT;
+  PetscCall(LinearForm(&chosen, &form));
+  PetscCall(SystemUse(p->system, form, linear->symmetric));
   n->search.block = p->pressure ? p->system->block : 0;
   PetscCall(SystemCreateVec(p->system, &n->x));
   PetscCall(VecDuplicate(n->x, &n->f));
@@ -299,18 +339,15 @@ static PetscErrorCode NewtonSetUp(Newton *n, StepProblem *p, const LinearProblem
   PetscCall(SNESLineSearchSetType(search, SNESLINESEARCHSHELL));
   PetscCall(SNESLineSearchShellSetUserFunc(search, LineSearchDescend, &n->search));
   PetscCall(SNESGetKSP(n->snes, &ksp));
-  LinearProblem chosen = *linear;
   PetscCall(KSPSetOperators(ksp, p->system->matrix, p->system->matrix));
-  if (n->remembered == p->system->builds) chosen.courant = n->courant;
-  n->courant = chosen.courant;
-  n->remembered = -1;
-  if (n->retry || n->failures >= 3) chosen.choice = LINEAR_DIRECT;
   PetscCall(LinearConfigure(ksp, &chosen, &n->direct, &n->linear));
   if (chosen.mixed && !n->direct) PetscCall(SaddleConfigure(&n->saddle, ksp, p->system, p->grid, chosen.dynamic));
   PetscCall(SNESSetFromOptions(n->snes));
   PetscCall(LinearRefine(ksp, p->system->matrix, &chosen));
   PetscCall(Learns(ksp, &n->learns));
   n->built = p->system->builds;
+  PetscCall(PetscTime(&end));
+  n->t_matrix += end - start;
   PetscFunctionReturn(0);
 }
 
@@ -320,27 +357,25 @@ static PetscErrorCode LiftPrescribed(Newton *n)
 {
   StepProblem *p = n->problem;
   const PetscInt dofs = p->grid->n_nodes * p->grid->dim;
-  PetscReal *lift, largest = 0, all, size = 0, sizes;
+  PetscReal *lift, local[2] = {0, 0}, all[2]; /* largest increments: what is left of them, and whole */
   KSP ksp;
   Vec y;
   double start, end;
 
   PetscFunctionBeginUser;
+  for (PetscInt k = 0; k < p->system->n_active; ++k)
+    for (PetscInt d = 0, i = p->system->active[k] * p->grid->dim; d < p->grid->dim; ++d, ++i) {
+      if (!p->fixed[i]) continue;
+      local[0] = PetscMax(local[0], PetscAbsReal(p->prescribed[i] - p->du[i]));
+      local[1] = PetscMax(local[1], PetscAbsReal(p->prescribed[i]));
+    }
+  PetscCall(MPIU_Allreduce(local, all, 2, MPIU_REAL, MPIU_MAX, n->comm));
+  if (all[0] <= 1e-12 * all[1] || all[1] == 0) PetscFunctionReturn(0);
   PetscCall(PetscCalloc1(dofs, &lift));
-  for (PetscInt i = 0; i < dofs; ++i) {
-    if (!p->fixed[i]) continue;
-    lift[i] = p->prescribed[i] - p->du[i];
-    largest = PetscMax(largest, PetscAbsReal(lift[i]));
-    size = PetscMax(size, PetscAbsReal(p->prescribed[i]));
-  }
-  PetscCall(MPIU_Allreduce(&largest, &all, 1, MPIU_REAL, MPIU_MAX, n->comm));
-  PetscCall(MPIU_Allreduce(&size, &sizes, 1, MPIU_REAL, MPIU_MAX, n->comm));
-  if (all <= 1e-12 * sizes || sizes == 0) {
-    PetscCall(PetscFree(lift));
-    PetscFunctionReturn(0);
-  }
+  for (PetscInt i = 0; i < dofs; ++i)
+    if (p->fixed[i]) lift[i] = p->prescribed[i] - p->du[i];
   p->in.lift = lift;
-  PetscCall(Assemble(n));
+  PetscCall(Assemble(n, PETSC_TRUE));
   p->in.lift = NULL;
   PetscCall(GetResidual(n, n->f));
   if (n->report->status == LAW_OK) {
@@ -409,6 +444,8 @@ static PetscErrorCode NewtonTry(Newton *n, NewtonReport *report)
   PetscCall(PetscMemzero(report, sizeof(*report)));
   report->bad_point = -1;
   PetscCall(PetscTime(&start));
+  rest_without_unknowns(n->problem);
+  n->before = 0;
   PetscCall(UpdateSaddle(n));
   PetscCall(LiftPrescribed(n));
   PetscCall(GetUnknowns(n, n->x));

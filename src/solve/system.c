@@ -1,4 +1,4 @@
-#include "solve/system.h"
+#include "solve/blocks.h"
 
 PetscErrorCode SystemCreate(MPI_Comm comm, PetscInt dim, PetscInt block, System **system)
 {
@@ -21,6 +21,7 @@ static PetscErrorCode SystemFreePattern(System *s)
   PetscCall(PetscFree(s->diagonal));
   PetscCall(PetscFree(s->values));
   PetscCall(MatDestroy(&s->matrix));
+  PetscCall(BlocksDestroy(&s->blocks));
   PetscFunctionReturn(0);
 }
 
@@ -125,7 +126,7 @@ static PetscErrorCode SystemPattern(System *s, PetscInt n_cells, PetscInt nn, co
 }
 
 /* One COO entry for each number in `values`: the matrix is filled by one call, ghost rows travel inside it. */
-static PetscErrorCode SystemMatrix(System *s)
+static PetscErrorCode AssembledMatrix(System *s)
 {
   const PetscInt size = s->block, n = s->n_active * size, pairs = s->row_start[s->n_rows];
   PetscInt *i, *j, *rows;
@@ -150,13 +151,47 @@ static PetscErrorCode SystemMatrix(System *s)
   PetscFunctionReturn(0);
 }
 
+static PetscErrorCode MultiplyBlocks(Mat matrix, Vec x, Vec y)
+{
+  Blocks *blocks;
+
+  PetscFunctionBeginUser;
+  PetscCall(MatShellGetContext(matrix, &blocks));
+  PetscCall(BlocksMultiply(blocks, x, y));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode BlockMatrix(System *s, PetscBool symmetric)
+{
+  const PetscInt n = s->n_active * s->dim;
+
+  PetscFunctionBeginUser;
+  PetscCall(BlocksCreate(s, symmetric, &s->blocks));
+  PetscCall(MatCreateShell(s->comm, n, n, PETSC_DETERMINE, PETSC_DETERMINE, s->blocks, &s->matrix));
+  PetscCall(MatShellSetOperation(s->matrix, MATOP_MULT, (void (*)(void))MultiplyBlocks));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode SystemUse(System *s, SystemForm form, PetscBool symmetric)
+{
+  PetscFunctionBeginUser;
+  if (!s->matrix || s->form != form || (s->blocks && s->blocks->symmetric != symmetric)) {
+    PetscCall(MatDestroy(&s->matrix));
+    PetscCall(BlocksDestroy(&s->blocks));
+    s->form = form;
+    if (form == SYSTEM_BLOCKS) PetscCall(BlockMatrix(s, symmetric));
+    else PetscCall(AssembledMatrix(s));
+  }
+  if (symmetric) PetscCall(MatSetOption(s->matrix, MAT_SYMMETRIC, PETSC_TRUE));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode SystemBuild(System *s, const Grid *grid, PetscInt n_cells, PetscInt nn, const PetscInt *cell_node)
 {
   PetscFunctionBeginUser;
   PetscCall(SystemFreePattern(s));
   PetscCall(SystemNumber(s, grid, n_cells * nn, cell_node));
   PetscCall(SystemPattern(s, n_cells, nn, cell_node));
-  PetscCall(SystemMatrix(s));
   ++s->builds;
   PetscFunctionReturn(0);
 }
@@ -200,6 +235,15 @@ PetscErrorCode SystemZero(System *s)
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode SystemZeroNodes(const System *s, PetscReal *nodes)
+{
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < s->n_nodes; ++i)
+    if (s->row[i] >= 0)
+      for (PetscInt d = 0; d < s->dim; ++d) nodes[i * s->dim + d] = 0;
+  PetscFunctionReturn(0);
+}
+
 /* Rows of prescribed dofs are empty. They get a diagonal of the size of the others', which keeps the matrix's scale. */
 static PetscErrorCode DiagonalScale(const System *s, PetscReal *scale)
 {
@@ -220,6 +264,11 @@ PetscErrorCode SystemToMatrix(System *s, const unsigned char *fixed, const unsig
   PetscReal scale;
 
   PetscFunctionBeginUser;
+  if (!s->matrix) PetscCall(SystemUse(s, SYSTEM_ASSEMBLED, PETSC_FALSE));
+  if (s->blocks) {
+    PetscCall(BlocksFill(s->blocks, s, fixed));
+    PetscFunctionReturn(0);
+  }
   PetscCall(DiagonalScale(s, &scale));
   for (PetscInt k = 0; k < s->n_active; ++k) {
     const PetscInt node = s->active[k], d = s->diagonal[s->row[node]];
@@ -234,7 +283,7 @@ PetscErrorCode SystemToMatrix(System *s, const unsigned char *fixed, const unsig
 PetscErrorCode SystemCreateVec(const System *s, Vec *x)
 {
   PetscFunctionBeginUser;
-  PetscCall(MatCreateVecs(s->matrix, x, NULL));
+  PetscCall(VecCreateMPI(s->comm, s->n_active * s->block, PETSC_DETERMINE, x));
   PetscFunctionReturn(0);
 }
 

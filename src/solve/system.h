@@ -5,6 +5,9 @@
 #include <petscksp.h>
 #include "points/support.h"
 
+/* What the linear solver works on: a matrix of PETSc, or blocks in single precision for symmetric Gauss-Seidel (solve/blocks.h). */
+typedef enum { SYSTEM_ASSEMBLED, SYSTEM_BLOCKS } SystemForm;
+
 typedef struct System {
   MPI_Comm comm;
   PetscInt dim, block; /* displacements, and all unknowns, per node: dim, or dim + 1 with a pressure */
@@ -19,8 +22,10 @@ typedef struct System {
   PetscInt *diagonal;                       /* n_rows: place of the diagonal pair */
   PetscReal *values;                        /* block x block numbers of pair k at k * block * block */
   PetscInt n_slots, *slot;                  /* SystemSlots: nn x nn pairs of each group */
-  Mat matrix;
-  PetscInt builds; /* how often the pattern was made */
+  SystemForm form;
+  Mat matrix;            /* what the linear solver gets: assembled, or a shell over blocks; made by SystemUse */
+  struct Blocks *blocks; /* of that shell */
+  PetscInt builds;       /* how often the pattern was made */
 } System;
 
 PetscErrorCode SystemCreate(MPI_Comm comm, PetscInt dim, PetscInt block, System **system);
@@ -31,7 +36,11 @@ PetscErrorCode SystemBuild(System *system, const Grid *grid, PetscInt n_cells, P
 /* Look up the slots of every group of the support; all its nodes must carry unknowns. */
 PetscErrorCode SystemSlots(System *system, const Support *support);
 PetscErrorCode SystemZero(System *system);
+/* Zero an array of n_nodes x dim where nodes have unknowns, ghosts too. */
+PetscErrorCode SystemZeroNodes(const System *system, PetscReal *nodes);
 
+/* Collective. Make the matrix in this form, if it is not there yet. */
+PetscErrorCode SystemUse(System *system, SystemForm form, PetscBool symmetric);
 /* Collective. Diagonal entries for the displacements in fixed (n_nodes x dim: prescribed, or on a node that no material touches) and for
  * the pressures of idle nodes (n_nodes; NULL without pressures), then values -> matrix. */
 PetscErrorCode SystemToMatrix(System *system, const unsigned char *fixed, const unsigned char *idle);

@@ -193,7 +193,8 @@ static void check_tangent(const char *method, CellType cell, const Solid *solid,
   CALL(ModelActivate(s.m));
   for (PetscInt g = 0; s.m->stage->soft && g < s.m->stage->support->n_groups; ++g) { /* as if cells were not full */
     s.m->stage->soft[g] = 1e4 * (PetscReal)(g + 1);
-    s.m->stage->tie[g] = 1e-8 * (PetscReal)(g + 1);
+    s.m->stage->tie[g] = 10 * (PetscReal)(g + 1);
+    s.m->stage->pressure_tie[g] = 1e-8 * (PetscReal)(g + 1);
   }
   for (PetscInt i = 0; i < s.m->grid->n_nodes * s.m->dim; ++i)
     s.m->fixed[i] = s.m->boundary->fixed[i] || !s.m->stage->touched[i / s.m->dim];
