@@ -33,7 +33,9 @@ static PetscErrorCode CompareRun(const VerifyOptions *options, Diag *diag, Verif
   if (n || *outcome == VERIFY_BAD_INPUT) PetscFunctionReturn(0);
   if (CliPrints()) {
     DiagError(diag, NULL, "no row of %s/reference.yaml has the case of '%s'", options->folder, options->run);
-    DiagHint(diag, "a run is compared if all its values, but for title, output and petsc, are those of a row");
+    DiagHint(diag,
+             "a run is compared if all its values are those of a row, but for title, output, checkpoint, linear and "
+             "petsc");
   }
   *outcome = VERIFY_BAD_INPUT;
   PetscFunctionReturn(0);

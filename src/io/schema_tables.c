@@ -112,7 +112,7 @@ static const SchemaTable stabilisation = {
 
 static const SchemaEntry mixed_entries[] = {
   KEY("stabilisation", NUMBER, NULL,
-      "alpha: pressures that vary inside a cell are held by alpha / shear modulus; 0: off", .fallback = "8",
+      "alpha: pressures that vary inside a cell are held by alpha / shear modulus; 0: off", .fallback = "2",
       AT_LEAST(0), AT(MixedSpec, stabilisation)),
   {.key = NULL},
 };

@@ -100,11 +100,12 @@ static const char *allowed(const VerifyRow *r, char text[64])
 /* The value beside one number: signed distance in per cent, and the verdict where there is one. */
 static void write_comparison(FILE *out, const VerifyRow *r, PetscReal reference, const char *band, const char *verdict)
 {
-  char name[80], off[40] = "-";
+  char name[80], off[40] = "-", when[40] = "";
   snprintf(name, sizeof name, r->unit[0] ? "%.40s [%s]" : "%.40s%s", r->study->measure, r->unit);
   if (reference != 0) snprintf(off, sizeof off, "%+.2g %%", (double)(100 * (r->value / reference - 1)));
-  fprintf(out, "  %-16s %12.6g %12.6g %10s %12s  %-5s  %s\n", name, (double)r->value, (double)reference, off, band,
-          verdict, r->study->title);
+  if (r->study->moments) snprintf(when, sizeof when, ", at %g s", (double)r->row->x);
+  fprintf(out, "  %-16s %12.6g %12.6g %10s %12s  %-5s  %s%s\n", name, (double)r->value, (double)reference, off, band,
+          verdict, r->study->title, when);
 }
 
 void verify_table_run(FILE *out, const Verification *v)

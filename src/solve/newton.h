@@ -46,7 +46,7 @@ PetscErrorCode NewtonSolve(Newton *newton, StepProblem *problem, const LinearPro
 /* What Newton's method remembers from step to step: which linear solver it chose when the pattern was made, and how often the iterative one
  * failed. */
 typedef struct {
-  PetscReal courant; /* that the choice was made with; < 0: the next step chooses anew */
+  PetscReal courant;        /* that the choice was made with; < 0: the next step chooses anew */
   PetscInt failures, since; /* of the iterative solver, and steps since the last */
 } NewtonMemory;
 

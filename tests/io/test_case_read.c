@@ -219,6 +219,9 @@ static void Mixed(void **state)
   assert_string_equal(c->materials[0].parameters[1].name, "bulk");
   assert_true(c->materials[0].parameters[1].value == INFINITY);
   assert_int_equal(CaseDestroy(&c), 0);
+  c = read_good(solid);
+  ASSERT_NEAR(c->mixed.stabilisation, 2, 0); /* docs/decisions.md, 17 */
+  assert_int_equal(CaseDestroy(&c), 0);
 }
 
 static void Mesh3D(void **state)

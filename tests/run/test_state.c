@@ -49,7 +49,8 @@ static void same_models(const Model *m, const Model *n)
   CHECK(!memcmp(m->grid->x, n->grid->x, dofs), "nodes have moved");
   CHECK(!memcmp(m->stage->v, n->stage->v, dofs) && !memcmp(m->stage->a, n->stage->a, dofs), "nodal motion differs");
   CHECK(!memcmp(m->reaction, n->reaction, dofs) && !memcmp(m->held, n->held, dofs), "reactions differ");
-  CHECK(m->time == n->time && m->control.next == n->control.next && m->step == n->step && m->cuts == n->cuts, "time or step differ");
+  CHECK(m->time == n->time && m->control.next == n->control.next && m->step == n->step && m->cuts == n->cuts,
+        "time or step differ");
   CHECK(m->external_work == n->external_work && m->transfer_energy == n->transfer_energy, "energies differ");
   CHECK(m->total_iterations == n->total_iterations, "other iterations");
 }
