@@ -15,6 +15,9 @@ best_step() {
 title "laws"
 "$bench/bench_law"
 
+title "meshfree bases"
+"$bench/bench_cloud"
+
 title "statics"
 "$bench/bench_static"
 

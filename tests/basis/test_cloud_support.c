@@ -98,6 +98,38 @@ static void stretched_and_sheared(void **state)
     print_message("nominal, grown: mls %d %d, lme %d %d\n", levels[0][0], levels[0][1], levels[1][0], levels[1][1]);
 }
 
+/* The same in three dimensions, at points inside and next to the faces. */
+static void three_dimensions(void **state)
+{
+  (void)state;
+  Random random = {4};
+  for (int trial = 0; trial < 200; ++trial) {
+    const PetscReal stretch = random_real(&random, 1, 1.8);
+    PetscReal X[512 * 3], x[3], N[CLOUD_MAX_NODES], dN[CLOUD_MAX_NODES * 3], dual[3] = {0}, metric[9] = {0};
+    int chosen[CLOUD_MAX_NODES];
+    const int n = lattice_cloud(&random, 3, 8, 1.0, 0.2, X);
+    for (int k = 0; k < 3; ++k) x[k] = random_real(&random, -2, 2);
+    if (trial % 2) x[1] = -3.2;
+    for (int a = 0; a < n; ++a) X[3 * a] *= stretch, X[3 * a + 2] /= stretch;
+    x[0] *= stretch, x[2] /= stretch;
+    metric[0] = 1 / PetscSqr(stretch), metric[4] = 1.0, metric[8] = PetscSqr(stretch);
+    sort_cloud(3, n, x, X);
+    const CloudBasis *basis = trial % 3 ? &lme : &mls;
+    const SupportReport report =
+      cloud_support(&support_default_lme, basis, 3, n, X, 1.0, metric, x, chosen, N, dN, dual);
+    assert_true(report.level <= SUPPORT_GROWN);
+    for (int i = 0; i < 3; ++i) {
+      PetscReal at = 0.0, slope[3] = {0};
+      for (int a = 0; a < report.n; ++a) {
+        at += N[a] * (X[3 * chosen[a] + i] - x[i]);
+        for (int j = 0; j < 3; ++j) slope[j] += (X[3 * chosen[a] + i] - x[i]) * dN[3 * a + j];
+      }
+      assert_true(fabs(at) <= 1e-12);
+      for (int j = 0; j < 3; ++j) assert_true(fabs(slope[j] - (i == j)) <= 1e-11);
+    }
+  }
+}
+
 /* The largest change of N in a step, over a path of deformation in `steps` steps. */
 static PetscReal largest_change(const CloudSupport *support, const CloudBasis *basis, PetscBool stretch, int steps,
                                 int *grown)
@@ -269,6 +301,7 @@ static void anything(void **state)
 int main(void)
 {
   const struct CMUnitTest tests[] = {cmocka_unit_test(stretched_and_sheared),
+                                     cmocka_unit_test(three_dimensions),
                                      cmocka_unit_test(no_jumps),
                                      cmocka_unit_test(split),
                                      cmocka_unit_test(stretch_is_no_gap),
