@@ -10,9 +10,10 @@ typedef struct {
   LinearChoice choice;
   PetscInt dim, unknowns;
   PetscBool symmetric, dynamic;
-  PetscBool idle_ranks; /* does a rank hold no unknowns? */
-  PetscReal courant;    /* wave speed * dt / h */
+  PetscBool idle_ranks;  /* does a rank hold no unknowns? */
+  PetscBool multipliers; /* are there constraints? then the matrix is not definite */
+  PetscReal courant;     /* wave speed * dt / h */
 } LinearProblem;
 
-/* Choose a solver, set it on ksp (the options database still overrides it); `what` gets a short name for the log. */
+/* Choose a solver, set it on ksp, which knows its matrix (the options database still overrides it); `what` gets a short name for the log. */
 PetscErrorCode LinearConfigure(KSP ksp, const LinearProblem *problem, PetscBool *direct, const char **what);

@@ -91,6 +91,8 @@ static PetscErrorCode Assemble(Newton *n)
   p->in.du = p->du;
   p->in.fixed = p->fixed;
   PetscCall(p->formulation->assemble(&p->in, &out));
+  if (p->constraints)
+    constraints_assemble(p->constraints, p->du, p->prescribed, p->fixed, p->in.lift, out.force, out.values);
   PetscInt status = (PetscInt)out.status, worst;
   PetscCall(MPIU_Allreduce(&status, &worst, 1, MPIU_INT, MPI_MAX, n->comm));
   n->report->status = (LawStatus)worst;
@@ -229,6 +231,7 @@ static PetscErrorCode NewtonSetUp(Newton *n, StepProblem *p, const LinearProblem
   PetscCall(SNESLineSearchSetType(search, SNESLINESEARCHSHELL));
   PetscCall(SNESLineSearchShellSetUserFunc(search, LineSearchDescend, &n->search));
   PetscCall(SNESGetKSP(n->snes, &ksp));
+  PetscCall(KSPSetOperators(ksp, p->system->matrix, p->system->matrix));
   LinearProblem chosen = *linear;
   if (n->retry || n->failures >= 3) chosen.choice = LINEAR_DIRECT;
   PetscCall(LinearConfigure(ksp, &chosen, &n->direct, &n->linear));
