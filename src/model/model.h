@@ -41,6 +41,8 @@ typedef struct Model {
   Newton *newton;
   unsigned char *enabled;                                  /* n_cells: cells whose nodes carry unknowns */
   unsigned char *fixed;                                    /* n_nodes x dim */
+  PetscInt n_constraints;                                  /* on nodes of a cloud, over all ranks */
+  PetscInt layouts;                                        /* of the cloud, that fixed and the system fit */
   PetscReal *du, *force, *external, *history, *prescribed; /* n_nodes x dim */
   PetscReal *reaction;  /* n_nodes x dim on owners: force of the boundary on the body at the end of the last step, N */
   PetscReal *held;      /* n_nodes x dim on owners: the reaction without the impulse that stopped points, N */

@@ -29,5 +29,7 @@ typedef struct {
 PetscErrorCode EnergyOfNodes(Model *model, PetscReal dt, EnergyStep *step);
 /* Collective. Points have their new state and have moved: close the step's account. */
 PetscErrorCode EnergyClose(Model *model, EnergyStep *step);
+/* Collective. Leave the cells: nodes that material fills or the boundary holds become a cloud, and all that stood on the mesh moves over. */
+PetscErrorCode ModelToCloud(Model *model);
 /* Input of the weak form for the model's present arrays. */
 WeakFormInput weak_form_of(const Model *model, PetscReal inertia);

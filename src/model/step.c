@@ -20,8 +20,13 @@ WeakFormInput weak_form_of(const Model *m, PetscReal inertia)
 /* Prescribed dofs, and nodes with unknowns that no material touches. */
 static void mark_fixed(Model *m)
 {
+  const unsigned char *dof = m->stage->dof;
   for (PetscInt node = 0, i = 0; node < m->grid->n_nodes; ++node)
-    for (PetscInt d = 0; d < m->dim; ++d, ++i) m->fixed[i] = m->boundary->fixed[i] || !m->stage->touched[node];
+    for (PetscInt d = 0; d < m->dim; ++d, ++i) {
+      m->fixed[i] = m->boundary->fixed[i] || !m->stage->touched[node];
+      if (dof && dof[i] == DOF_RELEASED) m->fixed[i] = 0;
+      if (dof && dof[i] == DOF_UNUSED) m->fixed[i] = 1;
+    }
 }
 
 /* A prescribed node moves as prescribed from the start of the step on: where the grid is restored its velocity comes from the points
@@ -31,7 +36,7 @@ static void set_boundary_kinematics(Model *m, PetscReal dt)
   Stage *s = m->stage;
   if (!m->method->points_move && m->step > 0) return;
   for (PetscInt i = 0; i < m->grid->n_nodes * m->dim; ++i) {
-    if (!m->boundary->fixed[i]) continue;
+    if (!m->boundary->fixed[i] || !m->fixed[i]) continue;
     s->v[i] = m->prescribed[i] / dt;
     s->a[i] = 0;
   }
@@ -62,26 +67,37 @@ static PetscErrorCode ForceScales(const Model *m, const PetscReal *g, PetscReal 
 
 PetscErrorCode AddBodyForce(const Model *m, PetscReal t, PetscReal *force)
 {
-  const PetscInt dim = m->dim, dofs = m->grid->n_nodes * dim, nn = m->stage->support->uniform;
+  const PetscInt dim = m->dim, dofs = m->grid->n_nodes * dim;
   const Support *w = m->stage->support;
   PetscReal *sum, X[3], b[3];
 
   PetscFunctionBeginUser;
   if (!m->body_force) PetscFunctionReturn(0);
   PetscCall(PetscCalloc1(dofs, &sum));
-  for (PetscInt g = 0; g < w->n_groups; ++g)
+  for (PetscInt g = 0; g < w->n_groups; ++g) {
+    const PetscInt nn = support_nodes(w, g), *node = w->node + w->node_start[g];
     for (PetscInt p = w->point_start[g]; p < w->point_start[g + 1]; ++p) {
       for (PetscInt d = 0; d < dim; ++d)
         X[d] = point_real(m->points, POINT_X, p)[d] - point_real(m->points, POINT_U, p)[d];
       m->body_force(m->body_force_context, X, t, b);
       for (PetscInt i = 0; i < nn * dim; ++i)
-        sum[w->node[g * nn + i / dim] * dim + i % dim] +=
-          w->N[p * nn + i / dim] * m->points->real[POINT_MASS][p] * b[i % dim];
+        sum[node[i / dim] * dim + i % dim] += support_N(w, g, p)[i / dim] * m->points->real[POINT_MASS][p] * b[i % dim];
     }
+  }
   PetscCall(GridSumToOwners(m->grid, dim, sum));
   for (PetscInt i = 0; i < m->grid->n_owned * dim; ++i) force[i] += sum[i];
   PetscCall(PetscFree(sum));
   PetscFunctionReturn(0);
+}
+
+/* Stiffness of one node, about: multipliers over it are displacements, gaps times it are forces. */
+static PetscReal constraint_scale(const Model *m, PetscReal inertia)
+{
+  const PetscReal h = m->grid->smallest, area = m->dim == 3 ? h * h : h;
+  PetscReal scale = 0;
+  for (PetscInt i = 0; i < m->c->n_materials; ++i)
+    scale = PetscMax(scale, m->materials[i].wave_modulus * area / h + inertia * m->materials[i].density * area * h);
+  return scale;
 }
 
 /* History, first guess, prescribed increments and loads for a step of dt. */
@@ -99,7 +115,7 @@ static PetscErrorCode Prepare(Model *m, PetscReal dt, StepProblem *p)
   if (dynamic) set_boundary_kinematics(m, dt);
   PetscCall(PetscArrayzero(m->du, dofs));
   for (PetscInt node = 0; node < m->grid->n_nodes; ++node) {
-    if (!m->stage->touched[node]) continue;
+    if (!m->stage->touched[node] || (m->grid->cloud && cloud_is_twin(m->grid, node))) continue;
     for (PetscInt d = 0, i = node * dim; d < dim; ++d, ++i) {
       m->history[i] = (dynamic ? newmark_history(&newmark, m->stage->v[i], m->stage->a[i]) : 0) - g[d];
       m->du[i] = dynamic ? newmark_guess(&newmark, m->stage->v[i], m->stage->a[i]) : 0;
@@ -112,6 +128,7 @@ static PetscErrorCode Prepare(Model *m, PetscReal dt, StepProblem *p)
     .grid = m->grid,
     .system = m->system,
     .formulation = m->formulation,
+    .constraints = m->stage->constraints,
     .in = weak_form_of(m, dynamic ? newmark_inertia(&newmark) : 0),
     .fixed = m->fixed,
     .prescribed = m->prescribed,
@@ -119,8 +136,19 @@ static PetscErrorCode Prepare(Model *m, PetscReal dt, StepProblem *p)
     .du = m->du,
     .force = m->force,
   };
+  if (m->stage->constraints) m->stage->constraints->scale = constraint_scale(m, p->in.inertia);
   PetscCall(ForceScales(m, g, dt, &p->weight, &p->inertia));
   PetscFunctionReturn(0);
+}
+
+/* Where a constraint holds a node, its multiplier is the force there. */
+static void set_multipliers(Model *m)
+{
+  const Constraints *c = m->stage->constraints;
+  for (PetscInt k = 0; c && k < c->n; ++k)
+    for (PetscInt d = 0; d < m->dim; ++d)
+      if (!m->fixed[c->twin[k] * m->dim + d])
+        m->force[c->at[k] * m->dim + d] = c->scale * m->du[c->twin[k] * m->dim + d];
 }
 
 /* Reactions: what the balance lacks on prescribed dofs, and the impulse that stopped the points there at the start of the step. */
@@ -151,12 +179,14 @@ static PetscErrorCode Accept(Model *m, PetscReal dt, StepReport *report)
       s->a1[i] = newmark_acceleration(&newmark, m->du[i], s->v[i], s->a[i]);
       s->v1[i] = newmark_velocity(&newmark, s->v[i], s->a[i], s->a1[i]);
     }
+  set_multipliers(m);
   PetscCall(EnergyOfNodes(m, dt, &energy));
   store_reactions(m, dt);
   WeakFormInput in = weak_form_of(m, 0);
   PetscCall(m->formulation->commit(&in, m->points, &status));
   PetscCheck(status == LAW_OK, PETSC_COMM_SELF, PETSC_ERR_PLIB, "a converged state could not be committed");
   PetscCall(PhaseEnd(m->seconds, PHASE_COMMIT, &clock));
+  s->prescribed = m->prescribed;
   PetscCall(m->method->convect(s, m->du));
   PetscCall(PhaseEnd(m->seconds, PHASE_MOVE, &clock));
   m->time += dt;
@@ -236,6 +266,7 @@ PetscErrorCode ModelStep(Model *m, PetscReal limit, StepReport *report)
       .dim = m->dim,
       .unknowns = m->system->n_active_global * m->dim,
       .symmetric = m->symmetric,
+      .multipliers = m->n_constraints > 0 ? PETSC_TRUE : PETSC_FALSE,
       .idle_ranks = m->system->n_active_least ? PETSC_FALSE : PETSC_TRUE,
       .dynamic = m->c->analysis.type == ANALYSIS_DYNAMIC ? PETSC_TRUE : PETSC_FALSE,
       .courant = m->courant_speed * dt / m->grid->smallest,
