@@ -76,7 +76,7 @@ typedef enum { GROUP_NONE, GROUP_ONE, GROUP_AT_MOST_ONE, GROUP_AT_LEAST_ONE } Sc
 
 typedef struct {
   SchemaGroupKind kind;
-  const char *keys[12]; /* ended by NULL */
+  const char *keys[16]; /* ended by NULL */
 } SchemaGroup;
 
 typedef struct SchemaReader {

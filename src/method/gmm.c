@@ -85,6 +85,42 @@ static PetscErrorCode BoundaryImpulse(Stage *s)
   PetscFunctionReturn(0);
 }
 
+/* How much of the mass is missing that even a node at the corner of a body would have; 0: none, 1: all. */
+static PetscReal starved(const Stage *s, PetscInt node, PetscReal density)
+{
+  const PetscInt dim = s->grid->dim;
+  const PetscReal h = s->grid->smallest, corner = density * (dim == 3 ? h * h * h / 16 : h * h / 8);
+  for (PetscInt d = 0; d < dim; ++d)
+    if (s->boundary->fixed[node * dim + d]) return 0; /* held: what it would do without mass does not matter */
+  return PetscMax(0, 1 - PetscMax(0, s->mass[node]) / corner);
+}
+
+/* Where a node has hardly any mass its force still counts in full, as in cells that are not full, and the same helps: the points that reach it
+ * lump part of their mass and tie their nodes by a weak stiffness. */
+static PetscErrorCode Stabilise(Stage *s)
+{
+  const Support *w = s->support;
+  const PetscReal h = s->grid->smallest, length = s->grid->dim == 3 ? h : 1;
+
+  PetscFunctionBeginUser;
+  if (w->n_groups > s->group_capacity) {
+    PetscCall(PetscFree(s->lumping));
+    PetscCall(PetscFree(s->soft));
+    s->group_capacity = w->n_groups + w->n_groups / 4;
+    PetscCall(PetscMalloc1(s->group_capacity, &s->lumping));
+    PetscCall(PetscMalloc1(s->group_capacity, &s->soft));
+  }
+  for (PetscInt p = 0; p < w->n_groups; ++p) {
+    const Material *material = &s->materials[s->points->material[p]];
+    PetscReal lack = 0;
+    for (PetscInt i = w->node_start[p]; i < w->node_start[p + 1]; ++i)
+      lack = PetscMax(lack, starved(s, w->node[i], material->density));
+    s->lumping[p] = s->c->stabilisation.mass * lack;
+    s->soft[p] = s->c->stabilisation.stiffness * lack * material->wave_modulus * length;
+  }
+  PetscFunctionReturn(0);
+}
+
 static PetscErrorCode GmmInitialise(Stage *s)
 {
   PetscFunctionBeginUser;
@@ -95,30 +131,28 @@ static PetscErrorCode GmmInitialise(Stage *s)
   if (!s->started) PetscCall(StageBodyVelocity(s));
   s->started = PETSC_TRUE;
   PetscCall(BoundaryImpulse(s));
+  PetscCall(Stabilise(s));
   PetscFunctionReturn(0);
 }
 
-/* The field at node i, whose cloud is number k, where that has prescribed nodes or coefficients are not displacements (which is why there are
- * constraints); else the node's own coefficient. */
+/* The field at node i, whose cloud is number k. */
 static PetscReal motion_of_node(const Stage *s, PetscInt i, PetscInt k, PetscInt d, const PetscReal *du)
 {
   const Support *w = s->gmm->nodes;
   const PetscInt dim = s->grid->dim, nn = support_nodes(w, k), *node = w->node + w->node_start[k];
   const PetscReal *N = w->N + w->value_start[k];
   PetscReal move = 0, sum = 0;
-  PetscBool wall = PETSC_FALSE;
   for (PetscInt I = 0; I < nn; ++I) {
-    const PetscBool held = s->boundary->fixed[node[I] * dim + d] ? PETSC_TRUE : PETSC_FALSE;
-    if (!s->touched[node[I]] && !held) continue;
+    if (!s->touched[node[I]] && !s->boundary->fixed[node[I] * dim + d]) continue;
     move += N[I] * du[node[I] * dim + d];
     sum += N[I];
-    if (held) wall = PETSC_TRUE;
   }
-  return (wall || s->gmm->constraints) && sum > 1e-12 ? move / sum : du[i * dim + d];
+  return sum > 1e-12 ? move / sum : du[i * dim + d];
 }
 
-/* Prescribed components move as prescribed, nodes that nothing touches stay. Others take their own increment (thesis algorithm 2), or near
- * prescribed nodes that of the field, as points do: so they do not cross a wall on which the field vanishes. */
+/* Prescribed components move as prescribed, nodes that nothing touches stay. All others move with the field at their place, as points do, and
+ * not with their own coefficient (as thesis algorithm 2 suggests): then nodes keep their order among points whatever a node with little mass
+ * does, and do not cross a wall on which the field vanishes. */
 static PetscErrorCode MoveNodes(Stage *s, const PetscReal *du)
 {
   const Grid *grid = s->grid;
