@@ -1,6 +1,7 @@
 /* Phase a of gmm: which nodes each point has now, over all ranks. */
 #include "method/gmm.h"
 
+#define SHARE 0.1 /* of a constrained node in the field at its place, at least */
 #define SKIN 1.15 /* ghosts and couplings are kept for clouds so much wider, so that they serve several steps */
 
 /* Nodes as this rank sees them while it searches: owned ones by their numbers, remote of other ranks behind. */
@@ -180,7 +181,16 @@ static PetscErrorCode GatherNodes(Stage *s, const Search *search)
   PetscFunctionReturn(0);
 }
 
-/* Constraints act where material reaches the node; elsewhere it moves as prescribed by itself. */
+/* Share of the node in the field at its own place. */
+static PetscReal own_share(const Constraints *c, PetscInt k)
+{
+  for (PetscInt i = c->start[k]; i < c->start[k + 1]; ++i)
+    if (c->node[i] == c->at[k]) return c->N[i];
+  return 0;
+}
+
+/* Constraints act where material reaches the node; elsewhere it moves as prescribed by itself. So it does where other nodes crowd it: its
+ * coefficient, with a small share in the field, would have to be huge. */
 static PetscErrorCode Release(Stage *s)
 {
   const PetscInt dim = s->grid->dim;
@@ -191,7 +201,7 @@ static PetscErrorCode Release(Stage *s)
   if (!s->gmm->constraints) PetscFunctionReturn(0);
   PetscCall(PetscCalloc1(s->grid->n_nodes * dim, &state));
   for (PetscInt k = 0; k < c->n; ++k) {
-    const PetscBool active = s->touched[c->at[k]] ? PETSC_TRUE : PETSC_FALSE;
+    const PetscBool active = s->touched[c->at[k]] && own_share(c, k) > SHARE ? PETSC_TRUE : PETSC_FALSE;
     s->touched[c->twin[k]] = active;
     for (PetscInt d = 0; d < dim; ++d) {
       const PetscBool held = s->boundary->fixed[c->at[k] * dim + d] ? PETSC_TRUE : PETSC_FALSE;

@@ -42,6 +42,26 @@ static void set_boundary_kinematics(Model *m, PetscReal dt)
   }
 }
 
+/* A constraint on displacements lets the velocity of the field ring about the prescribed one, as Newmark's formulas do at any node that is stopped.
+ * So the coefficients of constrained nodes start each step with the prescribed motion, like prescribed nodes themselves. */
+static PetscErrorCode HoldConstraints(Model *m, PetscReal dt)
+{
+  const Constraints *c = m->stage->constraints;
+  PetscReal *correction;
+
+  PetscFunctionBeginUser;
+  if (!m->n_constraints) PetscFunctionReturn(0);
+  PetscCall(PetscCalloc1(m->grid->n_nodes * m->dim, &correction));
+  for (int sweep = 0; sweep < 20; ++sweep) {
+    constraints_relax(c, m->boundary->fixed, m->prescribed, 1 / dt, m->stage->v, correction);
+    constraints_relax(c, m->boundary->fixed, m->prescribed, 0, m->stage->a, correction);
+    PetscCall(GridToGhosts(m->grid, m->dim, m->stage->v));
+    PetscCall(GridToGhosts(m->grid, m->dim, m->stage->a));
+  }
+  PetscCall(PetscFree(correction));
+  PetscFunctionReturn(0);
+}
+
 /* Norms over owned nodes that material touches: gravity, and the inertia force of stopping within the step. */
 static PetscErrorCode ForceScales(const Model *m, const PetscReal *g, PetscReal dt, PetscReal *weight,
                                   PetscReal *inertia)
@@ -113,6 +133,7 @@ static PetscErrorCode Prepare(Model *m, PetscReal dt, StepProblem *p)
   PetscCall(PetscArrayzero(m->prescribed, dofs));
   boundary_increments(m->boundary, m->grid, m->time, m->time + dt, m->prescribed);
   if (dynamic) set_boundary_kinematics(m, dt);
+  if (dynamic) PetscCall(HoldConstraints(m, dt));
   PetscCall(PetscArrayzero(m->du, dofs));
   for (PetscInt node = 0; node < m->grid->n_nodes; ++node) {
     if (!m->stage->touched[node] || (m->grid->cloud && cloud_is_twin(m->grid, node))) continue;

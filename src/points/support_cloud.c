@@ -35,22 +35,44 @@ static void sort_cloud(PetscInt dim, PetscInt n, PetscInt *node, PetscReal *N, P
   }
 }
 
+/* A point and the nodes within a reach of it, nearest first. */
+typedef struct {
+  PetscInt n, place[CLOUD_MAX_NODES];
+  PetscReal X[3 * CLOUD_MAX_NODES];
+} Surroundings;
+
+static void look_around(const Neighbours *nodes, const PetscReal *x, PetscReal reach, Surroundings *s)
+{
+  const PetscInt dim = nodes->dim;
+  PetscReal distance2[CLOUD_MAX_NODES];
+  s->n = neighbours_within(nodes, x, reach, CLOUD_MAX_NODES, s->place, distance2);
+  for (PetscInt i = 0; i < s->n; ++i)
+    for (PetscInt d = 0; d < dim; ++d) s->X[i * dim + d] = nodes->at[s->place[i] * dim + d];
+}
+
+/* Do nodes beyond the radius aimed at have no part in a cloud of this radius? They have where links lead through them. */
+static PetscBool radius_is_enough(const CloudSupport *s)
+{
+  return s->rule == SUPPORT_FIXED || s->gap <= 0 || s->radius <= s->gap ? PETSC_TRUE : PETSC_FALSE;
+}
+
 PetscInt cloud_at(const Neighbours *nodes, const CloudRule *rule, const PetscReal *x, const PetscReal *F,
                   PetscInt *node, PetscReal *N, PetscReal *dN, CloudTally *tally)
 {
   const PetscInt dim = nodes->dim;
-  const PetscReal reach = PetscMax(rule->support.radius, rule->support.max_radius) * rule->h;
-  PetscInt place[CLOUD_MAX_NODES];
-  PetscReal X[3 * CLOUD_MAX_NODES], distance2[CLOUD_MAX_NODES], metric[9];
+  const CloudSupport *support = &rule->support;
+  PetscReal metric[9];
   int chosen[CLOUD_MAX_NODES];
+  Surroundings s;
+  SupportReport report = {.level = SUPPORT_EMPTY};
 
-  const PetscInt n = neighbours_within(nodes, x, reach, CLOUD_MAX_NODES, place, distance2);
-  for (PetscInt i = 0; i < n; ++i)
-    for (PetscInt d = 0; d < dim; ++d) X[i * dim + d] = nodes->at[place[i] * dim + d];
-  const PetscBool stretched = F ? metric_of(dim, F, metric) : PETSC_FALSE;
-  const SupportReport report = cloud_support(&rule->support, &rule->basis, (int)dim, (int)n, X, rule->h,
-                                             stretched ? metric : NULL, x, chosen, N, dN, NULL);
-  for (int i = 0; i < report.n; ++i) node[i] = place[chosen[i]];
+  const PetscReal *m = F && metric_of(dim, F, metric) ? metric : NULL;
+  for (int far = radius_is_enough(support) ? 0 : 1; far < 2; ++far) { /* few points need to look beyond the radius */
+    look_around(nodes, x, (far ? support->max_radius : support->radius) * rule->h, &s);
+    report = cloud_support(support, &rule->basis, (int)dim, (int)s.n, s.X, rule->h, m, x, chosen, N, dN, NULL);
+    if (report.level == SUPPORT_NOMINAL) break;
+  }
+  for (int i = 0; i < report.n; ++i) node[i] = s.place[chosen[i]];
   sort_cloud(dim, report.n, node, N, dN);
   ++tally->level[report.level];
   tally->nodes += report.n;

@@ -101,3 +101,23 @@ void constraints_assemble(const Constraints *c, const PetscReal *du, const Petsc
     for (PetscInt d = 0; d < c->dim; ++d)
       if (!fixed[c->twin[k] * c->dim + d]) assemble_component(c, k, d, du, prescribed, fixed, lift, force, values);
 }
+
+void constraints_relax(const Constraints *c, const unsigned char *held, const PetscReal *target, PetscReal scale,
+                       PetscReal *v, PetscReal *correction)
+{
+  for (PetscInt k = 0; k < c->n; ++k)
+    for (PetscInt d = 0; d < c->dim; ++d) {
+      const PetscInt at = c->at[k] * c->dim + d;
+      PetscReal gap = scale * target[at], share = 0;
+      for (PetscInt e = c->start[k]; e < c->start[k + 1]; ++e) {
+        gap -= c->N[e] * v[c->node[e] * c->dim + d];
+        if (c->node[e] == c->at[k]) share = c->N[e];
+      }
+      correction[at] = held[at] && share > 0.1 ? gap / share : 0;
+    }
+  for (PetscInt k = 0; k < c->n; ++k)
+    for (PetscInt at = c->at[k] * c->dim; at < (c->at[k] + 1) * c->dim; ++at) {
+      v[at] += correction[at];
+      correction[at] = 0;
+    }
+}

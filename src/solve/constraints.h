@@ -23,6 +23,10 @@ PetscErrorCode ConstraintsAdd(Constraints *constraints, PetscInt at, PetscInt tw
                               const PetscReal *N);
 /* Places of the pairs in the system's pattern; PETSC_FALSE if it lacks any. */
 PetscBool constraints_find_slots(Constraints *constraints, const System *system);
+/* One sweep that brings the field of v nearer to `target` at the constrained places, by the coefficients of the constrained nodes alone; dofs
+ * with held[] only (of the constrained nodes). correction: as long as v, zero at call and return. */
+void constraints_relax(const Constraints *constraints, const unsigned char *held, const PetscReal *target,
+                       PetscReal scale, PetscReal *v, PetscReal *correction);
 /* Add forces, and the matrix if values is not NULL. Dofs in fixed are left out (of twins: components without a constraint); lift moves
  * their columns to the forces, as in the weak form. */
 void constraints_assemble(const Constraints *constraints, const PetscReal *du, const PetscReal *prescribed,
