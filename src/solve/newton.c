@@ -121,6 +121,8 @@ static PetscErrorCode Assemble(Newton *n)
   p->in.pressure = p->pressure;
   p->in.fixed = p->fixed;
   PetscCall(p->formulation->assemble(&p->in, &out));
+  if (p->constraints)
+    constraints_assemble(p->constraints, p->du, p->prescribed, p->fixed, p->in.lift, out.force, out.values);
   PetscInt status = (PetscInt)out.status, worst;
   PetscCall(MPIU_Allreduce(&status, &worst, 1, MPIU_INT, MPI_MAX, n->comm));
   n->report->status = (LawStatus)worst;
@@ -299,8 +301,8 @@ static PetscErrorCode NewtonSetUp(Newton *n, StepProblem *p, const LinearProblem
   PetscCall(SNESLineSearchSetType(search, SNESLINESEARCHSHELL));
   PetscCall(SNESLineSearchShellSetUserFunc(search, LineSearchDescend, &n->search));
   PetscCall(SNESGetKSP(n->snes, &ksp));
+  PetscCall(KSPSetOperators(ksp, p->system->matrix, p->system->matrix)); /* some choices ask for the matrix at once */
   LinearProblem chosen = *linear;
-  PetscCall(KSPSetOperators(ksp, p->system->matrix, p->system->matrix));
   if (n->remembered == p->system->builds) chosen.courant = n->courant;
   n->courant = chosen.courant;
   n->remembered = -1;
