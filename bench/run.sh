@@ -17,6 +17,8 @@ title "laws"
 
 title "a collapsing column: aspect ratio 1.2, mesh 2, 0.5 s"
 "$bench/bench_column"
+title "meshfree bases"
+"$bench/bench_cloud"
 
 title "statics"
 "$bench/bench_static"

@@ -49,7 +49,7 @@ static void report_contradiction(const Boundary *b, const Grid *grid, PetscInt n
   DiagHint(diag, "leave the node out of one of the two selections");
 }
 
-/* Mark the dofs of one entry; the first contradiction with an earlier entry is reported, if there is a diag. */
+/* Mark the dofs of one entry; the first contradiction with an earlier entry is reported (diag NULL: they were sought before). */
 static void mark_entry(Boundary *b, const Grid *grid, PetscInt entry, Diag *diag)
 {
   const MotionSpec *m = &b->c->boundary[entry];
@@ -59,7 +59,7 @@ static void mark_entry(Boundary *b, const Grid *grid, PetscInt entry, Diag *diag
     for (PetscInt d = 0; d < b->dim; ++d) {
       const PetscInt i = node * b->dim + d;
       if (!m->component[d] && m->kind != MOTION_ROTATION) continue;
-      if (b->fixed[i] && !reported &&
+      if (b->fixed[i] && diag && !reported &&
           !motions_agree(b->c, m, &b->c->boundary[b->entry[i]], grid->x + node * b->dim, d)) {
         report_contradiction(b, grid, node, d, entry, diag);
         reported = PETSC_TRUE;
@@ -117,6 +117,56 @@ PetscErrorCode BoundaryCreate(const Grid *grid, const Case *c, Diag *diag, Bound
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode BoundaryToCloud(const Boundary *of_mesh, const Grid *mesh, const unsigned char *marked, Grid *cloud,
+                               Boundary **boundary)
+{
+  const PetscInt n_entries = of_mesh->c->n_boundary;
+  Boundary *b;
+  PetscInt *local;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscNew(&b));
+  b->c = of_mesh->c;
+  b->dim = cloud->dim;
+  PetscCall(PetscCalloc1(n_entries, &b->motion));
+  PetscCall(PetscCalloc1(cloud->n_nodes * n_entries, &b->member));
+  PetscCall(PetscMalloc1(mesh->n_owned, &local));
+  for (PetscInt i = 0, n = 0; i < mesh->n_owned; ++i) local[i] = marked[i] ? n++ : -1;
+  for (PetscInt k = 0; k < n_entries; ++k)
+    for (PetscInt i = 0; i < of_mesh->motion[k].n; ++i) {
+      const PetscInt node = of_mesh->motion[k].node[i];
+      if (node < mesh->n_owned && local[node] >= 0) b->member[local[node] * n_entries + k] = 1;
+    }
+  PetscCall(PetscFree(local));
+  PetscCall(GridCloudFollow(cloud, &b->member, n_entries, PETSC_TRUE));
+  PetscCall(BoundaryFollow(b, cloud));
+  *boundary = b;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode BoundaryFollow(Boundary *b, const Grid *cloud)
+{
+  const PetscInt n_entries = b->c->n_boundary, dofs = cloud->n_nodes * b->dim;
+
+  PetscFunctionBeginUser;
+  b->n_nodes = cloud->n_nodes;
+  PetscCall(PetscFree(b->fixed));
+  PetscCall(PetscFree(b->entry));
+  PetscCall(PetscCalloc1(dofs, &b->fixed));
+  PetscCall(PetscMalloc1(dofs, &b->entry));
+  for (PetscInt i = 0; i < dofs; ++i) b->entry[i] = -1;
+  for (PetscInt k = 0; k < n_entries; ++k) {
+    MotionNodes *m = &b->motion[k];
+    PetscCall(PetscFree(m->node));
+    PetscCall(PetscMalloc1(cloud->n_nodes, &m->node));
+    m->n = 0;
+    for (PetscInt i = 0; i < cloud->n_nodes; ++i)
+      if (b->member[i * n_entries + k] > 0) m->node[m->n++] = i;
+    mark_entry(b, cloud, k, NULL);
+  }
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode BoundaryDestroy(Boundary **boundary)
 {
   Boundary *b = *boundary;
@@ -125,6 +175,7 @@ PetscErrorCode BoundaryDestroy(Boundary **boundary)
   if (!b) PetscFunctionReturn(0);
   for (PetscInt k = 0; k < b->c->n_boundary; ++k) PetscCall(PetscFree(b->motion[k].node));
   PetscCall(PetscFree(b->motion));
+  PetscCall(PetscFree(b->member));
   PetscCall(PetscFree(b->fixed));
   PetscCall(PetscFree(b->entry));
   PetscCall(PetscFree(*boundary));

@@ -4,7 +4,7 @@
  * motion (`moves`); on a mesh that moves (fem) to the nodes selected at the start. Either way a rotation turns the node's present position
  * about its centre. */
 #pragma once
-#include "grid/grid.h"
+#include "grid/cloud.h"
 
 typedef struct {
   PetscInt n, *node; /* local nodes, ghosts too */
@@ -20,12 +20,19 @@ typedef struct Boundary {
   MotionNodes *motion;  /* one per entry of the case's boundary */
   unsigned char *fixed; /* n_nodes x dim */
   PetscInt *entry;      /* n_nodes x dim: the entry that prescribes the dof, -1 if none */
-  MotionField field;    /* NULL: as the case says */
+  PetscReal
+    *member; /* of a cloud: n_nodes x entries, 1 where the entry took the node at the start; follows the nodes */
+  MotionField field; /* NULL: as the case says */
   void *field_context;
 } Boundary;
 
 /* Collective. Unknown boundaries, entries that select nothing, and contradictory entries go to diag. */
 PetscErrorCode BoundaryCreate(const Grid *grid, const Case *c, Diag *diag, Boundary **boundary);
+/* Collective. Carry a boundary of the mesh over to the cloud made of its owned nodes with marked[node]. */
+PetscErrorCode BoundaryToCloud(const Boundary *of_mesh, const Grid *mesh, const unsigned char *marked, Grid *cloud,
+                               Boundary **boundary);
+/* Lists and marks anew from `member`, after the cloud's ghosts or owners changed. */
+PetscErrorCode BoundaryFollow(Boundary *boundary, const Grid *cloud);
 PetscErrorCode BoundaryDestroy(Boundary **boundary);
 
 /* For a grid that is restored: choose anew, at time t, the nodes of the places that move. Where entries have come to overlap, the first of

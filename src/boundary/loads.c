@@ -131,6 +131,35 @@ PetscErrorCode LoadsCreate(const Grid *grid, const Case *c, const Points *points
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode LoadsLeaveCells(Loads *l, const Grid *grid, const Points *points)
+{
+  PetscBool *filled;
+  PetscInt n, *cell, *side;
+  FacePoint q[FACE_MAX_POINTS];
+  PetscReal force[3];
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(grid->n_cells, &filled));
+  for (PetscInt p = 0; p < points->n; ++p) filled[points->cell[p]] = PETSC_TRUE;
+  for (PetscInt k = 0; k < l->c->n_loads; ++k) {
+    if (!l->faces[k].n) continue;
+    l->faces[k].n = 0;
+    PetscCall(GridSelectFaces(grid, &l->c->loads[k].on, &n, &cell, &side));
+    for (PetscInt f = 0; f < n; ++f) {
+      const PetscInt nq = filled[cell[f]] ? face_quadrature(grid, cell[f], side[f], q) : 0;
+      for (PetscInt i = 0; i < nq; ++i) {
+        for (PetscInt d = 0; d < l->dim; ++d) force[d] = q[i].area * l->c->loads[k].value[d];
+        PetscCall(AddCarrier(l, k, cell[f], q[i].x, q[i].xi, force));
+      }
+    }
+    PetscCall(PetscFree(cell));
+    PetscCall(PetscFree(side));
+  }
+  PetscCall(PetscFree(filled));
+  PetscCall(PointsSort(l->carriers));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode LoadsDestroy(Loads **loads)
 {
   PetscFunctionBeginUser;
@@ -163,25 +192,38 @@ static void add_faces(const LoadFaces *faces, const Grid *grid, const PetscReal 
   }
 }
 
+static void add_carrier(const Loads *l, const Grid *grid, PetscInt p, PetscReal factor, const unsigned char *touched,
+                        PetscReal *sum)
+{
+  const PetscInt dim = l->dim, cell = l->carriers->cell[p], *node;
+  PetscInt nn = grid->nodes_per_cell;
+  PetscReal N[CLOUD_MAX_NODES];
+  if (l->support) {
+    nn = support_nodes(l->support, p);
+    node = l->support->node + l->support->node_start[p];
+    if (!support_touched(l->support, p, touched, N)) return;
+  } else {
+    node = grid->cell_node + cell * nn;
+    if (cell < 0 || !touched_shape(grid, cell, point_real(l->carriers, POINT_XI, p), touched, N)) return;
+  }
+  for (PetscInt I = 0; I < nn; ++I)
+    for (PetscInt d = 0; d < dim; ++d)
+      sum[node[I] * dim + d] += factor * N[I] * point_real(l->carriers, POINT_FORCE, p)[d];
+}
+
 PetscErrorCode LoadsAdd(const Loads *l, const Grid *grid, PetscReal t, const unsigned char *filled,
                         const unsigned char *touched, PetscReal *force)
 {
-  const PetscInt dim = l->dim, nn = grid->nodes_per_cell;
-  PetscReal N[CELL_MAX_NODES], *sum;
+  const PetscInt dim = l->dim;
+  PetscReal *sum;
 
   PetscFunctionBeginUser;
   if (!l->c->n_loads) PetscFunctionReturn(0);
-  PetscCall(PetscCalloc1(l->n_nodes * dim, &sum));
+  PetscCall(PetscCalloc1(grid->n_nodes * dim, &sum));
   for (PetscInt k = 0; k < l->c->n_loads; ++k)
     add_faces(&l->faces[k], grid, l->c->loads[k].value, load_factor(l->c, &l->c->loads[k], t), filled, sum);
-  for (PetscInt p = 0; p < l->carriers->n; ++p) {
-    const PetscReal factor = load_factor(l->c, &l->c->loads[l->carriers->body[p]], t);
-    const PetscInt cell = l->carriers->cell[p], *node = grid->cell_node + cell * nn;
-    if (cell < 0 || !touched_shape(grid, cell, point_real(l->carriers, POINT_XI, p), touched, N)) continue;
-    for (PetscInt I = 0; I < nn; ++I)
-      for (PetscInt d = 0; d < dim; ++d)
-        sum[node[I] * dim + d] += factor * N[I] * point_real(l->carriers, POINT_FORCE, p)[d];
-  }
+  for (PetscInt p = 0; p < l->carriers->n; ++p)
+    add_carrier(l, grid, p, load_factor(l->c, &l->c->loads[l->carriers->body[p]], t), touched, sum);
   PetscCall(GridSumToOwners(grid, dim, sum));
   for (PetscInt i = 0; i < grid->n_owned * dim; ++i) force[i] += sum[i];
   PetscCall(PetscFree(sum));

@@ -3,7 +3,7 @@
  * A carrier is a point without mass that holds a force: at the quadrature points of a body's boundary (a traction), or at one
  * material position (a point force). Its force goes to the nodes of its cell that hold material. */
 #pragma once
-#include "points/points.h"
+#include "points/support.h"
 
 /* Faces of the grid under one load: their cells, and the integral of each of the cell's shape functions over the face. */
 typedef struct {
@@ -14,12 +14,15 @@ typedef struct {
 typedef struct Loads {
   const Case *c;
   PetscInt dim, n_nodes;
-  LoadFaces *faces; /* one per load */
-  Points *carriers; /* POINT_FORCE at amplitude 1; body = index of the load */
+  LoadFaces *faces;       /* one per load */
+  Points *carriers;       /* POINT_FORCE at amplitude 1; body = index of the load */
+  const Support *support; /* nodes that carriers push; NULL: those of their cells */
 } Loads;
 
 /* Collective. `points` tells which cells each body fills. */
 PetscErrorCode LoadsCreate(const Grid *grid, const Case *c, const Points *points, Diag *diag, Loads **loads);
+/* Collective. Let carriers bear the tractions on faces of the grid too, where its cells hold points: for methods that leave the cells. */
+PetscErrorCode LoadsLeaveCells(Loads *loads, const Grid *grid, const Points *points);
 PetscErrorCode LoadsDestroy(Loads **loads);
 
 /* Collective. Add the nodal forces at time t to force (n_nodes x dim; sums over ranks stand with the owners). Faces of

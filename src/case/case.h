@@ -125,6 +125,7 @@ typedef enum {
   MEASURE_MASS,
   MEASURE_MOMENTUM,
   MEASURE_ANGULAR_MOMENTUM,
+  MEASURE_SPIN, /* mean angular velocity about the centre of mass */
   MEASURE_KINETIC_ENERGY,
   MEASURE_ELASTIC_ENERGY,
   MEASURE_DISSIPATED_ENERGY,
@@ -174,6 +175,28 @@ typedef struct {
   PetscInt ease; /* a step that needs at most so many iterations lets the next grow */
 } NewtonSpec;
 
+typedef enum { BASIS_MLS, BASIS_LME } BasisKind;
+typedef enum { ORDER_LINEAR, ORDER_BILINEAR, ORDER_QUADRATIC } BasisOrder;
+typedef enum { WEIGHT_GAUSSIAN, WEIGHT_CUBIC_SPLINE } BasisWeight;
+typedef enum { CLOUD_CHOICE_ADAPTIVE, CLOUD_CHOICE_NEAREST, CLOUD_CHOICE_FIXED } CloudChoice;
+typedef enum { ESSENTIAL_AUTO, ESSENTIAL_DIRECT, ESSENTIAL_CONSTRAINTS } EssentialKind;
+
+/* Shape functions of clouds of nodes (gmm). Lengths are over the cell size of the grid that gives the nodes. */
+typedef struct {
+  BasisKind kind;
+  CloudChoice choice;
+  PetscReal radius;           /* of a cloud */
+  PetscReal max_radius;       /* that it may grow to */
+  PetscReal condition;        /* of a basis that needs no more nodes */
+  PetscInt minimum;           /* least number of nodes; 0: what the basis needs */
+  PetscReal gap;              /* nodes farther apart do not belong to the same material; 0: no limit */
+  PetscReal effective_radius; /* mls: dilation of the weight function */
+  BasisOrder order;           /* mls */
+  BasisWeight weight;         /* mls */
+  PetscReal gamma;            /* lme: locality, beta = gamma / h^2 */
+  EssentialKind essential;
+} BasisSpec;
+
 typedef struct {
   PetscReal stiffness, mass, inertia; /* see docs/theory.md, cells that are not full */
 } StabilisationSpec;
@@ -221,6 +244,7 @@ typedef struct {
   MeasureSpec *measures;
   NewtonSpec newton;
   LinearChoice linear;
+  BasisSpec basis;
   StabilisationSpec stabilisation;
   OutputSpec output;
   CheckpointSpec checkpoint;

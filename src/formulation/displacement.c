@@ -2,9 +2,10 @@
  *
  * Points run in batches of one material: first the increments of the deformation gradient of the whole batch, then one
  * call of the law, then forces and stiffness. What a group (a cell) gathers is scattered once. */
-#include "formulation/walk.h"
 #include "formulation/formulation.h"
+#include "formulation/displacement_cloud.h"
 #include "formulation/displacement_kernels.h"
+#include "formulation/displacement_points.h"
 
 /* What one cell gathers before it is scattered. */
 typedef struct {
@@ -14,12 +15,6 @@ typedef struct {
   PetscReal M[CELL_MAX_NODES * CELL_MAX_NODES];     /* nn rows */
   PetscReal K[9 * CELL_MAX_NODES * CELL_MAX_NODES]; /* nn x dim x dim rows */
 } CellWork;
-
-typedef struct {
-  PetscInt n, first, group; /* points first .. first + n - 1; the group of the first */
-  PetscReal dF[9 * LAW_BATCH], tau[6 * LAW_BATCH], c[36 * LAW_BATCH];
-  PetscReal old[LAW_MAX_STATE * LAW_BATCH], state[LAW_MAX_STATE * LAW_BATCH];
-} Batch;
 
 KERNEL void cell_load(const int dim, const int nn, const WeakFormInput *in, PetscInt group, CellWork *w)
 {
@@ -109,11 +104,7 @@ KERNEL void cell_store(const int dim, const int nn, const WeakFormInput *in, Pet
 
 KERNEL LawStatus batch_update(const int dim, const int nn, const WeakFormInput *in, PetscBool tangent, Batch *b)
 {
-  const Points *points = in->points;
   const Support *support = in->support;
-  const Material *material = &in->materials[points->material[b->first]];
-  const PetscInt n_state = material->law->n_state, stride = points->components[POINT_STATE];
-  const PetscReal *old = points->real[POINT_STATE] + b->first * stride;
   PetscReal du[3 * CELL_MAX_NODES];
   PetscInt group = -1, next = b->group;
 
@@ -126,12 +117,7 @@ KERNEL LawStatus batch_update(const int dim, const int nn, const WeakFormInput *
     }
     increment_gradient(dim, nn, support->dN + p * nn * dim, du, b->dF + 9 * k);
   }
-  if (stride != n_state) {
-    for (PetscInt k = 0; k < b->n; ++k)
-      for (PetscInt s = 0; s < n_state; ++s) b->old[k * n_state + s] = old[k * stride + s];
-    old = b->old;
-  }
-  return material->law->update(material->parameters, b->n, b->dF, old, b->state, b->tau, tangent ? b->c : NULL);
+  return batch_law(in, tangent, b);
 }
 
 KERNEL void assemble_points(const int dim, const int nn, const WeakFormInput *in, WeakFormOutput *out)
@@ -179,7 +165,7 @@ KERNEL void assemble_points(const int dim, const int nn, const WeakFormInput *in
 
 KERNEL LawStatus commit_points(const int dim, const int nn, const WeakFormInput *in, Points *points)
 {
-  const PetscInt stride = points->components[POINT_STATE], n = points_in_groups(in->support);
+  const PetscInt n = points_in_groups(in->support);
   Batch b;
   for (PetscInt first = 0, group = 0; first < n; first += b.n) {
     while (first >= in->support->point_start[group + 1]) ++group;
@@ -188,12 +174,7 @@ KERNEL LawStatus commit_points(const int dim, const int nn, const WeakFormInput 
     b.n = batch_length(points, first, n);
     const LawStatus status = batch_update(dim, nn, in, PETSC_FALSE, &b);
     if (status != LAW_OK) return status;
-    const PetscInt n_state = in->materials[points->material[first]].law->n_state;
-    for (PetscInt k = 0; k < b.n; ++k) {
-      commit_point(points, first + k, b.dF + 9 * k, b.tau + 6 * k);
-      PetscReal *state = points->real[POINT_STATE] + (first + k) * stride;
-      for (PetscInt i = 0; i < n_state; ++i) state[i] = b.state[k * n_state + i];
-    }
+    batch_commit(in, &b, points);
   }
   return LAW_OK;
 }
@@ -223,6 +204,8 @@ static const Kernels kernels[] = {
   {2, 4, assemble_2d_4, commit_2d_4},
   {3, 4, assemble_3d_4, commit_3d_4},
   {3, 8, assemble_3d_8, commit_3d_8},
+  {2, 0, displacement_assemble_cloud, displacement_commit_cloud}, /* as many nodes as a point's cloud has */
+  {3, 0, displacement_assemble_cloud, displacement_commit_cloud},
 };
 
 /* NULL where there are no points to work on. */

@@ -1,4 +1,5 @@
 /* The grid as others see it: which builder, which search, and its end. */
+#include "grid/cloud.h"
 #include "grid/grid_private.h"
 
 PetscErrorCode GridCreate(MPI_Comm comm, const Case *c, GridWeight weight, void *context, Diag *diag, Grid **grid)
@@ -27,6 +28,7 @@ PetscErrorCode GridDestroy(Grid **grid)
   PetscCall(PetscSFDestroy(&g->node_sf));
   PetscCall(GridBoxDestroy(&g->box));
   PetscCall(GridBinsDestroy(&g->bins));
+  PetscCall(GridCloudDestroy(&g->cloud));
   PetscCall(PetscFree(*grid));
   PetscFunctionReturn(0);
 }

@@ -20,8 +20,9 @@ typedef struct {
   PetscInt n_cells, *cells;
 } GridSet;
 
-typedef struct GridBins GridBins; /* search structure of unstructured grids */
-typedef struct GridBox GridBox;   /* counts, coordinate lines and sub-boxes of box grids */
+typedef struct GridBins GridBins;   /* search structure of unstructured grids */
+typedef struct GridCloud GridCloud; /* what only clouds have */
+typedef struct GridBox GridBox;     /* counts, coordinate lines and sub-boxes of box grids */
 
 typedef struct Grid {
   MPI_Comm comm;
@@ -43,6 +44,7 @@ typedef struct Grid {
   PetscReal smallest;          /* smallest cell size over all ranks, m */
   GridBox *box;                /* NULL for a mesh */
   GridBins *bins;              /* NULL for a box */
+  GridCloud *cloud;            /* a cloud has no cells, sets and search of cells */
   PetscReal (*rank_bounds)[6]; /* per rank: min[3], max[3] of its cells; who might know a lost point */
 } Grid;
 

@@ -26,4 +26,5 @@
 #define INPUT_ONLY .input_only = PETSC_TRUE
 
 /* Tables that others name. */
-extern const SchemaTable schema_shape, schema_selector, schema_grid, schema_body, schema_motion, schema_loads;
+extern const SchemaTable schema_shape, schema_selector, schema_grid, schema_body, schema_motion, schema_loads,
+  schema_basis;

@@ -95,6 +95,8 @@ static const SchemaEntry measure_entries[] = {
   KEY("momentum", AXIS, "kg m/s", "linear momentum", TAG(MEASURE_MOMENTUM), AT(MeasureSpec, component)),
   KEY("angular_momentum", SPIN_AXIS, "kg m2/s", "angular momentum about the origin", TAG(MEASURE_ANGULAR_MOMENTUM),
       AT(MeasureSpec, component)),
+  KEY("spin", SPIN_AXIS, "rad/s", "angular velocity: angular momentum over inertia, both about the centre of mass",
+      TAG(MEASURE_SPIN), AT(MeasureSpec, component)),
   KEY("energy", WORD, "J", "energy", .words = energy_words, AT(MeasureSpec, kind)),
   KEY("reaction", AXIS, "N", "force that holds a boundary", TAG(MEASURE_REACTION), AT(MeasureSpec, component)),
   KEY("surface", WORD, "m or deg", "free surface of a body: from the volume above x, in cells of the grid", ONLY_2D,
@@ -108,8 +110,8 @@ static const SchemaEntry measure_entries[] = {
 };
 static const SchemaGroup measure_groups[] = {
   {GROUP_ONE,
-   {"displacement", "position", "velocity", "extent", "mass", "momentum", "angular_momentum", "energy", "reaction",
-    "surface", "run_out_time", "roughness", NULL}},
+   {"displacement", "position", "velocity", "extent", "mass", "momentum", "angular_momentum", "spin", "energy",
+    "reaction", "surface", "run_out_time", "roughness", NULL}},
   {GROUP_NONE, {NULL}}};
 static PetscBool HideInMeasure(const SchemaEntry *e, const void *source)
 {

@@ -164,6 +164,7 @@ static const SchemaEntry case_entries[] = {
       .count = offsetof(Case, n_measures)),
   KEY("newton", TABLE, NULL, "convergence", .table = &newton, ALWAYS, AT(Case, newton)),
   KEY("linear", WORD, NULL, "linear solver", .words = linear_words, .fallback = "auto", AT(Case, linear)),
+  KEY("basis", TABLE, NULL, "shape functions of gmm", .table = &schema_basis, ALWAYS, AT(Case, basis)),
   KEY("stabilisation", TABLE, NULL, "cells that are not full", .table = &stabilisation, ALWAYS,
       AT(Case, stabilisation)),
   KEY("output", TABLE, NULL, "what is written", .table = &output, ALWAYS, AT(Case, output)),
@@ -172,7 +173,12 @@ static const SchemaEntry case_entries[] = {
       .count = offsetof(Case, n_petsc)),
   {.key = NULL},
 };
-const SchemaTable schema_case = {.name = "case", .help = "The keys at the top of the file.", .entries = case_entries};
+static PetscBool HideInCase(const SchemaEntry *e, const void *source)
+{
+  return !strcmp(e->key, "basis") && strcmp(((const Case *)source)->method, "gmm") ? PETSC_TRUE : PETSC_FALSE;
+}
+const SchemaTable schema_case = {
+  .name = "case", .help = "The keys at the top of the file.", .entries = case_entries, .hide = HideInCase};
 
 /* --- elastic constants: any two; listed here because the reference shows them with the materials --- */
 const SchemaEntry schema_elastic[] = {

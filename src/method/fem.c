@@ -1,32 +1,15 @@
 /* Updated Lagrangian finite elements: the mesh moves with the material, points are the Gauss points of their cell. */
 #include "method/method.h"
 
-/* Nodes keep their history; at the start they take the velocity of their body where they stand (a projection from points would flatten
- * a rotation at the boundary). A node of several bodies takes the mean by mass. */
 static PetscErrorCode FemStart(Stage *s)
 {
-  const PetscInt dim = s->grid->dim;
-  PetscReal *q, v[3];
-
   PetscFunctionBeginUser;
   PetscCall(PointsSort(s->points));
   PetscCall(SupportFromCells(s->support, s->points, s->grid));
   PetscCall(StageTouch(s));
   PetscCall(StageNodalMass(s));
   if (s->pressure) PetscCall(StageNodalPressure(s)); /* of the initial state; from then on nodes keep theirs */
-  PetscCall(PetscCalloc1(s->grid->n_nodes * dim, &q));
-  for (PetscInt g = 0, nn = s->support->uniform; g < s->support->n_groups; ++g)
-    for (PetscInt p = s->support->point_start[g]; p < s->support->point_start[g + 1]; ++p)
-      for (PetscInt I = 0; I < nn; ++I) {
-        const PetscInt node = s->support->node[g * nn + I];
-        body_velocity(&s->c->bodies[s->points->body[p]], dim, s->grid->x + node * dim, v);
-        for (PetscInt d = 0; d < dim; ++d)
-          q[node * dim + d] += s->support->N[p * nn + I] * s->points->real[POINT_MASS][p] * v[d];
-      }
-  PetscCall(GridSumToOwners(s->grid, dim, q));
-  PetscCall(GridToGhosts(s->grid, dim, q));
-  for (PetscInt i = 0; i < s->grid->n_nodes * dim; ++i) s->v[i] = s->mass[i / dim] > 0 ? q[i] / s->mass[i / dim] : 0;
-  PetscCall(PetscFree(q));
+  PetscCall(StageBodyVelocity(s));
   PetscFunctionReturn(0);
 }
 

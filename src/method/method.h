@@ -5,7 +5,14 @@
 #include "boundary/loads.h"
 #include "material/law.h"
 #include "points/support.h"
+#include "solve/constraints.h"
 #include "solve/newmark.h"
+
+typedef enum {
+  DOF_USUAL,    /* prescribed or free as the boundary says */
+  DOF_RELEASED, /* solved for although prescribed: a constraint holds it */
+  DOF_UNUSED,   /* stays 0: a multiplier of no constraint */
+} DofState;
 
 /* What a method works on. Nodal arrays go over the local nodes of the grid. */
 typedef struct Stage {
@@ -29,6 +36,11 @@ typedef struct Stage {
   PetscReal *pressure_tie;         /* mixed: per group, see WeakFormInput */
   PetscInt n_lost;                 /* points that left the grid in the last convection, all ranks */
   LostPoint *lost;                 /* at most 16 of them */
+  Boundary *boundary;              /* of the same nodes */
+  Constraints *constraints;        /* NULL: prescribed motion is that of the nodes themselves */
+  unsigned char *dof; /* n_nodes x dim: DofState where it is not what boundary and touched say; NULL: nowhere */
+  const PetscReal *prescribed; /* n_nodes x dim: increments of prescribed dofs in the step that is being accepted, m */
+  struct Gmm *gmm;             /* what gmm remembers; NULL in other methods */
 } Stage;
 
 /* A nodal array (n_nodes x components) that a method carries from step to step: it goes into checkpoints. */
@@ -47,6 +59,10 @@ typedef struct Method {
   /* Phase c, collective: the step is accepted, v1 and a1 are known, du holds the increments. State and F are committed already. */
   PetscErrorCode (*convect)(Stage *stage, const PetscReal *du);
   const MethodField *fields; /* ended by name = NULL; NULL: nodes remember nothing */
+  /* For methods whose nodes leave the grid that seeded the points; NULL in others. Collective. Nodes, ranks and neighbours may change here, between steps. */
+  PetscErrorCode (*destroy)(Stage *stage);
+  /* Groups of nodes that steps to come may couple; freed by the caller. NULL: the cells. */
+  PetscErrorCode (*couplings)(const Stage *stage, NodeGroups *groups);
 } Method;
 
 extern const Method *const methods[]; /* ended by NULL */
@@ -57,9 +73,13 @@ PetscErrorCode StageCreate(const Case *c, Grid *grid, Points *points, Points *tr
 PetscErrorCode StageDestroy(Stage **stage);
 
 /* Steps that methods share. */
-PetscErrorCode StageTouch(Stage *stage);     /* filled and touched from the support */
+PetscErrorCode StageTouch(Stage *stage);     /* touched, and in grids of cells filled, from the support */
 PetscErrorCode StageNodalMass(Stage *stage); /* m_I = sum N m_p, on all copies */
 PetscErrorCode StageNodalPressure(
   Stage *stage); /* p_I = sum N m_p p / m_I (thesis eq. 5.20), on all copies; after StageNodalMass */
+/* Nodes that keep their history take the velocity of their body where they stand; m and touched must be known. */
+PetscErrorCode StageBodyVelocity(Stage *stage);
+/* The same for points with clouds. */
+PetscErrorCode StageMoveClouds(Stage *stage, Points *carried, const Support *support, const PetscReal *du);
 PetscErrorCode StageMoveCarried(Stage *stage, Points *carried,
                                 const PetscReal *du); /* tracers and carriers follow the field */

@@ -73,9 +73,13 @@ static PetscErrorCode Stabilise(Stage *s)
 
   PetscFunctionBeginUser;
   if (w->n_groups > s->group_capacity) {
-    PetscCall(PetscFree3(s->lumping, s->soft, s->tie));
+    PetscCall(PetscFree(s->lumping));
+    PetscCall(PetscFree(s->soft));
+    PetscCall(PetscFree(s->tie));
     s->group_capacity = w->n_groups + w->n_groups / 4;
-    PetscCall(PetscMalloc3(s->group_capacity, &s->lumping, s->group_capacity, &s->soft, s->group_capacity, &s->tie));
+    PetscCall(PetscMalloc1(s->group_capacity, &s->lumping));
+    PetscCall(PetscMalloc1(s->group_capacity, &s->soft));
+    PetscCall(PetscMalloc1(s->group_capacity, &s->tie));
     PetscCall(PetscFree(s->pressure_tie));
     if (s->pressure) PetscCall(PetscMalloc1(s->group_capacity, &s->pressure_tie));
   }

@@ -67,7 +67,7 @@ static PetscErrorCode AddRings(const Model *m, const unsigned char *occupied, un
 PetscErrorCode ModelEnable(Model *m)
 {
   const PetscInt nn = m->grid->nodes_per_cell;
-  PetscInt n = 0, *node;
+  PetscInt n = 0, *node, *start;
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(m->grid->n_cells * nn, &node));
@@ -76,8 +76,49 @@ PetscErrorCode ModelEnable(Model *m)
       PetscCall(PetscArraycpy(node + n * nn, m->grid->cell_node + c * nn, nn));
       ++n;
     }
-  PetscCall(SystemBuild(m->system, m->grid, n, nn, node));
+  PetscCall(PetscMalloc1(n + 1, &start));
+  for (PetscInt g = 0; g <= n; ++g) start[g] = g * nn;
+  PetscCall(SystemBuild(m->system, m->grid, &(NodeGroups){.n = n, .start = start, .node = node}));
+  PetscCall(PetscFree(start));
   PetscCall(PetscFree(node));
+  PetscFunctionReturn(0);
+}
+
+/* Slots of all groups and constraints; `complete` is false if the system lacks a pair of them on any rank. */
+static PetscErrorCode FindSlots(Model *m, PetscBool *complete)
+{
+  PetscBool here;
+
+  PetscFunctionBeginUser;
+  PetscCall(SystemSlots(m->system, m->stage->support, &here));
+  here = here && constraints_find_slots(m->stage->constraints, m->system) ? PETSC_TRUE : PETSC_FALSE;
+  PetscCallMPI(MPI_Allreduce(&here, complete, 1, MPIU_BOOL, MPI_LAND, m->comm));
+  PetscFunctionReturn(0);
+}
+
+/* Clouds change from step to step: the system lasts until a pair of nodes meets that it does not couple, or nodes changed their ranks. */
+static PetscErrorCode ActivateClouds(Model *m)
+{
+  PetscBool complete = PETSC_FALSE;
+  NodeGroups groups;
+
+  PetscFunctionBeginUser;
+  if (m->layouts != m->grid->cloud->layouts) {
+    PetscCall(PetscFree(m->fixed));
+    PetscCall(PetscCalloc1(m->grid->n_nodes * m->dim, &m->fixed));
+    PetscCall(PetscFree(m->idle));
+    PetscCall(PetscCalloc1(m->grid->n_nodes, &m->idle));
+  } else if (m->system->matrix) PetscCall(FindSlots(m, &complete));
+  m->layouts = m->grid->cloud->layouts;
+  if (!complete) {
+    PetscCall(m->method->couplings(m->stage, &groups));
+    PetscCall(SystemBuild(m->system, m->grid, &groups));
+    PetscCall(PetscFree(groups.start));
+    PetscCall(PetscFree(groups.node));
+    PetscCall(FindSlots(m, &complete));
+    PetscCheck(complete, m->comm, PETSC_ERR_PLIB, "the system lacks couplings that it was built for");
+  }
+  PetscCall(MPIU_Allreduce(&m->stage->constraints->n, &m->n_constraints, 1, MPIU_INT, MPI_SUM, m->comm));
   PetscFunctionReturn(0);
 }
 
@@ -88,6 +129,10 @@ PetscErrorCode ModelActivate(Model *m)
   PetscBool fits;
 
   PetscFunctionBeginUser;
+  if (m->method->couplings) {
+    PetscCall(ActivateClouds(m));
+    PetscFunctionReturn(0);
+  }
   PetscCall(PetscMalloc1(m->grid->n_cells, &occupied));
   flag_occupied(m, occupied);
   PetscCall(StillFits(m, occupied, &fits));
@@ -97,6 +142,6 @@ PetscErrorCode ModelActivate(Model *m)
     PetscCall(ModelEnable(m));
   }
   PetscCall(PetscFree(occupied));
-  PetscCall(SystemSlots(m->system, m->stage->support));
+  PetscCall(SystemSlots(m->system, m->stage->support, NULL));
   PetscFunctionReturn(0);
 }

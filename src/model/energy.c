@@ -10,7 +10,7 @@ typedef struct {
   PetscReal factor[2];
 } NodalField;
 
-/* Dimension and nodes of a cell are constants at each call below, so that the inner loops unroll. */
+/* Dimension and nodes of a cell are constants at each call below, so that the inner loops unroll; fixed_nn 0: each group has its own. */
 #define UNROLLED static inline __attribute__((always_inline))
 
 /* The part of u M w that ties the nodes of one cell together: their deviations from the mean. */
@@ -25,15 +25,15 @@ UNROLLED PetscReal tied_product(const PetscInt dim, const PetscInt nn, const Pet
   return sum;
 }
 
-UNROLLED PetscReal product_sized(const PetscInt dim, const PetscInt nn, const Model *m, const NodalField *u,
+UNROLLED PetscReal product_sized(const PetscInt dim, const PetscInt fixed_nn, const Model *m, const NodalField *u,
                                  const NodalField *w)
 {
   const Support *support = m->stage->support;
   PetscReal sum = 0;
   for (PetscInt g = 0; g < support->n_groups; ++g) {
-    const PetscInt *node = support->node + g * nn;
+    const PetscInt nn = fixed_nn ? fixed_nn : support_nodes(support, g), *node = support->node + support->node_start[g];
     const PetscReal lumped = m->stage->lumping ? m->stage->lumping[g] : 0;
-    PetscReal at_node[CELL_MAX_NODES], un[3 * CELL_MAX_NODES], wn[3 * CELL_MAX_NODES];
+    PetscReal at_node[CLOUD_MAX_NODES], un[3 * CLOUD_MAX_NODES], wn[3 * CLOUD_MAX_NODES];
     for (PetscInt I = 0; I < nn; ++I) {
       at_node[I] = 0;
       for (PetscInt d = 0, k = I * dim, i = node[I] * dim; d < dim; ++d, ++k, ++i) {
@@ -44,7 +44,7 @@ UNROLLED PetscReal product_sized(const PetscInt dim, const PetscInt nn, const Mo
     }
     if (m->stage->tie && m->stage->tie[g] > 0) sum += m->stage->tie[g] * tied_product(dim, nn, un, wn);
     for (PetscInt p = support->point_start[g]; p < support->point_start[g + 1]; ++p) {
-      const PetscReal *N = support->N + p * nn;
+      const PetscReal *N = support->N + support->value_start[g] + (p - support->point_start[g]) * nn;
       PetscReal uh[3] = {0, 0, 0}, wh[3] = {0, 0, 0}, nodes = 0;
       for (PetscInt I = 0; I < nn; ++I) {
         nodes += N[I] * at_node[I];
@@ -133,7 +133,7 @@ static PetscReal impulse_work(const Model *m, PetscInt i, PetscReal dt)
 {
   const Stage *s = m->stage;
   if (m->c->analysis.type != ANALYSIS_DYNAMIC) return 0;
-  return s->mass[i / m->dim] * (s->v[i] - s->v_points[i]) * m->du[i] / dt;
+  return s->mass[i / m->dim] * (s->v[i] - s->v_points[i]) * m->prescribed[i] / dt;
 }
 
 /* Work of inertia, with Newmark's effective acceleration at both ends. */
@@ -195,7 +195,7 @@ PetscErrorCode EnergyOfNodes(Model *m, PetscReal dt, EnergyStep *e)
     const PetscInt d = i % m->dim;
     e->external += 0.5 * (s->mass[i / m->dim] * (g0[d] + g1[d]) + before[i] + m->external[i]) * m->du[i];
     if (!m->boundary->fixed[i]) continue;
-    held += 0.5 * (m->held[i] + m->force[i]) * m->du[i];
+    held += 0.5 * (m->held[i] + m->force[i]) * m->prescribed[i];
     impulse += impulse_work(m, i, dt);
   }
   PetscCall(PetscFree(before));

@@ -112,11 +112,13 @@ PetscErrorCode InitialAcceleration(Model *m)
     s->a[i] = mass > 1e-300 && !m->boundary->fixed[i] ? (m->external[i] - m->force[i]) / mass : 0;
   }
   PetscCall(GridToGhosts(m->grid, dim, s->a));
-  for (PetscInt q = 0, nn = s->support->uniform; q < s->support->n_groups; ++q)
+  for (PetscInt q = 0; q < s->support->n_groups; ++q) {
+    const PetscInt nn = support_nodes(s->support, q), *node = s->support->node + s->support->node_start[q];
     for (PetscInt p = s->support->point_start[q]; p < s->support->point_start[q + 1]; ++p)
       for (PetscInt i = 0; i < nn * dim; ++i)
         point_real(m->points, POINT_A, p)[i % dim] +=
-          s->support->N[p * nn + i / dim] * s->a[s->support->node[q * nn + i / dim] * dim + i % dim];
+          support_N(s->support, q, p)[i / dim] * s->a[node[i / dim] * dim + i % dim];
+  }
   PetscFunctionReturn(0);
 }
 

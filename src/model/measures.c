@@ -14,6 +14,7 @@ const char *measure_unit(const MeasureSpec *s)
   case MEASURE_MASS: return "kg";
   case MEASURE_MOMENTUM: return "kg m/s";
   case MEASURE_ANGULAR_MOMENTUM: return "kg m2/s";
+  case MEASURE_SPIN: return "rad/s";
   case MEASURE_KINETIC_ENERGY:
   case MEASURE_ELASTIC_ENERGY:
   case MEASURE_DISSIPATED_ENERGY:
@@ -113,6 +114,28 @@ static PetscErrorCode PointSum(const Model *m, const MeasureSpec *s, PetscReal *
   PetscFunctionReturn(0);
 }
 
+/* Angular momentum over inertia about an axis through the centre of mass. */
+static PetscErrorCode SpinValue(const Model *m, const MeasureSpec *s, PetscReal *value)
+{
+  const PetscInt body = body_index(m->c, s->body), dim = m->dim;
+  const PetscInt i = dim == 2 ? 0 : (s->component + 1) % 3, j = dim == 2 ? 1 : (s->component + 2) % 3;
+  PetscReal q[7] = {0, 0, 0, 0, 0, 0, 0}; /* mass, first moments, momenta, angular momentum, second moment */
+
+  PetscFunctionBeginUser;
+  for (PetscInt p = 0; p < m->points->n; ++p) {
+    if (body >= 0 && m->points->body[p] != body) continue;
+    const PetscReal mass = m->points->real[POINT_MASS][p];
+    const PetscReal *x = point_real(m->points, POINT_X, p), *v = point_real(m->points, POINT_V, p);
+    const PetscReal add[7] = {1, x[i], x[j], v[i], v[j], x[i] * v[j] - x[j] * v[i], x[i] * x[i] + x[j] * x[j]};
+    for (int k = 0; k < 7; ++k) q[k] += mass * add[k];
+  }
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, q, 7, MPIU_REAL, MPI_SUM, m->comm));
+  const PetscReal momentum = q[5] - (q[1] * q[4] - q[2] * q[3]) / q[0];
+  const PetscReal inertia = q[6] - (q[1] * q[1] + q[2] * q[2]) / q[0];
+  *value = inertia > 0 ? momentum / inertia : 0;
+  PetscFunctionReturn(0);
+}
+
 static PetscErrorCode SurfaceValue(const Model *m, const MeasureSpec *s, PetscReal *value)
 {
   SurfaceProfile profile;
@@ -198,6 +221,7 @@ PetscErrorCode ModelMeasure(Model *m, const MeasureSpec *s, PetscInt index, Pets
   case MEASURE_SURFACE_FRONT:
   case MEASURE_SURFACE_HEIGHT:
   case MEASURE_SURFACE_SLOPE: PetscCall(SurfaceValue(m, s, value)); break;
+  case MEASURE_SPIN: PetscCall(SpinValue(m, s, value)); break;
   case MEASURE_RUN_OUT_TIME: *value = m->memory[index].moved; break;
   case MEASURE_ROUGHNESS: PetscCall(RoughnessValue(m, value)); break;
   case MEASURE_REACTION:

@@ -17,15 +17,21 @@ static void check_supported(const Case *c, Diag *diag)
   if (c->kinematics == KINEMATICS_AXISYMMETRIC)
     DiagError(diag, "kinematics", "axisymmetric kinematics are not part of this version; plane-strain and 3d are");
   if (!MethodFind(c->method))
-    DiagError(diag, "method", "method '%s' is not part of this version; mpm and fem are", c->method);
+    DiagError(diag, "method", "method '%s' is not part of this version; mpm, fem and gmm are", c->method);
   if (!FormulationFind(c->formulation))
     DiagError(diag, "formulation", "formulation '%s' is not part of this version; displacement and mixed are",
               c->formulation);
+  else if (FormulationFind(c->formulation)->pressure && !strcmp(c->method, "gmm"))
+    DiagError(
+      diag, "formulation",
+      "formulation '%s' is not part of this version for method gmm, which takes displacement; mpm and fem take both",
+      c->formulation);
   for (PetscInt b = 0; b < c->n_bodies; ++b) {
     char path[64];
     PetscSNPrintf(path, sizeof path, "bodies[%d].mesh", (int)b);
-    if (c->bodies[b].mesh && !strcmp(c->method, "fem"))
-      DiagError(diag, path, "a body with a mesh of its own needs method mpm; for fem give that mesh as grid.mesh");
+    if (c->bodies[b].mesh && strcmp(c->method, "mpm"))
+      DiagError(diag, path,
+                "a body with a mesh of its own needs method mpm; for fem and gmm give that mesh as grid.mesh");
   }
 }
 
@@ -124,8 +130,16 @@ static PetscErrorCode CreateFields(Model *m)
     for (PetscInt i = 0; i < m->c->n_materials; ++i)
       m->pressure_scale = PetscMax(m->pressure_scale, m->materials[i].elastic.shear / m->grid->smallest);
   }
-  PetscCall(PetscCalloc7(dofs, &m->du, dofs, &m->force, dofs, &m->external, dofs, &m->history, dofs, &m->prescribed,
-                         dofs, &m->reaction, dofs, &m->held));
+  PetscReal **const scratch[] = {&m->du, &m->force, &m->external, &m->history, &m->prescribed};
+  PetscReal **const kept[] = {&m->reaction, &m->held};
+  for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(scratch); ++k) {
+    PetscCall(PetscCalloc1(dofs, scratch[k]));
+    if (m->grid->cloud) PetscCall(GridCloudFollow(m->grid, scratch[k], m->dim, PETSC_FALSE));
+  }
+  for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(kept); ++k) {
+    PetscCall(PetscCalloc1(dofs, kept[k]));
+    if (m->grid->cloud) PetscCall(GridCloudFollow(m->grid, kept[k], m->dim, PETSC_TRUE));
+  }
   PetscFunctionReturn(0);
 }
 
@@ -152,8 +166,10 @@ static PetscErrorCode Build(Model *m, Diag *diag)
   PetscCall(CreateTracers(m, diag));
   PetscCall(DiagReduce(m->comm, diag, &errors));
   if (errors) PetscFunctionReturn(0);
+  if (m->method->couplings) PetscCall(ModelToCloud(m));
   PetscCall(CreateFields(m));
   PetscCall(StageCreate(m->c, m->grid, m->points, m->tracers, m->loads, m->materials, &m->stage));
+  m->stage->boundary = m->boundary;
   PetscCall(SystemCreate(m->comm, m->dim, m->dim + (m->formulation->pressure ? 1 : 0), &m->system));
   PetscCall(NewtonCreate(m->comm, &m->c->newton, &m->newton));
   step_control_start(&m->control, m->c->analysis.step);
@@ -193,6 +209,7 @@ PetscErrorCode ModelDestroy(Model **model)
   PetscCall(OptionsForget(m));
   PetscCall(NewtonDestroy(&m->newton));
   PetscCall(SystemDestroy(&m->system));
+  if (m->stage && m->method->destroy) PetscCall(m->method->destroy(m->stage));
   PetscCall(StageDestroy(&m->stage));
   if (m->loads) PetscCall(LoadsDestroy(&m->loads));
   if (m->boundary) PetscCall(BoundaryDestroy(&m->boundary));
@@ -205,7 +222,8 @@ PetscErrorCode ModelDestroy(Model **model)
   PetscCall(PetscFree(m->pressure));
   PetscCall(PetscFree(m->volume));
   PetscCall(PetscFree(m->fixed));
-  PetscCall(PetscFree7(m->du, m->force, m->external, m->history, m->prescribed, m->reaction, m->held));
+  PetscReal **const nodal[] = {&m->du, &m->force, &m->external, &m->history, &m->prescribed, &m->reaction, &m->held};
+  for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(nodal); ++k) PetscCall(PetscFree(*nodal[k]));
   PetscCall(PetscFree(m->memory));
   PetscCall(PetscFree(*model));
   PetscFunctionReturn(0);

@@ -42,6 +42,8 @@ typedef struct Model {
   Newton *newton;
   unsigned char *enabled;                                  /* n_cells: cells whose nodes carry unknowns */
   unsigned char *fixed;                                    /* n_nodes x dim */
+  PetscInt n_constraints;                                  /* on nodes of a cloud, over all ranks */
+  PetscInt layouts;                                        /* of the cloud, that fixed and the system fit */
   PetscReal *du, *force, *external, *history, *prescribed; /* n_nodes x dim */
   PetscReal *pressure, *volume; /* mixed: n_nodes, see WeakFormInput and StepProblem, otherwise NULL */
   PetscReal pressure_scale;     /* mixed: Pa/m */

@@ -36,5 +36,7 @@ PetscErrorCode EnergyOfNodes(Model *model, PetscReal dt, EnergyStep *step);
 PetscErrorCode EnergyClose(Model *model, EnergyStep *step);
 /* Nodal pressures of the step's start as unknowns; nothing without a mixed formulation. */
 void pressure_guess(const Model *model);
+/* Collective. Leave the cells: nodes that material fills or the boundary holds become a cloud, and all that stood on the mesh moves over. */
+PetscErrorCode ModelToCloud(Model *model);
 /* Input of the weak form for the model's present arrays. */
 WeakFormInput weak_form_of(const Model *model, PetscReal inertia);

@@ -13,17 +13,17 @@ static PetscReal point_volume(const Model *m, PetscInt p)
 static PetscErrorCode PointsToNodes(const Model *m, const PetscReal *at_points, PetscReal *at_nodes, PetscReal *volume)
 {
   const Support *w = m->stage->support;
-  const PetscInt n = m->grid->n_nodes, nn = w->uniform;
+  const PetscInt n = m->grid->n_nodes;
 
   PetscFunctionBeginUser;
   PetscCall(PetscArrayzero(at_nodes, n));
   PetscCall(PetscArrayzero(volume, n));
   for (PetscInt g = 0; g < w->n_groups; ++g)
     for (PetscInt p = w->point_start[g]; p < w->point_start[g + 1]; ++p)
-      for (PetscInt I = 0; I < nn; ++I) {
-        const PetscReal weight = w->N[p * nn + I] * point_volume(m, p);
-        volume[w->node[g * nn + I]] += weight;
-        at_nodes[w->node[g * nn + I]] += weight * at_points[p];
+      for (PetscInt I = 0; I < support_nodes(w, g); ++I) {
+        const PetscReal weight = support_N(w, g, p)[I] * point_volume(m, p);
+        volume[w->node[w->node_start[g] + I]] += weight;
+        at_nodes[w->node[w->node_start[g] + I]] += weight * at_points[p];
       }
   PetscCall(GridSumToOwners(m->grid, 1, at_nodes));
   PetscCall(GridSumToOwners(m->grid, 1, volume));
@@ -35,11 +35,11 @@ static PetscErrorCode PointsToNodes(const Model *m, const PetscReal *at_points, 
 static void nodes_to_points(const Model *m, const PetscReal *at_nodes, PetscReal *at_points)
 {
   const Support *w = m->stage->support;
-  const PetscInt nn = w->uniform;
   for (PetscInt g = 0; g < w->n_groups; ++g)
     for (PetscInt p = w->point_start[g]; p < w->point_start[g + 1]; ++p) {
       at_points[p] = 0;
-      for (PetscInt I = 0; I < nn; ++I) at_points[p] += w->N[p * nn + I] * at_nodes[w->node[g * nn + I]];
+      for (PetscInt I = 0; I < support_nodes(w, g); ++I)
+        at_points[p] += support_N(w, g, p)[I] * at_nodes[w->node[w->node_start[g] + I]];
     }
 }
 

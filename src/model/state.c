@@ -104,6 +104,8 @@ static PetscInt method_fields(const Model *m, NodalField field[8])
   return n;
 }
 
+PetscBool model_fits_tables(const Model *m) { return m->grid->cloud ? PETSC_FALSE : PETSC_TRUE; }
+
 PetscErrorCode ModelToTables(Model *m, Tables *tables)
 {
   NodalField field[8];

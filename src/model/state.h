@@ -6,6 +6,8 @@
 #include "base/table.h"
 #include "model/model.h"
 
+/* Can the state be put away? Not that of a cloud, whose nodes are not among the tables. */
+PetscBool model_fits_tables(const Model *model);
 /* Collective. The state at the end of a step, of which there must have been one: the first starts from accelerations of its own. Tables may stand over the model's own arrays: use them before the next step. */
 PetscErrorCode ModelToTables(Model *model, Tables *tables);
 /* Collective. Put a model that was just created where the tables say. If they do not fit the model, reason (256 characters) says why on every

@@ -31,9 +31,14 @@ void pressure_guess(const Model *m)
 /* Prescribed dofs, and nodes with unknowns that no material touches. */
 static void mark_fixed(Model *m)
 {
+  const unsigned char *dof = m->stage->dof;
   for (PetscInt node = 0, i = 0; node < m->grid->n_nodes; ++node) {
     m->idle[node] = !m->stage->touched[node];
-    for (PetscInt d = 0; d < m->dim; ++d, ++i) m->fixed[i] = m->boundary->fixed[i] || m->idle[node];
+    for (PetscInt d = 0; d < m->dim; ++d, ++i) {
+      m->fixed[i] = m->boundary->fixed[i] || m->idle[node];
+      if (dof && dof[i] == DOF_RELEASED) m->fixed[i] = 0;
+      if (dof && dof[i] == DOF_UNUSED) m->fixed[i] = 1;
+    }
   }
 }
 
@@ -44,10 +49,30 @@ static void set_boundary_kinematics(Model *m, PetscReal dt)
   Stage *s = m->stage;
   if (!m->method->points_move && m->step > 0) return;
   for (PetscInt i = 0; i < m->grid->n_nodes * m->dim; ++i) {
-    if (!m->boundary->fixed[i]) continue;
+    if (!m->boundary->fixed[i] || !m->fixed[i]) continue;
     s->v[i] = m->prescribed[i] / dt;
     s->a[i] = 0;
   }
+}
+
+/* A constraint on displacements lets the velocity of the field ring about the prescribed one, as Newmark's formulas do at any node that is stopped.
+ * So the coefficients of constrained nodes start each step with the prescribed motion, like prescribed nodes themselves. */
+static PetscErrorCode HoldConstraints(Model *m, PetscReal dt)
+{
+  const Constraints *c = m->stage->constraints;
+  PetscReal *correction;
+
+  PetscFunctionBeginUser;
+  if (!m->n_constraints) PetscFunctionReturn(0);
+  PetscCall(PetscCalloc1(m->grid->n_nodes * m->dim, &correction));
+  for (int sweep = 0; sweep < 20; ++sweep) {
+    constraints_relax(c, m->boundary->fixed, m->prescribed, 1 / dt, m->stage->v, correction);
+    constraints_relax(c, m->boundary->fixed, m->prescribed, 0, m->stage->a, correction);
+    PetscCall(GridToGhosts(m->grid, m->dim, m->stage->v));
+    PetscCall(GridToGhosts(m->grid, m->dim, m->stage->a));
+  }
+  PetscCall(PetscFree(correction));
+  PetscFunctionReturn(0);
 }
 
 /* Norms over owned nodes that material touches: gravity, and the inertia force of stopping within the step. */
@@ -75,26 +100,37 @@ static PetscErrorCode ForceScales(const Model *m, const PetscReal *g, PetscReal 
 
 PetscErrorCode AddBodyForce(const Model *m, PetscReal t, PetscReal *force)
 {
-  const PetscInt dim = m->dim, dofs = m->grid->n_nodes * dim, nn = m->stage->support->uniform;
+  const PetscInt dim = m->dim, dofs = m->grid->n_nodes * dim;
   const Support *w = m->stage->support;
   PetscReal *sum, X[3], b[3];
 
   PetscFunctionBeginUser;
   if (!m->body_force) PetscFunctionReturn(0);
   PetscCall(PetscCalloc1(dofs, &sum));
-  for (PetscInt g = 0; g < w->n_groups; ++g)
+  for (PetscInt g = 0; g < w->n_groups; ++g) {
+    const PetscInt nn = support_nodes(w, g), *node = w->node + w->node_start[g];
     for (PetscInt p = w->point_start[g]; p < w->point_start[g + 1]; ++p) {
       for (PetscInt d = 0; d < dim; ++d)
         X[d] = point_real(m->points, POINT_X, p)[d] - point_real(m->points, POINT_U, p)[d];
       m->body_force(m->body_force_context, X, t, b);
       for (PetscInt i = 0; i < nn * dim; ++i)
-        sum[w->node[g * nn + i / dim] * dim + i % dim] +=
-          w->N[p * nn + i / dim] * m->points->real[POINT_MASS][p] * b[i % dim];
+        sum[node[i / dim] * dim + i % dim] += support_N(w, g, p)[i / dim] * m->points->real[POINT_MASS][p] * b[i % dim];
     }
+  }
   PetscCall(GridSumToOwners(m->grid, dim, sum));
   for (PetscInt i = 0; i < m->grid->n_owned * dim; ++i) force[i] += sum[i];
   PetscCall(PetscFree(sum));
   PetscFunctionReturn(0);
+}
+
+/* Stiffness of one node, about: multipliers over it are displacements, gaps times it are forces. */
+static PetscReal constraint_scale(const Model *m, PetscReal inertia)
+{
+  const PetscReal h = m->grid->smallest, area = m->dim == 3 ? h * h : h;
+  PetscReal scale = 0;
+  for (PetscInt i = 0; i < m->c->n_materials; ++i)
+    scale = PetscMax(scale, m->materials[i].wave_modulus * area / h + inertia * m->materials[i].density * area * h);
+  return scale;
 }
 
 /* History, first guess, prescribed increments and loads for a step of dt. */
@@ -110,9 +146,10 @@ static PetscErrorCode Prepare(Model *m, PetscReal dt, StepProblem *p)
   PetscCall(PetscArrayzero(m->prescribed, dofs));
   boundary_increments(m->boundary, m->grid, m->time, m->time + dt, m->prescribed);
   if (dynamic) set_boundary_kinematics(m, dt);
+  if (dynamic) PetscCall(HoldConstraints(m, dt));
   PetscCall(PetscArrayzero(m->du, dofs));
   for (PetscInt node = 0; node < m->grid->n_nodes; ++node) {
-    if (!m->stage->touched[node]) continue;
+    if (!m->stage->touched[node] || (m->grid->cloud && cloud_is_twin(m->grid, node))) continue;
     for (PetscInt d = 0, i = node * dim; d < dim; ++d, ++i) {
       m->history[i] = (dynamic ? newmark_history(&newmark, m->stage->v[i], m->stage->a[i]) : 0) - g[d];
       m->du[i] = dynamic ? newmark_guess(&newmark, m->stage->v[i], m->stage->a[i]) : 0;
@@ -125,6 +162,7 @@ static PetscErrorCode Prepare(Model *m, PetscReal dt, StepProblem *p)
     .grid = m->grid,
     .system = m->system,
     .formulation = m->formulation,
+    .constraints = m->stage->constraints,
     .in = weak_form_of(m, dynamic ? newmark_inertia(&newmark) : 0),
     .fixed = m->fixed,
     .prescribed = m->prescribed,
@@ -136,8 +174,19 @@ static PetscErrorCode Prepare(Model *m, PetscReal dt, StepProblem *p)
     .idle = m->idle,
   };
   pressure_guess(m);
+  if (m->stage->constraints) m->stage->constraints->scale = constraint_scale(m, p->in.inertia);
   PetscCall(ForceScales(m, g, dt, &p->weight, &p->inertia));
   PetscFunctionReturn(0);
+}
+
+/* Where a constraint holds a node, its multiplier is the force there. */
+static void set_multipliers(Model *m)
+{
+  const Constraints *c = m->stage->constraints;
+  for (PetscInt k = 0; c && k < c->n; ++k)
+    for (PetscInt d = 0; d < m->dim; ++d)
+      if (!m->fixed[c->twin[k] * m->dim + d])
+        m->force[c->at[k] * m->dim + d] = c->scale * m->du[c->twin[k] * m->dim + d];
 }
 
 /* Reactions: what the balance lacks on prescribed dofs, and the impulse that stopped the points there at the start of the step. */
@@ -169,6 +218,7 @@ static PetscErrorCode Accept(Model *m, PetscReal dt, StepReport *report)
       s->v1[i] = newmark_velocity(&newmark, s->v[i], s->a[i], s->a1[i]);
     }
   s->fade = m->c->analysis.type == ANALYSIS_DYNAMIC ? 1 - PetscExpReal(-m->c->analysis.damping * dt) : 0;
+  set_multipliers(m);
   PetscCall(EnergyOfNodes(m, dt, &energy));
   store_reactions(m, dt);
   WeakFormInput in = weak_form_of(m, 0);
@@ -177,6 +227,7 @@ static PetscErrorCode Accept(Model *m, PetscReal dt, StepReport *report)
   for (PetscInt node = 0; m->pressure && node < m->grid->n_nodes; ++node)
     s->pressure[node] = m->pressure_scale * m->pressure[node];
   PetscCall(PhaseEnd(m->seconds, PHASE_COMMIT, &clock));
+  s->prescribed = m->prescribed;
   PetscCall(m->method->convect(s, m->du));
   PetscCall(PhaseEnd(m->seconds, PHASE_MOVE, &clock));
   m->time += dt;
@@ -280,6 +331,7 @@ PetscErrorCode ModelStep(Model *m, PetscReal limit, StepReport *report)
       .symmetric = m->symmetric,
       .mixed = m->formulation->pressure,
       .undetermined = m->c->mixed.stabilisation == 0 ? PETSC_TRUE : PETSC_FALSE,
+      .multipliers = m->n_constraints > 0 ? PETSC_TRUE : PETSC_FALSE,
       .idle_ranks = m->system->n_active_least ? PETSC_FALSE : PETSC_TRUE,
       .dynamic = m->c->analysis.type == ANALYSIS_DYNAMIC ? PETSC_TRUE : PETSC_FALSE,
       .courant = m->courant_speed * dt / m->grid->smallest,

@@ -1,86 +1,7 @@
-/* Messages between ranks: who holds a position, and the points themselves.
- *
- * Nobody knows beforehand who will write to him, so each exchange opens with PetscCommBuildTwoSided: every
- * rank names the ranks it writes to and how much, and learns who writes to it. All traffic is among
- * neighbours. */
+/* Messages between ranks: who holds a position, and the points themselves. All traffic is among neighbours. */
+#include "base/exchange.h"
 #include "points/migrate.h"
 #include "points/fields.h"
-
-/* One two-sided exchange: partners and numbers of items each way. */
-typedef struct {
-  MPI_Comm comm;
-  PetscMPIInt tag;
-  PetscMPIInt n_to, *to, n_from, *from;
-  PetscInt *to_count, *from_count;
-  PetscInt *to_start, *from_start; /* one more than the partners: where each message begins */
-} Exchange;
-
-static PetscErrorCode Offsets(PetscInt n, const PetscInt *count, PetscInt **start)
-{
-  PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(n + 1, start));
-  (*start)[0] = 0;
-  for (PetscInt i = 0; i < n; ++i) (*start)[i + 1] = (*start)[i] + count[i];
-  PetscFunctionReturn(0);
-}
-
-/* per_rank: items for each rank. On return slot[r] is the message's number, -1 if nothing goes to r. */
-static PetscErrorCode ExchangeCreate(MPI_Comm comm, PetscMPIInt size, const PetscInt *per_rank, PetscMPIInt *slot,
-                                     Exchange *e)
-{
-  PetscFunctionBeginUser;
-  PetscCall(PetscMemzero(e, sizeof *e));
-  PetscCall(PetscCommDuplicate(comm, &e->comm, &e->tag));
-  PetscCall(PetscMalloc2(size, &e->to, size, &e->to_count));
-  for (PetscMPIInt r = 0; r < size; ++r) {
-    slot[r] = per_rank[r] ? e->n_to : -1;
-    if (per_rank[r]) e->to[e->n_to] = r, e->to_count[e->n_to++] = per_rank[r];
-  }
-  PetscCall(
-    PetscCommBuildTwoSided(e->comm, 1, MPIU_INT, e->n_to, e->to, e->to_count, &e->n_from, &e->from, &e->from_count));
-  PetscCall(PetscSortMPIIntWithIntArray(e->n_from, e->from, e->from_count)); /* the same order at every run */
-  PetscCall(Offsets(e->n_to, e->to_count, &e->to_start));
-  PetscCall(Offsets(e->n_from, e->from_count, &e->from_start));
-  PetscFunctionReturn(0);
-}
-
-static PetscErrorCode ExchangeDestroy(Exchange *e)
-{
-  PetscFunctionBeginUser;
-  PetscCall(PetscFree2(e->to, e->to_count));
-  PetscCall(PetscFree(e->from));
-  PetscCall(PetscFree(e->from_count));
-  PetscCall(PetscFree(e->to_start));
-  PetscCall(PetscFree(e->from_start));
-  PetscCall(PetscCommDestroy(&e->comm));
-  PetscFunctionReturn(0);
-}
-
-/* Items of so many bytes; out in the order of the messages to, in of those from. Back: the other way round. */
-static PetscErrorCode ExchangeItems(const Exchange *e, size_t bytes, PetscBool back, char *out, char *in)
-{
-  const PetscMPIInt n_out = back ? e->n_from : e->n_to, n_in = back ? e->n_to : e->n_from;
-  const PetscMPIInt *to = back ? e->from : e->to, *from = back ? e->to : e->from;
-  const PetscInt *out_start = back ? e->from_start : e->to_start, *in_start = back ? e->to_start : e->from_start;
-  MPI_Datatype item;
-  MPI_Request *request;
-  PetscFunctionBeginUser;
-  PetscCallMPI(MPI_Type_contiguous((int)bytes, MPI_BYTE, &item));
-  PetscCallMPI(MPI_Type_commit(&item));
-  PetscCall(PetscMalloc1((size_t)(n_out + n_in), &request));
-  for (PetscMPIInt i = 0; i < n_in; ++i) {
-    PetscCallMPI(MPI_Irecv(in + bytes * (size_t)in_start[i], (int)(in_start[i + 1] - in_start[i]), item, from[i],
-                           e->tag, e->comm, request + i));
-  }
-  for (PetscMPIInt i = 0; i < n_out; ++i) {
-    PetscCallMPI(MPI_Isend(out + bytes * (size_t)out_start[i], (int)(out_start[i + 1] - out_start[i]), item, to[i],
-                           e->tag, e->comm, request + n_in + i));
-  }
-  PetscCallMPI(MPI_Waitall(n_out + n_in, request, MPI_STATUSES_IGNORE));
-  PetscCall(PetscFree(request));
-  PetscCallMPI(MPI_Type_free(&item));
-  PetscFunctionReturn(0);
-}
 
 /* Which ranks each leaver asks: rank[start[i] .. start[i+1]). */
 typedef struct {
@@ -285,5 +206,28 @@ PetscErrorCode ArrivalsUnpack(Arrivals *arrivals, Points *points, const Grid *gr
     PetscCheck(points->cell[p] >= 0, PETSC_COMM_SELF, PETSC_ERR_PLIB,
                "a point arrived that this rank had claimed, and is not here");
   }
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode PointsTransfer(Points *points, const Grid *grid, PetscMPIInt *owner)
+{
+  Leavers leavers = {0};
+  Arrivals arrivals;
+  PetscBool *drop;
+  PetscMPIInt rank;
+
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_rank(grid->comm, &rank));
+  PetscCall(PetscMalloc3(points->n, &leavers.point, points->n, &leavers.owner, points->n, &drop));
+  for (PetscInt p = 0; p < points->n; ++p) {
+    drop[p] = owner[p] != rank ? PETSC_TRUE : PETSC_FALSE;
+    if (!drop[p]) continue;
+    leavers.point[leavers.n] = p;
+    leavers.owner[leavers.n++] = owner[p];
+  }
+  PetscCall(LeaversSend(&leavers, points, grid, &arrivals));
+  PetscCall(PointsCompact(points, drop));
+  PetscCall(AppendArrivals(&arrivals, points));
+  PetscCall(PetscFree3(leavers.point, leavers.owner, drop));
   PetscFunctionReturn(0);
 }

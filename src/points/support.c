@@ -25,7 +25,7 @@ PetscErrorCode SupportDestroy(Support **support)
 static inline PetscInt grown(PetscInt needed, PetscInt capacity) { return PetscMax(needed, capacity + capacity / 2); }
 
 /* Nothing is kept: the arrays are filled anew at every step. */
-static PetscErrorCode Reserve(Support *s, PetscInt groups, PetscInt nodes, PetscInt values, PetscInt dim)
+PetscErrorCode SupportReserve(Support *s, PetscInt groups, PetscInt nodes, PetscInt values, PetscInt dim)
 {
   PetscFunctionBeginUser;
   if (groups > s->capacity_groups || !s->point_start) {
@@ -121,7 +121,7 @@ PetscErrorCode SupportFromCells(Support *support, const Points *points, const Gr
   PetscCheck(points->dim == grid->dim, PETSC_COMM_SELF, PETSC_ERR_ARG_SIZ,
              "points of %" PetscInt_FMT " dimensions in a grid of %" PetscInt_FMT, points->dim, grid->dim);
   count_groups(points, &groups, &located);
-  PetscCall(Reserve(support, groups, groups * grid->nodes_per_cell, located * grid->nodes_per_cell, grid->dim));
+  PetscCall(SupportReserve(support, groups, groups * grid->nodes_per_cell, located * grid->nodes_per_cell, grid->dim));
   support->n_groups = groups;
   support->uniform = grid->nodes_per_cell;
   fill_groups(support, points, grid, located);

@@ -3,7 +3,14 @@
  * All that a method hands to the solve. Points with the same nodes stand together in groups (a cell's points in fem and mpm, single
  * points in gmm), so that the work for a group is scattered once. */
 #pragma once
+#include "basis/cloud_support.h"
+#include "grid/neighbours.h"
 #include "points/points.h"
+
+/* Groups of local nodes: those of group g are node[start[g]] .. node[start[g + 1] - 1]. */
+typedef struct {
+  PetscInt n, *start, *node;
+} NodeGroups;
 
 typedef struct Support {
   PetscInt n_groups;
@@ -16,7 +23,44 @@ typedef struct Support {
   PetscInt uniform; /* nodes per group if it is the same for all, else 0 */
 } Support;
 
+/* Number of nodes of a group, and the shape functions of one of its points. */
+static inline PetscInt support_nodes(const Support *s, PetscInt g) { return s->node_start[g + 1] - s->node_start[g]; }
+
+static inline const PetscReal *support_N(const Support *s, PetscInt g, PetscInt p)
+{
+  return s->N + s->value_start[g] + (p - s->point_start[g]) * support_nodes(s, g);
+}
+
+/* Room for so many groups, their nodes and values; what is there is lost. */
+PetscErrorCode SupportReserve(Support *support, PetscInt groups, PetscInt nodes, PetscInt values, PetscInt dim);
 PetscErrorCode SupportCreate(Support **support);
 PetscErrorCode SupportDestroy(Support **support);
 /* Cells as groups: points must be sorted by cell and located (xi known). Uses grid->x. */
+/* How clouds are chosen and what stands in them. */
+typedef struct {
+  CloudBasis basis;
+  CloudSupport support;
+  PetscReal h; /* m: unit of their lengths */
+} CloudRule;
+
+/* How it went, over the points of one call. */
+typedef struct {
+  PetscInt level[SUPPORT_EMPTY + 1]; /* points of each level */
+  PetscInt nodes;                    /* of all clouds together */
+} CloudTally;
+
+/* A cloud for each point, as a group of its own; nodes are numbered as in `nodes` and ascend. Points without a node near have an empty
+ * group. */
+PetscErrorCode SupportFromClouds(Support *support, const Points *points, const Neighbours *nodes, const CloudRule *rule,
+                                 CloudTally *tally);
+/* The same for n positions x (n x dim), F = 1. */
+PetscErrorCode SupportFromPositions(Support *support, PetscInt n, const PetscReal *x, const Neighbours *nodes,
+                                    const CloudRule *rule, CloudTally *tally);
+/* Shape functions of a cloud among touched nodes only, scaled to sum to one (room for CLOUD_MAX_NODES); PETSC_FALSE if there is none. */
+PetscBool support_touched(const Support *support, PetscInt group, const unsigned char *touched, PetscReal *N);
+/* The cloud of one position: node and N have room for CLOUD_MAX_NODES, dN for dim times that; returns the number of nodes. F: its
+ * deformation gradient, or NULL. */
+PetscInt cloud_at(const Neighbours *nodes, const CloudRule *rule, const PetscReal *x, const PetscReal *F,
+                  PetscInt *node, PetscReal *N, PetscReal *dN, CloudTally *tally);
+
 PetscErrorCode SupportFromCells(Support *support, const Points *points, const Grid *grid);

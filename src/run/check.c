@@ -60,6 +60,8 @@ static PetscErrorCode CountGaps(const Model *m, PetscInt body, PetscInt *gaps)
   PetscBool *filled;
 
   PetscFunctionBeginUser;
+  *gaps = 0;
+  if (m->grid->cloud) PetscFunctionReturn(0); /* no cells, no gaps */
   PetscCall(PetscCalloc1(m->grid->n_cells, &filled));
   for (PetscInt p = 0; p < m->points->n; ++p) filled[m->points->cell[p]] = PETSC_TRUE;
   for (PetscInt c = 0; spec->has_shape && c < m->grid->n_cells; ++c) {
@@ -109,7 +111,7 @@ static PetscErrorCode ReportBodies(const Model *m, Diag *diag, FILE *out)
 /* Bytes per rank, roughly: points, support, matrix, and the factor of a direct solver by nested dissection's growth. */
 static PetscReal estimated_memory(const Model *m, PetscInt points, PetscInt unknowns, PetscInt pairs)
 {
-  const PetscReal dim = (PetscReal)m->dim, nn = (PetscReal)m->grid->nodes_per_cell,
+  const PetscReal dim = (PetscReal)m->dim, nn = m->grid->cloud ? 14 : (PetscReal)m->grid->nodes_per_cell,
                   n = (PetscReal)PetscMax(unknowns, 2), block = (PetscReal)m->system->block;
   PetscReal per_point = 24 + 8 * nn * (1 + dim);
   for (PetscInt f = 0; f < POINT_N_REAL; ++f) per_point += 8 * (PetscReal)m->points->components[f];
@@ -129,6 +131,18 @@ static const char *corner(PetscInt dim, const PetscReal *x, char text[80])
   return text;
 }
 
+/* How large clouds are, and how many are not what the rule aims at. */
+static PetscErrorCode ReportClouds(const Model *m, FILE *out)
+{
+  const Support *w = m->stage->support;
+  PetscInt local[2] = {w->n_groups, w->n_groups ? w->node_start[w->n_groups] : 0}, all[2];
+
+  PetscFunctionBeginUser;
+  PetscCall(MPIU_Allreduce(local, all, 2, MPIU_INT, MPI_SUM, m->comm));
+  say(m, out, "# the cloud\n#   %.1f nodes carry a point on average\n", (double)all[1] / (double)PetscMax(all[0], 1));
+  PetscFunctionReturn(0);
+}
+
 static PetscErrorCode ReportSizes(Model *m, FILE *out)
 {
   PetscInt points, pairs, all_pairs;
@@ -140,6 +154,7 @@ static PetscErrorCode ReportSizes(Model *m, FILE *out)
   pairs = m->system->row_start[m->system->n_rows];
   PetscCall(MPIU_Allreduce(&pairs, &all_pairs, 1, MPIU_INT, MPI_SUM, m->comm));
   const PetscInt unknowns = m->system->n_active_global * m->system->block;
+  if (m->grid->cloud) PetscCall(ReportClouds(m, out));
   say(m, out, "# the model\n#   grid: %d cells (%s), %d nodes, from %s to %s m\n", (int)m->grid->n_cells_global,
       cells[m->grid->type].name, (int)m->grid->n_nodes_global, corner(m->dim, m->grid->min, from),
       corner(m->dim, m->grid->max, to));

@@ -1,6 +1,7 @@
 #include "run/output.h"
 #include <unistd.h>
 #include "case/fields.h"
+#include "grid/cloud.h"
 #include "io/vtk.h"
 
 #define MAX_FIELDS 32
@@ -158,13 +159,16 @@ static PetscErrorCode NodalDisplacement(const Output *o, const Model *m, PetscRe
   const Support *w = m->stage->support;
 
   PetscFunctionBeginUser;
-  for (PetscInt i = 0; i < dofs; ++i) u[i] = m->method->points_move ? 0 : m->grid->x[i] - o->x0[i];
+  const PetscReal *x0 = m->grid->cloud ? m->grid->cloud->x0 : o->x0;
+  for (PetscInt i = 0; i < dofs; ++i) u[i] = m->method->points_move ? 0 : m->grid->x[i] - x0[i];
   if (!m->method->points_move) PetscFunctionReturn(0);
-  for (PetscInt g = 0, nn = w->uniform; g < w->n_groups; ++g)
+  for (PetscInt g = 0; g < w->n_groups; ++g) {
+    const PetscInt nn = support_nodes(w, g), *node = w->node + w->node_start[g];
     for (PetscInt p = w->point_start[g]; p < w->point_start[g + 1]; ++p)
       for (PetscInt i = 0; i < nn * dim; ++i)
-        u[w->node[g * nn + i / dim] * dim + i % dim] +=
-          w->N[p * nn + i / dim] * m->points->real[POINT_MASS][p] * point_real(m->points, POINT_U, p)[i % dim];
+        u[node[i / dim] * dim + i % dim] +=
+          support_N(w, g, p)[i / dim] * m->points->real[POINT_MASS][p] * point_real(m->points, POINT_U, p)[i % dim];
+  }
   PetscCall(GridSumToOwners(m->grid, dim, u));
   PetscCall(GridToGhosts(m->grid, dim, u));
   for (PetscInt i = 0; i < dofs; ++i) u[i] = m->stage->mass[i / dim] > 1e-300 ? u[i] / m->stage->mass[i / dim] : 0;
@@ -192,6 +196,28 @@ static PetscErrorCode GridField(const Output *o, const Model *m, const OutputFie
   PetscFunctionReturn(0);
 }
 
+/* Nodes of a cloud, each on its owner, as vertices. */
+static PetscErrorCode WriteCloud(const Grid *grid, VtkData *vtk, PetscInt n, VtkField *fields)
+{
+  PetscInt kept = 0;
+
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < grid->n_owned; ++i) {
+    if (cloud_is_twin(grid, i)) continue;
+    PetscCall(PetscArraymove((PetscReal *)vtk->x + 3 * kept, vtk->x + 3 * i, 3));
+    for (PetscInt f = 0; f < n; ++f) {
+      const PetscInt k = fields[f].components;
+      PetscCall(PetscArraymove((PetscReal *)fields[f].data + k * kept, fields[f].data + k * i, k));
+    }
+    ++kept;
+  }
+  vtk->n_points = vtk->n_cells = kept;
+  vtk->connectivity = NULL;
+  vtk->nodes_per_cell = 1;
+  vtk->vtk_type = 1;
+  PetscFunctionReturn(0);
+}
+
 static PetscErrorCode WriteGrid(Output *o, Model *m, PetscBool *ok, char reason[256])
 {
   const Grid *grid = m->grid;
@@ -209,15 +235,16 @@ static PetscErrorCode WriteGrid(Output *o, Model *m, PetscBool *ok, char reason[
     fields[n] = (VtkField){.name = f->name, .unit = f->unit, .components = f->components, .data = data[n]};
     ++n;
   }
-  const VtkData vtk = {.n_points = grid->n_nodes,
-                       .x = x,
-                       .n_cells = grid->n_cells,
-                       .connectivity = grid->cell_node,
-                       .nodes_per_cell = grid->nodes_per_cell,
-                       .vtk_type = cells[grid->type].vtk_type,
-                       .n_point_fields = n,
-                       .point_fields = fields,
-                       .time = m->time};
+  VtkData vtk = {.n_points = grid->n_nodes,
+                 .x = x,
+                 .n_cells = grid->n_cells,
+                 .connectivity = grid->cell_node,
+                 .nodes_per_cell = grid->nodes_per_cell,
+                 .vtk_type = cells[grid->type].vtk_type,
+                 .n_point_fields = n,
+                 .point_fields = fields,
+                 .time = m->time};
+  if (grid->cloud) PetscCall(WriteCloud(grid, &vtk, n, fields));
   PetscCall(WriteState(o, m->comm, "grid", &vtk, ok, reason));
   for (PetscInt f = 0; f < n; ++f) PetscCall(PetscFree(data[f]));
   PetscCall(PetscFree(x));

@@ -15,6 +15,19 @@ static PetscErrorCode UseDirect(KSP ksp, PetscBool symmetric, const char **what)
   PetscFunctionReturn(0);
 }
 
+/* Rows of multipliers have no diagonal, so their pivots come late, and the factor outgrows the estimate of the analysis. */
+static PetscErrorCode LeaveRoomForPivots(KSP ksp)
+{
+  PC pc;
+  Mat factor;
+  PetscFunctionBeginUser;
+  PetscCall(KSPGetPC(ksp, &pc));
+  PetscCall(PCFactorSetUpMatSolverType(pc));
+  PetscCall(PCFactorGetMatrix(pc, &factor));
+  PetscCall(MatMumpsSetIcntl(factor, 14, 300)); /* percent */
+  PetscFunctionReturn(0);
+}
+
 /* The mass dominates: a cheap preconditioner on each rank's part, and as few bytes as possible. Symmetric Gauss-Seidel by Eisenstat's
  * trick costs no more than the product with the matrix, needs no set-up and cannot be indefinite, as incomplete factorisations can. */
 static PetscErrorCode UseBlocks(KSP ksp, const LinearProblem *p, const char **what)
@@ -108,7 +121,7 @@ static PetscBool direct_pays(const LinearProblem *p)
 
 static PetscBool takes_direct(const LinearProblem *p)
 {
-  return p->choice == LINEAR_DIRECT || (p->choice == LINEAR_AUTO && direct_pays(p)) ? PETSC_TRUE : PETSC_FALSE;
+  return p->choice == LINEAR_DIRECT || p->multipliers || (p->choice == LINEAR_AUTO && direct_pays(p)) ? PETSC_TRUE : PETSC_FALSE;
 }
 
 PetscErrorCode LinearForm(const LinearProblem *p, SystemForm *form)
@@ -133,6 +146,7 @@ PetscErrorCode LinearConfigure(KSP ksp, const LinearProblem *p, PetscBool *direc
   *direct = takes_direct(p);
   if (*direct) PetscCall(UseDirect(ksp, p->symmetric, what));
   if (*direct && p->mixed) PetscCall(PrepareSaddlePoint(ksp, p->undetermined));
+  if (p->multipliers) PetscCall(LeaveRoomForPivots(ksp));
   if (*direct) PetscFunctionReturn(0);
   if (p->mixed) { /* saddle.c does the rest */
     *what = "GMRES, Schur complement, algebraic multigrid";

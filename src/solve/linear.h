@@ -14,6 +14,7 @@ typedef struct {
   PetscBool mixed;        /* is the last unknown of every block a pressure? */
   PetscBool undetermined; /* mixed without stabilisation: some pressures may be anything */
   PetscBool idle_ranks;   /* does a rank hold no unknowns? */
+  PetscBool multipliers;  /* are there constraints? then the matrix is not definite */
   PetscReal courant;      /* wave speed * dt / h */
 } LinearProblem;
 

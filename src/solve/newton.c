@@ -127,6 +127,8 @@ static PetscErrorCode Assemble(Newton *n, PetscBool tangent)
   p->in.pressure = p->pressure;
   p->in.fixed = p->fixed;
   PetscCall(p->formulation->assemble(&p->in, &out));
+  if (p->constraints)
+    constraints_assemble(p->constraints, p->du, p->prescribed, p->fixed, p->in.lift, out.force, out.values);
   PetscInt status = (PetscInt)out.status, worst;
   PetscCall(MPIU_Allreduce(&status, &worst, 1, MPIU_INT, MPI_MAX, n->comm));
   n->report->status = (LawStatus)worst;
@@ -339,7 +341,7 @@ static PetscErrorCode NewtonSetUp(Newton *n, StepProblem *p, const LinearProblem
   PetscCall(SNESLineSearchSetType(search, SNESLINESEARCHSHELL));
   PetscCall(SNESLineSearchShellSetUserFunc(search, LineSearchDescend, &n->search));
   PetscCall(SNESGetKSP(n->snes, &ksp));
-  PetscCall(KSPSetOperators(ksp, p->system->matrix, p->system->matrix));
+  PetscCall(KSPSetOperators(ksp, p->system->matrix, p->system->matrix)); /* some choices ask for the matrix at once */
   PetscCall(LinearConfigure(ksp, &chosen, &n->direct, &n->linear));
   if (chosen.mixed && !n->direct) PetscCall(SaddleConfigure(&n->saddle, ksp, p->system, p->grid, chosen.dynamic));
   PetscCall(SNESSetFromOptions(n->snes));

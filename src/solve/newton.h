@@ -5,6 +5,7 @@
 #pragma once
 #include <petscsnes.h>
 #include "formulation/formulation.h"
+#include "solve/constraints.h"
 #include "solve/linear.h"
 #include "solve/system.h"
 
@@ -15,12 +16,13 @@ typedef struct {
   const Grid *grid;
   System *system;
   const Formulation *formulation;
-  WeakFormInput in;            /* du, fixed and lift are set here by Newton */
-  const unsigned char *fixed;  /* prescribed, or on a node that no material touches */
-  const PetscReal *prescribed; /* increment of fixed dofs, m */
-  const PetscReal *external;   /* dead nodal forces, N; owners' values count */
-  PetscReal *du;               /* in: first guess; out: solution */
-  PetscReal *force;            /* out: residual with the rows of fixed dofs: reactions, on owners */
+  const Constraints *constraints; /* NULL: none */
+  WeakFormInput in;               /* du, fixed and lift are set here by Newton */
+  const unsigned char *fixed;     /* prescribed, or on a node that no material touches */
+  const PetscReal *prescribed;    /* increment of fixed dofs, m */
+  const PetscReal *external;      /* dead nodal forces, N; owners' values count */
+  PetscReal *du;                  /* in: first guess; out: solution */
+  PetscReal *force;               /* out: residual with the rows of fixed dofs: reactions, on owners */
   PetscReal *pressure; /* mixed: n_nodes, like du; m, see WeakFormInput. NULL: displacements alone, as the next two */
   PetscReal *volume;   /* mixed: n_nodes, residual of the pressure equation, N */
   const unsigned char *idle; /* mixed: n_nodes, no material touches the node: no pressure there */

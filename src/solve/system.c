@@ -64,40 +64,55 @@ static PetscErrorCode SystemNumber(System *s, const Grid *grid, PetscInt n_entri
   PetscFunctionReturn(0);
 }
 
-/* Cells around each local row: CSR of cell numbers. */
-static PetscErrorCode RowCells(const System *s, PetscInt n_cells, PetscInt nn, const PetscInt *cell_node,
-                               PetscInt **start, PetscInt **cell)
+/* Groups around each local row: CSR of group numbers. */
+static PetscErrorCode RowGroups(const System *s, const NodeGroups *groups, PetscInt **start, PetscInt **group)
 {
+  const PetscInt n = groups->start[groups->n];
+
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc1(s->n_rows + 1, start));
-  PetscCall(PetscMalloc1(n_cells * nn, cell));
-  for (PetscInt i = 0; i < n_cells * nn; ++i) ++(*start)[s->row[cell_node[i]] + 1];
+  PetscCall(PetscMalloc1(n, group));
+  for (PetscInt i = 0; i < n; ++i) ++(*start)[s->row[groups->node[i]] + 1];
   for (PetscInt r = 0; r < s->n_rows; ++r) (*start)[r + 1] += (*start)[r];
-  for (PetscInt i = 0; i < n_cells * nn; ++i) (*cell)[(*start)[s->row[cell_node[i]]]++] = i / nn;
+  for (PetscInt g = 0; g < groups->n; ++g)
+    for (PetscInt i = groups->start[g]; i < groups->start[g + 1]; ++i)
+      (*group)[(*start)[s->row[groups->node[i]]]++] = g;
   for (PetscInt r = s->n_rows; r > 0; --r) (*start)[r] = (*start)[r - 1];
   (*start)[0] = 0;
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode SystemPattern(System *s, PetscInt n_cells, PetscInt nn, const PetscInt *cell_node)
+/* Pairs of nodes in the same group, an upper bound of the number of columns. */
+static PetscInt count_pairs(const NodeGroups *groups)
 {
-  PetscInt *start, *cell, *mark, *rows, size = 0;
+  PetscInt pairs = 0;
+  for (PetscInt g = 0; g < groups->n; ++g) {
+    const PetscInt nn = groups->start[g + 1] - groups->start[g];
+    pairs += nn * nn;
+  }
+  return pairs;
+}
+
+static PetscErrorCode SystemPattern(System *s, const NodeGroups *groups)
+{
+  const PetscInt n = groups->start[groups->n], bound = count_pairs(groups);
+  PetscInt *start, *group, *mark, *rows, size = 0;
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(s->n_nodes, &s->row));
   for (PetscInt i = 0; i < s->n_nodes; ++i) s->row[i] = -1;
-  for (PetscInt i = 0; i < n_cells * nn; ++i) s->row[cell_node[i]] = 0;
-  for (PetscInt k = 0; k < s->n_active; ++k) s->row[s->active[k]] = 0; /* owned, even if only others' cells hold it */
+  for (PetscInt i = 0; i < n; ++i) s->row[groups->node[i]] = 0;
+  for (PetscInt k = 0; k < s->n_active; ++k) s->row[s->active[k]] = 0; /* owned, even if only others' groups hold it */
   s->n_rows = 0;
   for (PetscInt i = 0; i < s->n_nodes; ++i)
     if (s->row[i] == 0) s->row[i] = s->n_rows++;
-  PetscCall(RowCells(s, n_cells, nn, cell_node, &start, &cell));
+  PetscCall(RowGroups(s, groups, &start, &group));
   PetscCall(PetscMalloc1(s->n_rows, &rows));
   for (PetscInt i = 0; i < s->n_nodes; ++i)
     if (s->row[i] >= 0) rows[s->row[i]] = i;
   PetscCall(PetscMalloc1(s->n_nodes, &mark));
   for (PetscInt i = 0; i < s->n_nodes; ++i) mark[i] = -1;
-  PetscCall(PetscMalloc1(n_cells * nn * nn + s->n_rows, &s->column)); /* an upper bound, trimmed below */
+  PetscCall(PetscMalloc1(bound + s->n_rows, &s->column)); /* an upper bound, trimmed below */
   PetscCall(PetscMalloc1(s->n_rows + 1, &s->row_start));
   PetscCall(PetscMalloc1(s->n_rows, &s->diagonal));
   for (PetscInt r = 0; r < s->n_rows; ++r) {
@@ -105,8 +120,8 @@ static PetscErrorCode SystemPattern(System *s, PetscInt n_cells, PetscInt nn, co
     mark[rows[r]] = r;
     s->column[size++] = rows[r];
     for (PetscInt k = start[r]; k < start[r + 1]; ++k)
-      for (PetscInt J = 0; J < nn; ++J) {
-        const PetscInt node = cell_node[cell[k] * nn + J];
+      for (PetscInt i = groups->start[group[k]]; i < groups->start[group[k] + 1]; ++i) {
+        const PetscInt node = groups->node[i];
         if (mark[node] == r) continue;
         mark[node] = r;
         s->column[size++] = node;
@@ -119,7 +134,7 @@ static PetscErrorCode SystemPattern(System *s, PetscInt n_cells, PetscInt nn, co
   PetscCall(PetscRealloc((size_t)size * sizeof(PetscInt), &s->column));
   PetscCall(PetscCalloc1(size * s->block * s->block, &s->values));
   PetscCall(PetscFree(start));
-  PetscCall(PetscFree(cell));
+  PetscCall(PetscFree(group));
   PetscCall(PetscFree(mark));
   PetscCall(PetscFree(rows));
   PetscFunctionReturn(0);
@@ -186,12 +201,12 @@ PetscErrorCode SystemUse(System *s, SystemForm form, PetscBool symmetric)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode SystemBuild(System *s, const Grid *grid, PetscInt n_cells, PetscInt nn, const PetscInt *cell_node)
+PetscErrorCode SystemBuild(System *s, const Grid *grid, const NodeGroups *groups)
 {
   PetscFunctionBeginUser;
   PetscCall(SystemFreePattern(s));
-  PetscCall(SystemNumber(s, grid, n_cells * nn, cell_node));
-  PetscCall(SystemPattern(s, n_cells, nn, cell_node));
+  PetscCall(SystemNumber(s, grid, groups->start[groups->n], groups->node));
+  PetscCall(SystemPattern(s, groups));
   ++s->builds;
   PetscFunctionReturn(0);
 }
@@ -206,25 +221,46 @@ static inline PetscInt pair_slot(const System *s, PetscInt I, PetscInt J)
   return slot;
 }
 
-PetscErrorCode SystemSlots(System *s, const Support *support)
+/* Slots of a group whose nodes ascend, by walking along each row once; a pair that the pattern lacks gets -1. Returns how many. */
+static PetscInt merge_slots(const System *s, PetscInt nn, const PetscInt *node, PetscInt *slot)
 {
-  PetscFunctionBeginUser;
-  PetscInt size = 0, e = 0;
-  for (PetscInt g = 0; g < support->n_groups; ++g) {
-    const PetscInt nn = support->node_start[g + 1] - support->node_start[g];
-    size += nn * nn;
+  PetscInt missing = 0;
+  for (PetscInt I = 0; I < nn; ++I) {
+    const PetscInt row = s->row[node[I]];
+    PetscInt k = row < 0 ? 0 : s->row_start[row];
+    const PetscInt end = row < 0 ? 0 : s->row_start[row + 1];
+    for (PetscInt J = 0; J < nn; ++J) {
+      while (k < end && s->column[k] < node[J]) ++k;
+      const PetscBool found = k < end && s->column[k] == node[J] ? PETSC_TRUE : PETSC_FALSE;
+      slot[I * nn + J] = found ? k : -1;
+      missing += !found;
+    }
   }
+  return missing;
+}
+
+PetscErrorCode SystemSlots(System *s, const Support *support, PetscBool *complete)
+{
+  PetscInt size = 0, missing = 0;
+  PetscInt *slot;
+
+  PetscFunctionBeginUser;
+  for (PetscInt g = 0; g < support->n_groups; ++g) size += support_nodes(support, g) * support_nodes(support, g);
   if (size > s->n_slots) {
     PetscCall(PetscFree(s->slot));
     s->n_slots = size + size / 4;
     PetscCall(PetscMalloc1(s->n_slots, &s->slot));
   }
+  slot = s->slot;
   for (PetscInt g = 0; g < support->n_groups; ++g) {
-    const PetscInt nn = support->node_start[g + 1] - support->node_start[g],
-                   *node = support->node + support->node_start[g];
-    for (PetscInt I = 0; I < nn; ++I)
-      for (PetscInt J = 0; J < nn; ++J) s->slot[e++] = pair_slot(s, node[I], node[J]);
+    const PetscInt nn = support_nodes(support, g), *node = support->node + support->node_start[g];
+    if (!support->uniform) missing += merge_slots(s, nn, node, slot);
+    else
+      for (PetscInt I = 0; I < nn; ++I)
+        for (PetscInt J = 0; J < nn; ++J) slot[I * nn + J] = pair_slot(s, node[I], node[J]);
+    slot += nn * nn;
   }
+  if (complete) *complete = missing ? PETSC_FALSE : PETSC_TRUE;
   PetscFunctionReturn(0);
 }
 

@@ -1,6 +1,6 @@
 /* The linear system of a step: which nodes carry unknowns, the sparse pattern, and group -> matrix slots.
  *
- * Unknowns sit on the nodes of the cells handed to SystemBuild; those that no material touches get nothing but a diagonal, so that the pattern (and the symbolic factorisation) may be padded and kept over many steps. */
+ * Unknowns sit on the nodes of the groups (cells, clouds) handed to SystemBuild; those that no material touches get nothing but a diagonal, so that the pattern (and the symbolic factorisation) may be padded and kept over many steps. */
 #pragma once
 #include <petscksp.h>
 #include "points/support.h"
@@ -31,10 +31,11 @@ typedef struct System {
 PetscErrorCode SystemCreate(MPI_Comm comm, PetscInt dim, PetscInt block, System **system);
 PetscErrorCode SystemDestroy(System **system);
 
-/* Collective. Unknowns on the nodes of the cells (n_cells x nn local nodes), coupled cell by cell. */
-PetscErrorCode SystemBuild(System *system, const Grid *grid, PetscInt n_cells, PetscInt nn, const PetscInt *cell_node);
-/* Look up the slots of every group of the support; all its nodes must carry unknowns. */
-PetscErrorCode SystemSlots(System *system, const Support *support);
+/* Collective. Unknowns on the nodes of the groups, coupled group by group. */
+PetscErrorCode SystemBuild(System *system, const Grid *grid, const NodeGroups *groups);
+/* Look up the slots of every group of the support. Cells' nodes must all carry unknowns; clouds (uniform = 0) have ascending nodes, and
+ * `complete` tells whether the pattern has all their pairs on this rank. */
+PetscErrorCode SystemSlots(System *system, const Support *support, PetscBool *complete);
 PetscErrorCode SystemZero(System *system);
 /* Zero an array of n_nodes x dim where nodes have unknowns, ghosts too. */
 PetscErrorCode SystemZeroNodes(const System *system, PetscReal *nodes);

@@ -69,7 +69,6 @@ changed "contradiction" 's/^loads/  - {on: {y: 0}, velocity: {x: 1}}\nloads/' "c
 
 # What this version cannot do
 changed "axisymmetric" 's/plane-strain/axisymmetric/' "case.yaml:2:13: error: axisymmetric kinematics are not part of this version"
-changed "meshfree" 's/method: mpm/method: gmm/' "case.yaml:3:9: error: method 'gmm' is not part of this version"
 
 # Options of PETSc
 changed "option of PETSc" '$a petsc: {pc_type: luu}' "case.yaml:16:" "PETSc refuses an option" "luu"

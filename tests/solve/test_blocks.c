@@ -41,8 +41,9 @@ static void make_pattern(Made *s, PetscReal width)
   }
   s->cells.node_start[s->cells.n_groups] = s->cells.n_groups * nn;
   CALL(SystemCreate(PETSC_COMM_WORLD, grid->dim, grid->dim, &s->system));
-  CALL(SystemBuild(s->system, grid, s->cells.n_groups, nn, s->cells.node));
-  CALL(SystemSlots(s->system, &s->cells));
+  CALL(SystemBuild(s->system, grid,
+                   &(NodeGroups){.n = s->cells.n_groups, .start = s->cells.node_start, .node = s->cells.node}));
+  CALL(SystemSlots(s->system, &s->cells, NULL));
 }
 
 /* Prescribed: x on the floor, and all of one node. */

@@ -1,0 +1,57 @@
+/* A cloud: a grid without cells, whose nodes move, change their neighbours and may change their rank.
+ *
+ * It fills the struct Grid like the other builders (owned nodes first, ghosts behind, node_sf), so that all that works on nodes works on
+ * clouds. What others keep per node follows along: they register their arrays, and a change of ghosts or owners moves the contents. */
+#pragma once
+#include "grid/grid.h"
+
+#define CLOUD_MAX_FIELDS 32
+
+/* An array of n_nodes x components that somebody else holds. */
+typedef struct {
+  PetscReal **data;
+  PetscInt components;
+  PetscBool keep; /* else only the size follows */
+} CloudField;
+
+typedef struct GridCloud {
+  PetscInt *id;        /* n_nodes: for life, whatever the ranks */
+  PetscInt first_twin; /* ids from here on are twins */
+  PetscReal *x0;       /* n_nodes x dim: positions at the start, m */
+  PetscInt n_fields;
+  CloudField field[CLOUD_MAX_FIELDS];
+  PetscMPIInt *ghost_rank; /* of each ghost: its owner, */
+  PetscInt *ghost_index;   /* and its local number there; ascending */
+  PetscInt layouts;        /* how often ghosts or owners changed */
+} GridCloud;
+
+/* Owned nodes of other ranks in this rank's box, ascending by rank and index. */
+typedef struct {
+  PetscInt n;
+  PetscMPIInt *rank;
+  PetscInt *index;
+  PetscReal *x; /* n x dim */
+} RemoteNodes;
+
+/* Collective. The cloud of the owned nodes of a mesh that are marked; where twin[node] is set it gets a twin: a second node at the same
+ * place that carries the multipliers of a constraint and never is a neighbour. */
+PetscErrorCode GridCreateCloud(const Grid *mesh, const unsigned char *marked, const unsigned char *twin, Grid **cloud);
+PetscErrorCode GridCloudDestroy(GridCloud **cloud);
+
+static inline PetscBool cloud_is_twin(const Grid *grid, PetscInt node)
+{
+  return grid->cloud->id[node] >= grid->cloud->first_twin ? PETSC_TRUE : PETSC_FALSE;
+}
+
+/* Let *data (n_nodes x components, from PetscMalloc1) follow the nodes. */
+PetscErrorCode GridCloudFollow(Grid *grid, PetscReal **data, PetscInt components, PetscBool keep);
+
+/* Collective. Nodes of others between box[0..2] and box[3..5]; twins left out. */
+PetscErrorCode GridCloudRemote(const Grid *grid, const PetscReal box[6], RemoteNodes *remote);
+PetscErrorCode GridCloudRemoteDestroy(RemoteNodes *remote);
+/* Local number of each candidate if it is a ghost already, else -1. */
+void cloud_find_ghosts(const Grid *grid, const RemoteNodes *remote, PetscInt *local);
+/* Collective. From now on the remote with use[k] are the ghosts. */
+PetscErrorCode GridCloudSetGhosts(Grid *grid, const RemoteNodes *remote, const PetscBool *use);
+/* Collective. Send every owned node to the rank owner[node]; no ghosts remain. */
+PetscErrorCode GridCloudMigrate(Grid *grid, const PetscMPIInt *owner);

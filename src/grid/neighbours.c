@@ -1,0 +1,122 @@
+#include "grid/neighbours.h"
+
+/* Bins over the bounding box; stragglers far away must not make them countless. */
+static void choose_bins(Neighbours *b, PetscInt n, const PetscReal *min, const PetscReal *max, PetscReal size)
+{
+  const PetscReal most = 4 * (PetscReal)n + 1000;
+  b->size = size;
+  for (PetscReal total = most + 1; total > most; b->size *= 1.5) {
+    total = 1;
+    for (PetscInt d = 0; d < b->dim; ++d) total *= PetscFloorReal((max[d] - min[d]) / b->size) + 1;
+    if (total <= most) break;
+  }
+  for (PetscInt d = 0; d < 3; ++d) {
+    b->origin[d] = d < b->dim ? min[d] : 0;
+    b->counts[d] = d < b->dim ? (PetscInt)((max[d] - min[d]) / b->size) + 1 : 1;
+  }
+}
+
+static inline PetscInt bin_along(const Neighbours *b, PetscInt d, PetscReal x)
+{
+  const PetscReal k = (x - b->origin[d]) / b->size;
+  return k < 0 ? 0 : k >= (PetscReal)b->counts[d] ? b->counts[d] - 1 : (PetscInt)k;
+}
+
+static inline PetscInt bin_of(const Neighbours *b, const PetscReal *x)
+{
+  PetscInt bin = 0;
+  for (PetscInt d = b->dim - 1; d >= 0; --d) bin = bin * b->counts[d] + bin_along(b, d, x[d]);
+  return bin;
+}
+
+static inline PetscBool is_taken(const unsigned char *skip, PetscInt n, PetscInt i)
+{
+  return !skip || i >= n || !skip[i] ? PETSC_TRUE : PETSC_FALSE;
+}
+
+/* Bounds of the positions taken; returns how many there are. */
+static PetscInt bounds_of(PetscInt dim, PetscInt n, PetscInt n_all, const PetscReal *at, const unsigned char *skip,
+                          PetscReal min[3], PetscReal max[3])
+{
+  PetscInt taken = 0;
+  for (PetscInt i = 0; i < n_all; ++i) {
+    if (!is_taken(skip, n, i)) continue;
+    for (PetscInt d = 0; d < dim; ++d) {
+      min[d] = taken ? PetscMin(min[d], at[i * dim + d]) : at[i * dim + d];
+      max[d] = taken ? PetscMax(max[d], at[i * dim + d]) : at[i * dim + d];
+    }
+    ++taken;
+  }
+  return taken;
+}
+
+PetscErrorCode NeighboursCreate(PetscInt dim, PetscInt n, const PetscReal *x, PetscInt n_more, const PetscReal *more,
+                                const unsigned char *skip, PetscReal size, Neighbours *b)
+{
+  PetscReal min[3] = {0, 0, 0}, max[3] = {0, 0, 0};
+  const PetscInt n_all = n + n_more;
+
+  PetscFunctionBeginUser;
+  *b = (Neighbours){.dim = dim};
+  PetscCall(PetscMalloc3(n_all, &b->item, n_all * dim, &b->x, n_all * dim, &b->at));
+  PetscCall(PetscArraycpy(b->at, x, n * dim));
+  PetscCall(PetscArraycpy(b->at + n * dim, more, n_more * dim));
+  b->n = bounds_of(dim, n, n_all, b->at, skip, min, max);
+  choose_bins(b, b->n, min, max, size);
+  const PetscInt bins = b->counts[0] * b->counts[1] * b->counts[2];
+  PetscCall(PetscCalloc1(bins + 2, &b->start));
+  PetscInt *next = b->start + 1; /* next[k]: first the start of bin k, in the end its end, the start of bin k + 1 */
+  for (PetscInt i = 0; i < n_all; ++i)
+    if (is_taken(skip, n, i)) ++next[bin_of(b, b->at + i * dim) + 1];
+  for (PetscInt k = 0; k < bins; ++k) next[k + 1] += next[k];
+  for (PetscInt i = 0; i < n_all; ++i) {
+    if (!is_taken(skip, n, i)) continue;
+    const PetscInt place = next[bin_of(b, b->at + i * dim)]++;
+    b->item[place] = i;
+    for (PetscInt d = 0; d < dim; ++d) b->x[place * dim + d] = b->at[i * dim + d];
+  }
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode NeighboursDestroy(Neighbours *b)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscFree(b->start));
+  PetscCall(PetscFree3(b->item, b->x, b->at));
+  PetscFunctionReturn(0);
+}
+
+/* Insert among n by distance, of equals the lower number first; clouds are small. If there are max already, the farthest gives way. */
+static inline PetscInt insert(PetscInt n, PetscInt max, PetscInt *item, PetscReal *distance2, PetscInt i, PetscReal d2)
+{
+  if (n == max && d2 >= distance2[n - 1]) return n;
+  PetscInt k = n == max ? n - 1 : n;
+  for (; k > 0 && (distance2[k - 1] > d2 || (distance2[k - 1] == d2 && item[k - 1] > i)); --k) {
+    item[k] = item[k - 1];
+    distance2[k] = distance2[k - 1];
+  }
+  item[k] = i;
+  distance2[k] = d2;
+  return n == max ? n : n + 1;
+}
+
+PetscInt neighbours_within(const Neighbours *b, const PetscReal *x, PetscReal radius, PetscInt max, PetscInt *item,
+                           PetscReal *distance2)
+{
+  PetscInt lo[3] = {0, 0, 0}, hi[3] = {0, 0, 0}, n = 0;
+  for (PetscInt d = 0; d < b->dim; ++d) {
+    lo[d] = bin_along(b, d, x[d] - radius);
+    hi[d] = bin_along(b, d, x[d] + radius);
+  }
+  for (PetscInt k = lo[2]; k <= hi[2]; ++k)
+    for (PetscInt j = lo[1]; j <= hi[1]; ++j) {
+      const PetscInt row = (k * b->counts[1] + j) * b->counts[0];
+      for (PetscInt e = b->start[row + lo[0]]; e < b->start[row + hi[0] + 1]; ++e) {
+        PetscReal d2 = 0;
+        for (PetscInt d = 0; d < b->dim; ++d) d2 += (b->x[e * b->dim + d] - x[d]) * (b->x[e * b->dim + d] - x[d]);
+        if (d2 >= radius * radius) continue;
+        n = insert(n, max, item, distance2, b->item[e], d2);
+      }
+    }
+  return n;
+}

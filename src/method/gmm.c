@@ -1,0 +1,213 @@
+/* Galerkin meshfree method (thesis algorithm 2): nodes and points both move with the material, and nodes keep their history as in fem.
+ * Cells give nodes and points at the start and mean nothing afterwards. */
+#include "method/gmm.h"
+
+static void choose_rule(const Stage *s, Gmm *g)
+{
+  static const SupportRule rule[] = {SUPPORT_ADAPTIVE, SUPPORT_NEAREST, SUPPORT_FIXED};
+  static const CloudOrder order[] = {CLOUD_LINEAR, CLOUD_BILINEAR, CLOUD_QUADRATIC};
+  const BasisSpec *b = &s->c->basis;
+  const PetscBool mls = b->kind == BASIS_MLS ? PETSC_TRUE : PETSC_FALSE;
+  g->rule.h = s->grid->smallest;
+  g->rule.support = mls ? support_default_mls : support_default_lme;
+  g->rule.support.rule = rule[b->choice];
+  g->rule.support.radius = b->radius;
+  g->rule.support.max_radius = PetscMax(b->max_radius, b->radius);
+  g->rule.support.condition = b->condition;
+  g->rule.support.minimum = (int)b->minimum;
+  g->rule.support.gap = b->gap;
+  g->rule.basis = (CloudBasis){
+    .kind = mls ? CLOUD_MLS : CLOUD_LME,
+    .order = order[b->order],
+    .weight = b->weight == WEIGHT_CUBIC_SPLINE ? CLOUD_CUBIC_SPLINE : CLOUD_GAUSSIAN,
+    .effective_radius = b->effective_radius,
+    .gamma = b->gamma,
+  };
+  g->at_nodes = g->rule;
+  if (!mls) g->at_nodes.basis = (CloudBasis){.kind = CLOUD_MLS, .effective_radius = 1 / PetscSqrtReal(b->gamma)};
+  g->constraints =
+    b->essential == ESSENTIAL_CONSTRAINTS || (b->essential == ESSENTIAL_AUTO && mls) ? PETSC_TRUE : PETSC_FALSE;
+}
+
+static PetscErrorCode GmmStart(Stage *s)
+{
+  const PetscInt dim = s->grid->dim;
+  Gmm *g;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscNew(&s->gmm));
+  g = s->gmm;
+  choose_rule(s, g);
+  PetscCall(SupportCreate(&g->tracers));
+  PetscCall(SupportCreate(&g->carriers));
+  PetscCall(SupportCreate(&g->nodes));
+  PetscCall(ConstraintsCreate(dim, &s->constraints));
+  g->layouts = -1;
+  s->loads->support = g->carriers;
+  PetscCall(GridCloudFollow(s->grid, &s->mass, 1, PETSC_FALSE));
+  PetscCall(GridCloudFollow(s->grid, &s->v, dim, PETSC_TRUE));
+  PetscCall(GridCloudFollow(s->grid, &s->a, dim, PETSC_TRUE));
+  PetscCall(GridCloudFollow(s->grid, &s->v_points, dim, PETSC_FALSE));
+  PetscCall(GridCloudFollow(s->grid, &s->v1, dim, PETSC_FALSE));
+  PetscCall(GridCloudFollow(s->grid, &s->a1, dim, PETSC_FALSE));
+  PetscFunctionReturn(0);
+}
+
+/* A point that comes near prescribed nodes has them in its cloud at once: its velocity jumps to that of the new field. The momentum is the
+ * impulse of these nodes, so v_points becomes what their mass had before it (as where mpm's points meet prescribed nodes). */
+static PetscErrorCode BoundaryImpulse(Stage *s)
+{
+  const PetscInt dim = s->grid->dim, dofs = s->grid->n_nodes * dim;
+  const Support *w = s->support;
+  PetscReal *impulse;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscArraycpy(s->v_points, s->v, dofs));
+  PetscCall(PetscCalloc1(dofs, &impulse));
+  for (PetscInt p = 0; p < w->n_groups; ++p) {
+    const PetscInt nn = support_nodes(w, p), *node = w->node + w->node_start[p];
+    const PetscReal *N = w->N + w->value_start[p], *v = point_real(s->points, POINT_V, p);
+    for (PetscInt d = 0; d < dim; ++d) {
+      PetscReal jump = -v[d], share = 0;
+      for (PetscInt I = 0; I < nn; ++I) {
+        jump += N[I] * s->v[node[I] * dim + d];
+        if (s->boundary->fixed[node[I] * dim + d]) share += PetscAbsReal(N[I]);
+      }
+      for (PetscInt I = 0; I < nn && share > 0; ++I)
+        if (s->boundary->fixed[node[I] * dim + d])
+          impulse[node[I] * dim + d] += s->points->real[POINT_MASS][p] * jump * PetscAbsReal(N[I]) / share;
+    }
+  }
+  PetscCall(GridSumToOwners(s->grid, dim, impulse));
+  for (PetscInt i = 0; i < s->grid->n_owned * dim; ++i)
+    if (s->boundary->fixed[i] && s->mass[i / dim] != 0) s->v_points[i] -= impulse[i] / s->mass[i / dim];
+  PetscCall(PetscFree(impulse));
+  PetscFunctionReturn(0);
+}
+
+/* How much of the mass is missing that even a node at the corner of a body would have; 0: none, 1: all. */
+static PetscReal starved(const Stage *s, PetscInt node, PetscReal density)
+{
+  const PetscInt dim = s->grid->dim;
+  const PetscReal h = s->grid->smallest, corner = density * (dim == 3 ? h * h * h / 16 : h * h / 8);
+  for (PetscInt d = 0; d < dim; ++d)
+    if (s->boundary->fixed[node * dim + d]) return 0; /* held: what it would do without mass does not matter */
+  return PetscMax(0, 1 - PetscMax(0, s->mass[node]) / corner);
+}
+
+/* Where a node has hardly any mass its force still counts in full, as in cells that are not full, and the same helps: the points that reach it
+ * lump part of their mass and tie their nodes by a weak stiffness. */
+static PetscErrorCode Stabilise(Stage *s)
+{
+  const Support *w = s->support;
+  const PetscReal h = s->grid->smallest, length = s->grid->dim == 3 ? h : 1;
+
+  PetscFunctionBeginUser;
+  if (w->n_groups > s->group_capacity) {
+    PetscCall(PetscFree(s->lumping));
+    PetscCall(PetscFree(s->soft));
+    s->group_capacity = w->n_groups + w->n_groups / 4;
+    PetscCall(PetscMalloc1(s->group_capacity, &s->lumping));
+    PetscCall(PetscMalloc1(s->group_capacity, &s->soft));
+  }
+  for (PetscInt p = 0; p < w->n_groups; ++p) {
+    const Material *material = &s->materials[s->points->material[p]];
+    PetscReal lack = 0;
+    for (PetscInt i = w->node_start[p]; i < w->node_start[p + 1]; ++i)
+      lack = PetscMax(lack, starved(s, w->node[i], material->density));
+    s->lumping[p] = s->c->stabilisation.mass * lack;
+    s->soft[p] = s->c->stabilisation.stiffness * lack * material->wave_modulus * length;
+  }
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode GmmInitialise(Stage *s)
+{
+  PetscFunctionBeginUser;
+  if (!s->started) PetscCall(GmmStart(s));
+  PetscCall(GmmBalance(s));
+  PetscCall(GmmGather(s));
+  PetscCall(StageNodalMass(s));
+  if (!s->started) PetscCall(StageBodyVelocity(s));
+  s->started = PETSC_TRUE;
+  PetscCall(BoundaryImpulse(s));
+  PetscCall(Stabilise(s));
+  PetscFunctionReturn(0);
+}
+
+/* The field at node i, whose cloud is number k. */
+static PetscReal motion_of_node(const Stage *s, PetscInt i, PetscInt k, PetscInt d, const PetscReal *du)
+{
+  const Support *w = s->gmm->nodes;
+  const PetscInt dim = s->grid->dim, nn = support_nodes(w, k), *node = w->node + w->node_start[k];
+  const PetscReal *N = w->N + w->value_start[k];
+  PetscReal move = 0, sum = 0;
+  for (PetscInt I = 0; I < nn; ++I) {
+    if (!s->touched[node[I]] && !s->boundary->fixed[node[I] * dim + d]) continue;
+    move += N[I] * du[node[I] * dim + d];
+    sum += N[I];
+  }
+  return sum > 1e-12 ? move / sum : du[i * dim + d];
+}
+
+/* Prescribed components move as prescribed, nodes that nothing touches stay. All others move with the field at their place, as points do, and
+ * not with their own coefficient (as thesis algorithm 2 suggests): then nodes keep their order among points whatever a node with little mass
+ * does, and do not cross a wall on which the field vanishes. */
+static PetscErrorCode MoveNodes(Stage *s, const PetscReal *du)
+{
+  const Grid *grid = s->grid;
+  const PetscInt dim = grid->dim;
+
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0, k = -1; i < grid->n_owned; ++i) {
+    if (cloud_is_twin(grid, i)) continue;
+    ++k;
+    for (PetscInt d = 0; d < dim; ++d) {
+      PetscReal *x = &grid->x[i * dim + d];
+      if (s->boundary->fixed[i * dim + d]) *x += s->prescribed[i * dim + d];
+      else if (s->touched[i]) *x += motion_of_node(s, i, k, d, du);
+    }
+  }
+  PetscCall(GridToGhosts(grid, dim, grid->x));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode GmmConvect(Stage *s, const PetscReal *du)
+{
+  const PetscInt dofs = s->grid->n_nodes * s->grid->dim;
+
+  PetscFunctionBeginUser;
+  PetscCall(StageMoveClouds(s, s->points, s->support, du));
+  PetscCall(StageMoveClouds(s, s->tracers, s->gmm->tracers, du));
+  PetscCall(StageMoveClouds(s, s->loads->carriers, s->gmm->carriers, du));
+  PetscCall(MoveNodes(s, du));
+  for (PetscInt i = 0; i < dofs; ++i) { /* a node that nothing touched stays where it is */
+    s->v[i] = s->touched[i / s->grid->dim] || s->boundary->fixed[i] ? s->v1[i] : 0;
+    s->a[i] = s->touched[i / s->grid->dim] || s->boundary->fixed[i] ? s->a1[i] : 0;
+  }
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode GmmDestroy(Stage *s)
+{
+  Gmm *g = s->gmm;
+
+  PetscFunctionBeginUser;
+  if (!g) PetscFunctionReturn(0);
+  PetscCall(SupportDestroy(&g->tracers));
+  PetscCall(SupportDestroy(&g->carriers));
+  PetscCall(SupportDestroy(&g->nodes));
+  PetscCall(PetscFree(g->twin));
+  PetscCall(PetscFree(s->gmm));
+  PetscFunctionReturn(0);
+}
+
+const Method method_gmm = {
+  .name = "gmm",
+  .help = "Galerkin meshfree method: a cloud of nodes and points moves, without cells",
+  .points_move = PETSC_FALSE,
+  .initialise = GmmInitialise,
+  .convect = GmmConvect,
+  .destroy = GmmDestroy,
+  .couplings = GmmCouplings,
+};

@@ -1,0 +1,26 @@
+/* What gmm remembers between steps, for this room only. */
+#pragma once
+#include "method/method.h"
+
+typedef struct Gmm {
+  CloudRule rule;
+  CloudRule at_nodes;          /* at the nodes' own places: lme has no smooth values where they stand on the hull */
+  PetscBool constraints;       /* prescribed motion by multipliers? else on the nodes themselves */
+  Support *tracers, *carriers; /* clouds of points without mass */
+  Support
+    *nodes; /* clouds of owned nodes that are no twins, in their order; empty where no prescribed node is near and no
+                               * constraint needs them */
+  CloudTally tally;         /* of the material points in the last gathering, this rank */
+  PetscInt layouts;         /* state of the cloud that the arrays of this room fit */
+  PetscInt *twin;           /* n_owned: local number of the node's twin, -1 if it has none */
+  PetscInt balanced_ghosts; /* ghosts over all ranks after the last change of owners; 0: not counted yet */
+} Gmm;
+
+/* Collective. Ghosts, clouds and constraints for where nodes and points are now; touched nodes too. */
+PetscErrorCode GmmGather(Stage *stage);
+/* Collective. If clouds have grown too ragged, cut space anew and send nodes and points to their new ranks. */
+PetscErrorCode GmmBalance(Stage *stage);
+/* Collective. Do that now. */
+PetscErrorCode GmmRedistribute(Stage *stage);
+/* Collective. Groups of nodes that the next steps may couple. */
+PetscErrorCode GmmCouplings(const Stage *stage, NodeGroups *groups);

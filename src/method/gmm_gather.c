@@ -1,0 +1,295 @@
+/* Phase a of gmm: which nodes each point has now, over all ranks. */
+#include "method/gmm.h"
+
+#define SHARE 0.1 /* of a constrained node in the field at its place, at least */
+#define SKIN 1.15 /* ghosts and couplings are kept for clouds so much wider, so that they serve several steps */
+
+/* Nodes as this rank sees them while it searches: owned ones by their numbers, remote of other ranks behind. */
+typedef struct {
+  RemoteNodes remote;
+  Neighbours nodes;
+  PetscInt *ghost; /* per candidate: local number, -1 if it is no ghost yet */
+  PetscBool *use;  /* per candidate: does a cloud need it? */
+} Search;
+
+static PetscReal reach_of(const Gmm *g)
+{
+  return SKIN * g->rule.h * PetscMax(g->rule.support.radius, g->rule.support.max_radius);
+}
+
+static void widen_box(PetscInt dim, PetscInt n, const PetscReal *x, PetscReal reach, PetscReal box[6])
+{
+  for (PetscInt i = 0; i < n; ++i)
+    for (PetscInt d = 0; d < dim; ++d) {
+      box[d] = PetscMin(box[d], x[i * dim + d] - reach);
+      box[3 + d] = PetscMax(box[3 + d], x[i * dim + d] + reach);
+    }
+}
+
+/* The box in which this rank's points and nodes look for nodes. */
+static void search_box(const Stage *s, PetscReal box[6])
+{
+  const PetscInt dim = s->grid->dim;
+  const PetscReal reach = reach_of(s->gmm);
+  for (int d = 0; d < 3; ++d) box[d] = PETSC_MAX_REAL, box[3 + d] = -PETSC_MAX_REAL;
+  widen_box(dim, s->points->n, s->points->real[POINT_X], reach, box);
+  widen_box(dim, s->tracers->n, s->tracers->real[POINT_X], reach, box);
+  widen_box(dim, s->loads->carriers->n, s->loads->carriers->real[POINT_X], reach, box);
+  widen_box(dim, s->grid->n_owned, s->grid->x, reach, box);
+}
+
+static PetscErrorCode SearchBegin(const Stage *s, Search *search)
+{
+  const Grid *grid = s->grid;
+  PetscReal box[6];
+  unsigned char *twin;
+
+  PetscFunctionBeginUser;
+  search_box(s, box);
+  PetscCall(GridCloudRemote(grid, box, &search->remote));
+  const PetscInt n = search->remote.n;
+  PetscCall(PetscMalloc1(grid->n_owned, &twin));
+  for (PetscInt i = 0; i < grid->n_owned; ++i) twin[i] = cloud_is_twin(grid, i);
+  PetscCall(NeighboursCreate(grid->dim, grid->n_owned, grid->x, n, search->remote.x, twin,
+                             s->gmm->rule.support.radius * s->gmm->rule.h, &search->nodes));
+  PetscCall(PetscFree(twin));
+  PetscCall(PetscMalloc1(n, &search->ghost));
+  PetscCall(PetscCalloc1(n, &search->use));
+  cloud_find_ghosts(grid, &search->remote, search->ghost);
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode SearchEnd(Search *search)
+{
+  PetscFunctionBeginUser;
+  PetscCall(NeighboursDestroy(&search->nodes));
+  PetscCall(GridCloudRemoteDestroy(&search->remote));
+  PetscCall(PetscFree(search->ghost));
+  PetscCall(PetscFree(search->use));
+  PetscFunctionReturn(0);
+}
+
+static void mark_used(const Stage *s, Search *search, PetscInt n, const PetscInt *node)
+{
+  for (PetscInt i = 0; i < n; ++i)
+    if (node[i] >= s->grid->n_owned) search->use[node[i] - s->grid->n_owned] = PETSC_TRUE;
+}
+
+static void rename_nodes(const Stage *s, const Search *search, PetscInt n, PetscInt *node)
+{
+  for (PetscInt i = 0; i < n; ++i)
+    if (node[i] >= s->grid->n_owned) node[i] = search->ghost[node[i] - s->grid->n_owned];
+}
+
+/* All lists of nodes found by this search. */
+typedef struct {
+  PetscInt n[5], *node[5];
+} Lists;
+
+static Lists lists_of(const Stage *s)
+{
+  const Support *w[4] = {s->support, s->gmm->tracers, s->gmm->carriers, s->gmm->nodes};
+  Lists l;
+  for (int k = 0; k < 4; ++k) {
+    l.n[k] = w[k]->node_start[w[k]->n_groups];
+    l.node[k] = w[k]->node;
+  }
+  l.n[4] = s->constraints->start[s->constraints->n];
+  l.node[4] = s->constraints->node;
+  return l;
+}
+
+/* New ghosts: remote in use, and those that will be soon. */
+static PetscErrorCode Relayout(Stage *s, Search *search)
+{
+  const PetscInt dim = s->grid->dim, n_owned = s->grid->n_owned;
+  const PetscReal radius = SKIN * s->gmm->rule.support.radius * s->gmm->rule.h;
+  PetscInt near[CLOUD_MAX_NODES];
+  PetscReal distance2[CLOUD_MAX_NODES];
+
+  PetscFunctionBeginUser;
+  for (PetscInt p = 0; p < s->points->n; ++p) {
+    const PetscInt n =
+      neighbours_within(&search->nodes, s->points->real[POINT_X] + p * dim, radius, CLOUD_MAX_NODES, near, distance2);
+    mark_used(s, search, n, near);
+  }
+  PetscCall(GridCloudSetGhosts(s->grid, &search->remote, search->use));
+  for (PetscInt k = 0, g = n_owned; k < search->remote.n; ++k) search->ghost[k] = search->use[k] ? g++ : -1;
+  PetscFunctionReturn(0);
+}
+
+/* After ghosts or owners changed: arrays that do not follow by themselves. */
+static PetscErrorCode Follow(Stage *s)
+{
+  const Grid *grid = s->grid;
+  Gmm *g = s->gmm;
+  PetscInt *id;
+  PetscInt *order;
+
+  PetscFunctionBeginUser;
+  if (g->layouts == grid->cloud->layouts) PetscFunctionReturn(0);
+  g->layouts = grid->cloud->layouts;
+  PetscCall(BoundaryFollow(s->boundary, grid));
+  PetscCall(PetscFree(s->touched));
+  PetscCall(PetscFree(s->dof));
+  PetscCall(PetscFree(g->twin));
+  PetscCall(PetscCalloc1(grid->n_nodes, &s->touched));
+  if (g->constraints) PetscCall(PetscCalloc1(grid->n_nodes * grid->dim, &s->dof));
+  PetscCall(PetscMalloc1(grid->n_owned, &g->twin));
+  PetscCall(PetscMalloc2(grid->n_owned, &id, grid->n_owned, &order));
+  for (PetscInt i = 0; i < grid->n_owned; ++i) {
+    id[i] = grid->cloud->id[i];
+    order[i] = i;
+    g->twin[i] = -1;
+  }
+  PetscCall(PetscSortIntWithArray(grid->n_owned, id, order));
+  for (PetscInt i = 0, k = 0; i < grid->n_owned; ++i) { /* twins stand last, in the order of their nodes */
+    if (id[i] < grid->cloud->first_twin) continue;
+    while (id[k] < id[i] - grid->cloud->first_twin) ++k;
+    g->twin[order[k]] = order[i];
+  }
+  PetscCall(PetscFree2(id, order));
+  PetscFunctionReturn(0);
+}
+
+/* The field at the places of nodes: it moves those near prescribed ones, and is held where a node has a twin. */
+static PetscErrorCode GatherNodes(Stage *s, const Search *search)
+{
+  const Grid *grid = s->grid;
+  const Support *w = s->gmm->nodes;
+  CloudTally ignored = {.nodes = 0};
+  PetscReal *x;
+  PetscInt n = 0;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(grid->n_owned * grid->dim, &x));
+  for (PetscInt i = 0; i < grid->n_owned; ++i)
+    if (!cloud_is_twin(grid, i)) {
+      for (PetscInt d = 0; d < grid->dim; ++d) x[n * grid->dim + d] = grid->x[i * grid->dim + d];
+      ++n;
+    }
+  PetscCall(SupportFromPositions(s->gmm->nodes, n, x, &search->nodes, &s->gmm->at_nodes, &ignored));
+  PetscCall(PetscFree(x));
+  constraints_clear(s->constraints);
+  for (PetscInt i = 0, k = -1; i < grid->n_owned; ++i) {
+    if (cloud_is_twin(grid, i)) continue;
+    ++k;
+    if (s->gmm->twin[i] >= 0)
+      PetscCall(ConstraintsAdd(s->constraints, i, s->gmm->twin[i], support_nodes(w, k), w->node + w->node_start[k],
+                               w->N + w->value_start[k]));
+  }
+  PetscFunctionReturn(0);
+}
+
+/* Share of the node in the field at its own place. */
+static PetscReal own_share(const Constraints *c, PetscInt k)
+{
+  for (PetscInt i = c->start[k]; i < c->start[k + 1]; ++i)
+    if (c->node[i] == c->at[k]) return c->N[i];
+  return 0;
+}
+
+/* Constraints act where material reaches the node; elsewhere it moves as prescribed by itself. So it does where other nodes crowd it: its
+ * coefficient, with a small share in the field, would have to be huge. */
+static PetscErrorCode Release(Stage *s)
+{
+  const PetscInt dim = s->grid->dim;
+  const Constraints *c = s->constraints;
+  PetscReal *state;
+
+  PetscFunctionBeginUser;
+  if (!s->gmm->constraints) PetscFunctionReturn(0);
+  PetscCall(PetscCalloc1(s->grid->n_nodes * dim, &state));
+  for (PetscInt k = 0; k < c->n; ++k) {
+    const PetscBool active = s->touched[c->at[k]] && own_share(c, k) > SHARE ? PETSC_TRUE : PETSC_FALSE;
+    s->touched[c->twin[k]] = active;
+    for (PetscInt d = 0; d < dim; ++d) {
+      const PetscBool held = s->boundary->fixed[c->at[k] * dim + d] ? PETSC_TRUE : PETSC_FALSE;
+      state[c->at[k] * dim + d] = active && held ? DOF_RELEASED : DOF_USUAL;
+      state[c->twin[k] * dim + d] = held ? DOF_USUAL : DOF_UNUSED;
+    }
+  }
+  PetscCall(GridToGhosts(s->grid, dim, state));
+  for (PetscInt i = 0; i < s->grid->n_nodes * dim; ++i) s->dof[i] = (unsigned char)state[i];
+  PetscCall(PetscFree(state));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode GmmGather(Stage *s)
+{
+  Gmm *g = s->gmm;
+  Search search;
+  CloudTally ignored = {.nodes = 0};
+  PetscBool missing = PETSC_FALSE, any;
+
+  PetscFunctionBeginUser;
+  PetscCall(Follow(s));
+  PetscCall(SearchBegin(s, &search));
+  g->tally = (CloudTally){.nodes = 0};
+  PetscCall(SupportFromClouds(s->support, s->points, &search.nodes, &g->rule, &g->tally));
+  PetscCall(SupportFromClouds(g->tracers, s->tracers, &search.nodes, &g->rule, &ignored));
+  PetscCall(SupportFromClouds(g->carriers, s->loads->carriers, &search.nodes, &g->rule, &ignored));
+  PetscCall(GatherNodes(s, &search));
+  const Lists lists = lists_of(s);
+  for (int k = 0; k < 5; ++k) mark_used(s, &search, lists.n[k], lists.node[k]);
+  for (PetscInt k = 0; k < search.remote.n; ++k)
+    if (search.use[k] && search.ghost[k] < 0) missing = PETSC_TRUE;
+  PetscCallMPI(MPI_Allreduce(&missing, &any, 1, MPIU_BOOL, MPI_LOR, s->grid->comm));
+  if (any) PetscCall(Relayout(s, &search));
+  for (int k = 0; k < 5; ++k) rename_nodes(s, &search, lists.n[k], lists.node[k]);
+  PetscCall(SearchEnd(&search));
+  PetscCall(Follow(s));
+  PetscCall(StageTouch(s));
+  PetscCall(Release(s));
+  PetscFunctionReturn(0);
+}
+
+/* The nodes of the wider cloud of a point and of its present one, ascending. */
+static PetscErrorCode AddGroup(NodeGroups *groups, PetscInt *capacity, PetscInt n, const PetscInt *near, PetscInt n_now,
+                               const PetscInt *now)
+{
+  PetscInt first, total;
+
+  PetscFunctionBeginUser;
+  first = groups->start[groups->n];
+  if (first + n + n_now > *capacity) {
+    *capacity += *capacity / 2 + n + n_now;
+    PetscCall(PetscRealloc((size_t)*capacity * sizeof *groups->node, &groups->node));
+  }
+  PetscCall(PetscArraycpy(groups->node + first, near, n));
+  PetscCall(PetscArraycpy(groups->node + first + n, now, n_now));
+  total = n + n_now;
+  PetscCall(PetscSortRemoveDupsInt(&total, groups->node + first));
+  groups->start[++groups->n] = first + total;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode GmmCouplings(const Stage *s, NodeGroups *groups)
+{
+  const Grid *grid = s->grid;
+  const Support *w = s->support;
+  const Constraints *c = s->constraints;
+  const PetscReal radius = SKIN * s->gmm->rule.support.radius * s->gmm->rule.h;
+  PetscInt near[CLOUD_MAX_NODES], capacity = 16 * (w->n_groups + c->n);
+  PetscReal distance2[CLOUD_MAX_NODES];
+  unsigned char *twin;
+  Neighbours nodes;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(grid->n_nodes, &twin));
+  for (PetscInt i = 0; i < grid->n_nodes; ++i) twin[i] = cloud_is_twin(grid, i);
+  PetscCall(NeighboursCreate(grid->dim, grid->n_nodes, grid->x, 0, NULL, twin, radius, &nodes));
+  PetscCall(PetscFree(twin));
+  *groups = (NodeGroups){0};
+  PetscCall(PetscCalloc1(w->n_groups + c->n + 1, &groups->start));
+  PetscCall(PetscMalloc1(capacity, &groups->node));
+  for (PetscInt p = 0; p < w->n_groups; ++p) {
+    const PetscInt n =
+      neighbours_within(&nodes, point_real(s->points, POINT_X, p), radius, CLOUD_MAX_NODES, near, distance2);
+    PetscCall(AddGroup(groups, &capacity, n, near, support_nodes(w, p), w->node + w->node_start[p]));
+  }
+  for (PetscInt k = 0; k < c->n; ++k)
+    PetscCall(AddGroup(groups, &capacity, 1, c->twin + k, c->start[k + 1] - c->start[k], c->node + c->start[k]));
+  PetscCall(NeighboursDestroy(&nodes));
+  PetscFunctionReturn(0);
+}

@@ -1,0 +1,55 @@
+/* From cells to a cloud: what gmm does once, before the first step. */
+#include "model/model_private.h"
+
+/* Nodes of cells that hold points, and nodes whose motion is prescribed: obstacles, and the body's own boundary. Owners know of all ranks' cells. */
+static PetscErrorCode MarkNodes(const Model *m, unsigned char *marked, unsigned char *twin)
+{
+  const Grid *mesh = m->grid;
+  const PetscInt nn = mesh->nodes_per_cell;
+  PetscReal *mark;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(mesh->n_nodes, &mark));
+  for (PetscInt p = 0; p < m->points->n; ++p)
+    for (PetscInt I = 0; I < nn; ++I) mark[mesh->cell_node[m->points->cell[p] * nn + I]] = 1;
+  PetscCall(GridSumToOwners(mesh, 1, mark));
+  for (PetscInt i = 0; i < mesh->n_owned; ++i) {
+    twin[i] = 0;
+    for (PetscInt d = 0; d < m->dim; ++d) twin[i] |= m->boundary->fixed[i * m->dim + d];
+    marked[i] = mark[i] > 0 || twin[i];
+  }
+  PetscCall(PetscFree(mark));
+  PetscFunctionReturn(0);
+}
+
+/* Points keep the number of the cell where they were born: it orders them in memory, and they stay together. */
+static void leave_cells(const Grid *mesh, Points *points)
+{
+  for (PetscInt p = 0; p < points->n; ++p) points->cell[p] = mesh->global_cell[points->cell[p]];
+}
+
+PetscErrorCode ModelToCloud(Model *m)
+{
+  const BasisSpec *basis = &m->c->basis;
+  Grid *cloud;
+  Boundary *boundary;
+  unsigned char *marked, *twin;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc2(m->grid->n_owned, &marked, m->grid->n_owned, &twin));
+  PetscCall(MarkNodes(m, marked, twin));
+  if (basis->essential == ESSENTIAL_DIRECT || (basis->essential == ESSENTIAL_AUTO && basis->kind == BASIS_LME))
+    PetscCall(PetscArrayzero(twin, m->grid->n_owned));
+  PetscCall(LoadsLeaveCells(m->loads, m->grid, m->points));
+  PetscCall(GridCreateCloud(m->grid, marked, twin, &cloud));
+  PetscCall(BoundaryToCloud(m->boundary, m->grid, marked, cloud, &boundary));
+  leave_cells(m->grid, m->points);
+  leave_cells(m->grid, m->tracers);
+  leave_cells(m->grid, m->loads->carriers);
+  PetscCall(PetscFree2(marked, twin));
+  PetscCall(BoundaryDestroy(&m->boundary));
+  PetscCall(GridDestroy(&m->grid));
+  m->boundary = boundary;
+  m->grid = cloud;
+  PetscFunctionReturn(0);
+}

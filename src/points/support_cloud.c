@@ -1,0 +1,154 @@
+/* Support of points that each have a cloud of nodes. */
+#include "base/tensor.h"
+#include "points/support.h"
+
+/* F^-T F^-1, dim x dim; PETSC_FALSE where F has lost all meaning. */
+static PetscBool metric_of(PetscInt dim, const PetscReal *F, PetscReal *metric)
+{
+  PetscReal inverse[9], sum = 0;
+  tensor_inverse(F, inverse);
+  for (PetscInt i = 0; i < dim; ++i)
+    for (PetscInt j = 0; j < dim; ++j) {
+      metric[i * dim + j] = 0;
+      for (PetscInt k = 0; k < dim; ++k) metric[i * dim + j] += inverse[3 * k + i] * inverse[3 * k + j];
+      sum += metric[i * dim + j];
+    }
+  return PetscIsInfOrNanReal(sum) ? PETSC_FALSE : PETSC_TRUE;
+}
+
+/* Ascending nodes, with the values that belong to them. */
+static void sort_cloud(PetscInt dim, PetscInt n, PetscInt *node, PetscReal *N, PetscReal *dN)
+{
+  for (PetscInt i = 1; i < n; ++i) {
+    const PetscInt key = node[i];
+    PetscReal value = N[i], gradient[3];
+    PetscInt k = i;
+    for (PetscInt d = 0; d < dim; ++d) gradient[d] = dN[i * dim + d];
+    for (; k > 0 && node[k - 1] > key; --k) {
+      node[k] = node[k - 1];
+      N[k] = N[k - 1];
+      for (PetscInt d = 0; d < dim; ++d) dN[k * dim + d] = dN[(k - 1) * dim + d];
+    }
+    node[k] = key;
+    N[k] = value;
+    for (PetscInt d = 0; d < dim; ++d) dN[k * dim + d] = gradient[d];
+  }
+}
+
+/* A point and the nodes within a reach of it, nearest first. */
+typedef struct {
+  PetscInt n, place[CLOUD_MAX_NODES];
+  PetscReal X[3 * CLOUD_MAX_NODES];
+} Surroundings;
+
+static void look_around(const Neighbours *nodes, const PetscReal *x, PetscReal reach, Surroundings *s)
+{
+  const PetscInt dim = nodes->dim;
+  PetscReal distance2[CLOUD_MAX_NODES];
+  s->n = neighbours_within(nodes, x, reach, CLOUD_MAX_NODES, s->place, distance2);
+  for (PetscInt i = 0; i < s->n; ++i)
+    for (PetscInt d = 0; d < dim; ++d) s->X[i * dim + d] = nodes->at[s->place[i] * dim + d];
+}
+
+/* Do nodes beyond the radius aimed at have no part in a cloud of this radius? They have where links lead through them. */
+static PetscBool radius_is_enough(const CloudSupport *s)
+{
+  return s->rule == SUPPORT_FIXED || s->gap <= 0 || s->radius <= s->gap ? PETSC_TRUE : PETSC_FALSE;
+}
+
+PetscInt cloud_at(const Neighbours *nodes, const CloudRule *rule, const PetscReal *x, const PetscReal *F,
+                  PetscInt *node, PetscReal *N, PetscReal *dN, CloudTally *tally)
+{
+  const PetscInt dim = nodes->dim;
+  const CloudSupport *support = &rule->support;
+  PetscReal metric[9];
+  int chosen[CLOUD_MAX_NODES];
+  Surroundings s;
+  SupportReport report = {.level = SUPPORT_EMPTY};
+
+  const PetscReal *m = F && metric_of(dim, F, metric) ? metric : NULL;
+  for (int far = radius_is_enough(support) ? 0 : 1; far < 2; ++far) { /* few points need to look beyond the radius */
+    look_around(nodes, x, (far ? support->max_radius : support->radius) * rule->h, &s);
+    report = cloud_support(support, &rule->basis, (int)dim, (int)s.n, s.X, rule->h, m, x, chosen, N, dN, NULL);
+    if (report.level == SUPPORT_NOMINAL) break;
+  }
+  for (int i = 0; i < report.n; ++i) node[i] = s.place[chosen[i]];
+  sort_cloud(dim, report.n, node, N, dN);
+  ++tally->level[report.level];
+  tally->nodes += report.n;
+  return report.n;
+}
+
+/* Room for the nodes of one more point; what is there stays. */
+static PetscErrorCode Grow(Support *s, PetscInt nodes, PetscInt dim)
+{
+  PetscReal *N, *dN;
+
+  PetscFunctionBeginUser;
+  if (nodes + CLOUD_MAX_NODES <= s->capacity_nodes && nodes + CLOUD_MAX_NODES <= s->capacity_values)
+    PetscFunctionReturn(0);
+  const PetscInt capacity = nodes + nodes / 2 + 16 * CLOUD_MAX_NODES;
+  PetscCall(PetscRealloc((size_t)capacity * sizeof *s->node, &s->node));
+  PetscCall(PetscMalloc2(capacity, &N, (size_t)capacity * (size_t)dim, &dN));
+  PetscCall(PetscArraycpy(N, s->N, nodes));
+  PetscCall(PetscArraycpy(dN, s->dN, nodes * dim));
+  PetscCall(PetscFree2(s->N, s->dN));
+  s->N = N;
+  s->dN = dN;
+  s->capacity_nodes = s->capacity_values = capacity;
+  PetscFunctionReturn(0);
+}
+
+/* points: where F is found; NULL: 1 everywhere. */
+static PetscErrorCode Fill(Support *s, PetscInt n, const PetscReal *x, const Points *points, const Neighbours *nodes,
+                           const CloudRule *rule, CloudTally *tally)
+{
+  const PetscInt dim = nodes->dim;
+  PetscReal F[9];
+  PetscInt entries = 0;
+
+  PetscFunctionBeginUser;
+  PetscCall(SupportReserve(s, n, 0, 0, dim));
+  s->n_groups = n;
+  s->uniform = 0;
+  for (PetscInt p = 0; p < n; ++p) {
+    PetscCall(Grow(s, entries, dim));
+    s->point_start[p] = p;
+    s->node_start[p] = s->value_start[p] = entries;
+    if (points) point_F(points, p, F);
+    entries += cloud_at(nodes, rule, x + p * dim, points ? F : NULL, s->node + entries, s->N + entries,
+                        s->dN + entries * dim, tally);
+  }
+  s->point_start[n] = n;
+  s->node_start[n] = s->value_start[n] = entries;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode SupportFromClouds(Support *s, const Points *points, const Neighbours *nodes, const CloudRule *rule,
+                                 CloudTally *tally)
+{
+  PetscFunctionBeginUser;
+  PetscCall(Fill(s, points->n, points->real[POINT_X], points, nodes, rule, tally));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode SupportFromPositions(Support *s, PetscInt n, const PetscReal *x, const Neighbours *nodes,
+                                    const CloudRule *rule, CloudTally *tally)
+{
+  PetscFunctionBeginUser;
+  PetscCall(Fill(s, n, x, NULL, nodes, rule, tally));
+  PetscFunctionReturn(0);
+}
+
+PetscBool support_touched(const Support *s, PetscInt group, const unsigned char *touched, PetscReal *N)
+{
+  const PetscInt nn = support_nodes(s, group), *node = s->node + s->node_start[group];
+  PetscReal sum = 0;
+  for (PetscInt I = 0; I < nn; ++I) {
+    N[I] = touched[node[I]] ? s->N[s->value_start[group] + I] : 0;
+    sum += N[I];
+  }
+  if (sum <= 1e-12) return PETSC_FALSE;
+  for (PetscInt I = 0; I < nn; ++I) N[I] /= sum;
+  return PETSC_TRUE;
+}

@@ -1,0 +1,312 @@
+/* The meshfree method as a whole: uniform deformation on random clouds in both bases, constraints that hold where shape functions do not
+ * interpolate, reactions, free flight, turning, contact, and the same answers on one rank and on many, also when nodes and points change
+ * their ranks. */
+#include "case_builder.h"
+#include "method/gmm.h"
+
+static const BasisSpec usual_lme = {
+  .kind = BASIS_LME, .gamma = 1.8, .radius = 2, .max_radius = 3.5, .condition = 50, .gap = 2};
+static const BasisSpec usual_mls = {
+  .kind = BASIS_MLS, .effective_radius = 1, .radius = 2, .max_radius = 3.5, .condition = 50, .gap = 2};
+
+static void gmm_init(Bench *b, const BasisSpec *basis, CellType cell, PetscReal size)
+{
+  bench_init(b, "gmm", cell, 0);
+  bench_grid(b, (PetscReal[]){0, 0, 0}, (PetscReal[]){1, 1, 1}, size);
+  b->c.basis = *basis;
+}
+
+/* --- uniform deformation --- */
+static void affine_motion(void *context, const PetscReal *x, PetscReal t0, PetscReal t1, PetscReal *increment)
+{
+  static const PetscReal H[9] = {0.12, 0.15, -0.06, -0.08, -0.1, 0.11, 0.05, -0.09, 0.2};
+  const PetscInt dim = *(const PetscInt *)context;
+  PetscReal F0[9], F1[9], inverse[9], ratio[9];
+  for (int i = 0; i < 9; ++i) {
+    const PetscBool inside = i / 3 < dim && i % 3 < dim ? PETSC_TRUE : PETSC_FALSE;
+    F0[i] = (i % 4 == 0) + (inside ? t0 * H[i] : 0);
+    F1[i] = (i % 4 == 0) + (inside ? t1 * H[i] : 0);
+  }
+  tensor_inverse(F0, inverse);
+  tensor_multiply(F1, inverse, ratio);
+  for (PetscInt i = 0; i < dim; ++i) {
+    increment[i] = -x[i];
+    for (PetscInt j = 0; j < dim; ++j) increment[i] += ratio[3 * i + j] * x[j];
+  }
+}
+
+/* Error of F against the uniform one of time t: root of the mean square over all components and the volume. */
+static PetscReal gradient_error(const Model *m, PetscReal t)
+{
+  PetscReal sum[2] = {0, 0}, corner[3], F[9];
+  for (PetscInt p = 0; p < m->points->n; ++p) {
+    point_F(m->points, p, F);
+    for (PetscInt j = 0; j < m->dim; ++j) {
+      const PetscReal unit[3] = {j == 0, j == 1, j == 2};
+      PetscInt dim = m->dim;
+      affine_motion(&dim, unit, 0, t, corner);
+      for (PetscInt i = 0; i < m->dim; ++i)
+        sum[0] += m->points->real[POINT_VOLUME][p] * PetscSqr(F[3 * i + j] - (i == j) - corner[i]);
+    }
+    sum[1] += m->points->real[POINT_VOLUME][p];
+  }
+  CALL(MPI_Allreduce(MPI_IN_PLACE, sum, 2, MPIU_REAL, MPI_SUM, m->comm));
+  return PetscSqrtReal(sum[0] / sum[1]);
+}
+
+/* All nodes prescribed: F is exact at every point. Only the boundary prescribed: what is left is the error of quadrature with a few points. */
+static PetscReal patch(const BasisSpec *basis, CellType cell, PetscInt points_per_cell, PetscBool all)
+{
+  Bench b;
+  gmm_init(&b, basis, cell, cell >= CELL_TETRAHEDRON ? 0.25 : 0.125);
+  bench_distort(&b, 0.2, 2, (PetscReal[]){0, 1});
+  b.body[0].points_per_cell = points_per_cell;
+  MotionSpec *motion = bench_motion(&b, -1, 0, MOTION_FIXED, 7);
+  if (all) {
+    motion->on.has_shape = PETSC_TRUE;
+    motion->on.shape = (Shape){.kind = SHAPE_BOX, .min = {-1, -1, -1}, .max = {2, 2, 2}};
+  }
+  if (all) b.c.basis.essential = ESSENTIAL_DIRECT; /* linear functions have their own values as coefficients */
+  b.c.analysis.step = b.c.analysis.largest = 0.5;
+  b.c.newton.residual = 1e-10;
+  Model *m = bench_model(&b, PETSC_COMM_WORLD);
+  m->boundary->field = affine_motion;
+  m->boundary->field_context = &m->dim;
+  for (int s = 0; s < 2; ++s) CHECK(model_step(m, 1).cuts == 0, "the step was halved");
+  const PetscReal off = gradient_error(m, 1);
+  PetscPrintf(PETSC_COMM_WORLD, "%s, cell %d, %s prescribed: F off by %.3g\n", basis->kind == BASIS_LME ? "lme" : "mls",
+              (int)cell, all ? "all" : "boundary", (double)off);
+  CALL(ModelDestroy(&m));
+  bench_end(&b);
+  return off;
+}
+
+static void test_patch(void **state)
+{
+  static const BasisSpec *const bases[] = {&usual_lme, &usual_mls};
+  (void)state;
+  for (int k = 0; k < 2; ++k) {
+    static const PetscInt points[] = {3, 4, 4, 8};
+    for (CellType cell = CELL_TRIANGLE; cell <= CELL_HEXAHEDRON; ++cell)
+      CHECK(patch(bases[k], cell, points[cell], PETSC_TRUE) <= 1e-13, "F is not uniform");
+    const PetscReal few = patch(bases[k], CELL_QUADRILATERAL, 4, PETSC_FALSE);
+    const PetscReal many = patch(bases[k], CELL_QUADRILATERAL, 16, PETSC_FALSE);
+    CHECK(few <= 0.025 && many <= 0.01, "errors of quadrature %g and %g", (double)few, (double)many);
+  }
+}
+
+/* --- constraints --- */
+/* A block hangs from its upper side, which moves; wide supports, so that no node's unknown is the displacement of its place. A tracer on
+ * that side moves as prescribed, and the reaction is the weight. */
+static void hang(const BasisSpec *basis, CellType cell)
+{
+  Bench b;
+  PetscReal moved, reaction[2];
+  gmm_init(&b, basis, cell, cell >= CELL_TETRAHEDRON ? 0.25 : 0.125);
+  MotionSpec *motion = bench_motion(&b, 1, 1, MOTION_DISPLACEMENT, 7);
+  motion->value[0] = 0.03, motion->value[1] = 0.05;
+  b.c.gravity[1] = -9.81;
+  b.c.newton.residual = 1e-11;
+  bench_tracer(&b, MEASURE_DISPLACEMENT, 1, 0.5, 1, 0.5);
+  for (int d = 0; d < 2; ++d) b.measure[b.c.n_measures++] = (MeasureSpec){.kind = MEASURE_REACTION, .component = d};
+  Model *m = bench_model(&b, PETSC_COMM_WORLD);
+  CHECK(model_step(m, 1).cuts == 0, "the step was halved");
+  CALL(ModelMeasure(m, &b.measure[0], 0, &moved));
+  for (int d = 0; d < 2; ++d) CALL(ModelMeasure(m, &b.measure[1 + d], 1 + d, &reaction[d]));
+  PetscPrintf(PETSC_COMM_WORLD, "%s, cell %d: tracer off by %.3g, reaction by %.3g and %.3g\n",
+              basis->kind == BASIS_LME ? "lme" : "mls", (int)cell, (double)(moved - 0.05), (double)reaction[0] / 9810,
+              (double)reaction[1] / 9810 - 1);
+  CHECK_CLOSE(moved, 0.05, 1e-12);
+  CHECK_CLOSE(reaction[0], 0, 1e-6 * 9810);
+  CHECK_CLOSE(reaction[1], 9810, 1e-6 * 9810);
+  CALL(ModelDestroy(&m));
+}
+
+static void test_hang(void **state)
+{
+  BasisSpec lme = usual_lme;
+  (void)state;
+  lme.essential = ESSENTIAL_CONSTRAINTS;
+  for (CellType cell = CELL_TRIANGLE; cell <= CELL_HEXAHEDRON; ++cell) {
+    hang(&usual_mls, cell);
+    hang(&usual_lme, cell);
+  }
+  hang(&lme, CELL_QUADRILATERAL);
+}
+
+/* --- free bodies --- */
+/* A block that flies and spins: mass and momentum to round-off, angular momentum and energy as in fem. */
+static void fly(const BasisSpec *basis, CellType cell, PetscReal size, PetscReal bound)
+{
+  Bench b;
+  gmm_init(&b, basis, cell, size);
+  bench_box(&b, 0, (PetscReal[]){0.25, 0.25, 0.25}, (PetscReal[]){0.75, 0.75, 0.75});
+  bench_dynamic(&b, 1, 0.002);
+  b.body[0].velocity[0] = 2;
+  b.body[0].velocity[1] = -1;
+  b.body[0].spin[2] = 12;
+  b.body[0].spin_centre[0] = b.body[0].spin_centre[1] = 0.5;
+  Model *m = bench_model(&b, PETSC_COMM_WORLD);
+  const PetscReal mass = model_sum(m, MEASURE_MASS, 0),
+                  p0[2] = {model_sum(m, MEASURE_MOMENTUM, 0), model_sum(m, MEASURE_MOMENTUM, 1)};
+  const PetscReal L0 = model_sum(m, MEASURE_ANGULAR_MOMENTUM, 2), E0 = model_sum(m, MEASURE_KINETIC_ENERGY, 0);
+  PetscReal p_drift = 0;
+  while (m->time < 0.1 - 1e-9) {
+    CHECK(model_step(m, 0.002).cuts == 0, "a step was halved");
+    for (int d = 0; d < 2; ++d) p_drift = PetscMax(p_drift, PetscAbsReal(model_sum(m, MEASURE_MOMENTUM, d) - p0[d]));
+  }
+  const PetscReal L = model_sum(m, MEASURE_ANGULAR_MOMENTUM, 2) / L0 - 1;
+  const PetscReal E = (model_sum(m, MEASURE_KINETIC_ENERGY, 0) + model_sum(m, MEASURE_ELASTIC_ENERGY, 0)) / E0 - 1;
+  PetscPrintf(PETSC_COMM_WORLD, "%s, cell %d: drift of momentum %.3g, angular momentum %.3g, energy %.3g\n",
+              basis->kind == BASIS_LME ? "lme" : "mls", (int)cell, (double)(p_drift / (mass * 2)), (double)L,
+              (double)E);
+  CHECK_CLOSE(model_sum(m, MEASURE_MASS, 0), mass, 1e-14 * mass);
+  CHECK(p_drift <= bound * mass * 2, "momentum drifts by %g", (double)(p_drift / (mass * 2)));
+  CHECK(PetscAbsReal(L) <= 0.01 && PetscAbsReal(E) <= 0.02, "angular momentum %g, energy %g", (double)L, (double)E);
+  CALL(ModelDestroy(&m));
+}
+
+static void test_fly(void **state)
+{
+  (void)state;
+  fly(&usual_lme, CELL_QUADRILATERAL, 0.125, 1e-10);
+  fly(&usual_mls, CELL_QUADRILATERAL, 0.125, 1e-10);
+  fly(&usual_lme, CELL_TRIANGLE, 0.125, 1e-10);
+  fly(&usual_lme, CELL_HEXAHEDRON, 0.25, 1e-10);
+}
+
+/* --- contact --- */
+/* A block falls on a row of fixed nodes, which is not in its clouds from the start: it comes to rest before it reaches them and jumps back, and
+ * what its momentum changes is the impulse of reaction and gravity. */
+static void contact(const BasisSpec *basis)
+{
+  Bench b;
+  PetscReal impulse = 0, force, last = 0, lowest = 1, momentum = 0;
+  gmm_init(&b, basis, CELL_QUADRILATERAL, 0.125);
+  bench_grid(&b, (PetscReal[]){0, 0, 0}, (PetscReal[]){2, 1, 1}, 0.125);
+  bench_box(&b, 0, (PetscReal[]){0.5, 0.25, 0}, (PetscReal[]){1.25, 0.75, 1});
+  bench_dynamic(&b, 1, 0.002);
+  b.body[0].velocity[1] = -0.5;
+  b.c.gravity[1] = -9.81;
+  b.c.newton.residual = 1e-10;
+  bench_motion(&b, 1, 0, MOTION_FIXED, 7);
+  b.measure[b.c.n_measures++] = (MeasureSpec){.name = "reaction", .kind = MEASURE_REACTION, .component = 1};
+  Model *m = bench_model(&b, PETSC_COMM_WORLD);
+  const PetscReal mass = model_sum(m, MEASURE_MASS, 0), before = model_sum(m, MEASURE_MOMENTUM, 1);
+  for (int s = 0; s < 120; ++s) {
+    const StepReport r = model_step(m, 0.002);
+    CALL(ModelMeasure(m, &b.measure[0], 0, &force));
+    impulse += r.dt * (0.5 * (force + last) - mass * 9.81);
+    last = force;
+    momentum = model_sum(m, MEASURE_MOMENTUM, 1);
+    const MeasureSpec low = {.kind = MEASURE_EXTENT, .component = 1};
+    CALL(ModelMeasure(m, &low, 0, &force));
+    lowest = PetscMin(lowest, force);
+  }
+  PetscPrintf(PETSC_COMM_WORLD, "contact, %s: lowest point at %.3g m, velocity %.3g m/s, momentum off by %.2g\n",
+              basis->kind == BASIS_LME ? "lme" : "mls", (double)lowest, (double)(momentum / mass),
+              (double)((momentum - before - impulse) / before));
+  CHECK(lowest > 0.02, "the block is in the floor");
+  CHECK(momentum > 0, "the block does not jump back");
+  CHECK(PetscAbsReal(momentum - before - impulse) <= 0.02 * PetscAbsReal(before), "momentum %g, impulse %g",
+        (double)(momentum - before), (double)impulse);
+  CALL(ModelDestroy(&m));
+}
+
+static void test_contact(void **state)
+{
+  (void)state;
+  contact(&usual_lme);
+  contact(&usual_mls);
+}
+
+/* --- ranks --- */
+static const struct {
+  PointReal field;
+  const char *name;
+} fields[] = {{POINT_X, "x"}, {POINT_U, "u"}, {POINT_V, "v"}, {POINT_F, "F"}, {POINT_STATE, "state"}};
+
+/* `cut`: after how many steps nodes and points get new ranks. */
+static void run_both(Bench *b, PetscInt steps, PetscInt cut)
+{
+  Model *together = bench_model(b, PETSC_COMM_WORLD), *alone = bench_model(b, PETSC_COMM_SELF);
+  PetscReal v[2];
+  for (PetscInt s = 0; s < steps; ++s) {
+    if (s == cut) {
+      CALL(GmmRedistribute(together->stage));
+      CALL(together->method->initialise(together->stage));
+    }
+    const StepReport r = model_step(together, PETSC_MAX_REAL), q = model_step(alone, PETSC_MAX_REAL);
+    CHECK(r.cuts == q.cuts && r.dt == q.dt, "steps of %g and %g s", (double)r.dt, (double)q.dt);
+  }
+  for (size_t k = 0; k < sizeof fields / sizeof *fields; ++k) {
+    const PetscReal off = points_difference(together, alone, fields[k].field);
+    CHECK(off <= 1e-9, "%s is off by %g", fields[k].name, (double)off);
+  }
+  for (PetscInt k = 0; k < b->c.n_measures; ++k) {
+    CALL(ModelMeasure(together, &b->measure[k], k, &v[0]));
+    CALL(ModelMeasure(alone, &b->measure[k], k, &v[1]));
+    CHECK_CLOSE(v[0], v[1], 1e-9 * (1 + PetscAbsReal(v[1])));
+  }
+  CHECK_CLOSE(model_sum(together, MEASURE_EXTERNAL_WORK, 0), model_sum(alone, MEASURE_EXTERNAL_WORK, 0), 1e-8);
+  CALL(ModelDestroy(&together));
+  CALL(ModelDestroy(&alone));
+}
+
+/* A bar held at one end, under gravity, a traction, a point force. */
+static void bar(const BasisSpec *basis, CellType cell, PetscReal size)
+{
+  Bench b;
+  gmm_init(&b, basis, cell, size);
+  bench_grid(&b, (PetscReal[]){0, 0, 0}, (PetscReal[]){4, 1, 1}, size);
+  bench_box(&b, 0, (PetscReal[]){0, 0, 0}, (PetscReal[]){4, 1, 1});
+  b.c.gravity[1] = -0.5;
+  b.c.analysis.step = b.c.analysis.largest = 0.25;
+  bench_motion(&b, 0, 0, MOTION_FIXED, 7);
+  bench_traction(&b, 0, 4, "body", 300, -100, 0);
+  bench_traction(&b, 1, 1, NULL, 0, -50, 0);
+  b.load[b.c.n_loads++] = (LoadSpec){.kind = LOAD_POINT, .at = {2, 0.5, 0.5}, .value = {0, -100, 0}};
+  bench_tracer(&b, MEASURE_DISPLACEMENT, 1, 4, 0.5, 0.5);
+  b.measure[b.c.n_measures++] = (MeasureSpec){.name = "reaction", .kind = MEASURE_REACTION, .component = 1};
+  run_both(&b, 4, 2);
+}
+
+/* A block with a spin thrown on a floor: ghosts change as it deforms and meets nodes that it did not know. */
+static void thrown(const BasisSpec *basis, LinearChoice linear)
+{
+  Bench b;
+  gmm_init(&b, basis, CELL_QUADRILATERAL, 0.125);
+  bench_grid(&b, (PetscReal[]){0, 0, 0}, (PetscReal[]){2, 1.5, 1}, 0.125);
+  bench_box(&b, 0, (PetscReal[]){0.25, 0.25, 0.25}, (PetscReal[]){0.75, 0.75, 0.75});
+  b.body[0].velocity[0] = 1.5;
+  b.body[0].velocity[1] = -0.5;
+  b.body[0].spin[2] = 2;
+  b.body[0].spin_centre[0] = b.body[0].spin_centre[1] = 0.5;
+  b.c.gravity[1] = -9.81;
+  b.c.linear = linear;
+  bench_dynamic(&b, 1, 0.004);
+  bench_motion(&b, 1, 0, MOTION_FIXED, 7);
+  bench_tracer(&b, MEASURE_POSITION, 0, 0.5, 0.5, 0.5);
+  b.measure[b.c.n_measures++] = (MeasureSpec){.name = "reaction", .kind = MEASURE_REACTION, .component = 1};
+  run_both(&b, 60, 20);
+}
+
+static void test_ranks(void **state)
+{
+  (void)state;
+  bar(&usual_lme, CELL_QUADRILATERAL, 0.25);
+  bar(&usual_mls, CELL_TRIANGLE, 0.25);
+  bar(&usual_lme, CELL_HEXAHEDRON, 0.5);
+  bar(&usual_mls, CELL_TETRAHEDRON, 0.5);
+  thrown(&usual_lme, LINEAR_DIRECT);
+  thrown(&usual_mls, LINEAR_AUTO);
+}
+
+int main(int argc, char **argv)
+{
+  const struct CMUnitTest tests[] = {
+    cmocka_unit_test(test_patch),   cmocka_unit_test(test_hang),  cmocka_unit_test(test_fly),
+    cmocka_unit_test(test_contact), cmocka_unit_test(test_ranks),
+  };
+  return run_model_tests(argc, argv, tests);
+}
