@@ -86,12 +86,23 @@ PetscErrorCode NeighboursDestroy(Neighbours *b)
   PetscFunctionReturn(0);
 }
 
-/* Insert among n by distance, of equals the lower number first; clouds are small. If there are max already, the farthest gives way. */
-static inline PetscInt insert(PetscInt n, PetscInt max, PetscInt *item, PetscReal *distance2, PetscInt i, PetscReal d2)
+/* The order of two positions at the same distance: by coordinates, since numbers are not the same on any number of ranks. */
+static inline PetscBool stands_behind(const Neighbours *b, PetscInt i, PetscInt j)
+{
+  for (PetscInt d = 0; d < b->dim; ++d) {
+    const PetscReal off = b->at[i * b->dim + d] - b->at[j * b->dim + d];
+    if (off != 0) return off > 0 ? PETSC_TRUE : PETSC_FALSE;
+  }
+  return PETSC_FALSE;
+}
+
+/* Insert among n by distance; clouds are small. If there are max already, the farthest gives way. */
+static inline PetscInt insert(const Neighbours *b, PetscInt n, PetscInt max, PetscInt *item, PetscReal *distance2,
+                              PetscInt i, PetscReal d2)
 {
   if (n == max && d2 >= distance2[n - 1]) return n;
   PetscInt k = n == max ? n - 1 : n;
-  for (; k > 0 && (distance2[k - 1] > d2 || (distance2[k - 1] == d2 && item[k - 1] > i)); --k) {
+  for (; k > 0 && (distance2[k - 1] > d2 || (distance2[k - 1] == d2 && stands_behind(b, item[k - 1], i))); --k) {
     item[k] = item[k - 1];
     distance2[k] = distance2[k - 1];
   }
@@ -115,7 +126,7 @@ PetscInt neighbours_within(const Neighbours *b, const PetscReal *x, PetscReal ra
         PetscReal d2 = 0;
         for (PetscInt d = 0; d < b->dim; ++d) d2 += (b->x[e * b->dim + d] - x[d]) * (b->x[e * b->dim + d] - x[d]);
         if (d2 >= radius * radius) continue;
-        n = insert(n, max, item, distance2, b->item[e], d2);
+        n = insert(b, n, max, item, distance2, b->item[e], d2);
       }
     }
   return n;

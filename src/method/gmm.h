@@ -4,7 +4,7 @@
 
 typedef struct Gmm {
   CloudRule rule;
-  CloudRule at_nodes;          /* at the nodes' own places: lme has no smooth values where they stand on the hull */
+  CloudRule at_nodes;          /* at nodes and loads: on the hull, where they stand, lme has no smooth values */
   PetscBool constraints;       /* prescribed motion by multipliers? else on the nodes themselves */
   Support *tracers, *carriers; /* clouds of points without mass */
   Support

@@ -228,7 +228,8 @@ PetscErrorCode GmmGather(Stage *s)
   g->tally = (CloudTally){.nodes = 0};
   PetscCall(SupportFromClouds(s->support, s->points, &search.nodes, &g->rule, &g->tally));
   PetscCall(SupportFromClouds(g->tracers, s->tracers, &search.nodes, &g->rule, &ignored));
-  PetscCall(SupportFromClouds(g->carriers, s->loads->carriers, &search.nodes, &g->rule, &ignored));
+  /* carriers stand on the hull, too */
+  PetscCall(SupportFromClouds(g->carriers, s->loads->carriers, &search.nodes, &g->at_nodes, &ignored));
   PetscCall(GatherNodes(s, &search));
   const Lists lists = lists_of(s);
   for (int k = 0; k < 5; ++k) mark_used(s, &search, lists.n[k], lists.node[k]);

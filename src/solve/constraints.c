@@ -111,7 +111,7 @@ void constraints_relax(const Constraints *c, const unsigned char *held, const Pe
       PetscReal gap = scale * target[at], share = 0;
       for (PetscInt e = c->start[k]; e < c->start[k + 1]; ++e) {
         gap -= c->N[e] * v[c->node[e] * c->dim + d];
-        if (c->node[e] == c->at[k]) share = c->N[e];
+        if (held[c->node[e] * c->dim + d]) share += PetscAbsReal(c->N[e]);
       }
       correction[at] = held[at] && share > 0.1 ? gap / share : 0;
     }

@@ -23,7 +23,8 @@ PetscErrorCode ConstraintsAdd(Constraints *constraints, PetscInt at, PetscInt tw
                               const PetscReal *N);
 /* Places of the pairs in the system's pattern; PETSC_FALSE if it lacks any. */
 PetscBool constraints_find_slots(Constraints *constraints, const System *system);
-/* One sweep that brings the field of v nearer to `target` at the constrained places, by the coefficients of the constrained nodes alone; dofs
+/* One sweep that brings the field of v nearer to `target` at the constrained places, by the coefficients of the constrained nodes alone. Each takes its
+ * gap over the share of all held nodes, not over its own: slower, but it does not swing up where a node has less of the field than its neighbours. Dofs
  * with held[] only (of the constrained nodes). correction: as long as v, zero at call and return. */
 void constraints_relax(const Constraints *constraints, const unsigned char *held, const PetscReal *target,
                        PetscReal scale, PetscReal *v, PetscReal *correction);

@@ -241,7 +241,8 @@ static void run_both(Bench *b, PetscInt steps, PetscInt cut)
   }
   for (size_t k = 0; k < sizeof fields / sizeof *fields; ++k) {
     const PetscReal off = points_difference(together, alone, fields[k].field);
-    CHECK(off <= 1e-9, "%s is off by %g", fields[k].name, (double)off);
+    CHECK(off <= 1e-9, "%s, cell %d: %s is off by %g", b->c.basis.kind == BASIS_LME ? "lme" : "mls",
+          (int)b->c.grid.cell, fields[k].name, (double)off);
   }
   for (PetscInt k = 0; k < b->c.n_measures; ++k) {
     CALL(ModelMeasure(together, &b->measure[k], k, &v[0]));

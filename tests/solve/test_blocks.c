@@ -40,6 +40,7 @@ static void make_pattern(Made *s, PetscReal width)
     ++s->cells.n_groups;
   }
   s->cells.node_start[s->cells.n_groups] = s->cells.n_groups * nn;
+  s->cells.uniform = nn;
   CALL(SystemCreate(PETSC_COMM_WORLD, grid->dim, grid->dim, &s->system));
   CALL(SystemBuild(s->system, grid,
                    &(NodeGroups){.n = s->cells.n_groups, .start = s->cells.node_start, .node = s->cells.node}));
