@@ -115,8 +115,9 @@ static PetscReal estimated_memory(const Model *m, PetscInt points, PetscInt unkn
                   n = (PetscReal)PetscMax(unknowns, 2), block = (PetscReal)m->system->block;
   PetscReal per_point = 24 + 8 * nn * (1 + dim);
   for (PetscInt f = 0; f < POINT_N_REAL; ++f) per_point += 8 * (PetscReal)m->points->components[f];
-  const PetscReal value =
-    m->c->analysis.type == ANALYSIS_DYNAMIC && !m->formulation->pressure ? 8 + 4 : 8 + 8 + 4 + 8 + 8; /* blocks in single precision, or PETSc's */
+  const PetscReal value = m->c->analysis.type == ANALYSIS_DYNAMIC && !m->formulation->pressure
+                            ? 8 + 4
+                            : 8 + 8 + 4 + 8 + 8; /* blocks in single precision, or PETSc's */
   const PetscReal matrix = (PetscReal)pairs * (block * block * value + 8);
   const PetscReal factor = m->dim == 2 ? 8 * 5 * n * PetscLog2Real(n) : 8 * 6 * PetscPowReal(n, 4.0 / 3.0);
   const PetscReal direct = m->c->linear != LINEAR_ITERATIVE && m->c->analysis.type == ANALYSIS_STATIC ? factor : 0;

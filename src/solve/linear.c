@@ -1,7 +1,8 @@
 #include "solve/linear.h"
 #include "solve/blocks.h"
 
-#define REFINE_ABOVE 3 /* cells that a wave crosses in a step from which on unsymmetric systems take ILU of the first level */
+#define REFINE_ABOVE \
+  3 /* cells that a wave crosses in a step from which on unsymmetric systems take ILU of the first level */
 
 static PetscErrorCode UseDirect(KSP ksp, PetscBool symmetric, const char **what)
 {
@@ -121,7 +122,8 @@ static PetscBool direct_pays(const LinearProblem *p)
 
 static PetscBool takes_direct(const LinearProblem *p)
 {
-  return p->choice == LINEAR_DIRECT || p->multipliers || (p->choice == LINEAR_AUTO && direct_pays(p)) ? PETSC_TRUE : PETSC_FALSE;
+  return p->choice == LINEAR_DIRECT || p->multipliers || (p->choice == LINEAR_AUTO && direct_pays(p)) ? PETSC_TRUE
+                                                                                                      : PETSC_FALSE;
 }
 
 PetscErrorCode LinearForm(const LinearProblem *p, SystemForm *form)
@@ -133,7 +135,7 @@ PetscErrorCode LinearForm(const LinearProblem *p, SystemForm *form)
   PetscCall(PetscOptionsHasName(NULL, NULL, "-pc_type", &preconditioner));
   const PetscBool short_steps = p->symmetric || p->courant < REFINE_ABOVE ? PETSC_TRUE : PETSC_FALSE;
   *form = p->dynamic && short_steps && !p->mixed && !takes_direct(p) && !method && !preconditioner ? SYSTEM_BLOCKS
-                                                                                                    : SYSTEM_ASSEMBLED;
+                                                                                                   : SYSTEM_ASSEMBLED;
   PetscFunctionReturn(0);
 }
 
