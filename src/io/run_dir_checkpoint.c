@@ -68,12 +68,12 @@ PetscErrorCode RunDirCheckpoints(RunDir *dir, PetscInt *n, PetscInt **steps)
 PetscErrorCode RunDirKeepCheckpoints(RunDir *dir, PetscInt keep)
 {
   char path[CHECKPOINT_PATH];
-  PetscInt n, *steps;
+  PetscInt n = 0, *steps = NULL;
 
   PetscFunctionBeginUser;
   if (dir->rank) PetscFunctionReturn(0);
   PetscCall(ListSteps(dir, &n, &steps));
-  for (PetscInt i = keep; i < n; ++i) {
+  for (PetscInt i = keep; steps && i < n; ++i) {
     RunDirCheckpointPath(dir, steps[i], path);
     unlink(path); /* one that stays takes place, and does no harm */
   }

@@ -209,7 +209,7 @@ PetscErrorCode ArrivalsUnpack(Arrivals *arrivals, Points *points, const Grid *gr
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode PointsTransfer(Points *points, const Grid *grid, PetscMPIInt *owner)
+PetscErrorCode PointsTransfer(Points *points, const Grid *grid, const PetscMPIInt *owner)
 {
   Leavers leavers = {0};
   Arrivals arrivals;

@@ -99,7 +99,7 @@ void body_velocity(const BodySpec *body, PetscInt dim, const PetscReal *x, Petsc
 PetscErrorCode PointsSeed(Points *points, const Grid *grid, const Case *c, const PointSeed *per_material, Diag *diag);
 
 /* Collective. Send every point to the rank owner[p]; those that stay keep their order, arrivals stand behind. */
-PetscErrorCode PointsTransfer(Points *points, const Grid *grid, PetscMPIInt *owner);
+PetscErrorCode PointsTransfer(Points *points, const Grid *grid, const PetscMPIInt *owner);
 
 /* A point found outside the grid. */
 typedef struct {
