@@ -2,7 +2,7 @@
  *
  * Points run in batches of one material: first the increments of the deformation gradient of the whole batch, then one
  * call of the law, then forces and stiffness. What a group (a cell) gathers is scattered once. */
-#include "formulation/formulation.h"
+#include "formulation/sizes.h"
 #include "formulation/displacement_cloud.h"
 #include "formulation/displacement_kernels.h"
 #include "formulation/displacement_points.h"
@@ -45,19 +45,6 @@ KERNEL void cell_soften(const int dim, const int nn, PetscReal s, PetscBool tang
       for (int J = 0; J < nn; ++J) w->K[((I * dim + d) * dim + d) * row_width(nn) + J] += s * ((I == J) - 1.0 / nn);
 }
 
-/* The same with inertia: s (a_I - mean), no force on a uniform acceleration. */
-KERNEL void cell_tie(const int dim, const int nn, PetscReal s, CellWork *w)
-{
-  const int width = row_width(nn);
-  for (int d = 0; d < dim; ++d) {
-    PetscReal mean = 0;
-    for (int I = 0; I < nn; ++I) mean += w->a[d * width + I] / nn;
-    for (int I = 0; I < nn; ++I) w->f[d * width + I] += s * (w->a[d * width + I] - mean);
-  }
-  for (int I = 0; I < nn; ++I)
-    for (int J = 0; J < nn; ++J) w->M[I * width + J] += s * ((I == J) - 1.0 / nn);
-}
-
 /* Rows and columns of prescribed dofs are cut; lifting moves their columns to the right-hand side. */
 KERNEL void cell_cut(const int dim, const int nn, const WeakFormInput *in, const PetscInt *node, CellWork *w)
 {
@@ -81,7 +68,7 @@ KERNEL void cell_store(const int dim, const int nn, const WeakFormInput *in, Pet
 {
   const PetscInt *node = in->support->node + group * nn;
   if (in->soft && in->soft[group] > 0) cell_soften(dim, nn, in->soft[group], out->values != NULL, w);
-  if (in->tie && in->tie[group] > 0) cell_tie(dim, nn, in->tie[group], w);
+  if (in->tie && in->tie[group] > 0) add_tie(dim, nn, in->tie[group], w->a, w->f, w->M);
   if (out->values) {
     const PetscInt *slot = out->slot + group * nn * nn;
     int cut = 0;
@@ -193,55 +180,24 @@ KERNELS(2, 4)
 KERNELS(3, 4)
 KERNELS(3, 8)
 
-typedef struct {
-  PetscInt dim, nn;
-  void (*assemble)(const WeakFormInput *in, WeakFormOutput *out);
-  LawStatus (*commit)(const WeakFormInput *in, Points *points);
-} Kernels;
-
-static const Kernels kernels[] = {
+static const SizedKernels kernels[] = {
   {2, 3, assemble_2d_3, commit_2d_3},
   {2, 4, assemble_2d_4, commit_2d_4},
   {3, 4, assemble_3d_4, commit_3d_4},
   {3, 8, assemble_3d_8, commit_3d_8},
   {2, 0, displacement_assemble_cloud, displacement_commit_cloud}, /* as many nodes as a point's cloud has */
   {3, 0, displacement_assemble_cloud, displacement_commit_cloud},
+  {0},
 };
-
-/* NULL where there are no points to work on. */
-static PetscErrorCode FindKernels(const WeakFormInput *in, const Kernels **found)
-{
-  const PetscInt dim = in->points->dim, nn = in->support->uniform;
-
-  PetscFunctionBeginUser;
-  *found = NULL;
-  if (!points_in_groups(in->support)) PetscFunctionReturn(0);
-  for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(kernels); ++k)
-    if (kernels[k].dim == dim && kernels[k].nn == nn) *found = &kernels[k];
-  PetscCheck(*found, PETSC_COMM_SELF, PETSC_ERR_SUP, "no kernel for %d nodes in %dD", (int)nn, (int)dim);
-  PetscFunctionReturn(0);
-}
 
 static PetscErrorCode DisplacementAssemble(const WeakFormInput *in, WeakFormOutput *out)
 {
-  const Kernels *k;
-
-  PetscFunctionBeginUser;
-  out->status = LAW_OK;
-  out->bad_point = -1;
-  PetscCall(FindKernels(in, &k));
-  if (k) k->assemble(in, out);
-  PetscFunctionReturn(0);
+  return SizedAssemble(kernels, in, out);
 }
 
 static PetscErrorCode DisplacementCommit(const WeakFormInput *in, Points *points, LawStatus *status)
 {
-  const Kernels *k;
-
-  PetscFunctionBeginUser;
-  PetscCall(FindKernels(in, &k));
-  *status = k ? k->commit(in, points) : LAW_OK;
-  PetscFunctionReturn(0);
+  return SizedCommit(kernels, in, points, status);
 }
 
 const Formulation formulation_displacement = {

@@ -103,3 +103,17 @@ KERNEL void add_mass(const int nn, const PetscReal *restrict N, PetscReal mass, 
     if (lumping > 0) M[I * w + I] += mass * lumping * N[I];
   }
 }
+
+/* Inertia that ties the nodes of a cell to their mean: f_I += s (a_I - mean), no force on a uniform acceleration. M is nn rows. */
+KERNEL void add_tie(const int dim, const int nn, PetscReal s, const PetscReal *restrict a, PetscReal *restrict f,
+                    PetscReal *restrict M)
+{
+  const int w = row_width(nn);
+  for (int d = 0; d < dim; ++d) {
+    PetscReal mean = 0;
+    for (int I = 0; I < nn; ++I) mean += a[d * w + I] / nn;
+    for (int I = 0; I < nn; ++I) f[d * w + I] += s * (a[d * w + I] - mean);
+  }
+  for (int I = 0; I < nn; ++I)
+    for (int J = 0; J < nn; ++J) M[I * w + J] += s * ((I == J) - 1.0 / nn);
+}

@@ -5,7 +5,7 @@
  *
  * The unknown is p over a scale of Pa/m, and the second equation is multiplied by it: then all unknowns are m and all equations N, and
  * the tangent is symmetric where the law's is. Points run in batches of one material as in displacement.c. */
-#include "formulation/formulation.h"
+#include "formulation/sizes.h"
 #include "formulation/mixed_kernels.h"
 #include "formulation/walk.h"
 #include "material/pressure.h"
@@ -60,19 +60,6 @@ KERNEL void cell_soften(const int dim, const int nn, PetscReal s, CellWork *w)
       for (int J = 0; J < nn; ++J) w->K[((I * dim + d) * dim + d) * width + J] += s * ((I == J) - 1.0 / nn);
     }
   }
-}
-
-/* The same with inertia: s (a_I - mean), no force on a uniform acceleration. */
-KERNEL void cell_tie(const int dim, const int nn, PetscReal s, CellWork *w)
-{
-  const int width = row_width(nn);
-  for (int d = 0; d < dim; ++d) {
-    PetscReal mean = 0;
-    for (int I = 0; I < nn; ++I) mean += w->a[d * width + I] / nn;
-    for (int I = 0; I < nn; ++I) w->f[d * width + I] += s * (w->a[d * width + I] - mean);
-  }
-  for (int I = 0; I < nn; ++I)
-    for (int J = 0; J < nn; ++J) w->M[I * width + J] += s * ((I == J) - 1.0 / nn);
 }
 
 /* The projection's integral is that over the cell, whatever the number of its points. */
@@ -133,7 +120,7 @@ KERNEL void cell_store(const int dim, const int nn, const WeakFormInput *in, Pet
   const PetscInt *node = in->support->node + group * nn;
   const int width = row_width(nn);
   if (in->soft && in->soft[group] > 0) cell_soften(dim, nn, in->soft[group], w);
-  if (in->tie && in->tie[group] > 0) cell_tie(dim, nn, in->tie[group], w);
+  if (in->tie && in->tie[group] > 0) add_tie(dim, nn, in->tie[group], w->a, w->f, w->M);
   cell_project(dim, nn, in->pressure_scale, w);
   if (out->values) {
     int cut = 0;
@@ -276,53 +263,22 @@ KERNELS(2, 4)
 KERNELS(3, 4)
 KERNELS(3, 8)
 
-typedef struct {
-  PetscInt dim, nn;
-  void (*assemble)(const WeakFormInput *in, WeakFormOutput *out);
-  LawStatus (*commit)(const WeakFormInput *in, Points *points);
-} Kernels;
-
-static const Kernels kernels[] = {
+static const SizedKernels kernels[] = {
   {2, 3, assemble_2d_3, commit_2d_3},
   {2, 4, assemble_2d_4, commit_2d_4},
   {3, 4, assemble_3d_4, commit_3d_4},
   {3, 8, assemble_3d_8, commit_3d_8},
+  {0},
 };
-
-/* NULL where there are no points to work on. */
-static PetscErrorCode FindKernels(const WeakFormInput *in, const Kernels **found)
-{
-  const PetscInt dim = in->points->dim, nn = in->support->uniform;
-
-  PetscFunctionBeginUser;
-  *found = NULL;
-  if (!points_in_groups(in->support)) PetscFunctionReturn(0);
-  for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(kernels); ++k)
-    if (kernels[k].dim == dim && kernels[k].nn == nn) *found = &kernels[k];
-  PetscCheck(*found, PETSC_COMM_SELF, PETSC_ERR_SUP, "no mixed kernel for %d nodes in %dD", (int)nn, (int)dim);
-  PetscFunctionReturn(0);
-}
 
 static PetscErrorCode MixedAssemble(const WeakFormInput *in, WeakFormOutput *out)
 {
-  const Kernels *k;
-
-  PetscFunctionBeginUser;
-  out->status = LAW_OK;
-  out->bad_point = -1;
-  PetscCall(FindKernels(in, &k));
-  if (k) k->assemble(in, out);
-  PetscFunctionReturn(0);
+  return SizedAssemble(kernels, in, out);
 }
 
 static PetscErrorCode MixedCommit(const WeakFormInput *in, Points *points, LawStatus *status)
 {
-  const Kernels *k;
-
-  PetscFunctionBeginUser;
-  PetscCall(FindKernels(in, &k));
-  *status = k ? k->commit(in, points) : LAW_OK;
-  PetscFunctionReturn(0);
+  return SizedCommit(kernels, in, points, status);
 }
 
 /* Mass over G + 1/K, lumped: B A^-1 B^T of a body with the stiffness 2G against shear is the mass over G up to a factor near 1. */
