@@ -1,37 +1,7 @@
-#include "solve/newton.h"
-#include "solve/line_search.h"
-#include "solve/saddle.h"
+#include "solve/newton_private.h"
 #include <petsctime.h>
 
-#define STUCK_AFTER 10    /* iterations before an iteration can count as stuck */
-#define STUCK_WINDOW 5    /* the last iterations, which should have */
-#define STUCK_GAIN 0.5    /* brought the residual below this share of the best before */
-#define STUCK_ABOVE 1e-4  /* a smaller residual is about to converge */
 #define FORGIVEN_AFTER 50 /* steps after which the iterative solver gets another chance */
-
-struct Newton {
-  MPI_Comm comm;
-  NewtonSpec spec;
-  SNES snes;
-  Vec x, f;
-  PetscInt built;      /* system->builds that snes was set up for */
-  PetscReal courant;   /* of the step that it was set up in */
-  PetscBool learns;    /* the preconditioner keeps something of earlier matrices: it is made anew for every solve */
-  PetscInt remembered; /* system->builds whose solver was chosen with this courant before a checkpoint; -1: none */
-  LineSearchMemory search;
-  Saddle saddle;
-  PetscBool direct;
-  PetscInt failures; /* of the iterative solver; after a few the direct one stays for a while */
-  PetscInt since;    /* steps since the last of them */
-  PetscBool retry;   /* this try takes the direct solver */
-  const char *linear;
-  StepProblem *problem;
-  NewtonReport *report;
-  PetscReal reaction, external; /* norms at the last assembly, N */
-  PetscReal last, before;       /* norms of the residual one iteration ago, and two, N; before: 0 if there was none */
-  PetscBool tangent;            /* do the system's values belong to du? */
-  double t_points, t_matrix, t_linear;
-};
 
 PetscErrorCode NewtonCreate(MPI_Comm comm, const NewtonSpec *spec, Newton **newton)
 {
@@ -204,31 +174,13 @@ static PetscErrorCode GetResidual(Newton *n, Vec f)
   PetscFunctionReturn(0);
 }
 
-/* The scale of a residual: the loads, the residual at the first guess, and (for motion driven by its boundary or by inertia)
- * a small part of reactions and inertia, well above their round-off. */
-static PetscReal reference_force(const Newton *n, PetscReal first)
-{
-  const StepProblem *p = n->problem;
-  PetscReal reference = PetscMax(first, PetscMax(p->weight, n->external));
-  reference = PetscMax(reference, 1e-4 * n->reaction);
-  reference = PetscMax(reference, 1e-5 * p->inertia);
-  return reference > 0 ? reference : 1;
-}
-
-/* If the residual falls by the same factor once more it is far below the tolerance: no tangent will be asked for. */
-static PetscBool is_last(const Newton *n)
-{
-  const PetscReal enough = n->spec.residual * reference_force(n, n->report->reference);
-  return n->before > 0 && n->last * n->last < 0.1 * enough * n->before ? PETSC_TRUE : PETSC_FALSE;
-}
-
 static PetscErrorCode Function(SNES snes, Vec x, Vec f, void *context)
 {
   Newton *n = context;
   (void)snes;
   PetscFunctionBeginUser;
   PetscCall(SetIncrements(n, x));
-  PetscCall(Assemble(n, !is_last(n)));
+  PetscCall(Assemble(n, !newton_is_last(n)));
   PetscCall(GetResidual(n, f));
   PetscFunctionReturn(0);
 }
@@ -246,54 +198,6 @@ static PetscErrorCode Jacobian(SNES snes, Vec x, Mat matrix, Mat preconditioner,
   PetscCall(PetscTime(&end));
   n->t_matrix += end - start;
   (void)x;
-  PetscFunctionReturn(0);
-}
-
-/* Is the increment round-off, of the step's displacement or of the size of a cell? Then a residual that falls no more has reached the
- * floor of its own round-off, whatever tolerance was asked for. */
-static PetscBool at_floor(const Newton *n, PetscReal xnorm, PetscReal snorm)
-{
-  const PetscReal dofs = (PetscReal)(n->problem->system->n_active_global * n->problem->system->block);
-  return snorm <= 1e-9 * xnorm || snorm <= 1e-12 * n->problem->grid->smallest * PetscSqrtReal(dofs) ? PETSC_TRUE
-                                                                                                    : PETSC_FALSE;
-}
-
-/* An iteration that wanders between the sides of yield surfaces: seen in 29 of 39 failures (4 ms steps of the dry column) at 10 to 15
- * iterations, and in 5 of 165 steps that would have come through. */
-static PetscBool is_stuck(const PetscReal *residual, PetscInt k)
-{
-  PetscReal before = PETSC_MAX_REAL, lately = PETSC_MAX_REAL;
-  if (k < STUCK_AFTER || k >= NEWTON_HISTORY || residual[k] <= STUCK_ABOVE) return PETSC_FALSE;
-  for (PetscInt i = 0; i <= k - STUCK_WINDOW; ++i) before = PetscMin(before, residual[i]);
-  for (PetscInt i = k - STUCK_WINDOW + 1; i <= k; ++i) lately = PetscMin(lately, residual[i]);
-  return lately > STUCK_GAIN * before ? PETSC_TRUE : PETSC_FALSE;
-}
-
-static PetscErrorCode Converged(SNES snes, PetscInt it, PetscReal xnorm, PetscReal snorm, PetscReal fnorm,
-                                SNESConvergedReason *reason, void *context)
-{
-  Newton *n = context;
-  NewtonReport *r = n->report;
-  const NewtonSpec *spec = &n->spec;
-
-  (void)snes;
-  PetscFunctionBeginUser;
-  *reason = SNES_CONVERGED_ITERATING;
-  if (it == 0 && r->iterations == 0) r->reference = fnorm;
-  const PetscReal reference = reference_force(n, r->reference), relative = fnorm / reference;
-  const PetscInt k = r->iterations + it;
-  const PetscBool small =
-    snorm <= spec->increment * xnorm || snorm <= spec->increment_absolute ? PETSC_TRUE : PETSC_FALSE;
-  const PetscBool still = it > 0 && small && relative <= 1e3 * spec->residual ? PETSC_TRUE : PETSC_FALSE;
-  const PetscBool floored = it > 1 && fnorm > 0.25 * n->last && at_floor(n, xnorm, snorm) ? PETSC_TRUE : PETSC_FALSE;
-  if (k < NEWTON_HISTORY) r->residual[k] = relative;
-  if (PetscIsInfOrNanReal(fnorm)) *reason = SNES_DIVERGED_FNORM_NAN;
-  else if (relative <= spec->residual || fnorm <= spec->residual_absolute) *reason = SNES_CONVERGED_FNORM_RELATIVE;
-  else if (still || floored) *reason = SNES_CONVERGED_SNORM_RELATIVE;
-  else if (k > 2 && relative > 1e8) *reason = SNES_DIVERGED_DTOL;
-  else if (is_stuck(r->residual, k)) *reason = SNES_DIVERGED_LOCAL_MIN;
-  n->before = it > 0 ? n->last : 0;
-  n->last = fnorm;
   PetscFunctionReturn(0);
 }
 
@@ -335,7 +239,7 @@ static PetscErrorCode NewtonSetUp(Newton *n, StepProblem *p, const LinearProblem
   PetscCall(SNESCreate(n->comm, &n->snes));
   PetscCall(SNESSetFunction(n->snes, n->f, Function, n));
   PetscCall(SNESSetJacobian(n->snes, p->system->matrix, p->system->matrix, Jacobian, n));
-  PetscCall(SNESSetConvergenceTest(n->snes, Converged, n, NULL));
+  PetscCall(SNESSetConvergenceTest(n->snes, NewtonConverged, n, NULL));
   PetscCall(SNESSetType(n->snes, SNESNEWTONLS));
   PetscCall(SNESGetLineSearch(n->snes, &search));
   PetscCall(SNESLineSearchSetType(search, SNESLINESEARCHSHELL));
@@ -417,25 +321,6 @@ static PetscErrorCode UpdateSaddle(Newton *n)
   PetscFunctionReturn(0);
 }
 
-static const char *reason_in_words(SNESConvergedReason reason, LawStatus status)
-{
-  switch (reason) {
-  case SNES_CONVERGED_FNORM_RELATIVE: return "residual small enough";
-  case SNES_CONVERGED_SNORM_RELATIVE: return "increment small enough";
-  case SNES_DIVERGED_MAX_IT: return "too many iterations";
-  case SNES_DIVERGED_LINEAR_SOLVE: return "the linear solver failed (is the body held anywhere?)";
-  case SNES_DIVERGED_LOCAL_MIN: return "the iteration went in circles";
-  case SNES_DIVERGED_DTOL: return "the residual grew without bound";
-  default: break;
-  }
-  switch (status) {
-  case LAW_INVERTED: return "a point was turned inside out";
-  case LAW_NOT_CONVERGED: return "a return mapping did not converge";
-  case LAW_NOT_FINITE: return "a stress was not finite";
-  default: return "no convergence";
-  }
-}
-
 static PetscErrorCode NewtonTry(Newton *n, NewtonReport *report)
 {
   SNESConvergedReason reason;
@@ -458,7 +343,7 @@ static PetscErrorCode NewtonTry(Newton *n, NewtonReport *report)
   PetscCall(SNESGetLinearSolveIterations(n->snes, &report->linear_iterations));
   report->iterations += its;
   report->converged = reason > 0 ? PETSC_TRUE : PETSC_FALSE;
-  report->reason = reason_in_words(reason, report->status);
+  report->reason = newton_reason(reason, report->status);
   PetscCall(PetscTime(&end));
   n->t_linear = before + (end - start) - (n->t_points - points) - (n->t_matrix - matrix);
   if (reason == SNES_DIVERGED_LINEAR_SOLVE) n->built = -1; /* PETSc would not factorise again after a zero pivot */

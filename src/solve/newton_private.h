@@ -1,0 +1,37 @@
+/* Newton's own state, and when it has converged: for the files of newton*.c alone. */
+#pragma once
+#include "solve/line_search.h"
+#include "solve/newton.h"
+#include "solve/saddle.h"
+
+struct Newton {
+  MPI_Comm comm;
+  NewtonSpec spec;
+  SNES snes;
+  Vec x, f;
+  PetscInt built;      /* system->builds that snes was set up for */
+  PetscReal courant;   /* of the step that it was set up in */
+  PetscBool learns;    /* the preconditioner keeps something of earlier matrices: it is made anew for every solve */
+  PetscInt remembered; /* system->builds whose solver was chosen with this courant before a checkpoint; -1: none */
+  LineSearchMemory search;
+  Saddle saddle;
+  PetscBool direct;
+  PetscInt failures; /* of the iterative solver; after a few the direct one stays for a while */
+  PetscInt since;    /* steps since the last of them */
+  PetscBool retry;   /* this try takes the direct solver */
+  const char *linear;
+  StepProblem *problem;
+  NewtonReport *report;
+  PetscReal reaction, external; /* norms at the last assembly, N */
+  PetscReal last, before;       /* norms of the residual one iteration ago, and two, N; before: 0 if there was none */
+  PetscBool tangent;            /* do the system's values belong to du? */
+  double t_points, t_matrix, t_linear;
+};
+
+/* Will this residual be the last? If it falls by the same factor once more it is far below the tolerance: no tangent will be asked for. */
+PetscBool newton_is_last(const Newton *n);
+/* The convergence test of SNES; context: the Newton. Writes the report's residuals and its reference. */
+PetscErrorCode NewtonConverged(SNES snes, PetscInt it, PetscReal xnorm, PetscReal snorm, PetscReal fnorm,
+                               SNESConvergedReason *reason, void *context);
+/* Why it stopped, in words. */
+const char *newton_reason(SNESConvergedReason reason, LawStatus status);
