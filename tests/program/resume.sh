@@ -91,34 +91,7 @@ output: {every: 0.01, history: {steps: 2}}
 END
 cut_and_resumed "carried loads in space" 2
 lacks whole/log.txt MUMPS
-cat >plate.geo <<'END'
-DefineConstant[ h = 0.2 ];
-Point(1) = {0, 0, 0, h}; Point(2) = {3, 0, 0, h}; Point(3) = {3, 1, 0, h / 2}; Point(4) = {0, 1.5, 0, h};
-Line(1) = {1, 2}; Line(2) = {2, 3}; Line(3) = {3, 4}; Line(4) = {4, 1};
-Curve Loop(1) = {1, 2, 3, 4};
-Plane Surface(1) = {1};
-Physical Surface("plate") = {1};
-Physical Curve("wall") = {4};
-Physical Curve("edge") = {2};
-END
-cat >case.yaml <<'END'
-kinematics: plane-strain
-method: fem
-analysis: {type: static, steps: 4}
-grid: {mesh: plate.geo, parameters: {h: 0.15}}
-bodies:
-  - {name: plate, region: plate, points_per_cell: 3, material: rubber}
-materials:
-  rubber: {law: neo-hookean, density: 1000, young: 1e6, poisson: 0.3}
-boundary:
-  - {name: wall, on: {boundary: wall}, fix: [x, y]}
-loads:
-  tractions:
-    - {on: {boundary: edge}, value: [2e4, -1e4]}
-measures:
-  tip: {displacement: y, of: {tracer: [3, 1]}}
-  hold: {reaction: y, of: {boundary: wall}}
-END
+plate 4
 cut_and_resumed "mesh by gmsh" 1
 
 finish
