@@ -1,16 +1,41 @@
-/* What the fuzzers share: PETSc started once, and inputs as files in memory. */
+/* What the fuzzers share: PETSc started once, a second of processor time for each input, and inputs as files in memory. */
 #pragma once
 #include <petscsys.h>
 #include <sanitizer/lsan_interface.h>
+#include <signal.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/mman.h>
+#include <sys/time.h>
 #include <unistd.h>
 
 int LLVMFuzzerInitialize(int *argc, char ***argv);
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t n);
+
+/* What a fuzzer does with one input. */
+static void fuzz_one(const uint8_t *data, size_t n);
+
+#define FUZZ_SECONDS 1
+
+static inline void fuzz_too_slow(int number)
+{
+  static const char text[] = "an input that takes over a second of processor time\n";
+  (void)number;
+  if (write(STDERR_FILENO, text, sizeof text - 1) > 0) abort();
+  abort();
+}
+
+/* The clock is that of the process: a busy machine makes no input slow. */
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t n)
+{
+  const struct itimerval limit = {.it_value = {.tv_sec = FUZZ_SECONDS}}, none = {0};
+  if (setitimer(ITIMER_PROF, &limit, NULL)) abort();
+  fuzz_one(data, n);
+  if (setitimer(ITIMER_PROF, &none, NULL)) abort();
+  return 0;
+}
 
 static inline void fuzz_start(void)
 {
@@ -22,6 +47,7 @@ static inline void fuzz_start(void)
   if (PetscInitializeNoArguments()) abort();
   __lsan_enable();
   PetscPopSignalHandler(); /* crashes belong to the fuzzer */
+  signal(SIGPROF, fuzz_too_slow);
 }
 
 /* An internal error of PETSc is a finding, whatever the input. */

@@ -27,11 +27,11 @@ static Case *Read(const uint8_t *data, size_t n)
   return c;
 }
 
-int LLVMFuzzerTestOneInput(const uint8_t *data, size_t n)
+static void fuzz_one(const uint8_t *data, size_t n)
 {
   char *yaml, *again;
   Case *c = Read(data, n);
-  if (!c) return 0;
+  if (!c) return;
   FUZZ_CALL(CaseToYaml(c, &yaml));
   FUZZ_CALL(CaseDestroy(&c));
   c = Read((const uint8_t *)yaml, strlen(yaml));
@@ -47,5 +47,4 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t n)
   FUZZ_CALL(CaseDestroy(&c));
   FUZZ_CALL(PetscFree(yaml));
   FUZZ_CALL(PetscFree(again));
-  return 0;
 }

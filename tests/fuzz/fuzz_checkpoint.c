@@ -91,17 +91,16 @@ static void Numbers(const uint8_t *data, size_t n)
     if (bytes) ((unsigned char *)column->data)[data[2] % bytes] = data[3];
   }
   FUZZ_CALL(ModelFromTables(to, tables, reason));
-  if (!reason[0] && to->dt > 1e-6 && to->dt < 1) FUZZ_CALL(ModelStep(to, 1e-3, &report));
+  if (!reason[0] && to->control.next > 1e-6 && to->control.next < 1) FUZZ_CALL(ModelStep(to, 1e-3, &report));
   FUZZ_CALL(TablesDestroy(&tables));
   FUZZ_CALL(ModelDestroy(&from));
   FUZZ_CALL(ModelDestroy(&to));
 }
 
-int LLVMFuzzerTestOneInput(const uint8_t *data, size_t n)
+static void fuzz_one(const uint8_t *data, size_t n)
 {
-  if (n == 0) return 0;
+  if (n == 0) return;
   if (data[0] == 'n') Numbers(data + 1, n - 1);
   else if (data[0] == 'l') List(data + 1, n - 1);
   else File(data, n);
-  return 0;
 }

@@ -24,7 +24,7 @@ static void Serial(const MshFile *msh, PetscInt dim)
   if (mesh) FUZZ_CALL(SerialMeshDestroy(&mesh));
 }
 
-int LLVMFuzzerTestOneInput(const uint8_t *data, size_t n)
+static void fuzz_one(const uint8_t *data, size_t n)
 {
   char path[64], message[512] = "";
   MshFile *msh = NULL;
@@ -37,5 +37,4 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t n)
     FUZZ_CALL(MshDestroy(&msh));
   }
   close(fd);
-  return 0;
 }
