@@ -8,6 +8,7 @@ static const CliOption options_known[] = {
   {"only", "STUDY", "one study of reference.yaml"},
   {"out", "DIR", "where runs, tables and figures go; default: runs/verify/<case>"},
   {"keep", NULL, "keep the states (.hdf) of all runs, not only logs and histories"},
+  {"resume", NULL, "take over the runs that an earlier call has finished; the tables name the program they are from"},
   {"record", NULL, "write the tables into docs/verification.md of the source tree, too"},
   {NULL, NULL, NULL},
 };
@@ -58,9 +59,10 @@ PetscErrorCode CliVerify(int argc, char **argv, int *exit_code)
     .run = CliValue(&arguments, "run"),
     .full = CliFlag(&arguments, "full"),
     .keep = CliFlag(&arguments, "keep"),
+    .resume = CliFlag(&arguments, "resume"),
     .record = CliFlag(&arguments, "record"),
   };
-  if (options.run && (options.out || options.full || options.keep || options.record)) {
+  if (options.run && (options.out || options.full || options.keep || options.resume || options.record)) {
     PetscCall(CliUsageError(exit_code, "only --only goes with it", "--run writes nothing and runs nothing"));
     PetscFunctionReturn(0);
   }

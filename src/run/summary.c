@@ -13,8 +13,8 @@ PetscErrorCode SummaryVersion(MPI_Comm comm, RunDir *dir)
   PetscCall(PetscGetVersion(petsc, sizeof petsc));
   PetscCallMPI(MPI_Get_library_version(mpi, &length));
   PetscCall(PetscSNPrintf(text, sizeof text,
-                          "talus = %s\npetsc = %s\nmpi = %s\ncompiler = %s\nbuild = %s\nranks = %d\n", TALUS_VERSION,
-                          petsc, mpi, TALUS_COMPILER, TALUS_BUILD_TYPE, (int)size));
+                          "talus = %s\nsources = %s\npetsc = %s\nmpi = %s\ncompiler = %s\nbuild = %s\nranks = %d\n",
+                          TALUS_VERSION, TALUS_GIT_DESCRIBE, petsc, mpi, TALUS_COMPILER, TALUS_BUILD_TYPE, (int)size));
   const PetscErrorCode status = RunDirWriteText(dir, "version.txt", text);
   PetscFunctionReturn(status);
 }

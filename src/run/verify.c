@@ -41,13 +41,18 @@ static void remove_states(const char *folder)
 static PetscErrorCode Run(Verification *v, VerifyRow *r, Diag *diag)
 {
   const RunOptions run = {.out = r->folder, .force = PETSC_TRUE, .quiet = PETSC_TRUE, .summary = &r->summary};
+  PetscBool found = PETSC_FALSE;
   double start, end;
   Case *c;
 
   PetscFunctionBeginUser;
   PetscCall(CaseRead(v->comm, v->file, r->set.n, (const char *const *)r->set.text, diag, &c));
   r->result = RUN_BAD_INPUT;
-  if (!c) PetscFunctionReturn(0);
+  if (c && v->options->resume) PetscCall(VerifyTakeOver(v, r, c, &found));
+  if (!c || found) {
+    PetscCall(CaseDestroy(&c));
+    PetscFunctionReturn(0);
+  }
   PetscCall(PetscTime(&start));
   PetscCall(RunCase(v->comm, c, &run, diag, r->measures, &r->result));
   PetscCall(PetscTime(&end));
@@ -72,6 +77,8 @@ static PetscErrorCode Reuse(const Verification *v, VerifyRow *r, PetscBool *foun
     r->result = other->result;
     r->summary = other->summary;
     r->seconds = 0;
+    r->taken = other->taken;
+    PetscCall(PetscStrncpy(r->sources, other->sources, sizeof r->sources));
     r->ran = r->shared = *found = PETSC_TRUE;
     break;
   }
@@ -158,9 +165,10 @@ static void CheckOptions(const Verification *v, Diag *diag)
   char file[PETSC_MAX_PATH_LEN];
   if (!v->options->record) return;
   verify_record_file(v->options->folder, file);
-  if (v->options->only)
+  if (v->options->only) {
     DiagError(diag, NULL, "--record replaces the whole section of a case, so it does not go with --only");
-  else if (v->rank == 0 && access(file, W_OK))
+    DiagHint(diag, "run the study, then --record --resume takes it over and runs what is missing");
+  } else if (v->rank == 0 && access(file, W_OK))
     DiagError(diag, NULL, "cannot record in '%s': %s", file, strerror(errno));
 }
 

@@ -10,6 +10,7 @@ typedef struct {
   const char *run;    /* a run that is there, to be compared (VerifyRun) */
   PetscBool full;     /* the rows and series marked so, too */
   PetscBool keep;     /* the states (.hdf) of all runs, not only their logs and histories */
+  PetscBool resume;   /* take over what earlier verifications into the same directory have finished */
   PetscBool record;   /* write the tables into docs/verification.md as well */
 } VerifyOptions;
 

@@ -109,6 +109,24 @@ static void write_study(FILE *out, const Verification *v, PetscInt first, PetscI
   if (figures && study->figure != VERIFY_FIGURE_NONE) fprintf(out, "\n![%s](%s.png)\n", study->title, study->name);
 }
 
+/* Which rows are of another program than this one: each of these once, with its rows' number. */
+static void write_origins(FILE *out, const Verification *v)
+{
+  for (PetscInt k = 0; k < v->n; ++k) {
+    const VerifyRow *r = &v->rows[k];
+    PetscInt same = 0;
+    PetscBool told = !r->taken || !strcmp(r->sources, TALUS_GIT_DESCRIBE) ? PETSC_TRUE : PETSC_FALSE;
+    for (PetscInt i = 0; i < v->n && !told; ++i) {
+      if (!v->rows[i].taken || strcmp(v->rows[i].sources, r->sources)) continue;
+      if (i < k) told = PETSC_TRUE;
+      ++same;
+    }
+    if (!told)
+      fprintf(out, "%d of its rows were computed before, with %s.\n", (int)same,
+              r->sources[0] ? r->sources : "a program that does not say which");
+  }
+}
+
 static void write_text(FILE *out, const Verification *v, PetscBool figures)
 {
   const char *sources = TALUS_GIT_DESCRIBE;
@@ -120,6 +138,7 @@ static void write_text(FILE *out, const Verification *v, PetscBool figures)
   fprintf(out, "## %s: %s\n\nRecorded %s with talus %s%s%s%s on %d rank%s, %s rows.\n", v->name, v->reference->title,
           date, TALUS_VERSION, sources[0] ? " (" : "", sources, sources[0] ? ")" : "", (int)v->size,
           v->size > 1 ? "s" : "", v->options->full ? "all" : "the quick");
+  write_origins(out, v);
   for (PetscInt first = 0, last; first < v->n; first = last) {
     for (last = first; last < v->n && v->rows[last].study == v->rows[first].study;) ++last;
     write_study(out, v, first, last, figures);

@@ -15,6 +15,8 @@ typedef struct {
   PetscInt measure, n_measures; /* which one is compared */
   PetscReal *measures;          /* all of them, at the end of the run */
   PetscBool ran, shared;        /* shared: by an earlier study, no run of its own */
+  PetscBool taken;              /* over from a run that was there already */
+  char sources[64];             /* what git said of the program that made that run, empty if nothing */
   RunResult result;
   RunSummary summary;
   PetscReal seconds; /* of the whole run, building the model included */
@@ -51,6 +53,14 @@ PetscErrorCode VerifyRowClear(VerifyRow *r);
 /* verify_value.c: Collective. The value of a row that has run: the measure at the end, or the distance
  * of its history from a course, or the measure at a moment. */
 PetscErrorCode VerifyValue(const Verification *v, VerifyRow *r, Diag *diag);
+
+/* verify_found.c: Collective. The case of a run directory without what changes no result, to be freed; NULL with a reason if there is none. */
+PetscErrorCode VerifyFoundCase(MPI_Comm comm, const char *folder, char **text, char reason[256]);
+/* Is that text this case's? */
+PetscErrorCode VerifyIsCase(const Case *c, const char *text, PetscBool *is);
+/* Take the results of the row over from its folder, or from that of a row with the same settings, if a run of this case has come to its end
+ * there on as many ranks. */
+PetscErrorCode VerifyTakeOver(const Verification *v, VerifyRow *r, const Case *c, PetscBool *found);
 
 /* verify_judge.c: compare rows[k], which has run, with its reference and with the rows before it. */
 void verify_judge(VerifyRow *rows, PetscInt k);

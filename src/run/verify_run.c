@@ -1,7 +1,4 @@
-/* A run that is there already, beside those rows of reference.yaml whose case it is.
- *
- * A row's case is known in full (every key with its value), and so is that of a run, which keeps it as case.yaml. Where
- * both say the same, whatever was typed to get there, the run is a run of that row. */
+/* A run that is there already, beside those rows of reference.yaml whose case it is. */
 #include "run/verify.h"
 #include <math.h>
 #include <string.h>
@@ -11,57 +8,15 @@
 #include "run/summary.h"
 #include "run/verify_private.h"
 
-/* Top-level keys on which no result depends, but for round-off. */
-static PetscBool is_idle(const char *line)
-{
-  static const char *const keys[] = {"title:", "output:", "checkpoint:", "linear:", "petsc:", NULL};
-  for (int k = 0; keys[k]; ++k)
-    if (!strncmp(line, keys[k], strlen(keys[k]))) return PETSC_TRUE;
-  return PETSC_FALSE;
-}
-
-/* Take these keys, with the lines that belong to them, out of a resolved case. */
-static void drop_idle(char *text)
-{
-  char *to = text;
-  PetscBool idle = PETSC_FALSE;
-  for (const char *line = text; *line;) {
-    const size_t n = strcspn(line, "\n"), length = line[n] ? n + 1 : n;
-    if (line[0] != ' ' && line[0] != '-') idle = is_idle(line);
-    if (!idle) memmove(to, line, length), to += length;
-    line += length;
-  }
-  *to = '\0';
-}
-
 /* The case of the run. NULL and a message if there is none. */
 static PetscErrorCode ReadRunCase(const Verification *v, Diag *diag, char **text)
 {
-  char file[PETSC_MAX_PATH_LEN], reason[256];
-  size_t size;
+  char reason[256];
 
   PetscFunctionBeginUser;
-  PetscCall(PetscSNPrintf(file, sizeof file, "%s/case.yaml", v->options->run));
-  PetscCall(FileReadEverywhere(v->comm, file, &size, text, reason));
-  if (reason[0]) {
-    DiagError(diag, NULL, "'%s' is no run directory: %s: %s", v->options->run, file, reason);
-    PetscCall(PetscFree(*text));
-  } else {
-    (*text)[size] = '\0';
-    drop_idle(*text);
-  }
-  PetscFunctionReturn(0);
-}
-
-static PetscErrorCode IsCase(const Case *c, const char *text, PetscBool *is)
-{
-  char *own;
-
-  PetscFunctionBeginUser;
-  PetscCall(CaseToYaml(c, &own));
-  drop_idle(own);
-  *is = !strcmp(own, text) ? PETSC_TRUE : PETSC_FALSE;
-  PetscCall(PetscFree(own));
+  PetscCall(VerifyFoundCase(v->comm, v->options->run, text, reason));
+  if (!*text)
+    DiagError(diag, NULL, "'%s' is no run directory: %s/case.yaml: %s", v->options->run, v->options->run, reason);
   PetscFunctionReturn(0);
 }
 
@@ -79,7 +34,7 @@ static PetscErrorCode KeepRows(Verification *v, const char *text, Diag *diag, Pe
     is = PETSC_FALSE;
     if (!DiagErrors(diag)) {
       PetscCall(VerifyPlanRow(v, r, diag, &c));
-      if (c) PetscCall(IsCase(c, text, &is));
+      if (c) PetscCall(VerifyIsCase(c, text, &is));
       if (is) *end = c->analysis.end;
       PetscCall(CaseDestroy(&c));
     }

@@ -27,7 +27,7 @@ says run/log.txt "method = mpm" "ranks = 2" "step = 50 time = 0.1 " "seconds ="
 says screen.txt "step = 50 time = 0.1 "
 if grep -q "$(printf '\r')" run/log.txt screen.txt; then fail "log: a carriage return"; fi
 [ "$(grep -c '^step = ' run/log.txt)" -eq 50 ] || fail "log: not every step"
-says run/version.txt "talus = " "petsc = " "mpi = " "ranks = 2"
+says run/version.txt "talus = " "sources = " "petsc = " "mpi = " "ranks = 2"
 says run/timings.txt "total [s] = " "linear [s] = "
 
 # The resolved case runs and gives the same

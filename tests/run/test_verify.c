@@ -235,6 +235,75 @@ static void what_is_no_whole_run_is_not_compared(void **state)
   free(text);
 }
 
+static void remove_file(const char *path)
+{
+  char whole[512];
+  snprintf(whole, sizeof whole, "%s/%s", root, path);
+  if (rank == 0) assert_int_equal(unlink(whole), 0);
+  MPI_Barrier(PETSC_COMM_WORLD);
+}
+
+/* What is finished is taken over with its numbers; what has no end, or another case, is run. */
+static void a_verification_goes_on(void **state)
+{
+  (void)state;
+  char *text;
+  make_case("more", "-0.5996592", "");
+  assert_int_equal(verify("more", (VerifyOptions){.only = "tip"}, &text), VERIFY_PASSED);
+  free(text);
+  assert_int_equal(verify("more", (VerifyOptions){.only = "way", .resume = PETSC_TRUE}, &text), VERIFY_PASSED);
+  free(text);
+  remove_file("out-more/tip/mpm/h_0.5/timings.txt"); /* a later study has this run, too */
+  /* marks: runs that are done again would write these files */
+  remove_file("out-more/tip/fem/h_0.5/log.txt");
+  remove_file("out-more/tip/mpm/h_0.5/log.txt");
+  remove_file("out-more/way/mpm/h_0.5/log.txt");
+  remove_file("out-more/tip/mpm/h_0.25/timings.txt"); /* was cut off */
+  make_case("more", "-0.5996592", ", sets: {fem: {materials.rubber.poisson: 0.1}}");
+  assert_int_equal(verify("more", (VerifyOptions){.resume = PETSC_TRUE}, &text), VERIFY_OFF);
+  SAYS(text, "2 of 4 rows pass"); /* that of fem is another case now, with which mpm no longer agrees */
+  SAYS(text, "0.000340813");      /* of a study that shares a run taken over */
+  free(text);
+  assert_false(is_there("out-more/tip/fem/h_0.5/log.txt") || is_there("out-more/tip/mpm/h_0.5/log.txt") ||
+               is_there("out-more/way/mpm/h_0.5/log.txt"));
+  assert_true(is_there("out-more/tip/mpm/h_0.25/timings.txt"));
+  make_case("more", "-0.5996592", "");
+  assert_int_equal(verify("more", (VerifyOptions){.resume = PETSC_TRUE, .only = "tip"}, &text), VERIFY_PASSED);
+  free(text);
+  assert_int_equal(verify("more", (VerifyOptions){.only = "tip"}, &text), VERIFY_PASSED);
+  assert_true(is_there("out-more/tip/fem/h_0.5/log.txt")); /* without --resume all is run */
+  free(text);
+}
+
+/* A table says which of its rows another program computed. */
+static void other_programs_are_named(void **state)
+{
+  (void)state;
+  char *text, path[512], line[512], head[2048] = "";
+  make_case("older", "-0.5996592", "");
+  assert_int_equal(verify("older", (VerifyOptions){.only = "tip"}, &text), VERIFY_PASSED);
+  free(text);
+  MPI_Barrier(PETSC_COMM_WORLD);
+  if (rank == 0) {
+    int ranks;
+    MPI_Comm_size(PETSC_COMM_WORLD, &ranks);
+    snprintf(line, sizeof line, "talus = 0.0.9\nsources = abcdef0\nranks = %d\n", ranks);
+    write_file("out-older", "tip/fem/h_0.5/version.txt", line);
+    write_file("out-older", "tip/mpm/h_0.5/version.txt", "talus = 0.0.9\nsources = abcdef1\nranks = 77\n");
+  }
+  MPI_Barrier(PETSC_COMM_WORLD);
+  assert_int_equal(verify("older", (VerifyOptions){.resume = PETSC_TRUE, .only = "tip"}, &text), VERIFY_PASSED);
+  free(text);
+  if (rank != 0) return;
+  snprintf(path, sizeof path, "%s/out-older/verification.md", root);
+  FILE *in = fopen(path, "r");
+  assert_non_null(in);
+  head[fread(head, 1, sizeof head - 1, in)] = '\0';
+  fclose(in);
+  SAYS(head, "1 of its rows were computed before, with abcdef0.");
+  assert_null(strstr(head, "abcdef1")); /* on other ranks: run again */
+}
+
 static void a_run_that_gives_up_is_told(void **state)
 {
   (void)state;
@@ -295,6 +364,8 @@ int main(int argc, char **argv)
     cmocka_unit_test(a_run_that_gives_up_is_told),
     cmocka_unit_test(bad_input_runs_nothing),
     cmocka_unit_test(a_run_is_compared_with_its_rows),
+    cmocka_unit_test(a_verification_goes_on),
+    cmocka_unit_test(other_programs_are_named),
     cmocka_unit_test(what_is_no_whole_run_is_not_compared),
   };
   if (PetscInitialize(&argc, &argv, NULL, NULL)) return 1;
