@@ -24,6 +24,36 @@ PetscErrorCode GridCloudDestroy(GridCloud **cloud)
   PetscFunctionReturn(0);
 }
 
+static PetscBool cells_are_alike(const Grid *grid)
+{
+  if (!grid->box) return PETSC_FALSE;
+  for (PetscInt d = 0; d < grid->dim; ++d) {
+    const PetscReal mean = (grid->max[d] - grid->min[d]) / (PetscReal)grid->box->counts[d];
+    for (PetscInt i = 0; i < grid->box->counts[d]; ++i) {
+      const PetscReal size = grid->box->line[d][i + 1] - grid->box->line[d][i];
+      if (size > grid->smallest * (1 + 1e-9) || mean > grid->smallest * (1 + 1e-9)) return PETSC_FALSE;
+    }
+  }
+  return PETSC_TRUE;
+}
+
+PetscErrorCode GridSpacing(const Grid *grid, PetscInt n, const PetscInt *cell, PetscReal *spacing)
+{
+  static const PetscReal share[] = {2, 1, 6, 1}; /* cells to a square or a cube */
+  PetscReal x[3 * CELL_MAX_NODES], sum[2] = {0, (PetscReal)n};
+
+  PetscFunctionBeginUser;
+  *spacing = grid->smallest;
+  if (cells_are_alike(grid)) PetscFunctionReturn(0);
+  for (PetscInt k = 0; k < n; ++k) {
+    grid_cell_x(grid, cell[k], x);
+    sum[0] += share[grid->type] * cell_volume(grid->type, x);
+  }
+  PetscCall(MPIU_Allreduce(MPI_IN_PLACE, sum, 2, MPIU_REAL, MPI_SUM, grid->comm));
+  if (sum[1] > 0) *spacing = PetscPowReal(sum[0] / sum[1], 1 / (PetscReal)grid->dim);
+  PetscFunctionReturn(0);
+}
+
 /* Numbers that hang on the set of owned nodes. */
 static PetscErrorCode CountOwned(Grid *grid)
 {
@@ -77,7 +107,8 @@ static PetscErrorCode Populate(const Grid *mesh, const unsigned char *marked, co
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode GridCreateCloud(const Grid *mesh, const unsigned char *marked, const unsigned char *twin, Grid **cloud)
+PetscErrorCode GridCreateCloud(const Grid *mesh, PetscReal spacing, const unsigned char *marked,
+                               const unsigned char *twin, Grid **cloud)
 {
   Grid *g;
   PetscMPIInt size;
@@ -95,6 +126,7 @@ PetscErrorCode GridCreateCloud(const Grid *mesh, const unsigned char *marked, co
   for (PetscInt i = 0; i < mesh->n_owned; ++i) g->n_owned += marked[i] ? 1 + (twin[i] != 0) : 0;
   g->n_nodes = g->n_owned;
   g->cloud->first_twin = mesh->n_nodes_global;
+  g->cloud->spacing = spacing;
   PetscCall(PetscMalloc1(g->n_nodes * g->dim, &g->x));
   PetscCall(PetscMalloc1(g->n_nodes * g->dim, &g->cloud->x0));
   PetscCall(PetscMalloc1(g->n_nodes, &g->cloud->id));

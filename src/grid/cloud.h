@@ -17,6 +17,7 @@ typedef struct {
 typedef struct GridCloud {
   PetscInt *id;        /* n_nodes: for life, whatever the ranks */
   PetscInt first_twin; /* ids from here on are twins */
+  PetscReal spacing;   /* of nodes in the body, at the start, m: unit of length of clouds */
   PetscReal *x0;       /* n_nodes x dim: positions at the start, m */
   PetscInt n_fields;
   CloudField field[CLOUD_MAX_FIELDS];
@@ -33,9 +34,13 @@ typedef struct {
   PetscReal *x; /* n x dim */
 } RemoteNodes;
 
+/* Collective. Spacing of nodes in the cells listed (of all ranks, each counted as often as it is listed): the edge of a square or cube of their
+ * mean volume, of which a triangle is half and a tetrahedron a sixth; on a box of equal cells its cell size. */
+PetscErrorCode GridSpacing(const Grid *mesh, PetscInt n, const PetscInt *cell, PetscReal *spacing);
 /* Collective. The cloud of the owned nodes of a mesh that are marked; where twin[node] is set it gets a twin: a second node at the same
  * place that carries the multipliers of a constraint and never is a neighbour. */
-PetscErrorCode GridCreateCloud(const Grid *mesh, const unsigned char *marked, const unsigned char *twin, Grid **cloud);
+PetscErrorCode GridCreateCloud(const Grid *mesh, PetscReal spacing, const unsigned char *marked,
+                               const unsigned char *twin, Grid **cloud);
 PetscErrorCode GridCloudDestroy(GridCloud **cloud);
 
 static inline PetscBool cloud_is_twin(const Grid *grid, PetscInt node)

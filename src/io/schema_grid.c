@@ -22,7 +22,7 @@ static const SchemaWord outside_words[] = {
   {NULL, 0, NULL},
 };
 static const SchemaWord weights_words[] = {
-  {"auto", WEIGHTS_AUTO, "equal for mpm, gauss for fem"},
+  {"auto", WEIGHTS_AUTO, "equal for mpm, gauss for fem and gmm"},
   {"equal", WEIGHTS_EQUAL, "the points of a cell share its mass equally"},
   {"gauss", WEIGHTS_GAUSS, "by the weights of the Gauss rule"},
   {NULL, 0, NULL},

@@ -8,7 +8,7 @@ static void choose_rule(const Stage *s, Gmm *g)
   static const CloudOrder order[] = {CLOUD_LINEAR, CLOUD_BILINEAR, CLOUD_QUADRATIC};
   const BasisSpec *b = &s->c->basis;
   const PetscBool mls = b->kind == BASIS_MLS ? PETSC_TRUE : PETSC_FALSE;
-  g->rule.h = s->grid->smallest;
+  g->rule.h = s->grid->cloud->spacing;
   g->rule.support = mls ? support_default_mls : support_default_lme;
   g->rule.support.rule = rule[b->choice];
   g->rule.support.radius = b->radius;
@@ -89,7 +89,7 @@ static PetscErrorCode BoundaryImpulse(Stage *s)
 static PetscReal starved(const Stage *s, PetscInt node, PetscReal density)
 {
   const PetscInt dim = s->grid->dim;
-  const PetscReal h = s->grid->smallest, corner = density * (dim == 3 ? h * h * h / 16 : h * h / 8);
+  const PetscReal h = s->grid->cloud->spacing, corner = density * (dim == 3 ? h * h * h / 16 : h * h / 8);
   for (PetscInt d = 0; d < dim; ++d)
     if (s->boundary->fixed[node * dim + d]) return 0; /* held: what it would do without mass does not matter */
   return PetscMax(0, 1 - PetscMax(0, s->mass[node]) / corner);
@@ -100,7 +100,7 @@ static PetscReal starved(const Stage *s, PetscInt node, PetscReal density)
 static PetscErrorCode Stabilise(Stage *s)
 {
   const Support *w = s->support;
-  const PetscReal h = s->grid->smallest, length = s->grid->dim == 3 ? h : 1;
+  const PetscReal h = s->grid->cloud->spacing, length = s->grid->dim == 3 ? h : 1;
 
   PetscFunctionBeginUser;
   if (w->n_groups > s->group_capacity) {

@@ -33,6 +33,7 @@ PetscErrorCode ModelToCloud(Model *m)
   const BasisSpec *basis = &m->c->basis;
   Grid *cloud;
   Boundary *boundary;
+  PetscReal spacing;
   unsigned char *marked, *twin;
 
   PetscFunctionBeginUser;
@@ -41,7 +42,8 @@ PetscErrorCode ModelToCloud(Model *m)
   if (basis->essential == ESSENTIAL_DIRECT || (basis->essential == ESSENTIAL_AUTO && basis->kind == BASIS_LME))
     PetscCall(PetscArrayzero(twin, m->grid->n_owned));
   PetscCall(LoadsLeaveCells(m->loads, m->grid, m->points));
-  PetscCall(GridCreateCloud(m->grid, marked, twin, &cloud));
+  PetscCall(GridSpacing(m->grid, m->points->n, m->points->cell, &spacing));
+  PetscCall(GridCreateCloud(m->grid, spacing, marked, twin, &cloud));
   PetscCall(BoundaryToCloud(m->boundary, m->grid, marked, cloud, &boundary));
   leave_cells(m->grid, m->points);
   leave_cells(m->grid, m->tracers);

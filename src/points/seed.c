@@ -68,7 +68,7 @@ static PetscErrorCode FindMaterial(Seeding *s)
 
 static PetscBool choose_weights(const Case *c, const BodySpec *body)
 {
-  if (body->weights == WEIGHTS_AUTO) return (PetscBool) !!strcmp(c->method, "fem");
+  if (body->weights == WEIGHTS_AUTO) return (PetscBool)!strcmp(c->method, "mpm");
   return (PetscBool)(body->weights == WEIGHTS_EQUAL);
 }
 
