@@ -1,6 +1,8 @@
-// Cook's membrane: n x n trapezoids, each cut by its diagonal from bottom left to top right, in a margin of empty cells into which
-// material points may move. quads = 1: whole cells and no margin, for finite elements.
-DefineConstant[ n = {16, Min 1, Name "cells a side"}, quads = {0, Choices {0, 1}, Name "whole cells"} ];
+// Cook's membrane: n x n trapezoids, in a margin of empty cells into which material points may move. Each is cut by its diagonal from
+// bottom left to top right (cut = 0, as in the thesis), by the other one (1), or by both in turn (2).
+// quads = 1: whole cells and no margin, for finite elements.
+DefineConstant[ n = {16, Min 1, Name "cells a side"}, quads = {0, Choices {0, 1}, Name "whole cells"},
+                cut = {0, Choices {0, 1, 2}, Name "diagonals"} ];
 Point(1) = {0, 0, 0};
 Point(2) = {48, 44, 0};
 Point(3) = {48, 60, 0};
@@ -12,7 +14,13 @@ Line(4) = {4, 1};
 Curve Loop(1) = {1, 2, 3, 4};
 Plane Surface(1) = {1};
 Transfinite Curve {1, 2, 3, 4} = n + 1;
-Transfinite Surface {1} = {1, 2, 3, 4} Right;
+If (cut == 0)
+  Transfinite Surface {1} = {1, 2, 3, 4} Right;
+ElseIf (cut == 1)
+  Transfinite Surface {1} = {1, 2, 3, 4} Left;
+Else
+  Transfinite Surface {1} = {1, 2, 3, 4} Alternate;
+EndIf
 Physical Surface("membrane") = {1};
 If (quads)
   Recombine Surface {1};
