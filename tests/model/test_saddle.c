@@ -1,0 +1,92 @@
+/* Linear solvers of the mixed formulation: the iterative one against the direct one, and on several ranks against one. */
+#include "case_builder.h"
+#include "model/model_private.h"
+
+typedef struct {
+  const char *law;
+  PetscInt n;
+  NamedValue value[4];
+} Solid;
+
+#define N(name, number)  \
+  {                      \
+    (char *)name, number \
+  }
+static const Solid nearly = {"neo-hookean-split", 2, {N("young", 1e6), N("poisson", 0.4999)}},
+                   exactly = {"neo-hookean-split-log", 2, {N("young", 1e6), N("poisson", 0.5)}},
+                   metal = {
+                     "j2", 4, {N("young", 1e6), N("poisson", 0.4999), N("yield_stress", 3e4), N("hardening", 1e5)}};
+
+static void use_solid(Bench *b, const Solid *solid)
+{
+  b->c.formulation = (char *)"mixed";
+  b->c.mixed.stabilisation = 8;
+  b->material.law = (char *)solid->law;
+  b->material.n_parameters = solid->n;
+  b->material.parameters = (NamedValue *)solid->value;
+}
+
+/* The iterative solver gives the direct one's answer, in statics and dynamics, with few iterations. */
+static void solvers(const char *method, CellType cell, PetscInt cells_per_side, const Solid *solid, PetscBool dynamic)
+{
+  Model *m[2];
+  Bench b[2];
+  for (int k = 0; k < 2; ++k) {
+    bench_init(&b[k], method, cell, cells_per_side);
+    use_solid(&b[k], solid);
+    b[k].c.newton.residual = 1e-10;
+    b[k].c.linear = k ? LINEAR_ITERATIVE : LINEAR_DIRECT;
+    b[k].c.gravity[1] = -50;
+    if (dynamic) bench_dynamic(&b[k], 0.01, 0.002);
+    bench_motion(&b[k], 1, 0, MOTION_FIXED, 7);
+    m[k] = bench_model(&b[k], PETSC_COMM_WORLD);
+    for (int step = 0; step < (dynamic ? 3 : 1); ++step) {
+      const StepReport r = model_step(m[k], 1);
+      CHECK(r.cuts == 0, "the step was halved");
+      if (k) CHECK(strstr(NewtonLinearName(m[k]->newton), "GMRES"), "%s", NewtonLinearName(m[k]->newton));
+      CHECK(r.newton.linear_iterations <= 60 * r.newton.iterations, "%d linear iterations in %d of Newton",
+            (int)r.newton.linear_iterations, (int)r.newton.iterations);
+    }
+  }
+  PetscReal off = 0;
+  for (PetscInt p = 0; p < m[0]->points->n * m[0]->dim; ++p)
+    off = PetscMax(off, PetscAbsReal(m[0]->points->real[POINT_U][p] - m[1]->points->real[POINT_U][p]));
+  CHECK(off <= 1e-8, "displacements differ by %g m", (double)off);
+  for (int k = 0; k < 2; ++k) CALL(ModelDestroy(&m[k]));
+}
+
+/* The preconditioner gets hardly worse where the body is cut between ranks. */
+static void test_solver_ranks(void **state)
+{
+  PetscInt linear[2];
+  (void)state;
+  for (int k = 0; k < 2; ++k) {
+    Bench b;
+    bench_init(&b, "fem", CELL_TETRAHEDRON, 8);
+    use_solid(&b, &nearly);
+    b.c.linear = LINEAR_ITERATIVE;
+    b.c.gravity[1] = -50;
+    bench_motion(&b, 1, 0, MOTION_FIXED, 7);
+    Model *m = bench_model(&b, k ? PETSC_COMM_WORLD : PETSC_COMM_SELF);
+    const StepReport r = model_step(m, 1);
+    CHECK(r.cuts == 0, "the step was halved");
+    linear[k] = (r.newton.linear_iterations + r.newton.iterations - 1) / r.newton.iterations;
+    CALL(ModelDestroy(&m));
+  }
+  CHECK(linear[0] <= 45, "%d linear iterations", (int)linear[0]);
+  CHECK(linear[1] <= linear[0] + linear[0] / 4, "%d linear iterations instead of %d", (int)linear[1], (int)linear[0]);
+}
+
+static void test_solvers(void **state)
+{
+  (void)state;
+  solvers("fem", CELL_TETRAHEDRON, 4, &exactly, PETSC_FALSE);
+  solvers("fem", CELL_HEXAHEDRON, 4, &nearly, PETSC_FALSE);
+  solvers("mpm", CELL_TRIANGLE, 8, &metal, PETSC_TRUE);
+}
+
+int main(int argc, char **argv)
+{
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_solvers), cmocka_unit_test(test_solver_ranks)};
+  return run_model_tests(argc, argv, tests);
+}
