@@ -15,6 +15,9 @@ best_step() {
 title "laws"
 "$bench/bench_law"
 
+title "the three reference loads: statics, the dry column, a 3D collapse"
+"$bench/bench_loads"
+
 title "a collapsing column: aspect ratio 1.2, mesh 2, 0.5 s"
 "$bench/bench_column"
 title "meshfree bases"

@@ -288,7 +288,8 @@ static PetscErrorCode ChooseNextStep(Model *m, PetscBool shortened, const StepRe
 void ModelTimes(const Model *m, PetscReal seconds[PHASE_N])
 {
   for (int k = 0; k < PHASE_N; ++k) seconds[k] = m->seconds[k];
-  NewtonTimes(m->newton, &seconds[PHASE_POINTS], &seconds[PHASE_MATRIX], &seconds[PHASE_LINEAR]);
+  NewtonTimes(m->newton, &seconds[PHASE_POINTS], &seconds[PHASE_MATRIX], &seconds[PHASE_LINEAR],
+              &seconds[PHASE_NEWTON]);
 }
 
 /* Newton from the motion that inertia alone would bring, and if that fails from rest: where a flow starts or stops the second finds its way. */

@@ -57,5 +57,5 @@ void NewtonGetMemory(const Newton *newton, const System *system, NewtonMemory *m
 void NewtonSetMemory(Newton *newton, const System *system, const NewtonMemory *memory);
 /* Name of the linear solver in use, for the log. */
 const char *NewtonLinearName(const Newton *newton);
-/* Seconds spent so far: points and scatter, matrix filling, linear solves. */
-void NewtonTimes(const Newton *newton, PetscReal *points, PetscReal *matrix, PetscReal *linear);
+/* Seconds spent so far: points and scatter, matrix filling, linear solves, and the rest of Newton's method. */
+void NewtonTimes(const Newton *newton, PetscReal *points, PetscReal *matrix, PetscReal *linear, PetscReal *rest);

@@ -25,7 +25,8 @@ struct Newton {
   PetscReal reaction, external; /* norms at the last assembly, N */
   PetscReal last, before;       /* norms of the residual one iteration ago, and two, N; before: 0 if there was none */
   PetscBool tangent;            /* do the system's values belong to du? */
-  double t_points, t_matrix, t_linear;
+  double t_points, t_matrix, t_linear, t_newton;
+  double solving; /* when the linear solve that is going on began */
 };
 
 /* Will this residual be the last? If it falls by the same factor once more it is far below the tolerance: no tangent will be asked for. */
