@@ -2,17 +2,16 @@
  *
  * A cloud is padded to whole packs by nodes of weight 0 at the point itself, so no loop has a tail. */
 #pragma once
+#include "base/lanes.h"
 #include "basis/cloud.h"
-#include <math.h>
-#include <stdint.h>
 
-#define PACK 8
+#define PACK LANES
 #define CLOUD_MAX_PACKS (CLOUD_MAX_NODES / PACK)
 #define CLOUD_INLINE static inline __attribute__((always_inline))
 #define CLOUD_PAD -1e30 /* the exponent of a node that only pads */
 
-typedef PetscReal Pack __attribute__((vector_size(PACK * sizeof(PetscReal))));
-typedef int64_t PackBits __attribute__((vector_size(PACK * sizeof(int64_t))));
+typedef Lanes Pack;
+typedef LaneBits PackBits;
 
 /* Lengths in units of h. The weight of a node is exp(exponent) * window before the basis does anything to it. */
 typedef struct {
@@ -22,25 +21,6 @@ typedef struct {
   Pack window[CLOUD_MAX_PACKS];    /* 1 inside, 0 at the reach; written only if there is a reach */
   Pack steepness[CLOUD_MAX_PACKS]; /* gradient of the window = steepness * d; likewise */
 } Cloud;
-
-/* y = exp(x) to 2 ulp; below exp(-700) it stays there, NaN comes through. */
-CLOUD_INLINE void pack_exp(const Pack *x, Pack *y)
-{
-  static const PetscReal inverse[] = {
-    1.0,        1.0,         1.0 / 2,      1.0 / 6,       1.0 / 24,       1.0 / 120,      1.0 / 720,
-    1.0 / 5040, 1.0 / 40320, 1.0 / 362880, 1.0 / 3628800, 1.0 / 39916800, 1.0 / 479001600};
-  const Pack zero = {0}, magic = zero + 0x1.8p52, low = zero - 700.0, high = zero + 700.0;
-  PackBits mask = *x < low;
-  Pack v = (Pack)(((PackBits)*x & ~mask) | ((PackBits)low & mask));
-  mask = v > high;
-  v = (Pack)(((PackBits)v & ~mask) | ((PackBits)high & mask));
-  const Pack shifted = v * 0x1.71547652b82fep0 + magic, k = shifted - magic;
-  const Pack r = (v - k * 0x1.62e42fefa39efp-1) - k * 0x1.abc9e3b39803fp-56;
-  Pack sum = zero + inverse[12];
-  for (int i = 11; i >= 0; --i) sum = sum * r + inverse[i];
-  const PackBits power = ((PackBits)shifted << 52) + ((PackBits)(zero + 1.0));
-  *y = sum * (Pack)power;
-}
 
 CLOUD_INLINE PetscReal pack_sum(const Pack *v)
 {

@@ -58,7 +58,7 @@ CLOUD_INLINE void lme_moments(int dim, PetscBool windowed, PetscReal gamma, cons
   for (int i = 0; i < cloud->packs; ++i) {
     const Pack exponent = s->e[i] - top;
     Pack e;
-    pack_exp(&exponent, &e);
+    lanes_exp(&exponent, &e);
     if (windowed) {
       s->bare[i] = e;
       e *= cloud->window[i];

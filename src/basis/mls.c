@@ -36,7 +36,7 @@ CLOUD_INLINE void mls_gaussian(PetscReal radius, const Cloud *cloud, Pack *w, Pa
   for (int a = 0; a < cloud->n; ++a) nearest = PetscMin(nearest, cloud->r2[a / PACK][a % PACK]);
   for (int i = 0; i < cloud->packs; ++i) {
     const Pack exponent = (nearest - cloud->r2[i]) * rate;
-    pack_exp(&exponent, &w[i]);
+    lanes_exp(&exponent, &w[i]);
     q[i] = (2.0 * rate) * w[i];
   }
 }

@@ -2,17 +2,11 @@
  *
  * A batch is always worked off in whole lanes (the last point fills those left over), so that a point's result does not
  * depend on the batch it came in, to the last bit. Arrays of points stand in memory point by point; here each component
- * is one Lanes. GCC and Clang both know vector_size; lanes are passed by pointer, because the calling convention for
- * vectors wider than the machine's is not settled. */
+ * is one Lanes. */
 #pragma once
+#include "base/lanes.h"
 #include "base/tensor.h"
 #include "material/law.h"
-#include <math.h>
-
-#define LANES 8
-#define LANES_INLINE static inline __attribute__((always_inline))
-
-typedef PetscReal Lanes __attribute__((vector_size(LANES * sizeof(PetscReal))));
 
 /* to[k] = component k of the n points at `from`, `components` numbers each. */
 LANES_INLINE void lanes_load(int components, PetscInt n, const PetscReal *from, Lanes *to)
@@ -33,21 +27,6 @@ LANES_INLINE void lanes_store(int components, PetscInt n, const Lanes *from, Pet
   }
   for (int l = 0; l < n; ++l)
     for (int k = 0; k < components; ++k) to[l * components + k] = from[k][l];
-}
-
-LANES_INLINE void lanes_log(const Lanes *x, Lanes *y)
-{
-  for (int l = 0; l < LANES; ++l) (*y)[l] = log((*x)[l]);
-}
-
-LANES_INLINE void lanes_sqrt(const Lanes *x, Lanes *y)
-{
-  for (int l = 0; l < LANES; ++l) (*y)[l] = sqrt((*x)[l]);
-}
-
-LANES_INLINE void lanes_cbrt(const Lanes *x, Lanes *y)
-{
-  for (int l = 0; l < LANES; ++l) (*y)[l] = cbrt((*x)[l]);
 }
 
 LANES_INLINE void lanes_det(const Lanes a[9], Lanes *det)

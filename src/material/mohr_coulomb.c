@@ -9,8 +9,8 @@
  * A point beyond the apex is left with the elastic strain of the apex: with c = 0 it is stress-free, b^e = I. How far it
  * has opened is not remembered, so that the next compression meets a solid at once. There the tangent is zero. */
 #include "material/mohr_coulomb_return.h"
-#include "material/law.h"
 #include "material/principal.h"
+#include "material/principal_lanes.h"
 #include "material/shape.h"
 
 enum { FRICTION, DILATANCY, COHESION, CUTOFF };
@@ -18,87 +18,174 @@ enum { FRICTION, DILATANCY, COHESION, CUTOFF };
 #define N_STATE 7 /* b^e, equivalent plastic strain */
 #define NO_CUTOFF 1e300
 
-/* What the spectral decomposition of one point gave. */
+/* What the spectral decomposition of eight points gave. */
 typedef struct {
-  PetscReal b[6], stretch2[3], strain[3], v[9], basis[36];
+  Lanes b[6], stretch2[3], strain[3], basis[36];
+  Lanes det, flow; /* of the increment; equivalent plastic strain so far */
+  LaneBits finite; /* is b of use? */
 } Trial;
 
-static LawStatus trial_state(const PetscReal dF[9], const PetscReal *old, Trial *t)
+LANES_INLINE void trial_lanes(PetscInt n, const PetscReal *dF, const PetscReal *old, Trial *t)
 {
-  const PetscReal det = tensor_det(dF);
-  PetscReal sum = 0.0;
-  if (det <= 0.0) return LAW_INVERTED;
-  sym_push_forward(dF, old, t->b);
-  for (int k = 0; k < 6; ++k) sum += fabs(t->b[k]);
-  if (!isfinite(det) || !isfinite(sum * sum)) return LAW_NOT_FINITE;
-  sym_eigen(t->b, t->stretch2, t->v);
-  if (!(t->stretch2[2] > 0.0)) return LAW_NOT_FINITE; /* lost to rounding: stretches 1e8 apart */
-  for (int a = 0; a < 3; ++a) t->strain[a] = 0.5 * log(t->stretch2[a]);
-  principal_basis(t->v, t->basis);
-  return LAW_OK;
+  const Lanes one = (Lanes){0} + 1.0, none = {0};
+  Lanes f[9], before[N_STATE], v[9], size, sum = none;
+  lanes_load(9, n, dF, f);
+  lanes_load(N_STATE, n, old, before);
+  t->flow = before[6];
+  lanes_det(f, &t->det);
+  lanes_push_forward(f, before, t->b);
+  for (int k = 0; k < 6; ++k) {
+    lanes_abs(&t->b[k], &size);
+    sum += size;
+  }
+  t->finite = (sum * sum <= PETSC_MAX_REAL) & (t->det <= PETSC_MAX_REAL) & (t->det > 0.0);
+  for (int k = 0; k < 6; ++k) lanes_select(&t->finite, &t->b[k], k < 3 ? &one : &none, &t->b[k]);
+  lanes_sym_eigen(t->b, t->stretch2, v);
+  t->finite &= t->stretch2[2] > 0.0; /* lost to rounding: stretches 1e8 apart */
+  for (int a = 0; a < 3; ++a) {
+    lanes_log(&t->stretch2[a], &t->strain[a]);
+    t->strain[a] *= 0.5;
+  }
+  lanes_principal_basis(v, t->basis);
+}
+
+/* Stresses on the surface or inside. Most points that flow are on the shear plane: that return is made here, others point by point. */
+LANES_INLINE void return_lanes(const PetscReal *p, const Lanes e[3], Lanes tau[3], LaneBits *regions)
+{
+  const Lanes volume = p[MC_LAMBDA] * (e[0] + e[1] + e[2]);
+  Lanes size[2], t[3];
+  for (int k = 0; k < 3; ++k) tau[k] = volume + 2.0 * p[MC_MU] * e[k];
+  lanes_abs(&tau[0], &size[0]);
+  lanes_abs(&tau[2], &size[1]);
+  const Lanes noise = p[MC_NOISE] + 4.0 * PETSC_MACHINE_EPSILON * (p[MC_K] * size[0] + size[1] + p[MC_Q]);
+  const Lanes f = p[MC_K] * tau[0] - tau[2] - p[MC_Q];
+  const LaneBits shear = f > noise, beyond = shear | (tau[0] - p[MC_CUT] > noise);
+  *regions = beyond & 0;
+  if (!lanes_any(&beyond)) return;
+  for (int k = 0; k < 3; ++k) t[k] = tau[k] - f * p[MC_R0 + k];
+  const LaneBits plane = shear & (t[0] >= t[1]) & (t[1] >= t[2]) & (t[0] <= p[MC_CUT]), others = beyond & ~plane;
+  for (int k = 0; k < 3; ++k) lanes_select(&plane, &t[k], &tau[k], &tau[k]);
+  *regions = plane & MC_PLANE;
+  if (!lanes_any(&others)) return;
+  for (int l = 0; l < LANES; ++l) {
+    if (!others[l]) continue;
+    PetscReal one[3];
+    (*regions)[l] = mc_return(p, (PetscReal[3]){e[0][l], e[1][l], e[2][l]}, one);
+    for (int k = 0; k < 3; ++k) tau[k][l] = one[k];
+  }
 }
 
 /* b^e of the returned stress. An elastic point keeps its trial b to the last bit. */
-static void plastic_state(const PetscReal *p, const Trial *t, const PetscReal tau[3], const PetscReal *old,
-                          PetscReal *state)
+LANES_INLINE void state_lanes(const PetscReal *p, const Trial *t, const Lanes tau[3], const LaneBits *regions,
+                              Lanes state[6], Lanes *flow)
 {
-  PetscReal elastic[3], stretch2[3], norm2 = 0.0;
-  mc_compliance(p, tau, elastic);
+  const Lanes share = p[MC_LAMBDA] / (3.0 * p[MC_LAMBDA] + 2.0 * p[MC_MU]) * (tau[0] + tau[1] + tau[2]), none = {0};
+  const LaneBits plastic = *regions != MC_ELASTIC;
+  Lanes stretch2[3], b[6], norm2 = none;
+  for (int k = 0; k < 6; ++k) state[k] = t->b[k];
+  *flow = none;
+  if (!lanes_any(&plastic)) return;
   for (int a = 0; a < 3; ++a) {
-    norm2 += (t->strain[a] - elastic[a]) * (t->strain[a] - elastic[a]);
-    stretch2[a] = exp(2.0 * elastic[a]);
+    const Lanes elastic = (tau[a] - share) / (2.0 * p[MC_MU]), twice = 2.0 * elastic;
+    norm2 += (t->strain[a] - elastic) * (t->strain[a] - elastic);
+    lanes_exp(&twice, &stretch2[a]);
   }
-  principal_tensor(stretch2, t->basis, state);
-  state[6] = old[6] + sqrt(norm2 / (1.0 + p[MC_M] * p[MC_M]));
+  lanes_principal_tensor(stretch2, t->basis, b);
+  norm2 /= 1.0 + p[MC_M] * p[MC_M];
+  lanes_sqrt(&norm2, &norm2);
+  lanes_select(&plastic, &norm2, &none, flow);
+  for (int k = 0; k < 6; ++k) lanes_select(&plastic, &b[k], &state[k], &state[k]);
 }
 
-static void tangent(const PetscReal *p, const Trial *t, McRegion region, const PetscReal tau[3], PetscReal *c)
+LANES_INLINE void moduli_lanes(const PetscReal *p, const LaneBits *regions, Lanes D[9])
 {
-  PetscReal D[9], shear[3];
-  mc_moduli(p, region, D);
+  const LaneBits plane = *regions == MC_PLANE, others = *regions > MC_PLANE;
+  PetscReal elastic[9], plastic[9];
+  mc_moduli(p, MC_ELASTIC, elastic);
+  mc_moduli(p, MC_PLANE, plastic);
+  for (int k = 0; k < 9; ++k) {
+    const Lanes yes = (Lanes){0} + plastic[k], no = (Lanes){0} + elastic[k];
+    lanes_select(&plane, &yes, &no, &D[k]);
+  }
+  if (!lanes_any(&others)) return;
+  for (int l = 0; l < LANES; ++l) {
+    if (!others[l]) continue;
+    mc_moduli(p, (McRegion)(*regions)[l], plastic);
+    for (int k = 0; k < 9; ++k) D[k][l] = plastic[k];
+  }
+}
+
+/* (tau_A - tau_B) / (e_A - e_B) of the pair a < b. Elastic differences keep 2 mu exactly, equal stresses give 0; in
+ * between the return only shrinks differences, which bounds what rounding can do to nearly equal strains. */
+LANES_INLINE void difference_lanes(const PetscReal *p, const LaneBits *regions, const Lanes e[3], const Lanes tau[3],
+                                   int a, int b, Lanes *r)
+{
+  const Lanes none = {0}, full = none + 2.0 * p[MC_MU], rise = tau[a] - tau[b], x = e[a] - e[b], slope = rise / x;
+  const LaneBits equal = rise == 0.0, less = rise < full * x;
+  LaneBits elastic = *regions == MC_ELASTIC;
+  if (a == 1) elastic |= *regions == MC_CUT_PLANE;
+  lanes_select(&less, &slope, &full, r);
+  lanes_select(&equal, &none, r, r);
+  lanes_select(&elastic, &full, r, r);
+}
+
+LANES_INLINE void tangent_lanes(const PetscReal *p, const Trial *t, const LaneBits *regions, const Lanes tau[3],
+                                PetscInt n, PetscReal *c)
+{
+  Lanes D[9], shear[3], all[36], r, coth;
+  moduli_lanes(p, regions, D);
   for (int k = 0; k < 3; ++k) {
     const int a = k == 2 ? 0 : k, b = k == 2 ? 2 : k + 1; /* 12, 23, 31 as 13 */
-    const PetscReal x = t->strain[a] - t->strain[b];
-    const PetscReal r = mc_difference(p, region, t->strain, tau, a, b);
-    shear[k] = 0.5 * (r * principal_coth(x, t->stretch2[a], t->stretch2[b]) - tau[a] - tau[b]);
+    const Lanes x = t->strain[a] - t->strain[b];
+    difference_lanes(p, regions, t->strain, tau, a, b, &r);
+    lanes_principal_coth(&x, &t->stretch2[a], &t->stretch2[b], &coth);
+    shear[k] = 0.5 * (r * coth - tau[a] - tau[b]);
   }
-  principal_tangent(D, tau, shear, t->basis, c);
+  lanes_principal_tangent(D, tau, shear, t->basis, all);
+  lanes_store(36, n, all, c);
 }
 
-static LawStatus update_point(const PetscReal *p, const PetscReal *dF, const PetscReal *old, PetscReal *state,
-                              PetscReal *tau, PetscReal *c)
+/* Points that failed keep their state and carry no stress. */
+static LawStatus give_up(const Trial *t, PetscInt n, const PetscReal *old, PetscReal *state, PetscReal *tau,
+                         PetscReal *c)
 {
+  LawStatus worst = LAW_OK;
+  for (PetscInt l = 0; l < PetscMin(n, LANES); ++l) {
+    if (t->finite[l]) continue;
+    const LawStatus status = t->det[l] <= 0.0 ? LAW_INVERTED : LAW_NOT_FINITE;
+    worst = PetscMax(worst, status);
+    for (int k = 0; k < N_STATE; ++k) state[l * N_STATE + k] = old[l * N_STATE + k];
+    for (int k = 0; k < 6; ++k) tau[l * 6 + k] = 0.0;
+    for (int k = 0; c && k < 36; ++k) c[l * 36 + k] = 0.0;
+  }
+  return worst;
+}
+
+LANES_INLINE LawStatus update_lanes(const PetscReal *p, PetscInt n, const PetscReal *dF, const PetscReal *old,
+                                    PetscReal *state, PetscReal *tau, PetscReal *c)
+{
+  Lanes principal[3], now[N_STATE], stress[6], flow;
+  LaneBits regions;
   Trial t;
-  PetscReal principal[3];
-  const LawStatus status = trial_state(dF, old, &t);
-  if (status != LAW_OK) return status;
-  const McRegion region = mc_return(p, t.strain, principal);
-  if (region == MC_ELASTIC) {
-    for (int k = 0; k < 6; ++k) state[k] = t.b[k];
-    state[6] = old[6];
-  } else plastic_state(p, &t, principal, old, state);
-  principal_tensor(principal, t.basis, tau);
-  if (c) tangent(p, &t, region, principal, c);
-  return LAW_OK;
-}
-
-/* A point that failed keeps its state and carries no stress. */
-static void give_up(const PetscReal *old, PetscReal *state, PetscReal *tau, PetscReal *c)
-{
-  for (int k = 0; k < N_STATE; ++k) state[k] = old[k];
-  for (int k = 0; k < 6; ++k) tau[k] = 0.0;
-  for (int k = 0; c && k < 36; ++k) c[k] = 0.0;
+  trial_lanes(n, dF, old, &t);
+  return_lanes(p, t.strain, principal, &regions);
+  state_lanes(p, &t, principal, &regions, now, &flow);
+  now[6] = t.flow + flow;
+  lanes_principal_tensor(principal, t.basis, stress);
+  lanes_store(N_STATE, n, now, state);
+  lanes_store(6, n, stress, tau);
+  if (c) tangent_lanes(p, &t, &regions, principal, n, c);
+  const LaneBits bad = ~t.finite;
+  return lanes_any(&bad) ? give_up(&t, n, old, state, tau, c) : LAW_OK;
 }
 
 static LawStatus update(const PetscReal *parameters, PetscInt n, const PetscReal *dF, const PetscReal *old,
                         PetscReal *state, PetscReal *tau, PetscReal *c)
 {
   LawStatus worst = LAW_OK;
-  for (PetscInt i = 0; i < n; ++i) {
-    PetscReal *ci = c ? c + 36 * i : NULL;
-    const LawStatus status =
-      update_point(parameters, dF + 9 * i, old + N_STATE * i, state + N_STATE * i, tau + 6 * i, ci);
-    if (status != LAW_OK) give_up(old + N_STATE * i, state + N_STATE * i, tau + 6 * i, ci);
+  for (PetscInt i = 0; i < n; i += LANES) {
+    const LawStatus status = update_lanes(parameters, n - i, dF + 9 * i, old + N_STATE * i, state + N_STATE * i,
+                                          tau + 6 * i, c ? c + 36 * i : NULL);
     worst = PetscMax(worst, status);
   }
   return worst;

@@ -207,14 +207,3 @@ static inline void mc_moduli(const PetscReal *p, McRegion region, PetscReal D[9]
   for (int i = 0; i < 3; ++i)
     for (int j = 0; j < 3; ++j) D[3 * i + j] = hooke * (lambda + (i == j ? 2.0 * mu : 0.0)) + left[i] * right[j];
 }
-
-/* (tau_A - tau_B) / (e_A - e_B) of the pair a < b. Elastic differences keep 2 mu exactly, equal stresses give 0; in
- * between the return only shrinks differences, which bounds what rounding can do to nearly equal strains. */
-static inline PetscReal mc_difference(const PetscReal *p, McRegion region, const PetscReal e[3], const PetscReal tau[3],
-                                      int a, int b)
-{
-  const PetscReal full = 2.0 * p[MC_MU], rise = tau[a] - tau[b], x = e[a] - e[b];
-  if (region == MC_ELASTIC || (region == MC_CUT_PLANE && a == 1)) return full;
-  if (rise == 0.0) return 0.0;
-  return rise < full * x ? rise / x : full;
-}

@@ -32,30 +32,3 @@ static inline void principal_tensor(const PetscReal value[3], const PetscReal ba
   const PetscReal d0 = value[0] - value[1], d2 = value[2] - value[1];
   for (int k = 0; k < 6; ++k) s[k] = (k < 3 ? value[1] : 0.0) + d0 * basis[k] + d2 * basis[12 + k];
 }
-
-/* x coth x of the stretches b_A, b_B = exp(2 eps). */
-static inline PetscReal principal_coth(PetscReal x, PetscReal b_a, PetscReal b_b)
-{
-  const PetscReal y = x * x;
-  if (y < 1e-3) return 1.0 + y * (1.0 / 3.0 - y * (1.0 / 45.0 - y * (2.0 / 945.0 - y / 4725.0)));
-  return x * (b_a + b_b) / (b_a - b_b);
-}
-
-/* c = sum_KL B_K M_KL B_L with M = D - 2 tau on the diagonal for the normal part and shear[12, 23, 31]. */
-static inline void principal_tangent(const PetscReal D[9], const PetscReal tau[3], const PetscReal shear[3],
-                                     const PetscReal basis[36], PetscReal *c)
-{
-  PetscReal m[36];
-  for (int a = 0; a < 3; ++a)
-    for (int k = 0; k < 6; ++k) {
-      m[6 * a + k] = D[3 * a] * basis[k] + D[3 * a + 1] * basis[6 + k] + D[3 * a + 2] * basis[12 + k] -
-                     2.0 * tau[a] * basis[6 * a + k];
-      m[6 * (a + 3) + k] = shear[a] * basis[6 * (a + 3) + k];
-    }
-  for (int i = 0; i < 6; ++i)
-    for (int j = 0; j < 6; ++j) {
-      PetscReal sum = 0.0;
-      for (int a = 0; a < 6; ++a) sum += basis[6 * a + i] * m[6 * a + j];
-      c[6 * i + j] = sum;
-    }
-}

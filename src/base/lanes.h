@@ -1,0 +1,79 @@
+/* Eight numbers side by side, and what of the mathematical library they need. GCC and Clang know vector_size and map it on registers of
+ * any width; lanes are passed by pointer, because the calling convention for vectors wider than the machine's is not settled.
+ *
+ * Without -ffast-math compilers call scalar log and exp eight times; these here have no calls and no branches. */
+#pragma once
+#include <math.h>
+#include <petscsys.h>
+#include <stdint.h>
+
+#define LANES 8
+#define LANES_INLINE static inline __attribute__((always_inline))
+
+typedef PetscReal Lanes __attribute__((vector_size(LANES * sizeof(PetscReal))));
+typedef int64_t LaneBits __attribute__((vector_size(LANES * sizeof(int64_t)))); /* of a comparison: -1 where true */
+
+/* to = mask ? yes : no */
+LANES_INLINE void lanes_select(const LaneBits *mask, const Lanes *yes, const Lanes *no, Lanes *to)
+{
+  *to = (Lanes)((*mask & (LaneBits)*yes) | (~*mask & (LaneBits)*no));
+}
+
+LANES_INLINE int lanes_any(const LaneBits *mask)
+{
+  const LaneBits half = *mask | __builtin_shufflevector(*mask, *mask, 4, 5, 6, 7, 0, 1, 2, 3);
+  return (half[0] | half[1] | half[2] | half[3]) != 0;
+}
+
+LANES_INLINE void lanes_abs(const Lanes *x, Lanes *y) { *y = (Lanes)((LaneBits)*x & INT64_MAX); }
+
+LANES_INLINE void lanes_sqrt(const Lanes *x, Lanes *y)
+{
+  for (int l = 0; l < LANES; ++l) (*y)[l] = sqrt((*x)[l]);
+}
+
+LANES_INLINE void lanes_cbrt(const Lanes *x, Lanes *y)
+{
+  for (int l = 0; l < LANES; ++l) (*y)[l] = cbrt((*x)[l]);
+}
+
+/* y = ln x to 1 ulp, also close to 1; NaN where x is no positive normal number. x = 2^k (1 + f) with 1 + f between sqrt(1/2) and sqrt(2),
+ * ln(1 + f) = f - f^2/2 + s (f^2/2 + R(s^2)), s = f / (2 + f); R is the minimax polynomial of Sun's fdlibm. */
+LANES_INLINE void lanes_log(const Lanes *x, Lanes *y)
+{
+  static const PetscReal R[] = {0x1.5555555555593p-1, 0x1.999999997fa04p-2, 0x1.2492494229359p-2, 0x1.c71c51d8e78afp-3,
+                                0x1.7466496cb03dep-3, 0x1.39a09d078c69fp-3, 0x1.2f112df3e5244p-3};
+  const Lanes zero = {0}, magic = zero + 0x1.8p52;
+  const int64_t root = 0x3fe6a09e667f3bcd; /* sqrt(1/2) */
+  const LaneBits bits = (LaneBits)*x - root, power = bits & ~INT64_C(0xfffffffffffff);
+  const Lanes f = (Lanes)((LaneBits)*x - power) - 1.0;
+  const Lanes k = (Lanes)((LaneBits)magic + (power >> 52)) - magic;
+  const Lanes s = f / (2.0 + f), z = s * s, half = 0.5 * f * f;
+  Lanes sum = zero + R[6];
+  for (int i = 5; i >= 0; --i) sum = sum * z + R[i];
+  const Lanes low = s * (half + z * sum) + k * 0x1.a39ef35793c76p-33;
+  const Lanes result = k * 0x1.62e42feep-1 - ((half - low) - f), none = zero + (PetscReal)NAN;
+  const LaneBits usual = (*x >= 0x1p-1022) & (*x <= PETSC_MAX_REAL);
+  lanes_select(&usual, &result, &none, y);
+}
+
+/* y = exp x to 1 ulp; below exp(-700) it stays there, as above exp(700); NaN comes through. */
+LANES_INLINE void lanes_exp(const Lanes *x, Lanes *y)
+{
+  static const PetscReal inverse[] = {
+    1.0,        1.0,         1.0 / 2,      1.0 / 6,       1.0 / 24,       1.0 / 120,       1.0 / 720,
+    1.0 / 5040, 1.0 / 40320, 1.0 / 362880, 1.0 / 3628800, 1.0 / 39916800, 1.0 / 479001600, 1.0 / 6227020800};
+  const Lanes zero = {0}, magic = zero + 0x1.8p52, low = zero - 700.0, high = zero + 700.0;
+  LaneBits mask = *x < low;
+  Lanes v;
+  lanes_select(&mask, &low, x, &v);
+  mask = v > high;
+  lanes_select(&mask, &high, &v, &v);
+  const Lanes shifted = v * 0x1.71547652b82fep0 + magic, k = shifted - magic;
+  const Lanes r = (v - k * 0x1.62e42feep-1) - k * 0x1.a39ef35793c76p-33;
+  Lanes sum = zero + inverse[13];
+  for (int i = 12; i >= 2; --i) sum = sum * r + inverse[i];
+  sum = 1.0 + (r + r * r * sum);
+  const LaneBits power = ((LaneBits)shifted << 52) + (LaneBits)(zero + 1.0);
+  *y = sum * (Lanes)power;
+}

@@ -1,0 +1,110 @@
+/* Logarithm, exponential and eigenvalues of eight numbers at once, against the scalar ones. */
+#include "../conformance/random.h"
+#include <float.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <cmocka.h>
+#include "base/eigen_lanes.h"
+
+/* Distance in units of the last place of the exact value. */
+static PetscReal ulps(PetscReal value, long double exact)
+{
+  const PetscReal near = (PetscReal)exact, next = nextafter(fabs(near), INFINITY) - fabs(near);
+  return (PetscReal)(fabsl((long double)value - exact) / (long double)next);
+}
+
+static void test_log(void **state)
+{
+  (void)state;
+  Random random = {3};
+  PetscReal worst = 0;
+  for (int k = 0; k < 100000; ++k) {
+    Lanes x, y;
+    for (int l = 0; l < LANES; ++l) {
+      const PetscReal size = pow(10, -random_real(&random, 0, 17)), sign = l % 2 ? 1 : -1;
+      x[l] = l < 6 ? 1 + sign * size * random_real(&random, 0, 0.99) : pow(2, random_real(&random, -1021, 1023));
+    }
+    lanes_log(&x, &y);
+    for (int l = 0; l < LANES; ++l) worst = fmax(worst, x[l] == 1 ? fabs(y[l]) : ulps(y[l], logl((long double)x[l])));
+  }
+  print_message("ln: %.3f units of the last place\n", worst);
+  assert_true(worst < 1.0);
+}
+
+static void test_exp(void **state)
+{
+  (void)state;
+  Random random = {4};
+  PetscReal worst = 0;
+  for (int k = 0; k < 100000; ++k) {
+    Lanes x, y;
+    for (int l = 0; l < LANES; ++l)
+      x[l] = (l < 4 ? 1 : 690) * random_real(&random, -1, 1) * pow(10, -random_real(&random, 0, l % 4 ? 10 : 0));
+    lanes_exp(&x, &y);
+    for (int l = 0; l < LANES; ++l) worst = fmax(worst, ulps(y[l], expl((long double)x[l])));
+  }
+  print_message("exp: %.3f units of the last place\n", worst);
+  assert_true(worst < 2.0);
+}
+
+/* Where there is no logarithm a law must see that something is wrong. */
+static void test_ends(void **state)
+{
+  (void)state;
+  const Lanes x = {1, 0, -1, -INFINITY, INFINITY, NAN, DBL_MIN / 2, DBL_MIN}, large = {-1e30, -701, 701, 1e30, NAN, 0};
+  Lanes y;
+  lanes_log(&x, &y);
+  assert_true(y[0] == 0 && fabs(y[7] - log(DBL_MIN)) < 1e-12);
+  for (int l = 1; l < 7; ++l) assert_true(isnan(y[l]));
+  lanes_exp(&large, &y);
+  assert_true(y[0] > 0 && y[0] < 1e-300 && y[1] == y[0] && y[2] > 1e300 && isfinite(y[2]) && y[3] == y[2]);
+  assert_true(isnan(y[4]) && y[5] == 1);
+}
+
+/* One lane: the values of base/eigen.h, and vectors that are orthonormal and belong to them. */
+static void check_lane(int l, const PetscReal s[6], const Lanes values[3], const Lanes vectors[9])
+{
+  PetscReal value[3], v[9];
+  sym_eigen(s, value, v);
+  for (int a = 0; a < 3; ++a) {
+    assert_true(fabs(values[a][l] - value[a]) <= 4e-15);
+    for (int i = 0; i < 3; ++i) {
+      PetscReal product = -values[a][l] * vectors[3 * i + a][l];
+      for (int j = 0; j < 3; ++j) product += s[voigt_of[i][j]] * vectors[3 * j + a][l];
+      assert_true(fabs(product) <= 1e-14);
+    }
+    for (int b = 0; b <= a; ++b) {
+      PetscReal dot = -(a == b);
+      for (int i = 0; i < 3; ++i) dot += vectors[3 * i + a][l] * vectors[3 * i + b][l];
+      assert_true(fabs(dot) <= 1e-14);
+    }
+  }
+}
+
+/* Tensors of all kinds side by side. */
+static void test_eigen(void **state)
+{
+  (void)state;
+  Random random = {5};
+  for (int k = 0; k < 20000; ++k) {
+    PetscReal s[LANES][6];
+    Lanes tensor[6], values[3], vectors[9];
+    for (int l = 0; l < LANES; ++l) {
+      const PetscReal near = pow(10, -random_real(&random, 0, 17));
+      for (int i = 0; i < 6; ++i) s[l][i] = (i < 3) + (l < 5 ? near : 1) * random_real(&random, -0.4, 0.4);
+      if (l == 0) s[l][3] = 0;
+      if (l < 3) s[l][4] = s[l][5] = 0;
+      for (int i = 0; i < 6; ++i) tensor[i][l] = s[l][i];
+    }
+    lanes_sym_eigen(tensor, values, vectors);
+    for (int l = 0; l < LANES; ++l) check_lane(l, s[l], values, vectors);
+  }
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_log), cmocka_unit_test(test_exp),
+                                     cmocka_unit_test(test_ends), cmocka_unit_test(test_eigen)};
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
