@@ -29,8 +29,11 @@ static void judge_reference(VerifyRow *r)
   r->reference = reference_value(r->row, r->series);
   if (PetscIsNanReal(r->reference)) return;
   r->deviation = relative(r->value, r->reference);
-  if (PetscAbsReal(r->value - r->reference) > tolerance * PetscAbsReal(r->reference) + r->study->absolute)
-    fail(r, "%.3g off the reference, allowed %.3g", (double)r->deviation, (double)tolerance);
+  if (r->study->at_most && r->value <= r->reference) r->deviation = 0;
+  if ((!r->study->at_most || r->value > r->reference) &&
+      PetscAbsReal(r->value - r->reference) > tolerance * PetscAbsReal(r->reference) + r->study->absolute)
+    fail(r, "%.3g %s, allowed %.3g", (double)r->deviation, r->study->at_most ? "above the bound" : "off the reference",
+         (double)tolerance);
 }
 
 static PetscBool is_between(const ExactSpec *exact, PetscReal x)
@@ -77,6 +80,13 @@ static void judge_agreement(VerifyRow *rows, PetscInt k)
   }
 }
 
+static void judge_pace(VerifyRow *rows, PetscInt k)
+{
+  VerifyRow *r = &rows[k];
+  const VerifyRow *other = r->study->pace ? find(rows, k, r->study->pace) : NULL;
+  if (other && !r->shared && !other->shared && other->seconds > 0) r->pace = r->seconds / other->seconds;
+}
+
 static PetscReal reported(const VerifyRow *r, const char *name)
 {
   const RunSummary *s = &r->summary;
@@ -103,7 +113,7 @@ void verify_judge(VerifyRow *rows, PetscInt k)
     k > 0 && rows[k - 1].series == r->series && rows[k - 1].result == RUN_DONE ? &rows[k - 1] : NULL;
   r->pass = PETSC_TRUE;
   r->why[0] = '\0';
-  r->reference = r->deviation = r->error = r->order = r->difference = NAN;
+  r->reference = r->deviation = r->error = r->order = r->difference = r->pace = NAN;
   if (r->result != RUN_DONE) {
     r->reference = reference_value(r->row, r->series);
     r->value = NAN;
@@ -117,5 +127,6 @@ void verify_judge(VerifyRow *rows, PetscInt k)
   judge_reference(r);
   judge_order(r, before);
   judge_agreement(rows, k);
+  judge_pace(rows, k);
   judge_limits(r);
 }

@@ -27,7 +27,10 @@ static void write_head(FILE *out, const VerifyRow *r)
           r->unit[0] ? " [" : "", r->unit, r->unit[0] ? "]" : "");
   if (agree) fputs(" apart |", out);
   if (errors) fputs(" error | order |", out);
-  fputs(" steps | Newton | s | |\n|---|---|---|---|---|", out);
+  fputs(" steps | Newton | s |", out);
+  if (study->pace) fprintf(out, " s / %s |", study->pace);
+  fputs(" |\n|---|---|---|---|---|", out);
+  if (study->pace) fputs("---|", out);
   if (agree) fputs("---|", out);
   if (errors) fputs("---|---|", out);
   fputs("---|---|---|---|\n", out);
@@ -47,6 +50,7 @@ static void write_row(FILE *out, const VerifyRow *r)
   fprintf(out, " %d | %d |", (int)r->summary.steps, (int)r->summary.iterations);
   if (r->shared) fputs(" shared |", out);
   else write_number(out, "%.2f", r->seconds);
+  if (r->study->pace) write_number(out, "%.2f", r->pace);
   if (r->pass) fputs(" pass |\n", out);
   else fprintf(out, " **FAIL**: %s |\n", r->why);
 }
@@ -58,7 +62,8 @@ static void write_sources(FILE *out, const Verification *v, PetscInt first, Pets
   if (study->source.text) {
     fputs("- Reference: ", out);
     write_source(out, &study->source);
-    fprintf(out, "; tolerance %g of it", (double)study->tolerance);
+    fprintf(out, "; %s %g of it", study->at_most ? "an upper bound, exceeded by at most" : "tolerance",
+            (double)study->tolerance);
     if (study->absolute > 0) fprintf(out, " and %g", (double)study->absolute);
     fputs(".\n", out);
   }

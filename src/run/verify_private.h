@@ -26,6 +26,7 @@ typedef struct {
   PetscReal error;      /* relative, from the exact value */
   PetscReal order;      /* observed, from the row before in this series */
   PetscReal difference; /* relative, the largest from a series it must agree with */
+  PetscReal pace;       /* its seconds over those of the series that sets the pace */
   PetscBool pass;
   char why[512]; /* if it does not */
 } VerifyRow;

@@ -236,6 +236,14 @@ static void CheckAgree(SchemaReader *r, const StudySpec *study, const YamlNode *
   }
 }
 
+/* The series that sets the pace is the first one: its seconds are known when the others have run. */
+static void CheckPace(SchemaReader *r, const StudySpec *study, const YamlNode *pace)
+{
+  if (!pace) return;
+  if (SeriesNamed(r, study, pace, study->pace, PETSC_FALSE) > 0)
+    SchemaError(r, pace, "'%s' must stand before all other series", study->pace);
+}
+
 static void CheckLimits(SchemaReader *r, const YamlNode *limits)
 {
   PetscInt n = 0, found;
@@ -287,6 +295,7 @@ static PetscErrorCode CheckStudy(SchemaReader *r, const YamlNode *mapping, void 
   } else if (study->figure == VERIFY_FIGURE_CONVERGENCE)
     SchemaError(r, YamlFind(mapping, "figure"), "a figure of convergence needs `exact`");
   CheckAgree(r, study, YamlFind(mapping, "agree"));
+  CheckPace(r, study, YamlFind(mapping, "pace"));
   CheckLimits(r, YamlFind(mapping, "limits"));
   PetscFunctionReturn(0);
 }
@@ -295,6 +304,13 @@ static const SchemaEntry course_entries[] = {
   {.key = "constant", .type = TYPE_NUMBER, .fallback = "0", .help = "at t = 0", AT(CourseSpec, constant)},
   {.key = "linear", .type = TYPE_NUMBER, .fallback = "0", .help = "times t", AT(CourseSpec, linear)},
   {.key = "quadratic", .type = TYPE_NUMBER, .fallback = "0", .help = "times t^2", AT(CourseSpec, quadratic)},
+  {.key = "every",
+   .type = TYPE_NUMBER,
+   .fallback = "0",
+   .help = "compare at multiples of this time, s; 0: at every row of the history",
+   AT_LEAST(0),
+   AT(CourseSpec, every)},
+  {.key = "factor", .type = TYPE_NUMBER, .fallback = "1", .help = "times the distance", AT(CourseSpec, factor)},
   {.key = NULL},
 };
 static const SchemaTable course_table = {
@@ -350,6 +366,15 @@ static const SchemaEntry study_entries[] = {
    .help = "added to it, in the unit of the measure",
    AT_LEAST(0),
    AT(StudySpec, absolute)},
+  {.key = "at-most",
+   .type = TYPE_BOOLEAN,
+   .fallback = "false",
+   .help = "the references are upper bounds",
+   AT(StudySpec, at_most)},
+  {.key = "pace",
+   .type = TYPE_NAME,
+   .help = "the series with whose run time that of the others is compared",
+   AT(StudySpec, pace)},
   SOURCE_ENTRIES(StudySpec),
   {.key = "exact",
    .type = TYPE_TABLE,

@@ -79,9 +79,10 @@ typedef struct {
   Settings set; /* $symbol stands for the value */
 } SweepSpec;
 
-/* A course in time, constant + linear t + quadratic t^2, from which the history of a measure is compared. */
+/* A course in time, constant + linear t + quadratic t^2, from which the history of a measure is compared: at its rows or, if every > 0, at
+ * multiples of that time. */
 typedef struct {
-  PetscReal constant, linear, quadratic;
+  PetscReal constant, linear, quadratic, every, factor;
 } CourseSpec;
 
 typedef enum {
@@ -103,6 +104,8 @@ typedef struct {
   PetscInt n_rows;
   RowSpec *rows;
   PetscReal tolerance, absolute;
+  PetscBool at_most; /* references are upper bounds */
+  char *pace;        /* series with whose time that of the others is compared; may be NULL */
   Source source;
   PetscBool has_exact;
   ExactSpec exact;

@@ -45,19 +45,22 @@ void verify_table_head(FILE *out, const Verification *v, PetscInt first)
   PetscSNPrintf(variable, sizeof variable, "%s", study->sweep.symbol);
   fprintf(out, "\n  %-12s %9s %13s %15s %9s", "series", variable, "reference", "value", "off by");
   if (verify_has_errors(study)) fprintf(out, " %9s %6s", "error", "order");
-  fprintf(out, " %6s %6s %8s  result\n", "steps", "Newton", "s");
+  fprintf(out, " %6s %6s %8s", "steps", "Newton", "s");
+  if (study->pace) fprintf(out, " %6s", "pace");
+  fputs("  result\n", out);
   fflush(out);
 }
 
 void verify_table_row(FILE *out, const VerifyRow *r)
 {
-  char a[40], b[40], c[40], d[40], e[40], seconds[40] = "shared";
+  char a[40], b[40], c[40], d[40], e[40], f[40], seconds[40] = "shared";
   fprintf(out, "  %-12s %9s %13s %15s %9s", r->series->name, r->row->at, cell("%.9g", r->reference, a),
           cell("%.10g", r->value, b), cell("%.1e", r->deviation, c));
   if (verify_has_errors(r->study)) fprintf(out, " %9s %6s", cell("%.2e", r->error, d), cell("%.3f", r->order, e));
   if (!r->shared) cell("%.2f", r->seconds, seconds);
-  fprintf(out, " %6d %6d %8s  %s\n", (int)r->summary.steps, (int)r->summary.iterations, seconds,
-          r->pass ? "pass" : "FAIL");
+  fprintf(out, " %6d %6d %8s", (int)r->summary.steps, (int)r->summary.iterations, seconds);
+  if (r->study->pace) fprintf(out, " %6s", cell("%.2f", r->pace, f));
+  fprintf(out, "  %s\n", r->pass ? "pass" : "FAIL");
   if (!r->pass) fprintf(out, "  %-12s %9s ^ %s\n", "", "", r->why);
   fflush(out);
 }

@@ -3,18 +3,6 @@
 #include "io/history.h"
 #include "run/verify_private.h"
 
-/* Root of the sum of squared distances, over all rows after the start. */
-static PetscReal distance(const History *history, PetscInt column, const CourseSpec *course)
-{
-  PetscReal sum = 0;
-  for (PetscInt i = 0; i < history->n_rows; ++i) {
-    const PetscReal *row = history->values + i * history->n_columns, t = row[0];
-    const PetscReal off = row[column] - (course->constant + t * (course->linear + t * course->quadratic));
-    if (t > 0) sum += off * off;
-  }
-  return PetscSqrtReal(sum);
-}
-
 /* The column at time t, linear between rows; NaN outside them. */
 static PetscReal moment(const History *history, PetscInt column, PetscReal t)
 {
@@ -26,6 +14,26 @@ static PetscReal moment(const History *history, PetscInt column, PetscReal t)
     return after[column] - (after[0] > t && span > 0 ? (after[0] - t) / span : 0) * (after[column] - before[column]);
   }
   return NAN;
+}
+
+static PetscReal off_course(const CourseSpec *course, PetscReal t, PetscReal value)
+{
+  return value - (course->constant + t * (course->linear + t * course->quadratic));
+}
+
+/* Root of the sum of squared distances, over all rows after the start, or at the times that the course names. */
+static PetscReal distance(const History *history, PetscInt column, const CourseSpec *course)
+{
+  const PetscReal end = history->n_rows ? history->values[(history->n_rows - 1) * history->n_columns] : 0;
+  const PetscInt n = course->every > 0 ? (PetscInt)(end / course->every + 1e-6) : history->n_rows;
+  PetscReal sum = 0;
+  for (PetscInt i = 0; i < n; ++i) {
+    const PetscReal *row = history->values + i * history->n_columns;
+    const PetscReal t = course->every > 0 ? PetscMin((i + 1) * course->every, end) : row[0];
+    const PetscReal value = course->every > 0 ? moment(history, column, t) : row[column];
+    if (t > 0) sum += PetscSqr(off_course(course, t, value));
+  }
+  return course->factor * PetscSqrtReal(sum);
 }
 
 /* Of one rank; NaN if there is no such history. */

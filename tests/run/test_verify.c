@@ -50,6 +50,26 @@ static const char reference[] =
   "    tolerance: 1e-3\n"
   "    source: independent program\n"
   "    rows: [{at: 0.5, reference: 3.408e-4}]\n"
+  "  sampled:\n"
+  "    title: The way of u = -0.6 t sampled at 1/4, 1/2, 3/4, 1 s, from a course 0.1 above, halved\n"
+  "    measure: tip\n"
+  "    course: {constant: 0.1, linear: -0.5996592, every: 0.25, factor: 0.5}\n"
+  "    at-most: true\n"
+  "    pace: fem\n"
+  "    sweep: {name: cell size, symbol: h, set: {grid.size: $h}}\n"
+  "    series: {fem: {set: {method: fem}}, mpm: {set: {method: mpm}}}\n"
+  "    tolerance: 1e-6\n"
+  "    source: independent program\n"
+  "    rows: [{at: 0.5, references: {fem: 0.1, mpm: 0.2}}]\n"
+  "  bound:\n"
+  "    title: What may be less, but not more\n"
+  "    measure: tip\n"
+  "    at-most: true\n"
+  "    sweep: {name: cell size, symbol: h, set: {grid.size: $h}}\n"
+  "    series: {fem: {set: {method: fem}, full: true}}\n"
+  "    tolerance: 1e-6\n"
+  "    source: independent program\n"
+  "    rows: [{at: 0.5, reference: %s}]\n"
   "  moments:\n"
   "    title: Half of the step's way at half of its time, and nothing after its end\n"
   "    measure: tip\n"
@@ -95,7 +115,7 @@ static void make_case(const char *name, const char *value, const char *more)
     snprintf(path, sizeof path, "%s/%s", root, name);
     mkdir(path, 0777);
     copy_case(name);
-    snprintf(text, sizeof text, reference, value, more);
+    snprintf(text, sizeof text, reference, value, more, value);
     write_file(name, "reference.yaml", text);
   }
   MPI_Barrier(PETSC_COMM_WORLD);
@@ -138,6 +158,8 @@ static void right_values_pass(void **state)
   SAYS(text, "mpm agrees with fem to");
   SAYS(text, "1 of 1 rows pass");
   SAYS(text, "3 of 3 rows pass");
+  SAYS(text, "2 of 2 rows pass");
+  SAYS(text, "pace");
   SAYS(text, "0.000340813"); /* |tip + 0.6|: one step, so one row after the start */
   assert_true(is_there("out-right/verification.md") && is_there("out-right/tip.png"));
   assert_true(is_there("out-right/tip/mpm/h_0.25/history.csv") &&
@@ -161,6 +183,11 @@ static void wrong_values_fail(void **state)
   SAYS(text, "FAIL");
   SAYS(text, "off the reference, allowed 2e-06");
   SAYS(text, "2 of 4 rows pass");
+  free(text);
+  make_case("above", "-0.7", "");
+  assert_int_equal(verify("above", (VerifyOptions){.only = "bound", .full = PETSC_TRUE}, &text), VERIFY_OFF);
+  SAYS(text, "above the bound, allowed 1e-06");
+  SAYS(text, "0 of 1 rows pass");
   free(text);
 }
 
@@ -193,8 +220,8 @@ static void a_run_is_compared_with_its_rows(void **state)
   assert_int_equal(verify("known", (VerifyOptions){.full = PETSC_TRUE}, &text), VERIFY_PASSED);
   free(text);
   assert_int_equal(compare("known", "out-known/tip/mpm/h_0.5", &n, &text), VERIFY_PASSED);
-  assert_int_equal(n, 5); /* tip, way and three moments */
-  SAYS(text, "5 of 5 within what is allowed");
+  assert_int_equal(n, 6); /* tip, way, sampled and three moments */
+  SAYS(text, "6 of 6 within what is allowed");
   SAYS(text, "nothing after its end, at 0.5 s");
   SAYS(text, "-0.29983");
   SAYS(text, "-0.599659");
@@ -206,9 +233,9 @@ static void a_run_is_compared_with_its_rows(void **state)
   free(text);
   make_case("other", "-0.5996", ", set: {materials.rubber.poisson: 0.1}");
   assert_int_equal(compare("other", "out-known/tip/fem/h_0.5", &n, &text), VERIFY_OFF);
-  assert_int_equal(n, 2); /* tip and again */
+  assert_int_equal(n, 4); /* tip, again, sampled and bound */
   SAYS(text, "off the reference, allowed 2e-06");
-  SAYS(text, "1 of 2 within what is allowed");
+  SAYS(text, "3 of 4 within what is allowed");
   free(text);
   assert_int_equal(compare("other", "out-known/tip/fem/h_0.25", &n, &text), VERIFY_PASSED);
   assert_int_equal(n, 0); /* its row has another material */
