@@ -12,6 +12,7 @@
 #include "solve/system.h"
 
 typedef struct BlocksHalo BlocksHalo;
+struct Projection;
 
 typedef struct Blocks {
   MPI_Comm comm;
@@ -24,7 +25,8 @@ typedef struct Blocks {
   PetscInt n_outer, *outer_row; /* rows that have columns of other ranks, ascending */
   BlockRows outer;              /* their blocks: row k is outer_row[k] */
   BlocksHalo *halo;
-  float *work[7]; /* vectors of the Krylov methods, made when they are first used */
+  struct Projection *projection; /* constraints that the solver has to keep (not owned); NULL: none */
+  float *work[7];                /* vectors of the Krylov methods, made when they are first used */
 } Blocks;
 
 /* Collective. The pattern; the system must live on unchanged until BlocksDestroy. Blocks are 2 x 2 or 3 x 3. */
@@ -72,3 +74,5 @@ PetscErrorCode BlocksHaloSum(BlocksHalo *halo, const System *s);
 /* A Krylov method of PETSc for Mats of type shell over Blocks: conjugate gradients, or BiCGStab if they are not symmetric. */
 #define KSPBLOCKS "talus_blocks"
 PetscErrorCode BlocksRegister(void);
+/* Collective. The same under m->projection; ksp's counts and reason are set. */
+PetscErrorCode BlocksSolveProjected(KSP ksp, Blocks *m, const PetscReal *f, PetscReal *y);

@@ -6,6 +6,7 @@
 #include "base/denormals.h"
 #include "solve/block_vectors.h"
 #include "solve/blocks.h"
+#include "solve/projection.h"
 
 enum { WORK_R, WORK_P, WORK_T, WORK_Y, WORK_X, WORK_SHADOW, WORK_V };
 
@@ -147,7 +148,7 @@ static PetscErrorCode KSPSolve_Blocks(KSP ksp)
   PetscCall(MatShellGetContext(A, &m));
   ksp->its = 0;
   ksp->reason = KSP_CONVERGED_ITERATING;
-  if (m->singular) {
+  if (m->singular || (m->projection && m->projection->singular)) {
     PetscCall(VecZeroEntries(ksp->vec_sol));
     ksp->reason = KSP_DIVERGED_INDEFINITE_PC;
     PetscFunctionReturn(0);
@@ -155,7 +156,8 @@ static PetscErrorCode KSPSolve_Blocks(KSP ksp)
   PetscCall(VecGetArrayRead(ksp->vec_rhs, &b));
   PetscCall(VecGetArrayWrite(ksp->vec_sol, &u));
   const unsigned mode = denormals_flush();
-  PetscCall(SolveOnBlocks(ksp, m, b, u));
+  if (m->projection) PetscCall(BlocksSolveProjected(ksp, m, b, u));
+  else PetscCall(SolveOnBlocks(ksp, m, b, u));
   denormals_restore(mode);
   PetscCall(VecRestoreArrayWrite(ksp->vec_sol, &u));
   PetscCall(VecRestoreArrayRead(ksp->vec_rhs, &b));

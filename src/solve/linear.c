@@ -120,10 +120,9 @@ static PetscBool direct_pays(const LinearProblem *p)
   return p->unknowns < (p->dim == 2 ? 1000000 : 100000) ? PETSC_TRUE : PETSC_FALSE;
 }
 
-static PetscBool takes_direct(const LinearProblem *p)
+static PetscBool prefers_direct(const LinearProblem *p)
 {
-  return p->choice == LINEAR_DIRECT || p->multipliers || (p->choice == LINEAR_AUTO && direct_pays(p)) ? PETSC_TRUE
-                                                                                                      : PETSC_FALSE;
+  return p->choice == LINEAR_DIRECT || (p->choice == LINEAR_AUTO && direct_pays(p)) ? PETSC_TRUE : PETSC_FALSE;
 }
 
 PetscErrorCode LinearForm(const LinearProblem *p, SystemForm *form)
@@ -134,8 +133,8 @@ PetscErrorCode LinearForm(const LinearProblem *p, SystemForm *form)
   PetscCall(PetscOptionsHasName(NULL, NULL, "-ksp_type", &method));
   PetscCall(PetscOptionsHasName(NULL, NULL, "-pc_type", &preconditioner));
   const PetscBool short_steps = p->symmetric || p->courant < REFINE_ABOVE ? PETSC_TRUE : PETSC_FALSE;
-  *form = p->dynamic && short_steps && !p->mixed && !takes_direct(p) && !method && !preconditioner ? SYSTEM_BLOCKS
-                                                                                                   : SYSTEM_ASSEMBLED;
+  *form = p->dynamic && short_steps && !p->mixed && !prefers_direct(p) && !method && !preconditioner ? SYSTEM_BLOCKS
+                                                                                                     : SYSTEM_ASSEMBLED;
   PetscFunctionReturn(0);
 }
 
@@ -145,10 +144,11 @@ PetscErrorCode LinearConfigure(KSP ksp, const LinearProblem *p, PetscBool *direc
 
   PetscFunctionBeginUser;
   PetscCall(LinearForm(p, &form));
-  *direct = takes_direct(p);
+  /* multipliers in a matrix make it indefinite */
+  *direct = prefers_direct(p) || (p->multipliers && form != SYSTEM_BLOCKS) ? PETSC_TRUE : PETSC_FALSE;
   if (*direct) PetscCall(UseDirect(ksp, p->symmetric, what));
   if (*direct && p->mixed) PetscCall(PrepareSaddlePoint(ksp, p->undetermined));
-  if (p->multipliers) PetscCall(LeaveRoomForPivots(ksp));
+  if (*direct && p->multipliers) PetscCall(LeaveRoomForPivots(ksp));
   if (*direct) PetscFunctionReturn(0);
   if (p->mixed) { /* saddle.c does the rest */
     *what = "GMRES, Schur complement, algebraic multigrid";

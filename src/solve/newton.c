@@ -1,3 +1,4 @@
+#include "solve/blocks.h"
 #include "solve/newton_private.h"
 #include <petsctime.h>
 
@@ -19,6 +20,7 @@ static PetscErrorCode NewtonReset(Newton *n)
   PetscFunctionBeginUser;
   PetscCall(SNESDestroy(&n->snes));
   PetscCall(SaddleClear(&n->saddle));
+  PetscCall(ProjectionDestroy(&n->projection));
   PetscCall(VecDestroy(&n->x));
   PetscCall(VecDestroy(&n->f));
   PetscFunctionReturn(0);
@@ -99,7 +101,8 @@ static PetscErrorCode Assemble(Newton *n, PetscBool tangent)
   p->in.fixed = p->fixed;
   PetscCall(p->formulation->assemble(&p->in, &out));
   if (p->constraints)
-    constraints_assemble(p->constraints, p->du, p->prescribed, p->fixed, p->in.lift, out.force, out.values);
+    constraints_assemble(p->constraints, p->du, p->prescribed, p->fixed, p->in.lift, out.force,
+                         n->projects ? NULL : out.values);
   PetscInt status = (PetscInt)out.status, worst;
   PetscCall(MPIU_Allreduce(&status, &worst, 1, MPIU_INT, MPI_MAX, n->comm));
   n->report->status = (LawStatus)worst;
@@ -186,6 +189,17 @@ static PetscErrorCode Function(SNES snes, Vec x, Vec f, void *context)
   PetscFunctionReturn(0);
 }
 
+/* Values -> matrix; where constraints are projections they have no part in it. */
+static PetscErrorCode FillMatrix(Newton *n)
+{
+  const StepProblem *p = n->problem;
+
+  PetscFunctionBeginUser;
+  PetscCall(SystemToMatrix(p->system, n->projects ? n->projection->held : p->fixed, p->idle));
+  if (n->projects) PetscCall(ProjectionFactor(n->projection));
+  PetscFunctionReturn(0);
+}
+
 static PetscErrorCode Jacobian(SNES snes, Vec x, Mat matrix, Mat preconditioner, void *context)
 {
   Newton *n = context;
@@ -195,7 +209,7 @@ static PetscErrorCode Jacobian(SNES snes, Vec x, Mat matrix, Mat preconditioner,
   PetscFunctionBeginUser;
   if (!n->tangent) PetscCall(Assemble(n, PETSC_TRUE)); /* du is still where the residual was taken */
   PetscCall(PetscTime(&start));
-  PetscCall(SystemToMatrix(n->problem->system, n->problem->fixed, n->problem->idle));
+  PetscCall(FillMatrix(n));
   PetscCall(PetscTime(&end));
   n->t_matrix += end - start;
   n->solving = end; /* what SNES does next */
@@ -247,6 +261,7 @@ static PetscErrorCode NewtonSetUp(Newton *n, StepProblem *p, const LinearProblem
   n->remembered = -1;
   if (n->retry || n->failures >= 3) chosen.choice = LINEAR_DIRECT;
   PetscCall(LinearForm(&chosen, &form));
+  n->projects = chosen.multipliers && form == SYSTEM_BLOCKS ? PETSC_TRUE : PETSC_FALSE;
   PetscCall(SystemUse(p->system, form, linear->symmetric));
   n->search.block = p->pressure ? p->system->block : 0;
   PetscCall(SystemCreateVec(p->system, &n->x));
@@ -302,7 +317,7 @@ static PetscErrorCode LiftPrescribed(Newton *n)
   PetscCall(GetResidual(n, n->f));
   if (n->report->status == LAW_OK) {
     PetscCall(PetscTime(&start));
-    PetscCall(SystemToMatrix(p->system, p->fixed, p->idle));
+    PetscCall(FillMatrix(n));
     PetscCall(PetscTime(&n->solving));
     n->t_matrix += n->solving - start;
     PetscCall(SNESGetKSP(n->snes, &ksp));
@@ -318,6 +333,19 @@ static PetscErrorCode LiftPrescribed(Newton *n)
     PetscCall(VecNorm(n->f, NORM_2, &n->report->reference));
   }
   PetscCall(PetscFree(lift));
+  PetscFunctionReturn(0);
+}
+
+/* Clouds of constraints are new in every step. */
+static PetscErrorCode UpdateProjection(Newton *n)
+{
+  const StepProblem *p = n->problem;
+
+  PetscFunctionBeginUser;
+  if (!n->projects) PetscFunctionReturn(0);
+  PetscCall(ProjectionDestroy(&n->projection));
+  PetscCall(ProjectionCreate(p->system, p->grid, p->constraints, p->fixed, &n->projection));
+  p->system->blocks->projection = n->projection;
   PetscFunctionReturn(0);
 }
 
@@ -351,6 +379,7 @@ static PetscErrorCode NewtonTry(Newton *n, NewtonReport *report)
   rest_without_unknowns(n->problem);
   n->before = 0;
   PetscCall(UpdateSaddle(n));
+  PetscCall(UpdateProjection(n));
   PetscCall(LiftPrescribed(n));
   PetscCall(GetUnknowns(n, n->x));
   PetscCall(SNESSetTolerances(n->snes, 0, 0, 0, n->spec.max_iterations - report->iterations, PETSC_MAX_INT));

@@ -2,6 +2,7 @@
 #pragma once
 #include "solve/line_search.h"
 #include "solve/newton.h"
+#include "solve/projection.h"
 #include "solve/saddle.h"
 
 struct Newton {
@@ -16,6 +17,8 @@ struct Newton {
   LineSearchMemory search;
   Saddle saddle;
   PetscBool direct;
+  PetscBool projects; /* does the linear solver keep constraints by projections? else by multipliers in its matrix */
+  Projection *projection;
   PetscInt failures; /* of the iterative solver; after a few the direct one stays for a while */
   PetscInt since;    /* steps since the last of them */
   PetscBool retry;   /* this try takes the direct solver */

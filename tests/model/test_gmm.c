@@ -298,11 +298,57 @@ static void test_ranks(void **state)
   thrown(&usual_mls, LINEAR_AUTO);
 }
 
+/* --- linear solvers --- */
+/* Constraints by multipliers in a direct solver's matrix, and by projections in the iterative solver: the same motion, reactions too. */
+static void solvers(PetscBool sand)
+{
+  Bench b;
+  Model *m[2];
+  PetscReal v[2][2], moved[2];
+  gmm_init(&b, &usual_mls, CELL_QUADRILATERAL, 0.125);
+  bench_grid(&b, (PetscReal[]){0, 0, 0}, (PetscReal[]){1.5, 1, 1}, 0.125);
+  bench_box(&b, 0, (PetscReal[]){0, 0, 0}, (PetscReal[]){0.5, 0.75, 1});
+  NamedValue values[] = {
+    {"young", 1e5}, {"poisson", 0.3}, {"cohesion", 200}, {"friction_angle", 30}, {"dilatancy_angle", 0}};
+  if (sand) {
+    b.material.law = "mohr-coulomb";
+    b.material.parameters = values;
+    b.material.n_parameters = 5;
+  }
+  b.c.gravity[1] = -9.81;
+  b.c.newton.residual = 1e-10;
+  bench_dynamic(&b, 1, 0.002);
+  MotionSpec *floor = bench_motion(&b, 1, 0, MOTION_DISPLACEMENT, 3);
+  floor->value[0] = 0.02; /* a floor that glides */
+  for (int d = 0; d < 2; ++d) b.measure[b.c.n_measures++] = (MeasureSpec){.kind = MEASURE_REACTION, .component = d};
+  for (int k = 0; k < 2; ++k) {
+    b.c.linear = k ? LINEAR_DIRECT : LINEAR_AUTO;
+    m[k] = bench_model(&b, k ? PETSC_COMM_SELF : PETSC_COMM_WORLD);
+    for (int step = 0; step < 40; ++step) CHECK(model_step(m[k], 0.002).cuts == 0, "a step was halved");
+    for (int d = 0; d < 2; ++d) CALL(ModelMeasure(m[k], &b.measure[d], d, &v[k][d]));
+  }
+  moved[0] = points_difference(m[0], m[1], POINT_U);
+  moved[1] = PetscHypotReal(v[0][0] - v[1][0], v[0][1] - v[1][1]) / PetscHypotReal(v[1][0], v[1][1]);
+  PetscPrintf(PETSC_COMM_WORLD, "%s by %s and by %s: u differs by %.2g m, reactions by %.2g\n",
+              sand ? "sand" : "rubber", NewtonLinearName(m[0]->newton), NewtonLinearName(m[1]->newton),
+              (double)moved[0], (double)moved[1]);
+  CHECK(strstr(NewtonLinearName(m[0]->newton), sand ? "BiCGStab" : "conjugate"), "not the iterative solver");
+  CHECK(moved[0] < 1e-8 && moved[1] < 1e-6, "the solvers disagree");
+  for (int k = 0; k < 2; ++k) CALL(ModelDestroy(&m[k]));
+}
+
+static void test_solvers(void **state)
+{
+  (void)state;
+  solvers(PETSC_FALSE);
+  solvers(PETSC_TRUE);
+}
+
 int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(test_patch),   cmocka_unit_test(test_hang),  cmocka_unit_test(test_fly),
-    cmocka_unit_test(test_contact), cmocka_unit_test(test_ranks),
+    cmocka_unit_test(test_contact), cmocka_unit_test(test_ranks), cmocka_unit_test(test_solvers),
   };
   return run_model_tests(argc, argv, tests);
 }

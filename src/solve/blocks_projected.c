@@ -1,0 +1,164 @@
+/* The Krylov methods of blocks_ksp.c where constraints hold: Gauss-Seidel between two projections, sums and vectors in double. */
+#include <petsc/private/kspimpl.h>
+#include "solve/blocks.h"
+#include "solve/projection.h"
+
+enum { VECTOR_R, VECTOR_Z, VECTOR_P, VECTOR_Q, VECTOR_SHADOW, VECTOR_S, VECTORS };
+
+typedef struct {
+  Blocks *m;
+  Projection *projection;
+  const BlockSweeps *sweeps;
+  PetscInt n;
+  PetscReal size; /* of the right-hand side: keeps single precision within its range */
+  float *x, *t;
+  PetscReal *v[VECTORS];
+} Solve;
+
+static PetscErrorCode Dot(const Solve *s, const PetscReal *a, const PetscReal *b, PetscReal *dot)
+{
+  PetscReal sum = 0;
+
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < s->n; ++i) sum += a[i] * b[i];
+  PetscCall(MPIU_Allreduce(&sum, dot, 1, MPIU_REAL, MPI_SUM, s->m->comm));
+  PetscFunctionReturn(0);
+}
+
+/* z = P M^-1 r for a projected r */
+static PetscErrorCode Precondition(const Solve *s, const PetscReal *r, PetscReal *z)
+{
+  PetscFunctionBeginUser;
+  (void)s->sweeps->start(s->m, r, 1 / s->size, s->x);
+  s->sweeps->finish(s->m, s->x, s->size, s->t, z);
+  PetscCall(ProjectionMotion(s->projection, z));
+  PetscFunctionReturn(0);
+}
+
+/* q = P^T K p */
+static PetscErrorCode Apply(const Solve *s, const PetscReal *p, PetscReal *q)
+{
+  PetscFunctionBeginUser;
+  PetscCall(ProjectionMultiply(s->projection, p, q));
+  PetscCall(ProjectionForces(s->projection, q));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode Report(KSP ksp, PetscReal norm2, PetscBool *stop)
+{
+  PetscFunctionBeginUser;
+  ksp->rnorm = PetscSqrtReal(PetscMax(norm2, 0));
+  PetscCall(KSPLogResidualHistory(ksp, ksp->rnorm));
+  PetscCall(KSPMonitor(ksp, ksp->its, ksp->rnorm));
+  PetscCall((*ksp->converged)(ksp, ksp->its, ksp->rnorm, &ksp->reason, ksp->cnvP));
+  if (!ksp->reason && ksp->its >= ksp->max_it) ksp->reason = KSP_DIVERGED_ITS;
+  *stop = ksp->reason ? PETSC_TRUE : PETSC_FALSE;
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode ConjugateGradients(KSP ksp, const Solve *s, PetscReal *y)
+{
+  PetscReal *r = s->v[VECTOR_R], *z = s->v[VECTOR_Z], *p = s->v[VECTOR_P], *q = s->v[VECTOR_Q], rz, last = 1, pq;
+  PetscBool stop;
+
+  PetscFunctionBeginUser;
+  PetscCall(Precondition(s, r, z));
+  PetscCall(Dot(s, r, z, &rz));
+  PetscCall(Report(ksp, rz, &stop));
+  while (!stop) {
+    const PetscReal beta = ksp->its ? rz / last : 0;
+    for (PetscInt i = 0; i < s->n; ++i) p[i] = z[i] + beta * p[i];
+    PetscCall(Apply(s, p, q));
+    PetscCall(Dot(s, p, q, &pq));
+    if (!(pq > 0)) {
+      ksp->reason = pq <= 0 ? KSP_DIVERGED_INDEFINITE_MAT : KSP_DIVERGED_NANORINF;
+      break;
+    }
+    const PetscReal alpha = rz / pq;
+    for (PetscInt i = 0; i < s->n; ++i) y[i] += alpha * p[i], r[i] -= alpha * q[i];
+    PetscCall(Precondition(s, r, z));
+    last = rz;
+    PetscCall(Dot(s, r, z, &rz));
+    ++ksp->its;
+    PetscCall(Report(ksp, rz, &stop));
+  }
+  PetscFunctionReturn(0);
+}
+
+/* With the preconditioner on the right; the norm is that of the preconditioned residual where an iteration begins. */
+static PetscErrorCode BiCGStab(KSP ksp, const Solve *s, PetscReal *y)
+{
+  PetscReal *r = s->v[VECTOR_R], *z = s->v[VECTOR_Z], *p = s->v[VECTOR_P], *q = s->v[VECTOR_Q],
+            *shadow = s->v[VECTOR_SHADOW], *t = s->v[VECTOR_S];
+  PetscReal rho, last = 1, alpha = 0, omega = 1, dot, square, norm2;
+  PetscBool stop;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscArraycpy(shadow, r, s->n));
+  PetscCall(PetscArrayzero(q, s->n));
+  norm2 = s->sweeps->scaled_norm2(s->m, r);
+  PetscCall(MPIU_Allreduce(MPI_IN_PLACE, &norm2, 1, MPIU_REAL, MPI_SUM, s->m->comm));
+  PetscCall(Report(ksp, norm2, &stop));
+  while (!stop) {
+    PetscCall(Dot(s, shadow, r, &rho));
+    const PetscReal beta = ksp->its ? rho / last * (alpha / omega) : 0;
+    for (PetscInt i = 0; i < s->n; ++i) p[i] = r[i] + (ksp->its ? beta * (p[i] - omega * q[i]) : 0);
+    PetscCall(Precondition(s, p, z));
+    PetscCall(Apply(s, z, q));
+    PetscCall(Dot(s, shadow, q, &dot));
+    ksp->reason = dot == 0 || rho == 0 ? KSP_DIVERGED_BREAKDOWN : KSP_CONVERGED_ITERATING;
+    if (ksp->reason) break;
+    alpha = rho / dot;
+    for (PetscInt i = 0; i < s->n; ++i) y[i] += alpha * z[i], r[i] -= alpha * q[i];
+    PetscCall(Precondition(s, r, z));
+    PetscCall(Apply(s, z, t));
+    PetscCall(Dot(s, t, r, &dot));
+    PetscCall(Dot(s, t, t, &square));
+    omega = square > 0 ? dot / square : 0;
+    for (PetscInt i = 0; i < s->n; ++i) y[i] += omega * z[i], r[i] -= omega * t[i];
+    last = rho;
+    ++ksp->its;
+    norm2 = s->sweeps->scaled_norm2(s->m, r);
+    PetscCall(MPIU_Allreduce(MPI_IN_PLACE, &norm2, 1, MPIU_REAL, MPI_SUM, s->m->comm));
+    PetscCall(Report(ksp, norm2, &stop));
+    if (!stop && omega == 0) {
+      ksp->reason = KSP_DIVERGED_BREAKDOWN;
+      break;
+    }
+  }
+  PetscFunctionReturn(0);
+}
+
+/* r = f - K y without what stands on the twins */
+static PetscErrorCode Residual(const Solve *s, const PetscReal *f, const PetscReal *y, PetscReal *r)
+{
+  PetscFunctionBeginUser;
+  PetscCall(ProjectionMultiply(s->projection, y, r));
+  for (PetscInt i = 0; i < s->n; ++i) r[i] = f[i] - r[i];
+  for (PetscInt k = 0; k < s->projection->n_own; ++k) r[s->projection->twin[k]] = 0;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode BlocksSolveProjected(KSP ksp, Blocks *m, const PetscReal *f, PetscReal *y)
+{
+  Solve s = {.m = m, .projection = m->projection, .sweeps = block_sweeps(m->dim), .n = m->n * m->dim};
+  PetscReal norm2;
+
+  PetscFunctionBeginUser;
+  PetscCall(BlocksWork(m, 0, &s.x));
+  PetscCall(BlocksWork(m, 1, &s.t));
+  for (int k = 0; k < VECTORS; ++k) PetscCall(PetscCalloc1(s.n, &s.v[k]));
+  PetscCall(ProjectionCloseGaps(s.projection, f, y));
+  PetscCall(Residual(&s, f, y, s.v[VECTOR_R]));
+  PetscCall(ProjectionForces(s.projection, s.v[VECTOR_R]));
+  norm2 = s.sweeps->scaled_norm2(m, s.v[VECTOR_R]);
+  PetscCall(MPIU_Allreduce(MPI_IN_PLACE, &norm2, 1, MPIU_REAL, MPI_SUM, m->comm));
+  s.size = PetscSqrtReal(norm2);
+  if (!(s.size > 0) || PetscIsInfReal(s.size)) ksp->reason = s.size == 0 ? KSP_CONVERGED_ATOL : KSP_DIVERGED_NANORINF;
+  else if (m->symmetric) PetscCall(ConjugateGradients(ksp, &s, y));
+  else PetscCall(BiCGStab(ksp, &s, y));
+  PetscCall(Residual(&s, f, y, s.v[VECTOR_R]));
+  PetscCall(ProjectionMultipliers(s.projection, s.v[VECTOR_R], y));
+  for (int k = 0; k < VECTORS; ++k) PetscCall(PetscFree(s.v[k]));
+  PetscFunctionReturn(0);
+}
