@@ -34,7 +34,7 @@ endmacro()
 
 # One thread a rank, Open MPI willing to start as root and with more ranks than cores.
 set(TALUS_TEST_ENVIRONMENT OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 OMPI_MCA_rmaps_base_oversubscribe=1
-  OPENBLAS_NUM_THREADS=1 OMPI_MCA_pml=ob1 OMPI_MCA_mpi_yield_when_idle=1)
+  OPENBLAS_NUM_THREADS=1 OMPI_MCA_pml=ob1)
 set(TALUS_TEST_PATIENCE 1) # times the usual time limits
 if(TALUS_SANITIZE)
   set(TALUS_TEST_PATIENCE 4)
