@@ -48,3 +48,9 @@ PetscErrorCode TableAdd(Table *table, const char *name, const char *unit, Column
                         void *data, Column **out);
 /* Data of the column of this name, type and width; NULL, with a reason, if there is none like it. */
 void *TableData(const Table *table, const char *name, ColumnType type, PetscInt components, char reason[256]);
+
+/* Collective. An everywhere table "parts" at the end: how many rows of each table are each rank's. */
+PetscErrorCode PartsToTable(MPI_Comm comm, Tables *tables);
+/* Collective. On as many ranks as wrote the parts (*home) every rank gets its own rows back, in their order. A mistake in the tables is told in
+ * reason, on all ranks. */
+PetscErrorCode PartsTake(MPI_Comm comm, Tables *tables, PetscBool *home, char reason[256]);

@@ -2,13 +2,13 @@
 #include "base/exchange.h"
 #include "grid/grid_private.h"
 
-PetscErrorCode GridCloudFollow(Grid *grid, PetscReal **data, PetscInt components, PetscBool keep)
+PetscErrorCode GridCloudFollow(Grid *grid, PetscReal **data, PetscInt components, const char *name, const char *unit)
 {
   GridCloud *c = grid->cloud;
 
   PetscFunctionBeginUser;
   PetscCheck(c->n_fields < CLOUD_MAX_FIELDS, PETSC_COMM_SELF, PETSC_ERR_PLIB, "too many arrays follow the nodes");
-  c->field[c->n_fields++] = (CloudField){.data = data, .components = components, .keep = keep};
+  c->field[c->n_fields++] = (CloudField){.data = data, .components = components, .name = name, .unit = unit};
   PetscFunctionReturn(0);
 }
 
@@ -127,6 +127,7 @@ PetscErrorCode GridCreateCloud(const Grid *mesh, PetscReal spacing, const unsign
   g->n_nodes = g->n_owned;
   g->cloud->first_twin = mesh->n_nodes_global;
   g->cloud->spacing = spacing;
+  g->cloud->n_cells_left = mesh->n_cells_global;
   PetscCall(PetscMalloc1(g->n_nodes * g->dim, &g->x));
   PetscCall(PetscMalloc1(g->n_nodes * g->dim, &g->cloud->x0));
   PetscCall(PetscMalloc1(g->n_nodes, &g->cloud->id));
@@ -134,8 +135,8 @@ PetscErrorCode GridCreateCloud(const Grid *mesh, PetscReal spacing, const unsign
   PetscCall(Populate(mesh, marked, twin, g));
   PetscCall(CountOwned(g));
   PetscCall(Connect(g));
-  PetscCall(GridCloudFollow(g, &g->x, g->dim, PETSC_TRUE));
-  PetscCall(GridCloudFollow(g, &g->cloud->x0, g->dim, PETSC_TRUE));
+  PetscCall(GridCloudFollow(g, &g->x, g->dim, "position", "m"));
+  PetscCall(GridCloudFollow(g, &g->cloud->x0, g->dim, "position_at_start", "m"));
   *cloud = g;
   PetscFunctionReturn(0);
 }
@@ -150,7 +151,7 @@ static PetscErrorCode Resize(Grid *grid, PetscInt n_nodes)
   for (PetscInt f = 0; f < c->n_fields; ++f) {
     const PetscInt k = c->field[f].components;
     PetscCall(PetscCalloc1(n_nodes * k, &data));
-    if (c->field[f].keep) PetscCall(PetscArraycpy(data, *c->field[f].data, grid->n_owned * k));
+    if (c->field[f].name) PetscCall(PetscArraycpy(data, *c->field[f].data, grid->n_owned * k));
     PetscCall(PetscFree(*c->field[f].data));
     *c->field[f].data = data;
   }
@@ -179,7 +180,7 @@ PetscErrorCode GridCloudSetGhosts(Grid *grid, const RemoteNodes *remote, const P
     }
   PetscCall(Connect(grid));
   for (PetscInt f = 0; f < c->n_fields; ++f)
-    if (c->field[f].keep) PetscCall(GridToGhosts(grid, c->field[f].components, *c->field[f].data));
+    if (c->field[f].name) PetscCall(GridToGhosts(grid, c->field[f].components, *c->field[f].data));
   ++c->layouts;
   PetscFunctionReturn(0);
 }
@@ -187,7 +188,7 @@ PetscErrorCode GridCloudSetGhosts(Grid *grid, const RemoteNodes *remote, const P
 static PetscInt kept_components(const GridCloud *c)
 {
   PetscInt sum = 0;
-  for (PetscInt f = 0; f < c->n_fields; ++f) sum += c->field[f].keep ? c->field[f].components : 0;
+  for (PetscInt f = 0; f < c->n_fields; ++f) sum += c->field[f].name ? c->field[f].components : 0;
   return sum;
 }
 
@@ -196,7 +197,7 @@ static void pack_node(const Grid *grid, PetscInt node, PetscReal *row)
 {
   const GridCloud *c = grid->cloud;
   for (PetscInt f = 0; f < c->n_fields; ++f)
-    for (PetscInt k = 0; c->field[f].keep && k < c->field[f].components; ++k)
+    for (PetscInt k = 0; c->field[f].name && k < c->field[f].components; ++k)
       *row++ = (*c->field[f].data)[node * c->field[f].components + k];
   *row = (PetscReal)c->id[node];
 }
@@ -205,9 +206,32 @@ static void unpack_node(Grid *grid, PetscInt node, const PetscReal *row)
 {
   GridCloud *c = grid->cloud;
   for (PetscInt f = 0; f < c->n_fields; ++f)
-    for (PetscInt k = 0; c->field[f].keep && k < c->field[f].components; ++k)
+    for (PetscInt k = 0; c->field[f].name && k < c->field[f].components; ++k)
       (*c->field[f].data)[node * c->field[f].components + k] = *row++;
   c->id[node] = (PetscInt)*row;
+}
+
+/* Room for n owned nodes alone. */
+static PetscErrorCode Empty(Grid *grid, PetscInt n)
+{
+  PetscFunctionBeginUser;
+  grid->n_owned = 0;
+  PetscCall(Resize(grid, n));
+  grid->n_owned = n;
+  PetscCall(PetscFree(grid->cloud->ghost_rank));
+  PetscCall(PetscFree(grid->cloud->ghost_index));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode GridCloudReplace(Grid *grid, PetscInt n_owned, const PetscInt *id)
+{
+  PetscFunctionBeginUser;
+  PetscCall(Empty(grid, n_owned));
+  PetscCall(PetscArraycpy(grid->cloud->id, id, n_owned));
+  PetscCall(CountOwned(grid));
+  PetscCall(Connect(grid));
+  ++grid->cloud->layouts;
+  PetscFunctionReturn(0);
 }
 
 /* Rows of the nodes that stay, then of those that come, then resize and write them back. */
@@ -221,14 +245,10 @@ static PetscErrorCode Settle(Grid *grid, const PetscMPIInt *owner, PetscMPIInt r
   PetscCall(PetscMalloc1(grid->n_owned * width, &stay));
   for (PetscInt i = 0; i < grid->n_owned; ++i)
     if (owner[i] == rank) pack_node(grid, i, stay + n++ * width);
-  grid->n_owned = 0;
-  PetscCall(Resize(grid, n + n_in));
-  grid->n_owned = grid->n_nodes;
+  PetscCall(Empty(grid, n + n_in));
   for (PetscInt i = 0; i < n; ++i) unpack_node(grid, i, stay + i * width);
   for (PetscInt i = 0; i < n_in; ++i) unpack_node(grid, n + i, in + i * width);
   PetscCall(PetscFree(stay));
-  PetscCall(PetscFree(grid->cloud->ghost_rank));
-  PetscCall(PetscFree(grid->cloud->ghost_index));
   PetscCall(CountOwned(grid));
   PetscCall(Connect(grid));
   ++grid->cloud->layouts;

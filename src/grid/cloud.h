@@ -3,6 +3,7 @@
  * It fills the struct Grid like the other builders (owned nodes first, ghosts behind, node_sf), so that all that works on nodes works on
  * clouds. What others keep per node follows along: they register their arrays, and a change of ghosts or owners moves the contents. */
 #pragma once
+#include "base/table.h"
 #include "grid/grid.h"
 
 #define CLOUD_MAX_FIELDS 32
@@ -11,7 +12,7 @@
 typedef struct {
   PetscReal **data;
   PetscInt components;
-  PetscBool keep; /* else only the size follows */
+  const char *name, *unit; /* of what is kept: in checkpoints, too; NULL: only the size follows */
 } CloudField;
 
 typedef struct GridCloud {
@@ -21,9 +22,11 @@ typedef struct GridCloud {
   PetscReal *x0;       /* n_nodes x dim: positions at the start, m */
   PetscInt n_fields;
   CloudField field[CLOUD_MAX_FIELDS];
-  PetscMPIInt *ghost_rank; /* of each ghost: its owner, */
-  PetscInt *ghost_index;   /* and its local number there; ascending */
-  PetscInt layouts;        /* how often ghosts or owners changed */
+  PetscMPIInt *ghost_rank;  /* of each ghost: its owner, */
+  PetscInt *ghost_index;    /* and its local number there; ascending */
+  PetscInt layouts;         /* how often ghosts or owners changed */
+  PetscInt balanced_ghosts; /* over all ranks after the last change of owners; 0: not counted yet */
+  PetscInt n_cells_left;    /* cells of the grid that it was made of */
 } GridCloud;
 
 /* Owned nodes of other ranks in this rank's box, ascending by rank and index. */
@@ -48,8 +51,8 @@ static inline PetscBool cloud_is_twin(const Grid *grid, PetscInt node)
   return grid->cloud->id[node] >= grid->cloud->first_twin ? PETSC_TRUE : PETSC_FALSE;
 }
 
-/* Let *data (n_nodes x components, from PetscMalloc1) follow the nodes. */
-PetscErrorCode GridCloudFollow(Grid *grid, PetscReal **data, PetscInt components, PetscBool keep);
+/* Let *data (n_nodes x components, from PetscMalloc1) follow the nodes; without a name its contents are lost when they change. */
+PetscErrorCode GridCloudFollow(Grid *grid, PetscReal **data, PetscInt components, const char *name, const char *unit);
 
 /* Collective. Nodes of others between box[0..2] and box[3..5]; twins left out. */
 PetscErrorCode GridCloudRemote(const Grid *grid, const PetscReal box[6], RemoteNodes *remote);
@@ -60,3 +63,10 @@ void cloud_find_ghosts(const Grid *grid, const RemoteNodes *remote, PetscInt *lo
 PetscErrorCode GridCloudSetGhosts(Grid *grid, const RemoteNodes *remote, const PetscBool *use);
 /* Collective. Send every owned node to the rank owner[node]; no ghosts remain. */
 PetscErrorCode GridCloudMigrate(Grid *grid, const PetscMPIInt *owner);
+/* Collective. So many owned nodes and no ghosts in place of what is there; what follows them is zero. */
+PetscErrorCode GridCloudReplace(Grid *grid, PetscInt n_owned, const PetscInt *id);
+
+/* Nodes with all that is kept of them, and ghosts, as tables. */
+PetscErrorCode CloudToTables(const Grid *grid, Tables *tables);
+/* Collective. Back again: the rows of each rank become its nodes. Ghosts only come back if all rows are with the ranks that wrote them. */
+PetscErrorCode CloudFromTables(Grid *grid, const Tables *tables, PetscBool home, char reason[256]);

@@ -59,13 +59,13 @@ PetscErrorCode MshReadNodes4(MshReader *r)
     const PetscInt64 parameters = msh_int(r) ? dim : 0, in_block = msh_size(r);
     if (dim < 0 || dim > 3) msh_fail(r, "a block of nodes has dimension %lld", (long long)dim);
     if (in_block < 0 || in_block > n - done) msh_fail(r, "a block has more nodes than the file says");
-    for (PetscInt k = done; k < done + in_block && !r->failed; ++k)
-      r->msh->node_tag[k] = msh_tag(r, msh_size(r), "node");
-    for (PetscInt k = done; k < done + in_block && !r->failed; ++k) {
+    const PetscInt end = r->failed ? done : done + (PetscInt)in_block;
+    for (PetscInt k = done; k < end && !r->failed; ++k) r->msh->node_tag[k] = msh_tag(r, msh_size(r), "node");
+    for (PetscInt k = done; k < end && !r->failed; ++k) {
       msh_position(r, k);
       for (PetscInt64 p = 0; p < parameters; ++p) (void)msh_real(r);
     }
-    done += (PetscInt)in_block;
+    done = end;
   }
   if (done != n) msh_fail(r, "the file claims %lld nodes but its blocks hold %lld", (long long)n, (long long)done);
   PetscFunctionReturn(0);

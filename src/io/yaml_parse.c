@@ -6,6 +6,8 @@
 #include "io/yaml.h"
 
 typedef struct {
+  const char *text; /* all that is parsed */
+  size_t size;
   YamlDocument *document;
   Diag *diag;
   PetscInt argument;     /* of --set, 0: the file */
@@ -46,6 +48,23 @@ static void Mark(struct fy_token *token, YamlNode *node)
   node->column = start ? start->column + 1 : 0;
   node->width =
     start && end && end->line == start->line && end->column > start->column ? end->column - start->column : 1;
+}
+
+/* libfyaml 0.7.12 loses the memory in which it unfolds a text in single quotes that has doubled ones side by side, if there are more than three. */
+#define MAX_DOUBLED 3
+
+static PetscBool HasTooManyQuotes(const Builder *b, struct fy_token *token)
+{
+  const struct fy_mark *start = fy_token_start_mark(token), *end = fy_token_end_mark(token);
+  size_t run = 0, quotes = 0;
+  PetscBool adjacent = PETSC_FALSE;
+  if (fy_token_scalar_style(token) != FYSS_SINGLE_QUOTED || !start || !end) return PETSC_FALSE;
+  for (size_t i = start->input_pos; i < end->input_pos && i < b->size; ++i) {
+    run = b->text[i] == '\'' ? run + 1 : 0;
+    quotes += run > 0;
+    if (run >= 4) adjacent = PETSC_TRUE;
+  }
+  return adjacent && quotes > 2 * MAX_DOUBLED ? PETSC_TRUE : PETSC_FALSE;
 }
 
 static PetscErrorCode CopyText(struct fy_token *token, char **text)
@@ -121,8 +140,13 @@ static PetscErrorCode TakeScalar(Builder *b, struct fy_event *event)
 
   PetscFunctionBeginUser;
   PetscCall(YamlNodeCreate(b->document, YAML_SCALAR, &node));
-  PetscCall(CopyText(token, &node->text));
   Mark(token, node);
+  if (token && HasTooManyQuotes(b, token)) {
+    Fail(b, node, "too many doubled quotes ('') for a text in single quotes; put it in double quotes");
+    PetscCall(YamlNodeDestroy(&node));
+    PetscFunctionReturn(0);
+  }
+  PetscCall(CopyText(token, &node->text));
   node->plain = !token || fy_token_scalar_style(token) == FYSS_PLAIN ? PETSC_TRUE : PETSC_FALSE;
   if (event->scalar.tag) Fail(b, node, "a case file has no tags (words that begin with '!')");
   if (strlen(node->text) != (token ? fy_token_get_text_length(token) : 0))
@@ -348,8 +372,12 @@ static PetscErrorCode CheckEmpty(Builder *b)
 PetscErrorCode YamlParseInto(YamlDocument *document, const char *text, size_t size, PetscInt argument, Diag *diag,
                              YamlNode **fragment)
 {
-  Builder b = {
-    .document = document, .diag = diag, .argument = argument, .fragment = fragment ? PETSC_TRUE : PETSC_FALSE};
+  Builder b = {.text = text,
+               .size = size,
+               .document = document,
+               .diag = diag,
+               .argument = argument,
+               .fragment = fragment ? PETSC_TRUE : PETSC_FALSE};
   int line, column;
 
   PetscFunctionBeginUser;

@@ -44,12 +44,12 @@ static PetscErrorCode GmmStart(Stage *s)
   PetscCall(ConstraintsCreate(dim, &s->constraints));
   g->layouts = -1;
   s->loads->support = g->carriers;
-  PetscCall(GridCloudFollow(s->grid, &s->mass, 1, PETSC_FALSE));
-  PetscCall(GridCloudFollow(s->grid, &s->v, dim, PETSC_TRUE));
-  PetscCall(GridCloudFollow(s->grid, &s->a, dim, PETSC_TRUE));
-  PetscCall(GridCloudFollow(s->grid, &s->v_points, dim, PETSC_FALSE));
-  PetscCall(GridCloudFollow(s->grid, &s->v1, dim, PETSC_FALSE));
-  PetscCall(GridCloudFollow(s->grid, &s->a1, dim, PETSC_FALSE));
+  PetscCall(GridCloudFollow(s->grid, &s->mass, 1, NULL, NULL));
+  PetscCall(GridCloudFollow(s->grid, &s->v, dim, "velocity", "m/s"));
+  PetscCall(GridCloudFollow(s->grid, &s->a, dim, "acceleration", "m/s2"));
+  PetscCall(GridCloudFollow(s->grid, &s->v_points, dim, NULL, NULL));
+  PetscCall(GridCloudFollow(s->grid, &s->v1, dim, NULL, NULL));
+  PetscCall(GridCloudFollow(s->grid, &s->a1, dim, NULL, NULL));
   PetscFunctionReturn(0);
 }
 
@@ -168,6 +168,9 @@ static PetscErrorCode MoveNodes(Stage *s, const PetscReal *du)
       else if (s->touched[i]) *x += motion_of_node(s, i, k, d, du);
     }
   }
+  for (PetscInt i = 0; i < grid->n_owned; ++i) /* twins stand with their nodes, and go to the same rank */
+    for (PetscInt d = 0; d < dim && s->gmm->twin[i] >= 0; ++d)
+      grid->x[s->gmm->twin[i] * dim + d] = grid->x[i * dim + d];
   PetscCall(GridToGhosts(grid, dim, grid->x));
   PetscFunctionReturn(0);
 }
@@ -210,4 +213,5 @@ const Method method_gmm = {
   .convect = GmmConvect,
   .destroy = GmmDestroy,
   .couplings = GmmCouplings,
+  .redistribute = GmmRedistribute,
 };

@@ -10,10 +10,9 @@ typedef struct Gmm {
   Support
     *nodes; /* clouds of owned nodes that are no twins, in their order; empty where no prescribed node is near and no
                                * constraint needs them */
-  CloudTally tally;         /* of the material points in the last gathering, this rank */
-  PetscInt layouts;         /* state of the cloud that the arrays of this room fit */
-  PetscInt *twin;           /* n_owned: local number of the node's twin, -1 if it has none */
-  PetscInt balanced_ghosts; /* ghosts over all ranks after the last change of owners; 0: not counted yet */
+  CloudTally tally; /* of the material points in the last gathering, this rank */
+  PetscInt layouts; /* state of the cloud that the arrays of this room fit */
+  PetscInt *twin;   /* n_owned: local number of the node's twin, -1 if it has none */
 } Gmm;
 
 /* Collective. Ghosts, clouds and constraints for where nodes and points are now; touched nodes too. */

@@ -18,16 +18,13 @@ static PetscErrorCode SendPoints(const SpaceCuts *cuts, const Grid *grid, Points
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode SendNodes(const SpaceCuts *cuts, Grid *grid, const PetscInt *twin)
+static PetscErrorCode SendNodes(const SpaceCuts *cuts, Grid *grid)
 {
   PetscMPIInt *owner;
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(grid->n_owned, &owner));
-  for (PetscInt i = 0; i < grid->n_owned; ++i)
-    if (!cloud_is_twin(grid, i)) owner[i] = space_owner(cuts, grid->x + i * grid->dim);
-  for (PetscInt i = 0; i < grid->n_owned; ++i)
-    if (twin[i] >= 0) owner[twin[i]] = owner[i];
+  for (PetscInt i = 0; i < grid->n_owned; ++i) owner[i] = space_owner(cuts, grid->x + i * grid->dim);
   PetscCall(GridCloudMigrate(grid, owner));
   PetscCall(PetscFree(owner));
   PetscFunctionReturn(0);
@@ -39,12 +36,12 @@ PetscErrorCode GmmRedistribute(Stage *s)
 
   PetscFunctionBeginUser;
   PetscCall(SpaceCutsCreate(s->grid->comm, s->grid->dim, s->points->n, s->points->real[POINT_X], &cuts));
-  PetscCall(SendNodes(&cuts, s->grid, s->gmm->twin));
+  PetscCall(SendNodes(&cuts, s->grid));
   PetscCall(SendPoints(&cuts, s->grid, s->points));
   PetscCall(SendPoints(&cuts, s->grid, s->tracers));
   PetscCall(SendPoints(&cuts, s->grid, s->loads->carriers));
   PetscCall(SpaceCutsDestroy(&cuts));
-  s->gmm->balanced_ghosts = 0;
+  s->grid->cloud->balanced_ghosts = 0;
   PetscFunctionReturn(0);
 }
 
@@ -55,7 +52,7 @@ PetscErrorCode GmmBalance(Stage *s)
   PetscFunctionBeginUser;
   if (!s->started) PetscFunctionReturn(0);
   PetscCallMPI(MPI_Allreduce(&ghosts, &all, 1, MPIU_INT, MPI_SUM, s->grid->comm));
-  if (!s->gmm->balanced_ghosts) s->gmm->balanced_ghosts = all;
-  if ((PetscReal)all > RAGGED * (PetscReal)s->gmm->balanced_ghosts) PetscCall(GmmRedistribute(s));
+  if (!s->grid->cloud->balanced_ghosts) s->grid->cloud->balanced_ghosts = all;
+  if ((PetscReal)all > RAGGED * (PetscReal)s->grid->cloud->balanced_ghosts) PetscCall(GmmRedistribute(s));
   PetscFunctionReturn(0);
 }

@@ -63,6 +63,8 @@ typedef struct Method {
   PetscErrorCode (*destroy)(Stage *stage);
   /* Groups of nodes that steps to come may couple; freed by the caller. NULL: the cells. */
   PetscErrorCode (*couplings)(const Stage *stage, NodeGroups *groups);
+  /* Send nodes and points to ranks by where they are now. */
+  PetscErrorCode (*redistribute)(Stage *stage);
 } Method;
 
 extern const Method *const methods[]; /* ended by NULL */

@@ -96,6 +96,17 @@ static PetscErrorCode FindSlots(Model *m, PetscBool *complete)
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode ModelFollowCloud(Model *m)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscFree(m->fixed));
+  PetscCall(PetscCalloc1(m->grid->n_nodes * m->dim, &m->fixed));
+  PetscCall(PetscFree(m->idle));
+  PetscCall(PetscCalloc1(m->grid->n_nodes, &m->idle));
+  m->layouts = m->grid->cloud->layouts;
+  PetscFunctionReturn(0);
+}
+
 /* Clouds change from step to step: the system lasts until a pair of nodes meets that it does not couple, or nodes changed their ranks. */
 static PetscErrorCode ActivateClouds(Model *m)
 {
@@ -103,14 +114,10 @@ static PetscErrorCode ActivateClouds(Model *m)
   NodeGroups groups;
 
   PetscFunctionBeginUser;
-  if (m->layouts != m->grid->cloud->layouts) {
-    PetscCall(PetscFree(m->fixed));
-    PetscCall(PetscCalloc1(m->grid->n_nodes * m->dim, &m->fixed));
-    PetscCall(PetscFree(m->idle));
-    PetscCall(PetscCalloc1(m->grid->n_nodes, &m->idle));
-  } else if (m->system->matrix) PetscCall(FindSlots(m, &complete));
-  m->layouts = m->grid->cloud->layouts;
+  if (m->layouts != m->grid->cloud->layouts) PetscCall(ModelFollowCloud(m));
+  else if (m->system->builds) PetscCall(FindSlots(m, &complete));
   if (!complete) {
+    PetscCall(PetscArrayzero(m->force, m->grid->n_nodes * m->dim)); /* of nodes that may lose their unknowns */
     PetscCall(m->method->couplings(m->stage, &groups));
     PetscCall(SystemBuild(m->system, m->grid, &groups));
     PetscCall(PetscFree(groups.start));

@@ -132,13 +132,14 @@ static PetscErrorCode CreateFields(Model *m)
   }
   PetscReal **const scratch[] = {&m->du, &m->force, &m->external, &m->history, &m->prescribed};
   PetscReal **const kept[] = {&m->reaction, &m->held};
+  static const char *const kept_names[] = {"reaction", "held"};
   for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(scratch); ++k) {
     PetscCall(PetscCalloc1(dofs, scratch[k]));
-    if (m->grid->cloud) PetscCall(GridCloudFollow(m->grid, scratch[k], m->dim, PETSC_FALSE));
+    if (m->grid->cloud) PetscCall(GridCloudFollow(m->grid, scratch[k], m->dim, NULL, NULL));
   }
   for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(kept); ++k) {
     PetscCall(PetscCalloc1(dofs, kept[k]));
-    if (m->grid->cloud) PetscCall(GridCloudFollow(m->grid, kept[k], m->dim, PETSC_TRUE));
+    if (m->grid->cloud) PetscCall(GridCloudFollow(m->grid, kept[k], m->dim, kept_names[k], "N"));
   }
   PetscFunctionReturn(0);
 }

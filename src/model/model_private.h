@@ -8,6 +8,8 @@ PetscErrorCode OptionsCheck(const Model *model, Diag *diag);
 PetscErrorCode OptionsForget(Model *model);
 /* Collective. The system for the cells that are enabled. */
 PetscErrorCode ModelEnable(Model *model);
+/* Arrays that the step keeps over the nodes of a cloud, after its ghosts or owners changed. */
+PetscErrorCode ModelFollowCloud(Model *model);
 /* Geostatic stress of bodies that ask for it, as their law's state. */
 PetscErrorCode InitialStress(Model *model, Diag *diag);
 /* Acceleration at t = 0 from the balance of momentum with lumped mass, so that a body in free fall falls from the first step on. */

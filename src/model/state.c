@@ -1,6 +1,7 @@
 #include "model/state.h"
 #include "grid/directory.h"
 #include "model/model_private.h"
+#include "model/state_private.h"
 
 /* Numbers of the model as a whole: one line each, for writing and reading. */
 static const struct {
@@ -104,8 +105,6 @@ static PetscInt method_fields(const Model *m, NodalField field[8])
   return n;
 }
 
-PetscBool model_fits_tables(const Model *m) { return m->grid->cloud ? PETSC_FALSE : PETSC_TRUE; }
-
 PetscErrorCode ModelToTables(Model *m, Tables *tables)
 {
   NodalField field[8];
@@ -116,6 +115,10 @@ PetscErrorCode ModelToTables(Model *m, Tables *tables)
   PetscCall(PointsToTable(m->points, m->grid, "points", tables));
   PetscCall(PointsToTable(m->tracers, m->grid, "tracers", tables));
   PetscCall(PointsToTable(m->loads->carriers, m->grid, "carriers", tables));
+  if (m->grid->cloud) {
+    PetscCall(StateCloudToTables(m, tables));
+    PetscFunctionReturn(0);
+  }
   const PetscInt n = method_fields(m, field);
   if (n) PetscCall(NodesToTable(m->grid, NULL, n, field, "nodes", tables));
   PetscCall(Reactions(m, field, &take));
@@ -195,13 +198,18 @@ static PetscErrorCode PointsBack(Model *m, const Tables *tables, char reason[256
   PetscFunctionReturn(0);
 }
 
+static NewtonMemory newton_memory(const Table *table, char reason[256])
+{
+  return (NewtonMemory){.courant = real_of(table, "solver_courant", reason),
+                        .failures = count_of(table, "solver_failures", reason),
+                        .since = count_of(table, "solver_steps_since", reason)};
+}
+
 /* The pattern is that of the enabled cells, and the solver is chosen as it was. */
 static PetscErrorCode SolverBack(Model *m, const Table *table, char reason[256])
 {
   PetscInt local = 0, any;
-  NewtonMemory newton = {.courant = real_of(table, "solver_courant", reason),
-                         .failures = count_of(table, "solver_failures", reason),
-                         .since = count_of(table, "solver_steps_since", reason)};
+  NewtonMemory newton = newton_memory(table, reason);
 
   PetscFunctionBeginUser;
   for (PetscInt c = 0; c < m->grid->n_cells; ++c) local += m->enabled[c];
@@ -211,19 +219,46 @@ static PetscErrorCode SolverBack(Model *m, const Table *table, char reason[256])
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode ModelFromTables(Model *m, const Tables *tables, char reason[256])
+/* All ranks know the same tables. */
+static void check_tables(const Model *m, const Tables *tables, char reason[256])
 {
-  static const char *const needed[] = {"model",    "measures", "points",  "tracers",
-                                       "carriers", "boundary", "pattern", NULL};
+  static const char *const always[] = {"model", "measures", "points", "tracers", "carriers", "pattern"};
+  static const char *const of_cells[] = {"boundary", "nodes"}, *const of_clouds[] = {"nodes", "ghosts", "cloud",
+                                                                                     "parts"};
+  for (int i = 0; i < 6; ++i)
+    if (!TablesFind(tables, always[i])) snprintf(reason, 256, "%s is missing", always[i]);
+  for (int i = 0; !m->grid->cloud && i < (m->method->fields ? 2 : 1); ++i)
+    if (!TablesFind(tables, of_cells[i])) snprintf(reason, 256, "%s is missing", of_cells[i]);
+  for (int i = 0; m->grid->cloud && i < 4; ++i)
+    if (!TablesFind(tables, of_clouds[i])) snprintf(reason, 256, "%s is missing", of_clouds[i]);
+}
+
+static PetscErrorCode CloudBack(Model *m, Tables *tables, char reason[256])
+{
+  PetscBool home;
+  const Table *model = TablesFind(tables, "model");
 
   PetscFunctionBeginUser;
+  NewtonMemory newton = newton_memory(model, reason);
+  PetscCall(StateCloudNodes(m, tables, &home, reason));
+  if (!reason[0]) PetscCall(PointsBack(m, tables, reason));
+  if (!reason[0]) PetscCall(StateCloudSettle(m, tables, home, reason));
+  if (!reason[0]) NewtonSetMemory(m->newton, m->system, &newton);
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ModelFromTables(Model *m, Tables *tables, char reason[256])
+{
+  PetscFunctionBeginUser;
   reason[0] = 0;
-  for (int i = 0; needed[i]; ++i)
-    if (!TablesFind(tables, needed[i])) snprintf(reason, 256, "%s is missing", needed[i]);
-  if (m->method->fields && !TablesFind(tables, "nodes")) snprintf(reason, 256, "nodes is missing");
-  if (reason[0]) PetscFunctionReturn(0); /* all ranks know the same tables */
+  check_tables(m, tables, reason);
+  if (reason[0]) PetscFunctionReturn(0);
   whole_from_tables(m, TablesFind(tables, "model"), TablesFind(tables, "measures"), reason);
   PetscCall(ReasonShare(m->comm, reason));
+  if (m->grid->cloud && !reason[0]) {
+    PetscCall(CloudBack(m, tables, reason));
+    PetscFunctionReturn(0);
+  }
   if (!reason[0]) PetscCall(PointsBack(m, tables, reason));
   if (!reason[0]) PetscCall(NodesBack(m, tables, reason));
   if (reason[0]) PetscFunctionReturn(0);

@@ -6,10 +6,8 @@
 #include "base/table.h"
 #include "model/model.h"
 
-/* Can the state be put away? Not that of a cloud, whose nodes are not among the tables. */
-PetscBool model_fits_tables(const Model *model);
 /* Collective. The state at the end of a step, of which there must have been one: the first starts from accelerations of its own. Tables may stand over the model's own arrays: use them before the next step. */
 PetscErrorCode ModelToTables(Model *model, Tables *tables);
 /* Collective. Put a model that was just created where the tables say. If they do not fit the model, reason (256 characters) says why on every
- * rank and the model is fit for nothing but ModelDestroy; else it is left empty. */
-PetscErrorCode ModelFromTables(Model *model, const Tables *tables, char reason[256]);
+ * rank and the model is fit for nothing but ModelDestroy; else it is left empty. Tables of a cloud may be sent to other ranks on the way. */
+PetscErrorCode ModelFromTables(Model *model, Tables *tables, char reason[256]);

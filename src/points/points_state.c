@@ -1,4 +1,5 @@
 /* Points as a table, and back on any number of ranks: every field of points/fields.h, the cell by its number in the whole grid. */
+#include "grid/cloud.h"
 #include "grid/directory.h"
 #include "points/fields.h"
 #include "points/migrate.h"
@@ -22,6 +23,12 @@ static const struct {
   [POINT_FORCE] = {"force", "N"},
 };
 
+/* Points of a cloud remember the cell of their birth by this number already. */
+static PetscInt global_cell(const Grid *grid, PetscInt cell)
+{
+  return cell < 0 || grid->cloud ? cell : grid->global_cell[cell];
+}
+
 PetscErrorCode PointsToTable(const Points *points, const Grid *grid, const char *name, Tables *tables)
 {
   Table *table;
@@ -34,7 +41,7 @@ PetscErrorCode PointsToTable(const Points *points, const Grid *grid, const char 
   PetscCall(TableAdd(table, "body", NULL, COLUMN_INT32, 1, NULL, &body));
   PetscCall(TableAdd(table, "material", NULL, COLUMN_INT32, 1, NULL, &material));
   for (PetscInt p = 0; p < points->n; ++p) {
-    ((PetscInt64 *)cell->data)[p] = points->cell[p] < 0 ? -1 : grid->global_cell[points->cell[p]];
+    ((PetscInt64 *)cell->data)[p] = global_cell(grid, points->cell[p]);
     ((int32_t *)body->data)[p] = (int32_t)points->body[p];
     ((int32_t *)material->data)[p] = (int32_t)points->material[p];
   }
@@ -108,8 +115,9 @@ PetscErrorCode PointsFromTable(Points *points, const Grid *grid, const Table *ta
                                PetscInt n_materials, char reason[256])
 {
   PetscFunctionBeginUser;
-  PetscCall(TakeRows(points, table, grid->n_cells_global, n_bodies, n_materials, reason));
+  const PetscInt n_cells = grid->cloud ? grid->cloud->n_cells_left : grid->n_cells_global;
+  PetscCall(TakeRows(points, table, n_cells, n_bodies, n_materials, reason));
   PetscCall(ReasonShare(grid->comm, reason));
-  if (!reason[0]) PetscCall(SendHome(points, grid, table->name, reason));
+  if (!reason[0] && !grid->cloud) PetscCall(SendHome(points, grid, table->name, reason));
   PetscFunctionReturn(0);
 }

@@ -123,7 +123,6 @@ PetscErrorCode CheckpointSave(Run *r)
   const double start = MPI_Wtime();
 
   PetscFunctionBeginUser;
-  if (!model_fits_tables(r->model)) PetscFunctionReturn(0); /* RunOpen has said so */
   if (r->checkpoint_step == r->model->step || r->model->step == 0)
     PetscFunctionReturn(0); /* a run that has done nothing starts again */
   RunDirCheckpointPath(r->dir, r->model->step, path);

@@ -3,7 +3,6 @@
 #include "io/case_file.h"
 #include "io/run_dir_files.h"
 #include "io/vtk.h"
-#include "model/state.h"
 #include "run/run_private.h"
 #include "run/summary.h"
 
@@ -48,8 +47,6 @@ PetscErrorCode RunOpen(Run *r, const RunOptions *options, Diag *diag)
   if (r->failed) PetscFunctionReturn(0);
   if (!r->output) PetscCall(OutputCreate(r->model, RunDirPath(r->dir), &r->output));
   PetscCall(SummaryBegin(r->model, r->dir));
-  if (!model_fits_tables(r->model) && (r->c->checkpoint.steps > 0 || r->c->checkpoint.minutes > 0))
-    PetscCall(RunDirLog(r->dir, "checkpoints = none: they are not part of this version for method %s", r->c->method));
   PetscCall(RunWriteRow(r));
   if (r->c->output.every != 0 && !r->failed) PetscCall(RunWriteState(r));
   PetscFunctionReturn(0);
@@ -128,12 +125,6 @@ PetscErrorCode RunResume(Run *r, const RunOptions *options, Diag *diag, PetscBoo
   PetscBool fits;
 
   PetscFunctionBeginUser;
-  if (!model_fits_tables(r->model)) {
-    DiagError(diag, "method", "runs of method %s cannot be resumed in this version: they leave no checkpoints",
-              r->c->method);
-    DiagHint(diag, "run the case again from its start: talus run %s/case.yaml --out another directory", options->out);
-    PetscFunctionReturn(0);
-  }
   PetscCall(RunDirOpen(r->comm, options->out, options->quiet, options->log, diag, &r->dir));
   if (!r->dir) PetscFunctionReturn(0);
   PetscCall(OutputCreate(r->model, RunDirPath(r->dir), &r->output)); /* node positions at the start */

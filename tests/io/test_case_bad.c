@@ -29,6 +29,7 @@ static const Bad bads[] = {
   /* syntax */
   {"tab", PLAIN_TOP "grid:\n\tsize: 1\n", {"F:5:1: error: syntax: ", "hint: indent with spaces"}},
   {"open quote", "title: \"abc\n", {"F:1:9: error: syntax: "}},
+  {"quotes", "title: 'a'''''''''\n", {"F:1:9: error: too many doubled quotes ('') for a text in single quotes"}},
   {"open bracket", "title: [a, b\n", {"error: syntax: "}},
   {"two documents", PLAIN "---\ntitle: b\n", {"a second document begins here"}},
   {"tag", "title: !foo a\n", {"F:1:13: error: a case file has no tags"}},

@@ -55,6 +55,13 @@ static void same_models(const Model *m, const Model *n)
   CHECK(m->total_iterations == n->total_iterations, "other iterations");
 }
 
+static PetscBool on_one_rank(void)
+{
+  PetscMPIInt size;
+  MPI_Comm_size(PETSC_COMM_WORLD, &size);
+  return size == 1 ? PETSC_TRUE : PETSC_FALSE;
+}
+
 /* bits: does the solver promise the same bits on several ranks? */
 static void check(Bench *b, PetscInt before, PetscInt after, PetscBool bits)
 {
@@ -76,13 +83,6 @@ static void check(Bench *b, PetscInt before, PetscInt after, PetscBool bits)
   CALL(ModelDestroy(&whole));
   CALL(ModelDestroy(&again));
   CALL(ModelDestroy(&alone));
-}
-
-static PetscBool on_one_rank(void)
-{
-  PetscMPIInt size;
-  MPI_Comm_size(PETSC_COMM_WORLD, &size);
-  return size == 1 ? PETSC_TRUE : PETSC_FALSE;
 }
 
 /* A body that falls, turns and crosses from rank to rank, with a load that it carries and a tracer. */
@@ -126,6 +126,42 @@ static void test_fem(void **state)
   (void)state;
   flying("fem", CELL_QUADRILATERAL, 0.125);
   flying("fem", CELL_HEXAHEDRON, 0.25);
+}
+
+/* A block with a spin, thrown on a floor: ghosts, the pattern and constraints come and go; with a tracer and a carried load. */
+static void thrown(BasisKind kind, LinearChoice linear, CellType cell, PetscReal size)
+{
+  Bench b;
+  bench_init(&b, "gmm", cell, 0);
+  bench_grid(&b, (PetscReal[]){0, 0, 0}, (PetscReal[]){2, 1.5, 1}, size);
+  bench_box(&b, 0, (PetscReal[]){0.25, 0.25, 0.25}, (PetscReal[]){0.75, 0.75, 0.75});
+  b.c.basis = (BasisSpec){.kind = kind,
+                          .gamma = kind == BASIS_LME ? 1.8 : 0,
+                          .effective_radius = kind == BASIS_LME ? 0 : 1,
+                          .radius = 2,
+                          .max_radius = 3.5,
+                          .condition = 50,
+                          .gap = 2};
+  bench_dynamic(&b, 1, 4e-3);
+  b.c.linear = linear;
+  b.body[0].velocity[0] = 1.5;
+  b.body[0].velocity[1] = -4;
+  b.body[0].spin[2] = 2;
+  b.c.gravity[1] = -9.81;
+  bench_motion(&b, 1, 0, MOTION_FIXED, 7);
+  bench_traction(&b, 0, 0.75, "body", 100, 0, 0);
+  bench_tracer(&b, MEASURE_POSITION, 0, 0.5, 0.5, 0.5);
+  for (PetscInt before = 1; before <= 13; before += 6)
+    check(&b, before, 6, linear == LINEAR_ITERATIVE || on_one_rank() ? PETSC_TRUE : PETSC_FALSE);
+}
+
+static void test_gmm(void **state)
+{
+  (void)state;
+  thrown(BASIS_LME, LINEAR_ITERATIVE, CELL_QUADRILATERAL, 0.125);
+  thrown(BASIS_LME, LINEAR_DIRECT, CELL_TRIANGLE, 0.125);
+  thrown(BASIS_MLS, LINEAR_AUTO, CELL_QUADRILATERAL, 0.125);
+  thrown(BASIS_LME, LINEAR_ITERATIVE, CELL_HEXAHEDRON, 0.25);
 }
 
 /* Statics in steps with factorisations, whose bits depend on the arrival of messages where there are several ranks. */
@@ -188,9 +224,10 @@ static void test_other_model(void **state)
 
 int main(int argc, char **argv)
 {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_mpm_2d),   cmocka_unit_test(test_mpm_3d),
-                                     cmocka_unit_test(test_fem),      cmocka_unit_test(test_static),
-                                     cmocka_unit_test(test_at_start), cmocka_unit_test(test_other_model)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_mpm_2d),     cmocka_unit_test(test_mpm_3d),
+                                     cmocka_unit_test(test_fem),        cmocka_unit_test(test_gmm),
+                                     cmocka_unit_test(test_static),     cmocka_unit_test(test_at_start),
+                                     cmocka_unit_test(test_other_model)};
   PetscMPIInt rank;
   int pid;
   if (PetscInitialize(&argc, &argv, NULL, NULL)) return 1;
