@@ -36,9 +36,11 @@ CLOUD_INLINE void pack_max(const Pack *v, Pack *largest)
 
 CLOUD_INLINE PetscReal pack_largest(const Pack *v)
 {
-  PetscReal largest = (*v)[0];
-  for (int l = 1; l < PACK; ++l) largest = (*v)[l] > largest ? (*v)[l] : largest;
-  return largest;
+  Pack other = __builtin_shufflevector(*v, *v, 4, 5, 6, 7, 0, 1, 2, 3), largest = *v;
+  pack_max(&other, &largest);
+  other = __builtin_shufflevector(largest, largest, 2, 3, 0, 1, 6, 7, 4, 5);
+  pack_max(&other, &largest);
+  return largest[0] > largest[1] ? largest[0] : largest[1];
 }
 
 CLOUD_INLINE void cloud_gather(int dim, int n, const PetscReal *X, PetscReal h, const PetscReal *x, Cloud *cloud)

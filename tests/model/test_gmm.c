@@ -324,7 +324,7 @@ static void solvers(PetscBool sand)
   for (int k = 0; k < 2; ++k) {
     b.c.linear = k ? LINEAR_DIRECT : LINEAR_AUTO;
     m[k] = bench_model(&b, k ? PETSC_COMM_SELF : PETSC_COMM_WORLD);
-    for (int step = 0; step < 40; ++step) CHECK(model_step(m[k], 0.002).cuts == 0, "a step was halved");
+    for (int step = 0; step < 25; ++step) CHECK(model_step(m[k], 0.002).cuts == 0, "a step was halved");
     for (int d = 0; d < 2; ++d) CALL(ModelMeasure(m[k], &b.measure[d], d, &v[k][d]));
   }
   moved[0] = points_difference(m[0], m[1], POINT_U);
