@@ -18,6 +18,7 @@ PetscErrorCode GridCloudDestroy(GridCloud **cloud)
   if (!*cloud) PetscFunctionReturn(0);
   PetscCall(PetscFree((*cloud)->id));
   PetscCall(PetscFree((*cloud)->x0));
+  PetscCall(PetscFree((*cloud)->obstacle));
   PetscCall(PetscFree((*cloud)->ghost_rank));
   PetscCall(PetscFree((*cloud)->ghost_index));
   PetscCall(PetscFree(*cloud));
@@ -101,6 +102,7 @@ static PetscErrorCode Populate(const Grid *mesh, const unsigned char *marked, co
     for (PetscInt i = 0; i < mesh->n_owned; ++i) {
       if (!marked[i] || (second && !twin[i])) continue;
       g->cloud->id[n] = mesh->global_node[i] + (second ? mesh->n_nodes_global : 0);
+      g->cloud->obstacle[n] = marked[i] == CLOUD_OBSTACLE;
       for (PetscInt d = 0; d < dim; ++d) g->x[n * dim + d] = g->cloud->x0[n * dim + d] = mesh->x[i * dim + d];
       ++n;
     }
@@ -130,6 +132,7 @@ PetscErrorCode GridCreateCloud(const Grid *mesh, PetscReal spacing, const unsign
   g->cloud->n_cells_left = mesh->n_cells_global;
   PetscCall(PetscMalloc1(g->n_nodes * g->dim, &g->x));
   PetscCall(PetscMalloc1(g->n_nodes * g->dim, &g->cloud->x0));
+  PetscCall(PetscMalloc1(g->n_nodes, &g->cloud->obstacle));
   PetscCall(PetscMalloc1(g->n_nodes, &g->cloud->id));
   PetscCall(PetscMalloc1(g->n_nodes, &g->global_node));
   PetscCall(Populate(mesh, marked, twin, g));
@@ -137,6 +140,7 @@ PetscErrorCode GridCreateCloud(const Grid *mesh, PetscReal spacing, const unsign
   PetscCall(Connect(g));
   PetscCall(GridCloudFollow(g, &g->x, g->dim, "position", "m"));
   PetscCall(GridCloudFollow(g, &g->cloud->x0, g->dim, "position_at_start", "m"));
+  PetscCall(GridCloudFollow(g, &g->cloud->obstacle, 1, "obstacle", NULL));
   *cloud = g;
   PetscFunctionReturn(0);
 }

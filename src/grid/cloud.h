@@ -8,6 +8,8 @@
 
 #define CLOUD_MAX_FIELDS 32
 
+enum { CLOUD_BODY = 1, CLOUD_OBSTACLE };
+
 /* An array of n_nodes x components that somebody else holds. */
 typedef struct {
   PetscReal **data;
@@ -20,6 +22,7 @@ typedef struct GridCloud {
   PetscInt first_twin; /* ids from here on are twins */
   PetscReal spacing;   /* of nodes in the body, at the start, m: unit of length of clouds */
   PetscReal *x0;       /* n_nodes x dim: positions at the start, m */
+  PetscReal *obstacle; /* n_nodes: 1 if the node was prescribed at the start and no cell with material had it; else 0 */
   PetscInt n_fields;
   CloudField field[CLOUD_MAX_FIELDS];
   PetscMPIInt *ghost_rank;  /* of each ghost: its owner, */
@@ -40,7 +43,7 @@ typedef struct {
 /* Collective. Spacing of nodes in the cells listed (of all ranks, each counted as often as it is listed): the edge of a square or cube of their
  * mean volume, of which a triangle is half and a tetrahedron a sixth; on a box of equal cells its cell size. */
 PetscErrorCode GridSpacing(const Grid *mesh, PetscInt n, const PetscInt *cell, PetscReal *spacing);
-/* Collective. The cloud of the owned nodes of a mesh that are marked; where twin[node] is set it gets a twin: a second node at the same
+/* Collective. The cloud of the owned nodes of a mesh that are marked (CLOUD_BODY, or CLOUD_OBSTACLE); where twin[node] is set it gets a twin: a second node at the same
  * place that carries the multipliers of a constraint and never is a neighbour. */
 PetscErrorCode GridCreateCloud(const Grid *mesh, PetscReal spacing, const unsigned char *marked,
                                const unsigned char *twin, Grid **cloud);

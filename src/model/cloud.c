@@ -16,7 +16,7 @@ static PetscErrorCode MarkNodes(const Model *m, unsigned char *marked, unsigned 
   for (PetscInt i = 0; i < mesh->n_owned; ++i) {
     twin[i] = 0;
     for (PetscInt d = 0; d < m->dim; ++d) twin[i] |= m->boundary->fixed[i * m->dim + d];
-    marked[i] = mark[i] > 0 || twin[i];
+    marked[i] = mark[i] > 0 ? CLOUD_BODY : (twin[i] ? CLOUD_OBSTACLE : 0);
   }
   PetscCall(PetscFree(mark));
   PetscFunctionReturn(0);
@@ -53,5 +53,45 @@ PetscErrorCode ModelToCloud(Model *m)
   PetscCall(GridDestroy(&m->grid));
   m->boundary = boundary;
   m->grid = cloud;
+  PetscFunctionReturn(0);
+}
+
+static PetscBool is_held(const Model *m, PetscInt node)
+{
+  for (PetscInt d = 0; d < m->dim; ++d)
+    if (m->boundary->fixed[node * m->dim + d]) return PETSC_TRUE;
+  return PETSC_FALSE;
+}
+
+/* Points whose clouds reach prescribed nodes that the body's cells do not touch hang on them without strain, so that to come off takes a
+ * force. Where the body stands on prescribed nodes of its own that is as it should be. */
+PetscErrorCode ModelWarnOfObstacles(const Model *m, Diag *diag)
+{
+  const Support *w = m->stage->support;
+  PetscInt *count;
+  char path[64];
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(m->c->n_bodies, &count));
+  for (PetscInt p = 0; p < w->n_groups; ++p) {
+    PetscBool near = PETSC_FALSE, stands = PETSC_FALSE;
+    for (PetscInt i = w->node_start[p]; i < w->node_start[p + 1]; ++i) {
+      const PetscBool obstacle = m->grid->cloud->obstacle[w->node[i]] > 0 ? PETSC_TRUE : PETSC_FALSE;
+      near |= obstacle;
+      stands |= !obstacle && is_held(m, w->node[i]);
+    }
+    count[m->points->body[p]] += near && !stands;
+  }
+  PetscCall(MPIU_Allreduce(MPI_IN_PLACE, count, (PetscMPIInt)m->c->n_bodies, MPIU_INT, MPI_SUM, m->comm));
+  for (PetscInt b = 0; b < m->c->n_bodies; ++b) {
+    if (!count[b]) continue;
+    snprintf(path, sizeof path, "bodies[%d]", (int)b);
+    DiagWarning(diag, path,
+                "%d points of '%s' have prescribed nodes in their clouds which the body does not touch: it sticks to them",
+                (int)count[b], m->c->bodies[b].name);
+    DiagHint(diag, "a body that is to come off later must start farther away than its clouds reach: %g m",
+             (double)(m->c->basis.radius * m->grid->cloud->spacing));
+  }
+  PetscCall(PetscFree(count));
   PetscFunctionReturn(0);
 }

@@ -175,6 +175,7 @@ static PetscErrorCode Build(Model *m, Diag *diag)
   PetscCall(NewtonCreate(m->comm, &m->c->newton, &m->newton));
   step_control_start(&m->control, m->c->analysis.step);
   PetscCall(m->method->initialise(m->stage));
+  if (m->method->couplings) PetscCall(ModelWarnOfObstacles(m, diag));
   if (m->c->analysis.type == ANALYSIS_DYNAMIC) PetscCall(InitialAcceleration(m));
   PetscCall(EnergyStart(m));
   PetscCall(MeasuresStart(m));

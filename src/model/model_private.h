@@ -40,5 +40,7 @@ PetscErrorCode EnergyClose(Model *model, EnergyStep *step);
 void pressure_guess(const Model *model);
 /* Collective. Leave the cells: nodes that material fills or the boundary holds become a cloud, and all that stood on the mesh moves over. */
 PetscErrorCode ModelToCloud(Model *model);
+/* Collective. After the first step's clouds are known: tell which bodies hang on an obstacle from the start. */
+PetscErrorCode ModelWarnOfObstacles(const Model *model, Diag *diag);
 /* Input of the weak form for the model's present arrays. */
 WeakFormInput weak_form_of(const Model *model, PetscReal inertia);

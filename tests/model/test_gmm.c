@@ -215,6 +215,38 @@ static void test_contact(void **state)
   contact(&usual_mls);
 }
 
+/* --- bodies that hang on an obstacle --- */
+static PetscInt warnings_at(PetscReal bottom)
+{
+  Bench b;
+  Diag *diag;
+  Model *m = NULL;
+  gmm_init(&b, &usual_lme, CELL_QUADRILATERAL, 0.125);
+  bench_box(&b, 0, (PetscReal[]){0.25, bottom, 0}, (PetscReal[]){0.75, bottom + 0.25, 1});
+  bench_motion(&b, 1, 0, MOTION_FIXED, 7);
+  CALL(DiagCreate(&diag));
+  CALL(ModelCreate(PETSC_COMM_WORLD, &b.c, diag, &m));
+  CHECK(m, "the case was refused");
+  const PetscInt warnings = DiagWarnings(diag);
+  CALL(ModelDestroy(&m));
+  CALL(DiagDestroy(&diag));
+  return warnings;
+}
+
+/* Clouds reach two spacings: a body one above the floor sticks to it from the start, and that is told; one that stands on it or flies is
+ * not. */
+static void test_obstacles(void **state)
+{
+  const PetscReal bottoms[] = {0, 0.125, 0.25, 0.375};
+  PetscMPIInt rank;
+  (void)state;
+  MPI_Comm_rank(PETSC_COMM_WORLD, &rank);
+  for (int k = 0; k < 4; ++k) {
+    const PetscInt n = warnings_at(bottoms[k]);
+    CHECK(rank || n == (k == 1), "%d warnings", (int)n);
+  }
+}
+
 /* --- ranks --- */
 static const struct {
   PointReal field;
@@ -348,7 +380,8 @@ int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(test_patch),   cmocka_unit_test(test_hang),  cmocka_unit_test(test_fly),
-    cmocka_unit_test(test_contact), cmocka_unit_test(test_ranks), cmocka_unit_test(test_solvers),
+    cmocka_unit_test(test_contact), cmocka_unit_test(test_ranks), cmocka_unit_test(test_obstacles),
+    cmocka_unit_test(test_solvers),
   };
   return run_model_tests(argc, argv, tests);
 }
