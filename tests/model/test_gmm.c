@@ -129,6 +129,32 @@ static void test_hang(void **state)
   hang(&lme, CELL_QUADRILATERAL);
 }
 
+/* The options: the paper's rule (at least six nodes, more while the condition is bad) and sets of polynomials; what is not part of it is
+ * refused. */
+static void test_options(void **state)
+{
+  BasisSpec nearest[2] = {usual_mls, usual_lme}, mls = usual_mls;
+  Bench b;
+  (void)state;
+  for (int k = 0; k < 2; ++k) {
+    nearest[k].choice = 1;
+    nearest[k].radius = 1.41421356;
+    nearest[k].minimum = 6;
+    hang(&nearest[k], CELL_QUADRILATERAL);
+  }
+  for (int order = 1; order <= 2; ++order) {
+    mls.order = order;
+    hang(&mls, CELL_QUADRILATERAL);
+  }
+  mls.order = 0;
+  mls.weight = WEIGHT_CUBIC_SPLINE;
+  mls.effective_radius = 2;
+  hang(&mls, CELL_QUADRILATERAL);
+  gmm_init(&b, &usual_lme, CELL_QUADRILATERAL, 0.25);
+  b.c.formulation = "mixed";
+  bench_refused(&b, PETSC_COMM_WORLD, "formulation", "method gmm, which takes displacement");
+}
+
 /* --- free bodies --- */
 /* A block that flies and spins: mass and momentum to round-off, angular momentum and energy as in fem. */
 static void fly(const BasisSpec *basis, CellType cell, PetscReal size, PetscReal bound)
@@ -379,9 +405,9 @@ static void test_solvers(void **state)
 int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {
-    cmocka_unit_test(test_patch),   cmocka_unit_test(test_hang),  cmocka_unit_test(test_fly),
-    cmocka_unit_test(test_contact), cmocka_unit_test(test_ranks), cmocka_unit_test(test_obstacles),
-    cmocka_unit_test(test_solvers),
+    cmocka_unit_test(test_patch),     cmocka_unit_test(test_hang),    cmocka_unit_test(test_options),
+    cmocka_unit_test(test_fly),       cmocka_unit_test(test_contact), cmocka_unit_test(test_ranks),
+    cmocka_unit_test(test_obstacles), cmocka_unit_test(test_solvers),
   };
   return run_model_tests(argc, argv, tests);
 }
