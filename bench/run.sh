@@ -32,6 +32,9 @@ title "statics"
 
 title "mixed formulation in 3D"
 "$bench/bench_mixed"
+title "the same, 62,500 unknowns, on one and two ranks"
+"$bench/bench_mixed" -cells 24 -direct_up_to 0
+mpiexec --oversubscribe -n 2 "$bench/bench_mixed" -cells 24 -direct_up_to 0
 
 title "dynamics in 2D: an elastic block lands and bounces"
 "$bench/bench_dynamic" -points 10000,100000,1000000 -steps 20 -repeat "${REPEAT:-2}"

@@ -35,6 +35,18 @@ static void check_supported(const Case *c, Diag *diag)
   }
 }
 
+/* The pressure of an exactly incompressible body has no memory: what alternates from step to step in it stays for ever. */
+static void check_ringing(const Case *c, const Material *material, Diag *diag)
+{
+  if (c->analysis.type != ANALYSIS_DYNAMIC || !case_is_mixed(c) || material->compliance > 0) return;
+  if (c->analysis.gamma > 0.5) return;
+  DiagWarning(diag, "analysis.bossak",
+              "material '%s' is exactly incompressible: without numerical damping its pressure and reactions ring from "
+              "step to step",
+              material->name);
+  DiagHint(diag, "bossak: -0.1 damps that and little else");
+}
+
 static PetscErrorCode CreateMaterials(Model *m, Diag *diag)
 {
   const Case *c = m->c;
@@ -46,6 +58,7 @@ static PetscErrorCode CreateMaterials(Model *m, Diag *diag)
     Material *material = &m->materials[i];
     PetscCall(MaterialResolve(c, i, diag, material));
     if (!material->law) continue;
+    check_ringing(c, material, diag);
     m->n_state = PetscMax(m->n_state, material->law->n_state);
     if (!material->law->symmetric || (case_is_mixed(c) && material->volume == VOLUME_COUPLED))
       m->symmetric = PETSC_FALSE;

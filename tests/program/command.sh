@@ -67,6 +67,11 @@ for command in check "run --quiet --out single"; do
     $([ "$command" = check ] || echo --force)
   [ ! -s err.txt ] || fail "$name: a warning"
 done
+incompressible="--set formulation=mixed --set materials.rubber.law=neo-hookean-split --set materials.rubber.poisson=0.5"
+expect "an incompressible body in dynamics" 0 "$talus" check case.yaml $incompressible --set 'analysis={type: dynamic, end: 1, step: 0.01}'
+says err.txt "warning: material 'rubber' is exactly incompressible: without numerical damping its pressure" "bossak: -0.1"
+expect "damped" 0 "$talus" check case.yaml $incompressible --set 'analysis={type: dynamic, end: 1, step: 0.01, bossak: -0.1}'
+[ ! -s err.txt ] || fail "$name: a warning"
 
 # Options of run
 expect "run" 0 "$talus" run case.yaml
