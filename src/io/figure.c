@@ -53,6 +53,48 @@ static void WriteLabel(FILE *out, const char *what, const char *text)
   fputc('\n', out);
 }
 
+static PetscReal share(PetscBool logarithmic, PetscReal min, PetscReal max, PetscReal value)
+{
+  if (!(max > min)) return 0.5;
+  return logarithmic ? PetscLogReal(value / min) / PetscLogReal(max / min) : (value - min) / (max - min);
+}
+
+/* Samples of curves in the corners that the legend could take: left or right (x), bottom or top (y). */
+static void CountInCorners(const Figure *figure, const PetscReal min[2], const PetscReal max[2], PetscReal height,
+                           PetscInt count[2][2])
+{
+  for (PetscInt k = 0; k < figure->n_series; ++k) {
+    const FigureSeries *s = &figure->series[k];
+    for (PetscInt i = 0; i + 1 < s->n; ++i) {
+      if (!Visible(figure, s->x[i], s->y[i]) || !Visible(figure, s->x[i + 1], s->y[i + 1])) continue;
+      for (int part = 0; part <= 8; ++part) {
+        PetscReal at[2];
+        for (int axis = 0; axis < 2; ++axis) {
+          const PetscBool logarithmic = axis ? figure->log_y : figure->log_x;
+          const PetscReal *v = axis ? s->y : s->x;
+          const PetscReal a = share(logarithmic, min[axis], max[axis], v[i]);
+          at[axis] = a + part / 8.0 * (share(logarithmic, min[axis], max[axis], v[i + 1]) - a);
+        }
+        if (at[1] > height && at[1] < 1 - height) continue;
+        if (at[0] < 0.32 || at[0] > 0.68) ++count[at[0] > 0.5][at[1] > 0.5];
+      }
+    }
+  }
+}
+
+/* The legend goes where the fewest curves are; where several corners are as good, to the top and to the left. */
+static void WriteKey(FILE *out, const Figure *figure, const PetscReal min[2], const PetscReal max[2])
+{
+  PetscInt count[2][2] = {{0, 0}, {0, 0}}, named = 0;
+  int right = figure->slope < 0, top = 1; /* where falling curves leave room */
+  for (PetscInt k = 0; k < figure->n_series; ++k) named += figure->series[k].name ? 1 : 0;
+  CountInCorners(figure, min, max, PetscMin(0.45, 0.05 + 0.05 * (PetscReal)named), count);
+  for (int y = 1; y >= 0; --y)
+    for (int x = 0; x < 2; ++x)
+      if (count[x][y] < count[right][top]) right = x, top = y;
+  fprintf(out, "set key %s %s\n", top ? "top" : "bottom", right ? "right" : "left");
+}
+
 static void WriteAxes(FILE *out, const Figure *figure, const PetscReal min[2], const PetscReal max[2])
 {
   WriteLabel(out, "title", figure->title);
@@ -68,7 +110,7 @@ static void WriteAxes(FILE *out, const Figure *figure, const PetscReal min[2], c
     "set grid xtics ytics lc rgb '#e2e2e2' lw 1 lt 1\nset tics nomirror\n"
     "set key Left reverse samplen 2 spacing 1.2 width 0 box lc rgb '#cccccc' opaque\n",
     out);
-  fprintf(out, "set key top %s\n", figure->slope < 0 ? "right" : "left"); /* where falling curves leave room */
+  WriteKey(out, figure, min, max);
 }
 
 /* Ticks at the first curve's own places, where a logarithmic axis would name one or two numbers only. */

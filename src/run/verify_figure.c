@@ -19,6 +19,18 @@ static PetscBool refines_downwards(const Verification *v, PetscInt first, PetscI
   return b->row->x < a->row->x ? PETSC_TRUE : PETSC_FALSE;
 }
 
+/* Does each row's place stand well apart from the last by a factor, as in a series of meshes? Then the axis is logarithmic. */
+static PetscBool grows_by_factors(const Curves *c)
+{
+  for (PetscInt k = 0; k < c->n; ++k) {
+    const FigureSeries *s = &c->series[k];
+    if (s->n < 4) return PETSC_FALSE;
+    for (PetscInt i = 0; i + 1 < s->n; ++i)
+      if (!(s->x[i] > 0) || s->x[i + 1] < 1.7 * s->x[i]) return PETSC_FALSE;
+  }
+  return PETSC_TRUE;
+}
+
 static void add_curve(Curves *c, const Verification *v, PetscInt first, PetscInt last, PetscBool inverse,
                       PetscBool reference, FigureStyle style)
 {
@@ -64,7 +76,7 @@ static PetscErrorCode Draw(const Verification *v, PetscInt first, const Curves *
   const Figure figure = {.title = study->title,
                          .x_label = x_label,
                          .y_label = y_label,
-                         .log_x = errors,
+                         .log_x = errors || grows_by_factors(c),
                          .log_y = errors,
                          .n_series = c->n,
                          .series = c->series,
