@@ -59,7 +59,14 @@ static PetscReal share(PetscBool logarithmic, PetscReal min, PetscReal max, Pets
   return logarithmic ? PetscLogReal(value / min) / PetscLogReal(max / min) : (value - min) / (max - min);
 }
 
-/* Samples of curves in the corners that the legend could take: left or right (x), bottom or top (y). */
+/* A place in shares of the picture: is it in one of the corners that the legend could take, left or right (x), bottom or top (y)? */
+static void count_in_corner(const PetscReal at[2], PetscReal height, PetscInt count[2][2])
+{
+  if (at[1] > height && at[1] < 1 - height) return;
+  if (at[0] < 0.32 || at[0] > 0.68) ++count[at[0] > 0.5][at[1] > 0.5];
+}
+
+/* Samples of curves in the corners. */
 static void CountInCorners(const Figure *figure, const PetscReal min[2], const PetscReal max[2], PetscReal height,
                            PetscInt count[2][2])
 {
@@ -67,16 +74,13 @@ static void CountInCorners(const Figure *figure, const PetscReal min[2], const P
     const FigureSeries *s = &figure->series[k];
     for (PetscInt i = 0; i + 1 < s->n; ++i) {
       if (!Visible(figure, s->x[i], s->y[i]) || !Visible(figure, s->x[i + 1], s->y[i + 1])) continue;
+      const PetscReal a[2] = {share(figure->log_x, min[0], max[0], s->x[i]),
+                              share(figure->log_y, min[1], max[1], s->y[i])};
+      const PetscReal b[2] = {share(figure->log_x, min[0], max[0], s->x[i + 1]),
+                              share(figure->log_y, min[1], max[1], s->y[i + 1])};
       for (int part = 0; part <= 8; ++part) {
-        PetscReal at[2];
-        for (int axis = 0; axis < 2; ++axis) {
-          const PetscBool logarithmic = axis ? figure->log_y : figure->log_x;
-          const PetscReal *v = axis ? s->y : s->x;
-          const PetscReal a = share(logarithmic, min[axis], max[axis], v[i]);
-          at[axis] = a + part / 8.0 * (share(logarithmic, min[axis], max[axis], v[i + 1]) - a);
-        }
-        if (at[1] > height && at[1] < 1 - height) continue;
-        if (at[0] < 0.32 || at[0] > 0.68) ++count[at[0] > 0.5][at[1] > 0.5];
+        const PetscReal t = part / 8.0, at[2] = {a[0] + t * (b[0] - a[0]), a[1] + t * (b[1] - a[1])};
+        count_in_corner(at, height, count);
       }
     }
   }
