@@ -7,6 +7,7 @@
 
 typedef enum { KINEMATICS_PLANE_STRAIN, KINEMATICS_AXISYMMETRIC, KINEMATICS_3D } Kinematics;
 typedef enum { ANALYSIS_STATIC, ANALYSIS_DYNAMIC } AnalysisType;
+typedef enum { MASS_CONSISTENT, MASS_LUMPED } MassMatrix;
 typedef enum { CELL_TRIANGLE, CELL_QUADRILATERAL, CELL_TETRAHEDRON, CELL_HEXAHEDRON } CellType;
 typedef enum { DIAGONAL_RIGHT, DIAGONAL_LEFT, DIAGONAL_ALTERNATING, DIAGONAL_CROSSED } Diagonal;
 typedef enum { OUTSIDE_STOP, OUTSIDE_REMOVE, OUTSIDE_KEEP } OutsidePolicy;
@@ -166,6 +167,8 @@ typedef struct {
   PetscReal beta, gamma;       /* Newmark */
   PetscReal bossak;            /* alpha_B in [-1/3, 0] */
   PetscReal damping;           /* Rayleigh, mass proportional, 1/s */
+  MassMatrix mass;
+  PetscBool keep_velocity; /* mpm: prescribed nodes do not take from points what velocity they bring */
 } AnalysisSpec;
 
 typedef struct {

@@ -24,6 +24,11 @@ static const SchemaWord analysis_words[] = {
   {"dynamic", ANALYSIS_DYNAMIC, "Newmark in time, with inertia"},
   {NULL, 0, NULL},
 };
+static const SchemaWord mass_words[] = {
+  {"consistent", MASS_CONSISTENT, "of the shape functions; lumped in cells that are not full, see stabilisation.mass"},
+  {"lumped", MASS_LUMPED, "all of it at the nodes: more Newton steps converge where grains flow, rotations lose more"},
+  {NULL, 0, NULL},
+};
 static const SchemaWord linear_words[] = {
   {"auto", LINEAR_AUTO, "chosen from the problem"},
   {"direct", LINEAR_DIRECT, "factorisation"},
@@ -54,6 +59,12 @@ static const SchemaEntry analysis_entries[] = {
       AT(AnalysisSpec, bossak)),
   KEY("damping", NUMBER, "1/s", "Rayleigh damping proportional to mass", .fallback = "0", AT_LEAST(0),
       AT(AnalysisSpec, damping)),
+  KEY("mass", WORD, NULL, "mass matrix", .words = mass_words, .fallback = "consistent", AT(AnalysisSpec, mass)),
+  KEY(
+    "keep_velocity", BOOLEAN, NULL,
+    "mpm: points beside prescribed nodes keep the velocity that they bring, as thesis (2.16) is printed, so that what "
+    "slides over a floor slides on; otherwise they take over the motion of these nodes",
+    .fallback = "false", AT(AnalysisSpec, keep_velocity)),
   {.key = NULL},
 };
 static const SchemaGroup analysis_groups[] = {{GROUP_AT_MOST_ONE, {"steps", "step", NULL}}, {GROUP_NONE, {NULL}}};

@@ -10,6 +10,10 @@ static PetscErrorCode FemStart(Stage *s)
   PetscCall(StageNodalMass(s));
   if (s->pressure) PetscCall(StageNodalPressure(s)); /* of the initial state; from then on nodes keep theirs */
   PetscCall(StageBodyVelocity(s));
+  if (s->c->analysis.mass == MASS_LUMPED) {
+    PetscCall(PetscMalloc1(s->support->n_groups, &s->lumping));
+    for (PetscInt g = 0; g < s->support->n_groups; ++g) s->lumping[g] = 1;
+  }
   PetscFunctionReturn(0);
 }
 

@@ -115,7 +115,7 @@ static PetscErrorCode Stabilise(Stage *s)
     PetscReal lack = 0;
     for (PetscInt i = w->node_start[p]; i < w->node_start[p + 1]; ++i)
       lack = PetscMax(lack, starved(s, w->node[i], material->density));
-    s->lumping[p] = s->c->stabilisation.mass * lack;
+    s->lumping[p] = s->c->analysis.mass == MASS_LUMPED ? 1 : s->c->stabilisation.mass * lack;
     s->soft[p] = s->c->stabilisation.stiffness * lack * material->wave_modulus * length;
   }
   PetscFunctionReturn(0);

@@ -94,7 +94,7 @@ static PetscErrorCode Stabilise(Stage *s)
     grid_cell_x(s->grid, s->points->cell[w->point_start[g]], x);
     const PetscReal volume = cell_volume(s->grid->type, x), lack = PetscMax(0, 1 - filled / volume);
     const PetscReal size = dim == 2 ? PetscSqrtReal(volume) : cbrt(volume);
-    s->lumping[g] = s->c->stabilisation.mass * lack;
+    s->lumping[g] = s->c->analysis.mass == MASS_LUMPED ? 1 : s->c->stabilisation.mass * lack;
     s->tie[g] = s->c->stabilisation.inertia * lack * mass;
     s->soft[g] = s->c->stabilisation.stiffness * lack * modulus * volume / (size * size);
     if (s->pressure_tie) s->pressure_tie[g] = s->c->stabilisation.stiffness * lack * volume / shear;

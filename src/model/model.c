@@ -26,6 +26,8 @@ static void check_supported(const Case *c, Diag *diag)
       diag, "formulation",
       "formulation '%s' is not part of this version for method gmm, which takes displacement; mpm and fem take both",
       c->formulation);
+  if (c->analysis.keep_velocity && strcmp(c->method, "mpm"))
+    DiagError(diag, "analysis.keep_velocity", "only points of method mpm have a velocity apart from that of the nodes");
   for (PetscInt b = 0; b < c->n_bodies; ++b) {
     char path[64];
     PetscSNPrintf(path, sizeof path, "bodies[%d].mesh", (int)b);

@@ -52,6 +52,7 @@ static void set_boundary_kinematics(Model *m, PetscReal dt)
     if (!m->boundary->fixed[i] || !m->fixed[i]) continue;
     s->v[i] = m->prescribed[i] / dt;
     s->a[i] = 0;
+    if (m->c->analysis.keep_velocity) s->v_points[i] = s->v[i];
   }
 }
 

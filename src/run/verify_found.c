@@ -1,7 +1,7 @@
 /* A run directory that is there: is it of this case, and what came out of it?
  *
  * A row's case is known in full (every key with its value), and so is that of a run, which keeps it as case.yaml. Where
- * both say the same, whatever was typed to get there, the run is a run of that row. */
+ * both say the same, whatever was typed to get there, the run is a run of that row. Keys that came later have their defaults in an older run. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -37,16 +37,22 @@ PetscErrorCode VerifyFoundCase(MPI_Comm comm, const char *folder, char **text, c
 {
   char file[PETSC_MAX_PATH_LEN];
   size_t size;
+  Diag *ignored;
+  Case *c = NULL;
 
   PetscFunctionBeginUser;
   PetscCall(PetscSNPrintf(file, sizeof file, "%s/case.yaml", folder));
   PetscCall(FileReadEverywhere(comm, file, &size, text, reason));
-  if (reason[0]) {
-    PetscCall(PetscFree(*text));
-    PetscFunctionReturn(0);
-  }
-  (*text)[size] = '\0';
-  drop_idle(*text);
+  PetscCall(PetscFree(*text));
+  if (reason[0]) PetscFunctionReturn(0);
+  PetscCall(DiagCreate(&ignored));
+  PetscCall(CaseRead(comm, file, 0, NULL, ignored, &c));
+  if (c) {
+    PetscCall(CaseToYaml(c, text));
+    drop_idle(*text);
+  } else PetscCall(PetscStrncpy(reason, "is no case", 256));
+  PetscCall(CaseDestroy(&c));
+  PetscCall(DiagDestroy(&ignored));
   PetscFunctionReturn(0);
 }
 

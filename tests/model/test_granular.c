@@ -111,6 +111,47 @@ static void test_unseen_motion_fades(void **state)
   CALL(ModelDestroy(&m));
 }
 
+/* A cell of which every node is fixed: its points are stopped at once, and the boundary's reaction is the impulse; or they keep what velocity they
+ * have for ever, as (2.16) is printed, go nowhere, and the boundary feels nothing of them. */
+static void test_keep_velocity(void **state)
+{
+  (void)state;
+  for (int keep = 0; keep < 2; ++keep) {
+    PetscReal momentum, place, reaction;
+    MeasureSpec force = {.kind = MEASURE_REACTION, .component = 0};
+    Bench b;
+    bench_init(&b, "mpm", CELL_QUADRILATERAL, 1);
+    bench_dynamic(&b, 1, 0.1);
+    b.body[0].velocity[0] = 2.9;
+    b.c.analysis.keep_velocity = keep ? PETSC_TRUE : PETSC_FALSE;
+    bench_motion(&b, -1, 0, MOTION_FIXED, 3);
+    Model *m = bench_model(&b, PETSC_COMM_WORLD);
+    const PetscReal start = model_sum(m, MEASURE_MOMENTUM, 0);
+    model_step(m, 0.1);
+    CALL(ModelMeasure(m, &force, 0, &reaction));
+    CHECK_CLOSE(reaction * 0.1, keep ? 0 : -start, 1e-9 * start);
+    for (int s = 0; s < 4; ++s) model_step(m, 0.1);
+    momentum = model_sum(m, MEASURE_MOMENTUM, 0);
+    CHECK_CLOSE(momentum, keep ? start : 0, 1e-12 * start);
+    place = 0;
+    for (PetscInt p = 0; p < m->points->n; ++p)
+      place = PetscMax(place, PetscAbsReal(point_real(m->points, POINT_U, p)[0]));
+    CHECK_CLOSE(model_max(m, place), 0, 1e-12);
+    CALL(ModelDestroy(&m));
+  }
+}
+
+/* Only points of mpm have such a velocity. */
+static void test_keep_velocity_elsewhere(void **state)
+{
+  Bench b;
+  (void)state;
+  bench_init(&b, "fem", CELL_QUADRILATERAL, 1);
+  bench_dynamic(&b, 1, 0.1);
+  b.c.analysis.keep_velocity = PETSC_TRUE;
+  bench_refused(&b, PETSC_COMM_WORLD, "analysis.keep_velocity", "only points of method mpm");
+}
+
 /* A column of 6 x 7 cells falls over and comes to rest: with steps that grow as far as without, in a fifth of the steps and no more cuts than a
  * hand counts. The front is where 5 % of the grains lie beyond: the farthest grain alone scatters by more. It goes out with the step to first order,
  * by 2 % a ms in a column this small (docs/decisions.md). */
@@ -155,8 +196,8 @@ static void test_growing_steps(void **state)
 int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {
-    cmocka_unit_test(test_grazing),
-    cmocka_unit_test(test_unseen_motion_fades),
+    cmocka_unit_test(test_grazing),       cmocka_unit_test(test_unseen_motion_fades),
+    cmocka_unit_test(test_keep_velocity), cmocka_unit_test(test_keep_velocity_elsewhere),
     cmocka_unit_test(test_growing_steps),
   };
   return run_model_tests(argc, argv, tests);
