@@ -149,6 +149,7 @@ typedef struct {
   MeasureKind kind;
   PetscInt component;  /* 0 1 2 */
   PetscBool maximum;   /* extent, run-out time: max, else min */
+  PetscReal beyond;    /* extent: share of the mass that is left out */
   PetscReal tracer[3]; /* material position of the tracer at the start */
   char *body;          /* NULL: all */
   PetscInt boundary;   /* reaction: index into boundary[] of the case */

@@ -60,6 +60,9 @@ static const SchemaTable of = {
 static const SchemaEntry extent_entries[] = {
   KEY("max", AXIS, NULL, "largest coordinate along this axis", TAG(1), AT(MeasureSpec, component)),
   KEY("min", AXIS, NULL, "smallest coordinate along this axis", TAG(0), AT(MeasureSpec, component)),
+  KEY("beyond", NUMBER, NULL,
+      "share of the mass that may lie beyond: 0 is the farthest point, 0.01 the place within which 99 % are",
+      .fallback = "0", BETWEEN(0, 1), AT(MeasureSpec, beyond)),
   {.key = NULL},
 };
 static const SchemaGroup extent_groups[] = {{GROUP_ONE, {"max", "min", NULL}}, {GROUP_NONE, {NULL}}};

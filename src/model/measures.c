@@ -56,6 +56,46 @@ static PetscInt body_index(const Case *c, const char *name)
   return -1;
 }
 
+/* Mass of the body in equal parts of [low, high] along an axis (sign -1: turned round); what is less than `low` counts to the first, what is more
+ * than `high` to none. */
+#define EXTENT_PARTS 64
+static PetscErrorCode MassAlong(const Model *m, const MeasureSpec *s, PetscReal sign, PetscReal low, PetscReal high,
+                                PetscReal mass[EXTENT_PARTS])
+{
+  const PetscInt body = body_index(m->c, s->body);
+  PetscReal local[EXTENT_PARTS] = {0};
+
+  PetscFunctionBeginUser;
+  for (PetscInt p = 0; p < m->points->n; ++p) {
+    const PetscReal at = (sign * point_real(m->points, POINT_X, p)[s->component] - low) / (high - low) * EXTENT_PARTS;
+    if ((body >= 0 && m->points->body[p] != body) || at > EXTENT_PARTS) continue;
+    local[PetscMin(EXTENT_PARTS - 1, (int)PetscMax(0, at))] += m->points->real[POINT_MASS][p];
+  }
+  PetscCall(MPIU_Allreduce(local, mass, EXTENT_PARTS, MPIU_REAL, MPIU_SUM, m->comm));
+  PetscFunctionReturn(0);
+}
+
+/* The place within which all but a share of the mass lies: as good as the farthest point for a front, without its chance. Each round finds the
+ * part that holds it. */
+static PetscErrorCode InnerExtent(const Model *m, const MeasureSpec *s, PetscReal sign, PetscReal *farthest)
+{
+  PetscReal low = sign > 0 ? m->grid->min[s->component] : -m->grid->max[s->component], high = *farthest;
+  PetscReal mass[EXTENT_PARTS], total = 0, outside = 0;
+
+  PetscFunctionBeginUser;
+  for (int round = 0; round < 6 && high > low; ++round) {
+    const PetscReal part = (high - low) / EXTENT_PARTS;
+    int k = EXTENT_PARTS - 1;
+    PetscCall(MassAlong(m, s, sign, low, high, mass));
+    for (int i = 0; i < EXTENT_PARTS && !round; ++i) total += mass[i];
+    while (k > 0 && outside + mass[k] <= s->beyond * total * (1 + 1e-12)) outside += mass[k--];
+    high = low + (PetscReal)(k + 1) * part;
+    low += (PetscReal)k * part;
+  }
+  *farthest = high;
+  PetscFunctionReturn(0);
+}
+
 static PetscErrorCode ExtentValue(const Model *m, const MeasureSpec *s, PetscReal *value)
 {
   const PetscInt body = body_index(m->c, s->body);
@@ -70,6 +110,7 @@ static PetscErrorCode ExtentValue(const Model *m, const MeasureSpec *s, PetscRea
   }
   if (!m->points->n) local = -PETSC_MAX_REAL;
   PetscCall(MPIU_Allreduce(&local, &largest, 1, MPIU_REAL, MPIU_MAX, m->comm));
+  if (s->beyond > 0) PetscCall(InnerExtent(m, s, sign, &largest));
   *value = sign * largest;
   PetscFunctionReturn(0);
 }

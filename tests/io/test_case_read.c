@@ -44,7 +44,7 @@ static const char everything[] =
   "measures:\n"
   "  tip y: {displacement: y, of: {tracer: [2, 0.5]}}\n"
   "  run-out: {extent: {max: x}, of: {body: soil}}\n"
-  "  low: {extent: {min: y}}\n"
+  "  low: {extent: {min: y, beyond: 0.01}}\n"
   "  m: {mass: total}\n"
   "  mp: {mass: total, of: {body: plate}}\n"
   "  p: {momentum: x}\n"

@@ -52,6 +52,32 @@ static void test_surface_of_a_triangle(void **state)
   }
 }
 
+/* A unit square of 4 x 4 cells with 4 points each: eight columns of points with an eighth of the mass each. */
+static void test_inner_extent(void **state)
+{
+  static const struct {
+    PetscReal beyond;
+    int column; /* counted from outside */
+  } wanted[] = {{0, 0}, {0.124, 0}, {0.125, 1}, {0.2, 1}, {0.25, 2}, {0.5, 4}, {0.99, 7}};
+  Bench b;
+  (void)state;
+  bench_init(&b, "mpm", CELL_QUADRILATERAL, 4);
+  b.body[0].points_per_cell = 4;
+  Model *m = bench_model(&b, PETSC_COMM_WORLD);
+  for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(wanted); ++k) {
+    const PetscReal side = (wanted[k].column % 2 ? 0.5 : -0.5) / PetscSqrtReal(3);
+    const PetscReal place = 0.25 * ((PetscReal)(wanted[k].column / 2) + 0.5 + side); /* from the edge inwards */
+    for (int axis = 0; axis < 2; ++axis) {
+      const MeasureSpec high = {
+        .kind = MEASURE_EXTENT, .component = axis, .maximum = PETSC_TRUE, .beyond = wanted[k].beyond};
+      const MeasureSpec low = {.kind = MEASURE_EXTENT, .component = axis, .beyond = wanted[k].beyond, .body = "body"};
+      CHECK_CLOSE(measure(m, &high, 0), 1 - place, 1e-9);
+      CHECK_CLOSE(measure(m, &low, 0), place, 1e-9);
+    }
+  }
+  CALL(ModelDestroy(&m));
+}
+
 /* A block is thrown along x and stopped by a prescribed amplitude: all its nodes move with v = 1 m/s until 0.1 s, then slow down linearly to
  * rest at 0.2 s. Its front is slower than 0.25 m/s from 0.175 s on. */
 static void test_run_out_time(void **state)
@@ -393,17 +419,12 @@ static void test_roughness(void **state)
 int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {
-    cmocka_unit_test(test_surface_of_a_triangle),
-    cmocka_unit_test(test_run_out_time),
-    cmocka_unit_test(test_volume_ratio),
-    cmocka_unit_test(test_elastic_balance),
-    cmocka_unit_test(test_plastic_balance),
-    cmocka_unit_test(test_shear_dissipation),
-    cmocka_unit_test(test_static_work),
-    cmocka_unit_test(test_impact_is_told),
-    cmocka_unit_test(test_removed_points),
-    cmocka_unit_test(test_ranks_agree),
-    cmocka_unit_test(test_roughness),
+    cmocka_unit_test(test_surface_of_a_triangle), cmocka_unit_test(test_inner_extent),
+    cmocka_unit_test(test_run_out_time),          cmocka_unit_test(test_volume_ratio),
+    cmocka_unit_test(test_elastic_balance),       cmocka_unit_test(test_plastic_balance),
+    cmocka_unit_test(test_shear_dissipation),     cmocka_unit_test(test_static_work),
+    cmocka_unit_test(test_impact_is_told),        cmocka_unit_test(test_removed_points),
+    cmocka_unit_test(test_ranks_agree),           cmocka_unit_test(test_roughness),
   };
   return run_model_tests(argc, argv, tests);
 }
