@@ -60,7 +60,8 @@ typedef enum TalusStep {
 /** Flags of TalusRunCase(), to be combined with `|`. */
 enum TalusRunFlag {
   TALUS_RUN_FORCE = 1, /**< Replace a run that is in the directory already. */
-  TALUS_RUN_QUIET = 2  /**< Nothing on the terminal; the log is written all the same. */
+  TALUS_RUN_QUIET = 2, /**< Nothing on the terminal; the log is written all the same. */
+  TALUS_RUN_RESUME = 4 /**< Go on with the run in the directory from its newest checkpoint, on any number of ranks. */
 };
 
 /** A validated case. */
@@ -158,7 +159,13 @@ int TalusCaseMeasureName(const TalusCase *c, int i, const char **name, const cha
 /**
  * @brief Run a case from start to end and write its directory of results, as `talus run` does. Collective.
  *
- * SIGINT and SIGTERM end the run after the step in hand, with its state written.
+ * SIGINT and SIGTERM end the run with its state written; a step that has not converged by then is given up.
+ *
+ * With #TALUS_RUN_RESUME the run that is in `out` goes on, as with `talus run --resume`; c is then the file
+ * case.yaml in `out`, opened with TalusCaseOpen() (its `set` may change `checkpoint`, `newton`, `linear`, `petsc`,
+ * `analysis.smallest`, `analysis.largest`, `grid.outside` and, in dynamics, `analysis.end`), and
+ * #TALUS_RUN_FORCE makes no sense beside it. A run without a checkpoint starts again; one that is complete and has
+ * left none is #TALUS_DONE with NaN for its measures.
  * @param c         the case
  * @param out       directory of results, made if it is not there
  * @param flags     of #TalusRunFlag, or 0

@@ -72,6 +72,7 @@ int TalusModelSetBodyForce(TalusModel *model, TalusBodyForce force, void *contex
 static TalusStep step_of(StepOutcome outcome)
 {
   switch (outcome) {
+  case STEP_INTERRUPTED: /* nobody asks */
   case STEP_TOO_SMALL: return TALUS_STEP_TOO_SMALL;
   case STEP_POINTS_LOST: return TALUS_STEP_POINTS_LOST;
   case STEP_ACCEPTED: break;

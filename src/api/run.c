@@ -54,14 +54,17 @@ static PetscErrorCode Run(TalusCase *c, const RunOptions *options, TalusRun *run
 int TalusRunCase(TalusCase *c, const char *out, unsigned flags, TalusRun **run, char **messages)
 {
   const RunOptions options = {
-    .out = out, .force = (PetscBool) !!(flags & TALUS_RUN_FORCE), .quiet = (PetscBool) !!(flags & TALUS_RUN_QUIET)};
+    .out = out, .force = (PetscBool) !!(flags & TALUS_RUN_FORCE), .quiet = (PetscBool) !!(flags & TALUS_RUN_QUIET),
+    .resume = (PetscBool) !!(flags & TALUS_RUN_RESUME)};
   RunResult result = RUN_BAD_INPUT;
 
   if (messages) *messages = NULL;
   if (!run) return TALUS_ERROR_ARGUMENT;
   *run = NULL;
   if (!talus_is_running()) return TALUS_ERROR_STATE;
-  if (!c || !out || !*out || (flags & ~(unsigned)(TALUS_RUN_FORCE | TALUS_RUN_QUIET))) return TALUS_ERROR_ARGUMENT;
+  if (!c || !out || !*out || (flags & ~(unsigned)(TALUS_RUN_FORCE | TALUS_RUN_QUIET | TALUS_RUN_RESUME)) ||
+      (options.force && options.resume))
+    return TALUS_ERROR_ARGUMENT;
   TalusRun *made = create_run(c->c);
   if (!made) return TALUS_ERROR_MEMORY;
   int error = talus_code(Run(c, &options, made, &result, messages));

@@ -52,7 +52,8 @@ typedef struct Model {
   PetscReal *held;      /* n_nodes x dim on owners: the reaction without the impulse that stopped points, N */
   BodyForce body_force; /* NULL: gravity alone */
   void *body_force_context;
-  PetscReal time; /* s */
+  PetscBool (*asked)(void); /* does somebody want the run to end? NULL: a step is always finished */
+  PetscReal time;           /* s */
   StepControl control;
   PetscInt step;
   PetscBool *option_set;   /* which of the case's PETSc options the model put into the database */
@@ -64,7 +65,8 @@ typedef struct Model {
   PetscReal seconds[PHASE_N];      /* see ModelTimes */
 } Model;
 
-typedef enum { STEP_ACCEPTED, STEP_TOO_SMALL, STEP_POINTS_LOST } StepOutcome;
+/* Interrupted: given up because somebody asked for it; the model is as it was. */
+typedef enum { STEP_ACCEPTED, STEP_TOO_SMALL, STEP_POINTS_LOST, STEP_INTERRUPTED } StepOutcome;
 
 typedef struct {
   StepOutcome outcome;

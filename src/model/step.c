@@ -173,6 +173,7 @@ static PetscErrorCode Prepare(Model *m, PetscReal dt, StepProblem *p)
     .pressure = m->pressure,
     .volume = m->volume,
     .idle = m->idle,
+    .asked = m->asked,
   };
   pressure_guess(m);
   if (m->stage->constraints) m->stage->constraints->scale = constraint_scale(m, p->in.inertia);
@@ -308,24 +309,59 @@ static PetscErrorCode Solve(Model *m, PetscReal dt, const LinearProblem *linear,
     if (guess) pressure_guess(m);
     PetscCall(NewtonSolve(m->newton, &problem, linear, &report->newton));
     m->total_iterations += report->newton.iterations;
-    if (report->newton.converged) break;
+    if (report->newton.converged || report->newton.interrupted) break;
   }
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode ModelStep(Model *m, PetscReal limit, StepReport *report)
+/* What tries of a step change although it is not accepted. */
+typedef struct {
+  StepControl control;
+  PetscInt cuts, iterations;
+  NewtonMemory newton;
+  PetscReal *v, *a; /* n_nodes x dim, where constraints shift what nodes remember; else NULL */
+} BeforeStep;
+
+static PetscErrorCode Remember(const Model *m, BeforeStep *before)
 {
-  PetscLogDouble clock;
+  const PetscInt dofs = m->grid->n_nodes * m->dim;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscTime(&clock));
-  PetscCall(PetscMemzero(report, sizeof *report));
-  PetscCall(ModelActivate(m));
-  if (m->method->points_move) PetscCall(BoundaryMove(m->boundary, m->grid, m->time));
-  mark_fixed(m);
-  PetscCall(PhaseEnd(m->seconds, PHASE_PATTERN, &clock));
-  const PetscBool shortened = limit < m->control.next ? PETSC_TRUE : PETSC_FALSE;
-  for (PetscReal dt = PetscMin(m->control.next, limit);; dt = step_control_cut(&m->control, dt)) {
+  *before = (BeforeStep){.control = m->control, .cuts = m->cuts, .iterations = m->total_iterations};
+  NewtonGetMemory(m->newton, m->system, &before->newton);
+  if (!m->n_constraints) PetscFunctionReturn(0);
+  PetscCall(PetscMalloc2(dofs, &before->v, dofs, &before->a));
+  PetscCall(PetscArraycpy(before->v, m->stage->v, dofs));
+  PetscCall(PetscArraycpy(before->a, m->stage->a, dofs));
+  PetscFunctionReturn(0);
+}
+
+/* A step that was not accepted leaves nodes as they were; one that was interrupted has never been. */
+static PetscErrorCode Restore(Model *m, BeforeStep *before, StepReport *report)
+{
+  const PetscInt dofs = m->grid->n_nodes * m->dim;
+
+  PetscFunctionBeginUser;
+  if (!report->newton.converged && before->v) {
+    PetscCall(PetscArraycpy(m->stage->v, before->v, dofs));
+    PetscCall(PetscArraycpy(m->stage->a, before->a, dofs));
+  }
+  PetscCall(PetscFree2(before->v, before->a));
+  if (!report->newton.converged && m->method->points_move) PetscCall(m->method->initialise(m->stage));
+  if (!report->newton.interrupted) PetscFunctionReturn(0);
+  m->control = before->control;
+  m->cuts = before->cuts;
+  m->total_iterations = before->iterations;
+  NewtonForget(m->newton, m->system, &before->newton);
+  report->outcome = STEP_INTERRUPTED;
+  PetscFunctionReturn(0);
+}
+
+/* Steps of dt, and halves of it, until one is accepted, too small or given up. */
+static PetscErrorCode Try(Model *m, PetscReal dt, StepReport *report)
+{
+  PetscFunctionBeginUser;
+  for (;; dt = step_control_cut(&m->control, dt)) {
     const LinearProblem linear = {
       .choice = m->c->linear,
       .dim = m->dim,
@@ -339,20 +375,37 @@ PetscErrorCode ModelStep(Model *m, PetscReal limit, StepReport *report)
       .courant = m->courant_speed * dt / m->grid->smallest,
     };
     PetscCall(Solve(m, dt, &linear, report));
-    if (report->newton.converged) {
-      PetscCall(Accept(m, dt, report));
-      break;
-    }
+    if (report->newton.converged) PetscCall(Accept(m, dt, report));
+    if (report->newton.converged || report->newton.interrupted) PetscFunctionReturn(0);
     ++m->cuts;
     ++report->cuts;
-    if (dt / 2 >= m->c->analysis.smallest) continue;
-    report->outcome = STEP_TOO_SMALL;
-    report->dt = dt;
-    snprintf(report->reason, sizeof report->reason,
-             "Newton did not converge with a step of %g s (%s), and half of it is less than analysis.smallest = %g s",
-             (double)dt, report->newton.reason, (double)m->c->analysis.smallest);
-    PetscFunctionReturn(0);
+    if (dt / 2 < m->c->analysis.smallest) break;
   }
+  report->outcome = STEP_TOO_SMALL;
+  report->dt = dt;
+  snprintf(report->reason, sizeof report->reason,
+           "Newton did not converge with a step of %g s (%s), and half of it is less than analysis.smallest = %g s",
+           (double)dt, report->newton.reason, (double)m->c->analysis.smallest);
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ModelStep(Model *m, PetscReal limit, StepReport *report)
+{
+  PetscLogDouble clock;
+  BeforeStep before;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscTime(&clock));
+  PetscCall(PetscMemzero(report, sizeof *report));
+  PetscCall(ModelActivate(m));
+  if (m->method->points_move) PetscCall(BoundaryMove(m->boundary, m->grid, m->time));
+  mark_fixed(m);
+  PetscCall(Remember(m, &before));
+  PetscCall(PhaseEnd(m->seconds, PHASE_PATTERN, &clock));
+  const PetscBool shortened = limit < m->control.next ? PETSC_TRUE : PETSC_FALSE;
+  PetscCall(Try(m, PetscMin(m->control.next, limit), report));
+  PetscCall(Restore(m, &before, report));
+  if (report->outcome != STEP_ACCEPTED) PetscFunctionReturn(0);
   PetscCall(ChooseNextStep(m, shortened && !report->cuts ? PETSC_TRUE : PETSC_FALSE, report));
   if (m->stage->n_lost && m->c->grid.outside == OUTSIDE_STOP) {
     report->outcome = STEP_POINTS_LOST;

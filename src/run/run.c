@@ -32,12 +32,19 @@ PetscErrorCode RunWritten(Run *r, PetscErrorCode code)
   PetscFunctionReturn(0);
 }
 
+static PetscErrorCode Measure(Run *r)
+{
+  PetscFunctionBeginUser;
+  for (PetscInt k = 0; k < r->c->n_measures; ++k)
+    PetscCall(ModelMeasure(r->model, &r->c->measures[k], k, &r->values[k]));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode RunWriteRow(Run *r)
 {
   PetscFunctionBeginUser;
   if (r->row_step == r->model->step) PetscFunctionReturn(0);
-  for (PetscInt k = 0; k < r->c->n_measures; ++k)
-    PetscCall(ModelMeasure(r->model, &r->c->measures[k], k, &r->values[k]));
+  PetscCall(Measure(r));
   r->row_step = r->model->step;
   PetscCall(RunWritten(r, HistoryWrite(r->dir, r->model->time, r->model->step, r->values)));
   PetscFunctionReturn(0);
@@ -106,6 +113,19 @@ static PetscErrorCode GiveUp(Run *r, const char *what, const char *sentence, con
   PetscFunctionReturn(0);
 }
 
+/* By a signal: the model stands after its last whole step. */
+static PetscErrorCode Interrupted(Run *r)
+{
+  char text[64];
+
+  PetscFunctionBeginUser;
+  PetscCall(CheckpointSave(r));
+  snprintf(text, sizeof text, "by a signal, after step %d", (int)r->model->step);
+  PetscCall(GiveUp(r, "interrupted", "the run was interrupted", text));
+  r->summary.interrupted = PETSC_TRUE;
+  PetscFunctionReturn(0);
+}
+
 /* Steps until the end, a failure or a signal. */
 static PetscErrorCode Advance(Run *r)
 {
@@ -113,13 +133,16 @@ static PetscErrorCode Advance(Run *r)
   StepReport report;
   PetscBool asked = PETSC_FALSE;
   PetscInt points;
-  char text[64];
 
   PetscFunctionBeginUser;
   while (!r->failed && r->model->time < end * (1 - 1e-12)) {
     const PetscReal limit =
       PetscMin(until_next(&r->states, r->model->time, end), until_next(&r->rows, r->model->time, end));
     PetscCall(ModelStep(r->model, limit, &report));
+    if (report.outcome == STEP_INTERRUPTED) {
+      PetscCall(Interrupted(r));
+      break;
+    }
     if (report.outcome != STEP_ACCEPTED) {
       if (report.outcome == STEP_TOO_SMALL) PetscCall(CheckpointSave(r)); /* the model is as it was */
       PetscCall(GiveUp(r, "gave up", "the run gave up:", report.reason));
@@ -128,10 +151,7 @@ static PetscErrorCode Advance(Run *r)
     PetscCall(ModelCountPoints(r->model, &points));
     PetscCall(AfterStep(r, &report, points));
     PetscCall(Pause(r, &asked));
-    if (!asked) continue;
-    snprintf(text, sizeof text, "by a signal, after step %d", (int)r->model->step);
-    PetscCall(GiveUp(r, "interrupted", "the run was interrupted", text));
-    r->summary.interrupted = PETSC_TRUE;
+    if (asked) PetscCall(Interrupted(r));
   }
   PetscFunctionReturn(0);
 }
@@ -143,6 +163,7 @@ static PetscErrorCode Close(Run *r, PetscReal *measures)
 
   PetscFunctionBeginUser;
   if (!r->failed && r->n_written) PetscCall(CheckpointSave(r));
+  if (r->row_step == r->model->step) PetscCall(Measure(r)); /* a resumed run may have nothing left to do */
   PetscCall(RunWriteRow(r));
   PetscCall(RunWriteState(r));
   seconds = r->before + (MPI_Wtime() - r->start);
@@ -167,6 +188,7 @@ static PetscErrorCode RunModel(Run *r, const RunOptions *options, Diag *diag, Pe
   else PetscCall(RunOpen(r, options, diag));
   if (!r->dir) PetscFunctionReturn(0);
   if (complete) {
+    for (PetscInt k = 0; measures && k < r->c->n_measures; ++k) measures[k] = NAN;
     *result = RUN_DONE;
   } else if (r->failed) { /* before the first step: nothing is left behind by a run that was not there before */
     DiagError(diag, NULL, "%s", r->summary.reason);
@@ -197,6 +219,7 @@ PetscErrorCode RunCase(MPI_Comm comm, const Case *c, const RunOptions *options, 
   PetscCall(ModelCreate(comm, c, diag, &run.model));
   if (!run.model) PetscFunctionReturn(0);
   signals_watch();
+  run.model->asked = signals_came;
   PetscCall(RunModel(&run, options, diag, measures, result));
   signals_forget();
   PetscCall(PetscFree(run.values));

@@ -17,6 +17,8 @@ void signals_watch(void)
   signal(SIGTERM, on_signal);
 }
 
+PetscBool signals_came(void) { return asked_by ? PETSC_TRUE : PETSC_FALSE; }
+
 void signals_forget(void)
 {
   signal(SIGINT, SIG_DFL);

@@ -108,7 +108,7 @@ static PetscErrorCode LocalColumns(const System *s, PetscInt first, const PetscI
   *n_outer = ghosts + n_extra;
   PetscCall(PetscMalloc1(*n_outer, outer));
   PetscCall(PetscArraycpy(*outer, ghost, ghosts));
-  PetscCall(PetscArraycpy(*outer + ghosts, extra, n_extra));
+  if (n_extra) PetscCall(PetscArraycpy(*outer + ghosts, extra, n_extra));
   PetscCall(PetscFree3(sorted, place, extra));
   PetscFunctionReturn(0);
 }

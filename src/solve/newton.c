@@ -60,13 +60,21 @@ void NewtonSetMemory(Newton *n, const System *system, const NewtonMemory *memory
   n->remembered = system->builds > 0 && memory->courant >= 0 ? system->builds : -1;
 }
 
+void NewtonForget(Newton *n, const System *system, const NewtonMemory *memory)
+{
+  n->failures = memory->failures;
+  n->since = memory->since;
+  n->courant = memory->courant;
+  n->built = memory->courant >= 0 ? system->builds : -1;
+}
+
 /* Internal and inertia forces -> residual, and the norms of reactions and external forces, over owned dofs. Nodes without unknowns have
  * no forces: they are often most of a grid, and are left alone. */
 static PetscErrorCode Balance(Newton *n)
 {
   const StepProblem *p = n->problem;
   const PetscInt dim = p->grid->dim;
-  PetscReal local[2] = {0, 0}, sum[2];
+  PetscReal local[3] = {0, 0, p->asked && p->asked() ? 1 : 0}, sum[3];
 
   PetscFunctionBeginUser;
   for (PetscInt k = 0; k < p->system->n_active; ++k)
@@ -75,7 +83,8 @@ static PetscErrorCode Balance(Newton *n)
       if (p->fixed[i]) local[0] += p->force[i] * p->force[i];
       else local[1] += p->external[i] * p->external[i];
     }
-  PetscCall(MPIU_Allreduce(local, sum, 2, MPIU_REAL, MPI_SUM, n->comm));
+  PetscCall(MPIU_Allreduce(local, sum, 3, MPIU_REAL, MPI_SUM, n->comm));
+  n->asked = sum[2] > 0 ? PETSC_TRUE : PETSC_FALSE;
   n->reaction = PetscSqrtReal(sum[0]);
   n->external = PetscSqrtReal(sum[1]);
   PetscFunctionReturn(0);
@@ -389,6 +398,7 @@ static PetscErrorCode NewtonTry(Newton *n, NewtonReport *report)
   PetscCall(SNESGetLinearSolveIterations(n->snes, &report->linear_iterations));
   report->iterations += its;
   report->converged = reason > 0 ? PETSC_TRUE : PETSC_FALSE;
+  report->interrupted = reason == SNES_DIVERGED_FUNCTION_COUNT ? PETSC_TRUE : PETSC_FALSE;
   report->reason = newton_reason(reason, report->status);
   PetscCall(PetscTime(&end));
   n->t_newton += (end - start) - (n->t_points + n->t_matrix + n->t_linear - parts);

@@ -26,11 +26,13 @@ typedef struct {
   PetscReal *pressure; /* mixed: n_nodes, like du; m, see WeakFormInput. NULL: displacements alone, as the next two */
   PetscReal *volume;   /* mixed: n_nodes, residual of the pressure equation, N */
   const unsigned char *idle; /* mixed: n_nodes, no material touches the node: no pressure there */
+  PetscBool (*asked)(void);  /* does somebody want the run to end? asked on every rank; NULL: nobody ever does */
   PetscReal weight, inertia; /* norms of nodal gravity and of the inertia that would stop the motion, N: scales */
 } StepProblem;
 
 typedef struct {
   PetscBool converged;
+  PetscBool interrupted; /* somebody asked, on any rank, before it converged */
   PetscInt iterations, linear_iterations;
   PetscReal residual[NEWTON_HISTORY]; /* |R| / reference after each iteration; [0] at the first guess */
   PetscReal reference;                /* N */
@@ -55,6 +57,8 @@ typedef struct {
 void NewtonGetMemory(const Newton *newton, const System *system, NewtonMemory *memory);
 /* For a Newton that has solved nothing yet, and the pattern that the system has now. */
 void NewtonSetMemory(Newton *newton, const System *system, const NewtonMemory *memory);
+/* Back to what was remembered before a solve that is given up, on the same pattern. */
+void NewtonForget(Newton *newton, const System *system, const NewtonMemory *memory);
 /* Name of the linear solver in use, for the log. */
 const char *NewtonLinearName(const Newton *newton);
 /* Seconds spent so far: points and scatter, matrix filling, linear solves, and the rest of Newton's method. */

@@ -64,6 +64,7 @@ PetscErrorCode NewtonConverged(SNES snes, PetscInt it, PetscReal xnorm, PetscRea
   if (PetscIsInfOrNanReal(fnorm)) *reason = SNES_DIVERGED_FNORM_NAN;
   else if (relative <= spec->residual || fnorm <= spec->residual_absolute) *reason = SNES_CONVERGED_FNORM_RELATIVE;
   else if (still || floored) *reason = SNES_CONVERGED_SNORM_RELATIVE;
+  else if (n->asked) *reason = SNES_DIVERGED_FUNCTION_COUNT; /* no more than it wants to evaluate */
   else if (k > 2 && relative > 1e8) *reason = SNES_DIVERGED_DTOL;
   else if (is_stuck(r->residual, k)) *reason = SNES_DIVERGED_LOCAL_MIN;
   n->before = it > 0 ? n->last : 0;
@@ -79,6 +80,7 @@ const char *newton_reason(SNESConvergedReason reason, LawStatus status)
   case SNES_DIVERGED_MAX_IT: return "too many iterations";
   case SNES_DIVERGED_LINEAR_SOLVE: return "the linear solver failed (is the body held anywhere?)";
   case SNES_DIVERGED_LOCAL_MIN: return "the iteration went in circles";
+  case SNES_DIVERGED_FUNCTION_COUNT: return "it was interrupted";
   case SNES_DIVERGED_DTOL: return "the residual grew without bound";
   default: break;
   }

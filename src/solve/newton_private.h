@@ -25,6 +25,7 @@ struct Newton {
   const char *linear;
   StepProblem *problem;
   NewtonReport *report;
+  PetscBool asked;              /* did any rank want the run to end, at the last assembly? */
   PetscReal reaction, external; /* norms at the last assembly, N */
   PetscReal last, before;       /* norms of the residual one iteration ago, and two, N; before: 0 if there was none */
   PetscBool tangent;            /* do the system's values belong to du? */

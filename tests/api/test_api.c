@@ -267,6 +267,36 @@ static void test_steps_equal_run(void **state)
   remove_folder(folder);
 }
 
+/* The values of a run of the block to this end, of the same block that ran to half of it and was resumed, and of one that was resumed at its end. */
+static void test_resume(void **state)
+{
+  static const char *const often[] = {"checkpoint.steps=2", "analysis.end=0.02"}, *const half[] = {"checkpoint.steps=2"};
+  char folder[FOLDER], whole[FOLDER + 8], cut[FOLDER + 8], file[FOLDER + 24];
+  double values[3];
+  int size;
+  TalusRun *run;
+  TalusCase *c;
+  (void)state;
+  CALL(TalusRanks(NULL, &size));
+  make_folder(folder);
+  snprintf(whole, sizeof whole, "%s/whole", folder);
+  snprintf(cut, sizeof cut, "%s/cut", folder);
+  snprintf(file, sizeof file, "%s/case.yaml", cut);
+  for (int k = 0; k < 4; ++k) { /* whole, half, to its end, again at its end */
+    if (k < 2) c = open_block(k ? 1 : 2, k ? half : often);
+    else CALL(TalusCaseOpen(file, 1, often + 1, &c, NULL));
+    CALL(TalusRunCase(c, k ? cut : whole, TALUS_RUN_QUIET | (k < 2 ? 0 : TALUS_RUN_RESUME), &run, NULL));
+    if (k != 1) CALL(TalusRunMeasure(run, "top", &values[k ? k - 1 : 0]));
+    CALL(TalusRunDestroy(&run));
+    CHECK_ERROR(TalusRunCase(c, cut, TALUS_RUN_FORCE | TALUS_RUN_RESUME, &run, NULL), TALUS_ERROR_ARGUMENT);
+    CALL(TalusCaseClose(&c));
+  }
+  CHECK(values[0] < -0.0019);
+  CHECK_CLOSE(values[1], values[0], size == 1 ? 0 : 1e-9);
+  CHECK(values[2] == values[1]);
+  remove_folder(folder);
+}
+
 static void test_limits(void **state)
 {
   TalusStep step = TALUS_STEP_AT_END;
@@ -438,6 +468,7 @@ int main(void)
     cmocka_unit_test(test_mistakes_of_a_model),
     cmocka_unit_test(test_names),
     cmocka_unit_test(test_steps_equal_run),
+    cmocka_unit_test(test_resume),
     cmocka_unit_test(test_limits),
     cmocka_unit_test(test_failed_step),
     cmocka_unit_test(test_points),

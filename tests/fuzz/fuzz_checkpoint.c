@@ -13,32 +13,46 @@ static const char case_text[] =
   "bodies: [{name: b, shape: {box: {min: [0, 0], max: [1, 1]}}, points_per_cell: 4, material: m}]\n"
   "materials: {m: {law: neo-hookean, density: 1000, young: 1e6, poisson: 0.3}}\n"
   "boundary: [{on: {y: 0}, fix: [x, y]}]\nmeasures: {tip: {displacement: y, of: {tracer: [1, 1]}}}\n";
-static Case *the_case;
+static const char cloud_text[] =
+  "kinematics: plane-strain\nmethod: gmm\nbasis: {mls: {}}\nanalysis: {type: dynamic, step: 1e-3, end: 1}\n"
+  "grid: {box: {min: [0, 0], max: [3, 2]}, size: 0.5}\n"
+  "bodies: [{name: b, shape: {box: {min: [0, 0], max: [1, 1]}}, points_per_cell: 4, material: m}]\n"
+  "materials: {m: {law: neo-hookean, density: 1000, young: 1e6, poisson: 0.3}}\n"
+  "boundary: [{on: {y: 0}, fix: [x, y]}]\nmeasures: {tip: {displacement: y, of: {tracer: [1, 1]}}}\n";
+static Case *of_cells, *of_clouds;
 
-static Model *NewModel(void)
+static Model *NewModel(const Case *c)
 {
   Diag *diag;
   Model *m;
   FUZZ_CALL(DiagCreate(&diag));
-  FUZZ_CALL(ModelCreate(PETSC_COMM_SELF, the_case, diag, &m));
+  FUZZ_CALL(ModelCreate(PETSC_COMM_SELF, c, diag, &m));
   FUZZ_CALL(DiagDestroy(&diag));
   if (!m) abort();
   return m;
 }
 
-int LLVMFuzzerInitialize(int *argc, char ***argv)
+static Case *NewCase(const char *text)
 {
   char path[64];
   Diag *diag;
-  (void)argc, (void)argv;
-  fuzz_start();
-  const int fd = fuzz_file((const uint8_t *)case_text, strlen(case_text), path);
+  Case *c;
+  const int fd = fuzz_file((const uint8_t *)text, strlen(text), path);
   FUZZ_CALL(DiagCreate(&diag));
-  FUZZ_CALL(CaseRead(PETSC_COMM_SELF, path, 0, NULL, diag, &the_case));
+  FUZZ_CALL(CaseRead(PETSC_COMM_SELF, path, 0, NULL, diag, &c));
   FUZZ_CALL(DiagFlush(diag, stderr));
   FUZZ_CALL(DiagDestroy(&diag));
-  if (!the_case) abort();
+  if (!c) abort();
   close(fd);
+  return c;
+}
+
+int LLVMFuzzerInitialize(int *argc, char ***argv)
+{
+  (void)argc, (void)argv;
+  fuzz_start();
+  of_cells = NewCase(case_text);
+  of_clouds = NewCase(cloud_text);
   return 0;
 }
 
@@ -75,9 +89,9 @@ static void List(const uint8_t *data, size_t n)
 }
 
 /* (table, column, byte, value) again and again. */
-static void Numbers(const uint8_t *data, size_t n)
+static void Numbers(const Case *c, const uint8_t *data, size_t n)
 {
-  Model *from = NewModel(), *to = NewModel();
+  Model *from = NewModel(c), *to = NewModel(c);
   StepReport report;
   Tables *tables;
   char reason[256];
@@ -100,7 +114,8 @@ static void Numbers(const uint8_t *data, size_t n)
 static void fuzz_one(const uint8_t *data, size_t n)
 {
   if (n == 0) return;
-  if (data[0] == 'n') Numbers(data + 1, n - 1);
+  if (data[0] == 'n') Numbers(of_cells, data + 1, n - 1);
+  else if (data[0] == 'c') Numbers(of_clouds, data + 1, n - 1);
   else if (data[0] == 'l') List(data + 1, n - 1);
   else File(data, n);
 }

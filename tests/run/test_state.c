@@ -164,6 +164,66 @@ static void test_gmm(void **state)
   thrown(BASIS_LME, LINEAR_ITERATIVE, CELL_HEXAHEDRON, 0.25);
 }
 
+/* --- given up --- */
+static int assemblies; /* until somebody asks */
+
+static PetscBool somebody_asks(void)
+{
+  PetscMPIInt rank, size;
+  MPI_Comm_rank(PETSC_COMM_WORLD, &rank);
+  MPI_Comm_size(PETSC_COMM_WORLD, &size);
+  return --assemblies < 0 && rank == size - 1 ? PETSC_TRUE : PETSC_FALSE;
+}
+
+/* A step that is given up between two iterations leaves the model as it was, and the run that goes on from there is the one that was not
+ * interrupted. */
+static void given_up(Bench *b)
+{
+  StepReport report;
+  Model *whole = bench_model(b, PETSC_COMM_WORLD), *cut = bench_model(b, PETSC_COMM_WORLD);
+  for (int k = 0; k < 3; ++k) {
+    model_step(whole, PETSC_MAX_REAL);
+    model_step(cut, PETSC_MAX_REAL);
+  }
+  assemblies = 1;
+  cut->asked = somebody_asks;
+  CALL(ModelStep(cut, PETSC_MAX_REAL, &report));
+  CHECK(report.outcome == STEP_INTERRUPTED, "the step goes on, %d", (int)report.outcome);
+  same_models(whole, cut);
+  put_away(cut);
+  Model *again = bring_back(b, PETSC_COMM_WORLD);
+  for (int k = 0; k < 3; ++k) {
+    model_step(whole, PETSC_MAX_REAL);
+    model_step(again, PETSC_MAX_REAL);
+  }
+  same_models(whole, again);
+  CALL(ModelDestroy(&whole));
+  CALL(ModelDestroy(&cut));
+  CALL(ModelDestroy(&again));
+}
+
+static void test_given_up(void **state)
+{
+  static const char *const methods_[] = {"mpm", "fem", "gmm"};
+  (void)state;
+  for (int k = 0; k < (on_one_rank() ? 4 : 3); ++k) { /* the last: constraints, which take a direct solver */
+    Bench b;
+    bench_init(&b, methods_[PetscMin(k, 2)], CELL_QUADRILATERAL, 8);
+    if (k == 3)
+      b.c.basis = (BasisSpec){
+        .kind = BASIS_MLS, .effective_radius = 1, .radius = 2, .max_radius = 3.5, .condition = 50, .gap = 2};
+    if (k == 2)
+      b.c.basis =
+        (BasisSpec){.kind = BASIS_LME, .gamma = 1.8, .radius = 2, .max_radius = 3.5, .condition = 50, .gap = 2};
+    bench_motion(&b, 1, 0, MOTION_FIXED, 3);
+    b.c.gravity[1] = -100;
+    bench_dynamic(&b, 1, 1e-2);
+    b.c.linear = k == 3 ? LINEAR_AUTO : LINEAR_ITERATIVE;
+    b.c.newton.residual = 1e-12;
+    given_up(&b);
+  }
+}
+
 /* Statics in steps with factorisations, whose bits depend on the arrival of messages where there are several ranks. */
 static void test_static(void **state)
 {
@@ -224,10 +284,10 @@ static void test_other_model(void **state)
 
 int main(int argc, char **argv)
 {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_mpm_2d),     cmocka_unit_test(test_mpm_3d),
-                                     cmocka_unit_test(test_fem),        cmocka_unit_test(test_gmm),
-                                     cmocka_unit_test(test_static),     cmocka_unit_test(test_at_start),
-                                     cmocka_unit_test(test_other_model)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_mpm_2d),      cmocka_unit_test(test_mpm_3d),
+                                     cmocka_unit_test(test_fem),         cmocka_unit_test(test_gmm),
+                                     cmocka_unit_test(test_static),      cmocka_unit_test(test_at_start),
+                                     cmocka_unit_test(test_other_model), cmocka_unit_test(test_given_up)};
   PetscMPIInt rank;
   int pid;
   if (PetscInitialize(&argc, &argv, NULL, NULL)) return 1;
