@@ -45,9 +45,10 @@ test-sanitize: deps ## The same tests under AddressSanitizer and UndefinedBehavi
 	@cmake --build $(SANITIZE) --parallel $(JOBS)
 	@cmake/run-tests.sh $(SANITIZE) $(TEST_JOBS) $(TEST_ARGS)
 
-test-kill: build ## Kill a run 50 times at random moments on one rank, 50 times on two, and compare: KILLS=50
+test-kill: build ## Kill a run 50 times at random moments on one rank, 50 times on two; let every allocation fail once: KILLS=50
 	@OPENBLAS_NUM_THREADS=1 sh tests/program/kill.sh $(abspath $(TALUS)) 1 $(KILLS)
 	@OPENBLAS_NUM_THREADS=1 sh tests/program/kill.sh $(abspath $(TALUS)) 2 $(KILLS)
+	@OPENBLAS_NUM_THREADS=1 TALUS_MEMORY_STRIDE=1 $(BUILD)/tests/bin/run_test_memory
 
 fuzz: ## Throw random bytes at the readers of cases, meshes and checkpoints: FUZZ_SECONDS=60 each
 	@cmake/debian-packages.sh build fuzz

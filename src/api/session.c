@@ -3,6 +3,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include "api/api.h"
+#include "base/memory.h"
 #include "base/threads.h"
 #include "talus_version.h"
 
@@ -27,6 +28,7 @@ int talus_code(PetscErrorCode code)
 {
   switch (code) {
   case 0: return TALUS_OK;
+  case 1: /* so PETSc 3.18 says that it has no memory for an object */
   case PETSC_ERR_MEM: return TALUS_ERROR_MEMORY;
   case PETSC_ERR_FILE_OPEN:
   case PETSC_ERR_FILE_WRITE: return TALUS_ERROR_OUTPUT;
@@ -46,6 +48,7 @@ int TalusInitialize(int *argc, char ***argv)
   PetscBool started, ended;
   if (PetscInitialized(&started) || PetscFinalized(&ended) || started || ended) return TALUS_ERROR_STATE;
   threads_one_per_rank();
+  if (MemoryInstall(argc && argv ? *argc : 0, argc && argv ? *argv : NULL)) return TALUS_ERROR_INTERNAL;
   if (!argc || !argv) return talus_code(PetscInitializeNoArguments());
   return talus_code(PetscInitialize(argc, argv, NULL, NULL));
 }

@@ -4,6 +4,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include "base/memory.h"
 #include "base/threads.h"
 #include "cli/cli.h"
 
@@ -138,7 +139,7 @@ static int RunProgram(int argc, char **argv, char **own, char **petsc)
 
   Split(argc, argv, &n_own, own, &n_petsc, petsc);
   const char *mistake = SingleDashMistake(n_petsc, petsc);
-  if (PetscInitialize(&n_petsc, &list, NULL, NULL)) return CLI_BAD_INPUT;
+  if (MemoryInstall(n_petsc, petsc) || PetscInitialize(&n_petsc, &list, NULL, NULL)) return CLI_BAD_INPUT;
   threads_one_per_rank();
   signal(SIGPIPE, SIG_DFL); /* `talus ... | head` ends quietly */
   /* An internal error on one rank must not leave the others waiting. */

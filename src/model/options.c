@@ -42,6 +42,7 @@ PetscErrorCode OptionsCheck(const Model *m, Diag *diag)
   PetscCall(PetscPushErrorHandler(PetscReturnErrorHandler, NULL));
   const PetscErrorCode code = SNESSetFromOptions(snes);
   PetscCall(PetscPopErrorHandler());
+  if (code <= PETSC_ERR_MEM) PetscCall(code); /* no memory; 1 where an object could not be made */
   if (code) {
     PetscCall(PetscErrorMessage(code, &text, &detail));
     DiagError(diag, "petsc", "PETSc refuses an option of this block or of the command line: %s",
