@@ -3,20 +3,21 @@
 #include <petsctime.h>
 
 typedef enum {
-  PHASE_PATTERN,    /* which nodes carry unknowns, sparse pattern, slots of the groups in it */
-  PHASE_PREPARE,    /* history, first guess, loads */
-  PHASE_POINTS,     /* point work with the scatter into the blocks of the tangent */
-  PHASE_MATRIX,     /* blocks -> matrix, and its making for a new pattern */
-  PHASE_LINEAR,     /* linear solves with the set-up of their preconditioners: factorisations, too */
-  PHASE_NEWTON,     /* Newton's own work with vectors */
-  PHASE_COMMIT,     /* state and F of the accepted step */
-  PHASE_MOVE,       /* points move, find their cells, change ranks, get sorted */
-  PHASE_INITIALISE, /* shape functions, nodal mass and motion */
+  PHASE_REPARTITION, /* who has which part of the grid: looked at in every step, and what it takes to share it anew */
+  PHASE_PATTERN,     /* which nodes carry unknowns, sparse pattern, slots of the groups in it */
+  PHASE_PREPARE,     /* history, first guess, loads */
+  PHASE_POINTS,      /* point work with the scatter into the blocks of the tangent */
+  PHASE_MATRIX,      /* blocks -> matrix, and its making for a new pattern */
+  PHASE_LINEAR,      /* linear solves with the set-up of their preconditioners: factorisations, too */
+  PHASE_NEWTON,      /* Newton's own work with vectors */
+  PHASE_COMMIT,      /* state and F of the accepted step */
+  PHASE_MOVE,        /* points move, find their cells, change ranks, get sorted */
+  PHASE_INITIALISE,  /* shape functions, nodal mass and motion */
   PHASE_N
 } Phase;
 
-static const char *const phase_names[PHASE_N] = {"pattern", "prepare", "points", "matrix",    "linear",
-                                                 "newton",  "commit",  "move",   "initialise"};
+static const char *const phase_names[PHASE_N] = {"repartition", "pattern", "prepare", "points", "matrix",
+                                                 "linear",      "newton",  "commit",  "move",   "initialise"};
 
 /* Charge the time since *clock to a phase and set the clock anew. */
 static inline PetscErrorCode PhaseEnd(PetscReal seconds[PHASE_N], Phase phase, PetscLogDouble *clock)

@@ -95,24 +95,44 @@ static PetscErrorCode CheckSelection(const Boundary *b, const Grid *grid, PetscI
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode BoundaryCreate(const Grid *grid, const Case *c, Diag *diag, Boundary **boundary)
+/* Mistakes in the selections go to diag; NULL: they were sought before. */
+static PetscErrorCode Select(Boundary *b, const Grid *grid, Diag *diag)
 {
-  Boundary *b;
-
   PetscFunctionBeginUser;
-  PetscCall(PetscNew(&b));
-  b->c = c;
   b->dim = grid->dim;
   b->n_nodes = grid->n_nodes;
   PetscCall(PetscCalloc1(b->n_nodes * b->dim, &b->fixed));
   PetscCall(PetscMalloc1(b->n_nodes * b->dim, &b->entry));
   for (PetscInt i = 0; i < b->n_nodes * b->dim; ++i) b->entry[i] = -1;
-  PetscCall(PetscCalloc1(c->n_boundary, &b->motion));
-  for (PetscInt k = 0; k < c->n_boundary; ++k) {
-    PetscCall(GridSelectNodes(grid, &c->boundary[k].on, &b->motion[k].n, &b->motion[k].node));
-    PetscCall(CheckSelection(b, grid, k, diag));
+  PetscCall(PetscCalloc1(b->c->n_boundary, &b->motion));
+  for (PetscInt k = 0; k < b->c->n_boundary; ++k) {
+    PetscCall(GridSelectNodes(grid, &b->c->boundary[k].on, &b->motion[k].n, &b->motion[k].node));
+    if (diag) PetscCall(CheckSelection(b, grid, k, diag));
     mark_entry(b, grid, k, diag);
   }
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode BoundaryCreate(const Grid *grid, const Case *c, Diag *diag, Boundary **boundary)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscNew(boundary));
+  (*boundary)->c = c;
+  PetscCall(Select(*boundary, grid, diag));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode BoundaryRegrid(Boundary **boundary, const Grid *grid)
+{
+  Boundary *b;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscNew(&b));
+  b->c = (*boundary)->c;
+  b->field = (*boundary)->field;
+  b->field_context = (*boundary)->field_context;
+  PetscCall(Select(b, grid, NULL));
+  PetscCall(BoundaryDestroy(boundary));
   *boundary = b;
   PetscFunctionReturn(0);
 }

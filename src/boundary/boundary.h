@@ -33,6 +33,8 @@ PetscErrorCode BoundaryToCloud(const Boundary *of_mesh, const Grid *mesh, const 
                                Boundary **boundary);
 /* Lists and marks anew from `member`, after the cloud's ghosts or owners changed. */
 PetscErrorCode BoundaryFollow(Boundary *boundary, const Grid *cloud);
+/* Collective. The same boundary on `grid`, which is the grid that it was made for, shared among the ranks in another way. */
+PetscErrorCode BoundaryRegrid(Boundary **boundary, const Grid *grid);
 PetscErrorCode BoundaryDestroy(Boundary **boundary);
 
 /* For a grid that is restored: choose anew, at time t, the nodes of the places that move. Where entries have come to overlap, the first of

@@ -160,6 +160,22 @@ PetscErrorCode LoadsLeaveCells(Loads *l, const Grid *grid, const Points *points)
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode LoadsRegrid(Loads *l, const Grid *old, const Grid *grid)
+{
+  PetscInt faces, moved = 0;
+
+  PetscFunctionBeginUser;
+  for (PetscInt k = 0; k < l->c->n_loads; ++k) {
+    if (l->c->loads[k].kind == LOAD_POINT || l->c->loads[k].on.body) continue;
+    PetscCall(PetscFree(l->faces[k].cell));
+    PetscCall(PetscFree(l->faces[k].N));
+    PetscCall(GridTraction(l, grid, k, &faces));
+  }
+  PetscCall(PointsRegrid(l->carriers, old, grid, &moved));
+  l->n_nodes = grid->n_nodes;
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode LoadsDestroy(Loads **loads)
 {
   PetscFunctionBeginUser;

@@ -24,6 +24,8 @@ PetscErrorCode LoadsCreate(const Grid *grid, const Case *c, const Points *points
 /* Collective. Let carriers bear the tractions on faces of the grid too, where its cells hold points: for methods that leave the cells. */
 PetscErrorCode LoadsLeaveCells(Loads *loads, const Grid *grid, const Points *points);
 PetscErrorCode LoadsDestroy(Loads **loads);
+/* Collective. Let the loads stand on `grid`, which is `old` shared among the ranks in another way. */
+PetscErrorCode LoadsRegrid(Loads *loads, const Grid *old, const Grid *grid);
 
 /* Collective. Add the nodal forces at time t to force (n_nodes x dim; sums over ranks stand with the owners). Faces of
  * the grid are loaded where their cell is filled[cell] by material: beside a body there is nothing to push. Carried forces go to nodes

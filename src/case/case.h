@@ -224,6 +224,11 @@ typedef struct {
   PetscInt keep;     /* how many checkpoints are kept */
 } CheckpointSpec;
 
+/* How the work is shared among the ranks. */
+typedef struct {
+  PetscReal imbalance; /* the largest share of a rank over the mean at which the grid is shared anew; 0: never */
+} ParallelSpec;
+
 typedef struct {
   char *file;   /* as the user named it */
   char *folder; /* where it stands, "." at least: relative names start here */
@@ -252,6 +257,7 @@ typedef struct {
   StabilisationSpec stabilisation;
   OutputSpec output;
   CheckpointSpec checkpoint;
+  ParallelSpec parallel;
   PetscInt n_petsc; /* options of the petsc: block, in order: "-name value" */
   char **petsc;
 } Case;

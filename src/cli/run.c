@@ -23,7 +23,8 @@ static const CliUsage usage = {
     "Runs a case file and writes states (.hdf, for ParaView), history.csv and a log into a run directory. Every ten\n"
     "minutes (checkpoint: in the case) and at SIGINT and SIGTERM the whole state is put away there; with --resume a "
     "run\n"
-    "that was cut off goes on as if nothing had been. Then --set may change checkpoint, newton, linear, petsc,\n"
+    "that was cut off goes on as if nothing had been. Then --set may change checkpoint, newton, linear, parallel, "
+    "petsc,\n"
     "analysis.smallest and .largest, grid.outside and, in dynamics, analysis.end.\n"
     "If the case has a reference.yaml beside it that knows this very case, the results are compared with it.",
   .options = options_known,
@@ -33,8 +34,8 @@ static const CliUsage usage = {
 
 /* What a resumed run may change: how it is solved, not what. */
 static const char *const may_change[] = {
-  "checkpoint",       "newton",       "linear",       "petsc", "analysis.smallest",
-  "analysis.largest", "analysis.end", "grid.outside", NULL};
+  "checkpoint",        "newton",           "linear",       "parallel",     "petsc",
+  "analysis.smallest", "analysis.largest", "analysis.end", "grid.outside", NULL};
 
 /* PATH=VALUE names one of these, or a key below it. */
 static PetscBool MayChange(const char *set)

@@ -64,21 +64,10 @@ static PetscErrorCode BoxLines(GridBox *box, const GridSpec *spec)
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode BoxPartition(MPI_Comm comm, GridBox *box, GridWeight weight, void *context)
+PetscInt box_owned_nodes(const GridBox *box, const VoxelBlock *voxels)
 {
-  PetscFunctionBeginUser;
-  PetscCallMPI(MPI_Comm_rank(comm, &box->rank));
-  PetscCallMPI(MPI_Comm_size(comm, &box->size));
-  PetscCall(PetscCalloc4(box->size, &box->block, box->size, &box->cut_axis, box->size, &box->cut, box->size + 1,
-                         &box->first_node));
-  PetscCall(
-    PartitionVoxels(comm, box->dim, box->counts, box->line, weight, context, box->block, box->cut_axis, box->cut));
-  for (PetscMPIInt r = 0; r < box->size; ++r) {
-    const VoxelBlock owned = owned_block(box, box->block + r);
-    const PetscInt centres = has_centres(box) ? block_size(box->block + r) : 0;
-    box->first_node[r + 1] = box->first_node[r] + block_size(&owned) + centres;
-  }
-  PetscFunctionReturn(0);
+  const VoxelBlock owned = owned_block(box, voxels);
+  return block_size(&owned) + (has_centres(box) ? block_size(voxels) : 0);
 }
 
 static PetscErrorCode GridBoxCreate(MPI_Comm comm, const Case *c, GridWeight weight, void *context, GridBox **out)
@@ -340,24 +329,33 @@ static PetscBool box_valid(MPI_Comm comm, const Case *c, Diag *diag)
   return PETSC_FALSE;
 }
 
-PetscErrorCode GridCreate_Box(MPI_Comm comm, const Case *c, GridWeight weight, void *context, Diag *diag, Grid **out)
+PetscErrorCode GridFromBox(MPI_Comm comm, CellType type, GridBox *box, Grid **out)
 {
   Grid *grid;
 
   PetscFunctionBeginUser;
-  *out = NULL;
-  if (!box_valid(comm, c, diag)) PetscFunctionReturn(0);
   PetscCall(PetscNew(&grid));
   grid->comm = comm;
-  grid->dim = kinematics_dim(c->kinematics);
-  grid->type = c->grid.cell;
-  grid->nodes_per_cell = cells[grid->type].nodes;
-  PetscCall(GridBoxCreate(comm, c, weight, context, &grid->box));
-  grid->n_cells_global =
-    grid->box->pattern[0].n_cells * grid->box->counts[0] * grid->box->counts[1] * grid->box->counts[2];
+  grid->dim = box->dim;
+  grid->type = type;
+  grid->nodes_per_cell = cells[type].nodes;
+  grid->box = box;
+  grid->n_cells_global = box->pattern[0].n_cells * box->counts[0] * box->counts[1] * box->counts[2];
   box_extent(grid);
   PetscCall(FillBox(grid));
   PetscCall(GridFinish(grid));
   *out = grid;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode GridCreate_Box(MPI_Comm comm, const Case *c, GridWeight weight, void *context, Diag *diag, Grid **grid)
+{
+  GridBox *box = NULL;
+
+  PetscFunctionBeginUser;
+  *grid = NULL;
+  if (!box_valid(comm, c, diag)) PetscFunctionReturn(0);
+  PetscCall(GridBoxCreate(comm, c, weight, context, &box));
+  PetscCall(GridFromBox(comm, c->grid.cell, box, grid));
   PetscFunctionReturn(0);
 }

@@ -9,6 +9,7 @@
 #include <petscdmplex.h>
 #include "basis/cell.h"
 #include "base/diag.h"
+#include "base/table.h"
 #include "case/case.h"
 
 /* A named set: of nodes and faces (boundary) or of cells (region). A box has left right (x), bottom top
@@ -59,6 +60,15 @@ PetscErrorCode GridCreate(MPI_Comm comm, const Case *c, GridWeight weight, void 
 PetscErrorCode GridCreateMesh(MPI_Comm comm, const GridSpec *spec, PetscInt dim, const char *path, GridWeight weight,
                               void *context, Diag *diag, Grid **grid);
 PetscErrorCode GridDestroy(Grid **grid);
+
+/* Collective. The grid that `old` is, shared among the ranks by `weight` of its local cells (>= 0; 0: empty). *reached: the largest weight of
+ * a rank over the mean that such a sharing has; if that is more than `worst` there is no use in it, and *grid stays NULL. `old` stays as it is. Not for clouds. */
+PetscErrorCode GridRepartition(const Grid *old, const PetscReal *weight, PetscReal worst, PetscReal *reached,
+                               Grid **grid);
+/* Collective. Who has what, as a table, and the same grid shared in that way by as many ranks. reason is left empty, or says on every rank why
+ * not. */
+PetscErrorCode GridPartitionToTable(const Grid *grid, Tables *tables);
+PetscErrorCode GridFromPartition(const Grid *old, const Table *table, Grid **grid, char reason[256]);
 
 const GridSet *GridFindSet(const Grid *grid, const char *name);
 /* Names of all sets, NULL-terminated, to be freed with PetscFree (not the names). */

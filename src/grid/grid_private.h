@@ -67,10 +67,27 @@ PetscBool box_voxel(const GridBox *box, const PetscReal *x, PetscInt ijk[3]);
 PetscInt box_locate(const Grid *grid, const PetscReal *x, PetscReal *xi);
 PetscInt box_candidates(const GridBox *box, const PetscReal *x, PetscInt max, PetscMPIInt *ranks);
 
-/* partition.c: weighted recursive coordinate bisection of the voxels. Fills the block of each of
- * the comm's ranks and the cuts (entries 1 .. size-1). Collective. */
-PetscErrorCode PartitionVoxels(MPI_Comm comm, PetscInt dim, const PetscInt counts[3], PetscReal *const line[3],
-                               GridWeight weight, void *context, VoxelBlock *block, PetscInt *cut_axis, PetscInt *cut);
+/* Nodes that the owner of a block of voxels owns. */
+PetscInt box_owned_nodes(const GridBox *box, const VoxelBlock *voxels);
+/* Collective. The grid of a box whose blocks are known; takes the box. */
+PetscErrorCode GridFromBox(MPI_Comm comm, CellType type, GridBox *box, Grid **grid);
+
+/* box_partition.c: the ranks' blocks of a box. Collective; see GridCreate. */
+PetscErrorCode BoxPartition(MPI_Comm comm, GridBox *box, GridWeight weight, void *context);
+
+/* Voxels that carry something, by their numbers in the lattice (first axis fastest), each named by one rank only. */
+typedef struct {
+  PetscInt n, *voxel;
+  PetscInt64 *weight;
+} VoxelWeights;
+
+/* partition.c: weighted recursive coordinate bisection of the voxels. Fills the cuts (entries 1 .. size-1). imbalance: the
+ * largest weight of a rank over the mean. Collective. */
+PetscErrorCode PartitionVoxels(MPI_Comm comm, PetscInt dim, const PetscInt counts[3], const VoxelWeights *weights,
+                               PetscInt *cut_axis, PetscInt *cut, PetscReal *imbalance);
+/* The blocks of all ranks from the cuts. */
+PetscErrorCode PartitionBlocks(PetscMPIInt size, const PetscInt counts[3], const PetscInt *cut_axis,
+                               const PetscInt *cut, VoxelBlock *block);
 
 /* sets.c */
 PetscErrorCode GridSetDestroy(GridSet *set);

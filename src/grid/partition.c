@@ -2,13 +2,16 @@
  *
  * The ranks are halved together with the lattice: ranks first..last-1 share a block, and those
  * below the middle m take what lies below the cut. Entry m of `cut` is that cut, so that the tree
- * needs no pointers. Each rank weighs its share of the voxels; only histograms along the axis to be
- * cut travel. */
+ * needs no pointers. Each rank knows the weights of some voxels; only histograms along the axes
+ * travel. Weights are whole numbers, so that the cuts do not depend on who knows what. */
 #include "grid/grid_private.h"
 
 /* Weight of an empty voxel relative to the mean of those that carry something: its nodes still cost
  * memory and loops. */
-static const PetscReal empty_weight = 0.05;
+static const PetscReal empty_weight = 0.02;
+
+/* What it costs to cut through voxels, relative to giving their weight to the wrong side. */
+static const PetscReal surface_weight = 0.1;
 
 /* A block that ranks first .. last-1 share; the entries of one level of the tree stand in one
  * array. */
@@ -16,15 +19,15 @@ typedef struct {
   PetscMPIInt first, last;
   VoxelBlock block;
   PetscInt axis, cut;
-  PetscInt start; /* of its histogram */
+  PetscInt start[3]; /* of its histograms, one along each axis */
 } Part;
 
-/* This rank's share of the voxels: a range of the lexicographic order. */
+/* The voxels whose weights this rank knows, and what all others weigh. */
 typedef struct {
-  PetscInt begin, n;
-  PetscInt counts[3];
-  PetscReal *weight;
-  PetscInt *part; /* index into the current level */
+  PetscInt dim, counts[3];
+  const VoxelWeights *weights; /* NULL: all voxels weigh the same */
+  PetscInt64 empty;
+  PetscInt *part; /* of each of these voxels: index into the current level */
 } Share;
 
 static inline void voxel_at(const PetscInt counts[3], PetscInt v, PetscInt ijk[3])
@@ -34,100 +37,31 @@ static inline void voxel_at(const PetscInt counts[3], PetscInt v, PetscInt ijk[3
   ijk[2] = v / counts[0] / counts[1];
 }
 
-static PetscErrorCode ShareWeigh(MPI_Comm comm, Share *share, PetscInt dim, PetscReal *const line[3], GridWeight weight,
-                                 void *context)
+static PetscErrorCode ShareCreate(MPI_Comm comm, PetscInt dim, const PetscInt counts[3], const VoxelWeights *weights,
+                                  Share *share)
 {
-  PetscReal sums[2] = {0, 0}, total[2];
+  PetscInt64 sums[2] = {0, 0}, total[2];
 
   PetscFunctionBeginUser;
-  for (PetscInt v = 0; v < share->n; ++v) {
-    PetscInt ijk[3];
-    PetscReal centre[3];
-    voxel_at(share->counts, share->begin + v, ijk);
-    for (PetscInt d = 0; d < dim; ++d) centre[d] = 0.5 * (line[d][ijk[d]] + line[d][ijk[d] + 1]);
-    share->weight[v] = PetscMax(weight(context, centre), 0.0);
-    sums[0] += share->weight[v];
-    sums[1] += share->weight[v] > 0;
+  *share = (Share){.dim = dim, .counts = {counts[0], counts[1], counts[2]}, .empty = 1};
+  if (!weights) PetscFunctionReturn(0);
+  for (PetscInt v = 0; v < weights->n; ++v) {
+    sums[0] += weights->weight[v];
+    sums[1] += weights->weight[v] > 0;
   }
-  PetscCallMPI(MPI_Allreduce(sums, total, 2, MPIU_REAL, MPI_SUM, comm));
-  const PetscReal least = total[0] > 0 ? empty_weight * total[0] / total[1] : 1.0;
-  for (PetscInt v = 0; v < share->n; ++v) share->weight[v] = PetscMax(share->weight[v], least);
-  PetscFunctionReturn(0);
-}
-
-static PetscErrorCode ShareCreate(MPI_Comm comm, PetscInt dim, const PetscInt counts[3], PetscReal *const line[3],
-                                  GridWeight weight, void *context, Share *share)
-{
-  PetscMPIInt rank, size;
-
-  PetscFunctionBeginUser;
-  PetscCallMPI(MPI_Comm_rank(comm, &rank));
-  PetscCallMPI(MPI_Comm_size(comm, &size));
-  const PetscInt64 all = (PetscInt64)counts[0] * counts[1] * counts[2];
-  share->begin = (PetscInt)(all * rank / size);
-  share->n = weight ? (PetscInt)(all * (rank + 1) / size) - share->begin : 0;
-  for (int d = 0; d < 3; ++d) share->counts[d] = counts[d];
-  PetscCall(PetscMalloc1(share->n, &share->weight));
-  PetscCall(PetscCalloc1(share->n, &share->part));
-  if (weight) PetscCall(ShareWeigh(comm, share, dim, line, weight, context));
+  PetscCallMPI(MPI_Allreduce(sums, total, 2, MPIU_INT64, MPI_SUM, comm));
+  if (total[0] == 0) PetscFunctionReturn(0);
+  share->weights = weights;
+  share->empty = (PetscInt64)(empty_weight * (PetscReal)total[0] / (PetscReal)total[1]) + 1;
+  PetscCall(PetscCalloc1(weights->n, &share->part));
   PetscFunctionReturn(0);
 }
 
 static PetscErrorCode ShareDestroy(Share *share)
 {
   PetscFunctionBeginUser;
-  PetscCall(PetscFree(share->weight));
   PetscCall(PetscFree(share->part));
   PetscFunctionReturn(0);
-}
-
-/* The axis with the most voxels: the cut then touches the fewest nodes. */
-static PetscInt longest_axis(const VoxelBlock *b)
-{
-  PetscInt axis = 0;
-  for (PetscInt d = 1; d < 3; ++d)
-    if (b->hi[d] - b->lo[d] > b->hi[axis] - b->lo[axis]) axis = d;
-  return axis;
-}
-
-static PetscErrorCode FillHistogram(MPI_Comm comm, const Share *share, PetscBool weighted, const Part *parts,
-                                    PetscInt n, PetscReal *histogram)
-{
-  PetscFunctionBeginUser;
-  if (!weighted) {
-    for (PetscInt b = 0; b < n; ++b) histogram[b] = 1.0;
-    PetscFunctionReturn(0);
-  }
-  PetscCall(PetscArrayzero(histogram, n));
-  for (PetscInt v = 0; v < share->n; ++v) {
-    const Part *part = parts + share->part[v];
-    PetscInt ijk[3];
-    if (part->start < 0) continue;
-    voxel_at(share->counts, share->begin + v, ijk);
-    histogram[part->start + ijk[part->axis] - part->block.lo[part->axis]] += share->weight[v];
-  }
-  /* One sum for all: rounding must not let two ranks cut differently. */
-  PetscMPIInt rank, count;
-  PetscCallMPI(MPI_Comm_rank(comm, &rank));
-  PetscCall(PetscMPIIntCast(n, &count));
-  PetscCallMPI(MPI_Reduce(rank ? histogram : MPI_IN_PLACE, histogram, count, MPIU_REAL, MPI_SUM, 0, comm));
-  PetscCallMPI(MPI_Bcast(histogram, count, MPIU_REAL, 0, comm));
-  PetscFunctionReturn(0);
-}
-
-/* Where `fraction` of the histogram lies below; never at an end, unless there is but one bin: then
- * the lower half takes it. */
-static PetscInt best_cut(PetscInt n, const PetscReal *histogram, PetscReal fraction)
-{
-  PetscReal total = 0, below = 0, best_miss = PETSC_MAX_REAL;
-  PetscInt best = n;
-  for (PetscInt b = 0; b < n; ++b) total += histogram[b];
-  for (PetscInt b = 1; b < n; ++b) {
-    below += histogram[b - 1];
-    const PetscReal miss = PetscAbsReal(below - fraction * total);
-    if (miss < best_miss) best = b, best_miss = miss;
-  }
-  return best;
 }
 
 static inline PetscMPIInt middle_rank(const Part *part) { return part->first + (part->last - part->first) / 2; }
@@ -146,53 +80,132 @@ static void divide(const Part *part, Part children[2])
   children[1].block.lo[part->axis] = part->cut;
 }
 
-static PetscErrorCode PlanHistograms(PetscInt n_parts, Part *parts, PetscInt *size)
+/* Room for the histograms of all parts that will be cut. */
+static PetscInt plan_histograms(PetscInt dim, PetscInt n_parts, Part *parts)
 {
+  PetscInt size = 0;
+  for (PetscInt p = 0; p < n_parts; ++p)
+    for (PetscInt d = 0; d < dim && part_divides(parts + p); ++d) {
+      parts[p].start[d] = size;
+      size += parts[p].block.hi[d] - parts[p].block.lo[d];
+    }
+  return size;
+}
+
+/* Weight of each layer of voxels, along each axis of each part. */
+static PetscErrorCode FillHistograms(MPI_Comm comm, const Share *share, PetscInt n_parts, const Part *parts, PetscInt n,
+                                     PetscInt64 *histogram)
+{
+  const VoxelWeights *w = share->weights;
+
   PetscFunctionBeginUser;
-  *size = 0;
-  for (PetscInt p = 0; p < n_parts; ++p) {
-    Part *part = parts + p;
-    part->start = -1;
+  PetscCall(PetscArrayzero(histogram, n));
+  for (PetscInt v = 0; w && v < w->n; ++v) {
+    const Part *part = parts + share->part[v];
+    PetscInt ijk[3];
     if (!part_divides(part)) continue;
-    part->axis = longest_axis(&part->block);
-    part->start = *size;
-    *size += part->block.hi[part->axis] - part->block.lo[part->axis];
+    voxel_at(share->counts, w->voxel[v], ijk);
+    for (PetscInt d = 0; d < share->dim; ++d) histogram[part->start[d] + ijk[d] - part->block.lo[d]] += w->weight[v];
   }
+  if (w) {
+    PetscMPIInt count;
+    PetscCall(PetscMPIIntCast(n, &count));
+    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, histogram, count, MPIU_INT64, MPI_SUM, comm));
+  }
+  for (PetscInt p = 0; p < n_parts; ++p)
+    for (PetscInt d = 0; d < share->dim && part_divides(parts + p); ++d) {
+      const PetscInt layers = parts[p].block.hi[d] - parts[p].block.lo[d];
+      const PetscInt64 layer = layers > 0 ? share->empty * (block_size(&parts[p].block) / layers) : 0;
+      for (PetscInt b = 0; b < layers; ++b) histogram[parts[p].start[d] + b] += layer;
+    }
   PetscFunctionReturn(0);
 }
 
-/* One level: cut every part that still has several ranks. */
-static PetscErrorCode CutLevel(MPI_Comm comm, Share *share, PetscBool weighted, PetscInt n_parts, Part *parts,
-                               PetscInt *cut_axis, PetscInt *cut)
+/* Where `fraction` of the histogram lies below; never at an end, unless there is but one layer: then
+ * the lower half takes it. *cost: what lies on the wrong side, and what is cut through, of all. */
+static PetscInt best_cut(PetscInt n, const PetscInt64 *histogram, PetscReal fraction, PetscReal *cost)
 {
-  PetscInt size;
-  PetscReal *histogram;
+  PetscReal total = 0, below = 0;
+  PetscInt best = n;
+  for (PetscInt b = 0; b < n; ++b) total += (PetscReal)histogram[b];
+  *cost = PETSC_MAX_REAL;
+  for (PetscInt b = 1; b < n; ++b) {
+    below += (PetscReal)histogram[b - 1];
+    const PetscReal miss = PetscAbsReal(below - fraction * total) / total;
+    const PetscReal cut = (PetscReal)(histogram[b - 1] + histogram[b]) / total;
+    if (miss + surface_weight * cut >= *cost) continue;
+    best = b;
+    *cost = miss + surface_weight * cut;
+  }
+  return best;
+}
+
+/* The axis along which the cut costs least; the longest one where several do. */
+static void choose_cut(PetscInt dim, const PetscInt64 *histogram, Part *part)
+{
+  const PetscReal fraction = (PetscReal)(middle_rank(part) - part->first) / (PetscReal)(part->last - part->first);
+  PetscReal least = PETSC_MAX_REAL, cost;
+  PetscInt longest = -1;
+  for (PetscInt d = 0; d < dim; ++d) {
+    const PetscInt n = part->block.hi[d] - part->block.lo[d];
+    const PetscInt at = best_cut(n, histogram + part->start[d], fraction, &cost);
+    if (longest >= 0 && (cost > least || (cost == least && n <= longest))) continue;
+    least = cost;
+    longest = n;
+    part->axis = d;
+    part->cut = part->block.lo[d] + at;
+  }
+}
+
+/* One level: cut every part that still has several ranks. */
+static PetscErrorCode CutLevel(MPI_Comm comm, Share *share, PetscInt n_parts, Part *parts, PetscInt *cut_axis,
+                               PetscInt *cut)
+{
+  const PetscInt size = plan_histograms(share->dim, n_parts, parts);
+  PetscInt64 *histogram;
 
   PetscFunctionBeginUser;
-  PetscCall(PlanHistograms(n_parts, parts, &size));
   PetscCall(PetscMalloc1(size, &histogram));
-  PetscCall(FillHistogram(comm, share, weighted, parts, size, histogram));
+  PetscCall(FillHistograms(comm, share, n_parts, parts, size, histogram));
   for (PetscInt p = 0; p < n_parts; ++p) {
-    Part *part = parts + p;
-    if (!part_divides(part)) continue;
-    const PetscMPIInt m = middle_rank(part);
-    const PetscInt lo = part->block.lo[part->axis], n = part->block.hi[part->axis] - lo;
-    part->cut = lo + best_cut(n, histogram + part->start, (PetscReal)(m - part->first) / (part->last - part->first));
-    cut_axis[m] = part->axis;
-    cut[m] = part->cut;
+    if (!part_divides(parts + p)) continue;
+    choose_cut(share->dim, histogram, parts + p);
+    cut_axis[middle_rank(parts + p)] = parts[p].axis;
+    cut[middle_rank(parts + p)] = parts[p].cut;
   }
-  for (PetscInt v = 0; v < share->n; ++v) {
+  for (PetscInt v = 0; share->weights && v < share->weights->n; ++v) {
     const Part *part = parts + share->part[v];
     PetscInt ijk[3];
-    voxel_at(share->counts, share->begin + v, ijk);
+    voxel_at(share->counts, share->weights->voxel[v], ijk);
     share->part[v] = 2 * share->part[v] + (part_divides(part) && ijk[part->axis] >= part->cut);
   }
   PetscCall(PetscFree(histogram));
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode PartitionVoxels(MPI_Comm comm, PetscInt dim, const PetscInt counts[3], PetscReal *const line[3],
-                               GridWeight weight, void *context, VoxelBlock *block, PetscInt *cut_axis, PetscInt *cut)
+/* Largest weight of a rank over the mean. */
+static PetscErrorCode Imbalance(MPI_Comm comm, PetscMPIInt size, const Share *share, const Part *parts,
+                                PetscReal *imbalance)
+{
+  PetscInt64 *sum, total = 0, largest = 0;
+
+  PetscFunctionBeginUser;
+  *imbalance = 1;
+  if (!share->weights) PetscFunctionReturn(0);
+  PetscCall(PetscCalloc1(size, &sum));
+  for (PetscInt v = 0; v < share->weights->n; ++v) sum[parts[share->part[v]].first] += share->weights->weight[v];
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sum, size, MPIU_INT64, MPI_SUM, comm));
+  for (PetscMPIInt r = 0; r < size; ++r) {
+    total += sum[r];
+    largest = PetscMax(largest, sum[r]);
+  }
+  *imbalance = (PetscReal)largest * (PetscReal)size / (PetscReal)total;
+  PetscCall(PetscFree(sum));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode PartitionVoxels(MPI_Comm comm, PetscInt dim, const PetscInt counts[3], const VoxelWeights *weights,
+                               PetscInt *cut_axis, PetscInt *cut, PetscReal *imbalance)
 {
   PetscMPIInt size;
   PetscInt n_parts = 1;
@@ -201,20 +214,45 @@ PetscErrorCode PartitionVoxels(MPI_Comm comm, PetscInt dim, const PetscInt count
 
   PetscFunctionBeginUser;
   PetscCallMPI(MPI_Comm_size(comm, &size));
-  if (size == 1) weight = NULL;
-  PetscCall(ShareCreate(comm, dim, counts, line, weight, context, &share));
+  PetscCall(ShareCreate(comm, dim, counts, size > 1 ? weights : NULL, &share));
   PetscCall(PetscCalloc2(2 * size, &parts, 2 * size, &next));
   parts[0].last = size;
   for (int d = 0; d < 3; ++d) parts[0].block.hi[d] = counts[d];
   while (n_parts < size) {
-    PetscCall(CutLevel(comm, &share, weight ? PETSC_TRUE : PETSC_FALSE, n_parts, parts, cut_axis, cut));
+    PetscCall(CutLevel(comm, &share, n_parts, parts, cut_axis, cut));
     for (PetscInt p = 0; p < n_parts; ++p) divide(parts + p, next + 2 * p);
+    n_parts *= 2;
+    PetscCall(PetscArraycpy(parts, next, n_parts));
+  }
+  PetscCall(Imbalance(comm, size, &share, parts, imbalance));
+  PetscCall(PetscFree2(parts, next));
+  PetscCall(ShareDestroy(&share));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode PartitionBlocks(PetscMPIInt size, const PetscInt counts[3], const PetscInt *cut_axis,
+                               const PetscInt *cut, VoxelBlock *block)
+{
+  PetscInt n_parts = 1;
+  Part *parts, *next;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc2(2 * size, &parts, 2 * size, &next));
+  parts[0].last = size;
+  for (int d = 0; d < 3; ++d) parts[0].block.hi[d] = counts[d];
+  while (n_parts < size) {
+    for (PetscInt p = 0; p < n_parts; ++p) {
+      parts[p].axis = cut_axis[middle_rank(parts + p)];
+      const VoxelBlock *shared = &parts[p].block;
+      const PetscInt d = parts[p].axis;
+      parts[p].cut = PetscMin(PetscMax(cut[middle_rank(parts + p)], shared->lo[d]), shared->hi[d]);
+      divide(parts + p, next + 2 * p);
+    }
     n_parts *= 2;
     PetscCall(PetscArraycpy(parts, next, n_parts));
   }
   for (PetscInt p = 0; p < n_parts; ++p)
     if (parts[p].last > parts[p].first) block[parts[p].first] = parts[p].block;
   PetscCall(PetscFree2(parts, next));
-  PetscCall(ShareDestroy(&share));
   PetscFunctionReturn(0);
 }

@@ -154,6 +154,15 @@ static const SchemaTable checkpoint = {.name = "checkpoint",
                                        .help = "When the whole state is put away, for `talus run --resume`.",
                                        .entries = checkpoint_entries};
 
+static const SchemaEntry parallel_entries[] = {
+  KEY("imbalance", NUMBER, NULL,
+      "largest work of a rank over the mean at which mpm shares the grid among the ranks anew; 0: never",
+      .fallback = "1.2", AT_LEAST(0), AT(ParallelSpec, imbalance)),
+  {.key = NULL},
+};
+static const SchemaTable parallel = {
+  .name = "parallel", .help = "How several ranks share the work.", .entries = parallel_entries};
+
 /* --- the whole file --- */
 static const SchemaEntry case_entries[] = {
   KEY("title", TEXT, NULL, "a line for people", .fallback = "", AT(Case, title)),
@@ -180,6 +189,7 @@ static const SchemaEntry case_entries[] = {
       AT(Case, stabilisation)),
   KEY("output", TABLE, NULL, "what is written", .table = &output, ALWAYS, AT(Case, output)),
   KEY("checkpoint", TABLE, NULL, "state to resume from", .table = &checkpoint, ALWAYS, AT(Case, checkpoint)),
+  KEY("parallel", TABLE, NULL, "load balance", .table = &parallel, ALWAYS, AT(Case, parallel)),
   KEY("petsc", OPTIONS, NULL, "options of PETSc: {snes_monitor: true, ksp_type: cg}", AT(Case, petsc),
       .count = offsetof(Case, n_petsc)),
   {.key = NULL},

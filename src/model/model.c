@@ -1,14 +1,14 @@
 #include "model/model.h"
 #include "model/model_private.h"
 
-/* Points that a cell with this centre will carry: balances the partition. */
+/* Work of a cell with this centre, in points: balances the partition. */
 static PetscReal cell_weight(void *context, const PetscReal *centre)
 {
   const Case *c = context;
   const PetscInt dim = kinematics_dim(c->kinematics);
   for (PetscInt b = 0; b < c->n_bodies; ++b)
     if (c->bodies[b].has_shape && shape_contains(&c->bodies[b].shape, dim, centre, 0))
-      return (PetscReal)c->bodies[b].points_per_cell;
+      return (PetscReal)c->bodies[b].points_per_cell + cell_work(c->grid.cell);
   return 0;
 }
 
@@ -131,7 +131,7 @@ static PetscErrorCode CreateTracers(Model *m, Diag *diag)
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode CreateFields(Model *m)
+PetscErrorCode ModelCreateFields(Model *m)
 {
   const PetscInt dofs = m->grid->n_nodes * m->dim;
 
@@ -156,6 +156,21 @@ static PetscErrorCode CreateFields(Model *m)
     PetscCall(PetscCalloc1(dofs, kept[k]));
     if (m->grid->cloud) PetscCall(GridCloudFollow(m->grid, kept[k], m->dim, kept_names[k], "N"));
   }
+  PetscCall(StageCreate(m->c, m->grid, m->points, m->tracers, m->loads, m->materials, &m->stage));
+  m->stage->boundary = m->boundary;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ModelDestroyFields(Model *m)
+{
+  PetscReal **const nodal[] = {&m->du,       &m->force, &m->external, &m->history, &m->prescribed,
+                               &m->reaction, &m->held,  &m->pressure, &m->volume};
+
+  PetscFunctionBeginUser;
+  for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(nodal); ++k) PetscCall(PetscFree(*nodal[k]));
+  PetscCall(PetscFree(m->enabled));
+  PetscCall(PetscFree(m->idle));
+  PetscCall(PetscFree(m->fixed));
   PetscFunctionReturn(0);
 }
 
@@ -183,9 +198,7 @@ static PetscErrorCode Build(Model *m, Diag *diag)
   PetscCall(DiagReduce(m->comm, diag, &errors));
   if (errors) PetscFunctionReturn(0);
   if (m->method->couplings) PetscCall(ModelToCloud(m));
-  PetscCall(CreateFields(m));
-  PetscCall(StageCreate(m->c, m->grid, m->points, m->tracers, m->loads, m->materials, &m->stage));
-  m->stage->boundary = m->boundary;
+  PetscCall(ModelCreateFields(m));
   PetscCall(SystemCreate(m->comm, m->dim, m->dim + (m->formulation->pressure ? 1 : 0), &m->system));
   PetscCall(NewtonCreate(m->comm, &m->c->newton, &m->newton));
   step_control_start(&m->control, m->c->analysis.step);
@@ -234,13 +247,7 @@ PetscErrorCode ModelDestroy(Model **model)
   if (m->points) PetscCall(PointsDestroy(&m->points));
   if (m->grid) PetscCall(GridDestroy(&m->grid));
   PetscCall(PetscFree(m->materials));
-  PetscCall(PetscFree(m->enabled));
-  PetscCall(PetscFree(m->idle));
-  PetscCall(PetscFree(m->pressure));
-  PetscCall(PetscFree(m->volume));
-  PetscCall(PetscFree(m->fixed));
-  PetscReal **const nodal[] = {&m->du, &m->force, &m->external, &m->history, &m->prescribed, &m->reaction, &m->held};
-  for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(nodal); ++k) PetscCall(PetscFree(*nodal[k]));
+  PetscCall(ModelDestroyFields(m));
   PetscCall(PetscFree(m->memory));
   PetscCall(PetscFree(*model));
   PetscFunctionReturn(0);

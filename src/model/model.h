@@ -21,6 +21,15 @@ typedef struct {
   PetscReal moved; /* last time at which it was fast, s */
 } MeasureMemory;
 
+/* How the work is shared among the ranks: by counts of points and of cells that hold some. */
+typedef struct {
+  PetscReal imbalance;   /* largest share over the mean, at the start of the last step; 0: nobody looked */
+  PetscReal largest;     /* that it was, since the start */
+  PetscReal reached;     /* by the last try to share anew; 0: there was none */
+  PetscInt tried;        /* step of that try */
+  PetscInt repartitions; /* since the start */
+} Balance;
+
 /* Body force per mass at the undeformed position X (dim) and time t, m/s2, besides gravity: a centrifuge, a manufactured solution. */
 typedef void (*BodyForce)(void *context, const PetscReal *X, PetscReal t, PetscReal *b);
 
@@ -61,6 +70,7 @@ typedef struct Model {
   PetscReal courant_speed; /* largest sqrt(M / density), m/s */
   PetscReal external_work, boundary_work, damped_energy, transfer_energy, start_energy; /* see Energies */
   MeasureMemory *memory;                                                                /* one per measure */
+  Balance balance;
   PetscInt cuts, total_iterations; /* steps halved, Newton iterations, since the start */
   PetscReal seconds[PHASE_N];      /* see ModelTimes */
 } Model;
@@ -74,6 +84,8 @@ typedef struct {
   PetscInt cuts;       /* how often the step was halved */
   NewtonReport newton; /* of the last try */
   char reason[512];    /* why the run gives up, in words */
+  PetscReal imbalance; /* that made the step share the grid among the ranks anew; 0: it did not */
+  PetscInt moved;      /* points that changed their rank for that */
 } StepReport;
 
 /* Collective. Build from a case (which must outlive the model); the user's mistakes go to diag and *model stays NULL. */

@@ -6,6 +6,19 @@
 PetscErrorCode OptionsApply(Model *model);
 PetscErrorCode OptionsCheck(const Model *model, Diag *diag);
 PetscErrorCode OptionsForget(Model *model);
+/* Nodal arrays, stage and system's flags for the grid that the model has now. Collective. */
+PetscErrorCode ModelCreateFields(Model *model);
+PetscErrorCode ModelDestroyFields(Model *model);
+/* Work of a cell that holds points, in points: its share of matrix, solver and nodes. */
+PetscReal cell_work(CellType type);
+/* Collective. Share the grid anew if that is worth it: before a step. */
+PetscErrorCode ModelBalance(Model *model, StepReport *report);
+/* Collective. Move everything over to `grid`, which is the model's grid shared in another way and becomes its own; the stage is not yet initialised.
+ * *moved: points of this rank that left it. */
+PetscErrorCode ModelRegrid(Model *model, Grid *grid, PetscInt *moved);
+/* Collective. Forces of the boundary: the only nodal fields that outlive a step in every method. */
+PetscErrorCode ReactionsToTables(Model *model, Tables *tables);
+PetscErrorCode ReactionsFromTables(Model *model, const Tables *tables, char reason[256]);
 /* Collective. The system for the cells that are enabled. */
 PetscErrorCode ModelEnable(Model *model);
 /* Arrays that the step keeps over the nodes of a cloud, after its ghosts or owners changed. */

@@ -82,15 +82,34 @@ static PetscErrorCode WholeToTables(Model *m, Tables *tables)
   PetscFunctionReturn(0);
 }
 
-/* Forces of the boundary, kept on the nodes whose motion is prescribed. */
-static PetscErrorCode Reactions(Model *m, NodalField field[2], unsigned char **take)
+static void reaction_fields(Model *m, NodalField field[2])
 {
-  PetscFunctionBeginUser;
   field[0] = (NodalField){"reaction", "N", m->dim, m->reaction};
   field[1] = (NodalField){"held", "N", m->dim, m->held};
-  if (!take) PetscFunctionReturn(0);
-  PetscCall(PetscCalloc1(m->grid->n_nodes, take));
-  for (PetscInt i = 0; i < m->grid->n_nodes * m->dim; ++i) (*take)[i / m->dim] |= m->boundary->fixed[i];
+}
+
+/* Kept on the nodes whose motion is prescribed. */
+PetscErrorCode ReactionsToTables(Model *m, Tables *tables)
+{
+  NodalField field[2];
+  unsigned char *take;
+
+  PetscFunctionBeginUser;
+  reaction_fields(m, field);
+  PetscCall(PetscCalloc1(m->grid->n_nodes, &take));
+  for (PetscInt i = 0; i < m->grid->n_nodes * m->dim; ++i) take[i / m->dim] |= m->boundary->fixed[i];
+  PetscCall(NodesToTable(m->grid, take, 2, field, "boundary", tables));
+  PetscCall(PetscFree(take));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ReactionsFromTables(Model *m, const Tables *tables, char reason[256])
+{
+  NodalField field[2];
+
+  PetscFunctionBeginUser;
+  reaction_fields(m, field);
+  PetscCall(NodesFromTable(m->grid, PETSC_FALSE, 2, field, TablesFind(tables, "boundary"), reason));
   PetscFunctionReturn(0);
 }
 
@@ -105,10 +124,30 @@ static PetscInt method_fields(const Model *m, NodalField field[8])
   return n;
 }
 
+/* Which partition there is and how it came about; several ranks alone have one. */
+static PetscErrorCode BalanceToTables(const Model *m, Tables *tables)
+{
+  const Balance *b = &m->balance;
+  PetscMPIInt size;
+  Table *table;
+  Column *column;
+
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_size(m->comm, &size));
+  if (size == 1) PetscFunctionReturn(0);
+  PetscCall(TablesAdd(tables, "balance", PETSC_TRUE, 1, &table));
+  PetscCall(TableAdd(table, "largest", NULL, COLUMN_REAL, 1, (void *)&b->largest, NULL));
+  PetscCall(TableAdd(table, "reached", NULL, COLUMN_REAL, 1, (void *)&b->reached, NULL));
+  const PetscInt64 memory[] = {size, b->tried, b->repartitions};
+  PetscCall(TableAdd(table, "ranks_tried_repartitions", NULL, COLUMN_INT64, 3, NULL, &column));
+  for (int i = 0; i < 3; ++i) ((PetscInt64 *)column->data)[i] = memory[i];
+  if (b->repartitions) PetscCall(GridPartitionToTable(m->grid, tables));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode ModelToTables(Model *m, Tables *tables)
 {
   NodalField field[8];
-  unsigned char *take;
 
   PetscFunctionBeginUser;
   PetscCall(WholeToTables(m, tables));
@@ -121,9 +160,8 @@ PetscErrorCode ModelToTables(Model *m, Tables *tables)
   }
   const PetscInt n = method_fields(m, field);
   if (n) PetscCall(NodesToTable(m->grid, NULL, n, field, "nodes", tables));
-  PetscCall(Reactions(m, field, &take));
-  PetscCall(NodesToTable(m->grid, take, 2, field, "boundary", tables));
-  PetscCall(PetscFree(take));
+  PetscCall(ReactionsToTables(m, tables));
+  PetscCall(BalanceToTables(m, tables));
   PetscCall(CellsToTable(m->grid, m->enabled, "pattern", tables));
   PetscFunctionReturn(0);
 }
@@ -178,8 +216,7 @@ static PetscErrorCode NodesBack(Model *m, const Tables *tables, char reason[256]
 
   PetscFunctionBeginUser;
   if (n) PetscCall(NodesFromTable(m->grid, PETSC_TRUE, n, field, TablesFind(tables, "nodes"), reason));
-  PetscCall(Reactions(m, field, NULL));
-  if (!reason[0]) PetscCall(NodesFromTable(m->grid, PETSC_FALSE, 2, field, TablesFind(tables, "boundary"), reason));
+  if (!reason[0]) PetscCall(ReactionsFromTables(m, tables, reason));
   if (!reason[0]) PetscCall(CellsFromTable(m->grid, m->enabled, TablesFind(tables, "pattern"), reason));
   PetscFunctionReturn(0);
 }
@@ -203,6 +240,31 @@ static NewtonMemory newton_memory(const Table *table, char reason[256])
   return (NewtonMemory){.courant = real_of(table, "solver_courant", reason),
                         .failures = count_of(table, "solver_failures", reason),
                         .since = count_of(table, "solver_steps_since", reason)};
+}
+
+/* The partition as it was, where the ranks are as many; others share the grid as a new run does, and anew if that is not good. */
+static PetscErrorCode BalanceBack(Model *m, const Tables *tables, char reason[256])
+{
+  const Table *table = TablesFind(tables, "balance"), *partition = TablesFind(tables, "partition");
+  Balance *b = &m->balance;
+  PetscMPIInt size;
+  PetscInt moved;
+  Grid *grid;
+
+  PetscFunctionBeginUser;
+  if (!table) PetscFunctionReturn(0);
+  const PetscInt64 *memory = TableData(table, "ranks_tried_repartitions", COLUMN_INT64, 3, reason);
+  b->largest = real_of(table, "largest", reason);
+  if (reason[0] || table->rows != 1) PetscFunctionReturn(0);
+  b->repartitions = (PetscInt)memory[2];
+  PetscCallMPI(MPI_Comm_size(m->comm, &size));
+  if (memory[0] != size) PetscFunctionReturn(0);
+  b->reached = real_of(table, "reached", reason);
+  b->tried = (PetscInt)memory[1];
+  if (!partition || reason[0]) PetscFunctionReturn(0);
+  PetscCall(GridFromPartition(m->grid, partition, &grid, reason));
+  if (!reason[0]) PetscCall(ModelRegrid(m, grid, &moved));
+  PetscFunctionReturn(0);
 }
 
 /* The pattern is that of the enabled cells, and the solver is chosen as it was. */
@@ -259,6 +321,7 @@ PetscErrorCode ModelFromTables(Model *m, Tables *tables, char reason[256])
     PetscCall(CloudBack(m, tables, reason));
     PetscFunctionReturn(0);
   }
+  if (!reason[0]) PetscCall(BalanceBack(m, tables, reason));
   if (!reason[0]) PetscCall(PointsBack(m, tables, reason));
   if (!reason[0]) PetscCall(NodesBack(m, tables, reason));
   if (reason[0]) PetscFunctionReturn(0);

@@ -397,6 +397,8 @@ PetscErrorCode ModelStep(Model *m, PetscReal limit, StepReport *report)
   PetscFunctionBeginUser;
   PetscCall(PetscTime(&clock));
   PetscCall(PetscMemzero(report, sizeof *report));
+  PetscCall(ModelBalance(m, report));
+  PetscCall(PhaseEnd(m->seconds, PHASE_REPARTITION, &clock));
   PetscCall(ModelActivate(m));
   if (m->method->points_move) PetscCall(BoundaryMove(m->boundary, m->grid, m->time));
   mark_fixed(m);

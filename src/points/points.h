@@ -101,6 +101,10 @@ PetscErrorCode PointsSeed(Points *points, const Grid *grid, const Case *c, const
 /* Collective. Send every point to the rank owner[p]; those that stay keep their order, arrivals stand behind. */
 PetscErrorCode PointsTransfer(Points *points, const Grid *grid, const PetscMPIInt *owner);
 
+/* Collective. Points of `old`, in the order of its cells, go to the ranks that have their cells in `grid`, which is the same grid shared in another way, and get
+ * sorted. *moved grows by the points that leave this rank. */
+PetscErrorCode PointsRegrid(Points *points, const Grid *old, const Grid *grid, PetscInt *moved);
+
 /* A point found outside the grid. */
 typedef struct {
   PetscInt64 id;

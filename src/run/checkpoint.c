@@ -27,6 +27,7 @@ static PetscErrorCode Fingerprint(const Case *c, PetscInt64 *value)
   copy.newton = (NewtonSpec){0};
   copy.linear = LINEAR_AUTO;
   copy.checkpoint = (CheckpointSpec){.keep = 1};
+  copy.parallel = (ParallelSpec){0};
   copy.n_petsc = 0;
   copy.grid.outside = OUTSIDE_STOP;
   copy.analysis.smallest = copy.analysis.largest = copy.analysis.step;

@@ -79,6 +79,10 @@ static PetscErrorCode AfterStep(Run *r, const StepReport *report, PetscInt point
                                 .points = points};
 
   PetscFunctionBeginUser;
+  if (report->imbalance > 0)
+    PetscCall(RunDirLog(r->dir, "repartition = step %d imbalance = %.3f to %.3f moved = %d of %d points",
+                        (int)r->model->step, (double)report->imbalance, (double)r->model->balance.reached,
+                        (int)report->moved, (int)points));
   r->summary.iterations_per_step = PetscMax(r->summary.iterations_per_step, report->newton.iterations);
   if (report->cuts)
     PetscCall(

@@ -34,6 +34,18 @@ PetscErrorCode SummaryBegin(Model *m, RunDir *dir)
   PetscFunctionReturn(0);
 }
 
+/* How evenly several ranks shared the work, and what keeping it so has cost. */
+static PetscErrorCode LogBalance(const Model *m, RunDir *dir, PetscReal seconds)
+{
+  const Balance *b = &m->balance;
+
+  PetscFunctionBeginUser;
+  if (b->imbalance == 0) PetscFunctionReturn(0); /* one rank, or nothing moves between them */
+  PetscCall(RunDirLog(dir, "imbalance = %.3f largest = %.3f repartitions = %d seconds = %.3g", (double)b->imbalance,
+                      (double)b->largest, (int)b->repartitions, (double)seconds));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode SummaryEnd(Model *m, RunDir *dir, const RunSummary *summary, const PetscReal *values)
 {
   const PetscReal seconds = summary->seconds;
@@ -50,6 +62,7 @@ PetscErrorCode SummaryEnd(Model *m, RunDir *dir, const RunSummary *summary, cons
       RunDirLog(dir, "%s = %.10g %s", m->c->measures[k].name, (double)values[k], measure_unit(&m->c->measures[k])));
   PetscCall(RunDirLog(dir, "steps = %d iterations = %d halvings = %d seconds = %.3g", (int)summary->steps,
                       (int)summary->iterations, (int)summary->halvings, (double)seconds));
+  PetscCall(LogBalance(m, dir, phase[PHASE_REPARTITION]));
   PetscCall(PetscSNPrintf(text, sizeof text, "total [s] = %.6g\n", (double)seconds));
   for (int k = 0; k < PHASE_N; ++k) {
     end = strlen(text);
@@ -60,9 +73,10 @@ PetscErrorCode SummaryEnd(Model *m, RunDir *dir, const RunSummary *summary, cons
   PetscCall(
     PetscSNPrintf(text + end, sizeof text - end,
                   "rest [s] = %.6g\nsteps = %d\niterations = %d\nmost iterations in a step = %d\nhalvings = %d\n"
-                  "patterns = %d\noutcome = %s\n",
+                  "patterns = %d\nrepartitions = %d\nlargest imbalance = %.3f\noutcome = %s\n",
                   (double)rest, (int)summary->steps, (int)summary->iterations, (int)summary->iterations_per_step,
-                  (int)summary->halvings, (int)m->system->builds, summary->reason[0] ? "gave up" : "done"));
+                  (int)summary->halvings, (int)m->system->builds, (int)m->balance.repartitions,
+                  (double)PetscMax(m->balance.largest, 1), summary->reason[0] ? "gave up" : "done"));
   const PetscErrorCode status = RunDirWriteText(dir, "timings.txt", text);
   PetscFunctionReturn(status);
 }

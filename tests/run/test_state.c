@@ -53,6 +53,8 @@ static void same_models(const Model *m, const Model *n)
         "time or step differ");
   CHECK(m->external_work == n->external_work && m->transfer_energy == n->transfer_energy, "energies differ");
   CHECK(m->total_iterations == n->total_iterations, "other iterations");
+  CHECK(m->balance.repartitions == n->balance.repartitions && m->balance.reached == n->balance.reached,
+        "the grid was shared in another way");
 }
 
 static PetscBool on_one_rank(void)
@@ -62,8 +64,8 @@ static PetscBool on_one_rank(void)
   return size == 1 ? PETSC_TRUE : PETSC_FALSE;
 }
 
-/* bits: does the solver promise the same bits on several ranks? */
-static void check(Bench *b, PetscInt before, PetscInt after, PetscBool bits)
+/* bits: does the solver promise the same bits on several ranks? Returns the model that was brought back, after its steps. */
+static Model *check(Bench *b, PetscInt before, PetscInt after, PetscBool bits)
 {
   Model *whole = bench_model(b, PETSC_COMM_WORLD);
   for (PetscInt k = 0; k < before; ++k) model_step(whole, PETSC_MAX_REAL);
@@ -81,8 +83,14 @@ static void check(Bench *b, PetscInt before, PetscInt after, PetscBool bits)
     CHECK(off <= 1e-9, "alone, field %d is off by %g", f, (double)off);
   }
   CALL(ModelDestroy(&whole));
-  CALL(ModelDestroy(&again));
   CALL(ModelDestroy(&alone));
+  return again;
+}
+
+static void check_only(Bench *b, PetscInt before, PetscInt after, PetscBool bits)
+{
+  Model *m = check(b, before, after, bits);
+  CALL(ModelDestroy(&m));
 }
 
 /* A body that falls, turns and crosses from rank to rank, with a load that it carries and a tracer. */
@@ -105,7 +113,7 @@ static void flying(const char *method, CellType cell, PetscReal size)
   bench_traction(&b, 0, 1.5, strcmp(method, "fem") ? "body" : NULL, 1e3, 2e3, 0);
   bench_tracer(&b, MEASURE_DISPLACEMENT, 1, 1.4, 0.9, 0.9);
   if (!strcmp(method, "fem")) bench_motion(&b, 0, 0.5, MOTION_FIXED, 7);
-  check(&b, 7, 6, PETSC_TRUE);
+  check_only(&b, 7, 6, PETSC_TRUE);
 }
 
 static void test_mpm_2d(void **state)
@@ -119,6 +127,28 @@ static void test_mpm_3d(void **state)
 {
   (void)state;
   flying("mpm", CELL_HEXAHEDRON, 0.25);
+}
+
+/* A block that leaves the part of its rank: the grid is shared anew before the checkpoint and after it. */
+static void test_repartition(void **state)
+{
+  Bench b;
+  PetscMPIInt size;
+  (void)state;
+  bench_init(&b, "mpm", CELL_QUADRILATERAL, 0);
+  bench_grid(&b, (PetscReal[]){0, 0, 0}, (PetscReal[]){4, 1, 1}, 0.125);
+  bench_box(&b, 0, (PetscReal[]){0, 0, 0}, (PetscReal[]){1.5, 0.5, 1});
+  bench_dynamic(&b, 1, 0.01);
+  bench_motion(&b, 1, 0, MOTION_FIXED, 2);
+  bench_traction(&b, 0, 1.5, "body", -1e3, 2e3, 0);
+  bench_tracer(&b, MEASURE_DISPLACEMENT, 1, 1.4, 0.4, 0);
+  b.c.linear = LINEAR_ITERATIVE;
+  b.body[0].velocity[0] = 10;
+  b.c.parallel.imbalance = 1.2;
+  MPI_Comm_size(PETSC_COMM_WORLD, &size);
+  Model *m = check(&b, 9, 8, PETSC_TRUE);
+  CHECK(size == 1 || m->balance.repartitions > 2, "shared anew only %d times", (int)m->balance.repartitions);
+  CALL(ModelDestroy(&m));
 }
 
 static void test_fem(void **state)
@@ -236,11 +266,11 @@ static void test_static(void **state)
   b.c.gravity[1] = -1;
   b.c.analysis.step = b.c.analysis.largest = 0.2;
   b.c.analysis.smallest = 0.01;
-  check(&b, 2, 2, on_one_rank());
+  check_only(&b, 2, 2, on_one_rank());
   bench_motion(&b, 0, 4, MOTION_DISPLACEMENT, 1)->value[0] = 0.1;
   b.c.method = (char *)"fem";
   bench_grid(&b, (PetscReal[]){0, 0, 0}, (PetscReal[]){4, 1, 1}, 0.25);
-  check(&b, 2, 2, on_one_rank());
+  check_only(&b, 2, 2, on_one_rank());
 }
 
 /* After the first step, which starts from accelerations of its own. */
@@ -253,7 +283,7 @@ static void test_at_start(void **state)
   b.c.gravity[1] = -1;
   bench_dynamic(&b, 1, 1e-2);
   b.c.linear = LINEAR_ITERATIVE;
-  check(&b, 1, 3, PETSC_TRUE);
+  check_only(&b, 1, 3, PETSC_TRUE);
 }
 
 /* Tables of another model are refused, on all ranks and without harm. */
@@ -284,10 +314,10 @@ static void test_other_model(void **state)
 
 int main(int argc, char **argv)
 {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_mpm_2d),      cmocka_unit_test(test_mpm_3d),
-                                     cmocka_unit_test(test_fem),         cmocka_unit_test(test_gmm),
-                                     cmocka_unit_test(test_static),      cmocka_unit_test(test_at_start),
-                                     cmocka_unit_test(test_other_model), cmocka_unit_test(test_given_up)};
+  const struct CMUnitTest tests[] = {
+    cmocka_unit_test(test_mpm_2d),   cmocka_unit_test(test_mpm_3d),      cmocka_unit_test(test_repartition),
+    cmocka_unit_test(test_fem),      cmocka_unit_test(test_gmm),         cmocka_unit_test(test_static),
+    cmocka_unit_test(test_at_start), cmocka_unit_test(test_other_model), cmocka_unit_test(test_given_up)};
   PetscMPIInt rank;
   int pid;
   if (PetscInitialize(&argc, &argv, NULL, NULL)) return 1;

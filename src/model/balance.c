@@ -1,0 +1,106 @@
+/* Shares the grid among the ranks anew when the material has moved so far that some of them do most of the work.
+ *
+ * What decides are counts of points and cells, not seconds: the same run does the same on any day, and a resumed run what the first would
+ * have done. */
+#include "model/model_private.h"
+
+#define WORTH 0.75     /* a new partition keeps at most this share of what exceeds a perfect one, or is not made */
+#define WORSENED 1.25  /* what exceeds the last partition's own imbalance by so much is a reason for another try */
+#define RETRY_AFTER 50 /* steps after which even an imbalance that could not be cured is looked at again */
+
+PetscReal cell_work(CellType type)
+{
+  static const PetscReal work[] = {
+    [CELL_TRIANGLE] = 1.2, [CELL_QUADRILATERAL] = 2.5, [CELL_TETRAHEDRON] = 1.5, [CELL_HEXAHEDRON] = 9.5};
+  return work[type];
+}
+
+/* Largest share of the work over the mean. */
+static PetscErrorCode MeasureImbalance(const Model *m, PetscReal *imbalance)
+{
+  const PetscReal mine = (PetscReal)m->points->n + cell_work(m->grid->type) * (PetscReal)m->stage->support->n_groups;
+  PetscReal largest, sum;
+  PetscMPIInt size;
+
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_size(m->comm, &size));
+  PetscCall(MPIU_Allreduce(&mine, &largest, 1, MPIU_REAL, MPIU_MAX, m->comm));
+  PetscCall(MPIU_Allreduce(&mine, &sum, 1, MPIU_REAL, MPIU_SUM, m->comm));
+  *imbalance = sum > 0 ? largest * (PetscReal)size / sum : 1;
+  PetscFunctionReturn(0);
+}
+
+/* Is it time to try? */
+static PetscBool is_due(const Model *m)
+{
+  const Balance *b = &m->balance;
+  if (b->imbalance <= m->c->parallel.imbalance) return PETSC_FALSE;
+  if (b->reached == 0 || m->step - b->tried >= RETRY_AFTER) return PETSC_TRUE;
+  return b->imbalance > 1 + WORSENED * (b->reached - 1) ? PETSC_TRUE : PETSC_FALSE;
+}
+
+static void weigh_cells(const Model *m, PetscReal *weight)
+{
+  const Support *s = m->stage->support;
+  const PetscReal cell = cell_work(m->grid->type);
+  for (PetscInt c = 0; c < m->grid->n_cells; ++c) weight[c] = 0;
+  for (PetscInt g = 0; g < s->n_groups; ++g)
+    weight[m->points->cell[s->point_start[g]]] = cell + (PetscReal)(s->point_start[g + 1] - s->point_start[g]);
+}
+
+PetscErrorCode ModelRegrid(Model *m, Grid *grid, PetscInt *moved)
+{
+  Tables *kept;
+  char reason[256] = "";
+
+  PetscFunctionBeginUser;
+  PetscCall(TablesCreate(&kept));
+  PetscCall(ReactionsToTables(m, kept));
+  *moved = 0;
+  PetscCall(PointsRegrid(m->points, m->grid, grid, moved));
+  PetscInt followers = 0;
+  PetscCall(PointsRegrid(m->tracers, m->grid, grid, &followers));
+  PetscCall(LoadsRegrid(m->loads, m->grid, grid));
+  PetscCall(BoundaryRegrid(&m->boundary, grid));
+  PetscCall(StageDestroy(&m->stage));
+  PetscCall(ModelDestroyFields(m));
+  PetscCall(GridDestroy(&m->grid));
+  m->grid = grid;
+  PetscCall(ModelCreateFields(m)); /* no cell is enabled: the next step makes the system anew */
+  PetscCall(ReactionsFromTables(m, kept, reason));
+  PetscCheck(!reason[0], m->comm, PETSC_ERR_PLIB, "%s", reason);
+  PetscCall(TablesDestroy(&kept));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ModelBalance(Model *m, StepReport *report)
+{
+  Balance *b = &m->balance;
+  PetscReal *weight;
+  PetscInt moved;
+  PetscMPIInt size;
+  Grid *grid;
+
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_size(m->comm, &size));
+  if (size == 1 || !m->method->points_move || !m->grid->box) PetscFunctionReturn(0);
+  PetscCall(MeasureImbalance(m, &b->imbalance));
+  b->largest = PetscMax(b->largest, b->imbalance);
+  if (m->c->parallel.imbalance <= 0 || !is_due(m)) PetscFunctionReturn(0);
+  PetscCall(PetscMalloc1(m->grid->n_cells, &weight));
+  weigh_cells(m, weight);
+  PetscCall(GridRepartition(m->grid, weight, 1 + WORTH * (b->imbalance - 1), &b->reached, &grid));
+  PetscCall(PetscFree(weight));
+  b->tried = m->step;
+  if (!grid) {
+    b->reached = b->imbalance;
+    PetscFunctionReturn(0);
+  }
+  PetscCall(ModelRegrid(m, grid, &moved));
+  PetscCall(m->method->initialise(m->stage));
+  PetscCall(MPIU_Allreduce(&moved, &report->moved, 1, MPIU_INT, MPI_SUM, m->comm));
+  report->imbalance = b->imbalance;
+  b->imbalance = b->reached;
+  ++b->repartitions;
+  PetscFunctionReturn(0);
+}
