@@ -44,7 +44,7 @@ static PetscErrorCode ReadCase(const Plan *plan, const Variant *variant, Diag *d
   PetscFunctionBeginUser;
   snprintf(text[0], sizeof text[0], "grid.size=%.15g", (double)plan->size);
   snprintf(text[1], sizeof text[1], "analysis.step=%.15g", (double)plan->step);
-  snprintf(text[2], sizeof text[2], "bodies[0].shape.circle.centre=[0.6, %.15g]", (double)(0.5 + plan->size));
+  snprintf(text[2], sizeof text[2], "grid.box.min=[0, %.15g]", (double)-plan->size);
   PetscCall(CaseRead(PETSC_COMM_WORLD, plan->file, variant->set[1] ? 5 : 4, set, diag, c));
   PetscFunctionReturn(0);
 }

@@ -25,7 +25,7 @@ title "a collapsing column: aspect ratio 1.2, mesh 2, 0.5 s"
 title "meshfree bases"
 "$bench/bench_cloud"
 
-title "a rolling disk: gmm beside mpm, cells of 0.04 m and steps of 4 ms as in the case, then 0.02 m and 2 ms"
+title "a rolling disk: gmm beside mpm, cells of 0.04 m and steps of 4 ms, then 0.02 m and 2 ms"
 "$bench/bench_gmm" -size 0.04 -step 4e-3 -steps 100 -repeat 3
 "$bench/bench_gmm" -size 0.02 -step 2e-3 -steps 100 -repeat 1
 
