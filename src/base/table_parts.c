@@ -84,7 +84,7 @@ PetscErrorCode PartsTake(MPI_Comm comm, Tables *tables, PetscBool *home, char re
     const PetscInt64 *count = TableData(parts, parts->column[k].name, COLUMN_INT64, 1, reason);
     PetscInt64 rows, first = 0;
     if (!table) snprintf(reason, 256, "%s is missing", parts->column[k].name);
-    if (reason[0]) break; /* all ranks know the same */
+    if (!table || reason[0]) break; /* all ranks know the same */
     PetscCallMPI(MPI_Allreduce(&table->rows, &rows, 1, MPIU_INT64, MPI_SUM, comm));
     if (table->everywhere || rows > PETSC_MAX_INT || !part_of(count, rank, size, rows, &first))
       snprintf(reason, 256, "the parts of %s do not add up", table->name);

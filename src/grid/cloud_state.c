@@ -76,7 +76,7 @@ static PetscErrorCode FillGhosts(Grid *grid, const Table *table, char reason[256
   PetscCallMPI(MPI_Comm_size(grid->comm, &size));
   PetscCall(PetscMalloc4(remote.n, &remote.rank, remote.n, &remote.index, remote.n, &use, size, &owned));
   PetscCallMPI(MPI_Allgather(&grid->n_owned, 1, MPIU_INT, owned, 1, MPIU_INT, grid->comm));
-  for (PetscInt k = 0; k < remote.n && !reason[0]; ++k) {
+  for (PetscInt k = 0; owner && k < remote.n && !reason[0]; ++k) {
     const PetscInt64 r = owner[2 * k], i = owner[2 * k + 1];
     const PetscBool next = !k || r > owner[2 * k - 2] || (r == owner[2 * k - 2] && i > owner[2 * k - 1]);
     if (r < 0 || r >= size || r == rank || i < 0 || i >= owned[r] || !next)

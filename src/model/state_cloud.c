@@ -72,7 +72,7 @@ static PetscErrorCode PatternBack(Model *m, const Table *table, char reason[256]
   for (PetscInt i = 0; pair && i < 2 * n; ++i)
     if (pair[i] < 0 || pair[i] >= m->grid->n_nodes) snprintf(reason, 256, "pattern/pair: there is no such node");
   PetscCall(ReasonShare(m->comm, reason));
-  if (reason[0]) PetscFunctionReturn(0);
+  if (!pair || reason[0]) PetscFunctionReturn(0);
   PetscCall(MPIU_Allreduce(&n, &any, 1, MPIU_INT, MPI_MAX, m->comm));
   if (!any) PetscFunctionReturn(0);
   PetscCall(ModelFollowCloud(m));
