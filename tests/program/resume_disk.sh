@@ -15,6 +15,30 @@ same() {
   if ls "$2"/*unfinished >/dev/null 2>&1; then fail "$name: an unfinished file"; fi
 }
 
+# The directory becomes read-only in mid-run. Root needs no permissions, so it is made immutable; a remount would be refused while files are open.
+read_only() {
+  name="read-only, one rank"
+  rm -rf run
+  # shellcheck disable=SC2086
+  "$talus" run block.yaml --out run $options >out.txt 2>err.txt </dev/null &
+  job=$!
+  for i in $(seq 2000); do [ -e run/checkpoint_000000010.h5 ] && break; sleep 0.01; done
+  chattr +i run
+  wait "$job"
+  code=$?
+  chattr -i run
+  [ $code -eq 1 ] || fail "$name: exit code $code"
+  says err.txt "cannot write the state at t = " "Operation not permitted" "talus run --resume run goes on from step"
+  expect "$name, resumed" 0 "$talus" run --resume run --quiet
+}
+mkdir immutable
+if chattr +i immutable 2>/dev/null && ! touch immutable/file 2>/dev/null; then
+  read_only
+  same whole run
+else echo "no directory can be made immutable here: skipped"
+fi
+chattr -i immutable 2>/dev/null
+
 # The directory is renamed while the run is at work: states and checkpoints cannot be written
 renamed() {
   ranks=$1
