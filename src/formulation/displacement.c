@@ -79,11 +79,7 @@ KERNEL void cell_store(const int dim, const int nn, const WeakFormInput *in, Pet
           w->K[((I * dim + d) * dim + d) * row_width(nn) + J] += in->inertia * w->M[I * row_width(nn) + J];
       }
     if (cut) cell_cut(dim, nn, in, node, w);
-    for (int I = 0; I < nn; ++I)
-      for (int J = 0; J < nn; ++J) {
-        PetscReal *restrict block = out->values + slot[I * nn + J] * dim * dim;
-        for (int ab = 0; ab < dim * dim; ++ab) block[ab] += w->K[(I * dim * dim + ab) * row_width(nn) + J];
-      }
+    scatter_blocks(dim, nn, slot, w->K, out->values);
   }
   for (int I = 0; I < nn; ++I)
     for (int d = 0; d < dim; ++d) out->force[node[I] * dim + d] += w->f[d * row_width(nn) + I];
@@ -102,17 +98,40 @@ KERNEL LawStatus batch_update(const int dim, const int nn, const WeakFormInput *
       for (int I = 0; I < nn; ++I)
         for (int d = 0; d < dim; ++d) du[I * dim + d] = in->du[support->node[group * nn + I] * dim + d];
     }
-    increment_gradient(dim, nn, support->dN + p * nn * dim, du, b->dF + 9 * k);
+    increment_rows(dim, nn, support->dN + p * nn * dim, du, b->dF + 9 * k);
   }
   return batch_law(in, tangent, b);
 }
 
-KERNEL void assemble_points(const int dim, const int nn, const WeakFormInput *in, WeakFormOutput *out)
+/* Points first .. first + n - 1 of the batch, all of one cell, at most RUN_POINTS. */
+KERNEL void add_points(const int dim, const int nn, const WeakFormInput *in, PetscBool tangent, const Batch *b,
+                       PetscInt first, PetscInt n, PetscReal lumping, CellWork *w)
 {
   const Points *points = in->points;
   const Support *support = in->support;
+  PetscReal N[CELL_MAX_NODES];
+  PointRun run;
+
+  run.n = (int)n;
+  for (int i = 0; i < n; ++i) {
+    const PetscInt k = first + i, p = b->first + k;
+    const PetscReal volume = points->real[POINT_VOLUME][p], mass = points->real[POINT_MASS][p];
+    row_load(nn, 1, support->N + p * nn, N);
+    current_gradients(dim, nn, support->dN + p * nn * dim, b->dF + 9 * k, run.g[i]);
+    add_internal_force(dim, nn, run.g[i], b->tau + 6 * k, volume, w->f);
+    add_inertia_force(dim, nn, N, w->a, mass, lumping, w->f);
+    if (tangent && in->inertia > 0) add_mass(nn, N, mass, lumping, w->M);
+    run.tau[i] = b->tau + 6 * k;
+    run.c[i] = b->c + 36 * k;
+    run.volume[i] = volume;
+  }
+  if (tangent) add_stiffness(dim, nn, &run, w->K);
+}
+
+KERNEL void assemble_points(const int dim, const int nn, const WeakFormInput *in, WeakFormOutput *out)
+{
+  const Support *support = in->support;
   const PetscBool tangent = out->values ? PETSC_TRUE : PETSC_FALSE;
-  PetscReal g[3 * CELL_MAX_NODES], N[CELL_MAX_NODES];
   CellWork w;
   Batch b;
   const PetscInt n = points_in_groups(support);
@@ -123,28 +142,21 @@ KERNEL void assemble_points(const int dim, const int nn, const WeakFormInput *in
     b.first = first;
     b.group = group;
     while (first >= support->point_start[b.group + 1]) ++b.group;
-    b.n = batch_length(points, first, n);
+    b.n = batch_length(in->points, first, n);
     const LawStatus status = batch_update(dim, nn, in, tangent, &b);
     if (status > out->status) {
       out->status = status;
       out->bad_point = first;
     }
     if (out->status != LAW_OK) return; /* the step is cut, nothing here counts */
-    for (PetscInt k = 0; k < b.n; ++k) {
-      const PetscInt p = first + k;
-      while (p >= support->point_start[group + 1]) {
+    for (PetscInt k = 0, run; k < b.n; k += run) {
+      while (first + k >= support->point_start[group + 1]) {
         cell_store(dim, nn, in, group++, &w, out);
         cell_load(dim, nn, in, group, &w);
+        if (tangent) prefetch_blocks(dim, nn, out->slot + group * nn * nn, out->values);
       }
-      const PetscReal volume = points->real[POINT_VOLUME][p], mass = points->real[POINT_MASS][p];
-      const PetscReal lumping = in->lumping ? in->lumping[group] : 0;
-      row_load(nn, 1, support->N + p * nn, N);
-      current_gradients(dim, nn, support->dN + p * nn * dim, b.dF + 9 * k, g);
-      add_internal_force(dim, nn, g, b.tau + 6 * k, volume, w.f);
-      add_inertia_force(dim, nn, N, w.a, mass, lumping, w.f);
-      if (!tangent) continue;
-      add_stiffness(dim, nn, g, b.tau + 6 * k, b.c + 36 * k, volume, w.K);
-      if (in->inertia > 0) add_mass(nn, N, mass, lumping, w.M);
+      run = PetscMin(PetscMin(b.n - k, RUN_POINTS), support->point_start[group + 1] - (first + k));
+      add_points(dim, nn, in, tangent, &b, k, run, in->lumping ? in->lumping[group] : 0, &w);
     }
   }
   cell_store(dim, nn, in, group, &w, out);

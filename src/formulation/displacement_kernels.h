@@ -5,6 +5,7 @@
  * matrix nn x dim x dim rows. */
 #pragma once
 #include "base/tensor.h"
+#include "formulation/formulation.h"
 
 #define KERNEL static inline __attribute__((always_inline))
 
@@ -30,11 +31,67 @@ KERNEL void row_scale(const int nn, PetscReal s, const PetscReal *x, PetscReal *
   else *(Row8 *)row = s * *(const Row8 *)x;
 }
 
+KERNEL void row_copy(const int nn, const PetscReal *x, PetscReal *row)
+{
+  if (row_width(nn) == 4) *(Row4 *)row = *(const Row4 *)x;
+  else *(Row8 *)row = *(const Row8 *)x;
+}
+
+/* Rows to columns. */
+KERNEL void rows_transpose4(Row4 r[4])
+{
+  const Row4 a0 = __builtin_shufflevector(r[0], r[1], 0, 4, 2, 6), a1 = __builtin_shufflevector(r[0], r[1], 1, 5, 3, 7);
+  const Row4 a2 = __builtin_shufflevector(r[2], r[3], 0, 4, 2, 6), a3 = __builtin_shufflevector(r[2], r[3], 1, 5, 3, 7);
+  r[0] = __builtin_shufflevector(a0, a2, 0, 1, 4, 5);
+  r[1] = __builtin_shufflevector(a1, a3, 0, 1, 4, 5);
+  r[2] = __builtin_shufflevector(a0, a2, 2, 3, 6, 7);
+  r[3] = __builtin_shufflevector(a1, a3, 2, 3, 6, 7);
+}
+
+KERNEL void rows_transpose8(Row8 r[8])
+{
+  Row8 a[8], b[8];
+  for (int i = 0; i < 8; i += 2) {
+    a[i] = __builtin_shufflevector(r[i], r[i + 1], 0, 8, 2, 10, 4, 12, 6, 14);
+    a[i + 1] = __builtin_shufflevector(r[i], r[i + 1], 1, 9, 3, 11, 5, 13, 7, 15);
+  }
+  for (int i = 0; i < 8; i += 4)
+    for (int j = 0; j < 2; ++j) {
+      b[i + j] = __builtin_shufflevector(a[i + j], a[i + j + 2], 0, 1, 8, 9, 4, 5, 12, 13);
+      b[i + j + 2] = __builtin_shufflevector(a[i + j], a[i + j + 2], 2, 3, 10, 11, 6, 7, 14, 15);
+    }
+  for (int j = 0; j < 4; ++j) {
+    r[j] = __builtin_shufflevector(b[j], b[j + 4], 0, 1, 2, 3, 8, 9, 10, 11);
+    r[j + 4] = __builtin_shufflevector(b[j], b[j + 4], 4, 5, 6, 7, 12, 13, 14, 15);
+  }
+}
+
 /* row += s x */
 KERNEL void row_add(const int nn, PetscReal s, const PetscReal *x, PetscReal *row)
 {
   if (row_width(nn) == 4) *(Row4 *)row += s * *(const Row4 *)x;
   else *(Row8 *)row += s * *(const Row8 *)x;
+}
+
+/* dF = 1 + sum_I du_I dN_I of one point; du is nn x dim. */
+KERNEL void increment_rows(const int dim, const int nn, const PetscReal *restrict dN, const PetscReal *restrict du,
+                           PetscReal *restrict dF)
+{
+  if (nn != 8) {
+    increment_gradient(dim, nn, dN, du, dF);
+    return;
+  }
+  Row4 x = {1, 0, 0, 0}, y = {0, 1, 0, 0}, z = {0, 0, 1, 0};
+  for (int I = 0; I < nn; ++I) { /* a row of dN and one number too many; what that gives is not stored */
+    const PetscReal *d = dN + I * dim;
+    const Row4 row = I < nn - 1 ? *(const Row4 *)d : (Row4){d[0], d[1], d[2], 0};
+    x += du[I * dim] * row;
+    y += du[I * dim + 1] * row;
+    z += du[I * dim + 2] * row;
+  }
+  *(Row4 *)dF = x;
+  *(Row4 *)(dF + 3) = y;
+  for (int j = 0; j < 3; ++j) dF[6 + j] = z[j];
 }
 
 /* g = dF^-T dN: gradients at x_(n+1). */
@@ -59,24 +116,92 @@ KERNEL void add_internal_force(const int dim, const int nn, const PetscReal *res
     for (int j = 0; j < dim; ++j) row_add(nn, volume * tau[voigt_of[a][j]], g + j * w, f + a * w);
 }
 
-/* K[I][a][b][J] += V0 sum_jl g_Ij (c_ajbl + delta_ab tau_jl) g_Jl */
-KERNEL void add_stiffness(const int dim, const int nn, const PetscReal *restrict g, const PetscReal *restrict tau,
-                          const PetscReal *restrict c, PetscReal volume, PetscReal *restrict K)
+/* Points of one cell whose stiffness is added at once: a block row of the cell matrix then stays in registers over all of them. */
+#define RUN_POINTS 8
+
+typedef struct {
+  int n;
+  PetscReal g[RUN_POINTS][3 * CELL_MAX_NODES]; /* gradients at x_(n+1), dim rows */
+  const PetscReal *tau[RUN_POINTS], *c[RUN_POINTS];
+  PetscReal volume[RUN_POINTS];
+} PointRun;
+
+/* T_j = V0 sum_l (c_ajbl + delta_ab tau_jl) g_l of one point, dim rows. */
+KERNEL void run_products(const int dim, const int nn, const int a, const int b, const PointRun *run, int k,
+                         PetscReal *restrict T)
 {
   const int w = row_width(nn);
-  for (int a = 0; a < dim; ++a)
-    for (int b = 0; b < dim; ++b) {
-      PetscReal T[3 * CELL_MAX_NODES];
-      for (int j = 0; j < dim; ++j)
-        for (int l = 0; l < dim; ++l) {
-          const PetscReal modulus =
-            volume * (c[6 * voigt_of[a][j] + voigt_of[b][l]] + (a == b ? tau[voigt_of[j][l]] : 0.0));
-          if (l == 0) row_scale(nn, modulus, g, T + j * w);
-          else row_add(nn, modulus, g + l * w, T + j * w);
-        }
-      for (int I = 0; I < nn; ++I)
-        for (int j = 0; j < dim; ++j) row_add(nn, g[j * w + I], T + j * w, K + ((I * dim + a) * dim + b) * w);
+  const PetscReal *c = run->c[k], *tau = run->tau[k], *g = run->g[k], volume = run->volume[k];
+#pragma GCC unroll 3
+  for (int j = 0; j < dim; ++j)
+#pragma GCC unroll 3
+    for (int l = 0; l < dim; ++l) {
+      const PetscReal modulus =
+        volume * (c[6 * voigt_of[a][j] + voigt_of[b][l]] + (a == b ? tau[voigt_of[j][l]] : 0.0));
+      if (l == 0) row_scale(nn, modulus, g, T + j * w);
+      else row_add(nn, modulus, g + l * w, T + j * w);
     }
+}
+
+/* K[I][a][b][J] += sum over the points of sum_j g_Ij T_jJ */
+KERNEL void add_stiffness(const int dim, const int nn, const PointRun *run, PetscReal *restrict K)
+{
+  const int w = row_width(nn);
+#pragma GCC unroll 3
+  for (int a = 0; a < dim; ++a)
+#pragma GCC unroll 3
+    for (int b = 0; b < dim; ++b) {
+      PetscReal sum[CELL_MAX_NODES * CELL_MAX_NODES], T[3 * CELL_MAX_NODES];
+#pragma GCC unroll 8
+      for (int I = 0; I < nn; ++I) row_copy(nn, K + ((I * dim + a) * dim + b) * w, sum + I * w);
+      for (int k = 0; k < run->n; ++k) {
+        run_products(dim, nn, a, b, run, k, T);
+#pragma GCC unroll 8
+        for (int I = 0; I < nn; ++I)
+#pragma GCC unroll 3
+          for (int j = 0; j < dim; ++j) row_add(nn, run->g[k][j * w + I], T + j * w, sum + I * w);
+      }
+#pragma GCC unroll 8
+      for (int I = 0; I < nn; ++I) row_copy(nn, sum + I * w, K + ((I * dim + a) * dim + b) * w);
+    }
+}
+
+/* The blocks of the next cells lie apart in memory, where no processor finds them by itself. */
+KERNEL void prefetch_blocks(const int dim, const int nn, const PetscInt *restrict slot,
+                            const PetscReal *restrict values)
+{
+  const int size = dim * dim;
+  for (int i = 0; i < nn * nn; ++i) {
+    __builtin_prefetch(values + slot[i] * size, 1);
+    if (size > 4) __builtin_prefetch(values + slot[i] * size + size - 1, 1);
+  }
+}
+
+/* Block (I, J) of the cell matrix, dim x dim numbers, is added to values at slot[I nn + J]. In K the numbers of a block are a row apart, so as
+ * many of them as a register takes are turned at once. */
+KERNEL void scatter_blocks(const int dim, const int nn, const PetscInt *restrict slot, const PetscReal *restrict K,
+                           PetscReal *restrict values)
+{
+  const int w = row_width(nn), size = dim * dim, whole = size / w * w;
+  for (int I = 0; I < nn; ++I, slot += nn, K += size * w) {
+    for (int first = 0; first < whole; first += w) {
+      Row4 four[4];
+      Row8 eight[8];
+      for (int e = 0; e < w; ++e) {
+        if (w == 4) four[e] = *(const Row4 *)(K + (first + e) * w);
+        else eight[e] = *(const Row8 *)(K + (first + e) * w);
+      }
+      if (w == 4) rows_transpose4(four);
+      else rows_transpose8(eight);
+      for (int J = 0; J < nn; ++J) {
+        PetscReal *block = values + slot[J] * size + first;
+        if (w == 4) *(Row4 *)block += four[J];
+        else *(Row8 *)block += eight[J];
+      }
+    }
+    for (int e = whole; e < size; ++e)
+      for (int J = 0; J < nn; ++J) values[slot[J] * size + e] += K[e * w + J];
+  }
 }
 
 /* Consistent inertia and body force: f_I += m N_I ((1 - lumping) sum_J N_J a_J + lumping a_I). */

@@ -158,7 +158,7 @@ KERNEL LawStatus batch_update(const int dim, const int nn, const WeakFormInput *
         for (int d = 0; d < dim; ++d) du[I * dim + d] = in->du[node * dim + d];
       }
     }
-    increment_gradient(dim, nn, support->dN + p * nn * dim, du, b->dF + 9 * k);
+    increment_rows(dim, nn, support->dN + p * nn * dim, du, b->dF + 9 * k);
     b->p[k] = 0;
     for (int I = 0; I < nn; ++I) b->p[k] += support->N[p * nn + I] * pressure[I];
   }
@@ -187,7 +187,9 @@ KERNEL void add_point(const int dim, const int nn, const WeakFormInput *in, Pets
   row_add(nn, scaled * (b->s.theta[k] - b->p[k] * material->compliance), N, w->fp);
   w->hold += in->alpha / material->elastic.shear * volume;
   if (!tangent) return;
-  add_stiffness(dim, nn, g, b->s.tau + 6 * k, b->s.c + 36 * k, volume, w->K);
+  PointRun run = {.n = 1, .tau = {b->s.tau + 6 * k}, .c = {b->s.c + 36 * k}, .volume = {volume}};
+  for (int j = 0; j < dim; ++j) row_copy(nn, g + j * row_width(nn), run.g[0] + j * row_width(nn));
+  add_stiffness(dim, nn, &run, w->K);
   add_pressure_force(dim, nn, g, b->s.coupling + 6 * k, N, scaled, w->Kup);
   add_dilation(dim, nn, g, N, scaled * b->s.rate[k], w->Kpu);
   for (int I = 0; I < nn; ++I)
