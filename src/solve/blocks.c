@@ -206,8 +206,8 @@ KERNEL PetscBool find_scales(const int dim, Blocks *m, const System *s, const un
   return regular;
 }
 
-/* The same as below for lower triangles S, in four lanes. */
-static inline void scale_block_2d(const PetscReal *values, const float *S, const float *other, float *block)
+/* block = S values other^T for lower triangles S, in four lanes. */
+static inline void scale_symmetric_2d(const PetscReal *values, const float *S, const float *other, float *block)
 {
   const Doubles v = *(const FourDoubles *)values, none = {0, 0, 0, 0};
   const Doubles s = __builtin_convertvector(*(const Lanes *)S, Doubles);
@@ -219,36 +219,47 @@ static inline void scale_block_2d(const PetscReal *values, const float *S, const
   *(Lanes *)block = __builtin_convertvector(product, Lanes);
 }
 
-/* block = S_row values T_column, in the order of the kernels: 2 x 2 row by row, 3 x 3 column by column. */
-KERNEL void scale_block(const int dim, const PetscReal *values, const float *S, const float *other, PetscBool symmetric,
-                        float *block)
+/* The same for 3 x 3: rows of the block are lanes, and its columns go out one after the other; the fourth lane of a store is 0 and belongs to
+ * what comes next. column: those of S_row. */
+static inline void scale_block_3d(const PetscReal *values, const Doubles column[3], const float *other,
+                                  PetscBool symmetric, float *block)
 {
-  PetscReal left[9];
-  if (dim == 2 && symmetric) {
-    scale_block_2d(values, S, other, block);
-    return;
+  Doubles left[3];
+  for (int j = 0; j < 3; ++j) left[j] = column[0] * values[j] + column[1] * values[3 + j] + column[2] * values[6 + j];
+  for (int j = 0; j < 3; ++j) {
+    Doubles product = left[j];
+    if (symmetric) {
+      product = left[0] * (PetscReal)other[3 * j];
+      for (int k = 1; k <= j; ++k) product += left[k] * (PetscReal)other[3 * j + k];
+    }
+    *(Lanes *)(block + 3 * j) = __builtin_convertvector(product, Lanes);
   }
-  for (int i = 0; i < dim; ++i)
-    for (int j = 0; j < dim; ++j) {
-      left[i * dim + j] = 0;
-      for (int k = 0; k < dim; ++k) left[i * dim + j] += (PetscReal)S[i * dim + k] * values[k * dim + j];
-    }
-  for (int i = 0; i < dim; ++i)
-    for (int j = 0; j < dim; ++j) {
-      PetscReal sum = 0;
-      if (symmetric)
-        for (int k = 0; k <= j; ++k) sum += left[i * dim + k] * (PetscReal)other[j * dim + k];
-      else sum = left[i * dim + j];
-      block[dim == 2 ? i * dim + j : j * dim + i] = (float)sum;
-    }
+}
+
+/* block = S_row values T_column, in the order of the kernels: 2 x 2 row by row, 3 x 3 column by column. */
+KERNEL void scale_block_plane(const PetscReal *values, const float *S, const float *other, PetscBool symmetric,
+                              float *block)
+{
+  if (symmetric) scale_symmetric_2d(values, S, other, block);
+  else
+    for (int i = 0; i < 2; ++i)
+      for (int j = 0; j < 2; ++j)
+        block[i * 2 + j] = (float)((PetscReal)S[i * 2] * values[j] + (PetscReal)S[i * 2 + 1] * values[2 + j]);
 }
 
 KERNEL const PetscReal *scale_blocks(const int dim, const Blocks *m, PetscInt r, const BlockRows *rows, PetscInt k,
                                      const PetscReal *values, PetscBool symmetric)
 {
   const float *S = m->scale + r * dim * dim;
-  for (PetscInt e = rows->start[k]; e < rows->start[k + 1]; ++e, values += dim * dim)
-    scale_block(dim, values, S, m->scale + rows->column[e] * dim * dim, symmetric, rows->block + e * dim * dim);
+  Doubles column[3] = {{0}};
+  if (dim == 3)
+    for (int i = 0; i < 3; ++i) column[i] = (Doubles){(PetscReal)S[i], (PetscReal)S[3 + i], (PetscReal)S[6 + i], 0};
+  for (PetscInt e = rows->start[k]; e < rows->start[k + 1]; ++e, values += dim * dim) {
+    const float *other = m->scale + rows->column[e] * dim * dim;
+    float *block = rows->block + e * dim * dim;
+    if (dim == 3) scale_block_3d(values, column, other, symmetric, block);
+    else scale_block_plane(values, S, other, symmetric, block);
+  }
   return values;
 }
 
