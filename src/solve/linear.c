@@ -1,8 +1,10 @@
 #include "solve/linear.h"
 #include "solve/blocks.h"
 
+#define PROJECT_BELOW \
+  3 /* cells that a wave crosses in a step up to which unsymmetric systems with multipliers take projections */
 #define REFINE_ABOVE \
-  3 /* cells that a wave crosses in a step from which on unsymmetric systems take ILU of the first level */
+  3 /* cells that a wave crosses in a step from which on ILU of unsymmetric systems has a first level */
 
 static PetscErrorCode UseDirect(KSP ksp, PetscBool symmetric, const char **what)
 {
@@ -132,9 +134,9 @@ PetscErrorCode LinearForm(const LinearProblem *p, SystemForm *form)
   PetscFunctionBeginUser;
   PetscCall(PetscOptionsHasName(NULL, NULL, "-ksp_type", &method));
   PetscCall(PetscOptionsHasName(NULL, NULL, "-pc_type", &preconditioner));
-  const PetscBool short_steps = p->symmetric || p->courant < REFINE_ABOVE ? PETSC_TRUE : PETSC_FALSE;
-  *form = p->dynamic && short_steps && !p->mixed && !prefers_direct(p) && !method && !preconditioner ? SYSTEM_BLOCKS
-                                                                                                     : SYSTEM_ASSEMBLED;
+  const PetscBool usable = !p->multipliers || p->symmetric || p->courant < PROJECT_BELOW ? PETSC_TRUE : PETSC_FALSE;
+  *form = p->dynamic && usable && !p->mixed && !prefers_direct(p) && !method && !preconditioner ? SYSTEM_BLOCKS
+                                                                                                : SYSTEM_ASSEMBLED;
   PetscFunctionReturn(0);
 }
 
