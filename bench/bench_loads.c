@@ -19,6 +19,8 @@ typedef struct {
 #define COLUMN "cases/granular-collapse/case.yaml"
 #define USUAL "-ksp_type bcgs -pc_type bjacobi -sub_pc_type ilu -sub_pc_factor_levels 0 -ksp_rtol 1e-4"
 
+static const char *const usual[] = {"-ksp_type", "-pc_type", "-sub_pc_type", "-sub_pc_factor_levels", "-ksp_rtol"};
+
 static const Load loads[] = {
   {1, "static cantilever, h = 0.03125 m", "cases/cantilever/case.yaml", {"grid.size=0.03125"}, 0, 1, NULL},
   {1, "static cantilever, h = 0.01 m", "cases/cantilever/case.yaml", {"grid.size=0.01"}, 0, 1, NULL},
@@ -131,7 +133,7 @@ static PetscErrorCode Compare(const Load *load, PetscReal scale)
   if (load->other) {
     PetscCall(PetscOptionsInsertString(NULL, load->other));
     PetscCall(Measure(load, before, steps, &other));
-    PetscCall(PetscOptionsClear(NULL));
+    for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(usual); ++k) PetscCall(PetscOptionsClearValue(NULL, usual[k]));
     /* the solves of as many Newton iterations */
     other.phase[PHASE_LINEAR] *= its / PetscMax(1, (PetscReal)other.iterations);
     other.iterations = own.iterations;

@@ -19,6 +19,14 @@ typedef enum {
 static const char *const phase_names[PHASE_N] = {"repartition", "pattern", "prepare", "points", "matrix",
                                                  "linear",      "newton",  "commit",  "move",   "initialise"};
 
+/* The same for people who read where their time went. */
+static const char *const phase_help[PHASE_N] = {
+  "sharing the grid anew",       "unknowns, sparse pattern",
+  "loads, first guess",          "stress, forces and tangents of the points",
+  "tangent into the matrix",     "linear solves",
+  "Newton's method beside them", "new state of the points",
+  "moving the points",           "shape functions, mass and motion of the nodes"};
+
 /* Charge the time since *clock to a phase and set the clock anew. */
 static inline PetscErrorCode PhaseEnd(PetscReal seconds[PHASE_N], Phase phase, PetscLogDouble *clock)
 {

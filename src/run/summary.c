@@ -46,12 +46,41 @@ static PetscErrorCode LogBalance(const Model *m, RunDir *dir, PetscReal seconds)
   PetscFunctionReturn(0);
 }
 
+/* Everything that took a per cent of the time, for the log. */
+static PetscErrorCode LogShares(RunDir *dir, PetscReal seconds, const PetscReal phase[PHASE_N], PetscReal rest)
+{
+  char text[512];
+  int end = 0;
+
+  PetscFunctionBeginUser;
+  text[0] = 0;
+  for (int k = 0; k <= PHASE_N && end < (int)sizeof text; ++k) {
+    const PetscReal share = 100 * (k < PHASE_N ? phase[k] : rest) / PetscMax(seconds, 1e-9);
+    if (share < 1) continue;
+    end += snprintf(text + end, sizeof text - (size_t)end, "%s%s %.0f %%", end ? ", " : "",
+                    k < PHASE_N ? phase_names[k] : "files and the rest", (double)share);
+  }
+  PetscCall(RunDirLog(dir, "time went to: %s", text));
+  PetscFunctionReturn(0);
+}
+
+/* "points [s] = 0.543   # 48 %: ..." */
+static PetscErrorCode AddTime(char *text, size_t size, const char *name, PetscReal seconds, PetscReal all,
+                              const char *help)
+{
+  const size_t end = strlen(text);
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscSNPrintf(text + end, size - end, "%s [s] = %.6g   # %.1f %%: %s\n", name, (double)seconds,
+                          (double)(100 * seconds / PetscMax(all, 1e-9)), help));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode SummaryEnd(Model *m, RunDir *dir, const RunSummary *summary, const PetscReal *values)
 {
   const PetscReal seconds = summary->seconds;
   PetscReal phase[PHASE_N], rest = seconds;
-  char text[1024];
-  size_t end = 0;
+  char text[2048] = "";
 
   PetscFunctionBeginUser;
   ModelTimes(m, phase);
@@ -63,20 +92,20 @@ PetscErrorCode SummaryEnd(Model *m, RunDir *dir, const RunSummary *summary, cons
   PetscCall(RunDirLog(dir, "steps = %d iterations = %d halvings = %d seconds = %.3g", (int)summary->steps,
                       (int)summary->iterations, (int)summary->halvings, (double)seconds));
   PetscCall(LogBalance(m, dir, phase[PHASE_REPARTITION]));
-  PetscCall(PetscSNPrintf(text, sizeof text, "total [s] = %.6g\n", (double)seconds));
+  PetscCall(AddTime(text, sizeof text, "total", seconds, seconds, "of all sessions of the run"));
   for (int k = 0; k < PHASE_N; ++k) {
-    end = strlen(text);
-    PetscCall(PetscSNPrintf(text + end, sizeof text - end, "%s [s] = %.6g\n", phase_names[k], (double)phase[k]));
+    PetscCall(AddTime(text, sizeof text, phase_names[k], phase[k], seconds, phase_help[k]));
     rest -= phase[k];
   }
-  end = strlen(text);
-  PetscCall(
-    PetscSNPrintf(text + end, sizeof text - end,
-                  "rest [s] = %.6g\nsteps = %d\niterations = %d\nmost iterations in a step = %d\nhalvings = %d\n"
-                  "patterns = %d\nrepartitions = %d\nlargest imbalance = %.3f\noutcome = %s\n",
-                  (double)rest, (int)summary->steps, (int)summary->iterations, (int)summary->iterations_per_step,
-                  (int)summary->halvings, (int)m->system->builds, (int)m->balance.repartitions,
-                  (double)PetscMax(m->balance.largest, 1), summary->reason[0] ? "gave up" : "done"));
+  PetscCall(LogShares(dir, seconds, phase, rest));
+  PetscCall(AddTime(text, sizeof text, "rest", rest, seconds, "files, measures, earlier sessions of a resumed run"));
+  const size_t end = strlen(text);
+  PetscCall(PetscSNPrintf(text + end, sizeof text - end,
+                          "steps = %d\niterations = %d\nmost iterations in a step = %d\nhalvings = %d\n"
+                          "patterns = %d\nrepartitions = %d\nlargest imbalance = %.3f\noutcome = %s\n",
+                          (int)summary->steps, (int)summary->iterations, (int)summary->iterations_per_step,
+                          (int)summary->halvings, (int)m->system->builds, (int)m->balance.repartitions,
+                          (double)PetscMax(m->balance.largest, 1), summary->reason[0] ? "gave up" : "done"));
   const PetscErrorCode status = RunDirWriteText(dir, "timings.txt", text);
   PetscFunctionReturn(status);
 }

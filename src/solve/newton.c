@@ -195,6 +195,7 @@ static PetscErrorCode Function(SNES snes, Vec x, Vec f, void *context)
   PetscCall(SetIncrements(n, x));
   PetscCall(Assemble(n, !newton_is_last(n)));
   PetscCall(GetResidual(n, f));
+  PetscCall(PetscTime(&n->solving)); /* for a solve that asks for no tangent: -snes_lag_jacobian */
   PetscFunctionReturn(0);
 }
 
