@@ -92,6 +92,7 @@ static void thrown_block(CellType cell, PetscReal size, LinearChoice linear, Pet
   bench_box(&b, 0, (PetscReal[]){0.25, 0.25, 0.25}, (PetscReal[]){0.75, 0.75, 0.75});
   b.body[0].velocity[0] = 2.5;
   b.body[0].velocity[1] = -2;
+  if (cell == CELL_HEXAHEDRON || cell == CELL_TETRAHEDRON) b.body[0].velocity[2] = 0.6; /* whichever way space is cut */
   b.body[0].spin[2] = 0.5;
   b.body[0].spin_centre[0] = b.body[0].spin_centre[1] = 0.5;
   b.c.gravity[1] = -9.81;
