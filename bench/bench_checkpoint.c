@@ -5,21 +5,6 @@
 #include "io/checkpoint.h"
 #include "model/state.h"
 
-static void block(BenchCase *b, PetscInt dim, PetscInt n)
-{
-  const PetscReal h = 1.0 / (PetscReal)n, dt = 0.15 * h;
-  bench_case(b, dim, 1e6, 0.3);
-  for (PetscInt d = 0; d < dim; ++d) {
-    b->body.shape.min[d] = (PetscReal)(n / 2) * h;
-    b->body.shape.max[d] = (PetscReal)(n / 2) * h + 1;
-    b->c.grid.max[d] = 2;
-    b->c.grid.counts[d] = 2 * n;
-  }
-  b->motion.on.has[dim - 1] = 1;
-  b->c.analysis = (AnalysisSpec){
-    .type = ANALYSIS_DYNAMIC, .end = 1, .step = dt, .smallest = dt / 1024, .largest = dt, .beta = 0.25, .gamma = 0.5};
-}
-
 /* Best times of several, over the slowest rank: the clock's, and this process's own work. */
 typedef struct {
   PetscReal write, write_work, read, read_work, restore;
@@ -79,7 +64,7 @@ static PetscErrorCode Measure(PetscInt dim, PetscInt points, PetscInt repeats, c
   FILE *file;
 
   PetscFunctionBeginUser;
-  block(&b, dim, n);
+  bench_block(&b, dim, n, n / 2);
   PetscCall(SubjectCreate(&b.c, &s));
   PetscCall(ModelActivate(s.model));
   PetscCall(PetscSNPrintf(path, sizeof path, "%s/bench_checkpoint.h5", folder));

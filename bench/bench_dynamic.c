@@ -6,27 +6,6 @@
  * -weak: so many points for each rank, for weak scaling. */
 #include "bench.h"
 
-/* n cells along an edge of 1 m; the time step goes with the cell. */
-static void block(BenchCase *b, PetscInt dim, PetscInt n)
-{
-  const PetscReal h = 1.0 / (PetscReal)n, dt = 0.15 * h;
-  bench_case(b, dim, 1e6, 0.3);
-  for (PetscInt d = 0; d < dim; ++d) {
-    b->body.shape.min[d] = (PetscReal)(n / 2) * h;
-    b->body.shape.max[d] = (PetscReal)(n / 2) * h + 1;
-    b->c.grid.max[d] = 2;
-    b->c.grid.counts[d] = 2 * n;
-  }
-  b->body.shape.min[dim - 1] = 0;
-  b->body.shape.max[dim - 1] = 1;
-  b->body.velocity[0] = 0.3;
-  b->body.velocity[dim - 1] = -1;
-  b->motion.on.has[dim - 1] = 1;
-  b->c.analysis = (AnalysisSpec){
-    .type = ANALYSIS_DYNAMIC, .end = 1, .step = dt, .smallest = dt / 1024, .largest = dt, .beta = 0.25, .gamma = 0.5};
-  b->c.newton.residual = 1e-6;
-}
-
 typedef struct {
   PetscReal total, idle, phase[PHASE_N], table, support, resident, courant;
   PetscInt dim, points, unknowns, steps, iterations, linear, patterns;
@@ -70,7 +49,7 @@ static PetscErrorCode Measure(PetscInt dim, PetscInt n, PetscInt steps, PetscInt
   Subject s;
 
   PetscFunctionBeginUser;
-  block(&b, dim, n);
+  bench_landing_block(&b, dim, n, n / 2, 0.3);
   best->total = PETSC_MAX_REAL;
   for (PetscInt k = 0; k < repeats; ++k) {
     Result r = *best;

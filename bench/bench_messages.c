@@ -15,27 +15,6 @@ static void clock_of_model(double seconds[MESSAGE_PHASES]) { ModelTimes(model, s
 /* Times that Newton takes apart begin and end inside a solve. */
 static int takes_all(int phase) { return phase != PHASE_POINTS && phase != PHASE_MATRIX && phase != PHASE_LINEAR; }
 
-/* A block that lands on the floor and slides along it, in steps of a Courant number of 5.5. */
-static void block(BenchCase *b, PetscInt dim, PetscInt n)
-{
-  const PetscReal h = 1.0 / (PetscReal)n, dt = 0.15 * h;
-  bench_case(b, dim, 1e6, 0.3);
-  for (PetscInt d = 0; d < dim; ++d) {
-    b->body.shape.min[d] = (PetscReal)(n / 4) * h;
-    b->body.shape.max[d] = (PetscReal)(n / 4) * h + 1;
-    b->c.grid.max[d] = 2;
-    b->c.grid.counts[d] = 2 * n;
-  }
-  b->body.shape.min[dim - 1] = 0;
-  b->body.shape.max[dim - 1] = 1;
-  b->body.velocity[0] = 2;
-  b->body.velocity[dim - 1] = -1;
-  b->motion.on.has[dim - 1] = 1;
-  b->c.analysis = (AnalysisSpec){
-    .type = ANALYSIS_DYNAMIC, .end = 1, .step = dt, .smallest = dt / 1024, .largest = dt, .beta = 0.25, .gamma = 0.5};
-  b->c.newton.residual = 1e-6;
-}
-
 typedef struct {
   PetscInt steps, newton, linear;
   PetscReal count[PHASE_N + 1][4]; /* largest of the ranks, per step */
@@ -157,7 +136,7 @@ int main(int argc, char **argv)
   PetscCall(PetscOptionsGetInt(NULL, NULL, "-steps", &steps, NULL));
   if (per_rank) points = per_rank * ranks;
   const PetscReal n = PetscPowReal((PetscReal)points / (dim == 2 ? 4 : 8), 1.0 / (PetscReal)dim);
-  block(&b, dim, (PetscInt)(n + 0.5));
+  bench_landing_block(&b, dim, (PetscInt)(n + 0.5), (PetscInt)(n + 0.5) / 4, 2);
   PetscCall(SubjectCreate(&b.c, &s));
   model = s.model;
   PetscCall(Count(steps, &r));

@@ -53,9 +53,10 @@ static PetscErrorCode Run(TalusCase *c, const RunOptions *options, TalusRun *run
 
 int TalusRunCase(TalusCase *c, const char *out, unsigned flags, TalusRun **run, char **messages)
 {
-  const RunOptions options = {
-    .out = out, .force = (PetscBool) !!(flags & TALUS_RUN_FORCE), .quiet = (PetscBool) !!(flags & TALUS_RUN_QUIET),
-    .resume = (PetscBool) !!(flags & TALUS_RUN_RESUME)};
+  const RunOptions options = {.out = out,
+                              .force = (PetscBool) !!(flags & TALUS_RUN_FORCE),
+                              .quiet = (PetscBool) !!(flags & TALUS_RUN_QUIET),
+                              .resume = (PetscBool) !!(flags & TALUS_RUN_RESUME)};
   RunResult result = RUN_BAD_INPUT;
 
   if (messages) *messages = NULL;

@@ -94,7 +94,8 @@ PetscErrorCode StateCloudSettle(Model *m, const Tables *tables, PetscBool home, 
   const PetscInt64 *ghosts = TableData(cloud, "balanced_ghosts", COLUMN_INT64, 1, reason);
 
   PetscFunctionBeginUser;
-  if (ghosts && (cloud->rows != 1 || *ghosts < 0 || *ghosts > PETSC_MAX_INT)) snprintf(reason, 256, "cloud/balanced_ghosts makes no sense");
+  if (ghosts && (cloud->rows != 1 || *ghosts < 0 || *ghosts > PETSC_MAX_INT))
+    snprintf(reason, 256, "cloud/balanced_ghosts makes no sense");
   if (!reason[0] && home) PetscCall(PatternBack(m, TablesFind(tables, "pattern"), reason));
   if (!reason[0] && !home) PetscCall(m->method->redistribute(m->stage));
   if (reason[0]) PetscFunctionReturn(0);

@@ -270,7 +270,8 @@ static void test_steps_equal_run(void **state)
 /* The values of a run of the block to this end, of the same block that ran to half of it and was resumed, and of one that was resumed at its end. */
 static void test_resume(void **state)
 {
-  static const char *const often[] = {"checkpoint.steps=2", "analysis.end=0.02"}, *const half[] = {"checkpoint.steps=2"};
+  static const char *const often[] = {"checkpoint.steps=2", "analysis.end=0.02"}, *const half[] = {
+                                                                                    "checkpoint.steps=2"};
   char folder[FOLDER], whole[FOLDER + 8], cut[FOLDER + 8], file[FOLDER + 24];
   double values[3];
   int size;
