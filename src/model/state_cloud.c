@@ -101,6 +101,6 @@ PetscErrorCode StateCloudSettle(Model *m, const Tables *tables, PetscBool home, 
   if (reason[0]) PetscFunctionReturn(0);
   m->grid->cloud->balanced_ghosts = 0; /* nobody moves before the next step */
   PetscCall(m->method->initialise(m->stage));
-  m->grid->cloud->balanced_ghosts = home ? (PetscInt)*ghosts : 0;
+  m->grid->cloud->balanced_ghosts = home && ghosts ? (PetscInt)*ghosts : 0;
   PetscFunctionReturn(0);
 }
