@@ -66,7 +66,8 @@ static void test_inner_extent(void **state)
   Model *m = bench_model(&b, PETSC_COMM_WORLD);
   for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(wanted); ++k) {
     const PetscReal side = (wanted[k].column % 2 ? 0.5 : -0.5) / PetscSqrtReal(3);
-    const PetscReal place = 0.25 * ((PetscReal)(wanted[k].column / 2) + 0.5 + side); /* from the edge inwards */
+    const int cell = wanted[k].column / 2;
+    const PetscReal place = 0.25 * (cell + 0.5 + side); /* from the edge inwards */
     for (int axis = 0; axis < 2; ++axis) {
       const MeasureSpec high = {
         .kind = MEASURE_EXTENT, .component = axis, .maximum = PETSC_TRUE, .beyond = wanted[k].beyond};
