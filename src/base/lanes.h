@@ -11,7 +11,8 @@
 #define LANES_INLINE static inline __attribute__((always_inline))
 
 typedef PetscReal Lanes __attribute__((vector_size(LANES * sizeof(PetscReal))));
-typedef int64_t LaneBits __attribute__((vector_size(LANES * sizeof(int64_t)))); /* of a comparison: -1 where true */
+typedef int64_t LaneBits __attribute__((vector_size(LANES * sizeof(int64_t))));    /* of a comparison: -1 where true */
+typedef uint64_t LaneWords __attribute__((vector_size(LANES * sizeof(uint64_t)))); /* bits that are counted with */
 
 /* to = mask ? yes : no */
 LANES_INLINE void lanes_select(const LaneBits *mask, const Lanes *yes, const Lanes *no, Lanes *to)
@@ -44,10 +45,10 @@ LANES_INLINE void lanes_log(const Lanes *x, Lanes *y)
   static const PetscReal R[] = {0x1.5555555555593p-1, 0x1.999999997fa04p-2, 0x1.2492494229359p-2, 0x1.c71c51d8e78afp-3,
                                 0x1.7466496cb03dep-3, 0x1.39a09d078c69fp-3, 0x1.2f112df3e5244p-3};
   const Lanes zero = {0}, magic = zero + 0x1.8p52;
-  const int64_t root = 0x3fe6a09e667f3bcd; /* sqrt(1/2) */
-  const LaneBits bits = (LaneBits)*x - root, power = bits & ~INT64_C(0xfffffffffffff);
-  const Lanes f = (Lanes)((LaneBits)*x - power) - 1.0;
-  const Lanes k = (Lanes)((LaneBits)magic + (power >> 52)) - magic;
+  const uint64_t root = 0x3fe6a09e667f3bcd; /* sqrt(1/2) */
+  const LaneWords power = ((LaneWords)*x - root) & ~UINT64_C(0xfffffffffffff);
+  const Lanes f = (Lanes)((LaneWords)*x - power) - 1.0;
+  const Lanes k = (Lanes)((LaneWords)magic + (LaneWords)((LaneBits)power >> 52)) - magic;
   const Lanes s = f / (2.0 + f), z = s * s, half = 0.5 * f * f;
   Lanes sum = zero + R[6];
   for (int i = 5; i >= 0; --i) sum = sum * z + R[i];
@@ -74,6 +75,6 @@ LANES_INLINE void lanes_exp(const Lanes *x, Lanes *y)
   Lanes sum = zero + inverse[13];
   for (int i = 12; i >= 2; --i) sum = sum * r + inverse[i];
   sum = 1.0 + (r + r * r * sum);
-  const LaneBits power = ((LaneBits)shifted << 52) + (LaneBits)(zero + 1.0);
+  const LaneWords power = ((LaneWords)shifted << 52) + (LaneWords)(zero + 1.0);
   *y = sum * (Lanes)power;
 }
