@@ -173,11 +173,17 @@ static PetscReal real_of(const Table *table, const char *name, char reason[256])
   return data && table->rows == 1 ? *data : 0;
 }
 
+/* A count that a run can have reached, and can go on from; PETSC_MAX_INT stands for never. */
+static PetscBool is_count(PetscInt64 value)
+{
+  return (value >= 0 && value <= 1000000000) || value == PETSC_MAX_INT ? PETSC_TRUE : PETSC_FALSE;
+}
+
 static PetscInt count_of(const Table *table, const char *name, char reason[256])
 {
   const PetscInt64 *data = TableData(table, name, COLUMN_INT64, 1, reason);
   const PetscInt64 value = data && table->rows == 1 ? *data : 0;
-  if (value < 0 || value > PETSC_MAX_INT) snprintf(reason, 256, "%s/%s makes no sense", table->name, name);
+  if (!is_count(value)) snprintf(reason, 256, "%s/%s makes no sense", table->name, name);
   return (PetscInt)value;
 }
 
@@ -202,6 +208,8 @@ static void whole_from_tables(Model *m, const Table *table, const Table *measure
   for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(counts); ++i)
     *(PetscInt *)((char *)m + counts[i].offset) = count_of(table, counts[i].name, reason);
   if (!(m->time >= 0 && m->control.next > 0)) snprintf(reason, 256, "its time or step makes no sense");
+  if (m->control.patience > STEP_WAIT_MOST || m->control.wait > STEP_WAIT_MOST || m->step > 1000000000)
+    snprintf(reason, 256, "what its steps are chosen by makes no sense");
   for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(memories); ++i) {
     const PetscReal *data = TableData(measures, memories[i].name, COLUMN_REAL, 1, reason);
     for (PetscInt k = 0; data && k < m->c->n_measures; ++k)
@@ -256,6 +264,9 @@ static PetscErrorCode BalanceBack(Model *m, const Tables *tables, char reason[25
   const PetscInt64 *memory = TableData(table, "ranks_tried_repartitions", COLUMN_INT64, 3, reason);
   b->largest = real_of(table, "largest", reason);
   if (reason[0] || table->rows != 1) PetscFunctionReturn(0);
+  if (!(memory[1] >= 0 && memory[1] <= m->step && is_count(memory[2])))
+    snprintf(reason, 256, "%s makes no sense", table->name);
+  if (reason[0]) PetscFunctionReturn(0);
   b->repartitions = (PetscInt)memory[2];
   PetscCallMPI(MPI_Comm_size(m->comm, &size));
   if (memory[0] != size) PetscFunctionReturn(0);
