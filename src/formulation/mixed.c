@@ -251,26 +251,13 @@ KERNEL LawStatus commit_points(const int dim, const int nn, const WeakFormInput 
   return LAW_OK;
 }
 
-#define KERNELS(dim, nn)                                                           \
-  static void assemble_##dim##d_##nn(const WeakFormInput *in, WeakFormOutput *out) \
-  {                                                                                \
-    assemble_points(dim, nn, in, out);                                             \
-  }                                                                                \
-  static LawStatus commit_##dim##d_##nn(const WeakFormInput *in, Points *points)   \
-  {                                                                                \
-    return commit_points(dim, nn, in, points);                                     \
-  }
-KERNELS(2, 3)
-KERNELS(2, 4)
-KERNELS(3, 4)
-KERNELS(3, 8)
+SIZED_KERNELS(2, 3)
+SIZED_KERNELS(2, 4)
+SIZED_KERNELS(3, 4)
+SIZED_KERNELS(3, 8)
 
 static const SizedKernels kernels[] = {
-  {2, 3, assemble_2d_3, commit_2d_3},
-  {2, 4, assemble_2d_4, commit_2d_4},
-  {3, 4, assemble_3d_4, commit_3d_4},
-  {3, 8, assemble_3d_8, commit_3d_8},
-  {0},
+  SIZED_ROW(2, 3), SIZED_ROW(2, 4), SIZED_ROW(3, 4), SIZED_ROW(3, 8), {0},
 };
 
 static PetscErrorCode MixedAssemble(const WeakFormInput *in, WeakFormOutput *out)
