@@ -57,3 +57,7 @@ PetscErrorCode ModelToCloud(Model *model);
 PetscErrorCode ModelWarnOfObstacles(const Model *model, Diag *diag);
 /* Input of the weak form for the model's present arrays. */
 WeakFormInput weak_form_of(const Model *model, PetscReal inertia);
+/* Prescribed dofs, and nodes with unknowns that no material touches. */
+void mark_fixed(Model *model);
+/* Collective. History, first guess, prescribed increments and loads for a step of dt. */
+PetscErrorCode PrepareStep(Model *model, PetscReal dt, StepProblem *problem);

@@ -1,4 +1,4 @@
-/* Newton's own state, and when it has converged: for the files of newton*.c alone. */
+/* Newton's own state, and what its parts ask of each other: for the files of newton*.c alone. */
 #pragma once
 #include "solve/line_search.h"
 #include "solve/newton.h"
@@ -33,7 +33,27 @@ struct Newton {
   double solving; /* when the linear solve that is going on began */
 };
 
-/* Will this residual be the last? If it falls by the same factor once more it is far below the tolerance: no tangent will be asked for. */
+/* newton_setup.c. Everything made for one pattern of the system; does nothing if it is there already. Times count as `matrix`. Collective. */
+PetscErrorCode NewtonSetUp(Newton *n, StepProblem *p, const LinearProblem *linear);
+PetscErrorCode NewtonReset(Newton *n);
+
+/* newton_residual.c. Residual (and tangent values) at problem->du. A point that fails makes the status of all ranks bad. Collective. */
+PetscErrorCode NewtonAssemble(Newton *n, PetscBool tangent);
+/* Values -> matrix; where constraints are projections they have no part in it. */
+PetscErrorCode NewtonFillMatrix(Newton *n);
+/* Forces of the last assembly -> residual; infinite if a point had failed. */
+PetscErrorCode NewtonGetResidual(Newton *n, Vec f);
+/* du and pressure -> unknowns. */
+PetscErrorCode NewtonGetUnknowns(const Newton *n, Vec x);
+/* Unknowns -> du and pressure, keeping what is prescribed. */
+PetscErrorCode NewtonSetIncrements(Newton *n, Vec x);
+/* Where no unknowns are, a step has no forces, and only what is prescribed moves. */
+void newton_rest_without_unknowns(const StepProblem *p);
+/* The same as SNES asks for it; context: the Newton. */
+PetscErrorCode NewtonFunction(SNES snes, Vec x, Vec f, void *context);
+PetscErrorCode NewtonJacobian(SNES snes, Vec x, Mat matrix, Mat preconditioner, void *context);
+
+/* newton_converge.c. Will this residual be the last? If it falls by the same factor once more it is far below the tolerance: no tangent will be asked for. */
 PetscBool newton_is_last(const Newton *n);
 /* The convergence test of SNES; context: the Newton. Writes the report's residuals and its reference. */
 PetscErrorCode NewtonConverged(SNES snes, PetscInt it, PetscReal xnorm, PetscReal snorm, PetscReal fnorm,
