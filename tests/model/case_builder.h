@@ -11,6 +11,7 @@
 #include <unistd.h>
 #include <cmocka.h>
 #include "../conformance/random.h"
+#include "base/tensor.h"
 #include "model/model.h"
 
 typedef struct {
@@ -316,6 +317,19 @@ static inline void bench_end(Bench *b)
     unlink(b->mesh);
     *strrchr(b->mesh, '/') = 0;
     rmdir(b->mesh);
+  }
+}
+
+/* What prescribes the affine motion x = F X between two instants: dx = (F1 F0^-1 - 1) x at the place x of the first. */
+static inline void affine_increment(PetscInt dim, const PetscReal F0[9], const PetscReal F1[9], const PetscReal *x,
+                                    PetscReal *increment)
+{
+  PetscReal inverse[9], ratio[9];
+  tensor_inverse(F0, inverse);
+  tensor_multiply(F1, inverse, ratio);
+  for (PetscInt i = 0; i < dim; ++i) {
+    increment[i] = -x[i];
+    for (PetscInt j = 0; j < dim; ++j) increment[i] += ratio[3 * i + j] * x[j];
   }
 }
 

@@ -21,18 +21,13 @@ static void affine_motion(void *context, const PetscReal *x, PetscReal t0, Petsc
 {
   static const PetscReal H[9] = {0.12, 0.15, -0.06, -0.08, -0.1, 0.11, 0.05, -0.09, 0.2};
   const PetscInt dim = *(const PetscInt *)context;
-  PetscReal F0[9], F1[9], inverse[9], ratio[9];
+  PetscReal F0[9], F1[9];
   for (int i = 0; i < 9; ++i) {
     const PetscBool inside = i / 3 < dim && i % 3 < dim ? PETSC_TRUE : PETSC_FALSE;
     F0[i] = (i % 4 == 0) + (inside ? t0 * H[i] : 0);
     F1[i] = (i % 4 == 0) + (inside ? t1 * H[i] : 0);
   }
-  tensor_inverse(F0, inverse);
-  tensor_multiply(F1, inverse, ratio);
-  for (PetscInt i = 0; i < dim; ++i) {
-    increment[i] = -x[i];
-    for (PetscInt j = 0; j < dim; ++j) increment[i] += ratio[3 * i + j] * x[j];
-  }
+  affine_increment(dim, F0, F1, x, increment);
 }
 
 /* Error of F against the uniform one of time t: root of the mean square over all components and the volume. */

@@ -51,15 +51,10 @@ static void gradient_at(PetscInt dim, PetscReal t, PetscReal F[9])
 static void affine_motion(void *context, const PetscReal *x, PetscReal t0, PetscReal t1, PetscReal *increment)
 {
   const PetscInt dim = *(const PetscInt *)context;
-  PetscReal F0[9], F1[9], inverse[9], ratio[9];
+  PetscReal F0[9], F1[9];
   gradient_at(dim, t0, F0);
   gradient_at(dim, t1, F1);
-  tensor_inverse(F0, inverse);
-  tensor_multiply(F1, inverse, ratio);
-  for (PetscInt i = 0; i < dim; ++i) {
-    increment[i] = -x[i];
-    for (PetscInt j = 0; j < dim; ++j) increment[i] += ratio[3 * i + j] * x[j];
-  }
+  affine_increment(dim, F0, F1, x, increment);
 }
 
 /* Stress and pressure as the law alone gives them, and nodes with the same pressure. */
