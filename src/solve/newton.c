@@ -3,7 +3,8 @@
 #include "solve/newton_private.h"
 #include <petsctime.h>
 
-#define FORGIVEN_AFTER 50 /* steps after which the iterative solver gets another chance */
+#define ISOLATED_AFTER 10 /* steps after which a failure of the iterative solver counts no more */
+#define FORGIVEN_AFTER 50 /* where failures followed each other: steps of the direct solver before the next chance */
 
 PetscErrorCode NewtonCreate(MPI_Comm comm, const NewtonSpec *spec, Newton **newton)
 {
@@ -187,11 +188,11 @@ PetscErrorCode NewtonSolve(Newton *n, StepProblem *p, const LinearProblem *linea
     if (p->pressure) PetscCall(PetscArraycpy(p->pressure, pressure, nodes));
     PetscCall(NewtonSetUp(n, p, linear));
     PetscCall(NewtonTry(n, report));
-    n->built = n->failures < 3 ? -1 : n->built;
+    n->built = n->failures < NEWTON_FAILURES ? -1 : n->built;
     n->since = 0;
-  } else if (n->failures && ++n->since >= FORGIVEN_AFTER) {
+  } else if (n->failures && ++n->since >= (n->failures < NEWTON_FAILURES ? ISOLATED_AFTER : FORGIVEN_AFTER)) {
+    if (n->failures >= NEWTON_FAILURES) n->built = -1;
     n->failures = n->since = 0;
-    n->built = -1;
   }
   PetscCall(PetscFree2(guess, pressure));
   PetscFunctionReturn(0);

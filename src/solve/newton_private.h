@@ -5,6 +5,8 @@
 #include "solve/projection.h"
 #include "solve/saddle.h"
 
+#define NEWTON_FAILURES 3 /* of the iterative solver, one soon after another: the direct one stays for a while */
+
 struct Newton {
   MPI_Comm comm;
   NewtonSpec spec;
@@ -19,7 +21,7 @@ struct Newton {
   PetscBool direct;
   PetscBool projects; /* does the linear solver keep constraints by projections? else by multipliers in its matrix */
   Projection *projection;
-  PetscInt failures; /* of the iterative solver; after a few the direct one stays for a while */
+  PetscInt failures; /* of the iterative solver, not yet forgiven */
   PetscInt since;    /* steps since the last of them */
   PetscBool retry;   /* this try takes the direct solver */
   const char *linear;

@@ -55,7 +55,7 @@ PetscErrorCode NewtonSetUp(Newton *n, StepProblem *p, const LinearProblem *linea
   if (n->remembered == p->system->builds) chosen.courant = n->courant;
   n->courant = chosen.courant;
   n->remembered = -1;
-  if (n->retry || n->failures >= 3) chosen.choice = LINEAR_DIRECT;
+  if (n->retry || n->failures >= NEWTON_FAILURES) chosen.choice = LINEAR_DIRECT;
   PetscCall(LinearForm(&chosen, &form));
   n->projects = chosen.multipliers && form == SYSTEM_BLOCKS ? PETSC_TRUE : PETSC_FALSE;
   PetscCall(SystemUse(p->system, form, linear->symmetric));

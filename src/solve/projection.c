@@ -171,7 +171,7 @@ PetscErrorCode ProjectionDestroy(Projection **projection)
   PetscFunctionReturn(0);
 }
 
-/* 1 / D where C has a column. */
+/* 1 / |D| where C has a column: D weighs the projection, and every positive weight makes one. Plastic flow leaves some of D negative. */
 static PetscErrorCode InvertDiagonal(Projection *p)
 {
   const System *s = p->system;
@@ -186,8 +186,10 @@ static PetscErrorCode InvertDiagonal(Projection *p)
   for (PetscInt k = 0; k < p->n_dofs; ++k)
     p->inverse[k] = p->place[k] < 0 ? 0 : 1 / diagonal[s->active[p->place[k] / dim] * dim + p->place[k] % dim];
   PetscCall(MPIU_Allreduce(MPI_IN_PLACE, p->inverse, (PetscMPIInt)p->n_dofs, MPIU_REAL, MPI_SUM, p->comm));
-  for (PetscInt k = 0; k < p->n_dofs; ++k)
+  for (PetscInt k = 0; k < p->n_dofs; ++k) {
+    p->inverse[k] = PetscAbsReal(p->inverse[k]);
     if (!(p->inverse[k] > 0) || PetscIsInfReal(p->inverse[k])) p->singular = PETSC_TRUE;
+  }
   PetscFunctionReturn(0);
 }
 
