@@ -30,10 +30,11 @@ static PetscErrorCode MeasureImbalance(const Model *m, PetscReal *imbalance)
   PetscFunctionReturn(0);
 }
 
-/* Is it time to try? */
+/* Is it time to try? Not before the first step: nodes start from accelerations of their own, which points do not carry. */
 static PetscBool is_due(const Model *m)
 {
   const Balance *b = &m->balance;
+  if (m->step == 0) return PETSC_FALSE;
   if (b->imbalance <= m->c->parallel.imbalance) return PETSC_FALSE;
   if (b->reached == 0 || m->step - b->tried >= RETRY_AFTER) return PETSC_TRUE;
   return b->imbalance > 1 + WORSENED * (b->reached - 1) ? PETSC_TRUE : PETSC_FALSE;
