@@ -13,6 +13,9 @@ PetscErrorCode GridBinsDestroy(GridBins **bins)
   PetscFunctionBeginUser;
   if (!*bins) PetscFunctionReturn(0);
   PetscCall(PetscFree((*bins)->neighbour));
+  PetscCall(PetscFree((*bins)->far_cell));
+  PetscCall(PetscFree((*bins)->file_node));
+  PetscCall(PetscFree2((*bins)->cut_axis, (*bins)->cut));
   PetscCall(BoxTreeDestroy(&(*bins)->cell_tree));
   PetscCall(BoxTreeDestroy(&(*bins)->face_tree));
   PetscCall(PetscFree(*bins));
@@ -84,13 +87,15 @@ static PetscErrorCode FaceTree(const Grid *grid, BoxTree **tree)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode GridBinsCreate(Grid *grid, PetscInt *neighbour)
+PetscErrorCode GridBinsCreate(Grid *grid, PetscInt *neighbour, PetscInt *far_cell, PetscInt *file_node)
 {
   PetscReal size = 0;
 
   PetscFunctionBeginUser;
   PetscCall(PetscNew(&grid->bins));
-  grid->bins->neighbour = neighbour; /* now its own */
+  grid->bins->neighbour = neighbour;
+  grid->bins->far_cell = far_cell;
+  grid->bins->file_node = file_node;
   for (PetscInt d = 0; d < grid->dim; ++d) size = PetscMax(size, grid->max[d] - grid->min[d]);
   grid->bins->tolerance = PetscMax(1e-10, 2e-12 * size / grid->smallest);
   PetscCall(CellTree(grid, &grid->bins->cell_tree));

@@ -4,13 +4,7 @@
 
 PetscMPIInt box_owner(const GridBox *box, const PetscInt ijk[3])
 {
-  PetscMPIInt first = 0, last = box->size;
-  while (last - first > 1) {
-    const PetscMPIInt m = first + (last - first) / 2;
-    if (ijk[box->cut_axis[m]] < box->cut[m]) last = m;
-    else first = m;
-  }
-  return first;
+  return voxel_owner(box->size, box->cut_axis, box->cut, ijk);
 }
 
 /* The interval with line[i] <= x < line[i + 1]; the ends take what lies beyond them. */

@@ -2,13 +2,6 @@
  * before. */
 #include "grid/grid_private.h"
 
-#define WEIGHT_UNIT 64 /* weights are whole numbers of this fraction of a point */
-
-static inline PetscInt64 whole_weight(PetscReal weight)
-{
-  return weight > 0 ? (PetscInt64)(weight * WEIGHT_UNIT + 0.5) : 0;
-}
-
 /* What depends on the cuts alone. */
 static PetscErrorCode BoxRanks(GridBox *box)
 {
@@ -64,8 +57,7 @@ PetscErrorCode BoxPartition(MPI_Comm comm, GridBox *box, GridWeight weight, void
   PetscFunctionReturn(0);
 }
 
-/* The voxels of this rank that weigh something. */
-static PetscErrorCode WeighCells(const Grid *grid, const PetscReal *weight, VoxelWeights *w)
+PetscErrorCode BoxWeighCells(const Grid *grid, const PetscReal *weight, VoxelWeights *w)
 {
   const GridBox *box = grid->box;
   const VoxelBlock *mine = box->block + box->rank;
@@ -75,7 +67,7 @@ static PetscErrorCode WeighCells(const Grid *grid, const PetscReal *weight, Voxe
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc2(n, &w->voxel, n, &w->weight));
-  w->n = 0;
+  w->n = w->layer = 0;
   for (ijk[2] = mine->lo[2]; ijk[2] < mine->hi[2]; ++ijk[2])
     for (ijk[1] = mine->lo[1]; ijk[1] < mine->hi[1]; ++ijk[1])
       for (ijk[0] = mine->lo[0]; ijk[0] < mine->hi[0]; ++ijk[0], ++voxel) {
@@ -108,63 +100,14 @@ static PetscErrorCode BoxCopy(MPI_Comm comm, const GridBox *old, GridBox **out)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode GridRepartition(const Grid *old, const PetscReal *weight, PetscReal worst, PetscReal *reached,
-                               Grid **grid)
+PetscErrorCode GridBoxFromCuts(const Grid *old, const PetscInt *cut_axis, const PetscInt *cut, Grid **grid)
 {
-  VoxelWeights w;
-  GridBox *box;
+  GridBox *box = NULL;
 
   PetscFunctionBeginUser;
-  *grid = NULL;
   PetscCall(BoxCopy(old->comm, old->box, &box));
-  PetscCall(WeighCells(old, weight, &w));
-  PetscCall(PartitionVoxels(old->comm, box->dim, box->counts, &w, box->cut_axis, box->cut, reached));
-  PetscCall(PetscFree2(w.voxel, w.weight));
-  if (*reached > worst) {
-    PetscCall(GridBoxDestroy(&box));
-    PetscFunctionReturn(0);
-  }
-  PetscCall(BoxRanks(box));
-  PetscCall(GridFromBox(old->comm, old->type, box, grid));
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode GridPartitionToTable(const Grid *grid, Tables *tables)
-{
-  const GridBox *box = grid->box;
-  Table *table;
-  Column *axis, *cut;
-
-  PetscFunctionBeginUser;
-  PetscCall(TablesAdd(tables, "partition", PETSC_TRUE, box->size, &table));
-  PetscCall(TableAdd(table, "cut_axis", NULL, COLUMN_INT64, 1, NULL, &axis));
-  PetscCall(TableAdd(table, "cut", NULL, COLUMN_INT64, 1, NULL, &cut));
-  for (PetscMPIInt r = 0; r < box->size; ++r) {
-    ((PetscInt64 *)axis->data)[r] = box->cut_axis[r];
-    ((PetscInt64 *)cut->data)[r] = box->cut[r];
-  }
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode GridFromPartition(const Grid *old, const Table *table, Grid **grid, char reason[256])
-{
-  const PetscInt64 *axis = TableData(table, "cut_axis", COLUMN_INT64, 1, reason),
-                   *cut = TableData(table, "cut", COLUMN_INT64, 1, reason);
-  GridBox *box;
-
-  PetscFunctionBeginUser;
-  *grid = NULL;
-  if (!axis || !cut) PetscFunctionReturn(0); /* every rank has read the same */
-  if (table->rows != old->box->size) snprintf(reason, 256, "partition: it is of another number of ranks");
-  for (PetscInt64 r = 0; !reason[0] && r < table->rows; ++r)
-    if (axis[r] < 0 || axis[r] >= old->dim || cut[r] < 0 || cut[r] > old->box->counts[axis[r]])
-      snprintf(reason, 256, "partition: a cut makes no sense");
-  if (reason[0]) PetscFunctionReturn(0);
-  PetscCall(BoxCopy(old->comm, old->box, &box));
-  for (PetscMPIInt r = 0; r < box->size; ++r) {
-    box->cut_axis[r] = (PetscInt)axis[r];
-    box->cut[r] = (PetscInt)cut[r];
-  }
+  PetscCall(PetscArraycpy(box->cut_axis, cut_axis, box->size));
+  PetscCall(PetscArraycpy(box->cut, cut, box->size));
   PetscCall(BoxRanks(box));
   PetscCall(GridFromBox(old->comm, old->type, box, grid));
   PetscFunctionReturn(0);

@@ -58,3 +58,28 @@ PetscErrorCode DirectoryFind(MPI_Comm comm, PetscInt n_numbers, PetscInt n_have,
   PetscCall(PetscLayoutDestroy(&layout));
   PetscFunctionReturn(0);
 }
+
+PetscErrorCode DirectoryLowest(MPI_Comm comm, PetscInt n_numbers, PetscInt n, const PetscInt *number, PetscInt *lowest)
+{
+  PetscLayout layout;
+  PetscSF sf;
+  PetscMPIInt rank;
+  PetscInt share, *directory;
+
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_rank(comm, &rank));
+  PetscCall(PetscLayoutCreateFromSizes(comm, PETSC_DECIDE, n_numbers, 1, &layout));
+  PetscCall(PetscLayoutGetLocalSize(layout, &share));
+  PetscCall(PetscMalloc1(share, &directory));
+  for (PetscInt i = 0; i < share; ++i) directory[i] = PETSC_MAX_INT;
+  for (PetscInt i = 0; i < n; ++i) lowest[i] = rank;
+  PetscCall(ShareGraph(comm, layout, n, number, &sf));
+  PetscCall(PetscSFReduceBegin(sf, MPIU_INT, lowest, directory, MPI_MIN));
+  PetscCall(PetscSFReduceEnd(sf, MPIU_INT, lowest, directory, MPI_MIN));
+  PetscCall(PetscSFBcastBegin(sf, MPIU_INT, directory, lowest, MPI_REPLACE));
+  PetscCall(PetscSFBcastEnd(sf, MPIU_INT, directory, lowest, MPI_REPLACE));
+  PetscCall(PetscSFDestroy(&sf));
+  PetscCall(PetscFree(directory));
+  PetscCall(PetscLayoutDestroy(&layout));
+  PetscFunctionReturn(0);
+}

@@ -13,6 +13,9 @@ typedef struct {
 PetscErrorCode DirectoryFind(MPI_Comm comm, PetscInt n_numbers, PetscInt n_have, const PetscInt *have, PetscInt n_want,
                              const PetscInt *want, DirectoryPlace *place);
 
+/* Collective. The lowest rank that has each of these numbers; several may have one, and each asks for what it has. */
+PetscErrorCode DirectoryLowest(MPI_Comm comm, PetscInt n_numbers, PetscInt n, const PetscInt *number, PetscInt *lowest);
+
 /* A nodal array that outlives the step. */
 typedef struct {
   const char *name, *unit;

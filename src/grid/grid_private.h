@@ -72,14 +72,20 @@ PetscInt box_owned_nodes(const GridBox *box, const VoxelBlock *voxels);
 /* Collective. The grid of a box whose blocks are known; takes the box. */
 PetscErrorCode GridFromBox(MPI_Comm comm, CellType type, GridBox *box, Grid **grid);
 
-/* box_partition.c: the ranks' blocks of a box. Collective; see GridCreate. */
-PetscErrorCode BoxPartition(MPI_Comm comm, GridBox *box, GridWeight weight, void *context);
-
-/* Voxels that carry something, by their numbers in the lattice (first axis fastest), each named by one rank only. */
+/* Voxels that carry something, by their numbers in the lattice (first axis fastest), each named by one rank only. Where cells lie anywhere the
+ * lattice is a ruler for their centres, `layer` of its intervals to a cell, and all cells are listed; of a lattice of cells layer is 0. */
 typedef struct {
   PetscInt n, *voxel;
   PetscInt64 *weight;
+  PetscInt layer;
 } VoxelWeights;
+
+#define WEIGHT_UNIT 64 /* weights are whole numbers of this fraction of a point */
+
+static inline PetscInt64 whole_weight(PetscReal weight)
+{
+  return weight > 0 ? (PetscInt64)(weight * WEIGHT_UNIT + 0.5) : 0;
+}
 
 /* partition.c: weighted recursive coordinate bisection of the voxels. Fills the cuts (entries 1 .. size-1). imbalance: the
  * largest weight of a rank over the mean. Collective. */
@@ -88,6 +94,20 @@ PetscErrorCode PartitionVoxels(MPI_Comm comm, PetscInt dim, const PetscInt count
 /* The blocks of all ranks from the cuts. */
 PetscErrorCode PartitionBlocks(PetscMPIInt size, const PetscInt counts[3], const PetscInt *cut_axis,
                                const PetscInt *cut, VoxelBlock *block);
+/* The rank of one voxel from the cuts. */
+PetscMPIInt voxel_owner(PetscMPIInt size, const PetscInt *cut_axis, const PetscInt *cut, const PetscInt ijk[3]);
+
+/* box_partition.c: the ranks' blocks of a box. Collective; see GridCreate. */
+PetscErrorCode BoxPartition(MPI_Comm comm, GridBox *box, GridWeight weight, void *context);
+/* The voxels of this rank that weigh something; arrays to be freed with PetscFree2. */
+PetscErrorCode BoxWeighCells(const Grid *grid, const PetscReal *weight, VoxelWeights *voxels);
+/* Collective. The same box for other cuts. */
+PetscErrorCode GridBoxFromCuts(const Grid *old, const PetscInt *cut_axis, const PetscInt *cut, Grid **grid);
+
+/* mesh_repartition.c: intervals of the ruler over a mesh, which depend on the mesh alone. */
+void mesh_ruler(const Grid *grid, PetscInt counts[3]);
+PetscErrorCode MeshWeighCells(const Grid *grid, const PetscReal *weight, VoxelWeights *voxels);
+PetscErrorCode GridMeshFromCuts(const Grid *old, const PetscInt *cut_axis, const PetscInt *cut, Grid **grid);
 
 /* sets.c */
 PetscErrorCode GridSetDestroy(GridSet *set);
@@ -109,12 +129,16 @@ PetscErrorCode GridFinish(Grid *grid);
 /* search.c: everything that only unstructured grids need besides their cells. */
 typedef struct BoxTree BoxTree;
 struct GridBins {
-  PetscInt *neighbour; /* n_cells x faces: local cell beyond, -1 outside the grid, -2 - r on rank r */
-  BoxTree *cell_tree;  /* bounding boxes of the cells */
-  BoxTree *face_tree;  /* and of the faces on the outer boundary, as grid->outer lists them */
-  PetscReal tolerance; /* how far outside a cell a position still belongs, in reference units */
+  PetscInt *neighbour;      /* n_cells x faces: local cell beyond, -1 outside the grid, -2 - r on rank r */
+  PetscInt *far_cell;       /* numbers of the cells on other ranks, in the order in which neighbour names them */
+  PetscInt *file_node;      /* n_nodes: place among the nodes in the file, whatever the ranks */
+  PetscInt *cut_axis, *cut; /* by which the ranks share the mesh now; NULL: as it was read */
+  BoxTree *cell_tree;       /* bounding boxes of the cells */
+  BoxTree *face_tree;       /* and of the faces on the outer boundary, as grid->outer lists them */
+  PetscReal tolerance;      /* how far outside a cell a position still belongs, in reference units */
 };
-PetscErrorCode GridBinsCreate(Grid *grid, PetscInt *neighbour);
+/* Takes the arrays. */
+PetscErrorCode GridBinsCreate(Grid *grid, PetscInt *neighbour, PetscInt *far_cell, PetscInt *file_node);
 PetscErrorCode GridBinsDestroy(GridBins **bins);
 PetscInt mesh_locate(const Grid *grid, const PetscReal *x, PetscInt guess, PetscReal *xi);
 PetscInt mesh_candidates(const Grid *grid, const PetscReal *x, PetscInt max, PetscMPIInt *ranks);

@@ -85,7 +85,7 @@ static PetscErrorCode UnpackGhosts(Grid *grid, Integers *buffer)
 
 static PetscErrorCode Unpack(Grid *grid, const PetscInt head[HEAD_N], const char *names, Integers *buffer, PetscReal *x)
 {
-  PetscInt *neighbour;
+  PetscInt *neighbour, *far_cell, *file_node, n_far;
 
   PetscFunctionBeginUser;
   grid->n_cells = head[HEAD_CELLS];
@@ -95,6 +95,8 @@ static PetscErrorCode Unpack(Grid *grid, const PetscInt head[HEAD_N], const char
   PetscCall(Take(buffer, grid->n_cells * grid->nodes_per_cell, &grid->cell_node));
   PetscCall(Take(buffer, grid->n_cells, &grid->global_cell));
   PetscCall(Take(buffer, grid->n_cells * cells[grid->type].faces, &neighbour));
+  PetscCall(TakeList(buffer, &n_far, &far_cell));
+  PetscCall(Take(buffer, grid->n_nodes, &file_node));
   PetscCall(Take(buffer, grid->n_nodes, &grid->global_node));
   PetscCall(UnpackGhosts(grid, buffer));
   PetscCall(PetscCalloc1(grid->n_sets, &grid->sets));
@@ -104,7 +106,7 @@ static PetscErrorCode Unpack(Grid *grid, const PetscInt head[HEAD_N], const char
     names += strlen(names) + 1;
   }
   PetscCall(UnpackSet(buffer, &grid->outer));
-  PetscCall(GridBinsCreate(grid, neighbour));
+  PetscCall(GridBinsCreate(grid, neighbour, far_cell, file_node));
   PetscFunctionReturn(0);
 }
 

@@ -139,9 +139,26 @@ static PetscErrorCode PackCells(const Plan *plan, PetscMPIInt rank, Integers *bu
   PetscFunctionReturn(0);
 }
 
+/* Cells of other ranks beyond the rank's faces, with their number before them. */
+static PetscErrorCode PackFarCells(const Plan *plan, PetscMPIInt rank, Integers *buffer)
+{
+  const PetscInt n_faces = cells[plan->mesh->type].faces, at = buffer->n;
+
+  PetscFunctionBeginUser;
+  PetscCall(Put(buffer, 0));
+  for (PetscInt c = plan->first_cell[rank]; c < plan->first_cell[rank + 1]; ++c)
+    for (PetscInt f = 0; f < n_faces; ++f) {
+      const PetscInt other = plan->mesh->neighbour[plan->order[c] * n_faces + f];
+      if (other >= 0 && plan->owner[other] != rank) PetscCall(Put(buffer, other));
+    }
+  buffer->data[at] = buffer->n - at - 1;
+  PetscFunctionReturn(0);
+}
+
 static PetscErrorCode PackNodes(const Plan *plan, PetscMPIInt rank, Integers *buffer)
 {
   PetscFunctionBeginUser;
+  for (PetscInt k = 0; k < plan->n_nodes; ++k) PetscCall(Put(buffer, plan->nodes[k]));
   for (PetscInt k = 0; k < plan->n_nodes; ++k) {
     const PetscInt node = plan->nodes[k];
     PetscCall(Put(buffer, plan->first_node[plan->node_owner[node]] + plan->node_index[node]));
@@ -188,6 +205,7 @@ PetscErrorCode PlanPack(Plan *plan, PetscMPIInt rank, PetscInt head[HEAD_N], Int
   buffer->n = buffer->read = 0;
   list_nodes(plan, rank);
   PetscCall(PackCells(plan, rank, buffer));
+  PetscCall(PackFarCells(plan, rank, buffer));
   PetscCall(PackNodes(plan, rank, buffer));
   for (PetscInt s = 0; s < mesh->n_sets; ++s) PetscCall(PackSet(plan, rank, mesh->sets + s, buffer));
   PetscCall(PackSet(plan, rank, &plan->outer, buffer));

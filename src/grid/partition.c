@@ -26,6 +26,7 @@ typedef struct {
 typedef struct {
   PetscInt dim, counts[3];
   const VoxelWeights *weights; /* NULL: all voxels weigh the same */
+  PetscInt layer;              /* layers of voxels on either side that a cut goes through */
   PetscInt64 empty;
   PetscInt *part; /* of each of these voxels: index into the current level */
 } Share;
@@ -43,16 +44,17 @@ static PetscErrorCode ShareCreate(MPI_Comm comm, PetscInt dim, const PetscInt co
   PetscInt64 sums[2] = {0, 0}, total[2];
 
   PetscFunctionBeginUser;
-  *share = (Share){.dim = dim, .counts = {counts[0], counts[1], counts[2]}, .empty = 1};
+  *share = (Share){.dim = dim, .counts = {counts[0], counts[1], counts[2]}, .layer = 1, .empty = 1};
   if (!weights) PetscFunctionReturn(0);
   for (PetscInt v = 0; v < weights->n; ++v) {
     sums[0] += weights->weight[v];
     sums[1] += weights->weight[v] > 0;
   }
   PetscCallMPI(MPI_Allreduce(sums, total, 2, MPIU_INT64, MPI_SUM, comm));
-  if (total[0] == 0) PetscFunctionReturn(0);
+  if (total[0] == 0 && !weights->layer) PetscFunctionReturn(0);
   share->weights = weights;
-  share->empty = (PetscInt64)(empty_weight * (PetscReal)total[0] / (PetscReal)total[1]) + 1;
+  share->layer = PetscMax(weights->layer, 1);
+  if (total[0] > 0) share->empty = (PetscInt64)(empty_weight * (PetscReal)total[0] / (PetscReal)total[1]) + 1;
   PetscCall(PetscCalloc1(weights->n, &share->part));
   PetscFunctionReturn(0);
 }
@@ -97,6 +99,7 @@ static PetscErrorCode FillHistograms(MPI_Comm comm, const Share *share, PetscInt
                                      PetscInt64 *histogram)
 {
   const VoxelWeights *w = share->weights;
+  const PetscInt64 each = w && w->layer ? share->empty : 0; /* of those that are listed, the others are no cells */
 
   PetscFunctionBeginUser;
   PetscCall(PetscArrayzero(histogram, n));
@@ -105,14 +108,15 @@ static PetscErrorCode FillHistograms(MPI_Comm comm, const Share *share, PetscInt
     PetscInt ijk[3];
     if (!part_divides(part)) continue;
     voxel_at(share->counts, w->voxel[v], ijk);
-    for (PetscInt d = 0; d < share->dim; ++d) histogram[part->start[d] + ijk[d] - part->block.lo[d]] += w->weight[v];
+    for (PetscInt d = 0; d < share->dim; ++d)
+      histogram[part->start[d] + ijk[d] - part->block.lo[d]] += w->weight[v] + each;
   }
   if (w) {
     PetscMPIInt count;
     PetscCall(PetscMPIIntCast(n, &count));
     PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, histogram, count, MPIU_INT64, MPI_SUM, comm));
   }
-  for (PetscInt p = 0; p < n_parts; ++p)
+  for (PetscInt p = 0; p < n_parts && !each; ++p)
     for (PetscInt d = 0; d < share->dim && part_divides(parts + p); ++d) {
       const PetscInt layers = parts[p].block.hi[d] - parts[p].block.lo[d];
       const PetscInt64 layer = layers > 0 ? share->empty * (block_size(&parts[p].block) / layers) : 0;
@@ -123,16 +127,19 @@ static PetscErrorCode FillHistograms(MPI_Comm comm, const Share *share, PetscInt
 
 /* Where `fraction` of the histogram lies below; never at an end, unless there is but one layer: then
  * the lower half takes it. *cost: what lies on the wrong side, and what is cut through, of all. */
-static PetscInt best_cut(PetscInt n, const PetscInt64 *histogram, PetscReal fraction, PetscReal *cost)
+static PetscInt best_cut(PetscInt n, PetscInt layer, const PetscInt64 *histogram, PetscReal fraction, PetscReal *cost)
 {
   PetscReal total = 0, below = 0;
   PetscInt best = n;
   for (PetscInt b = 0; b < n; ++b) total += (PetscReal)histogram[b];
+  if (total == 0) total = 1; /* there are no cells here: anywhere will do */
   *cost = PETSC_MAX_REAL;
   for (PetscInt b = 1; b < n; ++b) {
     below += (PetscReal)histogram[b - 1];
     const PetscReal miss = PetscAbsReal(below - fraction * total) / total;
-    const PetscReal cut = (PetscReal)(histogram[b - 1] + histogram[b]) / total;
+    PetscInt64 through = 0;
+    for (PetscInt k = PetscMax(b - layer, 0); k < PetscMin(b + layer, n); ++k) through += histogram[k];
+    const PetscReal cut = (PetscReal)through / total;
     if (miss + surface_weight * cut >= *cost) continue;
     best = b;
     *cost = miss + surface_weight * cut;
@@ -141,14 +148,14 @@ static PetscInt best_cut(PetscInt n, const PetscInt64 *histogram, PetscReal frac
 }
 
 /* The axis along which the cut costs least; the longest one where several do. */
-static void choose_cut(PetscInt dim, const PetscInt64 *histogram, Part *part)
+static void choose_cut(const Share *share, const PetscInt64 *histogram, Part *part)
 {
   const PetscReal fraction = (PetscReal)(middle_rank(part) - part->first) / (PetscReal)(part->last - part->first);
   PetscReal least = PETSC_MAX_REAL, cost;
   PetscInt longest = -1;
-  for (PetscInt d = 0; d < dim; ++d) {
+  for (PetscInt d = 0; d < share->dim; ++d) {
     const PetscInt n = part->block.hi[d] - part->block.lo[d];
-    const PetscInt at = best_cut(n, histogram + part->start[d], fraction, &cost);
+    const PetscInt at = best_cut(n, share->layer, histogram + part->start[d], fraction, &cost);
     if (longest >= 0 && (cost > least || (cost == least && n <= longest))) continue;
     least = cost;
     longest = n;
@@ -169,7 +176,7 @@ static PetscErrorCode CutLevel(MPI_Comm comm, Share *share, PetscInt n_parts, Pa
   PetscCall(FillHistograms(comm, share, n_parts, parts, size, histogram));
   for (PetscInt p = 0; p < n_parts; ++p) {
     if (!part_divides(parts + p)) continue;
-    choose_cut(share->dim, histogram, parts + p);
+    choose_cut(share, histogram, parts + p);
     cut_axis[middle_rank(parts + p)] = parts[p].axis;
     cut[middle_rank(parts + p)] = parts[p].cut;
   }
@@ -199,7 +206,7 @@ static PetscErrorCode Imbalance(MPI_Comm comm, PetscMPIInt size, const Share *sh
     total += sum[r];
     largest = PetscMax(largest, sum[r]);
   }
-  *imbalance = (PetscReal)largest * (PetscReal)size / (PetscReal)total;
+  if (total > 0) *imbalance = (PetscReal)largest * (PetscReal)size / (PetscReal)total;
   PetscCall(PetscFree(sum));
   PetscFunctionReturn(0);
 }
@@ -228,6 +235,17 @@ PetscErrorCode PartitionVoxels(MPI_Comm comm, PetscInt dim, const PetscInt count
   PetscCall(PetscFree2(parts, next));
   PetscCall(ShareDestroy(&share));
   PetscFunctionReturn(0);
+}
+
+PetscMPIInt voxel_owner(PetscMPIInt size, const PetscInt *cut_axis, const PetscInt *cut, const PetscInt ijk[3])
+{
+  PetscMPIInt first = 0, last = size;
+  while (last - first > 1) {
+    const PetscMPIInt m = first + (last - first) / 2;
+    if (ijk[cut_axis[m]] < cut[m]) last = m;
+    else first = m;
+  }
+  return first;
 }
 
 PetscErrorCode PartitionBlocks(PetscMPIInt size, const PetscInt counts[3], const PetscInt *cut_axis,

@@ -156,7 +156,7 @@ static const SchemaTable checkpoint = {.name = "checkpoint",
 
 static const SchemaEntry parallel_entries[] = {
   KEY("imbalance", NUMBER, NULL,
-      "largest work of a rank over the mean at which mpm shares the grid among the ranks anew; 0: never",
+      "largest work of a rank over the mean at which mpm shares the grid, box or mesh, among the ranks anew; 0: never",
       .fallback = "1.2", AT_LEAST(0), AT(ParallelSpec, imbalance)),
   {.key = NULL},
 };

@@ -84,7 +84,7 @@ PetscErrorCode ModelBalance(Model *m, StepReport *report)
 
   PetscFunctionBeginUser;
   PetscCallMPI(MPI_Comm_size(m->comm, &size));
-  if (size == 1 || !m->method->points_move || !m->grid->box) PetscFunctionReturn(0);
+  if (size == 1 || !m->method->points_move || m->grid->cloud) PetscFunctionReturn(0);
   PetscCall(MeasureImbalance(m, &b->imbalance));
   b->largest = PetscMax(b->largest, b->imbalance);
   if (m->c->parallel.imbalance <= 0 || !is_due(m)) PetscFunctionReturn(0);

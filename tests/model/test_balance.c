@@ -110,6 +110,7 @@ static void all_the_way(Bench *b, PetscInt steps)
     b->c.parallel.imbalance = threshold;
     const StepReport r = model_step(m, PETSC_MAX_REAL);
     CHECK(r.imbalance == 0 || r.moved > 0, "no point moved");
+    CHECK(r.imbalance == 0 || s > 0, "accelerations of the start would be lost");
     CHECK(r.imbalance == 0 || r.imbalance > threshold, "the grid was shared anew at %g", (double)r.imbalance);
     model_step(alone, PETSC_MAX_REAL);
     b->c.parallel.imbalance = 0;
@@ -173,21 +174,42 @@ static void test_sliding_mixed(void **state)
   all_the_way(&b, 16);
 }
 
-/* Before and after a repartition: points, tracers and carriers to the last bit, the boundary's forces, nodal mass and motion. */
-static void test_conservation(void **state)
+/* Cells of a mesh travel with what is in them. Its sides stay where they are, and the body's. */
+static void on_mesh(Bench *b)
 {
+  static const PetscReal plane[] = {0, 0.25, 0.5, 0.75, 1, 1.5, 4};
+  bench_distort(b, 0.15, 7, plane);
+}
+
+static void test_sliding_mesh(void **state)
+{
+  static const struct {
+    CellType cell;
+    PetscReal size;
+    PetscInt steps;
+  } meshes[] = {{CELL_QUADRILATERAL, 0.125, 16}, {CELL_TRIANGLE, 0.25, 16}, {CELL_HEXAHEDRON, 0.25, 8}};
   Bench b;
-  StepReport report = {0};
   (void)state;
-  sliding(&b, CELL_QUADRILATERAL, 0.125);
-  b.c.parallel.imbalance = 0;
-  Model *m = bench_model(&b, PETSC_COMM_WORLD);
+  for (size_t k = 0; k < sizeof meshes / sizeof *meshes; ++k) {
+    sliding(&b, meshes[k].cell, meshes[k].size);
+    on_mesh(&b);
+    all_the_way(&b, meshes[k].steps);
+    bench_end(&b);
+  }
+}
+
+/* Before and after a repartition: points, tracers and carriers to the last bit, the boundary's forces, nodal mass and motion. */
+static void conserves(Bench *b)
+{
+  StepReport report = {0};
+  b->c.parallel.imbalance = 0;
+  Model *m = bench_model(b, PETSC_COMM_WORLD);
   for (PetscInt s = 0; s < 8; ++s) model_step(m, PETSC_MAX_REAL);
   Everything points = gather(m->grid, m->points), tracers = gather(m->grid, m->tracers),
              carriers = gather(m->grid, m->loads->carriers);
   const PetscReal reaction = nodal_sum(m, m->reaction), held = nodal_sum(m, m->held);
   const PetscReal v = nodal_sum(m, m->stage->v);
-  b.c.parallel.imbalance = 1 + 1e-9;
+  b->c.parallel.imbalance = 1 + 1e-9;
   CALL(ModelBalance(m, &report));
   CHECK(ranks() == 1 || (report.imbalance > 1 && report.moved > 0), "nothing happened at %g",
         (double)m->balance.imbalance);
@@ -200,6 +222,17 @@ static void test_conservation(void **state)
   CHECK_CLOSE(nodal_sum(m, m->held), held, 1e-14 * held);
   CHECK_CLOSE(nodal_sum(m, m->stage->v), v, 1e-12 * v);
   CALL(ModelDestroy(&m));
+}
+
+static void test_conservation(void **state)
+{
+  Bench b;
+  (void)state;
+  sliding(&b, CELL_QUADRILATERAL, 0.125);
+  conserves(&b);
+  on_mesh(&b);
+  conserves(&b);
+  bench_end(&b);
 }
 
 /* A body of one column of cells cannot be shared by cutting along it: the attempt must not be repeated at every step, nor change anything. */
@@ -225,8 +258,8 @@ static void test_hopeless(void **state)
 int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {
-    cmocka_unit_test(test_sliding),      cmocka_unit_test(test_sliding_3d), cmocka_unit_test(test_sliding_mixed),
-    cmocka_unit_test(test_conservation), cmocka_unit_test(test_hopeless),
+    cmocka_unit_test(test_sliding),      cmocka_unit_test(test_sliding_3d),   cmocka_unit_test(test_sliding_mixed),
+    cmocka_unit_test(test_sliding_mesh), cmocka_unit_test(test_conservation), cmocka_unit_test(test_hopeless),
   };
   return run_model_tests(argc, argv, tests);
 }

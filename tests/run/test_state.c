@@ -130,11 +130,11 @@ static void test_mpm_3d(void **state)
 }
 
 /* A block that leaves the part of its rank: the grid is shared anew before the checkpoint and after it. */
-static void test_repartition(void **state)
+static void leaving(PetscBool mesh)
 {
+  static const PetscReal plane[] = {0, 0.5, 1, 1.5, 4};
   Bench b;
   PetscMPIInt size;
-  (void)state;
   bench_init(&b, "mpm", CELL_QUADRILATERAL, 0);
   bench_grid(&b, (PetscReal[]){0, 0, 0}, (PetscReal[]){4, 1, 1}, 0.125);
   bench_box(&b, 0, (PetscReal[]){0, 0, 0}, (PetscReal[]){1.5, 0.5, 1});
@@ -145,10 +145,19 @@ static void test_repartition(void **state)
   b.c.linear = LINEAR_ITERATIVE;
   b.body[0].velocity[0] = 10;
   b.c.parallel.imbalance = 1.2;
+  if (mesh) bench_distort(&b, 0.15, 5, plane);
   MPI_Comm_size(PETSC_COMM_WORLD, &size);
   Model *m = check(&b, 9, 8, PETSC_TRUE);
   CHECK(size == 1 || m->balance.repartitions > 2, "shared anew only %d times", (int)m->balance.repartitions);
   CALL(ModelDestroy(&m));
+  bench_end(&b);
+}
+
+static void test_repartition(void **state)
+{
+  (void)state;
+  leaving(PETSC_FALSE);
+  leaving(PETSC_TRUE);
 }
 
 static void test_fem(void **state)

@@ -1,0 +1,302 @@
+/* A mesh goes from rank to rank: what arrives is the grid that reading it would have made, whatever way it went; and the cuts balance weights. */
+#include "grid/directory.h"
+#include "grid/mesh_travel.h"
+#include "mesh_test.h"
+
+static const struct {
+  const char *source, *options;
+  PetscInt dim;
+} meshes[] = {{"plane", "-2 -setnumber h 0.3", 2},
+              {"plane", "-2 -setnumber h 0.4 -setnumber quads 1", 2},
+              {"block", "-3 -setnumber n 2", 3},
+              {"block", "-3 -setnumber n 3 -setnumber bricks 1", 3}};
+
+static PetscMPIInt ranks(void)
+{
+  PetscMPIInt size;
+  MPI_Comm_size(PETSC_COMM_WORLD, &size);
+  return size;
+}
+
+static void same_numbers(PetscInt n, const PetscInt *a, const PetscInt *b)
+{
+  for (PetscInt i = 0; i < n; ++i) assert_int_equal(a[i], b[i]);
+}
+
+static void same_reals(PetscInt n, const PetscReal *a, const PetscReal *b)
+{
+  for (PetscInt i = 0; i < n; ++i) assert_true(a[i] == b[i]);
+}
+
+static void same_sets(const GridSet *a, const GridSet *b)
+{
+  assert_true(a->name == b->name || !strcmp(a->name, b->name));
+  assert_int_equal(a->n_nodes, b->n_nodes);
+  assert_int_equal(a->n_faces, b->n_faces);
+  assert_int_equal(a->n_cells, b->n_cells);
+  same_numbers(a->n_nodes, a->nodes, b->nodes);
+  same_numbers(a->n_faces, a->face_cell, b->face_cell);
+  same_numbers(a->n_faces, a->face_side, b->face_side);
+  same_numbers(a->n_cells, a->cells, b->cells);
+}
+
+static void same_ghosts(const Grid *a, const Grid *b)
+{
+  PetscInt roots[2], leaves[2];
+  const PetscInt *leaf[2];
+  const PetscSFNode *root[2];
+  CALL(PetscSFGetGraph(a->node_sf, &roots[0], &leaves[0], &leaf[0], &root[0]));
+  CALL(PetscSFGetGraph(b->node_sf, &roots[1], &leaves[1], &leaf[1], &root[1]));
+  assert_int_equal(roots[0], roots[1]);
+  assert_int_equal(leaves[0], leaves[1]);
+  for (PetscInt i = 0; i < leaves[0]; ++i) {
+    assert_int_equal(leaf[0] ? leaf[0][i] : i, leaf[1] ? leaf[1][i] : i);
+    assert_true(root[0][i].rank == root[1][i].rank && root[0][i].index == root[1][i].index);
+  }
+}
+
+/* To the last bit. */
+static void same_grids(const Grid *a, const Grid *b)
+{
+  const PetscInt n_sides = a->n_cells * cells[a->type].faces;
+  assert_true(a->dim == b->dim && a->type == b->type && a->nodes_per_cell == b->nodes_per_cell);
+  assert_true(a->n_cells == b->n_cells && a->n_cells_global == b->n_cells_global);
+  assert_true(a->n_owned == b->n_owned && a->n_nodes == b->n_nodes && a->n_nodes_global == b->n_nodes_global);
+  assert_true(a->smallest == b->smallest);
+  same_reals(3, a->min, b->min);
+  same_reals(3, a->max, b->max);
+  same_numbers(a->n_cells * a->nodes_per_cell, a->cell_node, b->cell_node);
+  same_numbers(a->n_cells, a->global_cell, b->global_cell);
+  same_numbers(a->n_nodes, a->global_node, b->global_node);
+  same_numbers(a->n_nodes, a->bins->file_node, b->bins->file_node);
+  same_numbers(n_sides, a->bins->neighbour, b->bins->neighbour);
+  for (PetscInt k = 0, f = 0; k < n_sides; ++k)
+    if (a->bins->neighbour[k] <= -2) {
+      assert_int_equal(a->bins->far_cell[f], b->bins->far_cell[f]);
+      ++f;
+    }
+  same_reals(a->n_nodes * a->dim, a->x, b->x);
+  same_reals(6 * ranks(), a->rank_bounds[0], b->rank_bounds[0]);
+  same_ghosts(a, b);
+  assert_int_equal(a->n_sets, b->n_sets);
+  for (PetscInt s = 0; s < a->n_sets; ++s) same_sets(a->sets + s, b->sets + s);
+  same_sets(&a->outer, &b->outer);
+}
+
+static Grid *travel(const Grid *old, const PetscMPIInt *owner)
+{
+  MeshParcel parcel;
+  Grid *grid;
+  CALL(MeshSend(old, owner, &parcel));
+  CALL(MeshSettle(old, &parcel, &grid));
+  CALL(MeshParcelDestroy(&parcel));
+  return grid;
+}
+
+/* Every cell to a rank of its own choice. */
+static Grid *scatter(const Grid *old, PetscInt step)
+{
+  PetscMPIInt *owner;
+  CALL(PetscMalloc1(old->n_cells, &owner));
+  for (PetscInt c = 0; c < old->n_cells; ++c) owner[c] = (PetscMPIInt)(old->global_cell[c] / step % ranks());
+  Grid *grid = travel(old, owner);
+  for (PetscInt c = 0; c < grid->n_cells; ++c) assert_int_equal(grid->global_cell[c] / step % ranks(), my_rank());
+  CALL(PetscFree(owner));
+  return grid;
+}
+
+/* Every cell to where it is in `home`. */
+static Grid *send_home(const Grid *old, const Grid *home)
+{
+  DirectoryPlace *place;
+  PetscMPIInt *owner;
+  CALL(PetscMalloc2(old->n_cells, &place, old->n_cells, &owner));
+  CALL(DirectoryFind(PETSC_COMM_WORLD, home->n_cells_global, home->n_cells, home->global_cell, old->n_cells,
+                     old->global_cell, place));
+  for (PetscInt c = 0; c < old->n_cells; ++c) owner[c] = (PetscMPIInt)place[c].rank;
+  Grid *grid = travel(old, owner);
+  CALL(PetscFree2(place, owner));
+  return grid;
+}
+
+static void there_and_back(void **state)
+{
+  static const PetscReal inside[8] = {1, 2, 3, 2.5, 1.5, 0.7, 0.9, 3}, node[8] = {0, 1};
+  (void)state;
+  for (int m = 0; m < 4; ++m) {
+    generate(meshes[m].source, "travel.msh", meshes[m].options);
+    Grid *home = read_mesh("travel.msh", meshes[m].dim);
+    Grid *first = scatter(home, 1), *second = scatter(first, 7), *back = send_home(second, home);
+    same_grids(home, back);
+    check_ghosts(second);
+    if (meshes[m].dim == 2) check_plane(second);
+    locate_in_cells(second, inside);
+    locate_in_cells(second, node);
+    CALL(GridDestroy(&first));
+    CALL(GridDestroy(&second));
+    CALL(GridDestroy(&back));
+    CALL(GridDestroy(&home));
+  }
+}
+
+/* All of it to the last rank, and to where it was. */
+static void all_to_one(void **state)
+{
+  PetscMPIInt *owner;
+  (void)state;
+  generate("plane", "one.msh", "-2 -setnumber h 0.3");
+  Grid *home = read_mesh("one.msh", 2);
+  CALL(PetscMalloc1(home->n_cells, &owner));
+  for (PetscInt c = 0; c < home->n_cells; ++c) owner[c] = ranks() - 1;
+  Grid *grid = travel(home, owner);
+  assert_int_equal(grid->n_cells, my_rank() == ranks() - 1 ? home->n_cells_global : 0);
+  assert_int_equal(grid->n_nodes, my_rank() == ranks() - 1 ? home->n_nodes_global : 0);
+  for (PetscInt i = 0; i < grid->n_nodes; ++i) assert_int_equal(grid->bins->file_node[i], i);
+  check_plane(grid);
+  Grid *back = send_home(grid, home);
+  same_grids(home, back);
+  CALL(PetscFree(owner));
+  CALL(GridDestroy(&grid));
+  CALL(GridDestroy(&back));
+  CALL(GridDestroy(&home));
+}
+
+/* Weight in a disk, and nothing elsewhere. */
+static void weigh_disk(const Grid *grid, PetscReal x, PetscReal y, PetscReal radius, PetscReal *weight)
+{
+  for (PetscInt c = 0; c < grid->n_cells; ++c) {
+    PetscReal nodes[3 * CELL_MAX_NODES], at[3] = {0, 0, 0};
+    grid_cell_x(grid, c, nodes);
+    for (PetscInt i = 0; i < grid->nodes_per_cell; ++i)
+      for (PetscInt d = 0; d < grid->dim; ++d) at[d] += nodes[i * grid->dim + d] / (PetscReal)grid->nodes_per_cell;
+    weight[c] = PetscHypotReal(at[0] - x, at[1] - y) < radius ? 4.2 : 0;
+  }
+}
+
+static PetscReal imbalance(PetscInt n, const PetscReal *weight)
+{
+  PetscReal sum = 0, largest;
+  for (PetscInt c = 0; c < n; ++c) sum += weight[c];
+  CALL(MPI_Allreduce(&sum, &largest, 1, MPIU_REAL, MPIU_MAX, PETSC_COMM_WORLD));
+  const PetscReal all = sum_over_ranks(sum);
+  return all > 0 ? largest * ranks() / all : 1;
+}
+
+static Grid *share_by_disk(const Grid *old, PetscReal x, PetscReal y, PetscReal radius, PetscReal *reached)
+{
+  PetscReal *weight;
+  Grid *grid;
+  CALL(PetscMalloc1(old->n_cells, &weight));
+  weigh_disk(old, x, y, radius, weight);
+  CALL(GridRepartition(old, weight, PETSC_MAX_REAL, reached, &grid));
+  CALL(PetscFree(weight));
+  return grid;
+}
+
+/* A disk of weight goes through the mesh, and the ranks after it. Cells without weight count a little, a fifteenth of all here, and their ranks have
+ * so much less of the disk. */
+static void follows_weight(void **state)
+{
+  PetscReal reached, *weight;
+  (void)state;
+  generate("plane", "fine.msh", "-2 -setnumber h 0.04");
+  Grid *grid = read_mesh("fine.msh", 2);
+  for (int k = 0; k < 4; ++k) {
+    const PetscReal x = 0.4 + 0.7 * k, y = x < 2 ? 0.5 : 0.5 + 0.5 * (x - 2);
+    Grid *next = share_by_disk(grid, x, y, 0.45, &reached);
+    CALL(PetscMalloc1(next->n_cells, &weight));
+    weigh_disk(next, x, y, 0.45, weight);
+    assert_near(imbalance(next->n_cells, weight), reached);
+    CALL(PetscFree(weight));
+    assert_true(reached < 1.12);
+    check_plane(next);
+    const PetscReal ghosts = sum_over_ranks((PetscReal)(next->n_nodes - next->n_owned));
+    assert_true(ghosts < 100 * (ranks() - 1) + 1); /* 76 nodes along the mesh, 26 across */
+    CALL(GridDestroy(&grid));
+    grid = next;
+  }
+  Grid *idle = share_by_disk(grid, 99, 99, 0.1, &reached); /* nothing weighs anything: by cells */
+  assert_true(reached == 1 && count_over_ranks(idle->n_cells) == grid->n_cells_global);
+  assert_true(idle->n_cells * ranks() < 1.15 * grid->n_cells_global);
+  CALL(GridDestroy(&idle));
+  CALL(GridDestroy(&grid));
+}
+
+static void not_worth_it(void **state)
+{
+  PetscReal reached, *weight;
+  Grid *next;
+  (void)state;
+  generate("plane", "rest.msh", "-2 -setnumber h 0.3");
+  Grid *grid = read_mesh("rest.msh", 2);
+  CALL(PetscCalloc1(grid->n_cells, &weight));
+  weigh_disk(grid, 0.5, 0.5, 0.3, weight);
+  CALL(GridRepartition(grid, weight, 0.999, &reached, &next));
+  assert_true(!next && reached >= 1);
+  CALL(PetscFree(weight));
+  CALL(GridDestroy(&grid));
+}
+
+/* Cuts go to a file and come back: the same grid to the last bit, from the mesh as it is read. */
+static void by_table(void **state)
+{
+  PetscReal reached;
+  (void)state;
+  for (int m = 0; m < 4; ++m) {
+    char reason[256] = "";
+    Tables *tables;
+    Table *table;
+    Grid *again;
+    generate(meshes[m].source, "table.msh", meshes[m].options);
+    Grid *grid = read_mesh("table.msh", meshes[m].dim);
+    CALL(TablesCreate(&tables));
+    CALL(GridPartitionToTable(grid, tables)); /* it has not been shared anew: there is nothing to keep */
+    assert_null(TablesFind(tables, "partition"));
+    Grid *shared = share_by_disk(grid, 0.7, 0.5, 0.4, &reached);
+    CALL(GridPartitionToTable(shared, tables));
+    table = TablesFind(tables, "partition");
+    assert_non_null(table);
+    CALL(GridFromPartition(grid, table, &again, reason));
+    assert_int_equal(reason[0], 0);
+    same_grids(shared, again);
+    CALL(GridDestroy(&again));
+    *(PetscInt64 *)TableData(table, "cut_axis", COLUMN_INT64, 1, reason) = 3;
+    CALL(GridFromPartition(grid, table, &again, reason));
+    assert_true(!again && strstr(reason, "makes no sense"));
+    CALL(TablesDestroy(&tables));
+    CALL(GridDestroy(&shared));
+    CALL(GridDestroy(&grid));
+  }
+}
+
+/* More ranks than cells. */
+static void two_cells(void **state)
+{
+  static const char text[] =
+    "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n4\n1 0 0 0\n2 1 0 0\n3 1 1 0\n4 0 1 0\n$EndNodes\n"
+    "$Elements\n3\n1 2 2 1 1 1 2 3\n2 2 2 1 1 1 3 4\n3 1 2 5 1 3 4\n$EndElements\n";
+  PetscReal reached;
+  (void)state;
+  write_file("two.msh", text, sizeof text - 1);
+  Grid *grid = read_mesh("two.msh", 2), *shared = share_by_disk(grid, 0.5, 0.5, 1, &reached);
+  assert_near(reached, ranks() == 1 ? 1 : ranks() / 2.0);
+  assert_near(grid_volume(shared), 1.0);
+  assert_near(region_volume(shared, "1"), 1.0);
+  assert_int_equal(owned_nodes(shared, GridFindSet(shared, "5")), 2);
+  assert_int_equal(count_over_ranks(GridFindSet(shared, "5")->n_faces), 1);
+  check_ghosts(shared);
+  Grid *back = send_home(shared, grid);
+  same_grids(grid, back);
+  CALL(GridDestroy(&back));
+  CALL(GridDestroy(&shared));
+  CALL(GridDestroy(&grid));
+}
+
+int main(int argc, char **argv)
+{
+  const struct CMUnitTest tests[] = {
+    cmocka_unit_test(there_and_back), cmocka_unit_test(all_to_one), cmocka_unit_test(follows_weight),
+    cmocka_unit_test(not_worth_it),   cmocka_unit_test(by_table),   cmocka_unit_test(two_cells),
+  };
+  return run_grid_tests(argc, argv, tests, sizeof tests / sizeof *tests, setup, teardown);
+}
