@@ -166,7 +166,10 @@ static inline PetscErrorCode PassMeasure(Model *m, PetscReal inertia, PetscInt r
   *pass = (Pass){PETSC_MAX_REAL, PETSC_MAX_REAL, pass_bytes(m)};
   for (PetscInt k = 0; k < repeats; ++k) {
     const WeakFormInput in = weak_form_of(m, inertia);
-    WeakFormOutput out = {.force = m->force, .values = m->system->values, .slot = m->system->slot};
+    WeakFormOutput out = {.force = m->force,
+                          .values = m->system->single ? NULL : m->system->values,
+                          .singles = m->system->single ? m->system->singles : NULL,
+                          .slot = m->system->slot};
     const PetscReal start = seconds_now();
     PetscCall(PetscArrayzero(m->force, dofs));
     PetscCall(SystemZero(m->system));

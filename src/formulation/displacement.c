@@ -63,13 +63,25 @@ KERNEL void cell_cut(const int dim, const int nn, const WeakFormInput *in, const
     }
 }
 
+KERNEL PetscBool wants_tangent(const WeakFormOutput *out)
+{
+  return out->values || out->singles ? PETSC_TRUE : PETSC_FALSE;
+}
+
+KERNEL void cell_prefetch(const int dim, const int nn, PetscInt group, const WeakFormOutput *out)
+{
+  const PetscInt *slot = out->slot + group * nn * nn;
+  if (out->singles) prefetch_blocks(dim, nn, slot, out->singles, sizeof(float));
+  else prefetch_blocks(dim, nn, slot, out->values, sizeof(PetscReal));
+}
+
 KERNEL void cell_store(const int dim, const int nn, const WeakFormInput *in, PetscInt group, CellWork *w,
                        WeakFormOutput *out)
 {
   const PetscInt *node = in->support->node + group * nn;
-  if (in->soft && in->soft[group] > 0) cell_soften(dim, nn, in->soft[group], out->values != NULL, w);
+  if (in->soft && in->soft[group] > 0) cell_soften(dim, nn, in->soft[group], wants_tangent(out), w);
   if (in->tie && in->tie[group] > 0) add_tie(dim, nn, in->tie[group], w->a, w->f, w->M);
-  if (out->values) {
+  if (wants_tangent(out)) {
     const PetscInt *slot = out->slot + group * nn * nn;
     int cut = 0;
     for (int I = 0; I < nn; ++I)
@@ -79,7 +91,8 @@ KERNEL void cell_store(const int dim, const int nn, const WeakFormInput *in, Pet
           w->K[((I * dim + d) * dim + d) * row_width(nn) + J] += in->inertia * w->M[I * row_width(nn) + J];
       }
     if (cut) cell_cut(dim, nn, in, node, w);
-    scatter_blocks(dim, nn, slot, w->K, out->values);
+    if (out->singles) scatter_blocks(dim, nn, PETSC_TRUE, slot, w->K, out->singles);
+    else scatter_blocks(dim, nn, PETSC_FALSE, slot, w->K, out->values);
   }
   for (int I = 0; I < nn; ++I)
     for (int d = 0; d < dim; ++d) out->force[node[I] * dim + d] += w->f[d * row_width(nn) + I];
@@ -131,7 +144,7 @@ KERNEL void add_points(const int dim, const int nn, const WeakFormInput *in, Pet
 KERNEL void assemble_points(const int dim, const int nn, const WeakFormInput *in, WeakFormOutput *out)
 {
   const Support *support = in->support;
-  const PetscBool tangent = out->values ? PETSC_TRUE : PETSC_FALSE;
+  const PetscBool tangent = wants_tangent(out);
   CellWork w;
   Batch b;
   const PetscInt n = points_in_groups(support);
@@ -153,7 +166,7 @@ KERNEL void assemble_points(const int dim, const int nn, const WeakFormInput *in
       while (first + k >= support->point_start[group + 1]) {
         cell_store(dim, nn, in, group++, &w, out);
         cell_load(dim, nn, in, group, &w);
-        if (tangent) prefetch_blocks(dim, nn, out->slot + group * nn * nn, out->values);
+        if (tangent) cell_prefetch(dim, nn, group, out);
       }
       run = PetscMin(PetscMin(b.n - k, RUN_POINTS), support->point_start[group + 1] - (first + k));
       add_points(dim, nn, in, tangent, &b, k, run, in->lumping ? in->lumping[group] : 0, &w);
@@ -206,6 +219,7 @@ static PetscErrorCode DisplacementCommit(const WeakFormInput *in, Points *points
 const Formulation formulation_displacement = {
   .name = "displacement",
   .help = "displacements as the only unknowns (thesis ch. 4)",
+  .singles = PETSC_TRUE,
   .assemble = DisplacementAssemble,
   .commit = DisplacementCommit,
 };

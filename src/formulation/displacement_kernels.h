@@ -12,6 +12,9 @@
 typedef PetscReal Row4 __attribute__((vector_size(4 * sizeof(PetscReal)), aligned(sizeof(PetscReal)), may_alias));
 typedef PetscReal Row8 __attribute__((vector_size(8 * sizeof(PetscReal)), aligned(sizeof(PetscReal)), may_alias));
 
+typedef float Single4 __attribute__((vector_size(4 * sizeof(float)), aligned(sizeof(float)), may_alias));
+typedef float Single8 __attribute__((vector_size(8 * sizeof(float)), aligned(sizeof(float)), may_alias));
+
 KERNEL int row_width(const int nn) { return nn <= 4 ? 4 : 8; }
 
 /* row = every `stride`-th number, zero beyond nn. */
@@ -167,20 +170,40 @@ KERNEL void add_stiffness(const int dim, const int nn, const PointRun *run, Pets
 }
 
 /* The blocks of the next cells lie apart in memory, where no processor finds them by itself. */
-KERNEL void prefetch_blocks(const int dim, const int nn, const PetscInt *restrict slot,
-                            const PetscReal *restrict values)
+KERNEL void prefetch_blocks(const int dim, const int nn, const PetscInt *restrict slot, const void *values,
+                            const int number)
 {
-  const int size = dim * dim;
+  const int size = dim * dim * number; /* bytes */
   for (int i = 0; i < nn * nn; ++i) {
-    __builtin_prefetch(values + slot[i] * size, 1);
-    if (size > 4) __builtin_prefetch(values + slot[i] * size + size - 1, 1);
+    const char *block = (const char *)values + slot[i] * size;
+    __builtin_prefetch(block, 1);
+    if (dim > 2) __builtin_prefetch(block + size - number, 1);
   }
+}
+
+/* The first numbers of a block, in the precision that they are gathered in. */
+KERNEL void block_add4(const PetscBool single, Row4 more, void *values, PetscInt at)
+{
+  if (single) *(Single4 *)((float *)values + at) += __builtin_convertvector(more, Single4);
+  else *(Row4 *)((PetscReal *)values + at) += more;
+}
+
+KERNEL void block_add8(const PetscBool single, Row8 more, void *values, PetscInt at)
+{
+  if (single) *(Single8 *)((float *)values + at) += __builtin_convertvector(more, Single8);
+  else *(Row8 *)((PetscReal *)values + at) += more;
+}
+
+KERNEL void block_add(const PetscBool single, PetscReal more, void *values, PetscInt at)
+{
+  if (single) ((float *)values)[at] += (float)more;
+  else ((PetscReal *)values)[at] += more;
 }
 
 /* Block (I, J) of the cell matrix, dim x dim numbers, is added to values at slot[I nn + J]. In K the numbers of a block are a row apart, so as
  * many of them as a register takes are turned at once. */
-KERNEL void scatter_blocks(const int dim, const int nn, const PetscInt *restrict slot, const PetscReal *restrict K,
-                           PetscReal *restrict values)
+KERNEL void scatter_blocks(const int dim, const int nn, const PetscBool single, const PetscInt *restrict slot,
+                           const PetscReal *restrict K, void *restrict values)
 {
   const int w = row_width(nn), size = dim * dim, whole = size / w * w;
   for (int I = 0; I < nn; ++I, slot += nn, K += size * w) {
@@ -194,13 +217,12 @@ KERNEL void scatter_blocks(const int dim, const int nn, const PetscInt *restrict
       if (w == 4) rows_transpose4(four);
       else rows_transpose8(eight);
       for (int J = 0; J < nn; ++J) {
-        PetscReal *block = values + slot[J] * size + first;
-        if (w == 4) *(Row4 *)block += four[J];
-        else *(Row8 *)block += eight[J];
+        if (w == 4) block_add4(single, four[J], values, slot[J] * size + first);
+        else block_add8(single, eight[J], values, slot[J] * size + first);
       }
     }
     for (int e = whole; e < size; ++e)
-      for (int J = 0; J < nn; ++J) values[slot[J] * size + e] += K[e * w + J];
+      for (int J = 0; J < nn; ++J) block_add(single, K[e * w + J], values, slot[J] * size + e);
   }
 }
 

@@ -31,7 +31,8 @@ typedef struct {
 typedef struct {
   PetscReal *force;     /* n_nodes x dim, added to; rows of prescribed dofs too (reactions) */
   PetscReal *volume;    /* mixed: n_nodes, residual of the pressure equation, N, added to */
-  PetscReal *values;    /* matrix blocks, added to; NULL: residual only */
+  PetscReal *values;    /* matrix blocks, added to; NULL: residual only, unless there are singles */
+  float *singles;       /* the same in single precision, from formulations that can; instead of values */
   const PetscInt *slot; /* per group nn x nn: block of the pair of nodes in values */
   LawStatus status;     /* worst of all points */
   PetscInt bad_point;   /* a point of that status */
@@ -40,6 +41,7 @@ typedef struct {
 typedef struct {
   const char *name, *help;
   PetscBool pressure; /* is there an unknown pressure at the nodes, behind the displacements in each block? */
+  PetscBool singles;  /* can it add its blocks in single precision, where groups are cells? */
   PetscErrorCode (*assemble)(const WeakFormInput *in, WeakFormOutput *out);
   /* Accept the step: new state, F, J, stress and work of every point. `state` of the points is overwritten. */
   PetscErrorCode (*commit)(const WeakFormInput *in, Points *points, LawStatus *status);

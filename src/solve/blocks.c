@@ -9,7 +9,7 @@ typedef struct {
   PetscInt n;    /* blocks of this row */
   PetscBool shared;
   const PetscInt *column; /* of a shared row; else the nodes of the columns */
-  const PetscReal *values;
+  const float *values;
 } Row;
 
 static inline void row_take(Row *row, PetscInt r)
@@ -27,7 +27,7 @@ static inline void row_take(Row *row, PetscInt r)
     row->n = row->s->row_start[r + 1] - first;
     row->shared = PETSC_FALSE;
     row->column = row->s->column + first;
-    row->values = row->s->values + first * bs;
+    row->values = row->s->singles + first * bs;
   }
 }
 
@@ -195,7 +195,7 @@ KERNEL PetscBool find_scales(const int dim, Blocks *m, const System *s, const un
     PetscReal D[9];
     row_take(&row, r);
     const PetscInt diagonal = m->lower.start[r + 1] - m->lower.start[r];
-    for (int i = 0; i < dim * dim; ++i) D[i] = row.values[diagonal * dim * dim + i];
+    for (int i = 0; i < dim * dim; ++i) D[i] = (PetscReal)row.values[diagonal * dim * dim + i];
     for (int i = 0; i < dim; ++i)
       if (fixed[s->active[r] * dim + i]) D[i * dim + i] = 1;
     float *S = m->scale + r * dim * dim;
@@ -207,58 +207,53 @@ KERNEL PetscBool find_scales(const int dim, Blocks *m, const System *s, const un
 }
 
 /* block = S values other^T for lower triangles S, in four lanes. */
-static inline void scale_symmetric_2d(const PetscReal *values, const float *S, const float *other, float *block)
+static inline void scale_symmetric_2d(Lanes v, Lanes s, Lanes o, float *block)
 {
-  const Doubles v = *(const FourDoubles *)values, none = {0, 0, 0, 0};
-  const Doubles s = __builtin_convertvector(*(const Lanes *)S, Doubles);
-  const Doubles o = __builtin_convertvector(*(const Lanes *)other, Doubles);
-  const Doubles left = __builtin_shufflevector(s, s, 0, 0, 3, 3) * v +
-                       __builtin_shufflevector(s, none, 4, 4, 2, 2) * __builtin_shufflevector(v, v, 0, 1, 0, 1);
-  const Doubles product = left * __builtin_shufflevector(o, o, 0, 3, 0, 3) +
-                          __builtin_shufflevector(left, left, 0, 0, 2, 2) * __builtin_shufflevector(o, o, 1, 2, 1, 2);
-  *(Lanes *)block = __builtin_convertvector(product, Lanes);
+  const Lanes none = {0, 0, 0, 0};
+  const Lanes left = __builtin_shufflevector(s, s, 0, 0, 3, 3) * v +
+                     __builtin_shufflevector(s, none, 4, 4, 2, 2) * __builtin_shufflevector(v, v, 0, 1, 0, 1);
+  *(Lanes *)block = left * __builtin_shufflevector(o, o, 0, 3, 0, 3) +
+                    __builtin_shufflevector(left, none, 4, 0, 4, 2) * __builtin_shufflevector(o, o, 2, 2, 2, 2);
+}
+
+/* block = S values. */
+static inline void scale_unsymmetric_2d(Lanes v, Lanes s, float *block)
+{
+  *(Lanes *)block = __builtin_shufflevector(s, s, 0, 0, 2, 2) * __builtin_shufflevector(v, v, 0, 1, 0, 1) +
+                    __builtin_shufflevector(s, s, 1, 1, 3, 3) * __builtin_shufflevector(v, v, 2, 3, 2, 3);
 }
 
 /* The same for 3 x 3: rows of the block are lanes, and its columns go out one after the other; the fourth lane of a store is 0 and belongs to
- * what comes next. column: those of S_row. */
-static inline void scale_block_3d(const PetscReal *values, const Doubles column[3], const float *other,
-                                  PetscBool symmetric, float *block)
+ * what comes next. column: those of S. */
+static inline void scale_block_3d(const float *values, const Lanes column[3], const float *other, PetscBool symmetric,
+                                  float *block)
 {
-  Doubles left[3];
+  Lanes left[3];
   for (int j = 0; j < 3; ++j) left[j] = column[0] * values[j] + column[1] * values[3 + j] + column[2] * values[6 + j];
   for (int j = 0; j < 3; ++j) {
-    Doubles product = left[j];
+    Lanes product = left[j];
     if (symmetric) {
-      product = left[0] * (PetscReal)other[3 * j];
-      for (int k = 1; k <= j; ++k) product += left[k] * (PetscReal)other[3 * j + k];
+      product = left[0] * other[3 * j];
+      for (int k = 1; k <= j; ++k) product += left[k] * other[3 * j + k];
     }
-    *(Lanes *)(block + 3 * j) = __builtin_convertvector(product, Lanes);
+    *(Lanes *)(block + 3 * j) = product;
   }
 }
 
 /* block = S_row values T_column, in the order of the kernels: 2 x 2 row by row, 3 x 3 column by column. */
-KERNEL void scale_block_plane(const PetscReal *values, const float *S, const float *other, PetscBool symmetric,
-                              float *block)
-{
-  if (symmetric) scale_symmetric_2d(values, S, other, block);
-  else
-    for (int i = 0; i < 2; ++i)
-      for (int j = 0; j < 2; ++j)
-        block[i * 2 + j] = (float)((PetscReal)S[i * 2] * values[j] + (PetscReal)S[i * 2 + 1] * values[2 + j]);
-}
-
-KERNEL const PetscReal *scale_blocks(const int dim, const Blocks *m, PetscInt r, const BlockRows *rows, PetscInt k,
-                                     const PetscReal *values, PetscBool symmetric)
+KERNEL const float *scale_blocks(const int dim, const Blocks *m, PetscInt r, const BlockRows *rows, PetscInt k,
+                                 const float *values, PetscBool symmetric)
 {
   const float *S = m->scale + r * dim * dim;
-  Doubles column[3] = {{0}};
+  Lanes column[3] = {{0}};
   if (dim == 3)
-    for (int i = 0; i < 3; ++i) column[i] = (Doubles){(PetscReal)S[i], (PetscReal)S[3 + i], (PetscReal)S[6 + i], 0};
+    for (int i = 0; i < 3; ++i) column[i] = (Lanes){S[i], S[3 + i], S[6 + i], 0};
   for (PetscInt e = rows->start[k]; e < rows->start[k + 1]; ++e, values += dim * dim) {
     const float *other = m->scale + rows->column[e] * dim * dim;
     float *block = rows->block + e * dim * dim;
     if (dim == 3) scale_block_3d(values, column, other, symmetric, block);
-    else scale_block_plane(values, S, other, symmetric, block);
+    else if (symmetric) scale_symmetric_2d(*(const Lanes *)values, *(const Lanes *)S, *(const Lanes *)other, block);
+    else scale_unsymmetric_2d(*(const Lanes *)values, *(const Lanes *)S, block);
   }
   return values;
 }
@@ -269,7 +264,7 @@ KERNEL void fill_rows(const int dim, Blocks *m, const System *s, PetscBool symme
   PetscInt outer = 0;
   for (PetscInt r = 0; r < m->n; ++r) {
     row_take(&row, r);
-    const PetscReal *v = scale_blocks(dim, m, r, &m->lower, r, row.values, symmetric);
+    const float *v = scale_blocks(dim, m, r, &m->lower, r, row.values, symmetric);
     v = scale_blocks(dim, m, r, &m->upper, r, v + dim * dim, symmetric);
     if (outer < m->n_outer && m->outer_row[outer] == r) (void)scale_blocks(dim, m, r, &m->outer, outer++, v, symmetric);
   }

@@ -32,7 +32,7 @@ typedef struct Blocks {
 /* Collective. The pattern; the system must live on unchanged until BlocksDestroy. Blocks are 2 x 2 or 3 x 3. */
 PetscErrorCode BlocksCreate(const System *system, PetscBool symmetric, Blocks **blocks);
 PetscErrorCode BlocksDestroy(Blocks **blocks);
-/* Collective. Take the values of the system; dofs in fixed get a diagonal. */
+/* Collective. Take the singles of the system; dofs in fixed get a diagonal. */
 PetscErrorCode BlocksFill(Blocks *blocks, const System *system, const unsigned char *fixed);
 /* Collective. y = A x, for a Mat of type shell. */
 PetscErrorCode BlocksMultiply(Blocks *blocks, Vec x, Vec y);
@@ -60,11 +60,11 @@ struct BlocksHalo {
   PetscSF pairs;   /* roots: incoming blocks; leaves: pairs of rows that others own */
   MPI_Datatype vector, block, scale;
   PetscInt n_incoming;
-  PetscReal *incoming;              /* blocks */
+  float *incoming;                  /* blocks */
   PetscInt n_shared, *shared_row;   /* rows with blocks of others, ascending */
   PetscInt *start, *column;         /* their whole pattern */
   PetscInt *own_start, *own, *come; /* where own pairs and incoming blocks go in it */
-  PetscReal *values;
+  float *values;
 };
 PetscErrorCode BlocksHaloCreate(const System *s, PetscInt *n_columns, BlocksHalo **halo);
 PetscErrorCode BlocksHaloDestroy(BlocksHalo **halo);

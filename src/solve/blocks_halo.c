@@ -158,7 +158,7 @@ static PetscErrorCode DataTypes(PetscInt dim, BlocksHalo *h)
 {
   PetscFunctionBeginUser;
   PetscCallMPI(MPI_Type_contiguous((PetscMPIInt)block_stride((int)dim), MPI_FLOAT, &h->vector));
-  PetscCallMPI(MPI_Type_contiguous((PetscMPIInt)(dim * dim), MPIU_REAL, &h->block));
+  PetscCallMPI(MPI_Type_contiguous((PetscMPIInt)(dim * dim), MPI_FLOAT, &h->block));
   PetscCallMPI(MPI_Type_contiguous((PetscMPIInt)(dim * dim), MPI_FLOAT, &h->scale));
   PetscCallMPI(MPI_Type_commit(&h->vector));
   PetscCallMPI(MPI_Type_commit(&h->block));
@@ -230,13 +230,13 @@ PetscErrorCode BlocksHaloDestroy(BlocksHalo **halo)
 PetscErrorCode BlocksHaloSum(BlocksHalo *h, const System *s)
 {
   const PetscInt bs = s->dim * s->dim;
-  const PetscReal *ghosts = s->values + s->row_start[s->n_active] * bs;
+  const float *ghosts = s->singles + s->row_start[s->n_active] * bs;
 
   PetscFunctionBeginUser;
   PetscCall(PetscSFReduceBegin(h->pairs, h->block, ghosts, h->incoming, MPI_REPLACE));
   PetscCall(PetscArrayzero(h->values, h->start[h->n_shared] * bs));
   for (PetscInt k = 0; k < h->n_shared; ++k) {
-    const PetscReal *own = s->values + s->row_start[h->shared_row[k]] * bs;
+    const float *own = s->singles + s->row_start[h->shared_row[k]] * bs;
     for (PetscInt j = h->own_start[k]; j < h->own_start[k + 1]; ++j)
       for (PetscInt i = 0; i < bs; ++i) h->values[h->own[j] * bs + i] += *own++;
   }

@@ -36,8 +36,11 @@ PetscErrorCode NewtonAssemble(Newton *n, PetscBool tangent)
   if (p->volume) PetscCall(PetscArrayzero(p->volume, p->grid->n_nodes));
   if (tangent) PetscCall(SystemZero(p->system));
   n->tangent = tangent;
-  WeakFormOutput out = {
-    .force = p->force, .volume = p->volume, .values = tangent ? p->system->values : NULL, .slot = p->system->slot};
+  WeakFormOutput out = {.force = p->force,
+                        .volume = p->volume,
+                        .values = tangent && !p->system->single ? p->system->values : NULL,
+                        .singles = tangent && p->system->single ? p->system->singles : NULL,
+                        .slot = p->system->slot};
   p->in.du = p->du;
   p->in.pressure = p->pressure;
   p->in.fixed = p->fixed;

@@ -20,6 +20,8 @@ static PetscErrorCode SystemFreePattern(System *s)
   PetscCall(PetscFree(s->column));
   PetscCall(PetscFree(s->diagonal));
   PetscCall(PetscFree(s->values));
+  PetscCall(PetscFree(s->singles));
+  s->single = PETSC_FALSE;
   PetscCall(MatDestroy(&s->matrix));
   PetscCall(BlocksDestroy(&s->blocks));
   PetscFunctionReturn(0);
@@ -140,6 +142,8 @@ static PetscErrorCode SystemPattern(System *s, const NodeGroups *groups)
   PetscFunctionReturn(0);
 }
 
+static PetscInt system_numbers(const System *s) { return s->row_start[s->n_rows] * s->block * s->block; }
+
 /* One COO entry for each number in `values`: the matrix is filled by one call, ghost rows travel inside it. */
 static PetscErrorCode AssembledMatrix(System *s)
 {
@@ -196,8 +200,19 @@ PetscErrorCode SystemUse(System *s, SystemForm form, PetscBool symmetric)
     s->form = form;
     if (form == SYSTEM_BLOCKS) PetscCall(BlockMatrix(s, symmetric));
     else PetscCall(AssembledMatrix(s));
+    PetscCall(SystemGather(s, PETSC_FALSE));
   }
   if (symmetric) PetscCall(MatSetOption(s->matrix, MAT_SYMMETRIC, PETSC_TRUE));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode SystemGather(System *s, PetscBool single)
+{
+  PetscFunctionBeginUser;
+  s->single = single && s->blocks ? PETSC_TRUE : PETSC_FALSE;
+  if (s->single) PetscCall(PetscFree(s->values));
+  else if (!s->values) PetscCall(PetscCalloc1(system_numbers(s), &s->values));
+  if (s->blocks && !s->singles) PetscCall(PetscMalloc1(system_numbers(s), &s->singles));
   PetscFunctionReturn(0);
 }
 
@@ -267,7 +282,8 @@ PetscErrorCode SystemSlots(System *s, const Support *support, PetscBool *complet
 PetscErrorCode SystemZero(System *s)
 {
   PetscFunctionBeginUser;
-  PetscCall(PetscArrayzero(s->values, s->row_start[s->n_rows] * s->block * s->block));
+  if (s->single) PetscCall(PetscArrayzero(s->singles, system_numbers(s)));
+  else PetscCall(PetscArrayzero(s->values, system_numbers(s)));
   PetscFunctionReturn(0);
 }
 
@@ -302,6 +318,7 @@ PetscErrorCode SystemToMatrix(System *s, const unsigned char *fixed, const unsig
   PetscFunctionBeginUser;
   if (!s->matrix) PetscCall(SystemUse(s, SYSTEM_ASSEMBLED, PETSC_FALSE));
   if (s->blocks) {
+    for (PetscInt i = 0; !s->single && i < system_numbers(s); ++i) s->singles[i] = (float)s->values[i];
     PetscCall(BlocksFill(s->blocks, s, fixed));
     PetscFunctionReturn(0);
   }

@@ -21,6 +21,8 @@ typedef struct System {
   PetscInt *row_start, *column;             /* pattern of node pairs: n_rows + 1, and local nodes, ascending in a row */
   PetscInt *diagonal;                       /* n_rows: place of the diagonal pair */
   PetscReal *values;                        /* block x block numbers of pair k at k * block * block */
+  float *singles;                           /* the same in single precision, which is all that blocks need */
+  PetscBool single;                         /* is the tangent gathered in singles, or else in values? */
   PetscInt n_slots, *slot;                  /* SystemSlots: nn x nn pairs of each group */
   SystemForm form;
   Mat matrix;            /* what the linear solver gets: assembled, or a shell over blocks; made by SystemUse */
@@ -36,12 +38,15 @@ PetscErrorCode SystemBuild(System *system, const Grid *grid, const NodeGroups *g
 /* Look up the slots of every group of the support. Cells' nodes must all carry unknowns; clouds (uniform = 0) have ascending nodes, and
  * `complete` tells whether the pattern has all their pairs on this rank. */
 PetscErrorCode SystemSlots(System *system, const Support *support, PetscBool *complete);
+/* Zero values or singles, whichever are in use. */
 PetscErrorCode SystemZero(System *system);
 /* Zero an array of n_nodes x dim where nodes have unknowns, ghosts too. */
 PetscErrorCode SystemZeroNodes(const System *system, PetscReal *nodes);
 
 /* Collective. Make the matrix in this form, if it is not there yet. */
 PetscErrorCode SystemUse(System *system, SystemForm form, PetscBool symmetric);
+/* May the tangent be gathered in single precision? Only where the matrix works on blocks; forgotten with the pattern. */
+PetscErrorCode SystemGather(System *system, PetscBool single);
 /* Collective. Diagonal entries for the displacements in fixed (n_nodes x dim: prescribed, or on a node that no material touches) and for
  * the pressures of idle nodes (n_nodes; NULL without pressures), then values -> matrix. */
 PetscErrorCode SystemToMatrix(System *system, const unsigned char *fixed, const unsigned char *idle);
