@@ -79,6 +79,7 @@ KERNEL void cell_store(const int dim, const int nn, const WeakFormInput *in, Pet
                        WeakFormOutput *out)
 {
   const PetscInt *node = in->support->node + group * nn;
+  if (in->symmetric && wants_tangent(out)) mirror_stiffness(dim, nn, w->K);
   if (in->soft && in->soft[group] > 0) cell_soften(dim, nn, in->soft[group], wants_tangent(out), w);
   if (in->tie && in->tie[group] > 0) add_tie(dim, nn, in->tie[group], w->a, w->f, w->M);
   if (wants_tangent(out)) {
@@ -138,7 +139,8 @@ KERNEL void add_points(const int dim, const int nn, const WeakFormInput *in, Pet
     run.c[i] = b->c + 36 * k;
     run.volume[i] = volume;
   }
-  if (tangent) add_stiffness(dim, nn, &run, w->K);
+  if (tangent && in->symmetric) add_stiffness(dim, nn, PETSC_TRUE, &run, w->K);
+  else if (tangent) add_stiffness(dim, nn, PETSC_FALSE, &run, w->K);
 }
 
 KERNEL void assemble_points(const int dim, const int nn, const WeakFormInput *in, WeakFormOutput *out)

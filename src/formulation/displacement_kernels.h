@@ -146,14 +146,15 @@ KERNEL void run_products(const int dim, const int nn, const int a, const int b, 
     }
 }
 
-/* K[I][a][b][J] += sum over the points of sum_j g_Ij T_jJ */
-KERNEL void add_stiffness(const int dim, const int nn, const PointRun *run, PetscReal *restrict K)
+/* K[I][a][b][J] += sum over the points of sum_j g_Ij T_jJ; only a <= b if the rest is to be mirrored. */
+KERNEL void add_stiffness(const int dim, const int nn, const PetscBool symmetric, const PointRun *run,
+                          PetscReal *restrict K)
 {
   const int w = row_width(nn);
 #pragma GCC unroll 3
   for (int a = 0; a < dim; ++a)
 #pragma GCC unroll 3
-    for (int b = 0; b < dim; ++b) {
+    for (int b = symmetric ? a : 0; b < dim; ++b) {
       PetscReal sum[CELL_MAX_NODES * CELL_MAX_NODES], T[3 * CELL_MAX_NODES];
 #pragma GCC unroll 8
       for (int I = 0; I < nn; ++I) row_copy(nn, K + ((I * dim + a) * dim + b) * w, sum + I * w);
@@ -166,6 +167,29 @@ KERNEL void add_stiffness(const int dim, const int nn, const PointRun *run, Pets
       }
 #pragma GCC unroll 8
       for (int I = 0; I < nn; ++I) row_copy(nn, sum + I * w, K + ((I * dim + a) * dim + b) * w);
+    }
+}
+
+/* K[I][b][a][J] = K[J][a][b][I] for a < b. */
+KERNEL void mirror_stiffness(const int dim, const int nn, PetscReal *restrict K)
+{
+  const int w = row_width(nn), stride = dim * dim * w;
+  for (int a = 0; a < dim; ++a)
+    for (int b = a + 1; b < dim; ++b) {
+      const PetscReal *from = K + (a * dim + b) * w;
+      PetscReal *to = K + (b * dim + a) * w;
+      Row4 four[4] = {{0}};
+      Row8 eight[8];
+      for (int I = 0; I < nn; ++I) {
+        if (w == 4) four[I] = *(const Row4 *)(from + I * stride);
+        else eight[I] = *(const Row8 *)(from + I * stride);
+      }
+      if (w == 4) rows_transpose4(four);
+      else rows_transpose8(eight);
+      for (int I = 0; I < nn; ++I) {
+        if (w == 4) *(Row4 *)(to + I * stride) = four[I];
+        else *(Row8 *)(to + I * stride) = eight[I];
+      }
     }
 }
 

@@ -17,6 +17,7 @@ typedef struct {
   const PetscReal *du;        /* n_nodes x dim: displacement since the start of the step, m */
   const PetscReal *history;   /* n_nodes x dim: h, m/s2 */
   PetscReal inertia;          /* c0, 1/s2; 0 in statics */
+  PetscBool symmetric;        /* are the tangents of all materials symmetric? */
   const PetscReal *lumping;   /* per group: share of the mass that is lumped, or NULL (0) */
   const PetscReal *soft;      /* per group: stiffness that ties a hardly filled cell's nodes together, N/m, or NULL */
   const PetscReal *tie;       /* per group: inertia that ties them together, kg, or NULL */

@@ -189,7 +189,7 @@ KERNEL void add_point(const int dim, const int nn, const WeakFormInput *in, Pets
   if (!tangent) return;
   PointRun run = {.n = 1, .tau = {b->s.tau + 6 * k}, .c = {b->s.c + 36 * k}, .volume = {volume}};
   for (int j = 0; j < dim; ++j) row_copy(nn, g + j * row_width(nn), run.g[0] + j * row_width(nn));
-  add_stiffness(dim, nn, &run, w->K);
+  add_stiffness(dim, nn, PETSC_FALSE, &run, w->K);
   add_pressure_force(dim, nn, g, b->s.coupling + 6 * k, N, scaled, w->Kup);
   add_dilation(dim, nn, g, N, scaled * b->s.rate[k], w->Kpu);
   for (int I = 0; I < nn; ++I)

@@ -11,6 +11,7 @@ WeakFormInput weak_form_of(const Model *m, PetscReal inertia)
     .du = m->du,
     .history = m->history,
     .inertia = inertia,
+    .symmetric = m->symmetric,
     .lumping = m->stage->lumping,
     .soft = m->stage->soft,
     .tie = m->stage->tie,
