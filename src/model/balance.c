@@ -15,18 +15,37 @@ PetscReal cell_work(CellType type)
   return work[type];
 }
 
+/* {sum, largest} of pairs, in one call. */
+static void MPIAPI sum_and_largest(void *in, void *inout, PetscMPIInt *n, MPI_Datatype *type)
+{
+  const PetscReal *more = in;
+  PetscReal *so_far = inout;
+  (void)type;
+  for (PetscMPIInt i = 0; i < *n; ++i, more += 2, so_far += 2) {
+    so_far[0] += more[0];
+    so_far[1] = PetscMax(so_far[1], more[1]);
+  }
+}
+
 /* Largest share of the work over the mean. */
 static PetscErrorCode MeasureImbalance(const Model *m, PetscReal *imbalance)
 {
   const PetscReal mine = (PetscReal)m->points->n + cell_work(m->grid->type) * (PetscReal)m->stage->support->n_groups;
-  PetscReal largest, sum;
+  const PetscReal pair[2] = {mine, mine};
+  PetscReal all[2];
   PetscMPIInt size;
+  MPI_Datatype type;
+  MPI_Op op;
 
   PetscFunctionBeginUser;
   PetscCallMPI(MPI_Comm_size(m->comm, &size));
-  PetscCall(MPIU_Allreduce(&mine, &largest, 1, MPIU_REAL, MPIU_MAX, m->comm));
-  PetscCall(MPIU_Allreduce(&mine, &sum, 1, MPIU_REAL, MPIU_SUM, m->comm));
-  *imbalance = sum > 0 ? largest * (PetscReal)size / sum : 1;
+  PetscCallMPI(MPI_Type_contiguous(2, MPIU_REAL, &type));
+  PetscCallMPI(MPI_Type_commit(&type));
+  PetscCallMPI(MPI_Op_create(sum_and_largest, 1, &op));
+  PetscCallMPI(MPI_Allreduce(pair, all, 1, type, op, m->comm));
+  PetscCallMPI(MPI_Op_free(&op));
+  PetscCallMPI(MPI_Type_free(&type));
+  *imbalance = all[0] > 0 ? all[1] * (PetscReal)size / all[0] : 1;
   PetscFunctionReturn(0);
 }
 
