@@ -26,6 +26,25 @@ LANES_INLINE int lanes_any(const LaneBits *mask)
   return (half[0] | half[1] | half[2] | half[3]) != 0;
 }
 
+/* Rows to columns: r[i][j] becomes r[j][i]. */
+LANES_INLINE void lanes_transpose(Lanes r[8])
+{
+  Lanes a[8], b[8];
+  for (int i = 0; i < 8; i += 2) {
+    a[i] = __builtin_shufflevector(r[i], r[i + 1], 0, 8, 2, 10, 4, 12, 6, 14);
+    a[i + 1] = __builtin_shufflevector(r[i], r[i + 1], 1, 9, 3, 11, 5, 13, 7, 15);
+  }
+  for (int i = 0; i < 8; i += 4)
+    for (int j = 0; j < 2; ++j) {
+      b[i + j] = __builtin_shufflevector(a[i + j], a[i + j + 2], 0, 1, 8, 9, 4, 5, 12, 13);
+      b[i + j + 2] = __builtin_shufflevector(a[i + j], a[i + j + 2], 2, 3, 10, 11, 6, 7, 14, 15);
+    }
+  for (int j = 0; j < 4; ++j) {
+    r[j] = __builtin_shufflevector(b[j], b[j + 4], 0, 1, 2, 3, 8, 9, 10, 11);
+    r[j + 4] = __builtin_shufflevector(b[j], b[j + 4], 4, 5, 6, 7, 12, 13, 14, 15);
+  }
+}
+
 LANES_INLINE void lanes_abs(const Lanes *x, Lanes *y) { *y = (Lanes)((LaneBits)*x & INT64_MAX); }
 
 LANES_INLINE void lanes_sqrt(const Lanes *x, Lanes *y)

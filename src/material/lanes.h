@@ -18,11 +18,37 @@ LANES_INLINE void lanes_load(int components, PetscInt n, const PetscReal *from, 
       (Lanes){point[0][k], point[1][k], point[2][k], point[3][k], point[4][k], point[5][k], point[6][k], point[7][k]};
 }
 
+/* Components first .. first + LANES - 1, turned: one Lanes a point. */
+LANES_INLINE void lanes_points(int components, int first, const Lanes *from, Lanes point[LANES])
+{
+  const Lanes none = {0};
+  for (int k = 0; k < LANES; ++k) point[k] = first + k < components ? from[first + k] : none;
+  lanes_transpose(point);
+}
+
+/* Eight points, in whole registers: one by one, 36 components of a tangent took a quarter of the law. Where a point has fewer components than
+ * a register, what is written too far is the next point's, which follows. */
+LANES_INLINE void lanes_store_all(int components, const Lanes *from, PetscReal *to)
+{
+  Lanes point[LANES];
+  int first = 0;
+  for (; first + LANES <= components; first += LANES) {
+    lanes_points(components, first, from, point);
+    for (int l = 0; l < LANES; ++l) __builtin_memcpy(to + l * components + first, &point[l], sizeof point[l]);
+  }
+  const int rest = components - first;
+  if (!rest) return;
+  lanes_points(components, first, from, point);
+  for (int l = 0; l < LANES; ++l) {
+    const int size = first == 0 && l < LANES - 1 ? LANES : rest;
+    __builtin_memcpy(to + l * components + first, &point[l], (size_t)size * sizeof(PetscReal));
+  }
+}
+
 LANES_INLINE void lanes_store(int components, PetscInt n, const Lanes *from, PetscReal *to)
 {
   if (n >= LANES) {
-    for (int l = 0; l < LANES; ++l)
-      for (int k = 0; k < components; ++k) to[l * components + k] = from[k][l];
+    lanes_store_all(components, from, to);
     return;
   }
   for (int l = 0; l < n; ++l)
