@@ -11,7 +11,6 @@
 
 typedef float Lanes __attribute__((vector_size(16), aligned(4), may_alias));
 typedef double Doubles __attribute__((vector_size(32)));
-typedef double FourDoubles __attribute__((vector_size(32), aligned(8), may_alias));
 typedef double TwoLanes __attribute__((aligned(4), may_alias)); /* 2D: both numbers of a node, moved at once */
 typedef double TwoTwice __attribute__((vector_size(16)));
 
