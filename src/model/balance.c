@@ -16,6 +16,7 @@ PetscReal cell_work(CellType type)
 }
 
 /* {sum, largest} of pairs, in one call. */
+/* NOLINTNEXTLINE(readability-non-const-parameter): MPI's own signature */
 static void MPIAPI sum_and_largest(void *in, void *inout, PetscMPIInt *n, MPI_Datatype *type)
 {
   const PetscReal *more = in;
@@ -76,6 +77,7 @@ PetscErrorCode ModelRegrid(Model *m, Grid *grid, PetscInt *moved)
   PetscFunctionBeginUser;
   PetscCall(TablesCreate(&kept));
   PetscCall(ReactionsToTables(m, kept));
+  PetscCall(GuessToTables(m, kept));
   *moved = 0;
   PetscCall(PointsRegrid(m->points, m->grid, grid, moved));
   PetscInt followers = 0;
@@ -88,6 +90,7 @@ PetscErrorCode ModelRegrid(Model *m, Grid *grid, PetscInt *moved)
   m->grid = grid;
   PetscCall(ModelCreateFields(m)); /* no cell is enabled: the next step makes the system anew */
   PetscCall(ReactionsFromTables(m, kept, reason));
+  PetscCall(GuessFromTables(m, kept, reason));
   PetscCheck(!reason[0], m->comm, PETSC_ERR_PLIB, "%s", reason);
   PetscCall(TablesDestroy(&kept));
   PetscFunctionReturn(0);

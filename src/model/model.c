@@ -145,7 +145,7 @@ PetscErrorCode ModelCreateFields(Model *m)
     for (PetscInt i = 0; i < m->c->n_materials; ++i)
       m->pressure_scale = PetscMax(m->pressure_scale, m->materials[i].elastic.shear / m->grid->smallest);
   }
-  PetscReal **const scratch[] = {&m->du, &m->force, &m->external, &m->history, &m->prescribed};
+  PetscReal **const scratch[] = {&m->du, &m->force, &m->external, &m->history, &m->prescribed, &m->previous};
   PetscReal **const kept[] = {&m->reaction, &m->held};
   static const char *const kept_names[] = {"reaction", "held"};
   for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(scratch); ++k) {
@@ -164,7 +164,7 @@ PetscErrorCode ModelCreateFields(Model *m)
 PetscErrorCode ModelDestroyFields(Model *m)
 {
   PetscReal **const nodal[] = {&m->du,       &m->force, &m->external, &m->history, &m->prescribed,
-                               &m->reaction, &m->held,  &m->pressure, &m->volume};
+                               &m->reaction, &m->held,  &m->pressure, &m->volume,  &m->previous};
 
   PetscFunctionBeginUser;
   for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(nodal); ++k) PetscCall(PetscFree(*nodal[k]));

@@ -30,6 +30,13 @@ typedef struct {
   PetscInt repartitions; /* since the start */
 } Balance;
 
+/* What the first guess of a step knows of the step before. */
+typedef struct {
+  PetscReal step; /* its length, s; 0: there was none */
+  PetscBool
+    previous; /* were the increments of the step before it nearer to its solution than what inertia alone would have brought? */
+} Guess;
+
 /* Body force per mass at the undeformed position X (dim) and time t, m/s2, besides gravity: a centrifuge, a manufactured solution. */
 typedef void (*BodyForce)(void *context, const PetscReal *X, PetscReal t, PetscReal *b);
 
@@ -54,6 +61,8 @@ typedef struct Model {
   PetscInt n_constraints;                                  /* on nodes of a cloud, over all ranks */
   PetscInt layouts;                                        /* of the cloud, that fixed and the system fit */
   PetscReal *du, *force, *external, *history, *prescribed; /* n_nodes x dim */
+  PetscReal *previous; /* n_nodes x dim: increments of the last step where they were solved for, else 0 */
+  Guess guess;
   PetscReal *pressure, *volume; /* mixed: n_nodes, see WeakFormInput and StepProblem, otherwise NULL */
   PetscReal pressure_scale;     /* mixed: Pa/m */
   unsigned char *idle;          /* n_nodes: no material touches the node */

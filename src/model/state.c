@@ -161,6 +161,7 @@ PetscErrorCode ModelToTables(Model *m, Tables *tables)
   const PetscInt n = method_fields(m, field);
   if (n) PetscCall(NodesToTable(m->grid, NULL, n, field, "nodes", tables));
   PetscCall(ReactionsToTables(m, tables));
+  PetscCall(GuessToTables(m, tables));
   PetscCall(BalanceToTables(m, tables));
   PetscCall(CellsToTable(m->grid, m->enabled, "pattern", tables));
   PetscFunctionReturn(0);
@@ -225,6 +226,7 @@ static PetscErrorCode NodesBack(Model *m, const Tables *tables, char reason[256]
   PetscFunctionBeginUser;
   if (n) PetscCall(NodesFromTable(m->grid, PETSC_TRUE, n, field, TablesFind(tables, "nodes"), reason));
   if (!reason[0]) PetscCall(ReactionsFromTables(m, tables, reason));
+  if (!reason[0]) PetscCall(GuessFromTables(m, tables, reason));
   if (!reason[0]) PetscCall(CellsFromTable(m->grid, m->enabled, TablesFind(tables, "pattern"), reason));
   PetscFunctionReturn(0);
 }

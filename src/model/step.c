@@ -43,6 +43,7 @@ static PetscErrorCode Accept(Model *m, PetscReal dt, StepReport *report)
   set_multipliers(m);
   PetscCall(EnergyOfNodes(m, dt, &energy));
   store_reactions(m, dt);
+  PetscCall(GuessLearn(m, dt));
   WeakFormInput in = weak_form_of(m, 0);
   PetscCall(m->formulation->commit(&in, m->points, &status));
   PetscCheck(status == LAW_OK, PETSC_COMM_SELF, PETSC_ERR_PLIB, "a converged state could not be committed");

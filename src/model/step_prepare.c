@@ -155,6 +155,7 @@ PetscErrorCode PrepareStep(Model *m, PetscReal dt, StepProblem *p)
       m->du[i] = dynamic ? newmark_guess(&newmark, m->stage->v[i], m->stage->a[i]) : 0;
     }
   }
+  guess_increments(m, dt, m->du);
   PetscCall(PetscArrayzero(m->external, dofs));
   PetscCall(LoadsAdd(m->loads, m->grid, m->time + dt, m->stage->filled, m->stage->touched, m->external));
   PetscCall(AddBodyForce(m, m->time + dt, m->external));

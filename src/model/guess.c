@@ -1,0 +1,86 @@
+/* First guess of a step: what inertia alone would bring, or the increments of the step before.
+ *
+ * In a flow the second is nearer: velocities that points give to the nodes of a restored grid are not those that the last solution had
+ * there. Where motion only begins the first is. Whichever would have been nearer to the last solution is taken. */
+#include "grid/directory.h"
+#include "model/model_private.h"
+
+/* Only nodes that stay where they are have increments that mean something one step later; those of a mesh know their own velocity. */
+static PetscBool guess_follows(const Model *m)
+{
+  return m->c->analysis.type == ANALYSIS_DYNAMIC && m->method->points_move && !m->grid->cloud ? PETSC_TRUE
+                                                                                              : PETSC_FALSE;
+}
+
+void guess_increments(const Model *m, PetscReal dt, PetscReal *du)
+{
+  const PetscReal ratio = m->guess.step > 0 ? dt / m->guess.step : 0;
+  if (!m->guess.previous || !guess_follows(m)) return;
+  for (PetscInt i = 0; i < m->grid->n_nodes * m->dim; ++i)
+    if (!m->fixed[i] && m->previous[i] != 0) du[i] = ratio * m->previous[i];
+}
+
+PetscErrorCode GuessLearn(Model *m, PetscReal dt)
+{
+  const Newmark newmark = newmark_of(&m->c->analysis, dt);
+  const PetscReal ratio = m->guess.step > 0 ? dt / m->guess.step : 0;
+  PetscReal local[2] = {0, 0}, sum[2]; /* squares of what was missing: from inertia, from the step before */
+
+  PetscFunctionBeginUser;
+  if (!guess_follows(m)) PetscFunctionReturn(0);
+  for (PetscInt k = 0; k < m->system->n_active; ++k)
+    for (PetscInt d = 0, i = m->system->active[k] * m->dim; d < m->dim; ++d, ++i) {
+      if (m->fixed[i] || m->previous[i] == 0) continue;
+      const PetscReal inertia = m->du[i] - newmark_guess(&newmark, m->stage->v[i], m->stage->a[i]);
+      const PetscReal before = m->du[i] - ratio * m->previous[i];
+      local[0] += inertia * inertia;
+      local[1] += before * before;
+    }
+  PetscCall(MPIU_Allreduce(local, sum, 2, MPIU_REAL, MPI_SUM, m->comm));
+  m->guess = (Guess){.step = dt, .previous = sum[1] < sum[0] ? PETSC_TRUE : PETSC_FALSE};
+  for (PetscInt i = 0; i < m->grid->n_nodes * m->dim; ++i) m->previous[i] = m->fixed[i] ? 0 : m->du[i];
+  PetscFunctionReturn(0);
+}
+
+static NodalField field_of(Model *m) { return (NodalField){"increment", "m", m->dim, m->previous}; }
+
+/* Nodes that did not move are left out. */
+PetscErrorCode GuessToTables(Model *m, Tables *tables)
+{
+  const NodalField field = field_of(m);
+  unsigned char *take;
+  Table *table;
+  Column *column;
+
+  PetscFunctionBeginUser;
+  if (!guess_follows(m)) PetscFunctionReturn(0);
+  PetscCall(PetscCalloc1(m->grid->n_nodes, &take));
+  for (PetscInt i = 0; i < m->grid->n_nodes * m->dim; ++i) take[i / m->dim] |= m->previous[i] != 0;
+  PetscCall(NodesToTable(m->grid, take, 1, &field, "increments", tables));
+  PetscCall(PetscFree(take));
+  PetscCall(TablesAdd(tables, "guess", PETSC_TRUE, 1, &table));
+  PetscCall(TableAdd(table, "step", "s", COLUMN_REAL, 1, &m->guess.step, NULL));
+  PetscCall(TableAdd(table, "previous", NULL, COLUMN_INT64, 1, NULL, &column));
+  *(PetscInt64 *)column->data = m->guess.previous;
+  PetscFunctionReturn(0);
+}
+
+/* Checkpoints that lack these tables let the next step start from inertia. */
+PetscErrorCode GuessFromTables(Model *m, const Tables *tables, char reason[256])
+{
+  const Table *table = TablesFind(tables, "guess"), *increments = TablesFind(tables, "increments");
+  const NodalField field = field_of(m);
+
+  PetscFunctionBeginUser;
+  if (!guess_follows(m) || !table || !increments) PetscFunctionReturn(0);
+  const PetscReal *step = TableData(table, "step", COLUMN_REAL, 1, reason);
+  const PetscInt64 *previous = TableData(table, "previous", COLUMN_INT64, 1, reason);
+  if (!step || !previous || reason[0]) PetscFunctionReturn(0);
+  if (table->rows != 1 || !(*step >= 0 && *step <= PETSC_MAX_REAL) || (*previous != 0 && *previous != 1)) {
+    snprintf(reason, 256, "guess makes no sense");
+    PetscFunctionReturn(0);
+  }
+  m->guess = (Guess){.step = *step, .previous = *previous ? PETSC_TRUE : PETSC_FALSE};
+  PetscCall(NodesFromTable(m->grid, PETSC_FALSE, 1, &field, increments, reason));
+  PetscFunctionReturn(0);
+}
