@@ -50,6 +50,9 @@ typedef struct Law {
    * (which may not overlap state). Returns the worst status of the batch. */
   LawStatus (*update)(const PetscReal *parameters, PetscInt n, const PetscReal *dF, const PetscReal *old,
                       PetscReal *state, PetscReal *tau, PetscReal *c);
+  /* The same where dF leaves z alone, or NULL: of c only the components 11, 22, 12 of rows and columns mean something. */
+  LawStatus (*update_plane)(const PetscReal *parameters, PetscInt n, const PetscReal *dF, const PetscReal *old,
+                            PetscReal *state, PetscReal *tau, PetscReal *c);
   /* Stored elastic energy per undeformed volume, J/m3. */
   PetscReal (*energy)(const PetscReal *parameters, const PetscReal *state);
   /* State that carries the Cauchy stress sigma (6) with no shear history; PETSC_FALSE if there is none. */

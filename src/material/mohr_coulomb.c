@@ -8,14 +8,13 @@
  *
  * A point beyond the apex is left with the elastic strain of the apex: with c = 0 it is stress-free, b^e = I. How far it
  * has opened is not remembered, so that the next compression meets a solid at once. There the tangent is zero. */
-#include "material/mohr_coulomb_return.h"
+#include "material/mohr_coulomb_plane.h"
 #include "material/principal.h"
-#include "material/principal_lanes.h"
 #include "material/shape.h"
 
 enum { FRICTION, DILATANCY, COHESION, CUTOFF };
 
-#define N_STATE 7 /* b^e, equivalent plastic strain */
+#define N_STATE MC_STATE
 #define NO_CUTOFF 1e300
 
 /* What the spectral decomposition of eight points gave. */
@@ -49,32 +48,6 @@ LANES_INLINE void trial_lanes(PetscInt n, const PetscReal *dF, const PetscReal *
   lanes_principal_basis(v, t->basis);
 }
 
-/* Stresses on the surface or inside. Most points that flow are on the shear plane: that return is made here, others point by point. */
-LANES_INLINE void return_lanes(const PetscReal *p, const Lanes e[3], Lanes tau[3], LaneBits *regions)
-{
-  const Lanes volume = p[MC_LAMBDA] * (e[0] + e[1] + e[2]);
-  Lanes size[2], t[3];
-  for (int k = 0; k < 3; ++k) tau[k] = volume + 2.0 * p[MC_MU] * e[k];
-  lanes_abs(&tau[0], &size[0]);
-  lanes_abs(&tau[2], &size[1]);
-  const Lanes noise = p[MC_NOISE] + 4.0 * PETSC_MACHINE_EPSILON * (p[MC_K] * size[0] + size[1] + p[MC_Q]);
-  const Lanes f = p[MC_K] * tau[0] - tau[2] - p[MC_Q];
-  const LaneBits shear = f > noise, beyond = shear | (tau[0] - p[MC_CUT] > noise);
-  *regions = beyond & 0;
-  if (!lanes_any(&beyond)) return;
-  for (int k = 0; k < 3; ++k) t[k] = tau[k] - f * p[MC_R0 + k];
-  const LaneBits plane = shear & (t[0] >= t[1]) & (t[1] >= t[2]) & (t[0] <= p[MC_CUT]), others = beyond & ~plane;
-  for (int k = 0; k < 3; ++k) lanes_select(&plane, &t[k], &tau[k], &tau[k]);
-  *regions = plane & MC_PLANE;
-  if (!lanes_any(&others)) return;
-  for (int l = 0; l < LANES; ++l) {
-    if (!others[l]) continue;
-    PetscReal one[3];
-    (*regions)[l] = mc_return(p, (PetscReal[3]){e[0][l], e[1][l], e[2][l]}, one);
-    for (int k = 0; k < 3; ++k) tau[k][l] = one[k];
-  }
-}
-
 /* b^e of the returned stress. An elastic point keeps its trial b to the last bit. */
 LANES_INLINE void state_lanes(const PetscReal *p, const Trial *t, const Lanes tau[3], const LaneBits *regions,
                               Lanes state[6], Lanes *flow)
@@ -97,47 +70,18 @@ LANES_INLINE void state_lanes(const PetscReal *p, const Trial *t, const Lanes ta
   for (int k = 0; k < 6; ++k) lanes_select(&plastic, &b[k], &state[k], &state[k]);
 }
 
-LANES_INLINE void moduli_lanes(const PetscReal *p, const LaneBits *regions, Lanes D[9])
-{
-  const LaneBits plane = *regions == MC_PLANE, others = *regions > MC_PLANE;
-  PetscReal elastic[9], plastic[9];
-  mc_moduli(p, MC_ELASTIC, elastic);
-  mc_moduli(p, MC_PLANE, plastic);
-  for (int k = 0; k < 9; ++k) {
-    const Lanes yes = (Lanes){0} + plastic[k], no = (Lanes){0} + elastic[k];
-    lanes_select(&plane, &yes, &no, &D[k]);
-  }
-  if (!lanes_any(&others)) return;
-  for (int l = 0; l < LANES; ++l) {
-    if (!others[l]) continue;
-    mc_moduli(p, (McRegion)(*regions)[l], plastic);
-    for (int k = 0; k < 9; ++k) D[k][l] = plastic[k];
-  }
-}
-
-/* (tau_A - tau_B) / (e_A - e_B) of the pair a < b. Elastic differences keep 2 mu exactly, equal stresses give 0; in
- * between the return only shrinks differences, which bounds what rounding can do to nearly equal strains. */
-LANES_INLINE void difference_lanes(const PetscReal *p, const LaneBits *regions, const Lanes e[3], const Lanes tau[3],
-                                   int a, int b, Lanes *r)
-{
-  const Lanes none = {0}, full = none + 2.0 * p[MC_MU], rise = tau[a] - tau[b], x = e[a] - e[b], slope = rise / x;
-  const LaneBits equal = rise == 0.0, less = rise < full * x;
-  LaneBits elastic = *regions == MC_ELASTIC;
-  if (a == 1) elastic |= *regions == MC_CUT_PLANE;
-  lanes_select(&less, &slope, &full, r);
-  lanes_select(&equal, &none, r, r);
-  lanes_select(&elastic, &full, r, r);
-}
-
 LANES_INLINE void tangent_lanes(const PetscReal *p, const Trial *t, const LaneBits *regions, const Lanes tau[3],
                                 PetscInt n, PetscReal *c)
 {
   Lanes D[9], shear[3], all[36], r, coth;
-  moduli_lanes(p, regions, D);
+  mc_moduli_lanes(p, regions, D);
   for (int k = 0; k < 3; ++k) {
     const int a = k == 2 ? 0 : k, b = k == 2 ? 2 : k + 1; /* 12, 23, 31 as 13 */
     const Lanes x = t->strain[a] - t->strain[b];
-    difference_lanes(p, regions, t->strain, tau, a, b, &r);
+    LaneBits elastic = *regions == MC_ELASTIC;
+    if (a == 1) elastic |= *regions == MC_CUT_PLANE;
+    const Lanes rise = tau[a] - tau[b];
+    mc_difference_lanes(p, &elastic, &x, &rise, &r);
     lanes_principal_coth(&x, &t->stretch2[a], &t->stretch2[b], &coth);
     shear[k] = 0.5 * (r * coth - tau[a] - tau[b]);
   }
@@ -146,13 +90,13 @@ LANES_INLINE void tangent_lanes(const PetscReal *p, const Trial *t, const LaneBi
 }
 
 /* Points that failed keep their state and carry no stress. */
-static LawStatus give_up(const Trial *t, PetscInt n, const PetscReal *old, PetscReal *state, PetscReal *tau,
-                         PetscReal *c)
+static LawStatus give_up(const LaneBits *finite, const Lanes *det, PetscInt n, const PetscReal *old, PetscReal *state,
+                         PetscReal *tau, PetscReal *c)
 {
   LawStatus worst = LAW_OK;
   for (PetscInt l = 0; l < PetscMin(n, LANES); ++l) {
-    if (t->finite[l]) continue;
-    const LawStatus status = t->det[l] <= 0.0 ? LAW_INVERTED : LAW_NOT_FINITE;
+    if ((*finite)[l]) continue;
+    const LawStatus status = (*det)[l] <= 0.0 ? LAW_INVERTED : LAW_NOT_FINITE;
     worst = PetscMax(worst, status);
     for (int k = 0; k < N_STATE; ++k) state[l * N_STATE + k] = old[l * N_STATE + k];
     for (int k = 0; k < 6; ++k) tau[l * 6 + k] = 0.0;
@@ -168,7 +112,7 @@ LANES_INLINE LawStatus update_lanes(const PetscReal *p, PetscInt n, const PetscR
   LaneBits regions;
   Trial t;
   trial_lanes(n, dF, old, &t);
-  return_lanes(p, t.strain, principal, &regions);
+  mc_return_lanes(p, t.strain, principal, &regions);
   state_lanes(p, &t, principal, &regions, now, &flow);
   now[6] = t.flow + flow;
   lanes_principal_tensor(principal, t.basis, stress);
@@ -176,7 +120,7 @@ LANES_INLINE LawStatus update_lanes(const PetscReal *p, PetscInt n, const PetscR
   lanes_store(6, n, stress, tau);
   if (c) tangent_lanes(p, &t, &regions, principal, n, c);
   const LaneBits bad = ~t.finite;
-  return lanes_any(&bad) ? give_up(&t, n, old, state, tau, c) : LAW_OK;
+  return lanes_any(&bad) ? give_up(&t.finite, &t.det, n, old, state, tau, c) : LAW_OK;
 }
 
 static LawStatus update(const PetscReal *parameters, PetscInt n, const PetscReal *dF, const PetscReal *old,
@@ -186,6 +130,54 @@ static LawStatus update(const PetscReal *parameters, PetscInt n, const PetscReal
   for (PetscInt i = 0; i < n; i += LANES) {
     const LawStatus status = update_lanes(parameters, n - i, dF + 9 * i, old + N_STATE * i, state + N_STATE * i,
                                           tau + 6 * i, c ? c + 36 * i : NULL);
+    worst = PetscMax(worst, status);
+  }
+  return worst;
+}
+
+/* The moduli of the plane where 36 components stand for each point. */
+LANES_INLINE void store_plane(PetscInt n, const Lanes plane[9], PetscReal *c)
+{
+  static const int row[3] = {0, 1, 3};
+  const Lanes none = {0};
+  Lanes some[16] = {plane[0], plane[1], none, plane[2], plane[3], plane[4], none, plane[5],
+                    plane[6], plane[7], none, plane[8], none,     none,     none, none};
+  lanes_transpose(some);
+  lanes_transpose(some + 8);
+  for (int l = 0; l < PetscMin(n, LANES); ++l)
+    for (int i = 0; i < 3; ++i)
+      __builtin_memcpy(c + 36 * l + 6 * row[i], (const PetscReal *)&some[8 * (i / 2) + l] + 4 * (i % 2), 4 * sizeof *c);
+}
+
+LANES_INLINE LawStatus update_plane_lanes(const PetscReal *p, PetscInt n, const PetscReal *dF, const PetscReal *old,
+                                          PetscReal *state, PetscReal *tau, PetscReal *c)
+{
+  Lanes before[N_STATE], now[N_STATE], principal[3], stress[6] = {{0}}, moduli[9];
+  LaneBits regions;
+  PlaneTrial t;
+  lanes_load(N_STATE, n, old, before);
+  if (!mc_plane_trial(n, dF, before, &t)) return update(p, PetscMin(n, LANES), dF, old, state, tau, c);
+  mc_plane_return(p, &t, principal, &regions);
+  now[6] = before[6];
+  mc_plane_state(p, &t, principal, &regions, now);
+  mc_plane_tensor(&t, principal, stress);
+  lanes_store(N_STATE, n, now, state);
+  lanes_store(6, n, stress, tau);
+  if (c) {
+    mc_plane_moduli(p, &t, &regions, principal, moduli);
+    store_plane(n, moduli, c);
+  }
+  const LaneBits bad = ~t.finite;
+  return lanes_any(&bad) ? give_up(&t.finite, &t.det, n, old, state, tau, c) : LAW_OK;
+}
+
+static LawStatus update_plane(const PetscReal *parameters, PetscInt n, const PetscReal *dF, const PetscReal *old,
+                              PetscReal *state, PetscReal *tau, PetscReal *c)
+{
+  LawStatus worst = LAW_OK;
+  for (PetscInt i = 0; i < n; i += LANES) {
+    const LawStatus status = update_plane_lanes(parameters, n - i, dF + 9 * i, old + N_STATE * i, state + N_STATE * i,
+                                                tau + 6 * i, c ? c + 36 * i : NULL);
     worst = PetscMax(worst, status);
   }
   return worst;
@@ -293,6 +285,7 @@ const Law law_mohr_coulomb = {
   .symmetric = PETSC_FALSE,
   .yields = PETSC_TRUE,
   .update = update,
+  .update_plane = update_plane,
   .energy = energy,
   .initial_stress = initial_stress,
   .volume = volume,

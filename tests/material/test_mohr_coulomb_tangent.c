@@ -153,11 +153,90 @@ static void test_borders(void **unused)
   assert_true(count[CORNER] <= count[ONE_SIDE] / 2000); /* strains along the border, or next to a third region */
 }
 
+/* Points whose principal axes are A and B in the plane, and z: any of them may carry the largest stretch. */
+static void plane_points(Random *random, PetscReal scale, int n, PetscReal *old, PetscReal *dF)
+{
+  for (int i = 0; i < n; ++i) {
+    const PetscReal turn = random_real(random, 0, 2 * PETSC_PI), c = cos(turn), s = sin(turn);
+    const PetscReal q[9] = {c, -s, 0, s, c, 0, 0, 0, 1};
+    const int first = (int)random_real(random, 0, 3);
+    PetscReal e[3], diagonal[6] = {0};
+    mc_sample_trial(random, scale, e);
+    for (int a = 0; a < 3; ++a) diagonal[(a + first) % 3] = exp(2.0 * e[a]);
+    sym_push_forward(q, diagonal, old + 7 * i);
+    old[7 * i + 6] = random_real(random, 0, 1);
+    for (int k = 0; k < 9; ++k)
+      dF[9 * i + k] = (k % 4 == 0) + (k == 2 || k > 4 ? 0.0 : 0.1 * scale * random_real(random, -1, 1));
+  }
+}
+
+static PetscReal largest_difference(int n, const PetscReal *a, const PetscReal *b)
+{
+  PetscReal largest = 0.0;
+  for (int k = 0; k < n; ++k) largest = fmax(largest, fabs(a[k] - b[k]));
+  return largest;
+}
+
+/* The law of the plane against the law: stresses and states, and the moduli of the plane; these may differ where rounding takes another
+ * region, and between strains that are nearly equal. In batches of all sizes. */
+static void test_plane(void **unused)
+{
+  enum { MOST = 19 };
+  (void)unused;
+  Random random = {63};
+  int points = 0, others = 0;
+  for (int m = 0; m < MC_SAMPLES; ++m) {
+    PetscReal p[LAW_MAX_PARAMETERS];
+    const Law *law = mc_sample_pack(&mc_samples[m], p);
+    const PetscReal scale = mc_sample_strain(p, mc_samples[m].young);
+    for (int batch = 0; batch < STATES / 10; ++batch) {
+      PetscReal old[7 * MOST], dF[9 * MOST], state[2][7 * MOST], tau[2][6 * MOST], c[2][36 * MOST];
+      const int n = 1 + batch % MOST;
+      plane_points(&random, scale, n, old, dF);
+      assert_int_equal(law->update(p, n, dF, old, state[0], tau[0], c[0]), LAW_OK);
+      assert_int_equal(law->update_plane(p, n, dF, old, state[1], tau[1], c[1]), LAW_OK);
+      for (int i = 0; i < n; ++i, ++points) {
+        const PetscReal *full = c[0] + 36 * i, *plane = c[1] + 36 * i;
+        PetscReal error = 0.0;
+        assert_true(largest_difference(7, state[0] + 7 * i, state[1] + 7 * i) < 1e-13);
+        assert_true(largest_difference(6, tau[0] + 6 * i, tau[1] + 6 * i) < 1e-13 * mc_samples[m].young);
+        for (int k = 0; k < 9; ++k) {
+          const int at = 6 * (k / 3 == 2 ? 3 : k / 3) + (k % 3 == 2 ? 3 : k % 3);
+          error = fmax(error, fabs(full[at] - plane[at]));
+        }
+        others += !(error < 1e-9 * mc_samples[m].young);
+      }
+    }
+  }
+  print_message("%d points, moduli of %d differ\n", points, others);
+  assert_true(others <= points / 500);
+}
+
+/* Shear strains out of the plane (an initial stress may have them) take the whole law; a point that is turned inside out is told. */
+static void test_out_of_plane(void **unused)
+{
+  PetscReal p[LAW_MAX_PARAMETERS], state[2][14], tau[2][12];
+  const Law *law = mc_sample_pack(&mc_samples[0], p);
+  PetscReal old[14] = {1.001, 0.999, 1, 0.001, 0.002, -0.001, 0, 1, 1, 1, 0, 0, 0, 0};
+  PetscReal dF[18] = {1.001, 0.002, 0, 0, 0.998, 0, 0, 0, 1, 1, 0.001, 0, 0, 1, 0, 0, 0, 1};
+  (void)unused;
+  assert_int_equal(law->update(p, 2, dF, old, state[0], tau[0], NULL), LAW_OK);
+  assert_int_equal(law->update_plane(p, 2, dF, old, state[1], tau[1], NULL), LAW_OK);
+  assert_memory_equal(state[0], state[1], sizeof state[0]);
+  assert_memory_equal(tau[0], tau[1], sizeof tau[0]);
+  dF[9] = -1;
+  old[4] = old[5] = 0;
+  assert_int_equal(law->update_plane(p, 2, dF, old, state[1], tau[1], NULL), LAW_INVERTED);
+  assert_memory_equal(state[1] + 7, old + 7, 7 * sizeof old[0]);
+}
+
 int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(test_regions),
     cmocka_unit_test(test_borders),
+    cmocka_unit_test(test_plane),
+    cmocka_unit_test(test_out_of_plane),
   };
   if (PetscInitialize(&argc, &argv, NULL, NULL)) return 1;
   const int failures = cmocka_run_group_tests(tests, NULL, NULL);
