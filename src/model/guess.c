@@ -1,7 +1,7 @@
 /* First guess of a step: what inertia alone would bring, or the increments of the step before.
  *
- * In a flow the second is nearer: velocities that points give to the nodes of a restored grid are not those that the last solution had
- * there. Where motion only begins the first is. Whichever would have been nearer to the last solution is taken. */
+ * Where a flow comes to rest the second is nearer: velocities that points give to the nodes of a restored grid are not those that the last
+ * solution had there. Where motion only begins the first is. Whichever would have been nearer to the last solution is taken. */
 #include "grid/directory.h"
 #include "model/model_private.h"
 
