@@ -1,6 +1,6 @@
 /* The rolling disk of cases/rolling-disk by mpm and by gmm: what a step costs, by phase, and gmm's cost as a ratio to mpm's.
  *
- *   build/bench/bench_gmm [-size 0.02] [-step 2e-3] [-steps 40] [-repeat 3] [-only NAME] [-case cases/rolling-disk/case.yaml]
+ *   build/bench/bench_gmm [-size 0.02] [-step 2e-3] [-steps 40] [-repeat 3] [-only NAME [-alone]] [-case cases/rolling-disk/case.yaml]
  *
  * Ratios are taken inside one run, from the best of several rounds in which all methods take turns; seconds are those in which a core worked
  * for this process. The disk stands one cell above the plane at the start, as in the case. */
@@ -28,6 +28,7 @@ typedef struct {
   const char *file;
   PetscReal size, step;
   PetscInt steps, repeat;
+  PetscBool alone; /* without mpm: for a profile */
 } Plan;
 
 typedef struct {
@@ -122,7 +123,7 @@ static PetscErrorCode RunAll(const Plan *plan, const char *only)
 
   PetscFunctionBeginUser;
   for (size_t k = 0; k < VARIANTS; ++k)
-    chosen[k] = !only[0] || !strcmp(only, variants[k].name) || k == 0 ? PETSC_TRUE : PETSC_FALSE;
+    chosen[k] = !only[0] || !strcmp(only, variants[k].name) || (k == 0 && !plan->alone) ? PETSC_TRUE : PETSC_FALSE;
   for (PetscInt round = 0; round < plan->repeat; ++round)
     for (size_t k = 0; k < VARIANTS; ++k) {
       if (!chosen[k]) continue;
@@ -150,6 +151,7 @@ int main(int argc, char **argv)
   PetscCall(PetscOptionsGetInt(NULL, NULL, "-steps", &plan.steps, NULL));
   PetscCall(PetscOptionsGetInt(NULL, NULL, "-repeat", &plan.repeat, NULL));
   PetscCall(PetscOptionsGetString(NULL, NULL, "-only", only, sizeof only, NULL));
+  PetscCall(PetscOptionsGetBool(NULL, NULL, "-alone", &plan.alone, NULL));
   PetscCall(PetscOptionsGetString(NULL, NULL, "-case", file, sizeof file, NULL));
   PetscCall(RunAll(&plan, only));
   PetscCall(PetscFinalize());

@@ -265,13 +265,25 @@ static PetscErrorCode AddGroup(NodeGroups *groups, PetscInt *capacity, PetscInt 
   PetscFunctionReturn(0);
 }
 
+/* How far a cloud of these nodes may reach before the couplings must be made anew: clouds that had to grow get their share, too. */
+static PetscReal wide_radius(const Stage *s, const PetscReal *x, PetscInt n, const PetscInt *node)
+{
+  const PetscInt dim = s->grid->dim;
+  PetscReal farthest2 = PetscSqr(s->gmm->rule.support.radius * s->gmm->rule.h);
+  for (PetscInt i = 0; i < n; ++i) {
+    PetscReal d2 = 0;
+    for (PetscInt d = 0; d < dim; ++d) d2 += PetscSqr(s->grid->x[node[i] * dim + d] - x[d]);
+    farthest2 = PetscMax(farthest2, d2);
+  }
+  return SKIN * PetscSqrtReal(farthest2);
+}
+
 PetscErrorCode GmmCouplings(const Stage *s, NodeGroups *groups)
 {
   const Grid *grid = s->grid;
   const Support *w = s->support;
   const Constraints *c = s->constraints;
-  const PetscReal radius = SKIN * s->gmm->rule.support.radius * s->gmm->rule.h;
-  PetscInt near[CLOUD_MAX_NODES], capacity = 16 * (w->n_groups + c->n);
+  PetscInt near[CLOUD_MAX_NODES + 1], capacity = 16 * (w->n_groups + c->n);
   PetscReal distance2[CLOUD_MAX_NODES];
   unsigned char *twin;
   Neighbours nodes;
@@ -279,18 +291,25 @@ PetscErrorCode GmmCouplings(const Stage *s, NodeGroups *groups)
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(grid->n_nodes, &twin));
   for (PetscInt i = 0; i < grid->n_nodes; ++i) twin[i] = cloud_is_twin(grid, i);
-  PetscCall(NeighboursCreate(grid->dim, grid->n_nodes, grid->x, 0, NULL, twin, radius, &nodes));
+  PetscCall(NeighboursCreate(grid->dim, grid->n_nodes, grid->x, 0, NULL, twin,
+                             SKIN * s->gmm->rule.support.radius * s->gmm->rule.h, &nodes));
   PetscCall(PetscFree(twin));
   *groups = (NodeGroups){0};
   PetscCall(PetscCalloc1(w->n_groups + c->n + 1, &groups->start));
   PetscCall(PetscMalloc1(capacity, &groups->node));
   for (PetscInt p = 0; p < w->n_groups; ++p) {
-    const PetscInt n =
-      neighbours_within(&nodes, point_real(s->points, POINT_X, p), radius, CLOUD_MAX_NODES, near, distance2);
-    PetscCall(AddGroup(groups, &capacity, n, near, support_nodes(w, p), w->node + w->node_start[p]));
+    const PetscInt nn = support_nodes(w, p), *node = w->node + w->node_start[p];
+    const PetscReal *x = point_real(s->points, POINT_X, p);
+    const PetscInt n = neighbours_within(&nodes, x, wide_radius(s, x, nn, node), CLOUD_MAX_NODES, near, distance2);
+    PetscCall(AddGroup(groups, &capacity, n, near, nn, node));
   }
-  for (PetscInt k = 0; k < c->n; ++k)
-    PetscCall(AddGroup(groups, &capacity, 1, c->twin + k, c->start[k + 1] - c->start[k], c->node + c->start[k]));
+  for (PetscInt k = 0; k < c->n; ++k) {
+    const PetscInt nn = c->start[k + 1] - c->start[k], *node = c->node + c->start[k];
+    const PetscReal *x = grid->x + c->at[k] * grid->dim;
+    const PetscInt n = neighbours_within(&nodes, x, wide_radius(s, x, nn, node), CLOUD_MAX_NODES, near, distance2);
+    near[n] = c->twin[k];
+    PetscCall(AddGroup(groups, &capacity, n + 1, near, nn, node));
+  }
   PetscCall(NeighboursDestroy(&nodes));
   PetscFunctionReturn(0);
 }
