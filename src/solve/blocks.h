@@ -74,5 +74,8 @@ PetscErrorCode BlocksHaloSum(BlocksHalo *halo, const System *s);
 /* A Krylov method of PETSc for Mats of type shell over Blocks: conjugate gradients, or BiCGStab if they are not symmetric. */
 #define KSPBLOCKS "talus_blocks"
 PetscErrorCode BlocksRegister(void);
+/* Has conjugate gradients met a direction along which the matrix is not positive? Newton's first guess may lie where material buckles.
+ * Then the reason is cleared: BiCGStab is to begin anew. */
+PetscBool blocks_are_indefinite(KSP ksp);
 /* Collective. The same under m->projection; ksp's counts and reason are set. */
 PetscErrorCode BlocksSolveProjected(KSP ksp, Blocks *m, const PetscReal *f, PetscReal *y);

@@ -108,6 +108,20 @@ static PetscErrorCode BiCGStab(KSP ksp, Solve *s, double rr)
   PetscFunctionReturn(0);
 }
 
+/* x = 0, and the residual r with its square. */
+static PetscErrorCode Start(Solve *s, const PetscReal *b, double *norm2)
+{
+  PetscFunctionBeginUser;
+  PetscCall(BlocksWork(s->m, WORK_R, &s->r));
+  PetscCall(BlocksWork(s->m, WORK_P, &s->p));
+  PetscCall(BlocksWork(s->m, WORK_T, &s->t));
+  PetscCall(BlocksWork(s->m, WORK_Y, &s->y));
+  PetscCall(BlocksWork(s->m, WORK_X, &s->x));
+  *norm2 = s->sweeps->start(s->m, b, 1 / s->size, s->r);
+  PetscCall(Sum(s, 1, norm2));
+  PetscFunctionReturn(0);
+}
+
 static PetscErrorCode SolveOnBlocks(KSP ksp, Blocks *m, const PetscReal *b, PetscReal *u)
 {
   Solve s = {.m = m, .sweeps = block_sweeps(m->dim), .n = m->n * block_stride((int)m->dim)};
@@ -123,17 +137,19 @@ static PetscErrorCode SolveOnBlocks(KSP ksp, Blocks *m, const PetscReal *b, Pets
     PetscCall(PetscArrayzero(u, m->n * m->dim));
     PetscFunctionReturn(0);
   }
-  PetscCall(BlocksWork(m, WORK_R, &s.r));
-  PetscCall(BlocksWork(m, WORK_P, &s.p));
-  PetscCall(BlocksWork(m, WORK_T, &s.t));
-  PetscCall(BlocksWork(m, WORK_Y, &s.y));
-  PetscCall(BlocksWork(m, WORK_X, &s.x));
-  norm2 = s.sweeps->start(m, b, 1 / s.size, s.r);
-  PetscCall(Sum(&s, 1, &norm2));
+  PetscCall(Start(&s, b, &norm2));
   if (m->symmetric) PetscCall(ConjugateGradients(ksp, &s, norm2));
-  else PetscCall(BiCGStab(ksp, &s, norm2));
+  if (blocks_are_indefinite(ksp)) PetscCall(Start(&s, b, &norm2));
+  if (!ksp->reason) PetscCall(BiCGStab(ksp, &s, norm2));
   s.sweeps->finish(m, s.x, s.size, s.t, u);
   PetscFunctionReturn(0);
+}
+
+PetscBool blocks_are_indefinite(KSP ksp)
+{
+  if (ksp->reason != KSP_DIVERGED_INDEFINITE_MAT) return PETSC_FALSE;
+  ksp->reason = KSP_CONVERGED_ITERATING;
+  return PETSC_TRUE;
 }
 
 static PetscErrorCode KSPSolve_Blocks(KSP ksp)

@@ -139,24 +139,35 @@ static PetscErrorCode Residual(const Solve *s, const PetscReal *f, const PetscRe
   PetscFunctionReturn(0);
 }
 
+/* y closes the gaps, r is what is left then, s->size its norm. */
+static PetscErrorCode Start(Solve *s, const PetscReal *f, PetscReal *y)
+{
+  PetscReal norm2;
+
+  PetscFunctionBeginUser;
+  for (int k = 0; k < VECTORS; ++k) PetscCall(PetscArrayzero(s->v[k], s->n));
+  PetscCall(ProjectionCloseGaps(s->projection, f, y));
+  PetscCall(Residual(s, f, y, s->v[VECTOR_R]));
+  PetscCall(ProjectionForces(s->projection, s->v[VECTOR_R]));
+  norm2 = s->sweeps->scaled_norm2(s->m, s->v[VECTOR_R]);
+  PetscCall(MPIU_Allreduce(MPI_IN_PLACE, &norm2, 1, MPIU_REAL, MPI_SUM, s->m->comm));
+  s->size = PetscSqrtReal(norm2);
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode BlocksSolveProjected(KSP ksp, Blocks *m, const PetscReal *f, PetscReal *y)
 {
   Solve s = {.m = m, .projection = m->projection, .sweeps = block_sweeps(m->dim), .n = m->n * m->dim};
-  PetscReal norm2;
 
   PetscFunctionBeginUser;
   PetscCall(BlocksWork(m, 0, &s.x));
   PetscCall(BlocksWork(m, 1, &s.t));
-  for (int k = 0; k < VECTORS; ++k) PetscCall(PetscCalloc1(s.n, &s.v[k]));
-  PetscCall(ProjectionCloseGaps(s.projection, f, y));
-  PetscCall(Residual(&s, f, y, s.v[VECTOR_R]));
-  PetscCall(ProjectionForces(s.projection, s.v[VECTOR_R]));
-  norm2 = s.sweeps->scaled_norm2(m, s.v[VECTOR_R]);
-  PetscCall(MPIU_Allreduce(MPI_IN_PLACE, &norm2, 1, MPIU_REAL, MPI_SUM, m->comm));
-  s.size = PetscSqrtReal(norm2);
+  for (int k = 0; k < VECTORS; ++k) PetscCall(PetscMalloc1(s.n, &s.v[k]));
+  PetscCall(Start(&s, f, y));
   if (!(s.size > 0) || PetscIsInfReal(s.size)) ksp->reason = s.size == 0 ? KSP_CONVERGED_ATOL : KSP_DIVERGED_NANORINF;
-  else if (m->symmetric) PetscCall(ConjugateGradients(ksp, &s, y));
-  else PetscCall(BiCGStab(ksp, &s, y));
+  if (!ksp->reason && m->symmetric) PetscCall(ConjugateGradients(ksp, &s, y));
+  if (blocks_are_indefinite(ksp)) PetscCall(Start(&s, f, y));
+  if (!ksp->reason) PetscCall(BiCGStab(ksp, &s, y));
   PetscCall(Residual(&s, f, y, s.v[VECTOR_R]));
   PetscCall(ProjectionMultipliers(s.projection, s.v[VECTOR_R], y));
   for (int k = 0; k < VECTORS; ++k) PetscCall(PetscFree(s.v[k]));
