@@ -1,8 +1,9 @@
 /* Phase a of gmm: which nodes each point has now, over all ranks. */
 #include "method/gmm.h"
 
-#define SHARE 0.1 /* of a constrained node in the field at its place, at least */
-#define SKIN 1.15 /* ghosts and couplings are kept for clouds so much wider, so that they serve several steps */
+#define SHARE 0.1     /* of a constrained node in the field at its place, at least */
+#define SKIN 1.15     /* ghosts and couplings are kept for clouds so much wider, so that they serve several steps */
+#define SKIN_HELD 1.4 /* couplings of multipliers: they are few, and material comes upon them at full speed */
 
 /* Nodes as this rank sees them while it searches: owned ones by their numbers, remote of other ranks behind. */
 typedef struct {
@@ -266,7 +267,7 @@ static PetscErrorCode AddGroup(NodeGroups *groups, PetscInt *capacity, PetscInt 
 }
 
 /* How far a cloud of these nodes may reach before the couplings must be made anew: clouds that had to grow get their share, too. */
-static PetscReal wide_radius(const Stage *s, const PetscReal *x, PetscInt n, const PetscInt *node)
+static PetscReal wide_radius(const Stage *s, PetscReal skin, const PetscReal *x, PetscInt n, const PetscInt *node)
 {
   const PetscInt dim = s->grid->dim;
   PetscReal farthest2 = PetscSqr(s->gmm->rule.support.radius * s->gmm->rule.h);
@@ -275,7 +276,7 @@ static PetscReal wide_radius(const Stage *s, const PetscReal *x, PetscInt n, con
     for (PetscInt d = 0; d < dim; ++d) d2 += PetscSqr(s->grid->x[node[i] * dim + d] - x[d]);
     farthest2 = PetscMax(farthest2, d2);
   }
-  return SKIN * PetscSqrtReal(farthest2);
+  return skin * PetscSqrtReal(farthest2);
 }
 
 PetscErrorCode GmmCouplings(const Stage *s, NodeGroups *groups)
@@ -299,14 +300,14 @@ PetscErrorCode GmmCouplings(const Stage *s, NodeGroups *groups)
   PetscCall(PetscMalloc1(capacity, &groups->node));
   for (PetscInt p = 0; p < w->n_groups; ++p) {
     const PetscInt nn = support_nodes(w, p), *node = w->node + w->node_start[p];
-    const PetscReal *x = point_real(s->points, POINT_X, p);
-    const PetscInt n = neighbours_within(&nodes, x, wide_radius(s, x, nn, node), CLOUD_MAX_NODES, near, distance2);
+    const PetscReal *x = point_real(s->points, POINT_X, p), radius = wide_radius(s, SKIN, x, nn, node);
+    const PetscInt n = neighbours_within(&nodes, x, radius, CLOUD_MAX_NODES, near, distance2);
     PetscCall(AddGroup(groups, &capacity, n, near, nn, node));
   }
   for (PetscInt k = 0; k < c->n; ++k) {
     const PetscInt nn = c->start[k + 1] - c->start[k], *node = c->node + c->start[k];
-    const PetscReal *x = grid->x + c->at[k] * grid->dim;
-    const PetscInt n = neighbours_within(&nodes, x, wide_radius(s, x, nn, node), CLOUD_MAX_NODES, near, distance2);
+    const PetscReal *x = grid->x + c->at[k] * grid->dim, radius = wide_radius(s, SKIN_HELD, x, nn, node);
+    const PetscInt n = neighbours_within(&nodes, x, radius, CLOUD_MAX_NODES, near, distance2);
     near[n] = c->twin[k];
     PetscCall(AddGroup(groups, &capacity, n + 1, near, nn, node));
   }

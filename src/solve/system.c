@@ -32,7 +32,7 @@ PetscErrorCode SystemDestroy(System **system)
   PetscFunctionBeginUser;
   if (!*system) PetscFunctionReturn(0);
   PetscCall(SystemFreePattern(*system));
-  PetscCall(PetscFree((*system)->slot));
+  PetscCall(SystemFreeSlots(*system));
   PetscCall(PetscFree(*system));
   PetscFunctionReturn(0);
 }
@@ -236,46 +236,23 @@ static inline PetscInt pair_slot(const System *s, PetscInt I, PetscInt J)
   return slot;
 }
 
-/* Slots of a group whose nodes ascend, by walking along each row once; a pair that the pattern lacks gets -1. Returns how many. */
-static PetscInt merge_slots(const System *s, PetscInt nn, const PetscInt *node, PetscInt *slot)
-{
-  PetscInt missing = 0;
-  for (PetscInt I = 0; I < nn; ++I) {
-    const PetscInt row = s->row[node[I]];
-    PetscInt k = row < 0 ? 0 : s->row_start[row];
-    const PetscInt end = row < 0 ? 0 : s->row_start[row + 1];
-    for (PetscInt J = 0; J < nn; ++J) {
-      while (k < end && s->column[k] < node[J]) ++k;
-      const PetscBool found = k < end && s->column[k] == node[J] ? PETSC_TRUE : PETSC_FALSE;
-      slot[I * nn + J] = found ? k : -1;
-      missing += !found;
-    }
-  }
-  return missing;
-}
-
 PetscErrorCode SystemSlots(System *s, const Support *support, PetscBool *complete)
 {
-  PetscInt size = 0, missing = 0;
-  PetscInt *slot;
+  const PetscInt nn = support->uniform;
 
   PetscFunctionBeginUser;
-  for (PetscInt g = 0; g < support->n_groups; ++g) size += support_nodes(support, g) * support_nodes(support, g);
-  if (size > s->n_slots) {
-    PetscCall(PetscFree(s->slot));
-    s->n_slots = size + size / 4;
-    PetscCall(PetscMalloc1(s->n_slots, &s->slot));
+  if (!nn) {
+    PetscCall(SystemCloudSlots(s, support, complete));
+    PetscFunctionReturn(0);
   }
-  slot = s->slot;
+  PetscCall(SystemReserveSlots(s, support->n_groups * nn * nn));
   for (PetscInt g = 0; g < support->n_groups; ++g) {
-    const PetscInt nn = support_nodes(support, g), *node = support->node + support->node_start[g];
-    if (!support->uniform) missing += merge_slots(s, nn, node, slot);
-    else
-      for (PetscInt I = 0; I < nn; ++I)
-        for (PetscInt J = 0; J < nn; ++J) slot[I * nn + J] = pair_slot(s, node[I], node[J]);
-    slot += nn * nn;
+    const PetscInt *node = support->node + support->node_start[g];
+    PetscInt *slot = s->slot + g * nn * nn;
+    for (PetscInt I = 0; I < nn; ++I)
+      for (PetscInt J = 0; J < nn; ++J) slot[I * nn + J] = pair_slot(s, node[I], node[J]);
   }
-  if (complete) *complete = missing ? PETSC_FALSE : PETSC_TRUE;
+  if (complete) *complete = PETSC_TRUE;
   PetscFunctionReturn(0);
 }
 

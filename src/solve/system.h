@@ -8,6 +8,14 @@
 /* What the linear solver works on: a matrix of PETSc, or blocks in single precision for symmetric Gauss-Seidel (solve/blocks.h). */
 typedef enum { SYSTEM_ASSEMBLED, SYSTEM_BLOCKS } SystemForm;
 
+/* The clouds that the slots were last looked up for: most are the same in the next step. */
+typedef struct {
+  PetscInt builds;           /* of the pattern then; 0: not all pairs were there */
+  PetscInt n, *start, *node; /* groups and their nodes */
+  PetscInt capacity, capacity_entries;
+  PetscInt n_spare, *spare; /* slots on their way to another place */
+} CloudsBefore;
+
 typedef struct System {
   MPI_Comm comm;
   PetscInt dim, block; /* displacements, and all unknowns, per node: dim, or dim + 1 with a pressure */
@@ -24,6 +32,7 @@ typedef struct System {
   float *singles;                           /* the same in single precision, which is all that blocks need */
   PetscBool single;                         /* is the tangent gathered in singles, or else in values? */
   PetscInt n_slots, *slot;                  /* SystemSlots: nn x nn pairs of each group */
+  CloudsBefore before;
   SystemForm form;
   Mat matrix;            /* what the linear solver gets: assembled, or a shell over blocks; made by SystemUse */
   struct Blocks *blocks; /* of that shell */
@@ -38,6 +47,10 @@ PetscErrorCode SystemBuild(System *system, const Grid *grid, const NodeGroups *g
 /* Look up the slots of every group of the support. Cells' nodes must all carry unknowns; clouds (uniform = 0) have ascending nodes, and
  * `complete` tells whether the pattern has all their pairs on this rank. */
 PetscErrorCode SystemSlots(System *system, const Support *support, PetscBool *complete);
+/* What SystemSlots consists of (cloud_slots.c). */
+PetscErrorCode SystemReserveSlots(System *system, PetscInt n);
+PetscErrorCode SystemCloudSlots(System *system, const Support *support, PetscBool *complete);
+PetscErrorCode SystemFreeSlots(System *system);
 /* Zero values or singles, whichever are in use. */
 PetscErrorCode SystemZero(System *system);
 /* Zero an array of n_nodes x dim where nodes have unknowns, ghosts too. */
