@@ -105,7 +105,8 @@ KERNEL void cloud_block(const int dim, const CloudWork *w, PetscInt I, PetscInt 
   }
 }
 
-/* The same where a dof of the pair is prescribed: its row and column stay empty, lifting moves the column to the residual. */
+/* The same where a dof of the pair is prescribed: its row and column stay empty, lifting moves the column to the residual. Without a block
+ * only that. */
 KERNEL void cloud_cut_block(const int dim, const WeakFormInput *in, const CloudWork *w, PetscInt I, PetscInt J,
                             PetscReal *restrict block, PetscReal *force)
 {
@@ -115,20 +116,20 @@ KERNEL void cloud_cut_block(const int dim, const WeakFormInput *in, const CloudW
     for (int b = 0; b < dim; ++b) {
       const PetscInt row = w->node[I] * dim + a, column = w->node[J] * dim + b;
       if (in->fixed[row]) continue;
-      if (!in->fixed[column]) block[a * dim + b] += full[a * dim + b];
-      else if (in->lift) force[row] += full[a * dim + b] * in->lift[column];
+      if (!in->fixed[column] && block) block[a * dim + b] += full[a * dim + b];
+      if (in->fixed[column] && in->lift) force[row] += full[a * dim + b] * in->lift[column];
     }
 }
 
 /* In the plane, without cuts: a block is g_x[I] T_x[J] + g_y[I] T_y[J] + mass, four numbers at a time. */
-KERNEL void cloud_matrix_2d(const PetscInt *slot, const CloudWork *w, PetscReal *values)
+KERNEL void cloud_matrix_2d(const PetscBool half, const PetscInt *slot, const CloudWork *w, PetscReal *values)
 {
   const PetscReal soft = w->soft / (PetscReal)w->nn, share = w->inertia * (1 - w->lumping);
   const Four diagonal = {1, 0, 0, 1};
   for (PetscInt I = 0; I < w->nn; ++I) {
     const Four gx = diagonal * 0 + w->g[2 * I], gy = diagonal * 0 + w->g[2 * I + 1],
                mass = diagonal * (share * w->N[I]), none = diagonal * soft;
-    for (PetscInt J = 0; J < w->nn; ++J) {
+    for (PetscInt J = half ? I : 0; J < w->nn; ++J) {
       Four *block = (Four *)(values + (size_t)slot[I * w->nn + J] * 4);
       const Four Tx = *(const Four *)(w->T + J * 4), Ty = *(const Four *)(w->T + (w->nn + J) * 4);
       *block += (gx * Tx + gy * Ty) + (mass * w->N[J] - none);
@@ -144,13 +145,15 @@ KERNEL void cloud_matrix(const int dim, const WeakFormInput *in, const PetscInt 
   for (PetscInt I = 0; I < w->nn; ++I)
     for (int d = 0; d < dim; ++d) cut |= in->fixed[w->node[I] * dim + d];
   if (dim == 2 && !cut) {
-    cloud_matrix_2d(slot, w, out->values);
+    if (in->half) cloud_matrix_2d(PETSC_TRUE, slot, w, out->values);
+    else cloud_matrix_2d(PETSC_FALSE, slot, w, out->values);
     return;
   }
   for (PetscInt I = 0; I < w->nn; ++I)
-    for (PetscInt J = 0; J < w->nn; ++J) {
+    for (PetscInt J = in->half && !(cut && in->lift) ? I : 0; J < w->nn; ++J) {
       PetscReal *block = out->values + (size_t)slot[I * w->nn + J] * dim * dim;
-      if (cut) cloud_cut_block(dim, in, w, I, J, block, out->force);
+      if (in->half && J < I) cloud_cut_block(dim, in, w, I, J, NULL, out->force);
+      else if (cut) cloud_cut_block(dim, in, w, I, J, block, out->force);
       else cloud_block(dim, w, I, J, block);
     }
 }

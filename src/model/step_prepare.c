@@ -175,6 +175,7 @@ PetscErrorCode PrepareStep(Model *m, PetscReal dt, StepProblem *p)
     .idle = m->idle,
     .asked = m->asked,
   };
+  p->in.half = m->symmetric && m->grid->cloud ? PETSC_TRUE : PETSC_FALSE;
   pressure_guess(m);
   if (m->stage->constraints) m->stage->constraints->scale = constraint_scale(m, p->in.inertia);
   PetscCall(ForceScales(m, g, dt, &p->weight, &p->inertia));

@@ -120,3 +120,24 @@ PetscErrorCode SystemCloudSlots(System *s, const Support *support, PetscBool *co
   if (complete) *complete = missing ? PETSC_FALSE : PETSC_TRUE;
   PetscFunctionReturn(0);
 }
+
+/* Rows come in the order of their nodes, so that those that have a node as a column before their diagonal come in the order of the columns behind
+ * the diagonal of that node's own row. */
+PetscErrorCode SystemMirror(System *s)
+{
+  const PetscInt size = s->block;
+  PetscInt *next;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(s->n_rows, &next));
+  for (PetscInt r = 0; r < s->n_rows; ++r) next[r] = s->diagonal[r] + 1;
+  for (PetscInt r = 0; r < s->n_rows; ++r)
+    for (PetscInt k = s->row_start[r]; k < s->diagonal[r]; ++k) {
+      const PetscReal *from = s->values + (size_t)next[s->row[s->column[k]]]++ * (size_t)(size * size);
+      PetscReal *to = s->values + (size_t)k * (size_t)(size * size);
+      for (PetscInt a = 0; a < size; ++a)
+        for (PetscInt b = 0; b < size; ++b) to[a * size + b] = from[b * size + a];
+    }
+  PetscCall(PetscFree(next));
+  PetscFunctionReturn(0);
+}

@@ -45,6 +45,7 @@ PetscErrorCode NewtonAssemble(Newton *n, PetscBool tangent)
   p->in.pressure = p->pressure;
   p->in.fixed = p->fixed;
   PetscCall(p->formulation->assemble(&p->in, &out));
+  if (tangent && p->in.half) PetscCall(SystemMirror(p->system));
   if (p->constraints)
     constraints_assemble(p->constraints, p->du, p->prescribed, p->fixed, p->in.lift, out.force,
                          n->projects ? NULL : out.values);

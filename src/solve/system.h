@@ -51,6 +51,8 @@ PetscErrorCode SystemSlots(System *system, const Support *support, PetscBool *co
 PetscErrorCode SystemReserveSlots(System *system, PetscInt n);
 PetscErrorCode SystemCloudSlots(System *system, const Support *support, PetscBool *complete);
 PetscErrorCode SystemFreeSlots(System *system);
+/* Fill the blocks before the diagonals with the transposes of those behind them. */
+PetscErrorCode SystemMirror(System *system);
 /* Zero values or singles, whichever are in use. */
 PetscErrorCode SystemZero(System *system);
 /* Zero an array of n_nodes x dim where nodes have unknowns, ghosts too. */
