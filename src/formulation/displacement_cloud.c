@@ -51,12 +51,13 @@ KERNEL void cloud_gradients(const int dim, const PetscReal *restrict dN, const P
 KERNEL void cloud_force(const int dim, const WeakFormInput *in, const PetscReal *tau, PetscReal volume,
                         const CloudWork *w, PetscReal *force)
 {
+  const PetscReal part = 1 / (PetscReal)w->nn;
   PetscReal mean_a[3] = {0, 0, 0}, mean_u[3] = {0, 0, 0};
   for (PetscInt I = 0; I < w->nn; ++I)
     for (int d = 0; d < dim; ++d) {
       const PetscInt k = w->node[I] * dim + d;
       mean_a[d] += w->N[I] * (in->inertia * in->du[k] + in->history[k]);
-      mean_u[d] += in->du[k] / (PetscReal)w->nn;
+      mean_u[d] += in->du[k] * part;
     }
   for (PetscInt I = 0; I < w->nn; ++I)
     for (int d = 0; d < dim; ++d) {

@@ -1,4 +1,5 @@
 #include "grid/neighbours.h"
+#include "base/lanes.h"
 
 /* Bins over the bounding box; stragglers far away must not make them countless. */
 static void choose_bins(Neighbours *b, PetscInt n, const PetscReal *min, const PetscReal *max, PetscReal size)
@@ -111,23 +112,101 @@ static inline PetscInt insert(const Neighbours *b, PetscInt n, PetscInt max, Pet
   return n == max ? n : n + 1;
 }
 
+/* The bins that a ball of this radius meets. */
+typedef struct {
+  PetscInt lo[3], hi[3];
+} Range;
+
+static inline Range range_around(const Neighbours *b, const PetscReal *x, PetscReal radius)
+{
+  Range r = {{0, 0, 0}, {0, 0, 0}};
+  for (PetscInt d = 0; d < b->dim; ++d) {
+    r.lo[d] = bin_along(b, d, x[d] - radius);
+    r.hi[d] = bin_along(b, d, x[d] + radius);
+  }
+  return r;
+}
+
+static inline PetscReal squared_distance(const PetscInt dim, const PetscReal *a, const PetscReal *b)
+{
+  PetscReal d2 = 0;
+  for (PetscInt d = 0; d < dim; ++d) d2 += (a[d] - b[d]) * (a[d] - b[d]);
+  return d2;
+}
+
+/* One after the other into their places: for any number of them, and where distances are equal. */
+static PetscInt insert_all(const Neighbours *b, const PetscReal *x, PetscReal radius, PetscInt max, PetscInt *item,
+                           PetscReal *distance2)
+{
+  const Range r = range_around(b, x, radius);
+  PetscInt n = 0;
+  for (PetscInt k = r.lo[2]; k <= r.hi[2]; ++k)
+    for (PetscInt j = r.lo[1]; j <= r.hi[1]; ++j) {
+      const PetscInt row = (k * b->counts[1] + j) * b->counts[0];
+      for (PetscInt e = b->start[row + r.lo[0]]; e < b->start[row + r.hi[0] + 1]; ++e) {
+        const PetscReal d2 = squared_distance(b->dim, b->x + e * b->dim, x);
+        if (d2 < radius * radius) n = insert(b, n, max, item, distance2, b->item[e], d2);
+      }
+    }
+  return n;
+}
+
+#define FEW (8 * LANES)
+
+/* All of them as they come; -1 if there are more than FEW. Without a branch, since which are near enough cannot be foretold. */
+static inline PetscInt collect(const PetscInt dim, const Neighbours *b, const PetscReal *x, PetscReal radius,
+                               PetscInt *item, PetscReal *distance2)
+{
+  const Range r = range_around(b, x, radius);
+  const PetscReal limit = radius * radius;
+  PetscInt n = 0;
+  for (PetscInt k = r.lo[2]; k <= r.hi[2]; ++k)
+    for (PetscInt j = r.lo[1]; j <= r.hi[1]; ++j) {
+      const PetscInt row = (k * b->counts[1] + j) * b->counts[0];
+      for (PetscInt e = b->start[row + r.lo[0]]; e < b->start[row + r.hi[0] + 1]; ++e) {
+        const PetscReal d2 = squared_distance(dim, b->x + e * dim, x);
+        item[n] = b->item[e];
+        distance2[n] = d2;
+        n += d2 < limit;
+        if (n > FEW) return -1;
+      }
+    }
+  return n;
+}
+
+/* The place of each among all, by counting the nearer ones; PETSC_FALSE if two are at the same distance. */
+static inline PetscBool count_nearer(PetscInt n, PetscReal *distance2, PetscInt *place)
+{
+  const PetscInt packs = (n + LANES - 1) / LANES;
+  LaneBits nearer[FEW / LANES] = {{0}}, equal[FEW / LANES] = {{0}};
+  Lanes d[FEW / LANES];
+  for (PetscInt i = n; i < packs * LANES; ++i) distance2[i] = PETSC_MAX_REAL;
+  memcpy(d, distance2, (size_t)(packs * LANES) * sizeof *distance2);
+  for (PetscInt i = 0; i < n; ++i) {
+    const Lanes one = distance2[i] - (Lanes){0};
+    for (PetscInt k = 0; k < packs; ++k) {
+      nearer[k] -= one < d[k];
+      equal[k] -= one == d[k];
+    }
+  }
+  PetscInt alone = 0;
+  for (PetscInt i = 0; i < n; ++i) {
+    place[i] = (PetscInt)nearer[i / LANES][i % LANES];
+    alone += equal[i / LANES][i % LANES] == 1;
+  }
+  return alone == n ? PETSC_TRUE : PETSC_FALSE;
+}
+
 PetscInt neighbours_within(const Neighbours *b, const PetscReal *x, PetscReal radius, PetscInt max, PetscInt *item,
                            PetscReal *distance2)
 {
-  PetscInt lo[3] = {0, 0, 0}, hi[3] = {0, 0, 0}, n = 0;
-  for (PetscInt d = 0; d < b->dim; ++d) {
-    lo[d] = bin_along(b, d, x[d] - radius);
-    hi[d] = bin_along(b, d, x[d] + radius);
+  PetscInt near[FEW + 1], place[FEW];
+  PetscReal d2[FEW + 1];
+  const PetscInt n = b->dim == 2 ? collect(2, b, x, radius, near, d2) : collect(3, b, x, radius, near, d2);
+  if (n < 0 || n > max || !count_nearer(n, d2, place)) return insert_all(b, x, radius, max, item, distance2);
+  for (PetscInt i = 0; i < n; ++i) {
+    item[place[i]] = near[i];
+    distance2[place[i]] = d2[i];
   }
-  for (PetscInt k = lo[2]; k <= hi[2]; ++k)
-    for (PetscInt j = lo[1]; j <= hi[1]; ++j) {
-      const PetscInt row = (k * b->counts[1] + j) * b->counts[0];
-      for (PetscInt e = b->start[row + lo[0]]; e < b->start[row + hi[0] + 1]; ++e) {
-        PetscReal d2 = 0;
-        for (PetscInt d = 0; d < b->dim; ++d) d2 += (b->x[e * b->dim + d] - x[d]) * (b->x[e * b->dim + d] - x[d]);
-        if (d2 >= radius * radius) continue;
-        n = insert(b, n, max, item, distance2, b->item[e], d2);
-      }
-    }
   return n;
 }

@@ -16,22 +16,23 @@ static PetscBool metric_of(PetscInt dim, const PetscReal *F, PetscReal *metric)
   return PetscIsInfOrNanReal(sum) ? PETSC_FALSE : PETSC_TRUE;
 }
 
-/* Ascending nodes, with the values that belong to them. */
+/* Ascending nodes, with the values that belong to them: each goes behind those with smaller numbers. */
 static void sort_cloud(PetscInt dim, PetscInt n, PetscInt *node, PetscReal *N, PetscReal *dN)
 {
-  for (PetscInt i = 1; i < n; ++i) {
-    const PetscInt key = node[i];
-    PetscReal value = N[i], gradient[3];
-    PetscInt k = i;
-    for (PetscInt d = 0; d < dim; ++d) gradient[d] = dN[i * dim + d];
-    for (; k > 0 && node[k - 1] > key; --k) {
-      node[k] = node[k - 1];
-      N[k] = N[k - 1];
-      for (PetscInt d = 0; d < dim; ++d) dN[k * dim + d] = dN[(k - 1) * dim + d];
-    }
-    node[k] = key;
-    N[k] = value;
-    for (PetscInt d = 0; d < dim; ++d) dN[k * dim + d] = gradient[d];
+  PetscInt old_node[CLOUD_MAX_NODES], place[CLOUD_MAX_NODES] = {0};
+  PetscReal old_N[CLOUD_MAX_NODES], old_dN[3 * CLOUD_MAX_NODES];
+  for (PetscInt i = 0; i < n; ++i) {
+    old_node[i] = node[i];
+    old_N[i] = N[i];
+    for (PetscInt d = 0; d < dim; ++d) old_dN[i * dim + d] = dN[i * dim + d];
+  }
+  for (PetscInt i = 0; i < n; ++i)
+    for (PetscInt k = 0; k < n; ++k) place[k] += old_node[i] < old_node[k];
+  for (PetscInt i = 0; i < n; ++i) {
+    const PetscInt k = place[i];
+    node[k] = old_node[i];
+    N[k] = old_N[i];
+    for (PetscInt d = 0; d < dim; ++d) dN[k * dim + d] = old_dN[i * dim + d];
   }
 }
 
