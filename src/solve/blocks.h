@@ -54,6 +54,22 @@ typedef struct {
 } BlockSweeps;
 const BlockSweeps *block_sweeps(PetscInt dim);
 
+/* Products right after the sweeps start() and finish() where the result z of the latter has been changed in some places (blocks_product.c). */
+typedef struct {
+  Blocks *m;
+  PetscInt n_changed;
+  const PetscInt *changed; /* numbers in this rank's vectors that may differ; below 0: of another rank */
+  unsigned char *whole;    /* per row: does it have such a column? */
+  PetscReal *inverse;      /* S^-1 */
+} BlocksProduct;
+#define BLOCKS_PRODUCT_WORK 2 /* a work vector of its own */
+/* Collective. `changed` must live on. */
+PetscErrorCode BlocksProductCreate(Blocks *blocks, PetscInt n_changed, const PetscInt *changed, BlocksProduct *product);
+PetscErrorCode BlocksProductDestroy(BlocksProduct *product);
+/* Collective. q = A z. x, t: what start() and finish() left, for a vector divided by size. */
+PetscErrorCode BlocksProductApply(const BlocksProduct *product, PetscReal size, const PetscReal *z, const float *x,
+                                  float *t, PetscReal *q);
+
 /* What crosses ranks: values of rows that others assembled too, and columns that others own (blocks_halo.c). */
 struct BlocksHalo {
   PetscSF columns; /* roots: rows; leaves: columns of others */

@@ -9,6 +9,7 @@ typedef struct {
   Blocks *m;
   Projection *projection;
   const BlockSweeps *sweeps;
+  BlocksProduct product;
   PetscInt n;
   PetscReal size; /* of the right-hand side: keeps single precision within its range */
   float *x, *t;
@@ -35,11 +36,11 @@ static PetscErrorCode Precondition(const Solve *s, const PetscReal *r, PetscReal
   PetscFunctionReturn(0);
 }
 
-/* q = P^T K p */
-static PetscErrorCode Apply(const Solve *s, const PetscReal *p, PetscReal *q)
+/* q = P^T K z for the z that Precondition gave last */
+static PetscErrorCode Apply(const Solve *s, const PetscReal *z, PetscReal *q)
 {
   PetscFunctionBeginUser;
-  PetscCall(ProjectionMultiply(s->projection, p, q));
+  PetscCall(BlocksProductApply(&s->product, s->size, z, s->x, s->t, q));
   PetscCall(ProjectionForces(s->projection, q));
   PetscFunctionReturn(0);
 }
@@ -58,7 +59,8 @@ static PetscErrorCode Report(KSP ksp, PetscReal norm2, PetscBool *stop)
 
 static PetscErrorCode ConjugateGradients(KSP ksp, const Solve *s, PetscReal *y)
 {
-  PetscReal *r = s->v[VECTOR_R], *z = s->v[VECTOR_Z], *p = s->v[VECTOR_P], *q = s->v[VECTOR_Q], rz, last = 1, pq;
+  PetscReal *r = s->v[VECTOR_R], *z = s->v[VECTOR_Z], *p = s->v[VECTOR_P], *q = s->v[VECTOR_Q], *Kz = s->v[VECTOR_S];
+  PetscReal rz, last = 1, pq;
   PetscBool stop;
 
   PetscFunctionBeginUser;
@@ -67,8 +69,8 @@ static PetscErrorCode ConjugateGradients(KSP ksp, const Solve *s, PetscReal *y)
   PetscCall(Report(ksp, rz, &stop));
   while (!stop) {
     const PetscReal beta = ksp->its ? rz / last : 0;
-    for (PetscInt i = 0; i < s->n; ++i) p[i] = z[i] + beta * p[i];
-    PetscCall(Apply(s, p, q));
+    PetscCall(Apply(s, z, Kz));
+    for (PetscInt i = 0; i < s->n; ++i) p[i] = z[i] + beta * p[i], q[i] = Kz[i] + beta * q[i];
     PetscCall(Dot(s, p, q, &pq));
     if (!(pq > 0)) {
       ksp->reason = pq <= 0 ? KSP_DIVERGED_INDEFINITE_MAT : KSP_DIVERGED_NANORINF;
@@ -163,6 +165,7 @@ PetscErrorCode BlocksSolveProjected(KSP ksp, Blocks *m, const PetscReal *f, Pets
   PetscCall(BlocksWork(m, 0, &s.x));
   PetscCall(BlocksWork(m, 1, &s.t));
   for (int k = 0; k < VECTORS; ++k) PetscCall(PetscMalloc1(s.n, &s.v[k]));
+  PetscCall(BlocksProductCreate(m, m->projection->n_dofs, m->projection->place, &s.product));
   PetscCall(Start(&s, f, y));
   if (!(s.size > 0) || PetscIsInfReal(s.size)) ksp->reason = s.size == 0 ? KSP_CONVERGED_ATOL : KSP_DIVERGED_NANORINF;
   if (!ksp->reason && m->symmetric) PetscCall(ConjugateGradients(ksp, &s, y));
@@ -171,5 +174,6 @@ PetscErrorCode BlocksSolveProjected(KSP ksp, Blocks *m, const PetscReal *f, Pets
   PetscCall(Residual(&s, f, y, s.v[VECTOR_R]));
   PetscCall(ProjectionMultipliers(s.projection, s.v[VECTOR_R], y));
   for (int k = 0; k < VECTORS; ++k) PetscCall(PetscFree(s.v[k]));
+  PetscCall(BlocksProductDestroy(&s.product));
   PetscFunctionReturn(0);
 }
