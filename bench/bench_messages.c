@@ -1,12 +1,12 @@
 /* What the ranks say to each other in a step, by phase: messages, bytes, collective calls; and what it costs to share the grid anew.
  * Counts, not seconds: more ranks than cores do no harm. docs/scaling.md has the table and what it means for 1,000 ranks.
  *
- *   mpiexec --oversubscribe -n 4 build/bench/bench_messages [-dim 2] [-points 10000] [-per_rank 2500] [-steps 5]
+ *   mpiexec --oversubscribe -n 4 build/bench/bench_messages [-dim 2] [-points 10000] [-per_rank 2500] [-steps 5] [-mesh]
  *
- * -points: of the whole body; -per_rank instead: of each rank. */
+ * -points: of the whole body; -per_rank instead: of each rank. -mesh: the grid comes from a file. */
 #include "messages.h"
 
-#include "bench.h"
+#include "box_mesh.h"
 
 static Model *model; /* whose clocks tell the phases */
 
@@ -123,7 +123,9 @@ static PetscErrorCode Repartition(void)
 int main(int argc, char **argv)
 {
   PetscInt points = 10000, per_rank = 0, dim = 2, steps = 5;
+  PetscBool mesh = PETSC_FALSE;
   PetscMPIInt ranks;
+  char path[64];
   BenchCase b;
   Subject s;
   Result r;
@@ -134,10 +136,13 @@ int main(int argc, char **argv)
   PetscCall(PetscOptionsGetInt(NULL, NULL, "-per_rank", &per_rank, NULL));
   PetscCall(PetscOptionsGetInt(NULL, NULL, "-dim", &dim, NULL));
   PetscCall(PetscOptionsGetInt(NULL, NULL, "-steps", &steps, NULL));
+  PetscCall(PetscOptionsGetBool(NULL, NULL, "-mesh", &mesh, NULL));
   if (per_rank) points = per_rank * ranks;
   const PetscReal n = PetscPowReal((PetscReal)points / (dim == 2 ? 4 : 8), 1.0 / (PetscReal)dim);
   bench_landing_block(&b, dim, (PetscInt)(n + 0.5), (PetscInt)(n + 0.5) / 4, 2);
+  if (mesh) PetscCall(BoxToMesh(&b, sizeof path, path));
   PetscCall(SubjectCreate(&b.c, &s));
+  if (mesh) (void)unlink(path); /* by whoever is first */
   model = s.model;
   PetscCall(Count(steps, &r));
   PetscCall(Print(&r));
