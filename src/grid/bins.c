@@ -15,7 +15,6 @@ PetscErrorCode GridBinsDestroy(GridBins **bins)
   PetscCall(PetscFree((*bins)->neighbour));
   PetscCall(PetscFree((*bins)->far_cell));
   PetscCall(PetscFree((*bins)->file_node));
-  PetscCall(PetscFree2((*bins)->cut_axis, (*bins)->cut));
   PetscCall(BoxTreeDestroy(&(*bins)->cell_tree));
   PetscCall(BoxTreeDestroy(&(*bins)->face_tree));
   PetscCall(PetscFree(*bins));

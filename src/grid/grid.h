@@ -65,8 +65,8 @@ PetscErrorCode GridDestroy(Grid **grid);
  * a rank over the mean that such a sharing has; if that is more than `worst` there is no use in it, and *grid stays NULL. `old` stays as it is. Not for clouds. */
 PetscErrorCode GridRepartition(const Grid *old, const PetscReal *weight, PetscReal worst, PetscReal *reached,
                                Grid **grid);
-/* Collective. Who has what, as a table (none of a mesh that is shared as it was read), and the same grid shared in that way by as many ranks. reason
- * is left empty, or says on every rank why not. */
+/* Collective. Who has what, as a table, and the same grid shared in that way by as many ranks. reason is left empty, or says on every rank why
+ * not. */
 PetscErrorCode GridPartitionToTable(const Grid *grid, Tables *tables);
 PetscErrorCode GridFromPartition(const Grid *old, const Table *table, Grid **grid, char reason[256]);
 

@@ -108,6 +108,8 @@ PetscErrorCode GridBoxFromCuts(const Grid *old, const PetscInt *cut_axis, const 
 void mesh_ruler(const Grid *grid, PetscInt counts[3]);
 PetscErrorCode MeshWeighCells(const Grid *grid, const PetscReal *weight, VoxelWeights *voxels);
 PetscErrorCode GridMeshFromCuts(const Grid *old, const PetscInt *cut_axis, const PetscInt *cut, Grid **grid);
+/* Collective. The same mesh with each local cell of `old` on the rank owner[cell]. */
+PetscErrorCode GridMeshFromOwners(const Grid *old, const PetscMPIInt *owner, Grid **grid);
 
 /* sets.c */
 PetscErrorCode GridSetDestroy(GridSet *set);
@@ -129,13 +131,12 @@ PetscErrorCode GridFinish(Grid *grid);
 /* search.c: everything that only unstructured grids need besides their cells. */
 typedef struct BoxTree BoxTree;
 struct GridBins {
-  PetscInt *neighbour;      /* n_cells x faces: local cell beyond, -1 outside the grid, -2 - r on rank r */
-  PetscInt *far_cell;       /* numbers of the cells on other ranks, in the order in which neighbour names them */
-  PetscInt *file_node;      /* n_nodes: place among the nodes in the file, whatever the ranks */
-  PetscInt *cut_axis, *cut; /* by which the ranks share the mesh now; NULL: as it was read */
-  BoxTree *cell_tree;       /* bounding boxes of the cells */
-  BoxTree *face_tree;       /* and of the faces on the outer boundary, as grid->outer lists them */
-  PetscReal tolerance;      /* how far outside a cell a position still belongs, in reference units */
+  PetscInt *neighbour; /* n_cells x faces: local cell beyond, -1 outside the grid, -2 - r on rank r */
+  PetscInt *far_cell;  /* numbers of the cells on other ranks, in the order in which neighbour names them */
+  PetscInt *file_node; /* n_nodes: place among the nodes in the file, whatever the ranks */
+  BoxTree *cell_tree;  /* bounding boxes of the cells */
+  BoxTree *face_tree;  /* and of the faces on the outer boundary, as grid->outer lists them */
+  PetscReal tolerance; /* how far outside a cell a position still belongs, in reference units */
 };
 /* Takes the arrays. */
 PetscErrorCode GridBinsCreate(Grid *grid, PetscInt *neighbour, PetscInt *far_cell, PetscInt *file_node);

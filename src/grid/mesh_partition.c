@@ -1,6 +1,7 @@
 /* The rank of each cell of a mesh: PT-Scotch through PETSc, on the graph of face neighbours,
  * weighted like the box's voxels. */
 #include <petscmat.h>
+#include <stdlib.h>
 #include "grid/msh.h"
 
 static PetscErrorCode DualGraph(const SerialMesh *mesh, Mat *graph)
@@ -46,6 +47,20 @@ static PetscErrorCode CellWeights(const SerialMesh *mesh, GridWeight weight, voi
   PetscFunctionReturn(0);
 }
 
+/* Scotch takes a thread for each core, and then its partition is another one at every run: neither a run nor one taken up on the way would repeat
+ * itself. One thread, unless the user says otherwise. */
+static PetscErrorCode ApplyAlone(MatPartitioning partitioning, IS *is)
+{
+  static const char threads[] = "SCOTCH_PTHREAD_NUMBER";
+  const PetscBool told = getenv(threads) ? PETSC_TRUE : PETSC_FALSE;
+
+  PetscFunctionBeginUser;
+  if (!told) (void)setenv(threads, "1", 1);
+  PetscCall(MatPartitioningApply(partitioning, is));
+  if (!told) (void)unsetenv(threads);
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode SerialMeshPartition(const SerialMesh *mesh, PetscMPIInt size, GridWeight weight, void *context,
                                    PetscInt *owner)
 {
@@ -72,7 +87,7 @@ PetscErrorCode SerialMeshPartition(const SerialMesh *mesh, PetscMPIInt size, Gri
     PetscCall(CellWeights(mesh, weight, context, &weights));
     PetscCall(MatPartitioningSetVertexWeights(partitioning, weights)); /* owns them */
   }
-  PetscCall(MatPartitioningApply(partitioning, &is));
+  PetscCall(ApplyAlone(partitioning, &is));
   PetscCall(ISGetIndices(is, &part));
   PetscCall(PetscArraycpy(owner, part, mesh->n_cells));
   PetscCall(ISRestoreIndices(is, &part));

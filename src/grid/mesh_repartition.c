@@ -62,11 +62,21 @@ PetscErrorCode MeshWeighCells(const Grid *grid, const PetscReal *weight, VoxelWe
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode GridMeshFromOwners(const Grid *old, const PetscMPIInt *owner, Grid **grid)
+{
+  MeshParcel parcel;
+
+  PetscFunctionBeginUser;
+  PetscCall(MeshSend(old, owner, &parcel));
+  PetscCall(MeshSettle(old, &parcel, grid));
+  PetscCall(MeshParcelDestroy(&parcel));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode GridMeshFromCuts(const Grid *old, const PetscInt *cut_axis, const PetscInt *cut, Grid **grid)
 {
   PetscInt counts[3];
   PetscMPIInt size, *owner;
-  MeshParcel parcel;
 
   PetscFunctionBeginUser;
   PetscCallMPI(MPI_Comm_size(old->comm, &size));
@@ -77,13 +87,7 @@ PetscErrorCode GridMeshFromCuts(const Grid *old, const PetscInt *cut_axis, const
     read_ruler(old, counts, c, ijk);
     owner[c] = voxel_owner(size, cut_axis, cut, ijk);
   }
-  PetscCall(MeshSend(old, owner, &parcel));
+  PetscCall(GridMeshFromOwners(old, owner, grid));
   PetscCall(PetscFree(owner));
-  PetscCall(MeshSettle(old, &parcel, grid));
-  PetscCall(MeshParcelDestroy(&parcel));
-  GridBins *bins = (*grid)->bins;
-  PetscCall(PetscMalloc2(size, &bins->cut_axis, size, &bins->cut));
-  PetscCall(PetscArraycpy(bins->cut_axis, cut_axis, size));
-  PetscCall(PetscArraycpy(bins->cut, cut, size));
   PetscFunctionReturn(0);
 }

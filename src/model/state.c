@@ -141,7 +141,7 @@ static PetscErrorCode BalanceToTables(const Model *m, Tables *tables)
   const PetscInt64 memory[] = {size, b->tried, b->repartitions};
   PetscCall(TableAdd(table, "ranks_tried_repartitions", NULL, COLUMN_INT64, 3, NULL, &column));
   for (int i = 0; i < 3; ++i) ((PetscInt64 *)column->data)[i] = memory[i];
-  if (b->repartitions) PetscCall(GridPartitionToTable(m->grid, tables));
+  if (b->repartitions || !m->grid->box) PetscCall(GridPartitionToTable(m->grid, tables));
   PetscFunctionReturn(0);
 }
 
@@ -276,7 +276,9 @@ static PetscErrorCode BalanceBack(Model *m, const Tables *tables, char reason[25
   b->tried = (PetscInt)memory[1];
   if (!partition || reason[0]) PetscFunctionReturn(0);
   PetscCall(GridFromPartition(m->grid, partition, &grid, reason));
-  if (!reason[0]) PetscCall(ModelRegrid(m, grid, &moved));
+  if (reason[0]) PetscFunctionReturn(0);
+  PetscCall(ModelRegrid(m, grid, &moved));
+  PetscCall(m->method->initialise(m->stage)); /* what fem makes once, of points and nodes at the start */
   PetscFunctionReturn(0);
 }
 

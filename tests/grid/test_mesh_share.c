@@ -237,7 +237,7 @@ static void not_worth_it(void **state)
   CALL(GridDestroy(&grid));
 }
 
-/* Cuts go to a file and come back: the same grid to the last bit, from the mesh as it is read. */
+/* Into a table and back, from the mesh as it is read: the same grid to the last bit. */
 static void by_table(void **state)
 {
   PetscReal reached;
@@ -245,24 +245,27 @@ static void by_table(void **state)
   for (int m = 0; m < 4; ++m) {
     char reason[256] = "";
     Tables *tables;
-    Table *table;
     Grid *again;
     generate(meshes[m].source, "table.msh", meshes[m].options);
-    Grid *grid = read_mesh("table.msh", meshes[m].dim);
+    Grid *grid = read_mesh("table.msh", meshes[m].dim), *shared = share_by_disk(grid, 0.7, 0.5, 0.4, &reached);
     CALL(TablesCreate(&tables));
-    CALL(GridPartitionToTable(grid, tables)); /* it has not been shared anew: there is nothing to keep */
-    assert_null(TablesFind(tables, "partition"));
-    Grid *shared = share_by_disk(grid, 0.7, 0.5, 0.4, &reached);
     CALL(GridPartitionToTable(shared, tables));
-    table = TablesFind(tables, "partition");
-    assert_non_null(table);
+    Table *table = TablesFind(tables, "partition");
     CALL(GridFromPartition(grid, table, &again, reason));
     assert_int_equal(reason[0], 0);
     same_grids(shared, again);
     CALL(GridDestroy(&again));
-    *(PetscInt64 *)TableData(table, "cut_axis", COLUMN_INT64, 1, reason) = 3;
+    /* One rank's table is damaged, and all are told. */
+    if (my_rank() == ranks() - 1)
+      *(PetscInt64 *)TableData(table, "cell", COLUMN_INT64, 1, reason) = grid->n_cells_global;
     CALL(GridFromPartition(grid, table, &again, reason));
-    assert_true(!again && strstr(reason, "makes no sense"));
+    assert_true(!again && strstr(reason, "no such cell"));
+    reason[0] = 0;
+    if (my_rank() == ranks() - 1) --table->rows;
+    if (my_rank() == ranks() - 1)
+      *(PetscInt64 *)TableData(table, "cell", COLUMN_INT64, 1, reason) = shared->global_cell[0];
+    CALL(GridFromPartition(grid, table, &again, reason));
+    assert_true(!again && strstr(reason, "is missing"));
     CALL(TablesDestroy(&tables));
     CALL(GridDestroy(&shared));
     CALL(GridDestroy(&grid));

@@ -94,8 +94,9 @@ static void check_only(Bench *b, PetscInt before, PetscInt after, PetscBool bits
 }
 
 /* A body that falls, turns and crosses from rank to rank, with a load that it carries and a tracer. */
-static void flying(const char *method, CellType cell, PetscReal size)
+static void flying(const char *method, CellType cell, PetscReal size, PetscBool mesh)
 {
+  static const PetscReal plane[] = {0, 0.5, 1, 1.5, 2, 3};
   Bench b;
   bench_init(&b, method, cell, 0);
   if (strcmp(method, "fem")) {
@@ -113,20 +114,22 @@ static void flying(const char *method, CellType cell, PetscReal size)
   bench_traction(&b, 0, 1.5, strcmp(method, "fem") ? "body" : NULL, 1e3, 2e3, 0);
   bench_tracer(&b, MEASURE_DISPLACEMENT, 1, 1.4, 0.9, 0.9);
   if (!strcmp(method, "fem")) bench_motion(&b, 0, 0.5, MOTION_FIXED, 7);
+  if (mesh) bench_distort(&b, 0.1, 6, plane);
   check_only(&b, 7, 6, PETSC_TRUE);
+  bench_end(&b);
 }
 
 static void test_mpm_2d(void **state)
 {
   (void)state;
-  flying("mpm", CELL_QUADRILATERAL, 0.125);
-  flying("mpm", CELL_TRIANGLE, 0.25);
+  flying("mpm", CELL_QUADRILATERAL, 0.125, PETSC_FALSE);
+  flying("mpm", CELL_TRIANGLE, 0.25, PETSC_FALSE);
 }
 
 static void test_mpm_3d(void **state)
 {
   (void)state;
-  flying("mpm", CELL_HEXAHEDRON, 0.25);
+  flying("mpm", CELL_HEXAHEDRON, 0.25, PETSC_FALSE);
 }
 
 /* A block that leaves the part of its rank: the grid is shared anew before the checkpoint and after it. */
@@ -163,8 +166,16 @@ static void test_repartition(void **state)
 static void test_fem(void **state)
 {
   (void)state;
-  flying("fem", CELL_QUADRILATERAL, 0.125);
-  flying("fem", CELL_HEXAHEDRON, 0.25);
+  flying("fem", CELL_QUADRILATERAL, 0.125, PETSC_FALSE);
+  flying("fem", CELL_HEXAHEDRON, 0.25, PETSC_FALSE);
+}
+
+/* A mesh is shared in another way each time that a process reads it. */
+static void test_mesh(void **state)
+{
+  (void)state;
+  flying("mpm", CELL_TRIANGLE, 0.25, PETSC_TRUE);
+  flying("fem", CELL_QUADRILATERAL, 0.125, PETSC_TRUE);
 }
 
 /* A block with a spin, thrown on a floor: ghosts, the pattern and constraints come and go; with a tracer and a carried load. */
@@ -323,10 +334,11 @@ static void test_other_model(void **state)
 
 int main(int argc, char **argv)
 {
-  const struct CMUnitTest tests[] = {
-    cmocka_unit_test(test_mpm_2d),   cmocka_unit_test(test_mpm_3d),      cmocka_unit_test(test_repartition),
-    cmocka_unit_test(test_fem),      cmocka_unit_test(test_gmm),         cmocka_unit_test(test_static),
-    cmocka_unit_test(test_at_start), cmocka_unit_test(test_other_model), cmocka_unit_test(test_given_up)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_mpm_2d),      cmocka_unit_test(test_mpm_3d),
+                                     cmocka_unit_test(test_repartition), cmocka_unit_test(test_fem),
+                                     cmocka_unit_test(test_mesh),        cmocka_unit_test(test_gmm),
+                                     cmocka_unit_test(test_static),      cmocka_unit_test(test_at_start),
+                                     cmocka_unit_test(test_other_model), cmocka_unit_test(test_given_up)};
   PetscMPIInt rank;
   int pid;
   if (PetscInitialize(&argc, &argv, NULL, NULL)) return 1;
