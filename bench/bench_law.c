@@ -81,7 +81,7 @@ static double speed(const BenchCase *b, int n, int tangent)
 
 int main(int argc, char **argv)
 {
-  const int n = argc > 1 ? atoi(argv[1]) : LAW_BATCH;
+  const int n = argc > 1 ? (int)strtol(argv[1], NULL, 10) : LAW_BATCH;
   if (n < 1 || n > LAW_BATCH) return fprintf(stderr, "a batch has 1 to %d points\n", LAW_BATCH), 2;
   printf("%-24s %-16s %10s %10s %10s   [million points/s, n = %d]\n", "law", "", "with c", "tau only", "ns with c", n);
   for (size_t i = 0; i < sizeof cases / sizeof cases[0]; ++i) {

@@ -23,10 +23,10 @@ typedef struct {
   const PetscReal *tie;       /* per group: inertia that ties them together, kg, or NULL */
   const unsigned char *fixed; /* n_nodes x dim: prescribed degrees of freedom; their rows and columns stay empty */
   const PetscReal *lift;      /* n_nodes x dim or NULL: adds K lift on the free rows, for fixed columns */
-  PetscBool half;             /* of clouds, whose tangent is symmetric: blocks with a row behind the column are left out */
-  const PetscReal *pressure;  /* mixed: n_nodes, the unknown pressure over pressure_scale, m */
-  PetscReal pressure_scale;   /* mixed: Pa/m, gives both unknowns the same unit, and both equations N */
-  PetscReal alpha;            /* mixed: stabilisation of the pressure is alpha / G */
+  PetscBool half; /* of clouds, whose tangent is symmetric: blocks with a row behind the column are left out */
+  const PetscReal *pressure;     /* mixed: n_nodes, the unknown pressure over pressure_scale, m */
+  PetscReal pressure_scale;      /* mixed: Pa/m, gives both unknowns the same unit, and both equations N */
+  PetscReal alpha;               /* mixed: stabilisation of the pressure is alpha / G */
   const PetscReal *pressure_tie; /* mixed: per group, ties the pressures of a hardly filled cell, m3/Pa, or NULL */
 } WeakFormInput;
 
