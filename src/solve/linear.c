@@ -1,6 +1,8 @@
 #include "solve/linear.h"
 #include "solve/blocks.h"
 
+#define ITERATE_BELOW \
+  100 /* cells that a wave crosses in a step up to which a dynamic problem is solved by iteration first */
 #define PROJECT_BELOW \
   3 /* cells that a wave crosses in a step up to which unsymmetric systems with multipliers take projections */
 #define REFINE_ABOVE \
@@ -118,7 +120,7 @@ static PetscErrorCode UseMultigrid(KSP ksp, const LinearProblem *p, const char *
 static PetscBool direct_pays(const LinearProblem *p)
 {
   if (p->mixed) return p->unknowns < (p->dim == 2 ? 500000 : 20000) ? PETSC_TRUE : PETSC_FALSE;
-  if (p->dynamic && p->courant < 20) return PETSC_FALSE;
+  if (p->dynamic && p->courant < ITERATE_BELOW) return PETSC_FALSE;
   return p->unknowns < (p->dim == 2 ? 1000000 : 100000) ? PETSC_TRUE : PETSC_FALSE;
 }
 
