@@ -12,6 +12,17 @@ static PetscBool guess_follows(const Model *m)
                                                                                               : PETSC_FALSE;
 }
 
+void guess_inertia(const Model *m, PetscReal dt, PetscReal *du)
+{
+  const Newmark newmark = newmark_of(&m->c->analysis, dt);
+  for (PetscInt node = 0; node < m->grid->n_nodes; ++node) {
+    const PetscBool moves =
+      m->stage->touched[node] && !(m->grid->cloud && cloud_is_twin(m->grid, node)) ? PETSC_TRUE : PETSC_FALSE;
+    for (PetscInt d = 0, i = node * m->dim; d < m->dim; ++d, ++i)
+      du[i] = moves ? newmark_guess(&newmark, m->stage->v[i], m->stage->a[i]) : 0;
+  }
+}
+
 void guess_increments(const Model *m, PetscReal dt, PetscReal *du)
 {
   const PetscReal ratio = m->guess.step > 0 ? dt / m->guess.step : 0;

@@ -19,7 +19,9 @@ PetscErrorCode ModelRegrid(Model *model, Grid *grid, PetscInt *moved);
 /* Collective. Forces of the boundary: the only nodal fields that outlive a step in every method. */
 PetscErrorCode ReactionsToTables(Model *model, Tables *tables);
 PetscErrorCode ReactionsFromTables(Model *model, const Tables *tables, char reason[256]);
-/* guess.c. The step before instead of inertia's guess in du, where that promises to be nearer. */
+/* guess.c. What inertia alone would bring in a step of dt. */
+void guess_inertia(const Model *model, PetscReal dt, PetscReal *du);
+/* The step before instead of inertia's guess in du, where that promises to be nearer. */
 void guess_increments(const Model *model, PetscReal dt, PetscReal *du);
 /* Collective. A step of dt is accepted: which guess would have been nearer? Before points move. */
 PetscErrorCode GuessLearn(Model *model, PetscReal dt);

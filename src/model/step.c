@@ -115,7 +115,8 @@ void ModelTimes(const Model *m, PetscReal seconds[PHASE_N])
               &seconds[PHASE_NEWTON]);
 }
 
-/* Newton from the motion that inertia alone would bring, and if that fails from rest: where a flow starts or stops the second finds its way. */
+/* Newton from the increments of the step before or the motion that inertia alone would bring, and if that fails from the latter and from rest: where a flow
+ * starts or stops these find their way. */
 static PetscErrorCode Solve(Model *m, PetscReal dt, const LinearProblem *linear, StepReport *report)
 {
   StepProblem problem;
@@ -125,8 +126,10 @@ static PetscErrorCode Solve(Model *m, PetscReal dt, const LinearProblem *linear,
   PetscCall(PetscTime(&clock));
   PetscCall(PrepareStep(m, dt, &problem));
   PetscCall(PhaseEnd(m->seconds, PHASE_PREPARE, &clock));
-  for (PetscInt guess = 0; guess < (linear->dynamic ? 2 : 1); ++guess) {
-    if (guess) PetscCall(PetscArrayzero(m->du, m->grid->n_nodes * m->dim));
+  const PetscInt guesses = !linear->dynamic ? 1 : m->guess.previous ? 3 : 2;
+  for (PetscInt guess = 0; guess < guesses; ++guess) {
+    if (guess && guess == guesses - 1) PetscCall(PetscArrayzero(m->du, m->grid->n_nodes * m->dim));
+    else if (guess) guess_inertia(m, dt, m->du);
     if (guess) pressure_guess(m);
     PetscCall(NewtonSolve(m->newton, &problem, linear, &report->newton));
     m->total_iterations += report->newton.iterations;

@@ -152,9 +152,9 @@ PetscErrorCode PrepareStep(Model *m, PetscReal dt, StepProblem *p)
     if (!m->stage->touched[node] || (m->grid->cloud && cloud_is_twin(m->grid, node))) continue;
     for (PetscInt d = 0, i = node * dim; d < dim; ++d, ++i) {
       m->history[i] = (dynamic ? newmark_history(&newmark, m->stage->v[i], m->stage->a[i]) : 0) - g[d];
-      m->du[i] = dynamic ? newmark_guess(&newmark, m->stage->v[i], m->stage->a[i]) : 0;
     }
   }
+  if (dynamic) guess_inertia(m, dt, m->du);
   guess_increments(m, dt, m->du);
   PetscCall(PetscArrayzero(m->external, dofs));
   PetscCall(LoadsAdd(m->loads, m->grid, m->time + dt, m->stage->filled, m->stage->touched, m->external));
