@@ -4,6 +4,7 @@
  * the compiler's, since it leaves loops of such fixed short length scalar. g is dim rows, the cell force dim rows, the cell
  * matrix nn x dim x dim rows. */
 #pragma once
+#include "base/lanes.h"
 #include "base/tensor.h"
 #include "formulation/formulation.h"
 
@@ -40,7 +41,7 @@ KERNEL void row_copy(const int nn, const PetscReal *x, PetscReal *row)
   else *(Row8 *)row = *(const Row8 *)x;
 }
 
-/* Rows to columns. */
+/* Rows to columns, as lanes_transpose does with eight. */
 KERNEL void rows_transpose4(Row4 r[4])
 {
   const Row4 a0 = __builtin_shufflevector(r[0], r[1], 0, 4, 2, 6), a1 = __builtin_shufflevector(r[0], r[1], 1, 5, 3, 7);
@@ -49,24 +50,6 @@ KERNEL void rows_transpose4(Row4 r[4])
   r[1] = __builtin_shufflevector(a1, a3, 0, 1, 4, 5);
   r[2] = __builtin_shufflevector(a0, a2, 2, 3, 6, 7);
   r[3] = __builtin_shufflevector(a1, a3, 2, 3, 6, 7);
-}
-
-KERNEL void rows_transpose8(Row8 r[8])
-{
-  Row8 a[8], b[8];
-  for (int i = 0; i < 8; i += 2) {
-    a[i] = __builtin_shufflevector(r[i], r[i + 1], 0, 8, 2, 10, 4, 12, 6, 14);
-    a[i + 1] = __builtin_shufflevector(r[i], r[i + 1], 1, 9, 3, 11, 5, 13, 7, 15);
-  }
-  for (int i = 0; i < 8; i += 4)
-    for (int j = 0; j < 2; ++j) {
-      b[i + j] = __builtin_shufflevector(a[i + j], a[i + j + 2], 0, 1, 8, 9, 4, 5, 12, 13);
-      b[i + j + 2] = __builtin_shufflevector(a[i + j], a[i + j + 2], 2, 3, 10, 11, 6, 7, 14, 15);
-    }
-  for (int j = 0; j < 4; ++j) {
-    r[j] = __builtin_shufflevector(b[j], b[j + 4], 0, 1, 2, 3, 8, 9, 10, 11);
-    r[j + 4] = __builtin_shufflevector(b[j], b[j + 4], 4, 5, 6, 7, 12, 13, 14, 15);
-  }
 }
 
 /* row += s x */
@@ -179,13 +162,13 @@ KERNEL void mirror_stiffness(const int dim, const int nn, PetscReal *restrict K)
       const PetscReal *from = K + (a * dim + b) * w;
       PetscReal *to = K + (b * dim + a) * w;
       Row4 four[4] = {{0}};
-      Row8 eight[8];
+      Lanes eight[8];
       for (int I = 0; I < nn; ++I) {
         if (w == 4) four[I] = *(const Row4 *)(from + I * stride);
         else eight[I] = *(const Row8 *)(from + I * stride);
       }
       if (w == 4) rows_transpose4(four);
-      else rows_transpose8(eight);
+      else lanes_transpose(eight);
       for (int I = 0; I < nn; ++I) {
         if (w == 4) *(Row4 *)(to + I * stride) = four[I];
         else *(Row8 *)(to + I * stride) = eight[I];
@@ -233,13 +216,13 @@ KERNEL void scatter_blocks(const int dim, const int nn, const PetscBool single, 
   for (int I = 0; I < nn; ++I, slot += nn, K += size * w) {
     for (int first = 0; first < whole; first += w) {
       Row4 four[4];
-      Row8 eight[8];
+      Lanes eight[8];
       for (int e = 0; e < w; ++e) {
         if (w == 4) four[e] = *(const Row4 *)(K + (first + e) * w);
         else eight[e] = *(const Row8 *)(K + (first + e) * w);
       }
       if (w == 4) rows_transpose4(four);
-      else rows_transpose8(eight);
+      else lanes_transpose(eight);
       for (int J = 0; J < nn; ++J) {
         if (w == 4) block_add4(single, four[J], values, slot[J] * size + first);
         else block_add8(single, eight[J], values, slot[J] * size + first);

@@ -123,16 +123,25 @@ LANES_INLINE LawStatus update_lanes(const PetscReal *p, PetscInt n, const PetscR
   return lanes_any(&bad) ? give_up(&t.finite, &t.det, n, old, state, tau, c) : LAW_OK;
 }
 
-static LawStatus update(const PetscReal *parameters, PetscInt n, const PetscReal *dF, const PetscReal *old,
-                        PetscReal *state, PetscReal *tau, PetscReal *c)
+typedef LawStatus (*UpdateLanes)(const PetscReal *p, PetscInt n, const PetscReal *dF, const PetscReal *old,
+                                 PetscReal *state, PetscReal *tau, PetscReal *c);
+
+LANES_INLINE LawStatus update_batch(UpdateLanes lanes, const PetscReal *p, PetscInt n, const PetscReal *dF,
+                                    const PetscReal *old, PetscReal *state, PetscReal *tau, PetscReal *c)
 {
   LawStatus worst = LAW_OK;
   for (PetscInt i = 0; i < n; i += LANES) {
-    const LawStatus status = update_lanes(parameters, n - i, dF + 9 * i, old + N_STATE * i, state + N_STATE * i,
-                                          tau + 6 * i, c ? c + 36 * i : NULL);
+    const LawStatus status =
+      lanes(p, n - i, dF + 9 * i, old + N_STATE * i, state + N_STATE * i, tau + 6 * i, c ? c + 36 * i : NULL);
     worst = PetscMax(worst, status);
   }
   return worst;
+}
+
+static LawStatus update(const PetscReal *parameters, PetscInt n, const PetscReal *dF, const PetscReal *old,
+                        PetscReal *state, PetscReal *tau, PetscReal *c)
+{
+  return update_batch(update_lanes, parameters, n, dF, old, state, tau, c);
 }
 
 /* The moduli of the plane where 36 components stand for each point. */
@@ -174,13 +183,7 @@ LANES_INLINE LawStatus update_plane_lanes(const PetscReal *p, PetscInt n, const 
 static LawStatus update_plane(const PetscReal *parameters, PetscInt n, const PetscReal *dF, const PetscReal *old,
                               PetscReal *state, PetscReal *tau, PetscReal *c)
 {
-  LawStatus worst = LAW_OK;
-  for (PetscInt i = 0; i < n; i += LANES) {
-    const LawStatus status = update_plane_lanes(parameters, n - i, dF + 9 * i, old + N_STATE * i, state + N_STATE * i,
-                                                tau + 6 * i, c ? c + 36 * i : NULL);
-    worst = PetscMax(worst, status);
-  }
-  return worst;
+  return update_batch(update_plane_lanes, parameters, n, dF, old, state, tau, c);
 }
 
 static PetscReal energy(const PetscReal *p, const PetscReal *b)

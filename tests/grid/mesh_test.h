@@ -4,6 +4,15 @@
 #include <string.h>
 #include "grid_test.h"
 
+/* One of each cell. */
+static const struct {
+  const char *source, *options;
+  PetscInt dim;
+} meshes[] = {{"plane", "-2 -setnumber h 0.3", 2},
+              {"plane", "-2 -setnumber h 0.4 -setnumber quads 1", 2},
+              {"block", "-3 -setnumber n 2", 3},
+              {"block", "-3 -setnumber n 3 -setnumber bricks 1", 3}};
+
 static char folder[64]; /* where the meshes of this run stand; the same on every rank */
 
 static inline PetscMPIInt my_rank(void)

@@ -61,13 +61,6 @@ static void solids(void **state)
 
 static void location(void **state)
 {
-  static const struct {
-    const char *source, *options;
-    PetscInt dim;
-  } meshes[] = {{"plane", "-2 -setnumber h 0.3", 2},
-                {"plane", "-2 -setnumber h 0.4 -setnumber quads 1", 2},
-                {"block", "-3 -setnumber n 2", 3},
-                {"block", "-3 -setnumber n 3 -setnumber bricks 1", 3}};
   (void)state;
   for (int m = 0; m < 4; ++m) {
     const PetscReal inside[8] = {1, 2, 3, 2.5, 1.5, 0.7, 0.9, 3}, node[8] = {0, 1}, edge[8] = {1, 1};

@@ -3,14 +3,6 @@
 #include "grid/mesh_travel.h"
 #include "mesh_test.h"
 
-static const struct {
-  const char *source, *options;
-  PetscInt dim;
-} meshes[] = {{"plane", "-2 -setnumber h 0.3", 2},
-              {"plane", "-2 -setnumber h 0.4 -setnumber quads 1", 2},
-              {"block", "-3 -setnumber n 2", 3},
-              {"block", "-3 -setnumber n 3 -setnumber bricks 1", 3}};
-
 static PetscMPIInt ranks(void)
 {
   PetscMPIInt size;
