@@ -1,7 +1,8 @@
-/* First guess of a step: what inertia alone would bring, or the increments of the step before.
+/* First guesses of a step: what inertia alone would bring, the increments of the step before, and rest.
  *
  * Where a flow comes to rest the second is nearer: velocities that points give to the nodes of a restored grid are not those that the last
- * solution had there. Where motion only begins the first is. Whichever would have been nearer to the last solution is taken. */
+ * solution had there. Where motion only begins the first is. Whichever would have been nearer to the last solution is tried first; if Newton
+ * fails from it, the other one, and then rest. */
 #include "grid/directory.h"
 #include "model/model_private.h"
 
@@ -12,7 +13,20 @@ static PetscBool guess_follows(const Model *m)
                                                                                               : PETSC_FALSE;
 }
 
-void guess_inertia(const Model *m, PetscReal dt, PetscReal *du)
+PetscInt guess_order(const Model *m, FirstGuess order[GUESS_N])
+{
+  PetscInt n = 0;
+  if (m->c->analysis.type == ANALYSIS_DYNAMIC) {
+    const PetscBool known = guess_follows(m) && m->guess.step > 0 ? PETSC_TRUE : PETSC_FALSE;
+    if (known && m->guess.previous) order[n++] = GUESS_PREVIOUS;
+    order[n++] = GUESS_INERTIA;
+    if (known && !m->guess.previous) order[n++] = GUESS_PREVIOUS;
+  }
+  order[n++] = GUESS_REST;
+  return n;
+}
+
+static void guess_inertia(const Model *m, PetscReal dt, PetscReal *du)
 {
   const Newmark newmark = newmark_of(&m->c->analysis, dt);
   for (PetscInt node = 0; node < m->grid->n_nodes; ++node) {
@@ -23,12 +37,16 @@ void guess_inertia(const Model *m, PetscReal dt, PetscReal *du)
   }
 }
 
-void guess_increments(const Model *m, PetscReal dt, PetscReal *du)
+void guess_make(const Model *m, FirstGuess guess, PetscReal dt, PetscReal *du)
 {
-  const PetscReal ratio = m->guess.step > 0 ? dt / m->guess.step : 0;
-  if (!m->guess.previous || !guess_follows(m)) return;
-  for (PetscInt i = 0; i < m->grid->n_nodes * m->dim; ++i)
-    if (!m->fixed[i] && m->previous[i] != 0) du[i] = ratio * m->previous[i];
+  const PetscInt dofs = m->grid->n_nodes * m->dim;
+  if (guess == GUESS_REST) {
+    for (PetscInt i = 0; i < dofs; ++i) du[i] = 0;
+    return;
+  }
+  guess_inertia(m, dt, du); /* nodes that the last step did not move know no other */
+  for (PetscInt i = 0; guess == GUESS_PREVIOUS && i < dofs; ++i)
+    if (!m->fixed[i] && m->previous[i] != 0) du[i] = dt / m->guess.step * m->previous[i];
 }
 
 PetscErrorCode GuessLearn(Model *m, PetscReal dt)

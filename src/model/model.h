@@ -37,6 +37,12 @@ typedef struct {
     previous; /* were the increments of the step before it nearer to its solution than what inertia alone would have brought? */
 } Guess;
 
+/* Newton's tries that failed before another one led to the solution, or the step was halved. */
+typedef struct {
+  PetscInt again; /* tries of the same step from another first guess */
+  PetscInt lost;  /* iterations of tries that failed */
+} Tries;
+
 /* Body force per mass at the undeformed position X (dim) and time t, m/s2, besides gravity: a centrifuge, a manufactured solution. */
 typedef void (*BodyForce)(void *context, const PetscReal *X, PetscReal t, PetscReal *b);
 
@@ -80,7 +86,8 @@ typedef struct Model {
   PetscReal external_work, boundary_work, damped_energy, transfer_energy, start_energy; /* see Energies */
   MeasureMemory *memory;                                                                /* one per measure */
   Balance balance;
-  PetscInt cuts, total_iterations; /* steps halved, Newton iterations, since the start */
+  PetscInt cuts, total_iterations; /* steps halved, Newton iterations (those of all tries), since the start */
+  Tries tries;                     /* since the start */
   PetscReal seconds[PHASE_N];      /* see ModelTimes */
 } Model;
 
@@ -89,8 +96,9 @@ typedef enum { STEP_ACCEPTED, STEP_TOO_SMALL, STEP_POINTS_LOST, STEP_INTERRUPTED
 
 typedef struct {
   StepOutcome outcome;
-  PetscReal dt;        /* of the accepted step */
-  PetscInt cuts;       /* how often the step was halved */
+  PetscReal dt;  /* of the accepted step */
+  PetscInt cuts; /* how often the step was halved */
+  Tries tries;
   NewtonReport newton; /* of the last try */
   char reason[512];    /* why the run gives up, in words */
   PetscReal imbalance; /* that made the step share the grid among the ranks anew; 0: it did not */

@@ -19,10 +19,13 @@ PetscErrorCode ModelRegrid(Model *model, Grid *grid, PetscInt *moved);
 /* Collective. Forces of the boundary: the only nodal fields that outlive a step in every method. */
 PetscErrorCode ReactionsToTables(Model *model, Tables *tables);
 PetscErrorCode ReactionsFromTables(Model *model, const Tables *tables, char reason[256]);
-/* guess.c. What inertia alone would bring in a step of dt. */
-void guess_inertia(const Model *model, PetscReal dt, PetscReal *du);
-/* The step before instead of inertia's guess in du, where that promises to be nearer. */
-void guess_increments(const Model *model, PetscReal dt, PetscReal *du);
+/* guess.c. From where Newton may start: as inertia alone would bring, like the step before, from rest. */
+typedef enum { GUESS_INERTIA, GUESS_PREVIOUS, GUESS_REST, GUESS_N } FirstGuess;
+
+/* The first guesses that the next step has, the nearest first. */
+PetscInt guess_order(const Model *model, FirstGuess order[GUESS_N]);
+/* One of them for a step of dt. */
+void guess_make(const Model *model, FirstGuess guess, PetscReal dt, PetscReal *du);
 /* Collective. A step of dt is accepted: which guess would have been nearer? Before points move. */
 PetscErrorCode GuessLearn(Model *model, PetscReal dt);
 PetscErrorCode GuessToTables(Model *model, Tables *tables);
@@ -67,5 +70,5 @@ PetscErrorCode ModelWarnOfObstacles(const Model *model, Diag *diag);
 WeakFormInput weak_form_of(const Model *model, PetscReal inertia);
 /* Prescribed dofs, and nodes with unknowns that no material touches. */
 void mark_fixed(Model *model);
-/* Collective. History, first guess, prescribed increments and loads for a step of dt. */
+/* Collective. History, prescribed increments and loads for a step of dt; the first guess is to be made. */
 PetscErrorCode PrepareStep(Model *model, PetscReal dt, StepProblem *problem);

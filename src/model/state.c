@@ -82,6 +82,19 @@ static PetscErrorCode WholeToTables(Model *m, Tables *tables)
   PetscFunctionReturn(0);
 }
 
+static PetscErrorCode TriesToTables(const Model *m, Tables *tables)
+{
+  const PetscInt64 counts_now[] = {m->tries.again, m->tries.lost};
+  Table *table;
+  Column *column;
+
+  PetscFunctionBeginUser;
+  PetscCall(TablesAdd(tables, "tries", PETSC_TRUE, 1, &table));
+  PetscCall(TableAdd(table, "again_lost", NULL, COLUMN_INT64, 2, NULL, &column));
+  PetscCall(PetscArraycpy((PetscInt64 *)column->data, counts_now, 2));
+  PetscFunctionReturn(0);
+}
+
 static void reaction_fields(Model *m, NodalField field[2])
 {
   field[0] = (NodalField){"reaction", "N", m->dim, m->reaction};
@@ -151,6 +164,7 @@ PetscErrorCode ModelToTables(Model *m, Tables *tables)
 
   PetscFunctionBeginUser;
   PetscCall(WholeToTables(m, tables));
+  PetscCall(TriesToTables(m, tables));
   PetscCall(PointsToTable(m->points, m->grid, "points", tables));
   PetscCall(PointsToTable(m->tracers, m->grid, "tracers", tables));
   PetscCall(PointsToTable(m->loads->carriers, m->grid, "carriers", tables));
@@ -186,6 +200,16 @@ static PetscInt count_of(const Table *table, const char *name, char reason[256])
   const PetscInt64 value = data && table->rows == 1 ? *data : 0;
   if (!is_count(value)) snprintf(reason, 256, "%s/%s makes no sense", table->name, name);
   return (PetscInt)value;
+}
+
+/* Checkpoints of older programs did not count them. */
+static void tries_from_table(Model *m, const Table *table, char reason[256])
+{
+  const PetscInt64 *kept = table ? TableData(table, "again_lost", COLUMN_INT64, 2, reason) : NULL;
+  if (!kept) return;
+  if (table->rows != 1 || !is_count(kept[0]) || !is_count(kept[1]))
+    snprintf(reason, 256, "%s makes no sense", table->name);
+  else m->tries = (Tries){.again = (PetscInt)kept[0], .lost = (PetscInt)kept[1]};
 }
 
 static void check_grid(const Model *m, const Table *table, char reason[256])
@@ -331,6 +355,7 @@ PetscErrorCode ModelFromTables(Model *m, Tables *tables, char reason[256])
   check_tables(m, tables, reason);
   if (reason[0]) PetscFunctionReturn(0);
   whole_from_tables(m, TablesFind(tables, "model"), TablesFind(tables, "measures"), reason);
+  tries_from_table(m, TablesFind(tables, "tries"), reason);
   PetscCall(ReasonShare(m->comm, reason));
   if (m->grid->cloud && !reason[0]) {
     PetscCall(CloudBack(m, tables, reason));

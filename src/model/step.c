@@ -1,4 +1,4 @@
-/* One step: Newton from one first guess or another, acceptance; halved until it converges. */
+/* One step: Newton from one first guess after another, acceptance; halved until it converges. */
 #include "model/model_private.h"
 
 /* Where a constraint holds a node, its multiplier is the force there. */
@@ -115,24 +115,35 @@ void ModelTimes(const Model *m, PetscReal seconds[PHASE_N])
               &seconds[PHASE_NEWTON]);
 }
 
-/* Newton from the increments of the step before or the motion that inertia alone would bring, and if that fails from the latter and from rest: where a flow
- * starts or stops these find their way. */
+static void count_try(Model *m, PetscBool again, StepReport *report)
+{
+  const NewtonReport *newton = &report->newton;
+  const PetscInt lost = newton->lost + (newton->converged ? 0 : newton->iterations);
+  m->total_iterations += newton->iterations + newton->lost;
+  m->tries.again += again;
+  m->tries.lost += lost;
+  report->tries.again += again;
+  report->tries.lost += lost;
+}
+
+/* Newton from the nearest first guess, and where it fails from the others: a step is halved only if none of them leads to its solution. */
 static PetscErrorCode Solve(Model *m, PetscReal dt, const LinearProblem *linear, StepReport *report)
 {
+  FirstGuess guess[GUESS_N];
   StepProblem problem;
   PetscLogDouble clock;
 
   PetscFunctionBeginUser;
   PetscCall(PetscTime(&clock));
   PetscCall(PrepareStep(m, dt, &problem));
-  PetscCall(PhaseEnd(m->seconds, PHASE_PREPARE, &clock));
-  const PetscInt guesses = !linear->dynamic ? 1 : m->guess.previous ? 3 : 2;
-  for (PetscInt guess = 0; guess < guesses; ++guess) {
-    if (guess && guess == guesses - 1) PetscCall(PetscArrayzero(m->du, m->grid->n_nodes * m->dim));
-    else if (guess) guess_inertia(m, dt, m->du);
-    if (guess) pressure_guess(m);
+  const PetscInt guesses = guess_order(m, guess);
+  for (PetscInt k = 0; k < guesses; ++k) {
+    guess_make(m, guess[k], dt, m->du);
+    pressure_guess(m);
+    PetscCall(PhaseEnd(m->seconds, PHASE_PREPARE, &clock));
     PetscCall(NewtonSolve(m->newton, &problem, linear, &report->newton));
-    m->total_iterations += report->newton.iterations;
+    PetscCall(PetscTime(&clock));
+    count_try(m, k > 0 ? PETSC_TRUE : PETSC_FALSE, report);
     if (report->newton.converged || report->newton.interrupted) break;
   }
   PetscFunctionReturn(0);
@@ -142,6 +153,7 @@ static PetscErrorCode Solve(Model *m, PetscReal dt, const LinearProblem *linear,
 typedef struct {
   StepControl control;
   PetscInt cuts, iterations;
+  Tries tries;
   NewtonMemory newton;
   PetscReal *v, *a; /* n_nodes x dim, where constraints shift what nodes remember; else NULL */
 } BeforeStep;
@@ -151,7 +163,7 @@ static PetscErrorCode Remember(const Model *m, BeforeStep *before)
   const PetscInt dofs = m->grid->n_nodes * m->dim;
 
   PetscFunctionBeginUser;
-  *before = (BeforeStep){.control = m->control, .cuts = m->cuts, .iterations = m->total_iterations};
+  *before = (BeforeStep){.control = m->control, .cuts = m->cuts, .iterations = m->total_iterations, .tries = m->tries};
   NewtonGetMemory(m->newton, m->system, &before->newton);
   if (!m->n_constraints) PetscFunctionReturn(0);
   PetscCall(PetscMalloc2(dofs, &before->v, dofs, &before->a));
@@ -176,6 +188,7 @@ static PetscErrorCode Restore(Model *m, BeforeStep *before, StepReport *report)
   m->control = before->control;
   m->cuts = before->cuts;
   m->total_iterations = before->iterations;
+  m->tries = before->tries;
   NewtonForget(m->newton, m->system, &before->newton);
   report->outcome = STEP_INTERRUPTED;
   PetscFunctionReturn(0);

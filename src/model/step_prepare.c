@@ -1,4 +1,4 @@
-/* What a step starts with: who is held, what is prescribed and loaded, history and the first guess. */
+/* What a step starts with: who is held, what is prescribed and loaded, and history. */
 #include "model/model_private.h"
 
 WeakFormInput weak_form_of(const Model *m, PetscReal inertia)
@@ -147,15 +147,12 @@ PetscErrorCode PrepareStep(Model *m, PetscReal dt, StepProblem *p)
   boundary_increments(m->boundary, m->grid, m->time, m->time + dt, m->prescribed);
   if (dynamic) set_boundary_kinematics(m, dt);
   if (dynamic) PetscCall(HoldConstraints(m, dt));
-  PetscCall(PetscArrayzero(m->du, dofs));
   for (PetscInt node = 0; node < m->grid->n_nodes; ++node) {
     if (!m->stage->touched[node] || (m->grid->cloud && cloud_is_twin(m->grid, node))) continue;
     for (PetscInt d = 0, i = node * dim; d < dim; ++d, ++i) {
       m->history[i] = (dynamic ? newmark_history(&newmark, m->stage->v[i], m->stage->a[i]) : 0) - g[d];
     }
   }
-  if (dynamic) guess_inertia(m, dt, m->du);
-  guess_increments(m, dt, m->du);
   PetscCall(PetscArrayzero(m->external, dofs));
   PetscCall(LoadsAdd(m->loads, m->grid, m->time + dt, m->stage->filled, m->stage->touched, m->external));
   PetscCall(AddBodyForce(m, m->time + dt, m->external));
@@ -176,7 +173,6 @@ PetscErrorCode PrepareStep(Model *m, PetscReal dt, StepProblem *p)
     .asked = m->asked,
   };
   p->in.half = m->symmetric && m->grid->cloud ? PETSC_TRUE : PETSC_FALSE;
-  pressure_guess(m);
   if (m->stage->constraints) m->stage->constraints->scale = constraint_scale(m, p->in.inertia);
   PetscCall(ForceScales(m, g, dt, &p->weight, &p->inertia));
   PetscFunctionReturn(0);

@@ -84,9 +84,10 @@ static PetscErrorCode AfterStep(Run *r, const StepReport *report, PetscInt point
                         (int)r->model->step, (double)report->imbalance, (double)r->model->balance.reached,
                         (int)report->moved, (int)points));
   r->summary.iterations_per_step = PetscMax(r->summary.iterations_per_step, report->newton.iterations);
-  if (report->cuts)
-    PetscCall(
-      RunDirLog(r->dir, "step = %d halved = %d dt = %g", (int)r->model->step, (int)report->cuts, (double)report->dt));
+  if (report->tries.again || report->cuts)
+    PetscCall(RunDirLog(r->dir, "step = %d tried again = %d lost iterations = %d halved = %d dt = %g",
+                        (int)r->model->step, (int)report->tries.again, (int)report->tries.lost, (int)report->cuts,
+                        (double)report->dt));
   PetscCall(RunDirProgress(r->dir, &progress));
   if (is_due(&r->rows, r->model->time, r->model->step)) PetscCall(RunWriteRow(r));
   if (is_due(&r->states, r->model->time, r->model->step)) PetscCall(RunWriteState(r));

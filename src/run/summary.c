@@ -91,6 +91,8 @@ PetscErrorCode SummaryEnd(Model *m, RunDir *dir, const RunSummary *summary, cons
       RunDirLog(dir, "%s = %.10g %s", m->c->measures[k].name, (double)values[k], measure_unit(&m->c->measures[k])));
   PetscCall(RunDirLog(dir, "steps = %d iterations = %d halvings = %d seconds = %.3g", (int)summary->steps,
                       (int)summary->iterations, (int)summary->halvings, (double)seconds));
+  if (m->tries.again || m->cuts)
+    PetscCall(RunDirLog(dir, "tried again = %d lost iterations = %d", (int)m->tries.again, (int)m->tries.lost));
   PetscCall(LogBalance(m, dir, phase[PHASE_REPARTITION]));
   PetscCall(AddTime(text, sizeof text, "total", seconds, seconds, "of all sessions of the run"));
   for (int k = 0; k < PHASE_N; ++k) {
@@ -102,10 +104,12 @@ PetscErrorCode SummaryEnd(Model *m, RunDir *dir, const RunSummary *summary, cons
   const size_t end = strlen(text);
   PetscCall(PetscSNPrintf(text + end, sizeof text - end,
                           "steps = %d\niterations = %d\nmost iterations in a step = %d\nhalvings = %d\n"
+                          "tries from another first guess = %d\niterations of tries that failed = %d\n"
                           "patterns = %d\nrepartitions = %d\nlargest imbalance = %.3f\noutcome = %s\n",
                           (int)summary->steps, (int)summary->iterations, (int)summary->iterations_per_step,
-                          (int)summary->halvings, (int)m->system->builds, (int)m->balance.repartitions,
-                          (double)PetscMax(m->balance.largest, 1), summary->reason[0] ? "gave up" : "done"));
+                          (int)summary->halvings, (int)m->tries.again, (int)m->tries.lost, (int)m->system->builds,
+                          (int)m->balance.repartitions, (double)PetscMax(m->balance.largest, 1),
+                          summary->reason[0] ? "gave up" : "done"));
   const PetscErrorCode status = RunDirWriteText(dir, "timings.txt", text);
   PetscFunctionReturn(status);
 }

@@ -184,10 +184,12 @@ PetscErrorCode NewtonSolve(Newton *n, StepProblem *p, const LinearProblem *linea
   PetscCall(NewtonSetUp(n, p, linear));
   PetscCall(NewtonTry(n, report));
   if (n->retry) { /* once more, with the direct solver */
+    const PetscInt lost = report->iterations;
     PetscCall(PetscArraycpy(p->du, guess, dofs));
     if (p->pressure) PetscCall(PetscArraycpy(p->pressure, pressure, nodes));
     PetscCall(NewtonSetUp(n, p, linear));
     PetscCall(NewtonTry(n, report));
+    report->lost = lost;
     n->built = n->failures < NEWTON_FAILURES ? -1 : n->built;
     n->since = 0;
   } else if (n->failures && ++n->since >= (n->failures < NEWTON_FAILURES ? ISOLATED_AFTER : FORGIVEN_AFTER)) {

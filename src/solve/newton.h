@@ -34,6 +34,7 @@ typedef struct {
   PetscBool converged;
   PetscBool interrupted; /* somebody asked, on any rank, before it converged */
   PetscInt iterations, linear_iterations;
+  PetscInt lost;                      /* iterations before them, until the iterative linear solver failed */
   PetscReal residual[NEWTON_HISTORY]; /* |R| / reference after each iteration; [0] at the first guess */
   PetscReal reference;                /* N */
   const char *reason;                 /* why it stopped, in words */

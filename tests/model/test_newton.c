@@ -192,13 +192,64 @@ static void test_large_stretch(void **state)
   }
 }
 
+/* A soft block, held below, in a step so long that it all but comes to rest. */
+static void slow_block(Bench *b)
+{
+  bench_init(b, "mpm", CELL_QUADRILATERAL, 4);
+  bench_box(b, 0, (PetscReal[]){0, 0, 0}, (PetscReal[]){1, 0.75, 0});
+  bench_dynamic(b, 40, 10);
+  bench_motion(b, 1, 0, MOTION_FIXED, 3);
+  b->body[0].velocity[0] = 1e-3;
+  b->c.newton.residual = 1e-10;
+}
+
+/* A blow: the points of the upper layers fly against each other, so fast that with inertia alone they would pass within a step. */
+static void blow(Model *m)
+{
+  for (PetscInt p = 0; p < m->points->n; ++p) {
+    const PetscReal *x = point_real(m->points, POINT_X, p);
+    point_real(m->points, POINT_V, p)[0] = (x[0] < 0.5 ? 0.2 : -0.2) * x[1];
+  }
+  CALL(m->method->initialise(m->stage));
+}
+
+/* Newton fails from inertia's guess and finds the solution from the increments of the step before: no step is halved, the failed try is counted, and the
+ * solution is that of a model on one rank that starts from the better guess at once. */
+static void test_second_try(void **state)
+{
+  Bench b;
+  (void)state;
+  slow_block(&b);
+  Model *m = bench_model(&b, PETSC_COMM_WORLD), *n = bench_model(&b, PETSC_COMM_SELF);
+  model_step(m, 10);
+  model_step(n, 10);
+  CHECK(!m->tries.again && !m->tries.lost, "%d second tries of an easy step", (int)m->tries.again);
+  blow(m);
+  blow(n);
+  m->guess.previous = PETSC_FALSE;
+  n->guess.previous = PETSC_TRUE;
+  const PetscInt before = m->total_iterations;
+  const StepReport second = model_step(m, 10), first = model_step(n, 10);
+  CHECK(first.tries.again == 0 && first.cuts == 0, "%d further tries from the better guess", (int)first.tries.again);
+  CHECK(second.tries.again == 1 && second.cuts == 0, "%d further tries, %d cuts", (int)second.tries.again,
+        (int)second.cuts);
+  CHECK(m->tries.again == 1 && m->tries.lost == second.tries.lost, "%d tries in all", (int)m->tries.again);
+  CHECK(m->total_iterations - before == second.newton.iterations + second.tries.lost, "%d iterations in all",
+        (int)(m->total_iterations - before));
+  CHECK(second.newton.iterations == first.newton.iterations, "%d and %d iterations", (int)second.newton.iterations,
+        (int)first.newton.iterations);
+  CHECK_CLOSE(points_difference(m, n, POINT_X), 0, 1e-10);
+  CALL(ModelDestroy(&m));
+  CALL(ModelDestroy(&n));
+}
+
 int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(test_quadratic),     cmocka_unit_test(test_residual_may_grow),
     cmocka_unit_test(test_gives_up),      cmocka_unit_test(test_halved_is_small),
     cmocka_unit_test(test_growth),        cmocka_unit_test(test_grows_again),
-    cmocka_unit_test(test_large_stretch),
+    cmocka_unit_test(test_large_stretch), cmocka_unit_test(test_second_try),
   };
   return run_model_tests(argc, argv, tests);
 }
