@@ -193,12 +193,74 @@ static void test_growing_steps(void **state)
   CHECK_CLOSE(grown / small, 1, 0.03);
 }
 
+/* Put the points of the cell at the origin elsewhere in it; how much of its mass is lumped then? */
+static PetscReal lumping_of(Model *m, void (*place)(PetscInt k, PetscReal *xi))
+{
+  LostPoint *lost;
+  PetscInt n_lost, k = 0;
+  for (PetscInt p = 0; p < m->points->n; ++p) {
+    PetscReal *x = point_real(m->points, POINT_X, p), xi[2];
+    if (x[0] > 0.005 || x[1] > 0.005) continue;
+    place(k++, xi);
+    for (int d = 0; d < 2; ++d) x[d] = 0.0025 * (1 + xi[d]);
+  }
+  CHECK(k == 9, "%d points in the cell", (int)k);
+  CALL(PointsRelocate(m->points, m->grid, OUTSIDE_STOP, &n_lost, &lost));
+  CALL(PetscFree(lost));
+  CALL(m->method->initialise(m->stage));
+  const Support *w = m->stage->support;
+  for (PetscInt g = 0; g < w->n_groups; ++g)
+    if (m->points->cell[w->point_start[g]] == 0) return m->stage->lumping[g];
+  return -1;
+}
+
+static void evenly(PetscInt k, PetscReal *xi)
+{
+  const PetscInt row = k / 3;
+  xi[0] = (PetscReal)(k % 3 - 1) * 2 / 3;
+  xi[1] = (PetscReal)(row - 1) * 2 / 3;
+}
+
+static void across(PetscInt k, PetscReal *xi)
+{
+  xi[0] = (PetscReal)(k - 4) / 4.5;
+  xi[1] = -xi[0];
+}
+
+static void upright(PetscInt k, PetscReal *xi)
+{
+  xi[0] = -0.98;
+  xi[1] = (PetscReal)(k - 4) / 4.5;
+}
+
+static void pairs(
+  PetscInt k,
+  PetscReal *xi) /* 2 x 2 places, as near to a corner as regular points can stand, one of them taken three times */
+{
+  xi[0] = k % 2 ? 0 : -0.999;
+  xi[1] = k / 2 % 2 ? 0 : -0.999;
+}
+
+/* A cell that nine points fill by their volume is not full if they leave one of its corners without mass. */
+static void test_points_on_a_line(void **state)
+{
+  Bench b;
+  (void)state;
+  sand(&b, 0.03, 0.02, 0.05, 0.03, 1, 2e-4);
+  Model *m = bench_model(&b, PETSC_COMM_SELF);
+  CHECK_CLOSE(lumping_of(m, evenly), 0, 1e-12);
+  CHECK_CLOSE(lumping_of(m, across), 0, 1e-12); /* corners beside the diagonal get two thirds of an even share */
+  CHECK_CLOSE(lumping_of(m, upright), 1 - 4 * 0.02, 1e-12);    /* those on the right 1 + xi = 0.02 of it */
+  CHECK_CLOSE(lumping_of(m, pairs), 1 - 4 * 2. / 9, 4 * 1e-3); /* the far one 2 points of 9, each at its middle: 1/4 */
+  CALL(ModelDestroy(&m));
+}
+
 int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(test_grazing),       cmocka_unit_test(test_unseen_motion_fades),
     cmocka_unit_test(test_keep_velocity), cmocka_unit_test(test_keep_velocity_elsewhere),
-    cmocka_unit_test(test_growing_steps),
+    cmocka_unit_test(test_growing_steps), cmocka_unit_test(test_points_on_a_line),
   };
   return run_model_tests(argc, argv, tests);
 }
