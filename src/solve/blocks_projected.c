@@ -41,6 +41,7 @@ static PetscErrorCode Apply(const Solve *s, const PetscReal *z, PetscReal *q)
 {
   PetscFunctionBeginUser;
   PetscCall(BlocksProductApply(&s->product, s->size, z, s->x, s->t, q));
+  projection_weaken(s->projection, z, q);
   PetscCall(ProjectionForces(s->projection, q));
   PetscFunctionReturn(0);
 }

@@ -138,8 +138,8 @@ PetscErrorCode NewtonFillMatrix(Newton *n)
   const StepProblem *p = n->problem;
 
   PetscFunctionBeginUser;
+  if (n->projects) PetscCall(ProjectionFactor(n->projection)); /* first: the blocks take its shift */
   PetscCall(SystemToMatrix(p->system, n->projects ? n->projection->held : p->fixed, p->idle));
-  if (n->projects) PetscCall(ProjectionFactor(n->projection));
   PetscFunctionReturn(0);
 }
 

@@ -1,6 +1,8 @@
 #include "solve/projection.h"
 #include "solve/block_kernels.h"
 
+#define WEAKEST 1e-3
+
 /* Entries of C in the making: the rows of one rank, or of all. */
 typedef struct {
   PetscInt n, *row, *dof; /* dof: global number */
@@ -84,7 +86,7 @@ static PetscErrorCode SortColumns(Projection *p, const Entries *all)
   PetscCall(PetscSortIntWithPermutation(all->n, all->dof, order));
   PetscCall(PetscMalloc1(all->n + 1, &p->start));
   PetscCall(PetscMalloc3(all->n, &p->row, all->n, &p->N, all->n, &p->place));
-  PetscCall(PetscMalloc1(all->n, &p->inverse));
+  PetscCall(PetscMalloc2(all->n, &p->inverse, all->n, &p->shift));
   for (PetscInt i = 0; i < all->n; ++i) {
     const PetscInt dof = all->dof[order[i]];
     if (i == 0 || dof != all->dof[order[i - 1]]) {
@@ -159,7 +161,7 @@ PetscErrorCode ProjectionDestroy(Projection **projection)
   PetscCall(PetscFree(p->twin));
   PetscCall(PetscFree(p->start));
   PetscCall(PetscFree3(p->row, p->N, p->place));
-  PetscCall(PetscFree(p->inverse));
+  PetscCall(PetscFree2(p->inverse, p->shift));
   PetscCall(PetscFree(p->pair));
   PetscCall(MatDestroy(&p->S));
   PetscCall(MatDestroy(&p->factor));
@@ -171,8 +173,8 @@ PetscErrorCode ProjectionDestroy(Projection **projection)
   PetscFunctionReturn(0);
 }
 
-/* 1 / |D| where C has a column: D weighs the projection, and every positive weight makes one. Plastic flow leaves some of D negative. */
-static PetscErrorCode InvertDiagonal(Projection *p)
+/* The diagonal of K where C has a column, in p->inverse. */
+static PetscErrorCode FetchDiagonal(Projection *p)
 {
   const System *s = p->system;
   const PetscInt dim = s->dim;
@@ -184,13 +186,51 @@ static PetscErrorCode InvertDiagonal(Projection *p)
       diagonal[node * dim + d] = s->row[node] < 0 ? 0 : s->values[(s->diagonal[s->row[node]] * dim + d) * dim + d];
   PetscCall(GridSumToOwners(p->grid, dim, diagonal));
   for (PetscInt k = 0; k < p->n_dofs; ++k)
-    p->inverse[k] = p->place[k] < 0 ? 0 : 1 / diagonal[s->active[p->place[k] / dim] * dim + p->place[k] % dim];
+    p->inverse[k] = p->place[k] < 0 ? 0 : diagonal[s->active[p->place[k] / dim] * dim + p->place[k] % dim];
   PetscCall(MPIU_Allreduce(MPI_IN_PLACE, p->inverse, (PetscMPIInt)p->n_dofs, MPIU_REAL, MPI_SUM, p->comm));
+  PetscFunctionReturn(0);
+}
+
+/* A node that a point's support has just reached has a diagonal many powers of ten below its neighbours', and plastic flow leaves it of any
+ * sign: no preconditioner stands that. There such a diagonal is raised to WEAKEST of the largest that shares a row with it. */
+static void strengthen_weak(Projection *p)
+{
+  PetscReal *largest = p->t; /* of each row */
+  for (PetscInt k = 0; k < p->m; ++k) largest[k] = 0;
+  for (PetscInt k = 0; k < p->n_dofs; ++k)
+    for (PetscInt a = p->start[k]; a < p->start[k + 1]; ++a)
+      largest[p->row[a]] = PetscMax(largest[p->row[a]], PetscAbsReal(p->inverse[k]));
   for (PetscInt k = 0; k < p->n_dofs; ++k) {
-    p->inverse[k] = PetscAbsReal(p->inverse[k]);
+    PetscReal least = 0;
+    for (PetscInt a = p->start[k]; a < p->start[k + 1]; ++a) least = PetscMax(least, WEAKEST * largest[p->row[a]]);
+    p->shift[k] = PetscAbsReal(p->inverse[k]) < least ? least - p->inverse[k] : 0;
+    p->inverse[k] += p->shift[k];
+  }
+}
+
+void projection_strengthen(const Projection *p)
+{
+  const System *s = p->system;
+  for (PetscInt k = 0; k < p->n_dofs; ++k) {
+    if (p->place[k] < 0 || p->shift[k] == 0) continue;
+    const PetscInt d = p->place[k] % s->dim, row = s->row[s->active[p->place[k] / s->dim]];
+    s->singles[(s->diagonal[row] * s->dim + d) * s->dim + d] += (float)p->shift[k];
+  }
+}
+
+void projection_weaken(const Projection *p, const PetscReal *z, PetscReal *q)
+{
+  for (PetscInt k = 0; k < p->n_dofs; ++k)
+    if (p->place[k] >= 0) q[p->place[k]] -= p->shift[k] * z[p->place[k]];
+}
+
+/* 1 / |D| where C has a column: D weighs the projection, and every positive weight makes one. Plastic flow leaves some of D negative. */
+static void invert_diagonal(Projection *p)
+{
+  for (PetscInt k = 0; k < p->n_dofs; ++k) {
+    p->inverse[k] = 1 / PetscAbsReal(p->inverse[k]);
     if (!(p->inverse[k] > 0) || PetscIsInfReal(p->inverse[k])) p->singular = PETSC_TRUE;
   }
-  PetscFunctionReturn(0);
 }
 
 PetscErrorCode ProjectionFactor(Projection *p)
@@ -202,7 +242,9 @@ PetscErrorCode ProjectionFactor(Projection *p)
 
   PetscFunctionBeginUser;
   p->singular = PETSC_FALSE;
-  PetscCall(InvertDiagonal(p));
+  PetscCall(FetchDiagonal(p));
+  strengthen_weak(p);
+  invert_diagonal(p);
   if (p->singular || p->m == 0) PetscFunctionReturn(0);
   for (PetscInt k = 0; k < p->n_dofs; ++k)
     for (PetscInt a = p->start[k]; a < p->start[k + 1]; ++a)

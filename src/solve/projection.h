@@ -18,6 +18,7 @@ typedef struct Projection {
   PetscReal *N;                  /* their numbers */
   PetscInt *place;               /* n_dofs: the column's dof in this rank's vectors, -1 if another rank has it */
   PetscReal *inverse;            /* n_dofs: of D */
+  PetscReal *shift;              /* n_dofs: what the preconditioner has on its diagonal beyond K */
   PetscInt n_pairs;
   PetscReal *pair; /* values of S before they are summed up */
   Mat S, factor;
@@ -33,6 +34,9 @@ PetscErrorCode ProjectionCreate(const System *system, const Grid *grid, const Co
 PetscErrorCode ProjectionDestroy(Projection **projection);
 /* Collective. Take the diagonal of the values that the system holds now. */
 PetscErrorCode ProjectionFactor(Projection *projection);
+/* After that: add the shift to the singles of the system, of which the preconditioner is made; q -= shift z takes it out of a product with them. */
+void projection_strengthen(const Projection *projection);
+void projection_weaken(const Projection *projection, const PetscReal *z, PetscReal *q);
 
 /* Collective, on this rank's part of vectors. q = K p. */
 PetscErrorCode ProjectionMultiply(Projection *projection, const PetscReal *p, PetscReal *q);

@@ -1,4 +1,5 @@
 #include "solve/blocks.h"
+#include "solve/projection.h"
 
 PetscErrorCode SystemCreate(MPI_Comm comm, PetscInt dim, PetscInt block, System **system)
 {
@@ -296,6 +297,7 @@ PetscErrorCode SystemToMatrix(System *s, const unsigned char *fixed, const unsig
   if (!s->matrix) PetscCall(SystemUse(s, SYSTEM_ASSEMBLED, PETSC_FALSE));
   if (s->blocks) {
     for (PetscInt i = 0; !s->single && i < system_numbers(s); ++i) s->singles[i] = (float)s->values[i];
+    if (s->blocks->projection) projection_strengthen(s->blocks->projection);
     PetscCall(BlocksFill(s->blocks, s, fixed));
     PetscFunctionReturn(0);
   }
