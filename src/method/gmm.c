@@ -2,6 +2,8 @@
  * Cells give nodes and points at the start and mean nothing afterwards. */
 #include "method/gmm.h"
 
+#define KEEP_OFF 0.25 /* spacings between nodes, at least */
+
 static void choose_rule(const Stage *s, Gmm *g)
 {
   static const SupportRule rule[] = {SUPPORT_ADAPTIVE, SUPPORT_NEAREST, SUPPORT_FIXED};
@@ -150,6 +152,49 @@ static PetscReal motion_of_node(const Stage *s, PetscInt i, PetscInt k, PetscInt
   return sum > 1e-12 ? move / sum : du[i * dim + d];
 }
 
+static PetscBool is_held(const Stage *s, PetscInt node)
+{
+  for (PetscInt d = 0; d < s->grid->dim; ++d)
+    if (s->boundary->fixed[node * s->grid->dim + d]) return PETSC_TRUE;
+  return s->grid->cloud->obstacle[node] > 0 ? PETSC_TRUE : PETSC_FALSE;
+}
+
+/* Move x away from those nodes of a cloud that are too near: half of the way that is missing, all of it from a node that is held. */
+static void keep_off(const Stage *s, PetscInt n, const PetscInt *node, PetscInt self, const PetscReal *old,
+                     PetscReal *x)
+{
+  const PetscInt dim = s->grid->dim;
+  const PetscReal least = KEEP_OFF * s->grid->cloud->spacing;
+  for (PetscInt e = 0; e < n; ++e) {
+    const PetscReal *other = old + node[e] * dim;
+    PetscReal square = 0;
+    for (PetscInt d = 0; d < dim; ++d) square += PetscSqr(x[d] - other[d]);
+    if (node[e] == self || square == 0 || square >= least * least) continue;
+    const PetscReal distance = PetscSqrtReal(square), share = is_held(s, node[e]) ? 1 : 0.5;
+    for (PetscInt d = 0; d < dim; ++d) x[d] += share * (least - distance) / distance * (x[d] - other[d]);
+  }
+}
+
+/* Two nodes at one place share their part of the field, and nothing resists when their coefficients go against each other: the stiffness of
+ * that falls with the square of their distance. So nodes keep off each other; places of nodes are free, coefficients stay. */
+static PetscErrorCode KeepNodesApart(Stage *s)
+{
+  const Grid *grid = s->grid;
+  const Support *w = s->gmm->nodes;
+  PetscReal *old;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(grid->n_nodes * grid->dim, &old));
+  PetscCall(PetscArraycpy(old, grid->x, grid->n_nodes * grid->dim));
+  for (PetscInt i = 0, k = -1; i < grid->n_owned; ++i) {
+    if (cloud_is_twin(grid, i)) continue;
+    ++k;
+    if (!is_held(s, i)) keep_off(s, support_nodes(w, k), w->node + w->node_start[k], i, old, grid->x + i * grid->dim);
+  }
+  PetscCall(PetscFree(old));
+  PetscFunctionReturn(0);
+}
+
 /* Prescribed components move as prescribed, nodes that nothing touches stay. All others move with the field at their place, as points do, and
  * not with their own coefficient (as thesis algorithm 2 suggests): then nodes keep their order among points whatever a node with little mass
  * does, and do not cross a wall on which the field vanishes. */
@@ -168,6 +213,8 @@ static PetscErrorCode MoveNodes(Stage *s, const PetscReal *du)
       else if (s->touched[i]) *x += motion_of_node(s, i, k, d, du);
     }
   }
+  PetscCall(GridToGhosts(grid, dim, grid->x));
+  PetscCall(KeepNodesApart(s));
   for (PetscInt i = 0; i < grid->n_owned; ++i) /* twins stand with their nodes, and go to the same rank */
     for (PetscInt d = 0; d < dim && s->gmm->twin[i] >= 0; ++d)
       grid->x[s->gmm->twin[i] * dim + d] = grid->x[i * dim + d];

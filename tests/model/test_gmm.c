@@ -268,6 +268,62 @@ static void test_obstacles(void **state)
   }
 }
 
+/* Spacings between the nearest two nodes that a rank knows. */
+static PetscReal nearest_nodes(const Model *m)
+{
+  const Grid *grid = m->grid;
+  PetscReal nearest = PETSC_MAX_REAL;
+  for (PetscInt i = 0; i < grid->n_owned; ++i)
+    for (PetscInt k = 0; k < grid->n_nodes; ++k) {
+      const PetscReal *x = grid->x + i * 2, *y = grid->x + k * 2;
+      if (k == i || cloud_is_twin(grid, i) || cloud_is_twin(grid, k)) continue;
+      nearest = PetscMin(nearest, PetscHypotReal(x[0] - y[0], x[1] - y[1]));
+    }
+  CALL(MPI_Allreduce(MPI_IN_PLACE, &nearest, 1, MPIU_REAL, MPI_MIN, m->comm));
+  return nearest / grid->cloud->spacing;
+}
+
+/* A heap spreads over the floor: its nodes come upon those of the floor and keep off them (it takes a few steps to push aside several that crowd), no step fails,
+ * and on one rank the iterative solver never gives way to the direct one. */
+static void heap(const BasisSpec *basis)
+{
+  Bench b;
+  PetscReal nearest = 1;
+  PetscMPIInt ranks;
+  NamedValue values[] = {
+    {"young", 3e5}, {"poisson", 0.3}, {"cohesion", 600}, {"friction_angle", 25}, {"dilatancy_angle", 0}};
+  gmm_init(&b, basis, CELL_QUADRILATERAL, 0.125);
+  bench_grid(&b, (PetscReal[]){0, 0, 0}, (PetscReal[]){2, 1, 1}, 0.125);
+  bench_box(&b, 0, (PetscReal[]){0, 0, 0}, (PetscReal[]){0.5, 0.75, 1});
+  b.c.basis.essential = ESSENTIAL_CONSTRAINTS;
+  b.c.linear = LINEAR_AUTO;
+  b.material.law = "mohr-coulomb";
+  b.material.parameters = values;
+  b.material.n_parameters = 5;
+  b.c.gravity[1] = -9.81;
+  bench_dynamic(&b, 1, 0.004);
+  bench_motion(&b, 1, 0, MOTION_FIXED, 3);
+  bench_motion(&b, 0, 0, MOTION_FIXED, 1);
+  Model *m = bench_model(&b, PETSC_COMM_WORLD);
+  MPI_Comm_size(PETSC_COMM_WORLD, &ranks);
+  for (int step = 0; step < 150; ++step) {
+    CHECK(model_step(m, 0.004).cuts == 0, "step %d was halved", step);
+    CHECK(ranks > 1 || strstr(NewtonLinearName(m->newton), "BiCGStab"), "step %d: %s", step,
+          NewtonLinearName(m->newton));
+    nearest = PetscMin(nearest, nearest_nodes(m));
+  }
+  PetscPrintf(PETSC_COMM_WORLD, "heap, %s: %g spacings\n", basis->kind == BASIS_LME ? "lme" : "mls", (double)nearest);
+  CHECK(nearest > 0.2, "%g spacings between nodes", (double)nearest);
+  CALL(ModelDestroy(&m));
+}
+
+static void test_heap(void **state)
+{
+  (void)state;
+  heap(&usual_lme);
+  heap(&usual_mls);
+}
+
 /* --- ranks --- */
 static const struct {
   PointReal field;
@@ -402,7 +458,7 @@ int main(int argc, char **argv)
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(test_patch),     cmocka_unit_test(test_hang),    cmocka_unit_test(test_options),
     cmocka_unit_test(test_fly),       cmocka_unit_test(test_contact), cmocka_unit_test(test_ranks),
-    cmocka_unit_test(test_obstacles), cmocka_unit_test(test_solvers),
+    cmocka_unit_test(test_obstacles), cmocka_unit_test(test_solvers), cmocka_unit_test(test_heap),
   };
   return run_model_tests(argc, argv, tests);
 }
