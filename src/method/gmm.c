@@ -87,13 +87,19 @@ static PetscErrorCode BoundaryImpulse(Stage *s)
   PetscFunctionReturn(0);
 }
 
+static PetscBool is_held(const Stage *s, PetscInt node)
+{
+  for (PetscInt d = 0; d < s->grid->dim; ++d)
+    if (s->boundary->fixed[node * s->grid->dim + d]) return PETSC_TRUE;
+  return PETSC_FALSE;
+}
+
 /* How much of the mass is missing that even a node at the corner of a body would have; 0: none, 1: all. */
 static PetscReal starved(const Stage *s, PetscInt node, PetscReal density)
 {
   const PetscInt dim = s->grid->dim;
   const PetscReal h = s->grid->cloud->spacing, corner = density * (dim == 3 ? h * h * h / 16 : h * h / 8);
-  for (PetscInt d = 0; d < dim; ++d)
-    if (s->boundary->fixed[node * dim + d]) return 0; /* held: what it would do without mass does not matter */
+  if (is_held(s, node)) return 0; /* what it would do without mass does not matter */
   return PetscMax(0, 1 - PetscMax(0, s->mass[node]) / corner);
 }
 
@@ -150,13 +156,6 @@ static PetscReal motion_of_node(const Stage *s, PetscInt i, PetscInt k, PetscInt
     sum += N[I];
   }
   return sum > 1e-12 ? move / sum : du[i * dim + d];
-}
-
-static PetscBool is_held(const Stage *s, PetscInt node)
-{
-  for (PetscInt d = 0; d < s->grid->dim; ++d)
-    if (s->boundary->fixed[node * s->grid->dim + d]) return PETSC_TRUE;
-  return s->grid->cloud->obstacle[node] > 0 ? PETSC_TRUE : PETSC_FALSE;
 }
 
 /* Move x away from those nodes of a cloud that are too near: half of the way that is missing, all of it from a node that is held. */

@@ -233,9 +233,8 @@ static void upright(PetscInt k, PetscReal *xi)
   xi[1] = (PetscReal)(k - 4) / 4.5;
 }
 
-static void pairs(
-  PetscInt k,
-  PetscReal *xi) /* 2 x 2 places, as near to a corner as regular points can stand, one of them taken three times */
+/* 2 x 2 places, as near to a corner as regular points can stand, one of them taken three times */
+static void pairs(PetscInt k, PetscReal *xi)
 {
   xi[0] = k % 2 ? 0 : -0.999;
   xi[1] = k / 2 % 2 ? 0 : -0.999;
