@@ -24,6 +24,7 @@ static PetscErrorCode FemInitialise(Stage *s)
   else PetscCall(SupportFromCells(s->support, s->points, s->grid)); /* gradients on the moved mesh */
   s->started = PETSC_TRUE;
   PetscCall(PetscArraycpy(s->v_points, s->v, s->grid->n_nodes * s->grid->dim));
+  PetscCall(PetscArraycpy(s->a_points, s->a, s->grid->n_nodes * s->grid->dim));
   PetscFunctionReturn(0);
 }
 

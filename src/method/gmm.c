@@ -50,40 +50,9 @@ static PetscErrorCode GmmStart(Stage *s)
   PetscCall(GridCloudFollow(s->grid, &s->v, dim, "velocity", "m/s"));
   PetscCall(GridCloudFollow(s->grid, &s->a, dim, "acceleration", "m/s2"));
   PetscCall(GridCloudFollow(s->grid, &s->v_points, dim, NULL, NULL));
+  PetscCall(GridCloudFollow(s->grid, &s->a_points, dim, NULL, NULL));
   PetscCall(GridCloudFollow(s->grid, &s->v1, dim, NULL, NULL));
   PetscCall(GridCloudFollow(s->grid, &s->a1, dim, NULL, NULL));
-  PetscFunctionReturn(0);
-}
-
-/* A point that comes near prescribed nodes has them in its cloud at once: its velocity jumps to that of the new field. The momentum is the
- * impulse of these nodes, so v_points becomes what their mass had before it (as where mpm's points meet prescribed nodes). */
-static PetscErrorCode BoundaryImpulse(Stage *s)
-{
-  const PetscInt dim = s->grid->dim, dofs = s->grid->n_nodes * dim;
-  const Support *w = s->support;
-  PetscReal *impulse;
-
-  PetscFunctionBeginUser;
-  PetscCall(PetscArraycpy(s->v_points, s->v, dofs));
-  PetscCall(PetscCalloc1(dofs, &impulse));
-  for (PetscInt p = 0; p < w->n_groups; ++p) {
-    const PetscInt nn = support_nodes(w, p), *node = w->node + w->node_start[p];
-    const PetscReal *N = w->N + w->value_start[p], *v = point_real(s->points, POINT_V, p);
-    for (PetscInt d = 0; d < dim; ++d) {
-      PetscReal jump = -v[d], share = 0;
-      for (PetscInt I = 0; I < nn; ++I) {
-        jump += N[I] * s->v[node[I] * dim + d];
-        if (s->boundary->fixed[node[I] * dim + d]) share += PetscAbsReal(N[I]);
-      }
-      for (PetscInt I = 0; I < nn && share > 0; ++I)
-        if (s->boundary->fixed[node[I] * dim + d])
-          impulse[node[I] * dim + d] += s->points->real[POINT_MASS][p] * jump * PetscAbsReal(N[I]) / share;
-    }
-  }
-  PetscCall(GridSumToOwners(s->grid, dim, impulse));
-  for (PetscInt i = 0; i < s->grid->n_owned * dim; ++i)
-    if (s->boundary->fixed[i] && s->mass[i / dim] != 0) s->v_points[i] -= impulse[i] / s->mass[i / dim];
-  PetscCall(PetscFree(impulse));
   PetscFunctionReturn(0);
 }
 
@@ -138,7 +107,6 @@ static PetscErrorCode GmmInitialise(Stage *s)
   PetscCall(StageNodalMass(s));
   if (!s->started) PetscCall(StageBodyVelocity(s));
   s->started = PETSC_TRUE;
-  PetscCall(BoundaryImpulse(s));
   PetscCall(Stabilise(s));
   PetscFunctionReturn(0);
 }
@@ -256,6 +224,7 @@ const Method method_gmm = {
   .help = "Galerkin meshfree method: a cloud of nodes and points moves, without cells",
   .points_move = PETSC_FALSE,
   .initialise = GmmInitialise,
+  .begin = GmmCarry,
   .convect = GmmConvect,
   .destroy = GmmDestroy,
   .couplings = GmmCouplings,

@@ -17,6 +17,8 @@ typedef struct Gmm {
 
 /* Collective. Ghosts, clouds and constraints for where nodes and points are now; touched nodes too. */
 PetscErrorCode GmmGather(Stage *stage);
+/* Collective. Clouds are new: nodes take what their points carried, and prescribed nodes the rest as an impulse. */
+PetscErrorCode GmmCarry(Stage *stage);
 /* Collective. If clouds have grown too ragged, cut space anew and send nodes and points to their new ranks. */
 PetscErrorCode GmmBalance(Stage *stage);
 /* Collective. Do that now. */

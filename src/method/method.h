@@ -28,6 +28,7 @@ typedef struct Stage {
   PetscReal *mass;        /* n_nodes, kg */
   PetscReal *v, *a;       /* n_nodes x dim at t_n: what the solve starts from, m/s, m/s2 */
   PetscReal *v_points;    /* n_nodes x dim: v as the points gave it, before prescribed motion replaced it */
+  PetscReal *a_points;    /* n_nodes x dim: likewise a */
   PetscReal *v1, *a1;     /* n_nodes x dim at t_(n+1), of an accepted step */
   PetscReal fade;         /* share of a point's velocity beyond the nodes' that Rayleigh damping takes in the step */
   PetscInt group_capacity;
@@ -56,6 +57,8 @@ typedef struct Method {
   /* Phase a, collective: sorted points, support, touched, mass, v, a. Called once before every step (and before output of nodal
    * fields); leaves points alone otherwise. */
   PetscErrorCode (*initialise)(Stage *stage);
+  /* Collective. What a step changes of v and a before its solve, undone if it is not accepted. NULL: nothing. */
+  PetscErrorCode (*begin)(Stage *stage);
   /* Phase c, collective: the step is accepted, v1 and a1 are known, du holds the increments. State and F are committed already. */
   PetscErrorCode (*convect)(Stage *stage, const PetscReal *du);
   const MethodField *fields; /* ended by name = NULL; NULL: nodes remember nothing */

@@ -60,6 +60,7 @@ static PetscErrorCode Project(Stage *s)
   PetscCall(GridToGhosts(grid, dim, s->v));
   PetscCall(GridToGhosts(grid, dim, s->a));
   PetscCall(PetscArraycpy(s->v_points, s->v, dofs));
+  PetscCall(PetscArraycpy(s->a_points, s->a, dofs));
   PetscFunctionReturn(0);
 }
 

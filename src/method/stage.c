@@ -18,8 +18,8 @@ PetscErrorCode StageCreate(const Case *c, Grid *grid, Points *points, Points *tr
   PetscCall(PetscCalloc1(grid->n_cells, &s->filled));
   PetscCall(PetscCalloc1(grid->n_nodes, &s->touched));
   PetscCall(PetscCalloc1(grid->n_nodes, &s->mass));
-  PetscReal **const motion[] = {&s->v, &s->a, &s->v_points, &s->v1,
-                                &s->a1}; /* apart, since a cloud changes their size */
+  PetscReal **const motion[] = {&s->v,        &s->a,  &s->v_points,
+                                &s->a_points, &s->v1, &s->a1}; /* a cloud changes their size */
   for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(motion); ++k) PetscCall(PetscCalloc1(dofs, motion[k]));
   if (case_is_mixed(c)) PetscCall(PetscCalloc1(grid->n_nodes, &s->pressure));
   *stage = s;
@@ -36,7 +36,7 @@ PetscErrorCode StageDestroy(Stage **stage)
   PetscCall(PetscFree(s->filled));
   PetscCall(PetscFree(s->touched));
   PetscCall(PetscFree(s->mass));
-  PetscReal **const motion[] = {&s->v, &s->a, &s->v_points, &s->v1, &s->a1};
+  PetscReal **const motion[] = {&s->v, &s->a, &s->v_points, &s->a_points, &s->v1, &s->a1};
   for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(motion); ++k) PetscCall(PetscFree(*motion[k]));
   PetscCall(ConstraintsDestroy(&s->constraints));
   PetscCall(PetscFree(s->dof));

@@ -145,6 +145,35 @@ static PetscReal inertia_work(const Model *m)
   return mass_product(m, du, a);
 }
 
+/* Where clouds are new in every step, the accelerations that balanced the forces at the end of the last one no longer do in these: the work of
+ * what is out of balance, by the trapezoidal rule. `external`: of nodes at the step's start. */
+static PetscErrorCode OutOfBalance(Model *m, const PetscReal *g, const PetscReal *external, PetscReal *work)
+{
+  const PetscInt dofs = m->grid->n_nodes * m->dim;
+  const PetscReal damping = m->c->analysis.damping;
+  const Stage *s = m->stage;
+  WeakFormInput in = weak_form_of(m, 0);
+  PetscReal *zero, *force, *history;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc3(dofs, &zero, dofs, &force, dofs, &history));
+  for (PetscInt i = 0; i < dofs; ++i)
+    if (s->touched[i / m->dim] && !cloud_is_twin(m->grid, i / m->dim))
+      history[i] = s->a[i] + damping * s->v[i] - g[i % m->dim];
+  in.du = zero;
+  in.history = history;
+  WeakFormOutput out = {.force = force};
+  PetscCall(m->formulation->assemble(&in, &out));
+  PetscCall(GridSumToOwners(m->grid, m->dim, force));
+  *work = 0;
+  for (PetscInt i = 0; i < m->grid->n_owned * m->dim; ++i) {
+    if (!cloud_is_twin(m->grid, i / m->dim)) *work += 0.5 * m->du[i] * (force[i] - external[i]);
+    if (m->boundary->fixed[i]) *work -= 0.5 * m->prescribed[i] * m->rate[i];
+  }
+  PetscCall(PetscFree3(zero, force, history));
+  PetscFunctionReturn(0);
+}
+
 /* Nodes that gather their motion from points start neither with the energy of the points nor with the acceleration that balances the
  * forces there. What the first takes is a difference of kinetic energies; the second adds or takes the work of the forces out of balance,
  * which is what the work of all forces leaves over. `held`: work of the boundary without impulses. */
@@ -184,7 +213,7 @@ PetscErrorCode EnergyOfNodes(Model *m, PetscReal dt, EnergyStep *e)
 {
   const PetscReal damping = m->c->analysis.type == ANALYSIS_DYNAMIC ? m->c->analysis.damping : 0;
   const Stage *s = m->stage;
-  PetscReal g0[3], g1[3], *before, held = 0, impulse = 0;
+  PetscReal g0[3], g1[3], *before, held = 0, impulse = 0, unbalanced = 0;
 
   PetscFunctionBeginUser;
   *e = (EnergyStep){0};
@@ -198,13 +227,14 @@ PetscErrorCode EnergyOfNodes(Model *m, PetscReal dt, EnergyStep *e)
     held += 0.5 * (m->held[i] + m->force[i]) * m->prescribed[i];
     impulse += impulse_work(m, i, dt);
   }
+  if (m->method->begin && m->c->analysis.type == ANALYSIS_DYNAMIC && m->c->analysis.bossak == 0) PetscCall(OutOfBalance(m, g0, before, &unbalanced));
   PetscCall(PetscFree(before));
   if (damping > 0) {
     const NodalField du = {{m->du, m->du}, {1, 0}}, mean = {{s->v, s->v1}, {0.5, 0.5}};
     e->damped = damping * mass_product(m, du, mean);
   }
   e->boundary = held + impulse;
-  e->transfer = impulse + transfer_of_nodes(m, e, held);
+  e->transfer = impulse - unbalanced + transfer_of_nodes(m, e, held);
   if (m->method->points_move && s->fade > 0) {
     const PetscReal more = faded(m);
     e->damped += more;

@@ -109,7 +109,9 @@ PetscErrorCode InitialAcceleration(Model *m)
   PetscCall(GridSumToOwners(m->grid, dim, m->force));
   for (PetscInt i = 0; i < m->grid->n_owned * dim; ++i) {
     const PetscReal mass = s->mass[i / dim];
-    s->a[i] = mass > 1e-300 && !m->boundary->fixed[i] ? (m->external[i] - m->force[i]) / mass : 0;
+    const PetscReal free = m->external[i] - m->force[i];
+    s->a[i] = mass > 1e-300 && !m->boundary->fixed[i] ? free / mass : 0;
+    m->held[i] = m->rate[i] = m->boundary->fixed[i] ? -free : 0;
   }
   PetscCall(GridToGhosts(m->grid, dim, s->a));
   for (PetscInt q = 0; q < s->support->n_groups; ++q) {

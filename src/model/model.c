@@ -146,8 +146,8 @@ PetscErrorCode ModelCreateFields(Model *m)
       m->pressure_scale = PetscMax(m->pressure_scale, m->materials[i].elastic.shear / m->grid->smallest);
   }
   PetscReal **const scratch[] = {&m->du, &m->force, &m->external, &m->history, &m->prescribed, &m->previous};
-  PetscReal **const kept[] = {&m->reaction, &m->held};
-  static const char *const kept_names[] = {"reaction", "held"};
+  PetscReal **const kept[] = {&m->reaction, &m->held, &m->rate};
+  static const char *const kept_names[] = {"reaction", "held", "rate"};
   for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(scratch); ++k) {
     PetscCall(PetscCalloc1(dofs, scratch[k]));
     if (m->grid->cloud) PetscCall(GridCloudFollow(m->grid, scratch[k], m->dim, NULL, NULL));
@@ -163,8 +163,8 @@ PetscErrorCode ModelCreateFields(Model *m)
 
 PetscErrorCode ModelDestroyFields(Model *m)
 {
-  PetscReal **const nodal[] = {&m->du,       &m->force, &m->external, &m->history, &m->prescribed,
-                               &m->reaction, &m->held,  &m->pressure, &m->volume,  &m->previous};
+  PetscReal **const nodal[] = {&m->du,   &m->force, &m->external, &m->history, &m->prescribed, &m->reaction,
+                               &m->held, &m->rate,  &m->pressure, &m->volume,  &m->previous};
 
   PetscFunctionBeginUser;
   for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(nodal); ++k) PetscCall(PetscFree(*nodal[k]));

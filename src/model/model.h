@@ -72,8 +72,12 @@ typedef struct Model {
   PetscReal *pressure, *volume; /* mixed: n_nodes, see WeakFormInput and StepProblem, otherwise NULL */
   PetscReal pressure_scale;     /* mixed: Pa/m */
   unsigned char *idle;          /* n_nodes: no material touches the node */
-  PetscReal *reaction;  /* n_nodes x dim on owners: force of the boundary on the body at the end of the last step, N */
-  PetscReal *held;      /* n_nodes x dim on owners: the reaction without the impulse that stopped points, N */
+  PetscReal *
+    reaction; /* n_nodes x dim on owners: force of the boundary on the body, in dynamics its mean over the last step, N */
+  PetscReal
+    *held; /* n_nodes x dim on owners: the same at the end of the step, without the impulse that stopped points, N */
+  PetscReal
+    *rate; /* n_nodes x dim on owners: its share in the rate of momentum there (`held` without Bossak's alpha), N */
   BodyForce body_force; /* NULL: gravity alone */
   void *body_force_context;
   PetscBool (*asked)(void); /* does somebody want the run to end? NULL: a step is always finished */

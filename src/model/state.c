@@ -95,34 +95,35 @@ static PetscErrorCode TriesToTables(const Model *m, Tables *tables)
   PetscFunctionReturn(0);
 }
 
-static void reaction_fields(Model *m, NodalField field[2])
+static void reaction_fields(Model *m, NodalField field[3])
 {
   field[0] = (NodalField){"reaction", "N", m->dim, m->reaction};
   field[1] = (NodalField){"held", "N", m->dim, m->held};
+  field[2] = (NodalField){"rate", "N", m->dim, m->rate};
 }
 
 /* Kept on the nodes whose motion is prescribed. */
 PetscErrorCode ReactionsToTables(Model *m, Tables *tables)
 {
-  NodalField field[2];
+  NodalField field[3];
   unsigned char *take;
 
   PetscFunctionBeginUser;
   reaction_fields(m, field);
   PetscCall(PetscCalloc1(m->grid->n_nodes, &take));
   for (PetscInt i = 0; i < m->grid->n_nodes * m->dim; ++i) take[i / m->dim] |= m->boundary->fixed[i];
-  PetscCall(NodesToTable(m->grid, take, 2, field, "boundary", tables));
+  PetscCall(NodesToTable(m->grid, take, 3, field, "boundary", tables));
   PetscCall(PetscFree(take));
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode ReactionsFromTables(Model *m, const Tables *tables, char reason[256])
 {
-  NodalField field[2];
+  NodalField field[3];
 
   PetscFunctionBeginUser;
   reaction_fields(m, field);
-  PetscCall(NodesFromTable(m->grid, PETSC_FALSE, 2, field, TablesFind(tables, "boundary"), reason));
+  PetscCall(NodesFromTable(m->grid, PETSC_FALSE, 3, field, TablesFind(tables, "boundary"), reason));
   PetscFunctionReturn(0);
 }
 

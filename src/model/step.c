@@ -11,15 +11,22 @@ static void set_multipliers(Model *m)
         m->force[c->at[k] * m->dim + d] = c->scale * m->du[c->twin[k] * m->dim + d];
 }
 
-/* Reactions: what the balance lacks on prescribed dofs, and the impulse that stopped the points there at the start of the step. */
+/* Reactions: in statics what the balance lacks on prescribed dofs; in dynamics the mean over the step, so that times dt it is all momentum
+ * that came from the boundary. Newmark's velocities weigh the forces of both ends, Bossak's balance gives each an echo of those before, and what
+ * prescribed motion replaced of the nodes' own at the start of the step is an impulse (docs/theory.md, "Reactions"). */
 static void store_reactions(Model *m, PetscReal dt)
 {
   const Stage *s = m->stage;
-  const PetscBool dynamic = m->c->analysis.type == ANALYSIS_DYNAMIC ? PETSC_TRUE : PETSC_FALSE;
+  const AnalysisSpec *a = &m->c->analysis;
   for (PetscInt i = 0; i < m->grid->n_owned * m->dim; ++i) {
-    m->held[i] = m->boundary->fixed[i] ? m->force[i] : 0;
-    m->reaction[i] = m->held[i];
-    if (dynamic && m->boundary->fixed[i]) m->reaction[i] += s->mass[i / m->dim] * (s->v[i] - s->v_points[i]) / dt;
+    const PetscReal mass = s->mass[i / m->dim];
+    const PetscReal before = m->rate[i] + mass * (s->a[i] - s->a_points[i]);
+    const PetscBool fixed = m->boundary->fixed[i] ? PETSC_TRUE : PETSC_FALSE;
+    m->reaction[i] = m->held[i] = fixed ? m->force[i] : 0;
+    if (a->type != ANALYSIS_DYNAMIC) continue;
+    m->rate[i] = fixed ? (m->held[i] - a->bossak * before) / (1 - a->bossak) : 0;
+    if (!fixed) continue;
+    m->reaction[i] = (1 - a->gamma) * before + a->gamma * m->rate[i] + mass * (s->v[i] - s->v_points[i]) / dt;
   }
 }
 
@@ -155,7 +162,7 @@ typedef struct {
   PetscInt cuts, iterations;
   Tries tries;
   NewtonMemory newton;
-  PetscReal *v, *a; /* n_nodes x dim, where constraints shift what nodes remember; else NULL */
+  PetscReal *v, *a; /* n_nodes x dim, where the method or constraints shift what nodes remember; else NULL */
 } BeforeStep;
 
 static PetscErrorCode Remember(const Model *m, BeforeStep *before)
@@ -165,7 +172,7 @@ static PetscErrorCode Remember(const Model *m, BeforeStep *before)
   PetscFunctionBeginUser;
   *before = (BeforeStep){.control = m->control, .cuts = m->cuts, .iterations = m->total_iterations, .tries = m->tries};
   NewtonGetMemory(m->newton, m->system, &before->newton);
-  if (!m->n_constraints) PetscFunctionReturn(0);
+  if (!m->method->begin) PetscFunctionReturn(0);
   PetscCall(PetscMalloc2(dofs, &before->v, dofs, &before->a));
   PetscCall(PetscArraycpy(before->v, m->stage->v, dofs));
   PetscCall(PetscArraycpy(before->a, m->stage->a, dofs));
@@ -240,6 +247,7 @@ PetscErrorCode ModelStep(Model *m, PetscReal limit, StepReport *report)
   if (m->method->points_move) PetscCall(BoundaryMove(m->boundary, m->grid, m->time));
   mark_fixed(m);
   PetscCall(Remember(m, &before));
+  if (m->method->begin && m->c->analysis.type == ANALYSIS_DYNAMIC) PetscCall(m->method->begin(m->stage));
   PetscCall(PhaseEnd(m->seconds, PHASE_PATTERN, &clock));
   const PetscBool shortened = limit < m->control.next ? PETSC_TRUE : PETSC_FALSE;
   PetscCall(Try(m, PetscMin(m->control.next, limit), report));
