@@ -145,11 +145,12 @@ static PetscReal inertia_work(const Model *m)
   return mass_product(m, du, a);
 }
 
-/* Where clouds are new in every step, the accelerations that balanced the forces at the end of the last one no longer do in these: the work of
- * what is out of balance, by the trapezoidal rule. `external`: of nodes at the step's start. */
-static PetscErrorCode OutOfBalance(Model *m, const PetscReal *g, const PetscReal *external, PetscReal *work)
+/* Where clouds are new in every step, what balanced the forces at the end of the last one no longer does in these: the work of what is out of
+ * balance, by the trapezoidal rule. `external`: of nodes at the step's start. */
+static PetscErrorCode OutOfBalance(const Model *m, const PetscReal *g, const PetscReal *external, PetscReal *work)
 {
   const PetscInt dofs = m->grid->n_nodes * m->dim;
+  const PetscBool dynamic = m->c->analysis.type == ANALYSIS_DYNAMIC ? PETSC_TRUE : PETSC_FALSE;
   const PetscReal damping = m->c->analysis.damping;
   const Stage *s = m->stage;
   WeakFormInput in = weak_form_of(m, 0);
@@ -157,9 +158,10 @@ static PetscErrorCode OutOfBalance(Model *m, const PetscReal *g, const PetscReal
 
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc3(dofs, &zero, dofs, &force, dofs, &history));
-  for (PetscInt i = 0; i < dofs; ++i)
+  for (PetscInt i = 0; i < m->grid->n_owned * m->dim; ++i)
     if (s->touched[i / m->dim] && !cloud_is_twin(m->grid, i / m->dim))
-      history[i] = s->a[i] + damping * s->v[i] - g[i % m->dim];
+      history[i] = (dynamic ? s->a[i] - m->echo[i] + damping * s->v[i] : 0) - g[i % m->dim];
+  PetscCall(GridToGhosts(m->grid, m->dim, history));
   in.du = zero;
   in.history = history;
   WeakFormOutput out = {.force = force};
@@ -168,7 +170,7 @@ static PetscErrorCode OutOfBalance(Model *m, const PetscReal *g, const PetscReal
   *work = 0;
   for (PetscInt i = 0; i < m->grid->n_owned * m->dim; ++i) {
     if (!cloud_is_twin(m->grid, i / m->dim)) *work += 0.5 * m->du[i] * (force[i] - external[i]);
-    if (m->boundary->fixed[i]) *work -= 0.5 * m->prescribed[i] * m->rate[i];
+    if (m->boundary->fixed[i]) *work -= 0.5 * m->prescribed[i] * m->held[i];
   }
   PetscCall(PetscFree3(zero, force, history));
   PetscFunctionReturn(0);
@@ -227,7 +229,7 @@ PetscErrorCode EnergyOfNodes(Model *m, PetscReal dt, EnergyStep *e)
     held += 0.5 * (m->held[i] + m->force[i]) * m->prescribed[i];
     impulse += impulse_work(m, i, dt);
   }
-  if (m->method->begin && m->c->analysis.type == ANALYSIS_DYNAMIC && m->c->analysis.bossak == 0) PetscCall(OutOfBalance(m, g0, before, &unbalanced));
+  if (m->method->begin) PetscCall(OutOfBalance(m, g0, before, &unbalanced));
   PetscCall(PetscFree(before));
   if (damping > 0) {
     const NodalField du = {{m->du, m->du}, {1, 0}}, mean = {{s->v, s->v1}, {0.5, 0.5}};

@@ -146,15 +146,16 @@ PetscErrorCode ModelCreateFields(Model *m)
       m->pressure_scale = PetscMax(m->pressure_scale, m->materials[i].elastic.shear / m->grid->smallest);
   }
   PetscReal **const scratch[] = {&m->du, &m->force, &m->external, &m->history, &m->prescribed, &m->previous};
-  PetscReal **const kept[] = {&m->reaction, &m->held, &m->rate};
-  static const char *const kept_names[] = {"reaction", "held", "rate"};
+  PetscReal **const kept[] = {&m->reaction, &m->held, &m->rate, &m->echo};
+  static const char *const kept_names[] = {"reaction", "held", "rate", "echo"}, *const units[] = {"N", "N", "N",
+                                                                                                  "m/s2"};
   for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(scratch); ++k) {
     PetscCall(PetscCalloc1(dofs, scratch[k]));
     if (m->grid->cloud) PetscCall(GridCloudFollow(m->grid, scratch[k], m->dim, NULL, NULL));
   }
   for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(kept); ++k) {
     PetscCall(PetscCalloc1(dofs, kept[k]));
-    if (m->grid->cloud) PetscCall(GridCloudFollow(m->grid, kept[k], m->dim, kept_names[k], "N"));
+    if (m->grid->cloud) PetscCall(GridCloudFollow(m->grid, kept[k], m->dim, kept_names[k], units[k]));
   }
   PetscCall(StageCreate(m->c, m->grid, m->points, m->tracers, m->loads, m->materials, &m->stage));
   m->stage->boundary = m->boundary;
@@ -204,6 +205,7 @@ static PetscErrorCode Build(Model *m, Diag *diag)
   step_control_start(&m->control, m->c->analysis.step);
   PetscCall(m->method->initialise(m->stage));
   if (m->method->couplings) PetscCall(ModelWarnOfObstacles(m, diag));
+  PetscCall(CheckHeld(m, diag));
   if (m->c->analysis.type == ANALYSIS_DYNAMIC) PetscCall(InitialAcceleration(m));
   PetscCall(EnergyStart(m));
   PetscCall(MeasuresStart(m));

@@ -78,6 +78,8 @@ typedef struct Model {
     *held; /* n_nodes x dim on owners: the same at the end of the step, without the impulse that stopped points, N */
   PetscReal
     *rate; /* n_nodes x dim on owners: its share in the rate of momentum there (`held` without Bossak's alpha), N */
+  PetscReal
+    *echo; /* n_nodes x dim on owners, clouds alone: what Bossak's alpha held back of the last acceleration, m/s2 */
   BodyForce body_force; /* NULL: gravity alone */
   void *body_force_context;
   PetscBool (*asked)(void); /* does somebody want the run to end? NULL: a step is always finished */
@@ -105,6 +107,7 @@ typedef struct {
   Tries tries;
   NewtonReport newton; /* of the last try */
   char reason[512];    /* why the run gives up, in words */
+  char leap[160];      /* why an equilibrium was not accepted, in words: newton.reason then points here */
   PetscReal imbalance; /* that made the step share the grid among the ranks anew; 0: it did not */
   PetscInt moved;      /* points that changed their rank for that */
 } StepReport;

@@ -64,6 +64,10 @@ PetscErrorCode EnergyClose(Model *model, EnergyStep *step);
 void pressure_guess(const Model *model);
 /* Collective. Leave the cells: nodes that material fills or the boundary holds become a cloud, and all that stood on the mesh moves over. */
 PetscErrorCode ModelToCloud(Model *model);
+/* Collective. Newton converged: unless the step is connected with the last state that is taken back. */
+PetscErrorCode JudgeStep(const Model *model, StepReport *report);
+/* Collective. In statics each body must be held in all directions, by itself or by others that it touches. */
+PetscErrorCode CheckHeld(const Model *model, Diag *diag);
 /* Collective. After the first step's clouds are known: tell which bodies hang on an obstacle from the start. */
 PetscErrorCode ModelWarnOfObstacles(const Model *model, Diag *diag);
 /* Input of the weak form for the model's present arrays. */

@@ -45,6 +45,7 @@ static PetscErrorCode Accept(Model *m, PetscReal dt, StepReport *report)
     for (PetscInt i = 0; i < dofs; ++i) {
       s->a1[i] = newmark_acceleration(&newmark, m->du[i], s->v[i], s->a[i]);
       s->v1[i] = newmark_velocity(&newmark, s->v[i], s->a[i], s->a1[i]);
+      m->echo[i] = newmark.bossak * (s->a1[i] - s->a[i]);
     }
   s->fade = m->c->analysis.type == ANALYSIS_DYNAMIC ? 1 - PetscExpReal(-m->c->analysis.damping * dt) : 0;
   set_multipliers(m);
@@ -149,6 +150,7 @@ static PetscErrorCode Solve(Model *m, PetscReal dt, const LinearProblem *linear,
     pressure_guess(m);
     PetscCall(PhaseEnd(m->seconds, PHASE_PREPARE, &clock));
     PetscCall(NewtonSolve(m->newton, &problem, linear, &report->newton));
+    if (report->newton.converged) PetscCall(JudgeStep(m, report));
     PetscCall(PetscTime(&clock));
     count_try(m, k > 0 ? PETSC_TRUE : PETSC_FALSE, report);
     if (report->newton.converged || report->newton.interrupted) break;

@@ -125,13 +125,22 @@ PetscErrorCode AddBodyForce(const Model *m, PetscReal t, PetscReal *force)
 }
 
 /* Stiffness of one node, about: multipliers over it are displacements, gaps times it are forces. */
-static PetscReal constraint_scale(const Model *m, PetscReal inertia)
+static PetscReal node_stiffness(const Model *m, PetscReal inertia)
 {
   const PetscReal h = m->grid->smallest, area = m->dim == 3 ? h * h : h;
   PetscReal scale = 0;
   for (PetscInt i = 0; i < m->c->n_materials; ++i)
     scale = PetscMax(scale, m->materials[i].wave_modulus * area / h + inertia * m->materials[i].density * area * h);
   return scale;
+}
+
+/* Force at a node that the last digits of the coordinates stand for, with a margin for what laws and sums lose themselves. */
+static PetscReal round_off_of(const Model *m, PetscReal inertia)
+{
+  PetscReal size = 0;
+  for (PetscInt d = 0; d < m->dim; ++d)
+    size = PetscMax(size, PetscMax(PetscAbsReal(m->grid->min[d]), PetscAbsReal(m->grid->max[d])));
+  return 100 * PETSC_MACHINE_EPSILON * size * node_stiffness(m, inertia);
 }
 
 PetscErrorCode PrepareStep(Model *m, PetscReal dt, StepProblem *p)
@@ -173,7 +182,8 @@ PetscErrorCode PrepareStep(Model *m, PetscReal dt, StepProblem *p)
     .asked = m->asked,
   };
   p->in.half = m->symmetric && m->grid->cloud ? PETSC_TRUE : PETSC_FALSE;
-  if (m->stage->constraints) m->stage->constraints->scale = constraint_scale(m, p->in.inertia);
+  p->round_off = round_off_of(m, p->in.inertia);
+  if (m->stage->constraints) m->stage->constraints->scale = node_stiffness(m, p->in.inertia);
   PetscCall(ForceScales(m, g, dt, &p->weight, &p->inertia));
   PetscFunctionReturn(0);
 }

@@ -31,6 +31,12 @@ static inline const PetscReal *support_N(const Support *s, PetscInt g, PetscInt 
   return s->N + s->value_start[g] + (p - s->point_start[g]) * support_nodes(s, g);
 }
 
+/* nn x dim. */
+static inline const PetscReal *support_dN(const Support *s, PetscInt g, PetscInt p, PetscInt dim)
+{
+  return s->dN + dim * (s->value_start[g] + (p - s->point_start[g]) * support_nodes(s, g));
+}
+
 /* Room for so many groups, their nodes and values; what is there is lost. */
 PetscErrorCode SupportReserve(Support *support, PetscInt groups, PetscInt nodes, PetscInt values, PetscInt dim);
 PetscErrorCode SupportCreate(Support **support);

@@ -165,7 +165,9 @@ static PetscErrorCode NewtonTry(Newton *n, NewtonReport *report)
   PetscCall(PetscTime(&end));
   n->t_newton += (end - start) - (n->t_points + n->t_matrix + n->t_linear - parts);
   if (reason == SNES_DIVERGED_LINEAR_SOLVE) n->built = -1; /* PETSc would not factorise again after a zero pivot */
-  n->retry = reason == SNES_DIVERGED_LINEAR_SOLVE && !n->direct ? PETSC_TRUE : PETSC_FALSE;
+  const PetscBool useless =
+    reason == SNES_DIVERGED_LINEAR_SOLVE || reason == SNES_DIVERGED_INNER ? PETSC_TRUE : PETSC_FALSE;
+  n->retry = useless && !n->direct ? PETSC_TRUE : PETSC_FALSE;
   n->failures += n->retry;
   PetscFunctionReturn(0);
 }

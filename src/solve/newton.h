@@ -27,6 +27,7 @@ typedef struct {
   PetscReal *volume;   /* mixed: n_nodes, residual of the pressure equation, N */
   const unsigned char *idle; /* mixed: n_nodes, no material touches the node: no pressure there */
   PetscBool (*asked)(void);  /* does somebody want the run to end? asked on every rank; NULL: nobody ever does */
+  PetscReal round_off;       /* what the last digit of a coordinate makes of the force at a node, N */
   PetscReal weight, inertia; /* norms of nodal gravity and of the inertia that would stop the motion, N: scales */
 } StepProblem;
 

@@ -6,6 +6,9 @@
 #define STUCK_GAIN 0.5   /* brought the residual below this share of the best before */
 #define STUCK_ABOVE 1e-4 /* a smaller residual is about to converge */
 
+#define STILL 1e3   /* tolerances up to which a residual may stay where increments vanish, unless it is round-off */
+#define TOO_FAR 1e3 /* sizes of the grid that nothing goes in one iteration */
+
 /* The scale of a residual: the loads, the residual at the first guess, and (for motion driven by its boundary or by inertia)
  * a small part of reactions and inertia, well above their round-off. */
 static PetscReal reference_force(const Newton *n, PetscReal first)
@@ -23,13 +26,32 @@ PetscBool newton_is_last(const Newton *n)
   return n->before > 0 && n->last * n->last < 0.1 * enough * n->before ? PETSC_TRUE : PETSC_FALSE;
 }
 
-/* Is the increment round-off, of the step's displacement or of the size of a cell? Then a residual that falls no more has reached the
- * floor of its own round-off, whatever tolerance was asked for. */
+static PetscReal dofs_of(const Newton *n)
+{
+  return (PetscReal)(n->problem->system->n_active_global * n->problem->system->block);
+}
+
+/* Is the increment round-off, of the step's displacement or of the size of a cell? Then the residual falls no more. */
 static PetscBool at_floor(const Newton *n, PetscReal xnorm, PetscReal snorm)
 {
-  const PetscReal dofs = (PetscReal)(n->problem->system->n_active_global * n->problem->system->block);
-  return snorm <= 1e-9 * xnorm || snorm <= 1e-12 * n->problem->grid->smallest * PetscSqrtReal(dofs) ? PETSC_TRUE
-                                                                                                    : PETSC_FALSE;
+  return snorm <= 1e-9 * xnorm || snorm <= 1e-12 * n->problem->grid->smallest * PetscSqrtReal(dofs_of(n)) ? PETSC_TRUE
+                                                                                                          : PETSC_FALSE;
+}
+
+/* A residual that round-off alone can leave: coordinates and increments are known to their last digit, and a strain made of it acts through the
+ * stiffness of every node. A singular or useless linear solve ends in vanishing increments, too, but far above this. */
+static PetscBool is_round_off(const Newton *n, PetscReal fnorm)
+{
+  return fnorm <= n->problem->round_off * PetscSqrtReal(dofs_of(n)) ? PETSC_TRUE : PETSC_FALSE;
+}
+
+/* The mean increment, of a linear solve that was all but singular. */
+static PetscBool is_too_far(const Newton *n, PetscReal snorm)
+{
+  const Grid *grid = n->problem->grid;
+  PetscReal size = 0;
+  for (PetscInt d = 0; d < grid->dim; ++d) size += PetscSqr(grid->max[d] - grid->min[d]);
+  return snorm > TOO_FAR * PetscSqrtReal(size * dofs_of(n)) ? PETSC_TRUE : PETSC_FALSE;
 }
 
 /* An iteration that wanders between the sides of yield surfaces, as most that fail do after ten to fifteen iterations, and few that would
@@ -58,13 +80,16 @@ PetscErrorCode NewtonConverged(SNES snes, PetscInt it, PetscReal xnorm, PetscRea
   const PetscInt k = r->iterations + it;
   const PetscBool small =
     snorm <= spec->increment * xnorm || snorm <= spec->increment_absolute ? PETSC_TRUE : PETSC_FALSE;
-  const PetscBool still = it > 0 && small && relative <= 1e3 * spec->residual ? PETSC_TRUE : PETSC_FALSE;
+  const PetscBool near = relative <= STILL * spec->residual ? PETSC_TRUE : PETSC_FALSE;
+  const PetscBool still = it > 0 && small && near ? PETSC_TRUE : PETSC_FALSE;
   const PetscBool floored = it > 1 && fnorm > 0.25 * n->last && at_floor(n, xnorm, snorm) ? PETSC_TRUE : PETSC_FALSE;
   if (k < NEWTON_HISTORY) r->residual[k] = relative;
   if (PetscIsInfOrNanReal(fnorm)) *reason = SNES_DIVERGED_FNORM_NAN;
   else if (relative <= spec->residual || fnorm <= spec->residual_absolute) *reason = SNES_CONVERGED_FNORM_RELATIVE;
-  else if (still || floored) *reason = SNES_CONVERGED_SNORM_RELATIVE;
+  else if (still || (floored && (near || is_round_off(n, fnorm)))) *reason = SNES_CONVERGED_SNORM_RELATIVE;
   else if (n->asked) *reason = SNES_DIVERGED_FUNCTION_COUNT; /* no more than it wants to evaluate */
+  else if (floored) *reason = SNES_DIVERGED_INNER;
+  else if (it > 0 && is_too_far(n, snorm)) *reason = SNES_DIVERGED_FUNCTION_DOMAIN;
   else if (k > 2 && relative > 1e8) *reason = SNES_DIVERGED_DTOL;
   else if (is_stuck(r->residual, k)) *reason = SNES_DIVERGED_LOCAL_MIN;
   n->before = it > 0 ? n->last : 0;
@@ -81,6 +106,10 @@ const char *newton_reason(SNESConvergedReason reason, LawStatus status)
   case SNES_DIVERGED_LINEAR_SOLVE: return "the linear solver failed (is the body held anywhere?)";
   case SNES_DIVERGED_LOCAL_MIN: return "the iteration went in circles";
   case SNES_DIVERGED_FUNCTION_COUNT: return "it was interrupted";
+  case SNES_DIVERGED_INNER:
+    return "increments vanished and the residual did not: the tangent is singular, or the linear solver does nothing";
+  case SNES_DIVERGED_FUNCTION_DOMAIN:
+    return "an increment of a thousand times the grid's size: the tangent is singular, something is not held";
   case SNES_DIVERGED_DTOL: return "the residual grew without bound";
   default: break;
   }

@@ -243,6 +243,7 @@ static PetscInt warnings_at(PetscReal bottom)
   Diag *diag;
   Model *m = NULL;
   gmm_init(&b, &usual_lme, CELL_QUADRILATERAL, 0.125);
+  bench_dynamic(&b, 1, 0.01);
   bench_box(&b, 0, (PetscReal[]){0.25, bottom, 0}, (PetscReal[]){0.75, bottom + 0.25, 1});
   bench_motion(&b, 1, 0, MOTION_FIXED, 7);
   CALL(DiagCreate(&diag));

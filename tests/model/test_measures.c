@@ -15,6 +15,7 @@ static Model *triangle(Bench *b, PetscReal height)
   bench_init(b, "mpm", CELL_QUADRILATERAL, 0);
   bench_grid(b, (PetscReal[]){0, 0, 0}, (PetscReal[]){2, 1.2, 0}, 0.1);
   b->body[0].points_per_cell = 16;
+  bench_motion(b, 1, 0, MOTION_FIXED, 7); /* statics wants it held */
   for (int k = 0; k < 6; ++k) vertices[k] = (PetscReal[]){0, 0, 1, 0, 0, height}[k];
   b->body[0].shape = (Shape){.kind = SHAPE_POLYGON, .n_vertices = 3, .vertices = vertices};
   return bench_model(b, PETSC_COMM_WORLD);
@@ -63,6 +64,7 @@ static void test_inner_extent(void **state)
   (void)state;
   bench_init(&b, "mpm", CELL_QUADRILATERAL, 4);
   b.body[0].points_per_cell = 4;
+  bench_motion(&b, 1, 0, MOTION_FIXED, 7); /* statics wants it held */
   Model *m = bench_model(&b, PETSC_COMM_WORLD);
   for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(wanted); ++k) {
     const PetscReal side = (wanted[k].column % 2 ? 0.5 : -0.5) / PetscSqrtReal(3);
@@ -373,6 +375,7 @@ static PetscReal roughness(int kind, PetscInt cells_per_side)
 {
   Bench b;
   bench_init(&b, "fem", CELL_TRIANGLE, cells_per_side);
+  bench_motion(&b, 1, 0, MOTION_FIXED, 7); /* statics wants it held */
   b.body[0].points_per_cell = 1;
   Model *m = bench_model(&b, PETSC_COMM_WORLD);
   for (PetscInt p = 0; p < m->points->n; ++p) {
@@ -391,6 +394,7 @@ static PetscReal nodal_roughness(PetscReal constant, PetscReal amplitude)
 {
   Bench b;
   bench_init(&b, "fem", CELL_TRIANGLE, 6);
+  bench_motion(&b, 1, 0, MOTION_FIXED, 7); /* statics wants it held */
   b.c.formulation = (char *)"mixed";
   b.body[0].points_per_cell = 1;
   Model *m = bench_model(&b, PETSC_COMM_WORLD);

@@ -314,11 +314,13 @@ static void test_other_model(void **state)
   char reason[256];
   (void)state;
   bench_init(&b, "mpm", CELL_QUADRILATERAL, 8);
+  bench_motion(&b, 1, 0, MOTION_FIXED, 7); /* statics wants it held */
   Model *m = bench_model(&b, PETSC_COMM_WORLD);
   put_away(m);
   CALL(ModelDestroy(&m));
   for (int k = 0; k < 3; ++k) {
     bench_init(&b, k == 1 ? "fem" : "mpm", CELL_QUADRILATERAL, k == 0 ? 4 : 8);
+    bench_motion(&b, 1, 0, MOTION_FIXED, 7);
     if (k == 2) bench_tracer(&b, MEASURE_DISPLACEMENT, 1, 0.4, 0.9, 0.9);
     m = bench_model(&b, PETSC_COMM_WORLD);
     CALL(CheckpointRead(PETSC_COMM_WORLD, path, &tables, reason));

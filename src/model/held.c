@@ -1,0 +1,95 @@
+/* Is every body held? In statics a body that nothing prescribed reaches, through other bodies neither, can be anywhere: the tangent is singular,
+ * and what a solver makes of that is no answer. */
+#include "model/model_private.h"
+
+/* Nodes that the body touches, on all copies. */
+static PetscErrorCode TouchedBy(const Model *m, PetscInt body, PetscReal *touched)
+{
+  const Support *w = m->stage->support;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscArrayzero(touched, m->grid->n_nodes));
+  for (PetscInt g = 0; g < w->n_groups; ++g)
+    for (PetscInt p = w->point_start[g]; p < w->point_start[g + 1]; ++p)
+      for (PetscInt i = w->node_start[g]; i < w->node_start[g + 1] && m->points->body[p] == body; ++i)
+        touched[w->node[i]] = 1;
+  PetscCall(GridSumToOwners(m->grid, 1, touched));
+  PetscCall(GridToGhosts(m->grid, 1, touched));
+  PetscFunctionReturn(0);
+}
+
+/* joined (bodies x bodies): do both touch one node? held (bodies x dim): does a node of the body have a prescribed motion in this direction? */
+static PetscErrorCode Touches(const Model *m, PetscInt *joined, PetscInt *held)
+{
+  const PetscInt n = m->c->n_bodies, nodes = m->grid->n_nodes;
+  PetscReal *touched;
+  PetscInt *before; /* n_nodes: the last body that touches it, from 1 on */
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(nodes, &touched));
+  PetscCall(PetscCalloc1(nodes, &before));
+  for (PetscInt b = 0; b < n; ++b) {
+    PetscCall(TouchedBy(m, b, touched));
+    for (PetscInt node = 0; node < nodes; ++node) {
+      if (touched[node] == 0) continue;
+      for (PetscInt d = 0; d < m->dim; ++d) held[b * m->dim + d] |= m->boundary->fixed[node * m->dim + d];
+      if (before[node]) joined[b * n + before[node] - 1] = joined[(before[node] - 1) * n + b] = 1;
+      before[node] = b + 1;
+    }
+  }
+  PetscCall(PetscFree(touched));
+  PetscCall(PetscFree(before));
+  PetscCall(MPIU_Allreduce(MPI_IN_PLACE, joined, (PetscMPIInt)(n * n), MPIU_INT, MPI_MAX, m->comm));
+  PetscCall(MPIU_Allreduce(MPI_IN_PLACE, held, (PetscMPIInt)(n * m->dim), MPIU_INT, MPI_MAX, m->comm));
+  PetscFunctionReturn(0);
+}
+
+/* What holds a body holds all that it touches. */
+static void spread(PetscInt n, PetscInt dim, const PetscInt *joined, PetscInt *held)
+{
+  PetscBool more = PETSC_TRUE;
+  while (more) {
+    more = PETSC_FALSE;
+    for (PetscInt k = 0; k < n * n * dim; ++k) {
+      const PetscInt a = k / (n * dim), b = k / dim % n, d = k % dim;
+      if (!joined[a * n + b] || !held[b * dim + d] || held[a * dim + d]) continue;
+      held[a * dim + d] = 1;
+      more = PETSC_TRUE;
+    }
+  }
+}
+
+static void name_directions(PetscInt dim, const PetscInt *held, char text[32])
+{
+  PetscInt missing = 0;
+  text[0] = 0;
+  for (PetscInt d = 0; d < dim; ++d) {
+    if (held[d]) continue;
+    const size_t length = strlen(text);
+    snprintf(text + length, 32 - length, "%s%c", missing++ ? " and " : "", "xyz"[d]);
+  }
+}
+
+PetscErrorCode CheckHeld(const Model *m, Diag *diag)
+{
+  const PetscInt n = m->c->n_bodies, dim = m->dim;
+  PetscInt *joined, *held, points;
+  char path[64], directions[32];
+
+  PetscFunctionBeginUser;
+  PetscCall(ModelCountPoints(m, &points));
+  if (m->c->analysis.type == ANALYSIS_DYNAMIC || !points) PetscFunctionReturn(0);
+  PetscCall(PetscCalloc2(n * n, &joined, n * dim, &held));
+  PetscCall(Touches(m, joined, held));
+  spread(n, dim, joined, held);
+  for (PetscInt b = 0; b < n; ++b) {
+    name_directions(dim, held + b * dim, directions);
+    if (!directions[0]) continue;
+    snprintf(path, sizeof path, "bodies[%d]", (int)b);
+    DiagError(diag, path, "nothing holds '%s' in %s: a static analysis has no answer", m->c->bodies[b].name,
+              directions);
+    DiagHint(diag, "fix a boundary that the body touches in %s, or let it move: analysis: {type: dynamic}", directions);
+  }
+  PetscCall(PetscFree2(joined, held));
+  PetscFunctionReturn(0);
+}

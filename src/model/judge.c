@@ -1,0 +1,73 @@
+/* What Newton's method found is an equilibrium; whether it is the one that follows from the last state is another question. An implicit step may
+ * leap to a solution far away, where a body lies turned over or drawn out to many times its length, and all balances hold there. Such a step is
+ * cut: on a shorter one the solution that is connected with the last state is the nearer one (docs/theory.md, "Steps that leap"). */
+#include "base/tensor.h"
+#include "model/model_private.h"
+
+#define MOST_STRETCH 10  /* in one step, or to that part: a soft column under its weight may be pressed to an eighth */
+#define HARDLY_MOVED 0.2 /* of a cell: nothing can be stretched that much */
+
+static PetscReal square_norm(const PetscReal a[9])
+{
+  PetscReal sum = 0;
+  for (int i = 0; i < 9; ++i) sum += a[i] * a[i];
+  return sum;
+}
+
+/* How much the step stretches or shortens a line at the point, at most: from the sum of squares of all three stretches or their inverses, of
+ * which the two others are about 1. */
+static PetscReal stretch_of(const Model *m, PetscInt g, PetscInt p)
+{
+  const Support *w = m->stage->support;
+  const PetscInt dim = m->dim, nn = support_nodes(w, g), *node = w->node + w->node_start[g];
+  const PetscReal *dN = support_dN(w, g, p, dim);
+  PetscReal dF[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1}, inverse[9];
+  for (PetscInt I = 0; I < nn; ++I)
+    for (PetscInt i = 0; i < dim; ++i)
+      for (PetscInt j = 0; j < dim; ++j) dF[3 * i + j] += m->du[node[I] * dim + i] * dN[I * dim + j];
+  tensor_inverse(dF, inverse);
+  return PetscSqrtReal(PetscMax(1, PetscMax(square_norm(dF), square_norm(inverse)) - 2));
+}
+
+static PetscBool hardly_moved(const Model *m)
+{
+  PetscReal largest = 0;
+  for (PetscInt k = 0; k < m->system->n_active; ++k)
+    for (PetscInt d = 0, i = m->system->active[k] * m->dim; d < m->dim; ++d, ++i)
+      largest = PetscMax(largest, PetscAbsReal(m->du[i]));
+  return !m->grid->cloud && largest < HARDLY_MOVED * m->grid->smallest ? PETSC_TRUE : PETSC_FALSE;
+}
+
+PetscErrorCode JudgeStep(const Model *m, StepReport *report)
+{
+  const Support *w = m->stage->support;
+  struct {
+    double stretch;
+    int rank;
+  } local = {1, 0}, worst;
+  PetscInt at = -1;
+  PetscReal x[3] = {0, 0, 0};
+  PetscMPIInt rank;
+
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_rank(m->comm, &rank));
+  local.rank = rank;
+  const PetscInt groups = hardly_moved(m) ? 0 : w->n_groups;
+  for (PetscInt g = 0; g < groups; ++g)
+    for (PetscInt p = w->point_start[g]; p < w->point_start[g + 1]; ++p) {
+      const PetscReal stretch = stretch_of(m, g, p);
+      if (stretch <= local.stretch) continue;
+      local.stretch = stretch;
+      at = p;
+    }
+  PetscCallMPI(MPI_Allreduce(&local, &worst, 1, MPI_DOUBLE_INT, MPI_MAXLOC, m->comm));
+  if (worst.stretch <= MOST_STRETCH) PetscFunctionReturn(0);
+  for (PetscInt d = 0; d < m->dim && rank == worst.rank; ++d) x[d] = point_real(m->points, POINT_X, at)[d];
+  PetscCallMPI(MPI_Bcast(x, 3, MPIU_REAL, worst.rank, m->comm));
+  snprintf(report->leap, sizeof report->leap,
+           "it leapt: material at (%g, %g, %g) m was stretched %.3g times in one step", (double)x[0], (double)x[1],
+           (double)x[2], worst.stretch);
+  report->newton.converged = PETSC_FALSE;
+  report->newton.reason = report->leap;
+  PetscFunctionReturn(0);
+}
