@@ -8,7 +8,7 @@
 #include "io/checkpoint.h"
 
 /*   talus checkpoint
- *   version 1
+ *   version 2
  *   bytes 123456
  *   datasets 2
  *   points/position real 2 1000 8192 0123abcd

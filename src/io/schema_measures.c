@@ -101,7 +101,7 @@ static const SchemaEntry measure_entries[] = {
   KEY("spin", SPIN_AXIS, "rad/s", "angular velocity: angular momentum over inertia, both about the centre of mass",
       TAG(MEASURE_SPIN), AT(MeasureSpec, component)),
   KEY("energy", WORD, "J", "energy", .words = energy_words, AT(MeasureSpec, kind)),
-  KEY("reaction", AXIS, "N", "force that holds a boundary", TAG(MEASURE_REACTION), AT(MeasureSpec, component)),
+  KEY("reaction", AXIS, "N", "force that holds a boundary; in dynamics its mean over the step, so that times the step it is the impulse", TAG(MEASURE_REACTION), AT(MeasureSpec, component)),
   KEY("surface", WORD, "m or deg", "free surface of a body: from the volume above x, in cells of the grid", ONLY_2D,
       .words = surface_words, AT(MeasureSpec, kind)),
   KEY("at", NUMBER, "m", "x for surface: height", .with = "surface", AT(MeasureSpec, at), GIVEN(MeasureSpec, has_at)),
