@@ -34,6 +34,8 @@ static void PrintHelp(FILE *out)
     out,
     "\n`talus COMMAND --help` tells more. Options with a single dash are PETSc's: -snes_monitor, -ksp_view, "
     "-log_view.\n"
+    "Root, as in a container, tells Open MPI's mpiexec by OMPI_ALLOW_RUN_AS_ROOT=1 and "
+    "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1\nin the environment that it may start.\n"
     "Exit codes: 0 done, 1 the solver gave up, 2 bad input or usage, 3 a verification fell outside its tolerance.\n");
   fflush(out);
 }

@@ -208,7 +208,8 @@ static PetscErrorCode WriteCloud(const Grid *grid, VtkData *vtk, PetscInt n, Vtk
     PetscCall(PetscArraymove((PetscReal *)vtk->x + count_numbers(kept, 3), vtk->x + count_numbers(i, 3), 3));
     for (PetscInt f = 0; f < n; ++f) {
       const PetscInt k = fields[f].components;
-      PetscCall(PetscArraymove((PetscReal *)fields[f].data + count_numbers(kept, k), fields[f].data + count_numbers(i, k), k));
+      PetscCall(
+        PetscArraymove((PetscReal *)fields[f].data + count_numbers(kept, k), fields[f].data + count_numbers(i, k), k));
     }
     ++kept;
   }

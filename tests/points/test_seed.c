@@ -333,8 +333,8 @@ int main(int argc, char **argv)
     cmocka_unit_test(grading_keeps_the_volume),    cmocka_unit_test(axisymmetric_volume_is_the_full_circle),
     cmocka_unit_test(bodies_stand_side_by_side),   cmocka_unit_test(ranks_do_not_matter),
     cmocka_unit_test(mistakes_are_told),           cmocka_unit_test(overlap_is_told),
-    cmocka_unit_test(too_many_points_are_told),
-    cmocka_unit_test(bad_volume_is_told),          cmocka_unit_test(polygon_volume_is_known),
+    cmocka_unit_test(too_many_points_are_told),    cmocka_unit_test(bad_volume_is_told),
+    cmocka_unit_test(polygon_volume_is_known),
   };
   return run_point_tests(argc, argv, tests, sizeof tests / sizeof *tests);
 }
