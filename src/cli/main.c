@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include "base/memory.h"
+#include "base/mpi_end.h"
 #include "base/threads.h"
 #include "cli/cli.h"
 
@@ -152,9 +153,10 @@ static int RunProgram(int argc, char **argv, char **own, char **petsc)
 
 int main(int argc, char **argv)
 {
+  if (MpiBegin(&argc, &argv)) return CLI_GAVE_UP;
   char **own = calloc((size_t)argc + 1, sizeof(char *)), **petsc = calloc((size_t)argc + 1, sizeof(char *));
   const int exit_code = own && petsc ? RunProgram(argc, argv, own, petsc) : CLI_GAVE_UP;
   free(own);
   free(petsc);
-  return exit_code;
+  mpi_end(exit_code);
 }
