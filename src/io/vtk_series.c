@@ -51,7 +51,7 @@ static int RewriteFile(const char *path, const char *file, PetscReal time, Petsc
 {
   char unfinished[FILE_PATH];
   snprintf(unfinished, sizeof unfinished, "%s" FILE_UNFINISHED, path);
-  FILE *old = fopen(path, "r");
+  FILE *old = file_open_read(path);
   if (!old && (errno != ENOENT || !file)) return errno != ENOENT ? errno : least ? ENODATA : 0;
   FILE *out = fopen(unfinished, "w");
   int error = out ? 0 : errno;
