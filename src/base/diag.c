@@ -24,6 +24,8 @@ static void Forget(Diag *diag)
 {
   for (PetscInt i = 0; i < diag->n; ++i) DiagMessageClear(&diag->messages[i]);
   diag->n = diag->errors = diag->warnings = 0;
+  memset(diag->shown, 0, sizeof diag->shown);
+  memset(diag->more, 0, sizeof diag->more);
 }
 
 PetscErrorCode DiagDestroy(Diag **diag)
@@ -56,11 +58,35 @@ PetscErrorCode DiagOwnContext(Diag *diag, void (*destroy)(void *))
   PetscFunctionReturn(0);
 }
 
+PetscBool DiagFull(const Diag *diag, DiagSeverity severity)
+{
+  return diag->shown[severity == DIAG_ERROR] >= DIAG_MOST ? PETSC_TRUE : PETSC_FALSE;
+}
+
+static void Count(Diag *diag, DiagSeverity severity)
+{
+  diag->errors += severity == DIAG_ERROR;
+  diag->warnings += severity == DIAG_WARNING;
+}
+
+/* One that is not kept; nor is its hint. */
+static void CountOnly(Diag *diag, DiagSeverity severity)
+{
+  Count(diag, severity);
+  diag->more[severity == DIAG_ERROR] += 1;
+  diag->stale_hint = PETSC_TRUE;
+}
+
 /* A message that finds no memory is lost, but it still counts. */
 void DiagAppend(Diag *diag, DiagMessage *message)
 {
-  diag->errors += message->severity == DIAG_ERROR;
-  diag->warnings += message->severity == DIAG_WARNING;
+  if (DiagFull(diag, message->severity)) {
+    CountOnly(diag, message->severity);
+    DiagMessageClear(message);
+    return;
+  }
+  Count(diag, message->severity);
+  diag->shown[message->severity == DIAG_ERROR] += 1;
   if (diag->n == diag->capacity) {
     const PetscInt capacity = diag->capacity ? 2 * diag->capacity : 16;
     DiagMessage *grown = realloc(diag->messages, (size_t)capacity * sizeof(*grown));
@@ -76,14 +102,30 @@ void DiagAppend(Diag *diag, DiagMessage *message)
   diag->messages[diag->n++] = *message;
 }
 
+/* What is longer than any screen (a key of a megabyte) ends in dots, and not within a character. */
+#define LONGEST_TEXT 2000
+
+static char *CutLong(char *text)
+{
+  size_t n = LONGEST_TEXT;
+  if (strlen(text) <= LONGEST_TEXT) return text;
+  while (n > 0 && (text[n] & 0xC0) == 0x80) --n;
+  memcpy(text + n, "...", 4);
+  return text;
+}
+
 static char *Format(const char *format, va_list arguments)
 {
   char *text = NULL;
-  return vasprintf(&text, format, arguments) < 0 ? NULL : text;
+  return vasprintf(&text, format, arguments) < 0 ? NULL : CutLong(text);
 }
 
 static void Record(Diag *diag, DiagSeverity severity, const DiagPlace *place, const char *format, va_list arguments)
 {
+  if (DiagFull(diag, severity)) {
+    CountOnly(diag, severity);
+    return;
+  }
   DiagMessage message = {.severity = severity, .line = place->line, .column = place->column, .width = place->width};
   message.file = place->file ? strdup(place->file) : NULL;
   message.text = place->text ? strdup(place->text) : NULL;
@@ -94,7 +136,7 @@ static void Record(Diag *diag, DiagSeverity severity, const DiagPlace *place, co
 static void RecordAtPath(Diag *diag, DiagSeverity severity, const char *path, const char *format, va_list arguments)
 {
   DiagPlace place = {.width = 1};
-  if (diag->resolver) diag->resolver(diag->context, path, &place);
+  if (diag->resolver && !DiagFull(diag, severity)) diag->resolver(diag->context, path, &place);
   Record(diag, severity, &place, format, arguments);
 }
 
@@ -168,6 +210,11 @@ static PetscBool PrintsHere(void)
   return rank == 0 ? PETSC_TRUE : PETSC_FALSE;
 }
 
+static void PrintMore(PetscInt n, const char *what, FILE *out)
+{
+  if (n > 0) fprintf(out, "and %" PetscInt_FMT " more %s%s\n", n, what, n > 1 ? "s" : "");
+}
+
 PetscErrorCode DiagFlush(Diag *diag, FILE *out)
 {
   SortKey *keys;
@@ -181,6 +228,8 @@ PetscErrorCode DiagFlush(Diag *diag, FILE *out)
     }
     qsort(keys, (size_t)diag->n, sizeof(*keys), CompareKeys);
     for (PetscInt i = 0; i < diag->n; ++i) DiagMessagePrint(&diag->messages[keys[i].index], out);
+    PrintMore(diag->more[0], "warning", out);
+    PrintMore(diag->more[1], "error", out);
     fflush(out);
     PetscCall(PetscFree(keys));
   }

@@ -36,13 +36,18 @@ void DiagAt(Diag *diag, DiagSeverity severity, const DiagPlace *place, const cha
 /* A second line under the newest message: "did you mean 'young'?". */
 void DiagHint(Diag *diag, const char *format, ...) PETSC_ATTRIBUTE_FORMAT(2, 3);
 
+/* So many errors, and so many other messages, are kept for print; the others only count. */
+#define DIAG_MOST 50
+/* Would the next message of this kind only count? Then it is not worth composing. */
+PetscBool DiagFull(const Diag *diag, DiagSeverity severity);
+
 PetscInt DiagErrors(const Diag *diag); /* number of errors so far on this rank */
 PetscInt DiagWarnings(const Diag *diag);
 
 /* Collective: number of errors over all ranks; messages of other ranks travel to rank 0. */
 PetscErrorCode DiagReduce(MPI_Comm comm, Diag *diag, PetscInt *errors);
 /* Print all messages in the order of their lines and forget them:
- * `case.yaml:12:7: error: ...`, the line, a caret, the hint. Rank 0 prints, others forget. */
+ * `case.yaml:12:7: error: ...`, the line, a caret, the hint; last how many more there are. Rank 0 prints, others forget. */
 PetscErrorCode DiagFlush(Diag *diag, FILE *out);
 
 /* The word of a NULL-terminated list nearest to `word` (Damerau-Levenshtein), NULL if none is near. */

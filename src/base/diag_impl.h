@@ -13,7 +13,8 @@ struct Diag {
   PetscInt n, capacity;
   DiagMessage *messages;
   PetscInt errors, warnings;
-  PetscBool stale_hint; /* the newest message was lost: its hint goes too */
+  PetscInt shown[2], more[2]; /* others, errors: how many messages are kept, and how many only counted */
+  PetscBool stale_hint;       /* the newest message was lost: its hint goes too */
   DiagResolver resolver;
   void *context;
   void (*context_destroy)(void *);

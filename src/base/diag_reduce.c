@@ -99,7 +99,9 @@ static void Unpack(Diag *diag, const char *p, const char *end)
 static void RemoveTwins(Diag *diag)
 {
   const PetscInt n = diag->n;
-  diag->n = diag->errors = diag->warnings = 0;
+  diag->n = diag->shown[0] = diag->shown[1] = 0;
+  diag->errors = diag->more[1];
+  diag->warnings = diag->more[0];
   for (PetscInt i = 0; i < n; ++i) {
     DiagMessage m = diag->messages[i];
     if (Known(diag, &m)) DiagMessageClear(&m);
@@ -141,7 +143,7 @@ PetscErrorCode DiagReduce(MPI_Comm comm, Diag *diag, PetscInt *errors)
   if (ranks > 1) PetscCall(Gather(comm, rank, ranks, diag));
   if (rank > 0) {
     for (PetscInt i = 0; i < diag->n; ++i) DiagMessageClear(&diag->messages[i]);
-    diag->n = 0; /* the counts stay: what happened here is still known here */
+    diag->n = diag->shown[0] = diag->shown[1] = 0; /* the counts stay: what happened here is still known here */
   }
   *errors = diag->errors;
   PetscCallMPI(MPI_Bcast(errors, 1, MPIU_INT, 0, comm));

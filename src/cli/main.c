@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include "base/memory.h"
+#include "base/mpi_end.h"
 #include "base/threads.h"
 #include "cli/cli.h"
 
@@ -34,6 +35,8 @@ static void PrintHelp(FILE *out)
     out,
     "\n`talus COMMAND --help` tells more. Options with a single dash are PETSc's: -snes_monitor, -ksp_view, "
     "-log_view.\n"
+    "Root, as in a container, tells Open MPI's mpiexec by OMPI_ALLOW_RUN_AS_ROOT=1 and "
+    "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1\nin the environment that it may start.\n"
     "Exit codes: 0 done, 1 the solver gave up, 2 bad input or usage, 3 a verification fell outside its tolerance.\n");
   fflush(out);
 }
@@ -150,9 +153,10 @@ static int RunProgram(int argc, char **argv, char **own, char **petsc)
 
 int main(int argc, char **argv)
 {
+  if (MpiBegin(&argc, &argv)) return CLI_GAVE_UP;
   char **own = calloc((size_t)argc + 1, sizeof(char *)), **petsc = calloc((size_t)argc + 1, sizeof(char *));
   const int exit_code = own && petsc ? RunProgram(argc, argv, own, petsc) : CLI_GAVE_UP;
   free(own);
   free(petsc);
-  return exit_code;
+  mpi_end(exit_code);
 }

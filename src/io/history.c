@@ -92,7 +92,7 @@ static PetscBool SameHeader(FILE *old, const char *header)
 static int KeepRows(const char *path, const char *header, PetscInt step, Diag *diag)
 {
   char unfinished[FILE_PATH + 16];
-  FILE *old = fopen(path, "r"), *out = NULL;
+  FILE *old = file_open_read(path), *out = NULL;
   long long copied = -1;
   int error = 0;
   snprintf(unfinished, sizeof unfinished, "%s" FILE_UNFINISHED, path);

@@ -2,6 +2,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include "io/history.h"
+#include "io/run_dir_files.h"
 
 /* The next entry of a CSV line, quotes resolved, in place; NULL after the last. */
 static char *NextEntry(char **next)
@@ -58,20 +59,48 @@ static PetscBool ParseRow(const char *line, PetscInt n, PetscReal *row)
   return PETSC_TRUE;
 }
 
-static PetscErrorCode ReadRows(FILE *in, History *history)
+/* Room for one more row. A damaged header may hold a million columns: then rows are few. */
+static PetscErrorCode Grow(History *history, PetscInt64 *capacity)
 {
-  const PetscInt n = history->n_columns;
-  PetscInt capacity = 0;
+  PetscFunctionBeginUser;
+  if (history->n_rows < *capacity) PetscFunctionReturn(0);
+  *capacity = 2 * *capacity + 1;
+  PetscCall(PetscRealloc((size_t)*capacity * (size_t)history->n_columns * sizeof(PetscReal), &history->values));
+  PetscFunctionReturn(0);
+}
+
+/* Only what stands last, without its newline, may be cut off. */
+static PetscErrorCode ReadRows(FILE *in, History *history, char reason[256])
+{
+  PetscInt64 capacity = 0;
   char *line = NULL;
   size_t size = 0;
 
   PetscFunctionBeginUser;
-  while (getline(&line, &size, in) > 0) {
-    if (history->n_rows == capacity) {
-      capacity = 2 * capacity + 64;
-      PetscCall(PetscRealloc((size_t)capacity * (size_t)n * sizeof(PetscReal), &history->values));
-    }
-    if (ParseRow(line, n, history->values + (size_t)history->n_rows * (size_t)n)) ++history->n_rows;
+  for (ssize_t n; !reason[0] && (n = getline(&line, &size, in)) > 0 && line[n - 1] == '\n';) {
+    PetscCall(Grow(history, &capacity));
+    PetscReal *row = history->values + (size_t)history->n_rows * (size_t)history->n_columns;
+    if (!ParseRow(line, history->n_columns, row) || PetscIsInfOrNanReal(row[0]) || PetscIsInfOrNanReal(row[1]))
+      snprintf(reason, 256, "line %" PetscInt_FMT " is no row of %" PetscInt_FMT " numbers", history->n_rows + 2,
+               history->n_columns);
+    else ++history->n_rows;
+  }
+  free(line);
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode ReadAll(FILE *in, History *history, char reason[256])
+{
+  char *line = NULL;
+  size_t size = 0;
+
+  PetscFunctionBeginUser;
+  if (getline(&line, &size, in) > 0 && !strncmp(line, "time [s],step", 13) && strchr(",\r\n", line[13])) {
+    line[strcspn(line, "\r\n")] = 0;
+    PetscCall(ReadHeader(line, history));
+    PetscCall(ReadRows(in, history, reason));
+  } else {
+    snprintf(reason, 256, "it does not start with the header 'time [s],step'");
   }
   free(line);
   PetscFunctionReturn(0);
@@ -79,28 +108,19 @@ static PetscErrorCode ReadRows(FILE *in, History *history)
 
 PetscErrorCode HistoryRead(const char *path, History *history, char reason[256])
 {
-  char *line = NULL;
-  size_t size = 0;
-
   PetscFunctionBeginUser;
   PetscCall(PetscMemzero(history, sizeof *history));
   reason[0] = 0;
-  FILE *in = fopen(path, "r");
+  FILE *in = file_open_read(path);
   if (!in) {
     snprintf(reason, 256, "%s", strerror(errno));
     PetscFunctionReturn(PETSC_ERR_FILE_OPEN);
   }
-  if (getline(&line, &size, in) > 0 && !strncmp(line, "time [s],step", 13)) {
-    line[strcspn(line, "\r\n")] = 0;
-    PetscCall(ReadHeader(line, history));
-    PetscCall(ReadRows(in, history));
-  } else {
-    snprintf(reason, 256, "it does not start with the header 'time [s],step'");
-  }
-  free(line);
+  PetscCall(ReadAll(in, history, reason));
   fclose(in);
-  if (reason[0]) PetscFunctionReturn(PETSC_ERR_FILE_OPEN);
-  PetscFunctionReturn(0);
+  if (!reason[0]) PetscFunctionReturn(0);
+  PetscCall(HistoryFree(history));
+  PetscFunctionReturn(PETSC_ERR_FILE_OPEN);
 }
 
 PetscErrorCode HistoryFree(History *history)

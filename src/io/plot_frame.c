@@ -4,6 +4,11 @@
 #include "io/plot_scene.h"
 #include "io/plot_spacing.h"
 
+static PetscBool has_place(const PetscReal *x)
+{
+  return fabs(x[0]) < 1e30 && fabs(x[1]) < 1e30 && fabs(x[2]) < 1e30 ? PETSC_TRUE : PETSC_FALSE;
+}
+
 /* Copy the points that have a place; a run that broke may hold others. */
 static void TakePoints(PlotScene *scene, PlotFrame *f, PetscInt n, const PetscReal *x, const PlotScalar *scalar,
                        PetscInt components, const PetscReal *data)
@@ -13,31 +18,33 @@ static void TakePoints(PlotScene *scene, PlotFrame *f, PetscInt n, const PetscRe
     if (scene->frames[k].n > 0) first = PETSC_FALSE;
   for (PetscInt i = 0; i < n; ++i) {
     const PetscReal *p = x + 3 * i;
-    if (!(fabs(p[0]) < 1e30 && fabs(p[1]) < 1e30 && fabs(p[2]) < 1e30)) continue;
+    if (!has_place(p)) continue;
     for (int d = 0; d < 3; ++d) {
       scene->box_min[d] = first ? p[d] : PetscMin(scene->box_min[d], p[d]);
       scene->box_max[d] = first ? p[d] : PetscMax(scene->box_max[d], p[d]);
     }
     first = PETSC_FALSE;
     memcpy(f->x + 3 * f->n, p, 3 * sizeof *p);
-    f->value[f->n++] = plot_scalar_value(scalar, components, data + i * components);
+    f->value[f->n++] = plot_scalar_value(scalar, components, data + (size_t)i * (size_t)components);
   }
 }
 
-PetscErrorCode PlotFrameRead(VtkFile *file, const VtkFieldInfo *field, const PlotScalar *scalar, PlotScene *scene)
+PetscErrorCode PlotFrameRead(VtkFile *file, const VtkFieldInfo *field, const PlotScalar *scalar, PlotScene *scene,
+                             char reason[256])
 {
   const PetscInt n = VtkReadPoints(file);
   PlotFrame *f = &scene->frames[scene->n_frames];
   PetscReal *x, *data;
 
   PetscFunctionBeginUser;
-  PetscCall(VtkReadCoordinates(file, &x));
-  PetscCall(VtkReadField(file, field->name, &data));
-  PetscCall(PetscMalloc3(3 * (size_t)n, &f->x, n, &f->value, n, &f->radius));
-  TakePoints(scene, f, n, x, scalar, field->components, data);
-  ++scene->n_frames;
+  if (VtkReadCoordinates(file, &x, reason)) PetscFunctionReturn(0);
+  if (VtkReadField(file, field, &data, reason) == 0) {
+    PetscCall(PetscMalloc3(3 * (size_t)n, &f->x, n, &f->value, n, &f->radius));
+    TakePoints(scene, f, n, x, scalar, field->components, data);
+    ++scene->n_frames;
+    PetscCall(PetscFree(data));
+  }
   PetscCall(PetscFree(x));
-  PetscCall(PetscFree(data));
   PetscFunctionReturn(0);
 }
 
@@ -85,33 +92,43 @@ static PetscInt CellLines(int vtk_type, const int **pairs)
   return vtk_type == 9 ? 4 : vtk_type == 5 ? 3 : 0;
 }
 
-PetscErrorCode PlotFrameGrid(VtkFile *file, PlotScene *scene, PlotFrame *f)
+/* Lines of cells in the plane, all whose ends have a place. */
+static PetscErrorCode TakeLines(const VtkCells *cells, const PetscReal *x, PlotFrame *f)
 {
-  const PetscInt n = VtkReadCells(file), points = VtkReadPoints(file);
-  PetscInt *start, *node;
-  PetscReal *x;
   const int *pairs;
-  int *type;
 
   PetscFunctionBeginUser;
-  PetscCall(VtkReadCoordinates(file, &x));
-  PetscCall(VtkReadTopology(file, &start, &node, &type));
-  for (PetscInt i = 0; i < points; ++i)
-    for (int d = 0; d < scene->dim; ++d) {
-      scene->box_min[d] = PetscMin(scene->box_min[d], x[3 * i + d]);
-      scene->box_max[d] = PetscMax(scene->box_max[d], x[3 * i + d]);
-    }
-  PetscCall(PetscMalloc1(scene->dim == 2 ? 16 * (size_t)n : 0, &f->edges));
-  for (PetscInt c = 0; c < n && scene->dim == 2; ++c)
-    for (PetscInt k = 0, lines = CellLines(type[c], &pairs); k < lines; ++k) {
-      const PetscReal *a = x + 3 * node[start[c] + pairs[2 * k]], *b = x + 3 * node[start[c] + pairs[2 * k + 1]];
-      PetscReal *edge = f->edges + 4 * f->n_edges++;
+  PetscCall(PetscMalloc1(16 * (size_t)cells->n, &f->edges));
+  for (PetscInt c = 0; c < cells->n; ++c)
+    for (PetscInt k = 0, lines = CellLines(cells->type[c], &pairs); k < lines; ++k) {
+      const PetscInt *node = cells->node + cells->start[c];
+      const PetscReal *a = x + 3 * node[pairs[2 * k]], *b = x + 3 * node[pairs[2 * k + 1]];
+      PetscReal *edge = f->edges + 4 * (size_t)f->n_edges;
+      if (!has_place(a) || !has_place(b)) continue;
       edge[0] = a[0], edge[1] = a[1], edge[2] = b[0], edge[3] = b[1];
+      ++f->n_edges;
     }
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode PlotFrameGrid(VtkFile *file, PlotScene *scene, PlotFrame *f, char reason[256])
+{
+  const PetscInt points = VtkReadPoints(file);
+  VtkCells cells;
+  PetscReal *x;
+
+  PetscFunctionBeginUser;
+  if (VtkReadCoordinates(file, &x, reason)) PetscFunctionReturn(0);
+  if (VtkReadTopology(file, &cells, reason) == 0) {
+    for (PetscInt i = 0; i < points; ++i)
+      for (int d = 0; d < scene->dim && has_place(x + 3 * i); ++d) {
+        scene->box_min[d] = PetscMin(scene->box_min[d], x[3 * i + d]);
+        scene->box_max[d] = PetscMax(scene->box_max[d], x[3 * i + d]);
+      }
+    if (scene->dim == 2) PetscCall(TakeLines(&cells, x, f));
+    PetscCall(VtkCellsFree(&cells));
+  }
   PetscCall(PetscFree(x));
-  PetscCall(PetscFree(start));
-  PetscCall(PetscFree(node));
-  PetscCall(PetscFree(type));
   PetscFunctionReturn(0);
 }
 

@@ -5,23 +5,36 @@
 #include "io/plot.h"
 #include "io/run_dir_files.h"
 
+static PetscReal at(const History *history, PetscInt row, PetscInt column)
+{
+  return history->values[(size_t)row * (size_t)history->n_columns + (size_t)column];
+}
+
+/* A measure that never had a value is no curve. */
+static PetscBool HasValues(const History *history, PetscInt column)
+{
+  for (PetscInt i = 0; i < history->n_rows; ++i)
+    if (!PetscIsInfOrNanReal(at(history, i, column))) return PETSC_TRUE;
+  return PETSC_FALSE;
+}
+
 /* One measure over time, in a unit that suits. */
 static PetscErrorCode DrawMeasure(const History *history, PetscInt column, const char *png, Diag *diag, PetscBool *done)
 {
-  const PetscInt n = history->n_rows, columns = history->n_columns;
+  const PetscInt n = history->n_rows;
   PetscReal *time, *value, largest = 0;
   char unit[64], label[256];
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc2(n, &time, n, &value));
   for (PetscInt i = 0; i < n; ++i) {
-    const PetscReal v = history->values[i * columns + column];
+    const PetscReal v = at(history, i, column);
     if (fabs(v) < 1e300) largest = PetscMax(largest, fabs(v));
   }
   const PetscReal factor = figure_unit(history->units[column], largest, unit);
   for (PetscInt i = 0; i < n; ++i) {
-    time[i] = history->values[i * columns];
-    value[i] = factor * history->values[i * columns + column];
+    time[i] = at(history, i, 0);
+    value[i] = factor * at(history, i, column);
   }
   snprintf(label, sizeof label, unit[0] ? "%.150s [%s]" : "%.150s%s", history->names[column], unit);
   const FigureSeries series = {.style = n > 40 ? FIGURE_LINE : FIGURE_LINE_MARKS, .n = n, .x = time, .y = value};
@@ -40,6 +53,10 @@ static PetscErrorCode DrawAll(const PlotOptions *options, const History *history
   PetscFunctionBeginUser;
   for (PetscInt column = 2; column < history->n_columns && done; ++column) {
     char name[192], png[FILE_PATH + 256];
+    if (!HasValues(history, column)) {
+      DiagWarning(diag, NULL, "the measure '%s' has no value in any row: it is not drawn", history->names[column]);
+      continue;
+    }
     snprintf(name, sizeof name, "history_%.150s.png", history->names[column]);
     plot_file_name(name);
     PetscCall(PetscSNPrintf(png, sizeof png, "%s/pictures/%s", options->run, name));

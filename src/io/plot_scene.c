@@ -33,7 +33,7 @@ static void Extent(const PlotScene *scene, PetscReal min[2], PetscReal max[2])
 /* Air around what is shown; in space more, for the ticks. */
 static void AddAir(const PlotScene *scene, PetscReal min[2], PetscReal max[2])
 {
-  const PetscReal longest = PetscMax(max[0] - min[0], max[1] - min[1]), size = longest > 0 ? longest : 1;
+  const PetscReal longest = PetscMax(max[0] - min[0], max[1] - min[1]), size = longest > 1e-200 ? longest : 1;
   const PetscReal share[2] = {scene->dim == 3 ? 0.13 : 0.04, scene->dim == 3 ? 0.11 : 0.04};
   for (int d = 0; d < 2; ++d) {
     const PetscReal air = PetscMax(share[d] * size, 0.5 * (0.02 * size - (max[d] - min[d])));

@@ -51,10 +51,11 @@ void plot_draw_box(FILE *out, const PlotScene *scene);
 PetscErrorCode PlotDraw(PlotScene *scene, int width, int height, const char *png, Diag *diag, PetscBool *done);
 
 /* plot_frame.c: read a state into the next frame of the scene, as it is in its file, with the field reduced to a number. Points without
- * a place are left out. */
-PetscErrorCode PlotFrameRead(VtkFile *file, const VtkFieldInfo *field, const PlotScalar *scalar, PlotScene *scene);
+ * a place are left out. A damaged file adds no frame; the reason tells. */
+PetscErrorCode PlotFrameRead(VtkFile *file, const VtkFieldInfo *field, const PlotScalar *scalar, PlotScene *scene,
+                             char reason[256]);
 /* When all are read: give each its size, see it from where the eye is, and draw the box around all. */
 PetscErrorCode PlotFramesShape(PlotScene *scene);
-/* Lines of a grid in the plane. */
-PetscErrorCode PlotFrameGrid(VtkFile *file, PlotScene *scene, PlotFrame *frame);
+/* Lines of a grid in the plane; none, with a reason, of a damaged file. */
+PetscErrorCode PlotFrameGrid(VtkFile *file, PlotScene *scene, PlotFrame *frame, char reason[256]);
 PetscErrorCode PlotFramesFree(PlotScene *scene);

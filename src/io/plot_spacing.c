@@ -31,9 +31,9 @@ static void ChooseSize(Boxes *boxes, PetscInt n, const PetscReal *x)
       max[d] = PetscMax(max[d], x[3 * i + d]);
     }
   for (PetscInt d = 0; d < boxes->dim; ++d) largest = PetscMax(largest, max[d] - boxes->min[d]);
-  if (!(largest > 0)) largest = 1;
-  for (PetscInt d = 0; d < boxes->dim; ++d) volume *= PetscMax(max[d] - boxes->min[d], largest / n);
-  boxes->size = PetscPowReal(2 * volume / n, 1.0 / boxes->dim);
+  if (!(largest > 1e-200)) largest = 1; /* all at one place, as far as numbers can tell */
+  for (PetscInt d = 0; d < boxes->dim; ++d) volume *= PetscMax((max[d] - boxes->min[d]) / largest, 1.0 / n);
+  boxes->size = largest * PetscPowReal(2 * volume / n, 1.0 / boxes->dim);
   boxes->n_boxes = 1;
   for (PetscInt d = 0; d < 3; ++d) {
     boxes->counts[d] = d < boxes->dim ? (PetscInt)((max[d] - boxes->min[d]) / boxes->size) + 1 : 1;

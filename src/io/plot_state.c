@@ -40,10 +40,14 @@ static VtkState Nearest(const VtkSeries *series, PetscReal time, Diag *diag)
 static PetscErrorCode FindStates(const PlotOptions *options, Diag *diag, PetscInt *n, VtkState *states)
 {
   VtkSeries series;
+  char reason[256];
 
   PetscFunctionBeginUser;
   *n = 0;
-  PetscCall(VtkSeriesRead(options->run, "points", &series));
+  if (VtkSeriesRead(options->run, "points", &series, reason)) {
+    DiagError(diag, NULL, "cannot read '%s/points.hdf.series': %s", options->run, reason);
+    PetscFunctionReturn(0);
+  }
   if (series.n == 0) DiagError(diag, NULL, "there is no state of a run in '%s' (no points.hdf.series)", options->run);
   else if (options->all_times && series.n > PLOT_MAX_STATES) {
     DiagError(diag, NULL, "the run has %d states, a picture holds %d at most", (int)series.n, PLOT_MAX_STATES);
@@ -125,21 +129,31 @@ static void ChooseColours(PlotScene *scene, const PlotOptions *options, const ch
   else snprintf(scene->label, sizeof scene->label, "%.60s", what);
 }
 
+static void CannotRead(Diag *diag, const char *path, const char *reason)
+{
+  DiagError(diag, NULL, "cannot read '%s': %s", path, reason);
+  DiagHint(diag, "--time chooses other states; the same run with --force writes all of them anew");
+}
+
 /* grid_000012.hdf beside points_000012.hdf; without one, the grid is left out with a word. */
 static PetscErrorCode AddGrid(PlotScene *scene, PlotFrame *frame, const char *run, const VtkState *state, Diag *diag)
 {
-  char path[FILE_PATH], reason[256];
+  char path[FILE_PATH + VTK_SERIES_NAME], name[VTK_SERIES_NAME + 8], reason[256];
   const char *number = strchr(state->file, '_');
   VtkFile *file;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscSNPrintf(path, sizeof path, "%s/grid%s", run, number ? number : ".hdf"));
-  if (VtkReadOpen(path, &file, reason)) {
-    DiagWarning(diag, NULL, "the grid is not drawn: '%s': %s", path, reason);
+  snprintf(name, sizeof name, "grid%s", number ? number : ".hdf");
+  if (!file_exists(run, name)) {
+    DiagWarning(diag, NULL, "the grid is not drawn: there is no '%s/%s'", run, name);
     PetscFunctionReturn(0);
   }
-  PetscCall(PlotFrameGrid(file, scene, frame));
-  PetscCall(VtkReadClose(&file));
+  PetscCall(PetscSNPrintf(path, sizeof path, "%s/%s", run, name));
+  if (VtkReadOpen(path, &file, reason) == 0) {
+    PetscCall(PlotFrameGrid(file, scene, frame, reason));
+    PetscCall(VtkReadClose(&file));
+  }
+  if (reason[0]) CannotRead(diag, path, reason);
   PetscFunctionReturn(0);
 }
 
@@ -171,15 +185,16 @@ static PetscErrorCode AddFrame(const PlotOptions *options, const VtkState *state
   PetscFunctionBeginUser;
   PetscCall(PetscSNPrintf(path, sizeof path, "%s/%s", options->run, state->file));
   if (VtkReadOpen(path, &file, reason)) {
-    DiagError(diag, NULL, "cannot read '%s': %s", path, reason);
+    CannotRead(diag, path, reason);
     PetscFunctionReturn(0);
   }
   PetscCall(FindField(file, options->field, diag, &field));
   if (field && plot_scalar_choose(field->name, field->components, options->component, diag, &subject->scalar)) {
     subject->field = *field;
     name_subject(subject);
-    PetscCall(PlotFrameRead(file, field, &subject->scalar, scene));
-    if (scene->frames[scene->n_frames - 1].n == 0)
+    PetscCall(PlotFrameRead(file, field, &subject->scalar, scene, reason));
+    if (reason[0]) CannotRead(diag, path, reason);
+    else if (scene->frames[scene->n_frames - 1].n == 0)
       DiagError(diag, NULL, "the state at %.9g s has no points", (double)state->time);
   }
   PetscCall(VtkReadClose(&file));

@@ -39,6 +39,18 @@ PetscBool file_exists(const char *folder, const char *name)
   return stat(path, &status) ? PETSC_FALSE : PETSC_TRUE;
 }
 
+FILE *file_open_read(const char *path)
+{
+  struct stat status;
+  FILE *in = NULL;
+  const int fd = open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK);
+  if (fd < 0) return NULL;
+  int error = fstat(fd, &status) ? errno : S_ISDIR(status.st_mode) ? EISDIR : S_ISREG(status.st_mode) ? 0 : ESPIPE;
+  if (!error && !(in = fdopen(fd, "r"))) error = errno;
+  if (error) close(fd), errno = error;
+  return in;
+}
+
 int file_write_at(int fd, const void *bytes, size_t n, off_t offset)
 {
   const char *next = bytes;

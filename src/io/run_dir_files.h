@@ -13,6 +13,8 @@
 int file_make_folders(const char *path);
 /* Is there such a file (or folder)? */
 PetscBool file_exists(const char *folder, const char *name);
+/* A plain file for reading; NULL, with errno, for all else: a pipe would be waited for. */
+FILE *file_open_read(const char *path);
 /* Write all n bytes at the offset. */
 int file_write_at(int fd, const void *bytes, size_t n, off_t offset);
 /* Flush fd to the disk and close it, also after an error. */

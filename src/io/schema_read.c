@@ -25,6 +25,7 @@ static const YamlNode *Given(const SchemaEntry *entry, const YamlNode *mapping)
 
 void SchemaHintWords(SchemaReader *r, const char *word, PetscInt n, const char *const *words)
 {
+  if (DiagFull(r->diag, DIAG_ERROR)) return; /* its error is not shown */
   const char *nearest = word ? DiagNearest(word, words) : NULL;
   char list[600] = "";
   if (nearest) {
@@ -185,22 +186,26 @@ static PetscErrorCode Grow(const SchemaEntry *entry, PetscInt n, void *target, P
   PetscFunctionReturn(0);
 }
 
-static void CheckNameTwice(SchemaReader *r, const YamlNode *list, PetscInt i)
+/* Entry i of a list may not have the name of one before it. */
+static PetscErrorCode CheckNameTwice(SchemaReader *r, const YamlNode *list, PetscInt i, Names *names)
 {
   const YamlNode *name = YamlFind(list->child[i], "name");
-  for (PetscInt k = 0; name && name->text && k < i; ++k) {
-    const YamlNode *other = YamlFind(list->child[k], "name");
-    char path[512];
-    if (!other || !other->text || strcmp(other->text, name->text)) continue;
-    SchemaError(r, name, "the name '%s' is taken by %s", name->text, YamlPath(list->child[k], path, sizeof(path)));
-    return;
-  }
+  char path[512];
+
+  PetscFunctionBeginUser;
+  if (!name || !name->text) PetscFunctionReturn(0);
+  const PetscInt first = names_find(names, name->text);
+  if (first < 0) PetscCall(NamesSet(names, name->text, i));
+  else
+    SchemaError(r, name, "the name '%s' is taken by %s", name->text, YamlPath(list->child[first], path, sizeof(path)));
+  PetscFunctionReturn(0);
 }
 
 static PetscErrorCode ReadList(SchemaReader *r, const SchemaEntry *entry, const YamlNode *node, void *target)
 {
   const SchemaTable *table = entry->table;
   PetscInt *count;
+  Names names = {0};
   char *item, path[512];
 
   PetscFunctionBeginUser;
@@ -214,12 +219,13 @@ static PetscErrorCode ReadList(SchemaReader *r, const SchemaEntry *entry, const 
   for (PetscInt i = 0; i < node->n; ++i, item += table->size) {
     *count += 1;
     if (entry->items_tagged) *(int *)(item + table->tag_offset) = entry->tag;
-    CheckNameTwice(r, node, i);
+    PetscCall(CheckNameTwice(r, node, i, &names));
     if (node->child[i]->kind == YAML_MAPPING) PetscCall(SchemaReadTable(r, table, node->child[i], item));
     else
       SchemaError(r, node->child[i], "%s must be a mapping {key: value, ...}",
                   YamlPath(node->child[i], path, sizeof(path)));
   }
+  PetscCall(NamesFree(&names));
   PetscFunctionReturn(0);
 }
 

@@ -19,8 +19,17 @@ PetscInt VtkReadCells(const VtkFile *file);
 PetscReal VtkReadTime(const VtkFile *file);
 PetscInt VtkReadFields(const VtkFile *file, const VtkFieldInfo **fields); /* of the points */
 
-/* To be freed with PetscFree. */
-PetscErrorCode VtkReadCoordinates(VtkFile *file, PetscReal **x);                /* points x 3 */
-PetscErrorCode VtkReadField(VtkFile *file, const char *name, PetscReal **data); /* points x components */
-/* Cells: start has VtkReadCells + 1 entries; node numbers are those of the joined points. */
-PetscErrorCode VtkReadTopology(VtkFile *file, PetscInt **start, PetscInt **node, int **vtk_type);
+/* These return PETSC_ERR_FILE_UNEXPECTED plainly, with a reason and nothing to free, if the file is damaged there. What they give is to be
+ * freed with PetscFree. */
+PetscErrorCode VtkReadCoordinates(VtkFile *file, PetscReal **x, char reason[256]); /* points x 3 */
+/* points x components of one of VtkReadFields */
+PetscErrorCode VtkReadField(VtkFile *file, const VtkFieldInfo *field, PetscReal **data, char reason[256]);
+
+/* Cells: node numbers are those of the joined points. */
+typedef struct {
+  PetscInt n, *start, *node; /* start: n + 1 entries */
+  int *type;                 /* VTK's numbers */
+} VtkCells;
+
+PetscErrorCode VtkReadTopology(VtkFile *file, VtkCells *cells, char reason[256]);
+PetscErrorCode VtkCellsFree(VtkCells *cells);

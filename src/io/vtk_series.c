@@ -7,7 +7,7 @@
 #include "io/run_dir_files.h"
 #include "io/vtk.h"
 
-/* `{"name": "points_000001.hdf", "time": 0.5},` */
+/* `{"name": "points_000001.hdf", "time": 0.5},`: a file beside the list, and a time. */
 static PetscBool ParseEntry(const char *line, char file[VTK_SERIES_NAME], PetscReal *time)
 {
   const char *name = strstr(line, "\"name\":"), *at = strstr(line, "\"time\":");
@@ -18,7 +18,7 @@ static PetscBool ParseEntry(const char *line, char file[VTK_SERIES_NAME], PetscR
   memcpy(file, name + 1, n);
   file[n] = 0;
   *time = (PetscReal)strtod(at + 7, &end);
-  return end == at + 7 ? PETSC_FALSE : PETSC_TRUE;
+  return end == at + 7 || PetscIsInfOrNanReal(*time) || strchr(file, '/') ? PETSC_FALSE : PETSC_TRUE;
 }
 
 static void WriteEntry(FILE *out, PetscBool first, const char *file, PetscReal time)
@@ -51,7 +51,7 @@ static int RewriteFile(const char *path, const char *file, PetscReal time, Petsc
 {
   char unfinished[FILE_PATH];
   snprintf(unfinished, sizeof unfinished, "%s" FILE_UNFINISHED, path);
-  FILE *old = fopen(path, "r");
+  FILE *old = file_open_read(path);
   if (!old && (errno != ENOENT || !file)) return errno != ENOENT ? errno : least ? ENODATA : 0;
   FILE *out = fopen(unfinished, "w");
   int error = out ? 0 : errno;
@@ -113,22 +113,44 @@ static PetscErrorCode AddState(VtkSeries *series, PetscInt *capacity, const char
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode VtkSeriesRead(const char *folder, const char *name, VtkSeries *series)
+static PetscBool IsEntry(const char *line)
 {
-  char path[PETSC_MAX_PATH_LEN], line[1024], file[VTK_SERIES_NAME];
+  const char *start = line + strspn(line, " \t");
+  return *start == '{' && start[1] && start[1] != '\n' && start[1] != '\r' ? PETSC_TRUE : PETSC_FALSE;
+}
+
+static PetscErrorCode ReadEntries(FILE *in, VtkSeries *series, char reason[256])
+{
+  char line[1024], file[VTK_SERIES_NAME];
   PetscInt capacity = 0;
   PetscReal time;
 
   PetscFunctionBeginUser;
-  series->n = 0;
-  series->states = NULL;
-  PetscCall(PetscSNPrintf(path, sizeof path, "%s/%s.hdf.series", folder, name));
-  FILE *in = fopen(path, "r");
-  if (!in) PetscFunctionReturn(0);
-  while (fgets(line, sizeof line, in))
+  for (long number = 1; fgets(line, sizeof line, in) && !reason[0]; ++number) {
+    if (!IsEntry(line)) continue;
     if (ParseEntry(line, file, &time)) PetscCall(AddState(series, &capacity, file, time));
-  fclose(in);
+    else snprintf(reason, 256, "line %ld names no file and its time", number);
+  }
   PetscFunctionReturn(0);
+}
+
+PetscErrorCode VtkSeriesRead(const char *folder, const char *name, VtkSeries *series, char reason[256])
+{
+  char path[PETSC_MAX_PATH_LEN];
+
+  PetscFunctionBeginUser;
+  *series = (VtkSeries){0};
+  reason[0] = 0;
+  PetscCall(PetscSNPrintf(path, sizeof path, "%s/%s.hdf.series", folder, name));
+  FILE *in = file_open_read(path);
+  if (!in && errno == ENOENT) PetscFunctionReturn(0);
+  if (in) {
+    PetscCall(ReadEntries(in, series, reason));
+    fclose(in);
+  } else snprintf(reason, 256, "%s", strerror(errno));
+  if (!reason[0]) PetscFunctionReturn(0);
+  PetscCall(VtkSeriesFree(series));
+  PetscFunctionReturn(PETSC_ERR_FILE_UNEXPECTED);
 }
 
 PetscErrorCode VtkSeriesFree(VtkSeries *series)

@@ -19,9 +19,36 @@ PetscErrorCode YamlNodeDestroy(YamlNode **node)
   if (!*node) PetscFunctionReturn(0);
   for (PetscInt i = 0; i < (*node)->n; ++i) PetscCall(YamlNodeDestroy(&(*node)->child[i]));
   PetscCall(PetscFree((*node)->child));
+  if ((*node)->keys) PetscCall(NamesFree((*node)->keys));
+  PetscCall(PetscFree((*node)->keys));
   PetscCall(PetscFree((*node)->text));
   PetscCall(PetscFree((*node)->key));
   PetscCall(PetscFree(*node));
+  PetscFunctionReturn(0);
+}
+
+/* The first of a name counts. */
+static PetscErrorCode Remember(YamlNode *mapping, PetscInt i)
+{
+  const char *key = mapping->child[i]->key;
+
+  PetscFunctionBeginUser;
+  if (key && names_find(mapping->keys, key) < 0) PetscCall(NamesSet(mapping->keys, key, i));
+  PetscFunctionReturn(0);
+}
+
+/* Few keys are found as fast without. */
+#define MANY_KEYS 32
+
+static PetscErrorCode IndexLast(YamlNode *mapping)
+{
+  PetscFunctionBeginUser;
+  if (mapping->kind != YAML_MAPPING || mapping->n < MANY_KEYS) PetscFunctionReturn(0);
+  if (mapping->keys) PetscCall(Remember(mapping, mapping->n - 1));
+  else {
+    PetscCall(PetscNew(&mapping->keys));
+    for (PetscInt i = 0; i < mapping->n; ++i) PetscCall(Remember(mapping, i));
+  }
   PetscFunctionReturn(0);
 }
 
@@ -35,6 +62,7 @@ PetscErrorCode YamlNodeAppend(YamlNode *parent, YamlNode *child)
   child->parent = parent;
   child->index = parent->n;
   parent->child[parent->n++] = child;
+  PetscCall(IndexLast(parent));
   PetscFunctionReturn(0);
 }
 
@@ -67,6 +95,10 @@ PetscErrorCode YamlDestroy(YamlDocument **document)
 YamlNode *YamlFind(const YamlNode *mapping, const char *key)
 {
   if (!mapping || mapping->kind != YAML_MAPPING) return NULL;
+  if (mapping->keys) {
+    const PetscInt i = names_find(mapping->keys, key);
+    return i < 0 ? NULL : mapping->child[i];
+  }
   for (PetscInt i = 0; i < mapping->n; ++i)
     if (!strcmp(mapping->child[i]->key, key)) return mapping->child[i];
   return NULL;
@@ -133,6 +165,10 @@ void YamlError(const YamlDocument *document, Diag *diag, const YamlNode *node, P
   char *line = NULL, *message = NULL;
   DiagPlace place;
   va_list arguments;
+  if (DiagFull(diag, DIAG_ERROR)) {
+    DiagAt(diag, DIAG_ERROR, &(DiagPlace){0}, "one more");
+    return;
+  }
   va_start(arguments, format);
   if (vasprintf(&message, format, arguments) < 0) message = NULL;
   va_end(arguments);

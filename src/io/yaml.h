@@ -2,10 +2,12 @@
  * the rest is ours, so that --set can change the tree and every message finds its place. */
 #pragma once
 #include "base/diag.h"
+#include "base/names.h"
 
 #define YAML_MAX_DEPTH 64
 #define YAML_MAX_NODES 1000000 /* aliases of aliases may not blow a small file up */
 #define YAML_MAX_BYTES (256 << 20)
+#define YAML_MAX_COPIED (16 << 20) /* bytes of text in all that aliases stand for */
 
 typedef enum { YAML_SCALAR, YAML_SEQUENCE, YAML_MAPPING } YamlKind;
 
@@ -19,6 +21,7 @@ typedef struct YamlNode {
   PetscInt argument; /* 1 + index of the --set that brought it, 0: from the file */
   PetscInt n, capacity;
   struct YamlNode **child;
+  Names *keys; /* of a mapping with many: which child has which; else NULL */
   struct YamlNode *parent;
   PetscInt index; /* among its parent's children */
 } YamlNode;
@@ -29,8 +32,9 @@ typedef struct {
   PetscInt n_arguments;
   char **arguments; /* copies of the --set arguments */
   PetscInt n_nodes;
-  YamlNode *root; /* NULL after a syntax error */
-  char *resolved; /* the line that the last resolved place shows (malloc) */
+  PetscInt64 n_copied; /* bytes of text that aliases have copied */
+  YamlNode *root;      /* NULL after a syntax error */
+  char *resolved;      /* the line that the last resolved place shows (malloc) */
 } YamlDocument;
 
 /* Parse a text; mistakes go to diag. `text` is copied. */

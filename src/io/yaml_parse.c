@@ -16,11 +16,12 @@ typedef struct {
   YamlNode *pending_key; /* a key that waits for its value: text and place */
   int depth, documents;
   PetscBool failed; /* stop: the tree cannot be trusted */
-  PetscInt n_anchors;
+  PetscInt n_anchors, max_anchors;
   struct Anchor {
     char *name;
     YamlNode *node;
   } * anchors;
+  Names anchor_names; /* the newest of a name counts */
 } Builder;
 
 static void Complain(Builder *b, int line, int column, int width, const char *message)
@@ -83,9 +84,14 @@ static PetscErrorCode RememberAnchor(Builder *b, struct fy_token *anchor, YamlNo
 {
   PetscFunctionBeginUser;
   if (!anchor) PetscFunctionReturn(0);
-  PetscCall(PetscRealloc((size_t)(b->n_anchors + 1) * sizeof(*b->anchors), &b->anchors));
-  PetscCall(CopyText(anchor, &b->anchors[b->n_anchors].name));
-  b->anchors[b->n_anchors++].node = node;
+  if (b->n_anchors == b->max_anchors) {
+    b->max_anchors = 2 * b->max_anchors + 8;
+    PetscCall(PetscRealloc((size_t)b->max_anchors * sizeof(*b->anchors), &b->anchors));
+  }
+  struct Anchor *a = &b->anchors[b->n_anchors];
+  PetscCall(CopyText(anchor, &a->name));
+  a->node = node;
+  PetscCall(NamesSet(&b->anchor_names, a->name, b->n_anchors++));
   PetscFunctionReturn(0);
 }
 
@@ -203,7 +209,8 @@ static PetscErrorCode CopyTree(Builder *b, const YamlNode *source, int depth, Ya
   (*copy)->key_width = source->key_width;
   (*copy)->argument = source->argument;
   if (source->text) PetscCall(PetscStrallocpy(source->text, &(*copy)->text));
-  if (b->document->n_nodes > YAML_MAX_NODES || depth > YAML_MAX_DEPTH) {
+  b->document->n_copied += (source->text ? strlen(source->text) : 0) + (source->key ? strlen(source->key) : 0);
+  if (b->document->n_nodes > YAML_MAX_NODES || b->document->n_copied > YAML_MAX_COPIED || depth > YAML_MAX_DEPTH) {
     if (!b->failed) Fail(b, source, "aliases of aliases make the file too large");
     PetscFunctionReturn(0);
   }
@@ -231,8 +238,8 @@ static PetscErrorCode TakeAlias(Builder *b, struct fy_token *token)
   PetscFunctionBeginUser;
   Mark(token, &place);
   PetscCall(CopyText(token, &name));
-  for (PetscInt i = b->n_anchors; i-- > 0 && !source;)
-    if (!strcmp(b->anchors[i].name, name)) source = b->anchors[i].node;
+  const PetscInt found = names_find(&b->anchor_names, name);
+  if (found >= 0) source = b->anchors[found].node;
   PetscCall(PetscFree(name));
   if (WantsKey(b)) Fail(b, &place, "a key must be a single word, not an alias");
   else if (!source) Fail(b, &place, "there is no anchor (&name) of this name before it");
@@ -392,6 +399,7 @@ PetscErrorCode YamlParseInto(YamlDocument *document, const char *text, size_t si
   PetscCall(CheckEmpty(&b));
   for (PetscInt i = 0; i < b.n_anchors; ++i) PetscCall(PetscFree(b.anchors[i].name));
   PetscCall(PetscFree(b.anchors));
+  PetscCall(NamesFree(&b.anchor_names));
   PetscCall(YamlNodeDestroy(&b.pending_key));
   if (b.failed) PetscCall(YamlNodeDestroy(&b.root));
   if (fragment) *fragment = b.root;

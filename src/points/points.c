@@ -84,9 +84,12 @@ PetscErrorCode PointsReserve(Points *points, PetscInt capacity)
 
 PetscErrorCode PointsReserveMore(Points *points, PetscInt n)
 {
-  const PetscInt needed = points->n + n, grown = points->capacity + points->capacity / 2;
+  const PetscInt64 needed = (PetscInt64)points->n + n, grown = points->capacity + points->capacity / 2;
   PetscFunctionBeginUser;
-  if (needed > points->capacity) PetscCall(PointsReserve(points, PetscMax(needed, PetscMax(grown, 16))));
+  PetscCheck(needed <= PETSC_MAX_INT, PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE,
+             "%lld points on one rank cannot be numbered: use more ranks", (long long)needed);
+  if (needed > points->capacity)
+    PetscCall(PointsReserve(points, (PetscInt)PetscMin(PetscMax(needed, PetscMax(grown, 16)), PETSC_MAX_INT)));
   PetscFunctionReturn(0);
 }
 

@@ -49,7 +49,7 @@ PetscErrorCode PointsSort(Points *points);
 
 static inline PetscReal *point_real(const Points *points, PointReal field, PetscInt p)
 {
-  return points->real[field] + p * points->components[field];
+  return points->real[field] + (size_t)p * (size_t)points->components[field];
 }
 
 /* F of point p as a full 3 x 3. */

@@ -1,4 +1,5 @@
 /* Points as a table, and back on any number of ranks: every field of points/fields.h, the cell by its number in the whole grid. */
+#include "base/count.h"
 #include "grid/cloud.h"
 #include "grid/directory.h"
 #include "points/fields.h"
@@ -78,7 +79,7 @@ static PetscErrorCode TakeRows(Points *points, const Table *table, PetscInt n_ce
   for (int f = 0; f < POINT_N_REAL; ++f) {
     const PetscInt width = points->components[f];
     const PetscReal *data = width ? TableData(table, reals[f].name, COLUMN_REAL, width, reason) : NULL;
-    if (data && n) PetscCall(PetscArraycpy(points->real[f], data, n * width));
+    if (data && n) PetscCall(PetscArraycpy(points->real[f], data, count_numbers(n, width)));
   }
   points->n = n;
   PetscFunctionReturn(0);

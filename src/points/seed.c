@@ -191,7 +191,7 @@ static PetscErrorCode SeedCells(const Seeding *s, Points *points, const PointSee
   PetscCheck(seed->n_state <= points->components[POINT_STATE], PETSC_COMM_SELF, PETSC_ERR_ARG_SIZ,
              "a law stores %" PetscInt_FMT " numbers, the points have room for %" PetscInt_FMT, seed->n_state,
              points->components[POINT_STATE]);
-  PetscCall(PointsReserve(points, points->n + s->n_cells * s->n_rule));
+  PetscCall(PointsReserveMore(points, s->n_cells * s->n_rule));
   for (PetscInt k = 0; k < s->n_cells; ++k) {
     const PetscReal share = seed_cell_volume(s, s->cells[k]) / (PetscReal)s->n_rule;
     grid_cell_x(s->source, s->cells[k], x);
@@ -234,6 +234,11 @@ static PetscErrorCode SeedSource(Seeding *s, Points *points, PetscInt *taken, co
   PetscCall(ChooseCells(s, &found));
   if (!found) PetscFunctionReturn(0);
   PetscCall(SeedCheckVolume(s));
+  PetscCall(SeedCheckRoom(s, points, &found));
+  if (!found) {
+    PetscCall(PetscFree(s->cells));
+    PetscFunctionReturn(0);
+  }
   if (s->source == s->grid) PetscCall(SeedClaimCells(s, taken));
   PetscCall(SeedCells(s, points, per_material + s->material));
   PetscCall(AdvanceIds(s, next));

@@ -2,6 +2,7 @@
  * overlaps no other. */
 #include "points/fields.h"
 #include "points/seed.h"
+#include "base/count.h"
 
 /* "[0, 1] x [-inf, 2] m" */
 static void print_bounds(PetscInt dim, const PetscReal *min, const PetscReal *max, size_t size, char *text)
@@ -136,6 +137,31 @@ static void tell_hourglass(const Seeding *s)
               cells[type].name, s->body->name);
   DiagHint(s->diag, "use %d points, or %ss", type == CELL_HEXAHEDRON ? 8 : 4,
            cells[type == CELL_HEXAHEDRON ? CELL_TETRAHEDRON : CELL_TRIANGLE].name);
+}
+
+/* Numbers that one point has in its widest array: a field, or its shape functions' gradients. */
+static PetscInt widest(const Grid *grid, const Points *points)
+{
+  PetscInt most = grid->nodes_per_cell * grid->dim;
+  for (int f = 0; f < POINT_N_REAL; ++f) most = PetscMax(most, points->components[f]);
+  return most;
+}
+
+PetscErrorCode SeedCheckRoom(const Seeding *s, const Points *points, PetscBool *fits)
+{
+  const PetscInt most = count_most(widest(s->grid, points));
+  PetscInt64 wanted;
+  char path[128];
+  PetscFunctionBeginUser;
+  (void)count_fits(points->n, s->n_cells, s->n_rule, most, &wanted);
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &wanted, 1, MPIU_INT64, MPI_MAX, s->grid->comm));
+  *fits = wanted <= most ? PETSC_TRUE : PETSC_FALSE;
+  if (*fits || !seed_tells(s->grid)) PetscFunctionReturn(0);
+  seed_path(s->b, "points_per_cell", sizeof path, path);
+  DiagError(s->diag, path, "with body '%s' a rank would have %lld points; it can number %d", s->body->name,
+            (long long)wanted, (int)most);
+  DiagHint(s->diag, "use more ranks (mpiexec -n ...), larger cells, or fewer points in each");
+  PetscFunctionReturn(0);
 }
 
 PetscErrorCode SeedCheckVolume(const Seeding *s)

@@ -1,4 +1,5 @@
 /* Support of points that each have a cloud of nodes. */
+#include "base/count.h"
 #include "base/tensor.h"
 #include "points/support.h"
 
@@ -88,11 +89,13 @@ static PetscErrorCode Grow(Support *s, PetscInt nodes, PetscInt dim)
   PetscFunctionBeginUser;
   if (nodes + CLOUD_MAX_NODES <= s->capacity_nodes && nodes + CLOUD_MAX_NODES <= s->capacity_values)
     PetscFunctionReturn(0);
-  const PetscInt capacity = nodes + nodes / 2 + 16 * CLOUD_MAX_NODES;
+  PetscCheck(nodes <= count_most(3) - 16 * CLOUD_MAX_NODES, PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE,
+             "%" PetscInt_FMT " nodes in the clouds of one rank are too many: use more ranks", nodes);
+  const PetscInt capacity = PetscMin(nodes + nodes / 2 + 16 * CLOUD_MAX_NODES, count_most(3));
   PetscCall(PetscRealloc((size_t)capacity * sizeof *s->node, &s->node));
   PetscCall(PetscMalloc2(capacity, &N, (size_t)capacity * (size_t)dim, &dN));
   PetscCall(PetscArraycpy(N, s->N, nodes));
-  PetscCall(PetscArraycpy(dN, s->dN, nodes * dim));
+  PetscCall(PetscArraycpy(dN, s->dN, count_numbers(nodes, dim)));
   PetscCall(PetscFree2(s->N, s->dN));
   s->N = N;
   s->dN = dN;
@@ -117,7 +120,7 @@ static PetscErrorCode Fill(Support *s, PetscInt n, const PetscReal *x, const Poi
     s->point_start[p] = p;
     s->node_start[p] = s->value_start[p] = entries;
     if (points) point_F(points, p, F);
-    entries += cloud_at(nodes, rule, x + p * dim, points ? F : NULL, s->node + entries, s->N + entries,
+    entries += cloud_at(nodes, rule, x + (size_t)p * (size_t)dim, points ? F : NULL, s->node + entries, s->N + entries,
                         s->dN + entries * dim, tally);
   }
   s->point_start[n] = n;

@@ -92,7 +92,7 @@ static PetscErrorCode IsComplete(const Run *r, PetscBool *complete)
   PetscFunctionBeginUser;
   PetscCallMPI(MPI_Comm_rank(r->comm, &rank));
   snprintf(path, sizeof path, "%s/timings.txt", RunDirPath(r->dir));
-  FILE *in = rank ? NULL : fopen(path, "r");
+  FILE *in = rank ? NULL : file_open_read(path);
   while (in && fgets(line, sizeof line, in))
     if (!strcmp(line, "outcome = done\n")) found = 1;
   if (in) fclose(in);

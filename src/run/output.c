@@ -1,5 +1,6 @@
 #include "run/output.h"
 #include <unistd.h>
+#include "base/count.h"
 #include "case/fields.h"
 #include "grid/cloud.h"
 #include "io/vtk.h"
@@ -17,8 +18,8 @@ PetscErrorCode OutputCreate(const Model *m, const char *folder, Output **output)
   PetscFunctionBeginUser;
   PetscCall(PetscNew(output));
   (*output)->folder = folder;
-  PetscCall(PetscMalloc1(m->grid->n_nodes * m->dim, &(*output)->x0));
-  PetscCall(PetscArraycpy((*output)->x0, m->grid->x, m->grid->n_nodes * m->dim));
+  PetscCall(PetscMalloc1(count_numbers(m->grid->n_nodes, m->dim), &(*output)->x0));
+  PetscCall(PetscArraycpy((*output)->x0, m->grid->x, count_numbers(m->grid->n_nodes, m->dim)));
   PetscFunctionReturn(0);
 }
 
@@ -34,8 +35,8 @@ PetscErrorCode OutputDestroy(Output **output)
 /* Copy n x dim into n x 3. */
 static void widen(PetscInt n, PetscInt dim, const PetscReal *from, PetscReal *to)
 {
-  for (PetscInt i = 0; i < n; ++i)
-    for (PetscInt d = 0; d < 3; ++d) to[3 * i + d] = d < dim ? from[i * dim + d] : 0;
+  for (PetscInt i = 0; i < n; ++i, from += dim, to += 3)
+    for (PetscInt d = 0; d < 3; ++d) to[d] = d < dim ? from[d] : 0;
 }
 
 static PetscReal mises(const PetscReal s[6])
@@ -92,7 +93,7 @@ PetscErrorCode OutputPointField(const Model *m, const OutputField *field, PetscR
   else if (!strcmp(field->name, "velocity")) widen(n, m->dim, m->points->real[POINT_V], data);
   else if (!strcmp(field->name, "acceleration")) widen(n, m->dim, m->points->real[POINT_A], data);
   else
-    for (PetscInt p = 0; p < n; ++p) PetscCall(PointValue(m, p, field->name, data + p * k));
+    for (PetscInt p = 0; p < n; ++p) PetscCall(PointValue(m, p, field->name, data + count_numbers(p, k)));
   PetscFunctionReturn(0);
 }
 
@@ -128,11 +129,11 @@ static PetscErrorCode WritePoints(Output *o, Model *m, PetscBool *ok, char reaso
   PetscInt n = 0;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(3 * m->points->n, &x));
+  PetscCall(PetscMalloc1(count_numbers(m->points->n, 3), &x));
   widen(m->points->n, m->dim, m->points->real[POINT_X], x);
   for (const OutputField *f = output_fields; f->name && n < MAX_FIELDS; ++f) {
     if (!f->points || !strcmp(f->name, "id") || !is_asked(m->c, f->name)) continue;
-    PetscCall(PetscMalloc1(m->points->n * f->components, &data[n]));
+    PetscCall(PetscMalloc1(count_numbers(m->points->n, f->components), &data[n]));
     PetscCall(OutputPointField(m, f, data[n]));
     fields[n] = (VtkField){.name = f->name, .unit = f->unit, .components = f->components, .data = data[n]};
     ++n;
@@ -181,14 +182,14 @@ static PetscErrorCode GridField(const Output *o, const Model *m, const OutputFie
   PetscReal *u;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscCalloc1(n * field->components, data));
+  PetscCall(PetscCalloc1(count_numbers(n, field->components), data));
   if (!strcmp(field->name, "velocity")) widen(n, m->dim, m->stage->v, *data);
   else if (!strcmp(field->name, "acceleration")) widen(n, m->dim, m->stage->a, *data);
   else if (!strcmp(field->name, "mass")) PetscCall(PetscArraycpy(*data, m->stage->mass, n));
   else if (!strcmp(field->name, "pressure"))
     for (PetscInt i = 0; i < n; ++i) (*data)[i] = -m->stage->pressure[i];
   else {
-    PetscCall(PetscMalloc1(n * m->dim, &u));
+    PetscCall(PetscMalloc1(count_numbers(n, m->dim), &u));
     PetscCall(NodalDisplacement(o, m, u));
     widen(n, m->dim, u, *data);
     PetscCall(PetscFree(u));
@@ -204,10 +205,11 @@ static PetscErrorCode WriteCloud(const Grid *grid, VtkData *vtk, PetscInt n, Vtk
   PetscFunctionBeginUser;
   for (PetscInt i = 0; i < grid->n_owned; ++i) {
     if (cloud_is_twin(grid, i)) continue;
-    PetscCall(PetscArraymove((PetscReal *)vtk->x + 3 * kept, vtk->x + 3 * i, 3));
+    PetscCall(PetscArraymove((PetscReal *)vtk->x + count_numbers(kept, 3), vtk->x + count_numbers(i, 3), 3));
     for (PetscInt f = 0; f < n; ++f) {
       const PetscInt k = fields[f].components;
-      PetscCall(PetscArraymove((PetscReal *)fields[f].data + k * kept, fields[f].data + k * i, k));
+      PetscCall(
+        PetscArraymove((PetscReal *)fields[f].data + count_numbers(kept, k), fields[f].data + count_numbers(i, k), k));
     }
     ++kept;
   }
@@ -226,7 +228,7 @@ static PetscErrorCode WriteGrid(Output *o, Model *m, PetscBool *ok, char reason[
   PetscInt n = 0;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(3 * grid->n_nodes, &x));
+  PetscCall(PetscMalloc1(count_numbers(grid->n_nodes, 3), &x));
   widen(grid->n_nodes, m->dim, grid->x, x);
   for (const OutputField *f = output_fields; f->name && n < MAX_FIELDS; ++f) {
     if (!f->grid || !is_asked(m->c, f->name)) continue;

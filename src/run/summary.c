@@ -1,4 +1,5 @@
 #include "run/summary.h"
+#include "io/run_dir_files.h"
 #include <stdlib.h>
 #include "talus_version.h"
 
@@ -120,7 +121,7 @@ void summary_read(const char *folder, RunSummary *summary)
   char *end;
   PetscSNPrintf(path, sizeof path, "%s/timings.txt", folder);
   *summary = (RunSummary){0};
-  FILE *in = fopen(path, "r");
+  FILE *in = file_open_read(path);
   while (in && fgets(line, sizeof line, in)) {
     const char *equals = strstr(line, " = ");
     const double value = equals ? strtod(equals + 3, &end) : 0;

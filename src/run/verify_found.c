@@ -5,6 +5,7 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include "io/run_dir_files.h"
 #include "io/case_file.h"
 #include "io/history.h"
 #include "run/summary.h"
@@ -75,7 +76,7 @@ static void read_word(const char *folder, const char *name, const char *key, cha
   const size_t n = strlen(key);
   word[0] = '\0';
   PetscSNPrintf(path, sizeof path, "%s/%s", folder, name);
-  FILE *in = fopen(path, "r");
+  FILE *in = file_open_read(path);
   while (in && !word[0] && fgets(line, sizeof line, in)) {
     if (strncmp(line, key, n) || strncmp(line + n, " = ", 3)) continue;
     line[strcspn(line, "\n")] = '\0';

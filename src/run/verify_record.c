@@ -14,7 +14,7 @@ void verify_record_file(const char *folder, char file[PETSC_MAX_PATH_LEN])
 /* A whole file as text (free), NULL with errno if it cannot be read. */
 static char *read_text(const char *file)
 {
-  FILE *in = fopen(file, "r");
+  FILE *in = file_open_read(file);
   char *text = NULL;
   size_t size = 0;
   if (!in) return NULL;

@@ -108,6 +108,64 @@ static void SortedByLine(void **state)
   assert_int_equal(DiagDestroy(&diag), 0);
 }
 
+/* A thousand mistakes are counted; the first of them are shown, and no warning takes an error's place. */
+static void ManyAreCounted(void **state)
+{
+  Diag *diag;
+  int lines = 0;
+  (void)state;
+  assert_int_equal(DiagCreate(&diag), 0);
+  for (int i = 0; i < 1000; ++i) DiagWarning(diag, NULL, "warning %d", i);
+  assert_true(DiagFull(diag, DIAG_WARNING));
+  assert_false(DiagFull(diag, DIAG_ERROR));
+  for (int i = 0; i < 1000; ++i) DiagError(diag, NULL, "error %d", i);
+  DiagHint(diag, "of none that is shown");
+  assert_int_equal(DiagErrors(diag), 1000);
+  assert_int_equal(DiagWarnings(diag), 1000);
+  char *text = Flush(diag);
+  for (const char *c = text; *c; ++c) lines += *c == '\n';
+  assert_int_equal(lines, rank == 0 ? 2 * DIAG_MOST + 2 : 0);
+  if (rank == 0) assert_non_null(strstr(text, "error: error 49\nand 950 more warnings\nand 950 more errors\n"));
+  assert_null(strstr(text, "hint"));
+  free(text);
+  assert_int_equal(DiagErrors(diag), 0);
+  DiagError(diag, NULL, "afterwards");
+  Expect(diag, "error: afterwards\n");
+  assert_int_equal(DiagDestroy(&diag), 0);
+}
+
+/* As many on every rank: rank 0 tells its own and counts all. */
+static void ManyTravel(void **state)
+{
+  PetscInt errors;
+  Diag *diag;
+  (void)state;
+  assert_int_equal(DiagCreate(&diag), 0);
+  for (int i = 0; i < 100; ++i) DiagError(diag, NULL, "error %d", i);
+  assert_int_equal(DiagReduce(PETSC_COMM_WORLD, diag, &errors), 0);
+  assert_true(errors >= 100);
+  char *text = Flush(diag);
+  if (rank == 0) assert_non_null(strstr(text, "more errors\n"));
+  free(text);
+  assert_int_equal(DiagDestroy(&diag), 0);
+}
+
+static void LongMessageIsCut(void **state)
+{
+  char huge[5000];
+  Diag *diag;
+  (void)state;
+  memset(huge, 'k', sizeof huge - 1);
+  huge[sizeof huge - 1] = '\0';
+  assert_int_equal(DiagCreate(&diag), 0);
+  DiagError(diag, NULL, "key '%s' is not known", huge);
+  char *text = Flush(diag);
+  assert_true(strlen(text) < 2100);
+  if (rank == 0) assert_non_null(strstr(text, "kkk...\n"));
+  free(text);
+  assert_int_equal(DiagDestroy(&diag), 0);
+}
+
 static void Nearest(void **state)
 {
   const char *const words[] = {"young", "poisson", "points_per_cell", "keep-on-boundary", NULL};
@@ -152,9 +210,10 @@ static void Reduce(void **state)
 
 int main(int argc, char **argv)
 {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(Layout),        cmocka_unit_test(OddCharacters),
-                                     cmocka_unit_test(LongLineIsCut), cmocka_unit_test(SortedByLine),
-                                     cmocka_unit_test(Nearest),       cmocka_unit_test(Reduce)};
+  const struct CMUnitTest tests[] = {
+    cmocka_unit_test(Layout),         cmocka_unit_test(OddCharacters), cmocka_unit_test(LongLineIsCut),
+    cmocka_unit_test(ManyAreCounted), cmocka_unit_test(ManyTravel),    cmocka_unit_test(LongMessageIsCut),
+    cmocka_unit_test(SortedByLine),   cmocka_unit_test(Nearest),       cmocka_unit_test(Reduce)};
   if (PetscInitialize(&argc, &argv, NULL, NULL)) return 1;
   MPI_Comm_rank(PETSC_COMM_WORLD, &rank);
   MPI_Comm_size(PETSC_COMM_WORLD, &ranks);

@@ -328,6 +328,58 @@ static void Bomb(void **state)
   free(said);
 }
 
+/* A megabyte of text, a thousand times. */
+static void TextBomb(void **state)
+{
+  const size_t size = 1000000;
+  char *text = malloc(size + 20000), *end = text, *said;
+  (void)state;
+  end += sprintf(end, "a: &a \"");
+  memset(end, 'y', size);
+  end += size;
+  end += sprintf(end, "\"\nb: [*a");
+  for (int i = 0; i < 1000; ++i) end += sprintf(end, ", *a");
+  sprintf(end, "]\n");
+  assert_null(read_text(text, &said));
+  assert_non_null(strstr(said, "aliases of aliases make the file too large"));
+  free(said);
+  free(text);
+}
+
+/* As many as a slip of a program makes: each took the time of all before it (49 s), and a line of print. */
+static void ManyUnknownKeys(void **state)
+{
+  enum { MANY = 50000 };
+  char *text = malloc(MANY * 16 + sizeof PLAIN), *end = text + sprintf(text, PLAIN), *said;
+  (void)state;
+  for (int i = 0; i < MANY; ++i) end += sprintf(end, "key%d: 1\n", i);
+  assert_null(read_text(text, &said));
+  assert_int_equal(Count(said, ": error: "), DIAG_MOST);
+  assert_non_null(strstr(said, "F:9:1: error: key 'key0' of the file is not known\n"));
+  assert_non_null(strstr(said, "and 49950 more errors\n"));
+  assert_true(strlen(said) < 20000);
+  free(said);
+  free(text);
+}
+
+/* 100,000 anchors that are all asked for once (60 s). The newest of a name counts. */
+static void ManyAnchors(void **state)
+{
+  enum { MANY = 100000 };
+  char *text = malloc(MANY * 36 + sizeof PLAIN), *end = text + sprintf(text, PLAIN "newton: {residual: 1e-3}\n"), *said;
+  (void)state;
+  end += sprintf(end, "petsc:\n");
+  for (int i = 0; i < MANY; ++i) end += sprintf(end, "  a%d: &a%d 1\n", i, i % (MANY / 2));
+  end += sprintf(end, "title: [");
+  for (int i = 0; i < MANY / 2; ++i) end += sprintf(end, "*a%d, ", i);
+  sprintf(end, "*nobody]\n");
+  assert_null(read_text(text, &said));
+  assert_non_null(strstr(said, "there is no anchor (&name) of this name before it"));
+  assert_int_equal(Count(said, ": error: "), 1);
+  free(said);
+  free(text);
+}
+
 static void NulBytes(void **state)
 {
   char *said;
@@ -384,9 +436,11 @@ static void NoFile(void **state)
 
 int main(int argc, char **argv)
 {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(Table), cmocka_unit_test(AllAtOnce), cmocka_unit_test(Deep),
-                                     cmocka_unit_test(Bomb),  cmocka_unit_test(NulBytes),  cmocka_unit_test(Truncated),
-                                     cmocka_unit_test(NoFile)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(Table),       cmocka_unit_test(AllAtOnce),
+                                     cmocka_unit_test(Deep),        cmocka_unit_test(Bomb),
+                                     cmocka_unit_test(TextBomb),    cmocka_unit_test(ManyUnknownKeys),
+                                     cmocka_unit_test(ManyAnchors), cmocka_unit_test(NulBytes),
+                                     cmocka_unit_test(Truncated),   cmocka_unit_test(NoFile)};
   if (PetscInitialize(&argc, &argv, NULL, NULL)) return 1;
   const int failed = cmocka_run_group_tests(tests, NULL, NULL);
   return PetscFinalize() || failed;

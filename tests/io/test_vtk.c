@@ -209,20 +209,19 @@ static void test_cells(void **state)
   assert_int_equal(VtkWrite(PETSC_COMM_WORLD, path, &data, reason), 0);
   if (test_rank() == 0) {
     VtkFile *file;
-    PetscInt *start, *node;
+    VtkCells cells;
     PetscReal *y;
-    int *type;
     assert_int_equal(VtkReadOpen(path, &file, reason), 0);
-    assert_int_equal(VtkReadTopology(file, &start, &node, &type), 0);
-    assert_int_equal(VtkReadCoordinates(file, &y), 0);
+    assert_int_equal(VtkReadTopology(file, &cells, reason), 0);
+    assert_int_equal(VtkReadCoordinates(file, &y, reason), 0);
     for (PetscInt r = 0, c = 0; r < test_ranks(); ++r)
       for (PetscInt k = 0; k < 2 + r; ++k, ++c) {
-        const PetscReal *a = y + 3 * node[start[c]], *b = y + 3 * node[start[c] + 2];
-        assert_int_equal(type[c], 9);
-        assert_int_equal(start[c + 1], 4 * (c + 1));
+        const PetscReal *a = y + 3 * cells.node[cells.start[c]], *b = y + 3 * cells.node[cells.start[c] + 2];
+        assert_int_equal(cells.type[c], 9);
+        assert_int_equal(cells.start[c + 1], 4 * (c + 1));
         assert_true(a[0] == k && a[1] == 10.0 * r && b[0] == k + 1 && b[1] == 10.0 * r + 1);
       }
-    PetscFree(start), PetscFree(node), PetscFree(type), PetscFree(y);
+    VtkCellsFree(&cells), PetscFree(y);
     VtkReadClose(&file);
     const hid_t plain = H5Fopen(path, H5F_ACC_RDONLY, H5P_DEFAULT);
     double *p = ReadSet(plain, "VTKHDF/CellData/pressure", H5T_NATIVE_DOUBLE, test_ranks() * (test_ranks() + 3) / 2);
@@ -236,8 +235,9 @@ static void test_cells(void **state)
 static void CheckSeries(const char *folder, PetscInt n, const PetscReal *times)
 {
   VtkSeries series;
+  char reason[256];
   MPI_Barrier(PETSC_COMM_WORLD);
-  assert_int_equal(VtkSeriesRead(folder, "points", &series), 0);
+  assert_int_equal(VtkSeriesRead(folder, "points", &series, reason), 0);
   assert_int_equal(series.n, n);
   for (PetscInt i = 0; i < n; ++i) assert_true(series.states[i].time == times[i]);
   assert_int_equal(VtkSeriesFree(&series), 0);

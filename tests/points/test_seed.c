@@ -1,5 +1,6 @@
 /* Seeding: volumes and masses to round-off, the same points on any number of ranks, mistakes that are told. */
 #include <string.h>
+#include "points/seed.h"
 #include "points_test.h"
 
 static const PetscReal area = 6, volume = 12; /* of the test grid */
@@ -296,6 +297,35 @@ static void polygon_volume_is_known(void **state)
   CALL(PetscFree(t));
 }
 
+/* 44,000,000 cells of 64 points would wrap a PetscInt to a negative number; nothing is allocated. */
+static void too_many_points_are_told(void **state)
+{
+  Seeding s = {.n_cells = 44000000, .n_rule = 64};
+  Points crowd = {.dim = 2, .n = 7, .components = {2, 5}};
+  PetscBool fits;
+  Diag *diag;
+  (void)state;
+  CALL(DiagCreate(&diag));
+  TestCase *t = test_case(CELL_QUADRILATERAL, 4, 3, 1);
+  Grid *grid = make_grid(PETSC_COMM_WORLD, &t->c);
+  s.c = &t->c, s.grid = s.source = grid, s.body = t->body, s.diag = diag;
+  CALL(SeedCheckRoom(&s, &crowd, &fits));
+  CHECK(!fits);
+  CHECK(count_over_ranks(DiagErrors(diag)) == 1);
+  s.n_cells = 4000000; /* 256,000,007 x 8 numbers are less than 2^31 */
+  CALL(SeedCheckRoom(&s, &crowd, &fits));
+  CHECK(fits);
+  s.n_cells = 4300000; /* 275,200,007 x 8 are more */
+  CALL(SeedCheckRoom(&s, &crowd, &fits));
+  CHECK(!fits);
+  crowd.n = PETSC_MAX_INT - 2; /* one more than a body's points */
+  s.n_cells = 1, s.n_rule = 4;
+  CALL(SeedCheckRoom(&s, &crowd, &fits));
+  CHECK(!fits);
+  CALL(DiagDestroy(&diag));
+  free_all(t, grid, NULL);
+}
+
 int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {
@@ -303,7 +333,8 @@ int main(int argc, char **argv)
     cmocka_unit_test(grading_keeps_the_volume),    cmocka_unit_test(axisymmetric_volume_is_the_full_circle),
     cmocka_unit_test(bodies_stand_side_by_side),   cmocka_unit_test(ranks_do_not_matter),
     cmocka_unit_test(mistakes_are_told),           cmocka_unit_test(overlap_is_told),
-    cmocka_unit_test(bad_volume_is_told),          cmocka_unit_test(polygon_volume_is_known),
+    cmocka_unit_test(too_many_points_are_told),    cmocka_unit_test(bad_volume_is_told),
+    cmocka_unit_test(polygon_volume_is_known),
   };
   return run_point_tests(argc, argv, tests, sizeof tests / sizeof *tests);
 }

@@ -1,7 +1,8 @@
 #!/bin/sh
 # On a terminal a bar with the time left is drawn over itself; the log has plain lines all the same.
 . "$(dirname "$0")/library.sh"
-command -v script >/dev/null || exit 77
+command -v script >/dev/null || { echo "skipped: there is no program 'script'"; exit 77; }
+script -qec "test -t 1" probe.txt >/dev/null 2>err.txt </dev/null || { echo "skipped: no pseudo-terminal is to be had: $(head -n 1 err.txt)"; exit 77; }
 block >block.yaml
 name="terminal"
 TERM=xterm script -qec "stty cols 100; '$talus' run block.yaml --out run" typescript.txt >/dev/null 2>err.txt </dev/null || fail "exit code $?"

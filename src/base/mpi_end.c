@@ -1,0 +1,43 @@
+#include "base/mpi_end.h"
+#include <signal.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <unistd.h>
+
+int MpiBegin(int *argc, char ***argv)
+{
+  int provided;
+  return MPI_Init_thread(argc, argv, MPI_THREAD_FUNNELED, &provided) == MPI_SUCCESS ? 0 : 1;
+}
+
+static volatile sig_atomic_t last_code;
+
+static void EndAtOnce(int number)
+{
+  (void)number;
+  _exit((int)last_code);
+}
+
+/* Sanitizers look for leaks after main, and their findings are not to be hidden. */
+#if defined(__SANITIZE_ADDRESS__)
+#define SANITIZED 1
+#elif defined(__has_feature)
+#if __has_feature(address_sanitizer)
+#define SANITIZED 1
+#endif
+#endif
+
+void mpi_end(int exit_code)
+{
+#ifdef SANITIZED
+  MPI_Finalize();
+  exit(exit_code);
+#else
+  static const int crashes[] = {SIGSEGV, SIGBUS, SIGABRT};
+  last_code = exit_code;
+  fflush(NULL);
+  for (size_t i = 0; i < sizeof crashes / sizeof *crashes; ++i) signal(crashes[i], EndAtOnce);
+  MPI_Finalize();
+  _exit(exit_code);
+#endif
+}
