@@ -69,7 +69,8 @@ static PetscErrorCode CreateMaterials(Model *m, Diag *diag)
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode CreatePoints(Model *m, Diag *diag)
+/* outline: NULL where nobody asks how much material is above. */
+static PetscErrorCode CreatePoints(Model *m, Outline *outline, Diag *diag)
 {
   const Case *c = m->c;
   PointSeed *seed;
@@ -85,7 +86,7 @@ static PetscErrorCode CreatePoints(Model *m, Diag *diag)
   }
   PetscCall(PointsCreate(m->dim, m->n_state, 0, &m->points));
   if (m->formulation->pressure) m->points->components[POINT_PRESSURE] = 1; /* nothing is stored yet */
-  PetscCall(PointsSeed(m->points, m->grid, c, seed, diag));
+  PetscCall(PointsSeedOutlined(m->points, m->grid, c, seed, outline, diag));
   PetscCall(PetscFree2(seed, initial));
   PetscFunctionReturn(0);
 }
@@ -174,6 +175,20 @@ PetscErrorCode ModelDestroyFields(Model *m)
   PetscFunctionReturn(0);
 }
 
+/* Bodies become points, with the stress that they start with. */
+static PetscErrorCode CreateBodies(Model *m, Diag *diag)
+{
+  Outline outline = {0};
+  PetscInt errors;
+
+  PetscFunctionBeginUser;
+  PetscCall(CreatePoints(m, case_has_k0(m->c) ? &outline : NULL, diag));
+  PetscCall(DiagReduce(m->comm, diag, &errors));
+  if (!errors) PetscCall(InitialStress(m, &outline, diag));
+  PetscCall(OutlineClear(&outline));
+  PetscFunctionReturn(0);
+}
+
 /* Everything after the parts that stand alone; each may find mistakes that make the next meaningless. */
 static PetscErrorCode Build(Model *m, Diag *diag)
 {
@@ -188,10 +203,9 @@ static PetscErrorCode Build(Model *m, Diag *diag)
   m->formulation = FormulationFind(m->c->formulation);
   PetscCall(GridCreate(m->comm, m->c, cell_weight, (void *)m->c, diag, &m->grid));
   if (!m->grid) PetscFunctionReturn(0);
-  PetscCall(CreatePoints(m, diag));
+  PetscCall(CreateBodies(m, diag));
   PetscCall(DiagReduce(m->comm, diag, &errors));
   if (errors) PetscFunctionReturn(0);
-  PetscCall(InitialStress(m, diag));
   PetscCall(BoundaryCreate(m->grid, m->c, diag, &m->boundary));
   PetscCall(LoadsCreate(m->grid, m->c, m->points, diag, &m->loads));
   PetscCall(CreateTracers(m, diag));

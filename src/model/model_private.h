@@ -34,8 +34,8 @@ PetscErrorCode GuessFromTables(Model *model, const Tables *tables, char reason[2
 PetscErrorCode ModelEnable(Model *model);
 /* Arrays that the step keeps over the nodes of a cloud, after its ghosts or owners changed. */
 PetscErrorCode ModelFollowCloud(Model *model);
-/* Geostatic stress of bodies that ask for it, as their law's state. */
-PetscErrorCode InitialStress(Model *model, Diag *diag);
+/* Collective. Geostatic stress of bodies that ask for it, as their law's state: of the material inside the outline that is above them. */
+PetscErrorCode InitialStress(Model *model, const Outline *outline, Diag *diag);
 /* Acceleration at t = 0 from the balance of momentum with lumped mass, so that a body in free fall falls from the first step on. */
 PetscErrorCode InitialAcceleration(Model *model);
 /* Collective. Body force of the points at time t, gathered at the nodes and added to force (owners). */

@@ -236,6 +236,8 @@ static PetscErrorCode SeedSource(Seeding *s, Points *points, PetscInt *taken, co
   PetscCall(SeedCheckVolume(s));
   if (s->source == s->grid) PetscCall(SeedClaimCells(s, taken));
   PetscCall(SeedCells(s, points, per_material + s->material));
+  if (s->outline)
+    PetscCall(OutlineAdd(s->outline, s->source, s->n_cells, s->cells, s->b, per_material[s->material].density));
   PetscCall(AdvanceIds(s, next));
   PetscCall(PetscFree(s->cells));
   PetscFunctionReturn(0);
@@ -272,7 +274,8 @@ static PetscErrorCode LocateSeeds(Points *points, const Grid *grid, const Case *
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode PointsSeed(Points *points, const Grid *grid, const Case *c, const PointSeed *per_material, Diag *diag)
+PetscErrorCode PointsSeedOutlined(Points *points, const Grid *grid, const Case *c, const PointSeed *per_material,
+                                  Outline *outline, Diag *diag)
 {
   PetscInt *taken;
   PetscInt64 next = 0;
@@ -281,12 +284,20 @@ PetscErrorCode PointsSeed(Points *points, const Grid *grid, const Case *c, const
   PetscCall(PetscMalloc1(grid->n_cells, &taken));
   for (PetscInt k = 0; k < grid->n_cells; ++k) taken[k] = -1;
   for (PetscInt b = 0; b < c->n_bodies; ++b) {
-    Seeding s = {.c = c, .grid = grid, .diag = diag, .b = b, .body = c->bodies + b, .first_id = next};
+    Seeding s = {
+      .c = c, .grid = grid, .diag = diag, .b = b, .body = c->bodies + b, .first_id = next, .outline = outline};
     PetscCall(SeedBody(&s, points, taken, per_material, &next));
     if (s.body->mesh) own_mesh = PETSC_TRUE;
   }
   PetscCall(PetscFree(taken));
   if (own_mesh) PetscCall(LocateSeeds(points, grid, c, diag));
   PetscCall(PointsSort(points));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode PointsSeed(Points *points, const Grid *grid, const Case *c, const PointSeed *per_material, Diag *diag)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PointsSeedOutlined(points, grid, c, per_material, NULL, diag));
   PetscFunctionReturn(0);
 }

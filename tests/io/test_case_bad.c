@@ -159,9 +159,9 @@ static const Bad bads[] = {
   {"region of a box",
    WITH_BODY("{name: a, region: soil, material: rubber}"),
    {"bodies[0].region: a box grid has no regions"}},
-  {"k0 without surface",
-   WITH_BODY("{name: a, " SQUARE ", material: rubber, k0: 0.5}"),
-   {"key 'surface' of bodies[0] is missing"}},
+  {"surface without k0",
+   WITH_BODY("{name: a, " SQUARE ", material: rubber, surface: 1}"),
+   {"key 'surface' of bodies[0] means something only beside 'k0'"}},
   {"no bodies", PLAIN_TOP PLAIN_GRID "bodies: []\n" PLAIN_MATERIALS, {"bodies is an empty list"}},
   /* materials */
   {"unknown law",
