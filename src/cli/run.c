@@ -149,6 +149,7 @@ static PetscErrorCode ReadAndRun(const CliArguments *a, PetscInt n_set, const ch
                             .force = CliFlag(a, "force"),
                             .quiet = CliFlag(a, "quiet"),
                             .log = CliValue(a, "log"),
+                            .warnings = stderr,
                             .summary = &summary};
     PetscCall(RunCase(PETSC_COMM_WORLD, c, &run, diag, NULL, &result));
     if (summary.reason[0]) DiagError(diag, NULL, "%s", summary.reason);

@@ -62,6 +62,7 @@ typedef struct SchemaEntry {
   PetscBool always;     /* a mapping that is read even if absent: its keys have defaults */
   PetscBool input_only; /* resolved to another key, never written */
   const SchemaWord *words;
+  const SchemaWord *later; /* words that mean something, but not in this version: refused by name, offered nowhere */
   const SchemaTable *table;
   const char *target;
   const char *with; /* makes sense only beside this key */

@@ -240,7 +240,7 @@ PetscErrorCode SchemaCheckSelector(SchemaReader *r, const YamlNode *mapping, voi
   }
   SchemaError(r, YamlFind(mapping, "boundary"), "%s: a box has no boundary '%s'",
               YamlPath(YamlFind(mapping, "boundary"), path, sizeof(path)), on->boundary);
-  SchemaHintWords(r, on->boundary, n, words);
+  DiagHintNames(r->diag, on->boundary, words);
   PetscFunctionReturn(0);
 }
 

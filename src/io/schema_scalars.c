@@ -126,6 +126,11 @@ static const SchemaWord *FindWord(SchemaReader *r, const SchemaEntry *e, const Y
 {
   const char *words[32] = {NULL};
   PetscInt n = 0;
+  for (const SchemaWord *w = e->later; w && w->word; ++w) {
+    if (node->kind != YAML_SCALAR || strcmp(node->text, w->word)) continue;
+    SchemaError(r, node, "%s", w->help);
+    return NULL;
+  }
   for (const SchemaWord *w = e->words; w->word && n < 31; ++w) {
     if (node->kind == YAML_SCALAR && !strcmp(node->text, w->word)) return w;
     words[n++] = w->word;

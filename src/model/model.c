@@ -209,6 +209,7 @@ static PetscErrorCode Build(Model *m, Diag *diag)
   PetscCall(BoundaryCreate(m->grid, m->c, diag, &m->boundary));
   PetscCall(LoadsCreate(m->grid, m->c, m->points, diag, &m->loads));
   PetscCall(CreateTracers(m, diag));
+  ModelAdvise(m, diag);
   PetscCall(DiagReduce(m->comm, diag, &errors));
   if (errors) PetscFunctionReturn(0);
   if (m->method->couplings) PetscCall(ModelToCloud(m));

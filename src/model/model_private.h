@@ -66,6 +66,8 @@ void pressure_guess(const Model *model);
 PetscErrorCode ModelToCloud(Model *model);
 /* Collective. After the first step's clouds are known: tell which bodies hang on an obstacle from the start. */
 PetscErrorCode ModelWarnOfObstacles(const Model *model, Diag *diag);
+/* Warnings of what a case asks for and its user hardly means: advice.c. */
+void ModelAdvise(const Model *model, Diag *diag);
 /* Input of the weak form for the model's present arrays. */
 WeakFormInput weak_form_of(const Model *model, PetscReal inertia);
 /* Prescribed dofs, and nodes with unknowns that no material touches. */

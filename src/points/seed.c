@@ -103,12 +103,11 @@ static PetscErrorCode FindRegion(const Seeding *s, const GridSet **set)
   if (n_regions) PetscFunctionReturn(0);
   seed_path(s->b, "region", sizeof path, path);
   if (seed_tells(s->grid)) {
-    const char **names, *nearest;
+    const char **names;
     PetscCall(GridSetNames(s->source, &names));
-    nearest = *set ? NULL : DiagNearest(s->body->region, names);
     if (*set) DiagError(s->diag, path, "'%s' is a boundary, not a region: it has no cells", s->body->region);
     else DiagError(s->diag, path, "the mesh has no region '%s'", s->body->region);
-    if (nearest) DiagHint(s->diag, "did you mean '%s'?", nearest);
+    if (!*set) DiagHintNames(s->diag, s->body->region, names);
     PetscCall(PetscFree(names));
   }
   *set = NULL;

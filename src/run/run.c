@@ -223,6 +223,7 @@ PetscErrorCode RunCase(MPI_Comm comm, const Case *c, const RunOptions *options, 
   *result = RUN_BAD_INPUT;
   PetscCall(ModelCreate(comm, c, diag, &run.model));
   if (!run.model) PetscFunctionReturn(0);
+  if (options->warnings) PetscCall(DiagFlush(diag, options->warnings));
   signals_watch();
   run.model->asked = signals_came;
   PetscCall(RunModel(&run, options, diag, measures, result));
