@@ -59,6 +59,7 @@ typedef struct SchemaEntry {
   PetscReal min, max;   /* if bounded */
   PetscBool bounded, min_open, max_open;
   PetscBool required, only_2d, only_3d;
+  PetscBool endless;    /* a number beyond what its unit can mean has a meaning: none */
   PetscBool always;     /* a mapping that is read even if absent: its keys have defaults */
   PetscBool input_only; /* resolved to another key, never written */
   const SchemaWord *words;
@@ -123,6 +124,8 @@ const char *SchemaExpected(const SchemaEntry *entry, PetscInt dim, char *buffer,
 const char *SchemaRange(const SchemaEntry *entry, char *buffer, size_t size);
 /* A number, with a message and PETSC_FALSE if it is none or out of its bounds. */
 PetscBool SchemaNumber(SchemaReader *r, const SchemaEntry *entry, const YamlNode *node, PetscReal *value);
+/* What a number of this unit can mean at most, and (other than 0) at least; PETSC_FALSE: nobody knows. */
+PetscBool SchemaMagnitude(const char *unit, PetscReal *least, PetscReal *most);
 /* The same without messages and bounds. */
 PetscBool SchemaParseNumber(const YamlNode *node, PetscReal *value);
 PetscBool SchemaParseInteger(const YamlNode *node, PetscInt *value);

@@ -49,6 +49,20 @@ static void check_ringing(const Case *c, const Material *material, Diag *diag)
   DiagHint(diag, "bossak: -0.1 damps that and little else");
 }
 
+/* Beyond the speed of light a step of a usual size crosses so many cells in waves that inertia drowns in the round-off of stiffness. */
+static void check_waves(const Case *c, const Material *material, Diag *diag)
+{
+  const PetscReal light = 3e8, speed = PetscSqrtReal(material->wave_modulus / material->density);
+  char path[256];
+  if (c->analysis.type != ANALYSIS_DYNAMIC || speed <= light) return;
+  PetscSNPrintf(path, sizeof path, "materials.%s", material->name);
+  DiagError(
+    diag, path,
+    "waves would run through '%s' at %.3g m/s, faster than light: its stiffness and its density cannot both be meant",
+    material->name, (double)speed);
+  DiagHint(diag, "a body that may count as rigid needs no more than waves much faster than its motion");
+}
+
 static PetscErrorCode CreateMaterials(Model *m, Diag *diag)
 {
   const Case *c = m->c;
@@ -61,6 +75,7 @@ static PetscErrorCode CreateMaterials(Model *m, Diag *diag)
     PetscCall(MaterialResolve(c, i, diag, material));
     if (!material->law) continue;
     check_ringing(c, material, diag);
+    check_waves(c, material, diag);
     m->n_state = PetscMax(m->n_state, material->law->n_state);
     if (!material->law->symmetric || (case_is_mixed(c) && material->volume == VOLUME_COUPLED))
       m->symmetric = PETSC_FALSE;
