@@ -65,7 +65,7 @@ same "complete"
 rm cut/checkpoint_*
 cp -r cut kept
 expect "complete, no checkpoint" 0 "$talus" run --resume cut
-says out.txt "the run is complete and has left no checkpoint"
+says err.txt "warning: the run in 'cut' is complete and has left no checkpoint: there is nothing to resume"
 rm cut/log.txt kept/log.txt
 diff -r cut kept || fail "$name: something changed"
 rm -r kept
