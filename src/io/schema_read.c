@@ -245,11 +245,12 @@ static PetscErrorCode NotThere(SchemaReader *r, const SchemaTable *table, const 
   PetscInt n = 0;
 
   PetscFunctionBeginUser;
-  *tell = child->argument && child->kind == YAML_MAPPING && !IsWhole(table, child) ? PETSC_TRUE : PETSC_FALSE;
+  *tell = child->argument && !child->key_line && child->kind == YAML_MAPPING && !IsWhole(table, child) ? PETSC_TRUE
+                                                                                                       : PETSC_FALSE;
   if (!*tell) PetscFunctionReturn(0);
   PetscCall(PetscCalloc1(list->n + 1, &names));
   for (PetscInt i = 0; i < list->n; ++i)
-    if (!list->child[i]->argument) names[n++] = list->child[i]->key;
+    if (list->child[i]->key_line) names[n++] = list->child[i]->key;
   SchemaError(r, child, "there is no '%s' in %s", child->key, YamlPath(list, path, sizeof(path)));
   DiagHintNames(r->diag, child->key, names);
   PetscCall(PetscFree(names));

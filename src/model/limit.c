@@ -4,6 +4,7 @@
 
 #define SOFTENED \
   5 /* times as far per increment as at its stiffest: what hardens, or fails for reasons of its own, does not get there */
+#define RAN_AWAY 4 /* the same of the last try of a tiny step that had no solution: all of a body may yield at once */
 
 static PetscReal load_at(const Case *c, const Amplitude *amplitude, PetscReal t)
 {
@@ -27,19 +28,36 @@ static PetscBool loads_grow(const Case *c, PetscReal t, PetscReal dt)
   return grow;
 }
 
-PetscErrorCode LimitWatch(Model *m, PetscReal dt)
+/* How far the increments move all nodes, over the time that they take, m/s. */
+static PetscErrorCode Rate(const Model *m, PetscReal dt, PetscReal *rate)
 {
   PetscReal local = 0, all;
 
   PetscFunctionBeginUser;
-  if (m->c->analysis.type != ANALYSIS_STATIC) PetscFunctionReturn(0);
   for (PetscInt i = 0; i < m->grid->n_owned * m->dim; ++i)
     if (m->system->row[i / m->dim] >= 0) local += m->du[i] * m->du[i];
   PetscCall(MPIU_Allreduce(&local, &all, 1, MPIU_REAL, MPIU_SUM, m->comm));
-  m->limit.before = m->limit.last;
-  m->limit.last = PetscSqrtReal(all) / dt;
-  if (m->limit.least == 0 || m->limit.last < m->limit.least) m->limit.least = m->limit.last;
+  *rate = PetscSqrtReal(all) / dt;
   PetscFunctionReturn(0);
+}
+
+PetscErrorCode LimitWatch(Model *m, PetscReal dt)
+{
+  Softening *limit = &m->limit;
+
+  PetscFunctionBeginUser;
+  if (m->c->analysis.type != ANALYSIS_STATIC) PetscFunctionReturn(0);
+  limit->before = limit->last;
+  PetscCall(Rate(m, dt, &limit->last));
+  if (limit->least == 0 || limit->last < limit->least) limit->least = limit->last;
+  PetscFunctionReturn(0);
+}
+
+static PetscBool anything_yields(const Model *m)
+{
+  for (PetscInt i = 0; i < m->c->n_materials; ++i)
+    if (m->materials[i].law->yields) return PETSC_TRUE;
+  return PETSC_FALSE;
 }
 
 /* "at load factor 0.98", or the factor of each load if they differ. */
@@ -64,16 +82,33 @@ static void factors_text(const Case *c, PetscReal t, char *text, size_t size)
   }
 }
 
-void limit_describe(const Model *m, StepReport *report)
+/* A body that softened, step by step; or, where all of it yields at once, one whose nodes ran away in the last try of a small step that had no
+ * solution: but not because Newton was not let go on. */
+static PetscBool looks_like_limit(const Model *m, const StepReport *report, PetscReal tried)
+{
+  const Softening *limit = &m->limit;
+  const PetscBool small = report->dt <= m->c->analysis.step / 128 ? PETSC_TRUE : PETSC_FALSE;
+  if (limit->before == 0) return PETSC_FALSE; /* fewer than two steps */
+  if (limit->last >= SOFTENED * limit->least && limit->last >= limit->before) return PETSC_TRUE;
+  return small && anything_yields(m) && report->newton.status == LAW_OK && tried >= RAN_AWAY * limit->least &&
+             tried <= PETSC_MAX_REAL
+           ? PETSC_TRUE
+           : PETSC_FALSE;
+}
+
+PetscErrorCode LimitDescribe(const Model *m, StepReport *report)
 {
   const size_t used = strlen(report->reason);
   char factors[256];
-  if (m->c->analysis.type != ANALYSIS_STATIC || !loads_grow(m->c, m->time, report->dt)) return;
-  if (m->limit.last < SOFTENED * m->limit.least || m->limit.last < m->limit.before) return;
+  PetscReal tried;
+
+  PetscFunctionBeginUser;
+  if (m->c->analysis.type != ANALYSIS_STATIC || !loads_grow(m->c, m->time, report->dt)) PetscFunctionReturn(0);
+  PetscCall(Rate(m, report->dt, &tried));
+  if (!looks_like_limit(m, report, tried)) PetscFunctionReturn(0);
   factors_text(m->c, m->time, factors, sizeof factors);
-  snprintf(
-    report->reason + used, sizeof report->reason - used,
-    ". This may be a limit load, %s: the last step moved the body %.3g times as far per increment of load as the "
-    "stiffest",
-    factors, (double)(m->limit.last / m->limit.least));
+  snprintf(report->reason + used, sizeof report->reason - used,
+           ". This may be a limit load, %s: for a little more load the body moves %.3g times as far as at first",
+           factors, (double)(PetscMax(m->limit.last, tried) / m->limit.least));
+  PetscFunctionReturn(0);
 }

@@ -68,8 +68,8 @@ PetscErrorCode ModelToCloud(Model *model);
 PetscErrorCode ModelWarnOfObstacles(const Model *model, Diag *diag);
 /* limit.c. Collective. After every accepted step: how soft has the body become? */
 PetscErrorCode LimitWatch(Model *model, PetscReal dt);
-/* Add to the reason of a static run that gives up that it may be at a limit load, if it looks like one. */
-void limit_describe(const Model *model, StepReport *report);
+/* Collective. Add to the reason of a static run that gives up that it may be at a limit load, if it looks like one. */
+PetscErrorCode LimitDescribe(const Model *model, StepReport *report);
 /* Warnings of what a case asks for and its user hardly means: advice.c. */
 void ModelAdvise(const Model *model, Diag *diag);
 /* Input of the weak form for the model's present arrays. */

@@ -224,7 +224,7 @@ static PetscErrorCode Try(Model *m, PetscReal dt, StepReport *report)
   snprintf(report->reason, sizeof report->reason,
            "Newton did not converge with a step of %g s (%s), and half of it is less than analysis.smallest = %g s",
            (double)dt, report->newton.reason, (double)m->c->analysis.smallest);
-  limit_describe(m, report);
+  PetscCall(LimitDescribe(m, report));
   PetscFunctionReturn(0);
 }
 
