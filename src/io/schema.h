@@ -124,8 +124,12 @@ const char *SchemaExpected(const SchemaEntry *entry, PetscInt dim, char *buffer,
 const char *SchemaRange(const SchemaEntry *entry, char *buffer, size_t size);
 /* A number, with a message and PETSC_FALSE if it is none or out of its bounds. */
 PetscBool SchemaNumber(SchemaReader *r, const SchemaEntry *entry, const YamlNode *node, PetscReal *value);
-/* What a number of this unit can mean at most, and (other than 0) at least; PETSC_FALSE: nobody knows. */
-PetscBool SchemaMagnitude(const char *unit, PetscReal *least, PetscReal *most);
+/* What numbers of a unit can mean: at most, and (other than 0) at least; ended by unit = NULL. */
+typedef struct {
+  const char *unit;
+  PetscReal least, most;
+} SchemaMagnitude;
+extern const SchemaMagnitude schema_magnitudes[];
 /* The same without messages and bounds. */
 PetscBool SchemaParseNumber(const YamlNode *node, PetscReal *value);
 PetscBool SchemaParseInteger(const YamlNode *node, PetscInt *value);

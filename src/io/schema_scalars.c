@@ -83,34 +83,21 @@ void SchemaMismatch(SchemaReader *r, const SchemaEntry *e, const YamlNode *node)
 
 /* Generous: a neutron star has 1e18 kg/m3, light 3e8 m/s. Beyond them sums and products run out of digits or of the machine's range, and
  * a body does not even fall (docs/trust.md). */
-static const struct {
-  const char *unit;
-  PetscReal least, most;
-} magnitudes[] = {
-  {"kg/m3", 1e-15, 1e19}, {"Pa", 1e-30, 1e20}, {"N/m2", 0, 1e20},  {"N", 0, 1e30},     {"m", 0, 1e30},
-  {"m/s", 0, 3e8},        {"m/s2", 0, 1e15},   {"s", 1e-20, 1e20}, {"rad/s", 0, 1e15}, {"1/s", 0, 1e15},
+const SchemaMagnitude schema_magnitudes[] = {
+  {"kg/m3", 1e-15, 1e19}, {"Pa", 1e-30, 1e20}, {"N/m2", 0, 1e20},  {"N", 0, 1e30},   {"m", 0, 1e30}, {"m/s", 0, 3e8},
+  {"m/s2", 0, 1e15},      {"s", 1e-20, 1e20},  {"rad/s", 0, 1e15}, {"1/s", 0, 1e15}, {NULL, 0, 0},
 };
-
-PetscBool SchemaMagnitude(const char *unit, PetscReal *least, PetscReal *most)
-{
-  for (size_t k = 0; unit && k < sizeof(magnitudes) / sizeof(*magnitudes); ++k) {
-    if (strcmp(unit, magnitudes[k].unit)) continue;
-    *least = magnitudes[k].least;
-    *most = magnitudes[k].most;
-    return PETSC_TRUE;
-  }
-  return PETSC_FALSE;
-}
 
 static PetscBool CanBeMeant(SchemaReader *r, const SchemaEntry *e, const YamlNode *node, PetscReal value)
 {
   const PetscReal size = PetscAbsReal(value);
-  PetscReal least, most;
+  const SchemaMagnitude *m = schema_magnitudes;
   char path[512];
-  if (e->endless || !SchemaMagnitude(e->unit, &least, &most) || size == 0 || (size >= least && size <= most))
-    return PETSC_TRUE;
+  while (m->unit && (!e->unit || strcmp(m->unit, e->unit))) ++m;
+  if (e->endless || !m->unit || size == 0 || (size >= m->least && size <= m->most)) return PETSC_TRUE;
   SchemaError(r, node, "%s: %g %s cannot be meant, nothing is %s than %g", YamlPath(node, path, sizeof(path)),
-              (double)value, e->unit, size > most ? "larger" : "smaller", (double)(size > most ? most : least));
+              (double)value, e->unit, size > m->most ? "larger" : "smaller",
+              (double)(size > m->most ? m->most : m->least));
   DiagHint(r->diag, "is it written in %s? Everything in a case file is in SI units", e->unit);
   return PETSC_FALSE;
 }
