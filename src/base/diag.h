@@ -52,3 +52,5 @@ PetscErrorCode DiagFlush(Diag *diag, FILE *out);
 
 /* The word of a NULL-terminated list nearest to `word` (Damerau-Levenshtein), NULL if none is near. */
 const char *DiagNearest(const char *word, const char *const *words);
+/* Under the newest message: "did you mean 'right'? There are: left, right, ...". */
+void DiagHintNames(Diag *diag, const char *word, const char *const *words);

@@ -47,3 +47,17 @@ const char *DiagNearest(const char *word, const char *const *words)
   }
   return best;
 }
+
+void DiagHintNames(Diag *diag, const char *word, const char *const *words)
+{
+  const char *nearest = DiagNearest(word, words);
+  char list[500] = "";
+  for (const char *const *w = words; *w; ++w) {
+    const size_t used = strlen(list);
+    snprintf(list + used, sizeof(list) - used, "%s%s", w == words ? "" : ", ", *w);
+  }
+  if (strlen(list) + 1 == sizeof(list)) strcpy(list + sizeof(list) - 4, "...");
+  if (!list[0]) DiagHint(diag, "there are no names");
+  else if (nearest) DiagHint(diag, "did you mean '%s'? There are: %s", nearest, list);
+  else DiagHint(diag, "there are: %s", list);
+}

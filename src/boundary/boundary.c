@@ -83,8 +83,7 @@ static PetscErrorCode CheckSelection(const Boundary *b, const Grid *grid, PetscI
     PetscCall(PetscSNPrintf(path, sizeof path, "boundary[%d].on.boundary", (int)entry));
     PetscCall(GridSetNames(grid, &names));
     DiagError(diag, path, "the grid has no boundary or region named '%s'", on->boundary);
-    const char *nearest = DiagNearest(on->boundary, names);
-    if (nearest) DiagHint(diag, "did you mean '%s'?", nearest);
+    DiagHintNames(diag, on->boundary, names);
     PetscCall(PetscFree(names));
   } else if (!all) {
     PetscCall(PetscSNPrintf(path, sizeof path, "boundary[%d].on", (int)entry));

@@ -100,6 +100,22 @@ static PetscErrorCode BodyTraction(Loads *loads, const Grid *grid, const Points 
   PetscFunctionReturn(0);
 }
 
+static PetscErrorCode TellNoFace(const Grid *grid, const Selector *on, const char *path, Diag *diag)
+{
+  char key[96];
+  const char **names;
+
+  PetscFunctionBeginUser;
+  if (on->boundary && !on->body && !GridFindSet(grid, on->boundary)) {
+    PetscCall(PetscSNPrintf(key, sizeof key, "%s.boundary", path));
+    PetscCall(GridSetNames(grid, &names));
+    DiagError(diag, key, "the grid has no boundary or region named '%s'", on->boundary);
+    DiagHintNames(diag, on->boundary, names);
+    PetscCall(PetscFree(names));
+  } else DiagError(diag, path, "selects no face%s", on->body ? " of the body's boundary" : " of the grid's boundary");
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode LoadsCreate(const Grid *grid, const Case *c, const Points *points, Diag *diag, Loads **loads)
 {
   Loads *l;
@@ -122,9 +138,7 @@ PetscErrorCode LoadsCreate(const Grid *grid, const Case *c, const Points *points
     if (c->loads[k].on.body) PetscCall(BodyTraction(l, grid, points, k, &faces));
     else PetscCall(GridTraction(l, grid, k, &faces));
     PetscCall(PetscSNPrintf(path, sizeof path, "loads.tractions[%d].on", (int)tractions++));
-    if (!faces)
-      DiagError(diag, path, "selects no face%s",
-                c->loads[k].on.body ? " of the body's boundary" : " of the grid's boundary");
+    if (!faces) PetscCall(TellNoFace(grid, &c->loads[k].on, path, diag));
   }
   PetscCall(PointsSort(l->carriers));
   *loads = l;

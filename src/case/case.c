@@ -121,3 +121,10 @@ PetscErrorCode CaseDestroy(Case **c)
 }
 
 PetscBool case_is_mixed(const Case *c) { return (PetscBool)(c->formulation && !strcmp(c->formulation, "mixed")); }
+
+PetscBool case_has_k0(const Case *c)
+{
+  for (PetscInt b = 0; b < c->n_bodies; ++b)
+    if (c->bodies[b].has_k0) return PETSC_TRUE;
+  return PETSC_FALSE;
+}

@@ -80,8 +80,10 @@ typedef struct {
   PointWeights weights;
   PetscReal velocity[3];             /* initial: v + spin x (x - centre) */
   PetscReal spin[3], spin_centre[3]; /* rad/s; 2D uses spin[2] */
-  PetscBool has_k0;                  /* geostatic: sigma_v = -density g (surface - height), sigma_h = k0 sigma_v */
-  PetscReal k0, surface;             /* surface: height of the free surface against gravity, m */
+  PetscBool has_k0;                  /* geostatic: sigma_v of the material above, sigma_h = k0 sigma_v */
+  PetscReal k0;
+  PetscBool has_surface;
+  PetscReal surface; /* height against gravity at which the user believes the material to end, m: only compared */
 } BodySpec;
 
 /* Where something acts: every condition given must hold. */
@@ -266,6 +268,8 @@ static inline PetscInt kinematics_dim(Kinematics k) { return k == KINEMATICS_3D 
 
 /* Is the pressure an unknown beside the displacements? */
 PetscBool case_is_mixed(const Case *c);
+/* Does any body start with the stress of its weight? */
+PetscBool case_has_k0(const Case *c);
 
 PetscErrorCode CaseDestroy(Case **c);
 

@@ -107,7 +107,8 @@ static PetscErrorCode CheckArguments(const CliArguments *a, PetscInt n_set, cons
     if (MayChange(set[i])) continue;
     PetscCall(CliUsageError(exit_code,
                             "it may change checkpoint, newton, linear, petsc, analysis.smallest, "
-                            "analysis.largest, analysis.end and grid.outside; for all else start a new run",
+                            "analysis.largest, grid.outside and, in dynamics, analysis.end; for all else start a "
+                            "new run: talus run DIR/case.yaml --out ANOTHER --set ...",
                             "a resumed run cannot change %.*s", (int)strcspn(set[i], "="), set[i]));
     *ok = PETSC_FALSE;
   }
@@ -149,6 +150,7 @@ static PetscErrorCode ReadAndRun(const CliArguments *a, PetscInt n_set, const ch
                             .force = CliFlag(a, "force"),
                             .quiet = CliFlag(a, "quiet"),
                             .log = CliValue(a, "log"),
+                            .warnings = stderr,
                             .summary = &summary};
     PetscCall(RunCase(PETSC_COMM_WORLD, c, &run, diag, NULL, &result));
     if (summary.reason[0]) DiagError(diag, NULL, "%s", summary.reason);

@@ -5,6 +5,7 @@
 PetscErrorCode GridCreate(MPI_Comm comm, const Case *c, GridWeight weight, void *context, Diag *diag, Grid **grid)
 {
   PetscFunctionBeginUser;
+  if (c->grid.kind == GRID_MESH) PetscCall(GeoCheckParameters(comm, c, diag));
   if (c->grid.kind == GRID_BOX) PetscCall(GridCreate_Box(comm, c, weight, context, diag, grid));
   else
     PetscCall(GridCreateMesh(comm, &c->grid, kinematics_dim(c->kinematics), "grid.mesh", weight, context, diag, grid));

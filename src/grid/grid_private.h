@@ -55,6 +55,8 @@ static inline PetscBool block_has(const VoxelBlock *b, const PetscInt ijk[3])
 /* Is this an odd voxel of a chequered pattern? */
 static inline int voxel_odd(const PetscInt ijk[3]) { return (int)((ijk[0] + ijk[1] + ijk[2]) & 1); }
 
+/* Collective. An error for each of the grid's parameters that no .geo of the case mentions. */
+PetscErrorCode GeoCheckParameters(MPI_Comm comm, const Case *c, Diag *diag);
 /* box.c, box_pattern.c, box_locate.c */
 PetscErrorCode GridCreate_Box(MPI_Comm comm, const Case *c, GridWeight weight, void *context, Diag *diag, Grid **grid);
 PetscErrorCode GridBoxDestroy(GridBox **box);

@@ -260,6 +260,7 @@ PetscErrorCode SerialMeshCreate(const MshFile *msh, PetscInt dim, const char *pa
     check_volumes(mesh, path, diag);
   }
   if (DiagErrors(diag) == errors) PetscCall(ConnectMesh(mesh, msh, node_of, cell_of, path, diag));
+  if (DiagErrors(diag) == errors) PetscCall(SerialMeshCheckOverlap(mesh, path, diag));
   PetscCall(PetscFree3(node_of, cell_of, entity_of));
   if (DiagErrors(diag) != errors) PetscCall(SerialMeshDestroy(&mesh));
   *out = mesh;

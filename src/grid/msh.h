@@ -54,6 +54,8 @@ typedef struct {
  * collective. */
 PetscErrorCode SerialMeshCreate(const MshFile *msh, PetscInt dim, const char *path, Diag *diag, SerialMesh **mesh);
 PetscErrorCode SerialMeshDestroy(SerialMesh **mesh);
+/* An error, with two of the cells and where, if any lie in one another. */
+PetscErrorCode SerialMeshCheckOverlap(const SerialMesh *mesh, const char *path, Diag *diag);
 /* Named sets of the physical groups. face_at: for each face id of the table, cell * faces + side. */
 typedef struct TupleTable TupleTable;
 PetscErrorCode SerialMeshSets(SerialMesh *mesh, const MshFile *msh, const PetscInt *node_of, const PetscInt *cell_of,

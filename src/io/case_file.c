@@ -103,6 +103,20 @@ static void ResolveStabilisation(const YamlNode *given, Case *c)
   if (!YamlFind(given, "inertia")) c->stabilisation.inertia = yields ? 0.01 : 0;
 }
 
+/* Stress that carries the weight means that the weight is there: without a word of the user gravity does not grow. */
+static PetscErrorCode ResolveGravity(Case *c)
+{
+  Amplitude *a = &c->gravity_amplitude;
+
+  PetscFunctionBeginUser;
+  if (a->n || c->analysis.type != ANALYSIS_STATIC || !case_has_k0(c)) PetscFunctionReturn(0);
+  a->n = 1;
+  PetscCall(PetscCalloc1(1, &a->time));
+  PetscCall(PetscMalloc1(1, &a->value));
+  a->value[0] = 1;
+  PetscFunctionReturn(0);
+}
+
 static PetscErrorCode ReadDocument(const char *file, YamlDocument *document, Diag *diag, Case **c)
 {
   SchemaReader reader = {.document = document, .diag = diag, .dim = PeekDimensions(document->root)};
@@ -114,6 +128,7 @@ static PetscErrorCode ReadDocument(const char *file, YamlDocument *document, Dia
   reader.c = *c;
   PetscCall(SchemaReadTable(&reader, &schema_case, document->root, *c));
   ResolveStabilisation(YamlFind(document->root, "stabilisation"), *c);
+  PetscCall(ResolveGravity(*c));
   PetscFunctionReturn(0);
 }
 

@@ -59,9 +59,11 @@ typedef struct SchemaEntry {
   PetscReal min, max;   /* if bounded */
   PetscBool bounded, min_open, max_open;
   PetscBool required, only_2d, only_3d;
+  PetscBool endless;    /* a number beyond what its unit can mean has a meaning: none */
   PetscBool always;     /* a mapping that is read even if absent: its keys have defaults */
   PetscBool input_only; /* resolved to another key, never written */
   const SchemaWord *words;
+  const SchemaWord *later; /* words that mean something, but not in this version: refused by name, offered nowhere */
   const SchemaTable *table;
   const char *target;
   const char *with; /* makes sense only beside this key */
@@ -122,6 +124,12 @@ const char *SchemaExpected(const SchemaEntry *entry, PetscInt dim, char *buffer,
 const char *SchemaRange(const SchemaEntry *entry, char *buffer, size_t size);
 /* A number, with a message and PETSC_FALSE if it is none or out of its bounds. */
 PetscBool SchemaNumber(SchemaReader *r, const SchemaEntry *entry, const YamlNode *node, PetscReal *value);
+/* What numbers of a unit can mean: at most, and (other than 0) at least; ended by unit = NULL. */
+typedef struct {
+  const char *unit;
+  PetscReal least, most;
+} SchemaMagnitude;
+extern const SchemaMagnitude schema_magnitudes[];
 /* The same without messages and bounds. */
 PetscBool SchemaParseNumber(const YamlNode *node, PetscReal *value);
 PetscBool SchemaParseInteger(const YamlNode *node, PetscInt *value);

@@ -80,7 +80,7 @@ static const SchemaTable point_load = {.name = "point load",
                                        .tag_offset = offsetof(LoadSpec, kind)};
 static const SchemaEntry loads_entries[] = {
   KEY("gravity", VECTOR, "m/s2", "acceleration of gravity", .note = "0", AT(Case, gravity)),
-  KEY("gravity_amplitude", AMPLITUDE, NULL, "factor over time", .note = "time / end in statics, 1 in dynamics",
+  KEY("gravity_amplitude", AMPLITUDE, NULL, "factor over time", .note = "time / end in statics without k0, else 1",
       AT(Case, gravity_amplitude)),
   KEY("tractions", LIST, NULL, "loads spread over boundaries", .table = &traction, AT(Case, loads),
       .count = offsetof(Case, n_loads), ITEMS(LOAD_TRACTION)),

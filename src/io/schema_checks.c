@@ -219,8 +219,6 @@ PetscErrorCode SchemaCheckBody(SchemaReader *r, const YamlNode *mapping, void *t
   if (b->region && !b->mesh && r->c->grid.kind == GRID_BOX && YamlFind(YamlFind(r->document->root, "grid"), "box"))
     SchemaError(r, YamlFind(mapping, "region"),
                 "%s.region: a box grid has no regions; give a shape, or a mesh with physical groups", path);
-  if (b->has_k0 && !YamlFind(mapping, "surface"))
-    SchemaKeyError(r, mapping, "key 'surface' of %s is missing: k0 needs the height of the free surface, in m", path);
   PetscFunctionReturn(0);
 }
 
@@ -242,7 +240,7 @@ PetscErrorCode SchemaCheckSelector(SchemaReader *r, const YamlNode *mapping, voi
   }
   SchemaError(r, YamlFind(mapping, "boundary"), "%s: a box has no boundary '%s'",
               YamlPath(YamlFind(mapping, "boundary"), path, sizeof(path)), on->boundary);
-  SchemaHintWords(r, on->boundary, n, words);
+  DiagHintNames(r->diag, on->boundary, words);
   PetscFunctionReturn(0);
 }
 

@@ -100,17 +100,21 @@ static const SchemaEntry body_entries[] = {
       AT(BodySpec, spin)),
   KEY("spin_centre", VECTOR, "m", "position that does not move by the spin", .note = "the origin",
       AT(BodySpec, spin_centre)),
-  KEY("k0", NUMBER, NULL, "initial stress: horizontal over vertical stress, the vertical one from the weight above",
-      AT_LEAST(0), AT(BodySpec, k0), GIVEN(BodySpec, has_k0)),
-  KEY("surface", NUMBER, "m", "height of the free surface, against gravity, for `k0`", .with = "k0",
-      AT(BodySpec, surface)),
+  KEY(
+    "k0", NUMBER, NULL,
+    "initial stress: horizontal over vertical stress, the vertical one from the weight of the material that is above, "
+    "of all bodies; gravity acts from the start then",
+    AT_LEAST(0), AT(BodySpec, k0), GIVEN(BodySpec, has_k0)),
+  KEY("surface", NUMBER, "m",
+      "height, against gravity, where the material above the body ends: a warning if it ends elsewhere", .with = "k0",
+      AT(BodySpec, surface), GIVEN(BodySpec, has_surface)),
   {.key = NULL},
 };
 static const SchemaGroup body_groups[] = {{GROUP_AT_LEAST_ONE, {"shape", "region", "mesh", NULL}},
                                           {GROUP_NONE, {NULL}}};
 static PetscBool HideInBody(const SchemaEntry *e, const void *source)
 {
-  return e->with && !((const BodySpec *)source)->has_k0 ? PETSC_TRUE : PETSC_FALSE;
+  return e->with && !((const BodySpec *)source)->has_surface ? PETSC_TRUE : PETSC_FALSE;
 }
 const SchemaTable schema_body = {.name = "body",
                                  .help = "A piece of material.",

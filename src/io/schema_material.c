@@ -17,6 +17,7 @@ SchemaEntry SchemaLawEntry(const void *law_parameter)
                        .bounded = bounded,
                        .min_open = p->min_open,
                        .max_open = p->max_open,
+                       .endless = p->fallback >= 1e300 ? PETSC_TRUE : PETSC_FALSE,
                        .offset = offsetof(NamedValue, value),
                        .required = PetscIsNanReal(p->fallback) ? PETSC_TRUE : PETSC_FALSE};
 }

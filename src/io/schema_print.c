@@ -179,8 +179,25 @@ static void MarkdownLaws(FILE *out)
   }
 }
 
+static void MarkdownMagnitudes(FILE *out)
+{
+  fputs(
+    "\n## magnitudes\n\nNumbers larger than their unit can mean are refused, and smaller ones other than 0. In "
+    "dynamics\n"
+    "waves (the root of the P-wave modulus over the density) may not run faster than light, 3e8 m/s.\n\n"
+    "| unit | at least | at most |\n|---|---|---|\n",
+    out);
+  for (const SchemaMagnitude *m = schema_magnitudes; m->unit; ++m) {
+    fprintf(out, "| %s |", m->unit);
+    if (m->least > 0) fprintf(out, " %g |", (double)m->least);
+    else fputs("  |", out);
+    fprintf(out, " %g |\n", (double)m->most);
+  }
+}
+
 static void MarkdownFields(FILE *out)
 {
+  MarkdownMagnitudes(out);
   fputs("\n## fields\n\n| field | unit | components | where | meaning |\n|---|---|---|---|---|\n", out);
   for (const OutputField *f = output_fields; f->name; ++f)
     fprintf(out, "| `%s` | %s | %d | %s | %s |\n", f->name, f->unit, (int)f->components,

@@ -229,9 +229,44 @@ static PetscErrorCode ReadList(SchemaReader *r, const SchemaEntry *entry, const 
   PetscFunctionReturn(0);
 }
 
+/* Has a mapping what its table cannot do without? */
+static PetscBool IsWhole(const SchemaTable *table, const YamlNode *mapping)
+{
+  for (const SchemaEntry *entry = table->entries; entry->key; ++entry)
+    if (entry->required && !YamlFind(mapping, entry->key)) return PETSC_FALSE;
+  for (const SchemaGroup *group = table->groups; group && group->kind != GROUP_NONE; ++group) {
+    PetscBool any = group->kind == GROUP_AT_MOST_ONE ? PETSC_TRUE : PETSC_FALSE;
+    for (int k = 0; group->keys[k]; ++k) any |= YamlFind(mapping, group->keys[k]) ? PETSC_TRUE : PETSC_FALSE;
+    if (!any) return PETSC_FALSE;
+  }
+  return PETSC_TRUE;
+}
+
+/* `--set materials.ruber.young=1` where there is a rubber: a part of something that is not there. */
+static PetscErrorCode NotThere(SchemaReader *r, const SchemaTable *table, const YamlNode *child, PetscBool *tell)
+{
+  const YamlNode *list = child->parent;
+  const char **names;
+  char path[512];
+  PetscInt n = 0;
+
+  PetscFunctionBeginUser;
+  *tell = child->argument && !child->key_line && child->kind == YAML_MAPPING && !IsWhole(table, child) ? PETSC_TRUE
+                                                                                                       : PETSC_FALSE;
+  if (!*tell) PetscFunctionReturn(0);
+  PetscCall(PetscCalloc1(list->n + 1, &names));
+  for (PetscInt i = 0; i < list->n; ++i)
+    if (list->child[i]->key_line) names[n++] = list->child[i]->key;
+  SchemaError(r, child, "there is no '%s' in %s", child->key, YamlPath(list, path, sizeof(path)));
+  DiagHintNames(r->diag, child->key, names);
+  PetscCall(PetscFree(names));
+  PetscFunctionReturn(0);
+}
+
 static PetscErrorCode ReadNamed(SchemaReader *r, const SchemaEntry *entry, const YamlNode *node, void *target)
 {
   PetscInt *count;
+  PetscBool not_there;
   char *item, path[512];
 
   PetscFunctionBeginUser;
@@ -247,6 +282,8 @@ static PetscErrorCode ReadNamed(SchemaReader *r, const SchemaEntry *entry, const
     *count += 1;
     PetscCall(PetscStrallocpy(child->key, (char **)item));
     SchemaCheckName(r, child, child->key, PETSC_TRUE);
+    PetscCall(NotThere(r, entry->table, child, &not_there));
+    if (not_there) continue;
     if (child->kind == YAML_MAPPING) PetscCall(SchemaReadTable(r, entry->table, child, item));
     else SchemaError(r, child, "%s must be a mapping {key: value, ...}", YamlPath(child, path, sizeof(path)));
   }

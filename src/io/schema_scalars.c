@@ -81,6 +81,27 @@ void SchemaMismatch(SchemaReader *r, const SchemaEntry *e, const YamlNode *node)
               SchemaExpected(e, r->dim, expected, sizeof(expected)), Describe(node, found, sizeof(found)));
 }
 
+/* Generous: a neutron star has 1e18 kg/m3, light 3e8 m/s. Beyond them sums and products run out of digits or of the machine's range, and
+ * a body does not even fall (docs/trust.md). */
+const SchemaMagnitude schema_magnitudes[] = {
+  {"kg/m3", 1e-15, 1e19}, {"Pa", 1e-30, 1e20}, {"N/m2", 0, 1e20},  {"N", 0, 1e30},   {"m", 0, 1e30}, {"m/s", 0, 3e8},
+  {"m/s2", 0, 1e15},      {"s", 1e-20, 1e20},  {"rad/s", 0, 1e15}, {"1/s", 0, 1e15}, {NULL, 0, 0},
+};
+
+static PetscBool CanBeMeant(SchemaReader *r, const SchemaEntry *e, const YamlNode *node, PetscReal value)
+{
+  const PetscReal size = PetscAbsReal(value);
+  const SchemaMagnitude *m = schema_magnitudes;
+  char path[512];
+  while (m->unit && (!e->unit || strcmp(m->unit, e->unit))) ++m;
+  if (e->endless || !m->unit || size == 0 || (size >= m->least && size <= m->most)) return PETSC_TRUE;
+  SchemaError(r, node, "%s: %g %s cannot be meant, nothing is %s than %g", YamlPath(node, path, sizeof(path)),
+              (double)value, e->unit, size > m->most ? "larger" : "smaller",
+              (double)(size > m->most ? m->most : m->least));
+  DiagHint(r->diag, "is it written in %s? Everything in a case file is in SI units", e->unit);
+  return PETSC_FALSE;
+}
+
 PetscBool SchemaNumber(SchemaReader *r, const SchemaEntry *e, const YamlNode *node, PetscReal *value)
 {
   if (!SchemaParseNumber(node, value)) {
@@ -88,7 +109,7 @@ PetscBool SchemaNumber(SchemaReader *r, const SchemaEntry *e, const YamlNode *no
     HintNumber(r, e, node);
     return PETSC_FALSE;
   }
-  if (InRange(e, *value)) return PETSC_TRUE;
+  if (InRange(e, *value)) return CanBeMeant(r, e, node, *value);
   SchemaMismatch(r, e, node);
   return PETSC_FALSE;
 }
@@ -126,6 +147,11 @@ static const SchemaWord *FindWord(SchemaReader *r, const SchemaEntry *e, const Y
 {
   const char *words[32] = {NULL};
   PetscInt n = 0;
+  for (const SchemaWord *w = e->later; w && w->word; ++w) {
+    if (node->kind != YAML_SCALAR || strcmp(node->text, w->word)) continue;
+    SchemaError(r, node, "%s", w->help);
+    return NULL;
+  }
   for (const SchemaWord *w = e->words; w->word && n < 31; ++w) {
     if (node->kind == YAML_SCALAR && !strcmp(node->text, w->word)) return w;
     words[n++] = w->word;

@@ -101,6 +101,7 @@ PetscErrorCode SchemaReadInterval(SchemaReader *r, const SchemaEntry *e, const Y
 
   PetscFunctionBeginUser;
   one.type = TYPE_NUMBER;
+  one.endless = PETSC_TRUE; /* from here to wherever */
   if (node->kind == YAML_SEQUENCE && node->n == 2) {
     if (SchemaNumber(r, &one, node->child[0], min) && SchemaNumber(r, &one, node->child[1], max) && *min > *max)
       SchemaError(r, node, "%s: the first number must not be larger than the second",

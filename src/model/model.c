@@ -49,6 +49,20 @@ static void check_ringing(const Case *c, const Material *material, Diag *diag)
   DiagHint(diag, "bossak: -0.1 damps that and little else");
 }
 
+/* Beyond the speed of light a step of a usual size crosses so many cells in waves that inertia drowns in the round-off of stiffness. */
+static void check_waves(const Case *c, const Material *material, Diag *diag)
+{
+  const PetscReal light = 3e8, speed = PetscSqrtReal(material->wave_modulus / material->density);
+  char path[256];
+  if (c->analysis.type != ANALYSIS_DYNAMIC || speed <= light) return;
+  PetscSNPrintf(path, sizeof path, "materials.%s", material->name);
+  DiagError(
+    diag, path,
+    "waves would run through '%s' at %.3g m/s, faster than light: its stiffness and its density cannot both be meant",
+    material->name, (double)speed);
+  DiagHint(diag, "a body that may count as rigid needs no more than waves much faster than its motion");
+}
+
 static PetscErrorCode CreateMaterials(Model *m, Diag *diag)
 {
   const Case *c = m->c;
@@ -61,6 +75,7 @@ static PetscErrorCode CreateMaterials(Model *m, Diag *diag)
     PetscCall(MaterialResolve(c, i, diag, material));
     if (!material->law) continue;
     check_ringing(c, material, diag);
+    check_waves(c, material, diag);
     m->n_state = PetscMax(m->n_state, material->law->n_state);
     if (!material->law->symmetric || (case_is_mixed(c) && material->volume == VOLUME_COUPLED))
       m->symmetric = PETSC_FALSE;
@@ -69,7 +84,8 @@ static PetscErrorCode CreateMaterials(Model *m, Diag *diag)
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode CreatePoints(Model *m, Diag *diag)
+/* outline: NULL where nobody asks how much material is above. */
+static PetscErrorCode CreatePoints(Model *m, Outline *outline, Diag *diag)
 {
   const Case *c = m->c;
   PointSeed *seed;
@@ -85,7 +101,7 @@ static PetscErrorCode CreatePoints(Model *m, Diag *diag)
   }
   PetscCall(PointsCreate(m->dim, m->n_state, 0, &m->points));
   if (m->formulation->pressure) m->points->components[POINT_PRESSURE] = 1; /* nothing is stored yet */
-  PetscCall(PointsSeed(m->points, m->grid, c, seed, diag));
+  PetscCall(PointsSeedOutlined(m->points, m->grid, c, seed, outline, diag));
   PetscCall(PetscFree2(seed, initial));
   PetscFunctionReturn(0);
 }
@@ -175,6 +191,20 @@ PetscErrorCode ModelDestroyFields(Model *m)
   PetscFunctionReturn(0);
 }
 
+/* Bodies become points, with the stress that they start with. */
+static PetscErrorCode CreateBodies(Model *m, Diag *diag)
+{
+  Outline outline = {0};
+  PetscInt errors;
+
+  PetscFunctionBeginUser;
+  PetscCall(CreatePoints(m, case_has_k0(m->c) ? &outline : NULL, diag));
+  PetscCall(DiagReduce(m->comm, diag, &errors));
+  if (!errors) PetscCall(InitialStress(m, &outline, diag));
+  PetscCall(OutlineClear(&outline));
+  PetscFunctionReturn(0);
+}
+
 /* Everything after the parts that stand alone; each may find mistakes that make the next meaningless. */
 static PetscErrorCode Build(Model *m, Diag *diag)
 {
@@ -189,13 +219,13 @@ static PetscErrorCode Build(Model *m, Diag *diag)
   m->formulation = FormulationFind(m->c->formulation);
   PetscCall(GridCreate(m->comm, m->c, cell_weight, (void *)m->c, diag, &m->grid));
   if (!m->grid) PetscFunctionReturn(0);
-  PetscCall(CreatePoints(m, diag));
+  PetscCall(CreateBodies(m, diag));
   PetscCall(DiagReduce(m->comm, diag, &errors));
   if (errors) PetscFunctionReturn(0);
-  PetscCall(InitialStress(m, diag));
   PetscCall(BoundaryCreate(m->grid, m->c, diag, &m->boundary));
   PetscCall(LoadsCreate(m->grid, m->c, m->points, diag, &m->loads));
   PetscCall(CreateTracers(m, diag));
+  ModelAdvise(m, diag);
   PetscCall(DiagReduce(m->comm, diag, &errors));
   if (errors) PetscFunctionReturn(0);
   if (m->method->couplings) PetscCall(ModelToCloud(m));

@@ -43,6 +43,11 @@ typedef struct {
   PetscInt lost;  /* iterations of tries that failed */
 } Tries;
 
+/* How far a static step moves the body per time, m/s: of the stiffest step, of the last one and of the one before it; 0: there was none. */
+typedef struct {
+  PetscReal least, last, before;
+} Softening;
+
 /* Body force per mass at the undeformed position X (dim) and time t, m/s2, besides gravity: a centrifuge, a manufactured solution. */
 typedef void (*BodyForce)(void *context, const PetscReal *X, PetscReal t, PetscReal *b);
 
@@ -94,7 +99,8 @@ typedef struct Model {
   Balance balance;
   PetscInt cuts, total_iterations; /* steps halved, Newton iterations (those of all tries), since the start */
   Tries tries;                     /* since the start */
-  PetscReal seconds[PHASE_N];      /* see ModelTimes */
+  Softening limit;
+  PetscReal seconds[PHASE_N]; /* see ModelTimes */
 } Model;
 
 /* Interrupted: given up because somebody asked for it; the model is as it was. */
@@ -106,7 +112,7 @@ typedef struct {
   PetscInt cuts; /* how often the step was halved */
   Tries tries;
   NewtonReport newton; /* of the last try */
-  char reason[512];    /* why the run gives up, in words */
+  char reason[768];    /* why the run gives up, in words */
   char leap[160];      /* why an equilibrium was not accepted, in words: newton.reason then points here */
   PetscReal imbalance; /* that made the step share the grid among the ranks anew; 0: it did not */
   PetscInt moved;      /* points that changed their rank for that */

@@ -34,8 +34,8 @@ PetscErrorCode GuessFromTables(Model *model, const Tables *tables, char reason[2
 PetscErrorCode ModelEnable(Model *model);
 /* Arrays that the step keeps over the nodes of a cloud, after its ghosts or owners changed. */
 PetscErrorCode ModelFollowCloud(Model *model);
-/* Geostatic stress of bodies that ask for it, as their law's state. */
-PetscErrorCode InitialStress(Model *model, Diag *diag);
+/* Collective. Geostatic stress of bodies that ask for it, as their law's state: of the material inside the outline that is above them. */
+PetscErrorCode InitialStress(Model *model, const Outline *outline, Diag *diag);
 /* Acceleration at t = 0 from the balance of momentum with lumped mass, so that a body in free fall falls from the first step on. */
 PetscErrorCode InitialAcceleration(Model *model);
 /* Collective. Body force of the points at time t, gathered at the nodes and added to force (owners). */
@@ -70,6 +70,12 @@ PetscErrorCode JudgeStep(const Model *model, StepReport *report);
 PetscErrorCode CheckHeld(const Model *model, Diag *diag);
 /* Collective. After the first step's clouds are known: tell which bodies hang on an obstacle from the start. */
 PetscErrorCode ModelWarnOfObstacles(const Model *model, Diag *diag);
+/* limit.c. Collective. After every accepted step: how soft has the body become? */
+PetscErrorCode LimitWatch(Model *model, PetscReal dt);
+/* Collective. Add to the reason of a static run that gives up that it may be at a limit load, if it looks like one. */
+PetscErrorCode LimitDescribe(const Model *model, StepReport *report);
+/* Warnings of what a case asks for and its user hardly means: advice.c. */
+void ModelAdvise(const Model *model, Diag *diag);
 /* Input of the weak form for the model's present arrays. */
 WeakFormInput weak_form_of(const Model *model, PetscReal inertia);
 /* Prescribed dofs, and nodes with unknowns that no material touches. */

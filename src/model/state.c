@@ -95,6 +95,18 @@ static PetscErrorCode TriesToTables(const Model *m, Tables *tables)
   PetscFunctionReturn(0);
 }
 
+/* How soft a static run had become; checkpoints without this table do not know. */
+static PetscErrorCode SofteningToTables(Model *m, Tables *tables)
+{
+  Table *table;
+
+  PetscFunctionBeginUser;
+  if (m->c->analysis.type != ANALYSIS_STATIC) PetscFunctionReturn(0);
+  PetscCall(TablesAdd(tables, "softening", PETSC_TRUE, 1, &table));
+  PetscCall(TableAdd(table, "least_last_before", "m/s", COLUMN_REAL, 3, &m->limit, NULL));
+  PetscFunctionReturn(0);
+}
+
 static void reaction_fields(Model *m, NodalField field[3])
 {
   field[0] = (NodalField){"reaction", "N", m->dim, m->reaction};
@@ -166,6 +178,7 @@ PetscErrorCode ModelToTables(Model *m, Tables *tables)
   PetscFunctionBeginUser;
   PetscCall(WholeToTables(m, tables));
   PetscCall(TriesToTables(m, tables));
+  PetscCall(SofteningToTables(m, tables));
   PetscCall(PointsToTable(m->points, m->grid, "points", tables));
   PetscCall(PointsToTable(m->tracers, m->grid, "tracers", tables));
   PetscCall(PointsToTable(m->loads->carriers, m->grid, "carriers", tables));
@@ -201,6 +214,17 @@ static PetscInt count_of(const Table *table, const char *name, char reason[256])
   const PetscInt64 value = data && table->rows == 1 ? *data : 0;
   if (!is_count(value)) snprintf(reason, 256, "%s/%s makes no sense", table->name, name);
   return (PetscInt)value;
+}
+
+static void softening_from_table(Model *m, const Table *table, char reason[256])
+{
+  if (!table || reason[0]) return;
+  const PetscReal *kept = TableData(table, "least_last_before", COLUMN_REAL, 3, reason);
+  if (!kept) return;
+  for (int k = 0; k < 3 && table->rows == 1; ++k)
+    if (!(kept[k] >= 0 && kept[k] <= PETSC_MAX_REAL)) snprintf(reason, 256, "softening makes no sense");
+  if (table->rows != 1) snprintf(reason, 256, "softening has %d rows", (int)table->rows);
+  else if (!reason[0]) m->limit = (Softening){.least = kept[0], .last = kept[1], .before = kept[2]};
 }
 
 /* Checkpoints of older programs did not count them. */
@@ -357,6 +381,7 @@ PetscErrorCode ModelFromTables(Model *m, Tables *tables, char reason[256])
   if (reason[0]) PetscFunctionReturn(0);
   whole_from_tables(m, TablesFind(tables, "model"), TablesFind(tables, "measures"), reason);
   tries_from_table(m, TablesFind(tables, "tries"), reason);
+  softening_from_table(m, TablesFind(tables, "softening"), reason);
   PetscCall(ReasonShare(m->comm, reason));
   if (m->grid->cloud && !reason[0]) {
     PetscCall(CloudBack(m, tables, reason));

@@ -52,6 +52,7 @@ static PetscErrorCode Accept(Model *m, PetscReal dt, StepReport *report)
   PetscCall(EnergyOfNodes(m, dt, &energy));
   store_reactions(m, dt);
   PetscCall(GuessLearn(m, dt));
+  PetscCall(LimitWatch(m, dt));
   WeakFormInput in = weak_form_of(m, 0);
   PetscCall(m->formulation->commit(&in, m->points, &status));
   PetscCheck(status == LAW_OK, PETSC_COMM_SELF, PETSC_ERR_PLIB, "a converged state could not be committed");
@@ -232,6 +233,7 @@ static PetscErrorCode Try(Model *m, PetscReal dt, StepReport *report)
   snprintf(report->reason, sizeof report->reason,
            "Newton did not converge with a step of %g s (%s), and half of it is less than analysis.smallest = %g s",
            (double)dt, report->newton.reason, (double)m->c->analysis.smallest);
+  PetscCall(LimitDescribe(m, report));
   PetscFunctionReturn(0);
 }
 

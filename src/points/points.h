@@ -5,6 +5,7 @@
 #pragma once
 #include "base/table.h"
 #include "grid/grid.h"
+#include "points/outline.h"
 
 typedef enum {
   POINT_X,      /* position, m: dim */
@@ -97,6 +98,9 @@ typedef struct {
 /* Initial velocity of a body at x: translation and rotation. */
 void body_velocity(const BodySpec *body, PetscInt dim, const PetscReal *x, PetscReal *v);
 PetscErrorCode PointsSeed(Points *points, const Grid *grid, const Case *c, const PointSeed *per_material, Diag *diag);
+/* The same, and the surface of the bodies' cells on this rank (NULL: not wanted). */
+PetscErrorCode PointsSeedOutlined(Points *points, const Grid *grid, const Case *c, const PointSeed *per_material,
+                                  Outline *outline, Diag *diag);
 
 /* Collective. Send every point to the rank owner[p]; those that stay keep their order, arrivals stand behind. */
 PetscErrorCode PointsTransfer(Points *points, const Grid *grid, const PetscMPIInt *owner);

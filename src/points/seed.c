@@ -103,12 +103,11 @@ static PetscErrorCode FindRegion(const Seeding *s, const GridSet **set)
   if (n_regions) PetscFunctionReturn(0);
   seed_path(s->b, "region", sizeof path, path);
   if (seed_tells(s->grid)) {
-    const char **names, *nearest;
+    const char **names;
     PetscCall(GridSetNames(s->source, &names));
-    nearest = *set ? NULL : DiagNearest(s->body->region, names);
     if (*set) DiagError(s->diag, path, "'%s' is a boundary, not a region: it has no cells", s->body->region);
     else DiagError(s->diag, path, "the mesh has no region '%s'", s->body->region);
-    if (nearest) DiagHint(s->diag, "did you mean '%s'?", nearest);
+    if (!*set) DiagHintNames(s->diag, s->body->region, names);
     PetscCall(PetscFree(names));
   }
   *set = NULL;
@@ -241,6 +240,8 @@ static PetscErrorCode SeedSource(Seeding *s, Points *points, PetscInt *taken, co
   }
   if (s->source == s->grid) PetscCall(SeedClaimCells(s, taken));
   PetscCall(SeedCells(s, points, per_material + s->material));
+  if (s->outline)
+    PetscCall(OutlineAdd(s->outline, s->source, s->n_cells, s->cells, s->b, per_material[s->material].density));
   PetscCall(AdvanceIds(s, next));
   PetscCall(PetscFree(s->cells));
   PetscFunctionReturn(0);
@@ -277,7 +278,8 @@ static PetscErrorCode LocateSeeds(Points *points, const Grid *grid, const Case *
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode PointsSeed(Points *points, const Grid *grid, const Case *c, const PointSeed *per_material, Diag *diag)
+PetscErrorCode PointsSeedOutlined(Points *points, const Grid *grid, const Case *c, const PointSeed *per_material,
+                                  Outline *outline, Diag *diag)
 {
   PetscInt *taken;
   PetscInt64 next = 0;
@@ -286,12 +288,20 @@ PetscErrorCode PointsSeed(Points *points, const Grid *grid, const Case *c, const
   PetscCall(PetscMalloc1(grid->n_cells, &taken));
   for (PetscInt k = 0; k < grid->n_cells; ++k) taken[k] = -1;
   for (PetscInt b = 0; b < c->n_bodies; ++b) {
-    Seeding s = {.c = c, .grid = grid, .diag = diag, .b = b, .body = c->bodies + b, .first_id = next};
+    Seeding s = {
+      .c = c, .grid = grid, .diag = diag, .b = b, .body = c->bodies + b, .first_id = next, .outline = outline};
     PetscCall(SeedBody(&s, points, taken, per_material, &next));
     if (s.body->mesh) own_mesh = PETSC_TRUE;
   }
   PetscCall(PetscFree(taken));
   if (own_mesh) PetscCall(LocateSeeds(points, grid, c, diag));
   PetscCall(PointsSort(points));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode PointsSeed(Points *points, const Grid *grid, const Case *c, const PointSeed *per_material, Diag *diag)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PointsSeedOutlined(points, grid, c, per_material, NULL, diag));
   PetscFunctionReturn(0);
 }

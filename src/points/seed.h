@@ -17,6 +17,7 @@ typedef struct {
   PetscReal xi[3 * SEED_MAX_RULE], weight[SEED_MAX_RULE];
   PetscBool equal; /* a cell's volume is shared equally among its points */
   PetscInt64 first_id;
+  Outline *outline; /* gets the surface of these cells; NULL: nobody wants it */
 } Seeding;
 
 /* Volume that a cell stands for: area times unit thickness, or the full circle. */

@@ -102,13 +102,14 @@ static PetscErrorCode IsComplete(const Run *r, PetscBool *complete)
 }
 
 /* No checkpoint is there: a run that is complete stays as it is, any other one starts again. */
-static PetscErrorCode StartAgain(Run *r, const RunOptions *options, Diag *diag, PetscBool *complete)
+static PetscErrorCode StartAgain(Run *r, const RunOptions *options, const Extension *extension, Diag *diag,
+                                 PetscBool *complete)
 {
   RunOptions again = *options;
 
   PetscFunctionBeginUser;
   PetscCall(IsComplete(r, complete));
-  if (*complete) PetscCall(RunDirLog(r->dir, "the run is complete and has left no checkpoint: nothing to resume"));
+  if (*complete) extension_without_checkpoint(r, extension, diag);
   if (*complete) PetscFunctionReturn(0);
   PetscCall(OutputDestroy(&r->output));
   PetscCall(RunDirDestroy(&r->dir));
@@ -121,16 +122,20 @@ static PetscErrorCode StartAgain(Run *r, const RunOptions *options, Diag *diag, 
 PetscErrorCode RunResume(Run *r, const RunOptions *options, Diag *diag, PetscBool *complete)
 {
   PetscMPIInt size;
-  PetscInt step, errors;
-  PetscBool fits;
+  PetscInt step = -1, errors;
+  PetscBool fits = PETSC_FALSE;
+  Extension extension;
 
   PetscFunctionBeginUser;
   PetscCall(RunDirOpen(r->comm, options->out, options->quiet, options->log, diag, &r->dir));
   if (!r->dir) PetscFunctionReturn(0);
+  PetscCall(ExtensionBegin(r, &extension));
   PetscCall(OutputCreate(r->model, RunDirPath(r->dir), &r->output)); /* node positions at the start */
-  PetscCall(CheckpointLoad(r, diag, &step, &fits));
-  if (fits && step < 0) PetscCall(StartAgain(r, options, diag, complete));
-  if (fits && step >= 0) PetscCall(Rewind(r, step, diag));
+  if (extension_allowed(r, &extension, diag)) PetscCall(CheckpointLoad(r, diag, &step, &fits));
+  if (fits && step < 0) PetscCall(StartAgain(r, options, &extension, diag, complete));
+  if (fits && step >= 0) extension_from_checkpoint(r, &extension, diag);
+  PetscCall(DiagReduce(r->comm, diag, &errors));
+  if (fits && step >= 0 && !errors) PetscCall(Rewind(r, step, diag));
   PetscCall(DiagReduce(r->comm, diag, &errors));
   if (errors || !r->dir || step < 0) {
     if (errors) PetscCall(RunDirDestroy(&r->dir));

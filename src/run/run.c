@@ -161,13 +161,21 @@ static PetscErrorCode Advance(Run *r)
   PetscFunctionReturn(0);
 }
 
-/* A run that ended and had a checkpoint leaves one of its end: with a later end it can go on. */
+/* May the run go on to a later end some day? A static one would have to take all its steps again. Whoever switches all rules of checkpoints
+ * off wants none. */
+static PetscBool may_go_on(const Run *r)
+{
+  const CheckpointSpec *spec = &r->c->checkpoint;
+  return r->c->analysis.type == ANALYSIS_DYNAMIC && (spec->minutes > 0 || spec->steps > 0) ? PETSC_TRUE : PETSC_FALSE;
+}
+
+/* A run that ended and had a checkpoint, or may go on to a later end, leaves one of its end. */
 static PetscErrorCode Close(Run *r, PetscReal *measures)
 {
   PetscReal seconds;
 
   PetscFunctionBeginUser;
-  if (!r->failed && r->n_written) PetscCall(CheckpointSave(r));
+  if (!r->failed && (r->n_written || may_go_on(r))) PetscCall(CheckpointSave(r));
   if (r->row_step == r->model->step) PetscCall(Measure(r)); /* a resumed run may have nothing left to do */
   PetscCall(RunWriteRow(r));
   PetscCall(RunWriteState(r));
@@ -223,6 +231,7 @@ PetscErrorCode RunCase(MPI_Comm comm, const Case *c, const RunOptions *options, 
   *result = RUN_BAD_INPUT;
   PetscCall(ModelCreate(comm, c, diag, &run.model));
   if (!run.model) PetscFunctionReturn(0);
+  if (options->warnings) PetscCall(DiagFlush(diag, options->warnings));
   signals_watch();
   run.model->asked = signals_came;
   PetscCall(RunModel(&run, options, diag, measures, result));

@@ -19,6 +19,7 @@ typedef struct {
   PetscBool resume; /* go on in it, from its newest checkpoint; the case is that of the directory */
   PetscBool force;  /* replace a run that is there */
   PetscBool quiet;
+  FILE *warnings;      /* gets what diag knows before the first step; NULL: the caller prints it */
   const char *log;     /* file, or NULL: log.txt in the run directory */
   RunSummary *summary; /* out: filled in unless NULL; the same on all ranks but for the seconds */
 } RunOptions;

@@ -47,6 +47,20 @@ PetscErrorCode RunOpen(Run *r, const RunOptions *options, Diag *diag);
 /* Collective. The same for a run that goes on from its newest checkpoint that is whole. *complete: there is nothing to do. */
 PetscErrorCode RunResume(Run *r, const RunOptions *options, Diag *diag, PetscBool *complete);
 
+/* Ends of a run that is resumed, s: that of the case kept in its directory, and the one asked for now. */
+typedef struct {
+  PetscReal before, now;
+} Extension;
+
+/* Collective. */
+PetscErrorCode ExtensionBegin(const Run *r, Extension *extension);
+/* May the run have this end? An error if not. */
+PetscBool extension_allowed(const Run *r, const Extension *extension, Diag *diag);
+/* What to say of a run that is complete: an error if it was to go on to a later end and cannot. */
+void extension_without_checkpoint(const Run *r, const Extension *extension, Diag *diag);
+/* After the model is back: an error if it is past the end asked for, a warning if it is there. */
+void extension_from_checkpoint(const Run *r, const Extension *extension, Diag *diag);
+
 /* Is it time for a checkpoint by the clock? On rank 0, who alone knows the time. */
 PetscBool checkpoint_by_clock(const Run *r);
 PetscBool checkpoint_by_step(const Run *r);

@@ -29,6 +29,7 @@ PetscErrorCode SummaryBegin(Model *m, RunDir *dir)
   PetscCall(ModelCountPoints(m, &points));
   PetscCallMPI(MPI_Comm_size(m->comm, &size));
   if (m->c->title) PetscCall(RunDirLog(dir, "title = %s", m->c->title));
+  if (case_has_k0(m->c)) PetscCall(RunDirLog(dir, "gravity = from the start, whose stress k0 gives"));
   PetscCall(RunDirLog(dir, "method = %s", m->method->name));
   PetscCall(RunDirLog(dir, "cells = %d nodes = %d points = %d ranks = %d", (int)m->grid->n_cells_global,
                       (int)m->grid->n_nodes_global, (int)points, (int)size));

@@ -42,6 +42,9 @@ static void Create(void **state)
   c = Good("bodies[1]={name: two, shape: {box: {min: [2, 0], max: [3, 1]}}, material: rubber}");
   assert_int_equal(c->n_bodies, 2);
   CaseDestroy(&c);
+  c = Good("materials.steel={law: neo-hookean, density: 7850, young: 2e11, poisson: 0.3}");
+  assert_int_equal(c->n_materials, 2);
+  CaseDestroy(&c);
   c = Good("petsc.ksp_type=cg");
   assert_string_equal(c->petsc[0], "-ksp_type cg");
   CaseDestroy(&c);
@@ -81,6 +84,12 @@ static void Mistakes(void **state)
     {"materials.rubber.yung=1",
      "--set materials.rubber.yung=1: error: key 'yung' of materials.rubber is not known\n  hint: did you mean "
      "'young'?"},
+    {"materials.ruber.young=1",
+     "--set materials.ruber.young=1: error: there is no 'ruber' in materials\n  hint: did you mean 'rubber'? There are: "
+     "rubber\n"},
+    {"materials.rubber={young: 1}", "error: key 'law' of materials.rubber is missing"},
+    {"measures.tip.of.tracer=[0, 0]",
+     "--set measures.tip.of.tracer=[0, 0]: error: there is no 'tip' in measures\n  hint: there are no names\n"},
     {"newton.ease=many", "--set newton.ease=many: error: newton.ease must be a whole number >= 0, not 'many'"},
     {"newton.ease=", "not empty"},
     {"newton", "there is no '='"},

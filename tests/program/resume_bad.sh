@@ -65,7 +65,7 @@ same "complete"
 rm cut/checkpoint_*
 cp -r cut kept
 expect "complete, no checkpoint" 0 "$talus" run --resume cut
-says out.txt "the run is complete and has left no checkpoint"
+says err.txt "warning: the run in 'cut' is complete and has left no checkpoint: there is nothing to resume"
 rm cut/log.txt kept/log.txt
 diff -r cut kept || fail "$name: something changed"
 rm -r kept
@@ -77,6 +77,31 @@ expect "a later end" 0 "$talus" run --resume cut --quiet --set analysis.end=0.12
 awk -f "$compare" longer/history.csv cut/history.csv || fail "$name: differs"
 says cut/case.yaml "end: 0.12"
 [ "$(grep -c '"name"' cut/points.hdf.series)" -eq 7 ] || fail "$name: states"
+
+# A run that ended before its first checkpoint was due leaves one of its end, too: to the last bit the run that had the later end from the start
+sed 's/end: 0.08/end: 0.12/' block.yaml >later.yaml
+expect "short" 0 "$talus" run block.yaml --out short --quiet
+expect "complete, with its checkpoint" 0 "$talus" run --resume short --quiet
+says err.txt "warning: the run in 'short' is complete at t = 0.08 s: there is nothing left to do" "--set analysis.end=..."
+expect "short goes on" 0 "$talus" run --resume short --quiet --set analysis.end=0.12
+[ ! -s err.txt ] || fail "$name: it complains"
+expect "later from the start" 0 "$talus" run later.yaml --out later --quiet
+for file in $(cd later && ls history.csv *.hdf *.series); do cmp -s later/$file short/$file || fail "$name: $file differs"; done
+expect "an earlier end" 2 "$talus" run --resume short --set analysis.end=0.1
+says err.txt "the run in 'short' has come to t = 0.12 s already, later than analysis.end = 0.1 s"
+grep -q "end: 0.12 " short/case.yaml || fail "$name: the case has changed"
+expect "without checkpoints" 0 "$talus" run block.yaml --out bare --quiet --set checkpoint.minutes=0
+ls bare/checkpoint_* >/dev/null 2>&1 && fail "$name: there is one"
+expect "a later end without a checkpoint" 2 "$talus" run --resume bare --quiet --set analysis.end=0.12
+says err.txt "is complete at t = 0.08 s and has left no checkpoint from which it could go on to 0.12 s" "talus run bare/case.yaml --out ANOTHER --set analysis.end=0.12"
+cantilever >beam.yaml
+expect "statics" 0 "$talus" run beam.yaml --out beam --quiet
+expect "a later end in statics" 2 "$talus" run --resume beam --quiet --set analysis.end=2
+says err.txt "a static run cannot go on to another end than its own, 1 s" "talus run beam/case.yaml --out ANOTHER"
+expect "more steps in statics" 2 "$talus" run --resume beam --quiet --set analysis.steps=2
+says err.txt "a resumed run cannot change analysis.steps" "for all else start a new run"
+expect "nothing to do in statics" 0 "$talus" run --resume beam --quiet
+says err.txt "there is nothing to resume"
 
 # What makes no sense is said, and nothing is touched
 rm -r cut && cp -r whole cut

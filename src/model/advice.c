@@ -1,0 +1,113 @@
+/* What a model would do without a word, and its user hardly means: said before the first step. */
+#include "model/model_private.h"
+
+#define NEARLY_INCOMPRESSIBLE 0.49
+
+static const char *const cells_plural[4] = {"triangles", "quadrilaterals", "tetrahedra", "hexahedra"};
+
+static const NamedValue *constant(const MaterialSpec *spec, const char *name)
+{
+  for (PetscInt i = 0; i < spec->n_parameters; ++i)
+    if (!strcmp(spec->parameters[i].name, name)) return &spec->parameters[i];
+  return NULL;
+}
+
+/* Does the material flow without change of volume? *key: what makes it so. */
+static PetscBool flows_at_constant_volume(const MaterialSpec *spec, const Material *material, const char **key)
+{
+  const NamedValue *friction = constant(spec, "friction_angle");
+  const Law *law = material->law;
+  if (!law->yields || (friction && friction->value > 0)) return PETSC_FALSE;
+  if (!friction && (!law->volume_law || law->volume_law(material->parameters) == VOLUME_COUPLED)) return PETSC_FALSE;
+  *key = friction ? "friction_angle" : "law";
+  return PETSC_TRUE;
+}
+
+/* Does each cell have more points at which its volume would have to stay than motions to obey them? A single point in a quadrilateral or
+ * hexahedron asks for little (and holds little: see seeding). */
+static PetscBool cells_lock(const Model *m, const BodySpec *body)
+{
+  const PetscBool simplex =
+    m->grid->type == CELL_TRIANGLE || m->grid->type == CELL_TETRAHEDRON ? PETSC_TRUE : PETSC_FALSE;
+  return simplex || body->points_per_cell > 1 ? PETSC_TRUE : PETSC_FALSE;
+}
+
+static void hint_mixed(const Model *m, const Material *material, Diag *diag)
+{
+  if (!material->law->volume)
+    DiagHint(diag,
+             "the law %s has no mixed form: a law that has one (see `talus list laws`), or a material that is less "
+             "stiff against changes of volume",
+             material->law->name);
+  else if (m->method->couplings)
+    DiagHint(diag,
+             "method %s has no mixed form: take mpm or fem with `formulation: mixed`, or a material that is less "
+             "stiff against changes of volume",
+             m->method->name);
+  else DiagHint(diag, "`formulation: mixed` keeps that away");
+}
+
+/* Measured (the footing of tests/program/traps.sh): quadrilaterals with four points, and triangles, carry six times Prandtl's load and show no
+ * limit. */
+static void advise_locking(const Model *m, const BodySpec *body, PetscInt i, Diag *diag)
+{
+  const MaterialSpec *spec = &m->c->materials[i];
+  const Material *material = &m->materials[i];
+  const char *key = "poisson", *what;
+  char path[256];
+  if (m->formulation->pressure || !cells_lock(m, body)) return;
+  if (flows_at_constant_volume(spec, material, &key)) what = "yields without any change of its volume";
+  else if (material->elastic.poisson >= NEARLY_INCOMPRESSIBLE) what = "hardly changes its volume";
+  else return;
+  if (!constant(spec, key) && strcmp(key, "law")) key = "bulk"; /* poisson follows from it */
+  PetscSNPrintf(path, sizeof path, "materials.%s.%s", spec->name, key);
+  DiagWarning(diag, path,
+              "'%s' %s: with displacements as the only unknowns %s lock, so that the body is too stiff and carries too "
+              "much, often several times",
+              spec->name, what, m->method->couplings ? "clouds" : cells_plural[m->grid->type]);
+  hint_mixed(m, material, diag);
+}
+
+/* --- which way is down? --- */
+static const char *const sides[3][2] = {{"left", "right"}, {"bottom", "top"}, {"front", "back"}};
+
+/* Does the entry hold that component of nodes on that side of the box? Of a shape it is believed. */
+static PetscBool holds_side(const Grid *grid, const MotionSpec *entry, PetscInt axis, int high)
+{
+  const PetscReal at = high ? grid->max[axis] : grid->min[axis], slack = 1e-9 * (grid->max[axis] - grid->min[axis]);
+  if (!entry->component[axis] && entry->kind != MOTION_ROTATION) return PETSC_FALSE;
+  if (entry->on.boundary) return strcmp(entry->on.boundary, sides[axis][high]) ? PETSC_FALSE : PETSC_TRUE;
+  if (!entry->on.has[axis]) return PETSC_TRUE;
+  return at >= entry->on.min[axis] - slack && at <= entry->on.max[axis] + slack ? PETSC_TRUE : PETSC_FALSE;
+}
+
+/* A floor by its name, while gravity points elsewhere and nothing is held there. */
+static void advise_floor(const Model *m, Diag *diag)
+{
+  const Case *c = m->c;
+  const PetscReal *g = c->gravity;
+  PetscInt axis = 0;
+  char path[64];
+  for (PetscInt d = 1; d < 3; ++d)
+    if (PetscAbsReal(g[d]) > PetscAbsReal(g[axis])) axis = d;
+  const int high = g[axis] > 0;
+  if (m->dim < 3 || !m->grid->box || g[axis] == 0 || PetscAbsReal(g[1]) > 1e-6 * PetscAbsReal(g[axis])) return;
+  for (PetscInt k = 0; k < c->n_boundary; ++k)
+    if (holds_side(m->grid, &c->boundary[k], axis, high)) return;
+  for (PetscInt k = 0; k < c->n_boundary; ++k) {
+    if (!c->boundary[k].on.boundary || strcmp(c->boundary[k].on.boundary, "bottom")) continue;
+    PetscSNPrintf(path, sizeof path, "boundary[%d].on.boundary", (int)k);
+    DiagWarning(diag, path,
+                "'bottom' is the side of the lowest y, but gravity points along %c%c, where nothing is held",
+                high ? '+' : '-', "xyz"[axis]);
+    DiagHint(diag, "there the side is called '%s'; or let y be vertical: gravity: [0, -9.81, 0]", sides[axis][high]);
+  }
+}
+
+void ModelAdvise(const Model *m, Diag *diag)
+{
+  for (PetscInt b = 0; b < m->c->n_bodies; ++b)
+    for (PetscInt i = 0; i < m->c->n_materials; ++i)
+      if (!strcmp(m->c->bodies[b].material, m->c->materials[i].name)) advise_locking(m, &m->c->bodies[b], i, diag);
+  advise_floor(m, diag);
+}

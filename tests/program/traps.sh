@@ -1,0 +1,207 @@
+#!/bin/sh
+# What is right by the letter and hardly meant is said where the user stands, and what is meant is not cried at.
+. "$(dirname "$0")/library.sh"
+
+# warned NAME TEXT... -- OPTION...: `check` of case.yaml passes, and warns with all these texts; without a text it must be silent.
+warned() {
+  name=$1
+  shift
+  : >texts.txt
+  while [ "$1" != -- ]; do
+    echo "$1" >>texts.txt
+    shift
+  done
+  shift
+  expect "$name" 0 "$talus" check case.yaml "$@"
+  while read -r text; do says err.txt "$text"; done <texts.txt
+  [ -s texts.txt ] || [ ! -s err.txt ] || fail "$name: it warns"
+}
+
+# --- a slope of 10 m on 10 m of ground, held by rollers: its first stress is that of what is there ---
+cat >case.yaml <<'END'
+kinematics: plane-strain
+method: mpm
+analysis: {type: static, steps: 1}
+grid: {box: {min: [0, 0], max: [40, 22]}, size: 1}
+bodies:
+  - {name: soil, shape: {polygon: [[0, 0], [40, 0], [40, 10], [25, 10], [15, 20], [0, 20]]}, material: soil, k0: 0.5}
+materials:
+  soil: {law: mohr-coulomb, density: 2000, young: 1e8, poisson: 0.3, friction_angle: 35, cohesion: 20e3}
+boundary:
+  - {name: floor, on: {boundary: bottom}, fix: [x, y]}
+  - {on: {x: 0}, fix: [x]}
+  - {on: {x: 40}, fix: [x]}
+loads: {gravity: [0, -9.81]}
+measures:
+  weight: {mass: total}
+  floor: {reaction: y, of: {boundary: floor}}
+  crest: {displacement: y, of: {tracer: [5, 19]}}
+  dissipated: {energy: dissipated}
+END
+# last COLUMN: of the last row.
+last() { tail -n 1 run/history.csv | cut -d, -f "$1"; }
+instant='analysis={type: dynamic, end: 1e-5, step: 1e-5}'
+for ranks in 1 2 3; do
+  expect "a slope on $ranks" 0 on_ranks $ranks "$talus" run case.yaml --out run --force --quiet --set "$instant"
+  awk -v m="$(last 3)" -v r="$(last 4)" 'BEGIN { d = r / (m * 9.81) - 1; exit !(d < 1e-9 && d > -1e-9) }' ||
+    fail "$name: the floor carries $(last 4) N of $(last 3) kg"
+done
+expect "a slope in statics" 0 "$talus" run case.yaml --out run --force --quiet
+says run/case.yaml "gravity_amplitude: [[0, 1]]"
+says run/log.txt "gravity = from the start, whose stress k0 gives"
+awk -v u="$(last 5)" -v d="$(last 6)" 'BEGIN { exit !(u < 0 && u > -0.005 && d >= 0) }' || fail "$name: the crest moves by $(last 5) m, dissipated $(last 6) J"
+warned "a surface where it is" -- --set 'bodies[0].surface=20'
+warned "a surface that is not there" "warning: the highest material above 'soil' ends at a height of 20 m, not at 30 m" \
+  "loads.tractions" -- --set 'bodies[0].surface=30'
+expect "k0 under gravity that grows" 2 "$talus" check case.yaml --set 'loads.gravity_amplitude=[[0, 0], [1, 1]]'
+says err.txt "gravity is 0 at the start, but k0 of 'soil' gives the stress that carries it" "leave gravity_amplitude out"
+expect "k0 without gravity" 2 "$talus" check case.yaml --set 'loads.gravity=[0, 0]'
+says err.txt "k0 gives 'soil' the stress that carries its weight, but there is no gravity"
+
+# --- locking ---
+cat >case.yaml <<'END'
+kinematics: plane-strain
+method: fem
+analysis: {type: static, end: 1, step: 0.1}
+grid: {box: {min: [0, -3], max: [5, 0]}, size: 0.25}
+bodies:
+  - {name: soil, shape: {box: {min: [0, -3], max: [5, 0]}}, material: clay, points_per_cell: 4}
+materials:
+  clay: {law: mohr-coulomb, density: 1e-3, young: 1e5, poisson: 0.3, friction_angle: 0, cohesion: 100}
+boundary:
+  - {on: {boundary: bottom}, fix: [x, y]}
+  - {on: {x: 0}, fix: [x]}
+  - {on: {x: 5}, fix: [x]}
+loads: {tractions: [{on: {body: soil, x: [0, 1], y: 0}, value: [0, -1000]}]}
+END
+warned "undrained clay" "case.yaml:8:86: warning: 'clay' yields without any change of its volume: with displacements as the only unknowns quadrilaterals lock" \
+  '`formulation: mixed` keeps that away' --
+warned "triangles" "triangles lock" -- --set grid.cell=triangle --set 'bodies[0].points_per_cell=3'
+warned "clouds" "clouds lock" "method gmm has no mixed form: take mpm or fem" -- --set method=gmm
+warned "J2" "'clay' yields without any change of its volume" -- \
+  --set 'materials.clay={law: j2, density: 1, young: 1e5, poisson: 0.3, yield_stress: 100}'
+warned "rubber" "'clay' hardly changes its volume" -- --set 'materials.clay={law: neo-hookean, density: 1, young: 1e5, poisson: 0.49}'
+warned "rubber by its moduli" "'clay' hardly changes its volume" -- --set 'materials.clay={law: neo-hookean, density: 1, bulk: 1e6, shear: 1e4}'
+warned "mixed" -- --set formulation=mixed
+warned "friction" -- --set materials.clay.friction_angle=20
+warned "an ordinary solid" -- --set 'materials.clay={law: neo-hookean, density: 1, young: 1e5, poisson: 0.45}'
+
+# --- a limit load: Prandtl's is 5.14 c, that is 0.514 of this one; eight cells under half the footing are 8 % too strong, four 13 % ---
+expect "beyond Prandtl's load" 1 "$talus" run case.yaml --out run --force --quiet --set formulation=mixed --set grid.size=0.125
+says err.txt "This may be a limit load, at load factor 0.55" "as far as at first"
+expect "stopped for another reason" 1 "$talus" run case.yaml --out run --force --quiet --set formulation=mixed --set newton.max_iterations=2
+says err.txt "the run gave up"
+lacks err.txt "limit load"
+expect "not begun" 1 "$talus" run case.yaml --out run --force --quiet --set formulation=mixed --set newton.max_iterations=1 --set analysis.step=1
+lacks err.txt "limit load" "nan"
+# a bar that yields all at once, at 2 c in plane strain: half of the traction
+cat >case.yaml <<'END'
+kinematics: plane-strain
+method: fem
+formulation: mixed
+analysis: {type: static, end: 1, step: 0.1}
+grid: {box: {min: [0, 0], max: [1, 2]}, size: 0.5}
+bodies:
+  - {name: bar, shape: {box: {min: [0, 0], max: [1, 2]}}, material: clay}
+materials:
+  clay: {law: mohr-coulomb, density: 1e-3, young: 1e6, poisson: 0.3, friction_angle: 0, cohesion: 100}
+boundary:
+  - {on: {boundary: bottom}, fix: [y]}
+  - {on: {x: 0}, fix: [x]}
+loads: {tractions: [{on: {body: bar, y: 2}, value: [0, 400]}]}
+END
+expect "a bar" 1 "$talus" run case.yaml --out run --force --quiet
+says err.txt "This may be a limit load, at load factor 0.4999"
+expect "a bar that is pulled by its end" 0 "$talus" run case.yaml --out run --force --quiet --set loads={} \
+  --set 'boundary[2]={on: {y: 2}, displacement: {y: 0.1}}'
+
+# --- which way is down ---
+cat >case.yaml <<'END'
+kinematics: 3d
+method: mpm
+analysis: {type: static}
+grid: {box: {min: [0, 0, 0], max: [1, 1, 1]}, size: 0.5}
+bodies:
+  - {name: block, shape: {box: {min: [0, 0, 0], max: [1, 1, 1]}}, material: rubber}
+materials:
+  rubber: {law: neo-hookean, density: 1000, young: 1e6, poisson: 0.3}
+boundary:
+  - {on: {boundary: bottom}, fix: [x, y, z]}
+loads: {gravity: [0, 0, -9.81]}
+END
+warned "a floor beside gravity" "case.yaml:10:21: warning: 'bottom' is the side of the lowest y, but gravity points along -z, where nothing is held" \
+  "there the side is called 'front'" --
+warned "a floor below" -- --set 'loads.gravity=[0, -9.81, 0]'
+warned "a wall beside a floor" -- --set 'boundary[1]={on: {z: 0}, fix: [z]}'
+warned "a slope" -- --set 'loads.gravity=[0, -5, -8]'
+
+# --- names ---
+cantilever >case.yaml
+expect "a side" 2 "$talus" check case.yaml --set 'boundary[0].on={boundary: rigth}'
+says err.txt "a box has no boundary 'rigth'" "did you mean 'right'? There are: left, right, bottom, top"
+expect "a list" 2 "$talus" list lawss
+says err.txt "did you mean 'laws'?"
+plate 1
+for wrong in "grid.parameters.hh=0.1 grid.parameters.hh=0.1: error: the .geo of the case has no use for a number 'hh'|did you mean 'h'? There are: h" \
+  "boundary[0].on.boundary=wal the grid has no boundary or region named 'wal'|did you mean 'wall'? There are: " \
+  "loads.tractions[0].on.boundary=sky the grid has no boundary or region named 'sky'|there are: wall, edge, plate" \
+  "bodies[0].region=plat the mesh has no region 'plat'|did you mean 'plate'? There are: "; do
+  expect "${wrong%% *}" 2 "$talus" check case.yaml --set "${wrong%% *}"
+  text=${wrong#* }
+  says err.txt "${text%|*}" "${text#*|}"
+done
+
+# --- cells in cells ---
+cat >over.msh <<'END'
+$MeshFormat
+2.2 0 8
+$EndMeshFormat
+$Nodes
+8
+1 0 0 0
+2 1 0 0
+3 1 1 0
+4 0 1 0
+5 0.36 0 0
+6 1.36 0 0
+7 1.36 1 0
+8 0.36 1 0
+$EndNodes
+$Elements
+2
+11 3 2 1 1 1 2 3 4
+12 3 2 1 1 5 6 7 8
+$EndElements
+END
+cat >case.yaml <<'END'
+kinematics: plane-strain
+method: fem
+analysis: {type: static}
+grid: {mesh: over.msh}
+bodies:
+  - {name: plate, shape: {box: {min: [0, 0], max: [1.36, 1]}}, points_per_cell: 4, material: rubber}
+materials:
+  rubber: {law: neo-hookean, density: 1000, young: 1e6, poisson: 0.3}
+boundary:
+  - {on: {x: 0}, fix: [x, y]}
+END
+expect "cells in cells" 2 "$talus" check case.yaml
+says err.txt "case.yaml:4:14: error: 2 of 2 cells overlap others, so that material there would count twice: elements 11 and 12 share ("
+sed -i 's/^5 0.36/5 1/; s/^6 1.36/6 2/; s/^7 1.36/7 2/; s/^8 0.36/8 1/; s/5 6 7 8/2 6 7 3/' over.msh
+expect "cells side by side" 0 "$talus" check case.yaml --set 'bodies[0].shape.box.max=[2, 1]'
+says out.txt "mass 2000 kg"
+expect "a number for a .msh" 2 "$talus" check case.yaml --set grid.parameters.h=1
+says err.txt "parameters are for a .geo; a .msh takes none"
+
+# --- numbers that cannot be meant together (each by itself: io/test_case_bad) ---
+block >case.yaml
+expect "waves faster than light" 2 "$talus" check case.yaml --set materials.rubber.density=1e-14
+says err.txt "case.yaml:10:3: error: waves would run through 'rubber' at 5.19e+09 m/s, faster than light"
+# at the bounds a body still falls: 5 cm in 0.1 s
+for extreme in young=6e19 density=1e-10; do
+  expect "free fall with $extreme" 0 "$talus" run case.yaml --out run --force --quiet --set materials.rubber.$extreme --set boundary=[] --set bodies[0].spin=0 \
+    --set bodies[0].velocity='[0, 0]' --set loads.gravity='[0, -10]' --set analysis.end=0.1 --set 'measures={y: {displacement: y, of: {tracer: [1, 0.75]}}}'
+  awk -v y="$(last 3)" 'BEGIN { exit !(y < -0.04999999 && y > -0.05000001) }' || fail "$name: by $(last 3) m"
+done
+
+finish
