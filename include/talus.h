@@ -137,6 +137,15 @@ int TalusCaseOpen(const char *file, int n_set, const char *const *set, TalusCase
 int TalusCaseClose(TalusCase **c);
 
 /**
+ * @brief Let the Gmsh script (.geo) of the case run programs and write files, as `--trust` does. Not collective.
+ *
+ * Without it a script that does so is refused when the model is made. Before TalusModelCreate() and TalusRunCase(),
+ * on every rank.
+ * @param c  the case
+ */
+int TalusCaseTrust(TalusCase *c);
+
+/**
  * @brief Number of measures that the case asks for. Not collective.
  * @param c  the case
  * @param n  result

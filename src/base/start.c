@@ -13,21 +13,22 @@ PetscErrorCode StartPetsc(int *argc, char ***argv)
   return code;
 }
 
-/* Who asks for the files, or against them, knows. */
-static PetscBool is_told_of(void)
+/* Who asks for a file of options, or against those that PETSc looks for, knows. */
+static PetscBool is_told_of(int argc, char **argv)
 {
   const char *options = getenv("PETSC_OPTIONS");
-  PetscBool named = PETSC_FALSE;
   if (options && strstr(options, "-skip_petscrc")) return PETSC_TRUE;
-  return PetscOptionsHasName(NULL, NULL, "-options_file", &named) || named ? PETSC_TRUE : PETSC_FALSE;
+  for (int i = 1; i < argc; ++i)
+    if (!strcmp(argv[i], "-options_file") || !strcmp(argv[i], "-skip_petscrc")) return PETSC_TRUE;
+  return PETSC_FALSE;
 }
 
-const char *start_unread_file(char path[PETSC_MAX_PATH_LEN])
+const char *start_unread_file(int argc, char **argv, char path[PETSC_MAX_PATH_LEN])
 {
   static const char *const names[] = {"petscrc", ".petscrc"};
   const char *home = getenv("HOME");
   path[0] = '\0';
-  if (is_told_of()) return path;
+  if (is_told_of(argc, argv)) return path;
   for (size_t i = 0; i < 2; ++i)
     if (!access(names[i], R_OK)) return strcpy(path, names[i]);
   snprintf(path, PETSC_MAX_PATH_LEN, "%s/.petscrc", home ? home : "");

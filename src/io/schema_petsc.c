@@ -7,7 +7,8 @@ static void Unknown(SchemaReader *r, const YamlNode *node, const char *name)
 {
   char nearest[64];
   SchemaKeyError(r, node, "a case file may not set the PETSc option '%.80s'", name);
-  if (petsc_option_nearest(name, nearest)) DiagHint(r->diag, "did you mean '%s'?", nearest);
+  if (petsc_option_nearest(name, nearest))
+    DiagHint(r->diag, "did you mean '%s'? Options that do not solve or print belong on the command line", nearest);
   else
     DiagHint(r->diag,
              "it may choose solvers, set their tolerances and print on the terminal; other options of PETSc belong on "

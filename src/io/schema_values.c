@@ -252,6 +252,8 @@ PetscErrorCode SchemaReadNumbers(SchemaReader *r, const SchemaEntry *e, const Ya
   *(PetscInt *)((char *)target + e->count) = node->n;
   for (PetscInt i = 0; i < node->n; ++i) {
     PetscCall(PetscStrallocpy(node->child[i]->key, &(*values)[i].name));
+    if (node->child[i]->key[0] == '-') /* gmsh would take it for an option of its own */
+      SchemaKeyError(r, node->child[i], "the name '%.60s' begins with '-'", node->child[i]->key);
     SchemaCheckName(r, node->child[i], node->child[i]->key, PETSC_TRUE);
     SchemaNumber(r, &number, node->child[i], &(*values)[i].value);
   }

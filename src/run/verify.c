@@ -48,6 +48,7 @@ static PetscErrorCode Run(Verification *v, VerifyRow *r, Diag *diag)
   PetscFunctionBeginUser;
   PetscCall(CaseRead(v->comm, v->file, r->set.n, (const char *const *)r->set.text, diag, &c));
   r->result = RUN_BAD_INPUT;
+  if (c) c->grid.trusted = v->options->trust;
   if (c && v->options->resume) PetscCall(VerifyTakeOver(v, r, c, &found));
   if (!c || found) {
     PetscCall(CaseDestroy(&c));
