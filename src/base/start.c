@@ -6,10 +6,13 @@
 
 PetscErrorCode StartPetsc(int *argc, char ***argv)
 {
-  const PetscBool words = argc && argv ? PETSC_TRUE : PETSC_FALSE;
-  PetscErrorCode code = MemoryInstall(words ? *argc : 0, words ? *argv : NULL);
+  static char name[] = "talus", *own[] = {name, NULL}; /* PETSc looks for files even so if it gets no words at all */
+  char **list = own;
+  int n = 1;
+  const PetscBool given = argc && argv && *argc > 0 ? PETSC_TRUE : PETSC_FALSE;
+  PetscErrorCode code = MemoryInstall(given ? *argc : 0, given ? *argv : NULL);
   if (!code) code = PetscOptionsSetValue(NULL, "-skip_petscrc", NULL);
-  if (!code) code = words ? PetscInitialize(argc, argv, NULL, NULL) : PetscInitializeNoArguments();
+  if (!code) code = given ? PetscInitialize(argc, argv, NULL, NULL) : PetscInitialize(&n, &list, NULL, NULL);
   return code;
 }
 
