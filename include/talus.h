@@ -86,8 +86,8 @@ typedef void (*TalusBodyForce)(void *context, const double X[3], double t, doubl
 /**
  * @brief Start MPI and PETSc, unless the program did. Collective over all ranks.
  *
- * PETSc's options (`-snes_monitor`, `-log_view`) are read from the command line, PETSC_OPTIONS and its
- * files. A program that calls PetscInitialize itself calls neither this nor TalusFinalize(); one that has
+ * PETSc's options (`-snes_monitor`, `-log_view`) are read from the command line and PETSC_OPTIONS, not from
+ * `petscrc` and `.petscrc`: a working directory must not set them (`-options_file FILE` reads one). A program that calls PetscInitialize itself calls neither this nor TalusFinalize(); one that has
  * only called MPI_Init calls both.
  * @param argc  of main, or NULL
  * @param argv  of main, or NULL
@@ -135,6 +135,15 @@ int TalusCaseOpen(const char *file, int n_set, const char *const *set, TalusCase
 
 /** @brief Forget a case; its models must be gone before it. Collective. */
 int TalusCaseClose(TalusCase **c);
+
+/**
+ * @brief Let the Gmsh script (.geo) of the case run programs and write files, as `--trust` does. Not collective.
+ *
+ * Without it a script that does so is refused when the model is made. Before TalusModelCreate() and TalusRunCase(),
+ * on every rank.
+ * @param c  the case
+ */
+int TalusCaseTrust(TalusCase *c);
 
 /**
  * @brief Number of measures that the case asks for. Not collective.

@@ -45,6 +45,13 @@ int TalusCaseClose(TalusCase **c)
   return talus_is_running() ? talus_code(Close(c)) : TALUS_ERROR_STATE;
 }
 
+int TalusCaseTrust(TalusCase *c)
+{
+  if (!c) return TALUS_ERROR_ARGUMENT;
+  c->c->grid.trusted = PETSC_TRUE;
+  return TALUS_OK;
+}
+
 int TalusCaseCountMeasures(const TalusCase *c, int *n)
 {
   if (!c || !n) return TALUS_ERROR_ARGUMENT;

@@ -3,7 +3,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include "api/api.h"
-#include "base/memory.h"
+#include "base/start.h"
 #include "base/threads.h"
 #include "talus_version.h"
 
@@ -48,9 +48,7 @@ int TalusInitialize(int *argc, char ***argv)
   PetscBool started, ended;
   if (PetscInitialized(&started) || PetscFinalized(&ended) || started || ended) return TALUS_ERROR_STATE;
   threads_one_per_rank();
-  if (MemoryInstall(argc && argv ? *argc : 0, argc && argv ? *argv : NULL)) return TALUS_ERROR_INTERNAL;
-  if (!argc || !argv) return talus_code(PetscInitializeNoArguments());
-  return talus_code(PetscInitialize(argc, argv, NULL, NULL));
+  return talus_code(StartPetsc(argc, argv));
 }
 
 int TalusFinalize(void)

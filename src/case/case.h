@@ -60,6 +60,7 @@ typedef struct {
   PetscInt n_parameters; /* numbers handed to a .geo */
   NamedValue *parameters;
   OutsidePolicy outside;
+  PetscBool trusted; /* may a .geo run programs and write files? Said on the command line, never in the case file */
 } GridSpec;
 
 typedef struct {

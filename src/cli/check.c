@@ -5,11 +5,13 @@
 
 static const CliOption options[] = {
   {"set", "PATH=VALUE", "change a value of the case file: --set materials.sand.young=1e6"},
+  {"trust", NULL,
+   "let the .geo of the case run programs and write files (Gmsh's SystemCall, Save, ...): only if you know it"},
   {NULL, NULL, NULL},
 };
 
 static const CliUsage usage = {
-  .usage = "talus check CASE [--set PATH=VALUE]...",
+  .usage = "talus check CASE [--set PATH=VALUE]... [--trust]",
   .help =
     "Validates a case file without running it, and prints the resolved case (every key with its value, defaults too),\n"
     "sizes, estimated memory, the regions found, and warnings.",
@@ -48,6 +50,7 @@ PetscErrorCode CliCheck(int argc, char **argv, int *exit_code)
   const PetscInt n_set = CliValues(&arguments, "set", set);
   PetscCall(CaseRead(PETSC_COMM_WORLD, arguments.words[0], n_set, set, diag, &c));
   if (c) PetscCall(PrintResolved(c));
+  if (c) c->grid.trusted = CliFlag(&arguments, "trust");
   if (c) PetscCall(CheckModel(PETSC_COMM_WORLD, c, diag, stdout));
   PetscCall(DiagReduce(PETSC_COMM_WORLD, diag, &errors));
   if (errors) *exit_code = CLI_BAD_INPUT;

@@ -6,6 +6,7 @@
 #include <string.h>
 #include "base/memory.h"
 #include "base/mpi_end.h"
+#include "base/start.h"
 #include "base/threads.h"
 #include "cli/cli.h"
 
@@ -115,7 +116,8 @@ static void Split(int argc, char **argv, int *n_own, char **own, int *n_petsc, c
 /* `-out runs/a` would vanish in PETSc's option table without a word. */
 static const char *SingleDashMistake(int n, char **petsc)
 {
-  static const char *const ours[] = {"set", "out", "quiet", "force", "resume", "log", "full", "json", "markdown", NULL};
+  static const char *const ours[] = {"set",   "out",  "quiet", "force",    "resume", "log",
+                                     "trust", "full", "json",  "markdown", NULL};
   for (int i = 1; i < n; ++i)
     for (int k = 0; ours[k]; ++k)
       if (petsc[i][0] == '-' && !strcmp(petsc[i] + 1, ours[k])) return ours[k];
@@ -134,6 +136,17 @@ static PetscErrorCode Main(int argc, char **argv, const char *mistake, int *exit
   PetscFunctionReturn(0);
 }
 
+/* A file that PETSc would have read by itself is not: its options would be missed in silence. */
+static void WarnOfOptionsFile(int n, char **petsc)
+{
+  char path[PETSC_MAX_PATH_LEN];
+  if (!CliPrints() || !start_unread_file(n, petsc, path)[0]) return;
+  fprintf(stderr,
+          "warning: %s is not read\n  hint: options of PETSc belong on the command line or in $PETSC_OPTIONS; "
+          "-options_file %s reads this one\n",
+          path, path);
+}
+
 /* own and petsc: room for argc + 1 words each. */
 static int RunProgram(int argc, char **argv, char **own, char **petsc)
 {
@@ -142,8 +155,9 @@ static int RunProgram(int argc, char **argv, char **own, char **petsc)
 
   Split(argc, argv, &n_own, own, &n_petsc, petsc);
   const char *mistake = SingleDashMistake(n_petsc, petsc);
-  if (MemoryInstall(n_petsc, petsc) || PetscInitialize(&n_petsc, &list, NULL, NULL)) return CLI_BAD_INPUT;
+  if (StartPetsc(&n_petsc, &list)) return CLI_BAD_INPUT;
   threads_one_per_rank();
+  WarnOfOptionsFile(n_petsc, petsc);
   signal(SIGPIPE, SIG_DFL); /* `talus ... | head` ends quietly */
   /* An internal error on one rank must not leave the others waiting. */
   if (Main(n_own, own, mistake, &exit_code)) MPI_Abort(PETSC_COMM_WORLD, CLI_GAVE_UP);

@@ -14,6 +14,8 @@ static const CliOption options_known[] = {
   {"resume", "DIR", "go on with the run in DIR from its newest checkpoint, on any number of ranks; no CASE then"},
   {"quiet", NULL, "nothing on the terminal but errors"},
   {"log", "FILE", "write the log there instead of to DIR/log.txt"},
+  {"trust", NULL,
+   "let the .geo of the case run programs and write files (Gmsh's SystemCall, Save, ...): only if you know it"},
   {NULL, NULL, NULL},
 };
 
@@ -145,6 +147,7 @@ static PetscErrorCode ReadAndRun(const CliArguments *a, PetscInt n_set, const ch
     DiagHint(diag, "a run that was cut off before it began is started again, with --force");
   } else PetscCall(CaseRead(PETSC_COMM_WORLD, file, n_set, set, diag, &c));
   if (c) {
+    c->grid.trusted = CliFlag(a, "trust");
     const RunOptions run = {.out = out,
                             .resume = CliFlag(a, "resume"),
                             .force = CliFlag(a, "force"),

@@ -10,6 +10,8 @@ static const CliOption options_known[] = {
   {"keep", NULL, "keep the states (.hdf) of all runs, not only logs and histories"},
   {"resume", NULL, "take over the runs that an earlier call has finished; the tables name the program they are from"},
   {"record", NULL, "write the tables into docs/verification.md of the source tree, too"},
+  {"trust", NULL,
+   "let the .geo of the case run programs and write files (Gmsh's SystemCall, Save, ...): only if you know it"},
   {NULL, NULL, NULL},
 };
 
@@ -61,6 +63,7 @@ PetscErrorCode CliVerify(int argc, char **argv, int *exit_code)
     .keep = CliFlag(&arguments, "keep"),
     .resume = CliFlag(&arguments, "resume"),
     .record = CliFlag(&arguments, "record"),
+    .trust = CliFlag(&arguments, "trust"),
   };
   if (options.run && (options.out || options.full || options.keep || options.resume || options.record)) {
     PetscCall(CliUsageError(exit_code, "only --only goes with it", "--run writes nothing and runs nothing"));

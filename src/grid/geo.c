@@ -80,18 +80,40 @@ static void read_tail(int fd, char tail[OUTPUT_KEPT])
 /* gmsh marks its errors so; it may still exit with 0. */
 static PetscBool complained(const char *tail) { return strstr(tail, "Error   :") ? PETSC_TRUE : PETSC_FALSE; }
 
-/* Up to three error lines, or else the last lines, joined by "; ". */
-static void quote_tail(char *tail, size_t size, char *message)
+/* A line without the temporary file that nobody knows, and without Gmsh's "Info    :". */
+static const char *line_text(const char *line, const char *output)
+{
+  const char *text = strchr(line, ':');
+  if (!line[strspn(line, " -")] || strstr(line, output)) return NULL;
+  return text && text[1] == ' ' ? text + 2 : line;
+}
+
+/* Up to three error lines, or else the last three lines, joined by "; ". */
+static void quote_tail(char *tail, const char *output, size_t size, char *message)
 {
   const PetscBool errors = complained(tail);
+  const char *quoted[3] = {NULL, NULL, NULL};
   size_t used = strlen(message);
-  int quoted = 0;
-  for (char *line = strtok(tail, "\n"); line && quoted < 3 && used < size; line = strtok(NULL, "\n")) {
-    if (errors && !strstr(line, "Error")) continue;
-    const char *text = strchr(line, ':');
-    used +=
-      (size_t)snprintf(message + used, size - used, "%s%s", quoted++ ? "; " : ": ", text && text[1] ? text + 2 : line);
+  int n = 0;
+  for (char *line = strtok(tail, "\n"); line && !(errors && n == 3); line = strtok(NULL, "\n")) {
+    const char *text = errors && !strstr(line, "Error") ? NULL : line_text(line, output);
+    if (!text) continue;
+    if (n == 3) quoted[0] = quoted[1], quoted[1] = quoted[2], --n;
+    quoted[n++] = text;
   }
+  for (int i = 0; i < n && used < size; ++i)
+    used += (size_t)snprintf(message + used, size - used, "%s%s", i ? "; " : ": ", quoted[i]);
+}
+
+/* "it was killed by signal 11 (Segmentation fault)" */
+static void tell_end(int status, size_t size, char *message)
+{
+  const size_t used = strlen(message);
+  if (WIFSIGNALED(status))
+    (void)snprintf(message + used, size - used, ", it was killed by signal %d (%s)", WTERMSIG(status),
+                   strsignal(WTERMSIG(status)));
+  else if (WIFEXITED(status) && WEXITSTATUS(status))
+    (void)snprintf(message + used, size - used, ", it ended with code %d", WEXITSTATUS(status));
 }
 
 /* Start gmsh with its output going to the pipe; returns errno-like code. */
@@ -134,7 +156,8 @@ static PetscBool run_gmsh(char *const *argv, char *const *environment, size_t si
   }
   if (WIFEXITED(status) && WEXITSTATUS(status) == 0 && !complained(tail)) return PETSC_TRUE;
   (void)snprintf(message, size, "gmsh could not mesh '%s'", argv[2]);
-  quote_tail(tail, size, message);
+  tell_end(status, size, message);
+  quote_tail(tail, argv[4], size, message);
   return PETSC_FALSE;
 }
 

@@ -29,8 +29,8 @@ typedef struct {
 } MshFile;
 
 /* Read versions 2.2 and 4.1, ASCII or binary. Not collective. On a mistake in the file *msh is NULL
- * and `message` says where and what. */
-PetscErrorCode MshRead(const char *path, MshFile **msh, size_t size, char *message);
+ * and `message` says where and what; the file is called `shown` in it. */
+PetscErrorCode MshRead(const char *path, const char *shown, MshFile **msh, size_t size, char *message);
 PetscErrorCode MshDestroy(MshFile **msh);
 
 /* Run gmsh on a .geo (not collective); `output` gets the name of a temporary file that the caller

@@ -4,6 +4,9 @@
  * while the rest stand in a broadcast); it also forgets the element numbers that messages must
  * name. */
 #include <errno.h>
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
 #include "grid/msh_reader.h"
 
 static const MshType types[] = {{"line", 1, 1, 2},
@@ -44,8 +47,9 @@ const MshType *msh_type(MshReader *r, PetscInt64 code, PetscInt64 element)
     if (!t->nodes)
       msh_fail(r,
                "element %lld is a %s; talus reads first-order points, lines, triangles, quadrilaterals, tetrahedra and "
-               "hexahedra",
-               (long long)element, t->name);
+               "hexahedra%s",
+               (long long)element, t->name,
+               strncmp(t->name, "second", 6) ? "" : ": mesh with Mesh.ElementOrder = 1 (gmsh -order 1)");
     return t;
   }
   msh_fail(r, "element %lld is of Gmsh's type %lld, which talus does not read", (long long)element, (long long)code);
@@ -240,43 +244,51 @@ static PetscErrorCode ResolveNodes(MshReader *r)
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode LoadFile(MshReader *r)
+static void cannot_read(MshReader *r, const char *why)
 {
-  FILE *file = fopen(r->path, "rb");
-  long size = -1;
+  r->failed = PETSC_TRUE;
+  (void)snprintf(r->message, r->message_size, "cannot read '%s': %s", r->path, why);
+}
+
+/* The size of a plain file, which alone has one; -1 after a complaint. */
+static long file_size(MshReader *r, int fd)
+{
+  struct stat info;
+  if (fd < 0 || fstat(fd, &info)) cannot_read(r, strerror(errno));
+  else if (!S_ISREG(info.st_mode)) cannot_read(r, "not a file");
+  return r->failed ? -1 : (long)info.st_size;
+}
+
+static PetscErrorCode LoadFile(MshReader *r, const char *path)
+{
+  const int fd = open(path, O_RDONLY | O_NONBLOCK | O_CLOEXEC); /* does not wait for the other end of a pipe */
+  const long size = file_size(r, fd);
+  FILE *file = size < 0 ? NULL : fdopen(fd, "rb");
 
   PetscFunctionBeginUser;
-  if (file && !fseek(file, 0, SEEK_END)) size = ftell(file);
-  /* A directory opens and tells a size without end. */
-  if (size < 0 || size == LONG_MAX) {
-    r->failed = PETSC_TRUE;
-    (void)snprintf(r->message, r->message_size, "cannot read '%s': %s", r->path,
-                   size < 0 ? strerror(errno) : "not a file");
-    if (file) (void)fclose(file);
+  if (!file) {
+    if (fd >= 0) (void)close(fd);
+    if (!r->failed) cannot_read(r, strerror(errno));
     PetscFunctionReturn(0);
   }
-  rewind(file);
   PetscCall(PetscMalloc1((size_t)size + 1, &r->data));
   const size_t got = fread(r->data, 1, (size_t)size, file);
   r->data[got] = 0; /* stops strtod at the end */
   r->at = r->data;
   r->end = r->data + got;
-  if (ferror(file)) {
-    r->failed = PETSC_TRUE;
-    (void)snprintf(r->message, r->message_size, "cannot read '%s': %s", r->path, strerror(errno));
-  }
+  if (ferror(file)) cannot_read(r, strerror(errno));
   (void)fclose(file);
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode MshRead(const char *path, MshFile **msh, size_t size, char *message)
+PetscErrorCode MshRead(const char *path, const char *shown, MshFile **msh, size_t size, char *message)
 {
-  MshReader r = {.path = path, .message_size = size};
+  MshReader r = {.path = shown, .message_size = size};
 
   PetscFunctionBeginUser;
   r.message = message;
   PetscCall(PetscNew(&r.msh));
-  PetscCall(LoadFile(&r));
+  PetscCall(LoadFile(&r, path));
   if (!r.failed) PetscCall(ReadSections(&r));
   r.binary = PETSC_TRUE; /* from here on no line can be named */
   if (!r.failed) PetscCall(ResolveNodes(&r));

@@ -12,7 +12,7 @@ typedef struct {
 } MshEntity;
 
 typedef struct {
-  const char *path;
+  const char *path; /* for messages */
   char *data;
   const char *at, *end;
   PetscBool binary, failed;

@@ -118,6 +118,7 @@ PetscErrorCode RunDirProgress(RunDir *dir, const RunProgress *progress)
   const PetscReal left = progress_left(&dir->clock, progress);
   progress_line(progress, left, line);
   if (dir->log) fprintf(dir->log, "%s\n", line);
+  run_dir_note_log(dir);
   const PetscBool last = progress->time >= progress->end * (1 - 1e-12) ? PETSC_TRUE : PETSC_FALSE;
   if (dir->quiet || !(last || dir->last_shown < 0 || wall - dir->last_shown >= pause)) PetscFunctionReturn(0);
   dir->last_shown = wall;

@@ -1,7 +1,5 @@
 #include "io/run_dir.h"
 #include <errno.h>
-#include <fnmatch.h>
-#include <dirent.h>
 #include <fcntl.h>
 #include <stdarg.h>
 #include <stdlib.h>
@@ -11,61 +9,28 @@
 #include <unistd.h>
 #include "io/run_dir_files.h"
 #include "io/run_dir_impl.h"
+#include "io/run_dir_mark.h"
+#include "talus_version.h"
 
-static const char unfinished[] = "*" FILE_UNFINISHED;
-/* What a run leaves behind, and what `--force` removes. */
-static const char *const run_files[] = {"case.yaml",
-                                        "log.txt",
-                                        "version.txt",
-                                        "timings.txt",
-                                        "history.csv",
-                                        "points_[0-9]*.hdf",
-                                        "grid_[0-9]*.hdf",
-                                        "*.hdf.series",
-                                        "checkpoint_[0-9]*.h5",
-                                        "checkpoint_[0-9]*.h5.damaged",
-                                        unfinished,
-                                        NULL};
-static const char *const picture_files[] = {"state_*.png", "history_*.png", unfinished, NULL};
-/* Any of these tells a run. A case.yaml alone may be the user's own. */
-static const char *const run_marks[] = {"log.txt", "version.txt", "history.csv", "points.hdf.series", NULL};
-
-static PetscBool HoldsRun(const char *path)
+/* Does it hold another run, or somebody's files of the names that a run would write? */
+static PetscBool CheckContents(const char *path, PetscBool force, Diag *diag)
 {
-  for (int i = 0; run_marks[i]; ++i)
-    if (file_exists(path, run_marks[i])) return PETSC_TRUE;
-  return PETSC_FALSE;
-}
-
-static PetscBool MatchesAny(const char *name, const char *const *patterns)
-{
-  for (int i = 0; patterns[i]; ++i)
-    if (!fnmatch(patterns[i], name, 0)) return PETSC_TRUE;
-  return PETSC_FALSE;
-}
-
-static int RemoveFiles(const char *folder, const char *const *patterns)
-{
-  char path[PETSC_MAX_PATH_LEN];
-  int error = 0;
-  DIR *listing = opendir(folder);
-  if (!listing) return errno == ENOENT || errno == ENOTDIR ? 0 : errno;
-  for (struct dirent *entry = readdir(listing); entry && !error; entry = readdir(listing)) {
-    if (!MatchesAny(entry->d_name, patterns)) continue;
-    const int n = snprintf(path, sizeof path, "%s/%s", folder, entry->d_name);
-    if (n >= (int)sizeof path) error = ENAMETOOLONG;
-    else if (unlink(path)) error = errno;
+  char names[600];
+  const PetscBool ours = run_dir_is_ours(path);
+  if (ours && force) return PETSC_TRUE;
+  if (ours) {
+    DiagError(diag, NULL, "the output directory '%s' already holds a run", path);
+    DiagHint(diag, "--out names another directory, --force replaces the run that is there, --resume %s goes on with it",
+             path);
+    return PETSC_FALSE;
   }
-  closedir(listing);
-  return error;
-}
-
-static int RemoveRun(const char *path)
-{
-  char pictures[PETSC_MAX_PATH_LEN];
-  const int error = RemoveFiles(path, run_files), n = snprintf(pictures, sizeof pictures, "%s/pictures", path);
-  if (error || n >= (int)sizeof pictures) return error;
-  return RemoveFiles(pictures, picture_files);
+  const PetscInt n = run_dir_in_the_way(path, sizeof names, names);
+  if (n == 0) return PETSC_TRUE;
+  DiagError(diag, NULL, "the output directory '%s' holds a %s that %s not of a run: %s would be overwritten", path,
+            names, n > 1 ? "are" : "is", n > 1 ? "they" : "it");
+  DiagHint(diag,
+           "name another directory with --out; not even --force touches a directory without a " RUN_DIR_SIGNATURE);
+  return PETSC_FALSE;
 }
 
 /* May a run start here? */
@@ -80,30 +45,39 @@ static PetscBool CheckFolder(const char *path, PetscBool force, Diag *diag)
     DiagError(diag, NULL, "cannot write into the output directory '%s': %s", path, strerror(errno));
     return PETSC_FALSE;
   }
-  if (HoldsRun(path)) {
-    if (force) return PETSC_TRUE;
-    DiagError(diag, NULL, "the output directory '%s' already holds a run", path);
-    DiagHint(diag, "--out names another directory, --force replaces the run that is there, --resume %s goes on with it",
-             path);
-    return PETSC_FALSE;
-  }
-  if (file_exists(path, "case.yaml")) {
-    DiagError(diag, NULL, "the output directory '%s' holds a case.yaml that is not of a run: it would be overwritten",
-              path);
-    DiagHint(diag, "name another directory with --out");
-    return PETSC_FALSE;
-  }
-  return PETSC_TRUE;
+  return CheckContents(path, force, diag);
+}
+
+/* May the file of --log be written? What stands there already must be a log. */
+static PetscBool CheckLog(const char *folder, const char *log, Diag *diag)
+{
+  if (run_dir_names_as_its_own(folder, log))
+    DiagError(diag, NULL, "the log cannot be written to '%s': the run itself writes a file of this name", log);
+  else if (run_dir_spoils(log)) {
+    DiagError(diag, NULL, "'%s' is no log of talus: the log would overwrite it", log);
+    DiagHint(diag, "--log takes the name of a new file, or of an earlier log");
+  } else return PETSC_TRUE;
+  return PETSC_FALSE;
+}
+
+static void log_path(const char *folder, const char *log, char path[PETSC_MAX_PATH_LEN])
+{
+  if (log) snprintf(path, PETSC_MAX_PATH_LEN, "%s", log);
+  else snprintf(path, PETSC_MAX_PATH_LEN, "%s/log.txt", folder);
 }
 
 static FILE *OpenLog(const char *folder, const char *log, const char *mode, Diag *diag)
 {
   char path[PETSC_MAX_PATH_LEN];
-  if (log) snprintf(path, sizeof path, "%s", log);
-  else snprintf(path, sizeof path, "%s/log.txt", folder);
+  if (log && !CheckLog(folder, log, diag)) return NULL;
+  log_path(folder, log, path);
   FILE *file = fopen(path, mode);
-  if (!file) DiagError(diag, NULL, "cannot write the log file '%s': %s", path, strerror(errno));
-  else setvbuf(file, NULL, _IOLBF, 0);
+  if (!file) {
+    DiagError(diag, NULL, "cannot write the log file '%s': %s", path, strerror(errno));
+    return NULL;
+  }
+  setvbuf(file, NULL, _IOLBF, 0);
+  if (mode[0] == 'w') fprintf(file, "talus = " TALUS_VERSION "\n");
   return file;
 }
 
@@ -118,15 +92,22 @@ static PetscBool Lock(const char *path, Diag *diag, int *lock)
   return PETSC_FALSE;
 }
 
+static PetscBool Sign(const char *path, Diag *diag)
+{
+  const int error = run_dir_sign(path);
+  if (error) DiagError(diag, NULL, "cannot write %s/" RUN_DIR_SIGNATURE ": %s", path, strerror(error));
+  return error ? PETSC_FALSE : PETSC_TRUE;
+}
+
 /* Rank 0; the log is opened before anything is removed if it stands outside. */
 static FILE *Prepare(const char *path, PetscBool force, const char *log, Diag *diag, int *lock)
 {
   if (!CheckFolder(path, force, diag) || !Lock(path, diag, lock)) return NULL;
   FILE *file = log ? OpenLog(path, log, "w", diag) : NULL;
   if (log && !file) return NULL;
-  const int error = force ? RemoveRun(path) : 0;
-  if (error) {
-    DiagError(diag, NULL, "cannot remove the earlier run in '%s': %s", path, strerror(error));
+  const int error = force ? run_dir_remove(path) : 0;
+  if (error) DiagError(diag, NULL, "cannot remove the earlier run in '%s': %s", path, strerror(error));
+  if (error || !Sign(path, diag)) {
     if (file) fclose(file);
     return NULL;
   }
@@ -146,8 +127,8 @@ static PetscBool OnTerminal(void)
 }
 
 /* The same answer on all ranks: a directory with the open log, or none. */
-static PetscErrorCode Finish(MPI_Comm comm, PetscMPIInt rank, const char *path, PetscBool quiet, FILE *log, int lock,
-                             RunDir **dir)
+static PetscErrorCode Finish(MPI_Comm comm, PetscMPIInt rank, const char *path, PetscBool quiet, const char *named,
+                             FILE *log, int lock, RunDir **dir)
 {
   struct timespec now;
   int ok = log ? 1 : 0;
@@ -162,6 +143,7 @@ static PetscErrorCode Finish(MPI_Comm comm, PetscMPIInt rank, const char *path, 
   clock_gettime(CLOCK_MONOTONIC, &now);
   (*dir)->rank = rank;
   (*dir)->log = log;
+  log_path(path, named, (*dir)->log_path);
   (*dir)->lock = lock;
   (*dir)->quiet = quiet;
   (*dir)->terminal = OnTerminal();
@@ -180,15 +162,21 @@ PetscErrorCode RunDirCreate(MPI_Comm comm, const char *path, PetscBool force, Pe
   PetscFunctionBeginUser;
   PetscCallMPI(MPI_Comm_rank(comm, &rank));
   FILE *file = rank ? NULL : Prepare(path, force, log, diag, &lock);
-  PetscCall(Finish(comm, rank, path, quiet, file, lock, dir));
+  PetscCall(Finish(comm, rank, path, quiet, log, file, lock, dir));
   PetscFunctionReturn(0);
 }
 
 static FILE *PrepareOpen(const char *path, const char *log, Diag *diag, int *lock)
 {
-  if (HoldsRun(path)) return Lock(path, diag, lock) ? OpenLog(path, log, "a", diag) : NULL;
-  DiagError(diag, NULL, "there is no run to resume in '%s'", path);
-  return NULL;
+  char link[256] = "";
+  if (run_dir_is_ours(path)) run_dir_find_link(path, link);
+  else DiagError(diag, NULL, "there is no run to resume in '%s'", path);
+  if (link[0]) {
+    DiagError(diag, NULL, "'%s/%s' is a link or a pipe: the run would write elsewhere", path, link);
+    DiagHint(diag, "talus makes plain files only; look where it leads before you put a file in its place");
+  }
+  if (!run_dir_is_ours(path) || link[0] || !Lock(path, diag, lock)) return NULL;
+  return OpenLog(path, log, "a", diag);
 }
 
 PetscErrorCode RunDirOpen(MPI_Comm comm, const char *path, PetscBool quiet, const char *log, Diag *diag, RunDir **dir)
@@ -199,7 +187,22 @@ PetscErrorCode RunDirOpen(MPI_Comm comm, const char *path, PetscBool quiet, cons
   PetscFunctionBeginUser;
   PetscCallMPI(MPI_Comm_rank(comm, &rank));
   FILE *file = rank ? NULL : PrepareOpen(path, log, diag, &lock);
-  PetscCall(Finish(comm, rank, path, quiet, file, lock, dir));
+  PetscCall(Finish(comm, rank, path, quiet, log, file, lock, dir));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode RunDirSpares(MPI_Comm comm, const char *path, const char *file, Diag *diag, PetscBool *spares)
+{
+  PetscMPIInt rank;
+
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_rank(comm, &rank));
+  *spares = rank || !run_dir_holds_as_its_own(path, file) ? PETSC_TRUE : PETSC_FALSE;
+  if (!*spares) {
+    DiagError(diag, NULL, "the case '%s' stands in the output directory '%s': the run would replace it", file, path);
+    DiagHint(diag, "name another directory with --out");
+  }
+  PetscCallMPI(MPI_Bcast(spares, 1, MPIU_BOOL, 0, comm));
   PetscFunctionReturn(0);
 }
 
@@ -219,7 +222,7 @@ PetscErrorCode RunDirDestroy(RunDir **dir)
 PetscErrorCode RunDirDiscard(RunDir **dir)
 {
   PetscFunctionBeginUser;
-  if (*dir && (*dir)->rank == 0) RemoveRun((*dir)->path);
+  if (*dir && (*dir)->rank == 0) run_dir_remove((*dir)->path);
   PetscCall(RunDirDestroy(dir));
   PetscFunctionReturn(0);
 }
@@ -245,10 +248,27 @@ PetscErrorCode RunDirLog(RunDir *dir, const char *format, ...)
   va_start(arguments, format);
   va_copy(again, arguments);
   if (dir->log) vfprintf(dir->log, format, arguments), fputc('\n', dir->log);
+  run_dir_note_log(dir);
   if (!dir->quiet) Print(dir, format, again);
   va_end(again);
   va_end(arguments);
   PetscFunctionReturn(0);
+}
+
+void run_dir_note_log(RunDir *dir)
+{
+  if (dir->log && !dir->log_error && ferror(dir->log)) dir->log_error = errno ? errno : EIO;
+}
+
+PetscErrorCode RunDirCheckLog(RunDir *dir)
+{
+  int error = dir->log_error;
+
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Bcast(&error, 1, MPI_INT, 0, dir->comm));
+  if (!error) PetscFunctionReturn(0);
+  snprintf(dir->reason, sizeof dir->reason, "cannot write the log '%s': %s", dir->log_path, strerror(error));
+  PetscFunctionReturn(PETSC_ERR_FILE_WRITE);
 }
 
 PetscErrorCode RunDirAgree(RunDir *dir, const char *name, int error)

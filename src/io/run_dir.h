@@ -1,5 +1,6 @@
 /* The run directory: created once, never overwritten by mistake; log, timings, history.
  *
+ *   made-by-talus.txt   the signature, written first: without it nothing is removed or overwritten
  *   case.yaml     the resolved case (every key with its value)      history.csv   measures
  *   log.txt       what the run said                                 timings.txt   where the time went
  *   version.txt   talus, PETSc, MPI, compiler, number of ranks      pictures/     of talus plot
@@ -15,13 +16,16 @@
 typedef struct RunDir RunDir;
 
 /* Collective. Refuses a directory that holds a run unless `force` (which removes that run's files, and
- * nothing else), and one that cannot be written: a diagnostic, *dir stays NULL. quiet: nothing on the
+ * nothing else), one that holds somebody's files of the same names (io/run_dir_mark.h), and one that cannot be written: a
+ * diagnostic, *dir stays NULL. quiet: nothing on the
  * terminal; log: the file of --log, or NULL for log.txt. */
 PetscErrorCode RunDirCreate(MPI_Comm comm, const char *path, PetscBool force, PetscBool quiet, const char *log,
                             Diag *diag, RunDir **dir);
 /* Collective. Go on in the directory of an earlier run: nothing is removed, the log grows. A diagnostic
  * if there is no run. */
 PetscErrorCode RunDirOpen(MPI_Comm comm, const char *path, PetscBool quiet, const char *log, Diag *diag, RunDir **dir);
+/* Collective. Does the new run spare the file, or would it replace the file with one of its own? Then a diagnostic. */
+PetscErrorCode RunDirSpares(MPI_Comm comm, const char *path, const char *file, Diag *diag, PetscBool *spares);
 PetscErrorCode RunDirDestroy(RunDir **dir);
 /* Collective. Take a run back that could not start: its files go, and *dir with them. */
 PetscErrorCode RunDirDiscard(RunDir **dir);
@@ -29,6 +33,9 @@ const char *RunDirPath(const RunDir *dir);
 
 /* A line for the log and the terminal (rank 0): plain `key = value` text. */
 PetscErrorCode RunDirLog(RunDir *dir, const char *format, ...) PETSC_ATTRIBUTE_FORMAT(2, 3);
+
+/* Collective. Did all lines get into the log? Errors as for the history. */
+PetscErrorCode RunDirCheckLog(RunDir *dir);
 
 /* Progress after an accepted step: a bar with the time left on a terminal, otherwise a plain line now
  * and then. */

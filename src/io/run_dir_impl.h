@@ -9,7 +9,9 @@ struct RunDir {
   char path[PETSC_MAX_PATH_LEN];
   char reason[PETSC_MAX_PATH_LEN + 128]; /* of the last refusal */
   FILE *log, *history;
-  int lock; /* the open directory, -1: none */
+  char log_path[PETSC_MAX_PATH_LEN];
+  int log_error; /* errno of the first line that did not get into the log */
+  int lock;      /* the open directory, -1: none */
   PetscInt n_measures;
   PetscBool quiet, terminal;
   PetscBool bar;   /* a progress bar stands on the terminal's last line */
@@ -20,3 +22,6 @@ struct RunDir {
 
 /* Share rank 0's errno for the file of this name; a refusal is logged and kept for RunDirReason. Collective. */
 PetscErrorCode RunDirAgree(RunDir *dir, const char *name, int error);
+
+/* After a line for the log: did it get there? */
+void run_dir_note_log(RunDir *dir);

@@ -49,7 +49,10 @@ static const SchemaTable grading = {
 
 static const SchemaEntry grid_entries[] = {
   KEY("box", TABLE, NULL, "a box filled with equal cells", .table = &box, TAG(GRID_BOX)),
-  KEY("mesh", FILE, NULL, "a Gmsh file instead: .msh, or .geo (meshed by gmsh)", TAG(GRID_MESH), AT(GridSpec, mesh)),
+  KEY("mesh", FILE, NULL,
+      "a Gmsh file instead: .msh, or .geo (meshed by gmsh; one that runs programs or writes files is refused without "
+      "--trust)",
+      TAG(GRID_MESH), AT(GridSpec, mesh)),
   KEY("size", SIZE, "m", "cell size: one number or one for each axis; must divide the box", ABOVE(0), INPUT_ONLY,
       .with = "box"),
   KEY("counts", COUNTS, NULL, "number of cells along each axis, in place of `size`", AT_LEAST(1), .with = "box",

@@ -195,8 +195,10 @@ static const SchemaEntry case_entries[] = {
   KEY("output", TABLE, NULL, "what is written", .table = &output, ALWAYS, AT(Case, output)),
   KEY("checkpoint", TABLE, NULL, "state to resume from", .table = &checkpoint, ALWAYS, AT(Case, checkpoint)),
   KEY("parallel", TABLE, NULL, "load balance", .table = &parallel, ALWAYS, AT(Case, parallel)),
-  KEY("petsc", OPTIONS, NULL, "options of PETSc: {snes_monitor: true, ksp_type: cg}", AT(Case, petsc),
-      .count = offsetof(Case, n_petsc)),
+  KEY("petsc", OPTIONS, NULL,
+      "options of PETSc that choose solvers, set tolerances or print on the terminal: {snes_monitor: true, ksp_type: "
+      "cg}; all others go on the command line",
+      AT(Case, petsc), .count = offsetof(Case, n_petsc)),
   {.key = NULL},
 };
 static PetscBool HideInCase(const SchemaEntry *e, const void *source)

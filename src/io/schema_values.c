@@ -253,37 +253,10 @@ PetscErrorCode SchemaReadNumbers(SchemaReader *r, const SchemaEntry *e, const Ya
   *(PetscInt *)((char *)target + e->count) = node->n;
   for (PetscInt i = 0; i < node->n; ++i) {
     PetscCall(PetscStrallocpy(node->child[i]->key, &(*values)[i].name));
+    if (node->child[i]->key[0] == '-') /* gmsh would take it for an option of its own */
+      SchemaKeyError(r, node->child[i], "the name '%.60s' begins with '-'", node->child[i]->key);
     SchemaCheckName(r, node->child[i], node->child[i]->key, PETSC_TRUE);
     SchemaNumber(r, &number, node->child[i], &(*values)[i].value);
-  }
-  PetscFunctionReturn(0);
-}
-
-/* snes_rtol: 1e-9 becomes "-snes_rtol 1e-9"; an option without a value is written with nothing, or true. */
-PetscErrorCode SchemaReadOptions(SchemaReader *r, const SchemaEntry *e, const YamlNode *node, void *target)
-{
-  char ***options = (char ***)((char *)target + e->offset), path[512];
-  PetscInt *n = (PetscInt *)((char *)target + e->count);
-
-  PetscFunctionBeginUser;
-  if (node->kind != YAML_MAPPING) {
-    SchemaMismatch(r, e, node);
-    PetscFunctionReturn(0);
-  }
-  PetscCall(PetscCalloc1(node->n, options));
-  for (PetscInt i = 0; i < node->n; ++i) {
-    const YamlNode *child = node->child[i];
-    const char *name = child->key + (child->key[0] == '-');
-    if (child->kind != YAML_SCALAR)
-      SchemaError(r, child, "%s must be a single value", YamlPath(child, path, sizeof(path)));
-    else if (!name[0] || strpbrk(name, " \t\n"))
-      SchemaKeyError(r, child, "'%s' is no name of a PETSc option", child->key);
-    else {
-      const PetscBool bare = YamlIsNull(child);
-      const size_t size = strlen(name) + strlen(child->text) + 3;
-      PetscCall(PetscMalloc1(size, &(*options)[*n]));
-      snprintf((*options)[(*n)++], size, bare ? "-%s%s" : "-%s %s", name, bare ? "" : child->text);
-    }
   }
   PetscFunctionReturn(0);
 }

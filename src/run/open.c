@@ -39,7 +39,11 @@ static PetscErrorCode WriteCase(Run *r)
 
 PetscErrorCode RunOpen(Run *r, const RunOptions *options, Diag *diag)
 {
+  PetscBool spares = PETSC_TRUE;
+
   PetscFunctionBeginUser;
+  if (!options->resume) PetscCall(RunDirSpares(r->comm, options->out, r->c->file, diag, &spares));
+  if (!spares) PetscFunctionReturn(0);
   PetscCall(RunDirCreate(r->comm, options->out, options->force, options->quiet, options->log, diag, &r->dir));
   if (!r->dir) PetscFunctionReturn(0);
   PetscCall(WriteCase(r));

@@ -188,6 +188,7 @@ static PetscErrorCode Close(Run *r, PetscReal *measures)
   r->summary.resumable = r->failed && r->checkpoint_step >= 0 ? PETSC_TRUE : PETSC_FALSE;
   r->summary.checkpoint_step = r->checkpoint_step;
   PetscCall(RunWritten(r, SummaryEnd(r->model, r->dir, &r->summary, r->values)));
+  PetscCall(RunWritten(r, RunDirCheckLog(r->dir)));
   PetscFunctionReturn(0);
 }
 

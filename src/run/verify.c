@@ -1,7 +1,5 @@
 #include "run/verify.h"
-#include <dirent.h>
 #include <errno.h>
-#include <fnmatch.h>
 #include <limits.h>
 #include <petsctime.h>
 #include <stdlib.h>
@@ -9,6 +7,7 @@
 #include <unistd.h>
 #include "io/case_file.h"
 #include "io/run_dir_files.h"
+#include "io/run_dir_mark.h"
 #include "run/verify_private.h"
 
 /* The name of the case is that of its folder, also where that is given as "." */
@@ -24,20 +23,6 @@ static void name_case(Verification *v)
   else PetscSNPrintf(v->out, sizeof v->out, "runs/verify/%s", v->name);
 }
 
-/* States are large, and a verification compares numbers: they go unless they are wanted. */
-static void remove_states(const char *folder)
-{
-  char path[PETSC_MAX_PATH_LEN];
-  DIR *listing = opendir(folder);
-  if (!listing) return;
-  for (struct dirent *entry = readdir(listing); entry; entry = readdir(listing)) {
-    if (fnmatch("*_[0-9]*.hdf", entry->d_name, 0) && fnmatch("*.hdf.series", entry->d_name, 0)) continue;
-    PetscSNPrintf(path, sizeof path, "%s/%s", folder, entry->d_name);
-    unlink(path);
-  }
-  closedir(listing);
-}
-
 static PetscErrorCode Run(Verification *v, VerifyRow *r, Diag *diag)
 {
   const RunOptions run = {.out = r->folder, .force = PETSC_TRUE, .quiet = PETSC_TRUE, .summary = &r->summary};
@@ -48,6 +33,7 @@ static PetscErrorCode Run(Verification *v, VerifyRow *r, Diag *diag)
   PetscFunctionBeginUser;
   PetscCall(CaseRead(v->comm, v->file, r->set.n, (const char *const *)r->set.text, diag, &c));
   r->result = RUN_BAD_INPUT;
+  if (c) c->grid.trusted = v->options->trust;
   if (c && v->options->resume) PetscCall(VerifyTakeOver(v, r, c, &found));
   if (!c || found) {
     PetscCall(CaseDestroy(&c));
@@ -60,7 +46,8 @@ static PetscErrorCode Run(Verification *v, VerifyRow *r, Diag *diag)
   PetscCallMPI(MPI_Bcast(&r->seconds, 1, MPIU_REAL, 0, v->comm));
   PetscCallMPI(MPI_Bcast(r->measures, (PetscMPIInt)r->n_measures, MPIU_REAL, 0, v->comm));
   r->ran = PETSC_TRUE;
-  if (v->rank == 0 && !v->options->keep) remove_states(r->folder);
+  /* States are large, and a verification compares numbers: they go unless they are wanted. */
+  if (v->rank == 0 && !v->options->keep && r->result != RUN_BAD_INPUT) run_dir_remove_states(r->folder);
   PetscCall(CaseDestroy(&c));
   PetscFunctionReturn(0);
 }
@@ -85,15 +72,32 @@ static PetscErrorCode Reuse(const Verification *v, VerifyRow *r, PetscBool *foun
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode MakeFolder(const Verification *v, Diag *diag)
+/* A file of the user's that a table or a figure would overwrite; NULL if there is none. */
+static const char *in_the_way(const Verification *v, char name[300])
 {
-  int error = v->rank == 0 ? file_make_folders(v->out) : 0;
+  if (run_dir_is_signed(v->out) || verify_is_table(v->out)) return NULL;
+  PetscStrncpy(name, "verification.md", 300);
+  for (PetscInt k = 0; k <= v->n; ++k) {
+    if (file_exists(v->out, name)) return name;
+    if (k < v->n) PetscSNPrintf(name, 300, "%s.png", v->rows[k].study->name);
+  }
+  return NULL;
+}
 
-  PetscFunctionBeginUser;
-  if (v->rank == 0 && !error && access(v->out, W_OK | X_OK)) error = errno;
-  PetscCallMPI(MPI_Bcast(&error, 1, MPI_INT, 0, v->comm));
+/* By rank 0. */
+static void PrepareFolder(const Verification *v, Diag *diag)
+{
+  char name[300];
+  int error = file_make_folders(v->out);
+  const char *taken = error ? NULL : in_the_way(v, name);
+  if (taken) {
+    DiagError(diag, NULL, "'%s' holds a %s that talus has not written: it would be overwritten", v->out, taken);
+    DiagHint(diag, "name another directory with --out");
+    return;
+  }
+  if (!error && access(v->out, W_OK | X_OK)) error = errno;
+  if (!error) error = run_dir_sign(v->out);
   if (error) DiagError(diag, NULL, "cannot write into '%s': %s", v->out, strerror(error));
-  PetscFunctionReturn(0);
 }
 
 /* By rank 0. A figure that cannot be drawn says so, and changes nothing about the numbers. */
@@ -196,7 +200,7 @@ static PetscErrorCode Prepare(Verification *v, Diag *diag, PetscInt *errors)
   PetscCall(ReferenceRead(v->comm, file, diag, &v->reference));
   if (v->reference) PetscCall(VerifyPlan(v, diag));
   PetscCall(DiagSetResolver(diag, NULL, NULL)); /* what follows is about no line of a case */
-  if (!DiagErrors(diag)) PetscCall(MakeFolder(v, diag));
+  if (v->rank == 0 && !DiagErrors(diag)) PrepareFolder(v, diag);
   PetscCall(DiagReduce(v->comm, diag, errors));
   PetscFunctionReturn(0);
 }

@@ -12,6 +12,7 @@ typedef struct {
   PetscBool keep;     /* the states (.hdf) of all runs, not only their logs and histories */
   PetscBool resume;   /* take over what earlier verifications into the same directory have finished */
   PetscBool record;   /* write the tables into docs/verification.md as well */
+  PetscBool trust;    /* the case's .geo may act on the system */
 } VerifyOptions;
 
 /* The same numbers as the exit codes of the program. */

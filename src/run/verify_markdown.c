@@ -150,6 +150,18 @@ static void write_text(FILE *out, const Verification *v, PetscBool figures)
   }
 }
 
+PetscBool verify_is_table(const char *folder)
+{
+  char path[PETSC_MAX_PATH_LEN], head[1024] = "";
+  PetscSNPrintf(path, sizeof path, "%s/verification.md", folder);
+  FILE *in = fopen(path, "r");
+  if (!in) return PETSC_FALSE;
+  head[fread(head, 1, sizeof head - 1, in)] = '\0';
+  fclose(in);
+  return !strncmp(head, "## ", 3) && strstr(head, "\nRecorded ") && strstr(head, " with talus ") ? PETSC_TRUE
+                                                                                                 : PETSC_FALSE;
+}
+
 PetscErrorCode VerifyMarkdown(const Verification *v, PetscBool figures, char **text)
 {
   char *buffer = NULL;

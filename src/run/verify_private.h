@@ -77,6 +77,8 @@ void verify_table_run(FILE *out, const Verification *v);
 
 /* verify_markdown.c: all studies; with the names of the figures if `figures`. */
 PetscErrorCode VerifyMarkdown(const Verification *v, PetscBool figures, char **text);
+/* Is the verification.md in the folder such tables? For folders of versions that did not sign them. */
+PetscBool verify_is_table(const char *folder);
 
 /* verify_history.c: curves of the measure over time, of rows [first, last), into DIR/<study>.png. Of one rank. */
 PetscErrorCode VerifyHistoryDraw(const Verification *v, PetscInt first, PetscInt last, Diag *diag, PetscBool *done);

@@ -84,6 +84,30 @@ static void remove_folder(const char *folder)
   if (my_rank() == 0) CHECK(system(command) == 0);
 }
 
+/* Each rank starts in a folder whose petscrc asks PETSc to write a file in the end. */
+static struct {
+  char folder[FOLDER], before[1024];
+} strange;
+
+static void enter_strange_folder(void)
+{
+  strcpy(strange.folder, "/tmp/talus-api-XXXXXX");
+  CHECK(getcwd(strange.before, sizeof strange.before) && mkdtemp(strange.folder) && chdir(strange.folder) == 0);
+  FILE *out = fopen("petscrc", "w");
+  CHECK(out != NULL);
+  fprintf(out, "-log_view :%s/written\n", strange.folder);
+  CHECK(fclose(out) == 0);
+}
+
+static void leave_strange_folder(void)
+{
+  char path[FOLDER + 16];
+  snprintf(path, sizeof path, "%s/written", strange.folder);
+  CHECK(access(path, F_OK) != 0);
+  snprintf(path, sizeof path, "%s/petscrc", strange.folder);
+  CHECK(unlink(path) == 0 && rmdir(strange.folder) == 0);
+}
+
 static void test_session(void **state)
 {
   TalusCase *c = NULL;
@@ -93,7 +117,9 @@ static void test_session(void **state)
   CHECK_ERROR(TalusRanks(&rank, &size), TALUS_ERROR_STATE);
   CHECK_ERROR(TalusCaseOpen(BLOCK, 0, NULL, &c, NULL), TALUS_ERROR_STATE);
   CHECK(strchr(TalusVersion(), '.') != NULL);
+  enter_strange_folder();
   CALL(TalusInitialize(NULL, NULL));
+  CHECK(chdir(strange.before) == 0);
   CHECK_ERROR(TalusInitialize(NULL, NULL), TALUS_ERROR_STATE);
   CALL(TalusRanks(&rank, &size));
   CHECK(rank >= 0 && rank < size);
@@ -298,6 +324,49 @@ static void test_resume(void **state)
   remove_folder(folder);
 }
 
+static void write_line(const char *folder, const char *name, const char *text)
+{
+  char path[FOLDER + 32];
+  snprintf(path, sizeof path, "%s/%s", folder, name);
+  FILE *out = fopen(path, "w");
+  CHECK(out && fputs(text, out) >= 0 && fclose(out) == 0);
+}
+
+/* A mesh script that makes a file is refused, and obeyed once its case is trusted. */
+static void test_trust(void **state)
+{
+  char folder[FOLDER], file[FOLDER + 16], made[FOLDER + 16], *messages = NULL;
+  TalusCase *c;
+  TalusModel *model;
+  (void)state;
+  make_folder(folder);
+  snprintf(file, sizeof file, "%s/case.yaml", folder);
+  snprintf(made, sizeof made, "%s/made", folder);
+  if (my_rank() == 0) {
+    write_line(folder, "square.geo",
+               "Point(1) = {0, 0, 0, 0.5}; l() = Extrude {1, 0, 0} { Point{1}; };\n"
+               "s() = Extrude {0, 1, 0} { Curve{l(1)}; };\nPrintf(\"x\") > \"made\";\n");
+    write_line(folder, "case.yaml",
+               "kinematics: plane-strain\nmethod: fem\nanalysis: {type: static, steps: 1}\ngrid: {mesh: square.geo}\n"
+               "bodies: [{name: b, shape: {box: {min: [0, 0], max: [1, 1]}}, points_per_cell: 3, material: m}]\n"
+               "materials: {m: {law: neo-hookean, density: 1, young: 1, poisson: 0}}\n"
+               "boundary: [{on: {x: 0}, fix: [x, y]}]\n");
+  }
+  MPI_Barrier(MPI_COMM_WORLD);
+  CALL(TalusCaseOpen(file, 0, NULL, &c, NULL));
+  CHECK_ERROR(TalusModelCreate(c, &model, &messages), TALUS_ERROR_INPUT);
+  CHECK(messages && strstr(messages, "square.geo:3:13: error: this writes into a file") && access(made, F_OK) != 0);
+  TalusTextFree(&messages);
+  CHECK_ERROR(TalusCaseTrust(NULL), TALUS_ERROR_ARGUMENT);
+  CALL(TalusCaseTrust(c));
+  CALL(TalusModelCreate(c, &model, &messages));
+  CHECK(access(made, F_OK) == 0);
+  TalusTextFree(&messages);
+  CALL(TalusModelDestroy(&model));
+  CALL(TalusCaseClose(&c));
+  remove_folder(folder);
+}
+
 static void test_limits(void **state)
 {
   TalusStep step = TALUS_STEP_AT_END;
@@ -457,6 +526,7 @@ static void test_end(void **state)
   CHECK_ERROR(TalusFinalize(), TALUS_ERROR_STATE);
   CHECK_ERROR(TalusInitialize(NULL, NULL), TALUS_ERROR_STATE);
   CHECK_ERROR(TalusCaseOpen(BLOCK, 0, NULL, &c, NULL), TALUS_ERROR_STATE);
+  leave_strange_folder();
 }
 
 int main(void)
@@ -470,6 +540,7 @@ int main(void)
     cmocka_unit_test(test_names),
     cmocka_unit_test(test_steps_equal_run),
     cmocka_unit_test(test_resume),
+    cmocka_unit_test(test_trust),
     cmocka_unit_test(test_limits),
     cmocka_unit_test(test_failed_step),
     cmocka_unit_test(test_points),

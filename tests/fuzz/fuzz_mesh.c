@@ -29,7 +29,7 @@ static void fuzz_one(const uint8_t *data, size_t n)
   char path[64], message[512] = "";
   MshFile *msh = NULL;
   const int fd = fuzz_file(data, n, path);
-  FUZZ_CALL(MshRead(path, &msh, sizeof message, message));
+  FUZZ_CALL(MshRead(path, path, &msh, sizeof message, message));
   if (!msh && !message[0]) abort();
   if (msh) {
     Serial(msh, 2);

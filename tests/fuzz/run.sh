@@ -6,7 +6,7 @@ build=$1 seconds=$2
 corpus=$(cd "$(dirname "$0")" && pwd)/corpus
 export ASAN_OPTIONS=detect_leaks=1:allocator_may_return_null=1 LSAN_OPTIONS=suppressions=$(dirname "$corpus")/../../cmake/lsan.supp:print_suppressions=0
 status=0
-for name in case mesh checkpoint; do
+for name in case mesh geo checkpoint; do
   mkdir -p "$build/found/$name"
   log=$build/fuzz-$name.txt
   "$build/fuzz_$name" -max_total_time="$seconds" -timeout=600 -rss_limit_mb=2048 -max_len=8192 -print_final_stats=1 -close_fd_mask=1 \

@@ -1,6 +1,7 @@
 talus_test(io/test_case_read RANKS 1 2)
 talus_test(io/test_case_bad)
 talus_test(io/test_case_set)
+talus_test(io/test_petsc_options)
 talus_test(io/test_case_schema)
 
 if(TARGET talus)

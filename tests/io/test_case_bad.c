@@ -50,6 +50,18 @@ static const Bad bads[] = {
     "key 'grid'"}},
   {"merge key", PLAIN "newton: {<<: 1}\n", {"key '<<' of newton is not known"}},
   {"empty key", PLAIN "newton: {residual: }\n", {"newton.residual must be a number >= 0, not empty"}},
+  /* options of PETSc that act */
+  {"a viewer that writes",
+   PLAIN "petsc: {snes_rtol: 1e-9, snes_view: \":/any/file\"}\n",
+   {"F:9:38: error: petsc.snes_view may not be ':/any/file' in a case file: what a case file asks to be shown",
+    "hint: write true, or ascii::FORMAT"}},
+  {"a picture",
+   PLAIN "petsc: {draw_save: 'm$(touch PWNED)'}\n",
+   {"F:9:9: error: a case file may not set the PETSc option 'draw_save'", "belong on the command line: -draw_save\n"}},
+  {"a misspelled option of PETSc", PLAIN "petsc: {ksp_rtl: 1}\n", {"F:9:9: error", "did you mean 'ksp_rtol'?"}},
+  {"a solver in Python",
+   PLAIN "petsc: {pc_type: python}\n",
+   {"F:9:18: error: petsc.pc_type may not be 'python' in a case file: it would run what stands in other files"}},
   /* types */
   {"text for number",
    WITH_MATERIAL("law: neo-hookean, density: heavy, young: 1, poisson: 0"),

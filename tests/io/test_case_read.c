@@ -65,7 +65,7 @@ static const char everything[] =
   "linear: direct\n"
   "stabilisation: {stiffness: 0}\n"
   "output: {fields: [stress, id], every: 0.1, history: {steps: 5}, grid: false}\n"
-  "petsc: {snes_monitor: , ksp_type: cg, ksp_rtol: 1e-9, options_left: true}\n";
+  "petsc: {snes_monitor: , ksp_type: cg, ksp_rtol: 1e-9, snes_error_if_not_converged: true}\n";
 
 static void Values(void **state)
 {

@@ -83,6 +83,16 @@ check "no mesh" "case.yaml:4:14: error: " "plate.msh"
 mkdir plate.msh
 check "mesh is a directory" "plate.msh" "not a file"
 rmdir plate.msh
+for kind in fifo link; do
+  if [ $kind = fifo ]; then mkfifo plate.msh; else ln -s /dev/zero plate.msh; fi
+  check "a mesh without an end: $kind" "case.yaml:4:14: error: " "plate.msh': this is a pipe or a device, not a file"
+  rm plate.msh
+done
+mkfifo pipe.yaml
+expect "a pipe as case" 2 timeout 20 "$talus" run pipe.yaml --out result
+says err.txt "pipe.yaml: error: this is no plain file"
+plate '' >plate.msh
+refused "second order" 's/^3 3 2 2 2 2 3 6 5/3 16 2 2 2 2 3 6 5 1 2 4 5/' "plate.msh:22: element 3 is a second-order quadrilateral" "mesh with Mesh.ElementOrder = 1"
 plate '' >plate.msh
 cp case.yaml good.yaml
 sed 's/region: soil/region: soyl/' good.yaml >case.yaml
@@ -92,6 +102,31 @@ check "unknown boundary" "case.yaml:10:" "'wal'" "did you mean 'wall'?"
 printf 'Point(1) = {0, 0, 0;\n' >wrong.geo
 sed 's/plate.msh/wrong.geo/' good.yaml >case.yaml
 check "wrong geo" "wrong.geo"
+mkfifo pipe.geo
+sed 's/plate.msh/pipe.geo/' good.yaml >case.yaml
+check "a pipe as script" "pipe.geo': this is a pipe or a device, not a file"
+
+# What gmsh says, how it ends, and no name that nobody knows
+cp case.yaml script.yaml
+mkdir bin && export PATH="$work/bin:$PATH"
+# gmsh_does COMMANDS: from now on gmsh is this.
+gmsh_does() { printf '#!/bin/sh\nfor i in 1 2 3 4 5; do echo "Info    : banner $i"; done\n%s\n' "$1" >bin/gmsh && chmod +x bin/gmsh; }
+printf 'Point(1) = {0, 0, 0};\n' >wrong.geo
+sed 's/plate.msh/wrong.geo/' good.yaml >case.yaml
+gmsh_does 'echo "Info    : last words"; echo "Info    : Writing $4"; kill -SEGV $$'
+check "gmsh crashes" "gmsh could not mesh '" "wrong.geo', it was killed by signal 11 (Segmentation fault): banner 4; banner 5; last words"
+lacks err.txt "banner 1" ".msh"
+gmsh_does 'exit 7'
+check "gmsh gives up" "wrong.geo', it ended with code 7: banner 3; banner 4; banner 5"
+gmsh_does 'echo "Error   : this went wrong"; echo "Info    : more"; exit 1'
+check "gmsh complains" "wrong.geo', it ended with code 1: this went wrong"
+lacks err.txt "banner" "more"
+gmsh_does ''
+check "gmsh makes nothing" "the mesh that gmsh made of '$work/wrong.geo'" "the file is empty"
+lacks err.txt ".msh"
+gmsh_does 'printf "\$MeshFormat\n4.1 0 8\n\$EndMeshFormat\n\$Nodes\nx\n" >"$4"'
+check "gmsh makes nonsense" "the mesh that gmsh made of '$work/wrong.geo':5: an integer was expected"
+rm -r bin
 
 # Found by fuzzing: a dimension that asks for 1e18 parameters of each node, though the file has ended. It took for ever.
 cp good.yaml case.yaml

@@ -95,8 +95,10 @@ says out.txt "0 SNES Function norm"
 expect "a misspelled option of PETSc" 0 "$talus" run case.yaml --out monitor --quiet --force -snes_monitr
 says err.txt "warning: nothing in this run asked for the PETSc option -snes_monitr"
 [ "$(grep -c warning err.txt)" = 1 ] || fail "$name: more than one warning"
-expect "a misspelled option in the case" 0 "$talus" run case.yaml --out monitor --quiet --force --set petsc.snes_monitr=true
-says err.txt "petsc.snes_monitr=true: warning: nothing in this run asked for the PETSc option -snes_monitr"
+expect "a misspelled option in the case" 2 "$talus" run case.yaml --out monitor --quiet --force --set petsc.snes_monitr=true
+says err.txt "petsc.snes_monitr=true: error: a case file may not set the PETSc option 'snes_monitr'" "did you mean 'snes_monitor'?"
+expect "an idle option in the case" 0 "$talus" run case.yaml --out monitor --quiet --force --set petsc.pc_gamg_threshold=0.1
+says err.txt "petsc.pc_gamg_threshold=0.1: warning: nothing in this run asked for the PETSc option -pc_gamg_threshold"
 expect "the command line wins" 2 "$talus" run case.yaml --out monitor --quiet --force --set petsc.ksp_type=preonly -ksp_type nonsense
 says err.txt "nonsense"
 expect "solver gives up" 1 "$talus" run case.yaml --out soft --quiet --set newton.max_iterations=1

@@ -63,7 +63,7 @@ says left/run/log.txt "error = cannot write the state at t = 0."
 [ "$(grep -c '"name"' left/run/points.hdf.series)" -eq "$(ls left/run/points_*.hdf | wc -l)" ] || fail "$name: the series is off"
 if ls left/run/*unfinished >/dev/null 2>&1; then fail "$name: an unfinished file"; fi
 [ "$(tail -n 1 left/run/history.csv | cut -d, -f2)" -ge 5 ] || fail "$name: the last row is missing"
-expect "disk that fills with rows" 1 on_disk 16k "$talus" run block.yaml --out disk/run --quiet --set output.every=end
+expect "disk that fills with rows" 1 on_disk 20k "$talus" run block.yaml --out disk/run --quiet --set output.every=end
 says err.txt "block.yaml: error: cannot write disk/run/history.csv: No space left on device"
 awk -F, 'NF != 10 || $10 == "" { print "row " NR " is broken: " $0; bad = 1 } END { exit bad }' left/run/history.csv ||
   fail "$name: a broken row"

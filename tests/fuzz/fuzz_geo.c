@@ -1,0 +1,39 @@
+/* Any bytes as a script of Gmsh: looked through, and told of with a place that is in it. */
+#include "fuzz.h"
+#include "grid/geo_check.h"
+#include "grid/geo_script.h"
+
+static FILE *nowhere;
+
+int LLVMFuzzerInitialize(int *argc, char ***argv)
+{
+  (void)argc, (void)argv;
+  fuzz_start();
+  nowhere = fopen("/dev/null", "w");
+  return 0;
+}
+
+static void fuzz_one(const uint8_t *data, size_t n)
+{
+  char path[64];
+  const char *why;
+  PetscBool safe;
+  Diag *diag;
+  GeoScript script;
+  GeoFinding finding;
+  GeoInclusion inclusion;
+  const int fd = fuzz_file(data, n, path);
+  FUZZ_CALL(GeoScriptRead(path, &script, &finding, &why));
+  if (why || script.n != n) abort();
+  if (!finding.reason) geo_find_action(&script, &finding);
+  if (finding.reason && finding.at + finding.width > n) abort();
+  for (size_t at = 0, before = 0; geo_next_inclusion(&script, &at, &inclusion); before = at)
+    if (at <= before || inclusion.at + inclusion.width > n || (!inclusion.problem && !inclusion.name[0])) abort();
+  FUZZ_CALL(GeoScriptFree(&script));
+  FUZZ_CALL(DiagCreate(&diag));
+  FUZZ_CALL(GeoCheck(path, diag, &safe));
+  if ((finding.reason && safe) || (!safe && DiagErrors(diag) != 1)) abort();
+  FUZZ_CALL(DiagFlush(diag, nowhere));
+  FUZZ_CALL(DiagDestroy(&diag));
+  close(fd);
+}
