@@ -165,6 +165,7 @@ PetscErrorCode ModelToTables(Model *m, Tables *tables)
   PetscFunctionBeginUser;
   PetscCall(WholeToTables(m, tables));
   PetscCall(TriesToTables(m, tables));
+  PetscCall(StateLostToTables(m, tables));
   PetscCall(PointsToTable(m->points, m->grid, "points", tables));
   PetscCall(PointsToTable(m->tracers, m->grid, "tracers", tables));
   PetscCall(PointsToTable(m->loads->carriers, m->grid, "carriers", tables));
@@ -356,6 +357,7 @@ PetscErrorCode ModelFromTables(Model *m, Tables *tables, char reason[256])
   if (reason[0]) PetscFunctionReturn(0);
   whole_from_tables(m, TablesFind(tables, "model"), TablesFind(tables, "measures"), reason);
   tries_from_table(m, TablesFind(tables, "tries"), reason);
+  state_lost_from_tables(m, tables, reason);
   PetscCall(ReasonShare(m->comm, reason));
   if (m->grid->cloud && !reason[0]) {
     PetscCall(CloudBack(m, tables, reason));

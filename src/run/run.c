@@ -1,3 +1,4 @@
+#include "run/losses.h"
 #include "run/run_private.h"
 #include "run/signals.h"
 #include "run/summary.h"
@@ -88,6 +89,7 @@ static PetscErrorCode AfterStep(Run *r, const StepReport *report, PetscInt point
     PetscCall(RunDirLog(r->dir, "step = %d tried again = %d lost iterations = %d halved = %d dt = %g",
                         (int)r->model->step, (int)report->tries.again, (int)report->tries.lost, (int)report->cuts,
                         (double)report->dt));
+  PetscCall(LossesLogStep(r->model, r->dir, report));
   PetscCall(RunDirProgress(r->dir, &progress));
   if (is_due(&r->rows, r->model->time, r->model->step)) PetscCall(RunWriteRow(r));
   if (is_due(&r->states, r->model->time, r->model->step)) PetscCall(RunWriteState(r));
@@ -201,6 +203,7 @@ static PetscErrorCode RunModel(Run *r, const RunOptions *options, Diag *diag, Pe
   } else {
     PetscCall(Advance(r));
     PetscCall(Close(r, measures));
+    PetscCall(LossesWarn(r->model, r->values, diag));
     PetscCall(ModelUnusedOptions(r->model, diag));
     *result = r->failed ? RUN_GAVE_UP : RUN_DONE;
     if (options->summary) *options->summary = r->summary;

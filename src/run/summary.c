@@ -1,5 +1,6 @@
 #include "run/summary.h"
 #include <stdlib.h>
+#include "run/losses.h"
 #include "talus_version.h"
 
 PetscErrorCode SummaryVersion(MPI_Comm comm, RunDir *dir)
@@ -89,6 +90,7 @@ PetscErrorCode SummaryEnd(Model *m, RunDir *dir, const RunSummary *summary, cons
   for (PetscInt k = 0; k < m->c->n_measures; ++k)
     PetscCall(
       RunDirLog(dir, "%s = %.10g %s", m->c->measures[k].name, (double)values[k], measure_unit(&m->c->measures[k])));
+  PetscCall(LossesLogEnd(m, dir));
   PetscCall(RunDirLog(dir, "steps = %d iterations = %d halvings = %d seconds = %.3g", (int)summary->steps,
                       (int)summary->iterations, (int)summary->halvings, (double)seconds));
   if (m->tries.again || m->cuts)
