@@ -51,20 +51,33 @@ PetscErrorCode RunWriteRow(Run *r)
   PetscFunctionReturn(0);
 }
 
+/* Whatever stands there now is not this run's. */
+static PetscErrorCode IsGone(Run *r, PetscBool *gone)
+{
+  PetscFunctionBeginUser;
+  const PetscErrorCode present = RunDirPresent(r->dir);
+  PetscCall(RunWritten(r, present));
+  *gone = present ? PETSC_TRUE : PETSC_FALSE;
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode RunWriteState(Run *r)
 {
-  PetscBool ok;
+  PetscBool ok, gone;
   char reason[256], text[512];
 
   PetscFunctionBeginUser;
   if (r->state_step == r->model->step) PetscFunctionReturn(0);
+  PetscCall(IsGone(r, &gone));
+  if (gone) PetscFunctionReturn(0);
   PetscCall(OutputWrite(r->output, r->model, &ok, reason));
   r->state_step = r->model->step;
-  if (!ok) {
-    snprintf(text, sizeof text, "cannot write the state at t = %g s: %s", (double)r->model->time, reason);
-    PetscCall(RunDirLog(r->dir, "error = %s", text));
-    run_stop(r, text);
-  }
+  if (ok) PetscFunctionReturn(0);
+  PetscCall(IsGone(r, &gone));
+  if (gone) PetscFunctionReturn(0);
+  snprintf(text, sizeof text, "cannot write the state at t = %g s: %s", (double)r->model->time, reason);
+  PetscCall(RunDirLog(r->dir, "error = %s", text));
+  run_stop(r, text);
   PetscFunctionReturn(0);
 }
 
