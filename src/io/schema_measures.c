@@ -46,7 +46,10 @@ static const SchemaWord roughness_words[] = {
 };
 
 static const SchemaEntry of_entries[] = {
-  KEY("tracer", VECTOR, "m", "a massless point carried by the material, by its position at the start",
+  KEY("tracer", VECTOR, "m",
+      "a massless point carried by the material, out of the grid too, by its position at the start; nan from when no "
+      "node of "
+      "the grid carries it any more",
       AT(MeasureSpec, tracer)),
   KEY("body", REFERENCE, NULL, "a name from `bodies`", .target = "bodies", AT(MeasureSpec, body)),
   KEY("boundary", BOUNDARY, NULL, "an entry of `boundary`: its name, or its index counted from 0",

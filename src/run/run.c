@@ -63,7 +63,7 @@ static PetscErrorCode IsGone(Run *r, PetscBool *gone)
 
 PetscErrorCode RunWriteState(Run *r)
 {
-  PetscBool ok, gone;
+  PetscBool ok, gone = PETSC_FALSE;
   char reason[256], text[512];
 
   PetscFunctionBeginUser;
