@@ -168,7 +168,7 @@ int TalusCaseMeasureName(const TalusCase *c, int i, const char **name, const cha
 /**
  * @brief Run a case from start to end and write its directory of results, as `talus run` does. Collective.
  *
- * SIGINT and SIGTERM end the run with its state written; a step that has not converged by then is given up.
+ * SIGINT, SIGTERM, SIGQUIT, SIGHUP, SIGUSR1, SIGUSR2 and SIGXCPU end the run with its state written; a step that has not converged by then is given up.
  *
  * With #TALUS_RUN_RESUME the run that is in `out` goes on, as with `talus run --resume`; c is then the file
  * case.yaml in `out`, opened with TalusCaseOpen() (its `set` may change `checkpoint`, `newton`, `linear`, `petsc`,

@@ -128,7 +128,7 @@ PetscErrorCode LoadsCreate(const Grid *grid, const Case *c, const Points *points
   l->dim = grid->dim;
   l->n_nodes = grid->n_nodes;
   PetscCall(PetscCalloc1(c->n_loads, &l->faces));
-  PetscCall(PointsCreate(l->dim, 0, l->dim, &l->carriers));
+  PetscCall(FollowersCreate(l->dim, l->dim, &l->carriers));
   for (PetscInt k = 0; k < c->n_loads; ++k) {
     if (c->loads[k].kind == LOAD_POINT) {
       PetscCall(PetscSNPrintf(path, sizeof path, "loads.points[%d].at", (int)forces++));

@@ -136,13 +136,18 @@ typedef enum {
   MEASURE_EXTERNAL_WORK,
   MEASURE_DAMPED_ENERGY,
   MEASURE_TRANSFER_ENERGY,
+  MEASURE_OUTSIDE_ENERGY, /* of points that left the grid */
   MEASURE_ENERGY_BALANCE, /* of the whole model */
   MEASURE_REACTION,
   MEASURE_SURFACE_FRONT,
   MEASURE_SURFACE_HEIGHT,
   MEASURE_SURFACE_SLOPE, /* of the interpolated free surface, 2D */
   MEASURE_RUN_OUT_TIME,  /* when the front last moved faster than `speed` */
-  MEASURE_ROUGHNESS      /* of the pressure */
+  MEASURE_ROUGHNESS,     /* of the pressure */
+  MEASURE_OUTSIDE_REMOVED,
+  MEASURE_OUTSIDE_MASS,
+  MEASURE_OUTSIDE_HELD,
+  MEASURE_OUTSIDE_MOMENTUM /* of points that left the grid */
 } MeasureKind;
 
 typedef enum { FRONT_POINTS, FRONT_SURFACE } FrontKind;

@@ -54,5 +54,7 @@ PetscInt CliValues(const CliArguments *arguments, const char *name, const char *
 
 /* Print `error: ...` and a hint (or NULL) on rank 0 and set the exit code for bad usage. */
 PetscErrorCode CliUsageError(int *exit_code, const char *hint, const char *format, ...) PETSC_ATTRIBUTE_FORMAT(3, 4);
+/* Collective. Were all ranks started with the same words? If not that has been printed, and the exit code is set. */
+PetscErrorCode CliSameCommand(int argc, char **argv, PetscBool *same, int *exit_code);
 /* Is this the rank that prints? */
 PetscBool CliPrints(void);

@@ -124,15 +124,19 @@ static const char *SingleDashMistake(int n, char **petsc)
   return NULL;
 }
 
-static PetscErrorCode Main(int argc, char **argv, const char *mistake, int *exit_code)
+/* own: the words that are no options of PETSc. */
+static PetscErrorCode Main(int argc, char **argv, int n_own, char **own, const char *mistake, int *exit_code)
 {
+  PetscBool same;
   char hint[80];
 
   PetscFunctionBeginUser;
+  PetscCall(CliSameCommand(argc, argv, &same, exit_code));
+  if (!same) PetscFunctionReturn(0);
   if (mistake) {
     snprintf(hint, sizeof(hint), "did you mean --%s?", mistake);
     PetscCall(CliUsageError(exit_code, hint, "-%s has a single dash, so it would be an option of PETSc", mistake));
-  } else PetscCall(Dispatch(argc, argv, exit_code));
+  } else PetscCall(Dispatch(n_own, own, exit_code));
   PetscFunctionReturn(0);
 }
 
@@ -160,7 +164,7 @@ static int RunProgram(int argc, char **argv, char **own, char **petsc)
   WarnOfOptionsFile(n_petsc, petsc);
   signal(SIGPIPE, SIG_DFL); /* `talus ... | head` ends quietly */
   /* An internal error on one rank must not leave the others waiting. */
-  if (Main(n_own, own, mistake, &exit_code)) MPI_Abort(PETSC_COMM_WORLD, CLI_GAVE_UP);
+  if (Main(argc, argv, n_own, own, mistake, &exit_code)) MPI_Abort(PETSC_COMM_WORLD, CLI_GAVE_UP);
   if (PetscFinalize()) exit_code = CLI_GAVE_UP;
   return exit_code;
 }

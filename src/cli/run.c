@@ -23,11 +23,10 @@ static const CliUsage usage = {
   .usage = "talus run CASE [options], or talus run --resume DIR [options]",
   .help =
     "Runs a case file and writes states (.hdf, for ParaView), history.csv and a log into a run directory. Every ten\n"
-    "minutes (checkpoint: in the case) and at SIGINT and SIGTERM the whole state is put away there; with --resume a "
-    "run\n"
-    "that was cut off goes on as if nothing had been. Then --set may change checkpoint, newton, linear, parallel, "
-    "petsc,\n"
-    "analysis.smallest and .largest, grid.outside and, in dynamics, analysis.end.\n"
+    "minutes (checkpoint: in the case) and when a signal asks the run to leave (SIGINT, SIGTERM, SIGHUP, SIGUSR1 ...)\n"
+    "the whole state is put away there; with --resume a run that was cut off goes on as if nothing had been. Then\n"
+    "--set may change checkpoint, newton, linear, parallel, petsc, analysis.smallest and .largest, grid.outside and,\n"
+    "in dynamics, analysis.end.\n"
     "If the case has a reference.yaml beside it that knows this very case, the results are compared with it.",
   .options = options_known,
   .min_words = 0,

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/file.h>
+#include <sys/stat.h>
 #include <time.h>
 #include <unistd.h>
 #include "io/run_dir_files.h"
@@ -274,15 +275,35 @@ PetscErrorCode RunDirCheckLog(RunDir *dir)
 PetscErrorCode RunDirAgree(RunDir *dir, const char *name, int error)
 {
   PetscFunctionBeginUser;
+  if (error && dir->rank == 0 && run_dir_present(dir)) error = ESTALE; /* that is why */
   PetscCallMPI(MPI_Bcast(&error, 1, MPI_INT, 0, dir->comm));
   if (!error) PetscFunctionReturn(0);
-  snprintf(dir->reason, sizeof dir->reason, "cannot write %s%s%s: %s", dir->path, name[0] ? "/" : "", name,
-           strerror(error));
+  if (error == ESTALE)
+    snprintf(dir->reason, sizeof dir->reason,
+             "the run directory %s was removed, renamed or replaced while the run was at work", dir->path);
+  else
+    snprintf(dir->reason, sizeof dir->reason, "cannot write %s%s%s: %s", dir->path, name[0] ? "/" : "", name,
+             strerror(error));
   PetscCall(RunDirLog(dir, "error = %s", dir->reason));
   PetscFunctionReturn(PETSC_ERR_FILE_WRITE);
 }
 
 const char *RunDirReason(const RunDir *dir) { return dir->reason; }
+
+int run_dir_present(const RunDir *dir)
+{
+  struct stat held, named;
+  if (dir->lock < 0 || fstat(dir->lock, &held)) return 0; /* nothing to compare with */
+  if (stat(dir->path, &named)) return errno == ENOENT || errno == ENOTDIR ? ESTALE : 0;
+  return held.st_dev == named.st_dev && held.st_ino == named.st_ino ? 0 : ESTALE;
+}
+
+PetscErrorCode RunDirPresent(RunDir *dir)
+{
+  PetscFunctionBeginUser;
+  const PetscErrorCode status = RunDirAgree(dir, "", dir->rank ? 0 : run_dir_present(dir));
+  PetscFunctionReturn(status);
+}
 
 PetscErrorCode RunDirWriteText(RunDir *dir, const char *name, const char *text)
 {
@@ -291,7 +312,8 @@ PetscErrorCode RunDirWriteText(RunDir *dir, const char *name, const char *text)
 
   PetscFunctionBeginUser;
   PetscCall(PetscSNPrintf(path, sizeof path, "%s/%s", dir->path, name));
-  if (dir->rank == 0) error = file_write_text(path, text);
+  if (dir->rank == 0) error = run_dir_present(dir);
+  if (dir->rank == 0 && !error) error = file_write_text(path, text);
   const PetscErrorCode status = RunDirAgree(dir, name, error);
   PetscFunctionReturn(status);
 }

@@ -51,10 +51,17 @@ PetscErrorCode RunDirProgress(RunDir *dir, const RunProgress *progress);
  * disk refuses comes back plainly as PETSC_ERR_FILE_WRITE on every rank, after a line in the log that
  * says why. */
 PetscErrorCode HistoryOpen(RunDir *dir, PetscInt n, const char *const *names, const char *const *units);
+/* What tells whether a history is still the one that was written: lines (with the header), bytes, CRC-32 of all. */
+typedef struct {
+  PetscInt64 lines, bytes, crc;
+} HistoryMark;
+/* Collective. Of the history as far as it is written. */
+PetscErrorCode HistoryGetMark(const RunDir *dir, HistoryMark *mark);
 /* Resume: keep the rows up to that of `step`, which must be there unless it is negative, and drop the others. A
- * history of other measures, or one that has lost rows, is a diagnostic, and the file stays as it is. */
+ * history of other measures, or one that has lost rows, or whose kept rows do not have the mark `was` (NULL: not known), is a diagnostic, and
+ * the file stays as it is. */
 PetscErrorCode HistoryOpenFrom(RunDir *dir, PetscInt n, const char *const *names, const char *const *units,
-                               PetscInt step, Diag *diag);
+                               PetscInt step, const HistoryMark *was, Diag *diag);
 /* Rows on the disk, not only with the system: what a checkpoint counts on. */
 PetscErrorCode HistorySync(RunDir *dir);
 PetscErrorCode HistoryWrite(RunDir *dir, PetscReal time, PetscInt step, const PetscReal *values);
@@ -62,6 +69,9 @@ PetscErrorCode HistoryWrite(RunDir *dir, PetscReal time, PetscInt step, const Pe
 /* A text file written atomically (case.yaml, version.txt, timings.txt). Rank 0 writes. Collective.
  * Errors as for the history. */
 PetscErrorCode RunDirWriteText(RunDir *dir, const char *name, const char *text);
+
+/* Collective. Is the directory still there under its name? If it was removed, renamed or replaced, errors as for the history. */
+PetscErrorCode RunDirPresent(RunDir *dir);
 
 /* After PETSC_ERR_FILE_WRITE, on every rank: which file could not be written, and why. */
 const char *RunDirReason(const RunDir *dir);

@@ -13,6 +13,7 @@ struct RunDir {
   int log_error; /* errno of the first line that did not get into the log */
   int lock;      /* the open directory, -1: none */
   PetscInt n_measures;
+  HistoryMark mark; /* of history.csv, on rank 0 */
   PetscBool quiet, terminal;
   PetscBool bar;   /* a progress bar stands on the terminal's last line */
   PetscReal start; /* of the run, on the monotonic clock, s */
@@ -20,6 +21,8 @@ struct RunDir {
   PetscReal last_shown; /* when progress was last printed, s since the clock's start; < 0: never */
 };
 
+/* Rank 0. 0, or ESTALE if the directory's name no longer leads to the directory in which the run began. */
+int run_dir_present(const RunDir *dir);
 /* Share rank 0's errno for the file of this name; a refusal is logged and kept for RunDirReason. Collective. */
 PetscErrorCode RunDirAgree(RunDir *dir, const char *name, int error);
 

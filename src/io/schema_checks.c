@@ -309,8 +309,9 @@ PetscErrorCode SchemaCheckMeasure(SchemaReader *r, const YamlNode *mapping, void
     SchemaKeyError(r, of, "%s.of: this energy is known for the whole model only", path);
     PetscFunctionReturn(0);
   }
-  if (of && m->kind == MEASURE_ROUGHNESS) {
-    SchemaKeyError(r, of, "%s.of: roughness is known for the whole model only", path);
+  if (of && m->kind >= MEASURE_ROUGHNESS) {
+    SchemaKeyError(r, of, "%s.of: %s is known for the whole model only", path,
+                   m->kind == MEASURE_ROUGHNESS ? "roughness" : "what has left the grid");
     PetscFunctionReturn(0);
   }
   if (!of && !tracer && !reaction) PetscFunctionReturn(0);

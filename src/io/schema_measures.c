@@ -9,10 +9,12 @@ static const SchemaWord energy_words[] = {
   {"dissipated", MEASURE_DISSIPATED_ENERGY, "work of the stress that is not stored: plastic dissipation"},
   {"external", MEASURE_EXTERNAL_WORK, "work done by loads, gravity and prescribed motion"},
   {"damped", MEASURE_DAMPED_ENERGY, "taken by Rayleigh damping"},
-  {"transfer", MEASURE_TRANSFER_ENERGY,
-   "lost between points and grid, at nodes that stop material, and with points that leave the grid"},
+  {"transfer", MEASURE_TRANSFER_ENERGY, "lost between points and grid, and at nodes that stop material"},
+  {"outside", MEASURE_OUTSIDE_ENERGY,
+   "gone with points that left the grid: with those removed, and in stopping those kept on its boundary"},
   {"balance", MEASURE_ENERGY_BALANCE,
-   "kinetic + elastic + dissipated + damped + transfer - external, less its value at the start, over the largest of "
+   "kinetic + elastic + dissipated + damped + transfer + outside - external, less its value at the start, over the "
+   "largest of "
    "these (no unit): 0 "
    "if all is accounted for; numerical damping shows here"},
   {NULL, 0, NULL},
@@ -24,6 +26,12 @@ static const SchemaWord surface_words[] = {
    "angle of repose, positive if it falls towards +x, by least squares between a fifth and four fifths of the way from "
    "the highest "
    "place to the front, deg"},
+  {NULL, 0, NULL},
+};
+static const SchemaWord outside_words[] = {
+  {"removed", MEASURE_OUTSIDE_REMOVED, "points that `outside: remove` has taken out since the start, a number"},
+  {"mass", MEASURE_OUTSIDE_MASS, "their mass, kg"},
+  {"held", MEASURE_OUTSIDE_HELD, "points that `outside: keep-on-boundary` put back in the last step, a number"},
   {NULL, 0, NULL},
 };
 static const SchemaWord front_words[] = {{"points", FRONT_POINTS, "the farthest material point"},
@@ -38,7 +46,10 @@ static const SchemaWord roughness_words[] = {
 };
 
 static const SchemaEntry of_entries[] = {
-  KEY("tracer", VECTOR, "m", "a massless point carried by the material, by its position at the start",
+  KEY("tracer", VECTOR, "m",
+      "a massless point carried by the material, out of the grid too, by its position at the start; nan from when no "
+      "node of "
+      "the grid carries it any more",
       AT(MeasureSpec, tracer)),
   KEY("body", REFERENCE, NULL, "a name from `bodies`", .target = "bodies", AT(MeasureSpec, body)),
   KEY("boundary", BOUNDARY, NULL, "an entry of `boundary`: its name, or its index counted from 0",
@@ -108,13 +119,19 @@ static const SchemaEntry measure_entries[] = {
   KEY("run_out_time", TABLE, "s", "when a body's front came to rest: {max: x, speed: 0.01}", .table = &run_out,
       TAG(MEASURE_RUN_OUT_TIME)),
   KEY("roughness", WORD, "", "how rough a field is", .words = roughness_words, AT(MeasureSpec, kind)),
+  KEY("outside", WORD, "kg or a number", "what has left the grid (grid.outside)", .words = outside_words,
+      AT(MeasureSpec, kind)),
+  KEY(
+    "outside_momentum", AXIS, "kg m/s",
+    "momentum that went with points that left the grid: with those removed, and in stopping those kept on its boundary",
+    TAG(MEASURE_OUTSIDE_MOMENTUM), AT(MeasureSpec, component)),
   KEY("of", TABLE, NULL, "which tracer, body or boundary", .table = &of),
   {.key = NULL},
 };
 static const SchemaGroup measure_groups[] = {
   {GROUP_ONE,
    {"displacement", "position", "velocity", "extent", "mass", "momentum", "angular_momentum", "spin", "energy",
-    "reaction", "surface", "run_out_time", "roughness", NULL}},
+    "reaction", "surface", "run_out_time", "roughness", "outside", "outside_momentum", NULL}},
   {GROUP_NONE, {NULL}}};
 static PetscBool HideInMeasure(const SchemaEntry *e, const void *source)
 {
@@ -126,6 +143,8 @@ static PetscBool HideInMeasure(const SchemaEntry *e, const void *source)
   if (!strcmp(e->key, "energy")) return energy ? PETSC_FALSE : PETSC_TRUE;
   if (!strcmp(e->key, "surface")) return surface ? PETSC_FALSE : PETSC_TRUE;
   if (!strcmp(e->key, "roughness")) return m->kind == MEASURE_ROUGHNESS ? PETSC_FALSE : PETSC_TRUE;
+  if (!strcmp(e->key, "outside"))
+    return m->kind >= MEASURE_OUTSIDE_REMOVED && m->kind <= MEASURE_OUTSIDE_HELD ? PETSC_FALSE : PETSC_TRUE;
   if (!strcmp(e->key, "at")) return m->has_at ? PETSC_FALSE : PETSC_TRUE;
   if (!strcmp(e->key, "of")) return IsTracer(m) || m->body || m->kind == MEASURE_REACTION ? PETSC_FALSE : PETSC_TRUE;
   return PETSC_FALSE;

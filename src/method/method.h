@@ -88,3 +88,5 @@ PetscErrorCode StageBodyVelocity(Stage *stage);
 PetscErrorCode StageMoveClouds(Stage *stage, Points *carried, const Support *support, const PetscReal *du);
 PetscErrorCode StageMoveCarried(Stage *stage, Points *carried,
                                 const PetscReal *du); /* tracers and carriers follow the field */
+/* After initialise: does a node that material touches carry the tracer or carrier of this rank? */
+PetscBool stage_carries(const Stage *stage, const Points *followers, PetscInt p);

@@ -115,6 +115,7 @@ PetscErrorCode EnergyStart(Model *m)
   }
   local = points_kinetic(m) + points_work(m);
   PetscCall(MPIU_Allreduce(&local, &m->start_energy, 1, MPIU_REAL, MPI_SUM, m->comm));
+  m->most_energy = m->start_energy;
   PetscFunctionReturn(0);
 }
 
@@ -247,17 +248,19 @@ PetscErrorCode EnergyOfNodes(Model *m, PetscReal dt, EnergyStep *e)
 
 PetscErrorCode EnergyClose(Model *m, EnergyStep *e)
 {
+  const OutsideTally *gone = &m->points->outside;
   PetscReal local[4], sum[4];
 
   PetscFunctionBeginUser;
-  if (m->c->analysis.type == ANALYSIS_DYNAMIC) e->transfer -= points_kinetic(m);
-  if (m->method->points_move) e->transfer -= points_work(m); /* the step's work; and that of points that are gone */
+  if (m->c->analysis.type == ANALYSIS_DYNAMIC) e->transfer -= points_kinetic(m) + gone->kinetic;
+  if (m->method->points_move) e->transfer -= points_work(m) + gone->work; /* of the step: what is gone counts apart */
   local[0] = e->external, local[1] = e->boundary, local[2] = e->damped, local[3] = e->transfer;
   PetscCall(MPIU_Allreduce(local, sum, 4, MPIU_REAL, MPI_SUM, m->comm));
   m->external_work += sum[0];
   m->boundary_work += sum[1];
   m->damped_energy += sum[2];
   m->transfer_energy += sum[3];
+  m->most_energy = PetscMax(m->most_energy, m->start_energy + m->external_work + m->boundary_work);
   PetscFunctionReturn(0);
 }
 
@@ -275,6 +278,7 @@ PetscErrorCode ModelEnergies(Model *m, Energies *e)
                   .boundary = m->boundary_work,
                   .damped = m->damped_energy,
                   .transfer = m->transfer_energy,
+                  .outside = m->outside.energy,
                   .start = m->start_energy};
   PetscFunctionReturn(0);
 }

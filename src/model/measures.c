@@ -11,7 +11,9 @@ const char *measure_unit(const MeasureSpec *s)
   case MEASURE_SURFACE_HEIGHT:
   case MEASURE_EXTENT: return "m";
   case MEASURE_VELOCITY: return "m/s";
+  case MEASURE_OUTSIDE_MASS:
   case MEASURE_MASS: return "kg";
+  case MEASURE_OUTSIDE_MOMENTUM:
   case MEASURE_MOMENTUM: return "kg m/s";
   case MEASURE_ANGULAR_MOMENTUM: return "kg m2/s";
   case MEASURE_SPIN: return "rad/s";
@@ -20,9 +22,12 @@ const char *measure_unit(const MeasureSpec *s)
   case MEASURE_DISSIPATED_ENERGY:
   case MEASURE_DAMPED_ENERGY:
   case MEASURE_TRANSFER_ENERGY:
+  case MEASURE_OUTSIDE_ENERGY:
   case MEASURE_EXTERNAL_WORK: return "J";
   case MEASURE_SURFACE_SLOPE: return "deg";
   case MEASURE_RUN_OUT_TIME: return "s";
+  case MEASURE_OUTSIDE_REMOVED:
+  case MEASURE_OUTSIDE_HELD:
   case MEASURE_ROUGHNESS:
   case MEASURE_ENERGY_BALANCE: return "";
   case MEASURE_REACTION: return "N";
@@ -39,13 +44,17 @@ static PetscErrorCode Sum(const Model *m, PetscReal local, PetscReal *value)
 
 static PetscErrorCode TracerValue(const Model *m, const MeasureSpec *s, PetscInt index, PetscReal *value)
 {
-  const PointReal field = s->kind == MEASURE_DISPLACEMENT ? POINT_U : s->kind == MEASURE_POSITION ? POINT_X : POINT_V;
-  PetscReal local = 0;
+  const PointReal field = s->kind == MEASURE_DISPLACEMENT ? POINT_U : POINT_V;
+  PetscReal local = 0, x[3];
 
   PetscFunctionBeginUser;
-  for (PetscInt p = 0; p < m->tracers->n; ++p)
-    if (m->tracers->body[p] == index) local = point_real(m->tracers, field, p)[s->component];
+  for (PetscInt p = 0; p < m->tracers->n; ++p) {
+    if (m->tracers->body[p] != index) continue;
+    point_place(m->tracers, p, x);
+    local = s->kind == MEASURE_POSITION ? x[s->component] : point_real(m->tracers, field, p)[s->component];
+  }
   PetscCall(Sum(m, local, value)); /* one rank holds it */
+  if (m->memory[index].ended > 0) *value = NAN;
   PetscFunctionReturn(0);
 }
 
@@ -100,18 +109,16 @@ static PetscErrorCode ExtentValue(const Model *m, const MeasureSpec *s, PetscRea
 {
   const PetscInt body = body_index(m->c, s->body);
   const PetscReal sign = s->maximum ? 1 : -1;
-  PetscReal local = PETSC_MIN_REAL, largest;
+  PetscReal local = -PETSC_MAX_REAL, largest;
 
   PetscFunctionBeginUser;
-  for (PetscInt p = 0, any = 0; p < m->points->n; ++p) {
+  for (PetscInt p = 0; p < m->points->n; ++p) {
     if (body >= 0 && m->points->body[p] != body) continue;
-    const PetscReal x = sign * point_real(m->points, POINT_X, p)[s->component];
-    local = any++ ? PetscMax(local, x) : x;
+    local = PetscMax(local, sign * point_real(m->points, POINT_X, p)[s->component]);
   }
-  if (!m->points->n) local = -PETSC_MAX_REAL;
   PetscCall(MPIU_Allreduce(&local, &largest, 1, MPIU_REAL, MPIU_MAX, m->comm));
-  if (s->beyond > 0) PetscCall(InnerExtent(m, s, sign, &largest));
-  *value = sign * largest;
+  if (s->beyond > 0 && largest > -PETSC_MAX_REAL) PetscCall(InnerExtent(m, s, sign, &largest));
+  *value = largest > -PETSC_MAX_REAL ? sign * largest : NAN; /* no point, no place */
   PetscFunctionReturn(0);
 }
 
@@ -146,12 +153,18 @@ static PetscReal point_term(const Model *m, const MeasureSpec *s, PetscInt p)
 static PetscErrorCode PointSum(const Model *m, const MeasureSpec *s, PetscReal *value)
 {
   const PetscInt body = body_index(m->c, s->body);
-  PetscReal local = 0;
+  PetscReal sum[2] = {0, 0}; /* the last: points */
 
   PetscFunctionBeginUser;
-  for (PetscInt p = 0; p < m->points->n; ++p)
-    if (body < 0 || m->points->body[p] == body) local += point_term(m, s, p);
-  PetscCall(Sum(m, local, value));
+  for (PetscInt p = 0; p < m->points->n; ++p) {
+    if (body >= 0 && m->points->body[p] != body) continue;
+    sum[0] += point_term(m, s, p);
+    sum[1] += 1;
+  }
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sum, 2, MPIU_REAL, MPI_SUM, m->comm));
+  *value = body >= 0 && sum[1] == 0 && s->kind != MEASURE_MASS
+             ? NAN
+             : sum[0]; /* of a body that is gone only its mass is known: 0 */
   PetscFunctionReturn(0);
 }
 
@@ -173,8 +186,15 @@ static PetscErrorCode SpinValue(const Model *m, const MeasureSpec *s, PetscReal 
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, q, 7, MPIU_REAL, MPI_SUM, m->comm));
   const PetscReal momentum = q[5] - (q[1] * q[4] - q[2] * q[3]) / q[0];
   const PetscReal inertia = q[6] - (q[1] * q[1] + q[2] * q[2]) / q[0];
-  *value = inertia > 0 ? momentum / inertia : 0;
+  *value = inertia > 0 ? momentum / inertia : q[0] > 0 ? 0 : NAN;
   PetscFunctionReturn(0);
+}
+
+static PetscBool is_flat(const SurfaceProfile *profile)
+{
+  for (PetscInt i = 0; i < profile->n; ++i)
+    if (profile->height[i] != 0) return PETSC_FALSE;
+  return PETSC_TRUE;
 }
 
 static PetscErrorCode SurfaceValue(const Model *m, const MeasureSpec *s, PetscReal *value)
@@ -183,7 +203,8 @@ static PetscErrorCode SurfaceValue(const Model *m, const MeasureSpec *s, PetscRe
 
   PetscFunctionBeginUser;
   PetscCall(SurfaceProfileCreate(m, body_index(m->c, s->body), &profile));
-  if (s->kind == MEASURE_SURFACE_HEIGHT) *value = surface_height(&profile, s->at);
+  if (is_flat(&profile)) *value = NAN; /* there is no body */
+  else if (s->kind == MEASURE_SURFACE_HEIGHT) *value = surface_height(&profile, s->at);
   else if (s->kind == MEASURE_SURFACE_SLOPE) *value = surface_slope(&profile) * 180 / PETSC_PI;
   else *value = surface_front(&profile);
   PetscCall(SurfaceProfileDestroy(&profile));
@@ -198,8 +219,8 @@ static PetscErrorCode BalanceValue(Model *m, PetscReal *value)
 
   PetscFunctionBeginUser;
   PetscCall(ModelEnergies(m, &e));
-  const PetscReal terms[] = {e.kinetic,  e.elastic,   e.dissipated, e.damped,
-                             e.transfer, -e.external, -e.boundary,  -e.start};
+  const PetscReal terms[] = {e.kinetic, e.elastic,   e.dissipated, e.damped, e.transfer,
+                             e.outside, -e.external, -e.boundary,  -e.start};
   for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(terms); ++k) {
     sum += terms[k];
     largest = PetscMax(largest, PetscAbsReal(terms[k]));
@@ -258,12 +279,17 @@ PetscErrorCode ModelMeasure(Model *m, const MeasureSpec *s, PetscInt index, Pets
   case MEASURE_EXTERNAL_WORK: *value = m->external_work + m->boundary_work; break;
   case MEASURE_DAMPED_ENERGY: *value = m->damped_energy; break;
   case MEASURE_TRANSFER_ENERGY: *value = m->transfer_energy; break;
+  case MEASURE_OUTSIDE_ENERGY: *value = m->outside.energy; break;
+  case MEASURE_OUTSIDE_REMOVED: *value = m->outside.removed; break;
+  case MEASURE_OUTSIDE_MASS: *value = m->outside.mass; break;
+  case MEASURE_OUTSIDE_HELD: *value = m->outside.held_now; break;
+  case MEASURE_OUTSIDE_MOMENTUM: *value = m->outside.momentum[s->component]; break;
   case MEASURE_ENERGY_BALANCE: PetscCall(BalanceValue(m, value)); break;
   case MEASURE_SURFACE_FRONT:
   case MEASURE_SURFACE_HEIGHT:
   case MEASURE_SURFACE_SLOPE: PetscCall(SurfaceValue(m, s, value)); break;
   case MEASURE_SPIN: PetscCall(SpinValue(m, s, value)); break;
-  case MEASURE_RUN_OUT_TIME: *value = m->memory[index].moved; break;
+  case MEASURE_RUN_OUT_TIME: *value = PetscIsNanReal(m->memory[index].front) ? NAN : m->memory[index].moved; break;
   case MEASURE_ROUGHNESS: PetscCall(RoughnessValue(m, value)); break;
   case MEASURE_REACTION:
     PetscCall(BoundarySum(m->boundary, m->grid, s->boundary, m->reaction, sum));

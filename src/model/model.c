@@ -123,7 +123,7 @@ static PetscErrorCode CreateTracers(Model *m, Diag *diag)
   PetscFunctionBeginUser;
   PetscCallMPI(MPI_Comm_rank(m->comm, &rank));
   PetscCallMPI(MPI_Comm_size(m->comm, &size));
-  PetscCall(PointsCreate(m->dim, 0, 0, &m->tracers));
+  PetscCall(FollowersCreate(m->dim, 0, &m->tracers));
   for (PetscInt k = 0; k < m->c->n_measures; ++k) {
     const MeasureSpec *s = &m->c->measures[k];
     if (!is_of_tracer(s)) continue;
@@ -239,6 +239,8 @@ static PetscErrorCode Build(Model *m, Diag *diag)
   if (m->c->analysis.type == ANALYSIS_DYNAMIC) PetscCall(InitialAcceleration(m));
   PetscCall(EnergyStart(m));
   PetscCall(MeasuresStart(m));
+  PetscCall(FollowersStart(m, diag));
+  PetscCall(OutsideWarn(m, diag));
   PetscFunctionReturn(0);
 }
 
@@ -281,6 +283,7 @@ PetscErrorCode ModelDestroy(Model **model)
   PetscCall(PetscFree(m->materials));
   PetscCall(ModelDestroyFields(m));
   PetscCall(PetscFree(m->memory));
+  PetscCall(PetscFree(m->load_memory));
   PetscCall(PetscFree(*model));
   PetscFunctionReturn(0);
 }

@@ -12,14 +12,38 @@ typedef struct {
   PetscReal dissipated;         /* stress work that is not stored, since the start, J */
   PetscReal external, boundary; /* work of gravity and loads, and of prescribed motion, since the start, J */
   PetscReal damped, transfer;   /* lost by damping, and between points and grid, since the start, J (docs/theory.md) */
-  PetscReal start;              /* kinetic and elastic at the start, J */
+  PetscReal
+    outside;       /* gone with points that left the grid, and in holding others at its boundary, since the start, J */
+  PetscReal start; /* kinetic and elastic at the start, J */
 } Energies;
 
 /* What a measure remembers from step to step. */
 typedef struct {
-  PetscReal front; /* m, after the last step */
-  PetscReal moved; /* last time at which it was fast, s */
+  PetscReal front;    /* m, after the last step */
+  PetscReal moved;    /* last time at which it was fast, s */
+  PetscReal ended;    /* when the material left its tracer behind, s; 0: it did not */
+  PetscReal where[3]; /* the tracer was then, m */
 } MeasureMemory;
+
+/* A load whose carriers, or some of them, the material has left behind. */
+typedef struct {
+  PetscReal ended;    /* when that last happened, s; 0: it did not */
+  PetscReal carriers; /* how many so far */
+  PetscReal force[3]; /* that they bore, at amplitude 1, N */
+  PetscReal where[3]; /* the middle of those that went last, m */
+} LoadMemory;
+
+/* What has become of points that left the grid, since the start. All real numbers, counts too: it goes into checkpoints as one row, as do the
+ * above from `ended` on. */
+typedef struct {
+  PetscReal removed, mass;             /* taken out: points, kg */
+  PetscReal held;                      /* times that a point was put back on the boundary */
+  PetscReal held_now;                  /* in the last step, points */
+  PetscReal held_most, held_most_mass; /* in one step: points, kg */
+  PetscReal energy;                    /* J */
+  PetscReal momentum[3];               /* kg m/s */
+  PetscReal first, last;               /* step in which it happened first and last, s at its end */
+} Outside;
 
 /* How the work is shared among the ranks: by counts of points and of cells that hold some. */
 typedef struct {
@@ -95,7 +119,10 @@ typedef struct Model {
   PetscBool symmetric;     /* are all tangents symmetric? */
   PetscReal courant_speed; /* largest sqrt(M / density), m/s */
   PetscReal external_work, boundary_work, damped_energy, transfer_energy, start_energy; /* see Energies */
-  MeasureMemory *memory;                                                                /* one per measure */
+  PetscReal most_energy; /* that had come in, by the start, loads, gravity and prescribed motion, at any time, J */
+  Outside outside;
+  MeasureMemory *memory;   /* one per measure */
+  LoadMemory *load_memory; /* one per load */
   Balance balance;
   PetscInt cuts, total_iterations; /* steps halved, Newton iterations (those of all tries), since the start */
   Tries tries;                     /* since the start */
@@ -111,11 +138,13 @@ typedef struct {
   PetscReal dt;  /* of the accepted step */
   PetscInt cuts; /* how often the step was halved */
   Tries tries;
-  NewtonReport newton; /* of the last try */
-  char reason[768];    /* why the run gives up, in words */
-  char leap[160];      /* why an equilibrium was not accepted, in words: newton.reason then points here */
-  PetscReal imbalance; /* that made the step share the grid among the ranks anew; 0: it did not */
-  PetscInt moved;      /* points that changed their rank for that */
+  NewtonReport newton;     /* of the last try */
+  char reason[768];        /* why the run gives up, in words */
+  char leap[160];          /* why an equilibrium was not accepted, in words: newton.reason then points here */
+  PetscReal imbalance;     /* that made the step share the grid among the ranks anew; 0: it did not */
+  PetscInt moved;          /* points that changed their rank for that */
+  PetscInt removed, held;  /* points that left the grid: taken out, put back on its boundary */
+  LostPoint first_outside; /* the first of these: id and place only */
 } StepReport;
 
 /* Collective. Build from a case (which must outlive the model); the user's mistakes go to diag and *model stays NULL. */

@@ -51,6 +51,15 @@ PetscErrorCode MeasuresRemember(Model *model, PetscReal dt);
 /* Collective. How much of the pressure one averaging over neighbours takes away, docs/theory.md. */
 PetscErrorCode RoughnessValue(const Model *model, PetscReal *value);
 
+/* followers.c. Collective. Once the model stands: nothing may follow a place that no material carries. */
+PetscErrorCode FollowersStart(Model *model, Diag *diag);
+/* Collective. After every accepted step: what the material has left behind ends. */
+PetscErrorCode FollowersEnd(Model *model);
+/* outside.c. Collective. Add up what the step did with points that left the grid. */
+PetscErrorCode OutsideAdd(Model *model, StepReport *report);
+/* Collective. A warning for each body that fills the grid to an edge where nothing holds it. */
+PetscErrorCode OutsideWarn(const Model *model, Diag *diag);
+
 /* This rank's share of the energies of a step that is being accepted, J. */
 typedef struct {
   PetscReal external, boundary, damped, transfer;

@@ -179,6 +179,7 @@ PetscErrorCode ModelToTables(Model *m, Tables *tables)
   PetscCall(WholeToTables(m, tables));
   PetscCall(TriesToTables(m, tables));
   PetscCall(SofteningToTables(m, tables));
+  PetscCall(StateLostToTables(m, tables));
   PetscCall(PointsToTable(m->points, m->grid, "points", tables));
   PetscCall(PointsToTable(m->tracers, m->grid, "tracers", tables));
   PetscCall(PointsToTable(m->loads->carriers, m->grid, "carriers", tables));
@@ -382,6 +383,7 @@ PetscErrorCode ModelFromTables(Model *m, Tables *tables, char reason[256])
   whole_from_tables(m, TablesFind(tables, "model"), TablesFind(tables, "measures"), reason);
   tries_from_table(m, TablesFind(tables, "tries"), reason);
   softening_from_table(m, TablesFind(tables, "softening"), reason);
+  state_lost_from_tables(m, tables, reason);
   PetscCall(ReasonShare(m->comm, reason));
   if (m->grid->cloud && !reason[0]) {
     PetscCall(CloudBack(m, tables, reason));

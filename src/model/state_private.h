@@ -4,6 +4,10 @@
 #include "grid/directory.h"
 #include "model/state.h"
 
+/* What was lost on the way: energy, points, tracers, carried loads. Checkpoints of older programs do not have it. */
+PetscErrorCode StateLostToTables(Model *model, Tables *tables);
+void state_lost_from_tables(Model *model, const Tables *tables, char reason[256]);
+
 /* Collective. After all other tables: nodes of a cloud, and which rows are whose. */
 PetscErrorCode StateCloudToTables(const Model *model, Tables *tables);
 /* Collective. First of all: rows to the ranks that wrote them, if these are as many (*home), and the nodes. */

@@ -65,12 +65,20 @@ static PetscErrorCode Accept(Model *m, PetscReal dt, StepReport *report)
   m->time += dt;
   ++m->step;
   PetscCall(EnergyClose(m, &energy));
+  PetscCall(OutsideAdd(m, report));
   PetscCall(MeasuresRemember(m, dt));
   PetscCall(m->method->initialise(s)); /* nodal fields of the new state, for output and for the next step */
+  PetscCall(FollowersEnd(m));
   PetscCall(PhaseEnd(m->seconds, PHASE_INITIALISE, &clock));
   report->outcome = STEP_ACCEPTED;
   report->dt = dt;
   PetscFunctionReturn(0);
+}
+
+/* Points whose position is no number are lost under every policy, and stand first. */
+static PetscBool is_somewhere(const LostPoint *l)
+{
+  return PetscIsInfOrNanReal(l->x[0] + l->x[1] + l->x[2]) ? PETSC_FALSE : PETSC_TRUE;
 }
 
 static void describe_lost(const Model *m, StepReport *report)
@@ -258,7 +266,7 @@ PetscErrorCode ModelStep(Model *m, PetscReal limit, StepReport *report)
   PetscCall(Restore(m, &before, report));
   if (report->outcome != STEP_ACCEPTED) PetscFunctionReturn(0);
   PetscCall(ChooseNextStep(m, shortened && !report->cuts ? PETSC_TRUE : PETSC_FALSE, report));
-  if (m->stage->n_lost && m->c->grid.outside == OUTSIDE_STOP) {
+  if (m->stage->n_lost && (m->c->grid.outside == OUTSIDE_STOP || !is_somewhere(&m->stage->lost[0]))) {
     report->outcome = STEP_POINTS_LOST;
     describe_lost(m, report);
   }

@@ -1,4 +1,4 @@
-/* `outside: keep-on-boundary`: points that left the grid go back to the nearest position inside. */
+/* `outside: keep-on-boundary`: points that left the grid go back to the nearest position inside. Followers do not: they only remember it. */
 #include "points/migrate.h"
 
 /* A position outside the grid, on its way to the nearest one inside. */
@@ -69,6 +69,15 @@ static void keep_point(Points *points, PetscInt p, const Clamp *clamp, PetscBool
   }
 }
 
+/* A follower goes on outside; the grid carries it at the nearest position that it has. */
+static void keep_follower(Points *points, PetscInt p, const Clamp *clamp)
+{
+  for (PetscInt d = 0; d < points->dim; ++d) {
+    point_real(points, POINT_X, p)[d] = clamp->to[d];
+    point_real(points, POINT_OVERHANG, p)[d] = clamp->from[d] - clamp->to[d];
+  }
+}
+
 /* All ranks' homeless positions on every rank; mine begin at *first. */
 static PetscErrorCode GatherHomeless(const Grid *grid, PetscInt n, const Clamp *mine, PetscInt *first, PetscInt *n_all,
                                      Clamp **all)
@@ -106,7 +115,15 @@ PetscErrorCode LeaversKeepOnBoundary(const Leavers *l, Points *points, const Gri
   PetscCall(ChooseNearest(grid, n_all, all));
   for (PetscInt k = 0; k < n; ++k) {
     const PetscInt i = which[k], p = l->point[i];
-    keep_point(points, p, all + first + k, (PetscBool) !!grid->box);
+    if (points->components[POINT_OVERHANG]) {
+      keep_follower(points, p, all + first + k);
+    } else {
+      tally_outside(points, p, 1);
+      keep_point(points, p, all + first + k, (PetscBool) !!grid->box);
+      tally_outside(points, p, -1);
+      ++points->outside.held;
+      points->outside.held_mass += points->real[POINT_MASS][p];
+    }
     points->cell[p] = GridLocate(grid, point_real(points, POINT_X, p), -1, point_real(points, POINT_XI, p));
     if (points->cell[p] >= 0) l->owner[i] = LEAVER_HERE;
   }

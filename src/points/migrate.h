@@ -26,6 +26,21 @@ static inline PetscBool position_is_finite(PetscInt dim, const PetscReal *x)
   return (PetscBool)(sum == 0);
 }
 
+/* Point p is on its way out: before it is dropped or put back, and (gone = -1) after it was put back with what it has kept. */
+static inline void tally_outside(Points *points, PetscInt p, PetscReal gone)
+{
+  OutsideTally *t = &points->outside;
+  const PetscReal mass = points->real[POINT_MASS][p];
+  for (PetscInt d = 0; d < points->dim; ++d) {
+    const PetscReal v = point_real(points, POINT_V, p)[d];
+    t->momentum[d] += gone * mass * v;
+    t->kinetic += gone * 0.5 * mass * v * v;
+  }
+  if (gone < 0 || (t->removed + t->held > 0 && points->id[p] > t->first)) return;
+  t->first = points->id[p];
+  for (PetscInt d = 0; d < points->dim; ++d) t->place[d] = point_real(points, POINT_X, p)[d];
+}
+
 /* Collective: ask the ranks that might hold them for the leavers without an owner; the lowest that does
  * becomes owner. */
 PetscErrorCode LeaversFindOwners(const Leavers *leavers, const Points *points, const Grid *grid);

@@ -48,7 +48,16 @@ PetscErrorCode PointsCreate(PetscInt dim, PetscInt n_state, PetscInt n_force, Po
   new->components[POINT_STATE] = n_state;
   new->components[POINT_PRESSURE] = 0;
   new->components[POINT_FORCE] = n_force;
+  new->components[POINT_OVERHANG] = 0;
   *points = new;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode FollowersCreate(PetscInt dim, PetscInt n_force, Points **points)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PointsCreate(dim, 0, n_force, points));
+  (*points)->components[POINT_OVERHANG] = dim; /* nothing is stored yet */
   PetscFunctionReturn(0);
 }
 

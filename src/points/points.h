@@ -23,21 +23,36 @@ typedef enum {
   POINT_STATE, /* the law's stored state: the largest n_state of the case */
   POINT_PRESSURE, /* the mixed formulation's pressure at the point, tension positive, Pa: 1 there, otherwise 0 components */
   POINT_FORCE, /* dead force of a load carrier, N: dim (0 components for material points) */
+  POINT_OVERHANG, /* of what goes with the material: the way from its position, the nearest in the grid, to where it really is, m: dim (0
+                   * components for material points) */
   POINT_N_REAL
 } PointReal;
+
+/* What became of points that left the grid, of one rank. */
+typedef struct {
+  PetscInt removed, held;    /* taken out; put back on the boundary */
+  PetscReal mass, held_mass; /* theirs, kg */
+  PetscReal kinetic, work;   /* J that went: with those taken out, and in stopping those put back; POINT_WORK */
+  PetscReal momentum[3];     /* kg m/s that went in the same ways */
+  PetscInt64 first;          /* id of the first of them (if there are any) */
+  PetscReal place[3];        /* where that one was, m */
+} OutsideTally;
 
 typedef struct Points {
   PetscInt dim, n, capacity;
   PetscInt components[POINT_N_REAL];
   PetscReal *real[POINT_N_REAL];
-  PetscInt64 *id;     /* unique over all ranks, for life; does not depend on the number of ranks */
-  PetscInt *cell;     /* local cell, -1 if lost */
-  PetscInt *body;     /* index into the case's bodies (tracers: the measure, carriers: the load) */
-  PetscInt *material; /* index into the case's materials */
+  PetscInt64 *id;       /* unique over all ranks, for life; does not depend on the number of ranks */
+  PetscInt *cell;       /* local cell, -1 if lost */
+  PetscInt *body;       /* index into the case's bodies (tracers: the measure, carriers: the load) */
+  PetscInt *material;   /* index into the case's materials */
+  OutsideTally outside; /* what the last PointsRelocate did on this rank */
 } Points;
 
 /* n_state: components of POINT_STATE; force: components of POINT_FORCE. */
 PetscErrorCode PointsCreate(PetscInt dim, PetscInt n_state, PetscInt n_force, Points **points);
+/* Followers: points without mass that go with the material, tracers (n_force = 0) and carriers of loads. They may leave the grid with it. */
+PetscErrorCode FollowersCreate(PetscInt dim, PetscInt n_force, Points **points);
 PetscErrorCode PointsDestroy(Points **points);
 /* Make room for `capacity` points; existing ones stay. */
 PetscErrorCode PointsReserve(Points *points, PetscInt capacity);
@@ -119,10 +134,18 @@ typedef struct {
 /* Find every point's cell again after it moved, send those that left this rank's part to their new owner (messages only
  * among ranks whose cells may hold them), and treat those outside the grid by the policy. Collective.
  * lost (n_lost of them, over all ranks on each, at most 16 kept) describes what left the grid; PetscFree it. Points kept
- * on the boundary do not count. A position that is no number is lost under every policy: it is listed first, and stays
- * in the table with cell -1. */
+ * on the boundary do not count; of followers, which go on outside, it is their nearest position that is kept there. A position that is no number is lost under every policy: it is listed first, and stays
+ * in the table with cell -1. points->outside says what was taken out or put back. */
 PetscErrorCode PointsRelocate(Points *points, const Grid *grid, OutsidePolicy policy, PetscInt *n_lost,
                               LostPoint **lost);
+
+/* Where a point really is: followers may stand out of the grid. */
+static inline void point_place(const Points *points, PetscInt p, PetscReal *x)
+{
+  for (PetscInt d = 0; d < points->dim; ++d)
+    x[d] = point_real(points, POINT_X, p)[d] +
+           (points->components[POINT_OVERHANG] ? point_real(points, POINT_OVERHANG, p)[d] : 0);
+}
 
 /* The points as a table, every field of them. Columns stand over the points' own arrays where they can. */
 PetscErrorCode PointsToTable(const Points *points, const Grid *grid, const char *name, Tables *tables);

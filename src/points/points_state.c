@@ -22,6 +22,7 @@ static const struct {
   [POINT_STATE] = {"state", NULL},
   [POINT_PRESSURE] = {"pressure", "Pa"},
   [POINT_FORCE] = {"force", "N"},
+  [POINT_OVERHANG] = {"overhang", "m"},
 };
 
 /* Points of a cloud remember the cell of their birth by this number already. */
@@ -53,6 +54,14 @@ PetscErrorCode PointsToTable(const Points *points, const Grid *grid, const char 
   PetscFunctionReturn(0);
 }
 
+/* Followers could not leave the grid in the checkpoints of older programs. */
+static PetscBool is_absent(const Table *table, int field)
+{
+  for (PetscInt k = 0; k < table->n && field == POINT_OVERHANG; ++k)
+    if (!strcmp(table->column[k].name, reals[field].name)) return PETSC_FALSE;
+  return field == POINT_OVERHANG ? PETSC_TRUE : PETSC_FALSE;
+}
+
 /* This rank's rows of the table behind those in points; cells are still those of the whole grid. No index is trusted. */
 static PetscErrorCode TakeRows(Points *points, const Table *table, PetscInt n_cells, PetscInt n_bodies,
                                PetscInt n_materials, char reason[256])
@@ -78,6 +87,10 @@ static PetscErrorCode TakeRows(Points *points, const Table *table, PetscInt n_ce
   }
   for (int f = 0; f < POINT_N_REAL; ++f) {
     const PetscInt width = points->components[f];
+    if (width && is_absent(table, f)) {
+      if (n) PetscCall(PetscArrayzero(points->real[f], n * width));
+      continue;
+    }
     const PetscReal *data = width ? TableData(table, reals[f].name, COLUMN_REAL, width, reason) : NULL;
     if (data && n) PetscCall(PetscArraycpy(points->real[f], data, count_numbers(n, width)));
   }

@@ -8,10 +8,21 @@
 
 #define LOST_KEPT 16
 
+/* What stood out of the grid looks for its place from where it really is. */
+static void undo_overhang(Points *points)
+{
+  if (!points->components[POINT_OVERHANG]) return;
+  for (PetscInt i = 0; i < points->n * points->dim; ++i) {
+    points->real[POINT_X][i] += points->real[POINT_OVERHANG][i];
+    points->real[POINT_OVERHANG][i] = 0;
+  }
+}
+
 /* Returns how many points are not in a cell of this rank. */
 static PetscInt locate_here(Points *points, const Grid *grid)
 {
   PetscInt n_leave = 0;
+  undo_overhang(points);
   for (PetscInt p = 0; p < points->n; ++p) {
     const PetscReal *x = point_real(points, POINT_X, p);
     const PetscInt old = points->cell[p];
@@ -129,6 +140,11 @@ static PetscErrorCode DropGone(const Leavers *l, Points *points, OutsidePolicy p
     const PetscBool removed = (PetscBool)(l->owner[i] == -1 && policy == OUTSIDE_REMOVE &&
                                           position_is_finite(points->dim, point_real(points, POINT_X, p)));
     drop[p] = (PetscBool)(l->owner[i] >= 0 || removed);
+    if (!removed) continue;
+    tally_outside(points, p, 1);
+    ++points->outside.removed;
+    points->outside.mass += points->real[POINT_MASS][p];
+    points->outside.work += points->real[POINT_WORK][p];
   }
   PetscCall(PointsCompact(points, drop));
   PetscCall(PetscFree(drop));
@@ -157,6 +173,7 @@ PetscErrorCode PointsRelocate(Points *points, const Grid *grid, OutsidePolicy po
   PetscFunctionBeginUser;
   *n_lost = 0;
   *lost = NULL;
+  points->outside = (OutsideTally){0};
   n_leave = locate_here(points, grid);
   PetscCallMPI(MPI_Allreduce(&n_leave, &n_leave_all, 1, MPIU_INT, MPI_SUM, grid->comm));
   if (n_leave_all) {

@@ -52,6 +52,7 @@ static RunMemory memory_of(const Run *r)
 static PetscErrorCode MemoryToTables(const Run *r, Tables *tables)
 {
   RunMemory memory = memory_of(r);
+  HistoryMark mark;
   Table *table;
   Column *column;
 
@@ -59,6 +60,9 @@ static PetscErrorCode MemoryToTables(const Run *r, Tables *tables)
   PetscCall(TablesAdd(tables, "run", PETSC_TRUE, 1, &table));
   PetscCall(TableAdd(table, "case", NULL, COLUMN_INT64, 1, NULL, &column));
   PetscCall(Fingerprint(r->c, column->data));
+  PetscCall(TableAdd(table, "history", NULL, COLUMN_INT64, 3, NULL, &column));
+  PetscCall(HistoryGetMark(r->dir, &mark));
+  PetscCall(PetscArraycpy((PetscInt64 *)column->data, ((PetscInt64[]){mark.lines, mark.bytes, mark.crc}), 3));
   PetscCall(TableAdd(table, "seconds", "s", COLUMN_REAL, 1, NULL, &column));
   *(PetscReal *)column->data = memory.seconds;
   for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(counts); ++i) {
@@ -66,6 +70,14 @@ static PetscErrorCode MemoryToTables(const Run *r, Tables *tables)
     *(PetscInt64 *)column->data = *(PetscInt *)((char *)&memory + counts[i].offset);
   }
   PetscFunctionReturn(0);
+}
+
+/* Checkpoints of older programs do not have it. */
+static void mark_from_table(const Table *table, HistoryMark *mark)
+{
+  char reason[256];
+  const PetscInt64 *kept = TableData(table, "history", COLUMN_INT64, 3, reason);
+  *mark = kept ? (HistoryMark){kept[0], kept[1], kept[2]} : (HistoryMark){0};
 }
 
 static PetscErrorCode MemoryFromTables(Run *r, const Tables *tables, RunMemory *memory, char reason[256])
@@ -82,6 +94,7 @@ static PetscErrorCode MemoryFromTables(Run *r, const Tables *tables, RunMemory *
   PetscCall(Fingerprint(r->c, &fingerprint));
   if (kept && *kept != fingerprint) snprintf(reason, 256, "it is of another case than the case.yaml beside it");
   memory->seconds = seconds ? *seconds : 0;
+  mark_from_table(table, &memory->history);
   for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(counts); ++i) {
     const PetscInt64 *data = TableData(table, counts[i].name, COLUMN_INT64, 1, reason);
     if (!data) continue;
@@ -111,6 +124,7 @@ static PetscErrorCode Write(Run *r, const char *path, char reason[256], PetscErr
   PetscCall(TablesCreate(&tables));
   PetscCall(ModelToTables(r->model, tables));
   PetscCall(MemoryToTables(r, tables));
+  PetscCall(OutputToTables(r->output, tables));
   *code = CheckpointWrite(r->comm, path, tables, reason);
   PetscCall(TablesDestroy(&tables));
   if (*code != PETSC_ERR_FILE_WRITE) PetscCall(*code);
@@ -127,6 +141,9 @@ PetscErrorCode CheckpointSave(Run *r)
   if (r->checkpoint_step == r->model->step || r->model->step == 0)
     PetscFunctionReturn(0); /* a run that has done nothing starts again */
   RunDirCheckpointPath(r->dir, r->model->step, path);
+  const PetscErrorCode present = RunDirPresent(r->dir);
+  PetscCall(RunWritten(r, present));
+  if (present) PetscFunctionReturn(0);
   PetscCall(RunWritten(r, HistorySync(r->dir)));
   PetscCall(Write(r, path, reason, &code));
   r->last_checkpoint = MPI_Wtime();
@@ -151,7 +168,7 @@ static void remember(Run *r, const RunMemory *memory)
   r->summary.iterations_per_step = memory->iterations_per_step;
   r->before = memory->seconds;
   r->checkpoint_step = r->model->step;
-  OutputSetCount(r->output, memory->written);
+  r->history = memory->history;
 }
 
 /* The newest that is whole, others are told of in the log; *tables NULL if there is none. */
@@ -186,6 +203,7 @@ PetscErrorCode CheckpointLoad(Run *r, Diag *diag, PetscInt *step, PetscBool *fit
   PetscCall(ReadNewest(r, step, &tables));
   if (!tables) PetscFunctionReturn(0);
   PetscCall(MemoryFromTables(r, tables, &memory, reason));
+  if (!reason[0]) PetscCall(OutputFromTables(r->output, tables, memory.written, reason));
   if (!reason[0]) PetscCall(ModelFromTables(r->model, tables, reason));
   PetscCall(TablesDestroy(&tables));
   if (!reason[0]) {

@@ -20,7 +20,8 @@ static PetscErrorCode OpenHistory(Run *r, Diag *diag)
     units[k] = measure_unit(&r->c->measures[k]);
   }
   PetscCall(RunWritten(
-    r, diag ? HistoryOpenFrom(r->dir, n, names, units, r->row_step, diag) : HistoryOpen(r->dir, n, names, units)));
+    r, diag ? HistoryOpenFrom(r->dir, n, names, units, r->row_step, r->history.lines ? &r->history : NULL, diag)
+            : HistoryOpen(r->dir, n, names, units)));
   PetscCall(PetscFree2(names, units));
   PetscFunctionReturn(0);
 }
@@ -76,6 +77,9 @@ static PetscErrorCode Rewind(Run *r, PetscInt step, Diag *diag)
   PetscInt errors;
 
   PetscFunctionBeginUser;
+  PetscCall(OutputCheck(r->output, r->comm, diag));
+  PetscCall(DiagReduce(r->comm, diag, &errors));
+  if (errors) PetscFunctionReturn(0); /* before anything is touched */
   PetscCall(OpenHistory(r, diag));
   PetscCall(KeepSeries(r, "points", states, diag));
   if (r->c->output.grid) PetscCall(KeepSeries(r, "grid", states, diag));

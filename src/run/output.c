@@ -3,14 +3,23 @@
 #include "base/count.h"
 #include "case/fields.h"
 #include "grid/cloud.h"
+#include "io/run_dir_files.h"
+#include "io/seal.h"
 #include "io/vtk.h"
 
 #define MAX_FIELDS 32
 
+/* Files of one state: of its points and, if the case asks, of its grid. */
+typedef struct {
+  FileSeal points, grid;
+} StateSeals;
+
 struct Output {
   const char *folder;
-  PetscInt count; /* states written */
-  PetscReal *x0;  /* node positions at the start */
+  PetscInt count, capacity; /* states written */
+  StateSeals *seals;        /* of each */
+  PetscBool grid;           /* do states have files of the grid? */
+  PetscReal *x0;            /* node positions at the start */
 };
 
 PetscErrorCode OutputCreate(const Model *m, const char *folder, Output **output)
@@ -18,6 +27,7 @@ PetscErrorCode OutputCreate(const Model *m, const char *folder, Output **output)
   PetscFunctionBeginUser;
   PetscCall(PetscNew(output));
   (*output)->folder = folder;
+  (*output)->grid = m->c->output.grid;
   PetscCall(PetscMalloc1(count_numbers(m->grid->n_nodes, m->dim), &(*output)->x0));
   PetscCall(PetscArraycpy((*output)->x0, m->grid->x, count_numbers(m->grid->n_nodes, m->dim)));
   PetscFunctionReturn(0);
@@ -28,6 +38,7 @@ PetscErrorCode OutputDestroy(Output **output)
   PetscFunctionBeginUser;
   if (!*output) PetscFunctionReturn(0);
   PetscCall(PetscFree((*output)->x0));
+  PetscCall(PetscFree((*output)->seals));
   PetscCall(PetscFree(*output));
   PetscFunctionReturn(0);
 }
@@ -104,14 +115,32 @@ static PetscBool is_asked(const Case *c, const char *name)
   return PETSC_FALSE;
 }
 
+static void state_file(const char *name, PetscInt number, char file[64])
+{
+  snprintf(file, 64, "%s_%06d.hdf", name, (int)number);
+}
+
+/* Rank 0 looks at the file that has just been written, all know its seal. */
+static PetscErrorCode Seal(MPI_Comm comm, const char *path, FileSeal *seal)
+{
+  PetscMPIInt rank;
+
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_rank(comm, &rank));
+  if (!rank && file_seal(path, seal))
+    *seal = (FileSeal){.bytes = -1}; /* what cannot be read now is for the resumed run to tell */
+  PetscCallMPI(MPI_Bcast(seal, (PetscMPIInt)sizeof *seal, MPI_BYTE, 0, comm));
+  PetscFunctionReturn(0);
+}
+
 /* Put the file in place and enter it in its series. */
-static PetscErrorCode WriteState(Output *o, MPI_Comm comm, const char *name, const VtkData *data, PetscBool *ok,
-                                 char reason[256])
+static PetscErrorCode WriteState(Output *o, MPI_Comm comm, const char *name, const VtkData *data, FileSeal *seal,
+                                 PetscBool *ok, char reason[256])
 {
   char file[64], path[PETSC_MAX_PATH_LEN];
 
   PetscFunctionBeginUser;
-  PetscCall(PetscSNPrintf(file, sizeof file, "%s_%06d.hdf", name, (int)o->count));
+  state_file(name, o->count, file);
   PetscCall(PetscSNPrintf(path, sizeof path, "%s/%s", o->folder, file));
   PetscErrorCode code = VtkWrite(comm, path, data, reason);
   if (!code) {
@@ -119,6 +148,7 @@ static PetscErrorCode WriteState(Output *o, MPI_Comm comm, const char *name, con
     if (code) unlink(path); /* a state that no series names would be found by nobody */
   }
   if (code) *ok = PETSC_FALSE;
+  else PetscCall(Seal(comm, path, seal));
   PetscFunctionReturn(0);
 }
 
@@ -147,7 +177,7 @@ static PetscErrorCode WritePoints(Output *o, Model *m, PetscBool *ok, char reaso
                        .point_fields = fields,
                        .point_id = m->points->id,
                        .time = m->time};
-  PetscCall(WriteState(o, m->comm, "points", &vtk, ok, reason));
+  PetscCall(WriteState(o, m->comm, "points", &vtk, &o->seals[o->count].points, ok, reason));
   for (PetscInt f = 0; f < n; ++f) PetscCall(PetscFree(data[f]));
   PetscCall(PetscFree(x));
   PetscFunctionReturn(0);
@@ -247,9 +277,19 @@ static PetscErrorCode WriteGrid(Output *o, Model *m, PetscBool *ok, char reason[
                  .point_fields = fields,
                  .time = m->time};
   if (grid->cloud) PetscCall(WriteCloud(grid, &vtk, n, fields));
-  PetscCall(WriteState(o, m->comm, "grid", &vtk, ok, reason));
+  PetscCall(WriteState(o, m->comm, "grid", &vtk, &o->seals[o->count].grid, ok, reason));
   for (PetscInt f = 0; f < n; ++f) PetscCall(PetscFree(data[f]));
   PetscCall(PetscFree(x));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode ReserveSeals(Output *o, PetscInt n)
+{
+  PetscFunctionBeginUser;
+  if (n > o->capacity) {
+    o->capacity = n + n / 2 + 16;
+    PetscCall(PetscRealloc((size_t)o->capacity * sizeof *o->seals, &o->seals));
+  }
   PetscFunctionReturn(0);
 }
 
@@ -257,6 +297,7 @@ PetscErrorCode OutputWrite(Output *o, Model *m, PetscBool *ok, char reason[256])
 {
   PetscFunctionBeginUser;
   *ok = PETSC_TRUE;
+  PetscCall(ReserveSeals(o, o->count + 1));
   PetscCall(WritePoints(o, m, ok, reason));
   if (*ok && m->c->output.grid) PetscCall(WriteGrid(o, m, ok, reason));
   if (*ok) ++o->count;
@@ -265,4 +306,66 @@ PetscErrorCode OutputWrite(Output *o, Model *m, PetscBool *ok, char reason[256])
 
 PetscInt OutputCount(const Output *o) { return o->count; }
 
-void OutputSetCount(Output *o, PetscInt count) { o->count = count; }
+/* Four numbers a state: bytes and checksum of its points and of its grid. */
+PetscErrorCode OutputToTables(const Output *o, Tables *tables)
+{
+  Table *table;
+  Column *column;
+
+  PetscFunctionBeginUser;
+  PetscCall(TablesAdd(tables, "states", PETSC_TRUE, o->count, &table));
+  PetscCall(TableAdd(table, "points_grid", NULL, COLUMN_INT64, 4, NULL, &column));
+  for (PetscInt k = 0; k < o->count; ++k) {
+    const StateSeals *s = &o->seals[k];
+    const PetscInt64 numbers[] = {s->points.bytes, s->points.crc, s->grid.bytes, s->grid.crc};
+    PetscCall(PetscArraycpy((PetscInt64 *)column->data + 4 * k, numbers, 4));
+  }
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode OutputFromTables(Output *o, const Tables *tables, PetscInt count, char reason[256])
+{
+  const Table *table = TablesFind(tables, "states");
+  const PetscInt64 *n = table ? TableData(table, "points_grid", COLUMN_INT64, 4, reason) : NULL;
+
+  PetscFunctionBeginUser;
+  if (table && (table->rows != count || !table->everywhere)) snprintf(reason, 256, "%s makes no sense", table->name);
+  if (count < 0 || count > 100000000) snprintf(reason, 256, "its count of states makes no sense");
+  if (reason[0]) PetscFunctionReturn(0);
+  PetscCall(ReserveSeals(o, count));
+  for (PetscInt k = 0; k < count; ++k) {
+    o->seals[k].points = (FileSeal){n ? n[4 * k] : -1, n ? n[4 * k + 1] : 0};
+    o->seals[k].grid = (FileSeal){n ? n[4 * k + 2] : -1, n ? n[4 * k + 3] : 0};
+  }
+  o->count = count;
+  PetscFunctionReturn(0);
+}
+
+/* One file of a state; returns whether something is wrong with it. Only the first few are told one by one. */
+static PetscBool check_file(const Output *o, const char *name, PetscInt number, const FileSeal *seal, PetscInt wrong,
+                            Diag *diag)
+{
+  char file[64], path[FILE_PATH], reason[128];
+  state_file(name, number, file);
+  snprintf(path, sizeof path, "%s/%s", o->folder, file);
+  file_check_seal(path, seal, reason);
+  if (reason[0] && wrong < 3) DiagError(diag, NULL, "cannot go on after '%s': %s", path, reason);
+  return reason[0] ? PETSC_TRUE : PETSC_FALSE;
+}
+
+PetscErrorCode OutputCheck(const Output *o, MPI_Comm comm, Diag *diag)
+{
+  PetscMPIInt rank;
+  PetscInt wrong = 0;
+
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_rank(comm, &rank));
+  for (PetscInt k = 0; !rank && k < o->count; ++k) {
+    wrong += check_file(o, "points", k, &o->seals[k].points, wrong, diag);
+    if (o->grid) wrong += check_file(o, "grid", k, &o->seals[k].grid, wrong, diag);
+  }
+  if (wrong > 3) DiagError(diag, NULL, "%d files of states are missing or damaged in all", (int)wrong);
+  if (wrong)
+    DiagHint(diag, "put the files back as they were, or start the run again in another directory: --out OTHER");
+  PetscFunctionReturn(0);
+}

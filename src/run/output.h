@@ -1,5 +1,6 @@
 /* States of a model as VTKHDF files. */
 #pragma once
+#include "base/table.h"
 #include "case/fields.h"
 #include "model/model.h"
 
@@ -13,7 +14,13 @@ PetscErrorCode OutputWrite(Output *output, Model *model, PetscBool *ok, char rea
 
 /* How many states were written; the next one gets this number. */
 PetscInt OutputCount(const Output *output);
-void OutputSetCount(Output *output, PetscInt count);
+
+/* Collective. How many states there are, and what tells whether their files are still those that were written. */
+PetscErrorCode OutputToTables(const Output *output, Tables *tables);
+/* Collective. Go on after the first `count` states; tables of older programs do not know their files. */
+PetscErrorCode OutputFromTables(Output *output, const Tables *tables, PetscInt count, char reason[256]);
+/* Collective. Files of states that are missing, or not as they were written, go to diag. */
+PetscErrorCode OutputCheck(const Output *output, MPI_Comm comm, Diag *diag);
 
 /* A field of this rank's points: n x components numbers, vectors with three components in 2D too. */
 PetscErrorCode OutputPointField(const Model *model, const OutputField *field, PetscReal *data);

@@ -1,3 +1,4 @@
+#include "run/losses.h"
 #include "run/run_private.h"
 #include "run/signals.h"
 #include "run/summary.h"
@@ -50,20 +51,33 @@ PetscErrorCode RunWriteRow(Run *r)
   PetscFunctionReturn(0);
 }
 
+/* Whatever stands there now is not this run's. */
+static PetscErrorCode IsGone(Run *r, PetscBool *gone)
+{
+  PetscFunctionBeginUser;
+  const PetscErrorCode present = RunDirPresent(r->dir);
+  PetscCall(RunWritten(r, present));
+  *gone = present ? PETSC_TRUE : PETSC_FALSE;
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode RunWriteState(Run *r)
 {
-  PetscBool ok;
+  PetscBool ok, gone = PETSC_FALSE;
   char reason[256], text[512];
 
   PetscFunctionBeginUser;
   if (r->state_step == r->model->step) PetscFunctionReturn(0);
+  PetscCall(IsGone(r, &gone));
+  if (gone) PetscFunctionReturn(0);
   PetscCall(OutputWrite(r->output, r->model, &ok, reason));
   r->state_step = r->model->step;
-  if (!ok) {
-    snprintf(text, sizeof text, "cannot write the state at t = %g s: %s", (double)r->model->time, reason);
-    PetscCall(RunDirLog(r->dir, "error = %s", text));
-    run_stop(r, text);
-  }
+  if (ok) PetscFunctionReturn(0);
+  PetscCall(IsGone(r, &gone));
+  if (gone) PetscFunctionReturn(0);
+  snprintf(text, sizeof text, "cannot write the state at t = %g s: %s", (double)r->model->time, reason);
+  PetscCall(RunDirLog(r->dir, "error = %s", text));
+  run_stop(r, text);
   PetscFunctionReturn(0);
 }
 
@@ -88,6 +102,7 @@ static PetscErrorCode AfterStep(Run *r, const StepReport *report, PetscInt point
     PetscCall(RunDirLog(r->dir, "step = %d tried again = %d lost iterations = %d halved = %d dt = %g",
                         (int)r->model->step, (int)report->tries.again, (int)report->tries.lost, (int)report->cuts,
                         (double)report->dt));
+  PetscCall(LossesLogStep(r->model, r->dir, report));
   PetscCall(RunDirProgress(r->dir, &progress));
   if (is_due(&r->rows, r->model->time, r->model->step)) PetscCall(RunWriteRow(r));
   if (is_due(&r->states, r->model->time, r->model->step)) PetscCall(RunWriteState(r));
@@ -210,6 +225,7 @@ static PetscErrorCode RunModel(Run *r, const RunOptions *options, Diag *diag, Pe
   } else {
     PetscCall(Advance(r));
     PetscCall(Close(r, measures));
+    PetscCall(LossesWarn(r->model, r->values, diag));
     PetscCall(ModelUnusedOptions(r->model, diag));
     *result = r->failed ? RUN_GAVE_UP : RUN_DONE;
     if (options->summary) *options->summary = r->summary;

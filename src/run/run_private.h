@@ -16,6 +16,7 @@ typedef struct {
   PetscInt state_step, row_step; /* of the newest state and row, -1 if none */
   PetscInt iterations_per_step;  /* most of one step */
   PetscReal seconds;             /* of the clock, spent by the run and those that it resumes */
+  HistoryMark history;           /* what it was then; no lines: not known */
 } RunMemory;
 
 typedef struct {
@@ -30,6 +31,7 @@ typedef struct {
   PetscBool failed; /* gave up */
   RunSummary summary;
   double start;                        /* of this process, on MPI's clock */
+  HistoryMark history;                 /* of the run that this one resumes; no lines: not known */
   PetscReal before;                    /* seconds spent by the runs that this one resumes */
   double last_checkpoint;              /* on MPI's clock */
   PetscInt checkpoint_step, n_written; /* step of the newest checkpoint, -1 if none; how many there were */

@@ -1,28 +1,57 @@
 #include "run/signals.h"
 #include <signal.h>
 
+/* What asks a run to leave. A person who sends one of the first twice insists; the others come again by themselves: a batch system's warnings,
+ * SIGXCPU every second, SIGHUP from shell and terminal. */
+static const struct {
+  int number;
+  PetscBool insists;  /* does the second one end the program at once? */
+  PetscBool optional; /* stays ignored if it was: nohup */
+} watched[] = {
+  {SIGINT, PETSC_TRUE, PETSC_FALSE},   {SIGTERM, PETSC_TRUE, PETSC_FALSE},  {SIGQUIT, PETSC_TRUE, PETSC_FALSE},
+  {SIGHUP, PETSC_FALSE, PETSC_TRUE},   {SIGUSR1, PETSC_FALSE, PETSC_FALSE}, {SIGUSR2, PETSC_FALSE, PETSC_FALSE},
+  {SIGXCPU, PETSC_FALSE, PETSC_FALSE},
+};
+#define N_WATCHED PETSC_STATIC_ARRAY_LENGTH(watched)
+
 /* A signal handler can reach nothing but a global. */
 static volatile sig_atomic_t asked_by;
+static struct sigaction before[N_WATCHED];
 
 static void on_signal(int number)
 {
   asked_by = number;
-  signal(number, SIG_DFL);
+  for (size_t k = 0; k < N_WATCHED; ++k)
+    if (watched[k].number == number && watched[k].insists) signal(number, SIG_DFL);
+}
+
+/* Is the signal left to whoever had it? */
+static PetscBool is_left(size_t k)
+{
+  return watched[k].optional && before[k].sa_handler == SIG_IGN ? PETSC_TRUE : PETSC_FALSE;
 }
 
 void signals_watch(void)
 {
+  struct sigaction action = {.sa_handler = on_signal, .sa_flags = SA_RESTART};
+  sigemptyset(&action.sa_mask);
   asked_by = 0;
-  signal(SIGINT, on_signal);
-  signal(SIGTERM, on_signal);
+  for (size_t k = 0; k < N_WATCHED; ++k) {
+    sigaction(watched[k].number, NULL, &before[k]);
+    if (!is_left(k)) sigaction(watched[k].number, &action, NULL);
+  }
 }
 
 PetscBool signals_came(void) { return asked_by ? PETSC_TRUE : PETSC_FALSE; }
 
+/* One that insisted keeps its default; else a program that embeds talus has its own handlers again. */
 void signals_forget(void)
 {
-  signal(SIGINT, SIG_DFL);
-  signal(SIGTERM, SIG_DFL);
+  struct sigaction now;
+  for (size_t k = 0; k < N_WATCHED; ++k) {
+    sigaction(watched[k].number, NULL, &now);
+    if (now.sa_handler == on_signal) sigaction(watched[k].number, &before[k], NULL);
+  }
 }
 
 PetscErrorCode SignalsAsked(MPI_Comm comm, PetscBool *due, PetscBool *asked)

@@ -1,8 +1,9 @@
-/* SIGINT and SIGTERM ask a run to write its state and leave. */
+/* SIGINT, SIGTERM, SIGQUIT, SIGHUP, SIGUSR1, SIGUSR2 and SIGXCPU ask a run to write its state and leave. A SIGHUP that was ignored when the
+ * run began stays ignored (nohup). */
 #pragma once
 #include <petscsys.h>
 
-/* Watch from now on; a second signal ends the program at once. */
+/* Watch from now on; a second SIGINT, SIGTERM or SIGQUIT ends the program at once. */
 void signals_watch(void);
 void signals_forget(void);
 /* Has one come to this rank? */

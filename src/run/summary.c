@@ -1,6 +1,7 @@
 #include "run/summary.h"
 #include "io/run_dir_files.h"
 #include <stdlib.h>
+#include "run/losses.h"
 #include "talus_version.h"
 
 PetscErrorCode SummaryVersion(MPI_Comm comm, RunDir *dir)
@@ -91,6 +92,7 @@ PetscErrorCode SummaryEnd(Model *m, RunDir *dir, const RunSummary *summary, cons
   for (PetscInt k = 0; k < m->c->n_measures; ++k)
     PetscCall(
       RunDirLog(dir, "%s = %.10g %s", m->c->measures[k].name, (double)values[k], measure_unit(&m->c->measures[k])));
+  PetscCall(LossesLogEnd(m, dir));
   PetscCall(RunDirLog(dir, "steps = %d iterations = %d halvings = %d seconds = %.3g", (int)summary->steps,
                       (int)summary->iterations, (int)summary->halvings, (double)seconds));
   if (m->tries.again || m->cuts)

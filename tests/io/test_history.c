@@ -82,7 +82,7 @@ static void test_resume(void **state)
   (void)state;
   TestFolder(folder);
   RunDir *dir = Start(folder, &diag);
-  assert_int_equal(HistoryOpenFrom(dir, 3, names, units, -1, diag), 0); /* no history yet */
+  assert_int_equal(HistoryOpenFrom(dir, 3, names, units, -1, NULL, diag), 0); /* no history yet */
   WriteRows(dir, 0, 10);
   Stop(&dir, &diag);
   snprintf(path, sizeof path, "%s/history.csv", folder);
@@ -94,15 +94,15 @@ static void test_resume(void **state)
   CheckRows(folder, 10);
   assert_int_equal(DiagCreate(&diag), 0);
   assert_int_equal(RunDirOpen(PETSC_COMM_WORLD, folder, PETSC_TRUE, NULL, diag, &dir), 0);
-  assert_int_equal(HistoryOpenFrom(dir, 3, names, units, 5, diag), 0);
+  assert_int_equal(HistoryOpenFrom(dir, 3, names, units, 5, NULL, diag), 0);
   CheckRows(folder, 6);
   WriteRows(dir, 6, 15);
   CheckRows(folder, 15);
   assert_int_equal(DiagErrors(diag), 0);
-  assert_int_equal(HistoryOpenFrom(dir, 2, names, units, 10, diag), 0); /* other measures */
+  assert_int_equal(HistoryOpenFrom(dir, 2, names, units, 10, NULL, diag), 0); /* other measures */
   if (test_rank() == 0) assert_int_equal(DiagErrors(diag), 1);
   CheckRows(folder, 15);
-  assert_int_equal(HistoryOpenFrom(dir, 3, names, units, 20, diag), 0); /* rows are missing */
+  assert_int_equal(HistoryOpenFrom(dir, 3, names, units, 20, NULL, diag), 0); /* rows are missing */
   if (test_rank() == 0) assert_int_equal(DiagErrors(diag), 2);
   CheckRows(folder, 15);
   Stop(&dir, &diag);

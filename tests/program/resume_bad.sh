@@ -3,7 +3,7 @@
 compare="$(cd "$(dirname "$0")" && pwd)/compare.awk"
 . "$(dirname "$0")/library.sh"
 block | sed 's/end: 0.4/end: 0.08/; s/every: 0.1/every: 0.02/' >block.yaml
-expect "whole" 0 "$talus" run block.yaml --out whole --quiet --set checkpoint.steps=10 --set checkpoint.keep=3 --set newton.residual=1e-11 # ranks agree as far as Newton goes
+expect "whole" 0 "$talus" run block.yaml --out whole --quiet --set output.grid=true --set checkpoint.steps=10 --set checkpoint.keep=3 --set newton.residual=1e-11 # ranks agree as far as Newton goes
 [ "$(ls whole/checkpoint_*.h5 | wc -l)" -eq 3 ] || fail "keep: not three checkpoints"
 newest=checkpoint_000000040.h5 older=checkpoint_000000030.h5
 
@@ -71,7 +71,7 @@ diff -r cut kept || fail "$name: something changed"
 rm -r kept
 
 # A later end: as if it had been asked for at once
-expect "longer" 0 "$talus" run block.yaml --out longer --quiet --set analysis.end=0.12 --set checkpoint.steps=10 --set newton.residual=1e-11
+expect "longer" 0 "$talus" run block.yaml --out longer --quiet --set output.grid=true --set analysis.end=0.12 --set checkpoint.steps=10 --set newton.residual=1e-11
 rm -r cut && cp -r whole cut
 expect "a later end" 0 "$talus" run --resume cut --quiet --set analysis.end=0.12
 awk -f "$compare" longer/history.csv cut/history.csv || fail "$name: differs"
@@ -125,7 +125,44 @@ rm cut/log.txt && cp whole/log.txt cut/log.txt
 sed -i '20,$d' cut/history.csv
 expect "a history that lost rows" 2 "$talus" run --resume cut
 says err.txt "history.csv' has lost rows: the one of step 40 is missing"
+# A row in the middle, a number that is another one or none: the checkpoint knows better, and the file stays as it is
+spoilt() {
+  name="a history $1"
+  cp whole/history.csv cut/history.csv
+  sed -i "$2" cut/history.csv
+  cp cut/history.csv kept.csv
+  expect "$name" 2 "$talus" run --resume cut
+  says err.txt "history.csv' $3" "put the file back as it was"
+  cmp -s kept.csv cut/history.csv || fail "$name: it was changed"
+}
+spoilt "without a middle row" 12d "has lost rows: up to step 40 there are 40, and there were 41"
+spoilt "with nan" '12s/[^,]*$/nan/' "is not as the run wrote it: rows up to step 40 have been changed"
+spoilt "with another number" '12s/,[^,]*$/,1/' "is not as the run wrote it"
+spoilt "with a row twice" 12p "is not as the run wrote it"
 cp whole/history.csv cut/history.csv
+
+# Files of states: missing, cut off, changed, and not told one by one when they are many
+state_spoilt() {
+  name="a state $1"
+  cp whole/*.hdf cut
+  eval "$2"
+  cp cut/history.csv kept.csv
+  expect "$name" 2 "$talus" run --resume cut
+  says err.txt "$3" "put the files back as they were"
+  cmp -s kept.csv cut/history.csv || fail "$name: the history was changed"
+}
+state_spoilt "that is missing" "rm cut/points_000001.hdf" "cannot go on after 'cut/points_000001.hdf': it is missing"
+state_spoilt "of the grid that is missing" "rm cut/grid_000003.hdf" "cannot go on after 'cut/grid_000003.hdf': it is missing"
+bytes=$(wc -c <whole/points_000002.hdf)
+state_spoilt "cut off" "head -c 3000 whole/points_000002.hdf >cut/points_000002.hdf" "points_000002.hdf': it is 3000 bytes long and was $bytes"
+state_spoilt "with a wrong byte" "printf '\\377' | dd of=cut/points_000002.hdf bs=1 seek=$((bytes / 2)) conv=notrunc 2>/dev/null" \
+  "points_000002.hdf': it is not as the run wrote it: its checksum is wrong"
+state_spoilt "and all others missing" "rm cut/points_*.hdf cut/grid_*.hdf" "10 files of states are missing or damaged in all"
+[ "$(grep -c 'it is missing' err.txt)" -eq 3 ] || fail "$name: not three of them are told"
+cp whole/*.hdf cut
+expect "all put back" 0 "$talus" run --resume cut --quiet
+same "all put back"
+
 sed -i '/000002/d' cut/points.hdf.series
 expect "a series that lost entries" 2 "$talus" run --resume cut
 says err.txt "cannot go on with cut/points.hdf.series: entries are missing"

@@ -39,7 +39,7 @@ else echo "no directory can be made immutable here: skipped"
 fi
 chattr -i immutable 2>/dev/null
 
-# The directory is renamed while the run is at work: states and checkpoints cannot be written
+# The directory is renamed while the run is at work: it says so, and goes on where it was when the directory is back
 renamed() {
   ranks=$1
   name="renamed, $ranks ranks"
@@ -53,7 +53,7 @@ renamed() {
   mv run away
   wait "$job"
   [ $? -eq 1 ] || fail "$name: exit code"
-  says err.txt "cannot write the state at t = " "No such file or directory" "talus run --resume run goes on from step"
+  says err.txt "the run directory run was removed, renamed or replaced" "talus run --resume run goes on from step"
   mv away run
   expect "$name, resumed" 0 on_ranks "$ranks" "$talus" run --resume run --quiet
 }

@@ -1,5 +1,5 @@
 #!/bin/sh
-# signals.sh TALUS RANKS: SIGINT and SIGTERM in mid-run. The step is finished, state and history are whole, exit code 1.
+# signals.sh TALUS RANKS: signals that ask a run to end, in mid-run. State and history are whole, there is a checkpoint, exit code 1.
 . "$(dirname "$0")/library.sh"
 ranks=$2
 block | sed 's/end: 0.4/end: 1000/' >block.yaml
@@ -33,10 +33,37 @@ interrupted() {
   time=$(tail -n 1 run/history.csv | cut -d, -f1)
   grep '"name"' run/points.hdf.series | tail -n 1 | grep -q -F "\"time\": $time}" || fail "$name: the last state is not of t = $time"
   [ -s run/timings.txt ] || fail "$name: no timings"
+  [ "$(ls run/checkpoint_*.h5 | wc -l)" -eq 1 ] || fail "$name: no checkpoint"
 }
 
 interrupted INT job
 interrupted TERM job
-if [ "$ranks" -gt 1 ]; then interrupted TERM rank; fi
+# Of these mpiexec passes on what batch systems send; the others come to the ranks themselves.
+if [ "$ranks" -gt 1 ]; then
+  for signal in TERM HUP QUIT XCPU USR1; do interrupted $signal rank; done
+  interrupted USR1 job
+  interrupted USR2 job
+else
+  for signal in HUP QUIT USR1 USR2 XCPU; do interrupted $signal job; done
+
+  # A limit of processor time: SIGXCPU at the soft one, and again every second; the run is done well before the hard one.
+  name="ulimit -t" && rm -rf run
+  (ulimit -S -t 2; ulimit -H -t 60; "$talus" run block.yaml --out run --quiet >out.txt 2>err.txt </dev/null)
+  code=$?
+  [ "$code" -eq 1 ] || fail "$name: exit code $code"
+  says err.txt "the run was interrupted by a signal, after step"
+
+  # nohup: a SIGHUP that was ignored at the start stays so
+  name="nohup" && rm -rf run
+  nohup "$talus" run block.yaml --out run --quiet >out.txt 2>err.txt </dev/null &
+  job=$!
+  wait_for_rows
+  kill -HUP "$job"
+  sleep 0.3
+  kill -0 "$job" || fail "$name: SIGHUP ended the run"
+  kill -TERM "$job"
+  wait "$job"
+  [ $? -eq 1 ] || fail "$name: exit code"
+fi
 expect "plot of what is there" 0 "$talus" plot run
 finish

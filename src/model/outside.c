@@ -1,0 +1,121 @@
+/* Points that leave the grid: how many, how much mass, energy and momentum went with them. */
+#include "model/model_private.h"
+
+/* The place of the first of them by id, on all ranks. */
+static PetscErrorCode FindFirst(const Model *m, LostPoint *first)
+{
+  const OutsideTally *t = &m->points->outside;
+  const PetscInt64 none = (PetscInt64)1 << 62;
+  PetscInt64 mine = t->removed + t->held > 0 ? t->first : none;
+
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Allreduce(&mine, &first->id, 1, MPIU_INT64, MPI_MIN, m->comm));
+  for (int d = 0; d < 3; ++d) first->x[d] = mine == first->id && mine != none ? t->place[d] : 0;
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, first->x, 3, MPIU_REAL, MPIU_SUM, m->comm));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode OutsideAdd(Model *m, StepReport *report)
+{
+  const OutsideTally *t = &m->points->outside;
+  Outside *o = &m->outside;
+  PetscReal s[8] = {(PetscReal)t->removed, t->mass, (PetscReal)t->held, t->held_mass, t->kinetic + t->work};
+
+  PetscFunctionBeginUser;
+  if (!m->method->points_move || m->c->grid.outside == OUTSIDE_STOP) PetscFunctionReturn(0);
+  for (int d = 0; d < 3; ++d) s[5 + d] = t->momentum[d];
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, s, 8, MPIU_REAL, MPIU_SUM, m->comm));
+  report->removed = (PetscInt)s[0];
+  report->held = (PetscInt)s[2];
+  o->held_now = s[2];
+  if (s[0] + s[2] == 0) PetscFunctionReturn(0);
+  PetscCall(FindFirst(m, &report->first_outside));
+  o->removed += s[0];
+  o->mass += s[1];
+  o->held += s[2];
+  o->held_most = PetscMax(o->held_most, s[2]);
+  o->held_most_mass = PetscMax(o->held_most_mass, s[3]);
+  o->energy += s[4];
+  for (int d = 0; d < 3; ++d) o->momentum[d] += s[5 + d];
+  o->first = o->first > 0 ? o->first : m->time;
+  o->last = m->time;
+  PetscFunctionReturn(0);
+}
+
+/* The axis along which a side of a cell looks out of the grid: that of the largest component of its normal. */
+static PetscInt side_axis(const Model *m, PetscInt cell, PetscInt side, PetscReal *direction)
+{
+  const Cell *type = &cells[m->grid->type];
+  const PetscInt dim = m->dim, *corner = type->face[side];
+  PetscReal x[3 * CELL_MAX_NODES], a[3] = {0, 0, 0}, b[3] = {0, 0, 1}, n[3];
+  PetscInt axis = 0;
+  grid_cell_x(m->grid, cell, x);
+  for (PetscInt d = 0; d < dim; ++d) {
+    a[d] = x[corner[1] * dim + d] - x[corner[0] * dim + d];
+    if (dim == 3) b[d] = x[corner[2] * dim + d] - x[corner[0] * dim + d];
+  }
+  for (int d = 0; d < 3; ++d) n[d] = a[(d + 1) % 3] * b[(d + 2) % 3] - a[(d + 2) % 3] * b[(d + 1) % 3];
+  for (PetscInt d = 1; d < dim; ++d)
+    if (PetscAbsReal(n[d]) > PetscAbsReal(n[axis]) * (1 + 1e-9)) axis = d;
+  *direction = n[axis];
+  return axis;
+}
+
+/* Is a node of the side held along the axis? */
+static PetscBool is_held(const Model *m, PetscInt cell, PetscInt side, PetscInt axis)
+{
+  const Cell *type = &cells[m->grid->type];
+  for (PetscInt k = 0; k < type->face_nodes; ++k) {
+    const PetscInt node = m->grid->cell_node[cell * type->nodes + type->face[side][k]];
+    if (m->boundary->fixed[node * m->dim + axis]) return PETSC_TRUE;
+  }
+  return PETSC_FALSE;
+}
+
+/* Sides of filled cells at the edge of the grid that nothing holds, per body and direction (-x x -y y -z z). */
+static PetscErrorCode CountFree(const Model *m, PetscInt *count)
+{
+  const GridSet *outer = &m->grid->outer;
+  PetscInt *body;
+  PetscReal direction;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(m->grid->n_cells, &body));
+  for (PetscInt c = 0; c < m->grid->n_cells; ++c) body[c] = -1;
+  for (PetscInt p = 0; p < m->points->n; ++p) body[m->points->cell[p]] = m->points->body[p];
+  for (PetscInt f = 0; f < outer->n_faces; ++f) {
+    const PetscInt cell = outer->face_cell[f], side = outer->face_side[f];
+    if (body[cell] < 0) continue;
+    const PetscInt axis = side_axis(m, cell, side, &direction);
+    if (!is_held(m, cell, side, axis)) ++count[6 * body[cell] + 2 * axis + (direction > 0)];
+  }
+  PetscCall(PetscFree(body));
+  PetscCall(MPIU_Allreduce(MPI_IN_PLACE, count, (PetscMPIInt)(6 * m->c->n_bodies), MPIU_INT, MPI_SUM, m->comm));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode OutsideWarn(const Model *m, Diag *diag)
+{
+  static const char *const name[] = {"-x", "x", "-y", "y", "-z", "z"};
+  static const char *const what[] = {"what passes that edge ends the run", "what passes that edge is removed",
+                                     "what reaches that edge is kept there"};
+  PetscInt *count;
+  char path[64], list[32];
+
+  PetscFunctionBeginUser;
+  if (!m->method->points_move) PetscFunctionReturn(0);
+  PetscCall(PetscCalloc1(6 * m->c->n_bodies, &count));
+  PetscCall(CountFree(m, count));
+  for (PetscInt b = 0; b < m->c->n_bodies; ++b) {
+    int end = 0;
+    for (int k = 0; k < 6; ++k)
+      if (count[6 * b + k]) end += snprintf(list + end, sizeof list - (size_t)end, "%s%s", end ? ", " : "", name[k]);
+    if (!end) continue;
+    snprintf(path, sizeof path, "bodies[%d]", (int)b);
+    DiagWarning(diag, path, "'%s' fills the grid to its edge towards %s, where nothing holds it: %s",
+                m->c->bodies[b].name, list, what[m->c->grid.outside]);
+    DiagHint(diag, "let the grid reach at least a cell farther than the body will go");
+  }
+  PetscCall(PetscFree(count));
+  PetscFunctionReturn(0);
+}

@@ -1,0 +1,158 @@
+/* What a run has lost on the way is said: in the log when it happens, in the summary, and as warnings at the end. */
+#include "run/losses.h"
+
+#define TRANSFER_ALLOWED 0.05 /* share of the energy that came in: about what granular flows lose on usual grids */
+
+/* "(1, 2) m" */
+static const char *place(PetscInt dim, const PetscReal *x, char text[80])
+{
+  if (dim == 3) snprintf(text, 80, "(%.6g, %.6g, %.6g) m", (double)x[0], (double)x[1], (double)x[2]);
+  else snprintf(text, 80, "(%.6g, %.6g) m", (double)x[0], (double)x[1]);
+  return text;
+}
+
+/* Has a count that grew by `more` at least doubled, or passed a power of two? So a thousand points take ten lines, not a thousand. */
+static PetscBool is_worth_a_line(PetscReal count, PetscReal more)
+{
+  PetscReal power = 1;
+  while (2 * power <= count) power *= 2;
+  return more > 0 && count - more < power ? PETSC_TRUE : PETSC_FALSE;
+}
+
+static PetscErrorCode LogOutside(const Model *m, RunDir *dir, const StepReport *report)
+{
+  const Outside *o = &m->outside;
+  const LostPoint *first = &report->first_outside;
+  char at[80];
+
+  PetscFunctionBeginUser;
+  if (is_worth_a_line(o->removed, (PetscReal)report->removed))
+    PetscCall(
+      RunDirLog(dir,
+                "outside = step %d time = %.9g removed = %d since the start = %.0f mass = %.6g kg, the first of the "
+                "step is point %lld at %s",
+                (int)m->step, (double)m->time, (int)report->removed, (double)o->removed, (double)o->mass,
+                (long long)first->id, place(m->dim, first->x, at)));
+  if (is_worth_a_line(o->held, (PetscReal)report->held))
+    PetscCall(
+      RunDirLog(dir,
+                "outside = step %d time = %.9g kept on the boundary = %d times since the start = %.0f, the first of "
+                "the step is point %lld at %s",
+                (int)m->step, (double)m->time, (int)report->held, (double)o->held, (long long)first->id,
+                place(m->dim, first->x, at)));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LossesLogStep(const Model *m, RunDir *dir, const StepReport *report)
+{
+  char at[80];
+
+  PetscFunctionBeginUser;
+  for (PetscInt k = 0; k < m->c->n_measures; ++k)
+    if (m->memory[k].ended > 0 && m->memory[k].ended == m->time)
+      PetscCall(RunDirLog(
+        dir,
+        "ended = %s step %d time = %.9g: no node of the grid carries its tracer any more, last at %s; nan from "
+        "now on",
+        m->c->measures[k].name, (int)m->step, (double)m->time, place(m->dim, m->memory[k].where, at)));
+  for (PetscInt k = 0; k < m->c->n_loads; ++k) {
+    const LoadMemory *l = &m->load_memory[k];
+    if (l->ended > 0 && l->ended == m->time)
+      PetscCall(
+        RunDirLog(dir,
+                  "ended = load %d step %d time = %.9g: the material has left %.0f of its carriers behind, about %s; "
+                  "their force so far is (%.6g, %.6g, %.6g) N at amplitude 1",
+                  (int)k, (int)m->step, (double)m->time, (double)l->carriers, place(m->dim, l->where, at),
+                  (double)l->force[0], (double)l->force[1], (double)l->force[2]));
+  }
+  PetscCall(LogOutside(m, dir, report));
+  PetscFunctionReturn(0);
+}
+
+static PetscReal transfer_share(const Model *m) { return m->most_energy > 0 ? m->transfer_energy / m->most_energy : 0; }
+
+PetscErrorCode LossesLogEnd(const Model *m, RunDir *dir)
+{
+  const Outside *o = &m->outside;
+
+  PetscFunctionBeginUser;
+  if (o->removed > 0)
+    PetscCall(
+      RunDirLog(dir,
+                "outside: %.0f points of %.6g kg left the grid and were removed between t = %.9g and %.9g s, with %.6g "
+                "J and momentum (%.6g, %.6g, %.6g) kg m/s",
+                (double)o->removed, (double)o->mass, (double)o->first, (double)o->last, (double)o->energy,
+                (double)o->momentum[0], (double)o->momentum[1], (double)o->momentum[2]));
+  if (o->held > 0)
+    PetscCall(
+      RunDirLog(dir,
+                "outside: points were kept on the boundary of the grid %.0f times between t = %.9g and %.9g s, at most "
+                "%.0f of %.6g kg in a step; that took %.6g J and momentum (%.6g, %.6g, %.6g) kg m/s",
+                (double)o->held, (double)o->first, (double)o->last, (double)o->held_most, (double)o->held_most_mass,
+                (double)o->energy, (double)o->momentum[0], (double)o->momentum[1], (double)o->momentum[2]));
+  if (m->most_energy > 0)
+    PetscCall(
+      RunDirLog(dir,
+                "transfer = %.6g J between points and grid, %.2g %% of the %.6g J that came in (start, loads, gravity, "
+                "prescribed motion)",
+                (double)m->transfer_energy, (double)(100 * transfer_share(m)), (double)m->most_energy));
+  PetscFunctionReturn(0);
+}
+
+static void warn_of_transfer(const Model *m, Diag *diag)
+{
+  const PetscReal share = transfer_share(m);
+  if (PetscAbsReal(share) <= TRANSFER_ALLOWED) return;
+  DiagWarning(diag, NULL,
+              "the transfer between points and grid %s %.2g %% of the energy that came in (%.4g of %.4g J): an energy "
+              "balance near 0 does not show it",
+              share > 0 ? "took" : "gave", (double)(100 * PetscAbsReal(share)),
+              (double)PetscAbsReal(m->transfer_energy), (double)m->most_energy);
+  DiagHint(diag,
+           "smaller cells where bodies meet and smaller steps lessen it; measure {energy: transfer} shows when "
+           "(docs/theory.md, Energy)");
+}
+
+static void warn_of_followers(const Model *m, Diag *diag)
+{
+  char path[256], at[80];
+  for (PetscInt k = 0; k < m->c->n_measures; ++k) {
+    const MeasureMemory *memory = &m->memory[k];
+    if (memory->ended <= 0) continue;
+    snprintf(path, sizeof path, "measures.%s.of.tracer", m->c->measures[k].name);
+    DiagWarning(diag, path, "'%s' is empty (nan) from t = %g s on: no node of the grid carries its tracer, last at %s",
+                m->c->measures[k].name, (double)memory->ended, place(m->dim, memory->where, at));
+    DiagHint(diag, "a tracer ends where the material around it has gone, or a cell beyond the edge of the grid");
+  }
+  for (PetscInt k = 0; k < m->c->n_loads; ++k)
+    if (m->load_memory[k].ended > 0)
+      DiagWarning(
+        diag, "loads",
+        "the material has left %.0f carriers of load %d behind, the last at t = %g s about %s: their force is gone",
+        (double)m->load_memory[k].carriers, (int)k, (double)m->load_memory[k].ended,
+        place(m->dim, m->load_memory[k].where, at));
+}
+
+PetscErrorCode LossesWarn(const Model *m, const PetscReal *values, Diag *diag)
+{
+  char path[256];
+  const Outside *o = &m->outside;
+
+  PetscFunctionBeginUser;
+  warn_of_followers(m, diag);
+  for (PetscInt k = 0; k < m->c->n_measures; ++k) {
+    if (!PetscIsNanReal(values[k]) || m->memory[k].ended > 0) continue;
+    snprintf(path, sizeof path, "measures.%s", m->c->measures[k].name);
+    DiagWarning(diag, path, "'%s' is empty (nan) at the end: no point is left of what it measures",
+                m->c->measures[k].name);
+  }
+  if (o->removed > 0)
+    DiagWarning(diag, "grid.outside", "%.0f points of %.4g kg left the grid and were removed", (double)o->removed,
+                (double)o->mass);
+  if (o->held > 0)
+    DiagWarning(diag, "grid.outside",
+                "points that left the grid were kept on its boundary %.0f times, at most %.0f of %.4g kg in a step",
+                (double)o->held, (double)o->held_most, (double)o->held_most_mass);
+  warn_of_transfer(m, diag);
+  PetscFunctionReturn(0);
+}

@@ -1,0 +1,11 @@
+/* What a run has lost on the way: tracers, loads, points, energy between points and grid. */
+#pragma once
+#include "io/run_dir.h"
+#include "model/model.h"
+
+/* Collective. After an accepted step: a line in the log for what ended or left the grid in it. */
+PetscErrorCode LossesLogStep(const Model *model, RunDir *dir, const StepReport *report);
+/* Collective. At the end: how much it was. */
+PetscErrorCode LossesLogEnd(const Model *model, RunDir *dir);
+/* At the end, with the last values of the measures: what the user must know before believing them. */
+PetscErrorCode LossesWarn(const Model *model, const PetscReal *values, Diag *diag);
