@@ -3,19 +3,20 @@
 #
 # A fault is a patch, tests/mutants/<room>/<name>.patch. Its first line says what it breaks; a line "Equal: ..." says why no test can
 # notice. Each is put into a copy of the sources in BUILD (build-mutants), in which all rooms are one shared library, so that one source
-# is compiled and one library linked. Then tests run until one fails twice: those of the room, then the rest, cheap ones and those of one
-# rank first. Their cost comes from a first round without a fault, in which all must pass.
+# is compiled and one library linked. Then tests run until one fails twice: those of the room, then those of the rooms that know it, cheap
+# ones and those of one rank first. Their cost comes from a first round without a fault, in which all must pass.
 #
 #   --list      what there is      --check  does each patch fit, has it a header, does it change few lines?
 #   --continue  keep the results that are there
 #   ROOM=solve, MUTANT=name: only those     WORKERS=2: as many copies side by side     ASK=0.95: the share that must be caught
+#   MOST=5: only with tests that take no longer than this, s: a first look
 set -u
 mode=run resume=
 while [[ ${1:-} == --* ]]; do
   case $1 in
     --list | --check) mode=${1#--} ;;
     --continue) resume=1 ;;
-    *) sed -n 2,11p "$0" >&2; exit 2 ;;
+    *) sed -n 2,13p "$0" >&2; exit 2 ;;
   esac
   shift
 done
@@ -75,7 +76,7 @@ prepare() { # the copy of one worker, whole and built
     $launcher >"$1/configure.log" && ninja -C "$1/build" >"$1/build.log"
 }
 passes() { # test, seconds: a test that hangs has failed
-  timeout -k 10 "$2" ctest --test-dir build -R "^$1\$" --no-tests=error >test.log 2>&1
+  timeout -k 10 "$2" ctest --test-dir build -R "^$1\$" --no-tests=error >test.log 2>&1 </dev/null
 }
 
 # First round: TEST SECONDS of all that pass; `kill` ends runs at random moments and says nothing about numbers.
@@ -93,10 +94,14 @@ first_round() {
   mv "$build/cost.new" "$build/cost.txt"
 }
 
-# Tests and limits in the order for a room: its own, then others; one rank, then several; cheap, then dear.
+# Tests and limits in the order for a room: its own, then others; one rank, then several; cheap, then dear. Rooms before it do not know it.
 order() {
-  awk -v room="$1" '
-    {own = index($1, room "/") == 1 || room == "cli" && $1 ~ "^program/"; many = $1 ~ "(_[23]|/ranks|/signals_2)$"
+  awk -v room="$1" -v most="${MOST:-1e9}" '
+    BEGIN {n = split("base case material basis grid points formulation boundary solve method model io run api cli program", rooms, " ")
+      for (i = 1; i <= n; ++i) place[rooms[i]] = i}
+    {test_room = $1; sub("/.*", "", test_room)
+     if (test_room in place && place[test_room] < place[room] || $2 > most) next
+     own = test_room == room || room == "cli" && test_room == "program"; many = $1 ~ "(_[23]|/ranks|/signals_2)$"
      printf "%d %d %s %s %d\n", !own, many, $2, $1, 60 + 20 * $2}' "$build/cost.txt" | sort -k 1,1n -k 2,2n -k 3,3n | cut -d ' ' -f 4,5
 }
 
