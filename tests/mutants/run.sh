@@ -22,8 +22,6 @@ while [[ ${1:-} == --* ]]; do
 done
 source=$(cd "${1:?the root of the sources}" && pwd) || exit 2
 build=${BUILD:-$source/build-mutants} workers=${WORKERS:-1} ask=${ASK:-0.95}
-mkdir -p "$build" && build=$(cd "$build" && pwd) || exit 2
-results=$build/results
 mapfile -t mutants < <(cd "$source/tests/mutants" && find . -name '*.patch' | sed 's,^\./,,; s,\.patch$,,' | sort |
   awk -F / -v room="${ROOM:-}" -v name="${MUTANT:-}" '(room == "" || $1 == room) && (name == "" || $2 == name)')
 [ ${#mutants[@]} -gt 0 ] || { echo "there is no such mutant" >&2; exit 2; }
@@ -35,8 +33,8 @@ put_in() { patch -p1 -s -f --no-backup-if-mismatch -r - -d "$2" "${@:3}" <"$(pat
 
 # Does the patch fit, and is it what it should be: a line of words, one to three lines changed, in one source of its room?
 check() {
-  local bad=
-  put_in "$1" "$source" --dry-run >"$build/check.txt" 2>&1 || bad="does not fit: $(tail -n 1 "$build/check.txt")"
+  local bad= said
+  said=$(put_in "$1" "$source" --dry-run 2>&1) || bad="does not fit: ${said##*$'\n'}"
   what_of "$1" | grep -q '^[A-Z].*[a-z.]$' || bad="its first line does not say what it breaks"
   awk -v room="${1%%/*}" '
     /^\+\+\+ / {files += $2 ~ "^b/src/" room "/"; all++; next} /^--- / {next} /^-/ {gone++} /^\+/ {come++}
@@ -55,6 +53,8 @@ elif [ $mode = check ]; then
   exit 0
 fi
 
+mkdir -p "$build" && build=$(cd "$build" && pwd) || exit 2
+results=$build/results
 export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 OPENBLAS_NUM_THREADS=1
 export CCACHE_BASEDIR=$build CCACHE_NOHASHDIR=1
 launcher=
