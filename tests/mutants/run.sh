@@ -79,22 +79,22 @@ passes() { # test, seconds: a test that hangs has failed
   timeout -k 10 "$2" ctest --test-dir build -R "^$1\$" --no-tests=error >test.log 2>&1 </dev/null
 }
 
-# First round: TEST SECONDS of all that pass; `kill` ends runs at random moments and says nothing about numbers.
+# First round: TEST SECONDS of all that pass and have none yet; `kill` ends runs at random moments and says nothing about numbers.
 first_round() {
-  rm -f "$build/cost.new"
   cd "$build/1" || exit 2
   for test in $(ctest --test-dir build -N | sed -n 's/^ *Test *#[0-9]*: //p' | grep -v -e '^program/kill' -e '^mutants/'); do
+    ! grep -q "^$test " "$build/cost.txt" || continue
     local start=$EPOCHREALTIME
     if passes "$test" 1000 || passes "$test" 1000; then
-      awk -v t="$test" -v a="$start" -v b="$EPOCHREALTIME" 'BEGIN {printf "%s %.2f\n", t, b - a}' >>"$build/cost.new"
+      awk -v t="$test" -v a="$start" -v b="$EPOCHREALTIME" 'BEGIN {printf "%s %.2f\n", t, b - a}' >>"$build/cost.txt"
     else
       echo "$test fails without any fault and counts for nothing"
     fi
   done
-  mv "$build/cost.new" "$build/cost.txt"
 }
 
-# Tests and limits in the order for a room: its own, then others; one rank, then several; cheap, then dear. Rooms before it do not know it.
+# Tests and limits in the order for a room: its own, then those of the rooms behind it, which alone know it, the solver's first; one rank, then
+# several; cheap, then dear.
 order() {
   awk -v room="$1" -v most="${MOST:-1e9}" '
     BEGIN {n = split("base case material basis grid points formulation boundary solve method model io run api cli program", rooms, " ")
@@ -102,7 +102,8 @@ order() {
     {test_room = $1; sub("/.*", "", test_room)
      if (test_room in place && place[test_room] < place[room] || $2 > most) next
      own = test_room == room || room == "cli" && test_room == "program"; many = $1 ~ "(_[23]|/ranks|/signals_2)$"
-     printf "%d %d %s %s %d\n", !own, many, $2, $1, 60 + 20 * $2}' "$build/cost.txt" | sort -k 1,1n -k 2,2n -k 3,3n | cut -d ' ' -f 4,5
+     far = own ? 0 : (test_room == "cli" || test_room == "program") && place[room] <= place["model"] ? 2 : 1
+     printf "%d %d %s %s %d\n", far, many, $2, $1, 60 + 20 * $2}' "$build/cost.txt" | sort -k 1,1n -k 2,2n -k 3,3n | cut -d ' ' -f 4,5
 }
 
 # One fault in the copy here: result on standard output.
@@ -137,35 +138,37 @@ work() { # worker
 }
 
 main() { # read as a whole before it runs, so that the file may change meanwhile
-[ -n "$resume" ] || for mutant in "${mutants[@]}"; do rm -f "$results/$mutant"; done
-for mutant in "${mutants[@]}"; do mkdir -p "$results/${mutant%/*}"; done
-find "$results" -name '*.claim' -exec rmdir {} +
-for ((w = 1; w <= workers; w++)); do
-  prepare "$build/$w" || { echo "the copy $build/$w does not build, see build.log there" >&2; exit 2; }
-done
-[ -n "$resume" ] && [ -s "$build/cost.txt" ] || first_round
-for ((w = 1; w <= workers; w++)); do work $w & done
-wait
+  [ -n "$resume" ] || rm -f "$build/cost.txt"
+  [ -n "$resume" ] || for mutant in "${mutants[@]}"; do rm -f "$results/$mutant"; done
+  touch "$build/cost.txt"
+  for mutant in "${mutants[@]}"; do mkdir -p "$results/${mutant%/*}"; done
+  find "$results" -name '*.claim' -exec rmdir {} +
+  for ((w = 1; w <= workers; w++)); do
+    prepare "$build/$w" || { echo "the copy $build/$w does not build, see build.log there" >&2; exit 2; }
+  done
+  first_round
+  for ((w = 1; w <= workers; w++)); do work $w & done
+  wait
 
-# Words for each room, then what was not caught, then the share.
-for mutant in "${mutants[@]}"; do
-  read -r result by <"$results/$mutant"
-  [ "$result" != survived ] || ! is_equal "$mutant" || result=equal
-  printf '%s\t%s\t%s\t%s\t%s\n' "${mutant%%/*}" "$mutant" "$result" "$by" "$(what_of "$mutant")"
-done >"$build/results.txt"
-awk -F '\t' -v ask="$ask" '
-  {n[$1]++; count[$1, $3]++; all[$3]++; if ($3 != "caught") rest = rest sprintf("%-9s %s %s: %s\n", $3, $2, $4, $5)}
-  END {
-    printf "\n%-12s %6s %6s %8s %6s %6s\n", "room", "faults", "caught", "survived", "equal", "broken"
-    for (room in n) {
-      printf "%-12s %6d %6d %8d %6d %6d\n", room, n[room], count[room, "caught"], count[room, "survived"], count[room, "equal"],
-        count[room, "broken"] | "sort"
-    }
-    close("sort")
-    share = NR > all["equal"] ? all["caught"] / (NR - all["equal"]) : 1
-    printf "\n%s%d of %d caught (%.1f %%), %d equal, %d broken\n", rest, all["caught"], NR - all["equal"], 100 * share, all["equal"], all["broken"]
-    exit share < ask || all["broken"] > 0
-  }' "$build/results.txt"
+  # Words for each room, then what was not caught, then the share.
+  for mutant in "${mutants[@]}"; do
+    read -r result by <"$results/$mutant"
+    [ "$result" != survived ] || ! is_equal "$mutant" || result=equal
+    printf '%s\t%s\t%s\t%s\t%s\n' "${mutant%%/*}" "$mutant" "$result" "$by" "$(what_of "$mutant")"
+  done >"$build/results.txt"
+  awk -F '\t' -v ask="$ask" '
+    {n[$1]++; count[$1, $3]++; all[$3]++; if ($3 != "caught") rest = rest sprintf("%-9s %s %s: %s\n", $3, $2, $4, $5)}
+    END {
+      printf "\n%-12s %6s %6s %8s %6s %6s\n", "room", "faults", "caught", "survived", "equal", "broken"
+      for (room in n) {
+        printf "%-12s %6d %6d %8d %6d %6d\n", room, n[room], count[room, "caught"], count[room, "survived"], count[room, "equal"],
+          count[room, "broken"] | "sort"
+      }
+      close("sort")
+      share = NR > all["equal"] ? all["caught"] / (NR - all["equal"]) : 1
+      printf "\n%s%d of %d caught (%.1f %%), %d equal, %d broken\n", rest, all["caught"], NR - all["equal"], 100 * share, all["equal"], all["broken"]
+      exit share < ask || all["broken"] > 0
+    }' "$build/results.txt"
 }
 main
 exit
