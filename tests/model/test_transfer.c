@@ -192,6 +192,28 @@ static void test_filling(void **state)
   }
 }
 
+/* Points that stand at one side leave the corners of the other without mass, however many they are: a corner should have a sixteenth of the
+ * mass in the plane, a quarter of what regular points give it. */
+static void test_one_sided(void **state)
+{
+  static const PetscReal side[] = {0.5, 0.7, 0.8, 0.9, 0.99};
+  (void)state;
+  for (int k = 0; k < 5; ++k) {
+    Bench b;
+    bench_init(&b, "mpm", CELL_QUADRILATERAL, 4);
+    b.c.stabilisation = (StabilisationSpec){.stiffness = 1e-3, .mass = 0.2, .inertia = 0.05};
+    Model *m = bench_model(&b, PETSC_COMM_WORLD);
+    for (PetscInt p = 0; p < m->points->n; ++p) point_real(m->points, POINT_XI, p)[0] = side[k];
+    CALL(m->method->initialise(m->stage));
+    const PetscReal least = (1 - side[k]) / 2 / 2, lack = PetscMax(0, 1 - 16 * least);
+    for (PetscInt g = 0; g < m->stage->support->n_groups; ++g) {
+      CHECK_CLOSE(m->stage->lumping[g], 0.2 * lack, 1e-12);
+      CHECK_CLOSE(m->stage->tie[g], 0.05 * lack * 1000. / 16, 1e-9);
+    }
+    CALL(ModelDestroy(&m));
+  }
+}
+
 /* --- clouds --- */
 /* Statics without any force on a block over a floor: nothing moves but nodes that stand too near. */
 static Model *resting(Bench *b)
@@ -303,7 +325,7 @@ static void test_nodes_follow(void **state)
 int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {cmocka_unit_test(test_projection), cmocka_unit_test(test_convection),
-                                     cmocka_unit_test(test_filling), cmocka_unit_test(test_keep_off),
-                                     cmocka_unit_test(test_nodes_follow)};
+                                     cmocka_unit_test(test_filling),    cmocka_unit_test(test_one_sided),
+                                     cmocka_unit_test(test_keep_off),   cmocka_unit_test(test_nodes_follow)};
   return run_model_tests(argc, argv, tests);
 }
