@@ -99,9 +99,34 @@ static void test_amplitudes(void **state)
     }
 }
 
+/* The sum over a boundary counts each node once, whatever ranks hold copies of it. */
+static void test_boundary_sum(void **state)
+{
+  (void)state;
+  for (CellType cell = CELL_TRIANGLE; cell <= CELL_HEXAHEDRON; ++cell) {
+    Bench b;
+    PetscReal *force, sum[3];
+    bench_init(&b, "mpm", cell, 6);
+    bench_motion(&b, 0, 0, MOTION_FIXED, 7);
+    bench_motion(&b, 1, 0, MOTION_FIXED, 1);
+    Model *m = bench_model(&b, PETSC_COMM_WORLD);
+    const PetscReal side = is_space(cell) ? 49 : 7;
+    CALL(PetscMalloc1(m->grid->n_nodes * m->dim, &force));
+    for (PetscInt i = 0; i < m->grid->n_nodes * m->dim; ++i) force[i] = i % m->dim == 0 ? 1 : 10;
+    CALL(BoundarySum(m->boundary, m->grid, 0, force, sum));
+    CHECK_CLOSE(sum[0], side, 1e-12);
+    CHECK_CLOSE(sum[1], 10 * side, 1e-12);
+    CALL(BoundarySum(m->boundary, m->grid, 1, force, sum)); /* its y is free but where the other boundary holds it */
+    CHECK_CLOSE(sum[0], side, 1e-12);
+    CHECK_CLOSE(sum[1], 10 * (is_space(cell) ? 7 : 1), 1e-12);
+    CALL(PetscFree(force));
+    CALL(ModelDestroy(&m));
+  }
+}
+
 int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {cmocka_unit_test(test_whole_surface), cmocka_unit_test(test_between_bodies),
-                                     cmocka_unit_test(test_amplitudes)};
+                                     cmocka_unit_test(test_amplitudes), cmocka_unit_test(test_boundary_sum)};
   return run_model_tests(argc, argv, tests);
 }
