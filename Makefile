@@ -17,7 +17,7 @@ MAKEFLAGS  += --no-print-directory
 export OMPI_ALLOW_RUN_AS_ROOT := 1
 export OMPI_ALLOW_RUN_AS_ROOT_CONFIRM := 1
 
-.PHONY: build help deps configure run test test-sanitize test-kill fuzz bench verify install docs format format-check tidy clean
+.PHONY: build help deps configure run test test-sanitize test-kill test-mutants fuzz bench verify install docs format format-check tidy clean
 
 build: configure ## Build the program, build/talus, and its tests (the default). PORTABLE=1: for any machine
 	@cmake --build $(BUILD) --parallel $(JOBS)
@@ -49,6 +49,10 @@ test-kill: build ## Kill a run 50 times at random moments on one rank, 50 times 
 	@OPENBLAS_NUM_THREADS=1 sh tests/program/kill.sh $(abspath $(TALUS)) 1 $(KILLS)
 	@OPENBLAS_NUM_THREADS=1 sh tests/program/kill.sh $(abspath $(TALUS)) 2 $(KILLS)
 	@OPENBLAS_NUM_THREADS=1 TALUS_MEMORY_STRIDE=1 $(BUILD)/tests/bin/run_test_memory
+
+test-mutants: deps ## Seed one fault after another in a copy, see which tests fail (hours): ROOM=solve MUTANT=name WORKERS=1, LIST=1, CONTINUE=1
+	@ROOM="$(ROOM)" MUTANT="$(MUTANT)" WORKERS="$(or $(WORKERS),1)" bash tests/mutants/run.sh \
+	  $(if $(LIST),--list) $(if $(CONTINUE),--continue) .
 
 fuzz: ## Throw random bytes at the readers of cases, meshes and checkpoints: FUZZ_SECONDS=60 each
 	@cmake/debian-packages.sh build fuzz

@@ -33,6 +33,16 @@ macro(talus_rooms)
   endforeach()
 endmacro()
 
+# All rooms in one shared library, whatever its names: what is built again after a change is one source and one link.
+function(talus_shared_rooms)
+  add_library(talus_library SHARED)
+  foreach(room ${TALUS_ROOMS})
+    target_sources(talus_library PRIVATE $<TARGET_OBJECTS:talus_${room}>)
+  endforeach()
+  target_link_libraries(talus_library PUBLIC talus_flags)
+  set_target_properties(talus_library PROPERTIES OUTPUT_NAME talus_rooms LINKER_LANGUAGE C)
+endfunction()
+
 # One thread a rank, Open MPI willing to start as root and with more ranks than cores.
 set(TALUS_TEST_ENVIRONMENT OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 OMPI_MCA_rmaps_base_oversubscribe=1
   OPENBLAS_NUM_THREADS=1 OMPI_MCA_pml=ob1)
@@ -61,6 +71,10 @@ function(talus_test path)
   endif()
   add_executable(${target} ${path}.c)
   foreach(lower ${TALUS_ROOMS})
+    if(TALUS_TEST_SHARED)
+      target_link_libraries(${target} PRIVATE talus_library)
+      break()
+    endif()
     target_sources(${target} PRIVATE $<TARGET_OBJECTS:talus_${lower}>)
     if(lower STREQUAL room)
       break()

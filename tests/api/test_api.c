@@ -408,6 +408,31 @@ static void test_failed_step(void **state)
   CALL(TalusCaseClose(&c));
 }
 
+/* A run that gives up is no error of the call, and no run that is done; what it had reached is there. */
+static void test_gave_up(void **state)
+{
+  const char *const set[] = {"analysis.smallest=0.0015", "newton.max_iterations=1", "newton.residual=1e-14",
+                             "materials.rubber.young=1e3"};
+  char folder[FOLDER], out[FOLDER + 8], *messages;
+  TalusOutcome outcome;
+  TalusRun *run;
+  double value;
+  (void)state;
+  TalusCase *c = open_block(4, set);
+  make_folder(folder);
+  snprintf(out, sizeof out, "%s/run", folder);
+  CALL(TalusRunCase(c, out, TALUS_RUN_QUIET, &run, &messages));
+  CALL(TalusRunOutcome(run, &outcome));
+  CHECK(outcome == TALUS_GAVE_UP);
+  CHECK(!messages || strstr(messages, "gave up"));
+  CALL(TalusRunMeasure(run, "mass", &value));
+  CHECK_CLOSE(value, 1000, 1e-9);
+  TalusTextFree(&messages);
+  CALL(TalusRunDestroy(&run));
+  CALL(TalusCaseClose(&c));
+  remove_folder(folder);
+}
+
 /* A field of this rank's points, to be freed. */
 static double *get_field(const TalusModel *model, const char *name, int expected_components, int *n)
 {
@@ -543,6 +568,7 @@ int main(void)
     cmocka_unit_test(test_trust),
     cmocka_unit_test(test_limits),
     cmocka_unit_test(test_failed_step),
+    cmocka_unit_test(test_gave_up),
     cmocka_unit_test(test_points),
     cmocka_unit_test(test_geostatic_stress),
     cmocka_unit_test(test_body_force),

@@ -208,12 +208,30 @@ static void Reduce(void **state)
   assert_int_equal(DiagDestroy(&diag), 0);
 }
 
+/* Two things about the same place are two messages, whoever says them; the same thing said twice is one. */
+static void ReduceKeepsWords(void **state)
+{
+  const DiagPlace place = {"c", "text", 7, 2, 1};
+  PetscInt errors;
+  Diag *diag;
+  (void)state;
+  assert_int_equal(DiagCreate(&diag), 0);
+  DiagAt(diag, DIAG_ERROR, &place, "it is too long");
+  DiagAt(diag, DIAG_ERROR, &place, "it is not known");
+  DiagAt(diag, DIAG_ERROR, &place, "it is too long");
+  assert_int_equal(DiagReduce(PETSC_COMM_WORLD, diag, &errors), 0);
+  assert_int_equal(errors, 2);
+  Expect(diag, "c:7:2: error: it is too long\n  text\n   ^\nc:7:2: error: it is not known\n  text\n   ^\n");
+  assert_int_equal(DiagDestroy(&diag), 0);
+}
+
 int main(int argc, char **argv)
 {
-  const struct CMUnitTest tests[] = {
-    cmocka_unit_test(Layout),         cmocka_unit_test(OddCharacters), cmocka_unit_test(LongLineIsCut),
-    cmocka_unit_test(ManyAreCounted), cmocka_unit_test(ManyTravel),    cmocka_unit_test(LongMessageIsCut),
-    cmocka_unit_test(SortedByLine),   cmocka_unit_test(Nearest),       cmocka_unit_test(Reduce)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(Layout),        cmocka_unit_test(OddCharacters),
+                                     cmocka_unit_test(LongLineIsCut), cmocka_unit_test(ManyAreCounted),
+                                     cmocka_unit_test(ManyTravel),    cmocka_unit_test(LongMessageIsCut),
+                                     cmocka_unit_test(SortedByLine),  cmocka_unit_test(Nearest),
+                                     cmocka_unit_test(Reduce),        cmocka_unit_test(ReduceKeepsWords)};
   if (PetscInitialize(&argc, &argv, NULL, NULL)) return 1;
   MPI_Comm_rank(PETSC_COMM_WORLD, &rank);
   MPI_Comm_size(PETSC_COMM_WORLD, &ranks);

@@ -272,6 +272,33 @@ static void paper_rule(void **state)
   assert_true(grown > 100);
 }
 
+/* On a lattice the numbers of nodes are known: those within the radius, and those on it; more only where a least number wants them, and
+ * then without a word about growing. */
+static void counts_on_a_lattice(void **state)
+{
+  static const struct {
+    SupportRule rule;
+    PetscReal radius;
+    int minimum, n;
+  } table[] = {{SUPPORT_NEAREST, 1, 0, 5},     {SUPPORT_NEAREST, 1.4, 0, 5}, {SUPPORT_NEAREST, 1.5, 0, 9},
+               {SUPPORT_NEAREST, 2, 0, 13},    {SUPPORT_NEAREST, 3, 0, 29},  {SUPPORT_NEAREST, 1, 9, 9},
+               {SUPPORT_NEAREST, 1.5, 13, 13}, {SUPPORT_FIXED, 2, 0, 13},    {SUPPORT_FIXED, 1.5, 0, 9}};
+  PetscReal X[NODES * 2];
+  const PetscReal x[2] = {0, 0};
+  Random random = {1};
+  (void)state;
+  lattice_cloud(&random, 2, SIDE, 1.0, 0, X);
+  for (size_t k = 0; k < sizeof table / sizeof *table; ++k) {
+    const CloudSupport support = {
+      .rule = table[k].rule, .radius = table[k].radius, .max_radius = 4, .condition = 1e9, .minimum = table[k].minimum};
+    Result result;
+    find_cloud(&support, &mls, NODES, X, NULL, x, &result);
+    assert_int_equal(result.report.n, table[k].n);
+    assert_int_equal(result.report.level, SUPPORT_NOMINAL);
+    assert_basis(X, x, &result, PETSC_TRUE);
+  }
+}
+
 /* Nodes and points anywhere: a basis or a word, never a NaN. */
 static void anything(void **state)
 {
@@ -307,6 +334,7 @@ int main(void)
                                      cmocka_unit_test(stretch_is_no_gap),
                                      cmocka_unit_test(last_resorts),
                                      cmocka_unit_test(paper_rule),
+                                     cmocka_unit_test(counts_on_a_lattice),
                                      cmocka_unit_test(anything)};
   return cmocka_run_group_tests_name("cloud support", tests, NULL, NULL);
 }

@@ -40,6 +40,8 @@ static void IntegralFromZero(void **state)
   PetscReal t[] = {-1, 1}, v[] = {0, 2}, late[] = {2, 3}, held[] = {5, 5};
   const Amplitude early = {2, t, v}, later = {2, late, held};
   (void)state;
+  ASSERT_NEAR(amplitude_value(&later, 1, 9), 5, 0);
+  ASSERT_NEAR(amplitude_value(&later, -3, 9), 5, 0);
   ASSERT_NEAR(amplitude_integral(&early, 1, 0), 1.5, 1e-15);
   ASSERT_NEAR(amplitude_integral(&later, 1, 0), 5, 1e-15);
   ASSERT_NEAR(amplitude_integral(&later, 0, 0), 0, 1e-15);

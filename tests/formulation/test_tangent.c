@@ -1,5 +1,6 @@
-/* The assembled tangent against differences of the residual, for every kernel, at a random state with inertia, lumping and ties;
- * its symmetry; and what cutting and lifting of prescribed degrees of freedom do. */
+/* The assembled tangent against differences of the residual, for every kernel of cells and of clouds, at a random state (strains and with
+ * them shear stresses at the start of the step) with inertia, lumping and ties; its symmetry; and what cutting and lifting of prescribed
+ * degrees of freedom do. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -10,6 +11,23 @@
 #include "formulation/formulation.h"
 
 #define CALL(call) assert_int_equal((call), 0)
+
+/* Whose nodes a point sees: those of its cell, or a cloud of its own. */
+typedef struct {
+  CellType cell;
+  PetscBool cloud;
+  CloudKind kind;
+} Variant;
+
+static const Variant variants[] = {{.cell = CELL_TRIANGLE},
+                                   {.cell = CELL_QUADRILATERAL},
+                                   {.cell = CELL_TETRAHEDRON},
+                                   {.cell = CELL_HEXAHEDRON},
+                                   {CELL_QUADRILATERAL, PETSC_TRUE, CLOUD_LME},
+                                   {CELL_QUADRILATERAL, PETSC_TRUE, CLOUD_MLS},
+                                   {CELL_HEXAHEDRON, PETSC_TRUE, CLOUD_LME},
+                                   {CELL_HEXAHEDRON, PETSC_TRUE, CLOUD_MLS}};
+#define N_VARIANTS (sizeof variants / sizeof *variants)
 
 /* A grid of two cells a side, all points in it, two materials. */
 typedef struct {
@@ -35,12 +53,32 @@ static void fill(Patch *p, PetscReal *v, PetscReal size)
 /* Every pair of nodes has its block: slot = row * n_nodes + column. */
 static void dense_slots(Patch *p)
 {
-  const PetscInt nn = p->support->uniform;
-  CALL(PetscMalloc1(p->support->n_groups * nn * nn, &p->slot));
-  for (PetscInt e = 0; e < p->support->n_groups * nn * nn; ++e) {
-    const PetscInt *node = p->support->node + e / (nn * nn) * nn;
-    p->slot[e] = node[e % (nn * nn) / nn] * p->grid->n_nodes + node[e % nn];
-  }
+  const Support *s = p->support;
+  PetscInt entries = 0;
+  for (PetscInt g = 0; g < s->n_groups; ++g) entries += PetscSqr(support_nodes(s, g));
+  CALL(PetscMalloc1(entries, &p->slot));
+  for (PetscInt g = 0, e = 0; g < s->n_groups; ++g)
+    for (PetscInt I = 0, nn = support_nodes(s, g); I < nn; ++I)
+      for (PetscInt J = 0; J < nn; ++J, ++e)
+        p->slot[e] = s->node[s->node_start[g] + I] * p->grid->n_nodes + s->node[s->node_start[g] + J];
+}
+
+/* Clouds of different sizes, whose nodes stand in no cell together. */
+static void patch_support(Patch *p, const Variant *variant)
+{
+  const CloudRule rule = {.basis = {.kind = variant->kind, .effective_radius = 1, .gamma = 1.8},
+                          .support = variant->kind == CLOUD_MLS ? support_default_mls : support_default_lme,
+                          .h = 0.5};
+  CloudTally tally = {{0}, 0};
+  Neighbours nodes;
+  CALL(SupportCreate(&p->support));
+  CALL(SupportFromCells(p->support, p->points, p->grid));
+  if (!variant->cloud) return;
+  CALL(NeighboursCreate(p->grid->dim, p->grid->n_nodes, p->grid->x, 0, NULL, NULL, 0.5, &nodes));
+  CALL(SupportFromClouds(p->support, p->points, &nodes, &rule, &tally));
+  CALL(NeighboursDestroy(&nodes));
+  assert_int_equal(p->support->uniform, 0);
+  assert_int_equal(tally.level[SUPPORT_LOOSE] + tally.level[SUPPORT_EMPTY], 0);
 }
 
 static void patch_points(Patch *p, Diag *diag)
@@ -91,8 +129,9 @@ static WeakFormInput input_of(const Patch *p, PetscReal inertia, const PetscReal
                          .fixed = p->fixed};
 }
 
-static void patch_begin(Patch *p, CellType cell)
+static void patch_begin(Patch *p, const Variant *variant)
 {
+  const CellType cell = variant->cell;
   Diag *diag;
   *p = (Patch){.random = {11}};
   p->c = (Case){.kinematics = cell >= CELL_TETRAHEDRON ? KINEMATICS_3D : KINEMATICS_PLANE_STRAIN, .method = "mpm"};
@@ -103,8 +142,7 @@ static void patch_begin(Patch *p, CellType cell)
   CALL(DiagDestroy(&diag));
   p->dofs = p->grid->n_nodes * p->grid->dim;
   for (PetscInt i = 0; i < p->dofs; ++i) p->grid->x[i] += random_real(&p->random, -0.05, 0.05);
-  CALL(SupportCreate(&p->support));
-  CALL(SupportFromCells(p->support, p->points, p->grid));
+  patch_support(p, variant);
   dense_slots(p);
   CALL(PetscCalloc6(p->dofs, &p->history, p->dofs, &p->du, p->dofs, &p->lift, p->support->n_groups, &p->lumping,
                     p->support->n_groups, &p->soft, p->support->n_groups, &p->tie));
@@ -174,11 +212,11 @@ static void difference(const Patch *p, PetscReal inertia, const PetscReal *direc
   CALL(PetscFree2(du, force));
 }
 
-static void check_tangent(CellType cell, PetscReal inertia, PetscBool stabilised)
+static void check_tangent(const Variant *variant, PetscReal inertia, PetscBool stabilised)
 {
   Patch p;
   PetscReal *force, *values, *direction, *slope, *product, skew = 0, largest = 0;
-  patch_begin(&p, cell);
+  patch_begin(&p, variant);
   for (PetscInt g = 0; !stabilised && g < p.support->n_groups; ++g) p.lumping[g] = p.soft[g] = p.tie[g] = 0;
   CALL(PetscMalloc5(p.dofs, &force, p.dofs * p.dofs, &values, p.dofs, &direction, p.dofs, &slope, p.dofs, &product));
   assemble(&p, inertia, p.du, NULL, force, values);
@@ -205,11 +243,11 @@ static void check_tangent(CellType cell, PetscReal inertia, PetscBool stabilised
 static void test_differences(void **state)
 {
   (void)state;
-  for (CellType cell = CELL_TRIANGLE; cell <= CELL_HEXAHEDRON; ++cell) {
-    check_tangent(cell, 0, PETSC_FALSE);
-    check_tangent(cell, 0, PETSC_TRUE);
-    check_tangent(cell, 40, PETSC_FALSE);
-    check_tangent(cell, 40, PETSC_TRUE);
+  for (size_t k = 0; k < N_VARIANTS; ++k) {
+    check_tangent(&variants[k], 0, PETSC_FALSE);
+    check_tangent(&variants[k], 0, PETSC_TRUE);
+    check_tangent(&variants[k], 40, PETSC_FALSE);
+    check_tangent(&variants[k], 40, PETSC_TRUE);
   }
 }
 
@@ -217,10 +255,10 @@ static void test_differences(void **state)
 static void test_residual_alone(void **state)
 {
   (void)state;
-  for (CellType cell = CELL_TRIANGLE; cell <= CELL_HEXAHEDRON; ++cell) {
+  for (size_t k = 0; k < N_VARIANTS; ++k) {
     Patch p;
     PetscReal *with, *without, *values;
-    patch_begin(&p, cell);
+    patch_begin(&p, &variants[k]);
     CALL(PetscMalloc3(p.dofs, &with, p.dofs, &without, p.dofs * p.dofs, &values));
     assemble(&p, 40, p.du, NULL, with, values);
     assemble(&p, 40, p.du, NULL, without, NULL);
@@ -234,10 +272,10 @@ static void test_residual_alone(void **state)
 static void test_prescribed(void **state)
 {
   (void)state;
-  for (CellType cell = CELL_TRIANGLE; cell <= CELL_HEXAHEDRON; ++cell) {
+  for (size_t k = 0; k < N_VARIANTS; ++k) {
     Patch p;
     PetscReal *full, *cut, *force, *lifted;
-    patch_begin(&p, cell);
+    patch_begin(&p, &variants[k]);
     CALL(PetscMalloc4(p.dofs * p.dofs, &full, p.dofs * p.dofs, &cut, p.dofs, &force, p.dofs, &lifted));
     assemble(&p, 40, p.du, NULL, force, full);
     for (PetscInt i = 0; i < p.dofs; ++i) {
@@ -264,10 +302,10 @@ static void test_prescribed(void **state)
 static void test_rotated(void **state)
 {
   (void)state;
-  for (CellType cell = CELL_TRIANGLE; cell <= CELL_HEXAHEDRON; ++cell) {
+  for (size_t k = 0; k < N_VARIANTS; ++k) {
     Patch p;
     PetscReal Q[9] = {0.6, -0.8, 0, 0.8, 0.6, 0, 0, 0, 1}, *straight, *turned, *du;
-    patch_begin(&p, cell);
+    patch_begin(&p, &variants[k]);
     const PetscInt dim = p.grid->dim;
     if (dim == 3) random_rotation(&p.random, Q);
     for (PetscInt g = 0; g < p.support->n_groups; ++g)
@@ -297,7 +335,7 @@ static void test_inverted(void **state)
   Patch p;
   PetscReal *force;
   (void)state;
-  patch_begin(&p, CELL_QUADRILATERAL);
+  patch_begin(&p, &variants[1]);
   CALL(PetscMalloc1(p.dofs, &force));
   for (PetscInt i = 0; i < p.dofs; ++i) p.du[i] = i % 2 ? 0 : -2 * p.grid->x[i]; /* mirrored */
   WeakFormInput in = input_of(&p, 0, p.du);

@@ -69,8 +69,41 @@ static void test_pressed(void **state)
   }
 }
 
+/* A plate that comes down on a held floor: where both prescribe a node, the entry that stands first does. */
+static void test_first_entry_holds(void **state)
+{
+  (void)state;
+  for (int floor = 0; floor < 2; ++floor) { /* its number */
+    Bench b;
+    PetscReal *increment;
+    PetscInt met = 0, all;
+    bench_init(&b, "mpm", CELL_QUADRILATERAL, 8);
+    if (floor == 0) bench_motion(&b, 1, 0, MOTION_FIXED, 3);
+    MotionSpec *plate = bench_motion(&b, 1, 0.5, MOTION_VELOCITY, 3);
+    plate->moves = PETSC_TRUE;
+    plate->on.max[1] = 0.6;
+    plate->value[0] = 0.5, plate->value[1] = -1;
+    if (floor == 1) bench_motion(&b, 1, 0, MOTION_FIXED, 3);
+    Model *m = bench_model(&b, PETSC_COMM_WORLD);
+    CALL(BoundaryMove(m->boundary, m->grid, 0.55)); /* from -0.05 to 0.05 now */
+    CALL(PetscCalloc1(2 * m->grid->n_nodes, &increment));
+    boundary_increments(m->boundary, m->grid, 0.55, 0.65, increment);
+    for (PetscInt i = 0; i < m->grid->n_nodes; ++i) {
+      if (m->grid->x[2 * i + 1] > 1e-9) continue;
+      ++met;
+      CHECK_CLOSE(increment[2 * i], floor ? 0.05 : 0, 1e-15);
+      CHECK_CLOSE(increment[2 * i + 1], floor ? -0.1 : 0, 1e-15);
+    }
+    CALL(MPI_Allreduce(&met, &all, 1, MPIU_INT, MPI_SUM, m->comm));
+    CHECK(all >= 9, "they do not meet");
+    CALL(PetscFree(increment));
+    CALL(ModelDestroy(&m));
+  }
+}
+
 int main(int argc, char **argv)
 {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_carried), cmocka_unit_test(test_pressed)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_carried), cmocka_unit_test(test_pressed),
+                                     cmocka_unit_test(test_first_entry_holds)};
   return run_model_tests(argc, argv, tests);
 }

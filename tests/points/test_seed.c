@@ -151,6 +151,36 @@ static void bodies_stand_side_by_side(void **state)
   }
 }
 
+/* Ids are those of points of a body after those of the body before it, wherever in the grid they stand: the first may hold the last cells,
+ * and the next ones the first. */
+static void ids_belong_to_one_point(void **state)
+{
+  (void)state;
+  for (int type = 0; type < 4; ++type) {
+    TestCase *t = test_case((CellType)type, 12, 8, 4);
+    t->c.n_bodies = 3;
+    set_box(t->body, 1.5, 1, 3, 2);
+    set_box(t->body + 1, 0, 0, 1.5, 1);
+    set_box(t->body + 2, 1.5, 0, 3, 1);
+    t->body[2].points_per_cell = 1;
+    Grid *grid = make_grid(PETSC_COMM_WORLD, &t->c);
+    Points *points = seed_points(t, grid);
+    PetscInt64 range[3][2] = {{PETSC_MAX_INT, -1}, {PETSC_MAX_INT, -1}, {PETSC_MAX_INT, -1}};
+    check_ids_unique(points);
+    for (PetscInt p = 0; p < points->n; ++p) {
+      PetscInt64 *r = range[points->body[p]];
+      r[0] = PetscMin(r[0], points->id[p]);
+      r[1] = PetscMax(r[1], points->id[p]);
+    }
+    for (int b = 0; b < 3; ++b) {
+      CALL(MPI_Allreduce(MPI_IN_PLACE, &range[b][0], 1, MPIU_INT64, MPI_MIN, PETSC_COMM_WORLD));
+      CALL(MPI_Allreduce(MPI_IN_PLACE, &range[b][1], 1, MPIU_INT64, MPI_MAX, PETSC_COMM_WORLD));
+      CHECK(b == 0 || range[b][0] > range[b - 1][1]);
+    }
+    free_all(t, grid, points);
+  }
+}
+
 static PetscBool same_point(const Points *a, PetscInt p, const Points *b, PetscInt q)
 {
   static const PointReal fields[] = {POINT_X, POINT_V, POINT_MASS, POINT_VOLUME, POINT_F, POINT_STATE};
@@ -334,7 +364,7 @@ int main(int argc, char **argv)
     cmocka_unit_test(bodies_stand_side_by_side),   cmocka_unit_test(ranks_do_not_matter),
     cmocka_unit_test(mistakes_are_told),           cmocka_unit_test(overlap_is_told),
     cmocka_unit_test(too_many_points_are_told),    cmocka_unit_test(bad_volume_is_told),
-    cmocka_unit_test(polygon_volume_is_known),
+    cmocka_unit_test(ids_belong_to_one_point),     cmocka_unit_test(polygon_volume_is_known),
   };
   return run_point_tests(argc, argv, tests, sizeof tests / sizeof *tests);
 }

@@ -51,7 +51,10 @@ static void same_models(const Model *m, const Model *n)
   CHECK(!memcmp(m->reaction, n->reaction, dofs) && !memcmp(m->held, n->held, dofs), "reactions differ");
   CHECK(m->time == n->time && m->control.next == n->control.next && m->step == n->step && m->cuts == n->cuts,
         "time or step differ");
-  CHECK(m->external_work == n->external_work && m->transfer_energy == n->transfer_energy, "energies differ");
+  CHECK(m->external_work == n->external_work && m->transfer_energy == n->transfer_energy &&
+          m->boundary_work == n->boundary_work && m->damped_energy == n->damped_energy &&
+          m->start_energy == n->start_energy,
+        "energies differ");
   CHECK(m->total_iterations == n->total_iterations, "other iterations");
   CHECK(m->balance.repartitions == n->balance.repartitions && m->balance.reached == n->balance.reached,
         "the grid was shared in another way");
@@ -69,6 +72,7 @@ static Model *check(Bench *b, PetscInt before, PetscInt after, PetscBool bits)
 {
   Model *whole = bench_model(b, PETSC_COMM_WORLD);
   for (PetscInt k = 0; k < before; ++k) model_step(whole, PETSC_MAX_REAL);
+  CHECK((whole->damped_energy != 0) == (b->c.analysis.damping > 0), "%g J damped", (double)whole->damped_energy);
   put_away(whole);
   Model *again = bring_back(b, PETSC_COMM_WORLD), *alone = bring_back(b, PETSC_COMM_SELF);
   same_models(whole, again);
@@ -111,6 +115,7 @@ static void flying(const char *method, CellType cell, PetscReal size, PetscBool 
   b.body[0].velocity[0] = 5;
   b.body[0].spin[2] = 3;
   b.c.gravity[1] = -9.81;
+  b.c.analysis.damping = 0.7;
   bench_traction(&b, 0, 1.5, strcmp(method, "fem") ? "body" : NULL, 1e3, 2e3, 0);
   bench_tracer(&b, MEASURE_DISPLACEMENT, 1, 1.4, 0.9, 0.9);
   if (!strcmp(method, "fem")) bench_motion(&b, 0, 0.5, MOTION_FIXED, 7);

@@ -261,6 +261,163 @@ static void judges_what_is_wrong(void **state)
   OK(ReferenceDestroy(&reference));
 }
 
+/* --- tables: what is asked of one row, and whether it passes --- */
+static char name_a[] = "a", name_b[] = "b", name_c[] = "c", name_1[] = "1", name_2[] = "2";
+static SeriesSpec abc[3] = {{.name = name_a}, {.name = name_b}, {.name = name_c}};
+
+/* Rows of series a, b, c with these values, at the one row of the study; the last is judged. */
+static VerifyRow judged(const StudySpec *study, RowSpec *row, const PetscReal values[3])
+{
+  VerifyRow rows[3];
+  for (PetscInt k = 0; k < 3; ++k) {
+    rows[k] = (VerifyRow){.study = study,
+                          .series = &abc[k],
+                          .row = row,
+                          .value = values[k],
+                          .ran = PETSC_TRUE,
+                          .result = RUN_DONE,
+                          .seconds = 4 + k,
+                          .summary = {.steps = 10, .iterations = 30, .iterations_per_step = 5, .halvings = 2}};
+    verify_judge(rows, k);
+  }
+  return rows[2];
+}
+
+/* Every agreement counts, whatever the others say, and only those of the row's own series. */
+static void judges_every_agreement(void **state)
+{
+  static const struct {
+    PetscReal a, b, c;
+    AgreeSpec agree[3];
+    PetscBool pass;
+    PetscReal difference;
+  } table[] = {
+    {1, 1, 1, {{name_c, name_a, 0.01}, {name_c, name_b, 0.01}}, PETSC_TRUE, 0},
+    {1, 1.1, 1, {{name_c, name_a, 0.01}, {name_c, name_b, 0.01}}, PETSC_FALSE, 0.1 / 1.1},
+    {1.1, 1, 1, {{name_c, name_a, 0.01}, {name_c, name_b, 0.01}}, PETSC_FALSE, 0.1 / 1.1},
+    {1, 1.1, 1, {{name_c, name_a, 0.01}, {name_c, name_b, 0.2}}, PETSC_TRUE, 0.1 / 1.1},
+    {1, 1.1, 1, {{name_b, name_a, 0.01}, {name_c, name_a, 0.01}}, PETSC_TRUE, 0},
+    {1, 1.1, 1, {{name_b, name_a, 0.01}, {name_c, name_a, 0.01}, {name_c, name_b, 0.05}}, PETSC_FALSE, 0.1 / 1.1},
+    {-2, 3, 2, {{name_c, name_a, 1.9}}, PETSC_FALSE, 2},
+    {0, 3, 1e-3, {{name_c, name_a, 1e-2}}, PETSC_TRUE, 1e-3}, /* nothing to be relative to */
+  };
+  (void)state;
+  for (size_t k = 0; k < sizeof table / sizeof *table; ++k) {
+    RowSpec row = {.at = name_1, .x = 1};
+    StudySpec study = {.name = name_a, .n_series = 3, .series = abc, .n_rows = 1, .rows = &row, .tolerance = 1};
+    study.agree = (AgreeSpec *)table[k].agree;
+    while (study.n_agree < 3 && table[k].agree[study.n_agree].series) ++study.n_agree;
+    const VerifyRow r = judged(&study, &row, (PetscReal[]){table[k].a, table[k].b, table[k].c});
+    if (r.pass != table[k].pass) print_error("agreement %d: %s\n", (int)k, r.why);
+    assert_true(r.pass == table[k].pass);
+    assert_true(fabs(r.difference - table[k].difference) < 1e-14);
+  }
+}
+
+/* References: relative to their size, with an absolute share, one-sided. */
+static void judges_distances(void **state)
+{
+  static const struct {
+    PetscReal value, reference, tolerance, absolute;
+    PetscBool at_most, pass;
+    PetscReal deviation;
+  } table[] = {
+    {1.009, 1, 0.01, 0, PETSC_FALSE, PETSC_TRUE, 0.009},    {1.011, 1, 0.01, 0, PETSC_FALSE, PETSC_FALSE, 0.011},
+    {0.989, 1, 0.01, 0, PETSC_FALSE, PETSC_FALSE, 0.011},   {-1.009, -1, 0.01, 0, PETSC_FALSE, PETSC_TRUE, 0.009},
+    {-1.011, -1, 0.01, 0, PETSC_FALSE, PETSC_FALSE, 0.011}, {1, -1, 0.5, 0, PETSC_FALSE, PETSC_FALSE, 2},
+    {505, 500, 0.011, 0, PETSC_FALSE, PETSC_TRUE, 0.01},    {505, 500, 0.009, 0, PETSC_FALSE, PETSC_FALSE, 0.01},
+    {505, 500, 0.009, 1, PETSC_FALSE, PETSC_TRUE, 0.01},    {0.5, 0, 0.9, 0.4, PETSC_FALSE, PETSC_FALSE, 0.5},
+    {0.3, 0, 0, 0.4, PETSC_FALSE, PETSC_TRUE, 0.3},         {0.1, 1, 0.01, 0, PETSC_TRUE, PETSC_TRUE, 0},
+    {1.005, 1, 0.01, 0, PETSC_TRUE, PETSC_TRUE, 0.005},     {1.02, 1, 0.01, 0, PETSC_TRUE, PETSC_FALSE, 0.02},
+  };
+  (void)state;
+  for (size_t k = 0; k < sizeof table / sizeof *table; ++k) {
+    RowSpec row = {.at = name_1, .x = 1, .has_reference = PETSC_TRUE, .reference = table[k].reference};
+    const StudySpec study = {.name = name_a,
+                             .n_series = 3,
+                             .series = abc,
+                             .n_rows = 1,
+                             .rows = &row,
+                             .tolerance = table[k].tolerance,
+                             .absolute = table[k].absolute,
+                             .at_most = table[k].at_most};
+    const PetscReal v = table[k].value;
+    const VerifyRow r = judged(&study, &row, (PetscReal[]){v, v, v});
+    if (r.pass != table[k].pass) print_error("distance %d: %s\n", (int)k, r.why);
+    assert_true(r.pass == table[k].pass);
+    assert_true(fabs(r.deviation - table[k].deviation) < 1e-14);
+  }
+}
+
+/* Each number of a run has its own bound, and the last of several counts, too. */
+static void judges_every_limit(void **state)
+{
+  static const struct {
+    const char *name;
+    PetscReal value;
+  } is[] = {{"iterations", 30}, {"iterations-per-step", 5}, {"steps", 10}, {"halvings", 2}, {"seconds", 6}};
+  (void)state;
+  for (int k = 0; k < 5; ++k)
+    for (int over = 0; over < 2; ++over) {
+      RowSpec row = {.at = name_1, .x = 1};
+      NamedValue limits[2] = {{(char *)is[(k + 1) % 5].name, 1e9}, {(char *)is[k].name, is[k].value - over * 0.5}};
+      const StudySpec study = {
+        .n_series = 3, .series = abc, .n_rows = 1, .rows = &row, .n_limits = 2, .limits = limits};
+      const VerifyRow r = judged(&study, &row, (PetscReal[]){1, 1, 1});
+      assert_true(r.pass == !over);
+      assert_true(!over || strstr(r.why, is[k].name));
+    }
+}
+
+/* Order, and pace: of two rows of a series that refines twice by a factor of two or three. */
+static void judges_orders(void **state)
+{
+  static const struct {
+    PetscReal x, error, order, tolerance, from, to;
+    PetscBool pass;
+    PetscReal observed;
+  } table[] = {
+    {2, 0.25, 2, 0.1, 1, 2, PETSC_TRUE, 2},   {2, 0.5, 2, 0.1, 1, 2, PETSC_FALSE, 1},
+    {2, 0.5, 1, 0.1, 1, 2, PETSC_TRUE, 1},    {2, 2, 1, 0.1, 1, 2, PETSC_FALSE, -1},
+    {3, 1. / 9, 2, 0.1, 1, 3, PETSC_TRUE, 2}, {2, 0.5, 2, 0.1, 1, 1.5, PETSC_TRUE, 1}, /* beyond the rows asked for */
+    {2, 0.5, 2, 0.1, 1.5, 2, PETSC_TRUE, 1},  {0.5, 0.25, 2, 0.1, 0.5, 1, PETSC_TRUE, 2},
+  };
+  (void)state;
+  for (size_t k = 0; k < sizeof table / sizeof *table; ++k) {
+    RowSpec row[2] = {{.at = name_1, .x = 1}, {.at = name_2, .x = table[k].x}};
+    const StudySpec study = {.n_series = 1,
+                             .series = abc,
+                             .n_rows = 2,
+                             .rows = row,
+                             .has_exact = PETSC_TRUE,
+                             .exact = {.has_value = PETSC_TRUE,
+                                       .value = -4,
+                                       .order = table[k].order,
+                                       .order_tolerance = table[k].tolerance,
+                                       .from = table[k].from,
+                                       .to = table[k].to}};
+    VerifyRow rows[2];
+    for (int i = 0; i < 2; ++i) {
+      rows[i] = (VerifyRow){.study = &study, .series = abc, .row = &row[i], .result = RUN_DONE};
+      rows[i].value = -4 * (1 - 0.1 * (i ? table[k].error : 1));
+      verify_judge(rows, i);
+    }
+    assert_true(fabs(rows[1].error - 0.1 * table[k].error) < 1e-14);
+    assert_true(fabs(rows[1].order - table[k].observed) < 1e-12);
+    if (rows[1].pass != table[k].pass) print_error("order %d: %s\n", (int)k, rows[1].why);
+    assert_true(rows[1].pass == table[k].pass);
+  }
+}
+
+static void judges_pace(void **state)
+{
+  (void)state;
+  RowSpec row = {.at = name_1, .x = 1};
+  const StudySpec study = {.n_series = 3, .series = abc, .n_rows = 1, .rows = &row, .pace = name_a};
+  const VerifyRow r = judged(&study, &row, (PetscReal[]){1, 1, 1});
+  assert_true(fabs(r.pace - 1.5) < 1e-14);
+}
+
 static char *record(const char *before, const char *name, const char *section)
 {
   static char text[1024];
@@ -304,6 +461,11 @@ int main(int argc, char **argv)
     cmocka_unit_test(nonsense_is_refused),
     cmocka_unit_test(judges_what_is_right),
     cmocka_unit_test(judges_what_is_wrong),
+    cmocka_unit_test(judges_every_agreement),
+    cmocka_unit_test(judges_distances),
+    cmocka_unit_test(judges_every_limit),
+    cmocka_unit_test(judges_orders),
+    cmocka_unit_test(judges_pace),
     cmocka_unit_test(record_replaces_one_section),
   };
   if (PetscInitialize(&argc, &argv, NULL, NULL)) return 1;

@@ -1,0 +1,132 @@
+/* Loads in numbers: the sum of the nodal forces and their moments, of each load by its own amplitude, on bodies and on the grid. */
+#include "case_builder.h"
+
+/* Sum over owned nodes of the loads at time t, and of their moments about the origin in x and y: f, x f_x, y f_y. */
+static void sum_loads(const Model *m, PetscReal t, PetscReal sum[5])
+{
+  PetscReal *force, local[5] = {0, 0, 0, 0, 0};
+  CALL(PetscCalloc1(m->grid->n_nodes * m->dim, &force));
+  CALL(LoadsAdd(m->loads, m->grid, t, m->stage->filled, m->stage->touched, force));
+  for (PetscInt i = 0; i < m->grid->n_owned; ++i) {
+    for (PetscInt d = 0; d < m->dim; ++d) local[d] += force[i * m->dim + d];
+    for (PetscInt d = 0; d < 2; ++d) local[3 + d] += m->grid->x[i * m->dim + d] * force[i * m->dim + d];
+  }
+  CALL(PetscFree(force));
+  CALL(MPI_Allreduce(local, sum, 5, MPIU_REAL, MPI_SUM, m->comm));
+}
+
+static PetscBool is_space(CellType cell) { return cell >= CELL_TETRAHEDRON ? PETSC_TRUE : PETSC_FALSE; }
+
+/* The whole surface of a block inside the grid, and no face inside it: value times its area, at its centre. */
+static void test_whole_surface(void **state)
+{
+  (void)state;
+  for (CellType cell = CELL_TRIANGLE; cell <= CELL_HEXAHEDRON; ++cell) {
+    Bench b;
+    PetscReal sum[5];
+    bench_init(&b, "mpm", cell, 4);
+    bench_box(&b, 0, (PetscReal[]){0.25, 0.25, 0.25}, (PetscReal[]){0.75, 1, 0.75});
+    bench_dynamic(&b, 1, 0.01);
+    LoadSpec *load = bench_traction(&b, 0, 0.25, "body", 30, -20, is_space(cell) ? 7 : 0);
+    load->on.max[0] = 0.75; /* all of it */
+    Model *m = bench_model(&b, PETSC_COMM_WORLD);
+    sum_loads(m, 0.3, sum);
+    const PetscReal area = is_space(cell) ? 2 * (0.5 * 0.5 + 2 * 0.5 * 0.75) : 2 * (0.5 + 0.75);
+    CHECK_CLOSE(sum[0], 30 * area, 1e-10);
+    CHECK_CLOSE(sum[1], -20 * area, 1e-10);
+    CHECK_CLOSE(sum[2], is_space(cell) ? 7 * area : 0, 1e-10);
+    CHECK_CLOSE(sum[3], 30 * area * 0.5, 1e-10);
+    CHECK_CLOSE(sum[4], -20 * area * 0.625, 1e-10);
+    CALL(ModelDestroy(&m));
+  }
+}
+
+/* Two bodies that touch: the face between them belongs to the surface of each. */
+static void test_between_bodies(void **state)
+{
+  (void)state;
+  for (CellType cell = CELL_TRIANGLE; cell <= CELL_HEXAHEDRON; ++cell) {
+    Bench b;
+    PetscReal sum[5];
+    bench_init(&b, "mpm", cell, 4);
+    bench_box(&b, 0, (PetscReal[]){0, 0, 0}, (PetscReal[]){0.5, 1, 1});
+    b.body[1] = b.body[0];
+    b.body[1].name = (char *)"other";
+    bench_box(&b, 1, (PetscReal[]){0.5, 0, 0}, (PetscReal[]){1, 1, 1});
+    b.c.n_bodies = 2;
+    bench_dynamic(&b, 1, 0.01);
+    bench_traction(&b, 0, 0.5, "body", 5, 0, 0);
+    bench_traction(&b, 0, 0.5, "other", 0, 3, 0);
+    Model *m = bench_model(&b, PETSC_COMM_WORLD);
+    sum_loads(m, 0, sum);
+    CHECK_CLOSE(sum[0], 5, 1e-12);
+    CHECK_CLOSE(sum[1], 3, 1e-12);
+    CHECK_CLOSE(sum[3], 5 * 0.5, 1e-12);
+    CALL(ModelDestroy(&m));
+  }
+}
+
+/* Each load by its own amplitude, carried or on the grid; a face of the grid without material bears nothing. */
+static void test_amplitudes(void **state)
+{
+  static PetscReal time[] = {0, 1}, rise[] = {0, 1}, fall[] = {2, 0};
+  (void)state;
+  for (int on_body = 0; on_body < 2; ++on_body)
+    for (CellType cell = CELL_TRIANGLE; cell <= CELL_HEXAHEDRON; ++cell) {
+      Bench b;
+      PetscReal sum[5];
+      const char *body = on_body ? "body" : NULL;
+      bench_init(&b, "mpm", cell, 4);
+      bench_box(&b, 0, (PetscReal[]){0, 0, 0}, (PetscReal[]){1, 0.5, 1});
+      bench_dynamic(&b, 1, 0.01);
+      bench_traction(&b, 0, 0, body, 4, 0, 0)->amplitude = (Amplitude){.n = 2, .time = time, .value = rise};
+      bench_traction(&b, 0, 1, body, 0, 8, 0)->amplitude = (Amplitude){.n = 2, .time = time, .value = fall};
+      b.load[b.c.n_loads++] = (LoadSpec){.kind = LOAD_POINT,
+                                         .at = {0.3, 0.2, 0.4},
+                                         .value = {0, -1, 0},
+                                         .amplitude = {.n = 2, .time = time, .value = rise}};
+      bench_traction(&b, 1, 0, body, 1, 0, 0);
+      Model *m = bench_model(&b, PETSC_COMM_WORLD);
+      for (int k = 0; k <= 4; ++k) {
+        const PetscReal t = 0.25 * k;
+        sum_loads(m, t, sum);
+        CHECK_CLOSE(sum[0], 4 * 0.5 * t + 1, 1e-12);
+        CHECK_CLOSE(sum[1], 8 * 0.5 * (2 - 2 * t) - t, 1e-12);
+        CHECK_CLOSE(sum[3], 0.5, 1e-12);
+        CHECK_CLOSE(sum[4], 8 * 0.5 * (2 - 2 * t) * 0.25 - t * 0.2, 1e-12);
+      }
+      CALL(ModelDestroy(&m));
+    }
+}
+
+/* The sum over a boundary counts each node once, whatever ranks hold copies of it. */
+static void test_boundary_sum(void **state)
+{
+  (void)state;
+  for (CellType cell = CELL_TRIANGLE; cell <= CELL_HEXAHEDRON; ++cell) {
+    Bench b;
+    PetscReal *force, sum[3];
+    bench_init(&b, "mpm", cell, 6);
+    bench_motion(&b, 0, 0, MOTION_FIXED, 7);
+    bench_motion(&b, 1, 0, MOTION_FIXED, 1);
+    Model *m = bench_model(&b, PETSC_COMM_WORLD);
+    const PetscReal side = is_space(cell) ? 49 : 7;
+    CALL(PetscMalloc1(m->grid->n_nodes * m->dim, &force));
+    for (PetscInt i = 0; i < m->grid->n_nodes * m->dim; ++i) force[i] = i % m->dim == 0 ? 1 : 10;
+    CALL(BoundarySum(m->boundary, m->grid, 0, force, sum));
+    CHECK_CLOSE(sum[0], side, 1e-12);
+    CHECK_CLOSE(sum[1], 10 * side, 1e-12);
+    CALL(BoundarySum(m->boundary, m->grid, 1, force, sum)); /* its y is free but where the other boundary holds it */
+    CHECK_CLOSE(sum[0], side, 1e-12);
+    CHECK_CLOSE(sum[1], 10 * (is_space(cell) ? 7 : 1), 1e-12);
+    CALL(PetscFree(force));
+    CALL(ModelDestroy(&m));
+  }
+}
+
+int main(int argc, char **argv)
+{
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_whole_surface), cmocka_unit_test(test_between_bodies),
+                                     cmocka_unit_test(test_amplitudes), cmocka_unit_test(test_boundary_sum)};
+  return run_model_tests(argc, argv, tests);
+}

@@ -1,0 +1,64 @@
+#!/bin/sh
+# Rows and states come at the times that the case asks for, neither a step late nor twice nor from a step of nothing that round-off asks for: in
+# one go, and after a resumption between two of them.
+. "$(dirname "$0")/library.sh"
+
+# slider STEP EVERY HISTORY: a block that slides for 1.2 s; nothing acts on it.
+slider() {
+  cat <<END
+kinematics: plane-strain
+method: mpm
+analysis: {type: dynamic, step: $1, end: 1.2}
+grid: {box: {min: [0, 0], max: [3, 1]}, size: 0.5}
+bodies:
+  - {name: block, shape: {box: {min: [0, 0], max: [1, 0.5]}}, points_per_cell: 4, material: rubber, velocity: [1, 0]}
+materials:
+  rubber: {law: neo-hookean, density: 1000, young: 1e6, poisson: 0.3}
+measures:
+  place: {extent: {max: x}, of: {body: block}}
+output: {every: $2, history: $3}
+END
+}
+
+# multiples NAME DIR EVERY HISTORY: rows at multiples of HISTORY, states at those of EVERY, up to 1.2 s; each once.
+multiples() {
+  awk -F , -v every="$4" 'NR > 1 && ($1 - (NR - 2) * every > 1e-9 || (NR - 2) * every - $1 > 1e-9) {bad = 1}
+    END {exit bad || NR - 2 != int(1.2 / every + 0.5)}' "$2/history.csv" ||
+    fail "$1: rows at $(cut -d, -f1 "$2/history.csv" | tr '\n' ' ')"
+  sed -n 's/.*"name": "\([^"]*\)".*"time": \([^ }]*\).*/\2/p' "$2/points.hdf.series" >times.txt
+  awk -v every="$3" '{if ($1 - (NR - 1) * every > 1e-9 || (NR - 1) * every - $1 > 1e-9) bad = 1}
+    END {exit bad || NR - 1 != int(1.2 / every + 0.5)}' times.txt || fail "$1: states at $(tr '\n' ' ' <times.txt)"
+}
+
+for step in 0.01 0.02 0.03 0.04 0.05 0.1; do
+  slider $step 0.2 0.1 >case.yaml
+  expect "steps of $step" 0 "$talus" run case.yaml --out run --force --quiet
+  multiples "$name" run 0.2 0.1
+done
+
+# As many steps as there must be: none is a sliver that rounding left over
+slider 0.01 0.2 0.1 >case.yaml
+expect "no slivers" 0 "$talus" run case.yaml --out whole --quiet --set checkpoint.steps=7 --set checkpoint.keep=100
+[ "$(tail -n 1 whole/history.csv | cut -d, -f2)" = 120 ] || fail "$name: $(tail -n 1 whole/history.csv | cut -d, -f2) steps, not 120"
+multiples "$name" whole 0.2 0.1
+
+# Resumed between two rows, at a row, at a state
+for last in 7 63 70 98; do
+  cp -r whole cut
+  for file in cut/checkpoint_*.h5; do
+    [ "$(basename "$file" .h5 | sed 's/checkpoint_0*//')" -le $last ] || rm "$file"
+  done
+  expect "resumed at step $last" 0 "$talus" run --resume cut --quiet
+  multiples "$name" cut 0.2 0.1
+  cmp -s whole/history.csv cut/history.csv || fail "$name: another history"
+  [ "$(ls whole/*.hdf | wc -l)" -eq "$(ls cut/*.hdf | wc -l)" ] || fail "$name: $(ls cut/*.hdf | wc -l) states"
+  rm -r cut
+done
+
+# Rows and states by steps
+slider 0.05 '{steps: 6}' '{steps: 4}' >case.yaml
+expect "by steps" 0 "$talus" run case.yaml --out steps --quiet
+[ "$(cut -d, -f2 steps/history.csv | tr '\n' ' ')" = 'step 0 4 8 12 16 20 24 ' ] || fail "$name: rows"
+[ "$(grep -c '"name"' steps/points.hdf.series)" -eq 5 ] || fail "$name: states"
+
+finish
