@@ -45,7 +45,7 @@ FILE *file_open_read(const char *path)
   FILE *in = NULL;
   const int fd = open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK);
   if (fd < 0) return NULL;
-  int error = fstat(fd, &status) ? errno : S_ISDIR(status.st_mode) ? EISDIR : S_ISREG(status.st_mode) ? 0 : ESPIPE;
+  int error = fstat(fd, &status) ? errno : S_ISDIR(status.st_mode) ? EISDIR : S_ISREG(status.st_mode) ? 0 : ENOTSUP;
   if (!error && !(in = fdopen(fd, "r"))) error = errno;
   if (error) close(fd), errno = error;
   return in;
@@ -98,8 +98,18 @@ int file_finish_stream(FILE *file)
   return error;
 }
 
+/* A device, a pipe, a socket: for root a file could take its place. */
+static PetscBool IsSpecial(const char *path)
+{
+  struct stat status;
+  return !lstat(path, &status) && !S_ISREG(status.st_mode) && !S_ISLNK(status.st_mode) && !S_ISDIR(status.st_mode)
+           ? PETSC_TRUE
+           : PETSC_FALSE;
+}
+
 int file_commit(const char *unfinished, const char *path, int error)
 {
+  if (!error && IsSpecial(path)) error = EEXIST;
   if (!error && rename(unfinished, path)) error = errno;
   if (error) unlink(unfinished);
   return error;

@@ -3,7 +3,8 @@
 #include <hdf5.h>
 #include <petscsys.h>
 
-/* Its rows, and how many numbers each has. -1: not there, or not what talus writes: numbers in a list or a table, in one piece, within the
+/* Its rows, and how many numbers each has. -1: not there, or not what talus writes: numbers in a list or a table, in
+ * one piece, within the
  * `bytes` that the file has. */
 PetscInt64 dataset_rows(hid_t root, const char *name, PetscInt64 bytes, PetscInt *components);
 /* Exactly n numbers. */

@@ -19,7 +19,8 @@ PetscInt VtkReadCells(const VtkFile *file);
 PetscReal VtkReadTime(const VtkFile *file);
 PetscInt VtkReadFields(const VtkFile *file, const VtkFieldInfo **fields); /* of the points */
 
-/* These return PETSC_ERR_FILE_UNEXPECTED plainly, with a reason and nothing to free, if the file is damaged there. What they give is to be
+/* These return PETSC_ERR_FILE_UNEXPECTED plainly, with a reason and nothing to free, if the file is damaged there.
+ * What they give is to be
  * freed with PetscFree. */
 PetscErrorCode VtkReadCoordinates(VtkFile *file, PetscReal **x, char reason[256]); /* points x 3 */
 /* points x components of one of VtkReadFields */

@@ -2,6 +2,7 @@
  * why not. */
 #include "test_output.h"
 #include <math.h>
+#include <sys/stat.h>
 #include "io/figure.h"
 #include "io/plot.h"
 #include "io/plot_field.h"
@@ -282,7 +283,7 @@ static void test_state_in_space(void **state)
 
 static void test_histories(void **state)
 {
-  const char *const names[] = {"tip of/beam", "mass"}, *const units[] = {"m", "kg"};
+  const char *const names[] = {"tip of/beam", "mass", "gone"}, *const units[] = {"m", "kg", "m"};
   char folder[64], picture[PETSC_MAX_PATH_LEN], path[256];
   int width, height;
   Diag *diag;
@@ -291,19 +292,20 @@ static void test_histories(void **state)
   TestFolder(folder);
   assert_int_equal(DiagCreate(&diag), 0);
   assert_int_equal(RunDirCreate(PETSC_COMM_WORLD, folder, PETSC_FALSE, PETSC_TRUE, NULL, diag, &dir), 0);
-  assert_int_equal(HistoryOpen(dir, 2, names, units), 0);
+  assert_int_equal(HistoryOpen(dir, 3, names, units), 0);
   for (PetscInt i = 0; i <= 50; ++i)
-    assert_int_equal(HistoryWrite(dir, 0.1 * i, i, (PetscReal[]){sin(0.1 * i), 8000}), 0);
+    assert_int_equal(HistoryWrite(dir, 0.1 * i, i, (PetscReal[]){sin(0.1 * i), 8000, NAN}), 0);
   assert_int_equal(RunDirDestroy(&dir), 0);
   assert_int_equal(DiagDestroy(&diag), 0);
   WriteState(folder, 2, 0, 0);
   const PlotOptions options = {.run = folder, .up = 2};
   char *text = Plot(&options, picture);
-  assert_string_equal(text, "");
+  assert_string_equal(text, "warning: the measure 'gone' has no value in any row: it is not drawn\n");
   snprintf(path, sizeof path, "%s/pictures/history_tip_of_beam.png", folder);
   assert_true(CheckPng(path, &width, &height) > 5000);
   snprintf(path, sizeof path, "%s/pictures/history_mass.png", folder);
   CheckPng(path, &width, &height);
+  assert_false(TestExists(folder, "pictures/history_gone.png"));
   free(text);
   TestRemove(folder);
 }
@@ -321,6 +323,7 @@ static void Refused(const PlotOptions *options, const char *word)
 static void test_mistakes(void **state)
 {
   char folder[64], picture[PETSC_MAX_PATH_LEN], damaged[128];
+  struct stat status;
   PlotOptions options = {.run = folder, .up = 2};
   (void)state;
   TestFolder(folder);
@@ -335,6 +338,11 @@ static void test_mistakes(void **state)
   options.component = NULL;
   options.out = "/proc/no/such.png";
   Refused(&options, "gnuplot could not draw");
+  snprintf(damaged, sizeof damaged, "%s/pipe", folder);
+  assert_int_equal(mkfifo(damaged, 0600), 0);
+  options.out = damaged; /* root's /dev/full became a picture */
+  Refused(&options, "cannot write the picture");
+  assert_true(!lstat(damaged, &status) && S_ISFIFO(status.st_mode));
   options.out = NULL;
   options.n_times = 1;
   options.times[0] = 0.1;
