@@ -87,8 +87,9 @@ typedef void (*TalusBodyForce)(void *context, const double X[3], double t, doubl
  * @brief Start MPI and PETSc, unless the program did. Collective over all ranks.
  *
  * PETSc's options (`-snes_monitor`, `-log_view`) are read from the command line and PETSC_OPTIONS, not from
- * `petscrc` and `.petscrc`: a working directory must not set them (`-options_file FILE` reads one). A program that calls PetscInitialize itself calls neither this nor TalusFinalize(); one that has
- * only called MPI_Init calls both.
+ * `petscrc` and `.petscrc`: a working directory must not set them (`-options_file FILE` reads one). A program
+ * that calls PetscInitialize itself calls neither this nor TalusFinalize(); one that has only called MPI_Init
+ * calls both.
  * @param argc  of main, or NULL
  * @param argv  of main, or NULL
  * @return #TALUS_OK, or #TALUS_ERROR_STATE if PETSc runs already or has been finalised

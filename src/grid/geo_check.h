@@ -2,7 +2,7 @@
 #pragma once
 #include "base/diag.h"
 
-/* Read a .geo, what Gmsh reads with it (its options beside it, files named in Include and Merge, and those that these name), and tell of the
- * first thing that runs programs, writes files or cannot be told, with its file, line and column. Not collective. PETSC_TRUE in *safe: nothing
- * was found. */
+/* Read a .geo, what Gmsh reads with it (its options beside it, files named in Include and Merge, and those that these
+ * name), and tell of the first thing that runs programs, writes files or cannot be told, with its file, line and
+ * column. Not collective. PETSC_TRUE in *safe: nothing was found. */
 PetscErrorCode GeoCheck(const char *path, Diag *diag, PetscBool *safe);

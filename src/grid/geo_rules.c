@@ -16,7 +16,8 @@ typedef struct {
   const char *reason;
 } Rule;
 
-/* From the grammar of Gmsh 4.8 to 4.13 (Gmsh.y); its options with names of files are written or removed when Gmsh ends. */
+/* From the grammar of Gmsh 4.8 to 4.13 (Gmsh.y); its options with names of files are written or removed when Gmsh
+ * ends. */
 static const Rule rules[] = {{"SystemCall", RULE_COMMAND, "runs a program"},
                              {"NonBlockingSystemCall", RULE_COMMAND, "runs a program"},
                              {"System", RULE_COMMAND, "runs a program"},

@@ -1,8 +1,9 @@
 /* A script of Gmsh (.geo) as text whose characters are known to be code, texts in quotes or comments.
  *
- * Gmsh itself does not always agree with what a script says on paper: the part that skips over an If or a Macro swallows quotes,
- * For and Call go on at the start of a line or of a piece of it, and a last line without its end is read in another way. A script from somebody
- * else may make use of that. So texts and comments count as harmless only where Gmsh cannot lose its place. */
+ * Gmsh itself does not always agree with what a script says on paper: the part that skips over an If or a Macro
+ * swallows quotes, For and Call go on at the start of a line or of a piece of it, and a last line without its end is
+ * read in another way. A script from somebody else may make use of that. So texts and comments count as harmless only
+ * where Gmsh cannot lose its place. */
 #pragma once
 #include <petscsys.h>
 

@@ -20,6 +20,7 @@ PetscErrorCode GnuplotBegin(GnuplotScript *script, const char *png, int width, i
           "set encoding utf8\nset terminal pngcairo noenhanced truecolor size %d,%d font 'DejaVu Sans,%d'\n", width,
           height, height >= 600 ? 13 : 12);
   PetscCall(PetscSNPrintf(unfinished, sizeof unfinished, "%s" FILE_UNFINISHED, png));
+  (void)unlink(unfinished); /* a link would be written through */
   fputs("set output ", script->out);
   gnuplot_quote(script->out, unfinished);
   fputc('\n', script->out);

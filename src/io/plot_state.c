@@ -2,6 +2,7 @@
 #include <errno.h>
 #include <math.h>
 #include <string.h>
+#include <sys/stat.h>
 #include "io/figure.h"
 #include "io/plot.h"
 #include "io/plot_scene.h"
@@ -12,9 +13,12 @@ PetscBool plot_folder(const char *run, Diag *diag)
 {
   char folder[FILE_PATH];
   snprintf(folder, sizeof folder, "%s/pictures", run);
+  struct stat info;
   const int error = file_make_folders(folder);
+  const PetscBool link = !error && !lstat(folder, &info) && S_ISLNK(info.st_mode) ? PETSC_TRUE : PETSC_FALSE;
   if (error) DiagError(diag, NULL, "cannot create the folder '%s': %s", folder, strerror(error));
-  return error ? PETSC_FALSE : PETSC_TRUE;
+  if (link) DiagError(diag, NULL, "'%s' is a link: the pictures would go elsewhere", folder);
+  return error || link ? PETSC_FALSE : PETSC_TRUE;
 }
 
 void plot_file_name(char *name)

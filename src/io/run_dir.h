@@ -16,8 +16,8 @@
 typedef struct RunDir RunDir;
 
 /* Collective. Refuses a directory that holds a run unless `force` (which removes that run's files, and
- * nothing else), one that holds somebody's files of the same names (io/run_dir_mark.h), and one that cannot be written: a
- * diagnostic, *dir stays NULL. quiet: nothing on the
+ * nothing else), one that holds somebody's files of the same names (io/run_dir_mark.h), and one that cannot
+ * be written: a diagnostic, *dir stays NULL. quiet: nothing on the
  * terminal; log: the file of --log, or NULL for log.txt. */
 PetscErrorCode RunDirCreate(MPI_Comm comm, const char *path, PetscBool force, PetscBool quiet, const char *log,
                             Diag *diag, RunDir **dir);

@@ -119,7 +119,8 @@ int file_write_text(const char *path, const char *text)
 {
   char unfinished[FILE_PATH];
   snprintf(unfinished, sizeof unfinished, "%s" FILE_UNFINISHED, path);
-  const int fd = open(unfinished, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+  (void)unlink(unfinished); /* left by a run that was killed; a link would be written through */
+  const int fd = open(unfinished, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
   if (fd < 0) return errno;
   int error = file_write_at(fd, text, strlen(text), 0);
   const int closing = file_finish(fd);

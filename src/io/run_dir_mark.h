@@ -1,7 +1,7 @@
 /* Whose a directory is: talus signs those that it fills, and touches nothing in others.
  *
- * The signature is a file of its own, written before all else. A directory that an earlier version filled has none; it is known by its
- * version.txt, in which only talus names itself so. Functions of one process. */
+ * The signature is a file of its own, written before all else. A directory that an earlier version filled has none; it
+ * is known by its version.txt, in which only talus names itself so. Functions of one process. */
 #pragma once
 #include <petscsys.h>
 
@@ -14,7 +14,8 @@ PetscBool run_dir_is_signed(const char *path);
 /* Put the signature there; 0 or an errno. */
 int run_dir_sign(const char *path);
 
-/* Files that a run would write and that are there: their number, and the first two in words ("a.txt, b.txt and 3 more"). */
+/* Files that a run would write and that are there: their number, and the first two in words ("a.txt, b.txt and 3
+ * more"). */
 PetscInt run_dir_in_the_way(const char *path, size_t size, char *names);
 /* Is the file one of these? */
 PetscBool run_dir_holds_as_its_own(const char *path, const char *file);

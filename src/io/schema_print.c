@@ -216,7 +216,15 @@ static void PrintMarkdown(FILE *out)
     "This reference is the output of `talus schema --markdown`. A case file is YAML; SI units, angles in degrees; "
     "tension positive.\n"
     "Vectors are `[x, y]` in two dimensions and `[x, y, z]` in three. Any value can be changed on the command line:\n"
-    "`talus run case.yaml --set grid.size=0.25 --set 'bodies[0].points_per_cell=9'`.\n",
+    "`talus run case.yaml --set grid.size=0.25 --set 'bodies[0].points_per_cell=9'`.\n\n"
+    "A case from somebody else computes and does nothing more. Its `petsc` block may choose solvers, set tolerances "
+    "and "
+    "print on the\nterminal; all other options of PETSc belong on the command line. A `.geo` that runs programs or "
+    "writes "
+    "files (`SystemCall`, `Save`,\n`Print`, `Printf > file`, `OnelabRun`, ...), also through `Include` and `Merge`, is "
+    "refused unless `talus run`, `check` or `verify`\ngets `--trust`; that is said on the command line only and stands "
+    "in "
+    "no file.\n",
     out);
   for (PetscInt i = 0; i < all.n; ++i) MarkdownTable(out, all.table[i]);
   MarkdownLaws(out);

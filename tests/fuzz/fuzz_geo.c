@@ -25,9 +25,10 @@ static void fuzz_one(const uint8_t *data, size_t n)
   const int fd = fuzz_file(data, n, path);
   FUZZ_CALL(GeoScriptRead(path, &script, &finding, &why));
   if (why || script.n != n) abort();
-  if (!finding.reason) geo_find_action(&script, &finding);
+  const PetscBool is_text = finding.reason ? PETSC_FALSE : PETSC_TRUE;
+  if (is_text) geo_find_action(&script, &finding);
   if (finding.reason && finding.at + finding.width > n) abort();
-  for (size_t at = 0, before = 0; geo_next_inclusion(&script, &at, &inclusion); before = at)
+  for (size_t at = 0, before = 0; is_text && geo_next_inclusion(&script, &at, &inclusion); before = at)
     if (at <= before || inclusion.at + inclusion.width > n || (!inclusion.problem && !inclusion.name[0])) abort();
   FUZZ_CALL(GeoScriptFree(&script));
   FUZZ_CALL(DiagCreate(&diag));

@@ -1,4 +1,5 @@
-/* Scripts of Gmsh that act are refused with their place; those that only draw and mesh pass, whatever their texts and comments say. */
+/* Scripts of Gmsh that act are refused with their place; those that only draw and mesh pass, whatever their texts and
+ * comments say. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>

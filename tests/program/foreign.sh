@@ -68,6 +68,18 @@ for f in log.txt history.csv.tmp-unfinished case.yaml.tmp-unfinished; do
   rm -r led
 done
 
+# Pictures
+if command -v gnuplot >/dev/null; then
+  cp -r run led && rm -rf led/pictures && ln -s ../elsewhere led/pictures
+  untouched "pictures through a link" 2 "$talus" plot led
+  says err.txt "'led/pictures' is a link: the pictures would go elsewhere"
+  rm led/pictures && mkdir led/pictures
+  for f in history_tip history_weight state_displacement_last; do ln -s ../../elsewhere/precious led/pictures/$f.png.tmp-unfinished; done
+  expect "pictures" 0 "$talus" plot led
+  [ "$(cat elsewhere/precious)" = precious ] || fail "$name: a link was written through"
+  rm -r led
+fi
+
 # The log
 printf 'Point(1) = {0, 0, 0};\n' >mesh.geo && echo 'my notes' >notes
 for log in case.yaml mesh.geo notes; do
