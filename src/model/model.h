@@ -108,7 +108,8 @@ typedef struct Model {
   PetscBool symmetric;     /* are all tangents symmetric? */
   PetscReal courant_speed; /* largest sqrt(M / density), m/s */
   PetscReal external_work, boundary_work, damped_energy, transfer_energy, start_energy; /* see Energies */
-  PetscReal most_energy; /* that had come in, by the start, loads, gravity and prescribed motion, at any time, J */
+  PetscReal most_energy;  /* that had come in, by the start, loads, gravity and prescribed motion, at any time, J */
+  PetscReal least_energy; /* that is more than round-off, J */
   Outside outside;
   MeasureMemory *memory;   /* one per measure */
   LoadMemory *load_memory; /* one per load */

@@ -69,7 +69,10 @@ PetscErrorCode LossesLogStep(const Model *m, RunDir *dir, const StepReport *repo
   PetscFunctionReturn(0);
 }
 
-static PetscReal transfer_share(const Model *m) { return m->most_energy > 0 ? m->transfer_energy / m->most_energy : 0; }
+static PetscReal transfer_share(const Model *m)
+{
+  return m->most_energy > m->least_energy ? m->transfer_energy / m->most_energy : 0;
+}
 
 PetscErrorCode LossesLogEnd(const Model *m, RunDir *dir)
 {
@@ -90,7 +93,7 @@ PetscErrorCode LossesLogEnd(const Model *m, RunDir *dir)
                 "%.0f of %.6g kg in a step; that took %.6g J and momentum (%.6g, %.6g, %.6g) kg m/s",
                 (double)o->held, (double)o->first, (double)o->last, (double)o->held_most, (double)o->held_most_mass,
                 (double)o->energy, (double)o->momentum[0], (double)o->momentum[1], (double)o->momentum[2]));
-  if (m->most_energy > 0)
+  if (m->most_energy > m->least_energy)
     PetscCall(
       RunDirLog(dir,
                 "transfer = %.6g J between points and grid, %.2g %% of the %.6g J that came in (start, loads, gravity, "

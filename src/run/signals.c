@@ -16,6 +16,7 @@ static const struct {
 
 /* A signal handler can reach nothing but a global. */
 static volatile sig_atomic_t asked_by;
+/* Signals are the process's: what was there, to be put back. */
 static struct sigaction before[N_WATCHED];
 
 static void on_signal(int number)

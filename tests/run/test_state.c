@@ -52,6 +52,7 @@ static void same_models(const Model *m, const Model *n)
   CHECK(m->time == n->time && m->control.next == n->control.next && m->step == n->step && m->cuts == n->cuts,
         "time or step differ");
   CHECK(m->external_work == n->external_work && m->transfer_energy == n->transfer_energy, "energies differ");
+  CHECK(m->most_energy == n->most_energy && !memcmp(&m->outside, &n->outside, sizeof m->outside), "losses differ");
   CHECK(m->total_iterations == n->total_iterations, "other iterations");
   CHECK(m->balance.repartitions == n->balance.repartitions && m->balance.reached == n->balance.reached,
         "the grid was shared in another way");
