@@ -33,8 +33,8 @@ typedef struct {
   PetscReal where[3]; /* the middle of those that went last, m */
 } LoadMemory;
 
-/* What has become of points that left the grid, since the start. All real numbers, counts too: it goes into checkpoints as one row, as do the
- * above from `ended` on. */
+/* What has become of points that left the grid, since the start. All real numbers, counts too: it goes into checkpoints
+ * as one row, as do the above from `ended` on. */
 typedef struct {
   PetscReal removed, mass;             /* taken out: points, kg */
   PetscReal held;                      /* times that a point was put back on the boundary */

@@ -11,7 +11,8 @@ static const char *place(PetscInt dim, const PetscReal *x, char text[80])
   return text;
 }
 
-/* Has a count that grew by `more` at least doubled, or passed a power of two? So a thousand points take ten lines, not a thousand. */
+/* Has a count that grew by `more` at least doubled, or passed a power of two? So a thousand points take ten lines, not
+ * a thousand. */
 static PetscBool is_worth_a_line(PetscReal count, PetscReal more)
 {
   PetscReal power = 1;

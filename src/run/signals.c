@@ -1,8 +1,8 @@
 #include "run/signals.h"
 #include <signal.h>
 
-/* What asks a run to leave. A person who sends one of the first twice insists; the others come again by themselves: a batch system's warnings,
- * SIGXCPU every second, SIGHUP from shell and terminal. */
+/* What asks a run to leave. A person who sends one of the first twice insists; the others come again by themselves: a
+ * batch system's warnings, SIGXCPU every second, SIGHUP from shell and terminal. */
 static const struct {
   int number;
   PetscBool insists;  /* does the second one end the program at once? */
