@@ -57,9 +57,9 @@ typedef struct {
 } HistoryMark;
 /* Collective. Of the history as far as it is written. */
 PetscErrorCode HistoryGetMark(const RunDir *dir, HistoryMark *mark);
-/* Resume: keep the rows up to that of `step`, which must be there unless it is negative, and drop the others. A
- * history of other measures, or one that has lost rows, or whose kept rows do not have the mark `was` (NULL: not known), is a diagnostic, and
- * the file stays as it is. */
+/* Resume: keep the rows up to that of `step`, which must be there unless it is negative, and drop the others. A history
+ * of other measures, or one that has lost rows, or whose kept rows do not have the mark `was` (NULL: not known), is a
+ * diagnostic, and the file stays as it is. */
 PetscErrorCode HistoryOpenFrom(RunDir *dir, PetscInt n, const char *const *names, const char *const *units,
                                PetscInt step, const HistoryMark *was, Diag *diag);
 /* Rows on the disk, not only with the system: what a checkpoint counts on. */
@@ -70,7 +70,8 @@ PetscErrorCode HistoryWrite(RunDir *dir, PetscReal time, PetscInt step, const Pe
  * Errors as for the history. */
 PetscErrorCode RunDirWriteText(RunDir *dir, const char *name, const char *text);
 
-/* Collective. Is the directory still there under its name? If it was removed, renamed or replaced, errors as for the history. */
+/* Collective. Is the directory still there under its name? If it was removed, renamed or replaced, errors as for the
+ * history. */
 PetscErrorCode RunDirPresent(RunDir *dir);
 
 /* After PETSC_ERR_FILE_WRITE, on every rank: which file could not be written, and why. */

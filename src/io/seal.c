@@ -28,7 +28,7 @@ static int sample(int fd, PetscInt64 bytes, PetscInt64 *crc)
   uLong sum = crc32(0, Z_NULL, 0);
   int error = 0;
   for (PetscInt64 k = 0; k < SAMPLES && !error; ++k) {
-    const PetscInt64 at = whole ? k * SAMPLE : (bytes - SAMPLE) / (SAMPLES - 1) * k, n = PetscMin(SAMPLE, bytes - at);
+    const PetscInt64 at = whole ? k * SAMPLE : (bytes - SAMPLE) * k / (SAMPLES - 1), n = PetscMin(SAMPLE, bytes - at);
     if (n <= 0) break;
     error = read_at(fd, block, (size_t)n, (off_t)at);
     sum = crc32(sum, block, (uInt)n);

@@ -94,10 +94,12 @@ static PetscReal points_work(const Model *m)
   return sum;
 }
 
+#define STRAIN_OF_ROUND_OFF 1e-11
+
 PetscErrorCode EnergyStart(Model *m)
 {
   static const PetscReal identity[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
-  PetscReal state[LAW_MAX_STATE], tau[6], local;
+  PetscReal state[LAW_MAX_STATE], tau[6], local[2] = {0, 0}, sum[2];
 
   PetscFunctionBeginUser;
   for (PetscInt p = 0; p < m->points->n; ++p) {
@@ -112,10 +114,12 @@ PetscErrorCode EnergyStart(Model *m)
       point_set_tau(m->points, p, tau);
     }
     m->points->real[POINT_WORK][p] = m->points->real[POINT_VOLUME][p] * model_point_energy(m, p);
+    local[1] += PetscSqr(STRAIN_OF_ROUND_OFF) * m->points->real[POINT_VOLUME][p] * material->elastic.shear;
   }
-  local = points_kinetic(m) + points_work(m);
-  PetscCall(MPIU_Allreduce(&local, &m->start_energy, 1, MPIU_REAL, MPI_SUM, m->comm));
-  m->most_energy = m->start_energy;
+  local[0] = points_kinetic(m) + points_work(m);
+  PetscCall(MPIU_Allreduce(local, sum, 2, MPIU_REAL, MPI_SUM, m->comm));
+  m->start_energy = m->most_energy = sum[0];
+  m->least_energy = sum[1];
   PetscFunctionReturn(0);
 }
 

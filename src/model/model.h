@@ -33,8 +33,8 @@ typedef struct {
   PetscReal where[3]; /* the middle of those that went last, m */
 } LoadMemory;
 
-/* What has become of points that left the grid, since the start. All real numbers, counts too: it goes into checkpoints as one row, as do the
- * above from `ended` on. */
+/* What has become of points that left the grid, since the start. All real numbers, counts too: it goes into checkpoints
+ * as one row, as do the above from `ended` on. */
 typedef struct {
   PetscReal removed, mass;             /* taken out: points, kg */
   PetscReal held;                      /* times that a point was put back on the boundary */
@@ -119,7 +119,8 @@ typedef struct Model {
   PetscBool symmetric;     /* are all tangents symmetric? */
   PetscReal courant_speed; /* largest sqrt(M / density), m/s */
   PetscReal external_work, boundary_work, damped_energy, transfer_energy, start_energy; /* see Energies */
-  PetscReal most_energy; /* that had come in, by the start, loads, gravity and prescribed motion, at any time, J */
+  PetscReal most_energy;  /* that had come in, by the start, loads, gravity and prescribed motion, at any time, J */
+  PetscReal least_energy; /* that is more than round-off, J */
   Outside outside;
   MeasureMemory *memory;   /* one per measure */
   LoadMemory *load_memory; /* one per load */

@@ -1,4 +1,5 @@
-/* `outside: keep-on-boundary`: points that left the grid go back to the nearest position inside. Followers do not: they only remember it. */
+/* `outside: keep-on-boundary`: points that left the grid go back to the nearest position inside. Followers do not: they
+ * only remember it. */
 #include "points/migrate.h"
 
 /* A position outside the grid, on its way to the nearest one inside. */

@@ -26,7 +26,8 @@ static inline PetscBool position_is_finite(PetscInt dim, const PetscReal *x)
   return (PetscBool)(sum == 0);
 }
 
-/* Point p is on its way out: before it is dropped or put back, and (gone = -1) after it was put back with what it has kept. */
+/* Point p is on its way out: before it is dropped or put back, and (gone = -1) after it was put back with what it has
+ * kept. */
 static inline void tally_outside(Points *points, PetscInt p, PetscReal gone)
 {
   OutsideTally *t = &points->outside;

@@ -22,9 +22,9 @@ typedef enum {
   POINT_XI,    /* reference position in the cell: dim */
   POINT_STATE, /* the law's stored state: the largest n_state of the case */
   POINT_PRESSURE, /* the mixed formulation's pressure at the point, tension positive, Pa: 1 there, otherwise 0 components */
-  POINT_FORCE, /* dead force of a load carrier, N: dim (0 components for material points) */
-  POINT_OVERHANG, /* of what goes with the material: the way from its position, the nearest in the grid, to where it really is, m: dim (0
-                   * components for material points) */
+  POINT_FORCE,    /* dead force of a load carrier, N: dim (0 components for material points) */
+  POINT_OVERHANG, /* of followers: from their position, the nearest in the grid, to where they really are, m: dim (others:
+                   * 0 components) */
   POINT_N_REAL
 } PointReal;
 
@@ -51,7 +51,8 @@ typedef struct Points {
 
 /* n_state: components of POINT_STATE; force: components of POINT_FORCE. */
 PetscErrorCode PointsCreate(PetscInt dim, PetscInt n_state, PetscInt n_force, Points **points);
-/* Followers: points without mass that go with the material, tracers (n_force = 0) and carriers of loads. They may leave the grid with it. */
+/* Followers: points without mass that go with the material, tracers (n_force = 0) and carriers of loads. They may leave
+ * the grid with it. */
 PetscErrorCode FollowersCreate(PetscInt dim, PetscInt n_force, Points **points);
 PetscErrorCode PointsDestroy(Points **points);
 /* Make room for `capacity` points; existing ones stay. */
@@ -132,10 +133,11 @@ typedef struct {
 } LostPoint;
 
 /* Find every point's cell again after it moved, send those that left this rank's part to their new owner (messages only
- * among ranks whose cells may hold them), and treat those outside the grid by the policy. Collective.
- * lost (n_lost of them, over all ranks on each, at most 16 kept) describes what left the grid; PetscFree it. Points kept
- * on the boundary do not count; of followers, which go on outside, it is their nearest position that is kept there. A position that is no number is lost under every policy: it is listed first, and stays
- * in the table with cell -1. points->outside says what was taken out or put back. */
+ * among ranks whose cells may hold them), and treat those outside the grid by the policy. Collective. lost (n_lost of
+ * them, over all ranks on each, at most 16 kept) describes what left the grid; PetscFree it. Points kept on the
+ * boundary do not count; of followers, which go on outside, it is their nearest position that is kept there. A position
+ * that is no number is lost under every policy: it is listed first, and stays in the table with cell -1.
+ * points->outside says what was taken out or put back. */
 PetscErrorCode PointsRelocate(Points *points, const Grid *grid, OutsidePolicy policy, PetscInt *n_lost,
                               LostPoint **lost);
 

@@ -11,7 +11,8 @@ static const char *place(PetscInt dim, const PetscReal *x, char text[80])
   return text;
 }
 
-/* Has a count that grew by `more` at least doubled, or passed a power of two? So a thousand points take ten lines, not a thousand. */
+/* Has a count that grew by `more` at least doubled, or passed a power of two? So a thousand points take ten lines, not
+ * a thousand. */
 static PetscBool is_worth_a_line(PetscReal count, PetscReal more)
 {
   PetscReal power = 1;
@@ -69,7 +70,10 @@ PetscErrorCode LossesLogStep(const Model *m, RunDir *dir, const StepReport *repo
   PetscFunctionReturn(0);
 }
 
-static PetscReal transfer_share(const Model *m) { return m->most_energy > 0 ? m->transfer_energy / m->most_energy : 0; }
+static PetscReal transfer_share(const Model *m)
+{
+  return m->most_energy > m->least_energy ? m->transfer_energy / m->most_energy : 0;
+}
 
 PetscErrorCode LossesLogEnd(const Model *m, RunDir *dir)
 {
@@ -90,7 +94,7 @@ PetscErrorCode LossesLogEnd(const Model *m, RunDir *dir)
                 "%.0f of %.6g kg in a step; that took %.6g J and momentum (%.6g, %.6g, %.6g) kg m/s",
                 (double)o->held, (double)o->first, (double)o->last, (double)o->held_most, (double)o->held_most_mass,
                 (double)o->energy, (double)o->momentum[0], (double)o->momentum[1], (double)o->momentum[2]));
-  if (m->most_energy > 0)
+  if (m->most_energy > m->least_energy)
     PetscCall(
       RunDirLog(dir,
                 "transfer = %.6g J between points and grid, %.2g %% of the %.6g J that came in (start, loads, gravity, "

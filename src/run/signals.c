@@ -1,8 +1,8 @@
 #include "run/signals.h"
 #include <signal.h>
 
-/* What asks a run to leave. A person who sends one of the first twice insists; the others come again by themselves: a batch system's warnings,
- * SIGXCPU every second, SIGHUP from shell and terminal. */
+/* What asks a run to leave. A person who sends one of the first twice insists; the others come again by themselves: a
+ * batch system's warnings, SIGXCPU every second, SIGHUP from shell and terminal. */
 static const struct {
   int number;
   PetscBool insists;  /* does the second one end the program at once? */
@@ -16,6 +16,7 @@ static const struct {
 
 /* A signal handler can reach nothing but a global. */
 static volatile sig_atomic_t asked_by;
+/* Signals are the process's: what was there, to be put back. */
 static struct sigaction before[N_WATCHED];
 
 static void on_signal(int number)

@@ -1,5 +1,5 @@
-/* SIGINT, SIGTERM, SIGQUIT, SIGHUP, SIGUSR1, SIGUSR2 and SIGXCPU ask a run to write its state and leave. A SIGHUP that was ignored when the
- * run began stays ignored (nohup). */
+/* SIGINT, SIGTERM, SIGQUIT, SIGHUP, SIGUSR1, SIGUSR2 and SIGXCPU ask a run to write its state and leave. A SIGHUP that
+ * was ignored when the run began stays ignored (nohup). */
 #pragma once
 #include <petscsys.h>
 

@@ -1,4 +1,5 @@
-/* What leaves the grid: tracers and loads go with their body, points are counted with all that they take along, and what is empty says so. */
+/* What leaves the grid: tracers and loads go with their body, points are counted with all that they take along, and
+ * what is empty says so. */
 #include "case_builder.h"
 
 static PetscReal measure(Model *m, PetscInt index)
@@ -8,7 +9,8 @@ static PetscReal measure(Model *m, PetscInt index)
   return value;
 }
 
-/* A bar of 4 m x 1 m in x >= 0 that slides on y = 0, pulled at its end; the grid ends with the bar, or `more` beyond it. nu = 0. */
+/* A bar of 4 m x 1 m in x >= 0 that slides on y = 0, pulled at its end; the grid ends with the bar, or `more` beyond
+ * it. nu = 0. */
 static void bar(Bench *b, PetscReal more, PetscReal traction)
 {
   bench_init(b, "mpm", CELL_QUADRILATERAL, 0);

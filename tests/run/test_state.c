@@ -55,6 +55,7 @@ static void same_models(const Model *m, const Model *n)
           m->boundary_work == n->boundary_work && m->damped_energy == n->damped_energy &&
           m->start_energy == n->start_energy,
         "energies differ");
+  CHECK(m->most_energy == n->most_energy && !memcmp(&m->outside, &n->outside, sizeof m->outside), "losses differ");
   CHECK(m->total_iterations == n->total_iterations, "other iterations");
   CHECK(m->balance.repartitions == n->balance.repartitions && m->balance.reached == n->balance.reached,
         "the grid was shared in another way");
