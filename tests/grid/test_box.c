@@ -313,6 +313,44 @@ static void selection(void **state)
   CALL(GridDestroy(&grid));
 }
 
+/* A plane is named by decimals, which the lines of the grid meet but for the last digit. */
+static void selection_by_decimals(void **state)
+{
+  static const PetscReal plane[] = {0, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7};
+  Case c = box_case(CELL_QUADRILATERAL, DIAGONAL_RIGHT, 7, 3, 0);
+  PetscInt exact = 0;
+  (void)state;
+  c.grid.min[0] = 0;
+  c.grid.max[0] = 0.7;
+  Grid *grid = make_grid(&c, NULL, NULL);
+  for (int k = 0; k < 8; ++k) {
+    const Selector on = {.has = {PETSC_TRUE}, .min = {plane[k]}, .max = {plane[k]}};
+    assert_int_equal(selected_owned(grid, &on), 4);
+    for (PetscInt i = 0; i < grid->n_owned; ++i) exact += grid->x[2 * i] == plane[k];
+  }
+  assert_true(count_over_ranks(exact) < 8 * 4); /* else this tests nothing */
+  CALL(GridDestroy(&grid));
+}
+
+/* A position on a line between cells belongs to the upper one, on even and on graded grids. */
+static void lines_belong_to_upper_cells(void **state)
+{
+  (void)state;
+  for (int graded = 0; graded < 2; ++graded) {
+    Case c = box_case(CELL_QUADRILATERAL, DIAGONAL_RIGHT, 9, 5, 0);
+    if (graded) c.grid.grading[0] = 4.0, c.grid.grading[1] = 0.5;
+    Grid *grid = make_grid(&c, NULL, NULL);
+    for (PetscInt i = 0; i < grid->n_nodes; ++i) {
+      const PetscReal *x = grid->x + 2 * i;
+      PetscReal xi[2];
+      const PetscInt cell = GridLocate(grid, x, -1, xi);
+      if (cell < 0) continue;
+      for (int d = 0; d < 2; ++d) assert_true(xi[d] == (x[d] == c.grid.max[d] ? 1 : -1));
+    }
+    CALL(GridDestroy(&grid));
+  }
+}
+
 static void bounds(void **state)
 {
   const Case c = box_case(CELL_TETRAHEDRON, DIAGONAL_RIGHT, 1, 1, 2);
@@ -364,6 +402,8 @@ int main(int argc, char **argv)
     cmocka_unit_test(partition_balance),
     cmocka_unit_test(partition_without_material),
     cmocka_unit_test(selection),
+    cmocka_unit_test(selection_by_decimals),
+    cmocka_unit_test(lines_belong_to_upper_cells),
     cmocka_unit_test(bounds),
     cmocka_unit_test(bad_boxes),
   };

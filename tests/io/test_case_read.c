@@ -321,10 +321,52 @@ static void YamlForms(void **state)
   CaseDestroy(&c);
 }
 
+/* Each component has its own place, in the plane and in space, for whatever is prescribed or acts. */
+static void Components(void **state)
+{
+  static const char space[] =
+    "kinematics: 3d\nmethod: mpm\nanalysis: {type: static, steps: 4}\n"
+    "grid: {box: {min: [0, 1, 2], max: [4, 6, 8]}, counts: [2, 3, 4]}\n"
+    "bodies:\n  - {name: beam, shape: {box: {min: [0, 1, 2], max: [2, 6, 8]}}, material: rubber, velocity: [1, 2, 3],\n"
+    "     spin: [4, 5, 6], spin_centre: [7, 8, 9]}\n" PLAIN_MATERIALS
+    "boundary:\n"
+    "  - {on: {x: 0}, displacement: {x: 0.1, y: 0.2, z: 0.3}}\n"
+    "  - {on: {y: 1}, velocity: {y: 0.5}}\n"
+    "  - {on: {z: [2, 3]}, fix: [z]}\n"
+    "  - {on: {y: 6}, rotation: {centre: [1, 2, 3], axis: [4, 5, 6], rate: 7}}\n"
+    "loads:\n  gravity: [1, 2, 3]\n"
+    "  tractions: [{on: {body: beam, x: 2}, value: [4, 5, 6]}]\n"
+    "  points: [{at: [0.1, 1.2, 2.3], force: [7, 8, 9]}]\n";
+  Case *c = read_good(space);
+  const MotionSpec *m = c->boundary;
+  (void)state;
+  for (int d = 0; d < 3; ++d) {
+    assert_int_equal(c->grid.counts[d], 2 + d);
+    ASSERT_NEAR(c->bodies[0].velocity[d], 1 + d, 0);
+    ASSERT_NEAR(c->bodies[0].spin[d], 4 + d, 0);
+    ASSERT_NEAR(c->bodies[0].spin_centre[d], 7 + d, 0);
+    ASSERT_NEAR(m[0].value[d], 0.1 * (1 + d), 1e-15);
+    assert_true(m[0].component[d]);
+    ASSERT_NEAR(m[1].value[d], d == 1 ? 0.5 : 0, 0);
+    assert_true(m[1].component[d] == (d == 1) && m[2].component[d] == (d == 2));
+    assert_true(m[0].on.has[d] == (d == 0) && m[1].on.has[d] == (d == 1) && m[2].on.has[d] == (d == 2));
+    ASSERT_NEAR(m[3].centre[d], 1 + d, 0);
+    ASSERT_NEAR(m[3].axis[d], 4 + d, 0);
+    ASSERT_NEAR(c->gravity[d], 1 + d, 0);
+    ASSERT_NEAR(c->loads[0].value[d], 4 + d, 0);
+    ASSERT_NEAR(c->loads[1].at[d], 0.1 + 1.1 * d, 1e-15);
+    ASSERT_NEAR(c->loads[1].value[d], 7 + d, 0);
+  }
+  ASSERT_NEAR(m[2].on.min[2], 2, 0);
+  ASSERT_NEAR(m[2].on.max[2], 3, 0);
+  CaseDestroy(&c);
+}
+
 int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {cmocka_unit_test(Values),
                                      cmocka_unit_test(MotionAndLoads),
+                                     cmocka_unit_test(Components),
                                      cmocka_unit_test(MeasuresAndOutput),
                                      cmocka_unit_test(Defaults),
                                      cmocka_unit_test(Mixed),
