@@ -7,8 +7,9 @@
  * nodes by mass, so that the momentum is the points' to round-off (docs/theory.md, "Reactions"). */
 #include "method/gmm.h"
 
-#define ENOUGH 0.1   /* of what was lacking may be left over */
+#define ENOUGH 0.3   /* of what was lacking may be left over */
 #define NOTHING 1e-3 /* of the motion itself may lack */
+#define LIGHT 0.5    /* of the mass of the nodes around: what has less waits for the rest */
 #define MAX_SWEEPS 30
 
 enum { VELOCITY, ACCELERATION, MOTIONS };
@@ -59,7 +60,8 @@ static PetscErrorCode Gather(const Carry *c, PetscReal share, const PetscReal *x
   PetscFunctionReturn(0);
 }
 
-/* The sums of the matrix's rows without signs: no eigenvalue over them is larger than 1. */
+/* Of each node: the sum of its row of the mass matrix without signs, over which no eigenvalue is larger than 1, and the mass of the nodes around
+ * it, times that sum. */
 static PetscErrorCode BoundOfMass(const Carry *c)
 {
   const Support *w = c->s->support;
@@ -67,12 +69,18 @@ static PetscErrorCode BoundOfMass(const Carry *c)
   PetscFunctionBeginUser;
   for (PetscInt p = 0; p < w->n_groups; ++p) {
     const PetscInt nn = support_nodes(w, p), *node = w->node + w->node_start[p];
-    const PetscReal *N = w->N + w->value_start[p];
-    PetscReal all = 0;
-    for (PetscInt I = 0; I < nn; ++I) all += PetscAbsReal(N[I]);
-    for (PetscInt I = 0; I < nn; ++I) c->bound[node[I]] += c->s->points->real[POINT_MASS][p] * PetscAbsReal(N[I]) * all;
+    const PetscReal *N = w->N + w->value_start[p], m = c->s->points->real[POINT_MASS][p];
+    PetscReal all = 0, around = 0;
+    for (PetscInt I = 0; I < nn; ++I) {
+      all += PetscAbsReal(N[I]);
+      around += PetscAbsReal(N[I]) * PetscMax(0, c->s->mass[node[I]]);
+    }
+    for (PetscInt I = 0; I < nn; ++I) {
+      c->bound[2 * node[I]] += m * PetscAbsReal(N[I]) * all;
+      c->bound[2 * node[I] + 1] += m * PetscAbsReal(N[I]) * around;
+    }
   }
-  PetscCall(GridSumToOwners(c->s->grid, 1, c->bound));
+  PetscCall(GridSumToOwners(c->s->grid, 2, c->bound));
   PetscFunctionReturn(0);
 }
 
@@ -83,11 +91,13 @@ static PetscErrorCode CarryCreate(const Stage *s, Carry *c)
   PetscFunctionBeginUser;
   *c = (Carry){.s = s, .dim = dim, .width = width, .size = size};
   PetscCall(PetscMalloc2(size, &c->x, size, &c->lack));
-  PetscCall(PetscCalloc4(size, &c->direction, size, &c->product, size, &c->inverse, n, &c->bound));
+  PetscCall(PetscCalloc4(size, &c->direction, size, &c->product, size, &c->inverse, 2 * n, &c->bound));
   PetscCall(BoundOfMass(c));
   for (PetscInt node = 0, i = 0; node < n; ++node)
     for (PetscInt d = 0; d < dim; ++d, ++i) {
-      const PetscReal inverse = !s->boundary->fixed[i] && c->bound[node] > 0 ? 1 / c->bound[node] : 0;
+      const PetscReal bound = c->bound[2 * node], around = c->bound[2 * node + 1];
+      const PetscBool counts = bound > 0 && s->mass[node] * bound > LIGHT * around ? PETSC_TRUE : PETSC_FALSE;
+      const PetscReal inverse = counts && !s->boundary->fixed[i] ? 1 / bound : 0;
       c->x[node * width + d] = s->v[i];
       c->x[node * width + dim + d] = s->a[i];
       c->inverse[node * width + d] = c->inverse[node * width + dim + d] = inverse;

@@ -122,7 +122,8 @@ static PetscErrorCode Start(Solve *s, const PetscReal *b, double *norm2)
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode SolveOnBlocks(KSP ksp, Blocks *m, const PetscReal *b, PetscReal *u)
+/* One solve from u = 0; *indefinite: conjugate gradients met a matrix that is not theirs, BiCGStab went on. */
+static PetscErrorCode SolveOnBlocks(KSP ksp, Blocks *m, const PetscReal *b, PetscReal *u, PetscBool *indefinite)
 {
   Solve s = {.m = m, .sweeps = block_sweeps(m->dim), .n = m->n * block_stride((int)m->dim)};
   double norm2;
@@ -138,10 +139,45 @@ static PetscErrorCode SolveOnBlocks(KSP ksp, Blocks *m, const PetscReal *b, Pets
     PetscFunctionReturn(0);
   }
   PetscCall(Start(&s, b, &norm2));
-  if (m->symmetric) PetscCall(ConjugateGradients(ksp, &s, norm2));
-  if (blocks_are_indefinite(ksp)) PetscCall(Start(&s, b, &norm2));
+  if (m->symmetric && !*indefinite) PetscCall(ConjugateGradients(ksp, &s, norm2));
+  if (blocks_are_indefinite(ksp)) {
+    *indefinite = PETSC_TRUE;
+    PetscCall(Start(&s, b, &norm2));
+  }
   if (!ksp->reason) PetscCall(BiCGStab(ksp, &s, norm2));
   s.sweeps->finish(m, s.x, s.size, s.t, u);
+  PetscFunctionReturn(0);
+}
+
+/* On an indefinite matrix residuals grow by orders on their way, and in single precision the one that BiCGStab carries along is no longer that of its
+ * solution. So what is left is looked at and, unless it is as small as asked for, solved for once more. */
+static PetscErrorCode Refine(KSP ksp, Blocks *m, Mat A)
+{
+  PetscBool indefinite = PETSC_TRUE;
+  const PetscReal *r;
+  PetscReal *more, left, whole;
+  Vec rest, correction;
+
+  PetscFunctionBeginUser;
+  PetscCall(VecDuplicate(ksp->vec_sol, &rest));
+  PetscCall(VecDuplicate(ksp->vec_sol, &correction));
+  PetscCall(MatMult(A, ksp->vec_sol, rest));
+  PetscCall(VecAYPX(rest, -1, ksp->vec_rhs));
+  PetscCall(VecNorm(rest, NORM_2, &left));
+  PetscCall(VecNorm(ksp->vec_rhs, NORM_2, &whole));
+  if (left > ksp->rtol * whole) {
+    const KSPConvergedReason reached = ksp->reason;
+    ksp->reason = KSP_CONVERGED_ITERATING;
+    PetscCall(VecGetArrayRead(rest, &r));
+    PetscCall(VecGetArrayWrite(correction, &more));
+    PetscCall(SolveOnBlocks(ksp, m, r, more, &indefinite));
+    PetscCall(VecRestoreArrayWrite(correction, &more));
+    PetscCall(VecRestoreArrayRead(rest, &r));
+    if (ksp->reason > 0) PetscCall(VecAXPY(ksp->vec_sol, 1, correction));
+    ksp->reason = reached;
+  }
+  PetscCall(VecDestroy(&rest));
+  PetscCall(VecDestroy(&correction));
   PetscFunctionReturn(0);
 }
 
@@ -158,6 +194,7 @@ static PetscErrorCode KSPSolve_Blocks(KSP ksp)
   Mat A;
   const PetscReal *b;
   PetscReal *u;
+  PetscBool indefinite = PETSC_FALSE;
 
   PetscFunctionBeginUser;
   PetscCall(KSPGetOperators(ksp, &A, NULL));
@@ -173,10 +210,11 @@ static PetscErrorCode KSPSolve_Blocks(KSP ksp)
   PetscCall(VecGetArrayWrite(ksp->vec_sol, &u));
   const unsigned mode = denormals_flush();
   if (m->projection) PetscCall(BlocksSolveProjected(ksp, m, b, u));
-  else PetscCall(SolveOnBlocks(ksp, m, b, u));
-  denormals_restore(mode);
+  else PetscCall(SolveOnBlocks(ksp, m, b, u, &indefinite));
   PetscCall(VecRestoreArrayWrite(ksp->vec_sol, &u));
   PetscCall(VecRestoreArrayRead(ksp->vec_rhs, &b));
+  if (indefinite && ksp->reason > 0) PetscCall(Refine(ksp, m, A));
+  denormals_restore(mode);
   PetscFunctionReturn(0);
 }
 

@@ -159,6 +159,7 @@ static void check_filling(CellType cell, PetscReal volume, PetscReal J, PetscRea
   const PetscReal M = 1e6 * 0.7 / (1.3 * 0.4);
   Bench b;
   bench_init(&b, "mpm", cell, 4);
+  bench_motion(&b, 1, 0, MOTION_FIXED, 7); /* statics wants it held */
   b.c.stabilisation = (StabilisationSpec){.stiffness = 1e-3, .mass = 0.2, .inertia = 0.05};
   Model *m = bench_model(&b, PETSC_COMM_WORLD);
   for (PetscInt p = 0; p < m->points->n; ++p) {
@@ -201,6 +202,7 @@ static void test_one_sided(void **state)
   for (int k = 0; k < 5; ++k) {
     Bench b;
     bench_init(&b, "mpm", CELL_QUADRILATERAL, 4);
+    bench_motion(&b, 1, 0, MOTION_FIXED, 7);
     b.c.stabilisation = (StabilisationSpec){.stiffness = 1e-3, .mass = 0.2, .inertia = 0.05};
     Model *m = bench_model(&b, PETSC_COMM_WORLD);
     for (PetscInt p = 0; p < m->points->n; ++p) point_real(m->points, POINT_XI, p)[0] = side[k];

@@ -91,8 +91,9 @@ output: {every: 0.01, history: {steps: 2}}
 END
 cut_and_resumed "carried loads in space" 2
 lacks whole/log.txt MUMPS
-# Clouds, whose nodes remember and change their ranks: what is left of the body's fall on the floor, and a bar that is held by multipliers
-cut_and_resumed "a cloud in space" 2 --set method=gmm --set 'basis={lme: {}}' --set linear=iterative --set newton.residual=1e-12
+# Clouds, whose nodes remember and change their ranks: what is left of the body's fall on the floor, and a bar that is held by multipliers. The fall ends
+# before two points come to the edge of all nodes, where clouds grow so steeply that 1e-9 of a place is 1e-3 of a force (at 0.027 s).
+cut_and_resumed "a cloud in space" 2 --set analysis.end=0.024 --set method=gmm --set 'basis={lme: {}}' --set linear=iterative --set newton.residual=1e-12
 lacks whole/log.txt MUMPS
 cantilever | sed 's/size: 0.5/size: 0.25/; s/steps: 1/steps: 5/' >case.yaml
 cut_and_resumed "static gmm" 1 --set method=gmm --set 'basis={mls: {}}'

@@ -118,7 +118,7 @@ expect "a bar that is pulled by its end" 0 "$talus" run case.yaml --out run --fo
 # --- which way is down ---
 cat >case.yaml <<'END'
 kinematics: 3d
-method: mpm
+method: fem
 analysis: {type: static}
 grid: {box: {min: [0, 0, 0], max: [1, 1, 1]}, size: 0.5}
 bodies:
