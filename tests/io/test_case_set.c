@@ -85,7 +85,8 @@ static void Mistakes(void **state)
      "--set materials.rubber.yung=1: error: key 'yung' of materials.rubber is not known\n  hint: did you mean "
      "'young'?"},
     {"materials.ruber.young=1",
-     "--set materials.ruber.young=1: error: there is no 'ruber' in materials\n  hint: did you mean 'rubber'? There are: "
+     "--set materials.ruber.young=1: error: there is no 'ruber' in materials\n  hint: did you mean 'rubber'? There "
+     "are: "
      "rubber\n"},
     {"materials.rubber={young: 1}", "error: key 'law' of materials.rubber is missing"},
     {"measures.tip.of.tracer=[0, 0]",
