@@ -152,6 +152,38 @@ static void test_convection(void **state)
   check_convection(CELL_HEXAHEDRON);
 }
 
+/* Nodes that are held, or move evenly, have that velocity and no acceleration, whatever hits them: a block that lands on a floor, which
+ * itself slides. */
+static void test_held_nodes(void **state)
+{
+  (void)state;
+  for (int damped = 0; damped < 2; ++damped) {
+    Bench b;
+    bench_init(&b, "mpm", CELL_QUADRILATERAL, CELLS);
+    bench_box(&b, 0, (PetscReal[]){1. / 3, 1. / 6, 0}, (PetscReal[]){2. / 3, 1. / 2, 1});
+    bench_dynamic(&b, 1, 5e-3);
+    b.body[0].velocity[1] = -2;
+    b.c.gravity[1] = -10;
+    if (damped) b.c.analysis.bossak = -0.2, b.c.analysis.beta = 0.36, b.c.analysis.gamma = 0.7;
+    MotionSpec *floor = bench_motion(&b, 1, 0, MOTION_VELOCITY, 3);
+    floor->value[0] = 0.25;
+    Model *m = bench_model(&b, PETSC_COMM_WORLD);
+    PetscReal pushed = 0;
+    for (int step = 0; step < 40; ++step) {
+      model_step(m, 5e-3);
+      for (PetscInt i = 0; i < m->grid->n_owned; ++i) {
+        if (m->grid->x[2 * i + 1] > 1e-9 || !m->stage->touched[i]) continue;
+        CHECK_CLOSE(m->stage->v1[2 * i], 0.25, 1e-12);
+        CHECK_CLOSE(m->stage->v1[2 * i + 1], 0, 1e-12);
+        for (int d = 0; d < 2; ++d) CHECK_CLOSE(m->stage->a1[2 * i + d], 0, 1e-9);
+        pushed = PetscMax(pushed, m->reaction[2 * i + 1]);
+      }
+    }
+    CHECK(model_max(m, pushed) > 100, "the block has not landed");
+    CALL(ModelDestroy(&m));
+  }
+}
+
 /* A cell is as full as the undeformed volume of its points, less what they are pressed together: material that has come apart fills no
  * more than it did. What it lacks is lumped and tied. */
 static void check_filling(CellType cell, PetscReal volume, PetscReal J, PetscReal lack)
@@ -324,8 +356,9 @@ static void test_nodes_follow(void **state)
 
 int main(int argc, char **argv)
 {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_projection), cmocka_unit_test(test_convection),
-                                     cmocka_unit_test(test_filling),    cmocka_unit_test(test_one_sided),
-                                     cmocka_unit_test(test_keep_off),   cmocka_unit_test(test_nodes_follow)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_projection),  cmocka_unit_test(test_convection),
+                                     cmocka_unit_test(test_held_nodes),  cmocka_unit_test(test_filling),
+                                     cmocka_unit_test(test_one_sided),   cmocka_unit_test(test_keep_off),
+                                     cmocka_unit_test(test_nodes_follow)};
   return run_model_tests(argc, argv, tests);
 }
