@@ -184,6 +184,67 @@ static void test_held_nodes(void **state)
   }
 }
 
+/* At t = 0 all that is free falls, and nothing moves what is held: points of the lowest cells know both. */
+static void test_first_acceleration(void **state)
+{
+  (void)state;
+  for (int held = 0; held < 2; ++held) {
+    Bench b;
+    bench_init(&b, "mpm", CELL_QUADRILATERAL, CELLS);
+    bench_box(&b, 0, (PetscReal[]){1. / 3, 0, 0}, (PetscReal[]){2. / 3, 1. / 2, 1});
+    bench_dynamic(&b, 1, 5e-3);
+    b.c.gravity[1] = -10;
+    if (held) bench_motion(&b, 1, 0, MOTION_FIXED, 2);
+    Model *m = bench_model(&b, PETSC_COMM_WORLD);
+    for (PetscInt p = 0; p < m->points->n; ++p) {
+      const PetscReal y = point_real(m->points, POINT_X, p)[1];
+      CHECK_CLOSE(point_real(m->points, POINT_A, p)[1], held ? -10 * PetscMin(1, y * CELLS) : -10, 1e-9);
+      CHECK_CLOSE(point_real(m->points, POINT_A, p)[0], 0, 1e-12);
+    }
+    CALL(ModelDestroy(&m));
+  }
+}
+
+/* What one averaging over neighbours takes away of a pressure, by present volumes: to the nodes and back, written out. */
+static void test_roughness(void **state)
+{
+  Bench b;
+  PetscReal average[SIDE * SIDE], volume[SIDE * SIDE], rough = 0, all = 0;
+  Random random = {9};
+  (void)state;
+  bench_init(&b, "mpm", CELL_QUADRILATERAL, CELLS);
+  Model *m = bench_model(&b, PETSC_COMM_SELF);
+  PetscReal *pressure;
+  CALL(PetscMalloc1(m->points->n, &pressure));
+  for (PetscInt p = 0; p < m->points->n; ++p) {
+    const PetscReal J = m->points->real[POINT_J][p] = random_real(&random, 0.5, 2);
+    PetscReal tau[6] = {0, 0, 0, 3, 0, 0};
+    pressure[p] = random_real(&random, 10, 30);
+    for (int k = 0; k < 3; ++k) tau[k] = -pressure[p] * J;
+    point_set_tau(m->points, p, tau);
+  }
+  for (PetscInt k = 0; k < SIDE * SIDE; ++k) {
+    average[k] = volume[k] = 0;
+    for (PetscInt p = 0; p < m->points->n; ++p) {
+      const PetscReal w = shape_at(2, k, point_real(m->points, POINT_X, p)) * m->points->real[POINT_VOLUME][p] *
+                          m->points->real[POINT_J][p];
+      average[k] += w * pressure[p];
+      volume[k] += w;
+    }
+    average[k] /= volume[k];
+  }
+  for (PetscInt p = 0; p < m->points->n; ++p) {
+    const PetscReal present = m->points->real[POINT_VOLUME][p] * m->points->real[POINT_J][p];
+    PetscReal smooth = 0;
+    for (PetscInt k = 0; k < SIDE * SIDE; ++k) smooth += shape_at(2, k, point_real(m->points, POINT_X, p)) * average[k];
+    rough += present * PetscSqr(pressure[p] - smooth);
+    all += present * PetscSqr(pressure[p]);
+  }
+  CHECK_CLOSE(model_sum(m, MEASURE_ROUGHNESS, 0), PetscSqrtReal(rough / all), 1e-12);
+  CALL(PetscFree(pressure));
+  CALL(ModelDestroy(&m));
+}
+
 /* A cell is as full as the undeformed volume of its points, less what they are pressed together: material that has come apart fills no
  * more than it did. What it lacks is lumped and tied. */
 static void check_filling(CellType cell, PetscReal volume, PetscReal J, PetscReal lack)
@@ -356,9 +417,9 @@ static void test_nodes_follow(void **state)
 
 int main(int argc, char **argv)
 {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_projection),  cmocka_unit_test(test_convection),
-                                     cmocka_unit_test(test_held_nodes),  cmocka_unit_test(test_filling),
-                                     cmocka_unit_test(test_one_sided),   cmocka_unit_test(test_keep_off),
-                                     cmocka_unit_test(test_nodes_follow)};
+  const struct CMUnitTest tests[] = {
+    cmocka_unit_test(test_projection),         cmocka_unit_test(test_convection), cmocka_unit_test(test_held_nodes),
+    cmocka_unit_test(test_first_acceleration), cmocka_unit_test(test_roughness),  cmocka_unit_test(test_filling),
+    cmocka_unit_test(test_one_sided),          cmocka_unit_test(test_keep_off),   cmocka_unit_test(test_nodes_follow)};
   return run_model_tests(argc, argv, tests);
 }
