@@ -55,6 +55,14 @@ for last in 7 63 70 98; do
   rm -r cut
 done
 
+# Resumed where nothing is left to do, whatever is said then: no row and no state comes twice
+cp -r whole again
+name="resumed at the end"
+"$talus" run --resume again --quiet >out.txt 2>err.txt
+multiples "$name" again 0.2 0.1
+cmp -s whole/history.csv again/history.csv || fail "$name: another history"
+[ "$(ls whole/*.hdf | wc -l)" -eq "$(ls again/*.hdf | wc -l)" ] || fail "$name: $(ls again/*.hdf | wc -l) states"
+
 # Rows and states by steps
 slider 0.05 '{steps: 6}' '{steps: 4}' >case.yaml
 expect "by steps" 0 "$talus" run case.yaml --out steps --quiet
