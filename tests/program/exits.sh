@@ -58,4 +58,15 @@ says err.txt "a resumed run cannot change materials.rubber.young"
 expect "resume with the material first" 2 "$talus" run --resume cut --quiet --set materials.rubber.young=1e6 --set newton.max_iterations=20
 expect "resume with a case" 2 "$talus" run beam/case.yaml --resume cut
 
+# A run directory whose case was changed by hand is another run, whatever was changed of what is computed; how it is computed may change.
+expect "a run with checkpoints" 0 "$talus" run beam/case.yaml --out kept --quiet --set analysis.steps=4 --set checkpoint.steps=2
+cp kept/case.yaml kept.yaml
+for change in 's/-9.81/-9.8/' 's/young: .*/young: 9.1e7/' 's/density: .*/density: 1001/' 's/poisson: .*/poisson: 0.1/' 's/step: .*/step: 0.2/' \
+  's/points_per_cell: 4/points_per_cell: 9/' 's/method: mpm/method: fem/'; do
+  sed "$change" kept.yaml >kept/case.yaml
+  cmp -s kept.yaml kept/case.yaml && fail "'$change' changes nothing"
+  expect "resume after $change" 2 "$talus" run --resume kept --quiet
+  says err.txt "it is of another case than the case.yaml beside it"
+done
+
 finish
