@@ -92,7 +92,8 @@ static void test_volume_is_kept(void **state)
   }
 }
 
-/* What is stored of volume is p^2 / 2K where the law keeps it apart from shape; where it does not, what the law stores at exp(p / K). */
+/* What is stored of volume is p^2 / 2K where the law keeps it apart from shape; where it does not, what the law stores
+ * at exp(p / K). */
 static void test_energy(void **state)
 {
   const PetscReal bulk = 1e6 / (3 * (1 - 0.9)), pressures[] = {-2e5, -1e4, 0, 3e4, 1e5};

@@ -1,4 +1,5 @@
-/* Loads in numbers: the sum of the nodal forces and their moments, of each load by its own amplitude, on bodies and on the grid. */
+/* Loads in numbers: the sum of the nodal forces and their moments, of each load by its own amplitude, on bodies and on
+ * the grid. */
 #include "case_builder.h"
 #include "model/model_private.h"
 

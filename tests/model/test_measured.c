@@ -1,8 +1,8 @@
 /* Measures against closed forms of states that are made by hand. */
 #include "case_builder.h"
 
-/* A body that turns about its own centre while it flies: its spin is that of the body, wherever it is; angular momentum is that about the
- * origin. */
+/* A body that turns about its own centre while it flies: its spin is that of the body, wherever it is; angular momentum
+ * is that about the origin. */
 static void test_spin(void **state)
 {
   (void)state;
@@ -38,7 +38,8 @@ static void test_spin(void **state)
   }
 }
 
-/* The height of a surface is that of its material: what has come apart is no higher, what is pressed together is lower. */
+/* The height of a surface is that of its material: what has come apart is no higher, what is pressed together is
+ * lower. */
 static void test_surface(void **state)
 {
   static const PetscReal J[] = {1, 2, 10, 0.5};

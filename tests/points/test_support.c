@@ -107,8 +107,8 @@ static void arrays_are_reused(void **state)
   CALL(PetscFree(t));
 }
 
-/* Clouds turn with the material: a lattice drawn out so far that only its stretch tells that its nodes are neighbours still has the same
- * cloud when it is turned, with its F. */
+/* Clouds turn with the material: a lattice drawn out so far that only its stretch tells that its nodes are neighbours
+ * still has the same cloud when it is turned, with its F. */
 static void clouds_turn_with_the_material(void **state)
 {
   const CloudRule rule = {.basis = {.kind = CLOUD_LME, .gamma = 1.8}, .support = support_default_lme, .h = 1};

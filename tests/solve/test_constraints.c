@@ -1,4 +1,5 @@
-/* One constraint by hand: its gap, the forces of its multiplier, its part of the tangent, and a sweep that closes gaps of motions. */
+/* One constraint by hand: its gap, the forces of its multiplier, its part of the tangent, and a sweep that closes gaps
+ * of motions. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
