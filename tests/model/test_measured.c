@@ -51,6 +51,7 @@ static void test_surface(void **state)
                       end = {.kind = MEASURE_SURFACE_FRONT};
     bench_init(&b, "mpm", CELL_QUADRILATERAL, 8);
     bench_box(&b, 0, (PetscReal[]){0, 0, 0}, (PetscReal[]){0.5, 0.75, 1});
+    bench_dynamic(&b, 1, 0.01);
     Model *m = bench_model(&b, PETSC_COMM_WORLD);
     for (PetscInt p = 0; p < m->points->n; ++p) m->points->real[POINT_J][p] = J[k];
     CALL(ModelMeasure(m, &at, 0, &height));
@@ -70,6 +71,7 @@ static void test_stress(void **state)
   PetscReal sigma[6];
   (void)state;
   bench_init(&b, "mpm", CELL_HEXAHEDRON, 2);
+  bench_dynamic(&b, 1, 0.01);
   Model *m = bench_model(&b, PETSC_COMM_WORLD);
   for (PetscInt p = 0; p < m->points->n; ++p) {
     const PetscReal tau[6] = {1, 2, 3, 4, 5, 6};

@@ -214,6 +214,7 @@ static void test_roughness(void **state)
   Random random = {9};
   (void)state;
   bench_init(&b, "mpm", CELL_QUADRILATERAL, CELLS);
+  bench_dynamic(&b, 1, 0.01);
   Model *m = bench_model(&b, PETSC_COMM_SELF);
   PetscReal *pressure;
   CALL(PetscMalloc1(m->points->n, &pressure));

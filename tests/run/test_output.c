@@ -37,6 +37,7 @@ static void check_fields(CellType cell)
   const PetscReal J = 1.6, tau[2][6] = {{16, 32, 64, 8, 0, 0}, {16, 32, 64, 8, 24, 40}};
   Bench b;
   bench_init(&b, "mpm", cell, 2);
+  bench_dynamic(&b, 1, 0.01);
   Model *m = bench_model(&b, PETSC_COMM_WORLD);
   const PetscReal *t = tau[m->dim - 2], volume = 1 / (m->dim == 2 ? 16. : 64.), F[9] = {2, 0.5, 0, 0, 0.8, 0, 0, 0, 1};
   for (PetscInt p = 0; p < m->points->n; ++p) {
