@@ -71,8 +71,8 @@ static void deform(const PetscReal f[4], int n, PetscReal *X, PetscReal *metric)
     for (int j = 0; j < 2; ++j) metric[2 * i + j] = inverse[i] * inverse[j] + inverse[2 + i] * inverse[2 + j];
 }
 
-/* Inside a disordered lattice under any isochoric stretch up to 3 and shear up to 5 there is a basis of the kind asked for;
- * what stops it beyond is that no neighbours are left within max_radius across the stretch. */
+/* Inside a disordered lattice under any isochoric stretch up to 3 and shear up to 5 there is a basis of the kind asked
+ * for; what stops it beyond is that no neighbours are left within max_radius across the stretch. */
 static void stretched_and_sheared(void **state)
 {
   (void)state;
@@ -272,8 +272,8 @@ static void paper_rule(void **state)
   assert_true(grown > 100);
 }
 
-/* On a lattice the numbers of nodes are known: those within the radius, and those on it; more only where a least number wants them, and
- * then without a word about growing. */
+/* On a lattice the numbers of nodes are known: those within the radius, and those on it; more only where a least number
+ * wants them, and then without a word about growing. */
 static void counts_on_a_lattice(void **state)
 {
   static const struct {

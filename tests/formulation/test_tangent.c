@@ -1,6 +1,6 @@
-/* The assembled tangent against differences of the residual, for every kernel of cells and of clouds, at a random state (strains and with
- * them shear stresses at the start of the step) with inertia, lumping and ties; its symmetry; and what cutting and lifting of prescribed
- * degrees of freedom do. */
+/* The assembled tangent against differences of the residual, for every kernel of cells and of clouds, at a random state
+ * (strains and with them shear stresses at the start of the step) with inertia, lumping and ties; its symmetry; and
+ * what cutting and lifting of prescribed degrees of freedom do. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -268,7 +268,8 @@ static void test_residual_alone(void **state)
   }
 }
 
-/* Rows and columns of prescribed dofs are empty, the rest is untouched; lifting adds K lift to the free rows; reactions stay. */
+/* Rows and columns of prescribed dofs are empty, the rest is untouched; lifting adds K lift to the free rows; reactions
+ * stay. */
 static void test_prescribed(void **state)
 {
   (void)state;

@@ -1,6 +1,7 @@
 talus_test(material/test_laws)
 talus_test(material/test_neo_hookean)
 talus_test(material/test_material)
+talus_test(material/test_pressure)
 talus_test(material/test_j2)
 talus_test(material/test_mohr_coulomb)
 talus_test(material/test_mohr_coulomb_tangent)

@@ -14,7 +14,8 @@ static Model *sliding(Bench *b)
   return bench_model(b, PETSC_COMM_WORLD);
 }
 
-/* Inertia alone: dt (v + a dt / 2). The step before: its increments in the ratio of the steps, where they were solved for. Rest: nothing. */
+/* Inertia alone: dt (v + a dt / 2). The step before: its increments in the ratio of the steps, where they were solved
+ * for. Rest: nothing. */
 static void test_values(void **state)
 {
   Bench b;

@@ -1,5 +1,7 @@
-/* Loads in numbers: the sum of the nodal forces and their moments, of each load by its own amplitude, on bodies and on the grid. */
+/* Loads in numbers: the sum of the nodal forces and their moments, of each load by its own amplitude, on bodies and on
+ * the grid. */
 #include "case_builder.h"
+#include "model/model_private.h"
 
 /* Sum over owned nodes of the loads at time t, and of their moments about the origin in x and y: f, x f_x, y f_y. */
 static void sum_loads(const Model *m, PetscReal t, PetscReal sum[5])
@@ -124,9 +126,44 @@ static void test_boundary_sum(void **state)
   }
 }
 
+/* A body force belongs to the material: it is asked for where a point was at the start, wherever it is now. */
+static void as_far(void *context, const PetscReal *X, PetscReal t, PetscReal *b)
+{
+  const PetscInt dim = *(const PetscInt *)context;
+  for (PetscInt d = 0; d < dim; ++d) b[d] = (1 + t) * X[d];
+}
+
+static void test_body_force(void **state)
+{
+  static const char *const methods_[] = {"mpm", "fem"};
+  (void)state;
+  for (int k = 0; k < 2; ++k)
+    for (CellType cell = CELL_TRIANGLE; cell <= CELL_HEXAHEDRON; ++cell) {
+      Bench b;
+      PetscReal *force, local[3] = {0, 0, 0}, sum[3];
+      PetscInt dim = is_space(cell) ? 3 : 2;
+      bench_init(&b, methods_[k], cell, 8);
+      bench_box(&b, 0, (PetscReal[]){0, 0.25, 0}, (PetscReal[]){0.25, 0.5, 0.5});
+      bench_dynamic(&b, 1, 0.1);
+      b.body[0].velocity[0] = 4;
+      Model *m = bench_model(&b, PETSC_COMM_WORLD);
+      model_step(m, 0.1);
+      CALL(ModelSetBodyForce(m, as_far, &dim));
+      CALL(PetscCalloc1(m->grid->n_nodes * dim, &force));
+      CALL(AddBodyForce(m, 0.5, force));
+      for (PetscInt i = 0; i < m->grid->n_owned * dim; ++i) local[i % dim] += force[i];
+      CALL(MPI_Allreduce(local, sum, 3, MPIU_REAL, MPI_SUM, m->comm));
+      const PetscReal mass = model_sum(m, MEASURE_MASS, 0), centre[3] = {0.125, 0.375, 0.25};
+      for (PetscInt d = 0; d < dim; ++d) CHECK_CLOSE(sum[d], 1.5 * mass * centre[d], 1e-9 * mass);
+      CALL(PetscFree(force));
+      CALL(ModelDestroy(&m));
+    }
+}
+
 int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {cmocka_unit_test(test_whole_surface), cmocka_unit_test(test_between_bodies),
-                                     cmocka_unit_test(test_amplitudes), cmocka_unit_test(test_boundary_sum)};
+                                     cmocka_unit_test(test_amplitudes), cmocka_unit_test(test_boundary_sum),
+                                     cmocka_unit_test(test_body_force)};
   return run_model_tests(argc, argv, tests);
 }

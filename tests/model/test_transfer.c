@@ -1,6 +1,6 @@
-/* What goes between points and nodes, in numbers: the sums of the projection, what convection gives back, when a cell counts as filled, and
- * how far nodes of a cloud keep off each other. Shape functions are written down again here, and nodes are known by their places, so that
- * sums over ranks can be checked against sums over all points. */
+/* What goes between points and nodes, in numbers: the sums of the projection, what convection gives back, when a cell
+ * counts as filled, and how far nodes of a cloud keep off each other. Shape functions are written down again here, and
+ * nodes are known by their places, so that sums over ranks can be checked against sums over all points. */
 #include "case_builder.h"
 #include "method/gmm.h"
 
@@ -101,7 +101,8 @@ static void test_projection(void **state)
   check_projection(CELL_HEXAHEDRON);
 }
 
-/* x and u by the increment, a anew, v by what nodes gained over what points had given them, less a share of what no node sees. */
+/* x and u by the increment, a anew, v by what nodes gained over what points had given them, less a share of what no
+ * node sees. */
 static void check_convection(CellType cell)
 {
   Bench b;
@@ -152,8 +153,102 @@ static void test_convection(void **state)
   check_convection(CELL_HEXAHEDRON);
 }
 
-/* A cell is as full as the undeformed volume of its points, less what they are pressed together: material that has come apart fills no
- * more than it did. What it lacks is lumped and tied. */
+/* Nodes that are held, or move evenly, have that velocity and no acceleration, whatever hits them: a block that lands
+ * on a floor, which itself slides. */
+static void test_held_nodes(void **state)
+{
+  (void)state;
+  for (int damped = 0; damped < 2; ++damped) {
+    Bench b;
+    bench_init(&b, "mpm", CELL_QUADRILATERAL, CELLS);
+    bench_box(&b, 0, (PetscReal[]){1. / 3, 1. / 6, 0}, (PetscReal[]){2. / 3, 1. / 2, 1});
+    bench_dynamic(&b, 1, 5e-3);
+    b.body[0].velocity[1] = -2;
+    b.c.gravity[1] = -10;
+    if (damped) b.c.analysis.bossak = -0.2, b.c.analysis.beta = 0.36, b.c.analysis.gamma = 0.7;
+    MotionSpec *floor = bench_motion(&b, 1, 0, MOTION_VELOCITY, 3);
+    floor->value[0] = 0.25;
+    Model *m = bench_model(&b, PETSC_COMM_WORLD);
+    PetscReal pushed = 0;
+    for (int step = 0; step < 40; ++step) {
+      model_step(m, 5e-3);
+      for (PetscInt i = 0; i < m->grid->n_owned; ++i) {
+        if (m->grid->x[2 * i + 1] > 1e-9 || !m->stage->touched[i]) continue;
+        CHECK_CLOSE(m->stage->v1[2 * i], 0.25, 1e-12);
+        CHECK_CLOSE(m->stage->v1[2 * i + 1], 0, 1e-12);
+        for (int d = 0; d < 2; ++d) CHECK_CLOSE(m->stage->a1[2 * i + d], 0, 1e-9);
+        pushed = PetscMax(pushed, m->reaction[2 * i + 1]);
+      }
+    }
+    CHECK(model_max(m, pushed) > 100, "the block has not landed");
+    CALL(ModelDestroy(&m));
+  }
+}
+
+/* At t = 0 all that is free falls, and nothing moves what is held: points of the lowest cells know both. */
+static void test_first_acceleration(void **state)
+{
+  (void)state;
+  for (int held = 0; held < 2; ++held) {
+    Bench b;
+    bench_init(&b, "mpm", CELL_QUADRILATERAL, CELLS);
+    bench_box(&b, 0, (PetscReal[]){1. / 3, 0, 0}, (PetscReal[]){2. / 3, 1. / 2, 1});
+    bench_dynamic(&b, 1, 5e-3);
+    b.c.gravity[1] = -10;
+    if (held) bench_motion(&b, 1, 0, MOTION_FIXED, 2);
+    Model *m = bench_model(&b, PETSC_COMM_WORLD);
+    for (PetscInt p = 0; p < m->points->n; ++p) {
+      const PetscReal y = point_real(m->points, POINT_X, p)[1];
+      CHECK_CLOSE(point_real(m->points, POINT_A, p)[1], held ? -10 * PetscMin(1, y * CELLS) : -10, 1e-9);
+      CHECK_CLOSE(point_real(m->points, POINT_A, p)[0], 0, 1e-12);
+    }
+    CALL(ModelDestroy(&m));
+  }
+}
+
+/* What one averaging over neighbours takes away of a pressure, by present volumes: to the nodes and back. */
+static void test_roughness(void **state)
+{
+  Bench b;
+  PetscReal average[SIDE * SIDE], volume[SIDE * SIDE], rough = 0, all = 0;
+  Random random = {9};
+  (void)state;
+  bench_init(&b, "mpm", CELL_QUADRILATERAL, CELLS);
+  bench_dynamic(&b, 1, 0.01);
+  Model *m = bench_model(&b, PETSC_COMM_SELF);
+  PetscReal *pressure;
+  CALL(PetscMalloc1(m->points->n, &pressure));
+  for (PetscInt p = 0; p < m->points->n; ++p) {
+    const PetscReal J = m->points->real[POINT_J][p] = random_real(&random, 0.5, 2);
+    PetscReal tau[6] = {0, 0, 0, 3, 0, 0};
+    pressure[p] = random_real(&random, 10, 30);
+    for (int k = 0; k < 3; ++k) tau[k] = -pressure[p] * J;
+    point_set_tau(m->points, p, tau);
+  }
+  for (PetscInt k = 0; k < SIDE * SIDE; ++k) {
+    average[k] = volume[k] = 0;
+    for (PetscInt p = 0; p < m->points->n; ++p) {
+      const PetscReal w = shape_at(2, k, point_real(m->points, POINT_X, p)) * m->points->real[POINT_VOLUME][p] *
+                          m->points->real[POINT_J][p];
+      average[k] += w * pressure[p];
+      volume[k] += w;
+    }
+    average[k] /= volume[k];
+  }
+  for (PetscInt p = 0; p < m->points->n; ++p) {
+    const PetscReal present = m->points->real[POINT_VOLUME][p] * m->points->real[POINT_J][p];
+    PetscReal smooth = 0;
+    for (PetscInt k = 0; k < SIDE * SIDE; ++k) smooth += shape_at(2, k, point_real(m->points, POINT_X, p)) * average[k];
+    rough += present * PetscSqr(pressure[p] - smooth);
+    all += present * PetscSqr(pressure[p]);
+  }
+  CHECK_CLOSE(model_sum(m, MEASURE_ROUGHNESS, 0), PetscSqrtReal(rough / all), 1e-12);
+  CALL(PetscFree(pressure));
+  CALL(ModelDestroy(&m));
+}
+
+/* A cell is as full as the undeformed volume of its points, less what they are pressed together: material that has come
+ * apart fills no more than it did. What it lacks is lumped and tied. */
 static void check_filling(CellType cell, PetscReal volume, PetscReal J, PetscReal lack)
 {
   const PetscReal M = 1e6 * 0.7 / (1.3 * 0.4);
@@ -193,8 +288,8 @@ static void test_filling(void **state)
   }
 }
 
-/* Points that stand at one side leave the corners of the other without mass, however many they are: a corner should have a sixteenth of the
- * mass in the plane, a quarter of what regular points give it. */
+/* Points that stand at one side leave the corners of the other without mass, however many they are: a corner should
+ * have a sixteenth of the mass in the plane, a quarter of what regular points give it. */
 static void test_one_sided(void **state)
 {
   static const PetscReal side[] = {0.5, 0.7, 0.8, 0.9, 0.99};
@@ -238,7 +333,8 @@ static PetscInt node_at(const Model *m, PetscReal x, PetscReal y)
   return -1;
 }
 
-/* Put a node so near to another (along (0.6, 0.8)), and let a step pass: how far apart are they, and how far did the other go? */
+/* Put a node so near to another (along (0.6, 0.8)), and let a step pass: how far apart are they, and how far did the
+ * other go? */
 static void check_apart(PetscReal other_y, PetscReal distance, PetscReal expected, PetscReal other_goes)
 {
   Bench b;
@@ -285,7 +381,8 @@ static void look_at_floor(const Model *m, PetscBool *near, PetscBool *touched)
   }
 }
 
-/* A block that slides over a floor whose nodes are in clouds of its nodes, but of none of its points: its nodes move as it does. */
+/* A block that slides over a floor whose nodes are in clouds of its nodes, but of none of its points: its nodes move as
+ * it does. */
 static void test_nodes_follow(void **state)
 {
   int seen = 0;
@@ -326,8 +423,9 @@ static void test_nodes_follow(void **state)
 
 int main(int argc, char **argv)
 {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_projection), cmocka_unit_test(test_convection),
-                                     cmocka_unit_test(test_filling),    cmocka_unit_test(test_one_sided),
-                                     cmocka_unit_test(test_keep_off),   cmocka_unit_test(test_nodes_follow)};
+  const struct CMUnitTest tests[] = {
+    cmocka_unit_test(test_projection),         cmocka_unit_test(test_convection), cmocka_unit_test(test_held_nodes),
+    cmocka_unit_test(test_first_acceleration), cmocka_unit_test(test_roughness),  cmocka_unit_test(test_filling),
+    cmocka_unit_test(test_one_sided),          cmocka_unit_test(test_keep_off),   cmocka_unit_test(test_nodes_follow)};
   return run_model_tests(argc, argv, tests);
 }

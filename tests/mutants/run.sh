@@ -1,16 +1,16 @@
 #!/bin/bash
 # run.sh [--list | --check | --continue] SOURCE: seeds one fault after another and sees whether a test fails.
 #
-# A fault is a patch, tests/mutants/<room>/<name>.patch. Its first line says what it breaks; a line "Equal: ..." says why no test can
-# notice, and then it is tried only when it is named. Each is put into a copy of the sources in BUILD (build-mutants), in which all rooms
-# are one shared library, so that one source is compiled and one library linked. Then tests run until one fails twice: those of the room,
-# then those of the rooms that know it, cheap ones and those of one rank first. Their cost comes from a first round without a fault, in
-# which all must pass.
+# A fault is a patch, tests/mutants/<room>/<name>.patch. Its first line says what it breaks; a line "Equal: ..." says
+# why no test can notice, and then it is tried only when it is named. Each is put into a copy of the sources in BUILD
+# (build-mutants), in which all rooms are one shared library, so that one source is compiled and one library linked. Then
+# tests run until one fails twice: those of the room, then those of the rooms that know it, cheap ones and those of one
+# rank first. Their cost comes from a first round without a fault, in which all must pass.
 #
 #   --list      what there is      --check  does each patch fit, has it a header, does it change few lines?
 #   --continue  keep the results that are there
-#   ROOM=solve, MUTANT=name: only those     WORKERS=2: as many copies side by side     ASK=0.95: the share that must be caught
-#   MOST=5: only with tests that take no longer than this, s: a first look
+#   ROOM=solve, MUTANT=name: only those     WORKERS=2: as many copies side by side
+#   ASK=0.95: the share that must be caught     MOST=5: only tests that take no longer than this, s: a first look
 set -u
 mode=run resume=
 while [[ ${1:-} == --* ]]; do
@@ -32,7 +32,7 @@ what_of() { head -n 1 "$(patch_of "$1")"; }
 is_equal() { grep -q '^Equal: ' "$(patch_of "$1")"; }
 put_in() { patch -p1 -s -f --no-backup-if-mismatch -r - -d "$2" "${@:3}" <"$(patch_of "$1")"; }
 
-# Does the patch fit, and is it what it should be: a line of words, one to three lines changed, in one source of its room?
+# Does the patch fit, and is it what it should be: a line of words, one to three lines changed in a source of its room?
 check() {
   local bad= said
   said=$(put_in "$1" "$source" --dry-run 2>&1) || bad="does not fit: ${said##*$'\n'}"
@@ -73,17 +73,18 @@ copy_sources() {
   done
 }
 prepare() { # the copy of one worker, whole and built
-  copy_sources "$1" && cmake -S "$1" -B "$1/build" -G Ninja --log-level=WARNING -DCMAKE_BUILD_TYPE=Release -DTALUS_TEST_SHARED=ON \
-    $launcher >"$1/configure.log" && ninja -C "$1/build" >"$1/build.log"
+  copy_sources "$1" && cmake -S "$1" -B "$1/build" -G Ninja --log-level=WARNING -DCMAKE_BUILD_TYPE=Release \
+    -DTALUS_TEST_SHARED=ON $launcher >"$1/configure.log" && ninja -C "$1/build" >"$1/build.log"
 }
 passes() { # test, seconds: a test that hangs has failed
   timeout -k 10 "$2" ctest --test-dir build -R "^$1\$" --no-tests=error >test.log 2>&1 </dev/null
 }
 
-# First round: TEST SECONDS of all that pass and have none yet; `kill` ends runs at random moments and says nothing about numbers.
+# First round: TEST SECONDS of all that pass and have none yet; `kill` ends runs at random moments and is left out.
 first_round() {
   cd "$build/1" || exit 2
-  for test in $(ctest --test-dir build -N | sed -n 's/^ *Test *#[0-9]*: //p' | grep -v -e '^program/kill' -e '^mutants/'); do
+  for test in $(ctest --test-dir build -N | sed -n 's/^ *Test *#[0-9]*: //p' |
+    grep -v -e '^program/kill' -e '^mutants/'); do
     ! grep -q "^$test " "$build/cost.txt" || continue
     local start=$EPOCHREALTIME
     if passes "$test" 1000 || passes "$test" 1000; then
@@ -94,17 +95,19 @@ first_round() {
   done
 }
 
-# Tests and limits in the order for a room: its own, then those of the rooms behind it, which alone know it, the solver's first; one rank, then
-# several; cheap, then dear.
+# Tests and limits in the order for a room: its own, then those of the rooms behind it, which alone know it, the solver's
+# first; one rank, then several; cheap, then dear.
 order() {
   awk -v room="$1" -v most="${MOST:-1e9}" '
-    BEGIN {n = split("base case material basis grid points formulation boundary solve method model io run api cli program", rooms, " ")
+    BEGIN {names = "base case material basis grid points formulation boundary solve method model io run api cli program"
+      n = split(names, rooms, " ")
       for (i = 1; i <= n; ++i) place[rooms[i]] = i}
     {test_room = $1; sub("/.*", "", test_room)
      if (test_room in place && place[test_room] < place[room] || $2 > most) next
      own = test_room == room || room == "cli" && test_room == "program"; many = $1 ~ "(_[23]|/ranks|/signals_2)$"
      far = own ? 0 : (test_room == "cli" || test_room == "program") && place[room] <= place["model"] ? 2 : 1
-     printf "%d %d %s %s %d\n", far, many, $2, $1, 60 + 20 * $2}' "$build/cost.txt" | sort -k 1,1n -k 2,2n -k 3,3n | cut -d ' ' -f 4,5
+     printf "%d %d %s %s %d\n", far, many, $2, $1, 60 + 20 * $2}' "$build/cost.txt" |
+    sort -k 1,1n -k 2,2n -k 3,3n | cut -d ' ' -f 4,5
 }
 
 # One fault in the copy here: result on standard output.
@@ -166,12 +169,13 @@ main() { # read as a whole before it runs, so that the file may change meanwhile
     END {
       printf "\n%-12s %6s %6s %8s %6s %6s\n", "room", "faults", "caught", "survived", "equal", "broken"
       for (room in n) {
-        printf "%-12s %6d %6d %8d %6d %6d\n", room, n[room], count[room, "caught"], count[room, "survived"], count[room, "equal"],
-          count[room, "broken"] | "sort"
+        printf "%-12s %6d %6d %8d %6d %6d\n", room, n[room], count[room, "caught"], count[room, "survived"],
+          count[room, "equal"], count[room, "broken"] | "sort"
       }
       close("sort")
       share = NR > all["equal"] ? all["caught"] / (NR - all["equal"]) : 1
-      printf "\n%s%d of %d caught (%.1f %%), %d equal, %d broken\n", rest, all["caught"], NR - all["equal"], 100 * share, all["equal"], all["broken"]
+      printf "\n%s%d of %d caught (%.1f %%), %d equal, %d broken\n", rest, all["caught"], NR - all["equal"], 100 * share,
+        all["equal"], all["broken"]
       exit share < ask || all["broken"] > 0
     }' "$build/results.txt"
 }

@@ -151,8 +151,8 @@ static void bodies_stand_side_by_side(void **state)
   }
 }
 
-/* Ids are those of points of a body after those of the body before it, wherever in the grid they stand: the first may hold the last cells,
- * and the next ones the first. */
+/* Ids are those of points of a body after those of the body before it, wherever in the grid they stand: the first may
+ * hold the last cells, and the next ones the first. */
 static void ids_belong_to_one_point(void **state)
 {
   (void)state;

@@ -107,9 +107,39 @@ static void arrays_are_reused(void **state)
   CALL(PetscFree(t));
 }
 
+/* Clouds turn with the material: a lattice drawn out so far that only its stretch tells that its nodes are neighbours
+ * still has the same cloud when it is turned, with its F. */
+static void clouds_turn_with_the_material(void **state)
+{
+  const CloudRule rule = {.basis = {.kind = CLOUD_LME, .gamma = 1.8}, .support = support_default_lme, .h = 1};
+  PetscInt n[2][2]; /* with F and without, by angle */
+  (void)state;
+  for (int turned = 0; turned < 2; ++turned) {
+    const PetscReal c = turned ? 0 : 1, s = turned ? 1 : 0, stretch = 2.4;
+    const PetscReal F[9] = {c * stretch, -s, 0, s * stretch, c, 0, 0, 0, 1};
+    PetscReal X[2 * 81], N[CLOUD_MAX_NODES], dN[3 * CLOUD_MAX_NODES];
+    PetscInt node[CLOUD_MAX_NODES];
+    CloudTally tally = {{0}, 0};
+    Neighbours nodes;
+    for (int k = 0; k < 81; ++k) {
+      const PetscReal x = stretch * (k % 9 - 4), y = k / 9 - 4;
+      X[2 * k] = c * x - s * y;
+      X[2 * k + 1] = s * x + c * y;
+    }
+    CALL(NeighboursCreate(2, 81, X, 0, NULL, NULL, 1, &nodes));
+    const PetscReal x = 0.3, y = 0.4, at[2] = {c * x - s * y, s * x + c * y};
+    n[turned][0] = cloud_at(&nodes, &rule, at, F, node, N, dN, &tally);
+    n[turned][1] = cloud_at(&nodes, &rule, at, NULL, node, N, dN, &tally);
+    CALL(NeighboursDestroy(&nodes));
+  }
+  CHECK(n[0][0] == n[1][0] && n[0][1] == n[1][1]);
+  CHECK(n[0][0] != n[0][1]);
+}
+
 int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {
+    cmocka_unit_test(clouds_turn_with_the_material),
     cmocka_unit_test(every_cell_type),
     cmocka_unit_test(arrays_are_reused),
   };

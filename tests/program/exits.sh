@@ -7,7 +7,8 @@ cantilever >beam/case.yaml
 # The last of two options counts; folders are named after the case's, files after themselves
 expect "two times --out" 0 "$talus" run beam/case.yaml --out one --out two --quiet
 [ ! -e one ] && [ -s two/history.csv ] || fail "$name: it went to the first"
-expect "two times --set" 0 "$talus" run beam/case.yaml --out set --quiet --set materials.rubber.young=1e9 --set materials.rubber.young=180e6
+young=materials.rubber.young
+expect "two times --set" 0 "$talus" run beam/case.yaml --out set --quiet --set $young=1e9 --set $young=180e6
 says set/case.yaml "young: 1.8e+08"
 expect "a folder's case" 0 "$talus" run beam/case.yaml --quiet
 [ -s runs/beam/history.csv ] && [ ! -e runs/case ] || fail "$name: no runs/beam"
@@ -18,7 +19,8 @@ expect "a file's case" 0 "$talus" run other.yaml --quiet
 # check: mistakes in the case, in its mesh, in its regions
 expect "check" 0 "$talus" check beam/case.yaml
 expect "check of a wrong value" 2 "$talus" check beam/case.yaml --set materials.rubber.young=-1
-expect "check of a body outside" 2 "$talus" check beam/case.yaml --set 'bodies[0].shape.box={min: [20, 0], max: [28, 1]}'
+expect "check of a body outside" 2 "$talus" check beam/case.yaml --set 'bodies[0].shape.box.min=[20, 0]' \
+  --set 'bodies[0].shape.box.max=[28, 1]'
 expect "check of a wrong boundary" 2 "$talus" check beam/case.yaml --set 'boundary[0].on={boundary: lefd}'
 expect "check of two cases" 2 "$talus" check beam/case.yaml other.yaml
 expect "plot of two runs" 2 "$talus" plot two set three
@@ -52,10 +54,26 @@ reference "$tip" ", newton.max_iteration: 1"
 expect "verify a wrong key" 2 "$talus" verify beam --out wrong
 
 # Every value that a resumed run shall change is looked at, not the first alone
-expect "a run to resume" 1 "$talus" run beam/case.yaml --out cut --quiet --set newton.max_iterations=1 --set analysis.steps=2
-expect "resume with another material" 2 "$talus" run --resume cut --quiet --set newton.max_iterations=20 --set materials.rubber.young=1e6
+expect "a run to resume" 1 "$talus" run beam/case.yaml --out cut --quiet --set analysis.steps=2 \
+  --set newton.max_iterations=1
+expect "resume with another material" 2 "$talus" run --resume cut --quiet --set newton.max_iterations=20 \
+  --set $young=1e6
 says err.txt "a resumed run cannot change materials.rubber.young"
-expect "resume with the material first" 2 "$talus" run --resume cut --quiet --set materials.rubber.young=1e6 --set newton.max_iterations=20
+expect "resume with the material first" 2 "$talus" run --resume cut --quiet --set $young=1e6 \
+  --set newton.max_iterations=20
 expect "resume with a case" 2 "$talus" run beam/case.yaml --resume cut
+
+# A run directory whose case was changed by hand is another run, whatever was changed of what is computed.
+expect "a run with checkpoints" 0 "$talus" run beam/case.yaml --out kept --quiet --set analysis.steps=4 \
+  --set checkpoint.steps=2
+cp kept/case.yaml kept.yaml
+for change in 's/-9.81/-9.8/' 's/young: .*/young: 9.1e7/' 's/density: .*/density: 1001/' \
+  's/poisson: .*/poisson: 0.1/' 's/step: .*/step: 0.2/' \
+  's/points_per_cell: 4/points_per_cell: 9/' 's/method: mpm/method: fem/'; do
+  sed "$change" kept.yaml >kept/case.yaml
+  cmp -s kept.yaml kept/case.yaml && fail "'$change' changes nothing"
+  expect "resume after $change" 2 "$talus" run --resume kept --quiet
+  says err.txt "it is of another case than the case.yaml beside it"
+done
 
 finish

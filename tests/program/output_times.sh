@@ -1,6 +1,6 @@
 #!/bin/sh
-# Rows and states come at the times that the case asks for, neither a step late nor twice nor from a step of nothing that round-off asks for: in
-# one go, and after a resumption between two of them.
+# Rows and states come at the times that the case asks for, neither a step late nor twice nor from a step of nothing
+# that round-off asks for: in one go, and after a resumption between two of them.
 . "$(dirname "$0")/library.sh"
 
 # slider STEP EVERY HISTORY: a block that slides for 1.2 s; nothing acts on it.
@@ -39,7 +39,8 @@ done
 # As many steps as there must be: none is a sliver that rounding left over
 slider 0.01 0.2 0.1 >case.yaml
 expect "no slivers" 0 "$talus" run case.yaml --out whole --quiet --set checkpoint.steps=7 --set checkpoint.keep=100
-[ "$(tail -n 1 whole/history.csv | cut -d, -f2)" = 120 ] || fail "$name: $(tail -n 1 whole/history.csv | cut -d, -f2) steps, not 120"
+steps=$(tail -n 1 whole/history.csv | cut -d, -f2)
+[ "$steps" = 120 ] || fail "$name: $steps steps, not 120"
 multiples "$name" whole 0.2 0.1
 
 # Resumed between two rows, at a row, at a state
@@ -54,6 +55,14 @@ for last in 7 63 70 98; do
   [ "$(ls whole/*.hdf | wc -l)" -eq "$(ls cut/*.hdf | wc -l)" ] || fail "$name: $(ls cut/*.hdf | wc -l) states"
   rm -r cut
 done
+
+# Resumed where nothing is left to do, whatever is said then: no row and no state comes twice
+cp -r whole again
+name="resumed at the end"
+"$talus" run --resume again --quiet >out.txt 2>err.txt
+multiples "$name" again 0.2 0.1
+cmp -s whole/history.csv again/history.csv || fail "$name: another history"
+[ "$(ls whole/*.hdf | wc -l)" -eq "$(ls again/*.hdf | wc -l)" ] || fail "$name: $(ls again/*.hdf | wc -l) states"
 
 # Rows and states by steps
 slider 0.05 '{steps: 6}' '{steps: 4}' >case.yaml

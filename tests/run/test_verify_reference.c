@@ -379,7 +379,8 @@ static void judges_orders(void **state)
   } table[] = {
     {2, 0.25, 2, 0.1, 1, 2, PETSC_TRUE, 2},   {2, 0.5, 2, 0.1, 1, 2, PETSC_FALSE, 1},
     {2, 0.5, 1, 0.1, 1, 2, PETSC_TRUE, 1},    {2, 2, 1, 0.1, 1, 2, PETSC_FALSE, -1},
-    {3, 1. / 9, 2, 0.1, 1, 3, PETSC_TRUE, 2}, {2, 0.5, 2, 0.1, 1, 1.5, PETSC_TRUE, 1}, /* beyond the rows asked for */
+    {2, 0.125, 2, 0.1, 1, 2, PETSC_FALSE, 3}, {3, 1. / 9, 2, 0.1, 1, 3, PETSC_TRUE, 2},
+    {2, 0.5, 2, 0.1, 1, 1.5, PETSC_TRUE, 1}, /* beyond the rows asked for */
     {2, 0.5, 2, 0.1, 1.5, 2, PETSC_TRUE, 1},  {0.5, 0.25, 2, 0.1, 0.5, 1, PETSC_TRUE, 2},
   };
   (void)state;

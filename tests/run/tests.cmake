@@ -1,4 +1,5 @@
 talus_test(run/test_state RANKS 1 2 3)
+talus_test(run/test_output)
 if(NOT TALUS_TEST_SHARED) # it lets allocations fail that the program itself makes, not its libraries
   talus_test(run/test_memory)
 endif()

@@ -1,0 +1,131 @@
+/* The mean stress as an unknown of its own: volumes and energies of states under a pressure that is not theirs. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <string.h>
+#include <cmocka.h>
+#include "../conformance/random.h"
+#include "base/tensor.h"
+#include "material/pressure.h"
+
+#define CALL(call) assert_int_equal((call), 0)
+#define ASSERT_NEAR(a, b, tolerance) assert_true(PetscAbsReal((a) - (b)) <= (tolerance))
+
+static NamedValue constants[] = {
+  {(char *)"young", 1e6}, {(char *)"poisson", 0.45}, {(char *)"", 0}, {(char *)"", 0}, {(char *)"", 0}};
+
+/* A material of the law, far from yielding. */
+static Material mixed_material(const Law *law)
+{
+  static MaterialSpec spec;
+  static const char *const more[] = {"yield_stress", "cohesion", "friction_angle", "dilatancy_angle"};
+  static const PetscReal value[] = {1e6, 1e6, 20, 5};
+  PetscInt n = 2;
+  Material m;
+  Diag *diag;
+  for (int k = 0; k < 4; ++k)
+    for (const LawParameter *p = law->parameters; p->name; ++p)
+      if (!strcmp(p->name, more[k])) constants[n++] = (NamedValue){(char *)more[k], value[k]};
+  spec = (MaterialSpec){
+    .name = (char *)"m", .law = (char *)law->name, .density = 1, .n_parameters = n, .parameters = constants};
+  const Case c = {.formulation = (char *)"mixed", .n_materials = 1, .materials = &spec};
+  CALL(DiagCreate(&diag));
+  CALL(MaterialResolve(&c, 0, diag, &m));
+  assert_int_equal(DiagErrors(diag), 0);
+  CALL(DiagDestroy(&diag));
+  return m;
+}
+
+static void random_increment(Random *random, PetscReal dF[9])
+{
+  for (int i = 0; i < 9; ++i) dF[i] = (i % 4 == 0) + random_real(random, -0.02, 0.02);
+}
+
+/* Lengths times a factor are volumes times its cube, and no other shape. */
+static void test_scale(void **state)
+{
+  Random random = {3};
+  (void)state;
+  for (const Law *const *law = laws; *law; ++law) {
+    if (!(*law)->scale) continue;
+    const Material m = mixed_material(*law);
+    PetscReal old[LAW_MAX_STATE], now[LAW_MAX_STATE], tau[6], dF[9], before, after;
+    law_initial_state(m.law, old);
+    random_increment(&random, dF);
+    assert_int_equal(m.law->update(m.parameters, 1, dF, old, now, tau, NULL), LAW_OK);
+    m.law->volume(1, now, &before);
+    ASSERT_NEAR(before, tensor_det(dF), 1e-12);
+    const PetscReal factor = 1.1, shape = now[3] / now[0];
+    m.law->scale(1, &factor, now);
+    m.law->volume(1, now, &after);
+    ASSERT_NEAR(after / before, 1.331, 1e-12);
+    ASSERT_NEAR(now[3] / now[0], shape, 1e-14);
+  }
+}
+
+/* A point keeps the volume of its displacements, whatever the pressure asks for, over several steps. */
+static void test_volume_is_kept(void **state)
+{
+  Random random = {5};
+  (void)state;
+  for (const Law *const *law = laws; *law; ++law) {
+    if (!(*law)->volume) continue;
+    const Material m = mixed_material(*law);
+    PetscReal old[LAW_MAX_STATE], now[LAW_MAX_STATE], dF[9], J = 1, found;
+    PressureStress s;
+    law_initial_state(m.law, old);
+    for (int step = 0; step < 4; ++step) {
+      const PetscReal p = random_real(&random, -1e5, 1e5);
+      random_increment(&random, dF);
+      J *= tensor_det(dF);
+      assert_int_equal(pressure_update(&m, 1, dF, &p, old, now, PETSC_FALSE, &s), LAW_OK);
+      m.law->volume(1, now, &found);
+      ASSERT_NEAR(found, J, 1e-12);
+      ASSERT_NEAR(s.theta[0], m.volume == VOLUME_LINEAR ? J - 1 : log(J), 1e-12);
+      ASSERT_NEAR(s.pressure[0], p, 1e-8 * 1e5);
+      ASSERT_NEAR((s.tau[0] + s.tau[1] + s.tau[2]) / 3, m.volume == VOLUME_LINEAR ? J * p : p,
+                  m.volume == VOLUME_COUPLED ? 0.05 * 1e6 : 1e-8 * 1e5);
+      memcpy(old, now, sizeof old);
+    }
+  }
+}
+
+/* What is stored of volume is p^2 / 2K where the law keeps it apart from shape; where it does not, what the law stores
+ * at exp(p / K). */
+static void test_energy(void **state)
+{
+  const PetscReal bulk = 1e6 / (3 * (1 - 0.9)), pressures[] = {-2e5, -1e4, 0, 3e4, 1e5};
+  Random random = {7};
+  (void)state;
+  for (const Law *const *law = laws; *law; ++law) {
+    if (!(*law)->volume) continue;
+    const Material m = mixed_material(*law);
+    PetscReal old[LAW_MAX_STATE], now[LAW_MAX_STATE], tau[6], dF[9], J;
+    law_initial_state(m.law, old);
+    random_increment(&random, dF);
+    assert_int_equal(m.law->update(m.parameters, 1, dF, old, now, tau, NULL), LAW_OK);
+    m.law->volume(1, now, &J);
+    const PetscReal none = pressure_energy(&m, now, 0);
+    for (int k = 0; k < 5; ++k) {
+      const PetscReal p = pressures[k], energy = pressure_energy(&m, now, p);
+      if (m.volume != VOLUME_COUPLED) ASSERT_NEAR(energy - none, p * p / (2 * bulk), 1e-12 * bulk);
+      else {
+        PetscReal there[LAW_MAX_STATE];
+        for (PetscInt i = 0; i < m.law->n_state; ++i) there[i] = now[i];
+        for (int i = 0; i < 6; ++i) there[i] *= pow(exp(p / bulk) / J, 2. / 3);
+        ASSERT_NEAR(energy, m.law->energy(m.parameters, there), 1e-12 * bulk);
+      }
+    }
+  }
+}
+
+int main(int argc, char **argv)
+{
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_scale), cmocka_unit_test(test_volume_is_kept),
+                                     cmocka_unit_test(test_energy)};
+  if (PetscInitialize(&argc, &argv, NULL, NULL)) return 1;
+  const int failed = cmocka_run_group_tests(tests, NULL, NULL);
+  return PetscFinalize() ? 1 : failed;
+}
