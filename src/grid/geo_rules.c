@@ -166,11 +166,12 @@ void geo_find_action(const GeoScript *s, GeoFinding *finding)
 static void read_name(const GeoScript *s, size_t end, GeoInclusion *found)
 {
   const size_t at = geo_next(s, end), quote = geo_quote_end(s, at), n = quote > at ? quote - at - 1 : 0;
+  const PetscBool quoted = is_any(s->text[at], "\"'");
+  const PetscBool whole = quote < s->n && n > 0 && n < sizeof found->name ? PETSC_TRUE : PETSC_FALSE;
   found->name[0] = 0;
-  if (!is_any(s->text[at], "\"'")) found->problem = "reads a file whose name is put together";
-  else if (quote == s->n || n >= sizeof found->name || n == 0)
-    found->problem = "reads a file whose name makes no sense";
-  else if (s->text[geo_next(s, quote + 1)] != ';') found->problem = "reads a file whose name is put together";
+  if (!quoted || (whole && s->text[geo_next(s, quote + 1)] != ';'))
+    found->problem = "reads a file whose name is put together";
+  else if (!whole) found->problem = "reads a file whose name makes no sense";
   else (void)snprintf(found->name, sizeof found->name, "%.*s", (int)n, s->text + at + 1);
   if (!found->problem && (strchr(found->name, '\\') || found->name[1] == ':'))
     found->problem = "reads a file whose name makes no sense";

@@ -2,6 +2,7 @@
 #include <errno.h>
 #include <fcntl.h>
 #include <signal.h>
+#include <stdlib.h>
 #include <string.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
@@ -19,12 +20,12 @@
 
 static rlim_t addresses_now(void)
 {
-  unsigned long pages = 0;
+  char text[64] = "";
   FILE *in = fopen("/proc/self/statm", "r");
   if (!in) return 0;
-  if (fscanf(in, "%lu", &pages) != 1) pages = 0;
+  if (!fgets(text, sizeof text, in)) text[0] = 0;
   fclose(in);
-  return (rlim_t)pages * (rlim_t)sysconf(_SC_PAGESIZE);
+  return (rlim_t)strtoul(text, NULL, 10) * (rlim_t)sysconf(_SC_PAGESIZE);
 }
 
 static void LimitMemory(void)

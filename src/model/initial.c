@@ -18,7 +18,7 @@ PetscErrorCode InitialAcceleration(Model *m)
   gravity_at(m->c, 0, g);
   PetscCall(PetscArrayzero(m->du, dofs));
   PetscCall(PetscArrayzero(m->external, dofs));
-  for (PetscInt i = 0; i < dofs; ++i) m->history[i] = -g[i % dim];
+  for (PetscInt i = 0; i < dofs; ++i) m->history[i] = m->c->analysis.damping * s->v[i] - g[i % dim];
   PetscCall(LoadsAdd(m->loads, m->grid, 0, s->filled, s->touched, m->external));
   PetscCall(AddBodyForce(m, 0, m->external));
   PetscCall(PetscArrayzero(m->force, dofs));
