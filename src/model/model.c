@@ -180,8 +180,8 @@ PetscErrorCode ModelCreateFields(Model *m)
 
 PetscErrorCode ModelDestroyFields(Model *m)
 {
-  PetscReal **const nodal[] = {&m->du,   &m->force, &m->external, &m->history, &m->prescribed, &m->reaction,
-                               &m->held, &m->rate,  &m->pressure, &m->volume,  &m->previous};
+  PetscReal **const nodal[] = {&m->du,   &m->force, &m->external, &m->history,  &m->prescribed, &m->reaction,
+                               &m->held, &m->rate,  &m->echo,     &m->pressure, &m->volume,     &m->previous};
 
   PetscFunctionBeginUser;
   for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(nodal); ++k) PetscCall(PetscFree(*nodal[k]));
