@@ -49,7 +49,7 @@ PetscErrorCode RunOpen(Run *r, const RunOptions *options, Diag *diag);
 /* Collective. The same for a run that goes on from its newest checkpoint that is whole. *complete: there is nothing to do. */
 PetscErrorCode RunResume(Run *r, const RunOptions *options, Diag *diag, PetscBool *complete);
 
-/* Ends of a run that is resumed, s: that of the case kept in its directory, and the one asked for now. */
+/* Ends of a run that is resumed, s: that of the case kept in its directory, and the one that is asked for. */
 typedef struct {
   PetscReal before, now;
 } Extension;
