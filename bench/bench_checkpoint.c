@@ -2,8 +2,8 @@
  *
  *   mpiexec -n 2 build/bench/bench_checkpoint [-dim 2] [-points 1000000] [-folder /tmp] [-repeat 3] */
 #include "bench.h"
-#include "io/checkpoint.h"
-#include "model/state.h"
+#include "output/checkpoint/checkpoint.h"
+#include "model/state/state.h"
 
 /* Best times of several, over the slowest rank: the clock's, and this process's own work. */
 typedef struct {

@@ -5,7 +5,7 @@
  *
  * Seconds are those in which a core worked for this process. Steps of 0.1 ms go to 0.05 s, with -full to 0.5 s. */
 #include "bench.h"
-#include "io/case_file.h"
+#include "input/case_file.h"
 
 #define THESIS_SECONDS 290.0 /* the code of the thesis, for the same 0.5 s, on this kind of machine */
 #define END 0.5
@@ -43,7 +43,7 @@ static PetscErrorCode Advance(Model *m, PetscReal end, Outcome *o)
   const PetscReal start = processor_now();
   while (m->time < end * (1 - 1e-12) && !o->gave_up) {
     PetscCall(ModelStep(m, end - m->time, &report));
-    o->gave_up = report.outcome != STEP_ACCEPTED ? PETSC_TRUE : PETSC_FALSE;
+    o->gave_up = report.outcome != STEP_ACCEPTED;
   }
   o->seconds = processor_now() - start;
   o->steps = m->step;

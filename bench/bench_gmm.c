@@ -5,7 +5,7 @@
  * Ratios are taken inside one run, from the best of several rounds in which all methods take turns; seconds are those in which a core worked
  * for this process. The disk stands one cell above the plane at the start, as in the case. */
 #include "bench.h"
-#include "io/case_file.h"
+#include "input/case_file.h"
 
 typedef struct {
   const char *name;
@@ -58,7 +58,7 @@ static PetscErrorCode Advance(Model *m, PetscInt steps, Outcome *o)
   const PetscReal start = processor_now();
   while (m->step < steps && !o->gave_up) {
     PetscCall(ModelStep(m, PETSC_MAX_REAL, &report));
-    o->gave_up = report.outcome != STEP_ACCEPTED ? PETSC_TRUE : PETSC_FALSE;
+    o->gave_up = report.outcome != STEP_ACCEPTED;
   }
   o->seconds = processor_now() - start;
   o->steps = m->step;
@@ -123,7 +123,7 @@ static PetscErrorCode RunAll(const Plan *plan, const char *only)
 
   PetscFunctionBeginUser;
   for (size_t k = 0; k < VARIANTS; ++k)
-    chosen[k] = !only[0] || !strcmp(only, variants[k].name) || (k == 0 && !plan->alone) ? PETSC_TRUE : PETSC_FALSE;
+    chosen[k] = !only[0] || !strcmp(only, variants[k].name) || (k == 0 && !plan->alone);
   for (PetscInt round = 0; round < plan->repeat; ++round)
     for (size_t k = 0; k < VARIANTS; ++k) {
       if (!chosen[k]) continue;

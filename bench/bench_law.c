@@ -1,7 +1,7 @@
 /* Points per second of the laws' batch update, on one core.
  *
  *   cc -O3 -march=native -fno-math-errno -fno-trapping-math -D_GNU_SOURCE -Isrc bench/bench_law.c \
- *      src/material/neo_hookean.c src/material/neo_hookean_split.c src/material/j2.c src/material/mohr_coulomb.c \
+ *      src/material/neo_hookean.c src/material/neo_hookean_split.c src/material/j2.c src/material/mohr_coulomb/mohr_coulomb.c \
  *      src/material/registry.c $(pkg-config --cflags --libs PETSc) $(mpicc --showme:compile) -lm
  *   ./a.out [points per batch, 32]
  *

@@ -5,7 +5,7 @@
  * Each load runs twice, the second time with PETSc's assembled matrix and usual solver in place of what talus chooses: the same steps, the
  * same matrices (to the tolerance of the solvers), other linear solves. Seconds are those in which the core worked for this process. */
 #include "bench.h"
-#include "io/case_file.h"
+#include "input/case_file.h"
 
 #define SETTINGS 6
 

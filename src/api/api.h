@@ -3,7 +3,7 @@
 #pragma once
 #include <petscsys.h>
 #include "talus.h"
-#include "io/case_file.h"
+#include "input/case_file.h"
 #include "model/model.h"
 
 _Static_assert(sizeof(PetscReal) == sizeof(double), "the public interface is written for PETSc with double precision");

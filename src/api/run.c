@@ -31,9 +31,8 @@ static TalusRun *create_run(const Case *c)
   run->n = c->n_measures;
   run->names = calloc(n + 1, sizeof(char *));
   run->values = calloc(n + 1, sizeof(double));
-  PetscBool complete = run->names && run->values ? PETSC_TRUE : PETSC_FALSE;
-  for (size_t i = 0; complete && i < n; ++i)
-    complete = (run->names[i] = strdup(c->measures[i].name)) ? PETSC_TRUE : PETSC_FALSE;
+  PetscBool complete = run->names && run->values;
+  for (size_t i = 0; complete && i < n; ++i) complete = (run->names[i] = strdup(c->measures[i].name)) != NULL;
   if (!complete) TalusRunDestroy(&run);
   return run;
 }

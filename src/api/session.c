@@ -40,7 +40,7 @@ PetscBool talus_is_running(void)
 {
   PetscBool started = PETSC_FALSE, ended = PETSC_FALSE;
   if (PetscInitialized(&started) || PetscFinalized(&ended)) return PETSC_FALSE;
-  return started && !ended ? PETSC_TRUE : PETSC_FALSE;
+  return started && !ended;
 }
 
 int TalusInitialize(int *argc, char ***argv)

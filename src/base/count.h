@@ -12,5 +12,5 @@ static inline PetscInt count_most(PetscInt each) { return PETSC_MAX_INT / PetscM
 static inline PetscBool count_fits(PetscInt had, PetscInt n, PetscInt each, PetscInt most, PetscInt64 *sum)
 {
   *sum = had + (PetscInt64)n * each;
-  return *sum <= most ? PETSC_TRUE : PETSC_FALSE;
+  return *sum <= most;
 }

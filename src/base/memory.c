@@ -40,7 +40,7 @@ static PetscErrorCode Reallocate(size_t bytes, int line, const char *function, c
 PetscErrorCode MemoryInstall(int argc, char **argv)
 {
   const char *options = getenv("PETSC_OPTIONS");
-  PetscBool debug = PetscDefined(USE_DEBUG) || (options && strstr(options, "-malloc")) ? PETSC_TRUE : PETSC_FALSE;
+  PetscBool debug = PetscDefined(USE_DEBUG) || (options && strstr(options, "-malloc"));
   for (int i = 1; i < argc; ++i)
     if (!strncmp(argv[i], "-malloc", 7)) debug = PETSC_TRUE;
   return debug ? 0 : PetscMallocSet(Allocate, Free, Reallocate);

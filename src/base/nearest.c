@@ -1,4 +1,4 @@
-#include "base/diag.h"
+#include "base/diag/diag.h"
 #include <ctype.h>
 #include <string.h>
 

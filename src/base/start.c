@@ -9,7 +9,7 @@ PetscErrorCode StartPetsc(int *argc, char ***argv)
   static char name[] = "talus", *own[] = {name, NULL}; /* PETSc looks for files even so if it gets no words at all */
   char **list = own;
   int n = 1;
-  const PetscBool given = argc && argv && *argc > 0 ? PETSC_TRUE : PETSC_FALSE;
+  const PetscBool given = argc && argv && *argc > 0;
   PetscErrorCode code = MemoryInstall(given ? *argc : 0, given ? *argv : NULL);
   if (!code) code = PetscOptionsSetValue(NULL, "-skip_petscrc", NULL);
   if (!code) code = given ? PetscInitialize(argc, argv, NULL, NULL) : PetscInitialize(&n, &list, NULL, NULL);

@@ -67,7 +67,7 @@ static PetscBool part_of(const PetscInt64 *parts, PetscMPIInt rank, PetscMPIInt 
     sum += parts[r];
     if (r < rank) *first = sum;
   }
-  return sum == total ? PETSC_TRUE : PETSC_FALSE;
+  return sum == total;
 }
 
 PetscErrorCode PartsTake(MPI_Comm comm, Tables *tables, PetscBool *home, char reason[256])
@@ -78,7 +78,7 @@ PetscErrorCode PartsTake(MPI_Comm comm, Tables *tables, PetscBool *home, char re
   PetscFunctionBeginUser;
   PetscCallMPI(MPI_Comm_rank(comm, &rank));
   PetscCallMPI(MPI_Comm_size(comm, &size));
-  *home = parts->rows == size ? PETSC_TRUE : PETSC_FALSE;
+  *home = parts->rows == size;
   for (PetscInt k = 0; k < parts->n && *home && !reason[0]; ++k) {
     Table *table = TablesFind(tables, parts->column[k].name);
     const PetscInt64 *count = TableData(parts, parts->column[k].name, COLUMN_INT64, 1, reason);

@@ -5,7 +5,7 @@
  * top one (the order of VTK). */
 #pragma once
 #include "case/case.h"
-#include "base/tensor.h"
+#include "base/math/tensor.h"
 
 #define CELL_MAX_NODES 8
 

@@ -2,7 +2,7 @@
  *
  * A cloud is padded to whole packs by nodes of weight 0 at the point itself, so no loop has a tail. */
 #pragma once
-#include "base/lanes.h"
+#include "base/math/lanes.h"
 #include "basis/cloud.h"
 
 #define PACK LANES

@@ -1,7 +1,7 @@
 /* Local maximum entropy: Newton on the dual, safeguarded by a line search, and by Newton with a shifted Hessian where the
  * Hessian is no help. One kernel, compiled for two and three dimensions; lengths in units of h. */
 #include "basis/lme.h"
-#include "base/eigen.h"
+#include "base/math/eigen.h"
 
 #define LME_ITERATIONS 100
 #define LME_HALVINGS 30

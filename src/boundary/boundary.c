@@ -53,7 +53,7 @@ static void report_contradiction(const Boundary *b, const Grid *grid, PetscInt n
 static void mark_entry(Boundary *b, const Grid *grid, PetscInt entry, Diag *diag)
 {
   const MotionSpec *m = &b->c->boundary[entry];
-  PetscBool reported = diag ? PETSC_FALSE : PETSC_TRUE;
+  PetscBool reported = !diag;
   for (PetscInt k = 0; k < b->motion[entry].n; ++k) {
     const PetscInt node = b->motion[entry].node[k];
     for (PetscInt d = 0; d < b->dim; ++d) {

@@ -4,7 +4,7 @@
  * motion (`moves`); on a mesh that moves (fem) to the nodes selected at the start. Either way a rotation turns the node's present position
  * about its centre. */
 #pragma once
-#include "grid/cloud.h"
+#include "grid/cloud/cloud.h"
 
 typedef struct {
   PetscInt n, *node; /* local nodes, ghosts too */

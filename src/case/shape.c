@@ -11,7 +11,7 @@ static PetscBool BallContains(const Shape *s, PetscInt dim, const PetscReal *x, 
 {
   PetscReal square = 0;
   for (PetscInt d = 0; d < dim; ++d) square += (x[d] - s->centre[d]) * (x[d] - s->centre[d]);
-  return PetscSqrtReal(square) <= s->radius + tolerance ? PETSC_TRUE : PETSC_FALSE;
+  return PetscSqrtReal(square) <= s->radius + tolerance;
 }
 
 static PetscBool HalfSpaceContains(const Shape *s, PetscInt dim, const PetscReal *x, PetscReal tolerance)
@@ -21,7 +21,7 @@ static PetscBool HalfSpaceContains(const Shape *s, PetscInt dim, const PetscReal
     along += (x[d] - s->point[d]) * s->normal[d];
     length += s->normal[d] * s->normal[d];
   }
-  return along <= tolerance * PetscSqrtReal(length) ? PETSC_TRUE : PETSC_FALSE;
+  return along <= tolerance * PetscSqrtReal(length);
 }
 
 static PetscReal DistanceToSegment(const PetscReal *a, const PetscReal *b, const PetscReal *x)
@@ -39,7 +39,7 @@ static PetscBool PolygonContains(const Shape *s, const PetscReal *x, PetscReal t
   PetscBool inside = PETSC_FALSE;
   for (PetscInt i = 0, j = s->n_vertices - 1; i < s->n_vertices; j = i++) {
     const PetscReal *a = s->vertices + 2 * i, *b = s->vertices + 2 * j;
-    if (DistanceToSegment(a, b, x) <= PetscAbsReal(tolerance)) return tolerance < 0 ? PETSC_FALSE : PETSC_TRUE;
+    if (DistanceToSegment(a, b, x) <= PetscAbsReal(tolerance)) return tolerance >= 0;
     if ((a[1] > x[1]) != (b[1] > x[1]) && x[0] < (b[0] - a[0]) * (x[1] - a[1]) / (b[1] - a[1]) + a[0]) inside = !inside;
   }
   return inside;
@@ -56,8 +56,7 @@ static PetscBool ChildrenContain(const Shape *s, PetscInt dim, const PetscReal *
     return PETSC_TRUE;
   }
   for (PetscInt i = 0; i < s->n_children; ++i) hits += shape_contains(&s->children[i], dim, x, tolerance) ? 1 : 0;
-  return s->kind == SHAPE_UNION ? (hits > 0 ? PETSC_TRUE : PETSC_FALSE)
-                                : (hits == s->n_children ? PETSC_TRUE : PETSC_FALSE);
+  return s->kind == SHAPE_UNION ? (hits > 0) : (hits == s->n_children);
 }
 
 PetscBool shape_contains(const Shape *s, PetscInt dim, const PetscReal *x, PetscReal tolerance)
@@ -74,7 +73,7 @@ PetscBool shape_contains(const Shape *s, PetscInt dim, const PetscReal *x, Petsc
 static void HalfSpaceBounds(const Shape *s, PetscInt dim, PetscReal min[3], PetscReal max[3])
 {
   for (PetscInt d = 0; d < dim; ++d) {
-    PetscBool aligned = s->normal[d] != 0 ? PETSC_TRUE : PETSC_FALSE;
+    PetscBool aligned = s->normal[d] != 0;
     for (PetscInt e = 0; e < dim; ++e)
       if (e != d && s->normal[e] != 0) aligned = PETSC_FALSE;
     if (aligned && s->normal[d] > 0) max[d] = s->point[d];
@@ -89,7 +88,7 @@ static void ChildrenBounds(const Shape *s, PetscInt dim, PetscReal min[3], Petsc
     PetscReal low[3], high[3];
     shape_bounds(&s->children[i], dim, low, high);
     for (PetscInt d = 0; d < dim; ++d) {
-      const PetscBool narrow = s->kind == SHAPE_INTERSECTION ? PETSC_TRUE : PETSC_FALSE;
+      const PetscBool narrow = s->kind == SHAPE_INTERSECTION;
       min[d] = i == 0 ? low[d] : narrow ? PetscMax(min[d], low[d]) : PetscMin(min[d], low[d]);
       max[d] = i == 0 ? high[d] : narrow ? PetscMin(max[d], high[d]) : PetscMax(max[d], high[d]);
     }

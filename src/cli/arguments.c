@@ -8,7 +8,7 @@ PetscBool CliPrints(void)
 {
   PetscMPIInt rank = 0;
   MPI_Comm_rank(PETSC_COMM_WORLD, &rank);
-  return rank == 0 ? PETSC_TRUE : PETSC_FALSE;
+  return rank == 0;
 }
 
 PetscErrorCode CliUsageError(int *exit_code, const char *hint, const char *format, ...)
@@ -103,7 +103,7 @@ static PetscErrorCode CheckWords(const CliUsage *usage, const CliArguments *a, P
 
   PetscFunctionBeginUser;
   snprintf(hint, sizeof(hint), "usage: %.180s", usage->usage);
-  *ok = a->n_words >= usage->min_words && a->n_words <= usage->max_words ? PETSC_TRUE : PETSC_FALSE;
+  *ok = a->n_words >= usage->min_words && a->n_words <= usage->max_words;
   if (a->n_words < usage->min_words) {
     snprintf(hint, sizeof(hint), "usage: %.100s (options of PETSc go to the end: they take the word behind them)",
              usage->usage);
@@ -143,10 +143,7 @@ const char *CliValue(const CliArguments *arguments, const char *name)
   return NULL;
 }
 
-PetscBool CliFlag(const CliArguments *arguments, const char *name)
-{
-  return CliValue(arguments, name) ? PETSC_TRUE : PETSC_FALSE;
-}
+PetscBool CliFlag(const CliArguments *arguments, const char *name) { return CliValue(arguments, name) != NULL; }
 
 PetscInt CliValues(const CliArguments *arguments, const char *name, const char **values)
 {

@@ -1,6 +1,6 @@
 #include <stdio.h>
 #include "cli/cli.h"
-#include "io/case_file.h"
+#include "input/case_file.h"
 #include "run/check.h"
 
 static const CliOption options[] = {

@@ -4,7 +4,7 @@
  * PetscInitialize. It runs on every rank of PETSC_COMM_WORLD and sets the exit code that all ranks return. */
 #pragma once
 #include <petscsys.h>
-#include "base/diag.h"
+#include "base/diag/diag.h"
 
 /* Exit codes, the same for every subcommand. */
 typedef enum { CLI_DONE = 0, CLI_GAVE_UP = 1, CLI_BAD_INPUT = 2, CLI_OUT_OF_TOLERANCE = 3 } CliExit;

@@ -3,7 +3,7 @@
 #include "basis/cell.h"
 #include "case/fields.h"
 #include "cli/cli.h"
-#include "io/schema.h"
+#include "input/schema/schema.h"
 #include "material/law.h"
 
 static const CliUsage usage = {

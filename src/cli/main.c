@@ -82,13 +82,13 @@ static PetscErrorCode Dispatch(int argc, char **argv, int *exit_code)
 
 static PetscBool IsPetscOption(const char *word)
 {
-  return word[0] == '-' && isalpha((unsigned char)word[1]) && strcmp(word, "-h") ? PETSC_TRUE : PETSC_FALSE;
+  return word[0] == '-' && isalpha((unsigned char)word[1]) && strcmp(word, "-h");
 }
 
 /* Does the word behind a PETSc option belong to it? PETSc's own rule: yes, unless it is an option. */
 static PetscBool IsValue(const char *word)
 {
-  return word[0] != '-' || isdigit((unsigned char)word[1]) || word[1] == '.' ? PETSC_TRUE : PETSC_FALSE;
+  return word[0] != '-' || isdigit((unsigned char)word[1]) || word[1] == '.';
 }
 
 static PetscBool IsCommand(const char *word)

@@ -4,7 +4,7 @@
 #include <string.h>
 #include <sys/stat.h>
 #include "cli/cli.h"
-#include "io/plot.h"
+#include "picture/plot.h"
 
 static const CliOption options_known[] = {
   {"field", "NAME", "the field that gives the colours (default: displacement)"},
@@ -35,7 +35,7 @@ static PetscBool Number(const char *text, PetscReal *value)
 {
   char *end;
   *value = (PetscReal)strtod(text, &end);
-  return end != text && !*end && !PetscIsInfOrNanReal(*value) ? PETSC_TRUE : PETSC_FALSE;
+  return end != text && !*end && !PetscIsInfOrNanReal(*value);
 }
 
 static PetscBool Range(const char *text, PetscReal range[2])
@@ -45,7 +45,7 @@ static PetscBool Range(const char *text, PetscReal range[2])
   if (!text[n] || n == 0 || n >= sizeof first) return PETSC_FALSE;
   memcpy(first, text, n);
   first[n] = 0;
-  return Number(first, &range[0]) && Number(text + n + 1, &range[1]) && range[0] < range[1] ? PETSC_TRUE : PETSC_FALSE;
+  return Number(first, &range[0]) && Number(text + n + 1, &range[1]) && range[0] < range[1];
 }
 
 static PetscBool Size(const char *text, int *width, int *height)
@@ -64,13 +64,13 @@ static PetscBool Size(const char *text, int *width, int *height)
 static PetscBool Times(const char *text, PlotOptions *options)
 {
   char *end;
-  options->all_times = !strcmp(text, "all") ? PETSC_TRUE : PETSC_FALSE;
+  options->all_times = !strcmp(text, "all");
   if (options->all_times || !strcmp(text, "last")) return PETSC_TRUE;
   for (;; text = end + 1) {
     const PetscReal time = (PetscReal)strtod(text, &end);
     if (end == text || PetscIsInfOrNanReal(time) || options->n_times == PLOT_MAX_STATES) return PETSC_FALSE;
     options->times[options->n_times++] = time;
-    if (*end != ',') return *end ? PETSC_FALSE : PETSC_TRUE;
+    if (*end != ',') return !*end;
   }
 }
 
@@ -78,7 +78,7 @@ static PetscBool Columns(const char *text, PetscInt *columns)
 {
   char *end;
   *columns = (PetscInt)strtol(text, &end, 10);
-  return end != text && !*end && *columns >= 1 && *columns <= PLOT_MAX_STATES ? PETSC_TRUE : PETSC_FALSE;
+  return end != text && !*end && *columns >= 1 && *columns <= PLOT_MAX_STATES;
 }
 
 /* From words to options; a complaint and PETSC_FALSE in *ok if they make no sense. */
@@ -95,7 +95,7 @@ static PetscErrorCode Understand(const CliArguments *arguments, PlotOptions *opt
   options->component = CliValue(arguments, "component");
   options->out = CliValue(arguments, "out");
   options->grid = CliFlag(arguments, "grid");
-  options->has_range = range ? PETSC_TRUE : PETSC_FALSE;
+  options->has_range = range != NULL;
   options->up = up ? tolower((unsigned char)up[0]) - 'x' : 2;
   if (time && !Times(time, options))
     PetscCall(

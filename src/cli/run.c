@@ -3,9 +3,9 @@
 #include <string.h>
 #include <unistd.h>
 #include "cli/cli.h"
-#include "io/case_file.h"
+#include "input/case_file.h"
 #include "run/run.h"
-#include "run/verify.h"
+#include "verify/verify.h"
 
 static const CliOption options_known[] = {
   {"set", "PATH=VALUE", "change a value of the case, e.g. --set materials.rubber.young=1e6; may be given often"},

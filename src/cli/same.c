@@ -42,7 +42,7 @@ PetscErrorCode CliSameCommand(int argc, char **argv, PetscBool *same, int *exit_
   PetscCall(ShareText(mine, 0, &first));
   other = strcmp(mine, first) ? rank : size;
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &other, 1, MPI_INT, MPI_MIN, PETSC_COMM_WORLD));
-  *same = other == size ? PETSC_TRUE : PETSC_FALSE;
+  *same = other == size;
   if (!*same) {
     PetscCall(ShareText(mine, other, &odd));
     PetscCall(CliUsageError(exit_code,

@@ -1,6 +1,6 @@
 #include <stdio.h>
 #include "cli/cli.h"
-#include "io/case_file.h"
+#include "input/case_file.h"
 
 static const CliOption options[] = {
   {"json", NULL, "as JSON Schema (draft 2020-12), for the completion of editors"},

@@ -1,6 +1,6 @@
 /* talus verify: is what talus computes right? */
 #include "cli/cli.h"
-#include "run/verify.h"
+#include "verify/verify.h"
 
 static const CliOption options_known[] = {
   {"run", "RUN_DIR", "run nothing: compare this run with the rows whose case it is"},

@@ -63,10 +63,7 @@ KERNEL void cell_cut(const int dim, const int nn, const WeakFormInput *in, const
     }
 }
 
-KERNEL PetscBool wants_tangent(const WeakFormOutput *out)
-{
-  return out->values || out->singles ? PETSC_TRUE : PETSC_FALSE;
-}
+KERNEL PetscBool wants_tangent(const WeakFormOutput *out) { return out->values || out->singles; }
 
 KERNEL void cell_prefetch(const int dim, const int nn, PetscInt group, const WeakFormOutput *out)
 {

@@ -195,7 +195,7 @@ KERNEL void cloud_points(const int dim, const WeakFormInput *in, WeakFormOutput 
   Batch b;
   CloudWork w;
   for (PetscInt first = 0; first < n; first += b.n) {
-    const LawStatus status = cloud_batch(dim, in, first, n, out->values ? PETSC_TRUE : PETSC_FALSE, &b);
+    const LawStatus status = cloud_batch(dim, in, first, n, out->values != NULL, &b);
     if (status > out->status) {
       out->status = status;
       out->bad_point = first;

@@ -4,8 +4,8 @@
  * the compiler's, since it leaves loops of such fixed short length scalar. g is dim rows, the cell force dim rows, the cell
  * matrix nn x dim x dim rows. */
 #pragma once
-#include "base/lanes.h"
-#include "base/tensor.h"
+#include "base/math/lanes.h"
+#include "base/math/tensor.h"
 #include "formulation/formulation.h"
 
 #define KERNEL static inline __attribute__((always_inline))

@@ -21,8 +21,7 @@ static inline LawStatus batch_law(const WeakFormInput *in, PetscBool tangent, Ba
       for (PetscInt s = 0; s < n_state; ++s) b->old[k * n_state + s] = old[k * stride + s];
     old = b->old;
   }
-  const PetscBool plane =
-    in->kinematics == KINEMATICS_PLANE_STRAIN && material->law->update_plane ? PETSC_TRUE : PETSC_FALSE;
+  const PetscBool plane = in->kinematics == KINEMATICS_PLANE_STRAIN && material->law->update_plane;
   return (plane ? material->law->update_plane : material->law->update)(material->parameters, b->n, b->dF, old, b->state,
                                                                        b->tau, tangent ? b->c : NULL);
 }

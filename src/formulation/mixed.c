@@ -200,7 +200,7 @@ KERNEL void add_point(const int dim, const int nn, const WeakFormInput *in, Pets
 KERNEL void assemble_points(const int dim, const int nn, const WeakFormInput *in, WeakFormOutput *out)
 {
   const Support *support = in->support;
-  const PetscBool tangent = out->values ? PETSC_TRUE : PETSC_FALSE;
+  const PetscBool tangent = out->values != NULL;
   const PetscInt n = points_in_groups(support);
   PetscInt group = 0;
   CellWork w;

@@ -1,6 +1,6 @@
 /* What the formulations share in their walk over the points: batches of one material, and the acceptance of a step. */
 #pragma once
-#include "base/tensor.h"
+#include "base/math/tensor.h"
 #include "formulation/formulation.h"
 
 /* Lost points stand last and are in no group. */

@@ -21,7 +21,7 @@ static PetscErrorCode BlockType(PetscInt components, MPI_Datatype *type)
 static PetscBool alone(const Grid *grid)
 {
   PetscMPIInt size;
-  return MPI_Comm_size(grid->comm, &size) == MPI_SUCCESS && size == 1 ? PETSC_TRUE : PETSC_FALSE;
+  return MPI_Comm_size(grid->comm, &size) == MPI_SUCCESS && size == 1;
 }
 
 /* Owners to ghosts, or the sum of all to the owners. */

@@ -1,5 +1,5 @@
 /* The grid as others see it: which builder, which search, and its end. */
-#include "grid/cloud.h"
+#include "grid/cloud/cloud.h"
 #include "grid/grid_private.h"
 
 PetscErrorCode GridCreate(MPI_Comm comm, const Case *c, GridWeight weight, void *context, Diag *diag, Grid **grid)

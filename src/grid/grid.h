@@ -8,7 +8,7 @@
 #include <petscsf.h>
 #include <petscdmplex.h>
 #include "basis/cell.h"
-#include "base/diag.h"
+#include "base/diag/diag.h"
 #include "base/table.h"
 #include "case/case.h"
 

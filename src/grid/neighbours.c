@@ -1,5 +1,5 @@
 #include "grid/neighbours.h"
-#include "base/lanes.h"
+#include "base/math/lanes.h"
 
 /* Bins over the bounding box; stragglers far away must not make them countless. */
 static void choose_bins(Neighbours *b, PetscInt n, const PetscReal *min, const PetscReal *max, PetscReal size)
@@ -32,7 +32,7 @@ static inline PetscInt bin_of(const Neighbours *b, const PetscReal *x)
 
 static inline PetscBool is_taken(const unsigned char *skip, PetscInt n, PetscInt i)
 {
-  return !skip || i >= n || !skip[i] ? PETSC_TRUE : PETSC_FALSE;
+  return !skip || i >= n || !skip[i];
 }
 
 /* Bounds of the positions taken; returns how many there are. */
@@ -92,7 +92,7 @@ static inline PetscBool stands_behind(const Neighbours *b, PetscInt i, PetscInt 
 {
   for (PetscInt d = 0; d < b->dim; ++d) {
     const PetscReal off = b->at[i * b->dim + d] - b->at[j * b->dim + d];
-    if (off != 0) return off > 0 ? PETSC_TRUE : PETSC_FALSE;
+    if (off != 0) return off > 0;
   }
   return PETSC_FALSE;
 }
@@ -194,7 +194,7 @@ static inline PetscBool count_nearer(PetscInt n, PetscReal *distance2, PetscInt 
     place[i] = (PetscInt)nearer[i / LANES][i % LANES];
     alone += equal[i / LANES][i % LANES] == 1;
   }
-  return alone == n ? PETSC_TRUE : PETSC_FALSE;
+  return alone == n;
 }
 
 PetscInt neighbours_within(const Neighbours *b, const PetscReal *x, PetscReal radius, PetscInt max, PetscInt *item,

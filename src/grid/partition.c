@@ -68,7 +68,7 @@ static PetscErrorCode ShareDestroy(Share *share)
 
 static inline PetscMPIInt middle_rank(const Part *part) { return part->first + (part->last - part->first) / 2; }
 
-static PetscBool part_divides(const Part *part) { return part->last - part->first > 1 ? PETSC_TRUE : PETSC_FALSE; }
+static PetscBool part_divides(const Part *part) { return part->last - part->first > 1; }
 
 /* Both children of a part, at 2p and 2p + 1 of the next level; a part of one rank goes on as its
  * own first child. */

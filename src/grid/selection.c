@@ -4,17 +4,14 @@
  * shared node. */
 #include "grid/grid_private.h"
 
-static PetscBool has_range(const Selector *on)
-{
-  return on->has[0] || on->has[1] || on->has[2] ? PETSC_TRUE : PETSC_FALSE;
-}
+static PetscBool has_range(const Selector *on) { return on->has[0] || on->has[1] || on->has[2]; }
 
 /* Does the position satisfy the ranges and the shape? */
 static PetscBool takes_position(const Grid *grid, const Selector *on, PetscReal tolerance, const PetscReal *x)
 {
   for (PetscInt d = 0; d < grid->dim; ++d)
     if (on->has[d] && (x[d] < on->min[d] - tolerance || x[d] > on->max[d] + tolerance)) return PETSC_FALSE;
-  return !on->has_shape || shape_contains(&on->shape, grid->dim, x, tolerance) ? PETSC_TRUE : PETSC_FALSE;
+  return !on->has_shape || shape_contains(&on->shape, grid->dim, x, tolerance);
 }
 
 static PetscReal selection_tolerance(const Grid *grid)

@@ -1,5 +1,5 @@
 /* A hash table of small sets of nodes, by which the two cells of a face find each other. */
-#include "grid/msh.h"
+#include "grid/gmsh/msh.h"
 
 struct TupleTable {
   PetscInt width, n;

@@ -4,8 +4,8 @@
  * depend on the batch it came in, to the last bit. Arrays of points stand in memory point by point; here each component
  * is one Lanes. */
 #pragma once
-#include "base/lanes.h"
-#include "base/tensor.h"
+#include "base/math/lanes.h"
+#include "base/math/tensor.h"
 #include "material/law.h"
 
 /* to[k] = component k of the n points at `from`, `components` numbers each. */

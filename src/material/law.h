@@ -4,7 +4,7 @@
  * plane strain and axisymmetry embed their kinematics. A law works on a batch of points at once,
  * so that nothing is called through a pointer inside the loop over points. */
 #pragma once
-#include "base/diag.h"
+#include "base/diag/diag.h"
 #include "case/case.h"
 
 #define LAW_MAX_PARAMETERS 16

@@ -11,8 +11,8 @@
  * all others zero. The second form has no cancellation once the law supplies the divided difference r, which stays
  * within [0, 2 mu]. It takes the place of the thesis' 3.147, whose terms grow like 1 / x and cancel. */
 #pragma once
-#include "base/eigen.h"
-#include "base/tensor.h"
+#include "base/math/eigen.h"
+#include "base/math/tensor.h"
 #include <math.h>
 
 /* Voigt rows of n_A n_A (A = 1, 2, 3) and of n_A n_B + n_B n_A (12, 23, 31). */

@@ -1,6 +1,6 @@
 /* Shape and volume apart: what the laws with p = K (J - 1) or p = K ln J / J share, off the hot path. */
 #pragma once
-#include "base/tensor.h"
+#include "base/math/tensor.h"
 #include "material/law.h"
 #include <math.h>
 

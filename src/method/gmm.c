@@ -9,7 +9,7 @@ static void choose_rule(const Stage *s, Gmm *g)
   static const SupportRule rule[] = {SUPPORT_ADAPTIVE, SUPPORT_NEAREST, SUPPORT_FIXED};
   static const CloudOrder order[] = {CLOUD_LINEAR, CLOUD_BILINEAR, CLOUD_QUADRATIC};
   const BasisSpec *b = &s->c->basis;
-  const PetscBool mls = b->kind == BASIS_MLS ? PETSC_TRUE : PETSC_FALSE;
+  const PetscBool mls = b->kind == BASIS_MLS;
   g->rule.h = s->grid->cloud->spacing;
   g->rule.support = mls ? support_default_mls : support_default_lme;
   g->rule.support.rule = rule[b->choice];
@@ -27,8 +27,7 @@ static void choose_rule(const Stage *s, Gmm *g)
   };
   g->at_nodes = g->rule;
   if (!mls) g->at_nodes.basis = (CloudBasis){.kind = CLOUD_MLS, .effective_radius = 1 / PetscSqrtReal(b->gamma)};
-  g->constraints =
-    b->essential == ESSENTIAL_CONSTRAINTS || (b->essential == ESSENTIAL_AUTO && mls) ? PETSC_TRUE : PETSC_FALSE;
+  g->constraints = b->essential == ESSENTIAL_CONSTRAINTS || (b->essential == ESSENTIAL_AUTO && mls);
 }
 
 static PetscErrorCode GmmStart(Stage *s)

@@ -96,7 +96,7 @@ static PetscErrorCode CarryCreate(const Stage *s, Carry *c)
   for (PetscInt node = 0, i = 0; node < n; ++node)
     for (PetscInt d = 0; d < dim; ++d, ++i) {
       const PetscReal bound = c->bound[2 * node], around = c->bound[2 * node + 1];
-      const PetscBool counts = bound > 0 && s->mass[node] * bound > LIGHT * around ? PETSC_TRUE : PETSC_FALSE;
+      const PetscBool counts = bound > 0 && s->mass[node] * bound > LIGHT * around;
       const PetscReal inverse = counts && !s->boundary->fixed[i] ? 1 / bound : 0;
       c->x[node * width + d] = s->v[i];
       c->x[node * width + dim + d] = s->a[i];
@@ -179,8 +179,7 @@ static PetscErrorCode Project(const Carry *c)
   PetscCall(Whole(c, whole));
   do {
     for (int f = 0; f < MOTIONS; ++f)
-      done[f] =
-        now[f] <= PetscSqr(ENOUGH) * start[f] || now[f] <= PetscSqr(NOTHING) * whole[f] ? PETSC_TRUE : PETSC_FALSE;
+      done[f] = now[f] <= PetscSqr(ENOUGH) * start[f] || now[f] <= PetscSqr(NOTHING) * whole[f];
     if (done[VELOCITY] && done[ACCELERATION]) break;
     PetscCall(Sweep(c, done, now, grow));
   } while (++sweep < MAX_SWEEPS);

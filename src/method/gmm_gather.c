@@ -202,10 +202,10 @@ static PetscErrorCode Release(Stage *s)
   if (!s->gmm->constraints) PetscFunctionReturn(0);
   PetscCall(PetscCalloc1(s->grid->n_nodes * dim, &state));
   for (PetscInt k = 0; k < c->n; ++k) {
-    const PetscBool active = s->touched[c->at[k]] && own_share(c, k) > SHARE ? PETSC_TRUE : PETSC_FALSE;
+    const PetscBool active = s->touched[c->at[k]] && own_share(c, k) > SHARE;
     s->touched[c->twin[k]] = active;
     for (PetscInt d = 0; d < dim; ++d) {
-      const PetscBool held = s->boundary->fixed[c->at[k] * dim + d] ? PETSC_TRUE : PETSC_FALSE;
+      const PetscBool held = s->boundary->fixed[c->at[k] * dim + d] != 0;
       state[c->at[k] * dim + d] = active && held ? DOF_RELEASED : DOF_USUAL;
       state[c->twin[k] * dim + d] = held ? DOF_USUAL : DOF_UNUSED;
     }

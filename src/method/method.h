@@ -5,8 +5,8 @@
 #include "boundary/loads.h"
 #include "material/law.h"
 #include "points/support.h"
-#include "solve/constraints.h"
-#include "solve/newmark.h"
+#include "solve/system/constraints.h"
+#include "solve/newton/newmark.h"
 
 typedef enum {
   DOF_USUAL,    /* prescribed or free as the boundary says */

@@ -83,7 +83,7 @@ static PetscErrorCode Stabilise(Stage *s)
 {
   const Support *w = s->support;
   const PetscInt dim = s->grid->dim;
-  const PetscBool hourglass = s->grid->nodes_per_cell > dim + 1 ? PETSC_TRUE : PETSC_FALSE;
+  const PetscBool hourglass = s->grid->nodes_per_cell > dim + 1;
   PetscReal x[3 * CELL_MAX_NODES];
 
   PetscFunctionBeginUser;

@@ -39,7 +39,7 @@ static PetscErrorCode StillFits(const Model *m, const unsigned char *occupied, P
     local[2] += m->enabled[c];
   }
   PetscCall(MPIU_Allreduce(local, all, 3, MPIU_INT, MPI_SUM, m->comm));
-  *fits = m->system->builds && !all[0] && all[2] <= 3 * all[1] + 200 ? PETSC_TRUE : PETSC_FALSE;
+  *fits = m->system->builds && !all[0] && all[2] <= 3 * all[1] + 200;
   PetscFunctionReturn(0);
 }
 
@@ -91,7 +91,7 @@ static PetscErrorCode FindSlots(Model *m, PetscBool *complete)
 
   PetscFunctionBeginUser;
   PetscCall(SystemSlots(m->system, m->stage->support, &here));
-  here = here && constraints_find_slots(m->stage->constraints, m->system) ? PETSC_TRUE : PETSC_FALSE;
+  here = here && constraints_find_slots(m->stage->constraints, m->system);
   PetscCallMPI(MPI_Allreduce(&here, complete, 1, MPIU_BOOL, MPI_LAND, m->comm));
   PetscFunctionReturn(0);
 }

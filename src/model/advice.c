@@ -27,9 +27,8 @@ static PetscBool flows_at_constant_volume(const MaterialSpec *spec, const Materi
  * hexahedron asks for little (and holds little: see seeding). */
 static PetscBool cells_lock(const Model *m, const BodySpec *body)
 {
-  const PetscBool simplex =
-    m->grid->type == CELL_TRIANGLE || m->grid->type == CELL_TETRAHEDRON ? PETSC_TRUE : PETSC_FALSE;
-  return simplex || body->points_per_cell > 1 ? PETSC_TRUE : PETSC_FALSE;
+  const PetscBool simplex = m->grid->type == CELL_TRIANGLE || m->grid->type == CELL_TETRAHEDRON;
+  return simplex || body->points_per_cell > 1;
 }
 
 static void hint_mixed(const Model *m, const Material *material, Diag *diag)
@@ -76,9 +75,9 @@ static PetscBool holds_side(const Grid *grid, const MotionSpec *entry, PetscInt 
 {
   const PetscReal at = high ? grid->max[axis] : grid->min[axis], slack = 1e-9 * (grid->max[axis] - grid->min[axis]);
   if (!entry->component[axis] && entry->kind != MOTION_ROTATION) return PETSC_FALSE;
-  if (entry->on.boundary) return strcmp(entry->on.boundary, sides[axis][high]) ? PETSC_FALSE : PETSC_TRUE;
+  if (entry->on.boundary) return !strcmp(entry->on.boundary, sides[axis][high]);
   if (!entry->on.has[axis]) return PETSC_TRUE;
-  return at >= entry->on.min[axis] - slack && at <= entry->on.max[axis] + slack ? PETSC_TRUE : PETSC_FALSE;
+  return at >= entry->on.min[axis] - slack && at <= entry->on.max[axis] + slack;
 }
 
 /* A floor by its name, while gravity points elsewhere and nothing is held there. */

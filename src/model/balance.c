@@ -57,7 +57,7 @@ static PetscBool is_due(const Model *m)
   if (m->step == 0) return PETSC_FALSE;
   if (b->imbalance <= m->c->parallel.imbalance) return PETSC_FALSE;
   if (b->reached == 0 || m->step - b->tried >= RETRY_AFTER) return PETSC_TRUE;
-  return b->imbalance > 1 + WORSENED * (b->reached - 1) ? PETSC_TRUE : PETSC_FALSE;
+  return b->imbalance > 1 + WORSENED * (b->reached - 1);
 }
 
 static void weigh_cells(const Model *m, PetscReal *weight)

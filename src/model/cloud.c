@@ -76,7 +76,7 @@ PetscErrorCode ModelWarnOfObstacles(const Model *m, Diag *diag)
   for (PetscInt p = 0; p < w->n_groups; ++p) {
     PetscBool near = PETSC_FALSE, stands = PETSC_FALSE;
     for (PetscInt i = w->node_start[p]; i < w->node_start[p + 1]; ++i) {
-      const PetscBool obstacle = m->grid->cloud->obstacle[w->node[i]] > 0 ? PETSC_TRUE : PETSC_FALSE;
+      const PetscBool obstacle = m->grid->cloud->obstacle[w->node[i]] > 0;
       near |= obstacle;
       stands |= !obstacle && is_held(m, w->node[i]);
     }

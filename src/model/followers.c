@@ -47,7 +47,7 @@ static PetscErrorCode FindUncarried(Model *m, Uncarried *u, PetscBool *any)
     found = 1;
   }
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &found, 1, MPI_INT, MPI_MAX, m->comm));
-  *any = found ? PETSC_TRUE : PETSC_FALSE;
+  *any = found != 0;
   if (found) PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, u, (PetscMPIInt)(7 * n), MPIU_REAL, MPIU_SUM, m->comm));
   for (PetscInt k = 0; k < n && found; ++k)
     for (int d = 0; d < 3 && u[k].n > 0; ++d) u[k].place[d] /= u[k].n;
@@ -59,7 +59,7 @@ static PetscBool has_followers(const Model *m)
 {
   for (PetscInt k = 0; k < m->c->n_measures; ++k)
     if (m->c->measures[k].kind <= MEASURE_VELOCITY) return PETSC_TRUE;
-  return m->c->n_loads ? PETSC_TRUE : PETSC_FALSE;
+  return m->c->n_loads != 0;
 }
 
 PetscErrorCode FollowersEnd(Model *m)

@@ -70,7 +70,7 @@ static PetscBool stress_point(Points *points, PetscInt p, const Material *materi
 /* A stress of weight needs weight, from the start on. */
 static PetscBool check_gravity(const Case *c, const Upwards *u, Diag *diag)
 {
-  const PetscBool any = c->gravity[0] != 0 || c->gravity[1] != 0 || c->gravity[2] != 0 ? PETSC_TRUE : PETSC_FALSE;
+  const PetscBool any = c->gravity[0] != 0 || c->gravity[1] != 0 || c->gravity[2] != 0;
   char path[64];
   PetscInt b = 0;
   if (u->g > 0) return PETSC_TRUE;

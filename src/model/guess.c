@@ -9,15 +9,14 @@
 /* Only nodes that stay where they are have increments that mean something one step later; those of a mesh know their own velocity. */
 static PetscBool guess_follows(const Model *m)
 {
-  return m->c->analysis.type == ANALYSIS_DYNAMIC && m->method->points_move && !m->grid->cloud ? PETSC_TRUE
-                                                                                              : PETSC_FALSE;
+  return m->c->analysis.type == ANALYSIS_DYNAMIC && m->method->points_move && !m->grid->cloud;
 }
 
 PetscInt guess_order(const Model *m, FirstGuess order[GUESS_N])
 {
   PetscInt n = 0;
   if (m->c->analysis.type == ANALYSIS_DYNAMIC) {
-    const PetscBool known = guess_follows(m) && m->guess.step > 0 ? PETSC_TRUE : PETSC_FALSE;
+    const PetscBool known = guess_follows(m) && m->guess.step > 0;
     if (known && m->guess.previous) order[n++] = GUESS_PREVIOUS;
     order[n++] = GUESS_INERTIA;
     if (known && !m->guess.previous) order[n++] = GUESS_PREVIOUS;
@@ -30,8 +29,7 @@ static void guess_inertia(const Model *m, PetscReal dt, PetscReal *du)
 {
   const Newmark newmark = newmark_of(&m->c->analysis, dt);
   for (PetscInt node = 0; node < m->grid->n_nodes; ++node) {
-    const PetscBool moves =
-      m->stage->touched[node] && !(m->grid->cloud && cloud_is_twin(m->grid, node)) ? PETSC_TRUE : PETSC_FALSE;
+    const PetscBool moves = m->stage->touched[node] && !(m->grid->cloud && cloud_is_twin(m->grid, node));
     for (PetscInt d = 0, i = node * m->dim; d < m->dim; ++d, ++i)
       du[i] = moves ? newmark_guess(&newmark, m->stage->v[i], m->stage->a[i]) : 0;
   }
@@ -66,7 +64,7 @@ PetscErrorCode GuessLearn(Model *m, PetscReal dt)
       local[1] += before * before;
     }
   PetscCall(MPIU_Allreduce(local, sum, 2, MPIU_REAL, MPI_SUM, m->comm));
-  m->guess = (Guess){.step = dt, .previous = sum[1] < sum[0] ? PETSC_TRUE : PETSC_FALSE};
+  m->guess = (Guess){.step = dt, .previous = sum[1] < sum[0]};
   for (PetscInt i = 0; i < m->grid->n_nodes * m->dim; ++i) m->previous[i] = m->fixed[i] ? 0 : m->du[i];
   PetscFunctionReturn(0);
 }
@@ -109,7 +107,7 @@ PetscErrorCode GuessFromTables(Model *m, const Tables *tables, char reason[256])
     snprintf(reason, 256, "guess makes no sense");
     PetscFunctionReturn(0);
   }
-  m->guess = (Guess){.step = *step, .previous = *previous ? PETSC_TRUE : PETSC_FALSE};
+  m->guess = (Guess){.step = *step, .previous = *previous};
   PetscCall(NodesFromTable(m->grid, PETSC_FALSE, 1, &field, increments, reason));
   PetscFunctionReturn(0);
 }

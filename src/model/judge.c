@@ -1,7 +1,7 @@
 /* What Newton's method found is an equilibrium; whether it is the one that follows from the last state is another question. An implicit step may
  * leap to a solution far away, where a body lies turned over or drawn out to many times its length, and all balances hold there. Such a step is
  * cut: on a shorter one the solution that is connected with the last state is the nearer one (docs/theory.md, "Steps that leap"). */
-#include "base/tensor.h"
+#include "base/math/tensor.h"
 #include "model/model_private.h"
 
 #define MOST_STRETCH 10  /* in one step, or to that part: a soft column under its weight may be pressed to an eighth */
@@ -35,7 +35,7 @@ static PetscBool hardly_moved(const Model *m)
   for (PetscInt k = 0; k < m->system->n_active; ++k)
     for (PetscInt d = 0, i = m->system->active[k] * m->dim; d < m->dim; ++d, ++i)
       largest = PetscMax(largest, PetscAbsReal(m->du[i]));
-  return !m->grid->cloud && largest < HARDLY_MOVED * m->grid->smallest ? PETSC_TRUE : PETSC_FALSE;
+  return !m->grid->cloud && largest < HARDLY_MOVED * m->grid->smallest;
 }
 
 PetscErrorCode JudgeStep(const Model *m, StepReport *report)

@@ -11,10 +11,7 @@ static PetscReal load_at(const Case *c, const Amplitude *amplitude, PetscReal t)
   return amplitude_value(amplitude, t, t / c->analysis.end);
 }
 
-static PetscBool weighs(const Case *c)
-{
-  return c->gravity[0] != 0 || c->gravity[1] != 0 || c->gravity[2] != 0 ? PETSC_TRUE : PETSC_FALSE;
-}
+static PetscBool weighs(const Case *c) { return c->gravity[0] != 0 || c->gravity[1] != 0 || c->gravity[2] != 0; }
 
 /* Does any load grow at time t, over a step that led there or away from it? */
 static PetscBool loads_grow(const Case *c, PetscReal t, PetscReal dt)
@@ -23,7 +20,7 @@ static PetscBool loads_grow(const Case *c, PetscReal t, PetscReal dt)
   for (PetscInt k = -1; k < c->n_loads; ++k) {
     const Amplitude *a = k < 0 ? &c->gravity_amplitude : &c->loads[k].amplitude;
     if (k < 0 && !weighs(c)) continue;
-    grow |= PetscAbsReal(load_at(c, a, t + dt)) > PetscAbsReal(load_at(c, a, t)) ? PETSC_TRUE : PETSC_FALSE;
+    grow |= PetscAbsReal(load_at(c, a, t + dt)) > PetscAbsReal(load_at(c, a, t));
   }
   return grow;
 }
@@ -87,13 +84,11 @@ static void factors_text(const Case *c, PetscReal t, char *text, size_t size)
 static PetscBool looks_like_limit(const Model *m, const StepReport *report, PetscReal tried)
 {
   const Softening *limit = &m->limit;
-  const PetscBool small = report->dt <= m->c->analysis.step / 128 ? PETSC_TRUE : PETSC_FALSE;
+  const PetscBool small = report->dt <= m->c->analysis.step / 128;
   if (limit->before == 0) return PETSC_FALSE; /* fewer than two steps */
   if (limit->last >= SOFTENED * limit->least && limit->last >= limit->before) return PETSC_TRUE;
   return small && anything_yields(m) && report->newton.status == LAW_OK && tried >= RAN_AWAY * limit->least &&
-             tried <= PETSC_MAX_REAL
-           ? PETSC_TRUE
-           : PETSC_FALSE;
+         tried <= PETSC_MAX_REAL;
 }
 
 PetscErrorCode LimitDescribe(const Model *m, StepReport *report)

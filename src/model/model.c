@@ -108,8 +108,7 @@ static PetscErrorCode CreatePoints(Model *m, Outline *outline, Diag *diag)
 
 static PetscBool is_of_tracer(const MeasureSpec *s)
 {
-  return s->kind == MEASURE_DISPLACEMENT || s->kind == MEASURE_POSITION || s->kind == MEASURE_VELOCITY ? PETSC_TRUE
-                                                                                                       : PETSC_FALSE;
+  return s->kind == MEASURE_DISPLACEMENT || s->kind == MEASURE_POSITION || s->kind == MEASURE_VELOCITY;
 }
 
 /* One tracer per measure that follows one; the lowest rank whose cells hold it keeps it. */

@@ -4,8 +4,8 @@
 #pragma once
 #include "base/phase.h"
 #include "method/method.h"
-#include "solve/newton.h"
-#include "solve/step_control.h"
+#include "solve/newton/newton.h"
+#include "solve/newton/step_control.h"
 
 typedef struct {
   PetscReal kinetic, elastic;   /* now, J */

@@ -72,7 +72,7 @@ static PetscErrorCode IsOfCase(const Model *m, const char *option, PetscBool *is
   *is = PETSC_FALSE;
   for (PetscInt k = 0; k < m->c->n_petsc && !*is; ++k) {
     PetscCall(Split(m->c->petsc[k], name, &value));
-    *is = !strcmp(name + 1, option) && m->option_set[k] ? PETSC_TRUE : PETSC_FALSE;
+    *is = !strcmp(name + 1, option) && m->option_set[k];
   }
   PetscFunctionReturn(0);
 }

@@ -21,7 +21,7 @@ static void store_reactions(Model *m, PetscReal dt)
   for (PetscInt i = 0; i < m->grid->n_owned * m->dim; ++i) {
     const PetscReal mass = s->mass[i / m->dim];
     const PetscReal before = m->rate[i] + mass * (s->a[i] - s->a_points[i]);
-    const PetscBool fixed = m->boundary->fixed[i] ? PETSC_TRUE : PETSC_FALSE;
+    const PetscBool fixed = m->boundary->fixed[i] != 0;
     m->reaction[i] = m->held[i] = fixed ? m->force[i] : 0;
     if (a->type != ANALYSIS_DYNAMIC) continue;
     m->rate[i] = fixed ? (m->held[i] - a->bossak * before) / (1 - a->bossak) : 0;
@@ -76,10 +76,7 @@ static PetscErrorCode Accept(Model *m, PetscReal dt, StepReport *report)
 }
 
 /* Points whose position is no number are lost under every policy, and stand first. */
-static PetscBool is_somewhere(const LostPoint *l)
-{
-  return PetscIsInfOrNanReal(l->x[0] + l->x[1] + l->x[2]) ? PETSC_FALSE : PETSC_TRUE;
-}
+static PetscBool is_somewhere(const LostPoint *l) { return !PetscIsInfOrNanReal(l->x[0] + l->x[1] + l->x[2]); }
 
 static void describe_lost(const Model *m, StepReport *report)
 {
@@ -101,7 +98,7 @@ static void describe_lost(const Model *m, StepReport *report)
 static PetscReal reach_of(const Model *m, PetscReal speed)
 {
   const AnalysisSpec *a = &m->c->analysis;
-  const PetscBool flows = m->method->points_move && a->type == ANALYSIS_DYNAMIC ? PETSC_TRUE : PETSC_FALSE;
+  const PetscBool flows = m->method->points_move && a->type == ANALYSIS_DYNAMIC;
   return flows && a->travel > 0 && speed > 0 ? a->travel * m->grid->smallest / speed : PETSC_MAX_REAL;
 }
 
@@ -161,7 +158,7 @@ static PetscErrorCode Solve(Model *m, PetscReal dt, const LinearProblem *linear,
     PetscCall(NewtonSolve(m->newton, &problem, linear, &report->newton));
     if (report->newton.converged) PetscCall(JudgeStep(m, report));
     PetscCall(PetscTime(&clock));
-    count_try(m, k > 0 ? PETSC_TRUE : PETSC_FALSE, report);
+    count_try(m, k > 0, report);
     if (report->newton.converged || report->newton.interrupted) break;
   }
   PetscFunctionReturn(0);
@@ -223,10 +220,10 @@ static PetscErrorCode Try(Model *m, PetscReal dt, StepReport *report)
       .unknowns = m->system->n_active_global * m->system->block,
       .symmetric = m->symmetric,
       .mixed = m->formulation->pressure,
-      .undetermined = m->c->mixed.stabilisation == 0 ? PETSC_TRUE : PETSC_FALSE,
-      .multipliers = m->n_constraints > 0 ? PETSC_TRUE : PETSC_FALSE,
-      .idle_ranks = m->system->n_active_least ? PETSC_FALSE : PETSC_TRUE,
-      .dynamic = m->c->analysis.type == ANALYSIS_DYNAMIC ? PETSC_TRUE : PETSC_FALSE,
+      .undetermined = m->c->mixed.stabilisation == 0,
+      .multipliers = m->n_constraints > 0,
+      .idle_ranks = !m->system->n_active_least,
+      .dynamic = m->c->analysis.type == ANALYSIS_DYNAMIC,
       .courant = m->courant_speed * dt / m->grid->smallest,
     };
     PetscCall(Solve(m, dt, &linear, report));
@@ -261,11 +258,11 @@ PetscErrorCode ModelStep(Model *m, PetscReal limit, StepReport *report)
   PetscCall(Remember(m, &before));
   if (m->method->begin && m->c->analysis.type == ANALYSIS_DYNAMIC) PetscCall(m->method->begin(m->stage));
   PetscCall(PhaseEnd(m->seconds, PHASE_PATTERN, &clock));
-  const PetscBool shortened = limit < m->control.next ? PETSC_TRUE : PETSC_FALSE;
+  const PetscBool shortened = limit < m->control.next;
   PetscCall(Try(m, PetscMin(m->control.next, limit), report));
   PetscCall(Restore(m, &before, report));
   if (report->outcome != STEP_ACCEPTED) PetscFunctionReturn(0);
-  PetscCall(ChooseNextStep(m, shortened && !report->cuts ? PETSC_TRUE : PETSC_FALSE, report));
+  PetscCall(ChooseNextStep(m, shortened && !report->cuts, report));
   if (m->stage->n_lost && (m->c->grid.outside == OUTSIDE_STOP || !is_somewhere(&m->stage->lost[0]))) {
     report->outcome = STEP_POINTS_LOST;
     describe_lost(m, report);

@@ -81,7 +81,7 @@ static PetscErrorCode ForceScales(const Model *m, const PetscReal *g, PetscReal 
                                   PetscReal *inertia)
 {
   PetscReal local[2] = {0, 0}, sum[2];
-  const PetscBool dynamic = m->c->analysis.type == ANALYSIS_DYNAMIC ? PETSC_TRUE : PETSC_FALSE;
+  const PetscBool dynamic = m->c->analysis.type == ANALYSIS_DYNAMIC;
 
   PetscFunctionBeginUser;
   for (PetscInt node = 0; node < m->grid->n_owned; ++node) {
@@ -146,7 +146,7 @@ static PetscReal round_off_of(const Model *m, PetscReal inertia)
 PetscErrorCode PrepareStep(Model *m, PetscReal dt, StepProblem *p)
 {
   const PetscInt dim = m->dim, dofs = m->grid->n_nodes * dim;
-  const PetscBool dynamic = m->c->analysis.type == ANALYSIS_DYNAMIC ? PETSC_TRUE : PETSC_FALSE;
+  const PetscBool dynamic = m->c->analysis.type == ANALYSIS_DYNAMIC;
   const Newmark newmark = newmark_of(&m->c->analysis, dt);
   PetscReal g[3];
 
@@ -181,7 +181,7 @@ PetscErrorCode PrepareStep(Model *m, PetscReal dt, StepProblem *p)
     .idle = m->idle,
     .asked = m->asked,
   };
-  p->in.half = m->symmetric && m->grid->cloud ? PETSC_TRUE : PETSC_FALSE;
+  p->in.half = m->symmetric && m->grid->cloud;
   p->round_off = round_off_of(m, p->in.inertia);
   if (m->stage->constraints) m->stage->constraints->scale = node_stiffness(m, p->in.inertia);
   PetscCall(ForceScales(m, g, dt, &p->weight, &p->inertia));

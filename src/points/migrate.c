@@ -220,7 +220,7 @@ PetscErrorCode PointsTransfer(Points *points, const Grid *grid, const PetscMPIIn
   PetscCallMPI(MPI_Comm_rank(grid->comm, &rank));
   PetscCall(PetscMalloc3(points->n, &leavers.point, points->n, &leavers.owner, points->n, &drop));
   for (PetscInt p = 0; p < points->n; ++p) {
-    drop[p] = owner[p] != rank ? PETSC_TRUE : PETSC_FALSE;
+    drop[p] = owner[p] != rank;
     if (!drop[p]) continue;
     leavers.point[leavers.n] = p;
     leavers.owner[leavers.n++] = owner[p];

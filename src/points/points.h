@@ -5,7 +5,7 @@
 #pragma once
 #include "base/table.h"
 #include "grid/grid.h"
-#include "points/outline.h"
+#include "points/seed/outline.h"
 
 typedef enum {
   POINT_X,      /* position, m: dim */

@@ -1,6 +1,6 @@
 /* Points as a table, and back on any number of ranks: every field of points/fields.h, the cell by its number in the whole grid. */
 #include "base/count.h"
-#include "grid/cloud.h"
+#include "grid/cloud/cloud.h"
 #include "grid/directory.h"
 #include "points/fields.h"
 #include "points/migrate.h"
@@ -59,7 +59,7 @@ static PetscBool is_absent(const Table *table, int field)
 {
   for (PetscInt k = 0; k < table->n && field == POINT_OVERHANG; ++k)
     if (!strcmp(table->column[k].name, reals[field].name)) return PETSC_FALSE;
-  return field == POINT_OVERHANG ? PETSC_TRUE : PETSC_FALSE;
+  return field == POINT_OVERHANG;
 }
 
 /* This rank's rows of the table behind those in points; cells are still those of the whole grid. No index is trusted. */
@@ -116,7 +116,7 @@ static PetscErrorCode SendHome(Points *points, const Grid *grid, const char *nam
     points->cell[p] = place[p].index;
     leavers.point[p] = p;
     leavers.owner[p] = (PetscMPIInt)place[p].rank;
-    gone[p] = place[p].rank >= 0 ? PETSC_TRUE : PETSC_FALSE;
+    gone[p] = place[p].rank >= 0;
   }
   PetscCall(ReasonShare(grid->comm, reason));
   if (!reason[0]) PetscCall(LeaversMove(&leavers, points, grid, gone));

@@ -1,6 +1,6 @@
 /* Support of points that each have a cloud of nodes. */
 #include "base/count.h"
-#include "base/tensor.h"
+#include "base/math/tensor.h"
 #include "points/support.h"
 
 /* F^-T F^-1, dim x dim; PETSC_FALSE where F has lost all meaning. */
@@ -14,7 +14,7 @@ static PetscBool metric_of(PetscInt dim, const PetscReal *F, PetscReal *metric)
       for (PetscInt k = 0; k < dim; ++k) metric[i * dim + j] += inverse[3 * k + i] * inverse[3 * k + j];
       sum += metric[i * dim + j];
     }
-  return PetscIsInfOrNanReal(sum) ? PETSC_FALSE : PETSC_TRUE;
+  return !PetscIsInfOrNanReal(sum);
 }
 
 /* Ascending nodes, with the values that belong to them: each goes behind those with smaller numbers. */
@@ -55,7 +55,7 @@ static void look_around(const Neighbours *nodes, const PetscReal *x, PetscReal r
 /* Do nodes beyond the radius aimed at have no part in a cloud of this radius? They have where links lead through them. */
 static PetscBool radius_is_enough(const CloudSupport *s)
 {
-  return s->rule == SUPPORT_FIXED || s->gap <= 0 || s->radius <= s->gap ? PETSC_TRUE : PETSC_FALSE;
+  return s->rule == SUPPORT_FIXED || s->gap <= 0 || s->radius <= s->gap;
 }
 
 PetscInt cloud_at(const Neighbours *nodes, const CloudRule *rule, const PetscReal *x, const PetscReal *F,

@@ -21,8 +21,7 @@ static PETSC_ATTRIBUTE_FORMAT(3, 4) void say(const Model *m, FILE *out, const ch
 /* A point on a face belongs to two cells: which one it feels is a matter of round-off. */
 static PetscBool is_on_face(const Model *m, PetscInt p)
 {
-  return PetscAbsReal(cell_outside(m->grid->type, point_real(m->points, POINT_XI, p))) < 1e-9 ? PETSC_TRUE
-                                                                                              : PETSC_FALSE;
+  return PetscAbsReal(cell_outside(m->grid->type, point_real(m->points, POINT_XI, p))) < 1e-9;
 }
 
 static PetscErrorCode CountBodies(const Model *m, BodyCount *count)

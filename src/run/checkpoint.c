@@ -1,9 +1,9 @@
 /* Checkpoints of a run: when, what besides the model, and the way back. */
 #include <string.h>
 #include "base/hash.h"
-#include "io/case_file.h"
-#include "io/checkpoint.h"
-#include "model/state.h"
+#include "input/case_file.h"
+#include "output/checkpoint/checkpoint.h"
+#include "model/state/state.h"
 #include "run/run_private.h"
 
 /* One line each, for writing and reading. */
@@ -107,13 +107,13 @@ static PetscErrorCode MemoryFromTables(Run *r, const Tables *tables, RunMemory *
 PetscBool checkpoint_by_clock(const Run *r)
 {
   const PetscReal minutes = r->c->checkpoint.minutes;
-  return minutes > 0 && MPI_Wtime() - r->last_checkpoint >= 60 * minutes ? PETSC_TRUE : PETSC_FALSE;
+  return minutes > 0 && MPI_Wtime() - r->last_checkpoint >= 60 * minutes;
 }
 
 PetscBool checkpoint_by_step(const Run *r)
 {
   const PetscInt steps = r->c->checkpoint.steps;
-  return steps > 0 && r->model->step % steps == 0 ? PETSC_TRUE : PETSC_FALSE;
+  return steps > 0 && r->model->step % steps == 0;
 }
 
 static PetscErrorCode Write(Run *r, const char *path, char reason[256], PetscErrorCode *code)

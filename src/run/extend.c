@@ -1,5 +1,5 @@
 /* A run that is asked to go on: to which end may it, and is there anything left to do? */
-#include "io/case_file.h"
+#include "input/case_file.h"
 #include "run/run_private.h"
 
 PetscErrorCode ExtensionBegin(const Run *r, Extension *extension)

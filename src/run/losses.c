@@ -17,7 +17,7 @@ static PetscBool is_worth_a_line(PetscReal count, PetscReal more)
 {
   PetscReal power = 1;
   while (2 * power <= count) power *= 2;
-  return more > 0 && count - more < power ? PETSC_TRUE : PETSC_FALSE;
+  return more > 0 && count - more < power;
 }
 
 static PetscErrorCode LogOutside(const Model *m, RunDir *dir, const StepReport *report)

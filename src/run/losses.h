@@ -1,6 +1,6 @@
 /* What a run has lost on the way: tracers, loads, points, energy between points and grid. */
 #pragma once
-#include "io/run_dir.h"
+#include "output/directory/run_dir.h"
 #include "model/model.h"
 
 /* Collective. After an accepted step: a line in the log for what ended or left the grid in it. */

@@ -1,8 +1,8 @@
 /* How a run begins: in a directory of its own, or where another one was cut off. */
 #include <string.h>
-#include "io/case_file.h"
-#include "io/run_dir_files.h"
-#include "io/vtk.h"
+#include "input/case_file.h"
+#include "output/directory/run_dir_files.h"
+#include "output/vtk/vtk.h"
 #include "run/run_private.h"
 #include "run/summary.h"
 
@@ -105,7 +105,7 @@ static PetscErrorCode IsComplete(const Run *r, PetscBool *complete)
     if (!strcmp(line, "outcome = done\n")) found = 1;
   if (in) fclose(in);
   PetscCallMPI(MPI_Bcast(&found, 1, MPI_INT, 0, r->comm));
-  *complete = found ? PETSC_TRUE : PETSC_FALSE;
+  *complete = found != 0;
   PetscFunctionReturn(0);
 }
 

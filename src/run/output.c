@@ -2,10 +2,10 @@
 #include <unistd.h>
 #include "base/count.h"
 #include "case/fields.h"
-#include "grid/cloud.h"
-#include "io/run_dir_files.h"
-#include "io/seal.h"
-#include "io/vtk.h"
+#include "grid/cloud/cloud.h"
+#include "output/directory/run_dir_files.h"
+#include "output/seal.h"
+#include "output/vtk/vtk.h"
 
 #define MAX_FIELDS 32
 
@@ -350,7 +350,7 @@ static PetscBool check_file(const Output *o, const char *name, PetscInt number, 
   snprintf(path, sizeof path, "%s/%s", o->folder, file);
   file_check_seal(path, seal, reason);
   if (reason[0] && wrong < 3) DiagError(diag, NULL, "cannot go on after '%s': %s", path, reason);
-  return reason[0] ? PETSC_TRUE : PETSC_FALSE;
+  return reason[0] != 0;
 }
 
 PetscErrorCode OutputCheck(const Output *o, MPI_Comm comm, Diag *diag)

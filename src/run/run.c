@@ -13,7 +13,7 @@ static PetscReal until_next(const Schedule *s, PetscReal time, PetscReal end)
 static PetscBool is_due(Schedule *s, PetscReal time, PetscInt step)
 {
   if (s->every == 0) return PETSC_FALSE;
-  if (s->every < 0) return step % (PetscInt)(-s->every) == 0 ? PETSC_TRUE : PETSC_FALSE;
+  if (s->every < 0) return step % (PetscInt)(-s->every) == 0;
   if (time < (PetscReal)(s->count + 1) * s->every * (1 - 1e-9)) return PETSC_FALSE;
   s->count = (PetscInt)(time / s->every * (1 + 1e-9));
   return PETSC_TRUE;
@@ -57,7 +57,7 @@ static PetscErrorCode IsGone(Run *r, PetscBool *gone)
   PetscFunctionBeginUser;
   const PetscErrorCode present = RunDirPresent(r->dir);
   PetscCall(RunWritten(r, present));
-  *gone = present ? PETSC_TRUE : PETSC_FALSE;
+  *gone = present != 0;
   PetscFunctionReturn(0);
 }
 
@@ -181,7 +181,7 @@ static PetscErrorCode Advance(Run *r)
 static PetscBool may_go_on(const Run *r)
 {
   const CheckpointSpec *spec = &r->c->checkpoint;
-  return r->c->analysis.type == ANALYSIS_DYNAMIC && (spec->minutes > 0 || spec->steps > 0) ? PETSC_TRUE : PETSC_FALSE;
+  return r->c->analysis.type == ANALYSIS_DYNAMIC && (spec->minutes > 0 || spec->steps > 0);
 }
 
 /* A run that ended and had a checkpoint, or may go on to a later end, leaves one of its end. */
@@ -200,7 +200,7 @@ static PetscErrorCode Close(Run *r, PetscReal *measures)
   r->summary.halvings = r->model->cuts;
   r->summary.iterations = r->model->total_iterations;
   r->summary.seconds = seconds;
-  r->summary.resumable = r->failed && r->checkpoint_step >= 0 ? PETSC_TRUE : PETSC_FALSE;
+  r->summary.resumable = r->failed && r->checkpoint_step >= 0;
   r->summary.checkpoint_step = r->checkpoint_step;
   PetscCall(RunWritten(r, SummaryEnd(r->model, r->dir, &r->summary, r->values)));
   PetscCall(RunWritten(r, RunDirCheckLog(r->dir)));

@@ -1,6 +1,6 @@
 /* A run, from a case to a directory of results: the loop over steps, output, signals. */
 #pragma once
-#include "io/run_dir.h"
+#include "output/directory/run_dir.h"
 #include "model/model.h"
 
 /* How a run went, in numbers. */

@@ -27,10 +27,7 @@ static void on_signal(int number)
 }
 
 /* Is the signal left to whoever had it? */
-static PetscBool is_left(size_t k)
-{
-  return watched[k].optional && before[k].sa_handler == SIG_IGN ? PETSC_TRUE : PETSC_FALSE;
-}
+static PetscBool is_left(size_t k) { return watched[k].optional && before[k].sa_handler == SIG_IGN; }
 
 void signals_watch(void)
 {
@@ -43,7 +40,7 @@ void signals_watch(void)
   }
 }
 
-PetscBool signals_came(void) { return asked_by ? PETSC_TRUE : PETSC_FALSE; }
+PetscBool signals_came(void) { return asked_by != 0; }
 
 /* One that insisted keeps its default; else a program that embeds talus has its own handlers again. */
 void signals_forget(void)
@@ -65,7 +62,7 @@ PetscErrorCode SignalsAsked(MPI_Comm comm, PetscBool *due, PetscBool *asked)
   any[0] = asked_by != 0;
   any[1] = !rank && *due;
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, any, 2, MPI_INT, MPI_MAX, comm));
-  *asked = any[0] ? PETSC_TRUE : PETSC_FALSE;
-  *due = any[1] ? PETSC_TRUE : PETSC_FALSE;
+  *asked = any[0] != 0;
+  *due = any[1] != 0;
   PetscFunctionReturn(0);
 }

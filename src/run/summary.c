@@ -1,5 +1,5 @@
 #include "run/summary.h"
-#include "io/run_dir_files.h"
+#include "output/directory/run_dir_files.h"
 #include <stdlib.h>
 #include "run/losses.h"
 #include "talus_version.h"

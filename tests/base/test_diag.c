@@ -6,7 +6,7 @@
 #include <cmocka.h>
 #include <stdlib.h>
 #include <string.h>
-#include "base/diag.h"
+#include "base/diag/diag.h"
 
 static PetscMPIInt rank, ranks;
 

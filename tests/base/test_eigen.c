@@ -4,7 +4,7 @@
 #include <stdarg.h>
 #include <stddef.h>
 #include <cmocka.h>
-#include "base/eigen.h"
+#include "base/math/eigen.h"
 #include <string.h>
 
 /* Columns of v orthonormal, s v = v diag(value), falling. */

@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <cmocka.h>
-#include "base/tensor.h"
+#include "base/math/tensor.h"
 #include "material/pressure.h"
 #include "random.h"
 

@@ -1,6 +1,6 @@
 /* Any bytes as a case file. What is accepted must be accepted again when it is written down and read back. */
 #include "fuzz.h"
-#include "io/case_file.h"
+#include "input/case_file.h"
 
 static FILE *nowhere;
 

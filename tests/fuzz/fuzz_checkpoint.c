@@ -2,10 +2,10 @@
  * model with any bytes in them, as a file would hand them on whose checksums are right and whose numbers are not. The first byte chooses. */
 #include <zlib.h>
 #include "fuzz.h"
-#include "io/case_file.h"
-#include "io/checkpoint.h"
-#include "io/checkpoint_contents.h"
-#include "model/state.h"
+#include "input/case_file.h"
+#include "output/checkpoint/checkpoint.h"
+#include "output/checkpoint/checkpoint_contents.h"
+#include "model/state/state.h"
 
 static const char case_text[] =
   "kinematics: plane-strain\nmethod: mpm\nanalysis: {type: dynamic, step: 1e-3, end: 1}\n"

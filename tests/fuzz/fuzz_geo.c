@@ -1,7 +1,7 @@
 /* Any bytes as a script of Gmsh: looked through, and told of with a place that is in it. */
 #include "fuzz.h"
-#include "grid/geo_check.h"
-#include "grid/geo_script.h"
+#include "grid/gmsh/geo_check.h"
+#include "grid/gmsh/geo_script.h"
 
 static FILE *nowhere;
 
@@ -25,7 +25,7 @@ static void fuzz_one(const uint8_t *data, size_t n)
   const int fd = fuzz_file(data, n, path);
   FUZZ_CALL(GeoScriptRead(path, &script, &finding, &why));
   if (why || script.n != n) abort();
-  const PetscBool is_text = finding.reason ? PETSC_FALSE : PETSC_TRUE;
+  const PetscBool is_text = !finding.reason;
   if (is_text) geo_find_action(&script, &finding);
   if (finding.reason && finding.at + finding.width > n) abort();
   for (size_t at = 0, before = 0; is_text && geo_next_inclusion(&script, &at, &inclusion); before = at)

@@ -1,6 +1,6 @@
 /* Any bytes as a Gmsh file, and the mesh made of it in two and three dimensions. */
 #include "fuzz.h"
-#include "grid/msh.h"
+#include "grid/gmsh/msh.h"
 
 static FILE *nowhere;
 

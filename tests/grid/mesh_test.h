@@ -166,7 +166,7 @@ static inline void locate_in_cells(const Grid *grid, const PetscReal *weights)
       assert_int_equal(count_over_ranks(found), 1);
       PetscMPIInt ranks[8];
       const PetscReal holder = sum_over_ranks(found ? rank : 0);
-      PetscBool named = found ? PETSC_TRUE : PETSC_FALSE;
+      PetscBool named = found != 0;
       for (PetscInt k = GridCandidates(grid, x, 8, ranks) - 1; k >= 0; --k) named |= ranks[k] == (PetscMPIInt)holder;
       assert_true(named);
     }

@@ -144,7 +144,7 @@ static void check_candidates(const Grid *grid, const PetscReal *x, PetscInt foun
   MPI_Comm_size(PETSC_COMM_WORLD, &size);
   holder = sum_over_ranks(found ? rank : 0);
   const PetscInt n = GridCandidates(grid, x, 8, ranks);
-  PetscBool named = found ? PETSC_TRUE : PETSC_FALSE;
+  PetscBool named = found != 0;
   for (PetscInt r = 0; r < n; ++r) {
     assert_true(ranks[r] != rank && ranks[r] >= 0 && ranks[r] < size);
     if (ranks[r] == (PetscMPIInt)holder) named = PETSC_TRUE;

@@ -10,7 +10,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 #include <cmocka.h>
-#include "grid/geo_check.h"
+#include "grid/gmsh/geo_check.h"
 
 static char folder[64];
 

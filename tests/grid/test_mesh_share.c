@@ -1,6 +1,6 @@
 /* A mesh goes from rank to rank: what arrives is the grid that reading it would have made, whatever way it went; and the cuts balance weights. */
 #include "grid/directory.h"
-#include "grid/mesh_travel.h"
+#include "grid/mesh/mesh_travel.h"
 #include "mesh_test.h"
 
 static PetscMPIInt ranks(void)

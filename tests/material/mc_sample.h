@@ -1,7 +1,7 @@
 /* Mohr-Coulomb materials and random trial strains that reach every region of the return. */
 #pragma once
 #include "../conformance/random.h"
-#include "material/mohr_coulomb_return.h"
+#include "material/mohr_coulomb/mohr_coulomb_return.h"
 #include "packed.h"
 
 typedef struct {

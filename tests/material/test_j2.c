@@ -1,7 +1,7 @@
 /* J2 laws against golden numbers (a direct solve of the thesis' 3.68 to 3.70) and against closed forms. */
 #include "../conformance/golden.h"
 #include "../conformance/random.h"
-#include "base/tensor.h"
+#include "base/math/tensor.h"
 #include "packed.h"
 #include <string.h>
 

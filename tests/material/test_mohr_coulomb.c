@@ -1,6 +1,6 @@
 /* Mohr-Coulomb: the return in principal stresses and the law, against golden numbers and an independent solution. */
 #include "../conformance/golden.h"
-#include "base/eigen.h"
+#include "base/math/eigen.h"
 #include "mc_sample.h"
 #include <string.h>
 

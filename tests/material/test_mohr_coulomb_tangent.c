@@ -5,7 +5,7 @@
 #include <stdarg.h>
 #include <stddef.h>
 #include <cmocka.h>
-#include "base/eigen.h"
+#include "base/math/eigen.h"
 #include "mc_sample.h"
 #include <string.h>
 

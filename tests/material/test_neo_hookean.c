@@ -1,6 +1,6 @@
 /* Neo-Hookean laws against golden numbers (energies differentiated twice in 40 digits) and against closed forms. */
 #include "../conformance/golden.h"
-#include "base/tensor.h"
+#include "base/math/tensor.h"
 #include "material/elasticity.h"
 #include <string.h>
 

@@ -7,7 +7,7 @@
 #include <string.h>
 #include <cmocka.h>
 #include "../conformance/random.h"
-#include "base/tensor.h"
+#include "base/math/tensor.h"
 #include "material/pressure.h"
 
 #define CALL(call) assert_int_equal((call), 0)

@@ -11,7 +11,7 @@
 #include <unistd.h>
 #include <cmocka.h>
 #include "../conformance/random.h"
-#include "base/tensor.h"
+#include "base/math/tensor.h"
 #include "model/model.h"
 
 typedef struct {
@@ -47,7 +47,7 @@ typedef struct {
 /* Statics in one step of a body of neo-Hookean rubber (E = 1 MPa, nu = 0.3, 1000 kg/m3) on a grid of the unit square or cube. */
 static inline void bench_init(Bench *b, const char *method, CellType cell, PetscInt cells_per_side)
 {
-  const PetscBool is_3d = cell >= CELL_TETRAHEDRON ? PETSC_TRUE : PETSC_FALSE;
+  const PetscBool is_3d = cell >= CELL_TETRAHEDRON;
   static const PetscInt points[] = {3, 4, 4, 8};
   *b = (Bench){0};
   b->constants[0] = (NamedValue){"young", 1e6};
@@ -106,7 +106,7 @@ static inline MotionSpec *bench_motion(Bench *b, int axis, PetscReal at, MotionK
 {
   MotionSpec *m = &b->motion[b->c.n_boundary++];
   *m = (MotionSpec){.kind = kind};
-  for (int d = 0; d < 3; ++d) m->component[d] = mask >> d & 1 ? PETSC_TRUE : PETSC_FALSE;
+  for (int d = 0; d < 3; ++d) m->component[d] = mask >> d & 1;
   if (axis >= 0) {
     m->on.has[axis] = PETSC_TRUE;
     m->on.min[axis] = m->on.max[axis] = at;

@@ -14,7 +14,7 @@ static PetscReal reaction(Model *m, PetscInt entry, PetscInt component)
 static void balance(const char *method, CellType cell)
 {
   Bench b;
-  const PetscBool is_3d = cell >= CELL_TETRAHEDRON ? PETSC_TRUE : PETSC_FALSE;
+  const PetscBool is_3d = cell >= CELL_TETRAHEDRON;
   bench_init(&b, method, cell, 0);
   bench_grid(&b, (PetscReal[]){0, -0.5, 0}, (PetscReal[]){3, 1, 0.5}, 0.25);
   bench_box(&b, 0, (PetscReal[]){0, 0, 0}, (PetscReal[]){2, 0.5, 0.5});
@@ -152,7 +152,7 @@ static void test_turned_body(void **state)
 static void rotate(CellType cell, PetscInt steps)
 {
   Bench b;
-  const PetscBool is_3d = cell >= CELL_TETRAHEDRON ? PETSC_TRUE : PETSC_FALSE;
+  const PetscBool is_3d = cell >= CELL_TETRAHEDRON;
   PetscReal n[3] = {0, 0, 1}, worst = 0;
   bench_init(&b, "fem", cell, 3);
   MotionSpec *turn = bench_motion(&b, -1, 0, MOTION_ROTATION, 7);
@@ -218,7 +218,7 @@ static void test_load_moves(void **state)
   (void)state;
   for (CellType cell = CELL_TRIANGLE; cell <= CELL_HEXAHEDRON; ++cell) {
     Bench b;
-    const PetscBool is_3d = cell >= CELL_TETRAHEDRON ? PETSC_TRUE : PETSC_FALSE;
+    const PetscBool is_3d = cell >= CELL_TETRAHEDRON;
     const PetscReal size = is_3d ? 0.25 : 0.125, side = 0.5, area = is_3d ? side * side : side;
     bench_init(&b, "mpm", cell, 0);
     bench_grid(&b, (PetscReal[]){0, 0, 0}, (PetscReal[]){2, 1, 1}, size);

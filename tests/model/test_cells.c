@@ -135,7 +135,7 @@ static void spray(CellType cell, PetscBool stabilised)
 {
   Bench b;
   const PetscReal size = 0.25, dt = 0.01;
-  const PetscBool is_3d = cell >= CELL_TETRAHEDRON ? PETSC_TRUE : PETSC_FALSE;
+  const PetscBool is_3d = cell >= CELL_TETRAHEDRON;
   PetscReal worst = 0;
   PetscInt cuts = 0, iterations = 0;
   PetscBool *drop;

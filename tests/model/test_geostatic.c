@@ -117,8 +117,7 @@ static void test_layers(void **state)
       Bench b;
       ground(&b, "mpm", cell, 0.125, (PetscReal[]){1, 1, 1});
       bench_box(&b, 0, (PetscReal[]){0, 0, 0}, (PetscReal[]){1, 0.5, 1});
-      add_body(&b, material, 2500, (Shape){.kind = SHAPE_BOX, .min = {0, 0.5, 0}, .max = {1, 1, 1}},
-               own ? PETSC_TRUE : PETSC_FALSE);
+      add_body(&b, material, 2500, (Shape){.kind = SHAPE_BOX, .min = {0, 0.5, 0}, .max = {1, 1, 1}}, own);
       check_all(&b, y_up, 10, below_layer);
     }
 }

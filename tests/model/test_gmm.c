@@ -23,7 +23,7 @@ static void affine_motion(void *context, const PetscReal *x, PetscReal t0, Petsc
   const PetscInt dim = *(const PetscInt *)context;
   PetscReal F0[9], F1[9];
   for (int i = 0; i < 9; ++i) {
-    const PetscBool inside = i / 3 < dim && i % 3 < dim ? PETSC_TRUE : PETSC_FALSE;
+    const PetscBool inside = i / 3 < dim && i % 3 < dim;
     F0[i] = (i % 4 == 0) + (inside ? t0 * H[i] : 0);
     F1[i] = (i % 4 == 0) + (inside ? t1 * H[i] : 0);
   }

@@ -73,7 +73,7 @@ static void check_half(Model *m)
   for (PetscInt i = 0; i < dofs; ++i) {
     lift[i] = m->fixed[i] ? 1e-4 * (PetscReal)(1 + i % 5) : 0;
   }
-  for (int half = 0; half < 2; ++half) assemble(m, lift, half ? PETSC_TRUE : PETSC_FALSE, force[half], values[half]);
+  for (int half = 0; half < 2; ++half) assemble(m, lift, half, force[half], values[half]);
   CHECK(largest(n, values[0], values[1]) <= 1e-13 * largest(n, values[0], NULL), "blocks are off by %g of %g",
         (double)largest(n, values[0], values[1]), (double)largest(n, values[0], NULL));
   CHECK(largest(dofs, force[0], force[1]) <= 1e-13 * largest(dofs, force[0], NULL), "forces are off by %g of %g",

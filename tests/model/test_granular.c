@@ -123,7 +123,7 @@ static void test_keep_velocity(void **state)
     bench_init(&b, "mpm", CELL_QUADRILATERAL, 1);
     bench_dynamic(&b, 1, 0.1);
     b.body[0].velocity[0] = 2.9;
-    b.c.analysis.keep_velocity = keep ? PETSC_TRUE : PETSC_FALSE;
+    b.c.analysis.keep_velocity = keep;
     bench_motion(&b, -1, 0, MOTION_FIXED, 3);
     Model *m = bench_model(&b, PETSC_COMM_WORLD);
     const PetscReal start = model_sum(m, MEASURE_MOMENTUM, 0);

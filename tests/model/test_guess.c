@@ -36,7 +36,7 @@ static void test_values(void **state)
   for (PetscInt i = 0; i < dofs; ++i) {
     const PetscReal v = m->stage->v[i], a = m->stage->a[i];
     const PetscReal alone = m->stage->touched[i / 2] ? 0.003 * (v + 0.5 * 0.003 * a) : 0;
-    const PetscBool follows = !m->fixed[i] && m->previous[i] != 0 ? PETSC_TRUE : PETSC_FALSE;
+    const PetscBool follows = !m->fixed[i] && m->previous[i] != 0;
     CHECK_CLOSE(inertia[i], alone, 1e-16);
     CHECK_CLOSE(previous[i], follows ? 0.75 * m->previous[i] : alone, 1e-16);
     CHECK(rest[i] == 0, "rest moves");
@@ -56,7 +56,7 @@ static void test_order(void **state)
   FirstGuess order[GUESS_N];
   model_step(m, 0.01);
   for (int nearer = 0; nearer < 2; ++nearer) {
-    m->guess.previous = nearer ? PETSC_TRUE : PETSC_FALSE;
+    m->guess.previous = nearer;
     CHECK(guess_order(m, order) == 3, "not three guesses");
     CHECK(order[0] == (nearer ? GUESS_PREVIOUS : GUESS_INERTIA), "first");
     CHECK(order[1] == (nearer ? GUESS_INERTIA : GUESS_PREVIOUS), "second");
@@ -81,9 +81,9 @@ static void test_learning(void **state)
       m->stage->a[i] = 0;
       m->du[i] = nearer ? 0.5e-3 : 0.005; /* half of the step before, or the velocity for as long */
     }
-    m->guess = (Guess){.step = 0.01, .previous = nearer ? PETSC_FALSE : PETSC_TRUE};
+    m->guess = (Guess){.step = 0.01, .previous = !nearer};
     CALL(GuessLearn(m, 0.005));
-    CHECK(m->guess.previous == (nearer ? PETSC_TRUE : PETSC_FALSE), "nearer: %d", nearer);
+    CHECK(m->guess.previous == (PetscBool)nearer, "nearer: %d", nearer);
     CHECK_CLOSE(m->guess.step, 0.005, 0);
   }
   CALL(ModelDestroy(&m));

@@ -17,7 +17,7 @@ static void sum_loads(const Model *m, PetscReal t, PetscReal sum[5])
   CALL(MPI_Allreduce(local, sum, 5, MPIU_REAL, MPI_SUM, m->comm));
 }
 
-static PetscBool is_space(CellType cell) { return cell >= CELL_TETRAHEDRON ? PETSC_TRUE : PETSC_FALSE; }
+static PetscBool is_space(CellType cell) { return cell >= CELL_TETRAHEDRON; }
 
 /* The whole surface of a block inside the grid, and no face inside it: value times its area, at its centre. */
 static void test_whole_surface(void **state)

@@ -7,7 +7,7 @@ static void test_spin(void **state)
 {
   (void)state;
   for (CellType cell = CELL_TRIANGLE; cell <= CELL_HEXAHEDRON; ++cell) {
-    const PetscBool is_3d = cell >= CELL_TETRAHEDRON ? PETSC_TRUE : PETSC_FALSE;
+    const PetscBool is_3d = cell >= CELL_TETRAHEDRON;
     for (PetscInt axis = is_3d ? 0 : 2; axis < 3; ++axis) {
       Bench b;
       bench_init(&b, "mpm", cell, 8);

@@ -83,8 +83,7 @@ static void check_patch(const Model *m)
 static void patch(const char *method, CellType cell, const Solid *solid, PetscBool distorted)
 {
   Bench b;
-  const PetscBool is_mpm = strcmp(method, "mpm") ? PETSC_FALSE : PETSC_TRUE,
-                  is_3d = (PetscBool)(cell >= CELL_TETRAHEDRON);
+  const PetscBool is_mpm = !strcmp(method, "mpm"), is_3d = (PetscBool)(cell >= CELL_TETRAHEDRON);
   const PetscReal below = is_mpm ? -0.5 : 0, above = 1 - below, planes[] = {below, 0, 1, above};
   PetscInt dim = is_3d ? 3 : 2;
   bench_init(&b, method, cell, 0);

@@ -66,7 +66,7 @@ static void body_bench(Bench *b, const char *method, CellType cell, Diagonal dia
 static void patch(const char *method, CellType cell, Diagonal diagonal, PetscReal size, PetscBool distorted)
 {
   Bench b;
-  const PetscBool fem = strcmp(method, "mpm") ? PETSC_TRUE : PETSC_FALSE;
+  const PetscBool fem = strcmp(method, "mpm") != 0;
   PetscReal F[9], *X;
   body_bench(&b, method, cell, diagonal, size, distorted);
   PetscInt dim = kinematics_dim(b.c.kinematics);
@@ -161,7 +161,7 @@ static void traction(const char *method, CellType cell, PetscBool carried, Petsc
 {
   Bench b;
   PetscReal F[9];
-  const PetscBool is_3d = cell >= CELL_TETRAHEDRON ? PETSC_TRUE : PETSC_FALSE;
+  const PetscBool is_3d = cell >= CELL_TETRAHEDRON;
   const PetscReal T = carried ? 2e5 : -2e5, x_end = carried ? 1.5 : 1, planes[] = {0, 1, x_end, 1.5},
                   size = is_3d ? 0.5 : 0.25;
   bench_init(&b, method, cell, 0);

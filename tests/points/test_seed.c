@@ -1,6 +1,6 @@
 /* Seeding: volumes and masses to round-off, the same points on any number of ranks, mistakes that are told. */
 #include <string.h>
-#include "points/seed.h"
+#include "points/seed/seed.h"
 #include "points_test.h"
 
 static const PetscReal area = 6, volume = 12; /* of the test grid */

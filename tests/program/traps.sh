@@ -193,7 +193,7 @@ says out.txt "mass 2000 kg"
 expect "a number for a .msh" 2 "$talus" check case.yaml --set grid.parameters.h=1
 says err.txt "parameters are for a .geo; a .msh takes none"
 
-# --- numbers that cannot be meant together (each by itself: io/test_case_bad) ---
+# --- numbers that cannot be meant together (each by itself: input/test_case_bad) ---
 block >case.yaml
 expect "waves faster than light" 2 "$talus" check case.yaml --set materials.rubber.density=1e-14
 says err.txt "case.yaml:10:3: error: waves would run through 'rubber' at 5.19e+09 m/s, faster than light"

@@ -15,7 +15,7 @@
 #include <sys/wait.h>
 #include "../model/case_builder.h"
 #include "base/memory.h"
-#include "io/case_file.h"
+#include "input/case_file.h"
 
 #ifdef __SANITIZE_ADDRESS__
 

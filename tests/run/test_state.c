@@ -1,7 +1,7 @@
 /* A model put away in a file and brought back takes the same steps: bit by bit on the same ranks, to round-off on one. */
 #include "../model/case_builder.h"
-#include "io/checkpoint.h"
-#include "model/state.h"
+#include "output/checkpoint/checkpoint.h"
+#include "model/state/state.h"
 
 static char path[PETSC_MAX_PATH_LEN];
 
@@ -65,7 +65,7 @@ static PetscBool on_one_rank(void)
 {
   PetscMPIInt size;
   MPI_Comm_size(PETSC_COMM_WORLD, &size);
-  return size == 1 ? PETSC_TRUE : PETSC_FALSE;
+  return size == 1;
 }
 
 /* bits: does the solver promise the same bits on several ranks? Returns the model that was brought back, after its steps. */
@@ -208,7 +208,7 @@ static void thrown(BasisKind kind, LinearChoice linear, CellType cell, PetscReal
   bench_traction(&b, 0, 0.75, "body", 100, 0, 0);
   bench_tracer(&b, MEASURE_POSITION, 0, 0.5, 0.5, 0.5);
   for (PetscInt before = 1; before <= 13; before += 6)
-    check_only(&b, before, 6, linear == LINEAR_ITERATIVE || on_one_rank() ? PETSC_TRUE : PETSC_FALSE);
+    check_only(&b, before, 6, linear == LINEAR_ITERATIVE || on_one_rank());
 }
 
 static void test_gmm(void **state)
@@ -228,7 +228,7 @@ static PetscBool somebody_asks(void)
   PetscMPIInt rank, size;
   MPI_Comm_rank(PETSC_COMM_WORLD, &rank);
   MPI_Comm_size(PETSC_COMM_WORLD, &size);
-  return --assemblies < 0 && rank == size - 1 ? PETSC_TRUE : PETSC_FALSE;
+  return --assemblies < 0 && rank == size - 1;
 }
 
 /* A step that is given up between two iterations leaves the model as it was, and the run that goes on from there is the one that was not

@@ -3,4 +3,3 @@ talus_test(run/test_output)
 if(NOT TALUS_TEST_SHARED) # it lets allocations fail that the program itself makes, not its libraries
   talus_test(run/test_memory)
 endif()
-include(${CMAKE_CURRENT_LIST_DIR}/verify.cmake OPTIONAL)

@@ -1,7 +1,7 @@
 /* Systems made of random matrices of cells, the same on any number of ranks, for tests of linear solvers. */
 #pragma once
 #include "../model/case_builder.h"
-#include "solve/system.h"
+#include "solve/system/system.h"
 
 /* A system over some cells of a grid; its values depend on the cells and not on the ranks that own them. */
 typedef struct {

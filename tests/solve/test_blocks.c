@@ -1,7 +1,7 @@
 /* The matrix as scaled blocks in single precision against PETSc's: products, solutions, rows that ranks share, ranks
  * without rows, prescribed dofs, right-hand sides of any size, and matrices that it must refuse. */
 #include "made_system.h"
-#include "solve/blocks.h"
+#include "solve/blocks/blocks.h"
 
 static Mat matrix(Made *s, SystemForm form)
 {
@@ -70,7 +70,7 @@ static void test_products_and_solutions(void **state)
     for (int symmetric = 0; symmetric < 2; ++symmetric)
       for (int narrow = 0; narrow < 2; ++narrow) {
         Made s;
-        make(&s, type, symmetric ? PETSC_TRUE : PETSC_FALSE, narrow ? 0.1 : 2, 2, 0);
+        make(&s, type, symmetric, narrow ? 0.1 : 2, 2, 0);
         check_products(&s);
         const PetscInt iterations = check_solution(&s, 1);
         CHECK(iterations <= 25, "%d iterations", (int)iterations);

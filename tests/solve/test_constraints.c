@@ -5,7 +5,7 @@
 #include <stddef.h>
 #include <stdint.h>
 #include <cmocka.h>
-#include "solve/constraints.h"
+#include "solve/system/constraints.h"
 
 #define CALL(call) assert_int_equal((call), 0)
 #define ASSERT_NEAR(a, b) assert_true(PetscAbsReal((a) - (b)) <= 1e-14)
@@ -80,7 +80,7 @@ static void test_values(void **state)
   for (int k = 0; k < 6; ++k)
     for (int i = 0; i < DIM; ++i)
       for (int j = 0; j < DIM; ++j) {
-        const PetscBool held = k % 3 == 2 && i == 0 ? PETSC_TRUE : PETSC_FALSE;
+        const PetscBool held = k % 3 == 2 && i == 0;
         ASSERT_NEAR(values[(k * DIM + i) * DIM + j], i == j && !held ? -10 * N[k % 3] : 0);
       }
   CALL(ConstraintsDestroy(&c));

@@ -1,20 +1,17 @@
 /* Constraints kept by projections against the whole system with its multipliers, and what a node does to them that hardly counts. */
 #include "made_system.h"
-#include "solve/blocks.h"
-#include "solve/projection.h"
+#include "solve/blocks/blocks.h"
+#include "solve/blocks/projection.h"
 
 enum { CELLS = 11 };
 
-static PetscBool is_twin(const Grid *grid, PetscInt node)
-{
-  return grid->x[node * 2 + 1] > 1 - 0.5 / CELLS ? PETSC_TRUE : PETSC_FALSE;
-}
+static PetscBool is_twin(const Grid *grid, PetscInt node) { return grid->x[node * 2 + 1] > 1 - 0.5 / CELLS; }
 
 /* A node of the second row from above, which two constraints hold. */
 static PetscBool is_weak(const Grid *grid, PetscInt node)
 {
   const PetscReal *x = grid->x + node * 2, h = 1.0 / CELLS;
-  return PetscAbsReal(x[0] - 5 * h) < h / 2 && PetscAbsReal(x[1] - 10 * h) < h / 2 ? PETSC_TRUE : PETSC_FALSE;
+  return PetscAbsReal(x[0] - 5 * h) < h / 2 && PetscAbsReal(x[1] - 10 * h) < h / 2;
 }
 
 /* The top row has multipliers in place of motions. What couples the weak node takes `factor`, its own block the other sign as well: a point
@@ -134,7 +131,7 @@ static void test_constraints(void **state)
 {
   (void)state;
   for (int symmetric = 0; symmetric < 2; ++symmetric) {
-    const PetscInt iterations = check(symmetric ? PETSC_TRUE : PETSC_FALSE, 1, 1e-5);
+    const PetscInt iterations = check(symmetric, 1, 1e-5);
     CHECK(iterations <= 30, "%d iterations", (int)iterations);
   }
 }
@@ -144,7 +141,7 @@ static void test_node_that_hardly_counts(void **state)
 {
   (void)state;
   for (int symmetric = 0; symmetric < 2; ++symmetric) {
-    const PetscBool is_symmetric = symmetric ? PETSC_TRUE : PETSC_FALSE;
+    const PetscBool is_symmetric = symmetric;
     const PetscInt usual = check(is_symmetric, 1, 1e-5), weak = check(is_symmetric, 1e-8, 1e-3);
     CHECK(weak <= usual + 5, "%d iterations, %d without", (int)weak, (int)usual);
   }

@@ -4,7 +4,7 @@
 #include <stddef.h>
 #include <stdint.h>
 #include <cmocka.h>
-#include "solve/step_control.h"
+#include "solve/newton/step_control.h"
 
 static const AnalysisSpec grows = {.step = 1, .smallest = 0.01, .largest = 64};
 

@@ -1,0 +1,235 @@
+#include "base/diag/diag_impl.h"
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+
+PetscErrorCode DiagCreate(Diag **diag)
+{
+  PetscFunctionBeginUser;
+  *diag = calloc(1, sizeof(**diag));
+  PetscCheck(*diag, PETSC_COMM_SELF, PETSC_ERR_MEM, "no memory for diagnostics");
+  PetscFunctionReturn(0);
+}
+
+void DiagMessageClear(DiagMessage *message)
+{
+  free(message->file);
+  free(message->text);
+  free(message->message);
+  free(message->hint);
+  memset(message, 0, sizeof(*message));
+}
+
+static void Forget(Diag *diag)
+{
+  for (PetscInt i = 0; i < diag->n; ++i) DiagMessageClear(&diag->messages[i]);
+  diag->n = diag->errors = diag->warnings = 0;
+  memset(diag->shown, 0, sizeof diag->shown);
+  memset(diag->more, 0, sizeof diag->more);
+}
+
+PetscErrorCode DiagDestroy(Diag **diag)
+{
+  PetscFunctionBeginUser;
+  if (*diag) {
+    Forget(*diag);
+    if ((*diag)->context_destroy) (*diag)->context_destroy((*diag)->context);
+    free((*diag)->messages);
+    free(*diag);
+    *diag = NULL;
+  }
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode DiagSetResolver(Diag *diag, DiagResolver resolver, void *context)
+{
+  PetscFunctionBeginUser;
+  if (diag->context_destroy) diag->context_destroy(diag->context);
+  diag->resolver = resolver;
+  diag->context = context;
+  diag->context_destroy = NULL;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode DiagOwnContext(Diag *diag, void (*destroy)(void *))
+{
+  PetscFunctionBeginUser;
+  diag->context_destroy = destroy;
+  PetscFunctionReturn(0);
+}
+
+PetscBool DiagFull(const Diag *diag, DiagSeverity severity) { return diag->shown[severity == DIAG_ERROR] >= DIAG_MOST; }
+
+static void Count(Diag *diag, DiagSeverity severity)
+{
+  diag->errors += severity == DIAG_ERROR;
+  diag->warnings += severity == DIAG_WARNING;
+}
+
+/* One that is not kept; nor is its hint. */
+static void CountOnly(Diag *diag, DiagSeverity severity)
+{
+  Count(diag, severity);
+  diag->more[severity == DIAG_ERROR] += 1;
+  diag->stale_hint = PETSC_TRUE;
+}
+
+/* A message that finds no memory is lost, but it still counts. */
+void DiagAppend(Diag *diag, DiagMessage *message)
+{
+  if (DiagFull(diag, message->severity)) {
+    CountOnly(diag, message->severity);
+    DiagMessageClear(message);
+    return;
+  }
+  Count(diag, message->severity);
+  diag->shown[message->severity == DIAG_ERROR] += 1;
+  if (diag->n == diag->capacity) {
+    const PetscInt capacity = diag->capacity ? 2 * diag->capacity : 16;
+    DiagMessage *grown = realloc(diag->messages, (size_t)capacity * sizeof(*grown));
+    diag->stale_hint = !grown;
+    if (!grown) {
+      DiagMessageClear(message);
+      return;
+    }
+    diag->messages = grown;
+    diag->capacity = capacity;
+  }
+  diag->stale_hint = PETSC_FALSE;
+  diag->messages[diag->n++] = *message;
+}
+
+/* What is longer than any screen (a key of a megabyte) ends in dots, and not within a character. */
+#define LONGEST_TEXT 2000
+
+static char *CutLong(char *text)
+{
+  size_t n = LONGEST_TEXT;
+  if (strlen(text) <= LONGEST_TEXT) return text;
+  while (n > 0 && (text[n] & 0xC0) == 0x80) --n;
+  memcpy(text + n, "...", 4);
+  return text;
+}
+
+static char *Format(const char *format, va_list arguments)
+{
+  char *text = NULL;
+  return vasprintf(&text, format, arguments) < 0 ? NULL : CutLong(text);
+}
+
+static void Record(Diag *diag, DiagSeverity severity, const DiagPlace *place, const char *format, va_list arguments)
+{
+  if (DiagFull(diag, severity)) {
+    CountOnly(diag, severity);
+    return;
+  }
+  DiagMessage message = {.severity = severity, .line = place->line, .column = place->column, .width = place->width};
+  message.file = place->file ? strdup(place->file) : NULL;
+  message.text = place->text ? strdup(place->text) : NULL;
+  message.message = Format(format, arguments);
+  DiagAppend(diag, &message);
+}
+
+static void RecordAtPath(Diag *diag, DiagSeverity severity, const char *path, const char *format, va_list arguments)
+{
+  DiagPlace place = {.width = 1};
+  if (diag->resolver && !DiagFull(diag, severity)) diag->resolver(diag->context, path, &place);
+  Record(diag, severity, &place, format, arguments);
+}
+
+void DiagError(Diag *diag, const char *path, const char *format, ...)
+{
+  va_list arguments;
+  va_start(arguments, format);
+  RecordAtPath(diag, DIAG_ERROR, path, format, arguments);
+  va_end(arguments);
+}
+
+void DiagWarning(Diag *diag, const char *path, const char *format, ...)
+{
+  va_list arguments;
+  va_start(arguments, format);
+  RecordAtPath(diag, DIAG_WARNING, path, format, arguments);
+  va_end(arguments);
+}
+
+void DiagAt(Diag *diag, DiagSeverity severity, const DiagPlace *place, const char *format, ...)
+{
+  va_list arguments;
+  va_start(arguments, format);
+  Record(diag, severity, place, format, arguments);
+  va_end(arguments);
+}
+
+void DiagHint(Diag *diag, const char *format, ...)
+{
+  if (diag->n == 0 || diag->stale_hint) return;
+  DiagMessage *newest = &diag->messages[diag->n - 1];
+  va_list arguments;
+  va_start(arguments, format);
+  free(newest->hint);
+  newest->hint = Format(format, arguments);
+  va_end(arguments);
+}
+
+PetscInt DiagErrors(const Diag *diag) { return diag->errors; }
+
+PetscInt DiagWarnings(const Diag *diag) { return diag->warnings; }
+
+/* Where the file of message i was first mentioned: messages of one file stay together. */
+static PetscInt FileRank(const Diag *diag, PetscInt i)
+{
+  const char *file = diag->messages[i].file ? diag->messages[i].file : "";
+  PetscInt k = 0;
+  while (k < i && strcmp(diag->messages[k].file ? diag->messages[k].file : "", file)) ++k;
+  return k;
+}
+
+typedef struct {
+  PetscInt file, index;
+  int line, column;
+} SortKey;
+
+static int CompareKeys(const void *a, const void *b)
+{
+  const SortKey *p = a, *q = b;
+  if (p->file != q->file) return p->file < q->file ? -1 : 1;
+  if (p->line != q->line) return p->line < q->line ? -1 : 1;
+  if (p->column != q->column) return p->column < q->column ? -1 : 1;
+  return p->index < q->index ? -1 : p->index > q->index;
+}
+
+static PetscBool PrintsHere(void)
+{
+  int initialised = 0, rank = 0;
+  MPI_Initialized(&initialised);
+  if (initialised) MPI_Comm_rank(MPI_COMM_WORLD, &rank);
+  return rank == 0;
+}
+
+static void PrintMore(PetscInt n, const char *what, FILE *out)
+{
+  if (n > 0) fprintf(out, "and %" PetscInt_FMT " more %s%s\n", n, what, n > 1 ? "s" : "");
+}
+
+PetscErrorCode DiagFlush(Diag *diag, FILE *out)
+{
+  SortKey *keys;
+
+  PetscFunctionBeginUser;
+  if (diag->n > 0 && PrintsHere()) {
+    PetscCall(PetscMalloc1(diag->n, &keys));
+    for (PetscInt i = 0; i < diag->n; ++i) {
+      const DiagMessage *m = &diag->messages[i];
+      keys[i] = (SortKey){.file = FileRank(diag, i), .index = i, .line = m->line, .column = m->column};
+    }
+    qsort(keys, (size_t)diag->n, sizeof(*keys), CompareKeys);
+    for (PetscInt i = 0; i < diag->n; ++i) DiagMessagePrint(&diag->messages[keys[i].index], out);
+    PrintMore(diag->more[0], "warning", out);
+    PrintMore(diag->more[1], "error", out);
+    fflush(out);
+    PetscCall(PetscFree(keys));
+  }
+  Forget(diag);
+  PetscFunctionReturn(0);
+}

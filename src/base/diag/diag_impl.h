@@ -1,0 +1,27 @@
+/* Inside of Diag, shared by the files that collect, reduce and print. */
+#pragma once
+#include "base/diag/diag.h"
+
+typedef struct {
+  DiagSeverity severity;
+  char *file, *text, *message, *hint; /* owned; file, text and hint may be NULL */
+  int line, column, width;
+} DiagMessage;
+
+/* Uses the C library's memory, not PETSc's: a mistake on the command line is reported before PETSc is there. */
+struct Diag {
+  PetscInt n, capacity;
+  DiagMessage *messages;
+  PetscInt errors, warnings;
+  PetscInt shown[2], more[2]; /* others, errors: how many messages are kept, and how many only counted */
+  PetscBool stale_hint;       /* the newest message was lost: its hint goes too */
+  DiagResolver resolver;
+  void *context;
+  void (*context_destroy)(void *);
+};
+
+/* Takes over the message's strings. */
+void DiagAppend(Diag *diag, DiagMessage *message);
+void DiagMessageClear(DiagMessage *message);
+/* Print one message with its source line, caret and hint. */
+void DiagMessagePrint(const DiagMessage *message, FILE *out);

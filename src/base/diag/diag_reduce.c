@@ -1,0 +1,148 @@
+/* Messages of other ranks travel to rank 0 as one block of bytes: a header of integers, then the strings. */
+#include "base/diag/diag_impl.h"
+#include <stdlib.h>
+#include <string.h>
+
+typedef struct {
+  int severity, line, column, width;
+  int length[4]; /* of file, text, message, hint; -1: NULL */
+} PackedHead;
+
+static void Strings(const DiagMessage *m, const char *strings[4])
+{
+  strings[0] = m->file;
+  strings[1] = m->text;
+  strings[2] = m->message;
+  strings[3] = m->hint;
+}
+
+static PackedHead HeadOf(const DiagMessage *m)
+{
+  PackedHead head = {.severity = (int)m->severity, .line = m->line, .column = m->column, .width = m->width};
+  const char *strings[4];
+  Strings(m, strings);
+  for (int k = 0; k < 4; ++k) head.length[k] = strings[k] ? (int)strlen(strings[k]) : -1;
+  return head;
+}
+
+static PetscErrorCode Pack(const Diag *diag, int *size, char **bytes)
+{
+  size_t total = 0;
+  char *p;
+
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < diag->n; ++i) {
+    const PackedHead head = HeadOf(&diag->messages[i]);
+    total += sizeof(head);
+    for (int k = 0; k < 4; ++k) total += head.length[k] > 0 ? (size_t)head.length[k] : 0;
+  }
+  PetscCall(PetscMalloc1(total, bytes));
+  p = *bytes;
+  for (PetscInt i = 0; i < diag->n; ++i) {
+    const PackedHead head = HeadOf(&diag->messages[i]);
+    const char *strings[4];
+    Strings(&diag->messages[i], strings);
+    memcpy(p, &head, sizeof(head));
+    p += sizeof(head);
+    for (int k = 0; k < 4; ++k) {
+      if (head.length[k] <= 0) continue;
+      memcpy(p, strings[k], (size_t)head.length[k]);
+      p += head.length[k];
+    }
+  }
+  *size = (int)total;
+  PetscFunctionReturn(0);
+}
+
+static PetscBool SameText(const char *a, const char *b) { return !strcmp(a ? a : "", b ? b : ""); }
+
+static PetscBool Known(const Diag *diag, const DiagMessage *m)
+{
+  for (PetscInt i = 0; i < diag->n; ++i) {
+    const DiagMessage *k = &diag->messages[i];
+    if (k->severity == m->severity && k->line == m->line && k->column == m->column && SameText(k->file, m->file) &&
+        SameText(k->message, m->message))
+      return PETSC_TRUE;
+  }
+  return PETSC_FALSE;
+}
+
+static void Unpack(Diag *diag, const char *p, const char *end)
+{
+  while (p < end) {
+    PackedHead head;
+    char *strings[4] = {NULL, NULL, NULL, NULL};
+    memcpy(&head, p, sizeof(head));
+    p += sizeof(head);
+    for (int k = 0; k < 4; ++k) {
+      if (head.length[k] < 0) continue;
+      strings[k] = strndup(p, (size_t)head.length[k]);
+      p += head.length[k];
+    }
+    DiagMessage m = {.severity = (DiagSeverity)head.severity,
+                     .line = head.line,
+                     .column = head.column,
+                     .width = head.width,
+                     .file = strings[0],
+                     .text = strings[1],
+                     .message = strings[2],
+                     .hint = strings[3]};
+    if (Known(diag, &m)) DiagMessageClear(&m);
+    else DiagAppend(diag, &m);
+  }
+}
+
+/* Twins that rank 0 itself recorded (the same mistake met twice). */
+static void RemoveTwins(Diag *diag)
+{
+  const PetscInt n = diag->n;
+  diag->n = diag->shown[0] = diag->shown[1] = 0;
+  diag->errors = diag->more[1];
+  diag->warnings = diag->more[0];
+  for (PetscInt i = 0; i < n; ++i) {
+    DiagMessage m = diag->messages[i];
+    if (Known(diag, &m)) DiagMessageClear(&m);
+    else DiagAppend(diag, &m);
+  }
+}
+
+static PetscErrorCode Gather(MPI_Comm comm, PetscMPIInt rank, PetscMPIInt ranks, Diag *diag)
+{
+  int size, total = 0, *sizes, *offsets;
+  char *mine, *all;
+
+  PetscFunctionBeginUser;
+  PetscCall(Pack(diag, &size, &mine));
+  if (rank == 0) size = 0; /* its own messages are there already */
+  PetscCall(PetscCalloc2(ranks, &sizes, ranks, &offsets));
+  PetscCallMPI(MPI_Gather(&size, 1, MPI_INT, sizes, 1, MPI_INT, 0, comm));
+  for (PetscMPIInt r = 0; r < ranks; ++r) {
+    offsets[r] = total;
+    total += sizes[r];
+  }
+  PetscCall(PetscMalloc1(total, &all));
+  PetscCallMPI(MPI_Gatherv(mine, size, MPI_CHAR, all, sizes, offsets, MPI_CHAR, 0, comm));
+  if (rank == 0) Unpack(diag, all, all + total);
+  PetscCall(PetscFree(all));
+  PetscCall(PetscFree2(sizes, offsets));
+  PetscCall(PetscFree(mine));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode DiagReduce(MPI_Comm comm, Diag *diag, PetscInt *errors)
+{
+  PetscMPIInt rank, ranks;
+
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_rank(comm, &rank));
+  PetscCallMPI(MPI_Comm_size(comm, &ranks));
+  if (rank == 0) RemoveTwins(diag);
+  if (ranks > 1) PetscCall(Gather(comm, rank, ranks, diag));
+  if (rank > 0) {
+    for (PetscInt i = 0; i < diag->n; ++i) DiagMessageClear(&diag->messages[i]);
+    diag->n = diag->shown[0] = diag->shown[1] = 0; /* the counts stay: what happened here is still known here */
+  }
+  *errors = diag->errors;
+  PetscCallMPI(MPI_Bcast(errors, 1, MPIU_INT, 0, comm));
+  PetscFunctionReturn(0);
+}

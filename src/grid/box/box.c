@@ -1,0 +1,358 @@
+/* Box grids by arithmetic: every rank fills its own block of voxels and needs no message to know
+ * the rest.
+ *
+ * A lattice node belongs to the rank of the voxel above it (the last one at the upper end of an
+ * axis), the centre of a crossed voxel to that of its voxel. A rank numbers its own lattice nodes
+ * lexicographically, then its centres; ghosts follow. The sides are the sets left right (x), bottom
+ * top (y), and in 3D front (lowest z) and back (highest z). */
+#include "grid/grid_private.h"
+
+static const char *const side_names[3][2] = {{"left", "right"}, {"bottom", "top"}, {"front", "back"}};
+
+/* Lattice nodes that a block touches. */
+static VoxelBlock node_block(const GridBox *box, const VoxelBlock *voxels)
+{
+  VoxelBlock nodes = *voxels;
+  const PetscInt some = block_size(voxels) > 0;
+  for (PetscInt d = 0; d < box->dim; ++d) nodes.hi[d] = some ? nodes.hi[d] + 1 : nodes.lo[d];
+  return nodes;
+}
+
+/* Those that it owns. */
+static VoxelBlock owned_block(const GridBox *box, const VoxelBlock *voxels)
+{
+  VoxelBlock nodes = *voxels;
+  const PetscInt some = block_size(voxels) > 0;
+  for (PetscInt d = 0; d < box->dim; ++d)
+    nodes.hi[d] = some ? nodes.hi[d] + (nodes.hi[d] == box->counts[d]) : nodes.lo[d];
+  return nodes;
+}
+
+static PetscBool has_centres(const GridBox *box) { return box->pattern[0].code[0][2] == VOXEL_CENTRE; }
+
+/* Geometric lines: the last interval is `grading` times the first. */
+static void fill_line(PetscReal min, PetscReal max, PetscInt n, PetscReal grading, PetscReal *line)
+{
+  const PetscReal ratio = n > 1 ? PetscPowReal(grading, 1.0 / (PetscReal)(n - 1)) : 1.0;
+  const PetscBool uniform = grading == 1.0 || n == 1;
+  const PetscReal all = uniform ? (PetscReal)n : PetscExpReal((PetscReal)n * PetscLogReal(ratio)) - 1.0;
+  for (PetscInt i = 0; i <= n; ++i) {
+    const PetscReal part = uniform ? (PetscReal)i : PetscExpReal((PetscReal)i * PetscLogReal(ratio)) - 1.0;
+    line[i] = min + (max - min) * (part / all);
+  }
+  line[0] = min;
+  line[n] = max;
+}
+
+static PetscErrorCode BoxLines(GridBox *box, const GridSpec *spec)
+{
+  PetscFunctionBeginUser;
+  box->tolerance = 0;
+  for (PetscInt d = 0; d < 3; ++d) {
+    const PetscBool real = d < box->dim;
+    const PetscReal min = real ? spec->min[d] : 0, max = real ? spec->max[d] : 1;
+    const PetscReal grading = real && spec->grading[d] > 0 ? spec->grading[d] : 1.0;
+    box->counts[d] = real ? spec->counts[d] : 1;
+    PetscCall(PetscMalloc1(box->counts[d] + 1, &box->line[d]));
+    fill_line(min, max, box->counts[d], grading, box->line[d]);
+    if (grading == 1.0) box->per_length[d] = (PetscReal)box->counts[d] / (max - min);
+    if (real) box->tolerance = PetscMax(box->tolerance, 1e-12 * (max - min));
+  }
+  PetscFunctionReturn(0);
+}
+
+PetscInt box_owned_nodes(const GridBox *box, const VoxelBlock *voxels)
+{
+  const VoxelBlock owned = owned_block(box, voxels);
+  return block_size(&owned) + (has_centres(box) ? block_size(voxels) : 0);
+}
+
+static PetscErrorCode GridBoxCreate(MPI_Comm comm, const Case *c, GridWeight weight, void *context, GridBox **out)
+{
+  GridBox *box;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscNew(&box));
+  box->dim = kinematics_dim(c->kinematics);
+  voxel_patterns(c->grid.cell, c->grid.diagonal, box->pattern);
+  PetscCall(BoxLines(box, &c->grid));
+  PetscCall(BoxPartition(comm, box, weight, context));
+  *out = box;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode GridBoxDestroy(GridBox **box)
+{
+  PetscFunctionBeginUser;
+  if (!*box) PetscFunctionReturn(0);
+  for (int d = 0; d < 3; ++d) PetscCall(PetscFree((*box)->line[d]));
+  PetscCall(PetscFree4((*box)->block, (*box)->cut_axis, (*box)->cut, (*box)->first_node));
+  PetscCall(PetscFree(*box));
+  PetscFunctionReturn(0);
+}
+
+/* The rank and the local number there of a lattice node. */
+static PetscSFNode lattice_owner(const GridBox *box, const PetscInt ijk[3])
+{
+  PetscInt voxel[3];
+  PetscSFNode node;
+  for (int d = 0; d < 3; ++d) voxel[d] = PetscMin(ijk[d], box->counts[d] - 1);
+  node.rank = box_owner(box, voxel);
+  const VoxelBlock owned = owned_block(box, box->block + node.rank);
+  node.index = block_index(&owned, ijk);
+  return node;
+}
+
+static PetscErrorCode CountNodes(Grid *grid, const VoxelBlock *nodes)
+{
+  const GridBox *box = grid->box;
+
+  PetscFunctionBeginUser;
+  const VoxelBlock *voxels = box->block + box->rank, owned = owned_block(box, voxels);
+  grid->n_owned = box->first_node[box->rank + 1] - box->first_node[box->rank];
+  grid->n_nodes = grid->n_owned + block_size(nodes) - block_size(&owned);
+  grid->n_nodes_global = box->first_node[box->size];
+  PetscCall(PetscMalloc1(grid->n_nodes * grid->dim, &grid->x));
+  PetscCall(PetscMalloc1(grid->n_nodes, &grid->global_node));
+  PetscFunctionReturn(0);
+}
+
+/* Number, place and tie the lattice nodes; lattice[] gets the local number of each member of the
+ * node block. */
+static PetscErrorCode PlaceLattice(Grid *grid, const VoxelBlock *nodes, PetscInt *lattice)
+{
+  const GridBox *box = grid->box;
+  const VoxelBlock owned = owned_block(box, box->block + box->rank);
+  PetscInt own = 0, ghost = 0, ijk[3], *leaf;
+  PetscSFNode *root;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(grid->n_nodes - grid->n_owned, &leaf));
+  PetscCall(PetscMalloc1(grid->n_nodes - grid->n_owned, &root));
+  for (ijk[2] = nodes->lo[2]; ijk[2] < nodes->hi[2]; ++ijk[2])
+    for (ijk[1] = nodes->lo[1]; ijk[1] < nodes->hi[1]; ++ijk[1])
+      for (ijk[0] = nodes->lo[0]; ijk[0] < nodes->hi[0]; ++ijk[0]) {
+        const PetscBool mine = block_has(&owned, ijk);
+        const PetscInt node = mine ? own++ : grid->n_owned + ghost;
+        *lattice++ = node;
+        for (PetscInt d = 0; d < grid->dim; ++d) grid->x[node * grid->dim + d] = box->line[d][ijk[d]];
+        if (mine) {
+          grid->global_node[node] = box->first_node[box->rank] + node;
+          continue;
+        }
+        root[ghost] = lattice_owner(box, ijk);
+        leaf[ghost] = node;
+        grid->global_node[node] = box->first_node[root[ghost].rank] + root[ghost].index;
+        ++ghost;
+      }
+  PetscCall(PetscSFCreate(grid->comm, &grid->node_sf));
+  PetscCall(PetscSFSetGraph(grid->node_sf, grid->n_owned, ghost, leaf, PETSC_OWN_POINTER, root, PETSC_OWN_POINTER));
+  PetscFunctionReturn(0);
+}
+
+static void place_centre(Grid *grid, const PetscInt ijk[3], PetscInt node)
+{
+  const GridBox *box = grid->box;
+  grid->global_node[node] = box->first_node[box->rank] + node;
+  for (PetscInt d = 0; d < grid->dim; ++d)
+    grid->x[node * grid->dim + d] = 0.5 * (box->line[d][ijk[d]] + box->line[d][ijk[d] + 1]);
+}
+
+/* The local nodes of a voxel's corners, by their codes, and of its centre. */
+static void voxel_nodes(const Grid *grid, const VoxelBlock *nodes, const PetscInt *lattice, const PetscInt ijk[3],
+                        PetscInt first_centre, PetscInt local[VOXEL_CENTRE + 1])
+{
+  const GridBox *box = grid->box;
+  for (PetscInt code = 0; code < 1 << grid->dim; ++code) {
+    const PetscInt corner[3] = {ijk[0] + (code & 1), ijk[1] + (code >> 1 & 1), ijk[2] + (code >> 2 & 1)};
+    local[code] = lattice[block_index(nodes, corner)];
+  }
+  local[VOXEL_CENTRE] = first_centre + block_index(box->block + box->rank, ijk);
+}
+
+static void fill_cells(Grid *grid, const VoxelBlock *nodes, const PetscInt *lattice)
+{
+  const GridBox *box = grid->box;
+  const VoxelBlock *voxels = box->block + box->rank, owned = owned_block(box, voxels);
+  const VoxelBlock all = {{0, 0, 0}, {box->counts[0], box->counts[1], box->counts[2]}};
+  const PetscInt nn = grid->nodes_per_cell, n_sub = box->pattern[0].n_cells;
+  const PetscBool centres = has_centres(box);
+  PetscInt ijk[3], local[VOXEL_CENTRE + 1], cell = 0;
+  for (ijk[2] = voxels->lo[2]; ijk[2] < voxels->hi[2]; ++ijk[2])
+    for (ijk[1] = voxels->lo[1]; ijk[1] < voxels->hi[1]; ++ijk[1])
+      for (ijk[0] = voxels->lo[0]; ijk[0] < voxels->hi[0]; ++ijk[0]) {
+        const VoxelPattern *pattern = box->pattern + voxel_odd(ijk);
+        voxel_nodes(grid, nodes, lattice, ijk, block_size(&owned), local);
+        if (centres) place_centre(grid, ijk, local[VOXEL_CENTRE]);
+        for (PetscInt s = 0; s < n_sub; ++s, ++cell) {
+          for (PetscInt i = 0; i < nn; ++i) grid->cell_node[cell * nn + i] = local[pattern->code[s][i]];
+          grid->global_cell[cell] = block_index(&all, ijk) * n_sub + s;
+        }
+      }
+}
+
+/* Does this face of a cell lie on the voxel's lower (0) or upper (1) side of the axis? */
+static PetscBool face_on_side(const Cell *cell, const PetscInt *code, PetscInt face, PetscInt axis, PetscInt upper)
+{
+  for (PetscInt i = 0; i < cell->face_nodes; ++i) {
+    const PetscInt at = code[cell->face[face][i]];
+    if (at == VOXEL_CENTRE || (at >> axis & 1) != upper) return PETSC_FALSE;
+  }
+  return PETSC_TRUE;
+}
+
+static void voxel_side_faces(const Grid *grid, const PetscInt ijk[3], PetscInt axis, PetscInt upper, GridSet *set)
+{
+  const GridBox *box = grid->box;
+  const Cell *cell = cells + grid->type;
+  const VoxelPattern *pattern = box->pattern + voxel_odd(ijk);
+  const PetscInt first = block_index(box->block + box->rank, ijk) * pattern->n_cells;
+  for (PetscInt s = 0; s < pattern->n_cells; ++s)
+    for (PetscInt f = 0; f < cell->faces; ++f) {
+      if (!face_on_side(cell, pattern->code[s], f, axis, upper)) continue;
+      set->face_cell[set->n_faces] = first + s;
+      set->face_side[set->n_faces++] = f;
+    }
+}
+
+/* The part of a block that lies at the given end of the axis; empty if it does not reach it. `end`
+ * is the last index there. */
+static VoxelBlock end_slab(VoxelBlock block, PetscInt axis, PetscInt end)
+{
+  block.lo[axis] = PetscMax(block.lo[axis], end);
+  block.hi[axis] = PetscMax(block.lo[axis], PetscMin(block.hi[axis], end + 1));
+  return block;
+}
+
+static PetscErrorCode SideFaces(const Grid *grid, PetscInt axis, PetscInt upper, GridSet *set)
+{
+  const GridBox *box = grid->box;
+  const VoxelBlock slab = end_slab(box->block[box->rank], axis, upper ? box->counts[axis] - 1 : 0);
+  const PetscInt most = 2 * block_size(&slab); /* a voxel's side has one face or two */
+  PetscInt ijk[3];
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(most, &set->face_cell));
+  PetscCall(PetscMalloc1(most, &set->face_side));
+  for (ijk[2] = slab.lo[2]; ijk[2] < slab.hi[2]; ++ijk[2])
+    for (ijk[1] = slab.lo[1]; ijk[1] < slab.hi[1]; ++ijk[1])
+      for (ijk[0] = slab.lo[0]; ijk[0] < slab.hi[0]; ++ijk[0]) voxel_side_faces(grid, ijk, axis, upper, set);
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode SideNodes(const Grid *grid, const VoxelBlock *nodes, const PetscInt *lattice, PetscInt axis,
+                                PetscInt upper, GridSet *set)
+{
+  const VoxelBlock slab = end_slab(*nodes, axis, upper ? grid->box->counts[axis] : 0);
+  PetscInt ijk[3];
+
+  PetscFunctionBeginUser;
+  if (!block_size(nodes) || !block_size(&slab)) PetscFunctionReturn(0);
+  PetscCall(PetscMalloc1(block_size(&slab), &set->nodes));
+  for (ijk[2] = slab.lo[2]; ijk[2] < slab.hi[2]; ++ijk[2])
+    for (ijk[1] = slab.lo[1]; ijk[1] < slab.hi[1]; ++ijk[1])
+      for (ijk[0] = slab.lo[0]; ijk[0] < slab.hi[0]; ++ijk[0])
+        set->nodes[set->n_nodes++] = lattice[block_index(nodes, ijk)];
+  PetscCall(PetscSortInt(set->n_nodes, set->nodes));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode FillSides(Grid *grid, const VoxelBlock *nodes, const PetscInt *lattice)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(2 * grid->dim, &grid->sets));
+  for (PetscInt axis = 0; axis < grid->dim; ++axis)
+    for (PetscInt upper = 0; upper < 2; ++upper) {
+      GridSet *set = grid->sets + grid->n_sets++;
+      PetscCall(PetscStrallocpy(side_names[axis][upper], &set->name));
+      PetscCall(SideNodes(grid, nodes, lattice, axis, upper, set));
+      PetscCall(SideFaces(grid, axis, upper, set));
+    }
+  PetscCall(GridOuterFromSets(grid));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode FillBox(Grid *grid)
+{
+  const GridBox *box = grid->box;
+  const VoxelBlock *voxels = box->block + box->rank, nodes = node_block(box, voxels);
+  PetscInt *lattice;
+
+  PetscFunctionBeginUser;
+  grid->n_cells = block_size(voxels) * box->pattern[0].n_cells;
+  PetscCall(PetscMalloc1(grid->n_cells * grid->nodes_per_cell, &grid->cell_node));
+  PetscCall(PetscMalloc1(grid->n_cells, &grid->global_cell));
+  PetscCall(CountNodes(grid, &nodes));
+  PetscCall(PetscMalloc1(block_size(&nodes), &lattice));
+  PetscCall(PlaceLattice(grid, &nodes, lattice));
+  fill_cells(grid, &nodes, lattice);
+  PetscCall(FillSides(grid, &nodes, lattice));
+  PetscCall(PetscFree(lattice));
+  PetscFunctionReturn(0);
+}
+
+static void box_extent(Grid *grid)
+{
+  grid->smallest = PETSC_MAX_REAL;
+  for (PetscInt d = 0; d < grid->dim; ++d) {
+    const PetscReal *line = grid->box->line[d];
+    const PetscInt n = grid->box->counts[d];
+    grid->min[d] = line[0];
+    grid->max[d] = line[n];
+    for (PetscInt i = 0; i < n; ++i) grid->smallest = PetscMin(grid->smallest, line[i + 1] - line[i]);
+  }
+}
+
+/* What the case reader lets through but no grid can be made of. */
+static PetscBool box_valid(MPI_Comm comm, const Case *c, Diag *diag)
+{
+  const GridSpec *spec = &c->grid;
+  const PetscInt dim = kinematics_dim(c->kinematics);
+  PetscReal entities = 6.0; /* bounds cells, nodes and the entries of cell_node */
+  if (cells[spec->cell].dim != dim) {
+    GridError(comm, diag, "grid.cell", "a %s does not fit %s kinematics", cells[spec->cell].name,
+              dim == 3 ? "three-dimensional" : "two-dimensional");
+    return PETSC_FALSE;
+  }
+  for (PetscInt d = 0; d < dim; ++d) {
+    entities *= (PetscReal)spec->counts[d] + 1.0;
+    if (spec->counts[d] >= 1 && spec->max[d] > spec->min[d] && PetscIsNormalReal(spec->max[d] - spec->min[d])) continue;
+    GridError(comm, diag, "grid", "the box has no cells along %c", (char)('x' + d));
+    return PETSC_FALSE;
+  }
+  if (entities * cells[spec->cell].nodes < (PetscReal)PETSC_MAX_INT) return PETSC_TRUE;
+  GridError(comm, diag, "grid", "the box would have about %.3g nodes, more than this build of PETSc can number",
+            (double)(entities / 6.0));
+  return PETSC_FALSE;
+}
+
+PetscErrorCode GridFromBox(MPI_Comm comm, CellType type, GridBox *box, Grid **out)
+{
+  Grid *grid;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscNew(&grid));
+  grid->comm = comm;
+  grid->dim = box->dim;
+  grid->type = type;
+  grid->nodes_per_cell = cells[type].nodes;
+  grid->box = box;
+  grid->n_cells_global = box->pattern[0].n_cells * box->counts[0] * box->counts[1] * box->counts[2];
+  box_extent(grid);
+  PetscCall(FillBox(grid));
+  PetscCall(GridFinish(grid));
+  *out = grid;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode GridCreate_Box(MPI_Comm comm, const Case *c, GridWeight weight, void *context, Diag *diag, Grid **grid)
+{
+  GridBox *box = NULL;
+
+  PetscFunctionBeginUser;
+  *grid = NULL;
+  if (!box_valid(comm, c, diag)) PetscFunctionReturn(0);
+  PetscCall(GridBoxCreate(comm, c, weight, context, &box));
+  PetscCall(GridFromBox(comm, c->grid.cell, box, grid));
+  PetscFunctionReturn(0);
+}

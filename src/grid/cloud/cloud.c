@@ -1,0 +1,292 @@
+#include "grid/cloud/cloud.h"
+#include "base/exchange.h"
+#include "grid/grid_private.h"
+
+PetscErrorCode GridCloudFollow(Grid *grid, PetscReal **data, PetscInt components, const char *name, const char *unit)
+{
+  GridCloud *c = grid->cloud;
+
+  PetscFunctionBeginUser;
+  PetscCheck(c->n_fields < CLOUD_MAX_FIELDS, PETSC_COMM_SELF, PETSC_ERR_PLIB, "too many arrays follow the nodes");
+  c->field[c->n_fields++] = (CloudField){.data = data, .components = components, .name = name, .unit = unit};
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode GridCloudDestroy(GridCloud **cloud)
+{
+  PetscFunctionBeginUser;
+  if (!*cloud) PetscFunctionReturn(0);
+  PetscCall(PetscFree((*cloud)->id));
+  PetscCall(PetscFree((*cloud)->x0));
+  PetscCall(PetscFree((*cloud)->obstacle));
+  PetscCall(PetscFree((*cloud)->ghost_rank));
+  PetscCall(PetscFree((*cloud)->ghost_index));
+  PetscCall(PetscFree(*cloud));
+  PetscFunctionReturn(0);
+}
+
+static PetscBool cells_are_alike(const Grid *grid)
+{
+  if (!grid->box) return PETSC_FALSE;
+  for (PetscInt d = 0; d < grid->dim; ++d) {
+    const PetscReal mean = (grid->max[d] - grid->min[d]) / (PetscReal)grid->box->counts[d];
+    for (PetscInt i = 0; i < grid->box->counts[d]; ++i) {
+      const PetscReal size = grid->box->line[d][i + 1] - grid->box->line[d][i];
+      if (size > grid->smallest * (1 + 1e-9) || mean > grid->smallest * (1 + 1e-9)) return PETSC_FALSE;
+    }
+  }
+  return PETSC_TRUE;
+}
+
+PetscErrorCode GridSpacing(const Grid *grid, PetscInt n, const PetscInt *cell, PetscReal *spacing)
+{
+  static const PetscReal share[] = {2, 1, 6, 1}; /* cells to a square or a cube */
+  PetscReal x[3 * CELL_MAX_NODES], sum[2] = {0, (PetscReal)n};
+
+  PetscFunctionBeginUser;
+  *spacing = grid->smallest;
+  if (cells_are_alike(grid)) PetscFunctionReturn(0);
+  for (PetscInt k = 0; k < n; ++k) {
+    grid_cell_x(grid, cell[k], x);
+    sum[0] += share[grid->type] * cell_volume(grid->type, x);
+  }
+  PetscCall(MPIU_Allreduce(MPI_IN_PLACE, sum, 2, MPIU_REAL, MPI_SUM, grid->comm));
+  if (sum[1] > 0) *spacing = PetscPowReal(sum[0] / sum[1], 1 / (PetscReal)grid->dim);
+  PetscFunctionReturn(0);
+}
+
+/* Numbers that hang on the set of owned nodes. */
+static PetscErrorCode CountOwned(Grid *grid)
+{
+  PetscInt first = 0;
+
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Exscan(&grid->n_owned, &first, 1, MPIU_INT, MPI_SUM, grid->comm));
+  PetscCall(MPIU_Allreduce(&grid->n_owned, &grid->n_nodes_global, 1, MPIU_INT, MPI_SUM, grid->comm));
+  for (PetscInt i = 0; i < grid->n_owned; ++i) grid->global_node[i] = first + i;
+  PetscFunctionReturn(0);
+}
+
+/* The exchange between owners and ghosts. */
+static PetscErrorCode Connect(Grid *grid)
+{
+  const PetscInt n = grid->n_nodes - grid->n_owned;
+  PetscInt *leaf;
+  PetscSFNode *root;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(n, &leaf));
+  PetscCall(PetscMalloc1(n, &root));
+  for (PetscInt k = 0; k < n; ++k) {
+    leaf[k] = grid->n_owned + k;
+    root[k] = (PetscSFNode){.rank = grid->cloud->ghost_rank[k], .index = grid->cloud->ghost_index[k]};
+  }
+  PetscCall(PetscSFDestroy(&grid->node_sf));
+  PetscCall(PetscSFCreate(grid->comm, &grid->node_sf));
+  PetscCall(PetscSFSetGraph(grid->node_sf, grid->n_owned, n, leaf, PETSC_OWN_POINTER, root, PETSC_OWN_POINTER));
+  PetscCall(PetscSFSetUp(grid->node_sf));
+  PetscCall(PetscSFBcastBegin(grid->node_sf, MPIU_INT, grid->global_node, grid->global_node, MPI_REPLACE));
+  PetscCall(PetscSFBcastEnd(grid->node_sf, MPIU_INT, grid->global_node, grid->global_node, MPI_REPLACE));
+  PetscCall(PetscSFBcastBegin(grid->node_sf, MPIU_INT, grid->cloud->id, grid->cloud->id, MPI_REPLACE));
+  PetscCall(PetscSFBcastEnd(grid->node_sf, MPIU_INT, grid->cloud->id, grid->cloud->id, MPI_REPLACE));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode Populate(const Grid *mesh, const unsigned char *marked, const unsigned char *twin, Grid *g)
+{
+  const PetscInt dim = mesh->dim;
+  PetscInt n = 0;
+
+  PetscFunctionBeginUser;
+  for (int second = 0; second < 2; ++second)
+    for (PetscInt i = 0; i < mesh->n_owned; ++i) {
+      if (!marked[i] || (second && !twin[i])) continue;
+      g->cloud->id[n] = mesh->global_node[i] + (second ? mesh->n_nodes_global : 0);
+      g->cloud->obstacle[n] = marked[i] == CLOUD_OBSTACLE;
+      for (PetscInt d = 0; d < dim; ++d) g->x[n * dim + d] = g->cloud->x0[n * dim + d] = mesh->x[i * dim + d];
+      ++n;
+    }
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode GridCreateCloud(const Grid *mesh, PetscReal spacing, const unsigned char *marked,
+                               const unsigned char *twin, Grid **cloud)
+{
+  Grid *g;
+  PetscMPIInt size;
+
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_size(mesh->comm, &size));
+  PetscCall(PetscNew(&g));
+  PetscCall(PetscNew(&g->cloud));
+  g->comm = mesh->comm;
+  g->dim = mesh->dim;
+  g->type = mesh->type;
+  g->smallest = mesh->smallest;
+  PetscCall(PetscArraycpy(g->min, mesh->min, 3));
+  PetscCall(PetscArraycpy(g->max, mesh->max, 3));
+  for (PetscInt i = 0; i < mesh->n_owned; ++i) g->n_owned += marked[i] ? 1 + (twin[i] != 0) : 0;
+  g->n_nodes = g->n_owned;
+  g->cloud->first_twin = mesh->n_nodes_global;
+  g->cloud->spacing = spacing;
+  g->cloud->n_cells_left = mesh->n_cells_global;
+  PetscCall(PetscMalloc1(g->n_nodes * g->dim, &g->x));
+  PetscCall(PetscMalloc1(g->n_nodes * g->dim, &g->cloud->x0));
+  PetscCall(PetscMalloc1(g->n_nodes, &g->cloud->obstacle));
+  PetscCall(PetscMalloc1(g->n_nodes, &g->cloud->id));
+  PetscCall(PetscMalloc1(g->n_nodes, &g->global_node));
+  PetscCall(Populate(mesh, marked, twin, g));
+  PetscCall(CountOwned(g));
+  PetscCall(Connect(g));
+  PetscCall(GridCloudFollow(g, &g->x, g->dim, "position", "m"));
+  PetscCall(GridCloudFollow(g, &g->cloud->x0, g->dim, "position_at_start", "m"));
+  PetscCall(GridCloudFollow(g, &g->cloud->obstacle, 1, "obstacle", NULL));
+  *cloud = g;
+  PetscFunctionReturn(0);
+}
+
+/* Arrays get the new size, owned contents stay. */
+static PetscErrorCode Resize(Grid *grid, PetscInt n_nodes)
+{
+  GridCloud *c = grid->cloud;
+  PetscReal *data;
+
+  PetscFunctionBeginUser;
+  for (PetscInt f = 0; f < c->n_fields; ++f) {
+    const PetscInt k = c->field[f].components;
+    PetscCall(PetscCalloc1(n_nodes * k, &data));
+    if (c->field[f].name) PetscCall(PetscArraycpy(data, *c->field[f].data, grid->n_owned * k));
+    PetscCall(PetscFree(*c->field[f].data));
+    *c->field[f].data = data;
+  }
+  PetscCall(PetscRealloc((size_t)n_nodes * sizeof *c->id, &c->id));
+  PetscCall(PetscRealloc((size_t)n_nodes * sizeof *grid->global_node, &grid->global_node));
+  grid->n_nodes = n_nodes;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode GridCloudSetGhosts(Grid *grid, const RemoteNodes *remote, const PetscBool *use)
+{
+  GridCloud *c = grid->cloud;
+  PetscInt n = 0;
+
+  PetscFunctionBeginUser;
+  for (PetscInt k = 0; k < remote->n; ++k) n += use[k];
+  PetscCall(Resize(grid, grid->n_owned + n));
+  PetscCall(PetscFree(c->ghost_rank));
+  PetscCall(PetscFree(c->ghost_index));
+  PetscCall(PetscMalloc1(n, &c->ghost_rank));
+  PetscCall(PetscMalloc1(n, &c->ghost_index));
+  for (PetscInt k = 0, g = 0; k < remote->n; ++k)
+    if (use[k]) {
+      c->ghost_rank[g] = remote->rank[k];
+      c->ghost_index[g++] = remote->index[k];
+    }
+  PetscCall(Connect(grid));
+  for (PetscInt f = 0; f < c->n_fields; ++f)
+    if (c->field[f].name) PetscCall(GridToGhosts(grid, c->field[f].components, *c->field[f].data));
+  ++c->layouts;
+  PetscFunctionReturn(0);
+}
+
+static PetscInt kept_components(const GridCloud *c)
+{
+  PetscInt sum = 0;
+  for (PetscInt f = 0; f < c->n_fields; ++f) sum += c->field[f].name ? c->field[f].components : 0;
+  return sum;
+}
+
+/* All that is kept of a node <-> one row of numbers; its id stands last. */
+static void pack_node(const Grid *grid, PetscInt node, PetscReal *row)
+{
+  const GridCloud *c = grid->cloud;
+  for (PetscInt f = 0; f < c->n_fields; ++f)
+    for (PetscInt k = 0; c->field[f].name && k < c->field[f].components; ++k)
+      *row++ = (*c->field[f].data)[node * c->field[f].components + k];
+  *row = (PetscReal)c->id[node];
+}
+
+static void unpack_node(Grid *grid, PetscInt node, const PetscReal *row)
+{
+  GridCloud *c = grid->cloud;
+  for (PetscInt f = 0; f < c->n_fields; ++f)
+    for (PetscInt k = 0; c->field[f].name && k < c->field[f].components; ++k)
+      (*c->field[f].data)[node * c->field[f].components + k] = *row++;
+  c->id[node] = (PetscInt)*row;
+}
+
+/* Room for n owned nodes alone. */
+static PetscErrorCode Empty(Grid *grid, PetscInt n)
+{
+  PetscFunctionBeginUser;
+  grid->n_owned = 0;
+  PetscCall(Resize(grid, n));
+  grid->n_owned = n;
+  PetscCall(PetscFree(grid->cloud->ghost_rank));
+  PetscCall(PetscFree(grid->cloud->ghost_index));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode GridCloudReplace(Grid *grid, PetscInt n_owned, const PetscInt *id)
+{
+  PetscFunctionBeginUser;
+  PetscCall(Empty(grid, n_owned));
+  PetscCall(PetscArraycpy(grid->cloud->id, id, n_owned));
+  PetscCall(CountOwned(grid));
+  PetscCall(Connect(grid));
+  ++grid->cloud->layouts;
+  PetscFunctionReturn(0);
+}
+
+/* Rows of the nodes that stay, then of those that come, then resize and write them back. */
+static PetscErrorCode Settle(Grid *grid, const PetscMPIInt *owner, PetscMPIInt rank, PetscInt n_in, const PetscReal *in)
+{
+  const PetscInt width = kept_components(grid->cloud) + 1;
+  PetscReal *stay;
+  PetscInt n = 0;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(grid->n_owned * width, &stay));
+  for (PetscInt i = 0; i < grid->n_owned; ++i)
+    if (owner[i] == rank) pack_node(grid, i, stay + n++ * width);
+  PetscCall(Empty(grid, n + n_in));
+  for (PetscInt i = 0; i < n; ++i) unpack_node(grid, i, stay + i * width);
+  for (PetscInt i = 0; i < n_in; ++i) unpack_node(grid, n + i, in + i * width);
+  PetscCall(PetscFree(stay));
+  PetscCall(CountOwned(grid));
+  PetscCall(Connect(grid));
+  ++grid->cloud->layouts;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode GridCloudMigrate(Grid *grid, const PetscMPIInt *owner)
+{
+  const PetscInt width = kept_components(grid->cloud) + 1;
+  PetscMPIInt rank, size, *slot;
+  PetscInt *per_rank, *next;
+  PetscReal *out, *in;
+  Exchange e;
+
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_rank(grid->comm, &rank));
+  PetscCallMPI(MPI_Comm_size(grid->comm, &size));
+  PetscCall(PetscMalloc1(size, &slot));
+  PetscCall(PetscCalloc1(size, &per_rank));
+  for (PetscInt i = 0; i < grid->n_owned; ++i) per_rank[owner[i]] += owner[i] != rank;
+  PetscCall(ExchangeCreate(grid->comm, size, per_rank, slot, &e));
+  PetscCall(PetscMalloc1(e.to_start[e.n_to] * width, &out));
+  PetscCall(PetscMalloc1(e.from_start[e.n_from] * width, &in));
+  PetscCall(PetscMalloc1(e.n_to + 1, &next));
+  PetscCall(PetscArraycpy(next, e.to_start, e.n_to + 1));
+  for (PetscInt i = 0; i < grid->n_owned; ++i)
+    if (owner[i] != rank) pack_node(grid, i, out + next[slot[owner[i]]]++ * width);
+  PetscCall(ExchangeItems(&e, (size_t)width * sizeof *out, PETSC_FALSE, (char *)out, (char *)in));
+  PetscCall(Settle(grid, owner, rank, e.from_start[e.n_from], in));
+  PetscCall(ExchangeDestroy(&e));
+  PetscCall(PetscFree(out));
+  PetscCall(PetscFree(in));
+  PetscCall(PetscFree(next));
+  PetscCall(PetscFree(slot));
+  PetscCall(PetscFree(per_rank));
+  PetscFunctionReturn(0);
+}

@@ -1,0 +1,75 @@
+/* A cloud: a grid without cells, whose nodes move, change their neighbours and may change their rank.
+ *
+ * It fills the struct Grid like the other builders (owned nodes first, ghosts behind, node_sf), so that all that works on nodes works on
+ * clouds. What others keep per node follows along: they register their arrays, and a change of ghosts or owners moves the contents. */
+#pragma once
+#include "base/table.h"
+#include "grid/grid.h"
+
+#define CLOUD_MAX_FIELDS 32
+
+enum { CLOUD_BODY = 1, CLOUD_OBSTACLE };
+
+/* An array of n_nodes x components that somebody else holds. */
+typedef struct {
+  PetscReal **data;
+  PetscInt components;
+  const char *name, *unit; /* of what is kept: in checkpoints, too; NULL: only the size follows */
+} CloudField;
+
+typedef struct GridCloud {
+  PetscInt *id;        /* n_nodes: for life, whatever the ranks */
+  PetscInt first_twin; /* ids from here on are twins */
+  PetscReal spacing;   /* of nodes in the body, at the start, m: unit of length of clouds */
+  PetscReal *x0;       /* n_nodes x dim: positions at the start, m */
+  PetscReal *obstacle; /* n_nodes: 1 if the node was prescribed at the start and no cell with material had it; else 0 */
+  PetscInt n_fields;
+  CloudField field[CLOUD_MAX_FIELDS];
+  PetscMPIInt *ghost_rank;  /* of each ghost: its owner, */
+  PetscInt *ghost_index;    /* and its local number there; ascending */
+  PetscInt layouts;         /* how often ghosts or owners changed */
+  PetscInt balanced_ghosts; /* over all ranks after the last change of owners; 0: not counted yet */
+  PetscInt n_cells_left;    /* cells of the grid that it was made of */
+} GridCloud;
+
+/* Owned nodes of other ranks in this rank's box, ascending by rank and index. */
+typedef struct {
+  PetscInt n;
+  PetscMPIInt *rank;
+  PetscInt *index;
+  PetscReal *x; /* n x dim */
+} RemoteNodes;
+
+/* Collective. Spacing of nodes in the cells listed (of all ranks, each counted as often as it is listed): the edge of a square or cube of their
+ * mean volume, of which a triangle is half and a tetrahedron a sixth; on a box of equal cells its cell size. */
+PetscErrorCode GridSpacing(const Grid *mesh, PetscInt n, const PetscInt *cell, PetscReal *spacing);
+/* Collective. The cloud of the owned nodes of a mesh that are marked (CLOUD_BODY, or CLOUD_OBSTACLE); where twin[node] is set it gets a twin: a second node at the same
+ * place that carries the multipliers of a constraint and never is a neighbour. */
+PetscErrorCode GridCreateCloud(const Grid *mesh, PetscReal spacing, const unsigned char *marked,
+                               const unsigned char *twin, Grid **cloud);
+PetscErrorCode GridCloudDestroy(GridCloud **cloud);
+
+static inline PetscBool cloud_is_twin(const Grid *grid, PetscInt node)
+{
+  return grid->cloud->id[node] >= grid->cloud->first_twin;
+}
+
+/* Let *data (n_nodes x components, from PetscMalloc1) follow the nodes; without a name its contents are lost when they change. */
+PetscErrorCode GridCloudFollow(Grid *grid, PetscReal **data, PetscInt components, const char *name, const char *unit);
+
+/* Collective. Nodes of others between box[0..2] and box[3..5]; twins left out. */
+PetscErrorCode GridCloudRemote(const Grid *grid, const PetscReal box[6], RemoteNodes *remote);
+PetscErrorCode GridCloudRemoteDestroy(RemoteNodes *remote);
+/* Local number of each candidate if it is a ghost already, else -1. */
+void cloud_find_ghosts(const Grid *grid, const RemoteNodes *remote, PetscInt *local);
+/* Collective. From now on the remote with use[k] are the ghosts. */
+PetscErrorCode GridCloudSetGhosts(Grid *grid, const RemoteNodes *remote, const PetscBool *use);
+/* Collective. Send every owned node to the rank owner[node]; no ghosts remain. */
+PetscErrorCode GridCloudMigrate(Grid *grid, const PetscMPIInt *owner);
+/* Collective. So many owned nodes and no ghosts in place of what is there; what follows them is zero. */
+PetscErrorCode GridCloudReplace(Grid *grid, PetscInt n_owned, const PetscInt *id);
+
+/* Nodes with all that is kept of them, and ghosts, as tables. */
+PetscErrorCode CloudToTables(const Grid *grid, Tables *tables);
+/* Collective. Back again: the rows of each rank become its nodes. Ghosts only come back if all rows are with the ranks that wrote them. */
+PetscErrorCode CloudFromTables(Grid *grid, const Tables *tables, PetscBool home, char reason[256]);

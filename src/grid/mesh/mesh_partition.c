@@ -1,0 +1,98 @@
+/* The rank of each cell of a mesh: PT-Scotch through PETSc, on the graph of face neighbours,
+ * weighted like the box's voxels. */
+#include <petscmat.h>
+#include <stdlib.h>
+#include "grid/gmsh/msh.h"
+
+static PetscErrorCode DualGraph(const SerialMesh *mesh, Mat *graph)
+{
+  const PetscInt n_faces = cells[mesh->type].faces;
+  PetscInt *start, *column, n = 0;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(mesh->n_cells + 1, &start));
+  PetscCall(PetscMalloc1(mesh->n_cells * n_faces, &column));
+  for (PetscInt c = 0; c < mesh->n_cells; ++c) {
+    start[c] = n;
+    for (PetscInt f = 0; f < n_faces; ++f)
+      if (mesh->neighbour[c * n_faces + f] >= 0) column[n++] = mesh->neighbour[c * n_faces + f];
+    PetscCall(PetscSortInt(n - start[c], column + start[c]));
+  }
+  start[mesh->n_cells] = n;
+  PetscCall(
+    MatCreateMPIAdj(PETSC_COMM_SELF, mesh->n_cells, mesh->n_cells, start, column, NULL, graph)); /* owns the arrays */
+  PetscFunctionReturn(0);
+}
+
+/* Whole numbers, the mean loaded cell near 100 and the empty one at 5. */
+static PetscErrorCode CellWeights(const SerialMesh *mesh, GridWeight weight, void *context, PetscInt **out)
+{
+  const PetscInt nn = cells[mesh->type].nodes, dim = mesh->dim;
+  PetscReal *w, sum = 0, loaded = 0;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(mesh->n_cells, out));
+  PetscCall(PetscMalloc1(mesh->n_cells, &w));
+  for (PetscInt c = 0; c < mesh->n_cells; ++c) {
+    PetscReal centre[3] = {0, 0, 0};
+    for (PetscInt i = 0; i < nn; ++i)
+      for (PetscInt d = 0; d < dim; ++d) centre[d] += mesh->x[mesh->cell_node[c * nn + i] * dim + d] / (PetscReal)nn;
+    w[c] = PetscMax(weight(context, centre), 0.0);
+    sum += w[c];
+    loaded += w[c] > 0;
+  }
+  const PetscReal scale = sum > 0 ? 100.0 * loaded / sum : 0.0;
+  for (PetscInt c = 0; c < mesh->n_cells; ++c) (*out)[c] = (PetscInt)PetscMin(PetscMax(w[c] * scale, 5.0), 10000.0);
+  PetscCall(PetscFree(w));
+  PetscFunctionReturn(0);
+}
+
+/* Scotch takes a thread for each core, and then its partition is another one at every run: neither a run nor one taken up on the way would repeat
+ * itself. One thread, unless the user says otherwise. */
+static PetscErrorCode ApplyAlone(MatPartitioning partitioning, IS *is)
+{
+  static const char threads[] = "SCOTCH_PTHREAD_NUMBER";
+  const PetscBool told = getenv(threads) != NULL;
+
+  PetscFunctionBeginUser;
+  if (!told) (void)setenv(threads, "1", 1);
+  PetscCall(MatPartitioningApply(partitioning, is));
+  if (!told) (void)unsetenv(threads);
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode SerialMeshPartition(const SerialMesh *mesh, PetscMPIInt size, GridWeight weight, void *context,
+                                   PetscInt *owner)
+{
+  Mat graph;
+  MatPartitioning partitioning;
+  IS is;
+  const PetscInt *part;
+
+  PetscFunctionBeginUser;
+  /* Few cells: a cell or none on each rank. One rank: the same without a graph. */
+  for (PetscInt c = 0; c < mesh->n_cells; ++c) owner[c] = size == 1 ? 0 : c;
+  if (size == 1 || mesh->n_cells <= size) PetscFunctionReturn(0);
+  PetscCall(DualGraph(mesh, &graph));
+  PetscCall(MatPartitioningCreate(PETSC_COMM_SELF, &partitioning));
+  PetscCall(MatPartitioningSetAdjacency(partitioning, graph));
+#if defined(PETSC_HAVE_PTSCOTCH)
+  PetscCall(MatPartitioningSetType(partitioning, MATPARTITIONINGPTSCOTCH));
+#else
+  PetscCall(MatPartitioningSetType(partitioning, MATPARTITIONINGAVERAGE));
+#endif
+  PetscCall(MatPartitioningSetNParts(partitioning, size));
+  if (weight) {
+    PetscInt *weights;
+    PetscCall(CellWeights(mesh, weight, context, &weights));
+    PetscCall(MatPartitioningSetVertexWeights(partitioning, weights)); /* owns them */
+  }
+  PetscCall(ApplyAlone(partitioning, &is));
+  PetscCall(ISGetIndices(is, &part));
+  PetscCall(PetscArraycpy(owner, part, mesh->n_cells));
+  PetscCall(ISRestoreIndices(is, &part));
+  PetscCall(ISDestroy(&is));
+  PetscCall(MatPartitioningDestroy(&partitioning));
+  PetscCall(MatDestroy(&graph));
+  PetscFunctionReturn(0);
+}

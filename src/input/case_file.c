@@ -1,0 +1,159 @@
+#include "input/case_file.h"
+#include <errno.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include "input/schema/schema.h"
+#include "material/law.h"
+
+static void DestroyDocument(void *document)
+{
+  YamlDocument *d = document;
+  PetscCallAbort(PETSC_COMM_SELF, YamlDestroy(&d));
+}
+
+/* Why a file cannot be read, in words; NULL if it can. */
+static const char *Unreadable(const char *file, size_t *size)
+{
+  struct stat info;
+  if (stat(file, &info)) return errno == ENOENT ? "there is no such file" : strerror(errno);
+  if (S_ISDIR(info.st_mode)) return "this is a directory, not a case file";
+  if (!S_ISREG(info.st_mode)) return "this is no plain file";
+  if (info.st_size > YAML_MAX_BYTES) return "this file is too large for a case (more than 256 MiB)";
+  *size = (size_t)info.st_size;
+  return NULL;
+}
+
+static PetscErrorCode ReadBytes(const char *file, size_t *size, char **bytes, const char **reason)
+{
+  PetscFunctionBeginUser;
+  *size = 0;
+  *bytes = NULL;
+  *reason = Unreadable(file, size);
+  if (*reason) PetscFunctionReturn(0);
+  FILE *in = fopen(file, "rb");
+  if (!in) *reason = strerror(errno);
+  else {
+    PetscCall(PetscMalloc1(*size + 1, bytes));
+    *size = fread(*bytes, 1, *size, in);
+    if (ferror(in)) *reason = strerror(errno);
+    fclose(in);
+  }
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode FileReadEverywhere(MPI_Comm comm, const char *file, size_t *size, char **bytes, char reason[256])
+{
+  unsigned long long n = 0;
+  const char *why = NULL;
+  PetscMPIInt rank;
+
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_rank(comm, &rank));
+  memset(reason, 0, 256);
+  *bytes = NULL;
+  if (rank == 0) {
+    PetscCall(ReadBytes(file, size, bytes, &why));
+    n = *size;
+    if (why) snprintf(reason, 256, "%s", why);
+  }
+  PetscCallMPI(MPI_Bcast(reason, 256, MPI_CHAR, 0, comm));
+  PetscCallMPI(MPI_Bcast(&n, 1, MPI_UNSIGNED_LONG_LONG, 0, comm));
+  *size = (size_t)n;
+  if (reason[0]) PetscFunctionReturn(0);
+  if (rank > 0) PetscCall(PetscMalloc1(*size + 1, bytes));
+  PetscCallMPI(MPI_Bcast(*bytes, (PetscMPIInt)*size, MPI_CHAR, 0, comm));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode FolderOf(const char *file, char **folder)
+{
+  const char *slash = strrchr(file, '/');
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscStrallocpy(slash == file ? "/" : slash ? file : ".", folder));
+  if (slash && slash != file) (*folder)[slash - file] = '\0';
+  PetscFunctionReturn(0);
+}
+
+/* The number of dimensions decides how long vectors are: it is read ahead of everything else. */
+static PetscInt PeekDimensions(const YamlNode *root)
+{
+  const YamlNode *kinematics = YamlFind(root, "kinematics");
+  if (!kinematics || kinematics->kind != YAML_SCALAR) return 0;
+  if (!strcmp(kinematics->text, "3d")) return 3;
+  return !strcmp(kinematics->text, "plane-strain") || !strcmp(kinematics->text, "axisymmetric") ? 2 : 0;
+}
+
+static PetscBool AnythingYields(const Case *c)
+{
+  for (PetscInt m = 0; m < c->n_materials; ++m) {
+    const Law *law = c->materials[m].law ? LawFind(c->materials[m].law) : NULL;
+    if (law && law->yields) return PETSC_TRUE;
+  }
+  return PETSC_FALSE;
+}
+
+/* Measured (docs/theory.md, section 9): elastic bodies keep angular momentum and energy best with a tenth of the mass lumped and no tie,
+ * while at the front of a flow, where yielded points carry next to nothing, only both keep Newton's method alive. */
+static void ResolveStabilisation(const YamlNode *given, Case *c)
+{
+  const PetscBool yields = AnythingYields(c);
+  if (!YamlFind(given, "mass")) c->stabilisation.mass = yields ? 1 : 0.1;
+  if (!YamlFind(given, "inertia")) c->stabilisation.inertia = yields ? 0.01 : 0;
+}
+
+/* Stress that carries the weight means that the weight is there: without a word of the user gravity does not grow. */
+static PetscErrorCode ResolveGravity(Case *c)
+{
+  Amplitude *a = &c->gravity_amplitude;
+
+  PetscFunctionBeginUser;
+  if (a->n || c->analysis.type != ANALYSIS_STATIC || !case_has_k0(c)) PetscFunctionReturn(0);
+  a->n = 1;
+  PetscCall(PetscCalloc1(1, &a->time));
+  PetscCall(PetscMalloc1(1, &a->value));
+  a->value[0] = 1;
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode ReadDocument(const char *file, YamlDocument *document, Diag *diag, Case **c)
+{
+  SchemaReader reader = {.document = document, .diag = diag, .dim = PeekDimensions(document->root)};
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscNew(c));
+  PetscCall(PetscStrallocpy(file, &(*c)->file));
+  PetscCall(FolderOf(file, &(*c)->folder));
+  reader.c = *c;
+  PetscCall(SchemaReadTable(&reader, &schema_case, document->root, *c));
+  ResolveStabilisation(YamlFind(document->root, "stabilisation"), *c);
+  PetscCall(ResolveGravity(*c));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode CaseRead(MPI_Comm comm, const char *file, PetscInt n_set, const char *const *set, Diag *diag, Case **c)
+{
+  const PetscInt before = DiagErrors(diag);
+  char *bytes, reason[256];
+  size_t size = 0;
+  YamlDocument *document;
+
+  PetscFunctionBeginUser;
+  *c = NULL;
+  PetscCall(FileReadEverywhere(comm, file, &size, &bytes, reason));
+  if (reason[0]) {
+    const DiagPlace place = {.file = file, .width = 1};
+    DiagAt(diag, DIAG_ERROR, &place, "%s", reason);
+    PetscCall(PetscFree(bytes));
+    PetscFunctionReturn(0);
+  }
+  PetscCall(YamlCreate(file, bytes, size, diag, &document));
+  PetscCall(PetscFree(bytes));
+  PetscCall(DiagSetResolver(diag, YamlResolve, document));
+  PetscCall(DiagOwnContext(diag, DestroyDocument));
+  for (PetscInt i = 0; i < n_set; ++i) PetscCall(YamlSet(document, set[i], diag));
+  if (document->root) PetscCall(ReadDocument(file, document, diag, c));
+  if (DiagErrors(diag) > before) PetscCall(CaseDestroy(c));
+  PetscFunctionReturn(0);
+}

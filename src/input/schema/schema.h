@@ -1,0 +1,202 @@
+/* The language of the case file as data: one table drives reading, writing, the reference and the JSON Schema.
+ *
+ * A table describes the keys of one mapping and where their values live in a struct of case.h. To add a key:
+ * one line in a table (schema_tables.c and its neighbours). To add a kind of value: its reader and JSON in schema_types.c,
+ * its writer in schema_write_types.c. */
+#pragma once
+#include <stddef.h>
+#include <stdio.h>
+#include "case/case.h"
+#include "input/yaml.h"
+
+typedef enum {
+  TYPE_NUMBER,    /* PetscReal */
+  TYPE_INTEGER,   /* PetscInt */
+  TYPE_BOOLEAN,   /* PetscBool */
+  TYPE_WORD,      /* an enum, from `words` */
+  TYPE_WORD_TEXT, /* char *, from `words` */
+  TYPE_TEXT,      /* char * */
+  TYPE_NAME,      /* char *, fit for a path */
+  TYPE_FILE,      /* char *, resolved against the folder of the case */
+  TYPE_LAW,       /* char *, the name of a law */
+  TYPE_REFERENCE, /* char *, a name from the list or mapping `target` at the top of the file */
+  TYPE_BOUNDARY,  /* PetscInt, index or name of an entry of `boundary` */
+  TYPE_VECTOR,    /* PetscReal[3], as many as dimensions */
+  TYPE_SPIN,      /* PetscReal[3]: a number about z in 2D, a vector in 3D */
+  TYPE_AXIS,      /* PetscInt 0 1 2 */
+  TYPE_SPIN_AXIS, /* the same for rotations: only z in 2D */
+  TYPE_AXES,      /* PetscBool[3] */
+  TYPE_INTERVAL,  /* number or [min, max]: PetscReal at offset and at second */
+  TYPE_SIZE,      /* cell size: resolved to counts by the check of the grid */
+  TYPE_COUNTS,    /* PetscInt[3] */
+  TYPE_AMPLITUDE, /* Amplitude */
+  TYPE_POLYGON,   /* vertices at offset, their number at count */
+  TYPE_EVERY,     /* PetscReal: end = 0, s > 0, {steps: n} = -n */
+  TYPE_FIELDS,    /* char ** and their number: words of output_fields */
+  TYPE_NUMBERS,   /* NamedValue * and their number: any key: a number */
+  TYPE_OPTIONS,   /* char ** and their number: options of PETSc */
+  TYPE_TABLE,     /* a nested mapping */
+  TYPE_LIST,      /* a list of mappings: array of structs and its number */
+  TYPE_NAMED,     /* a mapping of name: mapping; the struct begins with its name */
+  TYPE_COUNT
+} SchemaType;
+
+typedef struct {
+  const char *word;
+  int value;
+  const char *help;
+} SchemaWord;
+
+typedef struct SchemaTable SchemaTable;
+
+typedef struct SchemaEntry {
+  const char *key;
+  SchemaType type;
+  const char *help;
+  const char *unit;
+  const char *fallback; /* the default as it would stand in the file */
+  const char *note;     /* for the reader of the reference: a default that depends on others */
+  PetscReal min, max;   /* if bounded */
+  PetscBool bounded, min_open, max_open;
+  PetscBool required, only_2d, only_3d;
+  PetscBool endless;    /* a number beyond what its unit can mean has a meaning: none */
+  PetscBool always;     /* a mapping that is read even if absent: its keys have defaults */
+  PetscBool input_only; /* resolved to another key, never written */
+  const SchemaWord *words;
+  const SchemaWord *later; /* words that mean something, but not in this version: refused by name, offered nowhere */
+  const SchemaTable *table;
+  const char *target;
+  const char *with; /* makes sense only beside this key */
+  size_t offset, second, count;
+  size_t present;         /* 1 + offset of a PetscBool that says whether it was given; 0: none */
+  PetscBool tagged;       /* giving this key sets the table's tag to `tag`... */
+  PetscBool items_tagged; /* ...or that of each item of the list */
+  int tag;
+} SchemaEntry;
+
+typedef enum { GROUP_NONE, GROUP_ONE, GROUP_AT_MOST_ONE, GROUP_AT_LEAST_ONE } SchemaGroupKind;
+
+typedef struct {
+  SchemaGroupKind kind;
+  const char *keys[16]; /* ended by NULL */
+} SchemaGroup;
+
+typedef struct SchemaReader {
+  YamlDocument *document;
+  Diag *diag;
+  Case *c;
+  PetscInt dim; /* 0: kinematics could not be read, lengths are not checked */
+} SchemaReader;
+
+struct SchemaTable {
+  const char *name; /* unique: a heading of the reference, a definition of the JSON Schema */
+  const char *help;
+  const SchemaEntry *entries; /* ended by key = NULL */
+  const SchemaGroup *groups;  /* ended by GROUP_NONE; NULL if there are none */
+  size_t size;                /* of the struct, for lists */
+  size_t tag_offset;
+  /* Keys that the entries do not list; NULL: they are mistakes. */
+  PetscErrorCode (*open)(SchemaReader *r, const YamlNode *mapping, void *target);
+  /* After reading without a mistake: resolve defaults, look at keys together. */
+  PetscErrorCode (*check)(SchemaReader *r, const YamlNode *mapping, void *target);
+  /* Is this entry to be left out when `source` is written? NULL: never. */
+  PetscBool (*hide)(const SchemaEntry *entry, const void *source);
+  PetscErrorCode (*write_open)(FILE *out, int indent, const Case *c, const void *source);
+};
+
+/* The whole language. */
+extern const SchemaTable schema_case;
+extern const SchemaTable schema_measure; /* for `talus list measures` */
+extern const SchemaWord schema_methods[];
+
+/* --- reading (schema_read.c) --- */
+PetscErrorCode SchemaReadTable(SchemaReader *r, const SchemaTable *table, const YamlNode *mapping, void *target);
+/* One value; dispatches on the type. */
+PetscErrorCode SchemaReadEntry(SchemaReader *r, const SchemaEntry *entry, const YamlNode *node, void *target);
+/* Record a mistake at the value, or at the key. `%s` of the path comes first in the message by habit. */
+#define SchemaError(r, node, ...) YamlError((r)->document, (r)->diag, node, PETSC_FALSE, __VA_ARGS__)
+#define SchemaKeyError(r, node, ...) YamlError((r)->document, (r)->diag, node, PETSC_TRUE, __VA_ARGS__)
+/* "<path> must be <what>, not <what stands there>". */
+void SchemaMismatch(SchemaReader *r, const SchemaEntry *entry, const YamlNode *node);
+/* "a number > 0, in Pa". Returns buffer. */
+const char *SchemaExpected(const SchemaEntry *entry, PetscInt dim, char *buffer, size_t size);
+/* The bounds alone: "> 0"; empty if there are none. */
+const char *SchemaRange(const SchemaEntry *entry, char *buffer, size_t size);
+/* A number, with a message and PETSC_FALSE if it is none or out of its bounds. */
+PetscBool SchemaNumber(SchemaReader *r, const SchemaEntry *entry, const YamlNode *node, PetscReal *value);
+/* What numbers of a unit can mean: at most, and (other than 0) at least; ended by unit = NULL. */
+typedef struct {
+  const char *unit;
+  PetscReal least, most;
+} SchemaMagnitude;
+extern const SchemaMagnitude schema_magnitudes[];
+/* The same without messages and bounds. */
+PetscBool SchemaParseNumber(const YamlNode *node, PetscReal *value);
+PetscBool SchemaParseInteger(const YamlNode *node, PetscInt *value);
+/* "did you mean 'x'?", or the list of all. */
+void SchemaHintWords(SchemaReader *r, const char *word, PetscInt n, const char *const *words);
+/* Read a vector of dim numbers without messages; returns how many there were. */
+PetscInt SchemaParseVector(const YamlNode *node, PetscReal value[3]);
+
+/* --- kinds of values (schema_types.c) --- */
+typedef PetscErrorCode (*SchemaReadType)(SchemaReader *r, const SchemaEntry *entry, const YamlNode *node, void *target);
+typedef struct {
+  const char *what;       /* "a number" */
+  const char *short_name; /* for the column of a table: "number" */
+  const char *json;       /* its JSON Schema; NULL: made from the entry */
+  SchemaReadType read;    /* NULL: nested, see schema_read.c */
+} SchemaTypeInfo;
+extern const SchemaTypeInfo schema_types[TYPE_COUNT];
+
+PetscErrorCode SchemaReadInterval(SchemaReader *r, const SchemaEntry *e, const YamlNode *node, void *target);
+PetscErrorCode SchemaReadAmplitude(SchemaReader *r, const SchemaEntry *e, const YamlNode *node, void *target);
+PetscErrorCode SchemaReadPolygon(SchemaReader *r, const SchemaEntry *e, const YamlNode *node, void *target);
+PetscErrorCode SchemaReadEvery(SchemaReader *r, const SchemaEntry *e, const YamlNode *node, void *target);
+PetscErrorCode SchemaReadFields(SchemaReader *r, const SchemaEntry *e, const YamlNode *node, void *target);
+PetscErrorCode SchemaReadNumbers(SchemaReader *r, const SchemaEntry *e, const YamlNode *node, void *target);
+PetscErrorCode SchemaReadOptions(SchemaReader *r, const SchemaEntry *e, const YamlNode *node, void *target);
+PetscErrorCode SchemaReadVector(SchemaReader *r, const SchemaEntry *e, const YamlNode *node, void *target);
+PetscErrorCode SchemaReadSpin(SchemaReader *r, const SchemaEntry *e, const YamlNode *node, void *target);
+PetscErrorCode SchemaReadAxis(SchemaReader *r, const SchemaEntry *e, const YamlNode *node, void *target);
+PetscErrorCode SchemaReadAxes(SchemaReader *r, const SchemaEntry *e, const YamlNode *node, void *target);
+PetscErrorCode SchemaReadSize(SchemaReader *r, const SchemaEntry *e, const YamlNode *node, void *target);
+PetscErrorCode SchemaReadCounts(SchemaReader *r, const SchemaEntry *e, const YamlNode *node, void *target);
+PetscErrorCode SchemaReadNumber(SchemaReader *r, const SchemaEntry *e, const YamlNode *node, void *target);
+PetscErrorCode SchemaReadInteger(SchemaReader *r, const SchemaEntry *e, const YamlNode *node, void *target);
+PetscErrorCode SchemaReadBoolean(SchemaReader *r, const SchemaEntry *e, const YamlNode *node, void *target);
+PetscErrorCode SchemaReadWord(SchemaReader *r, const SchemaEntry *e, const YamlNode *node, void *target);
+PetscErrorCode SchemaReadWordText(SchemaReader *r, const SchemaEntry *e, const YamlNode *node, void *target);
+PetscErrorCode SchemaReadText(SchemaReader *r, const SchemaEntry *e, const YamlNode *node, void *target);
+PetscErrorCode SchemaReadName(SchemaReader *r, const SchemaEntry *e, const YamlNode *node, void *target);
+PetscErrorCode SchemaReadFile(SchemaReader *r, const SchemaEntry *e, const YamlNode *node, void *target);
+PetscErrorCode SchemaReadLaw(SchemaReader *r, const SchemaEntry *e, const YamlNode *node, void *target);
+PetscErrorCode SchemaReadReference(SchemaReader *r, const SchemaEntry *e, const YamlNode *node, void *target);
+PetscErrorCode SchemaReadBoundary(SchemaReader *r, const SchemaEntry *e, const YamlNode *node, void *target);
+/* Is the name fit for a path and a column of a table? Complains at the node (its key if `key`). */
+PetscBool SchemaCheckName(SchemaReader *r, const YamlNode *node, const char *name, PetscBool key);
+
+/* Writers of single values (schema_write_types.c). */
+void SchemaWriteReal(FILE *out, PetscReal value);  /* the shortest text that reads back to the same number */
+void SchemaWriteText(FILE *out, const char *text); /* quoted where YAML wants it */
+typedef void (*SchemaWriteType)(FILE *out, const Case *c, const SchemaEntry *entry, const void *source);
+extern const SchemaWriteType schema_writers[TYPE_COUNT];
+
+/* --- checks of tables, by topic --- */
+PetscErrorCode SchemaCheckAnalysis(SchemaReader *r, const YamlNode *mapping, void *target);
+PetscErrorCode SchemaCheckBox(SchemaReader *r, const YamlNode *mapping, void *target);
+PetscErrorCode SchemaCheckGrid(SchemaReader *r, const YamlNode *mapping, void *target);
+PetscErrorCode SchemaCheckShapeBox(SchemaReader *r, const YamlNode *mapping, void *target);
+PetscErrorCode SchemaCheckShape(SchemaReader *r, const YamlNode *mapping, void *target);
+PetscErrorCode SchemaCheckHalfSpace(SchemaReader *r, const YamlNode *mapping, void *target);
+PetscErrorCode SchemaCheckBody(SchemaReader *r, const YamlNode *mapping, void *target);
+PetscErrorCode SchemaCheckSelector(SchemaReader *r, const YamlNode *mapping, void *target);
+PetscErrorCode SchemaCheckMotion(SchemaReader *r, const YamlNode *mapping, void *target);
+PetscErrorCode SchemaCheckMeasure(SchemaReader *r, const YamlNode *mapping, void *target);
+/* Materials take the parameters of their law (schema_material.c). */
+PetscErrorCode SchemaOpenMaterial(SchemaReader *r, const YamlNode *mapping, void *target);
+PetscErrorCode SchemaWriteMaterial(FILE *out, int indent, const Case *c, const void *source);
+
+/* What a constant may be, for materials and the reference: young, poisson, bulk, shear, lame; ended by key = NULL. */
+extern const SchemaEntry schema_elastic[];
+/* A parameter of a law as an entry, for messages and the reference. `law_parameter`: a const LawParameter *. */
+SchemaEntry SchemaLawEntry(const void *law_parameter);

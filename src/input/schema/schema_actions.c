@@ -1,0 +1,91 @@
+/* Keys of what acts on the material: prescribed motion and loads. */
+#include "input/schema/schema_keys.h"
+
+/* --- prescribed motion --- */
+static const SchemaEntry component_entries[] = {
+  KEY("x", NUMBER, NULL, "along x", AT(MotionSpec, value[0]), GIVEN(MotionSpec, component[0])),
+  KEY("y", NUMBER, NULL, "along y", AT(MotionSpec, value[1]), GIVEN(MotionSpec, component[1])),
+  KEY("z", NUMBER, NULL, "along z", ONLY_3D, AT(MotionSpec, value[2]), GIVEN(MotionSpec, component[2])),
+  {.key = NULL},
+};
+static const SchemaGroup component_groups[] = {{GROUP_AT_LEAST_ONE, {"x", "y", "z", NULL}}, {GROUP_NONE, {NULL}}};
+static const SchemaTable components = {
+  .name = "components",
+  .help = "Prescribed components, in m (displacement) or m/s (velocity); those not named stay free.",
+  .entries = component_entries,
+  .groups = component_groups};
+
+static const SchemaEntry rotation_entries[] = {
+  KEY("centre", VECTOR, "m", "position that does not move", REQUIRED, AT(MotionSpec, centre)),
+  KEY("rate", NUMBER, "rad/s", "angular velocity, counter-clockwise", REQUIRED, AT(MotionSpec, rate)),
+  KEY("axis", VECTOR, NULL, "axis through the centre, any length", ONLY_3D, REQUIRED, AT(MotionSpec, axis)),
+  {.key = NULL},
+};
+static const SchemaTable rotation = {.name = "rotation", .help = "A rigid rotation.", .entries = rotation_entries};
+
+static const SchemaEntry motion_entries[] = {
+  KEY("name", NAME, NULL, "how `measures` may call it", AT(MotionSpec, name)),
+  KEY("on", TABLE, NULL, "which nodes of the grid", .table = &schema_selector, REQUIRED, AT(MotionSpec, on)),
+  KEY("fix", AXES, NULL, "components that do not move: [x], [x, y], ...", TAG(MOTION_FIXED), AT(MotionSpec, component)),
+  KEY("displacement", TABLE, NULL, "prescribed displacement from the start", .table = &components,
+      TAG(MOTION_DISPLACEMENT)),
+  KEY("velocity", TABLE, NULL, "prescribed velocity", .table = &components, TAG(MOTION_VELOCITY)),
+  KEY("rotation", TABLE, NULL, "rigid rotation about a point", .table = &rotation, TAG(MOTION_ROTATION)),
+  KEY("amplitude", AMPLITUDE, NULL, "factor over time: [[time, factor], ...], linear between",
+      .note = "1, or time / end for a displacement", AT(MotionSpec, amplitude)),
+  KEY("moves", BOOLEAN, NULL,
+      "on a grid that is restored every step (mpm): does the place `on` take part in the motion, so that it is a rigid "
+      "body that goes through the grid? Let it reach a cell into the material, so that it holds the nodes of the cells "
+      "that its surface cuts. Else the place stays, and material flows away from it. With fem the nodes chosen at the "
+      "start move in any case",
+      .fallback = "false", AT(MotionSpec, moves)),
+  {.key = NULL},
+};
+static const SchemaGroup motion_groups[] = {{GROUP_ONE, {"fix", "displacement", "velocity", "rotation", NULL}},
+                                            {GROUP_NONE, {NULL}}};
+const SchemaTable schema_motion = {.name = "boundary",
+                                   .help = "Nodes whose motion is prescribed.",
+                                   .entries = motion_entries,
+                                   .groups = motion_groups,
+                                   .size = sizeof(MotionSpec),
+                                   .tag_offset = offsetof(MotionSpec, kind),
+                                   .check = SchemaCheckMotion};
+
+/* --- loads --- */
+static const SchemaEntry traction_entries[] = {
+  KEY("on", TABLE, NULL, "a boundary of the grid, or of a body (then the load moves with it)",
+      .table = &schema_selector, REQUIRED, AT(LoadSpec, on)),
+  KEY("value", VECTOR, "N/m2", "force per undeformed boundary", REQUIRED, AT(LoadSpec, value)),
+  KEY("amplitude", AMPLITUDE, NULL, "factor over time", .note = "time / end in statics, 1 in dynamics",
+      AT(LoadSpec, amplitude)),
+  {.key = NULL},
+};
+static const SchemaTable traction = {.name = "traction",
+                                     .help = "A load spread over a boundary.",
+                                     .entries = traction_entries,
+                                     .size = sizeof(LoadSpec),
+                                     .tag_offset = offsetof(LoadSpec, kind)};
+static const SchemaEntry point_load_entries[] = {
+  KEY("at", VECTOR, "m", "the piece of material that carries it, by its position at the start", REQUIRED,
+      AT(LoadSpec, at)),
+  KEY("force", VECTOR, "N", "the force", REQUIRED, AT(LoadSpec, value)),
+  KEY("amplitude", AMPLITUDE, NULL, "factor over time", .note = "time / end in statics, 1 in dynamics",
+      AT(LoadSpec, amplitude)),
+  {.key = NULL},
+};
+static const SchemaTable point_load = {.name = "point load",
+                                       .help = "A force on a piece of material.",
+                                       .entries = point_load_entries,
+                                       .size = sizeof(LoadSpec),
+                                       .tag_offset = offsetof(LoadSpec, kind)};
+static const SchemaEntry loads_entries[] = {
+  KEY("gravity", VECTOR, "m/s2", "acceleration of gravity", .note = "0", AT(Case, gravity)),
+  KEY("gravity_amplitude", AMPLITUDE, NULL, "factor over time", .note = "time / end in statics without k0, else 1",
+      AT(Case, gravity_amplitude)),
+  KEY("tractions", LIST, NULL, "loads spread over boundaries", .table = &traction, AT(Case, loads),
+      .count = offsetof(Case, n_loads), ITEMS(LOAD_TRACTION)),
+  KEY("points", LIST, NULL, "point forces", .table = &point_load, AT(Case, loads), .count = offsetof(Case, n_loads),
+      ITEMS(LOAD_POINT)),
+  {.key = NULL},
+};
+const SchemaTable schema_loads = {.name = "loads", .help = "What acts on the material.", .entries = loads_entries};

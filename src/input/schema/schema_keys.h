@@ -1,0 +1,30 @@
+/* How the tables of the language are written: one KEY a line.
+ *
+ *   KEY("radius", NUMBER, "m", "radius", REQUIRED, ABOVE(0), AT(Shape, radius))
+ *
+ * reads: the key `radius` holds a number in m, greater than 0, that must be given and is stored in Shape.radius. */
+#pragma once
+#include <math.h>
+#include <string.h>
+#include "input/schema/schema.h"
+
+#define KEY(name, kind, in, text, ...)                                      \
+  {                                                                         \
+    .key = name, .type = TYPE_##kind, .unit = in, .help = text, __VA_ARGS__ \
+  }
+#define ABOVE(low) .bounded = PETSC_TRUE, .min = (low), .min_open = PETSC_TRUE, .max = INFINITY, .max_open = PETSC_TRUE
+#define AT_LEAST(low) .bounded = PETSC_TRUE, .min = (low), .max = INFINITY, .max_open = PETSC_TRUE
+#define BETWEEN(low, high) .bounded = PETSC_TRUE, .min = (low), .max = (high)
+#define AT(type, member) .offset = offsetof(type, member)
+#define GIVEN(type, member) .present = 1 + offsetof(type, member)
+#define TAG(value) .tagged = PETSC_TRUE, .tag = (value)
+#define ITEMS(value) .items_tagged = PETSC_TRUE, .tag = (value)
+#define REQUIRED .required = PETSC_TRUE
+#define ALWAYS .always = PETSC_TRUE
+#define ONLY_2D .only_2d = PETSC_TRUE
+#define ONLY_3D .only_3d = PETSC_TRUE
+#define INPUT_ONLY .input_only = PETSC_TRUE
+
+/* Tables that others name. */
+extern const SchemaTable schema_shape, schema_selector, schema_grid, schema_body, schema_motion, schema_loads,
+  schema_basis;

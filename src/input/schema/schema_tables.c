@@ -1,0 +1,220 @@
+/* The keys at the top of the case file, and those of the smaller blocks. The order of the lines is the
+ * order of reading, writing and of the reference. */
+#include "input/schema/schema_keys.h"
+
+static const SchemaWord kinematics_words[] = {
+  {"plane-strain", KINEMATICS_PLANE_STRAIN, "two-dimensional, unit thickness"},
+  {"3d", KINEMATICS_3D, "three-dimensional"},
+  {NULL, 0, NULL},
+};
+static const SchemaWord kinematics_later[] = {
+  {"axisymmetric", KINEMATICS_AXISYMMETRIC,
+   "axisymmetric kinematics are not part of this version; plane-strain and 3d are"},
+  {NULL, 0, NULL},
+};
+const SchemaWord schema_methods[] = {
+  {"mpm", 0, "material point method: points carry the material through a fixed grid"},
+  {"fem", 1, "updated Lagrangian finite elements: the grid moves with the material"},
+  {"gmm", 2, "Galerkin meshfree method: a cloud of nodes and points moves, without cells"},
+  {NULL, 0, NULL},
+};
+static const SchemaWord formulation_words[] = {
+  {"displacement", 0, "displacements are the only unknowns"},
+  {"mixed", 1, "displacements and pressure: for nearly or exactly incompressible materials"},
+  {NULL, 0, NULL},
+};
+static const SchemaWord analysis_words[] = {
+  {"static", ANALYSIS_STATIC, "equilibrium at every step, no inertia"},
+  {"dynamic", ANALYSIS_DYNAMIC, "Newmark in time, with inertia"},
+  {NULL, 0, NULL},
+};
+static const SchemaWord mass_words[] = {
+  {"consistent", MASS_CONSISTENT, "of the shape functions; lumped in cells that are not full, see stabilisation.mass"},
+  {"lumped", MASS_LUMPED, "all of it at the nodes: more Newton steps converge where grains flow, rotations lose more"},
+  {NULL, 0, NULL},
+};
+static const SchemaWord linear_words[] = {
+  {"auto", LINEAR_AUTO, "chosen from the problem"},
+  {"direct", LINEAR_DIRECT, "factorisation"},
+  {"iterative", LINEAR_ITERATIVE, "Krylov method with a preconditioner"},
+  {NULL, 0, NULL},
+};
+
+/* --- analysis --- */
+static const SchemaEntry analysis_entries[] = {
+  KEY("type", WORD, NULL, "static or dynamic", .words = analysis_words, REQUIRED, AT(AnalysisSpec, type)),
+  KEY("end", NUMBER, "s", "time at the end of the run", .note = "static: 1", ABOVE(0), AT(AnalysisSpec, end)),
+  KEY("steps", INTEGER, NULL, "number of equal steps up to the end", .note = "static: 1, if `step` is not given",
+      AT_LEAST(1), INPUT_ONLY, AT(AnalysisSpec, step)),
+  KEY("step", NUMBER, "s", "the first step, and the largest one unless `largest` says otherwise", ABOVE(0),
+      AT(AnalysisSpec, step)),
+  KEY("smallest", NUMBER, "s", "the run gives up when a step has to be smaller", .note = "step / 1024", ABOVE(0),
+      AT(AnalysisSpec, smallest)),
+  KEY("largest", NUMBER, "s", "steps grow up to this after easy ones", .note = "step", ABOVE(0),
+      AT(AnalysisSpec, largest)),
+  KEY("travel", NUMBER, NULL,
+      "steps larger than `step` carry no point farther than this share of the smallest cell; 0: as far as it goes",
+      .fallback = "0.3", AT_LEAST(0), AT(AnalysisSpec, travel)),
+  KEY("beta", NUMBER, NULL, "Newmark parameter", .note = "0.25; with bossak (1 - bossak)^2 / 4", .bounded = PETSC_TRUE,
+      .min = 0, .max = 1, .min_open = PETSC_TRUE, AT(AnalysisSpec, beta)),
+  KEY("gamma", NUMBER, NULL, "Newmark parameter", .note = "0.5; with bossak 0.5 - bossak", BETWEEN(0, 1),
+      AT(AnalysisSpec, gamma)),
+  KEY("bossak", NUMBER, NULL, "Bossak's alpha: damps high frequencies", .fallback = "0", BETWEEN(-1. / 3., 0),
+      AT(AnalysisSpec, bossak)),
+  KEY("damping", NUMBER, "1/s", "Rayleigh damping proportional to mass", .fallback = "0", AT_LEAST(0),
+      AT(AnalysisSpec, damping)),
+  KEY("mass", WORD, NULL, "mass matrix", .words = mass_words, .fallback = "consistent", AT(AnalysisSpec, mass)),
+  KEY(
+    "keep_velocity", BOOLEAN, NULL,
+    "mpm: points beside prescribed nodes keep the velocity that they bring, as thesis (2.16) is printed, so that what "
+    "slides over a floor slides on; otherwise they take over the motion of these nodes",
+    .fallback = "false", AT(AnalysisSpec, keep_velocity)),
+  {.key = NULL},
+};
+static const SchemaGroup analysis_groups[] = {{GROUP_AT_MOST_ONE, {"steps", "step", NULL}}, {GROUP_NONE, {NULL}}};
+static const SchemaTable analysis = {.name = "analysis",
+                                     .help = "Statics or dynamics, and the steps in time.",
+                                     .entries = analysis_entries,
+                                     .groups = analysis_groups,
+                                     .check = SchemaCheckAnalysis};
+
+/* --- materials --- */
+static const SchemaEntry material_entries[] = {
+  KEY("law", LAW, NULL, "the constitutive law, see `talus list laws`", REQUIRED, AT(MaterialSpec, law)),
+  KEY("density", NUMBER, "kg/m3", "mass per volume of the undeformed body", REQUIRED, ABOVE(0),
+      AT(MaterialSpec, density)),
+  {.key = NULL},
+};
+static const SchemaTable material = {
+  .name = "material",
+  .help = "A law with its constants: any two elastic constants, and the parameters of the law.",
+  .entries = material_entries,
+  .size = sizeof(MaterialSpec),
+  .open = SchemaOpenMaterial,
+  .write_open = SchemaWriteMaterial};
+
+/* --- solver and output --- */
+static const SchemaEntry newton_entries[] = {
+  KEY("residual", NUMBER, NULL, "relative to the largest force met", .fallback = "1e-8", AT_LEAST(0),
+      AT(NewtonSpec, residual)),
+  KEY("residual_absolute", NUMBER, "N", "a residual below this is converged in any case", .fallback = "0", AT_LEAST(0),
+      AT(NewtonSpec, residual_absolute)),
+  KEY("increment", NUMBER, NULL, "relative to the displacement of the step", .fallback = "1e-10", AT_LEAST(0),
+      AT(NewtonSpec, increment)),
+  KEY("increment_absolute", NUMBER, "m", "an increment below this is converged in any case", .fallback = "0",
+      AT_LEAST(0), AT(NewtonSpec, increment_absolute)),
+  KEY("max_iterations", INTEGER, NULL, "then the step is halved", .fallback = "25", AT_LEAST(1),
+      AT(NewtonSpec, max_iterations)),
+  KEY("ease", INTEGER, NULL, "a step with at most so many iterations lets the next one grow", .fallback = "6",
+      AT_LEAST(0), AT(NewtonSpec, ease)),
+  {.key = NULL},
+};
+static const SchemaTable newton = {
+  .name = "newton", .help = "When the Newton iteration has converged.", .entries = newton_entries};
+
+static const SchemaEntry stabilisation_entries[] = {
+  KEY("stiffness", NUMBER, NULL, "share of the material's stiffness that empty parts of cells keep", .fallback = "1e-6",
+      AT_LEAST(0), AT(StabilisationSpec, stiffness)),
+  KEY("mass", NUMBER, NULL, "share of the mass that is lumped at the nodes, times the empty part of the cell",
+      .note = "1 if a law of the case yields, 0.1 if all are elastic", BETWEEN(0, 1), AT(StabilisationSpec, mass)),
+  KEY("inertia", NUMBER, NULL,
+      "share of the mass that resists what moves the nodes of a cell apart, times its empty part",
+      .note = "0.01 if a law of the case yields, 0 if all are elastic", BETWEEN(0, 1), AT(StabilisationSpec, inertia)),
+  {.key = NULL},
+};
+static const SchemaTable stabilisation = {
+  .name = "stabilisation", .help = "What keeps cells solvable that are not full.", .entries = stabilisation_entries};
+
+static const SchemaEntry mixed_entries[] = {
+  KEY("stabilisation", NUMBER, NULL,
+      "alpha: pressures that vary inside a cell are held by alpha / shear modulus; 0: off", .fallback = "2",
+      AT_LEAST(0), AT(MixedSpec, stabilisation)),
+  {.key = NULL},
+};
+static const SchemaTable mixed = {
+  .name = "mixed", .help = "Numbers of `formulation: mixed`; others have no use for them.", .entries = mixed_entries};
+
+static const SchemaEntry output_entries[] = {
+  KEY("fields", FIELDS, NULL, "fields to write, see `talus list fields`",
+      .fallback = "[displacement, velocity, stress]", AT(OutputSpec, fields), .count = offsetof(OutputSpec, n_fields)),
+  KEY("every", EVERY, NULL, "when states are written", .fallback = "end", AT(OutputSpec, every)),
+  KEY("history", EVERY, NULL, "when rows of history.csv are written", .fallback = "{steps: 1}",
+      AT(OutputSpec, history)),
+  KEY("grid", BOOLEAN, NULL, "write the fields of the grid too", .fallback = "true", AT(OutputSpec, grid)),
+  {.key = NULL},
+};
+static const SchemaTable output = {.name = "output", .help = "What is written, and when.", .entries = output_entries};
+
+static const SchemaEntry checkpoint_entries[] = {
+  KEY("steps", INTEGER, NULL, "after so many steps; 0: not by steps", .fallback = "0", AT_LEAST(0),
+      AT(CheckpointSpec, steps)),
+  KEY("minutes", NUMBER, "min", "after so many minutes of the clock; 0: not by the clock", .fallback = "10",
+      AT_LEAST(0), AT(CheckpointSpec, minutes)),
+  KEY("keep", INTEGER, NULL, "how many are kept, the newest ones", .fallback = "2", AT_LEAST(1),
+      AT(CheckpointSpec, keep)),
+  {.key = NULL},
+};
+static const SchemaTable checkpoint = {.name = "checkpoint",
+                                       .help = "When the whole state is put away, for `talus run --resume`.",
+                                       .entries = checkpoint_entries};
+
+static const SchemaEntry parallel_entries[] = {
+  KEY("imbalance", NUMBER, NULL,
+      "largest work of a rank over the mean at which mpm shares the grid, box or mesh, among the ranks anew; 0: never",
+      .fallback = "1.2", AT_LEAST(0), AT(ParallelSpec, imbalance)),
+  {.key = NULL},
+};
+static const SchemaTable parallel = {
+  .name = "parallel", .help = "How several ranks share the work.", .entries = parallel_entries};
+
+/* --- the whole file --- */
+static const SchemaEntry case_entries[] = {
+  KEY("title", TEXT, NULL, "a line for people", .fallback = "", AT(Case, title)),
+  KEY("kinematics", WORD, NULL, "dimension and symmetry", .words = kinematics_words, .later = kinematics_later,
+      REQUIRED, AT(Case, kinematics)),
+  KEY("method", WORD_TEXT, NULL, "numerical method", .words = schema_methods, REQUIRED, AT(Case, method)),
+  KEY("formulation", WORD_TEXT, NULL, "unknowns of the equations", .words = formulation_words,
+      .fallback = "displacement", AT(Case, formulation)),
+  KEY("mixed", TABLE, NULL, "numbers of the mixed formulation", .table = &mixed, ALWAYS, AT(Case, mixed)),
+  KEY("analysis", TABLE, NULL, "statics or dynamics, steps", .table = &analysis, REQUIRED, AT(Case, analysis)),
+  KEY("grid", TABLE, NULL, "background grid or mesh", .table = &schema_grid, REQUIRED, AT(Case, grid)),
+  KEY("bodies", LIST, NULL, "pieces of material", .table = &schema_body, REQUIRED, AT(Case, bodies),
+      .count = offsetof(Case, n_bodies)),
+  KEY("materials", NAMED, NULL, "laws with their constants", .table = &material, REQUIRED, AT(Case, materials),
+      .count = offsetof(Case, n_materials)),
+  KEY("boundary", LIST, NULL, "prescribed motion", .table = &schema_motion, AT(Case, boundary),
+      .count = offsetof(Case, n_boundary)),
+  KEY("loads", TABLE, NULL, "gravity and forces", .table = &schema_loads, ALWAYS),
+  KEY("measures", NAMED, NULL, "numbers followed through the run", .table = &schema_measure, AT(Case, measures),
+      .count = offsetof(Case, n_measures)),
+  KEY("newton", TABLE, NULL, "convergence", .table = &newton, ALWAYS, AT(Case, newton)),
+  KEY("linear", WORD, NULL, "linear solver", .words = linear_words, .fallback = "auto", AT(Case, linear)),
+  KEY("basis", TABLE, NULL, "shape functions of gmm", .table = &schema_basis, ALWAYS, AT(Case, basis)),
+  KEY("stabilisation", TABLE, NULL, "cells that are not full", .table = &stabilisation, ALWAYS,
+      AT(Case, stabilisation)),
+  KEY("output", TABLE, NULL, "what is written", .table = &output, ALWAYS, AT(Case, output)),
+  KEY("checkpoint", TABLE, NULL, "state to resume from", .table = &checkpoint, ALWAYS, AT(Case, checkpoint)),
+  KEY("parallel", TABLE, NULL, "load balance", .table = &parallel, ALWAYS, AT(Case, parallel)),
+  KEY("petsc", OPTIONS, NULL,
+      "options of PETSc that choose solvers, set tolerances or print on the terminal: {snes_monitor: true, ksp_type: "
+      "cg}; all others go on the command line",
+      AT(Case, petsc), .count = offsetof(Case, n_petsc)),
+  {.key = NULL},
+};
+static PetscBool HideInCase(const SchemaEntry *e, const void *source)
+{
+  return !strcmp(e->key, "basis") && strcmp(((const Case *)source)->method, "gmm");
+}
+const SchemaTable schema_case = {
+  .name = "case", .help = "The keys at the top of the file.", .entries = case_entries, .hide = HideInCase};
+
+/* --- elastic constants: any two; listed here because the reference shows them with the materials --- */
+const SchemaEntry schema_elastic[] = {
+  KEY("young", NUMBER, "Pa", "Young's modulus", ABOVE(0), AT(NamedValue, value)),
+  KEY("poisson", NUMBER, NULL, "Poisson's ratio", .bounded = PETSC_TRUE, .min = -1, .min_open = PETSC_TRUE, .max = 0.5,
+      AT(NamedValue, value)),
+  KEY("bulk", NUMBER, "Pa", "bulk modulus", ABOVE(0), AT(NamedValue, value)),
+  KEY("shear", NUMBER, "Pa", "shear modulus", ABOVE(0), AT(NamedValue, value)),
+  KEY("lame", NUMBER, "Pa", "Lame's first constant", AT(NamedValue, value)),
+  {.key = NULL},
+};

@@ -1,0 +1,242 @@
+/* The reference as text and as Markdown. */
+#include <math.h>
+#include <string.h>
+#include "case/fields.h"
+#include "input/case_file.h"
+#include "input/schema_print.h"
+#include "material/law.h"
+
+static void Collect(SchemaTables *all, const SchemaTable *table)
+{
+  for (PetscInt i = 0; i < all->n; ++i)
+    if (all->table[i] == table) return;
+  if (all->n == SCHEMA_MAX_TABLES) return;
+  all->table[all->n++] = table;
+  for (const SchemaEntry *e = table->entries; e->key; ++e)
+    if (e->table) Collect(all, e->table);
+}
+
+void SchemaCollect(SchemaTables *all)
+{
+  all->n = 0;
+  Collect(all, &schema_case);
+}
+
+const char *SchemaDefault(const SchemaEntry *e, char *buffer, size_t size)
+{
+  if (e->required) snprintf(buffer, size, "required");
+  else if (e->note) snprintf(buffer, size, "%s", e->note);
+  else if (e->fallback && e->fallback[0]) snprintf(buffer, size, "%s", e->fallback);
+  else buffer[0] = '\0';
+  return buffer;
+}
+
+/* "number > 0", "word", "list of `body`" */
+static const char *Kind(const SchemaEntry *e, PetscBool markdown, char *buffer, size_t size)
+{
+  char range[80];
+  SchemaRange(e, range, sizeof(range));
+  snprintf(buffer, size, "%s%s%s", schema_types[e->type].short_name,
+           range[0] && e->type != TYPE_SIZE && e->type != TYPE_COUNTS ? " " : "",
+           e->type != TYPE_SIZE && e->type != TYPE_COUNTS ? range : "");
+  const size_t used = strlen(buffer);
+  if (e->table && markdown) snprintf(buffer + used, size - used, " [%s](#%s)", e->table->name, e->table->name);
+  else if (e->table) snprintf(buffer + used, size - used, " '%s'", e->table->name);
+  for (char *p = buffer + used; markdown && e->table && (p = strstr(p, "](#"));)
+    for (p += 3; *p; ++p)
+      if (*p == ' ') *p = '-';
+  return buffer;
+}
+
+static const char *Where(const SchemaEntry *e) { return e->only_2d ? " (2D)" : e->only_3d ? " (3D)" : ""; }
+
+/* --- text --- */
+static void TextEntry(FILE *out, const SchemaEntry *e)
+{
+  char left[120], fallback[200], kind[160];
+  snprintf(left, sizeof(left), "%s%s%s%s", e->key, e->unit && e->unit[0] ? " [" : "",
+           e->unit && e->unit[0] ? e->unit : "", e->unit && e->unit[0] ? "]" : "");
+  SchemaDefault(e, fallback, sizeof(fallback));
+  fprintf(out, "  %-28s %s%s\n", left, e->help, Where(e));
+  fprintf(out, "  %-28s   %s%s%s\n", "", Kind(e, PETSC_FALSE, kind, sizeof(kind)),
+          !fallback[0]  ? ""
+          : e->required ? "; "
+                        : "; default: ",
+          fallback);
+  for (const SchemaWord *w = e->words; w && w->word; ++w) fprintf(out, "  %-28s   %-18s %s\n", "", w->word, w->help);
+}
+
+static void TextGroup(FILE *out, const SchemaGroup *group)
+{
+  static const char *const rule[] = {"", "Exactly one of", "At most one of", "At least one of"};
+  fprintf(out, "  %s:", rule[group->kind]);
+  for (int k = 0; group->keys[k]; ++k) fprintf(out, " %s", group->keys[k]);
+  fputc('\n', out);
+}
+
+static void TextTable(FILE *out, const SchemaTable *table)
+{
+  fprintf(out, "%s\n  %s\n", table->name, table->help);
+  for (const SchemaGroup *group = table->groups; group && group->kind != GROUP_NONE; ++group) TextGroup(out, group);
+  fputc('\n', out);
+  for (const SchemaEntry *e = table->entries; e->key; ++e) TextEntry(out, e);
+  fputc('\n', out);
+}
+
+static SchemaEntry LawEntry(const LawParameter *p, char *note, size_t size)
+{
+  SchemaEntry entry = SchemaLawEntry(p);
+  if (!entry.required) {
+    snprintf(note, size, "%g", (double)p->fallback);
+    entry.note = note;
+  }
+  return entry;
+}
+
+static void TextLaws(FILE *out)
+{
+  char note[40];
+  fprintf(out, "elastic constants\n  Any two of these belong to every material.\n\n");
+  for (const SchemaEntry *e = schema_elastic; e->key; ++e) TextEntry(out, e);
+  for (const Law *const *law = laws; *law; ++law) {
+    fprintf(out, "\nlaw %s\n  %s\n\n", (*law)->name, (*law)->help);
+    for (const LawParameter *p = (*law)->parameters; p && p->name; ++p) {
+      const SchemaEntry entry = LawEntry(p, note, sizeof(note));
+      TextEntry(out, &entry);
+    }
+  }
+}
+
+static void PrintText(FILE *out)
+{
+  SchemaTables all;
+  SchemaCollect(&all);
+  for (PetscInt i = 0; i < all.n; ++i) TextTable(out, all.table[i]);
+  TextLaws(out);
+}
+
+/* --- Markdown --- */
+static void MarkdownText(FILE *out, const char *text)
+{
+  for (const char *p = text; *p; ++p) {
+    if (*p == '|') fputc('\\', out);
+    fputc(*p, out);
+  }
+}
+
+static void MarkdownEntry(FILE *out, const SchemaEntry *e)
+{
+  char fallback[200], kind[160];
+  fprintf(out, "| `%s` | ", e->key);
+  MarkdownText(out, Kind(e, PETSC_TRUE, kind, sizeof(kind)));
+  fprintf(out, " | %s | ", e->unit ? e->unit : "");
+  MarkdownText(out, SchemaDefault(e, fallback, sizeof(fallback)));
+  fputs(" | ", out);
+  MarkdownText(out, e->help);
+  fputs(Where(e), out);
+  for (const SchemaWord *w = e->words; w && w->word; ++w)
+    fprintf(out, "%s`%s`: %s", w == e->words ? "<br>" : "; ", w->word, w->help);
+  fputs(" |\n", out);
+}
+
+static void MarkdownHead(FILE *out)
+{
+  fputs("| key | value | unit | default | meaning |\n|---|---|---|---|---|\n", out);
+}
+
+static void MarkdownTable(FILE *out, const SchemaTable *table)
+{
+  static const char *const rule[] = {"", "Exactly one of", "At most one of", "At least one of"};
+  fprintf(out, "\n## %s\n\n%s\n", table->name, table->help);
+  for (const SchemaGroup *group = table->groups; group && group->kind != GROUP_NONE; ++group) {
+    fprintf(out, "\n%s:", rule[group->kind]);
+    for (int k = 0; group->keys[k]; ++k) fprintf(out, "%s `%s`", k ? "," : "", group->keys[k]);
+    fputs(".\n", out);
+  }
+  fputc('\n', out);
+  MarkdownHead(out);
+  for (const SchemaEntry *e = table->entries; e->key; ++e) MarkdownEntry(out, e);
+}
+
+static void MarkdownLaws(FILE *out)
+{
+  char note[40];
+  fputs("\n## elastic constants\n\nExactly two of these belong to every material.\n\n", out);
+  MarkdownHead(out);
+  for (const SchemaEntry *e = schema_elastic; e->key; ++e) MarkdownEntry(out, e);
+  for (const Law *const *law = laws; *law; ++law) {
+    fprintf(out, "\n## law: %s\n\n%s.\n", (*law)->name, (*law)->help);
+    if (!(*law)->parameters || !(*law)->parameters->name)
+      fputs("\nNo parameters beyond density and two elastic constants.\n", out);
+    else {
+      fputc('\n', out);
+      MarkdownHead(out);
+    }
+    for (const LawParameter *p = (*law)->parameters; p && p->name; ++p) {
+      const SchemaEntry entry = LawEntry(p, note, sizeof(note));
+      MarkdownEntry(out, &entry);
+    }
+  }
+}
+
+static void MarkdownMagnitudes(FILE *out)
+{
+  fputs(
+    "\n## magnitudes\n\nNumbers larger than their unit can mean are refused, and smaller ones other than 0. In "
+    "dynamics\n"
+    "waves (the root of the P-wave modulus over the density) may not run faster than light, 3e8 m/s.\n\n"
+    "| unit | at least | at most |\n|---|---|---|\n",
+    out);
+  for (const SchemaMagnitude *m = schema_magnitudes; m->unit; ++m) {
+    fprintf(out, "| %s |", m->unit);
+    if (m->least > 0) fprintf(out, " %g |", (double)m->least);
+    else fputs("  |", out);
+    fprintf(out, " %g |\n", (double)m->most);
+  }
+}
+
+static void MarkdownFields(FILE *out)
+{
+  MarkdownMagnitudes(out);
+  fputs("\n## fields\n\n| field | unit | components | where | meaning |\n|---|---|---|---|---|\n", out);
+  for (const OutputField *f = output_fields; f->name; ++f)
+    fprintf(out, "| `%s` | %s | %d | %s | %s |\n", f->name, f->unit, (int)f->components,
+            f->points && f->grid ? "points, grid"
+            : f->grid            ? "grid"
+                                 : "points",
+            f->help);
+}
+
+static void PrintMarkdown(FILE *out)
+{
+  SchemaTables all;
+  SchemaCollect(&all);
+  fputs(
+    "# The case file\n\n"
+    "This reference is the output of `talus schema --markdown`. A case file is YAML; SI units, angles in degrees; "
+    "tension positive.\n"
+    "Vectors are `[x, y]` in two dimensions and `[x, y, z]` in three. Any value can be changed on the command line:\n"
+    "`talus run case.yaml --set grid.size=0.25 --set 'bodies[0].points_per_cell=9'`.\n\n"
+    "A case from somebody else computes and does nothing more. Its `petsc` block may choose solvers, set tolerances "
+    "and "
+    "print on the\nterminal; all other options of PETSc belong on the command line. A `.geo` that runs programs or "
+    "writes "
+    "files (`SystemCall`, `Save`,\n`Print`, `Printf > file`, `OnelabRun`, ...), also through `Include` and `Merge`, is "
+    "refused unless `talus run`, `check` or `verify`\ngets `--trust`; that is said on the command line only and stands "
+    "in "
+    "no file.\n",
+    out);
+  for (PetscInt i = 0; i < all.n; ++i) MarkdownTable(out, all.table[i]);
+  MarkdownLaws(out);
+  MarkdownFields(out);
+}
+
+PetscErrorCode SchemaPrint(FILE *out, SchemaStyle style)
+{
+  PetscFunctionBeginUser;
+  if (style == SCHEMA_JSON) PetscCall(SchemaPrintJson(out));
+  else if (style == SCHEMA_MARKDOWN) PrintMarkdown(out);
+  else PrintText(out);
+  fflush(out);
+  PetscFunctionReturn(0);
+}

@@ -1,0 +1,301 @@
+/* Mappings, lists and named lists: walk the table, read each key, complain about the rest. */
+#include <string.h>
+#include "input/schema/schema.h"
+
+static const SchemaEntry *FindEntry(const SchemaTable *table, const char *key)
+{
+  for (const SchemaEntry *entry = table->entries; entry->key; ++entry)
+    if (!strcmp(entry->key, key)) return entry;
+  return NULL;
+}
+
+static PetscBool Fits(const SchemaReader *r, const SchemaEntry *entry)
+{
+  return !((entry->only_2d && r->dim == 3) || (entry->only_3d && r->dim == 2));
+}
+
+/* A key with nothing behind it counts as absent where a mapping or a list may be absent. */
+static const YamlNode *Given(const SchemaEntry *entry, const YamlNode *mapping)
+{
+  const YamlNode *node = YamlFind(mapping, entry->key);
+  const PetscBool nested = entry->type == TYPE_TABLE || entry->type == TYPE_LIST || entry->type == TYPE_NAMED;
+  return node && nested && !entry->required && !entry->tagged && YamlIsNull(node) ? NULL : node;
+}
+
+void SchemaHintWords(SchemaReader *r, const char *word, PetscInt n, const char *const *words)
+{
+  if (DiagFull(r->diag, DIAG_ERROR)) return; /* its error is not shown */
+  const char *nearest = word ? DiagNearest(word, words) : NULL;
+  char list[600] = "";
+  if (nearest) {
+    DiagHint(r->diag, "did you mean '%s'?", nearest);
+    return;
+  }
+  for (PetscInt i = 0; i < n; ++i) {
+    const size_t used = strlen(list);
+    snprintf(list + used, sizeof(list) - used, "%s%s", i ? ", " : "", words[i]);
+  }
+  if (n) DiagHint(r->diag, "known here: %s%s", list, strlen(list) + 1 == sizeof(list) ? "..." : "");
+}
+
+static PetscErrorCode UnknownKeys(SchemaReader *r, const SchemaTable *table, const YamlNode *mapping)
+{
+  const char *words[64] = {NULL};
+  char path[512];
+  PetscInt n = 0;
+
+  PetscFunctionBeginUser;
+  for (const SchemaEntry *entry = table->entries; entry->key && n < 63; ++entry)
+    if (Fits(r, entry)) words[n++] = entry->key;
+  for (PetscInt i = 0; i < mapping->n; ++i) {
+    const YamlNode *child = mapping->child[i];
+    const SchemaEntry *entry = FindEntry(table, child->key);
+    if (entry && Fits(r, entry)) continue;
+    if (entry) {
+      SchemaKeyError(
+        r, child, "key '%s' of %s belongs to %s", child->key, YamlPath(mapping, path, sizeof(path)),
+        entry->only_2d ? "two dimensions, this case is 3d" : "kinematics: 3d, this case is two-dimensional");
+      if (!strcmp(child->key, "circle")) DiagHint(r->diag, "in 3d there is 'sphere'");
+      if (!strcmp(child->key, "sphere")) DiagHint(r->diag, "in two dimensions there is 'circle'");
+    } else {
+      SchemaKeyError(r, child, "key '%s' of %s is not known", child->key, YamlPath(mapping, path, sizeof(path)));
+      SchemaHintWords(r, child->key, n, words);
+    }
+  }
+  PetscFunctionReturn(0);
+}
+
+static void Missing(SchemaReader *r, const SchemaEntry *entry, const YamlNode *mapping)
+{
+  char path[512], expected[300];
+  SchemaKeyError(r, mapping, "key '%s' of %s is missing", entry->key, YamlPath(mapping, path, sizeof(path)));
+  DiagHint(r->diag, "%s: %s (%s)", entry->key, entry->help, SchemaExpected(entry, r->dim, expected, sizeof(expected)));
+}
+
+static PetscErrorCode ReadDefault(SchemaReader *r, const SchemaEntry *entry, void *target)
+{
+  YamlNode *node = NULL, scalar = {.kind = YAML_SCALAR, .plain = PETSC_TRUE};
+
+  PetscFunctionBeginUser;
+  if (entry->type == TYPE_TABLE) {
+    YamlNode empty = {.kind = YAML_MAPPING};
+    PetscCall(SchemaReadEntry(r, entry, &empty, target));
+  } else if (strchr("[{", entry->fallback[0])) {
+    PetscCall(YamlParseInto(r->document, entry->fallback, strlen(entry->fallback), 0, r->diag, &node));
+    PetscCall(SchemaReadEntry(r, entry, node, target));
+    PetscCall(YamlNodeDestroy(&node));
+  } else {
+    PetscCall(PetscStrallocpy(entry->fallback, &scalar.text));
+    PetscCall(SchemaReadEntry(r, entry, &scalar, target));
+    PetscCall(PetscFree(scalar.text));
+  }
+  PetscFunctionReturn(0);
+}
+
+static PetscBool InGroup(const SchemaTable *table, const char *key)
+{
+  for (const SchemaGroup *group = table->groups; group && group->kind != GROUP_NONE; ++group)
+    for (int k = 0; group->keys[k]; ++k)
+      if (!strcmp(group->keys[k], key)) return PETSC_TRUE;
+  return PETSC_FALSE;
+}
+
+static PetscErrorCode ReadKey(SchemaReader *r, const SchemaTable *table, const SchemaEntry *entry,
+                              const YamlNode *mapping, void *target)
+{
+  const YamlNode *node = Given(entry, mapping);
+  char path[512];
+
+  PetscFunctionBeginUser;
+  if (!Fits(r, entry)) PetscFunctionReturn(0);
+  if (node) {
+    if (entry->with && !YamlFind(mapping, entry->with))
+      SchemaKeyError(r, node, "key '%s' of %s means something only beside '%s'", entry->key,
+                     YamlPath(mapping, path, sizeof(path)), entry->with);
+    if (entry->tagged) *(int *)((char *)target + table->tag_offset) = entry->tag;
+    if (entry->present) *(PetscBool *)((char *)target + entry->present - 1) = PETSC_TRUE;
+    PetscCall(SchemaReadEntry(r, entry, node, target));
+  } else if (entry->required) Missing(r, entry, mapping);
+  else if (entry->always || (entry->fallback && !InGroup(table, entry->key))) PetscCall(ReadDefault(r, entry, target));
+  PetscFunctionReturn(0);
+}
+
+static void GroupWords(const SchemaGroup *group, char *text, size_t size)
+{
+  text[0] = '\0';
+  for (int k = 0; group->keys[k]; ++k) {
+    const size_t used = strlen(text);
+    snprintf(text + used, size - used, "%s'%s'", !k ? "" : group->keys[k + 1] ? ", " : " or ", group->keys[k]);
+  }
+}
+
+static void CheckGroup(SchemaReader *r, const SchemaGroup *group, const YamlNode *mapping)
+{
+  const YamlNode *first = NULL, *second = NULL;
+  char path[512], words[400];
+  for (int k = 0; group->keys[k]; ++k) {
+    const YamlNode *node = YamlFind(mapping, group->keys[k]);
+    if (node && !first) first = node;
+    else if (node && !second) second = node;
+  }
+  GroupWords(group, words, sizeof(words));
+  YamlPath(mapping, path, sizeof(path));
+  if (!first && group->kind != GROUP_AT_MOST_ONE)
+    SchemaKeyError(r, mapping, "%s needs %s %s", path, group->kind == GROUP_ONE ? "one of" : "at least one of", words);
+  if (second && group->kind != GROUP_AT_LEAST_ONE) {
+    const YamlNode *later = second->index > first->index ? second : first;
+    SchemaKeyError(r, later, "%s has both '%s' and '%s'; give one of them", path, first->key, second->key);
+  }
+}
+
+PetscErrorCode SchemaReadTable(SchemaReader *r, const SchemaTable *table, const YamlNode *mapping, void *target)
+{
+  const PetscInt before = DiagErrors(r->diag);
+
+  PetscFunctionBeginUser;
+  for (const SchemaGroup *group = table->groups; group && group->kind != GROUP_NONE; ++group)
+    CheckGroup(r, group, mapping);
+  for (const SchemaEntry *entry = table->entries; entry->key; ++entry)
+    PetscCall(ReadKey(r, table, entry, mapping, target));
+  if (table->open) PetscCall((*table->open)(r, mapping, target));
+  else PetscCall(UnknownKeys(r, table, mapping));
+  if (table->check && DiagErrors(r->diag) == before) PetscCall((*table->check)(r, mapping, target));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode ReadNested(SchemaReader *r, const SchemaEntry *entry, const YamlNode *node, void *target)
+{
+  PetscFunctionBeginUser;
+  if (node->kind != YAML_MAPPING) SchemaMismatch(r, entry, node);
+  else PetscCall(SchemaReadTable(r, entry->table, node, (char *)target + entry->offset));
+  PetscFunctionReturn(0);
+}
+
+/* Room for n more structs at the end of the array; *first is the new one. */
+static PetscErrorCode Grow(const SchemaEntry *entry, PetscInt n, void *target, PetscInt **count, char **first)
+{
+  void **array = (void **)((char *)target + entry->offset);
+  const size_t size = entry->table->size;
+
+  PetscFunctionBeginUser;
+  *count = (PetscInt *)((char *)target + entry->count);
+  PetscCall(PetscRealloc((size_t)(**count + n) * size, array));
+  *first = (char *)*array + (size_t) * *count * size;
+  PetscCall(PetscMemzero(*first, (size_t)n * size));
+  PetscFunctionReturn(0);
+}
+
+/* Entry i of a list may not have the name of one before it. */
+static PetscErrorCode CheckNameTwice(SchemaReader *r, const YamlNode *list, PetscInt i, Names *names)
+{
+  const YamlNode *name = YamlFind(list->child[i], "name");
+  char path[512];
+
+  PetscFunctionBeginUser;
+  if (!name || !name->text) PetscFunctionReturn(0);
+  const PetscInt first = names_find(names, name->text);
+  if (first < 0) PetscCall(NamesSet(names, name->text, i));
+  else
+    SchemaError(r, name, "the name '%s' is taken by %s", name->text, YamlPath(list->child[first], path, sizeof(path)));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode ReadList(SchemaReader *r, const SchemaEntry *entry, const YamlNode *node, void *target)
+{
+  const SchemaTable *table = entry->table;
+  PetscInt *count;
+  Names names = {0};
+  char *item, path[512];
+
+  PetscFunctionBeginUser;
+  if (node->kind != YAML_SEQUENCE) {
+    SchemaMismatch(r, entry, node);
+    PetscFunctionReturn(0);
+  }
+  if (node->n == 0 && entry->required) SchemaError(r, node, "%s is an empty list", YamlPath(node, path, sizeof(path)));
+  if (node->n == 0) PetscFunctionReturn(0);
+  PetscCall(Grow(entry, node->n, target, &count, &item));
+  for (PetscInt i = 0; i < node->n; ++i, item += table->size) {
+    *count += 1;
+    if (entry->items_tagged) *(int *)(item + table->tag_offset) = entry->tag;
+    PetscCall(CheckNameTwice(r, node, i, &names));
+    if (node->child[i]->kind == YAML_MAPPING) PetscCall(SchemaReadTable(r, table, node->child[i], item));
+    else
+      SchemaError(r, node->child[i], "%s must be a mapping {key: value, ...}",
+                  YamlPath(node->child[i], path, sizeof(path)));
+  }
+  PetscCall(NamesFree(&names));
+  PetscFunctionReturn(0);
+}
+
+/* Has a mapping what its table cannot do without? */
+static PetscBool IsWhole(const SchemaTable *table, const YamlNode *mapping)
+{
+  for (const SchemaEntry *entry = table->entries; entry->key; ++entry)
+    if (entry->required && !YamlFind(mapping, entry->key)) return PETSC_FALSE;
+  for (const SchemaGroup *group = table->groups; group && group->kind != GROUP_NONE; ++group) {
+    PetscBool any = group->kind == GROUP_AT_MOST_ONE;
+    for (int k = 0; group->keys[k]; ++k) any |= YamlFind(mapping, group->keys[k]) != NULL;
+    if (!any) return PETSC_FALSE;
+  }
+  return PETSC_TRUE;
+}
+
+/* `--set materials.ruber.young=1` where there is a rubber: a part of something that is not there. */
+static PetscErrorCode NotThere(SchemaReader *r, const SchemaTable *table, const YamlNode *child, PetscBool *tell)
+{
+  const YamlNode *list = child->parent;
+  const char **names;
+  char path[512];
+  PetscInt n = 0;
+
+  PetscFunctionBeginUser;
+  *tell = child->argument && !child->key_line && child->kind == YAML_MAPPING && !IsWhole(table, child);
+  if (!*tell) PetscFunctionReturn(0);
+  PetscCall(PetscCalloc1(list->n + 1, &names));
+  for (PetscInt i = 0; i < list->n; ++i)
+    if (list->child[i]->key_line) names[n++] = list->child[i]->key;
+  SchemaError(r, child, "there is no '%s' in %s", child->key, YamlPath(list, path, sizeof(path)));
+  DiagHintNames(r->diag, child->key, names);
+  PetscCall(PetscFree(names));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode ReadNamed(SchemaReader *r, const SchemaEntry *entry, const YamlNode *node, void *target)
+{
+  PetscInt *count;
+  PetscBool not_there;
+  char *item, path[512];
+
+  PetscFunctionBeginUser;
+  if (node->kind != YAML_MAPPING) {
+    SchemaMismatch(r, entry, node);
+    PetscFunctionReturn(0);
+  }
+  if (node->n == 0 && entry->required) SchemaError(r, node, "%s is empty", YamlPath(node, path, sizeof(path)));
+  if (node->n == 0) PetscFunctionReturn(0);
+  PetscCall(Grow(entry, node->n, target, &count, &item));
+  for (PetscInt i = 0; i < node->n; ++i, item += entry->table->size) {
+    const YamlNode *child = node->child[i];
+    *count += 1;
+    PetscCall(PetscStrallocpy(child->key, (char **)item));
+    SchemaCheckName(r, child, child->key, PETSC_TRUE);
+    PetscCall(NotThere(r, entry->table, child, &not_there));
+    if (not_there) continue;
+    if (child->kind == YAML_MAPPING) PetscCall(SchemaReadTable(r, entry->table, child, item));
+    else SchemaError(r, child, "%s must be a mapping {key: value, ...}", YamlPath(child, path, sizeof(path)));
+  }
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode SchemaReadEntry(SchemaReader *r, const SchemaEntry *entry, const YamlNode *node, void *target)
+{
+  PetscFunctionBeginUser;
+  switch (entry->type) {
+  case TYPE_TABLE: PetscCall(ReadNested(r, entry, node, target)); break;
+  case TYPE_LIST: PetscCall(ReadList(r, entry, node, target)); break;
+  case TYPE_NAMED: PetscCall(ReadNamed(r, entry, node, target)); break;
+  default: PetscCall((*schema_types[entry->type].read)(r, entry, node, target));
+  }
+  PetscFunctionReturn(0);
+}

@@ -1,0 +1,262 @@
+/* Readers of composed values: vectors, axes, intervals, amplitudes, polygons, output times. */
+#include <string.h>
+#include "case/fields.h"
+#include "input/schema/schema.h"
+
+static const char *const axis_words[] = {"x", "y", "z", NULL};
+
+PetscInt SchemaParseVector(const YamlNode *node, PetscReal value[3])
+{
+  PetscInt n = 0;
+  if (!node || node->kind != YAML_SEQUENCE || node->n > 3) return 0;
+  for (; n < node->n; ++n)
+    if (!SchemaParseNumber(node->child[n], &value[n])) return 0;
+  return n;
+}
+
+static PetscBool CheckLength(SchemaReader *r, const SchemaEntry *e, const YamlNode *node)
+{
+  char path[512];
+  if (node->kind != YAML_SEQUENCE) {
+    SchemaMismatch(r, e, node);
+    return PETSC_FALSE;
+  }
+  if (r->dim ? node->n == r->dim : node->n == 2 || node->n == 3) return PETSC_TRUE;
+  SchemaError(r, node, "%s must have %s, not %" PetscInt_FMT, YamlPath(node, path, sizeof(path)),
+              r->dim == 3   ? "3 entries (kinematics: 3d)"
+              : r->dim == 2 ? "2 entries (this case is two-dimensional)"
+                            : "2 or 3 entries",
+              node->n);
+  return PETSC_FALSE;
+}
+
+PetscErrorCode SchemaReadVector(SchemaReader *r, const SchemaEntry *e, const YamlNode *node, void *target)
+{
+  PetscReal *value = (PetscReal *)((char *)target + e->offset);
+  SchemaEntry one = *e;
+
+  PetscFunctionBeginUser;
+  one.type = TYPE_NUMBER;
+  if (CheckLength(r, e, node))
+    for (PetscInt i = 0; i < node->n; ++i) SchemaNumber(r, &one, node->child[i], &value[i]);
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode SchemaReadSpin(SchemaReader *r, const SchemaEntry *e, const YamlNode *node, void *target)
+{
+  PetscFunctionBeginUser;
+  if (r->dim == 2 || (r->dim == 0 && node->kind == YAML_SCALAR))
+    SchemaNumber(r, e, node, (PetscReal *)((char *)target + e->offset) + 2);
+  else PetscCall(SchemaReadVector(r, e, node, target));
+  PetscFunctionReturn(0);
+}
+
+/* 0 1 2 for x y z, -1 and a message for anything else. */
+static PetscInt Axis(SchemaReader *r, const SchemaEntry *e, const YamlNode *node)
+{
+  const PetscInt first = e->type == TYPE_SPIN_AXIS && r->dim == 2 ? 2 : 0;
+  const PetscInt last = e->type != TYPE_SPIN_AXIS && r->dim == 2 ? 1 : 2;
+  SchemaEntry one = *e;
+  for (PetscInt d = first; d <= last; ++d)
+    if (node->kind == YAML_SCALAR && !strcmp(node->text, axis_words[d])) return d;
+  if (e->type == TYPE_AXES) one.type = TYPE_AXIS;
+  SchemaMismatch(r, &one, node);
+  return -1;
+}
+
+PetscErrorCode SchemaReadAxis(SchemaReader *r, const SchemaEntry *e, const YamlNode *node, void *target)
+{
+  const PetscInt axis = Axis(r, e, node);
+
+  PetscFunctionBeginUser;
+  if (axis >= 0) *(PetscInt *)((char *)target + e->offset) = axis;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode SchemaReadAxes(SchemaReader *r, const SchemaEntry *e, const YamlNode *node, void *target)
+{
+  PetscBool *component = (PetscBool *)((char *)target + e->offset);
+  char path[512];
+
+  PetscFunctionBeginUser;
+  if (node->kind != YAML_SEQUENCE || node->n == 0) {
+    SchemaMismatch(r, e, node);
+    PetscFunctionReturn(0);
+  }
+  for (PetscInt i = 0; i < node->n; ++i) {
+    const PetscInt axis = Axis(r, e, node->child[i]);
+    if (axis < 0) continue;
+    if (component[axis])
+      SchemaError(r, node->child[i], "%s stands twice", YamlPath(node->child[i], path, sizeof(path)));
+    component[axis] = PETSC_TRUE;
+  }
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode SchemaReadInterval(SchemaReader *r, const SchemaEntry *e, const YamlNode *node, void *target)
+{
+  PetscReal *min = (PetscReal *)((char *)target + e->offset), *max = (PetscReal *)((char *)target + e->second);
+  SchemaEntry one = *e;
+  char path[512];
+
+  PetscFunctionBeginUser;
+  one.type = TYPE_NUMBER;
+  one.endless = PETSC_TRUE; /* from here to wherever */
+  if (node->kind == YAML_SEQUENCE && node->n == 2) {
+    if (SchemaNumber(r, &one, node->child[0], min) && SchemaNumber(r, &one, node->child[1], max) && *min > *max)
+      SchemaError(r, node, "%s: the first number must not be larger than the second",
+                  YamlPath(node, path, sizeof(path)));
+  } else if (SchemaParseNumber(node, min)) *max = *min;
+  else SchemaMismatch(r, e, node);
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode SchemaReadSize(SchemaReader *r, const SchemaEntry *e, const YamlNode *node, void *target)
+{
+  SchemaEntry one = *e;
+  PetscReal unused;
+
+  PetscFunctionBeginUser;
+  (void)target; /* the check of the grid makes counts of it, where it knows the box */
+  one.type = TYPE_NUMBER;
+  if (node->kind != YAML_SEQUENCE) SchemaNumber(r, e, node, &unused);
+  else if (CheckLength(r, e, node))
+    for (PetscInt i = 0; i < node->n; ++i) SchemaNumber(r, &one, node->child[i], &unused);
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode SchemaReadCounts(SchemaReader *r, const SchemaEntry *e, const YamlNode *node, void *target)
+{
+  PetscInt *counts = (PetscInt *)((char *)target + e->offset);
+  SchemaEntry one = *e;
+
+  PetscFunctionBeginUser;
+  one.type = TYPE_INTEGER;
+  if (!CheckLength(r, e, node)) PetscFunctionReturn(0);
+  for (PetscInt i = 0; i < node->n; ++i) {
+    one.offset = 0;
+    PetscCall(SchemaReadInteger(r, &one, node->child[i], &counts[i]));
+  }
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode SchemaReadAmplitude(SchemaReader *r, const SchemaEntry *e, const YamlNode *node, void *target)
+{
+  Amplitude *a = (Amplitude *)((char *)target + e->offset);
+  const SchemaEntry number = {.key = e->key, .type = TYPE_NUMBER, .help = ""};
+  char path[512];
+
+  PetscFunctionBeginUser;
+  if (node->kind != YAML_SEQUENCE || node->n == 0) {
+    SchemaMismatch(r, e, node);
+    PetscFunctionReturn(0);
+  }
+  PetscCall(PetscCalloc1(node->n, &a->time));
+  PetscCall(PetscCalloc1(node->n, &a->value));
+  a->n = node->n;
+  for (PetscInt i = 0; i < node->n; ++i) {
+    const YamlNode *pair = node->child[i];
+    if (pair->kind != YAML_SEQUENCE || pair->n != 2)
+      SchemaError(r, pair, "%s must be a pair [time in s, factor]", YamlPath(pair, path, sizeof(path)));
+    else if (SchemaNumber(r, &number, pair->child[0], &a->time[i]) &&
+             SchemaNumber(r, &number, pair->child[1], &a->value[i]) && i > 0 && a->time[i] <= a->time[i - 1])
+      SchemaError(r, pair, "%s: times must grow from pair to pair", YamlPath(pair, path, sizeof(path)));
+  }
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode SchemaReadPolygon(SchemaReader *r, const SchemaEntry *e, const YamlNode *node, void *target)
+{
+  PetscReal **vertices = (PetscReal **)((char *)target + e->offset);
+  const SchemaEntry number = {.key = e->key, .type = TYPE_NUMBER, .help = "", .unit = "m"};
+  char path[512];
+
+  PetscFunctionBeginUser;
+  if (node->kind != YAML_SEQUENCE || node->n < 3) {
+    SchemaMismatch(r, e, node);
+    PetscFunctionReturn(0);
+  }
+  PetscCall(PetscFree(*vertices));
+  PetscCall(PetscCalloc1(2 * (size_t)node->n, vertices));
+  *(PetscInt *)((char *)target + e->count) = node->n;
+  for (PetscInt i = 0; i < node->n; ++i) {
+    const YamlNode *pair = node->child[i];
+    if (pair->kind != YAML_SEQUENCE || pair->n != 2)
+      SchemaError(r, pair, "%s must be a corner [x, y] in m", YamlPath(pair, path, sizeof(path)));
+    else
+      for (PetscInt d = 0; d < 2; ++d) SchemaNumber(r, &number, pair->child[d], &(*vertices)[2 * i + d]);
+  }
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode SchemaReadEvery(SchemaReader *r, const SchemaEntry *e, const YamlNode *node, void *target)
+{
+  PetscReal *every = (PetscReal *)((char *)target + e->offset), seconds;
+  const YamlNode *steps = YamlFind(node, "steps");
+  PetscInt n;
+
+  PetscFunctionBeginUser;
+  if (node->kind == YAML_SCALAR && !strcmp(node->text, "end")) *every = 0;
+  else if (SchemaParseNumber(node, &seconds) && seconds > 0) *every = seconds;
+  else if (steps && node->n == 1 && SchemaParseInteger(steps, &n) && n > 0) *every = -(PetscReal)n;
+  else SchemaMismatch(r, e, node);
+  PetscFunctionReturn(0);
+}
+
+static void UnknownField(SchemaReader *r, const YamlNode *node)
+{
+  const char *words[64] = {NULL};
+  char path[512];
+  PetscInt n = 0;
+  for (const OutputField *field = output_fields; field->name && n < 63; ++field) words[n++] = field->name;
+  SchemaError(r, node, "%s: there is no field '%s'", YamlPath(node, path, sizeof(path)),
+              node->kind == YAML_SCALAR ? node->text : "[...]");
+  SchemaHintWords(r, node->kind == YAML_SCALAR ? node->text : NULL, n, words);
+}
+
+PetscErrorCode SchemaReadFields(SchemaReader *r, const SchemaEntry *e, const YamlNode *node, void *target)
+{
+  char ***fields = (char ***)((char *)target + e->offset);
+  PetscInt *n = (PetscInt *)((char *)target + e->count);
+
+  PetscFunctionBeginUser;
+  if (node->kind != YAML_SEQUENCE) {
+    SchemaMismatch(r, e, node);
+    PetscFunctionReturn(0);
+  }
+  PetscCall(PetscCalloc1(node->n, fields));
+  for (PetscInt i = 0; i < node->n; ++i) {
+    const YamlNode *child = node->child[i];
+    PetscBool twice = PETSC_FALSE;
+    if (child->kind != YAML_SCALAR || !OutputFieldFind(child->text)) {
+      UnknownField(r, child);
+      continue;
+    }
+    for (PetscInt k = 0; k < *n; ++k)
+      if (!strcmp((*fields)[k], child->text)) twice = PETSC_TRUE;
+    if (!twice) PetscCall(PetscStrallocpy(child->text, &(*fields)[(*n)++]));
+  }
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode SchemaReadNumbers(SchemaReader *r, const SchemaEntry *e, const YamlNode *node, void *target)
+{
+  NamedValue **values = (NamedValue **)((char *)target + e->offset);
+  const SchemaEntry number = {.key = e->key, .type = TYPE_NUMBER, .help = ""};
+
+  PetscFunctionBeginUser;
+  if (node->kind != YAML_MAPPING) {
+    SchemaMismatch(r, e, node);
+    PetscFunctionReturn(0);
+  }
+  PetscCall(PetscCalloc1(node->n, values));
+  *(PetscInt *)((char *)target + e->count) = node->n;
+  for (PetscInt i = 0; i < node->n; ++i) {
+    PetscCall(PetscStrallocpy(node->child[i]->key, &(*values)[i].name));
+    if (node->child[i]->key[0] == '-') /* gmsh would take it for an option of its own */
+      SchemaKeyError(r, node->child[i], "the name '%.60s' begins with '-'", node->child[i]->key);
+    SchemaCheckName(r, node->child[i], node->child[i]->key, PETSC_TRUE);
+    SchemaNumber(r, &number, node->child[i], &(*values)[i].value);
+  }
+  PetscFunctionReturn(0);
+}

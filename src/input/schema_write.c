@@ -1,0 +1,125 @@
+/* CaseToYaml: the same tables, walked the other way. */
+#include <stdlib.h>
+#include <string.h>
+#include "input/case_file.h"
+#include "input/schema/schema.h"
+
+static PetscErrorCode WriteTable(FILE *out, int indent, const Case *c, const SchemaTable *table, const void *source,
+                                 PetscBool *first);
+
+static const void *At(const void *source, size_t offset) { return (const char *)source + offset; }
+
+static PetscInt CountItems(const SchemaEntry *e, const void *source)
+{
+  const PetscInt n = *(const PetscInt *)At(source, e->count);
+  const char *items = *(char *const *)At(source, e->offset);
+  PetscInt count = 0;
+  for (PetscInt i = 0; i < n; ++i)
+    count += !e->items_tagged || *(const int *)(items + (size_t)i * e->table->size + e->table->tag_offset) == e->tag;
+  return count;
+}
+
+static PetscBool IsText(SchemaType type)
+{
+  return type == TYPE_TEXT || type == TYPE_NAME || type == TYPE_FILE || type == TYPE_REFERENCE || type == TYPE_LAW;
+}
+
+static PetscBool Written(const Case *c, const SchemaTable *table, const SchemaEntry *e, const void *source)
+{
+  const PetscInt dim = kinematics_dim(c->kinematics);
+  if (e->input_only || (e->only_2d && dim == 3) || (e->only_3d && dim == 2)) return PETSC_FALSE;
+  if (e->tagged && *(const int *)At(source, table->tag_offset) != e->tag) return PETSC_FALSE;
+  if (e->present && !*(const PetscBool *)At(source, e->present - 1)) return PETSC_FALSE;
+  if (table->hide && table->hide(e, source)) return PETSC_FALSE;
+  if (IsText(e->type)) return *(char *const *)At(source, e->offset) != NULL;
+  if (e->type == TYPE_AMPLITUDE) return ((const Amplitude *)At(source, e->offset))->n > 0;
+  if (e->type == TYPE_LIST || e->type == TYPE_NAMED) return CountItems(e, source) > 0;
+  if (e->type == TYPE_OPTIONS) return *(const PetscInt *)At(source, e->count) > 0;
+  return PETSC_TRUE;
+}
+
+/* A mapping whose keys all turn out absent must still be one. */
+static PetscErrorCode WriteNested(FILE *out, int indent, const Case *c, const SchemaTable *table, const void *source)
+{
+  char *text = NULL;
+  size_t size;
+  PetscBool first = PETSC_FALSE;
+
+  PetscFunctionBeginUser;
+  FILE *memory = open_memstream(&text, &size);
+  PetscCheck(memory, PETSC_COMM_SELF, PETSC_ERR_MEM, "no memory for text");
+  PetscCall(WriteTable(memory, indent, c, table, source, &first));
+  fclose(memory);
+  fprintf(out, size ? "\n%s" : " {}\n", text);
+  free(text);
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode WriteItems(FILE *out, int indent, const Case *c, const SchemaEntry *e, const void *source)
+{
+  const SchemaTable *table = e->table;
+  const PetscInt n = *(const PetscInt *)At(source, e->count);
+  const char *item = *(char *const *)At(source, e->offset);
+
+  PetscFunctionBeginUser;
+  fputc('\n', out);
+  for (PetscInt i = 0; i < n; ++i, item += table->size) {
+    PetscBool first = PETSC_TRUE;
+    if (e->items_tagged && *(const int *)(item + table->tag_offset) != e->tag) continue;
+    if (e->type == TYPE_NAMED) {
+      fprintf(out, "%*s", indent, "");
+      SchemaWriteText(out, *(char *const *)item);
+      fputc(':', out);
+      PetscCall(WriteNested(out, indent + 2, c, table, item));
+    } else {
+      fprintf(out, "%*s- ", indent, "");
+      PetscCall(WriteTable(out, indent + 2, c, table, item, &first));
+    }
+  }
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode WriteEntry(FILE *out, int indent, const Case *c, const SchemaEntry *e, const void *source)
+{
+  PetscFunctionBeginUser;
+  fprintf(out, "%s:", e->key);
+  if (e->type == TYPE_TABLE) PetscCall(WriteNested(out, indent + 2, c, e->table, At(source, e->offset)));
+  else if (e->type == TYPE_LIST || e->type == TYPE_NAMED) PetscCall(WriteItems(out, indent + 2, c, e, source));
+  else {
+    fputc(' ', out);
+    schema_writers[e->type](out, c, e, source);
+    fprintf(out, e->unit && e->unit[0] ? "  # %s\n" : "\n", e->unit);
+  }
+  PetscFunctionReturn(0);
+}
+
+/* first: the indent of the first key stands there already, behind a dash. */
+static PetscErrorCode WriteTable(FILE *out, int indent, const Case *c, const SchemaTable *table, const void *source,
+                                 PetscBool *first)
+{
+  PetscFunctionBeginUser;
+  for (const SchemaEntry *e = table->entries; e->key; ++e) {
+    if (!Written(c, table, e, source)) continue;
+    if (!*first) fprintf(out, "%*s", indent, "");
+    *first = PETSC_FALSE;
+    PetscCall(WriteEntry(out, indent, c, e, source));
+  }
+  if (table->write_open) PetscCall((*table->write_open)(out, indent, c, source));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode CaseToYaml(const Case *c, char **text)
+{
+  char *buffer = NULL;
+  size_t size;
+  PetscBool first = PETSC_FALSE;
+
+  PetscFunctionBeginUser;
+  FILE *out = open_memstream(&buffer, &size);
+  PetscCheck(out, PETSC_COMM_SELF, PETSC_ERR_MEM, "no memory for text");
+  PetscCall(WriteTable(out, 0, c, &schema_case, c, &first));
+  fclose(out);
+  PetscCall(PetscStrallocpy(buffer, text));
+  free(buffer);
+  PetscFunctionReturn(0);
+}

@@ -1,0 +1,69 @@
+/* A YAML file as a tree of nodes that know where they stand. libfyaml reads the syntax (yaml_parse.c);
+ * the rest is ours, so that --set can change the tree and every message finds its place. */
+#pragma once
+#include "base/diag/diag.h"
+#include "base/names.h"
+
+#define YAML_MAX_DEPTH 64
+#define YAML_MAX_NODES 1000000 /* aliases of aliases may not blow a small file up */
+#define YAML_MAX_BYTES (256 << 20)
+#define YAML_MAX_COPIED (16 << 20) /* bytes of text in all that aliases stand for */
+
+typedef enum { YAML_SCALAR, YAML_SEQUENCE, YAML_MAPPING } YamlKind;
+
+typedef struct YamlNode {
+  YamlKind kind;
+  PetscBool plain;         /* a scalar without quotes */
+  char *text;              /* of a scalar */
+  char *key;               /* if it stands in a mapping */
+  int line, column, width; /* of the value; line 0: not from the file */
+  int key_line, key_column, key_width;
+  PetscInt argument; /* 1 + index of the --set that brought it, 0: from the file */
+  PetscInt n, capacity;
+  struct YamlNode **child;
+  Names *keys; /* of a mapping with many: which child has which; else NULL */
+  struct YamlNode *parent;
+  PetscInt index; /* among its parent's children */
+} YamlNode;
+
+typedef struct {
+  char *file;
+  char *text; /* the whole file, NUL-terminated */
+  PetscInt n_arguments;
+  char **arguments; /* copies of the --set arguments */
+  PetscInt n_nodes;
+  PetscInt64 n_copied; /* bytes of text that aliases have copied */
+  YamlNode *root;      /* NULL after a syntax error */
+  char *resolved;      /* the line that the last resolved place shows (malloc) */
+} YamlDocument;
+
+/* Parse a text; mistakes go to diag. `text` is copied. */
+PetscErrorCode YamlCreate(const char *file, const char *text, size_t size, Diag *diag, YamlDocument **document);
+PetscErrorCode YamlDestroy(YamlDocument **document);
+/* Apply "path.to.key=value"; nodes on the way are created. */
+PetscErrorCode YamlSet(YamlDocument *document, const char *argument, Diag *diag);
+
+/* Parse events of `text` into document->root, or into *fragment if that is not NULL (a value of --set, marked so). */
+PetscErrorCode YamlParseInto(YamlDocument *document, const char *text, size_t size, PetscInt argument, Diag *diag,
+                             YamlNode **fragment);
+
+PetscErrorCode YamlNodeCreate(YamlDocument *document, YamlKind kind, YamlNode **node);
+PetscErrorCode YamlNodeDestroy(YamlNode **node);
+PetscErrorCode YamlNodeAppend(YamlNode *parent, YamlNode *child);
+
+/* Value of `key` in a mapping; NULL if there is none (or the node is no mapping). */
+YamlNode *YamlFind(const YamlNode *mapping, const char *key);
+/* Is it empty: `key:` with nothing behind it, `~` or `null`? */
+PetscBool YamlIsNull(const YamlNode *node);
+/* "bodies[0].shape" for messages; "the file" for the root. Returns buffer. */
+const char *YamlPath(const YamlNode *node, char *buffer, size_t size);
+
+/* Place of the value, or of its key. `line` is a buffer that must live as long as the place. */
+void YamlPlace(const YamlDocument *document, const YamlNode *node, PetscBool key, char **line, DiagPlace *place);
+/* A place given by numbers, with its source line. */
+void YamlPlaceAt(const YamlDocument *document, int line, int column, int width, char **buffer, DiagPlace *place);
+/* A DiagResolver; context: the YamlDocument. */
+void YamlResolve(void *document, const char *path, DiagPlace *place);
+/* Record an error at a node (at its key if `key`). */
+void YamlError(const YamlDocument *document, Diag *diag, const YamlNode *node, PetscBool key, const char *format, ...)
+  PETSC_ATTRIBUTE_FORMAT(5, 6);

@@ -1,0 +1,299 @@
+/* Mohr-Coulomb material in large strains (thesis section 3.3, algorithm 4, appendices A and B):
+ *
+ *   b^e trial = f b^e f^T,  eps_A = ln lambda_A,  tau = D eps       (Hencky's energy)
+ *   f(tau) = k tau_1 - tau_3 - 2 c sqrt k <= 0,  d eps^p = sum gamma dg/dtau,  g = m tau_1 - tau_3
+ *
+ * The return is that of small strains in the logarithmic principal strains (mohr_coulomb_return.h), the tangent is exact
+ * (principal.h). State: b^e and the equivalent plastic strain.
+ *
+ * A point beyond the apex is left with the elastic strain of the apex: with c = 0 it is stress-free, b^e = I. How far it
+ * has opened is not remembered, so that the next compression meets a solid at once. There the tangent is zero. */
+#include "material/mohr_coulomb/mohr_coulomb_plane.h"
+#include "material/principal.h"
+#include "material/shape.h"
+
+enum { FRICTION, DILATANCY, COHESION, CUTOFF };
+
+#define N_STATE MC_STATE
+#define NO_CUTOFF 1e300
+
+/* What the spectral decomposition of eight points gave. */
+typedef struct {
+  Lanes b[6], stretch2[3], strain[3], basis[36];
+  Lanes det, flow; /* of the increment; equivalent plastic strain so far */
+  LaneBits finite; /* is b of use? */
+} Trial;
+
+LANES_INLINE void trial_lanes(PetscInt n, const PetscReal *dF, const PetscReal *old, Trial *t)
+{
+  const Lanes one = (Lanes){0} + 1.0, none = {0};
+  Lanes f[9], before[N_STATE], v[9], size, sum = none;
+  lanes_load(9, n, dF, f);
+  lanes_load(N_STATE, n, old, before);
+  t->flow = before[6];
+  lanes_det(f, &t->det);
+  lanes_push_forward(f, before, t->b);
+  for (int k = 0; k < 6; ++k) {
+    lanes_abs(&t->b[k], &size);
+    sum += size;
+  }
+  t->finite = (sum * sum <= PETSC_MAX_REAL) & (t->det <= PETSC_MAX_REAL) & (t->det > 0.0);
+  for (int k = 0; k < 6; ++k) lanes_select(&t->finite, &t->b[k], k < 3 ? &one : &none, &t->b[k]);
+  lanes_sym_eigen(t->b, t->stretch2, v);
+  t->finite &= t->stretch2[2] > 0.0; /* lost to rounding: stretches 1e8 apart */
+  for (int a = 0; a < 3; ++a) {
+    lanes_log(&t->stretch2[a], &t->strain[a]);
+    t->strain[a] *= 0.5;
+  }
+  lanes_principal_basis(v, t->basis);
+}
+
+/* b^e of the returned stress. An elastic point keeps its trial b to the last bit. */
+LANES_INLINE void state_lanes(const PetscReal *p, const Trial *t, const Lanes tau[3], const LaneBits *regions,
+                              Lanes state[6], Lanes *flow)
+{
+  const Lanes share = p[MC_LAMBDA] / (3.0 * p[MC_LAMBDA] + 2.0 * p[MC_MU]) * (tau[0] + tau[1] + tau[2]), none = {0};
+  const LaneBits plastic = *regions != MC_ELASTIC;
+  Lanes stretch2[3], b[6], norm2 = none;
+  for (int k = 0; k < 6; ++k) state[k] = t->b[k];
+  *flow = none;
+  if (!lanes_any(&plastic)) return;
+  for (int a = 0; a < 3; ++a) {
+    const Lanes elastic = (tau[a] - share) / (2.0 * p[MC_MU]), twice = 2.0 * elastic;
+    norm2 += (t->strain[a] - elastic) * (t->strain[a] - elastic);
+    lanes_exp(&twice, &stretch2[a]);
+  }
+  lanes_principal_tensor(stretch2, t->basis, b);
+  norm2 /= 1.0 + p[MC_M] * p[MC_M];
+  lanes_sqrt(&norm2, &norm2);
+  lanes_select(&plastic, &norm2, &none, flow);
+  for (int k = 0; k < 6; ++k) lanes_select(&plastic, &b[k], &state[k], &state[k]);
+}
+
+LANES_INLINE void tangent_lanes(const PetscReal *p, const Trial *t, const LaneBits *regions, const Lanes tau[3],
+                                PetscInt n, PetscReal *c)
+{
+  Lanes D[9], shear[3], all[36], r, coth;
+  mc_moduli_lanes(p, regions, D);
+  for (int k = 0; k < 3; ++k) {
+    const int a = k == 2 ? 0 : k, b = k == 2 ? 2 : k + 1; /* 12, 23, 31 as 13 */
+    const Lanes x = t->strain[a] - t->strain[b];
+    LaneBits elastic = *regions == MC_ELASTIC;
+    if (a == 1) elastic |= *regions == MC_CUT_PLANE;
+    const Lanes rise = tau[a] - tau[b];
+    mc_difference_lanes(p, &elastic, &x, &rise, &r);
+    lanes_principal_coth(&x, &t->stretch2[a], &t->stretch2[b], &coth);
+    shear[k] = 0.5 * (r * coth - tau[a] - tau[b]);
+  }
+  lanes_principal_tangent(D, tau, shear, t->basis, all);
+  lanes_store(36, n, all, c);
+}
+
+/* Points that failed keep their state and carry no stress. */
+static LawStatus give_up(const LaneBits *finite, const Lanes *det, PetscInt n, const PetscReal *old, PetscReal *state,
+                         PetscReal *tau, PetscReal *c)
+{
+  LawStatus worst = LAW_OK;
+  for (PetscInt l = 0; l < PetscMin(n, LANES); ++l) {
+    if ((*finite)[l]) continue;
+    const LawStatus status = (*det)[l] <= 0.0 ? LAW_INVERTED : LAW_NOT_FINITE;
+    worst = PetscMax(worst, status);
+    for (int k = 0; k < N_STATE; ++k) state[l * N_STATE + k] = old[l * N_STATE + k];
+    for (int k = 0; k < 6; ++k) tau[l * 6 + k] = 0.0;
+    for (int k = 0; c && k < 36; ++k) c[l * 36 + k] = 0.0;
+  }
+  return worst;
+}
+
+LANES_INLINE LawStatus update_lanes(const PetscReal *p, PetscInt n, const PetscReal *dF, const PetscReal *old,
+                                    PetscReal *state, PetscReal *tau, PetscReal *c)
+{
+  Lanes principal[3], now[N_STATE], stress[6], flow;
+  LaneBits regions;
+  Trial t;
+  trial_lanes(n, dF, old, &t);
+  mc_return_lanes(p, t.strain, principal, &regions);
+  state_lanes(p, &t, principal, &regions, now, &flow);
+  now[6] = t.flow + flow;
+  lanes_principal_tensor(principal, t.basis, stress);
+  lanes_store(N_STATE, n, now, state);
+  lanes_store(6, n, stress, tau);
+  if (c) tangent_lanes(p, &t, &regions, principal, n, c);
+  const LaneBits bad = ~t.finite;
+  return lanes_any(&bad) ? give_up(&t.finite, &t.det, n, old, state, tau, c) : LAW_OK;
+}
+
+typedef LawStatus (*UpdateLanes)(const PetscReal *p, PetscInt n, const PetscReal *dF, const PetscReal *old,
+                                 PetscReal *state, PetscReal *tau, PetscReal *c);
+
+LANES_INLINE LawStatus update_batch(UpdateLanes lanes, const PetscReal *p, PetscInt n, const PetscReal *dF,
+                                    const PetscReal *old, PetscReal *state, PetscReal *tau, PetscReal *c)
+{
+  LawStatus worst = LAW_OK;
+  for (PetscInt i = 0; i < n; i += LANES) {
+    const LawStatus status =
+      lanes(p, n - i, dF + 9 * i, old + N_STATE * i, state + N_STATE * i, tau + 6 * i, c ? c + 36 * i : NULL);
+    worst = PetscMax(worst, status);
+  }
+  return worst;
+}
+
+static LawStatus update(const PetscReal *parameters, PetscInt n, const PetscReal *dF, const PetscReal *old,
+                        PetscReal *state, PetscReal *tau, PetscReal *c)
+{
+  return update_batch(update_lanes, parameters, n, dF, old, state, tau, c);
+}
+
+/* The moduli of the plane where 36 components stand for each point. */
+LANES_INLINE void store_plane(PetscInt n, const Lanes plane[9], PetscReal *c)
+{
+  static const int row[3] = {0, 1, 3};
+  const Lanes none = {0};
+  Lanes some[16] = {plane[0], plane[1], none, plane[2], plane[3], plane[4], none, plane[5],
+                    plane[6], plane[7], none, plane[8], none,     none,     none, none};
+  lanes_transpose(some);
+  lanes_transpose(some + 8);
+  for (int l = 0; l < PetscMin(n, LANES); ++l)
+    for (int i = 0; i < 3; ++i)
+      __builtin_memcpy(c + 36 * l + 6 * row[i], (const PetscReal *)&some[8 * (i / 2) + l] + 4 * (i % 2), 4 * sizeof *c);
+}
+
+LANES_INLINE LawStatus update_plane_lanes(const PetscReal *p, PetscInt n, const PetscReal *dF, const PetscReal *old,
+                                          PetscReal *state, PetscReal *tau, PetscReal *c)
+{
+  Lanes before[N_STATE], now[N_STATE], principal[3], stress[6] = {{0}}, moduli[9];
+  LaneBits regions;
+  PlaneTrial t;
+  lanes_load(N_STATE, n, old, before);
+  if (!mc_plane_trial(n, dF, before, &t)) return update(p, PetscMin(n, LANES), dF, old, state, tau, c);
+  mc_plane_return(p, &t, principal, &regions);
+  now[6] = before[6];
+  mc_plane_state(p, &t, principal, &regions, now);
+  mc_plane_tensor(&t, principal, stress);
+  lanes_store(N_STATE, n, now, state);
+  lanes_store(6, n, stress, tau);
+  if (c) {
+    mc_plane_moduli(p, &t, &regions, principal, moduli);
+    store_plane(n, moduli, c);
+  }
+  const LaneBits bad = ~t.finite;
+  return lanes_any(&bad) ? give_up(&t.finite, &t.det, n, old, state, tau, c) : LAW_OK;
+}
+
+static LawStatus update_plane(const PetscReal *parameters, PetscInt n, const PetscReal *dF, const PetscReal *old,
+                              PetscReal *state, PetscReal *tau, PetscReal *c)
+{
+  return update_batch(update_plane_lanes, parameters, n, dF, old, state, tau, c);
+}
+
+static PetscReal energy(const PetscReal *p, const PetscReal *b)
+{
+  PetscReal stretch2[3], v[9], trace = 0.0, norm2 = 0.0;
+  sym_eigen(b, stretch2, v);
+  for (int a = 0; a < 3; ++a) {
+    const PetscReal e = 0.5 * log(stretch2[a]);
+    trace += e;
+    norm2 += e * e;
+  }
+  return 0.5 * p[MC_LAMBDA] * trace * trace + p[MC_MU] * norm2;
+}
+
+/* tau = J sigma with ln J = tr tau / 3K; PETSC_FALSE outside the yield surface. */
+static PetscBool initial_stress(const PetscReal *p, const PetscReal sigma[6], PetscReal *state)
+{
+  const PetscReal bulk = p[MC_LAMBDA] + 2.0 / 3.0 * p[MC_MU];
+  const PetscReal J = volume_from_pressure(VOLUME_LOG, bulk, (sigma[0] + sigma[1] + sigma[2]) / 3.0);
+  PetscReal tau[3], e[3], v[9], basis[36];
+  sym_eigen(sigma, tau, v);
+  for (int a = 0; a < 3; ++a) tau[a] *= J;
+  const PetscReal noise = mc_noise(p, tau);
+  if (!(mc_yield(p, tau) <= noise && tau[0] - p[MC_CUT] <= noise)) return PETSC_FALSE;
+  principal_basis(v, basis);
+  mc_compliance(p, tau, e);
+  for (int a = 0; a < 3; ++a) e[a] = exp(2.0 * e[a]);
+  principal_tensor(e, basis, state);
+  state[6] = 0.0;
+  return PETSC_TRUE;
+}
+
+static void volume(PetscInt n, const PetscReal *state, PetscReal *J) { volume_of_b(n, N_STATE, state, J); }
+
+static void scale(PetscInt n, const PetscReal *factor, PetscReal *state) { scale_b(n, N_STATE, factor, state); }
+
+/* Without friction, dilatancy and cut-off (Tresca) the flow neither feels the pressure nor changes the volume. */
+static VolumeLaw volume_law(const PetscReal *p)
+{
+  return p[MC_K] == 1.0 && p[MC_M] == 1.0 && p[MC_CUT] == INFINITY ? VOLUME_LOG : VOLUME_COUPLED;
+}
+
+static void prepare(const Elasticity *elastic, const PetscReal *given, PetscReal *p)
+{
+  const PetscReal lambda = elastic->lame, mu = elastic->shear;
+  const PetscReal s = sin(given[FRICTION]), d = sin(given[DILATANCY]);
+  const PetscReal k = (1.0 + s) / (1.0 - s), m = (1.0 + d) / (1.0 - d);
+  const PetscReal r[3] = {lambda * (m - 1.0) + 2.0 * mu * m, lambda * (m - 1.0), lambda * (m - 1.0) - 2.0 * mu};
+  p[MC_LAMBDA] = lambda;
+  p[MC_MU] = mu;
+  p[MC_K] = k;
+  p[MC_M] = m;
+  p[MC_Q] = 2.0 * given[COHESION] * sqrt(k);
+  p[MC_CUT] = given[CUTOFF] < NO_CUTOFF && (k - 1.0) * given[CUTOFF] < p[MC_Q] ? given[CUTOFF] : INFINITY;
+  for (int i = 0; i < 3; ++i) p[MC_R0 + i] = r[i] / (k * r[0] - r[2]);
+  p[MC_NOISE] = 4.0 * PETSC_MACHINE_EPSILON * (k + 1.0) * (lambda + 2.0 * mu);
+}
+
+/* More dilatancy than friction would gain energy by shearing. */
+static const char *check(const PetscReal *given)
+{
+  return given[DILATANCY] > given[FRICTION] ? "the dilatancy angle must not be larger than the friction angle" : NULL;
+}
+
+static const LawParameter parameters[] = {
+  {.name = "friction_angle",
+   .unit = "deg",
+   .help = "angle of internal friction",
+   .min = 0,
+   .max = 90,
+   .max_open = PETSC_TRUE,
+   .fallback = NAN},
+  {.name = "dilatancy_angle",
+   .unit = "deg",
+   .help = "dilatancy angle, at most the friction angle",
+   .min = 0,
+   .max = 90,
+   .max_open = PETSC_TRUE,
+   .fallback = 0},
+  {.name = "cohesion", .unit = "Pa", .help = "cohesion", .min = 0, .max = PETSC_MAX_REAL, .fallback = NAN},
+  {.name = "tension_cutoff",
+   .unit = "Pa",
+   .help = "largest principal tension; 1e300: none but the apex",
+   .min = 0,
+   .max = PETSC_MAX_REAL,
+   .fallback = NO_CUTOFF},
+  {.name = NULL},
+};
+
+static const LawField fields[] = {
+  {"elastic_strain", "", "elastic left Cauchy-Green tensor b", 6, {1, 1, 1, 0, 0, 0}},
+  {"equivalent_plastic_strain", "", "sum of |d eps^p| / sqrt(1 + m^2)", 1, {0}},
+  {.name = NULL},
+};
+
+const Law law_mohr_coulomb = {
+  .name = "mohr-coulomb",
+  .help = "Hencky solid with Mohr-Coulomb plasticity, non-associated, with tension cut-off if wished",
+  .parameters = parameters,
+  .fields = fields,
+  .n_state = N_STATE,
+  .symmetric = PETSC_FALSE,
+  .yields = PETSC_TRUE,
+  .update = update,
+  .update_plane = update_plane,
+  .energy = energy,
+  .initial_stress = initial_stress,
+  .volume = volume,
+  .volume_law = volume_law,
+  .scale = scale,
+  .prepare = prepare,
+  .check = check,
+};

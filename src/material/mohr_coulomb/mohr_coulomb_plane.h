@@ -1,0 +1,154 @@
+/* The Mohr-Coulomb law where increments and elastic strains leave z alone: one turn finds the principal axes A and B in the plane, z is the
+ * third, and only the moduli of the plane are made. What is not made here is in mohr_coulomb.c. */
+#pragma once
+#include "material/mohr_coulomb/mohr_coulomb_lanes.h"
+
+/* A, B and z; axis[] is the direction of A, that of B is turned by a right angle. */
+enum { MC_A, MC_B, MC_Z };
+
+typedef struct {
+  Lanes b[4], stretch2[3], strain[3], axis[2]; /* b: 11, 22, 33, 12 */
+  Lanes det;
+  LaneBits finite;
+  LaneBits z_first, z_last; /* where z stands among the falling strains, with A before B */
+} PlaneTrial;
+
+/* b = f b f^T; PETSC_FALSE if a point has shear strains out of the plane. */
+LANES_INLINE PetscBool mc_plane_push(PetscInt n, const PetscReal *dF, const Lanes old[MC_STATE], PlaneTrial *t)
+{
+  const LaneBits out = (old[4] != 0.0) | (old[5] != 0.0);
+  Lanes f[9];
+  if (lanes_any(&out)) return PETSC_FALSE;
+  lanes_load(9, n, dF, f);
+  const Lanes x0 = f[0] * old[0] + f[1] * old[3], x1 = f[0] * old[3] + f[1] * old[1];
+  const Lanes y0 = f[3] * old[0] + f[4] * old[3], y1 = f[3] * old[3] + f[4] * old[1];
+  t->b[0] = x0 * f[0] + x1 * f[1];
+  t->b[1] = y0 * f[3] + y1 * f[4];
+  t->b[2] = old[2];
+  t->b[3] = x0 * f[3] + x1 * f[4];
+  t->det = f[0] * f[4] - f[1] * f[3];
+  return PETSC_TRUE;
+}
+
+/* Squares of the stretches along A and B, A the larger, and A's direction: base/math/eigen.h's turn in the plane. */
+LANES_INLINE void mc_plane_axes(PlaneTrial *t)
+{
+  const Lanes none = {0}, h = 0.5 * (t->b[1] - t->b[0]), square = h * h + t->b[3] * t->b[3];
+  const LaneBits turns = (t->b[3] * t->b[3] > 1e-36 * (t->b[0] * t->b[1])) & (t->b[3] != none);
+  Lanes root = none, size;
+  lanes_sqrt(&square, &root);
+  lanes_abs(&h, &size);
+  Lanes tan = (Lanes)((LaneBits)(t->b[3] / (size + root)) ^ ((LaneBits)h & INT64_MIN));
+  lanes_select(&turns, &tan, &none, &tan);
+  const Lanes norm2 = 1.0 + tan * tan, first = t->b[0] - tan * t->b[3], second = t->b[1] + tan * t->b[3];
+  lanes_sqrt(&norm2, &root);
+  const Lanes c = 1.0 / root, s = tan * c, back = -s;
+  const LaneBits wrong = first < second;
+  lanes_select(&wrong, &second, &first, &t->stretch2[MC_A]);
+  lanes_select(&wrong, &first, &second, &t->stretch2[MC_B]);
+  lanes_select(&wrong, &s, &c, &t->axis[0]);
+  lanes_select(&wrong, &c, &back, &t->axis[1]);
+  t->stretch2[MC_Z] = t->b[2];
+}
+
+LANES_INLINE PetscBool mc_plane_trial(PetscInt n, const PetscReal *dF, const Lanes old[MC_STATE], PlaneTrial *t)
+{
+  const Lanes one = (Lanes){0} + 1.0, none = {0};
+  Lanes size, sum = none;
+  if (!mc_plane_push(n, dF, old, t)) return PETSC_FALSE;
+  for (int k = 0; k < 4; ++k) {
+    lanes_abs(&t->b[k], &size);
+    sum += size;
+  }
+  t->finite = (sum * sum <= PETSC_MAX_REAL) & (t->det <= PETSC_MAX_REAL) & (t->det > 0.0);
+  for (int k = 0; k < 4; ++k) lanes_select(&t->finite, &t->b[k], k < 3 ? &one : &none, &t->b[k]);
+  mc_plane_axes(t);
+  t->finite &= (t->stretch2[MC_B] > 0.0) & (t->b[2] > 0.0);
+  for (int a = 0; a < 3; ++a) {
+    lanes_log(&t->stretch2[a], &t->strain[a]);
+    t->strain[a] *= 0.5;
+  }
+  t->z_first = t->strain[MC_A] < t->strain[MC_Z];
+  t->z_last = ~(t->strain[MC_B] < t->strain[MC_Z]);
+  return PETSC_TRUE;
+}
+
+/* to = what belongs to the place of A, B or z: first if z stands first, last if it stands last, else middle. */
+LANES_INLINE void mc_plane_pick(const PlaneTrial *t, const Lanes *first, const Lanes *middle, const Lanes *last,
+                                Lanes *to)
+{
+  lanes_select(&t->z_last, last, middle, to);
+  lanes_select(&t->z_first, first, to, to);
+}
+
+/* Stresses along A, B and z from the return of falling strains. */
+LANES_INLINE void mc_plane_return(const PetscReal *p, const PlaneTrial *t, Lanes tau[3], LaneBits *regions)
+{
+  const Lanes *e = t->strain;
+  Lanes falling[3], back[3];
+  mc_plane_pick(t, &e[MC_Z], &e[MC_A], &e[MC_A], &falling[0]);
+  mc_plane_pick(t, &e[MC_A], &e[MC_Z], &e[MC_B], &falling[1]);
+  mc_plane_pick(t, &e[MC_B], &e[MC_B], &e[MC_Z], &falling[2]);
+  mc_return_lanes(p, falling, back, regions);
+  mc_plane_pick(t, &back[1], &back[0], &back[0], &tau[MC_A]);
+  mc_plane_pick(t, &back[2], &back[2], &back[1], &tau[MC_B]);
+  mc_plane_pick(t, &back[0], &back[1], &back[2], &tau[MC_Z]);
+}
+
+/* value along A, B and z as a tensor: 11, 22, 33, 12. */
+LANES_INLINE void mc_plane_tensor(const PlaneTrial *t, const Lanes value[3], Lanes s[4])
+{
+  const Lanes rise = value[MC_A] - value[MC_B];
+  s[0] = value[MC_B] + rise * (t->axis[0] * t->axis[0]);
+  s[1] = value[MC_B] + rise * (t->axis[1] * t->axis[1]);
+  s[2] = value[MC_Z];
+  s[3] = rise * (t->axis[0] * t->axis[1]);
+}
+
+/* b^e and the equivalent plastic strain; an elastic point keeps its trial b. */
+LANES_INLINE void mc_plane_state(const PetscReal *p, const PlaneTrial *t, const Lanes tau[3], const LaneBits *regions,
+                                 Lanes state[MC_STATE])
+{
+  const Lanes share = p[MC_LAMBDA] / (3.0 * p[MC_LAMBDA] + 2.0 * p[MC_MU]) * (tau[0] + tau[1] + tau[2]), none = {0};
+  const LaneBits plastic = *regions != MC_ELASTIC;
+  Lanes stretch2[3], b[4], norm2 = none, flow;
+  for (int k = 0; k < 4; ++k) state[k] = t->b[k];
+  state[4] = state[5] = none;
+  if (!lanes_any(&plastic)) return;
+  for (int a = 0; a < 3; ++a) {
+    const Lanes elastic = (tau[a] - share) / (2.0 * p[MC_MU]), twice = 2.0 * elastic;
+    norm2 += (t->strain[a] - elastic) * (t->strain[a] - elastic);
+    lanes_exp(&twice, &stretch2[a]);
+  }
+  mc_plane_tensor(t, stretch2, b);
+  norm2 /= 1.0 + p[MC_M] * p[MC_M];
+  lanes_sqrt(&norm2, &norm2);
+  lanes_select(&plastic, &norm2, &none, &flow);
+  state[6] += flow;
+  for (int k = 0; k < 4; ++k) lanes_select(&plastic, &b[k], &state[k], &state[k]);
+}
+
+/* Moduli of 11, 22 and 12 (3 x 3). */
+LANES_INLINE void mc_plane_moduli(const PetscReal *p, const PlaneTrial *t, const LaneBits *regions, const Lanes tau[3],
+                                  Lanes c[9])
+{
+  const Lanes x = t->axis[0], y = t->axis[1], rise = tau[MC_A] - tau[MC_B], apart = t->strain[MC_A] - t->strain[MC_B];
+  const Lanes A[3] = {x * x, y * y, x * y}, B[3] = {y * y, x * x, -(x * y)};
+  const Lanes mixed[3] = {-2.0 * x * y, 2.0 * x * y, x * x - y * y};
+  const LaneBits elastic = (*regions == MC_ELASTIC) | (t->z_first & (*regions == MC_CUT_PLANE));
+  Lanes D[9], AA, AB, BA, BB, r, coth;
+  mc_moduli_lanes(p, regions, D);
+  mc_plane_pick(t, &D[4], &D[0], &D[0], &AA);
+  mc_plane_pick(t, &D[5], &D[2], &D[1], &AB);
+  mc_plane_pick(t, &D[7], &D[6], &D[3], &BA);
+  mc_plane_pick(t, &D[8], &D[8], &D[4], &BB);
+  mc_difference_lanes(p, &elastic, &apart, &rise, &r);
+  lanes_principal_coth(&apart, &t->stretch2[MC_A], &t->stretch2[MC_B], &coth);
+  const Lanes shear = 0.5 * (r * coth - tau[MC_A] - tau[MC_B]);
+  AA -= 2.0 * tau[MC_A];
+  BB -= 2.0 * tau[MC_B];
+  for (int j = 0; j < 3; ++j) {
+    const Lanes along = AA * A[j] + AB * B[j], across = BA * A[j] + BB * B[j], turn = shear * mixed[j];
+    for (int i = 0; i < 3; ++i) c[3 * i + j] = A[i] * along + B[i] * across + mixed[i] * turn;
+  }
+}

@@ -1,0 +1,398 @@
+#include "model/state/state.h"
+#include "grid/directory.h"
+#include "model/model_private.h"
+#include "model/state/state_private.h"
+
+/* Numbers of the model as a whole: one line each, for writing and reading. */
+static const struct {
+  const char *name, *unit;
+  size_t offset;
+} reals[] = {
+  {"time", "s", offsetof(Model, time)},
+  {"next_step", "s", offsetof(Model, control.next)},
+  {"failed_step", "s", offsetof(Model, control.failed)},
+  {"external_work", "J", offsetof(Model, external_work)},
+  {"boundary_work", "J", offsetof(Model, boundary_work)},
+  {"damped_energy", "J", offsetof(Model, damped_energy)},
+  {"transfer_energy", "J", offsetof(Model, transfer_energy)},
+  {"start_energy", "J", offsetof(Model, start_energy)},
+};
+static const struct {
+  const char *name;
+  size_t offset;
+} counts[] = {
+  {"step", offsetof(Model, step)},
+  {"halvings", offsetof(Model, cuts)},
+  {"iterations", offsetof(Model, total_iterations)},
+  {"control_wait", offsetof(Model, control.wait)},
+  {"control_patience", offsetof(Model, control.patience)},
+  {"control_since", offsetof(Model, control.since)},
+};
+/* What measures remember. */
+static const struct {
+  const char *name, *unit;
+  size_t offset;
+} memories[] = {
+  {"front", "m", offsetof(MeasureMemory, front)},
+  {"moved", "s", offsetof(MeasureMemory, moved)},
+};
+/* What the grid must be for the rest to mean anything: numbers of the grid as it was made. */
+#define GRID_NUMBERS 9
+
+static void grid_numbers(const Grid *grid, PetscReal number[GRID_NUMBERS])
+{
+  number[0] = (PetscReal)grid->n_cells_global;
+  number[1] = (PetscReal)grid->n_nodes_global;
+  number[2] = grid->smallest;
+  for (PetscInt d = 0; d < 3; ++d) {
+    number[3 + d] = d < grid->dim ? grid->min[d] : 0;
+    number[6 + d] = d < grid->dim ? grid->max[d] : 0;
+  }
+}
+
+static PetscErrorCode WholeToTables(Model *m, Tables *tables)
+{
+  Table *table;
+  Column *column;
+  NewtonMemory newton;
+
+  PetscFunctionBeginUser;
+  PetscCall(TablesAdd(tables, "model", PETSC_TRUE, 1, &table));
+  for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(reals); ++i)
+    PetscCall(TableAdd(table, reals[i].name, reals[i].unit, COLUMN_REAL, 1, (char *)m + reals[i].offset, NULL));
+  for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(counts); ++i) {
+    PetscCall(TableAdd(table, counts[i].name, NULL, COLUMN_INT64, 1, NULL, &column));
+    *(PetscInt64 *)column->data = *(PetscInt *)((char *)m + counts[i].offset);
+  }
+  PetscCall(TableAdd(table, "grid", NULL, COLUMN_REAL, GRID_NUMBERS, NULL, &column));
+  grid_numbers(m->grid, column->data);
+  NewtonGetMemory(m->newton, m->system, &newton);
+  PetscCall(TableAdd(table, "solver_courant", NULL, COLUMN_REAL, 1, NULL, &column));
+  *(PetscReal *)column->data = newton.courant;
+  PetscCall(TableAdd(table, "solver_failures", NULL, COLUMN_INT64, 1, NULL, &column));
+  *(PetscInt64 *)column->data = newton.failures;
+  PetscCall(TableAdd(table, "solver_steps_since", NULL, COLUMN_INT64, 1, NULL, &column));
+  *(PetscInt64 *)column->data = newton.since;
+  PetscCall(TablesAdd(tables, "measures", PETSC_TRUE, m->c->n_measures, &table));
+  for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(memories); ++i) {
+    PetscCall(TableAdd(table, memories[i].name, memories[i].unit, COLUMN_REAL, 1, NULL, &column));
+    for (PetscInt k = 0; k < m->c->n_measures; ++k)
+      ((PetscReal *)column->data)[k] = *(PetscReal *)((char *)&m->memory[k] + memories[i].offset);
+  }
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode TriesToTables(const Model *m, Tables *tables)
+{
+  const PetscInt64 counts_now[] = {m->tries.again, m->tries.lost};
+  Table *table;
+  Column *column;
+
+  PetscFunctionBeginUser;
+  PetscCall(TablesAdd(tables, "tries", PETSC_TRUE, 1, &table));
+  PetscCall(TableAdd(table, "again_lost", NULL, COLUMN_INT64, 2, NULL, &column));
+  PetscCall(PetscArraycpy((PetscInt64 *)column->data, counts_now, 2));
+  PetscFunctionReturn(0);
+}
+
+/* How soft a static run had become; checkpoints without this table do not know. */
+static PetscErrorCode SofteningToTables(Model *m, Tables *tables)
+{
+  Table *table;
+
+  PetscFunctionBeginUser;
+  if (m->c->analysis.type != ANALYSIS_STATIC) PetscFunctionReturn(0);
+  PetscCall(TablesAdd(tables, "softening", PETSC_TRUE, 1, &table));
+  PetscCall(TableAdd(table, "least_last_before", "m/s", COLUMN_REAL, 3, &m->limit, NULL));
+  PetscFunctionReturn(0);
+}
+
+static void reaction_fields(Model *m, NodalField field[3])
+{
+  field[0] = (NodalField){"reaction", "N", m->dim, m->reaction};
+  field[1] = (NodalField){"held", "N", m->dim, m->held};
+  field[2] = (NodalField){"rate", "N", m->dim, m->rate};
+}
+
+/* Kept on the nodes whose motion is prescribed. */
+PetscErrorCode ReactionsToTables(Model *m, Tables *tables)
+{
+  NodalField field[3];
+  unsigned char *take;
+
+  PetscFunctionBeginUser;
+  reaction_fields(m, field);
+  PetscCall(PetscCalloc1(m->grid->n_nodes, &take));
+  for (PetscInt i = 0; i < m->grid->n_nodes * m->dim; ++i) take[i / m->dim] |= m->boundary->fixed[i];
+  PetscCall(NodesToTable(m->grid, take, 3, field, "boundary", tables));
+  PetscCall(PetscFree(take));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ReactionsFromTables(Model *m, const Tables *tables, char reason[256])
+{
+  NodalField field[3];
+
+  PetscFunctionBeginUser;
+  reaction_fields(m, field);
+  PetscCall(NodesFromTable(m->grid, PETSC_FALSE, 3, field, TablesFind(tables, "boundary"), reason));
+  PetscFunctionReturn(0);
+}
+
+/* Nodal fields of the method. */
+static PetscInt method_fields(const Model *m, NodalField field[8])
+{
+  PetscInt n = 0;
+  for (const MethodField *f = m->method->fields; f && f->name && n < 8; ++f) {
+    PetscReal *values = f->values(m->stage);
+    if (values) field[n++] = (NodalField){f->name, f->unit, f->components ? f->components : m->dim, values};
+  }
+  return n;
+}
+
+/* Which partition there is and how it came about; several ranks alone have one. */
+static PetscErrorCode BalanceToTables(const Model *m, Tables *tables)
+{
+  const Balance *b = &m->balance;
+  PetscMPIInt size;
+  Table *table;
+  Column *column;
+
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_size(m->comm, &size));
+  if (size == 1) PetscFunctionReturn(0);
+  PetscCall(TablesAdd(tables, "balance", PETSC_TRUE, 1, &table));
+  PetscCall(TableAdd(table, "largest", NULL, COLUMN_REAL, 1, (void *)&b->largest, NULL));
+  PetscCall(TableAdd(table, "reached", NULL, COLUMN_REAL, 1, (void *)&b->reached, NULL));
+  const PetscInt64 memory[] = {size, b->tried, b->repartitions};
+  PetscCall(TableAdd(table, "ranks_tried_repartitions", NULL, COLUMN_INT64, 3, NULL, &column));
+  for (int i = 0; i < 3; ++i) ((PetscInt64 *)column->data)[i] = memory[i];
+  if (b->repartitions || !m->grid->box) PetscCall(GridPartitionToTable(m->grid, tables));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ModelToTables(Model *m, Tables *tables)
+{
+  NodalField field[8];
+
+  PetscFunctionBeginUser;
+  PetscCall(WholeToTables(m, tables));
+  PetscCall(TriesToTables(m, tables));
+  PetscCall(SofteningToTables(m, tables));
+  PetscCall(StateLostToTables(m, tables));
+  PetscCall(PointsToTable(m->points, m->grid, "points", tables));
+  PetscCall(PointsToTable(m->tracers, m->grid, "tracers", tables));
+  PetscCall(PointsToTable(m->loads->carriers, m->grid, "carriers", tables));
+  if (m->grid->cloud) {
+    PetscCall(StateCloudToTables(m, tables));
+    PetscFunctionReturn(0);
+  }
+  const PetscInt n = method_fields(m, field);
+  if (n) PetscCall(NodesToTable(m->grid, NULL, n, field, "nodes", tables));
+  PetscCall(ReactionsToTables(m, tables));
+  PetscCall(GuessToTables(m, tables));
+  PetscCall(BalanceToTables(m, tables));
+  PetscCall(CellsToTable(m->grid, m->enabled, "pattern", tables));
+  PetscFunctionReturn(0);
+}
+
+/* One number of a table that is everywhere. */
+static PetscReal real_of(const Table *table, const char *name, char reason[256])
+{
+  const PetscReal *data = TableData(table, name, COLUMN_REAL, 1, reason);
+  return data && table->rows == 1 ? *data : 0;
+}
+
+/* A count that a run can have reached, and can go on from; PETSC_MAX_INT stands for never. */
+static PetscBool is_count(PetscInt64 value) { return (value >= 0 && value <= 1000000000) || value == PETSC_MAX_INT; }
+
+static PetscInt count_of(const Table *table, const char *name, char reason[256])
+{
+  const PetscInt64 *data = TableData(table, name, COLUMN_INT64, 1, reason);
+  const PetscInt64 value = data && table->rows == 1 ? *data : 0;
+  if (!is_count(value)) snprintf(reason, 256, "%s/%s makes no sense", table->name, name);
+  return (PetscInt)value;
+}
+
+static void softening_from_table(Model *m, const Table *table, char reason[256])
+{
+  if (!table || reason[0]) return;
+  const PetscReal *kept = TableData(table, "least_last_before", COLUMN_REAL, 3, reason);
+  if (!kept) return;
+  for (int k = 0; k < 3 && table->rows == 1; ++k)
+    if (!(kept[k] >= 0 && kept[k] <= PETSC_MAX_REAL)) snprintf(reason, 256, "softening makes no sense");
+  if (table->rows != 1) snprintf(reason, 256, "softening has %d rows", (int)table->rows);
+  else if (!reason[0]) m->limit = (Softening){.least = kept[0], .last = kept[1], .before = kept[2]};
+}
+
+/* Checkpoints of older programs did not count them. */
+static void tries_from_table(Model *m, const Table *table, char reason[256])
+{
+  const PetscInt64 *kept = table ? TableData(table, "again_lost", COLUMN_INT64, 2, reason) : NULL;
+  if (!kept) return;
+  if (table->rows != 1 || !is_count(kept[0]) || !is_count(kept[1]))
+    snprintf(reason, 256, "%s makes no sense", table->name);
+  else m->tries = (Tries){.again = (PetscInt)kept[0], .lost = (PetscInt)kept[1]};
+}
+
+static void check_grid(const Model *m, const Table *table, char reason[256])
+{
+  PetscReal mine[GRID_NUMBERS];
+  const PetscReal *kept = TableData(table, "grid", COLUMN_REAL, GRID_NUMBERS, reason);
+  if (!kept) return;
+  grid_numbers(m->grid, mine);
+  for (int i = 0; i < GRID_NUMBERS; ++i)
+    if (mine[i] != kept[i]) snprintf(reason, 256, "the grid of the case is not the one of the run");
+}
+
+static void whole_from_tables(Model *m, const Table *table, const Table *measures, char reason[256])
+{
+  if (table->rows != 1) snprintf(reason, 256, "%s has %d rows", table->name, (int)table->rows);
+  if (measures->rows != m->c->n_measures) snprintf(reason, 256, "the measures of the case are not those of the run");
+  if (reason[0]) return;
+  check_grid(m, table, reason);
+  for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(reals); ++i)
+    *(PetscReal *)((char *)m + reals[i].offset) = real_of(table, reals[i].name, reason);
+  for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(counts); ++i)
+    *(PetscInt *)((char *)m + counts[i].offset) = count_of(table, counts[i].name, reason);
+  if (!(m->time >= 0 && m->control.next > 0)) snprintf(reason, 256, "its time or step makes no sense");
+  if (m->control.patience > STEP_WAIT_MOST || m->control.wait > STEP_WAIT_MOST || m->step > 1000000000)
+    snprintf(reason, 256, "what its steps are chosen by makes no sense");
+  for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(memories); ++i) {
+    const PetscReal *data = TableData(measures, memories[i].name, COLUMN_REAL, 1, reason);
+    for (PetscInt k = 0; data && k < m->c->n_measures; ++k)
+      *(PetscReal *)((char *)&m->memory[k] + memories[i].offset) = data[k];
+  }
+}
+
+static PetscErrorCode NodesBack(Model *m, const Tables *tables, char reason[256])
+{
+  NodalField field[8];
+  const PetscInt n = method_fields(m, field);
+
+  PetscFunctionBeginUser;
+  if (n) PetscCall(NodesFromTable(m->grid, PETSC_TRUE, n, field, TablesFind(tables, "nodes"), reason));
+  if (!reason[0]) PetscCall(ReactionsFromTables(m, tables, reason));
+  if (!reason[0]) PetscCall(GuessFromTables(m, tables, reason));
+  if (!reason[0]) PetscCall(CellsFromTable(m->grid, m->enabled, TablesFind(tables, "pattern"), reason));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode PointsBack(Model *m, const Tables *tables, char reason[256])
+{
+  const Case *c = m->c;
+
+  PetscFunctionBeginUser;
+  PetscCall(PointsFromTable(m->points, m->grid, TablesFind(tables, "points"), c->n_bodies, c->n_materials, reason));
+  if (reason[0]) PetscFunctionReturn(0);
+  PetscCall(PointsFromTable(m->tracers, m->grid, TablesFind(tables, "tracers"), c->n_measures, c->n_materials, reason));
+  if (reason[0]) PetscFunctionReturn(0);
+  PetscCall(
+    PointsFromTable(m->loads->carriers, m->grid, TablesFind(tables, "carriers"), c->n_loads, c->n_materials, reason));
+  PetscFunctionReturn(0);
+}
+
+static NewtonMemory newton_memory(const Table *table, char reason[256])
+{
+  return (NewtonMemory){.courant = real_of(table, "solver_courant", reason),
+                        .failures = count_of(table, "solver_failures", reason),
+                        .since = count_of(table, "solver_steps_since", reason)};
+}
+
+/* The partition as it was, where the ranks are as many; others share the grid as a new run does, and anew if that is not good. */
+static PetscErrorCode BalanceBack(Model *m, const Tables *tables, char reason[256])
+{
+  const Table *table = TablesFind(tables, "balance"), *partition = TablesFind(tables, "partition");
+  Balance *b = &m->balance;
+  PetscMPIInt size;
+  PetscInt moved;
+  Grid *grid;
+
+  PetscFunctionBeginUser;
+  if (!table) PetscFunctionReturn(0);
+  const PetscInt64 *memory = TableData(table, "ranks_tried_repartitions", COLUMN_INT64, 3, reason);
+  b->largest = real_of(table, "largest", reason);
+  if (reason[0] || table->rows != 1) PetscFunctionReturn(0);
+  if (!(memory[1] >= 0 && memory[1] <= m->step && is_count(memory[2])))
+    snprintf(reason, 256, "%s makes no sense", table->name);
+  if (reason[0]) PetscFunctionReturn(0);
+  b->repartitions = (PetscInt)memory[2];
+  PetscCallMPI(MPI_Comm_size(m->comm, &size));
+  if (memory[0] != size) PetscFunctionReturn(0);
+  b->reached = real_of(table, "reached", reason);
+  b->tried = (PetscInt)memory[1];
+  if (!partition || reason[0]) PetscFunctionReturn(0);
+  PetscCall(GridFromPartition(m->grid, partition, &grid, reason));
+  if (reason[0]) PetscFunctionReturn(0);
+  PetscCall(ModelRegrid(m, grid, &moved));
+  PetscCall(m->method->initialise(m->stage)); /* what fem makes once, of points and nodes at the start */
+  PetscFunctionReturn(0);
+}
+
+/* The pattern is that of the enabled cells, and the solver is chosen as it was. */
+static PetscErrorCode SolverBack(Model *m, const Table *table, char reason[256])
+{
+  PetscInt local = 0, any;
+  NewtonMemory newton = newton_memory(table, reason);
+
+  PetscFunctionBeginUser;
+  for (PetscInt c = 0; c < m->grid->n_cells; ++c) local += m->enabled[c];
+  PetscCall(MPIU_Allreduce(&local, &any, 1, MPIU_INT, MPI_SUM, m->comm));
+  if (any) PetscCall(ModelEnable(m));
+  NewtonSetMemory(m->newton, m->system, &newton);
+  PetscFunctionReturn(0);
+}
+
+/* All ranks know the same tables. */
+static void check_tables(const Model *m, const Tables *tables, char reason[256])
+{
+  static const char *const always[] = {"model", "measures", "points", "tracers", "carriers", "pattern"};
+  static const char *const of_cells[] = {"boundary", "nodes"}, *const of_clouds[] = {"nodes", "ghosts", "cloud",
+                                                                                     "parts"};
+  for (int i = 0; i < 6; ++i)
+    if (!TablesFind(tables, always[i])) snprintf(reason, 256, "%s is missing", always[i]);
+  for (int i = 0; !m->grid->cloud && i < (m->method->fields ? 2 : 1); ++i)
+    if (!TablesFind(tables, of_cells[i])) snprintf(reason, 256, "%s is missing", of_cells[i]);
+  for (int i = 0; m->grid->cloud && i < 4; ++i)
+    if (!TablesFind(tables, of_clouds[i])) snprintf(reason, 256, "%s is missing", of_clouds[i]);
+}
+
+static PetscErrorCode CloudBack(Model *m, Tables *tables, char reason[256])
+{
+  PetscBool home;
+  const Table *model = TablesFind(tables, "model");
+
+  PetscFunctionBeginUser;
+  NewtonMemory newton = newton_memory(model, reason);
+  PetscCall(StateCloudNodes(m, tables, &home, reason));
+  if (!reason[0]) PetscCall(PointsBack(m, tables, reason));
+  if (!reason[0]) PetscCall(StateCloudSettle(m, tables, home, reason));
+  if (!reason[0]) NewtonSetMemory(m->newton, m->system, &newton);
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ModelFromTables(Model *m, Tables *tables, char reason[256])
+{
+  PetscFunctionBeginUser;
+  reason[0] = 0;
+  check_tables(m, tables, reason);
+  if (reason[0]) PetscFunctionReturn(0);
+  whole_from_tables(m, TablesFind(tables, "model"), TablesFind(tables, "measures"), reason);
+  tries_from_table(m, TablesFind(tables, "tries"), reason);
+  softening_from_table(m, TablesFind(tables, "softening"), reason);
+  state_lost_from_tables(m, tables, reason);
+  PetscCall(ReasonShare(m->comm, reason));
+  if (m->grid->cloud && !reason[0]) {
+    PetscCall(CloudBack(m, tables, reason));
+    PetscFunctionReturn(0);
+  }
+  if (!reason[0]) PetscCall(BalanceBack(m, tables, reason));
+  if (!reason[0]) PetscCall(PointsBack(m, tables, reason));
+  if (!reason[0]) PetscCall(NodesBack(m, tables, reason));
+  if (reason[0]) PetscFunctionReturn(0);
+  PetscCall(PointsSort(m->points));
+  PetscCall(SolverBack(m, TablesFind(tables, "model"), reason));
+  PetscCall(ReasonShare(m->comm, reason));
+  if (!reason[0]) PetscCall(m->method->initialise(m->stage));
+  PetscFunctionReturn(0);
+}

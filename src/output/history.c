@@ -1,0 +1,253 @@
+#include <errno.h>
+#include <stdio_ext.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+#include <zlib.h>
+#include "output/directory/run_dir_files.h"
+#include "output/directory/run_dir_impl.h"
+
+/* A name with a comma or a quote is quoted, as spreadsheets want it. */
+static void WriteName(FILE *out, const char *name, const char *unit)
+{
+  const PetscBool quote = strpbrk(name, ",\"") != NULL;
+  if (quote) fputc('"', out);
+  for (const char *c = name; *c; ++c) fputs(*c == '"' ? "\"\"" : (char[2]){*c, 0}, out);
+  if (unit && unit[0]) fprintf(out, " [%s]", unit);
+  if (quote) fputc('"', out);
+}
+
+static void WriteHeader(FILE *out, PetscInt n, const char *const *names, const char *const *units)
+{
+  fputs("time [s],step", out);
+  for (PetscInt i = 0; i < n; ++i) {
+    fputc(',', out);
+    WriteName(out, names[i], units ? units[i] : NULL);
+  }
+  fputc('\n', out);
+}
+
+static int Open(RunDir *dir, const char *mode)
+{
+  char path[FILE_PATH];
+  snprintf(path, sizeof path, "%s/history.csv", dir->path);
+  if (dir->history) fclose(dir->history);
+  dir->history = fopen(path, mode);
+  return dir->history ? 0 : errno;
+}
+
+/* Take note of text that now stands at the end of the file. */
+static void mark_text(HistoryMark *mark, const char *text, size_t n)
+{
+  const uLong crc = mark->bytes ? (uLong)mark->crc : crc32(0, Z_NULL, 0);
+  mark->crc = (PetscInt64)crc32(crc, (const Bytef *)text, (uInt)n);
+  mark->bytes += (PetscInt64)n;
+  ++mark->lines;
+}
+
+/* Push the row to the system: a run that dies has its history. A row that did not fit is cut off again. */
+static int Flush(FILE *file, off_t before)
+{
+  errno = 0;
+  if (!fflush(file) && !ferror(file)) return 0;
+  const int error = errno ? errno : EIO;
+  __fpurge(file);
+  clearerr(file);
+  return before > 0 && ftruncate(fileno(file), before) ? errno : error;
+}
+
+/* *header: of malloc. */
+static int HeaderText(PetscInt n, const char *const *names, const char *const *units, char **header, size_t *size)
+{
+  FILE *memory = open_memstream(header, size);
+  if (!memory) return errno;
+  WriteHeader(memory, n, names, units);
+  fclose(memory);
+  return 0;
+}
+
+PetscErrorCode HistoryOpen(RunDir *dir, PetscInt n, const char *const *names, const char *const *units)
+{
+  int error = 0;
+
+  PetscFunctionBeginUser;
+  dir->n_measures = n;
+  if (dir->rank == 0) {
+    char *header = NULL;
+    size_t size = 0;
+    error = Open(dir, "w");
+    if (!error) error = HeaderText(n, names, units, &header, &size);
+    if (!error) fputs(header, dir->history);
+    if (!error) error = Flush(dir->history, 0);
+    dir->mark = (HistoryMark){0};
+    if (!error) mark_text(&dir->mark, header, size);
+    free(header);
+  }
+  const PetscErrorCode status = RunDirAgree(dir, "history.csv", error);
+  PetscFunctionReturn(status);
+}
+
+/* Copy the rows up to that of `last`; a row that was cut off is dropped too. Returns the step of the last one copied, -1 if there is none. */
+static long long CopyRows(FILE *old, FILE *out, PetscInt last, HistoryMark *mark)
+{
+  char *line = NULL, *end;
+  size_t size = 0;
+  long long copied = -1;
+  for (ssize_t n = getline(&line, &size, old); n > 0; n = getline(&line, &size, old)) {
+    (void)strtod(line, &end);
+    if (end == line || *end != ',' || line[n - 1] != '\n') continue;
+    const long long step = strtoll(end + 1, NULL, 10);
+    if (step > last) continue;
+    fputs(line, out);
+    mark_text(mark, line, (size_t)n);
+    copied = step;
+  }
+  free(line);
+  return copied;
+}
+
+/* Does the old file start with our header? */
+static PetscBool SameHeader(FILE *old, const char *header)
+{
+  char *line = NULL;
+  size_t size = 0;
+  const PetscBool same = getline(&line, &size, old) > 0 && !strcmp(line, header);
+  free(line);
+  return same;
+}
+
+/* Are the rows that were kept those that the run wrote, and all of them? `was`: NULL if nobody knows. */
+static PetscBool CheckRows(const char *path, PetscInt step, long long copied, const HistoryMark *is,
+                           const HistoryMark *was, Diag *diag)
+{
+  const PetscInt errors = DiagErrors(diag);
+  if (step >= 0 && copied != step)
+    DiagError(diag, NULL, "'%s' has lost rows: the one of step %lld is missing", path, (long long)step);
+  else if (was && is->lines < was->lines)
+    DiagError(diag, NULL, "'%s' has lost rows: up to step %lld there are %lld, and there were %lld", path,
+              (long long)step, (long long)is->lines - 1, (long long)was->lines - 1);
+  else if (was && (is->lines != was->lines || is->bytes != was->bytes || is->crc != was->crc))
+    DiagError(diag, NULL, "'%s' is not as the run wrote it: rows up to step %lld have been changed", path,
+              (long long)step);
+  if (DiagErrors(diag) == errors) return PETSC_TRUE;
+  DiagHint(diag, "put the file back as it was, or start the run again in another directory: --out OTHER");
+  return PETSC_FALSE;
+}
+
+static int KeepRows(const char *path, const char *header, PetscInt step, const HistoryMark *was, HistoryMark *mark,
+                    Diag *diag)
+{
+  char unfinished[FILE_PATH + 16];
+  FILE *old = file_open_read(path), *out = NULL;
+  long long copied = -1;
+  int error = 0;
+  *mark = (HistoryMark){0};
+  snprintf(unfinished, sizeof unfinished, "%s" FILE_UNFINISHED, path);
+  if (!old && errno != ENOENT) return errno;
+  if (old && !SameHeader(old, header)) {
+    DiagError(diag, NULL, "the measures differ from those of '%s': the run cannot go on there", path);
+    fclose(old);
+    return 0;
+  }
+  out = fopen(unfinished, "w");
+  error = out ? 0 : errno;
+  if (out) {
+    fputs(header, out);
+    mark_text(mark, header, strlen(header));
+    if (old) copied = CopyRows(old, out, step, mark);
+    if (old && ferror(old)) error = EIO;
+    const int closing = file_finish_stream(out);
+    if (!error) error = closing;
+  }
+  if (old) fclose(old);
+  if (!error && !CheckRows(path, step, copied, mark, was, diag)) {
+    unlink(unfinished);
+    return 0;
+  }
+  return file_commit(unfinished, path, error);
+}
+
+static int OpenFrom(RunDir *dir, PetscInt n, const char *const *names, const char *const *units, PetscInt step,
+                    const HistoryMark *was, Diag *diag)
+{
+  char path[FILE_PATH], *header = NULL;
+  size_t size;
+  int error = HeaderText(n, names, units, &header, &size);
+  if (error) return error;
+  snprintf(path, sizeof path, "%s/history.csv", dir->path);
+  const PetscInt errors = DiagErrors(diag);
+  error = KeepRows(path, header, step, was, &dir->mark, diag);
+  free(header);
+  if (!error && DiagErrors(diag) == errors) error = Open(dir, "a");
+  return error;
+}
+
+PetscErrorCode HistoryOpenFrom(RunDir *dir, PetscInt n, const char *const *names, const char *const *units,
+                               PetscInt step, const HistoryMark *was, Diag *diag)
+{
+  PetscFunctionBeginUser;
+  dir->n_measures = n;
+  const PetscErrorCode status =
+    RunDirAgree(dir, "history.csv", dir->rank ? 0 : OpenFrom(dir, n, names, units, step, was, diag));
+  PetscFunctionReturn(status);
+}
+
+PetscErrorCode HistorySync(RunDir *dir)
+{
+  int error = 0;
+
+  PetscFunctionBeginUser;
+  if (dir->rank == 0 && dir->history && fsync(fileno(dir->history)) && errno != EINVAL) error = errno;
+  const PetscErrorCode status = RunDirAgree(dir, "history.csv", error);
+  PetscFunctionReturn(status);
+}
+
+PetscErrorCode HistoryGetMark(const RunDir *dir, HistoryMark *mark)
+{
+  PetscFunctionBeginUser;
+  *mark = dir->mark;
+  PetscCallMPI(MPI_Bcast(mark, (PetscMPIInt)sizeof *mark, MPI_BYTE, 0, dir->comm));
+  PetscFunctionReturn(0);
+}
+
+static void WriteRow(FILE *out, PetscReal time, PetscInt step, PetscInt n, const PetscReal *values)
+{
+  char number[32];
+  file_format_real(time, number);
+  fprintf(out, "%s,%" PetscInt_FMT, number, step);
+  for (PetscInt i = 0; i < n; ++i) {
+    file_format_real(values[i], number);
+    fprintf(out, ",%s", number);
+  }
+  fputc('\n', out);
+}
+
+/* Rank 0: a row, as far as the system. */
+static int AddRow(RunDir *dir, PetscReal time, PetscInt step, const PetscReal *values)
+{
+  const off_t before = ftello(dir->history);
+  char *row = NULL;
+  size_t size;
+  FILE *memory = open_memstream(&row, &size);
+  if (!memory) return errno;
+  WriteRow(memory, time, step, dir->n_measures, values);
+  fclose(memory);
+  fwrite(row, 1, size, dir->history);
+  const int error = Flush(dir->history, before);
+  if (!error) mark_text(&dir->mark, row, size);
+  free(row);
+  return error;
+}
+
+PetscErrorCode HistoryWrite(RunDir *dir, PetscReal time, PetscInt step, const PetscReal *values)
+{
+  int error = 0;
+
+  PetscFunctionBeginUser;
+  if (dir->rank == 0) {
+    error = dir->history ? run_dir_present(dir) : EBADF;
+    if (!error) error = AddRow(dir, time, step, values);
+  }
+  const PetscErrorCode status = RunDirAgree(dir, "history.csv", error);
+  PetscFunctionReturn(status);
+}

@@ -1,0 +1,35 @@
+/* Figures of curves: several series of (x, y) on linear or logarithmic axes, as PNG. */
+#pragma once
+#include <petscsys.h>
+#include "base/diag/diag.h"
+
+typedef enum { FIGURE_LINE, FIGURE_MARKS, FIGURE_LINE_MARKS, FIGURE_DASHES } FigureStyle;
+
+typedef struct {
+  const char *name; /* in the legend; NULL: none */
+  FigureStyle style;
+  PetscInt n;
+  const PetscReal *x, *y;
+} FigureSeries;
+
+typedef struct {
+  const char *title, *x_label, *y_label; /* NULL: none */
+  PetscBool log_x, log_y;
+  PetscInt n_series;
+  const FigureSeries *series;
+  PetscReal slope;   /* of a reference triangle's line in a log-log figure; 0: none */
+  int width, height; /* pixels; 0: 900 x 600 */
+} Figure;
+
+/* What goes wrong (no gnuplot, nothing to draw, no permission) is told to diag. Points that an axis
+ * cannot show (not finite, or not positive on a logarithmic one) are left out. Not collective. */
+PetscErrorCode FigureWrite(const Figure *figure, const char *png, Diag *diag, PetscBool *done);
+
+/* Errors over element sizes, log-log, with the line of that order. */
+PetscErrorCode FigureConvergence(const char *title, const char *x_label, const char *y_label, PetscInt n_series,
+                                 const FigureSeries *series, PetscReal order, const char *png, Diag *diag,
+                                 PetscBool *done);
+
+/* An SI prefix that makes numbers of this size readable, for units that take one: 2.5e7 Pa -> 25 MPa.
+ * Returns the factor by which numbers are multiplied and writes the new unit. */
+PetscReal figure_unit(const char *unit, PetscReal largest, char prefixed[64]);

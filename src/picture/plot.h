@@ -1,0 +1,36 @@
+/* Pictures of a run: states coloured by a field, side by side if there are several, and the histories of its measures. */
+#pragma once
+#include <petscsys.h>
+#include "base/diag/diag.h"
+
+#define PLOT_MAX_STATES 36
+
+typedef struct {
+  const char *run;                  /* the run directory */
+  const char *field;                /* NULL: displacement, or the first that there is */
+  const char *component;            /* NULL: magnitude of a vector, mises of a tensor */
+  PetscInt n_times;                 /* the states nearest to these; 0: the last one */
+  PetscReal times[PLOT_MAX_STATES]; /* s */
+  PetscInt
+    even; /* so many of all states instead, from the first to the last; no picture where there are less than three */
+  PetscBool all_times; /* every state instead */
+  PetscInt columns;    /* of several states; 0: chosen */
+  PetscBool grid;      /* draw the grid too */
+  PetscBool has_range;
+  PetscReal range[2]; /* of the colours, in the field's own unit */
+  int width, height;  /* pixels; 0: chosen to suit the body */
+  PetscInt up;        /* axis that points up in a picture in space: 0 1 2 */
+  const char *out;    /* PNG; NULL: RUN/pictures/state_... */
+} PlotOptions;
+
+/* Draw the states, all on one scale and in one set of colours. Mistakes go to diag, and picture is "" if there is none. One process. */
+PetscErrorCode PlotState(const PlotOptions *options, Diag *diag, char picture[PETSC_MAX_PATH_LEN]);
+
+/* RUN/pictures/history_NAME.png for every measure of history.csv. `said` is called with the path of
+ * each. */
+PetscErrorCode PlotHistories(const PlotOptions *options, Diag *diag, void (*said)(const char *path));
+
+/* RUN/pictures/, made if it is not there; PETSC_FALSE and a diagnostic if it cannot be. */
+PetscBool plot_folder(const char *run, Diag *diag);
+/* Turn what a file name should not hold into '_'. */
+void plot_file_name(char *name);

@@ -1,0 +1,159 @@
+#include <math.h>
+#include "picture/plot_gnuplot.h"
+#include "picture/plot_raster.h"
+#include "picture/plot_scene.h"
+
+static void WritePalette(FILE *out, const PlotScene *scene)
+{
+  fputs("set palette defined (", out);
+  for (int i = 0; i < PALETTE_STOPS; ++i)
+    fprintf(out, "%s%d '#%02x%02x%02x'", i ? ", " : "", i, palette_stops[i][0], palette_stops[i][1],
+            palette_stops[i][2]);
+  fprintf(out, ") maxcolors 0\nset cbrange [%.15g:%.15g]\nset format cb '%%.4g'\nset cblabel ", (double)scene->low,
+          (double)scene->high);
+  gnuplot_quote(out, scene->label);
+}
+
+/* The bar is as long as the field is wide or high, within reason. */
+static void WriteColourBar(FILE *out, const PlotScene *scene, const PlotPage *page)
+{
+  const double w = page->width, h = page->height, middle = page->bottom + 0.5 * page->h;
+  WritePalette(out, scene);
+  if (page->bar_below) {
+    const double all = page->w + (page->columns - 1) * page->step_x, length = PetscMin(all, 620),
+                 left = page->left + 0.5 * (all - length), top = page->bottom - (scene->dim == 3 ? 15 : 75);
+    fprintf(out, "\nset colorbox horizontal user origin screen %.6f,%.6f size screen %.6f,%.6f\n", left / w,
+            (top - 16) / h, length / w, 16 / h);
+  } else {
+    const double length = PetscMin(PetscMax(page->h, 160), page->height - 80), right = page->left + page->w;
+    fprintf(out, " offset 1,0\nset colorbox vertical user origin screen %.6f,%.6f size screen %.6f,%.6f\n",
+            (right + 20) / w, (middle - 0.5 * length) / h, 18 / w, length / h);
+  }
+}
+
+/* The lower left corner of a frame's field; frames are read as words are. */
+static void Corner(const PlotPage *page, PetscInt frame, int *left, int *bottom)
+{
+  const int row = (int)frame / page->columns, column = (int)frame % page->columns;
+  *left = page->left + column * page->step_x;
+  *bottom = page->bottom + (page->rows - 1 - row) * page->step_y;
+}
+
+/* 1, 2 or 5 times a power of ten: the smallest that leaves so many pixels between ticks of a range that takes `all` pixels. */
+static double TickStep(PetscReal range, int all, int pixels)
+{
+  const double least = (double)range * pixels / all, power = pow(10, floor(log10(least))), share = least / power;
+  return power * (share <= 1 ? 1 : share <= 2 ? 2 : share <= 5 ? 5 : 10);
+}
+
+/* Names of the axes where they are nobody else's: at the left, and where no field lies below. */
+static void WriteAxes(FILE *out, const PlotScene *scene, const PlotPage *page, PetscInt frame)
+{
+  const PetscBool left = frame % page->columns == 0, last = frame + page->columns >= scene->n_frames;
+  if (scene->dim == 3) {
+    fputs("unset border\nunset tics\nset cbtics\n", out);
+    return;
+  }
+  fprintf(out,
+          "set border 15 lw 1 lc rgb '#444444'\nset tics out nomirror scale 0.6 textcolor rgb '#000000'\nset xlabel "
+          "'%s' offset 0,0.4\nset "
+          "ylabel '%s'\nset format x '%s'\nset format y '%s'\n",
+          last ? "x [m]" : "", left ? "y [m]" : "", last ? "%g" : "", left ? "%g" : "");
+  if (scene->n_frames > 1)
+    fprintf(out, "set xtics %.6g\nset ytics %.6g\n", TickStep(page->max[0] - page->min[0], page->w, 45),
+            TickStep(page->max[1] - page->min[1], page->h, 30));
+  else if (page->h < 160)
+    fprintf(out, "set ytics %.3g\n",
+            pow(10, floor(log10((double)(page->max[1] - page->min[1])))) * (page->h < 80 ? 1 : 0.5));
+}
+
+static void WriteField(FILE *out, const PlotScene *scene, const PlotPage *page, PetscInt frame)
+{
+  const double w = page->width, h = page->height;
+  int left, bottom;
+  Corner(page, frame, &left, &bottom);
+  fprintf(
+    out,
+    "set lmargin at screen %.9f\nset rmargin at screen %.9f\nset bmargin at screen %.9f\nset tmargin at screen %.9f\n",
+    left / w, (left + page->w) / w, bottom / h, (bottom + page->h) / h);
+  fprintf(out, "set xrange [%.15g:%.15g]\nset yrange [%.15g:%.15g]\nset title ", (double)page->min[0],
+          (double)page->max[0], (double)page->min[1], (double)page->max[1]);
+  gnuplot_quote(out, scene->frames[frame].title);
+  fprintf(out, " offset 0,%g\nunset key\n", scene->n_frames > 1 ? -0.5 : 0.);
+  WriteAxes(out, scene, page, frame);
+}
+
+static void WriteEdges(FILE *out, const PlotFrame *f)
+{
+  fputs("$grid << EOD\n", out);
+  for (PetscInt i = 0; i < f->n_edges; ++i) {
+    const PetscReal *e = f->edges + 4 * i;
+    fprintf(out, "%.7g %.7g\n%.7g %.7g\n\n", (double)e[0], (double)e[1], (double)e[2], (double)e[3]);
+  }
+  fputs("EOD\n", out);
+}
+
+/* The image is made to lie on the pixels of the field; the invisible point brings the colour bar. */
+static void WritePlot(FILE *out, const PlotFrame *f, const PlotPage *page, const unsigned char *rgba)
+{
+  const double dx = (double)(page->max[0] - page->min[0]) / page->w,
+               dy = (double)(page->max[1] - page->min[1]) / page->h;
+  if (f->n_edges) WriteEdges(out, f);
+  fputs("plot ", out);
+  if (f->n_edges) fputs("$grid with lines lw 0.7 lc rgb '#b8b8b8', ", out);
+  fprintf(
+    out,
+    "'-' binary array=(%d,%d) origin=(%.15g,%.15g) dx=%.15g dy=%.15g format='%%uchar' using 1:2:3:4 with rgbalpha, ",
+    page->w, page->h, (double)page->min[0] + 0.5 * dx, (double)page->min[1] + 0.5 * dy, dx, dy);
+  fputs("'+' using (NaN):(NaN):(0) with points palette\n", out);
+  fwrite(rgba, 4, (size_t)page->w * (size_t)page->h, out);
+  fputc('\n', out);
+}
+
+static PetscErrorCode MakeImage(const PlotScene *scene, const PlotFrame *f, const PlotPage *page, unsigned char *rgba)
+{
+  const PetscReal span = scene->high - scene->low;
+  PetscReal *colour;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(f->n, &colour));
+  for (PetscInt i = 0; i < f->n; ++i) colour[i] = (f->value[i] - scene->low) / span;
+  const RasterScene raster = {.n = f->n,
+                              .x = f->x,
+                              .radius = f->radius,
+                              .value = colour,
+                              .shaded = scene->dim == 3,
+                              .gap = scene->gap,
+                              .min = {page->min[0], page->min[1]},
+                              .max = {page->max[0], page->max[1]},
+                              .width = page->w,
+                              .height = page->h};
+  PetscCall(RasterDraw(&raster, rgba));
+  PetscCall(PetscFree(colour));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode PlotDraw(PlotScene *scene, int width, int height, const char *png, Diag *diag, PetscBool *done)
+{
+  GnuplotScript script;
+  PlotPage page;
+  unsigned char *rgba;
+
+  PetscFunctionBeginUser;
+  plot_lay_out(scene, width, height, &page);
+  PetscCall(PetscMalloc1((size_t)page.w * (size_t)page.h * 4, &rgba));
+  PetscCall(GnuplotBegin(&script, png, page.width, page.height));
+  WriteColourBar(script.out, scene, &page);
+  if (scene->dim == 3) plot_draw_box(script.out, scene);
+  if (scene->n_frames > 1) fputs("set multiplot\n", script.out);
+  for (PetscInt k = 0; k < scene->n_frames; ++k) {
+    PetscCall(MakeImage(scene, &scene->frames[k], &page, rgba));
+    if (k == 1) fputs("unset colorbox\n", script.out); /* one serves all */
+    WriteField(script.out, scene, &page, k);
+    WritePlot(script.out, &scene->frames[k], &page, rgba);
+  }
+  if (scene->n_frames > 1) fputs("unset multiplot\n", script.out);
+  PetscCall(PetscFree(rgba));
+  PetscCall(GnuplotEnd(&script, png, diag, done));
+  PetscFunctionReturn(0);
+}

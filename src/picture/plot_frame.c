@@ -1,0 +1,141 @@
+/* The states of a picture: from their files to balls on the page. */
+#include <math.h>
+#include <string.h>
+#include "picture/plot_scene.h"
+#include "picture/plot_spacing.h"
+
+static PetscBool has_place(const PetscReal *x) { return fabs(x[0]) < 1e30 && fabs(x[1]) < 1e30 && fabs(x[2]) < 1e30; }
+
+/* Copy the points that have a place; a run that broke may hold others. */
+static void TakePoints(PlotScene *scene, PlotFrame *f, PetscInt n, const PetscReal *x, const PlotScalar *scalar,
+                       PetscInt components, const PetscReal *data)
+{
+  PetscBool first = PETSC_TRUE;
+  for (PetscInt k = 0; k < scene->n_frames; ++k)
+    if (scene->frames[k].n > 0) first = PETSC_FALSE;
+  for (PetscInt i = 0; i < n; ++i) {
+    const PetscReal *p = x + 3 * i;
+    if (!has_place(p)) continue;
+    for (int d = 0; d < 3; ++d) {
+      scene->box_min[d] = first ? p[d] : PetscMin(scene->box_min[d], p[d]);
+      scene->box_max[d] = first ? p[d] : PetscMax(scene->box_max[d], p[d]);
+    }
+    first = PETSC_FALSE;
+    memcpy(f->x + 3 * f->n, p, 3 * sizeof *p);
+    f->value[f->n++] = plot_scalar_value(scalar, components, data + (size_t)i * (size_t)components);
+  }
+}
+
+PetscErrorCode PlotFrameRead(VtkFile *file, const VtkFieldInfo *field, const PlotScalar *scalar, PlotScene *scene,
+                             char reason[256])
+{
+  const PetscInt n = VtkReadPoints(file);
+  PlotFrame *f = &scene->frames[scene->n_frames];
+  PetscReal *x, *data;
+
+  PetscFunctionBeginUser;
+  if (VtkReadCoordinates(file, &x, reason)) PetscFunctionReturn(0);
+  if (VtkReadField(file, field, &data, reason) == 0) {
+    PetscCall(PetscMalloc3(3 * (size_t)n, &f->x, n, &f->value, n, &f->radius));
+    TakePoints(scene, f, n, x, scalar, field->components, data);
+    ++scene->n_frames;
+    PetscCall(PetscFree(data));
+  }
+  PetscCall(PetscFree(x));
+  PetscFunctionReturn(0);
+}
+
+/* Twice the radius that half of the points do not exceed. */
+static PetscErrorCode TypicalDistance(const PlotFrame *f, PetscReal *distance)
+{
+  PetscReal *sorted;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(f->n, &sorted));
+  PetscCall(PetscArraycpy(sorted, f->radius, f->n));
+  PetscCall(PetscSortReal(f->n, sorted));
+  *distance = f->n ? 2 * sorted[f->n / 2] : 0;
+  PetscCall(PetscFree(sorted));
+  PetscFunctionReturn(0);
+}
+
+/* A body is as large as its balls. */
+PetscErrorCode PlotFramesShape(PlotScene *scene)
+{
+  const PetscReal wide = PetscMax(scene->box_max[0] - scene->box_min[0], scene->box_max[1] - scene->box_min[1]);
+  PetscReal largest = 0, shown[3];
+
+  PetscFunctionBeginUser;
+  scene->dim = scene->box_max[2] - scene->box_min[2] > 1e-9 * wide ? 3 : 2;
+  for (PetscInt k = 0; k < scene->n_frames; ++k) {
+    PlotFrame *f = &scene->frames[k];
+    PetscCall(PlotSpacing(scene->dim, f->n, f->x, f->radius));
+    if (k == 0) PetscCall(TypicalDistance(f, &scene->gap));
+    for (PetscInt i = 0; i < f->n; ++i) {
+      largest = PetscMax(largest, f->radius[i]);
+      plot_project(scene, f->x + 3 * i, shown);
+      memcpy(f->x + 3 * i, shown, sizeof shown);
+    }
+  }
+  for (int d = 0; d < scene->dim; ++d) scene->box_min[d] -= 0.9 * largest, scene->box_max[d] += 0.9 * largest;
+  PetscFunctionReturn(0);
+}
+
+/* Lines between a cell's corners in the order of VTK; n pairs. */
+static PetscInt CellLines(int vtk_type, const int **pairs)
+{
+  static const int polygon[] = {0, 1, 1, 2, 2, 3, 3, 0}, triangle[] = {0, 1, 1, 2, 2, 0};
+  *pairs = vtk_type == 9 ? polygon : triangle;
+  return vtk_type == 9 ? 4 : vtk_type == 5 ? 3 : 0;
+}
+
+/* Lines of cells in the plane, all whose ends have a place. */
+static PetscErrorCode TakeLines(const VtkCells *cells, const PetscReal *x, PlotFrame *f)
+{
+  const int *pairs;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(16 * (size_t)cells->n, &f->edges));
+  for (PetscInt c = 0; c < cells->n; ++c)
+    for (PetscInt k = 0, lines = CellLines(cells->type[c], &pairs); k < lines; ++k) {
+      const PetscInt *node = cells->node + cells->start[c];
+      const PetscReal *a = x + 3 * node[pairs[2 * k]], *b = x + 3 * node[pairs[2 * k + 1]];
+      PetscReal *edge = f->edges + 4 * (size_t)f->n_edges;
+      if (!has_place(a) || !has_place(b)) continue;
+      edge[0] = a[0], edge[1] = a[1], edge[2] = b[0], edge[3] = b[1];
+      ++f->n_edges;
+    }
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode PlotFrameGrid(VtkFile *file, PlotScene *scene, PlotFrame *f, char reason[256])
+{
+  const PetscInt points = VtkReadPoints(file);
+  VtkCells cells;
+  PetscReal *x;
+
+  PetscFunctionBeginUser;
+  if (VtkReadCoordinates(file, &x, reason)) PetscFunctionReturn(0);
+  if (VtkReadTopology(file, &cells, reason) == 0) {
+    for (PetscInt i = 0; i < points; ++i)
+      for (int d = 0; d < scene->dim && has_place(x + 3 * i); ++d) {
+        scene->box_min[d] = PetscMin(scene->box_min[d], x[3 * i + d]);
+        scene->box_max[d] = PetscMax(scene->box_max[d], x[3 * i + d]);
+      }
+    if (scene->dim == 2) PetscCall(TakeLines(&cells, x, f));
+    PetscCall(VtkCellsFree(&cells));
+  }
+  PetscCall(PetscFree(x));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode PlotFramesFree(PlotScene *scene)
+{
+  PetscFunctionBeginUser;
+  for (PetscInt k = 0; k < scene->n_frames; ++k) {
+    PlotFrame *f = &scene->frames[k];
+    PetscCall(PetscFree3(f->x, f->value, f->radius));
+    PetscCall(PetscFree(f->edges));
+  }
+  PetscFunctionReturn(0);
+}

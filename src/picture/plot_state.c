@@ -1,0 +1,264 @@
+#include <ctype.h>
+#include <errno.h>
+#include <math.h>
+#include <string.h>
+#include <sys/stat.h>
+#include "picture/figure.h"
+#include "picture/plot.h"
+#include "picture/plot_scene.h"
+#include "output/directory/run_dir_files.h"
+#include "output/vtk/vtk_series.h"
+
+PetscBool plot_folder(const char *run, Diag *diag)
+{
+  char folder[FILE_PATH];
+  snprintf(folder, sizeof folder, "%s/pictures", run);
+  struct stat info;
+  const int error = file_make_folders(folder);
+  const PetscBool link = !error && !lstat(folder, &info) && S_ISLNK(info.st_mode);
+  if (error) DiagError(diag, NULL, "cannot create the folder '%s': %s", folder, strerror(error));
+  if (link) DiagError(diag, NULL, "'%s' is a link: the pictures would go elsewhere", folder);
+  return !(error || link);
+}
+
+void plot_file_name(char *name)
+{
+  for (char *c = name; *c; ++c)
+    if (!isalnum((unsigned char)*c) && *c != '-' && *c != '.') *c = '_';
+}
+
+/* The state nearest to a time, with a word if it is not near. */
+static VtkState Nearest(const VtkSeries *series, PetscReal time, Diag *diag)
+{
+  PetscInt best = 0;
+  for (PetscInt i = 1; i < series->n; ++i)
+    if (fabs(series->states[i].time - time) < fabs(series->states[best].time - time)) best = i;
+  const PetscReal found = series->states[best].time;
+  if (fabs(found - time) > 1e-9 * PetscMax(fabs(time), fabs(found)))
+    DiagWarning(diag, NULL, "there is no state at %.9g s: the nearest is drawn, at %.9g s", (double)time,
+                (double)found);
+  return series->states[best];
+}
+
+/* The states to draw: the last, all, or the nearest to the times asked for. */
+static PetscErrorCode FindStates(const PlotOptions *options, Diag *diag, PetscInt *n, VtkState *states)
+{
+  VtkSeries series;
+  char reason[256];
+
+  PetscFunctionBeginUser;
+  *n = 0;
+  if (VtkSeriesRead(options->run, "points", &series, reason)) {
+    DiagError(diag, NULL, "cannot read '%s/points.hdf.series': %s", options->run, reason);
+    PetscFunctionReturn(0);
+  }
+  if (series.n == 0) DiagError(diag, NULL, "there is no state of a run in '%s' (no points.hdf.series)", options->run);
+  else if (options->all_times && series.n > PLOT_MAX_STATES) {
+    DiagError(diag, NULL, "the run has %d states, a picture holds %d at most", (int)series.n, PLOT_MAX_STATES);
+    DiagHint(diag, "name some: --time 0,%g,%g", (double)series.states[series.n / 2].time,
+             (double)series.states[series.n - 1].time);
+  } else if (options->all_times)
+    for (; *n < series.n; ++*n) states[*n] = series.states[*n];
+  else if (options->even) {
+    const PetscInt most = series.n < 3 ? 0 : PetscMin(options->even, series.n);
+    for (; *n < most; ++*n) states[*n] = series.states[*n * (series.n - 1) / (most - 1)];
+  } else
+    for (; *n < options->n_times; ++*n) states[*n] = Nearest(&series, options->times[*n], diag);
+  if (series.n > 0 && !options->all_times && !options->even && *n == 0) states[(*n)++] = series.states[series.n - 1];
+  PetscCall(VtkSeriesFree(&series));
+  PetscFunctionReturn(0);
+}
+
+/* Complain about a field that is not there, with the nearest name and all others. */
+static PetscErrorCode NoSuchField(PetscInt n, const VtkFieldInfo *fields, const char *name, Diag *diag)
+{
+  const char **names, *nearest;
+  char list[512] = "";
+  size_t used = 0;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(n + 1, &names));
+  for (PetscInt i = 0; i < n; ++i) {
+    names[i] = fields[i].name;
+    if (used < sizeof list)
+      used += (size_t)snprintf(list + used, sizeof list - used, "%s%s", i ? ", " : "", fields[i].name);
+  }
+  nearest = DiagNearest(name, names);
+  DiagError(diag, NULL, "the run has no field '%s'", name);
+  if (nearest) DiagHint(diag, "did you mean '%s'? It has: %s", nearest, list);
+  else DiagHint(diag, "it has: %s", list);
+  PetscCall(PetscFree(names));
+  PetscFunctionReturn(0);
+}
+
+/* The field asked for; without one the displacement, else the first that is more than a number of the
+ * point. */
+static PetscErrorCode FindField(const VtkFile *file, const char *name, Diag *diag, const VtkFieldInfo **field)
+{
+  const VtkFieldInfo *fields;
+  const PetscInt n = VtkReadFields(file, &fields);
+  const char *wanted = name ? name : "displacement";
+
+  PetscFunctionBeginUser;
+  *field = NULL;
+  for (PetscInt i = 0; i < n && !*field; ++i)
+    if (!strcmp(fields[i].name, wanted)) *field = &fields[i];
+  for (PetscInt i = 0; i < n && !*field && !name; ++i)
+    if (strcmp(fields[i].name, "id")) *field = &fields[i];
+  if (*field) PetscFunctionReturn(0);
+  if (name) PetscCall(NoSuchField(n, fields, name, diag));
+  else DiagError(diag, NULL, "the run has no field to draw");
+  PetscFunctionReturn(0);
+}
+
+/* Colours from the smallest to the largest value, or as asked for; in a unit that suits. */
+static void ChooseColours(PlotScene *scene, const PlotOptions *options, const char *unit, const char *what)
+{
+  char prefixed[64];
+  scene->low = PETSC_MAX_REAL, scene->high = -PETSC_MAX_REAL;
+  for (PetscInt k = 0; k < scene->n_frames; ++k)
+    for (PetscInt i = 0; i < scene->frames[k].n; ++i) {
+      const PetscReal value = scene->frames[k].value[i];
+      if (fabs(value) < 1e300) scene->low = PetscMin(scene->low, value), scene->high = PetscMax(scene->high, value);
+    }
+  if (scene->low > scene->high) scene->low = 0, scene->high = 1;
+  if (options->has_range) scene->low = options->range[0], scene->high = options->range[1];
+  const PetscReal factor = figure_unit(unit, PetscMax(fabs(scene->low), fabs(scene->high)), prefixed);
+  for (PetscInt k = 0; k < scene->n_frames; ++k)
+    for (PetscInt i = 0; i < scene->frames[k].n; ++i) scene->frames[k].value[i] *= factor;
+  scene->low *= factor, scene->high *= factor;
+  const PetscReal middle = 0.5 * (scene->low + scene->high), least = middle != 0 ? 1e-6 * fabs(middle) : 1e-12;
+  if (scene->high - scene->low < least) scene->low = middle - least, scene->high = middle + least;
+  if (prefixed[0]) snprintf(scene->label, sizeof scene->label, "%.60s [%s]", what, prefixed);
+  else snprintf(scene->label, sizeof scene->label, "%.60s", what);
+}
+
+static void CannotRead(Diag *diag, const char *path, const char *reason)
+{
+  DiagError(diag, NULL, "cannot read '%s': %s", path, reason);
+  DiagHint(diag, "--time chooses other states; the same run with --force writes all of them anew");
+}
+
+/* grid_000012.hdf beside points_000012.hdf; without one, the grid is left out with a word. */
+static PetscErrorCode AddGrid(PlotScene *scene, PlotFrame *frame, const char *run, const VtkState *state, Diag *diag)
+{
+  char path[FILE_PATH + VTK_SERIES_NAME], name[VTK_SERIES_NAME + 8], reason[256];
+  const char *number = strchr(state->file, '_');
+  VtkFile *file;
+
+  PetscFunctionBeginUser;
+  snprintf(name, sizeof name, "grid%s", number ? number : ".hdf");
+  if (!file_exists(run, name)) {
+    DiagWarning(diag, NULL, "the grid is not drawn: there is no '%s/%s'", run, name);
+    PetscFunctionReturn(0);
+  }
+  PetscCall(PetscSNPrintf(path, sizeof path, "%s/%s", run, name));
+  if (VtkReadOpen(path, &file, reason) == 0) {
+    PetscCall(PlotFrameGrid(file, scene, frame, reason));
+    PetscCall(VtkReadClose(&file));
+  }
+  if (reason[0]) CannotRead(diag, path, reason);
+  PetscFunctionReturn(0);
+}
+
+/* What is drawn: a field of the states, and its name, unit and component. */
+typedef struct {
+  VtkFieldInfo field;
+  PlotScalar scalar;
+  char words[192]; /* "velocity magnitude" */
+} PlotSubject;
+
+static void name_subject(PlotSubject *s)
+{
+  const PlotScalar *scalar = &s->scalar;
+  if (scalar->reduction == PLOT_MISES || scalar->reduction == PLOT_MEAN)
+    snprintf(s->words, sizeof s->words, "%s %s", scalar->name, s->field.name);
+  else snprintf(s->words, sizeof s->words, "%s%s%s", s->field.name, scalar->name[0] ? " " : "", scalar->name);
+  for (char *c = s->words; *c; ++c)
+    if (*c == '_') *c = ' ';
+}
+
+/* The next frame of the scene. A mistake leaves the scene as it is. */
+static PetscErrorCode AddFrame(const PlotOptions *options, const VtkState *state, PlotSubject *subject,
+                               PlotScene *scene, Diag *diag)
+{
+  char path[FILE_PATH + VTK_SERIES_NAME], reason[256];
+  const VtkFieldInfo *field;
+  VtkFile *file;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscSNPrintf(path, sizeof path, "%s/%s", options->run, state->file));
+  if (VtkReadOpen(path, &file, reason)) {
+    CannotRead(diag, path, reason);
+    PetscFunctionReturn(0);
+  }
+  PetscCall(FindField(file, options->field, diag, &field));
+  if (field && plot_scalar_choose(field->name, field->components, options->component, diag, &subject->scalar)) {
+    subject->field = *field;
+    name_subject(subject);
+    PetscCall(PlotFrameRead(file, field, &subject->scalar, scene, reason));
+    if (reason[0]) CannotRead(diag, path, reason);
+    else if (scene->frames[scene->n_frames - 1].n == 0)
+      DiagError(diag, NULL, "the state at %.9g s has no points", (double)state->time);
+  }
+  PetscCall(VtkReadClose(&file));
+  PetscFunctionReturn(0);
+}
+
+/* Everything of the picture but its place on the page. */
+static PetscErrorCode FillScene(const PlotOptions *options, PetscInt n, const VtkState *states, PlotSubject *subject,
+                                Diag *diag, PlotScene *scene)
+{
+  PetscFunctionBeginUser;
+  scene->up = options->up;
+  scene->columns = options->columns;
+  for (PetscInt k = 0; k < n && !DiagErrors(diag); ++k) {
+    PetscCall(AddFrame(options, &states[k], subject, scene, diag));
+    char *title = scene->frames[k].title;
+    if (n == 1) snprintf(title, 256, "%s at t = %.6g s", subject->words, (double)states[k].time);
+    else snprintf(title, 256, "t = %.6g s", (double)states[k].time);
+  }
+  if (DiagErrors(diag)) PetscFunctionReturn(0);
+  ChooseColours(scene, options, subject->field.unit, subject->words);
+  PetscCall(PlotFramesShape(scene));
+  for (PetscInt k = 0; k < n && options->grid; ++k)
+    PetscCall(AddGrid(scene, &scene->frames[k], options->run, &states[k], diag));
+  PetscFunctionReturn(0);
+}
+
+/* state_displacement_magnitude_000012.png; states_displacement_magnitude.png for several. */
+static void PictureName(const PlotOptions *options, PetscInt n, const VtkState *state, const PlotSubject *subject,
+                        char *path)
+{
+  char name[256];
+  const PlotScalar *scalar = &subject->scalar;
+  const char *number = n == 1 ? strchr(state->file, '_') : NULL;
+  const int digits = number ? (int)strcspn(number, ".") : 0;
+  snprintf(name, sizeof name, "state%s_%.120s%s%.30s%.*s.png", n == 1 ? "" : "s", subject->field.name,
+           scalar->name[0] ? "_" : "", scalar->name, PetscMin(digits, 13), number ? number : "");
+  plot_file_name(name);
+  if (options->out) snprintf(path, PETSC_MAX_PATH_LEN, "%s", options->out);
+  else snprintf(path, PETSC_MAX_PATH_LEN, "%s/pictures/%s", options->run, name);
+}
+
+PetscErrorCode PlotState(const PlotOptions *options, Diag *diag, char picture[PETSC_MAX_PATH_LEN])
+{
+  VtkState states[PLOT_MAX_STATES];
+  PlotSubject subject;
+  PlotScene scene = {0};
+  PetscBool done = PETSC_FALSE;
+  PetscInt n;
+
+  PetscFunctionBeginUser;
+  picture[0] = 0;
+  PetscCall(FindStates(options, diag, &n, states));
+  if (n == 0) PetscFunctionReturn(0);
+  PetscCall(FillScene(options, n, states, &subject, diag, &scene));
+  if (!DiagErrors(diag) && (options->out || plot_folder(options->run, diag))) {
+    PictureName(options, n, states, &subject, picture);
+    PetscCall(PlotDraw(&scene, options->width, options->height, picture, diag, &done));
+  }
+  if (!done) picture[0] = 0;
+  PetscCall(PlotFramesFree(&scene));
+  PetscFunctionReturn(0);
+}

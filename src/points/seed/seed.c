@@ -1,0 +1,307 @@
+/* Seeding: the bodies become points, at the Gauss points of their cells. */
+#include "points/fields.h"
+#include "points/seed/seed.h"
+
+void seed_path(PetscInt body, const char *key, size_t size, char *path)
+{
+  snprintf(path, size, "bodies[%d]%s%s", (int)body, *key ? "." : "", key);
+}
+
+PetscBool seed_tells(const Grid *grid)
+{
+  PetscMPIInt rank;
+  MPI_Comm_rank(grid->comm, &rank);
+  return (PetscBool)(rank == 0);
+}
+
+static PetscReal circle(const Case *c, PetscReal radius)
+{
+  return c->kinematics == KINEMATICS_AXISYMMETRIC ? 2 * PETSC_PI * radius : 1;
+}
+
+/* Position of a reference position, and det of dx/dxi. */
+static PetscReal map_point(CellType type, const PetscReal *x, const PetscReal *xi, PetscReal *position)
+{
+  PetscReal N[CELL_MAX_NODES], dN[CELL_MAX_NODES * 3];
+  const PetscInt dim = cells[type].dim;
+  const PetscReal det = cell_gradients(type, x, xi, N, dN);
+  for (PetscInt d = 0; d < dim; ++d) {
+    position[d] = 0;
+    for (PetscInt i = 0; i < cells[type].nodes; ++i) position[d] += N[i] * x[i * dim + d];
+  }
+  return det;
+}
+
+/* r det J is bilinear in a triangle and of second order in a quadrilateral: this rule is exact. */
+static PetscReal ring_volume(CellType type, const PetscReal *x)
+{
+  const PetscInt n = type == CELL_TRIANGLE ? 3 : 4;
+  PetscReal xi[8], weight[4], position[2], sum = 0;
+  (void)cell_quadrature(type, n, xi, weight);
+  for (PetscInt q = 0; q < n; ++q) {
+    const PetscReal det = map_point(type, x, xi + 2 * q, position);
+    sum += 2 * PETSC_PI * position[0] * det * weight[q];
+  }
+  return sum;
+}
+
+PetscReal seed_cell_volume(const Seeding *s, PetscInt cell)
+{
+  PetscReal x[CELL_MAX_NODES * 3];
+  grid_cell_x(s->source, cell, x);
+  if (s->c->kinematics == KINEMATICS_AXISYMMETRIC) return ring_volume(s->source->type, x);
+  return cell_volume(s->source->type, x);
+}
+
+static PetscErrorCode FindMaterial(Seeding *s)
+{
+  char path[128];
+  PetscFunctionBeginUser;
+  for (s->material = 0; s->material < s->c->n_materials; ++s->material) {
+    if (!strcmp(s->c->materials[s->material].name, s->body->material)) PetscFunctionReturn(0);
+  }
+  s->material = -1;
+  seed_path(s->b, "material", sizeof path, path);
+  if (seed_tells(s->grid)) DiagError(s->diag, path, "there is no material '%s'", s->body->material);
+  PetscFunctionReturn(0);
+}
+
+static PetscBool choose_weights(const Case *c, const BodySpec *body)
+{
+  if (body->weights == WEIGHTS_AUTO) return (PetscBool)!strcmp(c->method, "mpm");
+  return (PetscBool)(body->weights == WEIGHTS_EQUAL);
+}
+
+/* PETSC_FALSE, and a message that lists the rules, if this number of points is none. */
+static PetscBool choose_rule(Seeding *s)
+{
+  const CellType type = s->source->type;
+  const PetscInt *rules = cell_rules(type);
+  char path[128], list[128] = "";
+  s->n_rule = s->body->points_per_cell;
+  for (PetscInt i = 0; rules[i]; ++i) {
+    if (rules[i] == s->n_rule && s->n_rule <= SEED_MAX_RULE) return cell_quadrature(type, s->n_rule, s->xi, s->weight);
+    const size_t used = strlen(list);
+    snprintf(list + used, sizeof list - used, "%s%d", i ? ", " : "", (int)rules[i]);
+  }
+  seed_path(s->b, "points_per_cell", sizeof path, path);
+  if (seed_tells(s->grid)) {
+    DiagError(s->diag, path, "no rule places %d points in a %s; there are rules with %s points", (int)s->n_rule,
+              cells[type].name, list);
+  }
+  return PETSC_FALSE;
+}
+
+/* The region's set; NULL and a message if the body names one that does not exist. */
+static PetscErrorCode FindRegion(const Seeding *s, const GridSet **set)
+{
+  PetscInt n_regions = 0;
+  char path[128];
+  PetscFunctionBeginUser;
+  *set = GridFindSet(s->source, s->body->region);
+  if (*set) PetscCallMPI(MPI_Allreduce(&(*set)->n_cells, &n_regions, 1, MPIU_INT, MPI_SUM, s->grid->comm));
+  if (n_regions) PetscFunctionReturn(0);
+  seed_path(s->b, "region", sizeof path, path);
+  if (seed_tells(s->grid)) {
+    const char **names;
+    PetscCall(GridSetNames(s->source, &names));
+    if (*set) DiagError(s->diag, path, "'%s' is a boundary, not a region: it has no cells", s->body->region);
+    else DiagError(s->diag, path, "the mesh has no region '%s'", s->body->region);
+    if (!*set) DiagHintNames(s->diag, s->body->region, names);
+    PetscCall(PetscFree(names));
+  }
+  *set = NULL;
+  PetscFunctionReturn(0);
+}
+
+static PetscBool centre_in_shape(const Seeding *s, PetscInt cell)
+{
+  const PetscInt dim = s->source->dim, nn = s->source->nodes_per_cell;
+  PetscReal x[CELL_MAX_NODES * 3], centre[3] = {0, 0, 0};
+  if (!s->body->has_shape) return PETSC_TRUE;
+  grid_cell_x(s->source, cell, x);
+  for (PetscInt i = 0; i < nn; ++i)
+    for (PetscInt d = 0; d < dim; ++d) centre[d] += x[i * dim + d] / (PetscReal)nn;
+  return shape_contains(&s->body->shape, dim, centre, 0);
+}
+
+/* The cells in the region (if one is named) and in the shape (if there is one). *found is false after a
+ * mistake. */
+static PetscErrorCode ChooseCells(Seeding *s, PetscBool *found)
+{
+  const GridSet *set = NULL;
+  PetscFunctionBeginUser;
+  *found = PETSC_FALSE;
+  if (s->body->region) {
+    PetscCall(FindRegion(s, &set));
+    if (!set) PetscFunctionReturn(0);
+  }
+  const PetscInt n = set ? set->n_cells : s->source->n_cells;
+  PetscCall(PetscMalloc1(n, &s->cells));
+  for (PetscInt k = 0; k < n; ++k) {
+    const PetscInt cell = set ? set->cells[k] : k;
+    if (centre_in_shape(s, cell)) s->cells[s->n_cells++] = cell;
+  }
+  *found = PETSC_TRUE;
+  PetscFunctionReturn(0);
+}
+
+void body_velocity(const BodySpec *body, PetscInt dim, const PetscReal *x, PetscReal *v)
+{
+  PetscReal r[3] = {0, 0, 0}, full[3];
+  const PetscReal *w = body->spin;
+  for (PetscInt d = 0; d < dim; ++d) r[d] = x[d] - body->spin_centre[d];
+  full[0] = (dim == 3 ? w[1] * r[2] : 0) - w[2] * r[1];
+  full[1] = w[2] * r[0] - (dim == 3 ? w[0] * r[2] : 0);
+  full[2] = w[0] * r[1] - w[1] * r[0];
+  for (PetscInt d = 0; d < dim; ++d) v[d] = body->velocity[d] + full[d];
+}
+
+/* The q-th point of a cell with nodes at x. */
+static PetscErrorCode SeedPoint(const Seeding *s, Points *points, PetscInt cell, const PetscReal *x, PetscReal share,
+                                PetscInt q, const PointSeed *seed)
+{
+  const PetscInt dim = points->dim;
+  const PetscReal *xi = s->xi + q * dim;
+  PetscInt p;
+  PetscFunctionBeginUser;
+  PetscCall(PointsAppend(points, &p));
+  PetscReal *position = point_real(points, POINT_X, p);
+  const PetscReal det = map_point(s->source->type, x, xi, position);
+  const PetscReal volume = s->equal ? share : s->weight[q] * det * circle(s->c, position[0]);
+  *point_real(points, POINT_VOLUME, p) = volume;
+  *point_real(points, POINT_MASS, p) = seed->density * volume;
+  body_velocity(s->body, dim, position, point_real(points, POINT_V, p));
+  if (seed->n_state) PetscCall(PetscArraycpy(point_real(points, POINT_STATE, p), seed->initial, seed->n_state));
+  points->id[p] = s->first_id + (PetscInt64)s->source->global_cell[cell] * s->n_rule + q;
+  points->body[p] = s->b;
+  points->material[p] = s->material;
+  if (s->source == s->grid) {
+    points->cell[p] = cell;
+    PetscCall(PetscArraycpy(point_real(points, POINT_XI, p), xi, dim));
+  }
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode SeedCells(const Seeding *s, Points *points, const PointSeed *seed)
+{
+  PetscReal x[CELL_MAX_NODES * 3];
+  PetscFunctionBeginUser;
+  PetscCheck(seed->n_state <= points->components[POINT_STATE], PETSC_COMM_SELF, PETSC_ERR_ARG_SIZ,
+             "a law stores %" PetscInt_FMT " numbers, the points have room for %" PetscInt_FMT, seed->n_state,
+             points->components[POINT_STATE]);
+  PetscCall(PointsReserveMore(points, s->n_cells * s->n_rule));
+  for (PetscInt k = 0; k < s->n_cells; ++k) {
+    const PetscReal share = seed_cell_volume(s, s->cells[k]) / (PetscReal)s->n_rule;
+    grid_cell_x(s->source, s->cells[k], x);
+    for (PetscInt q = 0; q < s->n_rule; ++q) PetscCall(SeedPoint(s, points, s->cells[k], x, share, q, seed));
+  }
+  PetscFunctionReturn(0);
+}
+
+/* The body's own mesh: only its cells matter. It may be a .geo with the parameters of the grid's. NULL
+ * after a mistake. */
+static PetscErrorCode CreateOwnMesh(const Seeding *s, Grid **own)
+{
+  GridSpec spec = s->c->grid;
+  char path[128];
+  PetscFunctionBeginUser;
+  spec.kind = GRID_MESH;
+  spec.mesh = s->body->mesh;
+  seed_path(s->b, "mesh", sizeof path, path);
+  PetscCall(GridCreateMesh(s->grid->comm, &spec, s->grid->dim, path, NULL, NULL, s->diag, own));
+  PetscFunctionReturn(0);
+}
+
+/* Ids of the next body start behind the largest that this one could use. */
+static PetscErrorCode AdvanceIds(const Seeding *s, PetscInt64 *next)
+{
+  PetscInt last = -1, last_of_all;
+  PetscFunctionBeginUser;
+  for (PetscInt k = 0; k < s->source->n_cells; ++k) last = PetscMax(last, s->source->global_cell[k]);
+  PetscCallMPI(MPI_Allreduce(&last, &last_of_all, 1, MPIU_INT, MPI_MAX, s->grid->comm));
+  *next = s->first_id + ((PetscInt64)last_of_all + 1) * s->n_rule;
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode SeedSource(Seeding *s, Points *points, PetscInt *taken, const PointSeed *per_material,
+                                 PetscInt64 *next)
+{
+  PetscBool found;
+  PetscFunctionBeginUser;
+  if (!choose_rule(s)) PetscFunctionReturn(0);
+  PetscCall(ChooseCells(s, &found));
+  if (!found) PetscFunctionReturn(0);
+  PetscCall(SeedCheckVolume(s));
+  PetscCall(SeedCheckRoom(s, points, &found));
+  if (!found) {
+    PetscCall(PetscFree(s->cells));
+    PetscFunctionReturn(0);
+  }
+  if (s->source == s->grid) PetscCall(SeedClaimCells(s, taken));
+  PetscCall(SeedCells(s, points, per_material + s->material));
+  if (s->outline)
+    PetscCall(OutlineAdd(s->outline, s->source, s->n_cells, s->cells, s->b, per_material[s->material].density));
+  PetscCall(AdvanceIds(s, next));
+  PetscCall(PetscFree(s->cells));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode SeedBody(Seeding *s, Points *points, PetscInt *taken, const PointSeed *per_material,
+                               PetscInt64 *next)
+{
+  Grid *own = NULL;
+  PetscFunctionBeginUser;
+  s->equal = choose_weights(s->c, s->body);
+  s->source = s->grid;
+  PetscCall(FindMaterial(s));
+  if (s->material < 0) PetscFunctionReturn(0);
+  if (s->body->mesh) {
+    PetscCall(CreateOwnMesh(s, &own));
+    if (!own) PetscFunctionReturn(0);
+    s->source = own;
+  }
+  PetscCall(SeedSource(s, points, taken, per_material, next));
+  PetscCall(GridDestroy(&own));
+  PetscFunctionReturn(0);
+}
+
+/* Points of a body's own mesh know their place, not yet their cell nor their rank. */
+static PetscErrorCode LocateSeeds(Points *points, const Grid *grid, const Case *c, Diag *diag)
+{
+  PetscInt n_lost;
+  LostPoint *lost = NULL;
+  PetscFunctionBeginUser;
+  PetscCall(PointsRelocate(points, grid, OUTSIDE_STOP, &n_lost, &lost));
+  PetscCall(PetscFree(lost));
+  if (n_lost) PetscCall(SeedCheckLocated(points, grid, c, diag));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode PointsSeedOutlined(Points *points, const Grid *grid, const Case *c, const PointSeed *per_material,
+                                  Outline *outline, Diag *diag)
+{
+  PetscInt *taken;
+  PetscInt64 next = 0;
+  PetscBool own_mesh = PETSC_FALSE;
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(grid->n_cells, &taken));
+  for (PetscInt k = 0; k < grid->n_cells; ++k) taken[k] = -1;
+  for (PetscInt b = 0; b < c->n_bodies; ++b) {
+    Seeding s = {
+      .c = c, .grid = grid, .diag = diag, .b = b, .body = c->bodies + b, .first_id = next, .outline = outline};
+    PetscCall(SeedBody(&s, points, taken, per_material, &next));
+    if (s.body->mesh) own_mesh = PETSC_TRUE;
+  }
+  PetscCall(PetscFree(taken));
+  if (own_mesh) PetscCall(LocateSeeds(points, grid, c, diag));
+  PetscCall(PointsSort(points));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode PointsSeed(Points *points, const Grid *grid, const Case *c, const PointSeed *per_material, Diag *diag)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PointsSeedOutlined(points, grid, c, per_material, NULL, diag));
+  PetscFunctionReturn(0);
+}

@@ -1,0 +1,355 @@
+#include "base/math/tensor.h"
+#include "solve/blocks/blocks.h"
+
+/* One row of the summed matrix while it is walked: a row that only this rank assembles comes straight from the system. */
+typedef struct {
+  const System *s;
+  const BlocksHalo *halo;
+  PetscInt next; /* shared row to come */
+  PetscInt n;    /* blocks of this row */
+  PetscBool shared;
+  const PetscInt *column; /* of a shared row; else the nodes of the columns */
+  const float *values;
+} Row;
+
+static inline void row_take(Row *row, PetscInt r)
+{
+  const BlocksHalo *h = row->halo;
+  const PetscInt bs = row->s->dim * row->s->dim;
+  if (row->next < h->n_shared && h->shared_row[row->next] == r) {
+    const PetscInt first = h->start[row->next++];
+    row->n = h->start[row->next] - first;
+    row->shared = PETSC_TRUE;
+    row->column = h->column + first;
+    row->values = h->values + first * bs;
+  } else {
+    const PetscInt first = row->s->row_start[r];
+    row->n = row->s->row_start[r + 1] - first;
+    row->shared = PETSC_FALSE;
+    row->column = row->s->column + first;
+    row->values = row->s->singles + first * bs;
+  }
+}
+
+static inline PetscInt row_column(const Row *row, PetscInt k)
+{
+  return row->shared ? row->column[k] : row->s->row[row->column[k]];
+}
+
+static PetscErrorCode RowsReserve(BlockRows *rows, PetscInt n, PetscInt blocks, PetscInt size)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc3(n + 1, &rows->start, blocks, &rows->column, blocks * size + BLOCK_PADDING, &rows->block));
+  PetscCall(PetscArrayzero(rows->block + blocks * size, BLOCK_PADDING));
+  rows->start[0] = 0;
+  PetscFunctionReturn(0);
+}
+
+/* Columns in ascending order: before the diagonal, behind it, and of other ranks. */
+static PetscErrorCode BlocksPattern(Blocks *m, const System *s)
+{
+  const PetscInt size = m->dim * m->dim;
+  PetscInt n_lower = 0, n_upper = 0, n_outer = 0;
+
+  PetscFunctionBeginUser;
+  Row row = {.s = s, .halo = m->halo};
+  for (PetscInt r = 0; r < m->n; ++r) {
+    PetscInt outer = 0;
+    row_take(&row, r);
+    for (PetscInt k = 0; k < row.n; ++k) {
+      const PetscInt c = row_column(&row, k);
+      n_lower += c < r;
+      n_upper += c > r && c < m->n;
+      outer += c >= m->n;
+    }
+    n_outer += outer;
+    m->n_outer += outer > 0;
+  }
+  PetscCall(RowsReserve(&m->lower, m->n, n_lower, size));
+  PetscCall(RowsReserve(&m->upper, m->n, n_upper, size));
+  PetscCall(RowsReserve(&m->outer, m->n_outer, n_outer, size));
+  PetscCall(PetscMalloc1(m->n_outer, &m->outer_row));
+  n_lower = n_upper = n_outer = m->n_outer = 0;
+  row.next = 0;
+  for (PetscInt r = 0; r < m->n; ++r) {
+    const PetscInt before = n_outer;
+    row_take(&row, r);
+    for (PetscInt k = 0; k < row.n; ++k) {
+      const PetscInt c = row_column(&row, k);
+      if (c < r) m->lower.column[n_lower++] = c;
+      else if (c >= m->n) m->outer.column[n_outer++] = c;
+      else if (c > r) m->upper.column[n_upper++] = c;
+    }
+    m->lower.start[r + 1] = n_lower;
+    m->upper.start[r + 1] = n_upper;
+    if (n_outer == before) continue;
+    m->outer_row[m->n_outer++] = r;
+    m->outer.start[m->n_outer] = n_outer;
+  }
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode BlocksCreate(const System *s, PetscBool symmetric, Blocks **blocks)
+{
+  Blocks *m;
+
+  PetscFunctionBeginUser;
+  PetscCheck(s->dim == 2 || s->dim == 3, s->comm, PETSC_ERR_SUP, "blocks of %d x %d", (int)s->dim, (int)s->dim);
+  PetscCall(PetscNew(&m));
+  m->comm = s->comm;
+  m->dim = s->dim;
+  m->n = s->n_active;
+  m->symmetric = symmetric;
+  PetscCall(BlocksHaloCreate(s, &m->n_columns, &m->halo));
+  PetscCall(BlocksPattern(m, s));
+  PetscCall(PetscMalloc1(m->n_columns * m->dim * m->dim + BLOCK_PADDING, &m->scale));
+  *blocks = m;
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode RowsFree(BlockRows *rows)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscFree3(rows->start, rows->column, rows->block));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode BlocksDestroy(Blocks **blocks)
+{
+  Blocks *m = *blocks;
+
+  PetscFunctionBeginUser;
+  if (!m) PetscFunctionReturn(0);
+  PetscCall(RowsFree(&m->lower));
+  PetscCall(RowsFree(&m->upper));
+  PetscCall(RowsFree(&m->outer));
+  PetscCall(PetscFree(m->outer_row));
+  PetscCall(PetscFree(m->scale));
+  PetscCall(BlocksHaloDestroy(&m->halo));
+  for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(m->work); ++k) PetscCall(PetscFree(m->work[k]));
+  PetscCall(PetscFree(*blocks));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode BlocksWork(Blocks *m, int which, float **vector)
+{
+  PetscFunctionBeginUser;
+  const PetscInt n = m->n_columns * block_stride((int)m->dim);
+  if (!m->work[which]) PetscCall(PetscMalloc1(n, &m->work[which]));
+  PetscCall(PetscArrayzero(m->work[which], n));
+  *vector = m->work[which];
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode BlocksExchange(const Blocks *m, float *vector)
+{
+  float *others = vector + m->n * block_stride((int)m->dim);
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscSFBcastBegin(m->halo->columns, m->halo->vector, vector, others, MPI_REPLACE));
+  PetscCall(PetscSFBcastEnd(m->halo->columns, m->halo->vector, vector, others, MPI_REPLACE));
+  PetscFunctionReturn(0);
+}
+
+/* S = C^-1 with D = C C^T; false if D is not positive definite. */
+KERNEL PetscBool scale_symmetric(const int dim, const PetscReal *D, float *S)
+{
+  PetscReal C[9], inverse[9], pivot[3];
+  for (int i = 0; i < dim; ++i)
+    for (int j = 0; j <= i; ++j) {
+      PetscReal sum = D[i * dim + j];
+      for (int k = 0; k < j; ++k) sum -= C[i * dim + k] * C[j * dim + k];
+      if (i == j && !(sum > 0)) return PETSC_FALSE;
+      if (i == j) pivot[i] = 1 / PetscSqrtReal(sum);
+      else C[i * dim + j] = sum * pivot[j];
+    }
+  for (int j = 0; j < dim; ++j)
+    for (int i = 0; i < dim; ++i) {
+      PetscReal sum = i == j;
+      for (int k = j; k < i; ++k) sum -= C[i * dim + k] * inverse[k * dim + j];
+      inverse[i * dim + j] = i < j ? 0 : sum * pivot[i];
+    }
+  for (int i = 0; i < dim * dim; ++i) S[i] = (float)inverse[i];
+  return PETSC_TRUE;
+}
+
+/* S = D^-1. */
+KERNEL PetscBool scale_unsymmetric(const int dim, const PetscReal *D, float *S)
+{
+  PetscReal full[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1}, inverse[9];
+  for (int i = 0; i < dim; ++i)
+    for (int j = 0; j < dim; ++j) full[3 * i + j] = D[i * dim + j];
+  const PetscReal det = tensor_inverse(full, inverse);
+  if (det == 0 || PetscIsInfOrNanReal(det)) return PETSC_FALSE;
+  for (int i = 0; i < dim; ++i)
+    for (int j = 0; j < dim; ++j) S[i * dim + j] = (float)inverse[3 * i + j];
+  return PETSC_TRUE;
+}
+
+/* Rows of prescribed dofs are empty: they get the diagonal 1. */
+KERNEL PetscBool find_scales(const int dim, Blocks *m, const System *s, const unsigned char *fixed)
+{
+  Row row = {.s = s, .halo = m->halo};
+  PetscBool regular = PETSC_TRUE;
+  for (PetscInt r = 0; r < m->n; ++r) {
+    PetscReal D[9];
+    row_take(&row, r);
+    const PetscInt diagonal = m->lower.start[r + 1] - m->lower.start[r];
+    for (int i = 0; i < dim * dim; ++i) D[i] = (PetscReal)row.values[diagonal * dim * dim + i];
+    for (int i = 0; i < dim; ++i)
+      if (fixed[s->active[r] * dim + i]) D[i * dim + i] = 1;
+    float *S = m->scale + r * dim * dim;
+    if (m->symmetric ? scale_symmetric(dim, D, S) : scale_unsymmetric(dim, D, S)) continue;
+    regular = PETSC_FALSE;
+    for (int i = 0; i < dim * dim; ++i) S[i] = 0;
+  }
+  return regular;
+}
+
+/* block = S values other^T for lower triangles S, in four lanes. */
+static inline void scale_symmetric_2d(Lanes v, Lanes s, Lanes o, float *block)
+{
+  const Lanes none = {0, 0, 0, 0};
+  const Lanes left = __builtin_shufflevector(s, s, 0, 0, 3, 3) * v +
+                     __builtin_shufflevector(s, none, 4, 4, 2, 2) * __builtin_shufflevector(v, v, 0, 1, 0, 1);
+  *(Lanes *)block = left * __builtin_shufflevector(o, o, 0, 3, 0, 3) +
+                    __builtin_shufflevector(left, none, 4, 0, 4, 2) * __builtin_shufflevector(o, o, 2, 2, 2, 2);
+}
+
+/* block = S values. */
+static inline void scale_unsymmetric_2d(Lanes v, Lanes s, float *block)
+{
+  *(Lanes *)block = __builtin_shufflevector(s, s, 0, 0, 2, 2) * __builtin_shufflevector(v, v, 0, 1, 0, 1) +
+                    __builtin_shufflevector(s, s, 1, 1, 3, 3) * __builtin_shufflevector(v, v, 2, 3, 2, 3);
+}
+
+/* The same for 3 x 3: rows of the block are lanes, and its columns go out one after the other; the fourth lane of a store is 0 and belongs to
+ * what comes next. column: those of S. */
+static inline void scale_block_3d(const float *values, const Lanes column[3], const float *other, PetscBool symmetric,
+                                  float *block)
+{
+  Lanes left[3];
+  for (int j = 0; j < 3; ++j) left[j] = column[0] * values[j] + column[1] * values[3 + j] + column[2] * values[6 + j];
+  for (int j = 0; j < 3; ++j) {
+    Lanes product = left[j];
+    if (symmetric) {
+      product = left[0] * other[3 * j];
+      for (int k = 1; k <= j; ++k) product += left[k] * other[3 * j + k];
+    }
+    *(Lanes *)(block + 3 * j) = product;
+  }
+}
+
+/* block = S_row values T_column, in the order of the kernels: 2 x 2 row by row, 3 x 3 column by column. */
+KERNEL const float *scale_blocks(const int dim, const Blocks *m, PetscInt r, const BlockRows *rows, PetscInt k,
+                                 const float *values, PetscBool symmetric)
+{
+  const float *S = m->scale + r * dim * dim;
+  Lanes column[3] = {{0}};
+  if (dim == 3)
+    for (int i = 0; i < 3; ++i) column[i] = (Lanes){S[i], S[3 + i], S[6 + i], 0};
+  for (PetscInt e = rows->start[k]; e < rows->start[k + 1]; ++e, values += dim * dim) {
+    const float *other = m->scale + rows->column[e] * dim * dim;
+    float *block = rows->block + e * dim * dim;
+    if (dim == 3) scale_block_3d(values, column, other, symmetric, block);
+    else if (symmetric) scale_symmetric_2d(*(const Lanes *)values, *(const Lanes *)S, *(const Lanes *)other, block);
+    else scale_unsymmetric_2d(*(const Lanes *)values, *(const Lanes *)S, block);
+  }
+  return values;
+}
+
+KERNEL void fill_rows(const int dim, Blocks *m, const System *s, PetscBool symmetric)
+{
+  Row row = {.s = s, .halo = m->halo};
+  PetscInt outer = 0;
+  for (PetscInt r = 0; r < m->n; ++r) {
+    row_take(&row, r);
+    const float *v = scale_blocks(dim, m, r, &m->lower, r, row.values, symmetric);
+    v = scale_blocks(dim, m, r, &m->upper, r, v + dim * dim, symmetric);
+    if (outer < m->n_outer && m->outer_row[outer] == r) (void)scale_blocks(dim, m, r, &m->outer, outer++, v, symmetric);
+  }
+}
+
+static void fill_2d(Blocks *m, const System *s)
+{
+  if (m->symmetric) fill_rows(2, m, s, PETSC_TRUE);
+  else fill_rows(2, m, s, PETSC_FALSE);
+}
+
+static void fill_3d(Blocks *m, const System *s)
+{
+  if (m->symmetric) fill_rows(3, m, s, PETSC_TRUE);
+  else fill_rows(3, m, s, PETSC_FALSE);
+}
+
+PetscErrorCode BlocksFill(Blocks *m, const System *s, const unsigned char *fixed)
+{
+  float *others = m->scale + m->n * m->dim * m->dim;
+  PetscInt bad, any;
+
+  PetscFunctionBeginUser;
+  PetscCall(BlocksHaloSum(m->halo, s));
+  bad = !(m->dim == 2 ? find_scales(2, m, s, fixed) : find_scales(3, m, s, fixed));
+  PetscCall(MPIU_Allreduce(&bad, &any, 1, MPIU_INT, MPI_MAX, m->comm));
+  m->singular = any != 0;
+  PetscCall(PetscSFBcastBegin(m->halo->columns, m->halo->scale, m->scale, others, MPI_REPLACE));
+  PetscCall(PetscSFBcastEnd(m->halo->columns, m->halo->scale, m->scale, others, MPI_REPLACE));
+  if (m->dim == 2) fill_2d(m, s);
+  else fill_3d(m, s);
+  PetscFunctionReturn(0);
+}
+
+/* z with S z = x. */
+static void scale_solve(PetscInt dim, const float *S, const PetscReal *x, PetscReal *z)
+{
+  PetscReal full[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1}, inverse[9];
+  for (PetscInt i = 0; i < dim; ++i)
+    for (PetscInt j = 0; j < dim; ++j) full[3 * i + j] = (PetscReal)S[i * dim + j];
+  (void)tensor_inverse(full, inverse);
+  for (PetscInt i = 0; i < dim; ++i) {
+    z[i] = 0;
+    for (PetscInt j = 0; j < dim; ++j) z[i] += inverse[3 * i + j] * x[j];
+  }
+}
+
+/* sum += row k of rows times x */
+static void add_row(PetscInt dim, const BlockRows *rows, PetscInt k, const float *x, PetscReal *sum)
+{
+  for (PetscInt e = rows->start[k]; e < rows->start[k + 1]; ++e)
+    for (PetscInt i = 0; i < dim; ++i)
+      for (PetscInt j = 0; j < dim; ++j)
+        sum[i] += (PetscReal)rows->block[(e * dim + (dim == 2 ? i : j)) * dim + (dim == 2 ? j : i)] *
+                  (PetscReal)x[rows->column[e] * block_stride((int)dim) + j];
+}
+
+/* Not for speed: no method of ours needs it. y = S^-1 (1 + L + U + O) T^-1 x. */
+PetscErrorCode BlocksMultiply(Blocks *m, Vec x, Vec y)
+{
+  const PetscInt dim = m->dim, stride = block_stride((int)dim);
+  const PetscReal *in;
+  PetscReal *out, z[3];
+  float *t;
+
+  PetscFunctionBeginUser;
+  PetscCall(BlocksWork(m, 0, &t));
+  PetscCall(VecGetArrayRead(x, &in));
+  PetscCall(VecGetArrayWrite(y, &out));
+  for (PetscInt r = 0; r < m->n; ++r) {
+    float transposed[9];
+    for (PetscInt i = 0; i < dim * dim; ++i)
+      transposed[i] = m->symmetric ? m->scale[r * dim * dim + i % dim * dim + i / dim] : (float)(i % (dim + 1) == 0);
+    scale_solve(dim, transposed, in + r * dim, z);
+    for (PetscInt i = 0; i < dim; ++i) t[r * stride + i] = (float)z[i];
+  }
+  PetscCall(BlocksExchange(m, t));
+  for (PetscInt r = 0, outer = 0; r < m->n; ++r) {
+    for (PetscInt i = 0; i < dim; ++i) z[i] = (PetscReal)t[r * stride + i];
+    add_row(dim, &m->lower, r, t, z);
+    add_row(dim, &m->upper, r, t, z);
+    if (outer < m->n_outer && m->outer_row[outer] == r) add_row(dim, &m->outer, outer++, t, z);
+    scale_solve(dim, m->scale + r * dim * dim, z, out + r * dim);
+  }
+  PetscCall(VecRestoreArrayWrite(y, &out));
+  PetscCall(VecRestoreArrayRead(x, &in));
+  PetscFunctionReturn(0);
+}

@@ -1,0 +1,202 @@
+/* One step's nonlinear solve, and what Newton's method remembers from step to step. */
+#include "solve/blocks/blocks.h"
+#include "solve/newton/newton_private.h"
+#include <petsctime.h>
+
+#define ISOLATED_AFTER 10 /* steps after which a failure of the iterative solver counts no more */
+#define FORGIVEN_AFTER 50 /* where failures followed each other: steps of the direct solver before the next chance */
+
+PetscErrorCode NewtonCreate(MPI_Comm comm, const NewtonSpec *spec, Newton **newton)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscNew(newton));
+  (*newton)->comm = comm;
+  (*newton)->spec = *spec;
+  (*newton)->built = (*newton)->remembered = -1;
+  (*newton)->linear = "";
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode NewtonDestroy(Newton **newton)
+{
+  PetscFunctionBeginUser;
+  if (!*newton) PetscFunctionReturn(0);
+  PetscCall(NewtonReset(*newton));
+  PetscCall(PetscFree(*newton));
+  PetscFunctionReturn(0);
+}
+
+const char *NewtonLinearName(const Newton *n) { return n->linear; }
+
+void NewtonTimes(const Newton *n, PetscReal *points, PetscReal *matrix, PetscReal *linear, PetscReal *rest)
+{
+  *points = n->t_points;
+  *matrix = n->t_matrix;
+  *linear = n->t_linear;
+  *rest = n->t_newton;
+}
+
+void NewtonGetMemory(const Newton *n, const System *system, NewtonMemory *memory)
+{
+  memory->courant = system->builds > 0 && n->built == system->builds && !n->learns ? n->courant : -1;
+  memory->failures = n->failures;
+  memory->since = n->since;
+}
+
+void NewtonSetMemory(Newton *n, const System *system, const NewtonMemory *memory)
+{
+  n->failures = memory->failures;
+  n->since = memory->since;
+  n->courant = memory->courant;
+  n->remembered = system->builds > 0 && memory->courant >= 0 ? system->builds : -1;
+}
+
+void NewtonForget(Newton *n, const System *system, const NewtonMemory *memory)
+{
+  n->failures = memory->failures;
+  n->since = memory->since;
+  n->courant = memory->courant;
+  n->built = memory->courant >= 0 ? system->builds : -1;
+}
+
+/* One linear step that carries the prescribed increments into the interior: what is left of them at du is moved to the
+ * right-hand side through the columns of the tangent. Skipped if the first guess has them already. */
+static PetscErrorCode LiftPrescribed(Newton *n)
+{
+  StepProblem *p = n->problem;
+  const PetscInt dofs = p->grid->n_nodes * p->grid->dim;
+  PetscReal *lift, local[2] = {0, 0}, all[2]; /* largest increments: what is left of them, and whole */
+  KSP ksp;
+  Vec y;
+  double start;
+
+  PetscFunctionBeginUser;
+  for (PetscInt k = 0; k < p->system->n_active; ++k)
+    for (PetscInt d = 0, i = p->system->active[k] * p->grid->dim; d < p->grid->dim; ++d, ++i) {
+      if (!p->fixed[i]) continue;
+      local[0] = PetscMax(local[0], PetscAbsReal(p->prescribed[i] - p->du[i]));
+      local[1] = PetscMax(local[1], PetscAbsReal(p->prescribed[i]));
+    }
+  PetscCall(MPIU_Allreduce(local, all, 2, MPIU_REAL, MPIU_MAX, n->comm));
+  if (all[0] <= 1e-12 * all[1] || all[1] == 0) PetscFunctionReturn(0);
+  PetscCall(PetscCalloc1(dofs, &lift));
+  for (PetscInt i = 0; i < dofs; ++i)
+    if (p->fixed[i]) lift[i] = p->prescribed[i] - p->du[i];
+  p->in.lift = lift;
+  PetscCall(NewtonAssemble(n, PETSC_TRUE));
+  p->in.lift = NULL;
+  PetscCall(NewtonGetResidual(n, n->f));
+  if (n->report->status == LAW_OK) {
+    PetscCall(PetscTime(&start));
+    PetscCall(NewtonFillMatrix(n));
+    PetscCall(PetscTime(&n->solving));
+    n->t_matrix += n->solving - start;
+    PetscCall(SNESGetKSP(n->snes, &ksp));
+    PetscCall(KSPSetOperators(ksp, p->system->matrix, p->system->matrix));
+    PetscCall(VecDuplicate(n->x, &y));
+    PetscCall(KSPSolve(ksp, n->f, y));
+    PetscCall(NewtonGetUnknowns(n, n->x));
+    PetscCall(VecAXPY(n->x, -1, y));
+    PetscCall(VecDestroy(&y));
+    PetscCall(NewtonSetIncrements(n, n->x));
+    n->report->residual[0] = 1;
+    n->report->iterations = 1;
+    PetscCall(VecNorm(n->f, NORM_2, &n->report->reference));
+  }
+  PetscCall(PetscFree(lift));
+  PetscFunctionReturn(0);
+}
+
+/* Clouds of constraints are new in every step. */
+static PetscErrorCode UpdateProjection(Newton *n)
+{
+  const StepProblem *p = n->problem;
+
+  PetscFunctionBeginUser;
+  if (!n->projects) PetscFunctionReturn(0);
+  PetscCall(ProjectionDestroy(&n->projection));
+  PetscCall(ProjectionCreate(p->system, p->grid, p->constraints, p->fixed, &n->projection));
+  p->system->blocks->projection = n->projection;
+  PetscFunctionReturn(0);
+}
+
+/* Points have moved since the last step: so has what stands in for the Schur complement. */
+static PetscErrorCode UpdateSaddle(Newton *n)
+{
+  const StepProblem *p = n->problem;
+  PetscReal *nodes;
+
+  PetscFunctionBeginUser;
+  if (!n->saddle.schur) PetscFunctionReturn(0);
+  PetscCall(PetscCalloc1(p->grid->n_nodes, &nodes));
+  p->formulation->schur(&p->in, nodes);
+  PetscCall(GridSumToOwners(p->grid, 1, nodes));
+  PetscCall(SaddleUpdate(&n->saddle, p->system, nodes));
+  PetscCall(PetscFree(nodes));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode NewtonTry(Newton *n, NewtonReport *report)
+{
+  SNESConvergedReason reason;
+  PetscInt its;
+  double start, end;
+  const double parts = n->t_points + n->t_matrix + n->t_linear;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMemzero(report, sizeof(*report)));
+  report->bad_point = -1;
+  PetscCall(PetscTime(&start));
+  newton_rest_without_unknowns(n->problem);
+  n->before = 0;
+  PetscCall(UpdateSaddle(n));
+  PetscCall(UpdateProjection(n));
+  PetscCall(LiftPrescribed(n));
+  PetscCall(NewtonGetUnknowns(n, n->x));
+  PetscCall(SNESSetTolerances(n->snes, 0, 0, 0, n->spec.max_iterations - report->iterations, PETSC_MAX_INT));
+  PetscCall(SNESSolve(n->snes, NULL, n->x));
+  PetscCall(SNESGetConvergedReason(n->snes, &reason));
+  PetscCall(SNESGetIterationNumber(n->snes, &its));
+  PetscCall(SNESGetLinearSolveIterations(n->snes, &report->linear_iterations));
+  report->iterations += its;
+  report->converged = reason > 0;
+  report->interrupted = reason == SNES_DIVERGED_FUNCTION_COUNT;
+  report->reason = newton_reason(reason, report->status);
+  PetscCall(PetscTime(&end));
+  n->t_newton += (end - start) - (n->t_points + n->t_matrix + n->t_linear - parts);
+  if (reason == SNES_DIVERGED_LINEAR_SOLVE) n->built = -1; /* PETSc would not factorise again after a zero pivot */
+  const PetscBool useless = reason == SNES_DIVERGED_LINEAR_SOLVE || reason == SNES_DIVERGED_INNER;
+  n->retry = useless && !n->direct;
+  n->failures += n->retry;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode NewtonSolve(Newton *n, StepProblem *p, const LinearProblem *linear, NewtonReport *report)
+{
+  const PetscInt nodes = p->grid->n_nodes, dofs = nodes * p->grid->dim;
+  PetscReal *guess, *pressure;
+
+  PetscFunctionBeginUser;
+  n->problem = p;
+  n->report = report;
+  PetscCall(PetscMalloc2(dofs, &guess, p->pressure ? nodes : 0, &pressure));
+  PetscCall(PetscArraycpy(guess, p->du, dofs));
+  if (p->pressure) PetscCall(PetscArraycpy(pressure, p->pressure, nodes));
+  PetscCall(NewtonSetUp(n, p, linear));
+  PetscCall(NewtonTry(n, report));
+  if (n->retry) { /* once more, with the direct solver */
+    const PetscInt lost = report->iterations;
+    PetscCall(PetscArraycpy(p->du, guess, dofs));
+    if (p->pressure) PetscCall(PetscArraycpy(p->pressure, pressure, nodes));
+    PetscCall(NewtonSetUp(n, p, linear));
+    PetscCall(NewtonTry(n, report));
+    report->lost = lost;
+    n->built = n->failures < NEWTON_FAILURES ? -1 : n->built;
+    n->since = 0;
+  } else if (n->failures && ++n->since >= (n->failures < NEWTON_FAILURES ? ISOLATED_AFTER : FORGIVEN_AFTER)) {
+    if (n->failures >= NEWTON_FAILURES) n->built = -1;
+    n->failures = n->since = 0;
+  }
+  PetscCall(PetscFree2(guess, pressure));
+  PetscFunctionReturn(0);
+}

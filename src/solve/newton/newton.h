@@ -1,0 +1,67 @@
+/* Newton's method on one step, through PETSc SNES.
+ *
+ * Residual and tangent come from the same pass over the points. Full steps, halved only where a point would be turned inside out:
+ * from rest a good iteration lets the residual grow by two orders before it falls (docs/decisions.md). */
+#pragma once
+#include <petscsnes.h>
+#include "formulation/formulation.h"
+#include "solve/system/constraints.h"
+#include "solve/system/linear.h"
+#include "solve/system/system.h"
+
+#define NEWTON_HISTORY 64
+
+/* The step to be solved; arrays are n_nodes x dim over local nodes. */
+typedef struct {
+  const Grid *grid;
+  System *system;
+  const Formulation *formulation;
+  const Constraints *constraints; /* NULL: none */
+  WeakFormInput in;               /* du, fixed and lift are set here by Newton */
+  const unsigned char *fixed;     /* prescribed, or on a node that no material touches */
+  const PetscReal *prescribed;    /* increment of fixed dofs, m */
+  const PetscReal *external;      /* dead nodal forces, N; owners' values count */
+  PetscReal *du;                  /* in: first guess; out: solution */
+  PetscReal *force;               /* out: residual with the rows of fixed dofs: reactions, on owners */
+  PetscReal *pressure; /* mixed: n_nodes, like du; m, see WeakFormInput. NULL: displacements alone, as the next two */
+  PetscReal *volume;   /* mixed: n_nodes, residual of the pressure equation, N */
+  const unsigned char *idle; /* mixed: n_nodes, no material touches the node: no pressure there */
+  PetscBool (*asked)(void);  /* does somebody want the run to end? asked on every rank; NULL: nobody ever does */
+  PetscReal round_off;       /* what the last digit of a coordinate makes of the force at a node, N */
+  PetscReal weight, inertia; /* norms of nodal gravity and of the inertia that would stop the motion, N: scales */
+} StepProblem;
+
+typedef struct {
+  PetscBool converged;
+  PetscBool interrupted; /* somebody asked, on any rank, before it converged */
+  PetscInt iterations, linear_iterations;
+  PetscInt lost;                      /* iterations before them, until the iterative linear solver failed */
+  PetscReal residual[NEWTON_HISTORY]; /* |R| / reference after each iteration; [0] at the first guess */
+  PetscReal reference;                /* N */
+  const char *reason;                 /* why it stopped, in words */
+  LawStatus status;
+  PetscInt bad_point; /* local, of that status; -1 */
+} NewtonReport;
+
+typedef struct Newton Newton;
+
+PetscErrorCode NewtonCreate(MPI_Comm comm, const NewtonSpec *spec, Newton **newton);
+PetscErrorCode NewtonDestroy(Newton **newton);
+/* Collective. Solve; du and force hold the solution only if report->converged. */
+PetscErrorCode NewtonSolve(Newton *newton, StepProblem *problem, const LinearProblem *linear, NewtonReport *report);
+/* What Newton's method remembers from step to step: which linear solver it chose when the pattern was made, and how often the iterative one
+ * failed. */
+typedef struct {
+  PetscReal courant;        /* that the choice was made with; < 0: the next step chooses anew */
+  PetscInt failures, since; /* of the iterative solver, and steps since the last */
+} NewtonMemory;
+
+void NewtonGetMemory(const Newton *newton, const System *system, NewtonMemory *memory);
+/* For a Newton that has solved nothing yet, and the pattern that the system has now. */
+void NewtonSetMemory(Newton *newton, const System *system, const NewtonMemory *memory);
+/* Back to what was remembered before a solve that is given up, on the same pattern. */
+void NewtonForget(Newton *newton, const System *system, const NewtonMemory *memory);
+/* Name of the linear solver in use, for the log. */
+const char *NewtonLinearName(const Newton *newton);
+/* Seconds spent so far: points and scatter, matrix filling, linear solves, and the rest of Newton's method. */
+void NewtonTimes(const Newton *newton, PetscReal *points, PetscReal *matrix, PetscReal *linear, PetscReal *rest);

@@ -1,0 +1,64 @@
+/* Newton's own state, and what its parts ask of each other: for the files of newton*.c alone. */
+#pragma once
+#include "solve/newton/line_search.h"
+#include "solve/newton/newton.h"
+#include "solve/blocks/projection.h"
+#include "solve/system/saddle.h"
+
+#define NEWTON_FAILURES 3 /* of the iterative solver, one soon after another: the direct one stays for a while */
+
+struct Newton {
+  MPI_Comm comm;
+  NewtonSpec spec;
+  SNES snes;
+  Vec x, f;
+  PetscInt built;      /* system->builds that snes was set up for */
+  PetscReal courant;   /* of the step that it was set up in */
+  PetscBool learns;    /* the preconditioner keeps something of earlier matrices: it is made anew for every solve */
+  PetscInt remembered; /* system->builds whose solver was chosen with this courant before a checkpoint; -1: none */
+  LineSearchMemory search;
+  Saddle saddle;
+  PetscBool direct;
+  PetscBool projects; /* does the linear solver keep constraints by projections? else by multipliers in its matrix */
+  Projection *projection;
+  PetscInt failures; /* of the iterative solver, not yet forgiven */
+  PetscInt since;    /* steps since the last of them */
+  PetscBool retry;   /* this try takes the direct solver */
+  const char *linear;
+  StepProblem *problem;
+  NewtonReport *report;
+  PetscBool asked;              /* did any rank want the run to end, at the last assembly? */
+  PetscReal reaction, external; /* norms at the last assembly, N */
+  PetscReal last, before;       /* norms of the residual one iteration ago, and two, N; before: 0 if there was none */
+  PetscBool tangent;            /* do the system's values belong to du? */
+  double t_points, t_matrix, t_linear, t_newton;
+  double solving; /* when the linear solve that is going on began */
+};
+
+/* newton_setup.c. Everything made for one pattern of the system; does nothing if it is there already. Times count as `matrix`. Collective. */
+PetscErrorCode NewtonSetUp(Newton *n, StepProblem *p, const LinearProblem *linear);
+PetscErrorCode NewtonReset(Newton *n);
+
+/* newton_residual.c. Residual (and tangent values) at problem->du. A point that fails makes the status of all ranks bad. Collective. */
+PetscErrorCode NewtonAssemble(Newton *n, PetscBool tangent);
+/* Values -> matrix; where constraints are projections they have no part in it. */
+PetscErrorCode NewtonFillMatrix(Newton *n);
+/* Forces of the last assembly -> residual; infinite if a point had failed. */
+PetscErrorCode NewtonGetResidual(Newton *n, Vec f);
+/* du and pressure -> unknowns. */
+PetscErrorCode NewtonGetUnknowns(const Newton *n, Vec x);
+/* Unknowns -> du and pressure, keeping what is prescribed. */
+PetscErrorCode NewtonSetIncrements(Newton *n, Vec x);
+/* Where no unknowns are, a step has no forces, and only what is prescribed moves. */
+void newton_rest_without_unknowns(const StepProblem *p);
+/* The same as SNES asks for it; context: the Newton. */
+PetscErrorCode NewtonFunction(SNES snes, Vec x, Vec f, void *context);
+PetscErrorCode NewtonJacobian(SNES snes, Vec x, Mat matrix, Mat preconditioner, void *context);
+
+/* newton_converge.c. Will this residual be the last? If it falls by the same factor once more it is far below the tolerance: no tangent will be asked for. */
+PetscBool newton_is_last(const Newton *n);
+/* The convergence test of SNES; context: the Newton. Writes the report's residuals and its reference. */
+PetscErrorCode NewtonConverged(SNES snes, PetscInt it, PetscReal xnorm, PetscReal snorm, PetscReal fnorm,
+                               SNESConvergedReason *reason, void *context);
+/* Why it stopped, in words. */
+const char *newton_reason(SNESConvergedReason reason, LawStatus status);

@@ -1,0 +1,161 @@
+/* What SNES asks for: the residual and the tangent of the increments that its unknowns stand for. */
+#include "solve/newton/newton_private.h"
+#include <petsctime.h>
+
+/* Internal and inertia forces -> residual, and the norms of reactions and external forces, over owned dofs. Nodes without unknowns have
+ * no forces: they are often most of a grid, and are left alone. */
+static PetscErrorCode Balance(Newton *n)
+{
+  const StepProblem *p = n->problem;
+  const PetscInt dim = p->grid->dim;
+  PetscReal local[3] = {0, 0, p->asked && p->asked() ? 1 : 0}, sum[3];
+
+  PetscFunctionBeginUser;
+  for (PetscInt k = 0; k < p->system->n_active; ++k)
+    for (PetscInt d = 0, i = p->system->active[k] * dim; d < dim; ++d, ++i) {
+      p->force[i] -= p->external[i];
+      if (p->fixed[i]) local[0] += p->force[i] * p->force[i];
+      else local[1] += p->external[i] * p->external[i];
+    }
+  PetscCall(MPIU_Allreduce(local, sum, 3, MPIU_REAL, MPI_SUM, n->comm));
+  n->asked = sum[2] > 0;
+  n->reaction = PetscSqrtReal(sum[0]);
+  n->external = PetscSqrtReal(sum[1]);
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode NewtonAssemble(Newton *n, PetscBool tangent)
+{
+  StepProblem *p = n->problem;
+  const PetscInt dim = p->grid->dim;
+  double start, end;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscTime(&start));
+  PetscCall(SystemZeroNodes(p->system, p->force));
+  if (p->volume) PetscCall(PetscArrayzero(p->volume, p->grid->n_nodes));
+  if (tangent) PetscCall(SystemZero(p->system));
+  n->tangent = tangent;
+  WeakFormOutput out = {.force = p->force,
+                        .volume = p->volume,
+                        .values = tangent && !p->system->single ? p->system->values : NULL,
+                        .singles = tangent && p->system->single ? p->system->singles : NULL,
+                        .slot = p->system->slot};
+  p->in.du = p->du;
+  p->in.pressure = p->pressure;
+  p->in.fixed = p->fixed;
+  PetscCall(p->formulation->assemble(&p->in, &out));
+  if (tangent && p->in.half) PetscCall(SystemMirror(p->system));
+  if (p->constraints)
+    constraints_assemble(p->constraints, p->du, p->prescribed, p->fixed, p->in.lift, out.force,
+                         n->projects ? NULL : out.values);
+  PetscInt status = (PetscInt)out.status, worst;
+  PetscCall(MPIU_Allreduce(&status, &worst, 1, MPIU_INT, MPI_MAX, n->comm));
+  n->report->status = (LawStatus)worst;
+  n->report->bad_point = out.bad_point;
+  PetscCall(GridSumToOwners(p->grid, dim, p->force));
+  if (p->volume) PetscCall(GridSumToOwners(p->grid, 1, p->volume));
+  PetscCall(Balance(n));
+  PetscCall(PetscTime(&end));
+  n->t_points += end - start;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode NewtonGetUnknowns(const Newton *n, Vec x)
+{
+  const StepProblem *p = n->problem;
+
+  PetscFunctionBeginUser;
+  PetscCall(SystemFromNodes(p->system, p->du, 0, p->system->dim, x));
+  if (p->pressure) PetscCall(SystemFromNodes(p->system, p->pressure, p->system->dim, 1, x));
+  PetscFunctionReturn(0);
+}
+
+void newton_rest_without_unknowns(const StepProblem *p)
+{
+  const PetscInt dim = p->grid->dim;
+  for (PetscInt node = 0; node < p->grid->n_nodes; ++node) {
+    if (p->system->row[node] >= 0) continue;
+    for (PetscInt d = 0, i = node * dim; d < dim; ++d, ++i) {
+      p->force[i] = 0;
+      if (p->fixed[i]) p->du[i] = p->prescribed[i];
+    }
+  }
+}
+
+PetscErrorCode NewtonSetIncrements(Newton *n, Vec x)
+{
+  StepProblem *p = n->problem;
+  const PetscInt dim = p->grid->dim;
+  const PetscReal *v;
+
+  PetscFunctionBeginUser;
+  PetscCall(VecGetArrayRead(x, &v));
+  for (PetscInt k = 0; k < p->system->n_active; ++k)
+    for (PetscInt d = 0, i = p->system->active[k] * dim; d < dim; ++d, ++i)
+      p->du[i] = p->fixed[i] ? p->prescribed[i] : v[k * p->system->block + d];
+  PetscCall(VecRestoreArrayRead(x, &v));
+  PetscCall(GridToGhosts(p->grid, dim, p->du));
+  if (p->pressure) PetscCall(SystemToNodes(p->system, p->grid, x, dim, 1, p->pressure));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode NewtonGetResidual(Newton *n, Vec f)
+{
+  const StepProblem *p = n->problem;
+  const PetscInt dim = p->grid->dim, block = p->system->block;
+  PetscReal *v;
+
+  PetscFunctionBeginUser;
+  if (n->report->status != LAW_OK) {
+    PetscCall(VecSet(f, PETSC_INFINITY));
+    PetscFunctionReturn(0);
+  }
+  PetscCall(VecGetArrayWrite(f, &v));
+  for (PetscInt k = 0; k < p->system->n_active; ++k) {
+    const PetscInt node = p->system->active[k];
+    for (PetscInt d = 0; d < dim; ++d) v[k * block + d] = p->fixed[node * dim + d] ? 0 : p->force[node * dim + d];
+    if (p->pressure) v[k * block + dim] = p->idle[node] ? 0 : p->volume[node];
+  }
+  PetscCall(VecRestoreArrayWrite(f, &v));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode NewtonFunction(SNES snes, Vec x, Vec f, void *context)
+{
+  Newton *n = context;
+  (void)snes;
+  PetscFunctionBeginUser;
+  PetscCall(NewtonSetIncrements(n, x));
+  PetscCall(NewtonAssemble(n, !newton_is_last(n)));
+  PetscCall(NewtonGetResidual(n, f));
+  PetscCall(PetscTime(&n->solving)); /* for a solve that asks for no tangent: -snes_lag_jacobian */
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode NewtonFillMatrix(Newton *n)
+{
+  const StepProblem *p = n->problem;
+
+  PetscFunctionBeginUser;
+  if (n->projects) PetscCall(ProjectionFactor(n->projection)); /* first: the blocks take its shift */
+  PetscCall(SystemToMatrix(p->system, n->projects ? n->projection->held : p->fixed, p->idle));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode NewtonJacobian(SNES snes, Vec x, Mat matrix, Mat preconditioner, void *context)
+{
+  Newton *n = context;
+  double start, end;
+
+  (void)snes, (void)matrix, (void)preconditioner;
+  PetscFunctionBeginUser;
+  if (!n->tangent) PetscCall(NewtonAssemble(n, PETSC_TRUE)); /* du is still where the residual was taken */
+  PetscCall(PetscTime(&start));
+  PetscCall(NewtonFillMatrix(n));
+  PetscCall(PetscTime(&end));
+  n->t_matrix += end - start;
+  n->solving = end; /* what SNES does next */
+  (void)x;
+  PetscFunctionReturn(0);
+}

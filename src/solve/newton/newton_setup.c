@@ -1,0 +1,87 @@
+/* SNES, its line search and the linear solver below it, made for one pattern of the system. */
+#include "solve/newton/newton_private.h"
+#include <petsctime.h>
+
+PetscErrorCode NewtonReset(Newton *n)
+{
+  PetscFunctionBeginUser;
+  PetscCall(SNESDestroy(&n->snes));
+  PetscCall(SaddleClear(&n->saddle));
+  PetscCall(ProjectionDestroy(&n->projection));
+  PetscCall(VecDestroy(&n->x));
+  PetscCall(VecDestroy(&n->f));
+  PetscFunctionReturn(0);
+}
+
+/* The preconditioner's set-up, factorisations too, belongs to the solve. */
+static PetscErrorCode LinearSolved(KSP ksp, Vec b, Vec x, void *context)
+{
+  Newton *n = context;
+  double end;
+
+  (void)ksp, (void)b, (void)x;
+  PetscFunctionBeginUser;
+  PetscCall(PetscTime(&end));
+  n->t_linear += end - n->solving;
+  PetscFunctionReturn(0);
+}
+
+/* Factorisations and point methods depend on their matrix alone. Algebraic multigrid builds its interpolation once and keeps it as long as the
+ * pattern lives, so that a step would depend on all steps before it, and a resumed run would be another one. */
+static PetscErrorCode Learns(KSP ksp, PetscBool *learns)
+{
+  PC pc;
+
+  PetscFunctionBeginUser;
+  PetscCall(KSPGetPC(ksp, &pc));
+  PetscCall(PetscObjectTypeCompareAny((PetscObject)pc, learns, PCNONE, PCJACOBI, PCPBJACOBI, PCVPBJACOBI, PCSOR,
+                                      PCEISENSTAT, PCILU, PCICC, PCLU, PCCHOLESKY, PCBJACOBI, PCASM, ""));
+  *learns = !*learns;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode NewtonSetUp(Newton *n, StepProblem *p, const LinearProblem *linear)
+{
+  KSP ksp;
+  SNESLineSearch search;
+  SystemForm form;
+  double start, end;
+
+  PetscFunctionBeginUser;
+  if (n->built == p->system->builds && !n->learns) PetscFunctionReturn(0);
+  PetscCall(PetscTime(&start));
+  PetscCall(NewtonReset(n));
+  LinearProblem chosen = *linear;
+  if (n->remembered == p->system->builds) chosen.courant = n->courant;
+  n->courant = chosen.courant;
+  n->remembered = -1;
+  if (n->retry || n->failures >= NEWTON_FAILURES) chosen.choice = LINEAR_DIRECT;
+  PetscCall(LinearForm(&chosen, &form));
+  n->projects = chosen.multipliers && form == SYSTEM_BLOCKS;
+  PetscCall(SystemUse(p->system, form, linear->symmetric));
+  PetscCall(SystemGather(
+    p->system, !n->projects && !p->constraints && p->in.support->uniform ? p->formulation->singles : PETSC_FALSE));
+  n->search.block = p->pressure ? p->system->block : 0;
+  PetscCall(SystemCreateVec(p->system, &n->x));
+  PetscCall(VecDuplicate(n->x, &n->f));
+  PetscCall(SNESCreate(n->comm, &n->snes));
+  PetscCall(SNESSetFunction(n->snes, n->f, NewtonFunction, n));
+  PetscCall(SNESSetJacobian(n->snes, p->system->matrix, p->system->matrix, NewtonJacobian, n));
+  PetscCall(SNESSetConvergenceTest(n->snes, NewtonConverged, n, NULL));
+  PetscCall(SNESSetType(n->snes, SNESNEWTONLS));
+  PetscCall(SNESGetLineSearch(n->snes, &search));
+  PetscCall(SNESLineSearchSetType(search, SNESLINESEARCHSHELL));
+  PetscCall(SNESLineSearchShellSetUserFunc(search, LineSearchDescend, &n->search));
+  PetscCall(SNESGetKSP(n->snes, &ksp));
+  PetscCall(KSPSetOperators(ksp, p->system->matrix, p->system->matrix)); /* some choices ask for the matrix at once */
+  PetscCall(KSPSetPostSolve(ksp, LinearSolved, n));
+  PetscCall(LinearConfigure(ksp, &chosen, &n->direct, &n->linear));
+  if (chosen.mixed && !n->direct) PetscCall(SaddleConfigure(&n->saddle, ksp, p->system, p->grid, chosen.dynamic));
+  PetscCall(SNESSetFromOptions(n->snes));
+  PetscCall(LinearRefine(ksp, p->system->matrix, &chosen));
+  PetscCall(Learns(ksp, &n->learns));
+  n->built = p->system->builds;
+  PetscCall(PetscTime(&end));
+  n->t_matrix += end - start;
+  PetscFunctionReturn(0);
+}

@@ -1,0 +1,143 @@
+/* Slots of clouds. In a step few clouds change their nodes, so what was found in the step before is kept. */
+#include "solve/system/system.h"
+
+PetscErrorCode SystemReserveSlots(System *s, PetscInt n)
+{
+  PetscFunctionBeginUser;
+  if (n <= s->n_slots) PetscFunctionReturn(0);
+  s->n_slots = n + n / 4;
+  PetscCall(PetscRealloc((size_t)s->n_slots * sizeof *s->slot, &s->slot));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode SystemFreeSlots(System *s)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscFree(s->slot));
+  PetscCall(PetscFree(s->before.start));
+  PetscCall(PetscFree(s->before.node));
+  PetscCall(PetscFree(s->before.spare));
+  PetscFunctionReturn(0);
+}
+
+/* Slots of a group whose nodes ascend, by walking along each row once; a pair that the pattern lacks gets -1. Returns how many. */
+static PetscInt merge_slots(const System *s, PetscInt nn, const PetscInt *node, PetscInt *slot)
+{
+  PetscInt missing = 0;
+  for (PetscInt I = 0; I < nn; ++I) {
+    const PetscInt row = s->row[node[I]];
+    PetscInt k = row < 0 ? 0 : s->row_start[row];
+    const PetscInt end = row < 0 ? 0 : s->row_start[row + 1];
+    for (PetscInt J = 0; J < nn; ++J) {
+      while (k < end && s->column[k] < node[J]) ++k;
+      const PetscBool found = k < end && s->column[k] == node[J];
+      slot[I * nn + J] = found ? k : -1;
+      missing += !found;
+    }
+  }
+  return missing;
+}
+
+static PetscBool same_nodes(PetscInt nn, const PetscInt *a, const PetscInt *b)
+{
+  PetscInt off = 0;
+  for (PetscInt i = 0; i < nn; ++i) off |= a[i] ^ b[i];
+  return !off;
+}
+
+static PetscErrorCode Reserve(PetscInt n, PetscInt *capacity, PetscInt **data)
+{
+  PetscFunctionBeginUser;
+  if (n <= *capacity) PetscFunctionReturn(0);
+  *capacity = n + n / 4;
+  PetscCall(PetscRealloc((size_t)*capacity * sizeof **data, data));
+  PetscFunctionReturn(0);
+}
+
+/* Groups from the front on that have as many nodes as before: their slots stay where they are. Returns the first other one; place: that of its
+ * slots. */
+static PetscInt renew_in_place(System *s, const Support *w, PetscInt *place, PetscInt *missing)
+{
+  const CloudsBefore *b = &s->before;
+  PetscInt g = 0;
+  for (; g < PetscMin(w->n_groups, b->n); ++g) {
+    const PetscInt nn = support_nodes(w, g), *node = w->node + w->node_start[g];
+    if (b->start[g + 1] - b->start[g] != nn) break;
+    if (!same_nodes(nn, node, b->node + b->start[g])) *missing += merge_slots(s, nn, node, s->slot + *place);
+    *place += nn * nn;
+  }
+  return g;
+}
+
+/* The groups behind them, whose slots move. */
+static PetscErrorCode RenewRest(System *s, const Support *w, PetscInt first, PetscInt place, PetscInt *missing)
+{
+  CloudsBefore *b = &s->before;
+  PetscInt rest = 0, size = place;
+
+  PetscFunctionBeginUser;
+  for (PetscInt g = first; g < b->n; ++g) rest += PetscSqr(b->start[g + 1] - b->start[g]);
+  for (PetscInt g = first; g < w->n_groups; ++g) size += PetscSqr(support_nodes(w, g));
+  PetscCall(Reserve(rest, &b->n_spare, &b->spare));
+  PetscCall(PetscArraycpy(b->spare, s->slot + place, rest));
+  PetscCall(SystemReserveSlots(s, size));
+  const PetscInt *old = b->spare;
+  for (PetscInt g = first; g < w->n_groups; ++g) {
+    const PetscInt nn = support_nodes(w, g), *node = w->node + w->node_start[g];
+    const PetscInt before = g < b->n ? b->start[g + 1] - b->start[g] : -1;
+    if (before == nn && same_nodes(nn, node, b->node + b->start[g]))
+      PetscCall(PetscArraycpy(s->slot + place, old, nn * nn));
+    else *missing += merge_slots(s, nn, node, s->slot + place);
+    place += nn * nn;
+    old += before > 0 ? before * before : 0;
+  }
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode Keep(System *s, const Support *w, PetscInt missing)
+{
+  CloudsBefore *b = &s->before;
+
+  PetscFunctionBeginUser;
+  b->n = w->n_groups;
+  b->builds = missing ? 0 : s->builds;
+  PetscCall(Reserve(b->n + 1, &b->capacity, &b->start));
+  PetscCall(Reserve(w->node_start[b->n], &b->capacity_entries, &b->node));
+  PetscCall(PetscArraycpy(b->start, w->node_start, b->n + 1));
+  PetscCall(PetscArraycpy(b->node, w->node, w->node_start[b->n]));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode SystemCloudSlots(System *s, const Support *support, PetscBool *complete)
+{
+  PetscInt missing = 0, place = 0;
+
+  PetscFunctionBeginUser;
+  if (s->before.builds != s->builds) s->before.n = 0;
+  const PetscInt first = renew_in_place(s, support, &place, &missing);
+  if (first < support->n_groups) PetscCall(RenewRest(s, support, first, place, &missing));
+  PetscCall(Keep(s, support, missing));
+  if (complete) *complete = !missing;
+  PetscFunctionReturn(0);
+}
+
+/* Rows come in the order of their nodes, so that those that have a node as a column before their diagonal come in the order of the columns behind
+ * the diagonal of that node's own row. */
+PetscErrorCode SystemMirror(System *s)
+{
+  const PetscInt size = s->block;
+  PetscInt *next;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(s->n_rows, &next));
+  for (PetscInt r = 0; r < s->n_rows; ++r) next[r] = s->diagonal[r] + 1;
+  for (PetscInt r = 0; r < s->n_rows; ++r)
+    for (PetscInt k = s->row_start[r]; k < s->diagonal[r]; ++k) {
+      const PetscReal *from = s->values + (size_t)next[s->row[s->column[k]]]++ * (size_t)(size * size);
+      PetscReal *to = s->values + (size_t)k * (size_t)(size * size);
+      for (PetscInt a = 0; a < size; ++a)
+        for (PetscInt b = 0; b < size; ++b) to[a * size + b] = from[b * size + a];
+    }
+  PetscCall(PetscFree(next));
+  PetscFunctionReturn(0);
+}

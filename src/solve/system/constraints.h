@@ -1,0 +1,34 @@
+/* Linear constraints on nodal increments, sum_I N_I du_I = prescribed increment at a place, by Lagrange multipliers.
+ *
+ * Each constraint has a node of its own, the twin, whose unknowns mu are the multipliers over `scale`: the system stays one of nodes and
+ * symmetric. The force on the body, scale N_I mu at its nodes and scale mu in all, is the reaction. */
+#pragma once
+#include "solve/system/system.h"
+
+typedef struct Constraints {
+  PetscInt dim, n, capacity, capacity_nodes;
+  PetscInt *start; /* n + 1 */
+  PetscInt *node;  /* cloud of constraint k: node[start[k]] .. , local */
+  PetscReal *N;
+  PetscInt *at, *twin; /* the node whose motion is prescribed, and its twin */
+  PetscInt *slot;      /* per node of each cloud: pair (node, twin), pair (twin, node) */
+  PetscReal scale;     /* N/m: brings multipliers and gaps to the size of the other unknowns and forces */
+} Constraints;
+
+PetscErrorCode ConstraintsCreate(PetscInt dim, Constraints **constraints);
+PetscErrorCode ConstraintsDestroy(Constraints **constraints);
+/* Forget all, and append one. */
+void constraints_clear(Constraints *constraints);
+PetscErrorCode ConstraintsAdd(Constraints *constraints, PetscInt at, PetscInt twin, PetscInt nn, const PetscInt *node,
+                              const PetscReal *N);
+/* Places of the pairs in the system's pattern; PETSC_FALSE if it lacks any. */
+PetscBool constraints_find_slots(Constraints *constraints, const System *system);
+/* One sweep that brings the field of v nearer to `target` at the constrained places, by the coefficients of the constrained nodes alone. Each takes its
+ * gap over the share of all held nodes, not over its own: slower, but it does not swing up where a node has less of the field than its neighbours. Dofs
+ * with held[] only (of the constrained nodes). correction: as long as v, zero at call and return. */
+void constraints_relax(const Constraints *constraints, const unsigned char *held, const PetscReal *target,
+                       PetscReal scale, PetscReal *v, PetscReal *correction);
+/* Add forces, and the matrix if values is not NULL. Dofs in fixed are left out (of twins: components without a constraint); lift moves
+ * their columns to the forces, as in the weak form. */
+void constraints_assemble(const Constraints *constraints, const PetscReal *du, const PetscReal *prescribed,
+                          const unsigned char *fixed, const PetscReal *lift, PetscReal *force, PetscReal *values);

@@ -1,0 +1,165 @@
+#include "solve/system/linear.h"
+#include "solve/blocks/blocks.h"
+
+#define ITERATE_BELOW \
+  100 /* cells that a wave crosses in a step up to which a dynamic problem is solved by iteration first */
+#define PROJECT_BELOW \
+  3 /* cells that a wave crosses in a step up to which unsymmetric systems with multipliers take projections */
+#define REFINE_ABOVE \
+  3 /* cells that a wave crosses in a step from which on ILU of unsymmetric systems has a first level */
+
+static PetscErrorCode UseDirect(KSP ksp, PetscBool symmetric, const char **what)
+{
+  PC pc;
+  PetscFunctionBeginUser;
+  PetscCall(KSPGetPC(ksp, &pc));
+  PetscCall(KSPSetType(ksp, KSPPREONLY));
+  PetscCall(PCSetType(pc, symmetric ? PCCHOLESKY : PCLU));
+  PetscCall(PCFactorSetMatSolverType(pc, MATSOLVERMUMPS));
+  *what = symmetric ? "direct (MUMPS, symmetric)" : "direct (MUMPS)";
+  PetscFunctionReturn(0);
+}
+
+/* Rows of multipliers have no diagonal, so their pivots come late, and the factor outgrows the estimate of the analysis. */
+static PetscErrorCode LeaveRoomForPivots(KSP ksp)
+{
+  PC pc;
+  Mat factor;
+  PetscFunctionBeginUser;
+  PetscCall(KSPGetPC(ksp, &pc));
+  PetscCall(PCFactorSetUpMatSolverType(pc));
+  PetscCall(PCFactorGetMatrix(pc, &factor));
+  PetscCall(MatMumpsSetIcntl(factor, 14, 300)); /* percent */
+  PetscFunctionReturn(0);
+}
+
+/* The mass dominates: a cheap preconditioner on each rank's part, and as few bytes as possible. Symmetric Gauss-Seidel by Eisenstat's
+ * trick costs no more than the product with the matrix, needs no set-up and cannot be indefinite, as incomplete factorisations can. */
+static PetscErrorCode UseBlocks(KSP ksp, const LinearProblem *p, const char **what)
+{
+  PC pc;
+  PetscFunctionBeginUser;
+  PetscCall(BlocksRegister());
+  PetscCall(KSPGetPC(ksp, &pc));
+  PetscCall(PCSetType(pc, PCNONE)); /* it is in the method */
+  PetscCall(KSPSetType(ksp, KSPBLOCKS));
+  PetscCall(KSPSetTolerances(ksp, 1e-4, PETSC_DEFAULT, PETSC_DEFAULT, 500));
+  *what = p->symmetric ? "conjugate gradients, symmetric Gauss-Seidel" : "BiCGStab, symmetric Gauss-Seidel";
+  PetscFunctionReturn(0);
+}
+
+/* The same with PETSc's matrix and methods, where options ask for one. */
+static PetscErrorCode UseKrylov(KSP ksp, const LinearProblem *p, const char **what)
+{
+  PC pc;
+  PetscFunctionBeginUser;
+  PetscCall(KSPGetPC(ksp, &pc));
+  PetscCall(KSPSetType(ksp, p->symmetric ? KSPCG : KSPBCGS));
+  if (!p->symmetric) PetscCall(PCSetType(pc, PCBJACOBI));
+  else
+    PetscCall(
+      PCSetType(pc, p->idle_ranks ? PCSOR : PCEISENSTAT)); /* PETSc 3.18's trick fails where a rank has no rows */
+  *what = p->symmetric ? "conjugate gradients, symmetric Gauss-Seidel" : "BiCGStab, block Jacobi with ILU";
+  PetscCall(KSPSetTolerances(ksp, 1e-4, PETSC_DEFAULT, PETSC_DEFAULT, 500));
+  PetscFunctionReturn(0);
+}
+
+/* A step in which waves cross several cells couples neighbours so strongly that fill of the first level pays. The blocks exist only once
+ * the preconditioner is set up; what the user asked for stays. */
+PetscErrorCode LinearRefine(KSP ksp, Mat matrix, const LinearProblem *p)
+{
+  PC pc, block;
+  KSP *blocks;
+  PetscInt n;
+  PetscBool is_blocks, asked;
+
+  PetscFunctionBeginUser;
+  PetscCall(KSPGetPC(ksp, &pc));
+  PetscCall(PetscObjectTypeCompare((PetscObject)pc, PCBJACOBI, &is_blocks));
+  PetscCall(PetscOptionsHasName(NULL, NULL, "-sub_pc_factor_levels", &asked));
+  if (!is_blocks || asked || p->symmetric || p->courant < REFINE_ABOVE) PetscFunctionReturn(0);
+  PetscCall(KSPSetOperators(ksp, matrix, matrix));
+  PetscCall(PCSetUp(pc));
+  PetscCall(PCBJacobiGetSubKSP(pc, &n, NULL, &blocks));
+  for (PetscInt k = 0; k < n; ++k) {
+    PetscCall(KSPGetPC(blocks[k], &block));
+    PetscCall(PCFactorSetLevels(block, 1));
+  }
+  PetscFunctionReturn(0);
+}
+
+/* The last front of a saddle point may hold pressures that nothing but each other fixes. Spread over the ranks by ScaLAPACK it is
+ * factorised without pivots of two rows, and fails there; on one rank it is not. Without stabilisation the matrix may be singular for
+ * pressures that no point feels (docs/theory.md, "Mixed formulation"): these are set to 0. */
+static PetscErrorCode PrepareSaddlePoint(KSP ksp, PetscBool undetermined)
+{
+  PC pc;
+  Mat factor;
+  PetscFunctionBeginUser;
+  PetscCall(KSPGetPC(ksp, &pc));
+  PetscCall(PCFactorSetUpMatSolverType(pc));
+  PetscCall(PCFactorGetMatrix(pc, &factor));
+  PetscCall(MatMumpsSetIcntl(factor, 13, 1));
+  PetscCall(MatMumpsSetIcntl(factor, 24, undetermined));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode UseMultigrid(KSP ksp, const LinearProblem *p, const char **what)
+{
+  PC pc;
+  PetscFunctionBeginUser;
+  PetscCall(KSPGetPC(ksp, &pc));
+  PetscCall(KSPSetType(ksp, p->symmetric ? KSPCG : KSPGMRES));
+  PetscCall(PCSetType(pc, PCGAMG));
+  PetscCall(KSPSetTolerances(ksp, 1e-8, PETSC_DEFAULT, PETSC_DEFAULT, 1000));
+  *what = p->symmetric ? "conjugate gradients, algebraic multigrid" : "GMRES, algebraic multigrid";
+  PetscFunctionReturn(0);
+}
+
+/* Fill-in makes a factorisation of a 3D matrix costly much earlier than of a 2D one. */
+static PetscBool direct_pays(const LinearProblem *p)
+{
+  if (p->mixed) return p->unknowns < (p->dim == 2 ? 500000 : 20000);
+  if (p->dynamic && p->courant < ITERATE_BELOW) return PETSC_FALSE;
+  return p->unknowns < (p->dim == 2 ? 1000000 : 100000);
+}
+
+static PetscBool prefers_direct(const LinearProblem *p)
+{
+  return p->choice == LINEAR_DIRECT || (p->choice == LINEAR_AUTO && direct_pays(p));
+}
+
+PetscErrorCode LinearForm(const LinearProblem *p, SystemForm *form)
+{
+  PetscBool method, preconditioner;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscOptionsHasName(NULL, NULL, "-ksp_type", &method));
+  PetscCall(PetscOptionsHasName(NULL, NULL, "-pc_type", &preconditioner));
+  const PetscBool usable = !p->multipliers || p->symmetric || p->courant < PROJECT_BELOW;
+  *form = p->dynamic && usable && !p->mixed && !prefers_direct(p) && !method && !preconditioner ? SYSTEM_BLOCKS
+                                                                                                : SYSTEM_ASSEMBLED;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LinearConfigure(KSP ksp, const LinearProblem *p, PetscBool *direct, const char **what)
+{
+  SystemForm form;
+
+  PetscFunctionBeginUser;
+  PetscCall(LinearForm(p, &form));
+  /* multipliers in a matrix make it indefinite */
+  *direct = prefers_direct(p) || (p->multipliers && form != SYSTEM_BLOCKS);
+  if (*direct) PetscCall(UseDirect(ksp, p->symmetric, what));
+  if (*direct && p->mixed) PetscCall(PrepareSaddlePoint(ksp, p->undetermined));
+  if (*direct && p->multipliers) PetscCall(LeaveRoomForPivots(ksp));
+  if (*direct) PetscFunctionReturn(0);
+  if (p->mixed) { /* saddle.c does the rest */
+    *what = "GMRES, Schur complement, algebraic multigrid";
+    PetscFunctionReturn(0);
+  }
+  if (form == SYSTEM_BLOCKS) PetscCall(UseBlocks(ksp, p, what));
+  else if (p->dynamic) PetscCall(UseKrylov(ksp, p, what));
+  else PetscCall(UseMultigrid(ksp, p, what));
+  PetscFunctionReturn(0);
+}

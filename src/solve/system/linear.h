@@ -1,0 +1,26 @@
+/* Which linear solver suits the problem: `linear: auto`.
+ *
+ * Measured (docs/decisions.md): statics in 2D wants a direct solver up to about a million unknowns; dynamics whose step is short
+ * beside the time a wave takes through a cell has a matrix ruled by the mass, and conjugate gradients win. */
+#pragma once
+#include <petscksp.h>
+#include "case/case.h"
+#include "solve/system/system.h"
+
+typedef struct {
+  LinearChoice choice;
+  PetscInt dim, unknowns;
+  PetscBool symmetric, dynamic;
+  PetscBool mixed;        /* is the last unknown of every block a pressure? */
+  PetscBool undetermined; /* mixed without stabilisation: some pressures may be anything */
+  PetscBool idle_ranks;   /* does a rank hold no unknowns? */
+  PetscBool multipliers;  /* are there constraints? then the matrix is not definite */
+  PetscReal courant;      /* wave speed * dt / h */
+} LinearProblem;
+
+/* What that solver works on: blocks where our own conjugate gradients or BiCGStab run, unless options ask PETSc for a solver of its own. */
+PetscErrorCode LinearForm(const LinearProblem *problem, SystemForm *form);
+/* Choose a solver, set it on ksp, whose operators are known (the options database still overrides it); `what` gets a short name for the log. */
+PetscErrorCode LinearConfigure(KSP ksp, const LinearProblem *problem, PetscBool *direct, const char **what);
+/* Collective. After the options were read and with the matrix of the system: what needs its blocks. */
+PetscErrorCode LinearRefine(KSP ksp, Mat matrix, const LinearProblem *problem);

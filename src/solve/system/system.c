@@ -1,0 +1,346 @@
+#include "solve/blocks/blocks.h"
+#include "solve/blocks/projection.h"
+
+PetscErrorCode SystemCreate(MPI_Comm comm, PetscInt dim, PetscInt block, System **system)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscNew(system));
+  (*system)->comm = comm;
+  (*system)->dim = dim;
+  (*system)->block = block;
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode SystemFreePattern(System *s)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscFree(s->active));
+  PetscCall(PetscFree(s->number));
+  PetscCall(PetscFree(s->row));
+  PetscCall(PetscFree(s->row_start));
+  PetscCall(PetscFree(s->column));
+  PetscCall(PetscFree(s->diagonal));
+  PetscCall(PetscFree(s->values));
+  PetscCall(PetscFree(s->singles));
+  s->single = PETSC_FALSE;
+  PetscCall(MatDestroy(&s->matrix));
+  PetscCall(BlocksDestroy(&s->blocks));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode SystemDestroy(System **system)
+{
+  PetscFunctionBeginUser;
+  if (!*system) PetscFunctionReturn(0);
+  PetscCall(SystemFreePattern(*system));
+  PetscCall(SystemFreeSlots(*system));
+  PetscCall(PetscFree(*system));
+  PetscFunctionReturn(0);
+}
+
+/* A node carries unknowns if a cell of any rank holds it. */
+static PetscErrorCode SystemNumber(System *s, const Grid *grid, PetscInt n_entries, const PetscInt *node)
+{
+  PetscReal *used;
+  PetscInt first = 0;
+
+  PetscFunctionBeginUser;
+  s->n_nodes = grid->n_nodes;
+  PetscCall(PetscCalloc1(s->n_nodes, &used));
+  for (PetscInt i = 0; i < n_entries; ++i) used[node[i]] = 1;
+  PetscCall(GridSumToOwners(grid, 1, used));
+  s->n_active = 0;
+  for (PetscInt i = 0; i < grid->n_owned; ++i) s->n_active += used[i] > 0;
+  PetscCall(PetscMalloc1(s->n_active, &s->active));
+  PetscCall(PetscMalloc1(s->n_nodes, &s->number));
+  PetscCallMPI(MPI_Exscan(&s->n_active, &first, 1, MPIU_INT, MPI_SUM, s->comm));
+  PetscCall(MPIU_Allreduce(&s->n_active, &s->n_active_global, 1, MPIU_INT, MPI_SUM, s->comm));
+  PetscCall(MPIU_Allreduce(&s->n_active, &s->n_active_least, 1, MPIU_INT, MPI_MIN, s->comm));
+  for (PetscInt i = 0, k = 0; i < grid->n_owned; ++i) {
+    s->number[i] = used[i] > 0 ? first + k : -1;
+    if (used[i] > 0) s->active[k++] = i;
+    used[i] = (PetscReal)s->number[i];
+  }
+  PetscCall(GridToGhosts(grid, 1, used));
+  for (PetscInt i = grid->n_owned; i < s->n_nodes; ++i) s->number[i] = (PetscInt)used[i];
+  PetscCall(PetscFree(used));
+  PetscFunctionReturn(0);
+}
+
+/* Groups around each local row: CSR of group numbers. */
+static PetscErrorCode RowGroups(const System *s, const NodeGroups *groups, PetscInt **start, PetscInt **group)
+{
+  const PetscInt n = groups->start[groups->n];
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(s->n_rows + 1, start));
+  PetscCall(PetscMalloc1(n, group));
+  for (PetscInt i = 0; i < n; ++i) ++(*start)[s->row[groups->node[i]] + 1];
+  for (PetscInt r = 0; r < s->n_rows; ++r) (*start)[r + 1] += (*start)[r];
+  for (PetscInt g = 0; g < groups->n; ++g)
+    for (PetscInt i = groups->start[g]; i < groups->start[g + 1]; ++i)
+      (*group)[(*start)[s->row[groups->node[i]]]++] = g;
+  for (PetscInt r = s->n_rows; r > 0; --r) (*start)[r] = (*start)[r - 1];
+  (*start)[0] = 0;
+  PetscFunctionReturn(0);
+}
+
+/* Pairs of nodes in the same group, an upper bound of the number of columns. */
+static PetscInt count_pairs(const NodeGroups *groups)
+{
+  PetscInt pairs = 0;
+  for (PetscInt g = 0; g < groups->n; ++g) {
+    const PetscInt nn = groups->start[g + 1] - groups->start[g];
+    pairs += nn * nn;
+  }
+  return pairs;
+}
+
+static PetscErrorCode SystemPattern(System *s, const NodeGroups *groups)
+{
+  const PetscInt n = groups->start[groups->n], bound = count_pairs(groups);
+  PetscInt *start, *group, *mark, *rows, size = 0;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(s->n_nodes, &s->row));
+  for (PetscInt i = 0; i < s->n_nodes; ++i) s->row[i] = -1;
+  for (PetscInt i = 0; i < n; ++i) s->row[groups->node[i]] = 0;
+  for (PetscInt k = 0; k < s->n_active; ++k) s->row[s->active[k]] = 0; /* owned, even if only others' groups hold it */
+  s->n_rows = 0;
+  for (PetscInt i = 0; i < s->n_nodes; ++i)
+    if (s->row[i] == 0) s->row[i] = s->n_rows++;
+  PetscCall(RowGroups(s, groups, &start, &group));
+  PetscCall(PetscMalloc1(s->n_rows, &rows));
+  for (PetscInt i = 0; i < s->n_nodes; ++i)
+    if (s->row[i] >= 0) rows[s->row[i]] = i;
+  PetscCall(PetscMalloc1(s->n_nodes, &mark));
+  for (PetscInt i = 0; i < s->n_nodes; ++i) mark[i] = -1;
+  PetscCall(PetscMalloc1(bound + s->n_rows, &s->column)); /* an upper bound, trimmed below */
+  PetscCall(PetscMalloc1(s->n_rows + 1, &s->row_start));
+  PetscCall(PetscMalloc1(s->n_rows, &s->diagonal));
+  for (PetscInt r = 0; r < s->n_rows; ++r) {
+    s->row_start[r] = size;
+    mark[rows[r]] = r;
+    s->column[size++] = rows[r];
+    for (PetscInt k = start[r]; k < start[r + 1]; ++k)
+      for (PetscInt i = groups->start[group[k]]; i < groups->start[group[k] + 1]; ++i) {
+        const PetscInt node = groups->node[i];
+        if (mark[node] == r) continue;
+        mark[node] = r;
+        s->column[size++] = node;
+      }
+    PetscCall(PetscSortInt(size - s->row_start[r], s->column + s->row_start[r]));
+    for (PetscInt k = s->row_start[r]; k < size; ++k)
+      if (s->column[k] == rows[r]) s->diagonal[r] = k;
+  }
+  s->row_start[s->n_rows] = size;
+  PetscCall(PetscRealloc((size_t)size * sizeof(PetscInt), &s->column));
+  PetscCall(PetscCalloc1(size * s->block * s->block, &s->values));
+  PetscCall(PetscFree(start));
+  PetscCall(PetscFree(group));
+  PetscCall(PetscFree(mark));
+  PetscCall(PetscFree(rows));
+  PetscFunctionReturn(0);
+}
+
+static PetscInt system_numbers(const System *s) { return s->row_start[s->n_rows] * s->block * s->block; }
+
+/* One COO entry for each number in `values`: the matrix is filled by one call, ghost rows travel inside it. */
+static PetscErrorCode AssembledMatrix(System *s)
+{
+  const PetscInt size = s->block, n = s->n_active * size, pairs = s->row_start[s->n_rows];
+  PetscInt *i, *j, *rows;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc3(pairs * size * size, &i, pairs * size * size, &j, s->n_rows, &rows));
+  for (PetscInt node = 0; node < s->n_nodes; ++node)
+    if (s->row[node] >= 0) rows[s->row[node]] = node;
+  for (PetscInt r = 0, e = 0; r < s->n_rows; ++r)
+    for (PetscInt k = s->row_start[r]; k < s->row_start[r + 1]; ++k)
+      for (PetscInt a = 0; a < size; ++a)
+        for (PetscInt b = 0; b < size; ++b, ++e) {
+          i[e] = s->number[rows[r]] * size + a;
+          j[e] = s->number[s->column[k]] * size + b;
+        }
+  PetscCall(MatCreate(s->comm, &s->matrix));
+  PetscCall(MatSetSizes(s->matrix, n, n, PETSC_DETERMINE, PETSC_DETERMINE));
+  PetscCall(MatSetBlockSize(s->matrix, size));
+  PetscCall(MatSetType(s->matrix, MATAIJ));
+  PetscCall(MatSetPreallocationCOO(s->matrix, pairs * size * size, i, j));
+  PetscCall(PetscFree3(i, j, rows));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode MultiplyBlocks(Mat matrix, Vec x, Vec y)
+{
+  Blocks *blocks;
+
+  PetscFunctionBeginUser;
+  PetscCall(MatShellGetContext(matrix, &blocks));
+  PetscCall(BlocksMultiply(blocks, x, y));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode BlockMatrix(System *s, PetscBool symmetric)
+{
+  const PetscInt n = s->n_active * s->dim;
+
+  PetscFunctionBeginUser;
+  PetscCall(BlocksCreate(s, symmetric, &s->blocks));
+  PetscCall(MatCreateShell(s->comm, n, n, PETSC_DETERMINE, PETSC_DETERMINE, s->blocks, &s->matrix));
+  PetscCall(MatShellSetOperation(s->matrix, MATOP_MULT, (void (*)(void))MultiplyBlocks));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode SystemUse(System *s, SystemForm form, PetscBool symmetric)
+{
+  PetscFunctionBeginUser;
+  if (!s->matrix || s->form != form || (s->blocks && s->blocks->symmetric != symmetric)) {
+    PetscCall(MatDestroy(&s->matrix));
+    PetscCall(BlocksDestroy(&s->blocks));
+    s->form = form;
+    if (form == SYSTEM_BLOCKS) PetscCall(BlockMatrix(s, symmetric));
+    else PetscCall(AssembledMatrix(s));
+    PetscCall(SystemGather(s, PETSC_FALSE));
+  }
+  if (symmetric) PetscCall(MatSetOption(s->matrix, MAT_SYMMETRIC, PETSC_TRUE));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode SystemGather(System *s, PetscBool single)
+{
+  PetscFunctionBeginUser;
+  s->single = single && s->blocks;
+  if (s->single) PetscCall(PetscFree(s->values));
+  else if (!s->values) PetscCall(PetscCalloc1(system_numbers(s), &s->values));
+  if (s->blocks && !s->singles) PetscCall(PetscMalloc1(system_numbers(s), &s->singles));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode SystemBuild(System *s, const Grid *grid, const NodeGroups *groups)
+{
+  PetscFunctionBeginUser;
+  PetscCall(SystemFreePattern(s));
+  PetscCall(SystemNumber(s, grid, groups->start[groups->n], groups->node));
+  PetscCall(SystemPattern(s, groups));
+  ++s->builds;
+  PetscFunctionReturn(0);
+}
+
+/* Place of the pair (row of node I, node J) in the pattern. Rows are so short that counting the columns before J, without a branch,
+ * is faster than bisection. */
+static inline PetscInt pair_slot(const System *s, PetscInt I, PetscInt J)
+{
+  const PetscInt row = s->row[I], end = s->row_start[row + 1];
+  PetscInt slot = s->row_start[row];
+  for (PetscInt k = slot; k < end; ++k) slot += s->column[k] < J;
+  return slot;
+}
+
+PetscErrorCode SystemSlots(System *s, const Support *support, PetscBool *complete)
+{
+  const PetscInt nn = support->uniform;
+
+  PetscFunctionBeginUser;
+  if (!nn) {
+    PetscCall(SystemCloudSlots(s, support, complete));
+    PetscFunctionReturn(0);
+  }
+  PetscCall(SystemReserveSlots(s, support->n_groups * nn * nn));
+  for (PetscInt g = 0; g < support->n_groups; ++g) {
+    const PetscInt *node = support->node + support->node_start[g];
+    PetscInt *slot = s->slot + g * nn * nn;
+    for (PetscInt I = 0; I < nn; ++I)
+      for (PetscInt J = 0; J < nn; ++J) slot[I * nn + J] = pair_slot(s, node[I], node[J]);
+  }
+  if (complete) *complete = PETSC_TRUE;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode SystemZero(System *s)
+{
+  PetscFunctionBeginUser;
+  if (s->single) PetscCall(PetscArrayzero(s->singles, system_numbers(s)));
+  else PetscCall(PetscArrayzero(s->values, system_numbers(s)));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode SystemZeroNodes(const System *s, PetscReal *nodes)
+{
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < s->n_nodes; ++i)
+    if (s->row[i] >= 0)
+      for (PetscInt d = 0; d < s->dim; ++d) nodes[i * s->dim + d] = 0;
+  PetscFunctionReturn(0);
+}
+
+/* Rows of prescribed dofs are empty. They get a diagonal of the size of the others', which keeps the matrix's scale. */
+static PetscErrorCode DiagonalScale(const System *s, PetscReal *scale)
+{
+  PetscReal largest = 0;
+
+  PetscFunctionBeginUser;
+  for (PetscInt r = 0; r < s->n_rows; ++r)
+    for (PetscInt a = 0; a < s->dim; ++a)
+      largest = PetscMax(largest, s->values[(s->diagonal[r] * s->block + a) * s->block + a]);
+  PetscCall(MPIU_Allreduce(&largest, scale, 1, MPIU_REAL, MPIU_MAX, s->comm));
+  if (*scale == 0) *scale = 1;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode SystemToMatrix(System *s, const unsigned char *fixed, const unsigned char *idle)
+{
+  const PetscInt dim = s->dim, block = s->block;
+  PetscReal scale;
+
+  PetscFunctionBeginUser;
+  if (!s->matrix) PetscCall(SystemUse(s, SYSTEM_ASSEMBLED, PETSC_FALSE));
+  if (s->blocks) {
+    for (PetscInt i = 0; !s->single && i < system_numbers(s); ++i) s->singles[i] = (float)s->values[i];
+    if (s->blocks->projection) projection_strengthen(s->blocks->projection);
+    PetscCall(BlocksFill(s->blocks, s, fixed));
+    PetscFunctionReturn(0);
+  }
+  PetscCall(DiagonalScale(s, &scale));
+  for (PetscInt k = 0; k < s->n_active; ++k) {
+    const PetscInt node = s->active[k], d = s->diagonal[s->row[node]];
+    for (PetscInt a = 0; a < dim; ++a)
+      if (fixed[node * dim + a]) s->values[(d * block + a) * block + a] = scale;
+    if (block > dim && idle[node]) s->values[(d * block + dim) * block + dim] = -scale;
+  }
+  PetscCall(MatSetValuesCOO(s->matrix, s->values, INSERT_VALUES));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode SystemCreateVec(const System *s, Vec *x)
+{
+  PetscFunctionBeginUser;
+  PetscCall(VecCreateMPI(s->comm, s->n_active * s->block, PETSC_DETERMINE, x));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode SystemToNodes(const System *s, const Grid *grid, Vec x, PetscInt first, PetscInt n, PetscReal *nodes)
+{
+  const PetscReal *v;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscArrayzero(nodes, s->n_nodes * n));
+  PetscCall(VecGetArrayRead(x, &v));
+  for (PetscInt k = 0; k < s->n_active; ++k)
+    for (PetscInt a = 0; a < n; ++a) nodes[s->active[k] * n + a] = v[k * s->block + first + a];
+  PetscCall(VecRestoreArrayRead(x, &v));
+  PetscCall(GridToGhosts(grid, n, nodes));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode SystemFromNodes(const System *s, const PetscReal *nodes, PetscInt first, PetscInt n, Vec x)
+{
+  PetscReal *v;
+
+  PetscFunctionBeginUser;
+  PetscCall(VecGetArray(x, &v));
+  for (PetscInt k = 0; k < s->n_active; ++k)
+    for (PetscInt a = 0; a < n; ++a) v[k * s->block + first + a] = nodes[s->active[k] * n + a];
+  PetscCall(VecRestoreArray(x, &v));
+  PetscFunctionReturn(0);
+}

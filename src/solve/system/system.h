@@ -1,0 +1,74 @@
+/* The linear system of a step: which nodes carry unknowns, the sparse pattern, and group -> matrix slots.
+ *
+ * Unknowns sit on the nodes of the groups (cells, clouds) handed to SystemBuild; those that no material touches get nothing but a diagonal, so that the pattern (and the symbolic factorisation) may be padded and kept over many steps. */
+#pragma once
+#include <petscksp.h>
+#include "points/support.h"
+
+/* What the linear solver works on: a matrix of PETSc, or blocks in single precision for symmetric Gauss-Seidel (solve/blocks/blocks.h). */
+typedef enum { SYSTEM_ASSEMBLED, SYSTEM_BLOCKS } SystemForm;
+
+/* The clouds that the slots were last looked up for: most are the same in the next step. */
+typedef struct {
+  PetscInt builds;           /* of the pattern then; 0: not all pairs were there */
+  PetscInt n, *start, *node; /* groups and their nodes */
+  PetscInt capacity, capacity_entries;
+  PetscInt n_spare, *spare; /* slots on their way to another place */
+} CloudsBefore;
+
+typedef struct System {
+  MPI_Comm comm;
+  PetscInt dim, block; /* displacements, and all unknowns, per node: dim, or dim + 1 with a pressure */
+  PetscInt n_nodes;    /* local nodes of the grid or cloud */
+  PetscInt n_active;   /* owned nodes that carry unknowns */
+  PetscInt n_active_global, n_active_least; /* over all ranks: sum and smallest */
+  PetscInt *active;                         /* n_active local nodes, ascending */
+  PetscInt *number;                         /* n_nodes: global number of the node's unknowns, -1 if none */
+  PetscInt n_rows;                          /* local nodes with unknowns, ghosts too: rows of the local pattern */
+  PetscInt *row;                            /* n_nodes: row of the local pattern, -1 if none */
+  PetscInt *row_start, *column;             /* pattern of node pairs: n_rows + 1, and local nodes, ascending in a row */
+  PetscInt *diagonal;                       /* n_rows: place of the diagonal pair */
+  PetscReal *values;                        /* block x block numbers of pair k at k * block * block */
+  float *singles;                           /* the same in single precision, which is all that blocks need */
+  PetscBool single;                         /* is the tangent gathered in singles, or else in values? */
+  PetscInt n_slots, *slot;                  /* SystemSlots: nn x nn pairs of each group */
+  CloudsBefore before;
+  SystemForm form;
+  Mat matrix;            /* what the linear solver gets: assembled, or a shell over blocks; made by SystemUse */
+  struct Blocks *blocks; /* of that shell */
+  PetscInt builds;       /* how often the pattern was made */
+} System;
+
+PetscErrorCode SystemCreate(MPI_Comm comm, PetscInt dim, PetscInt block, System **system);
+PetscErrorCode SystemDestroy(System **system);
+
+/* Collective. Unknowns on the nodes of the groups, coupled group by group. */
+PetscErrorCode SystemBuild(System *system, const Grid *grid, const NodeGroups *groups);
+/* Look up the slots of every group of the support. Cells' nodes must all carry unknowns; clouds (uniform = 0) have ascending nodes, and
+ * `complete` tells whether the pattern has all their pairs on this rank. */
+PetscErrorCode SystemSlots(System *system, const Support *support, PetscBool *complete);
+/* What SystemSlots consists of (cloud_slots.c). */
+PetscErrorCode SystemReserveSlots(System *system, PetscInt n);
+PetscErrorCode SystemCloudSlots(System *system, const Support *support, PetscBool *complete);
+PetscErrorCode SystemFreeSlots(System *system);
+/* Fill the blocks before the diagonals with the transposes of those behind them. */
+PetscErrorCode SystemMirror(System *system);
+/* Zero values or singles, whichever are in use. */
+PetscErrorCode SystemZero(System *system);
+/* Zero an array of n_nodes x dim where nodes have unknowns, ghosts too. */
+PetscErrorCode SystemZeroNodes(const System *system, PetscReal *nodes);
+
+/* Collective. Make the matrix in this form, if it is not there yet. */
+PetscErrorCode SystemUse(System *system, SystemForm form, PetscBool symmetric);
+/* May the tangent be gathered in single precision? Only where the matrix works on blocks; forgotten with the pattern. */
+PetscErrorCode SystemGather(System *system, PetscBool single);
+/* Collective. Diagonal entries for the displacements in fixed (n_nodes x dim: prescribed, or on a node that no material touches) and for
+ * the pressures of idle nodes (n_nodes; NULL without pressures), then values -> matrix. */
+PetscErrorCode SystemToMatrix(System *system, const unsigned char *fixed, const unsigned char *idle);
+
+/* Components first .. first + n - 1 of the unknowns in a Vec <-> local array n_nodes x n. ToNodes zeroes nodes without unknowns and fills
+ * ghosts; FromNodes takes owners. */
+PetscErrorCode SystemToNodes(const System *system, const Grid *grid, Vec x, PetscInt first, PetscInt n,
+                             PetscReal *nodes);
+PetscErrorCode SystemFromNodes(const System *system, const PetscReal *nodes, PetscInt first, PetscInt n, Vec x);
+PetscErrorCode SystemCreateVec(const System *system, Vec *x);

@@ -1,0 +1,446 @@
+/* The language of reference.yaml, read through the same tables as a case file. */
+#include "verify/verify_reference.h"
+#include <math.h>
+#include <string.h>
+#include "input/case_file.h"
+#include "input/schema/schema.h"
+#include "verify/verify_settings.h"
+
+#define AT(type, member) .offset = offsetof(type, member)
+#define GIVEN(type, member) .present = 1 + offsetof(type, member)
+#define ABOVE(low) .bounded = PETSC_TRUE, .min = (low), .min_open = PETSC_TRUE, .max = INFINITY, .max_open = PETSC_TRUE
+#define AT_LEAST(low) .bounded = PETSC_TRUE, .min = (low), .max = INFINITY, .max_open = PETSC_TRUE
+#define REQUIRED .required = PETSC_TRUE
+
+const char *const confidence_words[] = {"", "given", "recovered", "verified", "assumed"};
+const char *const report_numbers[] = {"iterations", "iterations-per-step", "steps", "halvings", "seconds", NULL};
+
+static const SchemaWord confidences[] = {
+  {"given", CONFIDENCE_GIVEN, "printed in the source"},
+  {"recovered", CONFIDENCE_RECOVERED, "found in another public source of the same authors"},
+  {"verified", CONFIDENCE_VERIFIED, "inferred, and confirmed by independent programs"},
+  {"assumed", CONFIDENCE_ASSUMED, "chosen where the source is silent"},
+  {NULL, 0, NULL},
+};
+static const SchemaWord figures[] = {
+  {"none", VERIFY_FIGURE_NONE, "no figure"},
+  {"convergence", VERIFY_FIGURE_CONVERGENCE, "relative error, both axes logarithmic"},
+  {"values", VERIFY_FIGURE_VALUES, "values and references over the variable"},
+  {"history", VERIFY_FIGURE_HISTORY, "the measure over time, a curve for each row"},
+  {"normal-history", VERIFY_FIGURE_NORMAL_HISTORY, "the same over its value at the end"},
+  {NULL, 0, NULL},
+};
+
+#define SOURCE_ENTRIES(owner)                                                                          \
+  {.key = "source", .type = TYPE_TEXT, .help = "where the numbers come from", AT(owner, source.text)}, \
+  {                                                                                                    \
+    .key = "confidence", .type = TYPE_WORD, .words = confidences, .help = "how sure they are",         \
+    AT(owner, source.confidence)                                                                       \
+  }
+
+static PetscErrorCode OpenSettings(SchemaReader *r, const YamlNode *mapping, void *target)
+{
+  PetscFunctionBeginUser;
+  if (mapping->n > VERIFY_MAX_SETTINGS / 4)
+    SchemaError(r, mapping, "more than %d values are changed here", VERIFY_MAX_SETTINGS / 4);
+  PetscCall(SettingsRead(mapping, target));
+  PetscFunctionReturn(0);
+}
+
+static const SchemaEntry settings_entries[] = {{.key = NULL}};
+static const SchemaTable settings_table = {.name = "set",
+                                           .help = "Values of the case file to change.",
+                                           .entries = settings_entries,
+                                           .open = OpenSettings,
+                                           .size = sizeof(Settings)};
+#define SET_ENTRY(owner)                                                                                     \
+  {                                                                                                          \
+    .key = "set", .type = TYPE_TABLE, .table = &settings_table, .help = "values of the case file to change", \
+    AT(owner, set)                                                                                           \
+  }
+
+static PetscErrorCode OpenSeriesSettings(SchemaReader *r, const YamlNode *mapping, void *target)
+{
+  SeriesSettings *own = target;
+
+  PetscFunctionBeginUser;
+  PetscCall(OpenSettings(r, mapping, &own->set));
+  PetscFunctionReturn(0);
+}
+
+static const SchemaTable series_settings_table = {.name = "sets",
+                                                  .help = "Values of the case file to change for this series.",
+                                                  .entries = settings_entries,
+                                                  .open = OpenSeriesSettings,
+                                                  .size = sizeof(SeriesSettings)};
+
+static const SchemaEntry sweep_entries[] = {
+  {.key = "name", .type = TYPE_TEXT, .help = "what varies from row to row, in words", REQUIRED, AT(SweepSpec, name)},
+  {.key = "symbol",
+   .type = TYPE_NAME,
+   .help = "its symbol; $symbol stands for the value in `set`",
+   REQUIRED,
+   AT(SweepSpec, symbol)},
+  {.key = "unit", .type = TYPE_TEXT, .help = "its unit", AT(SweepSpec, unit)},
+  SET_ENTRY(SweepSpec),
+  {.key = NULL},
+};
+static const SchemaTable sweep_table = {
+  .name = "sweep", .help = "The variable of the rows.", .entries = sweep_entries, .size = sizeof(SweepSpec)};
+
+static const SchemaEntry series_entries[] = {
+  {.key = "title", .type = TYPE_TEXT, .help = "in pictures; default: its name", AT(SeriesSpec, title)},
+  SET_ENTRY(SeriesSpec),
+  {.key = "full", .type = TYPE_BOOLEAN, .fallback = "false", .help = "only with --full", AT(SeriesSpec, full)},
+  {.key = "time-scale",
+   .type = TYPE_NUMBER,
+   .fallback = "1",
+   .help = "unit of time in a picture of its history, s",
+   ABOVE(0),
+   AT(SeriesSpec, time_scale)},
+  {.key = "tolerance",
+   .type = TYPE_NUMBER,
+   .help = "relative",
+   AT_LEAST(0),
+   AT(SeriesSpec, tolerance),
+   GIVEN(SeriesSpec, has_tolerance)},
+  SOURCE_ENTRIES(SeriesSpec),
+  {.key = NULL},
+};
+static const SchemaTable series_table = {
+  .name = "series", .help = "One column of results.", .entries = series_entries, .size = sizeof(SeriesSpec)};
+
+static PetscErrorCode CheckRow(SchemaReader *r, const YamlNode *mapping, void *target)
+{
+  RowSpec *row = target;
+
+  PetscFunctionBeginUser;
+  (void)r;
+  row->node = mapping;
+  if (!SchemaParseNumber(YamlFind(mapping, "at"), &row->x)) row->x = NAN;
+  PetscFunctionReturn(0);
+}
+
+static const SchemaEntry row_entries[] = {
+  {.key = "at", .type = TYPE_TEXT, .help = "value of the variable", REQUIRED, AT(RowSpec, at)},
+  {.key = "full", .type = TYPE_BOOLEAN, .fallback = "false", .help = "only with --full", AT(RowSpec, full)},
+  SET_ENTRY(RowSpec),
+  {.key = "sets",
+   .type = TYPE_NAMED,
+   .table = &series_settings_table,
+   .help = "values of the case file to change for one series alone",
+   AT(RowSpec, sets),
+   .count = offsetof(RowSpec, n_sets)},
+  {.key = "reference",
+   .type = TYPE_NUMBER,
+   .help = "what every series must give",
+   AT(RowSpec, reference),
+   GIVEN(RowSpec, has_reference)},
+  {.key = "references",
+   .type = TYPE_NUMBERS,
+   .help = "what each series must give",
+   AT(RowSpec, references),
+   .count = offsetof(RowSpec, n_references)},
+  {.key = "tolerance",
+   .type = TYPE_NUMBER,
+   .help = "relative",
+   AT_LEAST(0),
+   AT(RowSpec, tolerance),
+   GIVEN(RowSpec, has_tolerance)},
+  SOURCE_ENTRIES(RowSpec),
+  {.key = NULL},
+};
+static const SchemaGroup row_groups[] = {{GROUP_AT_MOST_ONE, {"reference", "references", NULL}}, {GROUP_NONE, {NULL}}};
+static const SchemaTable row_table = {.name = "row",
+                                      .help = "One row of the table.",
+                                      .entries = row_entries,
+                                      .groups = row_groups,
+                                      .check = CheckRow,
+                                      .size = sizeof(RowSpec)};
+
+static const SchemaEntry exact_entries[] = {
+  {.key = "value",
+   .type = TYPE_NUMBER,
+   .help = "the limit of every series",
+   AT(ExactSpec, value),
+   GIVEN(ExactSpec, has_value)},
+  {.key = "values",
+   .type = TYPE_NUMBERS,
+   .help = "the limit of each series",
+   AT(ExactSpec, values),
+   .count = offsetof(ExactSpec, n_values)},
+  SOURCE_ENTRIES(ExactSpec),
+  {.key = "order",
+   .type = TYPE_NUMBER,
+   .help = "order of convergence expected",
+   ABOVE(0),
+   .with = "between",
+   AT(ExactSpec, order)},
+  {.key = "order-tolerance",
+   .type = TYPE_NUMBER,
+   .fallback = "0.1",
+   .help = "how far the observed order may be off",
+   ABOVE(0),
+   AT(ExactSpec, order_tolerance)},
+  {.key = "between",
+   .type = TYPE_INTERVAL,
+   .help = "rows [smallest, largest] between which the order is asked for",
+   .with = "order",
+   AT(ExactSpec, from),
+   .second = offsetof(ExactSpec, to)},
+  {.key = NULL},
+};
+static const SchemaGroup exact_groups[] = {{GROUP_ONE, {"value", "values", NULL}}, {GROUP_NONE, {NULL}}};
+static const SchemaTable exact_table = {.name = "exact",
+                                        .help = "What the values tend to.",
+                                        .entries = exact_entries,
+                                        .groups = exact_groups,
+                                        .size = sizeof(ExactSpec)};
+
+static const SchemaEntry agree_entries[] = {
+  {.key = "series", .type = TYPE_NAME, .help = "the series compared", REQUIRED, AT(AgreeSpec, series)},
+  {.key = "with", .type = TYPE_NAME, .help = "an earlier series", REQUIRED, AT(AgreeSpec, with)},
+  {.key = "tolerance", .type = TYPE_NUMBER, .help = "relative", REQUIRED, ABOVE(0), AT(AgreeSpec, tolerance)},
+  {.key = NULL},
+};
+static const SchemaTable agree_table = {
+  .name = "agree", .help = "Two series that must agree.", .entries = agree_entries, .size = sizeof(AgreeSpec)};
+
+/* A name that must be one of the study's series. */
+static PetscInt SeriesNamed(SchemaReader *r, const StudySpec *study, const YamlNode *node, const char *name,
+                            PetscBool key)
+{
+  const char *words[33] = {NULL};
+  const PetscInt index = reference_series(study, name), n = PetscMin(study->n_series, 32);
+  if (index >= 0) return index;
+  for (PetscInt s = 0; s < n; ++s) words[s] = study->series[s].name;
+  YamlError(r->document, r->diag, node, key, "there is no series '%s' in this study", name);
+  SchemaHintWords(r, name, n, words);
+  return -1;
+}
+
+static void CheckSeriesNames(SchemaReader *r, const StudySpec *study, const YamlNode *numbers)
+{
+  for (PetscInt i = 0; numbers && i < numbers->n; ++i)
+    SeriesNamed(r, study, numbers->child[i], numbers->child[i]->key, PETSC_TRUE);
+}
+
+static void CheckAgree(SchemaReader *r, const StudySpec *study, const YamlNode *list)
+{
+  for (PetscInt k = 0; k < study->n_agree; ++k) {
+    const YamlNode *series = YamlFind(list->child[k], "series"), *with = YamlFind(list->child[k], "with");
+    const PetscInt a = SeriesNamed(r, study, series, study->agree[k].series, PETSC_FALSE);
+    const PetscInt b = SeriesNamed(r, study, with, study->agree[k].with, PETSC_FALSE);
+    if (a < 0 || b < 0 || b < a) continue;
+    SchemaError(r, with, "'%s' must stand before '%s' among the series", study->agree[k].with, study->agree[k].series);
+  }
+}
+
+/* The series that sets the pace is the first one: its seconds are known when the others have run. */
+static void CheckPace(SchemaReader *r, const StudySpec *study, const YamlNode *pace)
+{
+  if (!pace) return;
+  if (SeriesNamed(r, study, pace, study->pace, PETSC_FALSE) > 0)
+    SchemaError(r, pace, "'%s' must stand before all other series", study->pace);
+}
+
+static void CheckLimits(SchemaReader *r, const YamlNode *limits)
+{
+  PetscInt n = 0, found;
+  while (report_numbers[n]) ++n;
+  for (PetscInt i = 0; limits && i < limits->n; ++i) {
+    for (found = 0; found < n && strcmp(report_numbers[found], limits->child[i]->key);) ++found;
+    if (found < n) continue;
+    SchemaKeyError(r, limits->child[i], "a run reports no '%s'", limits->child[i]->key);
+    SchemaHintWords(r, limits->child[i]->key, n, report_numbers);
+  }
+}
+
+/* Every number has a source, and a place where a variable is a number has one. */
+static void CheckRows(SchemaReader *r, const StudySpec *study, PetscBool numeric)
+{
+  for (PetscInt i = 0; i < study->n_rows; ++i) {
+    const RowSpec *row = &study->rows[i];
+    CheckSeriesNames(r, study, YamlFind(row->node, "references"));
+    CheckSeriesNames(r, study, YamlFind(row->node, "sets"));
+    if (study->moments && !(row->x >= 0)) SchemaError(r, YamlFind(row->node, "at"), "a moment is a time in s");
+    if (numeric && !(row->x > 0))
+      SchemaError(r, YamlFind(row->node, "at"), "an order or a figure of convergence needs numbers above 0 here");
+    for (PetscInt s = 0; s < study->n_series; ++s) {
+      if (PetscIsNanReal(reference_value(row, &study->series[s])) || reference_source(study, row, &study->series[s]))
+        continue;
+      SchemaError(r, row->node, "this reference has no source");
+      DiagHint(r->diag, "give source and confidence in the row, its series or the study");
+      break;
+    }
+    for (PetscInt k = 0; k < i; ++k)
+      if (!strcmp(study->rows[k].at, row->at))
+        SchemaError(r, YamlFind(row->node, "at"), "there is a row at %s already", row->at);
+  }
+}
+
+static PetscErrorCode CheckStudy(SchemaReader *r, const YamlNode *mapping, void *target)
+{
+  StudySpec *study = target;
+  const YamlNode *exact = YamlFind(mapping, "exact");
+
+  PetscFunctionBeginUser;
+  study->node = mapping;
+  if (study->moments && study->has_course)
+    SchemaError(r, YamlFind(mapping, "moments"), "the distance from a course belongs to the whole run");
+  CheckRows(r, study, study->exact.order > 0 || study->figure == VERIFY_FIGURE_CONVERGENCE);
+  if (study->has_exact) {
+    CheckSeriesNames(r, study, YamlFind(exact, "values"));
+    if (!study->exact.source.text && !study->source.text) SchemaKeyError(r, exact, "the exact value has no source");
+  } else if (study->figure == VERIFY_FIGURE_CONVERGENCE)
+    SchemaError(r, YamlFind(mapping, "figure"), "a figure of convergence needs `exact`");
+  CheckAgree(r, study, YamlFind(mapping, "agree"));
+  CheckPace(r, study, YamlFind(mapping, "pace"));
+  CheckLimits(r, YamlFind(mapping, "limits"));
+  PetscFunctionReturn(0);
+}
+
+static const SchemaEntry course_entries[] = {
+  {.key = "constant", .type = TYPE_NUMBER, .fallback = "0", .help = "at t = 0", AT(CourseSpec, constant)},
+  {.key = "linear", .type = TYPE_NUMBER, .fallback = "0", .help = "times t", AT(CourseSpec, linear)},
+  {.key = "quadratic", .type = TYPE_NUMBER, .fallback = "0", .help = "times t^2", AT(CourseSpec, quadratic)},
+  {.key = "every",
+   .type = TYPE_NUMBER,
+   .fallback = "0",
+   .help = "compare at multiples of this time, s; 0: at every row of the history",
+   AT_LEAST(0),
+   AT(CourseSpec, every)},
+  {.key = "factor", .type = TYPE_NUMBER, .fallback = "1", .help = "times the distance", AT(CourseSpec, factor)},
+  {.key = NULL},
+};
+static const SchemaTable course_table = {
+  .name = "course", .help = "A course in time.", .entries = course_entries, .size = sizeof(CourseSpec)};
+
+static const SchemaEntry study_entries[] = {
+  {.key = "title", .type = TYPE_TEXT, .help = "what the study shows", REQUIRED, AT(StudySpec, title)},
+  {.key = "measure",
+   .type = TYPE_NAME,
+   .help = "the measure of the case that is compared, at the end of the run",
+   REQUIRED,
+   AT(StudySpec, measure)},
+  {.key = "course",
+   .type = TYPE_TABLE,
+   .table = &course_table,
+   .help = "the value is the root of the sum of squared distances of the history from this course",
+   AT(StudySpec, course),
+   GIVEN(StudySpec, has_course)},
+  {.key = "moments",
+   .type = TYPE_BOOLEAN,
+   .fallback = "false",
+   .help = "the rows are moments, in s, of one run: the value is the measure then",
+   AT(StudySpec, moments)},
+  {.key = "sweep",
+   .type = TYPE_TABLE,
+   .table = &sweep_table,
+   .help = "the variable of the rows",
+   REQUIRED,
+   AT(StudySpec, sweep)},
+  {.key = "series",
+   .type = TYPE_NAMED,
+   .table = &series_table,
+   .help = "the columns of results",
+   REQUIRED,
+   AT(StudySpec, series),
+   .count = offsetof(StudySpec, n_series)},
+  {.key = "rows",
+   .type = TYPE_LIST,
+   .table = &row_table,
+   .help = "the rows",
+   REQUIRED,
+   AT(StudySpec, rows),
+   .count = offsetof(StudySpec, n_rows)},
+  {.key = "tolerance",
+   .type = TYPE_NUMBER,
+   .help = "of the references, relative",
+   REQUIRED,
+   AT_LEAST(0),
+   AT(StudySpec, tolerance)},
+  {.key = "absolute",
+   .type = TYPE_NUMBER,
+   .fallback = "0",
+   .help = "added to it, in the unit of the measure",
+   AT_LEAST(0),
+   AT(StudySpec, absolute)},
+  {.key = "at-most",
+   .type = TYPE_BOOLEAN,
+   .fallback = "false",
+   .help = "the references are upper bounds",
+   AT(StudySpec, at_most)},
+  {.key = "pace",
+   .type = TYPE_NAME,
+   .help = "the series with whose run time that of the others is compared",
+   AT(StudySpec, pace)},
+  SOURCE_ENTRIES(StudySpec),
+  {.key = "exact",
+   .type = TYPE_TABLE,
+   .table = &exact_table,
+   .help = "what the values tend to",
+   AT(StudySpec, exact),
+   GIVEN(StudySpec, has_exact)},
+  {.key = "agree",
+   .type = TYPE_LIST,
+   .table = &agree_table,
+   .help = "series that must agree",
+   AT(StudySpec, agree),
+   .count = offsetof(StudySpec, n_agree)},
+  {.key = "limits",
+   .type = TYPE_NUMBERS,
+   .help = "what the numbers of a run may not exceed",
+   AT(StudySpec, limits),
+   .count = offsetof(StudySpec, n_limits)},
+  {.key = "figure",
+   .type = TYPE_WORD,
+   .words = figures,
+   .fallback = "none",
+   .help = "picture of the study",
+   AT(StudySpec, figure)},
+  {.key = NULL},
+};
+static const SchemaTable study_table = {.name = "study",
+                                        .help = "One table of results.",
+                                        .entries = study_entries,
+                                        .check = CheckStudy,
+                                        .size = sizeof(StudySpec)};
+
+static const SchemaEntry reference_entries[] = {
+  {.key = "title", .type = TYPE_TEXT, .help = "the benchmark", REQUIRED, AT(Reference, title)},
+  {.key = "studies",
+   .type = TYPE_NAMED,
+   .table = &study_table,
+   .help = "tables by name",
+   REQUIRED,
+   AT(Reference, studies),
+   .count = offsetof(Reference, n_studies)},
+  {.key = NULL},
+};
+static const SchemaTable reference_table = {
+  .name = "reference", .help = "Reference values of a case.", .entries = reference_entries, .size = sizeof(Reference)};
+
+PetscErrorCode ReferenceRead(MPI_Comm comm, const char *file, Diag *diag, Reference **reference)
+{
+  const PetscInt before = DiagErrors(diag);
+  const DiagPlace whole = {.file = file, .width = 1};
+  char *bytes, reason[256];
+  size_t size = 0;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscNew(reference));
+  PetscCall(FileReadEverywhere(comm, file, &size, &bytes, reason));
+  if (reason[0]) DiagAt(diag, DIAG_ERROR, &whole, "%s", reason);
+  else PetscCall(YamlCreate(file, bytes, size, diag, &(*reference)->document));
+  PetscCall(PetscFree(bytes));
+  YamlDocument *document = (*reference)->document;
+  if (document && document->root && document->root->kind != YAML_MAPPING)
+    YamlError(document, diag, document->root, PETSC_FALSE, "the file must be a mapping of keys");
+  else if (document && document->root) {
+    SchemaReader reader = {.document = document, .diag = diag};
+    PetscCall(SchemaReadTable(&reader, &reference_table, document->root, *reference));
+  }
+  if (DiagErrors(diag) > before) PetscCall(ReferenceDestroy(reference));
+  PetscFunctionReturn(0);
+}

@@ -1,0 +1,7 @@
+talus_test(output/test_vtk RANKS 1 2 3)
+talus_test(output/test_vtk_disk RANKS 1 2 3)
+talus_test(output/test_run_dir RANKS 1 2)
+talus_test(output/test_checkpoint RANKS 1 2 3)
+talus_test(output/test_history RANKS 1 2)
+talus_test(output/test_seal)
+talus_test(output/test_progress)

@@ -1,0 +1,410 @@
+/* Pictures: points fill their body, colours mean their values, and gnuplot makes a PNG of it, or says
+ * why not. */
+#include "../output/test_output.h"
+#include <math.h>
+#include <sys/stat.h>
+#include "picture/figure.h"
+#include "picture/plot.h"
+#include "picture/plot_field.h"
+#include "picture/plot_raster.h"
+#include "picture/plot_spacing.h"
+#include "output/directory/run_dir.h"
+#include "output/vtk/vtk.h"
+
+/* Points at 2 x 2 Gauss points of n x n cells in the unit square, or 2 x 2 x 2 in the unit cube. */
+static PetscInt GaussPoints(PetscInt dim, PetscInt n, PetscReal *x)
+{
+  const PetscReal h = 1.0 / n, g = 0.5 / sqrt(3.0);
+  PetscInt count = 0;
+  for (PetscInt c = 0; c < (dim == 3 ? n : 1); ++c)
+    for (PetscInt b = 0; b < n; ++b)
+      for (PetscInt a = 0; a < n; ++a)
+        for (PetscInt k = 0; k < (dim == 3 ? 8 : 4); ++k, ++count) {
+          x[3 * count] = h * (a + 0.5 + (k & 1 ? g : -g));
+          x[3 * count + 1] = h * (b + 0.5 + (k & 2 ? g : -g));
+          x[3 * count + 2] = dim == 3 ? h * (c + 0.5 + (k & 4 ? g : -g)) : 0;
+        }
+  return count;
+}
+
+static void test_spacing(void **state)
+{
+  static PetscReal x[3 * 8000], radius[8000];
+  (void)state;
+  PetscInt n = GaussPoints(2, 20, x);
+  assert_int_equal(PlotSpacing(2, n, x, radius), 0);
+  for (PetscInt i = 0; i < n; ++i)
+    assert_true(radius[i] > 0.408 / 20 && radius[i] < 0.6 / 20); /* half the diagonal of the gap; more in corners */
+  n = GaussPoints(3, 8, x);
+  assert_int_equal(PlotSpacing(3, n, x, radius), 0);
+  for (PetscInt i = 0; i < n; ++i) assert_true(radius[i] > 0.4 / 8 && radius[i] < 0.7 / 8);
+  for (n = 0; n <= 3; ++n) { /* a handful of points, some in the same place, is no reason to fail */
+    x[0] = x[1] = x[3] = x[4] = 1, x[6] = x[7] = 2;
+    assert_int_equal(PlotSpacing(2, n, x, radius), 0);
+    for (PetscInt i = 0; i < n; ++i) assert_true(radius[i] > 0 && radius[i] < 10);
+  }
+}
+
+/* The square is filled, all else is empty, and each place has the colour of its value (which is x). */
+static void test_raster(void **state)
+{
+  enum { W = 120, H = 100 };
+  static PetscReal x[3 * 1600], radius[1600], value[1600];
+  static unsigned char rgba[4 * W * H];
+  (void)state;
+  const PetscInt n = GaussPoints(2, 20, x);
+  assert_int_equal(PlotSpacing(2, n, x, radius), 0);
+  for (PetscInt i = 0; i < n; ++i) value[i] = x[3 * i];
+  const RasterScene scene = {
+    .n = n, .x = x, .radius = radius, .value = value, .min = {-0.1, 0}, .max = {1.1, 1}, .width = W, .height = H};
+  assert_int_equal(RasterDraw(&scene, rgba), 0);
+  for (int row = 2; row < H - 2; ++row)
+    for (int column = 0; column < W; ++column) {
+      const unsigned char *pixel = rgba + 4 * (row * W + column);
+      PetscReal rgb[3];
+      if (column < 8 || column >= W - 8) assert_int_equal(pixel[3], 0);
+      if (column < 12 || column >= W - 12) continue;
+      assert_int_equal(pixel[3], 255);
+      palette_colour((column + 0.5) / 100 - 0.1, rgb);
+      for (int c = 0; c < 3; ++c) assert_true(fabs(pixel[c] - rgb[c]) < 12);
+    }
+}
+
+/* What is nearer to the eye hides what is behind, whichever comes first. */
+static void test_raster_depth(void **state)
+{
+  const PetscReal x[] = {0, 0, 1, 0, 0, 0}, y[] = {0, 0, 0, 0, 0, 1}, radius[] = {0.5, 0.5}, value[] = {0, 1};
+  unsigned char rgba[4 * 25];
+  (void)state;
+  RasterScene scene = {
+    .n = 2, .x = x, .radius = radius, .value = value, .min = {-1, -1}, .max = {1, 1}, .width = 5, .height = 5};
+  assert_int_equal(RasterDraw(&scene, rgba), 0);
+  assert_true(rgba[4 * 12] == 68 && rgba[4 * 12 + 3] == 255);
+  scene.x = y;
+  assert_int_equal(RasterDraw(&scene, rgba), 0);
+  assert_int_equal(rgba[4 * 12], 253);
+}
+
+/* Two columns of balls, 0.1 in radius, with 0.4 between them: the gap is filled from both sides, and nothing beyond the outline. */
+static void test_raster_gap(void **state)
+{
+  enum { W = 100, H = 100 };
+  static unsigned char rgba[4 * W * H], plain[4 * W * H];
+  static PetscReal x[3 * 40], radius[40], value[40];
+  (void)state;
+  for (int i = 0; i < 40; ++i) {
+    x[3 * i] = i < 20 ? 0.2 : 0.8;
+    x[3 * i + 1] = 0.025 + 0.05 * (i % 20);
+    radius[i] = 0.1;
+    value[i] = i < 20 ? 0 : 1;
+  }
+  RasterScene scene = {
+    .n = 40, .x = x, .radius = radius, .value = value, .min = {0, 0}, .max = {1, 1}, .width = W, .height = H};
+  assert_int_equal(RasterDraw(&scene, plain), 0);
+  scene.gap = 0.25;
+  assert_int_equal(RasterDraw(&scene, rgba), 0);
+  for (int column = 2; column < W - 2; ++column) {
+    const unsigned char *before = plain + 4 * (50 * W + column), *after = rgba + 4 * (50 * W + column);
+    const int between = column > 31 && column < 68;
+    if (!between && column > 27 && column < 72) continue;
+    assert_int_equal(after[3], between ? 255 : before[3]);
+    if (between) assert_int_equal(before[3], 0);
+    if (between) assert_int_equal(after[0], column < 50 ? 68 : 253);
+  }
+  scene.gap = 0.15; /* too little to close it */
+  assert_int_equal(RasterDraw(&scene, rgba), 0);
+  assert_int_equal(rgba[4 * (50 * W + 50) + 3], 0);
+}
+
+static void test_scalars(void **state)
+{
+  const PetscReal stress[6] = {3, 0, 0, 0, 0, 2}, vector[3] = {2, 3, 6};
+  PlotScalar scalar;
+  Diag *diag;
+  (void)state;
+  assert_int_equal(DiagCreate(&diag), 0);
+  assert_true(plot_scalar_choose("stress", 6, NULL, diag, &scalar));
+  assert_true(fabs(plot_scalar_value(&scalar, 6, stress) - sqrt(9 + 12.0)) < 1e-14);
+  assert_true(plot_scalar_choose("stress", 6, "zx", diag, &scalar) && plot_scalar_value(&scalar, 6, stress) == 2);
+  assert_true(plot_scalar_choose("stress", 6, "mean", diag, &scalar) && plot_scalar_value(&scalar, 6, stress) == 1);
+  assert_true(plot_scalar_choose("velocity", 3, NULL, diag, &scalar) && plot_scalar_value(&scalar, 3, vector) == 7);
+  assert_true(plot_scalar_choose("velocity", 3, "y", diag, &scalar) && plot_scalar_value(&scalar, 3, vector) == 3);
+  assert_true(plot_scalar_choose("velocity", 3, "2", diag, &scalar) && plot_scalar_value(&scalar, 3, vector) == 6);
+  assert_true(plot_scalar_choose("mass", 1, NULL, diag, &scalar) && plot_scalar_value(&scalar, 1, vector) == 2);
+  assert_int_equal(DiagErrors(diag), 0);
+  assert_false(plot_scalar_choose("velocity", 3, "mises", diag, &scalar));
+  assert_false(plot_scalar_choose("velocity", 3, "3", diag, &scalar));
+  assert_int_equal(DiagErrors(diag), 2);
+  assert_int_equal(DiagDestroy(&diag), 0);
+}
+
+static void test_units(void **state)
+{
+  char unit[64];
+  (void)state;
+  assert_true(fabs(2.5e7 * figure_unit("Pa", 2.5e7, unit) - 25) < 1e-9);
+  assert_string_equal(unit, "MPa");
+  assert_true(fabs(2e-4 * figure_unit("m", 2e-4, unit) - 200) < 1e-9);
+  assert_string_equal(unit, "µm");
+  assert_true(figure_unit("m", 0.5, unit) == 1 && !strcmp(unit, "m"));
+  assert_true(figure_unit("kg", 1e9, unit) == 1 && !strcmp(unit, "kg"));
+  assert_true(figure_unit("m", 0, unit) == 1 && figure_unit("Pa", INFINITY, unit) == 1);
+}
+
+/* Width, height and length of a PNG file; it must be a whole one. */
+static long CheckPng(const char *path, int *width, int *height)
+{
+  static const unsigned char signature[8] = {0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n'};
+  unsigned char head[24], tail[8];
+  FILE *in = fopen(path, "rb");
+  assert_non_null(in);
+  assert_int_equal(fread(head, 1, 24, in), 24);
+  assert_memory_equal(head, signature, 8);
+  *width = head[18] << 8 | head[19];
+  *height = head[22] << 8 | head[23];
+  fseek(in, -8, SEEK_END);
+  assert_int_equal(fread(tail, 1, 8, in), 8);
+  assert_memory_equal(tail, "IEND", 4);
+  const long size = ftell(in);
+  fclose(in);
+  return size;
+}
+
+static void WriteState(const char *folder, PetscInt dim, PetscInt index, PetscReal time)
+{
+  static PetscReal x[3 * 8000], u[3 * 8000], stress[6 * 8000];
+  char path[128], file[64], reason[256];
+  const PetscInt n = GaussPoints(dim, dim == 3 ? 6 : 20, x);
+  for (PetscInt i = 0; i < 3 * n; ++i) u[i] = x[i] * x[i];
+  for (PetscInt i = 0; i < n; ++i) stress[6 * i] = 1e6 * x[3 * i];
+  const VtkField fields[] = {{"displacement", "m", 3, u}, {"stress", "Pa", 6, stress}};
+  const VtkData data = {.n_points = n, .x = x, .n_point_fields = 2, .point_fields = fields, .time = time};
+  snprintf(file, sizeof file, "points_%06d.hdf", (int)index);
+  snprintf(path, sizeof path, "%s/%s", folder, file);
+  assert_int_equal(VtkWrite(PETSC_COMM_WORLD, path, &data, reason), 0);
+  assert_int_equal(VtkSeriesAppend(PETSC_COMM_WORLD, folder, "points", file, time, reason), 0);
+}
+
+static void WriteGrid(const char *folder)
+{
+  const PetscReal x[] = {-0.5, -0.5, 0, 1.5, -0.5, 0, 1.5, 1.5, 0, -0.5, 1.5, 0};
+  const PetscInt cells[] = {0, 1, 2, 0, 2, 3};
+  const VtkData data = {.n_points = 4, .x = x, .n_cells = 2, .connectivity = cells, .nodes_per_cell = 3, .vtk_type = 5};
+  char path[128], reason[256];
+  snprintf(path, sizeof path, "%s/grid_000001.hdf", folder);
+  assert_int_equal(VtkWrite(PETSC_COMM_WORLD, path, &data, reason), 0);
+}
+
+/* Plot, and return what was said (to be freed). */
+static char *Plot(const PlotOptions *options, char *picture)
+{
+  char *text = NULL;
+  size_t size;
+  Diag *diag;
+  assert_int_equal(DiagCreate(&diag), 0);
+  assert_int_equal(PlotState(options, diag, picture), 0);
+  if (picture[0]) assert_int_equal(PlotHistories(options, diag, NULL), 0);
+  FILE *out = open_memstream(&text, &size);
+  assert_int_equal(DiagFlush(diag, out), 0);
+  fclose(out);
+  assert_int_equal(DiagDestroy(&diag), 0);
+  return text;
+}
+
+static void test_state_in_the_plane(void **state)
+{
+  char folder[64], picture[PETSC_MAX_PATH_LEN];
+  int width, height;
+  (void)state;
+  TestFolder(folder);
+  WriteState(folder, 2, 0, 0);
+  WriteState(folder, 2, 1, 0.5);
+  WriteGrid(folder);
+  PlotOptions options = {.run = folder, .up = 2};
+  char *text = Plot(&options, picture);
+  assert_string_equal(text, "");
+  assert_non_null(strstr(picture, "/pictures/state_displacement_magnitude_000001.png"));
+  const long plain = CheckPng(picture, &width, &height);
+  assert_true(plain > 10000 && width > 400 && height > 400);
+  free(text);
+  options = (PlotOptions){.run = folder, .field = "stress", .grid = PETSC_TRUE, .width = 640, .height = 480, .up = 2};
+  text = Plot(&options, picture);
+  assert_string_equal(text, "");
+  assert_non_null(strstr(picture, "state_stress_mises_000001.png"));
+  assert_true(CheckPng(picture, &width, &height) > 5000 && width == 640 && height == 480);
+  assert_false(TestExists(folder, "pictures/state_stress_mises_000001.png.tmp-unfinished"));
+  free(text);
+  TestRemove(folder);
+}
+
+/* Side by side, or one below the other. */
+static void test_several_states(void **state)
+{
+  char folder[64], picture[PETSC_MAX_PATH_LEN];
+  int width, height, tall_width, tall_height;
+  (void)state;
+  TestFolder(folder);
+  for (int k = 0; k < 4; ++k) WriteState(folder, 2, k, 0.5 * k);
+  PlotOptions options = {.run = folder, .up = 2, .n_times = 3, .times = {0, 0.5, 1.5}};
+  char *text = Plot(&options, picture);
+  assert_string_equal(text, "");
+  assert_non_null(strstr(picture, "/pictures/states_displacement_magnitude.png"));
+  assert_true(CheckPng(picture, &width, &height) > 10000 && width > height);
+  free(text);
+  options.columns = 1;
+  text = Plot(&options, picture);
+  assert_string_equal(text, "");
+  assert_true(CheckPng(picture, &tall_width, &tall_height) > 10000 && tall_height > tall_width);
+  free(text);
+  options = (PlotOptions){.run = folder, .up = 2, .all_times = PETSC_TRUE};
+  text = Plot(&options, picture);
+  assert_string_equal(text, "");
+  assert_true(CheckPng(picture, &width, &height) > 10000);
+  free(text);
+  TestRemove(folder);
+}
+
+static void test_state_in_space(void **state)
+{
+  char folder[64], picture[PETSC_MAX_PATH_LEN];
+  int width, height;
+  (void)state;
+  TestFolder(folder);
+  WriteState(folder, 3, 0, 0);
+  for (PetscInt up = 0; up < 3; ++up) {
+    const PlotOptions options = {.run = folder, .component = "x", .up = up};
+    char *text = Plot(&options, picture);
+    assert_string_equal(text, "");
+    assert_true(CheckPng(picture, &width, &height) > 20000);
+    free(text);
+  }
+  TestRemove(folder);
+}
+
+static void test_histories(void **state)
+{
+  const char *const names[] = {"tip of/beam", "mass", "gone"}, *const units[] = {"m", "kg", "m"};
+  char folder[64], picture[PETSC_MAX_PATH_LEN], path[256];
+  int width, height;
+  Diag *diag;
+  RunDir *dir;
+  (void)state;
+  TestFolder(folder);
+  assert_int_equal(DiagCreate(&diag), 0);
+  assert_int_equal(RunDirCreate(PETSC_COMM_WORLD, folder, PETSC_FALSE, PETSC_TRUE, NULL, diag, &dir), 0);
+  assert_int_equal(HistoryOpen(dir, 3, names, units), 0);
+  for (PetscInt i = 0; i <= 50; ++i)
+    assert_int_equal(HistoryWrite(dir, 0.1 * i, i, (PetscReal[]){sin(0.1 * i), 8000, NAN}), 0);
+  assert_int_equal(RunDirDestroy(&dir), 0);
+  assert_int_equal(DiagDestroy(&diag), 0);
+  WriteState(folder, 2, 0, 0);
+  const PlotOptions options = {.run = folder, .up = 2};
+  char *text = Plot(&options, picture);
+  assert_string_equal(text, "warning: the measure 'gone' has no value in any row: it is not drawn\n");
+  snprintf(path, sizeof path, "%s/pictures/history_tip_of_beam.png", folder);
+  assert_true(CheckPng(path, &width, &height) > 5000);
+  snprintf(path, sizeof path, "%s/pictures/history_mass.png", folder);
+  CheckPng(path, &width, &height);
+  assert_false(TestExists(folder, "pictures/history_gone.png"));
+  free(text);
+  TestRemove(folder);
+}
+
+/* Each mistake has its word, and there is no picture. */
+static void Refused(const PlotOptions *options, const char *word)
+{
+  char picture[PETSC_MAX_PATH_LEN];
+  char *text = Plot(options, picture);
+  assert_non_null(strstr(text, word));
+  assert_string_equal(picture, "");
+  free(text);
+}
+
+static void test_mistakes(void **state)
+{
+  char folder[64], picture[PETSC_MAX_PATH_LEN], damaged[128];
+  struct stat status;
+  PlotOptions options = {.run = folder, .up = 2};
+  (void)state;
+  TestFolder(folder);
+  Refused(&options, "there is no state of a run");
+  WriteState(folder, 2, 0, 0);
+  WriteState(folder, 2, 1, 0.5);
+  options.field = "displacment";
+  Refused(&options, "did you mean 'displacement'?");
+  options.field = "stress";
+  options.component = "w";
+  Refused(&options, "has no component 'w'");
+  options.component = NULL;
+  options.out = "/proc/no/such.png";
+  Refused(&options, "gnuplot could not draw");
+  snprintf(damaged, sizeof damaged, "%s/pipe", folder);
+  assert_int_equal(mkfifo(damaged, 0600), 0);
+  options.out = damaged; /* root's /dev/full became a picture */
+  Refused(&options, "cannot write the picture");
+  assert_true(!lstat(damaged, &status) && S_ISFIFO(status.st_mode));
+  options.out = NULL;
+  options.n_times = 1;
+  options.times[0] = 0.1;
+  char *text = Plot(&options, picture);
+  assert_non_null(strstr(text, "no state at 0.1 s: the nearest is drawn, at 0 s"));
+  assert_non_null(strstr(picture, "000000.png"));
+  free(text);
+  options.n_times = 0;
+  snprintf(damaged, sizeof damaged, "%s/points_000001.hdf", folder);
+  assert_int_equal(truncate(damaged, 3000), 0);
+  Refused(&options, "cannot read");
+  TestRemove(folder);
+}
+
+static void test_no_gnuplot(void **state)
+{
+  char folder[64], *path = strdup(getenv("PATH"));
+  const PlotOptions options = {.run = folder, .up = 2};
+  (void)state;
+  TestFolder(folder);
+  WriteState(folder, 2, 0, 0);
+  setenv("PATH", folder, 1);
+  Refused(&options, "apt install gnuplot-nox");
+  setenv("PATH", path, 1);
+  free(path);
+  TestRemove(folder);
+}
+
+static void test_convergence(void **state)
+{
+  const PetscReal h[] = {0.5, 0.25, 0.125, 0.0625}, fem[] = {0.1, 0.025, 0.00625, 0.0015625},
+                  mpm[] = {0.2, 0.05, NAN, 0};
+  const FigureSeries series[] = {{"fem", FIGURE_LINE_MARKS, 4, h, fem},
+                                 {"mpm 'a' \"b\" `date` \\c", FIGURE_LINE_MARKS, 4, h, mpm},
+                                 {"none", FIGURE_LINE, 0, h, mpm}};
+  char folder[64], png[128];
+  int width, height;
+  PetscBool done;
+  Diag *diag;
+  (void)state;
+  TestFolder(folder);
+  snprintf(png, sizeof png, "%s/it's \"convergence\" `x`.png", folder);
+  assert_int_equal(DiagCreate(&diag), 0);
+  assert_int_equal(FigureConvergence("Cantilever", "h [m]", "error", 3, series, 2, png, diag, &done), 0);
+  assert_true(done && DiagErrors(diag) == 0);
+  assert_true(CheckPng(png, &width, &height) > 8000 && width == 900 && height == 600);
+  assert_int_equal(FigureConvergence("Nothing", "h [m]", "error", 1, &series[2], 2, png, diag, &done), 0);
+  assert_true(!done && DiagErrors(diag) == 1);
+  assert_int_equal(DiagDestroy(&diag), 0);
+  TestRemove(folder);
+}
+
+static int Tests(void)
+{
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_spacing),        cmocka_unit_test(test_raster),
+                                     cmocka_unit_test(test_raster_depth),   cmocka_unit_test(test_raster_gap),
+                                     cmocka_unit_test(test_several_states), cmocka_unit_test(test_scalars),
+                                     cmocka_unit_test(test_units),          cmocka_unit_test(test_state_in_the_plane),
+                                     cmocka_unit_test(test_state_in_space), cmocka_unit_test(test_histories),
+                                     cmocka_unit_test(test_mistakes),       cmocka_unit_test(test_no_gnuplot),
+                                     cmocka_unit_test(test_convergence)};
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
+
+int main(int argc, char **argv) { return TestMain(argc, argv, Tests); }

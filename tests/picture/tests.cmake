@@ -1,0 +1,2 @@
+talus_test(picture/test_plot TIMEOUT 300)
+talus_test(picture/test_damage)
