@@ -50,7 +50,7 @@ static PetscErrorCode Advance(Model *m, PetscReal end, Outcome *o)
   o->iterations = m->total_iterations;
   o->cuts = m->cuts;
   o->time = m->time;
-  ModelTimes(m, o->phase);
+  model_times(m, o->phase);
   PetscFunctionReturn(0);
 }
 

@@ -36,7 +36,7 @@ static PetscErrorCode Run(Model *m, PetscInt steps, Result *r)
   r->idle = r->total - (processor_now() - worked);
   r->iterations = m->total_iterations;
   r->patterns = m->system->builds;
-  ModelTimes(m, r->phase);
+  model_times(m, r->phase);
   PetscCall(Largest(&r->total, 1));
   PetscCall(Largest(&r->idle, 1));
   PetscCall(Largest(r->phase, PHASE_N));

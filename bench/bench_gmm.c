@@ -63,7 +63,7 @@ static PetscErrorCode Advance(Model *m, PetscInt steps, Outcome *o)
   o->seconds = processor_now() - start;
   o->steps = m->step;
   o->iterations = m->total_iterations;
-  ModelTimes(m, o->phase);
+  model_times(m, o->phase);
   PetscFunctionReturn(0);
 }
 

@@ -57,7 +57,7 @@ static double speed(const BenchCase *b, int n, int tangent)
   static PetscReal dF[9 * LAW_BATCH], old[LAW_MAX_STATE * LAW_BATCH], state[LAW_MAX_STATE * LAW_BATCH];
   static PetscReal tau[6 * LAW_BATCH], c[36 * LAW_BATCH];
   const Elasticity elastic = {2.6, 0.3, 2.6 / 1.2, 1.0, 1.5};
-  const Law *law = LawFind(b->law);
+  const Law *law = law_find(b->law);
   PetscReal packed[LAW_MAX_PARAMETERS] = {0};
   double best = 0.0;
   LawStatus (*update)(const PetscReal *, PetscInt, const PetscReal *, const PetscReal *, PetscReal *, PetscReal *,

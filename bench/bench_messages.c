@@ -10,7 +10,7 @@
 
 static Model *model; /* whose clocks tell the phases */
 
-static void clock_of_model(double seconds[MESSAGE_PHASES]) { ModelTimes(model, seconds); }
+static void clock_of_model(double seconds[MESSAGE_PHASES]) { model_times(model, seconds); }
 
 /* Times that Newton takes apart begin and end inside a solve. */
 static int takes_all(int phase) { return phase != PHASE_POINTS && phase != PHASE_MATRIX && phase != PHASE_LINEAR; }

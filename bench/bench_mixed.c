@@ -48,13 +48,13 @@ static PetscErrorCode Measure(PetscInt n, CellType cell, PetscReal poisson, Line
   PetscCall(ModelStep(s.model, 1, &report));
   const PetscReal total = seconds_now() - start, work = processor_now() - worked;
   PetscCheck(report.outcome == STEP_ACCEPTED, PETSC_COMM_WORLD, PETSC_ERR_NOT_CONVERGED, "%s", report.reason);
-  ModelTimes(s.model, phase);
+  model_times(s.model, phase);
   PetscCall(
     PetscPrintf(PETSC_COMM_WORLD,
                 "%6d cells %8d unknowns  %-46s %d Newton, %.1f linear iterations each; %.2f s (processor %.2f), "
                 "linear %.2f, points %.2f; %.0f MB\n",
                 (int)s.model->grid->n_cells_global, (int)(s.model->system->n_active_global * 4),
-                NewtonLinearName(s.model->newton), (int)report.newton.iterations,
+                newton_linear_name(s.model->newton), (int)report.newton.iterations,
                 (double)report.newton.linear_iterations / (double)report.newton.iterations, (double)total, (double)work,
                 (double)phase[PHASE_LINEAR], (double)phase[PHASE_POINTS], (double)(resident_bytes() * 1e-6)));
   PetscCall(SubjectDestroy(&s));

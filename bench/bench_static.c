@@ -75,7 +75,7 @@ static PetscErrorCode Measure(PetscReal h, PetscInt repeats, Result *r)
     PetscCheck(report.outcome == STEP_ACCEPTED, PETSC_COMM_WORLD, PETSC_ERR_NOT_CONVERGED, "%s", report.reason);
     if (total < r->total) {
       r->total = total;
-      ModelTimes(s.model, r->phase);
+      model_times(s.model, r->phase);
     }
     if (k == 0) r->resident = (resident_bytes() - s.bytes_before) / s.points; /* later ones reuse freed memory */
     r->iterations = report.newton.iterations;

@@ -119,7 +119,7 @@ int TalusModelMeasure(const TalusModel *model, const char *name, double *value)
 static PetscInt field_components(const char *name)
 {
   if (!strcmp(name, "position")) return 3;
-  const OutputField *field = OutputFieldFind(name);
+  const OutputField *field = output_field_find(name);
   return field && field->points ? field->components : 0;
 }
 
@@ -133,7 +133,7 @@ static PetscErrorCode CopyField(const Model *m, const char *name, double *buffer
       buffer[i] = i % 3 < m->dim ? point_real(points, POINT_X, i / 3)[i % 3] : 0;
   } else if (!strcmp(name, "id")) {
     for (PetscInt p = 0; p < points->n; ++p) buffer[p] = (double)points->id[p];
-  } else PetscCall(OutputPointField(m, OutputFieldFind(name), buffer));
+  } else PetscCall(OutputPointField(m, output_field_find(name), buffer));
   PetscFunctionReturn(0);
 }
 

@@ -45,7 +45,7 @@ static PetscErrorCode Run(TalusCase *c, const RunOptions *options, TalusRun *run
   PetscFunctionBeginUser;
   asked.summary = &summary;
   PetscCall(RunCase(PETSC_COMM_WORLD, c->c, &asked, c->diag, run->values, result));
-  if (summary.reason[0]) DiagError(c->diag, NULL, "%s", summary.reason);
+  if (summary.reason[0]) diag_error(c->diag, NULL, "%s", summary.reason);
   PetscCall(TalusTell(c->diag, messages));
   PetscFunctionReturn(0);
 }

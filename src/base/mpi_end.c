@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <unistd.h>
 
-int MpiBegin(int *argc, char ***argv)
+int mpi_begin(int *argc, char ***argv)
 {
   int provided;
   return MPI_Init_thread(argc, argv, MPI_THREAD_FUNNELED, &provided) == MPI_SUCCESS ? 0 : 1;
@@ -12,7 +12,7 @@ int MpiBegin(int *argc, char ***argv)
 
 static volatile sig_atomic_t last_code;
 
-static void EndAtOnce(int number)
+static void end_at_once(int number)
 {
   (void)number;
   _exit((int)last_code);
@@ -36,7 +36,7 @@ void mpi_end(int exit_code)
   static const int crashes[] = {SIGSEGV, SIGBUS, SIGABRT};
   last_code = exit_code;
   fflush(NULL);
-  for (size_t i = 0; i < sizeof crashes / sizeof *crashes; ++i) signal(crashes[i], EndAtOnce);
+  for (size_t i = 0; i < sizeof crashes / sizeof *crashes; ++i) signal(crashes[i], end_at_once);
   MPI_Finalize();
   _exit(exit_code);
 #endif

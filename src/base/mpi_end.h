@@ -3,7 +3,7 @@
 #include <petscsys.h>
 
 /* Before PetscInitialize, so that PetscFinalize leaves MPI up and MpiEnd can take it down. */
-int MpiBegin(int *argc, char ***argv);
+int mpi_begin(int *argc, char ***argv);
 
 /* After PetscFinalize, as the last thing of all: everything is written and closed. Takes MPI down and ends the
  * process with this code.

@@ -4,12 +4,12 @@
 
 #define LONGEST 64 /* words beyond this are never near each other */
 
-static int Plain(char c) { return c == '_' ? '-' : tolower((unsigned char)c); }
+static int plain(char c) { return c == '_' ? '-' : tolower((unsigned char)c); }
 
-static int Least(int a, int b) { return a < b ? a : b; }
+static int nearest_least(int a, int b) { return a < b ? a : b; }
 
 /* Damerau-Levenshtein (optimal string alignment); case and '_' against '-' do not count. */
-static int Distance(const char *a, const char *b)
+static int nearest_distance(const char *a, const char *b)
 {
   const int n = (int)strlen(a), m = (int)strlen(b);
   int row[3][LONGEST + 1];
@@ -18,10 +18,10 @@ static int Distance(const char *a, const char *b)
   for (int i = 1; i <= n; ++i) {
     now[0] = i;
     for (int j = 1; j <= m; ++j) {
-      const int differ = Plain(a[i - 1]) != Plain(b[j - 1]);
-      now[j] = Least(Least(last[j] + 1, now[j - 1] + 1), last[j - 1] + differ);
-      if (i > 1 && j > 1 && Plain(a[i - 1]) == Plain(b[j - 2]) && Plain(a[i - 2]) == Plain(b[j - 1]))
-        now[j] = Least(now[j], before[j - 2] + 1);
+      const int differ = plain(a[i - 1]) != plain(b[j - 1]);
+      now[j] = nearest_least(nearest_least(last[j] + 1, now[j - 1] + 1), last[j - 1] + differ);
+      if (i > 1 && j > 1 && plain(a[i - 1]) == plain(b[j - 2]) && plain(a[i - 2]) == plain(b[j - 1]))
+        now[j] = nearest_least(now[j], before[j - 2] + 1);
     }
     int *free_row = before;
     before = last;
@@ -31,7 +31,7 @@ static int Distance(const char *a, const char *b)
   return last[m];
 }
 
-const char *DiagNearest(const char *word, const char *const *words)
+const char *diag_nearest(const char *word, const char *const *words)
 {
   const char *best = NULL;
   const size_t length = word ? strlen(word) : 0;
@@ -39,7 +39,7 @@ const char *DiagNearest(const char *word, const char *const *words)
   if (length == 0 || length > LONGEST) return NULL;
   for (; *words; ++words) {
     if (strlen(*words) > LONGEST) continue;
-    const int distance = Distance(word, *words);
+    const int distance = nearest_distance(word, *words);
     if (distance < least) {
       least = distance;
       best = *words;
@@ -48,16 +48,16 @@ const char *DiagNearest(const char *word, const char *const *words)
   return best;
 }
 
-void DiagHintNames(Diag *diag, const char *word, const char *const *words)
+void diag_hint_names(Diag *diag, const char *word, const char *const *words)
 {
-  const char *nearest = DiagNearest(word, words);
+  const char *nearest = diag_nearest(word, words);
   char list[500] = "";
   for (const char *const *w = words; *w; ++w) {
     const size_t used = strlen(list);
     snprintf(list + used, sizeof(list) - used, "%s%s", w == words ? "" : ", ", *w);
   }
   if (strlen(list) + 1 == sizeof(list)) strcpy(list + sizeof(list) - 4, "...");
-  if (!list[0]) DiagHint(diag, "there are no names");
-  else if (nearest) DiagHint(diag, "did you mean '%s'? There are: %s", nearest, list);
-  else DiagHint(diag, "there are: %s", list);
+  if (!list[0]) diag_hint(diag, "there are no names");
+  else if (nearest) diag_hint(diag, "did you mean '%s'? There are: %s", nearest, list);
+  else diag_hint(diag, "there are: %s", list);
 }

@@ -38,7 +38,7 @@ PetscErrorCode TablesAdd(Tables *tables, const char *name, PetscBool everywhere,
   PetscFunctionReturn(0);
 }
 
-Table *TablesFind(const Tables *tables, const char *name)
+Table *tables_find(const Tables *tables, const char *name)
 {
   for (PetscInt i = 0; i < tables->n; ++i)
     if (!strcmp(tables->table[i]->name, name)) return tables->table[i];
@@ -65,7 +65,7 @@ PetscErrorCode TableAdd(Table *table, const char *name, const char *unit, Column
   PetscFunctionReturn(0);
 }
 
-void *TableData(const Table *table, const char *name, ColumnType type, PetscInt components, char reason[256])
+void *table_data(const Table *table, const char *name, ColumnType type, PetscInt components, char reason[256])
 {
   for (PetscInt k = 0; k < table->n; ++k) {
     const Column *column = &table->column[k];

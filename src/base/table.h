@@ -41,13 +41,13 @@ PetscErrorCode TablesCreate(Tables **tables);
 PetscErrorCode TablesDestroy(Tables **tables);
 /* An empty table at the end; it belongs to tables. */
 PetscErrorCode TablesAdd(Tables *tables, const char *name, PetscBool everywhere, PetscInt64 rows, Table **table);
-Table *TablesFind(const Tables *tables, const char *name);
+Table *tables_find(const Tables *tables, const char *name);
 
 /* A column over data that stays the caller's, or, with data NULL, over zeros of the table's own. *out may be NULL. */
 PetscErrorCode TableAdd(Table *table, const char *name, const char *unit, ColumnType type, PetscInt components,
                         void *data, Column **out);
 /* Data of the column of this name, type and width; NULL, with a reason, if there is none like it. */
-void *TableData(const Table *table, const char *name, ColumnType type, PetscInt components, char reason[256]);
+void *table_data(const Table *table, const char *name, ColumnType type, PetscInt components, char reason[256]);
 
 /* Collective. An everywhere table "parts" at the end: how many rows of each table are each rank's. */
 PetscErrorCode PartsToTable(MPI_Comm comm, Tables *tables);

@@ -72,7 +72,7 @@ static PetscBool part_of(const PetscInt64 *parts, PetscMPIInt rank, PetscMPIInt 
 
 PetscErrorCode PartsTake(MPI_Comm comm, Tables *tables, PetscBool *home, char reason[256])
 {
-  const Table *parts = TablesFind(tables, "parts");
+  const Table *parts = tables_find(tables, "parts");
   PetscMPIInt rank, size;
 
   PetscFunctionBeginUser;
@@ -80,8 +80,8 @@ PetscErrorCode PartsTake(MPI_Comm comm, Tables *tables, PetscBool *home, char re
   PetscCallMPI(MPI_Comm_size(comm, &size));
   *home = parts->rows == size;
   for (PetscInt k = 0; k < parts->n && *home && !reason[0]; ++k) {
-    Table *table = TablesFind(tables, parts->column[k].name);
-    const PetscInt64 *count = TableData(parts, parts->column[k].name, COLUMN_INT64, 1, reason);
+    Table *table = tables_find(tables, parts->column[k].name);
+    const PetscInt64 *count = table_data(parts, parts->column[k].name, COLUMN_INT64, 1, reason);
     PetscInt64 rows, first = 0;
     if (!table) snprintf(reason, 256, "%s is missing", parts->column[k].name);
     if (!table || reason[0]) break; /* all ranks know the same */

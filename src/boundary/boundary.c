@@ -43,10 +43,10 @@ static void report_contradiction(const Boundary *b, const Grid *grid, PetscInt n
   char path[64], at[64];
   PetscSNPrintf(path, sizeof path, "boundary[%d]", (int)entry);
   position_text(b->dim, x, at);
-  DiagError(diag, path,
-            "boundary[%d] contradicts boundary[%d]: both prescribe %c of the node at %s, but not the same motion",
-            (int)entry, (int)b->entry[node * b->dim + d], axis[d], at);
-  DiagHint(diag, "leave the node out of one of the two selections");
+  diag_error(diag, path,
+             "boundary[%d] contradicts boundary[%d]: both prescribe %c of the node at %s, but not the same motion",
+             (int)entry, (int)b->entry[node * b->dim + d], axis[d], at);
+  diag_hint(diag, "leave the node out of one of the two selections");
 }
 
 /* Mark the dofs of one entry; the first contradiction with an earlier entry is reported (diag NULL: they were sought before). */
@@ -78,18 +78,18 @@ static PetscErrorCode CheckSelection(const Boundary *b, const Grid *grid, PetscI
 
   PetscFunctionBeginUser;
   PetscCall(MPIU_Allreduce(&local, &all, 1, MPIU_INT, MPI_SUM, grid->comm));
-  if (on->boundary && !GridFindSet(grid, on->boundary)) {
+  if (on->boundary && !grid_find_set(grid, on->boundary)) {
     const char **names;
     PetscCall(PetscSNPrintf(path, sizeof path, "boundary[%d].on.boundary", (int)entry));
     PetscCall(GridSetNames(grid, &names));
-    DiagError(diag, path, "the grid has no boundary or region named '%s'", on->boundary);
-    DiagHintNames(diag, on->boundary, names);
+    diag_error(diag, path, "the grid has no boundary or region named '%s'", on->boundary);
+    diag_hint_names(diag, on->boundary, names);
     PetscCall(PetscFree(names));
   } else if (!all) {
     PetscCall(PetscSNPrintf(path, sizeof path, "boundary[%d].on", (int)entry));
     position_text(b->dim, grid->min, from);
     position_text(b->dim, grid->max, to);
-    DiagError(diag, path, "%s selects no node of the grid, which spans %s to %s", path, from, to);
+    diag_error(diag, path, "%s selects no node of the grid, which spans %s to %s", path, from, to);
   }
   PetscFunctionReturn(0);
 }
@@ -220,7 +220,7 @@ PetscErrorCode BoundaryMove(Boundary *b, const Grid *grid, PetscReal t)
       motion->n = 0;
       for (PetscInt node = 0; node < b->n_nodes; ++node) {
         motion_origin(b->c, &b->c->boundary[k], grid->x + node * b->dim, t, X);
-        if (GridTakes(grid, &b->c->boundary[k].on, X)) motion->node[motion->n++] = node;
+        if (grid_takes(grid, &b->c->boundary[k].on, X)) motion->node[motion->n++] = node;
       }
     }
     mark_entry(b, grid, k, NULL);

@@ -45,11 +45,11 @@ static PetscErrorCode PointLoad(Loads *loads, const Grid *grid, PetscInt load, c
   PetscFunctionBeginUser;
   PetscCallMPI(MPI_Comm_rank(grid->comm, &rank));
   PetscCallMPI(MPI_Comm_size(grid->comm, &size));
-  const PetscInt cell = GridLocate(grid, spec->at, -1, xi);
+  const PetscInt cell = grid_locate(grid, spec->at, -1, xi);
   mine = cell >= 0 ? rank : size;
   PetscCallMPI(MPI_Allreduce(&mine, &first, 1, MPI_INT, MPI_MIN, grid->comm));
   if (first == rank) PetscCall(AddCarrier(loads, load, cell, spec->at, xi, spec->value));
-  if (first == size) DiagError(diag, path, "the force acts at a position outside the grid");
+  if (first == size) diag_error(diag, path, "the force acts at a position outside the grid");
   PetscFunctionReturn(0);
 }
 
@@ -106,13 +106,13 @@ static PetscErrorCode TellNoFace(const Grid *grid, const Selector *on, const cha
   const char **names;
 
   PetscFunctionBeginUser;
-  if (on->boundary && !on->body && !GridFindSet(grid, on->boundary)) {
+  if (on->boundary && !on->body && !grid_find_set(grid, on->boundary)) {
     PetscCall(PetscSNPrintf(key, sizeof key, "%s.boundary", path));
     PetscCall(GridSetNames(grid, &names));
-    DiagError(diag, key, "the grid has no boundary or region named '%s'", on->boundary);
-    DiagHintNames(diag, on->boundary, names);
+    diag_error(diag, key, "the grid has no boundary or region named '%s'", on->boundary);
+    diag_hint_names(diag, on->boundary, names);
     PetscCall(PetscFree(names));
-  } else DiagError(diag, path, "selects no face%s", on->body ? " of the body's boundary" : " of the grid's boundary");
+  } else diag_error(diag, path, "selects no face%s", on->body ? " of the body's boundary" : " of the grid's boundary");
   PetscFunctionReturn(0);
 }
 

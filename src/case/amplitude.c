@@ -16,7 +16,7 @@ PetscReal amplitude_value(const Amplitude *a, PetscReal t, PetscReal fallback)
 }
 
 /* Integral from the first entry's time to t, for any t. */
-static PetscReal IntegralFromFirst(const Amplitude *a, PetscReal t)
+static PetscReal integral_from_first(const Amplitude *a, PetscReal t)
 {
   PetscReal sum = 0;
   if (t <= a->time[0]) return (t - a->time[0]) * a->value[0];
@@ -29,5 +29,5 @@ static PetscReal IntegralFromFirst(const Amplitude *a, PetscReal t)
 
 PetscReal amplitude_integral(const Amplitude *a, PetscReal t, PetscReal fallback)
 {
-  return a->n == 0 ? fallback * t : IntegralFromFirst(a, t) - IntegralFromFirst(a, 0);
+  return a->n == 0 ? fallback * t : integral_from_first(a, t) - integral_from_first(a, 0);
 }

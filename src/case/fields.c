@@ -24,7 +24,7 @@ const OutputField output_fields[] = {
   {NULL, NULL, NULL, 0, PETSC_FALSE, PETSC_FALSE},
 };
 
-const OutputField *OutputFieldFind(const char *name)
+const OutputField *output_field_find(const char *name)
 {
   for (const OutputField *field = output_fields; field->name; ++field)
     if (!strcmp(field->name, name)) return field;

@@ -11,4 +11,4 @@ typedef struct {
 extern const OutputField output_fields[]; /* ended by name = NULL */
 
 /* NULL if there is none of this name. */
-const OutputField *OutputFieldFind(const char *name);
+const OutputField *output_field_find(const char *name);

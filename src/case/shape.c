@@ -1,20 +1,20 @@
 #include "case/case.h"
 
-static PetscBool BoxContains(const Shape *s, PetscInt dim, const PetscReal *x, PetscReal tolerance)
+static PetscBool box_contains(const Shape *s, PetscInt dim, const PetscReal *x, PetscReal tolerance)
 {
   for (PetscInt d = 0; d < dim; ++d)
     if (x[d] < s->min[d] - tolerance || x[d] > s->max[d] + tolerance) return PETSC_FALSE;
   return PETSC_TRUE;
 }
 
-static PetscBool BallContains(const Shape *s, PetscInt dim, const PetscReal *x, PetscReal tolerance)
+static PetscBool ball_contains(const Shape *s, PetscInt dim, const PetscReal *x, PetscReal tolerance)
 {
   PetscReal square = 0;
   for (PetscInt d = 0; d < dim; ++d) square += (x[d] - s->centre[d]) * (x[d] - s->centre[d]);
   return PetscSqrtReal(square) <= s->radius + tolerance;
 }
 
-static PetscBool HalfSpaceContains(const Shape *s, PetscInt dim, const PetscReal *x, PetscReal tolerance)
+static PetscBool half_space_contains(const Shape *s, PetscInt dim, const PetscReal *x, PetscReal tolerance)
 {
   PetscReal along = 0, length = 0;
   for (PetscInt d = 0; d < dim; ++d) {
@@ -24,7 +24,7 @@ static PetscBool HalfSpaceContains(const Shape *s, PetscInt dim, const PetscReal
   return along <= tolerance * PetscSqrtReal(length);
 }
 
-static PetscReal DistanceToSegment(const PetscReal *a, const PetscReal *b, const PetscReal *x)
+static PetscReal distance_to_segment(const PetscReal *a, const PetscReal *b, const PetscReal *x)
 {
   const PetscReal e[2] = {b[0] - a[0], b[1] - a[1]}, v[2] = {x[0] - a[0], x[1] - a[1]};
   const PetscReal square = e[0] * e[0] + e[1] * e[1];
@@ -34,18 +34,18 @@ static PetscReal DistanceToSegment(const PetscReal *a, const PetscReal *b, const
 }
 
 /* Even-odd rule; a position on an edge belongs to the polygon, or not if the tolerance is negative. */
-static PetscBool PolygonContains(const Shape *s, const PetscReal *x, PetscReal tolerance)
+static PetscBool polygon_contains(const Shape *s, const PetscReal *x, PetscReal tolerance)
 {
   PetscBool inside = PETSC_FALSE;
   for (PetscInt i = 0, j = s->n_vertices - 1; i < s->n_vertices; j = i++) {
     const PetscReal *a = s->vertices + 2 * i, *b = s->vertices + 2 * j;
-    if (DistanceToSegment(a, b, x) <= PetscAbsReal(tolerance)) return tolerance >= 0;
+    if (distance_to_segment(a, b, x) <= PetscAbsReal(tolerance)) return tolerance >= 0;
     if ((a[1] > x[1]) != (b[1] > x[1]) && x[0] < (b[0] - a[0]) * (x[1] - a[1]) / (b[1] - a[1]) + a[0]) inside = !inside;
   }
   return inside;
 }
 
-static PetscBool ChildrenContain(const Shape *s, PetscInt dim, const PetscReal *x, PetscReal tolerance)
+static PetscBool children_contain(const Shape *s, PetscInt dim, const PetscReal *x, PetscReal tolerance)
 {
   PetscInt hits = 0;
   if (s->kind == SHAPE_DIFFERENCE) {
@@ -62,15 +62,15 @@ static PetscBool ChildrenContain(const Shape *s, PetscInt dim, const PetscReal *
 PetscBool shape_contains(const Shape *s, PetscInt dim, const PetscReal *x, PetscReal tolerance)
 {
   switch (s->kind) {
-  case SHAPE_BOX: return BoxContains(s, dim, x, tolerance);
-  case SHAPE_BALL: return BallContains(s, dim, x, tolerance);
-  case SHAPE_POLYGON: return PolygonContains(s, x, tolerance);
-  case SHAPE_HALF_SPACE: return HalfSpaceContains(s, dim, x, tolerance);
-  default: return ChildrenContain(s, dim, x, tolerance);
+  case SHAPE_BOX: return box_contains(s, dim, x, tolerance);
+  case SHAPE_BALL: return ball_contains(s, dim, x, tolerance);
+  case SHAPE_POLYGON: return polygon_contains(s, x, tolerance);
+  case SHAPE_HALF_SPACE: return half_space_contains(s, dim, x, tolerance);
+  default: return children_contain(s, dim, x, tolerance);
   }
 }
 
-static void HalfSpaceBounds(const Shape *s, PetscInt dim, PetscReal min[3], PetscReal max[3])
+static void half_space_bounds(const Shape *s, PetscInt dim, PetscReal min[3], PetscReal max[3])
 {
   for (PetscInt d = 0; d < dim; ++d) {
     PetscBool aligned = s->normal[d] != 0;
@@ -81,7 +81,7 @@ static void HalfSpaceBounds(const Shape *s, PetscInt dim, PetscReal min[3], Pets
   }
 }
 
-static void ChildrenBounds(const Shape *s, PetscInt dim, PetscReal min[3], PetscReal max[3])
+static void children_bounds(const Shape *s, PetscInt dim, PetscReal min[3], PetscReal max[3])
 {
   const PetscInt n = s->kind == SHAPE_DIFFERENCE ? 1 : s->n_children;
   for (PetscInt i = 0; i < n; ++i) {
@@ -95,7 +95,7 @@ static void ChildrenBounds(const Shape *s, PetscInt dim, PetscReal min[3], Petsc
   }
 }
 
-static void PolygonBounds(const Shape *s, PetscReal min[3], PetscReal max[3])
+static void polygon_bounds(const Shape *s, PetscReal min[3], PetscReal max[3])
 {
   for (PetscInt d = 0; d < 2; ++d) {
     min[d] = PETSC_MAX_REAL;
@@ -126,8 +126,8 @@ void shape_bounds(const Shape *s, PetscInt dim, PetscReal min[3], PetscReal max[
       max[d] = s->centre[d] + s->radius;
     }
     break;
-  case SHAPE_POLYGON: PolygonBounds(s, min, max); break;
-  case SHAPE_HALF_SPACE: HalfSpaceBounds(s, dim, min, max); break;
-  default: ChildrenBounds(s, dim, min, max);
+  case SHAPE_POLYGON: polygon_bounds(s, min, max); break;
+  case SHAPE_HALF_SPACE: half_space_bounds(s, dim, min, max); break;
+  default: children_bounds(s, dim, min, max);
   }
 }

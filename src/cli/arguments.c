@@ -4,7 +4,7 @@
 #include <string.h>
 #include "cli/cli.h"
 
-PetscBool CliPrints(void)
+PetscBool cli_prints(void)
 {
   PetscMPIInt rank = 0;
   MPI_Comm_rank(PETSC_COMM_WORLD, &rank);
@@ -17,7 +17,7 @@ PetscErrorCode CliUsageError(int *exit_code, const char *hint, const char *forma
 
   PetscFunctionBeginUser;
   *exit_code = CLI_BAD_INPUT;
-  if (!CliPrints()) PetscFunctionReturn(0);
+  if (!cli_prints()) PetscFunctionReturn(0);
   fputs("error: ", stderr);
   va_start(arguments, format);
   vfprintf(stderr, format, arguments);
@@ -27,10 +27,10 @@ PetscErrorCode CliUsageError(int *exit_code, const char *hint, const char *forma
   PetscFunctionReturn(0);
 }
 
-static void PrintHelp(const CliUsage *usage)
+static void print_help(const CliUsage *usage)
 {
   char left[64];
-  if (!CliPrints()) return;
+  if (!cli_prints()) return;
   printf("usage: %s\n\n%s\n\noptions:\n", usage->usage, usage->help);
   for (const CliOption *option = usage->options; option && option->name; ++option) {
     snprintf(left, sizeof(left), "--%s %s", option->name, option->value ? option->value : "");
@@ -40,7 +40,7 @@ static void PrintHelp(const CliUsage *usage)
   fflush(stdout);
 }
 
-static const CliOption *FindOption(const CliUsage *usage, const char *name, size_t length)
+static const CliOption *find_option(const CliUsage *usage, const char *name, size_t length)
 {
   for (const CliOption *option = usage->options; option && option->name; ++option)
     if (strlen(option->name) == length && !strncmp(option->name, name, length)) return option;
@@ -57,7 +57,7 @@ static PetscErrorCode UnknownOption(const CliUsage *usage, const char *text, int
   for (const CliOption *option = usage->options; option && option->name && n < 62; ++option) names[n++] = option->name;
   names[n] = "help";
   snprintf(word, sizeof(word), "%.*s", (int)strcspn(text + 2, "="), text + 2);
-  nearest = DiagNearest(word, names);
+  nearest = diag_nearest(word, names);
   snprintf(hint, sizeof(hint), nearest ? "did you mean --%s?" : "see --help", nearest);
   PetscCall(CliUsageError(exit_code, hint, "option --%s is not known", word));
   PetscFunctionReturn(0);
@@ -69,7 +69,7 @@ static PetscErrorCode TakeOption(const CliUsage *usage, int argc, char **argv, i
 {
   const char *text = argv[*i], *equals = strchr(text, '=');
   const size_t length = equals ? (size_t)(equals - text - 2) : strlen(text) - 2;
-  const CliOption *option = FindOption(usage, text + 2, length);
+  const CliOption *option = find_option(usage, text + 2, length);
 
   PetscFunctionBeginUser;
   *ok = PETSC_FALSE;
@@ -122,7 +122,7 @@ PetscErrorCode CliParse(const CliUsage *usage, int argc, char **argv, CliArgumen
   *exit_code = CLI_DONE;
   for (int i = 1; i < argc; ++i)
     if (!strcmp(argv[i], "--help") || !strcmp(argv[i], "-h")) {
-      PrintHelp(usage);
+      print_help(usage);
       PetscFunctionReturn(0);
     }
   for (int i = 1; i < argc; ++i) {
@@ -136,16 +136,16 @@ PetscErrorCode CliParse(const CliUsage *usage, int argc, char **argv, CliArgumen
   PetscFunctionReturn(0);
 }
 
-const char *CliValue(const CliArguments *arguments, const char *name)
+const char *cli_value(const CliArguments *arguments, const char *name)
 {
   for (int i = arguments->n_options; i-- > 0;)
     if (!strcmp(arguments->names[i], name)) return arguments->values[i];
   return NULL;
 }
 
-PetscBool CliFlag(const CliArguments *arguments, const char *name) { return CliValue(arguments, name) != NULL; }
+PetscBool cli_flag(const CliArguments *arguments, const char *name) { return cli_value(arguments, name) != NULL; }
 
-PetscInt CliValues(const CliArguments *arguments, const char *name, const char **values)
+PetscInt cli_values(const CliArguments *arguments, const char *name, const char **values)
 {
   PetscInt n = 0;
   for (int i = 0; i < arguments->n_options; ++i)

@@ -26,7 +26,7 @@ static PetscErrorCode PrintResolved(const Case *c)
 
   PetscFunctionBeginUser;
   PetscCall(CaseToYaml(c, &text));
-  if (CliPrints()) {
+  if (cli_prints()) {
     printf("# %s, resolved: every key, defaults too; SI units, angles in degrees\n%s", c->file, text);
     fflush(stdout);
   }
@@ -47,10 +47,10 @@ PetscErrorCode CliCheck(int argc, char **argv, int *exit_code)
   PetscCall(CliParse(&usage, argc, argv, &arguments, &go_on, exit_code));
   if (!go_on) PetscFunctionReturn(0);
   PetscCall(DiagCreate(&diag));
-  const PetscInt n_set = CliValues(&arguments, "set", set);
+  const PetscInt n_set = cli_values(&arguments, "set", set);
   PetscCall(CaseRead(PETSC_COMM_WORLD, arguments.words[0], n_set, set, diag, &c));
   if (c) PetscCall(PrintResolved(c));
-  if (c) c->grid.trusted = CliFlag(&arguments, "trust");
+  if (c) c->grid.trusted = cli_flag(&arguments, "trust");
   if (c) PetscCall(CheckModel(PETSC_COMM_WORLD, c, diag, stdout));
   PetscCall(DiagReduce(PETSC_COMM_WORLD, diag, &errors));
   if (errors) *exit_code = CLI_BAD_INPUT;

@@ -47,14 +47,14 @@ PetscErrorCode CliParse(const CliUsage *usage, int argc, char **argv, CliArgumen
                         int *exit_code);
 
 /* Value of the last --name, NULL if it was not given. */
-const char *CliValue(const CliArguments *arguments, const char *name);
-PetscBool CliFlag(const CliArguments *arguments, const char *name);
+const char *cli_value(const CliArguments *arguments, const char *name);
+PetscBool cli_flag(const CliArguments *arguments, const char *name);
 /* All values of --name in order (--set); at most CLI_MAX_ARGUMENTS. Returns how many. */
-PetscInt CliValues(const CliArguments *arguments, const char *name, const char **values);
+PetscInt cli_values(const CliArguments *arguments, const char *name, const char **values);
 
 /* Print `error: ...` and a hint (or NULL) on rank 0 and set the exit code for bad usage. */
 PetscErrorCode CliUsageError(int *exit_code, const char *hint, const char *format, ...) PETSC_ATTRIBUTE_FORMAT(3, 4);
 /* Collective. Were all ranks started with the same words? If not that has been printed, and the exit code is set. */
 PetscErrorCode CliSameCommand(int argc, char **argv, PetscBool *same, int *exit_code);
 /* Is this the rank that prints? */
-PetscBool CliPrints(void);
+PetscBool cli_prints(void);

@@ -13,10 +13,10 @@ static const CliUsage usage = {
   .max_words = 1,
 };
 
-static void PrintParameter(const SchemaEntry *e, PetscReal fallback)
+static void print_parameter(const SchemaEntry *e, PetscReal fallback)
 {
   char range[80], left[80];
-  SchemaRange(e, range, sizeof(range));
+  schema_range(e, range, sizeof(range));
   snprintf(left, sizeof(left), "%s%s%s%s", e->key, e->unit && e->unit[0] ? " [" : "",
            e->unit && e->unit[0] ? e->unit : "", e->unit && e->unit[0] ? "]" : "");
   printf("    %-28s %s", left, e->help);
@@ -25,25 +25,25 @@ static void PrintParameter(const SchemaEntry *e, PetscReal fallback)
   putchar('\n');
 }
 
-static void ListLaws(void)
+static void list_laws(void)
 {
   for (const Law *const *law = laws; *law; ++law) {
     printf("%s\n  %s\n", (*law)->name, (*law)->help);
     for (const LawParameter *p = (*law)->parameters; p && p->name; ++p) {
-      const SchemaEntry entry = SchemaLawEntry(p);
-      PrintParameter(&entry, p->fallback);
+      const SchemaEntry entry = schema_law_entry(p);
+      print_parameter(&entry, p->fallback);
     }
   }
   printf("\nEvery law takes density [kg/m3] and two elastic constants:\n");
-  for (const SchemaEntry *e = schema_elastic; e->key; ++e) PrintParameter(e, NAN);
+  for (const SchemaEntry *e = schema_elastic; e->key; ++e) print_parameter(e, NAN);
 }
 
-static void ListMethods(void)
+static void list_methods(void)
 {
   for (const SchemaWord *w = schema_methods; w->word; ++w) printf("%-6s %s\n", w->word, w->help);
 }
 
-static void ListCells(void)
+static void list_cells(void)
 {
   for (int type = 0; type < 4; ++type) {
     printf("%-14s %s; points per cell:", cells[type].name, cells[type].help);
@@ -52,7 +52,7 @@ static void ListCells(void)
   }
 }
 
-static void ListMeasures(void)
+static void list_measures(void)
 {
   for (const SchemaEntry *e = schema_measure.entries; e->key; ++e) {
     if (!e->unit || e->with) continue; /* `of` and `at` are no measures */
@@ -62,7 +62,7 @@ static void ListMeasures(void)
   }
 }
 
-static void ListFields(void)
+static void list_fields(void)
 {
   for (const OutputField *f = output_fields; f->name; ++f)
     printf("%-26s [%s] %s; %d component%s; %s\n", f->name, f->unit, f->help, (int)f->components,
@@ -75,8 +75,8 @@ static void ListFields(void)
 static const struct {
   const char *name;
   void (*print)(void);
-} lists[] = {{"laws", ListLaws},         {"methods", ListMethods}, {"cells", ListCells},
-             {"measures", ListMeasures}, {"fields", ListFields},   {NULL, NULL}};
+} lists[] = {{"laws", list_laws},         {"methods", list_methods}, {"cells", list_cells},
+             {"measures", list_measures}, {"fields", list_fields},   {NULL, NULL}};
 
 PetscErrorCode CliList(int argc, char **argv, int *exit_code)
 {
@@ -91,11 +91,11 @@ PetscErrorCode CliList(int argc, char **argv, int *exit_code)
   for (int i = 0; lists[i].name; ++i) {
     names[i] = lists[i].name;
     if (strcmp(lists[i].name, arguments.words[0])) continue;
-    if (CliPrints()) lists[i].print();
+    if (cli_prints()) lists[i].print();
     fflush(stdout);
     PetscFunctionReturn(0);
   }
-  nearest = DiagNearest(arguments.words[0], names);
+  nearest = diag_nearest(arguments.words[0], names);
   if (nearest) snprintf(hint, sizeof(hint), "did you mean '%s'?", nearest);
   PetscCall(CliUsageError(exit_code, hint, "there is no list of '%s'", arguments.words[0]));
   PetscFunctionReturn(0);

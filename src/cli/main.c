@@ -24,9 +24,9 @@ static const struct Command {
   {NULL, NULL, NULL},
 };
 
-static void PrintHelp(FILE *out)
+static void print_help(FILE *out)
 {
-  if (!CliPrints()) return;
+  if (!cli_prints()) return;
   fprintf(out,
           "talus - implicit large-deformation solver for granular matter and solids\n\n"
           "usage: talus COMMAND ... [PETSc options]\n       mpiexec -n N talus COMMAND ...\n\ncommands:\n");
@@ -49,7 +49,7 @@ static PetscErrorCode UnknownCommand(const char *word, int *exit_code)
 
   PetscFunctionBeginUser;
   for (int i = 0; commands[i].name; ++i) names[i] = commands[i].name;
-  nearest = DiagNearest(word, names);
+  nearest = diag_nearest(word, names);
   if (nearest) snprintf(hint, sizeof(hint), "did you mean 'talus %s'?", nearest);
   else if (strstr(word, ".yaml")) snprintf(hint, sizeof(hint), "to run a case: talus run %.120s", word);
   PetscCall(CliUsageError(exit_code, hint, "'%s' is no command", word));
@@ -63,12 +63,12 @@ static PetscErrorCode Dispatch(int argc, char **argv, int *exit_code)
 
   PetscFunctionBeginUser;
   if (!word) {
-    PrintHelp(stderr);
+    print_help(stderr);
     *exit_code = CLI_BAD_INPUT;
     PetscFunctionReturn(0);
   }
   if (!strcmp(word, "--help") || !strcmp(word, "-h") || !strcmp(word, "help")) {
-    PrintHelp(stdout);
+    print_help(stdout);
     PetscFunctionReturn(0);
   }
   if (!strcmp(word, "--version")) word = "version";
@@ -80,18 +80,18 @@ static PetscErrorCode Dispatch(int argc, char **argv, int *exit_code)
   PetscFunctionReturn(0);
 }
 
-static PetscBool IsPetscOption(const char *word)
+static PetscBool is_petsc_option(const char *word)
 {
   return word[0] == '-' && isalpha((unsigned char)word[1]) && strcmp(word, "-h");
 }
 
 /* Does the word behind a PETSc option belong to it? PETSc's own rule: yes, unless it is an option. */
-static PetscBool IsValue(const char *word)
+static PetscBool is_value(const char *word)
 {
   return word[0] != '-' || isdigit((unsigned char)word[1]) || word[1] == '.';
 }
 
-static PetscBool IsCommand(const char *word)
+static PetscBool is_command(const char *word)
 {
   for (const struct Command *command = commands; command->name; ++command)
     if (!strcmp(command->name, word)) return PETSC_TRUE;
@@ -99,14 +99,14 @@ static PetscBool IsCommand(const char *word)
 }
 
 /* Share argv out; the first word that is a command is never a value, so that `talus -snes_monitor run` works. Both arrays keep argv[0] and end with NULL. */
-static void Split(int argc, char **argv, int *n_own, char **own, int *n_petsc, char **petsc)
+static void split(int argc, char **argv, int *n_own, char **own, int *n_petsc, char **petsc)
 {
   PetscBool value = PETSC_FALSE; /* the word before was a PETSc option */
   *n_own = *n_petsc = 1;
   own[0] = petsc[0] = argv[0];
   for (int i = 1; i < argc; ++i) {
-    const PetscBool option = IsPetscOption(argv[i]);
-    if (option || (value && IsValue(argv[i]) && !(*n_own == 1 && IsCommand(argv[i])))) petsc[(*n_petsc)++] = argv[i];
+    const PetscBool option = is_petsc_option(argv[i]);
+    if (option || (value && is_value(argv[i]) && !(*n_own == 1 && is_command(argv[i])))) petsc[(*n_petsc)++] = argv[i];
     else own[(*n_own)++] = argv[i];
     value = option;
   }
@@ -114,7 +114,7 @@ static void Split(int argc, char **argv, int *n_own, char **own, int *n_petsc, c
 }
 
 /* `-out runs/a` would vanish in PETSc's option table without a word. */
-static const char *SingleDashMistake(int n, char **petsc)
+static const char *single_dash_mistake(int n, char **petsc)
 {
   static const char *const ours[] = {"set",   "out",  "quiet", "force",    "resume", "log",
                                      "trust", "full", "json",  "markdown", NULL};
@@ -141,10 +141,10 @@ static PetscErrorCode Main(int argc, char **argv, int n_own, char **own, const c
 }
 
 /* A file that PETSc would have read by itself is not: its options would be missed in silence. */
-static void WarnOfOptionsFile(int n, char **petsc)
+static void warn_of_options_file(int n, char **petsc)
 {
   char path[PETSC_MAX_PATH_LEN];
-  if (!CliPrints() || !start_unread_file(n, petsc, path)[0]) return;
+  if (!cli_prints() || !start_unread_file(n, petsc, path)[0]) return;
   fprintf(stderr,
           "warning: %s is not read\n  hint: options of PETSc belong on the command line or in $PETSC_OPTIONS; "
           "-options_file %s reads this one\n",
@@ -152,16 +152,16 @@ static void WarnOfOptionsFile(int n, char **petsc)
 }
 
 /* own and petsc: room for argc + 1 words each. */
-static int RunProgram(int argc, char **argv, char **own, char **petsc)
+static int run_program(int argc, char **argv, char **own, char **petsc)
 {
   char **list = petsc;
   int n_own, n_petsc, exit_code = CLI_DONE;
 
-  Split(argc, argv, &n_own, own, &n_petsc, petsc);
-  const char *mistake = SingleDashMistake(n_petsc, petsc);
+  split(argc, argv, &n_own, own, &n_petsc, petsc);
+  const char *mistake = single_dash_mistake(n_petsc, petsc);
   if (StartPetsc(&n_petsc, &list)) return CLI_BAD_INPUT;
   threads_one_per_rank();
-  WarnOfOptionsFile(n_petsc, petsc);
+  warn_of_options_file(n_petsc, petsc);
   signal(SIGPIPE, SIG_DFL); /* `talus ... | head` ends quietly */
   /* An internal error on one rank must not leave the others waiting. */
   if (Main(argc, argv, n_own, own, mistake, &exit_code)) MPI_Abort(PETSC_COMM_WORLD, CLI_GAVE_UP);
@@ -171,9 +171,9 @@ static int RunProgram(int argc, char **argv, char **own, char **petsc)
 
 int main(int argc, char **argv)
 {
-  if (MpiBegin(&argc, &argv)) return CLI_GAVE_UP;
+  if (mpi_begin(&argc, &argv)) return CLI_GAVE_UP;
   char **own = calloc((size_t)argc + 1, sizeof(char *)), **petsc = calloc((size_t)argc + 1, sizeof(char *));
-  const int exit_code = own && petsc ? RunProgram(argc, argv, own, petsc) : CLI_GAVE_UP;
+  const int exit_code = own && petsc ? run_program(argc, argv, own, petsc) : CLI_GAVE_UP;
   free(own);
   free(petsc);
   mpi_end(exit_code);

@@ -31,24 +31,24 @@ static const CliUsage usage = {
   .max_words = 1,
 };
 
-static PetscBool Number(const char *text, PetscReal *value)
+static PetscBool plot_number(const char *text, PetscReal *value)
 {
   char *end;
   *value = (PetscReal)strtod(text, &end);
   return end != text && !*end && !PetscIsInfOrNanReal(*value);
 }
 
-static PetscBool Range(const char *text, PetscReal range[2])
+static PetscBool plot_range(const char *text, PetscReal range[2])
 {
   char first[64];
   const size_t n = strcspn(text, ":");
   if (!text[n] || n == 0 || n >= sizeof first) return PETSC_FALSE;
   memcpy(first, text, n);
   first[n] = 0;
-  return Number(first, &range[0]) && Number(text + n + 1, &range[1]) && range[0] < range[1];
+  return plot_number(first, &range[0]) && plot_number(text + n + 1, &range[1]) && range[0] < range[1];
 }
 
-static PetscBool Size(const char *text, int *width, int *height)
+static PetscBool plot_size(const char *text, int *width, int *height)
 {
   char *end;
   const long w = strtol(text, &end, 10);
@@ -61,7 +61,7 @@ static PetscBool Size(const char *text, int *width, int *height)
 }
 
 /* "0,0.1,0.2", "last", "all" */
-static PetscBool Times(const char *text, PlotOptions *options)
+static PetscBool plot_times(const char *text, PlotOptions *options)
 {
   char *end;
   options->all_times = !strcmp(text, "all");
@@ -74,7 +74,7 @@ static PetscBool Times(const char *text, PlotOptions *options)
   }
 }
 
-static PetscBool Columns(const char *text, PetscInt *columns)
+static PetscBool plot_columns(const char *text, PetscInt *columns)
 {
   char *end;
   *columns = (PetscInt)strtol(text, &end, 10);
@@ -84,29 +84,29 @@ static PetscBool Columns(const char *text, PetscInt *columns)
 /* From words to options; a complaint and PETSC_FALSE in *ok if they make no sense. */
 static PetscErrorCode Understand(const CliArguments *arguments, PlotOptions *options, PetscBool *ok, int *exit_code)
 {
-  const char *time = CliValue(arguments, "time"), *range = CliValue(arguments, "range"),
-             *size = CliValue(arguments, "size");
-  const char *up = CliValue(arguments, "up"), *columns = CliValue(arguments, "columns");
+  const char *time = cli_value(arguments, "time"), *range = cli_value(arguments, "range"),
+             *size = cli_value(arguments, "size");
+  const char *up = cli_value(arguments, "up"), *columns = cli_value(arguments, "columns");
 
   PetscFunctionBeginUser;
   *ok = PETSC_FALSE;
   options->run = arguments->words[0];
-  options->field = CliValue(arguments, "field");
-  options->component = CliValue(arguments, "component");
-  options->out = CliValue(arguments, "out");
-  options->grid = CliFlag(arguments, "grid");
+  options->field = cli_value(arguments, "field");
+  options->component = cli_value(arguments, "component");
+  options->out = cli_value(arguments, "out");
+  options->grid = cli_flag(arguments, "grid");
   options->has_range = range != NULL;
   options->up = up ? tolower((unsigned char)up[0]) - 'x' : 2;
-  if (time && !Times(time, options))
+  if (time && !plot_times(time, options))
     PetscCall(
       CliUsageError(exit_code, "for example --time 0,0.5,1", "--time wants seconds, 'last' or 'all', not '%s'", time));
-  else if (columns && !Columns(columns, &options->columns))
+  else if (columns && !plot_columns(columns, &options->columns))
     PetscCall(
       CliUsageError(exit_code, NULL, "--columns wants a number from 1 to %d, not '%s'", PLOT_MAX_STATES, columns));
-  else if (range && !Range(range, options->range))
+  else if (range && !plot_range(range, options->range))
     PetscCall(CliUsageError(exit_code, "for example --range 0:2.5e6",
                             "--range wants two numbers A:B with A < B, not '%s'", range));
-  else if (size && !Size(size, &options->width, &options->height))
+  else if (size && !plot_size(size, &options->width, &options->height))
     PetscCall(
       CliUsageError(exit_code, "from 200x150 to 10000x10000", "--size wants pixels as in 1200x800, not '%s'", size));
   else if (up && (options->up < 0 || options->up > 2 || up[1]))
@@ -115,7 +115,7 @@ static PetscErrorCode Understand(const CliArguments *arguments, PlotOptions *opt
   PetscFunctionReturn(0);
 }
 
-static void Say(const char *path) { printf("picture = %s\n", path); }
+static void say(const char *path) { printf("picture = %s\n", path); }
 
 /* Who asks for nothing special sees the course of the run as well. */
 static PetscErrorCode DrawCourse(const PlotOptions *options, Diag *diag)
@@ -127,7 +127,7 @@ static PetscErrorCode DrawCourse(const PlotOptions *options, Diag *diag)
   if (options->n_times || options->all_times || options->out) PetscFunctionReturn(0);
   course.even = 6;
   PetscCall(PlotState(&course, diag, picture));
-  if (picture[0]) Say(picture);
+  if (picture[0]) say(picture);
   PetscFunctionReturn(0);
 }
 
@@ -140,14 +140,14 @@ static PetscErrorCode Draw(const PlotOptions *options, int *exit_code)
   PetscFunctionBeginUser;
   PetscCall(DiagCreate(&diag));
   if (stat(options->run, &status) || !S_ISDIR(status.st_mode))
-    DiagError(diag, NULL, "there is no run directory '%s'", options->run);
+    diag_error(diag, NULL, "there is no run directory '%s'", options->run);
   else PetscCall(PlotState(options, diag, picture));
   if (picture[0]) {
-    Say(picture);
+    say(picture);
     PetscCall(DrawCourse(options, diag));
-    PetscCall(PlotHistories(options, diag, Say));
+    PetscCall(PlotHistories(options, diag, say));
   }
-  *exit_code = DiagErrors(diag) ? CLI_BAD_INPUT : CLI_DONE;
+  *exit_code = diag_errors(diag) ? CLI_BAD_INPUT : CLI_DONE;
   PetscCall(DiagFlush(diag, stderr));
   PetscCall(DiagDestroy(&diag));
   PetscFunctionReturn(0);
@@ -164,7 +164,7 @@ PetscErrorCode CliPlot(int argc, char **argv, int *exit_code)
   if (!go_on) PetscFunctionReturn(0);
   PetscCall(Understand(&arguments, &options, &go_on, exit_code));
   if (!go_on) PetscFunctionReturn(0);
-  if (CliPrints()) PetscCall(Draw(&options, exit_code)); /* one process draws, the others learn how it went */
+  if (cli_prints()) PetscCall(Draw(&options, exit_code)); /* one process draws, the others learn how it went */
   PetscCallMPI(MPI_Bcast(exit_code, 1, MPI_INT, 0, PETSC_COMM_WORLD));
   PetscFunctionReturn(0);
 }

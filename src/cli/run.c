@@ -39,7 +39,7 @@ static const char *const may_change[] = {
   "analysis.smallest", "analysis.largest", "analysis.end", "grid.outside", NULL};
 
 /* PATH=VALUE names one of these, or a key below it. */
-static PetscBool MayChange(const char *set)
+static PetscBool may_change_on_resume(const char *set)
 {
   for (int i = 0; may_change[i]; ++i) {
     const size_t n = strlen(may_change[i]);
@@ -90,7 +90,7 @@ static PetscErrorCode Compare(const char *file, const char *out)
 static PetscErrorCode CheckArguments(const CliArguments *a, PetscInt n_set, const char *const *set, PetscBool *ok,
                                      int *exit_code)
 {
-  const char *folder = CliValue(a, "resume");
+  const char *folder = cli_value(a, "resume");
 
   PetscFunctionBeginUser;
   *ok = PETSC_FALSE;
@@ -99,13 +99,13 @@ static PetscErrorCode CheckArguments(const CliArguments *a, PetscInt n_set, cons
                             "usage: talus run CASE [options] (options of PETSc go to the end: they take the "
                             "word behind them)",
                             "there is no CASE on the command line"));
-  else if (folder && (a->n_words || CliFlag(a, "out") || CliFlag(a, "force")))
+  else if (folder && (a->n_words || cli_flag(a, "out") || cli_flag(a, "force")))
     PetscCall(CliUsageError(exit_code, "talus run --resume DIR",
                             "--resume goes on in DIR with the case that is there: CASE, --out and --force make no "
                             "sense beside it"));
   else *ok = PETSC_TRUE;
   for (PetscInt i = 0; folder && *ok && i < n_set; ++i) {
-    if (MayChange(set[i])) continue;
+    if (may_change_on_resume(set[i])) continue;
     PetscCall(CliUsageError(exit_code,
                             "it may change checkpoint, newton, linear, petsc, analysis.smallest, "
                             "analysis.largest, grid.outside and, in dynamics, analysis.end; for all else start a "
@@ -119,7 +119,7 @@ static PetscErrorCode CheckArguments(const CliArguments *a, PetscInt n_set, cons
 /* The case: the file given, or the one that the run to be resumed has kept. */
 static void choose_files(const CliArguments *a, char file[PETSC_MAX_PATH_LEN], char out[PETSC_MAX_PATH_LEN])
 {
-  const char *folder = CliValue(a, "resume"), *asked = CliValue(a, "out");
+  const char *folder = cli_value(a, "resume"), *asked = cli_value(a, "out");
   if (folder) {
     PetscSNPrintf(file, PETSC_MAX_PATH_LEN, "%s/case.yaml", folder);
     PetscStrncpy(out, folder, PETSC_MAX_PATH_LEN);
@@ -141,26 +141,26 @@ static PetscErrorCode ReadAndRun(const CliArguments *a, PetscInt n_set, const ch
   PetscFunctionBeginUser;
   choose_files(a, file, out);
   PetscCall(DiagCreate(&diag));
-  if (CliFlag(a, "resume") && access(file, R_OK)) {
-    DiagError(diag, NULL, "there is no run to resume in '%s': %s: %s", out, file, strerror(errno));
-    DiagHint(diag, "a run that was cut off before it began is started again, with --force");
+  if (cli_flag(a, "resume") && access(file, R_OK)) {
+    diag_error(diag, NULL, "there is no run to resume in '%s': %s: %s", out, file, strerror(errno));
+    diag_hint(diag, "a run that was cut off before it began is started again, with --force");
   } else PetscCall(CaseRead(PETSC_COMM_WORLD, file, n_set, set, diag, &c));
   if (c) {
-    c->grid.trusted = CliFlag(a, "trust");
+    c->grid.trusted = cli_flag(a, "trust");
     const RunOptions run = {.out = out,
-                            .resume = CliFlag(a, "resume"),
-                            .force = CliFlag(a, "force"),
-                            .quiet = CliFlag(a, "quiet"),
-                            .log = CliValue(a, "log"),
+                            .resume = cli_flag(a, "resume"),
+                            .force = cli_flag(a, "force"),
+                            .quiet = cli_flag(a, "quiet"),
+                            .log = cli_value(a, "log"),
                             .warnings = stderr,
                             .summary = &summary};
     PetscCall(RunCase(PETSC_COMM_WORLD, c, &run, diag, NULL, &result));
-    if (summary.reason[0]) DiagError(diag, NULL, "%s", summary.reason);
+    if (summary.reason[0]) diag_error(diag, NULL, "%s", summary.reason);
     if (summary.resumable)
-      DiagHint(diag, "talus run --resume %s goes on from step %d", out, (int)summary.checkpoint_step);
+      diag_hint(diag, "talus run --resume %s goes on from step %d", out, (int)summary.checkpoint_step);
   }
   PetscCall(DiagFlush(diag, stderr));
-  if (result == RUN_DONE && !CliFlag(a, "quiet")) PetscCall(Compare(file, out));
+  if (result == RUN_DONE && !cli_flag(a, "quiet")) PetscCall(Compare(file, out));
   *exit_code = (int)result;
   PetscCall(CaseDestroy(&c));
   PetscCall(DiagDestroy(&diag));
@@ -176,7 +176,7 @@ PetscErrorCode CliRun(int argc, char **argv, int *exit_code)
   PetscFunctionBeginUser;
   PetscCall(CliParse(&usage, argc, argv, &arguments, &go_on, exit_code));
   if (!go_on) PetscFunctionReturn(0);
-  const PetscInt n_set = CliValues(&arguments, "set", set);
+  const PetscInt n_set = cli_values(&arguments, "set", set);
   PetscCall(CheckArguments(&arguments, n_set, set, &go_on, exit_code));
   if (go_on) PetscCall(ReadAndRun(&arguments, n_set, set, exit_code));
   PetscFunctionReturn(0);

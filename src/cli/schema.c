@@ -25,8 +25,8 @@ PetscErrorCode CliSchema(int argc, char **argv, int *exit_code)
   PetscFunctionBeginUser;
   PetscCall(CliParse(&usage, argc, argv, &arguments, &go_on, exit_code));
   if (!go_on) PetscFunctionReturn(0);
-  const PetscBool json = CliFlag(&arguments, "json"), markdown = CliFlag(&arguments, "markdown");
+  const PetscBool json = cli_flag(&arguments, "json"), markdown = cli_flag(&arguments, "markdown");
   if (json && markdown) PetscCall(CliUsageError(exit_code, NULL, "choose one of --json and --markdown"));
-  else if (CliPrints()) PetscCall(SchemaPrint(stdout, json ? SCHEMA_JSON : markdown ? SCHEMA_MARKDOWN : SCHEMA_TEXT));
+  else if (cli_prints()) PetscCall(SchemaPrint(stdout, json ? SCHEMA_JSON : markdown ? SCHEMA_MARKDOWN : SCHEMA_TEXT));
   PetscFunctionReturn(0);
 }

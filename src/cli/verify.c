@@ -34,11 +34,11 @@ static PetscErrorCode CompareRun(const VerifyOptions *options, Diag *diag, Verif
   PetscFunctionBeginUser;
   PetscCall(VerifyRun(PETSC_COMM_WORLD, options, stdout, diag, &n, outcome));
   if (n || *outcome == VERIFY_BAD_INPUT) PetscFunctionReturn(0);
-  if (CliPrints()) {
-    DiagError(diag, NULL, "no row of %s/reference.yaml has the case of '%s'", options->folder, options->run);
-    DiagHint(diag,
-             "a run is compared if all its values are those of a row, but for title, output, checkpoint, linear and "
-             "petsc");
+  if (cli_prints()) {
+    diag_error(diag, NULL, "no row of %s/reference.yaml has the case of '%s'", options->folder, options->run);
+    diag_hint(diag,
+              "a run is compared if all its values are those of a row, but for title, output, checkpoint, linear and "
+              "petsc");
   }
   *outcome = VERIFY_BAD_INPUT;
   PetscFunctionReturn(0);
@@ -56,14 +56,14 @@ PetscErrorCode CliVerify(int argc, char **argv, int *exit_code)
   if (!go_on) PetscFunctionReturn(0);
   const VerifyOptions options = {
     .folder = arguments.words[0],
-    .out = CliValue(&arguments, "out"),
-    .only = CliValue(&arguments, "only"),
-    .run = CliValue(&arguments, "run"),
-    .full = CliFlag(&arguments, "full"),
-    .keep = CliFlag(&arguments, "keep"),
-    .resume = CliFlag(&arguments, "resume"),
-    .record = CliFlag(&arguments, "record"),
-    .trust = CliFlag(&arguments, "trust"),
+    .out = cli_value(&arguments, "out"),
+    .only = cli_value(&arguments, "only"),
+    .run = cli_value(&arguments, "run"),
+    .full = cli_flag(&arguments, "full"),
+    .keep = cli_flag(&arguments, "keep"),
+    .resume = cli_flag(&arguments, "resume"),
+    .record = cli_flag(&arguments, "record"),
+    .trust = cli_flag(&arguments, "trust"),
   };
   if (options.run && (options.out || options.full || options.keep || options.resume || options.record)) {
     PetscCall(CliUsageError(exit_code, "only --only goes with it", "--run writes nothing and runs nothing"));

@@ -13,7 +13,7 @@ static const CliUsage usage = {
   .help = "Prints the versions of talus, PETSc, MPI and HDF5.",
 };
 
-static void PrintMpi(void)
+static void print_mpi(void)
 {
   char library[MPI_MAX_LIBRARY_VERSION_STRING];
   int length, major, minor;
@@ -32,12 +32,12 @@ PetscErrorCode CliVersion(int argc, char **argv, int *exit_code)
 
   PetscFunctionBeginUser;
   PetscCall(CliParse(&usage, argc, argv, &arguments, &go_on, exit_code));
-  if (!go_on || !CliPrints()) PetscFunctionReturn(0);
+  if (!go_on || !cli_prints()) PetscFunctionReturn(0);
   PetscCall(PetscGetVersionNumber(&major, &minor, &subminor, NULL));
   H5get_libversion(&h5[0], &h5[1], &h5[2]);
   printf("talus %s\n", TALUS_VERSION);
   printf("PETSc %" PetscInt_FMT ".%" PetscInt_FMT ".%" PetscInt_FMT "\n", major, minor, subminor);
-  PrintMpi();
+  print_mpi();
   printf("HDF5 %u.%u.%u\n", h5[0], h5[1], h5[2]);
   fflush(stdout);
   PetscFunctionReturn(0);

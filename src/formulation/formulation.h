@@ -53,7 +53,7 @@ typedef struct {
 } Formulation;
 
 extern const Formulation *const formulations[]; /* ended by NULL */
-const Formulation *FormulationFind(const char *name);
+const Formulation *formulation_find(const char *name);
 extern const Formulation formulation_displacement, formulation_mixed;
 
 /* Increment of the deformation gradient of one point with nodes' increments du (nn x dim). */

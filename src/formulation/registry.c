@@ -7,7 +7,7 @@ const Formulation *const formulations[] = {
 #undef FORMULATION
   NULL};
 
-const Formulation *FormulationFind(const char *name)
+const Formulation *formulation_find(const char *name)
 {
   for (PetscInt i = 0; formulations[i]; ++i)
     if (!strcmp(formulations[i]->name, name)) return formulations[i];

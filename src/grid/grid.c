@@ -60,12 +60,12 @@ PetscErrorCode GridFinish(Grid *grid)
   PetscFunctionReturn(0);
 }
 
-PetscInt GridLocate(const Grid *grid, const PetscReal *x, PetscInt guess, PetscReal *xi)
+PetscInt grid_locate(const Grid *grid, const PetscReal *x, PetscInt guess, PetscReal *xi)
 {
   return grid->box ? box_locate(grid, x, xi) : mesh_locate(grid, x, guess, xi);
 }
 
-void GridClamp(const Grid *grid, PetscReal *x)
+void grid_clamp(const Grid *grid, PetscReal *x)
 {
   if (!grid->box) {
     mesh_clamp(grid, x);
@@ -74,7 +74,7 @@ void GridClamp(const Grid *grid, PetscReal *x)
   for (PetscInt d = 0; d < grid->dim; ++d) x[d] = PetscMin(PetscMax(x[d], grid->min[d]), grid->max[d]);
 }
 
-PetscInt GridCandidates(const Grid *grid, const PetscReal *x, PetscInt max, PetscMPIInt *ranks)
+PetscInt grid_candidates(const Grid *grid, const PetscReal *x, PetscInt max, PetscMPIInt *ranks)
 {
   return grid->box ? box_candidates(grid->box, x, max, ranks) : mesh_candidates(grid, x, max, ranks);
 }

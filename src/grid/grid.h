@@ -70,14 +70,14 @@ PetscErrorCode GridRepartition(const Grid *old, const PetscReal *weight, PetscRe
 PetscErrorCode GridPartitionToTable(const Grid *grid, Tables *tables);
 PetscErrorCode GridFromPartition(const Grid *old, const Table *table, Grid **grid, char reason[256]);
 
-const GridSet *GridFindSet(const Grid *grid, const char *name);
+const GridSet *grid_find_set(const Grid *grid, const char *name);
 /* Names of all sets, NULL-terminated, to be freed with PetscFree (not the names). */
 PetscErrorCode GridSetNames(const Grid *grid, const char ***names);
 
 /* Local nodes that the selector takes (sorted). With no condition at all: the whole outer boundary. */
 PetscErrorCode GridSelectNodes(const Grid *grid, const Selector *on, PetscInt *n, PetscInt **nodes);
 /* Does a place in space, that is, the selector's ranges and shape, hold x? */
-PetscBool GridTakes(const Grid *grid, const Selector *on, const PetscReal *x);
+PetscBool grid_takes(const Grid *grid, const Selector *on, const PetscReal *x);
 /* Faces on the outer boundary that the selector takes, each on one rank only. */
 PetscErrorCode GridSelectFaces(const Grid *grid, const Selector *on, PetscInt *n, PetscInt **cell, PetscInt **side);
 
@@ -87,12 +87,12 @@ PetscErrorCode GridSelectFaces(const Grid *grid, const Selector *on, PetscInt *n
  * Local cell that holds the position x, or -1; `guess` is tried first (-1: none). xi gets the
  * reference position (dim). A position on a face between cells belongs to one of them, the same at
  * every call. */
-PetscInt GridLocate(const Grid *grid, const PetscReal *x, PetscInt guess, PetscReal *xi);
+PetscInt grid_locate(const Grid *grid, const PetscReal *x, PetscInt guess, PetscReal *xi);
 /* The nearest position inside the grid as a whole (for `outside: keep-on-boundary`): of a box
  * exactly; of a mesh the nearest boundary face of this rank. */
-void GridClamp(const Grid *grid, PetscReal *x);
+void grid_clamp(const Grid *grid, PetscReal *x);
 /* Ranks other than this one whose cells may hold x, at most `max`; returns how many. O(1) on boxes. */
-PetscInt GridCandidates(const Grid *grid, const PetscReal *x, PetscInt max, PetscMPIInt *ranks);
+PetscInt grid_candidates(const Grid *grid, const PetscReal *x, PetscInt max, PetscMPIInt *ranks);
 
 /* Ghost exchange for an array of n_nodes x components: owner to ghosts, and the sum of all copies
  * to the owner (the ghosts keep their part). Collective. */

@@ -123,11 +123,11 @@ PetscErrorCode GridSortUnique(PetscInt *n, PetscInt *values);
 PetscErrorCode GridFinish(Grid *grid);
 
 /* A mistake of the user, the same on all ranks: said once. */
-#define GridError(comm, diag, path, ...)                          \
-  do {                                                            \
-    PetscMPIInt grid_error_rank;                                  \
-    PetscCallMPI(MPI_Comm_rank((comm), &grid_error_rank));        \
-    if (!grid_error_rank) DiagError((diag), (path), __VA_ARGS__); \
+#define GridError(comm, diag, path, ...)                           \
+  do {                                                             \
+    PetscMPIInt grid_error_rank;                                   \
+    PetscCallMPI(MPI_Comm_rank((comm), &grid_error_rank));         \
+    if (!grid_error_rank) diag_error((diag), (path), __VA_ARGS__); \
   } while (0)
 
 /* search.c: everything that only unstructured grids need besides their cells. */

@@ -54,7 +54,7 @@ PetscErrorCode NodesToTable(const Grid *grid, const unsigned char *take, PetscIn
 /* Row numbers of a table as PetscInt, within 0 .. n - 1. */
 static PetscErrorCode Numbers(const Table *table, const char *name, PetscInt n, PetscInt **number, char reason[256])
 {
-  const PetscInt64 *wide = TableData(table, name, COLUMN_INT64, 1, reason);
+  const PetscInt64 *wide = table_data(table, name, COLUMN_INT64, 1, reason);
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1((size_t)table->rows, number));
@@ -68,7 +68,7 @@ static PetscErrorCode Numbers(const Table *table, const char *name, PetscInt n, 
 static PetscErrorCode FillField(const Grid *grid, PetscSF sf, const NodalField *field, const Table *table,
                                 char reason[256])
 {
-  const PetscReal *rows = TableData(table, field->name, COLUMN_REAL, field->components, reason);
+  const PetscReal *rows = table_data(table, field->name, COLUMN_REAL, field->components, reason);
   PetscMPIInt n;
   MPI_Datatype type;
 

@@ -98,8 +98,8 @@ PetscErrorCode GridPartitionToTable(const Grid *grid, Tables *tables)
 /* Every rank has read the same table. */
 static void read_cuts(PetscInt dim, const Table *table, Cuts *cuts, char reason[256])
 {
-  const PetscInt64 *axis = TableData(table, "cut_axis", COLUMN_INT64, 1, reason),
-                   *cut = TableData(table, "cut", COLUMN_INT64, 1, reason);
+  const PetscInt64 *axis = table_data(table, "cut_axis", COLUMN_INT64, 1, reason),
+                   *cut = table_data(table, "cut", COLUMN_INT64, 1, reason);
   if (!axis || !cut) return;
   if (table->rows != cuts->size) {
     snprintf(reason, 256, "partition: it is of another number of ranks");
@@ -119,8 +119,8 @@ static void read_cuts(PetscInt dim, const Table *table, Cuts *cuts, char reason[
 static void read_owners(const Grid *grid, PetscMPIInt size, const Table *table, PetscInt *cell, PetscMPIInt *owner,
                         char reason[256])
 {
-  const PetscInt64 *number = TableData(table, "cell", COLUMN_INT64, 1, reason);
-  const int32_t *rank = TableData(table, "rank", COLUMN_INT32, 1, reason);
+  const PetscInt64 *number = table_data(table, "cell", COLUMN_INT64, 1, reason);
+  const int32_t *rank = table_data(table, "rank", COLUMN_INT32, 1, reason);
   for (PetscInt64 i = 0; i < table->rows; ++i) {
     cell[i] = -1;
     owner[i] = 0;

@@ -21,7 +21,7 @@ static PetscReal selection_tolerance(const Grid *grid)
   return 1e-9 * size;
 }
 
-PetscBool GridTakes(const Grid *grid, const Selector *on, const PetscReal *x)
+PetscBool grid_takes(const Grid *grid, const Selector *on, const PetscReal *x)
 {
   return takes_position(grid, on, selection_tolerance(grid), x);
 }
@@ -31,7 +31,7 @@ PetscBool GridTakes(const Grid *grid, const Selector *on, const PetscReal *x)
 static const GridSet *base_set(const Grid *grid, const Selector *on, const GridSet *all, const GridSet *nothing)
 {
   if (on->boundary) {
-    const GridSet *set = GridFindSet(grid, on->boundary);
+    const GridSet *set = grid_find_set(grid, on->boundary);
     return set ? set : nothing;
   }
   return all && (has_range(on) || on->has_shape) ? all : &grid->outer;

@@ -41,7 +41,7 @@ PetscErrorCode GridOuterFromSets(Grid *grid)
   PetscFunctionReturn(0);
 }
 
-const GridSet *GridFindSet(const Grid *grid, const char *name)
+const GridSet *grid_find_set(const Grid *grid, const char *name)
 {
   for (PetscInt s = 0; name && s < grid->n_sets; ++s)
     if (!strcmp(grid->sets[s].name, name)) return grid->sets + s;

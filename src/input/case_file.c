@@ -6,14 +6,14 @@
 #include "input/schema/schema.h"
 #include "material/law.h"
 
-static void DestroyDocument(void *document)
+static void destroy_document(void *document)
 {
   YamlDocument *d = document;
   PetscCallAbort(PETSC_COMM_SELF, YamlDestroy(&d));
 }
 
 /* Why a file cannot be read, in words; NULL if it can. */
-static const char *Unreadable(const char *file, size_t *size)
+static const char *unreadable(const char *file, size_t *size)
 {
   struct stat info;
   if (stat(file, &info)) return errno == ENOENT ? "there is no such file" : strerror(errno);
@@ -29,7 +29,7 @@ static PetscErrorCode ReadBytes(const char *file, size_t *size, char **bytes, co
   PetscFunctionBeginUser;
   *size = 0;
   *bytes = NULL;
-  *reason = Unreadable(file, size);
+  *reason = unreadable(file, size);
   if (*reason) PetscFunctionReturn(0);
   FILE *in = fopen(file, "rb");
   if (!in) *reason = strerror(errno);
@@ -77,18 +77,18 @@ static PetscErrorCode FolderOf(const char *file, char **folder)
 }
 
 /* The number of dimensions decides how long vectors are: it is read ahead of everything else. */
-static PetscInt PeekDimensions(const YamlNode *root)
+static PetscInt peek_dimensions(const YamlNode *root)
 {
-  const YamlNode *kinematics = YamlFind(root, "kinematics");
+  const YamlNode *kinematics = yaml_find(root, "kinematics");
   if (!kinematics || kinematics->kind != YAML_SCALAR) return 0;
   if (!strcmp(kinematics->text, "3d")) return 3;
   return !strcmp(kinematics->text, "plane-strain") || !strcmp(kinematics->text, "axisymmetric") ? 2 : 0;
 }
 
-static PetscBool AnythingYields(const Case *c)
+static PetscBool anything_yields(const Case *c)
 {
   for (PetscInt m = 0; m < c->n_materials; ++m) {
-    const Law *law = c->materials[m].law ? LawFind(c->materials[m].law) : NULL;
+    const Law *law = c->materials[m].law ? law_find(c->materials[m].law) : NULL;
     if (law && law->yields) return PETSC_TRUE;
   }
   return PETSC_FALSE;
@@ -96,11 +96,11 @@ static PetscBool AnythingYields(const Case *c)
 
 /* Measured (docs/theory.md, section 9): elastic bodies keep angular momentum and energy best with a tenth of the mass lumped and no tie,
  * while at the front of a flow, where yielded points carry next to nothing, only both keep Newton's method alive. */
-static void ResolveStabilisation(const YamlNode *given, Case *c)
+static void resolve_stabilisation(const YamlNode *given, Case *c)
 {
-  const PetscBool yields = AnythingYields(c);
-  if (!YamlFind(given, "mass")) c->stabilisation.mass = yields ? 1 : 0.1;
-  if (!YamlFind(given, "inertia")) c->stabilisation.inertia = yields ? 0.01 : 0;
+  const PetscBool yields = anything_yields(c);
+  if (!yaml_find(given, "mass")) c->stabilisation.mass = yields ? 1 : 0.1;
+  if (!yaml_find(given, "inertia")) c->stabilisation.inertia = yields ? 0.01 : 0;
 }
 
 /* Stress that carries the weight means that the weight is there: without a word of the user gravity does not grow. */
@@ -119,7 +119,7 @@ static PetscErrorCode ResolveGravity(Case *c)
 
 static PetscErrorCode ReadDocument(const char *file, YamlDocument *document, Diag *diag, Case **c)
 {
-  SchemaReader reader = {.document = document, .diag = diag, .dim = PeekDimensions(document->root)};
+  SchemaReader reader = {.document = document, .diag = diag, .dim = peek_dimensions(document->root)};
 
   PetscFunctionBeginUser;
   PetscCall(PetscNew(c));
@@ -127,14 +127,14 @@ static PetscErrorCode ReadDocument(const char *file, YamlDocument *document, Dia
   PetscCall(FolderOf(file, &(*c)->folder));
   reader.c = *c;
   PetscCall(SchemaReadTable(&reader, &schema_case, document->root, *c));
-  ResolveStabilisation(YamlFind(document->root, "stabilisation"), *c);
+  resolve_stabilisation(yaml_find(document->root, "stabilisation"), *c);
   PetscCall(ResolveGravity(*c));
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode CaseRead(MPI_Comm comm, const char *file, PetscInt n_set, const char *const *set, Diag *diag, Case **c)
 {
-  const PetscInt before = DiagErrors(diag);
+  const PetscInt before = diag_errors(diag);
   char *bytes, reason[256];
   size_t size = 0;
   YamlDocument *document;
@@ -144,16 +144,16 @@ PetscErrorCode CaseRead(MPI_Comm comm, const char *file, PetscInt n_set, const c
   PetscCall(FileReadEverywhere(comm, file, &size, &bytes, reason));
   if (reason[0]) {
     const DiagPlace place = {.file = file, .width = 1};
-    DiagAt(diag, DIAG_ERROR, &place, "%s", reason);
+    diag_at(diag, DIAG_ERROR, &place, "%s", reason);
     PetscCall(PetscFree(bytes));
     PetscFunctionReturn(0);
   }
   PetscCall(YamlCreate(file, bytes, size, diag, &document));
   PetscCall(PetscFree(bytes));
-  PetscCall(DiagSetResolver(diag, YamlResolve, document));
-  PetscCall(DiagOwnContext(diag, DestroyDocument));
+  PetscCall(DiagSetResolver(diag, yaml_resolve, document));
+  PetscCall(DiagOwnContext(diag, destroy_document));
   for (PetscInt i = 0; i < n_set; ++i) PetscCall(YamlSet(document, set[i], diag));
   if (document->root) PetscCall(ReadDocument(file, document, diag, c));
-  if (DiagErrors(diag) > before) PetscCall(CaseDestroy(c));
+  if (diag_errors(diag) > before) PetscCall(CaseDestroy(c));
   PetscFunctionReturn(0);
 }

@@ -200,7 +200,7 @@ static void keep_nearest(const char *name, const char *list, char best[64])
     n = strcspn(list, " ");
     (void)snprintf(word, sizeof word, "%.*s", (int)n, list);
     const char *const pair[] = {best[0] ? best : word, word, NULL};
-    const char *nearest = DiagNearest(name, pair);
+    const char *nearest = diag_nearest(name, pair);
     if (nearest && nearest != best) memcpy(best, word, sizeof word);
   }
 }

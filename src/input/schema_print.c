@@ -6,23 +6,23 @@
 #include "input/schema_print.h"
 #include "material/law.h"
 
-static void Collect(SchemaTables *all, const SchemaTable *table)
+static void collect(SchemaTables *all, const SchemaTable *table)
 {
   for (PetscInt i = 0; i < all->n; ++i)
     if (all->table[i] == table) return;
   if (all->n == SCHEMA_MAX_TABLES) return;
   all->table[all->n++] = table;
   for (const SchemaEntry *e = table->entries; e->key; ++e)
-    if (e->table) Collect(all, e->table);
+    if (e->table) collect(all, e->table);
 }
 
-void SchemaCollect(SchemaTables *all)
+void schema_collect(SchemaTables *all)
 {
   all->n = 0;
-  Collect(all, &schema_case);
+  collect(all, &schema_case);
 }
 
-const char *SchemaDefault(const SchemaEntry *e, char *buffer, size_t size)
+const char *schema_default(const SchemaEntry *e, char *buffer, size_t size)
 {
   if (e->required) snprintf(buffer, size, "required");
   else if (e->note) snprintf(buffer, size, "%s", e->note);
@@ -32,10 +32,10 @@ const char *SchemaDefault(const SchemaEntry *e, char *buffer, size_t size)
 }
 
 /* "number > 0", "word", "list of `body`" */
-static const char *Kind(const SchemaEntry *e, PetscBool markdown, char *buffer, size_t size)
+static const char *print_kind(const SchemaEntry *e, PetscBool markdown, char *buffer, size_t size)
 {
   char range[80];
-  SchemaRange(e, range, sizeof(range));
+  schema_range(e, range, sizeof(range));
   snprintf(buffer, size, "%s%s%s", schema_types[e->type].short_name,
            range[0] && e->type != TYPE_SIZE && e->type != TYPE_COUNTS ? " " : "",
            e->type != TYPE_SIZE && e->type != TYPE_COUNTS ? range : "");
@@ -48,17 +48,17 @@ static const char *Kind(const SchemaEntry *e, PetscBool markdown, char *buffer, 
   return buffer;
 }
 
-static const char *Where(const SchemaEntry *e) { return e->only_2d ? " (2D)" : e->only_3d ? " (3D)" : ""; }
+static const char *print_where(const SchemaEntry *e) { return e->only_2d ? " (2D)" : e->only_3d ? " (3D)" : ""; }
 
 /* --- text --- */
-static void TextEntry(FILE *out, const SchemaEntry *e)
+static void text_entry(FILE *out, const SchemaEntry *e)
 {
   char left[120], fallback[200], kind[160];
   snprintf(left, sizeof(left), "%s%s%s%s", e->key, e->unit && e->unit[0] ? " [" : "",
            e->unit && e->unit[0] ? e->unit : "", e->unit && e->unit[0] ? "]" : "");
-  SchemaDefault(e, fallback, sizeof(fallback));
-  fprintf(out, "  %-28s %s%s\n", left, e->help, Where(e));
-  fprintf(out, "  %-28s   %s%s%s\n", "", Kind(e, PETSC_FALSE, kind, sizeof(kind)),
+  schema_default(e, fallback, sizeof(fallback));
+  fprintf(out, "  %-28s %s%s\n", left, e->help, print_where(e));
+  fprintf(out, "  %-28s   %s%s%s\n", "", print_kind(e, PETSC_FALSE, kind, sizeof(kind)),
           !fallback[0]  ? ""
           : e->required ? "; "
                         : "; default: ",
@@ -66,7 +66,7 @@ static void TextEntry(FILE *out, const SchemaEntry *e)
   for (const SchemaWord *w = e->words; w && w->word; ++w) fprintf(out, "  %-28s   %-18s %s\n", "", w->word, w->help);
 }
 
-static void TextGroup(FILE *out, const SchemaGroup *group)
+static void text_group(FILE *out, const SchemaGroup *group)
 {
   static const char *const rule[] = {"", "Exactly one of", "At most one of", "At least one of"};
   fprintf(out, "  %s:", rule[group->kind]);
@@ -74,18 +74,18 @@ static void TextGroup(FILE *out, const SchemaGroup *group)
   fputc('\n', out);
 }
 
-static void TextTable(FILE *out, const SchemaTable *table)
+static void text_table(FILE *out, const SchemaTable *table)
 {
   fprintf(out, "%s\n  %s\n", table->name, table->help);
-  for (const SchemaGroup *group = table->groups; group && group->kind != GROUP_NONE; ++group) TextGroup(out, group);
+  for (const SchemaGroup *group = table->groups; group && group->kind != GROUP_NONE; ++group) text_group(out, group);
   fputc('\n', out);
-  for (const SchemaEntry *e = table->entries; e->key; ++e) TextEntry(out, e);
+  for (const SchemaEntry *e = table->entries; e->key; ++e) text_entry(out, e);
   fputc('\n', out);
 }
 
-static SchemaEntry LawEntry(const LawParameter *p, char *note, size_t size)
+static SchemaEntry law_entry(const LawParameter *p, char *note, size_t size)
 {
-  SchemaEntry entry = SchemaLawEntry(p);
+  SchemaEntry entry = schema_law_entry(p);
   if (!entry.required) {
     snprintf(note, size, "%g", (double)p->fallback);
     entry.note = note;
@@ -93,30 +93,30 @@ static SchemaEntry LawEntry(const LawParameter *p, char *note, size_t size)
   return entry;
 }
 
-static void TextLaws(FILE *out)
+static void text_laws(FILE *out)
 {
   char note[40];
   fprintf(out, "elastic constants\n  Any two of these belong to every material.\n\n");
-  for (const SchemaEntry *e = schema_elastic; e->key; ++e) TextEntry(out, e);
+  for (const SchemaEntry *e = schema_elastic; e->key; ++e) text_entry(out, e);
   for (const Law *const *law = laws; *law; ++law) {
     fprintf(out, "\nlaw %s\n  %s\n\n", (*law)->name, (*law)->help);
     for (const LawParameter *p = (*law)->parameters; p && p->name; ++p) {
-      const SchemaEntry entry = LawEntry(p, note, sizeof(note));
-      TextEntry(out, &entry);
+      const SchemaEntry entry = law_entry(p, note, sizeof(note));
+      text_entry(out, &entry);
     }
   }
 }
 
-static void PrintText(FILE *out)
+static void print_text(FILE *out)
 {
   SchemaTables all;
-  SchemaCollect(&all);
-  for (PetscInt i = 0; i < all.n; ++i) TextTable(out, all.table[i]);
-  TextLaws(out);
+  schema_collect(&all);
+  for (PetscInt i = 0; i < all.n; ++i) text_table(out, all.table[i]);
+  text_laws(out);
 }
 
 /* --- Markdown --- */
-static void MarkdownText(FILE *out, const char *text)
+static void markdown_text(FILE *out, const char *text)
 {
   for (const char *p = text; *p; ++p) {
     if (*p == '|') fputc('\\', out);
@@ -124,27 +124,27 @@ static void MarkdownText(FILE *out, const char *text)
   }
 }
 
-static void MarkdownEntry(FILE *out, const SchemaEntry *e)
+static void markdown_entry(FILE *out, const SchemaEntry *e)
 {
   char fallback[200], kind[160];
   fprintf(out, "| `%s` | ", e->key);
-  MarkdownText(out, Kind(e, PETSC_TRUE, kind, sizeof(kind)));
+  markdown_text(out, print_kind(e, PETSC_TRUE, kind, sizeof(kind)));
   fprintf(out, " | %s | ", e->unit ? e->unit : "");
-  MarkdownText(out, SchemaDefault(e, fallback, sizeof(fallback)));
+  markdown_text(out, schema_default(e, fallback, sizeof(fallback)));
   fputs(" | ", out);
-  MarkdownText(out, e->help);
-  fputs(Where(e), out);
+  markdown_text(out, e->help);
+  fputs(print_where(e), out);
   for (const SchemaWord *w = e->words; w && w->word; ++w)
     fprintf(out, "%s`%s`: %s", w == e->words ? "<br>" : "; ", w->word, w->help);
   fputs(" |\n", out);
 }
 
-static void MarkdownHead(FILE *out)
+static void markdown_head(FILE *out)
 {
   fputs("| key | value | unit | default | meaning |\n|---|---|---|---|---|\n", out);
 }
 
-static void MarkdownTable(FILE *out, const SchemaTable *table)
+static void markdown_table(FILE *out, const SchemaTable *table)
 {
   static const char *const rule[] = {"", "Exactly one of", "At most one of", "At least one of"};
   fprintf(out, "\n## %s\n\n%s\n", table->name, table->help);
@@ -154,32 +154,32 @@ static void MarkdownTable(FILE *out, const SchemaTable *table)
     fputs(".\n", out);
   }
   fputc('\n', out);
-  MarkdownHead(out);
-  for (const SchemaEntry *e = table->entries; e->key; ++e) MarkdownEntry(out, e);
+  markdown_head(out);
+  for (const SchemaEntry *e = table->entries; e->key; ++e) markdown_entry(out, e);
 }
 
-static void MarkdownLaws(FILE *out)
+static void markdown_laws(FILE *out)
 {
   char note[40];
   fputs("\n## elastic constants\n\nExactly two of these belong to every material.\n\n", out);
-  MarkdownHead(out);
-  for (const SchemaEntry *e = schema_elastic; e->key; ++e) MarkdownEntry(out, e);
+  markdown_head(out);
+  for (const SchemaEntry *e = schema_elastic; e->key; ++e) markdown_entry(out, e);
   for (const Law *const *law = laws; *law; ++law) {
     fprintf(out, "\n## law: %s\n\n%s.\n", (*law)->name, (*law)->help);
     if (!(*law)->parameters || !(*law)->parameters->name)
       fputs("\nNo parameters beyond density and two elastic constants.\n", out);
     else {
       fputc('\n', out);
-      MarkdownHead(out);
+      markdown_head(out);
     }
     for (const LawParameter *p = (*law)->parameters; p && p->name; ++p) {
-      const SchemaEntry entry = LawEntry(p, note, sizeof(note));
-      MarkdownEntry(out, &entry);
+      const SchemaEntry entry = law_entry(p, note, sizeof(note));
+      markdown_entry(out, &entry);
     }
   }
 }
 
-static void MarkdownMagnitudes(FILE *out)
+static void markdown_magnitudes(FILE *out)
 {
   fputs(
     "\n## magnitudes\n\nNumbers larger than their unit can mean are refused, and smaller ones other than 0. In "
@@ -195,9 +195,9 @@ static void MarkdownMagnitudes(FILE *out)
   }
 }
 
-static void MarkdownFields(FILE *out)
+static void markdown_fields(FILE *out)
 {
-  MarkdownMagnitudes(out);
+  markdown_magnitudes(out);
   fputs("\n## fields\n\n| field | unit | components | where | meaning |\n|---|---|---|---|---|\n", out);
   for (const OutputField *f = output_fields; f->name; ++f)
     fprintf(out, "| `%s` | %s | %d | %s | %s |\n", f->name, f->unit, (int)f->components,
@@ -207,10 +207,10 @@ static void MarkdownFields(FILE *out)
             f->help);
 }
 
-static void PrintMarkdown(FILE *out)
+static void print_markdown(FILE *out)
 {
   SchemaTables all;
-  SchemaCollect(&all);
+  schema_collect(&all);
   fputs(
     "# The case file\n\n"
     "This reference is the output of `talus schema --markdown`. A case file is YAML; SI units, angles in degrees; "
@@ -226,17 +226,17 @@ static void PrintMarkdown(FILE *out)
     "in "
     "no file.\n",
     out);
-  for (PetscInt i = 0; i < all.n; ++i) MarkdownTable(out, all.table[i]);
-  MarkdownLaws(out);
-  MarkdownFields(out);
+  for (PetscInt i = 0; i < all.n; ++i) markdown_table(out, all.table[i]);
+  markdown_laws(out);
+  markdown_fields(out);
 }
 
 PetscErrorCode SchemaPrint(FILE *out, SchemaStyle style)
 {
   PetscFunctionBeginUser;
   if (style == SCHEMA_JSON) PetscCall(SchemaPrintJson(out));
-  else if (style == SCHEMA_MARKDOWN) PrintMarkdown(out);
-  else PrintText(out);
+  else if (style == SCHEMA_MARKDOWN) print_markdown(out);
+  else print_text(out);
   fflush(out);
   PetscFunctionReturn(0);
 }

@@ -10,7 +10,7 @@ typedef struct {
   const SchemaTable *table[SCHEMA_MAX_TABLES];
 } SchemaTables;
 
-void SchemaCollect(SchemaTables *all);
+void schema_collect(SchemaTables *all);
 /* The default as a reader wants it: "0.25", "step / 1024", "required"; empty if there is none. */
-const char *SchemaDefault(const SchemaEntry *entry, char *buffer, size_t size);
+const char *schema_default(const SchemaEntry *entry, char *buffer, size_t size);
 PetscErrorCode SchemaPrintJson(FILE *out);

@@ -2,40 +2,40 @@
 #include <string.h>
 #include "input/schema/schema.h"
 
-static const SchemaEntry *FindEntry(const SchemaTable *table, const char *key)
+static const SchemaEntry *find_entry(const SchemaTable *table, const char *key)
 {
   for (const SchemaEntry *entry = table->entries; entry->key; ++entry)
     if (!strcmp(entry->key, key)) return entry;
   return NULL;
 }
 
-static PetscBool Fits(const SchemaReader *r, const SchemaEntry *entry)
+static PetscBool fits(const SchemaReader *r, const SchemaEntry *entry)
 {
   return !((entry->only_2d && r->dim == 3) || (entry->only_3d && r->dim == 2));
 }
 
 /* A key with nothing behind it counts as absent where a mapping or a list may be absent. */
-static const YamlNode *Given(const SchemaEntry *entry, const YamlNode *mapping)
+static const YamlNode *given(const SchemaEntry *entry, const YamlNode *mapping)
 {
-  const YamlNode *node = YamlFind(mapping, entry->key);
+  const YamlNode *node = yaml_find(mapping, entry->key);
   const PetscBool nested = entry->type == TYPE_TABLE || entry->type == TYPE_LIST || entry->type == TYPE_NAMED;
-  return node && nested && !entry->required && !entry->tagged && YamlIsNull(node) ? NULL : node;
+  return node && nested && !entry->required && !entry->tagged && yaml_is_null(node) ? NULL : node;
 }
 
-void SchemaHintWords(SchemaReader *r, const char *word, PetscInt n, const char *const *words)
+void schema_hint_words(SchemaReader *r, const char *word, PetscInt n, const char *const *words)
 {
-  if (DiagFull(r->diag, DIAG_ERROR)) return; /* its error is not shown */
-  const char *nearest = word ? DiagNearest(word, words) : NULL;
+  if (diag_full(r->diag, DIAG_ERROR)) return; /* its error is not shown */
+  const char *nearest = word ? diag_nearest(word, words) : NULL;
   char list[600] = "";
   if (nearest) {
-    DiagHint(r->diag, "did you mean '%s'?", nearest);
+    diag_hint(r->diag, "did you mean '%s'?", nearest);
     return;
   }
   for (PetscInt i = 0; i < n; ++i) {
     const size_t used = strlen(list);
     snprintf(list + used, sizeof(list) - used, "%s%s", i ? ", " : "", words[i]);
   }
-  if (n) DiagHint(r->diag, "known here: %s%s", list, strlen(list) + 1 == sizeof(list) ? "..." : "");
+  if (n) diag_hint(r->diag, "known here: %s%s", list, strlen(list) + 1 == sizeof(list) ? "..." : "");
 }
 
 static PetscErrorCode UnknownKeys(SchemaReader *r, const SchemaTable *table, const YamlNode *mapping)
@@ -46,30 +46,31 @@ static PetscErrorCode UnknownKeys(SchemaReader *r, const SchemaTable *table, con
 
   PetscFunctionBeginUser;
   for (const SchemaEntry *entry = table->entries; entry->key && n < 63; ++entry)
-    if (Fits(r, entry)) words[n++] = entry->key;
+    if (fits(r, entry)) words[n++] = entry->key;
   for (PetscInt i = 0; i < mapping->n; ++i) {
     const YamlNode *child = mapping->child[i];
-    const SchemaEntry *entry = FindEntry(table, child->key);
-    if (entry && Fits(r, entry)) continue;
+    const SchemaEntry *entry = find_entry(table, child->key);
+    if (entry && fits(r, entry)) continue;
     if (entry) {
       SchemaKeyError(
-        r, child, "key '%s' of %s belongs to %s", child->key, YamlPath(mapping, path, sizeof(path)),
+        r, child, "key '%s' of %s belongs to %s", child->key, yaml_path(mapping, path, sizeof(path)),
         entry->only_2d ? "two dimensions, this case is 3d" : "kinematics: 3d, this case is two-dimensional");
-      if (!strcmp(child->key, "circle")) DiagHint(r->diag, "in 3d there is 'sphere'");
-      if (!strcmp(child->key, "sphere")) DiagHint(r->diag, "in two dimensions there is 'circle'");
+      if (!strcmp(child->key, "circle")) diag_hint(r->diag, "in 3d there is 'sphere'");
+      if (!strcmp(child->key, "sphere")) diag_hint(r->diag, "in two dimensions there is 'circle'");
     } else {
-      SchemaKeyError(r, child, "key '%s' of %s is not known", child->key, YamlPath(mapping, path, sizeof(path)));
-      SchemaHintWords(r, child->key, n, words);
+      SchemaKeyError(r, child, "key '%s' of %s is not known", child->key, yaml_path(mapping, path, sizeof(path)));
+      schema_hint_words(r, child->key, n, words);
     }
   }
   PetscFunctionReturn(0);
 }
 
-static void Missing(SchemaReader *r, const SchemaEntry *entry, const YamlNode *mapping)
+static void read_missing(SchemaReader *r, const SchemaEntry *entry, const YamlNode *mapping)
 {
   char path[512], expected[300];
-  SchemaKeyError(r, mapping, "key '%s' of %s is missing", entry->key, YamlPath(mapping, path, sizeof(path)));
-  DiagHint(r->diag, "%s: %s (%s)", entry->key, entry->help, SchemaExpected(entry, r->dim, expected, sizeof(expected)));
+  SchemaKeyError(r, mapping, "key '%s' of %s is missing", entry->key, yaml_path(mapping, path, sizeof(path)));
+  diag_hint(r->diag, "%s: %s (%s)", entry->key, entry->help,
+            schema_expected(entry, r->dim, expected, sizeof(expected)));
 }
 
 static PetscErrorCode ReadDefault(SchemaReader *r, const SchemaEntry *entry, void *target)
@@ -92,7 +93,7 @@ static PetscErrorCode ReadDefault(SchemaReader *r, const SchemaEntry *entry, voi
   PetscFunctionReturn(0);
 }
 
-static PetscBool InGroup(const SchemaTable *table, const char *key)
+static PetscBool in_group(const SchemaTable *table, const char *key)
 {
   for (const SchemaGroup *group = table->groups; group && group->kind != GROUP_NONE; ++group)
     for (int k = 0; group->keys[k]; ++k)
@@ -103,24 +104,24 @@ static PetscBool InGroup(const SchemaTable *table, const char *key)
 static PetscErrorCode ReadKey(SchemaReader *r, const SchemaTable *table, const SchemaEntry *entry,
                               const YamlNode *mapping, void *target)
 {
-  const YamlNode *node = Given(entry, mapping);
+  const YamlNode *node = given(entry, mapping);
   char path[512];
 
   PetscFunctionBeginUser;
-  if (!Fits(r, entry)) PetscFunctionReturn(0);
+  if (!fits(r, entry)) PetscFunctionReturn(0);
   if (node) {
-    if (entry->with && !YamlFind(mapping, entry->with))
+    if (entry->with && !yaml_find(mapping, entry->with))
       SchemaKeyError(r, node, "key '%s' of %s means something only beside '%s'", entry->key,
-                     YamlPath(mapping, path, sizeof(path)), entry->with);
+                     yaml_path(mapping, path, sizeof(path)), entry->with);
     if (entry->tagged) *(int *)((char *)target + table->tag_offset) = entry->tag;
     if (entry->present) *(PetscBool *)((char *)target + entry->present - 1) = PETSC_TRUE;
     PetscCall(SchemaReadEntry(r, entry, node, target));
-  } else if (entry->required) Missing(r, entry, mapping);
-  else if (entry->always || (entry->fallback && !InGroup(table, entry->key))) PetscCall(ReadDefault(r, entry, target));
+  } else if (entry->required) read_missing(r, entry, mapping);
+  else if (entry->always || (entry->fallback && !in_group(table, entry->key))) PetscCall(ReadDefault(r, entry, target));
   PetscFunctionReturn(0);
 }
 
-static void GroupWords(const SchemaGroup *group, char *text, size_t size)
+static void group_words(const SchemaGroup *group, char *text, size_t size)
 {
   text[0] = '\0';
   for (int k = 0; group->keys[k]; ++k) {
@@ -129,17 +130,17 @@ static void GroupWords(const SchemaGroup *group, char *text, size_t size)
   }
 }
 
-static void CheckGroup(SchemaReader *r, const SchemaGroup *group, const YamlNode *mapping)
+static void check_group(SchemaReader *r, const SchemaGroup *group, const YamlNode *mapping)
 {
   const YamlNode *first = NULL, *second = NULL;
   char path[512], words[400];
   for (int k = 0; group->keys[k]; ++k) {
-    const YamlNode *node = YamlFind(mapping, group->keys[k]);
+    const YamlNode *node = yaml_find(mapping, group->keys[k]);
     if (node && !first) first = node;
     else if (node && !second) second = node;
   }
-  GroupWords(group, words, sizeof(words));
-  YamlPath(mapping, path, sizeof(path));
+  group_words(group, words, sizeof(words));
+  yaml_path(mapping, path, sizeof(path));
   if (!first && group->kind != GROUP_AT_MOST_ONE)
     SchemaKeyError(r, mapping, "%s needs %s %s", path, group->kind == GROUP_ONE ? "one of" : "at least one of", words);
   if (second && group->kind != GROUP_AT_LEAST_ONE) {
@@ -150,23 +151,23 @@ static void CheckGroup(SchemaReader *r, const SchemaGroup *group, const YamlNode
 
 PetscErrorCode SchemaReadTable(SchemaReader *r, const SchemaTable *table, const YamlNode *mapping, void *target)
 {
-  const PetscInt before = DiagErrors(r->diag);
+  const PetscInt before = diag_errors(r->diag);
 
   PetscFunctionBeginUser;
   for (const SchemaGroup *group = table->groups; group && group->kind != GROUP_NONE; ++group)
-    CheckGroup(r, group, mapping);
+    check_group(r, group, mapping);
   for (const SchemaEntry *entry = table->entries; entry->key; ++entry)
     PetscCall(ReadKey(r, table, entry, mapping, target));
   if (table->open) PetscCall((*table->open)(r, mapping, target));
   else PetscCall(UnknownKeys(r, table, mapping));
-  if (table->check && DiagErrors(r->diag) == before) PetscCall((*table->check)(r, mapping, target));
+  if (table->check && diag_errors(r->diag) == before) PetscCall((*table->check)(r, mapping, target));
   PetscFunctionReturn(0);
 }
 
 static PetscErrorCode ReadNested(SchemaReader *r, const SchemaEntry *entry, const YamlNode *node, void *target)
 {
   PetscFunctionBeginUser;
-  if (node->kind != YAML_MAPPING) SchemaMismatch(r, entry, node);
+  if (node->kind != YAML_MAPPING) schema_mismatch(r, entry, node);
   else PetscCall(SchemaReadTable(r, entry->table, node, (char *)target + entry->offset));
   PetscFunctionReturn(0);
 }
@@ -188,7 +189,7 @@ static PetscErrorCode Grow(const SchemaEntry *entry, PetscInt n, void *target, P
 /* Entry i of a list may not have the name of one before it. */
 static PetscErrorCode CheckNameTwice(SchemaReader *r, const YamlNode *list, PetscInt i, Names *names)
 {
-  const YamlNode *name = YamlFind(list->child[i], "name");
+  const YamlNode *name = yaml_find(list->child[i], "name");
   char path[512];
 
   PetscFunctionBeginUser;
@@ -196,7 +197,7 @@ static PetscErrorCode CheckNameTwice(SchemaReader *r, const YamlNode *list, Pets
   const PetscInt first = names_find(names, name->text);
   if (first < 0) PetscCall(NamesSet(names, name->text, i));
   else
-    SchemaError(r, name, "the name '%s' is taken by %s", name->text, YamlPath(list->child[first], path, sizeof(path)));
+    SchemaError(r, name, "the name '%s' is taken by %s", name->text, yaml_path(list->child[first], path, sizeof(path)));
   PetscFunctionReturn(0);
 }
 
@@ -209,10 +210,10 @@ static PetscErrorCode ReadList(SchemaReader *r, const SchemaEntry *entry, const 
 
   PetscFunctionBeginUser;
   if (node->kind != YAML_SEQUENCE) {
-    SchemaMismatch(r, entry, node);
+    schema_mismatch(r, entry, node);
     PetscFunctionReturn(0);
   }
-  if (node->n == 0 && entry->required) SchemaError(r, node, "%s is an empty list", YamlPath(node, path, sizeof(path)));
+  if (node->n == 0 && entry->required) SchemaError(r, node, "%s is an empty list", yaml_path(node, path, sizeof(path)));
   if (node->n == 0) PetscFunctionReturn(0);
   PetscCall(Grow(entry, node->n, target, &count, &item));
   for (PetscInt i = 0; i < node->n; ++i, item += table->size) {
@@ -222,20 +223,20 @@ static PetscErrorCode ReadList(SchemaReader *r, const SchemaEntry *entry, const 
     if (node->child[i]->kind == YAML_MAPPING) PetscCall(SchemaReadTable(r, table, node->child[i], item));
     else
       SchemaError(r, node->child[i], "%s must be a mapping {key: value, ...}",
-                  YamlPath(node->child[i], path, sizeof(path)));
+                  yaml_path(node->child[i], path, sizeof(path)));
   }
   PetscCall(NamesFree(&names));
   PetscFunctionReturn(0);
 }
 
 /* Has a mapping what its table cannot do without? */
-static PetscBool IsWhole(const SchemaTable *table, const YamlNode *mapping)
+static PetscBool is_whole(const SchemaTable *table, const YamlNode *mapping)
 {
   for (const SchemaEntry *entry = table->entries; entry->key; ++entry)
-    if (entry->required && !YamlFind(mapping, entry->key)) return PETSC_FALSE;
+    if (entry->required && !yaml_find(mapping, entry->key)) return PETSC_FALSE;
   for (const SchemaGroup *group = table->groups; group && group->kind != GROUP_NONE; ++group) {
     PetscBool any = group->kind == GROUP_AT_MOST_ONE;
-    for (int k = 0; group->keys[k]; ++k) any |= YamlFind(mapping, group->keys[k]) != NULL;
+    for (int k = 0; group->keys[k]; ++k) any |= yaml_find(mapping, group->keys[k]) != NULL;
     if (!any) return PETSC_FALSE;
   }
   return PETSC_TRUE;
@@ -250,13 +251,13 @@ static PetscErrorCode NotThere(SchemaReader *r, const SchemaTable *table, const 
   PetscInt n = 0;
 
   PetscFunctionBeginUser;
-  *tell = child->argument && !child->key_line && child->kind == YAML_MAPPING && !IsWhole(table, child);
+  *tell = child->argument && !child->key_line && child->kind == YAML_MAPPING && !is_whole(table, child);
   if (!*tell) PetscFunctionReturn(0);
   PetscCall(PetscCalloc1(list->n + 1, &names));
   for (PetscInt i = 0; i < list->n; ++i)
     if (list->child[i]->key_line) names[n++] = list->child[i]->key;
-  SchemaError(r, child, "there is no '%s' in %s", child->key, YamlPath(list, path, sizeof(path)));
-  DiagHintNames(r->diag, child->key, names);
+  SchemaError(r, child, "there is no '%s' in %s", child->key, yaml_path(list, path, sizeof(path)));
+  diag_hint_names(r->diag, child->key, names);
   PetscCall(PetscFree(names));
   PetscFunctionReturn(0);
 }
@@ -269,21 +270,21 @@ static PetscErrorCode ReadNamed(SchemaReader *r, const SchemaEntry *entry, const
 
   PetscFunctionBeginUser;
   if (node->kind != YAML_MAPPING) {
-    SchemaMismatch(r, entry, node);
+    schema_mismatch(r, entry, node);
     PetscFunctionReturn(0);
   }
-  if (node->n == 0 && entry->required) SchemaError(r, node, "%s is empty", YamlPath(node, path, sizeof(path)));
+  if (node->n == 0 && entry->required) SchemaError(r, node, "%s is empty", yaml_path(node, path, sizeof(path)));
   if (node->n == 0) PetscFunctionReturn(0);
   PetscCall(Grow(entry, node->n, target, &count, &item));
   for (PetscInt i = 0; i < node->n; ++i, item += entry->table->size) {
     const YamlNode *child = node->child[i];
     *count += 1;
     PetscCall(PetscStrallocpy(child->key, (char **)item));
-    SchemaCheckName(r, child, child->key, PETSC_TRUE);
+    schema_check_name(r, child, child->key, PETSC_TRUE);
     PetscCall(NotThere(r, entry->table, child, &not_there));
     if (not_there) continue;
     if (child->kind == YAML_MAPPING) PetscCall(SchemaReadTable(r, entry->table, child, item));
-    else SchemaError(r, child, "%s must be a mapping {key: value, ...}", YamlPath(child, path, sizeof(path)));
+    else SchemaError(r, child, "%s must be a mapping {key: value, ...}", yaml_path(child, path, sizeof(path)));
   }
   PetscFunctionReturn(0);
 }

@@ -5,24 +5,24 @@
 
 static const char *const axis_words[] = {"x", "y", "z", NULL};
 
-PetscInt SchemaParseVector(const YamlNode *node, PetscReal value[3])
+PetscInt schema_parse_vector(const YamlNode *node, PetscReal value[3])
 {
   PetscInt n = 0;
   if (!node || node->kind != YAML_SEQUENCE || node->n > 3) return 0;
   for (; n < node->n; ++n)
-    if (!SchemaParseNumber(node->child[n], &value[n])) return 0;
+    if (!schema_parse_number(node->child[n], &value[n])) return 0;
   return n;
 }
 
-static PetscBool CheckLength(SchemaReader *r, const SchemaEntry *e, const YamlNode *node)
+static PetscBool check_length(SchemaReader *r, const SchemaEntry *e, const YamlNode *node)
 {
   char path[512];
   if (node->kind != YAML_SEQUENCE) {
-    SchemaMismatch(r, e, node);
+    schema_mismatch(r, e, node);
     return PETSC_FALSE;
   }
   if (r->dim ? node->n == r->dim : node->n == 2 || node->n == 3) return PETSC_TRUE;
-  SchemaError(r, node, "%s must have %s, not %" PetscInt_FMT, YamlPath(node, path, sizeof(path)),
+  SchemaError(r, node, "%s must have %s, not %" PetscInt_FMT, yaml_path(node, path, sizeof(path)),
               r->dim == 3   ? "3 entries (kinematics: 3d)"
               : r->dim == 2 ? "2 entries (this case is two-dimensional)"
                             : "2 or 3 entries",
@@ -37,8 +37,8 @@ PetscErrorCode SchemaReadVector(SchemaReader *r, const SchemaEntry *e, const Yam
 
   PetscFunctionBeginUser;
   one.type = TYPE_NUMBER;
-  if (CheckLength(r, e, node))
-    for (PetscInt i = 0; i < node->n; ++i) SchemaNumber(r, &one, node->child[i], &value[i]);
+  if (check_length(r, e, node))
+    for (PetscInt i = 0; i < node->n; ++i) schema_number(r, &one, node->child[i], &value[i]);
   PetscFunctionReturn(0);
 }
 
@@ -46,13 +46,13 @@ PetscErrorCode SchemaReadSpin(SchemaReader *r, const SchemaEntry *e, const YamlN
 {
   PetscFunctionBeginUser;
   if (r->dim == 2 || (r->dim == 0 && node->kind == YAML_SCALAR))
-    SchemaNumber(r, e, node, (PetscReal *)((char *)target + e->offset) + 2);
+    schema_number(r, e, node, (PetscReal *)((char *)target + e->offset) + 2);
   else PetscCall(SchemaReadVector(r, e, node, target));
   PetscFunctionReturn(0);
 }
 
 /* 0 1 2 for x y z, -1 and a message for anything else. */
-static PetscInt Axis(SchemaReader *r, const SchemaEntry *e, const YamlNode *node)
+static PetscInt values_axis(SchemaReader *r, const SchemaEntry *e, const YamlNode *node)
 {
   const PetscInt first = e->type == TYPE_SPIN_AXIS && r->dim == 2 ? 2 : 0;
   const PetscInt last = e->type != TYPE_SPIN_AXIS && r->dim == 2 ? 1 : 2;
@@ -60,13 +60,13 @@ static PetscInt Axis(SchemaReader *r, const SchemaEntry *e, const YamlNode *node
   for (PetscInt d = first; d <= last; ++d)
     if (node->kind == YAML_SCALAR && !strcmp(node->text, axis_words[d])) return d;
   if (e->type == TYPE_AXES) one.type = TYPE_AXIS;
-  SchemaMismatch(r, &one, node);
+  schema_mismatch(r, &one, node);
   return -1;
 }
 
 PetscErrorCode SchemaReadAxis(SchemaReader *r, const SchemaEntry *e, const YamlNode *node, void *target)
 {
-  const PetscInt axis = Axis(r, e, node);
+  const PetscInt axis = values_axis(r, e, node);
 
   PetscFunctionBeginUser;
   if (axis >= 0) *(PetscInt *)((char *)target + e->offset) = axis;
@@ -80,14 +80,14 @@ PetscErrorCode SchemaReadAxes(SchemaReader *r, const SchemaEntry *e, const YamlN
 
   PetscFunctionBeginUser;
   if (node->kind != YAML_SEQUENCE || node->n == 0) {
-    SchemaMismatch(r, e, node);
+    schema_mismatch(r, e, node);
     PetscFunctionReturn(0);
   }
   for (PetscInt i = 0; i < node->n; ++i) {
-    const PetscInt axis = Axis(r, e, node->child[i]);
+    const PetscInt axis = values_axis(r, e, node->child[i]);
     if (axis < 0) continue;
     if (component[axis])
-      SchemaError(r, node->child[i], "%s stands twice", YamlPath(node->child[i], path, sizeof(path)));
+      SchemaError(r, node->child[i], "%s stands twice", yaml_path(node->child[i], path, sizeof(path)));
     component[axis] = PETSC_TRUE;
   }
   PetscFunctionReturn(0);
@@ -103,11 +103,11 @@ PetscErrorCode SchemaReadInterval(SchemaReader *r, const SchemaEntry *e, const Y
   one.type = TYPE_NUMBER;
   one.endless = PETSC_TRUE; /* from here to wherever */
   if (node->kind == YAML_SEQUENCE && node->n == 2) {
-    if (SchemaNumber(r, &one, node->child[0], min) && SchemaNumber(r, &one, node->child[1], max) && *min > *max)
+    if (schema_number(r, &one, node->child[0], min) && schema_number(r, &one, node->child[1], max) && *min > *max)
       SchemaError(r, node, "%s: the first number must not be larger than the second",
-                  YamlPath(node, path, sizeof(path)));
-  } else if (SchemaParseNumber(node, min)) *max = *min;
-  else SchemaMismatch(r, e, node);
+                  yaml_path(node, path, sizeof(path)));
+  } else if (schema_parse_number(node, min)) *max = *min;
+  else schema_mismatch(r, e, node);
   PetscFunctionReturn(0);
 }
 
@@ -119,9 +119,9 @@ PetscErrorCode SchemaReadSize(SchemaReader *r, const SchemaEntry *e, const YamlN
   PetscFunctionBeginUser;
   (void)target; /* the check of the grid makes counts of it, where it knows the box */
   one.type = TYPE_NUMBER;
-  if (node->kind != YAML_SEQUENCE) SchemaNumber(r, e, node, &unused);
-  else if (CheckLength(r, e, node))
-    for (PetscInt i = 0; i < node->n; ++i) SchemaNumber(r, &one, node->child[i], &unused);
+  if (node->kind != YAML_SEQUENCE) schema_number(r, e, node, &unused);
+  else if (check_length(r, e, node))
+    for (PetscInt i = 0; i < node->n; ++i) schema_number(r, &one, node->child[i], &unused);
   PetscFunctionReturn(0);
 }
 
@@ -132,7 +132,7 @@ PetscErrorCode SchemaReadCounts(SchemaReader *r, const SchemaEntry *e, const Yam
 
   PetscFunctionBeginUser;
   one.type = TYPE_INTEGER;
-  if (!CheckLength(r, e, node)) PetscFunctionReturn(0);
+  if (!check_length(r, e, node)) PetscFunctionReturn(0);
   for (PetscInt i = 0; i < node->n; ++i) {
     one.offset = 0;
     PetscCall(SchemaReadInteger(r, &one, node->child[i], &counts[i]));
@@ -148,7 +148,7 @@ PetscErrorCode SchemaReadAmplitude(SchemaReader *r, const SchemaEntry *e, const 
 
   PetscFunctionBeginUser;
   if (node->kind != YAML_SEQUENCE || node->n == 0) {
-    SchemaMismatch(r, e, node);
+    schema_mismatch(r, e, node);
     PetscFunctionReturn(0);
   }
   PetscCall(PetscCalloc1(node->n, &a->time));
@@ -157,10 +157,10 @@ PetscErrorCode SchemaReadAmplitude(SchemaReader *r, const SchemaEntry *e, const 
   for (PetscInt i = 0; i < node->n; ++i) {
     const YamlNode *pair = node->child[i];
     if (pair->kind != YAML_SEQUENCE || pair->n != 2)
-      SchemaError(r, pair, "%s must be a pair [time in s, factor]", YamlPath(pair, path, sizeof(path)));
-    else if (SchemaNumber(r, &number, pair->child[0], &a->time[i]) &&
-             SchemaNumber(r, &number, pair->child[1], &a->value[i]) && i > 0 && a->time[i] <= a->time[i - 1])
-      SchemaError(r, pair, "%s: times must grow from pair to pair", YamlPath(pair, path, sizeof(path)));
+      SchemaError(r, pair, "%s must be a pair [time in s, factor]", yaml_path(pair, path, sizeof(path)));
+    else if (schema_number(r, &number, pair->child[0], &a->time[i]) &&
+             schema_number(r, &number, pair->child[1], &a->value[i]) && i > 0 && a->time[i] <= a->time[i - 1])
+      SchemaError(r, pair, "%s: times must grow from pair to pair", yaml_path(pair, path, sizeof(path)));
   }
   PetscFunctionReturn(0);
 }
@@ -173,7 +173,7 @@ PetscErrorCode SchemaReadPolygon(SchemaReader *r, const SchemaEntry *e, const Ya
 
   PetscFunctionBeginUser;
   if (node->kind != YAML_SEQUENCE || node->n < 3) {
-    SchemaMismatch(r, e, node);
+    schema_mismatch(r, e, node);
     PetscFunctionReturn(0);
   }
   PetscCall(PetscFree(*vertices));
@@ -182,9 +182,9 @@ PetscErrorCode SchemaReadPolygon(SchemaReader *r, const SchemaEntry *e, const Ya
   for (PetscInt i = 0; i < node->n; ++i) {
     const YamlNode *pair = node->child[i];
     if (pair->kind != YAML_SEQUENCE || pair->n != 2)
-      SchemaError(r, pair, "%s must be a corner [x, y] in m", YamlPath(pair, path, sizeof(path)));
+      SchemaError(r, pair, "%s must be a corner [x, y] in m", yaml_path(pair, path, sizeof(path)));
     else
-      for (PetscInt d = 0; d < 2; ++d) SchemaNumber(r, &number, pair->child[d], &(*vertices)[2 * i + d]);
+      for (PetscInt d = 0; d < 2; ++d) schema_number(r, &number, pair->child[d], &(*vertices)[2 * i + d]);
   }
   PetscFunctionReturn(0);
 }
@@ -192,26 +192,26 @@ PetscErrorCode SchemaReadPolygon(SchemaReader *r, const SchemaEntry *e, const Ya
 PetscErrorCode SchemaReadEvery(SchemaReader *r, const SchemaEntry *e, const YamlNode *node, void *target)
 {
   PetscReal *every = (PetscReal *)((char *)target + e->offset), seconds;
-  const YamlNode *steps = YamlFind(node, "steps");
+  const YamlNode *steps = yaml_find(node, "steps");
   PetscInt n;
 
   PetscFunctionBeginUser;
   if (node->kind == YAML_SCALAR && !strcmp(node->text, "end")) *every = 0;
-  else if (SchemaParseNumber(node, &seconds) && seconds > 0) *every = seconds;
-  else if (steps && node->n == 1 && SchemaParseInteger(steps, &n) && n > 0) *every = -(PetscReal)n;
-  else SchemaMismatch(r, e, node);
+  else if (schema_parse_number(node, &seconds) && seconds > 0) *every = seconds;
+  else if (steps && node->n == 1 && schema_parse_integer(steps, &n) && n > 0) *every = -(PetscReal)n;
+  else schema_mismatch(r, e, node);
   PetscFunctionReturn(0);
 }
 
-static void UnknownField(SchemaReader *r, const YamlNode *node)
+static void unknown_field(SchemaReader *r, const YamlNode *node)
 {
   const char *words[64] = {NULL};
   char path[512];
   PetscInt n = 0;
   for (const OutputField *field = output_fields; field->name && n < 63; ++field) words[n++] = field->name;
-  SchemaError(r, node, "%s: there is no field '%s'", YamlPath(node, path, sizeof(path)),
+  SchemaError(r, node, "%s: there is no field '%s'", yaml_path(node, path, sizeof(path)),
               node->kind == YAML_SCALAR ? node->text : "[...]");
-  SchemaHintWords(r, node->kind == YAML_SCALAR ? node->text : NULL, n, words);
+  schema_hint_words(r, node->kind == YAML_SCALAR ? node->text : NULL, n, words);
 }
 
 PetscErrorCode SchemaReadFields(SchemaReader *r, const SchemaEntry *e, const YamlNode *node, void *target)
@@ -221,15 +221,15 @@ PetscErrorCode SchemaReadFields(SchemaReader *r, const SchemaEntry *e, const Yam
 
   PetscFunctionBeginUser;
   if (node->kind != YAML_SEQUENCE) {
-    SchemaMismatch(r, e, node);
+    schema_mismatch(r, e, node);
     PetscFunctionReturn(0);
   }
   PetscCall(PetscCalloc1(node->n, fields));
   for (PetscInt i = 0; i < node->n; ++i) {
     const YamlNode *child = node->child[i];
     PetscBool twice = PETSC_FALSE;
-    if (child->kind != YAML_SCALAR || !OutputFieldFind(child->text)) {
-      UnknownField(r, child);
+    if (child->kind != YAML_SCALAR || !output_field_find(child->text)) {
+      unknown_field(r, child);
       continue;
     }
     for (PetscInt k = 0; k < *n; ++k)
@@ -246,7 +246,7 @@ PetscErrorCode SchemaReadNumbers(SchemaReader *r, const SchemaEntry *e, const Ya
 
   PetscFunctionBeginUser;
   if (node->kind != YAML_MAPPING) {
-    SchemaMismatch(r, e, node);
+    schema_mismatch(r, e, node);
     PetscFunctionReturn(0);
   }
   PetscCall(PetscCalloc1(node->n, values));
@@ -255,8 +255,8 @@ PetscErrorCode SchemaReadNumbers(SchemaReader *r, const SchemaEntry *e, const Ya
     PetscCall(PetscStrallocpy(node->child[i]->key, &(*values)[i].name));
     if (node->child[i]->key[0] == '-') /* gmsh would take it for an option of its own */
       SchemaKeyError(r, node->child[i], "the name '%.60s' begins with '-'", node->child[i]->key);
-    SchemaCheckName(r, node->child[i], node->child[i]->key, PETSC_TRUE);
-    SchemaNumber(r, &number, node->child[i], &(*values)[i].value);
+    schema_check_name(r, node->child[i], node->child[i]->key, PETSC_TRUE);
+    schema_number(r, &number, node->child[i], &(*values)[i].value);
   }
   PetscFunctionReturn(0);
 }

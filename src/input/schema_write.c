@@ -7,34 +7,34 @@
 static PetscErrorCode WriteTable(FILE *out, int indent, const Case *c, const SchemaTable *table, const void *source,
                                  PetscBool *first);
 
-static const void *At(const void *source, size_t offset) { return (const char *)source + offset; }
+static const void *at(const void *source, size_t offset) { return (const char *)source + offset; }
 
-static PetscInt CountItems(const SchemaEntry *e, const void *source)
+static PetscInt count_items(const SchemaEntry *e, const void *source)
 {
-  const PetscInt n = *(const PetscInt *)At(source, e->count);
-  const char *items = *(char *const *)At(source, e->offset);
+  const PetscInt n = *(const PetscInt *)at(source, e->count);
+  const char *items = *(char *const *)at(source, e->offset);
   PetscInt count = 0;
   for (PetscInt i = 0; i < n; ++i)
     count += !e->items_tagged || *(const int *)(items + (size_t)i * e->table->size + e->table->tag_offset) == e->tag;
   return count;
 }
 
-static PetscBool IsText(SchemaType type)
+static PetscBool is_text(SchemaType type)
 {
   return type == TYPE_TEXT || type == TYPE_NAME || type == TYPE_FILE || type == TYPE_REFERENCE || type == TYPE_LAW;
 }
 
-static PetscBool Written(const Case *c, const SchemaTable *table, const SchemaEntry *e, const void *source)
+static PetscBool written(const Case *c, const SchemaTable *table, const SchemaEntry *e, const void *source)
 {
   const PetscInt dim = kinematics_dim(c->kinematics);
   if (e->input_only || (e->only_2d && dim == 3) || (e->only_3d && dim == 2)) return PETSC_FALSE;
-  if (e->tagged && *(const int *)At(source, table->tag_offset) != e->tag) return PETSC_FALSE;
-  if (e->present && !*(const PetscBool *)At(source, e->present - 1)) return PETSC_FALSE;
+  if (e->tagged && *(const int *)at(source, table->tag_offset) != e->tag) return PETSC_FALSE;
+  if (e->present && !*(const PetscBool *)at(source, e->present - 1)) return PETSC_FALSE;
   if (table->hide && table->hide(e, source)) return PETSC_FALSE;
-  if (IsText(e->type)) return *(char *const *)At(source, e->offset) != NULL;
-  if (e->type == TYPE_AMPLITUDE) return ((const Amplitude *)At(source, e->offset))->n > 0;
-  if (e->type == TYPE_LIST || e->type == TYPE_NAMED) return CountItems(e, source) > 0;
-  if (e->type == TYPE_OPTIONS) return *(const PetscInt *)At(source, e->count) > 0;
+  if (is_text(e->type)) return *(char *const *)at(source, e->offset) != NULL;
+  if (e->type == TYPE_AMPLITUDE) return ((const Amplitude *)at(source, e->offset))->n > 0;
+  if (e->type == TYPE_LIST || e->type == TYPE_NAMED) return count_items(e, source) > 0;
+  if (e->type == TYPE_OPTIONS) return *(const PetscInt *)at(source, e->count) > 0;
   return PETSC_TRUE;
 }
 
@@ -58,8 +58,8 @@ static PetscErrorCode WriteNested(FILE *out, int indent, const Case *c, const Sc
 static PetscErrorCode WriteItems(FILE *out, int indent, const Case *c, const SchemaEntry *e, const void *source)
 {
   const SchemaTable *table = e->table;
-  const PetscInt n = *(const PetscInt *)At(source, e->count);
-  const char *item = *(char *const *)At(source, e->offset);
+  const PetscInt n = *(const PetscInt *)at(source, e->count);
+  const char *item = *(char *const *)at(source, e->offset);
 
   PetscFunctionBeginUser;
   fputc('\n', out);
@@ -68,7 +68,7 @@ static PetscErrorCode WriteItems(FILE *out, int indent, const Case *c, const Sch
     if (e->items_tagged && *(const int *)(item + table->tag_offset) != e->tag) continue;
     if (e->type == TYPE_NAMED) {
       fprintf(out, "%*s", indent, "");
-      SchemaWriteText(out, *(char *const *)item);
+      schema_write_text(out, *(char *const *)item);
       fputc(':', out);
       PetscCall(WriteNested(out, indent + 2, c, table, item));
     } else {
@@ -83,7 +83,7 @@ static PetscErrorCode WriteEntry(FILE *out, int indent, const Case *c, const Sch
 {
   PetscFunctionBeginUser;
   fprintf(out, "%s:", e->key);
-  if (e->type == TYPE_TABLE) PetscCall(WriteNested(out, indent + 2, c, e->table, At(source, e->offset)));
+  if (e->type == TYPE_TABLE) PetscCall(WriteNested(out, indent + 2, c, e->table, at(source, e->offset)));
   else if (e->type == TYPE_LIST || e->type == TYPE_NAMED) PetscCall(WriteItems(out, indent + 2, c, e, source));
   else {
     fputc(' ', out);
@@ -99,7 +99,7 @@ static PetscErrorCode WriteTable(FILE *out, int indent, const Case *c, const Sch
 {
   PetscFunctionBeginUser;
   for (const SchemaEntry *e = table->entries; e->key; ++e) {
-    if (!Written(c, table, e, source)) continue;
+    if (!written(c, table, e, source)) continue;
     if (!*first) fprintf(out, "%*s", indent, "");
     *first = PETSC_FALSE;
     PetscCall(WriteEntry(out, indent, c, e, source));

@@ -6,7 +6,7 @@
 
 #define FIELD(type) (*(type const *)((const char *)source + e->offset))
 
-void SchemaWriteReal(FILE *out, PetscReal value)
+void schema_write_real(FILE *out, PetscReal value)
 {
   char text[40];
   for (int digits = 6; digits <= 17; ++digits) {
@@ -17,7 +17,7 @@ void SchemaWriteReal(FILE *out, PetscReal value)
 }
 
 /* Words that stay themselves without quotes, as text. */
-static PetscBool IsPlain(const char *text)
+static PetscBool is_plain(const char *text)
 {
   if (!isalpha((unsigned char)text[0]) && text[0] != '/') return PETSC_FALSE;
   if (!strcmp(text, "null") || !strcmp(text, "true") || !strcmp(text, "false")) return PETSC_FALSE;
@@ -26,9 +26,9 @@ static PetscBool IsPlain(const char *text)
   return text[strlen(text) - 1] != ' ';
 }
 
-void SchemaWriteText(FILE *out, const char *text)
+void schema_write_text(FILE *out, const char *text)
 {
-  if (IsPlain(text)) {
+  if (is_plain(text)) {
     fputs(text, out);
     return;
   }
@@ -43,74 +43,74 @@ void SchemaWriteText(FILE *out, const char *text)
   fputc('"', out);
 }
 
-static void WriteReals(FILE *out, PetscInt n, const PetscReal *value)
+static void write_reals(FILE *out, PetscInt n, const PetscReal *value)
 {
   fputc('[', out);
   for (PetscInt i = 0; i < n; ++i) {
     fputs(i ? ", " : "", out);
-    SchemaWriteReal(out, value[i]);
+    schema_write_real(out, value[i]);
   }
   fputc(']', out);
 }
 
-static void WriteNumber(FILE *out, const Case *c, const SchemaEntry *e, const void *source)
+static void write_number(FILE *out, const Case *c, const SchemaEntry *e, const void *source)
 {
   (void)c;
-  SchemaWriteReal(out, FIELD(PetscReal));
+  schema_write_real(out, FIELD(PetscReal));
 }
 
-static void WriteInteger(FILE *out, const Case *c, const SchemaEntry *e, const void *source)
+static void write_integer(FILE *out, const Case *c, const SchemaEntry *e, const void *source)
 {
   (void)c;
   fprintf(out, "%" PetscInt_FMT, FIELD(PetscInt));
 }
 
-static void WriteBoolean(FILE *out, const Case *c, const SchemaEntry *e, const void *source)
+static void write_boolean(FILE *out, const Case *c, const SchemaEntry *e, const void *source)
 {
   (void)c;
   fputs(FIELD(PetscBool) ? "true" : "false", out);
 }
 
-static void WriteWord(FILE *out, const Case *c, const SchemaEntry *e, const void *source)
+static void write_word(FILE *out, const Case *c, const SchemaEntry *e, const void *source)
 {
   (void)c;
   for (const SchemaWord *w = e->words; w->word; ++w)
     if (w->value == FIELD(int)) fputs(w->word, out);
 }
 
-static void WriteString(FILE *out, const Case *c, const SchemaEntry *e, const void *source)
+static void write_string(FILE *out, const Case *c, const SchemaEntry *e, const void *source)
 {
   (void)c;
-  SchemaWriteText(out, FIELD(char *));
+  schema_write_text(out, FIELD(char *));
 }
 
 /* A boundary that has a name is written by it. */
-static void WriteBoundary(FILE *out, const Case *c, const SchemaEntry *e, const void *source)
+static void write_boundary(FILE *out, const Case *c, const SchemaEntry *e, const void *source)
 {
   const PetscInt index = FIELD(PetscInt);
   fprintf(out, "%" PetscInt_FMT, index);
   if (index < c->n_boundary && c->boundary[index].name) fprintf(out, "  # %s", c->boundary[index].name);
 }
 
-static void WriteVector(FILE *out, const Case *c, const SchemaEntry *e, const void *source)
+static void write_vector(FILE *out, const Case *c, const SchemaEntry *e, const void *source)
 {
-  WriteReals(out, kinematics_dim(c->kinematics), &FIELD(PetscReal));
+  write_reals(out, kinematics_dim(c->kinematics), &FIELD(PetscReal));
 }
 
-static void WriteSpin(FILE *out, const Case *c, const SchemaEntry *e, const void *source)
+static void write_spin(FILE *out, const Case *c, const SchemaEntry *e, const void *source)
 {
   const PetscReal *spin = &FIELD(PetscReal);
-  if (kinematics_dim(c->kinematics) == 2) SchemaWriteReal(out, spin[2]);
-  else WriteReals(out, 3, spin);
+  if (kinematics_dim(c->kinematics) == 2) schema_write_real(out, spin[2]);
+  else write_reals(out, 3, spin);
 }
 
-static void WriteAxis(FILE *out, const Case *c, const SchemaEntry *e, const void *source)
+static void write_axis(FILE *out, const Case *c, const SchemaEntry *e, const void *source)
 {
   (void)c;
   fputc("xyz"[FIELD(PetscInt)], out);
 }
 
-static void WriteAxes(FILE *out, const Case *c, const SchemaEntry *e, const void *source)
+static void write_axes(FILE *out, const Case *c, const SchemaEntry *e, const void *source)
 {
   const PetscBool *component = &FIELD(PetscBool);
   PetscInt n = 0;
@@ -121,15 +121,15 @@ static void WriteAxes(FILE *out, const Case *c, const SchemaEntry *e, const void
   fputc(']', out);
 }
 
-static void WriteInterval(FILE *out, const Case *c, const SchemaEntry *e, const void *source)
+static void write_interval(FILE *out, const Case *c, const SchemaEntry *e, const void *source)
 {
   const PetscReal pair[2] = {FIELD(PetscReal), *(const PetscReal *)((const char *)source + e->second)};
   (void)c;
-  if (pair[0] == pair[1]) SchemaWriteReal(out, pair[0]);
-  else WriteReals(out, 2, pair);
+  if (pair[0] == pair[1]) schema_write_real(out, pair[0]);
+  else write_reals(out, 2, pair);
 }
 
-static void WriteCounts(FILE *out, const Case *c, const SchemaEntry *e, const void *source)
+static void write_counts(FILE *out, const Case *c, const SchemaEntry *e, const void *source)
 {
   const PetscInt *counts = &FIELD(PetscInt);
   for (PetscInt d = 0; d < kinematics_dim(c->kinematics); ++d)
@@ -137,7 +137,7 @@ static void WriteCounts(FILE *out, const Case *c, const SchemaEntry *e, const vo
   fputc(']', out);
 }
 
-static void WriteAmplitude(FILE *out, const Case *c, const SchemaEntry *e, const void *source)
+static void write_amplitude(FILE *out, const Case *c, const SchemaEntry *e, const void *source)
 {
   const Amplitude *a = &FIELD(Amplitude);
   (void)c;
@@ -145,12 +145,12 @@ static void WriteAmplitude(FILE *out, const Case *c, const SchemaEntry *e, const
   for (PetscInt i = 0; i < a->n; ++i) {
     const PetscReal pair[2] = {a->time[i], a->value[i]};
     fputs(i ? ", " : "", out);
-    WriteReals(out, 2, pair);
+    write_reals(out, 2, pair);
   }
   fputc(']', out);
 }
 
-static void WritePolygon(FILE *out, const Case *c, const SchemaEntry *e, const void *source)
+static void write_polygon(FILE *out, const Case *c, const SchemaEntry *e, const void *source)
 {
   const PetscReal *vertices = FIELD(PetscReal *);
   const PetscInt n = *(const PetscInt *)((const char *)source + e->count);
@@ -158,21 +158,21 @@ static void WritePolygon(FILE *out, const Case *c, const SchemaEntry *e, const v
   fputc('[', out);
   for (PetscInt i = 0; i < n; ++i) {
     fputs(i ? ", " : "", out);
-    WriteReals(out, 2, vertices + 2 * i);
+    write_reals(out, 2, vertices + 2 * i);
   }
   fputc(']', out);
 }
 
-static void WriteEvery(FILE *out, const Case *c, const SchemaEntry *e, const void *source)
+static void write_every(FILE *out, const Case *c, const SchemaEntry *e, const void *source)
 {
   const PetscReal every = FIELD(PetscReal);
   (void)c;
   if (every == 0) fputs("end", out);
   else if (every < 0) fprintf(out, "{steps: %.0f}", -(double)every);
-  else SchemaWriteReal(out, every);
+  else schema_write_real(out, every);
 }
 
-static void WriteFields(FILE *out, const Case *c, const SchemaEntry *e, const void *source)
+static void write_fields(FILE *out, const Case *c, const SchemaEntry *e, const void *source)
 {
   char **fields = FIELD(char **);
   const PetscInt n = *(const PetscInt *)((const char *)source + e->count);
@@ -182,7 +182,7 @@ static void WriteFields(FILE *out, const Case *c, const SchemaEntry *e, const vo
   fputc(']', out);
 }
 
-static void WriteNumbers(FILE *out, const Case *c, const SchemaEntry *e, const void *source)
+static void write_numbers(FILE *out, const Case *c, const SchemaEntry *e, const void *source)
 {
   const NamedValue *values = FIELD(NamedValue *);
   const PetscInt n = *(const PetscInt *)((const char *)source + e->count);
@@ -190,14 +190,14 @@ static void WriteNumbers(FILE *out, const Case *c, const SchemaEntry *e, const v
   fputc('{', out);
   for (PetscInt i = 0; i < n; ++i) {
     fputs(i ? ", " : "", out);
-    SchemaWriteText(out, values[i].name);
+    schema_write_text(out, values[i].name);
     fputs(": ", out);
-    SchemaWriteReal(out, values[i].value);
+    schema_write_real(out, values[i].value);
   }
   fputc('}', out);
 }
 
-static void WriteOptions(FILE *out, const Case *c, const SchemaEntry *e, const void *source)
+static void write_options(FILE *out, const Case *c, const SchemaEntry *e, const void *source)
 {
   char **options = FIELD(char **);
   const PetscInt n = *(const PetscInt *)((const char *)source + e->count);
@@ -207,19 +207,19 @@ static void WriteOptions(FILE *out, const Case *c, const SchemaEntry *e, const v
     const char *name = options[i] + 1, *space = strchr(name, ' ');
     const int length = space ? (int)(space - name) : (int)strlen(name);
     fprintf(out, "%s\"%.*s\": ", i ? ", " : "", length, name);
-    if (space) SchemaWriteText(out, space + 1);
+    if (space) schema_write_text(out, space + 1);
     else fputs("null", out);
   }
   fputc('}', out);
 }
 
 const SchemaWriteType schema_writers[TYPE_COUNT] = {
-  [TYPE_NUMBER] = WriteNumber,       [TYPE_INTEGER] = WriteInteger,   [TYPE_BOOLEAN] = WriteBoolean,
-  [TYPE_WORD] = WriteWord,           [TYPE_WORD_TEXT] = WriteString,  [TYPE_TEXT] = WriteString,
-  [TYPE_NAME] = WriteString,         [TYPE_FILE] = WriteString,       [TYPE_LAW] = WriteString,
-  [TYPE_REFERENCE] = WriteString,    [TYPE_BOUNDARY] = WriteBoundary, [TYPE_VECTOR] = WriteVector,
-  [TYPE_SPIN] = WriteSpin,           [TYPE_AXIS] = WriteAxis,         [TYPE_SPIN_AXIS] = WriteAxis,
-  [TYPE_AXES] = WriteAxes,           [TYPE_INTERVAL] = WriteInterval, [TYPE_COUNTS] = WriteCounts,
-  [TYPE_AMPLITUDE] = WriteAmplitude, [TYPE_POLYGON] = WritePolygon,   [TYPE_EVERY] = WriteEvery,
-  [TYPE_FIELDS] = WriteFields,       [TYPE_NUMBERS] = WriteNumbers,   [TYPE_OPTIONS] = WriteOptions,
+  [TYPE_NUMBER] = write_number,       [TYPE_INTEGER] = write_integer,   [TYPE_BOOLEAN] = write_boolean,
+  [TYPE_WORD] = write_word,           [TYPE_WORD_TEXT] = write_string,  [TYPE_TEXT] = write_string,
+  [TYPE_NAME] = write_string,         [TYPE_FILE] = write_string,       [TYPE_LAW] = write_string,
+  [TYPE_REFERENCE] = write_string,    [TYPE_BOUNDARY] = write_boundary, [TYPE_VECTOR] = write_vector,
+  [TYPE_SPIN] = write_spin,           [TYPE_AXIS] = write_axis,         [TYPE_SPIN_AXIS] = write_axis,
+  [TYPE_AXES] = write_axes,           [TYPE_INTERVAL] = write_interval, [TYPE_COUNTS] = write_counts,
+  [TYPE_AMPLITUDE] = write_amplitude, [TYPE_POLYGON] = write_polygon,   [TYPE_EVERY] = write_every,
+  [TYPE_FIELDS] = write_fields,       [TYPE_NUMBERS] = write_numbers,   [TYPE_OPTIONS] = write_options,
 };

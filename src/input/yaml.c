@@ -92,7 +92,7 @@ PetscErrorCode YamlDestroy(YamlDocument **document)
   PetscFunctionReturn(0);
 }
 
-YamlNode *YamlFind(const YamlNode *mapping, const char *key)
+YamlNode *yaml_find(const YamlNode *mapping, const char *key)
 {
   if (!mapping || mapping->kind != YAML_MAPPING) return NULL;
   if (mapping->keys) {
@@ -104,31 +104,31 @@ YamlNode *YamlFind(const YamlNode *mapping, const char *key)
   return NULL;
 }
 
-PetscBool YamlIsNull(const YamlNode *node)
+PetscBool yaml_is_null(const YamlNode *node)
 {
   if (node->kind != YAML_SCALAR || !node->plain) return PETSC_FALSE;
   return !node->text[0] || !strcmp(node->text, "~") || !strcmp(node->text, "null");
 }
 
-static size_t AppendPath(const YamlNode *node, char *buffer, size_t size)
+static size_t append_path(const YamlNode *node, char *buffer, size_t size)
 {
   size_t used;
   if (!node->parent) return 0;
-  used = AppendPath(node->parent, buffer, size);
+  used = append_path(node->parent, buffer, size);
   if (used >= size) return used;
   if (node->key) used += (size_t)snprintf(buffer + used, size - used, "%s%s", used ? "." : "", node->key);
   else used += (size_t)snprintf(buffer + used, size - used, "[%" PetscInt_FMT "]", node->index);
   return used;
 }
 
-const char *YamlPath(const YamlNode *node, char *buffer, size_t size)
+const char *yaml_path(const YamlNode *node, char *buffer, size_t size)
 {
   buffer[0] = '\0';
-  if (AppendPath(node, buffer, size) == 0) snprintf(buffer, size, "the file");
+  if (append_path(node, buffer, size) == 0) snprintf(buffer, size, "the file");
   return buffer;
 }
 
-static char *CopyLine(const char *text, int line)
+static char *copy_line(const char *text, int line)
 {
   for (int k = 1; k < line && text; ++k) {
     text = strchr(text, '\n');
@@ -140,40 +140,40 @@ static char *CopyLine(const char *text, int line)
   return strndup(text, length);
 }
 
-void YamlPlaceAt(const YamlDocument *document, int line, int column, int width, char **buffer, DiagPlace *place)
+void yaml_place_at(const YamlDocument *document, int line, int column, int width, char **buffer, DiagPlace *place)
 {
-  *buffer = line > 0 ? CopyLine(document->text, line) : NULL;
+  *buffer = line > 0 ? copy_line(document->text, line) : NULL;
   *place = (DiagPlace){
     .file = document->file, .text = *buffer, .line = line, .column = column, .width = width > 0 ? width : 1};
 }
 
-void YamlPlace(const YamlDocument *document, const YamlNode *node, PetscBool key, char **line, DiagPlace *place)
+void yaml_place(const YamlDocument *document, const YamlNode *node, PetscBool key, char **line, DiagPlace *place)
 {
   if (node->argument) { /* the argument itself is the place: its columns mean nothing in the file */
     char *file = NULL;
     if (asprintf(&file, "--set %s", document->arguments[node->argument - 1]) < 0) file = NULL;
     *line = file;
     *place = (DiagPlace){.file = file, .width = 1};
-  } else if (key && !node->parent) YamlPlaceAt(document, 0, 0, 1, line, place); /* about the file as a whole */
+  } else if (key && !node->parent) yaml_place_at(document, 0, 0, 1, line, place); /* about the file as a whole */
   else if (key && node->key_line > 0)
-    YamlPlaceAt(document, node->key_line, node->key_column, node->key_width, line, place);
-  else YamlPlaceAt(document, node->line, node->column, node->width, line, place);
+    yaml_place_at(document, node->key_line, node->key_column, node->key_width, line, place);
+  else yaml_place_at(document, node->line, node->column, node->width, line, place);
 }
 
-void YamlError(const YamlDocument *document, Diag *diag, const YamlNode *node, PetscBool key, const char *format, ...)
+void yaml_error(const YamlDocument *document, Diag *diag, const YamlNode *node, PetscBool key, const char *format, ...)
 {
   char *line = NULL, *message = NULL;
   DiagPlace place;
   va_list arguments;
-  if (DiagFull(diag, DIAG_ERROR)) {
-    DiagAt(diag, DIAG_ERROR, &(DiagPlace){0}, "one more");
+  if (diag_full(diag, DIAG_ERROR)) {
+    diag_at(diag, DIAG_ERROR, &(DiagPlace){0}, "one more");
     return;
   }
   va_start(arguments, format);
   if (vasprintf(&message, format, arguments) < 0) message = NULL;
   va_end(arguments);
-  YamlPlace(document, node, key, &line, &place);
-  DiagAt(diag, DIAG_ERROR, &place, "%s", message ? message : "no memory for the message");
+  yaml_place(document, node, key, &line, &place);
+  diag_at(diag, DIAG_ERROR, &place, "%s", message ? message : "no memory for the message");
   free(line);
   free(message);
 }

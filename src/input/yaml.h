@@ -52,18 +52,18 @@ PetscErrorCode YamlNodeDestroy(YamlNode **node);
 PetscErrorCode YamlNodeAppend(YamlNode *parent, YamlNode *child);
 
 /* Value of `key` in a mapping; NULL if there is none (or the node is no mapping). */
-YamlNode *YamlFind(const YamlNode *mapping, const char *key);
+YamlNode *yaml_find(const YamlNode *mapping, const char *key);
 /* Is it empty: `key:` with nothing behind it, `~` or `null`? */
-PetscBool YamlIsNull(const YamlNode *node);
+PetscBool yaml_is_null(const YamlNode *node);
 /* "bodies[0].shape" for messages; "the file" for the root. Returns buffer. */
-const char *YamlPath(const YamlNode *node, char *buffer, size_t size);
+const char *yaml_path(const YamlNode *node, char *buffer, size_t size);
 
 /* Place of the value, or of its key. `line` is a buffer that must live as long as the place. */
-void YamlPlace(const YamlDocument *document, const YamlNode *node, PetscBool key, char **line, DiagPlace *place);
+void yaml_place(const YamlDocument *document, const YamlNode *node, PetscBool key, char **line, DiagPlace *place);
 /* A place given by numbers, with its source line. */
-void YamlPlaceAt(const YamlDocument *document, int line, int column, int width, char **buffer, DiagPlace *place);
+void yaml_place_at(const YamlDocument *document, int line, int column, int width, char **buffer, DiagPlace *place);
 /* A DiagResolver; context: the YamlDocument. */
-void YamlResolve(void *document, const char *path, DiagPlace *place);
+void yaml_resolve(void *document, const char *path, DiagPlace *place);
 /* Record an error at a node (at its key if `key`). */
-void YamlError(const YamlDocument *document, Diag *diag, const YamlNode *node, PetscBool key, const char *format, ...)
+void yaml_error(const YamlDocument *document, Diag *diag, const YamlNode *node, PetscBool key, const char *format, ...)
   PETSC_ATTRIBUTE_FORMAT(5, 6);

@@ -24,24 +24,24 @@ typedef struct {
   Names anchor_names; /* the newest of a name counts */
 } Builder;
 
-static void Complain(Builder *b, int line, int column, int width, const char *message)
+static void complain(Builder *b, int line, int column, int width, const char *message)
 {
   if (b->argument) {
     YamlNode node = {.argument = b->argument};
-    YamlError(b->document, b->diag, &node, PETSC_FALSE, "%s", message);
+    yaml_error(b->document, b->diag, &node, PETSC_FALSE, "%s", message);
   } else {
     YamlNode node = {.line = line, .column = column, .width = width};
-    YamlError(b->document, b->diag, &node, PETSC_FALSE, "%s", message);
+    yaml_error(b->document, b->diag, &node, PETSC_FALSE, "%s", message);
   }
 }
 
-static void Fail(Builder *b, const YamlNode *where, const char *message)
+static void fail(Builder *b, const YamlNode *where, const char *message)
 {
-  Complain(b, where ? where->line : 0, where ? where->column : 0, where ? where->width : 1, message);
+  complain(b, where ? where->line : 0, where ? where->column : 0, where ? where->width : 1, message);
   b->failed = PETSC_TRUE;
 }
 
-static void Mark(struct fy_token *token, YamlNode *node)
+static void mark(struct fy_token *token, YamlNode *node)
 {
   const struct fy_mark *start = token ? fy_token_start_mark(token) : NULL,
                        *end = token ? fy_token_end_mark(token) : NULL;
@@ -54,7 +54,7 @@ static void Mark(struct fy_token *token, YamlNode *node)
 /* libfyaml 0.7.12 loses the memory in which it unfolds a text in single quotes that has doubled ones side by side, if there are more than three. */
 #define MAX_DOUBLED 3
 
-static PetscBool HasTooManyQuotes(const Builder *b, struct fy_token *token)
+static PetscBool has_too_many_quotes(const Builder *b, struct fy_token *token)
 {
   const struct fy_mark *start = fy_token_start_mark(token), *end = fy_token_end_mark(token);
   size_t run = 0, quotes = 0;
@@ -96,14 +96,14 @@ static PetscErrorCode RememberAnchor(Builder *b, struct fy_token *anchor, YamlNo
 }
 
 /* A key that stands twice: both places are worth knowing. */
-static void CheckTwice(Builder *b, const YamlNode *key)
+static void check_twice(Builder *b, const YamlNode *key)
 {
-  const YamlNode *first = YamlFind(b->open, key->text);
+  const YamlNode *first = yaml_find(b->open, key->text);
   char message[400], path[200];
   if (!first) return;
   snprintf(message, sizeof(message), "key '%.100s' stands twice in %s (first in line %d)", key->text,
-           YamlPath(b->open, path, sizeof(path)), first->key_line);
-  Complain(b, key->line, key->column, key->width, message);
+           yaml_path(b->open, path, sizeof(path)), first->key_line);
+  complain(b, key->line, key->column, key->width, message);
 }
 
 /* Hang a finished or opening node into the tree. */
@@ -111,7 +111,7 @@ static PetscErrorCode Attach(Builder *b, YamlNode *node)
 {
   PetscFunctionBeginUser;
   node->argument = b->argument;
-  if (b->document->n_nodes > YAML_MAX_NODES && !b->failed) Fail(b, node, "the file has too many values");
+  if (b->document->n_nodes > YAML_MAX_NODES && !b->failed) fail(b, node, "the file has too many values");
   if (!b->open) {
     b->root = node;
     PetscFunctionReturn(0);
@@ -134,7 +134,7 @@ static PetscErrorCode Attach(Builder *b, YamlNode *node)
   PetscFunctionReturn(0);
 }
 
-static PetscBool WantsKey(const Builder *b) { return b->open && b->open->kind == YAML_MAPPING && !b->pending_key; }
+static PetscBool wants_key(const Builder *b) { return b->open && b->open->kind == YAML_MAPPING && !b->pending_key; }
 
 static PetscErrorCode TakeScalar(Builder *b, struct fy_event *event)
 {
@@ -143,21 +143,21 @@ static PetscErrorCode TakeScalar(Builder *b, struct fy_event *event)
 
   PetscFunctionBeginUser;
   PetscCall(YamlNodeCreate(b->document, YAML_SCALAR, &node));
-  Mark(token, node);
-  if (token && HasTooManyQuotes(b, token)) {
-    Fail(b, node, "too many doubled quotes ('') for a text in single quotes; put it in double quotes");
+  mark(token, node);
+  if (token && has_too_many_quotes(b, token)) {
+    fail(b, node, "too many doubled quotes ('') for a text in single quotes; put it in double quotes");
     PetscCall(YamlNodeDestroy(&node));
     PetscFunctionReturn(0);
   }
   PetscCall(CopyText(token, &node->text));
   node->plain = !token || fy_token_scalar_style(token) == FYSS_PLAIN;
-  if (event->scalar.tag) Fail(b, node, "a case file has no tags (words that begin with '!')");
+  if (event->scalar.tag) fail(b, node, "a case file has no tags (words that begin with '!')");
   if (strlen(node->text) != (token ? fy_token_get_text_length(token) : 0))
-    Fail(b, node, "a text may not hold the character NUL");
-  if (WantsKey(b)) {
+    fail(b, node, "a text may not hold the character NUL");
+  if (wants_key(b)) {
     b->pending_key = node;
-    if (YamlIsNull(node)) Fail(b, node, "here a key is missing before ':'");
-    CheckTwice(b, node);
+    if (yaml_is_null(node)) fail(b, node, "here a key is missing before ':'");
+    check_twice(b, node);
     PetscFunctionReturn(0);
   }
   PetscCall(Attach(b, node));
@@ -172,12 +172,12 @@ static PetscErrorCode Open(Builder *b, YamlKind kind, struct fy_token *token, st
 
   PetscFunctionBeginUser;
   PetscCall(YamlNodeCreate(b->document, kind, &node));
-  Mark(token, node);
+  mark(token, node);
   if (kind == YAML_MAPPING || kind == YAML_SEQUENCE) node->width = 1;
-  if (tag) Fail(b, node, "a case file has no tags (words that begin with '!')");
-  if (++b->depth > YAML_MAX_DEPTH) Fail(b, node, "the values are nested too deeply (more than 64 levels)");
-  if (WantsKey(b)) {
-    Fail(b, node, "a key must be a single word, not a list or a mapping");
+  if (tag) fail(b, node, "a case file has no tags (words that begin with '!')");
+  if (++b->depth > YAML_MAX_DEPTH) fail(b, node, "the values are nested too deeply (more than 64 levels)");
+  if (wants_key(b)) {
+    fail(b, node, "a key must be a single word, not a list or a mapping");
     PetscCall(YamlNodeDestroy(&node));
     PetscFunctionReturn(0);
   }
@@ -187,7 +187,7 @@ static PetscErrorCode Open(Builder *b, YamlKind kind, struct fy_token *token, st
   PetscFunctionReturn(0);
 }
 
-static void Close(Builder *b)
+static void parse_close(Builder *b)
 {
   b->depth -= 1;
   if (b->open) b->open = b->open->parent;
@@ -208,7 +208,7 @@ static PetscErrorCode CopyTree(Builder *b, const YamlNode *source, int depth, Ya
   if (source->text) PetscCall(PetscStrallocpy(source->text, &(*copy)->text));
   b->document->n_copied += (source->text ? strlen(source->text) : 0) + (source->key ? strlen(source->key) : 0);
   if (b->document->n_nodes > YAML_MAX_NODES || b->document->n_copied > YAML_MAX_COPIED || depth > YAML_MAX_DEPTH) {
-    if (!b->failed) Fail(b, source, "aliases of aliases make the file too large");
+    if (!b->failed) fail(b, source, "aliases of aliases make the file too large");
     PetscFunctionReturn(0);
   }
   for (PetscInt i = 0; i < source->n && !b->failed; ++i) {
@@ -220,7 +220,7 @@ static PetscErrorCode CopyTree(Builder *b, const YamlNode *source, int depth, Ya
   PetscFunctionReturn(0);
 }
 
-static PetscBool Encloses(const YamlNode *outer, const YamlNode *inner)
+static PetscBool encloses(const YamlNode *outer, const YamlNode *inner)
 {
   while (inner && inner != outer) inner = inner->parent;
   return inner != NULL;
@@ -233,14 +233,14 @@ static PetscErrorCode TakeAlias(Builder *b, struct fy_token *token)
   char *name;
 
   PetscFunctionBeginUser;
-  Mark(token, &place);
+  mark(token, &place);
   PetscCall(CopyText(token, &name));
   const PetscInt found = names_find(&b->anchor_names, name);
   if (found >= 0) source = b->anchors[found].node;
   PetscCall(PetscFree(name));
-  if (WantsKey(b)) Fail(b, &place, "a key must be a single word, not an alias");
-  else if (!source) Fail(b, &place, "there is no anchor (&name) of this name before it");
-  else if (Encloses(source, b->open)) Fail(b, &place, "an alias may not stand inside its own anchor");
+  if (wants_key(b)) fail(b, &place, "a key must be a single word, not an alias");
+  else if (!source) fail(b, &place, "there is no anchor (&name) of this name before it");
+  else if (encloses(source, b->open)) fail(b, &place, "an alias may not stand inside its own anchor");
   if (b->failed) PetscFunctionReturn(0);
   PetscCall(CopyTree(b, source, b->depth, &copy));
   PetscCall(Attach(b, copy));
@@ -254,8 +254,8 @@ static PetscErrorCode TakeEvent(Builder *b, struct fy_event *event)
   case FYET_DOCUMENT_START:
     if (++b->documents > 1) {
       YamlNode place = {0};
-      Mark(event->document_start.document_start, &place);
-      Fail(b, &place, "a second document begins here ('---'); a case file holds one");
+      mark(event->document_start.document_start, &place);
+      fail(b, &place, "a second document begins here ('---'); a case file holds one");
     }
     break;
   case FYET_SCALAR: PetscCall(TakeScalar(b, event)); break;
@@ -268,7 +268,7 @@ static PetscErrorCode TakeEvent(Builder *b, struct fy_event *event)
       Open(b, YAML_MAPPING, event->mapping_start.mapping_start, event->mapping_start.tag, event->mapping_start.anchor));
     break;
   case FYET_SEQUENCE_END:
-  case FYET_MAPPING_END: Close(b); break;
+  case FYET_MAPPING_END: parse_close(b); break;
   case FYET_ALIAS: PetscCall(TakeAlias(b, event->alias.anchor)); break;
   default: break;
   }
@@ -276,24 +276,24 @@ static PetscErrorCode TakeEvent(Builder *b, struct fy_event *event)
 }
 
 /* libfyaml's complaints, in our form and without its own follow-up ones. */
-static void TakeSyntaxErrors(Builder *b, struct fy_diag *messages)
+static void take_syntax_errors(Builder *b, struct fy_diag *messages)
 {
   void *iterator = NULL;
   struct fy_diag_error *error = fy_diag_errors_iterate(messages, &iterator);
-  if (!error) Fail(b, NULL, "this is not YAML");
+  if (!error) fail(b, NULL, "this is not YAML");
   else {
     YamlNode place = {
       .line = error->line > 0 ? error->line : 1, .column = error->column > 0 ? error->column : 1, .width = 1};
     char message[400];
     snprintf(message, sizeof(message), "syntax: %.300s", error->msg ? error->msg : "this is not YAML");
     message[strcspn(message, "\n")] = '\0';
-    Fail(b, &place, message);
-    if (strstr(message, "tab")) DiagHint(b->diag, "indent with spaces, YAML does not allow tabs there");
+    fail(b, &place, message);
+    if (strstr(message, "tab")) diag_hint(b->diag, "indent with spaces, YAML does not allow tabs there");
   }
 }
 
 /* Bytes of the UTF-8 character at p; 0 if it is malformed or cut off. */
-static int CharacterSize(const unsigned char *p, const unsigned char *end)
+static int character_size(const unsigned char *p, const unsigned char *end)
 {
   const int n = *p < 0x80 ? 1 : *p < 0xC2 ? 0 : *p < 0xE0 ? 2 : *p < 0xF0 ? 3 : *p < 0xF5 ? 4 : 0;
   if (n > end - p) return 0;
@@ -305,16 +305,16 @@ static int CharacterSize(const unsigned char *p, const unsigned char *end)
   return n;
 }
 
-static PetscBool IsControl(unsigned char c) { return c == 127 || (c < 32 && c != '\t' && c != '\n' && c != '\r'); }
+static PetscBool is_control(unsigned char c) { return c == 127 || (c < 32 && c != '\t' && c != '\n' && c != '\r'); }
 
 /* First byte that no text file holds, as line and column; NULL if all is well-formed UTF-8. */
-static const char *BadByte(const char *text, size_t size, int *line, int *column)
+static const char *bad_byte(const char *text, size_t size, int *line, int *column)
 {
   const unsigned char *p = (const unsigned char *)text, *end = p + size;
   *line = *column = 1;
   while (p < end) {
-    const int n = CharacterSize(p, end);
-    if (n == 0 || IsControl(*p)) return (const char *)p;
+    const int n = character_size(p, end);
+    if (n == 0 || is_control(*p)) return (const char *)p;
     *column = *p == '\n' ? 1 : *column + 1;
     *line += *p == '\n';
     p += n;
@@ -348,7 +348,7 @@ static PetscErrorCode RunParser(Builder *b, const char *text, size_t size)
     PetscCall(TakeEvent(b, event));
     fy_parser_event_free(parser, event);
   }
-  if (!b->failed && !ended) TakeSyntaxErrors(b, messages);
+  if (!b->failed && !ended) take_syntax_errors(b, messages);
   fy_parser_destroy(parser);
   fy_diag_destroy(messages);
   PetscFunctionReturn(0);
@@ -365,8 +365,8 @@ static PetscErrorCode CheckEmpty(Builder *b)
     }
     PetscFunctionReturn(0);
   }
-  if (!b->root || YamlIsNull(b->root)) Fail(b, NULL, "the file is empty");
-  else if (b->root->kind != YAML_MAPPING) Fail(b, b->root, "a case file consists of `key: value` lines; this does not");
+  if (!b->root || yaml_is_null(b->root)) fail(b, NULL, "the file is empty");
+  else if (b->root->kind != YAML_MAPPING) fail(b, b->root, "a case file consists of `key: value` lines; this does not");
   PetscFunctionReturn(0);
 }
 
@@ -378,11 +378,11 @@ PetscErrorCode YamlParseInto(YamlDocument *document, const char *text, size_t si
   int line, column;
 
   PetscFunctionBeginUser;
-  const char *bad = BadByte(text, size, &line, &column);
+  const char *bad = bad_byte(text, size, &line, &column);
   if (bad) {
     char message[100];
     snprintf(message, sizeof(message), "byte 0x%02X is no text in UTF-8; is this a case file?", (unsigned char)*bad);
-    Complain(&b, line, column, 1, message);
+    complain(&b, line, column, 1, message);
     PetscFunctionReturn(0);
   }
   PetscCall(RunParser(&b, text, size));

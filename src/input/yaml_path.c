@@ -11,7 +11,7 @@ typedef struct {
 } PathStep;
 
 /* Cut the first step off; NULL if the path is not well formed there. */
-static const char *NextStep(const char *path, PathStep *step)
+static const char *next_step(const char *path, PathStep *step)
 {
   if (*path == '[') {
     char *end;
@@ -32,20 +32,20 @@ static const char *NextStep(const char *path, PathStep *step)
   return *path == '\0' || *path == '[' ? path : NULL;
 }
 
-static YamlNode *Child(const YamlNode *node, const PathStep *step)
+static YamlNode *path_child(const YamlNode *node, const PathStep *step)
 {
-  if (step->index < 0) return YamlFind(node, step->key);
+  if (step->index < 0) return yaml_find(node, step->key);
   return node->kind == YAML_SEQUENCE && step->index < node->n ? node->child[step->index] : NULL;
 }
 
 /* The node at the path, or its nearest existing parent. */
-static const YamlNode *Follow(const YamlNode *root, const char *path)
+static const YamlNode *follow(const YamlNode *root, const char *path)
 {
   const YamlNode *node = root;
   while (node && *path) {
     PathStep step;
-    const char *rest = NextStep(path, &step);
-    const YamlNode *child = rest ? Child(node, &step) : NULL;
+    const char *rest = next_step(path, &step);
+    const YamlNode *child = rest ? path_child(node, &step) : NULL;
     if (!child) break;
     node = child;
     path = rest;
@@ -53,14 +53,14 @@ static const YamlNode *Follow(const YamlNode *root, const char *path)
   return node;
 }
 
-void YamlResolve(void *context, const char *path, DiagPlace *place)
+void yaml_resolve(void *context, const char *path, DiagPlace *place)
 {
   YamlDocument *document = context;
-  const YamlNode *node = document->root && path ? Follow(document->root, path) : NULL;
+  const YamlNode *node = document->root && path ? follow(document->root, path) : NULL;
   char *line = NULL;
   place->file = document->file;
   if (!node || node == document->root) return;
-  YamlPlace(document, node, node->kind != YAML_SCALAR, &line, place);
+  yaml_place(document, node, node->kind != YAML_SCALAR, &line, place);
   /* Diag copies a place at once, but after this function has returned:
    * the document keeps the line until the next call. */
   free(document->resolved);
@@ -75,19 +75,19 @@ static PetscErrorCode MakeKind(YamlDocument *document, YamlNode *node, const Pat
 
   PetscFunctionBeginUser;
   *ok = PETSC_TRUE;
-  if (YamlIsNull(node)) {
+  if (yaml_is_null(node)) {
     PetscCall(PetscFree(node->text));
     node->kind = kind;
     node->argument = argument;
   }
   if (node->kind != kind) {
     YamlNode place = {.argument = argument};
-    YamlError(document, diag, &place, PETSC_FALSE, "%s is %s, it has no %s", YamlPath(node, path, sizeof(path)),
-              node->kind == YAML_SCALAR    ? "a single value"
-              : node->kind == YAML_MAPPING ? "a mapping of keys"
-                                           : "a list",
-              kind == YAML_MAPPING ? "keys" : "numbered entries");
-    if (node->kind == YAML_SEQUENCE) DiagHint(diag, "name an entry of the list: %s[0]", path);
+    yaml_error(document, diag, &place, PETSC_FALSE, "%s is %s, it has no %s", yaml_path(node, path, sizeof(path)),
+               node->kind == YAML_SCALAR    ? "a single value"
+               : node->kind == YAML_MAPPING ? "a mapping of keys"
+                                            : "a list",
+               kind == YAML_MAPPING ? "keys" : "numbered entries");
+    if (node->kind == YAML_SEQUENCE) diag_hint(diag, "name an entry of the list: %s[0]", path);
     *ok = PETSC_FALSE;
   }
   PetscFunctionReturn(0);
@@ -104,14 +104,14 @@ static PetscErrorCode Descend(YamlDocument *document, YamlNode *node, const Path
   *child = NULL;
   PetscCall(MakeKind(document, node, step, argument, diag, &ok));
   if (!ok) PetscFunctionReturn(0);
-  *child = Child(node, step);
+  *child = path_child(node, step);
   if (*child) PetscFunctionReturn(0);
   if (step->index > node->n) {
     YamlNode place = {.argument = argument};
-    YamlError(document, diag, &place, PETSC_FALSE,
-              "%s has %" PetscInt_FMT " entries, so there is no [%" PetscInt_FMT "]",
-              YamlPath(node, path, sizeof(path)), node->n, step->index);
-    if (node->n) DiagHint(diag, "entries count from 0; [%" PetscInt_FMT "] would append one", node->n);
+    yaml_error(document, diag, &place, PETSC_FALSE,
+               "%s has %" PetscInt_FMT " entries, so there is no [%" PetscInt_FMT "]",
+               yaml_path(node, path, sizeof(path)), node->n, step->index);
+    if (node->n) diag_hint(diag, "entries count from 0; [%" PetscInt_FMT "] would append one", node->n);
     PetscFunctionReturn(0);
   }
   PetscCall(YamlNodeCreate(document, YAML_SCALAR, child));
@@ -142,12 +142,12 @@ static PetscErrorCode Replace(YamlDocument *document, YamlNode *node, YamlNode *
   PetscFunctionReturn(0);
 }
 
-static void BadPath(YamlDocument *document, PetscInt argument, Diag *diag, const char *what)
+static void bad_path(YamlDocument *document, PetscInt argument, Diag *diag, const char *what)
 {
   YamlNode place = {.argument = argument};
-  YamlError(document, diag, &place, PETSC_FALSE, "%s", what);
-  DiagHint(diag,
-           "write --set path.to.key=value, for example --set grid.size=0.25 or --set 'bodies[0].points_per_cell=9'");
+  yaml_error(document, diag, &place, PETSC_FALSE, "%s", what);
+  diag_hint(diag,
+            "write --set path.to.key=value, for example --set grid.size=0.25 or --set 'bodies[0].points_per_cell=9'");
 }
 
 static PetscErrorCode SetAt(YamlDocument *document, const char *path, YamlNode **value, PetscInt argument, Diag *diag)
@@ -157,9 +157,9 @@ static PetscErrorCode SetAt(YamlDocument *document, const char *path, YamlNode *
   PetscFunctionBeginUser;
   while (*path) {
     PathStep step;
-    path = NextStep(path, &step);
+    path = next_step(path, &step);
     if (!path) {
-      BadPath(document, argument, diag, "this is no path to a key");
+      bad_path(document, argument, diag, "this is no path to a key");
       PetscFunctionReturn(0);
     }
     PetscCall(Descend(document, node, &step, argument, diag, &node));
@@ -182,7 +182,7 @@ PetscErrorCode YamlSet(YamlDocument *document, const char *text, Diag *diag)
   PetscCall(PetscStrallocpy(text, &document->arguments[argument - 1]));
   if (!document->root) PetscFunctionReturn(0);
   if (!equals || equals == text) {
-    BadPath(document, argument, diag, equals ? "there is no key before '='" : "there is no '='");
+    bad_path(document, argument, diag, equals ? "there is no key before '='" : "there is no '='");
     PetscFunctionReturn(0);
   }
   PetscCall(YamlParseInto(document, equals + 1, strlen(equals + 1), argument, diag, &value));

@@ -83,7 +83,7 @@ typedef struct {
 
 /* All laws, ended by NULL. */
 extern const Law *const laws[];
-const Law *LawFind(const char *name);
+const Law *law_find(const char *name);
 
 /* Resolve materials[index] of the case; mistakes go to diag with their paths. */
 PetscErrorCode MaterialResolve(const Case *c, PetscInt index, Diag *diag, Material *material);

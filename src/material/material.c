@@ -30,13 +30,13 @@ static const Law *find_law(const Resolver *r)
 {
   const char *names[MAX_NAMES] = {NULL}, *nearest;
   char path[MAX_PATH];
-  const Law *law = LawFind(r->spec->law);
+  const Law *law = law_find(r->spec->law);
   if (law) return law;
   for (int i = 0; laws[i] && i < MAX_NAMES - 1; ++i) names[i] = laws[i]->name;
-  DiagError(r->diag, path_of(r, "law", path), "there is no law '%s'", r->spec->law ? r->spec->law : "");
-  nearest = r->spec->law ? DiagNearest(r->spec->law, names) : NULL;
-  if (nearest) DiagHint(r->diag, "did you mean '%s'?", nearest);
-  else DiagHint(r->diag, "`talus list laws` shows all laws");
+  diag_error(r->diag, path_of(r, "law", path), "there is no law '%s'", r->spec->law ? r->spec->law : "");
+  nearest = r->spec->law ? diag_nearest(r->spec->law, names) : NULL;
+  if (nearest) diag_hint(r->diag, "did you mean '%s'?", nearest);
+  else diag_hint(r->diag, "`talus list laws` shows all laws");
   return NULL;
 }
 
@@ -65,9 +65,9 @@ static void refuse_unknown(const Resolver *r, const Law *law)
   for (PetscInt i = 0; i < r->spec->n_parameters; ++i) {
     const char *key = r->spec->parameters[i].name;
     if (elastic_index(key) >= 0 || law_parameter_index(law, key) >= 0) continue;
-    DiagError(r->diag, path_of(r, key, path), "the law %s has no parameter '%s'", law->name, key);
-    const char *nearest = DiagNearest(key, names);
-    if (nearest) DiagHint(r->diag, "did you mean '%s'?", nearest);
+    diag_error(r->diag, path_of(r, key, path), "the law %s has no parameter '%s'", law->name, key);
+    const char *nearest = diag_nearest(key, names);
+    if (nearest) diag_hint(r->diag, "did you mean '%s'?", nearest);
   }
 }
 
@@ -80,13 +80,13 @@ static PetscBool check_constant(const Resolver *r, int index, PetscReal value)
   char path[MAX_PATH];
   if (isfinite(value) && value > constant->min && value < constant->max) return PETSC_TRUE;
   path_of(r, constant->name, path);
-  if (!isfinite(value)) DiagError(r->diag, path, "%s must be a finite number, not %g", constant->help, value);
+  if (!isfinite(value)) diag_error(r->diag, path, "%s must be a finite number, not %g", constant->help, value);
   else if (isfinite(constant->max))
-    DiagError(r->diag, path, "%s must lie between %g and %g (both excluded), not %g", constant->help, constant->min,
-              constant->max, value);
-  else DiagError(r->diag, path, "%s must be positive (%s), not %g", constant->help, unit_of(constant->unit), value);
+    diag_error(r->diag, path, "%s must lie between %g and %g (both excluded), not %g", constant->help, constant->min,
+               constant->max, value);
+  else diag_error(r->diag, path, "%s must be positive (%s), not %g", constant->help, unit_of(constant->unit), value);
   if ((!strcmp(constant->name, "poisson") && value == 0.5) || (!strcmp(constant->name, "bulk") && value == INFINITY))
-    DiagHint(r->diag, "an incompressible solid has no finite bulk modulus: it needs `formulation: mixed`");
+    diag_hint(r->diag, "an incompressible solid has no finite bulk modulus: it needs `formulation: mixed`");
   return PETSC_FALSE;
 }
 
@@ -120,16 +120,16 @@ static PetscBool resolve_elastic(const Resolver *r, Elasticity *elastic)
     if (given >> k & 1 && !check_constant(r, k, value[k])) good = PETSC_FALSE;
   list_constants(given, names, sizeof names);
   if (n != 2) {
-    DiagError(r->diag, path_of(r, NULL, path), "needs exactly two elastic constants, has %d%s%s%s", n, n ? " (" : "",
-              names, n ? ")" : "");
-    DiagHint(r->diag, "give any two of young, poisson, bulk, shear, lame: they define the others");
+    diag_error(r->diag, path_of(r, NULL, path), "needs exactly two elastic constants, has %d%s%s%s", n, n ? " (" : "",
+               names, n ? ")" : "");
+    diag_hint(r->diag, "give any two of young, poisson, bulk, shear, lame: they define the others");
     return PETSC_FALSE;
   }
   if (!good) return PETSC_FALSE;
   if (elasticity_from_two(given, value, elastic)) return PETSC_TRUE;
-  DiagError(r->diag, path_of(r, NULL, path),
-            "these %s give a bulk modulus of %g Pa and a shear modulus of %g Pa: not a stable solid", names,
-            elastic->bulk, elastic->shear);
+  diag_error(r->diag, path_of(r, NULL, path),
+             "these %s give a bulk modulus of %g Pa and a shear modulus of %g Pa: not a stable solid", names,
+             elastic->bulk, elastic->shear);
   return PETSC_FALSE;
 }
 
@@ -147,13 +147,13 @@ static void resolve_parameter(const Resolver *r, const Law *law, const LawParame
   char path[MAX_PATH];
   *value = given ? given->value : p->fallback;
   if (!given && isnan(p->fallback)) {
-    DiagError(r->diag, path_of(r, NULL, path), "the law %s needs '%s': %s (%s)", law->name, p->name, p->help,
-              unit_of(p->unit));
+    diag_error(r->diag, path_of(r, NULL, path), "the law %s needs '%s': %s (%s)", law->name, p->name, p->help,
+               unit_of(p->unit));
     return;
   }
   if (given && !in_range(p, *value))
-    DiagError(r->diag, path_of(r, p->name, path), "%s must lie in %c%g, %g%c (%s), not %g", p->help,
-              p->min_open ? '(' : '[', p->min, p->max, p->max_open ? ')' : ']', unit_of(p->unit), *value);
+    diag_error(r->diag, path_of(r, p->name, path), "%s must lie in %c%g, %g%c (%s), not %g", p->help,
+               p->min_open ? '(' : '[', p->min, p->max, p->max_open ? ')' : ']', unit_of(p->unit), *value);
   if (p->unit && !strcmp(p->unit, "deg")) *value *= PETSC_PI / 180.0;
 }
 
@@ -161,15 +161,15 @@ static void check_together(const Resolver *r, const Law *law, const PetscReal *g
 {
   const char *complaint = law->check ? law->check(given) : NULL;
   char path[MAX_PATH];
-  if (complaint) DiagError(r->diag, path_of(r, NULL, path), "%s", complaint);
+  if (complaint) diag_error(r->diag, path_of(r, NULL, path), "%s", complaint);
 }
 
 static void check_density(const Resolver *r)
 {
   char path[MAX_PATH];
   if (isfinite(r->spec->density) && r->spec->density > 0.0) return;
-  DiagError(r->diag, path_of(r, "density", path), "density must be positive and finite (kg/m3), not %g",
-            r->spec->density);
+  diag_error(r->diag, path_of(r, "density", path), "density must be positive and finite (kg/m3), not %g",
+             r->spec->density);
 }
 
 /* What the mixed formulation needs, and whether this law can give it. An incompressible material has no other parameters. */
@@ -178,7 +178,7 @@ static void prepare_mixed(const Resolver *r, const PetscReal *given, Material *m
   Elasticity middle = m->elastic;
   char path[MAX_PATH];
   if (!m->law->volume) {
-    DiagError(r->diag, path_of(r, "law", path), "the law %s has no mixed form", m->law->name);
+    diag_error(r->diag, path_of(r, "law", path), "the law %s has no mixed form", m->law->name);
     return;
   }
   middle.bulk = middle.shear;
@@ -189,11 +189,11 @@ static void prepare_mixed(const Resolver *r, const PetscReal *given, Material *m
   if (isfinite(m->elastic.bulk)) return;
   memcpy(m->parameters, m->deviatoric, sizeof m->parameters);
   if (m->volume != VOLUME_COUPLED) return;
-  DiagError(r->diag, path_of(r, NULL, path),
-            "the law %s cannot be exactly incompressible here: it couples volume and shape", m->law->name);
-  DiagHint(r->diag, "%s",
-           "give a finite bulk modulus (poisson: 0.4999), or take a law that keeps them apart: neo-hookean-split, j2, "
-           "mohr-coulomb without friction and cut-off");
+  diag_error(r->diag, path_of(r, NULL, path),
+             "the law %s cannot be exactly incompressible here: it couples volume and shape", m->law->name);
+  diag_hint(r->diag, "%s",
+            "give a finite bulk modulus (poisson: 0.4999), or take a law that keeps them apart: neo-hookean-split, j2, "
+            "mohr-coulomb without friction and cut-off");
 }
 
 /* The P-wave modulus; of a mixed formulation no larger than with poisson 0.3, since what it scales is shear. */
@@ -207,7 +207,7 @@ PetscErrorCode MaterialResolve(const Case *c, PetscInt index, Diag *diag, Materi
 {
   const Resolver r = {&c->materials[index], diag, case_is_mixed(c)};
   PetscReal given[LAW_MAX_PARAMETERS] = {0};
-  const PetscInt before = DiagErrors(diag);
+  const PetscInt before = diag_errors(diag);
 
   PetscFunctionBeginUser;
   PetscCheck(index >= 0 && index < c->n_materials, PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE,
@@ -222,8 +222,8 @@ PetscErrorCode MaterialResolve(const Case *c, PetscInt index, Diag *diag, Materi
   refuse_unknown(&r, material->law);
   for (int i = 0; material->law->parameters[i].name; ++i)
     resolve_parameter(&r, material->law, &material->law->parameters[i], &given[i]);
-  if (DiagErrors(diag) == before) check_together(&r, material->law, given);
-  if (!elastic || DiagErrors(diag) > before) PetscFunctionReturn(0);
+  if (diag_errors(diag) == before) check_together(&r, material->law, given);
+  if (!elastic || diag_errors(diag) > before) PetscFunctionReturn(0);
   material->wave_modulus = wave_modulus(&material->elastic, r.mixed);
   material->law->prepare(&material->elastic, given, material->parameters);
   if (r.mixed) prepare_mixed(&r, given, material);

@@ -13,7 +13,7 @@ const Law *const laws[] = {
   NULL,
 };
 
-const Law *LawFind(const char *name)
+const Law *law_find(const char *name)
 {
   for (const Law *const *law = laws; *law; ++law)
     if (name && !strcmp((*law)->name, name)) return *law;

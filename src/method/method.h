@@ -71,7 +71,7 @@ typedef struct Method {
 } Method;
 
 extern const Method *const methods[]; /* ended by NULL */
-const Method *MethodFind(const char *name);
+const Method *method_find(const char *name);
 
 PetscErrorCode StageCreate(const Case *c, Grid *grid, Points *points, Points *tracers, Loads *loads,
                            const Material *materials, Stage **stage);

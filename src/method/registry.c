@@ -10,7 +10,7 @@ const Method *const methods[] = {
 #undef METHOD
   NULL};
 
-const Method *MethodFind(const char *name)
+const Method *method_find(const char *name)
 {
   for (PetscInt i = 0; methods[i]; ++i)
     if (!strcmp(methods[i]->name, name)) return methods[i];

@@ -34,16 +34,16 @@ static PetscBool cells_lock(const Model *m, const BodySpec *body)
 static void hint_mixed(const Model *m, const Material *material, Diag *diag)
 {
   if (!material->law->volume)
-    DiagHint(diag,
-             "the law %s has no mixed form: a law that has one (see `talus list laws`), or a material that is less "
-             "stiff against changes of volume",
-             material->law->name);
+    diag_hint(diag,
+              "the law %s has no mixed form: a law that has one (see `talus list laws`), or a material that is less "
+              "stiff against changes of volume",
+              material->law->name);
   else if (m->method->couplings)
-    DiagHint(diag,
-             "method %s has no mixed form: take mpm or fem with `formulation: mixed`, or a material that is less "
-             "stiff against changes of volume",
-             m->method->name);
-  else DiagHint(diag, "`formulation: mixed` keeps that away");
+    diag_hint(diag,
+              "method %s has no mixed form: take mpm or fem with `formulation: mixed`, or a material that is less "
+              "stiff against changes of volume",
+              m->method->name);
+  else diag_hint(diag, "`formulation: mixed` keeps that away");
 }
 
 /* Measured (the footing of tests/program/traps.sh): quadrilaterals with four points, and triangles, carry six times Prandtl's load and show no
@@ -60,10 +60,11 @@ static void advise_locking(const Model *m, const BodySpec *body, PetscInt i, Dia
   else return;
   if (!constant(spec, key) && strcmp(key, "law")) key = "bulk"; /* poisson follows from it */
   PetscSNPrintf(path, sizeof path, "materials.%s.%s", spec->name, key);
-  DiagWarning(diag, path,
-              "'%s' %s: with displacements as the only unknowns %s lock, so that the body is too stiff and carries too "
-              "much, often several times",
-              spec->name, what, m->method->couplings ? "clouds" : cells_plural[m->grid->type]);
+  diag_warning(
+    diag, path,
+    "'%s' %s: with displacements as the only unknowns %s lock, so that the body is too stiff and carries too "
+    "much, often several times",
+    spec->name, what, m->method->couplings ? "clouds" : cells_plural[m->grid->type]);
   hint_mixed(m, material, diag);
 }
 
@@ -96,14 +97,14 @@ static void advise_floor(const Model *m, Diag *diag)
   for (PetscInt k = 0; k < c->n_boundary; ++k) {
     if (!c->boundary[k].on.boundary || strcmp(c->boundary[k].on.boundary, "bottom")) continue;
     PetscSNPrintf(path, sizeof path, "boundary[%d].on.boundary", (int)k);
-    DiagWarning(diag, path,
-                "'bottom' is the side of the lowest y, but gravity points along %c%c, where nothing is held",
-                high ? '+' : '-', "xyz"[axis]);
-    DiagHint(diag, "there the side is called '%s'; or let y be vertical: gravity: [0, -9.81, 0]", sides[axis][high]);
+    diag_warning(diag, path,
+                 "'bottom' is the side of the lowest y, but gravity points along %c%c, where nothing is held",
+                 high ? '+' : '-', "xyz"[axis]);
+    diag_hint(diag, "there the side is called '%s'; or let y be vertical: gravity: [0, -9.81, 0]", sides[axis][high]);
   }
 }
 
-void ModelAdvise(const Model *m, Diag *diag)
+void model_advise(const Model *m, Diag *diag)
 {
   for (PetscInt b = 0; b < m->c->n_bodies; ++b)
     for (PetscInt i = 0; i < m->c->n_materials; ++i)

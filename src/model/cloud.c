@@ -86,12 +86,12 @@ PetscErrorCode ModelWarnOfObstacles(const Model *m, Diag *diag)
   for (PetscInt b = 0; b < m->c->n_bodies; ++b) {
     if (!count[b]) continue;
     snprintf(path, sizeof path, "bodies[%d]", (int)b);
-    DiagWarning(
+    diag_warning(
       diag, path,
       "%d points of '%s' have prescribed nodes in their clouds which the body does not touch: it sticks to them",
       (int)count[b], m->c->bodies[b].name);
-    DiagHint(diag, "a body that is to come off later must start farther away than its clouds reach: %g m",
-             (double)(m->c->basis.radius * m->grid->cloud->spacing));
+    diag_hint(diag, "a body that is to come off later must start farther away than its clouds reach: %g m",
+              (double)(m->c->basis.radius * m->grid->cloud->spacing));
   }
   PetscCall(PetscFree(count));
   PetscFunctionReturn(0);

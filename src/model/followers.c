@@ -114,10 +114,10 @@ PetscErrorCode FollowersStart(Model *m, Diag *diag)
     if (u[k].n == 0) continue;
     if (k < n_measures) snprintf(path, sizeof path, "measures.%s.of.tracer", m->c->measures[k].name);
     else load_path(m->c, k - n_measures, path);
-    DiagError(diag, path,
-              k < n_measures ? "no material carries the tracer: it starts outside of all bodies"
-                             : "no material carries the force: it acts outside of all bodies");
-    DiagHint(diag, "a place in a body, on its surface, or in a cell beside it");
+    diag_error(diag, path,
+               k < n_measures ? "no material carries the tracer: it starts outside of all bodies"
+                              : "no material carries the force: it acts outside of all bodies");
+    diag_hint(diag, "a place in a body, on its surface, or in a cell beside it");
   }
   PetscCall(PetscFree(u));
   PetscFunctionReturn(0);

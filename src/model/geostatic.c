@@ -76,12 +76,12 @@ static PetscBool check_gravity(const Case *c, const Upwards *u, Diag *diag)
   if (u->g > 0) return PETSC_TRUE;
   while (!c->bodies[b].has_k0) ++b;
   PetscSNPrintf(path, sizeof path, "bodies[%d].k0", (int)b);
-  DiagError(diag, any ? "loads.gravity_amplitude" : path,
-            any ? "gravity is 0 at the start, but k0 of '%s' gives the stress that carries it: the body would heave"
-                : "k0 gives '%s' the stress that carries its weight, but there is no gravity",
-            c->bodies[b].name);
-  if (any) DiagHint(diag, "leave gravity_amplitude out: with k0 gravity acts from the start; or begin it with [0, 1]");
-  else DiagHint(diag, "give loads.gravity, or leave k0 out");
+  diag_error(diag, any ? "loads.gravity_amplitude" : path,
+             any ? "gravity is 0 at the start, but k0 of '%s' gives the stress that carries it: the body would heave"
+                 : "k0 gives '%s' the stress that carries its weight, but there is no gravity",
+             c->bodies[b].name);
+  if (any) diag_hint(diag, "leave gravity_amplitude out: with k0 gravity acts from the start; or begin it with [0, 1]");
+  else diag_hint(diag, "give loads.gravity, or leave k0 out");
   return PETSC_FALSE;
 }
 
@@ -101,11 +101,11 @@ static PetscErrorCode CheckSurface(const Model *m, const PetscReal *highest, Dia
     if (!body->has_k0 || !body->has_surface || top[b] == -PETSC_MAX_REAL) continue;
     if (PetscAbsReal(body->surface - top[b]) <= m->grid->smallest) continue;
     PetscCall(PetscSNPrintf(path, sizeof path, "bodies[%d].surface", (int)b));
-    DiagWarning(diag, path,
-                "the highest material above '%s' ends at a height of %g m, not at %g m; its initial stress is that "
-                "of the material that is there",
-                body->name, (double)top[b], (double)body->surface);
-    DiagHint(diag, "what lies above and is not part of the model is a load: loads.tractions");
+    diag_warning(diag, path,
+                 "the highest material above '%s' ends at a height of %g m, not at %g m; its initial stress is that "
+                 "of the material that is there",
+                 body->name, (double)top[b], (double)body->surface);
+    diag_hint(diag, "what lies above and is not part of the model is a load: loads.tractions");
   }
   PetscCall(PetscFree(top));
   PetscFunctionReturn(0);
@@ -148,7 +148,7 @@ PetscErrorCode InitialStress(Model *m, const Outline *outline, Diag *diag)
   PetscCall(OverburdenDestroy(&overburden));
   if (failed >= 0) {
     PetscCall(PetscSNPrintf(path, sizeof path, "bodies[%d].k0", (int)failed));
-    DiagError(diag, path, "the material's law cannot carry this initial stress");
+    diag_error(diag, path, "the material's law cannot carry this initial stress");
   }
   PetscFunctionReturn(0);
 }

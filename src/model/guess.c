@@ -95,13 +95,13 @@ PetscErrorCode GuessToTables(Model *m, Tables *tables)
 /* Checkpoints that lack these tables let the next step start from inertia. */
 PetscErrorCode GuessFromTables(Model *m, const Tables *tables, char reason[256])
 {
-  const Table *table = TablesFind(tables, "guess"), *increments = TablesFind(tables, "increments");
+  const Table *table = tables_find(tables, "guess"), *increments = tables_find(tables, "increments");
   const NodalField field = field_of(m);
 
   PetscFunctionBeginUser;
   if (!guess_follows(m) || !table || !increments) PetscFunctionReturn(0);
-  const PetscReal *step = TableData(table, "step", COLUMN_REAL, 1, reason);
-  const PetscInt64 *previous = TableData(table, "previous", COLUMN_INT64, 1, reason);
+  const PetscReal *step = table_data(table, "step", COLUMN_REAL, 1, reason);
+  const PetscInt64 *previous = table_data(table, "previous", COLUMN_INT64, 1, reason);
   if (!step || !previous || reason[0]) PetscFunctionReturn(0);
   if (table->rows != 1 || !(*step >= 0 && *step <= PETSC_MAX_REAL) || (*previous != 0 && *previous != 1)) {
     snprintf(reason, 256, "guess makes no sense");

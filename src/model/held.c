@@ -86,9 +86,10 @@ PetscErrorCode CheckHeld(const Model *m, Diag *diag)
     name_directions(dim, held + b * dim, directions);
     if (!directions[0]) continue;
     snprintf(path, sizeof path, "bodies[%d]", (int)b);
-    DiagError(diag, path, "nothing holds '%s' in %s: a static analysis has no answer", m->c->bodies[b].name,
+    diag_error(diag, path, "nothing holds '%s' in %s: a static analysis has no answer", m->c->bodies[b].name,
+               directions);
+    diag_hint(diag, "fix a boundary that the body touches in %s, or let it move: analysis: {type: dynamic}",
               directions);
-    DiagHint(diag, "fix a boundary that the body touches in %s, or let it move: analysis: {type: dynamic}", directions);
   }
   PetscCall(PetscFree2(joined, held));
   PetscFunctionReturn(0);

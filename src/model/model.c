@@ -15,25 +15,26 @@ static PetscReal cell_weight(void *context, const PetscReal *centre)
 static void check_supported(const Case *c, Diag *diag)
 {
   if (c->kinematics == KINEMATICS_AXISYMMETRIC)
-    DiagError(diag, "kinematics", "axisymmetric kinematics are not part of this version; plane-strain and 3d are");
-  if (!MethodFind(c->method))
-    DiagError(diag, "method", "method '%s' is not part of this version; mpm, fem and gmm are", c->method);
-  if (!FormulationFind(c->formulation))
-    DiagError(diag, "formulation", "formulation '%s' is not part of this version; displacement and mixed are",
-              c->formulation);
-  else if (FormulationFind(c->formulation)->pressure && !strcmp(c->method, "gmm"))
-    DiagError(
+    diag_error(diag, "kinematics", "axisymmetric kinematics are not part of this version; plane-strain and 3d are");
+  if (!method_find(c->method))
+    diag_error(diag, "method", "method '%s' is not part of this version; mpm, fem and gmm are", c->method);
+  if (!formulation_find(c->formulation))
+    diag_error(diag, "formulation", "formulation '%s' is not part of this version; displacement and mixed are",
+               c->formulation);
+  else if (formulation_find(c->formulation)->pressure && !strcmp(c->method, "gmm"))
+    diag_error(
       diag, "formulation",
       "formulation '%s' is not part of this version for method gmm, which takes displacement; mpm and fem take both",
       c->formulation);
   if (c->analysis.keep_velocity && strcmp(c->method, "mpm"))
-    DiagError(diag, "analysis.keep_velocity", "only points of method mpm have a velocity apart from that of the nodes");
+    diag_error(diag, "analysis.keep_velocity",
+               "only points of method mpm have a velocity apart from that of the nodes");
   for (PetscInt b = 0; b < c->n_bodies; ++b) {
     char path[64];
     PetscSNPrintf(path, sizeof path, "bodies[%d].mesh", (int)b);
     if (c->bodies[b].mesh && strcmp(c->method, "mpm"))
-      DiagError(diag, path,
-                "a body with a mesh of its own needs method mpm; for fem and gmm give that mesh as grid.mesh");
+      diag_error(diag, path,
+                 "a body with a mesh of its own needs method mpm; for fem and gmm give that mesh as grid.mesh");
   }
 }
 
@@ -42,11 +43,12 @@ static void check_ringing(const Case *c, const Material *material, Diag *diag)
 {
   if (c->analysis.type != ANALYSIS_DYNAMIC || !case_is_mixed(c) || material->compliance > 0) return;
   if (c->analysis.gamma > 0.5) return;
-  DiagWarning(diag, "analysis.bossak",
-              "material '%s' is exactly incompressible: without numerical damping its pressure and reactions ring from "
-              "step to step",
-              material->name);
-  DiagHint(diag, "bossak: -0.1 damps that and little else");
+  diag_warning(
+    diag, "analysis.bossak",
+    "material '%s' is exactly incompressible: without numerical damping its pressure and reactions ring from "
+    "step to step",
+    material->name);
+  diag_hint(diag, "bossak: -0.1 damps that and little else");
 }
 
 /* Beyond the speed of light a step of a usual size crosses so many cells in waves that inertia drowns in the round-off of stiffness. */
@@ -56,11 +58,11 @@ static void check_waves(const Case *c, const Material *material, Diag *diag)
   char path[256];
   if (c->analysis.type != ANALYSIS_DYNAMIC || speed <= light) return;
   PetscSNPrintf(path, sizeof path, "materials.%s", material->name);
-  DiagError(
+  diag_error(
     diag, path,
     "waves would run through '%s' at %.3g m/s, faster than light: its stiffness and its density cannot both be meant",
     material->name, (double)speed);
-  DiagHint(diag, "a body that may count as rigid needs no more than waves much faster than its motion");
+  diag_hint(diag, "a body that may count as rigid needs no more than waves much faster than its motion");
 }
 
 static PetscErrorCode CreateMaterials(Model *m, Diag *diag)
@@ -126,12 +128,12 @@ static PetscErrorCode CreateTracers(Model *m, Diag *diag)
   for (PetscInt k = 0; k < m->c->n_measures; ++k) {
     const MeasureSpec *s = &m->c->measures[k];
     if (!is_of_tracer(s)) continue;
-    const PetscInt cell = GridLocate(m->grid, s->tracer, -1, xi);
+    const PetscInt cell = grid_locate(m->grid, s->tracer, -1, xi);
     mine = cell >= 0 ? rank : size;
     PetscCallMPI(MPI_Allreduce(&mine, &first, 1, MPI_INT, MPI_MIN, m->comm));
     if (first == size) {
       PetscCall(PetscSNPrintf(path, sizeof path, "measures.%s.of.tracer", s->name));
-      DiagError(diag, path, "the tracer starts outside the grid");
+      diag_error(diag, path, "the tracer starts outside the grid");
     }
     if (first != rank) continue;
     PetscCall(PointsAppend(m->tracers, &i));
@@ -214,8 +216,8 @@ static PetscErrorCode Build(Model *m, Diag *diag)
   PetscCall(CreateMaterials(m, diag));
   PetscCall(DiagReduce(m->comm, diag, &errors));
   if (errors) PetscFunctionReturn(0);
-  m->method = MethodFind(m->c->method);
-  m->formulation = FormulationFind(m->c->formulation);
+  m->method = method_find(m->c->method);
+  m->formulation = formulation_find(m->c->formulation);
   PetscCall(GridCreate(m->comm, m->c, cell_weight, (void *)m->c, diag, &m->grid));
   if (!m->grid) PetscFunctionReturn(0);
   PetscCall(CreateBodies(m, diag));
@@ -224,7 +226,7 @@ static PetscErrorCode Build(Model *m, Diag *diag)
   PetscCall(BoundaryCreate(m->grid, m->c, diag, &m->boundary));
   PetscCall(LoadsCreate(m->grid, m->c, m->points, diag, &m->loads));
   PetscCall(CreateTracers(m, diag));
-  ModelAdvise(m, diag);
+  model_advise(m, diag);
   PetscCall(DiagReduce(m->comm, diag, &errors));
   if (errors) PetscFunctionReturn(0);
   if (m->method->couplings) PetscCall(ModelToCloud(m));

@@ -128,7 +128,7 @@ typedef struct Model {
   PetscInt cuts, total_iterations; /* steps halved, Newton iterations (those of all tries), since the start */
   Tries tries;                     /* since the start */
   Softening limit;
-  PetscReal seconds[PHASE_N]; /* see ModelTimes */
+  PetscReal seconds[PHASE_N]; /* see model_times */
 } Model;
 
 /* Interrupted: given up because somebody asked for it; the model is as it was. */
@@ -166,7 +166,7 @@ const char *measure_unit(const MeasureSpec *measure);
 PetscErrorCode ModelEnergies(Model *model, Energies *energies);
 
 /* Seconds that this rank spent in each phase since the start. */
-void ModelTimes(const Model *model, PetscReal seconds[PHASE_N]);
+void model_times(const Model *model, PetscReal seconds[PHASE_N]);
 
 /* After the run: a warning for each PETSc option, of the case or of the command line, that nobody asked for. */
 PetscErrorCode ModelUnusedOptions(const Model *model, Diag *diag);

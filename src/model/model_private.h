@@ -84,7 +84,7 @@ PetscErrorCode LimitWatch(Model *model, PetscReal dt);
 /* Collective. Add to the reason of a static run that gives up that it may be at a limit load, if it looks like one. */
 PetscErrorCode LimitDescribe(const Model *model, StepReport *report);
 /* Warnings of what a case asks for and its user hardly means: advice.c. */
-void ModelAdvise(const Model *model, Diag *diag);
+void model_advise(const Model *model, Diag *diag);
 /* Input of the weak form for the model's present arrays. */
 WeakFormInput weak_form_of(const Model *model, PetscReal inertia);
 /* Prescribed dofs, and nodes with unknowns that no material touches. */

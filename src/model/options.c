@@ -45,8 +45,8 @@ PetscErrorCode OptionsCheck(const Model *m, Diag *diag)
   if (code <= PETSC_ERR_MEM) PetscCall(code); /* no memory; 1 where an object could not be made */
   if (code) {
     PetscCall(PetscErrorMessage(code, &text, &detail));
-    DiagError(diag, "petsc", "PETSc refuses an option of this block or of the command line: %s",
-              detail && detail[0] ? detail : text);
+    diag_error(diag, "petsc", "PETSc refuses an option of this block or of the command line: %s",
+               detail && detail[0] ? detail : text);
   }
   PetscCall(SNESDestroy(&snes));
   PetscFunctionReturn(0);
@@ -89,8 +89,8 @@ PetscErrorCode ModelUnusedOptions(const Model *m, Diag *diag)
     if (is_for_the_end(names[k])) continue;
     PetscCall(IsOfCase(m, names[k], &of_case));
     PetscCall(PetscSNPrintf(path, sizeof path, "petsc.%s", names[k]));
-    DiagWarning(diag, of_case ? path : NULL, "nothing in this run asked for the PETSc option -%s", names[k]);
-    DiagHint(diag, "it is misspelled, or belongs to a solver that was not used (-snes_view tells which were)");
+    diag_warning(diag, of_case ? path : NULL, "nothing in this run asked for the PETSc option -%s", names[k]);
+    diag_hint(diag, "it is misspelled, or belongs to a solver that was not used (-snes_view tells which were)");
   }
   PetscCall(PetscOptionsLeftRestore(NULL, &n, &names, &values));
   PetscFunctionReturn(0);

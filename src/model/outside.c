@@ -112,9 +112,9 @@ PetscErrorCode OutsideWarn(const Model *m, Diag *diag)
       if (count[6 * b + k]) end += snprintf(list + end, sizeof list - (size_t)end, "%s%s", end ? ", " : "", name[k]);
     if (!end) continue;
     snprintf(path, sizeof path, "bodies[%d]", (int)b);
-    DiagWarning(diag, path, "'%s' fills the grid to its edge towards %s, where nothing holds it: %s",
-                m->c->bodies[b].name, list, what[m->c->grid.outside]);
-    DiagHint(diag, "let the grid reach at least a cell farther than the body will go");
+    diag_warning(diag, path, "'%s' fills the grid to its edge towards %s, where nothing holds it: %s",
+                 m->c->bodies[b].name, list, what[m->c->grid.outside]);
+    diag_hint(diag, "let the grid reach at least a cell farther than the body will go");
   }
   PetscCall(PetscFree(count));
   PetscFunctionReturn(0);

@@ -122,11 +122,11 @@ static PetscErrorCode ChooseNextStep(Model *m, PetscBool shortened, const StepRe
   PetscFunctionReturn(0);
 }
 
-void ModelTimes(const Model *m, PetscReal seconds[PHASE_N])
+void model_times(const Model *m, PetscReal seconds[PHASE_N])
 {
   for (int k = 0; k < PHASE_N; ++k) seconds[k] = m->seconds[k];
-  NewtonTimes(m->newton, &seconds[PHASE_POINTS], &seconds[PHASE_MATRIX], &seconds[PHASE_LINEAR],
-              &seconds[PHASE_NEWTON]);
+  newton_times(m->newton, &seconds[PHASE_POINTS], &seconds[PHASE_MATRIX], &seconds[PHASE_LINEAR],
+               &seconds[PHASE_NEWTON]);
 }
 
 static void count_try(Model *m, PetscBool again, StepReport *report)
@@ -179,7 +179,7 @@ static PetscErrorCode Remember(const Model *m, BeforeStep *before)
 
   PetscFunctionBeginUser;
   *before = (BeforeStep){.control = m->control, .cuts = m->cuts, .iterations = m->total_iterations, .tries = m->tries};
-  NewtonGetMemory(m->newton, m->system, &before->newton);
+  newton_get_memory(m->newton, m->system, &before->newton);
   if (!m->method->begin) PetscFunctionReturn(0);
   PetscCall(PetscMalloc2(dofs, &before->v, dofs, &before->a));
   PetscCall(PetscArraycpy(before->v, m->stage->v, dofs));
@@ -204,7 +204,7 @@ static PetscErrorCode Restore(Model *m, BeforeStep *before, StepReport *report)
   m->cuts = before->cuts;
   m->total_iterations = before->iterations;
   m->tries = before->tries;
-  NewtonForget(m->newton, m->system, &before->newton);
+  newton_forget(m->newton, m->system, &before->newton);
   report->outcome = STEP_INTERRUPTED;
   PetscFunctionReturn(0);
 }

@@ -28,7 +28,7 @@ static rlim_t addresses_now(void)
   return (rlim_t)strtoul(text, NULL, 10) * (rlim_t)sysconf(_SC_PAGESIZE);
 }
 
-static void LimitMemory(void)
+static void limit_memory(void)
 {
 #ifndef __SANITIZE_ADDRESS__
   struct rlimit limit;
@@ -42,7 +42,7 @@ static void LimitMemory(void)
 }
 
 /* A crash here is nobody's business: no trace, no core. */
-static void Isolate(void)
+static void isolate(void)
 {
   static const int deadly[] = {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, SIGXCPU, SIGTERM, SIGINT};
   const struct rlimit no_core = {0, 0}, seconds = {MOST_SECONDS, MOST_SECONDS};
@@ -51,19 +51,19 @@ static void Isolate(void)
   if (nowhere >= 0) (void)dup2(nowhere, STDOUT_FILENO), (void)dup2(nowhere, STDERR_FILENO);
   (void)setrlimit(RLIMIT_CORE, &no_core);
   (void)setrlimit(RLIMIT_CPU, &seconds);
-  LimitMemory();
+  limit_memory();
 }
 
-static void WorkInChild(int out, void (*work)(void *context, char reason[256]), void *context)
+static void work_in_child(int out, void (*work)(void *context, char reason[256]), void *context)
 {
   char reason[256] = "";
-  Isolate();
+  isolate();
   work(context, reason);
   _exit(write(out, reason, sizeof reason) == sizeof reason ? 0 : 1);
 }
 
 /* Did the child get to its end? */
-static PetscBool Await(pid_t child, int in, char reason[256])
+static PetscBool await(pid_t child, int in, char reason[256])
 {
   size_t n = 0;
   ssize_t got;
@@ -83,10 +83,10 @@ void attempt(void (*work)(void *context, char reason[256]), void *context, char 
     return;
   }
   const pid_t child = fork();
-  if (child == 0) WorkInChild(ends[1], work, context);
+  if (child == 0) work_in_child(ends[1], work, context);
   close(ends[1]);
   if (child < 0) snprintf(reason, 256, "%s", strerror(errno));
-  else if (!Await(child, ends[0], reason))
+  else if (!await(child, ends[0], reason))
     snprintf(reason, 256, "its structure is damaged: the library that reads it crashes or finds no end");
   close(ends[0]);
 }

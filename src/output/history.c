@@ -8,7 +8,7 @@
 #include "output/directory/run_dir_impl.h"
 
 /* A name with a comma or a quote is quoted, as spreadsheets want it. */
-static void WriteName(FILE *out, const char *name, const char *unit)
+static void write_name(FILE *out, const char *name, const char *unit)
 {
   const PetscBool quote = strpbrk(name, ",\"") != NULL;
   if (quote) fputc('"', out);
@@ -17,17 +17,17 @@ static void WriteName(FILE *out, const char *name, const char *unit)
   if (quote) fputc('"', out);
 }
 
-static void WriteHeader(FILE *out, PetscInt n, const char *const *names, const char *const *units)
+static void write_header(FILE *out, PetscInt n, const char *const *names, const char *const *units)
 {
   fputs("time [s],step", out);
   for (PetscInt i = 0; i < n; ++i) {
     fputc(',', out);
-    WriteName(out, names[i], units ? units[i] : NULL);
+    write_name(out, names[i], units ? units[i] : NULL);
   }
   fputc('\n', out);
 }
 
-static int Open(RunDir *dir, const char *mode)
+static int history_open(RunDir *dir, const char *mode)
 {
   char path[FILE_PATH];
   snprintf(path, sizeof path, "%s/history.csv", dir->path);
@@ -46,7 +46,7 @@ static void mark_text(HistoryMark *mark, const char *text, size_t n)
 }
 
 /* Push the row to the system: a run that dies has its history. A row that did not fit is cut off again. */
-static int Flush(FILE *file, off_t before)
+static int flush(FILE *file, off_t before)
 {
   errno = 0;
   if (!fflush(file) && !ferror(file)) return 0;
@@ -57,11 +57,11 @@ static int Flush(FILE *file, off_t before)
 }
 
 /* *header: of malloc. */
-static int HeaderText(PetscInt n, const char *const *names, const char *const *units, char **header, size_t *size)
+static int header_text(PetscInt n, const char *const *names, const char *const *units, char **header, size_t *size)
 {
   FILE *memory = open_memstream(header, size);
   if (!memory) return errno;
-  WriteHeader(memory, n, names, units);
+  write_header(memory, n, names, units);
   fclose(memory);
   return 0;
 }
@@ -75,10 +75,10 @@ PetscErrorCode HistoryOpen(RunDir *dir, PetscInt n, const char *const *names, co
   if (dir->rank == 0) {
     char *header = NULL;
     size_t size = 0;
-    error = Open(dir, "w");
-    if (!error) error = HeaderText(n, names, units, &header, &size);
+    error = history_open(dir, "w");
+    if (!error) error = header_text(n, names, units, &header, &size);
     if (!error) fputs(header, dir->history);
-    if (!error) error = Flush(dir->history, 0);
+    if (!error) error = flush(dir->history, 0);
     dir->mark = (HistoryMark){0};
     if (!error) mark_text(&dir->mark, header, size);
     free(header);
@@ -107,7 +107,7 @@ static long long CopyRows(FILE *old, FILE *out, PetscInt last, HistoryMark *mark
 }
 
 /* Does the old file start with our header? */
-static PetscBool SameHeader(FILE *old, const char *header)
+static PetscBool same_header(FILE *old, const char *header)
 {
   char *line = NULL;
   size_t size = 0;
@@ -117,25 +117,25 @@ static PetscBool SameHeader(FILE *old, const char *header)
 }
 
 /* Are the rows that were kept those that the run wrote, and all of them? `was`: NULL if nobody knows. */
-static PetscBool CheckRows(const char *path, PetscInt step, long long copied, const HistoryMark *is,
-                           const HistoryMark *was, Diag *diag)
+static PetscBool check_rows(const char *path, PetscInt step, long long copied, const HistoryMark *is,
+                            const HistoryMark *was, Diag *diag)
 {
-  const PetscInt errors = DiagErrors(diag);
+  const PetscInt errors = diag_errors(diag);
   if (step >= 0 && copied != step)
-    DiagError(diag, NULL, "'%s' has lost rows: the one of step %lld is missing", path, (long long)step);
+    diag_error(diag, NULL, "'%s' has lost rows: the one of step %lld is missing", path, (long long)step);
   else if (was && is->lines < was->lines)
-    DiagError(diag, NULL, "'%s' has lost rows: up to step %lld there are %lld, and there were %lld", path,
-              (long long)step, (long long)is->lines - 1, (long long)was->lines - 1);
+    diag_error(diag, NULL, "'%s' has lost rows: up to step %lld there are %lld, and there were %lld", path,
+               (long long)step, (long long)is->lines - 1, (long long)was->lines - 1);
   else if (was && (is->lines != was->lines || is->bytes != was->bytes || is->crc != was->crc))
-    DiagError(diag, NULL, "'%s' is not as the run wrote it: rows up to step %lld have been changed", path,
-              (long long)step);
-  if (DiagErrors(diag) == errors) return PETSC_TRUE;
-  DiagHint(diag, "put the file back as it was, or start the run again in another directory: --out OTHER");
+    diag_error(diag, NULL, "'%s' is not as the run wrote it: rows up to step %lld have been changed", path,
+               (long long)step);
+  if (diag_errors(diag) == errors) return PETSC_TRUE;
+  diag_hint(diag, "put the file back as it was, or start the run again in another directory: --out OTHER");
   return PETSC_FALSE;
 }
 
-static int KeepRows(const char *path, const char *header, PetscInt step, const HistoryMark *was, HistoryMark *mark,
-                    Diag *diag)
+static int keep_rows(const char *path, const char *header, PetscInt step, const HistoryMark *was, HistoryMark *mark,
+                     Diag *diag)
 {
   char unfinished[FILE_PATH + 16];
   FILE *old = file_open_read(path), *out = NULL;
@@ -144,8 +144,8 @@ static int KeepRows(const char *path, const char *header, PetscInt step, const H
   *mark = (HistoryMark){0};
   snprintf(unfinished, sizeof unfinished, "%s" FILE_UNFINISHED, path);
   if (!old && errno != ENOENT) return errno;
-  if (old && !SameHeader(old, header)) {
-    DiagError(diag, NULL, "the measures differ from those of '%s': the run cannot go on there", path);
+  if (old && !same_header(old, header)) {
+    diag_error(diag, NULL, "the measures differ from those of '%s': the run cannot go on there", path);
     fclose(old);
     return 0;
   }
@@ -160,25 +160,25 @@ static int KeepRows(const char *path, const char *header, PetscInt step, const H
     if (!error) error = closing;
   }
   if (old) fclose(old);
-  if (!error && !CheckRows(path, step, copied, mark, was, diag)) {
+  if (!error && !check_rows(path, step, copied, mark, was, diag)) {
     unlink(unfinished);
     return 0;
   }
   return file_commit(unfinished, path, error);
 }
 
-static int OpenFrom(RunDir *dir, PetscInt n, const char *const *names, const char *const *units, PetscInt step,
-                    const HistoryMark *was, Diag *diag)
+static int open_from(RunDir *dir, PetscInt n, const char *const *names, const char *const *units, PetscInt step,
+                     const HistoryMark *was, Diag *diag)
 {
   char path[FILE_PATH], *header = NULL;
   size_t size;
-  int error = HeaderText(n, names, units, &header, &size);
+  int error = header_text(n, names, units, &header, &size);
   if (error) return error;
   snprintf(path, sizeof path, "%s/history.csv", dir->path);
-  const PetscInt errors = DiagErrors(diag);
-  error = KeepRows(path, header, step, was, &dir->mark, diag);
+  const PetscInt errors = diag_errors(diag);
+  error = keep_rows(path, header, step, was, &dir->mark, diag);
   free(header);
-  if (!error && DiagErrors(diag) == errors) error = Open(dir, "a");
+  if (!error && diag_errors(diag) == errors) error = history_open(dir, "a");
   return error;
 }
 
@@ -188,7 +188,7 @@ PetscErrorCode HistoryOpenFrom(RunDir *dir, PetscInt n, const char *const *names
   PetscFunctionBeginUser;
   dir->n_measures = n;
   const PetscErrorCode status =
-    RunDirAgree(dir, "history.csv", dir->rank ? 0 : OpenFrom(dir, n, names, units, step, was, diag));
+    RunDirAgree(dir, "history.csv", dir->rank ? 0 : open_from(dir, n, names, units, step, was, diag));
   PetscFunctionReturn(status);
 }
 
@@ -210,7 +210,7 @@ PetscErrorCode HistoryGetMark(const RunDir *dir, HistoryMark *mark)
   PetscFunctionReturn(0);
 }
 
-static void WriteRow(FILE *out, PetscReal time, PetscInt step, PetscInt n, const PetscReal *values)
+static void write_row(FILE *out, PetscReal time, PetscInt step, PetscInt n, const PetscReal *values)
 {
   char number[32];
   file_format_real(time, number);
@@ -223,17 +223,17 @@ static void WriteRow(FILE *out, PetscReal time, PetscInt step, PetscInt n, const
 }
 
 /* Rank 0: a row, as far as the system. */
-static int AddRow(RunDir *dir, PetscReal time, PetscInt step, const PetscReal *values)
+static int add_row(RunDir *dir, PetscReal time, PetscInt step, const PetscReal *values)
 {
   const off_t before = ftello(dir->history);
   char *row = NULL;
   size_t size;
   FILE *memory = open_memstream(&row, &size);
   if (!memory) return errno;
-  WriteRow(memory, time, step, dir->n_measures, values);
+  write_row(memory, time, step, dir->n_measures, values);
   fclose(memory);
   fwrite(row, 1, size, dir->history);
-  const int error = Flush(dir->history, before);
+  const int error = flush(dir->history, before);
   if (!error) mark_text(&dir->mark, row, size);
   free(row);
   return error;
@@ -246,7 +246,7 @@ PetscErrorCode HistoryWrite(RunDir *dir, PetscReal time, PetscInt step, const Pe
   PetscFunctionBeginUser;
   if (dir->rank == 0) {
     error = dir->history ? run_dir_present(dir) : EBADF;
-    if (!error) error = AddRow(dir, time, step, values);
+    if (!error) error = add_row(dir, time, step, values);
   }
   const PetscErrorCode status = RunDirAgree(dir, "history.csv", error);
   PetscFunctionReturn(status);

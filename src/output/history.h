@@ -15,4 +15,4 @@ typedef struct {
 PetscErrorCode HistoryRead(const char *path, History *history, char reason[256]);
 PetscErrorCode HistoryFree(History *history);
 /* Column of that name, -1 if there is none. */
-PetscInt HistoryColumn(const History *history, const char *name);
+PetscInt history_column(const History *history, const char *name);

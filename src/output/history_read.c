@@ -5,7 +5,7 @@
 #include "output/directory/run_dir_files.h"
 
 /* The next entry of a CSV line, quotes resolved, in place; NULL after the last. */
-static char *NextEntry(char **next)
+static char *next_entry(char **next)
 {
   char *from = *next, *to = *next, *entry = *next;
   PetscBool quoted = PETSC_FALSE;
@@ -40,14 +40,14 @@ static PetscErrorCode ReadHeader(char *line, History *history)
   PetscFunctionBeginUser;
   for (const char *c = line; *c; ++c) n += *c == ',';
   PetscCall(PetscCalloc2(n, &history->names, n, &history->units));
-  for (char *entry = NextEntry(&line); entry; entry = NextEntry(&line)) {
+  for (char *entry = next_entry(&line); entry; entry = next_entry(&line)) {
     PetscCall(SplitName(entry, &history->names[history->n_columns], &history->units[history->n_columns]));
     ++history->n_columns;
   }
   PetscFunctionReturn(0);
 }
 
-static PetscBool ParseRow(const char *line, PetscInt n, PetscReal *row)
+static PetscBool parse_row(const char *line, PetscInt n, PetscReal *row)
 {
   char *end;
   for (PetscInt i = 0; i < n; ++i) {
@@ -79,7 +79,7 @@ static PetscErrorCode ReadRows(FILE *in, History *history, char reason[256])
   for (ssize_t n; !reason[0] && (n = getline(&line, &size, in)) > 0 && line[n - 1] == '\n';) {
     PetscCall(Grow(history, &capacity));
     PetscReal *row = history->values + (size_t)history->n_rows * (size_t)history->n_columns;
-    if (!ParseRow(line, history->n_columns, row) || PetscIsInfOrNanReal(row[0]) || PetscIsInfOrNanReal(row[1]))
+    if (!parse_row(line, history->n_columns, row) || PetscIsInfOrNanReal(row[0]) || PetscIsInfOrNanReal(row[1]))
       snprintf(reason, 256, "line %" PetscInt_FMT " is no row of %" PetscInt_FMT " numbers", history->n_rows + 2,
                history->n_columns);
     else ++history->n_rows;
@@ -135,7 +135,7 @@ PetscErrorCode HistoryFree(History *history)
   PetscFunctionReturn(0);
 }
 
-PetscInt HistoryColumn(const History *history, const char *name)
+PetscInt history_column(const History *history, const char *name)
 {
   for (PetscInt i = 0; i < history->n_columns; ++i)
     if (!strcmp(history->names[i], name)) return i;

@@ -50,7 +50,7 @@ void progress_line(const RunProgress *p, PetscReal left, char text[256])
 }
 
 /* 950, 12.3k, 1.05M */
-static void ShortCount(PetscInt n, char text[16])
+static void short_count(PetscInt n, char text[16])
 {
   if (n < 1000) snprintf(text, 16, "%" PetscInt_FMT, n);
   else if (n < 1000000) snprintf(text, 16, "%.3gk", n / 1e3);
@@ -62,7 +62,7 @@ void progress_bar(const RunProgress *p, PetscReal elapsed, PetscReal left, int w
   enum { PARTS = 6, BAR = 10 };
   char part[PARTS][64], count[16], spent[32], rest[32];
   const PetscReal done = p->end > 0 ? PetscMin(PetscMax(p->time / p->end, 0), 1) : 0;
-  ShortCount(p->points, count);
+  short_count(p->points, count);
   progress_duration(elapsed, spent);
   progress_duration(left, rest);
   snprintf(part[0], 64, " %3.0f %%", floor(100 * (double)done));
@@ -83,24 +83,24 @@ void progress_bar(const RunProgress *p, PetscReal elapsed, PetscReal left, int w
   for (int i = 0; i < parts; ++i) n += snprintf(text + n, 512 - (size_t)n, "%s", part[i]);
 }
 
-static PetscReal Now(void)
+static PetscReal progress_now(void)
 {
   struct timespec now;
   clock_gettime(CLOCK_MONOTONIC, &now);
   return (PetscReal)now.tv_sec + 1e-9 * (PetscReal)now.tv_nsec;
 }
 
-static int TerminalWidth(void)
+static int terminal_width(void)
 {
   struct winsize size;
   return !ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) && size.ws_col > 0 ? size.ws_col - 1 : 79;
 }
 
 /* The last bar stays on the screen. */
-static void ShowBar(RunDir *dir, const RunProgress *progress, PetscReal wall, PetscReal left, PetscBool last)
+static void show_bar(RunDir *dir, const RunProgress *progress, PetscReal wall, PetscReal left, PetscBool last)
 {
   char text[512];
-  progress_bar(progress, wall, left, TerminalWidth(), text);
+  progress_bar(progress, wall, left, terminal_width(), text);
   printf("\r%s\033[K%s", text, last ? "\n" : "");
   fflush(stdout);
   dir->bar = !last;
@@ -113,7 +113,7 @@ PetscErrorCode RunDirProgress(RunDir *dir, const RunProgress *progress)
 
   PetscFunctionBeginUser;
   if (dir->rank > 0) PetscFunctionReturn(0);
-  const PetscReal wall = Now() - dir->start;
+  const PetscReal wall = progress_now() - dir->start;
   progress_update(&dir->clock, progress, wall);
   const PetscReal left = progress_left(&dir->clock, progress);
   progress_line(progress, left, line);
@@ -123,7 +123,7 @@ PetscErrorCode RunDirProgress(RunDir *dir, const RunProgress *progress)
   if (dir->quiet || !(last || dir->last_shown < 0 || wall - dir->last_shown >= pause)) PetscFunctionReturn(0);
   dir->last_shown = wall;
   if (dir->terminal) {
-    ShowBar(dir, progress, wall, left, last);
+    show_bar(dir, progress, wall, left, last);
   } else {
     printf("%s\n", line);
     fflush(stdout);

@@ -8,20 +8,20 @@ static const char *const colours[] = {"#0b559f", "#d1495b", "#2a9d5c", "#e08e0b"
 static const int marks[] = {7, 4, 8, 12, 10, 6};
 enum { N_COLOURS = 6 };
 
-static PetscBool Visible(const Figure *figure, PetscReal x, PetscReal y)
+static PetscBool figure_visible(const Figure *figure, PetscReal x, PetscReal y)
 {
   if (PetscIsInfOrNanReal(x) || PetscIsInfOrNanReal(y)) return PETSC_FALSE;
   return !((figure->log_x && x <= 0) || (figure->log_y && y <= 0));
 }
 
 /* All visible points lie in [min, max]; returns how many there are. */
-static PetscInt Bounds(const Figure *figure, PetscReal min[2], PetscReal max[2])
+static PetscInt bounds(const Figure *figure, PetscReal min[2], PetscReal max[2])
 {
   PetscInt n = 0;
   for (PetscInt s = 0; s < figure->n_series; ++s)
     for (PetscInt i = 0; i < figure->series[s].n; ++i) {
       const PetscReal p[2] = {figure->series[s].x[i], figure->series[s].y[i]};
-      if (!Visible(figure, p[0], p[1])) continue;
+      if (!figure_visible(figure, p[0], p[1])) continue;
       for (int d = 0; d < 2; ++d) {
         min[d] = n ? PetscMin(min[d], p[d]) : p[d];
         max[d] = n ? PetscMax(max[d], p[d]) : p[d];
@@ -32,7 +32,7 @@ static PetscInt Bounds(const Figure *figure, PetscReal min[2], PetscReal max[2])
 }
 
 /* A little air around the curves; on a logarithmic axis by a factor. */
-static void WriteRange(FILE *out, char axis, PetscBool logarithmic, PetscReal min, PetscReal max, PetscReal share)
+static void write_range(FILE *out, char axis, PetscBool logarithmic, PetscReal min, PetscReal max, PetscReal share)
 {
   if (logarithmic) {
     const PetscReal factor = max > min ? PetscPowReal(max / min, share) : 2;
@@ -45,7 +45,7 @@ static void WriteRange(FILE *out, char axis, PetscBool logarithmic, PetscReal mi
   }
 }
 
-static void WriteLabel(FILE *out, const char *what, const char *text)
+static void write_label(FILE *out, const char *what, const char *text)
 {
   if (!text) return;
   fprintf(out, "set %s ", what);
@@ -67,13 +67,13 @@ static void count_in_corner(const PetscReal at[2], PetscReal height, PetscInt co
 }
 
 /* Samples of curves in the corners. */
-static void CountInCorners(const Figure *figure, const PetscReal min[2], const PetscReal max[2], PetscReal height,
-                           PetscInt count[2][2])
+static void count_in_corners(const Figure *figure, const PetscReal min[2], const PetscReal max[2], PetscReal height,
+                             PetscInt count[2][2])
 {
   for (PetscInt k = 0; k < figure->n_series; ++k) {
     const FigureSeries *s = &figure->series[k];
     for (PetscInt i = 0; i + 1 < s->n; ++i) {
-      if (!Visible(figure, s->x[i], s->y[i]) || !Visible(figure, s->x[i + 1], s->y[i + 1])) continue;
+      if (!figure_visible(figure, s->x[i], s->y[i]) || !figure_visible(figure, s->x[i + 1], s->y[i + 1])) continue;
       const PetscReal a[2] = {share(figure->log_x, min[0], max[0], s->x[i]),
                               share(figure->log_y, min[1], max[1], s->y[i])};
       const PetscReal b[2] = {share(figure->log_x, min[0], max[0], s->x[i + 1]),
@@ -87,38 +87,38 @@ static void CountInCorners(const Figure *figure, const PetscReal min[2], const P
 }
 
 /* The legend goes where the fewest curves are; where several corners are as good, to the top and to the left. */
-static void WriteKey(FILE *out, const Figure *figure, const PetscReal min[2], const PetscReal max[2])
+static void write_key(FILE *out, const Figure *figure, const PetscReal min[2], const PetscReal max[2])
 {
   PetscInt count[2][2] = {{0, 0}, {0, 0}}, named = 0;
   int right = figure->slope < 0, top = 1; /* where falling curves leave room */
   for (PetscInt k = 0; k < figure->n_series; ++k) named += figure->series[k].name ? 1 : 0;
-  CountInCorners(figure, min, max, PetscMin(0.45, 0.05 + 0.05 * (PetscReal)named), count);
+  count_in_corners(figure, min, max, PetscMin(0.45, 0.05 + 0.05 * (PetscReal)named), count);
   for (int y = 1; y >= 0; --y)
     for (int x = 0; x < 2; ++x)
       if (count[x][y] < count[right][top]) right = x, top = y;
   fprintf(out, "set key %s %s\n", top ? "top" : "bottom", right ? "right" : "left");
 }
 
-static void WriteAxes(FILE *out, const Figure *figure, const PetscReal min[2], const PetscReal max[2])
+static void write_axes(FILE *out, const Figure *figure, const PetscReal min[2], const PetscReal max[2])
 {
-  WriteLabel(out, "title", figure->title);
-  WriteLabel(out, "xlabel", figure->x_label);
-  WriteLabel(out, "ylabel", figure->y_label);
+  write_label(out, "title", figure->title);
+  write_label(out, "xlabel", figure->x_label);
+  write_label(out, "ylabel", figure->y_label);
   if (figure->log_x) fputs("set logscale x\nset format x '%g'\n", out);
   if (figure->log_y) fputs("set logscale y\nset format y '%.0e'\n", out);
   if (figure->log_y && max[1] / min[1] < 1e3) fputs("set format y '%g'\n", out);
-  WriteRange(out, 'x', figure->log_x, min[0], max[0], figure->log_x ? 0.06 : 0);
-  WriteRange(out, 'y', figure->log_y, min[1], max[1], 0.06);
+  write_range(out, 'x', figure->log_x, min[0], max[0], figure->log_x ? 0.06 : 0);
+  write_range(out, 'y', figure->log_y, min[1], max[1], 0.06);
   fputs(
     "set border lw 1 lc rgb '#444444'\nset tics textcolor rgb '#000000'\n"
     "set grid xtics ytics lc rgb '#e2e2e2' lw 1 lt 1\nset tics nomirror\n"
     "set key Left reverse samplen 2 spacing 1.2 width 0 box lc rgb '#cccccc' opaque\n",
     out);
-  WriteKey(out, figure, min, max);
+  write_key(out, figure, min, max);
 }
 
 /* Ticks at the first curve's own places, where a logarithmic axis would name one or two numbers only. */
-static void WriteTicks(FILE *out, const FigureSeries *series)
+static void write_ticks(FILE *out, const FigureSeries *series)
 {
   if (series->n < 2 || series->n > 8) return;
   fputs("set xtics (", out);
@@ -127,23 +127,23 @@ static void WriteTicks(FILE *out, const FigureSeries *series)
   fputs(")\n", out);
 }
 
-static void WriteData(FILE *out, const Figure *figure, const FigureSeries *series, PetscInt index)
+static void write_data(FILE *out, const Figure *figure, const FigureSeries *series, PetscInt index)
 {
   fprintf(out, "$s%" PetscInt_FMT " << EOD\n", index);
   for (PetscInt i = 0; i < series->n; ++i)
-    if (Visible(figure, series->x[i], series->y[i]))
+    if (figure_visible(figure, series->x[i], series->y[i]))
       fprintf(out, "%.15g %.15g\n", (double)series->x[i], (double)series->y[i]);
   fputs("EOD\n", out);
 }
 
-static PetscBool AnyVisible(const Figure *figure, const FigureSeries *series)
+static PetscBool any_visible(const Figure *figure, const FigureSeries *series)
 {
   for (PetscInt i = 0; i < series->n; ++i)
-    if (Visible(figure, series->x[i], series->y[i])) return PETSC_TRUE;
+    if (figure_visible(figure, series->x[i], series->y[i])) return PETSC_TRUE;
   return PETSC_FALSE;
 }
 
-static void WriteCurve(FILE *out, const FigureSeries *series, PetscInt index)
+static void write_curve(FILE *out, const FigureSeries *series, PetscInt index)
 {
   static const char *const with[] = {"lines lw 2", "points", "linespoints lw 2", "lines lw 2 dt 2"};
   const char *colour = colours[index % N_COLOURS];
@@ -156,18 +156,18 @@ static void WriteCurve(FILE *out, const FigureSeries *series, PetscInt index)
 }
 
 /* The reference line, which lies below the middle of the curves. */
-static PetscReal SlopeValue(PetscReal slope, const PetscReal min[2], const PetscReal max[2], PetscReal x)
+static PetscReal slope_value(PetscReal slope, const PetscReal min[2], const PetscReal max[2], PetscReal x)
 {
   return 0.4 * PetscSqrtReal(min[1] * max[1]) * PetscPowReal(x / PetscSqrtReal(min[0] * max[0]), slope);
 }
 
-static void WriteSlope(FILE *out, PetscReal slope, const PetscReal min[2], const PetscReal max[2])
+static void write_slope(FILE *out, PetscReal slope, const PetscReal min[2], const PetscReal max[2])
 {
   fprintf(out, "$slope << EOD\n%.15g %.15g\n%.15g %.15g\nEOD\n", (double)min[0],
-          (double)SlopeValue(slope, min, max, min[0]), (double)max[0], (double)SlopeValue(slope, min, max, max[0]));
+          (double)slope_value(slope, min, max, min[0]), (double)max[0], (double)slope_value(slope, min, max, max[0]));
 }
 
-static void WriteFigure(FILE *out, const Figure *figure, const PetscReal min[2], const PetscReal max[2])
+static void write_figure(FILE *out, const Figure *figure, const PetscReal min[2], const PetscReal max[2])
 {
   PetscBool first = PETSC_TRUE;
   PetscBool named = figure->slope != 0;
@@ -176,19 +176,19 @@ static void WriteFigure(FILE *out, const Figure *figure, const PetscReal min[2],
   const PetscBool slope = figure->slope != 0 && figure->log_x && figure->log_y;
   PetscReal low[2] = {min[0], min[1]}, high[2] = {max[0], max[1]};
   for (int end = 0; end < 2 && slope; ++end) {
-    const PetscReal y = SlopeValue(figure->slope, min, max, end ? max[0] : min[0]);
+    const PetscReal y = slope_value(figure->slope, min, max, end ? max[0] : min[0]);
     low[1] = PetscMin(low[1], y), high[1] = PetscMax(high[1], y);
   }
-  WriteAxes(out, figure, low, high);
+  write_axes(out, figure, low, high);
   if (!named) fputs("unset key\n", out);
-  if (figure->log_x && max[0] / min[0] < 100) WriteTicks(out, &figure->series[0]);
-  for (PetscInt s = 0; s < figure->n_series; ++s) WriteData(out, figure, &figure->series[s], s);
-  if (slope) WriteSlope(out, figure->slope, min, max);
+  if (figure->log_x && max[0] / min[0] < 100) write_ticks(out, &figure->series[0]);
+  for (PetscInt s = 0; s < figure->n_series; ++s) write_data(out, figure, &figure->series[s], s);
+  if (slope) write_slope(out, figure->slope, min, max);
   fputs("plot ", out);
   for (PetscInt s = 0; s < figure->n_series; ++s) {
-    if (!AnyVisible(figure, &figure->series[s])) continue;
+    if (!any_visible(figure, &figure->series[s])) continue;
     if (!first) fputs(", ", out);
-    WriteCurve(out, &figure->series[s], s);
+    write_curve(out, &figure->series[s], s);
     first = PETSC_FALSE;
   }
   if (slope)
@@ -204,12 +204,12 @@ PetscErrorCode FigureWrite(const Figure *figure, const char *png, Diag *diag, Pe
 
   PetscFunctionBeginUser;
   *done = PETSC_FALSE;
-  if (Bounds(figure, min, max) == 0) {
-    DiagError(diag, NULL, "there is nothing to draw in '%s'", png);
+  if (bounds(figure, min, max) == 0) {
+    diag_error(diag, NULL, "there is nothing to draw in '%s'", png);
     PetscFunctionReturn(0);
   }
   PetscCall(GnuplotBegin(&script, png, figure->width ? figure->width : 900, figure->height ? figure->height : 600));
-  WriteFigure(script.out, figure, min, max);
+  write_figure(script.out, figure, min, max);
   PetscCall(GnuplotEnd(&script, png, diag, done));
   PetscFunctionReturn(0);
 }
@@ -233,7 +233,7 @@ PetscErrorCode FigureConvergence(const char *title, const char *x_label, const c
 }
 
 /* Units with a prefix of their own, powers and reciprocals stay as they are. */
-static PetscBool TakesPrefix(const char *unit)
+static PetscBool takes_prefix(const char *unit)
 {
   static const char *const units[] = {"m", "m/s", "m/s2", "Pa", "N", "N/m", "N/m2", "J", "J/m", "J/m3", "W", NULL};
   for (int i = 0; units[i]; ++i)
@@ -247,7 +247,7 @@ PetscReal figure_unit(const char *unit, PetscReal largest, char prefixed[64])
   int k = 3;
   PetscReal size = PetscAbsReal(largest), factor = 1;
   const PetscBool far = size >= 1e4 || (size > 0 && size < 1e-2);
-  if (far && TakesPrefix(unit) && !PetscIsInfOrNanReal(size)) {
+  if (far && takes_prefix(unit) && !PetscIsInfOrNanReal(size)) {
     for (; size >= 1e3 && k < 7; ++k) size *= 1e-3, factor *= 1e-3;
     for (; size < 1 && k > 0; --k) size *= 1e3, factor *= 1e3;
   }

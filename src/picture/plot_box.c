@@ -5,7 +5,7 @@
 #include "picture/plot_scene.h"
 
 /* A corner of the box from its sides along a, b, c. */
-static void Corner(const PlotScene *scene, int a, int b, int c, PetscReal x[3])
+static void box_corner(const PlotScene *scene, int a, int b, int c, PetscReal x[3])
 {
   const int side[3] = {a, b, c};
   for (PetscInt k = 0; k < 3; ++k) {
@@ -14,7 +14,7 @@ static void Corner(const PlotScene *scene, int a, int b, int c, PetscReal x[3])
   }
 }
 
-static void Line(FILE *out, const PlotScene *scene, const PetscReal *from, const PetscReal *to, const char *colour)
+static void line(FILE *out, const PlotScene *scene, const PetscReal *from, const PetscReal *to, const char *colour)
 {
   PetscReal p[3], q[3];
   plot_project(scene, from, p);
@@ -24,7 +24,7 @@ static void Line(FILE *out, const PlotScene *scene, const PetscReal *from, const
 }
 
 /* 1, 2 or 5 times a power of ten, so that there are three to six ticks. */
-static PetscReal TickStep(PetscReal length)
+static PetscReal tick_step(PetscReal length)
 {
   const PetscReal power = PetscPowReal(10, floor(log10(length / 4))), share = length / 4 / power;
   return power * (share < 1.5 ? 1 : share < 3.5 ? 2 : share < 7.5 ? 5 : 10);
@@ -32,7 +32,7 @@ static PetscReal TickStep(PetscReal length)
 
 /* Ticks along axis d that starts at `from`; they point away along -b (0), +a (1) or to the left of the
  * page. */
-static void Ticks(FILE *out, const PlotScene *scene, PetscInt k, const PetscReal *from, PetscReal size)
+static void box_ticks(FILE *out, const PlotScene *scene, PetscInt k, const PetscReal *from, PetscReal size)
 {
   static const char *const names[] = {"x [m]", "y [m]", "z [m]"};
   static const PetscReal away[3][2] = {{-0.3, -1}, {0.5, -1}, {-1, 0}};
@@ -41,7 +41,7 @@ static void Ticks(FILE *out, const PlotScene *scene, PetscInt k, const PetscReal
   const PetscReal length = scene->box_max[d] - scene->box_min[d];
   PetscReal x[3] = {from[0], from[1], from[2]}, p[3];
   if (!(length > 1e-9 * size)) return;
-  const PetscReal step = TickStep(PetscMax(length, 0.25 * size));
+  const PetscReal step = tick_step(PetscMax(length, 0.25 * size));
   for (PetscReal t = ceil(scene->box_min[d] / step - 1e-9); t * step <= scene->box_max[d] + 1e-9 * step; t += 1) {
     x[d] = t * step;
     plot_project(scene, x, p);
@@ -70,13 +70,13 @@ void plot_draw_box(FILE *out, const PlotScene *scene)
       other[k] = 1;
       /* not the three edges at the corner next to the eye */
       if ((other[0] == 1 && other[1] == 0 && other[2] == 1) || (side[0] == 1 && side[1] == 0 && side[2] == 1)) continue;
-      Corner(scene, side[0], side[1], side[2], from);
-      Corner(scene, other[0], other[1], other[2], to);
-      Line(out, scene, from, to, "#c4c4c4");
+      box_corner(scene, side[0], side[1], side[2], from);
+      box_corner(scene, other[0], other[1], other[2], to);
+      line(out, scene, from, to, "#c4c4c4");
     }
-  Corner(scene, 0, 0, 0, from);
-  Ticks(out, scene, 0, from, size);
-  Ticks(out, scene, 2, from, size);
-  Corner(scene, 1, 0, 0, from);
-  Ticks(out, scene, 1, from, size);
+  box_corner(scene, 0, 0, 0, from);
+  box_ticks(out, scene, 0, from, size);
+  box_ticks(out, scene, 2, from, size);
+  box_corner(scene, 1, 0, 0, from);
+  box_ticks(out, scene, 1, from, size);
 }

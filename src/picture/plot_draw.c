@@ -3,7 +3,7 @@
 #include "picture/plot_raster.h"
 #include "picture/plot_scene.h"
 
-static void WritePalette(FILE *out, const PlotScene *scene)
+static void write_palette(FILE *out, const PlotScene *scene)
 {
   fputs("set palette defined (", out);
   for (int i = 0; i < PALETTE_STOPS; ++i)
@@ -15,10 +15,10 @@ static void WritePalette(FILE *out, const PlotScene *scene)
 }
 
 /* The bar is as long as the field is wide or high, within reason. */
-static void WriteColourBar(FILE *out, const PlotScene *scene, const PlotPage *page)
+static void write_colour_bar(FILE *out, const PlotScene *scene, const PlotPage *page)
 {
   const double w = page->width, h = page->height, middle = page->bottom + 0.5 * page->h;
-  WritePalette(out, scene);
+  write_palette(out, scene);
   if (page->bar_below) {
     const double all = page->w + (page->columns - 1) * page->step_x, length = PetscMin(all, 620),
                  left = page->left + 0.5 * (all - length), top = page->bottom - (scene->dim == 3 ? 15 : 75);
@@ -32,7 +32,7 @@ static void WriteColourBar(FILE *out, const PlotScene *scene, const PlotPage *pa
 }
 
 /* The lower left corner of a frame's field; frames are read as words are. */
-static void Corner(const PlotPage *page, PetscInt frame, int *left, int *bottom)
+static void draw_corner(const PlotPage *page, PetscInt frame, int *left, int *bottom)
 {
   const int row = (int)frame / page->columns, column = (int)frame % page->columns;
   *left = page->left + column * page->step_x;
@@ -40,14 +40,14 @@ static void Corner(const PlotPage *page, PetscInt frame, int *left, int *bottom)
 }
 
 /* 1, 2 or 5 times a power of ten: the smallest that leaves so many pixels between ticks of a range that takes `all` pixels. */
-static double TickStep(PetscReal range, int all, int pixels)
+static double tick_step(PetscReal range, int all, int pixels)
 {
   const double least = (double)range * pixels / all, power = pow(10, floor(log10(least))), share = least / power;
   return power * (share <= 1 ? 1 : share <= 2 ? 2 : share <= 5 ? 5 : 10);
 }
 
 /* Names of the axes where they are nobody else's: at the left, and where no field lies below. */
-static void WriteAxes(FILE *out, const PlotScene *scene, const PlotPage *page, PetscInt frame)
+static void write_axes(FILE *out, const PlotScene *scene, const PlotPage *page, PetscInt frame)
 {
   const PetscBool left = frame % page->columns == 0, last = frame + page->columns >= scene->n_frames;
   if (scene->dim == 3) {
@@ -60,18 +60,18 @@ static void WriteAxes(FILE *out, const PlotScene *scene, const PlotPage *page, P
           "ylabel '%s'\nset format x '%s'\nset format y '%s'\n",
           last ? "x [m]" : "", left ? "y [m]" : "", last ? "%g" : "", left ? "%g" : "");
   if (scene->n_frames > 1)
-    fprintf(out, "set xtics %.6g\nset ytics %.6g\n", TickStep(page->max[0] - page->min[0], page->w, 45),
-            TickStep(page->max[1] - page->min[1], page->h, 30));
+    fprintf(out, "set xtics %.6g\nset ytics %.6g\n", tick_step(page->max[0] - page->min[0], page->w, 45),
+            tick_step(page->max[1] - page->min[1], page->h, 30));
   else if (page->h < 160)
     fprintf(out, "set ytics %.3g\n",
             pow(10, floor(log10((double)(page->max[1] - page->min[1])))) * (page->h < 80 ? 1 : 0.5));
 }
 
-static void WriteField(FILE *out, const PlotScene *scene, const PlotPage *page, PetscInt frame)
+static void write_field(FILE *out, const PlotScene *scene, const PlotPage *page, PetscInt frame)
 {
   const double w = page->width, h = page->height;
   int left, bottom;
-  Corner(page, frame, &left, &bottom);
+  draw_corner(page, frame, &left, &bottom);
   fprintf(
     out,
     "set lmargin at screen %.9f\nset rmargin at screen %.9f\nset bmargin at screen %.9f\nset tmargin at screen %.9f\n",
@@ -80,10 +80,10 @@ static void WriteField(FILE *out, const PlotScene *scene, const PlotPage *page, 
           (double)page->max[0], (double)page->min[1], (double)page->max[1]);
   gnuplot_quote(out, scene->frames[frame].title);
   fprintf(out, " offset 0,%g\nunset key\n", scene->n_frames > 1 ? -0.5 : 0.);
-  WriteAxes(out, scene, page, frame);
+  write_axes(out, scene, page, frame);
 }
 
-static void WriteEdges(FILE *out, const PlotFrame *f)
+static void write_edges(FILE *out, const PlotFrame *f)
 {
   fputs("$grid << EOD\n", out);
   for (PetscInt i = 0; i < f->n_edges; ++i) {
@@ -94,11 +94,11 @@ static void WriteEdges(FILE *out, const PlotFrame *f)
 }
 
 /* The image is made to lie on the pixels of the field; the invisible point brings the colour bar. */
-static void WritePlot(FILE *out, const PlotFrame *f, const PlotPage *page, const unsigned char *rgba)
+static void write_plot(FILE *out, const PlotFrame *f, const PlotPage *page, const unsigned char *rgba)
 {
   const double dx = (double)(page->max[0] - page->min[0]) / page->w,
                dy = (double)(page->max[1] - page->min[1]) / page->h;
-  if (f->n_edges) WriteEdges(out, f);
+  if (f->n_edges) write_edges(out, f);
   fputs("plot ", out);
   if (f->n_edges) fputs("$grid with lines lw 0.7 lc rgb '#b8b8b8', ", out);
   fprintf(
@@ -143,14 +143,14 @@ PetscErrorCode PlotDraw(PlotScene *scene, int width, int height, const char *png
   plot_lay_out(scene, width, height, &page);
   PetscCall(PetscMalloc1((size_t)page.w * (size_t)page.h * 4, &rgba));
   PetscCall(GnuplotBegin(&script, png, page.width, page.height));
-  WriteColourBar(script.out, scene, &page);
+  write_colour_bar(script.out, scene, &page);
   if (scene->dim == 3) plot_draw_box(script.out, scene);
   if (scene->n_frames > 1) fputs("set multiplot\n", script.out);
   for (PetscInt k = 0; k < scene->n_frames; ++k) {
     PetscCall(MakeImage(scene, &scene->frames[k], &page, rgba));
     if (k == 1) fputs("unset colorbox\n", script.out); /* one serves all */
-    WriteField(script.out, scene, &page, k);
-    WritePlot(script.out, &scene->frames[k], &page, rgba);
+    write_field(script.out, scene, &page, k);
+    write_plot(script.out, &scene->frames[k], &page, rgba);
   }
   if (scene->n_frames > 1) fputs("unset multiplot\n", script.out);
   PetscCall(PetscFree(rgba));

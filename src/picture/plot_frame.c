@@ -7,8 +7,8 @@
 static PetscBool has_place(const PetscReal *x) { return fabs(x[0]) < 1e30 && fabs(x[1]) < 1e30 && fabs(x[2]) < 1e30; }
 
 /* Copy the points that have a place; a run that broke may hold others. */
-static void TakePoints(PlotScene *scene, PlotFrame *f, PetscInt n, const PetscReal *x, const PlotScalar *scalar,
-                       PetscInt components, const PetscReal *data)
+static void take_points(PlotScene *scene, PlotFrame *f, PetscInt n, const PetscReal *x, const PlotScalar *scalar,
+                        PetscInt components, const PetscReal *data)
 {
   PetscBool first = PETSC_TRUE;
   for (PetscInt k = 0; k < scene->n_frames; ++k)
@@ -29,7 +29,7 @@ static void TakePoints(PlotScene *scene, PlotFrame *f, PetscInt n, const PetscRe
 PetscErrorCode PlotFrameRead(VtkFile *file, const VtkFieldInfo *field, const PlotScalar *scalar, PlotScene *scene,
                              char reason[256])
 {
-  const PetscInt n = VtkReadPoints(file);
+  const PetscInt n = vtk_read_points(file);
   PlotFrame *f = &scene->frames[scene->n_frames];
   PetscReal *x, *data;
 
@@ -37,7 +37,7 @@ PetscErrorCode PlotFrameRead(VtkFile *file, const VtkFieldInfo *field, const Plo
   if (VtkReadCoordinates(file, &x, reason)) PetscFunctionReturn(0);
   if (VtkReadField(file, field, &data, reason) == 0) {
     PetscCall(PetscMalloc3(3 * (size_t)n, &f->x, n, &f->value, n, &f->radius));
-    TakePoints(scene, f, n, x, scalar, field->components, data);
+    take_points(scene, f, n, x, scalar, field->components, data);
     ++scene->n_frames;
     PetscCall(PetscFree(data));
   }
@@ -82,7 +82,7 @@ PetscErrorCode PlotFramesShape(PlotScene *scene)
 }
 
 /* Lines between a cell's corners in the order of VTK; n pairs. */
-static PetscInt CellLines(int vtk_type, const int **pairs)
+static PetscInt cell_lines(int vtk_type, const int **pairs)
 {
   static const int polygon[] = {0, 1, 1, 2, 2, 3, 3, 0}, triangle[] = {0, 1, 1, 2, 2, 0};
   *pairs = vtk_type == 9 ? polygon : triangle;
@@ -97,7 +97,7 @@ static PetscErrorCode TakeLines(const VtkCells *cells, const PetscReal *x, PlotF
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(16 * (size_t)cells->n, &f->edges));
   for (PetscInt c = 0; c < cells->n; ++c)
-    for (PetscInt k = 0, lines = CellLines(cells->type[c], &pairs); k < lines; ++k) {
+    for (PetscInt k = 0, lines = cell_lines(cells->type[c], &pairs); k < lines; ++k) {
       const PetscInt *node = cells->node + cells->start[c];
       const PetscReal *a = x + 3 * node[pairs[2 * k]], *b = x + 3 * node[pairs[2 * k + 1]];
       PetscReal *edge = f->edges + 4 * (size_t)f->n_edges;
@@ -110,7 +110,7 @@ static PetscErrorCode TakeLines(const VtkCells *cells, const PetscReal *x, PlotF
 
 PetscErrorCode PlotFrameGrid(VtkFile *file, PlotScene *scene, PlotFrame *f, char reason[256])
 {
-  const PetscInt points = VtkReadPoints(file);
+  const PetscInt points = vtk_read_points(file);
   VtkCells cells;
   PetscReal *x;
 

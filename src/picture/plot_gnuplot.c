@@ -38,7 +38,7 @@ void gnuplot_quote(FILE *out, const char *text)
 }
 
 /* Start gnuplot with these files as its input and its complaints; returns 0 or an errno. */
-static int Spawn(FILE *input, FILE *complaints, pid_t *pid)
+static int gnuplot_spawn(FILE *input, FILE *complaints, pid_t *pid)
 {
   char *const arguments[] = {(char[]){"gnuplot"}, (char[]){"-d"}, (char[]){"-"}, NULL};
   posix_spawn_file_actions_t actions;
@@ -52,7 +52,7 @@ static int Spawn(FILE *input, FILE *complaints, pid_t *pid)
 }
 
 /* What gnuplot says first that is neither blank nor the echo of its input. */
-static void FirstComplaint(FILE *complaints, char text[256])
+static void first_complaint(FILE *complaints, char text[256])
 {
   char line[256];
   rewind(complaints);
@@ -62,26 +62,26 @@ static void FirstComplaint(FILE *complaints, char text[256])
       snprintf(text, 256, "%.*s", (int)strcspn(line, "\n"), line + strspn(line, " \t"));
 }
 
-static PetscBool RunScript(const GnuplotScript *script, FILE *input, FILE *complaints, Diag *diag)
+static PetscBool run_script(const GnuplotScript *script, FILE *input, FILE *complaints, Diag *diag)
 {
   char text[256];
   pid_t pid;
   int status = 0;
   if (fwrite(script->text, 1, script->size, input) != script->size || fflush(input)) {
-    DiagError(diag, NULL, "no room for temporary files: %s", strerror(errno));
+    diag_error(diag, NULL, "no room for temporary files: %s", strerror(errno));
     return PETSC_FALSE;
   }
   rewind(input);
-  const int error = Spawn(input, complaints, &pid);
+  const int error = gnuplot_spawn(input, complaints, &pid);
   if (error) {
-    DiagError(diag, NULL, "cannot start gnuplot, which draws the pictures: %s", strerror(error));
-    DiagHint(diag, "install it: apt install gnuplot-nox");
+    diag_error(diag, NULL, "cannot start gnuplot, which draws the pictures: %s", strerror(error));
+    diag_hint(diag, "install it: apt install gnuplot-nox");
     return PETSC_FALSE;
   }
   while (waitpid(pid, &status, 0) < 0 && errno == EINTR) continue;
   if (WIFEXITED(status) && WEXITSTATUS(status) == 0) return PETSC_TRUE;
-  FirstComplaint(complaints, text);
-  DiagError(diag, NULL, "gnuplot could not draw the picture: %s", text);
+  first_complaint(complaints, text);
+  diag_error(diag, NULL, "gnuplot could not draw the picture: %s", text);
   return PETSC_FALSE;
 }
 
@@ -95,12 +95,12 @@ PetscErrorCode GnuplotEnd(GnuplotScript *script, const char *png, Diag *diag, Pe
   PetscCall(PetscSNPrintf(unfinished, sizeof unfinished, "%s" FILE_UNFINISHED, png));
   PetscCheck(!fclose(script->out), PETSC_COMM_SELF, PETSC_ERR_MEM, "No memory for a script");
   if (input && complaints) {
-    const PetscBool ran = RunScript(script, input, complaints, diag);
+    const PetscBool ran = run_script(script, input, complaints, diag);
     const int error = file_commit(unfinished, png, ran ? 0 : ECANCELED);
-    if (ran && error) DiagError(diag, NULL, "cannot write the picture '%s': %s", png, strerror(error));
+    if (ran && error) diag_error(diag, NULL, "cannot write the picture '%s': %s", png, strerror(error));
     *done = ran && !error;
   } else {
-    DiagError(diag, NULL, "cannot make a temporary file: %s", strerror(errno));
+    diag_error(diag, NULL, "cannot make a temporary file: %s", strerror(errno));
   }
   if (input) fclose(input);
   if (complaints) fclose(complaints);

@@ -11,7 +11,7 @@ static PetscReal at(const History *history, PetscInt row, PetscInt column)
 }
 
 /* A measure that never had a value is no curve. */
-static PetscBool HasValues(const History *history, PetscInt column)
+static PetscBool has_values(const History *history, PetscInt column)
 {
   for (PetscInt i = 0; i < history->n_rows; ++i)
     if (!PetscIsInfOrNanReal(at(history, i, column))) return PETSC_TRUE;
@@ -53,8 +53,8 @@ static PetscErrorCode DrawAll(const PlotOptions *options, const History *history
   PetscFunctionBeginUser;
   for (PetscInt column = 2; column < history->n_columns && done; ++column) {
     char name[192], png[FILE_PATH + 256];
-    if (!HasValues(history, column)) {
-      DiagWarning(diag, NULL, "the measure '%s' has no value in any row: it is not drawn", history->names[column]);
+    if (!has_values(history, column)) {
+      diag_warning(diag, NULL, "the measure '%s' has no value in any row: it is not drawn", history->names[column]);
       continue;
     }
     snprintf(name, sizeof name, "history_%.150s.png", history->names[column]);
@@ -75,7 +75,7 @@ PetscErrorCode PlotHistories(const PlotOptions *options, Diag *diag, void (*said
   if (!file_exists(options->run, "history.csv")) PetscFunctionReturn(0);
   PetscCall(PetscSNPrintf(path, sizeof path, "%s/history.csv", options->run));
   if (HistoryRead(path, &history, reason)) {
-    DiagError(diag, NULL, "cannot read '%s': %s", path, reason);
+    diag_error(diag, NULL, "cannot read '%s': %s", path, reason);
     PetscFunctionReturn(0);
   }
   /* a single row is a number, not a curve */

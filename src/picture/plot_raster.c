@@ -37,17 +37,17 @@ static PetscErrorCode CanvasCreate(const RasterScene *scene, Canvas *canvas)
 }
 
 /* Centre and radius of a ball in samples; never so small that it falls between them. */
-static void Place(const RasterScene *scene, const Canvas *canvas, PetscInt p, PetscReal centre[2], PetscReal *radius)
+static void place(const RasterScene *scene, const Canvas *canvas, PetscInt p, PetscReal centre[2], PetscReal *radius)
 {
   centre[0] = (scene->x[3 * p] - scene->min[0]) * canvas->scale - 0.5;
   centre[1] = (scene->x[3 * p + 1] - scene->min[1]) * canvas->scale - 0.5;
   *radius = PetscMax(scene->radius[p] * canvas->scale, 0.6 * SAMPLES);
 }
 
-static void DrawBall(const RasterScene *scene, Canvas *canvas, PetscInt p)
+static void draw_ball(const RasterScene *scene, Canvas *canvas, PetscInt p)
 {
   PetscReal c[2], radius;
-  Place(scene, canvas, p, c, &radius);
+  place(scene, canvas, p, c, &radius);
   if (!(fabs(c[0]) < 1e8 && fabs(c[1]) < 1e8)) return;
   const PetscReal depth = scene->x[3 * p + 2] * canvas->scale;
   const int i0 = PetscMax((int)ceil(c[0] - radius), 0), i1 = PetscMin((int)floor(c[0] + radius), canvas->width - 1);
@@ -69,10 +69,10 @@ static PetscInt fill_of(PetscInt p) { return -2 - p; }
 
 /* Claim the empty samples within `reach` of the ball for its point, the nearest point winning. The border of the image stays empty, so
  * that the body ends there. */
-static void ClaimAround(const RasterScene *scene, Canvas *canvas, PetscInt p, PetscReal reach)
+static void claim_around(const RasterScene *scene, Canvas *canvas, PetscInt p, PetscReal reach)
 {
   PetscReal c[2], radius;
-  Place(scene, canvas, p, c, &radius);
+  place(scene, canvas, p, c, &radius);
   if (!(fabs(c[0]) < 1e8 && fabs(c[1]) < 1e8)) return;
   radius += reach;
   const int i0 = PetscMax((int)ceil(c[0] - radius), 1), i1 = PetscMin((int)floor(c[0] + radius), canvas->width - 2);
@@ -89,7 +89,7 @@ static void ClaimAround(const RasterScene *scene, Canvas *canvas, PetscInt p, Pe
 }
 
 /* Is the sample empty, with a claimed one beside it? */
-static PetscBool IsRim(const Canvas *canvas, int i, int j)
+static PetscBool is_rim(const Canvas *canvas, int i, int j)
 {
   const PetscInt *point = canvas->point + (size_t)j * (size_t)canvas->width + (size_t)i;
   if (*point != -1) return PETSC_FALSE;
@@ -98,7 +98,7 @@ static PetscBool IsRim(const Canvas *canvas, int i, int j)
 }
 
 /* Mark the claims within `reach` of a sample that stayed empty: they lie outside the body, not in a gap. */
-static void Withdraw(Canvas *canvas, int i, int j, int reach, unsigned char *outside)
+static void withdraw(Canvas *canvas, int i, int j, int reach, unsigned char *outside)
 {
   for (int b = PetscMax(j - reach, 0); b <= PetscMin(j + reach, canvas->height - 1); ++b)
     for (int a = PetscMax(i - reach, 0); a <= PetscMin(i + reach, canvas->width - 1); ++a)
@@ -115,10 +115,10 @@ static PetscErrorCode FillGaps(const RasterScene *scene, Canvas *canvas)
 
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc1(n, &outside));
-  for (PetscInt p = 0; p < scene->n; ++p) ClaimAround(scene, canvas, p, gap);
+  for (PetscInt p = 0; p < scene->n; ++p) claim_around(scene, canvas, p, gap);
   for (int j = 0; j < canvas->height; ++j)
     for (int i = 0; i < canvas->width; ++i)
-      if (IsRim(canvas, i, j)) Withdraw(canvas, i, j, (int)ceil(gap), outside);
+      if (is_rim(canvas, i, j)) withdraw(canvas, i, j, (int)ceil(gap), outside);
   for (size_t i = 0; i < n; ++i)
     if (canvas->point[i] < -1) canvas->point[i] = outside[i] ? -1 : fill_of(canvas->point[i]);
   PetscCall(PetscFree(outside));
@@ -126,17 +126,17 @@ static PetscErrorCode FillGaps(const RasterScene *scene, Canvas *canvas)
 }
 
 /* Light from the upper left, in front. */
-static PetscReal Shade(const RasterScene *scene, const Canvas *canvas, PetscInt p, int i, int j)
+static PetscReal raster_shade(const RasterScene *scene, const Canvas *canvas, PetscInt p, int i, int j)
 {
   PetscReal c[2], radius;
   if (!scene->shaded) return 1;
-  Place(scene, canvas, p, c, &radius);
+  place(scene, canvas, p, c, &radius);
   const PetscReal a = (i - c[0]) / radius, b = (j - c[1]) / radius, h = sqrt(PetscMax(1 - a * a - b * b, 0));
   return 0.72 + 0.28 * PetscMax(-0.35 * a + 0.50 * b + 0.79 * h, 0);
 }
 
 /* Mean colour of a pixel's samples, and how many of them are covered. */
-static void Pixel(const RasterScene *scene, const Canvas *canvas, int column, int row, unsigned char rgba[4])
+static void raster_pixel(const RasterScene *scene, const Canvas *canvas, int column, int row, unsigned char rgba[4])
 {
   PetscReal sum[3] = {0}, rgb[3];
   int covered = 0;
@@ -144,7 +144,7 @@ static void Pixel(const RasterScene *scene, const Canvas *canvas, int column, in
     for (int i = column * SAMPLES; i < (column + 1) * SAMPLES; ++i) {
       const PetscInt p = canvas->point[(size_t)j * (size_t)canvas->width + (size_t)i];
       if (p < 0) continue;
-      const PetscReal shade = Shade(scene, canvas, p, i, j);
+      const PetscReal shade = raster_shade(scene, canvas, p, i, j);
       palette_colour(scene->value[p], rgb);
       for (int c = 0; c < 3; ++c) sum[c] += shade * rgb[c];
       ++covered;
@@ -159,11 +159,11 @@ PetscErrorCode RasterDraw(const RasterScene *scene, unsigned char *rgba)
 
   PetscFunctionBeginUser;
   PetscCall(CanvasCreate(scene, &canvas));
-  for (PetscInt p = 0; p < scene->n; ++p) DrawBall(scene, &canvas, p);
+  for (PetscInt p = 0; p < scene->n; ++p) draw_ball(scene, &canvas, p);
   if (scene->gap > 0 && !scene->shaded) PetscCall(FillGaps(scene, &canvas));
   for (int row = 0; row < scene->height; ++row)
     for (int column = 0; column < scene->width; ++column)
-      Pixel(scene, &canvas, column, row, rgba + 4 * ((size_t)row * (size_t)scene->width + (size_t)column));
+      raster_pixel(scene, &canvas, column, row, rgba + 4 * ((size_t)row * (size_t)scene->width + (size_t)column));
   PetscCall(PetscFree2(canvas.front, canvas.point));
   PetscFunctionReturn(0);
 }

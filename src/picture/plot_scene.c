@@ -17,7 +17,7 @@ void plot_project(const PlotScene *scene, const PetscReal *x, PetscReal shown[3]
 }
 
 /* What the corners of the box span on the page. */
-static void Extent(const PlotScene *scene, PetscReal min[2], PetscReal max[2])
+static void extent(const PlotScene *scene, PetscReal min[2], PetscReal max[2])
 {
   for (int corner = 0; corner < 8; ++corner) {
     PetscReal x[3], shown[3];
@@ -31,7 +31,7 @@ static void Extent(const PlotScene *scene, PetscReal min[2], PetscReal max[2])
 }
 
 /* Air around what is shown; in space more, for the ticks. */
-static void AddAir(const PlotScene *scene, PetscReal min[2], PetscReal max[2])
+static void add_air(const PlotScene *scene, PetscReal min[2], PetscReal max[2])
 {
   const PetscReal longest = PetscMax(max[0] - min[0], max[1] - min[1]), size = longest > 1e-200 ? longest : 1;
   const PetscReal share[2] = {scene->dim == 3 ? 0.13 : 0.04, scene->dim == 3 ? 0.11 : 0.04};
@@ -42,7 +42,7 @@ static void AddAir(const PlotScene *scene, PetscReal min[2], PetscReal max[2])
 }
 
 /* Rows above and below, columns left and right of the fields. */
-static void Margins(const PlotPage *page, PetscBool space, int margin[4])
+static void margins(const PlotPage *page, PetscBool space, int margin[4])
 {
   const PetscBool several = page->columns * page->rows > 1;
   margin[0] = space ? 20 : several ? 90 : 120;                 /* left */
@@ -56,7 +56,7 @@ static void Margins(const PlotPage *page, PetscBool space, int margin[4])
 #define GAP_Y 42
 
 /* Columns that make a page of several fields about as wide as a screen. */
-static int ChooseColumns(PetscInt n, PetscReal aspect)
+static int choose_columns(PetscInt n, PetscReal aspect)
 {
   int best = 1;
   PetscReal least = PETSC_MAX_REAL;
@@ -69,7 +69,7 @@ static int ChooseColumns(PetscInt n, PetscReal aspect)
 }
 
 /* Equal scales: the fields take the shape of what they show, in the middle of the room that they have. */
-static void PlaceFields(PlotPage *page, const int margin[4])
+static void place_fields(PlotPage *page, const int margin[4])
 {
   const PetscReal wide = page->max[0] - page->min[0], high = page->max[1] - page->min[1];
   const int room_w = PetscMax(page->width - margin[0] - margin[1] - (page->columns - 1) * GAP_X, 50 * page->columns),
@@ -89,17 +89,17 @@ static void PlaceFields(PlotPage *page, const int margin[4])
 void plot_lay_out(const PlotScene *scene, int width, int height, PlotPage *page)
 {
   int margin[4];
-  Extent(scene, page->min, page->max);
-  AddAir(scene, page->min, page->max);
+  extent(scene, page->min, page->max);
+  add_air(scene, page->min, page->max);
   const PetscReal field = (page->max[0] - page->min[0]) / (page->max[1] - page->min[1]);
   page->columns =
-    scene->columns ? (int)PetscMin(scene->columns, scene->n_frames) : ChooseColumns(scene->n_frames, field);
+    scene->columns ? (int)PetscMin(scene->columns, scene->n_frames) : choose_columns(scene->n_frames, field);
   page->rows = ((int)scene->n_frames + page->columns - 1) / page->columns;
   const PetscReal aspect = field * page->columns / page->rows;
   page->bar_below = aspect > 2.2 || scene->n_frames > 1;
   page->width = width ? width : 1200;
   page->height = height;
-  Margins(page, scene->dim == 3, margin);
+  margins(page, scene->dim == 3, margin);
   const int beside_w = margin[0] + margin[1] + (page->columns - 1) * GAP_X,
             beside_h = margin[2] + margin[3] + (page->rows - 1) * GAP_Y;
   if (!height) {
@@ -107,5 +107,5 @@ void plot_lay_out(const PlotScene *scene, int width, int height, PlotPage *page)
     page->height = PetscMin(PetscMax((int)lround(high), 60), (int)most) + beside_h;
     if (!width && high > most) page->width = PetscMax((int)lround(most * aspect), 300) + beside_w;
   }
-  PlaceFields(page, margin);
+  place_fields(page, margin);
 }

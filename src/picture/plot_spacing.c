@@ -10,7 +10,7 @@ typedef struct {
   PetscInt *start, *point;
 } Boxes;
 
-static PetscInt BoxOf(const Boxes *boxes, const PetscReal *x, PetscInt at[3])
+static PetscInt box_of(const Boxes *boxes, const PetscReal *x, PetscInt at[3])
 {
   PetscInt box = 0;
   for (PetscInt d = 2; d >= 0; --d) {
@@ -21,7 +21,7 @@ static PetscInt BoxOf(const Boxes *boxes, const PetscReal *x, PetscInt at[3])
 }
 
 /* Boxes of a size that holds some two points, if the points filled their bounding box. */
-static void ChooseSize(Boxes *boxes, PetscInt n, const PetscReal *x)
+static void choose_size(Boxes *boxes, PetscInt n, const PetscReal *x)
 {
   PetscReal max[3] = {0}, volume = 1, largest = 0;
   for (PetscInt d = 0; d < boxes->dim; ++d) boxes->min[d] = max[d] = x[d];
@@ -47,17 +47,17 @@ static PetscErrorCode BoxesCreate(PetscInt dim, PetscInt n, const PetscReal *x, 
 
   PetscFunctionBeginUser;
   boxes->dim = dim;
-  ChooseSize(boxes, n, x);
+  choose_size(boxes, n, x);
   PetscCall(PetscCalloc1(boxes->n_boxes + 2, &boxes->start));
   PetscCall(PetscMalloc1(n, &boxes->point));
-  for (PetscInt i = 0; i < n; ++i) ++boxes->start[BoxOf(boxes, x + 3 * i, at) + 2];
+  for (PetscInt i = 0; i < n; ++i) ++boxes->start[box_of(boxes, x + 3 * i, at) + 2];
   for (PetscInt b = 1; b <= boxes->n_boxes; ++b) boxes->start[b + 1] += boxes->start[b];
-  for (PetscInt i = 0; i < n; ++i) boxes->point[boxes->start[BoxOf(boxes, x + 3 * i, at) + 1]++] = i;
+  for (PetscInt i = 0; i < n; ++i) boxes->point[boxes->start[box_of(boxes, x + 3 * i, at) + 1]++] = i;
   PetscFunctionReturn(0);
 }
 
 /* Keep the k smallest numbers in order. */
-static void Insert(PetscReal *best, PetscInt k, PetscReal value)
+static void insert(PetscReal *best, PetscInt k, PetscReal value)
 {
   PetscInt i = k - 1;
   if (value >= best[i]) return;
@@ -65,22 +65,22 @@ static void Insert(PetscReal *best, PetscInt k, PetscReal value)
   best[i] = value;
 }
 
-static void SearchBox(const Boxes *boxes, PetscInt box, const PetscReal *x, PetscInt self, PetscInt k, PetscReal *best)
+static void search_box(const Boxes *boxes, PetscInt box, const PetscReal *x, PetscInt self, PetscInt k, PetscReal *best)
 {
   for (PetscInt j = boxes->start[box]; j < boxes->start[box + 1]; ++j) {
     const PetscReal *y = x + 3 * boxes->point[j];
     PetscReal r2 = 0;
     for (PetscInt d = 0; d < boxes->dim; ++d) r2 += (y[d] - x[3 * self + d]) * (y[d] - x[3 * self + d]);
-    if (boxes->point[j] != self) Insert(best, k, r2);
+    if (boxes->point[j] != self) insert(best, k, r2);
   }
 }
 
 /* Distance to the k-th neighbour, searched within two rings of boxes; further off it does not matter. */
-static PetscReal NeighbourDistance(const Boxes *boxes, const PetscReal *x, PetscInt self, PetscInt k)
+static PetscReal neighbour_distance(const Boxes *boxes, const PetscReal *x, PetscInt self, PetscInt k)
 {
   PetscReal best[MAX_NEIGHBOURS];
   PetscInt at[3], from[3], to[3];
-  BoxOf(boxes, x + 3 * self, at);
+  box_of(boxes, x + 3 * self, at);
   for (PetscInt ring = 1; ring <= 2; ++ring) {
     for (PetscInt i = 0; i < k; ++i) best[i] = PETSC_MAX_REAL;
     for (PetscInt d = 0; d < 3; ++d)
@@ -88,18 +88,18 @@ static PetscReal NeighbourDistance(const Boxes *boxes, const PetscReal *x, Petsc
     for (PetscInt c = from[2]; c <= to[2]; ++c)
       for (PetscInt b = from[1]; b <= to[1]; ++b)
         for (PetscInt a = from[0]; a <= to[0]; ++a)
-          SearchBox(boxes, (c * boxes->counts[1] + b) * boxes->counts[0] + a, x, self, k, best);
+          search_box(boxes, (c * boxes->counts[1] + b) * boxes->counts[0] + a, x, self, k, best);
     if (best[k - 1] <= PetscSqr(ring * boxes->size)) break;
   }
   return PetscSqrtReal(best[k - 1]);
 }
 
 /* Mean over the boxes around a point of what was found there. */
-static PetscReal Around(const Boxes *boxes, const PetscReal *x, const PetscReal *distance, PetscInt self)
+static PetscReal spacing_around(const Boxes *boxes, const PetscReal *x, const PetscReal *distance, PetscInt self)
 {
   PetscInt at[3], from[3], to[3], n = 0;
   PetscReal sum = 0;
-  BoxOf(boxes, x + 3 * self, at);
+  box_of(boxes, x + 3 * self, at);
   for (PetscInt d = 0; d < 3; ++d) from[d] = PetscMax(at[d] - 1, 0), to[d] = PetscMin(at[d] + 1, boxes->counts[d] - 1);
   for (PetscInt c = from[2]; c <= to[2]; ++c)
     for (PetscInt b = from[1]; b <= to[1]; ++b)
@@ -136,13 +136,13 @@ PetscErrorCode PlotSpacing(PetscInt dim, PetscInt n, const PetscReal *x, PetscRe
   if (n == 0) PetscFunctionReturn(0);
   PetscCall(BoxesCreate(dim, n, x, &boxes));
   PetscCall(PetscMalloc1(n, &distance));
-  for (PetscInt i = 0; i < n; ++i) distance[i] = NeighbourDistance(&boxes, x, i, k);
+  for (PetscInt i = 0; i < n; ++i) distance[i] = neighbour_distance(&boxes, x, i, k);
   PetscCall(Median(n, distance, &median));
   if (!(median < 1e100)) median = boxes.size; /* a handful of points, without enough neighbours */
   if (!(median > 0)) median = boxes.size;     /* all in pairs at the same place */
   for (PetscInt i = 0; i < n; ++i) distance[i] = PetscMin(PetscMax(distance[i], 0.3 * median), 2 * median);
   for (PetscInt i = 0; i < n; ++i) { /* corners have few neighbours: no knobs there */
-    const PetscReal around = Around(&boxes, x, distance, i);
+    const PetscReal around = spacing_around(&boxes, x, distance, i);
     radius[i] = factor * PetscMin(PetscMax(distance[i], 0.95 * around), PetscMin(1.05 * around, 1.5 * median));
   }
   PetscCall(PetscFree(distance));

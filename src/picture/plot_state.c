@@ -16,8 +16,8 @@ PetscBool plot_folder(const char *run, Diag *diag)
   struct stat info;
   const int error = file_make_folders(folder);
   const PetscBool link = !error && !lstat(folder, &info) && S_ISLNK(info.st_mode);
-  if (error) DiagError(diag, NULL, "cannot create the folder '%s': %s", folder, strerror(error));
-  if (link) DiagError(diag, NULL, "'%s' is a link: the pictures would go elsewhere", folder);
+  if (error) diag_error(diag, NULL, "cannot create the folder '%s': %s", folder, strerror(error));
+  if (link) diag_error(diag, NULL, "'%s' is a link: the pictures would go elsewhere", folder);
   return !(error || link);
 }
 
@@ -28,15 +28,15 @@ void plot_file_name(char *name)
 }
 
 /* The state nearest to a time, with a word if it is not near. */
-static VtkState Nearest(const VtkSeries *series, PetscReal time, Diag *diag)
+static VtkState state_nearest(const VtkSeries *series, PetscReal time, Diag *diag)
 {
   PetscInt best = 0;
   for (PetscInt i = 1; i < series->n; ++i)
     if (fabs(series->states[i].time - time) < fabs(series->states[best].time - time)) best = i;
   const PetscReal found = series->states[best].time;
   if (fabs(found - time) > 1e-9 * PetscMax(fabs(time), fabs(found)))
-    DiagWarning(diag, NULL, "there is no state at %.9g s: the nearest is drawn, at %.9g s", (double)time,
-                (double)found);
+    diag_warning(diag, NULL, "there is no state at %.9g s: the nearest is drawn, at %.9g s", (double)time,
+                 (double)found);
   return series->states[best];
 }
 
@@ -49,21 +49,21 @@ static PetscErrorCode FindStates(const PlotOptions *options, Diag *diag, PetscIn
   PetscFunctionBeginUser;
   *n = 0;
   if (VtkSeriesRead(options->run, "points", &series, reason)) {
-    DiagError(diag, NULL, "cannot read '%s/points.hdf.series': %s", options->run, reason);
+    diag_error(diag, NULL, "cannot read '%s/points.hdf.series': %s", options->run, reason);
     PetscFunctionReturn(0);
   }
-  if (series.n == 0) DiagError(diag, NULL, "there is no state of a run in '%s' (no points.hdf.series)", options->run);
+  if (series.n == 0) diag_error(diag, NULL, "there is no state of a run in '%s' (no points.hdf.series)", options->run);
   else if (options->all_times && series.n > PLOT_MAX_STATES) {
-    DiagError(diag, NULL, "the run has %d states, a picture holds %d at most", (int)series.n, PLOT_MAX_STATES);
-    DiagHint(diag, "name some: --time 0,%g,%g", (double)series.states[series.n / 2].time,
-             (double)series.states[series.n - 1].time);
+    diag_error(diag, NULL, "the run has %d states, a picture holds %d at most", (int)series.n, PLOT_MAX_STATES);
+    diag_hint(diag, "name some: --time 0,%g,%g", (double)series.states[series.n / 2].time,
+              (double)series.states[series.n - 1].time);
   } else if (options->all_times)
     for (; *n < series.n; ++*n) states[*n] = series.states[*n];
   else if (options->even) {
     const PetscInt most = series.n < 3 ? 0 : PetscMin(options->even, series.n);
     for (; *n < most; ++*n) states[*n] = series.states[*n * (series.n - 1) / (most - 1)];
   } else
-    for (; *n < options->n_times; ++*n) states[*n] = Nearest(&series, options->times[*n], diag);
+    for (; *n < options->n_times; ++*n) states[*n] = state_nearest(&series, options->times[*n], diag);
   if (series.n > 0 && !options->all_times && !options->even && *n == 0) states[(*n)++] = series.states[series.n - 1];
   PetscCall(VtkSeriesFree(&series));
   PetscFunctionReturn(0);
@@ -83,10 +83,10 @@ static PetscErrorCode NoSuchField(PetscInt n, const VtkFieldInfo *fields, const 
     if (used < sizeof list)
       used += (size_t)snprintf(list + used, sizeof list - used, "%s%s", i ? ", " : "", fields[i].name);
   }
-  nearest = DiagNearest(name, names);
-  DiagError(diag, NULL, "the run has no field '%s'", name);
-  if (nearest) DiagHint(diag, "did you mean '%s'? It has: %s", nearest, list);
-  else DiagHint(diag, "it has: %s", list);
+  nearest = diag_nearest(name, names);
+  diag_error(diag, NULL, "the run has no field '%s'", name);
+  if (nearest) diag_hint(diag, "did you mean '%s'? It has: %s", nearest, list);
+  else diag_hint(diag, "it has: %s", list);
   PetscCall(PetscFree(names));
   PetscFunctionReturn(0);
 }
@@ -96,7 +96,7 @@ static PetscErrorCode NoSuchField(PetscInt n, const VtkFieldInfo *fields, const 
 static PetscErrorCode FindField(const VtkFile *file, const char *name, Diag *diag, const VtkFieldInfo **field)
 {
   const VtkFieldInfo *fields;
-  const PetscInt n = VtkReadFields(file, &fields);
+  const PetscInt n = vtk_read_fields(file, &fields);
   const char *wanted = name ? name : "displacement";
 
   PetscFunctionBeginUser;
@@ -107,12 +107,12 @@ static PetscErrorCode FindField(const VtkFile *file, const char *name, Diag *dia
     if (strcmp(fields[i].name, "id")) *field = &fields[i];
   if (*field) PetscFunctionReturn(0);
   if (name) PetscCall(NoSuchField(n, fields, name, diag));
-  else DiagError(diag, NULL, "the run has no field to draw");
+  else diag_error(diag, NULL, "the run has no field to draw");
   PetscFunctionReturn(0);
 }
 
 /* Colours from the smallest to the largest value, or as asked for; in a unit that suits. */
-static void ChooseColours(PlotScene *scene, const PlotOptions *options, const char *unit, const char *what)
+static void choose_colours(PlotScene *scene, const PlotOptions *options, const char *unit, const char *what)
 {
   char prefixed[64];
   scene->low = PETSC_MAX_REAL, scene->high = -PETSC_MAX_REAL;
@@ -133,10 +133,10 @@ static void ChooseColours(PlotScene *scene, const PlotOptions *options, const ch
   else snprintf(scene->label, sizeof scene->label, "%.60s", what);
 }
 
-static void CannotRead(Diag *diag, const char *path, const char *reason)
+static void cannot_read(Diag *diag, const char *path, const char *reason)
 {
-  DiagError(diag, NULL, "cannot read '%s': %s", path, reason);
-  DiagHint(diag, "--time chooses other states; the same run with --force writes all of them anew");
+  diag_error(diag, NULL, "cannot read '%s': %s", path, reason);
+  diag_hint(diag, "--time chooses other states; the same run with --force writes all of them anew");
 }
 
 /* grid_000012.hdf beside points_000012.hdf; without one, the grid is left out with a word. */
@@ -149,7 +149,7 @@ static PetscErrorCode AddGrid(PlotScene *scene, PlotFrame *frame, const char *ru
   PetscFunctionBeginUser;
   snprintf(name, sizeof name, "grid%s", number ? number : ".hdf");
   if (!file_exists(run, name)) {
-    DiagWarning(diag, NULL, "the grid is not drawn: there is no '%s/%s'", run, name);
+    diag_warning(diag, NULL, "the grid is not drawn: there is no '%s/%s'", run, name);
     PetscFunctionReturn(0);
   }
   PetscCall(PetscSNPrintf(path, sizeof path, "%s/%s", run, name));
@@ -157,7 +157,7 @@ static PetscErrorCode AddGrid(PlotScene *scene, PlotFrame *frame, const char *ru
     PetscCall(PlotFrameGrid(file, scene, frame, reason));
     PetscCall(VtkReadClose(&file));
   }
-  if (reason[0]) CannotRead(diag, path, reason);
+  if (reason[0]) cannot_read(diag, path, reason);
   PetscFunctionReturn(0);
 }
 
@@ -189,7 +189,7 @@ static PetscErrorCode AddFrame(const PlotOptions *options, const VtkState *state
   PetscFunctionBeginUser;
   PetscCall(PetscSNPrintf(path, sizeof path, "%s/%s", options->run, state->file));
   if (VtkReadOpen(path, &file, reason)) {
-    CannotRead(diag, path, reason);
+    cannot_read(diag, path, reason);
     PetscFunctionReturn(0);
   }
   PetscCall(FindField(file, options->field, diag, &field));
@@ -197,9 +197,9 @@ static PetscErrorCode AddFrame(const PlotOptions *options, const VtkState *state
     subject->field = *field;
     name_subject(subject);
     PetscCall(PlotFrameRead(file, field, &subject->scalar, scene, reason));
-    if (reason[0]) CannotRead(diag, path, reason);
+    if (reason[0]) cannot_read(diag, path, reason);
     else if (scene->frames[scene->n_frames - 1].n == 0)
-      DiagError(diag, NULL, "the state at %.9g s has no points", (double)state->time);
+      diag_error(diag, NULL, "the state at %.9g s has no points", (double)state->time);
   }
   PetscCall(VtkReadClose(&file));
   PetscFunctionReturn(0);
@@ -212,14 +212,14 @@ static PetscErrorCode FillScene(const PlotOptions *options, PetscInt n, const Vt
   PetscFunctionBeginUser;
   scene->up = options->up;
   scene->columns = options->columns;
-  for (PetscInt k = 0; k < n && !DiagErrors(diag); ++k) {
+  for (PetscInt k = 0; k < n && !diag_errors(diag); ++k) {
     PetscCall(AddFrame(options, &states[k], subject, scene, diag));
     char *title = scene->frames[k].title;
     if (n == 1) snprintf(title, 256, "%s at t = %.6g s", subject->words, (double)states[k].time);
     else snprintf(title, 256, "t = %.6g s", (double)states[k].time);
   }
-  if (DiagErrors(diag)) PetscFunctionReturn(0);
-  ChooseColours(scene, options, subject->field.unit, subject->words);
+  if (diag_errors(diag)) PetscFunctionReturn(0);
+  choose_colours(scene, options, subject->field.unit, subject->words);
   PetscCall(PlotFramesShape(scene));
   for (PetscInt k = 0; k < n && options->grid; ++k)
     PetscCall(AddGrid(scene, &scene->frames[k], options->run, &states[k], diag));
@@ -227,8 +227,8 @@ static PetscErrorCode FillScene(const PlotOptions *options, PetscInt n, const Vt
 }
 
 /* state_displacement_magnitude_000012.png; states_displacement_magnitude.png for several. */
-static void PictureName(const PlotOptions *options, PetscInt n, const VtkState *state, const PlotSubject *subject,
-                        char *path)
+static void picture_name(const PlotOptions *options, PetscInt n, const VtkState *state, const PlotSubject *subject,
+                         char *path)
 {
   char name[256];
   const PlotScalar *scalar = &subject->scalar;
@@ -254,8 +254,8 @@ PetscErrorCode PlotState(const PlotOptions *options, Diag *diag, char picture[PE
   PetscCall(FindStates(options, diag, &n, states));
   if (n == 0) PetscFunctionReturn(0);
   PetscCall(FillScene(options, n, states, &subject, diag, &scene));
-  if (!DiagErrors(diag) && (options->out || plot_folder(options->run, diag))) {
-    PictureName(options, n, states, &subject, picture);
+  if (!diag_errors(diag) && (options->out || plot_folder(options->run, diag))) {
+    picture_name(options, n, states, &subject, picture);
     PetscCall(PlotDraw(&scene, options->width, options->height, picture, diag, &done));
   }
   if (!done) picture[0] = 0;

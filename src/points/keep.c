@@ -33,7 +33,7 @@ static PetscErrorCode ChooseNearest(const Grid *grid, PetscInt n_all, Clamp *all
   for (PetscInt k = 0; k < n_all; ++k) {
     PetscReal sum = 0, *x = to + 3 * k;
     for (PetscInt d = 0; d < 3; ++d) x[d] = all[k].from[d];
-    GridClamp(grid, x);
+    grid_clamp(grid, x);
     for (PetscInt d = 0; d < grid->dim; ++d) sum += PetscSqr(x[d] - all[k].from[d]);
     /* a rank without a boundary face leaves x alone, and has nothing to propose */
     nearest[k].distance = sum > 0 ? (double)sum : HUGE_VAL;
@@ -125,7 +125,7 @@ PetscErrorCode LeaversKeepOnBoundary(const Leavers *l, Points *points, const Gri
       ++points->outside.held;
       points->outside.held_mass += points->real[POINT_MASS][p];
     }
-    points->cell[p] = GridLocate(grid, point_real(points, POINT_X, p), -1, point_real(points, POINT_XI, p));
+    points->cell[p] = grid_locate(grid, point_real(points, POINT_X, p), -1, point_real(points, POINT_XI, p));
     if (points->cell[p] >= 0) l->owner[i] = LEAVER_HERE;
   }
   PetscCall(PetscFree(all));

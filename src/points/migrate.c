@@ -15,7 +15,7 @@ static PetscInt candidates(const Leavers *l, PetscInt i, const Points *points, c
 {
   const PetscReal *x = point_real(points, POINT_X, l->point[i]);
   if (l->owner[i] != -1 || !position_is_finite(points->dim, x)) return 0;
-  return GridCandidates(grid, x, size, ranks);
+  return grid_candidates(grid, x, size, ranks);
 }
 
 static PetscErrorCode QuestionsCreate(const Leavers *l, const Points *points, const Grid *grid, PetscMPIInt size,
@@ -77,7 +77,7 @@ static PetscErrorCode Ask(const Exchange *e, const Grid *grid, PetscReal *x, cha
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc2((size_t)(n_asked * dim), &asked, n_asked, &answer));
   PetscCall(ExchangeItems(e, sizeof *x * (size_t)dim, PETSC_FALSE, (char *)x, (char *)asked));
-  for (PetscInt k = 0; k < n_asked; ++k) answer[k] = GridLocate(grid, asked + k * dim, -1, xi) >= 0;
+  for (PetscInt k = 0; k < n_asked; ++k) answer[k] = grid_locate(grid, asked + k * dim, -1, xi) >= 0;
   PetscCall(ExchangeItems(e, 1, PETSC_TRUE, answer, yes));
   PetscCall(PetscFree2(asked, answer));
   PetscFunctionReturn(0);
@@ -202,7 +202,7 @@ PetscErrorCode ArrivalsUnpack(Arrivals *arrivals, Points *points, const Grid *gr
   PetscFunctionBeginUser;
   PetscCall(AppendArrivals(arrivals, points));
   for (PetscInt p = first; p < points->n; ++p) {
-    points->cell[p] = GridLocate(grid, point_real(points, POINT_X, p), -1, point_real(points, POINT_XI, p));
+    points->cell[p] = grid_locate(grid, point_real(points, POINT_X, p), -1, point_real(points, POINT_XI, p));
     PetscCheck(points->cell[p] >= 0, PETSC_COMM_SELF, PETSC_ERR_PLIB,
                "a point arrived that this rank had claimed, and is not here");
   }

@@ -67,10 +67,10 @@ static PetscErrorCode TakeRows(Points *points, const Table *table, PetscInt n_ce
                                PetscInt n_materials, char reason[256])
 {
   const PetscInt n = (PetscInt)table->rows, components = 1;
-  const PetscInt64 *id = TableData(table, "id", COLUMN_INT64, components, reason),
-                   *cell = TableData(table, "cell", COLUMN_INT64, components, reason);
-  const int32_t *body = TableData(table, "body", COLUMN_INT32, components, reason),
-                *material = TableData(table, "material", COLUMN_INT32, components, reason);
+  const PetscInt64 *id = table_data(table, "id", COLUMN_INT64, components, reason),
+                   *cell = table_data(table, "cell", COLUMN_INT64, components, reason);
+  const int32_t *body = table_data(table, "body", COLUMN_INT32, components, reason),
+                *material = table_data(table, "material", COLUMN_INT32, components, reason);
 
   PetscFunctionBeginUser;
   if (reason[0]) PetscFunctionReturn(0);
@@ -91,7 +91,7 @@ static PetscErrorCode TakeRows(Points *points, const Table *table, PetscInt n_ce
       if (n) PetscCall(PetscArrayzero(points->real[f], n * width));
       continue;
     }
-    const PetscReal *data = width ? TableData(table, reals[f].name, COLUMN_REAL, width, reason) : NULL;
+    const PetscReal *data = width ? table_data(table, reals[f].name, COLUMN_REAL, width, reason) : NULL;
     if (data && n) PetscCall(PetscArraycpy(points->real[f], data, count_numbers(n, width)));
   }
   points->n = n;

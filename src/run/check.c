@@ -96,11 +96,11 @@ static PetscErrorCode ReportBodies(const Model *m, Diag *diag, FILE *out)
     PetscCallMPI(MPI_Comm_rank(m->comm, &rank));
     if (rank) continue;
     if (count[b].on_faces)
-      DiagWarning(diag, path, "%d material points of '%s' lie on faces between cells", (int)count[b].on_faces, name);
+      diag_warning(diag, path, "%d material points of '%s' lie on faces between cells", (int)count[b].on_faces, name);
     if (gaps) {
-      DiagWarning(diag, path, "%d cells inside '%s' hold no material point: the grid will see gaps there", (int)gaps,
-                  name);
-      DiagHint(diag, "use more points_per_cell, a finer mesh of the body, or a coarser grid");
+      diag_warning(diag, path, "%d cells inside '%s' hold no material point: the grid will see gaps there", (int)gaps,
+                   name);
+      diag_hint(diag, "use more points_per_cell, a finer mesh of the body, or a coarser grid");
     }
   }
   PetscCall(PetscFree(count));

@@ -42,7 +42,7 @@ static RunMemory memory_of(const Run *r)
 {
   return (RunMemory){.states = r->states.count,
                      .rows = r->rows.count,
-                     .written = OutputCount(r->output),
+                     .written = output_count(r->output),
                      .state_step = r->state_step,
                      .row_step = r->row_step,
                      .iterations_per_step = r->summary.iterations_per_step,
@@ -76,27 +76,27 @@ static PetscErrorCode MemoryToTables(const Run *r, Tables *tables)
 static void mark_from_table(const Table *table, HistoryMark *mark)
 {
   char reason[256];
-  const PetscInt64 *kept = TableData(table, "history", COLUMN_INT64, 3, reason);
+  const PetscInt64 *kept = table_data(table, "history", COLUMN_INT64, 3, reason);
   *mark = kept ? (HistoryMark){kept[0], kept[1], kept[2]} : (HistoryMark){0};
 }
 
 static PetscErrorCode MemoryFromTables(Run *r, const Tables *tables, RunMemory *memory, char reason[256])
 {
-  const Table *table = TablesFind(tables, "run");
+  const Table *table = tables_find(tables, "run");
   PetscInt64 fingerprint;
 
   PetscFunctionBeginUser;
   reason[0] = 0;
   if (!table || table->rows != 1) snprintf(reason, 256, "run is missing");
   if (reason[0]) PetscFunctionReturn(0);
-  const PetscInt64 *kept = TableData(table, "case", COLUMN_INT64, 1, reason);
-  const PetscReal *seconds = TableData(table, "seconds", COLUMN_REAL, 1, reason);
+  const PetscInt64 *kept = table_data(table, "case", COLUMN_INT64, 1, reason);
+  const PetscReal *seconds = table_data(table, "seconds", COLUMN_REAL, 1, reason);
   PetscCall(Fingerprint(r->c, &fingerprint));
   if (kept && *kept != fingerprint) snprintf(reason, 256, "it is of another case than the case.yaml beside it");
   memory->seconds = seconds ? *seconds : 0;
   mark_from_table(table, &memory->history);
   for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(counts); ++i) {
-    const PetscInt64 *data = TableData(table, counts[i].name, COLUMN_INT64, 1, reason);
+    const PetscInt64 *data = table_data(table, counts[i].name, COLUMN_INT64, 1, reason);
     if (!data) continue;
     if (*data < -1 || *data > PETSC_MAX_INT) snprintf(reason, 256, "run/%s makes no sense", counts[i].name);
     *(PetscInt *)((char *)memory + counts[i].offset) = (PetscInt)*data;
@@ -140,7 +140,7 @@ PetscErrorCode CheckpointSave(Run *r)
   PetscFunctionBeginUser;
   if (r->checkpoint_step == r->model->step || r->model->step == 0)
     PetscFunctionReturn(0); /* a run that has done nothing starts again */
-  RunDirCheckpointPath(r->dir, r->model->step, path);
+  run_dir_checkpoint_path(r->dir, r->model->step, path);
   const PetscErrorCode present = RunDirPresent(r->dir);
   PetscCall(RunWritten(r, present));
   if (present) PetscFunctionReturn(0);
@@ -182,7 +182,7 @@ static PetscErrorCode ReadNewest(Run *r, PetscInt *step, Tables **tables)
   *step = -1;
   PetscCall(RunDirCheckpoints(r->dir, &n, &steps));
   for (PetscInt i = 0; i < n && !*tables; ++i) {
-    RunDirCheckpointPath(r->dir, steps[i], path);
+    run_dir_checkpoint_path(r->dir, steps[i], path);
     const PetscErrorCode code = CheckpointRead(r->comm, path, tables, reason);
     if (code && code != PETSC_ERR_FILE_UNEXPECTED && code != PETSC_ERR_FILE_OPEN) PetscCall(code);
     if (code) PetscCall(RunDirLog(r->dir, "warning = the checkpoint %s cannot be used: %s", path, reason));
@@ -210,8 +210,8 @@ PetscErrorCode CheckpointLoad(Run *r, Diag *diag, PetscInt *step, PetscBool *fit
     remember(r, &memory);
     PetscFunctionReturn(0);
   }
-  RunDirCheckpointPath(r->dir, *step, path);
-  DiagError(diag, NULL, "the checkpoint '%s' does not fit: %s", path, reason);
+  run_dir_checkpoint_path(r->dir, *step, path);
+  diag_error(diag, NULL, "the checkpoint '%s' does not fit: %s", path, reason);
   *fits = PETSC_FALSE;
   PetscFunctionReturn(0);
 }

@@ -10,7 +10,7 @@ PetscErrorCode ExtensionBegin(const Run *r, Extension *extension)
 
   PetscFunctionBeginUser;
   extension->before = extension->now = r->c->analysis.end;
-  PetscCall(PetscSNPrintf(path, sizeof path, "%s/case.yaml", RunDirPath(r->dir)));
+  PetscCall(PetscSNPrintf(path, sizeof path, "%s/case.yaml", run_dir_path(r->dir)));
   PetscCall(DiagCreate(&unheard));
   PetscCall(CaseRead(r->comm, path, 0, NULL, unheard, &kept));
   if (kept) extension->before = kept->analysis.end;
@@ -21,17 +21,17 @@ PetscErrorCode ExtensionBegin(const Run *r, Extension *extension)
 
 static void hint_new_run(const Run *r, const Extension *e, Diag *diag)
 {
-  DiagHint(diag, "a new run does it: talus run %s/case.yaml --out ANOTHER --set analysis.end=%g", RunDirPath(r->dir),
-           (double)e->now);
+  diag_hint(diag, "a new run does it: talus run %s/case.yaml --out ANOTHER --set analysis.end=%g", run_dir_path(r->dir),
+            (double)e->now);
 }
 
 PetscBool extension_allowed(const Run *r, const Extension *e, Diag *diag)
 {
   if (r->c->analysis.type != ANALYSIS_STATIC || e->now == e->before) return PETSC_TRUE;
-  DiagError(diag, "analysis.end",
-            "a static run cannot go on to another end than its own, %g s: loads grow with time over analysis.end, so "
-            "that all its steps would be others",
-            (double)e->before);
+  diag_error(diag, "analysis.end",
+             "a static run cannot go on to another end than its own, %g s: loads grow with time over analysis.end, so "
+             "that all its steps would be others",
+             (double)e->before);
   hint_new_run(r, e, diag);
   return PETSC_FALSE;
 }
@@ -39,13 +39,13 @@ PetscBool extension_allowed(const Run *r, const Extension *e, Diag *diag)
 void extension_without_checkpoint(const Run *r, const Extension *e, Diag *diag)
 {
   if (e->now <= e->before) {
-    DiagWarning(diag, NULL, "the run in '%s' is complete and has left no checkpoint: there is nothing to resume",
-                RunDirPath(r->dir));
+    diag_warning(diag, NULL, "the run in '%s' is complete and has left no checkpoint: there is nothing to resume",
+                 run_dir_path(r->dir));
     return;
   }
-  DiagError(diag, "analysis.end",
-            "the run in '%s' is complete at t = %g s and has left no checkpoint from which it could go on to %g s",
-            RunDirPath(r->dir), (double)e->before, (double)e->now);
+  diag_error(diag, "analysis.end",
+             "the run in '%s' is complete at t = %g s and has left no checkpoint from which it could go on to %g s",
+             run_dir_path(r->dir), (double)e->before, (double)e->now);
   hint_new_run(r, e, diag);
 }
 
@@ -53,12 +53,12 @@ void extension_from_checkpoint(const Run *r, const Extension *e, Diag *diag)
 {
   const PetscReal time = r->model->time;
   if (time > e->now * (1 + 1e-12)) {
-    DiagError(diag, "analysis.end", "the run in '%s' has come to t = %g s already, later than analysis.end = %g s",
-              RunDirPath(r->dir), (double)time, (double)e->now);
-    DiagHint(diag, "an end after that lets it go on; its states up to there are in '%s'", RunDirPath(r->dir));
+    diag_error(diag, "analysis.end", "the run in '%s' has come to t = %g s already, later than analysis.end = %g s",
+               run_dir_path(r->dir), (double)time, (double)e->now);
+    diag_hint(diag, "an end after that lets it go on; its states up to there are in '%s'", run_dir_path(r->dir));
   } else if (time >= e->now * (1 - 1e-12)) {
-    DiagWarning(diag, NULL, "the run in '%s' is complete at t = %g s: there is nothing left to do", RunDirPath(r->dir),
-                (double)time);
-    if (r->c->analysis.type == ANALYSIS_DYNAMIC) DiagHint(diag, "a later end lets it go on: --set analysis.end=...");
+    diag_warning(diag, NULL, "the run in '%s' is complete at t = %g s: there is nothing left to do",
+                 run_dir_path(r->dir), (double)time);
+    if (r->c->analysis.type == ANALYSIS_DYNAMIC) diag_hint(diag, "a later end lets it go on: --set analysis.end=...");
   }
 }

@@ -107,14 +107,14 @@ static void warn_of_transfer(const Model *m, Diag *diag)
 {
   const PetscReal share = transfer_share(m);
   if (PetscAbsReal(share) <= TRANSFER_ALLOWED) return;
-  DiagWarning(diag, NULL,
-              "the transfer between points and grid %s %.2g %% of the energy that came in (%.4g of %.4g J): an energy "
-              "balance near 0 does not show it",
-              share > 0 ? "took" : "gave", (double)(100 * PetscAbsReal(share)),
-              (double)PetscAbsReal(m->transfer_energy), (double)m->most_energy);
-  DiagHint(diag,
-           "smaller cells where bodies meet and smaller steps lessen it; measure {energy: transfer} shows when "
-           "(docs/theory.md, Energy)");
+  diag_warning(diag, NULL,
+               "the transfer between points and grid %s %.2g %% of the energy that came in (%.4g of %.4g J): an energy "
+               "balance near 0 does not show it",
+               share > 0 ? "took" : "gave", (double)(100 * PetscAbsReal(share)),
+               (double)PetscAbsReal(m->transfer_energy), (double)m->most_energy);
+  diag_hint(diag,
+            "smaller cells where bodies meet and smaller steps lessen it; measure {energy: transfer} shows when "
+            "(docs/theory.md, Energy)");
 }
 
 static void warn_of_followers(const Model *m, Diag *diag)
@@ -124,13 +124,13 @@ static void warn_of_followers(const Model *m, Diag *diag)
     const MeasureMemory *memory = &m->memory[k];
     if (memory->ended <= 0) continue;
     snprintf(path, sizeof path, "measures.%s.of.tracer", m->c->measures[k].name);
-    DiagWarning(diag, path, "'%s' is empty (nan) from t = %g s on: no node of the grid carries its tracer, last at %s",
-                m->c->measures[k].name, (double)memory->ended, place(m->dim, memory->where, at));
-    DiagHint(diag, "a tracer ends where the material around it has gone, or a cell beyond the edge of the grid");
+    diag_warning(diag, path, "'%s' is empty (nan) from t = %g s on: no node of the grid carries its tracer, last at %s",
+                 m->c->measures[k].name, (double)memory->ended, place(m->dim, memory->where, at));
+    diag_hint(diag, "a tracer ends where the material around it has gone, or a cell beyond the edge of the grid");
   }
   for (PetscInt k = 0; k < m->c->n_loads; ++k)
     if (m->load_memory[k].ended > 0)
-      DiagWarning(
+      diag_warning(
         diag, "loads",
         "the material has left %.0f carriers of load %d behind, the last at t = %g s about %s: their force is gone",
         (double)m->load_memory[k].carriers, (int)k, (double)m->load_memory[k].ended,
@@ -147,16 +147,16 @@ PetscErrorCode LossesWarn(const Model *m, const PetscReal *values, Diag *diag)
   for (PetscInt k = 0; k < m->c->n_measures; ++k) {
     if (!PetscIsNanReal(values[k]) || m->memory[k].ended > 0) continue;
     snprintf(path, sizeof path, "measures.%s", m->c->measures[k].name);
-    DiagWarning(diag, path, "'%s' is empty (nan) at the end: no point is left of what it measures",
-                m->c->measures[k].name);
+    diag_warning(diag, path, "'%s' is empty (nan) at the end: no point is left of what it measures",
+                 m->c->measures[k].name);
   }
   if (o->removed > 0)
-    DiagWarning(diag, "grid.outside", "%.0f points of %.4g kg left the grid and were removed", (double)o->removed,
-                (double)o->mass);
+    diag_warning(diag, "grid.outside", "%.0f points of %.4g kg left the grid and were removed", (double)o->removed,
+                 (double)o->mass);
   if (o->held > 0)
-    DiagWarning(diag, "grid.outside",
-                "points that left the grid were kept on its boundary %.0f times, at most %.0f of %.4g kg in a step",
-                (double)o->held, (double)o->held_most, (double)o->held_most_mass);
+    diag_warning(diag, "grid.outside",
+                 "points that left the grid were kept on its boundary %.0f times, at most %.0f of %.4g kg in a step",
+                 (double)o->held, (double)o->held_most, (double)o->held_most_mass);
   warn_of_transfer(m, diag);
   PetscFunctionReturn(0);
 }

@@ -50,7 +50,7 @@ PetscErrorCode RunOpen(Run *r, const RunOptions *options, Diag *diag)
   PetscCall(WriteCase(r));
   if (!r->failed) PetscCall(OpenHistory(r, NULL));
   if (r->failed) PetscFunctionReturn(0);
-  if (!r->output) PetscCall(OutputCreate(r->model, RunDirPath(r->dir), &r->output));
+  if (!r->output) PetscCall(OutputCreate(r->model, run_dir_path(r->dir), &r->output));
   PetscCall(SummaryBegin(r->model, r->dir));
   PetscCall(RunWriteRow(r));
   if (r->c->output.every != 0 && !r->failed) PetscCall(RunWriteState(r));
@@ -63,17 +63,18 @@ static PetscErrorCode KeepSeries(Run *r, const char *name, PetscInt n, Diag *dia
   PetscMPIInt rank;
 
   PetscFunctionBeginUser;
-  const PetscErrorCode code = VtkSeriesKeep(r->comm, RunDirPath(r->dir), name, n, reason);
+  const PetscErrorCode code = VtkSeriesKeep(r->comm, run_dir_path(r->dir), name, n, reason);
   if (code && code != PETSC_ERR_FILE_WRITE) PetscCall(code);
   PetscCallMPI(MPI_Comm_rank(r->comm, &rank));
-  if (code && !rank) DiagError(diag, NULL, "cannot go on with %s/%s.hdf.series: %s", RunDirPath(r->dir), name, reason);
+  if (code && !rank)
+    diag_error(diag, NULL, "cannot go on with %s/%s.hdf.series: %s", run_dir_path(r->dir), name, reason);
   PetscFunctionReturn(0);
 }
 
 /* Files as they were when the checkpoint was written. */
 static PetscErrorCode Rewind(Run *r, PetscInt step, Diag *diag)
 {
-  const PetscInt states = OutputCount(r->output);
+  const PetscInt states = output_count(r->output);
   PetscInt errors;
 
   PetscFunctionBeginUser;
@@ -99,7 +100,7 @@ static PetscErrorCode IsComplete(const Run *r, PetscBool *complete)
 
   PetscFunctionBeginUser;
   PetscCallMPI(MPI_Comm_rank(r->comm, &rank));
-  snprintf(path, sizeof path, "%s/timings.txt", RunDirPath(r->dir));
+  snprintf(path, sizeof path, "%s/timings.txt", run_dir_path(r->dir));
   FILE *in = rank ? NULL : file_open_read(path);
   while (in && fgets(line, sizeof line, in))
     if (!strcmp(line, "outcome = done\n")) found = 1;
@@ -138,7 +139,7 @@ PetscErrorCode RunResume(Run *r, const RunOptions *options, Diag *diag, PetscBoo
   PetscCall(RunDirOpen(r->comm, options->out, options->quiet, options->log, diag, &r->dir));
   if (!r->dir) PetscFunctionReturn(0);
   PetscCall(ExtensionBegin(r, &extension));
-  PetscCall(OutputCreate(r->model, RunDirPath(r->dir), &r->output)); /* node positions at the start */
+  PetscCall(OutputCreate(r->model, run_dir_path(r->dir), &r->output)); /* node positions at the start */
   if (extension_allowed(r, &extension, diag)) PetscCall(CheckpointLoad(r, diag, &step, &fits));
   if (fits && step < 0) PetscCall(StartAgain(r, options, &extension, diag, complete));
   if (fits && step >= 0) extension_from_checkpoint(r, &extension, diag);

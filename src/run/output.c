@@ -304,7 +304,7 @@ PetscErrorCode OutputWrite(Output *o, Model *m, PetscBool *ok, char reason[256])
   PetscFunctionReturn(0);
 }
 
-PetscInt OutputCount(const Output *o) { return o->count; }
+PetscInt output_count(const Output *o) { return o->count; }
 
 /* Four numbers a state: bytes and checksum of its points and of its grid. */
 PetscErrorCode OutputToTables(const Output *o, Tables *tables)
@@ -325,8 +325,8 @@ PetscErrorCode OutputToTables(const Output *o, Tables *tables)
 
 PetscErrorCode OutputFromTables(Output *o, const Tables *tables, PetscInt count, char reason[256])
 {
-  const Table *table = TablesFind(tables, "states");
-  const PetscInt64 *n = table ? TableData(table, "points_grid", COLUMN_INT64, 4, reason) : NULL;
+  const Table *table = tables_find(tables, "states");
+  const PetscInt64 *n = table ? table_data(table, "points_grid", COLUMN_INT64, 4, reason) : NULL;
 
   PetscFunctionBeginUser;
   if (table && (table->rows != count || !table->everywhere)) snprintf(reason, 256, "%s makes no sense", table->name);
@@ -349,7 +349,7 @@ static PetscBool check_file(const Output *o, const char *name, PetscInt number, 
   state_file(name, number, file);
   snprintf(path, sizeof path, "%s/%s", o->folder, file);
   file_check_seal(path, seal, reason);
-  if (reason[0] && wrong < 3) DiagError(diag, NULL, "cannot go on after '%s': %s", path, reason);
+  if (reason[0] && wrong < 3) diag_error(diag, NULL, "cannot go on after '%s': %s", path, reason);
   return reason[0] != 0;
 }
 
@@ -364,8 +364,8 @@ PetscErrorCode OutputCheck(const Output *o, MPI_Comm comm, Diag *diag)
     wrong += check_file(o, "points", k, &o->seals[k].points, wrong, diag);
     if (o->grid) wrong += check_file(o, "grid", k, &o->seals[k].grid, wrong, diag);
   }
-  if (wrong > 3) DiagError(diag, NULL, "%d files of states are missing or damaged in all", (int)wrong);
+  if (wrong > 3) diag_error(diag, NULL, "%d files of states are missing or damaged in all", (int)wrong);
   if (wrong)
-    DiagHint(diag, "put the files back as they were, or start the run again in another directory: --out OTHER");
+    diag_hint(diag, "put the files back as they were, or start the run again in another directory: --out OTHER");
   PetscFunctionReturn(0);
 }

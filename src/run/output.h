@@ -13,7 +13,7 @@ PetscErrorCode OutputDestroy(Output **output);
 PetscErrorCode OutputWrite(Output *output, Model *model, PetscBool *ok, char reason[256]);
 
 /* How many states were written; the next one gets this number. */
-PetscInt OutputCount(const Output *output);
+PetscInt output_count(const Output *output);
 
 /* Collective. How many states there are, and what tells whether their files are still those that were written. */
 PetscErrorCode OutputToTables(const Output *output, Tables *tables);

@@ -28,7 +28,7 @@ void run_stop(Run *r, const char *reason)
 PetscErrorCode RunWritten(Run *r, PetscErrorCode code)
 {
   PetscFunctionBeginUser;
-  if (code == PETSC_ERR_FILE_WRITE) run_stop(r, RunDirReason(r->dir));
+  if (code == PETSC_ERR_FILE_WRITE) run_stop(r, run_dir_reason(r->dir));
   else PetscCall(code);
   PetscFunctionReturn(0);
 }
@@ -128,7 +128,7 @@ static PetscErrorCode GiveUp(Run *r, const char *what, const char *sentence, con
   PetscFunctionBeginUser;
   PetscCall(RunDirLog(r->dir, "%s = %s", what, reason));
   snprintf(text, sizeof text, "%s %s; the state at t = %g s is kept in %s", sentence, reason, (double)r->model->time,
-           RunDirPath(r->dir));
+           run_dir_path(r->dir));
   run_stop(r, text);
   PetscFunctionReturn(0);
 }
@@ -220,7 +220,7 @@ static PetscErrorCode RunModel(Run *r, const RunOptions *options, Diag *diag, Pe
     for (PetscInt k = 0; measures && k < r->c->n_measures; ++k) measures[k] = NAN;
     *result = RUN_DONE;
   } else if (r->failed) { /* before the first step: nothing is left behind by a run that was not there before */
-    DiagError(diag, NULL, "%s", r->summary.reason);
+    diag_error(diag, NULL, "%s", r->summary.reason);
     if (!options->resume) PetscCall(RunDirDiscard(&r->dir));
   } else {
     PetscCall(Advance(r));

@@ -86,8 +86,8 @@ PetscErrorCode SummaryEnd(Model *m, RunDir *dir, const RunSummary *summary, cons
   char text[2048] = "";
 
   PetscFunctionBeginUser;
-  ModelTimes(m, phase);
-  PetscCall(RunDirLog(dir, "linear = %s unknowns = %d", NewtonLinearName(m->newton),
+  model_times(m, phase);
+  PetscCall(RunDirLog(dir, "linear = %s unknowns = %d", newton_linear_name(m->newton),
                       (int)(m->system->n_active_global * m->system->block)));
   for (PetscInt k = 0; k < m->c->n_measures; ++k)
     PetscCall(

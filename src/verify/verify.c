@@ -85,19 +85,19 @@ static const char *in_the_way(const Verification *v, char name[300])
 }
 
 /* By rank 0. */
-static void PrepareFolder(const Verification *v, Diag *diag)
+static void prepare_folder(const Verification *v, Diag *diag)
 {
   char name[300];
   int error = file_make_folders(v->out);
   const char *taken = error ? NULL : in_the_way(v, name);
   if (taken) {
-    DiagError(diag, NULL, "'%s' holds a %s that talus has not written: it would be overwritten", v->out, taken);
-    DiagHint(diag, "name another directory with --out");
+    diag_error(diag, NULL, "'%s' holds a %s that talus has not written: it would be overwritten", v->out, taken);
+    diag_hint(diag, "name another directory with --out");
     return;
   }
   if (!error && access(v->out, W_OK | X_OK)) error = errno;
   if (!error) error = run_dir_sign(v->out);
-  if (error) DiagError(diag, NULL, "cannot write into '%s': %s", v->out, strerror(error));
+  if (error) diag_error(diag, NULL, "cannot write into '%s': %s", v->out, strerror(error));
 }
 
 /* By rank 0. A figure that cannot be drawn says so, and changes nothing about the numbers. */
@@ -152,28 +152,28 @@ static PetscErrorCode Write(const Verification *v, FILE *out, Diag *diag)
   PetscCall(VerifyMarkdown(v, PETSC_TRUE, &text));
   error = file_write_text(file, text);
   PetscCall(PetscFree(text));
-  if (error) DiagError(diag, NULL, "cannot write '%s': %s", file, strerror(error));
+  if (error) diag_error(diag, NULL, "cannot write '%s': %s", file, strerror(error));
   else fprintf(out, "table: %s\n", file);
   if (!v->options->record) PetscFunctionReturn(0);
   verify_record_file(v->options->folder, file);
   PetscCall(VerifyMarkdown(v, PETSC_FALSE, &text));
   PetscCall(VerifyRecord(file, v->name, text, &error));
   PetscCall(PetscFree(text));
-  if (error) DiagError(diag, NULL, "cannot record in '%s': %s", file, strerror(error));
+  if (error) diag_error(diag, NULL, "cannot record in '%s': %s", file, strerror(error));
   else fprintf(out, "recorded: %s\n", file);
   PetscFunctionReturn(0);
 }
 
-static void CheckOptions(const Verification *v, Diag *diag)
+static void check_options(const Verification *v, Diag *diag)
 {
   char file[PETSC_MAX_PATH_LEN];
   if (!v->options->record) return;
   verify_record_file(v->options->folder, file);
   if (v->options->only) {
-    DiagError(diag, NULL, "--record replaces the whole section of a case, so it does not go with --only");
-    DiagHint(diag, "run the study, then --record --resume takes it over and runs what is missing");
+    diag_error(diag, NULL, "--record replaces the whole section of a case, so it does not go with --only");
+    diag_hint(diag, "run the study, then --record --resume takes it over and runs what is missing");
   } else if (v->rank == 0 && access(file, W_OK))
-    DiagError(diag, NULL, "cannot record in '%s': %s", file, strerror(errno));
+    diag_error(diag, NULL, "cannot record in '%s': %s", file, strerror(errno));
 }
 
 static VerifyOutcome outcome_of(const Verification *v, PetscInt n)
@@ -193,14 +193,14 @@ static PetscErrorCode Prepare(Verification *v, Diag *diag, PetscInt *errors)
 
   PetscFunctionBeginUser;
   name_case(v);
-  CheckOptions(v, diag);
+  check_options(v, diag);
   PetscCall(PetscSNPrintf(file, sizeof file, "%s/reference.yaml", v->options->folder));
   PetscCall(DiagReduce(v->comm, diag, errors));
   if (*errors) PetscFunctionReturn(0);
   PetscCall(ReferenceRead(v->comm, file, diag, &v->reference));
   if (v->reference) PetscCall(VerifyPlan(v, diag));
   PetscCall(DiagSetResolver(diag, NULL, NULL)); /* what follows is about no line of a case */
-  if (v->rank == 0 && !DiagErrors(diag)) PrepareFolder(v, diag);
+  if (v->rank == 0 && !diag_errors(diag)) prepare_folder(v, diag);
   PetscCall(DiagReduce(v->comm, diag, errors));
   PetscFunctionReturn(0);
 }

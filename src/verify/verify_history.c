@@ -15,7 +15,7 @@ static PetscErrorCode ReadCurve(const VerifyRow *r, FigureSeries *s, PetscReal *
   PetscFunctionBeginUser;
   PetscCall(PetscSNPrintf(path, sizeof path, "%s/history.csv", r->folder));
   if (HistoryRead(path, &history, reason)) PetscFunctionReturn(0);
-  const PetscInt column = HistoryColumn(&history, r->study->measure), n = column < 0 ? 0 : history.n_rows;
+  const PetscInt column = history_column(&history, r->study->measure), n = column < 0 ? 0 : history.n_rows;
   PetscCall(PetscMalloc1(2 * n + 1, values));
   const PetscReal last = n > 0 ? history.values[(n - 1) * history.n_columns + column] : 1;
   const PetscReal scale = r->study->figure == VERIFY_FIGURE_NORMAL_HISTORY && last != 0 ? last : 1;

@@ -53,14 +53,14 @@ static PetscErrorCode AddStudy(Verification *v, const StudySpec *study)
   PetscFunctionReturn(0);
 }
 
-static void UnknownMeasure(const Verification *v, const VerifyRow *r, const Case *c, Diag *diag)
+static void unknown_measure(const Verification *v, const VerifyRow *r, const Case *c, Diag *diag)
 {
-  const YamlNode *node = YamlFind(r->study->node, "measure");
+  const YamlNode *node = yaml_find(r->study->node, "measure");
   const char *words[64] = {NULL}, *nearest;
   for (PetscInt k = 0; k < PetscMin(c->n_measures, 63); ++k) words[k] = c->measures[k].name;
-  YamlError(v->reference->document, diag, node, PETSC_FALSE, "%s has no measure '%s'", v->file, r->study->measure);
-  nearest = DiagNearest(r->study->measure, words);
-  if (nearest) DiagHint(diag, "did you mean '%s'?", nearest);
+  yaml_error(v->reference->document, diag, node, PETSC_FALSE, "%s has no measure '%s'", v->file, r->study->measure);
+  nearest = diag_nearest(r->study->measure, words);
+  if (nearest) diag_hint(diag, "did you mean '%s'?", nearest);
 }
 
 PetscErrorCode VerifyPlanRow(Verification *v, VerifyRow *r, Diag *diag, Case **read)
@@ -69,15 +69,15 @@ PetscErrorCode VerifyPlanRow(Verification *v, VerifyRow *r, Diag *diag, Case **r
   PetscCall(CaseRead(v->comm, v->file, r->set.n, (const char *const *)r->set.text, diag, read));
   const Case *c = *read;
   if (!c) {
-    YamlError(v->reference->document, diag, r->row->node, PETSC_FALSE,
-              "the case of this row cannot be read (study %s, series %s, %s = %s)", r->study->name, r->series->name,
-              r->study->sweep.symbol, r->row->at);
+    yaml_error(v->reference->document, diag, r->row->node, PETSC_FALSE,
+               "the case of this row cannot be read (study %s, series %s, %s = %s)", r->study->name, r->series->name,
+               r->study->sweep.symbol, r->row->at);
     PetscFunctionReturn(0);
   }
   r->n_measures = c->n_measures;
   for (r->measure = 0; r->measure < c->n_measures && strcmp(c->measures[r->measure].name, r->study->measure);)
     ++r->measure;
-  if (r->measure == c->n_measures) UnknownMeasure(v, r, c, diag);
+  if (r->measure == c->n_measures) unknown_measure(v, r, c, diag);
   else {
     PetscCall(PetscStrncpy(r->unit, measure_unit(&c->measures[r->measure]), sizeof r->unit));
     PetscCall(PetscCalloc1(r->n_measures, &r->measures));
@@ -85,14 +85,14 @@ PetscErrorCode VerifyPlanRow(Verification *v, VerifyRow *r, Diag *diag, Case **r
   PetscFunctionReturn(0);
 }
 
-static void UnknownStudy(const Verification *v, Diag *diag)
+static void unknown_study(const Verification *v, Diag *diag)
 {
   const char *words[64] = {NULL}, *nearest;
   for (PetscInt k = 0; k < PetscMin(v->reference->n_studies, 63); ++k) words[k] = v->reference->studies[k].name;
-  DiagError(diag, NULL, "there is no study '%s'", v->options->only);
-  nearest = DiagNearest(v->options->only, words);
-  if (nearest) DiagHint(diag, "did you mean '%s'?", nearest);
-  else if (words[0]) DiagHint(diag, "for example --only %s", words[0]);
+  diag_error(diag, NULL, "there is no study '%s'", v->options->only);
+  nearest = diag_nearest(v->options->only, words);
+  if (nearest) diag_hint(diag, "did you mean '%s'?", nearest);
+  else if (words[0]) diag_hint(diag, "for example --only %s", words[0]);
 }
 
 PetscErrorCode VerifyPlanAll(Verification *v, Diag *diag)
@@ -106,7 +106,7 @@ PetscErrorCode VerifyPlanAll(Verification *v, Diag *diag)
     found = PETSC_TRUE;
     PetscCall(AddStudy(v, &v->reference->studies[k]));
   }
-  if (!found) UnknownStudy(v, diag);
+  if (!found) unknown_study(v, diag);
   PetscFunctionReturn(0);
 }
 
@@ -116,8 +116,8 @@ PetscErrorCode VerifyPlan(Verification *v, Diag *diag)
 
   PetscFunctionBeginUser;
   PetscCall(VerifyPlanAll(v, diag));
-  if (v->n == 0 && !DiagErrors(diag)) DiagError(diag, NULL, "there is nothing to run without --full");
-  for (PetscInt k = 0; k < v->n && !DiagErrors(diag); ++k) {
+  if (v->n == 0 && !diag_errors(diag)) diag_error(diag, NULL, "there is nothing to run without --full");
+  for (PetscInt k = 0; k < v->n && !diag_errors(diag); ++k) {
     PetscCall(VerifyPlanRow(v, &v->rows[k], diag, &c));
     PetscCall(CaseDestroy(&c));
   }

@@ -117,7 +117,7 @@ static PetscErrorCode CheckRow(SchemaReader *r, const YamlNode *mapping, void *t
   PetscFunctionBeginUser;
   (void)r;
   row->node = mapping;
-  if (!SchemaParseNumber(YamlFind(mapping, "at"), &row->x)) row->x = NAN;
+  if (!schema_parse_number(yaml_find(mapping, "at"), &row->x)) row->x = NAN;
   PetscFunctionReturn(0);
 }
 
@@ -207,44 +207,44 @@ static const SchemaTable agree_table = {
   .name = "agree", .help = "Two series that must agree.", .entries = agree_entries, .size = sizeof(AgreeSpec)};
 
 /* A name that must be one of the study's series. */
-static PetscInt SeriesNamed(SchemaReader *r, const StudySpec *study, const YamlNode *node, const char *name,
-                            PetscBool key)
+static PetscInt series_named(SchemaReader *r, const StudySpec *study, const YamlNode *node, const char *name,
+                             PetscBool key)
 {
   const char *words[33] = {NULL};
   const PetscInt index = reference_series(study, name), n = PetscMin(study->n_series, 32);
   if (index >= 0) return index;
   for (PetscInt s = 0; s < n; ++s) words[s] = study->series[s].name;
-  YamlError(r->document, r->diag, node, key, "there is no series '%s' in this study", name);
-  SchemaHintWords(r, name, n, words);
+  yaml_error(r->document, r->diag, node, key, "there is no series '%s' in this study", name);
+  schema_hint_words(r, name, n, words);
   return -1;
 }
 
-static void CheckSeriesNames(SchemaReader *r, const StudySpec *study, const YamlNode *numbers)
+static void check_series_names(SchemaReader *r, const StudySpec *study, const YamlNode *numbers)
 {
   for (PetscInt i = 0; numbers && i < numbers->n; ++i)
-    SeriesNamed(r, study, numbers->child[i], numbers->child[i]->key, PETSC_TRUE);
+    series_named(r, study, numbers->child[i], numbers->child[i]->key, PETSC_TRUE);
 }
 
-static void CheckAgree(SchemaReader *r, const StudySpec *study, const YamlNode *list)
+static void check_agree(SchemaReader *r, const StudySpec *study, const YamlNode *list)
 {
   for (PetscInt k = 0; k < study->n_agree; ++k) {
-    const YamlNode *series = YamlFind(list->child[k], "series"), *with = YamlFind(list->child[k], "with");
-    const PetscInt a = SeriesNamed(r, study, series, study->agree[k].series, PETSC_FALSE);
-    const PetscInt b = SeriesNamed(r, study, with, study->agree[k].with, PETSC_FALSE);
+    const YamlNode *series = yaml_find(list->child[k], "series"), *with = yaml_find(list->child[k], "with");
+    const PetscInt a = series_named(r, study, series, study->agree[k].series, PETSC_FALSE);
+    const PetscInt b = series_named(r, study, with, study->agree[k].with, PETSC_FALSE);
     if (a < 0 || b < 0 || b < a) continue;
     SchemaError(r, with, "'%s' must stand before '%s' among the series", study->agree[k].with, study->agree[k].series);
   }
 }
 
 /* The series that sets the pace is the first one: its seconds are known when the others have run. */
-static void CheckPace(SchemaReader *r, const StudySpec *study, const YamlNode *pace)
+static void check_pace(SchemaReader *r, const StudySpec *study, const YamlNode *pace)
 {
   if (!pace) return;
-  if (SeriesNamed(r, study, pace, study->pace, PETSC_FALSE) > 0)
+  if (series_named(r, study, pace, study->pace, PETSC_FALSE) > 0)
     SchemaError(r, pace, "'%s' must stand before all other series", study->pace);
 }
 
-static void CheckLimits(SchemaReader *r, const YamlNode *limits)
+static void check_limits(SchemaReader *r, const YamlNode *limits)
 {
   PetscInt n = 0, found;
   while (report_numbers[n]) ++n;
@@ -252,51 +252,51 @@ static void CheckLimits(SchemaReader *r, const YamlNode *limits)
     for (found = 0; found < n && strcmp(report_numbers[found], limits->child[i]->key);) ++found;
     if (found < n) continue;
     SchemaKeyError(r, limits->child[i], "a run reports no '%s'", limits->child[i]->key);
-    SchemaHintWords(r, limits->child[i]->key, n, report_numbers);
+    schema_hint_words(r, limits->child[i]->key, n, report_numbers);
   }
 }
 
 /* Every number has a source, and a place where a variable is a number has one. */
-static void CheckRows(SchemaReader *r, const StudySpec *study, PetscBool numeric)
+static void check_rows(SchemaReader *r, const StudySpec *study, PetscBool numeric)
 {
   for (PetscInt i = 0; i < study->n_rows; ++i) {
     const RowSpec *row = &study->rows[i];
-    CheckSeriesNames(r, study, YamlFind(row->node, "references"));
-    CheckSeriesNames(r, study, YamlFind(row->node, "sets"));
-    if (study->moments && !(row->x >= 0)) SchemaError(r, YamlFind(row->node, "at"), "a moment is a time in s");
+    check_series_names(r, study, yaml_find(row->node, "references"));
+    check_series_names(r, study, yaml_find(row->node, "sets"));
+    if (study->moments && !(row->x >= 0)) SchemaError(r, yaml_find(row->node, "at"), "a moment is a time in s");
     if (numeric && !(row->x > 0))
-      SchemaError(r, YamlFind(row->node, "at"), "an order or a figure of convergence needs numbers above 0 here");
+      SchemaError(r, yaml_find(row->node, "at"), "an order or a figure of convergence needs numbers above 0 here");
     for (PetscInt s = 0; s < study->n_series; ++s) {
       if (PetscIsNanReal(reference_value(row, &study->series[s])) || reference_source(study, row, &study->series[s]))
         continue;
       SchemaError(r, row->node, "this reference has no source");
-      DiagHint(r->diag, "give source and confidence in the row, its series or the study");
+      diag_hint(r->diag, "give source and confidence in the row, its series or the study");
       break;
     }
     for (PetscInt k = 0; k < i; ++k)
       if (!strcmp(study->rows[k].at, row->at))
-        SchemaError(r, YamlFind(row->node, "at"), "there is a row at %s already", row->at);
+        SchemaError(r, yaml_find(row->node, "at"), "there is a row at %s already", row->at);
   }
 }
 
 static PetscErrorCode CheckStudy(SchemaReader *r, const YamlNode *mapping, void *target)
 {
   StudySpec *study = target;
-  const YamlNode *exact = YamlFind(mapping, "exact");
+  const YamlNode *exact = yaml_find(mapping, "exact");
 
   PetscFunctionBeginUser;
   study->node = mapping;
   if (study->moments && study->has_course)
-    SchemaError(r, YamlFind(mapping, "moments"), "the distance from a course belongs to the whole run");
-  CheckRows(r, study, study->exact.order > 0 || study->figure == VERIFY_FIGURE_CONVERGENCE);
+    SchemaError(r, yaml_find(mapping, "moments"), "the distance from a course belongs to the whole run");
+  check_rows(r, study, study->exact.order > 0 || study->figure == VERIFY_FIGURE_CONVERGENCE);
   if (study->has_exact) {
-    CheckSeriesNames(r, study, YamlFind(exact, "values"));
+    check_series_names(r, study, yaml_find(exact, "values"));
     if (!study->exact.source.text && !study->source.text) SchemaKeyError(r, exact, "the exact value has no source");
   } else if (study->figure == VERIFY_FIGURE_CONVERGENCE)
-    SchemaError(r, YamlFind(mapping, "figure"), "a figure of convergence needs `exact`");
-  CheckAgree(r, study, YamlFind(mapping, "agree"));
-  CheckPace(r, study, YamlFind(mapping, "pace"));
-  CheckLimits(r, YamlFind(mapping, "limits"));
+    SchemaError(r, yaml_find(mapping, "figure"), "a figure of convergence needs `exact`");
+  check_agree(r, study, yaml_find(mapping, "agree"));
+  check_pace(r, study, yaml_find(mapping, "pace"));
+  check_limits(r, yaml_find(mapping, "limits"));
   PetscFunctionReturn(0);
 }
 
@@ -423,7 +423,7 @@ static const SchemaTable reference_table = {
 
 PetscErrorCode ReferenceRead(MPI_Comm comm, const char *file, Diag *diag, Reference **reference)
 {
-  const PetscInt before = DiagErrors(diag);
+  const PetscInt before = diag_errors(diag);
   const DiagPlace whole = {.file = file, .width = 1};
   char *bytes, reason[256];
   size_t size = 0;
@@ -431,16 +431,16 @@ PetscErrorCode ReferenceRead(MPI_Comm comm, const char *file, Diag *diag, Refere
   PetscFunctionBeginUser;
   PetscCall(PetscNew(reference));
   PetscCall(FileReadEverywhere(comm, file, &size, &bytes, reason));
-  if (reason[0]) DiagAt(diag, DIAG_ERROR, &whole, "%s", reason);
+  if (reason[0]) diag_at(diag, DIAG_ERROR, &whole, "%s", reason);
   else PetscCall(YamlCreate(file, bytes, size, diag, &(*reference)->document));
   PetscCall(PetscFree(bytes));
   YamlDocument *document = (*reference)->document;
   if (document && document->root && document->root->kind != YAML_MAPPING)
-    YamlError(document, diag, document->root, PETSC_FALSE, "the file must be a mapping of keys");
+    yaml_error(document, diag, document->root, PETSC_FALSE, "the file must be a mapping of keys");
   else if (document && document->root) {
     SchemaReader reader = {.document = document, .diag = diag};
     PetscCall(SchemaReadTable(&reader, &reference_table, document->root, *reference));
   }
-  if (DiagErrors(diag) > before) PetscCall(ReferenceDestroy(reference));
+  if (diag_errors(diag) > before) PetscCall(ReferenceDestroy(reference));
   PetscFunctionReturn(0);
 }

@@ -16,7 +16,7 @@ static PetscErrorCode ReadRunCase(const Verification *v, Diag *diag, char **text
   PetscFunctionBeginUser;
   PetscCall(VerifyFoundCase(v->comm, v->options->run, text, reason));
   if (!*text)
-    DiagError(diag, NULL, "'%s' is no run directory: %s/case.yaml: %s", v->options->run, v->options->run, reason);
+    diag_error(diag, NULL, "'%s' is no run directory: %s/case.yaml: %s", v->options->run, v->options->run, reason);
   PetscFunctionReturn(0);
 }
 
@@ -32,7 +32,7 @@ static PetscErrorCode KeepRows(Verification *v, const char *text, Diag *diag, Pe
   for (PetscInt k = 0; k < planned; ++k) {
     VerifyRow *r = &v->rows[k];
     is = PETSC_FALSE;
-    if (!DiagErrors(diag)) {
+    if (!diag_errors(diag)) {
       PetscCall(VerifyPlanRow(v, r, diag, &c));
       if (c) PetscCall(VerifyIsCase(c, text, &is));
       if (is) *end = c->analysis.end;
@@ -54,17 +54,17 @@ static PetscErrorCode ReadResults(Verification *v, PetscReal end, Diag *diag)
   PetscFunctionBeginUser;
   PetscCall(PetscSNPrintf(path, sizeof path, "%s/history.csv", v->options->run));
   if (HistoryRead(path, &history, reason)) {
-    DiagError(diag, NULL, "cannot read '%s': %s", path, reason);
+    diag_error(diag, NULL, "cannot read '%s': %s", path, reason);
     PetscFunctionReturn(0);
   }
   summary_read(v->options->run, &summary);
   const PetscReal *last = history.n_rows ? history.values + (history.n_rows - 1) * history.n_columns : NULL;
   if (!last || last[0] < end * (1 - 1e-9))
-    DiagError(diag, NULL, "the run in '%s' ended at %g s, before its %g s: there is nothing to compare",
-              v->options->run, last ? (double)last[0] : 0., (double)end);
+    diag_error(diag, NULL, "the run in '%s' ended at %g s, before its %g s: there is nothing to compare",
+               v->options->run, last ? (double)last[0] : 0., (double)end);
   for (PetscInt k = 0; k < v->n && last; ++k) {
     VerifyRow *r = &v->rows[k];
-    const PetscInt column = HistoryColumn(&history, r->study->measure);
+    const PetscInt column = history_column(&history, r->study->measure);
     r->summary = summary;
     r->seconds = summary.seconds;
     r->measures[r->measure] = column < 0 ? NAN : last[column];
@@ -113,10 +113,10 @@ static PetscErrorCode Compare(Verification *v, Diag *diag)
   PetscCall(ReadRunCase(v, diag, &text));
   if (text) PetscCall(ReferenceRead(v->comm, file, diag, &v->reference));
   if (v->reference) PetscCall(VerifyPlanAll(v, diag));
-  if (!DiagErrors(diag)) PetscCall(KeepRows(v, text, diag, &end));
+  if (!diag_errors(diag)) PetscCall(KeepRows(v, text, diag, &end));
   PetscCall(PetscFree(text));
   PetscCall(DiagSetResolver(diag, NULL, NULL)); /* what follows is about no line of a case */
-  if (v->rank == 0 && v->n && !DiagErrors(diag)) PetscCall(ReadResults(v, end, diag));
+  if (v->rank == 0 && v->n && !diag_errors(diag)) PetscCall(ReadResults(v, end, diag));
   PetscCall(DiagReduce(v->comm, diag, &errors));
   if (errors || !v->n) PetscFunctionReturn(0);
   PetscCall(Share(v));

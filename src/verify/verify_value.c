@@ -46,10 +46,10 @@ static PetscErrorCode ReadValue(const VerifyRow *r, Diag *diag, PetscReal *value
   *value = NAN;
   PetscCall(PetscSNPrintf(path, sizeof path, "%s/history.csv", r->folder));
   if (HistoryRead(path, &history, reason)) {
-    DiagError(diag, NULL, "cannot read '%s': %s", path, reason);
+    diag_error(diag, NULL, "cannot read '%s': %s", path, reason);
     PetscFunctionReturn(0);
   }
-  const PetscInt column = HistoryColumn(&history, r->study->measure);
+  const PetscInt column = history_column(&history, r->study->measure);
   if (column >= 0)
     *value = r->study->moments ? moment(&history, column, r->row->x) : distance(&history, column, &r->study->course);
   PetscCall(HistoryFree(&history));

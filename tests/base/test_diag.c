@@ -34,15 +34,15 @@ static void Layout(void **state)
   Diag *diag;
   (void)state;
   assert_int_equal(DiagCreate(&diag), 0);
-  DiagAt(diag, DIAG_ERROR, &place, "key '%s' of materials.rubber is not known", "yung");
-  DiagHint(diag, "did you mean '%s'?", "young");
-  assert_int_equal(DiagErrors(diag), 1);
+  diag_at(diag, DIAG_ERROR, &place, "key '%s' of materials.rubber is not known", "yung");
+  diag_hint(diag, "did you mean '%s'?", "young");
+  assert_int_equal(diag_errors(diag), 1);
   Expect(diag,
          "case.yaml:12:11: error: key 'yung' of materials.rubber is not known\n"
          "  \trubber: {yung: 90e6}\n"
          "  \t         ^~~~\n"
          "  hint: did you mean 'young'?\n");
-  assert_int_equal(DiagErrors(diag), 0);
+  assert_int_equal(diag_errors(diag), 0);
   assert_int_equal(DiagDestroy(&diag), 0);
   assert_null(diag);
 }
@@ -54,10 +54,10 @@ static void OddCharacters(void **state)
   Diag *diag;
   (void)state;
   assert_int_equal(DiagCreate(&diag), 0);
-  DiagAt(diag, DIAG_WARNING, &accents, "one");
-  DiagAt(diag, DIAG_NOTE, &escape, "two");
-  assert_int_equal(DiagErrors(diag), 0);
-  assert_int_equal(DiagWarnings(diag), 1);
+  diag_at(diag, DIAG_WARNING, &accents, "one");
+  diag_at(diag, DIAG_NOTE, &escape, "two");
+  assert_int_equal(diag_errors(diag), 0);
+  assert_int_equal(diag_warnings(diag), 1);
   Expect(diag,
          "a:1:5: warning: one\n  \xc3\xa9\xe2\x82\xac: x\n      ^\n"
          "b:1:6: note: two\n  ?[2J? x\n       ^\n");
@@ -74,7 +74,7 @@ static void LongLineIsCut(void **state)
   line[499] = 'X';
   const DiagPlace place = {"f", line, 1, 500, 1};
   assert_int_equal(DiagCreate(&diag), 0);
-  DiagAt(diag, DIAG_ERROR, &place, "here");
+  diag_at(diag, DIAG_ERROR, &place, "here");
   text = Flush(diag);
   if (rank == 0) {
     const char *source = strchr(text, '\n') + 1, *caret = strchr(source, '\n') + 1;
@@ -98,11 +98,11 @@ static void SortedByLine(void **state)
   (void)state;
   assert_int_equal(DiagCreate(&diag), 0);
   assert_int_equal(DiagSetResolver(diag, Resolver, file), 0);
-  DiagError(diag, "333", "third");
-  DiagWarning(diag, "1", "first");
-  DiagError(diag, NULL, "whole");
-  DiagError(diag, "22", "second");
-  DiagError(diag, "22", "second again");
+  diag_error(diag, "333", "third");
+  diag_warning(diag, "1", "first");
+  diag_error(diag, NULL, "whole");
+  diag_error(diag, "22", "second");
+  diag_error(diag, "22", "second again");
   Expect(diag,
          "c: error: whole\nc:1: warning: first\nc:2: error: second\nc:2: error: second again\nc:3: error: third\n");
   assert_int_equal(DiagDestroy(&diag), 0);
@@ -115,21 +115,21 @@ static void ManyAreCounted(void **state)
   int lines = 0;
   (void)state;
   assert_int_equal(DiagCreate(&diag), 0);
-  for (int i = 0; i < 1000; ++i) DiagWarning(diag, NULL, "warning %d", i);
-  assert_true(DiagFull(diag, DIAG_WARNING));
-  assert_false(DiagFull(diag, DIAG_ERROR));
-  for (int i = 0; i < 1000; ++i) DiagError(diag, NULL, "error %d", i);
-  DiagHint(diag, "of none that is shown");
-  assert_int_equal(DiagErrors(diag), 1000);
-  assert_int_equal(DiagWarnings(diag), 1000);
+  for (int i = 0; i < 1000; ++i) diag_warning(diag, NULL, "warning %d", i);
+  assert_true(diag_full(diag, DIAG_WARNING));
+  assert_false(diag_full(diag, DIAG_ERROR));
+  for (int i = 0; i < 1000; ++i) diag_error(diag, NULL, "error %d", i);
+  diag_hint(diag, "of none that is shown");
+  assert_int_equal(diag_errors(diag), 1000);
+  assert_int_equal(diag_warnings(diag), 1000);
   char *text = Flush(diag);
   for (const char *c = text; *c; ++c) lines += *c == '\n';
   assert_int_equal(lines, rank == 0 ? 2 * DIAG_MOST + 2 : 0);
   if (rank == 0) assert_non_null(strstr(text, "error: error 49\nand 950 more warnings\nand 950 more errors\n"));
   assert_null(strstr(text, "hint"));
   free(text);
-  assert_int_equal(DiagErrors(diag), 0);
-  DiagError(diag, NULL, "afterwards");
+  assert_int_equal(diag_errors(diag), 0);
+  diag_error(diag, NULL, "afterwards");
   Expect(diag, "error: afterwards\n");
   assert_int_equal(DiagDestroy(&diag), 0);
 }
@@ -141,7 +141,7 @@ static void ManyTravel(void **state)
   Diag *diag;
   (void)state;
   assert_int_equal(DiagCreate(&diag), 0);
-  for (int i = 0; i < 100; ++i) DiagError(diag, NULL, "error %d", i);
+  for (int i = 0; i < 100; ++i) diag_error(diag, NULL, "error %d", i);
   assert_int_equal(DiagReduce(PETSC_COMM_WORLD, diag, &errors), 0);
   assert_true(errors >= 100);
   char *text = Flush(diag);
@@ -158,7 +158,7 @@ static void LongMessageIsCut(void **state)
   memset(huge, 'k', sizeof huge - 1);
   huge[sizeof huge - 1] = '\0';
   assert_int_equal(DiagCreate(&diag), 0);
-  DiagError(diag, NULL, "key '%s' is not known", huge);
+  diag_error(diag, NULL, "key '%s' is not known", huge);
   char *text = Flush(diag);
   assert_true(strlen(text) < 2100);
   if (rank == 0) assert_non_null(strstr(text, "kkk...\n"));
@@ -171,16 +171,16 @@ static void Nearest(void **state)
   const char *const words[] = {"young", "poisson", "points_per_cell", "keep-on-boundary", NULL};
   char huge[2000];
   (void)state;
-  assert_string_equal(DiagNearest("yung", words), "young");
-  assert_string_equal(DiagNearest("yuong", words), "young");
-  assert_string_equal(DiagNearest("Poisson", words), "poisson");
-  assert_string_equal(DiagNearest("points-per-cell", words), "points_per_cell");
-  assert_string_equal(DiagNearest("point_per_cells", words), "points_per_cell");
-  assert_null(DiagNearest("density", words));
-  assert_null(DiagNearest("", words));
+  assert_string_equal(diag_nearest("yung", words), "young");
+  assert_string_equal(diag_nearest("yuong", words), "young");
+  assert_string_equal(diag_nearest("Poisson", words), "poisson");
+  assert_string_equal(diag_nearest("points-per-cell", words), "points_per_cell");
+  assert_string_equal(diag_nearest("point_per_cells", words), "points_per_cell");
+  assert_null(diag_nearest("density", words));
+  assert_null(diag_nearest("", words));
   memset(huge, 'x', sizeof(huge));
   huge[sizeof(huge) - 1] = '\0';
-  assert_null(DiagNearest(huge, words));
+  assert_null(diag_nearest(huge, words));
 }
 
 /* Every rank says the same, and one thing of its own. */
@@ -192,10 +192,10 @@ static void Reduce(void **state)
   Diag *diag;
   (void)state;
   assert_int_equal(DiagCreate(&diag), 0);
-  DiagAt(diag, DIAG_ERROR, &place, "common");
-  DiagHint(diag, "h");
+  diag_at(diag, DIAG_ERROR, &place, "common");
+  diag_hint(diag, "h");
   const DiagPlace mine = {"c", NULL, 10 + rank, 0, 1};
-  DiagAt(diag, DIAG_ERROR, &mine, "rank %d", rank);
+  diag_at(diag, DIAG_ERROR, &mine, "rank %d", rank);
   assert_int_equal(DiagReduce(PETSC_COMM_WORLD, diag, &errors), 0);
   assert_int_equal(errors, 1 + ranks);
   assert_int_equal(DiagReduce(PETSC_COMM_WORLD, diag, &errors), 0);
@@ -216,9 +216,9 @@ static void ReduceKeepsWords(void **state)
   Diag *diag;
   (void)state;
   assert_int_equal(DiagCreate(&diag), 0);
-  DiagAt(diag, DIAG_ERROR, &place, "it is too long");
-  DiagAt(diag, DIAG_ERROR, &place, "it is not known");
-  DiagAt(diag, DIAG_ERROR, &place, "it is too long");
+  diag_at(diag, DIAG_ERROR, &place, "it is too long");
+  diag_at(diag, DIAG_ERROR, &place, "it is not known");
+  diag_at(diag, DIAG_ERROR, &place, "it is too long");
   assert_int_equal(DiagReduce(PETSC_COMM_WORLD, diag, &errors), 0);
   assert_int_equal(errors, 2);
   Expect(diag, "c:7:2: error: it is too long\n  text\n   ^\nc:7:2: error: it is not known\n  text\n   ^\n");

@@ -23,11 +23,11 @@ static void test_columns(void **state)
   OK(TableAdd(points, "position", "m", COLUMN_REAL, 2, x, NULL));
   OK(TableAdd(points, "id", NULL, COLUMN_INT64, 1, NULL, &own));
   for (int k = 0; k < 3; ++k) ((PetscInt64 *)own->data)[k] = 7 * k;
-  assert_ptr_equal(TablesFind(tables, "points"), points);
-  assert_ptr_equal(TablesFind(tables, "other"), other);
-  assert_null(TablesFind(tables, "point"));
-  assert_ptr_equal(TableData(points, "position", COLUMN_REAL, 2, reason), x);
-  assert_int_equal(((const PetscInt64 *)TableData(points, "id", COLUMN_INT64, 1, reason))[2], 14);
+  assert_ptr_equal(tables_find(tables, "points"), points);
+  assert_ptr_equal(tables_find(tables, "other"), other);
+  assert_null(tables_find(tables, "point"));
+  assert_ptr_equal(table_data(points, "position", COLUMN_REAL, 2, reason), x);
+  assert_int_equal(((const PetscInt64 *)table_data(points, "id", COLUMN_INT64, 1, reason))[2], 14);
   assert_string_equal(reason, "");
   OK(TablesDestroy(&tables));
 }
@@ -54,7 +54,7 @@ static void test_other_kinds(void **state)
   OK(TableAdd(points, "position", "m", COLUMN_REAL, 2, x, NULL));
   for (size_t k = 0; k < sizeof table / sizeof *table; ++k) {
     char reason[256] = "";
-    assert_null(TableData(points, table[k].name, table[k].type, table[k].components, reason));
+    assert_null(table_data(points, table[k].name, table[k].type, table[k].components, reason));
     assert_non_null(strstr(reason, table[k].words));
   }
   OK(TablesDestroy(&tables));

@@ -49,7 +49,7 @@ static inline void law_suite_open(LawSuite *suite, const LawUnderTest *test)
   Diag *diag = NULL;
   *suite = (LawSuite){.test = test, .random = {12345}};
   if (DiagCreate(&diag) || MaterialResolve(&c, 0, diag, &suite->material)) fail_msg("%s: not resolved", test->law);
-  if (DiagErrors(diag)) {
+  if (diag_errors(diag)) {
     (void)DiagFlush(diag, stderr);
     fail_msg("%s: bad parameters", test->law);
   }

@@ -111,7 +111,7 @@ static void patch_points(Patch *p, Diag *diag)
   }
   CALL(PointsCreate(p->grid->dim, n_state, 0, &p->points));
   CALL(PointsSeed(p->points, p->grid, &p->c, seed, diag));
-  assert_int_equal(DiagErrors(diag), 0);
+  assert_int_equal(diag_errors(diag), 0);
 }
 
 static WeakFormInput input_of(const Patch *p, PetscReal inertia, const PetscReal *du)

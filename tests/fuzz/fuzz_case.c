@@ -20,7 +20,7 @@ static Case *Read(const uint8_t *data, size_t n)
   const int fd = fuzz_file(data, n, path);
   FUZZ_CALL(DiagCreate(&diag));
   FUZZ_CALL(CaseRead(PETSC_COMM_SELF, path, 0, NULL, diag, &c));
-  if (!c && !DiagErrors(diag)) abort(); /* refused without a word */
+  if (!c && !diag_errors(diag)) abort(); /* refused without a word */
   FUZZ_CALL(DiagFlush(diag, nowhere));
   FUZZ_CALL(DiagDestroy(&diag));
   close(fd);

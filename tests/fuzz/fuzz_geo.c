@@ -33,7 +33,7 @@ static void fuzz_one(const uint8_t *data, size_t n)
   FUZZ_CALL(GeoScriptFree(&script));
   FUZZ_CALL(DiagCreate(&diag));
   FUZZ_CALL(GeoCheck(path, diag, &safe));
-  if ((finding.reason && safe) || (!safe && DiagErrors(diag) != 1)) abort();
+  if ((finding.reason && safe) || (!safe && diag_errors(diag) != 1)) abort();
   FUZZ_CALL(DiagFlush(diag, nowhere));
   FUZZ_CALL(DiagDestroy(&diag));
   close(fd);

@@ -18,7 +18,7 @@ static void Serial(const MshFile *msh, PetscInt dim)
   Diag *diag;
   FUZZ_CALL(DiagCreate(&diag));
   FUZZ_CALL(SerialMeshCreate(msh, dim, "grid.mesh", diag, &mesh));
-  if (!mesh && !DiagErrors(diag)) abort();
+  if (!mesh && !diag_errors(diag)) abort();
   FUZZ_CALL(DiagFlush(diag, nowhere));
   FUZZ_CALL(DiagDestroy(&diag));
   if (mesh) FUZZ_CALL(SerialMeshDestroy(&mesh));

@@ -35,7 +35,7 @@ static inline Grid *make_grid(const Case *c, GridWeight weight, void *context)
   Grid *grid = NULL;
   CALL(DiagCreate(&diag));
   CALL(GridCreate(PETSC_COMM_WORLD, c, weight, context, diag, &grid));
-  if (DiagErrors(diag)) CALL(DiagFlush(diag, stderr));
+  if (diag_errors(diag)) CALL(DiagFlush(diag, stderr));
   assert_non_null(grid);
   CALL(DiagDestroy(&diag));
   return grid;
@@ -81,13 +81,13 @@ static inline void interpolate(const Grid *grid, PetscInt cell, const PetscReal 
 static inline PetscInt check_located(const Grid *grid, const PetscReal *x)
 {
   PetscReal xi[3], again[3];
-  const PetscInt cell = GridLocate(grid, x, -1, xi);
+  const PetscInt cell = grid_locate(grid, x, -1, xi);
   if (cell < 0) return 0;
   assert_true(cell < grid->n_cells);
   assert_true(cell_outside(grid->type, xi) < 1e-9);
   interpolate(grid, cell, xi, again);
   for (PetscInt d = 0; d < grid->dim; ++d) assert_true(PetscAbsReal(again[d] - x[d]) < 1e-10);
-  assert_int_equal(GridLocate(grid, x, 0, xi), cell);
+  assert_int_equal(grid_locate(grid, x, 0, xi), cell);
   return 1;
 }
 

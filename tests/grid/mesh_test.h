@@ -90,7 +90,7 @@ static inline Grid *read_mesh(const char *name, PetscInt dim)
 
 static inline PetscReal region_volume(const Grid *grid, const char *name)
 {
-  const GridSet *set = GridFindSet(grid, name);
+  const GridSet *set = grid_find_set(grid, name);
   PetscReal volume = 0;
   assert_non_null(set);
   for (PetscInt k = 0; k < set->n_cells; ++k) {
@@ -103,7 +103,7 @@ static inline PetscReal region_volume(const Grid *grid, const char *name)
 
 static inline PetscReal boundary_area(const Grid *grid, const char *name, PetscReal normal[3])
 {
-  const GridSet *set = GridFindSet(grid, name);
+  const GridSet *set = grid_find_set(grid, name);
   assert_non_null(set);
   return faces_area(grid, set, normal);
 }
@@ -134,7 +134,7 @@ static inline void check_plane(const Grid *grid)
   assert_near(boundary_area(grid, "shore", normal), 3.0 + PetscSqrtReal(1.25));
   assert_near(normal[1], -3.0);
   assert_near(boundary_area(grid, "77", normal), 2.0); /* a group without a name */
-  const GridSet *corner = GridFindSet(grid, "corner");
+  const GridSet *corner = grid_find_set(grid, "corner");
   assert_non_null(corner);
   assert_int_equal(owned_nodes(grid, corner), 1);
   for (PetscInt k = 0; k < corner->n_nodes; ++k)
@@ -167,7 +167,7 @@ static inline void locate_in_cells(const Grid *grid, const PetscReal *weights)
       PetscMPIInt ranks[8];
       const PetscReal holder = sum_over_ranks(found ? rank : 0);
       PetscBool named = found != 0;
-      for (PetscInt k = GridCandidates(grid, x, 8, ranks) - 1; k >= 0; --k) named |= ranks[k] == (PetscMPIInt)holder;
+      for (PetscInt k = grid_candidates(grid, x, 8, ranks) - 1; k >= 0; --k) named |= ranks[k] == (PetscMPIInt)holder;
       assert_true(named);
     }
   }

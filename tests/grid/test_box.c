@@ -104,7 +104,7 @@ static void sides(void **state)
     Grid *grid = make_grid(&c, NULL, NULL);
     assert_int_equal(grid->n_sets, 2 * grid->dim);
     for (PetscInt s = 0; s < grid->n_sets; ++s) {
-      const GridSet *set = GridFindSet(grid, names[s]);
+      const GridSet *set = grid_find_set(grid, names[s]);
       const PetscInt axis = s / 2;
       PetscReal area = 1.0, normal[3];
       PetscInt nodes = 1;
@@ -117,8 +117,8 @@ static void sides(void **state)
       for (PetscInt k = 0; k < set->n_nodes; ++k)
         assert_true(grid->x[set->nodes[k] * grid->dim + axis] == (s % 2 ? grid->max : grid->min)[axis]);
     }
-    assert_int_equal(count_over_ranks(GridFindSet(grid, "left")->n_faces), boxes[b].x_faces);
-    assert_null(GridFindSet(grid, "nowhere"));
+    assert_int_equal(count_over_ranks(grid_find_set(grid, "left")->n_faces), boxes[b].x_faces);
+    assert_null(grid_find_set(grid, "nowhere"));
     const char **list;
     CALL(GridSetNames(grid, &list));
     assert_string_equal(list[0], "left");
@@ -143,7 +143,7 @@ static void check_candidates(const Grid *grid, const PetscReal *x, PetscInt foun
   MPI_Comm_rank(PETSC_COMM_WORLD, &rank);
   MPI_Comm_size(PETSC_COMM_WORLD, &size);
   holder = sum_over_ranks(found ? rank : 0);
-  const PetscInt n = GridCandidates(grid, x, 8, ranks);
+  const PetscInt n = grid_candidates(grid, x, 8, ranks);
   PetscBool named = found != 0;
   for (PetscInt r = 0; r < n; ++r) {
     assert_true(ranks[r] != rank && ranks[r] >= 0 && ranks[r] < size);
@@ -181,14 +181,14 @@ static void outside(void **state)
   const PetscReal far[][2] = {{-1.001, 1},         {2.001, 1}, {0, 0.4999},     {0, 1e300},
                               {PETSC_INFINITY, 1}, {0, NAN},   {-1.0 - 1e-9, 1}};
   for (size_t k = 0; k < sizeof far / sizeof *far; ++k) {
-    assert_int_equal(GridLocate(grid, far[k], 3, xi), -1);
-    assert_int_equal(GridCandidates(grid, far[k], 8, ranks), 0);
+    assert_int_equal(grid_locate(grid, far[k], 3, xi), -1);
+    assert_int_equal(grid_candidates(grid, far[k], 8, ranks), 0);
   }
   /* Rounding at the outer boundary loses no point. */
   const PetscReal near[][2] = {{-1.0 - 1e-13, 1.0}, {2.0 + 1e-13, 2.5 + 1e-13}};
   for (size_t k = 0; k < 2; ++k) assert_int_equal(count_over_ranks(check_located(grid, near[k])), 1);
   PetscReal x[2] = {-7.0, 1.25};
-  GridClamp(grid, x);
+  grid_clamp(grid, x);
   assert_true(x[0] == -1.0 && x[1] == 1.25);
   assert_int_equal(count_over_ranks(check_located(grid, x)), 1);
   CALL(GridDestroy(&grid));
@@ -343,7 +343,7 @@ static void lines_belong_to_upper_cells(void **state)
     for (PetscInt i = 0; i < grid->n_nodes; ++i) {
       const PetscReal *x = grid->x + 2 * i;
       PetscReal xi[2];
-      const PetscInt cell = GridLocate(grid, x, -1, xi);
+      const PetscInt cell = grid_locate(grid, x, -1, xi);
       if (cell < 0) continue;
       for (int d = 0; d < 2; ++d) assert_true(xi[d] == (x[d] == c.grid.max[d] ? 1 : -1));
     }

@@ -35,7 +35,7 @@ static char *judge(PetscBool *safe)
   assert_int_equal(DiagCreate(&diag), 0);
   snprintf(path, sizeof path, "%s/a.geo", folder);
   assert_int_equal(GeoCheck(path, diag, safe), 0);
-  assert_int_equal(DiagErrors(diag), *safe ? 0 : 1);
+  assert_int_equal(diag_errors(diag), *safe ? 0 : 1);
   FILE *out = open_memstream(&text, &size);
   assert_int_equal(DiagFlush(diag, out), 0);
   assert_int_equal(fclose(out), 0);

@@ -51,8 +51,8 @@ static void solids(void **state)
     assert_near(normal[2], -2.5);
     assert_near(boundary_area(grid, "roof", normal), 2.5);
     assert_near(normal[2], 2.5);
-    assert_int_equal(owned_nodes(grid, GridFindSet(grid, "edge")), 5);
-    assert_int_equal(count_over_ranks(GridFindSet(grid, "edge")->n_faces), 0);
+    assert_int_equal(owned_nodes(grid, grid_find_set(grid, "edge")), 5);
+    assert_int_equal(count_over_ranks(grid_find_set(grid, "edge")->n_faces), 0);
     if (k >= 2) assert_int_equal(grid->n_cells_global, 64);
     check_ghosts(grid);
     CALL(GridDestroy(&grid));
@@ -90,8 +90,8 @@ static void inside_and_outside(void **state)
       assert_int_equal(count_over_ranks(check_located(grid, x)), inside);
       if (inside || size > 1) continue;
       const PetscReal start[2] = {x[0], x[1]};
-      GridClamp(grid, x);
-      assert_true(GridLocate(grid, x, -1, xi) >= 0);
+      grid_clamp(grid, x);
+      assert_true(grid_locate(grid, x, -1, xi) >= 0);
       if (x[0] > 0.01 && x[0] < 1.99 && x[1] > 0.5) assert_near(PetscHypotReal(x[0] - start[0], x[1] - 1.0), 0);
       /* No boundary node is nearer than the position chosen. */
       const PetscReal moved = PetscHypotReal(x[0] - start[0], x[1] - start[1]);
@@ -102,7 +102,7 @@ static void inside_and_outside(void **state)
     }
   const PetscReal nan[2] = {NAN, 0.5};
   PetscReal xi[2];
-  assert_int_equal(GridLocate(grid, nan, 0, xi), -1);
+  assert_int_equal(grid_locate(grid, nan, 0, xi), -1);
   CALL(GridDestroy(&grid));
 }
 
@@ -116,11 +116,11 @@ static void clamp_solid(void **state)
     Grid *grid = read_mesh("clamp.msh", 3);
     PetscReal x[3] = {1.1, 0.3, -2.0}, y[3] = {-1.0, 0.4, 0.5}, xi[3];
     if (size == 1) {
-      GridClamp(grid, x);
+      grid_clamp(grid, x);
       assert_near(PetscAbsReal(x[0] - 1.1) + PetscAbsReal(x[1] - 0.3) + PetscAbsReal(x[2]), 0);
-      GridClamp(grid, y);
+      grid_clamp(grid, y);
       assert_near(PetscAbsReal(y[0]) + PetscAbsReal(y[1] - 0.4) + PetscAbsReal(y[2] - 0.5), 0);
-      assert_true(GridLocate(grid, x, -1, xi) >= 0 && GridLocate(grid, y, -1, xi) >= 0);
+      assert_true(grid_locate(grid, x, -1, xi) >= 0 && grid_locate(grid, y, -1, xi) >= 0);
     }
     CALL(GridDestroy(&grid));
   }

@@ -242,20 +242,20 @@ static void by_table(void **state)
     Grid *grid = read_mesh("table.msh", meshes[m].dim), *shared = share_by_disk(grid, 0.7, 0.5, 0.4, &reached);
     CALL(TablesCreate(&tables));
     CALL(GridPartitionToTable(shared, tables));
-    Table *table = TablesFind(tables, "partition");
+    Table *table = tables_find(tables, "partition");
     CALL(GridFromPartition(grid, table, &again, reason));
     assert_int_equal(reason[0], 0);
     same_grids(shared, again);
     CALL(GridDestroy(&again));
     /* One rank's table is damaged, and all are told. */
     if (my_rank() == ranks() - 1)
-      *(PetscInt64 *)TableData(table, "cell", COLUMN_INT64, 1, reason) = grid->n_cells_global;
+      *(PetscInt64 *)table_data(table, "cell", COLUMN_INT64, 1, reason) = grid->n_cells_global;
     CALL(GridFromPartition(grid, table, &again, reason));
     assert_true(!again && strstr(reason, "no such cell"));
     reason[0] = 0;
     if (my_rank() == ranks() - 1) --table->rows;
     if (my_rank() == ranks() - 1)
-      *(PetscInt64 *)TableData(table, "cell", COLUMN_INT64, 1, reason) = shared->global_cell[0];
+      *(PetscInt64 *)table_data(table, "cell", COLUMN_INT64, 1, reason) = shared->global_cell[0];
     CALL(GridFromPartition(grid, table, &again, reason));
     assert_true(!again && strstr(reason, "is missing"));
     CALL(TablesDestroy(&tables));
@@ -277,8 +277,8 @@ static void two_cells(void **state)
   assert_near(reached, ranks() == 1 ? 1 : ranks() / 2.0);
   assert_near(grid_volume(shared), 1.0);
   assert_near(region_volume(shared, "1"), 1.0);
-  assert_int_equal(owned_nodes(shared, GridFindSet(shared, "5")), 2);
-  assert_int_equal(count_over_ranks(GridFindSet(shared, "5")->n_faces), 1);
+  assert_int_equal(owned_nodes(shared, grid_find_set(shared, "5")), 2);
+  assert_int_equal(count_over_ranks(grid_find_set(shared, "5")->n_faces), 1);
   check_ghosts(shared);
   Grid *back = send_home(shared, grid);
   same_grids(grid, back);

@@ -48,7 +48,7 @@ __attribute__((noinline, unused)) static Case *read_bytes(const char *bytes, siz
   write_case(bytes, size, name);
   assert_int_equal(DiagCreate(&diag), 0);
   assert_int_equal(CaseRead(PETSC_COMM_WORLD, name, n_set, set, diag, &c), 0);
-  assert_true((c == NULL) == (DiagErrors(diag) > 0));
+  assert_true((c == NULL) == (diag_errors(diag) > 0));
   FILE *out = open_memstream(&text, &length);
   assert_int_equal(DiagFlush(diag, out), 0);
   fclose(out);

@@ -129,11 +129,11 @@ static void Resolve(void **state)
   DiagCreate(&diag);
   assert_int_equal(CaseRead(PETSC_COMM_WORLD, name, 1, set, diag, &c), 0);
   unlink(name);
-  DiagError(diag, "bodies[0].shape.box.min", "box");
-  DiagError(diag, "materials.rubber.young", "value");
-  DiagError(diag, "bodies[0].region", "absent");
-  DiagError(diag, "newton.ease", "argument");
-  DiagError(diag, NULL, "whole");
+  diag_error(diag, "bodies[0].shape.box.min", "box");
+  diag_error(diag, "materials.rubber.young", "value");
+  diag_error(diag, "bodies[0].region", "absent");
+  diag_error(diag, "newton.ease", "argument");
+  diag_error(diag, NULL, "whole");
   FILE *out = open_memstream(&text, &size);
   DiagFlush(diag, out);
   fclose(out);

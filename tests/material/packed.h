@@ -8,7 +8,7 @@ static inline const Law *packed_law(const char *name, PetscReal young, PetscReal
 {
   const PetscReal value[ELASTIC_CONSTANTS] = {young, poisson};
   Elasticity elastic;
-  const Law *law = LawFind(name);
+  const Law *law = law_find(name);
   if (law && elasticity_from_two(3u, value, &elastic)) law->prepare(&elastic, given, packed);
   return law;
 }

@@ -77,11 +77,11 @@ static void test_every_law_is_listed(void **state)
 static void test_registry(void **state)
 {
   (void)state;
-  assert_null(LawFind("no-such-law"));
-  assert_null(LawFind(NULL));
+  assert_null(law_find("no-such-law"));
+  assert_null(law_find(NULL));
   for (const Law *const *law = laws; *law; ++law) {
     PetscInt n_state = 0, n_parameters = 0;
-    assert_ptr_equal(LawFind((*law)->name), *law);
+    assert_ptr_equal(law_find((*law)->name), *law);
     assert_true((*law)->help && strlen((*law)->help) > 10);
     for (const LawField *field = (*law)->fields; field->name; ++field) n_state += field->components;
     for (const LawParameter *p = (*law)->parameters; p->name; ++p, ++n_parameters)

@@ -92,7 +92,7 @@ static void resolve(const char *law, PetscReal density, PetscInt n, const NamedV
 static void finish(Outcome *out, PetscInt errors, const char *path, const char *words)
 {
   FILE *stream = open_memstream(&out->text, &out->size);
-  assert_int_equal(DiagErrors(out->diag), errors);
+  assert_int_equal(diag_errors(out->diag), errors);
   assert_int_equal(DiagFlush(out->diag, stream), 0);
   fclose(stream);
   if (path && !strstr(out->text, path)) fail_msg("no '%s' in: %s", path, out->text);
@@ -113,7 +113,7 @@ static void test_resolve(void **state)
   Outcome out;
   resolve("neo-hookean", 1000, 2, good, &out);
   assert_string_equal(out.material.name, "rubber");
-  assert_ptr_equal(out.material.law, LawFind("neo-hookean"));
+  assert_ptr_equal(out.material.law, law_find("neo-hookean"));
   assert_true(out.material.density == 1000 && out.material.elastic.young == 5.0);
   assert_true(fabs(out.material.wave_modulus - 6.0) < 1e-14); /* lambda = mu = 2 */
   assert_true(fabs(out.material.parameters[0] - 2.0) < 1e-15 && fabs(out.material.parameters[1] - 2.0) < 1e-15);

@@ -347,10 +347,10 @@ static void test_refused(void **unused)
   Diag *diag = NULL;
   assert_int_equal(DiagCreate(&diag), 0);
   assert_int_equal(MaterialResolve(&c, 0, diag, &material), 0);
-  assert_int_equal(DiagErrors(diag), 1);
+  assert_int_equal(diag_errors(diag), 1);
   value[4].value = 30;
   assert_int_equal(MaterialResolve(&c, 0, diag, &material), 0);
-  assert_int_equal(DiagErrors(diag), 1);
+  assert_int_equal(diag_errors(diag), 1);
   assert_true(fabs(material.parameters[MC_K] - 3.0) < 1e-14 && material.parameters[MC_CUT] == INFINITY);
   assert_int_equal(DiagDestroy(&diag), 0);
 }

@@ -44,8 +44,8 @@ static void test_golden(void **state)
   int n = 0;
   for (struct fy_node *item; (item = fy_node_sequence_iterate(cases, &at)); ++n) {
     const char *name = golden_text(item, "law");
-    if (!strcmp(name, "coupled")) check_golden(item, LawFind("neo-hookean"));
-    else if (!strcmp(name, "J-1")) check_golden(item, LawFind("neo-hookean-split"));
+    if (!strcmp(name, "coupled")) check_golden(item, law_find("neo-hookean"));
+    else if (!strcmp(name, "J-1")) check_golden(item, law_find("neo-hookean-split"));
     else fail_msg("golden data: unknown law %s", name);
   }
   assert_int_equal(n, 24);
@@ -58,7 +58,7 @@ static void pressure(const char *name, PetscReal J, PetscReal expected)
   const PetscReal stretch = cbrt(J), f[9] = {stretch, 0, 0, 0, stretch, 0, 0, 0, stretch};
   const PetscReal none[6] = {expected, expected, expected, 0, 0, 0};
   PetscReal packed[LAW_MAX_PARAMETERS], b[6], state[6], tau[6];
-  const Law *law = LawFind(name);
+  const Law *law = law_find(name);
   pack(law, 3.0, 0.4, packed); /* bulk modulus 5, shear 3 / 2.8 */
   law_initial_state(law, b);
   assert_int_equal(law->update(packed, 1, f, b, state, tau, NULL), LAW_OK);
@@ -88,7 +88,7 @@ static void test_tangent_at_rest(void **state)
     hooke[7 * (i + 3)] = mu;
   }
   for (int i = 0; i < 3; ++i) {
-    const Law *law = LawFind(names[i]);
+    const Law *law = law_find(names[i]);
     pack(law, 3.0, 0.4, packed);
     law_initial_state(law, b);
     assert_int_equal(law->update(packed, 1, f, b, out, tau, c), LAW_OK);
@@ -126,15 +126,15 @@ static void test_initial_stress_limits(void **state)
     const PetscReal J = sqrt(sym_det(b));
     assert_true(fabs(tau[0] - 1.5 * J) < 1e-13 && fabs(tau[1] + 1.5 * J) < 1e-13 && fabs(tau[2]) < 1e-13);
   }
-  pack(LawFind("neo-hookean"), 3.0, 0.4, packed);
-  assert_false(LawFind("neo-hookean")->initial_stress(packed, pull, b)); /* its peak tension is lower */
-  assert_true(LawFind("neo-hookean")->initial_stress(packed, push, b));
-  pack(LawFind("neo-hookean-split"), 3.0, 0.4, packed);
-  assert_false(LawFind("neo-hookean-split")->initial_stress(packed, push, b)); /* p > -K always */
-  assert_true(LawFind("neo-hookean-split")->initial_stress(packed, pull, b));
-  pack(LawFind("neo-hookean-split-log"), 3.0, 0.4, packed);
-  assert_false(LawFind("neo-hookean-split-log")->initial_stress(packed, pull, b)); /* p < K / e always */
-  assert_true(LawFind("neo-hookean-split-log")->initial_stress(packed, push, b));
+  pack(law_find("neo-hookean"), 3.0, 0.4, packed);
+  assert_false(law_find("neo-hookean")->initial_stress(packed, pull, b)); /* its peak tension is lower */
+  assert_true(law_find("neo-hookean")->initial_stress(packed, push, b));
+  pack(law_find("neo-hookean-split"), 3.0, 0.4, packed);
+  assert_false(law_find("neo-hookean-split")->initial_stress(packed, push, b)); /* p > -K always */
+  assert_true(law_find("neo-hookean-split")->initial_stress(packed, pull, b));
+  pack(law_find("neo-hookean-split-log"), 3.0, 0.4, packed);
+  assert_false(law_find("neo-hookean-split-log")->initial_stress(packed, pull, b)); /* p < K / e always */
+  assert_true(law_find("neo-hookean-split-log")->initial_stress(packed, push, b));
 }
 
 int main(int argc, char **argv)

@@ -33,7 +33,7 @@ static Material mixed_material(const Law *law)
   const Case c = {.formulation = (char *)"mixed", .n_materials = 1, .materials = &spec};
   CALL(DiagCreate(&diag));
   CALL(MaterialResolve(&c, 0, diag, &m));
-  assert_int_equal(DiagErrors(diag), 0);
+  assert_int_equal(diag_errors(diag), 0);
   CALL(DiagDestroy(&diag));
   return m;
 }

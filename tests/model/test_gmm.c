@@ -249,7 +249,7 @@ static PetscInt warnings_at(PetscReal bottom)
   CALL(DiagCreate(&diag));
   CALL(ModelCreate(PETSC_COMM_WORLD, &b.c, diag, &m));
   CHECK(m, "the case was refused");
-  const PetscInt warnings = DiagWarnings(diag);
+  const PetscInt warnings = diag_warnings(diag);
   CALL(ModelDestroy(&m));
   CALL(DiagDestroy(&diag));
   return warnings;
@@ -311,8 +311,8 @@ static void heap(const BasisSpec *basis)
   for (int step = 0; step < 150; ++step) {
     CHECK(model_step(m, 0.004).cuts == 0, "step %d was halved", step);
     model_step(alone, 0.004);
-    CHECK(ranks > 1 || strstr(NewtonLinearName(m->newton), "BiCGStab"), "step %d: %s", step,
-          NewtonLinearName(m->newton));
+    CHECK(ranks > 1 || strstr(newton_linear_name(m->newton), "BiCGStab"), "step %d: %s", step,
+          newton_linear_name(m->newton));
     nearest = PetscMin(nearest, nearest_nodes(m));
   }
   const PetscReal apart = points_difference(m, alone, POINT_X);
@@ -446,9 +446,9 @@ static void solvers(PetscBool sand)
   moved[0] = points_difference(m[0], m[1], POINT_U);
   moved[1] = PetscHypotReal(v[0][0] - v[1][0], v[0][1] - v[1][1]) / PetscHypotReal(v[1][0], v[1][1]);
   PetscPrintf(PETSC_COMM_WORLD, "%s by %s and by %s: u differs by %.2g m, reactions by %.2g\n",
-              sand ? "sand" : "rubber", NewtonLinearName(m[0]->newton), NewtonLinearName(m[1]->newton),
+              sand ? "sand" : "rubber", newton_linear_name(m[0]->newton), newton_linear_name(m[1]->newton),
               (double)moved[0], (double)moved[1]);
-  CHECK(strstr(NewtonLinearName(m[0]->newton), sand ? "BiCGStab" : "conjugate"), "not the iterative solver");
+  CHECK(strstr(newton_linear_name(m[0]->newton), sand ? "BiCGStab" : "conjugate"), "not the iterative solver");
   CHECK(moved[0] < 1e-8 && moved[1] < 1e-6, "the solvers disagree");
   for (int k = 0; k < 2; ++k) CALL(ModelDestroy(&m[k]));
 }

@@ -43,7 +43,7 @@ static void solvers(const char *method, CellType cell, PetscInt cells_per_side, 
     for (int step = 0; step < (dynamic ? 3 : 1); ++step) {
       const StepReport r = model_step(m[k], 1);
       CHECK(r.cuts == 0, "the step was halved");
-      if (k) CHECK(strstr(NewtonLinearName(m[k]->newton), "GMRES"), "%s", NewtonLinearName(m[k]->newton));
+      if (k) CHECK(strstr(newton_linear_name(m[k]->newton), "GMRES"), "%s", newton_linear_name(m[k]->newton));
       CHECK(r.newton.linear_iterations <= 60 * r.newton.iterations, "%d linear iterations in %d of Newton",
             (int)r.newton.linear_iterations, (int)r.newton.iterations);
     }

@@ -66,13 +66,13 @@ static void Check(MPI_Comm comm, const char *path, PetscBool *damaged)
     return;
   }
   assert_int_equal(tables->n, 3);
-  const PetscReal *time = TableData(TablesFind(tables, "whole"), "time", COLUMN_REAL, 1, reason);
+  const PetscReal *time = table_data(tables_find(tables, "whole"), "time", COLUMN_REAL, 1, reason);
   assert_true(time[0] == 0.1 && time[1] == -1e300);
-  const Table *table = TablesFind(tables, "rows");
-  const PetscReal *x = TableData(table, "x", COLUMN_REAL, 3, reason);
-  const PetscInt64 *id = TableData(table, "id", COLUMN_INT64, 1, reason);
-  const int32_t *kind = TableData(table, "kind", COLUMN_INT32, 1, reason);
-  const unsigned char *flag = TableData(table, "flag", COLUMN_BYTE, 1, reason);
+  const Table *table = tables_find(tables, "rows");
+  const PetscReal *x = table_data(table, "x", COLUMN_REAL, 3, reason);
+  const PetscInt64 *id = table_data(table, "id", COLUMN_INT64, 1, reason);
+  const int32_t *kind = table_data(table, "kind", COLUMN_INT32, 1, reason);
+  const unsigned char *flag = table_data(table, "flag", COLUMN_BYTE, 1, reason);
   PetscInt64 first = all_rows() / size * rank + PetscMin(rank, all_rows() % size);
   assert_true(labs((long)(table->rows - all_rows() / size)) <= 1);
   for (PetscInt64 i = 0; i < table->rows; ++i) {
@@ -81,11 +81,11 @@ static void Check(MPI_Comm comm, const char *path, PetscBool *damaged)
     assert_int_equal(kind[i], -(first + i));
     assert_int_equal(flag[i], (first + i) & 255);
   }
-  assert_int_equal(TablesFind(tables, "none")->rows, 0);
-  assert_null(TablesFind(tables, "nothing"));
-  assert_null(TableData(table, "x", COLUMN_REAL, 2, reason));
+  assert_int_equal(tables_find(tables, "none")->rows, 0);
+  assert_null(tables_find(tables, "nothing"));
+  assert_null(table_data(table, "x", COLUMN_REAL, 2, reason));
   assert_string_equal(reason, "rows/x is of another kind: 3 numbers a row instead of 2");
-  assert_null(TableData(table, "y", COLUMN_REAL, 2, reason));
+  assert_null(table_data(table, "y", COLUMN_REAL, 2, reason));
   assert_string_equal(reason, "rows/y is missing");
   assert_int_equal(TablesDestroy(&tables), 0);
 }

@@ -50,9 +50,9 @@ static void CheckRows(const char *folder, PetscInt n)
   for (PetscInt k = 0; k < 3; ++k) {
     assert_string_equal(history.names[2 + k], names[k]);
     assert_string_equal(history.units[2 + k], units[k]);
-    assert_int_equal(HistoryColumn(&history, names[k]), 2 + k);
+    assert_int_equal(history_column(&history, names[k]), 2 + k);
   }
-  assert_int_equal(HistoryColumn(&history, "nothing"), -1);
+  assert_int_equal(history_column(&history, "nothing"), -1);
   assert_int_equal(HistoryFree(&history), 0);
 }
 
@@ -98,12 +98,12 @@ static void test_resume(void **state)
   CheckRows(folder, 6);
   WriteRows(dir, 6, 15);
   CheckRows(folder, 15);
-  assert_int_equal(DiagErrors(diag), 0);
+  assert_int_equal(diag_errors(diag), 0);
   assert_int_equal(HistoryOpenFrom(dir, 2, names, units, 10, NULL, diag), 0); /* other measures */
-  if (test_rank() == 0) assert_int_equal(DiagErrors(diag), 1);
+  if (test_rank() == 0) assert_int_equal(diag_errors(diag), 1);
   CheckRows(folder, 15);
   assert_int_equal(HistoryOpenFrom(dir, 3, names, units, 20, NULL, diag), 0); /* rows are missing */
-  if (test_rank() == 0) assert_int_equal(DiagErrors(diag), 2);
+  if (test_rank() == 0) assert_int_equal(diag_errors(diag), 2);
   CheckRows(folder, 15);
   Stop(&dir, &diag);
   TestRemove(folder);

@@ -42,7 +42,7 @@ static void Try(const char *path, PetscBool force, const char *complaint)
   assert_int_equal(DiagCreate(&diag), 0);
   assert_int_equal(RunDirCreate(PETSC_COMM_WORLD, path, force, PETSC_TRUE, NULL, diag, &dir), 0);
   assert_int_equal(dir == NULL, complaint != NULL);
-  if (dir) assert_string_equal(RunDirPath(dir), path);
+  if (dir) assert_string_equal(run_dir_path(dir), path);
   char *text = Complaints(diag);
   if (test_rank() == 0) {
     if (complaint) assert_non_null(strstr(text, complaint));

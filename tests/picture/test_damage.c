@@ -91,7 +91,7 @@ static void ReadForPicture(const char *name, char reason[256])
   assert_true(code == 0 || code == PETSC_ERR_FILE_OPEN);
   assert_true((code != 0) == (reason[0] != 0));
   if (code) return;
-  for (PetscInt i = 0, n = VtkReadFields(file, &fields); i < n && !reason[0]; ++i)
+  for (PetscInt i = 0, n = vtk_read_fields(file, &fields); i < n && !reason[0]; ++i)
     assert_int_equal(PlotFrameRead(file, &fields[i], &scalar, &scene, reason), 0);
   if (!reason[0] && scene.n_frames) assert_int_equal(PlotFramesShape(&scene), 0);
   if (!reason[0] && scene.n_frames)

@@ -131,10 +131,10 @@ static void test_scalars(void **state)
   assert_true(plot_scalar_choose("velocity", 3, "y", diag, &scalar) && plot_scalar_value(&scalar, 3, vector) == 3);
   assert_true(plot_scalar_choose("velocity", 3, "2", diag, &scalar) && plot_scalar_value(&scalar, 3, vector) == 6);
   assert_true(plot_scalar_choose("mass", 1, NULL, diag, &scalar) && plot_scalar_value(&scalar, 1, vector) == 2);
-  assert_int_equal(DiagErrors(diag), 0);
+  assert_int_equal(diag_errors(diag), 0);
   assert_false(plot_scalar_choose("velocity", 3, "mises", diag, &scalar));
   assert_false(plot_scalar_choose("velocity", 3, "3", diag, &scalar));
-  assert_int_equal(DiagErrors(diag), 2);
+  assert_int_equal(diag_errors(diag), 2);
   assert_int_equal(DiagDestroy(&diag), 0);
 }
 
@@ -387,10 +387,10 @@ static void test_convergence(void **state)
   snprintf(png, sizeof png, "%s/it's \"convergence\" `x`.png", folder);
   assert_int_equal(DiagCreate(&diag), 0);
   assert_int_equal(FigureConvergence("Cantilever", "h [m]", "error", 3, series, 2, png, diag, &done), 0);
-  assert_true(done && DiagErrors(diag) == 0);
+  assert_true(done && diag_errors(diag) == 0);
   assert_true(CheckPng(png, &width, &height) > 8000 && width == 900 && height == 600);
   assert_int_equal(FigureConvergence("Nothing", "h [m]", "error", 1, &series[2], 2, png, diag, &done), 0);
-  assert_true(!done && DiagErrors(diag) == 1);
+  assert_true(!done && diag_errors(diag) == 1);
   assert_int_equal(DiagDestroy(&diag), 0);
   TestRemove(folder);
 }

@@ -94,7 +94,7 @@ static inline Grid *make_grid(MPI_Comm comm, const Case *c)
   Grid *grid = NULL;
   CALL(DiagCreate(&diag));
   CALL(GridCreate(comm, c, NULL, NULL, diag, &grid));
-  if (DiagErrors(diag)) CALL(DiagFlush(diag, stderr));
+  if (diag_errors(diag)) CALL(DiagFlush(diag, stderr));
   CHECK(grid != NULL);
   CALL(DiagDestroy(&diag));
   return grid;

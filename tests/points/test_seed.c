@@ -228,7 +228,7 @@ static PetscInt messages(const TestCase *t, size_t size, char *text, PetscInt *w
   CALL(DiagCreate(&diag));
   CALL(PointsSeed(points, grid, &t->c, t->seed, diag));
   CALL(DiagReduce(PETSC_COMM_WORLD, diag, &errors));
-  if (warnings) *warnings = count_over_ranks(DiagWarnings(diag));
+  if (warnings) *warnings = count_over_ranks(diag_warnings(diag));
   CALL(DiagFlush(diag, out));
   rewind(out);
   text[fread(text, 1, size - 1, out)] = 0;
@@ -341,7 +341,7 @@ static void too_many_points_are_told(void **state)
   s.c = &t->c, s.grid = s.source = grid, s.body = t->body, s.diag = diag;
   CALL(SeedCheckRoom(&s, &crowd, &fits));
   CHECK(!fits);
-  CHECK(count_over_ranks(DiagErrors(diag)) == 1);
+  CHECK(count_over_ranks(diag_errors(diag)) == 1);
   s.n_cells = 4000000; /* 256,000,007 x 8 numbers are less than 2^31 */
   CALL(SeedCheckRoom(&s, &crowd, &fits));
   CHECK(fits);

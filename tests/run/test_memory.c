@@ -128,7 +128,7 @@ static PetscErrorCode Work(const char *file)
   PetscCall(CaseRead(PETSC_COMM_SELF, file, 0, NULL, diag, &c));
   if (c) PetscCall(ModelCreate(PETSC_COMM_SELF, c, diag, &m));
   if (m) PetscCall(ModelStep(m, PETSC_MAX_REAL, &report));
-  account->said = DiagErrors(diag) > 0;
+  account->said = diag_errors(diag) > 0;
   if (loud) PetscCall(DiagFlush(diag, stderr));
   PetscCall(ModelDestroy(&m));
   PetscCall(CaseDestroy(&c));

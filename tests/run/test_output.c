@@ -5,7 +5,7 @@
 
 static PetscReal *field_of(const Model *m, const char *name, PetscInt components)
 {
-  const OutputField *field = OutputFieldFind(name);
+  const OutputField *field = output_field_find(name);
   PetscReal *data;
   CHECK(field && field->points && field->components == components, "%s", name);
   CALL(PetscCalloc1(m->points->n * components + 1, &data));

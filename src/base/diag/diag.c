@@ -11,7 +11,7 @@ PetscErrorCode DiagCreate(Diag **diag)
   PetscFunctionReturn(0);
 }
 
-void DiagMessageClear(DiagMessage *message)
+void diag_message_clear(DiagMessage *message)
 {
   free(message->file);
   free(message->text);
@@ -20,9 +20,9 @@ void DiagMessageClear(DiagMessage *message)
   memset(message, 0, sizeof(*message));
 }
 
-static void Forget(Diag *diag)
+static void forget(Diag *diag)
 {
-  for (PetscInt i = 0; i < diag->n; ++i) DiagMessageClear(&diag->messages[i]);
+  for (PetscInt i = 0; i < diag->n; ++i) diag_message_clear(&diag->messages[i]);
   diag->n = diag->errors = diag->warnings = 0;
   memset(diag->shown, 0, sizeof diag->shown);
   memset(diag->more, 0, sizeof diag->more);
@@ -32,7 +32,7 @@ PetscErrorCode DiagDestroy(Diag **diag)
 {
   PetscFunctionBeginUser;
   if (*diag) {
-    Forget(*diag);
+    forget(*diag);
     if ((*diag)->context_destroy) (*diag)->context_destroy((*diag)->context);
     free((*diag)->messages);
     free(*diag);
@@ -58,38 +58,41 @@ PetscErrorCode DiagOwnContext(Diag *diag, void (*destroy)(void *))
   PetscFunctionReturn(0);
 }
 
-PetscBool DiagFull(const Diag *diag, DiagSeverity severity) { return diag->shown[severity == DIAG_ERROR] >= DIAG_MOST; }
+PetscBool diag_full(const Diag *diag, DiagSeverity severity)
+{
+  return diag->shown[severity == DIAG_ERROR] >= DIAG_MOST;
+}
 
-static void Count(Diag *diag, DiagSeverity severity)
+static void count(Diag *diag, DiagSeverity severity)
 {
   diag->errors += severity == DIAG_ERROR;
   diag->warnings += severity == DIAG_WARNING;
 }
 
 /* One that is not kept; nor is its hint. */
-static void CountOnly(Diag *diag, DiagSeverity severity)
+static void count_only(Diag *diag, DiagSeverity severity)
 {
-  Count(diag, severity);
+  count(diag, severity);
   diag->more[severity == DIAG_ERROR] += 1;
   diag->stale_hint = PETSC_TRUE;
 }
 
 /* A message that finds no memory is lost, but it still counts. */
-void DiagAppend(Diag *diag, DiagMessage *message)
+void diag_append(Diag *diag, DiagMessage *message)
 {
-  if (DiagFull(diag, message->severity)) {
-    CountOnly(diag, message->severity);
-    DiagMessageClear(message);
+  if (diag_full(diag, message->severity)) {
+    count_only(diag, message->severity);
+    diag_message_clear(message);
     return;
   }
-  Count(diag, message->severity);
+  count(diag, message->severity);
   diag->shown[message->severity == DIAG_ERROR] += 1;
   if (diag->n == diag->capacity) {
     const PetscInt capacity = diag->capacity ? 2 * diag->capacity : 16;
     DiagMessage *grown = realloc(diag->messages, (size_t)capacity * sizeof(*grown));
     diag->stale_hint = !grown;
     if (!grown) {
-      DiagMessageClear(message);
+      diag_message_clear(message);
       return;
     }
     diag->messages = grown;
@@ -102,7 +105,7 @@ void DiagAppend(Diag *diag, DiagMessage *message)
 /* What is longer than any screen (a key of a megabyte) ends in dots, and not within a character. */
 #define LONGEST_TEXT 2000
 
-static char *CutLong(char *text)
+static char *cut_long(char *text)
 {
   size_t n = LONGEST_TEXT;
   if (strlen(text) <= LONGEST_TEXT) return text;
@@ -111,73 +114,73 @@ static char *CutLong(char *text)
   return text;
 }
 
-static char *Format(const char *format, va_list arguments)
+static char *diag_format(const char *format, va_list arguments)
 {
   char *text = NULL;
-  return vasprintf(&text, format, arguments) < 0 ? NULL : CutLong(text);
+  return vasprintf(&text, format, arguments) < 0 ? NULL : cut_long(text);
 }
 
-static void Record(Diag *diag, DiagSeverity severity, const DiagPlace *place, const char *format, va_list arguments)
+static void record(Diag *diag, DiagSeverity severity, const DiagPlace *place, const char *format, va_list arguments)
 {
-  if (DiagFull(diag, severity)) {
-    CountOnly(diag, severity);
+  if (diag_full(diag, severity)) {
+    count_only(diag, severity);
     return;
   }
   DiagMessage message = {.severity = severity, .line = place->line, .column = place->column, .width = place->width};
   message.file = place->file ? strdup(place->file) : NULL;
   message.text = place->text ? strdup(place->text) : NULL;
-  message.message = Format(format, arguments);
-  DiagAppend(diag, &message);
+  message.message = diag_format(format, arguments);
+  diag_append(diag, &message);
 }
 
-static void RecordAtPath(Diag *diag, DiagSeverity severity, const char *path, const char *format, va_list arguments)
+static void record_at_path(Diag *diag, DiagSeverity severity, const char *path, const char *format, va_list arguments)
 {
   DiagPlace place = {.width = 1};
-  if (diag->resolver && !DiagFull(diag, severity)) diag->resolver(diag->context, path, &place);
-  Record(diag, severity, &place, format, arguments);
+  if (diag->resolver && !diag_full(diag, severity)) diag->resolver(diag->context, path, &place);
+  record(diag, severity, &place, format, arguments);
 }
 
-void DiagError(Diag *diag, const char *path, const char *format, ...)
+void diag_error(Diag *diag, const char *path, const char *format, ...)
 {
   va_list arguments;
   va_start(arguments, format);
-  RecordAtPath(diag, DIAG_ERROR, path, format, arguments);
+  record_at_path(diag, DIAG_ERROR, path, format, arguments);
   va_end(arguments);
 }
 
-void DiagWarning(Diag *diag, const char *path, const char *format, ...)
+void diag_warning(Diag *diag, const char *path, const char *format, ...)
 {
   va_list arguments;
   va_start(arguments, format);
-  RecordAtPath(diag, DIAG_WARNING, path, format, arguments);
+  record_at_path(diag, DIAG_WARNING, path, format, arguments);
   va_end(arguments);
 }
 
-void DiagAt(Diag *diag, DiagSeverity severity, const DiagPlace *place, const char *format, ...)
+void diag_at(Diag *diag, DiagSeverity severity, const DiagPlace *place, const char *format, ...)
 {
   va_list arguments;
   va_start(arguments, format);
-  Record(diag, severity, place, format, arguments);
+  record(diag, severity, place, format, arguments);
   va_end(arguments);
 }
 
-void DiagHint(Diag *diag, const char *format, ...)
+void diag_hint(Diag *diag, const char *format, ...)
 {
   if (diag->n == 0 || diag->stale_hint) return;
   DiagMessage *newest = &diag->messages[diag->n - 1];
   va_list arguments;
   va_start(arguments, format);
   free(newest->hint);
-  newest->hint = Format(format, arguments);
+  newest->hint = diag_format(format, arguments);
   va_end(arguments);
 }
 
-PetscInt DiagErrors(const Diag *diag) { return diag->errors; }
+PetscInt diag_errors(const Diag *diag) { return diag->errors; }
 
-PetscInt DiagWarnings(const Diag *diag) { return diag->warnings; }
+PetscInt diag_warnings(const Diag *diag) { return diag->warnings; }
 
 /* Where the file of message i was first mentioned: messages of one file stay together. */
-static PetscInt FileRank(const Diag *diag, PetscInt i)
+static PetscInt file_rank(const Diag *diag, PetscInt i)
 {
   const char *file = diag->messages[i].file ? diag->messages[i].file : "";
   PetscInt k = 0;
@@ -190,7 +193,7 @@ typedef struct {
   int line, column;
 } SortKey;
 
-static int CompareKeys(const void *a, const void *b)
+static int compare_keys(const void *a, const void *b)
 {
   const SortKey *p = a, *q = b;
   if (p->file != q->file) return p->file < q->file ? -1 : 1;
@@ -199,7 +202,7 @@ static int CompareKeys(const void *a, const void *b)
   return p->index < q->index ? -1 : p->index > q->index;
 }
 
-static PetscBool PrintsHere(void)
+static PetscBool prints_here(void)
 {
   int initialised = 0, rank = 0;
   MPI_Initialized(&initialised);
@@ -207,7 +210,7 @@ static PetscBool PrintsHere(void)
   return rank == 0;
 }
 
-static void PrintMore(PetscInt n, const char *what, FILE *out)
+static void print_more(PetscInt n, const char *what, FILE *out)
 {
   if (n > 0) fprintf(out, "and %" PetscInt_FMT " more %s%s\n", n, what, n > 1 ? "s" : "");
 }
@@ -217,19 +220,19 @@ PetscErrorCode DiagFlush(Diag *diag, FILE *out)
   SortKey *keys;
 
   PetscFunctionBeginUser;
-  if (diag->n > 0 && PrintsHere()) {
+  if (diag->n > 0 && prints_here()) {
     PetscCall(PetscMalloc1(diag->n, &keys));
     for (PetscInt i = 0; i < diag->n; ++i) {
       const DiagMessage *m = &diag->messages[i];
-      keys[i] = (SortKey){.file = FileRank(diag, i), .index = i, .line = m->line, .column = m->column};
+      keys[i] = (SortKey){.file = file_rank(diag, i), .index = i, .line = m->line, .column = m->column};
     }
-    qsort(keys, (size_t)diag->n, sizeof(*keys), CompareKeys);
-    for (PetscInt i = 0; i < diag->n; ++i) DiagMessagePrint(&diag->messages[keys[i].index], out);
-    PrintMore(diag->more[0], "warning", out);
-    PrintMore(diag->more[1], "error", out);
+    qsort(keys, (size_t)diag->n, sizeof(*keys), compare_keys);
+    for (PetscInt i = 0; i < diag->n; ++i) diag_message_print(&diag->messages[keys[i].index], out);
+    print_more(diag->more[0], "warning", out);
+    print_more(diag->more[1], "error", out);
     fflush(out);
     PetscCall(PetscFree(keys));
   }
-  Forget(diag);
+  forget(diag);
   PetscFunctionReturn(0);
 }

@@ -28,21 +28,21 @@ PetscErrorCode DiagSetResolver(Diag *diag, DiagResolver resolver, void *context)
 PetscErrorCode DiagOwnContext(Diag *diag, void (*destroy)(void *));
 
 /* Record a message about the value at `path` (NULL: about the case as a whole). */
-void DiagError(Diag *diag, const char *path, const char *format, ...) PETSC_ATTRIBUTE_FORMAT(3, 4);
-void DiagWarning(Diag *diag, const char *path, const char *format, ...) PETSC_ATTRIBUTE_FORMAT(3, 4);
+void diag_error(Diag *diag, const char *path, const char *format, ...) PETSC_ATTRIBUTE_FORMAT(3, 4);
+void diag_warning(Diag *diag, const char *path, const char *format, ...) PETSC_ATTRIBUTE_FORMAT(3, 4);
 /* The same with a place that the caller knows (a mesh file, a syntax error). */
-void DiagAt(Diag *diag, DiagSeverity severity, const DiagPlace *place, const char *format, ...)
+void diag_at(Diag *diag, DiagSeverity severity, const DiagPlace *place, const char *format, ...)
   PETSC_ATTRIBUTE_FORMAT(4, 5);
 /* A second line under the newest message: "did you mean 'young'?". */
-void DiagHint(Diag *diag, const char *format, ...) PETSC_ATTRIBUTE_FORMAT(2, 3);
+void diag_hint(Diag *diag, const char *format, ...) PETSC_ATTRIBUTE_FORMAT(2, 3);
 
 /* So many errors, and so many other messages, are kept for print; the others only count. */
 #define DIAG_MOST 50
 /* Would the next message of this kind only count? Then it is not worth composing. */
-PetscBool DiagFull(const Diag *diag, DiagSeverity severity);
+PetscBool diag_full(const Diag *diag, DiagSeverity severity);
 
-PetscInt DiagErrors(const Diag *diag); /* number of errors so far on this rank */
-PetscInt DiagWarnings(const Diag *diag);
+PetscInt diag_errors(const Diag *diag); /* number of errors so far on this rank */
+PetscInt diag_warnings(const Diag *diag);
 
 /* Collective: number of errors over all ranks; messages of other ranks travel to rank 0. */
 PetscErrorCode DiagReduce(MPI_Comm comm, Diag *diag, PetscInt *errors);
@@ -52,6 +52,6 @@ PetscErrorCode DiagReduce(MPI_Comm comm, Diag *diag, PetscInt *errors);
 PetscErrorCode DiagFlush(Diag *diag, FILE *out);
 
 /* The word of a NULL-terminated list nearest to `word` (Damerau-Levenshtein), NULL if none is near. */
-const char *DiagNearest(const char *word, const char *const *words);
+const char *diag_nearest(const char *word, const char *const *words);
 /* Under the newest message: "did you mean 'right'? There are: left, right, ...". */
-void DiagHintNames(Diag *diag, const char *word, const char *const *words);
+void diag_hint_names(Diag *diag, const char *word, const char *const *words);

@@ -21,7 +21,7 @@ struct Diag {
 };
 
 /* Takes over the message's strings. */
-void DiagAppend(Diag *diag, DiagMessage *message);
-void DiagMessageClear(DiagMessage *message);
+void diag_append(Diag *diag, DiagMessage *message);
+void diag_message_clear(DiagMessage *message);
 /* Print one message with its source line, caret and hint. */
-void DiagMessagePrint(const DiagMessage *message, FILE *out);
+void diag_message_print(const DiagMessage *message, FILE *out);

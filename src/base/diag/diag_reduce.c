@@ -8,7 +8,7 @@ typedef struct {
   int length[4]; /* of file, text, message, hint; -1: NULL */
 } PackedHead;
 
-static void Strings(const DiagMessage *m, const char *strings[4])
+static void reduce_strings(const DiagMessage *m, const char *strings[4])
 {
   strings[0] = m->file;
   strings[1] = m->text;
@@ -16,11 +16,11 @@ static void Strings(const DiagMessage *m, const char *strings[4])
   strings[3] = m->hint;
 }
 
-static PackedHead HeadOf(const DiagMessage *m)
+static PackedHead head_of(const DiagMessage *m)
 {
   PackedHead head = {.severity = (int)m->severity, .line = m->line, .column = m->column, .width = m->width};
   const char *strings[4];
-  Strings(m, strings);
+  reduce_strings(m, strings);
   for (int k = 0; k < 4; ++k) head.length[k] = strings[k] ? (int)strlen(strings[k]) : -1;
   return head;
 }
@@ -32,16 +32,16 @@ static PetscErrorCode Pack(const Diag *diag, int *size, char **bytes)
 
   PetscFunctionBeginUser;
   for (PetscInt i = 0; i < diag->n; ++i) {
-    const PackedHead head = HeadOf(&diag->messages[i]);
+    const PackedHead head = head_of(&diag->messages[i]);
     total += sizeof(head);
     for (int k = 0; k < 4; ++k) total += head.length[k] > 0 ? (size_t)head.length[k] : 0;
   }
   PetscCall(PetscMalloc1(total, bytes));
   p = *bytes;
   for (PetscInt i = 0; i < diag->n; ++i) {
-    const PackedHead head = HeadOf(&diag->messages[i]);
+    const PackedHead head = head_of(&diag->messages[i]);
     const char *strings[4];
-    Strings(&diag->messages[i], strings);
+    reduce_strings(&diag->messages[i], strings);
     memcpy(p, &head, sizeof(head));
     p += sizeof(head);
     for (int k = 0; k < 4; ++k) {
@@ -54,20 +54,20 @@ static PetscErrorCode Pack(const Diag *diag, int *size, char **bytes)
   PetscFunctionReturn(0);
 }
 
-static PetscBool SameText(const char *a, const char *b) { return !strcmp(a ? a : "", b ? b : ""); }
+static PetscBool same_text(const char *a, const char *b) { return !strcmp(a ? a : "", b ? b : ""); }
 
-static PetscBool Known(const Diag *diag, const DiagMessage *m)
+static PetscBool reduce_known(const Diag *diag, const DiagMessage *m)
 {
   for (PetscInt i = 0; i < diag->n; ++i) {
     const DiagMessage *k = &diag->messages[i];
-    if (k->severity == m->severity && k->line == m->line && k->column == m->column && SameText(k->file, m->file) &&
-        SameText(k->message, m->message))
+    if (k->severity == m->severity && k->line == m->line && k->column == m->column && same_text(k->file, m->file) &&
+        same_text(k->message, m->message))
       return PETSC_TRUE;
   }
   return PETSC_FALSE;
 }
 
-static void Unpack(Diag *diag, const char *p, const char *end)
+static void unpack(Diag *diag, const char *p, const char *end)
 {
   while (p < end) {
     PackedHead head;
@@ -87,13 +87,13 @@ static void Unpack(Diag *diag, const char *p, const char *end)
                      .text = strings[1],
                      .message = strings[2],
                      .hint = strings[3]};
-    if (Known(diag, &m)) DiagMessageClear(&m);
-    else DiagAppend(diag, &m);
+    if (reduce_known(diag, &m)) diag_message_clear(&m);
+    else diag_append(diag, &m);
   }
 }
 
 /* Twins that rank 0 itself recorded (the same mistake met twice). */
-static void RemoveTwins(Diag *diag)
+static void remove_twins(Diag *diag)
 {
   const PetscInt n = diag->n;
   diag->n = diag->shown[0] = diag->shown[1] = 0;
@@ -101,8 +101,8 @@ static void RemoveTwins(Diag *diag)
   diag->warnings = diag->more[0];
   for (PetscInt i = 0; i < n; ++i) {
     DiagMessage m = diag->messages[i];
-    if (Known(diag, &m)) DiagMessageClear(&m);
-    else DiagAppend(diag, &m);
+    if (reduce_known(diag, &m)) diag_message_clear(&m);
+    else diag_append(diag, &m);
   }
 }
 
@@ -122,7 +122,7 @@ static PetscErrorCode Gather(MPI_Comm comm, PetscMPIInt rank, PetscMPIInt ranks,
   }
   PetscCall(PetscMalloc1(total, &all));
   PetscCallMPI(MPI_Gatherv(mine, size, MPI_CHAR, all, sizes, offsets, MPI_CHAR, 0, comm));
-  if (rank == 0) Unpack(diag, all, all + total);
+  if (rank == 0) unpack(diag, all, all + total);
   PetscCall(PetscFree(all));
   PetscCall(PetscFree2(sizes, offsets));
   PetscCall(PetscFree(mine));
@@ -136,10 +136,10 @@ PetscErrorCode DiagReduce(MPI_Comm comm, Diag *diag, PetscInt *errors)
   PetscFunctionBeginUser;
   PetscCallMPI(MPI_Comm_rank(comm, &rank));
   PetscCallMPI(MPI_Comm_size(comm, &ranks));
-  if (rank == 0) RemoveTwins(diag);
+  if (rank == 0) remove_twins(diag);
   if (ranks > 1) PetscCall(Gather(comm, rank, ranks, diag));
   if (rank > 0) {
-    for (PetscInt i = 0; i < diag->n; ++i) DiagMessageClear(&diag->messages[i]);
+    for (PetscInt i = 0; i < diag->n; ++i) diag_message_clear(&diag->messages[i]);
     diag->n = diag->shown[0] = diag->shown[1] = 0; /* the counts stay: what happened here is still known here */
   }
   *errors = diag->errors;

@@ -120,7 +120,7 @@ PetscInt box_candidates(const GridBox *box, const PetscReal *x, PetscInt max, Pe
 {
   PetscInt ijk[3], range[3][2] = {{0, 0}, {0, 0}, {0, 0}}, v[3], n = 0;
   if (!box_voxel(box, x, ijk)) return 0;
-  /* GridLocate takes the position on its owner, which therefore comes first. */
+  /* grid_locate takes the position on its owner, which therefore comes first. */
   const PetscMPIInt owner = box_owner(box, ijk);
   if (owner != box->rank) n = add_rank(owner, n, max, ranks);
   for (PetscInt d = 0; d < box->dim; ++d) touching(box, d, x[d], ijk[d], range[d]);

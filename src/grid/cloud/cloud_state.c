@@ -31,7 +31,7 @@ PetscErrorCode CloudToTables(const Grid *grid, Tables *tables)
 static PetscErrorCode Identify(Grid *grid, const Table *table, char reason[256])
 {
   const PetscInt n = (PetscInt)table->rows;
-  const PetscInt64 *wide = TableData(table, "id", COLUMN_INT64, 1, reason);
+  const PetscInt64 *wide = table_data(table, "id", COLUMN_INT64, 1, reason);
   PetscInt *id;
 
   PetscFunctionBeginUser;
@@ -54,7 +54,7 @@ static void fill_fields(Grid *grid, const Table *table, char reason[256])
   for (PetscInt f = 0; f < c->n_fields; ++f) {
     const PetscInt n = grid->n_owned * c->field[f].components;
     if (!c->field[f].name || !c->field[f].components) continue;
-    const PetscReal *data = TableData(table, c->field[f].name, COLUMN_REAL, c->field[f].components, reason);
+    const PetscReal *data = table_data(table, c->field[f].name, COLUMN_REAL, c->field[f].components, reason);
     for (PetscInt i = 0; i < n && data; ++i) {
       if (PetscIsInfOrNanReal(data[i])) snprintf(reason, 256, "nodes/%s is not finite", c->field[f].name);
       (*c->field[f].data)[i] = data[i];
@@ -65,7 +65,7 @@ static void fill_fields(Grid *grid, const Table *table, char reason[256])
 /* Ascending by rank and place, of nodes that their owners have. */
 static PetscErrorCode FillGhosts(Grid *grid, const Table *table, char reason[256])
 {
-  const PetscInt64 *owner = TableData(table, "owner", COLUMN_INT64, 2, reason);
+  const PetscInt64 *owner = table_data(table, "owner", COLUMN_INT64, 2, reason);
   RemoteNodes remote = {.n = owner ? (PetscInt)table->rows : 0};
   PetscMPIInt rank, size;
   PetscInt *owned;
@@ -93,13 +93,13 @@ static PetscErrorCode FillGhosts(Grid *grid, const Table *table, char reason[256
 
 PetscErrorCode CloudFromTables(Grid *grid, const Tables *tables, PetscBool home, char reason[256])
 {
-  const Table *nodes = TablesFind(tables, "nodes");
+  const Table *nodes = tables_find(tables, "nodes");
 
   PetscFunctionBeginUser;
   PetscCall(Identify(grid, nodes, reason));
   if (reason[0]) PetscFunctionReturn(0);
   fill_fields(grid, nodes, reason);
   PetscCall(ReasonShare(grid->comm, reason));
-  if (home && !reason[0]) PetscCall(FillGhosts(grid, TablesFind(tables, "ghosts"), reason));
+  if (home && !reason[0]) PetscCall(FillGhosts(grid, tables_find(tables, "ghosts"), reason));
   PetscFunctionReturn(0);
 }

@@ -37,8 +37,8 @@ static PetscErrorCode Tell(Check *check, const GeoScript *s, const GeoFinding *f
 
   PetscFunctionBeginUser;
   PetscCall(Place(s, finding->at, finding->width, &line, &place));
-  DiagAt(check->diag, DIAG_ERROR, &place, "this %s: a mesh script may do so only if you trust it", finding->reason);
-  DiagHint(check->diag, "look at it; if you know what it does, --trust on the command line lets it");
+  diag_at(check->diag, DIAG_ERROR, &place, "this %s: a mesh script may do so only if you trust it", finding->reason);
+  diag_hint(check->diag, "look at it; if you know what it does, --trust on the command line lets it");
   check->safe = PETSC_FALSE;
   PetscCall(PetscFree(line));
   PetscFunctionReturn(0);
@@ -154,8 +154,8 @@ PetscErrorCode GeoCheck(const char *path, Diag *diag, PetscBool *safe)
   PetscCall(CheckScript(&check, path, PETSC_FALSE, &why));
   if (!why && check.safe && !access(options, F_OK)) {
     PetscCall(CheckScript(&check, options, PETSC_FALSE, &why));
-    if (why) DiagError(diag, NULL, "cannot read '%s': %s", options, why);
-  } else if (why) DiagError(diag, NULL, "cannot read '%s': %s", path, why);
+    if (why) diag_error(diag, NULL, "cannot read '%s': %s", options, why);
+  } else if (why) diag_error(diag, NULL, "cannot read '%s': %s", path, why);
   for (int i = 0; i < check.n_seen; ++i) PetscCall(PetscFree(check.seen[i]));
   *safe = check.safe && !why;
   PetscFunctionReturn(0);

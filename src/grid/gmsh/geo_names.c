@@ -118,11 +118,11 @@ static void tell(const Search *s, PetscBool any, Diag *diag)
   char path[160];
   for (PetscInt i = 0; i < s->n; ++i) words[i] = s->names[i];
   PetscSNPrintf(path, sizeof path, "grid.parameters.%.120s", s->wanted);
-  if (!any) DiagError(diag, path, "parameters are for a .geo; a .msh takes none");
+  if (!any) diag_error(diag, path, "parameters are for a .geo; a .msh takes none");
   else {
-    DiagError(diag, path, "the .geo of the case has no use for a number '%s'", s->wanted);
-    if (s->n) DiagHintNames(diag, s->wanted, words);
-    else DiagHint(diag, "a .geo takes numbers by DefineConstant[ name = value ];");
+    diag_error(diag, path, "the .geo of the case has no use for a number '%s'", s->wanted);
+    if (s->n) diag_hint_names(diag, s->wanted, words);
+    else diag_hint(diag, "a .geo takes numbers by DefineConstant[ name = value ];");
   }
 }
 

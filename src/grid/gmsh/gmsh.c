@@ -57,7 +57,7 @@ static PetscErrorCode LoadMesh(const GridSpec *spec, PetscInt dim, const char *p
     if (script) PetscCall(LoadScript(spec, dim, diag, message, msh));
     else PetscCall(MshRead(spec->mesh, spec->mesh, msh, sizeof message, message));
   }
-  if (message[0]) DiagError(diag, path, "%s", message);
+  if (message[0]) diag_error(diag, path, "%s", message);
   PetscFunctionReturn(0);
 }
 

@@ -68,13 +68,13 @@ static void tell(const SerialMesh *mesh, const Probe *first, PetscInt n, const c
   if (mesh->dim == 3)
     snprintf(at, sizeof at, "(%g, %g, %g)", (double)first->x[0], (double)first->x[1], (double)first->x[2]);
   else snprintf(at, sizeof at, "(%g, %g)", (double)first->x[0], (double)first->x[1]);
-  DiagError(
+  diag_error(
     diag, path,
     "%lld of %lld cells overlap others, so that material there would count twice: elements %lld and %lld share %s",
     (long long)n, (long long)mesh->n_cells, (long long)mesh->number[first->cell], (long long)mesh->number[first->other],
     at);
-  DiagHint(diag,
-           "are two surfaces or volumes drawn over each other? In a .geo BooleanFragments or `Coherence` parts them");
+  diag_hint(diag,
+            "are two surfaces or volumes drawn over each other? In a .geo BooleanFragments or `Coherence` parts them");
 }
 
 PetscErrorCode SerialMeshCheckOverlap(const SerialMesh *mesh, const char *path, Diag *diag)

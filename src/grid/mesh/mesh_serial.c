@@ -13,26 +13,26 @@ static PetscBool choose_type(const MshFile *msh, PetscInt dim, const char *path,
     for (int t = 0; t < 4; ++t) count[t] += msh->type[e]->code == gmsh_code[t];
   const PetscInt solid = count[CELL_TETRAHEDRON] + count[CELL_HEXAHEDRON];
   if (dim == 2 && solid) {
-    DiagError(diag, path, "the mesh is three-dimensional (%lld solid cells), the kinematics two-dimensional",
-              (long long)solid);
+    diag_error(diag, path, "the mesh is three-dimensional (%lld solid cells), the kinematics two-dimensional",
+               (long long)solid);
     return PETSC_FALSE;
   }
   for (int t = 0; t < 4; ++t)
     if (cells[t].dim == dim && count[t]) *type = (CellType)t, ++kinds;
   if (kinds == 1) return PETSC_TRUE;
   if (kinds == 0) {
-    DiagError(diag, path, "the mesh has no %s", dim == 2 ? "triangles or quadrilaterals" : "tetrahedra or hexahedra");
-    DiagHint(diag, "gmsh saves only what is in a physical group once there is one: is the %s in a group?",
-             dim == 2 ? "surface" : "volume");
+    diag_error(diag, path, "the mesh has no %s", dim == 2 ? "triangles or quadrilaterals" : "tetrahedra or hexahedra");
+    diag_hint(diag, "gmsh saves only what is in a physical group once there is one: is the %s in a group?",
+              dim == 2 ? "surface" : "volume");
     return PETSC_FALSE;
   }
   const CellType a = dim == 2 ? CELL_TRIANGLE : CELL_TETRAHEDRON, b = dim == 2 ? CELL_QUADRILATERAL : CELL_HEXAHEDRON;
-  DiagError(diag, path, "the mesh mixes %lld cells of type %s with %lld of type %s; all must be alike",
-            (long long)count[a], cells[a].name, (long long)count[b], cells[b].name);
+  diag_error(diag, path, "the mesh mixes %lld cells of type %s with %lld of type %s; all must be alike",
+             (long long)count[a], cells[a].name, (long long)count[b], cells[b].name);
   if (dim == 2)
-    DiagHint(diag,
-             "in gmsh: 'Recombine Surface' for all surfaces or for none, Mesh.SubdivisionAlgorithm = 1 for "
-             "quadrilaterals only");
+    diag_hint(diag,
+              "in gmsh: 'Recombine Surface' for all surfaces or for none, Mesh.SubdivisionAlgorithm = 1 for "
+              "quadrilaterals only");
   return PETSC_FALSE;
 }
 
@@ -100,8 +100,8 @@ static void check_plane(const SerialMesh *mesh, const MshFile *msh, const PetscI
   const PetscReal tolerance = 1e-9 * mesh_size(mesh);
   for (PetscInt k = 0; k < msh->n_nodes && mesh->dim == 2; ++k) {
     if (node_of[k] < 0 || PetscAbsReal(msh->x[3 * k + 2]) <= tolerance) continue;
-    DiagError(diag, path, "the mesh must lie in the plane z = 0, but its node %lld has z = %g",
-              (long long)msh->node_tag[k], (double)msh->x[3 * k + 2]);
+    diag_error(diag, path, "the mesh must lie in the plane z = 0, but its node %lld has z = %g",
+               (long long)msh->node_tag[k], (double)msh->x[3 * k + 2]);
     return;
   }
 }
@@ -180,9 +180,9 @@ static void check_volumes(const SerialMesh *mesh, const char *path, Diag *diag)
       (size_t)snprintf(list + used, sizeof list - used, "%s%lld", bad > 1 ? ", " : "", (long long)mesh->number[c]);
   }
   if (!bad) return;
-  DiagError(diag, path, "%lld of %lld cells are inverted or have no volume: element%s %s%s", (long long)bad,
-            (long long)mesh->n_cells, bad > 1 ? "s" : "", list, bad > 5 ? ", ..." : "");
-  DiagHint(
+  diag_error(diag, path, "%lld of %lld cells are inverted or have no volume: element%s %s%s", (long long)bad,
+             (long long)mesh->n_cells, bad > 1 ? "s" : "", list, bad > 5 ? ", ..." : "");
+  diag_hint(
     diag,
     "gmsh's Tools > Statistics and Plugin(AnalyseMeshQuality) show them; a finer or better shaped mesh is needed");
 }
@@ -209,9 +209,9 @@ static PetscErrorCode FindNeighbours(SerialMesh *mesh, TupleTable *faces, PetscI
     }
     if (mesh->neighbour[face_at[id]] >= 0) {
       const PetscInt other = face_at[id] / shape->faces;
-      DiagError(diag, path, "three cells share one face: elements %lld, %lld and %lld overlap",
-                (long long)mesh->number[other], (long long)mesh->number[mesh->neighbour[face_at[id]]],
-                (long long)mesh->number[cell]);
+      diag_error(diag, path, "three cells share one face: elements %lld, %lld and %lld overlap",
+                 (long long)mesh->number[other], (long long)mesh->number[mesh->neighbour[face_at[id]]],
+                 (long long)mesh->number[cell]);
       PetscFunctionReturn(0);
     }
     mesh->neighbour[k] = face_at[id] / shape->faces;
@@ -224,7 +224,7 @@ static PetscErrorCode ConnectMesh(SerialMesh *mesh, const MshFile *msh, const Pe
                                   const PetscInt *cell_of, const char *path, Diag *diag)
 {
   const Cell *shape = cells + mesh->type;
-  const PetscInt errors = DiagErrors(diag);
+  const PetscInt errors = diag_errors(diag);
   TupleTable *faces;
   PetscInt *face_at;
 
@@ -232,7 +232,7 @@ static PetscErrorCode ConnectMesh(SerialMesh *mesh, const MshFile *msh, const Pe
   PetscCall(TupleTableCreate(shape->face_nodes, mesh->n_cells * shape->faces, &faces));
   PetscCall(PetscMalloc1(mesh->n_cells * shape->faces, &face_at));
   PetscCall(FindNeighbours(mesh, faces, face_at, path, diag));
-  if (DiagErrors(diag) == errors) PetscCall(SerialMeshSets(mesh, msh, node_of, cell_of, faces, face_at));
+  if (diag_errors(diag) == errors) PetscCall(SerialMeshSets(mesh, msh, node_of, cell_of, faces, face_at));
   PetscCall(TupleTableDestroy(&faces));
   PetscCall(PetscFree(face_at));
   PetscFunctionReturn(0);
@@ -240,7 +240,7 @@ static PetscErrorCode ConnectMesh(SerialMesh *mesh, const MshFile *msh, const Pe
 
 PetscErrorCode SerialMeshCreate(const MshFile *msh, PetscInt dim, const char *path, Diag *diag, SerialMesh **out)
 {
-  const PetscInt errors = DiagErrors(diag);
+  const PetscInt errors = diag_errors(diag);
   PetscInt *node_of, *cell_of, *entity_of;
   SerialMesh *mesh;
   CellType type;
@@ -255,14 +255,14 @@ PetscErrorCode SerialMeshCreate(const MshFile *msh, PetscInt dim, const char *pa
   PetscCall(TakeCells(mesh, msh, cell_of, entity_of));
   PetscCall(TakeNodes(mesh, msh, node_of));
   check_plane(mesh, msh, node_of, path, diag);
-  if (DiagErrors(diag) == errors) {
+  if (diag_errors(diag) == errors) {
     PetscCall(TurnEntities(mesh, entity_of));
     check_volumes(mesh, path, diag);
   }
-  if (DiagErrors(diag) == errors) PetscCall(ConnectMesh(mesh, msh, node_of, cell_of, path, diag));
-  if (DiagErrors(diag) == errors) PetscCall(SerialMeshCheckOverlap(mesh, path, diag));
+  if (diag_errors(diag) == errors) PetscCall(ConnectMesh(mesh, msh, node_of, cell_of, path, diag));
+  if (diag_errors(diag) == errors) PetscCall(SerialMeshCheckOverlap(mesh, path, diag));
   PetscCall(PetscFree3(node_of, cell_of, entity_of));
-  if (DiagErrors(diag) != errors) PetscCall(SerialMeshDestroy(&mesh));
+  if (diag_errors(diag) != errors) PetscCall(SerialMeshDestroy(&mesh));
   *out = mesh;
   PetscFunctionReturn(0);
 }

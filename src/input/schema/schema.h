@@ -114,16 +114,16 @@ PetscErrorCode SchemaReadTable(SchemaReader *r, const SchemaTable *table, const 
 /* One value; dispatches on the type. */
 PetscErrorCode SchemaReadEntry(SchemaReader *r, const SchemaEntry *entry, const YamlNode *node, void *target);
 /* Record a mistake at the value, or at the key. `%s` of the path comes first in the message by habit. */
-#define SchemaError(r, node, ...) YamlError((r)->document, (r)->diag, node, PETSC_FALSE, __VA_ARGS__)
-#define SchemaKeyError(r, node, ...) YamlError((r)->document, (r)->diag, node, PETSC_TRUE, __VA_ARGS__)
+#define SchemaError(r, node, ...) yaml_error((r)->document, (r)->diag, node, PETSC_FALSE, __VA_ARGS__)
+#define SchemaKeyError(r, node, ...) yaml_error((r)->document, (r)->diag, node, PETSC_TRUE, __VA_ARGS__)
 /* "<path> must be <what>, not <what stands there>". */
-void SchemaMismatch(SchemaReader *r, const SchemaEntry *entry, const YamlNode *node);
+void schema_mismatch(SchemaReader *r, const SchemaEntry *entry, const YamlNode *node);
 /* "a number > 0, in Pa". Returns buffer. */
-const char *SchemaExpected(const SchemaEntry *entry, PetscInt dim, char *buffer, size_t size);
+const char *schema_expected(const SchemaEntry *entry, PetscInt dim, char *buffer, size_t size);
 /* The bounds alone: "> 0"; empty if there are none. */
-const char *SchemaRange(const SchemaEntry *entry, char *buffer, size_t size);
+const char *schema_range(const SchemaEntry *entry, char *buffer, size_t size);
 /* A number, with a message and PETSC_FALSE if it is none or out of its bounds. */
-PetscBool SchemaNumber(SchemaReader *r, const SchemaEntry *entry, const YamlNode *node, PetscReal *value);
+PetscBool schema_number(SchemaReader *r, const SchemaEntry *entry, const YamlNode *node, PetscReal *value);
 /* What numbers of a unit can mean: at most, and (other than 0) at least; ended by unit = NULL. */
 typedef struct {
   const char *unit;
@@ -131,12 +131,12 @@ typedef struct {
 } SchemaMagnitude;
 extern const SchemaMagnitude schema_magnitudes[];
 /* The same without messages and bounds. */
-PetscBool SchemaParseNumber(const YamlNode *node, PetscReal *value);
-PetscBool SchemaParseInteger(const YamlNode *node, PetscInt *value);
+PetscBool schema_parse_number(const YamlNode *node, PetscReal *value);
+PetscBool schema_parse_integer(const YamlNode *node, PetscInt *value);
 /* "did you mean 'x'?", or the list of all. */
-void SchemaHintWords(SchemaReader *r, const char *word, PetscInt n, const char *const *words);
+void schema_hint_words(SchemaReader *r, const char *word, PetscInt n, const char *const *words);
 /* Read a vector of dim numbers without messages; returns how many there were. */
-PetscInt SchemaParseVector(const YamlNode *node, PetscReal value[3]);
+PetscInt schema_parse_vector(const YamlNode *node, PetscReal value[3]);
 
 /* --- kinds of values (schema_types.c) --- */
 typedef PetscErrorCode (*SchemaReadType)(SchemaReader *r, const SchemaEntry *entry, const YamlNode *node, void *target);
@@ -173,11 +173,11 @@ PetscErrorCode SchemaReadLaw(SchemaReader *r, const SchemaEntry *e, const YamlNo
 PetscErrorCode SchemaReadReference(SchemaReader *r, const SchemaEntry *e, const YamlNode *node, void *target);
 PetscErrorCode SchemaReadBoundary(SchemaReader *r, const SchemaEntry *e, const YamlNode *node, void *target);
 /* Is the name fit for a path and a column of a table? Complains at the node (its key if `key`). */
-PetscBool SchemaCheckName(SchemaReader *r, const YamlNode *node, const char *name, PetscBool key);
+PetscBool schema_check_name(SchemaReader *r, const YamlNode *node, const char *name, PetscBool key);
 
 /* Writers of single values (schema_write_types.c). */
-void SchemaWriteReal(FILE *out, PetscReal value);  /* the shortest text that reads back to the same number */
-void SchemaWriteText(FILE *out, const char *text); /* quoted where YAML wants it */
+void schema_write_real(FILE *out, PetscReal value);  /* the shortest text that reads back to the same number */
+void schema_write_text(FILE *out, const char *text); /* quoted where YAML wants it */
 typedef void (*SchemaWriteType)(FILE *out, const Case *c, const SchemaEntry *entry, const void *source);
 extern const SchemaWriteType schema_writers[TYPE_COUNT];
 
@@ -199,4 +199,4 @@ PetscErrorCode SchemaWriteMaterial(FILE *out, int indent, const Case *c, const v
 /* What a constant may be, for materials and the reference: young, poisson, bulk, shear, lame; ended by key = NULL. */
 extern const SchemaEntry schema_elastic[];
 /* A parameter of a law as an entry, for messages and the reference. `law_parameter`: a const LawParameter *. */
-SchemaEntry SchemaLawEntry(const void *law_parameter);
+SchemaEntry schema_law_entry(const void *law_parameter);

@@ -80,12 +80,12 @@ static PetscErrorCode CheckBasis(SchemaReader *r, const YamlNode *mapping, void 
 
   (void)r;
   PetscFunctionBeginUser;
-  if (!YamlFind(mapping, "mls") && !YamlFind(mapping, "lme"))
+  if (!yaml_find(mapping, "mls") && !yaml_find(mapping, "lme"))
     *basis = (BasisSpec){.kind = BASIS_LME, .gamma = 1.8, .radius = 2, .max_radius = 3.5, .condition = 50, .gap = 2};
   PetscFunctionReturn(0);
 }
 
-static PetscBool HideInBasis(const SchemaEntry *e, const void *source)
+static PetscBool hide_in_basis(const SchemaEntry *e, const void *source)
 {
   return ((const BasisSpec *)source)->kind != (BasisKind)e->tag;
 }
@@ -99,4 +99,4 @@ const SchemaTable schema_basis = {
   .groups = basis_groups,
   .tag_offset = offsetof(BasisSpec, kind),
   .check = CheckBasis,
-  .hide = HideInBasis};
+  .hide = hide_in_basis};

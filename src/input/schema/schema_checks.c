@@ -5,17 +5,17 @@
 #include "input/schema/schema.h"
 
 /* --- analysis --- */
-static void ResolveSteps(SchemaReader *r, const YamlNode *mapping, AnalysisSpec *a)
+static void resolve_steps(SchemaReader *r, const YamlNode *mapping, AnalysisSpec *a)
 {
   const PetscBool is_static = a->type == ANALYSIS_STATIC;
-  const YamlNode *steps = YamlFind(mapping, "steps"), *step = YamlFind(mapping, "step");
+  const YamlNode *steps = yaml_find(mapping, "steps"), *step = yaml_find(mapping, "step");
   PetscInt n = 1;
-  if (!YamlFind(mapping, "end")) {
+  if (!yaml_find(mapping, "end")) {
     if (!is_static)
       SchemaKeyError(r, mapping, "key 'end' of analysis is missing: a dynamic analysis needs its end, in s");
     a->end = 1;
   }
-  if (steps) SchemaParseInteger(steps, &n);
+  if (steps) schema_parse_integer(steps, &n);
   if (!steps && !step && !is_static)
     SchemaKeyError(r, mapping,
                    "key 'step' of analysis is missing: a dynamic analysis needs its time step, in s (or `steps`)");
@@ -24,9 +24,9 @@ static void ResolveSteps(SchemaReader *r, const YamlNode *mapping, AnalysisSpec 
     SchemaError(r, step, "analysis.step is larger than analysis.end (%g s)", (double)a->end);
 }
 
-static void ResolveBounds(SchemaReader *r, const YamlNode *mapping, AnalysisSpec *a)
+static void resolve_bounds(SchemaReader *r, const YamlNode *mapping, AnalysisSpec *a)
 {
-  const YamlNode *smallest = YamlFind(mapping, "smallest"), *largest = YamlFind(mapping, "largest");
+  const YamlNode *smallest = yaml_find(mapping, "smallest"), *largest = yaml_find(mapping, "largest");
   if (!smallest) a->smallest = a->step / 1024;
   if (!largest) a->largest = a->step;
   if (smallest && a->smallest > a->step)
@@ -35,35 +35,36 @@ static void ResolveBounds(SchemaReader *r, const YamlNode *mapping, AnalysisSpec
     SchemaError(r, largest, "analysis.largest is smaller than the step (%g s)", (double)a->step);
 }
 
-static void ResolveNewmark(SchemaReader *r, const YamlNode *mapping, AnalysisSpec *a)
+static void resolve_newmark(SchemaReader *r, const YamlNode *mapping, AnalysisSpec *a)
 {
-  const YamlNode *beta = YamlFind(mapping, "beta"), *gamma = YamlFind(mapping, "gamma");
+  const YamlNode *beta = yaml_find(mapping, "beta"), *gamma = yaml_find(mapping, "gamma");
   if (!beta) a->beta = 0.25 * (1 - a->bossak) * (1 - a->bossak);
   if (!gamma) a->gamma = 0.5 - a->bossak;
   if (a->type == ANALYSIS_STATIC) return;
   if (a->gamma < 0.5 - a->bossak - 1e-12)
-    DiagWarning(r->diag, "analysis.gamma", "gamma < 0.5 - bossak: the time integration gains energy and is not stable");
+    diag_warning(r->diag, "analysis.gamma",
+                 "gamma < 0.5 - bossak: the time integration gains energy and is not stable");
   else if (a->beta < 0.5 * a->gamma - 1e-12)
-    DiagWarning(r->diag, "analysis.beta", "beta < gamma / 2: stable for small enough steps only");
+    diag_warning(r->diag, "analysis.beta", "beta < gamma / 2: stable for small enough steps only");
 }
 
 PetscErrorCode SchemaCheckAnalysis(SchemaReader *r, const YamlNode *mapping, void *target)
 {
   PetscFunctionBeginUser;
-  ResolveSteps(r, mapping, target);
-  ResolveBounds(r, mapping, target);
-  ResolveNewmark(r, mapping, target);
+  resolve_steps(r, mapping, target);
+  resolve_bounds(r, mapping, target);
+  resolve_newmark(r, mapping, target);
   PetscFunctionReturn(0);
 }
 
 /* --- boxes --- */
-static void CheckCorners(SchemaReader *r, const YamlNode *mapping, const PetscReal *min, const PetscReal *max)
+static void check_corners(SchemaReader *r, const YamlNode *mapping, const PetscReal *min, const PetscReal *max)
 {
   char path[512];
   for (PetscInt d = 0; d < r->dim; ++d)
     if (!(max[d] > min[d]))
-      SchemaError(r, YamlFind(mapping, "max"), "%s: max must be larger than min, along %c %g is not larger than %g",
-                  YamlPath(mapping, path, sizeof(path)), "xyz"[d], (double)max[d], (double)min[d]);
+      SchemaError(r, yaml_find(mapping, "max"), "%s: max must be larger than min, along %c %g is not larger than %g",
+                  yaml_path(mapping, path, sizeof(path)), "xyz"[d], (double)max[d], (double)min[d]);
 }
 
 PetscErrorCode SchemaCheckBox(SchemaReader *r, const YamlNode *mapping, void *target)
@@ -71,7 +72,7 @@ PetscErrorCode SchemaCheckBox(SchemaReader *r, const YamlNode *mapping, void *ta
   const GridSpec *grid = target;
 
   PetscFunctionBeginUser;
-  CheckCorners(r, mapping, grid->min, grid->max);
+  check_corners(r, mapping, grid->min, grid->max);
   PetscFunctionReturn(0);
 }
 
@@ -80,13 +81,13 @@ PetscErrorCode SchemaCheckShapeBox(SchemaReader *r, const YamlNode *mapping, voi
   const Shape *shape = target;
 
   PetscFunctionBeginUser;
-  CheckCorners(r, mapping, shape->min, shape->max);
+  check_corners(r, mapping, shape->min, shape->max);
   PetscFunctionReturn(0);
 }
 
 /* --- grid --- */
-static void CountCells(SchemaReader *r, const YamlNode *size, PetscInt d, PetscReal length, PetscReal h,
-                       PetscInt *count)
+static void count_cells(SchemaReader *r, const YamlNode *size, PetscInt d, PetscReal length, PetscReal h,
+                        PetscInt *count)
 {
   const PetscReal exact = length / h, n = PetscMax(1, floor(exact + 0.5));
   *count = 1;
@@ -98,30 +99,30 @@ static void CountCells(SchemaReader *r, const YamlNode *size, PetscInt d, PetscR
   if (fabs(n * h - length) <= 1e-6 * length) return;
   SchemaError(r, size, "grid.size %g does not divide the box along %c, which is %g m long", (double)h, "xyz"[d],
               (double)length);
-  if (exact < 1) DiagHint(r->diag, "the largest cell possible is %.10g", (double)length);
+  if (exact < 1) diag_hint(r->diag, "the largest cell possible is %.10g", (double)length);
   else
-    DiagHint(r->diag, "near it are %.10g (%.0f cells) and %.10g (%.0f cells)", (double)(length / floor(exact)),
-             floor(exact), (double)(length / ceil(exact)), ceil(exact));
+    diag_hint(r->diag, "near it are %.10g (%.0f cells) and %.10g (%.0f cells)", (double)(length / floor(exact)),
+              floor(exact), (double)(length / ceil(exact)), ceil(exact));
 }
 
-static void ResolveCounts(SchemaReader *r, const YamlNode *mapping, GridSpec *g)
+static void resolve_counts(SchemaReader *r, const YamlNode *mapping, GridSpec *g)
 {
-  const YamlNode *size = YamlFind(mapping, "size");
+  const YamlNode *size = yaml_find(mapping, "size");
   PetscReal h[3] = {1, 1, 1}, one;
-  if (size && SchemaParseNumber(size, &one)) h[0] = h[1] = h[2] = one;
-  else if (size) SchemaParseVector(size, h);
+  if (size && schema_parse_number(size, &one)) h[0] = h[1] = h[2] = one;
+  else if (size) schema_parse_vector(size, h);
   for (PetscInt d = 0; size && d < PetscMin(r->dim, 3); ++d)
-    CountCells(r, size, d, g->max[d] - g->min[d], h[d], &g->counts[d]);
+    count_cells(r, size, d, g->max[d] - g->min[d], h[d], &g->counts[d]);
 }
 
-static void ResolveCell(SchemaReader *r, const YamlNode *mapping, GridSpec *g)
+static void resolve_cell(SchemaReader *r, const YamlNode *mapping, GridSpec *g)
 {
-  const YamlNode *cell = YamlFind(mapping, "cell"), *diagonal = YamlFind(mapping, "diagonal");
+  const YamlNode *cell = yaml_find(mapping, "cell"), *diagonal = yaml_find(mapping, "diagonal");
   if (!cell) g->cell = r->dim == 3 ? CELL_HEXAHEDRON : CELL_QUADRILATERAL;
   else if (cells[g->cell].dim != r->dim) {
     SchemaError(r, cell, "grid.cell: a %s has %d dimensions, this case has %d", cells[g->cell].name,
                 (int)cells[g->cell].dim, (int)r->dim);
-    DiagHint(r->diag, r->dim == 3 ? "use hexahedron or tetrahedron" : "use quadrilateral or triangle");
+    diag_hint(r->diag, r->dim == 3 ? "use hexahedron or tetrahedron" : "use quadrilateral or triangle");
   } else if (diagonal && g->cell != CELL_TRIANGLE)
     SchemaKeyError(r, diagonal, "key 'diagonal' of grid belongs to cell: triangle");
 }
@@ -136,13 +137,13 @@ PetscErrorCode SchemaCheckGrid(SchemaReader *r, const YamlNode *mapping, void *t
     g->counts[d] = 1;
     g->grading[d] = 1;
   }
-  ResolveCell(r, mapping, g);
+  resolve_cell(r, mapping, g);
   if (g->kind == GRID_MESH) PetscFunctionReturn(0);
-  if (!YamlFind(mapping, "size") && !YamlFind(mapping, "counts")) {
+  if (!yaml_find(mapping, "size") && !yaml_find(mapping, "counts")) {
     SchemaKeyError(r, mapping, "key 'size' of grid is missing: cell size in m (or `counts`: cells along each axis)");
     PetscFunctionReturn(0);
   }
-  ResolveCounts(r, mapping, g);
+  resolve_counts(r, mapping, g);
   PetscReal total = 1;
   for (PetscInt d = 0; d < r->dim; ++d) total *= (PetscReal)g->counts[d];
   if (total > (PetscReal)PETSC_MAX_INT / 8)
@@ -151,7 +152,7 @@ PetscErrorCode SchemaCheckGrid(SchemaReader *r, const YamlNode *mapping, void *t
 }
 
 /* --- shapes --- */
-static PetscReal PolygonArea(const Shape *s)
+static PetscReal polygon_area(const Shape *s)
 {
   PetscReal area = 0;
   for (PetscInt i = 0, j = s->n_vertices - 1; i < s->n_vertices; j = i++)
@@ -165,8 +166,8 @@ PetscErrorCode SchemaCheckShape(SchemaReader *r, const YamlNode *mapping, void *
   char path[512];
 
   PetscFunctionBeginUser;
-  YamlPath(mapping, path, sizeof(path));
-  if (s->kind == SHAPE_POLYGON && !(PolygonArea(s) > 0))
+  yaml_path(mapping, path, sizeof(path));
+  if (s->kind == SHAPE_POLYGON && !(polygon_area(s) > 0))
     SchemaKeyError(r, mapping, "%s: the polygon has no area", path);
   if (s->kind == SHAPE_DIFFERENCE && s->n_children < 2)
     SchemaKeyError(r, mapping, "%s: a difference needs two shapes or more", path);
@@ -182,19 +183,19 @@ PetscErrorCode SchemaCheckHalfSpace(SchemaReader *r, const YamlNode *mapping, vo
 
   PetscFunctionBeginUser;
   if (s->normal[0] == 0 && s->normal[1] == 0 && s->normal[2] == 0)
-    SchemaError(r, YamlFind(mapping, "normal"), "%s.normal has no direction", YamlPath(mapping, path, sizeof(path)));
+    SchemaError(r, yaml_find(mapping, "normal"), "%s.normal has no direction", yaml_path(mapping, path, sizeof(path)));
   PetscFunctionReturn(0);
 }
 
 /* --- bodies --- */
-static void CheckPoints(SchemaReader *r, const YamlNode *mapping, BodySpec *b)
+static void check_points(SchemaReader *r, const YamlNode *mapping, BodySpec *b)
 {
   static const PetscInt usual[4] = {
     [CELL_TRIANGLE] = 3, [CELL_QUADRILATERAL] = 4, [CELL_TETRAHEDRON] = 4, [CELL_HEXAHEDRON] = 8};
-  const YamlNode *node = YamlFind(mapping, "points_per_cell");
+  const YamlNode *node = yaml_find(mapping, "points_per_cell");
   const PetscBool on_box = r->c->grid.kind == GRID_BOX && !b->mesh;
   char path[512], list[100] = "";
-  YamlPath(mapping, path, sizeof(path));
+  yaml_path(mapping, path, sizeof(path));
   if (!node && !on_box)
     SchemaKeyError(r, mapping, "key 'points_per_cell' of %s is missing: on a mesh it must be given", path);
   if (!node && on_box) b->points_per_cell = usual[r->c->grid.cell];
@@ -214,10 +215,10 @@ PetscErrorCode SchemaCheckBody(SchemaReader *r, const YamlNode *mapping, void *t
   char path[512];
 
   PetscFunctionBeginUser;
-  YamlPath(mapping, path, sizeof(path));
-  if (r->dim) CheckPoints(r, mapping, b);
-  if (b->region && !b->mesh && r->c->grid.kind == GRID_BOX && YamlFind(YamlFind(r->document->root, "grid"), "box"))
-    SchemaError(r, YamlFind(mapping, "region"),
+  yaml_path(mapping, path, sizeof(path));
+  if (r->dim) check_points(r, mapping, b);
+  if (b->region && !b->mesh && r->c->grid.kind == GRID_BOX && yaml_find(yaml_find(r->document->root, "grid"), "box"))
+    SchemaError(r, yaml_find(mapping, "region"),
                 "%s.region: a box grid has no regions; give a shape, or a mesh with physical groups", path);
   PetscFunctionReturn(0);
 }
@@ -232,60 +233,60 @@ PetscErrorCode SchemaCheckSelector(SchemaReader *r, const YamlNode *mapping, voi
   char path[512];
 
   PetscFunctionBeginUser;
-  if (!on->boundary || !r->dim || !YamlFind(YamlFind(r->document->root, "grid"), "box") || on->body)
+  if (!on->boundary || !r->dim || !yaml_find(yaml_find(r->document->root, "grid"), "box") || on->body)
     PetscFunctionReturn(0);
   for (PetscInt i = 0; i < n; ++i) {
     words[i] = sides[i];
     if (!strcmp(sides[i], on->boundary)) PetscFunctionReturn(0);
   }
-  SchemaError(r, YamlFind(mapping, "boundary"), "%s: a box has no boundary '%s'",
-              YamlPath(YamlFind(mapping, "boundary"), path, sizeof(path)), on->boundary);
-  DiagHintNames(r->diag, on->boundary, words);
+  SchemaError(r, yaml_find(mapping, "boundary"), "%s: a box has no boundary '%s'",
+              yaml_path(yaml_find(mapping, "boundary"), path, sizeof(path)), on->boundary);
+  diag_hint_names(r->diag, on->boundary, words);
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode SchemaCheckMotion(SchemaReader *r, const YamlNode *mapping, void *target)
 {
   MotionSpec *m = target;
-  const YamlNode *rotation = YamlFind(mapping, "rotation");
+  const YamlNode *rotation = yaml_find(mapping, "rotation");
   char path[512];
 
   PetscFunctionBeginUser;
   if (m->on.body) {
-    SchemaKeyError(r, YamlFind(YamlFind(mapping, "on"), "body"), "%s: motion is prescribed on the grid, not on a body",
-                   YamlPath(mapping, path, sizeof(path)));
-    DiagHint(r->diag, "select by x, y, boundary or shape");
+    SchemaKeyError(r, yaml_find(yaml_find(mapping, "on"), "body"),
+                   "%s: motion is prescribed on the grid, not on a body", yaml_path(mapping, path, sizeof(path)));
+    diag_hint(r->diag, "select by x, y, boundary or shape");
   }
   if (m->moves && (m->kind == MOTION_FIXED || m->on.boundary)) {
-    SchemaKeyError(r, YamlFind(mapping, "moves"), "%s.moves: %s", YamlPath(mapping, path, sizeof(path)),
+    SchemaKeyError(r, yaml_find(mapping, "moves"), "%s.moves: %s", yaml_path(mapping, path, sizeof(path)),
                    m->on.boundary ? "a boundary of the grid stays where it is" : "what is fixed does not move");
-    DiagHint(r->diag, m->on.boundary ? "select by x, y or shape" : "leave it away");
+    diag_hint(r->diag, m->on.boundary ? "select by x, y or shape" : "leave it away");
   }
   if (m->kind == MOTION_ROTATION) {
     for (PetscInt d = 0; d < r->dim; ++d) m->component[d] = PETSC_TRUE;
     if (r->dim == 2) m->axis[2] = 1;
     if (m->axis[0] == 0 && m->axis[1] == 0 && m->axis[2] == 0 && r->dim)
-      SchemaError(r, YamlFind(rotation, "axis"), "%s.rotation.axis has no direction",
-                  YamlPath(mapping, path, sizeof(path)));
+      SchemaError(r, yaml_find(rotation, "axis"), "%s.rotation.axis has no direction",
+                  yaml_path(mapping, path, sizeof(path)));
   }
   PetscFunctionReturn(0);
 }
 
 /* --- measures --- */
-static void CheckSurface(SchemaReader *r, const YamlNode *mapping, const MeasureSpec *m, const char *path)
+static void check_surface(SchemaReader *r, const YamlNode *mapping, const MeasureSpec *m, const char *path)
 {
   const PetscBool height = m->kind == MEASURE_SURFACE_HEIGHT;
   if (height && !m->has_at) {
     SchemaKeyError(r, mapping, "key 'at' of %s is missing", path);
-    DiagHint(r->diag, "write surface: height, at: x");
+    diag_hint(r->diag, "write surface: height, at: x");
   }
   if (!height && m->has_at)
-    SchemaKeyError(r, YamlFind(mapping, "at"), "%s.at makes sense only with surface: height", path);
+    SchemaKeyError(r, yaml_find(mapping, "at"), "%s.at makes sense only with surface: height", path);
 }
 
-static void CheckFront(SchemaReader *r, const YamlNode *mapping, const MeasureSpec *m, const char *path)
+static void check_front(SchemaReader *r, const YamlNode *mapping, const MeasureSpec *m, const char *path)
 {
-  const YamlNode *front = YamlFind(YamlFind(mapping, "run_out_time"), "front");
+  const YamlNode *front = yaml_find(yaml_find(mapping, "run_out_time"), "front");
   if (m->kind != MEASURE_RUN_OUT_TIME || m->front != FRONT_SURFACE) return;
   if (r->dim == 3) SchemaError(r, front, "%s.run_out_time.front: a free surface is known in 2D only", path);
   else if (!m->maximum || m->component)
@@ -295,15 +296,15 @@ static void CheckFront(SchemaReader *r, const YamlNode *mapping, const MeasureSp
 PetscErrorCode SchemaCheckMeasure(SchemaReader *r, const YamlNode *mapping, void *target)
 {
   const MeasureSpec *m = target;
-  const YamlNode *of = YamlFind(mapping, "of");
+  const YamlNode *of = yaml_find(mapping, "of");
   const PetscBool tracer = m->kind <= MEASURE_VELOCITY, reaction = m->kind == MEASURE_REACTION;
   const char *wanted = tracer ? "tracer" : reaction ? "boundary" : "body";
   char path[512];
 
   PetscFunctionBeginUser;
-  YamlPath(mapping, path, sizeof(path));
-  CheckSurface(r, mapping, m, path);
-  CheckFront(r, mapping, m, path);
+  yaml_path(mapping, path, sizeof(path));
+  check_surface(r, mapping, m, path);
+  check_front(r, mapping, m, path);
   if (of && m->kind >= MEASURE_EXTERNAL_WORK && m->kind <= MEASURE_ENERGY_BALANCE) {
     SchemaKeyError(r, of, "%s.of: this energy is known for the whole model only", path);
     PetscFunctionReturn(0);
@@ -314,11 +315,11 @@ PetscErrorCode SchemaCheckMeasure(SchemaReader *r, const YamlNode *mapping, void
     PetscFunctionReturn(0);
   }
   if (!of && !tracer && !reaction) PetscFunctionReturn(0);
-  if (of && YamlFind(of, wanted)) PetscFunctionReturn(0);
+  if (of && yaml_find(of, wanted)) PetscFunctionReturn(0);
   if (!of) SchemaKeyError(r, mapping, "key 'of' of %s is missing", path);
   else SchemaKeyError(r, of, "%s.of must name a %s", path, wanted);
-  DiagHint(r->diag, tracer     ? "write of: {tracer: [x, y]}"
-                    : reaction ? "write of: {boundary: name or index}"
-                               : "write of: {body: name}");
+  diag_hint(r->diag, tracer     ? "write of: {tracer: [x, y]}"
+                     : reaction ? "write of: {boundary: name or index}"
+                                : "write of: {body: name}");
   PetscFunctionReturn(0);
 }

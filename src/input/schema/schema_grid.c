@@ -70,7 +70,7 @@ static const SchemaEntry grid_entries[] = {
 };
 static const SchemaGroup grid_groups[] = {
   {GROUP_ONE, {"box", "mesh", NULL}}, {GROUP_AT_MOST_ONE, {"size", "counts", NULL}}, {GROUP_NONE, {NULL}}};
-static PetscBool HideInGrid(const SchemaEntry *e, const void *source)
+static PetscBool hide_in_grid(const SchemaEntry *e, const void *source)
 {
   const GridSpec *g = source;
   if (!strcmp(e->key, "diagonal") && g->cell != CELL_TRIANGLE) return PETSC_TRUE;
@@ -83,7 +83,7 @@ const SchemaTable schema_grid = {.name = "grid",
                                  .groups = grid_groups,
                                  .tag_offset = offsetof(GridSpec, kind),
                                  .check = SchemaCheckGrid,
-                                 .hide = HideInGrid};
+                                 .hide = hide_in_grid};
 
 /* --- bodies --- */
 static const SchemaEntry body_entries[] = {
@@ -115,7 +115,7 @@ static const SchemaEntry body_entries[] = {
 };
 static const SchemaGroup body_groups[] = {{GROUP_AT_LEAST_ONE, {"shape", "region", "mesh", NULL}},
                                           {GROUP_NONE, {NULL}}};
-static PetscBool HideInBody(const SchemaEntry *e, const void *source)
+static PetscBool hide_in_body(const SchemaEntry *e, const void *source)
 {
   return e->with && !((const BodySpec *)source)->has_surface;
 }
@@ -125,4 +125,4 @@ const SchemaTable schema_body = {.name = "body",
                                  .groups = body_groups,
                                  .size = sizeof(BodySpec),
                                  .check = SchemaCheckBody,
-                                 .hide = HideInBody};
+                                 .hide = hide_in_body};

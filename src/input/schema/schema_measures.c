@@ -57,16 +57,16 @@ static const SchemaEntry of_entries[] = {
   {.key = NULL},
 };
 static const SchemaGroup of_groups[] = {{GROUP_ONE, {"tracer", "body", "boundary", NULL}}, {GROUP_NONE, {NULL}}};
-static PetscBool IsTracer(const MeasureSpec *m) { return m->kind <= MEASURE_VELOCITY; }
-static PetscBool HideInOf(const SchemaEntry *e, const void *source)
+static PetscBool is_tracer(const MeasureSpec *m) { return m->kind <= MEASURE_VELOCITY; }
+static PetscBool hide_in_of(const SchemaEntry *e, const void *source)
 {
   const MeasureSpec *m = source;
-  if (e->type == TYPE_VECTOR) return !IsTracer(m);
+  if (e->type == TYPE_VECTOR) return !is_tracer(m);
   if (e->type == TYPE_BOUNDARY) return m->kind != MEASURE_REACTION;
   return PETSC_FALSE;
 }
 static const SchemaTable of = {
-  .name = "of", .help = "What is measured.", .entries = of_entries, .groups = of_groups, .hide = HideInOf};
+  .name = "of", .help = "What is measured.", .entries = of_entries, .groups = of_groups, .hide = hide_in_of};
 
 static const SchemaEntry extent_entries[] = {
   KEY("max", AXIS, NULL, "largest coordinate along this axis", TAG(1), AT(MeasureSpec, component)),
@@ -135,7 +135,7 @@ static const SchemaGroup measure_groups[] = {
    {"displacement", "position", "velocity", "extent", "mass", "momentum", "angular_momentum", "spin", "energy",
     "reaction", "surface", "run_out_time", "roughness", "outside", "outside_momentum", NULL}},
   {GROUP_NONE, {NULL}}};
-static PetscBool HideInMeasure(const SchemaEntry *e, const void *source)
+static PetscBool hide_in_measure(const SchemaEntry *e, const void *source)
 {
   const MeasureSpec *m = source;
   const PetscBool energy = m->kind >= MEASURE_KINETIC_ENERGY && m->kind <= MEASURE_ENERGY_BALANCE;
@@ -145,7 +145,7 @@ static PetscBool HideInMeasure(const SchemaEntry *e, const void *source)
   if (!strcmp(e->key, "roughness")) return m->kind != MEASURE_ROUGHNESS;
   if (!strcmp(e->key, "outside")) return !(m->kind >= MEASURE_OUTSIDE_REMOVED && m->kind <= MEASURE_OUTSIDE_HELD);
   if (!strcmp(e->key, "at")) return !m->has_at;
-  if (!strcmp(e->key, "of")) return !(IsTracer(m) || m->body || m->kind == MEASURE_REACTION);
+  if (!strcmp(e->key, "of")) return !(is_tracer(m) || m->body || m->kind == MEASURE_REACTION);
   return PETSC_FALSE;
 }
 const SchemaTable schema_measure = {.name = "measure",
@@ -155,4 +155,4 @@ const SchemaTable schema_measure = {.name = "measure",
                                     .size = sizeof(MeasureSpec),
                                     .tag_offset = offsetof(MeasureSpec, kind),
                                     .check = SchemaCheckMeasure,
-                                    .hide = HideInMeasure};
+                                    .hide = hide_in_measure};

@@ -7,7 +7,7 @@
 #include "material/law.h"
 
 /* [+-] digits [. digits] [e [+-] digits], at least one digit before the exponent: no hexadecimal, no inf, no nan. */
-static PetscBool LooksLikeNumber(const char *p)
+static PetscBool looks_like_number(const char *p)
 {
   int digits = 0;
   if (*p == '+' || *p == '-') ++p;
@@ -24,34 +24,34 @@ static PetscBool LooksLikeNumber(const char *p)
   return !*p;
 }
 
-PetscBool SchemaParseNumber(const YamlNode *node, PetscReal *value)
+PetscBool schema_parse_number(const YamlNode *node, PetscReal *value)
 {
-  if (!node || node->kind != YAML_SCALAR || !node->plain || !LooksLikeNumber(node->text)) return PETSC_FALSE;
+  if (!node || node->kind != YAML_SCALAR || !node->plain || !looks_like_number(node->text)) return PETSC_FALSE;
   *value = strtod(node->text, NULL);
   return !PetscIsInfOrNanReal(*value);
 }
 
-PetscBool SchemaParseInteger(const YamlNode *node, PetscInt *value)
+PetscBool schema_parse_integer(const YamlNode *node, PetscInt *value)
 {
   PetscReal real;
-  if (!SchemaParseNumber(node, &real) || real != PetscFloorReal(real) || PetscAbsReal(real) > 2147483647.)
+  if (!schema_parse_number(node, &real) || real != PetscFloorReal(real) || PetscAbsReal(real) > 2147483647.)
     return PETSC_FALSE;
   *value = (PetscInt)real;
   return PETSC_TRUE;
 }
 
-static PetscBool InRange(const SchemaEntry *e, PetscReal v)
+static PetscBool in_range(const SchemaEntry *e, PetscReal v)
 {
   if (!e->bounded) return PETSC_TRUE;
   if (v < e->min || (e->min_open && v <= e->min)) return PETSC_FALSE;
   return !(v > e->max || (e->max_open && v >= e->max));
 }
 
-static const char *Describe(const YamlNode *node, char *buffer, size_t size)
+static const char *describe(const YamlNode *node, char *buffer, size_t size)
 {
   if (node->kind == YAML_SEQUENCE) snprintf(buffer, size, "a list");
   else if (node->kind == YAML_MAPPING) snprintf(buffer, size, "a mapping");
-  else if (YamlIsNull(node)) snprintf(buffer, size, "empty");
+  else if (yaml_is_null(node)) snprintf(buffer, size, "empty");
   else
     snprintf(buffer, size, node->plain ? "%s'%.60s'" : "%s'%.60s' in quotes", node->plain ? "" : "the text ",
              node->text);
@@ -59,26 +59,26 @@ static const char *Describe(const YamlNode *node, char *buffer, size_t size)
 }
 
 /* What people write where a number belongs. */
-static void HintNumber(SchemaReader *r, const SchemaEntry *e, const YamlNode *node)
+static void hint_number(SchemaReader *r, const SchemaEntry *e, const YamlNode *node)
 {
   char *end;
   if (node->kind != YAML_SCALAR) return;
-  if (!node->plain && LooksLikeNumber(node->text)) DiagHint(r->diag, "leave the quotes out");
+  if (!node->plain && looks_like_number(node->text)) diag_hint(r->diag, "leave the quotes out");
   else if (strcspn(node->text, "0123456789") && strchr("nNiI.+-", node->text[0]) && node->text[0] &&
            !isdigit((unsigned char)node->text[0]) && strtod(node->text, &end) != 0 && !*end)
-    DiagHint(r->diag, "a finite number is needed");
-  else if (LooksLikeNumber(node->text)) DiagHint(r->diag, "the number is too large for this machine");
+    diag_hint(r->diag, "a finite number is needed");
+  else if (looks_like_number(node->text)) diag_hint(r->diag, "the number is too large for this machine");
   else if (isdigit((unsigned char)node->text[0]) && strchr(node->text, ','))
-    DiagHint(r->diag, "decimals follow a point: 1.5");
+    diag_hint(r->diag, "decimals follow a point: 1.5");
   else if (isdigit((unsigned char)node->text[0]) && e->unit && e->unit[0])
-    DiagHint(r->diag, "write the number alone; its unit is %s", e->unit);
+    diag_hint(r->diag, "write the number alone; its unit is %s", e->unit);
 }
 
-void SchemaMismatch(SchemaReader *r, const SchemaEntry *e, const YamlNode *node)
+void schema_mismatch(SchemaReader *r, const SchemaEntry *e, const YamlNode *node)
 {
   char path[512], expected[300], found[120];
-  SchemaError(r, node, "%s must be %s, not %s", YamlPath(node, path, sizeof(path)),
-              SchemaExpected(e, r->dim, expected, sizeof(expected)), Describe(node, found, sizeof(found)));
+  SchemaError(r, node, "%s must be %s, not %s", yaml_path(node, path, sizeof(path)),
+              schema_expected(e, r->dim, expected, sizeof(expected)), describe(node, found, sizeof(found)));
 }
 
 /* Generous: a neutron star has 1e18 kg/m3, light 3e8 m/s. Beyond them sums and products run out of digits or of the machine's range, and
@@ -88,36 +88,36 @@ const SchemaMagnitude schema_magnitudes[] = {
   {"m/s2", 0, 1e15},      {"s", 1e-20, 1e20},  {"rad/s", 0, 1e15}, {"1/s", 0, 1e15}, {NULL, 0, 0},
 };
 
-static PetscBool CanBeMeant(SchemaReader *r, const SchemaEntry *e, const YamlNode *node, PetscReal value)
+static PetscBool can_be_meant(SchemaReader *r, const SchemaEntry *e, const YamlNode *node, PetscReal value)
 {
   const PetscReal size = PetscAbsReal(value);
   const SchemaMagnitude *m = schema_magnitudes;
   char path[512];
   while (m->unit && (!e->unit || strcmp(m->unit, e->unit))) ++m;
   if (e->endless || !m->unit || size == 0 || (size >= m->least && size <= m->most)) return PETSC_TRUE;
-  SchemaError(r, node, "%s: %g %s cannot be meant, nothing is %s than %g", YamlPath(node, path, sizeof(path)),
+  SchemaError(r, node, "%s: %g %s cannot be meant, nothing is %s than %g", yaml_path(node, path, sizeof(path)),
               (double)value, e->unit, size > m->most ? "larger" : "smaller",
               (double)(size > m->most ? m->most : m->least));
-  DiagHint(r->diag, "is it written in %s? Everything in a case file is in SI units", e->unit);
+  diag_hint(r->diag, "is it written in %s? Everything in a case file is in SI units", e->unit);
   return PETSC_FALSE;
 }
 
-PetscBool SchemaNumber(SchemaReader *r, const SchemaEntry *e, const YamlNode *node, PetscReal *value)
+PetscBool schema_number(SchemaReader *r, const SchemaEntry *e, const YamlNode *node, PetscReal *value)
 {
-  if (!SchemaParseNumber(node, value)) {
-    SchemaMismatch(r, e, node);
-    HintNumber(r, e, node);
+  if (!schema_parse_number(node, value)) {
+    schema_mismatch(r, e, node);
+    hint_number(r, e, node);
     return PETSC_FALSE;
   }
-  if (InRange(e, *value)) return CanBeMeant(r, e, node, *value);
-  SchemaMismatch(r, e, node);
+  if (in_range(e, *value)) return can_be_meant(r, e, node, *value);
+  schema_mismatch(r, e, node);
   return PETSC_FALSE;
 }
 
 PetscErrorCode SchemaReadNumber(SchemaReader *r, const SchemaEntry *e, const YamlNode *node, void *target)
 {
   PetscFunctionBeginUser;
-  SchemaNumber(r, e, node, (PetscReal *)((char *)target + e->offset));
+  schema_number(r, e, node, (PetscReal *)((char *)target + e->offset));
   PetscFunctionReturn(0);
 }
 
@@ -126,7 +126,7 @@ PetscErrorCode SchemaReadInteger(SchemaReader *r, const SchemaEntry *e, const Ya
   PetscInt value;
 
   PetscFunctionBeginUser;
-  if (!SchemaParseInteger(node, &value) || !InRange(e, (PetscReal)value)) SchemaMismatch(r, e, node);
+  if (!schema_parse_integer(node, &value) || !in_range(e, (PetscReal)value)) schema_mismatch(r, e, node);
   else *(PetscInt *)((char *)target + e->offset) = value;
   PetscFunctionReturn(0);
 }
@@ -139,11 +139,11 @@ PetscErrorCode SchemaReadBoolean(SchemaReader *r, const SchemaEntry *e, const Ya
   PetscFunctionBeginUser;
   if (!strcmp(text, "true")) *value = PETSC_TRUE;
   else if (!strcmp(text, "false")) *value = PETSC_FALSE;
-  else SchemaMismatch(r, e, node);
+  else schema_mismatch(r, e, node);
   PetscFunctionReturn(0);
 }
 
-static const SchemaWord *FindWord(SchemaReader *r, const SchemaEntry *e, const YamlNode *node)
+static const SchemaWord *find_word(SchemaReader *r, const SchemaEntry *e, const YamlNode *node)
 {
   const char *words[32] = {NULL};
   PetscInt n = 0;
@@ -156,14 +156,14 @@ static const SchemaWord *FindWord(SchemaReader *r, const SchemaEntry *e, const Y
     if (node->kind == YAML_SCALAR && !strcmp(node->text, w->word)) return w;
     words[n++] = w->word;
   }
-  SchemaMismatch(r, e, node);
-  if (node->kind == YAML_SCALAR && DiagNearest(node->text, words)) SchemaHintWords(r, node->text, n, words);
+  schema_mismatch(r, e, node);
+  if (node->kind == YAML_SCALAR && diag_nearest(node->text, words)) schema_hint_words(r, node->text, n, words);
   return NULL;
 }
 
 PetscErrorCode SchemaReadWord(SchemaReader *r, const SchemaEntry *e, const YamlNode *node, void *target)
 {
-  const SchemaWord *word = FindWord(r, e, node);
+  const SchemaWord *word = find_word(r, e, node);
 
   PetscFunctionBeginUser;
   if (word) *(int *)((char *)target + e->offset) = word->value;
@@ -182,7 +182,7 @@ static PetscErrorCode Store(const char *text, const SchemaEntry *e, void *target
 
 PetscErrorCode SchemaReadWordText(SchemaReader *r, const SchemaEntry *e, const YamlNode *node, void *target)
 {
-  const SchemaWord *word = FindWord(r, e, node);
+  const SchemaWord *word = find_word(r, e, node);
 
   PetscFunctionBeginUser;
   if (word) PetscCall(Store(word->word, e, target));
@@ -192,27 +192,28 @@ PetscErrorCode SchemaReadWordText(SchemaReader *r, const SchemaEntry *e, const Y
 PetscErrorCode SchemaReadText(SchemaReader *r, const SchemaEntry *e, const YamlNode *node, void *target)
 {
   PetscFunctionBeginUser;
-  if (node->kind != YAML_SCALAR || (YamlIsNull(node) && !e->fallback)) SchemaMismatch(r, e, node);
+  if (node->kind != YAML_SCALAR || (yaml_is_null(node) && !e->fallback)) schema_mismatch(r, e, node);
   else PetscCall(Store(node->text, e, target));
   PetscFunctionReturn(0);
 }
 
-PetscBool SchemaCheckName(SchemaReader *r, const YamlNode *node, const char *name, PetscBool key)
+PetscBool schema_check_name(SchemaReader *r, const YamlNode *node, const char *name, PetscBool key)
 {
   const size_t good = strcspn(name, ".[]=,\"'\n\t{}:");
   if (name[0] && !name[good] && strlen(name) < 128 && name[0] != ' ') return PETSC_TRUE;
-  if (!name[0]) YamlError(r->document, r->diag, node, key, "a name may not be empty");
-  else if (!name[good]) YamlError(r->document, r->diag, node, key, "this name is too long or begins with a space");
-  else YamlError(r->document, r->diag, node, key, "the name '%.60s' may not hold the character '%c'", name, name[good]);
-  DiagHint(r->diag, "letters, digits, '_' and '-' make good names");
+  if (!name[0]) yaml_error(r->document, r->diag, node, key, "a name may not be empty");
+  else if (!name[good]) yaml_error(r->document, r->diag, node, key, "this name is too long or begins with a space");
+  else
+    yaml_error(r->document, r->diag, node, key, "the name '%.60s' may not hold the character '%c'", name, name[good]);
+  diag_hint(r->diag, "letters, digits, '_' and '-' make good names");
   return PETSC_FALSE;
 }
 
 PetscErrorCode SchemaReadName(SchemaReader *r, const SchemaEntry *e, const YamlNode *node, void *target)
 {
   PetscFunctionBeginUser;
-  if (node->kind != YAML_SCALAR || YamlIsNull(node)) SchemaMismatch(r, e, node);
-  else if (SchemaCheckName(r, node, node->text, PETSC_FALSE)) PetscCall(Store(node->text, e, target));
+  if (node->kind != YAML_SCALAR || yaml_is_null(node)) schema_mismatch(r, e, node);
+  else if (schema_check_name(r, node, node->text, PETSC_FALSE)) PetscCall(Store(node->text, e, target));
   PetscFunctionReturn(0);
 }
 
@@ -223,8 +224,8 @@ PetscErrorCode SchemaReadFile(SchemaReader *r, const SchemaEntry *e, const YamlN
   char here[PETSC_MAX_PATH_LEN], path[3 * PETSC_MAX_PATH_LEN];
 
   PetscFunctionBeginUser;
-  if (node->kind != YAML_SCALAR || YamlIsNull(node)) {
-    SchemaMismatch(r, e, node);
+  if (node->kind != YAML_SCALAR || yaml_is_null(node)) {
+    schema_mismatch(r, e, node);
     PetscFunctionReturn(0);
   }
   if (!getcwd(here, sizeof(here))) PetscCall(PetscStrcpy(here, "."));
@@ -243,23 +244,23 @@ PetscErrorCode SchemaReadLaw(SchemaReader *r, const SchemaEntry *e, const YamlNo
   PetscInt n = 0;
 
   PetscFunctionBeginUser;
-  if (node->kind != YAML_SCALAR || YamlIsNull(node)) SchemaMismatch(r, e, node);
-  else if (LawFind(node->text)) PetscCall(Store(node->text, e, target));
+  if (node->kind != YAML_SCALAR || yaml_is_null(node)) schema_mismatch(r, e, node);
+  else if (law_find(node->text)) PetscCall(Store(node->text, e, target));
   else {
     for (; laws[n] && n < 63; ++n) words[n] = laws[n]->name;
-    SchemaError(r, node, "%s: there is no law '%s'", YamlPath(node, path, sizeof(path)), node->text);
-    SchemaHintWords(r, node->text, n, words);
+    SchemaError(r, node, "%s: there is no law '%s'", yaml_path(node, path, sizeof(path)), node->text);
+    schema_hint_words(r, node->text, n, words);
   }
   PetscFunctionReturn(0);
 }
 
 /* Names at the top of the file under `target`: keys of a mapping, or `name` of the entries of a list. */
-static PetscInt CollectNames(const SchemaReader *r, const char *target, PetscInt max, const char **names)
+static PetscInt collect_names(const SchemaReader *r, const char *target, PetscInt max, const char **names)
 {
-  const YamlNode *group = YamlFind(r->document->root, target);
+  const YamlNode *group = yaml_find(r->document->root, target);
   PetscInt n = 0;
   for (PetscInt i = 0; group && i < group->n && n < max; ++i) {
-    const YamlNode *name = group->kind == YAML_SEQUENCE ? YamlFind(group->child[i], "name") : NULL;
+    const YamlNode *name = group->kind == YAML_SEQUENCE ? yaml_find(group->child[i], "name") : NULL;
     if (group->kind == YAML_MAPPING) names[n++] = group->child[i]->key;
     else if (name && name->text) names[n++] = name->text;
   }
@@ -268,7 +269,7 @@ static PetscInt CollectNames(const SchemaReader *r, const char *target, PetscInt
 
 static PetscErrorCode CheckReference(SchemaReader *r, const YamlNode *node, const char *target, PetscBool *found)
 {
-  const YamlNode *group = YamlFind(r->document->root, target);
+  const YamlNode *group = yaml_find(r->document->root, target);
   const PetscInt max = group ? group->n : 0;
   const char **names;
   char path[512];
@@ -276,12 +277,12 @@ static PetscErrorCode CheckReference(SchemaReader *r, const YamlNode *node, cons
   PetscFunctionBeginUser;
   *found = PETSC_FALSE;
   PetscCall(PetscCalloc1(max + 1, &names));
-  const PetscInt n = CollectNames(r, target, max, names);
+  const PetscInt n = collect_names(r, target, max, names);
   for (PetscInt i = 0; i < n; ++i)
     if (!strcmp(names[i], node->text)) *found = PETSC_TRUE;
   if (!*found) {
-    SchemaError(r, node, "%s: there is no '%s' in %s", YamlPath(node, path, sizeof(path)), node->text, target);
-    SchemaHintWords(r, node->text, n, names);
+    SchemaError(r, node, "%s: there is no '%s' in %s", yaml_path(node, path, sizeof(path)), node->text, target);
+    schema_hint_words(r, node->text, n, names);
   }
   PetscCall(PetscFree(names));
   PetscFunctionReturn(0);
@@ -292,8 +293,8 @@ PetscErrorCode SchemaReadReference(SchemaReader *r, const SchemaEntry *e, const 
   PetscBool found;
 
   PetscFunctionBeginUser;
-  if (node->kind != YAML_SCALAR || YamlIsNull(node)) {
-    SchemaMismatch(r, e, node);
+  if (node->kind != YAML_SCALAR || yaml_is_null(node)) {
+    schema_mismatch(r, e, node);
     PetscFunctionReturn(0);
   }
   PetscCall(CheckReference(r, node, e->target, &found));
@@ -303,24 +304,24 @@ PetscErrorCode SchemaReadReference(SchemaReader *r, const SchemaEntry *e, const 
 
 PetscErrorCode SchemaReadBoundary(SchemaReader *r, const SchemaEntry *e, const YamlNode *node, void *target)
 {
-  const YamlNode *list = YamlFind(r->document->root, "boundary");
+  const YamlNode *list = yaml_find(r->document->root, "boundary");
   PetscInt *value = (PetscInt *)((char *)target + e->offset);
   PetscBool found = PETSC_FALSE;
   char path[512];
 
   PetscFunctionBeginUser;
-  if (node->kind != YAML_SCALAR || YamlIsNull(node)) SchemaMismatch(r, e, node);
-  else if (SchemaParseInteger(node, value)) {
+  if (node->kind != YAML_SCALAR || yaml_is_null(node)) schema_mismatch(r, e, node);
+  else if (schema_parse_integer(node, value)) {
     if (*value >= 0 && list && *value < list->n) PetscFunctionReturn(0);
     SchemaError(r, node, "%s: boundary has %" PetscInt_FMT " entries, counted from 0",
-                YamlPath(node, path, sizeof(path)), list ? list->n : 0);
+                yaml_path(node, path, sizeof(path)), list ? list->n : 0);
   } else {
     PetscCall(CheckReference(r, node, "boundary", &found));
     for (PetscInt i = 0; found && i < list->n; ++i) {
-      const YamlNode *name = YamlFind(list->child[i], "name");
+      const YamlNode *name = yaml_find(list->child[i], "name");
       if (name && name->text && !strcmp(name->text, node->text)) *value = i;
     }
-    if (!found) DiagHint(r->diag, "name an entry of boundary (name: ...) or give its index, counted from 0");
+    if (!found) diag_hint(r->diag, "name an entry of boundary (name: ...) or give its index, counted from 0");
   }
   PetscFunctionReturn(0);
 }

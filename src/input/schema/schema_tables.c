@@ -201,12 +201,12 @@ static const SchemaEntry case_entries[] = {
       AT(Case, petsc), .count = offsetof(Case, n_petsc)),
   {.key = NULL},
 };
-static PetscBool HideInCase(const SchemaEntry *e, const void *source)
+static PetscBool hide_in_case(const SchemaEntry *e, const void *source)
 {
   return !strcmp(e->key, "basis") && strcmp(((const Case *)source)->method, "gmm");
 }
 const SchemaTable schema_case = {
-  .name = "case", .help = "The keys at the top of the file.", .entries = case_entries, .hide = HideInCase};
+  .name = "case", .help = "The keys at the top of the file.", .entries = case_entries, .hide = hide_in_case};
 
 /* --- elastic constants: any two; listed here because the reference shows them with the materials --- */
 const SchemaEntry schema_elastic[] = {

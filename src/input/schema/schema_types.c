@@ -66,7 +66,7 @@ const SchemaTypeInfo schema_types[TYPE_COUNT] = {
   [TYPE_NAMED] = {"a mapping {name: {...}, ...}", "name: mapping"},
 };
 
-const char *SchemaRange(const SchemaEntry *e, char *buffer, size_t size)
+const char *schema_range(const SchemaEntry *e, char *buffer, size_t size)
 {
   const PetscBool low = e->bounded && e->min > -PETSC_MAX_REAL;
   const PetscBool high = e->bounded && e->max < PETSC_MAX_REAL;
@@ -78,13 +78,13 @@ const char *SchemaRange(const SchemaEntry *e, char *buffer, size_t size)
   return buffer;
 }
 
-static const char *Axes(const SchemaEntry *e, PetscInt dim)
+static const char *types_axes(const SchemaEntry *e, PetscInt dim)
 {
   if (e->type == TYPE_AXIS) return dim == 2 ? "x or y" : "x, y or z";
   return dim == 2 ? "z" : "x, y or z";
 }
 
-static void AppendWords(const SchemaWord *words, char *buffer, size_t size)
+static void append_words(const SchemaWord *words, char *buffer, size_t size)
 {
   for (int k = 0; words[k].word; ++k) {
     const size_t used = strlen(buffer);
@@ -92,15 +92,15 @@ static void AppendWords(const SchemaWord *words, char *buffer, size_t size)
   }
 }
 
-const char *SchemaExpected(const SchemaEntry *e, PetscInt dim, char *buffer, size_t size)
+const char *schema_expected(const SchemaEntry *e, PetscInt dim, char *buffer, size_t size)
 {
   char range[80];
-  SchemaRange(e, range, sizeof(range));
+  schema_range(e, range, sizeof(range));
   if (e->words && !e->words[1].word) snprintf(buffer, size, "the word %s", e->words[0].word);
   else if (e->words) {
     snprintf(buffer, size, "%s", schema_types[e->type].what);
-    AppendWords(e->words, buffer, size);
-  } else if (e->type == TYPE_AXIS || e->type == TYPE_SPIN_AXIS) snprintf(buffer, size, "%s", Axes(e, dim));
+    append_words(e->words, buffer, size);
+  } else if (e->type == TYPE_AXIS || e->type == TYPE_SPIN_AXIS) snprintf(buffer, size, "%s", types_axes(e, dim));
   else if (e->type == TYPE_VECTOR)
     snprintf(buffer, size, "a vector %s", dim == 3 ? "[x, y, z]" : dim == 2 ? "[x, y]" : "[x, y] or [x, y, z]");
   else snprintf(buffer, size, "%s%s%s", schema_types[e->type].what, range[0] ? " " : "", range);

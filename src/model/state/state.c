@@ -66,7 +66,7 @@ static PetscErrorCode WholeToTables(Model *m, Tables *tables)
   }
   PetscCall(TableAdd(table, "grid", NULL, COLUMN_REAL, GRID_NUMBERS, NULL, &column));
   grid_numbers(m->grid, column->data);
-  NewtonGetMemory(m->newton, m->system, &newton);
+  newton_get_memory(m->newton, m->system, &newton);
   PetscCall(TableAdd(table, "solver_courant", NULL, COLUMN_REAL, 1, NULL, &column));
   *(PetscReal *)column->data = newton.courant;
   PetscCall(TableAdd(table, "solver_failures", NULL, COLUMN_INT64, 1, NULL, &column));
@@ -135,7 +135,7 @@ PetscErrorCode ReactionsFromTables(Model *m, const Tables *tables, char reason[2
 
   PetscFunctionBeginUser;
   reaction_fields(m, field);
-  PetscCall(NodesFromTable(m->grid, PETSC_FALSE, 3, field, TablesFind(tables, "boundary"), reason));
+  PetscCall(NodesFromTable(m->grid, PETSC_FALSE, 3, field, tables_find(tables, "boundary"), reason));
   PetscFunctionReturn(0);
 }
 
@@ -199,7 +199,7 @@ PetscErrorCode ModelToTables(Model *m, Tables *tables)
 /* One number of a table that is everywhere. */
 static PetscReal real_of(const Table *table, const char *name, char reason[256])
 {
-  const PetscReal *data = TableData(table, name, COLUMN_REAL, 1, reason);
+  const PetscReal *data = table_data(table, name, COLUMN_REAL, 1, reason);
   return data && table->rows == 1 ? *data : 0;
 }
 
@@ -208,7 +208,7 @@ static PetscBool is_count(PetscInt64 value) { return (value >= 0 && value <= 100
 
 static PetscInt count_of(const Table *table, const char *name, char reason[256])
 {
-  const PetscInt64 *data = TableData(table, name, COLUMN_INT64, 1, reason);
+  const PetscInt64 *data = table_data(table, name, COLUMN_INT64, 1, reason);
   const PetscInt64 value = data && table->rows == 1 ? *data : 0;
   if (!is_count(value)) snprintf(reason, 256, "%s/%s makes no sense", table->name, name);
   return (PetscInt)value;
@@ -217,7 +217,7 @@ static PetscInt count_of(const Table *table, const char *name, char reason[256])
 static void softening_from_table(Model *m, const Table *table, char reason[256])
 {
   if (!table || reason[0]) return;
-  const PetscReal *kept = TableData(table, "least_last_before", COLUMN_REAL, 3, reason);
+  const PetscReal *kept = table_data(table, "least_last_before", COLUMN_REAL, 3, reason);
   if (!kept) return;
   for (int k = 0; k < 3 && table->rows == 1; ++k)
     if (!(kept[k] >= 0 && kept[k] <= PETSC_MAX_REAL)) snprintf(reason, 256, "softening makes no sense");
@@ -228,7 +228,7 @@ static void softening_from_table(Model *m, const Table *table, char reason[256])
 /* Checkpoints of older programs did not count them. */
 static void tries_from_table(Model *m, const Table *table, char reason[256])
 {
-  const PetscInt64 *kept = table ? TableData(table, "again_lost", COLUMN_INT64, 2, reason) : NULL;
+  const PetscInt64 *kept = table ? table_data(table, "again_lost", COLUMN_INT64, 2, reason) : NULL;
   if (!kept) return;
   if (table->rows != 1 || !is_count(kept[0]) || !is_count(kept[1]))
     snprintf(reason, 256, "%s makes no sense", table->name);
@@ -238,7 +238,7 @@ static void tries_from_table(Model *m, const Table *table, char reason[256])
 static void check_grid(const Model *m, const Table *table, char reason[256])
 {
   PetscReal mine[GRID_NUMBERS];
-  const PetscReal *kept = TableData(table, "grid", COLUMN_REAL, GRID_NUMBERS, reason);
+  const PetscReal *kept = table_data(table, "grid", COLUMN_REAL, GRID_NUMBERS, reason);
   if (!kept) return;
   grid_numbers(m->grid, mine);
   for (int i = 0; i < GRID_NUMBERS; ++i)
@@ -259,7 +259,7 @@ static void whole_from_tables(Model *m, const Table *table, const Table *measure
   if (m->control.patience > STEP_WAIT_MOST || m->control.wait > STEP_WAIT_MOST || m->step > 1000000000)
     snprintf(reason, 256, "what its steps are chosen by makes no sense");
   for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(memories); ++i) {
-    const PetscReal *data = TableData(measures, memories[i].name, COLUMN_REAL, 1, reason);
+    const PetscReal *data = table_data(measures, memories[i].name, COLUMN_REAL, 1, reason);
     for (PetscInt k = 0; data && k < m->c->n_measures; ++k)
       *(PetscReal *)((char *)&m->memory[k] + memories[i].offset) = data[k];
   }
@@ -271,10 +271,10 @@ static PetscErrorCode NodesBack(Model *m, const Tables *tables, char reason[256]
   const PetscInt n = method_fields(m, field);
 
   PetscFunctionBeginUser;
-  if (n) PetscCall(NodesFromTable(m->grid, PETSC_TRUE, n, field, TablesFind(tables, "nodes"), reason));
+  if (n) PetscCall(NodesFromTable(m->grid, PETSC_TRUE, n, field, tables_find(tables, "nodes"), reason));
   if (!reason[0]) PetscCall(ReactionsFromTables(m, tables, reason));
   if (!reason[0]) PetscCall(GuessFromTables(m, tables, reason));
-  if (!reason[0]) PetscCall(CellsFromTable(m->grid, m->enabled, TablesFind(tables, "pattern"), reason));
+  if (!reason[0]) PetscCall(CellsFromTable(m->grid, m->enabled, tables_find(tables, "pattern"), reason));
   PetscFunctionReturn(0);
 }
 
@@ -283,12 +283,13 @@ static PetscErrorCode PointsBack(Model *m, const Tables *tables, char reason[256
   const Case *c = m->c;
 
   PetscFunctionBeginUser;
-  PetscCall(PointsFromTable(m->points, m->grid, TablesFind(tables, "points"), c->n_bodies, c->n_materials, reason));
-  if (reason[0]) PetscFunctionReturn(0);
-  PetscCall(PointsFromTable(m->tracers, m->grid, TablesFind(tables, "tracers"), c->n_measures, c->n_materials, reason));
+  PetscCall(PointsFromTable(m->points, m->grid, tables_find(tables, "points"), c->n_bodies, c->n_materials, reason));
   if (reason[0]) PetscFunctionReturn(0);
   PetscCall(
-    PointsFromTable(m->loads->carriers, m->grid, TablesFind(tables, "carriers"), c->n_loads, c->n_materials, reason));
+    PointsFromTable(m->tracers, m->grid, tables_find(tables, "tracers"), c->n_measures, c->n_materials, reason));
+  if (reason[0]) PetscFunctionReturn(0);
+  PetscCall(
+    PointsFromTable(m->loads->carriers, m->grid, tables_find(tables, "carriers"), c->n_loads, c->n_materials, reason));
   PetscFunctionReturn(0);
 }
 
@@ -302,7 +303,7 @@ static NewtonMemory newton_memory(const Table *table, char reason[256])
 /* The partition as it was, where the ranks are as many; others share the grid as a new run does, and anew if that is not good. */
 static PetscErrorCode BalanceBack(Model *m, const Tables *tables, char reason[256])
 {
-  const Table *table = TablesFind(tables, "balance"), *partition = TablesFind(tables, "partition");
+  const Table *table = tables_find(tables, "balance"), *partition = tables_find(tables, "partition");
   Balance *b = &m->balance;
   PetscMPIInt size;
   PetscInt moved;
@@ -310,7 +311,7 @@ static PetscErrorCode BalanceBack(Model *m, const Tables *tables, char reason[25
 
   PetscFunctionBeginUser;
   if (!table) PetscFunctionReturn(0);
-  const PetscInt64 *memory = TableData(table, "ranks_tried_repartitions", COLUMN_INT64, 3, reason);
+  const PetscInt64 *memory = table_data(table, "ranks_tried_repartitions", COLUMN_INT64, 3, reason);
   b->largest = real_of(table, "largest", reason);
   if (reason[0] || table->rows != 1) PetscFunctionReturn(0);
   if (!(memory[1] >= 0 && memory[1] <= m->step && is_count(memory[2])))
@@ -339,7 +340,7 @@ static PetscErrorCode SolverBack(Model *m, const Table *table, char reason[256])
   for (PetscInt c = 0; c < m->grid->n_cells; ++c) local += m->enabled[c];
   PetscCall(MPIU_Allreduce(&local, &any, 1, MPIU_INT, MPI_SUM, m->comm));
   if (any) PetscCall(ModelEnable(m));
-  NewtonSetMemory(m->newton, m->system, &newton);
+  newton_set_memory(m->newton, m->system, &newton);
   PetscFunctionReturn(0);
 }
 
@@ -350,24 +351,24 @@ static void check_tables(const Model *m, const Tables *tables, char reason[256])
   static const char *const of_cells[] = {"boundary", "nodes"}, *const of_clouds[] = {"nodes", "ghosts", "cloud",
                                                                                      "parts"};
   for (int i = 0; i < 6; ++i)
-    if (!TablesFind(tables, always[i])) snprintf(reason, 256, "%s is missing", always[i]);
+    if (!tables_find(tables, always[i])) snprintf(reason, 256, "%s is missing", always[i]);
   for (int i = 0; !m->grid->cloud && i < (m->method->fields ? 2 : 1); ++i)
-    if (!TablesFind(tables, of_cells[i])) snprintf(reason, 256, "%s is missing", of_cells[i]);
+    if (!tables_find(tables, of_cells[i])) snprintf(reason, 256, "%s is missing", of_cells[i]);
   for (int i = 0; m->grid->cloud && i < 4; ++i)
-    if (!TablesFind(tables, of_clouds[i])) snprintf(reason, 256, "%s is missing", of_clouds[i]);
+    if (!tables_find(tables, of_clouds[i])) snprintf(reason, 256, "%s is missing", of_clouds[i]);
 }
 
 static PetscErrorCode CloudBack(Model *m, Tables *tables, char reason[256])
 {
   PetscBool home;
-  const Table *model = TablesFind(tables, "model");
+  const Table *model = tables_find(tables, "model");
 
   PetscFunctionBeginUser;
   NewtonMemory newton = newton_memory(model, reason);
   PetscCall(StateCloudNodes(m, tables, &home, reason));
   if (!reason[0]) PetscCall(PointsBack(m, tables, reason));
   if (!reason[0]) PetscCall(StateCloudSettle(m, tables, home, reason));
-  if (!reason[0]) NewtonSetMemory(m->newton, m->system, &newton);
+  if (!reason[0]) newton_set_memory(m->newton, m->system, &newton);
   PetscFunctionReturn(0);
 }
 
@@ -377,9 +378,9 @@ PetscErrorCode ModelFromTables(Model *m, Tables *tables, char reason[256])
   reason[0] = 0;
   check_tables(m, tables, reason);
   if (reason[0]) PetscFunctionReturn(0);
-  whole_from_tables(m, TablesFind(tables, "model"), TablesFind(tables, "measures"), reason);
-  tries_from_table(m, TablesFind(tables, "tries"), reason);
-  softening_from_table(m, TablesFind(tables, "softening"), reason);
+  whole_from_tables(m, tables_find(tables, "model"), tables_find(tables, "measures"), reason);
+  tries_from_table(m, tables_find(tables, "tries"), reason);
+  softening_from_table(m, tables_find(tables, "softening"), reason);
   state_lost_from_tables(m, tables, reason);
   PetscCall(ReasonShare(m->comm, reason));
   if (m->grid->cloud && !reason[0]) {
@@ -391,7 +392,7 @@ PetscErrorCode ModelFromTables(Model *m, Tables *tables, char reason[256])
   if (!reason[0]) PetscCall(NodesBack(m, tables, reason));
   if (reason[0]) PetscFunctionReturn(0);
   PetscCall(PointsSort(m->points));
-  PetscCall(SolverBack(m, TablesFind(tables, "model"), reason));
+  PetscCall(SolverBack(m, tables_find(tables, "model"), reason));
   PetscCall(ReasonShare(m->comm, reason));
   if (!reason[0]) PetscCall(m->method->initialise(m->stage));
   PetscFunctionReturn(0);

@@ -65,7 +65,7 @@ static PetscErrorCode Couple(Model *m, PetscInt n, const int32_t *pair)
 
 static PetscErrorCode PatternBack(Model *m, const Table *table, char reason[256])
 {
-  const int32_t *pair = TableData(table, "pair", COLUMN_INT32, 2, reason);
+  const int32_t *pair = table_data(table, "pair", COLUMN_INT32, 2, reason);
   PetscInt n = (PetscInt)table->rows, any;
 
   PetscFunctionBeginUser;
@@ -90,13 +90,13 @@ PetscErrorCode StateCloudNodes(Model *m, Tables *tables, PetscBool *home, char r
 
 PetscErrorCode StateCloudSettle(Model *m, const Tables *tables, PetscBool home, char reason[256])
 {
-  const Table *cloud = TablesFind(tables, "cloud");
-  const PetscInt64 *ghosts = TableData(cloud, "balanced_ghosts", COLUMN_INT64, 1, reason);
+  const Table *cloud = tables_find(tables, "cloud");
+  const PetscInt64 *ghosts = table_data(cloud, "balanced_ghosts", COLUMN_INT64, 1, reason);
 
   PetscFunctionBeginUser;
   if (ghosts && (cloud->rows != 1 || *ghosts < 0 || *ghosts > PETSC_MAX_INT))
     snprintf(reason, 256, "cloud/balanced_ghosts makes no sense");
-  if (!reason[0] && home) PetscCall(PatternBack(m, TablesFind(tables, "pattern"), reason));
+  if (!reason[0] && home) PetscCall(PatternBack(m, tables_find(tables, "pattern"), reason));
   if (!reason[0] && !home) PetscCall(m->method->redistribute(m->stage));
   if (reason[0]) PetscFunctionReturn(0);
   m->grid->cloud->balanced_ghosts = 0; /* nobody moves before the next step */

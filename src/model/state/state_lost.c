@@ -59,10 +59,10 @@ void state_lost_from_tables(Model *m, const Tables *tables, char reason[256])
   LostTable list[4];
   list_tables(m, list);
   for (const LostTable *t = list; t < list + 4 && !reason[0]; ++t) {
-    const Table *table = TablesFind(tables, t->name);
+    const Table *table = tables_find(tables, t->name);
     if (!table) continue;
     if (table->rows != t->rows || !table->everywhere) snprintf(reason, 256, "%s makes no sense", t->name);
-    const PetscReal *data = reason[0] ? NULL : TableData(table, t->column, COLUMN_REAL, t->components, reason);
+    const PetscReal *data = reason[0] ? NULL : table_data(table, t->column, COLUMN_REAL, t->components, reason);
     for (PetscInt i = 0; data && i < t->rows * t->components; ++i)
       row_of(t, i / t->components)[i % t->components] = data[i];
   }

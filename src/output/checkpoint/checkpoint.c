@@ -51,7 +51,7 @@ static void describe(const Slab *slab, ContentsEntry *e)
 }
 
 /* The contents list goes into the user block. */
-static void WriteContents(const SlabHead *head, PetscInt n, const Slab *slabs, SlabFrame *frame)
+static void write_contents(const SlabHead *head, PetscInt n, const Slab *slabs, SlabFrame *frame)
 {
   Contents c = {.file_bytes = frame->size, .n = n, .entries = calloc((size_t)n + 1, sizeof(ContentsEntry))};
   char *text = NULL;
@@ -94,7 +94,7 @@ PetscErrorCode CheckpointWrite(MPI_Comm comm, const char *path, const Tables *ta
                          .attributes = attributes,
                          .checksums = PETSC_TRUE,
                          .user_block = user_block(n)};
-  const PetscErrorCode code = SlabFileWrite(comm, path, &head, n, slabs, WriteContents, PETSC_TRUE, reason);
+  const PetscErrorCode code = SlabFileWrite(comm, path, &head, n, slabs, write_contents, PETSC_TRUE, reason);
   PetscCall(PetscFree(groups));
   PetscCall(PetscFree(slabs));
   PetscFunctionReturn(code);

@@ -55,7 +55,7 @@ static PETSC_ATTRIBUTE_FORMAT(2, 3) PetscBool refuse(char reason[256], const cha
 }
 
 /* One `table/column type components rows offset crc [everywhere]`; no number is trusted. */
-static PetscBool ReadEntry(const char *line, PetscInt64 file_bytes, ContentsEntry *e)
+static PetscBool read_entry(const char *line, PetscInt64 file_bytes, ContentsEntry *e)
 {
   char type[8], flag[12] = "", rest;
   int components;
@@ -80,7 +80,7 @@ static PetscBool ReadEntry(const char *line, PetscInt64 file_bytes, ContentsEntr
 }
 
 /* All columns of a table stand together and have as many rows. */
-static PetscBool IsConsistent(const Contents *c, PetscInt i)
+static PetscBool is_consistent(const Contents *c, PetscInt i)
 {
   const ContentsEntry *e = &c->entries[i], *before = i ? e - 1 : NULL;
   if (before && !strcmp(before->table, e->table)) {
@@ -94,13 +94,13 @@ static PetscBool IsConsistent(const Contents *c, PetscInt i)
   return PETSC_TRUE;
 }
 
-static PetscBool ReadEntries(char *text, PetscInt64 file_bytes, Contents *c, char reason[256])
+static PetscBool read_entries(char *text, PetscInt64 file_bytes, Contents *c, char reason[256])
 {
   char *line = text;
   for (PetscInt i = 0; i < c->n; ++i) {
     char *end = strchr(line, '\n');
     if (end) *end = 0;
-    if (!end || !ReadEntry(line, file_bytes, &c->entries[i]) || !IsConsistent(c, i))
+    if (!end || !read_entry(line, file_bytes, &c->entries[i]) || !is_consistent(c, i))
       return refuse(reason, "line %d of its contents makes no sense", (int)i + 5);
     line = end + 1;
   }
@@ -108,7 +108,7 @@ static PetscBool ReadEntries(char *text, PetscInt64 file_bytes, Contents *c, cha
 }
 
 /* The list in a text that ends behind `datasets`; the line `end` has been cut off. */
-static PetscBool ReadList(char *text, PetscInt64 file_bytes, Contents *c, char reason[256])
+static PetscBool read_list(char *text, PetscInt64 file_bytes, Contents *c, char reason[256])
 {
   int version = 0, n = 0, head = 0;
   int64_t bytes = 0;
@@ -127,7 +127,7 @@ static PetscBool ReadList(char *text, PetscInt64 file_bytes, Contents *c, char r
   c->n = n;
   c->entries = calloc((size_t)n + 1, sizeof *c->entries);
   if (!c->entries) return refuse(reason, "there is no memory for its contents");
-  if (ReadEntries(text + strlen(title) + head + 1, file_bytes, c, reason)) return PETSC_TRUE;
+  if (read_entries(text + strlen(title) + head + 1, file_bytes, c, reason)) return PETSC_TRUE;
   free(c->entries);
   c->entries = NULL;
   return PETSC_FALSE;
@@ -149,7 +149,7 @@ PetscBool contents_read(const char *bytes, size_t n, PetscInt64 file_bytes, Cont
   else if (text_crc(text, (size_t)(end + 1 - text)) != crc) refuse(reason, "the checksum of its contents is wrong");
   else {
     end[1] = 0;
-    ok = ReadList(text, file_bytes, c, reason);
+    ok = read_list(text, file_bytes, c, reason);
   }
   free(text);
   return ok;

@@ -14,49 +14,49 @@
 #include "talus_version.h"
 
 /* Does it hold another run, or somebody's files of the names that a run would write? */
-static PetscBool CheckContents(const char *path, PetscBool force, Diag *diag)
+static PetscBool check_contents(const char *path, PetscBool force, Diag *diag)
 {
   char names[600];
   const PetscBool ours = run_dir_is_ours(path);
   if (ours && force) return PETSC_TRUE;
   if (ours) {
-    DiagError(diag, NULL, "the output directory '%s' already holds a run", path);
-    DiagHint(diag, "--out names another directory, --force replaces the run that is there, --resume %s goes on with it",
-             path);
+    diag_error(diag, NULL, "the output directory '%s' already holds a run", path);
+    diag_hint(
+      diag, "--out names another directory, --force replaces the run that is there, --resume %s goes on with it", path);
     return PETSC_FALSE;
   }
   const PetscInt n = run_dir_in_the_way(path, sizeof names, names);
   if (n == 0) return PETSC_TRUE;
-  DiagError(diag, NULL, "the output directory '%s' holds a %s that %s not of a run: %s would be overwritten", path,
-            names, n > 1 ? "are" : "is", n > 1 ? "they" : "it");
-  DiagHint(diag,
-           "name another directory with --out; not even --force touches a directory without a " RUN_DIR_SIGNATURE);
+  diag_error(diag, NULL, "the output directory '%s' holds a %s that %s not of a run: %s would be overwritten", path,
+             names, n > 1 ? "are" : "is", n > 1 ? "they" : "it");
+  diag_hint(diag,
+            "name another directory with --out; not even --force touches a directory without a " RUN_DIR_SIGNATURE);
   return PETSC_FALSE;
 }
 
 /* May a run start here? */
-static PetscBool CheckFolder(const char *path, PetscBool force, Diag *diag)
+static PetscBool check_folder(const char *path, PetscBool force, Diag *diag)
 {
   const int error = file_make_folders(path);
   if (error) {
-    DiagError(diag, NULL, "cannot create the output directory '%s': %s", path, strerror(error));
+    diag_error(diag, NULL, "cannot create the output directory '%s': %s", path, strerror(error));
     return PETSC_FALSE;
   }
   if (access(path, W_OK | X_OK)) {
-    DiagError(diag, NULL, "cannot write into the output directory '%s': %s", path, strerror(errno));
+    diag_error(diag, NULL, "cannot write into the output directory '%s': %s", path, strerror(errno));
     return PETSC_FALSE;
   }
-  return CheckContents(path, force, diag);
+  return check_contents(path, force, diag);
 }
 
 /* May the file of --log be written? What stands there already must be a log. */
-static PetscBool CheckLog(const char *folder, const char *log, Diag *diag)
+static PetscBool check_log(const char *folder, const char *log, Diag *diag)
 {
   if (run_dir_names_as_its_own(folder, log))
-    DiagError(diag, NULL, "the log cannot be written to '%s': the run itself writes a file of this name", log);
+    diag_error(diag, NULL, "the log cannot be written to '%s': the run itself writes a file of this name", log);
   else if (run_dir_spoils(log)) {
-    DiagError(diag, NULL, "'%s' is no log of talus: the log would overwrite it", log);
-    DiagHint(diag, "--log takes the name of a new file, or of an earlier log");
+    diag_error(diag, NULL, "'%s' is no log of talus: the log would overwrite it", log);
+    diag_hint(diag, "--log takes the name of a new file, or of an earlier log");
   } else return PETSC_TRUE;
   return PETSC_FALSE;
 }
@@ -67,14 +67,14 @@ static void log_path(const char *folder, const char *log, char path[PETSC_MAX_PA
   else snprintf(path, PETSC_MAX_PATH_LEN, "%s/log.txt", folder);
 }
 
-static FILE *OpenLog(const char *folder, const char *log, const char *mode, Diag *diag)
+static FILE *open_log(const char *folder, const char *log, const char *mode, Diag *diag)
 {
   char path[PETSC_MAX_PATH_LEN];
-  if (log && !CheckLog(folder, log, diag)) return NULL;
+  if (log && !check_log(folder, log, diag)) return NULL;
   log_path(folder, log, path);
   FILE *file = fopen(path, mode);
   if (!file) {
-    DiagError(diag, NULL, "cannot write the log file '%s': %s", path, strerror(errno));
+    diag_error(diag, NULL, "cannot write the log file '%s': %s", path, strerror(errno));
     return NULL;
   }
   setvbuf(file, NULL, _IOLBF, 0);
@@ -83,41 +83,41 @@ static FILE *OpenLog(const char *folder, const char *log, const char *mode, Diag
 }
 
 /* A run at work holds a lock on its directory, which the system takes away when the process ends, however it ends. */
-static PetscBool Lock(const char *path, Diag *diag, int *lock)
+static PetscBool dir_lock(const char *path, Diag *diag, int *lock)
 {
   *lock = open(path, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   if (*lock < 0 || !flock(*lock, LOCK_EX | LOCK_NB) || errno != EWOULDBLOCK) return PETSC_TRUE;
   close(*lock);
   *lock = -1;
-  DiagError(diag, NULL, "another run is at work in the output directory '%s'", path);
+  diag_error(diag, NULL, "another run is at work in the output directory '%s'", path);
   return PETSC_FALSE;
 }
 
-static PetscBool Sign(const char *path, Diag *diag)
+static PetscBool sign(const char *path, Diag *diag)
 {
   const int error = run_dir_sign(path);
-  if (error) DiagError(diag, NULL, "cannot write %s/" RUN_DIR_SIGNATURE ": %s", path, strerror(error));
+  if (error) diag_error(diag, NULL, "cannot write %s/" RUN_DIR_SIGNATURE ": %s", path, strerror(error));
   return !error;
 }
 
 /* Rank 0; the log is opened before anything is removed if it stands outside. */
-static FILE *Prepare(const char *path, PetscBool force, const char *log, Diag *diag, int *lock)
+static FILE *prepare(const char *path, PetscBool force, const char *log, Diag *diag, int *lock)
 {
-  if (!CheckFolder(path, force, diag) || !Lock(path, diag, lock)) return NULL;
-  FILE *file = log ? OpenLog(path, log, "w", diag) : NULL;
+  if (!check_folder(path, force, diag) || !dir_lock(path, diag, lock)) return NULL;
+  FILE *file = log ? open_log(path, log, "w", diag) : NULL;
   if (log && !file) return NULL;
   const int error = force ? run_dir_remove(path) : 0;
-  if (error) DiagError(diag, NULL, "cannot remove the earlier run in '%s': %s", path, strerror(error));
-  if (error || !Sign(path, diag)) {
+  if (error) diag_error(diag, NULL, "cannot remove the earlier run in '%s': %s", path, strerror(error));
+  if (error || !sign(path, diag)) {
     if (file) fclose(file);
     return NULL;
   }
-  return file ? file : OpenLog(path, log, "w", diag);
+  return file ? file : open_log(path, log, "w", diag);
 }
 
 /* Does a person watch? Open MPI gives the first rank a terminal of its own wherever mpiexec's output goes, so there the
  * output of the parent counts: mpiexec, or a daemon. */
-static PetscBool OnTerminal(void)
+static PetscBool on_terminal(void)
 {
   char link[64], target[16] = "";
   if (!isatty(STDOUT_FILENO)) return PETSC_FALSE;
@@ -147,7 +147,7 @@ static PetscErrorCode Finish(MPI_Comm comm, PetscMPIInt rank, const char *path, 
   log_path(path, named, (*dir)->log_path);
   (*dir)->lock = lock;
   (*dir)->quiet = quiet;
-  (*dir)->terminal = OnTerminal();
+  (*dir)->terminal = on_terminal();
   (*dir)->start = (PetscReal)now.tv_sec + 1e-9 * (PetscReal)now.tv_nsec;
   (*dir)->last_shown = -1;
   PetscCall(PetscStrncpy((*dir)->path, path, sizeof(*dir)->path));
@@ -162,22 +162,22 @@ PetscErrorCode RunDirCreate(MPI_Comm comm, const char *path, PetscBool force, Pe
 
   PetscFunctionBeginUser;
   PetscCallMPI(MPI_Comm_rank(comm, &rank));
-  FILE *file = rank ? NULL : Prepare(path, force, log, diag, &lock);
+  FILE *file = rank ? NULL : prepare(path, force, log, diag, &lock);
   PetscCall(Finish(comm, rank, path, quiet, log, file, lock, dir));
   PetscFunctionReturn(0);
 }
 
-static FILE *PrepareOpen(const char *path, const char *log, Diag *diag, int *lock)
+static FILE *prepare_open(const char *path, const char *log, Diag *diag, int *lock)
 {
   char link[256] = "";
   if (run_dir_is_ours(path)) run_dir_find_link(path, link);
-  else DiagError(diag, NULL, "there is no run to resume in '%s'", path);
+  else diag_error(diag, NULL, "there is no run to resume in '%s'", path);
   if (link[0]) {
-    DiagError(diag, NULL, "'%s/%s' is a link or a pipe: the run would write elsewhere", path, link);
-    DiagHint(diag, "talus makes plain files only; look where it leads before you put a file in its place");
+    diag_error(diag, NULL, "'%s/%s' is a link or a pipe: the run would write elsewhere", path, link);
+    diag_hint(diag, "talus makes plain files only; look where it leads before you put a file in its place");
   }
-  if (!run_dir_is_ours(path) || link[0] || !Lock(path, diag, lock)) return NULL;
-  return OpenLog(path, log, "a", diag);
+  if (!run_dir_is_ours(path) || link[0] || !dir_lock(path, diag, lock)) return NULL;
+  return open_log(path, log, "a", diag);
 }
 
 PetscErrorCode RunDirOpen(MPI_Comm comm, const char *path, PetscBool quiet, const char *log, Diag *diag, RunDir **dir)
@@ -187,7 +187,7 @@ PetscErrorCode RunDirOpen(MPI_Comm comm, const char *path, PetscBool quiet, cons
 
   PetscFunctionBeginUser;
   PetscCallMPI(MPI_Comm_rank(comm, &rank));
-  FILE *file = rank ? NULL : PrepareOpen(path, log, diag, &lock);
+  FILE *file = rank ? NULL : prepare_open(path, log, diag, &lock);
   PetscCall(Finish(comm, rank, path, quiet, log, file, lock, dir));
   PetscFunctionReturn(0);
 }
@@ -200,8 +200,8 @@ PetscErrorCode RunDirSpares(MPI_Comm comm, const char *path, const char *file, D
   PetscCallMPI(MPI_Comm_rank(comm, &rank));
   *spares = rank || !run_dir_holds_as_its_own(path, file);
   if (!*spares) {
-    DiagError(diag, NULL, "the case '%s' stands in the output directory '%s': the run would replace it", file, path);
-    DiagHint(diag, "name another directory with --out");
+    diag_error(diag, NULL, "the case '%s' stands in the output directory '%s': the run would replace it", file, path);
+    diag_hint(diag, "name another directory with --out");
   }
   PetscCallMPI(MPI_Bcast(spares, 1, MPIU_BOOL, 0, comm));
   PetscFunctionReturn(0);
@@ -228,10 +228,10 @@ PetscErrorCode RunDirDiscard(RunDir **dir)
   PetscFunctionReturn(0);
 }
 
-const char *RunDirPath(const RunDir *dir) { return dir->path; }
+const char *run_dir_path(const RunDir *dir) { return dir->path; }
 
 /* A message takes the place of the bar; the next step draws the bar again below it. */
-static void Print(RunDir *dir, const char *format, va_list arguments)
+static void print(RunDir *dir, const char *format, va_list arguments)
 {
   if (dir->bar) fputs("\r\033[K", stdout);
   dir->bar = PETSC_FALSE;
@@ -250,7 +250,7 @@ PetscErrorCode RunDirLog(RunDir *dir, const char *format, ...)
   va_copy(again, arguments);
   if (dir->log) vfprintf(dir->log, format, arguments), fputc('\n', dir->log);
   run_dir_note_log(dir);
-  if (!dir->quiet) Print(dir, format, again);
+  if (!dir->quiet) print(dir, format, again);
   va_end(again);
   va_end(arguments);
   PetscFunctionReturn(0);
@@ -288,7 +288,7 @@ PetscErrorCode RunDirAgree(RunDir *dir, const char *name, int error)
   PetscFunctionReturn(PETSC_ERR_FILE_WRITE);
 }
 
-const char *RunDirReason(const RunDir *dir) { return dir->reason; }
+const char *run_dir_reason(const RunDir *dir) { return dir->reason; }
 
 int run_dir_present(const RunDir *dir)
 {

@@ -29,7 +29,7 @@ PetscErrorCode RunDirSpares(MPI_Comm comm, const char *path, const char *file, D
 PetscErrorCode RunDirDestroy(RunDir **dir);
 /* Collective. Take a run back that could not start: its files go, and *dir with them. */
 PetscErrorCode RunDirDiscard(RunDir **dir);
-const char *RunDirPath(const RunDir *dir);
+const char *run_dir_path(const RunDir *dir);
 
 /* A line for the log and the terminal (rank 0): plain `key = value` text. */
 PetscErrorCode RunDirLog(RunDir *dir, const char *format, ...) PETSC_ATTRIBUTE_FORMAT(2, 3);
@@ -75,11 +75,11 @@ PetscErrorCode RunDirWriteText(RunDir *dir, const char *name, const char *text);
 PetscErrorCode RunDirPresent(RunDir *dir);
 
 /* After PETSC_ERR_FILE_WRITE, on every rank: which file could not be written, and why. */
-const char *RunDirReason(const RunDir *dir);
+const char *run_dir_reason(const RunDir *dir);
 
 /* Where the checkpoint after so many steps stands. */
 #define CHECKPOINT_PATH (PETSC_MAX_PATH_LEN + 64)
-void RunDirCheckpointPath(const RunDir *dir, PetscInt step, char path[CHECKPOINT_PATH]);
+void run_dir_checkpoint_path(const RunDir *dir, PetscInt step, char path[CHECKPOINT_PATH]);
 /* Collective. Steps of the checkpoints that are there, newest first; free with PetscFree. */
 PetscErrorCode RunDirCheckpoints(RunDir *dir, PetscInt *n, PetscInt **steps);
 /* Collective. Remove all but the newest. */

@@ -7,13 +7,13 @@
 #include "output/directory/run_dir_files.h"
 #include "output/directory/run_dir_impl.h"
 
-void RunDirCheckpointPath(const RunDir *dir, PetscInt step, char path[CHECKPOINT_PATH])
+void run_dir_checkpoint_path(const RunDir *dir, PetscInt step, char path[CHECKPOINT_PATH])
 {
   snprintf(path, CHECKPOINT_PATH, "%s/checkpoint_%09" PetscInt_FMT ".h5", dir->path, step);
 }
 
 /* The number in PREFIX_number.SUFFIX, -1 if the name is another. */
-static PetscInt NumberOf(const char *name, const char *prefix, const char *suffix)
+static PetscInt number_of(const char *name, const char *prefix, const char *suffix)
 {
   const size_t n = strlen(prefix);
   char *end;
@@ -22,9 +22,9 @@ static PetscInt NumberOf(const char *name, const char *prefix, const char *suffi
   return strcmp(end, suffix) || number > PETSC_MAX_INT ? -1 : (PetscInt)number;
 }
 
-static PetscInt checkpoint_step(const char *name) { return NumberOf(name, "checkpoint_", ".h5"); }
+static PetscInt checkpoint_step(const char *name) { return number_of(name, "checkpoint_", ".h5"); }
 
-static int NewestFirst(const void *a, const void *b)
+static int newest_first(const void *a, const void *b)
 {
   const PetscInt p = *(const PetscInt *)a, q = *(const PetscInt *)b;
   return (q > p) - (q < p);
@@ -49,7 +49,7 @@ static PetscErrorCode ListSteps(const RunDir *dir, PetscInt *n, PetscInt **steps
     (*steps)[(*n)++] = step;
   }
   if (listing) closedir(listing);
-  if (*n) qsort(*steps, (size_t)*n, sizeof **steps, NewestFirst);
+  if (*n) qsort(*steps, (size_t)*n, sizeof **steps, newest_first);
   PetscFunctionReturn(0);
 }
 
@@ -74,7 +74,7 @@ PetscErrorCode RunDirKeepCheckpoints(RunDir *dir, PetscInt keep)
   if (dir->rank) PetscFunctionReturn(0);
   PetscCall(ListSteps(dir, &n, &steps));
   for (PetscInt i = keep; steps && i < n; ++i) {
-    RunDirCheckpointPath(dir, steps[i], path);
+    run_dir_checkpoint_path(dir, steps[i], path);
     unlink(path); /* one that stays takes place, and does no harm */
   }
   PetscCall(PetscFree(steps));
@@ -82,11 +82,11 @@ PetscErrorCode RunDirKeepCheckpoints(RunDir *dir, PetscInt keep)
 }
 
 /* What a file of the directory is to a run that goes back to `step` and the first `states` states. */
-static int Rewind(const RunDir *dir, const char *name, PetscInt states, PetscInt step)
+static int rewind_files(const RunDir *dir, const char *name, PetscInt states, PetscInt step)
 {
   char path[FILE_PATH], aside[FILE_PATH + 16];
   const size_t n = strlen(name), tail = strlen(FILE_UNFINISHED);
-  const PetscInt point = NumberOf(name, "points_", ".hdf"), grid = NumberOf(name, "grid_", ".hdf");
+  const PetscInt point = number_of(name, "points_", ".hdf"), grid = number_of(name, "grid_", ".hdf");
   snprintf(path, sizeof path, "%s/%s", dir->path, name);
   if ((n > tail && !strcmp(name + n - tail, FILE_UNFINISHED)) || point >= states || grid >= states)
     return unlink(path) && errno != ENOENT ? errno : 0;
@@ -104,7 +104,7 @@ PetscErrorCode RunDirRewind(RunDir *dir, PetscInt states, PetscInt step)
     DIR *listing = opendir(dir->path);
     if (!listing) error = errno;
     for (struct dirent *entry = listing ? readdir(listing) : NULL; entry && !error; entry = readdir(listing))
-      error = Rewind(dir, entry->d_name, states, step);
+      error = rewind_files(dir, entry->d_name, states, step);
     if (listing) closedir(listing);
   }
   const PetscErrorCode status = RunDirAgree(dir, "", error);

@@ -6,7 +6,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-static int MakeFolder(const char *path)
+static int make_folder(const char *path)
 {
   struct stat status;
   if (!mkdir(path, 0777)) return 0;
@@ -24,11 +24,11 @@ int file_make_folders(const char *path)
   memcpy(part, path, n + 1);
   for (char *slash = strchr(part + 1, '/'); slash; slash = strchr(slash + 1, '/')) {
     *slash = 0;
-    const int error = MakeFolder(part);
+    const int error = make_folder(part);
     if (error) return error;
     *slash = '/';
   }
-  return MakeFolder(part);
+  return make_folder(part);
 }
 
 PetscBool file_exists(const char *folder, const char *name)
@@ -65,7 +65,7 @@ int file_write_at(int fd, const void *bytes, size_t n, off_t offset)
 }
 
 /* Pipes and the like cannot be flushed to a disk: no failure. */
-static int Sync(int fd)
+static int files_sync(int fd)
 {
   if (!fsync(fd) || errno == EINVAL || errno == ENOTSUP || errno == EROFS) return 0;
   return errno;
@@ -73,7 +73,7 @@ static int Sync(int fd)
 
 int file_finish(int fd)
 {
-  int error = Sync(fd);
+  int error = files_sync(fd);
   if (close(fd) && !error) error = errno;
   return error;
 }
@@ -93,13 +93,13 @@ int file_finish_stream(FILE *file)
   int error = 0;
   errno = 0;
   if (ferror(file) || fflush(file)) error = errno ? errno : EIO;
-  if (!error) error = Sync(fileno(file));
+  if (!error) error = files_sync(fileno(file));
   if (fclose(file) && !error) error = errno;
   return error;
 }
 
 /* A device, a pipe, a socket: for root a file could take its place. */
-static PetscBool IsSpecial(const char *path)
+static PetscBool is_special(const char *path)
 {
   struct stat status;
   return !lstat(path, &status) && !S_ISREG(status.st_mode) && !S_ISLNK(status.st_mode) && !S_ISDIR(status.st_mode);
@@ -107,7 +107,7 @@ static PetscBool IsSpecial(const char *path)
 
 int file_commit(const char *unfinished, const char *path, int error)
 {
-  if (!error && IsSpecial(path)) error = EEXIST;
+  if (!error && is_special(path)) error = EEXIST;
   if (!error && rename(unfinished, path)) error = errno;
   if (error) unlink(unfinished);
   return error;

@@ -63,7 +63,7 @@ int run_dir_sign(const char *path)
   return file_write_text(file, signature);
 }
 
-static PetscBool MatchesAny(const char *name, const char *const *patterns)
+static PetscBool matches_any(const char *name, const char *const *patterns)
 {
   for (int i = 0; patterns[i]; ++i)
     if (!fnmatch(patterns[i], name, 0)) return PETSC_TRUE;
@@ -71,10 +71,10 @@ static PetscBool MatchesAny(const char *name, const char *const *patterns)
 }
 
 /* The next entry of the listing that fits, with its path. NULL at the end. */
-static const char *NextFile(DIR *listing, const char *folder, const char *const *patterns, char path[FILE_PATH])
+static const char *next_file(DIR *listing, const char *folder, const char *const *patterns, char path[FILE_PATH])
 {
   for (struct dirent *entry = listing ? readdir(listing) : NULL; entry; entry = readdir(listing)) {
-    if (!MatchesAny(entry->d_name, patterns) && strcmp(entry->d_name, RUN_DIR_SIGNATURE)) continue;
+    if (!matches_any(entry->d_name, patterns) && strcmp(entry->d_name, RUN_DIR_SIGNATURE)) continue;
     snprintf(path, FILE_PATH, "%s/%s", folder, entry->d_name);
     return entry->d_name;
   }
@@ -88,7 +88,7 @@ PetscInt run_dir_in_the_way(const char *folder, size_t size, char *names)
   size_t used = 0;
   DIR *listing = opendir(folder);
   names[0] = '\0';
-  for (const char *name; (name = NextFile(listing, folder, run_files, path)); ++n)
+  for (const char *name; (name = next_file(listing, folder, run_files, path)); ++n)
     if (n < 2 && used < size) used += (size_t)snprintf(names + used, size - used, "%s%s", n ? ", " : "", name);
   if (n > 2 && used < size) snprintf(names + used, size - used, " and %" PetscInt_FMT " more", n - 2);
   if (listing) closedir(listing);
@@ -101,7 +101,7 @@ PetscBool run_dir_holds_as_its_own(const char *folder, const char *file)
   struct stat wanted, info;
   PetscBool found = PETSC_FALSE;
   DIR *listing = stat(file, &wanted) ? NULL : opendir(folder);
-  while (!found && NextFile(listing, folder, run_files, path))
+  while (!found && next_file(listing, folder, run_files, path))
     found = !stat(path, &info) && info.st_dev == wanted.st_dev && info.st_ino == wanted.st_ino;
   if (listing) closedir(listing);
   return found;
@@ -113,7 +113,7 @@ PetscBool run_dir_names_as_its_own(const char *folder, const char *file)
   struct stat here, there;
   const char *slash = strrchr(file, '/'), *name = slash ? slash + 1 : file;
   snprintf(parent, sizeof parent, "%.*s", slash ? (int)PetscMax(slash - file, 1) : 1, slash ? file : ".");
-  if (!MatchesAny(name, run_files) || !strcmp(name, "log.txt") || stat(folder, &here) || stat(parent, &there))
+  if (!matches_any(name, run_files) || !strcmp(name, "log.txt") || stat(folder, &here) || stat(parent, &there))
     return PETSC_FALSE;
   return here.st_dev == there.st_dev && here.st_ino == there.st_ino;
 }
@@ -132,19 +132,19 @@ void run_dir_find_link(const char *folder, char found[256])
   struct stat info;
   DIR *listing = opendir(folder);
   found[0] = '\0';
-  for (const char *name; !found[0] && (name = NextFile(listing, folder, run_files, path));)
+  for (const char *name; !found[0] && (name = next_file(listing, folder, run_files, path));)
     if (!lstat(path, &info) && !S_ISREG(info.st_mode) && !S_ISDIR(info.st_mode)) snprintf(found, 256, "%s", name);
   if (listing) closedir(listing);
 }
 
 /* A link goes, not what it leads to. */
-static int RemoveFiles(const char *folder, const char *const *patterns)
+static int remove_files(const char *folder, const char *const *patterns)
 {
   char path[FILE_PATH];
   int error = 0;
   DIR *listing = opendir(folder);
   if (!listing) return errno == ENOENT || errno == ENOTDIR ? 0 : errno;
-  for (const char *name; !error && (name = NextFile(listing, folder, patterns, path));)
+  for (const char *name; !error && (name = next_file(listing, folder, patterns, path));)
     if (strcmp(name, RUN_DIR_SIGNATURE) && unlink(path)) error = errno;
   closedir(listing);
   return error;
@@ -156,11 +156,14 @@ int run_dir_remove(const char *folder)
   struct stat info;
   if (!run_dir_is_ours(folder)) return 0;
   int error = run_dir_sign(folder); /* one of an earlier version that is half removed must be known, too */
-  if (!error || error == ENOSPC) error = RemoveFiles(folder, run_files);
+  if (!error || error == ENOSPC) error = remove_files(folder, run_files);
   snprintf(path, sizeof path, "%s/pictures", folder);
-  if (!error && !lstat(path, &info) && S_ISDIR(info.st_mode)) error = RemoveFiles(path, picture_files);
+  if (!error && !lstat(path, &info) && S_ISDIR(info.st_mode)) error = remove_files(path, picture_files);
   snprintf(path, sizeof path, "%s/%s", folder, RUN_DIR_SIGNATURE);
   return error ? error : unlink(path) && errno != ENOENT ? errno : 0;
 }
 
-int run_dir_remove_states(const char *folder) { return run_dir_is_ours(folder) ? RemoveFiles(folder, state_files) : 0; }
+int run_dir_remove_states(const char *folder)
+{
+  return run_dir_is_ours(folder) ? remove_files(folder, state_files) : 0;
+}

@@ -88,7 +88,7 @@ static PetscErrorCode SumSlabs(MPI_Comm comm, PetscInt n, Slab *slabs)
 }
 
 /* Refuse what the process may not write, before the kernel sends it a deadly signal. */
-static int CheckSizeLimit(PetscInt n, const Slab *slabs)
+static int check_size_limit(PetscInt n, const Slab *slabs)
 {
   struct rlimit limit;
   PetscInt64 bytes = 8192;
@@ -98,7 +98,7 @@ static int CheckSizeLimit(PetscInt n, const Slab *slabs)
 }
 
 /* Claim the whole file at once: a disk that is too full says so here. */
-static int Reserve(int fd, PetscInt64 size)
+static int file_reserve(int fd, PetscInt64 size)
 {
   if (!fallocate(fd, 0, 0, (off_t)size)) return 0;
   if (errno == ENOSPC || errno == EDQUOT || errno == EFBIG || errno == EIO) return errno;
@@ -106,15 +106,15 @@ static int Reserve(int fd, PetscInt64 size)
 }
 
 /* Rank 0: the file with all but its numbers. */
-static int WriteFrame(const char *path, const SlabHead *head, PetscInt n, Slab *slabs, SlabPreface preface)
+static int write_frame(const char *path, const SlabHead *head, PetscInt n, Slab *slabs, SlabPreface preface)
 {
   SlabFrame frame;
-  int error = CheckSizeLimit(n, slabs);
+  int error = check_size_limit(n, slabs);
   if (error) return error;
   if (!slab_layout(head, n, slabs, &frame)) return ENOMEM;
   if (preface) preface(head, n, slabs, &frame);
   const int fd = open(path, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
-  error = fd < 0 ? errno : Reserve(fd, frame.size);
+  error = fd < 0 ? errno : file_reserve(fd, frame.size);
   if (!error) error = file_write_at(fd, frame.bytes, frame.n, 0);
   if (fd >= 0 && close(fd) && !error) error = errno;
   free(frame.bytes);
@@ -122,7 +122,7 @@ static int WriteFrame(const char *path, const SlabHead *head, PetscInt n, Slab *
 }
 
 /* Every rank: its rows of every dataset. */
-static int WriteRows(const char *path, PetscInt n, const Slab *slabs)
+static int write_rows(const char *path, PetscInt n, const Slab *slabs)
 {
   const int fd = open(path, O_WRONLY | O_CLOEXEC);
   int error = fd < 0 ? errno : 0;
@@ -162,11 +162,11 @@ PetscErrorCode SlabFileWrite(MPI_Comm comm, const char *path, const SlabHead *he
   PetscCall(PetscSNPrintf(unfinished, sizeof unfinished, "%s" FILE_UNFINISHED, path));
   PetscCall(NumberRows(comm, count, slabs));
   if (head->checksums) PetscCall(SumSlabs(comm, n, slabs));
-  if (rank == 0) error = WriteFrame(unfinished, head, n, slabs, preface);
+  if (rank == 0) error = write_frame(unfinished, head, n, slabs, preface);
   PetscCallMPI(MPI_Bcast(&error, 1, MPI_INT, 0, comm));
   if (!error) {
     PetscCall(ShareOffsets(comm, count, slabs));
-    error = WriteRows(unfinished, n, slabs);
+    error = write_rows(unfinished, n, slabs);
     PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &error, 1, MPI_INT, MPI_MAX, comm));
   }
   if (rank == 0) error = file_commit(unfinished, path, error);

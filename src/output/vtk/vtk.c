@@ -12,8 +12,8 @@ typedef struct {
   PetscBool has_cells, has_id; /* on any rank: an empty one has no arrays to tell */
 } Image;
 
-static void AddSlab(Image *image, const char *group, const char *name, const char *unit, SlabType type,
-                    PetscInt components, PetscInt64 rows, const void *data)
+static void add_slab(Image *image, const char *group, const char *name, const char *unit, SlabType type,
+                     PetscInt components, PetscInt64 rows, const void *data)
 {
   Slab *slab = &image->slabs[image->n++];
   memset(slab, 0, sizeof *slab);
@@ -42,18 +42,18 @@ static PetscErrorCode MakeTopology(Image *image, const VtkData *data)
   PetscFunctionReturn(0);
 }
 
-static void AddGeometry(Image *image, const VtkData *data)
+static void add_geometry(Image *image, const VtkData *data)
 {
   image->counts[0] = data->n_points;
   image->counts[1] = image->n_cells;
   image->counts[2] = image->n_connectivity;
-  AddSlab(image, "", "NumberOfPoints", NULL, SLAB_INT64, 1, 1, &image->counts[0]);
-  AddSlab(image, "", "NumberOfCells", NULL, SLAB_INT64, 1, 1, &image->counts[1]);
-  AddSlab(image, "", "NumberOfConnectivityIds", NULL, SLAB_INT64, 1, 1, &image->counts[2]);
-  AddSlab(image, "", "Points", "m", SLAB_REAL, 3, data->n_points, data->x);
-  AddSlab(image, "", "Connectivity", NULL, SLAB_INT64, 1, image->n_connectivity, image->connectivity);
-  AddSlab(image, "", "Offsets", NULL, SLAB_INT64, 1, image->n_cells + 1, image->offsets);
-  AddSlab(image, "", "Types", NULL, SLAB_BYTE, 1, image->n_cells, image->types);
+  add_slab(image, "", "NumberOfPoints", NULL, SLAB_INT64, 1, 1, &image->counts[0]);
+  add_slab(image, "", "NumberOfCells", NULL, SLAB_INT64, 1, 1, &image->counts[1]);
+  add_slab(image, "", "NumberOfConnectivityIds", NULL, SLAB_INT64, 1, 1, &image->counts[2]);
+  add_slab(image, "", "Points", "m", SLAB_REAL, 3, data->n_points, data->x);
+  add_slab(image, "", "Connectivity", NULL, SLAB_INT64, 1, image->n_connectivity, image->connectivity);
+  add_slab(image, "", "Offsets", NULL, SLAB_INT64, 1, image->n_cells + 1, image->offsets);
+  add_slab(image, "", "Types", NULL, SLAB_BYTE, 1, image->n_cells, image->types);
 }
 
 static PetscErrorCode ImageCreate(MPI_Comm comm, PetscMPIInt rank, const VtkData *data, Image *image)
@@ -67,17 +67,17 @@ static PetscErrorCode ImageCreate(MPI_Comm comm, PetscMPIInt rank, const VtkData
   image->has_id = has[1] != 0;
   PetscCall(PetscMalloc1((size_t)(9 + data->n_point_fields + data->n_cell_fields), &image->slabs));
   PetscCall(MakeTopology(image, data));
-  AddGeometry(image, data);
+  add_geometry(image, data);
   for (PetscInt i = 0; i < data->n_point_fields; ++i) {
     const VtkField *field = &data->point_fields[i];
-    AddSlab(image, "PointData/", field->name, field->unit, SLAB_REAL, field->components, data->n_points, field->data);
+    add_slab(image, "PointData/", field->name, field->unit, SLAB_REAL, field->components, data->n_points, field->data);
   }
-  if (image->has_id) AddSlab(image, "PointData/", "id", NULL, SLAB_INT64, 1, data->n_points, data->point_id);
+  if (image->has_id) add_slab(image, "PointData/", "id", NULL, SLAB_INT64, 1, data->n_points, data->point_id);
   for (PetscInt i = 0; i < data->n_cell_fields; ++i) {
     const VtkField *field = &data->cell_fields[i];
-    AddSlab(image, "CellData/", field->name, field->unit, SLAB_REAL, field->components, image->n_cells, field->data);
+    add_slab(image, "CellData/", field->name, field->unit, SLAB_REAL, field->components, image->n_cells, field->data);
   }
-  AddSlab(image, "FieldData/", "Time", "s", SLAB_REAL, 1, rank ? 0 : 1, &data->time);
+  add_slab(image, "FieldData/", "Time", "s", SLAB_REAL, 1, rank ? 0 : 1, &data->time);
   PetscFunctionReturn(0);
 }
 

@@ -19,7 +19,7 @@ struct VtkFile {
   VtkFieldInfo *fields;
 };
 
-static PetscInt64 Rows(const VtkFile *file, const char *name)
+static PetscInt64 rows(const VtkFile *file, const char *name)
 {
   return dataset_rows(file->root, name, file->bytes, NULL);
 }
@@ -30,7 +30,7 @@ static PetscErrorCode ReadCounts(VtkFile *file, const char *name, PetscInt64 **c
 
   PetscFunctionBeginUser;
   *ok = PETSC_FALSE;
-  if (Rows(file, name) != file->partitions) PetscFunctionReturn(0);
+  if (rows(file, name) != file->partitions) PetscFunctionReturn(0);
   PetscCall(PetscCalloc1(file->partitions, counts));
   *ok = dataset_read(file->root, name, H5T_NATIVE_INT64, file->partitions, *counts);
   for (PetscInt i = 0; i < file->partitions && *ok; ++i) {
@@ -43,7 +43,7 @@ static PetscErrorCode ReadCounts(VtkFile *file, const char *name, PetscInt64 **c
 }
 
 /* The fields of as many points as there are, while there is room. */
-static herr_t DescribeField(hid_t group, const char *name, const H5L_info_t *info, void *context)
+static herr_t describe_field(hid_t group, const char *name, const H5L_info_t *info, void *context)
 {
   VtkFile *file = context;
   (void)info;
@@ -66,7 +66,7 @@ static PetscErrorCode FindFields(VtkFile *file, char reason[256])
   const hid_t group = H5Gopen2(file->root, "PointData", H5P_DEFAULT);
   if (group < 0) PetscFunctionReturn(0);
   PetscCall(PetscCalloc1(MOST_FIELDS, &file->fields));
-  if (H5Literate(group, H5_INDEX_NAME, H5_ITER_INC, NULL, DescribeField, file) < 0)
+  if (H5Literate(group, H5_INDEX_NAME, H5_ITER_INC, NULL, describe_field, file) < 0)
     snprintf(reason, 256, "its fields cannot be listed");
   H5Gclose(group);
   PetscFunctionReturn(0);
@@ -81,7 +81,7 @@ static PetscErrorCode ReadFrame(VtkFile *file, char reason[256])
 
   PetscFunctionBeginUser;
   dataset_string(file->root, "Type", type, sizeof type);
-  const PetscInt64 partitions = Rows(file, "NumberOfPoints");
+  const PetscInt64 partitions = rows(file, "NumberOfPoints");
   if (strcmp(type, "UnstructuredGrid") || partitions < 1 || partitions > 1 << 24) {
     snprintf(reason, 256, "not a VTKHDF unstructured grid");
     PetscFunctionReturn(0);
@@ -99,7 +99,7 @@ static PetscErrorCode ReadFrame(VtkFile *file, char reason[256])
     PetscFunctionReturn(0);
   }
   if (dim != 3) snprintf(reason, 256, "its points have %d coordinates instead of 3", (int)dim);
-  if (Rows(file, "FieldData/Time") != 1 ||
+  if (rows(file, "FieldData/Time") != 1 ||
       !dataset_read(file->root, "FieldData/Time", H5T_NATIVE_DOUBLE, 1, &file->time))
     snprintf(reason, 256, "its time is missing");
   PetscCall(FindFields(file, reason));
@@ -123,13 +123,13 @@ static PetscErrorCode OpenQuietly(const char *path, VtkFile *file, char reason[2
 }
 
 /* All that HDF5 does with the structure of a file, which it believes: 1.10 crashes on some that are damaged. */
-static void TryStructure(void *path, char reason[256])
+static void try_structure(void *path, char reason[256])
 {
   static const char *const cells[] = {"Offsets", "Connectivity", "Types"};
   VtkFile file = {.file = -1, .root = -1};
   H5E_BEGIN_TRY { (void)OpenQuietly(path, &file, reason); }
   H5E_END_TRY
-  for (int i = 0; i < 3 && !reason[0]; ++i) (void)Rows(&file, cells[i]);
+  for (int i = 0; i < 3 && !reason[0]; ++i) (void)rows(&file, cells[i]);
   if (file.root >= 0) H5Gclose(file.root);
   if (file.file >= 0) H5Fclose(file.file);
 }
@@ -143,7 +143,7 @@ PetscErrorCode VtkReadOpen(const char *path, VtkFile **file, char reason[256])
   PetscCall(PetscNew(file));
   (*file)->file = (*file)->root = -1;
   PetscCall(PetscStrncpy(name, path, sizeof name));
-  attempt(TryStructure, name, reason);
+  attempt(try_structure, name, reason);
   if (!reason[0]) {
     H5E_BEGIN_TRY { status = OpenQuietly(path, *file, reason); }
     H5E_END_TRY
@@ -168,13 +168,13 @@ PetscErrorCode VtkReadClose(VtkFile **file)
   PetscFunctionReturn(0);
 }
 
-PetscInt VtkReadPoints(const VtkFile *file) { return file->n_points; }
+PetscInt vtk_read_points(const VtkFile *file) { return file->n_points; }
 
-PetscInt VtkReadCells(const VtkFile *file) { return file->n_cells; }
+PetscInt vtk_read_cells(const VtkFile *file) { return file->n_cells; }
 
-PetscReal VtkReadTime(const VtkFile *file) { return file->time; }
+PetscReal vtk_read_time(const VtkFile *file) { return file->time; }
 
-PetscInt VtkReadFields(const VtkFile *file, const VtkFieldInfo **fields)
+PetscInt vtk_read_fields(const VtkFile *file, const VtkFieldInfo **fields)
 {
   *fields = file->fields;
   return file->n_fields;
@@ -211,8 +211,8 @@ PetscErrorCode VtkReadField(VtkFile *file, const VtkFieldInfo *field, PetscReal 
 }
 
 /* A partition's offsets rise from 0 to the number of its node numbers, and these name its points. */
-static PetscBool IsPartition(PetscInt64 cells, const PetscInt64 *offsets, PetscInt64 connectivity,
-                             const PetscInt64 *local, PetscInt64 points)
+static PetscBool is_partition(PetscInt64 cells, const PetscInt64 *offsets, PetscInt64 connectivity,
+                              const PetscInt64 *local, PetscInt64 points)
 {
   if (offsets[0] != 0 || offsets[cells] != connectivity) return PETSC_FALSE;
   for (PetscInt64 c = 0; c < cells; ++c)
@@ -223,12 +223,12 @@ static PetscBool IsPartition(PetscInt64 cells, const PetscInt64 *offsets, PetscI
 }
 
 /* Offsets start anew in each partition, and so do node numbers. */
-static PetscBool JoinPartitions(const VtkFile *file, const PetscInt64 *offsets, const PetscInt64 *local, VtkCells *all)
+static PetscBool join_partitions(const VtkFile *file, const PetscInt64 *offsets, const PetscInt64 *local, VtkCells *all)
 {
   PetscInt64 point = 0, cell = 0, id = 0;
   for (PetscInt p = 0; p < file->partitions; ++p) {
     const PetscInt64 cells = file->cells[p], ids = file->connectivity[p];
-    if (!IsPartition(cells, offsets + cell + p, ids, local + id, file->points[p])) return PETSC_FALSE;
+    if (!is_partition(cells, offsets + cell + p, ids, local + id, file->points[p])) return PETSC_FALSE;
     for (PetscInt64 c = 0; c < cells; ++c) all->start[cell + c] = (PetscInt)(id + offsets[cell + p + c]);
     for (PetscInt64 k = 0; k < ids; ++k) all->node[id + k] = (PetscInt)(point + local[id + k]);
     point += file->points[p], cell += cells, id += ids;
@@ -238,15 +238,15 @@ static PetscBool JoinPartitions(const VtkFile *file, const PetscInt64 *offsets, 
 }
 
 /* Corners of VTK's cells; -1: any number. */
-static PetscInt CellNodes(int type)
+static PetscInt cell_nodes(int type)
 {
   return type == 1 ? 1 : type == 3 ? 2 : type == 5 ? 3 : type == 9 || type == 10 ? 4 : type == 12 ? 8 : -1;
 }
 
-static PetscBool HaveTheirNodes(const VtkCells *cells)
+static PetscBool have_their_nodes(const VtkCells *cells)
 {
   for (PetscInt c = 0; c < cells->n; ++c) {
-    const PetscInt wanted = CellNodes(cells->type[c]);
+    const PetscInt wanted = cell_nodes(cells->type[c]);
     if (wanted >= 0 && cells->start[c + 1] - cells->start[c] != wanted) return PETSC_FALSE;
   }
   return PETSC_TRUE;
@@ -263,9 +263,9 @@ static PetscErrorCode FillCells(const VtkFile *file, VtkCells *cells, char reaso
       !dataset_read(file->root, "Connectivity", H5T_NATIVE_INT64, file->n_connectivity, local) ||
       !dataset_read(file->root, "Types", H5T_NATIVE_INT, file->n_cells, cells->type))
     snprintf(reason, 256, "its cells cannot be read");
-  else if (!JoinPartitions(file, offsets, local, cells))
+  else if (!join_partitions(file, offsets, local, cells))
     snprintf(reason, 256, "its cells name nodes that are not there");
-  else if (!HaveTheirNodes(cells)) snprintf(reason, 256, "a cell has more or fewer nodes than its type");
+  else if (!have_their_nodes(cells)) snprintf(reason, 256, "a cell has more or fewer nodes than its type");
   PetscCall(PetscFree2(offsets, local));
   PetscFunctionReturn(0);
 }
@@ -275,8 +275,8 @@ PetscErrorCode VtkReadTopology(VtkFile *file, VtkCells *cells, char reason[256])
   PetscFunctionBeginUser;
   reason[0] = 0;
   PetscCall(PetscMemzero(cells, sizeof *cells));
-  if (Rows(file, "Offsets") != (PetscInt64)file->n_cells + file->partitions || Rows(file, "Types") != file->n_cells ||
-      Rows(file, "Connectivity") != file->n_connectivity) {
+  if (rows(file, "Offsets") != (PetscInt64)file->n_cells + file->partitions || rows(file, "Types") != file->n_cells ||
+      rows(file, "Connectivity") != file->n_connectivity) {
     snprintf(reason, 256, "its cells are not complete");
     PetscFunctionReturn(PETSC_ERR_FILE_UNEXPECTED);
   }

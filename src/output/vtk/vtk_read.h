@@ -14,16 +14,16 @@ typedef struct {
 PetscErrorCode VtkReadOpen(const char *path, VtkFile **file, char reason[256]);
 PetscErrorCode VtkReadClose(VtkFile **file);
 
-PetscInt VtkReadPoints(const VtkFile *file); /* number of points */
-PetscInt VtkReadCells(const VtkFile *file);
-PetscReal VtkReadTime(const VtkFile *file);
-PetscInt VtkReadFields(const VtkFile *file, const VtkFieldInfo **fields); /* of the points */
+PetscInt vtk_read_points(const VtkFile *file); /* number of points */
+PetscInt vtk_read_cells(const VtkFile *file);
+PetscReal vtk_read_time(const VtkFile *file);
+PetscInt vtk_read_fields(const VtkFile *file, const VtkFieldInfo **fields); /* of the points */
 
 /* These return PETSC_ERR_FILE_UNEXPECTED plainly, with a reason and nothing to free, if the file is damaged there.
  * What they give is to be
  * freed with PetscFree. */
 PetscErrorCode VtkReadCoordinates(VtkFile *file, PetscReal **x, char reason[256]); /* points x 3 */
-/* points x components of one of VtkReadFields */
+/* points x components of one of vtk_read_fields */
 PetscErrorCode VtkReadField(VtkFile *file, const VtkFieldInfo *field, PetscReal **data, char reason[256]);
 
 /* Cells: node numbers are those of the joined points. */

@@ -8,7 +8,7 @@
 #include "output/vtk/vtk.h"
 
 /* `{"name": "points_000001.hdf", "time": 0.5},`: a file beside the list, and a time. */
-static PetscBool ParseEntry(const char *line, char file[VTK_SERIES_NAME], PetscReal *time)
+static PetscBool parse_entry(const char *line, char file[VTK_SERIES_NAME], PetscReal *time)
 {
   const char *name = strstr(line, "\"name\":"), *at = strstr(line, "\"time\":");
   char *end;
@@ -21,7 +21,7 @@ static PetscBool ParseEntry(const char *line, char file[VTK_SERIES_NAME], PetscR
   return !(end == at + 7 || PetscIsInfOrNanReal(*time) || strchr(file, '/'));
 }
 
-static void WriteEntry(FILE *out, PetscBool first, const char *file, PetscReal time)
+static void write_entry(FILE *out, PetscBool first, const char *file, PetscReal time)
 {
   char number[32];
   file_format_real(time, number);
@@ -29,7 +29,7 @@ static void WriteEntry(FILE *out, PetscBool first, const char *file, PetscReal t
 }
 
 /* Entries before `time` (but for the last bits of a sum of steps) and at most `most` of them, then the new one. */
-static PetscInt Rewrite(FILE *old, FILE *out, const char *file, PetscReal time, PetscInt most)
+static PetscInt rewrite(FILE *old, FILE *out, const char *file, PetscReal time, PetscInt most)
 {
   const PetscReal before = time - 1e-12 * PetscAbsReal(time);
   char line[1024], name[VTK_SERIES_NAME];
@@ -37,17 +37,17 @@ static PetscInt Rewrite(FILE *old, FILE *out, const char *file, PetscReal time, 
   PetscReal t;
   fputs("{\n  \"file-series-version\": \"1.0\",\n  \"files\": [\n", out);
   while (old && kept < most && fgets(line, sizeof line, old)) {
-    if (!ParseEntry(line, name, &t) || !(t < before)) continue;
-    WriteEntry(out, kept == 0, name, t);
+    if (!parse_entry(line, name, &t) || !(t < before)) continue;
+    write_entry(out, kept == 0, name, t);
     ++kept;
   }
-  if (file) WriteEntry(out, kept == 0, file, time);
+  if (file) write_entry(out, kept == 0, file, time);
   fputs("\n  ]\n}\n", out);
   return kept;
 }
 
 /* ENODATA: there were less than `least` entries. */
-static int RewriteFile(const char *path, const char *file, PetscReal time, PetscInt least, PetscInt most)
+static int rewrite_file(const char *path, const char *file, PetscReal time, PetscInt least, PetscInt most)
 {
   char unfinished[FILE_PATH];
   snprintf(unfinished, sizeof unfinished, "%s" FILE_UNFINISHED, path);
@@ -56,7 +56,7 @@ static int RewriteFile(const char *path, const char *file, PetscReal time, Petsc
   FILE *out = fopen(unfinished, "w");
   int error = out ? 0 : errno;
   if (out) {
-    const PetscInt kept = Rewrite(old, out, file, time, most);
+    const PetscInt kept = rewrite(old, out, file, time, most);
     error = file_finish_stream(out);
     if (!error && kept < least) error = ENODATA;
     error = file_commit(unfinished, path, error);
@@ -75,7 +75,7 @@ static PetscErrorCode Edit(MPI_Comm comm, const char *folder, const char *name, 
   PetscFunctionBeginUser;
   PetscCallMPI(MPI_Comm_rank(comm, &rank));
   PetscCall(PetscSNPrintf(path, sizeof path, "%s/%s.hdf.series", folder, name));
-  if (rank == 0) error = RewriteFile(path, file, time, least, most);
+  if (rank == 0) error = rewrite_file(path, file, time, least, most);
   PetscCallMPI(MPI_Bcast(&error, 1, MPI_INT, 0, comm));
   reason[0] = 0;
   if (error) {
@@ -113,7 +113,7 @@ static PetscErrorCode AddState(VtkSeries *series, PetscInt *capacity, const char
   PetscFunctionReturn(0);
 }
 
-static PetscBool IsEntry(const char *line)
+static PetscBool is_entry(const char *line)
 {
   const char *start = line + strspn(line, " \t");
   return *start == '{' && start[1] && start[1] != '\n' && start[1] != '\r';
@@ -127,8 +127,8 @@ static PetscErrorCode ReadEntries(FILE *in, VtkSeries *series, char reason[256])
 
   PetscFunctionBeginUser;
   for (long number = 1; fgets(line, sizeof line, in) && !reason[0]; ++number) {
-    if (!IsEntry(line)) continue;
-    if (ParseEntry(line, file, &time)) PetscCall(AddState(series, &capacity, file, time));
+    if (!is_entry(line)) continue;
+    if (parse_entry(line, file, &time)) PetscCall(AddState(series, &capacity, file, time));
     else snprintf(reason, 256, "line %ld names no file and its time", number);
   }
   PetscFunctionReturn(0);

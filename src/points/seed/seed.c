@@ -62,7 +62,7 @@ static PetscErrorCode FindMaterial(Seeding *s)
   }
   s->material = -1;
   seed_path(s->b, "material", sizeof path, path);
-  if (seed_tells(s->grid)) DiagError(s->diag, path, "there is no material '%s'", s->body->material);
+  if (seed_tells(s->grid)) diag_error(s->diag, path, "there is no material '%s'", s->body->material);
   PetscFunctionReturn(0);
 }
 
@@ -86,8 +86,8 @@ static PetscBool choose_rule(Seeding *s)
   }
   seed_path(s->b, "points_per_cell", sizeof path, path);
   if (seed_tells(s->grid)) {
-    DiagError(s->diag, path, "no rule places %d points in a %s; there are rules with %s points", (int)s->n_rule,
-              cells[type].name, list);
+    diag_error(s->diag, path, "no rule places %d points in a %s; there are rules with %s points", (int)s->n_rule,
+               cells[type].name, list);
   }
   return PETSC_FALSE;
 }
@@ -98,16 +98,16 @@ static PetscErrorCode FindRegion(const Seeding *s, const GridSet **set)
   PetscInt n_regions = 0;
   char path[128];
   PetscFunctionBeginUser;
-  *set = GridFindSet(s->source, s->body->region);
+  *set = grid_find_set(s->source, s->body->region);
   if (*set) PetscCallMPI(MPI_Allreduce(&(*set)->n_cells, &n_regions, 1, MPIU_INT, MPI_SUM, s->grid->comm));
   if (n_regions) PetscFunctionReturn(0);
   seed_path(s->b, "region", sizeof path, path);
   if (seed_tells(s->grid)) {
     const char **names;
     PetscCall(GridSetNames(s->source, &names));
-    if (*set) DiagError(s->diag, path, "'%s' is a boundary, not a region: it has no cells", s->body->region);
-    else DiagError(s->diag, path, "the mesh has no region '%s'", s->body->region);
-    if (!*set) DiagHintNames(s->diag, s->body->region, names);
+    if (*set) diag_error(s->diag, path, "'%s' is a boundary, not a region: it has no cells", s->body->region);
+    else diag_error(s->diag, path, "the mesh has no region '%s'", s->body->region);
+    if (!*set) diag_hint_names(s->diag, s->body->region, names);
     PetscCall(PetscFree(names));
   }
   *set = NULL;

@@ -39,17 +39,17 @@ static void tell_empty(const Seeding *s)
   print_bounds(s->source->dim, s->source->min, s->source->max, sizeof grid, grid);
   seed_path(s->b, s->body->has_shape ? "shape" : s->body->region ? "region" : "", sizeof path, path);
   if (!s->body->has_shape) {
-    DiagError(s->diag, path, "body '%s' has no cell", name);
+    diag_error(s->diag, path, "body '%s' has no cell", name);
     return;
   }
   shape_bounds(&s->body->shape, s->source->dim, min, max);
   print_bounds(s->source->dim, min, max, sizeof body, body);
   (void)reaches_out(s, min, max, &apart);
-  DiagError(s->diag, path, "body '%s' holds the centre of no cell: it spans %s m, the grid %s m", name, body, grid);
-  if (apart) DiagHint(s->diag, "the body lies outside the grid");
-  else if (s->body->region) DiagHint(s->diag, "is there anything of region '%s' inside the shape?", s->body->region);
+  diag_error(s->diag, path, "body '%s' holds the centre of no cell: it spans %s m, the grid %s m", name, body, grid);
+  if (apart) diag_hint(s->diag, "the body lies outside the grid");
+  else if (s->body->region) diag_hint(s->diag, "is there anything of region '%s' inside the shape?", s->body->region);
   else
-    DiagHint(s->diag, "is the body thinner than a cell? The smallest cell measures %g m", (double)s->source->smallest);
+    diag_hint(s->diag, "is the body thinner than a cell? The smallest cell measures %g m", (double)s->source->smallest);
 }
 
 /* Area and first moment about x = 0 of a polygon. */
@@ -103,10 +103,10 @@ static void compare_volume(const Seeding *s, PetscReal seeded)
   char path[128];
   if (wanted <= 0 || PetscAbsReal(seeded - wanted) <= 0.01 * wanted) return;
   seed_path(s->b, "shape", sizeof path, path);
-  DiagWarning(s->diag, path, "whole cells represent body '%s': they hold %.6g %s, its shape %.6g %s (%+.2g %%)",
-              s->body->name, (double)seeded, unit, (double)wanted, unit, (double)(100 * (seeded / wanted - 1)));
-  DiagHint(s->diag,
-           "cells whose centre lies in the shape belong to it: let cell faces follow it, or use smaller cells");
+  diag_warning(s->diag, path, "whole cells represent body '%s': they hold %.6g %s, its shape %.6g %s (%+.2g %%)",
+               s->body->name, (double)seeded, unit, (double)wanted, unit, (double)(100 * (seeded / wanted - 1)));
+  diag_hint(s->diag,
+            "cells whose centre lies in the shape belong to it: let cell faces follow it, or use smaller cells");
 }
 
 /* Material that the grid does not reach would be lost without a word. A shape cut by a region or a mesh of its own is taken as meant. */
@@ -121,8 +121,8 @@ static PetscBool tell_outside_shape(const Seeding *s)
   print_bounds(s->source->dim, min, max, sizeof body, body);
   print_bounds(s->source->dim, s->source->min, s->source->max, sizeof grid, grid);
   seed_path(s->b, "shape", sizeof path, path);
-  DiagError(s->diag, path, "body '%s' reaches outside the grid: it spans %s m, the grid %s m", s->body->name, body,
-            grid);
+  diag_error(s->diag, path, "body '%s' reaches outside the grid: it spans %s m, the grid %s m", s->body->name, body,
+             grid);
   return PETSC_TRUE;
 }
 
@@ -133,10 +133,10 @@ static void tell_hourglass(const Seeding *s)
   char path[128];
   if (s->n_rule > 1 || s->source != s->grid || (type != CELL_QUADRILATERAL && type != CELL_HEXAHEDRON)) return;
   seed_path(s->b, "points_per_cell", sizeof path, path);
-  DiagWarning(s->diag, path, "with one point in each %s of '%s' nothing resists its hourglass motions",
-              cells[type].name, s->body->name);
-  DiagHint(s->diag, "use %d points, or %ss", type == CELL_HEXAHEDRON ? 8 : 4,
-           cells[type == CELL_HEXAHEDRON ? CELL_TETRAHEDRON : CELL_TRIANGLE].name);
+  diag_warning(s->diag, path, "with one point in each %s of '%s' nothing resists its hourglass motions",
+               cells[type].name, s->body->name);
+  diag_hint(s->diag, "use %d points, or %ss", type == CELL_HEXAHEDRON ? 8 : 4,
+            cells[type == CELL_HEXAHEDRON ? CELL_TETRAHEDRON : CELL_TRIANGLE].name);
 }
 
 /* Numbers that one point has in its widest array: a field, or its shape functions' gradients. */
@@ -158,9 +158,9 @@ PetscErrorCode SeedCheckRoom(const Seeding *s, const Points *points, PetscBool *
   *fits = wanted <= most;
   if (*fits || !seed_tells(s->grid)) PetscFunctionReturn(0);
   seed_path(s->b, "points_per_cell", sizeof path, path);
-  DiagError(s->diag, path, "with body '%s' a rank would have %lld points; it can number %d", s->body->name,
-            (long long)wanted, (int)most);
-  DiagHint(s->diag, "use more ranks (mpiexec -n ...), larger cells, or fewer points in each");
+  diag_error(s->diag, path, "with body '%s' a rank would have %lld points; it can number %d", s->body->name,
+             (long long)wanted, (int)most);
+  diag_hint(s->diag, "use more ranks (mpiexec -n ...), larger cells, or fewer points in each");
   PetscFunctionReturn(0);
 }
 
@@ -194,8 +194,8 @@ PetscErrorCode SeedClaimCells(const Seeding *s, PetscInt *taken)
   PetscCallMPI(MPI_Allreduce(&other, &all_other, 1, MPIU_INT, MPI_MAX, s->grid->comm));
   if (!all_shared || !seed_tells(s->grid)) PetscFunctionReturn(0);
   seed_path(s->b, "", sizeof path, path);
-  DiagError(s->diag, path, "bodies '%s' and '%s' overlap: %d cell%s would be filled twice",
-            s->c->bodies[all_other].name, s->body->name, (int)all_shared, all_shared == 1 ? "" : "s");
+  diag_error(s->diag, path, "bodies '%s' and '%s' overlap: %d cell%s would be filled twice",
+             s->c->bodies[all_other].name, s->body->name, (int)all_shared, all_shared == 1 ? "" : "s");
   PetscFunctionReturn(0);
 }
 
@@ -204,8 +204,8 @@ static void tell_outside(const Grid *grid, const Case *c, PetscInt b, PetscInt n
   char path[128], bounds[256];
   print_bounds(grid->dim, grid->min, grid->max, sizeof bounds, bounds);
   seed_path(b, "mesh", sizeof path, path);
-  DiagError(diag, path, "%d points of body '%s' lie outside the grid, which spans %s m", (int)n_out, c->bodies[b].name,
-            bounds);
+  diag_error(diag, path, "%d points of body '%s' lie outside the grid, which spans %s m", (int)n_out, c->bodies[b].name,
+             bounds);
 }
 
 PetscErrorCode SeedCheckLocated(const Points *points, const Grid *grid, const Case *c, Diag *diag)

@@ -26,9 +26,9 @@ PetscErrorCode NewtonDestroy(Newton **newton)
   PetscFunctionReturn(0);
 }
 
-const char *NewtonLinearName(const Newton *n) { return n->linear; }
+const char *newton_linear_name(const Newton *n) { return n->linear; }
 
-void NewtonTimes(const Newton *n, PetscReal *points, PetscReal *matrix, PetscReal *linear, PetscReal *rest)
+void newton_times(const Newton *n, PetscReal *points, PetscReal *matrix, PetscReal *linear, PetscReal *rest)
 {
   *points = n->t_points;
   *matrix = n->t_matrix;
@@ -36,14 +36,14 @@ void NewtonTimes(const Newton *n, PetscReal *points, PetscReal *matrix, PetscRea
   *rest = n->t_newton;
 }
 
-void NewtonGetMemory(const Newton *n, const System *system, NewtonMemory *memory)
+void newton_get_memory(const Newton *n, const System *system, NewtonMemory *memory)
 {
   memory->courant = system->builds > 0 && n->built == system->builds && !n->learns ? n->courant : -1;
   memory->failures = n->failures;
   memory->since = n->since;
 }
 
-void NewtonSetMemory(Newton *n, const System *system, const NewtonMemory *memory)
+void newton_set_memory(Newton *n, const System *system, const NewtonMemory *memory)
 {
   n->failures = memory->failures;
   n->since = memory->since;
@@ -51,7 +51,7 @@ void NewtonSetMemory(Newton *n, const System *system, const NewtonMemory *memory
   n->remembered = system->builds > 0 && memory->courant >= 0 ? system->builds : -1;
 }
 
-void NewtonForget(Newton *n, const System *system, const NewtonMemory *memory)
+void newton_forget(Newton *n, const System *system, const NewtonMemory *memory)
 {
   n->failures = memory->failures;
   n->since = memory->since;

@@ -56,12 +56,12 @@ typedef struct {
   PetscInt failures, since; /* of the iterative solver, and steps since the last */
 } NewtonMemory;
 
-void NewtonGetMemory(const Newton *newton, const System *system, NewtonMemory *memory);
+void newton_get_memory(const Newton *newton, const System *system, NewtonMemory *memory);
 /* For a Newton that has solved nothing yet, and the pattern that the system has now. */
-void NewtonSetMemory(Newton *newton, const System *system, const NewtonMemory *memory);
+void newton_set_memory(Newton *newton, const System *system, const NewtonMemory *memory);
 /* Back to what was remembered before a solve that is given up, on the same pattern. */
-void NewtonForget(Newton *newton, const System *system, const NewtonMemory *memory);
+void newton_forget(Newton *newton, const System *system, const NewtonMemory *memory);
 /* Name of the linear solver in use, for the log. */
-const char *NewtonLinearName(const Newton *newton);
+const char *newton_linear_name(const Newton *newton);
 /* Seconds spent so far: points and scatter, matrix filling, linear solves, and the rest of Newton's method. */
-void NewtonTimes(const Newton *newton, PetscReal *points, PetscReal *matrix, PetscReal *linear, PetscReal *rest);
+void newton_times(const Newton *newton, PetscReal *points, PetscReal *matrix, PetscReal *linear, PetscReal *rest);
