@@ -13,10 +13,7 @@ CELL_INLINE int cell_kernel_nodes(CellType type)
 {
   return type == CELL_TRIANGLE ? 3 : (type == CELL_HEXAHEDRON ? 8 : 4);
 }
-CELL_INLINE PetscBool cell_kernel_affine(CellType type)
-{
-  return (PetscBool)(type == CELL_TRIANGLE || type == CELL_TETRAHEDRON);
-}
+CELL_INLINE PetscBool cell_kernel_affine(CellType type) { return type == CELL_TRIANGLE || type == CELL_TETRAHEDRON; }
 
 CELL_INLINE void cell_kernel_simplex(int dim, const PetscReal *xi, PetscReal *N, PetscReal *dN)
 {

@@ -24,7 +24,7 @@ static PetscBool cloud_finite(const Cloud *cloud)
 {
   Pack sum = {0};
   for (int i = 0; i < cloud->packs; ++i) sum += cloud->r2[i];
-  return (PetscBool)(pack_sum(&sum) < 1e200);
+  return pack_sum(&sum) < 1e200;
 }
 
 CloudStatus cloud_basis(const CloudBasis *basis, int dim, int n, const PetscReal *X, PetscReal h, const PetscReal *x,

@@ -28,7 +28,7 @@ static PetscBool hop(const CloudCandidates *near, const CloudSupport *support, c
   if (!near->metric || now > limit * PetscSqr(support->stretch)) return PETSC_FALSE;
   for (int k = 0; k < dim; ++k)
     for (int l = 0; l < dim; ++l) before += d[k] * near->metric[k * dim + l] * d[l];
-  return (PetscBool)(before <= limit);
+  return before <= limit;
 }
 
 /* Spread from the point over the candidates until nothing changes. */
@@ -36,7 +36,7 @@ static void link_all(CloudCandidates *near, const CloudSupport *support)
 {
   int queue[CLOUD_MAX_NODES], head = 0, tail = 0;
   for (int a = 0; a < near->n; ++a) {
-    near->linked[a] = (PetscBool)(a == 0 || hop(near, support, near->x, near->X + a * near->dim));
+    near->linked[a] = a == 0 || hop(near, support, near->x, near->X + a * near->dim);
     if (near->linked[a]) queue[tail++] = a;
   }
   for (; head < tail && tail < near->n; ++head)

@@ -68,7 +68,7 @@ static Trial search_within(Search *s, PetscReal radius)
 
 static PetscBool trial_good(const Trial *trial, PetscReal bound)
 {
-  return (PetscBool)(trial->status == CLOUD_OK && trial->condition <= bound);
+  return trial->status == CLOUD_OK && trial->condition <= bound;
 }
 
 /* Where between a bad and a good radius to look next: where ln(condition) would meet the bound if it were linear, well
@@ -107,7 +107,7 @@ static Trial search_nearest(Search *s, PetscReal bound)
   for (;; ++n) {
     const Trial trial = search_evaluate(s, n, n ? PetscMax(s->rule->radius, s->near.r[n - 1]) : 0.0);
     const PetscBool good = trial_good(&trial, bound);
-    const PetscBool end = (PetscBool)(n >= s->near.n || s->near.r[n] > s->rule->max_radius);
+    const PetscBool end = n >= s->near.n || s->near.r[n] > s->rule->max_radius;
     if (good || end) {
       s->report->level = good ? (n == first ? SUPPORT_NOMINAL : SUPPORT_GROWN) : SUPPORT_POOR;
       return trial;

@@ -69,7 +69,7 @@ CELL_INLINE PetscBool map_affine(CellType type, const Map *map, PetscReal *xi)
   for (int d = 0; d < dim; ++d) xi[d] = 0.0;
   const PetscReal det = map_residual(type, map, xi, residual, inverse);
   apply_inverse(dim, inverse, residual, xi);
-  return (PetscBool)(det != 0.0 && isfinite(norm_max(dim, xi)));
+  return det != 0.0 && isfinite(norm_max(dim, xi));
 }
 
 /* Go along `step`, halving it until the residual falls and the map keeps its orientation.
@@ -114,7 +114,7 @@ CELL_INLINE PetscBool map_newton(CellType type, const Map *map, PetscReal *xi)
     if (!map_advance(type, map, step, xi, residual, inverse, &det)) break;
   }
   const PetscReal tolerance = PetscMin(RESIDUAL_TOLERANCE * map_scale(dim, map, xi), LARGEST_RESIDUAL * map->size);
-  return (PetscBool)(norm_max(dim, xi) <= FARTHEST && norm_max(dim, residual) <= tolerance);
+  return norm_max(dim, xi) <= FARTHEST && norm_max(dim, residual) <= tolerance;
 }
 
 CELL_INLINE PetscBool invert(CellType type, const PetscReal *x, const PetscReal *point, PetscReal *xi)

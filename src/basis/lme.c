@@ -141,7 +141,7 @@ CLOUD_INLINE CloudStatus lme_minimise(int dim, PetscBool windowed, PetscReal gam
     before = error;
     if (definite && lme_search(dim, windowed, gamma, cloud, step, s)) continue;
     const PetscBool moved =
-      (PetscBool)(lme_direction(dim, s, ease * error, step) && lme_search(dim, windowed, gamma, cloud, step, s));
+      lme_direction(dim, s, ease * error, step) && lme_search(dim, windowed, gamma, cloud, step, s);
     ease *= moved ? 0.1 : 10.0;
     if (ease > LME_STIFFEST) break;
   }
@@ -223,7 +223,7 @@ CLOUD_INLINE void lme_invert(int dim, const PetscReal *hessian, PetscReal *inver
 CLOUD_INLINE CloudStatus lme_kernel(int dim, const CloudBasis *basis, PetscReal h, Cloud *cloud, PetscReal *N,
                                     PetscReal *dN, PetscReal *condition, PetscReal *dual)
 {
-  const PetscBool windowed = (PetscBool)(basis->reach > 0.0);
+  const PetscBool windowed = basis->reach > 0.0;
   Lme s;
   PetscReal inverse[9];
   Pack value[CLOUD_MAX_PACKS], slope[3][CLOUD_MAX_PACKS];

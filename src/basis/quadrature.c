@@ -97,7 +97,7 @@ static PetscBool next_order(PetscInt n, PetscInt *label)
     label[a] = label[b];
     label[b] = swap;
   }
-  return (PetscBool)(i >= 0);
+  return i >= 0;
 }
 
 static void expand_simplex(PetscInt dim, PetscReal volume, const SimplexRule *rule, PetscReal *xi, PetscReal *weight)

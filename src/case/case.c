@@ -120,7 +120,7 @@ PetscErrorCode CaseDestroy(Case **c)
   PetscFunctionReturn(0);
 }
 
-PetscBool case_is_mixed(const Case *c) { return (PetscBool)(c->formulation && !strcmp(c->formulation, "mixed")); }
+PetscBool case_is_mixed(const Case *c) { return c->formulation && !strcmp(c->formulation, "mixed"); }
 
 PetscBool case_has_k0(const Case *c)
 {

@@ -69,5 +69,5 @@ PetscBool elasticity_incompressible(unsigned given, const PetscReal value[ELASTI
   if (volume == 1u << POISSON ? value[POISSON] != 0.5 : !(value[BULK] == INFINITY)) return PETSC_FALSE;
   const PetscReal G = shape == 1u << SHEAR ? value[SHEAR] : value[YOUNG] / 3.0;
   *elastic = (Elasticity){shape == 1u << YOUNG ? value[YOUNG] : 3.0 * G, 0.5, INFINITY, G, INFINITY};
-  return (PetscBool)(G > 0.0 && isfinite(G));
+  return G > 0.0 && isfinite(G);
 }

@@ -135,9 +135,9 @@ static PetscBool resolve_elastic(const Resolver *r, Elasticity *elastic)
 
 static PetscBool in_range(const LawParameter *p, PetscReal value)
 {
-  const PetscBool low = (PetscBool)(p->min_open ? value > p->min : value >= p->min);
-  const PetscBool high = (PetscBool)(p->max_open ? value < p->max : value <= p->max);
-  return (PetscBool)(isfinite(value) && low && high);
+  const PetscBool low = p->min_open ? value > p->min : value >= p->min;
+  const PetscBool high = p->max_open ? value < p->max : value <= p->max;
+  return isfinite(value) && low && high;
 }
 
 /* One parameter of the law in SI units, angles in radians. */

@@ -90,7 +90,7 @@ static PetscBool volume_residual(const PetscReal *parameters, const PetscReal si
   *residual = log(det) - 2.0 * log_J;
   *slope = -2.0;
   for (int k = 0; k < 9; ++k) *slope += inverse[k] * slope_b[k];
-  return (PetscBool)(isfinite(*residual) && *slope < 0.0); /* a rising residual: past the limit load in tension */
+  return isfinite(*residual) && *slope < 0.0; /* a rising residual: past the limit load in tension */
 }
 
 /* The volume whose b carries the stress: Newton in ln J from the stress-free state (a stress so large that

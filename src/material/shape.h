@@ -22,8 +22,7 @@ static inline PetscBool shape_from_stress(PetscReal mu, PetscReal J, const Petsc
     if (!(fabs(step) > 2.0 * PETSC_MACHINE_EPSILON * x)) break;
   }
   for (int k = 0; k < 6; ++k) bbar[k] = s[k] + (k < 3 ? x : 0.0);
-  return (PetscBool)(isfinite(x) && fabs(sym_det(bbar) - 1.0) < 1e-10 && bbar[0] > 0.0 &&
-                     bbar[0] * bbar[1] > bbar[3] * bbar[3]);
+  return isfinite(x) && fabs(sym_det(bbar) - 1.0) < 1e-10 && bbar[0] > 0.0 && bbar[0] * bbar[1] > bbar[3] * bbar[3];
 }
 
 /* ln J with J p = K ln J: y exp(-y) = p / K has its stable solution below y = 1, where the pressure has its peak in

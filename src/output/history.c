@@ -88,7 +88,7 @@ PetscErrorCode HistoryOpen(RunDir *dir, PetscInt n, const char *const *names, co
 }
 
 /* Copy the rows up to that of `last`; a row that was cut off is dropped too. Returns the step of the last one copied, -1 if there is none. */
-static long long CopyRows(FILE *old, FILE *out, PetscInt last, HistoryMark *mark)
+static long long copy_rows(FILE *old, FILE *out, PetscInt last, HistoryMark *mark)
 {
   char *line = NULL, *end;
   size_t size = 0;
@@ -154,7 +154,7 @@ static int keep_rows(const char *path, const char *header, PetscInt step, const 
   if (out) {
     fputs(header, out);
     mark_text(mark, header, strlen(header));
-    if (old) copied = CopyRows(old, out, step, mark);
+    if (old) copied = copy_rows(old, out, step, mark);
     if (old && ferror(old)) error = EIO;
     const int closing = file_finish_stream(out);
     if (!error) error = closing;

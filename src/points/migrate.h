@@ -23,7 +23,7 @@ static inline PetscBool position_is_finite(PetscInt dim, const PetscReal *x)
 {
   PetscReal sum = 0; /* x - x is 0 unless x is infinite or not a number */
   for (PetscInt d = 0; d < dim; ++d) sum += x[d] - x[d];
-  return (PetscBool)(sum == 0);
+  return sum == 0;
 }
 
 /* Point p is on its way out: before it is dropped or put back, and (gone = -1) after it was put back with what it has

@@ -137,9 +137,9 @@ static PetscErrorCode DropGone(const Leavers *l, Points *points, OutsidePolicy p
   PetscCall(PetscCalloc1(points->n, &drop));
   for (PetscInt i = 0; i < l->n; ++i) {
     const PetscInt p = l->point[i];
-    const PetscBool removed = (PetscBool)(l->owner[i] == -1 && policy == OUTSIDE_REMOVE &&
-                                          position_is_finite(points->dim, point_real(points, POINT_X, p)));
-    drop[p] = (PetscBool)(l->owner[i] >= 0 || removed);
+    const PetscBool removed =
+      l->owner[i] == -1 && policy == OUTSIDE_REMOVE && position_is_finite(points->dim, point_real(points, POINT_X, p));
+    drop[p] = l->owner[i] >= 0 || removed;
     if (!removed) continue;
     tally_outside(points, p, 1);
     ++points->outside.removed;

@@ -42,7 +42,7 @@ static inline PetscBool evaluate_cloud(const void *context, const PetscReal *poi
 {
   const CloudContext *c = context;
   PetscReal condition;
-  return (PetscBool)(cloud_basis(c->basis, c->dim, c->n, c->X, c->h, point, N, dN, &condition, NULL) == CLOUD_OK);
+  return cloud_basis(c->basis, c->dim, c->n, c->X, c->h, point, N, dN, &condition, NULL) == CLOUD_OK;
 }
 
 /* The suite of every basis, on disordered lattices at positions in their middle. */

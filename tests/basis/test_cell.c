@@ -16,7 +16,7 @@ static PetscBool evaluate(const void *context, const PetscReal *point, PetscReal
   const CellContext *c = context;
   PetscReal xi[3];
   if (!cell_inverse_map(c->type, c->x, point, xi)) return PETSC_FALSE;
-  return (PetscBool)(cell_gradients(c->type, c->x, xi, N, dN) > 0.0);
+  return cell_gradients(c->type, c->x, xi, N, dN) > 0.0;
 }
 
 static void run_suite(Random *random, CellType type)

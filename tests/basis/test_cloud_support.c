@@ -50,7 +50,7 @@ static void assert_basis(const PetscReal *X, const PetscReal *x, const Result *r
     }
   }
   /* Last resorts reach far outside their few nodes: rounding grows with the moment matrix' condition. */
-  const PetscBool bad = (PetscBool)(result->report.level == SUPPORT_POOR || result->report.level == SUPPORT_MLS);
+  const PetscBool bad = result->report.level == SUPPORT_POOR || result->report.level == SUPPORT_MLS;
   assert_true(fabs(sum - 1.0) <= (bad ? 1e-13 * PetscMax(10.0, result->report.condition) : 1e-12));
   for (int i = 0; i < 2 && gradients; ++i) {
     assert_true(fabs(at[i]) <= 1e-10 && fabs(none[i]) <= 1e-10);

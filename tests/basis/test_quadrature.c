@@ -44,7 +44,7 @@ static PetscReal quadrature(CellType type, PetscInt n, const PetscReal *xi, cons
 /* Largest error over the monomials of this degree (total for simplices, in each direction for cubes). */
 static PetscReal largest_error(CellType type, PetscInt n, PetscInt degree)
 {
-  const PetscBool simplex = (PetscBool)(type == CELL_TRIANGLE || type == CELL_TETRAHEDRON);
+  const PetscBool simplex = type == CELL_TRIANGLE || type == CELL_TETRAHEDRON;
   PetscReal xi[MAX_POINTS * 3], weight[MAX_POINTS], largest = 0.0;
   assert_true(cell_quadrature(type, n, xi, weight));
   PetscInt power[3];

@@ -105,7 +105,7 @@ static inline void law_suite_update(const LawSuite *suite, LawPoint *p)
 /* General, or (one in four) of plane strain. */
 static inline void law_suite_random_increment(LawSuite *suite, PetscReal dF[9])
 {
-  const PetscBool plane = (PetscBool)(random_real(&suite->random, 0, 4) < 1);
+  const PetscBool plane = random_real(&suite->random, 0, 4) < 1;
   do {
     for (int k = 0; k < 9; ++k) dF[k] = (k % 4 == 0) + suite->test->strain * random_real(&suite->random, -1, 1);
     if (plane) dF[2] = dF[5] = dF[6] = dF[7] = 0.0, dF[8] = 1.0;
@@ -134,7 +134,7 @@ static inline void law_suite_coaxial_increment(LawSuite *suite, PetscReal dF[9])
 static inline void law_suite_random_law_point(LawSuite *suite, LawPoint *p)
 {
   for (int tries = 0; tries < 100; ++tries) {
-    const PetscBool coaxial = (PetscBool)(random_real(&suite->random, 0, 4) < 1);
+    const PetscBool coaxial = random_real(&suite->random, 0, 4) < 1;
     const int wanted = coaxial ? 1 : 3;
     int steps = 0;
     law_initial_state(suite->law, p->old);

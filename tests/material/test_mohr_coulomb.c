@@ -171,7 +171,7 @@ static PetscBool reaches(const PetscReal *p, McRegion region)
 {
   const PetscBool cut = (PetscBool)isfinite(p[MC_CUT]);
   if (region >= MC_CUT_PLANE) return cut;
-  if (region == MC_APEX) return (PetscBool)(!cut && p[MC_K] > 1.0);
+  if (region == MC_APEX) return !cut && p[MC_K] > 1.0;
   return PETSC_TRUE;
 }
 
@@ -230,7 +230,7 @@ static void test_continuity(void **unused)
         PetscReal middle[3], tau[3];
         for (int k = 0; k < 3; ++k) middle[k] = 0.5 * (a[k] + b[k]);
         const McRegion region = mc_return(p, middle, tau);
-        const PetscBool left = (PetscBool)(region == ra);
+        const PetscBool left = region == ra;
         memcpy(left ? a : b, middle, sizeof middle);
         memcpy(left ? ta : tb, tau, sizeof tau);
         if (!left) rb = region;

@@ -83,7 +83,7 @@ static void check_patch(const Model *m)
 static void patch(const char *method, CellType cell, const Solid *solid, PetscBool distorted)
 {
   Bench b;
-  const PetscBool is_mpm = !strcmp(method, "mpm"), is_3d = (PetscBool)(cell >= CELL_TETRAHEDRON);
+  const PetscBool is_mpm = !strcmp(method, "mpm"), is_3d = cell >= CELL_TETRAHEDRON;
   const PetscReal below = is_mpm ? -0.5 : 0, above = 1 - below, planes[] = {below, 0, 1, above};
   PetscInt dim = is_3d ? 3 : 2;
   bench_init(&b, method, cell, 0);
@@ -234,7 +234,7 @@ static void test_tangent(void **state)
   (void)state;
   for (CellType cell = CELL_TRIANGLE; cell <= CELL_HEXAHEDRON; ++cell)
     for (size_t k = 0; k < sizeof solids / sizeof solids[0]; ++k)
-      check_tangent(k % 2 ? "mpm" : "fem", cell, &solids[k], (PetscBool)(k % 3 == 0));
+      check_tangent(k % 2 ? "mpm" : "fem", cell, &solids[k], k % 3 == 0);
 }
 
 /* --- Cook's membrane --- */

@@ -12,7 +12,7 @@ static void write_nodes(FILE *out, const PetscReal *origin, PetscReal length)
   fprintf(out, "$Nodes\n%d\n", node_number(n_side, n_side));
   for (PetscInt j = 0; j <= n_side; ++j) {
     for (PetscInt i = 0; i <= n_side; ++i) {
-      const PetscBool inner = (PetscBool)(i % 4 && j % 4);
+      const PetscBool inner = i % 4 && j % 4;
       const double shift = inner ? 0.3 * (double)(pseudo_random(10 * i + j) - 0.5) : 0,
                    scale = (double)length / (double)n_side;
       fprintf(out, "%d %.17g %.17g 0\n", node_number(i, j), (double)origin[0] + scale * ((double)i + shift),

@@ -184,7 +184,7 @@ static void ids_belong_to_one_point(void **state)
 static PetscBool same_point(const Points *a, PetscInt p, const Points *b, PetscInt q)
 {
   static const PointReal fields[] = {POINT_X, POINT_V, POINT_MASS, POINT_VOLUME, POINT_F, POINT_STATE};
-  PetscBool same = (PetscBool)(a->body[p] == b->body[q] && a->material[p] == b->material[q]);
+  PetscBool same = a->body[p] == b->body[q] && a->material[p] == b->material[q];
   for (size_t f = 0; f < sizeof fields / sizeof *fields; ++f)
     for (PetscInt k = 0; k < a->components[fields[f]]; ++k)
       if (point_real(a, fields[f], p)[k] != point_real(b, fields[f], q)[k]) same = PETSC_FALSE;

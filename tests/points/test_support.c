@@ -66,7 +66,7 @@ static void every_cell_type(void **state)
     for (int repeat = 0; repeat < 2; ++repeat) {
       CALL(SupportFromCells(s, points, grid));
       CHECK(s->n_groups == grid->n_cells && s->point_start[s->n_groups] == points->n);
-      check_support(s, points, grid, (PetscBool)(repeat == 0));
+      check_support(s, points, grid, repeat == 0);
       distort(grid);
     }
     CALL(SupportDestroy(&s));

@@ -96,7 +96,7 @@ static void compaction_keeps_order(void **state)
   Points *points = filled_points(3, 7, 3, 500);
   PetscBool drop[500];
   PetscInt kept = 0;
-  for (PetscInt p = 0; p < 500; ++p) drop[p] = (PetscBool)(pseudo_random(p) < 0.3);
+  for (PetscInt p = 0; p < 500; ++p) drop[p] = pseudo_random(p) < 0.3;
   for (PetscInt p = 0; p < 500; ++p) kept += !drop[p];
   CALL(PointsCompact(points, drop));
   CHECK(points->n == kept);

@@ -164,7 +164,7 @@ static inline McRegion mc_return(const PetscReal *p, const PetscReal e[3], Petsc
   mc_hooke(p, e, trial);
   for (int k = 0; k < 3; ++k) tau[k] = trial[k];
   const PetscReal noise = mc_noise(p, trial);
-  const PetscBool shear = (PetscBool)(mc_yield(p, trial) > noise), tension = (PetscBool)(trial[0] - p[MC_CUT] > noise);
+  const PetscBool shear = mc_yield(p, trial) > noise, tension = trial[0] - p[MC_CUT] > noise;
   if (!shear && !tension) return MC_ELASTIC;
   if (shear) {
     const McRegion region = mc_return_shear(p, e, tau);

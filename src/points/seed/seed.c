@@ -11,7 +11,7 @@ PetscBool seed_tells(const Grid *grid)
 {
   PetscMPIInt rank;
   MPI_Comm_rank(grid->comm, &rank);
-  return (PetscBool)(rank == 0);
+  return rank == 0;
 }
 
 static PetscReal circle(const Case *c, PetscReal radius)
@@ -69,7 +69,7 @@ static PetscErrorCode FindMaterial(Seeding *s)
 static PetscBool choose_weights(const Case *c, const BodySpec *body)
 {
   if (body->weights == WEIGHTS_AUTO) return (PetscBool)!strcmp(c->method, "mpm");
-  return (PetscBool)(body->weights == WEIGHTS_EQUAL);
+  return body->weights == WEIGHTS_EQUAL;
 }
 
 /* PETSC_FALSE, and a message that lists the rules, if this number of points is none. */

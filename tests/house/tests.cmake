@@ -1,0 +1,4 @@
+# How the house is built: includes run down, names keep to the rule of CONTRIBUTING.md.
+foreach(rule rooms names)
+  add_test(NAME house/${rule} COMMAND sh ${CMAKE_CURRENT_LIST_DIR}/${rule}.sh ${PROJECT_SOURCE_DIR})
+endforeach()
