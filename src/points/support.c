@@ -124,6 +124,8 @@ PetscErrorCode SupportFromCells(Support *support, const Points *points, const Gr
   PetscCall(SupportReserve(support, groups, groups * grid->nodes_per_cell, located * grid->nodes_per_cell, grid->dim));
   support->n_groups = groups;
   support->uniform = grid->nodes_per_cell;
+  support->n_runs = 1;
+  support->run[0] = (SupportRun){.nodes = grid->nodes_per_cell, .first = 0, .end = groups};
   fill_groups(support, points, grid, located);
   switch (grid->type) { /* a literal in each case: the kernels are compiled for that cell */
   case CELL_TRIANGLE: evaluate(CELL_TRIANGLE, support, grid->x, xi); break;

@@ -12,6 +12,13 @@ typedef struct {
   PetscInt n, *start, *node;
 } NodeGroups;
 
+/* Groups first .. end - 1, all of as many nodes. A grid of one kind of cells has one run, a mixed mesh one for each kind, clouds none. */
+typedef struct {
+  PetscInt nodes, first, end;
+} SupportRun;
+
+#define SUPPORT_MAX_RUNS 2
+
 typedef struct Support {
   PetscInt n_groups;
   PetscInt capacity_groups, capacity_nodes, capacity_values;
@@ -21,6 +28,8 @@ typedef struct Support {
   PetscInt *value_start; /* n_groups + 1: N of point k of group g at value_start[g] + k * nn, dN at dim times that */
   PetscReal *N, *dN;
   PetscInt uniform; /* nodes per group if it is the same for all, else 0 */
+  PetscInt n_runs;  /* 0 where every point is a group of its own, with as many nodes as it likes */
+  SupportRun run[SUPPORT_MAX_RUNS];
 } Support;
 
 /* Number of nodes of a group, and the shape functions of one of its points. */
