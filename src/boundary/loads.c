@@ -185,7 +185,7 @@ PetscErrorCode LoadsRegrid(Loads *l, const Grid *old, const Grid *grid)
     PetscCall(PetscFree(l->faces[k].N));
     PetscCall(GridTraction(l, grid, k, &faces));
   }
-  PetscCall(PointsRegrid(l->carriers, old, grid, &moved));
+  PetscCall(PointsRepartition(l->carriers, old, grid, &moved));
   l->n_nodes = grid->n_nodes;
   PetscFunctionReturn(0);
 }

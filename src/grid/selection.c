@@ -2,7 +2,7 @@
  *
  * A selector is judged by positions and by sets that know their ghosts, so all ranks agree on a
  * shared node. */
-#include "grid/grid_private.h"
+#include "grid/grid.h"
 
 static PetscBool has_range(const Selector *on) { return on->has[0] || on->has[1] || on->has[2]; }
 
@@ -57,7 +57,7 @@ PetscErrorCode GridSelectNodes(const Grid *grid, const Selector *on, PetscInt *n
 /* A face is taken if all its nodes are. */
 static PetscBool takes_face(const Grid *grid, const Selector *on, PetscReal tolerance, PetscInt cell, PetscInt side)
 {
-  const Cell *shape = cells + grid->type;
+  const Cell *shape = grid_cell(grid, cell);
   const PetscInt *node = grid->cell_node + cell * grid->nodes_per_cell;
   for (PetscInt i = 0; i < shape->face_nodes; ++i)
     if (!takes_position(grid, on, tolerance, grid->x + node[shape->face[side][i]] * grid->dim)) return PETSC_FALSE;

@@ -47,7 +47,7 @@ static inline void tally_outside(Points *points, PetscInt p, PetscReal gone)
 PetscErrorCode LeaversFindOwners(const Leavers *leavers, const Points *points, const Grid *grid);
 /* Collective: move leavers that nobody holds to the nearest position in the grid, and find their owner
  * there. */
-PetscErrorCode LeaversKeepOnBoundary(const Leavers *leavers, Points *points, const Grid *grid);
+PetscErrorCode LeaversClamp(const Leavers *leavers, Points *points, const Grid *grid);
 /* Collective: pack the leavers that have an owner and send them; arrivals is what others sent. The points
  * stay in the table. */
 PetscErrorCode LeaversSend(const Leavers *leavers, const Points *points, const Grid *grid, Arrivals *arrivals);

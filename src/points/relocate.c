@@ -157,7 +157,7 @@ static PetscErrorCode Migrate(Leavers *l, Points *points, const Grid *grid, Outs
   Arrivals arrivals;
   PetscFunctionBeginUser;
   PetscCall(LeaversFindOwners(l, points, grid));
-  if (policy == OUTSIDE_KEEP) PetscCall(LeaversKeepOnBoundary(l, points, grid));
+  if (policy == OUTSIDE_KEEP) PetscCall(LeaversClamp(l, points, grid));
   PetscCall(ReportLost(l, points, grid, n_lost, lost));
   PetscCall(LeaversSend(l, points, grid, &arrivals));
   PetscCall(DropGone(l, points, policy));

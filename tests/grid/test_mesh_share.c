@@ -1,6 +1,6 @@
 /* A mesh goes from rank to rank: what arrives is the grid that reading it would have made, whatever way it went; and the cuts balance weights. */
 #include "grid/directory.h"
-#include "grid/mesh/mesh_travel.h"
+#include "grid/mesh/mesh.h"
 #include "mesh_test.h"
 
 static PetscMPIInt ranks(void)
@@ -60,11 +60,11 @@ static void same_grids(const Grid *a, const Grid *b)
   same_numbers(a->n_cells * a->nodes_per_cell, a->cell_node, b->cell_node);
   same_numbers(a->n_cells, a->global_cell, b->global_cell);
   same_numbers(a->n_nodes, a->global_node, b->global_node);
-  same_numbers(a->n_nodes, a->bins->file_node, b->bins->file_node);
-  same_numbers(n_sides, a->bins->neighbour, b->bins->neighbour);
+  same_numbers(a->n_nodes, a->mesh->file_node, b->mesh->file_node);
+  same_numbers(n_sides, a->mesh->neighbour, b->mesh->neighbour);
   for (PetscInt k = 0, f = 0; k < n_sides; ++k)
-    if (a->bins->neighbour[k] <= -2) {
-      assert_int_equal(a->bins->far_cell[f], b->bins->far_cell[f]);
+    if (a->mesh->neighbour[k] <= -2) {
+      assert_int_equal(a->mesh->far_cell[f], b->mesh->far_cell[f]);
       ++f;
     }
   same_reals(a->n_nodes * a->dim, a->x, b->x);
@@ -77,11 +77,8 @@ static void same_grids(const Grid *a, const Grid *b)
 
 static Grid *travel(const Grid *old, const PetscMPIInt *owner)
 {
-  MeshParcel parcel;
   Grid *grid;
-  CALL(MeshSend(old, owner, &parcel));
-  CALL(MeshSettle(old, &parcel, &grid));
-  CALL(MeshParcelDestroy(&parcel));
+  CALL(MeshFromOwners(old, owner, &grid));
   return grid;
 }
 
@@ -143,7 +140,7 @@ static void all_to_one(void **state)
   Grid *grid = travel(home, owner);
   assert_int_equal(grid->n_cells, my_rank() == ranks() - 1 ? home->n_cells_global : 0);
   assert_int_equal(grid->n_nodes, my_rank() == ranks() - 1 ? home->n_nodes_global : 0);
-  for (PetscInt i = 0; i < grid->n_nodes; ++i) assert_int_equal(grid->bins->file_node[i], i);
+  for (PetscInt i = 0; i < grid->n_nodes; ++i) assert_int_equal(grid->mesh->file_node[i], i);
   check_plane(grid);
   Grid *back = send_home(grid, home);
   same_grids(home, back);

@@ -47,7 +47,6 @@ PetscErrorCode GridSpacing(const Grid *mesh, PetscInt n, const PetscInt *cell, P
  * place that carries the multipliers of a constraint and never is a neighbour. */
 PetscErrorCode GridCreateCloud(const Grid *mesh, PetscReal spacing, const unsigned char *marked,
                                const unsigned char *twin, Grid **cloud);
-PetscErrorCode GridCloudDestroy(GridCloud **cloud);
 
 static inline PetscBool cloud_is_twin(const Grid *grid, PetscInt node)
 {

@@ -20,7 +20,7 @@ static PetscErrorCode ListCells(const Points *points, const Grid *old, PetscInt 
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode PointsRegrid(Points *points, const Grid *old, const Grid *grid, PetscInt *moved)
+PetscErrorCode PointsRepartition(Points *points, const Grid *old, const Grid *grid, PetscInt *moved)
 {
   PetscInt n = 0, *at, *cell = NULL;
   PetscMPIInt rank, *owner;
