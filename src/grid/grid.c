@@ -58,6 +58,22 @@ PetscErrorCode GridFinish(Grid *grid)
   PetscFunctionReturn(0);
 }
 
+void grid_cell_centre(const Grid *grid, PetscInt cell, PetscReal centre[3])
+{
+  const PetscInt nn = grid_cell(grid, cell)->nodes;
+  PetscReal x[3 * CELL_MAX_NODES];
+  grid_cell_x(grid, cell, x);
+  for (PetscInt d = 0; d < 3; ++d) centre[d] = 0;
+  for (PetscInt i = 0; i < nn * grid->dim; ++i) centre[i % grid->dim] += x[i] / (PetscReal)nn;
+}
+
+void grid_shape(const Grid *grid, PetscInt cell, const PetscReal *xi, PetscReal *N)
+{
+  PetscReal dN[3 * CELL_MAX_NODES];
+  cell_shape(grid_cell_type(grid, cell), xi, N, dN);
+  for (PetscInt i = grid_cell(grid, cell)->nodes; i < grid->nodes_per_cell; ++i) N[i] = 0;
+}
+
 PetscInt grid_locate(const Grid *grid, const PetscReal *x, PetscInt guess, PetscReal *xi)
 {
   return grid->ops->locate(grid, x, guess, xi);

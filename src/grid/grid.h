@@ -30,8 +30,8 @@ typedef struct Grid {
   MPI_Comm comm;
   PetscInt dim;
   CellType type;             /* of cells; where a mesh mixes two, the one with more nodes */
-  CellType first_type;       /* the other one, */
-  PetscInt n_first;          /* of which as many cells stand before those of `type`; 0: all are alike */
+  CellType first_type;       /* and the other one, the same if there is none: */
+  PetscInt n_first;          /* as many of its cells stand before those of `type` on this rank */
   PetscInt nodes_per_cell;   /* of `type` */
   PetscInt n_cells;          /* of this rank */
   PetscInt n_owned, n_nodes; /* nodes owned; owned and ghosts */
@@ -110,6 +110,8 @@ PetscBool grid_cells_alike(const Grid *grid);
 PetscErrorCode GridToGhosts(const Grid *grid, PetscInt components, PetscReal *values);
 PetscErrorCode GridSumToOwners(const Grid *grid, PetscInt components, PetscReal *values);
 
+static inline PetscBool grid_is_mixed(const Grid *grid) { return grid->first_type != grid->type; }
+
 static inline CellType grid_cell_type(const Grid *grid, PetscInt cell)
 {
   return cell < grid->n_first ? grid->first_type : grid->type;
@@ -124,3 +126,7 @@ static inline void grid_cell_x(const Grid *grid, PetscInt cell, PetscReal *x)
   for (PetscInt i = 0; i < nn; ++i)
     for (PetscInt d = 0; d < dim; ++d) x[i * dim + d] = grid->x[node[i] * dim + d];
 }
+/* Mean of its nodes; a third coordinate that the grid does not have is 0. */
+void grid_cell_centre(const Grid *grid, PetscInt cell, PetscReal centre[3]);
+/* Shape functions N (nodes_per_cell) of the cell at xi; 0 for those nodes that a cell of fewer repeats. */
+void grid_shape(const Grid *grid, PetscInt cell, const PetscReal *xi, PetscReal *N);

@@ -120,6 +120,7 @@ PetscErrorCode SupportFromCells(Support *support, const Points *points, const Gr
   PetscFunctionBeginUser;
   PetscCheck(points->dim == grid->dim, PETSC_COMM_SELF, PETSC_ERR_ARG_SIZ,
              "points of %" PetscInt_FMT " dimensions in a grid of %" PetscInt_FMT, points->dim, grid->dim);
+  PetscCheck(!grid_is_mixed(grid), PETSC_COMM_SELF, PETSC_ERR_SUP, "cells of two kinds");
   count_groups(points, &groups, &located);
   PetscCall(SupportReserve(support, groups, groups * grid->nodes_per_cell, located * grid->nodes_per_cell, grid->dim));
   support->n_groups = groups;

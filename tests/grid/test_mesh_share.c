@@ -51,7 +51,8 @@ static void same_ghosts(const Grid *a, const Grid *b)
 static void same_grids(const Grid *a, const Grid *b)
 {
   const PetscInt n_sides = a->n_cells * cells[a->type].faces;
-  assert_true(a->dim == b->dim && a->type == b->type && a->nodes_per_cell == b->nodes_per_cell);
+  assert_true(a->dim == b->dim && a->type == b->type && a->first_type == b->first_type && a->n_first == b->n_first &&
+              a->nodes_per_cell == b->nodes_per_cell);
   assert_true(a->n_cells == b->n_cells && a->n_cells_global == b->n_cells_global);
   assert_true(a->n_owned == b->n_owned && a->n_nodes == b->n_nodes && a->n_nodes_global == b->n_nodes_global);
   assert_true(a->smallest == b->smallest);
@@ -112,7 +113,7 @@ static void there_and_back(void **state)
 {
   static const PetscReal inside[8] = {1, 2, 3, 2.5, 1.5, 0.7, 0.9, 3}, node[8] = {0, 1};
   (void)state;
-  for (int m = 0; m < 4; ++m) {
+  for (int m = 0; m < MESHES; ++m) {
     generate(meshes[m].source, "travel.msh", meshes[m].options);
     Grid *home = read_mesh("travel.msh", meshes[m].dim);
     Grid *first = scatter(home, 1), *second = scatter(first, 7), *back = send_home(second, home);
@@ -154,10 +155,8 @@ static void all_to_one(void **state)
 static void weigh_disk(const Grid *grid, PetscReal x, PetscReal y, PetscReal radius, PetscReal *weight)
 {
   for (PetscInt c = 0; c < grid->n_cells; ++c) {
-    PetscReal nodes[3 * CELL_MAX_NODES], at[3] = {0, 0, 0};
-    grid_cell_x(grid, c, nodes);
-    for (PetscInt i = 0; i < grid->nodes_per_cell; ++i)
-      for (PetscInt d = 0; d < grid->dim; ++d) at[d] += nodes[i * grid->dim + d] / (PetscReal)grid->nodes_per_cell;
+    PetscReal at[3];
+    grid_cell_centre(grid, c, at);
     weight[c] = PetscHypotReal(at[0] - x, at[1] - y) < radius ? 4.2 : 0;
   }
 }
@@ -231,7 +230,7 @@ static void by_table(void **state)
 {
   PetscReal reached;
   (void)state;
-  for (int m = 0; m < 4; ++m) {
+  for (int m = 0; m < MESHES; ++m) {
     char reason[256] = "";
     Tables *tables;
     Grid *again;

@@ -252,7 +252,7 @@ PetscErrorCode BoxBuild(MPI_Comm comm, const GridOps *ops, CellType type, GridBo
   PetscCall(PetscNew(&grid));
   grid->comm = comm;
   grid->dim = box->dim;
-  grid->type = type;
+  grid->type = grid->first_type = type;
   grid->nodes_per_cell = cells[type].nodes;
   grid->ops = ops;
   grid->box = box;

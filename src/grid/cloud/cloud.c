@@ -112,7 +112,7 @@ PetscErrorCode GridCreateCloud(const Grid *mesh, PetscReal spacing, const unsign
   g->ops = &grid_cloud;
   g->comm = mesh->comm;
   g->dim = mesh->dim;
-  g->type = mesh->type;
+  g->type = g->first_type = mesh->type;
   g->smallest = mesh->smallest;
   PetscCall(PetscArraycpy(g->min, mesh->min, 3));
   PetscCall(PetscArraycpy(g->max, mesh->max, 3));

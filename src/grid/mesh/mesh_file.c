@@ -26,17 +26,14 @@ static PetscBool choose_types(const MshFile *msh, Grid *grid, const char *path, 
               dim == 2 ? "surface" : "volume");
     return PETSC_FALSE;
   }
-  if (count[few] && count[many]) {
-    diag_error(diag, path, "the mesh mixes %lld cells of type %s with %lld of type %s; all must be alike",
-               (long long)count[few], cells[few].name, (long long)count[many], cells[many].name);
-    if (dim == 2)
-      diag_hint(diag,
-                "in gmsh: 'Recombine Surface' for all surfaces or for none, Mesh.SubdivisionAlgorithm = 1 for "
-                "quadrilaterals only");
+  if (dim == 3 && count[few] && count[many]) {
+    diag_error(diag, path, "the mesh mixes %lld tetrahedra with %lld hexahedra, which only pyramids could join",
+               (long long)count[few], (long long)count[many]);
+    diag_hint(diag, "talus mixes triangles and quadrilaterals; volumes must be all of one kind of cells");
     return PETSC_FALSE;
   }
   grid->type = count[many] ? many : few;
-  grid->first_type = few;
+  grid->first_type = count[few] ? few : many;
   grid->nodes_per_cell = cells[grid->type].nodes;
   return PETSC_TRUE;
 }
@@ -64,7 +61,7 @@ static PetscErrorCode CountCells(Grid *grid, const MshFile *msh, PetscInt *cell_
     cell_of[e] = tuple_add(seen, node);
     if (cell_of[e] < grid->n_cells) continue;
     element[grid->n_cells++] = e;
-    grid->n_first += few && grid->first_type != grid->type;
+    grid->n_first += few && grid_is_mixed(grid);
   }
   PetscCall(TupleTableDestroy(&seen));
   PetscFunctionReturn(0);

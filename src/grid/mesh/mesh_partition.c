@@ -33,10 +33,8 @@ static PetscErrorCode CellWeights(const Grid *grid, GridWeight weight, void *con
   PetscCall(PetscMalloc1(grid->n_cells, out));
   PetscCall(PetscMalloc1(grid->n_cells, &w));
   for (PetscInt c = 0; c < grid->n_cells; ++c) {
-    PetscReal centre[3] = {0, 0, 0}, x[3 * CELL_MAX_NODES];
-    const PetscInt nn = grid_cell(grid, c)->nodes;
-    grid_cell_x(grid, c, x);
-    for (PetscInt i = 0; i < nn * grid->dim; ++i) centre[i % grid->dim] += x[i] / (PetscReal)nn;
+    PetscReal centre[3];
+    grid_cell_centre(grid, c, centre);
     w[c] = PetscMax(weight(context, centre), 0.0);
     sum += w[c];
     loaded += w[c] > 0;

@@ -33,14 +33,11 @@ static void mesh_ruler(const Grid *grid, PetscInt counts[3])
 /* Where the centre of a cell lies on the ruler. */
 static void read_ruler(const Grid *grid, const PetscInt counts[3], PetscInt cell, PetscInt ijk[3])
 {
-  const PetscInt nn = grid_cell(grid, cell)->nodes, dim = grid->dim;
-  PetscReal x[3 * CELL_MAX_NODES];
-  grid_cell_x(grid, cell, x);
+  PetscReal centre[3];
+  grid_cell_centre(grid, cell, centre);
   ijk[2] = 0;
-  for (PetscInt d = 0; d < dim; ++d) {
-    PetscReal centre = 0;
-    for (PetscInt i = 0; i < nn; ++i) centre += x[i * dim + d];
-    const PetscReal at = (centre / (PetscReal)nn - grid->min[d]) / (grid->max[d] - grid->min[d]);
+  for (PetscInt d = 0; d < grid->dim; ++d) {
+    const PetscReal at = (centre[d] - grid->min[d]) / (grid->max[d] - grid->min[d]);
     ijk[d] = (PetscInt)PetscMin(PetscMax(at * (PetscReal)counts[d], 0), (PetscReal)(counts[d] - 1));
   }
 }
