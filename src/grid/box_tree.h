@@ -1,5 +1,5 @@
-/* Bounding boxes (6 numbers each: min[3], max[3]; axes beyond dim 0) in a balanced tree. Those of very different sizes
- * cost no more than equal ones, as they would in uniform bins. */
+/* Bounding boxes (6 numbers each: min[3], max[3]; axes beyond dim 0) in a balanced tree. Those of
+ * very different sizes cost no more than equal ones, as they would in uniform bins. */
 #pragma once
 #include <petscsys.h>
 

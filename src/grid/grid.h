@@ -1,8 +1,8 @@
 /* The background grid (mpm) or the mesh (fem): cells, nodes, regions, and who owns what.
  *
  * Each rank holds its own cells and every node they touch. Local nodes are numbered owned first,
- * ghosts after; `node_sf` ties the ghosts to their owners. A box fills the struct by arithmetic (no rank
- * ever holds more than its part), a mesh from a file that rank 0 reads. */
+ * ghosts after; `node_sf` ties the ghosts to their owners. A box fills the struct by arithmetic (no
+ * rank ever holds more than its part), a mesh from a file that rank 0 reads. */
 #pragma once
 #include <petscsf.h>
 #include <petscdmplex.h>
@@ -11,8 +11,8 @@
 #include "base/table.h"
 #include "case/case.h"
 
-/* A named set: of nodes and faces (boundary) or of cells (region). A box has left right (x), bottom top
- * (y) and in 3D front (lowest z) back (highest z); a mesh has its physical groups. */
+/* A named set: of nodes and faces (boundary) or of cells (region). A box has left right (x), bottom
+ * top (y) and in 3D front (lowest z) back (highest z); a mesh has its physical groups. */
 typedef struct {
   char *name;
   PetscInt n_nodes, *nodes;                 /* local nodes, ghosts too */
@@ -21,7 +21,8 @@ typedef struct {
 } GridSet;
 
 typedef struct GridOps GridOps; /* what this kind of grid can do */
-/* What only one kind has: counts and lines of a box, search and neighbours of a mesh, what follows a cloud's nodes. */
+/* What only one kind has: counts and lines of a box, search and neighbours of a mesh, what follows
+ * a cloud's nodes. */
 typedef struct GridBox GridBox;
 typedef struct GridMesh GridMesh;
 typedef struct GridCloud GridCloud;
@@ -65,12 +66,14 @@ PetscErrorCode GridCreateMesh(MPI_Comm comm, const GridSpec *spec, PetscInt dim,
                               void *context, Diag *diag, Grid **grid);
 PetscErrorCode GridDestroy(Grid **grid);
 
-/* Collective. The grid that `old` is, shared among the ranks by `weight` of its local cells (>= 0; 0: empty). *reached: the largest weight of
- * a rank over the mean that such a sharing has; if that is more than `worst` there is no use in it, and *grid stays NULL. `old` stays as it is. Not for clouds. */
+/* Collective. The grid that `old` is, shared among the ranks by `weight` of its local cells (>= 0;
+ * 0: empty). *reached: the largest weight of a rank over the mean that such a sharing has; if that
+ * is more than `worst` there is no use in it, and *grid stays NULL. `old` stays as it is. Not for
+ * clouds. */
 PetscErrorCode GridRepartition(const Grid *old, const PetscReal *weight, PetscReal worst, PetscReal *reached,
                                Grid **grid);
-/* Collective. Who has what, as a table, and the same grid shared in that way by as many ranks. reason is left empty, or says on every rank why
- * not. */
+/* Collective. Who has what, as a table, and the same grid shared in that way by as many ranks.
+ * reason is left empty, or says on every rank why not. */
 PetscErrorCode GridPartitionToTable(const Grid *grid, Tables *tables);
 PetscErrorCode GridFromPartition(const Grid *old, const Table *table, Grid **grid, char reason[256]);
 
@@ -78,7 +81,8 @@ const GridSet *grid_find_set(const Grid *grid, const char *name);
 /* Names of all sets, NULL-terminated, to be freed with PetscFree (not the names). */
 PetscErrorCode GridSetNames(const Grid *grid, const char ***names);
 
-/* Local nodes that the selector takes (sorted). With no condition at all: the whole outer boundary. */
+/* Local nodes that the selector takes (sorted). With no condition at all: the whole outer
+ * boundary. */
 PetscErrorCode GridSelectNodes(const Grid *grid, const Selector *on, PetscInt *n, PetscInt **nodes);
 /* Does a place in space, that is, the selector's ranges and shape, hold x? */
 PetscBool grid_takes(const Grid *grid, const Selector *on, const PetscReal *x);
@@ -95,7 +99,8 @@ PetscInt grid_locate(const Grid *grid, const PetscReal *x, PetscInt guess, Petsc
 /* The nearest position inside the grid as a whole (for `outside: keep-on-boundary`): of a box
  * exactly; of a mesh the nearest boundary face of this rank. */
 void grid_clamp(const Grid *grid, PetscReal *x);
-/* Ranks other than this one whose cells may hold x, at most `max`; returns how many. O(1) on boxes. */
+/* Ranks other than this one whose cells may hold x, at most `max`; returns how many. O(1) on
+ * boxes. */
 PetscInt grid_candidates(const Grid *grid, const PetscReal *x, PetscInt max, PetscMPIInt *ranks);
 
 /* Do its sides lie across the axes? */
@@ -128,5 +133,6 @@ static inline void grid_cell_x(const Grid *grid, PetscInt cell, PetscReal *x)
 }
 /* Mean of its nodes; a third coordinate that the grid does not have is 0. */
 void grid_cell_centre(const Grid *grid, PetscInt cell, PetscReal centre[3]);
-/* Shape functions N (nodes_per_cell) of the cell at xi; 0 for those nodes that a cell of fewer repeats. */
+/* Shape functions N (nodes_per_cell) of the cell at xi; 0 for those nodes that a cell of fewer
+ * repeats. */
 void grid_shape(const Grid *grid, PetscInt cell, const PetscReal *xi, PetscReal *N);

@@ -1,4 +1,5 @@
-/* What a kind of grid can do. A box, a mesh and a cloud each fill one table; what is NULL it cannot do. */
+/* What a kind of grid can do. A box, a mesh and a cloud each fill one table; what is NULL it cannot
+ * do. */
 #pragma once
 #include "grid/grid.h"
 #include "grid/partition.h"
@@ -15,8 +16,8 @@ struct GridOps {
   void (*clamp)(const Grid *grid, PetscReal *x);
   PetscInt (*candidates)(const Grid *grid, const PetscReal *x, PetscInt max, PetscMPIInt *ranks);
   PetscBool (*cells_alike)(const Grid *grid);
-  /* Share anew: this rank's cells on a lattice of voxels (arrays to be freed with PetscFree2), and the grid for cuts of
-   * that lattice. Collective. */
+  /* Share anew: this rank's cells on a lattice of voxels (arrays to be freed with PetscFree2), and
+   * the grid for cuts of that lattice. Collective. */
   PetscErrorCode (*WeighCells)(const Grid *grid, const PetscReal *weight, VoxelWeights *voxels);
   PetscErrorCode (*FromCuts)(const Grid *old, const PetscInt *cut_axis, const PetscInt *cut, Grid **grid);
   /* As GridPartitionToTable and GridFromPartition. */

@@ -125,8 +125,9 @@ static PetscErrorCode FillHistograms(MPI_Comm comm, const Share *share, PetscInt
   PetscFunctionReturn(0);
 }
 
-/* Where `fraction` of the histogram lies below; never at an end, unless there is but one layer: then
- * the lower half takes it. *cost: what lies on the wrong side, and what is cut through, of all. */
+/* Where `fraction` of the histogram lies below; never at an end, unless there is but one layer:
+ * then the lower half takes it. *cost: what lies on the wrong side, and what is cut through, of
+ * all. */
 static PetscInt best_cut(PetscInt n, PetscInt layer, const PetscInt64 *histogram, PetscReal fraction, PetscReal *cost)
 {
   PetscReal total = 0, below = 0;

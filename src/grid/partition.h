@@ -27,9 +27,9 @@ static inline PetscBool block_has(const VoxelBlock *b, const PetscInt ijk[3])
   return PETSC_TRUE;
 }
 
-/* Voxels that carry something, by their numbers in the lattice (first axis fastest), each named by one rank only.
- * Where cells lie anywhere the lattice is a ruler for their centres, `layer` of its intervals to a cell, and all cells
- * are listed; of a lattice of cells layer is 0. */
+/* Voxels that carry something, by their numbers in the lattice (first axis fastest), each named by
+ * one rank only. Where cells lie anywhere the lattice is a ruler for their centres, `layer` of its
+ * intervals to a cell, and all cells are listed; of a lattice of cells layer is 0. */
 typedef struct {
   PetscInt counts[3]; /* of the lattice */
   PetscInt n, *voxel;
@@ -44,8 +44,8 @@ static inline PetscInt64 whole_weight(PetscReal weight)
   return weight > 0 ? (PetscInt64)(weight * WEIGHT_UNIT + 0.5) : 0;
 }
 
-/* Fills the cuts (entries 1 .. size-1). weights: NULL where all weigh the same. imbalance: the largest weight of a rank
- * over the mean. Collective. */
+/* Fills the cuts (entries 1 .. size-1). weights: NULL where all weigh the same. imbalance: the
+ * largest weight of a rank over the mean. Collective. */
 PetscErrorCode PartitionVoxels(MPI_Comm comm, PetscInt dim, const PetscInt counts[3], const VoxelWeights *weights,
                                PetscInt *cut_axis, PetscInt *cut, PetscReal *imbalance);
 /* The blocks of all ranks from the cuts. */

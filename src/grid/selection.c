@@ -26,8 +26,8 @@ PetscBool grid_takes(const Grid *grid, const Selector *on, const PetscReal *x)
   return takes_position(grid, on, selection_tolerance(grid), x);
 }
 
-/* The set whose nodes and faces are looked at. A place in space chooses among `all`, where that is given, and else
- * on the outer boundary. An unknown name selects nothing. */
+/* The set whose nodes and faces are looked at. A place in space chooses among `all`, where that is
+ * given, and else on the outer boundary. An unknown name selects nothing. */
 static const GridSet *base_set(const Grid *grid, const Selector *on, const GridSet *all, const GridSet *nothing)
 {
   if (on->boundary) {

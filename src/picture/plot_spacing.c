@@ -22,7 +22,8 @@ static PetscReal choose_size(PetscInt dim, PetscInt n, const PetscReal *x)
   return largest * PetscPowReal(2 * volume / n, 1.0 / dim);
 }
 
-/* Distance to the k-th neighbour, searched no further than three bins: beyond that it does not matter. */
+/* Distance to the k-th neighbour, searched no further than three bins: beyond that it does not
+ * matter. */
 static PetscReal neighbour_distance(const Neighbours *points, const PetscReal *x, PetscReal size, PetscInt k)
 {
   PetscInt item[MAX_NEIGHBOURS + 1];

@@ -1,5 +1,5 @@
-/* `outside: keep-on-boundary`: points that left the grid go back to the nearest position inside. Followers do not: they
- * only remember it. */
+/* `outside: keep-on-boundary`: points that left the grid go back to the nearest position inside.
+ * Followers do not: they only remember it. */
 #include "points/migrate.h"
 
 /* A position outside the grid, on its way to the nearest one inside. */
@@ -17,8 +17,9 @@ static PetscInt find_homeless(const Leavers *l, const Points *points, PetscInt *
   return n;
 }
 
-/* Every rank proposes the nearest position that it knows for every homeless point (n_all of them); the
- * nearest of all wins. Few points are homeless, and on a mesh no rank knows the boundary of the others. */
+/* Every rank proposes the nearest position that it knows for every homeless point (n_all of them);
+ * the nearest of all wins. Few points are homeless, and on a mesh no rank knows the boundary of the
+ * others. */
 static PetscErrorCode ChooseNearest(const Grid *grid, PetscInt n_all, Clamp *all)
 {
   struct {
@@ -48,9 +49,9 @@ static PetscErrorCode ChooseNearest(const Grid *grid, PetscInt n_all, Clamp *all
   PetscFunctionReturn(0);
 }
 
-/* Put the point where it is kept, and take away the velocity that leads out: on a box by components, else
- * along the way that it was moved. The displacement follows, so that x - u stays the place where it
- * started. */
+/* Put the point where it is kept, and take away the velocity that leads out: on a box by
+ * components, else along the way that it was moved. The displacement follows, so that x - u stays
+ * the place where it started. */
 static void clamp_point(Points *points, PetscInt p, const Clamp *clamp, PetscBool by_axis)
 {
   const PetscInt dim = points->dim;

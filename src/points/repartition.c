@@ -2,7 +2,8 @@
 #include "grid/directory.h"
 #include "points/points.h"
 
-/* Points stand in the order of their cells: the number of each cell that holds some, once. at[p]: where it stands, -1 of a lost point. */
+/* Points stand in the order of their cells: the number of each cell that holds some, once. at[p]:
+ * where it stands, -1 of a lost point. */
 static PetscErrorCode ListCells(const Points *points, const Grid *old, PetscInt *at, PetscInt *n, PetscInt **cell)
 {
   PetscInt last = -1;

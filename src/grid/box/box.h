@@ -47,7 +47,8 @@ VoxelBlock box_nodes(const GridBox *box, const VoxelBlock *voxels);
 VoxelBlock box_owned_nodes(const GridBox *box, const VoxelBlock *voxels);
 PetscBool box_has_centres(const GridBox *box);
 
-/* box_pattern.c: the patterns of even and odd voxels (both the same but for alternating diagonals). */
+/* box_pattern.c: the patterns of even and odd voxels (both the same but for alternating
+ * diagonals). */
 void voxel_patterns(CellType type, Diagonal diagonal, VoxelPattern pattern[2]);
 
 /* box_locate.c */

@@ -1,5 +1,5 @@
-/* Who has which block of a box grid: by what a function of places says, by weights of the cells of a grid that is there, or as it was
- * before. */
+/* Who has which block of a box grid: by what a function of places says, by weights of the cells of
+ * a grid that is there, or as it was before. */
 #include "grid/box/box.h"
 
 /* Each rank weighs its share of the voxels, and lists those that carry something. */

@@ -39,8 +39,8 @@ PetscErrorCode MshDestroy(MshFile **msh);
 PetscErrorCode GeoRun(const char *path, PetscInt dim, PetscInt n_parameters, const NamedValue *parameters, size_t size,
                       char *output, size_t message_size, char *message);
 
-/* The file that a grid names, which gmsh may have to make of a .geo first. Not collective; mistakes go to diag at `path`,
- * and *msh stays NULL. */
+/* The file that a grid names, which gmsh may have to make of a .geo first. Not collective; mistakes
+ * go to diag at `path`, and *msh stays NULL. */
 PetscErrorCode MshLoad(const GridSpec *spec, PetscInt dim, const char *path, Diag *diag, MshFile **msh);
 /* Collective. An error for each of the grid's parameters that no .geo of the case mentions. */
 PetscErrorCode GeoCheckParameters(MPI_Comm comm, const Case *c, Diag *diag);

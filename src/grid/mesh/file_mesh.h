@@ -9,11 +9,13 @@ typedef struct {
   PetscInt *number; /* of cells: what Gmsh calls them, for messages */
 } FileMesh;
 
-/* Pick the cells of a file and check them, for an empty grid; mistakes go to diag at `path`. Not collective, as all below. */
+/* Pick the cells of a file and check them, for an empty grid; mistakes go to diag at `path`. Not
+ * collective, as all below. */
 PetscErrorCode FileMeshFill(FileMesh *mesh, const MshFile *msh, const char *path, Diag *diag);
 /* An error, with two of the cells and where, if any lie in one another. */
 PetscErrorCode FileMeshCheckOverlap(const FileMesh *mesh, const char *path, Diag *diag);
-/* Named sets of the physical groups. face_at: for each face id of the table, cell * faces + side. */
+/* Named sets of the physical groups. face_at: for each face id of the table, cell * faces +
+ * side. */
 PetscErrorCode FileMeshSets(Grid *grid, const MshFile *msh, const PetscInt *node_of, const PetscInt *cell_of,
                             const TupleTable *faces, const PetscInt *face_at);
 /* The rank of each cell; weights as in GridCreate. */

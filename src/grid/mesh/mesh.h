@@ -1,4 +1,5 @@
-/* Cells that lie anywhere: how they know each other, how a position finds them, and how they go to other ranks. */
+/* Cells that lie anywhere: how they know each other, how a position finds them, and how they go to
+ * other ranks. */
 #pragma once
 #include "grid/box_tree.h"
 #include "grid/grid_ops.h"
@@ -12,7 +13,8 @@ struct GridMesh {
   PetscReal tolerance; /* how far outside a cell a position still belongs, in reference units */
 };
 
-/* Sides of a cell in `neighbour`, and wherever a side is called cell * faces + side: those of the grid's type. */
+/* Sides of a cell in `neighbour`, and wherever a side is called cell * faces + side: those of the
+ * grid's type. */
 static inline PetscInt mesh_faces(const Grid *grid) { return cells[grid->type].faces; }
 
 /* mesh_locate.c */

@@ -1,6 +1,6 @@
-/* Makes the grid of a rank's cells when they have arrived: cells in the order of the file, those of the lesser kind
- * first. A node belongs to the lowest rank that has it; owners number theirs in the order of the file. Nothing depends
- * on where they came from. */
+/* Makes the grid of a rank's cells when they have arrived: cells in the order of the file, those of
+ * the lesser kind first. A node belongs to the lowest rank that has it; owners number theirs in the
+ * order of the file. Nothing depends on where they came from. */
 #include "grid/directory.h"
 #include "grid/mesh/mesh_part.h"
 
@@ -215,7 +215,8 @@ static PetscErrorCode SetRoom(const Grid *grid, const MeshPart *in, GridSet **se
   PetscFunctionReturn(0);
 }
 
-/* A node comes once from each rank that sent it. Cell and side of a face are one number until they are sorted. */
+/* A node comes once from each rank that sent it. Cell and side of a face are one number until they
+ * are sorted. */
 static PetscErrorCode SortSet(const Grid *grid, GridSet *set)
 {
   const PetscInt n_faces = mesh_faces(grid);

@@ -1,4 +1,5 @@
-/* The nearest position inside a mesh: on the nearest face of the outer boundary that this rank knows. */
+/* The nearest position inside a mesh: on the nearest face of the outer boundary that this rank
+ * knows. */
 #include "grid/mesh/mesh.h"
 
 /* Positions of a face's nodes; returns how many there are. */
@@ -49,7 +50,8 @@ static void keep_nearer(const PetscReal *x, const PetscReal *trial, PetscReal *n
   for (int d = 0; d < 3; ++d) nearest[d] = trial[d];
 }
 
-/* The foot of the perpendicular if it lies in the triangle, else the nearest position of its edges. */
+/* The foot of the perpendicular if it lies in the triangle, else the nearest position of its
+ * edges. */
 static void nearest_on_triangle(const PetscReal *const v[3], const PetscReal *x, PetscReal *nearest, PetscReal *least)
 {
   PetscReal e[3], g[3], r[3], trial[3];

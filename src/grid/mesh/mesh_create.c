@@ -1,5 +1,5 @@
-/* Meshes from files: rank 0 reads and checks the mesh, which is then a grid like any other, all of it on one rank, and
- * goes to the others as it would from any ranks. */
+/* Meshes from files: rank 0 reads and checks the mesh, which is then a grid like any other, all of
+ * it on one rank, and goes to the others as it would from any ranks. */
 #include "grid/mesh/file_mesh.h"
 
 /* What is the same on all ranks, from rank 0. */

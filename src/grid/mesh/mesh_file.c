@@ -44,8 +44,8 @@ static void pad_nodes(const Grid *grid, PetscInt nodes, PetscInt *node)
   for (PetscInt i = nodes; i < grid->nodes_per_cell; ++i) node[i] = node[nodes - 1];
 }
 
-/* The cells, each once: version 2 repeats an element for each of its groups. element[k]: the one that cell k of the file
- * first is; cell_of[e]: which of them element e is, or -1. */
+/* The cells, each once: version 2 repeats an element for each of its groups. element[k]: the one
+ * that cell k of the file first is; cell_of[e]: which of them element e is, or -1. */
 static PetscErrorCode CountCells(Grid *grid, const MshFile *msh, PetscInt *cell_of, PetscInt *element)
 {
   TupleTable *seen;
@@ -117,7 +117,8 @@ static PetscErrorCode TakeNodes(Grid *grid, const MshFile *msh, PetscInt *node_o
   PetscFunctionReturn(0);
 }
 
-/* Extent of the mesh, and its shortest edge: neighbouring corners of a face are joined by one in every type of cell. */
+/* Extent of the mesh, and its shortest edge: neighbouring corners of a face are joined by one in
+ * every type of cell. */
 static void measure(Grid *grid)
 {
   PetscReal bounds[6], x[3 * CELL_MAX_NODES], least = PETSC_MAX_REAL;
@@ -225,7 +226,8 @@ static void check_volumes(const FileMesh *mesh, const char *path, Diag *diag)
     "gmsh's Tools > Statistics and Plugin(AnalyseMeshQuality) show them; a finer or better shaped mesh is needed");
 }
 
-/* Let cells find each other through their faces. face_at: where each face of the table was first seen. */
+/* Let cells find each other through their faces. face_at: where each face of the table was first
+ * seen. */
 static PetscErrorCode FindNeighbours(const FileMesh *mesh, TupleTable *faces, PetscInt *face_at, const char *path,
                                      Diag *diag)
 {

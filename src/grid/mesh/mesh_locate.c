@@ -1,9 +1,9 @@
-/* Search of unstructured grids: from neighbour to neighbour beginning in the last known cell, else in the tree of
- * bounding boxes.
+/* Search of unstructured grids: from neighbour to neighbour beginning in the last known cell, else
+ * in the tree of bounding boxes.
  *
- * The first way answers only where x lies well inside a cell; on faces the tree decides among all cells
- * that touch x, so that the answer does not depend on where the search began. A position on a face
- * between ranks belongs to the lower one, a node to its owner. */
+ * The first way answers only where x lies well inside a cell; on faces the tree decides among all
+ * cells that touch x, so that the answer does not depend on where the search began. A position on a
+ * face between ranks belongs to the lower one, a node to its owner. */
 #include "grid/mesh/mesh.h"
 
 #define MAX_STEPS 24

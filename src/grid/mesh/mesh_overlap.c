@@ -1,5 +1,5 @@
-/* Cells that lie in one another, as from two surfaces drawn over each other: each would be filled, and mass counted
- * twice. On rank 0. */
+/* Cells that lie in one another, as from two surfaces drawn over each other: each would be filled,
+ * and mass counted twice. On rank 0. */
 #include "grid/mesh/file_mesh.h"
 
 #define WELL_INSIDE 1e-6 /* of the reference cell: neighbours only touch */

@@ -1,5 +1,5 @@
-/* Parts of a mesh on their way from rank to rank, with all that a grid is made of. Cells and nodes go by their numbers in
- * the file, which are the same on all ranks. */
+/* Parts of a mesh on their way from rank to rank, with all that a grid is made of. Cells and nodes
+ * go by their numbers in the file, which are the same on all ranks. */
 #pragma once
 #include "grid/mesh/mesh.h"
 
@@ -10,7 +10,8 @@ typedef struct {
 
 typedef enum { MEMBER_NODE, MEMBER_FACE, MEMBER_CELL } MemberKind;
 
-/* A node, the side of a cell or a cell is in a set; the one after the last set is the outer boundary. */
+/* A node, the side of a cell or a cell is in a set; the one after the last set is the outer
+ * boundary. */
 typedef struct {
   PetscInt set, kind, number, side;
 } MeshMember;
@@ -26,6 +27,7 @@ typedef struct {
 
 static inline PetscInt mesh_row(const Grid *grid) { return 1 + grid->nodes_per_cell + mesh_faces(grid); }
 
-/* mesh_send.c. Collective. Every cell, and what hangs on it, goes to the rank owner[cell], which may be this one. */
+/* mesh_send.c. Collective. Every cell, and what hangs on it, goes to the rank owner[cell], which
+ * may be this one. */
 PetscErrorCode MeshSend(const Grid *grid, const PetscMPIInt *owner, MeshPart *arrived);
 PetscErrorCode MeshPartDestroy(MeshPart *part);

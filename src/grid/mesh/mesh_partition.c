@@ -45,8 +45,9 @@ static PetscErrorCode CellWeights(const Grid *grid, GridWeight weight, void *con
   PetscFunctionReturn(0);
 }
 
-/* Scotch takes a thread for each core, and then its partition is another one at every run: neither a run nor one taken up on the way would repeat
- * itself. One thread, unless the user says otherwise. */
+/* Scotch takes a thread for each core, and then its partition is another one at every run: neither
+ * a run nor one taken up on the way would repeat itself. One thread, unless the user says
+ * otherwise. */
 static PetscErrorCode ApplyAlone(MatPartitioning partitioning, IS *is)
 {
   static const char threads[] = "SCOTCH_PTHREAD_NUMBER";

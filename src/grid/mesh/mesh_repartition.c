@@ -1,12 +1,14 @@
-/* Shares a mesh among the ranks by coordinate bisection of its cells' centres, which are read off a ruler over the box
- * around the mesh that is cut like a box grid; or cell by cell, as a table says. */
+/* Shares a mesh among the ranks by coordinate bisection of its cells' centres, which are read
+ * off a ruler over the box around the mesh that is cut like a box grid; or cell by cell, as a
+ * table says. */
 #include "grid/directory.h"
 #include "grid/mesh/mesh.h"
 
 #define RULER 5         /* intervals to a cell; odd, so that centres of equal cells do not fall between two of them */
 #define MOST_PLACES 1e9 /* that can be numbered */
 
-/* Cells of one size would have this edge; of simplices, the square or cube that is cut into them. */
+/* Cells of one size would have this edge; of simplices, the square or cube that is cut into
+ * them. */
 static PetscReal typical_size(const Grid *grid)
 {
   static const PetscReal share[] = {2, 1, 6, 1};

@@ -1,5 +1,5 @@
-/* Packs the cells of a mesh by the ranks that they go to, and sends them: no rank sees more than its old part and its
- * new one. */
+/* Packs the cells of a mesh by the ranks that they go to, and sends them: no rank sees more than
+ * its old part and its new one. */
 #include "base/exchange.h"
 #include "grid/mesh/mesh_part.h"
 
@@ -75,7 +75,8 @@ static MeshNode pack_node(const Grid *grid, PetscInt node)
   return out;
 }
 
-/* Nodes of the cells that go to a rank, each once; returns how many, and writes them where `out` is given. */
+/* Nodes of the cells that go to a rank, each once; returns how many, and writes them where `out` is
+ * given. */
 static PetscInt list_nodes(const SendPlan *p, PetscMPIInt rank, PetscInt message, MeshNode *out)
 {
   const PetscInt nn = p->grid->nodes_per_cell;

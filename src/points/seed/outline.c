@@ -27,7 +27,8 @@ static PetscBool is_before(const PetscReal *a, const PetscReal *b)
   return PETSC_FALSE;
 }
 
-/* The diagonal by which a quadrilateral is cut starts at its first corner in the order of space: both of its cells find the same one. */
+/* The diagonal by which a quadrilateral is cut starts at its first corner in the order of space:
+ * both of its cells find the same one. */
 static PetscInt first_corner(PetscReal x[4][3])
 {
   PetscInt first = 0;

@@ -1,4 +1,5 @@
-/* Columns of material against gravity: a line from a position upwards leaves and enters bodies through their outlines. */
+/* Columns of material against gravity: a line from a position upwards leaves and enters bodies
+ * through their outlines. */
 #include <stdlib.h>
 #include "grid/box_tree.h"
 #include "points/seed/outline.h"
@@ -136,7 +137,8 @@ PetscErrorCode OverburdenDestroy(Overburden **overburden)
   PetscFunctionReturn(0);
 }
 
-/* Twice the area of a, b, at: the same number, but for its sign, whichever way the edge is gone along. */
+/* Twice the area of a, b, at: the same number, but for its sign, whichever way the edge is gone
+ * along. */
 static PetscReal side_of(const PetscReal *a, const PetscReal *b, const PetscReal *at)
 {
   const PetscBool swap = a[0] > b[0] || (a[0] == b[0] && a[1] > b[1]);
