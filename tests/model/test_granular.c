@@ -154,7 +154,7 @@ static void test_keep_velocity_elsewhere(void **state)
 
 /* A column of 6 x 7 cells falls over and comes to rest: with steps that grow as far as without, in a fifth of the steps and no more cuts than a
  * hand counts. The front is where 5 % of the grains lie beyond: the farthest grain alone scatters by more. It goes out with the step to first order,
- * by 2 % a ms in a column this small (docs/decisions.md). */
+ * by 2 % a ms in a column this small (docs/experiments/granular-columns.md). */
 static PetscInt collapse(PetscReal step, PetscReal largest, PetscReal *front, PetscInt *cuts)
 {
   Bench b;
