@@ -15,7 +15,6 @@ WeakFormInput weak_form_of(const Model *m, PetscReal inertia)
     .lumping = m->stage->lumping,
     .soft = m->stage->soft,
     .tie = m->stage->tie,
-    .fixed = m->fixed,
     .pressure = m->pressure,
     .pressure_scale = m->pressure_scale,
     .alpha = m->c->mixed.stabilisation,

@@ -47,13 +47,14 @@ static void assemble(Model *m, const PetscReal *lift, PetscBool half, PetscReal 
   const PetscInt dofs = m->grid->n_nodes * m->dim, n = m->system->row_start[m->system->n_rows] * m->dim * m->dim;
   WeakFormInput in = weak_form_of(m, 4 / PetscSqr(0.002));
   WeakFormOutput out = {.force = m->force, .values = m->system->values, .slot = m->system->slot};
-  in.lift = lift;
   in.half = half;
   CALL(PetscArrayzero(m->force, dofs));
   CALL(SystemZero(m->system));
   CALL(m->formulation->assemble(&in, &out));
   CHECK(out.status == LAW_OK, "no stress");
   if (half) CALL(SystemMirror(m->system));
+  CALL(SystemPrescribe(m->system, m->fixed, NULL));
+  system_lift(m->system, m->fixed, lift, m->force, NULL);
   CALL(PetscArraycpy(force, m->force, dofs));
   CALL(PetscArraycpy(values, m->system->values, n));
 }

@@ -203,7 +203,8 @@ static void check_tangent(const char *method, CellType cell, const Solid *solid,
   CALL(VecDuplicate(x, &plus));
   CALL(VecDuplicate(x, &minus));
   residual(&s, 0, 0, PETSC_TRUE, y);
-  CALL(SystemToMatrix(s.m->system, s.m->fixed, s.m->idle));
+  CALL(SystemPrescribe(s.m->system, s.m->fixed, s.m->idle));
+  CALL(SystemToMatrix(s.m->system));
   if (s.m->symmetric) {
     PetscBool is;
     CALL(MatIsSymmetric(s.m->system->matrix, 1e-9 * b.constants[0].value, &is));

@@ -17,7 +17,7 @@ typedef struct {
   System *system;
   const Formulation *formulation;
   const Constraints *constraints; /* NULL: none */
-  WeakFormInput in;               /* du, fixed and lift are set here by Newton */
+  WeakFormInput in;               /* du and pressure are set here by Newton */
   const unsigned char *fixed;     /* prescribed, or on a node that no material touches */
   const PetscReal *prescribed;    /* increment of fixed dofs, m */
   const PetscReal *external;      /* dead nodal forces, N; owners' values count */

@@ -76,8 +76,7 @@ PetscBool constraints_find_slots(Constraints *c, const System *system)
 
 /* One component of one constraint. */
 static void assemble_component(const Constraints *c, PetscInt k, PetscInt d, const PetscReal *du,
-                               const PetscReal *prescribed, const unsigned char *fixed, const PetscReal *lift,
-                               PetscReal *force, PetscReal *values)
+                               const PetscReal *prescribed, PetscReal *force, PetscReal *values)
 {
   const PetscInt dim = c->dim, twin = c->twin[k] * dim + d;
   const PetscReal mu = du[twin];
@@ -85,9 +84,9 @@ static void assemble_component(const Constraints *c, PetscInt k, PetscInt d, con
   for (PetscInt e = c->start[k]; e < c->start[k + 1]; ++e) {
     const PetscInt i = c->node[e] * dim + d;
     const PetscReal weight = c->scale * c->N[e];
-    gap += c->N[e] * (du[i] + (lift && fixed[i] ? lift[i] : 0));
+    gap += c->N[e] * du[i];
     force[i] -= weight * mu;
-    if (!values || fixed[i]) continue;
+    if (!values) continue;
     values[(c->slot[2 * e] * dim + d) * dim + d] -= weight;
     values[(c->slot[2 * e + 1] * dim + d) * dim + d] -= weight;
   }
@@ -95,11 +94,11 @@ static void assemble_component(const Constraints *c, PetscInt k, PetscInt d, con
 }
 
 void constraints_assemble(const Constraints *c, const PetscReal *du, const PetscReal *prescribed,
-                          const unsigned char *fixed, const PetscReal *lift, PetscReal *force, PetscReal *values)
+                          const unsigned char *fixed, PetscReal *force, PetscReal *values)
 {
   for (PetscInt k = 0; k < c->n; ++k)
     for (PetscInt d = 0; d < c->dim; ++d)
-      if (!fixed[c->twin[k] * c->dim + d]) assemble_component(c, k, d, du, prescribed, fixed, lift, force, values);
+      if (!fixed[c->twin[k] * c->dim + d]) assemble_component(c, k, d, du, prescribed, force, values);
 }
 
 void constraints_relax(const Constraints *c, const unsigned char *held, const PetscReal *target, PetscReal scale,
