@@ -204,12 +204,6 @@ PetscErrorCode LoadsDestroy(Loads **loads)
   PetscFunctionReturn(0);
 }
 
-/* Loads grow with pseudo-time in statics and stand at once in dynamics, unless an amplitude says otherwise. */
-static PetscReal load_factor(const Case *c, const LoadSpec *spec, PetscReal t)
-{
-  return amplitude_value(&spec->amplitude, t, c->analysis.type == ANALYSIS_STATIC ? t / c->analysis.end : 1);
-}
-
 static void add_faces(const LoadFaces *faces, const Grid *grid, const PetscReal *value, PetscReal factor,
                       const unsigned char *filled, PetscReal *sum)
 {
@@ -251,9 +245,9 @@ PetscErrorCode LoadsAdd(const Loads *l, const Grid *grid, PetscReal t, const uns
   if (!l->c->n_loads) PetscFunctionReturn(0);
   PetscCall(PetscCalloc1(grid->n_nodes * dim, &sum));
   for (PetscInt k = 0; k < l->c->n_loads; ++k)
-    add_faces(&l->faces[k], grid, l->c->loads[k].value, load_factor(l->c, &l->c->loads[k], t), filled, sum);
+    add_faces(&l->faces[k], grid, l->c->loads[k].value, case_factor(l->c, &l->c->loads[k].amplitude, t), filled, sum);
   for (PetscInt p = 0; p < l->carriers->n; ++p)
-    add_carrier(l, grid, p, load_factor(l->c, &l->c->loads[l->carriers->body[p]], t), touched, sum);
+    add_carrier(l, grid, p, case_factor(l->c, &l->c->loads[l->carriers->body[p]].amplitude, t), touched, sum);
   PetscCall(GridSumToOwners(grid, dim, sum));
   for (PetscInt i = 0; i < grid->n_owned * dim; ++i) force[i] += sum[i];
   PetscCall(PetscFree(sum));

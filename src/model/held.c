@@ -5,7 +5,7 @@
 /* Nodes that the body touches, on all copies. */
 static PetscErrorCode TouchedBy(const Model *m, PetscInt body, PetscReal *touched)
 {
-  const Support *w = m->stage->support;
+  const Support *w = m->space->support;
 
   PetscFunctionBeginUser;
   PetscCall(PetscArrayzero(touched, m->grid->n_nodes));
@@ -78,7 +78,7 @@ PetscErrorCode CheckHeld(const Model *m, Diag *diag)
 
   PetscFunctionBeginUser;
   PetscCall(ModelCountPoints(m, &points));
-  if (m->c->analysis.type == ANALYSIS_DYNAMIC || !points) PetscFunctionReturn(0);
+  if (m->scheme->inertia || !points) PetscFunctionReturn(0);
   PetscCall(PetscCalloc2(n * n, &joined, n * dim, &held));
   PetscCall(Touches(m, joined, held));
   spread(n, dim, joined, held);

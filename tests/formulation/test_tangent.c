@@ -108,7 +108,7 @@ static void patch_points(Patch *p, Diag *diag)
     seed[k] = (PointSeed){.density = spec[k].density, .n_state = p->material[k].law->n_state, .initial = initial[k]};
   }
   CALL(PointsCreate(p->grid->dim, n_state, 0, &p->points));
-  CALL(PointsSeed(p->points, p->grid, &p->c, seed, diag));
+  CALL(PointsSeed(p->points, p->grid, &p->c, seed, PETSC_TRUE, diag));
   assert_int_equal(diag_errors(diag), 0);
 }
 

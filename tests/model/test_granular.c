@@ -50,7 +50,7 @@ static Effort graze(PetscReal gap, PetscReal vx, PetscReal vy, PetscReal inertia
   point_real(m->points, POINT_V, best)[1] = vy;
   CALL(PointsRelocate(m->points, m->grid, OUTSIDE_STOP, &n_lost, &lost));
   CALL(PetscFree(lost));
-  CALL(m->method->initialise(m->stage));
+  CALL(m->method->initialise(m->space));
   for (int s = 0; s < 40; ++s) {
     const StepReport r = model_step(m, 1);
     effort.most = PetscMax(effort.most, r.newton.iterations);
@@ -99,7 +99,7 @@ static void test_unseen_motion_fades(void **state)
   for (PetscInt p = 0; p < m->points->n; ++p)
     point_real(m->points, POINT_V, p)[1] =
       PetscAbsReal(point_real(m->points, POINT_XI, p)[0]) < 0.1 ? -2 * edge / middle : 1;
-  CALL(m->method->initialise(m->stage));
+  CALL(m->method->initialise(m->space));
   CALL(ModelEnergies(m, &start));
   for (int s = 0; s < 20; ++s) model_step(m, dt);
   CALL(ModelEnergies(m, &end));
@@ -207,10 +207,10 @@ static PetscReal lumping_of(Model *m, void (*place)(PetscInt k, PetscReal *xi))
   CHECK(k == 9, "%d points in the cell", (int)k);
   CALL(PointsRelocate(m->points, m->grid, OUTSIDE_STOP, &n_lost, &lost));
   CALL(PetscFree(lost));
-  CALL(m->method->initialise(m->stage));
-  const Support *w = m->stage->support;
+  CALL(m->method->initialise(m->space));
+  const Support *w = m->space->support;
   for (PetscInt g = 0; g < w->n_groups; ++g)
-    if (m->points->cell[w->point_start[g]] == 0) return m->stage->lumping[g];
+    if (m->points->cell[w->point_start[g]] == 0) return m->space->lumping[g];
   return -1;
 }
 

@@ -8,7 +8,7 @@ static void sum_loads(const Model *m, PetscReal t, PetscReal sum[5])
 {
   PetscReal *force, local[5] = {0, 0, 0, 0, 0};
   CALL(PetscCalloc1(m->grid->n_nodes * m->dim, &force));
-  CALL(LoadsAdd(m->loads, m->grid, t, m->stage->filled, m->stage->touched, force));
+  CALL(LoadsAdd(m->loads, m->grid, t, m->space->filled, m->nodes->touched, force));
   for (PetscInt i = 0; i < m->grid->n_owned; ++i) {
     for (PetscInt d = 0; d < m->dim; ++d) local[d] += force[i * m->dim + d];
     for (PetscInt d = 0; d < 2; ++d) local[3 + d] += m->grid->x[i * m->dim + d] * force[i * m->dim + d];
