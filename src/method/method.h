@@ -5,7 +5,7 @@
 #include "boundary/loads.h"
 #include "material/law.h"
 #include "points/support.h"
-#include "solve/system/constraints.h"
+#include "solve/forces/constraints.h"
 #include "solve/newton/newmark.h"
 
 typedef enum {

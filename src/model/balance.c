@@ -78,6 +78,7 @@ PetscErrorCode ModelRegrid(Model *m, Grid *grid, PetscInt *moved)
   PetscCall(TablesCreate(&kept));
   PetscCall(ReactionsToTables(m, kept));
   PetscCall(GuessToTables(m, kept));
+  PetscCall(ForcesToTables(m, kept));
   *moved = 0;
   PetscCall(PointsRegrid(m->points, m->grid, grid, moved));
   PetscInt followers = 0;
@@ -89,8 +90,10 @@ PetscErrorCode ModelRegrid(Model *m, Grid *grid, PetscInt *moved)
   PetscCall(GridDestroy(&m->grid));
   m->grid = grid;
   PetscCall(ModelCreateFields(m)); /* no cell is enabled: the next step makes the system anew */
+  PetscCall(ForcesCreate(m, NULL));
   PetscCall(ReactionsFromTables(m, kept, reason));
   PetscCall(GuessFromTables(m, kept, reason));
+  PetscCall(ForcesFromTables(m, kept, reason));
   PetscCheck(!reason[0], m->comm, PETSC_ERR_PLIB, "%s", reason);
   PetscCall(TablesDestroy(&kept));
   PetscFunctionReturn(0);

@@ -17,10 +17,9 @@ PetscErrorCode InitialAcceleration(Model *m)
   PetscFunctionBeginUser;
   gravity_at(m->c, 0, g);
   PetscCall(PetscArrayzero(m->du, dofs));
-  PetscCall(PetscArrayzero(m->external, dofs));
   for (PetscInt i = 0; i < dofs; ++i) m->history[i] = m->c->analysis.damping * s->v[i] - g[i % dim];
-  PetscCall(LoadsAdd(m->loads, m->grid, 0, s->filled, s->touched, m->external));
-  PetscCall(AddBodyForce(m, 0, m->external));
+  const NodalScene scene = nodal_scene(m, 0, m->du);
+  PetscCall(NodalForcesExternal(&m->forces, &scene, PETSC_TRUE, m->external));
   PetscCall(PetscArrayzero(m->force, dofs));
   pressure_guess(m);
   WeakFormInput in = weak_form_of(m, 0);
@@ -41,16 +40,5 @@ PetscErrorCode InitialAcceleration(Model *m)
         point_real(m->points, POINT_A, p)[i % dim] +=
           support_N(s->support, q, p)[i / dim] * s->a[node[i / dim] * dim + i % dim];
   }
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode ModelSetBodyForce(Model *m, BodyForce force, void *context)
-{
-  PetscFunctionBeginUser;
-  m->body_force = force;
-  m->body_force_context = context;
-  if (m->step > 0 || m->c->analysis.type != ANALYSIS_DYNAMIC) PetscFunctionReturn(0);
-  PetscCall(PetscArrayzero(m->points->real[POINT_A], m->points->n * m->dim));
-  PetscCall(InitialAcceleration(m));
   PetscFunctionReturn(0);
 }

@@ -235,6 +235,7 @@ static PetscErrorCode Build(Model *m, Diag *diag)
   PetscCall(NewtonCreate(m->comm, &m->c->newton, &m->newton));
   step_control_start(&m->control, m->c->analysis.step);
   PetscCall(m->method->initialise(m->stage));
+  PetscCall(ForcesCreate(m, diag));
   if (m->method->couplings) PetscCall(ModelWarnOfObstacles(m, diag));
   PetscCall(CheckHeld(m, diag));
   if (m->c->analysis.type == ANALYSIS_DYNAMIC) PetscCall(InitialAcceleration(m));
@@ -272,6 +273,7 @@ PetscErrorCode ModelDestroy(Model **model)
   PetscFunctionBeginUser;
   if (!m) PetscFunctionReturn(0);
   PetscCall(OptionsForget(m));
+  PetscCall(NodalForcesDestroy(&m->forces));
   PetscCall(NewtonDestroy(&m->newton));
   PetscCall(SystemDestroy(&m->system));
   if (m->stage && m->method->destroy) PetscCall(m->method->destroy(m->stage));

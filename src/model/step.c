@@ -58,6 +58,8 @@ static PetscErrorCode Accept(Model *m, PetscReal dt, StepReport *report)
   PetscCheck(status == LAW_OK, PETSC_COMM_SELF, PETSC_ERR_PLIB, "a converged state could not be committed");
   for (PetscInt node = 0; m->pressure && node < m->grid->n_nodes; ++node)
     s->pressure[node] = m->pressure_scale * m->pressure[node];
+  const NodalScene scene = nodal_scene(m, m->time + dt, m->du);
+  PetscCall(NodalForcesCommit(&m->forces, &scene));
   PetscCall(PhaseEnd(m->seconds, PHASE_COMMIT, &clock));
   s->prescribed = m->prescribed;
   PetscCall(m->method->convect(s, m->du));

@@ -99,31 +99,6 @@ static PetscErrorCode ForceScales(const Model *m, const PetscReal *g, PetscReal 
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode AddBodyForce(const Model *m, PetscReal t, PetscReal *force)
-{
-  const PetscInt dim = m->dim, dofs = m->grid->n_nodes * dim;
-  const Support *w = m->stage->support;
-  PetscReal *sum, X[3], b[3];
-
-  PetscFunctionBeginUser;
-  if (!m->body_force) PetscFunctionReturn(0);
-  PetscCall(PetscCalloc1(dofs, &sum));
-  for (PetscInt g = 0; g < w->n_groups; ++g) {
-    const PetscInt nn = support_nodes(w, g), *node = w->node + w->node_start[g];
-    for (PetscInt p = w->point_start[g]; p < w->point_start[g + 1]; ++p) {
-      for (PetscInt d = 0; d < dim; ++d)
-        X[d] = point_real(m->points, POINT_X, p)[d] - point_real(m->points, POINT_U, p)[d];
-      m->body_force(m->body_force_context, X, t, b);
-      for (PetscInt i = 0; i < nn * dim; ++i)
-        sum[node[i / dim] * dim + i % dim] += support_N(w, g, p)[i / dim] * m->points->real[POINT_MASS][p] * b[i % dim];
-    }
-  }
-  PetscCall(GridSumToOwners(m->grid, dim, sum));
-  for (PetscInt i = 0; i < m->grid->n_owned * dim; ++i) force[i] += sum[i];
-  PetscCall(PetscFree(sum));
-  PetscFunctionReturn(0);
-}
-
 /* Stiffness of one node, about: multipliers over it are displacements, gaps times it are forces. */
 static PetscReal node_stiffness(const Model *m, PetscReal inertia)
 {
@@ -162,14 +137,14 @@ PetscErrorCode PrepareStep(Model *m, PetscReal dt, StepProblem *p)
       m->history[i] = (dynamic ? newmark_history(&newmark, m->stage->v[i], m->stage->a[i]) : 0) - g[d];
     }
   }
-  PetscCall(PetscArrayzero(m->external, dofs));
-  PetscCall(LoadsAdd(m->loads, m->grid, m->time + dt, m->stage->filled, m->stage->touched, m->external));
-  PetscCall(AddBodyForce(m, m->time + dt, m->external));
+  const NodalScene scene = nodal_scene(m, m->time + dt, m->du);
+  PetscCall(NodalForcesExternal(&m->forces, &scene, PETSC_FALSE, m->external));
   *p = (StepProblem){
     .grid = m->grid,
     .system = m->system,
     .formulation = m->formulation,
-    .constraints = m->stage->constraints,
+    .forces = &m->forces,
+    .scene = scene,
     .in = weak_form_of(m, dynamic ? newmark_inertia(&newmark) : 0),
     .fixed = m->fixed,
     .prescribed = m->prescribed,

@@ -123,13 +123,19 @@ PetscErrorCode EnergyStart(Model *m)
   PetscFunctionReturn(0);
 }
 
-/* Dead forces at the nodes at the step's start: the same places, another time. */
-static PetscErrorCode ForcesBefore(const Model *m, PetscReal **force)
+/* What nodal forces add to gravity at both ends of the step; freed by PetscFree2. */
+static PetscErrorCode ForcesAtEnds(const Model *m, PetscReal dt, PetscReal **before, PetscReal **after)
 {
+  const PetscInt dofs = m->grid->n_nodes * m->dim;
+  PetscReal *zero;
+
   PetscFunctionBeginUser;
-  PetscCall(PetscCalloc1(m->grid->n_nodes * m->dim, force));
-  if (m->c->n_loads) PetscCall(LoadsAdd(m->loads, m->grid, m->time, m->stage->filled, m->stage->touched, *force));
-  PetscCall(AddBodyForce(m, m->time, *force));
+  PetscCall(PetscMalloc2(dofs, before, dofs, after));
+  PetscCall(PetscCalloc1(dofs, &zero));
+  const NodalScene start = nodal_scene(m, m->time, zero), end = nodal_scene(m, m->time + dt, m->du);
+  PetscCall(NodalForcesExternal(&m->forces, &start, PETSC_TRUE, *before));
+  PetscCall(NodalForcesExternal(&m->forces, &end, PETSC_TRUE, *after));
+  PetscCall(PetscFree(zero));
   PetscFunctionReturn(0);
 }
 
@@ -220,22 +226,22 @@ PetscErrorCode EnergyOfNodes(Model *m, PetscReal dt, EnergyStep *e)
 {
   const PetscReal damping = m->c->analysis.type == ANALYSIS_DYNAMIC ? m->c->analysis.damping : 0;
   const Stage *s = m->stage;
-  PetscReal g0[3], g1[3], *before, held = 0, impulse = 0, unbalanced = 0;
+  PetscReal g0[3], g1[3], *before, *after, held = 0, impulse = 0, unbalanced = 0;
 
   PetscFunctionBeginUser;
   *e = (EnergyStep){0};
-  PetscCall(ForcesBefore(m, &before));
+  PetscCall(ForcesAtEnds(m, dt, &before, &after));
   gravity_at(m->c, m->time, g0);
   gravity_at(m->c, m->time + dt, g1);
   for (PetscInt i = 0; i < m->grid->n_owned * m->dim; ++i) {
     const PetscInt d = i % m->dim;
-    e->external += 0.5 * (s->mass[i / m->dim] * (g0[d] + g1[d]) + before[i] + m->external[i]) * m->du[i];
+    e->external += 0.5 * (s->mass[i / m->dim] * (g0[d] + g1[d]) + before[i] + after[i]) * m->du[i];
     if (!m->boundary->fixed[i]) continue;
     held += 0.5 * (m->held[i] + m->force[i]) * m->prescribed[i];
     impulse += impulse_work(m, i, dt);
   }
   if (m->method->begin) PetscCall(OutOfBalance(m, g0, before, &unbalanced));
-  PetscCall(PetscFree(before));
+  PetscCall(PetscFree2(before, after));
   if (damping > 0) {
     const NodalField du = {{m->du, m->du}, {1, 0}}, mean = {{s->v, s->v1}, {0.5, 0.5}};
     e->damped = damping * mass_product(m, du, mean);

@@ -46,9 +46,9 @@ PetscErrorCode NewtonAssemble(Newton *n, PetscBool tangent)
   p->in.fixed = p->fixed;
   PetscCall(p->formulation->assemble(&p->in, &out));
   if (tangent && p->in.half) PetscCall(SystemMirror(p->system));
-  if (p->constraints)
-    constraints_assemble(p->constraints, p->du, p->prescribed, p->fixed, p->in.lift, out.force,
-                         n->projects ? NULL : out.values);
+  const NodalOutput acting = {
+    .force = p->force, .system = tangent ? p->system : NULL, .lift = p->in.lift, .projects = n->projects};
+  PetscCall(NodalForcesAssemble(p->forces, &p->scene, &acting));
   PetscInt status = (PetscInt)out.status, worst;
   PetscCall(MPIU_Allreduce(&status, &worst, 1, MPIU_INT, MPI_MAX, n->comm));
   n->report->status = (LawStatus)worst;
