@@ -5,7 +5,7 @@
 #include "material/law.h"
 #include "method/nodal_fields.h"
 #include "points/support.h"
-#include "solve/system/constraints.h"
+#include "solve/forces/constraints.h"
 
 typedef struct Discretisation {
   const Case *c;

@@ -60,6 +60,8 @@ PetscErrorCode CommitStep(Model *m, PetscReal dt, EnergyStep *energy)
   PetscCheck(status == LAW_OK, PETSC_COMM_SELF, PETSC_ERR_PLIB, "a converged state could not be committed");
   for (PetscInt node = 0; m->nodes->pressure && node < m->grid->n_nodes; ++node)
     m->nodes->pressure[node] = m->pressure_scale * m->nodes->scaled_pressure[node];
+  const NodalScene scene = nodal_scene(m, m->time + dt, m->nodes->du);
+  PetscCall(NodalForcesCommit(&m->forces, &scene));
   PetscCall(PhaseEnd(m->seconds, PHASE_COMMIT, &clock));
   PetscFunctionReturn(0);
 }

@@ -84,14 +84,14 @@ PetscErrorCode ModelEnable(Model *m)
   PetscFunctionReturn(0);
 }
 
-/* Slots of all groups and constraints; `complete` is false if the system lacks a pair of them on any rank. */
+/* Slots of all groups and nodal forces; `complete` is false if the system lacks a pair of them on any rank. */
 static PetscErrorCode FindSlots(Model *m, PetscBool *complete)
 {
   PetscBool here;
 
   PetscFunctionBeginUser;
   PetscCall(SystemSlots(m->system, m->space->support, &here));
-  here = here && constraints_find_slots(m->space->constraints, m->system);
+  here = here && nodal_forces_find_slots(&m->forces, m->system);
   PetscCallMPI(MPI_Allreduce(&here, complete, 1, MPIU_BOOL, MPI_LAND, m->comm));
   PetscFunctionReturn(0);
 }
@@ -138,6 +138,7 @@ PetscErrorCode ModelActivate(Model *m)
     PetscCall(ModelEnable(m));
   }
   PetscCall(PetscFree(occupied));
-  PetscCall(SystemSlots(m->system, m->space->support, NULL));
+  PetscCall(FindSlots(m, &fits));
+  PetscCheck(fits, m->comm, PETSC_ERR_PLIB, "the system lacks couplings that nodal forces ask for");
   PetscFunctionReturn(0);
 }

@@ -77,6 +77,7 @@ PetscErrorCode ModelRegrid(Model *m, Grid *grid, PetscInt *moved)
   PetscFunctionBeginUser;
   PetscCall(TablesCreate(&kept));
   PetscCall(NodalFieldsToTables(m->nodes, PETSC_FALSE, m->boundary->fixed, kept));
+  PetscCall(ForcesToTables(m, kept));
   *moved = 0;
   PetscCall(PointsRegrid(m->points, m->grid, grid, moved));
   PetscInt followers = 0;
@@ -87,7 +88,9 @@ PetscErrorCode ModelRegrid(Model *m, Grid *grid, PetscInt *moved)
   PetscCall(GridDestroy(&m->grid));
   m->grid = grid;
   PetscCall(ModelCreateFields(m)); /* no cell is enabled: the next step makes the system anew */
+  PetscCall(ForcesCreate(m, NULL));
   PetscCall(NodalFieldsFromTables(m->nodes, PETSC_FALSE, kept, reason));
+  PetscCall(ForcesFromTables(m, kept, reason));
   PetscCheck(!reason[0], m->comm, PETSC_ERR_PLIB, "%s", reason);
   PetscCall(TablesDestroy(&kept));
   PetscFunctionReturn(0);

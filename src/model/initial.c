@@ -16,10 +16,9 @@ PetscErrorCode InitialAcceleration(Model *m)
   PetscFunctionBeginUser;
   gravity_at(m->c, 0, g);
   PetscCall(PetscArrayzero(m->nodes->du, dofs));
-  PetscCall(PetscArrayzero(m->nodes->external, dofs));
   for (PetscInt i = 0; i < dofs; ++i) m->nodes->history[i] = m->c->analysis.damping * m->nodes->v[i] - g[i % dim];
-  PetscCall(LoadsAdd(m->loads, m->grid, 0, s->filled, s->nodes->touched, m->nodes->external));
-  PetscCall(AddBodyForce(m, 0, m->nodes->external));
+  const NodalScene scene = nodal_scene(m, 0, m->nodes->du);
+  PetscCall(NodalForcesExternal(&m->forces, &scene, PETSC_TRUE, m->nodes->external));
   PetscCall(PetscArrayzero(m->nodes->force, dofs));
   pressure_guess(m);
   WeakFormInput in = weak_form_of(m, 0);
@@ -40,16 +39,5 @@ PetscErrorCode InitialAcceleration(Model *m)
         point_real(m->points, POINT_A, p)[i % dim] +=
           support_N(s->support, q, p)[i / dim] * s->nodes->a[node[i / dim] * dim + i % dim];
   }
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode ModelSetBodyForce(Model *m, BodyForce force, void *context)
-{
-  PetscFunctionBeginUser;
-  m->body_force = force;
-  m->body_force_context = context;
-  if (m->step > 0 || !m->scheme->inertia) PetscFunctionReturn(0);
-  PetscCall(PetscArrayzero(m->points->real[POINT_A], m->points->n * m->dim));
-  PetscCall(InitialAcceleration(m));
   PetscFunctionReturn(0);
 }

@@ -253,6 +253,7 @@ static PetscErrorCode Build(Model *m, Diag *diag)
   PetscCall(NewtonCreate(m->comm, &m->c->newton, &m->newton));
   step_control_start(&m->control, m->c->analysis.step);
   PetscCall(ModelInitialise(m));
+  PetscCall(ForcesCreate(m, diag));
   if (m->method->clouds) PetscCall(ModelWarnOfObstacles(m, diag));
   PetscCall(CheckHeld(m, diag));
   if (m->scheme->inertia) PetscCall(InitialAcceleration(m));
@@ -290,6 +291,7 @@ PetscErrorCode ModelDestroy(Model **model)
   PetscFunctionBeginUser;
   if (!m) PetscFunctionReturn(0);
   PetscCall(OptionsForget(m));
+  PetscCall(NodalForcesDestroy(&m->forces));
   PetscCall(NewtonDestroy(&m->newton));
   PetscCall(SystemDestroy(&m->system));
   PetscCall(ModelDestroyFields(m));

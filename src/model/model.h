@@ -73,9 +73,6 @@ typedef struct {
   PetscReal least, last, before;
 } Softening;
 
-/* Body force per mass at the undeformed position X (dim) and time t, m/s2, besides gravity: a centrifuge, a manufactured solution. */
-typedef void (*BodyForce)(void *context, const PetscReal *X, PetscReal t, PetscReal *b);
-
 typedef struct Model {
   MPI_Comm comm;
   const Case *c;
@@ -89,6 +86,7 @@ typedef struct Model {
   Points *tracers; /* body = index of the measure */
   Boundary *boundary;
   Loads *loads;
+  NodalForces forces;
   Discretisation *space;
   NodalFields *nodes; /* those of space */
   const TimeScheme *scheme;

@@ -33,8 +33,12 @@ PetscErrorCode ModelEnable(Model *model);
 PetscErrorCode InitialStress(Model *model, const Outline *outline, Diag *diag);
 /* Acceleration at t = 0 from the balance of momentum with lumped mass, so that a body in free fall falls from the first step on. */
 PetscErrorCode InitialAcceleration(Model *model);
-/* Collective. Body force of the points at time t, gathered at the nodes and added to force (owners). */
-PetscErrorCode AddBodyForce(const Model *model, PetscReal t, PetscReal *force);
+/* forces.c. The body as nodal forces see it at time t, with increments du. */
+NodalScene nodal_scene(const Model *model, PetscReal t, const PetscReal *du);
+/* Collective. The list of nodal forces, made anew; diag NULL: mistakes were sought before. */
+PetscErrorCode ForcesCreate(Model *model, Diag *diag);
+PetscErrorCode ForcesToTables(const Model *model, Tables *tables);
+PetscErrorCode ForcesFromTables(Model *model, const Tables *tables, char reason[256]);
 /* Gravity times its amplitude at time t, m/s2. */
 void gravity_at(const Case *c, PetscReal t, PetscReal g[3]);
 /* Collective. Stress and stored energy of the points as the start of all work, and what measures remember. */

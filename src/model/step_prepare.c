@@ -97,31 +97,6 @@ static PetscErrorCode ForceScales(const Model *m, const PetscReal *g, PetscReal 
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode AddBodyForce(const Model *m, PetscReal t, PetscReal *force)
-{
-  const PetscInt dim = m->dim, dofs = m->grid->n_nodes * dim;
-  const Support *w = m->space->support;
-  PetscReal *sum, X[3], b[3];
-
-  PetscFunctionBeginUser;
-  if (!m->body_force) PetscFunctionReturn(0);
-  PetscCall(PetscCalloc1(dofs, &sum));
-  for (PetscInt g = 0; g < w->n_groups; ++g) {
-    const PetscInt nn = support_nodes(w, g), *node = w->node + w->node_start[g];
-    for (PetscInt p = w->point_start[g]; p < w->point_start[g + 1]; ++p) {
-      for (PetscInt d = 0; d < dim; ++d)
-        X[d] = point_real(m->points, POINT_X, p)[d] - point_real(m->points, POINT_U, p)[d];
-      m->body_force(m->body_force_context, X, t, b);
-      for (PetscInt i = 0; i < nn * dim; ++i)
-        sum[node[i / dim] * dim + i % dim] += support_N(w, g, p)[i / dim] * m->points->real[POINT_MASS][p] * b[i % dim];
-    }
-  }
-  PetscCall(GridSumToOwners(m->grid, dim, sum));
-  for (PetscInt i = 0; i < m->grid->n_owned * dim; ++i) force[i] += sum[i];
-  PetscCall(PetscFree(sum));
-  PetscFunctionReturn(0);
-}
-
 /* Stiffness of one node, about: multipliers over it are displacements, gaps times it are forces. */
 static PetscReal node_stiffness(const Model *m, PetscReal inertia)
 {
@@ -170,14 +145,14 @@ PetscErrorCode PrepareStep(Model *m, PetscReal dt, StepProblem *p)
   if (m->scheme->inertia) set_boundary_kinematics(m, dt);
   if (m->scheme->inertia) PetscCall(HoldConstraints(m, dt));
   set_history(m, dt, g);
-  PetscCall(PetscArrayzero(m->nodes->external, dofs));
-  PetscCall(LoadsAdd(m->loads, m->grid, m->time + dt, m->space->filled, m->nodes->touched, m->nodes->external));
-  PetscCall(AddBodyForce(m, m->time + dt, m->nodes->external));
+  const NodalScene scene = nodal_scene(m, m->time + dt, m->nodes->du);
+  PetscCall(NodalForcesExternal(&m->forces, &scene, PETSC_FALSE, m->nodes->external));
   *p = (StepProblem){
     .grid = m->grid,
     .system = m->system,
     .formulation = m->formulation,
-    .constraints = m->method->clouds ? m->space->constraints : NULL,
+    .forces = &m->forces,
+    .scene = scene,
     .in = weak_form_of(m, inertia),
     .fixed = m->nodes->fixed,
     .prescribed = m->nodes->prescribed,

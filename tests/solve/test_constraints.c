@@ -5,7 +5,7 @@
 #include <stddef.h>
 #include <stdint.h>
 #include <cmocka.h>
-#include "solve/system/constraints.h"
+#include "solve/forces/nodal_force.h"
 
 #define CALL(call) assert_int_equal((call), 0)
 #define ASSERT_NEAR(a, b) assert_true(PetscAbsReal((a) - (b)) <= 1e-14)
@@ -25,6 +25,13 @@ static Constraints *one_constraint(void)
   return c;
 }
 
+static Grid grid = {.dim = DIM, .n_nodes = NODES};
+
+static NodalScene scene_of(const PetscReal *du, const PetscReal *prescribed, const unsigned char *fixed)
+{
+  return (NodalScene){.grid = &grid, .du = du, .prescribed = prescribed, .fixed = fixed};
+}
+
 /* gap = sum N du - prescribed; the multiplier pulls its nodes by their shares. */
 static void test_forces(void **state)
 {
@@ -33,7 +40,8 @@ static void test_forces(void **state)
   PetscReal force[DOFS] = {0};
   Constraints *c = one_constraint();
   (void)state;
-  constraints_assemble(c, du, prescribed, fixed, force, NULL);
+  const NodalScene scene = scene_of(du, prescribed, fixed);
+  constraints_assemble(c, &scene, &(NodalOutput){.force = force});
   for (int d = 0; d < DIM; ++d) {
     PetscReal gap = -prescribed[2 + d];
     for (int e = 0; e < 3; ++e) {
@@ -55,7 +63,8 @@ static void test_component_left_out(void **state)
   (void)state;
   Constraints *c = one_constraint();
   fixed[9] = 1;
-  constraints_assemble(c, du, prescribed, fixed, force, NULL);
+  const NodalScene scene = scene_of(du, prescribed, fixed);
+  constraints_assemble(c, &scene, &(NodalOutput){.force = force});
   for (int i = 1; i < DOFS; i += 2) ASSERT_NEAR(force[i], 0);
   assert_true(force[0] != 0 && force[8] != 0);
   CALL(ConstraintsDestroy(&c));
@@ -70,7 +79,9 @@ static void test_values(void **state)
   (void)state;
   Constraints *c = one_constraint();
   for (int e = 0; e < 3; ++e) c->slot[2 * e] = e, c->slot[2 * e + 1] = 3 + e;
-  constraints_assemble(c, du, prescribed, fixed, force, values);
+  const NodalScene scene = scene_of(du, prescribed, fixed);
+  System system = {.dim = DIM, .block = DIM, .values = values};
+  constraints_assemble(c, &scene, &(NodalOutput){.force = force, .system = &system});
   for (int k = 0; k < 6; ++k)
     for (int i = 0; i < DIM; ++i)
       for (int j = 0; j < DIM; ++j) ASSERT_NEAR(values[(k * DIM + i) * DIM + j], i == j ? -10 * N[k % 3] : 0);

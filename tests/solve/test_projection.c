@@ -100,7 +100,8 @@ static PetscReal residual(Made *s, const Constraints *c, PetscReal factor, Vec f
   CALL(SystemZero(s->system));
   for (PetscInt g = 0; g < s->cells.n_groups; ++g) add_cell(s, g);
   make_special(s, factor);
-  constraints_assemble(c, nothing, nothing, s->fixed, nothing, s->system->values);
+  const NodalScene scene = {.grid = s->grid, .fixed = s->fixed, .du = nothing, .prescribed = nothing};
+  constraints_assemble(c, &scene, &(NodalOutput){.force = nothing, .system = s->system});
   CALL(SystemUse(s->system, SYSTEM_ASSEMBLED, s->symmetric));
   CALL(SystemPrescribe(s->system, s->fixed, NULL));
   CALL(SystemToMatrix(s->system));

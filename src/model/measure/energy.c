@@ -129,13 +129,19 @@ PetscErrorCode EnergyStart(Model *m)
   PetscFunctionReturn(0);
 }
 
-/* Dead forces at the nodes at the step's start: the same places, another time. */
-static PetscErrorCode ForcesBefore(const Model *m, PetscReal **force)
+/* What nodal forces add to gravity at both ends of the step; freed by PetscFree2. */
+static PetscErrorCode ForcesAtEnds(const Model *m, PetscReal dt, PetscReal **before, PetscReal **after)
 {
+  const PetscInt dofs = m->grid->n_nodes * m->dim;
+  PetscReal *zero;
+
   PetscFunctionBeginUser;
-  PetscCall(PetscCalloc1(m->grid->n_nodes * m->dim, force));
-  if (m->c->n_loads) PetscCall(LoadsAdd(m->loads, m->grid, m->time, m->space->filled, m->nodes->touched, *force));
-  PetscCall(AddBodyForce(m, m->time, *force));
+  PetscCall(PetscMalloc2(dofs, before, dofs, after));
+  PetscCall(PetscCalloc1(dofs, &zero));
+  const NodalScene start = nodal_scene(m, m->time, zero), end = nodal_scene(m, m->time + dt, m->nodes->du);
+  PetscCall(NodalForcesExternal(&m->forces, &start, PETSC_TRUE, *before));
+  PetscCall(NodalForcesExternal(&m->forces, &end, PETSC_TRUE, *after));
+  PetscCall(PetscFree(zero));
   PetscFunctionReturn(0);
 }
 
@@ -226,22 +232,22 @@ PetscErrorCode EnergyOfNodes(Model *m, PetscReal dt, EnergyStep *e)
 {
   const PetscReal damping = model_damping(m);
   const NodalFields *n = m->nodes;
-  PetscReal g0[3], g1[3], *before, held = 0, impulse = 0, unbalanced = 0;
+  PetscReal g0[3], g1[3], *before, *after, held = 0, impulse = 0, unbalanced = 0;
 
   PetscFunctionBeginUser;
   *e = (EnergyStep){0};
-  PetscCall(ForcesBefore(m, &before));
+  PetscCall(ForcesAtEnds(m, dt, &before, &after));
   gravity_at(m->c, m->time, g0);
   gravity_at(m->c, m->time + dt, g1);
   for (PetscInt i = 0; i < m->grid->n_owned * m->dim; ++i) {
     const PetscInt d = i % m->dim;
-    e->external += 0.5 * (n->mass[i / m->dim] * (g0[d] + g1[d]) + before[i] + n->external[i]) * n->du[i];
+    e->external += 0.5 * (n->mass[i / m->dim] * (g0[d] + g1[d]) + before[i] + after[i]) * n->du[i];
     if (!m->boundary->fixed[i]) continue;
     held += 0.5 * (n->held[i] + n->force[i]) * n->prescribed[i];
     impulse += impulse_work(m, i, dt);
   }
   if (m->method->begin) PetscCall(OutOfBalance(m, g0, before, &unbalanced));
-  PetscCall(PetscFree(before));
+  PetscCall(PetscFree2(before, after));
   if (damping > 0) {
     const NodalField du = {{n->du, n->du}, {1, 0}}, mean = {{n->v, n->v1}, {0.5, 0.5}};
     e->damped = damping * mass_product(m, du, mean);

@@ -139,6 +139,7 @@ PetscErrorCode ModelToTables(Model *m, Tables *tables)
   PetscCall(PointsToTable(m->points, m->grid, "points", tables));
   PetscCall(PointsToTable(m->tracers, m->grid, "tracers", tables));
   PetscCall(PointsToTable(m->loads->carriers, m->grid, "carriers", tables));
+  PetscCall(ForcesToTables(m, tables));
   if (m->grid->cloud) {
     PetscCall(StateCloudToTables(m, tables));
     PetscFunctionReturn(0);
@@ -224,6 +225,7 @@ static PetscErrorCode NodesBack(Model *m, const Tables *tables, char reason[256]
   PetscFunctionBeginUser;
   PetscCall(NodalFieldsFromTables(m->nodes, !m->method->restores_grid, tables, reason));
   guess_from_tables(m, tables, reason);
+  if (!reason[0]) PetscCall(ForcesFromTables(m, tables, reason));
   if (!reason[0]) PetscCall(CellsFromTable(m->grid, m->enabled, tables_find(tables, "pattern"), reason));
   PetscFunctionReturn(0);
 }
@@ -318,6 +320,7 @@ static PetscErrorCode CloudBack(Model *m, Tables *tables, char reason[256])
   PetscCall(StateCloudNodes(m, tables, &home, reason));
   if (!reason[0]) PetscCall(PointsBack(m, tables, reason));
   if (!reason[0]) PetscCall(StateCloudSettle(m, tables, home, reason));
+  if (!reason[0]) PetscCall(ForcesFromTables(m, tables, reason));
   if (!reason[0]) newton_set_memory(m->newton, m->system, &newton);
   PetscFunctionReturn(0);
 }

@@ -115,7 +115,8 @@ static PetscErrorCode UpdateProjection(Newton *n)
   PetscFunctionBeginUser;
   if (!n->projects) PetscFunctionReturn(0);
   PetscCall(ProjectionDestroy(&n->projection));
-  PetscCall(ProjectionCreate(p->system, p->grid, p->constraints, p->fixed, &n->projection));
+  PetscCall(ProjectionCreate(p->system, p->grid, nodal_forces_constraints(p->forces), p->fixed,
+                             &n->projection));
   p->system->blocks->projection = n->projection;
   PetscFunctionReturn(0);
 }

@@ -45,7 +45,8 @@ PetscErrorCode NewtonAssemble(Newton *n, PetscBool tangent)
   p->in.pressure = p->pressure;
   PetscCall(p->formulation->assemble(&p->in, &out));
   if (tangent && p->in.half) PetscCall(SystemMirror(p->system));
-  if (p->constraints) constraints_assemble(p->constraints, p->du, p->prescribed, p->fixed, out.force, out.values);
+  const NodalOutput acting = {.force = p->force, .system = tangent ? p->system : NULL};
+  PetscCall(NodalForcesAssemble(p->forces, &p->scene, &acting));
   if (n->lift) system_lift(p->system, p->fixed, n->lift, p->force, p->volume);
   PetscInt status = (PetscInt)out.status, worst;
   PetscCall(MPIU_Allreduce(&status, &worst, 1, MPIU_INT, MPI_MAX, n->comm));

@@ -55,6 +55,8 @@ PetscErrorCode SystemBuild(System *system, const Grid *grid, const NodeGroups *g
 /* Look up the slots of every group of the support. Cells' nodes must all carry unknowns; clouds (uniform = 0) have ascending nodes, and
  * `complete` tells whether the pattern has all their pairs on this rank. */
 PetscErrorCode SystemSlots(System *system, const Support *support, PetscBool *complete);
+/* The slot of one pair of nodes; -1 if the pattern lacks it. */
+PetscInt system_pair(const System *system, PetscInt I, PetscInt J);
 /* What SystemSlots consists of (cloud_slots.c). */
 PetscErrorCode SystemReserveSlots(System *system, PetscInt n);
 PetscErrorCode SystemCloudSlots(System *system, const Support *support, PetscBool *complete);

@@ -28,6 +28,3 @@ PetscBool constraints_find_slots(Constraints *constraints, const System *system)
  * with held[] only (of the constrained nodes). correction: as long as v, zero at call and return. */
 void constraints_relax(const Constraints *constraints, const unsigned char *held, const PetscReal *target,
                        PetscReal scale, PetscReal *v, PetscReal *correction);
-/* Add forces, and the matrix if values is not NULL. Components whose twin is fixed have no constraint. */
-void constraints_assemble(const Constraints *constraints, const PetscReal *du, const PetscReal *prescribed,
-                          const unsigned char *fixed, PetscReal *force, PetscReal *values);
