@@ -6,6 +6,7 @@ TEST_JOBS  ?= 2
 CASE       ?= cases/granular-collapse
 KILLS      ?= 50
 FUZZ_SECONDS ?= 60
+TIDY_SECONDS ?= 120
 RUN        ?= runs/$(notdir $(CASE))
 TALUS      := $(BUILD)/talus
 SANITIZE   := $(BUILD)-sanitize
@@ -17,7 +18,7 @@ MAKEFLAGS  += --no-print-directory
 export OMPI_ALLOW_RUN_AS_ROOT := 1
 export OMPI_ALLOW_RUN_AS_ROOT_CONFIRM := 1
 
-.PHONY: build help deps configure run test test-sanitize test-kill test-mutants fuzz bench verify install docs format format-check tidy clean
+.PHONY: build help deps configure run test check test-sanitize test-kill test-mutants fuzz bench verify install docs format format-check tidy clean
 
 build: configure ## Build the program, build/talus, and its tests (the default). PORTABLE=1: for any machine
 	@cmake --build $(BUILD) --parallel $(JOBS)
@@ -39,11 +40,14 @@ run: build ## Run a case and draw it: CASE=cases/granular-collapse, into RUN=run
 test: build ## Run all tests
 	@cmake/run-tests.sh $(BUILD) $(TEST_JOBS) $(TEST_ARGS)
 
-test-sanitize: deps ## The same tests under AddressSanitizer and UndefinedBehaviorSanitizer
+check: build ## What a change must pass besides the tests: format-check, tidy CHANGED=1, test-sanitize FAST=1
+	@cmake/run-checks.sh $(BUILD)
+
+test-sanitize: deps ## The same tests under AddressSanitizer and UndefinedBehaviorSanitizer; FAST=1: those of a second or less
 	@cmake -S . -B $(SANITIZE) -G Ninja --log-level=WARNING -DCMAKE_BUILD_TYPE=RelWithDebInfo -DTALUS_SANITIZE=ON \
 	  $(OPTIONS) >/dev/null
-	@cmake --build $(SANITIZE) --parallel $(JOBS)
-	@cmake/run-tests.sh $(SANITIZE) $(TEST_JOBS) $(TEST_ARGS)
+	@cmake --build $(SANITIZE) --parallel $(JOBS) $(if $(FAST),--target fast_tests)
+	@cmake/run-tests.sh $(SANITIZE) $(TEST_JOBS) $(if $(FAST),-L fast) $(TEST_ARGS)
 
 test-kill: build ## Kill a run 50 times at random moments on one rank, 50 times on two; let every allocation fail once: KILLS=50
 	@OPENBLAS_NUM_THREADS=1 sh tests/program/kill.sh $(abspath $(TALUS)) 1 $(KILLS)
@@ -87,11 +91,10 @@ format-check: ## Say which sources `make format` would change
 	@cmake/debian-packages.sh format
 	@clang-format --dry-run -Werror $(SOURCES)
 
-tidy: configure ## Look for mistakes with clang-tidy; silent if there are none
+tidy: configure ## Look for mistakes with clang-tidy; silent if there are none. CHANGED=1: in what changed, TIDY_SECONDS=120 long
 	@cmake/debian-packages.sh tidy
 	@cmake --build $(BUILD) --target talus_version
-	@find src -name '*.c' | sort | xargs -P $(JOBS) -n 1 clang-tidy -p $(BUILD) --quiet --warnings-as-errors='*' \
-	  2>$(BUILD)/tidy-log.txt
+	@cmake/tidy.sh $(BUILD) $(JOBS) $(if $(CHANGED),$(TIDY_SECONDS))
 
 clean: ## Remove what `make` built (not the runs)
 	@rm -rf $(BUILD) $(SANITIZE) $(BUILD)-fuzz

@@ -150,7 +150,7 @@ static inline PetscReal pass_bytes(const Model *m)
   const PetscReal node = dim * (5 * real + 1);
   const PetscReal value = 5 * real;
   const System *s = m->system;
-  return point * (PetscReal)m->points->n + group * (PetscReal)m->stage->support->n_groups +
+  return point * (PetscReal)m->points->n + group * (PetscReal)m->space->support->n_groups +
          node * (PetscReal)s->n_rows + value * dim * dim * (PetscReal)s->row_start[s->n_rows];
 }
 
@@ -161,21 +161,22 @@ static inline PetscErrorCode PassMeasure(Model *m, PetscReal inertia, PetscInt r
 
   PetscFunctionBeginUser;
   PetscCall(ModelActivate(m));
-  for (PetscInt i = 0; i < dofs; ++i) m->fixed[i] = m->boundary->fixed[i] || !m->stage->touched[i / m->dim];
-  PetscCall(PetscArrayzero(m->du, dofs));
+  for (PetscInt i = 0; i < dofs; ++i) m->nodes->fixed[i] = m->boundary->fixed[i] || !m->nodes->touched[i / m->dim];
+  PetscCall(PetscArrayzero(m->nodes->du, dofs));
+  PetscCall(SystemPrescribe(m->system, m->nodes->fixed, m->nodes->idle));
   *pass = (Pass){PETSC_MAX_REAL, PETSC_MAX_REAL, pass_bytes(m)};
   for (PetscInt k = 0; k < repeats; ++k) {
     const WeakFormInput in = weak_form_of(m, inertia);
-    WeakFormOutput out = {.force = m->force,
+    WeakFormOutput out = {.force = m->nodes->force,
                           .values = m->system->single ? NULL : m->system->values,
                           .singles = m->system->single ? m->system->singles : NULL,
                           .slot = m->system->slot};
     const PetscReal start = seconds_now();
-    PetscCall(PetscArrayzero(m->force, dofs));
+    PetscCall(PetscArrayzero(m->nodes->force, dofs));
     PetscCall(SystemZero(m->system));
     PetscCall(m->formulation->assemble(&in, &out));
     const PetscReal assembled = seconds_now();
-    PetscCall(SystemToMatrix(m->system, m->fixed, m->idle));
+    PetscCall(SystemToMatrix(m->system));
     const PetscReal end = seconds_now();
     pass->points = PetscMin(pass->points, assembled - start);
     pass->matrix = PetscMin(pass->matrix, end - assembled);

@@ -69,7 +69,7 @@ static PetscErrorCode Advance(Model *m, PetscInt steps, Outcome *o)
 
 static PetscErrorCode Describe(Model *m, Outcome *o)
 {
-  const Support *w = m->stage->support;
+  const Support *w = m->space->support;
 
   PetscFunctionBeginUser;
   PetscCall(ModelCountPoints(m, &o->points));

@@ -89,7 +89,7 @@ static PetscErrorCode ShareBy(PetscBool points, PetscInt *moved)
   PetscCall(GridRepartition(model->grid, weight, PETSC_MAX_REAL, &reached, &grid));
   PetscCall(PetscFree(weight));
   PetscCall(ModelRegrid(model, grid, moved));
-  PetscCall(model->method->initialise(model->stage));
+  PetscCall(model->method->initialise(model->space));
   PetscFunctionReturn(0);
 }
 

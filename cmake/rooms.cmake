@@ -75,7 +75,9 @@ if(TALUS_SANITIZE)
     UBSAN_OPTIONS=print_stacktrace=1)
 endif()
 
-# talus_test(room/test_name [RANKS 1 2 3] [TIMEOUT s]): builds tests/room/test_name.c and runs it on the ranks given.
+# talus_test(room/test_name [RANKS 1 2 3] [TIMEOUT s]): builds tests/room/test_name.c and runs it on the ranks given. On
+# one rank it carries the label `fast` unless TALUS_SLOW_TESTS (tests/CMakeLists.txt) names it.
+add_custom_target(fast_tests)
 function(talus_test path)
   cmake_parse_arguments(arg "" "TIMEOUT" "RANKS" ${ARGN})
   get_filename_component(room ${path} DIRECTORY)
@@ -133,5 +135,9 @@ function(talus_test path)
       list(APPEND environment CMOCKA_TEST_ABORT=1)
     endif()
     set_tests_properties(${test_name} PROPERTIES TIMEOUT ${arg_TIMEOUT} ENVIRONMENT "${environment}")
+    if(ranks EQUAL 1 AND NOT path IN_LIST TALUS_SLOW_TESTS)
+      set_tests_properties(${test_name} PROPERTIES LABELS fast)
+      add_dependencies(fast_tests ${target})
+    endif()
   endforeach()
 endfunction()

@@ -14,8 +14,11 @@
  *   (NULL if there is nothing to say; warnings come with #TALUS_OK) and gives it back with TalusTextFree().
  * - **Handles** are opaque. What creates one sets the pointer, what destroys one sets it to NULL and does
  *   nothing for NULL.
- * - **Parallel runs.** Functions marked collective must be called by all ranks of the run with the same
- *   arguments; the others work on this rank alone. Not thread-safe: one thread at a time.
+ * - **Parallel runs.** A case is opened on a communicator, which its runs and models share: MPI_COMM_WORLD, or a
+ *   part of it, so that a program can let several cases work side by side or keep ranks for itself. Functions
+ *   marked collective must be called by all ranks of the case with the same arguments; the others work on this
+ *   rank alone. "First rank" is the first of the case's. Talus's messages cannot meet the program's own.
+ *   Not thread-safe: one thread at a time.
  * - **Units** are SI. Stress is positive in tension, pressure in compression; symmetric tensors are stored
  *   in the order xx yy zz xy yz zx. Plane strain has unit thickness.
  *
@@ -25,6 +28,7 @@
 #ifndef TALUS_H
 #define TALUS_H
 
+#include <mpi.h>
 #include <stddef.h>
 
 #ifdef __cplusplus
@@ -84,7 +88,7 @@ typedef void (*TalusBodyForce)(void *context, const double X[3], double t, doubl
  * @{ */
 
 /**
- * @brief Start MPI and PETSc, unless the program did. Collective over all ranks.
+ * @brief Start MPI and PETSc, unless the program did. Collective over MPI_COMM_WORLD.
  *
  * PETSc's options (`-snes_monitor`, `-log_view`) are read from the command line and PETSC_OPTIONS, not from
  * `petscrc` and `.petscrc`: a working directory must not set them (`-options_file FILE` reads one). A program
@@ -97,17 +101,18 @@ typedef void (*TalusBodyForce)(void *context, const double X[3], double t, doubl
 int TalusInitialize(int *argc, char ***argv);
 
 /**
- * @brief End what TalusInitialize() started; all handles must be gone. Collective over all ranks.
+ * @brief End what TalusInitialize() started; all handles must be gone. Collective over MPI_COMM_WORLD.
  * @return #TALUS_OK, or #TALUS_ERROR_STATE if PETSc does not run
  */
 int TalusFinalize(void);
 
 /**
- * @brief This process among those of the run. Not collective.
+ * @brief This process among those of a communicator. Not collective.
+ * @param comm  MPI_COMM_WORLD, or what a case was opened on
  * @param rank  result, from 0, or NULL
  * @param size  result, number of ranks, or NULL
  */
-int TalusRanks(int *rank, int *size);
+int TalusRanks(MPI_Comm comm, int *rank, int *size);
 
 /** @brief Version of the library, "major.minor.patch". Needs no TalusInitialize(). */
 const char *TalusVersion(void);
@@ -123,7 +128,8 @@ void TalusTextFree(char **text);
  * @{ */
 
 /**
- * @brief Read and validate a case file. Collective.
+ * @brief Read and validate a case file. Collective over `comm`.
+ * @param comm      the ranks that will work on it; it must outlive the case
  * @param file      the case file
  * @param n_set     number of entries in set
  * @param set       n_set strings "path.to.key=value" that change the case before it is validated, as
@@ -132,7 +138,7 @@ void TalusTextFree(char **text);
  * @param messages  NULL to print, or result; see above
  * @return #TALUS_OK; #TALUS_ERROR_INPUT: unreadable, or mistakes in it
  */
-int TalusCaseOpen(const char *file, int n_set, const char *const *set, TalusCase **c, char **messages);
+int TalusCaseOpen(MPI_Comm comm, const char *file, int n_set, const char *const *set, TalusCase **c, char **messages);
 
 /** @brief Forget a case; its models must be gone before it. Collective. */
 int TalusCaseClose(TalusCase **c);

@@ -9,6 +9,7 @@
 _Static_assert(sizeof(PetscReal) == sizeof(double), "the public interface is written for PETSc with double precision");
 
 struct TalusCase {
+  MPI_Comm comm; /* PETSc's copy of the user's, for no other messages than talus's */
   Case *c;
   Diag *diag; /* knows where in the file each value stands */
 };
@@ -18,6 +19,6 @@ int talus_code(PetscErrorCode code);
 /* Does PETSc run? Before anything else of PETSc may be called. */
 PetscBool talus_is_running(void);
 /* Collective. Print what was collected on stderr, or hand it to all ranks as text. */
-PetscErrorCode TalusTell(Diag *diag, char **messages);
+PetscErrorCode TalusTell(MPI_Comm comm, Diag *diag, char **messages);
 /* Index of the measure, -1 if there is none. */
 PetscInt talus_measure_index(const Case *c, const char *name);

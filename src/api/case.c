@@ -7,34 +7,37 @@ static PetscErrorCode Close(TalusCase **c)
   PetscFunctionBeginUser;
   PetscCall(CaseDestroy(&(*c)->c));
   PetscCall(DiagDestroy(&(*c)->diag));
+  PetscCall(PetscCommDestroy(&(*c)->comm));
   PetscCall(PetscFree(*c));
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode Open(const char *file, PetscInt n_set, const char *const *set, TalusCase **c, char **messages)
+static PetscErrorCode Open(MPI_Comm comm, const char *file, PetscInt n_set, const char *const *set, TalusCase **c,
+                           char **messages)
 {
   TalusCase *opened;
 
   PetscFunctionBeginUser;
   PetscCall(PetscNew(&opened));
   PetscCall(DiagCreate(&opened->diag));
-  PetscCall(CaseRead(PETSC_COMM_WORLD, file, n_set, set, opened->diag, &opened->c));
-  PetscCall(TalusTell(opened->diag, messages));
+  PetscCall(PetscCommDuplicate(comm, &opened->comm, NULL));
+  PetscCall(CaseRead(opened->comm, file, n_set, set, opened->diag, &opened->c));
+  PetscCall(TalusTell(opened->comm, opened->diag, messages));
   if (opened->c) *c = opened;
   else PetscCall(Close(&opened));
   PetscFunctionReturn(0);
 }
 
-int TalusCaseOpen(const char *file, int n_set, const char *const *set, TalusCase **c, char **messages)
+int TalusCaseOpen(MPI_Comm comm, const char *file, int n_set, const char *const *set, TalusCase **c, char **messages)
 {
   if (messages) *messages = NULL;
   if (!c) return TALUS_ERROR_ARGUMENT;
   *c = NULL;
   if (!talus_is_running()) return TALUS_ERROR_STATE;
-  if (!file || n_set < 0 || (n_set > 0 && !set)) return TALUS_ERROR_ARGUMENT;
+  if (comm == MPI_COMM_NULL || !file || n_set < 0 || (n_set > 0 && !set)) return TALUS_ERROR_ARGUMENT;
   for (int i = 0; i < n_set; ++i)
     if (!set[i]) return TALUS_ERROR_ARGUMENT;
-  const int error = talus_code(Open(file, n_set, set, c, messages));
+  const int error = talus_code(Open(comm, file, n_set, set, c, messages));
   if (error) return error;
   return *c ? TALUS_OK : TALUS_ERROR_INPUT;
 }

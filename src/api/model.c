@@ -32,8 +32,8 @@ static PetscErrorCode Create(TalusCase *c, TalusModel **model, char **messages)
 
   PetscFunctionBeginUser;
   PetscCall(PetscNew(&made));
-  PetscCall(ModelCreate(PETSC_COMM_WORLD, c->c, c->diag, &made->model));
-  PetscCall(TalusTell(c->diag, messages));
+  PetscCall(ModelCreate(c->comm, c->c, c->diag, &made->model));
+  PetscCall(TalusTell(c->comm, c->diag, messages));
   if (made->model) *model = made;
   else PetscCall(Destroy(&made));
   PetscFunctionReturn(0);

@@ -44,9 +44,9 @@ static PetscErrorCode Run(TalusCase *c, const RunOptions *options, TalusRun *run
 
   PetscFunctionBeginUser;
   asked.summary = &summary;
-  PetscCall(RunCase(PETSC_COMM_WORLD, c->c, &asked, c->diag, run->values, result));
+  PetscCall(RunCase(c->comm, c->c, &asked, c->diag, run->values, result));
   if (summary.reason[0]) diag_error(c->diag, NULL, "%s", summary.reason);
-  PetscCall(TalusTell(c->diag, messages));
+  PetscCall(TalusTell(c->comm, c->diag, messages));
   PetscFunctionReturn(0);
 }
 

@@ -57,11 +57,12 @@ int TalusFinalize(void)
   return talus_code(PetscFinalize());
 }
 
-int TalusRanks(int *rank, int *size)
+int TalusRanks(MPI_Comm comm, int *rank, int *size)
 {
   PetscMPIInt r, s;
   if (!talus_is_running()) return TALUS_ERROR_STATE;
-  if (MPI_Comm_rank(PETSC_COMM_WORLD, &r) || MPI_Comm_size(PETSC_COMM_WORLD, &s)) return TALUS_ERROR_INTERNAL;
+  if (comm == MPI_COMM_NULL) return TALUS_ERROR_ARGUMENT;
+  if (MPI_Comm_rank(comm, &r) || MPI_Comm_size(comm, &s)) return TALUS_ERROR_INTERNAL;
   if (rank) *rank = r;
   if (size) *size = s;
   return TALUS_OK;
@@ -75,28 +76,28 @@ void TalusTextFree(char **text)
 }
 
 /* The first rank's text for all ranks; NULL if it is empty. `text` is the C library's memory. */
-static PetscErrorCode ShareText(char **text, size_t length)
+static PetscErrorCode ShareText(MPI_Comm comm, char **text, size_t length)
 {
   unsigned long long n = length;
 
   PetscFunctionBeginUser;
-  PetscCallMPI(MPI_Bcast(&n, 1, MPI_UNSIGNED_LONG_LONG, 0, PETSC_COMM_WORLD));
+  PetscCallMPI(MPI_Bcast(&n, 1, MPI_UNSIGNED_LONG_LONG, 0, comm));
   PetscCheck(n < INT_MAX, PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE, "messages too long to be sent");
   if (n != length || !n) TalusTextFree(text);
   if (!n) PetscFunctionReturn(0);
   if (!*text) *text = calloc(n + 1, 1);
   PetscCheck(*text, PETSC_COMM_SELF, PETSC_ERR_MEM, "no memory for messages");
-  PetscCallMPI(MPI_Bcast(*text, (PetscMPIInt)n, MPI_CHAR, 0, PETSC_COMM_WORLD));
+  PetscCallMPI(MPI_Bcast(*text, (PetscMPIInt)n, MPI_CHAR, 0, comm));
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode TalusTell(Diag *diag, char **messages)
+PetscErrorCode TalusTell(MPI_Comm comm, Diag *diag, char **messages)
 {
   PetscInt errors;
   size_t length = 0;
 
   PetscFunctionBeginUser;
-  PetscCall(DiagReduce(PETSC_COMM_WORLD, diag, &errors));
+  PetscCall(DiagReduce(comm, diag, &errors));
   if (!messages) {
     PetscCall(DiagFlush(diag, stderr));
     PetscFunctionReturn(0);
@@ -106,6 +107,6 @@ PetscErrorCode TalusTell(Diag *diag, char **messages)
   PetscCheck(out, PETSC_COMM_SELF, PETSC_ERR_MEM, "no memory for messages");
   PetscCall(DiagFlush(diag, out));
   fclose(out);
-  PetscCall(ShareText(messages, length));
+  PetscCall(ShareText(comm, messages, length));
   PetscFunctionReturn(0);
 }

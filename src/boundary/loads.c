@@ -204,26 +204,20 @@ PetscErrorCode LoadsDestroy(Loads **loads)
   PetscFunctionReturn(0);
 }
 
-/* Loads grow with pseudo-time in statics and stand at once in dynamics, unless an amplitude says otherwise. */
-static PetscReal load_factor(const Case *c, const LoadSpec *spec, PetscReal t)
-{
-  return amplitude_value(&spec->amplitude, t, c->analysis.type == ANALYSIS_STATIC ? t / c->analysis.end : 1);
-}
-
-static void add_faces(const LoadFaces *faces, const Grid *grid, const PetscReal *value, PetscReal factor,
-                      const unsigned char *filled, PetscReal *sum)
+static void push_faces(const LoadFaces *faces, const Grid *grid, const PetscReal *value, PetscReal factor,
+                       const unsigned char *filled, PetscReal *residual)
 {
   const PetscInt nn = grid->nodes_per_cell, dim = grid->dim;
   for (PetscInt f = 0; f < faces->n; ++f) {
     const PetscInt *node = grid->cell_node + faces->cell[f] * nn;
     if (!filled[faces->cell[f]]) continue;
     for (PetscInt I = 0; I < nn; ++I)
-      for (PetscInt d = 0; d < dim; ++d) sum[node[I] * dim + d] += factor * faces->N[f * nn + I] * value[d];
+      for (PetscInt d = 0; d < dim; ++d) residual[node[I] * dim + d] -= factor * faces->N[f * nn + I] * value[d];
   }
 }
 
-static void add_carrier(const Loads *l, const Grid *grid, PetscInt p, PetscReal factor, const unsigned char *touched,
-                        PetscReal *sum)
+static void push_carrier(const Loads *l, const Grid *grid, PetscInt p, PetscReal factor, const unsigned char *touched,
+                         PetscReal *residual)
 {
   const PetscInt dim = l->dim, cell = l->carriers->cell[p], *node;
   PetscInt nn = grid->nodes_per_cell;
@@ -238,24 +232,15 @@ static void add_carrier(const Loads *l, const Grid *grid, PetscInt p, PetscReal 
   }
   for (PetscInt I = 0; I < nn; ++I)
     for (PetscInt d = 0; d < dim; ++d)
-      sum[node[I] * dim + d] += factor * N[I] * point_real(l->carriers, POINT_FORCE, p)[d];
+      residual[node[I] * dim + d] -= factor * N[I] * point_real(l->carriers, POINT_FORCE, p)[d];
 }
 
-PetscErrorCode LoadsAdd(const Loads *l, const Grid *grid, PetscReal t, const unsigned char *filled,
-                        const unsigned char *touched, PetscReal *force)
+void loads_push(const Loads *l, const Grid *grid, PetscReal t, const unsigned char *filled,
+                const unsigned char *touched, PetscReal *residual)
 {
-  const PetscInt dim = l->dim;
-  PetscReal *sum;
-
-  PetscFunctionBeginUser;
-  if (!l->c->n_loads) PetscFunctionReturn(0);
-  PetscCall(PetscCalloc1(grid->n_nodes * dim, &sum));
   for (PetscInt k = 0; k < l->c->n_loads; ++k)
-    add_faces(&l->faces[k], grid, l->c->loads[k].value, load_factor(l->c, &l->c->loads[k], t), filled, sum);
+    push_faces(&l->faces[k], grid, l->c->loads[k].value, case_factor(l->c, &l->c->loads[k].amplitude, t), filled,
+               residual);
   for (PetscInt p = 0; p < l->carriers->n; ++p)
-    add_carrier(l, grid, p, load_factor(l->c, &l->c->loads[l->carriers->body[p]], t), touched, sum);
-  PetscCall(GridSumToOwners(grid, dim, sum));
-  for (PetscInt i = 0; i < grid->n_owned * dim; ++i) force[i] += sum[i];
-  PetscCall(PetscFree(sum));
-  PetscFunctionReturn(0);
+    push_carrier(l, grid, p, case_factor(l->c, &l->c->loads[l->carriers->body[p]].amplitude, t), touched, residual);
 }

@@ -27,11 +27,10 @@ PetscErrorCode LoadsDestroy(Loads **loads);
 /* Collective. Let the loads stand on `grid`, which is `old` shared among the ranks in another way. */
 PetscErrorCode LoadsRegrid(Loads *loads, const Grid *old, const Grid *grid);
 
-/* Collective. Add the nodal forces at time t to force (n_nodes x dim; sums over ranks stand with the owners). Faces of
- * the grid are loaded where their cell is filled[cell] by material: beside a body there is nothing to push. Carried forces go to nodes
- * with touched[node] != 0. */
-PetscErrorCode LoadsAdd(const Loads *loads, const Grid *grid, PetscReal t, const unsigned char *filled,
-                        const unsigned char *touched, PetscReal *force);
+/* Subtract the nodal forces at time t from residual (n_nodes x dim; sums over ranks come later). Faces of the grid are loaded where
+ * their cell is filled[cell] by material: beside a body there is nothing to push. Carried forces go to nodes with touched[node] != 0. */
+void loads_push(const Loads *loads, const Grid *grid, PetscReal t, const unsigned char *filled,
+                const unsigned char *touched, PetscReal *residual);
 
 /* Shape functions of a carrier or tracer among touched nodes only, scaled to sum to one; PETSC_FALSE if there is none. */
 PetscBool touched_shape(const Grid *grid, PetscInt cell, const PetscReal *xi, const unsigned char *touched,

@@ -4,8 +4,7 @@
 static PetscReal displacement_at(const Case *c, const MotionSpec *m, PetscInt d, PetscReal t)
 {
   if (t <= 0) return 0;
-  const PetscReal ramp = c->analysis.type == ANALYSIS_STATIC ? t / c->analysis.end : 1;
-  return m->value[d] * amplitude_value(&m->amplitude, t, ramp);
+  return m->value[d] * case_factor(c, &m->amplitude, t);
 }
 
 /* Turn x about the axis through centre by the angle; returns the displacement of component d. */

@@ -15,6 +15,11 @@ PetscReal amplitude_value(const Amplitude *a, PetscReal t, PetscReal fallback)
   return (1 - s) * a->value[low] + s * a->value[high];
 }
 
+PetscReal case_factor(const Case *c, const Amplitude *amplitude, PetscReal t)
+{
+  return amplitude_value(amplitude, t, c->analysis.type == ANALYSIS_STATIC ? t / c->analysis.end : 1);
+}
+
 /* Integral from the first entry's time to t, for any t. */
 static PetscReal integral_from_first(const Amplitude *a, PetscReal t)
 {

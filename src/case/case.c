@@ -108,6 +108,7 @@ PetscErrorCode CaseDestroy(Case **c)
   PetscCall(PetscFree((*c)->title));
   PetscCall(PetscFree((*c)->method));
   PetscCall(PetscFree((*c)->formulation));
+  PetscCall(PetscFree((*c)->analysis.scheme));
   PetscCall(PetscFree((*c)->grid.mesh));
   PetscCall(NamedValuesClear((*c)->grid.n_parameters, &(*c)->grid.parameters));
   PetscCall(BodiesClear(*c));

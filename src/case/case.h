@@ -173,6 +173,7 @@ typedef struct {
   PetscReal step;              /* s, the first and (without growth) largest step */
   PetscReal smallest, largest; /* s, bounds of step control */
   PetscReal travel;            /* most cells that a point may cross in a step that has grown; 0: any */
+  char *scheme;                /* of dynamics, by its name; NULL: Newmark's, with bossak Bossak's */
   PetscReal beta, gamma;       /* Newmark */
   PetscReal bossak;            /* alpha_B in [-1/3, 0] */
   PetscReal damping;           /* Rayleigh, mass proportional, 1/s */
@@ -281,6 +282,8 @@ PetscErrorCode CaseDestroy(Case **c);
 
 /* Value at time t; `fallback` if the amplitude was not given. */
 PetscReal amplitude_value(const Amplitude *amplitude, PetscReal t, PetscReal fallback);
+/* Value at time t of what is applied: without an amplitude it grows with pseudo-time in statics and stands at once in dynamics. */
+PetscReal case_factor(const Case *c, const Amplitude *amplitude, PetscReal t);
 /* Integral over [0, t], for prescribed velocities. */
 PetscReal amplitude_integral(const Amplitude *amplitude, PetscReal t, PetscReal fallback);
 /* Is x (2 or 3 coordinates) in the shape? Its surface belongs to it, within `tolerance` m. */

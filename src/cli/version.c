@@ -3,10 +3,7 @@
 #include <stdio.h>
 #include <string.h>
 #include "cli/cli.h"
-
-#ifndef TALUS_VERSION
-#define TALUS_VERSION "0.1.0"
-#endif
+#include "talus_version.h"
 
 static const CliUsage usage = {
   .usage = "talus version",

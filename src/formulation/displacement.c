@@ -45,24 +45,6 @@ KERNEL void cell_soften(const int dim, const int nn, PetscReal s, PetscBool tang
       for (int J = 0; J < nn; ++J) w->K[((I * dim + d) * dim + d) * row_width(nn) + J] += s * ((I == J) - 1.0 / nn);
 }
 
-/* Rows and columns of prescribed dofs are cut; lifting moves their columns to the right-hand side. */
-KERNEL void cell_cut(const int dim, const int nn, const WeakFormInput *in, const PetscInt *node, CellWork *w)
-{
-  for (int J = 0; J < nn; ++J)
-    for (int b = 0; b < dim; ++b) {
-      const PetscInt column = node[J] * dim + b;
-      if (!in->fixed[column]) continue;
-      const PetscReal lift = in->lift ? in->lift[column] : 0;
-      for (int I = 0; I < nn; ++I)
-        for (int a = 0; a < dim; ++a) {
-          PetscReal *k = &w->K[((I * dim + a) * dim + b) * row_width(nn) + J];
-          if (!in->fixed[node[I] * dim + a]) w->f[a * row_width(nn) + I] += *k * lift;
-          *k = 0;
-          w->K[((J * dim + b) * dim + a) * row_width(nn) + I] = 0;
-        }
-    }
-}
-
 KERNEL PetscBool wants_tangent(const WeakFormOutput *out) { return out->values || out->singles; }
 
 KERNEL void cell_prefetch(const int dim, const int nn, PetscInt group, const WeakFormOutput *out)
@@ -81,14 +63,9 @@ KERNEL void cell_store(const int dim, const int nn, const WeakFormInput *in, Pet
   if (in->tie && in->tie[group] > 0) add_tie(dim, nn, in->tie[group], w->a, w->f, w->M);
   if (wants_tangent(out)) {
     const PetscInt *slot = out->slot + group * nn * nn;
-    int cut = 0;
     for (int I = 0; I < nn; ++I)
-      for (int d = 0; d < dim; ++d) {
-        cut |= in->fixed[node[I] * dim + d];
-        for (int J = 0; J < nn; ++J)
-          w->K[((I * dim + d) * dim + d) * row_width(nn) + J] += in->inertia * w->M[I * row_width(nn) + J];
-      }
-    if (cut) cell_cut(dim, nn, in, node, w);
+      for (int d = 0; d < dim; ++d)
+        row_add(nn, in->inertia, w->M + I * row_width(nn), w->K + ((I * dim + d) * dim + d) * row_width(nn));
     if (out->singles) scatter_blocks(dim, nn, PETSC_TRUE, slot, w->K, out->singles);
     else scatter_blocks(dim, nn, PETSC_FALSE, slot, w->K, out->values);
   }

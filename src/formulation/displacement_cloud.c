@@ -106,23 +106,7 @@ KERNEL void cloud_block(const int dim, const CloudWork *w, PetscInt I, PetscInt 
   }
 }
 
-/* The same where a dof of the pair is prescribed: its row and column stay empty, lifting moves the column to the residual. Without a block
- * only that. */
-KERNEL void cloud_cut_block(const int dim, const WeakFormInput *in, const CloudWork *w, PetscInt I, PetscInt J,
-                            PetscReal *restrict block, PetscReal *force)
-{
-  PetscReal full[9] = {0};
-  cloud_block(dim, w, I, J, full);
-  for (int a = 0; a < dim; ++a)
-    for (int b = 0; b < dim; ++b) {
-      const PetscInt row = w->node[I] * dim + a, column = w->node[J] * dim + b;
-      if (in->fixed[row]) continue;
-      if (!in->fixed[column] && block) block[a * dim + b] += full[a * dim + b];
-      if (in->fixed[column] && in->lift) force[row] += full[a * dim + b] * in->lift[column];
-    }
-}
-
-/* In the plane, without cuts: a block is g_x[I] T_x[J] + g_y[I] T_y[J] + mass, four numbers at a time. */
+/* In the plane a block is g_x[I] T_x[J] + g_y[I] T_y[J] + mass, four numbers at a time. */
 KERNEL void cloud_matrix_2d(const PetscBool half, const PetscInt *slot, const CloudWork *w, PetscReal *values)
 {
   const PetscReal soft = w->soft / (PetscReal)w->nn, share = w->inertia * (1 - w->lumping);
@@ -142,21 +126,12 @@ KERNEL void cloud_matrix_2d(const PetscBool half, const PetscInt *slot, const Cl
 KERNEL void cloud_matrix(const int dim, const WeakFormInput *in, const PetscInt *slot, const CloudWork *w,
                          WeakFormOutput *out)
 {
-  int cut = 0;
-  for (PetscInt I = 0; I < w->nn; ++I)
-    for (int d = 0; d < dim; ++d) cut |= in->fixed[w->node[I] * dim + d];
-  if (dim == 2 && !cut) {
-    if (in->half) cloud_matrix_2d(PETSC_TRUE, slot, w, out->values);
-    else cloud_matrix_2d(PETSC_FALSE, slot, w, out->values);
-    return;
-  }
-  for (PetscInt I = 0; I < w->nn; ++I)
-    for (PetscInt J = in->half && !(cut && in->lift) ? I : 0; J < w->nn; ++J) {
-      PetscReal *block = out->values + (size_t)slot[I * w->nn + J] * dim * dim;
-      if (in->half && J < I) cloud_cut_block(dim, in, w, I, J, NULL, out->force);
-      else if (cut) cloud_cut_block(dim, in, w, I, J, block, out->force);
-      else cloud_block(dim, w, I, J, block);
-    }
+  if (dim == 2 && in->half) cloud_matrix_2d(PETSC_TRUE, slot, w, out->values);
+  else if (dim == 2) cloud_matrix_2d(PETSC_FALSE, slot, w, out->values);
+  else
+    for (PetscInt I = 0; I < w->nn; ++I)
+      for (PetscInt J = in->half ? I : 0; J < w->nn; ++J)
+        cloud_block(dim, w, I, J, out->values + (size_t)slot[I * w->nn + J] * dim * dim);
 }
 
 KERNEL void cloud_point(const int dim, const WeakFormInput *in, const Batch *b, PetscInt k, const PetscInt *slot,

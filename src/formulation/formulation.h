@@ -14,15 +14,13 @@ typedef struct {
   const Points *points;
   const Support *support;
   const Material *materials;
-  const PetscReal *du;        /* n_nodes x dim: displacement since the start of the step, m */
-  const PetscReal *history;   /* n_nodes x dim: h, m/s2 */
-  PetscReal inertia;          /* c0, 1/s2; 0 in statics */
-  PetscBool symmetric;        /* are the tangents of all materials symmetric? */
-  const PetscReal *lumping;   /* per group: share of the mass that is lumped, or NULL (0) */
-  const PetscReal *soft;      /* per group: stiffness that ties a hardly filled cell's nodes together, N/m, or NULL */
-  const PetscReal *tie;       /* per group: inertia that ties them together, kg, or NULL */
-  const unsigned char *fixed; /* n_nodes x dim: prescribed degrees of freedom; their rows and columns stay empty */
-  const PetscReal *lift;      /* n_nodes x dim or NULL: adds K lift on the free rows, for fixed columns */
+  const PetscReal *du;      /* n_nodes x dim: displacement since the start of the step, m */
+  const PetscReal *history; /* n_nodes x dim: h, m/s2 */
+  PetscReal inertia;        /* c0, 1/s2; 0 in statics */
+  PetscBool symmetric;      /* are the tangents of all materials symmetric? */
+  const PetscReal *lumping; /* per group: share of the mass that is lumped, or NULL (0) */
+  const PetscReal *soft;    /* per group: stiffness that ties a hardly filled cell's nodes together, N/m, or NULL */
+  const PetscReal *tie;     /* per group: inertia that ties them together, kg, or NULL */
   PetscBool half; /* of clouds, whose tangent is symmetric: blocks with a row behind the column are left out */
   const PetscReal *pressure;     /* mixed: n_nodes, the unknown pressure over pressure_scale, m */
   PetscReal pressure_scale;      /* mixed: Pa/m, gives both unknowns the same unit, and both equations N */
@@ -31,7 +29,7 @@ typedef struct {
 } WeakFormInput;
 
 typedef struct {
-  PetscReal *force;     /* n_nodes x dim, added to; rows of prescribed dofs too (reactions) */
+  PetscReal *force;     /* n_nodes x dim, added to */
   PetscReal *volume;    /* mixed: n_nodes, residual of the pressure equation, N, added to */
   PetscReal *values;    /* matrix blocks, added to; NULL: residual only, unless there are singles */
   float *singles;       /* the same in single precision, from formulations that can; instead of values */

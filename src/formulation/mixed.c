@@ -74,30 +74,6 @@ KERNEL void cell_project(const int dim, const int nn, PetscReal scale, CellWork 
     }
 }
 
-/* Rows and columns of prescribed displacements are cut; lifting moves their columns to the right-hand side. */
-KERNEL void cell_cut(const int dim, const int nn, const WeakFormInput *in, const PetscInt *node, CellWork *w)
-{
-  const int width = row_width(nn);
-  for (int J = 0; J < nn; ++J)
-    for (int b = 0; b < dim; ++b) {
-      const PetscInt column = node[J] * dim + b;
-      if (!in->fixed[column]) continue;
-      const PetscReal lift = in->lift ? in->lift[column] : 0;
-      for (int I = 0; I < nn; ++I) {
-        PetscReal *kp = &w->Kpu[(I * dim + b) * width + J];
-        for (int a = 0; a < dim; ++a) {
-          PetscReal *k = &w->K[((I * dim + a) * dim + b) * width + J];
-          if (!in->fixed[node[I] * dim + a]) w->f[a * width + I] += *k * lift;
-          *k = 0;
-          w->K[((J * dim + b) * dim + a) * width + I] = 0;
-        }
-        w->fp[I] += *kp * lift;
-        *kp = 0;
-        w->Kup[(J * dim + b) * width + I] = 0;
-      }
-    }
-}
-
 /* Blocks of (dim + 1)^2 entries: displacements first, the pressure last. */
 KERNEL void cell_scatter(const int dim, const int nn, const PetscInt *slot, const CellWork *w, PetscReal *values)
 {
@@ -123,13 +99,9 @@ KERNEL void cell_store(const int dim, const int nn, const WeakFormInput *in, Pet
   if (in->tie && in->tie[group] > 0) add_tie(dim, nn, in->tie[group], w->a, w->f, w->M);
   cell_project(dim, nn, in->pressure_scale, w);
   if (out->values) {
-    int cut = 0;
     for (int I = 0; I < nn; ++I)
-      for (int d = 0; d < dim; ++d) {
-        cut |= in->fixed[node[I] * dim + d];
-        for (int J = 0; J < nn; ++J) w->K[((I * dim + d) * dim + d) * width + J] += in->inertia * w->M[I * width + J];
-      }
-    if (cut) cell_cut(dim, nn, in, node, w);
+      for (int d = 0; d < dim; ++d)
+        row_add(nn, in->inertia, w->M + I * width, w->K + ((I * dim + d) * dim + d) * width);
     cell_scatter(dim, nn, out->slot + group * nn * nn, w, out->values);
   }
   for (int I = 0; I < nn; ++I) {

@@ -1,8 +1,8 @@
 /* Tracers and carriers of loads follow the field; where they have left the grid, the nodes of its edge carry them, as
  * they would in a larger one: until they are a cell away. */
-#include "method/gmm.h"
+#include "method/discretisation.h"
 
-static PetscBool within_reach(const Stage *s, const Points *followers, PetscInt p)
+static PetscBool within_reach(const Discretisation *s, const Points *followers, PetscInt p)
 {
   const PetscInt dim = s->grid->dim;
   const PetscReal *overhang = point_real(followers, POINT_OVERHANG, p);
@@ -19,11 +19,9 @@ static PetscBool within_reach(const Stage *s, const Points *followers, PetscInt 
   return PETSC_TRUE;
 }
 
-PetscBool stage_carries(const Stage *s, const Points *followers, PetscInt p)
+PetscBool cell_carries(const Discretisation *s, const Points *followers, PetscInt p)
 {
-  PetscReal N[CLOUD_MAX_NODES];
-  const Support *cloud = !s->grid->cloud ? NULL : followers == s->tracers ? s->gmm->tracers : s->gmm->carriers;
-  if (cloud) return support_touched(cloud, p, s->touched, N);
+  PetscReal N[CELL_MAX_NODES];
   if (followers->cell[p] < 0 || !within_reach(s, followers, p)) return PETSC_FALSE;
-  return touched_shape(s->grid, followers->cell[p], point_real(followers, POINT_XI, p), s->touched, N);
+  return touched_shape(s->grid, followers->cell[p], point_real(followers, POINT_XI, p), s->nodes->touched, N);
 }

@@ -4,7 +4,7 @@
 
 #define KEEP_OFF 0.25 /* spacings between nodes, at least */
 
-static void choose_rule(const Stage *s, Gmm *g)
+static void choose_rule(const Discretisation *s, Gmm *g)
 {
   static const SupportRule rule[] = {SUPPORT_ADAPTIVE, SUPPORT_NEAREST, SUPPORT_FIXED};
   static const CloudOrder order[] = {CLOUD_LINEAR, CLOUD_BILINEAR, CLOUD_QUADRATIC};
@@ -30,32 +30,23 @@ static void choose_rule(const Stage *s, Gmm *g)
   g->constraints = b->essential == ESSENTIAL_CONSTRAINTS || (b->essential == ESSENTIAL_AUTO && mls);
 }
 
-static PetscErrorCode GmmStart(Stage *s)
+static PetscErrorCode GmmStart(Discretisation *s)
 {
-  const PetscInt dim = s->grid->dim;
   Gmm *g;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscNew(&s->gmm));
-  g = s->gmm;
+  PetscCall(PetscNew(&g));
+  s->own = g;
   choose_rule(s, g);
   PetscCall(SupportCreate(&g->tracers));
   PetscCall(SupportCreate(&g->carriers));
   PetscCall(SupportCreate(&g->nodes));
-  PetscCall(ConstraintsCreate(dim, &s->constraints));
   g->layouts = -1;
   s->loads->support = g->carriers;
-  PetscCall(GridCloudFollow(s->grid, &s->mass, 1, NULL, NULL));
-  PetscCall(GridCloudFollow(s->grid, &s->v, dim, "velocity", "m/s"));
-  PetscCall(GridCloudFollow(s->grid, &s->a, dim, "acceleration", "m/s2"));
-  PetscCall(GridCloudFollow(s->grid, &s->v_points, dim, NULL, NULL));
-  PetscCall(GridCloudFollow(s->grid, &s->a_points, dim, NULL, NULL));
-  PetscCall(GridCloudFollow(s->grid, &s->v1, dim, NULL, NULL));
-  PetscCall(GridCloudFollow(s->grid, &s->a1, dim, NULL, NULL));
   PetscFunctionReturn(0);
 }
 
-static PetscBool is_held(const Stage *s, PetscInt node)
+static PetscBool is_held(const Discretisation *s, PetscInt node)
 {
   for (PetscInt d = 0; d < s->grid->dim; ++d)
     if (s->boundary->fixed[node * s->grid->dim + d]) return PETSC_TRUE;
@@ -63,17 +54,17 @@ static PetscBool is_held(const Stage *s, PetscInt node)
 }
 
 /* How much of the mass is missing that even a node at the corner of a body would have; 0: none, 1: all. */
-static PetscReal starved(const Stage *s, PetscInt node, PetscReal density)
+static PetscReal starved(const Discretisation *s, PetscInt node, PetscReal density)
 {
   const PetscInt dim = s->grid->dim;
   const PetscReal h = s->grid->cloud->spacing, corner = density * (dim == 3 ? h * h * h / 16 : h * h / 8);
   if (is_held(s, node)) return 0; /* what it would do without mass does not matter */
-  return PetscMax(0, 1 - PetscMax(0, s->mass[node]) / corner);
+  return PetscMax(0, 1 - PetscMax(0, s->nodes->mass[node]) / corner);
 }
 
 /* Where a node has hardly any mass its force still counts in full, as in cells that are not full, and the same helps: the points that reach it
  * lump part of their mass and tie their nodes by a weak stiffness. */
-static PetscErrorCode Stabilise(Stage *s)
+static PetscErrorCode Stabilise(Discretisation *s)
 {
   const Support *w = s->support;
   const PetscReal h = s->grid->cloud->spacing, length = s->grid->dim == 3 ? h : 1;
@@ -97,28 +88,28 @@ static PetscErrorCode Stabilise(Stage *s)
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode GmmInitialise(Stage *s)
+static PetscErrorCode GmmInitialise(Discretisation *s)
 {
   PetscFunctionBeginUser;
   if (!s->started) PetscCall(GmmStart(s));
   PetscCall(GmmBalance(s));
   PetscCall(GmmGather(s));
-  PetscCall(StageNodalMass(s));
-  if (!s->started) PetscCall(StageBodyVelocity(s));
+  PetscCall(DiscretisationMass(s));
+  if (!s->started) PetscCall(DiscretisationBodyVelocity(s));
   s->started = PETSC_TRUE;
   PetscCall(Stabilise(s));
   PetscFunctionReturn(0);
 }
 
 /* The field at node i, whose cloud is number k. */
-static PetscReal motion_of_node(const Stage *s, PetscInt i, PetscInt k, PetscInt d, const PetscReal *du)
+static PetscReal motion_of_node(const Discretisation *s, PetscInt i, PetscInt k, PetscInt d)
 {
-  const Support *w = s->gmm->nodes;
+  const Support *w = gmm_of(s)->nodes;
   const PetscInt dim = s->grid->dim, nn = support_nodes(w, k), *node = w->node + w->node_start[k];
-  const PetscReal *N = w->N + w->value_start[k];
+  const PetscReal *N = w->N + w->value_start[k], *du = s->nodes->du;
   PetscReal move = 0, sum = 0;
   for (PetscInt I = 0; I < nn; ++I) {
-    if (!s->touched[node[I]] && !s->boundary->fixed[node[I] * dim + d]) continue;
+    if (!s->nodes->touched[node[I]] && !s->boundary->fixed[node[I] * dim + d]) continue;
     move += N[I] * du[node[I] * dim + d];
     sum += N[I];
   }
@@ -126,7 +117,7 @@ static PetscReal motion_of_node(const Stage *s, PetscInt i, PetscInt k, PetscInt
 }
 
 /* Move x away from those nodes of a cloud that are too near: half of the way that is missing, all of it from a node that is held. */
-static void keep_off(const Stage *s, PetscInt n, const PetscInt *node, PetscInt self, const PetscReal *old,
+static void keep_off(const Discretisation *s, PetscInt n, const PetscInt *node, PetscInt self, const PetscReal *old,
                      PetscReal *x)
 {
   const PetscInt dim = s->grid->dim;
@@ -143,10 +134,10 @@ static void keep_off(const Stage *s, PetscInt n, const PetscInt *node, PetscInt 
 
 /* Two nodes at one place share their part of the field, and nothing resists when their coefficients go against each other: the stiffness of
  * that falls with the square of their distance. So nodes keep off each other; places of nodes are free, coefficients stay. */
-static PetscErrorCode KeepNodesApart(Stage *s)
+static PetscErrorCode KeepNodesApart(Discretisation *s)
 {
   const Grid *grid = s->grid;
-  const Support *w = s->gmm->nodes;
+  const Support *w = gmm_of(s)->nodes;
   PetscReal *old;
 
   PetscFunctionBeginUser;
@@ -164,7 +155,7 @@ static PetscErrorCode KeepNodesApart(Stage *s)
 /* Prescribed components move as prescribed, nodes that nothing touches stay. All others move with the field at their place, as points do, and
  * not with their own coefficient (as thesis algorithm 2 suggests): then nodes keep their order among points whatever a node with little mass
  * does, and do not cross a wall on which the field vanishes. */
-static PetscErrorCode MoveNodes(Stage *s, const PetscReal *du)
+static PetscErrorCode MoveNodes(Discretisation *s)
 {
   const Grid *grid = s->grid;
   const PetscInt dim = grid->dim;
@@ -175,38 +166,45 @@ static PetscErrorCode MoveNodes(Stage *s, const PetscReal *du)
     ++k;
     for (PetscInt d = 0; d < dim; ++d) {
       PetscReal *x = &grid->x[i * dim + d];
-      if (s->boundary->fixed[i * dim + d]) *x += s->prescribed[i * dim + d];
-      else if (s->touched[i]) *x += motion_of_node(s, i, k, d, du);
+      if (s->boundary->fixed[i * dim + d]) *x += s->nodes->prescribed[i * dim + d];
+      else if (s->nodes->touched[i]) *x += motion_of_node(s, i, k, d);
     }
   }
   PetscCall(GridToGhosts(grid, dim, grid->x));
   PetscCall(KeepNodesApart(s));
   for (PetscInt i = 0; i < grid->n_owned; ++i) /* twins stand with their nodes, and go to the same rank */
-    for (PetscInt d = 0; d < dim && s->gmm->twin[i] >= 0; ++d)
-      grid->x[s->gmm->twin[i] * dim + d] = grid->x[i * dim + d];
+    for (PetscInt d = 0; d < dim && gmm_of(s)->twin[i] >= 0; ++d)
+      grid->x[gmm_of(s)->twin[i] * dim + d] = grid->x[i * dim + d];
   PetscCall(GridToGhosts(grid, dim, grid->x));
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode GmmConvect(Stage *s, const PetscReal *du)
+static PetscErrorCode GmmConvect(Discretisation *s)
 {
   const PetscInt dofs = s->grid->n_nodes * s->grid->dim;
 
   PetscFunctionBeginUser;
-  PetscCall(StageMoveClouds(s, s->points, s->support, du));
-  PetscCall(StageMoveClouds(s, s->tracers, s->gmm->tracers, du));
-  PetscCall(StageMoveClouds(s, s->loads->carriers, s->gmm->carriers, du));
-  PetscCall(MoveNodes(s, du));
+  PetscCall(DiscretisationMoveClouds(s, s->points, s->support));
+  PetscCall(DiscretisationMoveClouds(s, s->tracers, gmm_of(s)->tracers));
+  PetscCall(DiscretisationMoveClouds(s, s->loads->carriers, gmm_of(s)->carriers));
+  PetscCall(MoveNodes(s));
   for (PetscInt i = 0; i < dofs; ++i) { /* a node that nothing touched stays where it is */
-    s->v[i] = s->touched[i / s->grid->dim] || s->boundary->fixed[i] ? s->v1[i] : 0;
-    s->a[i] = s->touched[i / s->grid->dim] || s->boundary->fixed[i] ? s->a1[i] : 0;
+    s->nodes->v[i] = s->nodes->touched[i / s->grid->dim] || s->boundary->fixed[i] ? s->nodes->v1[i] : 0;
+    s->nodes->a[i] = s->nodes->touched[i / s->grid->dim] || s->boundary->fixed[i] ? s->nodes->a1[i] : 0;
   }
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode GmmDestroy(Stage *s)
+static PetscBool cloud_carries(const Discretisation *s, const Points *followers, PetscInt p)
 {
-  Gmm *g = s->gmm;
+  PetscReal N[CLOUD_MAX_NODES];
+  const Support *cloud = followers == s->tracers ? gmm_of(s)->tracers : gmm_of(s)->carriers;
+  return support_touched(cloud, p, s->nodes->touched, N);
+}
+
+static PetscErrorCode GmmDestroy(Discretisation *s)
+{
+  Gmm *g = gmm_of(s);
 
   PetscFunctionBeginUser;
   if (!g) PetscFunctionReturn(0);
@@ -214,17 +212,18 @@ static PetscErrorCode GmmDestroy(Stage *s)
   PetscCall(SupportDestroy(&g->carriers));
   PetscCall(SupportDestroy(&g->nodes));
   PetscCall(PetscFree(g->twin));
-  PetscCall(PetscFree(s->gmm));
+  PetscCall(PetscFree(s->own));
   PetscFunctionReturn(0);
 }
 
 const Method method_gmm = {
   .name = "gmm",
   .help = "Galerkin meshfree method: a cloud of nodes and points moves, without cells",
-  .points_move = PETSC_FALSE,
+  .clouds = PETSC_TRUE,
   .initialise = GmmInitialise,
   .begin = GmmCarry,
   .convect = GmmConvect,
+  .carries = cloud_carries,
   .destroy = GmmDestroy,
   .couplings = GmmCouplings,
   .redistribute = GmmRedistribute,

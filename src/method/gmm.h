@@ -2,7 +2,7 @@
 #pragma once
 #include "method/method.h"
 
-typedef struct Gmm {
+typedef struct {
   CloudRule rule;
   CloudRule at_nodes;          /* at nodes and loads: on the hull, where they stand, lme has no smooth values */
   PetscBool constraints;       /* prescribed motion by multipliers? else on the nodes themselves */
@@ -15,13 +15,15 @@ typedef struct Gmm {
   PetscInt *twin;   /* n_owned: local number of the node's twin, -1 if it has none */
 } Gmm;
 
+static inline Gmm *gmm_of(const Discretisation *space) { return space->own; }
+
 /* Collective. Ghosts, clouds and constraints for where nodes and points are now; touched nodes too. */
-PetscErrorCode GmmGather(Stage *stage);
+PetscErrorCode GmmGather(Discretisation *space);
 /* Collective. Clouds are new: nodes take what their points carried, and prescribed nodes the rest as an impulse. */
-PetscErrorCode GmmCarry(Stage *stage);
+PetscErrorCode GmmCarry(Discretisation *space);
 /* Collective. If clouds have grown too ragged, cut space anew and send nodes and points to their new ranks. */
-PetscErrorCode GmmBalance(Stage *stage);
+PetscErrorCode GmmBalance(Discretisation *space);
 /* Collective. Do that now. */
-PetscErrorCode GmmRedistribute(Stage *stage);
+PetscErrorCode GmmRedistribute(Discretisation *space);
 /* Collective. Groups of nodes that the next steps may couple. */
-PetscErrorCode GmmCouplings(const Stage *stage, NodeGroups *groups);
+PetscErrorCode GmmCouplings(const Discretisation *space, NodeGroups *groups);

@@ -30,7 +30,7 @@ static PetscErrorCode SendNodes(const SpaceCuts *cuts, Grid *grid)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode GmmRedistribute(Stage *s)
+PetscErrorCode GmmRedistribute(Discretisation *s)
 {
   SpaceCuts cuts;
 
@@ -45,7 +45,7 @@ PetscErrorCode GmmRedistribute(Stage *s)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode GmmBalance(Stage *s)
+PetscErrorCode GmmBalance(Discretisation *s)
 {
   PetscInt ghosts = s->grid->n_nodes - s->grid->n_owned, all;
 

@@ -16,7 +16,7 @@ enum { VELOCITY, ACCELERATION, MOTIONS };
 
 /* Nodal arrays: n_nodes x (2 dim), velocity and acceleration of a node behind each other. */
 typedef struct {
-  const Stage *s;
+  const Discretisation *s;
   PetscInt dim, width, size;                 /* 2 dim, n_nodes x 2 dim */
   PetscReal *x, *lack, *direction, *product; /* motion, what it lacks of the points' momenta, conjugate gradients */
   PetscReal *bound, *inverse; /* of the mass matrix's diagonal; its inverse, 0 where motion is prescribed */
@@ -73,7 +73,7 @@ static PetscErrorCode BoundOfMass(const Carry *c)
     PetscReal all = 0, around = 0;
     for (PetscInt I = 0; I < nn; ++I) {
       all += PetscAbsReal(N[I]);
-      around += PetscAbsReal(N[I]) * PetscMax(0, c->s->mass[node[I]]);
+      around += PetscAbsReal(N[I]) * PetscMax(0, c->s->nodes->mass[node[I]]);
     }
     for (PetscInt I = 0; I < nn; ++I) {
       c->bound[2 * node[I]] += m * PetscAbsReal(N[I]) * all;
@@ -84,7 +84,7 @@ static PetscErrorCode BoundOfMass(const Carry *c)
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode CarryCreate(const Stage *s, Carry *c)
+static PetscErrorCode CarryCreate(const Discretisation *s, Carry *c)
 {
   const PetscInt n = s->grid->n_nodes, dim = s->grid->dim, width = 2 * dim, size = n * width;
 
@@ -96,10 +96,10 @@ static PetscErrorCode CarryCreate(const Stage *s, Carry *c)
   for (PetscInt node = 0, i = 0; node < n; ++node)
     for (PetscInt d = 0; d < dim; ++d, ++i) {
       const PetscReal bound = c->bound[2 * node], around = c->bound[2 * node + 1];
-      const PetscBool counts = bound > 0 && s->mass[node] * bound > LIGHT * around;
+      const PetscBool counts = bound > 0 && s->nodes->mass[node] * bound > LIGHT * around;
       const PetscReal inverse = counts && !s->boundary->fixed[i] ? 1 / bound : 0;
-      c->x[node * width + d] = s->v[i];
-      c->x[node * width + dim + d] = s->a[i];
+      c->x[node * width + d] = s->nodes->v[i];
+      c->x[node * width + dim + d] = s->nodes->a[i];
       c->inverse[node * width + d] = c->inverse[node * width + dim + d] = inverse;
     }
   PetscFunctionReturn(0);
@@ -203,11 +203,11 @@ static PetscErrorCode Share(const Carry *c)
       u[c->dim + d] = point_real(c->s->points, POINT_A, p)[d];
     }
     for (PetscInt I = 0; I < nn; ++I) {
-      mass += PetscAbsReal(N[I]) * PetscMax(0, c->s->mass[node[I]]);
+      mass += PetscAbsReal(N[I]) * PetscMax(0, c->s->nodes->mass[node[I]]);
       for (PetscInt k = 0; k < c->width; ++k) u[k] -= N[I] * c->x[node[I] * c->width + k];
     }
     for (PetscInt I = 0; I < nn && mass > 0; ++I) {
-      const PetscReal share = PetscAbsReal(N[I]) * PetscMax(0, c->s->mass[node[I]]) / mass;
+      const PetscReal share = PetscAbsReal(N[I]) * PetscMax(0, c->s->nodes->mass[node[I]]) / mass;
       for (PetscInt k = 0; k < c->width; ++k)
         c->lack[node[I] * c->width + k] += share * c->s->points->real[POINT_MASS][p] * u[k];
     }
@@ -216,7 +216,7 @@ static PetscErrorCode Share(const Carry *c)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode GmmCarry(Stage *s)
+PetscErrorCode GmmCarry(Discretisation *s)
 {
   const PetscInt dim = s->grid->dim;
   Carry c;
@@ -227,15 +227,15 @@ PetscErrorCode GmmCarry(Stage *s)
   PetscCall(Share(&c));
   for (PetscInt i = 0; i < s->grid->n_owned * dim; ++i) {
     const PetscInt k = i / dim * 2 * dim + i % dim;
-    const PetscReal inverse = s->mass[i / dim] > 0 ? 1 / s->mass[i / dim] : 0;
-    s->v_points[i] = c.x[k] + inverse * c.lack[k];
-    s->a_points[i] = c.x[k + dim] + inverse * c.lack[k + dim];
+    const PetscReal inverse = s->nodes->mass[i / dim] > 0 ? 1 / s->nodes->mass[i / dim] : 0;
+    s->nodes->v_points[i] = c.x[k] + inverse * c.lack[k];
+    s->nodes->a_points[i] = c.x[k + dim] + inverse * c.lack[k + dim];
     if (s->boundary->fixed[i]) continue;
-    s->v[i] = s->v_points[i];
-    s->a[i] = s->a_points[i];
+    s->nodes->v[i] = s->nodes->v_points[i];
+    s->nodes->a[i] = s->nodes->a_points[i];
   }
   PetscCall(CarryDestroy(&c));
-  PetscCall(GridToGhosts(s->grid, dim, s->v));
-  PetscCall(GridToGhosts(s->grid, dim, s->a));
+  PetscCall(GridToGhosts(s->grid, dim, s->nodes->v));
+  PetscCall(GridToGhosts(s->grid, dim, s->nodes->a));
   PetscFunctionReturn(0);
 }

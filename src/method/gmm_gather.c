@@ -28,10 +28,10 @@ static void widen_box(PetscInt dim, PetscInt n, const PetscReal *x, PetscReal re
 }
 
 /* The box in which this rank's points and nodes look for nodes. */
-static void search_box(const Stage *s, PetscReal box[6])
+static void search_box(const Discretisation *s, PetscReal box[6])
 {
   const PetscInt dim = s->grid->dim;
-  const PetscReal reach = reach_of(s->gmm);
+  const PetscReal reach = reach_of(gmm_of(s));
   for (int d = 0; d < 3; ++d) box[d] = PETSC_MAX_REAL, box[3 + d] = -PETSC_MAX_REAL;
   widen_box(dim, s->points->n, s->points->real[POINT_X], reach, box);
   widen_box(dim, s->tracers->n, s->tracers->real[POINT_X], reach, box);
@@ -39,7 +39,7 @@ static void search_box(const Stage *s, PetscReal box[6])
   widen_box(dim, s->grid->n_owned, s->grid->x, reach, box);
 }
 
-static PetscErrorCode SearchBegin(const Stage *s, Search *search)
+static PetscErrorCode SearchBegin(const Discretisation *s, Search *search)
 {
   const Grid *grid = s->grid;
   PetscReal box[6];
@@ -52,7 +52,7 @@ static PetscErrorCode SearchBegin(const Stage *s, Search *search)
   PetscCall(PetscMalloc1(grid->n_owned, &twin));
   for (PetscInt i = 0; i < grid->n_owned; ++i) twin[i] = cloud_is_twin(grid, i);
   PetscCall(NeighboursCreate(grid->dim, grid->n_owned, grid->x, n, search->remote.x, twin,
-                             s->gmm->rule.support.radius * s->gmm->rule.h, &search->nodes));
+                             gmm_of(s)->rule.support.radius * gmm_of(s)->rule.h, &search->nodes));
   PetscCall(PetscFree(twin));
   PetscCall(PetscMalloc1(n, &search->ghost));
   PetscCall(PetscCalloc1(n, &search->use));
@@ -70,13 +70,13 @@ static PetscErrorCode SearchEnd(Search *search)
   PetscFunctionReturn(0);
 }
 
-static void mark_used(const Stage *s, Search *search, PetscInt n, const PetscInt *node)
+static void mark_used(const Discretisation *s, Search *search, PetscInt n, const PetscInt *node)
 {
   for (PetscInt i = 0; i < n; ++i)
     if (node[i] >= s->grid->n_owned) search->use[node[i] - s->grid->n_owned] = PETSC_TRUE;
 }
 
-static void rename_nodes(const Stage *s, const Search *search, PetscInt n, PetscInt *node)
+static void rename_nodes(const Discretisation *s, const Search *search, PetscInt n, PetscInt *node)
 {
   for (PetscInt i = 0; i < n; ++i)
     if (node[i] >= s->grid->n_owned) node[i] = search->ghost[node[i] - s->grid->n_owned];
@@ -87,9 +87,9 @@ typedef struct {
   PetscInt n[5], *node[5];
 } Lists;
 
-static Lists lists_of(const Stage *s)
+static Lists lists_of(const Discretisation *s)
 {
-  const Support *w[4] = {s->support, s->gmm->tracers, s->gmm->carriers, s->gmm->nodes};
+  const Support *w[4] = {s->support, gmm_of(s)->tracers, gmm_of(s)->carriers, gmm_of(s)->nodes};
   Lists l;
   for (int k = 0; k < 4; ++k) {
     l.n[k] = w[k]->node_start[w[k]->n_groups];
@@ -101,10 +101,10 @@ static Lists lists_of(const Stage *s)
 }
 
 /* New ghosts: remote in use, and those that will be soon. */
-static PetscErrorCode Relayout(Stage *s, Search *search)
+static PetscErrorCode Relayout(Discretisation *s, Search *search)
 {
   const PetscInt dim = s->grid->dim, n_owned = s->grid->n_owned;
-  const PetscReal radius = SKIN * s->gmm->rule.support.radius * s->gmm->rule.h;
+  const PetscReal radius = SKIN * gmm_of(s)->rule.support.radius * gmm_of(s)->rule.h;
   PetscInt near[CLOUD_MAX_NODES];
   PetscReal distance2[CLOUD_MAX_NODES];
 
@@ -120,22 +120,19 @@ static PetscErrorCode Relayout(Stage *s, Search *search)
 }
 
 /* After ghosts or owners changed: arrays that do not follow by themselves. */
-static PetscErrorCode Follow(Stage *s)
+static PetscErrorCode Follow(Discretisation *s)
 {
   const Grid *grid = s->grid;
-  Gmm *g = s->gmm;
+  Gmm *g = gmm_of(s);
   PetscInt *id;
   PetscInt *order;
 
   PetscFunctionBeginUser;
   if (g->layouts == grid->cloud->layouts) PetscFunctionReturn(0);
   g->layouts = grid->cloud->layouts;
+  PetscCall(NodalFlagsFollow(s->nodes));
   PetscCall(BoundaryFollow(s->boundary, grid));
-  PetscCall(PetscFree(s->touched));
-  PetscCall(PetscFree(s->dof));
   PetscCall(PetscFree(g->twin));
-  PetscCall(PetscCalloc1(grid->n_nodes, &s->touched));
-  if (g->constraints) PetscCall(PetscCalloc1(grid->n_nodes * grid->dim, &s->dof));
   PetscCall(PetscMalloc1(grid->n_owned, &g->twin));
   PetscCall(PetscMalloc2(grid->n_owned, &id, grid->n_owned, &order));
   for (PetscInt i = 0; i < grid->n_owned; ++i) {
@@ -154,10 +151,10 @@ static PetscErrorCode Follow(Stage *s)
 }
 
 /* The field at the places of nodes: it moves those near prescribed ones, and is held where a node has a twin. */
-static PetscErrorCode GatherNodes(Stage *s, const Search *search)
+static PetscErrorCode GatherNodes(Discretisation *s, const Search *search)
 {
   const Grid *grid = s->grid;
-  const Support *w = s->gmm->nodes;
+  const Support *w = gmm_of(s)->nodes;
   CloudTally ignored = {.nodes = 0};
   PetscReal *x;
   PetscInt n = 0;
@@ -169,14 +166,14 @@ static PetscErrorCode GatherNodes(Stage *s, const Search *search)
       for (PetscInt d = 0; d < grid->dim; ++d) x[n * grid->dim + d] = grid->x[i * grid->dim + d];
       ++n;
     }
-  PetscCall(SupportFromPositions(s->gmm->nodes, n, x, &search->nodes, &s->gmm->at_nodes, &ignored));
+  PetscCall(SupportFromPositions(gmm_of(s)->nodes, n, x, &search->nodes, &gmm_of(s)->at_nodes, &ignored));
   PetscCall(PetscFree(x));
   constraints_clear(s->constraints);
   for (PetscInt i = 0, k = -1; i < grid->n_owned; ++i) {
     if (cloud_is_twin(grid, i)) continue;
     ++k;
-    if (s->gmm->twin[i] >= 0)
-      PetscCall(ConstraintsAdd(s->constraints, i, s->gmm->twin[i], support_nodes(w, k), w->node + w->node_start[k],
+    if (gmm_of(s)->twin[i] >= 0)
+      PetscCall(ConstraintsAdd(s->constraints, i, gmm_of(s)->twin[i], support_nodes(w, k), w->node + w->node_start[k],
                                w->N + w->value_start[k]));
   }
   PetscFunctionReturn(0);
@@ -192,18 +189,18 @@ static PetscReal own_share(const Constraints *c, PetscInt k)
 
 /* Constraints act where material reaches the node; elsewhere it moves as prescribed by itself. So it does where other nodes crowd it: its
  * coefficient, with a small share in the field, would have to be huge. */
-static PetscErrorCode Release(Stage *s)
+static PetscErrorCode Release(Discretisation *s)
 {
   const PetscInt dim = s->grid->dim;
   const Constraints *c = s->constraints;
   PetscReal *state;
 
   PetscFunctionBeginUser;
-  if (!s->gmm->constraints) PetscFunctionReturn(0);
+  if (!gmm_of(s)->constraints) PetscFunctionReturn(0);
   PetscCall(PetscCalloc1(s->grid->n_nodes * dim, &state));
   for (PetscInt k = 0; k < c->n; ++k) {
-    const PetscBool active = s->touched[c->at[k]] && own_share(c, k) > SHARE;
-    s->touched[c->twin[k]] = active;
+    const PetscBool active = s->nodes->touched[c->at[k]] && own_share(c, k) > SHARE;
+    s->nodes->touched[c->twin[k]] = active;
     for (PetscInt d = 0; d < dim; ++d) {
       const PetscBool held = s->boundary->fixed[c->at[k] * dim + d] != 0;
       state[c->at[k] * dim + d] = active && held ? DOF_RELEASED : DOF_USUAL;
@@ -211,14 +208,14 @@ static PetscErrorCode Release(Stage *s)
     }
   }
   PetscCall(GridToGhosts(s->grid, dim, state));
-  for (PetscInt i = 0; i < s->grid->n_nodes * dim; ++i) s->dof[i] = (unsigned char)state[i];
+  for (PetscInt i = 0; i < s->grid->n_nodes * dim; ++i) s->nodes->dof[i] = (unsigned char)state[i];
   PetscCall(PetscFree(state));
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode GmmGather(Stage *s)
+PetscErrorCode GmmGather(Discretisation *s)
 {
-  Gmm *g = s->gmm;
+  Gmm *g = gmm_of(s);
   Search search;
   CloudTally ignored = {.nodes = 0};
   PetscBool missing = PETSC_FALSE, any;
@@ -241,7 +238,7 @@ PetscErrorCode GmmGather(Stage *s)
   for (int k = 0; k < 5; ++k) rename_nodes(s, &search, lists.n[k], lists.node[k]);
   PetscCall(SearchEnd(&search));
   PetscCall(Follow(s));
-  PetscCall(StageTouch(s));
+  PetscCall(DiscretisationTouch(s));
   PetscCall(Release(s));
   PetscFunctionReturn(0);
 }
@@ -267,10 +264,11 @@ static PetscErrorCode AddGroup(NodeGroups *groups, PetscInt *capacity, PetscInt 
 }
 
 /* How far a cloud of these nodes may reach before the couplings must be made anew: clouds that had to grow get their share, too. */
-static PetscReal wide_radius(const Stage *s, PetscReal skin, const PetscReal *x, PetscInt n, const PetscInt *node)
+static PetscReal wide_radius(const Discretisation *s, PetscReal skin, const PetscReal *x, PetscInt n,
+                             const PetscInt *node)
 {
   const PetscInt dim = s->grid->dim;
-  PetscReal farthest2 = PetscSqr(s->gmm->rule.support.radius * s->gmm->rule.h);
+  PetscReal farthest2 = PetscSqr(gmm_of(s)->rule.support.radius * gmm_of(s)->rule.h);
   for (PetscInt i = 0; i < n; ++i) {
     PetscReal d2 = 0;
     for (PetscInt d = 0; d < dim; ++d) d2 += PetscSqr(s->grid->x[node[i] * dim + d] - x[d]);
@@ -279,7 +277,7 @@ static PetscReal wide_radius(const Stage *s, PetscReal skin, const PetscReal *x,
   return skin * PetscSqrtReal(farthest2);
 }
 
-PetscErrorCode GmmCouplings(const Stage *s, NodeGroups *groups)
+PetscErrorCode GmmCouplings(const Discretisation *s, NodeGroups *groups)
 {
   const Grid *grid = s->grid;
   const Support *w = s->support;
@@ -293,7 +291,7 @@ PetscErrorCode GmmCouplings(const Stage *s, NodeGroups *groups)
   PetscCall(PetscMalloc1(grid->n_nodes, &twin));
   for (PetscInt i = 0; i < grid->n_nodes; ++i) twin[i] = cloud_is_twin(grid, i);
   PetscCall(NeighboursCreate(grid->dim, grid->n_nodes, grid->x, 0, NULL, twin,
-                             SKIN * s->gmm->rule.support.radius * s->gmm->rule.h, &nodes));
+                             SKIN * gmm_of(s)->rule.support.radius * gmm_of(s)->rule.h, &nodes));
   PetscCall(PetscFree(twin));
   *groups = (NodeGroups){0};
   PetscCall(PetscCalloc1(w->n_groups + c->n + 1, &groups->start));

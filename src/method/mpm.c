@@ -3,24 +3,25 @@
 
 #define UNROLLED static inline __attribute__((always_inline))
 
-/* A loop over points, with dimension and nodes of a cell known to the compiler where that pays most. */
-#define WITH_SIZES(loop, dim, nn, ...)                         \
-  do {                                                         \
-    if ((dim) == 2 && (nn) == 4) loop(2, 4, __VA_ARGS__);      \
-    else if ((dim) == 3 && (nn) == 8) loop(3, 8, __VA_ARGS__); \
-    else loop(dim, nn, __VA_ARGS__);                           \
-  } while (0)
+/* A loop over the points of each kind of cells, with dimension and nodes of a cell known to the compiler where that pays most. */
+#define WITH_SIZES(loop, s)                                                                                \
+  for (const SupportRun *run = (s)->support->run; run < (s)->support->run + (s)->support->n_runs; ++run) { \
+    if ((s)->grid->dim == 2 && run->nodes == 4) loop(2, 4, run, s);                                        \
+    else if ((s)->grid->dim == 3 && run->nodes == 8) loop(3, 8, run, s);                                   \
+    else loop((s)->grid->dim, run->nodes, run, s);                                                         \
+  }
 
-UNROLLED void gather_motion(const PetscInt dim, const PetscInt nn, Stage *s)
+UNROLLED void gather_motion(const PetscInt dim, const PetscInt nn, const SupportRun *run, Discretisation *s)
 {
   const Support *w = s->support;
-  for (PetscInt g = 0; g < w->n_groups; ++g) {
-    const PetscInt *node = w->node + g * nn;
+  for (PetscInt g = run->first; g < run->end; ++g) {
+    const PetscInt *node = w->node + w->node_start[g];
+    const PetscReal *N = w->N + w->value_start[g];
     PetscReal momentum[3 * CELL_MAX_NODES] = {0}, force[3 * CELL_MAX_NODES] = {0};
-    for (PetscInt p = w->point_start[g]; p < w->point_start[g + 1]; ++p) {
+    for (PetscInt p = w->point_start[g]; p < w->point_start[g + 1]; ++p, N += nn) {
       const PetscReal *v = point_real(s->points, POINT_V, p), *a = point_real(s->points, POINT_A, p);
       for (PetscInt I = 0; I < nn; ++I) {
-        const PetscReal m = w->N[p * nn + I] * s->points->real[POINT_MASS][p];
+        const PetscReal m = N[I] * s->points->real[POINT_MASS][p];
         for (PetscInt d = 0; d < dim; ++d) {
           momentum[I * dim + d] += m * v[d];
           force[I * dim + d] += m * a[d];
@@ -29,38 +30,38 @@ UNROLLED void gather_motion(const PetscInt dim, const PetscInt nn, Stage *s)
     }
     for (PetscInt I = 0; I < nn; ++I)
       for (PetscInt d = 0; d < dim; ++d) {
-        s->v[node[I] * dim + d] += momentum[I * dim + d];
-        s->a[node[I] * dim + d] += force[I * dim + d];
+        s->nodes->v[node[I] * dim + d] += momentum[I * dim + d];
+        s->nodes->a[node[I] * dim + d] += force[I * dim + d];
       }
   }
 }
 
 /* q_I = sum N m v, f_I = sum N m a (eqs. 2.6-2.9). A node so far from all points that its mass vanishes starts at rest: its
  * velocity counts for nothing. */
-static PetscErrorCode Project(Stage *s)
+static PetscErrorCode Project(Discretisation *s)
 {
   const Grid *grid = s->grid;
   const PetscInt dim = grid->dim, dofs = grid->n_nodes * dim;
 
   PetscFunctionBeginUser;
-  PetscCall(StageNodalMass(s));
-  PetscCall(PetscArrayzero(s->v, dofs));
-  PetscCall(PetscArrayzero(s->a, dofs));
-  WITH_SIZES(gather_motion, dim, s->support->uniform, s);
-  PetscCall(GridSumToOwners(grid, dim, s->v));
-  PetscCall(GridSumToOwners(grid, dim, s->a));
+  PetscCall(DiscretisationMass(s));
+  PetscCall(PetscArrayzero(s->nodes->v, dofs));
+  PetscCall(PetscArrayzero(s->nodes->a, dofs));
+  WITH_SIZES(gather_motion, s);
+  PetscCall(GridSumToOwners(grid, dim, s->nodes->v));
+  PetscCall(GridSumToOwners(grid, dim, s->nodes->a));
   for (PetscInt node = 0; node < grid->n_owned; ++node) {
-    if (s->mass[node] == 0) continue;
-    const PetscReal inverse = s->mass[node] > 1e-300 ? 1 / s->mass[node] : 0;
+    if (s->nodes->mass[node] == 0) continue;
+    const PetscReal inverse = s->nodes->mass[node] > 1e-300 ? 1 / s->nodes->mass[node] : 0;
     for (PetscInt i = node * dim; i < (node + 1) * dim; ++i) {
-      s->v[i] *= inverse;
-      s->a[i] *= inverse;
+      s->nodes->v[i] *= inverse;
+      s->nodes->a[i] *= inverse;
     }
   }
-  PetscCall(GridToGhosts(grid, dim, s->v));
-  PetscCall(GridToGhosts(grid, dim, s->a));
-  PetscCall(PetscArraycpy(s->v_points, s->v, dofs));
-  PetscCall(PetscArraycpy(s->a_points, s->a, dofs));
+  PetscCall(GridToGhosts(grid, dim, s->nodes->v));
+  PetscCall(GridToGhosts(grid, dim, s->nodes->a));
+  PetscCall(PetscArraycpy(s->nodes->v_points, s->nodes->v, dofs));
+  PetscCall(PetscArraycpy(s->nodes->a_points, s->nodes->a, dofs));
   PetscFunctionReturn(0);
 }
 
@@ -79,7 +80,7 @@ static PetscReal emptiest_corner(const Support *w, PetscInt g, const PetscReal *
 /* A cell that its points fill only partly leaves motions of its nodes without stiffness and mass, and so does a quadrilateral or hexahedron whose points
  * stand on a line or at one side, however many they are. In the measure in which it is not full, part of its mass is lumped and its nodes are tied by a weak
  * stiffness and a little inertia (docs/theory.md, "Cells that are not full"). */
-static PetscErrorCode Stabilise(Stage *s)
+static PetscErrorCode Stabilise(Discretisation *s)
 {
   const Support *w = s->support;
   const PetscInt dim = s->grid->dim;
@@ -96,7 +97,7 @@ static PetscErrorCode Stabilise(Stage *s)
     PetscCall(PetscMalloc1(s->group_capacity, &s->soft));
     PetscCall(PetscMalloc1(s->group_capacity, &s->tie));
     PetscCall(PetscFree(s->pressure_tie));
-    if (s->pressure) PetscCall(PetscMalloc1(s->group_capacity, &s->pressure_tie));
+    if (s->nodes->pressure) PetscCall(PetscMalloc1(s->group_capacity, &s->pressure_tie));
   }
   for (PetscInt g = 0; g < w->n_groups; ++g) {
     PetscReal filled = 0, modulus = 0, shear = 0, mass = 0;
@@ -119,14 +120,14 @@ static PetscErrorCode Stabilise(Stage *s)
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode MpmInitialise(Stage *s)
+static PetscErrorCode MpmInitialise(Discretisation *s)
 {
   PetscFunctionBeginUser;
   PetscCall(PointsSort(s->points));
   PetscCall(SupportFromCells(s->support, s->points, s->grid));
-  PetscCall(StageTouch(s));
+  PetscCall(DiscretisationTouch(s));
   PetscCall(Project(s));
-  if (s->pressure) PetscCall(StageNodalPressure(s));
+  if (s->nodes->pressure) PetscCall(DiscretisationPressure(s));
   PetscCall(Stabilise(s));
   PetscFunctionReturn(0);
 }
@@ -134,23 +135,24 @@ static PetscErrorCode MpmInitialise(Stage *s)
 /* Points take the change of the nodes' velocity, measured from what the points had given them: where the boundary stops a node, it stops
  * its points too (eq. 2.16 as printed would let them keep their velocity for ever; docs/theory.md). Rayleigh damping acts on all motion:
  * on what nodes carry through the balance, on the rest of a point's velocity, which no node sees, here. */
-UNROLLED void move_points(const PetscInt dim, const PetscInt nn, Stage *s, const PetscReal *du)
+UNROLLED void move_points(const PetscInt dim, const PetscInt nn, const SupportRun *run, Discretisation *s)
 {
   const Support *w = s->support;
-  for (PetscInt g = 0; g < w->n_groups; ++g) {
-    const PetscInt *node = w->node + g * nn;
-    for (PetscInt p = w->point_start[g]; p < w->point_start[g + 1]; ++p) {
-      const PetscReal *N = w->N + p * nn;
+  const NodalFields *n = s->nodes;
+  for (PetscInt g = run->first; g < run->end; ++g) {
+    const PetscInt *node = w->node + w->node_start[g];
+    const PetscReal *N = w->N + w->value_start[g];
+    for (PetscInt p = w->point_start[g]; p < w->point_start[g + 1]; ++p, N += nn) {
       PetscReal *x = point_real(s->points, POINT_X, p), *u = point_real(s->points, POINT_U, p);
       PetscReal *v = point_real(s->points, POINT_V, p), *a = point_real(s->points, POINT_A, p);
       for (PetscInt d = 0; d < dim; ++d) {
         PetscReal move = 0, gain = 0, acceleration = 0, seen = 0;
         for (PetscInt I = 0; I < nn; ++I) {
           const PetscInt i = node[I] * dim + d;
-          move += N[I] * du[i];
-          gain += N[I] * (s->v1[i] - s->v_points[i]);
-          acceleration += N[I] * s->a1[i];
-          seen += N[I] * s->v_points[i];
+          move += N[I] * n->du[i];
+          gain += N[I] * (n->v1[i] - n->v_points[i]);
+          acceleration += N[I] * n->a1[i];
+          seen += N[I] * n->v_points[i];
         }
         x[d] += move;
         u[d] += move;
@@ -161,15 +163,15 @@ UNROLLED void move_points(const PetscInt dim, const PetscInt nn, Stage *s, const
   }
 }
 
-static PetscErrorCode MpmConvect(Stage *s, const PetscReal *du)
+static PetscErrorCode MpmConvect(Discretisation *s)
 {
   LostPoint *ignored;
   PetscInt n_ignored;
 
   PetscFunctionBeginUser;
-  WITH_SIZES(move_points, s->grid->dim, s->support->uniform, s, du);
-  PetscCall(StageMoveCarried(s, s->tracers, du));
-  PetscCall(StageMoveCarried(s, s->loads->carriers, du));
+  WITH_SIZES(move_points, s);
+  PetscCall(DiscretisationMoveCarried(s, s->tracers));
+  PetscCall(DiscretisationMoveCarried(s, s->loads->carriers));
   PetscCall(PetscFree(s->lost));
   PetscCall(PointsRelocate(s->points, s->grid, s->c->grid.outside, &s->n_lost, &s->lost));
   PetscCall(PointsRelocate(s->tracers, s->grid, OUTSIDE_KEEP, &n_ignored, &ignored));
@@ -182,7 +184,9 @@ static PetscErrorCode MpmConvect(Stage *s, const PetscReal *du)
 const Method method_mpm = {
   .name = "mpm",
   .help = "material point method: points move through a grid that is restored every step",
-  .points_move = PETSC_TRUE,
+  .restores_grid = PETSC_TRUE,
+  .takes_pressure = PETSC_TRUE,
   .initialise = MpmInitialise,
   .convect = MpmConvect,
+  .carries = cell_carries,
 };

@@ -3,7 +3,7 @@
 
 static void flag_occupied(const Model *m, unsigned char *cell)
 {
-  const Support *w = m->stage->support;
+  const Support *w = m->space->support;
   for (PetscInt c = 0; c < m->grid->n_cells; ++c) cell[c] = 0;
   for (PetscInt g = 0; g < w->n_groups; ++g) cell[m->points->cell[w->point_start[g]]] = 1;
 }
@@ -84,26 +84,15 @@ PetscErrorCode ModelEnable(Model *m)
   PetscFunctionReturn(0);
 }
 
-/* Slots of all groups and constraints; `complete` is false if the system lacks a pair of them on any rank. */
+/* Slots of all groups and nodal forces; `complete` is false if the system lacks a pair of them on any rank. */
 static PetscErrorCode FindSlots(Model *m, PetscBool *complete)
 {
   PetscBool here;
 
   PetscFunctionBeginUser;
-  PetscCall(SystemSlots(m->system, m->stage->support, &here));
-  here = here && constraints_find_slots(m->stage->constraints, m->system);
+  PetscCall(SystemSlots(m->system, m->space->support, &here));
+  here = here && nodal_forces_find_slots(&m->forces, m->system);
   PetscCallMPI(MPI_Allreduce(&here, complete, 1, MPIU_BOOL, MPI_LAND, m->comm));
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode ModelFollowCloud(Model *m)
-{
-  PetscFunctionBeginUser;
-  PetscCall(PetscFree(m->fixed));
-  PetscCall(PetscCalloc1(m->grid->n_nodes * m->dim, &m->fixed));
-  PetscCall(PetscFree(m->idle));
-  PetscCall(PetscCalloc1(m->grid->n_nodes, &m->idle));
-  m->layouts = m->grid->cloud->layouts;
   PetscFunctionReturn(0);
 }
 
@@ -114,18 +103,18 @@ static PetscErrorCode ActivateClouds(Model *m)
   NodeGroups groups;
 
   PetscFunctionBeginUser;
-  if (m->layouts != m->grid->cloud->layouts) PetscCall(ModelFollowCloud(m));
-  else if (m->system->builds) PetscCall(FindSlots(m, &complete));
+  if (m->system->builds && m->layouts == m->grid->cloud->layouts) PetscCall(FindSlots(m, &complete));
+  m->layouts = m->grid->cloud->layouts;
   if (!complete) {
-    PetscCall(PetscArrayzero(m->force, m->grid->n_nodes * m->dim)); /* of nodes that may lose their unknowns */
-    PetscCall(m->method->couplings(m->stage, &groups));
+    PetscCall(PetscArrayzero(m->nodes->force, m->grid->n_nodes * m->dim)); /* of nodes that may lose their unknowns */
+    PetscCall(m->method->couplings(m->space, &groups));
     PetscCall(SystemBuild(m->system, m->grid, &groups));
     PetscCall(PetscFree(groups.start));
     PetscCall(PetscFree(groups.node));
     PetscCall(FindSlots(m, &complete));
     PetscCheck(complete, m->comm, PETSC_ERR_PLIB, "the system lacks couplings that it was built for");
   }
-  PetscCall(MPIU_Allreduce(&m->stage->constraints->n, &m->n_constraints, 1, MPIU_INT, MPI_SUM, m->comm));
+  PetscCall(MPIU_Allreduce(&m->space->constraints->n, &m->n_constraints, 1, MPIU_INT, MPI_SUM, m->comm));
   PetscFunctionReturn(0);
 }
 
@@ -136,7 +125,7 @@ PetscErrorCode ModelActivate(Model *m)
   PetscBool fits;
 
   PetscFunctionBeginUser;
-  if (m->method->couplings) {
+  if (m->method->clouds) {
     PetscCall(ActivateClouds(m));
     PetscFunctionReturn(0);
   }
@@ -145,10 +134,11 @@ PetscErrorCode ModelActivate(Model *m)
   PetscCall(StillFits(m, occupied, &fits));
   if (!fits) {
     PetscCall(PetscArraycpy(m->enabled, occupied, m->grid->n_cells));
-    if (m->method->points_move && analysis->step < analysis->end) PetscCall(AddRings(m, occupied, m->enabled));
+    if (m->method->restores_grid && analysis->step < analysis->end) PetscCall(AddRings(m, occupied, m->enabled));
     PetscCall(ModelEnable(m));
   }
   PetscCall(PetscFree(occupied));
-  PetscCall(SystemSlots(m->system, m->stage->support, NULL));
+  PetscCall(FindSlots(m, &fits));
+  PetscCheck(fits, m->comm, PETSC_ERR_PLIB, "the system lacks couplings that nodal forces ask for");
   PetscFunctionReturn(0);
 }

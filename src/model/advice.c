@@ -38,7 +38,7 @@ static void hint_mixed(const Model *m, const Material *material, Diag *diag)
               "the law %s has no mixed form: a law that has one (see `talus list laws`), or a material that is less "
               "stiff against changes of volume",
               material->law->name);
-  else if (m->method->couplings)
+  else if (!m->method->takes_pressure)
     diag_hint(diag,
               "method %s has no mixed form: take mpm or fem with `formulation: mixed`, or a material that is less "
               "stiff against changes of volume",
@@ -64,7 +64,7 @@ static void advise_locking(const Model *m, const BodySpec *body, PetscInt i, Dia
     diag, path,
     "'%s' %s: with displacements as the only unknowns %s lock, so that the body is too stiff and carries too "
     "much, often several times",
-    spec->name, what, m->method->couplings ? "clouds" : cells_plural[m->grid->type]);
+    spec->name, what, m->method->clouds ? "clouds" : cells_plural[m->grid->type]);
   hint_mixed(m, material, diag);
 }
 

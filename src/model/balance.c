@@ -31,7 +31,7 @@ static void MPIAPI sum_and_largest(void *in, void *inout, PetscMPIInt *n, MPI_Da
 /* Largest share of the work over the mean. */
 static PetscErrorCode MeasureImbalance(const Model *m, PetscReal *imbalance)
 {
-  const PetscReal mine = (PetscReal)m->points->n + cell_work(m->grid->type) * (PetscReal)m->stage->support->n_groups;
+  const PetscReal mine = (PetscReal)m->points->n + cell_work(m->grid->type) * (PetscReal)m->space->support->n_groups;
   const PetscReal pair[2] = {mine, mine};
   PetscReal all[2];
   PetscMPIInt size;
@@ -62,7 +62,7 @@ static PetscBool is_due(const Model *m)
 
 static void weigh_cells(const Model *m, PetscReal *weight)
 {
-  const Support *s = m->stage->support;
+  const Support *s = m->space->support;
   const PetscReal cell = cell_work(m->grid->type);
   for (PetscInt c = 0; c < m->grid->n_cells; ++c) weight[c] = 0;
   for (PetscInt g = 0; g < s->n_groups; ++g)
@@ -76,21 +76,21 @@ PetscErrorCode ModelRegrid(Model *m, Grid *grid, PetscInt *moved)
 
   PetscFunctionBeginUser;
   PetscCall(TablesCreate(&kept));
-  PetscCall(ReactionsToTables(m, kept));
-  PetscCall(GuessToTables(m, kept));
+  PetscCall(NodalFieldsToTables(m->nodes, PETSC_FALSE, m->boundary->fixed, kept));
+  PetscCall(ForcesToTables(m, kept));
   *moved = 0;
   PetscCall(PointsRepartition(m->points, m->grid, grid, moved));
   PetscInt followers = 0;
   PetscCall(PointsRepartition(m->tracers, m->grid, grid, &followers));
   PetscCall(LoadsRegrid(m->loads, m->grid, grid));
   PetscCall(BoundaryRegrid(&m->boundary, grid));
-  PetscCall(StageDestroy(&m->stage));
   PetscCall(ModelDestroyFields(m));
   PetscCall(GridDestroy(&m->grid));
   m->grid = grid;
   PetscCall(ModelCreateFields(m)); /* no cell is enabled: the next step makes the system anew */
-  PetscCall(ReactionsFromTables(m, kept, reason));
-  PetscCall(GuessFromTables(m, kept, reason));
+  PetscCall(ForcesCreate(m, NULL));
+  PetscCall(NodalFieldsFromTables(m->nodes, PETSC_FALSE, kept, reason));
+  PetscCall(ForcesFromTables(m, kept, reason));
   PetscCheck(!reason[0], m->comm, PETSC_ERR_PLIB, "%s", reason);
   PetscCall(TablesDestroy(&kept));
   PetscFunctionReturn(0);
@@ -106,7 +106,7 @@ PetscErrorCode ModelBalance(Model *m, StepReport *report)
 
   PetscFunctionBeginUser;
   PetscCallMPI(MPI_Comm_size(m->comm, &size));
-  if (size == 1 || !m->method->points_move || m->grid->cloud) PetscFunctionReturn(0);
+  if (size == 1 || !m->method->restores_grid) PetscFunctionReturn(0);
   PetscCall(MeasureImbalance(m, &b->imbalance));
   b->largest = PetscMax(b->largest, b->imbalance);
   if (m->c->parallel.imbalance <= 0 || !is_due(m)) PetscFunctionReturn(0);
@@ -120,7 +120,7 @@ PetscErrorCode ModelBalance(Model *m, StepReport *report)
     PetscFunctionReturn(0);
   }
   PetscCall(ModelRegrid(m, grid, &moved));
-  PetscCall(m->method->initialise(m->stage));
+  PetscCall(ModelInitialise(m));
   PetscCall(MPIU_Allreduce(&moved, &report->moved, 1, MPIU_INT, MPI_SUM, m->comm));
   report->imbalance = b->imbalance;
   b->imbalance = b->reached;

@@ -67,7 +67,7 @@ static PetscBool is_held(const Model *m, PetscInt node)
  * force. Where the body stands on prescribed nodes of its own that is as it should be. */
 PetscErrorCode ModelWarnOfObstacles(const Model *m, Diag *diag)
 {
-  const Support *w = m->stage->support;
+  const Support *w = m->space->support;
   PetscInt *count;
   char path[64];
 

@@ -36,12 +36,12 @@ static PetscErrorCode FindUncarried(Model *m, Uncarried *u, PetscBool *any)
   PetscFunctionBeginUser;
   for (PetscInt p = 0; p < m->tracers->n; ++p) {
     const PetscInt k = m->tracers->body[p];
-    if (m->memory[k].ended > 0 || stage_carries(m->stage, m->tracers, p)) continue;
+    if (m->memory[k].ended > 0 || m->method->carries(m->space, m->tracers, p)) continue;
     add_uncarried(m->tracers, p, u + k);
     found = 1;
   }
   for (PetscInt p = 0; p < carriers->n; ++p) {
-    if (!has_force(carriers, p) || stage_carries(m->stage, carriers, p)) continue;
+    if (!has_force(carriers, p) || m->method->carries(m->space, carriers, p)) continue;
     add_uncarried(carriers, p, u + m->c->n_measures + carriers->body[p]);
     PetscCall(PetscArrayzero(point_real(carriers, POINT_FORCE, p), m->dim));
     found = 1;

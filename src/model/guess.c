@@ -3,19 +3,16 @@
  * Where a flow comes to rest the second is nearer: velocities that points give to the nodes of a restored grid are not those that the last
  * solution had there. Where motion only begins the first is. Whichever would have been nearer to the last solution is tried first; if Newton
  * fails from it, the other one, and then rest. */
-#include "grid/directory.h"
+#include "grid/cloud/cloud.h"
 #include "model/model_private.h"
 
 /* Only nodes that stay where they are have increments that mean something one step later; those of a mesh know their own velocity. */
-static PetscBool guess_follows(const Model *m)
-{
-  return m->c->analysis.type == ANALYSIS_DYNAMIC && m->method->points_move && !m->grid->cloud;
-}
+static PetscBool guess_follows(const Model *m) { return m->scheme->inertia && m->method->restores_grid; }
 
 PetscInt guess_order(const Model *m, FirstGuess order[GUESS_N])
 {
   PetscInt n = 0;
-  if (m->c->analysis.type == ANALYSIS_DYNAMIC) {
+  if (m->scheme->inertia) {
     const PetscBool known = guess_follows(m) && m->guess.step > 0;
     if (known && m->guess.previous) order[n++] = GUESS_PREVIOUS;
     order[n++] = GUESS_INERTIA;
@@ -25,13 +22,17 @@ PetscInt guess_order(const Model *m, FirstGuess order[GUESS_N])
   return n;
 }
 
+/* Acceleration stays. */
+static PetscReal inertia_alone(const NodalFields *n, PetscReal dt, PetscInt i)
+{
+  return dt * (n->v[i] + 0.5 * dt * n->a[i]);
+}
+
 static void guess_inertia(const Model *m, PetscReal dt, PetscReal *du)
 {
-  const Newmark newmark = newmark_of(&m->c->analysis, dt);
   for (PetscInt node = 0; node < m->grid->n_nodes; ++node) {
-    const PetscBool moves = m->stage->touched[node] && !(m->grid->cloud && cloud_is_twin(m->grid, node));
-    for (PetscInt d = 0, i = node * m->dim; d < m->dim; ++d, ++i)
-      du[i] = moves ? newmark_guess(&newmark, m->stage->v[i], m->stage->a[i]) : 0;
+    const PetscBool moves = m->nodes->touched[node] && !(m->grid->cloud && cloud_is_twin(m->grid, node));
+    for (PetscInt d = 0, i = node * m->dim; d < m->dim; ++d, ++i) du[i] = moves ? inertia_alone(m->nodes, dt, i) : 0;
   }
 }
 
@@ -44,12 +45,11 @@ void guess_make(const Model *m, FirstGuess guess, PetscReal dt, PetscReal *du)
   }
   guess_inertia(m, dt, du); /* nodes that the last step did not move know no other */
   for (PetscInt i = 0; guess == GUESS_PREVIOUS && i < dofs; ++i)
-    if (!m->fixed[i] && m->previous[i] != 0) du[i] = dt / m->guess.step * m->previous[i];
+    if (!m->nodes->fixed[i] && m->nodes->previous[i] != 0) du[i] = dt / m->guess.step * m->nodes->previous[i];
 }
 
 PetscErrorCode GuessLearn(Model *m, PetscReal dt)
 {
-  const Newmark newmark = newmark_of(&m->c->analysis, dt);
   const PetscReal ratio = m->guess.step > 0 ? dt / m->guess.step : 0;
   PetscReal local[2] = {0, 0}, sum[2]; /* squares of what was missing: from inertia, from the step before */
 
@@ -57,34 +57,27 @@ PetscErrorCode GuessLearn(Model *m, PetscReal dt)
   if (!guess_follows(m)) PetscFunctionReturn(0);
   for (PetscInt k = 0; k < m->system->n_active; ++k)
     for (PetscInt d = 0, i = m->system->active[k] * m->dim; d < m->dim; ++d, ++i) {
-      if (m->fixed[i] || m->previous[i] == 0) continue;
-      const PetscReal inertia = m->du[i] - newmark_guess(&newmark, m->stage->v[i], m->stage->a[i]);
-      const PetscReal before = m->du[i] - ratio * m->previous[i];
+      if (m->nodes->fixed[i] || m->nodes->previous[i] == 0) continue;
+      const PetscReal inertia = m->nodes->du[i] - inertia_alone(m->nodes, dt, i);
+      const PetscReal before = m->nodes->du[i] - ratio * m->nodes->previous[i];
       local[0] += inertia * inertia;
       local[1] += before * before;
     }
   PetscCall(MPIU_Allreduce(local, sum, 2, MPIU_REAL, MPI_SUM, m->comm));
   m->guess = (Guess){.step = dt, .previous = sum[1] < sum[0]};
-  for (PetscInt i = 0; i < m->grid->n_nodes * m->dim; ++i) m->previous[i] = m->fixed[i] ? 0 : m->du[i];
+  for (PetscInt i = 0; i < m->grid->n_nodes * m->dim; ++i)
+    m->nodes->previous[i] = m->nodes->fixed[i] ? 0 : m->nodes->du[i];
   PetscFunctionReturn(0);
 }
 
-static NodalField field_of(Model *m) { return (NodalField){"increment", "m", m->dim, m->previous}; }
-
-/* Nodes that did not move are left out. */
+/* Increments stand with the nodal fields. */
 PetscErrorCode GuessToTables(Model *m, Tables *tables)
 {
-  const NodalField field = field_of(m);
-  unsigned char *take;
   Table *table;
   Column *column;
 
   PetscFunctionBeginUser;
   if (!guess_follows(m)) PetscFunctionReturn(0);
-  PetscCall(PetscCalloc1(m->grid->n_nodes, &take));
-  for (PetscInt i = 0; i < m->grid->n_nodes * m->dim; ++i) take[i / m->dim] |= m->previous[i] != 0;
-  PetscCall(NodesToTable(m->grid, take, 1, &field, "increments", tables));
-  PetscCall(PetscFree(take));
   PetscCall(TablesAdd(tables, "guess", PETSC_TRUE, 1, &table));
   PetscCall(TableAdd(table, "step", "s", COLUMN_REAL, 1, &m->guess.step, NULL));
   PetscCall(TableAdd(table, "previous", NULL, COLUMN_INT64, 1, NULL, &column));
@@ -92,22 +85,15 @@ PetscErrorCode GuessToTables(Model *m, Tables *tables)
   PetscFunctionReturn(0);
 }
 
-/* Checkpoints that lack these tables let the next step start from inertia. */
-PetscErrorCode GuessFromTables(Model *m, const Tables *tables, char reason[256])
+/* Checkpoints that lack this table let the next step start from inertia. */
+void guess_from_tables(Model *m, const Tables *tables, char reason[256])
 {
-  const Table *table = tables_find(tables, "guess"), *increments = tables_find(tables, "increments");
-  const NodalField field = field_of(m);
-
-  PetscFunctionBeginUser;
-  if (!guess_follows(m) || !table || !increments) PetscFunctionReturn(0);
+  const Table *table = tables_find(tables, "guess");
+  if (!guess_follows(m) || !table) return;
   const PetscReal *step = table_data(table, "step", COLUMN_REAL, 1, reason);
   const PetscInt64 *previous = table_data(table, "previous", COLUMN_INT64, 1, reason);
-  if (!step || !previous || reason[0]) PetscFunctionReturn(0);
-  if (table->rows != 1 || !(*step >= 0 && *step <= PETSC_MAX_REAL) || (*previous != 0 && *previous != 1)) {
+  if (!step || !previous || reason[0]) return;
+  if (table->rows != 1 || !(*step >= 0 && *step <= PETSC_MAX_REAL) || (*previous != 0 && *previous != 1))
     snprintf(reason, 256, "guess makes no sense");
-    PetscFunctionReturn(0);
-  }
-  m->guess = (Guess){.step = *step, .previous = *previous};
-  PetscCall(NodesFromTable(m->grid, PETSC_FALSE, 1, &field, increments, reason));
-  PetscFunctionReturn(0);
+  else m->guess = (Guess){.step = *step, .previous = *previous};
 }

@@ -5,7 +5,7 @@
 /* Nodes that the body touches, on all copies. */
 static PetscErrorCode TouchedBy(const Model *m, PetscInt body, PetscReal *touched)
 {
-  const Support *w = m->stage->support;
+  const Support *w = m->space->support;
 
   PetscFunctionBeginUser;
   PetscCall(PetscArrayzero(touched, m->grid->n_nodes));
@@ -18,27 +18,34 @@ static PetscErrorCode TouchedBy(const Model *m, PetscInt body, PetscReal *touche
   PetscFunctionReturn(0);
 }
 
-/* joined (bodies x bodies): do both touch one node? held (bodies x dim): does a node of the body have a prescribed motion in this direction? */
+/* joined (bodies x bodies): do both touch one node? held (bodies x dim): is a node of the body held in this direction, by a prescribed motion or by
+ * a nodal force? */
 static PetscErrorCode Touches(const Model *m, PetscInt *joined, PetscInt *held)
 {
   const PetscInt n = m->c->n_bodies, nodes = m->grid->n_nodes;
   PetscReal *touched;
-  PetscInt *before; /* n_nodes: the last body that touches it, from 1 on */
+  PetscInt *before;     /* n_nodes: the last body that touches it, from 1 on */
+  unsigned char *holds; /* n_nodes x dim */
+  const NodalScene scene = nodal_scene(m, m->time, m->nodes->du);
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(nodes, &touched));
   PetscCall(PetscCalloc1(nodes, &before));
+  PetscCall(PetscMalloc1(nodes * m->dim, &holds));
+  PetscCall(PetscArraycpy(holds, m->boundary->fixed, nodes * m->dim));
+  nodal_forces_hold(&m->forces, &scene, holds);
   for (PetscInt b = 0; b < n; ++b) {
     PetscCall(TouchedBy(m, b, touched));
     for (PetscInt node = 0; node < nodes; ++node) {
       if (touched[node] == 0) continue;
-      for (PetscInt d = 0; d < m->dim; ++d) held[b * m->dim + d] |= m->boundary->fixed[node * m->dim + d];
+      for (PetscInt d = 0; d < m->dim; ++d) held[b * m->dim + d] |= holds[node * m->dim + d];
       if (before[node]) joined[b * n + before[node] - 1] = joined[(before[node] - 1) * n + b] = 1;
       before[node] = b + 1;
     }
   }
   PetscCall(PetscFree(touched));
   PetscCall(PetscFree(before));
+  PetscCall(PetscFree(holds));
   PetscCall(MPIU_Allreduce(MPI_IN_PLACE, joined, (PetscMPIInt)(n * n), MPIU_INT, MPI_MAX, m->comm));
   PetscCall(MPIU_Allreduce(MPI_IN_PLACE, held, (PetscMPIInt)(n * m->dim), MPIU_INT, MPI_MAX, m->comm));
   PetscFunctionReturn(0);
@@ -78,7 +85,7 @@ PetscErrorCode CheckHeld(const Model *m, Diag *diag)
 
   PetscFunctionBeginUser;
   PetscCall(ModelCountPoints(m, &points));
-  if (m->c->analysis.type == ANALYSIS_DYNAMIC || !points) PetscFunctionReturn(0);
+  if (m->scheme->inertia || !points) PetscFunctionReturn(0);
   PetscCall(PetscCalloc2(n * n, &joined, n * dim, &held));
   PetscCall(Touches(m, joined, held));
   spread(n, dim, joined, held);

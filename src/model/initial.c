@@ -3,54 +3,41 @@
 
 void gravity_at(const Case *c, PetscReal t, PetscReal g[3])
 {
-  const PetscReal factor =
-    amplitude_value(&c->gravity_amplitude, t, c->analysis.type == ANALYSIS_STATIC ? t / c->analysis.end : 1);
+  const PetscReal factor = case_factor(c, &c->gravity_amplitude, t);
   for (PetscInt d = 0; d < 3; ++d) g[d] = factor * c->gravity[d];
 }
 
 PetscErrorCode InitialAcceleration(Model *m)
 {
   const PetscInt dim = m->dim, dofs = m->grid->n_nodes * dim;
-  Stage *s = m->stage;
+  Discretisation *s = m->space;
   PetscReal g[3];
 
   PetscFunctionBeginUser;
   gravity_at(m->c, 0, g);
-  PetscCall(PetscArrayzero(m->du, dofs));
-  PetscCall(PetscArrayzero(m->external, dofs));
-  for (PetscInt i = 0; i < dofs; ++i) m->history[i] = m->c->analysis.damping * s->v[i] - g[i % dim];
-  PetscCall(LoadsAdd(m->loads, m->grid, 0, s->filled, s->touched, m->external));
-  PetscCall(AddBodyForce(m, 0, m->external));
-  PetscCall(PetscArrayzero(m->force, dofs));
+  PetscCall(PetscArrayzero(m->nodes->du, dofs));
+  for (PetscInt i = 0; i < dofs; ++i) m->nodes->history[i] = m->c->analysis.damping * m->nodes->v[i] - g[i % dim];
+  const NodalScene scene = nodal_scene(m, 0, m->nodes->du);
+  PetscCall(NodalForcesExternal(&m->forces, &scene, PETSC_TRUE, m->nodes->external));
+  PetscCall(PetscArrayzero(m->nodes->force, dofs));
   pressure_guess(m);
   WeakFormInput in = weak_form_of(m, 0);
-  WeakFormOutput out = {.force = m->force};
+  WeakFormOutput out = {.force = m->nodes->force};
   PetscCall(m->formulation->assemble(&in, &out));
-  PetscCall(GridSumToOwners(m->grid, dim, m->force));
+  PetscCall(GridSumToOwners(m->grid, dim, m->nodes->force));
   for (PetscInt i = 0; i < m->grid->n_owned * dim; ++i) {
-    const PetscReal mass = s->mass[i / dim];
-    const PetscReal free = m->external[i] - m->force[i];
-    s->a[i] = mass > 1e-300 && !m->boundary->fixed[i] ? free / mass : 0;
-    m->held[i] = m->rate[i] = m->boundary->fixed[i] ? -free : 0;
+    const PetscReal mass = s->nodes->mass[i / dim];
+    const PetscReal free = m->nodes->external[i] - m->nodes->force[i];
+    s->nodes->a[i] = mass > 1e-300 && !m->boundary->fixed[i] ? free / mass : 0;
+    m->nodes->held[i] = m->nodes->rate[i] = m->boundary->fixed[i] ? -free : 0;
   }
-  PetscCall(GridToGhosts(m->grid, dim, s->a));
+  PetscCall(GridToGhosts(m->grid, dim, s->nodes->a));
   for (PetscInt q = 0; q < s->support->n_groups; ++q) {
     const PetscInt nn = support_nodes(s->support, q), *node = s->support->node + s->support->node_start[q];
     for (PetscInt p = s->support->point_start[q]; p < s->support->point_start[q + 1]; ++p)
       for (PetscInt i = 0; i < nn * dim; ++i)
         point_real(m->points, POINT_A, p)[i % dim] +=
-          support_N(s->support, q, p)[i / dim] * s->a[node[i / dim] * dim + i % dim];
+          support_N(s->support, q, p)[i / dim] * s->nodes->a[node[i / dim] * dim + i % dim];
   }
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode ModelSetBodyForce(Model *m, BodyForce force, void *context)
-{
-  PetscFunctionBeginUser;
-  m->body_force = force;
-  m->body_force_context = context;
-  if (m->step > 0 || m->c->analysis.type != ANALYSIS_DYNAMIC) PetscFunctionReturn(0);
-  PetscCall(PetscArrayzero(m->points->real[POINT_A], m->points->n * m->dim));
-  PetscCall(InitialAcceleration(m));
   PetscFunctionReturn(0);
 }

@@ -18,13 +18,13 @@ static PetscReal square_norm(const PetscReal a[9])
  * which the two others are about 1. */
 static PetscReal stretch_of(const Model *m, PetscInt g, PetscInt p)
 {
-  const Support *w = m->stage->support;
+  const Support *w = m->space->support;
   const PetscInt dim = m->dim, nn = support_nodes(w, g), *node = w->node + w->node_start[g];
   const PetscReal *dN = support_dN(w, g, p, dim);
   PetscReal dF[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1}, inverse[9];
   for (PetscInt I = 0; I < nn; ++I)
     for (PetscInt i = 0; i < dim; ++i)
-      for (PetscInt j = 0; j < dim; ++j) dF[3 * i + j] += m->du[node[I] * dim + i] * dN[I * dim + j];
+      for (PetscInt j = 0; j < dim; ++j) dF[3 * i + j] += m->nodes->du[node[I] * dim + i] * dN[I * dim + j];
   tensor_inverse(dF, inverse);
   return PetscSqrtReal(PetscMax(1, PetscMax(square_norm(dF), square_norm(inverse)) - 2));
 }
@@ -34,13 +34,13 @@ static PetscBool hardly_moved(const Model *m)
   PetscReal largest = 0;
   for (PetscInt k = 0; k < m->system->n_active; ++k)
     for (PetscInt d = 0, i = m->system->active[k] * m->dim; d < m->dim; ++d, ++i)
-      largest = PetscMax(largest, PetscAbsReal(m->du[i]));
+      largest = PetscMax(largest, PetscAbsReal(m->nodes->du[i]));
   return !m->grid->cloud && largest < HARDLY_MOVED * m->grid->smallest;
 }
 
 PetscErrorCode JudgeStep(const Model *m, StepReport *report)
 {
-  const Support *w = m->stage->support;
+  const Support *w = m->space->support;
   struct {
     double stretch;
     int rank;

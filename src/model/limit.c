@@ -6,11 +6,6 @@
   5 /* times as far per increment as at its stiffest: what hardens, or fails for reasons of its own, does not get there */
 #define RAN_AWAY 4 /* the same of the last try of a tiny step that had no solution: all of a body may yield at once */
 
-static PetscReal load_at(const Case *c, const Amplitude *amplitude, PetscReal t)
-{
-  return amplitude_value(amplitude, t, t / c->analysis.end);
-}
-
 static PetscBool weighs(const Case *c) { return c->gravity[0] != 0 || c->gravity[1] != 0 || c->gravity[2] != 0; }
 
 /* Does any load grow at time t, over a step that led there or away from it? */
@@ -20,7 +15,7 @@ static PetscBool loads_grow(const Case *c, PetscReal t, PetscReal dt)
   for (PetscInt k = -1; k < c->n_loads; ++k) {
     const Amplitude *a = k < 0 ? &c->gravity_amplitude : &c->loads[k].amplitude;
     if (k < 0 && !weighs(c)) continue;
-    grow |= PetscAbsReal(load_at(c, a, t + dt)) > PetscAbsReal(load_at(c, a, t));
+    grow |= PetscAbsReal(case_factor(c, a, t + dt)) > PetscAbsReal(case_factor(c, a, t));
   }
   return grow;
 }
@@ -32,7 +27,7 @@ static PetscErrorCode Rate(const Model *m, PetscReal dt, PetscReal *rate)
 
   PetscFunctionBeginUser;
   for (PetscInt i = 0; i < m->grid->n_owned * m->dim; ++i)
-    if (m->system->row[i / m->dim] >= 0) local += m->du[i] * m->du[i];
+    if (m->system->row[i / m->dim] >= 0) local += m->nodes->du[i] * m->nodes->du[i];
   PetscCall(MPIU_Allreduce(&local, &all, 1, MPIU_REAL, MPIU_SUM, m->comm));
   *rate = PetscSqrtReal(all) / dt;
   PetscFunctionReturn(0);
@@ -43,7 +38,7 @@ PetscErrorCode LimitWatch(Model *m, PetscReal dt)
   Softening *limit = &m->limit;
 
   PetscFunctionBeginUser;
-  if (m->c->analysis.type != ANALYSIS_STATIC) PetscFunctionReturn(0);
+  if (m->scheme->inertia) PetscFunctionReturn(0);
   limit->before = limit->last;
   PetscCall(Rate(m, dt, &limit->last));
   if (limit->least == 0 || limit->last < limit->least) limit->least = limit->last;
@@ -61,10 +56,10 @@ static PetscBool anything_yields(const Model *m)
 static void factors_text(const Case *c, PetscReal t, char *text, size_t size)
 {
   PetscBool same = PETSC_TRUE;
-  PetscReal first = weighs(c) ? load_at(c, &c->gravity_amplitude, t) : load_at(c, &c->loads[0].amplitude, t);
+  PetscReal first = weighs(c) ? case_factor(c, &c->gravity_amplitude, t) : case_factor(c, &c->loads[0].amplitude, t);
   size_t used;
   for (PetscInt k = 0; k < c->n_loads; ++k)
-    if (load_at(c, &c->loads[k].amplitude, t) != first) same = PETSC_FALSE;
+    if (case_factor(c, &c->loads[k].amplitude, t) != first) same = PETSC_FALSE;
   if (same) {
     snprintf(text, size, "at load factor %.4g", (double)first);
     return;
@@ -74,7 +69,7 @@ static void factors_text(const Case *c, PetscReal t, char *text, size_t size)
   for (PetscInt k = 0, number[2] = {0, 0}; k < c->n_loads && used < size; ++k) {
     const LoadSpec *load = &c->loads[k];
     used += (size_t)snprintf(text + used, size - used, "%s %.4g of loads.%s[%d]",
-                             used > strlen("at factors") ? "," : "", (double)load_at(c, &load->amplitude, t),
+                             used > strlen("at factors") ? "," : "", (double)case_factor(c, &load->amplitude, t),
                              load->kind == LOAD_POINT ? "points" : "tractions", (int)number[load->kind]++);
   }
 }
@@ -98,7 +93,7 @@ PetscErrorCode LimitDescribe(const Model *m, StepReport *report)
   PetscReal tried;
 
   PetscFunctionBeginUser;
-  if (m->c->analysis.type != ANALYSIS_STATIC || !loads_grow(m->c, m->time, report->dt)) PetscFunctionReturn(0);
+  if (m->scheme->inertia || !loads_grow(m->c, m->time, report->dt)) PetscFunctionReturn(0);
   PetscCall(Rate(m, report->dt, &tried));
   if (!looks_like_limit(m, report, tried)) PetscFunctionReturn(0);
   factors_text(m->c, m->time, factors, sizeof factors);

@@ -12,37 +12,70 @@ static PetscReal cell_weight(void *context, const PetscReal *centre)
   return 0;
 }
 
-static void check_supported(const Case *c, Diag *diag)
+/* "mpm, fem and gmm", or of these the ones that take the pressure as an unknown. */
+static void list_methods(PetscBool pressure, size_t size, char *text)
 {
+  PetscInt n = 0, k = 0;
+  for (const Method *const *method = methods; *method; ++method) n += !pressure || (*method)->takes_pressure;
+  text[0] = 0;
+  for (const Method *const *method = methods; *method; ++method) {
+    const size_t used = strlen(text);
+    if (pressure && !(*method)->takes_pressure) continue;
+    snprintf(text + used, size - used, "%s%s", k == 0 ? "" : k == n - 1 ? " and " : ", ", (*method)->name);
+    ++k;
+  }
+}
+
+static void check_formulation(const Model *m, Diag *diag)
+{
+  const char *name = m->c->formulation;
+  char list[256];
+  if (!m->formulation)
+    diag_error(diag, "formulation", "formulation '%s' is not part of this version; displacement and mixed are", name);
+  if (!m->formulation || !m->formulation->pressure || !m->method || m->method->takes_pressure) return;
+  list_methods(PETSC_TRUE, sizeof list, list);
+  diag_error(diag, "formulation",
+             "formulation '%s' is not part of this version for method %s, which takes displacement; %s take both", name,
+             m->method->name, list);
+}
+
+static void check_scheme(const Case *c, const TimeScheme *scheme, Diag *diag)
+{
+  const char *names[32] = {NULL};
+  for (PetscInt i = 0; time_schemes[i] && i < 31; ++i) names[i] = time_schemes[i]->name;
+  if (scheme) return;
+  diag_error(diag, "analysis.scheme", "there is no time scheme '%s'", c->analysis.scheme);
+  diag_hint_names(diag, c->analysis.scheme, names);
+}
+
+static void check_supported(const Model *m, Diag *diag)
+{
+  const Case *c = m->c;
+  char list[256];
   if (c->kinematics == KINEMATICS_AXISYMMETRIC)
     diag_error(diag, "kinematics", "axisymmetric kinematics are not part of this version; plane-strain and 3d are");
-  if (!method_find(c->method))
-    diag_error(diag, "method", "method '%s' is not part of this version; mpm, fem and gmm are", c->method);
-  if (!formulation_find(c->formulation))
-    diag_error(diag, "formulation", "formulation '%s' is not part of this version; displacement and mixed are",
-               c->formulation);
-  else if (formulation_find(c->formulation)->pressure && !strcmp(c->method, "gmm"))
-    diag_error(
-      diag, "formulation",
-      "formulation '%s' is not part of this version for method gmm, which takes displacement; mpm and fem take both",
-      c->formulation);
-  if (c->analysis.keep_velocity && strcmp(c->method, "mpm"))
+  list_methods(PETSC_FALSE, sizeof list, list);
+  if (!m->method) diag_error(diag, "method", "method '%s' is not part of this version; %s are", c->method, list);
+  check_formulation(m, diag);
+  check_scheme(c, m->scheme, diag);
+  if (!m->method || m->method->restores_grid) return;
+  if (c->analysis.keep_velocity)
     diag_error(diag, "analysis.keep_velocity",
                "only points of method mpm have a velocity apart from that of the nodes");
   for (PetscInt b = 0; b < c->n_bodies; ++b) {
     char path[64];
     PetscSNPrintf(path, sizeof path, "bodies[%d].mesh", (int)b);
-    if (c->bodies[b].mesh && strcmp(c->method, "mpm"))
+    if (c->bodies[b].mesh)
       diag_error(diag, path,
                  "a body with a mesh of its own needs method mpm; for fem and gmm give that mesh as grid.mesh");
   }
 }
 
 /* The pressure of an exactly incompressible body has no memory: what alternates from step to step in it stays for ever. */
-static void check_ringing(const Case *c, const Material *material, Diag *diag)
+static void check_ringing(const Model *m, const Material *material, Diag *diag)
 {
-  if (c->analysis.type != ANALYSIS_DYNAMIC || !case_is_mixed(c) || material->compliance > 0) return;
-  if (c->analysis.gamma > 0.5) return;
+  if (!m->formulation->pressure || material->compliance > 0) return;
+  if (m->scheme->weights(&m->c->analysis, m->c->analysis.step).mean > 0.5) return;
   diag_warning(
     diag, "analysis.bossak",
     "material '%s' is exactly incompressible: without numerical damping its pressure and reactions ring from "
@@ -52,11 +85,11 @@ static void check_ringing(const Case *c, const Material *material, Diag *diag)
 }
 
 /* Beyond the speed of light a step of a usual size crosses so many cells in waves that inertia drowns in the round-off of stiffness. */
-static void check_waves(const Case *c, const Material *material, Diag *diag)
+static void check_waves(const Material *material, Diag *diag)
 {
   const PetscReal light = 3e8, speed = PetscSqrtReal(material->wave_modulus / material->density);
   char path[256];
-  if (c->analysis.type != ANALYSIS_DYNAMIC || speed <= light) return;
+  if (speed <= light) return;
   PetscSNPrintf(path, sizeof path, "materials.%s", material->name);
   diag_error(
     diag, path,
@@ -76,8 +109,8 @@ static PetscErrorCode CreateMaterials(Model *m, Diag *diag)
     Material *material = &m->materials[i];
     PetscCall(MaterialResolve(c, i, diag, material));
     if (!material->law) continue;
-    check_ringing(c, material, diag);
-    check_waves(c, material, diag);
+    if (m->scheme->inertia) check_ringing(m, material, diag);
+    if (m->scheme->inertia) check_waves(material, diag);
     m->n_state = PetscMax(m->n_state, material->law->n_state);
     if (!material->law->symmetric || (case_is_mixed(c) && material->volume == VOLUME_COUPLED))
       m->symmetric = PETSC_FALSE;
@@ -103,7 +136,7 @@ static PetscErrorCode CreatePoints(Model *m, Outline *outline, Diag *diag)
   }
   PetscCall(PointsCreate(m->dim, m->n_state, 0, &m->points));
   if (m->formulation->pressure) m->points->components[POINT_PRESSURE] = 1; /* nothing is stored yet */
-  PetscCall(PointsSeedOutlined(m->points, m->grid, c, seed, outline, diag));
+  PetscCall(PointsSeedOutlined(m->points, m->grid, c, seed, m->method->restores_grid, outline, diag));
   PetscCall(PetscFree2(seed, initial));
   PetscFunctionReturn(0);
 }
@@ -150,45 +183,29 @@ static PetscErrorCode CreateTracers(Model *m, Diag *diag)
 
 PetscErrorCode ModelCreateFields(Model *m)
 {
-  const PetscInt dofs = m->grid->n_nodes * m->dim;
+  const Discretisation parts = {.c = m->c,
+                                .grid = m->grid,
+                                .points = m->points,
+                                .tracers = m->tracers,
+                                .boundary = m->boundary,
+                                .loads = m->loads,
+                                .materials = m->materials};
 
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc1(m->grid->n_cells, &m->enabled));
-  PetscCall(PetscCalloc1(dofs, &m->fixed));
-  PetscCall(PetscCalloc1(m->grid->n_nodes, &m->idle));
-  if (m->formulation->pressure) {
-    PetscCall(PetscCalloc1(m->grid->n_nodes, &m->pressure));
-    PetscCall(PetscCalloc1(m->grid->n_nodes, &m->volume));
-    for (PetscInt i = 0; i < m->c->n_materials; ++i)
-      m->pressure_scale = PetscMax(m->pressure_scale, m->materials[i].elastic.shear / m->grid->smallest);
-  }
-  PetscReal **const scratch[] = {&m->du, &m->force, &m->external, &m->history, &m->prescribed, &m->previous};
-  PetscReal **const kept[] = {&m->reaction, &m->held, &m->rate, &m->echo};
-  static const char *const kept_names[] = {"reaction", "held", "rate", "echo"}, *const units[] = {"N", "N", "N",
-                                                                                                  "m/s2"};
-  for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(scratch); ++k) {
-    PetscCall(PetscCalloc1(dofs, scratch[k]));
-    if (m->grid->cloud) PetscCall(GridCloudFollow(m->grid, scratch[k], m->dim, NULL, NULL));
-  }
-  for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(kept); ++k) {
-    PetscCall(PetscCalloc1(dofs, kept[k]));
-    if (m->grid->cloud) PetscCall(GridCloudFollow(m->grid, kept[k], m->dim, kept_names[k], units[k]));
-  }
-  PetscCall(StageCreate(m->c, m->grid, m->points, m->tracers, m->loads, m->materials, &m->stage));
-  m->stage->boundary = m->boundary;
+  for (PetscInt i = 0; m->formulation->pressure && i < m->c->n_materials; ++i)
+    m->pressure_scale = PetscMax(m->pressure_scale, m->materials[i].elastic.shear / m->grid->smallest);
+  PetscCall(DiscretisationCreate(&parts, &m->space));
+  m->nodes = m->space->nodes;
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode ModelDestroyFields(Model *m)
 {
-  PetscReal **const nodal[] = {&m->du,   &m->force, &m->external, &m->history,  &m->prescribed, &m->reaction,
-                               &m->held, &m->rate,  &m->echo,     &m->pressure, &m->volume,     &m->previous};
-
   PetscFunctionBeginUser;
-  for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(nodal); ++k) PetscCall(PetscFree(*nodal[k]));
+  if (m->space && m->method->destroy) PetscCall(m->method->destroy(m->space));
+  PetscCall(DiscretisationDestroy(&m->space));
   PetscCall(PetscFree(m->enabled));
-  PetscCall(PetscFree(m->idle));
-  PetscCall(PetscFree(m->fixed));
   PetscFunctionReturn(0);
 }
 
@@ -212,12 +229,13 @@ static PetscErrorCode Build(Model *m, Diag *diag)
   PetscInt errors;
 
   PetscFunctionBeginUser;
-  check_supported(m->c, diag);
-  PetscCall(CreateMaterials(m, diag));
-  PetscCall(DiagReduce(m->comm, diag, &errors));
-  if (errors) PetscFunctionReturn(0);
   m->method = method_find(m->c->method);
   m->formulation = formulation_find(m->c->formulation);
+  m->scheme = time_scheme_of(&m->c->analysis);
+  check_supported(m, diag);
+  if (m->formulation && m->scheme) PetscCall(CreateMaterials(m, diag));
+  PetscCall(DiagReduce(m->comm, diag, &errors));
+  if (errors) PetscFunctionReturn(0);
   PetscCall(GridCreate(m->comm, m->c, cell_weight, (void *)m->c, diag, &m->grid));
   if (!m->grid) PetscFunctionReturn(0);
   PetscCall(CreateBodies(m, diag));
@@ -229,15 +247,16 @@ static PetscErrorCode Build(Model *m, Diag *diag)
   model_advise(m, diag);
   PetscCall(DiagReduce(m->comm, diag, &errors));
   if (errors) PetscFunctionReturn(0);
-  if (m->method->couplings) PetscCall(ModelToCloud(m));
+  if (m->method->clouds) PetscCall(ModelToCloud(m));
   PetscCall(ModelCreateFields(m));
   PetscCall(SystemCreate(m->comm, m->dim, m->dim + (m->formulation->pressure ? 1 : 0), &m->system));
   PetscCall(NewtonCreate(m->comm, &m->c->newton, &m->newton));
   step_control_start(&m->control, m->c->analysis.step);
-  PetscCall(m->method->initialise(m->stage));
-  if (m->method->couplings) PetscCall(ModelWarnOfObstacles(m, diag));
+  PetscCall(ModelInitialise(m));
+  PetscCall(ForcesCreate(m, diag));
+  if (m->method->clouds) PetscCall(ModelWarnOfObstacles(m, diag));
   PetscCall(CheckHeld(m, diag));
-  if (m->c->analysis.type == ANALYSIS_DYNAMIC) PetscCall(InitialAcceleration(m));
+  if (m->scheme->inertia) PetscCall(InitialAcceleration(m));
   PetscCall(EnergyStart(m));
   PetscCall(MeasuresStart(m));
   PetscCall(FollowersStart(m, diag));
@@ -260,7 +279,7 @@ PetscErrorCode ModelCreate(MPI_Comm comm, const Case *c, Diag *diag, Model **mod
   PetscCall(OptionsCheck(m, diag));
   PetscCall(Build(m, diag));
   PetscCall(DiagReduce(comm, diag, &errors));
-  if (errors || !m->stage) PetscCall(ModelDestroy(&m));
+  if (errors || !m->space) PetscCall(ModelDestroy(&m));
   *model = m;
   PetscFunctionReturn(0);
 }
@@ -272,17 +291,16 @@ PetscErrorCode ModelDestroy(Model **model)
   PetscFunctionBeginUser;
   if (!m) PetscFunctionReturn(0);
   PetscCall(OptionsForget(m));
+  PetscCall(NodalForcesDestroy(&m->forces));
   PetscCall(NewtonDestroy(&m->newton));
   PetscCall(SystemDestroy(&m->system));
-  if (m->stage && m->method->destroy) PetscCall(m->method->destroy(m->stage));
-  PetscCall(StageDestroy(&m->stage));
+  PetscCall(ModelDestroyFields(m));
   if (m->loads) PetscCall(LoadsDestroy(&m->loads));
   if (m->boundary) PetscCall(BoundaryDestroy(&m->boundary));
   if (m->tracers) PetscCall(PointsDestroy(&m->tracers));
   if (m->points) PetscCall(PointsDestroy(&m->points));
   if (m->grid) PetscCall(GridDestroy(&m->grid));
   PetscCall(PetscFree(m->materials));
-  PetscCall(ModelDestroyFields(m));
   PetscCall(PetscFree(m->memory));
   PetscCall(PetscFree(m->load_memory));
   PetscCall(PetscFree(*model));

@@ -4,6 +4,7 @@
 #pragma once
 #include "base/phase.h"
 #include "method/method.h"
+#include "method/time/time_scheme.h"
 #include "solve/newton/newton.h"
 #include "solve/newton/step_control.h"
 
@@ -72,9 +73,6 @@ typedef struct {
   PetscReal least, last, before;
 } Softening;
 
-/* Body force per mass at the undeformed position X (dim) and time t, m/s2, besides gravity: a centrifuge, a manufactured solution. */
-typedef void (*BodyForce)(void *context, const PetscReal *X, PetscReal t, PetscReal *b);
-
 typedef struct Model {
   MPI_Comm comm;
   const Case *c;
@@ -88,27 +86,17 @@ typedef struct Model {
   Points *tracers; /* body = index of the measure */
   Boundary *boundary;
   Loads *loads;
-  Stage *stage;
+  NodalForces forces;
+  Discretisation *space;
+  NodalFields *nodes; /* those of space */
+  const TimeScheme *scheme;
   System *system;
   Newton *newton;
-  unsigned char *enabled;                                  /* n_cells: cells whose nodes carry unknowns */
-  unsigned char *fixed;                                    /* n_nodes x dim */
-  PetscInt n_constraints;                                  /* on nodes of a cloud, over all ranks */
-  PetscInt layouts;                                        /* of the cloud, that fixed and the system fit */
-  PetscReal *du, *force, *external, *history, *prescribed; /* n_nodes x dim */
-  PetscReal *previous; /* n_nodes x dim: increments of the last step where they were solved for, else 0 */
+  unsigned char *enabled;   /* n_cells: cells whose nodes carry unknowns */
+  PetscInt n_constraints;   /* on nodes of a cloud, over all ranks */
+  PetscInt layouts;         /* of the cloud, that the system fits */
+  PetscReal pressure_scale; /* mixed: Pa/m */
   Guess guess;
-  PetscReal *pressure, *volume; /* mixed: n_nodes, see WeakFormInput and StepProblem, otherwise NULL */
-  PetscReal pressure_scale;     /* mixed: Pa/m */
-  unsigned char *idle;          /* n_nodes: no material touches the node */
-  PetscReal *
-    reaction; /* n_nodes x dim on owners: force of the boundary on the body, in dynamics its mean over the last step, N */
-  PetscReal
-    *held; /* n_nodes x dim on owners: the same at the end of the step, without the impulse that stopped points, N */
-  PetscReal
-    *rate; /* n_nodes x dim on owners: its share in the rate of momentum there (`held` without Bossak's alpha), N */
-  PetscReal
-    *echo; /* n_nodes x dim on owners, clouds alone: what Bossak's alpha held back of the last acceleration, m/s2 */
   BodyForce body_force; /* NULL: gravity alone */
   void *body_force_context;
   PetscBool (*asked)(void); /* does somebody want the run to end? NULL: a step is always finished */
@@ -155,6 +143,9 @@ PetscErrorCode ModelDestroy(Model **model);
 /* Collective. Body force besides gravity, NULL for none. Before the first step it also enters the initial acceleration. */
 PetscErrorCode ModelSetBodyForce(Model *model, BodyForce force, void *context);
 
+/* Collective. Phase a: nodes learn from where points are now, unless they have already. A step begins with it; whoever asks for nodal fields or
+ * measures between steps calls it first. */
+PetscErrorCode ModelInitialise(Model *model);
 /* Collective. Make the linear system fit the cells that hold material now; ModelStep does it by itself. */
 PetscErrorCode ModelActivate(Model *model);
 /* Collective. One step of at most `limit` s; halves it until Newton converges. */

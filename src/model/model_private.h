@@ -6,19 +6,16 @@
 PetscErrorCode OptionsApply(Model *model);
 PetscErrorCode OptionsCheck(const Model *model, Diag *diag);
 PetscErrorCode OptionsForget(Model *model);
-/* Nodal arrays, stage and system's flags for the grid that the model has now. Collective. */
+/* Space, with its nodal fields, and the system's flags for the grid that the model has now. Collective. */
 PetscErrorCode ModelCreateFields(Model *model);
 PetscErrorCode ModelDestroyFields(Model *model);
 /* Work of a cell that holds points, in points: its share of matrix, solver and nodes. */
 PetscReal cell_work(CellType type);
 /* Collective. Share the grid anew if that is worth it: before a step. */
 PetscErrorCode ModelBalance(Model *model, StepReport *report);
-/* Collective. Move everything over to `grid`, which is the model's grid shared in another way and becomes its own; the stage is not yet initialised.
+/* Collective. Move everything over to `grid`, which is the model's grid shared in another way and becomes its own; the next ModelInitialise is the first of the space.
  * *moved: points of this rank that left it. */
 PetscErrorCode ModelRegrid(Model *model, Grid *grid, PetscInt *moved);
-/* Collective. Forces of the boundary: the only nodal fields that outlive a step in every method. */
-PetscErrorCode ReactionsToTables(Model *model, Tables *tables);
-PetscErrorCode ReactionsFromTables(Model *model, const Tables *tables, char reason[256]);
 /* guess.c. From where Newton may start: as inertia alone would bring, like the step before, from rest. */
 typedef enum { GUESS_INERTIA, GUESS_PREVIOUS, GUESS_REST, GUESS_N } FirstGuess;
 
@@ -29,17 +26,19 @@ void guess_make(const Model *model, FirstGuess guess, PetscReal dt, PetscReal *d
 /* Collective. A step of dt is accepted: which guess would have been nearer? Before points move. */
 PetscErrorCode GuessLearn(Model *model, PetscReal dt);
 PetscErrorCode GuessToTables(Model *model, Tables *tables);
-PetscErrorCode GuessFromTables(Model *model, const Tables *tables, char reason[256]);
+void guess_from_tables(Model *model, const Tables *tables, char reason[256]);
 /* Collective. The system for the cells that are enabled. */
 PetscErrorCode ModelEnable(Model *model);
-/* Arrays that the step keeps over the nodes of a cloud, after its ghosts or owners changed. */
-PetscErrorCode ModelFollowCloud(Model *model);
 /* Collective. Geostatic stress of bodies that ask for it, as their law's state: of the material inside the outline that is above them. */
 PetscErrorCode InitialStress(Model *model, const Outline *outline, Diag *diag);
 /* Acceleration at t = 0 from the balance of momentum with lumped mass, so that a body in free fall falls from the first step on. */
 PetscErrorCode InitialAcceleration(Model *model);
-/* Collective. Body force of the points at time t, gathered at the nodes and added to force (owners). */
-PetscErrorCode AddBodyForce(const Model *model, PetscReal t, PetscReal *force);
+/* forces.c. The body as nodal forces see it at time t, with increments du. */
+NodalScene nodal_scene(const Model *model, PetscReal t, const PetscReal *du);
+/* Collective. The list of nodal forces, made anew; diag NULL: mistakes were sought before. */
+PetscErrorCode ForcesCreate(Model *model, Diag *diag);
+PetscErrorCode ForcesToTables(const Model *model, Tables *tables);
+PetscErrorCode ForcesFromTables(Model *model, const Tables *tables, char reason[256]);
 /* Gravity times its amplitude at time t, m/s2. */
 void gravity_at(const Case *c, PetscReal t, PetscReal g[3]);
 /* Collective. Stress and stored energy of the points as the start of all work, and what measures remember. */
@@ -55,7 +54,9 @@ PetscErrorCode RoughnessValue(const Model *model, PetscReal *value);
 PetscErrorCode FollowersStart(Model *model, Diag *diag);
 /* Collective. After every accepted step: what the material has left behind ends. */
 PetscErrorCode FollowersEnd(Model *model);
-/* outside.c. Collective. Add up what the step did with points that left the grid. */
+/* outside.c. Do points that left the grid end the run? */
+void outside_judge(const Model *model, StepReport *report);
+/* Collective. Add up what the step did with points that left the grid. */
 PetscErrorCode OutsideAdd(Model *model, StepReport *report);
 /* Collective. A warning for each body that fills the grid to an edge where nothing holds it. */
 PetscErrorCode OutsideWarn(const Model *model, Diag *diag);
@@ -64,6 +65,26 @@ PetscErrorCode OutsideWarn(const Model *model, Diag *diag);
 typedef struct {
   PetscReal external, boundary, damped, transfer;
 } EnergyStep;
+
+/* What a step changes although it is not accepted. */
+typedef struct {
+  StepControl control;
+  PetscInt cuts, iterations;
+  Tries tries;
+  NewtonMemory newton;
+  PetscReal *v, *a; /* n_nodes x dim, where the method shifts what nodes remember; else NULL */
+} StepStart;
+
+/* solve.c. A step that is not accepted leaves nodes as they were; one that was interrupted has never been. */
+PetscErrorCode StepStartKeep(const Model *model, StepStart *start);
+PetscErrorCode StepStartRestore(Model *model, const StepStart *start, StepReport *report);
+PetscErrorCode StepStartForget(StepStart *start);
+/* Collective. The increments of a step of dt, or of halves of it: until Newton converges, somebody interrupts it, or the step is too small. */
+PetscErrorCode SolveStep(Model *model, PetscReal *dt, StepReport *report);
+/* accept.c. Collective. Points take over stress and history, and the boundary its forces. */
+PetscErrorCode CommitStep(Model *model, PetscReal dt, EnergyStep *energy);
+/* Collective. Points and nodes go where the solution leads them. */
+PetscErrorCode ConvectStep(Model *model, PetscReal dt, EnergyStep *energy, StepReport *report);
 
 /* Collective. The nodes know the step's end (force, v1, a1), the points still stand at its start. */
 PetscErrorCode EnergyOfNodes(Model *model, PetscReal dt, EnergyStep *step);
@@ -85,6 +106,8 @@ PetscErrorCode LimitWatch(Model *model, PetscReal dt);
 PetscErrorCode LimitDescribe(const Model *model, StepReport *report);
 /* Warnings of what a case asks for and its user hardly means: advice.c. */
 void model_advise(const Model *model, Diag *diag);
+/* Rayleigh damping, where there is inertia, 1/s. */
+static inline PetscReal model_damping(const Model *m) { return m->scheme->inertia ? m->c->analysis.damping : 0; }
 /* Input of the weak form for the model's present arrays. */
 WeakFormInput weak_form_of(const Model *model, PetscReal inertia);
 /* Prescribed dofs, and nodes with unknowns that no material touches. */

@@ -22,7 +22,7 @@ PetscErrorCode OutsideAdd(Model *m, StepReport *report)
   PetscReal s[8] = {(PetscReal)t->removed, t->mass, (PetscReal)t->held, t->held_mass, t->kinetic + t->work};
 
   PetscFunctionBeginUser;
-  if (!m->method->points_move || m->c->grid.outside == OUTSIDE_STOP) PetscFunctionReturn(0);
+  if (!m->method->restores_grid || m->c->grid.outside == OUTSIDE_STOP) PetscFunctionReturn(0);
   for (int d = 0; d < 3; ++d) s[5 + d] = t->momentum[d];
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, s, 8, MPIU_REAL, MPIU_SUM, m->comm));
   report->removed = (PetscInt)s[0];
@@ -40,6 +40,32 @@ PetscErrorCode OutsideAdd(Model *m, StepReport *report)
   o->first = o->first > 0 ? o->first : m->time;
   o->last = m->time;
   PetscFunctionReturn(0);
+}
+
+/* Points whose position is no number are lost under every policy, and stand first. */
+static PetscBool is_somewhere(const LostPoint *l) { return !PetscIsInfOrNanReal(l->x[0] + l->x[1] + l->x[2]); }
+
+static void describe_lost(const Model *m, StepReport *report)
+{
+  PetscSNPrintf(report->reason, sizeof report->reason, "%d point(s) left the grid:", (int)m->space->n_lost);
+  for (PetscInt k = 0; k < PetscMin(m->space->n_lost, 2); ++k) {
+    const LostPoint *l = &m->space->lost[k];
+    const size_t length = strlen(report->reason);
+    snprintf(report->reason + length, sizeof report->reason - length,
+             " point %lld at (%g, %g, %g) m with velocity (%g, %g, %g) m/s, last in cell %d, step %d;",
+             (long long)l->id, (double)l->x[0], (double)l->x[1], (double)l->x[2], (double)l->v[0], (double)l->v[1],
+             (double)l->v[2], (int)l->last_cell, (int)m->step);
+  }
+  const size_t length = strlen(report->reason);
+  snprintf(report->reason + length, sizeof report->reason - length,
+           " make the grid larger, or say grid: {outside: remove} or {outside: keep-on-boundary}");
+}
+
+void outside_judge(const Model *m, StepReport *report)
+{
+  if (!m->space->n_lost || (m->c->grid.outside != OUTSIDE_STOP && is_somewhere(&m->space->lost[0]))) return;
+  report->outcome = STEP_POINTS_LOST;
+  describe_lost(m, report);
 }
 
 /* The axis along which a side of a cell looks out of the grid: that of the largest component of its normal. */
@@ -103,7 +129,7 @@ PetscErrorCode OutsideWarn(const Model *m, Diag *diag)
   char path[64], list[32];
 
   PetscFunctionBeginUser;
-  if (!m->method->points_move) PetscFunctionReturn(0);
+  if (!m->method->restores_grid) PetscFunctionReturn(0);
   PetscCall(PetscCalloc1(6 * m->c->n_bodies, &count));
   PetscCall(CountFree(m, count));
   for (PetscInt b = 0; b < m->c->n_bodies; ++b) {

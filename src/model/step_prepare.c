@@ -6,38 +6,37 @@ WeakFormInput weak_form_of(const Model *m, PetscReal inertia)
   return (WeakFormInput){
     .kinematics = m->c->kinematics,
     .points = m->points,
-    .support = m->stage->support,
+    .support = m->space->support,
     .materials = m->materials,
-    .du = m->du,
-    .history = m->history,
+    .du = m->nodes->du,
+    .history = m->nodes->history,
     .inertia = inertia,
     .symmetric = m->symmetric,
-    .lumping = m->stage->lumping,
-    .soft = m->stage->soft,
-    .tie = m->stage->tie,
-    .fixed = m->fixed,
-    .pressure = m->pressure,
+    .lumping = m->space->lumping,
+    .soft = m->space->soft,
+    .tie = m->space->tie,
+    .pressure = m->nodes->scaled_pressure,
     .pressure_scale = m->pressure_scale,
     .alpha = m->c->mixed.stabilisation,
-    .pressure_tie = m->stage->pressure_tie,
+    .pressure_tie = m->space->pressure_tie,
   };
 }
 
 void pressure_guess(const Model *m)
 {
-  for (PetscInt node = 0; m->pressure && node < m->grid->n_nodes; ++node)
-    m->pressure[node] = m->stage->pressure[node] / m->pressure_scale;
+  for (PetscInt node = 0; m->nodes->scaled_pressure && node < m->grid->n_nodes; ++node)
+    m->nodes->scaled_pressure[node] = m->nodes->pressure[node] / m->pressure_scale;
 }
 
 void mark_fixed(Model *m)
 {
-  const unsigned char *dof = m->stage->dof;
+  const unsigned char *dof = m->nodes->dof;
   for (PetscInt node = 0, i = 0; node < m->grid->n_nodes; ++node) {
-    m->idle[node] = !m->stage->touched[node];
+    m->nodes->idle[node] = !m->nodes->touched[node];
     for (PetscInt d = 0; d < m->dim; ++d, ++i) {
-      m->fixed[i] = m->boundary->fixed[i] || m->idle[node];
-      if (dof && dof[i] == DOF_RELEASED) m->fixed[i] = 0;
-      if (dof && dof[i] == DOF_UNUSED) m->fixed[i] = 1;
+      m->nodes->fixed[i] = m->boundary->fixed[i] || m->nodes->idle[node];
+      if (dof[i] == DOF_RELEASED) m->nodes->fixed[i] = 0;
+      if (dof[i] == DOF_UNUSED) m->nodes->fixed[i] = 1;
     }
   }
 }
@@ -46,13 +45,13 @@ void mark_fixed(Model *m)
  * that hit it, which would ring for ever in Newmark's formulas. A mesh that moves with the body keeps its own history. */
 static void set_boundary_kinematics(Model *m, PetscReal dt)
 {
-  Stage *s = m->stage;
-  if (!m->method->points_move && m->step > 0) return;
+  Discretisation *s = m->space;
+  if (!m->method->restores_grid && m->step > 0) return;
   for (PetscInt i = 0; i < m->grid->n_nodes * m->dim; ++i) {
-    if (!m->boundary->fixed[i] || !m->fixed[i]) continue;
-    s->v[i] = m->prescribed[i] / dt;
-    s->a[i] = 0;
-    if (m->c->analysis.keep_velocity) s->v_points[i] = s->v[i];
+    if (!m->boundary->fixed[i] || !m->nodes->fixed[i]) continue;
+    s->nodes->v[i] = m->nodes->prescribed[i] / dt;
+    s->nodes->a[i] = 0;
+    if (m->c->analysis.keep_velocity) s->nodes->v_points[i] = s->nodes->v[i];
   }
 }
 
@@ -60,17 +59,17 @@ static void set_boundary_kinematics(Model *m, PetscReal dt)
  * So the coefficients of constrained nodes start each step with the prescribed motion, like prescribed nodes themselves. */
 static PetscErrorCode HoldConstraints(Model *m, PetscReal dt)
 {
-  const Constraints *c = m->stage->constraints;
+  const Constraints *c = m->space->constraints;
   PetscReal *correction;
 
   PetscFunctionBeginUser;
   if (!m->n_constraints) PetscFunctionReturn(0);
   PetscCall(PetscCalloc1(m->grid->n_nodes * m->dim, &correction));
   for (int sweep = 0; sweep < 20; ++sweep) {
-    constraints_relax(c, m->boundary->fixed, m->prescribed, 1 / dt, m->stage->v, correction);
-    constraints_relax(c, m->boundary->fixed, m->prescribed, 0, m->stage->a, correction);
-    PetscCall(GridToGhosts(m->grid, m->dim, m->stage->v));
-    PetscCall(GridToGhosts(m->grid, m->dim, m->stage->a));
+    constraints_relax(c, m->boundary->fixed, m->nodes->prescribed, 1 / dt, m->nodes->v, correction);
+    constraints_relax(c, m->boundary->fixed, m->nodes->prescribed, 0, m->nodes->a, correction);
+    PetscCall(GridToGhosts(m->grid, m->dim, m->nodes->v));
+    PetscCall(GridToGhosts(m->grid, m->dim, m->nodes->a));
   }
   PetscCall(PetscFree(correction));
   PetscFunctionReturn(0);
@@ -81,46 +80,20 @@ static PetscErrorCode ForceScales(const Model *m, const PetscReal *g, PetscReal 
                                   PetscReal *inertia)
 {
   PetscReal local[2] = {0, 0}, sum[2];
-  const PetscBool dynamic = m->c->analysis.type == ANALYSIS_DYNAMIC;
 
   PetscFunctionBeginUser;
   for (PetscInt node = 0; node < m->grid->n_owned; ++node) {
-    const PetscReal mass = m->stage->mass[node];
+    const PetscReal mass = m->nodes->mass[node];
     if (mass == 0) continue;
     for (PetscInt d = 0, i = node * m->dim; d < m->dim; ++d, ++i) {
-      const PetscReal stop = dynamic ? mass * m->stage->v[i] / dt : 0;
-      if (!m->fixed[i]) local[0] += mass * g[d] * mass * g[d];
+      const PetscReal stop = m->scheme->inertia ? mass * m->nodes->v[i] / dt : 0;
+      if (!m->nodes->fixed[i]) local[0] += mass * g[d] * mass * g[d];
       local[1] += stop * stop;
     }
   }
   PetscCall(MPIU_Allreduce(local, sum, 2, MPIU_REAL, MPI_SUM, m->comm));
   *weight = PetscSqrtReal(sum[0]);
   *inertia = PetscSqrtReal(sum[1]);
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode AddBodyForce(const Model *m, PetscReal t, PetscReal *force)
-{
-  const PetscInt dim = m->dim, dofs = m->grid->n_nodes * dim;
-  const Support *w = m->stage->support;
-  PetscReal *sum, X[3], b[3];
-
-  PetscFunctionBeginUser;
-  if (!m->body_force) PetscFunctionReturn(0);
-  PetscCall(PetscCalloc1(dofs, &sum));
-  for (PetscInt g = 0; g < w->n_groups; ++g) {
-    const PetscInt nn = support_nodes(w, g), *node = w->node + w->node_start[g];
-    for (PetscInt p = w->point_start[g]; p < w->point_start[g + 1]; ++p) {
-      for (PetscInt d = 0; d < dim; ++d)
-        X[d] = point_real(m->points, POINT_X, p)[d] - point_real(m->points, POINT_U, p)[d];
-      m->body_force(m->body_force_context, X, t, b);
-      for (PetscInt i = 0; i < nn * dim; ++i)
-        sum[node[i / dim] * dim + i % dim] += support_N(w, g, p)[i / dim] * m->points->real[POINT_MASS][p] * b[i % dim];
-    }
-  }
-  PetscCall(GridSumToOwners(m->grid, dim, sum));
-  for (PetscInt i = 0; i < m->grid->n_owned * dim; ++i) force[i] += sum[i];
-  PetscCall(PetscFree(sum));
   PetscFunctionReturn(0);
 }
 
@@ -143,47 +116,57 @@ static PetscReal round_off_of(const Model *m, PetscReal inertia)
   return 100 * PETSC_MACHINE_EPSILON * size * node_stiffness(m, inertia);
 }
 
+/* What balances the forces besides inertia times du: over the mass, and with gravity. */
+static void set_history(Model *m, PetscReal dt, const PetscReal *g)
+{
+  const AnalysisSpec *analysis = &m->c->analysis;
+  const TimeWeights w = m->scheme->weights(analysis, dt);
+  const PetscInt dim = m->dim, dofs = m->grid->n_nodes * dim;
+  NodalFields *n = m->nodes;
+  for (PetscInt i = 0; i < dofs; ++i) n->du[i] = 0;
+  m->scheme->end(analysis, dt, dofs, n->du, n->v, n->a, n->v1, n->a1);
+  for (PetscInt i = 0; i < dofs; ++i) {
+    if (!n->touched[i / dim] || (m->method->clouds && cloud_is_twin(m->grid, i / dim))) continue;
+    n->history[i] = (1 - w.lag) * n->a1[i] + w.lag * n->a[i] + analysis->damping * n->v1[i] - g[i % dim];
+  }
+}
+
 PetscErrorCode PrepareStep(Model *m, PetscReal dt, StepProblem *p)
 {
-  const PetscInt dim = m->dim, dofs = m->grid->n_nodes * dim;
-  const PetscBool dynamic = m->c->analysis.type == ANALYSIS_DYNAMIC;
-  const Newmark newmark = newmark_of(&m->c->analysis, dt);
+  const PetscInt dofs = m->grid->n_nodes * m->dim;
+  const TimeWeights weights = m->scheme->weights(&m->c->analysis, dt);
+  const PetscReal inertia = time_inertia(&weights, m->c->analysis.damping);
   PetscReal g[3];
 
   PetscFunctionBeginUser;
   gravity_at(m->c, m->time + dt, g);
-  PetscCall(PetscArrayzero(m->prescribed, dofs));
-  boundary_increments(m->boundary, m->grid, m->time, m->time + dt, m->prescribed);
-  if (dynamic) set_boundary_kinematics(m, dt);
-  if (dynamic) PetscCall(HoldConstraints(m, dt));
-  for (PetscInt node = 0; node < m->grid->n_nodes; ++node) {
-    if (!m->stage->touched[node] || (m->grid->cloud && cloud_is_twin(m->grid, node))) continue;
-    for (PetscInt d = 0, i = node * dim; d < dim; ++d, ++i) {
-      m->history[i] = (dynamic ? newmark_history(&newmark, m->stage->v[i], m->stage->a[i]) : 0) - g[d];
-    }
-  }
-  PetscCall(PetscArrayzero(m->external, dofs));
-  PetscCall(LoadsAdd(m->loads, m->grid, m->time + dt, m->stage->filled, m->stage->touched, m->external));
-  PetscCall(AddBodyForce(m, m->time + dt, m->external));
+  PetscCall(PetscArrayzero(m->nodes->prescribed, dofs));
+  boundary_increments(m->boundary, m->grid, m->time, m->time + dt, m->nodes->prescribed);
+  if (m->scheme->inertia) set_boundary_kinematics(m, dt);
+  if (m->scheme->inertia) PetscCall(HoldConstraints(m, dt));
+  set_history(m, dt, g);
+  const NodalScene scene = nodal_scene(m, m->time + dt, m->nodes->du);
+  PetscCall(NodalForcesExternal(&m->forces, &scene, PETSC_FALSE, m->nodes->external));
   *p = (StepProblem){
     .grid = m->grid,
     .system = m->system,
     .formulation = m->formulation,
-    .constraints = m->stage->constraints,
-    .in = weak_form_of(m, dynamic ? newmark_inertia(&newmark) : 0),
-    .fixed = m->fixed,
-    .prescribed = m->prescribed,
-    .external = m->external,
-    .du = m->du,
-    .force = m->force,
-    .pressure = m->pressure,
-    .volume = m->volume,
-    .idle = m->idle,
+    .forces = &m->forces,
+    .scene = scene,
+    .in = weak_form_of(m, inertia),
+    .fixed = m->nodes->fixed,
+    .prescribed = m->nodes->prescribed,
+    .external = m->nodes->external,
+    .du = m->nodes->du,
+    .force = m->nodes->force,
+    .pressure = m->nodes->scaled_pressure,
+    .volume = m->nodes->volume,
+    .idle = m->nodes->idle,
     .asked = m->asked,
   };
-  p->in.half = m->symmetric && m->grid->cloud;
-  p->round_off = round_off_of(m, p->in.inertia);
-  if (m->stage->constraints) m->stage->constraints->scale = node_stiffness(m, p->in.inertia);
+  p->in.half = m->symmetric && m->method->clouds;
+  p->round_off = round_off_of(m, inertia);
+  m->space->constraints->scale = node_stiffness(m, inertia);
   PetscCall(ForceScales(m, g, dt, &p->weight, &p->inertia));
   PetscFunctionReturn(0);
 }

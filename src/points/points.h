@@ -105,7 +105,8 @@ static inline void point_set_F(Points *points, PetscInt p, const PetscReal F[9])
 
 /* Seed the bodies: points at the Gauss points of each body's cells, that is, of the cells of the grid (or of the body's own
  * mesh) whose centre lies in its shape or region. Fills x, cell, xi, mass, volume, v, id, body, material and the law's initial
- * state. `density` and `initial` come per material. Collective. */
+ * state. `density` and `initial` come per material; equal: do points of a cell share its mass equally where the body leaves that to the
+ * method? Collective. */
 typedef struct {
   PetscReal density;
   PetscInt n_state;
@@ -113,10 +114,11 @@ typedef struct {
 } PointSeed;
 /* Initial velocity of a body at x: translation and rotation. */
 void body_velocity(const BodySpec *body, PetscInt dim, const PetscReal *x, PetscReal *v);
-PetscErrorCode PointsSeed(Points *points, const Grid *grid, const Case *c, const PointSeed *per_material, Diag *diag);
+PetscErrorCode PointsSeed(Points *points, const Grid *grid, const Case *c, const PointSeed *per_material,
+                          PetscBool equal, Diag *diag);
 /* The same, and the surface of the bodies' cells on this rank (NULL: not wanted). */
 PetscErrorCode PointsSeedOutlined(Points *points, const Grid *grid, const Case *c, const PointSeed *per_material,
-                                  Outline *outline, Diag *diag);
+                                  PetscBool equal, Outline *outline, Diag *diag);
 
 /* Collective. Send every point to the rank owner[p]; those that stay keep their order, arrivals stand behind. */
 PetscErrorCode PointsTransfer(Points *points, const Grid *grid, const PetscMPIInt *owner);

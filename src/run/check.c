@@ -130,7 +130,7 @@ static const char *corner(PetscInt dim, const PetscReal *x, char text[80])
 /* How large clouds are, and how many are not what the rule aims at. */
 static PetscErrorCode ReportClouds(const Model *m, FILE *out)
 {
-  const Support *w = m->stage->support;
+  const Support *w = m->space->support;
   PetscInt local[2] = {w->n_groups, w->n_groups ? w->node_start[w->n_groups] : 0}, all[2];
 
   PetscFunctionBeginUser;

@@ -44,11 +44,12 @@ static PetscErrorCode LogOutside(const Model *m, RunDir *dir, const StepReport *
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode LossesLogStep(const Model *m, RunDir *dir, const StepReport *report)
+PetscErrorCode LossesLogStep(Model *m, RunDir *dir, const StepReport *report)
 {
   char at[80];
 
   PetscFunctionBeginUser;
+  if (m->c->n_measures + m->c->n_loads) PetscCall(ModelInitialise(m)); /* which finds what ended */
   for (PetscInt k = 0; k < m->c->n_measures; ++k)
     if (m->memory[k].ended > 0 && m->memory[k].ended == m->time)
       PetscCall(RunDirLog(

@@ -4,7 +4,7 @@
 #include "model/model.h"
 
 /* Collective. After an accepted step: a line in the log for what ended or left the grid in it. */
-PetscErrorCode LossesLogStep(const Model *model, RunDir *dir, const StepReport *report);
+PetscErrorCode LossesLogStep(Model *model, RunDir *dir, const StepReport *report);
 /* Collective. At the end: how much it was. */
 PetscErrorCode LossesLogEnd(const Model *model, RunDir *dir);
 /* At the end, with the last values of the measures: what the user must know before believing them. */

@@ -187,12 +187,12 @@ static PetscErrorCode WritePoints(Output *o, Model *m, PetscBool *ok, char reaso
 static PetscErrorCode NodalDisplacement(const Output *o, const Model *m, PetscReal *u)
 {
   const PetscInt dim = m->dim, dofs = m->grid->n_nodes * dim;
-  const Support *w = m->stage->support;
+  const Support *w = m->space->support;
 
   PetscFunctionBeginUser;
   const PetscReal *x0 = m->grid->cloud ? m->grid->cloud->x0 : o->x0;
-  for (PetscInt i = 0; i < dofs; ++i) u[i] = m->method->points_move ? 0 : m->grid->x[i] - x0[i];
-  if (!m->method->points_move) PetscFunctionReturn(0);
+  for (PetscInt i = 0; i < dofs; ++i) u[i] = m->method->restores_grid ? 0 : m->grid->x[i] - x0[i];
+  if (!m->method->restores_grid) PetscFunctionReturn(0);
   for (PetscInt g = 0; g < w->n_groups; ++g) {
     const PetscInt nn = support_nodes(w, g), *node = w->node + w->node_start[g];
     for (PetscInt p = w->point_start[g]; p < w->point_start[g + 1]; ++p)
@@ -202,7 +202,7 @@ static PetscErrorCode NodalDisplacement(const Output *o, const Model *m, PetscRe
   }
   PetscCall(GridSumToOwners(m->grid, dim, u));
   PetscCall(GridToGhosts(m->grid, dim, u));
-  for (PetscInt i = 0; i < dofs; ++i) u[i] = m->stage->mass[i / dim] > 1e-300 ? u[i] / m->stage->mass[i / dim] : 0;
+  for (PetscInt i = 0; i < dofs; ++i) u[i] = m->nodes->mass[i / dim] > 1e-300 ? u[i] / m->nodes->mass[i / dim] : 0;
   PetscFunctionReturn(0);
 }
 
@@ -213,11 +213,11 @@ static PetscErrorCode GridField(const Output *o, const Model *m, const OutputFie
 
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc1(count_numbers(n, field->components), data));
-  if (!strcmp(field->name, "velocity")) widen(n, m->dim, m->stage->v, *data);
-  else if (!strcmp(field->name, "acceleration")) widen(n, m->dim, m->stage->a, *data);
-  else if (!strcmp(field->name, "mass")) PetscCall(PetscArraycpy(*data, m->stage->mass, n));
+  if (!strcmp(field->name, "velocity")) widen(n, m->dim, m->nodes->v, *data);
+  else if (!strcmp(field->name, "acceleration")) widen(n, m->dim, m->nodes->a, *data);
+  else if (!strcmp(field->name, "mass")) PetscCall(PetscArraycpy(*data, m->nodes->mass, n));
   else if (!strcmp(field->name, "pressure"))
-    for (PetscInt i = 0; i < n; ++i) (*data)[i] = -m->stage->pressure[i];
+    for (PetscInt i = 0; i < n; ++i) (*data)[i] = -m->nodes->pressure[i];
   else {
     PetscCall(PetscMalloc1(count_numbers(n, m->dim), &u));
     PetscCall(NodalDisplacement(o, m, u));
@@ -262,7 +262,7 @@ static PetscErrorCode WriteGrid(Output *o, Model *m, PetscBool *ok, char reason[
   widen(grid->n_nodes, m->dim, grid->x, x);
   for (const OutputField *f = output_fields; f->name && n < MAX_FIELDS; ++f) {
     if (!f->grid || !is_asked(m->c, f->name)) continue;
-    if (!strcmp(f->name, "pressure") && !m->pressure) continue; /* nodes know none */
+    if (!strcmp(f->name, "pressure") && !m->nodes->scaled_pressure) continue; /* nodes know none */
     PetscCall(GridField(o, m, f, &data[n]));
     fields[n] = (VtkField){.name = f->name, .unit = f->unit, .components = f->components, .data = data[n]};
     ++n;
@@ -300,6 +300,7 @@ PetscErrorCode OutputWrite(Output *o, Model *m, PetscBool *ok, char reason[256])
 {
   PetscFunctionBeginUser;
   *ok = PETSC_TRUE;
+  PetscCall(ModelInitialise(m));
   PetscCall(ReserveSeals(o, o->count + 1));
   PetscCall(WritePoints(o, m, ok, reason));
   if (*ok && m->c->output.grid) PetscCall(WriteGrid(o, m, ok, reason));

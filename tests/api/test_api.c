@@ -1,88 +1,6 @@
 /* The public interface as a user's program sees it: only talus.h. The tests run in order; the first starts MPI and
  * PETSc, the last ends them. */
-#include <math.h>
-#include <mpi.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-#include <unistd.h>
-#include <cmocka.h>
-#include "talus.h"
-
-#define BLOCK TALUS_SOURCE_DIR "/tests/api/block.yaml"
-#define FOLDER 64
-
-/* A rank that failed must not leave the others waiting in a collective call. */
-static void check(int good, const char *what, int line)
-{
-  int size = 1, running;
-  if (good) return;
-  MPI_Initialized(&running);
-  if (running) MPI_Comm_size(MPI_COMM_WORLD, &size);
-  fprintf(stderr, "%s:%d: failed: %s\n", __FILE__, line, what);
-  if (size > 1) MPI_Abort(MPI_COMM_WORLD, 1);
-  _fail(__FILE__, line);
-}
-
-#define CHECK(condition) check(!!(condition), #condition, __LINE__)
-#define CHECK_ERROR(call, error) CHECK((call) == (error))
-#define CALL(call) CHECK_ERROR(call, TALUS_OK)
-#define CHECK_CLOSE(a, b, tolerance) CHECK(fabs((a) - (b)) <= (tolerance))
-
-static TalusCase *open_block(int n_set, const char *const *set)
-{
-  TalusCase *c = NULL;
-  CALL(TalusCaseOpen(BLOCK, n_set, set, &c, NULL));
-  CHECK(c != NULL);
-  return c;
-}
-
-static TalusModel *create_model(TalusCase *c)
-{
-  TalusModel *model = NULL;
-  CALL(TalusModelCreate(c, &model, NULL));
-  CHECK(model != NULL);
-  return model;
-}
-
-static int run_to_end(TalusModel *model)
-{
-  TalusStep step = TALUS_STEP_ACCEPTED;
-  int steps = -1;
-  while (step == TALUS_STEP_ACCEPTED) {
-    CALL(TalusModelStep(model, 0, &step));
-    ++steps;
-  }
-  CHECK(step == TALUS_STEP_AT_END);
-  return steps;
-}
-
-static int my_rank(void)
-{
-  int rank = -1;
-  CALL(TalusRanks(&rank, NULL));
-  return rank;
-}
-
-/* A folder that the first rank makes, and that goes with all in it. */
-static void make_folder(char folder[FOLDER])
-{
-  snprintf(folder, FOLDER, "/tmp/talus-api-XXXXXX");
-  if (my_rank() == 0) CHECK(mkdtemp(folder) != NULL);
-  MPI_Bcast(folder, FOLDER, MPI_CHAR, 0, MPI_COMM_WORLD);
-}
-
-static void remove_folder(const char *folder)
-{
-  char command[FOLDER + 16];
-  MPI_Barrier(MPI_COMM_WORLD);
-  snprintf(command, sizeof command, "rm -rf '%s'", folder);
-  if (my_rank() == 0) CHECK(system(command) == 0);
-}
+#include "api_test.h"
 
 /* Each rank starts in a folder whose petscrc asks PETSc to write a file in the end. */
 static struct {
@@ -114,16 +32,16 @@ static void test_session(void **state)
   int rank, size;
   (void)state;
   CHECK_ERROR(TalusFinalize(), TALUS_ERROR_STATE);
-  CHECK_ERROR(TalusRanks(&rank, &size), TALUS_ERROR_STATE);
-  CHECK_ERROR(TalusCaseOpen(BLOCK, 0, NULL, &c, NULL), TALUS_ERROR_STATE);
+  CHECK_ERROR(TalusRanks(MPI_COMM_WORLD, &rank, &size), TALUS_ERROR_STATE);
+  CHECK_ERROR(TalusCaseOpen(MPI_COMM_WORLD, BLOCK, 0, NULL, &c, NULL), TALUS_ERROR_STATE);
   CHECK(strchr(TalusVersion(), '.') != NULL);
   enter_strange_folder();
   CALL(TalusInitialize(NULL, NULL));
   CHECK(chdir(strange.before) == 0);
   CHECK_ERROR(TalusInitialize(NULL, NULL), TALUS_ERROR_STATE);
-  CALL(TalusRanks(&rank, &size));
+  CALL(TalusRanks(MPI_COMM_WORLD, &rank, &size));
   CHECK(rank >= 0 && rank < size);
-  CALL(TalusRanks(NULL, NULL));
+  CALL(TalusRanks(MPI_COMM_WORLD, NULL, NULL));
 }
 
 static void test_errors_in_words(void **state)
@@ -141,7 +59,7 @@ static void expect_mistake(const char *file, const char *set, const char *what)
 {
   TalusCase *c = (TalusCase *)&c;
   char *messages = NULL;
-  CHECK_ERROR(TalusCaseOpen(file, set ? 1 : 0, &set, &c, &messages), TALUS_ERROR_INPUT);
+  CHECK_ERROR(TalusCaseOpen(MPI_COMM_WORLD, file, set ? 1 : 0, &set, &c, &messages), TALUS_ERROR_INPUT);
   CHECK(c == NULL);
   CHECK(messages && strstr(messages, what));
   TalusTextFree(&messages);
@@ -202,10 +120,12 @@ static void test_null(void **state)
   double value;
   int n;
   (void)state;
-  CHECK_ERROR(TalusCaseOpen(NULL, 0, NULL, &c, NULL), TALUS_ERROR_ARGUMENT);
-  CHECK_ERROR(TalusCaseOpen(BLOCK, 0, NULL, NULL, NULL), TALUS_ERROR_ARGUMENT);
-  CHECK_ERROR(TalusCaseOpen(BLOCK, 1, NULL, &c, NULL), TALUS_ERROR_ARGUMENT);
-  CHECK_ERROR(TalusCaseOpen(BLOCK, -1, NULL, &c, NULL), TALUS_ERROR_ARGUMENT);
+  CHECK_ERROR(TalusCaseOpen(MPI_COMM_WORLD, NULL, 0, NULL, &c, NULL), TALUS_ERROR_ARGUMENT);
+  CHECK_ERROR(TalusCaseOpen(MPI_COMM_NULL, BLOCK, 0, NULL, &c, NULL), TALUS_ERROR_ARGUMENT);
+  CHECK_ERROR(TalusRanks(MPI_COMM_NULL, &n, NULL), TALUS_ERROR_ARGUMENT);
+  CHECK_ERROR(TalusCaseOpen(MPI_COMM_WORLD, BLOCK, 0, NULL, NULL, NULL), TALUS_ERROR_ARGUMENT);
+  CHECK_ERROR(TalusCaseOpen(MPI_COMM_WORLD, BLOCK, 1, NULL, &c, NULL), TALUS_ERROR_ARGUMENT);
+  CHECK_ERROR(TalusCaseOpen(MPI_COMM_WORLD, BLOCK, -1, NULL, &c, NULL), TALUS_ERROR_ARGUMENT);
   CHECK_ERROR(TalusCaseCountMeasures(NULL, &n), TALUS_ERROR_ARGUMENT);
   CHECK_ERROR(TalusCaseMeasureName(NULL, 0, NULL, NULL), TALUS_ERROR_ARGUMENT);
   CHECK_ERROR(TalusRunCase(NULL, "x", 0, &run, NULL), TALUS_ERROR_ARGUMENT);
@@ -304,14 +224,14 @@ static void test_resume(void **state)
   TalusRun *run;
   TalusCase *c;
   (void)state;
-  CALL(TalusRanks(NULL, &size));
+  CALL(TalusRanks(MPI_COMM_WORLD, NULL, &size));
   make_folder(folder);
   snprintf(whole, sizeof whole, "%s/whole", folder);
   snprintf(cut, sizeof cut, "%s/cut", folder);
   snprintf(file, sizeof file, "%s/case.yaml", cut);
   for (int k = 0; k < 4; ++k) { /* whole, half, to its end, again at its end */
     if (k < 2) c = open_block(k ? 1 : 2, k ? half : often);
-    else CALL(TalusCaseOpen(file, 1, often + 1, &c, NULL));
+    else CALL(TalusCaseOpen(MPI_COMM_WORLD, file, 1, often + 1, &c, NULL));
     CALL(TalusRunCase(c, k ? cut : whole, TALUS_RUN_QUIET | (k < 2 ? 0 : TALUS_RUN_RESUME), &run, NULL));
     if (k != 1) CALL(TalusRunMeasure(run, "top", &values[k ? k - 1 : 0]));
     CALL(TalusRunDestroy(&run));
@@ -353,7 +273,7 @@ static void test_trust(void **state)
                "boundary: [{on: {x: 0}, fix: [x, y]}]\n");
   }
   MPI_Barrier(MPI_COMM_WORLD);
-  CALL(TalusCaseOpen(file, 0, NULL, &c, NULL));
+  CALL(TalusCaseOpen(MPI_COMM_WORLD, file, 0, NULL, &c, NULL));
   CHECK_ERROR(TalusModelCreate(c, &model, &messages), TALUS_ERROR_INPUT);
   CHECK(messages && strstr(messages, "square.geo:3:13: error: this writes into a file") && access(made, F_OK) != 0);
   TalusTextFree(&messages);
@@ -550,7 +470,7 @@ static void test_end(void **state)
   CALL(TalusFinalize());
   CHECK_ERROR(TalusFinalize(), TALUS_ERROR_STATE);
   CHECK_ERROR(TalusInitialize(NULL, NULL), TALUS_ERROR_STATE);
-  CHECK_ERROR(TalusCaseOpen(BLOCK, 0, NULL, &c, NULL), TALUS_ERROR_STATE);
+  CHECK_ERROR(TalusCaseOpen(MPI_COMM_WORLD, BLOCK, 0, NULL, &c, NULL), TALUS_ERROR_STATE);
   leave_strange_folder();
 }
 

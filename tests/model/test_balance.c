@@ -207,8 +207,8 @@ static void conserves(Bench *b)
   for (PetscInt s = 0; s < 8; ++s) model_step(m, PETSC_MAX_REAL);
   Everything points = gather(m->grid, m->points), tracers = gather(m->grid, m->tracers),
              carriers = gather(m->grid, m->loads->carriers);
-  const PetscReal reaction = nodal_sum(m, m->reaction), held = nodal_sum(m, m->held);
-  const PetscReal v = nodal_sum(m, m->stage->v);
+  const PetscReal reaction = nodal_sum(m, m->nodes->reaction), held = nodal_sum(m, m->nodes->held);
+  const PetscReal v = nodal_sum(m, m->nodes->v);
   b->c.parallel.imbalance = 1 + 1e-9;
   CALL(ModelBalance(m, &report));
   CHECK(ranks() == 1 || (report.imbalance > 1 && report.moved > 0), "nothing happened at %g",
@@ -218,9 +218,9 @@ static void conserves(Bench *b)
   same_points(&points, &after, "points");
   same_points(&tracers, &tracers_after, "tracers");
   same_points(&carriers, &carriers_after, "carriers");
-  CHECK_CLOSE(nodal_sum(m, m->reaction), reaction, 1e-14 * reaction);
-  CHECK_CLOSE(nodal_sum(m, m->held), held, 1e-14 * held);
-  CHECK_CLOSE(nodal_sum(m, m->stage->v), v, 1e-12 * v);
+  CHECK_CLOSE(nodal_sum(m, m->nodes->reaction), reaction, 1e-14 * reaction);
+  CHECK_CLOSE(nodal_sum(m, m->nodes->held), held, 1e-14 * held);
+  CHECK_CLOSE(nodal_sum(m, m->nodes->v), v, 1e-12 * v);
   CALL(ModelDestroy(&m));
 }
 

@@ -157,7 +157,7 @@ static void spray(CellType cell, PetscBool stabilised)
   }
   CALL(PointsCompact(m->points, drop));
   CALL(PetscFree(drop));
-  CALL(m->method->initialise(m->stage));
+  CALL(m->method->initialise(m->space));
   for (PetscInt s = 0; s < 40; ++s) {
     StepReport r = model_step(m, dt);
     cuts += r.cuts;

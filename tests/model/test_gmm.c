@@ -344,8 +344,8 @@ static void run_both(Bench *b, PetscInt steps, PetscInt cut)
   PetscReal v[2];
   for (PetscInt s = 0; s < steps; ++s) {
     if (s == cut) {
-      CALL(GmmRedistribute(together->stage));
-      CALL(together->method->initialise(together->stage));
+      CALL(GmmRedistribute(together->space));
+      CALL(together->method->initialise(together->space));
     }
     const StepReport r = model_step(together, PETSC_MAX_REAL), q = model_step(alone, PETSC_MAX_REAL);
     CHECK(r.cuts == q.cuts && r.dt == q.dt, "steps of %g and %g s", (double)r.dt, (double)q.dt);

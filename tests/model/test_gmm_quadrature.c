@@ -64,7 +64,7 @@ static Model *patch_model(Patch *p, Bench *b, MPI_Comm comm)
 /* sum_p V_p grad N_I, on owned nodes. */
 static PetscReal *divergence(const Model *m)
 {
-  const Support *w = m->stage->support;
+  const Support *w = m->space->support;
   PetscReal *G;
   CALL(PetscCalloc1(m->grid->n_nodes * 2, &G));
   for (PetscInt p = 0; p < w->n_groups; ++p)
@@ -130,7 +130,7 @@ static void check_forces(const BasisSpec *basis)
     for (int j = 0; j < 2; ++j) P[2 * i + j] = J * (s[2 * i] * inverse[3 * j] + s[2 * i + 1] * inverse[3 * j + 1]);
   for (PetscInt i = 0; i < m->grid->n_owned * 2; ++i) {
     const PetscReal force = P[i % 2 * 2] * G[i - i % 2] + P[i % 2 * 2 + 1] * G[i - i % 2 + 1];
-    off = PetscMax(off, PetscAbsReal(m->force[i] - force));
+    off = PetscMax(off, PetscAbsReal(m->nodes->force[i] - force));
     size = PetscMax(size, PetscAbsReal(force));
   }
   PetscPrintf(PETSC_COMM_WORLD, "nodal forces of the exact motion, up to %.3g N, are P sum V grad N to %.2g\n",

@@ -27,7 +27,7 @@ static Model *fall(Bench *b, const BasisSpec *basis, CellType cell, PetscReal si
 /* Every slot that was kept is the one that a search finds. */
 static void check_slots(Model *m)
 {
-  const Support *w = m->stage->support;
+  const Support *w = m->space->support;
   PetscInt n = 0, *kept;
   PetscBool complete;
   for (PetscInt g = 0; g < w->n_groups; ++g) n += PetscSqr(support_nodes(w, g));
@@ -46,15 +46,16 @@ static void assemble(Model *m, const PetscReal *lift, PetscBool half, PetscReal 
 {
   const PetscInt dofs = m->grid->n_nodes * m->dim, n = m->system->row_start[m->system->n_rows] * m->dim * m->dim;
   WeakFormInput in = weak_form_of(m, 4 / PetscSqr(0.002));
-  WeakFormOutput out = {.force = m->force, .values = m->system->values, .slot = m->system->slot};
-  in.lift = lift;
+  WeakFormOutput out = {.force = m->nodes->force, .values = m->system->values, .slot = m->system->slot};
   in.half = half;
-  CALL(PetscArrayzero(m->force, dofs));
+  CALL(PetscArrayzero(m->nodes->force, dofs));
   CALL(SystemZero(m->system));
   CALL(m->formulation->assemble(&in, &out));
   CHECK(out.status == LAW_OK, "no stress");
   if (half) CALL(SystemMirror(m->system));
-  CALL(PetscArraycpy(force, m->force, dofs));
+  CALL(SystemPrescribe(m->system, m->nodes->fixed, NULL));
+  system_lift(m->system, m->nodes->fixed, lift, m->nodes->force, NULL);
+  CALL(PetscArraycpy(force, m->nodes->force, dofs));
   CALL(PetscArraycpy(values, m->system->values, n));
 }
 
@@ -71,7 +72,7 @@ static void check_half(Model *m)
   PetscReal *force[2], *values[2], *lift;
   CALL(PetscMalloc5(dofs, &force[0], dofs, &force[1], n, &values[0], n, &values[1], dofs, &lift));
   for (PetscInt i = 0; i < dofs; ++i) {
-    lift[i] = m->fixed[i] ? 1e-4 * (PetscReal)(1 + i % 5) : 0;
+    lift[i] = m->nodes->fixed[i] ? 1e-4 * (PetscReal)(1 + i % 5) : 0;
   }
   for (int half = 0; half < 2; ++half) assemble(m, lift, half, force[half], values[half]);
   CHECK(largest(n, values[0], values[1]) <= 1e-13 * largest(n, values[0], NULL), "blocks are off by %g of %g",

@@ -50,7 +50,7 @@ static Effort graze(PetscReal gap, PetscReal vx, PetscReal vy, PetscReal inertia
   point_real(m->points, POINT_V, best)[1] = vy;
   CALL(PointsRelocate(m->points, m->grid, OUTSIDE_STOP, &n_lost, &lost));
   CALL(PetscFree(lost));
-  CALL(m->method->initialise(m->stage));
+  CALL(m->method->initialise(m->space));
   for (int s = 0; s < 40; ++s) {
     const StepReport r = model_step(m, 1);
     effort.most = PetscMax(effort.most, r.newton.iterations);
@@ -99,7 +99,7 @@ static void test_unseen_motion_fades(void **state)
   for (PetscInt p = 0; p < m->points->n; ++p)
     point_real(m->points, POINT_V, p)[1] =
       PetscAbsReal(point_real(m->points, POINT_XI, p)[0]) < 0.1 ? -2 * edge / middle : 1;
-  CALL(m->method->initialise(m->stage));
+  CALL(m->method->initialise(m->space));
   CALL(ModelEnergies(m, &start));
   for (int s = 0; s < 20; ++s) model_step(m, dt);
   CALL(ModelEnergies(m, &end));
@@ -154,7 +154,7 @@ static void test_keep_velocity_elsewhere(void **state)
 
 /* A column of 6 x 7 cells falls over and comes to rest: with steps that grow as far as without, in a fifth of the steps and no more cuts than a
  * hand counts. The front is where 5 % of the grains lie beyond: the farthest grain alone scatters by more. It goes out with the step to first order,
- * by 2 % a ms in a column this small (docs/decisions.md). */
+ * by 2 % a ms in a column this small (docs/experiments/granular-columns.md). */
 static PetscInt collapse(PetscReal step, PetscReal largest, PetscReal *front, PetscInt *cuts)
 {
   Bench b;
@@ -207,10 +207,10 @@ static PetscReal lumping_of(Model *m, void (*place)(PetscInt k, PetscReal *xi))
   CHECK(k == 9, "%d points in the cell", (int)k);
   CALL(PointsRelocate(m->points, m->grid, OUTSIDE_STOP, &n_lost, &lost));
   CALL(PetscFree(lost));
-  CALL(m->method->initialise(m->stage));
-  const Support *w = m->stage->support;
+  CALL(m->method->initialise(m->space));
+  const Support *w = m->space->support;
   for (PetscInt g = 0; g < w->n_groups; ++g)
-    if (m->points->cell[w->point_start[g]] == 0) return m->stage->lumping[g];
+    if (m->points->cell[w->point_start[g]] == 0) return m->space->lumping[g];
   return -1;
 }
 

@@ -34,11 +34,11 @@ static void test_values(void **state)
   guess_make(m, GUESS_REST, 0.003, rest);
   PetscInt followed = 0;
   for (PetscInt i = 0; i < dofs; ++i) {
-    const PetscReal v = m->stage->v[i], a = m->stage->a[i];
-    const PetscReal alone = m->stage->touched[i / 2] ? 0.003 * (v + 0.5 * 0.003 * a) : 0;
-    const PetscBool follows = !m->fixed[i] && m->previous[i] != 0;
+    const PetscReal v = m->nodes->v[i], a = m->nodes->a[i];
+    const PetscReal alone = m->nodes->touched[i / 2] ? 0.003 * (v + 0.5 * 0.003 * a) : 0;
+    const PetscBool follows = !m->nodes->fixed[i] && m->nodes->previous[i] != 0;
     CHECK_CLOSE(inertia[i], alone, 1e-16);
-    CHECK_CLOSE(previous[i], follows ? 0.75 * m->previous[i] : alone, 1e-16);
+    CHECK_CLOSE(previous[i], follows ? 0.75 * m->nodes->previous[i] : alone, 1e-16);
     CHECK(rest[i] == 0, "rest moves");
     followed += follows;
   }
@@ -76,10 +76,10 @@ static void test_learning(void **state)
   mark_fixed(m);
   for (int nearer = 0; nearer < 2; ++nearer) {
     for (PetscInt i = 0; i < 2 * m->grid->n_nodes; ++i) {
-      m->previous[i] = m->stage->touched[i / 2] && !m->fixed[i] ? 1e-3 : 0;
-      m->stage->v[i] = 1;
-      m->stage->a[i] = 0;
-      m->du[i] = nearer ? 0.5e-3 : 0.005; /* half of the step before, or the velocity for as long */
+      m->nodes->previous[i] = m->nodes->touched[i / 2] && !m->nodes->fixed[i] ? 1e-3 : 0;
+      m->nodes->v[i] = 1;
+      m->nodes->a[i] = 0;
+      m->nodes->du[i] = nearer ? 0.5e-3 : 0.005; /* half of the step before, or the velocity for as long */
     }
     m->guess = (Guess){.step = 0.01, .previous = !nearer};
     CALL(GuessLearn(m, 0.005));

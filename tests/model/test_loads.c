@@ -3,12 +3,19 @@
 #include "case_builder.h"
 #include "model/model_private.h"
 
+/* What nodal forces push with at time t. */
+static void gather(const Model *m, PetscReal t, PetscReal *force)
+{
+  const NodalScene scene = nodal_scene(m, t, m->nodes->du);
+  CALL(NodalForcesExternal(&m->forces, &scene, PETSC_FALSE, force));
+}
+
 /* Sum over owned nodes of the loads at time t, and of their moments about the origin in x and y: f, x f_x, y f_y. */
 static void sum_loads(const Model *m, PetscReal t, PetscReal sum[5])
 {
   PetscReal *force, local[5] = {0, 0, 0, 0, 0};
   CALL(PetscCalloc1(m->grid->n_nodes * m->dim, &force));
-  CALL(LoadsAdd(m->loads, m->grid, t, m->stage->filled, m->stage->touched, force));
+  gather(m, t, force);
   for (PetscInt i = 0; i < m->grid->n_owned; ++i) {
     for (PetscInt d = 0; d < m->dim; ++d) local[d] += force[i * m->dim + d];
     for (PetscInt d = 0; d < 2; ++d) local[3 + d] += m->grid->x[i * m->dim + d] * force[i * m->dim + d];
@@ -150,7 +157,7 @@ static void test_body_force(void **state)
       model_step(m, 0.1);
       CALL(ModelSetBodyForce(m, as_far, &dim));
       CALL(PetscCalloc1(m->grid->n_nodes * dim, &force));
-      CALL(AddBodyForce(m, 0.5, force));
+      gather(m, 0.5, force);
       for (PetscInt i = 0; i < m->grid->n_owned * dim; ++i) local[i % dim] += force[i];
       CALL(MPI_Allreduce(local, sum, 3, MPIU_REAL, MPI_SUM, m->comm));
       const PetscReal mass = model_sum(m, MEASURE_MASS, 0), centre[3] = {0.125, 0.375, 0.25};

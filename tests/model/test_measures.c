@@ -401,7 +401,7 @@ static PetscReal nodal_roughness(PetscReal constant, PetscReal amplitude)
   Model *m = bench_model(&b, PETSC_COMM_WORLD);
   for (PetscInt i = 0; i < m->grid->n_nodes; ++i) {
     const PetscInt colour = (PetscInt)(6 * (m->grid->x[2 * i] + m->grid->x[2 * i + 1]) + 0.5) % 3;
-    m->pressure[i] = constant + amplitude * (PetscReal)(colour - 1);
+    m->nodes->scaled_pressure[i] = constant + amplitude * (PetscReal)(colour - 1);
   }
   const PetscReal value = model_sum(m, MEASURE_ROUGHNESS, 0);
   CALL(ModelDestroy(&m));

@@ -76,7 +76,7 @@ static void check_patch(const Model *m)
     worst[2] = PetscMax(worst[2], PetscAbsReal(m->points->real[POINT_PRESSURE][k] - p) / 1e6);
   }
   for (PetscInt node = 0; node < m->grid->n_nodes; ++node)
-    if (m->stage->touched[node]) worst[2] = PetscMax(worst[2], PetscAbsReal(m->stage->pressure[node] - p) / 1e6);
+    if (m->nodes->touched[node]) worst[2] = PetscMax(worst[2], PetscAbsReal(m->nodes->pressure[node] - p) / 1e6);
   for (int k = 0; k < 3; ++k) CHECK(worst[k] <= 1e-10, "number %d is off by %g", k, (double)worst[k]);
 }
 
@@ -137,26 +137,30 @@ static void residual(const Subject *s, PetscReal h, PetscInt seed, PetscBool tan
   const PetscInt dim = m->dim, n = m->grid->n_nodes;
   for (PetscInt node = 0; node < n; ++node) {
     for (PetscInt d = 0; d < dim; ++d)
-      m->du[node * dim + d] = s->du[node * dim + d] + (m->fixed[node * dim + d] ? 0 : h * node_noise(s, node, d, seed));
-    m->pressure[node] = s->pressure[node] + (m->idle[node] ? 0 : h * node_noise(s, node, dim, seed));
+      m->nodes->du[node * dim + d] =
+        s->du[node * dim + d] + (m->nodes->fixed[node * dim + d] ? 0 : h * node_noise(s, node, d, seed));
+    m->nodes->scaled_pressure[node] =
+      s->pressure[node] + (m->nodes->idle[node] ? 0 : h * node_noise(s, node, dim, seed));
   }
-  CALL(PetscArrayzero(m->force, n * dim));
-  CALL(PetscArrayzero(m->volume, n));
+  CALL(PetscArrayzero(m->nodes->force, n * dim));
+  CALL(PetscArrayzero(m->nodes->volume, n));
   CALL(SystemZero(m->system));
   WeakFormInput in = weak_form_of(m, m->c->analysis.type == ANALYSIS_DYNAMIC ? 40 : 0);
-  WeakFormOutput o = {
-    .force = m->force, .volume = m->volume, .values = tangent ? m->system->values : NULL, .slot = m->system->slot};
+  WeakFormOutput o = {.force = m->nodes->force,
+                      .volume = m->nodes->volume,
+                      .values = tangent ? m->system->values : NULL,
+                      .slot = m->system->slot};
   CALL(m->formulation->assemble(&in, &o));
   CHECK(o.status == LAW_OK, "no stress");
-  CALL(GridSumToOwners(m->grid, dim, m->force));
-  CALL(GridSumToOwners(m->grid, 1, m->volume));
+  CALL(GridSumToOwners(m->grid, dim, m->nodes->force));
+  CALL(GridSumToOwners(m->grid, 1, m->nodes->volume));
   for (PetscInt node = 0; node < m->grid->n_owned; ++node) {
     for (PetscInt d = 0; d < dim; ++d)
-      if (m->fixed[node * dim + d]) m->force[node * dim + d] = 0;
-    if (m->idle[node]) m->volume[node] = 0;
+      if (m->nodes->fixed[node * dim + d]) m->nodes->force[node * dim + d] = 0;
+    if (m->nodes->idle[node]) m->nodes->volume[node] = 0;
   }
-  CALL(SystemFromNodes(m->system, m->force, 0, dim, out));
-  CALL(SystemFromNodes(m->system, m->volume, dim, 1, out));
+  CALL(SystemFromNodes(m->system, m->nodes->force, 0, dim, out));
+  CALL(SystemFromNodes(m->system, m->nodes->volume, dim, 1, out));
 }
 
 static void direction(const Subject *s, PetscInt seed, Vec out)
@@ -164,11 +168,11 @@ static void direction(const Subject *s, PetscInt seed, Vec out)
   Model *m = s->m;
   for (PetscInt node = 0; node < m->grid->n_owned; ++node) {
     for (PetscInt d = 0; d < m->dim; ++d)
-      m->force[node * m->dim + d] = m->fixed[node * m->dim + d] ? 0 : node_noise(s, node, d, seed);
-    m->volume[node] = m->idle[node] ? 0 : node_noise(s, node, m->dim, seed);
+      m->nodes->force[node * m->dim + d] = m->nodes->fixed[node * m->dim + d] ? 0 : node_noise(s, node, d, seed);
+    m->nodes->volume[node] = m->nodes->idle[node] ? 0 : node_noise(s, node, m->dim, seed);
   }
-  CALL(SystemFromNodes(m->system, m->force, 0, m->dim, out));
-  CALL(SystemFromNodes(m->system, m->volume, m->dim, 1, out));
+  CALL(SystemFromNodes(m->system, m->nodes->force, 0, m->dim, out));
+  CALL(SystemFromNodes(m->system, m->nodes->volume, m->dim, 1, out));
 }
 
 static void check_tangent(const char *method, CellType cell, const Solid *solid, PetscBool dynamic)
@@ -185,14 +189,14 @@ static void check_tangent(const char *method, CellType cell, const Solid *solid,
   bench_motion(&b, 1, 0, MOTION_FIXED, 7);
   s.m = bench_model(&b, PETSC_COMM_WORLD);
   CALL(ModelActivate(s.m));
-  for (PetscInt g = 0; s.m->stage->soft && g < s.m->stage->support->n_groups; ++g) { /* as if cells were not full */
-    s.m->stage->soft[g] = 1e4 * (PetscReal)(g + 1);
-    s.m->stage->tie[g] = 10 * (PetscReal)(g + 1);
-    s.m->stage->pressure_tie[g] = 1e-8 * (PetscReal)(g + 1);
+  for (PetscInt g = 0; s.m->space->soft && g < s.m->space->support->n_groups; ++g) { /* as if cells were not full */
+    s.m->space->soft[g] = 1e4 * (PetscReal)(g + 1);
+    s.m->space->tie[g] = 10 * (PetscReal)(g + 1);
+    s.m->space->pressure_tie[g] = 1e-8 * (PetscReal)(g + 1);
   }
   for (PetscInt i = 0; i < s.m->grid->n_nodes * s.m->dim; ++i)
-    s.m->fixed[i] = s.m->boundary->fixed[i] || !s.m->stage->touched[i / s.m->dim];
-  for (PetscInt i = 0; i < s.m->grid->n_nodes; ++i) s.m->idle[i] = !s.m->stage->touched[i];
+    s.m->nodes->fixed[i] = s.m->boundary->fixed[i] || !s.m->nodes->touched[i / s.m->dim];
+  for (PetscInt i = 0; i < s.m->grid->n_nodes; ++i) s.m->nodes->idle[i] = !s.m->nodes->touched[i];
   CALL(PetscCalloc2(s.m->grid->n_nodes * s.m->dim, &s.du, s.m->grid->n_nodes, &s.pressure));
   for (PetscInt node = 0; node < s.m->grid->n_nodes; ++node) {
     for (PetscInt d = 0; d < s.m->dim; ++d) s.du[node * s.m->dim + d] = 0.06 * node_noise(&s, node, d, 1);
@@ -203,7 +207,8 @@ static void check_tangent(const char *method, CellType cell, const Solid *solid,
   CALL(VecDuplicate(x, &plus));
   CALL(VecDuplicate(x, &minus));
   residual(&s, 0, 0, PETSC_TRUE, y);
-  CALL(SystemToMatrix(s.m->system, s.m->fixed, s.m->idle));
+  CALL(SystemPrescribe(s.m->system, s.m->nodes->fixed, s.m->nodes->idle));
+  CALL(SystemToMatrix(s.m->system));
   if (s.m->symmetric) {
     PetscBool is;
     CALL(MatIsSymmetric(s.m->system->matrix, 1e-9 * b.constants[0].value, &is));
@@ -363,8 +368,8 @@ static PetscReal roughness(PetscReal alpha)
   (void)model_step(m, 1);
   for (PetscInt k = 0; k < m->grid->n_cells; ++k) {
     PetscReal mean = 0;
-    for (int i = 0; i < 3; ++i) mean += m->stage->pressure[m->grid->cell_node[3 * k + i]] / 3;
-    for (int i = 0; i < 3; ++i) local[0] += PetscSqr(m->stage->pressure[m->grid->cell_node[3 * k + i]] - mean);
+    for (int i = 0; i < 3; ++i) mean += m->nodes->pressure[m->grid->cell_node[3 * k + i]] / 3;
+    for (int i = 0; i < 3; ++i) local[0] += PetscSqr(m->nodes->pressure[m->grid->cell_node[3 * k + i]] - mean);
     local[1] += mean * mean;
   }
   CALL(MPI_Allreduce(local, all, 2, MPIU_REAL, MPI_SUM, m->comm));

@@ -210,7 +210,7 @@ static void blow(Model *m)
     const PetscReal *x = point_real(m->points, POINT_X, p);
     point_real(m->points, POINT_V, p)[0] = (x[0] < 0.5 ? 0.2 : -0.2) * x[1];
   }
-  CALL(m->method->initialise(m->stage));
+  CALL(m->method->initialise(m->space));
 }
 
 /* Newton fails from inertia's guess and finds the solution from the increments of the step before: no step is halved, the failed try is counted, and the

@@ -127,7 +127,7 @@ static void test_unseen_decay(void **state)
   b.c.newton.residual_absolute = 1e-12;
   Model *m = bench_model(&b, PETSC_COMM_SELF);
   for (PetscInt i = 0; i < 2 * m->points->n; ++i) m->points->real[POINT_V][i] = random_real(&random, -1e-5, 1e-5);
-  CALL(m->method->initialise(m->stage));
+  CALL(m->method->initialise(m->space));
   model_step(m, dt);
   CALL(ModelEnergies(m, &first));
   for (int step = 0; step < 60; ++step) model_step(m, dt);

@@ -47,7 +47,7 @@ static Model *scattered(Bench *b, CellType cell)
       point_real(m->points, POINT_A, p)[d] = random_real(&random, -9, 9);
     }
   }
-  CALL(m->method->initialise(m->stage));
+  CALL(m->method->initialise(m->space));
   return m;
 }
 
@@ -82,12 +82,12 @@ static void check_projection(CellType cell)
   sums_of(m, n, mass, momentum, force);
   for (PetscInt i = 0; i < m->grid->n_nodes; ++i) {
     const PetscInt k = place_of(m->grid, i);
-    CHECK_CLOSE(m->stage->mass[i], mass[k], 1e-9);
-    CHECK(m->stage->touched[i] == (mass[k] > 1e-9), "node at place %d", (int)k);
+    CHECK_CLOSE(m->nodes->mass[i], mass[k], 1e-9);
+    CHECK(m->nodes->touched[i] == (mass[k] > 1e-9), "node at place %d", (int)k);
     for (PetscInt d = 0; d < dim && mass[k] > 1e-9; ++d) {
-      CHECK_CLOSE(m->stage->v[i * dim + d], momentum[k * dim + d] / mass[k], 1e-9);
-      CHECK_CLOSE(m->stage->v_points[i * dim + d], momentum[k * dim + d] / mass[k], 1e-9);
-      CHECK_CLOSE(m->stage->a[i * dim + d], force[k * dim + d] / mass[k], 1e-9);
+      CHECK_CLOSE(m->nodes->v[i * dim + d], momentum[k * dim + d] / mass[k], 1e-9);
+      CHECK_CLOSE(m->nodes->v_points[i * dim + d], momentum[k * dim + d] / mass[k], 1e-9);
+      CHECK_CLOSE(m->nodes->a[i * dim + d], force[k * dim + d] / mass[k], 1e-9);
     }
   }
   CALL(PetscFree3(mass, momentum, force));
@@ -123,13 +123,13 @@ static void check_convection(CellType cell)
   CALL(MPI_Allreduce(MPI_IN_PLACE, v, (int)((last + 1) * dim), MPIU_REAL, MPI_SUM, m->comm));
   for (PetscInt i = 0; i < m->grid->n_nodes; ++i)
     for (PetscInt d = 0, k = place_of(m->grid, i); d < dim; ++d) {
-      m->du[i * dim + d] = field(0, k, d);
-      m->stage->v1[i * dim + d] = field(1, k, d);
-      m->stage->a1[i * dim + d] = field(2, k, d);
-      m->stage->v_points[i * dim + d] = field(3, k, d);
+      m->nodes->du[i * dim + d] = field(0, k, d);
+      m->nodes->v1[i * dim + d] = field(1, k, d);
+      m->nodes->a1[i * dim + d] = field(2, k, d);
+      m->nodes->v_points[i * dim + d] = field(3, k, d);
     }
-  m->stage->fade = fade;
-  CALL(m->method->convect(m->stage, m->du));
+  m->space->fade = fade;
+  CALL(m->method->convect(m->space));
   for (PetscInt p = 0; p < m->points->n; ++p)
     for (PetscInt d = 0; d < dim; ++d) {
       const PetscInt64 id = m->points->id[p];
@@ -173,11 +173,11 @@ static void test_held_nodes(void **state)
     for (int step = 0; step < 40; ++step) {
       model_step(m, 5e-3);
       for (PetscInt i = 0; i < m->grid->n_owned; ++i) {
-        if (m->grid->x[2 * i + 1] > 1e-9 || !m->stage->touched[i]) continue;
-        CHECK_CLOSE(m->stage->v1[2 * i], 0.25, 1e-12);
-        CHECK_CLOSE(m->stage->v1[2 * i + 1], 0, 1e-12);
-        for (int d = 0; d < 2; ++d) CHECK_CLOSE(m->stage->a1[2 * i + d], 0, 1e-9);
-        pushed = PetscMax(pushed, m->reaction[2 * i + 1]);
+        if (m->grid->x[2 * i + 1] > 1e-9 || !m->nodes->touched[i]) continue;
+        CHECK_CLOSE(m->nodes->v1[2 * i], 0.25, 1e-12);
+        CHECK_CLOSE(m->nodes->v1[2 * i + 1], 0, 1e-12);
+        for (int d = 0; d < 2; ++d) CHECK_CLOSE(m->nodes->a1[2 * i + d], 0, 1e-9);
+        pushed = PetscMax(pushed, m->nodes->reaction[2 * i + 1]);
       }
     }
     CHECK(model_max(m, pushed) > 100, "the block has not landed");
@@ -262,15 +262,15 @@ static void check_filling(CellType cell, PetscReal volume, PetscReal J, PetscRea
     m->points->real[POINT_MASS][p] *= volume;
     m->points->real[POINT_J][p] = J;
   }
-  CALL(m->method->initialise(m->stage));
+  CALL(m->method->initialise(m->space));
   const PetscReal size = cell == CELL_TRIANGLE ? PetscSqrtReal(1. / 32) : 0.25, whole = m->dim == 3 ? 1. / 64
                                                                                         : cell == CELL_TRIANGLE
                                                                                           ? 1. / 32
                                                                                           : 1. / 16;
-  for (PetscInt g = 0; g < m->stage->support->n_groups; ++g) {
-    CHECK_CLOSE(m->stage->lumping[g], 0.2 * lack, 1e-12);
-    CHECK_CLOSE(m->stage->tie[g], 0.05 * lack * 1000 * volume * whole, 1e-9);
-    CHECK_CLOSE(m->stage->soft[g], 1e-3 * lack * M * whole / PetscSqr(size), 1e-6);
+  for (PetscInt g = 0; g < m->space->support->n_groups; ++g) {
+    CHECK_CLOSE(m->space->lumping[g], 0.2 * lack, 1e-12);
+    CHECK_CLOSE(m->space->tie[g], 0.05 * lack * 1000 * volume * whole, 1e-9);
+    CHECK_CLOSE(m->space->soft[g], 1e-3 * lack * M * whole / PetscSqr(size), 1e-6);
   }
   CALL(ModelDestroy(&m));
 }
@@ -301,11 +301,11 @@ static void test_one_sided(void **state)
     b.c.stabilisation = (StabilisationSpec){.stiffness = 1e-3, .mass = 0.2, .inertia = 0.05};
     Model *m = bench_model(&b, PETSC_COMM_WORLD);
     for (PetscInt p = 0; p < m->points->n; ++p) point_real(m->points, POINT_XI, p)[0] = side[k];
-    CALL(m->method->initialise(m->stage));
+    CALL(m->method->initialise(m->space));
     const PetscReal least = (1 - side[k]) / 2 / 2, lack = PetscMax(0, 1 - 16 * least);
-    for (PetscInt g = 0; g < m->stage->support->n_groups; ++g) {
-      CHECK_CLOSE(m->stage->lumping[g], 0.2 * lack, 1e-12);
-      CHECK_CLOSE(m->stage->tie[g], 0.05 * lack * 1000. / 16, 1e-9);
+    for (PetscInt g = 0; g < m->space->support->n_groups; ++g) {
+      CHECK_CLOSE(m->space->lumping[g], 0.2 * lack, 1e-12);
+      CHECK_CLOSE(m->space->tie[g], 0.05 * lack * 1000. / 16, 1e-9);
     }
     CALL(ModelDestroy(&m));
   }
@@ -343,7 +343,7 @@ static void check_apart(PetscReal other_y, PetscReal distance, PetscReal expecte
   const PetscReal at[2] = {m->grid->x[2 * other], m->grid->x[2 * other + 1]};
   m->grid->x[2 * near] = at[0] + 0.6 * distance;
   m->grid->x[2 * near + 1] = at[1] + 0.8 * distance;
-  CALL(m->method->initialise(m->stage));
+  CALL(m->method->initialise(m->space));
   model_step(m, 1);
   const PetscReal *x = m->grid->x + 2 * near, *y = m->grid->x + 2 * other;
   CHECK_CLOSE(x[0] - y[0], 0.6 * expected, 1e-8);
@@ -367,10 +367,10 @@ static void test_keep_off(void **state)
 /* Does the cloud of a node of the block hold a node of the floor, and do points touch one? */
 static void look_at_floor(const Model *m, PetscBool *near, PetscBool *touched)
 {
-  const Support *w = m->stage->gmm->nodes;
+  const Support *w = gmm_of(m->space)->nodes;
   *near = *touched = PETSC_FALSE;
   for (PetscInt i = 0; i < m->grid->n_nodes; ++i)
-    if (m->grid->x[2 * i + 1] < 1e-9 && m->stage->touched[i]) *touched = PETSC_TRUE;
+    if (m->grid->x[2 * i + 1] < 1e-9 && m->nodes->touched[i]) *touched = PETSC_TRUE;
   for (PetscInt g = 0; g < w->n_groups; ++g) {
     PetscBool floor = PETSC_FALSE, block = PETSC_FALSE;
     for (PetscInt e = w->node_start[g]; e < w->node_start[g + 1]; ++e) {
@@ -402,7 +402,7 @@ static void test_nodes_follow(void **state)
     for (PetscInt i = 0; i < m->grid->n_nodes; ++i)
       if (m->grid->x[2 * i + 1] > h) m->grid->x[2 * i + 1] -= lower;
     for (PetscInt p = 0; p < m->points->n; ++p) point_real(m->points, POINT_X, p)[1] -= lower;
-    CALL(m->method->initialise(m->stage));
+    CALL(m->method->initialise(m->space));
     look_at_floor(m, &near, &touched);
     PetscReal *before;
     CALL(PetscMalloc1(2 * m->grid->n_owned, &before));

@@ -114,7 +114,7 @@ static inline Points *seed_points(const TestCase *t, const Grid *grid)
   Diag *diag = NULL;
   PetscInt errors = 0;
   CALL(DiagCreate(&diag));
-  CALL(PointsSeed(points, grid, &t->c, t->seed, diag));
+  CALL(PointsSeed(points, grid, &t->c, t->seed, !strcmp(t->c.method, "mpm"), diag));
   CALL(DiagReduce(grid->comm, diag, &errors));
   if (errors) CALL(DiagFlush(diag, stderr));
   CHECK(errors == 0);

@@ -102,7 +102,7 @@ static void regions_become_bodies(void **state)
   Diag *diag = NULL;
   points = make_points(t);
   CALL(DiagCreate(&diag));
-  CALL(PointsSeed(points, grid, &t->c, t->seed, diag));
+  CALL(PointsSeed(points, grid, &t->c, t->seed, PETSC_TRUE, diag));
   CALL(DiagReduce(PETSC_COMM_WORLD, diag, &errors));
   CHECK(errors == 1);
   CALL(DiagDestroy(&diag));
@@ -170,7 +170,7 @@ static void own_mesh_outside_is_told(void **state)
   Grid *grid = make_grid(PETSC_COMM_WORLD, &t->c);
   Points *points = make_points(t);
   CALL(DiagCreate(&diag));
-  CALL(PointsSeed(points, grid, &t->c, t->seed, diag));
+  CALL(PointsSeed(points, grid, &t->c, t->seed, PETSC_TRUE, diag));
   CALL(DiagReduce(PETSC_COMM_WORLD, diag, &errors));
   CHECK(errors == 1);
   CALL(DiagDestroy(&diag));
@@ -197,7 +197,7 @@ static void unreadable_mesh_is_told(void **state)
   Grid *grid = make_grid(PETSC_COMM_WORLD, &t->c);
   Points *points = make_points(t);
   CALL(DiagCreate(&diag));
-  CALL(PointsSeed(points, grid, &t->c, t->seed, diag));
+  CALL(PointsSeed(points, grid, &t->c, t->seed, PETSC_TRUE, diag));
   CALL(DiagReduce(PETSC_COMM_WORLD, diag, &errors));
   CHECK(errors == 1 && points->n == 0);
   CALL(DiagFlush(diag, out));

@@ -226,7 +226,7 @@ static PetscInt messages(const TestCase *t, size_t size, char *text, PetscInt *w
   FILE *out = tmpfile();
   CHECK(out != NULL);
   CALL(DiagCreate(&diag));
-  CALL(PointsSeed(points, grid, &t->c, t->seed, diag));
+  CALL(PointsSeed(points, grid, &t->c, t->seed, PETSC_TRUE, diag));
   CALL(DiagReduce(PETSC_COMM_WORLD, diag, &errors));
   if (warnings) *warnings = count_over_ranks(diag_warnings(diag));
   CALL(DiagFlush(diag, out));

@@ -47,8 +47,9 @@ static void same_models(const Model *m, const Model *n)
   same_bits(m->tracers, n->tracers, "tracers");
   same_bits(m->loads->carriers, n->loads->carriers, "carriers");
   CHECK(!memcmp(m->grid->x, n->grid->x, dofs), "nodes have moved");
-  CHECK(!memcmp(m->stage->v, n->stage->v, dofs) && !memcmp(m->stage->a, n->stage->a, dofs), "nodal motion differs");
-  CHECK(!memcmp(m->reaction, n->reaction, dofs) && !memcmp(m->held, n->held, dofs), "reactions differ");
+  CHECK(!memcmp(m->nodes->v, n->nodes->v, dofs) && !memcmp(m->nodes->a, n->nodes->a, dofs), "nodal motion differs");
+  CHECK(!memcmp(m->nodes->reaction, n->nodes->reaction, dofs) && !memcmp(m->nodes->held, n->nodes->held, dofs),
+        "reactions differ");
   CHECK(m->time == n->time && m->control.next == n->control.next && m->step == n->step && m->cuts == n->cuts,
         "time or step differ");
   CHECK(m->external_work == n->external_work && m->transfer_energy == n->transfer_energy &&

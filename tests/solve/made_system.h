@@ -64,7 +64,7 @@ static inline void make_fixed(Made *s)
 static inline void add_cell(Made *s, PetscInt g)
 {
   const PetscInt dim = s->grid->dim, nn = s->grid->nodes_per_cell, n = nn * dim;
-  const PetscInt *node = s->cells.node + g * nn, *slot = s->system->slot + g * nn * nn;
+  const PetscInt *slot = s->system->slot + g * nn * nn;
   PetscReal G[24 * 4], more[24 * 24];
   Random random = {(uint64_t)s->cells.point_start[g] + 11};
   for (PetscInt i = 0; i < 4 * n; ++i) G[i] = random_real(&random, -1, 1);
@@ -72,7 +72,6 @@ static inline void add_cell(Made *s, PetscInt g)
   for (PetscInt i = 0; i < n; ++i)
     for (PetscInt j = 0; j < n; ++j) {
       const PetscInt I = i / dim, J = j / dim, a = i % dim, b = j % dim;
-      if (s->fixed[node[I] * dim + a] || s->fixed[node[J] * dim + b]) continue;
       PetscReal value = more[i * n + j] + (i == j ? s->shift : I != J ? s->coupling : 0);
       for (int k = 0; k < 4; ++k) value += G[4 * i + k] * G[4 * j + k];
       s->system->values[(slot[I * nn + J] * dim + a) * dim + b] += 1e7 * value;
@@ -88,6 +87,7 @@ static inline void make(Made *s, CellType type, PetscBool symmetric, PetscReal w
   make_fixed(s);
   CALL(SystemZero(s->system));
   for (PetscInt g = 0; g < s->cells.n_groups; ++g) add_cell(s, g);
+  CALL(SystemPrescribe(s->system, s->fixed, NULL));
 }
 
 static inline void drop(Made *s)

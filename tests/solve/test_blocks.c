@@ -6,7 +6,7 @@
 static Mat matrix(Made *s, SystemForm form)
 {
   CALL(SystemUse(s->system, form, s->symmetric));
-  CALL(SystemToMatrix(s->system, s->fixed, NULL));
+  CALL(SystemToMatrix(s->system));
   return s->system->matrix;
 }
 

@@ -74,7 +74,8 @@ static PetscInt solve_projected(Made *s, const Constraints *c, Vec f, Vec y)
   CALL(ProjectionCreate(s->system, s->grid, c, s->fixed, &projection));
   s->system->blocks->projection = projection;
   CALL(ProjectionFactor(projection));
-  CALL(SystemToMatrix(s->system, projection->held, NULL));
+  CALL(SystemPrescribe(s->system, projection->held, NULL));
+  CALL(SystemToMatrix(s->system));
   CALL(KSPCreate(PETSC_COMM_WORLD, &ksp));
   CALL(LinearConfigure(ksp, &problem, &direct, &what));
   CALL(KSPSetOperators(ksp, s->system->matrix, s->system->matrix));
@@ -99,9 +100,11 @@ static PetscReal residual(Made *s, const Constraints *c, PetscReal factor, Vec f
   CALL(SystemZero(s->system));
   for (PetscInt g = 0; g < s->cells.n_groups; ++g) add_cell(s, g);
   make_special(s, factor);
-  constraints_assemble(c, nothing, nothing, s->fixed, NULL, nothing, s->system->values);
+  const NodalScene scene = {.grid = s->grid, .fixed = s->fixed, .du = nothing, .prescribed = nothing};
+  constraints_assemble(c, &scene, &(NodalOutput){.force = nothing, .system = s->system});
   CALL(SystemUse(s->system, SYSTEM_ASSEMBLED, s->symmetric));
-  CALL(SystemToMatrix(s->system, s->fixed, NULL));
+  CALL(SystemPrescribe(s->system, s->fixed, NULL));
+  CALL(SystemToMatrix(s->system));
   CALL(MatMult(s->system->matrix, y, r));
   CALL(VecAXPY(r, -1, f));
   const PetscReal size = norm(r) / norm(f);

@@ -8,6 +8,7 @@ PetscErrorCode DiagCreate(Diag **diag)
   PetscFunctionBeginUser;
   *diag = calloc(1, sizeof(**diag));
   PetscCheck(*diag, PETSC_COMM_SELF, PETSC_ERR_MEM, "no memory for diagnostics");
+  (*diag)->printer = -1;
   PetscFunctionReturn(0);
 }
 
@@ -202,9 +203,10 @@ static int compare_keys(const void *a, const void *b)
   return p->index < q->index ? -1 : p->index > q->index;
 }
 
-static PetscBool prints_here(void)
+static PetscBool prints_here(const Diag *diag)
 {
   int initialised = 0, rank = 0;
+  if (diag->printer >= 0) return diag->printer > 0;
   MPI_Initialized(&initialised);
   if (initialised) MPI_Comm_rank(MPI_COMM_WORLD, &rank);
   return rank == 0;
@@ -220,7 +222,7 @@ PetscErrorCode DiagFlush(Diag *diag, FILE *out)
   SortKey *keys;
 
   PetscFunctionBeginUser;
-  if (diag->n > 0 && prints_here()) {
+  if (diag->n > 0 && prints_here(diag)) {
     PetscCall(PetscMalloc1(diag->n, &keys));
     for (PetscInt i = 0; i < diag->n; ++i) {
       const DiagMessage *m = &diag->messages[i];

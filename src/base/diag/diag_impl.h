@@ -14,6 +14,7 @@ struct Diag {
   DiagMessage *messages;
   PetscInt errors, warnings;
   PetscInt shown[2], more[2]; /* others, errors: how many messages are kept, and how many only counted */
+  int printer;                /* does this rank print? 1, 0; -1 until DiagReduce: the first of all ranks does */
   PetscBool stale_hint;       /* the newest message was lost: its hint goes too */
   DiagResolver resolver;
   void *context;

@@ -136,6 +136,7 @@ PetscErrorCode DiagReduce(MPI_Comm comm, Diag *diag, PetscInt *errors)
   PetscFunctionBeginUser;
   PetscCallMPI(MPI_Comm_rank(comm, &rank));
   PetscCallMPI(MPI_Comm_size(comm, &ranks));
+  diag->printer = rank == 0;
   if (rank == 0) remove_twins(diag);
   if (ranks > 1) PetscCall(Gather(comm, rank, ranks, diag));
   if (rank > 0) {

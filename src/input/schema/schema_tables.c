@@ -1,6 +1,7 @@
 /* The keys at the top of the case file, and those of the smaller blocks. The order of the lines is the
  * order of reading, writing and of the reference. */
 #include "input/schema/schema_keys.h"
+#include "method/method.h"
 
 static const SchemaWord kinematics_words[] = {
   {"plane-strain", KINEMATICS_PLANE_STRAIN, "two-dimensional, unit thickness"},
@@ -55,6 +56,8 @@ static const SchemaEntry analysis_entries[] = {
   KEY("travel", NUMBER, NULL,
       "steps larger than `step` carry no point farther than this share of the smallest cell; 0: as far as it goes",
       .fallback = "0.3", AT_LEAST(0), AT(AnalysisSpec, travel)),
+  KEY("scheme", TEXT, NULL, "time scheme of dynamics", .note = "newmark; with bossak: bossak",
+      AT(AnalysisSpec, scheme)),
   KEY("beta", NUMBER, NULL, "Newmark parameter", .note = "0.25; with bossak (1 - bossak)^2 / 4", .bounded = PETSC_TRUE,
       .min = 0, .max = 1, .min_open = PETSC_TRUE, AT(AnalysisSpec, beta)),
   KEY("gamma", NUMBER, NULL, "Newmark parameter", .note = "0.5; with bossak 0.5 - bossak", BETWEEN(0, 1),
@@ -203,7 +206,7 @@ static const SchemaEntry case_entries[] = {
 };
 static PetscBool hide_in_case(const SchemaEntry *e, const void *source)
 {
-  return !strcmp(e->key, "basis") && strcmp(((const Case *)source)->method, "gmm");
+  return !strcmp(e->key, "basis") && !method_find(((const Case *)source)->method)->clouds;
 }
 const SchemaTable schema_case = {
   .name = "case", .help = "The keys at the top of the file.", .entries = case_entries, .hide = hide_in_case};

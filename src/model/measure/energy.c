@@ -10,7 +10,7 @@ typedef struct {
   PetscReal factor[2];
 } NodalField;
 
-/* Dimension and nodes of a cell are constants at each call below, so that the inner loops unroll; fixed_nn 0: each group has its own. */
+/* Dimension and nodes of a cell are constants at the calls below that matter, so that the inner loops unroll; run->nodes 0: each group has its own. */
 #define UNROLLED static inline __attribute__((always_inline))
 
 /* The part of u M w that ties the nodes of one cell together: their deviations from the mean. */
@@ -25,14 +25,14 @@ UNROLLED PetscReal tied_product(const PetscInt dim, const PetscInt nn, const Pet
   return sum;
 }
 
-UNROLLED PetscReal product_sized(const PetscInt dim, const PetscInt fixed_nn, const Model *m, const NodalField *u,
-                                 const NodalField *w)
+UNROLLED PetscReal product_sized(const PetscInt dim, const PetscInt fixed_nn, const SupportRun *run, const Model *m,
+                                 const NodalField *u, const NodalField *w)
 {
-  const Support *support = m->stage->support;
+  const Support *support = m->space->support;
   PetscReal sum = 0;
-  for (PetscInt g = 0; g < support->n_groups; ++g) {
+  for (PetscInt g = run->first; g < run->end; ++g) {
     const PetscInt nn = fixed_nn ? fixed_nn : support_nodes(support, g), *node = support->node + support->node_start[g];
-    const PetscReal lumped = m->stage->lumping ? m->stage->lumping[g] : 0;
+    const PetscReal lumped = m->space->lumping ? m->space->lumping[g] : 0;
     PetscReal at_node[CLOUD_MAX_NODES], un[3 * CLOUD_MAX_NODES], wn[3 * CLOUD_MAX_NODES];
     for (PetscInt I = 0; I < nn; ++I) {
       at_node[I] = 0;
@@ -42,7 +42,7 @@ UNROLLED PetscReal product_sized(const PetscInt dim, const PetscInt fixed_nn, co
         at_node[I] += un[k] * wn[k];
       }
     }
-    if (m->stage->tie && m->stage->tie[g] > 0) sum += m->stage->tie[g] * tied_product(dim, nn, un, wn);
+    if (m->space->tie && m->space->tie[g] > 0) sum += m->space->tie[g] * tied_product(dim, nn, un, wn);
     for (PetscInt p = support->point_start[g]; p < support->point_start[g + 1]; ++p) {
       const PetscReal *N = support->N + support->value_start[g] + (p - support->point_start[g]) * nn;
       PetscReal uh[3] = {0, 0, 0}, wh[3] = {0, 0, 0}, nodes = 0;
@@ -63,10 +63,16 @@ UNROLLED PetscReal product_sized(const PetscInt dim, const PetscInt fixed_nn, co
 /* The sum u M w over this rank's points, with the mass matrix of the step: cells that are not full have part of it lumped, and are tied. */
 static PetscReal mass_product(const Model *m, NodalField u, NodalField w)
 {
-  const PetscInt dim = m->dim, nn = m->stage->support->uniform;
-  if (dim == 2 && nn == 4) return product_sized(2, 4, m, &u, &w);
-  if (dim == 3 && nn == 8) return product_sized(3, 8, m, &u, &w);
-  return product_sized(dim, nn, m, &u, &w);
+  const Support *support = m->space->support;
+  const SupportRun all = {.first = 0, .end = support->n_groups};
+  PetscReal sum = 0;
+  if (!support->n_runs) return product_sized(m->dim, 0, &all, m, &u, &w);
+  for (const SupportRun *run = support->run; run < support->run + support->n_runs; ++run) {
+    if (m->dim == 2 && run->nodes == 4) sum += product_sized(2, 4, run, m, &u, &w);
+    else if (m->dim == 3 && run->nodes == 8) sum += product_sized(3, 8, run, m, &u, &w);
+    else sum += product_sized(m->dim, run->nodes, run, m, &u, &w);
+  }
+  return sum;
 }
 
 static PetscReal points_kinetic(const Model *m)
@@ -83,7 +89,7 @@ PetscReal model_point_energy(const Model *m, PetscInt p)
 {
   const Material *material = &m->materials[m->points->material[p]];
   const PetscReal *state = point_real(m->points, POINT_STATE, p);
-  if (m->pressure) return pressure_energy(material, state, m->points->real[POINT_PRESSURE][p]);
+  if (m->formulation->pressure) return pressure_energy(material, state, m->points->real[POINT_PRESSURE][p]);
   return material->law->energy(material->parameters, state);
 }
 
@@ -105,7 +111,7 @@ PetscErrorCode EnergyStart(Model *m)
   for (PetscInt p = 0; p < m->points->n; ++p) {
     const Material *material = &m->materials[m->points->material[p]];
     const PetscReal *old = point_real(m->points, POINT_STATE, p);
-    if (m->pressure) {
+    if (m->formulation->pressure) {
       PressureStress s;
       pressure_update(material, 1, identity, m->points->real[POINT_PRESSURE] + p, old, state, PETSC_FALSE, &s);
       point_set_tau(m->points, p, s.tau);
@@ -123,30 +129,36 @@ PetscErrorCode EnergyStart(Model *m)
   PetscFunctionReturn(0);
 }
 
-/* Dead forces at the nodes at the step's start: the same places, another time. */
-static PetscErrorCode ForcesBefore(const Model *m, PetscReal **force)
+/* What nodal forces add to gravity at both ends of the step; freed by PetscFree2. */
+static PetscErrorCode ForcesAtEnds(const Model *m, PetscReal dt, PetscReal **before, PetscReal **after)
 {
+  const PetscInt dofs = m->grid->n_nodes * m->dim;
+  PetscReal *zero;
+
   PetscFunctionBeginUser;
-  PetscCall(PetscCalloc1(m->grid->n_nodes * m->dim, force));
-  if (m->c->n_loads) PetscCall(LoadsAdd(m->loads, m->grid, m->time, m->stage->filled, m->stage->touched, *force));
-  PetscCall(AddBodyForce(m, m->time, *force));
+  PetscCall(PetscMalloc2(dofs, before, dofs, after));
+  PetscCall(PetscCalloc1(dofs, &zero));
+  const NodalScene start = nodal_scene(m, m->time, zero), end = nodal_scene(m, m->time + dt, m->nodes->du);
+  PetscCall(NodalForcesExternal(&m->forces, &start, PETSC_TRUE, *before));
+  PetscCall(NodalForcesExternal(&m->forces, &end, PETSC_TRUE, *after));
+  PetscCall(PetscFree(zero));
   PetscFunctionReturn(0);
 }
 
 /* What stops points where they meet prescribed nodes acts within no time: its work is the impulse times the velocity of the boundary. */
 static PetscReal impulse_work(const Model *m, PetscInt i, PetscReal dt)
 {
-  const Stage *s = m->stage;
-  if (m->c->analysis.type != ANALYSIS_DYNAMIC) return 0;
-  return s->mass[i / m->dim] * (s->v[i] - s->v_points[i]) * m->prescribed[i] / dt;
+  const Discretisation *s = m->space;
+  if (!m->scheme->inertia) return 0;
+  return s->nodes->mass[i / m->dim] * (s->nodes->v[i] - s->nodes->v_points[i]) * m->nodes->prescribed[i] / dt;
 }
 
-/* Work of inertia, with Newmark's effective acceleration at both ends. */
-static PetscReal inertia_work(const Model *m)
+/* Work of inertia, with the acceleration that balances the forces at both ends. */
+static PetscReal inertia_work(const Model *m, PetscReal dt)
 {
-  const Stage *s = m->stage;
-  const PetscReal alpha = m->c->analysis.bossak;
-  const NodalField du = {{m->du, m->du}, {1, 0}}, a = {{s->a, s->a1}, {0.5 * (1 + alpha), 0.5 * (1 - alpha)}};
+  const NodalFields *n = m->nodes;
+  const PetscReal lag = m->scheme->weights(&m->c->analysis, dt).lag;
+  const NodalField du = {{n->du, n->du}, {1, 0}}, a = {{n->a, n->a1}, {0.5 * (1 + lag), 0.5 * (1 - lag)}};
   return mass_product(m, du, a);
 }
 
@@ -155,17 +167,16 @@ static PetscReal inertia_work(const Model *m)
 static PetscErrorCode OutOfBalance(const Model *m, const PetscReal *g, const PetscReal *external, PetscReal *work)
 {
   const PetscInt dofs = m->grid->n_nodes * m->dim;
-  const PetscBool dynamic = m->c->analysis.type == ANALYSIS_DYNAMIC;
   const PetscReal damping = m->c->analysis.damping;
-  const Stage *s = m->stage;
+  const NodalFields *n = m->nodes;
   WeakFormInput in = weak_form_of(m, 0);
   PetscReal *zero, *force, *history;
 
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc3(dofs, &zero, dofs, &force, dofs, &history));
   for (PetscInt i = 0; i < m->grid->n_owned * m->dim; ++i)
-    if (s->touched[i / m->dim] && !cloud_is_twin(m->grid, i / m->dim))
-      history[i] = (dynamic ? s->a[i] - m->echo[i] + damping * s->v[i] : 0) - g[i % m->dim];
+    if (n->touched[i / m->dim] && !cloud_is_twin(m->grid, i / m->dim))
+      history[i] = (m->scheme->inertia ? n->a[i] - n->echo[i] + damping * n->v[i] : 0) - g[i % m->dim];
   PetscCall(GridToGhosts(m->grid, m->dim, history));
   in.du = zero;
   in.history = history;
@@ -174,8 +185,8 @@ static PetscErrorCode OutOfBalance(const Model *m, const PetscReal *g, const Pet
   PetscCall(GridSumToOwners(m->grid, m->dim, force));
   *work = 0;
   for (PetscInt i = 0; i < m->grid->n_owned * m->dim; ++i) {
-    if (!cloud_is_twin(m->grid, i / m->dim)) *work += 0.5 * m->du[i] * (force[i] - external[i]);
-    if (m->boundary->fixed[i]) *work -= 0.5 * m->prescribed[i] * m->held[i];
+    if (!cloud_is_twin(m->grid, i / m->dim)) *work += 0.5 * m->nodes->du[i] * (force[i] - external[i]);
+    if (m->boundary->fixed[i]) *work -= 0.5 * m->nodes->prescribed[i] * m->nodes->held[i];
   }
   PetscCall(PetscFree3(zero, force, history));
   PetscFunctionReturn(0);
@@ -184,65 +195,66 @@ static PetscErrorCode OutOfBalance(const Model *m, const PetscReal *g, const Pet
 /* Nodes that gather their motion from points start neither with the energy of the points nor with the acceleration that balances the
  * forces there. What the first takes is a difference of kinetic energies; the second adds or takes the work of the forces out of balance,
  * which is what the work of all forces leaves over. `held`: work of the boundary without impulses. */
-static PetscReal transfer_of_nodes(const Model *m, const EnergyStep *e, PetscReal held)
+static PetscReal transfer_of_nodes(const Model *m, PetscReal dt, const EnergyStep *e, PetscReal held)
 {
-  const Stage *s = m->stage;
-  const NodalField mean = {{s->v, s->v1}, {0.5, 0.5}}, gain = {{s->v1, s->v}, {1, -1}};
+  const NodalFields *n = m->nodes;
+  const NodalField mean = {{n->v, n->v1}, {0.5, 0.5}}, gain = {{n->v1, n->v}, {1, -1}};
   PetscReal sum = 0;
-  if (m->c->analysis.type == ANALYSIS_DYNAMIC)
-    sum = points_kinetic(m) + mass_product(m, mean, gain); /* |v1|^2 / 2 - |v|^2 / 2 */
-  if (!m->method->points_move) return sum;
-  if (m->c->analysis.type == ANALYSIS_DYNAMIC) sum -= inertia_work(m);
+  if (m->scheme->inertia) sum = points_kinetic(m) + mass_product(m, mean, gain); /* |v1|^2 / 2 - |v|^2 / 2 */
+  if (!m->method->restores_grid) return sum;
+  if (m->scheme->inertia) sum -= inertia_work(m, dt);
   return sum + e->external + held - e->damped + points_work(m);
 }
 
 /* What damping takes from the velocity of points beyond that of the nodes: mpm's points fade towards what the nodes see of them. */
 static PetscReal faded(const Model *m)
 {
-  const Stage *s = m->stage;
-  const PetscInt dim = m->dim, nn = s->support->uniform;
+  const Support *w = m->space->support;
+  const NodalFields *n = m->nodes;
+  const PetscReal fade = m->space->fade;
   PetscReal sum = 0;
-  for (PetscInt g = 0; g < s->support->n_groups; ++g)
-    for (PetscInt p = s->support->point_start[g]; p < s->support->point_start[g + 1]; ++p)
-      for (PetscInt d = 0; d < dim; ++d) {
+  for (PetscInt g = 0; g < w->n_groups; ++g)
+    for (PetscInt p = w->point_start[g]; p < w->point_start[g + 1]; ++p)
+      for (PetscInt d = 0; d < m->dim; ++d) {
+        const PetscReal *N = support_N(w, g, p);
         PetscReal v = point_real(m->points, POINT_V, p)[d], unseen = v;
-        for (PetscInt I = 0; I < nn; ++I) {
-          const PetscInt i = s->support->node[g * nn + I] * dim + d;
-          v += s->support->N[p * nn + I] * (s->v1[i] - s->v_points[i]);
-          unseen -= s->support->N[p * nn + I] * s->v_points[i];
+        for (PetscInt k = w->node_start[g]; k < w->node_start[g + 1]; ++k, ++N) {
+          const PetscInt i = w->node[k] * m->dim + d;
+          v += *N * (n->v1[i] - n->v_points[i]);
+          unseen -= *N * n->v_points[i];
         }
-        sum += m->points->real[POINT_MASS][p] * s->fade * unseen * (v - 0.5 * s->fade * unseen);
+        sum += m->points->real[POINT_MASS][p] * fade * unseen * (v - 0.5 * fade * unseen);
       }
   return sum;
 }
 
 PetscErrorCode EnergyOfNodes(Model *m, PetscReal dt, EnergyStep *e)
 {
-  const PetscReal damping = m->c->analysis.type == ANALYSIS_DYNAMIC ? m->c->analysis.damping : 0;
-  const Stage *s = m->stage;
-  PetscReal g0[3], g1[3], *before, held = 0, impulse = 0, unbalanced = 0;
+  const PetscReal damping = model_damping(m);
+  const NodalFields *n = m->nodes;
+  PetscReal g0[3], g1[3], *before, *after, held = 0, impulse = 0, unbalanced = 0;
 
   PetscFunctionBeginUser;
   *e = (EnergyStep){0};
-  PetscCall(ForcesBefore(m, &before));
+  PetscCall(ForcesAtEnds(m, dt, &before, &after));
   gravity_at(m->c, m->time, g0);
   gravity_at(m->c, m->time + dt, g1);
   for (PetscInt i = 0; i < m->grid->n_owned * m->dim; ++i) {
     const PetscInt d = i % m->dim;
-    e->external += 0.5 * (s->mass[i / m->dim] * (g0[d] + g1[d]) + before[i] + m->external[i]) * m->du[i];
+    e->external += 0.5 * (n->mass[i / m->dim] * (g0[d] + g1[d]) + before[i] + after[i]) * n->du[i];
     if (!m->boundary->fixed[i]) continue;
-    held += 0.5 * (m->held[i] + m->force[i]) * m->prescribed[i];
+    held += 0.5 * (n->held[i] + n->force[i]) * n->prescribed[i];
     impulse += impulse_work(m, i, dt);
   }
   if (m->method->begin) PetscCall(OutOfBalance(m, g0, before, &unbalanced));
-  PetscCall(PetscFree(before));
+  PetscCall(PetscFree2(before, after));
   if (damping > 0) {
-    const NodalField du = {{m->du, m->du}, {1, 0}}, mean = {{s->v, s->v1}, {0.5, 0.5}};
+    const NodalField du = {{n->du, n->du}, {1, 0}}, mean = {{n->v, n->v1}, {0.5, 0.5}};
     e->damped = damping * mass_product(m, du, mean);
   }
   e->boundary = held + impulse;
-  e->transfer = impulse - unbalanced + transfer_of_nodes(m, e, held);
-  if (m->method->points_move && s->fade > 0) {
+  e->transfer = impulse - unbalanced + transfer_of_nodes(m, dt, e, held);
+  if (m->method->restores_grid && m->space->fade > 0) {
     const PetscReal more = faded(m);
     e->damped += more;
     e->transfer -= more;
@@ -256,8 +268,8 @@ PetscErrorCode EnergyClose(Model *m, EnergyStep *e)
   PetscReal local[4], sum[4];
 
   PetscFunctionBeginUser;
-  if (m->c->analysis.type == ANALYSIS_DYNAMIC) e->transfer -= points_kinetic(m) + gone->kinetic;
-  if (m->method->points_move) e->transfer -= points_work(m) + gone->work; /* of the step: what is gone counts apart */
+  if (m->scheme->inertia) e->transfer -= points_kinetic(m) + gone->kinetic;
+  if (m->method->restores_grid) e->transfer -= points_work(m) + gone->work; /* of the step: what is gone counts apart */
   local[0] = e->external, local[1] = e->boundary, local[2] = e->damped, local[3] = e->transfer;
   PetscCall(MPIU_Allreduce(local, sum, 4, MPIU_REAL, MPI_SUM, m->comm));
   m->external_work += sum[0];

@@ -271,6 +271,7 @@ PetscErrorCode ModelMeasure(Model *m, const MeasureSpec *s, PetscInt index, Pets
   PetscReal sum[3];
 
   PetscFunctionBeginUser;
+  PetscCall(ModelInitialise(m));
   switch (s->kind) {
   case MEASURE_DISPLACEMENT:
   case MEASURE_POSITION:
@@ -292,7 +293,7 @@ PetscErrorCode ModelMeasure(Model *m, const MeasureSpec *s, PetscInt index, Pets
   case MEASURE_RUN_OUT_TIME: *value = PetscIsNanReal(m->memory[index].front) ? NAN : m->memory[index].moved; break;
   case MEASURE_ROUGHNESS: PetscCall(RoughnessValue(m, value)); break;
   case MEASURE_REACTION:
-    PetscCall(BoundarySum(m->boundary, m->grid, s->boundary, m->reaction, sum));
+    PetscCall(BoundarySum(m->boundary, m->grid, s->boundary, m->nodes->reaction, sum));
     *value = sum[s->component];
     break;
   default: PetscCall(PointSum(m, s, value)); break;

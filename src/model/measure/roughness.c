@@ -12,7 +12,7 @@ static PetscReal point_volume(const Model *m, PetscInt p)
 /* Averages at the nodes of values at the points, weighted by shape function and present volume; `volume`: the sum of the weights. */
 static PetscErrorCode PointsToNodes(const Model *m, const PetscReal *at_points, PetscReal *at_nodes, PetscReal *volume)
 {
-  const Support *w = m->stage->support;
+  const Support *w = m->space->support;
   const PetscInt n = m->grid->n_nodes;
 
   PetscFunctionBeginUser;
@@ -34,7 +34,7 @@ static PetscErrorCode PointsToNodes(const Model *m, const PetscReal *at_points, 
 
 static void nodes_to_points(const Model *m, const PetscReal *at_nodes, PetscReal *at_points)
 {
-  const Support *w = m->stage->support;
+  const Support *w = m->space->support;
   for (PetscInt g = 0; g < w->n_groups; ++g)
     for (PetscInt p = w->point_start[g]; p < w->point_start[g + 1]; ++p) {
       at_points[p] = 0;
@@ -82,12 +82,12 @@ static PetscErrorCode AtNodes(const Model *m, PetscReal sum[2])
 
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc3(m->points->n, &pressure, m->grid->n_nodes, &smooth, m->grid->n_nodes, &volume));
-  nodes_to_points(m, m->pressure, pressure);
+  nodes_to_points(m, m->nodes->scaled_pressure, pressure);
   PetscCall(PointsToNodes(m, pressure, smooth, volume));
   for (PetscInt i = 0; i < m->grid->n_owned; ++i) {
-    if (m->idle[i]) continue;
-    sum[0] += volume[i] * (m->pressure[i] - smooth[i]) * (m->pressure[i] - smooth[i]);
-    sum[1] += volume[i] * m->pressure[i] * m->pressure[i];
+    if (m->nodes->idle[i]) continue;
+    sum[0] += volume[i] * (m->nodes->scaled_pressure[i] - smooth[i]) * (m->nodes->scaled_pressure[i] - smooth[i]);
+    sum[1] += volume[i] * m->nodes->scaled_pressure[i] * m->nodes->scaled_pressure[i];
   }
   PetscCall(PetscFree3(pressure, smooth, volume));
   PetscFunctionReturn(0);
@@ -98,7 +98,7 @@ PetscErrorCode RoughnessValue(const Model *m, PetscReal *value)
   PetscReal local[2] = {0, 0}, sum[2];
 
   PetscFunctionBeginUser;
-  if (m->pressure) PetscCall(AtNodes(m, local));
+  if (m->nodes->scaled_pressure) PetscCall(AtNodes(m, local));
   else PetscCall(AtPoints(m, local));
   PetscCall(MPIU_Allreduce(local, sum, 2, MPIU_REAL, MPI_SUM, m->comm));
   *value = sum[1] > 0 ? PetscSqrtReal(sum[0] / sum[1]) : 0;

@@ -101,53 +101,10 @@ static PetscErrorCode SofteningToTables(Model *m, Tables *tables)
   Table *table;
 
   PetscFunctionBeginUser;
-  if (m->c->analysis.type != ANALYSIS_STATIC) PetscFunctionReturn(0);
+  if (m->scheme->inertia) PetscFunctionReturn(0);
   PetscCall(TablesAdd(tables, "softening", PETSC_TRUE, 1, &table));
   PetscCall(TableAdd(table, "least_last_before", "m/s", COLUMN_REAL, 3, &m->limit, NULL));
   PetscFunctionReturn(0);
-}
-
-static void reaction_fields(Model *m, NodalField field[3])
-{
-  field[0] = (NodalField){"reaction", "N", m->dim, m->reaction};
-  field[1] = (NodalField){"held", "N", m->dim, m->held};
-  field[2] = (NodalField){"rate", "N", m->dim, m->rate};
-}
-
-/* Kept on the nodes whose motion is prescribed. */
-PetscErrorCode ReactionsToTables(Model *m, Tables *tables)
-{
-  NodalField field[3];
-  unsigned char *take;
-
-  PetscFunctionBeginUser;
-  reaction_fields(m, field);
-  PetscCall(PetscCalloc1(m->grid->n_nodes, &take));
-  for (PetscInt i = 0; i < m->grid->n_nodes * m->dim; ++i) take[i / m->dim] |= m->boundary->fixed[i];
-  PetscCall(NodesToTable(m->grid, take, 3, field, "boundary", tables));
-  PetscCall(PetscFree(take));
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode ReactionsFromTables(Model *m, const Tables *tables, char reason[256])
-{
-  NodalField field[3];
-
-  PetscFunctionBeginUser;
-  reaction_fields(m, field);
-  PetscCall(NodesFromTable(m->grid, PETSC_FALSE, 3, field, tables_find(tables, "boundary"), reason));
-  PetscFunctionReturn(0);
-}
-
-/* Nodal fields of the method. */
-static PetscInt method_fields(const Model *m, NodalField field[8])
-{
-  PetscInt n = 0;
-  for (const MethodField *f = m->method->fields; f && f->name && n < 8; ++f) {
-    PetscReal *values = f->values(m->stage);
-    if (values) field[n++] = (NodalField){f->name, f->unit, f->components ? f->components : m->dim, values};
-  }
-  return n;
 }
 
 /* Which partition there is and how it came about; several ranks alone have one. */
@@ -173,9 +130,8 @@ static PetscErrorCode BalanceToTables(const Model *m, Tables *tables)
 
 PetscErrorCode ModelToTables(Model *m, Tables *tables)
 {
-  NodalField field[8];
-
   PetscFunctionBeginUser;
+  PetscCall(ModelInitialise(m));
   PetscCall(WholeToTables(m, tables));
   PetscCall(TriesToTables(m, tables));
   PetscCall(SofteningToTables(m, tables));
@@ -183,13 +139,12 @@ PetscErrorCode ModelToTables(Model *m, Tables *tables)
   PetscCall(PointsToTable(m->points, m->grid, "points", tables));
   PetscCall(PointsToTable(m->tracers, m->grid, "tracers", tables));
   PetscCall(PointsToTable(m->loads->carriers, m->grid, "carriers", tables));
+  PetscCall(ForcesToTables(m, tables));
   if (m->grid->cloud) {
     PetscCall(StateCloudToTables(m, tables));
     PetscFunctionReturn(0);
   }
-  const PetscInt n = method_fields(m, field);
-  if (n) PetscCall(NodesToTable(m->grid, NULL, n, field, "nodes", tables));
-  PetscCall(ReactionsToTables(m, tables));
+  PetscCall(NodalFieldsToTables(m->nodes, !m->method->restores_grid, m->boundary->fixed, tables));
   PetscCall(GuessToTables(m, tables));
   PetscCall(BalanceToTables(m, tables));
   PetscCall(CellsToTable(m->grid, m->enabled, "pattern", tables));
@@ -267,13 +222,10 @@ static void whole_from_tables(Model *m, const Table *table, const Table *measure
 
 static PetscErrorCode NodesBack(Model *m, const Tables *tables, char reason[256])
 {
-  NodalField field[8];
-  const PetscInt n = method_fields(m, field);
-
   PetscFunctionBeginUser;
-  if (n) PetscCall(NodesFromTable(m->grid, PETSC_TRUE, n, field, tables_find(tables, "nodes"), reason));
-  if (!reason[0]) PetscCall(ReactionsFromTables(m, tables, reason));
-  if (!reason[0]) PetscCall(GuessFromTables(m, tables, reason));
+  PetscCall(NodalFieldsFromTables(m->nodes, !m->method->restores_grid, tables, reason));
+  guess_from_tables(m, tables, reason);
+  if (!reason[0]) PetscCall(ForcesFromTables(m, tables, reason));
   if (!reason[0]) PetscCall(CellsFromTable(m->grid, m->enabled, tables_find(tables, "pattern"), reason));
   PetscFunctionReturn(0);
 }
@@ -326,7 +278,7 @@ static PetscErrorCode BalanceBack(Model *m, const Tables *tables, char reason[25
   PetscCall(GridFromPartition(m->grid, partition, &grid, reason));
   if (reason[0]) PetscFunctionReturn(0);
   PetscCall(ModelRegrid(m, grid, &moved));
-  PetscCall(m->method->initialise(m->stage)); /* what fem makes once, of points and nodes at the start */
+  PetscCall(ModelInitialise(m)); /* what fem makes once, of points and nodes at the start */
   PetscFunctionReturn(0);
 }
 
@@ -352,7 +304,7 @@ static void check_tables(const Model *m, const Tables *tables, char reason[256])
                                                                                      "parts"};
   for (int i = 0; i < 6; ++i)
     if (!tables_find(tables, always[i])) snprintf(reason, 256, "%s is missing", always[i]);
-  for (int i = 0; !m->grid->cloud && i < (m->method->fields ? 2 : 1); ++i)
+  for (int i = 0; !m->grid->cloud && i < (m->method->restores_grid ? 1 : 2); ++i)
     if (!tables_find(tables, of_cells[i])) snprintf(reason, 256, "%s is missing", of_cells[i]);
   for (int i = 0; m->grid->cloud && i < 4; ++i)
     if (!tables_find(tables, of_clouds[i])) snprintf(reason, 256, "%s is missing", of_clouds[i]);
@@ -368,6 +320,7 @@ static PetscErrorCode CloudBack(Model *m, Tables *tables, char reason[256])
   PetscCall(StateCloudNodes(m, tables, &home, reason));
   if (!reason[0]) PetscCall(PointsBack(m, tables, reason));
   if (!reason[0]) PetscCall(StateCloudSettle(m, tables, home, reason));
+  if (!reason[0]) PetscCall(ForcesFromTables(m, tables, reason));
   if (!reason[0]) newton_set_memory(m->newton, m->system, &newton);
   PetscFunctionReturn(0);
 }
@@ -394,6 +347,7 @@ PetscErrorCode ModelFromTables(Model *m, Tables *tables, char reason[256])
   PetscCall(PointsSort(m->points));
   PetscCall(SolverBack(m, tables_find(tables, "model"), reason));
   PetscCall(ReasonShare(m->comm, reason));
-  if (!reason[0]) PetscCall(m->method->initialise(m->stage));
+  m->space->present = PETSC_FALSE;
+  if (!reason[0]) PetscCall(ModelInitialise(m));
   PetscFunctionReturn(0);
 }

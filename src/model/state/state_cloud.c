@@ -75,7 +75,7 @@ static PetscErrorCode PatternBack(Model *m, const Table *table, char reason[256]
   if (!pair || reason[0]) PetscFunctionReturn(0);
   PetscCall(MPIU_Allreduce(&n, &any, 1, MPIU_INT, MPI_MAX, m->comm));
   if (!any) PetscFunctionReturn(0);
-  PetscCall(ModelFollowCloud(m));
+  m->layouts = m->grid->cloud->layouts;
   PetscCall(Couple(m, n, pair));
   PetscFunctionReturn(0);
 }
@@ -97,10 +97,11 @@ PetscErrorCode StateCloudSettle(Model *m, const Tables *tables, PetscBool home, 
   if (ghosts && (cloud->rows != 1 || *ghosts < 0 || *ghosts > PETSC_MAX_INT))
     snprintf(reason, 256, "cloud/balanced_ghosts makes no sense");
   if (!reason[0] && home) PetscCall(PatternBack(m, tables_find(tables, "pattern"), reason));
-  if (!reason[0] && !home) PetscCall(m->method->redistribute(m->stage));
+  if (!reason[0] && !home) PetscCall(m->method->redistribute(m->space));
   if (reason[0]) PetscFunctionReturn(0);
   m->grid->cloud->balanced_ghosts = 0; /* nobody moves before the next step */
-  PetscCall(m->method->initialise(m->stage));
+  m->space->present = PETSC_FALSE;
+  PetscCall(ModelInitialise(m));
   m->grid->cloud->balanced_ghosts = home && ghosts ? (PetscInt)*ghosts : 0;
   PetscFunctionReturn(0);
 }

@@ -66,12 +66,6 @@ static PetscErrorCode FindMaterial(Seeding *s)
   PetscFunctionReturn(0);
 }
 
-static PetscBool choose_weights(const Case *c, const BodySpec *body)
-{
-  if (body->weights == WEIGHTS_AUTO) return (PetscBool)!strcmp(c->method, "mpm");
-  return body->weights == WEIGHTS_EQUAL;
-}
-
 /* Where among the rules of a type this number of points stands; -1: nowhere. */
 static PetscInt find_rule(CellType type, PetscInt n)
 {
@@ -277,7 +271,7 @@ static PetscErrorCode SeedBody(Seeding *s, Points *points, PetscInt *taken, cons
 {
   Grid *own = NULL;
   PetscFunctionBeginUser;
-  s->equal = choose_weights(s->c, s->body);
+  if (s->body->weights != WEIGHTS_AUTO) s->equal = s->body->weights == WEIGHTS_EQUAL;
   s->source = s->grid;
   PetscCall(FindMaterial(s));
   if (s->material < 0) PetscFunctionReturn(0);
@@ -304,7 +298,7 @@ static PetscErrorCode LocateSeeds(Points *points, const Grid *grid, const Case *
 }
 
 PetscErrorCode PointsSeedOutlined(Points *points, const Grid *grid, const Case *c, const PointSeed *per_material,
-                                  Outline *outline, Diag *diag)
+                                  PetscBool equal, Outline *outline, Diag *diag)
 {
   PetscInt *taken;
   PetscInt64 next = 0;
@@ -313,8 +307,14 @@ PetscErrorCode PointsSeedOutlined(Points *points, const Grid *grid, const Case *
   PetscCall(PetscMalloc1(grid->n_cells, &taken));
   for (PetscInt k = 0; k < grid->n_cells; ++k) taken[k] = -1;
   for (PetscInt b = 0; b < c->n_bodies; ++b) {
-    Seeding s = {
-      .c = c, .grid = grid, .diag = diag, .b = b, .body = c->bodies + b, .first_id = next, .outline = outline};
+    Seeding s = {.c = c,
+                 .grid = grid,
+                 .diag = diag,
+                 .b = b,
+                 .body = c->bodies + b,
+                 .first_id = next,
+                 .equal = equal,
+                 .outline = outline};
     PetscCall(SeedBody(&s, points, taken, per_material, &next));
     if (s.body->mesh) own_mesh = PETSC_TRUE;
   }
@@ -324,9 +324,10 @@ PetscErrorCode PointsSeedOutlined(Points *points, const Grid *grid, const Case *
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode PointsSeed(Points *points, const Grid *grid, const Case *c, const PointSeed *per_material, Diag *diag)
+PetscErrorCode PointsSeed(Points *points, const Grid *grid, const Case *c, const PointSeed *per_material,
+                          PetscBool equal, Diag *diag)
 {
   PetscFunctionBeginUser;
-  PetscCall(PointsSeedOutlined(points, grid, c, per_material, NULL, diag));
+  PetscCall(PointsSeedOutlined(points, grid, c, per_material, equal, NULL, diag));
   PetscFunctionReturn(0);
 }

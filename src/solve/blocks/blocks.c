@@ -186,8 +186,7 @@ KERNEL PetscBool scale_unsymmetric(const int dim, const PetscReal *D, float *S)
   return PETSC_TRUE;
 }
 
-/* Rows of prescribed dofs are empty: they get the diagonal 1. */
-KERNEL PetscBool find_scales(const int dim, Blocks *m, const System *s, const unsigned char *fixed)
+KERNEL PetscBool find_scales(const int dim, Blocks *m, const System *s)
 {
   Row row = {.s = s, .halo = m->halo};
   PetscBool regular = PETSC_TRUE;
@@ -196,8 +195,6 @@ KERNEL PetscBool find_scales(const int dim, Blocks *m, const System *s, const un
     row_take(&row, r);
     const PetscInt diagonal = m->lower.start[r + 1] - m->lower.start[r];
     for (int i = 0; i < dim * dim; ++i) D[i] = (PetscReal)row.values[diagonal * dim * dim + i];
-    for (int i = 0; i < dim; ++i)
-      if (fixed[s->active[r] * dim + i]) D[i * dim + i] = 1;
     float *S = m->scale + r * dim * dim;
     if (m->symmetric ? scale_symmetric(dim, D, S) : scale_unsymmetric(dim, D, S)) continue;
     regular = PETSC_FALSE;
@@ -282,14 +279,14 @@ static void fill_3d(Blocks *m, const System *s)
   else fill_rows(3, m, s, PETSC_FALSE);
 }
 
-PetscErrorCode BlocksFill(Blocks *m, const System *s, const unsigned char *fixed)
+PetscErrorCode BlocksFill(Blocks *m, const System *s)
 {
   float *others = m->scale + m->n * m->dim * m->dim;
   PetscInt bad, any;
 
   PetscFunctionBeginUser;
   PetscCall(BlocksHaloSum(m->halo, s));
-  bad = !(m->dim == 2 ? find_scales(2, m, s, fixed) : find_scales(3, m, s, fixed));
+  bad = !(m->dim == 2 ? find_scales(2, m, s) : find_scales(3, m, s));
   PetscCall(MPIU_Allreduce(&bad, &any, 1, MPIU_INT, MPI_MAX, m->comm));
   m->singular = any != 0;
   PetscCall(PetscSFBcastBegin(m->halo->columns, m->halo->scale, m->scale, others, MPI_REPLACE));

@@ -32,8 +32,8 @@ typedef struct Blocks {
 /* Collective. The pattern; the system must live on unchanged until BlocksDestroy. Blocks are 2 x 2 or 3 x 3. */
 PetscErrorCode BlocksCreate(const System *system, PetscBool symmetric, Blocks **blocks);
 PetscErrorCode BlocksDestroy(Blocks **blocks);
-/* Collective. Take the singles of the system; dofs in fixed get a diagonal. */
-PetscErrorCode BlocksFill(Blocks *blocks, const System *system, const unsigned char *fixed);
+/* Collective. Take the singles of the system. */
+PetscErrorCode BlocksFill(Blocks *blocks, const System *system);
 /* Collective. y = A x, for a Mat of type shell. */
 PetscErrorCode BlocksMultiply(Blocks *blocks, Vec x, Vec y);
 /* A vector of one float register (or half) a column, zero; kept with the blocks. */

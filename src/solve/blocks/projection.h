@@ -1,10 +1,10 @@
 /* Krylov methods on constrained systems: the iteration stays where all constraints hold (Gould, Hribar, Nocedal 2001).
  *
- * The system K y - s C^T mu = f, -s C y = g has its unknowns mu on the twins (solve/system/constraints.h). With D the diagonal of K and
+ * The system K y - s C^T mu = f, -s C y = g has its unknowns mu on the twins (solve/forces/constraints.h). With D the diagonal of K and
  * S = C D^-1 C^T the projections are 1 - D^-1 C^T S^-1 C for motions and its transpose for forces. S is small, sparse and definite; every
  * rank holds and factorises all of it, so that a projection costs one sum over ranks. */
 #pragma once
-#include "solve/system/constraints.h"
+#include "solve/forces/constraints.h"
 
 typedef struct Projection {
   MPI_Comm comm;

@@ -82,9 +82,9 @@ static PetscErrorCode LiftPrescribed(Newton *n)
   PetscCall(PetscCalloc1(dofs, &lift));
   for (PetscInt i = 0; i < dofs; ++i)
     if (p->fixed[i]) lift[i] = p->prescribed[i] - p->du[i];
-  p->in.lift = lift;
+  n->lift = lift;
   PetscCall(NewtonAssemble(n, PETSC_TRUE));
-  p->in.lift = NULL;
+  n->lift = NULL;
   PetscCall(NewtonGetResidual(n, n->f));
   if (n->report->status == LAW_OK) {
     PetscCall(PetscTime(&start));
@@ -115,7 +115,8 @@ static PetscErrorCode UpdateProjection(Newton *n)
   PetscFunctionBeginUser;
   if (!n->projects) PetscFunctionReturn(0);
   PetscCall(ProjectionDestroy(&n->projection));
-  PetscCall(ProjectionCreate(p->system, p->grid, p->constraints, p->fixed, &n->projection));
+  PetscCall(ProjectionCreate(p->system, p->grid, nodal_forces_constraints(p->forces), p->fixed,
+                             &n->projection));
   p->system->blocks->projection = n->projection;
   PetscFunctionReturn(0);
 }
@@ -138,6 +139,7 @@ static PetscErrorCode UpdateSaddle(Newton *n)
 
 static PetscErrorCode NewtonTry(Newton *n, NewtonReport *report)
 {
+  const StepProblem *p = n->problem;
   SNESConvergedReason reason;
   PetscInt its;
   double start, end;
@@ -147,10 +149,11 @@ static PetscErrorCode NewtonTry(Newton *n, NewtonReport *report)
   PetscCall(PetscMemzero(report, sizeof(*report)));
   report->bad_point = -1;
   PetscCall(PetscTime(&start));
-  newton_rest_without_unknowns(n->problem);
+  newton_rest_without_unknowns(p);
   n->before = 0;
   PetscCall(UpdateSaddle(n));
   PetscCall(UpdateProjection(n));
+  PetscCall(SystemPrescribe(p->system, n->projects ? n->projection->held : p->fixed, p->idle));
   PetscCall(LiftPrescribed(n));
   PetscCall(NewtonGetUnknowns(n, n->x));
   PetscCall(SNESSetTolerances(n->snes, 0, 0, 0, n->spec.max_iterations - report->iterations, PETSC_MAX_INT));

@@ -5,7 +5,7 @@
 #pragma once
 #include <petscsnes.h>
 #include "formulation/formulation.h"
-#include "solve/system/constraints.h"
+#include "solve/forces/nodal_force.h"
 #include "solve/system/linear.h"
 #include "solve/system/system.h"
 
@@ -16,8 +16,9 @@ typedef struct {
   const Grid *grid;
   System *system;
   const Formulation *formulation;
-  const Constraints *constraints; /* NULL: none */
-  WeakFormInput in;               /* du, fixed and lift are set here by Newton */
+  const NodalForces *forces; /* all that act besides stress; the dead ones stand in external */
+  NodalScene scene;          /* for them, at the end of the step */
+  WeakFormInput in;          /* du and pressure are set here by Newton */
   const unsigned char *fixed;     /* prescribed, or on a node that no material touches */
   const PetscReal *prescribed;    /* increment of fixed dofs, m */
   const PetscReal *external;      /* dead nodal forces, N; owners' values count */

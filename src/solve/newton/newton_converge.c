@@ -54,7 +54,7 @@ static PetscBool is_too_far(const Newton *n, PetscReal snorm)
 }
 
 /* An iteration that wanders between the sides of yield surfaces, as most that fail do after ten to fifteen iterations, and few that would
- * come through (counted in docs/decisions.md). */
+ * come through (counted in docs/experiments/newton.md). */
 static PetscBool is_stuck(const PetscReal *residual, PetscInt k)
 {
   PetscReal before = PETSC_MAX_REAL, lately = PETSC_MAX_REAL;

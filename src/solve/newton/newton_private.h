@@ -26,6 +26,7 @@ struct Newton {
   PetscBool retry;   /* this try takes the direct solver */
   const char *linear;
   StepProblem *problem;
+  const PetscReal *lift; /* n_nodes x dim, what prescribed dofs have still to go at this assembly; NULL: nothing */
   NewtonReport *report;
   PetscBool asked;              /* did any rank want the run to end, at the last assembly? */
   PetscReal reaction, external; /* norms at the last assembly, N */

@@ -43,12 +43,11 @@ PetscErrorCode NewtonAssemble(Newton *n, PetscBool tangent)
                         .slot = p->system->slot};
   p->in.du = p->du;
   p->in.pressure = p->pressure;
-  p->in.fixed = p->fixed;
   PetscCall(p->formulation->assemble(&p->in, &out));
   if (tangent && p->in.half) PetscCall(SystemMirror(p->system));
-  if (p->constraints)
-    constraints_assemble(p->constraints, p->du, p->prescribed, p->fixed, p->in.lift, out.force,
-                         n->projects ? NULL : out.values);
+  const NodalOutput acting = {.force = p->force, .system = tangent ? p->system : NULL};
+  PetscCall(NodalForcesAssemble(p->forces, &p->scene, &acting));
+  if (n->lift) system_lift(p->system, p->fixed, n->lift, p->force, p->volume);
   PetscInt status = (PetscInt)out.status, worst;
   PetscCall(MPIU_Allreduce(&status, &worst, 1, MPIU_INT, MPI_MAX, n->comm));
   n->report->status = (LawStatus)worst;
@@ -135,11 +134,9 @@ PetscErrorCode NewtonFunction(SNES snes, Vec x, Vec f, void *context)
 
 PetscErrorCode NewtonFillMatrix(Newton *n)
 {
-  const StepProblem *p = n->problem;
-
   PetscFunctionBeginUser;
   if (n->projects) PetscCall(ProjectionFactor(n->projection)); /* first: the blocks take its shift */
-  PetscCall(SystemToMatrix(p->system, n->projects ? n->projection->held : p->fixed, p->idle));
+  PetscCall(SystemToMatrix(n->problem->system));
   PetscFunctionReturn(0);
 }
 

@@ -121,6 +121,14 @@ PetscErrorCode SystemCloudSlots(System *s, const Support *support, PetscBool *co
   PetscFunctionReturn(0);
 }
 
+PetscInt system_pair(const System *s, PetscInt I, PetscInt J)
+{
+  const PetscInt row = s->row[I];
+  PetscInt k = -1;
+  if (row >= 0) (void)PetscFindInt(J, s->row_start[row + 1] - s->row_start[row], s->column + s->row_start[row], &k);
+  return k < 0 ? -1 : s->row_start[row] + k;
+}
+
 /* Rows come in the order of their nodes, so that those that have a node as a column before their diagonal come in the order of the columns behind
  * the diagonal of that node's own row. */
 PetscErrorCode SystemMirror(System *s)

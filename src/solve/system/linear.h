@@ -1,6 +1,6 @@
 /* Which linear solver suits the problem: `linear: auto`.
  *
- * Measured (docs/decisions.md): statics in 2D wants a direct solver up to about a million unknowns; dynamics whose step is short
+ * Measured (docs/experiments/linear-solvers.md): statics in 2D wants a direct solver up to about a million unknowns; dynamics whose step is short
  * beside the time a wave takes through a cell has a matrix ruled by the mass, and conjugate gradients win. */
 #pragma once
 #include <petscksp.h>

@@ -23,6 +23,7 @@ static PetscErrorCode SystemFreePattern(System *s)
   PetscCall(PetscFree(s->values));
   PetscCall(PetscFree(s->singles));
   s->single = PETSC_FALSE;
+  s->n_cuts = 0;
   PetscCall(MatDestroy(&s->matrix));
   PetscCall(BlocksDestroy(&s->blocks));
   PetscFunctionReturn(0);
@@ -34,6 +35,7 @@ PetscErrorCode SystemDestroy(System **system)
   if (!*system) PetscFunctionReturn(0);
   PetscCall(SystemFreePattern(*system));
   PetscCall(SystemFreeSlots(*system));
+  PetscCall(PetscFree((*system)->cut));
   PetscCall(PetscFree(*system));
   PetscFunctionReturn(0);
 }
@@ -274,41 +276,18 @@ PetscErrorCode SystemZeroNodes(const System *s, PetscReal *nodes)
   PetscFunctionReturn(0);
 }
 
-/* Rows of prescribed dofs are empty. They get a diagonal of the size of the others', which keeps the matrix's scale. */
-static PetscErrorCode DiagonalScale(const System *s, PetscReal *scale)
+PetscErrorCode SystemToMatrix(System *s)
 {
-  PetscReal largest = 0;
-
-  PetscFunctionBeginUser;
-  for (PetscInt r = 0; r < s->n_rows; ++r)
-    for (PetscInt a = 0; a < s->dim; ++a)
-      largest = PetscMax(largest, s->values[(s->diagonal[r] * s->block + a) * s->block + a]);
-  PetscCall(MPIU_Allreduce(&largest, scale, 1, MPIU_REAL, MPIU_MAX, s->comm));
-  if (*scale == 0) *scale = 1;
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode SystemToMatrix(System *s, const unsigned char *fixed, const unsigned char *idle)
-{
-  const PetscInt dim = s->dim, block = s->block;
-  PetscReal scale;
-
   PetscFunctionBeginUser;
   if (!s->matrix) PetscCall(SystemUse(s, SYSTEM_ASSEMBLED, PETSC_FALSE));
+  system_cut(s);
   if (s->blocks) {
     for (PetscInt i = 0; !s->single && i < system_numbers(s); ++i) s->singles[i] = (float)s->values[i];
     if (s->blocks->projection) projection_strengthen(s->blocks->projection);
-    PetscCall(BlocksFill(s->blocks, s, fixed));
-    PetscFunctionReturn(0);
   }
-  PetscCall(DiagonalScale(s, &scale));
-  for (PetscInt k = 0; k < s->n_active; ++k) {
-    const PetscInt node = s->active[k], d = s->diagonal[s->row[node]];
-    for (PetscInt a = 0; a < dim; ++a)
-      if (fixed[node * dim + a]) s->values[(d * block + a) * block + a] = scale;
-    if (block > dim && idle[node]) s->values[(d * block + dim) * block + dim] = -scale;
-  }
-  PetscCall(MatSetValuesCOO(s->matrix, s->values, INSERT_VALUES));
+  PetscCall(SystemCloseCuts(s));
+  if (s->blocks) PetscCall(BlocksFill(s->blocks, s));
+  else PetscCall(MatSetValuesCOO(s->matrix, s->values, INSERT_VALUES));
   PetscFunctionReturn(0);
 }
 

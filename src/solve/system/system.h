@@ -16,6 +16,12 @@ typedef struct {
   PetscInt n_spare, *spare; /* slots on their way to another place */
 } CloudsBefore;
 
+/* A pair of nodes that a prescribed unknown stands in (prescribed.c). */
+typedef struct {
+  PetscInt pair, row; /* of the pattern; the row's node */
+  unsigned bits;      /* numbers of the block, row by row, that stand in its row or column */
+} SystemCut;
+
 typedef struct System {
   MPI_Comm comm;
   PetscInt dim, block; /* displacements, and all unknowns, per node: dim, or dim + 1 with a pressure */
@@ -32,6 +38,8 @@ typedef struct System {
   float *singles;                           /* the same in single precision, which is all that blocks need */
   PetscBool single;                         /* is the tangent gathered in singles, or else in values? */
   PetscInt n_slots, *slot;                  /* SystemSlots: nn x nn pairs of each group */
+  PetscInt n_cuts, capacity_cuts;           /* SystemPrescribe */
+  SystemCut *cut;
   CloudsBefore before;
   SystemForm form;
   Mat matrix;            /* what the linear solver gets: assembled, or a shell over blocks; made by SystemUse */
@@ -47,6 +55,8 @@ PetscErrorCode SystemBuild(System *system, const Grid *grid, const NodeGroups *g
 /* Look up the slots of every group of the support. Cells' nodes must all carry unknowns; clouds (uniform = 0) have ascending nodes, and
  * `complete` tells whether the pattern has all their pairs on this rank. */
 PetscErrorCode SystemSlots(System *system, const Support *support, PetscBool *complete);
+/* The slot of one pair of nodes; -1 if the pattern lacks it. */
+PetscInt system_pair(const System *system, PetscInt I, PetscInt J);
 /* What SystemSlots consists of (cloud_slots.c). */
 PetscErrorCode SystemReserveSlots(System *system, PetscInt n);
 PetscErrorCode SystemCloudSlots(System *system, const Support *support, PetscBool *complete);
@@ -62,9 +72,18 @@ PetscErrorCode SystemZeroNodes(const System *system, PetscReal *nodes);
 PetscErrorCode SystemUse(System *system, SystemForm form, PetscBool symmetric);
 /* May the tangent be gathered in single precision? Only where the matrix works on blocks; forgotten with the pattern. */
 PetscErrorCode SystemGather(System *system, PetscBool single);
-/* Collective. Diagonal entries for the displacements in fixed (n_nodes x dim: prescribed, or on a node that no material touches) and for
- * the pressures of idle nodes (n_nodes; NULL without pressures), then values -> matrix. */
-PetscErrorCode SystemToMatrix(System *system, const unsigned char *fixed, const unsigned char *idle);
+/* Which unknowns are prescribed from now on, until this is called again or the pattern changes: displacements in fixed (n_nodes x dim, also of
+ * nodes that no material touches) and pressures of idle nodes (n_nodes; NULL without pressures), the same on every rank that has the node. */
+PetscErrorCode SystemPrescribe(System *system, const unsigned char *fixed, const unsigned char *idle);
+/* Forces of rows that are not fixed += K lift, lift (n_nodes x dim) being zero where nothing is prescribed; volume: of the pressures' rows. For
+ * whole values, as they were assembled, and forces that are not yet summed over ranks. */
+void system_lift(const System *system, const unsigned char *fixed, const PetscReal *lift, PetscReal *force,
+                 PetscReal *volume);
+/* Collective. Values -> matrix, where rows and columns of prescribed unknowns have nothing but a diagonal. */
+PetscErrorCode SystemToMatrix(System *system);
+/* What SystemToMatrix consists of (prescribed.c): empty rows and columns, and their diagonals in what the matrix takes. */
+void system_cut(System *system);
+PetscErrorCode SystemCloseCuts(System *system);
 
 /* Components first .. first + n - 1 of the unknowns in a Vec <-> local array n_nodes x n. ToNodes zeroes nodes without unknowns and fills
  * ghosts; FromNodes takes owners. */

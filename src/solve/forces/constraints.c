@@ -1,4 +1,4 @@
-#include "solve/system/constraints.h"
+#include "solve/forces/nodal_force.h"
 
 PetscErrorCode ConstraintsCreate(PetscInt dim, Constraints **constraints)
 {
@@ -53,53 +53,41 @@ PetscErrorCode ConstraintsAdd(Constraints *c, PetscInt at, PetscInt twin, PetscI
   PetscFunctionReturn(0);
 }
 
-/* The pair (I, J) in the pattern; -1 if it is not there. */
-static PetscInt find_pair(const System *s, PetscInt I, PetscInt J)
-{
-  const PetscInt row = s->row[I];
-  PetscInt k = -1;
-  if (row >= 0) (void)PetscFindInt(J, s->row_start[row + 1] - s->row_start[row], s->column + s->row_start[row], &k);
-  return k < 0 ? -1 : s->row_start[row] + k;
-}
-
 PetscBool constraints_find_slots(Constraints *c, const System *system)
 {
   PetscInt missing = 0;
   for (PetscInt k = 0; k < c->n; ++k)
     for (PetscInt e = c->start[k]; e < c->start[k + 1]; ++e) {
-      c->slot[2 * e] = find_pair(system, c->node[e], c->twin[k]);
-      c->slot[2 * e + 1] = find_pair(system, c->twin[k], c->node[e]);
+      c->slot[2 * e] = system_pair(system, c->node[e], c->twin[k]);
+      c->slot[2 * e + 1] = system_pair(system, c->twin[k], c->node[e]);
       missing += c->slot[2 * e] < 0 || c->slot[2 * e + 1] < 0;
     }
   return !missing;
 }
 
 /* One component of one constraint. */
-static void assemble_component(const Constraints *c, PetscInt k, PetscInt d, const PetscReal *du,
-                               const PetscReal *prescribed, const unsigned char *fixed, const PetscReal *lift,
-                               PetscReal *force, PetscReal *values)
+static void assemble_component(const Constraints *c, PetscInt k, PetscInt d, const NodalScene *scene,
+                               const NodalOutput *out)
 {
   const PetscInt dim = c->dim, twin = c->twin[k] * dim + d;
-  const PetscReal mu = du[twin];
-  PetscReal gap = -prescribed[c->at[k] * dim + d];
+  const PetscReal mu = scene->du[twin];
+  PetscReal gap = -scene->prescribed[c->at[k] * dim + d];
   for (PetscInt e = c->start[k]; e < c->start[k + 1]; ++e) {
     const PetscInt i = c->node[e] * dim + d;
     const PetscReal weight = c->scale * c->N[e];
-    gap += c->N[e] * (du[i] + (lift && fixed[i] ? lift[i] : 0));
-    force[i] -= weight * mu;
-    if (!values || fixed[i]) continue;
-    values[(c->slot[2 * e] * dim + d) * dim + d] -= weight;
-    values[(c->slot[2 * e + 1] * dim + d) * dim + d] -= weight;
+    gap += c->N[e] * scene->du[i];
+    out->force[i] -= weight * mu;
+    nodal_add_tangent(out, dim, c->slot[2 * e], i, twin, -weight);
+    nodal_add_tangent(out, dim, c->slot[2 * e + 1], twin, i, -weight);
   }
-  force[twin] -= c->scale * gap;
+  out->force[twin] -= c->scale * gap;
 }
 
-void constraints_assemble(const Constraints *c, const PetscReal *du, const PetscReal *prescribed,
-                          const unsigned char *fixed, const PetscReal *lift, PetscReal *force, PetscReal *values)
+void constraints_assemble(const Constraints *c, const NodalScene *scene, const NodalOutput *out)
 {
   for (PetscInt k = 0; k < c->n; ++k)
     for (PetscInt d = 0; d < c->dim; ++d)
-      if (!fixed[c->twin[k] * c->dim + d]) assemble_component(c, k, d, du, prescribed, fixed, lift, force, values);
+      if (!scene->fixed[c->twin[k] * c->dim + d]) assemble_component(c, k, d, scene, out);
 }
 
 void constraints_relax(const Constraints *c, const unsigned char *held, const PetscReal *target, PetscReal scale,
@@ -121,3 +109,30 @@ void constraints_relax(const Constraints *c, const unsigned char *held, const Pe
       correction[at] = 0;
     }
 }
+
+static PetscErrorCode Create(const NodalScene *scene, Diag *diag, void **data)
+{
+  (void)diag;
+  PetscFunctionBeginUser;
+  *data = scene->constraints;
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode Assemble(void *data, const NodalScene *scene, const NodalOutput *out)
+{
+  PetscFunctionBeginUser;
+  constraints_assemble(data, scene, out);
+  PetscFunctionReturn(0);
+}
+
+static PetscBool find_slots(void *data, const System *system) { return constraints_find_slots(data, system); }
+static const Constraints *itself(const void *data) { return data; }
+
+const NodalForce nodal_force_constraints = {
+  .name = "constraints",
+  .help = "what holds a cloud of nodes where motion is prescribed",
+  .create = Create,
+  .find_slots = find_slots,
+  .assemble = Assemble,
+  .constraints = itself,
+};

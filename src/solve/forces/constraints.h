@@ -28,7 +28,3 @@ PetscBool constraints_find_slots(Constraints *constraints, const System *system)
  * with held[] only (of the constrained nodes). correction: as long as v, zero at call and return. */
 void constraints_relax(const Constraints *constraints, const unsigned char *held, const PetscReal *target,
                        PetscReal scale, PetscReal *v, PetscReal *correction);
-/* Add forces, and the matrix if values is not NULL. Dofs in fixed are left out (of twins: components without a constraint); lift moves
- * their columns to the forces, as in the weak form. */
-void constraints_assemble(const Constraints *constraints, const PetscReal *du, const PetscReal *prescribed,
-                          const unsigned char *fixed, const PetscReal *lift, PetscReal *force, PetscReal *values);

@@ -1,0 +1,28 @@
+#!/bin/bash
+# run-checks.sh BUILD: what a change must pass besides the tests: the format, clang-tidy on what changed, the fast tests under
+# sanitizers. The last line is `N passed, N failed`, kept in BUILD/check-summary.txt too.
+set -u
+build=$1 passed=0 failed=0
+mkdir -p "$build"
+rm -f "$build/check-summary.txt" "$build-sanitize/test-summary.txt"
+
+# count NAME STATUS SECONDS [PASSED FAILED]
+count() {
+  passed=$((passed + ${4:-($2 == 0)})) failed=$((failed + ${5:-($2 != 0)}))
+  echo "$1: $([ "$2" -eq 0 ] && echo good || echo FAILED), $3 s"
+}
+
+for check in format-check 'tidy CHANGED=1'; do
+  SECONDS=0
+  make $check BUILD="$build"
+  count "make $check" $? $SECONDS
+done
+
+SECONDS=0
+make test-sanitize FAST=1 BUILD="$build"
+status=$? numbers=
+[ ! -f "$build-sanitize/test-summary.txt" ] || numbers=$(tr -dc '0-9 ' <"$build-sanitize/test-summary.txt")
+count 'make test-sanitize FAST=1' $status $SECONDS $numbers
+
+echo "$passed passed, $failed failed" | tee "$build/check-summary.txt"
+[ "$failed" -eq 0 ]

@@ -1,0 +1,47 @@
+/* Nodes and points that stand for the bodies, and what ties them: all that a method works on. */
+#pragma once
+#include "boundary/boundary.h"
+#include "boundary/loads.h"
+#include "material/law.h"
+#include "method/nodal_fields.h"
+#include "points/support.h"
+#include "solve/forces/constraints.h"
+
+typedef struct Discretisation {
+  const Case *c;
+  Grid *grid;
+  Points *points, *tracers;
+  Boundary *boundary;
+  Loads *loads;
+  const Material *materials;
+  NodalFields *nodes;
+  Support *support;
+  Constraints *constraints; /* none: prescribed motion is that of the nodes themselves */
+  PetscBool started;        /* has phase a run before? */
+  PetscBool present;        /* do support and nodal fields belong to where nodes and points are now? */
+  unsigned char *filled;    /* n_cells: does the cell hold points? */
+  PetscReal fade;           /* share of a point's velocity beyond the nodes' that Rayleigh damping takes in the step */
+  PetscInt group_capacity;
+  PetscReal *lumping, *soft, *tie; /* per group, see WeakFormInput */
+  PetscReal *pressure_tie;         /* mixed: per group, see WeakFormInput */
+  PetscInt n_lost;                 /* points that left the grid in the last convection, all ranks */
+  LostPoint *lost;                 /* at most 16 of them */
+  void *own;                       /* what the method alone knows, see Method.destroy */
+} Discretisation;
+
+/* parts: case, grid, points, tracers, boundary, loads and materials, which stay the caller's. */
+PetscErrorCode DiscretisationCreate(const Discretisation *parts, Discretisation **space);
+PetscErrorCode DiscretisationDestroy(Discretisation **space);
+
+/* Steps that methods share. */
+PetscErrorCode DiscretisationTouch(Discretisation *space); /* touched, and in grids of cells filled, from the support */
+PetscErrorCode DiscretisationMass(Discretisation *space);  /* m_I = sum N m_p, on all copies */
+/* p_I = sum N m_p p / m_I (thesis eq. 5.20), on all copies; after DiscretisationMass. */
+PetscErrorCode DiscretisationPressure(Discretisation *space);
+/* Nodes that keep their history take the velocity of their body where they stand; m and touched must be known. */
+PetscErrorCode DiscretisationBodyVelocity(Discretisation *space);
+/* Points, tracers or carriers follow the field: in their cells, and the same with clouds. */
+PetscErrorCode DiscretisationMoveCarried(Discretisation *space, Points *carried);
+PetscErrorCode DiscretisationMoveClouds(Discretisation *space, Points *carried, const Support *support);
+/* Method.carries of grids of cells: until a cell beyond the grid's edge. */
+PetscBool cell_carries(const Discretisation *space, const Points *followers, PetscInt p);

@@ -1,0 +1,165 @@
+#include "method/nodal_fields.h"
+#include "grid/cloud/cloud.h"
+#include "grid/directory.h"
+
+/* Of which table a field is in checkpoints. Fields of no table are made anew in every step. */
+typedef enum { KEPT_NOWHERE, KEPT_MOTION, KEPT_BOUNDARY, KEPT_INCREMENTS, KEPT_CLOUD, KEPT_N } Kept;
+
+static const char *const table_names[KEPT_N] = {
+  [KEPT_MOTION] = "nodes", [KEPT_BOUNDARY] = "boundary", [KEPT_INCREMENTS] = "increments"};
+
+/* Clouds let the motion of their nodes and forces of the boundary follow. */
+static PetscBool follows(Kept kept) { return kept == KEPT_MOTION || kept == KEPT_BOUNDARY || kept == KEPT_CLOUD; }
+
+typedef struct {
+  size_t offset;
+  Kept kept;
+  const char *name, *unit;
+  PetscBool scalar, mixed; /* one component; only where the pressure is an unknown */
+} FieldKind;
+
+#define FIELD(member, ...)                     \
+  {                                            \
+    offsetof(NodalFields, member), __VA_ARGS__ \
+  }
+#define SCRATCH(member) FIELD(member, KEPT_NOWHERE, NULL, NULL, PETSC_FALSE, PETSC_FALSE)
+
+static const FieldKind kinds[] = {
+  FIELD(mass, KEPT_NOWHERE, NULL, NULL, PETSC_TRUE, PETSC_FALSE),
+  FIELD(v, KEPT_MOTION, "velocity", "m/s", PETSC_FALSE, PETSC_FALSE),
+  FIELD(a, KEPT_MOTION, "acceleration", "m/s2", PETSC_FALSE, PETSC_FALSE),
+  SCRATCH(v_points),
+  SCRATCH(a_points),
+  SCRATCH(v1),
+  SCRATCH(a1),
+  SCRATCH(du),
+  FIELD(previous, KEPT_INCREMENTS, "increment", "m", PETSC_FALSE, PETSC_FALSE),
+  SCRATCH(prescribed),
+  SCRATCH(history),
+  SCRATCH(force),
+  SCRATCH(external),
+  FIELD(reaction, KEPT_BOUNDARY, "reaction", "N", PETSC_FALSE, PETSC_FALSE),
+  FIELD(held, KEPT_BOUNDARY, "held", "N", PETSC_FALSE, PETSC_FALSE),
+  FIELD(rate, KEPT_BOUNDARY, "rate", "N", PETSC_FALSE, PETSC_FALSE),
+  FIELD(echo, KEPT_CLOUD, "echo", "m/s2", PETSC_FALSE, PETSC_FALSE),
+  FIELD(pressure, KEPT_MOTION, "pressure", "Pa", PETSC_TRUE, PETSC_TRUE),
+  FIELD(scaled_pressure, KEPT_NOWHERE, NULL, NULL, PETSC_TRUE, PETSC_TRUE),
+  FIELD(volume, KEPT_NOWHERE, NULL, NULL, PETSC_TRUE, PETSC_TRUE),
+};
+#define KINDS PETSC_STATIC_ARRAY_LENGTH(kinds)
+
+static PetscReal **values_of(NodalFields *nodes, const FieldKind *k)
+{
+  return (PetscReal **)(void *)((char *)nodes + k->offset);
+}
+
+static PetscInt components_of(const NodalFields *nodes, const FieldKind *k) { return k->scalar ? 1 : nodes->grid->dim; }
+
+static PetscErrorCode FlagsCreate(NodalFields *nodes)
+{
+  const PetscInt n = nodes->grid->n_nodes, dofs = n * nodes->grid->dim;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(n, &nodes->touched));
+  PetscCall(PetscCalloc1(n, &nodes->idle));
+  PetscCall(PetscCalloc1(dofs, &nodes->dof));
+  PetscCall(PetscCalloc1(dofs, &nodes->fixed));
+  nodes->layouts = nodes->grid->cloud ? nodes->grid->cloud->layouts : 0;
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode FlagsDestroy(NodalFields *nodes)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscFree(nodes->touched));
+  PetscCall(PetscFree(nodes->idle));
+  PetscCall(PetscFree(nodes->dof));
+  PetscCall(PetscFree(nodes->fixed));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode NodalFieldsCreate(Grid *grid, PetscBool pressure, NodalFields **nodes)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscNew(nodes));
+  (*nodes)->grid = grid;
+  PetscCall(FlagsCreate(*nodes));
+  for (const FieldKind *k = kinds; k < kinds + KINDS; ++k) {
+    PetscReal **values = values_of(*nodes, k);
+    const PetscInt components = components_of(*nodes, k);
+    if (k->mixed && !pressure) continue;
+    PetscCall(PetscCalloc1(grid->n_nodes * components, values));
+    if (!grid->cloud) continue;
+    PetscCall(GridCloudFollow(grid, values, components, follows(k->kept) ? k->name : NULL, k->unit));
+  }
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode NodalFieldsDestroy(NodalFields **nodes)
+{
+  PetscFunctionBeginUser;
+  if (!*nodes) PetscFunctionReturn(0);
+  PetscCall(FlagsDestroy(*nodes));
+  for (const FieldKind *k = kinds; k < kinds + KINDS; ++k) PetscCall(PetscFree(*values_of(*nodes, k)));
+  PetscCall(PetscFree(*nodes));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode NodalFlagsFollow(NodalFields *nodes)
+{
+  PetscFunctionBeginUser;
+  if (nodes->layouts == nodes->grid->cloud->layouts) PetscFunctionReturn(0);
+  PetscCall(FlagsDestroy(nodes));
+  PetscCall(FlagsCreate(nodes));
+  PetscFunctionReturn(0);
+}
+
+/* The fields of one table; positions are the grid's. */
+static PetscInt list_fields(NodalFields *nodes, Kept kept, NodalField list[KINDS])
+{
+  PetscInt n = 0;
+  if (kept == KEPT_MOTION) list[n++] = (NodalField){"position", "m", nodes->grid->dim, nodes->grid->x};
+  for (const FieldKind *k = kinds; k < kinds + KINDS; ++k) {
+    PetscReal *values = *values_of(nodes, k);
+    if (k->kept == kept && values) list[n++] = (NodalField){k->name, k->unit, components_of(nodes, k), values};
+  }
+  return n;
+}
+
+/* take: flags of dofs or, without them, dofs where the only field is not 0, count for their nodes; motion is that of all nodes. */
+static PetscErrorCode ToTable(NodalFields *nodes, Kept kept, const unsigned char *dofs, Tables *tables)
+{
+  NodalField list[KINDS];
+  const PetscInt n = list_fields(nodes, kept, list), dim = nodes->grid->dim;
+  unsigned char *take;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(nodes->grid->n_nodes, &take));
+  for (PetscInt i = 0; i < nodes->grid->n_nodes * dim; ++i) take[i / dim] |= dofs ? dofs[i] : list[0].values[i] != 0;
+  PetscCall(NodesToTable(nodes->grid, kept == KEPT_MOTION ? NULL : take, n, list, table_names[kept], tables));
+  PetscCall(PetscFree(take));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode NodalFieldsToTables(NodalFields *nodes, PetscBool move, const unsigned char *prescribed, Tables *tables)
+{
+  PetscFunctionBeginUser;
+  PetscCall(ToTable(nodes, move ? KEPT_MOTION : KEPT_INCREMENTS, NULL, tables));
+  PetscCall(ToTable(nodes, KEPT_BOUNDARY, prescribed, tables));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode NodalFieldsFromTables(NodalFields *nodes, PetscBool move, const Tables *tables, char reason[256])
+{
+  const Kept order[] = {move ? KEPT_MOTION : KEPT_INCREMENTS, KEPT_BOUNDARY};
+  NodalField list[KINDS];
+
+  PetscFunctionBeginUser;
+  for (int k = 0; k < 2 && !reason[0]; ++k) {
+    const PetscInt n = list_fields(nodes, order[k], list);
+    const Table *table = tables_find(tables, table_names[order[k]]);
+    if (!table && order[k] == KEPT_INCREMENTS) continue; /* of older programs: the next step starts from inertia */
+    PetscCall(NodesFromTable(nodes->grid, order[k] == KEPT_MOTION, n, list, table, reason));
+  }
+  PetscFunctionReturn(0);
+}

@@ -1,0 +1,30 @@
+/* A time scheme: how velocities and accelerations follow from displacements over a step. To add one: a new file, and a line in time_schemes.inc.
+ *
+ * At the end of a step forces balance with (1 - lag) a1 + lag a + damping v1, times the mass. */
+#pragma once
+#include "case/case.h"
+
+typedef struct {
+  PetscReal velocity, acceleration; /* derivatives of v1 and a1 with respect to du, 1/s, 1/s2 */
+  PetscReal lag;  /* share of the step's start in the acceleration that balances the forces of its end */
+  PetscReal mean; /* share of the end in the mean of the forces over the step, which gives v1 - v */
+} TimeWeights;
+
+typedef struct TimeScheme {
+  const char *name, *help;
+  PetscBool inertia; /* has matter any? else steps end in equilibrium, and time only orders them */
+  TimeWeights (*weights)(const AnalysisSpec *analysis, PetscReal dt);
+  /* Of n components: v1 and a1 at the end of a step of dt that moves them by du, linear in it. */
+  void (*end)(const AnalysisSpec *analysis, PetscReal dt, PetscInt n, const PetscReal *du, const PetscReal *v,
+              const PetscReal *a, PetscReal *v1, PetscReal *a1);
+} TimeScheme;
+
+extern const TimeScheme *const time_schemes[]; /* ended by NULL */
+/* The scheme that a case asks for; NULL if there is none of that name. */
+const TimeScheme *time_scheme_of(const AnalysisSpec *analysis);
+
+/* Derivative with respect to du of what balances the forces, over the mass, 1/s2. */
+static inline PetscReal time_inertia(const TimeWeights *w, PetscReal damping)
+{
+  return (1 - w->lag) * w->acceleration + damping * w->velocity;
+}

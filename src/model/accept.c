@@ -1,0 +1,87 @@
+/* A solved step becomes the state: phase (c) of the thesis, and what is told of the step. */
+#include "model/model_private.h"
+
+/* Where a constraint holds a node, its multiplier is the force there. */
+static void set_multipliers(Model *m)
+{
+  const Constraints *c = m->space->constraints;
+  for (PetscInt k = 0; k < c->n; ++k)
+    for (PetscInt d = 0; d < m->dim; ++d)
+      if (!m->nodes->fixed[c->twin[k] * m->dim + d])
+        m->nodes->force[c->at[k] * m->dim + d] = c->scale * m->nodes->du[c->twin[k] * m->dim + d];
+}
+
+/* Reactions: in statics what the balance lacks on prescribed dofs; with inertia the mean over the step, so that times dt it is all momentum that came
+ * from the boundary. The scheme weighs the forces of both ends, its lag gives each an echo of those before, and what prescribed motion replaced of
+ * the nodes' own at the start of the step is an impulse (docs/theory.md, "Reactions"). */
+static void store_reactions(Model *m, PetscReal dt)
+{
+  const TimeWeights w = m->scheme->weights(&m->c->analysis, dt);
+  NodalFields *n = m->nodes;
+  for (PetscInt i = 0; i < m->grid->n_owned * m->dim; ++i) {
+    const PetscReal mass = n->mass[i / m->dim];
+    const PetscReal before = n->rate[i] + mass * (n->a[i] - n->a_points[i]);
+    const PetscBool fixed = m->boundary->fixed[i] != 0;
+    n->reaction[i] = n->held[i] = fixed ? n->force[i] : 0;
+    if (!m->scheme->inertia) continue;
+    n->rate[i] = fixed ? (n->held[i] - w.lag * before) / (1 - w.lag) : 0;
+    if (!fixed) continue;
+    n->reaction[i] = (1 - w.mean) * before + w.mean * n->rate[i] + mass * (n->v[i] - n->v_points[i]) / dt;
+  }
+}
+
+/* Velocities and accelerations of the nodes at the end of the step. */
+static void end_motion(Model *m, PetscReal dt)
+{
+  const AnalysisSpec *analysis = &m->c->analysis;
+  const PetscReal lag = m->scheme->weights(analysis, dt).lag;
+  const PetscInt dofs = m->grid->n_nodes * m->dim;
+  NodalFields *n = m->nodes;
+  m->scheme->end(analysis, dt, dofs, n->du, n->v, n->a, n->v1, n->a1);
+  for (PetscInt i = 0; i < dofs; ++i) n->echo[i] = lag * (n->a1[i] - n->a[i]);
+  m->space->fade = 1 - PetscExpReal(-model_damping(m) * dt);
+}
+
+PetscErrorCode CommitStep(Model *m, PetscReal dt, EnergyStep *energy)
+{
+  LawStatus status;
+  PetscLogDouble clock;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscTime(&clock));
+  end_motion(m, dt);
+  set_multipliers(m);
+  PetscCall(EnergyOfNodes(m, dt, energy));
+  store_reactions(m, dt);
+  PetscCall(GuessLearn(m, dt));
+  PetscCall(LimitWatch(m, dt));
+  WeakFormInput in = weak_form_of(m, 0);
+  PetscCall(m->formulation->commit(&in, m->points, &status));
+  PetscCheck(status == LAW_OK, PETSC_COMM_SELF, PETSC_ERR_PLIB, "a converged state could not be committed");
+  for (PetscInt node = 0; m->nodes->pressure && node < m->grid->n_nodes; ++node)
+    m->nodes->pressure[node] = m->pressure_scale * m->nodes->scaled_pressure[node];
+  const NodalScene scene = nodal_scene(m, m->time + dt, m->nodes->du);
+  PetscCall(NodalForcesCommit(&m->forces, &scene));
+  PetscCall(PhaseEnd(m->seconds, PHASE_COMMIT, &clock));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ConvectStep(Model *m, PetscReal dt, EnergyStep *energy, StepReport *report)
+{
+  PetscLogDouble clock;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscTime(&clock));
+  PetscCall(m->method->convect(m->space));
+  m->space->present = PETSC_FALSE;
+  PetscCall(PhaseEnd(m->seconds, PHASE_MOVE, &clock));
+  m->time += dt;
+  ++m->step;
+  PetscCall(EnergyClose(m, energy));
+  PetscCall(OutsideAdd(m, report));
+  PetscCall(MeasuresRemember(m, dt));
+  PetscCall(PhaseEnd(m->seconds, PHASE_COMMIT, &clock));
+  report->outcome = STEP_ACCEPTED;
+  report->dt = dt;
+  PetscFunctionReturn(0);
+}

@@ -1,0 +1,70 @@
+/* The list of nodal forces over the life of a model. */
+#include "model/model_private.h"
+
+NodalScene nodal_scene(const Model *m, PetscReal t, const PetscReal *du)
+{
+  return (NodalScene){
+    .c = m->c,
+    .grid = m->grid,
+    .points = m->points,
+    .support = m->space->support,
+    .filled = m->space->filled,
+    .touched = m->nodes->touched,
+    .fixed = m->nodes->fixed,
+    .prescribed = m->nodes->prescribed,
+    .du = du,
+    .t = t,
+    .loads = m->loads,
+    .constraints = m->method->clouds ? m->space->constraints : NULL,
+    .body_force = m->body_force,
+    .body_force_context = m->body_force_context,
+  };
+}
+
+PetscErrorCode ForcesCreate(Model *m, Diag *diag)
+{
+  const NodalScene scene = nodal_scene(m, m->time, m->nodes->du);
+
+  PetscFunctionBeginUser;
+  PetscCall(NodalForcesDestroy(&m->forces));
+  PetscCall(NodalForcesCreate(&scene, diag, &m->forces));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ForcesToTables(const Model *m, Tables *tables)
+{
+  const NodalScene scene = nodal_scene(m, m->time, m->nodes->du);
+
+  PetscFunctionBeginUser;
+  PetscCall(NodalForcesToTables(&m->forces, &scene, tables));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ForcesFromTables(Model *m, const Tables *tables, char reason[256])
+{
+  const NodalScene scene = nodal_scene(m, m->time, m->nodes->du);
+
+  PetscFunctionBeginUser;
+  PetscCall(NodalForcesFromTables(&m->forces, &scene, tables, reason));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ModelSetBodyForce(Model *m, BodyForce force, void *context)
+{
+  Tables *kept;
+  char reason[256] = "";
+
+  PetscFunctionBeginUser;
+  m->body_force = force;
+  m->body_force_context = context;
+  PetscCall(TablesCreate(&kept));
+  PetscCall(ForcesToTables(m, kept));
+  PetscCall(ForcesCreate(m, NULL));
+  PetscCall(ForcesFromTables(m, kept, reason));
+  PetscCall(TablesDestroy(&kept));
+  PetscCheck(!reason[0], m->comm, PETSC_ERR_PLIB, "%s", reason);
+  if (m->step > 0 || !m->scheme->inertia) PetscFunctionReturn(0);
+  PetscCall(PetscArrayzero(m->points->real[POINT_A], m->points->n * m->dim));
+  PetscCall(InitialAcceleration(m));
+  PetscFunctionReturn(0);
+}

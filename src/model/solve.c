@@ -1,0 +1,116 @@
+/* The solve of a step: Newton from one first guess after another, on shorter and shorter steps; and everything as it was where that does not help. */
+#include "model/model_private.h"
+
+static void count_try(Model *m, PetscBool again, StepReport *report)
+{
+  const NewtonReport *newton = &report->newton;
+  const PetscInt lost = newton->lost + (newton->converged ? 0 : newton->iterations);
+  m->total_iterations += newton->iterations + newton->lost;
+  m->tries.again += again;
+  m->tries.lost += lost;
+  report->tries.again += again;
+  report->tries.lost += lost;
+}
+
+/* Newton from the nearest first guess, and where it fails from the others: a step is halved only if none of them leads to its solution. */
+static PetscErrorCode SolveFromGuesses(Model *m, PetscReal dt, const LinearProblem *linear, StepReport *report)
+{
+  FirstGuess guess[GUESS_N];
+  StepProblem problem;
+  PetscLogDouble clock;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscTime(&clock));
+  PetscCall(PrepareStep(m, dt, &problem));
+  const PetscInt guesses = guess_order(m, guess);
+  for (PetscInt k = 0; k < guesses; ++k) {
+    guess_make(m, guess[k], dt, m->nodes->du);
+    pressure_guess(m);
+    PetscCall(PhaseEnd(m->seconds, PHASE_PREPARE, &clock));
+    PetscCall(NewtonSolve(m->newton, &problem, linear, &report->newton));
+    if (report->newton.converged) PetscCall(JudgeStep(m, report));
+    PetscCall(PetscTime(&clock));
+    count_try(m, k > 0, report);
+    if (report->newton.converged || report->newton.interrupted) break;
+  }
+  PetscFunctionReturn(0);
+}
+
+static LinearProblem linear_problem(const Model *m, PetscReal dt)
+{
+  return (LinearProblem){
+    .choice = m->c->linear,
+    .dim = m->dim,
+    .unknowns = m->system->n_active_global * m->system->block,
+    .symmetric = m->symmetric,
+    .mixed = m->formulation->pressure,
+    .undetermined = m->c->mixed.stabilisation == 0,
+    .multipliers = m->n_constraints > 0,
+    .idle_ranks = !m->system->n_active_least,
+    .dynamic = m->scheme->inertia,
+    .courant = m->courant_speed * dt / m->grid->smallest,
+  };
+}
+
+PetscErrorCode SolveStep(Model *m, PetscReal *dt, StepReport *report)
+{
+  const PetscReal smallest = m->c->analysis.smallest;
+
+  PetscFunctionBeginUser;
+  for (;; *dt = step_control_cut(&m->control, *dt)) {
+    const LinearProblem linear = linear_problem(m, *dt);
+    PetscCall(SolveFromGuesses(m, *dt, &linear, report));
+    if (report->newton.converged || report->newton.interrupted) PetscFunctionReturn(0);
+    ++m->cuts;
+    ++report->cuts;
+    if (*dt / 2 < smallest) break;
+  }
+  report->outcome = STEP_TOO_SMALL;
+  report->dt = *dt;
+  snprintf(report->reason, sizeof report->reason,
+           "Newton did not converge with a step of %g s (%s), and half of it is less than analysis.smallest = %g s",
+           (double)*dt, report->newton.reason, (double)smallest);
+  PetscCall(LimitDescribe(m, report));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode StepStartKeep(const Model *m, StepStart *start)
+{
+  const PetscInt dofs = m->grid->n_nodes * m->dim;
+
+  PetscFunctionBeginUser;
+  *start = (StepStart){.control = m->control, .cuts = m->cuts, .iterations = m->total_iterations, .tries = m->tries};
+  newton_get_memory(m->newton, m->system, &start->newton);
+  if (!m->method->begin) PetscFunctionReturn(0);
+  PetscCall(PetscMalloc2(dofs, &start->v, dofs, &start->a));
+  PetscCall(PetscArraycpy(start->v, m->nodes->v, dofs));
+  PetscCall(PetscArraycpy(start->a, m->nodes->a, dofs));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode StepStartRestore(Model *m, const StepStart *start, StepReport *report)
+{
+  const PetscInt dofs = m->grid->n_nodes * m->dim;
+
+  PetscFunctionBeginUser;
+  if (start->v) {
+    PetscCall(PetscArraycpy(m->nodes->v, start->v, dofs));
+    PetscCall(PetscArraycpy(m->nodes->a, start->a, dofs));
+  }
+  if (m->method->restores_grid) m->space->present = PETSC_FALSE;
+  if (!report->newton.interrupted) PetscFunctionReturn(0);
+  m->control = start->control;
+  m->cuts = start->cuts;
+  m->total_iterations = start->iterations;
+  m->tries = start->tries;
+  newton_forget(m->newton, m->system, &start->newton);
+  report->outcome = STEP_INTERRUPTED;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode StepStartForget(StepStart *start)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscFree2(start->v, start->a));
+  PetscFunctionReturn(0);
+}
