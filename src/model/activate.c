@@ -66,18 +66,20 @@ static PetscErrorCode AddRings(const Model *m, const unsigned char *occupied, un
 
 PetscErrorCode ModelEnable(Model *m)
 {
-  const PetscInt nn = m->grid->nodes_per_cell;
+  const PetscInt stride = m->grid->nodes_per_cell;
   PetscInt n = 0, *node, *start;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(m->grid->n_cells * nn, &node));
+  PetscCall(PetscMalloc1(m->grid->n_cells * stride, &node));
+  PetscCall(PetscMalloc1(m->grid->n_cells + 1, &start));
+  start[0] = 0;
   for (PetscInt c = 0; c < m->grid->n_cells; ++c)
     if (m->enabled[c]) {
-      PetscCall(PetscArraycpy(node + n * nn, m->grid->cell_node + c * nn, nn));
+      const PetscInt nn = grid_cell(m->grid, c)->nodes;
+      PetscCall(PetscArraycpy(node + start[n], m->grid->cell_node + c * stride, nn));
+      start[n + 1] = start[n] + nn;
       ++n;
     }
-  PetscCall(PetscMalloc1(n + 1, &start));
-  for (PetscInt g = 0; g <= n; ++g) start[g] = g * nn;
   PetscCall(SystemBuild(m->system, m->grid, &(NodeGroups){.n = n, .start = start, .node = node}));
   PetscCall(PetscFree(start));
   PetscCall(PetscFree(node));

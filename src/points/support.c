@@ -101,10 +101,29 @@ CELL_INLINE void evaluate_group(CellType type, const PetscReal *x, const PetscRe
   for (PetscInt k = 0; k < n; ++k) (void)cell_kernel_gradients(type, x, xi + k * dim, N + k * nn, dN + k * nn * dim);
 }
 
-CELL_INLINE void evaluate(CellType type, const Support *s, const PetscReal *grid_x, const PetscReal *xi)
+/* Cells of the lesser kind come first and are few. The node that they repeat has no part in them. */
+static PetscInt evaluate_first(const Support *s, const Points *points, const Grid *grid)
+{
+  const PetscInt dim = grid->dim, nn = grid->nodes_per_cell, pad = nn - cells[grid->first_type].nodes;
+  PetscReal x[CELL_MAX_NODES * 3];
+  PetscInt g = 0;
+  for (; g < s->n_groups && points->cell[s->point_start[g]] < grid->n_first; ++g) {
+    grid_cell_x(grid, points->cell[s->point_start[g]], x);
+    for (PetscInt p = s->point_start[g]; p < s->point_start[g + 1]; ++p) {
+      PetscReal *N = s->N + p * nn, *dN = s->dN + p * nn * dim;
+      (void)cell_gradients(grid->first_type, x, point_real(points, POINT_XI, p), N, dN);
+      for (PetscInt i = nn - pad; i < nn; ++i) N[i] = 0;
+      for (PetscInt i = (nn - pad) * dim; i < nn * dim; ++i) dN[i] = 0;
+    }
+  }
+  return g;
+}
+
+CELL_INLINE void evaluate(CellType type, const Support *s, PetscInt first_group, const PetscReal *grid_x,
+                          const PetscReal *xi)
 {
   const int dim = cell_kernel_dim(type), nn = cell_kernel_nodes(type);
-  for (PetscInt g = 0; g < s->n_groups; ++g) {
+  for (PetscInt g = first_group; g < s->n_groups; ++g) {
     const PetscInt *node = s->node + g * nn, first = s->point_start[g], n = s->point_start[g + 1] - first;
     PetscReal x[CELL_MAX_NODES * 3];
     for (int i = 0; i < nn; ++i)
@@ -120,7 +139,6 @@ PetscErrorCode SupportFromCells(Support *support, const Points *points, const Gr
   PetscFunctionBeginUser;
   PetscCheck(points->dim == grid->dim, PETSC_COMM_SELF, PETSC_ERR_ARG_SIZ,
              "points of %" PetscInt_FMT " dimensions in a grid of %" PetscInt_FMT, points->dim, grid->dim);
-  PetscCheck(!grid_is_mixed(grid), PETSC_COMM_SELF, PETSC_ERR_SUP, "cells of two kinds");
   count_groups(points, &groups, &located);
   PetscCall(SupportReserve(support, groups, groups * grid->nodes_per_cell, located * grid->nodes_per_cell, grid->dim));
   support->n_groups = groups;
@@ -128,11 +146,12 @@ PetscErrorCode SupportFromCells(Support *support, const Points *points, const Gr
   support->n_runs = 1;
   support->run[0] = (SupportRun){.nodes = grid->nodes_per_cell, .first = 0, .end = groups};
   fill_groups(support, points, grid, located);
+  const PetscInt first = evaluate_first(support, points, grid);
   switch (grid->type) { /* a literal in each case: the kernels are compiled for that cell */
-  case CELL_TRIANGLE: evaluate(CELL_TRIANGLE, support, grid->x, xi); break;
-  case CELL_QUADRILATERAL: evaluate(CELL_QUADRILATERAL, support, grid->x, xi); break;
-  case CELL_TETRAHEDRON: evaluate(CELL_TETRAHEDRON, support, grid->x, xi); break;
-  case CELL_HEXAHEDRON: evaluate(CELL_HEXAHEDRON, support, grid->x, xi); break;
+  case CELL_TRIANGLE: evaluate(CELL_TRIANGLE, support, first, grid->x, xi); break;
+  case CELL_QUADRILATERAL: evaluate(CELL_QUADRILATERAL, support, first, grid->x, xi); break;
+  case CELL_TETRAHEDRON: evaluate(CELL_TETRAHEDRON, support, first, grid->x, xi); break;
+  case CELL_HEXAHEDRON: evaluate(CELL_HEXAHEDRON, support, first, grid->x, xi); break;
   }
   PetscFunctionReturn(0);
 }
