@@ -14,8 +14,6 @@ static PetscReal cell_weight(void *context, const PetscReal *centre)
 
 static void check_supported(const Case *c, Diag *diag)
 {
-  if (c->kinematics == KINEMATICS_AXISYMMETRIC)
-    diag_error(diag, "kinematics", "axisymmetric kinematics are not part of this version; plane-strain and 3d are");
   if (!method_find(c->method))
     diag_error(diag, "method", "method '%s' is not part of this version; mpm, fem and gmm are", c->method);
   if (!formulation_find(c->formulation))

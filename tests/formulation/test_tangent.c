@@ -131,7 +131,7 @@ static void patch_begin(Patch *p, const Variant *variant)
   const CellType cell = variant->cell;
   Diag *diag;
   *p = (Patch){.random = {11}};
-  p->c = (Case){.kinematics = cell >= CELL_TETRAHEDRON ? KINEMATICS_3D : KINEMATICS_PLANE_STRAIN, .method = "mpm"};
+  p->c = (Case){.kinematics = cell >= CELL_TETRAHEDRON ? &kinematics_3d : &kinematics_plane_strain, .method = "mpm"};
   p->c.grid = (GridSpec){.kind = GRID_BOX, .cell = cell, .max = {1, 1, 1}, .counts = {2, 2, 2}, .grading = {1, 1, 1}};
   CALL(DiagCreate(&diag));
   CALL(GridCreate(PETSC_COMM_SELF, &p->c, NULL, NULL, diag, &p->grid));

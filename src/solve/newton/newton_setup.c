@@ -60,7 +60,7 @@ PetscErrorCode NewtonSetUp(Newton *n, StepProblem *p, const LinearProblem *linea
   n->projects = chosen.multipliers && form == SYSTEM_BLOCKS;
   PetscCall(SystemUse(p->system, form, linear->symmetric));
   PetscCall(SystemGather(
-    p->system, !n->projects && !p->constraints && p->in.support->uniform ? p->formulation->singles : PETSC_FALSE));
+    p->system, !n->projects && !p->constraints && p->in.support->n_runs ? p->formulation->singles : PETSC_FALSE));
   n->search.block = p->pressure ? p->system->block : 0;
   PetscCall(SystemCreateVec(p->system, &n->x));
   PetscCall(VecDuplicate(n->x, &n->f));
