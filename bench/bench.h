@@ -59,7 +59,7 @@ static inline void bench_case(BenchCase *b, PetscInt dim, PetscReal young, Petsc
   b->motion.component[0] = b->motion.component[1] = b->motion.component[2] = 1;
   b->motion.kind = MOTION_FIXED;
   b->c = (Case){
-    .kinematics = dim == 2 ? KINEMATICS_PLANE_STRAIN : KINEMATICS_3D,
+    .kinematics = dim == 2 ? &kinematics_plane_strain : &kinematics_3d,
     .method = (char *)"mpm",
     .formulation = (char *)"displacement",
     .grid = {.kind = GRID_BOX, .cell = dim == 2 ? CELL_QUADRILATERAL : CELL_HEXAHEDRON, .grading = {1, 1, 1}},

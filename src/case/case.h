@@ -3,9 +3,8 @@
  * SI units; angles in radians here (degrees in files). Names that the program looks up in a registry
  * (law, method) stay strings: this room knows no other. Strings and arrays belong to the case. */
 #pragma once
-#include <petscsys.h>
+#include "case/kinematics/kinematics.h"
 
-typedef enum { KINEMATICS_PLANE_STRAIN, KINEMATICS_AXISYMMETRIC, KINEMATICS_3D } Kinematics;
 typedef enum { ANALYSIS_STATIC, ANALYSIS_DYNAMIC } AnalysisType;
 typedef enum { MASS_CONSISTENT, MASS_LUMPED } MassMatrix;
 typedef enum { CELL_TRIANGLE, CELL_QUADRILATERAL, CELL_TETRAHEDRON, CELL_HEXAHEDRON } CellType;
@@ -242,7 +241,7 @@ typedef struct {
   char *file;   /* as the user named it */
   char *folder; /* where it stands, "." at least: relative names start here */
   char *title;
-  Kinematics kinematics;
+  const Kinematics *kinematics;
   char *method;
   char *formulation; /* "displacement", "mixed" */
   MixedSpec mixed;
@@ -270,8 +269,6 @@ typedef struct {
   PetscInt n_petsc; /* options of the petsc: block, in order: "-name value" */
   char **petsc;
 } Case;
-
-static inline PetscInt kinematics_dim(Kinematics k) { return k == KINEMATICS_3D ? 3 : 2; }
 
 /* Is the pressure an unknown beside the displacements? */
 PetscBool case_is_mixed(const Case *c);

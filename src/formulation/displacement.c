@@ -2,101 +2,43 @@
  *
  * Points run in batches of one material: first the increments of the deformation gradient of the whole batch, then one
  * call of the law, then forces and stiffness. What a group (a cell) gathers is scattered once. */
-#include "formulation/sizes.h"
+#include "formulation/cells.h"
 #include "formulation/displacement_cloud.h"
-#include "formulation/displacement_kernels.h"
-#include "formulation/displacement_points.h"
-
-/* What one cell gathers before it is scattered. */
-typedef struct {
-  PetscReal du[3 * CELL_MAX_NODES];                 /* nn x dim */
-  PetscReal a[3 * CELL_MAX_NODES];                  /* dim rows, effective acceleration */
-  PetscReal f[3 * CELL_MAX_NODES];                  /* dim rows */
-  PetscReal M[CELL_MAX_NODES * CELL_MAX_NODES];     /* nn rows */
-  PetscReal K[9 * CELL_MAX_NODES * CELL_MAX_NODES]; /* nn x dim x dim rows */
-} CellWork;
-
-KERNEL void cell_load(const int dim, const int nn, const WeakFormInput *in, PetscInt group, CellWork *w)
-{
-  const PetscInt *node = in->support->node + group * nn;
-  const int width = row_width(nn);
-  for (int I = 0; I < nn; ++I)
-    for (int d = 0; d < dim; ++d) {
-      const PetscInt k = node[I] * dim + d;
-      w->du[I * dim + d] = in->du[k];
-      w->a[d * width + I] = in->inertia * in->du[k] + in->history[k];
-    }
-  for (int i = 0; i < dim * width; ++i) w->f[i] = 0;
-  for (int i = 0; i < nn * width; ++i) w->M[i] = 0;
-  for (int i = 0; i < dim * dim * nn * width; ++i) w->K[i] = 0;
-}
-
-/* Ties the nodes of a hardly filled cell: s (du_I - mean), no force on a translation. */
-KERNEL void cell_soften(const int dim, const int nn, PetscReal s, PetscBool tangent, CellWork *w)
-{
-  for (int d = 0; d < dim; ++d) {
-    PetscReal mean = 0;
-    for (int I = 0; I < nn; ++I) mean += w->du[I * dim + d] / nn;
-    for (int I = 0; I < nn; ++I) w->f[d * row_width(nn) + I] += s * (w->du[I * dim + d] - mean);
-  }
-  if (!tangent) return;
-  for (int I = 0; I < nn; ++I)
-    for (int d = 0; d < dim; ++d)
-      for (int J = 0; J < nn; ++J) w->K[((I * dim + d) * dim + d) * row_width(nn) + J] += s * ((I == J) - 1.0 / nn);
-}
 
 KERNEL PetscBool wants_tangent(const WeakFormOutput *out) { return out->values || out->singles; }
 
-KERNEL void cell_prefetch(const int dim, const int nn, PetscInt group, const WeakFormOutput *out)
+KERNEL void cell_prefetch(const int dim, const int nn, const PetscInt *slot, const WeakFormOutput *out)
 {
-  const PetscInt *slot = out->slot + group * nn * nn;
   if (out->singles) prefetch_blocks(dim, nn, slot, out->singles, sizeof(float));
   else prefetch_blocks(dim, nn, slot, out->values, sizeof(PetscReal));
 }
 
-KERNEL void cell_store(const int dim, const int nn, const WeakFormInput *in, PetscInt group, CellWork *w,
+KERNEL void cell_store(const int dim, const int nn, const WeakFormInput *in, PetscInt group, PetscInt slot, CellWork *w,
                        WeakFormOutput *out)
 {
-  const PetscInt *node = in->support->node + group * nn;
-  if (in->symmetric && wants_tangent(out)) mirror_stiffness(dim, nn, w->K);
-  if (in->soft && in->soft[group] > 0) cell_soften(dim, nn, in->soft[group], wants_tangent(out), w);
-  if (in->tie && in->tie[group] > 0) add_tie(dim, nn, in->tie[group], w->a, w->f, w->M);
-  if (wants_tangent(out)) {
-    const PetscInt *slot = out->slot + group * nn * nn;
-    for (int I = 0; I < nn; ++I)
-      for (int d = 0; d < dim; ++d)
-        row_add(nn, in->inertia, w->M + I * row_width(nn), w->K + ((I * dim + d) * dim + d) * row_width(nn));
-    if (out->singles) scatter_blocks(dim, nn, PETSC_TRUE, slot, w->K, out->singles);
-    else scatter_blocks(dim, nn, PETSC_FALSE, slot, w->K, out->values);
-  }
-  for (int I = 0; I < nn; ++I)
-    for (int d = 0; d < dim; ++d) out->force[node[I] * dim + d] += w->f[d * row_width(nn) + I];
+  const PetscBool tangent = wants_tangent(out);
+  if (in->symmetric && tangent) mirror_stiffness(dim, nn, w->K);
+  cell_close(dim, nn, in, group, tangent, w);
+  if (out->singles) scatter_blocks(dim, nn, PETSC_TRUE, out->slot + slot, w->K, out->singles);
+  else if (tangent) scatter_blocks(dim, nn, PETSC_FALSE, out->slot + slot, w->K, out->values);
+  cell_give_force(dim, nn, cell_nodes(in, group), w, out->force);
 }
 
-KERNEL LawStatus batch_update(const int dim, const int nn, const WeakFormInput *in, PetscBool tangent, Batch *b)
+KERNEL LawStatus batch_update(const int dim, const int nn, const PetscBool hoop, const WeakFormInput *in,
+                              PetscBool tangent, Batch *b)
 {
-  const Support *support = in->support;
-  PetscReal du[3 * CELL_MAX_NODES];
-  PetscInt group = -1, next = b->group;
-
-  for (PetscInt k = 0; k < b->n; ++k) {
-    const PetscInt p = b->first + k;
-    while (group < 0 || p >= support->point_start[group + 1]) {
-      group = next++;
-      for (int I = 0; I < nn; ++I)
-        for (int d = 0; d < dim; ++d) du[I * dim + d] = in->du[support->node[group * nn + I] * dim + d];
-    }
-    increment_rows(dim, nn, support->dN + p * nn * dim, du, b->dF + 9 * k);
-  }
+  batch_increments(dim, nn, hoop, PETSC_FALSE, in, b);
   return batch_law(in, tangent, b);
 }
 
 /* Points first .. first + n - 1 of the batch, all of one cell, at most RUN_POINTS. */
-KERNEL void add_points(const int dim, const int nn, const WeakFormInput *in, PetscBool tangent, const Batch *b,
-                       PetscInt first, PetscInt n, PetscReal lumping, CellWork *w)
+KERNEL void add_points(const int dim, const int nn, const PetscBool hoop, const WeakFormInput *in, PetscBool tangent,
+                       const Batch *b, PetscInt first, PetscInt n, PetscInt group, CellWork *w)
 {
   const Points *points = in->points;
   const Support *support = in->support;
+  const PetscReal lumping = in->lumping ? in->lumping[group] : 0;
+  const PetscInt offset = support->value_start[group] - support->point_start[group] * nn;
   PetscReal N[CELL_MAX_NODES];
   PointRun run;
 
@@ -104,92 +46,64 @@ KERNEL void add_points(const int dim, const int nn, const WeakFormInput *in, Pet
   for (int i = 0; i < n; ++i) {
     const PetscInt k = first + i, p = b->first + k;
     const PetscReal volume = points->real[POINT_VOLUME][p], mass = points->real[POINT_MASS][p];
-    row_load(nn, 1, support->N + p * nn, N);
-    current_gradients(dim, nn, support->dN + p * nn * dim, b->dF + 9 * k, run.g[i]);
-    add_internal_force(dim, nn, run.g[i], b->tau + 6 * k, volume, w->f);
+    const PetscReal radius = hoop ? *point_real(points, POINT_X, p) : 0;
+    row_load(nn, 1, support->N + offset + p * nn, N);
+    current_gradients(dim, nn, hoop, support->dN + (offset + p * nn) * dim, N, radius, b->dF + 9 * k, run.g[i]);
+    add_internal_force(dim, nn, hoop, run.g[i], b->s.tau + 6 * k, volume, w->f);
     add_inertia_force(dim, nn, N, w->a, mass, lumping, w->f);
     if (tangent && in->inertia > 0) add_mass(nn, N, mass, lumping, w->M);
-    run.tau[i] = b->tau + 6 * k;
-    run.c[i] = b->c + 36 * k;
+    run.tau[i] = b->s.tau + 6 * k;
+    run.c[i] = b->s.c + 36 * k;
     run.volume[i] = volume;
   }
-  if (tangent && in->symmetric) add_stiffness(dim, nn, PETSC_TRUE, &run, w->K);
-  else if (tangent) add_stiffness(dim, nn, PETSC_FALSE, &run, w->K);
+  if (tangent && in->symmetric) add_stiffness(dim, nn, hoop, PETSC_TRUE, &run, w->K);
+  else if (tangent) add_stiffness(dim, nn, hoop, PETSC_FALSE, &run, w->K);
 }
 
-KERNEL void assemble_points(const int dim, const int nn, const WeakFormInput *in, WeakFormOutput *out)
+KERNEL void assemble_points(const int dim, const int nn, const PetscBool hoop, const WeakFormInput *in,
+                            const SupportRun *cells_of, PetscInt slot, WeakFormOutput *out)
 {
   const Support *support = in->support;
   const PetscBool tangent = wants_tangent(out);
+  PetscInt group = cells_of->first;
   CellWork w;
   Batch b;
-  const PetscInt n = points_in_groups(support);
-  PetscInt group = 0;
 
   cell_load(dim, nn, in, group, &w);
-  for (PetscInt first = 0; first < n; first += b.n) {
-    b.first = first;
-    b.group = group;
-    while (first >= support->point_start[b.group + 1]) ++b.group;
-    b.n = batch_length(in->points, first, n);
-    const LawStatus status = batch_update(dim, nn, in, tangent, &b);
-    if (status > out->status) {
-      out->status = status;
-      out->bad_point = first;
-    }
-    if (out->status != LAW_OK) return; /* the step is cut, nothing here counts */
+  batch_begin(cells_of, support, &b);
+  while (batch_next(in, &b)) {
+    if (!batch_is_good(&b, batch_update(dim, nn, hoop, in, tangent, &b), out)) return;
     for (PetscInt k = 0, run; k < b.n; k += run) {
-      while (first + k >= support->point_start[group + 1]) {
-        cell_store(dim, nn, in, group++, &w, out);
+      while (b.first + k >= support->point_start[group + 1]) {
+        cell_store(dim, nn, in, group++, slot, &w, out);
+        slot += nn * nn;
         cell_load(dim, nn, in, group, &w);
-        if (tangent) cell_prefetch(dim, nn, group, out);
+        if (tangent) cell_prefetch(dim, nn, out->slot + slot, out);
       }
-      run = PetscMin(PetscMin(b.n - k, RUN_POINTS), support->point_start[group + 1] - (first + k));
-      add_points(dim, nn, in, tangent, &b, k, run, in->lumping ? in->lumping[group] : 0, &w);
+      run = PetscMin(PetscMin(b.n - k, RUN_POINTS), support->point_start[group + 1] - (b.first + k));
+      add_points(dim, nn, hoop, in, tangent, &b, k, run, group, &w);
     }
   }
-  cell_store(dim, nn, in, group, &w, out);
+  cell_store(dim, nn, in, group, slot, &w, out);
 }
 
-KERNEL LawStatus commit_points(const int dim, const int nn, const WeakFormInput *in, Points *points)
+CELL_SIZES(SIZED_KERNELS)
+
+static const SizedKernels kernels[] = {CELL_SIZES(SIZED_ROW){0}};
+
+static const SizedKernels *kernels_of(const WeakFormInput *in)
 {
-  const PetscInt n = points_in_groups(in->support);
-  Batch b;
-  for (PetscInt first = 0, group = 0; first < n; first += b.n) {
-    while (first >= in->support->point_start[group + 1]) ++group;
-    b.first = first;
-    b.group = group;
-    b.n = batch_length(points, first, n);
-    const LawStatus status = batch_update(dim, nn, in, PETSC_FALSE, &b);
-    if (status != LAW_OK) return status;
-    batch_commit(in, &b, points);
-  }
-  return LAW_OK;
+  return in->support->n_runs ? kernels : displacement_cloud_kernels;
 }
-
-SIZED_KERNELS(2, 3)
-SIZED_KERNELS(2, 4)
-SIZED_KERNELS(3, 4)
-SIZED_KERNELS(3, 8)
-
-static const SizedKernels kernels[] = {
-  SIZED_ROW(2, 3),
-  SIZED_ROW(2, 4),
-  SIZED_ROW(3, 4),
-  SIZED_ROW(3, 8),
-  {2, 0, displacement_assemble_cloud, displacement_commit_cloud}, /* as many nodes as a point's cloud has */
-  {3, 0, displacement_assemble_cloud, displacement_commit_cloud},
-  {0},
-};
 
 static PetscErrorCode DisplacementAssemble(const WeakFormInput *in, WeakFormOutput *out)
 {
-  return SizedAssemble(kernels, in, out);
+  return SizedAssemble(kernels_of(in), in, out);
 }
 
 static PetscErrorCode DisplacementCommit(const WeakFormInput *in, Points *points, LawStatus *status)
 {
-  return SizedCommit(kernels, in, points, status);
+  return SizedCommit(kernels_of(in), in, points, status);
 }
 
 const Formulation formulation_displacement = {

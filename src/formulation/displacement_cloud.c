@@ -3,11 +3,7 @@
  * Nothing is gathered per group, so a point's blocks go straight into the matrix values. The innermost unit is one block of a pair of
  * nodes: with T_j[J] = sum_l modulus_jl g_l[J], a block is sum_j g_j[I] T_j[J] plus the mass, and in the plane it fills one register. */
 #include "formulation/displacement_cloud.h"
-#include "formulation/displacement_points.h"
-
-#define KERNEL static inline __attribute__((always_inline))
-
-typedef PetscReal Four __attribute__((vector_size(4 * sizeof(PetscReal)), aligned(8), may_alias));
+#include "formulation/displacement_kernels.h"
 
 /* What one point needs of its cloud. */
 typedef struct {
@@ -15,42 +11,50 @@ typedef struct {
   const PetscInt *node;
   const PetscReal *N;
   PetscReal mass, inertia, lumping, soft; /* inertia: mass times c0 */
-  PetscReal g[3 * CLOUD_MAX_NODES];       /* nn x dim, gradients at x_(n+1) */
-  PetscReal T[3 * 9 * CLOUD_MAX_NODES];   /* dim x nn blocks */
+  PetscReal g[3 * CLOUD_MAX_NODES];       /* gradients at x_(n+1), as many rows as they have beside each other */
+  PetscReal T[3 * 9 * CLOUD_MAX_NODES];   /* blocks of each row and node */
 } CloudWork;
 
-KERNEL void cloud_increment(const int dim, const WeakFormInput *in, PetscInt p, PetscReal dF[9])
+KERNEL void cloud_increment(const int dim, const PetscBool hoop, const WeakFormInput *in, PetscInt p, PetscReal dF[9])
 {
   const Support *s = in->support;
   const PetscInt first = s->node_start[p], nn = s->node_start[p + 1] - first, *node = s->node + first;
   const PetscReal *dN = s->dN + s->value_start[p] * dim;
-  PetscReal H[9] = {0};
+  const PetscReal *N = s->N + s->value_start[p];
+  PetscReal H[9] = {0}, outward = 0;
   for (PetscInt I = 0; I < nn; ++I) {
     const PetscReal *du = in->du + node[I] * dim;
+    if (hoop) outward += N[I] * du[0];
     for (int i = 0; i < dim; ++i)
       for (int j = 0; j < dim; ++j) H[i * dim + j] += du[i] * dN[I * dim + j];
   }
   for (int i = 0; i < 9; ++i) dF[i] = i % 4 == 0;
   for (int i = 0; i < dim; ++i)
     for (int j = 0; j < dim; ++j) dF[3 * i + j] += H[i * dim + j];
+  if (hoop) dF[8] += outward / *point_real(in->points, POINT_X, p);
 }
 
-KERNEL void cloud_gradients(const int dim, const PetscReal *restrict dN, const PetscReal *dF, CloudWork *w)
+KERNEL void cloud_gradients(const int dim, const PetscBool hoop, const PetscReal *restrict dN, PetscReal radius,
+                            const PetscReal *dF, CloudWork *w)
 {
+  const int rows = gradient_rows(dim, hoop);
   PetscReal inverse[9];
   tensor_inverse(dF, inverse);
-  for (PetscInt I = 0; I < w->nn; ++I)
+  for (PetscInt I = 0; I < w->nn; ++I) {
     for (int j = 0; j < dim; ++j) {
       PetscReal g = 0;
       for (int i = 0; i < dim; ++i) g += inverse[3 * i + j] * dN[I * dim + i];
-      w->g[I * dim + j] = g;
+      w->g[I * rows + j] = g;
     }
+    if (hoop) w->g[I * rows + dim] = inverse[8] / radius * w->N[I];
+  }
 }
 
 /* f_I += V0 tau g_I + m N_I ((1 - lumping) a_h + lumping a_I) + soft (du_I - mean) */
-KERNEL void cloud_force(const int dim, const WeakFormInput *in, const PetscReal *tau, PetscReal volume,
-                        const CloudWork *w, PetscReal *force)
+KERNEL void cloud_force(const int dim, const PetscBool hoop, const WeakFormInput *in, const PetscReal *tau,
+                        PetscReal volume, const CloudWork *w, PetscReal *force)
 {
+  const int rows = gradient_rows(dim, hoop);
   const PetscReal part = 1 / (PetscReal)w->nn;
   PetscReal mean_a[3] = {0, 0, 0}, mean_u[3] = {0, 0, 0};
   for (PetscInt I = 0; I < w->nn; ++I)
@@ -65,30 +69,35 @@ KERNEL void cloud_force(const int dim, const WeakFormInput *in, const PetscReal 
       const PetscReal a = in->inertia * in->du[k] + in->history[k];
       PetscReal f =
         w->mass * w->N[I] * ((1 - w->lumping) * mean_a[d] + w->lumping * a) + w->soft * (in->du[k] - mean_u[d]);
-      for (int j = 0; j < dim; ++j) f += volume * tau[voigt_of[d][j]] * w->g[I * dim + j];
+      for (int j = 0; j < rows; ++j)
+        if (is_felt(dim, d, j)) f += volume * tau[strain_of(dim, d, j)] * w->g[I * rows + j];
       force[k] += f;
     }
 }
 
 /* T_j[J] = V0 sum_l (c_ajbl + delta_ab tau_jl) g_l[J], a block of dim x dim. */
-KERNEL void cloud_products(const int dim, const PetscReal *tau, const PetscReal *c, PetscReal volume, CloudWork *w)
+KERNEL void cloud_products(const int dim, const PetscBool hoop, const PetscReal *tau, const PetscReal *c,
+                           PetscReal volume, CloudWork *w)
 {
-  for (int j = 0; j < dim; ++j) {
+  const int rows = gradient_rows(dim, hoop);
+  for (int j = 0; j < rows; ++j) {
     PetscReal modulus[3][9];
-    for (int l = 0; l < dim; ++l)
+    for (int l = 0; l < rows; ++l)
       for (int a = 0; a < dim; ++a)
         for (int b = 0; b < dim; ++b)
           modulus[l][a * dim + b] =
-            volume * (c[6 * voigt_of[a][j] + voigt_of[b][l]] + (a == b ? tau[voigt_of[j][l]] : 0.0));
+            is_felt(dim, a, j) && is_felt(dim, b, l) ? volume * modulus_of(dim, a, j, b, l, tau, c) : 0;
     for (PetscInt J = 0; J < w->nn; ++J) {
       PetscReal *T = w->T + (j * w->nn + J) * dim * dim;
       if (dim == 2) {
-        *(Four *)T = *(const Four *)modulus[0] * w->g[J * dim] + *(const Four *)modulus[1] * w->g[J * dim + 1];
+        Row4 sum = *(const Row4 *)modulus[0] * w->g[J * rows];
+        for (int l = 1; l < rows; ++l) sum += *(const Row4 *)modulus[l] * w->g[J * rows + l];
+        *(Row4 *)T = sum;
         continue;
       }
       for (int e = 0; e < dim * dim; ++e) {
         T[e] = 0;
-        for (int l = 0; l < dim; ++l) T[e] += modulus[l][e] * w->g[J * dim + l];
+        for (int l = 0; l < rows; ++l) T[e] += modulus[l][e] * w->g[J * rows + l];
       }
     }
   }
@@ -107,35 +116,39 @@ KERNEL void cloud_block(const int dim, const CloudWork *w, PetscInt I, PetscInt 
 }
 
 /* In the plane a block is g_x[I] T_x[J] + g_y[I] T_y[J] + mass, four numbers at a time. */
-KERNEL void cloud_matrix_2d(const PetscBool half, const PetscInt *slot, const CloudWork *w, PetscReal *values)
+KERNEL void cloud_matrix_2d(const PetscBool hoop, const PetscBool half, const PetscInt *slot, const CloudWork *w,
+                            PetscReal *values)
 {
+  const int rows = gradient_rows(2, hoop);
   const PetscReal soft = w->soft / (PetscReal)w->nn, share = w->inertia * (1 - w->lumping);
-  const Four diagonal = {1, 0, 0, 1};
+  const Row4 diagonal = {1, 0, 0, 1};
   for (PetscInt I = 0; I < w->nn; ++I) {
-    const Four gx = diagonal * 0 + w->g[2 * I], gy = diagonal * 0 + w->g[2 * I + 1],
-               mass = diagonal * (share * w->N[I]), none = diagonal * soft;
+    const Row4 mass = diagonal * (share * w->N[I]), none = diagonal * soft;
+    Row4 g[3];
+    for (int j = 0; j < rows; ++j) g[j] = diagonal * 0 + w->g[rows * I + j];
     for (PetscInt J = half ? I : 0; J < w->nn; ++J) {
-      Four *block = (Four *)(values + (size_t)slot[I * w->nn + J] * 4);
-      const Four Tx = *(const Four *)(w->T + J * 4), Ty = *(const Four *)(w->T + (w->nn + J) * 4);
-      *block += (gx * Tx + gy * Ty) + (mass * w->N[J] - none);
+      Row4 sum = g[0] * *(const Row4 *)(w->T + J * 4);
+      for (int j = 1; j < rows; ++j) sum += g[j] * *(const Row4 *)(w->T + (j * w->nn + J) * 4);
+      *(Row4 *)(values + (size_t)slot[I * w->nn + J] * 4) += sum + (mass * w->N[J] - none);
     }
-    *(Four *)(values + (size_t)slot[I * w->nn + I] * 4) += diagonal * (w->inertia * w->lumping * w->N[I] + w->soft);
+    *(Row4 *)(values + (size_t)slot[I * w->nn + I] * 4) += diagonal * (w->inertia * w->lumping * w->N[I] + w->soft);
   }
 }
 
-KERNEL void cloud_matrix(const int dim, const WeakFormInput *in, const PetscInt *slot, const CloudWork *w,
-                         WeakFormOutput *out)
+KERNEL void cloud_matrix(const int dim, const PetscBool hoop, const PetscBool half, const PetscInt *slot,
+                         const CloudWork *w, PetscReal *values)
 {
-  if (dim == 2 && in->half) cloud_matrix_2d(PETSC_TRUE, slot, w, out->values);
-  else if (dim == 2) cloud_matrix_2d(PETSC_FALSE, slot, w, out->values);
-  else
-    for (PetscInt I = 0; I < w->nn; ++I)
-      for (PetscInt J = in->half ? I : 0; J < w->nn; ++J)
-        cloud_block(dim, w, I, J, out->values + (size_t)slot[I * w->nn + J] * dim * dim);
+  if (dim == 2) {
+    cloud_matrix_2d(hoop, half, slot, w, values);
+    return;
+  }
+  for (PetscInt I = 0; I < w->nn; ++I)
+    for (PetscInt J = half ? I : 0; J < w->nn; ++J)
+      cloud_block(dim, w, I, J, values + (size_t)slot[I * w->nn + J] * dim * dim);
 }
 
-KERNEL void cloud_point(const int dim, const WeakFormInput *in, const Batch *b, PetscInt k, const PetscInt *slot,
-                        CloudWork *w, WeakFormOutput *out)
+KERNEL void cloud_point(const int dim, const PetscBool hoop, const WeakFormInput *in, const Batch *b, PetscInt k,
+                        PetscInt slot, CloudWork *w, WeakFormOutput *out)
 {
   const Support *s = in->support;
   const PetscInt p = b->first + k;
@@ -147,57 +160,37 @@ KERNEL void cloud_point(const int dim, const WeakFormInput *in, const Batch *b, 
   w->inertia = w->mass * in->inertia;
   w->lumping = in->lumping ? in->lumping[p] : 0;
   w->soft = in->soft ? in->soft[p] : 0;
-  cloud_gradients(dim, s->dN + s->value_start[p] * dim, b->dF + 9 * k, w);
-  cloud_force(dim, in, b->tau + 6 * k, volume, w, out->force);
+  cloud_gradients(dim, hoop, s->dN + s->value_start[p] * dim, *point_real(in->points, POINT_X, p), b->dF + 9 * k, w);
+  cloud_force(dim, hoop, in, b->s.tau + 6 * k, volume, w, out->force);
   if (!out->values) return;
-  cloud_products(dim, b->tau + 6 * k, b->c + 36 * k, volume, w);
-  cloud_matrix(dim, in, slot, w, out);
+  cloud_products(dim, hoop, b->s.tau + 6 * k, b->s.c + 36 * k, volume, w);
+  if (in->half) cloud_matrix(dim, hoop, PETSC_TRUE, out->slot + slot, w, out->values);
+  else cloud_matrix(dim, hoop, PETSC_FALSE, out->slot + slot, w, out->values);
 }
 
-KERNEL LawStatus cloud_batch(const int dim, const WeakFormInput *in, PetscInt first, PetscInt end, PetscBool tangent,
-                             Batch *b)
+KERNEL LawStatus batch_update(const int dim, const int nn, const PetscBool hoop, const WeakFormInput *in,
+                              PetscBool tangent, Batch *b)
 {
-  b->first = first;
-  b->n = batch_length(in->points, first, end);
-  for (PetscInt k = 0; k < b->n; ++k) cloud_increment(dim, in, first + k, b->dF + 9 * k);
+  (void)nn;
+  for (PetscInt k = 0; k < b->n; ++k) cloud_increment(dim, hoop, in, b->first + k, b->dF + 9 * k);
   return batch_law(in, tangent, b);
 }
 
-KERNEL void cloud_points(const int dim, const WeakFormInput *in, WeakFormOutput *out)
+KERNEL void assemble_points(const int dim, const int nn, const PetscBool hoop, const WeakFormInput *in,
+                            const SupportRun *run, PetscInt slot, WeakFormOutput *out)
 {
-  const PetscInt n = points_in_groups(in->support);
-  const PetscInt *slot = out->slot;
   Batch b;
   CloudWork w;
-  for (PetscInt first = 0; first < n; first += b.n) {
-    const LawStatus status = cloud_batch(dim, in, first, n, out->values != NULL, &b);
-    if (status > out->status) {
-      out->status = status;
-      out->bad_point = first;
-    }
-    if (out->status != LAW_OK) return; /* the step is cut, nothing here counts */
+  batch_begin(run, in->support, &b);
+  while (batch_next(in, &b)) {
+    if (!batch_is_good(&b, batch_update(dim, nn, hoop, in, out->values != NULL, &b), out)) return;
     for (PetscInt k = 0; k < b.n; ++k) {
-      cloud_point(dim, in, &b, k, slot, &w, out);
+      cloud_point(dim, hoop, in, &b, k, slot, &w, out);
       slot += w.nn * w.nn;
     }
   }
 }
 
-void displacement_assemble_cloud(const WeakFormInput *in, WeakFormOutput *out)
-{
-  if (in->points->dim == 2) cloud_points(2, in, out);
-  else cloud_points(3, in, out);
-}
+CLOUD_SIZES(SIZED_KERNELS)
 
-LawStatus displacement_commit_cloud(const WeakFormInput *in, Points *points)
-{
-  const PetscInt n = points_in_groups(in->support);
-  Batch b;
-  for (PetscInt first = 0; first < n; first += b.n) {
-    const LawStatus status =
-      points->dim == 2 ? cloud_batch(2, in, first, n, PETSC_FALSE, &b) : cloud_batch(3, in, first, n, PETSC_FALSE, &b);
-    if (status != LAW_OK) return status;
-    batch_commit(in, &b, points);
-  }
-  return LAW_OK;
-}
+const SizedKernels displacement_cloud_kernels[] = {CLOUD_SIZES(SIZED_ROW){0}};

@@ -1,7 +1,5 @@
-/* The displacement formulation of points that each have a cloud of nodes of their own, for this room only. */
+/* The displacement formulation of points that each have a cloud of nodes of their own (group g is point g), for this room only. */
 #pragma once
-#include "formulation/formulation.h"
+#include "formulation/sizes.h"
 
-/* Groups must be single points: group g is point g. */
-void displacement_assemble_cloud(const WeakFormInput *in, WeakFormOutput *out);
-LawStatus displacement_commit_cloud(const WeakFormInput *in, Points *points);
+extern const SizedKernels displacement_cloud_kernels[];

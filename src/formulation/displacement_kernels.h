@@ -1,4 +1,7 @@
-/* Point kernels of the displacement formulation, with dimension and number of nodes known at compile time.
+/* Point kernels of the displacement formulation, with dimension, number of nodes, and whether there is a hoop known at compile time.
+ *
+ * Where the plane turns about its axis (Kinematics.hoop) a ring strains by u_x / x: gradients have a row more, N / x, that the first
+ * component of displacements alone feels, and that stands for zz.
  *
  * The innermost index runs over nodes: a row holds one number per node, padded to the width of a SIMD register. Rows are vectors of
  * the compiler's, since it leaves loops of such fixed short length scalar. g is dim rows, the cell force dim rows, the cell
@@ -59,6 +62,18 @@ KERNEL void row_add(const int nn, PetscReal s, const PetscReal *x, PetscReal *ro
   else *(Row8 *)row += s * *(const Row8 *)x;
 }
 
+/* Rows of a gradient, and Voigt's number of the strain that component a of a displacement gives along row j. */
+KERNEL int gradient_rows(const int dim, const PetscBool hoop) { return hoop ? dim + 1 : dim; }
+KERNEL int strain_of(const int dim, int a, int j) { return j < dim ? voigt_of[a][j] : 2; }
+KERNEL PetscBool is_felt(const int dim, int a, int j) { return j < dim || a == 0; }
+
+/* c_ajbl + delta_ab tau_jl */
+KERNEL PetscReal modulus_of(const int dim, int a, int j, int b, int l, const PetscReal *tau, const PetscReal *c)
+{
+  const PetscReal stress = j < dim && l < dim ? tau[voigt_of[j][l]] : j == l ? tau[2] : 0;
+  return c[6 * strain_of(dim, a, j) + strain_of(dim, b, l)] + (a == b ? stress : 0);
+}
+
 /* dF = 1 + sum_I du_I dN_I of one point; du is nn x dim. */
 KERNEL void increment_rows(const int dim, const int nn, const PetscReal *restrict dN, const PetscReal *restrict du,
                            PetscReal *restrict dF)
@@ -80,8 +95,9 @@ KERNEL void increment_rows(const int dim, const int nn, const PetscReal *restric
   for (int j = 0; j < 3; ++j) dF[6 + j] = z[j];
 }
 
-/* g = dF^-T dN: gradients at x_(n+1). */
-KERNEL void current_gradients(const int dim, const int nn, const PetscReal *restrict dN, const PetscReal *restrict dF,
+/* g = dF^-T dN: gradients at x_(n+1). N, radius (at x_n): for the hoop. */
+KERNEL void current_gradients(const int dim, const int nn, const PetscBool hoop, const PetscReal *restrict dN,
+                              const PetscReal *restrict N, PetscReal radius, const PetscReal *restrict dF,
                               PetscReal *restrict g)
 {
   const int w = row_width(nn);
@@ -92,14 +108,16 @@ KERNEL void current_gradients(const int dim, const int nn, const PetscReal *rest
     row_scale(nn, inverse[j], old, g + j * w);
     for (int i = 1; i < dim; ++i) row_add(nn, inverse[3 * i + j], old + i * w, g + j * w);
   }
+  if (hoop) row_scale(nn, inverse[8] / radius, N, g + dim * w);
 }
 
-KERNEL void add_internal_force(const int dim, const int nn, const PetscReal *restrict g, const PetscReal *restrict tau,
-                               PetscReal volume, PetscReal *restrict f)
+KERNEL void add_internal_force(const int dim, const int nn, const PetscBool hoop, const PetscReal *restrict g,
+                               const PetscReal *restrict tau, PetscReal volume, PetscReal *restrict f)
 {
   const int w = row_width(nn);
   for (int a = 0; a < dim; ++a)
-    for (int j = 0; j < dim; ++j) row_add(nn, volume * tau[voigt_of[a][j]], g + j * w, f + a * w);
+    for (int j = 0; j < gradient_rows(dim, hoop); ++j)
+      if (is_felt(dim, a, j)) row_add(nn, volume * tau[strain_of(dim, a, j)], g + j * w, f + a * w);
 }
 
 /* Points of one cell whose stiffness is added at once: a block row of the cell matrix then stays in registers over all of them. */
@@ -107,31 +125,31 @@ KERNEL void add_internal_force(const int dim, const int nn, const PetscReal *res
 
 typedef struct {
   int n;
-  PetscReal g[RUN_POINTS][3 * CELL_MAX_NODES]; /* gradients at x_(n+1), dim rows */
+  PetscReal g[RUN_POINTS][3 * CELL_MAX_NODES]; /* gradients at x_(n+1), row by row */
   const PetscReal *tau[RUN_POINTS], *c[RUN_POINTS];
   PetscReal volume[RUN_POINTS];
 } PointRun;
 
-/* T_j = V0 sum_l (c_ajbl + delta_ab tau_jl) g_l of one point, dim rows. */
-KERNEL void run_products(const int dim, const int nn, const int a, const int b, const PointRun *run, int k,
-                         PetscReal *restrict T)
+/* T_j = V0 sum_l (c_ajbl + delta_ab tau_jl) g_l of one point, as many rows as g has. */
+KERNEL void run_products(const int dim, const int nn, const PetscBool hoop, const int a, const int b,
+                         const PointRun *run, int k, PetscReal *restrict T)
 {
   const int w = row_width(nn);
   const PetscReal *c = run->c[k], *tau = run->tau[k], *g = run->g[k], volume = run->volume[k];
 #pragma GCC unroll 3
-  for (int j = 0; j < dim; ++j)
+  for (int j = 0; j < gradient_rows(dim, hoop); ++j)
 #pragma GCC unroll 3
-    for (int l = 0; l < dim; ++l) {
-      const PetscReal modulus =
-        volume * (c[6 * voigt_of[a][j] + voigt_of[b][l]] + (a == b ? tau[voigt_of[j][l]] : 0.0));
+    for (int l = 0; l < gradient_rows(dim, hoop); ++l) {
+      if (!is_felt(dim, a, j) || !is_felt(dim, b, l)) continue;
+      const PetscReal modulus = volume * modulus_of(dim, a, j, b, l, tau, c);
       if (l == 0) row_scale(nn, modulus, g, T + j * w);
       else row_add(nn, modulus, g + l * w, T + j * w);
     }
 }
 
 /* K[I][a][b][J] += sum over the points of sum_j g_Ij T_jJ; only a <= b if the rest is to be mirrored. */
-KERNEL void add_stiffness(const int dim, const int nn, const PetscBool symmetric, const PointRun *run,
-                          PetscReal *restrict K)
+KERNEL void add_stiffness(const int dim, const int nn, const PetscBool hoop, const PetscBool symmetric,
+                          const PointRun *run, PetscReal *restrict K)
 {
   const int w = row_width(nn);
 #pragma GCC unroll 3
@@ -142,11 +160,12 @@ KERNEL void add_stiffness(const int dim, const int nn, const PetscBool symmetric
 #pragma GCC unroll 8
       for (int I = 0; I < nn; ++I) row_copy(nn, K + ((I * dim + a) * dim + b) * w, sum + I * w);
       for (int k = 0; k < run->n; ++k) {
-        run_products(dim, nn, a, b, run, k, T);
+        run_products(dim, nn, hoop, a, b, run, k, T);
 #pragma GCC unroll 8
         for (int I = 0; I < nn; ++I)
 #pragma GCC unroll 3
-          for (int j = 0; j < dim; ++j) row_add(nn, run->g[k][j * w + I], T + j * w, sum + I * w);
+          for (int j = 0; j < gradient_rows(dim, hoop); ++j)
+            if (is_felt(dim, a, j)) row_add(nn, run->g[k][j * w + I], T + j * w, sum + I * w);
       }
 #pragma GCC unroll 8
       for (int I = 0; I < nn; ++I) row_copy(nn, sum + I * w, K + ((I * dim + a) * dim + b) * w);

@@ -10,7 +10,7 @@
 #include "points/support.h"
 
 typedef struct {
-  Kinematics kinematics;
+  const Kinematics *kinematics;
   const Points *points;
   const Support *support;
   const Material *materials;

@@ -18,23 +18,27 @@ KERNEL PetscReal projection_entry(const int dim, const int nn, int I, int J)
 }
 
 /* Kup[I][a][J] += V0 s sum_j g_Ij t_aj N_J, t = dtau/dp. */
-KERNEL void add_pressure_force(const int dim, const int nn, const PetscReal *restrict g, const PetscReal *restrict t,
-                               const PetscReal *restrict N, PetscReal volume, PetscReal *restrict K)
+KERNEL void add_pressure_force(const int dim, const int nn, const PetscBool hoop, const PetscReal *restrict g,
+                               const PetscReal *restrict t, const PetscReal *restrict N, PetscReal volume,
+                               PetscReal *restrict K)
 {
   const int w = row_width(nn);
   for (int I = 0; I < nn; ++I)
     for (int a = 0; a < dim; ++a) {
       PetscReal sum = 0;
-      for (int j = 0; j < dim; ++j) sum += g[j * w + I] * t[voigt_of[a][j]];
+      for (int j = 0; j < gradient_rows(dim, hoop); ++j)
+        if (is_felt(dim, a, j)) sum += g[j * w + I] * t[strain_of(dim, a, j)];
       row_add(nn, volume * sum, N, K + (I * dim + a) * w);
     }
 }
 
 /* Kpu[I][b][J] += V0 s theta' N_I g_Jb. */
-KERNEL void add_dilation(const int dim, const int nn, const PetscReal *restrict g, const PetscReal *restrict N,
-                         PetscReal volume, PetscReal *restrict K)
+KERNEL void add_dilation(const int dim, const int nn, const PetscBool hoop, const PetscReal *restrict g,
+                         const PetscReal *restrict N, PetscReal volume, PetscReal *restrict K)
 {
   const int w = row_width(nn);
-  for (int I = 0; I < nn; ++I)
+  for (int I = 0; I < nn; ++I) {
     for (int b = 0; b < dim; ++b) row_add(nn, volume * N[I], g + b * w, K + (I * dim + b) * w);
+    if (hoop) row_add(nn, volume * N[I], g + dim * w, K + I * dim * w);
+  }
 }

@@ -1,28 +1,32 @@
-/* Kernels compiled for one dimension and number of nodes each, and how a formulation finds its own. */
+/* Kernels compiled for one dimension, number of nodes and kind of kinematics each, and how a formulation finds its own. */
 #pragma once
-#include "formulation/formulation.h"
+#include "formulation/walk.h"
 
 typedef struct {
   PetscInt dim, nn; /* nodes of a cell; 0: each group has its own number */
-  void (*assemble)(const WeakFormInput *in, WeakFormOutput *out);
-  LawStatus (*commit)(const WeakFormInput *in, Points *points);
+  PetscBool hoop;   /* see Kinematics */
+  /* The groups of one run; slot: where those of its first group stand in out->slot. */
+  void (*assemble)(const WeakFormInput *in, const SupportRun *run, PetscInt slot, WeakFormOutput *out);
+  LawStatus (*update)(const WeakFormInput *in, PetscBool tangent, Batch *b); /* the stress of one batch */
 } SizedKernels;
 
-/* Kernels of one size from a file's own assemble_points and commit_points, which take it as constants. */
-#define SIZED_KERNELS(dim, nn)                                                     \
-  static void assemble_##dim##d_##nn(const WeakFormInput *in, WeakFormOutput *out) \
-  {                                                                                \
-    assemble_points(dim, nn, in, out);                                             \
-  }                                                                                \
-  static LawStatus commit_##dim##d_##nn(const WeakFormInput *in, Points *points)   \
-  {                                                                                \
-    return commit_points(dim, nn, in, points);                                     \
+/* Kernels of one size from a file's own assemble_points and batch_update, which take it as constants. */
+#define SIZED_KERNELS(dim, nn, hoop)                                                                         \
+  static void assemble_##dim##d_##nn##_##hoop(const WeakFormInput *in, const SupportRun *run, PetscInt slot, \
+                                              WeakFormOutput *out)                                           \
+  {                                                                                                          \
+    assemble_points(dim, nn, hoop, in, run, slot, out);                                                      \
+  }                                                                                                          \
+  static LawStatus update_##dim##d_##nn##_##hoop(const WeakFormInput *in, PetscBool tangent, Batch *b)       \
+  {                                                                                                          \
+    return batch_update(dim, nn, hoop, in, tangent, b);                                                      \
   }
-#define SIZED_ROW(dim, nn)                                \
-  {                                                       \
-    dim, nn, assemble_##dim##d_##nn, commit_##dim##d_##nn \
-  }
+#define SIZED_ROW(dim, nn, hoop) {dim, nn, hoop, assemble_##dim##d_##nn##_##hoop, update_##dim##d_##nn##_##hoop},
 
-/* What Formulation asks for, by the kernels of the points' size; a table ends with dim = 0. Nothing is done where there are no points. */
+/* All cells in all kinematics. */
+#define CELL_SIZES(EACH) EACH(2, 3, 0) EACH(2, 4, 0) EACH(2, 3, 1) EACH(2, 4, 1) EACH(3, 4, 0) EACH(3, 8, 0)
+#define CLOUD_SIZES(EACH) EACH(2, 0, 0) EACH(2, 0, 1) EACH(3, 0, 0)
+
+/* What Formulation asks for, by the kernels of each run's size; a table ends with dim = 0. */
 PetscErrorCode SizedAssemble(const SizedKernels *table, const WeakFormInput *in, WeakFormOutput *out);
 PetscErrorCode SizedCommit(const SizedKernels *table, const WeakFormInput *in, Points *points, LawStatus *status);

@@ -2,19 +2,72 @@
 #pragma once
 #include "base/math/tensor.h"
 #include "formulation/formulation.h"
+#include "material/pressure.h"
 
-/* Lost points stand last and are in no group. */
-static inline PetscInt points_in_groups(const Support *support)
+/* Points of one material, as many as one call of the law takes. */
+typedef struct {
+  PetscInt first, n, end; /* points first .. first + n - 1; no further than end */
+  PetscInt group;         /* of the first */
+  PetscReal dF[9 * LAW_BATCH], p[LAW_BATCH];
+  PetscReal old[LAW_MAX_STATE * LAW_BATCH], state[LAW_MAX_STATE * LAW_BATCH];
+  PressureStress s; /* without an unknown pressure tau and c alone */
+} Batch;
+
+/* Before the first batch of a run. */
+static inline void batch_begin(const SupportRun *run, const Support *support, Batch *b)
 {
-  return support->n_groups ? support->point_start[support->n_groups] : 0;
+  b->first = support->point_start[run->first];
+  b->end = support->point_start[run->end];
+  b->group = run->first;
+  b->n = 0;
 }
 
-/* As many points as one call of the law takes, all of one material. */
-static inline PetscInt batch_length(const Points *points, PetscInt first, PetscInt end)
+/* PETSC_FALSE if there is none. */
+static inline PetscBool batch_next(const WeakFormInput *in, Batch *b)
 {
-  PetscInt n = 1;
-  while (n < LAW_BATCH && first + n < end && points->material[first + n] == points->material[first]) ++n;
-  return n;
+  const PetscInt *material = in->points->material;
+  b->first += b->n;
+  if (b->first >= b->end) return PETSC_FALSE;
+  while (b->first >= in->support->point_start[b->group + 1]) ++b->group;
+  for (b->n = 1; b->n < LAW_BATCH && b->first + b->n < b->end; ++b->n)
+    if (material[b->first + b->n] != material[b->first]) break;
+  return PETSC_TRUE;
+}
+
+static inline const Material *batch_material(const WeakFormInput *in, const Batch *b)
+{
+  return &in->materials[in->points->material[b->first]];
+}
+
+/* State at the start of the step, packed. */
+static inline const PetscReal *batch_old(const WeakFormInput *in, Batch *b)
+{
+  const PetscInt n_state = batch_material(in, b)->law->n_state, stride = in->points->components[POINT_STATE];
+  const PetscReal *old = in->points->real[POINT_STATE] + b->first * stride;
+  if (stride == n_state) return old;
+  for (PetscInt k = 0; k < b->n; ++k)
+    for (PetscInt s = 0; s < n_state; ++s) b->old[k * n_state + s] = old[k * stride + s];
+  return b->old;
+}
+
+/* Call the law on the increments b->dF. */
+static inline LawStatus batch_law(const WeakFormInput *in, PetscBool tangent, Batch *b)
+{
+  const Material *material = batch_material(in, b);
+  const Law *law = material->law;
+  const PetscBool plane = law->update_plane && kinematics_is_plane(in->kinematics);
+  return (plane ? law->update_plane : law->update)(material->parameters, b->n, b->dF, batch_old(in, b), b->state,
+                                                   b->s.tau, tangent ? b->s.c : NULL);
+}
+
+/* The worst status so far; PETSC_FALSE if it is bad: the step is cut, and nothing counts any more. */
+static inline PetscBool batch_is_good(const Batch *b, LawStatus status, WeakFormOutput *out)
+{
+  if (status > out->status) {
+    out->status = status;
+    out->bad_point = b->first;
+  }
+  return out->status == LAW_OK;
 }
 
 /* Work of the stress per undeformed volume by the trapezoidal rule along the straight path of the step: at both ends the velocity gradient
@@ -42,4 +95,15 @@ static inline void commit_point(Points *points, PetscInt p, const PetscReal dF[9
   points->real[POINT_J][p] *= tensor_det(dF);
   points->real[POINT_WORK][p] += points->real[POINT_VOLUME][p] * stress_work(dF, old, tau);
   point_set_tau(points, p, tau);
+}
+
+/* Write the batch's new state into the points. */
+static inline void batch_commit(const WeakFormInput *in, const Batch *b, Points *points)
+{
+  const PetscInt n_state = batch_material(in, b)->law->n_state, stride = points->components[POINT_STATE];
+  for (PetscInt k = 0, p = b->first; k < b->n; ++k, ++p) {
+    commit_point(points, p, b->dF + 9 * k, b->s.tau + 6 * k);
+    if (in->pressure) points->real[POINT_PRESSURE][p] = b->s.pressure[k];
+    for (PetscInt i = 0; i < n_state; ++i) points->real[POINT_STATE][p * stride + i] = b->state[k * n_state + i];
+  }
 }

@@ -79,10 +79,9 @@ static PetscErrorCode FolderOf(const char *file, char **folder)
 /* The number of dimensions decides how long vectors are: it is read ahead of everything else. */
 static PetscInt peek_dimensions(const YamlNode *root)
 {
-  const YamlNode *kinematics = yaml_find(root, "kinematics");
-  if (!kinematics || kinematics->kind != YAML_SCALAR) return 0;
-  if (!strcmp(kinematics->text, "3d")) return 3;
-  return !strcmp(kinematics->text, "plane-strain") || !strcmp(kinematics->text, "axisymmetric") ? 2 : 0;
+  const YamlNode *node = yaml_find(root, "kinematics");
+  const Kinematics *kinematics = node && node->kind == YAML_SCALAR ? kinematics_find(node->text) : NULL;
+  return kinematics ? kinematics->dim : 0;
 }
 
 static PetscBool anything_yields(const Case *c)

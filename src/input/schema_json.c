@@ -23,12 +23,12 @@ static void bounds(FILE *out, const SchemaEntry *e)
     fprintf(out, ", \"%s\": %.17g", e->max_open ? "exclusiveMaximum" : "maximum", (double)e->max);
 }
 
-static void enumerate(FILE *out, const SchemaWord *words)
+static void enumerate(FILE *out, const SchemaEntry *e)
 {
   fputs("\"enum\": [", out);
-  for (const SchemaWord *w = words; w->word; ++w) {
-    fputs(w == words ? "" : ", ", out);
-    json_string(out, w->word);
+  for (int k = 0; schema_word(e, k).word; ++k) {
+    fputs(k ? ", " : "", out);
+    json_string(out, schema_word(e, k).word);
   }
   fputc(']', out);
 }
@@ -79,7 +79,8 @@ static void json_value(FILE *out, const SchemaEntry *e)
     bounds(out, e);
     break;
   case TYPE_WORD:
-  case TYPE_WORD_TEXT: enumerate(out, e->words); break;
+  case TYPE_MEMBER:
+  case TYPE_WORD_TEXT: enumerate(out, e); break;
   case TYPE_LAW: json_laws(out); break;
   case TYPE_FIELDS: json_fields(out); break;
   case TYPE_TABLE: json_reference(out, e->table); break;

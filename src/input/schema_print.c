@@ -63,7 +63,8 @@ static void text_entry(FILE *out, const SchemaEntry *e)
           : e->required ? "; "
                         : "; default: ",
           fallback);
-  for (const SchemaWord *w = e->words; w && w->word; ++w) fprintf(out, "  %-28s   %-18s %s\n", "", w->word, w->help);
+  for (int k = 0; schema_word(e, k).word; ++k)
+    fprintf(out, "  %-28s   %-18s %s\n", "", schema_word(e, k).word, schema_word(e, k).help);
 }
 
 static void text_group(FILE *out, const SchemaGroup *group)
@@ -134,8 +135,8 @@ static void markdown_entry(FILE *out, const SchemaEntry *e)
   fputs(" | ", out);
   markdown_text(out, e->help);
   fputs(print_where(e), out);
-  for (const SchemaWord *w = e->words; w && w->word; ++w)
-    fprintf(out, "%s`%s`: %s", w == e->words ? "<br>" : "; ", w->word, w->help);
+  for (int k = 0; schema_word(e, k).word; ++k)
+    fprintf(out, "%s`%s`: %s", k ? "; " : "<br>", schema_word(e, k).word, schema_word(e, k).help);
   fputs(" |\n", out);
 }
 

@@ -52,8 +52,6 @@ static void check_supported(const Model *m, Diag *diag)
 {
   const Case *c = m->c;
   char list[256];
-  if (c->kinematics == KINEMATICS_AXISYMMETRIC)
-    diag_error(diag, "kinematics", "axisymmetric kinematics are not part of this version; plane-strain and 3d are");
   list_methods(PETSC_FALSE, sizeof list, list);
   if (!m->method) diag_error(diag, "method", "method '%s' is not part of this version; %s are", c->method, list);
   check_formulation(m, diag);

@@ -1,1 +1,2 @@
 talus_test(formulation/test_tangent)
+talus_test(formulation/test_reference)

@@ -16,7 +16,7 @@ static inline Case box_case(CellType cell, Diagonal diagonal, PetscInt nx, Petsc
   Case c = {0};
   const PetscInt counts[3] = {nx, ny, nz};
   const PetscReal min[3] = {-1.0, 0.5, 2.0}, max[3] = {2.0, 2.5, 5.0};
-  c.kinematics = cell >= CELL_TETRAHEDRON ? KINEMATICS_3D : KINEMATICS_PLANE_STRAIN;
+  c.kinematics = cell >= CELL_TETRAHEDRON ? &kinematics_3d : &kinematics_plane_strain;
   c.grid.kind = GRID_BOX;
   c.grid.cell = cell;
   c.grid.diagonal = diagonal;

@@ -79,7 +79,7 @@ static inline void write_file(const char *name, const char *content, size_t size
 static inline Case mesh_case(const char *path, PetscInt dim)
 {
   Case c = {0};
-  c.kinematics = dim == 3 ? KINEMATICS_3D : KINEMATICS_PLANE_STRAIN;
+  c.kinematics = dim == 3 ? &kinematics_3d : &kinematics_plane_strain;
   c.grid.kind = GRID_MESH;
   c.grid.mesh = (char *)path;
   return c;

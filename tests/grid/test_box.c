@@ -375,7 +375,7 @@ static void bad_boxes(void **state)
   Case huge = box_case(CELL_QUADRILATERAL, DIAGONAL_RIGHT, 2000000, 2000000, 0);
   Case *bad[] = {&wrong_cell, &none, &huge};
   (void)state;
-  wrong_cell.kinematics = KINEMATICS_PLANE_STRAIN;
+  wrong_cell.kinematics = &kinematics_plane_strain;
   for (int k = 0; k < 3; ++k) {
     Diag *diag;
     Grid *grid = NULL;

@@ -59,7 +59,7 @@ static inline void bench_init(Bench *b, const char *method, CellType cell, Petsc
     (BodySpec){.name = "body", .material = "rubber", .has_shape = PETSC_TRUE, .points_per_cell = points[cell]};
   b->body[0].shape = (Shape){.kind = SHAPE_BOX, .max = {1, 1, 1}};
   b->c = (Case){
-    .kinematics = is_3d ? KINEMATICS_3D : KINEMATICS_PLANE_STRAIN,
+    .kinematics = is_3d ? &kinematics_3d : &kinematics_plane_strain,
     .method = (char *)method,
     .formulation = "displacement",
     .analysis =

@@ -71,7 +71,7 @@ static void slide(CellType cell, PetscBool stabilised)
   b.c.gravity_amplitude = (Amplitude){.n = 2, .time = (PetscReal[]){0, 0.5}, .value = (PetscReal[]){0, 1}};
   if (!stabilised) b.c.stabilisation = (StabilisationSpec){0};
   bench_motion(&b, 1, 0, MOTION_FIXED, 2);
-  if (b.c.kinematics == KINEMATICS_3D) {
+  if (b.c.kinematics == &kinematics_3d) {
     bench_motion(&b, 2, 0, MOTION_FIXED, 4);
     bench_motion(&b, 2, 0.25, MOTION_FIXED, 4);
   }

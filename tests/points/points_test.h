@@ -59,7 +59,7 @@ static inline TestCase *test_case(CellType cell, PetscInt nx, PetscInt ny, Petsc
   const PetscReal max[3] = {3, 2, 2};
   TestCase *t = NULL;
   CALL(PetscNew(&t));
-  t->c.kinematics = cell >= CELL_TETRAHEDRON ? KINEMATICS_3D : KINEMATICS_PLANE_STRAIN;
+  t->c.kinematics = cell >= CELL_TETRAHEDRON ? &kinematics_3d : &kinematics_plane_strain;
   t->c.method = mpm;
   t->c.grid.kind = GRID_BOX;
   t->c.grid.cell = cell;

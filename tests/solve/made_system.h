@@ -41,6 +41,8 @@ static inline void make_pattern(Made *s, PetscReal width)
   }
   s->cells.node_start[s->cells.n_groups] = s->cells.n_groups * nn;
   s->cells.uniform = nn;
+  s->cells.n_runs = 1;
+  s->cells.run[0] = (SupportRun){.nodes = nn, .end = s->cells.n_groups};
   CALL(SystemCreate(PETSC_COMM_WORLD, grid->dim, grid->dim, &s->system));
   CALL(SystemBuild(s->system, grid,
                    &(NodeGroups){.n = s->cells.n_groups, .start = s->cells.node_start, .node = s->cells.node}));

@@ -15,6 +15,7 @@ typedef enum {
   TYPE_BOOLEAN,   /* PetscBool */
   TYPE_WORD,      /* an enum, from `words` */
   TYPE_WORD_TEXT, /* char *, from `words` */
+  TYPE_MEMBER,    /* const struct *, from `registry` */
   TYPE_TEXT,      /* char * */
   TYPE_NAME,      /* char *, fit for a path */
   TYPE_FILE,      /* char *, resolved against the folder of the case */
@@ -63,7 +64,8 @@ typedef struct SchemaEntry {
   PetscBool always;     /* a mapping that is read even if absent: its keys have defaults */
   PetscBool input_only; /* resolved to another key, never written */
   const SchemaWord *words;
-  const SchemaWord *later; /* words that mean something, but not in this version: refused by name, offered nowhere */
+  const void *const *registry; /* instead of words: structs that begin with their word and its help, ended by NULL */
+  const char *later; /* a word that means something, but not in this version: refused by name, offered nowhere */
   const SchemaTable *table;
   const char *target;
   const char *with; /* makes sense only beside this key */
@@ -104,6 +106,14 @@ struct SchemaTable {
   PetscErrorCode (*write_open)(FILE *out, int indent, const Case *c, const void *source);
 };
 
+/* Word i, from wherever the entry takes them; with word = NULL if there are no more. */
+static inline SchemaWord schema_word(const SchemaEntry *e, int i)
+{
+  if (!e->registry) return e->words ? e->words[i] : (SchemaWord){NULL, 0, NULL};
+  const char *const *member = (const char *const *)e->registry[i];
+  return member ? (SchemaWord){member[0], i, member[1]} : (SchemaWord){NULL, 0, NULL};
+}
+
 /* The whole language. */
 extern const SchemaTable schema_case;
 extern const SchemaTable schema_measure; /* for `talus list measures` */
@@ -119,6 +129,8 @@ PetscErrorCode SchemaReadEntry(SchemaReader *r, const SchemaEntry *entry, const 
 /* "<path> must be <what>, not <what stands there>". */
 void schema_mismatch(SchemaReader *r, const SchemaEntry *entry, const YamlNode *node);
 /* "a number > 0, in Pa". Returns buffer. */
+/* Its words joined by commas, the last one by `last`, behind what is in the buffer. */
+void schema_append_words(const SchemaEntry *entry, const char *last, char *buffer, size_t size);
 const char *schema_expected(const SchemaEntry *entry, PetscInt dim, char *buffer, size_t size);
 /* The bounds alone: "> 0"; empty if there are none. */
 const char *schema_range(const SchemaEntry *entry, char *buffer, size_t size);
@@ -165,6 +177,7 @@ PetscErrorCode SchemaReadNumber(SchemaReader *r, const SchemaEntry *e, const Yam
 PetscErrorCode SchemaReadInteger(SchemaReader *r, const SchemaEntry *e, const YamlNode *node, void *target);
 PetscErrorCode SchemaReadBoolean(SchemaReader *r, const SchemaEntry *e, const YamlNode *node, void *target);
 PetscErrorCode SchemaReadWord(SchemaReader *r, const SchemaEntry *e, const YamlNode *node, void *target);
+PetscErrorCode SchemaReadMember(SchemaReader *r, const SchemaEntry *e, const YamlNode *node, void *target);
 PetscErrorCode SchemaReadWordText(SchemaReader *r, const SchemaEntry *e, const YamlNode *node, void *target);
 PetscErrorCode SchemaReadText(SchemaReader *r, const SchemaEntry *e, const YamlNode *node, void *target);
 PetscErrorCode SchemaReadName(SchemaReader *r, const SchemaEntry *e, const YamlNode *node, void *target);

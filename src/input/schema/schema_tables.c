@@ -3,16 +3,6 @@
 #include "input/schema/schema_keys.h"
 #include "method/method.h"
 
-static const SchemaWord kinematics_words[] = {
-  {"plane-strain", KINEMATICS_PLANE_STRAIN, "two-dimensional, unit thickness"},
-  {"3d", KINEMATICS_3D, "three-dimensional"},
-  {NULL, 0, NULL},
-};
-static const SchemaWord kinematics_later[] = {
-  {"axisymmetric", KINEMATICS_AXISYMMETRIC,
-   "axisymmetric kinematics are not part of this version; plane-strain and 3d are"},
-  {NULL, 0, NULL},
-};
 const SchemaWord schema_methods[] = {
   {"mpm", 0, "material point method: points carry the material through a fixed grid"},
   {"fem", 1, "updated Lagrangian finite elements: the grid moves with the material"},
@@ -173,8 +163,8 @@ static const SchemaTable parallel = {
 /* --- the whole file --- */
 static const SchemaEntry case_entries[] = {
   KEY("title", TEXT, NULL, "a line for people", .fallback = "", AT(Case, title)),
-  KEY("kinematics", WORD, NULL, "dimension and symmetry", .words = kinematics_words, .later = kinematics_later,
-      REQUIRED, AT(Case, kinematics)),
+  KEY("kinematics", MEMBER, NULL, "dimension and symmetry", .registry = (const void *const *)kinematics_list,
+      .later = "axisymmetric", REQUIRED, AT(Case, kinematics)),
   KEY("method", WORD_TEXT, NULL, "numerical method", .words = schema_methods, REQUIRED, AT(Case, method)),
   KEY("formulation", WORD_TEXT, NULL, "unknowns of the equations", .words = formulation_words,
       .fallback = "displacement", AT(Case, formulation)),

@@ -14,11 +14,6 @@ PetscBool seed_tells(const Grid *grid)
   return rank == 0;
 }
 
-static PetscReal circle(const Case *c, PetscReal radius)
-{
-  return c->kinematics == KINEMATICS_AXISYMMETRIC ? 2 * PETSC_PI * radius : 1;
-}
-
 /* Position of a reference position, and det of dx/dxi. */
 static PetscReal map_point(CellType type, const PetscReal *x, const PetscReal *xi, PetscReal *position)
 {
@@ -33,14 +28,14 @@ static PetscReal map_point(CellType type, const PetscReal *x, const PetscReal *x
 }
 
 /* r det J is bilinear in a triangle and of second order in a quadrilateral: this rule is exact. */
-static PetscReal ring_volume(CellType type, const PetscReal *x)
+static PetscReal ring_volume(const Kinematics *kinematics, CellType type, const PetscReal *x)
 {
   const PetscInt n = type == CELL_TRIANGLE ? 3 : 4;
   PetscReal xi[8], weight[4], position[2], sum = 0;
   (void)cell_quadrature(type, n, xi, weight);
   for (PetscInt q = 0; q < n; ++q) {
     const PetscReal det = map_point(type, x, xi + 2 * q, position);
-    sum += 2 * PETSC_PI * position[0] * det * weight[q];
+    sum += kinematics_weight(kinematics, position[0]) * det * weight[q];
   }
   return sum;
 }
@@ -49,8 +44,8 @@ PetscReal seed_cell_volume(const Seeding *s, PetscInt cell)
 {
   PetscReal x[CELL_MAX_NODES * 3];
   grid_cell_x(s->source, cell, x);
-  if (s->c->kinematics == KINEMATICS_AXISYMMETRIC) return ring_volume(grid_cell_type(s->source, cell), x);
-  return cell_volume(grid_cell_type(s->source, cell), x);
+  const CellType type = grid_cell_type(s->source, cell);
+  return s->c->kinematics->hoop ? ring_volume(s->c->kinematics, type, x) : cell_volume(type, x);
 }
 
 static PetscErrorCode FindMaterial(Seeding *s)
@@ -186,7 +181,8 @@ static PetscErrorCode SeedPoint(const Seeding *s, Points *points, PetscInt cell,
   PetscCall(PointsAppend(points, &p));
   PetscReal *position = point_real(points, POINT_X, p);
   const PetscReal det = map_point(grid_cell_type(s->source, cell), x, xi, position);
-  const PetscReal volume = s->equal ? share : rule->weight[q] * det * circle(s->c, position[0]);
+  const PetscReal weight = rule->weight[q] * det * kinematics_weight(s->c->kinematics, position[0]);
+  const PetscReal volume = s->equal ? share : weight;
   *point_real(points, POINT_VOLUME, p) = volume;
   *point_real(points, POINT_MASS, p) = seed->density * volume;
   body_velocity(s->body, dim, position, point_real(points, POINT_V, p));

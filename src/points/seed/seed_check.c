@@ -93,13 +93,13 @@ static PetscReal shape_volume(const Shape *shape, const Case *c)
   case SHAPE_POLYGON: volume = polygon_area(shape, &moment); break;
   default: return -1;
   }
-  return c->kinematics == KINEMATICS_AXISYMMETRIC ? 2 * PETSC_PI * moment : volume;
+  return volume > 0 ? volume * kinematics_weight(c->kinematics, moment / volume) : volume;
 }
 
 static void compare_volume(const Seeding *s, PetscReal seeded)
 {
   const PetscReal wanted = s->body->has_shape && !s->body->region ? shape_volume(&s->body->shape, s->c) : -1;
-  const char *unit = s->c->kinematics == KINEMATICS_PLANE_STRAIN ? "m2" : "m3";
+  const char *unit = kinematics_is_plane(s->c->kinematics) ? "m2" : "m3";
   char path[128];
   if (wanted <= 0 || PetscAbsReal(seeded - wanted) <= 0.01 * wanted) return;
   seed_path(s->b, "shape", sizeof path, path);

@@ -59,7 +59,7 @@ PetscErrorCode NewtonSetUp(Newton *n, StepProblem *p, const LinearProblem *linea
   PetscCall(LinearForm(&chosen, &form));
   n->projects = chosen.multipliers && form == SYSTEM_BLOCKS;
   PetscCall(SystemUse(p->system, form, linear->symmetric));
-  PetscCall(SystemGather(p->system, p->formulation->singles && p->in.support->uniform));
+  PetscCall(SystemGather(p->system, p->formulation->singles && p->in.support->n_runs));
   n->search.block = p->pressure ? p->system->block : 0;
   PetscCall(SystemCreateVec(p->system, &n->x));
   PetscCall(VecDuplicate(n->x, &n->f));

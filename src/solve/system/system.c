@@ -241,20 +241,22 @@ static inline PetscInt pair_slot(const System *s, PetscInt I, PetscInt J)
 
 PetscErrorCode SystemSlots(System *s, const Support *support, PetscBool *complete)
 {
-  const PetscInt nn = support->uniform;
+  PetscInt size = 0;
 
   PetscFunctionBeginUser;
-  if (!nn) {
+  if (!support->n_runs) {
     PetscCall(SystemCloudSlots(s, support, complete));
     PetscFunctionReturn(0);
   }
-  PetscCall(SystemReserveSlots(s, support->n_groups * nn * nn));
-  for (PetscInt g = 0; g < support->n_groups; ++g) {
-    const PetscInt *node = support->node + support->node_start[g];
-    PetscInt *slot = s->slot + g * nn * nn;
-    for (PetscInt I = 0; I < nn; ++I)
-      for (PetscInt J = 0; J < nn; ++J) slot[I * nn + J] = pair_slot(s, node[I], node[J]);
-  }
+  for (const SupportRun *r = support->run; r < support->run + support->n_runs; ++r)
+    size += (r->end - r->first) * r->nodes * r->nodes;
+  PetscCall(SystemReserveSlots(s, size));
+  PetscInt *slot = s->slot;
+  for (const SupportRun *r = support->run; r < support->run + support->n_runs; ++r)
+    for (PetscInt g = r->first; g < r->end; ++g)
+      for (PetscInt I = 0; I < r->nodes; ++I)
+        for (PetscInt J = 0; J < r->nodes; ++J)
+          *slot++ = pair_slot(s, support->node[support->node_start[g] + I], support->node[support->node_start[g] + J]);
   if (complete) *complete = PETSC_TRUE;
   PetscFunctionReturn(0);
 }

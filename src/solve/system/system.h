@@ -52,7 +52,7 @@ PetscErrorCode SystemDestroy(System **system);
 
 /* Collective. Unknowns on the nodes of the groups, coupled group by group. */
 PetscErrorCode SystemBuild(System *system, const Grid *grid, const NodeGroups *groups);
-/* Look up the slots of every group of the support. Cells' nodes must all carry unknowns; clouds (uniform = 0) have ascending nodes, and
+/* Look up the slots of every group of the support, one group behind the other. Cells' nodes must all carry unknowns; clouds have ascending nodes, and
  * `complete` tells whether the pattern has all their pairs on this rank. */
 PetscErrorCode SystemSlots(System *system, const Support *support, PetscBool *complete);
 /* The slot of one pair of nodes; -1 if the pattern lacks it. */
