@@ -8,12 +8,13 @@
 
 static void collect(SchemaTables *all, const SchemaTable *table)
 {
+  SchemaEntry e;
   for (PetscInt i = 0; i < all->n; ++i)
     if (all->table[i] == table) return;
   if (all->n == SCHEMA_MAX_TABLES) return;
   all->table[all->n++] = table;
-  for (const SchemaEntry *e = table->entries; e->key; ++e)
-    if (e->table) collect(all, e->table);
+  for (PetscInt i = 0; (e = schema_entry(table, i)).key; ++i)
+    if (e.table) collect(all, e.table);
 }
 
 void schema_collect(SchemaTables *all)
@@ -54,6 +55,7 @@ static const char *print_where(const SchemaEntry *e) { return e->only_2d ? " (2D
 static void text_entry(FILE *out, const SchemaEntry *e)
 {
   char left[120], fallback[200], kind[160];
+  SchemaWord w;
   snprintf(left, sizeof(left), "%s%s%s%s", e->key, e->unit && e->unit[0] ? " [" : "",
            e->unit && e->unit[0] ? e->unit : "", e->unit && e->unit[0] ? "]" : "");
   schema_default(e, fallback, sizeof(fallback));
@@ -63,23 +65,27 @@ static void text_entry(FILE *out, const SchemaEntry *e)
           : e->required ? "; "
                         : "; default: ",
           fallback);
-  for (const SchemaWord *w = e->words; w && w->word; ++w) fprintf(out, "  %-28s   %-18s %s\n", "", w->word, w->help);
+  for (PetscInt i = 0; (w = schema_word(e, i)).word; ++i) fprintf(out, "  %-28s   %-18s %s\n", "", w.word, w.help);
 }
 
-static void text_group(FILE *out, const SchemaGroup *group)
+static const char *const group_rules[] = {"", "Exactly one of", "At most one of", "At least one of"};
+
+static void text_group(FILE *out, const SchemaTable *table, const SchemaGroup *group)
 {
-  static const char *const rule[] = {"", "Exactly one of", "At most one of", "At least one of"};
-  fprintf(out, "  %s:", rule[group->kind]);
-  for (int k = 0; group->keys[k]; ++k) fprintf(out, " %s", group->keys[k]);
+  const char *key;
+  fprintf(out, "  %s:", group_rules[group->kind]);
+  for (PetscInt k = 0; (key = schema_group_key(table, group, k)); ++k) fprintf(out, " %s", key);
   fputc('\n', out);
 }
 
 static void text_table(FILE *out, const SchemaTable *table)
 {
+  SchemaEntry e;
   fprintf(out, "%s\n  %s\n", table->name, table->help);
-  for (const SchemaGroup *group = table->groups; group && group->kind != GROUP_NONE; ++group) text_group(out, group);
+  for (const SchemaGroup *group = table->groups; group && group->kind != GROUP_NONE; ++group)
+    text_group(out, table, group);
   fputc('\n', out);
-  for (const SchemaEntry *e = table->entries; e->key; ++e) text_entry(out, e);
+  for (PetscInt i = 0; (e = schema_entry(table, i)).key; ++i) text_entry(out, &e);
   fputc('\n', out);
 }
 
@@ -95,9 +101,10 @@ static SchemaEntry law_entry(const LawParameter *p, char *note, size_t size)
 
 static void text_laws(FILE *out)
 {
+  SchemaEntry e;
   char note[40];
   fprintf(out, "elastic constants\n  Any two of these belong to every material.\n\n");
-  for (const SchemaEntry *e = schema_elastic; e->key; ++e) text_entry(out, e);
+  for (PetscInt i = 0; (e = schema_elastic(i)).key; ++i) text_entry(out, &e);
   for (const Law *const *law = laws; *law; ++law) {
     fprintf(out, "\nlaw %s\n  %s\n\n", (*law)->name, (*law)->help);
     for (const LawParameter *p = (*law)->parameters; p && p->name; ++p) {
@@ -127,6 +134,7 @@ static void markdown_text(FILE *out, const char *text)
 static void markdown_entry(FILE *out, const SchemaEntry *e)
 {
   char fallback[200], kind[160];
+  SchemaWord w;
   fprintf(out, "| `%s` | ", e->key);
   markdown_text(out, print_kind(e, PETSC_TRUE, kind, sizeof(kind)));
   fprintf(out, " | %s | ", e->unit ? e->unit : "");
@@ -134,8 +142,7 @@ static void markdown_entry(FILE *out, const SchemaEntry *e)
   fputs(" | ", out);
   markdown_text(out, e->help);
   fputs(print_where(e), out);
-  for (const SchemaWord *w = e->words; w && w->word; ++w)
-    fprintf(out, "%s`%s`: %s", w == e->words ? "<br>" : "; ", w->word, w->help);
+  for (PetscInt i = 0; (w = schema_word(e, i)).word; ++i) fprintf(out, "%s`%s`: %s", i ? "; " : "<br>", w.word, w.help);
   fputs(" |\n", out);
 }
 
@@ -146,24 +153,26 @@ static void markdown_head(FILE *out)
 
 static void markdown_table(FILE *out, const SchemaTable *table)
 {
-  static const char *const rule[] = {"", "Exactly one of", "At most one of", "At least one of"};
+  SchemaEntry e;
+  const char *key;
   fprintf(out, "\n## %s\n\n%s\n", table->name, table->help);
   for (const SchemaGroup *group = table->groups; group && group->kind != GROUP_NONE; ++group) {
-    fprintf(out, "\n%s:", rule[group->kind]);
-    for (int k = 0; group->keys[k]; ++k) fprintf(out, "%s `%s`", k ? "," : "", group->keys[k]);
+    fprintf(out, "\n%s:", group_rules[group->kind]);
+    for (PetscInt k = 0; (key = schema_group_key(table, group, k)); ++k) fprintf(out, "%s `%s`", k ? "," : "", key);
     fputs(".\n", out);
   }
   fputc('\n', out);
   markdown_head(out);
-  for (const SchemaEntry *e = table->entries; e->key; ++e) markdown_entry(out, e);
+  for (PetscInt i = 0; (e = schema_entry(table, i)).key; ++i) markdown_entry(out, &e);
 }
 
 static void markdown_laws(FILE *out)
 {
+  SchemaEntry e;
   char note[40];
   fputs("\n## elastic constants\n\nExactly two of these belong to every material.\n\n", out);
   markdown_head(out);
-  for (const SchemaEntry *e = schema_elastic; e->key; ++e) markdown_entry(out, e);
+  for (PetscInt i = 0; (e = schema_elastic(i)).key; ++i) markdown_entry(out, &e);
   for (const Law *const *law = laws; *law; ++law) {
     fprintf(out, "\n## law: %s\n\n%s.\n", (*law)->name, (*law)->help);
     if (!(*law)->parameters || !(*law)->parameters->name)

@@ -73,9 +73,10 @@ static void write_boolean(FILE *out, const Case *c, const SchemaEntry *e, const 
 
 static void write_word(FILE *out, const Case *c, const SchemaEntry *e, const void *source)
 {
+  SchemaWord w;
   (void)c;
-  for (const SchemaWord *w = e->words; w->word; ++w)
-    if (w->value == FIELD(int)) fputs(w->word, out);
+  for (PetscInt i = 0; (w = schema_word(e, i)).word; ++i)
+    if (w.value == FIELD(int)) fputs(w.word, out);
 }
 
 static void write_string(FILE *out, const Case *c, const SchemaEntry *e, const void *source)

@@ -2,6 +2,7 @@
  * incompressibility). */
 #include "material/elasticity.h"
 #include <math.h>
+#include <string.h>
 
 const ElasticConstant elastic_constants[ELASTIC_CONSTANTS] = {
   {"young", "Pa", "Young's modulus", 0.0, INFINITY},
@@ -13,6 +14,13 @@ const ElasticConstant elastic_constants[ELASTIC_CONSTANTS] = {
 
 enum { YOUNG, POISSON, BULK, SHEAR, LAME };
 #define PAIR(a, b) (1u << (a) | 1u << (b))
+
+int elastic_index(const char *name)
+{
+  for (int k = 0; k < ELASTIC_CONSTANTS; ++k)
+    if (!strcmp(elastic_constants[k].name, name)) return k;
+  return -1;
+}
 
 typedef struct {
   PetscReal lame, shear;

@@ -12,6 +12,9 @@ typedef struct {
 /* young, poisson, bulk, shear, lame: the order of struct Elasticity. */
 extern const ElasticConstant elastic_constants[ELASTIC_CONSTANTS];
 
+/* Its place in the table; -1 if it is none. */
+int elastic_index(const char *name);
+
 /* All five from two: `given` has the bits (1 << index) of the two, `value` their numbers. The two given are kept
  * as they are. PETSC_FALSE if they contradict each other or a stable solid (bulk and shear positive). */
 PetscBool elasticity_from_two(unsigned given, const PetscReal value[ELASTIC_CONSTANTS], Elasticity *elastic);

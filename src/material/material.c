@@ -47,13 +47,6 @@ static int law_parameter_index(const Law *law, const char *key)
   return -1;
 }
 
-static int elastic_index(const char *key)
-{
-  for (int i = 0; i < ELASTIC_CONSTANTS; ++i)
-    if (!strcmp(elastic_constants[i].name, key)) return i;
-  return -1;
-}
-
 /* Keys that this law has no use for. */
 static void refuse_unknown(const Resolver *r, const Law *law)
 {

@@ -57,7 +57,7 @@ static const MethodField fields[] = {
 
 const Method method_fem = {
   .name = "fem",
-  .help = "updated Lagrangian finite elements: the mesh moves with the body",
+  .help = "updated Lagrangian finite elements: the grid moves with the material",
   .points_move = PETSC_FALSE,
   .initialise = FemInitialise,
   .convect = FemConvect,

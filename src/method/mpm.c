@@ -181,7 +181,7 @@ static PetscErrorCode MpmConvect(Stage *s, const PetscReal *du)
 
 const Method method_mpm = {
   .name = "mpm",
-  .help = "material point method: points move through a grid that is restored every step",
+  .help = "material point method: points carry the material through a fixed grid",
   .points_move = PETSC_TRUE,
   .initialise = MpmInitialise,
   .convect = MpmConvect,

@@ -48,8 +48,9 @@ typedef struct {
 } SchemaWord;
 
 typedef struct SchemaTable SchemaTable;
+typedef struct SchemaEntry SchemaEntry;
 
-typedef struct SchemaEntry {
+struct SchemaEntry {
   const char *key;
   SchemaType type;
   const char *help;
@@ -63,6 +64,7 @@ typedef struct SchemaEntry {
   PetscBool always;     /* a mapping that is read even if absent: its keys have defaults */
   PetscBool input_only; /* resolved to another key, never written */
   const SchemaWord *words;
+  SchemaWord (*word)(const SchemaEntry *entry, PetscInt i); /* or those of a registry, ended by word = NULL */
   const SchemaWord *later; /* words that mean something, but not in this version: refused by name, offered nowhere */
   const SchemaTable *table;
   const char *target;
@@ -72,13 +74,13 @@ typedef struct SchemaEntry {
   PetscBool tagged;       /* giving this key sets the table's tag to `tag`... */
   PetscBool items_tagged; /* ...or that of each item of the list */
   int tag;
-} SchemaEntry;
+};
 
 typedef enum { GROUP_NONE, GROUP_ONE, GROUP_AT_MOST_ONE, GROUP_AT_LEAST_ONE } SchemaGroupKind;
 
 typedef struct {
   SchemaGroupKind kind;
-  const char *keys[16]; /* ended by NULL */
+  const char *keys[8]; /* ended by NULL; none: those that set the table's tag */
 } SchemaGroup;
 
 typedef struct SchemaReader {
@@ -91,10 +93,12 @@ typedef struct SchemaReader {
 struct SchemaTable {
   const char *name; /* unique: a heading of the reference, a definition of the JSON Schema */
   const char *help;
-  const SchemaEntry *entries; /* ended by key = NULL */
-  const SchemaGroup *groups;  /* ended by GROUP_NONE; NULL if there are none */
-  size_t size;                /* of the struct, for lists */
+  const SchemaEntry *entries;       /* ended by key = NULL */
+  SchemaEntry (*entry)(PetscInt i); /* or made from a registry, ended likewise */
+  const SchemaGroup *groups;        /* ended by GROUP_NONE; NULL if there are none */
+  size_t size;                      /* of the struct, for lists */
   size_t tag_offset;
+  PetscBool tag_is_key; /* is the tag no number but the key, a char *? */
   /* Keys that the entries do not list; NULL: they are mistakes. */
   PetscErrorCode (*open)(SchemaReader *r, const YamlNode *mapping, void *target);
   /* After reading without a mistake: resolve defaults, look at keys together. */
@@ -106,8 +110,14 @@ struct SchemaTable {
 
 /* The whole language. */
 extern const SchemaTable schema_case;
-extern const SchemaTable schema_measure; /* for `talus list measures` */
-extern const SchemaWord schema_methods[];
+
+SchemaEntry schema_entry(const SchemaTable *table, PetscInt i);
+/* Word i of an entry; ended by, or without words, word = NULL. */
+SchemaWord schema_word(const SchemaEntry *entry, PetscInt i);
+/* The groups of a table of which one tagged key must be given. */
+extern const SchemaGroup schema_one_tag[];
+/* Key k of a group, NULL behind the last. */
+const char *schema_group_key(const SchemaTable *table, const SchemaGroup *group, PetscInt k);
 
 /* --- reading (schema_read.c) --- */
 PetscErrorCode SchemaReadTable(SchemaReader *r, const SchemaTable *table, const YamlNode *mapping, void *target);
@@ -191,12 +201,10 @@ PetscErrorCode SchemaCheckHalfSpace(SchemaReader *r, const YamlNode *mapping, vo
 PetscErrorCode SchemaCheckBody(SchemaReader *r, const YamlNode *mapping, void *target);
 PetscErrorCode SchemaCheckSelector(SchemaReader *r, const YamlNode *mapping, void *target);
 PetscErrorCode SchemaCheckMotion(SchemaReader *r, const YamlNode *mapping, void *target);
-PetscErrorCode SchemaCheckMeasure(SchemaReader *r, const YamlNode *mapping, void *target);
 /* Materials take the parameters of their law (schema_material.c). */
 PetscErrorCode SchemaOpenMaterial(SchemaReader *r, const YamlNode *mapping, void *target);
 PetscErrorCode SchemaWriteMaterial(FILE *out, int indent, const Case *c, const void *source);
-
-/* What a constant may be, for materials and the reference: young, poisson, bulk, shear, lame; ended by key = NULL. */
-extern const SchemaEntry schema_elastic[];
-/* A parameter of a law as an entry, for messages and the reference. `law_parameter`: a const LawParameter *. */
+/* Elastic constant i as an entry, for messages and the reference; ended by key = NULL. */
+SchemaEntry schema_elastic(PetscInt i);
+/* A parameter of a law likewise. `law_parameter`: a const LawParameter *. */
 SchemaEntry schema_law_entry(const void *law_parameter);

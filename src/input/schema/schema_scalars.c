@@ -143,30 +143,32 @@ PetscErrorCode SchemaReadBoolean(SchemaReader *r, const SchemaEntry *e, const Ya
   PetscFunctionReturn(0);
 }
 
-static const SchemaWord *find_word(SchemaReader *r, const SchemaEntry *e, const YamlNode *node)
+/* Its word is NULL, and that has been said, if there is none. */
+static SchemaWord find_word(SchemaReader *r, const SchemaEntry *e, const YamlNode *node)
 {
   const char *words[32] = {NULL};
+  SchemaWord word = {NULL, 0, NULL};
   PetscInt n = 0;
   for (const SchemaWord *w = e->later; w && w->word; ++w) {
     if (node->kind != YAML_SCALAR || strcmp(node->text, w->word)) continue;
     SchemaError(r, node, "%s", w->help);
-    return NULL;
+    return word;
   }
-  for (const SchemaWord *w = e->words; w->word && n < 31; ++w) {
-    if (node->kind == YAML_SCALAR && !strcmp(node->text, w->word)) return w;
-    words[n++] = w->word;
+  for (; (word = schema_word(e, n)).word && n < 31; ++n) {
+    if (node->kind == YAML_SCALAR && !strcmp(node->text, word.word)) return word;
+    words[n] = word.word;
   }
   schema_mismatch(r, e, node);
   if (node->kind == YAML_SCALAR && diag_nearest(node->text, words)) schema_hint_words(r, node->text, n, words);
-  return NULL;
+  return word;
 }
 
 PetscErrorCode SchemaReadWord(SchemaReader *r, const SchemaEntry *e, const YamlNode *node, void *target)
 {
-  const SchemaWord *word = find_word(r, e, node);
+  const SchemaWord word = find_word(r, e, node);
 
   PetscFunctionBeginUser;
-  if (word) *(int *)((char *)target + e->offset) = word->value;
+  if (word.word) *(int *)((char *)target + e->offset) = word.value;
   PetscFunctionReturn(0);
 }
 
@@ -182,10 +184,10 @@ static PetscErrorCode Store(const char *text, const SchemaEntry *e, void *target
 
 PetscErrorCode SchemaReadWordText(SchemaReader *r, const SchemaEntry *e, const YamlNode *node, void *target)
 {
-  const SchemaWord *word = find_word(r, e, node);
+  const SchemaWord word = find_word(r, e, node);
 
   PetscFunctionBeginUser;
-  if (word) PetscCall(Store(word->word, e, target));
+  if (word.word) PetscCall(Store(word.word, e, target));
   PetscFunctionReturn(0);
 }
 

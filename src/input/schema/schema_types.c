@@ -84,11 +84,17 @@ static const char *types_axes(const SchemaEntry *e, PetscInt dim)
   return dim == 2 ? "z" : "x, y or z";
 }
 
-static void append_words(const SchemaWord *words, char *buffer, size_t size)
+SchemaWord schema_word(const SchemaEntry *e, PetscInt i)
 {
-  for (int k = 0; words[k].word; ++k) {
+  return e->word ? e->word(e, i) : e->words ? e->words[i] : (SchemaWord){NULL, 0, NULL};
+}
+
+static void append_words(const SchemaEntry *e, char *buffer, size_t size)
+{
+  SchemaWord w;
+  for (PetscInt k = 0; (w = schema_word(e, k)).word; ++k) {
     const size_t used = strlen(buffer);
-    snprintf(buffer + used, size - used, "%s%s", k == 0 ? " " : words[k + 1].word ? ", " : " or ", words[k].word);
+    snprintf(buffer + used, size - used, "%s%s", k == 0 ? " " : schema_word(e, k + 1).word ? ", " : " or ", w.word);
   }
 }
 
@@ -96,10 +102,9 @@ const char *schema_expected(const SchemaEntry *e, PetscInt dim, char *buffer, si
 {
   char range[80];
   schema_range(e, range, sizeof(range));
-  if (e->words && !e->words[1].word) snprintf(buffer, size, "the word %s", e->words[0].word);
-  else if (e->words) {
-    snprintf(buffer, size, "%s", schema_types[e->type].what);
-    append_words(e->words, buffer, size);
+  if (schema_word(e, 0).word) {
+    snprintf(buffer, size, "%s", schema_word(e, 1).word ? schema_types[e->type].what : "the word");
+    append_words(e, buffer, size);
   } else if (e->type == TYPE_AXIS || e->type == TYPE_SPIN_AXIS) snprintf(buffer, size, "%s", types_axes(e, dim));
   else if (e->type == TYPE_VECTOR)
     snprintf(buffer, size, "a vector %s", dim == 3 ? "[x, y, z]" : dim == 2 ? "[x, y]" : "[x, y] or [x, y, z]");
