@@ -164,7 +164,7 @@ static PetscErrorCode CheckElastic(SchemaReader *r, const YamlNode *mapping)
   else {
     SchemaKeyError(r, mapping, "%s needs two elastic constants, it has %s", yaml_path(mapping, path, sizeof(path)),
                    n ? "one" : "none");
-    diag_hint(r->diag, "any two of: young [Pa], poisson, bulk [Pa], shear [Pa], lame [Pa]");
+    diag_hint(r->diag, "any two of: %s", elastic_list(ELASTIC_ALL, path, sizeof(path)));
   }
   PetscFunctionReturn(0);
 }
