@@ -58,8 +58,8 @@ static void list_measures(void)
 {
   for (const Measure *const *m = measures; *m; ++m) {
     printf("%-18s [%s] %s", (*m)->key, (*m)->number.unit, (*m)->number.help);
-    for (const MeasureNumber *w = (*m)->words; w && w->word; ++w)
-      printf("%s%s", w == (*m)->words ? ": " : ", ", w->word);
+    for (const MeasureNumber *const *w = (*m)->words; w && *w; ++w)
+      printf("%s%s", w == (*m)->words ? ": " : ", ", (*w)->word);
     putchar('\n');
   }
 }

@@ -25,11 +25,10 @@ static void bounds(FILE *out, const SchemaEntry *e)
 
 static void enumerate(FILE *out, const SchemaEntry *e)
 {
-  const char *word;
   fputs("\"enum\": [", out);
-  for (PetscInt i = 0; (word = schema_word(e, i).word); ++i) {
-    fputs(i ? ", " : "", out);
-    json_string(out, word);
+  for (int k = 0; schema_word(e, k).word; ++k) {
+    fputs(k ? ", " : "", out);
+    json_string(out, schema_word(e, k).word);
   }
   fputc(']', out);
 }
@@ -80,6 +79,7 @@ static void json_value(FILE *out, const SchemaEntry *e)
     bounds(out, e);
     break;
   case TYPE_WORD:
+  case TYPE_MEMBER:
   case TYPE_WORD_TEXT: enumerate(out, e); break;
   case TYPE_LAW: json_laws(out); break;
   case TYPE_FIELDS: json_fields(out); break;

@@ -55,7 +55,6 @@ static const char *print_where(const SchemaEntry *e) { return e->only_2d ? " (2D
 static void text_entry(FILE *out, const SchemaEntry *e)
 {
   char left[120], fallback[200], kind[160];
-  SchemaWord w;
   snprintf(left, sizeof(left), "%s%s%s%s", e->key, e->unit && e->unit[0] ? " [" : "",
            e->unit && e->unit[0] ? e->unit : "", e->unit && e->unit[0] ? "]" : "");
   schema_default(e, fallback, sizeof(fallback));
@@ -65,7 +64,8 @@ static void text_entry(FILE *out, const SchemaEntry *e)
           : e->required ? "; "
                         : "; default: ",
           fallback);
-  for (PetscInt i = 0; (w = schema_word(e, i)).word; ++i) fprintf(out, "  %-28s   %-18s %s\n", "", w.word, w.help);
+  for (int k = 0; schema_word(e, k).word; ++k)
+    fprintf(out, "  %-28s   %-18s %s\n", "", schema_word(e, k).word, schema_word(e, k).help);
 }
 
 static const char *const group_rules[] = {"", "Exactly one of", "At most one of", "At least one of"};
@@ -134,7 +134,6 @@ static void markdown_text(FILE *out, const char *text)
 static void markdown_entry(FILE *out, const SchemaEntry *e)
 {
   char fallback[200], kind[160];
-  SchemaWord w;
   fprintf(out, "| `%s` | ", e->key);
   markdown_text(out, print_kind(e, PETSC_TRUE, kind, sizeof(kind)));
   fprintf(out, " | %s | ", e->unit ? e->unit : "");
@@ -142,7 +141,8 @@ static void markdown_entry(FILE *out, const SchemaEntry *e)
   fputs(" | ", out);
   markdown_text(out, e->help);
   fputs(print_where(e), out);
-  for (PetscInt i = 0; (w = schema_word(e, i)).word; ++i) fprintf(out, "%s`%s`: %s", i ? "; " : "<br>", w.word, w.help);
+  for (int k = 0; schema_word(e, k).word; ++k)
+    fprintf(out, "%s`%s`: %s", k ? "; " : "<br>", schema_word(e, k).word, schema_word(e, k).help);
   fputs(" |\n", out);
 }
 

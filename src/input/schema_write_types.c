@@ -73,10 +73,16 @@ static void write_boolean(FILE *out, const Case *c, const SchemaEntry *e, const 
 
 static void write_word(FILE *out, const Case *c, const SchemaEntry *e, const void *source)
 {
-  SchemaWord w;
   (void)c;
-  for (PetscInt i = 0; (w = schema_word(e, i)).word; ++i)
-    if (w.value == FIELD(int)) fputs(w.word, out);
+  for (const SchemaWord *w = e->words; w->word; ++w)
+    if (w->value == FIELD(int)) fputs(w->word, out);
+}
+
+static void write_member(FILE *out, const Case *c, const SchemaEntry *e, const void *source)
+{
+  (void)c;
+  for (int k = 0; e->registry[k]; ++k)
+    if (e->registry[k] == FIELD(const void *)) fputs(schema_word(e, k).word, out);
 }
 
 static void write_string(FILE *out, const Case *c, const SchemaEntry *e, const void *source)
@@ -222,5 +228,6 @@ const SchemaWriteType schema_writers[TYPE_COUNT] = {
   [TYPE_SPIN] = write_spin,           [TYPE_AXIS] = write_axis,         [TYPE_SPIN_AXIS] = write_axis,
   [TYPE_AXES] = write_axes,           [TYPE_INTERVAL] = write_interval, [TYPE_COUNTS] = write_counts,
   [TYPE_AMPLITUDE] = write_amplitude, [TYPE_POLYGON] = write_polygon,   [TYPE_EVERY] = write_every,
-  [TYPE_FIELDS] = write_fields,       [TYPE_NUMBERS] = write_numbers,   [TYPE_OPTIONS] = write_options,
+  [TYPE_MEMBER] = write_member,       [TYPE_FIELDS] = write_fields,     [TYPE_NUMBERS] = write_numbers,
+  [TYPE_OPTIONS] = write_options,
 };

@@ -15,6 +15,7 @@ typedef enum {
   TYPE_BOOLEAN,   /* PetscBool */
   TYPE_WORD,      /* an enum, from `words` */
   TYPE_WORD_TEXT, /* char *, from `words` */
+  TYPE_MEMBER,    /* const struct *, from `registry` */
   TYPE_TEXT,      /* char * */
   TYPE_NAME,      /* char *, fit for a path */
   TYPE_FILE,      /* char *, resolved against the folder of the case */
@@ -64,8 +65,8 @@ struct SchemaEntry {
   PetscBool always;     /* a mapping that is read even if absent: its keys have defaults */
   PetscBool input_only; /* resolved to another key, never written */
   const SchemaWord *words;
-  SchemaWord (*word)(const SchemaEntry *entry, PetscInt i); /* or those of a registry, ended by word = NULL */
-  const SchemaWord *later; /* words that mean something, but not in this version: refused by name, offered nowhere */
+  const void *const *registry; /* instead of words: structs that begin with their word and its help, ended by NULL */
+  const char *later; /* a word that means something, but not in this version: refused by name, offered nowhere */
   const SchemaTable *table;
   const char *target;
   const char *with; /* makes sense only beside this key */
@@ -108,12 +109,18 @@ struct SchemaTable {
   PetscErrorCode (*write_open)(FILE *out, int indent, const Case *c, const void *source);
 };
 
+/* Word i, from wherever the entry takes them; with word = NULL if there are no more. */
+static inline SchemaWord schema_word(const SchemaEntry *e, int i)
+{
+  if (!e->registry) return e->words ? e->words[i] : (SchemaWord){NULL, 0, NULL};
+  const char *const *member = (const char *const *)e->registry[i];
+  return member ? (SchemaWord){member[0], i, member[1]} : (SchemaWord){NULL, 0, NULL};
+}
+
 /* The whole language. */
 extern const SchemaTable schema_case;
 
 SchemaEntry schema_entry(const SchemaTable *table, PetscInt i);
-/* Word i of an entry; ended by, or without words, word = NULL. */
-SchemaWord schema_word(const SchemaEntry *entry, PetscInt i);
 /* The groups of a table of which one tagged key must be given. */
 extern const SchemaGroup schema_one_tag[];
 /* Key k of a group, NULL behind the last. */
@@ -129,6 +136,8 @@ PetscErrorCode SchemaReadEntry(SchemaReader *r, const SchemaEntry *entry, const 
 /* "<path> must be <what>, not <what stands there>". */
 void schema_mismatch(SchemaReader *r, const SchemaEntry *entry, const YamlNode *node);
 /* "a number > 0, in Pa". Returns buffer. */
+/* Its words joined by commas, the last one by `last`, behind what is in the buffer. */
+void schema_append_words(const SchemaEntry *entry, const char *last, char *buffer, size_t size);
 const char *schema_expected(const SchemaEntry *entry, PetscInt dim, char *buffer, size_t size);
 /* The bounds alone: "> 0"; empty if there are none. */
 const char *schema_range(const SchemaEntry *entry, char *buffer, size_t size);
@@ -149,39 +158,20 @@ void schema_hint_words(SchemaReader *r, const char *word, PetscInt n, const char
 PetscInt schema_parse_vector(const YamlNode *node, PetscReal value[3]);
 
 /* --- kinds of values (schema_types.c) --- */
-typedef PetscErrorCode (*SchemaReadType)(SchemaReader *r, const SchemaEntry *entry, const YamlNode *node, void *target);
+typedef PetscErrorCode SchemaReadType(SchemaReader *r, const SchemaEntry *entry, const YamlNode *node, void *target);
 typedef struct {
   const char *what;       /* "a number" */
   const char *short_name; /* for the column of a table: "number" */
   const char *json;       /* its JSON Schema; NULL: made from the entry */
-  SchemaReadType read;    /* NULL: nested, see schema_read.c */
+  SchemaReadType *read;   /* NULL: nested, see schema_read.c */
 } SchemaTypeInfo;
 extern const SchemaTypeInfo schema_types[TYPE_COUNT];
 
-PetscErrorCode SchemaReadInterval(SchemaReader *r, const SchemaEntry *e, const YamlNode *node, void *target);
-PetscErrorCode SchemaReadAmplitude(SchemaReader *r, const SchemaEntry *e, const YamlNode *node, void *target);
-PetscErrorCode SchemaReadPolygon(SchemaReader *r, const SchemaEntry *e, const YamlNode *node, void *target);
-PetscErrorCode SchemaReadEvery(SchemaReader *r, const SchemaEntry *e, const YamlNode *node, void *target);
-PetscErrorCode SchemaReadFields(SchemaReader *r, const SchemaEntry *e, const YamlNode *node, void *target);
-PetscErrorCode SchemaReadNumbers(SchemaReader *r, const SchemaEntry *e, const YamlNode *node, void *target);
-PetscErrorCode SchemaReadOptions(SchemaReader *r, const SchemaEntry *e, const YamlNode *node, void *target);
-PetscErrorCode SchemaReadVector(SchemaReader *r, const SchemaEntry *e, const YamlNode *node, void *target);
-PetscErrorCode SchemaReadSpin(SchemaReader *r, const SchemaEntry *e, const YamlNode *node, void *target);
-PetscErrorCode SchemaReadAxis(SchemaReader *r, const SchemaEntry *e, const YamlNode *node, void *target);
-PetscErrorCode SchemaReadAxes(SchemaReader *r, const SchemaEntry *e, const YamlNode *node, void *target);
-PetscErrorCode SchemaReadSize(SchemaReader *r, const SchemaEntry *e, const YamlNode *node, void *target);
-PetscErrorCode SchemaReadCounts(SchemaReader *r, const SchemaEntry *e, const YamlNode *node, void *target);
-PetscErrorCode SchemaReadNumber(SchemaReader *r, const SchemaEntry *e, const YamlNode *node, void *target);
-PetscErrorCode SchemaReadInteger(SchemaReader *r, const SchemaEntry *e, const YamlNode *node, void *target);
-PetscErrorCode SchemaReadBoolean(SchemaReader *r, const SchemaEntry *e, const YamlNode *node, void *target);
-PetscErrorCode SchemaReadWord(SchemaReader *r, const SchemaEntry *e, const YamlNode *node, void *target);
-PetscErrorCode SchemaReadWordText(SchemaReader *r, const SchemaEntry *e, const YamlNode *node, void *target);
-PetscErrorCode SchemaReadText(SchemaReader *r, const SchemaEntry *e, const YamlNode *node, void *target);
-PetscErrorCode SchemaReadName(SchemaReader *r, const SchemaEntry *e, const YamlNode *node, void *target);
-PetscErrorCode SchemaReadFile(SchemaReader *r, const SchemaEntry *e, const YamlNode *node, void *target);
-PetscErrorCode SchemaReadLaw(SchemaReader *r, const SchemaEntry *e, const YamlNode *node, void *target);
-PetscErrorCode SchemaReadReference(SchemaReader *r, const SchemaEntry *e, const YamlNode *node, void *target);
-PetscErrorCode SchemaReadBoundary(SchemaReader *r, const SchemaEntry *e, const YamlNode *node, void *target);
+extern SchemaReadType SchemaReadInterval, SchemaReadAmplitude, SchemaReadPolygon, SchemaReadEvery, SchemaReadFields,
+  SchemaReadNumbers, SchemaReadOptions, SchemaReadVector, SchemaReadSpin, SchemaReadAxis, SchemaReadAxes,
+  SchemaReadSize, SchemaReadCounts, SchemaReadNumber, SchemaReadInteger, SchemaReadBoolean, SchemaReadWord,
+  SchemaReadMember, SchemaReadWordText, SchemaReadText, SchemaReadName, SchemaReadFile, SchemaReadLaw,
+  SchemaReadReference, SchemaReadBoundary;
 /* Is the name fit for a path and a column of a table? Complains at the node (its key if `key`). */
 PetscBool schema_check_name(SchemaReader *r, const YamlNode *node, const char *name, PetscBool key);
 
@@ -191,16 +181,10 @@ void schema_write_text(FILE *out, const char *text); /* quoted where YAML wants 
 typedef void (*SchemaWriteType)(FILE *out, const Case *c, const SchemaEntry *entry, const void *source);
 extern const SchemaWriteType schema_writers[TYPE_COUNT];
 
-/* --- checks of tables, by topic --- */
-PetscErrorCode SchemaCheckAnalysis(SchemaReader *r, const YamlNode *mapping, void *target);
-PetscErrorCode SchemaCheckBox(SchemaReader *r, const YamlNode *mapping, void *target);
-PetscErrorCode SchemaCheckGrid(SchemaReader *r, const YamlNode *mapping, void *target);
-PetscErrorCode SchemaCheckShapeBox(SchemaReader *r, const YamlNode *mapping, void *target);
-PetscErrorCode SchemaCheckShape(SchemaReader *r, const YamlNode *mapping, void *target);
-PetscErrorCode SchemaCheckHalfSpace(SchemaReader *r, const YamlNode *mapping, void *target);
-PetscErrorCode SchemaCheckBody(SchemaReader *r, const YamlNode *mapping, void *target);
-PetscErrorCode SchemaCheckSelector(SchemaReader *r, const YamlNode *mapping, void *target);
-PetscErrorCode SchemaCheckMotion(SchemaReader *r, const YamlNode *mapping, void *target);
+/* --- checks of tables (schema_checks.c) --- */
+typedef PetscErrorCode SchemaCheck(SchemaReader *r, const YamlNode *mapping, void *target);
+extern SchemaCheck SchemaCheckAnalysis, SchemaCheckBox, SchemaCheckGrid, SchemaCheckShapeBox, SchemaCheckShape,
+  SchemaCheckHalfSpace, SchemaCheckBody, SchemaCheckSelector, SchemaCheckMotion;
 /* Materials take the parameters of their law (schema_material.c). */
 PetscErrorCode SchemaOpenMaterial(SchemaReader *r, const YamlNode *mapping, void *target);
 PetscErrorCode SchemaWriteMaterial(FILE *out, int indent, const Case *c, const void *source);

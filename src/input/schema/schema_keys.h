@@ -25,14 +25,6 @@
 #define ONLY_3D .only_3d = PETSC_TRUE
 #define INPUT_ONLY .input_only = PETSC_TRUE
 
-/* The names of a registry as words: defines LIST_word. */
-#define WORDS_OF(list)                                                                                 \
-  static SchemaWord list##_word(const SchemaEntry *e, PetscInt i)                                      \
-  {                                                                                                    \
-    (void)e;                                                                                           \
-    return list[i] ? (SchemaWord){list[i]->name, (int)i, list[i]->help} : (SchemaWord){NULL, 0, NULL}; \
-  }
-
 /* Tables that others name. */
 extern const SchemaTable schema_shape, schema_selector, schema_grid, schema_body, schema_motion, schema_loads,
   schema_basis, schema_measure;

@@ -63,18 +63,12 @@ static const SchemaTable run_out = {
   .tag_offset = offsetof(MeasureSpec, maximum)};
 
 /* --- a measure --- */
-static SchemaWord word_of(const SchemaEntry *e, PetscInt i)
-{
-  const MeasureNumber *number = &measure_find(e->key)->words[i];
-  return (SchemaWord){number->word, (int)i, number->help};
-}
-
 static SchemaEntry entry_of(const Measure *measure)
 {
   static const SchemaEntry takes[] = {
     [MEASURE_AXIS] = {.type = TYPE_AXIS, AT(MeasureSpec, component)},
     [MEASURE_SPIN_AXIS] = {.type = TYPE_SPIN_AXIS, AT(MeasureSpec, component)},
-    [MEASURE_WORD] = {.type = TYPE_WORD_TEXT, .word = word_of, AT(MeasureSpec, word)},
+    [MEASURE_WORD] = {.type = TYPE_WORD_TEXT, AT(MeasureSpec, word)},
     [MEASURE_EXTENT] = {.type = TYPE_TABLE, .table = &extent},
     [MEASURE_FRONT] = {.type = TYPE_TABLE, .table = &run_out},
   };
@@ -82,6 +76,7 @@ static SchemaEntry entry_of(const Measure *measure)
   entry.key = measure->key;
   entry.unit = measure->number.unit;
   entry.help = measure->number.help;
+  entry.registry = (const void *const *)measure->words;
   entry.only_2d = measure->only_2d;
   entry.tagged = PETSC_TRUE;
   return entry;

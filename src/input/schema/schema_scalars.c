@@ -143,24 +143,24 @@ PetscErrorCode SchemaReadBoolean(SchemaReader *r, const SchemaEntry *e, const Ya
   PetscFunctionReturn(0);
 }
 
-/* Its word is NULL, and that has been said, if there is none. */
+/* Its word is NULL, and a mistake is told, if there is none. */
 static SchemaWord find_word(SchemaReader *r, const SchemaEntry *e, const YamlNode *node)
 {
-  const char *words[32] = {NULL};
-  SchemaWord word = {NULL, 0, NULL};
-  PetscInt n = 0;
-  for (const SchemaWord *w = e->later; w && w->word; ++w) {
-    if (node->kind != YAML_SCALAR || strcmp(node->text, w->word)) continue;
-    SchemaError(r, node, "%s", w->help);
-    return word;
+  const char *words[32] = {NULL}, *text = node->kind == YAML_SCALAR ? node->text : NULL;
+  char all[256] = "";
+  int n = 0;
+  for (; schema_word(e, n).word && n < 31; ++n) {
+    words[n] = schema_word(e, n).word;
+    if (text && !strcmp(text, words[n])) return schema_word(e, n);
   }
-  for (; (word = schema_word(e, n)).word && n < 31; ++n) {
-    if (node->kind == YAML_SCALAR && !strcmp(node->text, word.word)) return word;
-    words[n] = word.word;
+  if (text && e->later && !strcmp(text, e->later)) {
+    schema_append_words(e, " and ", all, sizeof all);
+    SchemaError(r, node, "%s %s are not part of this version; %s are", text, e->key, all);
+    return schema_word(e, n);
   }
   schema_mismatch(r, e, node);
-  if (node->kind == YAML_SCALAR && diag_nearest(node->text, words)) schema_hint_words(r, node->text, n, words);
-  return word;
+  if (text && diag_nearest(text, words)) schema_hint_words(r, text, n, words);
+  return schema_word(e, n);
 }
 
 PetscErrorCode SchemaReadWord(SchemaReader *r, const SchemaEntry *e, const YamlNode *node, void *target)
@@ -169,6 +169,15 @@ PetscErrorCode SchemaReadWord(SchemaReader *r, const SchemaEntry *e, const YamlN
 
   PetscFunctionBeginUser;
   if (word.word) *(int *)((char *)target + e->offset) = word.value;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode SchemaReadMember(SchemaReader *r, const SchemaEntry *e, const YamlNode *node, void *target)
+{
+  const SchemaWord word = find_word(r, e, node);
+
+  PetscFunctionBeginUser;
+  if (word.word) *(const void **)((char *)target + e->offset) = e->registry[word.value];
   PetscFunctionReturn(0);
 }
 

@@ -9,13 +9,6 @@ static const SchemaWord kinematics_words[] = {
   {"3d", KINEMATICS_3D, "three-dimensional"},
   {NULL, 0, NULL},
 };
-static const SchemaWord kinematics_later[] = {
-  {"axisymmetric", KINEMATICS_AXISYMMETRIC,
-   "axisymmetric kinematics are not part of this version; plane-strain and 3d are"},
-  {NULL, 0, NULL},
-};
-WORDS_OF(methods)
-WORDS_OF(formulations)
 static const SchemaWord analysis_words[] = {
   {"static", ANALYSIS_STATIC, "equilibrium at every step, no inertia"},
   {"dynamic", ANALYSIS_DYNAMIC, "Newmark in time, with inertia"},
@@ -163,10 +156,11 @@ static const SchemaTable parallel = {
 /* --- the whole file --- */
 static const SchemaEntry case_entries[] = {
   KEY("title", TEXT, NULL, "a line for people", .fallback = "", AT(Case, title)),
-  KEY("kinematics", WORD, NULL, "dimension and symmetry", .words = kinematics_words, .later = kinematics_later,
-      REQUIRED, AT(Case, kinematics)),
-  KEY("method", WORD_TEXT, NULL, "numerical method", .word = methods_word, REQUIRED, AT(Case, method)),
-  KEY("formulation", WORD_TEXT, NULL, "unknowns of the equations", .word = formulations_word,
+  KEY("kinematics", WORD, NULL, "dimension and symmetry", .words = kinematics_words, .later = "axisymmetric", REQUIRED,
+      AT(Case, kinematics)),
+  KEY("method", WORD_TEXT, NULL, "numerical method", .registry = (const void *const *)methods, REQUIRED,
+      AT(Case, method)),
+  KEY("formulation", WORD_TEXT, NULL, "unknowns of the equations", .registry = (const void *const *)formulations,
       .fallback = "displacement", AT(Case, formulation)),
   KEY("mixed", TABLE, NULL, "numbers of the mixed formulation", .table = &mixed, ALWAYS, AT(Case, mixed)),
   KEY("analysis", TABLE, NULL, "statics or dynamics, steps", .table = &analysis, REQUIRED, AT(Case, analysis)),

@@ -16,6 +16,7 @@ const SchemaTypeInfo schema_types[TYPE_COUNT] = {
   [TYPE_BOOLEAN] = {"true or false", "true or false", "{\"type\": \"boolean\"}", SchemaReadBoolean},
   [TYPE_WORD] = {"one of", "word", NULL, SchemaReadWord},
   [TYPE_WORD_TEXT] = {"one of", "word", NULL, SchemaReadWordText},
+  [TYPE_MEMBER] = {"one of", "word", NULL, SchemaReadMember},
   [TYPE_TEXT] = {"a text", "text", "{\"type\": [\"string\", \"number\"]}", SchemaReadText},
   [TYPE_NAME] = {"a name", "name", "{\"type\": [\"string\", \"number\"]}", SchemaReadName},
   [TYPE_FILE] = {"the name of a file", "file", "{\"type\": \"string\"}", SchemaReadFile},
@@ -84,17 +85,15 @@ static const char *types_axes(const SchemaEntry *e, PetscInt dim)
   return dim == 2 ? "z" : "x, y or z";
 }
 
-SchemaWord schema_word(const SchemaEntry *e, PetscInt i)
+void schema_append_words(const SchemaEntry *e, const char *last, char *buffer, size_t size)
 {
-  return e->word ? e->word(e, i) : e->words ? e->words[i] : (SchemaWord){NULL, 0, NULL};
-}
-
-static void append_words(const SchemaEntry *e, char *buffer, size_t size)
-{
-  SchemaWord w;
-  for (PetscInt k = 0; (w = schema_word(e, k)).word; ++k) {
+  for (int k = 0; schema_word(e, k).word; ++k) {
     const size_t used = strlen(buffer);
-    snprintf(buffer + used, size - used, "%s%s", k == 0 ? " " : schema_word(e, k + 1).word ? ", " : " or ", w.word);
+    snprintf(buffer + used, size - used, "%s%s",
+             k == 0                       ? ""
+             : schema_word(e, k + 1).word ? ", "
+                                          : last,
+             schema_word(e, k).word);
   }
 }
 
@@ -102,9 +101,10 @@ const char *schema_expected(const SchemaEntry *e, PetscInt dim, char *buffer, si
 {
   char range[80];
   schema_range(e, range, sizeof(range));
-  if (schema_word(e, 0).word) {
-    snprintf(buffer, size, "%s", schema_word(e, 1).word ? schema_types[e->type].what : "the word");
-    append_words(e, buffer, size);
+  if (schema_word(e, 0).word && !schema_word(e, 1).word) snprintf(buffer, size, "the word %s", schema_word(e, 0).word);
+  else if (schema_word(e, 0).word) {
+    snprintf(buffer, size, "%s ", schema_types[e->type].what);
+    schema_append_words(e, " or ", buffer, size);
   } else if (e->type == TYPE_AXIS || e->type == TYPE_SPIN_AXIS) snprintf(buffer, size, "%s", types_axes(e, dim));
   else if (e->type == TYPE_VECTOR)
     snprintf(buffer, size, "a vector %s", dim == 3 ? "[x, y, z]" : dim == 2 ? "[x, y]" : "[x, y] or [x, y, z]");

@@ -60,21 +60,21 @@ static PetscErrorCode BalanceValue(Model *m, const MeasureSpec *s, PetscInt inde
   PetscFunctionReturn(0);
 }
 
-static const MeasureNumber words[] = {
-  {"kinetic", "energy of motion", .sum = kinetic},
-  {"elastic", "stored in the material", .sum = elastic},
-  {"dissipated", "work of the stress that is not stored: plastic dissipation", .sum = dissipated},
-  {"external", "work done by loads, gravity and prescribed motion", .of = OF_MODEL, .value = External},
-  {"damped", "taken by Rayleigh damping", .of = OF_MODEL, .kept = offsetof(Model, damped_energy)},
-  {"transfer", "lost between points and grid, and at nodes that stop material", .of = OF_MODEL,
-   .kept = offsetof(Model, transfer_energy)},
-  {"outside", "gone with points that left the grid: with those removed, and in stopping those kept on its boundary",
-   .of = OF_MODEL, .kept = offsetof(Model, outside.energy)},
-  {"balance",
-   "kinetic + elastic + dissipated + damped + transfer + outside - external, less its value at the start, over the "
-   "largest of these (no unit): 0 if all is accounted for; numerical damping shows here",
-   .unit = "", .of = OF_MODEL, .value = BalanceValue},
-  {NULL},
+static const MeasureNumber *const words[] = {
+  WORD("kinetic", "energy of motion", .sum = kinetic),
+  WORD("elastic", "stored in the material", .sum = elastic),
+  WORD("dissipated", "work of the stress that is not stored: plastic dissipation", .sum = dissipated),
+  WORD("external", "work done by loads, gravity and prescribed motion", .of = OF_MODEL, .value = External),
+  WORD("damped", "taken by Rayleigh damping", .of = OF_MODEL, .kept = offsetof(Model, damped_energy)),
+  WORD("transfer", "lost between points and grid, and at nodes that stop material", .of = OF_MODEL,
+       .kept = offsetof(Model, transfer_energy)),
+  WORD("outside", "gone with points that left the grid: with those removed, and in stopping those kept on its boundary",
+       .of = OF_MODEL, .kept = offsetof(Model, outside.energy)),
+  WORD("balance",
+       "kinetic + elastic + dissipated + damped + transfer + outside - external, less its value at the start, over the "
+       "largest of these (no unit): 0 if all is accounted for; numerical damping shows here",
+       .unit = "", .of = OF_MODEL, .value = BalanceValue),
+  NULL,
 };
 
 const Measure measure_energy = {

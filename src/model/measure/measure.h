@@ -23,12 +23,15 @@ typedef struct {
   size_t kept; /* offset in Model of a number that it keeps, the first of `component` if the key takes an axis */
 } MeasureNumber;
 
+#define WORD(...) \
+  &(const MeasureNumber) { __VA_ARGS__ }
+
 typedef struct {
   const char *key;
   MeasureArgument takes;
   PetscBool only_2d;
-  MeasureNumber number;       /* of the key: its help; its unit for people, if words have several */
-  const MeasureNumber *words; /* with MEASURE_WORD: ended by word = NULL */
+  MeasureNumber number;              /* of the key: its help; its unit for people, if words have several */
+  const MeasureNumber *const *words; /* with MEASURE_WORD: ended by NULL */
   /* Collective, or NULL: after every accepted step of dt, and at the start with dt = 0. */
   PetscErrorCode (*remember)(Model *m, const MeasureSpec *s, PetscReal dt, PetscReal kept[MEASURE_KEPT]);
 } Measure;

@@ -59,11 +59,11 @@ static PetscErrorCode Spin(Model *m, const MeasureSpec *s, PetscInt index, Petsc
   PetscFunctionReturn(0);
 }
 
-const Measure measure_mass = {
-  .key = "mass",
-  .takes = MEASURE_WORD,
-  .number = {.unit = "kg", .help = "mass"},
-  .words = (const MeasureNumber[]){{"total", "of all points, or of the body given by `of`", .value = Mass}, {NULL}}};
+const Measure measure_mass = {.key = "mass",
+                              .takes = MEASURE_WORD,
+                              .number = {.unit = "kg", .help = "mass"},
+                              .words = (const MeasureNumber *const[]){
+                                WORD("total", "of all points, or of the body given by `of`", .value = Mass), NULL}};
 const Measure measure_momentum = {.key = "momentum",
                                   .number = {.unit = "kg m/s", .help = "linear momentum", .sum = momentum}};
 const Measure measure_angular_momentum = {

@@ -1,13 +1,13 @@
 /* What has left the grid. */
 #include "model/measure/measure.h"
 
-static const MeasureNumber words[] = {
-  {"removed", "points that `outside: remove` has taken out since the start, a number", "", OF_MODEL,
-   .kept = offsetof(Model, outside.removed)},
-  {"mass", "their mass, kg", "kg", OF_MODEL, .kept = offsetof(Model, outside.mass)},
-  {"held", "points that `outside: keep-on-boundary` put back in the last step, a number", "", OF_MODEL,
-   .kept = offsetof(Model, outside.held_now)},
-  {NULL},
+static const MeasureNumber *const words[] = {
+  WORD("removed", "points that `outside: remove` has taken out since the start, a number", "", OF_MODEL,
+       .kept = offsetof(Model, outside.removed)),
+  WORD("mass", "their mass, kg", "kg", OF_MODEL, .kept = offsetof(Model, outside.mass)),
+  WORD("held", "points that `outside: keep-on-boundary` put back in the last step, a number", "", OF_MODEL,
+       .kept = offsetof(Model, outside.held_now)),
+  NULL,
 };
 
 const Measure measure_outside = {.key = "outside",

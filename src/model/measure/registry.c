@@ -22,9 +22,9 @@ const Measure *measure_find(const char *key)
 const MeasureNumber *measure_number(const MeasureSpec *s)
 {
   const Measure *measure = measure_find(s->kind);
-  const MeasureNumber *number = measure->words;
-  while (number && strcmp(number->word, s->word)) ++number;
-  return number ? number : &measure->number;
+  for (const MeasureNumber *const *w = measure->words; w && *w; ++w)
+    if (!strcmp((*w)->word, s->word)) return *w;
+  return &measure->number;
 }
 
 const char *measure_unit(const MeasureSpec *s)

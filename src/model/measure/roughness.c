@@ -106,12 +106,13 @@ static PetscErrorCode Roughness(Model *m, const MeasureSpec *s, PetscInt index, 
   PetscFunctionReturn(0);
 }
 
-static const MeasureNumber words[] = {
-  {"pressure",
-   "of the whole model's pressure: its root mean square distance from itself averaged over neighbours, over its own "
-   "root mean square: 1 for a checkerboard, and for a smooth pressure less with every refinement",
-   .of = OF_MODEL, .value = Roughness},
-  {NULL},
+static const MeasureNumber *const words[] = {
+  WORD(
+    "pressure",
+    "of the whole model's pressure: its root mean square distance from itself averaged over neighbours, over its own "
+    "root mean square: 1 for a checkerboard, and for a smooth pressure less with every refinement",
+    .of = OF_MODEL, .value = Roughness),
+  NULL,
 };
 
 const Measure measure_roughness = {

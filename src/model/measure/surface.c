@@ -126,14 +126,15 @@ static PetscErrorCode Slope(Model *m, const MeasureSpec *s, PetscInt index, Pets
   PetscFunctionReturn(0);
 }
 
-static const MeasureNumber words[] = {
-  {"front", "farthest x at which the surface is still half a cell high, m", "m", .value = MeasureSurfaceFront},
-  {"height", "height of the material above x = `at`, m", "m", .at = PETSC_TRUE, .value = Height},
-  {"slope",
-   "angle of repose, positive if it falls towards +x, by least squares between a fifth and four fifths of the way from "
-   "the highest place to the front, deg",
-   "deg", .value = Slope},
-  {NULL},
+static const MeasureNumber *const words[] = {
+  WORD("front", "farthest x at which the surface is still half a cell high, m", "m", .value = MeasureSurfaceFront),
+  WORD("height", "height of the material above x = `at`, m", "m", .at = PETSC_TRUE, .value = Height),
+  WORD("slope",
+       "angle of repose, positive if it falls towards +x, by least squares between a fifth and four fifths of the way "
+       "from "
+       "the highest place to the front, deg",
+       "deg", .value = Slope),
+  NULL,
 };
 
 const Measure measure_surface = {
