@@ -108,7 +108,7 @@ static PetscErrorCode DisplacementCommit(const WeakFormInput *in, Points *points
 
 const Formulation formulation_displacement = {
   .name = "displacement",
-  .help = "displacements as the only unknowns (thesis ch. 4)",
+  .help = "displacements are the only unknowns",
   .singles = PETSC_TRUE,
   .assemble = DisplacementAssemble,
   .commit = DisplacementCommit,

@@ -158,7 +158,7 @@ static void mixed_schur(const WeakFormInput *in, PetscReal *nodes)
 
 const Formulation formulation_mixed = {
   .name = "mixed",
-  .help = "displacements and pressure, stabilised (thesis ch. 5)",
+  .help = "displacements and pressure: for nearly or exactly incompressible materials",
   .pressure = PETSC_TRUE,
   .assemble = MixedAssemble,
   .commit = MixedCommit,

@@ -24,11 +24,16 @@ static PetscBool is_text(SchemaType type)
   return type == TYPE_TEXT || type == TYPE_NAME || type == TYPE_FILE || type == TYPE_REFERENCE || type == TYPE_LAW;
 }
 
+static PetscBool is_tag(const SchemaTable *table, const SchemaEntry *e, const void *tag)
+{
+  return table->tag_is_key ? !strcmp(*(char *const *)tag, e->key) : *(const int *)tag == e->tag;
+}
+
 static PetscBool written(const Case *c, const SchemaTable *table, const SchemaEntry *e, const void *source)
 {
   const PetscInt dim = kinematics_dim(c->kinematics);
   if (e->input_only || (e->only_2d && dim == 3) || (e->only_3d && dim == 2)) return PETSC_FALSE;
-  if (e->tagged && *(const int *)at(source, table->tag_offset) != e->tag) return PETSC_FALSE;
+  if (e->tagged && !is_tag(table, e, at(source, table->tag_offset))) return PETSC_FALSE;
   if (e->present && !*(const PetscBool *)at(source, e->present - 1)) return PETSC_FALSE;
   if (table->hide && table->hide(e, source)) return PETSC_FALSE;
   if (is_text(e->type)) return *(char *const *)at(source, e->offset) != NULL;
@@ -97,12 +102,14 @@ static PetscErrorCode WriteEntry(FILE *out, int indent, const Case *c, const Sch
 static PetscErrorCode WriteTable(FILE *out, int indent, const Case *c, const SchemaTable *table, const void *source,
                                  PetscBool *first)
 {
+  SchemaEntry e;
+
   PetscFunctionBeginUser;
-  for (const SchemaEntry *e = table->entries; e->key; ++e) {
-    if (!written(c, table, e, source)) continue;
+  for (PetscInt i = 0; (e = schema_entry(table, i)).key; ++i) {
+    if (!written(c, table, &e, source)) continue;
     if (!*first) fprintf(out, "%*s", indent, "");
     *first = PETSC_FALSE;
-    PetscCall(WriteEntry(out, indent, c, e, source));
+    PetscCall(WriteEntry(out, indent, c, &e, source));
   }
   if (table->write_open) PetscCall((*table->write_open)(out, indent, c, source));
   PetscFunctionReturn(0);

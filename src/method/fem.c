@@ -45,7 +45,7 @@ static PetscErrorCode FemConvect(Discretisation *s)
 
 const Method method_fem = {
   .name = "fem",
-  .help = "updated Lagrangian finite elements: the mesh moves with the body",
+  .help = "updated Lagrangian finite elements: the grid moves with the material",
   .takes_pressure = PETSC_TRUE,
   .initialise = FemInitialise,
   .convect = FemConvect,

@@ -183,7 +183,7 @@ static PetscErrorCode MpmConvect(Discretisation *s)
 
 const Method method_mpm = {
   .name = "mpm",
-  .help = "material point method: points move through a grid that is restored every step",
+  .help = "material point method: points carry the material through a fixed grid",
   .restores_grid = PETSC_TRUE,
   .takes_pressure = PETSC_TRUE,
   .initialise = MpmInitialise,

@@ -19,11 +19,11 @@ typedef struct {
 } Energies;
 
 /* What a measure remembers from step to step. */
+#define MEASURE_KEPT 2
 typedef struct {
-  PetscReal front;    /* m, after the last step */
-  PetscReal moved;    /* last time at which it was fast, s */
-  PetscReal ended;    /* when the material left its tracer behind, s; 0: it did not */
-  PetscReal where[3]; /* the tracer was then, m */
+  PetscReal kept[MEASURE_KEPT]; /* what it keeps for itself */
+  PetscReal ended;              /* when the material left its tracer behind, s; 0: it did not */
+  PetscReal where[3];           /* the tracer was then, m */
 } MeasureMemory;
 
 /* A load whose carriers, or some of them, the material has left behind. */

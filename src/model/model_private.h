@@ -47,9 +47,6 @@ PetscErrorCode MeasuresStart(Model *model);
 /* Collective. After every accepted step of dt, whether or not a row of the history is written. */
 PetscErrorCode MeasuresRemember(Model *model, PetscReal dt);
 
-/* Collective. How much of the pressure one averaging over neighbours takes away, docs/theory.md. */
-PetscErrorCode RoughnessValue(const Model *model, PetscReal *value);
-
 /* followers.c. Collective. Once the model stands: nothing may follow a place that no material carries. */
 PetscErrorCode FollowersStart(Model *model, Diag *diag);
 /* Collective. After every accepted step: what the material has left behind ends. */

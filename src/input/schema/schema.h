@@ -49,8 +49,9 @@ typedef struct {
 } SchemaWord;
 
 typedef struct SchemaTable SchemaTable;
+typedef struct SchemaEntry SchemaEntry;
 
-typedef struct SchemaEntry {
+struct SchemaEntry {
   const char *key;
   SchemaType type;
   const char *help;
@@ -74,13 +75,13 @@ typedef struct SchemaEntry {
   PetscBool tagged;       /* giving this key sets the table's tag to `tag`... */
   PetscBool items_tagged; /* ...or that of each item of the list */
   int tag;
-} SchemaEntry;
+};
 
 typedef enum { GROUP_NONE, GROUP_ONE, GROUP_AT_MOST_ONE, GROUP_AT_LEAST_ONE } SchemaGroupKind;
 
 typedef struct {
   SchemaGroupKind kind;
-  const char *keys[16]; /* ended by NULL */
+  const char *keys[8]; /* ended by NULL; none: those that set the table's tag */
 } SchemaGroup;
 
 typedef struct SchemaReader {
@@ -93,10 +94,12 @@ typedef struct SchemaReader {
 struct SchemaTable {
   const char *name; /* unique: a heading of the reference, a definition of the JSON Schema */
   const char *help;
-  const SchemaEntry *entries; /* ended by key = NULL */
-  const SchemaGroup *groups;  /* ended by GROUP_NONE; NULL if there are none */
-  size_t size;                /* of the struct, for lists */
+  const SchemaEntry *entries;       /* ended by key = NULL */
+  SchemaEntry (*entry)(PetscInt i); /* or made from a registry, ended likewise */
+  const SchemaGroup *groups;        /* ended by GROUP_NONE; NULL if there are none */
+  size_t size;                      /* of the struct, for lists */
   size_t tag_offset;
+  PetscBool tag_is_key; /* is the tag no number but the key, a char *? */
   /* Keys that the entries do not list; NULL: they are mistakes. */
   PetscErrorCode (*open)(SchemaReader *r, const YamlNode *mapping, void *target);
   /* After reading without a mistake: resolve defaults, look at keys together. */
@@ -116,8 +119,12 @@ static inline SchemaWord schema_word(const SchemaEntry *e, int i)
 
 /* The whole language. */
 extern const SchemaTable schema_case;
-extern const SchemaTable schema_measure; /* for `talus list measures` */
-extern const SchemaWord schema_methods[];
+
+SchemaEntry schema_entry(const SchemaTable *table, PetscInt i);
+/* The groups of a table of which one tagged key must be given. */
+extern const SchemaGroup schema_one_tag[];
+/* Key k of a group, NULL behind the last. */
+const char *schema_group_key(const SchemaTable *table, const SchemaGroup *group, PetscInt k);
 
 /* --- reading (schema_read.c) --- */
 PetscErrorCode SchemaReadTable(SchemaReader *r, const SchemaTable *table, const YamlNode *mapping, void *target);
@@ -151,40 +158,20 @@ void schema_hint_words(SchemaReader *r, const char *word, PetscInt n, const char
 PetscInt schema_parse_vector(const YamlNode *node, PetscReal value[3]);
 
 /* --- kinds of values (schema_types.c) --- */
-typedef PetscErrorCode (*SchemaReadType)(SchemaReader *r, const SchemaEntry *entry, const YamlNode *node, void *target);
+typedef PetscErrorCode SchemaReadType(SchemaReader *r, const SchemaEntry *entry, const YamlNode *node, void *target);
 typedef struct {
   const char *what;       /* "a number" */
   const char *short_name; /* for the column of a table: "number" */
   const char *json;       /* its JSON Schema; NULL: made from the entry */
-  SchemaReadType read;    /* NULL: nested, see schema_read.c */
+  SchemaReadType *read;   /* NULL: nested, see schema_read.c */
 } SchemaTypeInfo;
 extern const SchemaTypeInfo schema_types[TYPE_COUNT];
 
-PetscErrorCode SchemaReadInterval(SchemaReader *r, const SchemaEntry *e, const YamlNode *node, void *target);
-PetscErrorCode SchemaReadAmplitude(SchemaReader *r, const SchemaEntry *e, const YamlNode *node, void *target);
-PetscErrorCode SchemaReadPolygon(SchemaReader *r, const SchemaEntry *e, const YamlNode *node, void *target);
-PetscErrorCode SchemaReadEvery(SchemaReader *r, const SchemaEntry *e, const YamlNode *node, void *target);
-PetscErrorCode SchemaReadFields(SchemaReader *r, const SchemaEntry *e, const YamlNode *node, void *target);
-PetscErrorCode SchemaReadNumbers(SchemaReader *r, const SchemaEntry *e, const YamlNode *node, void *target);
-PetscErrorCode SchemaReadOptions(SchemaReader *r, const SchemaEntry *e, const YamlNode *node, void *target);
-PetscErrorCode SchemaReadVector(SchemaReader *r, const SchemaEntry *e, const YamlNode *node, void *target);
-PetscErrorCode SchemaReadSpin(SchemaReader *r, const SchemaEntry *e, const YamlNode *node, void *target);
-PetscErrorCode SchemaReadAxis(SchemaReader *r, const SchemaEntry *e, const YamlNode *node, void *target);
-PetscErrorCode SchemaReadAxes(SchemaReader *r, const SchemaEntry *e, const YamlNode *node, void *target);
-PetscErrorCode SchemaReadSize(SchemaReader *r, const SchemaEntry *e, const YamlNode *node, void *target);
-PetscErrorCode SchemaReadCounts(SchemaReader *r, const SchemaEntry *e, const YamlNode *node, void *target);
-PetscErrorCode SchemaReadNumber(SchemaReader *r, const SchemaEntry *e, const YamlNode *node, void *target);
-PetscErrorCode SchemaReadInteger(SchemaReader *r, const SchemaEntry *e, const YamlNode *node, void *target);
-PetscErrorCode SchemaReadBoolean(SchemaReader *r, const SchemaEntry *e, const YamlNode *node, void *target);
-PetscErrorCode SchemaReadWord(SchemaReader *r, const SchemaEntry *e, const YamlNode *node, void *target);
-PetscErrorCode SchemaReadMember(SchemaReader *r, const SchemaEntry *e, const YamlNode *node, void *target);
-PetscErrorCode SchemaReadWordText(SchemaReader *r, const SchemaEntry *e, const YamlNode *node, void *target);
-PetscErrorCode SchemaReadText(SchemaReader *r, const SchemaEntry *e, const YamlNode *node, void *target);
-PetscErrorCode SchemaReadName(SchemaReader *r, const SchemaEntry *e, const YamlNode *node, void *target);
-PetscErrorCode SchemaReadFile(SchemaReader *r, const SchemaEntry *e, const YamlNode *node, void *target);
-PetscErrorCode SchemaReadLaw(SchemaReader *r, const SchemaEntry *e, const YamlNode *node, void *target);
-PetscErrorCode SchemaReadReference(SchemaReader *r, const SchemaEntry *e, const YamlNode *node, void *target);
-PetscErrorCode SchemaReadBoundary(SchemaReader *r, const SchemaEntry *e, const YamlNode *node, void *target);
+extern SchemaReadType SchemaReadInterval, SchemaReadAmplitude, SchemaReadPolygon, SchemaReadEvery, SchemaReadFields,
+  SchemaReadNumbers, SchemaReadOptions, SchemaReadVector, SchemaReadSpin, SchemaReadAxis, SchemaReadAxes,
+  SchemaReadSize, SchemaReadCounts, SchemaReadNumber, SchemaReadInteger, SchemaReadBoolean, SchemaReadWord,
+  SchemaReadMember, SchemaReadWordText, SchemaReadText, SchemaReadName, SchemaReadFile, SchemaReadLaw,
+  SchemaReadReference, SchemaReadBoundary;
 /* Is the name fit for a path and a column of a table? Complains at the node (its key if `key`). */
 PetscBool schema_check_name(SchemaReader *r, const YamlNode *node, const char *name, PetscBool key);
 
@@ -194,22 +181,14 @@ void schema_write_text(FILE *out, const char *text); /* quoted where YAML wants 
 typedef void (*SchemaWriteType)(FILE *out, const Case *c, const SchemaEntry *entry, const void *source);
 extern const SchemaWriteType schema_writers[TYPE_COUNT];
 
-/* --- checks of tables, by topic --- */
-PetscErrorCode SchemaCheckAnalysis(SchemaReader *r, const YamlNode *mapping, void *target);
-PetscErrorCode SchemaCheckBox(SchemaReader *r, const YamlNode *mapping, void *target);
-PetscErrorCode SchemaCheckGrid(SchemaReader *r, const YamlNode *mapping, void *target);
-PetscErrorCode SchemaCheckShapeBox(SchemaReader *r, const YamlNode *mapping, void *target);
-PetscErrorCode SchemaCheckShape(SchemaReader *r, const YamlNode *mapping, void *target);
-PetscErrorCode SchemaCheckHalfSpace(SchemaReader *r, const YamlNode *mapping, void *target);
-PetscErrorCode SchemaCheckBody(SchemaReader *r, const YamlNode *mapping, void *target);
-PetscErrorCode SchemaCheckSelector(SchemaReader *r, const YamlNode *mapping, void *target);
-PetscErrorCode SchemaCheckMotion(SchemaReader *r, const YamlNode *mapping, void *target);
-PetscErrorCode SchemaCheckMeasure(SchemaReader *r, const YamlNode *mapping, void *target);
+/* --- checks of tables (schema_checks.c) --- */
+typedef PetscErrorCode SchemaCheck(SchemaReader *r, const YamlNode *mapping, void *target);
+extern SchemaCheck SchemaCheckAnalysis, SchemaCheckBox, SchemaCheckGrid, SchemaCheckShapeBox, SchemaCheckShape,
+  SchemaCheckHalfSpace, SchemaCheckBody, SchemaCheckSelector, SchemaCheckMotion;
 /* Materials take the parameters of their law (schema_material.c). */
 PetscErrorCode SchemaOpenMaterial(SchemaReader *r, const YamlNode *mapping, void *target);
 PetscErrorCode SchemaWriteMaterial(FILE *out, int indent, const Case *c, const void *source);
-
-/* What a constant may be, for materials and the reference: young, poisson, bulk, shear, lame; ended by key = NULL. */
-extern const SchemaEntry schema_elastic[];
-/* A parameter of a law as an entry, for messages and the reference. `law_parameter`: a const LawParameter *. */
+/* Elastic constant i as an entry, for messages and the reference; ended by key = NULL. */
+SchemaEntry schema_elastic(PetscInt i);
+/* A parameter of a law likewise. `law_parameter`: a const LawParameter *. */
 SchemaEntry schema_law_entry(const void *law_parameter);
