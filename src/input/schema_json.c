@@ -33,16 +33,6 @@ static void enumerate(FILE *out, const SchemaEntry *e)
   fputc(']', out);
 }
 
-static void json_laws(FILE *out)
-{
-  fputs("\"enum\": [", out);
-  for (const Law *const *law = laws; *law; ++law) {
-    fputs(law == laws ? "" : ", ", out);
-    json_string(out, (*law)->name);
-  }
-  fputc(']', out);
-}
-
 static void json_fields(FILE *out)
 {
   fputs("\"type\": \"array\", \"items\": {\"enum\": [", out);
@@ -81,7 +71,6 @@ static void json_value(FILE *out, const SchemaEntry *e)
   case TYPE_WORD:
   case TYPE_MEMBER:
   case TYPE_WORD_TEXT: enumerate(out, e); break;
-  case TYPE_LAW: json_laws(out); break;
   case TYPE_FIELDS: json_fields(out); break;
   case TYPE_TABLE: json_reference(out, e->table); break;
   case TYPE_LIST:

@@ -221,13 +221,12 @@ static void write_options(FILE *out, const Case *c, const SchemaEntry *e, const 
 }
 
 const SchemaWriteType schema_writers[TYPE_COUNT] = {
-  [TYPE_NUMBER] = write_number,       [TYPE_INTEGER] = write_integer,   [TYPE_BOOLEAN] = write_boolean,
-  [TYPE_WORD] = write_word,           [TYPE_WORD_TEXT] = write_string,  [TYPE_TEXT] = write_string,
-  [TYPE_NAME] = write_string,         [TYPE_FILE] = write_string,       [TYPE_LAW] = write_string,
-  [TYPE_REFERENCE] = write_string,    [TYPE_BOUNDARY] = write_boundary, [TYPE_VECTOR] = write_vector,
-  [TYPE_SPIN] = write_spin,           [TYPE_AXIS] = write_axis,         [TYPE_SPIN_AXIS] = write_axis,
-  [TYPE_AXES] = write_axes,           [TYPE_INTERVAL] = write_interval, [TYPE_COUNTS] = write_counts,
-  [TYPE_AMPLITUDE] = write_amplitude, [TYPE_POLYGON] = write_polygon,   [TYPE_EVERY] = write_every,
-  [TYPE_MEMBER] = write_member,       [TYPE_FIELDS] = write_fields,     [TYPE_NUMBERS] = write_numbers,
-  [TYPE_OPTIONS] = write_options,
+  [TYPE_NUMBER] = write_number,     [TYPE_INTEGER] = write_integer,  [TYPE_BOOLEAN] = write_boolean,
+  [TYPE_WORD] = write_word,         [TYPE_WORD_TEXT] = write_string, [TYPE_TEXT] = write_string,
+  [TYPE_NAME] = write_string,       [TYPE_FILE] = write_string,      [TYPE_REFERENCE] = write_string,
+  [TYPE_BOUNDARY] = write_boundary, [TYPE_VECTOR] = write_vector,    [TYPE_SPIN] = write_spin,
+  [TYPE_AXIS] = write_axis,         [TYPE_SPIN_AXIS] = write_axis,   [TYPE_AXES] = write_axes,
+  [TYPE_INTERVAL] = write_interval, [TYPE_COUNTS] = write_counts,    [TYPE_AMPLITUDE] = write_amplitude,
+  [TYPE_POLYGON] = write_polygon,   [TYPE_EVERY] = write_every,      [TYPE_MEMBER] = write_member,
+  [TYPE_FIELDS] = write_fields,     [TYPE_NUMBERS] = write_numbers,  [TYPE_OPTIONS] = write_options,
 };

@@ -191,7 +191,8 @@ static const Bad bads[] = {
   /* materials */
   {"unknown law",
    WITH_MATERIAL("law: neo-hokean, density: 1, young: 1, poisson: 0"),
-   {"there is no law 'neo-hokean'", "did you mean 'neo-hookean'?"}},
+   {"materials.rubber.law must be one of neo-hookean, neo-hookean-split", "not 'neo-hokean'",
+    "did you mean 'neo-hookean'?"}},
   {"incompressible",
    WITH_MATERIAL("law: neo-hookean, density: 1, young: 1, poisson: 0.5"),
    {"Poisson's ratio 0.5 cannot be solved for displacements alone", "`formulation: mixed`"}},

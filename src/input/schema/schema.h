@@ -19,7 +19,6 @@ typedef enum {
   TYPE_TEXT,      /* char * */
   TYPE_NAME,      /* char *, fit for a path */
   TYPE_FILE,      /* char *, resolved against the folder of the case */
-  TYPE_LAW,       /* char *, the name of a law */
   TYPE_REFERENCE, /* char *, a name from the list or mapping `target` at the top of the file */
   TYPE_BOUNDARY,  /* PetscInt, index or name of an entry of `boundary` */
   TYPE_VECTOR,    /* PetscReal[3], as many as dimensions */
@@ -170,8 +169,8 @@ extern const SchemaTypeInfo schema_types[TYPE_COUNT];
 extern SchemaReadType SchemaReadInterval, SchemaReadAmplitude, SchemaReadPolygon, SchemaReadEvery, SchemaReadFields,
   SchemaReadNumbers, SchemaReadOptions, SchemaReadVector, SchemaReadSpin, SchemaReadAxis, SchemaReadAxes,
   SchemaReadSize, SchemaReadCounts, SchemaReadNumber, SchemaReadInteger, SchemaReadBoolean, SchemaReadWord,
-  SchemaReadMember, SchemaReadWordText, SchemaReadText, SchemaReadName, SchemaReadFile, SchemaReadLaw,
-  SchemaReadReference, SchemaReadBoundary;
+  SchemaReadMember, SchemaReadWordText, SchemaReadText, SchemaReadName, SchemaReadFile, SchemaReadReference,
+  SchemaReadBoundary;
 /* Is the name fit for a path and a column of a table? Complains at the node (its key if `key`). */
 PetscBool schema_check_name(SchemaReader *r, const YamlNode *node, const char *name, PetscBool key);
 

@@ -2,6 +2,7 @@
  * order of reading, writing and of the reference. */
 #include "formulation/formulation.h"
 #include "input/schema/schema_keys.h"
+#include "material/law.h"
 #include "method/method.h"
 
 static const SchemaWord analysis_words[] = {
@@ -63,7 +64,8 @@ static const SchemaTable analysis = {.name = "analysis",
 
 /* --- materials --- */
 static const SchemaEntry material_entries[] = {
-  KEY("law", LAW, NULL, "the constitutive law, see `talus list laws`", REQUIRED, AT(MaterialSpec, law)),
+  KEY("law", WORD_TEXT, NULL, "the constitutive law, see `talus list laws`", .registry = (const void *const *)laws,
+      REQUIRED, AT(MaterialSpec, law)),
   KEY("density", NUMBER, "kg/m3", "mass per volume of the undeformed body", REQUIRED, ABOVE(0),
       AT(MaterialSpec, density)),
   {.key = NULL},

@@ -68,7 +68,7 @@ static PetscErrorCode RememberFront(Model *m, const MeasureSpec *s, PetscReal dt
   PetscReal front;
 
   PetscFunctionBeginUser;
-  if (s->front == FRONT_SURFACE) PetscCall(MeasureSurfaceFront(m, s, 0, &front));
+  if (s->front == FRONT_SURFACE) PetscCall(MeasureSurface(m, s, 0, &front));
   else PetscCall(MeasureExtent(m, s, 0, &front));
   if (!s->maximum) front = -front;
   if (front - kept[FRONT] > s->speed * dt) kept[MOVED] = m->time;

@@ -20,6 +20,7 @@ typedef struct {
   PetscErrorCode (*value)(Model *m, const MeasureSpec *s, PetscInt index, PetscReal *value);
   /* This rank's share of a sum over the points of a body (< 0: of all). A body that is gone has none: nan. */
   PetscReal (*sum)(const Model *m, const MeasureSpec *s, PetscInt body);
+  int which;   /* tells a value function that several numbers share which of them is asked for */
   size_t kept; /* offset in Model of a number that it keeps, the first of `component` if the key takes an axis */
 } MeasureNumber;
 
@@ -48,6 +49,6 @@ static inline PetscBool measure_takes_point(const Model *m, PetscInt body, Petsc
   return body < 0 || m->points->body[p] == body;
 }
 
-/* Collective: the farthest coordinate of a body, and the front of its free surface. */
+/* Collective: the farthest coordinate of a body, and its free surface: the front, unless the spec asks for something else of it. */
 PetscErrorCode MeasureExtent(Model *model, const MeasureSpec *spec, PetscInt index, PetscReal *value);
-PetscErrorCode MeasureSurfaceFront(Model *model, const MeasureSpec *spec, PetscInt index, PetscReal *value);
+PetscErrorCode MeasureSurface(Model *model, const MeasureSpec *spec, PetscInt index, PetscReal *value);

@@ -86,54 +86,33 @@ static PetscBool is_flat(const Profile *profile)
   return PETSC_TRUE;
 }
 
-typedef enum { FRONT, HEIGHT, SLOPE } Feature;
+enum { FRONT, HEIGHT, SLOPE };
 
 /* nan where there is no body. */
-static PetscErrorCode Surface(const Model *m, const MeasureSpec *s, Feature feature, PetscReal *value)
+PetscErrorCode MeasureSurface(Model *m, const MeasureSpec *s, PetscInt index, PetscReal *value)
 {
+  const int which = measure_number(s)->which;
   Profile profile;
 
+  (void)index;
   PetscFunctionBeginUser;
   PetscCall(ProfileCreate(m, measure_body(m, s), &profile));
   if (is_flat(&profile)) *value = NAN;
-  else if (feature == HEIGHT) *value = height_at(&profile, s->at);
-  else *value = feature == SLOPE ? slope_of(&profile) : front_of(&profile);
+  else if (which == HEIGHT) *value = height_at(&profile, s->at);
+  else *value = which == SLOPE ? slope_of(&profile) : front_of(&profile);
   PetscCall(PetscFree(profile.height));
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode MeasureSurfaceFront(Model *m, const MeasureSpec *s, PetscInt index, PetscReal *value)
-{
-  (void)index;
-  PetscFunctionBeginUser;
-  PetscCall(Surface(m, s, FRONT, value));
-  PetscFunctionReturn(0);
-}
-
-static PetscErrorCode Height(Model *m, const MeasureSpec *s, PetscInt index, PetscReal *value)
-{
-  (void)index;
-  PetscFunctionBeginUser;
-  PetscCall(Surface(m, s, HEIGHT, value));
-  PetscFunctionReturn(0);
-}
-
-static PetscErrorCode Slope(Model *m, const MeasureSpec *s, PetscInt index, PetscReal *value)
-{
-  (void)index;
-  PetscFunctionBeginUser;
-  PetscCall(Surface(m, s, SLOPE, value));
-  PetscFunctionReturn(0);
-}
-
 static const MeasureNumber *const words[] = {
-  WORD("front", "farthest x at which the surface is still half a cell high, m", "m", .value = MeasureSurfaceFront),
-  WORD("height", "height of the material above x = `at`, m", "m", .at = PETSC_TRUE, .value = Height),
+  WORD("front", "farthest x at which the surface is still half a cell high, m", "m", .value = MeasureSurface),
+  WORD("height", "height of the material above x = `at`, m", "m", .at = PETSC_TRUE, .value = MeasureSurface,
+       .which = HEIGHT),
   WORD("slope",
        "angle of repose, positive if it falls towards +x, by least squares between a fifth and four fifths of the way "
        "from "
        "the highest place to the front, deg",
-       "deg", .value = Slope),
+       "deg", .value = MeasureSurface, .which = SLOPE),
   NULL,
 };
 

@@ -2,8 +2,9 @@
 #include "model/measure/measure.h"
 
 /* One rank holds the tracer. */
-static PetscErrorCode Tracer(const Model *m, const MeasureSpec *s, PetscInt index, PointReal field, PetscReal *value)
+static PetscErrorCode Tracer(Model *m, const MeasureSpec *s, PetscInt index, PetscReal *value)
 {
+  const PointReal field = (PointReal)measure_number(s)->which;
   PetscReal local = 0, x[3];
 
   PetscFunctionBeginUser;
@@ -17,33 +18,16 @@ static PetscErrorCode Tracer(const Model *m, const MeasureSpec *s, PetscInt inde
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode Displacement(Model *m, const MeasureSpec *s, PetscInt index, PetscReal *value)
-{
-  PetscFunctionBeginUser;
-  PetscCall(Tracer(m, s, index, POINT_U, value));
-  PetscFunctionReturn(0);
-}
-
-static PetscErrorCode Position(Model *m, const MeasureSpec *s, PetscInt index, PetscReal *value)
-{
-  PetscFunctionBeginUser;
-  PetscCall(Tracer(m, s, index, POINT_X, value));
-  PetscFunctionReturn(0);
-}
-
-static PetscErrorCode Velocity(Model *m, const MeasureSpec *s, PetscInt index, PetscReal *value)
-{
-  PetscFunctionBeginUser;
-  PetscCall(Tracer(m, s, index, POINT_V, value));
-  PetscFunctionReturn(0);
-}
-
-const Measure measure_displacement = {
-  .key = "displacement",
-  .number = {.unit = "m", .help = "component of a tracer's displacement", .of = OF_TRACER, .value = Displacement}};
-const Measure measure_position = {
-  .key = "position",
-  .number = {.unit = "m", .help = "component of a tracer's position", .of = OF_TRACER, .value = Position}};
-const Measure measure_velocity = {
-  .key = "velocity",
-  .number = {.unit = "m/s", .help = "component of a tracer's velocity", .of = OF_TRACER, .value = Velocity}};
+#define TRACER(name, in, field)                \
+  {                                            \
+    .key = name, .number = {                   \
+      .unit = in,                              \
+      .help = "component of a tracer's " name, \
+      .of = OF_TRACER,                         \
+      .value = Tracer,                         \
+      .which = field                           \
+    }                                          \
+  }
+const Measure measure_displacement = TRACER("displacement", "m", POINT_U);
+const Measure measure_position = TRACER("position", "m", POINT_X);
+const Measure measure_velocity = TRACER("velocity", "m/s", POINT_V);
