@@ -120,7 +120,8 @@ static void test_order(void **state)
   convergence("fem", CELL_QUADRILATERAL);
 }
 
-/* Too little lets the pressure oscillate, more than needed costs accuracy in proportion (docs/experiments/pressure.md). */
+/* Too little lets the pressure oscillate, more than needed costs accuracy in proportion
+ * (docs/experiments/pressure.md). */
 static void test_stabilisation(void **state)
 {
   static const PetscReal alphas[] = {0.06, 0.25, 1, 2, 4, 8, 16};
