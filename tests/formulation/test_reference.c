@@ -82,7 +82,7 @@ static void test_textbook(void **state)
 {
   (void)state;
   for (size_t k = 0; k < N_VARIANTS; ++k)
-    for (int symmetric = 0; symmetric < 2; ++symmetric) check(&variants[k], symmetric);
+    for (int symmetric = 0; symmetric < 2 && !variants[k].ring; ++symmetric) check(&variants[k], symmetric);
 }
 
 int main(int argc, char **argv)
