@@ -1,5 +1,6 @@
-/* Kinematics from outside the house: a thick ring. Stretched alike in radius and hoop its stress is uniform and known, every inner node is in
- * balance, and its faces carry that stress times their area; the tangent is that of the forces. */
+/* Kinematics from outside the house: a thick ring. Stretched alike in radius and hoop its stress
+ * is uniform and known, every inner node is in balance, and its faces carry that stress times
+ * their area; the tangent is that of the forces. */
 #include "../formulation/patch.h"
 
 static const Variant kinds[] = {{.cell = CELL_TRIANGLE},

@@ -1,4 +1,5 @@
-/* A grid of two cells a side, full of points of two materials in a random state, and its residual and tangent as dense arrays. */
+/* A grid of two cells a side, full of points of two materials in a random state, and its
+ * residual and tangent as dense arrays. */
 #pragma once
 #include <math.h>
 #include <setjmp.h>

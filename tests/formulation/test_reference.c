@@ -1,5 +1,6 @@
-/* Forces and stiffness of the vectorised kernels against the textbook of tests/reference, for every kind of cell and of cloud, with a made-up
- * law: its moduli have no symmetry, or are symmetric. */
+/* Forces and stiffness of the vectorised kernels against the textbook of tests/reference, for
+ * every kind of cell and of cloud, with a made-up law: its moduli have no symmetry, or are
+ * symmetric. */
 #include "../reference/stiffness.h"
 #include "patch.h"
 
