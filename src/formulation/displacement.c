@@ -1,7 +1,8 @@
 /* Displacement formulation in finite strains, updated Lagrangian (thesis eq. 4.31).
  *
- * Points run in batches of one material: first the increments of the deformation gradient of the whole batch, then one
- * call of the law, then forces and stiffness. What a group (a cell) gathers is scattered once. */
+ * Points run in batches of one material: first the increments of the deformation gradient of the
+ * whole batch, then one call of the law, then forces and stiffness. What a group (a cell)
+ * gathers is scattered once. */
 #include "formulation/cells.h"
 #include "formulation/displacement_cloud.h"
 
