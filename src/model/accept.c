@@ -83,3 +83,31 @@ PetscErrorCode ConvectStep(Model *m, PetscReal dt, EnergyStep *energy, StepRepor
   report->dt = dt;
   PetscFunctionReturn(0);
 }
+
+/* The step in which the fastest point travels as far as it may; without limit where points stay in their cells. */
+static PetscReal reach_of(const Model *m, PetscReal speed)
+{
+  const AnalysisSpec *a = &m->c->analysis;
+  const PetscBool flows = m->method->restores_grid && m->scheme->inertia;
+  return flows && a->travel > 0 && speed > 0 ? a->travel * m->grid->smallest / speed : PETSC_MAX_REAL;
+}
+
+PetscErrorCode ChooseNextStep(Model *m, PetscBool shortened, const StepReport *report)
+{
+  PetscReal fastest = 0, speed;
+
+  PetscFunctionBeginUser;
+  for (PetscInt p = 0; p < m->points->n; ++p) {
+    const PetscReal *v = point_real(m->points, POINT_V, p);
+    PetscReal square = 0;
+    for (PetscInt d = 0; d < m->dim; ++d) square += v[d] * v[d];
+    fastest = PetscMax(fastest, square);
+  }
+  PetscCall(MPIU_Allreduce(&fastest, &speed, 1, MPIU_REAL, MPIU_MAX, m->comm));
+  const StepTaken taken = {.dt = report->dt,
+                           .iterations = report->newton.iterations,
+                           .shortened = shortened,
+                           .reach = reach_of(m, PetscSqrtReal(speed))};
+  step_control_accept(&m->control, &m->c->analysis, m->c->newton.ease, &taken);
+  PetscFunctionReturn(0);
+}

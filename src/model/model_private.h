@@ -71,16 +71,20 @@ typedef struct {
   PetscReal *v, *a; /* n_nodes x dim, where the method shifts what nodes remember; else NULL */
 } StepStart;
 
-/* solve.c. A step that is not accepted leaves nodes as they were; one that was interrupted has never been. */
+/* A step that is not accepted leaves nodes as they were; one that was interrupted has never been. */
 PetscErrorCode StepStartKeep(const Model *model, StepStart *start);
 PetscErrorCode StepStartRestore(Model *model, const StepStart *start, StepReport *report);
 PetscErrorCode StepStartForget(StepStart *start);
-/* Collective. The increments of a step of dt, or of halves of it: until Newton converges, somebody interrupts it, or the step is too small. */
+/* step_prepare.c. Collective. Which nodes have unknowns, on which ranks, and which are held; then what a step changes before its solve. */
+PetscErrorCode PrepareUnknowns(Model *model, StepStart *start, StepReport *report);
+/* solve.c. Collective. The increments of a step of dt, or of halves of it: until Newton converges, somebody interrupts it, or the step is too small. */
 PetscErrorCode SolveStep(Model *model, PetscReal *dt, StepReport *report);
 /* accept.c. Collective. Points take over stress and history, and the boundary its forces. */
 PetscErrorCode CommitStep(Model *model, PetscReal dt, EnergyStep *energy);
 /* Collective. Points and nodes go where the solution leads them. */
 PetscErrorCode ConvectStep(Model *model, PetscReal dt, EnergyStep *energy, StepReport *report);
+/* Collective. After an accepted step, which the caller's limit or step control had made that long. */
+PetscErrorCode ChooseNextStep(Model *model, PetscBool shortened, const StepReport *report);
 
 /* Collective. The nodes know the step's end (force, v1, a1), the points still stand at its start. */
 PetscErrorCode EnergyOfNodes(Model *model, PetscReal dt, EnergyStep *step);

@@ -1,5 +1,12 @@
-/* The solve of a step: Newton from one first guess after another, on shorter and shorter steps; and everything as it was where that does not help. */
+/* Phase (b), the solve of a step: Newton from one first guess after another, on shorter and shorter steps; and everything as it was where that does not help. */
 #include "model/model_private.h"
+
+void model_times(const Model *m, PetscReal seconds[PHASE_N])
+{
+  for (int k = 0; k < PHASE_N; ++k) seconds[k] = m->seconds[k];
+  newton_times(m->newton, &seconds[PHASE_POINTS], &seconds[PHASE_MATRIX], &seconds[PHASE_LINEAR],
+               &seconds[PHASE_NEWTON]);
+}
 
 static void count_try(Model *m, PetscBool again, StepReport *report)
 {

@@ -40,9 +40,11 @@ static void same_bits(const Points *p, const Points *q, const char *what)
       "%s: point %d is another one", what, (int)i);
 }
 
-static void same_models(const Model *m, const Model *n)
+static void same_models(Model *m, Model *n)
 {
   const size_t dofs = (size_t)(m->grid->n_owned * m->dim) * sizeof(PetscReal);
+  CALL(ModelInitialise(m));
+  CALL(ModelInitialise(n));
   same_bits(m->points, n->points, "points");
   same_bits(m->tracers, n->tracers, "tracers");
   same_bits(m->loads->carriers, n->loads->carriers, "carriers");

@@ -142,9 +142,9 @@ static PetscErrorCode ForcesBefore(const Model *m, PetscReal **force)
 /* What stops points where they meet prescribed nodes acts within no time: its work is the impulse times the velocity of the boundary. */
 static PetscReal impulse_work(const Model *m, PetscInt i, PetscReal dt)
 {
-  const Discretisation *s = m->space;
+  const NodalFields *n = m->nodes;
   if (!m->scheme->inertia) return 0;
-  return s->nodes->mass[i / m->dim] * (s->nodes->v[i] - s->nodes->v_points[i]) * m->nodes->prescribed[i] / dt;
+  return n->mass[i / m->dim] * (n->v[i] - n->v_points[i]) * n->prescribed[i] / dt;
 }
 
 /* Work of inertia, with the acceleration that balances the forces at both ends. */
