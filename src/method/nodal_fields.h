@@ -19,20 +19,21 @@ typedef struct NodalFields {
   unsigned char *fixed;   /* n_nodes x dim: has no unknown in the step */
   PetscReal *mass;        /* n_nodes, kg */
   /* n_nodes x dim, as all up to the pressures */
-  PetscReal *v, *a;      /* at t_n: what the solve starts from, m/s, m/s2 */
-  PetscReal *v_points;   /* v as the points gave it, before prescribed motion replaced it */
-  PetscReal *a_points;   /* likewise a */
-  PetscReal *v1, *a1;    /* at t_(n+1), of an accepted step */
-  PetscReal *du;         /* increments of the step, m */
-  PetscReal *previous;   /* those of the last step where they were solved for, else 0 */
-  PetscReal *prescribed; /* increments of prescribed dofs, m */
-  PetscReal *history;    /* see WeakFormInput */
-  PetscReal *force;      /* residual with the rows of prescribed dofs, on owners, N */
-  PetscReal *external;   /* dead forces, on owners, N */
-  PetscReal *reaction;   /* force of the boundary on the body, in dynamics its mean over the last step, on owners, N */
-  PetscReal *held;       /* the same at the end of the step, without the impulse that stopped points, N */
-  PetscReal *rate;       /* its share in the rate of momentum there (`held` without Bossak's alpha), N */
-  PetscReal *echo;       /* what Bossak's alpha held back of the last acceleration, m/s2 */
+  PetscReal *v, *a;             /* at t_n: what the solve starts from, m/s, m/s2 */
+  PetscReal *v_points;          /* v as the points gave it, before prescribed motion replaced it */
+  PetscReal *a_points;          /* likewise a */
+  PetscReal *v_start, *a_start; /* v and a before the step changed them */
+  PetscReal *v1, *a1;           /* at t_(n+1), of an accepted step */
+  PetscReal *du;                /* increments of the step, m */
+  PetscReal *previous;          /* those of the last step where they were solved for, else 0 */
+  PetscReal *prescribed;        /* increments of prescribed dofs, m */
+  PetscReal *history;           /* see WeakFormInput */
+  PetscReal *force;             /* residual with the rows of prescribed dofs, on owners, N */
+  PetscReal *external;          /* dead forces, on owners, N */
+  PetscReal *reaction; /* force of the boundary on the body, in dynamics its mean over the last step, on owners, N */
+  PetscReal *held;     /* the same at the end of the step, without the impulse that stopped points, N */
+  PetscReal *rate;     /* its share in the rate of momentum there (`held` without Bossak's alpha), N */
+  PetscReal *echo;     /* what Bossak's alpha held back of the last acceleration, m/s2 */
   /* n_nodes, NULL where displacements are the only unknowns */
   PetscReal *pressure;        /* at t_n, tension positive, Pa */
   PetscReal *scaled_pressure; /* the unknowns, m, see WeakFormInput */

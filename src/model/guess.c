@@ -31,7 +31,7 @@ static PetscReal inertia_alone(const NodalFields *n, PetscReal dt, PetscInt i)
 static void guess_inertia(const Model *m, PetscReal dt, PetscReal *du)
 {
   for (PetscInt node = 0; node < m->grid->n_nodes; ++node) {
-    const PetscBool moves = m->nodes->touched[node] && !(m->grid->cloud && cloud_is_twin(m->grid, node));
+    const PetscBool moves = m->nodes->touched[node] && !(m->method->clouds && cloud_is_twin(m->grid, node));
     for (PetscInt d = 0, i = node * m->dim; d < m->dim; ++d, ++i) du[i] = moves ? inertia_alone(m->nodes, dt, i) : 0;
   }
 }

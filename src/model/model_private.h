@@ -62,19 +62,17 @@ typedef struct {
   PetscReal external, boundary, damped, transfer;
 } EnergyStep;
 
-/* What a step changes although it is not accepted. */
+/* What a step changes although it is not accepted, besides v and a of the nodes. */
 typedef struct {
   StepControl control;
   PetscInt cuts, iterations;
   Tries tries;
   NewtonMemory newton;
-  PetscReal *v, *a; /* n_nodes x dim, where the method shifts what nodes remember; else NULL */
 } StepStart;
 
 /* A step that is not accepted leaves nodes as they were; one that was interrupted has never been. */
-PetscErrorCode StepStartKeep(const Model *model, StepStart *start);
+PetscErrorCode StepStartKeep(Model *model, StepStart *start);
 PetscErrorCode StepStartRestore(Model *model, const StepStart *start, StepReport *report);
-PetscErrorCode StepStartForget(StepStart *start);
 /* step_prepare.c. Collective. Which nodes have unknowns, on which ranks, and which are held; then what a step changes before its solve. */
 PetscErrorCode PrepareUnknowns(Model *model, StepStart *start, StepReport *report);
 /* solve.c. Collective. The increments of a step of dt, or of halves of it: until Newton converges, somebody interrupts it, or the step is too small. */

@@ -19,7 +19,6 @@ PetscErrorCode ModelStep(Model *m, PetscReal limit, StepReport *report)
     PetscCall(ChooseNextStep(m, shortened && !report->cuts, report));
     outside_judge(m, report);
   } else PetscCall(StepStartRestore(m, &start, report));
-  PetscCall(StepStartForget(&start));
   PetscFunctionReturn(0);
 }
 
