@@ -3,7 +3,7 @@
 
 #define UNROLLED static inline __attribute__((always_inline))
 
-/* A loop over the points of each kind of cells, with dimension and nodes of a cell known to the compiler where that pays most. */
+/* A loop over the points of each kind of cells, with sizes known to the compiler where that pays. */
 #define WITH_SIZES(loop, s)                                                                                \
   for (const SupportRun *run = (s)->support->run; run < (s)->support->run + (s)->support->n_runs; ++run) { \
     if ((s)->grid->dim == 2 && run->nodes == 4) loop(2, 4, run, s);                                        \

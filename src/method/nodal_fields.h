@@ -1,5 +1,6 @@
-/* All that nodes know, in one place: made and destroyed together, following the nodes of a cloud, put away in checkpoints and handed over to a grid
- * that is shared anew. Arrays go over the local nodes of the grid. */
+/* All that nodes know, in one place: made and destroyed together, following the nodes of a
+ * cloud, put away in checkpoints and handed over to a grid that is shared anew. Arrays go over
+ * the local nodes of the grid. */
 #pragma once
 #include "base/table.h"
 #include "grid/grid.h"
@@ -43,10 +44,12 @@ typedef struct NodalFields {
 /* pressure: is it an unknown? */
 PetscErrorCode NodalFieldsCreate(Grid *grid, PetscBool pressure, NodalFields **nodes);
 PetscErrorCode NodalFieldsDestroy(NodalFields **nodes);
-/* Flags of a cloud, all 0, if its ghosts or owners changed since they were made; the other fields follow by themselves. */
+/* Flags of a cloud, all 0, if its ghosts or owners changed since they were made; the other
+ * fields follow by themselves. */
 PetscErrorCode NodalFlagsFollow(NodalFields *nodes);
 
-/* Collective, on grids of cells (clouds put away what follows them). What outlives a step: the motion of nodes that move, and without that the last
- * increments; forces of the boundary, at dofs that it prescribes. */
+/* Collective, on grids of cells (clouds put away what follows them). What outlives a step: the
+ * motion of nodes that move, and without that the last increments; forces of the boundary, at
+ * dofs that it prescribes. */
 PetscErrorCode NodalFieldsToTables(NodalFields *nodes, PetscBool move, const unsigned char *prescribed, Tables *tables);
 PetscErrorCode NodalFieldsFromTables(NodalFields *nodes, PetscBool move, const Tables *tables, char reason[256]);

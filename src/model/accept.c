@@ -11,9 +11,11 @@ static void set_multipliers(Model *m)
         m->nodes->force[c->at[k] * m->dim + d] = c->scale * m->nodes->du[c->twin[k] * m->dim + d];
 }
 
-/* Reactions: in statics what the balance lacks on prescribed dofs; with inertia the mean over the step, so that times dt it is all momentum that came
- * from the boundary. The scheme weighs the forces of both ends, its lag gives each an echo of those before, and what prescribed motion replaced of
- * the nodes' own at the start of the step is an impulse (docs/theory.md, "Reactions"). */
+/* Reactions: in statics what the balance lacks on prescribed dofs; with inertia the mean over
+ * the step, so that times dt it is all momentum that came from the boundary. The scheme weighs
+ * the forces of both ends, its lag gives each an echo of those before, and what prescribed
+ * motion replaced of the nodes' own at the start of the step is an impulse (docs/theory.md,
+ * "Reactions"). */
 static void store_reactions(Model *m, PetscReal dt)
 {
   const TimeWeights w = m->scheme->weights(&m->c->analysis, dt);
@@ -84,7 +86,8 @@ PetscErrorCode ConvectStep(Model *m, PetscReal dt, EnergyStep *energy, StepRepor
   PetscFunctionReturn(0);
 }
 
-/* The step in which the fastest point travels as far as it may; without limit where points stay in their cells. */
+/* The step in which the fastest point travels as far as it may; without limit where points stay
+ * in their cells. */
 static PetscReal reach_of(const Model *m, PetscReal speed)
 {
   const AnalysisSpec *a = &m->c->analysis;

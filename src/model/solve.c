@@ -1,4 +1,5 @@
-/* Phase (b), the solve of a step: Newton from one first guess after another, on shorter and shorter steps; and everything as it was where that does not help. */
+/* Phase (b), the solve of a step: Newton from one first guess after another, on shorter and
+ * shorter steps; and everything as it was where that does not help. */
 #include "model/model_private.h"
 
 void model_times(const Model *m, PetscReal seconds[PHASE_N])
@@ -19,7 +20,8 @@ static void count_try(Model *m, PetscBool again, StepReport *report)
   report->tries.lost += lost;
 }
 
-/* Newton from the nearest first guess, and where it fails from the others: a step is halved only if none of them leads to its solution. */
+/* Newton from the nearest first guess, and where it fails from the others: a step is halved only
+ * if none of them leads to its solution. */
 static PetscErrorCode SolveFromGuesses(Model *m, PetscReal dt, const LinearProblem *linear, StepReport *report)
 {
   FirstGuess guess[GUESS_N];

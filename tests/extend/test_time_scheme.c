@@ -1,5 +1,6 @@
-/* Backward Euler of backward_euler.c against its own recurrences: after n steps of dt in free fall v = n g dt and u = n (n + 1) / 2 g dt^2, with
- * Rayleigh damping c and no weight v = v0 / (1 + c dt)^n, and a floor gives back in each step the momentum that weight brings. */
+/* Backward Euler of backward_euler.c against its own recurrences: after n steps of dt in free
+ * fall v = n g dt and u = n (n + 1) / 2 g dt^2, with Rayleigh damping c and no weight v = v0 /
+ * (1 + c dt)^n, and a floor gives back in each step the momentum that weight brings. */
 #include "../model/case_builder.h"
 
 #define STEPS 5
@@ -52,7 +53,8 @@ static void test_damping(void **state)
   bench_end(&b);
 }
 
-/* Momentum that the floor and the weight bring over the steps is what the body has: the reaction is the mean that the scheme means. */
+/* Momentum that the floor and the weight bring over the steps is what the body has: the reaction
+ * is the mean that the scheme means. */
 static void test_momentum(void **state)
 {
   PetscReal impulse = 0;

@@ -10,7 +10,8 @@ typedef struct {
   PetscReal factor[2];
 } NodalField;
 
-/* Dimension and nodes of a cell are constants at the calls below that matter, so that the inner loops unroll; run->nodes 0: each group has its own. */
+/* Sizes are constants at the calls below that matter, so that the inner loops unroll; without
+ * fixed_nn each group has its own number of nodes. */
 #define UNROLLED static inline __attribute__((always_inline))
 
 /* The part of u M w that ties the nodes of one cell together: their deviations from the mean. */
