@@ -251,7 +251,8 @@ PetscErrorCode CaseDestroy(Case **c);
 
 /* Value at time t; `fallback` if the amplitude was not given. */
 PetscReal amplitude_value(const Amplitude *amplitude, PetscReal t, PetscReal fallback);
-/* Value at time t of what is applied: without an amplitude it grows with pseudo-time in statics and stands at once in dynamics. */
+/* Value at time t of what is applied: without an amplitude it grows with pseudo-time in statics and
+ * stands at once in dynamics. */
 PetscReal case_factor(const Case *c, const Amplitude *amplitude, PetscReal t);
 /* Integral over [0, t], for prescribed velocities. */
 PetscReal amplitude_integral(const Amplitude *amplitude, PetscReal t, PetscReal fallback);

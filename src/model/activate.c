@@ -125,6 +125,7 @@ PetscErrorCode ModelActivate(Model *m)
   PetscBool fits;
 
   PetscFunctionBeginUser;
+  PetscCall(ModelInitialise(m));
   if (m->method->clouds) {
     PetscCall(ActivateClouds(m));
     PetscFunctionReturn(0);

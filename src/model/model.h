@@ -143,8 +143,8 @@ PetscErrorCode ModelDestroy(Model **model);
 /* Collective. Body force besides gravity, NULL for none. Before the first step it also enters the initial acceleration. */
 PetscErrorCode ModelSetBodyForce(Model *model, BodyForce force, void *context);
 
-/* Collective. Phase a: nodes learn from where points are now, unless they have already. A step begins with it; whoever asks for nodal fields or
- * measures between steps calls it first. */
+/* Collective. Phase a: nodes learn from where points are now, unless they have already. A step
+ * begins with it; whoever wants nodal fields or measures between steps calls it first. */
 PetscErrorCode ModelInitialise(Model *model);
 /* Collective. Make the linear system fit the cells that hold material now; ModelStep does it by itself. */
 PetscErrorCode ModelActivate(Model *model);

@@ -205,6 +205,7 @@ static void conserves(Bench *b)
   b->c.parallel.imbalance = 0;
   Model *m = bench_model(b, PETSC_COMM_WORLD);
   for (PetscInt s = 0; s < 8; ++s) model_step(m, PETSC_MAX_REAL);
+  CALL(ModelInitialise(m));
   Everything points = gather(m->grid, m->points), tracers = gather(m->grid, m->tracers),
              carriers = gather(m->grid, m->loads->carriers);
   const PetscReal reaction = nodal_sum(m, m->nodes->reaction), held = nodal_sum(m, m->nodes->held);

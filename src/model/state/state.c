@@ -130,7 +130,7 @@ PetscErrorCode ModelToTables(Model *m, Tables *tables)
   PetscCall(PointsToTable(m->tracers, m->grid, "tracers", tables));
   PetscCall(PointsToTable(m->loads->carriers, m->grid, "carriers", tables));
   PetscCall(ForcesToTables(m, tables));
-  if (m->grid->cloud) {
+  if (m->method->clouds) {
     PetscCall(StateCloudToTables(m, tables));
     PetscFunctionReturn(0);
   }
@@ -292,9 +292,9 @@ static void check_tables(const Model *m, const Tables *tables, char reason[256])
                                                                                      "parts"};
   for (int i = 0; i < 6; ++i)
     if (!tables_find(tables, always[i])) snprintf(reason, 256, "%s is missing", always[i]);
-  for (int i = 0; !m->grid->cloud && i < (m->method->restores_grid ? 1 : 2); ++i)
+  for (int i = 0; !m->method->clouds && i < (m->method->restores_grid ? 1 : 2); ++i)
     if (!tables_find(tables, of_cells[i])) snprintf(reason, 256, "%s is missing", of_cells[i]);
-  for (int i = 0; m->grid->cloud && i < 4; ++i)
+  for (int i = 0; m->method->clouds && i < 4; ++i)
     if (!tables_find(tables, of_clouds[i])) snprintf(reason, 256, "%s is missing", of_clouds[i]);
 }
 
@@ -324,7 +324,7 @@ PetscErrorCode ModelFromTables(Model *m, Tables *tables, char reason[256])
   softening_from_table(m, tables_find(tables, "softening"), reason);
   state_lost_from_tables(m, tables, reason);
   PetscCall(ReasonShare(m->comm, reason));
-  if (m->grid->cloud && !reason[0]) {
+  if (m->method->clouds && !reason[0]) {
     PetscCall(CloudBack(m, tables, reason));
     PetscFunctionReturn(0);
   }
