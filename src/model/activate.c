@@ -64,23 +64,31 @@ static PetscErrorCode AddRings(const Model *m, const unsigned char *occupied, un
   PetscFunctionReturn(0);
 }
 
+/* The system for these groups and what nodal forces couple; frees the groups. */
+static PetscErrorCode BuildSystem(Model *m, NodeGroups *groups)
+{
+  const NodalScene scene = nodal_scene(m, m->time, m->du);
+
+  PetscFunctionBeginUser;
+  PetscCall(NodalForcesCouple(&m->forces, &scene, groups));
+  PetscCall(SystemBuild(m->system, m->grid, groups));
+  PetscCall(PetscFree(groups->start));
+  PetscCall(PetscFree(groups->node));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode ModelEnable(Model *m)
 {
   const PetscInt nn = m->grid->nodes_per_cell;
-  PetscInt n = 0, *node, *start;
+  NodeGroups groups = {.n = 0};
 
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(m->grid->n_cells * nn, &node));
+  PetscCall(PetscMalloc1(m->grid->n_cells * nn, &groups.node));
+  PetscCall(PetscMalloc1(m->grid->n_cells + 1, &groups.start));
   for (PetscInt c = 0; c < m->grid->n_cells; ++c)
-    if (m->enabled[c]) {
-      PetscCall(PetscArraycpy(node + n * nn, m->grid->cell_node + c * nn, nn));
-      ++n;
-    }
-  PetscCall(PetscMalloc1(n + 1, &start));
-  for (PetscInt g = 0; g <= n; ++g) start[g] = g * nn;
-  PetscCall(SystemBuild(m->system, m->grid, &(NodeGroups){.n = n, .start = start, .node = node}));
-  PetscCall(PetscFree(start));
-  PetscCall(PetscFree(node));
+    if (m->enabled[c]) PetscCall(PetscArraycpy(groups.node + groups.n++ * nn, m->grid->cell_node + c * nn, nn));
+  for (PetscInt g = 0; g <= groups.n; ++g) groups.start[g] = g * nn;
+  PetscCall(BuildSystem(m, &groups));
   PetscFunctionReturn(0);
 }
 
@@ -108,9 +116,7 @@ static PetscErrorCode ActivateClouds(Model *m)
   if (!complete) {
     PetscCall(PetscArrayzero(m->nodes->force, m->grid->n_nodes * m->dim)); /* of nodes that may lose their unknowns */
     PetscCall(m->method->couplings(m->space, &groups));
-    PetscCall(SystemBuild(m->system, m->grid, &groups));
-    PetscCall(PetscFree(groups.start));
-    PetscCall(PetscFree(groups.node));
+    PetscCall(BuildSystem(m, &groups));
     PetscCall(FindSlots(m, &complete));
     PetscCheck(complete, m->comm, PETSC_ERR_PLIB, "the system lacks couplings that it was built for");
   }
@@ -140,6 +146,9 @@ PetscErrorCode ModelActivate(Model *m)
   }
   PetscCall(PetscFree(occupied));
   PetscCall(FindSlots(m, &fits));
-  PetscCheck(fits, m->comm, PETSC_ERR_PLIB, "the system lacks couplings that nodal forces ask for");
+  if (fits) PetscFunctionReturn(0);
+  PetscCall(ModelEnable(m)); /* nodal forces have met other nodes */
+  PetscCall(FindSlots(m, &fits));
+  PetscCheck(fits, m->comm, PETSC_ERR_PLIB, "the system lacks couplings that it was built for");
   PetscFunctionReturn(0);
 }
