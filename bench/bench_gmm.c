@@ -75,7 +75,7 @@ static PetscErrorCode Describe(Model *m, Outcome *o)
   PetscCall(ModelCountPoints(m, &o->points));
   o->unknowns = m->system->n_active_global * m->system->block;
   o->entries = w->node_start[w->n_groups] * m->points->n / PetscMax(w->n_groups, 1);
-  if (w->uniform) o->entries = w->uniform * m->points->n;
+  if (w->n_runs) o->entries = w->run[0].nodes * m->points->n;
   for (PetscInt k = 0; k < m->c->n_measures; ++k)
     if (!strcmp(m->c->measures[k].name, "way")) PetscCall(ModelMeasure(m, &m->c->measures[k], k, &o->way));
   PetscFunctionReturn(0);

@@ -1,8 +1,8 @@
 /* Finite-element shape functions at a position of the reference cell, and where Gauss points sit.
  *
- * Reference cells: triangle (0,0) (1,0) (0,1); quadrilateral [-1,1]^2 counter-clockwise from (-1,-1);
- * tetrahedron (0,0,0) (1,0,0) (0,1,0) (0,0,1); hexahedron [-1,1]^3, bottom face counter-clockwise as seen from above, then the
- * top one (the order of VTK). */
+ * Reference cells: triangle (0,0) (1,0) (0,1); quadrilateral [-1,1]^2 counter-clockwise from
+ * (-1,-1); tetrahedron (0,0,0) (1,0,0) (0,1,0) (0,0,1); hexahedron [-1,1]^3, bottom face
+ * counter-clockwise as seen from above, then the top one (the order of VTK). */
 #pragma once
 #include "case/case.h"
 #include "base/math/tensor.h"
@@ -23,10 +23,12 @@ extern const Cell cells[4]; /* indexed by CellType */
 /* Shape functions N (nodes) and their reference gradients dN (nodes x dim) at xi. */
 void cell_shape(CellType type, const PetscReal *xi, PetscReal *N, PetscReal *dN);
 
-/* N and spatial gradients dNdx (nodes x dim) with node positions x (nodes x dim); returns det of dx/dxi. */
+/* N and spatial gradients dNdx (nodes x dim) with node positions x (nodes x dim); returns det of
+ * dx/dxi. */
 PetscReal cell_gradients(CellType type, const PetscReal *x, const PetscReal *xi, PetscReal *N, PetscReal *dNdx);
 
-/* Reference position of `point`; PETSC_FALSE if the map could not be inverted. Affine cells exactly, others by Newton. */
+/* Reference position of `point`; PETSC_FALSE if the map could not be inverted. Affine cells
+ * exactly, others by Newton. */
 PetscBool cell_inverse_map(CellType type, const PetscReal *x, const PetscReal *point, PetscReal *xi);
 
 /* How far xi lies outside the reference cell: <= 0 inside, in reference units. */
@@ -34,8 +36,9 @@ PetscReal cell_outside(CellType type, const PetscReal *xi);
 
 PetscReal cell_volume(CellType type, const PetscReal *x);
 
-/* Gauss rule with n points (triangle 1 3 6 12, quadrilateral 1 4 9 16, tetrahedron 1 4 14 24, hexahedron 1 8 27 64): xi is n x dim,
- * weights sum to the reference volume. PETSC_FALSE if there is no such rule. */
+/* Gauss rule with n points (triangle 1 3 6 12, quadrilateral 1 4 9 16, tetrahedron 1 4 14 24,
+ * hexahedron 1 8 27 64): xi is n x dim, weights sum to the reference volume. PETSC_FALSE if there
+ * is no such rule. */
 PetscBool cell_quadrature(CellType type, PetscInt n, PetscReal *xi, PetscReal *weight);
 /* The numbers of points for which a rule exists, ended by 0. */
 const PetscInt *cell_rules(CellType type);

@@ -1,7 +1,7 @@
 /* Shape functions and gradients with the cell type known at compile time.
  *
- * Hot loops of other rooms switch on the type once, outside, and call these with a literal CellType: the compiler then
- * unrolls everything. cell.h has the same functions for any type. */
+ * Hot loops of other rooms switch on the type once, outside, and call these with a literal
+ * CellType: the compiler then unrolls everything. cell.h has the same functions for any type. */
 #pragma once
 #include "basis/cell.h"
 

@@ -1,8 +1,8 @@
 /* From a position in space back to the reference cell: exactly for affine cells, by a safeguarded
  * Newton for the others.
  *
- * All positions are taken relative to the cell's first node, so that a small cell far from the origin
- * loses no digits. */
+ * All positions are taken relative to the cell's first node, so that a small cell far from the
+ * origin loses no digits. */
 #include "basis/cell_kernels.h"
 #include <math.h>
 
@@ -31,7 +31,8 @@ CELL_INLINE void map_set_up(CellType type, const PetscReal *x, const PetscReal *
   for (int d = 0; d < dim; ++d) map->target[d] = point[d] - x[d];
 }
 
-/* What is left between the target and the position of xi; gives the inverse Jacobian there, returns its determinant. */
+/* What is left between the target and the position of xi; gives the inverse Jacobian there, returns
+ * its determinant. */
 CELL_INLINE PetscReal map_residual(CellType type, const Map *map, const PetscReal *xi, PetscReal *residual,
                                    PetscReal *inverse)
 {

@@ -1,8 +1,9 @@
-/* Gauss rules. Simplices: symmetric rules with positive weights and all points inside, of degree 1 2 4 6 (triangle) and
- * 1 2 5 6 (tetrahedron); cubes: products of Gauss-Legendre rules.
+/* Gauss rules. Simplices: symmetric rules with positive weights and all points inside, of degree 1
+ * 2 4 6 (triangle) and 1 2 5 6 (tetrahedron); cubes: products of Gauss-Legendre rules.
  *
- * A symmetric rule is a list of orbits: barycentric coordinates of which every distinct order is a point. The numbers
- * solve the moment equations to 20 digits; tests/basis/test_quadrature.c integrates every monomial up to the degree. */
+ * A symmetric rule is a list of orbits: barycentric coordinates of which every distinct order is a
+ * point. The numbers solve the moment equations to 20 digits; tests/basis/test_quadrature.c
+ * integrates every monomial up to the degree. */
 #include "basis/cell.h"
 
 typedef struct {
@@ -71,7 +72,8 @@ static const PetscReal line_weight[MAX_SIDE][MAX_SIDE] = {
    0.36076157304813860757, 0.17132449237917034504},
 };
 
-/* Ended by 0. Material that is stretched over several cells wants many points, hence the two large rules in the plane. */
+/* Ended by 0. Material that is stretched over several cells wants many points, hence the two large
+ * rules in the plane. */
 static const PetscInt rules[4][MAX_SIDE + 1] = {
   [CELL_TRIANGLE] = {1, 3, 6, 12},
   [CELL_QUADRILATERAL] = {1, 4, 9, 16, 25, 36},

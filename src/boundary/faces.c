@@ -39,8 +39,8 @@ PetscInt face_quadrature(const Grid *grid, PetscInt cell, PetscInt side, FacePoi
   static const PetscReal third[3][2] = {{1. / 6, 1. / 6}, {2. / 3, 1. / 6}, {1. / 6, 2. / 3}};
   const PetscReal g = 0.57735026918962576451;
   const PetscReal square[4][2] = {{-g, -g}, {g, -g}, {g, g}, {-g, g}};
-  const Cell *type = &cells[grid->type];
-  const PetscInt nf = type->face_nodes, *node = grid->cell_node + cell * type->nodes;
+  const Cell *type = grid_cell(grid, cell);
+  const PetscInt nf = type->face_nodes, *node = grid->cell_node + cell * grid->nodes_per_cell;
   PetscReal x[4][3], N[4], dN[8];
 
   for (PetscInt i = 0; i < nf; ++i)
@@ -125,7 +125,6 @@ static PetscInt count_key(PetscInt n, const PetscInt *all, const PetscInt key[4]
 PetscErrorCode BodyFaces(const Grid *grid, const Points *points, PetscInt body, const Selector *on, PetscInt *n,
                          PetscInt **cell, PetscInt **side)
 {
-  const Cell *type = &cells[grid->type];
   PetscBool *inside;
   PetscInt size = 0, n_all, *keys, *all;
 
@@ -134,14 +133,15 @@ PetscErrorCode BodyFaces(const Grid *grid, const Points *points, PetscInt body, 
   for (PetscInt p = 0; p < points->n; ++p)
     if (points->body[p] == body && points->cell[p] >= 0 && !inside[points->cell[p]]) {
       inside[points->cell[p]] = PETSC_TRUE;
-      size += type->faces;
+      size += grid_cell(grid, points->cell[p])->faces;
     }
   PetscCall(PetscMalloc1(4 * size, &keys));
   PetscCall(PetscMalloc1(size, cell));
   PetscCall(PetscMalloc1(size, side));
   *n = 0;
   for (PetscInt c = 0; c < grid->n_cells; ++c) {
-    const PetscInt *node = grid->cell_node + c * type->nodes;
+    const Cell *type = grid_cell(grid, c);
+    const PetscInt *node = grid->cell_node + c * grid->nodes_per_cell;
     for (PetscInt s = 0; inside[c] && s < type->faces; ++s) {
       if (!face_selected(grid, on, node, type->face_nodes, type->face[s])) continue;
       face_key(grid, node, type->face_nodes, type->face[s], keys + 4 * *n);

@@ -5,8 +5,8 @@ PetscBool touched_shape(const Grid *grid, PetscInt cell, const PetscReal *xi, co
                         PetscReal *N)
 {
   const PetscInt nn = grid->nodes_per_cell, *node = grid->cell_node + cell * nn;
-  PetscReal dN[3 * CELL_MAX_NODES], sum = 0;
-  cell_shape(grid->type, xi, N, dN);
+  PetscReal sum = 0;
+  grid_shape(grid, cell, xi, N);
   for (PetscInt I = 0; I < nn; ++I) {
     if (!touched[node[I]]) N[I] = 0;
     sum += N[I];
@@ -59,7 +59,7 @@ static PetscErrorCode GridTraction(Loads *loads, const Grid *grid, PetscInt load
   const PetscInt nn = grid->nodes_per_cell;
   PetscInt *side;
   FacePoint q[FACE_MAX_POINTS];
-  PetscReal N[CELL_MAX_NODES], dN[3 * CELL_MAX_NODES];
+  PetscReal N[CELL_MAX_NODES];
 
   PetscFunctionBeginUser;
   PetscCall(GridSelectFaces(grid, &loads->c->loads[load].on, &faces->n, &faces->cell, &side));
@@ -67,7 +67,7 @@ static PetscErrorCode GridTraction(Loads *loads, const Grid *grid, PetscInt load
   for (PetscInt f = 0; f < faces->n; ++f) {
     const PetscInt nq = face_quadrature(grid, faces->cell[f], side[f], q);
     for (PetscInt k = 0; k < nq; ++k) {
-      cell_shape(grid->type, q[k].xi, N, dN);
+      grid_shape(grid, faces->cell[f], q[k].xi, N);
       for (PetscInt I = 0; I < nn; ++I) faces->N[f * nn + I] += N[I] * q[k].area;
     }
   }
@@ -185,7 +185,7 @@ PetscErrorCode LoadsRegrid(Loads *l, const Grid *old, const Grid *grid)
     PetscCall(PetscFree(l->faces[k].N));
     PetscCall(GridTraction(l, grid, k, &faces));
   }
-  PetscCall(PointsRegrid(l->carriers, old, grid, &moved));
+  PetscCall(PointsRepartition(l->carriers, old, grid, &moved));
   l->n_nodes = grid->n_nodes;
   PetscFunctionReturn(0);
 }

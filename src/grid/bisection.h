@@ -1,4 +1,5 @@
-/* Recursive coordinate bisection of positions that lie scattered over the ranks: where each rank's part of space is. */
+/* Recursive coordinate bisection of positions that lie scattered over the ranks: where each rank's
+ * part of space is. */
 #pragma once
 #include <petscsys.h>
 

@@ -1,4 +1,5 @@
-/* The directory itself is spread over the ranks in equal shares, so that no rank knows all numbers. */
+/* The directory itself is spread over the ranks in equal shares, so that no rank knows all
+ * numbers. */
 #include "grid/directory.h"
 
 PetscErrorCode ReasonShare(MPI_Comm comm, char reason[256])
@@ -14,7 +15,8 @@ PetscErrorCode ReasonShare(MPI_Comm comm, char reason[256])
   PetscFunctionReturn(0);
 }
 
-/* Leaves are n numbers, roots the shares of the directory. Leaves without a number (-1) are left out. */
+/* Leaves are n numbers, roots the shares of the directory. Leaves without a number (-1) are left
+ * out. */
 static PetscErrorCode ShareGraph(MPI_Comm comm, PetscLayout layout, PetscInt n, const PetscInt *number, PetscSF *sf)
 {
   PetscInt *local, *remote, k = 0;

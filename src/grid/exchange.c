@@ -1,5 +1,5 @@
 /* Ghost exchange of nodal arrays. */
-#include "grid/grid_private.h"
+#include "grid/grid.h"
 
 /* PETSc sums blocks of reals, but not a block of one: that is a real itself. */
 static PetscErrorCode BlockType(PetscInt components, MPI_Datatype *type)

@@ -1,14 +1,14 @@
-/* The grid as others see it: which builder, which search, and its end. */
-#include "grid/cloud/cloud.h"
-#include "grid/grid_private.h"
+/* The grid as others see it, whatever its kind. */
+#include "grid/grid_ops.h"
 
-PetscErrorCode GridCreate(MPI_Comm comm, const Case *c, GridWeight weight, void *context, Diag *diag, Grid **grid)
+static PetscErrorCode SetDestroy(GridSet *set)
 {
   PetscFunctionBeginUser;
-  if (c->grid.kind == GRID_MESH) PetscCall(GeoCheckParameters(comm, c, diag));
-  if (c->grid.kind == GRID_BOX) PetscCall(GridCreate_Box(comm, c, weight, context, diag, grid));
-  else
-    PetscCall(GridCreateMesh(comm, &c->grid, kinematics_dim(c->kinematics), "grid.mesh", weight, context, diag, grid));
+  PetscCall(PetscFree(set->name));
+  PetscCall(PetscFree(set->nodes));
+  PetscCall(PetscFree(set->face_cell));
+  PetscCall(PetscFree(set->face_side));
+  PetscCall(PetscFree(set->cells));
   PetscFunctionReturn(0);
 }
 
@@ -18,8 +18,8 @@ PetscErrorCode GridDestroy(Grid **grid)
 
   PetscFunctionBeginUser;
   if (!g) PetscFunctionReturn(0);
-  for (PetscInt s = 0; s < g->n_sets; ++s) PetscCall(GridSetDestroy(g->sets + s));
-  PetscCall(GridSetDestroy(&g->outer));
+  for (PetscInt s = 0; s < g->n_sets; ++s) PetscCall(SetDestroy(g->sets + s));
+  PetscCall(SetDestroy(&g->outer));
   PetscCall(PetscFree(g->sets));
   PetscCall(PetscFree(g->cell_node));
   PetscCall(PetscFree(g->x));
@@ -27,9 +27,7 @@ PetscErrorCode GridDestroy(Grid **grid)
   PetscCall(PetscFree(g->global_cell));
   PetscCall(PetscFree(g->rank_bounds));
   PetscCall(PetscSFDestroy(&g->node_sf));
-  PetscCall(GridBoxDestroy(&g->box));
-  PetscCall(GridBinsDestroy(&g->bins));
-  PetscCall(GridCloudDestroy(&g->cloud));
+  PetscCall(g->ops->Destroy(g));
   PetscCall(PetscFree(*grid));
   PetscFunctionReturn(0);
 }
@@ -60,21 +58,70 @@ PetscErrorCode GridFinish(Grid *grid)
   PetscFunctionReturn(0);
 }
 
-PetscInt grid_locate(const Grid *grid, const PetscReal *x, PetscInt guess, PetscReal *xi)
+void grid_cell_centre(const Grid *grid, PetscInt cell, PetscReal centre[3])
 {
-  return grid->box ? box_locate(grid, x, xi) : mesh_locate(grid, x, guess, xi);
+  const PetscInt nn = grid_cell(grid, cell)->nodes;
+  PetscReal x[3 * CELL_MAX_NODES];
+  grid_cell_x(grid, cell, x);
+  for (PetscInt d = 0; d < 3; ++d) centre[d] = 0;
+  for (PetscInt i = 0; i < nn * grid->dim; ++i) centre[i % grid->dim] += x[i] / (PetscReal)nn;
 }
 
-void grid_clamp(const Grid *grid, PetscReal *x)
+void grid_shape(const Grid *grid, PetscInt cell, const PetscReal *xi, PetscReal *N)
 {
-  if (!grid->box) {
-    mesh_clamp(grid, x);
-    return;
-  }
-  for (PetscInt d = 0; d < grid->dim; ++d) x[d] = PetscMin(PetscMax(x[d], grid->min[d]), grid->max[d]);
+  PetscReal dN[3 * CELL_MAX_NODES];
+  cell_shape(grid_cell_type(grid, cell), xi, N, dN);
+  for (PetscInt i = grid_cell(grid, cell)->nodes; i < grid->nodes_per_cell; ++i) N[i] = 0;
 }
+
+PetscInt grid_locate(const Grid *grid, const PetscReal *x, PetscInt guess, PetscReal *xi)
+{
+  return grid->ops->locate(grid, x, guess, xi);
+}
+
+void grid_clamp(const Grid *grid, PetscReal *x) { grid->ops->clamp(grid, x); }
 
 PetscInt grid_candidates(const Grid *grid, const PetscReal *x, PetscInt max, PetscMPIInt *ranks)
 {
-  return grid->box ? box_candidates(grid->box, x, max, ranks) : mesh_candidates(grid, x, max, ranks);
+  return grid->ops->candidates(grid, x, max, ranks);
+}
+
+PetscBool grid_is_aligned(const Grid *grid) { return grid->ops->aligned; }
+
+PetscBool grid_starts_alike(const Grid *grid) { return grid->ops->starts_alike; }
+
+PetscBool grid_cells_alike(const Grid *grid) { return grid->ops->cells_alike && grid->ops->cells_alike(grid); }
+
+PetscErrorCode GridRepartition(const Grid *old, const PetscReal *weight, PetscReal worst, PetscReal *reached,
+                               Grid **grid)
+{
+  PetscMPIInt size;
+  PetscInt *axis, *cut;
+  VoxelWeights w = {0};
+
+  PetscFunctionBeginUser;
+  *grid = NULL;
+  PetscCallMPI(MPI_Comm_size(old->comm, &size));
+  PetscCall(PetscCalloc2(size, &axis, size, &cut));
+  PetscCall(old->ops->WeighCells(old, weight, &w));
+  PetscCall(PartitionVoxels(old->comm, old->dim, w.counts, &w, axis, cut, reached));
+  PetscCall(PetscFree2(w.voxel, w.weight));
+  if (*reached <= worst) PetscCall(old->ops->FromCuts(old, axis, cut, grid));
+  PetscCall(PetscFree2(axis, cut));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode GridPartitionToTable(const Grid *grid, Tables *tables)
+{
+  PetscFunctionBeginUser;
+  PetscCall(grid->ops->PartitionToTable(grid, tables));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode GridFromPartition(const Grid *old, const Table *table, Grid **grid, char reason[256])
+{
+  PetscFunctionBeginUser;
+  *grid = NULL;
+  PetscCall(old->ops->FromPartition(old, table, grid, reason));
+  PetscFunctionReturn(0);
 }

@@ -1,9 +1,8 @@
 /* The background grid (mpm) or the mesh (fem): cells, nodes, regions, and who owns what.
  *
  * Each rank holds its own cells and every node they touch. Local nodes are numbered owned first,
- * ghosts after; `node_sf` ties the ghosts to their owners. Two builders fill the same struct: box.c
- * by arithmetic (no rank ever holds more than its part) and gmsh.c from a file that rank 0
- * reads. */
+ * ghosts after; `node_sf` ties the ghosts to their owners. A box fills the struct by arithmetic (no
+ * rank ever holds more than its part), a mesh from a file that rank 0 reads. */
 #pragma once
 #include <petscsf.h>
 #include <petscdmplex.h>
@@ -12,8 +11,8 @@
 #include "base/table.h"
 #include "case/case.h"
 
-/* A named set: of nodes and faces (boundary) or of cells (region). A box has left right (x), bottom top
- * (y) and in 3D front (lowest z) back (highest z); a mesh has its physical groups. */
+/* A named set: of nodes and faces (boundary) or of cells (region). A box has left right (x), bottom
+ * top (y) and in 3D front (lowest z) back (highest z); a mesh has its physical groups. */
 typedef struct {
   char *name;
   PetscInt n_nodes, *nodes;                 /* local nodes, ghosts too */
@@ -21,19 +20,24 @@ typedef struct {
   PetscInt n_cells, *cells;
 } GridSet;
 
-typedef struct GridBins GridBins;   /* search structure of unstructured grids */
-typedef struct GridCloud GridCloud; /* what only clouds have */
-typedef struct GridBox GridBox;     /* counts, coordinate lines and sub-boxes of box grids */
+typedef struct GridOps GridOps; /* what this kind of grid can do */
+/* What only one kind has: counts and lines of a box, search and neighbours of a mesh, what follows
+ * a cloud's nodes. */
+typedef struct GridBox GridBox;
+typedef struct GridMesh GridMesh;
+typedef struct GridCloud GridCloud;
 
 typedef struct Grid {
   MPI_Comm comm;
   PetscInt dim;
-  CellType type;
-  PetscInt nodes_per_cell;
+  CellType type;             /* of cells; where a mesh mixes two, the one with more nodes */
+  CellType first_type;       /* and the other one, the same if there is none: */
+  PetscInt n_first;          /* as many of its cells stand before those of `type` on this rank */
+  PetscInt nodes_per_cell;   /* of `type` */
   PetscInt n_cells;          /* of this rank */
   PetscInt n_owned, n_nodes; /* nodes owned; owned and ghosts */
   PetscInt n_cells_global, n_nodes_global;
-  PetscInt *cell_node;   /* n_cells x nodes_per_cell, local nodes */
+  PetscInt *cell_node;   /* n_cells x nodes_per_cell, local nodes; a cell of fewer repeats its last one */
   PetscReal *x;          /* n_nodes x dim; fem moves them */
   PetscInt *global_node; /* n_nodes: owner's first + its local number */
   PetscInt *global_cell; /* n_cells: its place in the file, or in the box (x fastest), from 0; whatever the ranks */
@@ -43,10 +47,11 @@ typedef struct Grid {
   GridSet outer;               /* the whole outer boundary: nodes and faces; has no name */
   PetscReal min[3], max[3];    /* of the whole grid */
   PetscReal smallest;          /* smallest cell size over all ranks, m */
-  GridBox *box;                /* NULL for a mesh */
-  GridBins *bins;              /* NULL for a box */
-  GridCloud *cloud;            /* a cloud has no cells, sets and search of cells */
   PetscReal (*rank_bounds)[6]; /* per rank: min[3], max[3] of its cells; who might know a lost point */
+  const GridOps *ops;
+  GridBox *box; /* these are NULL but for the kind that it is */
+  GridMesh *mesh;
+  GridCloud *cloud; /* has no cells, sets and search of cells */
 } Grid;
 
 /* Weight of a cell with this centre in the partition (points it will carry); NULL: all alike. */
@@ -61,12 +66,14 @@ PetscErrorCode GridCreateMesh(MPI_Comm comm, const GridSpec *spec, PetscInt dim,
                               void *context, Diag *diag, Grid **grid);
 PetscErrorCode GridDestroy(Grid **grid);
 
-/* Collective. The grid that `old` is, shared among the ranks by `weight` of its local cells (>= 0; 0: empty). *reached: the largest weight of
- * a rank over the mean that such a sharing has; if that is more than `worst` there is no use in it, and *grid stays NULL. `old` stays as it is. Not for clouds. */
+/* Collective. The grid that `old` is, shared among the ranks by `weight` of its local cells (>= 0;
+ * 0: empty). *reached: the largest weight of a rank over the mean that such a sharing has; if that
+ * is more than `worst` there is no use in it, and *grid stays NULL. `old` stays as it is. Not for
+ * clouds. */
 PetscErrorCode GridRepartition(const Grid *old, const PetscReal *weight, PetscReal worst, PetscReal *reached,
                                Grid **grid);
-/* Collective. Who has what, as a table, and the same grid shared in that way by as many ranks. reason is left empty, or says on every rank why
- * not. */
+/* Collective. Who has what, as a table, and the same grid shared in that way by as many ranks.
+ * reason is left empty, or says on every rank why not. */
 PetscErrorCode GridPartitionToTable(const Grid *grid, Tables *tables);
 PetscErrorCode GridFromPartition(const Grid *old, const Table *table, Grid **grid, char reason[256]);
 
@@ -74,7 +81,8 @@ const GridSet *grid_find_set(const Grid *grid, const char *name);
 /* Names of all sets, NULL-terminated, to be freed with PetscFree (not the names). */
 PetscErrorCode GridSetNames(const Grid *grid, const char ***names);
 
-/* Local nodes that the selector takes (sorted). With no condition at all: the whole outer boundary. */
+/* Local nodes that the selector takes (sorted). With no condition at all: the whole outer
+ * boundary. */
 PetscErrorCode GridSelectNodes(const Grid *grid, const Selector *on, PetscInt *n, PetscInt **nodes);
 /* Does a place in space, that is, the selector's ranges and shape, hold x? */
 PetscBool grid_takes(const Grid *grid, const Selector *on, const PetscReal *x);
@@ -91,13 +99,30 @@ PetscInt grid_locate(const Grid *grid, const PetscReal *x, PetscInt guess, Petsc
 /* The nearest position inside the grid as a whole (for `outside: keep-on-boundary`): of a box
  * exactly; of a mesh the nearest boundary face of this rank. */
 void grid_clamp(const Grid *grid, PetscReal *x);
-/* Ranks other than this one whose cells may hold x, at most `max`; returns how many. O(1) on boxes. */
+/* Ranks other than this one whose cells may hold x, at most `max`; returns how many. O(1) on
+ * boxes. */
 PetscInt grid_candidates(const Grid *grid, const PetscReal *x, PetscInt max, PetscMPIInt *ranks);
+
+/* Do its sides lie across the axes? */
+PetscBool grid_is_aligned(const Grid *grid);
+/* Is it always shared in the same way among as many ranks, when it is made for the same case? */
+PetscBool grid_starts_alike(const Grid *grid);
+/* Are all cells cut from squares or cubes of one size? */
+PetscBool grid_cells_alike(const Grid *grid);
 
 /* Ghost exchange for an array of n_nodes x components: owner to ghosts, and the sum of all copies
  * to the owner (the ghosts keep their part). Collective. */
 PetscErrorCode GridToGhosts(const Grid *grid, PetscInt components, PetscReal *values);
 PetscErrorCode GridSumToOwners(const Grid *grid, PetscInt components, PetscReal *values);
+
+static inline PetscBool grid_is_mixed(const Grid *grid) { return grid->first_type != grid->type; }
+
+static inline CellType grid_cell_type(const Grid *grid, PetscInt cell)
+{
+  return cell < grid->n_first ? grid->first_type : grid->type;
+}
+
+static inline const Cell *grid_cell(const Grid *grid, PetscInt cell) { return cells + grid_cell_type(grid, cell); }
 
 /* Node positions of a cell, nodes_per_cell x dim. */
 static inline void grid_cell_x(const Grid *grid, PetscInt cell, PetscReal *x)
@@ -106,3 +131,8 @@ static inline void grid_cell_x(const Grid *grid, PetscInt cell, PetscReal *x)
   for (PetscInt i = 0; i < nn; ++i)
     for (PetscInt d = 0; d < dim; ++d) x[i * dim + d] = grid->x[node[i] * dim + d];
 }
+/* Mean of its nodes; a third coordinate that the grid does not have is 0. */
+void grid_cell_centre(const Grid *grid, PetscInt cell, PetscReal centre[3]);
+/* Shape functions N (nodes_per_cell) of the cell at xi; 0 for those nodes that a cell of fewer
+ * repeats. */
+void grid_shape(const Grid *grid, PetscInt cell, const PetscReal *xi, PetscReal *N);

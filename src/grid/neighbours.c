@@ -87,7 +87,8 @@ PetscErrorCode NeighboursDestroy(Neighbours *b)
   PetscFunctionReturn(0);
 }
 
-/* The order of two positions at the same distance: by coordinates, since numbers are not the same on any number of ranks. */
+/* The order of two positions at the same distance: by coordinates, since numbers are not the same
+ * on any number of ranks. */
 static inline PetscBool stands_behind(const Neighbours *b, PetscInt i, PetscInt j)
 {
   for (PetscInt d = 0; d < b->dim; ++d) {
@@ -97,7 +98,8 @@ static inline PetscBool stands_behind(const Neighbours *b, PetscInt i, PetscInt 
   return PETSC_FALSE;
 }
 
-/* Insert among n by distance; clouds are small. If there are max already, the farthest gives way. */
+/* Insert among n by distance; clouds are small. If there are max already, the farthest gives
+ * way. */
 static inline PetscInt insert(const Neighbours *b, PetscInt n, PetscInt max, PetscInt *item, PetscReal *distance2,
                               PetscInt i, PetscReal d2)
 {
@@ -153,7 +155,8 @@ static PetscInt insert_all(const Neighbours *b, const PetscReal *x, PetscReal ra
 
 #define FEW (8 * LANES)
 
-/* All of them as they come; -1 if there are more than FEW. Without a branch, since which are near enough cannot be foretold. */
+/* All of them as they come; -1 if there are more than FEW. Without a branch, since which are near
+ * enough cannot be foretold. */
 static inline PetscInt collect(const PetscInt dim, const Neighbours *b, const PetscReal *x, PetscReal radius,
                                PetscInt *item, PetscReal *distance2)
 {
@@ -174,7 +177,8 @@ static inline PetscInt collect(const PetscInt dim, const Neighbours *b, const Pe
   return n;
 }
 
-/* The place of each among all, by counting the nearer ones; PETSC_FALSE if two are at the same distance. */
+/* The place of each among all, by counting the nearer ones; PETSC_FALSE if two are at the same
+ * distance. */
 static inline PetscBool count_nearer(PetscInt n, PetscReal *distance2, PetscInt *place)
 {
   const PetscInt packs = (n + LANES - 1) / LANES;

@@ -11,13 +11,13 @@ typedef struct {
   PetscReal *at;          /* the positions by their numbers */
 } Neighbours;
 
-/* The first n of the positions, and then more of them (each x dim); those with skip[i] are left out (NULL: none). Bins have an edge of
- * `size` or more. */
+/* The first n of the positions, and then more of them (each x dim); those with skip[i] are left out
+ * (NULL: none). Bins have an edge of `size` or more. */
 PetscErrorCode NeighboursCreate(PetscInt dim, PetscInt n, const PetscReal *x, PetscInt n_more, const PetscReal *more,
                                 const unsigned char *skip, PetscReal size, Neighbours *neighbours);
 PetscErrorCode NeighboursDestroy(Neighbours *neighbours);
 
-/* Positions nearer to x than radius, nearest first, and no more than the nearest max of them: their numbers and squared distances.
- * Returns how many were written. */
+/* Positions nearer to x than radius, nearest first, and no more than the nearest max of them: their
+ * numbers and squared distances. Returns how many were written. */
 PetscInt neighbours_within(const Neighbours *neighbours, const PetscReal *x, PetscReal radius, PetscInt max,
                            PetscInt *item, PetscReal *distance2);

@@ -4,7 +4,7 @@
  * below the middle m take what lies below the cut. Entry m of `cut` is that cut, so that the tree
  * needs no pointers. Each rank knows the weights of some voxels; only histograms along the axes
  * travel. Weights are whole numbers, so that the cuts do not depend on who knows what. */
-#include "grid/grid_private.h"
+#include "grid/partition.h"
 
 /* Weight of an empty voxel relative to the mean of those that carry something: its nodes still cost
  * memory and loops. */
@@ -125,8 +125,9 @@ static PetscErrorCode FillHistograms(MPI_Comm comm, const Share *share, PetscInt
   PetscFunctionReturn(0);
 }
 
-/* Where `fraction` of the histogram lies below; never at an end, unless there is but one layer: then
- * the lower half takes it. *cost: what lies on the wrong side, and what is cut through, of all. */
+/* Where `fraction` of the histogram lies below; never at an end, unless there is but one layer:
+ * then the lower half takes it. *cost: what lies on the wrong side, and what is cut through, of
+ * all. */
 static PetscInt best_cut(PetscInt n, PetscInt layer, const PetscInt64 *histogram, PetscReal fraction, PetscReal *cost)
 {
   PetscReal total = 0, below = 0;

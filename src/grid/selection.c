@@ -2,7 +2,7 @@
  *
  * A selector is judged by positions and by sets that know their ghosts, so all ranks agree on a
  * shared node. */
-#include "grid/grid_private.h"
+#include "grid/grid.h"
 
 static PetscBool has_range(const Selector *on) { return on->has[0] || on->has[1] || on->has[2]; }
 
@@ -26,8 +26,8 @@ PetscBool grid_takes(const Grid *grid, const Selector *on, const PetscReal *x)
   return takes_position(grid, on, selection_tolerance(grid), x);
 }
 
-/* The set whose nodes and faces are looked at. A place in space chooses among `all`, where that is given, and else
- * on the outer boundary. An unknown name selects nothing. */
+/* The set whose nodes and faces are looked at. A place in space chooses among `all`, where that is
+ * given, and else on the outer boundary. An unknown name selects nothing. */
 static const GridSet *base_set(const Grid *grid, const Selector *on, const GridSet *all, const GridSet *nothing)
 {
   if (on->boundary) {
@@ -57,7 +57,7 @@ PetscErrorCode GridSelectNodes(const Grid *grid, const Selector *on, PetscInt *n
 /* A face is taken if all its nodes are. */
 static PetscBool takes_face(const Grid *grid, const Selector *on, PetscReal tolerance, PetscInt cell, PetscInt side)
 {
-  const Cell *shape = cells + grid->type;
+  const Cell *shape = grid_cell(grid, cell);
   const PetscInt *node = grid->cell_node + cell * grid->nodes_per_cell;
   for (PetscInt i = 0; i < shape->face_nodes; ++i)
     if (!takes_position(grid, on, tolerance, grid->x + node[shape->face[side][i]] * grid->dim)) return PETSC_FALSE;

@@ -1,5 +1,5 @@
 /* A hash table of small sets of nodes, by which the two cells of a face find each other. */
-#include "grid/gmsh/msh.h"
+#include "grid/tuple_table.h"
 
 struct TupleTable {
   PetscInt width, n;
@@ -64,7 +64,7 @@ static size_t find_slot(const TupleTable *table, const PetscInt *key)
 
 PetscInt tuple_find(const TupleTable *table, const PetscInt *nodes)
 {
-  PetscInt key[MSH_MAX_NODES];
+  PetscInt key[TUPLE_MAX_WIDTH];
   sort_small(table->width, nodes, key);
   return table->slot[find_slot(table, key)] - 1;
 }
@@ -72,7 +72,7 @@ PetscInt tuple_find(const TupleTable *table, const PetscInt *nodes)
 PetscInt tuple_add(TupleTable *table, const PetscInt *nodes)
 {
   PetscInt *key = table->key + table->n * table->width;
-  PetscInt sorted[MSH_MAX_NODES];
+  PetscInt sorted[TUPLE_MAX_WIDTH];
   sort_small(table->width, nodes, sorted);
   const size_t s = find_slot(table, sorted);
   if (table->slot[s]) return table->slot[s] - 1;

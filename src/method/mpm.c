@@ -86,7 +86,6 @@ static PetscErrorCode Stabilise(Discretisation *s)
 {
   const Support *w = s->support;
   const PetscInt dim = s->grid->dim;
-  const PetscBool hourglass = s->grid->nodes_per_cell > dim + 1;
   PetscReal x[3 * CELL_MAX_NODES];
 
   PetscFunctionBeginUser;
@@ -109,9 +108,11 @@ static PetscErrorCode Stabilise(Discretisation *s)
       modulus = PetscMax(modulus, s->materials[s->points->material[p]].wave_modulus);
       shear = PetscMax(shear, s->materials[s->points->material[p]].elastic.shear);
     }
-    grid_cell_x(s->grid, s->points->cell[w->point_start[g]], x);
-    const PetscReal volume = cell_volume(s->grid->type, x);
-    const PetscReal corner = hourglass ? emptiest_corner(w, g, s->points->real[POINT_MASS], mass) : 1;
+    const PetscInt cell = s->points->cell[w->point_start[g]];
+    grid_cell_x(s->grid, cell, x);
+    const PetscReal volume = cell_volume(grid_cell_type(s->grid, cell), x);
+    const PetscReal corner =
+      grid_cell(s->grid, cell)->nodes > dim + 1 ? emptiest_corner(w, g, s->points->real[POINT_MASS], mass) : 1;
     const PetscReal lack = PetscMax(0, 1 - PetscMin(filled / volume, corner));
     const PetscReal size = dim == 2 ? PetscSqrtReal(volume) : cbrt(volume);
     s->lumping[g] = s->c->analysis.mass == MASS_LUMPED ? 1 : s->c->stabilisation.mass * lack;

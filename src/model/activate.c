@@ -67,7 +67,7 @@ static PetscErrorCode AddRings(const Model *m, const unsigned char *occupied, un
 /* The system for these groups and what nodal forces couple; frees the groups. */
 static PetscErrorCode BuildSystem(Model *m, NodeGroups *groups)
 {
-  const NodalScene scene = nodal_scene(m, m->time, m->du);
+  const NodalScene scene = nodal_scene(m, m->time, m->nodes->du);
 
   PetscFunctionBeginUser;
   PetscCall(NodalForcesCouple(&m->forces, &scene, groups));
@@ -79,15 +79,19 @@ static PetscErrorCode BuildSystem(Model *m, NodeGroups *groups)
 
 PetscErrorCode ModelEnable(Model *m)
 {
-  const PetscInt nn = m->grid->nodes_per_cell;
+  const PetscInt stride = m->grid->nodes_per_cell;
   NodeGroups groups = {.n = 0};
 
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(m->grid->n_cells * nn, &groups.node));
+  PetscCall(PetscMalloc1(m->grid->n_cells * stride, &groups.node));
   PetscCall(PetscMalloc1(m->grid->n_cells + 1, &groups.start));
-  for (PetscInt c = 0; c < m->grid->n_cells; ++c)
-    if (m->enabled[c]) PetscCall(PetscArraycpy(groups.node + groups.n++ * nn, m->grid->cell_node + c * nn, nn));
-  for (PetscInt g = 0; g <= groups.n; ++g) groups.start[g] = g * nn;
+  groups.start[0] = 0;
+  for (PetscInt c = 0; c < m->grid->n_cells; ++c) {
+    const PetscInt nn = grid_cell(m->grid, c)->nodes, first = groups.start[groups.n];
+    if (!m->enabled[c]) continue;
+    PetscCall(PetscArraycpy(groups.node + first, m->grid->cell_node + c * stride, nn));
+    groups.start[++groups.n] = first + nn;
+  }
   PetscCall(BuildSystem(m, &groups));
   PetscFunctionReturn(0);
 }

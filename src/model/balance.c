@@ -79,9 +79,9 @@ PetscErrorCode ModelRegrid(Model *m, Grid *grid, PetscInt *moved)
   PetscCall(NodalFieldsToTables(m->nodes, PETSC_FALSE, m->boundary->fixed, kept));
   PetscCall(ForcesToTables(m, kept));
   *moved = 0;
-  PetscCall(PointsRegrid(m->points, m->grid, grid, moved));
+  PetscCall(PointsRepartition(m->points, m->grid, grid, moved));
   PetscInt followers = 0;
-  PetscCall(PointsRegrid(m->tracers, m->grid, grid, &followers));
+  PetscCall(PointsRepartition(m->tracers, m->grid, grid, &followers));
   PetscCall(LoadsRegrid(m->loads, m->grid, grid));
   PetscCall(BoundaryRegrid(&m->boundary, grid));
   PetscCall(ModelDestroyFields(m));

@@ -71,7 +71,7 @@ void outside_judge(const Model *m, StepReport *report)
 /* The axis along which a side of a cell looks out of the grid: that of the largest component of its normal. */
 static PetscInt side_axis(const Model *m, PetscInt cell, PetscInt side, PetscReal *direction)
 {
-  const Cell *type = &cells[m->grid->type];
+  const Cell *type = grid_cell(m->grid, cell);
   const PetscInt dim = m->dim, *corner = type->face[side];
   PetscReal x[3 * CELL_MAX_NODES], a[3] = {0, 0, 0}, b[3] = {0, 0, 1}, n[3];
   PetscInt axis = 0;
@@ -90,9 +90,9 @@ static PetscInt side_axis(const Model *m, PetscInt cell, PetscInt side, PetscRea
 /* Is a node of the side held along the axis? */
 static PetscBool is_held(const Model *m, PetscInt cell, PetscInt side, PetscInt axis)
 {
-  const Cell *type = &cells[m->grid->type];
+  const Cell *type = grid_cell(m->grid, cell);
   for (PetscInt k = 0; k < type->face_nodes; ++k) {
-    const PetscInt node = m->grid->cell_node[cell * type->nodes + type->face[side][k]];
+    const PetscInt node = m->grid->cell_node[cell * m->grid->nodes_per_cell + type->face[side][k]];
     if (m->boundary->fixed[node * m->dim + axis]) return PETSC_TRUE;
   }
   return PETSC_FALSE;

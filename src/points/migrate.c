@@ -1,4 +1,5 @@
-/* Messages between ranks: who holds a position, and the points themselves. All traffic is among neighbours. */
+/* Messages between ranks: who holds a position, and the points themselves. All traffic is among
+ * neighbours. */
 #include "base/exchange.h"
 #include "points/migrate.h"
 #include "points/fields.h"
@@ -68,7 +69,8 @@ static PetscErrorCode FillQuestions(const Leavers *l, const Points *points, cons
   PetscFunctionReturn(0);
 }
 
-/* Send the questions, answer those of others: yes[place] tells whether the rank asked holds the position. */
+/* Send the questions, answer those of others: yes[place] tells whether the rank asked holds the
+ * position. */
 static PetscErrorCode Ask(const Exchange *e, const Grid *grid, PetscReal *x, char *yes)
 {
   const PetscInt n_asked = e->from_start[e->n_from], dim = grid->dim;

@@ -26,8 +26,8 @@ static inline PetscBool position_is_finite(PetscInt dim, const PetscReal *x)
   return sum == 0;
 }
 
-/* Point p is on its way out: before it is dropped or put back, and (gone = -1) after it was put back with what it has
- * kept. */
+/* Point p is on its way out: before it is dropped or put back, and (gone = -1) after it was put
+ * back with what it has kept. */
 static inline void tally_outside(Points *points, PetscInt p, PetscReal gone)
 {
   OutsideTally *t = &points->outside;
@@ -42,17 +42,17 @@ static inline void tally_outside(Points *points, PetscInt p, PetscReal gone)
   for (PetscInt d = 0; d < points->dim; ++d) t->place[d] = point_real(points, POINT_X, p)[d];
 }
 
-/* Collective: ask the ranks that might hold them for the leavers without an owner; the lowest that does
- * becomes owner. */
+/* Collective: ask the ranks that might hold them for the leavers without an owner; the lowest that
+ * does becomes owner. */
 PetscErrorCode LeaversFindOwners(const Leavers *leavers, const Points *points, const Grid *grid);
-/* Collective: move leavers that nobody holds to the nearest position in the grid, and find their owner
- * there. */
-PetscErrorCode LeaversKeepOnBoundary(const Leavers *leavers, Points *points, const Grid *grid);
-/* Collective: pack the leavers that have an owner and send them; arrivals is what others sent. The points
- * stay in the table. */
+/* Collective: move leavers that nobody holds to the nearest position in the grid, and find their
+ * owner there. */
+PetscErrorCode LeaversClamp(const Leavers *leavers, Points *points, const Grid *grid);
+/* Collective: pack the leavers that have an owner and send them; arrivals is what others sent. The
+ * points stay in the table. */
 PetscErrorCode LeaversSend(const Leavers *leavers, const Points *points, const Grid *grid, Arrivals *arrivals);
 /* Append what arrived, each point with its cell and reference position. */
 PetscErrorCode ArrivalsUnpack(Arrivals *arrivals, Points *points, const Grid *grid);
-/* Collective: send the leavers that have an owner, drop the points with gone[p], and append what arrived as it is: the cells are those of the
- * receiver already. */
+/* Collective: send the leavers that have an owner, drop the points with gone[p], and append what
+ * arrived as it is: the cells are those of the receiver already. */
 PetscErrorCode LeaversMove(const Leavers *leavers, Points *points, const Grid *grid, const PetscBool *gone);

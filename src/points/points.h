@@ -125,7 +125,7 @@ PetscErrorCode PointsTransfer(Points *points, const Grid *grid, const PetscMPIIn
 
 /* Collective. Points of `old`, in the order of its cells, go to the ranks that have their cells in `grid`, which is the same grid shared in another way, and get
  * sorted. *moved grows by the points that leave this rank. */
-PetscErrorCode PointsRegrid(Points *points, const Grid *old, const Grid *grid, PetscInt *moved);
+PetscErrorCode PointsRepartition(Points *points, const Grid *old, const Grid *grid, PetscInt *moved);
 
 /* A point found outside the grid. */
 typedef struct {

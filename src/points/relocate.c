@@ -1,7 +1,8 @@
-/* Points find their cells again after they moved; those that left this rank's part of the grid migrate.
+/* Points find their cells again after they moved; those that left this rank's part of the grid
+ * migrate.
  *
- * While the search runs, cell = -2 - old stands for "not found here, was in old": no list is needed until
- * some point leaves, and a step in which none does costs one small reduction. */
+ * While the search runs, cell = -2 - old stands for "not found here, was in old": no list is needed
+ * until some point leaves, and a step in which none does costs one small reduction. */
 #include <stdlib.h>
 #include "points/migrate.h"
 #include "points/fields.h"
@@ -128,8 +129,8 @@ static PetscErrorCode ReportLost(const Leavers *l, const Points *points, const G
   PetscFunctionReturn(0);
 }
 
-/* Forget the points that were sent, and the lost ones if the policy says so. A position that is no number
- * is never dropped: something is wrong, and the caller shall see it. */
+/* Forget the points that were sent, and the lost ones if the policy says so. A position that is no
+ * number is never dropped: something is wrong, and the caller shall see it. */
 static PetscErrorCode DropGone(const Leavers *l, Points *points, OutsidePolicy policy)
 {
   PetscBool *drop;
@@ -157,7 +158,7 @@ static PetscErrorCode Migrate(Leavers *l, Points *points, const Grid *grid, Outs
   Arrivals arrivals;
   PetscFunctionBeginUser;
   PetscCall(LeaversFindOwners(l, points, grid));
-  if (policy == OUTSIDE_KEEP) PetscCall(LeaversKeepOnBoundary(l, points, grid));
+  if (policy == OUTSIDE_KEEP) PetscCall(LeaversClamp(l, points, grid));
   PetscCall(ReportLost(l, points, grid, n_lost, lost));
   PetscCall(LeaversSend(l, points, grid, &arrivals));
   PetscCall(DropGone(l, points, policy));

@@ -1,6 +1,6 @@
-/* Points in the order of their cells: the point loop then meets a cell's nodes once, and neighbours in
- * memory are neighbours in space. A counting sort over the cells, so that the cost is linear; lost points
- * stand last. */
+/* Points in the order of their cells: the point loop then meets a cell's nodes once, and neighbours
+ * in memory are neighbours in space. A counting sort over the cells, so that the cost is linear;
+ * lost points stand last. */
 #include <stdlib.h>
 #include "points/fields.h"
 
@@ -32,7 +32,8 @@ static int compare(const void *a, const void *b, void *points)
   return before(points, q, p) - before(points, p, q);
 }
 
-/* Order the points of one cell. They are few and mostly in order already: insertion, unless there are many. */
+/* Order the points of one cell. They are few and mostly in order already: insertion, unless there
+ * are many. */
 static void sort_run(Points *points, PetscInt n, PetscInt *order)
 {
   if (n > 64) {

@@ -58,23 +58,25 @@ static void count_groups(const Points *points, PetscInt *groups, PetscInt *locat
   *located = p;
 }
 
-static void fill_groups(Support *s, const Points *points, const Grid *grid, PetscInt located)
+/* Cells of the lesser kind stand first, and so do their groups: returns how many these are. */
+static PetscInt fill_groups(Support *s, const Points *points, const Grid *grid, PetscInt located)
 {
-  const PetscInt nn = grid->nodes_per_cell;
-  PetscInt g = 0;
-  for (PetscInt p = 0, last = -1; p < located; ++p) {
+  PetscInt g = 0, nn = 0, nodes = 0, values = 0, n_first = 0;
+  for (PetscInt p = 0, last = -1; p < located; ++p, values += nn) {
     const PetscInt cell = points->cell[p];
     if (cell == last) continue;
     last = cell;
+    nn = grid_cell(grid, cell)->nodes;
+    n_first += cell < grid->n_first;
     s->point_start[g] = p;
-    s->node_start[g] = g * nn;
-    s->value_start[g] = p * nn;
-    for (PetscInt i = 0; i < nn; ++i) s->node[g * nn + i] = grid->cell_node[cell * nn + i];
-    ++g;
+    s->node_start[g] = nodes;
+    s->value_start[g++] = values;
+    for (PetscInt i = 0; i < nn; ++i) s->node[nodes++] = grid->cell_node[cell * grid->nodes_per_cell + i];
   }
   s->point_start[g] = located;
-  s->node_start[g] = g * nn;
-  s->value_start[g] = located * nn;
+  s->node_start[g] = nodes;
+  s->value_start[g] = values;
+  return n_first;
 }
 
 /* A simplex has one gradient for all its points. */
@@ -101,15 +103,28 @@ CELL_INLINE void evaluate_group(CellType type, const PetscReal *x, const PetscRe
   for (PetscInt k = 0; k < n; ++k) (void)cell_kernel_gradients(type, x, xi + k * dim, N + k * nn, dN + k * nn * dim);
 }
 
-CELL_INLINE void evaluate(CellType type, const Support *s, const PetscReal *grid_x, const PetscReal *xi)
+CELL_INLINE void evaluate(CellType type, const Support *s, const SupportRun *run, const PetscReal *grid_x,
+                          const PetscReal *xi)
 {
   const int dim = cell_kernel_dim(type), nn = cell_kernel_nodes(type);
-  for (PetscInt g = 0; g < s->n_groups; ++g) {
-    const PetscInt *node = s->node + g * nn, first = s->point_start[g], n = s->point_start[g + 1] - first;
+  for (PetscInt g = run->first; g < run->end; ++g) {
+    const PetscInt *node = s->node + s->node_start[g], first = s->point_start[g], n = s->point_start[g + 1] - first;
     PetscReal x[CELL_MAX_NODES * 3];
     for (int i = 0; i < nn; ++i)
       for (int d = 0; d < dim; ++d) x[i * dim + d] = grid_x[node[i] * dim + d];
-    evaluate_group(type, x, xi + first * dim, n, s->N + first * nn, s->dN + first * nn * dim);
+    evaluate_group(type, x, xi + first * dim, n, s->N + s->value_start[g], s->dN + s->value_start[g] * dim);
+  }
+}
+
+static void add_run(Support *s, CellType type, PetscInt first, PetscInt end, const PetscReal *x, const PetscReal *xi)
+{
+  SupportRun *run = &s->run[s->n_runs++];
+  *run = (SupportRun){.nodes = cells[type].nodes, .first = first, .end = end};
+  switch (type) { /* a literal in each case: the kernels are compiled for that cell */
+  case CELL_TRIANGLE: evaluate(CELL_TRIANGLE, s, run, x, xi); break;
+  case CELL_QUADRILATERAL: evaluate(CELL_QUADRILATERAL, s, run, x, xi); break;
+  case CELL_TETRAHEDRON: evaluate(CELL_TETRAHEDRON, s, run, x, xi); break;
+  case CELL_HEXAHEDRON: evaluate(CELL_HEXAHEDRON, s, run, x, xi); break;
   }
 }
 
@@ -122,16 +137,10 @@ PetscErrorCode SupportFromCells(Support *support, const Points *points, const Gr
              "points of %" PetscInt_FMT " dimensions in a grid of %" PetscInt_FMT, points->dim, grid->dim);
   count_groups(points, &groups, &located);
   PetscCall(SupportReserve(support, groups, groups * grid->nodes_per_cell, located * grid->nodes_per_cell, grid->dim));
+  const PetscInt n_first = fill_groups(support, points, grid, located);
   support->n_groups = groups;
-  support->uniform = grid->nodes_per_cell;
-  support->n_runs = 1;
-  support->run[0] = (SupportRun){.nodes = grid->nodes_per_cell, .first = 0, .end = groups};
-  fill_groups(support, points, grid, located);
-  switch (grid->type) { /* a literal in each case: the kernels are compiled for that cell */
-  case CELL_TRIANGLE: evaluate(CELL_TRIANGLE, support, grid->x, xi); break;
-  case CELL_QUADRILATERAL: evaluate(CELL_QUADRILATERAL, support, grid->x, xi); break;
-  case CELL_TETRAHEDRON: evaluate(CELL_TETRAHEDRON, support, grid->x, xi); break;
-  case CELL_HEXAHEDRON: evaluate(CELL_HEXAHEDRON, support, grid->x, xi); break;
-  }
+  support->n_runs = 0;
+  if (n_first) add_run(support, grid->first_type, 0, n_first, grid->x, xi);
+  if (!n_first || n_first < groups) add_run(support, grid->type, n_first, groups, grid->x, xi);
   PetscFunctionReturn(0);
 }

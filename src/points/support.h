@@ -27,8 +27,7 @@ typedef struct Support {
   PetscInt *node;        /* local nodes of the grid or cloud */
   PetscInt *value_start; /* n_groups + 1: N of point k of group g at value_start[g] + k * nn, dN at dim times that */
   PetscReal *N, *dN;
-  PetscInt uniform; /* nodes per group if it is the same for all, else 0 */
-  PetscInt n_runs;  /* 0 where every point is a group of its own, with as many nodes as it likes */
+  PetscInt n_runs; /* 0 where every point is a group of its own, with as many nodes as it likes */
   SupportRun run[SUPPORT_MAX_RUNS];
 } Support;
 

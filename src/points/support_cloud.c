@@ -114,7 +114,7 @@ static PetscErrorCode Fill(Support *s, PetscInt n, const PetscReal *x, const Poi
   PetscFunctionBeginUser;
   PetscCall(SupportReserve(s, n, 0, 0, dim));
   s->n_groups = n;
-  s->uniform = s->n_runs = 0;
+  s->n_runs = 0;
   for (PetscInt p = 0; p < n; ++p) {
     PetscCall(Grow(s, entries, dim));
     s->point_start[p] = p;

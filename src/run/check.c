@@ -21,7 +21,8 @@ static PETSC_ATTRIBUTE_FORMAT(3, 4) void say(const Model *m, FILE *out, const ch
 /* A point on a face belongs to two cells: which one it feels is a matter of round-off. */
 static PetscBool is_on_face(const Model *m, PetscInt p)
 {
-  return PetscAbsReal(cell_outside(m->grid->type, point_real(m->points, POINT_XI, p))) < 1e-9;
+  const CellType type = grid_cell_type(m->grid, m->points->cell[p]);
+  return PetscAbsReal(cell_outside(type, point_real(m->points, POINT_XI, p))) < 1e-9;
 }
 
 static PetscErrorCode CountBodies(const Model *m, BodyCount *count)
@@ -55,7 +56,7 @@ static PetscErrorCode CountGaps(const Model *m, PetscInt body, PetscInt *gaps)
 {
   const BodySpec *spec = &m->c->bodies[body];
   PetscInt local = 0;
-  PetscReal x[3 * CELL_MAX_NODES], centre[3];
+  PetscReal centre[3];
   PetscBool *filled;
 
   PetscFunctionBeginUser;
@@ -64,12 +65,7 @@ static PetscErrorCode CountGaps(const Model *m, PetscInt body, PetscInt *gaps)
   PetscCall(PetscCalloc1(m->grid->n_cells, &filled));
   for (PetscInt p = 0; p < m->points->n; ++p) filled[m->points->cell[p]] = PETSC_TRUE;
   for (PetscInt c = 0; spec->has_shape && c < m->grid->n_cells; ++c) {
-    const PetscInt nn = m->grid->nodes_per_cell;
-    grid_cell_x(m->grid, c, x);
-    for (PetscInt d = 0; d < m->dim; ++d) {
-      centre[d] = 0;
-      for (PetscInt i = 0; i < nn; ++i) centre[d] += x[i * m->dim + d] / (PetscReal)nn;
-    }
+    grid_cell_centre(m->grid, c, centre);
     local += !filled[c] && shape_contains(&spec->shape, m->dim, centre, 0);
   }
   PetscCall(MPIU_Allreduce(&local, gaps, 1, MPIU_INT, MPI_SUM, m->comm));

@@ -273,6 +273,9 @@ static PetscErrorCode WriteGrid(Output *o, Model *m, PetscBool *ok, char reason[
                  .connectivity = grid->cell_node,
                  .nodes_per_cell = grid->nodes_per_cell,
                  .vtk_type = cells[grid->type].vtk_type,
+                 .n_first = grid->n_first,
+                 .first_nodes = cells[grid->first_type].nodes,
+                 .first_type = cells[grid->first_type].vtk_type,
                  .n_point_fields = n,
                  .point_fields = fields,
                  .time = m->time};

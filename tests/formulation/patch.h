@@ -81,7 +81,7 @@ static inline void patch_support(Patch *p, const Variant *variant)
   CALL(NeighboursCreate(p->grid->dim, p->grid->n_nodes, p->grid->x, 0, NULL, NULL, 0.5, &nodes));
   CALL(SupportFromClouds(p->support, p->points, &nodes, &rule, &tally));
   CALL(NeighboursDestroy(&nodes));
-  assert_int_equal(p->support->uniform, 0);
+  assert_int_equal(p->support->n_runs, 0);
   assert_int_equal(tally.level[SUPPORT_LOOSE] + tally.level[SUPPORT_EMPTY], 0);
 }
 

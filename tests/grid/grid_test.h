@@ -57,7 +57,7 @@ static inline PetscReal grid_volume(const Grid *grid)
   for (PetscInt cell = 0; cell < grid->n_cells; ++cell) {
     PetscReal x[3 * CELL_MAX_NODES];
     grid_cell_x(grid, cell, x);
-    const PetscReal v = cell_volume(grid->type, x);
+    const PetscReal v = cell_volume(grid_cell_type(grid, cell), x);
     assert_true(v > 0);
     volume += v;
   }
@@ -67,9 +67,9 @@ static inline PetscReal grid_volume(const Grid *grid)
 /* The position that N makes of the cell's nodes. */
 static inline void interpolate(const Grid *grid, PetscInt cell, const PetscReal *xi, PetscReal *x)
 {
-  PetscReal N[CELL_MAX_NODES], dN[3 * CELL_MAX_NODES], nodes[3 * CELL_MAX_NODES];
+  PetscReal N[CELL_MAX_NODES], nodes[3 * CELL_MAX_NODES];
   grid_cell_x(grid, cell, nodes);
-  cell_shape(grid->type, xi, N, dN);
+  grid_shape(grid, cell, xi, N);
   for (PetscInt d = 0; d < grid->dim; ++d) {
     x[d] = 0;
     for (PetscInt i = 0; i < grid->nodes_per_cell; ++i) x[d] += N[i] * nodes[i * grid->dim + d];
@@ -84,7 +84,7 @@ static inline PetscInt check_located(const Grid *grid, const PetscReal *x)
   const PetscInt cell = grid_locate(grid, x, -1, xi);
   if (cell < 0) return 0;
   assert_true(cell < grid->n_cells);
-  assert_true(cell_outside(grid->type, xi) < 1e-9);
+  assert_true(cell_outside(grid_cell_type(grid, cell), xi) < 1e-9);
   interpolate(grid, cell, xi, again);
   for (PetscInt d = 0; d < grid->dim; ++d) assert_true(PetscAbsReal(again[d] - x[d]) < 1e-10);
   assert_int_equal(grid_locate(grid, x, 0, xi), cell);
@@ -128,10 +128,10 @@ static inline void check_ghost_positions(const Grid *grid)
 /* Area of a set's faces and the sum of their normals, over all ranks. */
 static inline PetscReal faces_area(const Grid *grid, const GridSet *set, PetscReal normal[3])
 {
-  const Cell *shape = cells + grid->type;
   PetscReal area = 0;
   for (PetscInt d = 0; d < 3; ++d) normal[d] = 0;
   for (PetscInt f = 0; f < set->n_faces; ++f) {
+    const Cell *shape = grid_cell(grid, set->face_cell[f]);
     const PetscInt *node = grid->cell_node + set->face_cell[f] * grid->nodes_per_cell;
     const PetscReal *x[4];
     PetscReal n[3] = {0, 0, 0};

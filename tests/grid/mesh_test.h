@@ -4,14 +4,17 @@
 #include <string.h>
 #include "grid_test.h"
 
-/* One of each cell. */
+enum { MESHES = 5 };
+
+/* One of each cell, and a mixture. */
 static const struct {
   const char *source, *options;
   PetscInt dim;
-} meshes[] = {{"plane", "-2 -setnumber h 0.3", 2},
-              {"plane", "-2 -setnumber h 0.4 -setnumber quads 1", 2},
-              {"block", "-3 -setnumber n 2", 3},
-              {"block", "-3 -setnumber n 3 -setnumber bricks 1", 3}};
+} meshes[MESHES] = {{"plane", "-2 -setnumber h 0.3", 2},
+                    {"plane", "-2 -setnumber h 0.4 -setnumber quads 1", 2},
+                    {"block", "-3 -setnumber n 2", 3},
+                    {"block", "-3 -setnumber n 3 -setnumber bricks 1", 3},
+                    {"plane", "-2 -setnumber h 0.3 -setnumber quads 2", 2}};
 
 static char folder[64]; /* where the meshes of this run stand; the same on every rank */
 
@@ -96,7 +99,7 @@ static inline PetscReal region_volume(const Grid *grid, const char *name)
   for (PetscInt k = 0; k < set->n_cells; ++k) {
     PetscReal x[3 * CELL_MAX_NODES];
     grid_cell_x(grid, set->cells[k], x);
-    volume += cell_volume(grid->type, x);
+    volume += cell_volume(grid_cell_type(grid, set->cells[k]), x);
   }
   return sum_over_ranks(volume);
 }

@@ -1,4 +1,4 @@
-// Two unequal regions with a common line: triangles, or quadrilaterals if quads is 1.
+// Two unequal regions with a common line: triangles, or quadrilaterals if quads is 1, or some of each if it is 2.
 DefineConstant[ h = 0.2, quads = 0, order = 1 ];
 Point(1) = {0, 0, 0, h};
 Point(2) = {2, 0, 0, h};
@@ -18,7 +18,9 @@ Curve Loop(1) = {1, 7, 5, 6};
 Curve Loop(2) = {7, -4, -3, -2};
 Plane Surface(1) = {1};
 Plane Surface(2) = {2};
-If (quads)
+If (quads == 2)
+  Recombine Surface {2};
+ElseIf (quads)
   Mesh.SubdivisionAlgorithm = 1;
   Recombine Surface {1, 2};
 EndIf

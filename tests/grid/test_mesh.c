@@ -33,6 +33,22 @@ static void quadrilaterals(void **state)
   CALL(GridDestroy(&grid));
 }
 
+/* Half of the drawing is recombined; triangles stand before quadrilaterals on every rank. */
+static void mixed(void **state)
+{
+  (void)state;
+  generate("plane", "mixed.msh", "-2 -format msh22 -setnumber quads 2");
+  Grid *grid = read_mesh("mixed.msh", 2);
+  assert_int_equal(grid->type, CELL_QUADRILATERAL);
+  assert_int_equal(grid->first_type, CELL_TRIANGLE);
+  const PetscInt triangles = count_over_ranks(grid->n_first);
+  assert_true(triangles > 50 && grid->n_cells_global - triangles > 50);
+  for (PetscInt c = 0; c < grid->n_cells; ++c)
+    assert_int_equal(grid->cell_node[4 * c + 2] == grid->cell_node[4 * c + 3], c < grid->n_first);
+  check_plane(grid);
+  CALL(GridDestroy(&grid));
+}
+
 static void solids(void **state)
 {
   static const char *const options[] = {"-3 -format msh41 -bin", "-3 -format msh22",
@@ -62,7 +78,7 @@ static void solids(void **state)
 static void location(void **state)
 {
   (void)state;
-  for (int m = 0; m < 4; ++m) {
+  for (int m = 0; m < MESHES; ++m) {
     const PetscReal inside[8] = {1, 2, 3, 2.5, 1.5, 0.7, 0.9, 3}, node[8] = {0, 1}, edge[8] = {1, 1};
     generate(meshes[m].source, "where.msh", meshes[m].options);
     Grid *grid = read_mesh("where.msh", meshes[m].dim);
@@ -268,9 +284,9 @@ static void bad_meshes(void **state)
               "1 of 2 cells are inverted or have no volume: element 12");
   refuse_text(HEAD SQUARE "$Elements\n1\n11 3 2 0 1 1 3 2 4\n$EndElements\n", 2, "inverted"); /* a bow tie */
   refuse_text(HEAD
-              "$Nodes\n5\n1 0 0 0\n2 1 0 0\n3 2 0 0\n4 2 1 0\n5 0 1 0\n$EndNodes\n"
-              "$Elements\n2\n1 3 2 0 1 1 2 4 5\n2 2 2 0 1 2 3 4\n$EndElements\n",
-              2, "mixes 1 cells of type triangle with 1");
+              "$Nodes\n9\n1 0 0 0\n2 1 0 0\n3 1 1 0\n4 0 1 0\n5 0 0 1\n6 1 0 1\n7 1 1 1\n8 0 1 1\n9 2 0 0\n$EndNodes\n"
+              "$Elements\n2\n1 5 2 0 1 1 2 3 4 5 6 7 8\n2 4 2 0 1 2 9 3 6\n$EndElements\n",
+              3, "mixes 1 tetrahedra with 1 hexahedra");
   refuse_text(HEAD "$Nodes\n3\n1 0 0 0\n2 1 0 0.1\n3 1 1 0\n$EndNodes\n$Elements\n1\n1 2 2 0 1 1 2 3\n$EndElements\n",
               2, "node 2 has z = 0.1");
   refuse_text(HEAD
@@ -375,11 +391,12 @@ static void damaged_files(void **state)
 int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {
-    cmocka_unit_test(formats_agree),      cmocka_unit_test(quadrilaterals),     cmocka_unit_test(solids),
-    cmocka_unit_test(location),           cmocka_unit_test(inside_and_outside), cmocka_unit_test(clamp_solid),
-    cmocka_unit_test(weighted_partition), cmocka_unit_test(two_triangles),      cmocka_unit_test(through_gmsh),
-    cmocka_unit_test(bad_files),          cmocka_unit_test(bad_meshes),         cmocka_unit_test(bad_geo),
-    cmocka_unit_test(gmsh_is_missing),    cmocka_unit_test(truncated_files),    cmocka_unit_test(damaged_files),
+    cmocka_unit_test(formats_agree), cmocka_unit_test(quadrilaterals),     cmocka_unit_test(mixed),
+    cmocka_unit_test(solids),        cmocka_unit_test(location),           cmocka_unit_test(inside_and_outside),
+    cmocka_unit_test(clamp_solid),   cmocka_unit_test(weighted_partition), cmocka_unit_test(two_triangles),
+    cmocka_unit_test(through_gmsh),  cmocka_unit_test(bad_files),          cmocka_unit_test(bad_meshes),
+    cmocka_unit_test(bad_geo),       cmocka_unit_test(gmsh_is_missing),    cmocka_unit_test(truncated_files),
+    cmocka_unit_test(damaged_files),
   };
   return run_grid_tests(argc, argv, tests, sizeof tests / sizeof *tests, setup, teardown);
 }

@@ -1,6 +1,6 @@
 /* A mesh goes from rank to rank: what arrives is the grid that reading it would have made, whatever way it went; and the cuts balance weights. */
 #include "grid/directory.h"
-#include "grid/mesh/mesh_travel.h"
+#include "grid/mesh/mesh.h"
 #include "mesh_test.h"
 
 static PetscMPIInt ranks(void)
@@ -51,7 +51,8 @@ static void same_ghosts(const Grid *a, const Grid *b)
 static void same_grids(const Grid *a, const Grid *b)
 {
   const PetscInt n_sides = a->n_cells * cells[a->type].faces;
-  assert_true(a->dim == b->dim && a->type == b->type && a->nodes_per_cell == b->nodes_per_cell);
+  assert_true(a->dim == b->dim && a->type == b->type && a->first_type == b->first_type && a->n_first == b->n_first &&
+              a->nodes_per_cell == b->nodes_per_cell);
   assert_true(a->n_cells == b->n_cells && a->n_cells_global == b->n_cells_global);
   assert_true(a->n_owned == b->n_owned && a->n_nodes == b->n_nodes && a->n_nodes_global == b->n_nodes_global);
   assert_true(a->smallest == b->smallest);
@@ -60,11 +61,11 @@ static void same_grids(const Grid *a, const Grid *b)
   same_numbers(a->n_cells * a->nodes_per_cell, a->cell_node, b->cell_node);
   same_numbers(a->n_cells, a->global_cell, b->global_cell);
   same_numbers(a->n_nodes, a->global_node, b->global_node);
-  same_numbers(a->n_nodes, a->bins->file_node, b->bins->file_node);
-  same_numbers(n_sides, a->bins->neighbour, b->bins->neighbour);
+  same_numbers(a->n_nodes, a->mesh->file_node, b->mesh->file_node);
+  same_numbers(n_sides, a->mesh->neighbour, b->mesh->neighbour);
   for (PetscInt k = 0, f = 0; k < n_sides; ++k)
-    if (a->bins->neighbour[k] <= -2) {
-      assert_int_equal(a->bins->far_cell[f], b->bins->far_cell[f]);
+    if (a->mesh->neighbour[k] <= -2) {
+      assert_int_equal(a->mesh->far_cell[f], b->mesh->far_cell[f]);
       ++f;
     }
   same_reals(a->n_nodes * a->dim, a->x, b->x);
@@ -77,11 +78,8 @@ static void same_grids(const Grid *a, const Grid *b)
 
 static Grid *travel(const Grid *old, const PetscMPIInt *owner)
 {
-  MeshParcel parcel;
   Grid *grid;
-  CALL(MeshSend(old, owner, &parcel));
-  CALL(MeshSettle(old, &parcel, &grid));
-  CALL(MeshParcelDestroy(&parcel));
+  CALL(MeshFromOwners(old, owner, &grid));
   return grid;
 }
 
@@ -115,7 +113,7 @@ static void there_and_back(void **state)
 {
   static const PetscReal inside[8] = {1, 2, 3, 2.5, 1.5, 0.7, 0.9, 3}, node[8] = {0, 1};
   (void)state;
-  for (int m = 0; m < 4; ++m) {
+  for (int m = 0; m < MESHES; ++m) {
     generate(meshes[m].source, "travel.msh", meshes[m].options);
     Grid *home = read_mesh("travel.msh", meshes[m].dim);
     Grid *first = scatter(home, 1), *second = scatter(first, 7), *back = send_home(second, home);
@@ -143,7 +141,7 @@ static void all_to_one(void **state)
   Grid *grid = travel(home, owner);
   assert_int_equal(grid->n_cells, my_rank() == ranks() - 1 ? home->n_cells_global : 0);
   assert_int_equal(grid->n_nodes, my_rank() == ranks() - 1 ? home->n_nodes_global : 0);
-  for (PetscInt i = 0; i < grid->n_nodes; ++i) assert_int_equal(grid->bins->file_node[i], i);
+  for (PetscInt i = 0; i < grid->n_nodes; ++i) assert_int_equal(grid->mesh->file_node[i], i);
   check_plane(grid);
   Grid *back = send_home(grid, home);
   same_grids(home, back);
@@ -157,10 +155,8 @@ static void all_to_one(void **state)
 static void weigh_disk(const Grid *grid, PetscReal x, PetscReal y, PetscReal radius, PetscReal *weight)
 {
   for (PetscInt c = 0; c < grid->n_cells; ++c) {
-    PetscReal nodes[3 * CELL_MAX_NODES], at[3] = {0, 0, 0};
-    grid_cell_x(grid, c, nodes);
-    for (PetscInt i = 0; i < grid->nodes_per_cell; ++i)
-      for (PetscInt d = 0; d < grid->dim; ++d) at[d] += nodes[i * grid->dim + d] / (PetscReal)grid->nodes_per_cell;
+    PetscReal at[3];
+    grid_cell_centre(grid, c, at);
     weight[c] = PetscHypotReal(at[0] - x, at[1] - y) < radius ? 4.2 : 0;
   }
 }
@@ -234,7 +230,7 @@ static void by_table(void **state)
 {
   PetscReal reached;
   (void)state;
-  for (int m = 0; m < 4; ++m) {
+  for (int m = 0; m < MESHES; ++m) {
     char reason[256] = "";
     Tables *tables;
     Grid *again;

@@ -23,6 +23,7 @@ typedef struct {
   LoadSpec load[4];
   MeasureSpec measure[4];
   Amplitude amplitude;
+  PetscInt halved; /* in a mesh, of so many quadrilaterals one is two triangles; 0: none */
   char mesh[PETSC_MAX_PATH_LEN];
 } Bench;
 
@@ -250,9 +251,34 @@ static inline PetscBool on_plane(PetscReal x, PetscInt n, const PetscReal *plane
  * file. */
 typedef void (*BenchPlace)(void *context, PetscInt dim, PetscReal size, PetscReal *x);
 
-static inline void bench_mesh(Bench *b, BenchPlace place, void *context)
+/* An element of the file. */
+static inline void bench_element(FILE *out, PetscInt number, int type, PetscInt n, const PetscInt *node)
+{
+  fprintf(out, "%d %d 2 0 1", (int)number, type);
+  for (PetscInt i = 0; i < n; ++i) fprintf(out, " %d", (int)node[i] + 1);
+  fprintf(out, "\n");
+}
+
+static inline void bench_elements(const Bench *b, const Grid *grid, FILE *out)
 {
   static const int msh_type[] = {2, 3, 4, 5};
+  const PetscInt nn = grid->nodes_per_cell, n_halved = b->halved ? (grid->n_cells + b->halved - 1) / b->halved : 0;
+  PetscInt number = 0;
+  fprintf(out, "$EndNodes\n$Elements\n%d\n", (int)(grid->n_cells + n_halved));
+  for (PetscInt k = 0; k < grid->n_cells; ++k) {
+    const PetscInt *node = grid->cell_node + k * nn;
+    if (!b->halved || k % b->halved) {
+      bench_element(out, ++number, msh_type[grid->type], nn, node);
+      continue;
+    }
+    bench_element(out, ++number, msh_type[CELL_TRIANGLE], 3, node);
+    bench_element(out, ++number, msh_type[CELL_TRIANGLE], 3, (PetscInt[]){node[2], node[3], node[0]});
+  }
+  fprintf(out, "$EndElements\n");
+}
+
+static inline void bench_mesh(Bench *b, BenchPlace place, void *context)
+{
   PetscMPIInt rank;
   char folder[] = "/tmp/talus-test-XXXXXX";
   MPI_Comm_rank(PETSC_COMM_WORLD, &rank);
@@ -273,14 +299,7 @@ static inline void bench_mesh(Bench *b, BenchPlace place, void *context)
       for (PetscInt d = 0; d < 3; ++d) fprintf(out, " %.17g", d < grid->dim ? x[d] : 0.0);
       fprintf(out, "\n");
     }
-    fprintf(out, "$EndNodes\n$Elements\n%d\n", (int)grid->n_cells);
-    for (PetscInt k = 0; k < grid->n_cells; ++k) {
-      fprintf(out, "%d %d 2 0 1", (int)k + 1, msh_type[grid->type]);
-      for (PetscInt i = 0; i < grid->nodes_per_cell; ++i)
-        fprintf(out, " %d", (int)grid->cell_node[k * grid->nodes_per_cell + i] + 1);
-      fprintf(out, "\n");
-    }
-    fprintf(out, "$EndElements\n");
+    bench_elements(b, grid, out);
     fclose(out);
     CALL(GridDestroy(&grid));
     CALL(DiagDestroy(&diag));

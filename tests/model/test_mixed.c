@@ -80,7 +80,7 @@ static void check_patch(const Model *m)
   for (int k = 0; k < 3; ++k) CHECK(worst[k] <= 1e-10, "number %d is off by %g", k, (double)worst[k]);
 }
 
-static void patch(const char *method, CellType cell, const Solid *solid, PetscBool distorted)
+static void patch(const char *method, CellType cell, const Solid *solid, PetscBool distorted, PetscInt halved)
 {
   Bench b;
   const PetscBool is_mpm = !strcmp(method, "mpm"), is_3d = cell >= CELL_TETRAHEDRON;
@@ -90,6 +90,7 @@ static void patch(const char *method, CellType cell, const Solid *solid, PetscBo
   use_solid(&b, solid);
   bench_grid(&b, (PetscReal[]){below, below, below}, (PetscReal[]){above, above, above}, is_3d ? 0.5 : 0.25);
   b.body[0].weights = WEIGHTS_GAUSS;
+  b.halved = halved;
   if (distorted) bench_distort(&b, 0.2, 4, planes);
   if (!is_mpm) b.c.analysis.step = b.c.analysis.largest = 0.5;
   for (int d = 0; d < dim; ++d)
@@ -110,9 +111,11 @@ static void test_patch(void **state)
   for (CellType cell = CELL_TRIANGLE; cell <= CELL_HEXAHEDRON; ++cell)
     for (int k = 0; k < 2; ++k)
       for (int distorted = 0; distorted < 2; ++distorted) {
-        patch(method[k], cell, &solids[0], (PetscBool)distorted);
-        patch(method[k], cell, &solids[2], (PetscBool)distorted);
+        patch(method[k], cell, &solids[0], distorted != 0, 0);
+        patch(method[k], cell, &solids[2], distorted != 0, 0);
       }
+  for (int k = 0; k < 2; ++k)
+    patch(method[k], CELL_QUADRILATERAL, &solids[2], PETSC_TRUE, 3); /* some are two triangles */
 }
 
 /* --- tangent --- */

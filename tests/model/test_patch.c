@@ -53,22 +53,24 @@ static void fix_all_sides(Bench *b)
 
 /* The body is a unit square or cube, in fem on a grid of its own, in mpm inside a larger one. */
 static void body_bench(Bench *b, const char *method, CellType cell, Diagonal diagonal, PetscReal size,
-                       PetscBool distorted)
+                       PetscBool distorted, PetscInt halved)
 {
   const PetscReal below = !strcmp(method, "mpm") ? -0.5 : 0, above = 1 - below, planes[] = {below, 0, 1, above};
   bench_init(b, method, cell, 0);
   bench_grid(b, (PetscReal[]){below, below, below}, (PetscReal[]){above, above, above}, size);
   b->c.grid.diagonal = diagonal;
   b->body[0].weights = WEIGHTS_GAUSS;
+  b->halved = halved;
   if (distorted) bench_distort(b, 0.2, 4, planes);
 }
 
-static void patch(const char *method, CellType cell, Diagonal diagonal, PetscReal size, PetscBool distorted)
+static void patch_of(const char *method, CellType cell, Diagonal diagonal, PetscReal size, PetscBool distorted,
+                     PetscInt halved)
 {
   Bench b;
   const PetscBool fem = strcmp(method, "mpm") != 0;
   PetscReal F[9], *X;
-  body_bench(&b, method, cell, diagonal, size, distorted);
+  body_bench(&b, method, cell, diagonal, size, distorted, halved);
   PetscInt dim = kinematics_dim(b.c.kinematics);
   if (fem) b.c.analysis.step = b.c.analysis.largest = 0.5;
   fix_all_sides(&b);
@@ -94,6 +96,11 @@ static void patch(const char *method, CellType cell, Diagonal diagonal, PetscRea
   bench_end(&b);
 }
 
+static void patch(const char *method, CellType cell, Diagonal diagonal, PetscReal size, PetscBool distorted)
+{
+  patch_of(method, cell, diagonal, size, distorted, 0);
+}
+
 static void patch_all(CellType cell, PetscReal size)
 {
   static const char *const method[] = {"fem", "mpm"};
@@ -117,6 +124,16 @@ static void test_quadrilaterals(void **state)
 {
   (void)state;
   patch_all(CELL_QUADRILATERAL, 0.25);
+}
+
+/* Some quadrilaterals are two triangles each. */
+static void test_mixed_cells(void **state)
+{
+  (void)state;
+  for (PetscInt halved = 2; halved <= 5; halved += 3) {
+    patch_of("fem", CELL_QUADRILATERAL, DIAGONAL_RIGHT, 0.25, PETSC_TRUE, halved);
+    patch_of("mpm", CELL_QUADRILATERAL, DIAGONAL_RIGHT, 0.25, PETSC_TRUE, halved);
+  }
 }
 
 static void test_tetrahedra(void **state)
@@ -157,7 +174,7 @@ static void uniaxial(PetscInt dim, PetscReal T, PetscReal F[9])
 
 /* Rollers on the low sides, a dead traction on x = 1: on faces of the grid (pushing, so that points stay inside) or carried by the body
  * (pulling). */
-static void traction(const char *method, CellType cell, PetscBool carried, PetscBool distorted)
+static void traction(const char *method, CellType cell, PetscBool carried, PetscBool distorted, PetscInt halved)
 {
   Bench b;
   PetscReal F[9];
@@ -167,6 +184,7 @@ static void traction(const char *method, CellType cell, PetscBool carried, Petsc
   bench_init(&b, method, cell, 0);
   bench_grid(&b, (PetscReal[]){0, 0, 0}, (PetscReal[]){x_end, 1.5, 1.5}, size);
   b.body[0].weights = WEIGHTS_GAUSS;
+  b.halved = halved;
   if (distorted) bench_distort(&b, 0.2, 4, planes);
   for (int d = 0; d < (is_3d ? 3 : 2); ++d) bench_motion(&b, d, 0, MOTION_FIXED, 1u << d);
   bench_traction(&b, 0, 1, carried ? "body" : NULL, T, 0, 0);
@@ -186,15 +204,16 @@ static void test_traction(void **state)
   for (int k = 0; k < 2; ++k)
     for (CellType cell = CELL_TRIANGLE; cell <= CELL_HEXAHEDRON; ++cell)
       for (int carried = 0; carried < 2; ++carried)
-        for (int distorted = 0; distorted < 2; ++distorted)
-          traction(method[k], cell, (PetscBool)carried, (PetscBool)distorted);
+        for (int distorted = 0; distorted < 2; ++distorted) traction(method[k], cell, carried != 0, distorted != 0, 0);
+  for (int k = 0; k < 2; ++k)
+    for (int carried = 0; carried < 2; ++carried) traction(method[k], CELL_QUADRILATERAL, carried != 0, PETSC_TRUE, 3);
 }
 
 int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(test_triangles), cmocka_unit_test(test_quadrilaterals), cmocka_unit_test(test_tetrahedra),
-    cmocka_unit_test(test_hexahedra), cmocka_unit_test(test_traction),
+    cmocka_unit_test(test_hexahedra), cmocka_unit_test(test_mixed_cells),    cmocka_unit_test(test_traction),
   };
   return run_model_tests(argc, argv, tests);
 }

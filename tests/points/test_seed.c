@@ -331,7 +331,7 @@ static void polygon_volume_is_known(void **state)
 /* 44,000,000 cells of 64 points would wrap a PetscInt to a negative number; nothing is allocated. */
 static void too_many_points_are_told(void **state)
 {
-  Seeding s = {.n_cells = 44000000, .n_rule = 64};
+  Seeding s = {.n_cells = 44000000, .rule.n = 64};
   Points crowd = {.dim = 2, .n = 7, .components = {2, 5}};
   PetscBool fits;
   Diag *diag;
@@ -350,7 +350,7 @@ static void too_many_points_are_told(void **state)
   CALL(SeedCheckRoom(&s, &crowd, &fits));
   CHECK(!fits);
   crowd.n = PETSC_MAX_INT - 2; /* one more than a body's points */
-  s.n_cells = 1, s.n_rule = 4;
+  s.n_cells = 1, s.rule.n = 4;
   CALL(SeedCheckRoom(&s, &crowd, &fits));
   CHECK(!fits);
   CALL(DiagDestroy(&diag));

@@ -39,7 +39,8 @@ static void check_point(const Grid *grid, const PetscInt *node, const PetscReal 
 static void check_support(const Support *s, const Points *points, const Grid *grid, PetscBool at_x)
 {
   const PetscInt nn = grid->nodes_per_cell, dim = grid->dim;
-  CHECK(s->uniform == nn && s->point_start[0] == 0 && s->node_start[0] == 0 && s->value_start[0] == 0);
+  CHECK(s->n_runs == 1 && s->run[0].nodes == nn && s->point_start[0] == 0 && s->node_start[0] == 0 &&
+        s->value_start[0] == 0);
   for (PetscInt g = 0; g < s->n_groups; ++g) {
     const PetscInt cell = points->cell[s->point_start[g]], *node = s->node + s->node_start[g];
     CHECK(g == 0 || points->cell[s->point_start[g] - 1] < cell);

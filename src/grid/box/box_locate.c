@@ -1,6 +1,6 @@
 /* Where a position lies in a box grid: the voxel by its coordinate lines, then the cell within the
  * voxel. */
-#include "grid/grid_private.h"
+#include "grid/box/box.h"
 
 PetscMPIInt box_owner(const GridBox *box, const PetscInt ijk[3])
 {
@@ -29,7 +29,8 @@ static PetscInt interval_of(const GridBox *box, PetscInt axis, PetscReal x)
   return lo;
 }
 
-PetscBool box_voxel(const GridBox *box, const PetscReal *x, PetscInt ijk[3])
+/* The voxel that holds x; PETSC_FALSE outside the grid. */
+static PetscBool box_voxel(const GridBox *box, const PetscReal *x, PetscInt ijk[3])
 {
   ijk[2] = 0;
   for (PetscInt d = 0; d < box->dim; ++d) {
@@ -79,13 +80,14 @@ static PetscInt pick_simplex(const VoxelPattern *pattern, PetscInt dim, const Pe
   return best;
 }
 
-PetscInt box_locate(const Grid *grid, const PetscReal *x, PetscReal *xi)
+PetscInt box_locate(const Grid *grid, const PetscReal *x, PetscInt guess, PetscReal *xi)
 {
   const GridBox *box = grid->box;
   const VoxelBlock *block = box->block + box->rank;
   const PetscInt dim = box->dim;
   PetscInt ijk[3];
   PetscReal s[3] = {0, 0, 0}; /* position in the unit voxel */
+  (void)guess;
 
   if (!box_voxel(box, x, ijk) || !block_has(block, ijk)) return -1;
   for (PetscInt d = 0; d < dim; ++d) {
@@ -116,8 +118,14 @@ static PetscInt add_rank(PetscMPIInt rank, PetscInt n, PetscInt max, PetscMPIInt
   return n;
 }
 
-PetscInt box_candidates(const GridBox *box, const PetscReal *x, PetscInt max, PetscMPIInt *ranks)
+void box_clamp(const Grid *grid, PetscReal *x)
 {
+  for (PetscInt d = 0; d < grid->dim; ++d) x[d] = PetscMin(PetscMax(x[d], grid->min[d]), grid->max[d]);
+}
+
+PetscInt box_candidates(const Grid *grid, const PetscReal *x, PetscInt max, PetscMPIInt *ranks)
+{
+  const GridBox *box = grid->box;
   PetscInt ijk[3], range[3][2] = {{0, 0}, {0, 0}, {0, 0}}, v[3], n = 0;
   if (!box_voxel(box, x, ijk)) return 0;
   /* grid_locate takes the position on its owner, which therefore comes first. */

@@ -1,26 +1,6 @@
-/* Who has which block of a box grid: by what a function of places says, by weights of the cells of a grid that is there, or as it was
- * before. */
-#include "grid/grid_private.h"
-
-/* What depends on the cuts alone. */
-static PetscErrorCode BoxRanks(GridBox *box)
-{
-  PetscFunctionBeginUser;
-  PetscCall(PartitionBlocks(box->size, box->counts, box->cut_axis, box->cut, box->block));
-  for (PetscMPIInt r = 0; r < box->size; ++r)
-    box->first_node[r + 1] = box->first_node[r] + box_owned_nodes(box, box->block + r);
-  PetscFunctionReturn(0);
-}
-
-static PetscErrorCode BoxRanksCreate(MPI_Comm comm, GridBox *box)
-{
-  PetscFunctionBeginUser;
-  PetscCallMPI(MPI_Comm_rank(comm, &box->rank));
-  PetscCallMPI(MPI_Comm_size(comm, &box->size));
-  PetscCall(PetscCalloc4(box->size, &box->block, box->size, &box->cut_axis, box->size, &box->cut, box->size + 1,
-                         &box->first_node));
-  PetscFunctionReturn(0);
-}
+/* Who has which block of a box grid: by what a function of places says, by weights of the cells of
+ * a grid that is there, or as it was before. */
+#include "grid/box/box.h"
 
 /* Each rank weighs its share of the voxels, and lists those that carry something. */
 static PetscErrorCode WeighShare(const GridBox *box, GridWeight weight, void *context, VoxelWeights *w)
@@ -46,14 +26,16 @@ static PetscErrorCode WeighShare(const GridBox *box, GridWeight weight, void *co
 PetscErrorCode BoxPartition(MPI_Comm comm, GridBox *box, GridWeight weight, void *context)
 {
   VoxelWeights w = {0};
+  PetscInt *axis, *cut;
   PetscReal imbalance;
 
   PetscFunctionBeginUser;
-  PetscCall(BoxRanksCreate(comm, box));
+  PetscCall(PetscCalloc2(box->size, &axis, box->size, &cut));
   if (weight && box->size > 1) PetscCall(WeighShare(box, weight, context, &w));
-  PetscCall(PartitionVoxels(comm, box->dim, box->counts, weight ? &w : NULL, box->cut_axis, box->cut, &imbalance));
+  PetscCall(PartitionVoxels(comm, box->dim, box->counts, weight ? &w : NULL, axis, cut, &imbalance));
   PetscCall(PetscFree2(w.voxel, w.weight));
-  PetscCall(BoxRanks(box));
+  PetscCall(BoxCut(box, axis, cut));
+  PetscCall(PetscFree2(axis, cut));
   PetscFunctionReturn(0);
 }
 
@@ -61,13 +43,13 @@ PetscErrorCode BoxWeighCells(const Grid *grid, const PetscReal *weight, VoxelWei
 {
   const GridBox *box = grid->box;
   const VoxelBlock *mine = box->block + box->rank;
-  const VoxelBlock all = {{0, 0, 0}, {box->counts[0], box->counts[1], box->counts[2]}};
+  const VoxelBlock all = box_voxels(box);
   const PetscInt n = block_size(mine), n_sub = box->pattern[0].n_cells;
   PetscInt ijk[3], voxel = 0;
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc2(n, &w->voxel, n, &w->weight));
-  w->n = w->layer = 0;
+  PetscCall(PetscArraycpy(w->counts, box->counts, 3));
   for (ijk[2] = mine->lo[2]; ijk[2] < mine->hi[2]; ++ijk[2])
     for (ijk[1] = mine->lo[1]; ijk[1] < mine->hi[1]; ++ijk[1])
       for (ijk[0] = mine->lo[0]; ijk[0] < mine->hi[0]; ++ijk[0], ++voxel) {
@@ -79,36 +61,63 @@ PetscErrorCode BoxWeighCells(const Grid *grid, const PetscReal *weight, VoxelWei
   PetscFunctionReturn(0);
 }
 
-/* The same box, for other blocks. */
-static PetscErrorCode BoxCopy(MPI_Comm comm, const GridBox *old, GridBox **out)
-{
-  GridBox *box;
-
-  PetscFunctionBeginUser;
-  PetscCall(PetscNew(&box));
-  box->dim = old->dim;
-  box->tolerance = old->tolerance;
-  for (int d = 0; d < 3; ++d) {
-    box->counts[d] = old->counts[d];
-    box->per_length[d] = old->per_length[d];
-    PetscCall(PetscMalloc1(box->counts[d] + 1, &box->line[d]));
-    PetscCall(PetscArraycpy(box->line[d], old->line[d], box->counts[d] + 1));
-  }
-  for (int odd = 0; odd < 2; ++odd) box->pattern[odd] = old->pattern[odd];
-  PetscCall(BoxRanksCreate(comm, box));
-  *out = box;
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode GridBoxFromCuts(const Grid *old, const PetscInt *cut_axis, const PetscInt *cut, Grid **grid)
+PetscErrorCode BoxFromCuts(const Grid *old, const PetscInt *cut_axis, const PetscInt *cut, Grid **grid)
 {
   GridBox *box = NULL;
 
   PetscFunctionBeginUser;
   PetscCall(BoxCopy(old->comm, old->box, &box));
-  PetscCall(PetscArraycpy(box->cut_axis, cut_axis, box->size));
-  PetscCall(PetscArraycpy(box->cut, cut, box->size));
-  PetscCall(BoxRanks(box));
-  PetscCall(GridFromBox(old->comm, old->type, box, grid));
+  PetscCall(BoxCut(box, cut_axis, cut));
+  PetscCall(BoxBuild(old->comm, old->ops, old->type, box, grid));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode BoxPartitionToTable(const Grid *grid, Tables *tables)
+{
+  const GridBox *box = grid->box;
+  Table *table;
+  Column *axis, *cut;
+
+  PetscFunctionBeginUser;
+  PetscCall(TablesAdd(tables, "partition", PETSC_TRUE, box->size, &table));
+  PetscCall(TableAdd(table, "cut_axis", NULL, COLUMN_INT64, 1, NULL, &axis));
+  PetscCall(TableAdd(table, "cut", NULL, COLUMN_INT64, 1, NULL, &cut));
+  for (PetscMPIInt r = 0; r < box->size; ++r) {
+    ((PetscInt64 *)axis->data)[r] = box->cut_axis[r];
+    ((PetscInt64 *)cut->data)[r] = box->cut[r];
+  }
+  PetscFunctionReturn(0);
+}
+
+/* Every rank has read the same table. */
+static void read_cuts(const GridBox *box, const Table *table, PetscInt *axis, PetscInt *cut, char reason[256])
+{
+  const PetscInt64 *wide_axis = table_data(table, "cut_axis", COLUMN_INT64, 1, reason),
+                   *wide_cut = table_data(table, "cut", COLUMN_INT64, 1, reason);
+  if (!wide_axis || !wide_cut) return;
+  if (table->rows != box->size) {
+    snprintf(reason, 256, "partition: it is of another number of ranks");
+    return;
+  }
+  for (PetscMPIInt r = 0; r < box->size; ++r) {
+    const PetscInt64 a = wide_axis[r];
+    if (a < 0 || a >= box->dim || wide_cut[r] < 0 || wide_cut[r] > box->counts[a]) {
+      snprintf(reason, 256, "partition: a cut makes no sense");
+      return;
+    }
+    axis[r] = (PetscInt)a;
+    cut[r] = (PetscInt)wide_cut[r];
+  }
+}
+
+PetscErrorCode BoxFromPartition(const Grid *old, const Table *table, Grid **grid, char reason[256])
+{
+  PetscInt *axis, *cut;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc2(old->box->size, &axis, old->box->size, &cut));
+  read_cuts(old->box, table, axis, cut, reason);
+  if (!reason[0]) PetscCall(BoxFromCuts(old, axis, cut, grid));
+  PetscCall(PetscFree2(axis, cut));
   PetscFunctionReturn(0);
 }

@@ -4,7 +4,7 @@
  * Kuhn's six tetrahedra follow the paths along the edges from the lowest corner to the highest one,
  * one for each order of the axes. All voxels are cut alike and opposite faces get the same
  * diagonal, so neighbours conform. */
-#include "grid/grid_private.h"
+#include "grid/box/box.h"
 
 static const PetscInt quadrilateral[1][4] = {{0, 1, 3, 2}};
 static const PetscInt hexahedron[1][8] = {{0, 1, 3, 2, 4, 5, 7, 6}};

@@ -1,6 +1,6 @@
 #include "grid/cloud/cloud.h"
 #include "base/exchange.h"
-#include "grid/grid_private.h"
+#include "grid/grid_ops.h"
 
 PetscErrorCode GridCloudFollow(Grid *grid, PetscReal **data, PetscInt components, const char *name, const char *unit)
 {
@@ -12,10 +12,11 @@ PetscErrorCode GridCloudFollow(Grid *grid, PetscReal **data, PetscInt components
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode GridCloudDestroy(GridCloud **cloud)
+static PetscErrorCode Destroy(Grid *grid)
 {
+  GridCloud **cloud = &grid->cloud;
+
   PetscFunctionBeginUser;
-  if (!*cloud) PetscFunctionReturn(0);
   PetscCall(PetscFree((*cloud)->id));
   PetscCall(PetscFree((*cloud)->x0));
   PetscCall(PetscFree((*cloud)->obstacle));
@@ -25,19 +26,6 @@ PetscErrorCode GridCloudDestroy(GridCloud **cloud)
   PetscFunctionReturn(0);
 }
 
-static PetscBool cells_are_alike(const Grid *grid)
-{
-  if (!grid->box) return PETSC_FALSE;
-  for (PetscInt d = 0; d < grid->dim; ++d) {
-    const PetscReal mean = (grid->max[d] - grid->min[d]) / (PetscReal)grid->box->counts[d];
-    for (PetscInt i = 0; i < grid->box->counts[d]; ++i) {
-      const PetscReal size = grid->box->line[d][i + 1] - grid->box->line[d][i];
-      if (size > grid->smallest * (1 + 1e-9) || mean > grid->smallest * (1 + 1e-9)) return PETSC_FALSE;
-    }
-  }
-  return PETSC_TRUE;
-}
-
 PetscErrorCode GridSpacing(const Grid *grid, PetscInt n, const PetscInt *cell, PetscReal *spacing)
 {
   static const PetscReal share[] = {2, 1, 6, 1}; /* cells to a square or a cube */
@@ -45,15 +33,17 @@ PetscErrorCode GridSpacing(const Grid *grid, PetscInt n, const PetscInt *cell, P
 
   PetscFunctionBeginUser;
   *spacing = grid->smallest;
-  if (cells_are_alike(grid)) PetscFunctionReturn(0);
+  if (grid_cells_alike(grid)) PetscFunctionReturn(0);
   for (PetscInt k = 0; k < n; ++k) {
     grid_cell_x(grid, cell[k], x);
-    sum[0] += share[grid->type] * cell_volume(grid->type, x);
+    sum[0] += share[grid_cell_type(grid, cell[k])] * cell_volume(grid_cell_type(grid, cell[k]), x);
   }
   PetscCall(MPIU_Allreduce(MPI_IN_PLACE, sum, 2, MPIU_REAL, MPI_SUM, grid->comm));
   if (sum[1] > 0) *spacing = PetscPowReal(sum[0] / sum[1], 1 / (PetscReal)grid->dim);
   PetscFunctionReturn(0);
 }
+
+static const GridOps grid_cloud = {.Destroy = Destroy};
 
 /* Numbers that hang on the set of owned nodes. */
 static PetscErrorCode CountOwned(Grid *grid)
@@ -119,9 +109,10 @@ PetscErrorCode GridCreateCloud(const Grid *mesh, PetscReal spacing, const unsign
   PetscCallMPI(MPI_Comm_size(mesh->comm, &size));
   PetscCall(PetscNew(&g));
   PetscCall(PetscNew(&g->cloud));
+  g->ops = &grid_cloud;
   g->comm = mesh->comm;
   g->dim = mesh->dim;
-  g->type = mesh->type;
+  g->type = g->first_type = mesh->type;
   g->smallest = mesh->smallest;
   PetscCall(PetscArraycpy(g->min, mesh->min, 3));
   PetscCall(PetscArraycpy(g->max, mesh->max, 3));

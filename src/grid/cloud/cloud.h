@@ -1,7 +1,9 @@
-/* A cloud: a grid without cells, whose nodes move, change their neighbours and may change their rank.
+/* A cloud: a grid without cells, whose nodes move, change their neighbours and may change their
+ * rank.
  *
- * It fills the struct Grid like the other builders (owned nodes first, ghosts behind, node_sf), so that all that works on nodes works on
- * clouds. What others keep per node follows along: they register their arrays, and a change of ghosts or owners moves the contents. */
+ * It fills the struct Grid like the other builders (owned nodes first, ghosts behind, node_sf), so
+ * that all that works on nodes works on clouds. What others keep per node follows along: they
+ * register their arrays, and a change of ghosts or owners moves the contents. */
 #pragma once
 #include "base/table.h"
 #include "grid/grid.h"
@@ -40,21 +42,23 @@ typedef struct {
   PetscReal *x; /* n x dim */
 } RemoteNodes;
 
-/* Collective. Spacing of nodes in the cells listed (of all ranks, each counted as often as it is listed): the edge of a square or cube of their
- * mean volume, of which a triangle is half and a tetrahedron a sixth; on a box of equal cells its cell size. */
+/* Collective. Spacing of nodes in the cells listed (of all ranks, each counted as often as it is
+ * listed): the edge of a square or cube of their mean volume, of which a triangle is half and a
+ * tetrahedron a sixth; on a box of equal cells its cell size. */
 PetscErrorCode GridSpacing(const Grid *mesh, PetscInt n, const PetscInt *cell, PetscReal *spacing);
-/* Collective. The cloud of the owned nodes of a mesh that are marked (CLOUD_BODY, or CLOUD_OBSTACLE); where twin[node] is set it gets a twin: a second node at the same
- * place that carries the multipliers of a constraint and never is a neighbour. */
+/* Collective. The cloud of the owned nodes of a mesh that are marked (CLOUD_BODY, or
+ * CLOUD_OBSTACLE); where twin[node] is set it gets a twin: a second node at the same place that
+ * carries the multipliers of a constraint and never is a neighbour. */
 PetscErrorCode GridCreateCloud(const Grid *mesh, PetscReal spacing, const unsigned char *marked,
                                const unsigned char *twin, Grid **cloud);
-PetscErrorCode GridCloudDestroy(GridCloud **cloud);
 
 static inline PetscBool cloud_is_twin(const Grid *grid, PetscInt node)
 {
   return grid->cloud->id[node] >= grid->cloud->first_twin;
 }
 
-/* Let *data (n_nodes x components, from PetscMalloc1) follow the nodes; without a name its contents are lost when they change. */
+/* Let *data (n_nodes x components, from PetscMalloc1) follow the nodes; without a name its contents
+ * are lost when they change. */
 PetscErrorCode GridCloudFollow(Grid *grid, PetscReal **data, PetscInt components, const char *name, const char *unit);
 
 /* Collective. Nodes of others between box[0..2] and box[3..5]; twins left out. */
@@ -66,10 +70,12 @@ void cloud_find_ghosts(const Grid *grid, const RemoteNodes *remote, PetscInt *lo
 PetscErrorCode GridCloudSetGhosts(Grid *grid, const RemoteNodes *remote, const PetscBool *use);
 /* Collective. Send every owned node to the rank owner[node]; no ghosts remain. */
 PetscErrorCode GridCloudMigrate(Grid *grid, const PetscMPIInt *owner);
-/* Collective. So many owned nodes and no ghosts in place of what is there; what follows them is zero. */
+/* Collective. So many owned nodes and no ghosts in place of what is there; what follows them is
+ * zero. */
 PetscErrorCode GridCloudReplace(Grid *grid, PetscInt n_owned, const PetscInt *id);
 
 /* Nodes with all that is kept of them, and ghosts, as tables. */
 PetscErrorCode CloudToTables(const Grid *grid, Tables *tables);
-/* Collective. Back again: the rows of each rank become its nodes. Ghosts only come back if all rows are with the ranks that wrote them. */
+/* Collective. Back again: the rows of each rank become its nodes. Ghosts only come back if all rows
+ * are with the ranks that wrote them. */
 PetscErrorCode CloudFromTables(Grid *grid, const Tables *tables, PetscBool home, char reason[256]);

@@ -1,4 +1,5 @@
-/* Which nodes of other ranks a rank may need: everybody says in which box its points look for nodes, and gets those inside. */
+/* Which nodes of other ranks a rank may need: everybody says in which box its points look for
+ * nodes, and gets those inside. */
 #include "base/exchange.h"
 #include "grid/cloud/cloud.h"
 
@@ -15,7 +16,8 @@ static PetscBool in_box(PetscInt dim, const PetscReal *x, const PetscReal box[6]
   return PETSC_TRUE;
 }
 
-/* Calls per_rank[r] += 1 for each own node in the box of r, or writes the nodes in the order of the messages. */
+/* Calls per_rank[r] += 1 for each own node in the box of r, or writes the nodes in the order of the
+ * messages. */
 static void list_nodes(const Grid *grid, PetscMPIInt rank, PetscMPIInt size, PetscReal (*box)[6], PetscInt *per_rank,
                        const PetscMPIInt *slot, PetscInt *next, Flight *out)
 {

@@ -1,5 +1,6 @@
-/* Nodes of a cloud as tables, and back. They have no numbers that any number of ranks would agree on: rows are this rank's own, and where they come
- * back to other ranks whoever cuts space sends them on. */
+/* Nodes of a cloud as tables, and back. They have no numbers that any number of ranks would agree
+ * on: rows are this rank's own, and where they come back to other ranks whoever cuts space sends
+ * them on. */
 #include "grid/cloud/cloud.h"
 #include "grid/directory.h"
 

@@ -1,4 +1,5 @@
-/* Does anything in a .geo listen to the numbers that a case hands to it? gmsh itself takes any name without a word. */
+/* Does anything in a .geo listen to the numbers that a case hands to it? gmsh itself takes any name
+ * without a word. */
 #include <ctype.h>
 #include <stdlib.h>
 #include <sys/stat.h>

@@ -1,4 +1,5 @@
-/* What in a script of Gmsh acts on the system: runs programs, writes files, sends data, or makes commands of texts. */
+/* What in a script of Gmsh acts on the system: runs programs, writes files, sends data, or makes
+ * commands of texts. */
 #include <string.h>
 #include "grid/gmsh/geo_script.h"
 
@@ -16,8 +17,8 @@ typedef struct {
   const char *reason;
 } Rule;
 
-/* From the grammar of Gmsh 4.8 to 4.13 (Gmsh.y); its options with names of files are written or removed when Gmsh
- * ends. */
+/* From the grammar of Gmsh 4.8 to 4.13 (Gmsh.y); its options with names of files are written or
+ * removed when Gmsh ends. */
 static const Rule rules[] = {{"SystemCall", RULE_COMMAND, "runs a program"},
                              {"NonBlockingSystemCall", RULE_COMMAND, "runs a program"},
                              {"System", RULE_COMMAND, "runs a program"},
@@ -52,7 +53,8 @@ static const char *const plugins[] = {"Crack", "NewView", "MathEval", "AnalyseMe
 
 static PetscBool is_doubtful(const GeoScript *s, size_t at) { return at >= s->doubtful_from; }
 
-/* Does this word stand at [at, end)? Where Gmsh may lose its place, and behind digits, a longer word may be cut. */
+/* Does this word stand at [at, end)? Where Gmsh may lose its place, and behind digits, a longer
+ * word may be cut. */
 static PetscBool is_word(const GeoScript *s, size_t at, size_t end, const char *word)
 {
   const size_t n = strlen(word);
@@ -112,7 +114,8 @@ static PetscBool is_plugin(const GeoScript *s, size_t at, size_t end)
   return PETSC_TRUE;
 }
 
-/* The word before the bracket that closes at `at` in code is Printf; so it is believed of brackets too far apart. */
+/* The word before the bracket that closes at `at` in code is Printf; so it is believed of brackets
+ * too far apart. */
 static PetscBool closes_printf(const GeoScript *s, size_t at)
 {
   const size_t first = at > 100000 ? at - 100000 : 0;

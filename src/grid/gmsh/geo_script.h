@@ -1,9 +1,10 @@
-/* A script of Gmsh (.geo) as text whose characters are known to be code, texts in quotes or comments.
+/* A script of Gmsh (.geo) as text whose characters are known to be code, texts in quotes or
+ * comments.
  *
- * Gmsh itself does not always agree with what a script says on paper: the part that skips over an If or a Macro
- * swallows quotes, For and Call go on at the start of a line or of a piece of it, and a last line without its end is
- * read in another way. A script from somebody else may make use of that. So texts and comments count as harmless only
- * where Gmsh cannot lose its place. */
+ * Gmsh itself does not always agree with what a script says on paper: the part that skips over an
+ * If or a Macro swallows quotes, For and Call go on at the start of a line or of a piece of it, and
+ * a last line without its end is read in another way. A script from somebody else may make use of
+ * that. So texts and comments count as harmless only where Gmsh cannot lose its place. */
 #pragma once
 #include <petscsys.h>
 
@@ -24,7 +25,8 @@ typedef struct {
   const char *reason;
 } GeoFinding;
 
-/* Read a file. *why: why it cannot be read, NULL if it could. finding: a byte or a text that Gmsh would trip over. */
+/* Read a file. *why: why it cannot be read, NULL if it could. finding: a byte or a text that Gmsh
+ * would trip over. */
 PetscErrorCode GeoScriptRead(const char *path, GeoScript *script, GeoFinding *finding, const char **why);
 PetscErrorCode GeoScriptFree(GeoScript *script);
 

@@ -1,4 +1,4 @@
-/* Grids from Gmsh: rank 0 reads (or has gmsh make) the mesh, checks it and hands out the parts. */
+/* The mesh file of a case: read as it is, or made by gmsh. */
 #include <errno.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -26,7 +26,7 @@ static PetscBool is_readable(const char *file, char message[MESSAGE_SIZE])
   return !why;
 }
 
-/* Rank 0: let gmsh make a mesh of a script and read it. */
+/* Let gmsh make a mesh of a script and read it. */
 static PetscErrorCode LoadScript(const GridSpec *spec, PetscInt dim, Diag *diag, char message[MESSAGE_SIZE],
                                  MshFile **msh)
 {
@@ -43,8 +43,7 @@ static PetscErrorCode LoadScript(const GridSpec *spec, PetscInt dim, Diag *diag,
   PetscFunctionReturn(0);
 }
 
-/* Rank 0: the file as gmsh wrote it; NULL and a diagnostic if there is none. */
-static PetscErrorCode LoadMesh(const GridSpec *spec, PetscInt dim, const char *path, Diag *diag, MshFile **msh)
+PetscErrorCode MshLoad(const GridSpec *spec, PetscInt dim, const char *path, Diag *diag, MshFile **msh)
 {
   const PetscBool script = has_ending(spec->mesh, ".geo");
   char message[MESSAGE_SIZE] = "";
@@ -58,43 +57,5 @@ static PetscErrorCode LoadMesh(const GridSpec *spec, PetscInt dim, const char *p
     else PetscCall(MshRead(spec->mesh, spec->mesh, msh, sizeof message, message));
   }
   if (message[0]) diag_error(diag, path, "%s", message);
-  PetscFunctionReturn(0);
-}
-
-/* Rank 0: the checked mesh and the rank of each cell. */
-static PetscErrorCode PrepareMesh(MPI_Comm comm, const GridSpec *spec, PetscInt dim, const char *path,
-                                  GridWeight weight, void *context, Diag *diag, SerialMesh **mesh, PetscInt **owner)
-{
-  PetscMPIInt size;
-  MshFile *msh;
-
-  PetscFunctionBeginUser;
-  PetscCallMPI(MPI_Comm_size(comm, &size));
-  PetscCall(LoadMesh(spec, dim, path, diag, &msh));
-  if (!msh) PetscFunctionReturn(0);
-  PetscCall(SerialMeshCreate(msh, dim, path, diag, mesh));
-  PetscCall(MshDestroy(&msh));
-  if (!*mesh) PetscFunctionReturn(0);
-  PetscCall(PetscMalloc1((*mesh)->n_cells, owner));
-  PetscCall(SerialMeshPartition(*mesh, size, weight, context, *owner));
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode GridCreateMesh(MPI_Comm comm, const GridSpec *spec, PetscInt dim, const char *path, GridWeight weight,
-                              void *context, Diag *diag, Grid **grid)
-{
-  PetscMPIInt rank;
-  PetscInt *owner = NULL, good;
-  SerialMesh *mesh = NULL;
-
-  PetscFunctionBeginUser;
-  *grid = NULL;
-  PetscCallMPI(MPI_Comm_rank(comm, &rank));
-  if (!rank) PetscCall(PrepareMesh(comm, spec, dim, path, weight, context, diag, &mesh, &owner));
-  good = mesh ? 1 : 0;
-  PetscCallMPI(MPI_Bcast(&good, 1, MPIU_INT, 0, comm));
-  if (good) PetscCall(GridDistribute(comm, mesh, owner, grid));
-  PetscCall(SerialMeshDestroy(&mesh));
-  PetscCall(PetscFree(owner));
   PetscFunctionReturn(0);
 }

@@ -42,7 +42,6 @@ PetscReal msh_real(MshReader *r);
 PetscInt msh_count(MshReader *r, PetscInt64 n, PetscInt64 text_bytes, PetscInt64 binary_bytes, const char *what);
 PetscInt msh_tag(MshReader *r, PetscInt64 tag, const char *what);
 
-/* msh_read.c */
 PetscErrorCode MshAddMark(MshFile *msh, PetscInt element, PetscInt64 group);
 const MshType *msh_type(MshReader *r, PetscInt64 code, PetscInt64 element);
 PetscErrorCode MshAllocateNodes(MshReader *r, PetscInt n);

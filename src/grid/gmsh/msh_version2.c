@@ -22,7 +22,8 @@ PetscErrorCode MshReadNodes2(MshReader *r)
   PetscFunctionReturn(0);
 }
 
-/* Tags of an element: the physical group, the geometric entity, and partitions that do not matter. */
+/* Tags of an element: the physical group, the geometric entity, and partitions that do not
+ * matter. */
 static PetscErrorCode ReadElement2(MshReader *r, PetscInt element, const MshType *type, PetscInt64 n_tags)
 {
   MshFile *msh = r->msh;

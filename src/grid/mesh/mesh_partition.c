@@ -2,53 +2,52 @@
  * weighted like the box's voxels. */
 #include <petscmat.h>
 #include <stdlib.h>
-#include "grid/gmsh/msh.h"
+#include "grid/mesh/file_mesh.h"
 
-static PetscErrorCode DualGraph(const SerialMesh *mesh, Mat *graph)
+static PetscErrorCode DualGraph(const Grid *grid, Mat *graph)
 {
-  const PetscInt n_faces = cells[mesh->type].faces;
+  const PetscInt n_faces = mesh_faces(grid);
   PetscInt *start, *column, n = 0;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(mesh->n_cells + 1, &start));
-  PetscCall(PetscMalloc1(mesh->n_cells * n_faces, &column));
-  for (PetscInt c = 0; c < mesh->n_cells; ++c) {
+  PetscCall(PetscMalloc1(grid->n_cells + 1, &start));
+  PetscCall(PetscMalloc1(grid->n_cells * n_faces, &column));
+  for (PetscInt c = 0; c < grid->n_cells; ++c) {
     start[c] = n;
     for (PetscInt f = 0; f < n_faces; ++f)
-      if (mesh->neighbour[c * n_faces + f] >= 0) column[n++] = mesh->neighbour[c * n_faces + f];
+      if (grid->mesh->neighbour[c * n_faces + f] >= 0) column[n++] = grid->mesh->neighbour[c * n_faces + f];
     PetscCall(PetscSortInt(n - start[c], column + start[c]));
   }
-  start[mesh->n_cells] = n;
+  start[grid->n_cells] = n;
   PetscCall(
-    MatCreateMPIAdj(PETSC_COMM_SELF, mesh->n_cells, mesh->n_cells, start, column, NULL, graph)); /* owns the arrays */
+    MatCreateMPIAdj(PETSC_COMM_SELF, grid->n_cells, grid->n_cells, start, column, NULL, graph)); /* owns the arrays */
   PetscFunctionReturn(0);
 }
 
 /* Whole numbers, the mean loaded cell near 100 and the empty one at 5. */
-static PetscErrorCode CellWeights(const SerialMesh *mesh, GridWeight weight, void *context, PetscInt **out)
+static PetscErrorCode CellWeights(const Grid *grid, GridWeight weight, void *context, PetscInt **out)
 {
-  const PetscInt nn = cells[mesh->type].nodes, dim = mesh->dim;
   PetscReal *w, sum = 0, loaded = 0;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(mesh->n_cells, out));
-  PetscCall(PetscMalloc1(mesh->n_cells, &w));
-  for (PetscInt c = 0; c < mesh->n_cells; ++c) {
-    PetscReal centre[3] = {0, 0, 0};
-    for (PetscInt i = 0; i < nn; ++i)
-      for (PetscInt d = 0; d < dim; ++d) centre[d] += mesh->x[mesh->cell_node[c * nn + i] * dim + d] / (PetscReal)nn;
+  PetscCall(PetscMalloc1(grid->n_cells, out));
+  PetscCall(PetscMalloc1(grid->n_cells, &w));
+  for (PetscInt c = 0; c < grid->n_cells; ++c) {
+    PetscReal centre[3];
+    grid_cell_centre(grid, c, centre);
     w[c] = PetscMax(weight(context, centre), 0.0);
     sum += w[c];
     loaded += w[c] > 0;
   }
   const PetscReal scale = sum > 0 ? 100.0 * loaded / sum : 0.0;
-  for (PetscInt c = 0; c < mesh->n_cells; ++c) (*out)[c] = (PetscInt)PetscMin(PetscMax(w[c] * scale, 5.0), 10000.0);
+  for (PetscInt c = 0; c < grid->n_cells; ++c) (*out)[c] = (PetscInt)PetscMin(PetscMax(w[c] * scale, 5.0), 10000.0);
   PetscCall(PetscFree(w));
   PetscFunctionReturn(0);
 }
 
-/* Scotch takes a thread for each core, and then its partition is another one at every run: neither a run nor one taken up on the way would repeat
- * itself. One thread, unless the user says otherwise. */
+/* Scotch takes a thread for each core, and then its partition is another one at every run: neither
+ * a run nor one taken up on the way would repeat itself. One thread, unless the user says
+ * otherwise. */
 static PetscErrorCode ApplyAlone(MatPartitioning partitioning, IS *is)
 {
   static const char threads[] = "SCOTCH_PTHREAD_NUMBER";
@@ -61,8 +60,8 @@ static PetscErrorCode ApplyAlone(MatPartitioning partitioning, IS *is)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode SerialMeshPartition(const SerialMesh *mesh, PetscMPIInt size, GridWeight weight, void *context,
-                                   PetscInt *owner)
+PetscErrorCode FileMeshPartition(const Grid *grid, PetscMPIInt size, GridWeight weight, void *context,
+                                 PetscMPIInt *owner)
 {
   Mat graph;
   MatPartitioning partitioning;
@@ -71,9 +70,9 @@ PetscErrorCode SerialMeshPartition(const SerialMesh *mesh, PetscMPIInt size, Gri
 
   PetscFunctionBeginUser;
   /* Few cells: a cell or none on each rank. One rank: the same without a graph. */
-  for (PetscInt c = 0; c < mesh->n_cells; ++c) owner[c] = size == 1 ? 0 : c;
-  if (size == 1 || mesh->n_cells <= size) PetscFunctionReturn(0);
-  PetscCall(DualGraph(mesh, &graph));
+  for (PetscInt c = 0; c < grid->n_cells; ++c) owner[c] = size == 1 ? 0 : (PetscMPIInt)c;
+  if (size == 1 || grid->n_cells <= size) PetscFunctionReturn(0);
+  PetscCall(DualGraph(grid, &graph));
   PetscCall(MatPartitioningCreate(PETSC_COMM_SELF, &partitioning));
   PetscCall(MatPartitioningSetAdjacency(partitioning, graph));
 #if defined(PETSC_HAVE_PTSCOTCH)
@@ -84,12 +83,12 @@ PetscErrorCode SerialMeshPartition(const SerialMesh *mesh, PetscMPIInt size, Gri
   PetscCall(MatPartitioningSetNParts(partitioning, size));
   if (weight) {
     PetscInt *weights;
-    PetscCall(CellWeights(mesh, weight, context, &weights));
+    PetscCall(CellWeights(grid, weight, context, &weights));
     PetscCall(MatPartitioningSetVertexWeights(partitioning, weights)); /* owns them */
   }
   PetscCall(ApplyAlone(partitioning, &is));
   PetscCall(ISGetIndices(is, &part));
-  PetscCall(PetscArraycpy(owner, part, mesh->n_cells));
+  for (PetscInt c = 0; c < grid->n_cells; ++c) owner[c] = (PetscMPIInt)part[c];
   PetscCall(ISRestoreIndices(is, &part));
   PetscCall(ISDestroy(&is));
   PetscCall(MatPartitioningDestroy(&partitioning));

@@ -1,11 +1,14 @@
-/* Shares a mesh among the ranks by coordinate bisection of its cells' centres: they are read off a ruler over the box around the mesh, which is
- * cut like a box grid. */
-#include "grid/mesh/mesh_travel.h"
+/* Shares a mesh among the ranks by coordinate bisection of its cells' centres, which are read
+ * off a ruler over the box around the mesh that is cut like a box grid; or cell by cell, as a
+ * table says. */
+#include "grid/directory.h"
+#include "grid/mesh/mesh.h"
 
 #define RULER 5         /* intervals to a cell; odd, so that centres of equal cells do not fall between two of them */
 #define MOST_PLACES 1e9 /* that can be numbered */
 
-/* Cells of one size would have this edge; of simplices, the square or cube that is cut into them. */
+/* Cells of one size would have this edge; of simplices, the square or cube that is cut into
+ * them. */
 static PetscReal typical_size(const Grid *grid)
 {
   static const PetscReal share[] = {2, 1, 6, 1};
@@ -14,7 +17,8 @@ static PetscReal typical_size(const Grid *grid)
   return PetscPowReal(volume, 1 / (PetscReal)grid->dim);
 }
 
-void mesh_ruler(const Grid *grid, PetscInt counts[3])
+/* Intervals of the ruler over a mesh, which depend on the mesh alone. */
+static void mesh_ruler(const Grid *grid, PetscInt counts[3])
 {
   PetscReal size = typical_size(grid) / RULER, places = MOST_PLACES + 1;
   for (; places > MOST_PLACES; size *= 1.1) {
@@ -31,14 +35,11 @@ void mesh_ruler(const Grid *grid, PetscInt counts[3])
 /* Where the centre of a cell lies on the ruler. */
 static void read_ruler(const Grid *grid, const PetscInt counts[3], PetscInt cell, PetscInt ijk[3])
 {
-  const PetscInt nn = grid->nodes_per_cell, dim = grid->dim;
-  PetscReal x[3 * CELL_MAX_NODES];
-  grid_cell_x(grid, cell, x);
+  PetscReal centre[3];
+  grid_cell_centre(grid, cell, centre);
   ijk[2] = 0;
-  for (PetscInt d = 0; d < dim; ++d) {
-    PetscReal centre = 0;
-    for (PetscInt i = 0; i < nn; ++i) centre += x[i * dim + d];
-    const PetscReal at = (centre / (PetscReal)nn - grid->min[d]) / (grid->max[d] - grid->min[d]);
+  for (PetscInt d = 0; d < grid->dim; ++d) {
+    const PetscReal at = (centre[d] - grid->min[d]) / (grid->max[d] - grid->min[d]);
     ijk[d] = (PetscInt)PetscMin(PetscMax(at * (PetscReal)counts[d], 0), (PetscReal)(counts[d] - 1));
   }
 }
@@ -50,6 +51,7 @@ PetscErrorCode MeshWeighCells(const Grid *grid, const PetscReal *weight, VoxelWe
 
   PetscFunctionBeginUser;
   mesh_ruler(grid, all.hi);
+  PetscCall(PetscArraycpy(w->counts, all.hi, 3));
   w->n = n;
   w->layer = RULER;
   PetscCall(PetscMalloc2(n, &w->voxel, n, &w->weight));
@@ -62,18 +64,7 @@ PetscErrorCode MeshWeighCells(const Grid *grid, const PetscReal *weight, VoxelWe
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode GridMeshFromOwners(const Grid *old, const PetscMPIInt *owner, Grid **grid)
-{
-  MeshParcel parcel;
-
-  PetscFunctionBeginUser;
-  PetscCall(MeshSend(old, owner, &parcel));
-  PetscCall(MeshSettle(old, &parcel, grid));
-  PetscCall(MeshParcelDestroy(&parcel));
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode GridMeshFromCuts(const Grid *old, const PetscInt *cut_axis, const PetscInt *cut, Grid **grid)
+PetscErrorCode MeshFromCuts(const Grid *old, const PetscInt *cut_axis, const PetscInt *cut, Grid **grid)
 {
   PetscInt counts[3];
   PetscMPIInt size, *owner;
@@ -87,7 +78,90 @@ PetscErrorCode GridMeshFromCuts(const Grid *old, const PetscInt *cut_axis, const
     read_ruler(old, counts, c, ijk);
     owner[c] = voxel_owner(size, cut_axis, cut, ijk);
   }
-  PetscCall(GridMeshFromOwners(old, owner, grid));
+  PetscCall(MeshFromOwners(old, owner, grid));
   PetscCall(PetscFree(owner));
+  PetscFunctionReturn(0);
+}
+
+/* Cell by cell: who shared the mesh as it was read need not do it in the same way again. */
+PetscErrorCode MeshPartitionToTable(const Grid *grid, Tables *tables)
+{
+  PetscMPIInt rank;
+  Table *table;
+  Column *cell, *owner;
+
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_rank(grid->comm, &rank));
+  PetscCall(TablesAdd(tables, "partition", PETSC_FALSE, grid->n_cells, &table));
+  PetscCall(TableAdd(table, "cell", NULL, COLUMN_INT64, 1, NULL, &cell));
+  PetscCall(TableAdd(table, "rank", NULL, COLUMN_INT32, 1, NULL, &owner));
+  for (PetscInt c = 0; c < grid->n_cells; ++c) {
+    ((PetscInt64 *)cell->data)[c] = grid->global_cell[c];
+    ((int32_t *)owner->data)[c] = rank;
+  }
+  PetscFunctionReturn(0);
+}
+
+/* The table's cells as PetscInt; no number is trusted. */
+static void read_owners(const Grid *grid, PetscMPIInt size, const Table *table, PetscInt *cell, PetscMPIInt *owner,
+                        char reason[256])
+{
+  const PetscInt64 *number = table_data(table, "cell", COLUMN_INT64, 1, reason);
+  const int32_t *rank = table_data(table, "rank", COLUMN_INT32, 1, reason);
+  for (PetscInt64 i = 0; i < table->rows; ++i) {
+    cell[i] = -1;
+    owner[i] = 0;
+    if (reason[0]) continue;
+    if (number[i] < 0 || number[i] >= grid->n_cells_global || rank[i] < 0 || rank[i] >= size) {
+      snprintf(reason, 256, "partition: there is no such cell or rank");
+      continue;
+    }
+    cell[i] = (PetscInt)number[i];
+    owner[i] = rank[i];
+  }
+}
+
+/* Local cells ask the ranks that have their rows. */
+static PetscErrorCode FetchOwners(const Grid *grid, PetscInt rows, const PetscInt *cell, const PetscMPIInt *from_table,
+                                  PetscMPIInt *owner, char reason[256])
+{
+  const PetscInt n = grid->n_cells;
+  DirectoryPlace *place;
+  PetscSFNode *remote;
+  PetscSF sf;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc2(n, &place, n, &remote));
+  PetscCall(DirectoryFind(grid->comm, grid->n_cells_global, rows, cell, n, grid->global_cell, place));
+  for (PetscInt c = 0; c < n; ++c) {
+    if (place[c].rank < 0) snprintf(reason, 256, "partition: a cell of the grid is missing");
+    remote[c] = (PetscSFNode){.rank = place[c].rank, .index = place[c].index};
+  }
+  PetscCall(ReasonShare(grid->comm, reason));
+  if (!reason[0]) {
+    PetscCall(PetscSFCreate(grid->comm, &sf));
+    PetscCall(PetscSFSetGraph(sf, rows, n, NULL, PETSC_COPY_VALUES, remote, PETSC_COPY_VALUES));
+    PetscCall(PetscSFBcastBegin(sf, MPI_INT, from_table, owner, MPI_REPLACE));
+    PetscCall(PetscSFBcastEnd(sf, MPI_INT, from_table, owner, MPI_REPLACE));
+    PetscCall(PetscSFDestroy(&sf));
+  }
+  PetscCall(PetscFree2(place, remote));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode MeshFromPartition(const Grid *old, const Table *table, Grid **grid, char reason[256])
+{
+  const PetscInt rows = (PetscInt)table->rows;
+  PetscMPIInt size, *from_table, *owner;
+  PetscInt *cell;
+
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_size(old->comm, &size));
+  PetscCall(PetscMalloc3(rows, &cell, rows, &from_table, old->n_cells, &owner));
+  read_owners(old, size, table, cell, from_table, reason);
+  PetscCall(ReasonShare(old->comm, reason));
+  if (!reason[0]) PetscCall(FetchOwners(old, rows, cell, from_table, owner, reason));
+  if (!reason[0]) PetscCall(MeshFromOwners(old, owner, grid));
+  PetscCall(PetscFree3(cell, from_table, owner));
   PetscFunctionReturn(0);
 }

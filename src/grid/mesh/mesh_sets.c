@@ -3,7 +3,7 @@
  *
  * Groups of the same name are one set, whatever their dimensions; a group without a name goes by
  * its number. */
-#include "grid/gmsh/msh.h"
+#include "grid/mesh/file_mesh.h"
 
 /* Lists grow at every power of two, so that they need not remember how much room they have. */
 static PetscErrorCode Append(PetscInt value, PetscInt *n, PetscInt **list)
@@ -15,35 +15,35 @@ static PetscErrorCode Append(PetscInt value, PetscInt *n, PetscInt **list)
 }
 
 /* The set of this name, made if there is none. */
-static PetscErrorCode FindOrAddSet(SerialMesh *mesh, const char *name, PetscInt *set)
+static PetscErrorCode FindOrAddSet(Grid *grid, const char *name, PetscInt *set)
 {
   PetscFunctionBeginUser;
-  for (*set = 0; *set < mesh->n_sets; ++*set)
-    if (!strcmp(mesh->sets[*set].name, name)) PetscFunctionReturn(0);
-  PetscCall(PetscRealloc((size_t)(mesh->n_sets + 1) * sizeof(GridSet), &mesh->sets));
-  mesh->sets[mesh->n_sets] = (GridSet){0};
-  PetscCall(PetscStrallocpy(name, &mesh->sets[mesh->n_sets++].name));
+  for (*set = 0; *set < grid->n_sets; ++*set)
+    if (!strcmp(grid->sets[*set].name, name)) PetscFunctionReturn(0);
+  PetscCall(PetscRealloc((size_t)(grid->n_sets + 1) * sizeof(GridSet), &grid->sets));
+  grid->sets[grid->n_sets] = (GridSet){0};
+  PetscCall(PetscStrallocpy(name, &grid->sets[grid->n_sets++].name));
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode GroupSet(SerialMesh *mesh, const MshFile *msh, PetscInt dim, PetscInt tag, PetscInt *set)
+static PetscErrorCode GroupSet(Grid *grid, const MshFile *msh, PetscInt dim, PetscInt tag, PetscInt *set)
 {
   char number[32];
 
   PetscFunctionBeginUser;
   for (PetscInt k = 0; k < msh->n_names; ++k)
     if (msh->names[k].dim == dim && msh->names[k].tag == tag) {
-      PetscCall(FindOrAddSet(mesh, msh->names[k].name, set));
+      PetscCall(FindOrAddSet(grid, msh->names[k].name, set));
       PetscFunctionReturn(0);
     }
   (void)snprintf(number, sizeof number, "%lld", (long long)tag);
-  PetscCall(FindOrAddSet(mesh, number, set));
+  PetscCall(FindOrAddSet(grid, number, set));
   PetscFunctionReturn(0);
 }
 
 /* The nodes of an element below the dimension of the cells, as far as cells use them, and its face
  * if it is one. */
-static PetscErrorCode AddLowerElement(const SerialMesh *mesh, const MshFile *msh, PetscInt e, const PetscInt *node_of,
+static PetscErrorCode AddLowerElement(const Grid *grid, const MshFile *msh, PetscInt e, const PetscInt *node_of,
                                       const TupleTable *faces, const PetscInt *face_at, GridSet *set)
 {
   const PetscInt n = msh->type[e]->nodes;
@@ -56,21 +56,21 @@ static PetscErrorCode AddLowerElement(const SerialMesh *mesh, const MshFile *msh
     if (key[i] >= 0) PetscCall(Append(key[i], &set->n_nodes, &set->nodes));
     else used = PETSC_FALSE;
   }
-  if (!used || msh->type[e]->dim != mesh->dim - 1 || n != cells[mesh->type].face_nodes) PetscFunctionReturn(0);
+  if (!used || msh->type[e]->dim != grid->dim - 1 || n != cells[grid->type].face_nodes) PetscFunctionReturn(0);
   const PetscInt id = tuple_find(faces, key);
   /* Cell and side stay one number until the repeated ones are gone. */
   if (id >= 0) PetscCall(Append(face_at[id], &set->n_faces, &set->face_cell));
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode FinishSet(const SerialMesh *mesh, GridSet *set)
+static PetscErrorCode FinishSet(const Grid *grid, GridSet *set)
 {
-  const PetscInt n_faces = cells[mesh->type].faces;
+  const PetscInt n_faces = mesh_faces(grid);
 
   PetscFunctionBeginUser;
-  PetscCall(GridSortUnique(&set->n_nodes, set->nodes));
-  PetscCall(GridSortUnique(&set->n_faces, set->face_cell));
-  PetscCall(GridSortUnique(&set->n_cells, set->cells));
+  PetscCall(PetscSortRemoveDupsInt(&set->n_nodes, set->nodes));
+  PetscCall(PetscSortRemoveDupsInt(&set->n_faces, set->face_cell));
+  PetscCall(PetscSortRemoveDupsInt(&set->n_cells, set->cells));
   PetscCall(PetscMalloc1(set->n_faces, &set->face_side));
   for (PetscInt f = 0; f < set->n_faces; ++f) {
     set->face_side[f] = set->face_cell[f] % n_faces;
@@ -80,23 +80,23 @@ static PetscErrorCode FinishSet(const SerialMesh *mesh, GridSet *set)
 }
 
 /* The groups that have a name come first, in the order of the file, even where they are empty. */
-PetscErrorCode SerialMeshSets(SerialMesh *mesh, const MshFile *msh, const PetscInt *node_of, const PetscInt *cell_of,
-                              const TupleTable *faces, const PetscInt *face_at)
+PetscErrorCode FileMeshSets(Grid *grid, const MshFile *msh, const PetscInt *node_of, const PetscInt *cell_of,
+                            const TupleTable *faces, const PetscInt *face_at)
 {
   PetscInt set = 0, dim = -1, group = -1;
 
   PetscFunctionBeginUser;
-  for (PetscInt k = 0; k < msh->n_names; ++k) PetscCall(FindOrAddSet(mesh, msh->names[k].name, &set));
+  for (PetscInt k = 0; k < msh->n_names; ++k) PetscCall(FindOrAddSet(grid, msh->names[k].name, &set));
   for (PetscInt k = 0; k < msh->n_marks; ++k) {
     const PetscInt e = msh->mark_element[k];
     if (msh->type[e]->dim != dim || msh->mark_group[k] != group) { /* they come in long runs */
       dim = msh->type[e]->dim, group = msh->mark_group[k];
-      PetscCall(GroupSet(mesh, msh, dim, group, &set));
+      PetscCall(GroupSet(grid, msh, dim, group, &set));
     }
-    GridSet *s = mesh->sets + set;
+    GridSet *s = grid->sets + set;
     if (cell_of[e] >= 0) PetscCall(Append(cell_of[e], &s->n_cells, &s->cells));
-    else if (dim < mesh->dim) PetscCall(AddLowerElement(mesh, msh, e, node_of, faces, face_at, s));
+    else if (dim < grid->dim) PetscCall(AddLowerElement(grid, msh, e, node_of, faces, face_at, s));
   }
-  for (PetscInt s = 0; s < mesh->n_sets; ++s) PetscCall(FinishSet(mesh, mesh->sets + s));
+  for (PetscInt s = 0; s < grid->n_sets; ++s) PetscCall(FinishSet(grid, grid->sets + s));
   PetscFunctionReturn(0);
 }

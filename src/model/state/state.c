@@ -114,7 +114,7 @@ static PetscErrorCode BalanceToTables(const Model *m, Tables *tables)
   const PetscInt64 memory[] = {size, b->tried, b->repartitions};
   PetscCall(TableAdd(table, "ranks_tried_repartitions", NULL, COLUMN_INT64, 3, NULL, &column));
   for (int i = 0; i < 3; ++i) ((PetscInt64 *)column->data)[i] = memory[i];
-  if (b->repartitions || !m->grid->box) PetscCall(GridPartitionToTable(m->grid, tables));
+  if (b->repartitions || !grid_starts_alike(m->grid)) PetscCall(GridPartitionToTable(m->grid, tables));
   PetscFunctionReturn(0);
 }
 

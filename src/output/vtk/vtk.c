@@ -29,16 +29,21 @@ static void add_slab(Image *image, const char *group, const char *name, const ch
 static PetscErrorCode MakeTopology(Image *image, const VtkData *data)
 {
   PetscFunctionBeginUser;
-  const PetscInt64 nodes = image->has_cells ? data->nodes_per_cell : 1;
+  const PetscInt64 stride = image->has_cells ? data->nodes_per_cell : 1, n_first = data->n_first;
+  PetscInt64 n = 0;
   image->n_cells = image->has_cells ? data->n_cells : data->n_points;
-  image->n_connectivity = image->n_cells * nodes;
+  image->n_connectivity = image->n_cells * stride - n_first * (stride - data->first_nodes);
   PetscCall(PetscMalloc3(image->n_connectivity, &image->connectivity, image->n_cells + 1, &image->offsets,
                          image->n_cells, &image->types));
-  for (PetscInt64 i = 0; i < image->n_connectivity; ++i)
-    image->connectivity[i] = image->has_cells ? data->connectivity[i] : i;
-  for (PetscInt64 i = 0; i <= image->n_cells; ++i) image->offsets[i] = i * nodes;
   const int vertex = 1;
-  if (image->n_cells > 0) memset(image->types, image->has_cells ? data->vtk_type : vertex, (size_t)image->n_cells);
+  for (PetscInt64 i = 0; i < image->n_cells; ++i) {
+    const PetscInt64 nodes = i < n_first ? data->first_nodes : stride;
+    image->offsets[i] = n;
+    image->types[i] = (unsigned char)(!image->has_cells ? vertex : i < n_first ? data->first_type : data->vtk_type);
+    for (PetscInt64 k = 0; k < nodes; ++k)
+      image->connectivity[n++] = image->has_cells ? data->connectivity[i * stride + k] : i;
+  }
+  image->offsets[image->n_cells] = n;
   PetscFunctionReturn(0);
 }
 

@@ -18,7 +18,9 @@ typedef struct {
   PetscInt n_cells;
   const PetscInt *connectivity; /* n_cells x nodes_per_cell, local points; NULL: one vertex a point */
   PetscInt nodes_per_cell;
-  int vtk_type; /* of all cells */
+  int vtk_type; /* of the cells, but for */
+  PetscInt n_first, first_nodes;
+  int first_type; /* the first few, if they are of another type and have fewer nodes */
   PetscInt n_point_fields, n_cell_fields;
   const VtkField *point_fields, *cell_fields;
   const PetscInt64 *point_id; /* field "id", or NULL */

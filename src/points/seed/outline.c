@@ -1,5 +1,5 @@
 #include "points/seed/outline.h"
-#include "grid/gmsh/msh.h"
+#include "grid/tuple_table.h"
 
 static PetscErrorCode Append(Outline *outline, const OutlineFace *face)
 {
@@ -27,7 +27,8 @@ static PetscBool is_before(const PetscReal *a, const PetscReal *b)
   return PETSC_FALSE;
 }
 
-/* The diagonal by which a quadrilateral is cut starts at its first corner in the order of space: both of its cells find the same one. */
+/* The diagonal by which a quadrilateral is cut starts at its first corner in the order of space:
+ * both of its cells find the same one. */
 static PetscInt first_corner(PetscReal x[4][3])
 {
   PetscInt first = 0;
@@ -38,8 +39,8 @@ static PetscInt first_corner(PetscReal x[4][3])
 
 static PetscErrorCode AddFace(Outline *outline, const Grid *source, PetscInt cell, PetscInt side, OutlineFace face)
 {
-  const Cell *type = &cells[source->type];
-  const PetscInt *node = source->cell_node + cell * type->nodes, dim = source->dim;
+  const Cell *type = grid_cell(source, cell);
+  const PetscInt *node = source->cell_node + cell * source->nodes_per_cell, dim = source->dim;
   PetscReal x[4][3];
 
   PetscFunctionBeginUser;
@@ -58,23 +59,27 @@ static PetscErrorCode AddFace(Outline *outline, const Grid *source, PetscInt cel
 PetscErrorCode OutlineAdd(Outline *outline, const Grid *source, PetscInt n_cells, const PetscInt *chosen, PetscInt body,
                           PetscReal density)
 {
-  const Cell *type = &cells[source->type];
+  const PetscInt n_faces = cells[source->type].faces;
   const OutlineFace face = {.body = body, .density = density};
   TupleTable *seen;
   PetscInt *times, *id, key[4];
 
   PetscFunctionBeginUser;
-  PetscCall(TupleTableCreate(type->face_nodes, n_cells * type->faces, &seen));
-  PetscCall(PetscCalloc1(n_cells * type->faces, &times));
-  PetscCall(PetscMalloc1(n_cells * type->faces, &id));
-  for (PetscInt k = 0; k < n_cells * type->faces; ++k) {
-    const PetscInt *node = source->cell_node + chosen[k / type->faces] * type->nodes;
-    for (PetscInt i = 0; i < type->face_nodes; ++i) key[i] = node[type->face[k % type->faces][i]];
+  PetscCall(TupleTableCreate(cells[source->type].face_nodes, n_cells * n_faces, &seen));
+  PetscCall(PetscCalloc1(n_cells * n_faces, &times));
+  PetscCall(PetscMalloc1(n_cells * n_faces, &id));
+  for (PetscInt k = 0; k < n_cells * n_faces; ++k) {
+    const PetscInt cell = chosen[k / n_faces], side = k % n_faces,
+                   *node = source->cell_node + cell * source->nodes_per_cell;
+    const Cell *type = grid_cell(source, cell);
+    id[k] = -1;
+    if (side >= type->faces) continue;
+    for (PetscInt i = 0; i < type->face_nodes; ++i) key[i] = node[type->face[side][i]];
     id[k] = tuple_add(seen, key);
     ++times[id[k]];
   }
-  for (PetscInt k = 0; k < n_cells * type->faces; ++k)
-    if (times[id[k]] == 1) PetscCall(AddFace(outline, source, chosen[k / type->faces], k % type->faces, face));
+  for (PetscInt k = 0; k < n_cells * n_faces; ++k)
+    if (id[k] >= 0 && times[id[k]] == 1) PetscCall(AddFace(outline, source, chosen[k / n_faces], k % n_faces, face));
   PetscCall(PetscFree(times));
   PetscCall(PetscFree(id));
   PetscCall(TupleTableDestroy(&seen));

@@ -1,6 +1,8 @@
-/* The surface of the bodies as they are seeded, whole cells with their faces, and how much material stands above a position.
+/* The surface of the bodies as they are seeded, whole cells with their faces, and how much material
+ * stands above a position.
  *
- * A face is an edge in 2D; in 3D a triangle (quadrilaterals are cut in two, in the same way by both cells that share one). */
+ * A face is an edge in 2D; in 3D a triangle (quadrilaterals are cut in two, in the same way by both
+ * cells that share one). */
 #pragma once
 #include "grid/grid.h"
 
@@ -10,7 +12,8 @@ typedef struct {
   PetscInt body;
 } OutlineFace;
 
-/* Of this rank's cells: borders to other ranks' parts are faces, too, and cancel in all that is asked of them. */
+/* Of this rank's cells: borders to other ranks' parts are faces, too, and cancel in all that is
+ * asked of them. */
 typedef struct {
   PetscInt n, capacity;
   OutlineFace *face;
@@ -23,11 +26,11 @@ PetscErrorCode OutlineClear(Outline *outline);
 
 typedef struct Overburden Overburden;
 
-/* Collective. The outline of all ranks, ready to be asked along `up` (a unit vector). Another body counts as lying on what is below it if the
- * space between them is no wider than `gap`, m. */
+/* Collective. The outline of all ranks, ready to be asked along `up` (a unit vector). Another body
+ * counts as lying on what is below it if the space between them is no wider than `gap`, m. */
 PetscErrorCode OverburdenCreate(MPI_Comm comm, PetscInt dim, const PetscReal up[3], PetscReal gap, PetscInt n_bodies,
                                 const Outline *outline, Overburden **overburden);
 PetscErrorCode OverburdenDestroy(Overburden **overburden);
-/* Mass above x, inside `body`, per area across `up`, kg/m2: of the body itself wherever it is, and of others that lie on it, or on what lies
- * on it. *top: height of the highest of it, m. */
+/* Mass above x, inside `body`, per area across `up`, kg/m2: of the body itself wherever it is, and
+ * of others that lie on it, or on what lies on it. *top: height of the highest of it, m. */
 PetscErrorCode OverburdenAt(Overburden *overburden, PetscInt body, const PetscReal *x, PetscReal *mass, PetscReal *top);

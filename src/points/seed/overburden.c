@@ -1,5 +1,7 @@
-/* Columns of material against gravity: a line from a position upwards leaves and enters bodies through their outlines. */
+/* Columns of material against gravity: a line from a position upwards leaves and enters bodies
+ * through their outlines. */
 #include <stdlib.h>
+#include "grid/box_tree.h"
 #include "points/seed/outline.h"
 
 /* A face as the lines along `up` see it. */
@@ -17,13 +19,12 @@ typedef struct {
 
 struct Overburden {
   PetscInt dim, n_bodies;
-  PetscReal axis[3][3], gap;  /* two axes across (one in 2D), and the one upwards */
-  PetscInt n, *start, *which; /* of bins: slabs whose bounds touch bin k are which[start[k] .. start[k + 1]) */
+  PetscReal axis[3][3], gap; /* two axes across (one in 2D), and the one upwards */
+  PetscInt n;
   Slab *slab;
-  PetscInt bins[2];
-  PetscReal min[2], size[2];
-  PetscInt capacity;
-  Crossing *crossing; /* of one line */
+  BoxTree *tree; /* of the slabs as they lie across `up` */
+  PetscInt n_crossings;
+  Crossing *crossing; /* of one line; room for all slabs */
   PetscReal *density; /* per body, as the next two */
   PetscInt *depth;    /* inside how many of its parts? */
   PetscBool *counts;  /* does it lie on what is below? */
@@ -64,67 +65,15 @@ static Slab make_slab(const Overburden *o, const OutlineFace *face)
   return s;
 }
 
-static void slab_bounds(const Overburden *o, const Slab *s, PetscReal min[2], PetscReal max[2])
+static PetscErrorCode MakeTree(Overburden *o)
 {
-  for (PetscInt a = 0; a < 2; ++a) {
-    min[a] = max[a] = s->across[0][a];
-    for (PetscInt i = 1; i < o->dim; ++i) {
-      min[a] = PetscMin(min[a], s->across[i][a]);
-      max[a] = PetscMax(max[a], s->across[i][a]);
-    }
-  }
-}
+  PetscReal(*bounds)[6];
 
-static PetscInt bin_of(const Overburden *o, PetscInt a, PetscReal at)
-{
-  const PetscReal bin = o->size[a] > 0 ? (at - o->min[a]) / o->size[a] : 0;
-  return bin < 1 ? 0 : bin >= (PetscReal)o->bins[a] ? o->bins[a] - 1 : (PetscInt)bin;
-}
-
-/* About as many bins as slabs. */
-static void choose_bins(Overburden *o)
-{
-  PetscReal max[2] = {-PETSC_MAX_REAL, -PETSC_MAX_REAL}, low[2], high[2];
-  o->min[0] = o->min[1] = PETSC_MAX_REAL;
-  for (PetscInt k = 0; k < o->n; ++k) {
-    slab_bounds(o, &o->slab[k], low, high);
-    for (PetscInt a = 0; a < 2; ++a) {
-      o->min[a] = PetscMin(o->min[a], low[a]);
-      max[a] = PetscMax(max[a], high[a]);
-    }
-  }
-  const PetscReal n = (PetscReal)PetscMax(o->n, 1);
-  for (PetscInt a = 0; a < 2; ++a) {
-    o->bins[a] = a < o->dim - 1 ? 1 + (PetscInt)(o->dim == 3 ? PetscSqrtReal(n) : n) : 1;
-    o->size[a] = (max[a] - o->min[a]) / (PetscReal)o->bins[a];
-  }
-}
-
-/* pass 0 counts behind o->start, pass 1 fills o->which. */
-static void put_in_bins(Overburden *o, int pass)
-{
-  PetscReal low[2], high[2];
-  for (PetscInt k = 0; k < o->n; ++k) {
-    slab_bounds(o, &o->slab[k], low, high);
-    for (PetscInt j = bin_of(o, 1, low[1]); j <= bin_of(o, 1, high[1]); ++j)
-      for (PetscInt i = bin_of(o, 0, low[0]); i <= bin_of(o, 0, high[0]); ++i) {
-        PetscInt *at = &o->start[i + j * o->bins[0]];
-        if (pass) o->which[--*at] = k;
-        else ++*at;
-      }
-  }
-}
-
-static PetscErrorCode MakeBins(Overburden *o)
-{
   PetscFunctionBeginUser;
-  choose_bins(o);
-  const PetscInt n = o->bins[0] * o->bins[1];
-  PetscCall(PetscCalloc1(n + 1, &o->start));
-  put_in_bins(o, 0);
-  for (PetscInt k = 1; k <= n; ++k) o->start[k] += o->start[k - 1]; /* ends, until slabs are put before them */
-  PetscCall(PetscMalloc1(o->start[n], &o->which));
-  put_in_bins(o, 1);
+  PetscCall(PetscMalloc(sizeof *bounds * (size_t)o->n, &bounds));
+  for (PetscInt k = 0; k < o->n; ++k) box_around(2, o->dim, o->slab[k].across[0], bounds[k]);
+  PetscCall(BoxTreeCreate(o->n, bounds, &o->tree));
+  PetscCall(PetscMalloc1(o->n, &o->crossing));
   PetscFunctionReturn(0);
 }
 
@@ -167,7 +116,7 @@ PetscErrorCode OverburdenCreate(MPI_Comm comm, PetscInt dim, const PetscReal up[
   PetscCall(PetscMalloc1(o->n, &o->slab));
   for (PetscInt k = 0; k < o->n; ++k) o->slab[k] = make_slab(o, &all[k]);
   PetscCall(PetscFree(all));
-  PetscCall(MakeBins(o));
+  PetscCall(MakeTree(o));
   PetscCall(PetscCalloc3(n_bodies, &o->density, n_bodies, &o->depth, n_bodies, &o->counts));
   for (PetscInt k = 0; k < o->n; ++k) o->density[o->slab[k].body] = o->slab[k].density;
   *overburden = o;
@@ -181,15 +130,15 @@ PetscErrorCode OverburdenDestroy(Overburden **overburden)
   PetscFunctionBeginUser;
   if (!o) PetscFunctionReturn(0);
   PetscCall(PetscFree(o->slab));
-  PetscCall(PetscFree(o->start));
-  PetscCall(PetscFree(o->which));
+  PetscCall(BoxTreeDestroy(&o->tree));
   PetscCall(PetscFree(o->crossing));
   PetscCall(PetscFree3(o->density, o->depth, o->counts));
   PetscCall(PetscFree(*overburden));
   PetscFunctionReturn(0);
 }
 
-/* Twice the area of a, b, at: the same number, but for its sign, whichever way the edge is gone along. */
+/* Twice the area of a, b, at: the same number, but for its sign, whichever way the edge is gone
+ * along. */
 static PetscReal side_of(const PetscReal *a, const PetscReal *b, const PetscReal *at)
 {
   const PetscBool swap = a[0] > b[0] || (a[0] == b[0] && a[1] > b[1]);
@@ -231,24 +180,31 @@ static int compare_crossings(const void *a, const void *b)
   return p->slab < q->slab ? -1 : p->slab > q->slab;
 }
 
-/* All crossings above the height, the lowest first. */
-static PetscErrorCode Cross(Overburden *o, const PetscReal *at, PetscReal height, PetscInt *n)
+/* A position across `up`, and the height above which crossings count. */
+typedef struct {
+  Overburden *overburden;
+  PetscReal at[3], height;
+} Line;
+
+/* A BoxVisit: keep the crossing with this slab, if there is one. */
+static PetscBool cross_slab(void *context, PetscInt index)
 {
-  PetscFunctionBeginUser;
-  *n = 0;
-  const PetscInt bin = bin_of(o, 0, at[0]) + o->bins[0] * bin_of(o, 1, at[1]);
-  const PetscInt most = o->start[bin + 1] - o->start[bin];
-  if (most > o->capacity) {
-    o->capacity = most;
-    PetscCall(PetscRealloc((size_t)most * sizeof *o->crossing, &o->crossing));
-  }
-  for (PetscInt k = o->start[bin]; k < o->start[bin + 1]; ++k) {
-    const Slab *s = &o->slab[o->which[k]];
-    Crossing *c = &o->crossing[*n];
-    if ((o->dim == 2 ? cross_edge(s, at, c) : cross_triangle(s, at, c)) && c->height > height) ++*n;
-  }
-  if (*n) qsort(o->crossing, (size_t)*n, sizeof *o->crossing, compare_crossings);
-  PetscFunctionReturn(0);
+  const Line *line = context;
+  Overburden *o = line->overburden;
+  const Slab *s = &o->slab[index];
+  Crossing *c = &o->crossing[o->n_crossings];
+  const PetscBool crosses = o->dim == 2 ? cross_edge(s, line->at, c) : cross_triangle(s, line->at, c);
+  if (crosses && c->height > line->height) ++o->n_crossings;
+  return PETSC_TRUE;
+}
+
+/* All crossings above the height, the lowest first. */
+static void cross(Line *line)
+{
+  Overburden *o = line->overburden;
+  o->n_crossings = 0;
+  box_tree_holding(o->tree, line->at, cross_slab, line);
+  if (o->n_crossings) qsort(o->crossing, (size_t)o->n_crossings, sizeof *o->crossing, compare_crossings);
 }
 
 /* The bodies between two crossings; *reach: how high what counts has come so far. */
@@ -266,17 +222,17 @@ static void climb(Overburden *o, PetscReal from, const Crossing *to, PetscReal *
 
 PetscErrorCode OverburdenAt(Overburden *o, PetscInt body, const PetscReal *x, PetscReal *mass, PetscReal *top)
 {
-  PetscReal at[2] = {0, 0}, height = dot(o->dim, o->axis[2], x);
-  PetscInt n;
+  const PetscReal height = dot(o->dim, o->axis[2], x);
+  Line line = {.overburden = o, .height = height};
 
   PetscFunctionBeginUser;
-  for (PetscInt a = 0; a < o->dim - 1; ++a) at[a] = dot(o->dim, o->axis[a], x);
-  PetscCall(Cross(o, at, height, &n));
+  for (PetscInt a = 0; a < o->dim - 1; ++a) line.at[a] = dot(o->dim, o->axis[a], x);
+  cross(&line);
   for (PetscInt b = 0; b < o->n_bodies; ++b) o->depth[b] = 0, o->counts[b] = b == body;
-  for (PetscInt k = 0; k < n; ++k) o->depth[o->crossing[k].slab->body] += o->crossing[k].leaves;
+  for (PetscInt k = 0; k < o->n_crossings; ++k) o->depth[o->crossing[k].slab->body] += o->crossing[k].leaves;
   *mass = 0;
   *top = height;
-  for (PetscInt k = 0; k < n; ++k) {
+  for (PetscInt k = 0; k < o->n_crossings; ++k) {
     climb(o, k ? o->crossing[k - 1].height : height, &o->crossing[k], mass, top);
     o->depth[o->crossing[k].slab->body] -= o->crossing[k].leaves;
   }

@@ -44,8 +44,8 @@ PetscReal seed_cell_volume(const Seeding *s, PetscInt cell)
 {
   PetscReal x[CELL_MAX_NODES * 3];
   grid_cell_x(s->source, cell, x);
-  if (s->c->kinematics->hoop) return ring_volume(s->c->kinematics, s->source->type, x);
-  return cell_volume(s->source->type, x);
+  const CellType type = grid_cell_type(s->source, cell);
+  return s->c->kinematics->hoop ? ring_volume(s->c->kinematics, type, x) : cell_volume(type, x);
 }
 
 static PetscErrorCode FindMaterial(Seeding *s)
@@ -61,24 +61,50 @@ static PetscErrorCode FindMaterial(Seeding *s)
   PetscFunctionReturn(0);
 }
 
-/* PETSC_FALSE, and a message that lists the rules, if this number of points is none. */
+/* Where among the rules of a type this number of points stands; -1: nowhere. */
+static PetscInt find_rule(CellType type, PetscInt n)
+{
+  const PetscInt *rules = cell_rules(type);
+  for (PetscInt i = 0; rules[i] && rules[i] <= SEED_MAX_RULE; ++i)
+    if (rules[i] == n) return i;
+  return -1;
+}
+
+static void fill_rule(CellType type, PetscInt place, SeedRule *rule)
+{
+  rule->n = cell_rules(type)[place];
+  (void)cell_quadrature(type, rule->n, rule->xi, rule->weight);
+}
+
+/* PETSC_FALSE, and a message that lists the rules, if this number of points is none. Where a mesh mixes two kinds of
+ * cells it may be a number of either, and the other kind takes the rule of the same place in its list. */
 static PetscBool choose_rule(Seeding *s)
 {
   const CellType type = s->source->type;
-  const PetscInt *rules = cell_rules(type);
+  const PetscInt n = s->body->points_per_cell, *rules = cell_rules(type);
+  PetscInt place = find_rule(type, n);
   char path[128], list[128] = "";
-  s->n_rule = s->body->points_per_cell;
+  if (place < 0 && grid_is_mixed(s->source)) place = find_rule(s->source->first_type, n);
+  if (place >= 0) {
+    fill_rule(type, place, &s->rule);
+    fill_rule(s->source->first_type, place, &s->first_rule);
+    return PETSC_TRUE;
+  }
   for (PetscInt i = 0; rules[i]; ++i) {
-    if (rules[i] == s->n_rule && s->n_rule <= SEED_MAX_RULE) return cell_quadrature(type, s->n_rule, s->xi, s->weight);
     const size_t used = strlen(list);
     snprintf(list + used, sizeof list - used, "%s%d", i ? ", " : "", (int)rules[i]);
   }
   seed_path(s->b, "points_per_cell", sizeof path, path);
   if (seed_tells(s->grid)) {
-    diag_error(s->diag, path, "no rule places %d points in a %s; there are rules with %s points", (int)s->n_rule,
+    diag_error(s->diag, path, "no rule places %d points in a %s; there are rules with %s points", (int)n,
                cells[type].name, list);
   }
   return PETSC_FALSE;
+}
+
+static const SeedRule *rule_of(const Seeding *s, PetscInt cell)
+{
+  return cell < s->source->n_first ? &s->first_rule : &s->rule;
 }
 
 /* The region's set; NULL and a message if the body names one that does not exist. */
@@ -105,13 +131,10 @@ static PetscErrorCode FindRegion(const Seeding *s, const GridSet **set)
 
 static PetscBool centre_in_shape(const Seeding *s, PetscInt cell)
 {
-  const PetscInt dim = s->source->dim, nn = s->source->nodes_per_cell;
-  PetscReal x[CELL_MAX_NODES * 3], centre[3] = {0, 0, 0};
+  PetscReal centre[3];
   if (!s->body->has_shape) return PETSC_TRUE;
-  grid_cell_x(s->source, cell, x);
-  for (PetscInt i = 0; i < nn; ++i)
-    for (PetscInt d = 0; d < dim; ++d) centre[d] += x[i * dim + d] / (PetscReal)nn;
-  return shape_contains(&s->body->shape, dim, centre, 0);
+  grid_cell_centre(s->source, cell, centre);
+  return shape_contains(&s->body->shape, s->source->dim, centre, 0);
 }
 
 /* The cells in the region (if one is named) and in the shape (if there is one). *found is false after a
@@ -151,18 +174,20 @@ static PetscErrorCode SeedPoint(const Seeding *s, Points *points, PetscInt cell,
                                 PetscInt q, const PointSeed *seed)
 {
   const PetscInt dim = points->dim;
-  const PetscReal *xi = s->xi + q * dim;
+  const SeedRule *rule = rule_of(s, cell);
+  const PetscReal *xi = rule->xi + q * dim;
   PetscInt p;
   PetscFunctionBeginUser;
   PetscCall(PointsAppend(points, &p));
   PetscReal *position = point_real(points, POINT_X, p);
-  const PetscReal det = map_point(s->source->type, x, xi, position);
-  const PetscReal volume = s->equal ? share : s->weight[q] * det * kinematics_weight(s->c->kinematics, position[0]);
+  const PetscReal det = map_point(grid_cell_type(s->source, cell), x, xi, position);
+  const PetscReal weight = rule->weight[q] * det * kinematics_weight(s->c->kinematics, position[0]);
+  const PetscReal volume = s->equal ? share : weight;
   *point_real(points, POINT_VOLUME, p) = volume;
   *point_real(points, POINT_MASS, p) = seed->density * volume;
   body_velocity(s->body, dim, position, point_real(points, POINT_V, p));
   if (seed->n_state) PetscCall(PetscArraycpy(point_real(points, POINT_STATE, p), seed->initial, seed->n_state));
-  points->id[p] = s->first_id + (PetscInt64)s->source->global_cell[cell] * s->n_rule + q;
+  points->id[p] = s->first_id + (PetscInt64)s->source->global_cell[cell] * s->rule.n + q;
   points->body[p] = s->b;
   points->material[p] = s->material;
   if (s->source == s->grid) {
@@ -179,11 +204,12 @@ static PetscErrorCode SeedCells(const Seeding *s, Points *points, const PointSee
   PetscCheck(seed->n_state <= points->components[POINT_STATE], PETSC_COMM_SELF, PETSC_ERR_ARG_SIZ,
              "a law stores %" PetscInt_FMT " numbers, the points have room for %" PetscInt_FMT, seed->n_state,
              points->components[POINT_STATE]);
-  PetscCall(PointsReserveMore(points, s->n_cells * s->n_rule));
+  PetscCall(PointsReserveMore(points, s->n_cells * s->rule.n));
   for (PetscInt k = 0; k < s->n_cells; ++k) {
-    const PetscReal share = seed_cell_volume(s, s->cells[k]) / (PetscReal)s->n_rule;
+    const PetscInt n = rule_of(s, s->cells[k])->n;
+    const PetscReal share = seed_cell_volume(s, s->cells[k]) / (PetscReal)n;
     grid_cell_x(s->source, s->cells[k], x);
-    for (PetscInt q = 0; q < s->n_rule; ++q) PetscCall(SeedPoint(s, points, s->cells[k], x, share, q, seed));
+    for (PetscInt q = 0; q < n; ++q) PetscCall(SeedPoint(s, points, s->cells[k], x, share, q, seed));
   }
   PetscFunctionReturn(0);
 }
@@ -209,7 +235,7 @@ static PetscErrorCode AdvanceIds(const Seeding *s, PetscInt64 *next)
   PetscFunctionBeginUser;
   for (PetscInt k = 0; k < s->source->n_cells; ++k) last = PetscMax(last, s->source->global_cell[k]);
   PetscCallMPI(MPI_Allreduce(&last, &last_of_all, 1, MPIU_INT, MPI_MAX, s->grid->comm));
-  *next = s->first_id + ((PetscInt64)last_of_all + 1) * s->n_rule;
+  *next = s->first_id + ((PetscInt64)last_of_all + 1) * s->rule.n;
   PetscFunctionReturn(0);
 }
 

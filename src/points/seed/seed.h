@@ -4,6 +4,12 @@
 
 #define SEED_MAX_RULE 64
 
+/* Where points stand in a cell. */
+typedef struct {
+  PetscInt n;
+  PetscReal xi[3 * SEED_MAX_RULE], weight[SEED_MAX_RULE];
+} SeedRule;
+
 typedef struct {
   const Case *c;
   const Grid *grid; /* where the points live */
@@ -11,11 +17,10 @@ typedef struct {
   PetscInt b; /* the body */
   const BodySpec *body;
   PetscInt material;
-  const Grid *source;       /* whose cells give the points: the grid, or the body's own mesh */
-  PetscInt n_cells, *cells; /* local cells of the source that belong to the body */
-  PetscInt n_rule;
-  PetscReal xi[3 * SEED_MAX_RULE], weight[SEED_MAX_RULE];
-  PetscBool equal; /* a cell's volume is shared equally among its points */
+  const Grid *source;        /* whose cells give the points: the grid, or the body's own mesh */
+  PetscInt n_cells, *cells;  /* local cells of the source that belong to the body */
+  SeedRule rule, first_rule; /* for cells of the source's type, and of its first_type */
+  PetscBool equal;           /* a cell's volume is shared equally among its points */
   PetscInt64 first_id;
   Outline *outline; /* gets the surface of these cells; NULL: nobody wants it */
 } Seeding;

@@ -131,7 +131,7 @@ static void tell_hourglass(const Seeding *s)
 {
   const CellType type = s->source->type;
   char path[128];
-  if (s->n_rule > 1 || s->source != s->grid || (type != CELL_QUADRILATERAL && type != CELL_HEXAHEDRON)) return;
+  if (s->rule.n > 1 || s->source != s->grid || (type != CELL_QUADRILATERAL && type != CELL_HEXAHEDRON)) return;
   seed_path(s->b, "points_per_cell", sizeof path, path);
   diag_warning(s->diag, path, "with one point in each %s of '%s' nothing resists its hourglass motions",
                cells[type].name, s->body->name);
@@ -153,7 +153,7 @@ PetscErrorCode SeedCheckRoom(const Seeding *s, const Points *points, PetscBool *
   PetscInt64 wanted;
   char path[128];
   PetscFunctionBeginUser;
-  (void)count_fits(points->n, s->n_cells, s->n_rule, most, &wanted);
+  (void)count_fits(points->n, s->n_cells, s->rule.n, most, &wanted);
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &wanted, 1, MPIU_INT64, MPI_MAX, s->grid->comm));
   *fits = wanted <= most;
   if (*fits || !seed_tells(s->grid)) PetscFunctionReturn(0);

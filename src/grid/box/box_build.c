@@ -5,91 +5,9 @@
  * axis), the centre of a crossed voxel to that of its voxel. A rank numbers its own lattice nodes
  * lexicographically, then its centres; ghosts follow. The sides are the sets left right (x), bottom
  * top (y), and in 3D front (lowest z) and back (highest z). */
-#include "grid/grid_private.h"
+#include "grid/box/box.h"
 
 static const char *const side_names[3][2] = {{"left", "right"}, {"bottom", "top"}, {"front", "back"}};
-
-/* Lattice nodes that a block touches. */
-static VoxelBlock node_block(const GridBox *box, const VoxelBlock *voxels)
-{
-  VoxelBlock nodes = *voxels;
-  const PetscInt some = block_size(voxels) > 0;
-  for (PetscInt d = 0; d < box->dim; ++d) nodes.hi[d] = some ? nodes.hi[d] + 1 : nodes.lo[d];
-  return nodes;
-}
-
-/* Those that it owns. */
-static VoxelBlock owned_block(const GridBox *box, const VoxelBlock *voxels)
-{
-  VoxelBlock nodes = *voxels;
-  const PetscInt some = block_size(voxels) > 0;
-  for (PetscInt d = 0; d < box->dim; ++d)
-    nodes.hi[d] = some ? nodes.hi[d] + (nodes.hi[d] == box->counts[d]) : nodes.lo[d];
-  return nodes;
-}
-
-static PetscBool has_centres(const GridBox *box) { return box->pattern[0].code[0][2] == VOXEL_CENTRE; }
-
-/* Geometric lines: the last interval is `grading` times the first. */
-static void fill_line(PetscReal min, PetscReal max, PetscInt n, PetscReal grading, PetscReal *line)
-{
-  const PetscReal ratio = n > 1 ? PetscPowReal(grading, 1.0 / (PetscReal)(n - 1)) : 1.0;
-  const PetscBool uniform = grading == 1.0 || n == 1;
-  const PetscReal all = uniform ? (PetscReal)n : PetscExpReal((PetscReal)n * PetscLogReal(ratio)) - 1.0;
-  for (PetscInt i = 0; i <= n; ++i) {
-    const PetscReal part = uniform ? (PetscReal)i : PetscExpReal((PetscReal)i * PetscLogReal(ratio)) - 1.0;
-    line[i] = min + (max - min) * (part / all);
-  }
-  line[0] = min;
-  line[n] = max;
-}
-
-static PetscErrorCode BoxLines(GridBox *box, const GridSpec *spec)
-{
-  PetscFunctionBeginUser;
-  box->tolerance = 0;
-  for (PetscInt d = 0; d < 3; ++d) {
-    const PetscBool real = d < box->dim;
-    const PetscReal min = real ? spec->min[d] : 0, max = real ? spec->max[d] : 1;
-    const PetscReal grading = real && spec->grading[d] > 0 ? spec->grading[d] : 1.0;
-    box->counts[d] = real ? spec->counts[d] : 1;
-    PetscCall(PetscMalloc1(box->counts[d] + 1, &box->line[d]));
-    fill_line(min, max, box->counts[d], grading, box->line[d]);
-    if (grading == 1.0) box->per_length[d] = (PetscReal)box->counts[d] / (max - min);
-    if (real) box->tolerance = PetscMax(box->tolerance, 1e-12 * (max - min));
-  }
-  PetscFunctionReturn(0);
-}
-
-PetscInt box_owned_nodes(const GridBox *box, const VoxelBlock *voxels)
-{
-  const VoxelBlock owned = owned_block(box, voxels);
-  return block_size(&owned) + (has_centres(box) ? block_size(voxels) : 0);
-}
-
-static PetscErrorCode GridBoxCreate(MPI_Comm comm, const Case *c, GridWeight weight, void *context, GridBox **out)
-{
-  GridBox *box;
-
-  PetscFunctionBeginUser;
-  PetscCall(PetscNew(&box));
-  box->dim = kinematics_dim(c->kinematics);
-  voxel_patterns(c->grid.cell, c->grid.diagonal, box->pattern);
-  PetscCall(BoxLines(box, &c->grid));
-  PetscCall(BoxPartition(comm, box, weight, context));
-  *out = box;
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode GridBoxDestroy(GridBox **box)
-{
-  PetscFunctionBeginUser;
-  if (!*box) PetscFunctionReturn(0);
-  for (int d = 0; d < 3; ++d) PetscCall(PetscFree((*box)->line[d]));
-  PetscCall(PetscFree4((*box)->block, (*box)->cut_axis, (*box)->cut, (*box)->first_node));
-  PetscCall(PetscFree(*box));
-  PetscFunctionReturn(0);
-}
 
 /* The rank and the local number there of a lattice node. */
 static PetscSFNode lattice_owner(const GridBox *box, const PetscInt ijk[3])
@@ -98,7 +16,7 @@ static PetscSFNode lattice_owner(const GridBox *box, const PetscInt ijk[3])
   PetscSFNode node;
   for (int d = 0; d < 3; ++d) voxel[d] = PetscMin(ijk[d], box->counts[d] - 1);
   node.rank = box_owner(box, voxel);
-  const VoxelBlock owned = owned_block(box, box->block + node.rank);
+  const VoxelBlock owned = box_owned_nodes(box, box->block + node.rank);
   node.index = block_index(&owned, ijk);
   return node;
 }
@@ -108,7 +26,7 @@ static PetscErrorCode CountNodes(Grid *grid, const VoxelBlock *nodes)
   const GridBox *box = grid->box;
 
   PetscFunctionBeginUser;
-  const VoxelBlock *voxels = box->block + box->rank, owned = owned_block(box, voxels);
+  const VoxelBlock *voxels = box->block + box->rank, owned = box_owned_nodes(box, voxels);
   grid->n_owned = box->first_node[box->rank + 1] - box->first_node[box->rank];
   grid->n_nodes = grid->n_owned + block_size(nodes) - block_size(&owned);
   grid->n_nodes_global = box->first_node[box->size];
@@ -122,7 +40,7 @@ static PetscErrorCode CountNodes(Grid *grid, const VoxelBlock *nodes)
 static PetscErrorCode PlaceLattice(Grid *grid, const VoxelBlock *nodes, PetscInt *lattice)
 {
   const GridBox *box = grid->box;
-  const VoxelBlock owned = owned_block(box, box->block + box->rank);
+  const VoxelBlock owned = box_owned_nodes(box, box->block + box->rank);
   PetscInt own = 0, ghost = 0, ijk[3], *leaf;
   PetscSFNode *root;
 
@@ -173,10 +91,10 @@ static void voxel_nodes(const Grid *grid, const VoxelBlock *nodes, const PetscIn
 static void fill_cells(Grid *grid, const VoxelBlock *nodes, const PetscInt *lattice)
 {
   const GridBox *box = grid->box;
-  const VoxelBlock *voxels = box->block + box->rank, owned = owned_block(box, voxels);
-  const VoxelBlock all = {{0, 0, 0}, {box->counts[0], box->counts[1], box->counts[2]}};
+  const VoxelBlock *voxels = box->block + box->rank, owned = box_owned_nodes(box, voxels);
+  const VoxelBlock all = box_voxels(box);
   const PetscInt nn = grid->nodes_per_cell, n_sub = box->pattern[0].n_cells;
-  const PetscBool centres = has_centres(box);
+  const PetscBool centres = box_has_centres(box);
   PetscInt ijk[3], local[VOXEL_CENTRE + 1], cell = 0;
   for (ijk[2] = voxels->lo[2]; ijk[2] < voxels->hi[2]; ++ijk[2])
     for (ijk[1] = voxels->lo[1]; ijk[1] < voxels->hi[1]; ++ijk[1])
@@ -257,6 +175,29 @@ static PetscErrorCode SideNodes(const Grid *grid, const VoxelBlock *nodes, const
   PetscFunctionReturn(0);
 }
 
+/* The whole outer boundary from the sides. */
+static PetscErrorCode FillOuter(Grid *grid)
+{
+  GridSet *outer = &grid->outer;
+  PetscInt n_nodes = 0, n_faces = 0;
+
+  PetscFunctionBeginUser;
+  for (PetscInt s = 0; s < grid->n_sets; ++s) n_nodes += grid->sets[s].n_nodes, n_faces += grid->sets[s].n_faces;
+  PetscCall(PetscMalloc1(n_nodes, &outer->nodes));
+  PetscCall(PetscMalloc1(n_faces, &outer->face_cell));
+  PetscCall(PetscMalloc1(n_faces, &outer->face_side));
+  for (PetscInt s = 0; s < grid->n_sets; ++s) {
+    const GridSet *set = grid->sets + s;
+    PetscCall(PetscArraycpy(outer->nodes + outer->n_nodes, set->nodes, set->n_nodes));
+    PetscCall(PetscArraycpy(outer->face_cell + outer->n_faces, set->face_cell, set->n_faces));
+    PetscCall(PetscArraycpy(outer->face_side + outer->n_faces, set->face_side, set->n_faces));
+    outer->n_nodes += set->n_nodes;
+    outer->n_faces += set->n_faces;
+  }
+  PetscCall(PetscSortRemoveDupsInt(&outer->n_nodes, outer->nodes));
+  PetscFunctionReturn(0);
+}
+
 static PetscErrorCode FillSides(Grid *grid, const VoxelBlock *nodes, const PetscInt *lattice)
 {
   PetscFunctionBeginUser;
@@ -268,14 +209,14 @@ static PetscErrorCode FillSides(Grid *grid, const VoxelBlock *nodes, const Petsc
       PetscCall(SideNodes(grid, nodes, lattice, axis, upper, set));
       PetscCall(SideFaces(grid, axis, upper, set));
     }
-  PetscCall(GridOuterFromSets(grid));
+  PetscCall(FillOuter(grid));
   PetscFunctionReturn(0);
 }
 
 static PetscErrorCode FillBox(Grid *grid)
 {
   const GridBox *box = grid->box;
-  const VoxelBlock *voxels = box->block + box->rank, nodes = node_block(box, voxels);
+  const VoxelBlock *voxels = box->block + box->rank, nodes = box_nodes(box, voxels);
   PetscInt *lattice;
 
   PetscFunctionBeginUser;
@@ -303,30 +244,7 @@ static void box_extent(Grid *grid)
   }
 }
 
-/* What the case reader lets through but no grid can be made of. */
-static PetscBool box_valid(MPI_Comm comm, const Case *c, Diag *diag)
-{
-  const GridSpec *spec = &c->grid;
-  const PetscInt dim = kinematics_dim(c->kinematics);
-  PetscReal entities = 6.0; /* bounds cells, nodes and the entries of cell_node */
-  if (cells[spec->cell].dim != dim) {
-    GridError(comm, diag, "grid.cell", "a %s does not fit %s kinematics", cells[spec->cell].name,
-              dim == 3 ? "three-dimensional" : "two-dimensional");
-    return PETSC_FALSE;
-  }
-  for (PetscInt d = 0; d < dim; ++d) {
-    entities *= (PetscReal)spec->counts[d] + 1.0;
-    if (spec->counts[d] >= 1 && spec->max[d] > spec->min[d] && PetscIsNormalReal(spec->max[d] - spec->min[d])) continue;
-    GridError(comm, diag, "grid", "the box has no cells along %c", (char)('x' + d));
-    return PETSC_FALSE;
-  }
-  if (entities * cells[spec->cell].nodes < (PetscReal)PETSC_MAX_INT) return PETSC_TRUE;
-  GridError(comm, diag, "grid", "the box would have about %.3g nodes, more than this build of PETSc can number",
-            (double)(entities / 6.0));
-  return PETSC_FALSE;
-}
-
-PetscErrorCode GridFromBox(MPI_Comm comm, CellType type, GridBox *box, Grid **out)
+PetscErrorCode BoxBuild(MPI_Comm comm, const GridOps *ops, CellType type, GridBox *box, Grid **out)
 {
   Grid *grid;
 
@@ -334,25 +252,14 @@ PetscErrorCode GridFromBox(MPI_Comm comm, CellType type, GridBox *box, Grid **ou
   PetscCall(PetscNew(&grid));
   grid->comm = comm;
   grid->dim = box->dim;
-  grid->type = type;
+  grid->type = grid->first_type = type;
   grid->nodes_per_cell = cells[type].nodes;
+  grid->ops = ops;
   grid->box = box;
   grid->n_cells_global = box->pattern[0].n_cells * box->counts[0] * box->counts[1] * box->counts[2];
   box_extent(grid);
   PetscCall(FillBox(grid));
   PetscCall(GridFinish(grid));
   *out = grid;
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode GridCreate_Box(MPI_Comm comm, const Case *c, GridWeight weight, void *context, Diag *diag, Grid **grid)
-{
-  GridBox *box = NULL;
-
-  PetscFunctionBeginUser;
-  *grid = NULL;
-  if (!box_valid(comm, c, diag)) PetscFunctionReturn(0);
-  PetscCall(GridBoxCreate(comm, c, weight, context, &box));
-  PetscCall(GridFromBox(comm, c->grid.cell, box, grid));
   PetscFunctionReturn(0);
 }

@@ -2,7 +2,8 @@
 #include "grid/directory.h"
 #include "points/points.h"
 
-/* Points stand in the order of their cells: the number of each cell that holds some, once. at[p]: where it stands, -1 of a lost point. */
+/* Points stand in the order of their cells: the number of each cell that holds some, once. at[p]:
+ * where it stands, -1 of a lost point. */
 static PetscErrorCode ListCells(const Points *points, const Grid *old, PetscInt *at, PetscInt *n, PetscInt **cell)
 {
   PetscInt last = -1;
@@ -20,7 +21,7 @@ static PetscErrorCode ListCells(const Points *points, const Grid *old, PetscInt 
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode PointsRegrid(Points *points, const Grid *old, const Grid *grid, PetscInt *moved)
+PetscErrorCode PointsRepartition(Points *points, const Grid *old, const Grid *grid, PetscInt *moved)
 {
   PetscInt n = 0, *at, *cell = NULL;
   PetscMPIInt rank, *owner;

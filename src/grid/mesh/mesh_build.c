@@ -1,7 +1,8 @@
-/* Makes the grid of a rank's cells when they have arrived: cells in the order of the file, nodes as in mesh_pack.c (each belongs to the lowest rank
- * that has it, and owners number them in the order of the file). Nothing depends on where they came from. */
+/* Makes the grid of a rank's cells when they have arrived: cells in the order of the file, those of
+ * the lesser kind first. A node belongs to the lowest rank that has it; owners number theirs in the
+ * order of the file. Nothing depends on where they came from. */
 #include "grid/directory.h"
-#include "grid/mesh/mesh_travel.h"
+#include "grid/mesh/mesh_part.h"
 
 /* The nodes here, by their numbers in the file. */
 typedef struct {
@@ -24,9 +25,11 @@ static PetscErrorCode GridLike(const Grid *old, Grid **out)
 
   PetscFunctionBeginUser;
   PetscCall(PetscNew(&grid));
+  grid->ops = old->ops;
   grid->comm = old->comm;
   grid->dim = old->dim;
   grid->type = old->type;
+  grid->first_type = old->first_type;
   grid->nodes_per_cell = old->nodes_per_cell;
   grid->n_cells_global = old->n_cells_global;
   grid->n_nodes_global = old->n_nodes_global;
@@ -41,23 +44,38 @@ static PetscErrorCode GridLike(const Grid *old, Grid **out)
 }
 
 /* order[c]: the row of local cell c. */
-static PetscErrorCode OrderCells(Grid *grid, const MeshParcel *in, PetscInt *order)
+static PetscErrorCode OrderCells(Grid *grid, const MeshPart *in, PetscInt *order)
 {
-  const PetscInt width = mesh_row(grid);
+  const PetscInt width = mesh_row(grid), last = grid->nodes_per_cell; /* where a row has its last node */
+  PetscInt n = 0;
 
   PetscFunctionBeginUser;
   grid->n_cells = in->n_cells;
   PetscCall(PetscMalloc1(grid->n_cells, &grid->global_cell));
-  for (PetscInt c = 0; c < grid->n_cells; ++c) {
-    grid->global_cell[c] = in->cell[c * width];
-    order[c] = c;
+  for (int full = 0; full < 2; ++full) {
+    for (PetscInt c = 0; c < grid->n_cells; ++c)
+      if ((in->cell[c * width + last] >= 0) == full) order[n++] = c;
+    if (!full) grid->n_first = n;
   }
-  PetscCall(PetscSortIntWithArray(grid->n_cells, grid->global_cell, order));
+  for (PetscInt c = 0; c < n; ++c) grid->global_cell[c] = in->cell[order[c] * width];
+  PetscCall(PetscSortIntWithArray(grid->n_first, grid->global_cell, order));
+  PetscCall(PetscSortIntWithArray(n - grid->n_first, grid->global_cell + grid->n_first, order + grid->n_first));
+  PetscFunctionReturn(0);
+}
+
+/* The local cell of a number; -1: it is not here. */
+static PetscErrorCode FindCell(const Grid *grid, PetscInt number, PetscInt *cell)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscFindInt(number, grid->n_first, grid->global_cell, cell));
+  if (*cell >= 0) PetscFunctionReturn(0);
+  PetscCall(PetscFindInt(number, grid->n_cells - grid->n_first, grid->global_cell + grid->n_first, cell));
+  *cell = *cell < 0 ? -1 : *cell + grid->n_first;
   PetscFunctionReturn(0);
 }
 
 /* Each node once, and whose it is. */
-static PetscErrorCode ArrivalsCreate(const Grid *grid, const MeshParcel *in, Arrivals *a)
+static PetscErrorCode ArrivalsCreate(const Grid *grid, const MeshPart *in, Arrivals *a)
 {
   const PetscInt n = in->n_nodes;
 
@@ -86,7 +104,7 @@ static PetscErrorCode ArrivalsDestroy(Arrivals *a)
 }
 
 /* Owned nodes in the order of the file, ghosts as they come in the cells. */
-static PetscErrorCode NumberNodes(Grid *grid, const MeshParcel *in, const PetscInt *order, Arrivals *a)
+static PetscErrorCode NumberNodes(Grid *grid, const MeshPart *in, const PetscInt *order, Arrivals *a)
 {
   const PetscInt width = mesh_row(grid), nn = grid->nodes_per_cell;
   PetscMPIInt rank;
@@ -98,29 +116,34 @@ static PetscErrorCode NumberNodes(Grid *grid, const MeshParcel *in, const PetscI
   grid->n_nodes = grid->n_owned;
   PetscCall(PetscMalloc1(grid->n_cells * nn, &grid->cell_node));
   for (PetscInt k = 0; k < grid->n_cells * nn; ++k) {
-    PetscCall(Find(in->cell[order[k / nn] * width + 1 + k % nn], a->n, a->number, &at));
+    const PetscInt number = in->cell[order[k / nn] * width + 1 + k % nn];
+    if (number < 0) { /* a cell of the lesser kind */
+      grid->cell_node[k] = grid->cell_node[k - 1];
+      continue;
+    }
+    PetscCall(Find(number, a->n, a->number, &at));
     if (a->local[at] < 0) a->local[at] = grid->n_nodes++;
     grid->cell_node[k] = a->local[at];
   }
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode PlaceNodes(Grid *grid, const MeshParcel *in, const Arrivals *a, PetscInt **file_node)
+static PetscErrorCode PlaceNodes(Grid *grid, const MeshPart *in, const Arrivals *a)
 {
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(grid->n_nodes, file_node));
+  PetscCall(PetscMalloc1(grid->n_nodes, &grid->mesh->file_node));
   PetscCall(PetscMalloc1(grid->n_nodes * grid->dim, &grid->x));
   for (PetscInt i = 0; i < a->n; ++i) {
-    (*file_node)[a->local[i]] = a->number[i];
+    grid->mesh->file_node[a->local[i]] = a->number[i];
     for (PetscInt d = 0; d < grid->dim; ++d) grid->x[a->local[i] * grid->dim + d] = in->node[a->item[i]].x[d];
   }
   PetscFunctionReturn(0);
 }
 
 /* Ties ghosts to their owners, and tells all how owners number them. */
-static PetscErrorCode TieNodes(Grid *grid, const PetscInt *file_node)
+static PetscErrorCode TieNodes(Grid *grid)
 {
-  const PetscInt n = grid->n_nodes - grid->n_owned;
+  const PetscInt n = grid->n_nodes - grid->n_owned, *file_node = grid->mesh->file_node;
   PetscInt first = 0, *leaf;
   PetscSFNode *root;
   DirectoryPlace *place;
@@ -147,34 +170,35 @@ static PetscErrorCode TieNodes(Grid *grid, const PetscInt *file_node)
 }
 
 /* Neighbours that are here by their local number, the others by their rank. */
-static PetscErrorCode FindNeighbours(const Grid *grid, const MeshParcel *in, const PetscInt *order,
-                                     PetscInt **neighbour, PetscInt **far_cell)
+static PetscErrorCode FindNeighbours(Grid *grid, const MeshPart *in, const PetscInt *order)
 {
-  const PetscInt width = mesh_row(grid), n_faces = cells[grid->type].faces, n = grid->n_cells * n_faces;
-  PetscInt n_far = 0;
+  const PetscInt width = mesh_row(grid), n_faces = mesh_faces(grid), n = grid->n_cells * n_faces;
+  PetscInt n_far = 0, *neighbour, *far_cell;
   DirectoryPlace *place;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(n, neighbour));
+  PetscCall(PetscMalloc1(n, &neighbour));
   for (PetscInt k = 0; k < n; ++k) {
     const PetscInt other = in->cell[order[k / n_faces] * width + 1 + grid->nodes_per_cell + k % n_faces];
-    (*neighbour)[k] = -1;
+    neighbour[k] = -1;
     if (other < 0) continue;
-    PetscCall(PetscFindInt(other, grid->n_cells, grid->global_cell, &(*neighbour)[k]));
-    if ((*neighbour)[k] < 0) (*neighbour)[k] = -2 - other, ++n_far;
+    PetscCall(FindCell(grid, other, &neighbour[k]));
+    if (neighbour[k] < 0) neighbour[k] = -2 - other, ++n_far;
   }
-  PetscCall(PetscMalloc1(n_far, far_cell));
+  PetscCall(PetscMalloc1(n_far, &far_cell));
   PetscCall(PetscMalloc1(n_far, &place));
   for (PetscInt k = 0, f = 0; k < n; ++k)
-    if ((*neighbour)[k] <= -2) (*far_cell)[f++] = -2 - (*neighbour)[k];
-  PetscCall(DirectoryFind(grid->comm, grid->n_cells_global, grid->n_cells, grid->global_cell, n_far, *far_cell, place));
+    if (neighbour[k] <= -2) far_cell[f++] = -2 - neighbour[k];
+  PetscCall(DirectoryFind(grid->comm, grid->n_cells_global, grid->n_cells, grid->global_cell, n_far, far_cell, place));
   for (PetscInt k = 0, f = 0; k < n; ++k)
-    if ((*neighbour)[k] <= -2) (*neighbour)[k] = -2 - place[f++].rank;
+    if (neighbour[k] <= -2) neighbour[k] = -2 - place[f++].rank;
   PetscCall(PetscFree(place));
+  grid->mesh->neighbour = neighbour;
+  grid->mesh->far_cell = far_cell;
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode SetRoom(const Grid *grid, const MeshParcel *in, GridSet **set)
+static PetscErrorCode SetRoom(const Grid *grid, const MeshPart *in, GridSet **set)
 {
   PetscInt(*count)[3];
 
@@ -191,13 +215,14 @@ static PetscErrorCode SetRoom(const Grid *grid, const MeshParcel *in, GridSet **
   PetscFunctionReturn(0);
 }
 
-/* A node comes once from each rank that sent it. Cell and side of a face are one number until they are sorted. */
+/* A node comes once from each rank that sent it. Cell and side of a face are one number until they
+ * are sorted. */
 static PetscErrorCode SortSet(const Grid *grid, GridSet *set)
 {
-  const PetscInt n_faces = cells[grid->type].faces;
+  const PetscInt n_faces = mesh_faces(grid);
 
   PetscFunctionBeginUser;
-  PetscCall(GridSortUnique(&set->n_nodes, set->nodes));
+  PetscCall(PetscSortRemoveDupsInt(&set->n_nodes, set->nodes));
   PetscCall(PetscSortInt(set->n_faces, set->face_cell));
   PetscCall(PetscSortInt(set->n_cells, set->cells));
   for (PetscInt f = 0; f < set->n_faces; ++f) {
@@ -207,9 +232,9 @@ static PetscErrorCode SortSet(const Grid *grid, GridSet *set)
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode FillSets(Grid *grid, const MeshParcel *in, const Arrivals *a)
+static PetscErrorCode FillSets(Grid *grid, const MeshPart *in, const Arrivals *a)
 {
-  const PetscInt n_faces = cells[grid->type].faces;
+  const PetscInt n_faces = mesh_faces(grid);
   GridSet **set;
   PetscInt at;
 
@@ -225,7 +250,8 @@ static PetscErrorCode FillSets(Grid *grid, const MeshParcel *in, const Arrivals 
       s->nodes[s->n_nodes++] = a->local[at];
       continue;
     }
-    PetscCall(Find(m->number, grid->n_cells, grid->global_cell, &at));
+    PetscCall(FindCell(grid, m->number, &at));
+    PetscCheck(at >= 0, PETSC_COMM_SELF, PETSC_ERR_PLIB, "cell %d of a set did not arrive", (int)m->number);
     if (m->kind == MEMBER_FACE) s->face_cell[s->n_faces++] = at * n_faces + m->side;
     else s->cells[s->n_cells++] = at;
   }
@@ -234,26 +260,49 @@ static PetscErrorCode FillSets(Grid *grid, const MeshParcel *in, const Arrivals 
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode MeshSettle(const Grid *old, const MeshParcel *in, Grid **out)
+/* The search trees, for the nodes where they are. */
+static PetscErrorCode SearchTrees(Grid *grid)
 {
-  PetscInt *order, *neighbour, *far_cell, *file_node;
-  Arrivals a;
-  Grid *grid = NULL;
+  PetscReal size = 0;
 
   PetscFunctionBeginUser;
-  PetscCall(GridLike(old, &grid));
+  for (PetscInt d = 0; d < grid->dim; ++d) size = PetscMax(size, grid->max[d] - grid->min[d]);
+  grid->mesh->tolerance = PetscMax(1e-10, 2e-12 * size / grid->smallest);
+  PetscCall(MeshCellTree(grid, &grid->mesh->cell_tree));
+  PetscCall(MeshFaceTree(grid, &grid->mesh->face_tree));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode Build(Grid *grid, const MeshPart *in)
+{
+  PetscInt *order;
+  Arrivals a;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscNew(&grid->mesh));
   PetscCall(PetscMalloc1(in->n_cells, &order));
   PetscCall(OrderCells(grid, in, order));
   PetscCall(ArrivalsCreate(grid, in, &a));
   PetscCall(NumberNodes(grid, in, order, &a));
-  PetscCall(PlaceNodes(grid, in, &a, &file_node));
-  PetscCall(TieNodes(grid, file_node));
-  PetscCall(FindNeighbours(grid, in, order, &neighbour, &far_cell));
+  PetscCall(PlaceNodes(grid, in, &a));
+  PetscCall(TieNodes(grid));
+  PetscCall(FindNeighbours(grid, in, order));
   PetscCall(FillSets(grid, in, &a));
   PetscCall(ArrivalsDestroy(&a));
   PetscCall(PetscFree(order));
-  PetscCall(GridBinsCreate(grid, neighbour, far_cell, file_node));
+  PetscCall(SearchTrees(grid));
   PetscCall(GridFinish(grid));
-  *out = grid;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode MeshFromOwners(const Grid *old, const PetscMPIInt *owner, Grid **grid)
+{
+  MeshPart part;
+
+  PetscFunctionBeginUser;
+  PetscCall(MeshSend(old, owner, &part));
+  PetscCall(GridLike(old, grid));
+  PetscCall(Build(*grid, &part));
+  PetscCall(MeshPartDestroy(&part));
   PetscFunctionReturn(0);
 }

@@ -1,5 +1,5 @@
-/* `outside: keep-on-boundary`: points that left the grid go back to the nearest position inside. Followers do not: they
- * only remember it. */
+/* `outside: keep-on-boundary`: points that left the grid go back to the nearest position inside.
+ * Followers do not: they only remember it. */
 #include "points/migrate.h"
 
 /* A position outside the grid, on its way to the nearest one inside. */
@@ -17,8 +17,9 @@ static PetscInt find_homeless(const Leavers *l, const Points *points, PetscInt *
   return n;
 }
 
-/* Every rank proposes the nearest position that it knows for every homeless point (n_all of them); the
- * nearest of all wins. Few points are homeless, and on a mesh no rank knows the boundary of the others. */
+/* Every rank proposes the nearest position that it knows for every homeless point (n_all of them);
+ * the nearest of all wins. Few points are homeless, and on a mesh no rank knows the boundary of the
+ * others. */
 static PetscErrorCode ChooseNearest(const Grid *grid, PetscInt n_all, Clamp *all)
 {
   struct {
@@ -48,10 +49,10 @@ static PetscErrorCode ChooseNearest(const Grid *grid, PetscInt n_all, Clamp *all
   PetscFunctionReturn(0);
 }
 
-/* Put the point where it is kept, and take away the velocity that leads out: on a box by components, else
- * along the way that it was moved. The displacement follows, so that x - u stays the place where it
- * started. */
-static void keep_point(Points *points, PetscInt p, const Clamp *clamp, PetscBool by_axis)
+/* Put the point where it is kept, and take away the velocity that leads out: on a box by
+ * components, else along the way that it was moved. The displacement follows, so that x - u stays
+ * the place where it started. */
+static void clamp_point(Points *points, PetscInt p, const Clamp *clamp, PetscBool by_axis)
 {
   const PetscInt dim = points->dim;
   PetscReal *x = point_real(points, POINT_X, p), *u = point_real(points, POINT_U, p),
@@ -71,7 +72,7 @@ static void keep_point(Points *points, PetscInt p, const Clamp *clamp, PetscBool
 }
 
 /* A follower goes on outside; the grid carries it at the nearest position that it has. */
-static void keep_follower(Points *points, PetscInt p, const Clamp *clamp)
+static void clamp_follower(Points *points, PetscInt p, const Clamp *clamp)
 {
   for (PetscInt d = 0; d < points->dim; ++d) {
     point_real(points, POINT_X, p)[d] = clamp->to[d];
@@ -100,7 +101,7 @@ static PetscErrorCode GatherHomeless(const Grid *grid, PetscInt n, const Clamp *
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode LeaversKeepOnBoundary(const Leavers *l, Points *points, const Grid *grid)
+PetscErrorCode LeaversClamp(const Leavers *l, Points *points, const Grid *grid)
 {
   const PetscInt dim = points->dim;
   PetscInt n, first, n_all, *which;
@@ -117,10 +118,10 @@ PetscErrorCode LeaversKeepOnBoundary(const Leavers *l, Points *points, const Gri
   for (PetscInt k = 0; k < n; ++k) {
     const PetscInt i = which[k], p = l->point[i];
     if (points->components[POINT_OVERHANG]) {
-      keep_follower(points, p, all + first + k);
+      clamp_follower(points, p, all + first + k);
     } else {
       tally_outside(points, p, 1);
-      keep_point(points, p, all + first + k, (PetscBool) !!grid->box);
+      clamp_point(points, p, all + first + k, grid_is_aligned(grid));
       tally_outside(points, p, -1);
       ++points->outside.held;
       points->outside.held_mass += points->real[POINT_MASS][p];
