@@ -1,5 +1,6 @@
 /* The reference as JSON Schema, draft 2020-12: one definition for each table, materials split by law. */
 #include <string.h>
+#include "base/text.h"
 #include "case/fields.h"
 #include "input/schema_print.h"
 #include "material/law.h"
@@ -23,12 +24,14 @@ static void bounds(FILE *out, const SchemaEntry *e)
     fprintf(out, ", \"%s\": %.17g", e->max_open ? "exclusiveMaximum" : "maximum", (double)e->max);
 }
 
-static void enumerate(FILE *out, const SchemaWord *words)
+/* Names of structs that begin with theirs, up to one without. */
+static void enumerate(FILE *out, const void *structs, size_t size)
 {
+  const char *at = structs;
   fputs("\"enum\": [", out);
-  for (const SchemaWord *w = words; w->word; ++w) {
-    fputs(w == words ? "" : ", ", out);
-    json_string(out, w->word);
+  for (const char *name; (name = *(const char *const *)at); at += size) {
+    fputs(at == structs ? "" : ", ", out);
+    json_string(out, name);
   }
   fputc(']', out);
 }
@@ -45,12 +48,9 @@ static void json_laws(FILE *out)
 
 static void json_fields(FILE *out)
 {
-  fputs("\"type\": \"array\", \"items\": {\"enum\": [", out);
-  for (const OutputField *f = output_fields; f->name; ++f) {
-    fputs(f == output_fields ? "" : ", ", out);
-    json_string(out, f->name);
-  }
-  fputs("]}", out);
+  fputs("\"type\": \"array\", \"items\": {", out);
+  enumerate(out, output_fields, sizeof *output_fields);
+  fputc('}', out);
 }
 
 /* A table's name as a JSON pointer takes it: no spaces. */
@@ -71,25 +71,20 @@ static void json_value(FILE *out, const SchemaEntry *e)
 {
   switch (e->type) {
   case TYPE_NUMBER:
-    fputs("\"type\": \"number\"", out);
-    bounds(out, e);
-    break;
   case TYPE_INTEGER:
-    fputs("\"type\": \"integer\"", out);
+    fprintf(out, "\"type\": \"%s\"", e->type == TYPE_NUMBER ? "number" : "integer");
     bounds(out, e);
     break;
   case TYPE_WORD:
-  case TYPE_WORD_TEXT: enumerate(out, e->words); break;
+  case TYPE_WORD_TEXT: enumerate(out, e->words, sizeof *e->words); break;
   case TYPE_LAW: json_laws(out); break;
   case TYPE_FIELDS: json_fields(out); break;
   case TYPE_TABLE: json_reference(out, e->table); break;
   case TYPE_LIST:
-    fputs("\"type\": \"array\", \"items\": {", out);
-    json_reference(out, e->table);
-    fputc('}', out);
-    break;
   case TYPE_NAMED:
-    fputs("\"type\": \"object\", \"additionalProperties\": {", out);
+    fputs(
+      e->type == TYPE_LIST ? "\"type\": \"array\", \"items\": {" : "\"type\": \"object\", \"additionalProperties\": {",
+      out);
     json_reference(out, e->table);
     fputc('}', out);
     break;
@@ -100,10 +95,9 @@ static void json_value(FILE *out, const SchemaEntry *e)
 
 static void property(FILE *out, const SchemaEntry *e)
 {
-  char text[400], fallback[200];
+  char text[TEXT_LABEL + 256], label[TEXT_LABEL], fallback[200];
   schema_default(e, fallback, sizeof(fallback));
-  snprintf(text, sizeof(text), "%s%s%s%s%s%s", e->help, e->unit && e->unit[0] ? " [" : "",
-           e->unit && e->unit[0] ? e->unit : "", e->unit && e->unit[0] ? "]" : "",
+  snprintf(text, sizeof(text), "%s%s%s", text_with_unit(e->help, e->unit, label),
            fallback[0] && !e->required ? "; default: " : "", e->required ? "" : fallback);
   json_string(out, e->key);
   fputs(": {", out);
@@ -125,22 +119,19 @@ static void json_required(FILE *out, const SchemaTable *table)
   fputc(']', out);
 }
 
+static void require_one(FILE *out, const SchemaGroup *group)
+{
+  for (int k = 0; group->keys[k]; ++k) fprintf(out, "%s{\"required\": [\"%s\"]}", k ? ", " : "", group->keys[k]);
+}
+
 /* "exactly one of" and so on; a single `oneOf` or `anyOf` for each group, joined by allOf. */
 static void json_group(FILE *out, const SchemaGroup *group)
 {
   fprintf(out, "{\"%s\": [", group->kind == GROUP_AT_LEAST_ONE ? "anyOf" : "oneOf");
-  for (int k = 0; group->keys[k]; ++k) {
-    fprintf(out, "%s{\"required\": [", k ? ", " : "");
-    json_string(out, group->keys[k]);
-    fputs("]}", out);
-  }
+  require_one(out, group);
   if (group->kind == GROUP_AT_MOST_ONE) { /* or none at all */
     fputs(", {\"not\": {\"anyOf\": [", out);
-    for (int k = 0; group->keys[k]; ++k) {
-      fprintf(out, "%s{\"required\": [", k ? ", " : "");
-      json_string(out, group->keys[k]);
-      fputs("]}", out);
-    }
+    require_one(out, group);
     fputs("]}}", out);
   }
   fputs("]}", out);

@@ -1,6 +1,7 @@
 /* The reference as text and as Markdown. */
 #include <math.h>
 #include <string.h>
+#include "base/text.h"
 #include "case/fields.h"
 #include "input/case_file.h"
 #include "input/schema_print.h"
@@ -53,11 +54,9 @@ static const char *print_where(const SchemaEntry *e) { return e->only_2d ? " (2D
 /* --- text --- */
 static void text_entry(FILE *out, const SchemaEntry *e)
 {
-  char left[120], fallback[200], kind[160];
-  snprintf(left, sizeof(left), "%s%s%s%s", e->key, e->unit && e->unit[0] ? " [" : "",
-           e->unit && e->unit[0] ? e->unit : "", e->unit && e->unit[0] ? "]" : "");
+  char left[TEXT_LABEL], fallback[200], kind[160];
   schema_default(e, fallback, sizeof(fallback));
-  fprintf(out, "  %-28s %s%s\n", left, e->help, print_where(e));
+  fprintf(out, "  %-28s %s%s\n", text_with_unit(e->key, e->unit, left), e->help, print_where(e));
   fprintf(out, "  %-28s   %s%s%s\n", "", print_kind(e, PETSC_FALSE, kind, sizeof(kind)),
           !fallback[0]  ? ""
           : e->required ? "; "
@@ -66,10 +65,11 @@ static void text_entry(FILE *out, const SchemaEntry *e)
   for (const SchemaWord *w = e->words; w && w->word; ++w) fprintf(out, "  %-28s   %-18s %s\n", "", w->word, w->help);
 }
 
+static const char *const group_rules[] = {"", "Exactly one of", "At most one of", "At least one of"};
+
 static void text_group(FILE *out, const SchemaGroup *group)
 {
-  static const char *const rule[] = {"", "Exactly one of", "At most one of", "At least one of"};
-  fprintf(out, "  %s:", rule[group->kind]);
+  fprintf(out, "  %s:", group_rules[group->kind]);
   for (int k = 0; group->keys[k]; ++k) fprintf(out, " %s", group->keys[k]);
   fputc('\n', out);
 }
@@ -146,10 +146,9 @@ static void markdown_head(FILE *out)
 
 static void markdown_table(FILE *out, const SchemaTable *table)
 {
-  static const char *const rule[] = {"", "Exactly one of", "At most one of", "At least one of"};
   fprintf(out, "\n## %s\n\n%s\n", table->name, table->help);
   for (const SchemaGroup *group = table->groups; group && group->kind != GROUP_NONE; ++group) {
-    fprintf(out, "\n%s:", rule[group->kind]);
+    fprintf(out, "\n%s:", group_rules[group->kind]);
     for (int k = 0; group->keys[k]; ++k) fprintf(out, "%s `%s`", k ? "," : "", group->keys[k]);
     fputs(".\n", out);
   }
