@@ -110,7 +110,7 @@ static PetscReal spacing_around(const Boxes *boxes, const PetscReal *x, const Pe
   return sum / n;
 }
 
-static PetscErrorCode Median(PetscInt n, const PetscReal *values, PetscReal *median)
+PetscErrorCode PlotMedian(PetscInt n, const PetscReal *values, PetscReal *median)
 {
   PetscReal *sorted;
 
@@ -137,7 +137,7 @@ PetscErrorCode PlotSpacing(PetscInt dim, PetscInt n, const PetscReal *x, PetscRe
   PetscCall(BoxesCreate(dim, n, x, &boxes));
   PetscCall(PetscMalloc1(n, &distance));
   for (PetscInt i = 0; i < n; ++i) distance[i] = neighbour_distance(&boxes, x, i, k);
-  PetscCall(Median(n, distance, &median));
+  PetscCall(PlotMedian(n, distance, &median));
   if (!(median < 1e100)) median = boxes.size; /* a handful of points, without enough neighbours */
   if (!(median > 0)) median = boxes.size;     /* all in pairs at the same place */
   for (PetscInt i = 0; i < n; ++i) distance[i] = PetscMin(PetscMax(distance[i], 0.3 * median), 2 * median);
