@@ -1,5 +1,6 @@
 #include <stdio.h>
 #include <string.h>
+#include "base/text.h"
 #include "basis/cell.h"
 #include "case/fields.h"
 #include "cli/cli.h"
@@ -16,11 +17,9 @@ static const CliUsage usage = {
 
 static void print_parameter(const SchemaEntry *e, PetscReal fallback)
 {
-  char range[80], left[80];
+  char range[80], left[TEXT_LABEL];
   schema_range(e, range, sizeof(range));
-  snprintf(left, sizeof(left), "%s%s%s%s", e->key, e->unit && e->unit[0] ? " [" : "",
-           e->unit && e->unit[0] ? e->unit : "", e->unit && e->unit[0] ? "]" : "");
-  printf("    %-28s %s", left, e->help);
+  printf("    %-28s %s", text_with_unit(e->key, e->unit, left), e->help);
   if (range[0]) printf("; %s", range);
   if (!PetscIsNanReal(fallback)) printf("; default %g", (double)fallback);
   putchar('\n');

@@ -189,11 +189,18 @@ PetscErrorCode SchemaReadTable(SchemaReader *r, const SchemaTable *table, const 
   PetscFunctionReturn(0);
 }
 
+PetscBool schema_is(SchemaReader *r, const SchemaEntry *entry, const YamlNode *node, YamlKind kind, PetscInt least)
+{
+  const PetscBool is = node->kind == kind && node->n >= least;
+  if (!is) schema_mismatch(r, entry, node);
+  return is;
+}
+
 static PetscErrorCode ReadNested(SchemaReader *r, const SchemaEntry *entry, const YamlNode *node, void *target)
 {
   PetscFunctionBeginUser;
-  if (node->kind != YAML_MAPPING) schema_mismatch(r, entry, node);
-  else PetscCall(SchemaReadTable(r, entry->table, node, (char *)target + entry->offset));
+  if (schema_is(r, entry, node, YAML_MAPPING, 0))
+    PetscCall(SchemaReadTable(r, entry->table, node, (char *)target + entry->offset));
   PetscFunctionReturn(0);
 }
 
@@ -234,10 +241,7 @@ static PetscErrorCode ReadList(SchemaReader *r, const SchemaEntry *entry, const 
   char *item, path[512];
 
   PetscFunctionBeginUser;
-  if (node->kind != YAML_SEQUENCE) {
-    schema_mismatch(r, entry, node);
-    PetscFunctionReturn(0);
-  }
+  if (!schema_is(r, entry, node, YAML_SEQUENCE, 0)) PetscFunctionReturn(0);
   if (node->n == 0 && entry->required) SchemaError(r, node, "%s is an empty list", yaml_path(node, path, sizeof(path)));
   if (node->n == 0) PetscFunctionReturn(0);
   PetscCall(Grow(entry, node->n, target, &count, &item));
@@ -278,11 +282,11 @@ static PetscErrorCode NotThere(SchemaReader *r, const SchemaTable *table, const 
   PetscInt n = 0;
 
   PetscFunctionBeginUser;
-  *tell = child->argument && !child->key_line && child->kind == YAML_MAPPING && !is_whole(table, child);
+  *tell = child->argument && !child->key_place.line && child->kind == YAML_MAPPING && !is_whole(table, child);
   if (!*tell) PetscFunctionReturn(0);
   PetscCall(PetscCalloc1(list->n + 1, &names));
   for (PetscInt i = 0; i < list->n; ++i)
-    if (list->child[i]->key_line) names[n++] = list->child[i]->key;
+    if (list->child[i]->key_place.line) names[n++] = list->child[i]->key;
   SchemaError(r, child, "there is no '%s' in %s", child->key, yaml_path(list, path, sizeof(path)));
   diag_hint_names(r->diag, child->key, names);
   PetscCall(PetscFree(names));
@@ -296,10 +300,7 @@ static PetscErrorCode ReadNamed(SchemaReader *r, const SchemaEntry *entry, const
   char *item, path[512];
 
   PetscFunctionBeginUser;
-  if (node->kind != YAML_MAPPING) {
-    schema_mismatch(r, entry, node);
-    PetscFunctionReturn(0);
-  }
+  if (!schema_is(r, entry, node, YAML_MAPPING, 0)) PetscFunctionReturn(0);
   if (node->n == 0 && entry->required) SchemaError(r, node, "%s is empty", yaml_path(node, path, sizeof(path)));
   if (node->n == 0) PetscFunctionReturn(0);
   PetscCall(Grow(entry, node->n, target, &count, &item));
@@ -325,5 +326,34 @@ PetscErrorCode SchemaReadEntry(SchemaReader *r, const SchemaEntry *entry, const 
   case TYPE_NAMED: PetscCall(ReadNamed(r, entry, node, target)); break;
   default: PetscCall((*schema_types[entry->type].read)(r, entry, node, target));
   }
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode ClearItems(const SchemaEntry *entry, PetscInt n, char **items)
+{
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < n; ++i) {
+    char *item = *items + (size_t)i * entry->table->size;
+    if (entry->type == TYPE_NAMED) PetscCall(PetscFree(*(char **)item));
+    PetscCall(SchemaClear(entry->table, item));
+  }
+  PetscCall(PetscFree(*items));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode SchemaClear(const SchemaTable *table, void *target)
+{
+  PetscFunctionBeginUser;
+  for (const SchemaEntry *entry = table->entries; entry->key; ++entry) {
+    void *at = (char *)target + entry->offset;
+    const PetscInt n = entry->count ? *(PetscInt *)((char *)target + entry->count) : 0;
+    if (entry->type == TYPE_TEXT || entry->type == TYPE_NAME) PetscCall(PetscFree(*(char **)at));
+    if (entry->type == TYPE_TABLE) PetscCall(SchemaClear(entry->table, at));
+    if (entry->type == TYPE_LIST || entry->type == TYPE_NAMED) PetscCall(ClearItems(entry, n, at));
+    if (entry->type != TYPE_NUMBERS) continue;
+    for (PetscInt i = 0; i < n; ++i) PetscCall(PetscFree((*(NamedValue **)at)[i].name));
+    PetscCall(PetscFree(*(NamedValue **)at));
+  }
+  if (table->clear) PetscCall((*table->clear)(target));
   PetscFunctionReturn(0);
 }

@@ -1,5 +1,6 @@
 #include "run/check.h"
 #include <stdarg.h>
+#include "base/text.h"
 
 /* What is known of each body over all ranks. */
 typedef struct {
@@ -119,14 +120,6 @@ static PetscReal estimated_memory(const Model *m, PetscInt points, PetscInt unkn
   return (PetscReal)points * per_point + matrix + direct + 120 * (PetscReal)m->grid->n_nodes_global;
 }
 
-/* "(0, 0)" or "(0, 0, 0)" */
-static const char *corner(PetscInt dim, const PetscReal *x, char text[80])
-{
-  if (dim == 3) snprintf(text, 80, "(%g, %g, %g)", (double)x[0], (double)x[1], (double)x[2]);
-  else snprintf(text, 80, "(%g, %g)", (double)x[0], (double)x[1]);
-  return text;
-}
-
 /* How large clouds are, and how many are not what the rule aims at. */
 static PetscErrorCode ReportClouds(const Model *m, FILE *out)
 {
@@ -152,8 +145,8 @@ static PetscErrorCode ReportSizes(Model *m, FILE *out)
   const PetscInt unknowns = m->system->n_active_global * m->system->block;
   if (m->grid->cloud) PetscCall(ReportClouds(m, out));
   say(m, out, "# the model\n#   grid: %d cells (%s), %d nodes, from %s to %s m\n", (int)m->grid->n_cells_global,
-      cells[m->grid->type].name, (int)m->grid->n_nodes_global, corner(m->dim, m->grid->min, from),
-      corner(m->dim, m->grid->max, to));
+      cells[m->grid->type].name, (int)m->grid->n_nodes_global, text_position(m->dim, m->grid->min, from),
+      text_position(m->dim, m->grid->max, to));
   say(m, out, "#   points: %d; unknowns at the start: %d\n", (int)points, (int)unknowns);
   say(m, out, "#   memory: about %.3g MB\n", (double)estimated_memory(m, points, unknowns, all_pairs) / 1e6);
   if (m->scheme->inertia)

@@ -101,6 +101,7 @@ struct SchemaTable {
   PetscBool tag_is_key; /* is the tag no number but the key, a char *? */
   /* Keys that the entries do not list; NULL: they are mistakes. */
   PetscErrorCode (*open)(SchemaReader *r, const YamlNode *mapping, void *target);
+  PetscErrorCode (*clear)(void *target); /* free what `open` has read; NULL: nothing */
   /* After reading without a mistake: resolve defaults, look at keys together. */
   PetscErrorCode (*check)(SchemaReader *r, const YamlNode *mapping, void *target);
   /* Is this entry to be left out when `source` is written? NULL: never. */
@@ -127,6 +128,8 @@ const char *schema_group_key(const SchemaTable *table, const SchemaGroup *group,
 
 /* --- reading (schema_read.c) --- */
 PetscErrorCode SchemaReadTable(SchemaReader *r, const SchemaTable *table, const YamlNode *mapping, void *target);
+/* Free what SchemaReadTable has read of texts, numbers, tables and lists. */
+PetscErrorCode SchemaClear(const SchemaTable *table, void *target);
 /* One value; dispatches on the type. */
 PetscErrorCode SchemaReadEntry(SchemaReader *r, const SchemaEntry *entry, const YamlNode *node, void *target);
 /* Record a mistake at the value, or at the key. `%s` of the path comes first in the message by habit. */
@@ -134,6 +137,8 @@ PetscErrorCode SchemaReadEntry(SchemaReader *r, const SchemaEntry *entry, const 
 #define SchemaKeyError(r, node, ...) yaml_error((r)->document, (r)->diag, node, PETSC_TRUE, __VA_ARGS__)
 /* "<path> must be <what>, not <what stands there>". */
 void schema_mismatch(SchemaReader *r, const SchemaEntry *entry, const YamlNode *node);
+/* Is the node a list or a mapping with at least so many entries? A mismatch if not. */
+PetscBool schema_is(SchemaReader *r, const SchemaEntry *entry, const YamlNode *node, YamlKind kind, PetscInt least);
 /* "a number > 0, in Pa". Returns buffer. */
 /* Its words joined by commas, the last one by `last`, behind what is in the buffer. */
 void schema_append_words(const SchemaEntry *entry, const char *last, char *buffer, size_t size);
@@ -177,7 +182,13 @@ PetscBool schema_check_name(SchemaReader *r, const YamlNode *node, const char *n
 /* Writers of single values (schema_write_types.c). */
 void schema_write_real(FILE *out, PetscReal value);  /* the shortest text that reads back to the same number */
 void schema_write_text(FILE *out, const char *text); /* quoted where YAML wants it */
-typedef void (*SchemaWriteType)(FILE *out, const Case *c, const SchemaEntry *entry, const void *source);
+typedef struct {
+  FILE *out;
+  const Case *c;
+  const SchemaEntry *entry;
+  const void *source; /* the struct that holds the value */
+} SchemaWriting;
+typedef void (*SchemaWriteType)(const SchemaWriting *writing);
 extern const SchemaWriteType schema_writers[TYPE_COUNT];
 
 /* --- checks of tables (schema_checks.c) --- */
