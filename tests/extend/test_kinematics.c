@@ -5,8 +5,8 @@
 
 static const Variant kinds[] = {{.cell = CELL_TRIANGLE},
                                 {.cell = CELL_QUADRILATERAL},
-                                {CELL_QUADRILATERAL, PETSC_TRUE, CLOUD_LME},
-                                {CELL_QUADRILATERAL, PETSC_TRUE, CLOUD_MLS}};
+                                {.cell = CELL_QUADRILATERAL, .cloud = PETSC_TRUE, .kind = CLOUD_LME},
+                                {.cell = CELL_QUADRILATERAL, .cloud = PETSC_TRUE, .kind = CLOUD_MLS}};
 
 static const Kinematics *axisymmetric(void)
 {

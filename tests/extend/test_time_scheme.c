@@ -62,7 +62,7 @@ static void test_momentum(void **state)
   (void)state;
   start(&b, "fem", -10);
   bench_motion(&b, 1, 0.5, MOTION_FIXED, 3);
-  b.measure[b.c.n_measures++] = (MeasureSpec){.name = "floor", .kind = MEASURE_REACTION, .component = 1};
+  b.measure[b.c.n_measures++] = (MeasureSpec){.name = "floor", .kind = "reaction", .component = 1};
   Model *m = bench_model(&b, PETSC_COMM_WORLD);
   const PetscReal weight = -10 * 1000 * 0.25;
   for (PetscInt n = 1; n <= STEPS; ++n) {
@@ -70,7 +70,7 @@ static void test_momentum(void **state)
     model_step(m, DT);
     CALL(ModelMeasure(m, &b.measure[0], 0, &reaction));
     impulse += (reaction + weight) * DT;
-    CHECK_CLOSE(model_sum(m, MEASURE_MOMENTUM, 1), impulse, 1e-6 * PetscAbsReal(weight * DT));
+    CHECK_CLOSE(model_sum(m, "momentum", 1), impulse, 1e-6 * PetscAbsReal(weight * DT));
   }
   CALL(ModelDestroy(&m));
   bench_end(&b);

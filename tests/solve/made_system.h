@@ -40,7 +40,6 @@ static inline void make_pattern(Made *s, PetscReal width)
     ++s->cells.n_groups;
   }
   s->cells.node_start[s->cells.n_groups] = s->cells.n_groups * nn;
-  s->cells.uniform = nn;
   s->cells.n_runs = 1;
   s->cells.run[0] = (SupportRun){.nodes = nn, .end = s->cells.n_groups};
   CALL(SystemCreate(PETSC_COMM_WORLD, grid->dim, grid->dim, &s->system));
