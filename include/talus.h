@@ -14,11 +14,11 @@
  *   (NULL if there is nothing to say; warnings come with #TALUS_OK) and gives it back with TalusTextFree().
  * - **Handles** are opaque. What creates one sets the pointer, what destroys one sets it to NULL and does
  *   nothing for NULL.
- * - **Parallel runs.** A case is opened on a communicator, which its runs and models share: MPI_COMM_WORLD, or a
- *   part of it, so that a program can let several cases work side by side or keep ranks for itself. Functions
- *   marked collective must be called by all ranks of the case with the same arguments; the others work on this
- *   rank alone. "First rank" is the first of the case's. Talus's messages cannot meet the program's own.
- *   Not thread-safe: one thread at a time.
+ * - **Parallel runs.** A case is opened on a communicator, which its runs and models share: MPI_COMM_WORLD,
+ *   or a part of it, so that a program can let several cases work side by side or keep ranks for itself.
+ *   Functions marked collective must be called by all ranks of the case with the same arguments; the others
+ *   work on this rank alone. The first rank is the first of the case's. Messages of talus cannot meet the
+ *   program's own. Not thread-safe: one thread at a time.
  * - **Units** are SI. Stress is positive in tension, pressure in compression; symmetric tensors are stored
  *   in the order xx yy zz xy yz zx. Plane strain has unit thickness.
  *

@@ -80,6 +80,15 @@ static TalusStep step_of(StepOutcome outcome)
   return TALUS_STEP_ACCEPTED;
 }
 
+/* Points keep their order and their ranks until the next step, whatever is asked of them. */
+static PetscErrorCode Step(TalusModel *model, PetscReal limit)
+{
+  PetscFunctionBeginUser;
+  PetscCall(ModelStep(model->model, limit, &model->report));
+  PetscCall(ModelInitialise(model->model));
+  PetscFunctionReturn(0);
+}
+
 int TalusModelStep(TalusModel *model, double limit, TalusStep *step)
 {
   if (!model || !step || !(limit >= 0)) return TALUS_ERROR_ARGUMENT;
@@ -89,7 +98,7 @@ int TalusModelStep(TalusModel *model, double limit, TalusStep *step)
     *step = TALUS_STEP_AT_END;
     return TALUS_OK;
   }
-  const int error = talus_code(ModelStep(model->model, limit > 0 ? limit : end - model->model->time, &model->report));
+  const int error = talus_code(Step(model, limit > 0 ? limit : end - model->model->time));
   if (!error) *step = step_of(model->report.outcome);
   return error;
 }

@@ -95,7 +95,7 @@ static PetscErrorCode CheckSelection(const Boundary *b, const Grid *grid, PetscI
 }
 
 /* Mistakes in the selections go to diag; NULL: they were sought before. */
-static PetscErrorCode Select(Boundary *b, const Grid *grid, Diag *diag)
+static PetscErrorCode SelectNodes(Boundary *b, const Grid *grid, Diag *diag)
 {
   PetscFunctionBeginUser;
   b->dim = grid->dim;
@@ -117,7 +117,7 @@ PetscErrorCode BoundaryCreate(const Grid *grid, const Case *c, Diag *diag, Bound
   PetscFunctionBeginUser;
   PetscCall(PetscNew(boundary));
   (*boundary)->c = c;
-  PetscCall(Select(*boundary, grid, diag));
+  PetscCall(SelectNodes(*boundary, grid, diag));
   PetscFunctionReturn(0);
 }
 
@@ -130,7 +130,7 @@ PetscErrorCode BoundaryRegrid(Boundary **boundary, const Grid *grid)
   b->c = (*boundary)->c;
   b->field = (*boundary)->field;
   b->field_context = (*boundary)->field_context;
-  PetscCall(Select(b, grid, NULL));
+  PetscCall(SelectNodes(b, grid, NULL));
   PetscCall(BoundaryDestroy(boundary));
   *boundary = b;
   PetscFunctionReturn(0);

@@ -93,6 +93,8 @@ static PetscErrorCode MeasuresClear(Case *c)
   PetscFunctionBeginUser;
   for (PetscInt i = 0; i < c->n_measures; ++i) {
     PetscCall(PetscFree(c->measures[i].name));
+    PetscCall(PetscFree(c->measures[i].kind));
+    PetscCall(PetscFree(c->measures[i].word));
     PetscCall(PetscFree(c->measures[i].body));
   }
   PetscCall(PetscFree(c->measures));

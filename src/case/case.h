@@ -120,40 +120,12 @@ typedef struct {
   Amplitude amplitude;
 } LoadSpec;
 
-typedef enum {
-  MEASURE_DISPLACEMENT,
-  MEASURE_POSITION,
-  MEASURE_VELOCITY, /* of a tracer */
-  MEASURE_EXTENT,   /* max or min coordinate of a body */
-  MEASURE_MASS,
-  MEASURE_MOMENTUM,
-  MEASURE_ANGULAR_MOMENTUM,
-  MEASURE_SPIN, /* mean angular velocity about the centre of mass */
-  MEASURE_KINETIC_ENERGY,
-  MEASURE_ELASTIC_ENERGY,
-  MEASURE_DISSIPATED_ENERGY,
-  MEASURE_EXTERNAL_WORK,
-  MEASURE_DAMPED_ENERGY,
-  MEASURE_TRANSFER_ENERGY,
-  MEASURE_OUTSIDE_ENERGY, /* of points that left the grid */
-  MEASURE_ENERGY_BALANCE, /* of the whole model */
-  MEASURE_REACTION,
-  MEASURE_SURFACE_FRONT,
-  MEASURE_SURFACE_HEIGHT,
-  MEASURE_SURFACE_SLOPE, /* of the interpolated free surface, 2D */
-  MEASURE_RUN_OUT_TIME,  /* when the front last moved faster than `speed` */
-  MEASURE_ROUGHNESS,     /* of the pressure */
-  MEASURE_OUTSIDE_REMOVED,
-  MEASURE_OUTSIDE_MASS,
-  MEASURE_OUTSIDE_HELD,
-  MEASURE_OUTSIDE_MOMENTUM /* of points that left the grid */
-} MeasureKind;
-
 typedef enum { FRONT_POINTS, FRONT_SURFACE } FrontKind;
 
 typedef struct {
   char *name;
-  MeasureKind kind;
+  char *kind;          /* a measure's key, "energy" (model/measure) */
+  char *word;          /* and one of its words, "kinetic"; NULL if it has none */
   PetscInt component;  /* 0 1 2 */
   PetscBool maximum;   /* extent, run-out time: max, else min */
   PetscReal beyond;    /* extent: share of the mass that is left out */
@@ -161,7 +133,7 @@ typedef struct {
   char *body;          /* NULL: all */
   PetscInt boundary;   /* reaction: index into boundary[] of the case */
   PetscBool has_at;
-  PetscReal at;    /* surface height: x, m */
+  PetscReal at;    /* x, m */
   PetscReal speed; /* run-out time: a slower front has come to rest, m/s */
   FrontKind front; /* run-out time: whose front */
 } MeasureSpec;
@@ -279,7 +251,8 @@ PetscErrorCode CaseDestroy(Case **c);
 
 /* Value at time t; `fallback` if the amplitude was not given. */
 PetscReal amplitude_value(const Amplitude *amplitude, PetscReal t, PetscReal fallback);
-/* Value at time t of what is applied: without an amplitude it grows with pseudo-time in statics and stands at once in dynamics. */
+/* Value at time t of what is applied: without an amplitude it grows with pseudo-time in statics and
+ * stands at once in dynamics. */
 PetscReal case_factor(const Case *c, const Amplitude *amplitude, PetscReal t);
 /* Integral over [0, t], for prescribed velocities. */
 PetscReal amplitude_integral(const Amplitude *amplitude, PetscReal t, PetscReal fallback);

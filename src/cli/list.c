@@ -1,10 +1,12 @@
 #include <stdio.h>
 #include <string.h>
+#include "base/text.h"
 #include "basis/cell.h"
 #include "case/fields.h"
 #include "cli/cli.h"
 #include "input/schema/schema.h"
 #include "material/law.h"
+#include "model/measure/measure.h"
 
 static const CliUsage usage = {
   .usage = "talus list laws|methods|cells|measures|fields",
@@ -15,11 +17,9 @@ static const CliUsage usage = {
 
 static void print_parameter(const SchemaEntry *e, PetscReal fallback)
 {
-  char range[80], left[80];
+  char range[80], left[TEXT_LABEL];
   schema_range(e, range, sizeof(range));
-  snprintf(left, sizeof(left), "%s%s%s%s", e->key, e->unit && e->unit[0] ? " [" : "",
-           e->unit && e->unit[0] ? e->unit : "", e->unit && e->unit[0] ? "]" : "");
-  printf("    %-28s %s", left, e->help);
+  printf("    %-28s %s", text_with_unit(e->key, e->unit, left), e->help);
   if (range[0]) printf("; %s", range);
   if (!PetscIsNanReal(fallback)) printf("; default %g", (double)fallback);
   putchar('\n');
@@ -35,12 +35,13 @@ static void list_laws(void)
     }
   }
   printf("\nEvery law takes density [kg/m3] and two elastic constants:\n");
-  for (const SchemaEntry *e = schema_elastic; e->key; ++e) print_parameter(e, NAN);
+  SchemaEntry e;
+  for (PetscInt i = 0; (e = schema_elastic(i)).key; ++i) print_parameter(&e, NAN);
 }
 
 static void list_methods(void)
 {
-  for (const SchemaWord *w = schema_methods; w->word; ++w) printf("%-6s %s\n", w->word, w->help);
+  for (const Method *const *method = methods; *method; ++method) printf("%-6s %s\n", (*method)->name, (*method)->help);
 }
 
 static void list_cells(void)
@@ -54,10 +55,10 @@ static void list_cells(void)
 
 static void list_measures(void)
 {
-  for (const SchemaEntry *e = schema_measure.entries; e->key; ++e) {
-    if (!e->unit || e->with) continue; /* `of` and `at` are no measures */
-    printf("%-18s [%s] %s", e->key, e->unit, e->help);
-    for (const SchemaWord *w = e->words; w && w->word; ++w) printf("%s%s", w == e->words ? ": " : ", ", w->word);
+  for (const Measure *const *m = measures; *m; ++m) {
+    printf("%-18s [%s] %s", (*m)->key, (*m)->number.unit, (*m)->number.help);
+    for (const MeasureNumber *const *w = (*m)->words; w && *w; ++w)
+      printf("%s%s", w == (*m)->words ? ": " : ", ", (*w)->word);
     putchar('\n');
   }
 }

@@ -1,4 +1,5 @@
-/* What the formulations do to one cell after the other: its nodes' motion, what its points add up to, and what holds a hardly filled one. */
+/* What the formulations do to one cell after the other: its nodes' motion, what its points add
+ * up to, and what holds a hardly filled one. */
 #pragma once
 #include "formulation/displacement_kernels.h"
 #include "formulation/walk.h"

@@ -1,7 +1,8 @@
 /* Displacement formulation in finite strains, updated Lagrangian (thesis eq. 4.31).
  *
- * Points run in batches of one material: first the increments of the deformation gradient of the whole batch, then one
- * call of the law, then forces and stiffness. What a group (a cell) gathers is scattered once. */
+ * Points run in batches of one material: first the increments of the deformation gradient of the
+ * whole batch, then one call of the law, then forces and stiffness. What a group (a cell)
+ * gathers is scattered once. */
 #include "formulation/cells.h"
 #include "formulation/displacement_cloud.h"
 
@@ -108,7 +109,7 @@ static PetscErrorCode DisplacementCommit(const WeakFormInput *in, Points *points
 
 const Formulation formulation_displacement = {
   .name = "displacement",
-  .help = "displacements as the only unknowns (thesis ch. 4)",
+  .help = "displacements are the only unknowns",
   .singles = PETSC_TRUE,
   .assemble = DisplacementAssemble,
   .commit = DisplacementCommit,

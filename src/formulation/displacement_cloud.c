@@ -1,7 +1,8 @@
 /* Displacement formulation of points with a cloud of nodes each, as many as the basis chose.
  *
- * Nothing is gathered per group, so a point's blocks go straight into the matrix values. The innermost unit is one block of a pair of
- * nodes: with T_j[J] = sum_l modulus_jl g_l[J], a block is sum_j g_j[I] T_j[J] plus the mass, and in the plane it fills one register. */
+ * Nothing is gathered per group, so a point's blocks go straight into the matrix values. The
+ * innermost unit is one block of a pair of nodes: with T_j[J] = sum_l modulus_jl g_l[J], a block
+ * is sum_j g_j[I] T_j[J] plus the mass, and in the plane it fills one register. */
 #include "formulation/displacement_cloud.h"
 #include "formulation/displacement_kernels.h"
 

@@ -1,4 +1,5 @@
-/* The displacement formulation of points that each have a cloud of nodes of their own (group g is point g), for this room only. */
+/* The displacement formulation of points that each have a cloud of nodes of their own (group g
+ * is point g), for this room only. */
 #pragma once
 #include "formulation/sizes.h"
 

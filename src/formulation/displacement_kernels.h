@@ -1,11 +1,13 @@
-/* Point kernels of the displacement formulation, with dimension, number of nodes, and whether there is a hoop known at compile time.
+/* Point kernels of the displacement formulation, with dimension, number of nodes, and whether
+ * there is a hoop known at compile time.
  *
- * Where the plane turns about its axis (Kinematics.hoop) a ring strains by u_x / x: gradients have a row more, N / x, that the first
- * component of displacements alone feels, and that stands for zz.
+ * Where the plane turns about its axis (Kinematics.hoop) a ring strains by u_x / x: gradients
+ * have a row more, N / x, that the first component of displacements alone feels, and that stands
+ * for zz.
  *
- * The innermost index runs over nodes: a row holds one number per node, padded to the width of a SIMD register. Rows are vectors of
- * the compiler's, since it leaves loops of such fixed short length scalar. g is dim rows, the cell force dim rows, the cell
- * matrix nn x dim x dim rows. */
+ * The innermost index runs over nodes: a row holds one number per node, padded to the width of a
+ * SIMD register. Rows are vectors of the compiler's, since it leaves loops of such fixed short
+ * length scalar. g is dim rows, the cell force dim rows, the cell matrix nn x dim x dim rows. */
 #pragma once
 #include "base/math/lanes.h"
 #include "base/math/tensor.h"
@@ -62,7 +64,8 @@ KERNEL void row_add(const int nn, PetscReal s, const PetscReal *x, PetscReal *ro
   else *(Row8 *)row += s * *(const Row8 *)x;
 }
 
-/* Rows of a gradient, and Voigt's number of the strain that component a of a displacement gives along row j. */
+/* Rows of a gradient, and Voigt's number of the strain that component a of a displacement gives
+ * along row j. */
 KERNEL int gradient_rows(const int dim, const PetscBool hoop) { return hoop ? dim + 1 : dim; }
 KERNEL int strain_of(const int dim, int a, int j) { return j < dim ? voigt_of[a][j] : 2; }
 KERNEL PetscBool is_felt(const int dim, int a, int j) { return j < dim || a == 0; }
@@ -120,7 +123,8 @@ KERNEL void add_internal_force(const int dim, const int nn, const PetscBool hoop
       if (is_felt(dim, a, j)) row_add(nn, volume * tau[strain_of(dim, a, j)], g + j * w, f + a * w);
 }
 
-/* Points of one cell whose stiffness is added at once: a block row of the cell matrix then stays in registers over all of them. */
+/* Points of one cell whose stiffness is added at once: a block row of the cell matrix then stays
+ * in registers over all of them. */
 #define RUN_POINTS 8
 
 typedef struct {
@@ -147,7 +151,8 @@ KERNEL void run_products(const int dim, const int nn, const PetscBool hoop, cons
     }
 }
 
-/* K[I][a][b][J] += sum over the points of sum_j g_Ij T_jJ; only a <= b if the rest is to be mirrored. */
+/* K[I][a][b][J] += sum over the points of sum_j g_Ij T_jJ; only a <= b if the rest is to be
+ * mirrored. */
 KERNEL void add_stiffness(const int dim, const int nn, const PetscBool hoop, const PetscBool symmetric,
                           const PointRun *run, PetscReal *restrict K)
 {
@@ -226,8 +231,9 @@ KERNEL void block_add(const PetscBool single, PetscReal more, void *values, Pets
   else ((PetscReal *)values)[at] += more;
 }
 
-/* Block (I, J) of the cell matrix, dim x dim numbers, is added to values at slot[I nn + J]. In K the numbers of a block are a row apart, so as
- * many of them as a register takes are turned at once. */
+/* Block (I, J) of the cell matrix, dim x dim numbers, is added to values at slot[I nn + J]. In K
+ * the numbers of a block are a row apart, so as many of them as a register takes are turned at
+ * once. */
 KERNEL void scatter_blocks(const int dim, const int nn, const PetscBool single, const PetscInt *restrict slot,
                            const PetscReal *restrict K, void *restrict values)
 {
@@ -277,7 +283,8 @@ KERNEL void add_mass(const int nn, const PetscReal *restrict N, PetscReal mass, 
   }
 }
 
-/* Inertia that ties the nodes of a cell to their mean: f_I += s (a_I - mean), no force on a uniform acceleration. M is nn rows. */
+/* Inertia that ties the nodes of a cell to their mean: f_I += s (a_I - mean), no force on a
+ * uniform acceleration. M is nn rows. */
 KERNEL void add_tie(const int dim, const int nn, PetscReal s, const PetscReal *restrict a, PetscReal *restrict f,
                     PetscReal *restrict M)
 {

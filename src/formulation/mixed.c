@@ -1,10 +1,12 @@
-/* Mixed formulation: displacements and a pressure at the same nodes, stabilised by polynomial pressure projection (docs/theory.md).
+/* Mixed formulation: displacements and a pressure at the same nodes, stabilised by polynomial
+ * pressure projection (docs/theory.md).
  *
  *   R_I  = sum_p V0 tau grad N_I + inertia          tau with the interpolated pressure
  *   R_pI = sum_p V0 N_I (theta - p / K) - sum_cells (alpha / G) V0 int (N_I - mean)(p - mean)
  *
- * The unknown is p over a scale of Pa/m, and the second equation is multiplied by it: then all unknowns are m and all equations N, and
- * the tangent is symmetric where the law's is. Points run in batches of one material as in displacement.c. */
+ * The unknown is p over a scale of Pa/m, and the second equation is multiplied by it: then all
+ * unknowns are m and all equations N, and the tangent is symmetric where the law's is. Points
+ * run in batches of one material as in displacement.c. */
 #include "formulation/cells.h"
 #include "formulation/mixed_kernels.h"
 #include "formulation/sizes.h"
@@ -141,7 +143,8 @@ static PetscErrorCode MixedCommit(const WeakFormInput *in, Points *points, LawSt
   return SizedCommit(kernels, in, points, status);
 }
 
-/* Mass over G + 1/K, lumped: B A^-1 B^T of a body with the stiffness 2G against shear is the mass over G up to a factor near 1. */
+/* Mass over G + 1/K, lumped: B A^-1 B^T of a body with the stiffness 2G against shear is the
+ * mass over G up to a factor near 1. */
 static void mixed_schur(const WeakFormInput *in, PetscReal *nodes)
 {
   const Support *w = in->support;
@@ -158,7 +161,7 @@ static void mixed_schur(const WeakFormInput *in, PetscReal *nodes)
 
 const Formulation formulation_mixed = {
   .name = "mixed",
-  .help = "displacements and pressure, stabilised (thesis ch. 5)",
+  .help = "displacements and pressure: for nearly or exactly incompressible materials",
   .pressure = PETSC_TRUE,
   .assemble = MixedAssemble,
   .commit = MixedCommit,

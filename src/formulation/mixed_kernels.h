@@ -1,12 +1,15 @@
-/* Point kernels of the mixed formulation, beside those of displacement_kernels.h: same rows, same conventions.
+/* Point kernels of the mixed formulation, beside those of displacement_kernels.h: same rows,
+ * same conventions.
  *
- * Kup is nn x dim rows over the nodes of the pressure, Kpu nn x dim rows over the nodes of the displacement, Kpp nn rows. */
+ * Kup is nn x dim rows over the nodes of the pressure, Kpu nn x dim rows over the nodes of the
+ * displacement, Kpp nn rows. */
 #pragma once
 #include "formulation/displacement_kernels.h"
 
-/* Polynomial pressure projection: integral of (N_I - mean)(N_J - mean) over a cell of volume 1, on the reference cell. On a
- * triangle (2 on the diagonal, -1 beside it) / 36, on a tetrahedron (3, -1) / 80; on quadrilaterals and hexahedra the product of the
- * segments' 1/3 and 1/6, less 1 / nn^2. Its rows sum to zero. */
+/* Polynomial pressure projection: integral of (N_I - mean)(N_J - mean) over a cell of volume 1,
+ * on the reference cell. On a triangle (2 on the diagonal, -1 beside it) / 36, on a tetrahedron
+ * (3, -1) / 80; on quadrilaterals and hexahedra the product of the segments' 1/3 and 1/6, less 1
+ * / nn^2. Its rows sum to zero. */
 KERNEL PetscReal projection_entry(const int dim, const int nn, int I, int J)
 {
   static const int corner[8] = {0, 1, 3, 2, 4, 5, 7, 6}; /* bits: upper end along x, y, z */

@@ -1,4 +1,5 @@
-/* Kernels compiled for one dimension, number of nodes and kind of kinematics each, and how a formulation finds its own. */
+/* Kernels compiled for one dimension, number of nodes and kind of kinematics each, and how a
+ * formulation finds its own. */
 #pragma once
 #include "formulation/walk.h"
 
@@ -10,7 +11,8 @@ typedef struct {
   LawStatus (*update)(const WeakFormInput *in, PetscBool tangent, Batch *b); /* the stress of one batch */
 } SizedKernels;
 
-/* Kernels of one size from a file's own assemble_points and batch_update, which take it as constants. */
+/* Kernels of one size from a file's own assemble_points and batch_update, which take it as
+ * constants. */
 #define SIZED_KERNELS(dim, nn, hoop)                                                                         \
   static void assemble_##dim##d_##nn##_##hoop(const WeakFormInput *in, const SupportRun *run, PetscInt slot, \
                                               WeakFormOutput *out)                                           \

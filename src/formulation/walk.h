@@ -1,4 +1,5 @@
-/* What the formulations share in their walk over the points: batches of one material, and the acceptance of a step. */
+/* What the formulations share in their walk over the points: batches of one material, and the
+ * acceptance of a step. */
 #pragma once
 #include "base/math/tensor.h"
 #include "formulation/formulation.h"
@@ -60,7 +61,8 @@ static inline LawStatus batch_law(const WeakFormInput *in, PetscBool tangent, Ba
                                                    b->s.tau, tangent ? b->s.c : NULL);
 }
 
-/* The worst status so far; PETSC_FALSE if it is bad: the step is cut, and nothing counts any more. */
+/* The worst status so far; PETSC_FALSE if it is bad: the step is cut, and nothing counts any
+ * more. */
 static inline PetscBool batch_is_good(const Batch *b, LawStatus status, WeakFormOutput *out)
 {
   if (status > out->status) {
@@ -70,9 +72,10 @@ static inline PetscBool batch_is_good(const Batch *b, LawStatus status, WeakForm
   return out->status == LAW_OK;
 }
 
-/* Work of the stress per undeformed volume by the trapezoidal rule along the straight path of the step: at both ends the velocity gradient
- * times dt is (dF - 1) dF_end^-1. It is the work of the nodal forces at t_n and t_(n+1), so that Newmark's trapezoidal rule closes the
- * balance of energy. */
+/* Work of the stress per undeformed volume by the trapezoidal rule along the straight path of
+ * the step: at both ends the velocity gradient times dt is (dF - 1) dF_end^-1. It is the work of
+ * the nodal forces at t_n and t_(n+1), so that Newmark's trapezoidal rule closes the balance of
+ * energy. */
 static inline PetscReal stress_work(const PetscReal dF[9], const PetscReal old[6], const PetscReal tau[6])
 {
   PetscReal inverse[9], work = 0;

@@ -33,16 +33,6 @@ static void enumerate(FILE *out, const SchemaEntry *e)
   fputc(']', out);
 }
 
-static void json_laws(FILE *out)
-{
-  fputs("\"enum\": [", out);
-  for (const Law *const *law = laws; *law; ++law) {
-    fputs(law == laws ? "" : ", ", out);
-    json_string(out, (*law)->name);
-  }
-  fputc(']', out);
-}
-
 static void json_fields(FILE *out)
 {
   fputs("\"type\": \"array\", \"items\": {\"enum\": [", out);
@@ -81,7 +71,6 @@ static void json_value(FILE *out, const SchemaEntry *e)
   case TYPE_WORD:
   case TYPE_MEMBER:
   case TYPE_WORD_TEXT: enumerate(out, e); break;
-  case TYPE_LAW: json_laws(out); break;
   case TYPE_FIELDS: json_fields(out); break;
   case TYPE_TABLE: json_reference(out, e->table); break;
   case TYPE_LIST:
@@ -116,32 +105,35 @@ static void property(FILE *out, const SchemaEntry *e)
 
 static void json_required(FILE *out, const SchemaTable *table)
 {
+  SchemaEntry e;
   int n = 0;
   fputs(", \"required\": [", out);
-  for (const SchemaEntry *e = table->entries; e->key; ++e) {
-    if (!e->required || e->only_2d || e->only_3d) continue;
+  for (PetscInt i = 0; (e = schema_entry(table, i)).key; ++i) {
+    if (!e.required || e.only_2d || e.only_3d) continue;
     fputs(n++ ? ", " : "", out);
-    json_string(out, e->key);
+    json_string(out, e.key);
   }
   fputc(']', out);
 }
 
-/* "exactly one of" and so on; a single `oneOf` or `anyOf` for each group, joined by allOf. */
-static void json_group(FILE *out, const SchemaGroup *group)
+static void require_each(FILE *out, const SchemaTable *table, const SchemaGroup *group)
 {
-  fprintf(out, "{\"%s\": [", group->kind == GROUP_AT_LEAST_ONE ? "anyOf" : "oneOf");
-  for (int k = 0; group->keys[k]; ++k) {
+  const char *key;
+  for (PetscInt k = 0; (key = schema_group_key(table, group, k)); ++k) {
     fprintf(out, "%s{\"required\": [", k ? ", " : "");
-    json_string(out, group->keys[k]);
+    json_string(out, key);
     fputs("]}", out);
   }
+}
+
+/* "exactly one of" and so on; a single `oneOf` or `anyOf` for each group, joined by allOf. */
+static void json_group(FILE *out, const SchemaTable *table, const SchemaGroup *group)
+{
+  fprintf(out, "{\"%s\": [", group->kind == GROUP_AT_LEAST_ONE ? "anyOf" : "oneOf");
+  require_each(out, table, group);
   if (group->kind == GROUP_AT_MOST_ONE) { /* or none at all */
     fputs(", {\"not\": {\"anyOf\": [", out);
-    for (int k = 0; group->keys[k]; ++k) {
-      fprintf(out, "%s{\"required\": [", k ? ", " : "");
-      json_string(out, group->keys[k]);
-      fputs("]}", out);
-    }
+    require_each(out, table, group);
     fputs("]}}", out);
   }
   fputs("]}", out);
@@ -153,7 +145,7 @@ static void json_groups(FILE *out, const SchemaTable *table)
   fputs(", \"allOf\": [", out);
   for (const SchemaGroup *group = table->groups; group->kind != GROUP_NONE; ++group) {
     fputs(group == table->groups ? "" : ", ", out);
-    json_group(out, group);
+    json_group(out, table, group);
   }
   fputc(']', out);
 }
@@ -161,18 +153,19 @@ static void json_groups(FILE *out, const SchemaTable *table)
 /* A material with this law: which keys it may have, and which it must. */
 static void one_law(FILE *out, const Law *law)
 {
+  SchemaEntry entry;
   int n = 0;
   fputs("{\"if\": {\"properties\": {\"law\": {\"const\": ", out);
   json_string(out, law->name);
   fputs("}}, \"required\": [\"law\"]}, \"then\": {\"propertyNames\": {\"enum\": [\"law\", \"density\"", out);
-  for (const SchemaEntry *e = schema_elastic; e->key; ++e) fprintf(out, ", \"%s\"", e->key);
+  for (PetscInt i = 0; (entry = schema_elastic(i)).key; ++i) fprintf(out, ", \"%s\"", entry.key);
   for (const LawParameter *p = law->parameters; p && p->name; ++p) fprintf(out, ", \"%s\"", p->name);
   fputs("]}, \"required\": [", out);
   for (const LawParameter *p = law->parameters; p && p->name; ++p)
     if (PetscIsNanReal(p->fallback)) fprintf(out, "%s\"%s\"", n++ ? ", " : "", p->name);
   fputs("], \"properties\": {", out);
   for (const LawParameter *p = law->parameters; p && p->name; ++p) {
-    const SchemaEntry entry = schema_law_entry(p);
+    entry = schema_law_entry(p);
     fputs(p == law->parameters ? "" : ", ", out);
     property(out, &entry);
   }
@@ -181,32 +174,33 @@ static void one_law(FILE *out, const Law *law)
 
 static void material_properties(FILE *out)
 {
-  for (const SchemaEntry *e = schema_elastic; e->key; ++e) {
+  SchemaEntry entry;
+  for (PetscInt i = 0; (entry = schema_elastic(i)).key; ++i) {
     fputs(",\n    ", out);
-    property(out, e);
+    property(out, &entry);
   }
   for (const Law *const *law = laws; *law; ++law)
     for (const LawParameter *p = (*law)->parameters; p && p->name; ++p) {
-      const SchemaEntry entry = schema_law_entry(p);
       PetscBool twice = PETSC_FALSE;
       for (const Law *const *other = laws; other != law; ++other)
         for (const LawParameter *q = (*other)->parameters; q && q->name; ++q)
           if (!strcmp(p->name, q->name)) twice = PETSC_TRUE;
       if (twice) continue; /* `properties` may not name it again; the law's own entry below tells the rest */
       fputs(",\n    ", out);
-      json_string(out, entry.key);
+      json_string(out, p->name);
       fputs(": {\"type\": \"number\"}", out);
     }
 }
 
 static void json_table(FILE *out, const SchemaTable *table)
 {
+  SchemaEntry e;
   fputs("{\"type\": \"object\", \"description\": ", out);
   json_string(out, table->help);
   fputs(", \"properties\": {\n    ", out);
-  for (const SchemaEntry *e = table->entries; e->key; ++e) {
-    fputs(e == table->entries ? "" : ",\n    ", out);
-    property(out, e);
+  for (PetscInt i = 0; (e = schema_entry(table, i)).key; ++i) {
+    fputs(i ? ",\n    " : "", out);
+    property(out, &e);
   }
   if (table->open) material_properties(out);
   fputs("}, \"additionalProperties\": false", out);

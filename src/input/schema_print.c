@@ -8,12 +8,13 @@
 
 static void collect(SchemaTables *all, const SchemaTable *table)
 {
+  SchemaEntry e;
   for (PetscInt i = 0; i < all->n; ++i)
     if (all->table[i] == table) return;
   if (all->n == SCHEMA_MAX_TABLES) return;
   all->table[all->n++] = table;
-  for (const SchemaEntry *e = table->entries; e->key; ++e)
-    if (e->table) collect(all, e->table);
+  for (PetscInt i = 0; (e = schema_entry(table, i)).key; ++i)
+    if (e.table) collect(all, e.table);
 }
 
 void schema_collect(SchemaTables *all)
@@ -67,20 +68,24 @@ static void text_entry(FILE *out, const SchemaEntry *e)
     fprintf(out, "  %-28s   %-18s %s\n", "", schema_word(e, k).word, schema_word(e, k).help);
 }
 
-static void text_group(FILE *out, const SchemaGroup *group)
+static const char *const group_rules[] = {"", "Exactly one of", "At most one of", "At least one of"};
+
+static void text_group(FILE *out, const SchemaTable *table, const SchemaGroup *group)
 {
-  static const char *const rule[] = {"", "Exactly one of", "At most one of", "At least one of"};
-  fprintf(out, "  %s:", rule[group->kind]);
-  for (int k = 0; group->keys[k]; ++k) fprintf(out, " %s", group->keys[k]);
+  const char *key;
+  fprintf(out, "  %s:", group_rules[group->kind]);
+  for (PetscInt k = 0; (key = schema_group_key(table, group, k)); ++k) fprintf(out, " %s", key);
   fputc('\n', out);
 }
 
 static void text_table(FILE *out, const SchemaTable *table)
 {
+  SchemaEntry e;
   fprintf(out, "%s\n  %s\n", table->name, table->help);
-  for (const SchemaGroup *group = table->groups; group && group->kind != GROUP_NONE; ++group) text_group(out, group);
+  for (const SchemaGroup *group = table->groups; group && group->kind != GROUP_NONE; ++group)
+    text_group(out, table, group);
   fputc('\n', out);
-  for (const SchemaEntry *e = table->entries; e->key; ++e) text_entry(out, e);
+  for (PetscInt i = 0; (e = schema_entry(table, i)).key; ++i) text_entry(out, &e);
   fputc('\n', out);
 }
 
@@ -96,9 +101,10 @@ static SchemaEntry law_entry(const LawParameter *p, char *note, size_t size)
 
 static void text_laws(FILE *out)
 {
+  SchemaEntry e;
   char note[40];
   fprintf(out, "elastic constants\n  Any two of these belong to every material.\n\n");
-  for (const SchemaEntry *e = schema_elastic; e->key; ++e) text_entry(out, e);
+  for (PetscInt i = 0; (e = schema_elastic(i)).key; ++i) text_entry(out, &e);
   for (const Law *const *law = laws; *law; ++law) {
     fprintf(out, "\nlaw %s\n  %s\n\n", (*law)->name, (*law)->help);
     for (const LawParameter *p = (*law)->parameters; p && p->name; ++p) {
@@ -147,24 +153,26 @@ static void markdown_head(FILE *out)
 
 static void markdown_table(FILE *out, const SchemaTable *table)
 {
-  static const char *const rule[] = {"", "Exactly one of", "At most one of", "At least one of"};
+  SchemaEntry e;
+  const char *key;
   fprintf(out, "\n## %s\n\n%s\n", table->name, table->help);
   for (const SchemaGroup *group = table->groups; group && group->kind != GROUP_NONE; ++group) {
-    fprintf(out, "\n%s:", rule[group->kind]);
-    for (int k = 0; group->keys[k]; ++k) fprintf(out, "%s `%s`", k ? "," : "", group->keys[k]);
+    fprintf(out, "\n%s:", group_rules[group->kind]);
+    for (PetscInt k = 0; (key = schema_group_key(table, group, k)); ++k) fprintf(out, "%s `%s`", k ? "," : "", key);
     fputs(".\n", out);
   }
   fputc('\n', out);
   markdown_head(out);
-  for (const SchemaEntry *e = table->entries; e->key; ++e) markdown_entry(out, e);
+  for (PetscInt i = 0; (e = schema_entry(table, i)).key; ++i) markdown_entry(out, &e);
 }
 
 static void markdown_laws(FILE *out)
 {
+  SchemaEntry e;
   char note[40];
   fputs("\n## elastic constants\n\nExactly two of these belong to every material.\n\n", out);
   markdown_head(out);
-  for (const SchemaEntry *e = schema_elastic; e->key; ++e) markdown_entry(out, e);
+  for (PetscInt i = 0; (e = schema_elastic(i)).key; ++i) markdown_entry(out, &e);
   for (const Law *const *law = laws; *law; ++law) {
     fprintf(out, "\n## law: %s\n\n%s.\n", (*law)->name, (*law)->help);
     if (!(*law)->parameters || !(*law)->parameters->name)

@@ -2,11 +2,29 @@
 #include <string.h>
 #include "input/schema/schema.h"
 
-static const SchemaEntry *find_entry(const SchemaTable *table, const char *key)
+SchemaEntry schema_entry(const SchemaTable *table, PetscInt i)
 {
-  for (const SchemaEntry *entry = table->entries; entry->key; ++entry)
-    if (!strcmp(entry->key, key)) return entry;
+  return table->entry ? table->entry(i) : table->entries[i];
+}
+
+const SchemaGroup schema_one_tag[] = {{GROUP_ONE, {NULL}}, {GROUP_NONE, {NULL}}};
+
+const char *schema_group_key(const SchemaTable *table, const SchemaGroup *group, PetscInt k)
+{
+  SchemaEntry entry;
+  if (group->keys[0]) return group->keys[k];
+  for (PetscInt i = 0; (entry = schema_entry(table, i)).key; ++i)
+    if (entry.tagged && k-- == 0) return entry.key;
   return NULL;
+}
+
+/* Its key is NULL if there is none. */
+static SchemaEntry find_entry(const SchemaTable *table, const char *key)
+{
+  PetscInt i = 0;
+  SchemaEntry entry;
+  while ((entry = schema_entry(table, i)).key && strcmp(entry.key, key)) ++i;
+  return entry;
 }
 
 static PetscBool fits(const SchemaReader *r, const SchemaEntry *entry)
@@ -41,20 +59,21 @@ void schema_hint_words(SchemaReader *r, const char *word, PetscInt n, const char
 static PetscErrorCode UnknownKeys(SchemaReader *r, const SchemaTable *table, const YamlNode *mapping)
 {
   const char *words[64] = {NULL};
+  SchemaEntry entry;
   char path[512];
   PetscInt n = 0;
 
   PetscFunctionBeginUser;
-  for (const SchemaEntry *entry = table->entries; entry->key && n < 63; ++entry)
-    if (fits(r, entry)) words[n++] = entry->key;
+  for (PetscInt i = 0; (entry = schema_entry(table, i)).key && n < 63; ++i)
+    if (fits(r, &entry)) words[n++] = entry.key;
   for (PetscInt i = 0; i < mapping->n; ++i) {
     const YamlNode *child = mapping->child[i];
-    const SchemaEntry *entry = find_entry(table, child->key);
-    if (entry && fits(r, entry)) continue;
-    if (entry) {
+    entry = find_entry(table, child->key);
+    if (entry.key && fits(r, &entry)) continue;
+    if (entry.key) {
       SchemaKeyError(
         r, child, "key '%s' of %s belongs to %s", child->key, yaml_path(mapping, path, sizeof(path)),
-        entry->only_2d ? "two dimensions, this case is 3d" : "kinematics: 3d, this case is two-dimensional");
+        entry.only_2d ? "two dimensions, this case is 3d" : "kinematics: 3d, this case is two-dimensional");
       if (!strcmp(child->key, "circle")) diag_hint(r->diag, "in 3d there is 'sphere'");
       if (!strcmp(child->key, "sphere")) diag_hint(r->diag, "in two dimensions there is 'circle'");
     } else {
@@ -95,10 +114,22 @@ static PetscErrorCode ReadDefault(SchemaReader *r, const SchemaEntry *entry, voi
 
 static PetscBool in_group(const SchemaTable *table, const char *key)
 {
+  const char *other;
   for (const SchemaGroup *group = table->groups; group && group->kind != GROUP_NONE; ++group)
-    for (int k = 0; group->keys[k]; ++k)
-      if (!strcmp(group->keys[k], key)) return PETSC_TRUE;
+    for (PetscInt k = 0; (other = schema_group_key(table, group, k)); ++k)
+      if (!strcmp(other, key)) return PETSC_TRUE;
   return PETSC_FALSE;
+}
+
+static PetscErrorCode SetTag(const SchemaTable *table, const SchemaEntry *entry, void *target)
+{
+  void *tag = (char *)target + table->tag_offset;
+
+  PetscFunctionBeginUser;
+  if (!table->tag_is_key) *(int *)tag = entry->tag;
+  else if (!*(char **)tag)
+    PetscCall(PetscStrallocpy(entry->key, (char **)tag)); /* of two keys that exclude each other the first */
+  PetscFunctionReturn(0);
 }
 
 static PetscErrorCode ReadKey(SchemaReader *r, const SchemaTable *table, const SchemaEntry *entry,
@@ -113,7 +144,7 @@ static PetscErrorCode ReadKey(SchemaReader *r, const SchemaTable *table, const S
     if (entry->with && !yaml_find(mapping, entry->with))
       SchemaKeyError(r, node, "key '%s' of %s means something only beside '%s'", entry->key,
                      yaml_path(mapping, path, sizeof(path)), entry->with);
-    if (entry->tagged) *(int *)((char *)target + table->tag_offset) = entry->tag;
+    if (entry->tagged) PetscCall(SetTag(table, entry, target));
     if (entry->present) *(PetscBool *)((char *)target + entry->present - 1) = PETSC_TRUE;
     PetscCall(SchemaReadEntry(r, entry, node, target));
   } else if (entry->required) read_missing(r, entry, mapping);
@@ -121,25 +152,19 @@ static PetscErrorCode ReadKey(SchemaReader *r, const SchemaTable *table, const S
   PetscFunctionReturn(0);
 }
 
-static void group_words(const SchemaGroup *group, char *text, size_t size)
-{
-  text[0] = '\0';
-  for (int k = 0; group->keys[k]; ++k) {
-    const size_t used = strlen(text);
-    snprintf(text + used, size - used, "%s'%s'", !k ? "" : group->keys[k + 1] ? ", " : " or ", group->keys[k]);
-  }
-}
-
-static void check_group(SchemaReader *r, const SchemaGroup *group, const YamlNode *mapping)
+static void check_group(SchemaReader *r, const SchemaTable *table, const SchemaGroup *group, const YamlNode *mapping)
 {
   const YamlNode *first = NULL, *second = NULL;
-  char path[512], words[400];
-  for (int k = 0; group->keys[k]; ++k) {
-    const YamlNode *node = yaml_find(mapping, group->keys[k]);
+  const char *key;
+  char path[512], words[400] = "";
+  for (PetscInt k = 0; (key = schema_group_key(table, group, k)); ++k) {
+    const YamlNode *node = yaml_find(mapping, key);
+    const size_t used = strlen(words);
+    const char *join = !k ? "" : schema_group_key(table, group, k + 1) ? ", " : " or ";
+    snprintf(words + used, sizeof(words) - used, "%s'%s'", join, key);
     if (node && !first) first = node;
     else if (node && !second) second = node;
   }
-  group_words(group, words, sizeof(words));
   yaml_path(mapping, path, sizeof(path));
   if (!first && group->kind != GROUP_AT_MOST_ONE)
     SchemaKeyError(r, mapping, "%s needs %s %s", path, group->kind == GROUP_ONE ? "one of" : "at least one of", words);
@@ -152,23 +177,30 @@ static void check_group(SchemaReader *r, const SchemaGroup *group, const YamlNod
 PetscErrorCode SchemaReadTable(SchemaReader *r, const SchemaTable *table, const YamlNode *mapping, void *target)
 {
   const PetscInt before = diag_errors(r->diag);
+  SchemaEntry entry;
 
   PetscFunctionBeginUser;
   for (const SchemaGroup *group = table->groups; group && group->kind != GROUP_NONE; ++group)
-    check_group(r, group, mapping);
-  for (const SchemaEntry *entry = table->entries; entry->key; ++entry)
-    PetscCall(ReadKey(r, table, entry, mapping, target));
+    check_group(r, table, group, mapping);
+  for (PetscInt i = 0; (entry = schema_entry(table, i)).key; ++i) PetscCall(ReadKey(r, table, &entry, mapping, target));
   if (table->open) PetscCall((*table->open)(r, mapping, target));
   else PetscCall(UnknownKeys(r, table, mapping));
   if (table->check && diag_errors(r->diag) == before) PetscCall((*table->check)(r, mapping, target));
   PetscFunctionReturn(0);
 }
 
+PetscBool schema_is(SchemaReader *r, const SchemaEntry *entry, const YamlNode *node, YamlKind kind, PetscInt least)
+{
+  const PetscBool is = node->kind == kind && node->n >= least;
+  if (!is) schema_mismatch(r, entry, node);
+  return is;
+}
+
 static PetscErrorCode ReadNested(SchemaReader *r, const SchemaEntry *entry, const YamlNode *node, void *target)
 {
   PetscFunctionBeginUser;
-  if (node->kind != YAML_MAPPING) schema_mismatch(r, entry, node);
-  else PetscCall(SchemaReadTable(r, entry->table, node, (char *)target + entry->offset));
+  if (schema_is(r, entry, node, YAML_MAPPING, 0))
+    PetscCall(SchemaReadTable(r, entry->table, node, (char *)target + entry->offset));
   PetscFunctionReturn(0);
 }
 
@@ -209,10 +241,7 @@ static PetscErrorCode ReadList(SchemaReader *r, const SchemaEntry *entry, const 
   char *item, path[512];
 
   PetscFunctionBeginUser;
-  if (node->kind != YAML_SEQUENCE) {
-    schema_mismatch(r, entry, node);
-    PetscFunctionReturn(0);
-  }
+  if (!schema_is(r, entry, node, YAML_SEQUENCE, 0)) PetscFunctionReturn(0);
   if (node->n == 0 && entry->required) SchemaError(r, node, "%s is an empty list", yaml_path(node, path, sizeof(path)));
   if (node->n == 0) PetscFunctionReturn(0);
   PetscCall(Grow(entry, node->n, target, &count, &item));
@@ -232,11 +261,13 @@ static PetscErrorCode ReadList(SchemaReader *r, const SchemaEntry *entry, const 
 /* Has a mapping what its table cannot do without? */
 static PetscBool is_whole(const SchemaTable *table, const YamlNode *mapping)
 {
-  for (const SchemaEntry *entry = table->entries; entry->key; ++entry)
-    if (entry->required && !yaml_find(mapping, entry->key)) return PETSC_FALSE;
+  SchemaEntry entry;
+  const char *key;
+  for (PetscInt i = 0; (entry = schema_entry(table, i)).key; ++i)
+    if (entry.required && !yaml_find(mapping, entry.key)) return PETSC_FALSE;
   for (const SchemaGroup *group = table->groups; group && group->kind != GROUP_NONE; ++group) {
     PetscBool any = group->kind == GROUP_AT_MOST_ONE;
-    for (int k = 0; group->keys[k]; ++k) any |= yaml_find(mapping, group->keys[k]) != NULL;
+    for (PetscInt k = 0; (key = schema_group_key(table, group, k)); ++k) any |= yaml_find(mapping, key) != NULL;
     if (!any) return PETSC_FALSE;
   }
   return PETSC_TRUE;
@@ -251,11 +282,11 @@ static PetscErrorCode NotThere(SchemaReader *r, const SchemaTable *table, const 
   PetscInt n = 0;
 
   PetscFunctionBeginUser;
-  *tell = child->argument && !child->key_line && child->kind == YAML_MAPPING && !is_whole(table, child);
+  *tell = child->argument && !child->key_place.line && child->kind == YAML_MAPPING && !is_whole(table, child);
   if (!*tell) PetscFunctionReturn(0);
   PetscCall(PetscCalloc1(list->n + 1, &names));
   for (PetscInt i = 0; i < list->n; ++i)
-    if (list->child[i]->key_line) names[n++] = list->child[i]->key;
+    if (list->child[i]->key_place.line) names[n++] = list->child[i]->key;
   SchemaError(r, child, "there is no '%s' in %s", child->key, yaml_path(list, path, sizeof(path)));
   diag_hint_names(r->diag, child->key, names);
   PetscCall(PetscFree(names));
@@ -269,10 +300,7 @@ static PetscErrorCode ReadNamed(SchemaReader *r, const SchemaEntry *entry, const
   char *item, path[512];
 
   PetscFunctionBeginUser;
-  if (node->kind != YAML_MAPPING) {
-    schema_mismatch(r, entry, node);
-    PetscFunctionReturn(0);
-  }
+  if (!schema_is(r, entry, node, YAML_MAPPING, 0)) PetscFunctionReturn(0);
   if (node->n == 0 && entry->required) SchemaError(r, node, "%s is empty", yaml_path(node, path, sizeof(path)));
   if (node->n == 0) PetscFunctionReturn(0);
   PetscCall(Grow(entry, node->n, target, &count, &item));
@@ -298,5 +326,34 @@ PetscErrorCode SchemaReadEntry(SchemaReader *r, const SchemaEntry *entry, const 
   case TYPE_NAMED: PetscCall(ReadNamed(r, entry, node, target)); break;
   default: PetscCall((*schema_types[entry->type].read)(r, entry, node, target));
   }
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode ClearItems(const SchemaEntry *entry, PetscInt n, char **items)
+{
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < n; ++i) {
+    char *item = *items + (size_t)i * entry->table->size;
+    if (entry->type == TYPE_NAMED) PetscCall(PetscFree(*(char **)item));
+    PetscCall(SchemaClear(entry->table, item));
+  }
+  PetscCall(PetscFree(*items));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode SchemaClear(const SchemaTable *table, void *target)
+{
+  PetscFunctionBeginUser;
+  for (const SchemaEntry *entry = table->entries; entry->key; ++entry) {
+    void *at = (char *)target + entry->offset;
+    const PetscInt n = entry->count ? *(PetscInt *)((char *)target + entry->count) : 0;
+    if (entry->type == TYPE_TEXT || entry->type == TYPE_NAME) PetscCall(PetscFree(*(char **)at));
+    if (entry->type == TYPE_TABLE) PetscCall(SchemaClear(entry->table, at));
+    if (entry->type == TYPE_LIST || entry->type == TYPE_NAMED) PetscCall(ClearItems(entry, n, at));
+    if (entry->type != TYPE_NUMBERS) continue;
+    for (PetscInt i = 0; i < n; ++i) PetscCall(PetscFree((*(NamedValue **)at)[i].name));
+    PetscCall(PetscFree(*(NamedValue **)at));
+  }
+  if (table->clear) PetscCall((*table->clear)(target));
   PetscFunctionReturn(0);
 }

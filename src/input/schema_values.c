@@ -17,10 +17,7 @@ PetscInt schema_parse_vector(const YamlNode *node, PetscReal value[3])
 static PetscBool check_length(SchemaReader *r, const SchemaEntry *e, const YamlNode *node)
 {
   char path[512];
-  if (node->kind != YAML_SEQUENCE) {
-    schema_mismatch(r, e, node);
-    return PETSC_FALSE;
-  }
+  if (!schema_is(r, e, node, YAML_SEQUENCE, 0)) return PETSC_FALSE;
   if (r->dim ? node->n == r->dim : node->n == 2 || node->n == 3) return PETSC_TRUE;
   SchemaError(r, node, "%s must have %s, not %" PetscInt_FMT, yaml_path(node, path, sizeof(path)),
               r->dim == 3   ? "3 entries (kinematics: 3d)"
@@ -79,10 +76,7 @@ PetscErrorCode SchemaReadAxes(SchemaReader *r, const SchemaEntry *e, const YamlN
   char path[512];
 
   PetscFunctionBeginUser;
-  if (node->kind != YAML_SEQUENCE || node->n == 0) {
-    schema_mismatch(r, e, node);
-    PetscFunctionReturn(0);
-  }
+  if (!schema_is(r, e, node, YAML_SEQUENCE, 1)) PetscFunctionReturn(0);
   for (PetscInt i = 0; i < node->n; ++i) {
     const PetscInt axis = values_axis(r, e, node->child[i]);
     if (axis < 0) continue;
@@ -147,10 +141,7 @@ PetscErrorCode SchemaReadAmplitude(SchemaReader *r, const SchemaEntry *e, const 
   char path[512];
 
   PetscFunctionBeginUser;
-  if (node->kind != YAML_SEQUENCE || node->n == 0) {
-    schema_mismatch(r, e, node);
-    PetscFunctionReturn(0);
-  }
+  if (!schema_is(r, e, node, YAML_SEQUENCE, 1)) PetscFunctionReturn(0);
   PetscCall(PetscCalloc1(node->n, &a->time));
   PetscCall(PetscCalloc1(node->n, &a->value));
   a->n = node->n;
@@ -172,10 +163,7 @@ PetscErrorCode SchemaReadPolygon(SchemaReader *r, const SchemaEntry *e, const Ya
   char path[512];
 
   PetscFunctionBeginUser;
-  if (node->kind != YAML_SEQUENCE || node->n < 3) {
-    schema_mismatch(r, e, node);
-    PetscFunctionReturn(0);
-  }
+  if (!schema_is(r, e, node, YAML_SEQUENCE, 3)) PetscFunctionReturn(0);
   PetscCall(PetscFree(*vertices));
   PetscCall(PetscCalloc1(2 * (size_t)node->n, vertices));
   *(PetscInt *)((char *)target + e->count) = node->n;
@@ -220,10 +208,7 @@ PetscErrorCode SchemaReadFields(SchemaReader *r, const SchemaEntry *e, const Yam
   PetscInt *n = (PetscInt *)((char *)target + e->count);
 
   PetscFunctionBeginUser;
-  if (node->kind != YAML_SEQUENCE) {
-    schema_mismatch(r, e, node);
-    PetscFunctionReturn(0);
-  }
+  if (!schema_is(r, e, node, YAML_SEQUENCE, 0)) PetscFunctionReturn(0);
   PetscCall(PetscCalloc1(node->n, fields));
   for (PetscInt i = 0; i < node->n; ++i) {
     const YamlNode *child = node->child[i];
@@ -245,10 +230,7 @@ PetscErrorCode SchemaReadNumbers(SchemaReader *r, const SchemaEntry *e, const Ya
   const SchemaEntry number = {.key = e->key, .type = TYPE_NUMBER, .help = ""};
 
   PetscFunctionBeginUser;
-  if (node->kind != YAML_MAPPING) {
-    schema_mismatch(r, e, node);
-    PetscFunctionReturn(0);
-  }
+  if (!schema_is(r, e, node, YAML_MAPPING, 0)) PetscFunctionReturn(0);
   PetscCall(PetscCalloc1(node->n, values));
   *(PetscInt *)((char *)target + e->count) = node->n;
   for (PetscInt i = 0; i < node->n; ++i) {

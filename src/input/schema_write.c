@@ -1,6 +1,5 @@
 /* CaseToYaml: the same tables, walked the other way. */
-#include <stdlib.h>
-#include <string.h>
+#include "base/text.h"
 #include "input/case_file.h"
 #include "input/schema/schema.h"
 
@@ -21,14 +20,19 @@ static PetscInt count_items(const SchemaEntry *e, const void *source)
 
 static PetscBool is_text(SchemaType type)
 {
-  return type == TYPE_TEXT || type == TYPE_NAME || type == TYPE_FILE || type == TYPE_REFERENCE || type == TYPE_LAW;
+  return type == TYPE_TEXT || type == TYPE_NAME || type == TYPE_FILE || type == TYPE_REFERENCE;
+}
+
+static PetscBool is_tag(const SchemaTable *table, const SchemaEntry *e, const void *tag)
+{
+  return table->tag_is_key ? !strcmp(*(char *const *)tag, e->key) : *(const int *)tag == e->tag;
 }
 
 static PetscBool written(const Case *c, const SchemaTable *table, const SchemaEntry *e, const void *source)
 {
   const PetscInt dim = kinematics_dim(c->kinematics);
   if (e->input_only || (e->only_2d && dim == 3) || (e->only_3d && dim == 2)) return PETSC_FALSE;
-  if (e->tagged && *(const int *)at(source, table->tag_offset) != e->tag) return PETSC_FALSE;
+  if (e->tagged && !is_tag(table, e, at(source, table->tag_offset))) return PETSC_FALSE;
   if (e->present && !*(const PetscBool *)at(source, e->present - 1)) return PETSC_FALSE;
   if (table->hide && table->hide(e, source)) return PETSC_FALSE;
   if (is_text(e->type)) return *(char *const *)at(source, e->offset) != NULL;
@@ -41,17 +45,16 @@ static PetscBool written(const Case *c, const SchemaTable *table, const SchemaEn
 /* A mapping whose keys all turn out absent must still be one. */
 static PetscErrorCode WriteNested(FILE *out, int indent, const Case *c, const SchemaTable *table, const void *source)
 {
-  char *text = NULL;
-  size_t size;
+  TextStream nested;
   PetscBool first = PETSC_FALSE;
+  char *text;
 
   PetscFunctionBeginUser;
-  FILE *memory = open_memstream(&text, &size);
-  PetscCheck(memory, PETSC_COMM_SELF, PETSC_ERR_MEM, "no memory for text");
-  PetscCall(WriteTable(memory, indent, c, table, source, &first));
-  fclose(memory);
-  fprintf(out, size ? "\n%s" : " {}\n", text);
-  free(text);
+  PetscCall(TextOpen(&nested));
+  PetscCall(WriteTable(nested.out, indent, c, table, source, &first));
+  PetscCall(TextClose(&nested, &text));
+  fprintf(out, text[0] ? "\n%s" : " {}\n", text);
+  PetscCall(PetscFree(text));
   PetscFunctionReturn(0);
 }
 
@@ -87,7 +90,7 @@ static PetscErrorCode WriteEntry(FILE *out, int indent, const Case *c, const Sch
   else if (e->type == TYPE_LIST || e->type == TYPE_NAMED) PetscCall(WriteItems(out, indent + 2, c, e, source));
   else {
     fputc(' ', out);
-    schema_writers[e->type](out, c, e, source);
+    schema_writers[e->type](&(SchemaWriting){out, c, e, source});
     fprintf(out, e->unit && e->unit[0] ? "  # %s\n" : "\n", e->unit);
   }
   PetscFunctionReturn(0);
@@ -97,12 +100,14 @@ static PetscErrorCode WriteEntry(FILE *out, int indent, const Case *c, const Sch
 static PetscErrorCode WriteTable(FILE *out, int indent, const Case *c, const SchemaTable *table, const void *source,
                                  PetscBool *first)
 {
+  SchemaEntry e;
+
   PetscFunctionBeginUser;
-  for (const SchemaEntry *e = table->entries; e->key; ++e) {
-    if (!written(c, table, e, source)) continue;
+  for (PetscInt i = 0; (e = schema_entry(table, i)).key; ++i) {
+    if (!written(c, table, &e, source)) continue;
     if (!*first) fprintf(out, "%*s", indent, "");
     *first = PETSC_FALSE;
-    PetscCall(WriteEntry(out, indent, c, e, source));
+    PetscCall(WriteEntry(out, indent, c, &e, source));
   }
   if (table->write_open) PetscCall((*table->write_open)(out, indent, c, source));
   PetscFunctionReturn(0);
@@ -110,16 +115,12 @@ static PetscErrorCode WriteTable(FILE *out, int indent, const Case *c, const Sch
 
 PetscErrorCode CaseToYaml(const Case *c, char **text)
 {
-  char *buffer = NULL;
-  size_t size;
+  TextStream stream;
   PetscBool first = PETSC_FALSE;
 
   PetscFunctionBeginUser;
-  FILE *out = open_memstream(&buffer, &size);
-  PetscCheck(out, PETSC_COMM_SELF, PETSC_ERR_MEM, "no memory for text");
-  PetscCall(WriteTable(out, 0, c, &schema_case, c, &first));
-  fclose(out);
-  PetscCall(PetscStrallocpy(buffer, text));
-  free(buffer);
+  PetscCall(TextOpen(&stream));
+  PetscCall(WriteTable(stream.out, 0, c, &schema_case, c, &first));
+  PetscCall(TextClose(&stream, text));
   PetscFunctionReturn(0);
 }

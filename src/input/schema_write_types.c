@@ -4,7 +4,8 @@
 #include <string.h>
 #include "input/schema/schema.h"
 
-#define FIELD(type) (*(type const *)((const char *)source + e->offset))
+#define FIELD_AT(type, where) (*(type const *)((const char *)w->source + w->entry->where))
+#define FIELD(type) FIELD_AT(type, offset)
 
 void schema_write_real(FILE *out, PetscReal value)
 {
@@ -45,189 +46,152 @@ void schema_write_text(FILE *out, const char *text)
 
 static void write_reals(FILE *out, PetscInt n, const PetscReal *value)
 {
-  fputc('[', out);
   for (PetscInt i = 0; i < n; ++i) {
-    fputs(i ? ", " : "", out);
+    fputs(i ? ", " : "[", out);
     schema_write_real(out, value[i]);
   }
   fputc(']', out);
 }
 
-static void write_number(FILE *out, const Case *c, const SchemaEntry *e, const void *source)
+/* The pairs of numbers that stand so many places apart at x and at y. */
+static void write_pairs(FILE *out, PetscInt n, const PetscReal *x, const PetscReal *y, PetscInt apart)
 {
-  (void)c;
-  schema_write_real(out, FIELD(PetscReal));
+  for (PetscInt i = 0; i < n; ++i) {
+    fputs(i ? ", " : "[", out);
+    write_reals(out, 2, (const PetscReal[]){x[apart * i], y[apart * i]});
+  }
+  fputc(']', out);
 }
 
-static void write_integer(FILE *out, const Case *c, const SchemaEntry *e, const void *source)
+static void write_number(const SchemaWriting *w) { schema_write_real(w->out, FIELD(PetscReal)); }
+
+static void write_integer(const SchemaWriting *w) { fprintf(w->out, "%" PetscInt_FMT, FIELD(PetscInt)); }
+
+static void write_boolean(const SchemaWriting *w) { fputs(FIELD(PetscBool) ? "true" : "false", w->out); }
+
+static void write_word(const SchemaWriting *w)
 {
-  (void)c;
-  fprintf(out, "%" PetscInt_FMT, FIELD(PetscInt));
+  for (const SchemaWord *word = w->entry->words; word->word; ++word)
+    if (word->value == FIELD(int)) fputs(word->word, w->out);
 }
 
-static void write_boolean(FILE *out, const Case *c, const SchemaEntry *e, const void *source)
+static void write_member(const SchemaWriting *w)
 {
-  (void)c;
-  fputs(FIELD(PetscBool) ? "true" : "false", out);
+  for (int k = 0; w->entry->registry[k]; ++k)
+    if (w->entry->registry[k] == FIELD(const void *)) fputs(schema_word(w->entry, k).word, w->out);
 }
 
-static void write_word(FILE *out, const Case *c, const SchemaEntry *e, const void *source)
-{
-  (void)c;
-  for (const SchemaWord *w = e->words; w->word; ++w)
-    if (w->value == FIELD(int)) fputs(w->word, out);
-}
-
-static void write_member(FILE *out, const Case *c, const SchemaEntry *e, const void *source)
-{
-  (void)c;
-  for (int k = 0; e->registry[k]; ++k)
-    if (e->registry[k] == FIELD(const void *)) fputs(schema_word(e, k).word, out);
-}
-
-static void write_string(FILE *out, const Case *c, const SchemaEntry *e, const void *source)
-{
-  (void)c;
-  schema_write_text(out, FIELD(char *));
-}
+static void write_string(const SchemaWriting *w) { schema_write_text(w->out, FIELD(char *)); }
 
 /* A boundary that has a name is written by it. */
-static void write_boundary(FILE *out, const Case *c, const SchemaEntry *e, const void *source)
+static void write_boundary(const SchemaWriting *w)
 {
   const PetscInt index = FIELD(PetscInt);
-  fprintf(out, "%" PetscInt_FMT, index);
-  if (index < c->n_boundary && c->boundary[index].name) fprintf(out, "  # %s", c->boundary[index].name);
+  fprintf(w->out, "%" PetscInt_FMT, index);
+  if (index < w->c->n_boundary && w->c->boundary[index].name) fprintf(w->out, "  # %s", w->c->boundary[index].name);
 }
 
-static void write_vector(FILE *out, const Case *c, const SchemaEntry *e, const void *source)
+static void write_vector(const SchemaWriting *w)
 {
-  write_reals(out, kinematics_dim(c->kinematics), &FIELD(PetscReal));
+  write_reals(w->out, kinematics_dim(w->c->kinematics), &FIELD(PetscReal));
 }
 
-static void write_spin(FILE *out, const Case *c, const SchemaEntry *e, const void *source)
+static void write_spin(const SchemaWriting *w)
 {
   const PetscReal *spin = &FIELD(PetscReal);
-  if (kinematics_dim(c->kinematics) == 2) schema_write_real(out, spin[2]);
-  else write_reals(out, 3, spin);
+  if (kinematics_dim(w->c->kinematics) == 2) schema_write_real(w->out, spin[2]);
+  else write_reals(w->out, 3, spin);
 }
 
-static void write_axis(FILE *out, const Case *c, const SchemaEntry *e, const void *source)
-{
-  (void)c;
-  fputc("xyz"[FIELD(PetscInt)], out);
-}
+static void write_axis(const SchemaWriting *w) { fputc("xyz"[FIELD(PetscInt)], w -> out); }
 
-static void write_axes(FILE *out, const Case *c, const SchemaEntry *e, const void *source)
+static void write_axes(const SchemaWriting *w)
 {
   const PetscBool *component = &FIELD(PetscBool);
   PetscInt n = 0;
-  (void)c;
-  fputc('[', out);
+  fputc('[', w->out);
   for (PetscInt d = 0; d < 3; ++d)
-    if (component[d]) fprintf(out, "%s%c", n++ ? ", " : "", "xyz"[d]);
-  fputc(']', out);
+    if (component[d]) fprintf(w->out, "%s%c", n++ ? ", " : "", "xyz"[d]);
+  fputc(']', w->out);
 }
 
-static void write_interval(FILE *out, const Case *c, const SchemaEntry *e, const void *source)
+static void write_interval(const SchemaWriting *w)
 {
-  const PetscReal pair[2] = {FIELD(PetscReal), *(const PetscReal *)((const char *)source + e->second)};
-  (void)c;
-  if (pair[0] == pair[1]) schema_write_real(out, pair[0]);
-  else write_reals(out, 2, pair);
+  const PetscReal pair[2] = {FIELD(PetscReal), FIELD_AT(PetscReal, second)};
+  if (pair[0] == pair[1]) schema_write_real(w->out, pair[0]);
+  else write_reals(w->out, 2, pair);
 }
 
-static void write_counts(FILE *out, const Case *c, const SchemaEntry *e, const void *source)
+static void write_counts(const SchemaWriting *w)
 {
   const PetscInt *counts = &FIELD(PetscInt);
-  for (PetscInt d = 0; d < kinematics_dim(c->kinematics); ++d)
-    fprintf(out, "%s%" PetscInt_FMT, d ? ", " : "[", counts[d]);
-  fputc(']', out);
+  for (PetscInt d = 0; d < kinematics_dim(w->c->kinematics); ++d)
+    fprintf(w->out, "%s%" PetscInt_FMT, d ? ", " : "[", counts[d]);
+  fputc(']', w->out);
 }
 
-static void write_amplitude(FILE *out, const Case *c, const SchemaEntry *e, const void *source)
+static void write_amplitude(const SchemaWriting *w)
 {
   const Amplitude *a = &FIELD(Amplitude);
-  (void)c;
-  fputc('[', out);
-  for (PetscInt i = 0; i < a->n; ++i) {
-    const PetscReal pair[2] = {a->time[i], a->value[i]};
-    fputs(i ? ", " : "", out);
-    write_reals(out, 2, pair);
-  }
-  fputc(']', out);
+  write_pairs(w->out, a->n, a->time, a->value, 1);
 }
 
-static void write_polygon(FILE *out, const Case *c, const SchemaEntry *e, const void *source)
+static void write_polygon(const SchemaWriting *w)
 {
   const PetscReal *vertices = FIELD(PetscReal *);
-  const PetscInt n = *(const PetscInt *)((const char *)source + e->count);
-  (void)c;
-  fputc('[', out);
-  for (PetscInt i = 0; i < n; ++i) {
-    fputs(i ? ", " : "", out);
-    write_reals(out, 2, vertices + 2 * i);
-  }
-  fputc(']', out);
+  write_pairs(w->out, FIELD_AT(PetscInt, count), vertices, vertices + 1, 2);
 }
 
-static void write_every(FILE *out, const Case *c, const SchemaEntry *e, const void *source)
+static void write_every(const SchemaWriting *w)
 {
   const PetscReal every = FIELD(PetscReal);
-  (void)c;
-  if (every == 0) fputs("end", out);
-  else if (every < 0) fprintf(out, "{steps: %.0f}", -(double)every);
-  else schema_write_real(out, every);
+  if (every == 0) fputs("end", w->out);
+  else if (every < 0) fprintf(w->out, "{steps: %.0f}", -(double)every);
+  else schema_write_real(w->out, every);
 }
 
-static void write_fields(FILE *out, const Case *c, const SchemaEntry *e, const void *source)
+static void write_fields(const SchemaWriting *w)
 {
-  char **fields = FIELD(char **);
-  const PetscInt n = *(const PetscInt *)((const char *)source + e->count);
-  (void)c;
-  fputc('[', out);
-  for (PetscInt i = 0; i < n; ++i) fprintf(out, "%s%s", i ? ", " : "", fields[i]);
-  fputc(']', out);
+  const PetscInt n = FIELD_AT(PetscInt, count);
+  fputc('[', w->out);
+  for (PetscInt i = 0; i < n; ++i) fprintf(w->out, "%s%s", i ? ", " : "", FIELD(char **)[i]);
+  fputc(']', w->out);
 }
 
-static void write_numbers(FILE *out, const Case *c, const SchemaEntry *e, const void *source)
+static void write_numbers(const SchemaWriting *w)
 {
-  const NamedValue *values = FIELD(NamedValue *);
-  const PetscInt n = *(const PetscInt *)((const char *)source + e->count);
-  (void)c;
-  fputc('{', out);
+  const PetscInt n = FIELD_AT(PetscInt, count);
+  fputc('{', w->out);
   for (PetscInt i = 0; i < n; ++i) {
-    fputs(i ? ", " : "", out);
-    schema_write_text(out, values[i].name);
-    fputs(": ", out);
-    schema_write_real(out, values[i].value);
+    const NamedValue *value = FIELD(NamedValue *) + i;
+    fputs(i ? ", " : "", w->out);
+    schema_write_text(w->out, value->name);
+    fputs(": ", w->out);
+    schema_write_real(w->out, value->value);
   }
-  fputc('}', out);
+  fputc('}', w->out);
 }
 
-static void write_options(FILE *out, const Case *c, const SchemaEntry *e, const void *source)
+static void write_options(const SchemaWriting *w)
 {
-  char **options = FIELD(char **);
-  const PetscInt n = *(const PetscInt *)((const char *)source + e->count);
-  (void)c;
-  fputc('{', out);
+  const PetscInt n = FIELD_AT(PetscInt, count);
+  fputc('{', w->out);
   for (PetscInt i = 0; i < n; ++i) {
-    const char *name = options[i] + 1, *space = strchr(name, ' ');
-    const int length = space ? (int)(space - name) : (int)strlen(name);
-    fprintf(out, "%s\"%.*s\": ", i ? ", " : "", length, name);
-    if (space) schema_write_text(out, space + 1);
-    else fputs("null", out);
+    const char *name = FIELD(char **)[i] + 1, *space = strchrnul(name, ' ');
+    fprintf(w->out, "%s\"%.*s\": ", i ? ", " : "", (int)(space - name), name);
+    if (*space) schema_write_text(w->out, space + 1);
+    else fputs("null", w->out);
   }
-  fputc('}', out);
+  fputc('}', w->out);
 }
 
 const SchemaWriteType schema_writers[TYPE_COUNT] = {
-  [TYPE_NUMBER] = write_number,       [TYPE_INTEGER] = write_integer,   [TYPE_BOOLEAN] = write_boolean,
-  [TYPE_WORD] = write_word,           [TYPE_WORD_TEXT] = write_string,  [TYPE_TEXT] = write_string,
-  [TYPE_NAME] = write_string,         [TYPE_FILE] = write_string,       [TYPE_LAW] = write_string,
-  [TYPE_REFERENCE] = write_string,    [TYPE_BOUNDARY] = write_boundary, [TYPE_VECTOR] = write_vector,
-  [TYPE_SPIN] = write_spin,           [TYPE_AXIS] = write_axis,         [TYPE_SPIN_AXIS] = write_axis,
-  [TYPE_AXES] = write_axes,           [TYPE_INTERVAL] = write_interval, [TYPE_COUNTS] = write_counts,
-  [TYPE_AMPLITUDE] = write_amplitude, [TYPE_POLYGON] = write_polygon,   [TYPE_EVERY] = write_every,
-  [TYPE_MEMBER] = write_member,       [TYPE_FIELDS] = write_fields,     [TYPE_NUMBERS] = write_numbers,
-  [TYPE_OPTIONS] = write_options,
+  [TYPE_NUMBER] = write_number,     [TYPE_INTEGER] = write_integer,  [TYPE_BOOLEAN] = write_boolean,
+  [TYPE_WORD] = write_word,         [TYPE_WORD_TEXT] = write_string, [TYPE_TEXT] = write_string,
+  [TYPE_NAME] = write_string,       [TYPE_FILE] = write_string,      [TYPE_REFERENCE] = write_string,
+  [TYPE_BOUNDARY] = write_boundary, [TYPE_VECTOR] = write_vector,    [TYPE_SPIN] = write_spin,
+  [TYPE_AXIS] = write_axis,         [TYPE_SPIN_AXIS] = write_axis,   [TYPE_AXES] = write_axes,
+  [TYPE_INTERVAL] = write_interval, [TYPE_COUNTS] = write_counts,    [TYPE_AMPLITUDE] = write_amplitude,
+  [TYPE_POLYGON] = write_polygon,   [TYPE_EVERY] = write_every,      [TYPE_MEMBER] = write_member,
+  [TYPE_FIELDS] = write_fields,     [TYPE_NUMBERS] = write_numbers,  [TYPE_OPTIONS] = write_options,
 };

@@ -140,11 +140,11 @@ static char *copy_line(const char *text, int line)
   return strndup(text, length);
 }
 
-void yaml_place_at(const YamlDocument *document, int line, int column, int width, char **buffer, DiagPlace *place)
+void yaml_place_at(const YamlDocument *document, YamlPlace at, char **buffer, DiagPlace *place)
 {
-  *buffer = line > 0 ? copy_line(document->text, line) : NULL;
+  *buffer = at.line > 0 ? copy_line(document->text, at.line) : NULL;
   *place = (DiagPlace){
-    .file = document->file, .text = *buffer, .line = line, .column = column, .width = width > 0 ? width : 1};
+    .file = document->file, .text = *buffer, .line = at.line, .column = at.column, .width = PetscMax(at.width, 1)};
 }
 
 void yaml_place(const YamlDocument *document, const YamlNode *node, PetscBool key, char **line, DiagPlace *place)
@@ -154,10 +154,8 @@ void yaml_place(const YamlDocument *document, const YamlNode *node, PetscBool ke
     if (asprintf(&file, "--set %s", document->arguments[node->argument - 1]) < 0) file = NULL;
     *line = file;
     *place = (DiagPlace){.file = file, .width = 1};
-  } else if (key && !node->parent) yaml_place_at(document, 0, 0, 1, line, place); /* about the file as a whole */
-  else if (key && node->key_line > 0)
-    yaml_place_at(document, node->key_line, node->key_column, node->key_width, line, place);
-  else yaml_place_at(document, node->line, node->column, node->width, line, place);
+  } else if (key && !node->parent) yaml_place_at(document, (YamlPlace){0}, line, place); /* about the file as a whole */
+  else yaml_place_at(document, key && node->key_place.line > 0 ? node->key_place : node->place, line, place);
 }
 
 void yaml_error(const YamlDocument *document, Diag *diag, const YamlNode *node, PetscBool key, const char *format, ...)

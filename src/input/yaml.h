@@ -11,13 +11,17 @@
 
 typedef enum { YAML_SCALAR, YAML_SEQUENCE, YAML_MAPPING } YamlKind;
 
+typedef struct {
+  int line, column, width;
+} YamlPlace;
+
 typedef struct YamlNode {
   YamlKind kind;
-  PetscBool plain;         /* a scalar without quotes */
-  char *text;              /* of a scalar */
-  char *key;               /* if it stands in a mapping */
-  int line, column, width; /* of the value; line 0: not from the file */
-  int key_line, key_column, key_width;
+  PetscBool plain; /* a scalar without quotes */
+  char *text;      /* of a scalar */
+  char *key;       /* if it stands in a mapping */
+  YamlPlace place; /* of the value; line 0: not from the file */
+  YamlPlace key_place;
   PetscInt argument; /* 1 + index of the --set that brought it, 0: from the file */
   PetscInt n, capacity;
   struct YamlNode **child;
@@ -61,7 +65,7 @@ const char *yaml_path(const YamlNode *node, char *buffer, size_t size);
 /* Place of the value, or of its key. `line` is a buffer that must live as long as the place. */
 void yaml_place(const YamlDocument *document, const YamlNode *node, PetscBool key, char **line, DiagPlace *place);
 /* A place given by numbers, with its source line. */
-void yaml_place_at(const YamlDocument *document, int line, int column, int width, char **buffer, DiagPlace *place);
+void yaml_place_at(const YamlDocument *document, YamlPlace at, char **buffer, DiagPlace *place);
 /* A DiagResolver; context: the YamlDocument. */
 void yaml_resolve(void *document, const char *path, DiagPlace *place);
 /* Record an error at a node (at its key if `key`). */

@@ -24,20 +24,16 @@ typedef struct {
   Names anchor_names; /* the newest of a name counts */
 } Builder;
 
-static void complain(Builder *b, int line, int column, int width, const char *message)
+/* About a place in the file, or about the argument of --set. */
+static void complain(Builder *b, YamlPlace place, const char *message)
 {
-  if (b->argument) {
-    YamlNode node = {.argument = b->argument};
-    yaml_error(b->document, b->diag, &node, PETSC_FALSE, "%s", message);
-  } else {
-    YamlNode node = {.line = line, .column = column, .width = width};
-    yaml_error(b->document, b->diag, &node, PETSC_FALSE, "%s", message);
-  }
+  const YamlNode node = {.place = b->argument ? (YamlPlace){0} : place, .argument = b->argument};
+  yaml_error(b->document, b->diag, &node, PETSC_FALSE, "%s", message);
 }
 
 static void fail(Builder *b, const YamlNode *where, const char *message)
 {
-  complain(b, where ? where->line : 0, where ? where->column : 0, where ? where->width : 1, message);
+  complain(b, where ? where->place : (YamlPlace){.width = 1}, message);
   b->failed = PETSC_TRUE;
 }
 
@@ -45,10 +41,9 @@ static void mark(struct fy_token *token, YamlNode *node)
 {
   const struct fy_mark *start = token ? fy_token_start_mark(token) : NULL,
                        *end = token ? fy_token_end_mark(token) : NULL;
-  node->line = start ? start->line + 1 : 0;
-  node->column = start ? start->column + 1 : 0;
-  node->width =
-    start && end && end->line == start->line && end->column > start->column ? end->column - start->column : 1;
+  const PetscBool one_line = start && end && end->line == start->line && end->column > start->column;
+  if (start) node->place = (YamlPlace){start->line + 1, start->column + 1, one_line ? end->column - start->column : 1};
+  else node->place = (YamlPlace){.width = 1};
 }
 
 /* libfyaml 0.7.12 loses the memory in which it unfolds a text in single quotes that has doubled ones side by side, if there are more than three. */
@@ -102,8 +97,8 @@ static void check_twice(Builder *b, const YamlNode *key)
   char message[400], path[200];
   if (!first) return;
   snprintf(message, sizeof(message), "key '%.100s' stands twice in %s (first in line %d)", key->text,
-           yaml_path(b->open, path, sizeof(path)), first->key_line);
-  complain(b, key->line, key->column, key->width, message);
+           yaml_path(b->open, path, sizeof(path)), first->key_place.line);
+  complain(b, key->place, message);
 }
 
 /* Hang a finished or opening node into the tree. */
@@ -120,14 +115,8 @@ static PetscErrorCode Attach(Builder *b, YamlNode *node)
     YamlNode *key = b->pending_key;
     node->key = key->text;
     key->text = NULL;
-    node->key_line = key->line;
-    node->key_column = key->column;
-    node->key_width = key->width;
-    if (node->line == 0) { /* an empty value has no place of its own */
-      node->line = key->line;
-      node->column = key->column;
-      node->width = key->width;
-    }
+    node->key_place = key->place;
+    if (node->place.line == 0) node->place = key->place; /* an empty value has no place of its own */
     PetscCall(YamlNodeDestroy(&b->pending_key));
   }
   PetscCall(YamlNodeAppend(b->open, node));
@@ -173,7 +162,7 @@ static PetscErrorCode Open(Builder *b, YamlKind kind, struct fy_token *token, st
   PetscFunctionBeginUser;
   PetscCall(YamlNodeCreate(b->document, kind, &node));
   mark(token, node);
-  if (kind == YAML_MAPPING || kind == YAML_SEQUENCE) node->width = 1;
+  if (kind == YAML_MAPPING || kind == YAML_SEQUENCE) node->place.width = 1;
   if (tag) fail(b, node, "a case file has no tags (words that begin with '!')");
   if (++b->depth > YAML_MAX_DEPTH) fail(b, node, "the values are nested too deeply (more than 64 levels)");
   if (wants_key(b)) {
@@ -198,12 +187,8 @@ static PetscErrorCode CopyTree(Builder *b, const YamlNode *source, int depth, Ya
   PetscFunctionBeginUser;
   PetscCall(YamlNodeCreate(b->document, source->kind, copy));
   (*copy)->plain = source->plain;
-  (*copy)->line = source->line;
-  (*copy)->column = source->column;
-  (*copy)->width = source->width;
-  (*copy)->key_line = source->key_line;
-  (*copy)->key_column = source->key_column;
-  (*copy)->key_width = source->key_width;
+  (*copy)->place = source->place;
+  (*copy)->key_place = source->key_place;
   (*copy)->argument = source->argument;
   if (source->text) PetscCall(PetscStrallocpy(source->text, &(*copy)->text));
   b->document->n_copied += (source->text ? strlen(source->text) : 0) + (source->key ? strlen(source->key) : 0);
@@ -282,8 +267,7 @@ static void take_syntax_errors(Builder *b, struct fy_diag *messages)
   struct fy_diag_error *error = fy_diag_errors_iterate(messages, &iterator);
   if (!error) fail(b, NULL, "this is not YAML");
   else {
-    YamlNode place = {
-      .line = error->line > 0 ? error->line : 1, .column = error->column > 0 ? error->column : 1, .width = 1};
+    const YamlNode place = {.place = {PetscMax(error->line, 1), PetscMax(error->column, 1), 1}};
     char message[400];
     snprintf(message, sizeof(message), "syntax: %.300s", error->msg ? error->msg : "this is not YAML");
     message[strcspn(message, "\n")] = '\0';
@@ -382,7 +366,7 @@ PetscErrorCode YamlParseInto(YamlDocument *document, const char *text, size_t si
   if (bad) {
     char message[100];
     snprintf(message, sizeof(message), "byte 0x%02X is no text in UTF-8; is this a case file?", (unsigned char)*bad);
-    complain(&b, line, column, 1, message);
+    complain(&b, (YamlPlace){line, column, 1}, message);
     PetscFunctionReturn(0);
   }
   PetscCall(RunParser(&b, text, size));

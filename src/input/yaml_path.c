@@ -130,9 +130,7 @@ static PetscErrorCode Replace(YamlDocument *document, YamlNode *node, YamlNode *
 
   PetscFunctionBeginUser;
   value->key = node->key;
-  value->key_line = node->key_line;
-  value->key_column = node->key_column;
-  value->key_width = node->key_width;
+  value->key_place = node->key_place;
   node->key = NULL;
   value->parent = parent;
   value->index = index;

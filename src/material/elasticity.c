@@ -2,6 +2,7 @@
  * incompressibility). */
 #include "material/elasticity.h"
 #include <math.h>
+#include <string.h>
 
 const ElasticConstant elastic_constants[ELASTIC_CONSTANTS] = {
   {"young", "Pa", "Young's modulus", 0.0, INFINITY},
@@ -13,6 +14,23 @@ const ElasticConstant elastic_constants[ELASTIC_CONSTANTS] = {
 
 enum { YOUNG, POISSON, BULK, SHEAR, LAME };
 #define PAIR(a, b) (1u << (a) | 1u << (b))
+
+int elastic_index(const char *name)
+{
+  for (int k = 0; k < ELASTIC_CONSTANTS; ++k)
+    if (!strcmp(elastic_constants[k].name, name)) return k;
+  return -1;
+}
+
+const char *elastic_list(unsigned given, char *text, size_t size)
+{
+  text[0] = 0;
+  for (int k = 0; k < ELASTIC_CONSTANTS; ++k) {
+    const size_t used = strlen(text);
+    if (given >> k & 1) snprintf(text + used, size - used, "%s%s", used ? ", " : "", elastic_constants[k].name);
+  }
+  return text;
+}
 
 typedef struct {
   PetscReal lame, shear;
@@ -46,19 +64,18 @@ PetscBool elasticity_from_two(unsigned given, const PetscReal value[ELASTIC_CONS
 {
   const Lame two = lame_from_two(given, value);
   const PetscReal l = two.lame, G = two.shear;
-  PetscReal all[ELASTIC_CONSTANTS] = {
-    [YOUNG] = G * (3.0 * l + 2.0 * G) / (l + G),
-    [POISSON] = 0.5 * l / (l + G),
-    [BULK] = l + 2.0 * G / 3.0,
-    [SHEAR] = G,
-    [LAME] = l,
-  };
-  for (int k = 0; k < ELASTIC_CONSTANTS; ++k)
-    if (given >> k & 1) all[k] = value[k];
-  *elastic = (Elasticity){all[YOUNG], all[POISSON], all[BULK], all[SHEAR], all[LAME]};
-  for (int k = 0; k < ELASTIC_CONSTANTS; ++k)
-    if (!(all[k] > elastic_constants[k].min && all[k] < elastic_constants[k].max)) return PETSC_FALSE;
-  return PETSC_TRUE;
+  PetscBool stable = PETSC_TRUE;
+  *elastic = (Elasticity){{.young = G * (3.0 * l + 2.0 * G) / (l + G),
+                           .poisson = 0.5 * l / (l + G),
+                           .bulk = l + 2.0 * G / 3.0,
+                           .shear = G,
+                           .lame = l}};
+  for (int k = 0; k < ELASTIC_CONSTANTS; ++k) {
+    if (given >> k & 1) elastic->constant[k] = value[k];
+    if (!(elastic->constant[k] > elastic_constants[k].min && elastic->constant[k] < elastic_constants[k].max))
+      stable = PETSC_FALSE;
+  }
+  return stable;
 }
 
 PetscBool elasticity_incompressible(unsigned given, const PetscReal value[ELASTIC_CONSTANTS], Elasticity *elastic)
@@ -68,6 +85,6 @@ PetscBool elasticity_incompressible(unsigned given, const PetscReal value[ELASTI
   if (shape != 1u << YOUNG && shape != 1u << SHEAR) return PETSC_FALSE;
   if (volume == 1u << POISSON ? value[POISSON] != 0.5 : !(value[BULK] == INFINITY)) return PETSC_FALSE;
   const PetscReal G = shape == 1u << SHEAR ? value[SHEAR] : value[YOUNG] / 3.0;
-  *elastic = (Elasticity){shape == 1u << YOUNG ? value[YOUNG] : 3.0 * G, 0.5, INFINITY, G, INFINITY};
+  *elastic = (Elasticity){{shape == 1u << YOUNG ? value[YOUNG] : 3.0 * G, 0.5, INFINITY, G, INFINITY}};
   return G > 0.0 && isfinite(G);
 }

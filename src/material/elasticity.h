@@ -2,15 +2,18 @@
 #pragma once
 #include "material/law.h"
 
-#define ELASTIC_CONSTANTS 5
-
 typedef struct {
   const char *name, *unit, *help;
   PetscReal min, max; /* open range */
 } ElasticConstant;
 
-/* young, poisson, bulk, shear, lame: the order of struct Elasticity. */
 extern const ElasticConstant elastic_constants[ELASTIC_CONSTANTS];
+
+/* Its place in the table; -1 if it is none. */
+int elastic_index(const char *name);
+#define ELASTIC_ALL ((1u << ELASTIC_CONSTANTS) - 1)
+/* "young, bulk": those whose bits are set. Returns text. */
+const char *elastic_list(unsigned given, char *text, size_t size);
 
 /* All five from two: `given` has the bits (1 << index) of the two, `value` their numbers. The two given are kept
  * as they are. PETSC_FALSE if they contradict each other or a stable solid (bulk and shear positive). */

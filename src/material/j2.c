@@ -11,7 +11,7 @@
  * Volumetric laws as in neo_hookean_split.c: j2 with p = K (J - 1), j2-log with p = K ln J / J. */
 #include "material/volume.h"
 
-enum { BULK, MU, YIELD, HARDENING };
+enum { YIELD = SPLIT_N, HARDENING };
 
 #define N_STATE 8 /* bbar, J, alpha */
 
@@ -81,10 +81,10 @@ LANES_INLINE void tangent_lanes(const Return *t, PetscInt count, PetscReal *c)
   for (PetscInt l = 0; l < count; ++l) tangent_point(point + 15 * l, c + 36 * l);
 }
 
-LANES_INLINE LawStatus update_lanes(VolumeLaw law, const PetscReal *parameters, PetscInt n, const PetscReal *dF,
-                                    const PetscReal *old, PetscReal *state, PetscReal *tau, PetscReal *c)
+LANES_INLINE LawStatus update_lanes(const PetscReal *parameters, PetscInt n, const PetscReal *dF, const PetscReal *old,
+                                    PetscReal *state, PetscReal *tau, PetscReal *c)
 {
-  const PetscReal mu = parameters[MU];
+  const PetscReal mu = parameters[SPLIT_SHEAR];
   Lanes f[9], now[N_STATE], b[6], s[6], t[7], det_f, root, inverse;
   Return r;
   lanes_load(9, n, dF, f);
@@ -93,7 +93,7 @@ LANES_INLINE LawStatus update_lanes(VolumeLaw law, const PetscReal *parameters, 
   lanes_det(f, &det_f);
   lanes_cbrt(&det_f, &root);
   now[6] *= det_f;
-  volume_lanes(law, parameters[BULK], &now[6], &r.q, &r.dq);
+  volume_lanes(parameters, &now[6], &r.q, &r.dq);
   for (int k = 0; k < 6; ++k) b[k] /= root * root;
   const Lanes mean = (b[0] + b[1] + b[2]) / 3.0;
   r.mubar = mu * mean;
@@ -114,51 +114,24 @@ LANES_INLINE LawStatus update_lanes(VolumeLaw law, const PetscReal *parameters, 
   return lanes_status(&det_f, 7, t);
 }
 
-LANES_INLINE LawStatus update_batch(VolumeLaw law, const PetscReal *parameters, PetscInt n, const PetscReal *dF,
-                                    const PetscReal *old, PetscReal *state, PetscReal *tau, PetscReal *c)
+static LawStatus update(const PetscReal *parameters, PetscInt n, const PetscReal *dF, const PetscReal *old,
+                        PetscReal *state, PetscReal *tau, PetscReal *c)
 {
-  LawStatus worst = LAW_OK;
-  for (PetscInt p = 0; p < n; p += LANES) {
-    const LawStatus status = update_lanes(law, parameters, n - p, dF + 9 * p, old + N_STATE * p, state + N_STATE * p,
-                                          tau + 6 * p, c ? c + 36 * p : NULL);
-    worst = PetscMax(worst, status);
-  }
-  return worst;
+  return lanes_update(update_lanes, N_STATE, parameters, n, dF, old, state, tau, c);
 }
 
-static LawStatus update_linear(const PetscReal *parameters, PetscInt n, const PetscReal *dF, const PetscReal *old,
-                               PetscReal *state, PetscReal *tau, PetscReal *c)
-{
-  return update_batch(VOLUME_LINEAR, parameters, n, dF, old, state, tau, c);
-}
-
-static LawStatus update_log(const PetscReal *parameters, PetscInt n, const PetscReal *dF, const PetscReal *old,
-                            PetscReal *state, PetscReal *tau, PetscReal *c)
-{
-  return update_batch(VOLUME_LOG, parameters, n, dF, old, state, tau, c);
-}
-
-static PetscReal energy(VolumeLaw law, const PetscReal *parameters, const PetscReal *state)
+static PetscReal energy(const PetscReal *parameters, const PetscReal *state)
 {
   const PetscReal shape = state[0] + state[1] + state[2] - 3.0 * cbrt(sym_det(state));
-  return volume_energy(law, parameters[BULK], state[6]) + 0.5 * parameters[MU] * shape;
-}
-
-static PetscReal energy_linear(const PetscReal *parameters, const PetscReal *state)
-{
-  return energy(VOLUME_LINEAR, parameters, state);
-}
-
-static PetscReal energy_log(const PetscReal *parameters, const PetscReal *state)
-{
-  return energy(VOLUME_LOG, parameters, state);
+  return volume_energy(split_volume(parameters), parameters[SPLIT_BULK], state[6]) +
+         0.5 * parameters[SPLIT_SHEAR] * shape;
 }
 
 /* PETSC_FALSE outside the yield surface. */
-static PetscBool initial_stress(VolumeLaw law, const PetscReal *parameters, const PetscReal sigma[6], PetscReal *state)
+static PetscBool initial_stress(const PetscReal *parameters, const PetscReal sigma[6], PetscReal *state)
 {
-  const PetscReal mean = (sigma[0] + sigma[1] + sigma[2]) / 3.0, mu = parameters[MU];
-  const PetscReal J = volume_from_pressure(law, parameters[BULK], mean);
+  const PetscReal mean = (sigma[0] + sigma[1] + sigma[2]) / 3.0, mu = parameters[SPLIT_SHEAR];
+  const PetscReal J = volume_from_pressure(split_volume(parameters), parameters[SPLIT_BULK], mean);
   PetscReal norm2 = 0.0;
   for (int k = 0; k < 6; ++k) norm2 += (k < 3 ? 1.0 : 2.0) * pow(sigma[k] - (k < 3 ? mean : 0.0), 2);
   if (!(J * sqrt(norm2) <= sqrt(2.0 / 3.0) * parameters[YIELD] + 16.0 * PETSC_MACHINE_EPSILON * mu)) return PETSC_FALSE;
@@ -167,22 +140,17 @@ static PetscBool initial_stress(VolumeLaw law, const PetscReal *parameters, cons
   return shape_from_stress(mu, J, sigma, state);
 }
 
-static PetscBool initial_stress_linear(const PetscReal *parameters, const PetscReal sigma[6], PetscReal *state)
+static void prepare_linear(const Elasticity *elastic, const PetscReal *given, PetscReal *packed)
 {
-  return initial_stress(VOLUME_LINEAR, parameters, sigma, state);
-}
-
-static PetscBool initial_stress_log(const PetscReal *parameters, const PetscReal sigma[6], PetscReal *state)
-{
-  return initial_stress(VOLUME_LOG, parameters, sigma, state);
-}
-
-static void prepare(const Elasticity *elastic, const PetscReal *given, PetscReal *packed)
-{
-  packed[BULK] = elastic->bulk;
-  packed[MU] = elastic->shear;
+  split_prepare(VOLUME_LINEAR, elastic, packed);
   packed[YIELD] = given[0];
   packed[HARDENING] = given[1];
+}
+
+static void prepare_log(const Elasticity *elastic, const PetscReal *given, PetscReal *packed)
+{
+  prepare_linear(elastic, given, packed);
+  packed[SPLIT_VOLUME] = VOLUME_LOG;
 }
 
 static void volume(PetscInt n, const PetscReal *state, PetscReal *J)
@@ -190,32 +158,10 @@ static void volume(PetscInt n, const PetscReal *state, PetscReal *J)
   for (PetscInt p = 0; p < n; ++p) J[p] = state[p * N_STATE + 6];
 }
 
-static VolumeLaw volume_linear(const PetscReal *parameters)
-{
-  (void)parameters;
-  return VOLUME_LINEAR;
-}
-
-static VolumeLaw volume_log(const PetscReal *parameters)
-{
-  (void)parameters;
-  return VOLUME_LOG;
-}
-
 static const LawParameter parameters[] = {
-  {.name = "yield_stress",
-   .unit = "Pa",
-   .help = "stress at which a tension test yields",
-   .min = 0,
-   .max = PETSC_MAX_REAL,
-   .min_open = PETSC_TRUE,
+  {"yield_stress", "Pa", "stress at which a tension test yields", 0, PETSC_MAX_REAL, .min_open = PETSC_TRUE,
    .fallback = NAN},
-  {.name = "hardening",
-   .unit = "Pa",
-   .help = "linear isotropic hardening modulus",
-   .min = 0,
-   .max = PETSC_MAX_REAL,
-   .fallback = 0},
+  {"hardening", "Pa", "linear isotropic hardening modulus", 0, PETSC_MAX_REAL, .fallback = 0},
   {.name = NULL},
 };
 
@@ -226,34 +172,13 @@ static const LawField fields[] = {
   {.name = NULL},
 };
 
-const Law law_j2 = {
-  .name = "j2",
-  .help = "J2 (von Mises) plasticity, linear isotropic hardening, p = K (J - 1)",
-  .parameters = parameters,
-  .fields = fields,
-  .n_state = N_STATE,
-  .symmetric = PETSC_FALSE,
-  .yields = PETSC_TRUE,
-  .update = update_linear,
-  .energy = energy_linear,
-  .initial_stress = initial_stress_linear,
-  .volume = volume,
-  .volume_law = volume_linear,
-  .prepare = prepare,
-};
+#define J2(...)                                                                                                   \
+  {                                                                                                               \
+    .parameters = parameters, .fields = fields, .n_state = N_STATE, .yields = PETSC_TRUE, .update = update,       \
+    .energy = energy, .initial_stress = initial_stress, .volume = volume, .volume_law = split_volume, __VA_ARGS__ \
+  }
 
-const Law law_j2_log = {
-  .name = "j2-log",
-  .help = "J2 (von Mises) plasticity, linear isotropic hardening, p = K ln J / J",
-  .parameters = parameters,
-  .fields = fields,
-  .n_state = N_STATE,
-  .symmetric = PETSC_FALSE,
-  .yields = PETSC_TRUE,
-  .update = update_log,
-  .energy = energy_log,
-  .initial_stress = initial_stress_log,
-  .volume = volume,
-  .volume_law = volume_log,
-  .prepare = prepare,
-};
+const Law law_j2 = J2(.name = "j2", .prepare = prepare_linear,
+                      .help = "J2 (von Mises) plasticity, linear isotropic hardening, p = K (J - 1)");
+const Law law_j2_log = J2(.name = "j2-log", .prepare = prepare_log,
+                          .help = "J2 (von Mises) plasticity, linear isotropic hardening, p = K ln J / J");

@@ -82,6 +82,20 @@ LANES_INLINE void lanes_push_forward(const Lanes f[9], const Lanes s[6], Lanes p
   pushed[5] = fs[6] * f[0] + fs[7] * f[1] + fs[8] * f[2];
 }
 
+/* The update of n points by one of (up to) eight. */
+LANES_INLINE LawStatus lanes_update(LawUpdate eight, int n_state, const PetscReal *parameters, PetscInt n,
+                                    const PetscReal *dF, const PetscReal *old, PetscReal *state, PetscReal *tau,
+                                    PetscReal *c)
+{
+  LawStatus worst = LAW_OK;
+  for (PetscInt p = 0; p < n; p += LANES) {
+    const LawStatus status =
+      eight(parameters, n - p, dF + 9 * p, old + n_state * p, state + n_state * p, tau + 6 * p, c ? c + 36 * p : NULL);
+    worst = PetscMax(worst, status);
+  }
+  return worst;
+}
+
 /* Worst status of points with increments f (whose determinants are det_f) and n results. */
 LANES_INLINE LawStatus lanes_status(const Lanes *det_f, int n, const Lanes *result)
 {

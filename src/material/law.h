@@ -33,10 +33,21 @@ typedef enum {
   VOLUME_LOG      /* apart: U = (ln J)^2 / 2, p = K ln J / J */
 } VolumeLaw;
 
-/* Any two elastic constants of: young, poisson, bulk, shear, lame. */
-typedef struct {
-  PetscReal young, poisson, bulk, shear, lame;
+#define ELASTIC_CONSTANTS 5
+
+/* All elastic constants, in the order of the table in elasticity.c. */
+typedef union {
+  struct {
+    PetscReal young, poisson, bulk, shear, lame;
+  };
+  PetscReal constant[ELASTIC_CONSTANTS];
 } Elasticity;
+
+/* Update n points. dF: n x 9, increment of the deformation gradient x_(n+1)/x_n; old, state: n x n_state;
+ * tau: n x 6 Kirchhoff stress, Pa; c: n x 36 with L_v tau = c : d, or NULL if not wanted. Never touches old
+ * (which may not overlap state). Returns the worst status of the batch. */
+typedef LawStatus (*LawUpdate)(const PetscReal *parameters, PetscInt n, const PetscReal *dF, const PetscReal *old,
+                               PetscReal *state, PetscReal *tau, PetscReal *c);
 
 typedef struct Law {
   const char *name, *help;
@@ -45,14 +56,9 @@ typedef struct Law {
   PetscInt n_state;               /* sum of the fields' components */
   PetscBool symmetric;            /* is the tangent symmetric? */
   PetscBool yields;               /* can it lose its stiffness? */
-  /* Update n points. dF: n x 9, increment of the deformation gradient x_(n+1)/x_n; old, state: n x n_state;
-   * tau: n x 6 Kirchhoff stress, Pa; c: n x 36 with L_v tau = c : d, or NULL if not wanted. Never touches old
-   * (which may not overlap state). Returns the worst status of the batch. */
-  LawStatus (*update)(const PetscReal *parameters, PetscInt n, const PetscReal *dF, const PetscReal *old,
-                      PetscReal *state, PetscReal *tau, PetscReal *c);
+  LawUpdate update;
   /* The same where dF leaves z alone, or NULL: of c only the components 11, 22, 12 of rows and columns mean something. */
-  LawStatus (*update_plane)(const PetscReal *parameters, PetscInt n, const PetscReal *dF, const PetscReal *old,
-                            PetscReal *state, PetscReal *tau, PetscReal *c);
+  LawUpdate update_plane;
   /* Stored elastic energy per undeformed volume, J/m3. */
   PetscReal (*energy)(const PetscReal *parameters, const PetscReal *state);
   /* State that carries the Cauchy stress sigma (6) with no shear history; PETSC_FALSE if there is none. */

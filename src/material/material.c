@@ -47,13 +47,6 @@ static int law_parameter_index(const Law *law, const char *key)
   return -1;
 }
 
-static int elastic_index(const char *key)
-{
-  for (int i = 0; i < ELASTIC_CONSTANTS; ++i)
-    if (!strcmp(elastic_constants[i].name, key)) return i;
-  return -1;
-}
-
 /* Keys that this law has no use for. */
 static void refuse_unknown(const Resolver *r, const Law *law)
 {
@@ -90,16 +83,6 @@ static PetscBool check_constant(const Resolver *r, int index, PetscReal value)
   return PETSC_FALSE;
 }
 
-/* Append "young, bulk" to text: the constants whose bits are set. */
-static void list_constants(unsigned given, char *text, size_t size)
-{
-  text[0] = 0;
-  for (int k = 0; k < ELASTIC_CONSTANTS; ++k) {
-    const size_t used = strlen(text);
-    if (given >> k & 1) snprintf(text + used, size - used, "%s%s", used ? ", " : "", elastic_constants[k].name);
-  }
-}
-
 /* Exactly two constants, each in its range, together a stable solid. */
 static PetscBool resolve_elastic(const Resolver *r, Elasticity *elastic)
 {
@@ -118,11 +101,11 @@ static PetscBool resolve_elastic(const Resolver *r, Elasticity *elastic)
   if (r->mixed && n == 2 && elasticity_incompressible(given, value, elastic)) return PETSC_TRUE;
   for (int k = 0; k < ELASTIC_CONSTANTS; ++k)
     if (given >> k & 1 && !check_constant(r, k, value[k])) good = PETSC_FALSE;
-  list_constants(given, names, sizeof names);
+  elastic_list(given, names, sizeof names);
   if (n != 2) {
     diag_error(r->diag, path_of(r, NULL, path), "needs exactly two elastic constants, has %d%s%s%s", n, n ? " (" : "",
                names, n ? ")" : "");
-    diag_hint(r->diag, "give any two of young, poisson, bulk, shear, lame: they define the others");
+    diag_hint(r->diag, "give any two of %s: they define the others", elastic_list(ELASTIC_ALL, names, sizeof names));
     return PETSC_FALSE;
   }
   if (!good) return PETSC_FALSE;

@@ -51,13 +51,7 @@ LANES_INLINE LawStatus update_lanes(const PetscReal *parameters, PetscInt n, con
 static LawStatus update(const PetscReal *parameters, PetscInt n, const PetscReal *dF, const PetscReal *old,
                         PetscReal *state, PetscReal *tau, PetscReal *c)
 {
-  LawStatus worst = LAW_OK;
-  for (PetscInt p = 0; p < n; p += LANES) {
-    const LawStatus status =
-      update_lanes(parameters, n - p, dF + 9 * p, old + 6 * p, state + 6 * p, tau + 6 * p, c ? c + 36 * p : NULL);
-    worst = PetscMax(worst, status);
-  }
-  return worst;
+  return lanes_update(update_lanes, 6, parameters, n, dF, old, state, tau, c);
 }
 
 static PetscReal energy(const PetscReal *parameters, const PetscReal *b)

@@ -11,8 +11,6 @@
  *   neo-hookean-split-log   U = (ln J)^2 / 2     p = K ln J / J */
 #include "material/volume.h"
 
-enum { BULK, MU };
-
 /* c = a I x I + 2 g I_sym - 2/3 (s x I + I x s) of one point. */
 LANES_INLINE void tangent_point(PetscReal a, PetscReal g, const PetscReal s[6], PetscReal *c)
 {
@@ -27,10 +25,10 @@ LANES_INLINE void tangent_point(PetscReal a, PetscReal g, const PetscReal s[6], 
     }
 }
 
-LANES_INLINE LawStatus update_lanes(VolumeLaw law, const PetscReal *parameters, PetscInt n, const PetscReal *dF,
-                                    const PetscReal *old, PetscReal *state, PetscReal *tau, PetscReal *c)
+LANES_INLINE LawStatus update_lanes(const PetscReal *parameters, PetscInt n, const PetscReal *dF, const PetscReal *old,
+                                    PetscReal *state, PetscReal *tau, PetscReal *c)
 {
-  const PetscReal mu = parameters[MU];
+  const PetscReal mu = parameters[SPLIT_SHEAR];
   Lanes f[9], b_old[6], b[6], s[6], t[9], det_f, det_b, J, root, q, dq;
   lanes_load(9, n, dF, f);
   lanes_load(6, n, old, b_old);
@@ -39,7 +37,7 @@ LANES_INLINE LawStatus update_lanes(VolumeLaw law, const PetscReal *parameters, 
   lanes_sym_det(b, &det_b);
   lanes_cbrt(&det_b, &root);
   lanes_sqrt(&det_b, &J);
-  volume_lanes(law, parameters[BULK], &J, &q, &dq);
+  volume_lanes(parameters, &J, &q, &dq);
   const Lanes scale = mu / root, m = (b[0] + b[1] + b[2]) * scale * (2.0 / 3.0);
   for (int k = 0; k < 3; ++k) {
     s[k] = scale * b[k] - 0.5 * m;
@@ -60,116 +58,54 @@ LANES_INLINE LawStatus update_lanes(VolumeLaw law, const PetscReal *parameters, 
   return lanes_status(&det_f, 7, t);
 }
 
-LANES_INLINE LawStatus update_batch(VolumeLaw law, const PetscReal *parameters, PetscInt n, const PetscReal *dF,
-                                    const PetscReal *old, PetscReal *state, PetscReal *tau, PetscReal *c)
+static LawStatus update(const PetscReal *parameters, PetscInt n, const PetscReal *dF, const PetscReal *old,
+                        PetscReal *state, PetscReal *tau, PetscReal *c)
 {
-  LawStatus worst = LAW_OK;
-  for (PetscInt p = 0; p < n; p += LANES) {
-    const LawStatus status =
-      update_lanes(law, parameters, n - p, dF + 9 * p, old + 6 * p, state + 6 * p, tau + 6 * p, c ? c + 36 * p : NULL);
-    worst = PetscMax(worst, status);
-  }
-  return worst;
+  return lanes_update(update_lanes, 6, parameters, n, dF, old, state, tau, c);
 }
 
-static LawStatus update_linear(const PetscReal *parameters, PetscInt n, const PetscReal *dF, const PetscReal *old,
-                               PetscReal *state, PetscReal *tau, PetscReal *c)
-{
-  return update_batch(VOLUME_LINEAR, parameters, n, dF, old, state, tau, c);
-}
-
-static LawStatus update_log(const PetscReal *parameters, PetscInt n, const PetscReal *dF, const PetscReal *old,
-                            PetscReal *state, PetscReal *tau, PetscReal *c)
-{
-  return update_batch(VOLUME_LOG, parameters, n, dF, old, state, tau, c);
-}
-
-static PetscReal energy(VolumeLaw law, const PetscReal *parameters, const PetscReal *b)
+static PetscReal energy(const PetscReal *parameters, const PetscReal *b)
 {
   const PetscReal det = sym_det(b);
-  return volume_energy(law, parameters[BULK], sqrt(det)) +
-         0.5 * parameters[MU] * ((b[0] + b[1] + b[2]) / cbrt(det) - 3.0);
+  return volume_energy(split_volume(parameters), parameters[SPLIT_BULK], sqrt(det)) +
+         0.5 * parameters[SPLIT_SHEAR] * ((b[0] + b[1] + b[2]) / cbrt(det) - 3.0);
 }
 
-static PetscReal energy_linear(const PetscReal *parameters, const PetscReal *b)
+static PetscBool initial_stress(const PetscReal *parameters, const PetscReal sigma[6], PetscReal *b)
 {
-  return energy(VOLUME_LINEAR, parameters, b);
-}
-
-static PetscReal energy_log(const PetscReal *parameters, const PetscReal *b)
-{
-  return energy(VOLUME_LOG, parameters, b);
-}
-
-static PetscBool initial_stress(VolumeLaw law, const PetscReal *parameters, const PetscReal sigma[6], PetscReal *b)
-{
-  const PetscReal J = volume_from_pressure(law, parameters[BULK], (sigma[0] + sigma[1] + sigma[2]) / 3.0);
-  if (!(J > 0.0) || !shape_from_stress(parameters[MU], J, sigma, b)) return PETSC_FALSE;
+  const PetscReal p = (sigma[0] + sigma[1] + sigma[2]) / 3.0;
+  const PetscReal J = volume_from_pressure(split_volume(parameters), parameters[SPLIT_BULK], p);
+  if (!(J > 0.0) || !shape_from_stress(parameters[SPLIT_SHEAR], J, sigma, b)) return PETSC_FALSE;
   for (int k = 0; k < 6; ++k) b[k] *= cbrt(J * J);
   return PETSC_TRUE;
 }
 
-static PetscBool initial_stress_linear(const PetscReal *parameters, const PetscReal sigma[6], PetscReal *b)
-{
-  return initial_stress(VOLUME_LINEAR, parameters, sigma, b);
-}
-
-static PetscBool initial_stress_log(const PetscReal *parameters, const PetscReal sigma[6], PetscReal *b)
-{
-  return initial_stress(VOLUME_LOG, parameters, sigma, b);
-}
-
-static void prepare(const Elasticity *elastic, const PetscReal *given, PetscReal *packed)
+static void prepare_linear(const Elasticity *elastic, const PetscReal *given, PetscReal *packed)
 {
   (void)given;
-  packed[BULK] = elastic->bulk;
-  packed[MU] = elastic->shear;
+  split_prepare(VOLUME_LINEAR, elastic, packed);
+}
+
+static void prepare_log(const Elasticity *elastic, const PetscReal *given, PetscReal *packed)
+{
+  (void)given;
+  split_prepare(VOLUME_LOG, elastic, packed);
 }
 
 static void volume(PetscInt n, const PetscReal *state, PetscReal *J) { volume_of_b(n, 6, state, J); }
-
-static VolumeLaw volume_linear(const PetscReal *parameters)
-{
-  (void)parameters;
-  return VOLUME_LINEAR;
-}
-
-static VolumeLaw volume_log(const PetscReal *parameters)
-{
-  (void)parameters;
-  return VOLUME_LOG;
-}
 
 static const LawParameter parameters_none[] = {{.name = NULL}};
 static const LawField fields[] = {{"elastic_strain", "", "elastic left Cauchy-Green tensor b", 6, {1, 1, 1, 0, 0, 0}},
                                   {.name = NULL}};
 
-const Law law_neo_hookean_split = {
-  .name = "neo-hookean-split",
-  .help = "Neo-Hookean solid, shape and volume apart, p = K (J - 1)",
-  .parameters = parameters_none,
-  .fields = fields,
-  .n_state = 6,
-  .symmetric = PETSC_TRUE,
-  .update = update_linear,
-  .energy = energy_linear,
-  .initial_stress = initial_stress_linear,
-  .volume = volume,
-  .volume_law = volume_linear,
-  .prepare = prepare,
-};
+#define NEO_HOOKEAN_SPLIT(...)                                                                                    \
+  {                                                                                                               \
+    .parameters = parameters_none, .fields = fields, .n_state = 6, .symmetric = PETSC_TRUE, .update = update,     \
+    .energy = energy, .initial_stress = initial_stress, .volume = volume, .volume_law = split_volume, __VA_ARGS__ \
+  }
 
-const Law law_neo_hookean_split_log = {
-  .name = "neo-hookean-split-log",
-  .help = "Neo-Hookean solid, shape and volume apart, p = K ln J / J",
-  .parameters = parameters_none,
-  .fields = fields,
-  .n_state = 6,
-  .symmetric = PETSC_TRUE,
-  .update = update_log,
-  .energy = energy_log,
-  .initial_stress = initial_stress_log,
-  .volume = volume,
-  .volume_law = volume_log,
-  .prepare = prepare,
-};
+const Law law_neo_hookean_split = NEO_HOOKEAN_SPLIT(.name = "neo-hookean-split", .prepare = prepare_linear,
+                                                    .help = "Neo-Hookean solid, shape and volume apart, p = K (J - 1)");
+const Law law_neo_hookean_split_log =
+  NEO_HOOKEAN_SPLIT(.name = "neo-hookean-split-log", .prepare = prepare_log,
+                    .help = "Neo-Hookean solid, shape and volume apart, p = K ln J / J");

@@ -48,6 +48,18 @@ static inline PetscReal volume_from_pressure(VolumeLaw law, PetscReal K, PetscRe
   return J > 0.0 ? J : NAN;
 }
 
+/* What these laws pack first: each is a pair that differs in its volumetric part alone. */
+enum { SPLIT_BULK, SPLIT_SHEAR, SPLIT_VOLUME, SPLIT_N };
+
+static inline void split_prepare(VolumeLaw volume, const Elasticity *elastic, PetscReal *packed)
+{
+  packed[SPLIT_BULK] = elastic->bulk;
+  packed[SPLIT_SHEAR] = elastic->shear;
+  packed[SPLIT_VOLUME] = volume;
+}
+
+static inline VolumeLaw split_volume(const PetscReal *parameters) { return (VolumeLaw)parameters[SPLIT_VOLUME]; }
+
 static inline PetscReal volume_energy(VolumeLaw law, PetscReal K, PetscReal J)
 {
   const PetscReal x = law == VOLUME_LOG ? log(J) : J - 1.0;

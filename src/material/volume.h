@@ -4,9 +4,10 @@
 #include "material/shape.h"
 
 /* q = J p and dq = J dq/dJ = J (p + J dp/dJ). */
-LANES_INLINE void volume_lanes(VolumeLaw law, PetscReal K, const Lanes *J, Lanes *q, Lanes *dq)
+LANES_INLINE void volume_lanes(const PetscReal *parameters, const Lanes *J, Lanes *q, Lanes *dq)
 {
-  if (law == VOLUME_LOG) {
+  const PetscReal K = parameters[SPLIT_BULK];
+  if (split_volume(parameters) == VOLUME_LOG) {
     lanes_log(J, q);
     *q *= K;
     *dq = 0.0 * *J + K;

@@ -73,22 +73,23 @@ PetscErrorCode DiscretisationMass(Discretisation *s)
 
 PetscErrorCode DiscretisationPressure(Discretisation *s)
 {
+  NodalFields *n = s->nodes;
   const Support *w = s->support;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscArrayzero(s->nodes->pressure, s->grid->n_nodes));
+  PetscCall(PetscArrayzero(n->pressure, s->grid->n_nodes));
   for (PetscInt g = 0; g < w->n_groups; ++g) {
     const PetscInt nn = w->node_start[g + 1] - w->node_start[g], *node = w->node + w->node_start[g];
     for (PetscInt p = w->point_start[g]; p < w->point_start[g + 1]; ++p) {
       const PetscReal *N = w->N + w->value_start[g] + (p - w->point_start[g]) * nn;
       const PetscReal mp = s->points->real[POINT_MASS][p] * s->points->real[POINT_PRESSURE][p];
-      for (PetscInt I = 0; I < nn; ++I) s->nodes->pressure[node[I]] += N[I] * mp;
+      for (PetscInt I = 0; I < nn; ++I) n->pressure[node[I]] += N[I] * mp;
     }
   }
-  PetscCall(GridSumToOwners(s->grid, 1, s->nodes->pressure));
+  PetscCall(GridSumToOwners(s->grid, 1, n->pressure));
   for (PetscInt node = 0; node < s->grid->n_owned; ++node)
-    s->nodes->pressure[node] = s->nodes->mass[node] > 1e-300 ? s->nodes->pressure[node] / s->nodes->mass[node] : 0;
-  PetscCall(GridToGhosts(s->grid, 1, s->nodes->pressure));
+    n->pressure[node] = n->mass[node] > 1e-300 ? n->pressure[node] / n->mass[node] : 0;
+  PetscCall(GridToGhosts(s->grid, 1, n->pressure));
   PetscFunctionReturn(0);
 }
 
@@ -123,18 +124,18 @@ PetscErrorCode DiscretisationBodyVelocity(Discretisation *s)
 static void move_carried(const Discretisation *s, Points *carried, PetscInt p, PetscInt nn, const PetscInt *node,
                          const PetscReal *N)
 {
+  const NodalFields *n = s->nodes;
   const PetscInt dim = s->grid->dim;
-  const PetscReal *du = s->nodes->du;
   PetscReal *x = point_real(carried, POINT_X, p), *u = point_real(carried, POINT_U, p);
   PetscReal *v = point_real(carried, POINT_V, p), *a = point_real(carried, POINT_A, p);
   for (PetscInt d = 0; d < dim; ++d) {
     v[d] = a[d] = 0;
     for (PetscInt I = 0; I < nn; ++I) {
       const PetscInt i = node[I] * dim + d;
-      u[d] += N[I] * du[i];
-      x[d] += N[I] * du[i];
-      v[d] += N[I] * s->nodes->v1[i];
-      a[d] += N[I] * s->nodes->a1[i];
+      u[d] += N[I] * n->du[i];
+      x[d] += N[I] * n->du[i];
+      v[d] += N[I] * n->v1[i];
+      a[d] += N[I] * n->a1[i];
     }
   }
 }

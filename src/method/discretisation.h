@@ -18,9 +18,9 @@ typedef struct Discretisation {
   Support *support;
   Constraints *constraints; /* none: prescribed motion is that of the nodes themselves */
   PetscBool started;        /* has phase a run before? */
-  PetscBool present;        /* do support and nodal fields belong to where nodes and points are now? */
+  PetscBool present;        /* do support and nodal fields belong to where points are now? */
   unsigned char *filled;    /* n_cells: does the cell hold points? */
-  PetscReal fade;           /* share of a point's velocity beyond the nodes' that Rayleigh damping takes in the step */
+  PetscReal fade;           /* of a point's velocity beyond the nodes': what damping takes in the step */
   PetscInt group_capacity;
   PetscReal *lumping, *soft, *tie; /* per group, see WeakFormInput */
   PetscReal *pressure_tie;         /* mixed: per group, see WeakFormInput */
@@ -34,11 +34,14 @@ PetscErrorCode DiscretisationCreate(const Discretisation *parts, Discretisation 
 PetscErrorCode DiscretisationDestroy(Discretisation **space);
 
 /* Steps that methods share. */
-PetscErrorCode DiscretisationTouch(Discretisation *space); /* touched, and in grids of cells filled, from the support */
-PetscErrorCode DiscretisationMass(Discretisation *space);  /* m_I = sum N m_p, on all copies */
+/* touched, and in grids of cells filled, from the support. */
+PetscErrorCode DiscretisationTouch(Discretisation *space);
+/* m_I = sum N m_p, on all copies. */
+PetscErrorCode DiscretisationMass(Discretisation *space);
 /* p_I = sum N m_p p / m_I (thesis eq. 5.20), on all copies; after DiscretisationMass. */
 PetscErrorCode DiscretisationPressure(Discretisation *space);
-/* Nodes that keep their history take the velocity of their body where they stand; m and touched must be known. */
+/* Nodes that keep their history take the velocity of their body where they stand; m and touched
+ * must be known. */
 PetscErrorCode DiscretisationBodyVelocity(Discretisation *space);
 /* Points, tracers or carriers follow the field: in their cells, and the same with clouds. */
 PetscErrorCode DiscretisationMoveCarried(Discretisation *space, Points *carried);

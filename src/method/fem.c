@@ -20,32 +20,34 @@ static PetscErrorCode FemStart(Discretisation *s)
 
 static PetscErrorCode FemInitialise(Discretisation *s)
 {
+  NodalFields *n = s->nodes;
   PetscFunctionBeginUser;
   if (!s->started) PetscCall(FemStart(s));
   else PetscCall(SupportFromCells(s->support, s->points, s->grid)); /* gradients on the moved mesh */
   s->started = PETSC_TRUE;
-  PetscCall(PetscArraycpy(s->nodes->v_points, s->nodes->v, s->grid->n_nodes * s->grid->dim));
-  PetscCall(PetscArraycpy(s->nodes->a_points, s->nodes->a, s->grid->n_nodes * s->grid->dim));
+  PetscCall(PetscArraycpy(n->v_points, n->v, s->grid->n_nodes * s->grid->dim));
+  PetscCall(PetscArraycpy(n->a_points, n->a, s->grid->n_nodes * s->grid->dim));
   PetscFunctionReturn(0);
 }
 
 static PetscErrorCode FemConvect(Discretisation *s)
 {
+  NodalFields *n = s->nodes;
   const PetscInt dim = s->grid->dim, dofs = s->grid->n_nodes * dim;
 
   PetscFunctionBeginUser;
   PetscCall(DiscretisationMoveCarried(s, s->points));
   PetscCall(DiscretisationMoveCarried(s, s->tracers));
   PetscCall(DiscretisationMoveCarried(s, s->loads->carriers));
-  for (PetscInt i = 0; i < dofs; ++i) s->grid->x[i] += s->nodes->du[i];
-  PetscCall(PetscArraycpy(s->nodes->v, s->nodes->v1, dofs));
-  PetscCall(PetscArraycpy(s->nodes->a, s->nodes->a1, dofs));
+  for (PetscInt i = 0; i < dofs; ++i) s->grid->x[i] += n->du[i];
+  PetscCall(PetscArraycpy(n->v, n->v1, dofs));
+  PetscCall(PetscArraycpy(n->a, n->a1, dofs));
   PetscFunctionReturn(0);
 }
 
 const Method method_fem = {
   .name = "fem",
-  .help = "updated Lagrangian finite elements: the mesh moves with the body",
+  .help = "updated Lagrangian finite elements: the grid moves with the material",
   .takes_pressure = PETSC_TRUE,
   .initialise = FemInitialise,
   .convect = FemConvect,

@@ -181,6 +181,7 @@ static PetscErrorCode MoveNodes(Discretisation *s)
 
 static PetscErrorCode GmmConvect(Discretisation *s)
 {
+  NodalFields *n = s->nodes;
   const PetscInt dofs = s->grid->n_nodes * s->grid->dim;
 
   PetscFunctionBeginUser;
@@ -189,8 +190,8 @@ static PetscErrorCode GmmConvect(Discretisation *s)
   PetscCall(DiscretisationMoveClouds(s, s->loads->carriers, gmm_of(s)->carriers));
   PetscCall(MoveNodes(s));
   for (PetscInt i = 0; i < dofs; ++i) { /* a node that nothing touched stays where it is */
-    s->nodes->v[i] = s->nodes->touched[i / s->grid->dim] || s->boundary->fixed[i] ? s->nodes->v1[i] : 0;
-    s->nodes->a[i] = s->nodes->touched[i / s->grid->dim] || s->boundary->fixed[i] ? s->nodes->a1[i] : 0;
+    n->v[i] = n->touched[i / s->grid->dim] || s->boundary->fixed[i] ? n->v1[i] : 0;
+    n->a[i] = n->touched[i / s->grid->dim] || s->boundary->fixed[i] ? n->a1[i] : 0;
   }
   PetscFunctionReturn(0);
 }

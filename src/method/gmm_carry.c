@@ -218,6 +218,7 @@ static PetscErrorCode Share(const Carry *c)
 
 PetscErrorCode GmmCarry(Discretisation *s)
 {
+  NodalFields *n = s->nodes;
   const PetscInt dim = s->grid->dim;
   Carry c;
 
@@ -227,15 +228,15 @@ PetscErrorCode GmmCarry(Discretisation *s)
   PetscCall(Share(&c));
   for (PetscInt i = 0; i < s->grid->n_owned * dim; ++i) {
     const PetscInt k = i / dim * 2 * dim + i % dim;
-    const PetscReal inverse = s->nodes->mass[i / dim] > 0 ? 1 / s->nodes->mass[i / dim] : 0;
-    s->nodes->v_points[i] = c.x[k] + inverse * c.lack[k];
-    s->nodes->a_points[i] = c.x[k + dim] + inverse * c.lack[k + dim];
+    const PetscReal inverse = n->mass[i / dim] > 0 ? 1 / n->mass[i / dim] : 0;
+    n->v_points[i] = c.x[k] + inverse * c.lack[k];
+    n->a_points[i] = c.x[k + dim] + inverse * c.lack[k + dim];
     if (s->boundary->fixed[i]) continue;
-    s->nodes->v[i] = s->nodes->v_points[i];
-    s->nodes->a[i] = s->nodes->a_points[i];
+    n->v[i] = n->v_points[i];
+    n->a[i] = n->a_points[i];
   }
   PetscCall(CarryDestroy(&c));
-  PetscCall(GridToGhosts(s->grid, dim, s->nodes->v));
-  PetscCall(GridToGhosts(s->grid, dim, s->nodes->a));
+  PetscCall(GridToGhosts(s->grid, dim, n->v));
+  PetscCall(GridToGhosts(s->grid, dim, n->a));
   PetscFunctionReturn(0);
 }

@@ -1,5 +1,6 @@
-/* A method: how nodes get their kinematics before the solve (phase a), and how the solution moves nodes and points (phase c).
- * Phase b, the solve itself, is shared by all. To add one: a new file, and a line in methods.inc. */
+/* A method: how nodes get their kinematics before the solve (phase a), and how the solution
+ * moves nodes and points (phase c). Phase b, the solve itself, is shared by all. To add one: a
+ * new file, and a line in methods.inc. */
 #pragma once
 #include "method/discretisation.h"
 
@@ -7,19 +8,21 @@ typedef struct Method {
   const char *name, *help;
 
   /* What it can. */
-  PetscBool
-    restores_grid; /* points carry all motion through a grid that is restored after every step; else nodes move and keep it */
+  PetscBool restores_grid; /* points carry all motion, through a grid that stays; else nodes keep theirs */
   PetscBool clouds; /* nodes leave the cells that gave them: ModelToCloud; the functions at the end are needed then */
   PetscBool takes_pressure; /* has it the mixed formulation? */
 
-  /* Phase a, collective: sorted points, support, touched, mass, v, a. Called once before every step, or when somebody asks for nodal fields before that;
-   * leaves points alone otherwise. */
+  /* Phase a, collective: sorted points, support, touched, mass, v, a. Called once before every
+   * step, or when somebody asks for nodal fields before that; leaves points alone otherwise. */
   PetscErrorCode (*initialise)(Discretisation *space);
-  /* Collective. What a step with inertia changes of v and a before its solve, undone if it is not accepted. NULL: nothing. */
+  /* Collective. What a step with inertia changes of v and a before its solve, undone if it is
+   * not accepted. NULL: nothing. */
   PetscErrorCode (*begin)(Discretisation *space);
-  /* Phase c, collective: the step is accepted, du, v1 and a1 are known. State and F of the points are committed already. */
+  /* Phase c, collective: the step is accepted, du, v1 and a1 are known. State and F of the
+   * points are committed already. */
   PetscErrorCode (*convect)(Discretisation *space);
-  /* After initialise: does a node that material touches carry the tracer or carrier of this rank? */
+  /* After initialise: does a node that material touches carry the tracer or carrier of this
+   * rank? */
   PetscBool (*carries)(const Discretisation *space, const Points *followers, PetscInt p);
   /* Takes `own` away. NULL: there is none. */
   PetscErrorCode (*destroy)(Discretisation *space);

@@ -3,7 +3,7 @@
 
 #define UNROLLED static inline __attribute__((always_inline))
 
-/* A loop over the points of each kind of cells, with dimension and nodes of a cell known to the compiler where that pays most. */
+/* A loop over the points of each kind of cells, with sizes known to the compiler where that pays. */
 #define WITH_SIZES(loop, s)                                                                                \
   for (const SupportRun *run = (s)->support->run; run < (s)->support->run + (s)->support->n_runs; ++run) { \
     if ((s)->grid->dim == 2 && run->nodes == 4) loop(2, 4, run, s);                                        \
@@ -13,6 +13,7 @@
 
 UNROLLED void gather_motion(const PetscInt dim, const PetscInt nn, const SupportRun *run, Discretisation *s)
 {
+  NodalFields *n = s->nodes;
   const Support *w = s->support;
   for (PetscInt g = run->first; g < run->end; ++g) {
     const PetscInt *node = w->node + w->node_start[g];
@@ -30,8 +31,8 @@ UNROLLED void gather_motion(const PetscInt dim, const PetscInt nn, const Support
     }
     for (PetscInt I = 0; I < nn; ++I)
       for (PetscInt d = 0; d < dim; ++d) {
-        s->nodes->v[node[I] * dim + d] += momentum[I * dim + d];
-        s->nodes->a[node[I] * dim + d] += force[I * dim + d];
+        n->v[node[I] * dim + d] += momentum[I * dim + d];
+        n->a[node[I] * dim + d] += force[I * dim + d];
       }
   }
 }
@@ -40,28 +41,29 @@ UNROLLED void gather_motion(const PetscInt dim, const PetscInt nn, const Support
  * velocity counts for nothing. */
 static PetscErrorCode Project(Discretisation *s)
 {
+  NodalFields *n = s->nodes;
   const Grid *grid = s->grid;
   const PetscInt dim = grid->dim, dofs = grid->n_nodes * dim;
 
   PetscFunctionBeginUser;
   PetscCall(DiscretisationMass(s));
-  PetscCall(PetscArrayzero(s->nodes->v, dofs));
-  PetscCall(PetscArrayzero(s->nodes->a, dofs));
+  PetscCall(PetscArrayzero(n->v, dofs));
+  PetscCall(PetscArrayzero(n->a, dofs));
   WITH_SIZES(gather_motion, s);
-  PetscCall(GridSumToOwners(grid, dim, s->nodes->v));
-  PetscCall(GridSumToOwners(grid, dim, s->nodes->a));
+  PetscCall(GridSumToOwners(grid, dim, n->v));
+  PetscCall(GridSumToOwners(grid, dim, n->a));
   for (PetscInt node = 0; node < grid->n_owned; ++node) {
-    if (s->nodes->mass[node] == 0) continue;
-    const PetscReal inverse = s->nodes->mass[node] > 1e-300 ? 1 / s->nodes->mass[node] : 0;
+    if (n->mass[node] == 0) continue;
+    const PetscReal inverse = n->mass[node] > 1e-300 ? 1 / n->mass[node] : 0;
     for (PetscInt i = node * dim; i < (node + 1) * dim; ++i) {
-      s->nodes->v[i] *= inverse;
-      s->nodes->a[i] *= inverse;
+      n->v[i] *= inverse;
+      n->a[i] *= inverse;
     }
   }
-  PetscCall(GridToGhosts(grid, dim, s->nodes->v));
-  PetscCall(GridToGhosts(grid, dim, s->nodes->a));
-  PetscCall(PetscArraycpy(s->nodes->v_points, s->nodes->v, dofs));
-  PetscCall(PetscArraycpy(s->nodes->a_points, s->nodes->a, dofs));
+  PetscCall(GridToGhosts(grid, dim, n->v));
+  PetscCall(GridToGhosts(grid, dim, n->a));
+  PetscCall(PetscArraycpy(n->v_points, n->v, dofs));
+  PetscCall(PetscArraycpy(n->a_points, n->a, dofs));
   PetscFunctionReturn(0);
 }
 
@@ -184,7 +186,7 @@ static PetscErrorCode MpmConvect(Discretisation *s)
 
 const Method method_mpm = {
   .name = "mpm",
-  .help = "material point method: points move through a grid that is restored every step",
+  .help = "material point method: points carry the material through a fixed grid",
   .restores_grid = PETSC_TRUE,
   .takes_pressure = PETSC_TRUE,
   .initialise = MpmInitialise,

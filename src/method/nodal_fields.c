@@ -30,6 +30,8 @@ static const FieldKind kinds[] = {
   FIELD(a, KEPT_MOTION, "acceleration", "m/s2", PETSC_FALSE, PETSC_FALSE),
   SCRATCH(v_points),
   SCRATCH(a_points),
+  SCRATCH(v_start),
+  SCRATCH(a_start),
   SCRATCH(v1),
   SCRATCH(a1),
   SCRATCH(du),
@@ -126,7 +128,8 @@ static PetscInt list_fields(NodalFields *nodes, Kept kept, NodalField list[KINDS
   return n;
 }
 
-/* take: flags of dofs or, without them, dofs where the only field is not 0, count for their nodes; motion is that of all nodes. */
+/* take: flags of dofs or, without them, dofs where the only field is not 0, count for their
+ * nodes; motion is that of all nodes. */
 static PetscErrorCode ToTable(NodalFields *nodes, Kept kept, const unsigned char *dofs, Tables *tables)
 {
   NodalField list[KINDS];

@@ -1,5 +1,6 @@
-/* All that nodes know, in one place: made and destroyed together, following the nodes of a cloud, put away in checkpoints and handed over to a grid
- * that is shared anew. Arrays go over the local nodes of the grid. */
+/* All that nodes know, in one place: made and destroyed together, following the nodes of a
+ * cloud, put away in checkpoints and handed over to a grid that is shared anew. Arrays go over
+ * the local nodes of the grid. */
 #pragma once
 #include "base/table.h"
 #include "grid/grid.h"
@@ -19,20 +20,21 @@ typedef struct NodalFields {
   unsigned char *fixed;   /* n_nodes x dim: has no unknown in the step */
   PetscReal *mass;        /* n_nodes, kg */
   /* n_nodes x dim, as all up to the pressures */
-  PetscReal *v, *a;      /* at t_n: what the solve starts from, m/s, m/s2 */
-  PetscReal *v_points;   /* v as the points gave it, before prescribed motion replaced it */
-  PetscReal *a_points;   /* likewise a */
-  PetscReal *v1, *a1;    /* at t_(n+1), of an accepted step */
-  PetscReal *du;         /* increments of the step, m */
-  PetscReal *previous;   /* those of the last step where they were solved for, else 0 */
-  PetscReal *prescribed; /* increments of prescribed dofs, m */
-  PetscReal *history;    /* see WeakFormInput */
-  PetscReal *force;      /* residual with the rows of prescribed dofs, on owners, N */
-  PetscReal *external;   /* dead forces, on owners, N */
-  PetscReal *reaction;   /* force of the boundary on the body, in dynamics its mean over the last step, on owners, N */
-  PetscReal *held;       /* the same at the end of the step, without the impulse that stopped points, N */
-  PetscReal *rate;       /* its share in the rate of momentum there (`held` without Bossak's alpha), N */
-  PetscReal *echo;       /* what Bossak's alpha held back of the last acceleration, m/s2 */
+  PetscReal *v, *a;             /* at t_n: what the solve starts from, m/s, m/s2 */
+  PetscReal *v_points;          /* v as the points gave it, before prescribed motion replaced it */
+  PetscReal *a_points;          /* likewise a */
+  PetscReal *v_start, *a_start; /* v and a before the step changed them */
+  PetscReal *v1, *a1;           /* at t_(n+1), of an accepted step */
+  PetscReal *du;                /* increments of the step, m */
+  PetscReal *previous;          /* those of the last step where they were solved for, else 0 */
+  PetscReal *prescribed;        /* increments of prescribed dofs, m */
+  PetscReal *history;           /* see WeakFormInput */
+  PetscReal *force;             /* residual with the rows of prescribed dofs, on owners, N */
+  PetscReal *external;          /* dead forces, on owners, N */
+  PetscReal *reaction; /* force of the boundary on the body, in dynamics its mean over the last step, on owners, N */
+  PetscReal *held;     /* the same at the end of the step, without the impulse that stopped points, N */
+  PetscReal *rate;     /* its share in the rate of momentum there (`held` without Bossak's alpha), N */
+  PetscReal *echo;     /* what Bossak's alpha held back of the last acceleration, m/s2 */
   /* n_nodes, NULL where displacements are the only unknowns */
   PetscReal *pressure;        /* at t_n, tension positive, Pa */
   PetscReal *scaled_pressure; /* the unknowns, m, see WeakFormInput */
@@ -42,10 +44,12 @@ typedef struct NodalFields {
 /* pressure: is it an unknown? */
 PetscErrorCode NodalFieldsCreate(Grid *grid, PetscBool pressure, NodalFields **nodes);
 PetscErrorCode NodalFieldsDestroy(NodalFields **nodes);
-/* Flags of a cloud, all 0, if its ghosts or owners changed since they were made; the other fields follow by themselves. */
+/* Flags of a cloud, all 0, if its ghosts or owners changed since they were made; the other
+ * fields follow by themselves. */
 PetscErrorCode NodalFlagsFollow(NodalFields *nodes);
 
-/* Collective, on grids of cells (clouds put away what follows them). What outlives a step: the motion of nodes that move, and without that the last
- * increments; forces of the boundary, at dofs that it prescribes. */
+/* Collective, on grids of cells (clouds put away what follows them). What outlives a step: the
+ * motion of nodes that move, and without that the last increments; forces of the boundary, at
+ * dofs that it prescribes. */
 PetscErrorCode NodalFieldsToTables(NodalFields *nodes, PetscBool move, const unsigned char *prescribed, Tables *tables);
 PetscErrorCode NodalFieldsFromTables(NodalFields *nodes, PetscBool move, const Tables *tables, char reason[256]);

@@ -11,9 +11,11 @@ static void set_multipliers(Model *m)
         m->nodes->force[c->at[k] * m->dim + d] = c->scale * m->nodes->du[c->twin[k] * m->dim + d];
 }
 
-/* Reactions: in statics what the balance lacks on prescribed dofs; with inertia the mean over the step, so that times dt it is all momentum that came
- * from the boundary. The scheme weighs the forces of both ends, its lag gives each an echo of those before, and what prescribed motion replaced of
- * the nodes' own at the start of the step is an impulse (docs/theory.md, "Reactions"). */
+/* Reactions: in statics what the balance lacks on prescribed dofs; with inertia the mean over
+ * the step, so that times dt it is all momentum that came from the boundary. The scheme weighs
+ * the forces of both ends, its lag gives each an echo of those before, and what prescribed
+ * motion replaced of the nodes' own at the start of the step is an impulse (docs/theory.md,
+ * "Reactions"). */
 static void store_reactions(Model *m, PetscReal dt)
 {
   const TimeWeights w = m->scheme->weights(&m->c->analysis, dt);
@@ -83,5 +85,34 @@ PetscErrorCode ConvectStep(Model *m, PetscReal dt, EnergyStep *energy, StepRepor
   PetscCall(PhaseEnd(m->seconds, PHASE_COMMIT, &clock));
   report->outcome = STEP_ACCEPTED;
   report->dt = dt;
+  PetscFunctionReturn(0);
+}
+
+/* The step in which the fastest point travels as far as it may; without limit where points stay
+ * in their cells. */
+static PetscReal reach_of(const Model *m, PetscReal speed)
+{
+  const AnalysisSpec *a = &m->c->analysis;
+  const PetscBool flows = m->method->restores_grid && m->scheme->inertia;
+  return flows && a->travel > 0 && speed > 0 ? a->travel * m->grid->smallest / speed : PETSC_MAX_REAL;
+}
+
+PetscErrorCode ChooseNextStep(Model *m, PetscBool shortened, const StepReport *report)
+{
+  PetscReal fastest = 0, speed;
+
+  PetscFunctionBeginUser;
+  for (PetscInt p = 0; p < m->points->n; ++p) {
+    const PetscReal *v = point_real(m->points, POINT_V, p);
+    PetscReal square = 0;
+    for (PetscInt d = 0; d < m->dim; ++d) square += v[d] * v[d];
+    fastest = PetscMax(fastest, square);
+  }
+  PetscCall(MPIU_Allreduce(&fastest, &speed, 1, MPIU_REAL, MPIU_MAX, m->comm));
+  const StepTaken taken = {.dt = report->dt,
+                           .iterations = report->newton.iterations,
+                           .shortened = shortened,
+                           .reach = reach_of(m, PetscSqrtReal(speed))};
+  step_control_accept(&m->control, &m->c->analysis, m->c->newton.ease, &taken);
   PetscFunctionReturn(0);
 }

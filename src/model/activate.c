@@ -64,25 +64,35 @@ static PetscErrorCode AddRings(const Model *m, const unsigned char *occupied, un
   PetscFunctionReturn(0);
 }
 
+/* The system for these groups and what nodal forces couple; frees the groups. */
+static PetscErrorCode BuildSystem(Model *m, NodeGroups *groups)
+{
+  const NodalScene scene = nodal_scene(m, m->time, m->nodes->du);
+
+  PetscFunctionBeginUser;
+  PetscCall(NodalForcesCouple(&m->forces, &scene, groups));
+  PetscCall(SystemBuild(m->system, m->grid, groups));
+  PetscCall(PetscFree(groups->start));
+  PetscCall(PetscFree(groups->node));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode ModelEnable(Model *m)
 {
   const PetscInt stride = m->grid->nodes_per_cell;
-  PetscInt n = 0, *node, *start;
+  NodeGroups groups = {.n = 0};
 
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(m->grid->n_cells * stride, &node));
-  PetscCall(PetscMalloc1(m->grid->n_cells + 1, &start));
-  start[0] = 0;
-  for (PetscInt c = 0; c < m->grid->n_cells; ++c)
-    if (m->enabled[c]) {
-      const PetscInt nn = grid_cell(m->grid, c)->nodes;
-      PetscCall(PetscArraycpy(node + start[n], m->grid->cell_node + c * stride, nn));
-      start[n + 1] = start[n] + nn;
-      ++n;
-    }
-  PetscCall(SystemBuild(m->system, m->grid, &(NodeGroups){.n = n, .start = start, .node = node}));
-  PetscCall(PetscFree(start));
-  PetscCall(PetscFree(node));
+  PetscCall(PetscMalloc1(m->grid->n_cells * stride, &groups.node));
+  PetscCall(PetscMalloc1(m->grid->n_cells + 1, &groups.start));
+  groups.start[0] = 0;
+  for (PetscInt c = 0; c < m->grid->n_cells; ++c) {
+    const PetscInt nn = grid_cell(m->grid, c)->nodes, first = groups.start[groups.n];
+    if (!m->enabled[c]) continue;
+    PetscCall(PetscArraycpy(groups.node + first, m->grid->cell_node + c * stride, nn));
+    groups.start[++groups.n] = first + nn;
+  }
+  PetscCall(BuildSystem(m, &groups));
   PetscFunctionReturn(0);
 }
 
@@ -110,9 +120,7 @@ static PetscErrorCode ActivateClouds(Model *m)
   if (!complete) {
     PetscCall(PetscArrayzero(m->nodes->force, m->grid->n_nodes * m->dim)); /* of nodes that may lose their unknowns */
     PetscCall(m->method->couplings(m->space, &groups));
-    PetscCall(SystemBuild(m->system, m->grid, &groups));
-    PetscCall(PetscFree(groups.start));
-    PetscCall(PetscFree(groups.node));
+    PetscCall(BuildSystem(m, &groups));
     PetscCall(FindSlots(m, &complete));
     PetscCheck(complete, m->comm, PETSC_ERR_PLIB, "the system lacks couplings that it was built for");
   }
@@ -127,6 +135,7 @@ PetscErrorCode ModelActivate(Model *m)
   PetscBool fits;
 
   PetscFunctionBeginUser;
+  PetscCall(ModelInitialise(m));
   if (m->method->clouds) {
     PetscCall(ActivateClouds(m));
     PetscFunctionReturn(0);
@@ -141,6 +150,9 @@ PetscErrorCode ModelActivate(Model *m)
   }
   PetscCall(PetscFree(occupied));
   PetscCall(FindSlots(m, &fits));
-  PetscCheck(fits, m->comm, PETSC_ERR_PLIB, "the system lacks couplings that nodal forces ask for");
+  if (fits) PetscFunctionReturn(0);
+  PetscCall(ModelEnable(m)); /* nodal forces have met other nodes */
+  PetscCall(FindSlots(m, &fits));
+  PetscCheck(fits, m->comm, PETSC_ERR_PLIB, "the system lacks couplings that it was built for");
   PetscFunctionReturn(0);
 }

@@ -1,5 +1,6 @@
 /* Tracers of measures and carriers of loads go with the material, out of the grid too. Where it leaves them behind they
  * end: the measure is empty and the force is gone, and the run says so. */
+#include "model/measure/measure.h"
 #include "model/model_private.h"
 
 /* Of one measure or load, summed over the ranks. */
@@ -58,7 +59,7 @@ static PetscErrorCode FindUncarried(Model *m, Uncarried *u, PetscBool *any)
 static PetscBool has_followers(const Model *m)
 {
   for (PetscInt k = 0; k < m->c->n_measures; ++k)
-    if (m->c->measures[k].kind <= MEASURE_VELOCITY) return PETSC_TRUE;
+    if (measure_number(&m->c->measures[k])->of == OF_TRACER) return PETSC_TRUE;
   return m->c->n_loads != 0;
 }
 

@@ -31,13 +31,14 @@ static PetscReal inertia_alone(const NodalFields *n, PetscReal dt, PetscInt i)
 static void guess_inertia(const Model *m, PetscReal dt, PetscReal *du)
 {
   for (PetscInt node = 0; node < m->grid->n_nodes; ++node) {
-    const PetscBool moves = m->nodes->touched[node] && !(m->grid->cloud && cloud_is_twin(m->grid, node));
+    const PetscBool moves = m->nodes->touched[node] && !(m->method->clouds && cloud_is_twin(m->grid, node));
     for (PetscInt d = 0, i = node * m->dim; d < m->dim; ++d, ++i) du[i] = moves ? inertia_alone(m->nodes, dt, i) : 0;
   }
 }
 
 void guess_make(const Model *m, FirstGuess guess, PetscReal dt, PetscReal *du)
 {
+  const NodalFields *n = m->nodes;
   const PetscInt dofs = m->grid->n_nodes * m->dim;
   if (guess == GUESS_REST) {
     for (PetscInt i = 0; i < dofs; ++i) du[i] = 0;
@@ -45,11 +46,12 @@ void guess_make(const Model *m, FirstGuess guess, PetscReal dt, PetscReal *du)
   }
   guess_inertia(m, dt, du); /* nodes that the last step did not move know no other */
   for (PetscInt i = 0; guess == GUESS_PREVIOUS && i < dofs; ++i)
-    if (!m->nodes->fixed[i] && m->nodes->previous[i] != 0) du[i] = dt / m->guess.step * m->nodes->previous[i];
+    if (!n->fixed[i] && n->previous[i] != 0) du[i] = dt / m->guess.step * n->previous[i];
 }
 
 PetscErrorCode GuessLearn(Model *m, PetscReal dt)
 {
+  NodalFields *n = m->nodes;
   const PetscReal ratio = m->guess.step > 0 ? dt / m->guess.step : 0;
   PetscReal local[2] = {0, 0}, sum[2]; /* squares of what was missing: from inertia, from the step before */
 
@@ -57,16 +59,15 @@ PetscErrorCode GuessLearn(Model *m, PetscReal dt)
   if (!guess_follows(m)) PetscFunctionReturn(0);
   for (PetscInt k = 0; k < m->system->n_active; ++k)
     for (PetscInt d = 0, i = m->system->active[k] * m->dim; d < m->dim; ++d, ++i) {
-      if (m->nodes->fixed[i] || m->nodes->previous[i] == 0) continue;
-      const PetscReal inertia = m->nodes->du[i] - inertia_alone(m->nodes, dt, i);
-      const PetscReal before = m->nodes->du[i] - ratio * m->nodes->previous[i];
+      if (n->fixed[i] || n->previous[i] == 0) continue;
+      const PetscReal inertia = n->du[i] - inertia_alone(m->nodes, dt, i);
+      const PetscReal before = n->du[i] - ratio * n->previous[i];
       local[0] += inertia * inertia;
       local[1] += before * before;
     }
   PetscCall(MPIU_Allreduce(local, sum, 2, MPIU_REAL, MPI_SUM, m->comm));
   m->guess = (Guess){.step = dt, .previous = sum[1] < sum[0]};
-  for (PetscInt i = 0; i < m->grid->n_nodes * m->dim; ++i)
-    m->nodes->previous[i] = m->nodes->fixed[i] ? 0 : m->nodes->du[i];
+  for (PetscInt i = 0; i < m->grid->n_nodes * m->dim; ++i) n->previous[i] = n->fixed[i] ? 0 : n->du[i];
   PetscFunctionReturn(0);
 }
 

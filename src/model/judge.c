@@ -35,7 +35,7 @@ static PetscBool hardly_moved(const Model *m)
   for (PetscInt k = 0; k < m->system->n_active; ++k)
     for (PetscInt d = 0, i = m->system->active[k] * m->dim; d < m->dim; ++d, ++i)
       largest = PetscMax(largest, PetscAbsReal(m->nodes->du[i]));
-  return !m->grid->cloud && largest < HARDLY_MOVED * m->grid->smallest;
+  return !m->method->clouds && largest < HARDLY_MOVED * m->grid->smallest;
 }
 
 PetscErrorCode JudgeStep(const Model *m, StepReport *report)

@@ -1,4 +1,5 @@
 #include "model/model.h"
+#include "model/measure/measure.h"
 #include "model/model_private.h"
 
 /* Work of a cell with this centre, in points: balances the partition. */
@@ -139,11 +140,6 @@ static PetscErrorCode CreatePoints(Model *m, Outline *outline, Diag *diag)
   PetscFunctionReturn(0);
 }
 
-static PetscBool is_of_tracer(const MeasureSpec *s)
-{
-  return s->kind == MEASURE_DISPLACEMENT || s->kind == MEASURE_POSITION || s->kind == MEASURE_VELOCITY;
-}
-
 /* One tracer per measure that follows one; the lowest rank whose cells hold it keeps it. */
 static PetscErrorCode CreateTracers(Model *m, Diag *diag)
 {
@@ -158,7 +154,7 @@ static PetscErrorCode CreateTracers(Model *m, Diag *diag)
   PetscCall(FollowersCreate(m->dim, 0, &m->tracers));
   for (PetscInt k = 0; k < m->c->n_measures; ++k) {
     const MeasureSpec *s = &m->c->measures[k];
-    if (!is_of_tracer(s)) continue;
+    if (measure_number(s)->of != OF_TRACER) continue;
     const PetscInt cell = grid_locate(m->grid, s->tracer, -1, xi);
     mine = cell >= 0 ? rank : size;
     PetscCallMPI(MPI_Allreduce(&mine, &first, 1, MPI_INT, MPI_MIN, m->comm));

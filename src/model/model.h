@@ -19,11 +19,11 @@ typedef struct {
 } Energies;
 
 /* What a measure remembers from step to step. */
+#define MEASURE_KEPT 2
 typedef struct {
-  PetscReal front;    /* m, after the last step */
-  PetscReal moved;    /* last time at which it was fast, s */
-  PetscReal ended;    /* when the material left its tracer behind, s; 0: it did not */
-  PetscReal where[3]; /* the tracer was then, m */
+  PetscReal kept[MEASURE_KEPT]; /* what it keeps for itself */
+  PetscReal ended;              /* when the material left its tracer behind, s; 0: it did not */
+  PetscReal where[3];           /* the tracer was then, m */
 } MeasureMemory;
 
 /* A load whose carriers, or some of them, the material has left behind. */
@@ -143,8 +143,8 @@ PetscErrorCode ModelDestroy(Model **model);
 /* Collective. Body force besides gravity, NULL for none. Before the first step it also enters the initial acceleration. */
 PetscErrorCode ModelSetBodyForce(Model *model, BodyForce force, void *context);
 
-/* Collective. Phase a: nodes learn from where points are now, unless they have already. A step begins with it; whoever asks for nodal fields or
- * measures between steps calls it first. */
+/* Collective. Phase a: nodes learn from where points are now, unless they have already. A step
+ * begins with it; whoever wants nodal fields or measures between steps calls it first. */
 PetscErrorCode ModelInitialise(Model *model);
 /* Collective. Make the linear system fit the cells that hold material now; ModelStep does it by itself. */
 PetscErrorCode ModelActivate(Model *model);

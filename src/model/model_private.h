@@ -6,15 +6,16 @@
 PetscErrorCode OptionsApply(Model *model);
 PetscErrorCode OptionsCheck(const Model *model, Diag *diag);
 PetscErrorCode OptionsForget(Model *model);
-/* Space, with its nodal fields, and the system's flags for the grid that the model has now. Collective. */
+/* Collective. Space with its nodal fields, and the system's flags, for the grid that is now. */
 PetscErrorCode ModelCreateFields(Model *model);
 PetscErrorCode ModelDestroyFields(Model *model);
 /* Work of a cell that holds points, in points: its share of matrix, solver and nodes. */
 PetscReal cell_work(CellType type);
 /* Collective. Share the grid anew if that is worth it: before a step. */
 PetscErrorCode ModelBalance(Model *model, StepReport *report);
-/* Collective. Move everything over to `grid`, which is the model's grid shared in another way and becomes its own; the next ModelInitialise is the first of the space.
- * *moved: points of this rank that left it. */
+/* Collective. Move everything over to `grid`, which is the model's grid shared in another way and
+ * becomes its own; the next ModelInitialise is the first of the space. *moved: points of this rank
+ * that left it. */
 PetscErrorCode ModelRegrid(Model *model, Grid *grid, PetscInt *moved);
 /* guess.c. From where Newton may start: as inertia alone would bring, like the step before, from rest. */
 typedef enum { GUESS_INERTIA, GUESS_PREVIOUS, GUESS_REST, GUESS_N } FirstGuess;
@@ -47,9 +48,6 @@ PetscErrorCode MeasuresStart(Model *model);
 /* Collective. After every accepted step of dt, whether or not a row of the history is written. */
 PetscErrorCode MeasuresRemember(Model *model, PetscReal dt);
 
-/* Collective. How much of the pressure one averaging over neighbours takes away, docs/theory.md. */
-PetscErrorCode RoughnessValue(const Model *model, PetscReal *value);
-
 /* followers.c. Collective. Once the model stands: nothing may follow a place that no material carries. */
 PetscErrorCode FollowersStart(Model *model, Diag *diag);
 /* Collective. After every accepted step: what the material has left behind ends. */
@@ -66,25 +64,29 @@ typedef struct {
   PetscReal external, boundary, damped, transfer;
 } EnergyStep;
 
-/* What a step changes although it is not accepted. */
+/* What a step changes although it is not accepted, besides v and a of the nodes. */
 typedef struct {
   StepControl control;
   PetscInt cuts, iterations;
   Tries tries;
   NewtonMemory newton;
-  PetscReal *v, *a; /* n_nodes x dim, where the method shifts what nodes remember; else NULL */
 } StepStart;
 
-/* solve.c. A step that is not accepted leaves nodes as they were; one that was interrupted has never been. */
-PetscErrorCode StepStartKeep(const Model *model, StepStart *start);
+/* A step that is not accepted leaves nodes as they were; one that was interrupted never was. */
+PetscErrorCode StepStartKeep(Model *model, StepStart *start);
 PetscErrorCode StepStartRestore(Model *model, const StepStart *start, StepReport *report);
-PetscErrorCode StepStartForget(StepStart *start);
-/* Collective. The increments of a step of dt, or of halves of it: until Newton converges, somebody interrupts it, or the step is too small. */
+/* step_prepare.c. Collective. Which nodes have unknowns, on which ranks, and which are held; then
+ * what a step changes before its solve. */
+PetscErrorCode PrepareUnknowns(Model *model, StepStart *start, StepReport *report);
+/* solve.c. Collective. The increments of a step of dt, or of halves of it: until Newton converges,
+ * somebody interrupts it, or the step is too small. */
 PetscErrorCode SolveStep(Model *model, PetscReal *dt, StepReport *report);
 /* accept.c. Collective. Points take over stress and history, and the boundary its forces. */
 PetscErrorCode CommitStep(Model *model, PetscReal dt, EnergyStep *energy);
 /* Collective. Points and nodes go where the solution leads them. */
 PetscErrorCode ConvectStep(Model *model, PetscReal dt, EnergyStep *energy, StepReport *report);
+/* Collective. shortened: was it the caller who made the accepted step that short? */
+PetscErrorCode ChooseNextStep(Model *model, PetscBool shortened, const StepReport *report);
 
 /* Collective. The nodes know the step's end (force, v1, a1), the points still stand at its start. */
 PetscErrorCode EnergyOfNodes(Model *model, PetscReal dt, EnergyStep *step);
@@ -104,7 +106,7 @@ PetscErrorCode ModelWarnOfObstacles(const Model *model, Diag *diag);
 PetscErrorCode LimitWatch(Model *model, PetscReal dt);
 /* Collective. Add to the reason of a static run that gives up that it may be at a limit load, if it looks like one. */
 PetscErrorCode LimitDescribe(const Model *model, StepReport *report);
-/* Warnings of what a case asks for and its user hardly means: advice.c. */
+/* Warnings of what a case asks for and its user hardly means: start/advice.c. */
 void model_advise(const Model *model, Diag *diag);
 /* Rayleigh damping, where there is inertia, 1/s. */
 static inline PetscReal model_damping(const Model *m) { return m->scheme->inertia ? m->c->analysis.damping : 0; }

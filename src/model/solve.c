@@ -1,5 +1,13 @@
-/* The solve of a step: Newton from one first guess after another, on shorter and shorter steps; and everything as it was where that does not help. */
+/* Phase (b), the solve of a step: Newton from one first guess after another, on shorter and
+ * shorter steps; and everything as it was where that does not help. */
 #include "model/model_private.h"
+
+void model_times(const Model *m, PetscReal seconds[PHASE_N])
+{
+  for (int k = 0; k < PHASE_N; ++k) seconds[k] = m->seconds[k];
+  newton_times(m->newton, &seconds[PHASE_POINTS], &seconds[PHASE_MATRIX], &seconds[PHASE_LINEAR],
+               &seconds[PHASE_NEWTON]);
+}
 
 static void count_try(Model *m, PetscBool again, StepReport *report)
 {
@@ -12,7 +20,8 @@ static void count_try(Model *m, PetscBool again, StepReport *report)
   report->tries.lost += lost;
 }
 
-/* Newton from the nearest first guess, and where it fails from the others: a step is halved only if none of them leads to its solution. */
+/* Newton from the nearest first guess, and where it fails from the others: a step is halved only
+ * if none of them leads to its solution. */
 static PetscErrorCode SolveFromGuesses(Model *m, PetscReal dt, const LinearProblem *linear, StepReport *report)
 {
   FirstGuess guess[GUESS_N];
@@ -74,17 +83,15 @@ PetscErrorCode SolveStep(Model *m, PetscReal *dt, StepReport *report)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode StepStartKeep(const Model *m, StepStart *start)
+PetscErrorCode StepStartKeep(Model *m, StepStart *start)
 {
   const PetscInt dofs = m->grid->n_nodes * m->dim;
 
   PetscFunctionBeginUser;
   *start = (StepStart){.control = m->control, .cuts = m->cuts, .iterations = m->total_iterations, .tries = m->tries};
   newton_get_memory(m->newton, m->system, &start->newton);
-  if (!m->method->begin) PetscFunctionReturn(0);
-  PetscCall(PetscMalloc2(dofs, &start->v, dofs, &start->a));
-  PetscCall(PetscArraycpy(start->v, m->nodes->v, dofs));
-  PetscCall(PetscArraycpy(start->a, m->nodes->a, dofs));
+  PetscCall(PetscArraycpy(m->nodes->v_start, m->nodes->v, dofs));
+  PetscCall(PetscArraycpy(m->nodes->a_start, m->nodes->a, dofs));
   PetscFunctionReturn(0);
 }
 
@@ -93,11 +100,9 @@ PetscErrorCode StepStartRestore(Model *m, const StepStart *start, StepReport *re
   const PetscInt dofs = m->grid->n_nodes * m->dim;
 
   PetscFunctionBeginUser;
-  if (start->v) {
-    PetscCall(PetscArraycpy(m->nodes->v, start->v, dofs));
-    PetscCall(PetscArraycpy(m->nodes->a, start->a, dofs));
-  }
-  if (m->method->restores_grid) m->space->present = PETSC_FALSE;
+  PetscCall(PetscArraycpy(m->nodes->v, m->nodes->v_start, dofs));
+  PetscCall(PetscArraycpy(m->nodes->a, m->nodes->a_start, dofs));
+  if (m->method->restores_grid) m->space->present = PETSC_FALSE; /* v_points may have changed, too */
   if (!report->newton.interrupted) PetscFunctionReturn(0);
   m->control = start->control;
   m->cuts = start->cuts;
@@ -105,12 +110,5 @@ PetscErrorCode StepStartRestore(Model *m, const StepStart *start, StepReport *re
   m->tries = start->tries;
   newton_forget(m->newton, m->system, &start->newton);
   report->outcome = STEP_INTERRUPTED;
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode StepStartForget(StepStart *start)
-{
-  PetscFunctionBeginUser;
-  PetscCall(PetscFree2(start->v, start->a));
   PetscFunctionReturn(0);
 }

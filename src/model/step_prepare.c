@@ -30,28 +30,45 @@ void pressure_guess(const Model *m)
 
 void mark_fixed(Model *m)
 {
-  const unsigned char *dof = m->nodes->dof;
+  NodalFields *n = m->nodes;
   for (PetscInt node = 0, i = 0; node < m->grid->n_nodes; ++node) {
-    m->nodes->idle[node] = !m->nodes->touched[node];
+    n->idle[node] = !n->touched[node];
     for (PetscInt d = 0; d < m->dim; ++d, ++i) {
-      m->nodes->fixed[i] = m->boundary->fixed[i] || m->nodes->idle[node];
-      if (dof[i] == DOF_RELEASED) m->nodes->fixed[i] = 0;
-      if (dof[i] == DOF_UNUSED) m->nodes->fixed[i] = 1;
+      n->fixed[i] = m->boundary->fixed[i] || n->idle[node];
+      if (n->dof[i] == DOF_RELEASED) n->fixed[i] = 0;
+      if (n->dof[i] == DOF_UNUSED) n->fixed[i] = 1;
     }
   }
+}
+
+PetscErrorCode PrepareUnknowns(Model *m, StepStart *start, StepReport *report)
+{
+  PetscLogDouble clock;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscTime(&clock));
+  PetscCall(ModelBalance(m, report));
+  PetscCall(PhaseEnd(m->seconds, PHASE_REPARTITION, &clock));
+  PetscCall(ModelActivate(m));
+  if (m->method->restores_grid) PetscCall(BoundaryMove(m->boundary, m->grid, m->time));
+  mark_fixed(m);
+  PetscCall(StepStartKeep(m, start));
+  if (m->method->begin && m->scheme->inertia) PetscCall(m->method->begin(m->space));
+  PetscCall(PhaseEnd(m->seconds, PHASE_PATTERN, &clock));
+  PetscFunctionReturn(0);
 }
 
 /* A prescribed node moves as prescribed from the start of the step on: where the grid is restored its velocity comes from the points
  * that hit it, which would ring for ever in Newmark's formulas. A mesh that moves with the body keeps its own history. */
 static void set_boundary_kinematics(Model *m, PetscReal dt)
 {
-  Discretisation *s = m->space;
+  NodalFields *n = m->nodes;
   if (!m->method->restores_grid && m->step > 0) return;
   for (PetscInt i = 0; i < m->grid->n_nodes * m->dim; ++i) {
-    if (!m->boundary->fixed[i] || !m->nodes->fixed[i]) continue;
-    s->nodes->v[i] = m->nodes->prescribed[i] / dt;
-    s->nodes->a[i] = 0;
-    if (m->c->analysis.keep_velocity) s->nodes->v_points[i] = s->nodes->v[i];
+    if (!m->boundary->fixed[i] || !n->fixed[i]) continue;
+    n->v[i] = n->prescribed[i] / dt;
+    n->a[i] = 0;
+    if (m->c->analysis.keep_velocity) n->v_points[i] = n->v[i];
   }
 }
 
@@ -59,6 +76,7 @@ static void set_boundary_kinematics(Model *m, PetscReal dt)
  * So the coefficients of constrained nodes start each step with the prescribed motion, like prescribed nodes themselves. */
 static PetscErrorCode HoldConstraints(Model *m, PetscReal dt)
 {
+  NodalFields *n = m->nodes;
   const Constraints *c = m->space->constraints;
   PetscReal *correction;
 
@@ -66,10 +84,10 @@ static PetscErrorCode HoldConstraints(Model *m, PetscReal dt)
   if (!m->n_constraints) PetscFunctionReturn(0);
   PetscCall(PetscCalloc1(m->grid->n_nodes * m->dim, &correction));
   for (int sweep = 0; sweep < 20; ++sweep) {
-    constraints_relax(c, m->boundary->fixed, m->nodes->prescribed, 1 / dt, m->nodes->v, correction);
-    constraints_relax(c, m->boundary->fixed, m->nodes->prescribed, 0, m->nodes->a, correction);
-    PetscCall(GridToGhosts(m->grid, m->dim, m->nodes->v));
-    PetscCall(GridToGhosts(m->grid, m->dim, m->nodes->a));
+    constraints_relax(c, m->boundary->fixed, n->prescribed, 1 / dt, n->v, correction);
+    constraints_relax(c, m->boundary->fixed, n->prescribed, 0, n->a, correction);
+    PetscCall(GridToGhosts(m->grid, m->dim, n->v));
+    PetscCall(GridToGhosts(m->grid, m->dim, n->a));
   }
   PetscCall(PetscFree(correction));
   PetscFunctionReturn(0);
@@ -79,15 +97,16 @@ static PetscErrorCode HoldConstraints(Model *m, PetscReal dt)
 static PetscErrorCode ForceScales(const Model *m, const PetscReal *g, PetscReal dt, PetscReal *weight,
                                   PetscReal *inertia)
 {
+  const NodalFields *n = m->nodes;
   PetscReal local[2] = {0, 0}, sum[2];
 
   PetscFunctionBeginUser;
   for (PetscInt node = 0; node < m->grid->n_owned; ++node) {
-    const PetscReal mass = m->nodes->mass[node];
+    const PetscReal mass = n->mass[node];
     if (mass == 0) continue;
     for (PetscInt d = 0, i = node * m->dim; d < m->dim; ++d, ++i) {
-      const PetscReal stop = m->scheme->inertia ? mass * m->nodes->v[i] / dt : 0;
-      if (!m->nodes->fixed[i]) local[0] += mass * g[d] * mass * g[d];
+      const PetscReal stop = m->scheme->inertia ? mass * n->v[i] / dt : 0;
+      if (!n->fixed[i]) local[0] += mass * g[d] * mass * g[d];
       local[1] += stop * stop;
     }
   }

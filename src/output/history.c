@@ -4,6 +4,7 @@
 #include <string.h>
 #include <unistd.h>
 #include <zlib.h>
+#include "base/text.h"
 #include "output/directory/run_dir_files.h"
 #include "output/directory/run_dir_impl.h"
 
@@ -56,33 +57,33 @@ static int flush(FILE *file, off_t before)
   return before > 0 && ftruncate(fileno(file), before) ? errno : error;
 }
 
-/* *header: of malloc. */
-static int header_text(PetscInt n, const char *const *names, const char *const *units, char **header, size_t *size)
+static PetscErrorCode HeaderText(PetscInt n, const char *const *names, const char *const *units, char **header)
 {
-  FILE *memory = open_memstream(header, size);
-  if (!memory) return errno;
-  write_header(memory, n, names, units);
-  fclose(memory);
-  return 0;
+  TextStream stream;
+
+  PetscFunctionBeginUser;
+  PetscCall(TextOpen(&stream));
+  write_header(stream.out, n, names, units);
+  PetscCall(TextClose(&stream, header));
+  PetscFunctionReturn(0);
 }
 
 PetscErrorCode HistoryOpen(RunDir *dir, PetscInt n, const char *const *names, const char *const *units)
 {
+  char *header;
   int error = 0;
 
   PetscFunctionBeginUser;
   dir->n_measures = n;
+  dir->mark = (HistoryMark){0};
+  PetscCall(HeaderText(n, names, units, &header));
   if (dir->rank == 0) {
-    char *header = NULL;
-    size_t size = 0;
     error = history_open(dir, "w");
-    if (!error) error = header_text(n, names, units, &header, &size);
     if (!error) fputs(header, dir->history);
     if (!error) error = flush(dir->history, 0);
-    dir->mark = (HistoryMark){0};
-    if (!error) mark_text(&dir->mark, header, size);
-    free(header);
+    if (!error) mark_text(&dir->mark, header, strlen(header));
   }
+  PetscCall(PetscFree(header));
   const PetscErrorCode status = RunDirAgree(dir, "history.csv", error);
   PetscFunctionReturn(status);
 }
@@ -167,28 +168,21 @@ static int keep_rows(const char *path, const char *header, PetscInt step, const 
   return file_commit(unfinished, path, error);
 }
 
-static int open_from(RunDir *dir, PetscInt n, const char *const *names, const char *const *units, PetscInt step,
-                     const HistoryMark *was, Diag *diag)
-{
-  char path[FILE_PATH], *header = NULL;
-  size_t size;
-  int error = header_text(n, names, units, &header, &size);
-  if (error) return error;
-  snprintf(path, sizeof path, "%s/history.csv", dir->path);
-  const PetscInt errors = diag_errors(diag);
-  error = keep_rows(path, header, step, was, &dir->mark, diag);
-  free(header);
-  if (!error && diag_errors(diag) == errors) error = history_open(dir, "a");
-  return error;
-}
-
 PetscErrorCode HistoryOpenFrom(RunDir *dir, PetscInt n, const char *const *names, const char *const *units,
                                PetscInt step, const HistoryMark *was, Diag *diag)
 {
+  const PetscInt errors = diag_errors(diag);
+  char path[FILE_PATH], *header;
+  int error = 0;
+
   PetscFunctionBeginUser;
   dir->n_measures = n;
-  const PetscErrorCode status =
-    RunDirAgree(dir, "history.csv", dir->rank ? 0 : open_from(dir, n, names, units, step, was, diag));
+  snprintf(path, sizeof path, "%s/history.csv", dir->path);
+  PetscCall(HeaderText(n, names, units, &header));
+  if (dir->rank == 0) error = keep_rows(path, header, step, was, &dir->mark, diag);
+  if (dir->rank == 0 && !error && diag_errors(diag) == errors) error = history_open(dir, "a");
+  PetscCall(PetscFree(header));
+  const PetscErrorCode status = RunDirAgree(dir, "history.csv", error);
   PetscFunctionReturn(status);
 }
 
@@ -223,20 +217,21 @@ static void write_row(FILE *out, PetscReal time, PetscInt step, PetscInt n, cons
 }
 
 /* Rank 0: a row, as far as the system. */
-static int add_row(RunDir *dir, PetscReal time, PetscInt step, const PetscReal *values)
+static PetscErrorCode AddRow(RunDir *dir, PetscReal time, PetscInt step, const PetscReal *values, int *error)
 {
   const off_t before = ftello(dir->history);
-  char *row = NULL;
-  size_t size;
-  FILE *memory = open_memstream(&row, &size);
-  if (!memory) return errno;
-  write_row(memory, time, step, dir->n_measures, values);
-  fclose(memory);
-  fwrite(row, 1, size, dir->history);
-  const int error = flush(dir->history, before);
-  if (!error) mark_text(&dir->mark, row, size);
-  free(row);
-  return error;
+  TextStream stream;
+  char *row;
+
+  PetscFunctionBeginUser;
+  PetscCall(TextOpen(&stream));
+  write_row(stream.out, time, step, dir->n_measures, values);
+  PetscCall(TextClose(&stream, &row));
+  fputs(row, dir->history);
+  *error = flush(dir->history, before);
+  if (!*error) mark_text(&dir->mark, row, strlen(row));
+  PetscCall(PetscFree(row));
+  PetscFunctionReturn(0);
 }
 
 PetscErrorCode HistoryWrite(RunDir *dir, PetscReal time, PetscInt step, const PetscReal *values)
@@ -246,7 +241,7 @@ PetscErrorCode HistoryWrite(RunDir *dir, PetscReal time, PetscInt step, const Pe
   PetscFunctionBeginUser;
   if (dir->rank == 0) {
     error = dir->history ? run_dir_present(dir) : EBADF;
-    if (!error) error = add_row(dir, time, step, values);
+    if (!error) PetscCall(AddRow(dir, time, step, values, &error));
   }
   const PetscErrorCode status = RunDirAgree(dir, "history.csv", error);
   PetscFunctionReturn(status);

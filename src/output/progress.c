@@ -2,7 +2,6 @@
 #include <math.h>
 #include <string.h>
 #include <sys/ioctl.h>
-#include <time.h>
 #include <unistd.h>
 #include "output/directory/run_dir_impl.h"
 
@@ -83,13 +82,6 @@ void progress_bar(const RunProgress *p, PetscReal elapsed, PetscReal left, int w
   for (int i = 0; i < parts; ++i) n += snprintf(text + n, 512 - (size_t)n, "%s", part[i]);
 }
 
-static PetscReal progress_now(void)
-{
-  struct timespec now;
-  clock_gettime(CLOCK_MONOTONIC, &now);
-  return (PetscReal)now.tv_sec + 1e-9 * (PetscReal)now.tv_nsec;
-}
-
 static int terminal_width(void)
 {
   struct winsize size;
@@ -113,7 +105,7 @@ PetscErrorCode RunDirProgress(RunDir *dir, const RunProgress *progress)
 
   PetscFunctionBeginUser;
   if (dir->rank > 0) PetscFunctionReturn(0);
-  const PetscReal wall = progress_now() - dir->start;
+  const PetscReal wall = MPI_Wtime() - dir->start;
   progress_update(&dir->clock, progress, wall);
   const PetscReal left = progress_left(&dir->clock, progress);
   progress_line(progress, left, line);

@@ -5,20 +5,10 @@
 #include <sys/stat.h>
 #include <unistd.h>
 #include <zlib.h>
+#include "output/directory/run_dir_files.h"
 
 #define SAMPLE 4096
 #define SAMPLES 64
-
-static int read_at(int fd, unsigned char *to, size_t n, off_t offset)
-{
-  while (n > 0) {
-    const ssize_t got = pread(fd, to, n, offset);
-    if (got < 0 && errno == EINTR) continue;
-    if (got <= 0) return got ? errno : EIO; /* it became shorter */
-    to += got, n -= (size_t)got, offset += got;
-  }
-  return 0;
-}
 
 /* Sample k starts at an equal share of what lies before the last one; a short file is read from end to end. */
 static int sample(int fd, PetscInt64 bytes, PetscInt64 *crc)
@@ -30,7 +20,7 @@ static int sample(int fd, PetscInt64 bytes, PetscInt64 *crc)
   for (PetscInt64 k = 0; k < SAMPLES && !error; ++k) {
     const PetscInt64 at = whole ? k * SAMPLE : (bytes - SAMPLE) * k / (SAMPLES - 1), n = PetscMin(SAMPLE, bytes - at);
     if (n <= 0) break;
-    error = read_at(fd, block, (size_t)n, (off_t)at);
+    error = file_read_at(fd, block, (size_t)n, (off_t)at);
     sum = crc32(sum, block, (uInt)n);
   }
   *crc = (PetscInt64)sum;

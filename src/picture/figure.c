@@ -214,24 +214,6 @@ PetscErrorCode FigureWrite(const Figure *figure, const char *png, Diag *diag, Pe
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode FigureConvergence(const char *title, const char *x_label, const char *y_label, PetscInt n_series,
-                                 const FigureSeries *series, PetscReal order, const char *png, Diag *diag,
-                                 PetscBool *done)
-{
-  const Figure figure = {.title = title,
-                         .x_label = x_label,
-                         .y_label = y_label,
-                         .log_x = PETSC_TRUE,
-                         .log_y = PETSC_TRUE,
-                         .n_series = n_series,
-                         .series = series,
-                         .slope = order};
-
-  PetscFunctionBeginUser;
-  PetscCall(FigureWrite(&figure, png, diag, done));
-  PetscFunctionReturn(0);
-}
-
 /* Units with a prefix of their own, powers and reciprocals stay as they are. */
 static PetscBool takes_prefix(const char *unit)
 {

@@ -45,20 +45,6 @@ PetscErrorCode PlotFrameRead(VtkFile *file, const VtkFieldInfo *field, const Plo
   PetscFunctionReturn(0);
 }
 
-/* Twice the radius that half of the points do not exceed. */
-static PetscErrorCode TypicalDistance(const PlotFrame *f, PetscReal *distance)
-{
-  PetscReal *sorted;
-
-  PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(f->n, &sorted));
-  PetscCall(PetscArraycpy(sorted, f->radius, f->n));
-  PetscCall(PetscSortReal(f->n, sorted));
-  *distance = f->n ? 2 * sorted[f->n / 2] : 0;
-  PetscCall(PetscFree(sorted));
-  PetscFunctionReturn(0);
-}
-
 /* A body is as large as its balls. */
 PetscErrorCode PlotFramesShape(PlotScene *scene)
 {
@@ -70,13 +56,14 @@ PetscErrorCode PlotFramesShape(PlotScene *scene)
   for (PetscInt k = 0; k < scene->n_frames; ++k) {
     PlotFrame *f = &scene->frames[k];
     PetscCall(PlotSpacing(scene->dim, f->n, f->x, f->radius));
-    if (k == 0) PetscCall(TypicalDistance(f, &scene->gap));
+    if (k == 0 && f->n) PetscCall(PlotMedian(f->n, f->radius, &scene->gap));
     for (PetscInt i = 0; i < f->n; ++i) {
       largest = PetscMax(largest, f->radius[i]);
       plot_project(scene, f->x + 3 * i, shown);
       memcpy(f->x + 3 * i, shown, sizeof shown);
     }
   }
+  scene->gap *= 2; /* from point to point */
   for (int d = 0; d < scene->dim; ++d) scene->box_min[d] -= 0.9 * largest, scene->box_max[d] += 0.9 * largest;
   PetscFunctionReturn(0);
 }

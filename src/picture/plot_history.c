@@ -1,5 +1,6 @@
 #include <math.h>
 #include <string.h>
+#include "base/text.h"
 #include "picture/figure.h"
 #include "output/history.h"
 #include "picture/plot.h"
@@ -23,7 +24,7 @@ static PetscErrorCode DrawMeasure(const History *history, PetscInt column, const
 {
   const PetscInt n = history->n_rows;
   PetscReal *time, *value, largest = 0;
-  char unit[64], label[256];
+  char unit[64], label[TEXT_LABEL];
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc2(n, &time, n, &value));
@@ -36,7 +37,7 @@ static PetscErrorCode DrawMeasure(const History *history, PetscInt column, const
     time[i] = at(history, i, 0);
     value[i] = factor * at(history, i, column);
   }
-  snprintf(label, sizeof label, unit[0] ? "%.150s [%s]" : "%.150s%s", history->names[column], unit);
+  text_with_unit(history->names[column], unit, label);
   const FigureSeries series = {.style = n > 40 ? FIGURE_LINE : FIGURE_LINE_MARKS, .n = n, .x = time, .y = value};
   const Figure figure = {
     .title = history->names[column], .x_label = "time [s]", .y_label = label, .n_series = 1, .series = &series};

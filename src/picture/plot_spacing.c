@@ -44,7 +44,7 @@ static PetscReal spacing_around(const Neighbours *points, const PetscReal *x, Pe
   return sum / (PetscReal)n;
 }
 
-static PetscErrorCode Median(PetscInt n, const PetscReal *values, PetscReal *median)
+PetscErrorCode PlotMedian(PetscInt n, const PetscReal *values, PetscReal *median)
 {
   PetscReal *sorted;
 
@@ -73,7 +73,7 @@ PetscErrorCode PlotSpacing(PetscInt dim, PetscInt n, const PetscReal *x, PetscRe
   const PetscReal size = choose_size(dim, n, at);
   PetscCall(NeighboursCreate(dim, n, at, 0, NULL, NULL, size, &points));
   for (PetscInt i = 0; i < n; ++i) distance[i] = neighbour_distance(&points, at + i * dim, size, k);
-  PetscCall(Median(n, distance, &median));
+  PetscCall(PlotMedian(n, distance, &median));
   if (!(median < 1e100)) median = size; /* a handful of points, without enough neighbours */
   if (!(median > 0)) median = size;     /* all in pairs at the same place */
   for (PetscInt i = 0; i < n; ++i) distance[i] = PetscMin(PetscMax(distance[i], 0.3 * median), 2 * median);

@@ -1,5 +1,6 @@
 #include "run/check.h"
 #include <stdarg.h>
+#include "base/text.h"
 
 /* What is known of each body over all ranks. */
 typedef struct {
@@ -110,21 +111,13 @@ static PetscReal estimated_memory(const Model *m, PetscInt points, PetscInt unkn
                   n = (PetscReal)PetscMax(unknowns, 2), block = (PetscReal)m->system->block;
   PetscReal per_point = 24 + 8 * nn * (1 + dim);
   for (PetscInt f = 0; f < POINT_N_REAL; ++f) per_point += 8 * (PetscReal)m->points->components[f];
-  const PetscReal value = m->c->analysis.type == ANALYSIS_DYNAMIC && !m->formulation->pressure
+  const PetscReal value = m->scheme->inertia && !m->formulation->pressure
                             ? 8 + 4
                             : 8 + 8 + 4 + 8 + 8; /* blocks in single precision, or PETSc's */
   const PetscReal matrix = (PetscReal)pairs * (block * block * value + 8);
   const PetscReal factor = m->dim == 2 ? 8 * 5 * n * PetscLog2Real(n) : 8 * 6 * PetscPowReal(n, 4.0 / 3.0);
-  const PetscReal direct = m->c->linear != LINEAR_ITERATIVE && m->c->analysis.type == ANALYSIS_STATIC ? factor : 0;
+  const PetscReal direct = m->c->linear != LINEAR_ITERATIVE && !m->scheme->inertia ? factor : 0;
   return (PetscReal)points * per_point + matrix + direct + 120 * (PetscReal)m->grid->n_nodes_global;
-}
-
-/* "(0, 0)" or "(0, 0, 0)" */
-static const char *corner(PetscInt dim, const PetscReal *x, char text[80])
-{
-  if (dim == 3) snprintf(text, 80, "(%g, %g, %g)", (double)x[0], (double)x[1], (double)x[2]);
-  else snprintf(text, 80, "(%g, %g)", (double)x[0], (double)x[1]);
-  return text;
 }
 
 /* How large clouds are, and how many are not what the rule aims at. */
@@ -154,10 +147,10 @@ static PetscErrorCode ReportSizes(Model *m, FILE *out)
   say(m, out, "# the model\n#   grid: %d cells (%s%s%s), %d nodes, from %s to %s m\n", (int)m->grid->n_cells_global,
       cells[m->grid->type].name, grid_is_mixed(m->grid) ? ", " : "",
       grid_is_mixed(m->grid) ? cells[m->grid->first_type].name : "", (int)m->grid->n_nodes_global,
-      corner(m->dim, m->grid->min, from), corner(m->dim, m->grid->max, to));
+      text_position(m->dim, m->grid->min, from), text_position(m->dim, m->grid->max, to));
   say(m, out, "#   points: %d; unknowns at the start: %d\n", (int)points, (int)unknowns);
   say(m, out, "#   memory: about %.3g MB\n", (double)estimated_memory(m, points, unknowns, all_pairs) / 1e6);
-  if (m->c->analysis.type == ANALYSIS_DYNAMIC)
+  if (m->scheme->inertia)
     say(m, out, "#   waves: %g m/s, %.3g cells in a step of %g s\n", (double)m->courant_speed,
         (double)(m->courant_speed * m->control.next / m->grid->smallest), (double)m->control.next);
   PetscFunctionReturn(0);

@@ -1,15 +1,8 @@
 /* What a run has lost on the way is said: in the log when it happens, in the summary, and as warnings at the end. */
 #include "run/losses.h"
+#include "base/text.h"
 
 #define TRANSFER_ALLOWED 0.05 /* share of the energy that came in: about what granular flows lose on usual grids */
-
-/* "(1, 2) m" */
-static const char *place(PetscInt dim, const PetscReal *x, char text[80])
-{
-  if (dim == 3) snprintf(text, 80, "(%.6g, %.6g, %.6g) m", (double)x[0], (double)x[1], (double)x[2]);
-  else snprintf(text, 80, "(%.6g, %.6g) m", (double)x[0], (double)x[1]);
-  return text;
-}
 
 /* Has a count that grew by `more` at least doubled, or passed a power of two? So a thousand points take ten lines, not
  * a thousand. */
@@ -31,16 +24,16 @@ static PetscErrorCode LogOutside(const Model *m, RunDir *dir, const StepReport *
     PetscCall(
       RunDirLog(dir,
                 "outside = step %d time = %.9g removed = %d since the start = %.0f mass = %.6g kg, the first of the "
-                "step is point %lld at %s",
+                "step is point %lld at %s m",
                 (int)m->step, (double)m->time, (int)report->removed, (double)o->removed, (double)o->mass,
-                (long long)first->id, place(m->dim, first->x, at)));
+                (long long)first->id, text_position(m->dim, first->x, at)));
   if (is_worth_a_line(o->held, (PetscReal)report->held))
     PetscCall(
       RunDirLog(dir,
                 "outside = step %d time = %.9g kept on the boundary = %d times since the start = %.0f, the first of "
-                "the step is point %lld at %s",
+                "the step is point %lld at %s m",
                 (int)m->step, (double)m->time, (int)report->held, (double)o->held, (long long)first->id,
-                place(m->dim, first->x, at)));
+                text_position(m->dim, first->x, at)));
   PetscFunctionReturn(0);
 }
 
@@ -54,17 +47,17 @@ PetscErrorCode LossesLogStep(Model *m, RunDir *dir, const StepReport *report)
     if (m->memory[k].ended > 0 && m->memory[k].ended == m->time)
       PetscCall(RunDirLog(
         dir,
-        "ended = %s step %d time = %.9g: no node of the grid carries its tracer any more, last at %s; nan from "
+        "ended = %s step %d time = %.9g: no node of the grid carries its tracer any more, last at %s m; nan from "
         "now on",
-        m->c->measures[k].name, (int)m->step, (double)m->time, place(m->dim, m->memory[k].where, at)));
+        m->c->measures[k].name, (int)m->step, (double)m->time, text_position(m->dim, m->memory[k].where, at)));
   for (PetscInt k = 0; k < m->c->n_loads; ++k) {
     const LoadMemory *l = &m->load_memory[k];
     if (l->ended > 0 && l->ended == m->time)
       PetscCall(
         RunDirLog(dir,
-                  "ended = load %d step %d time = %.9g: the material has left %.0f of its carriers behind, about %s; "
+                  "ended = load %d step %d time = %.9g: the material has left %.0f of its carriers behind, about %s m; "
                   "their force so far is (%.6g, %.6g, %.6g) N at amplitude 1",
-                  (int)k, (int)m->step, (double)m->time, (double)l->carriers, place(m->dim, l->where, at),
+                  (int)k, (int)m->step, (double)m->time, (double)l->carriers, text_position(m->dim, l->where, at),
                   (double)l->force[0], (double)l->force[1], (double)l->force[2]));
   }
   PetscCall(LogOutside(m, dir, report));
@@ -125,17 +118,18 @@ static void warn_of_followers(const Model *m, Diag *diag)
     const MeasureMemory *memory = &m->memory[k];
     if (memory->ended <= 0) continue;
     snprintf(path, sizeof path, "measures.%s.of.tracer", m->c->measures[k].name);
-    diag_warning(diag, path, "'%s' is empty (nan) from t = %g s on: no node of the grid carries its tracer, last at %s",
-                 m->c->measures[k].name, (double)memory->ended, place(m->dim, memory->where, at));
+    diag_warning(diag, path,
+                 "'%s' is empty (nan) from t = %g s on: no node of the grid carries its tracer, last at %s m",
+                 m->c->measures[k].name, (double)memory->ended, text_position(m->dim, memory->where, at));
     diag_hint(diag, "a tracer ends where the material around it has gone, or a cell beyond the edge of the grid");
   }
   for (PetscInt k = 0; k < m->c->n_loads; ++k)
     if (m->load_memory[k].ended > 0)
       diag_warning(
         diag, "loads",
-        "the material has left %.0f carriers of load %d behind, the last at t = %g s about %s: their force is gone",
+        "the material has left %.0f carriers of load %d behind, the last at t = %g s about %s m: their force is gone",
         (double)m->load_memory[k].carriers, (int)k, (double)m->load_memory[k].ended,
-        place(m->dim, m->load_memory[k].where, at));
+        text_position(m->dim, m->load_memory[k].where, at));
 }
 
 PetscErrorCode LossesWarn(const Model *m, const PetscReal *values, Diag *diag)

@@ -126,6 +126,16 @@ static PetscErrorCode TakeFrom(const Verification *v, const char *folder, Verify
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode VerifyShareRow(const Verification *v, VerifyRow *r)
+{
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Bcast(r->measures, (PetscMPIInt)r->n_measures, MPIU_REAL, 0, v->comm));
+  PetscCallMPI(MPI_Bcast(&r->summary, sizeof r->summary, MPI_BYTE, 0, v->comm));
+  PetscCallMPI(MPI_Bcast(r->sources, sizeof r->sources, MPI_CHAR, 0, v->comm));
+  r->seconds = r->summary.seconds;
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode VerifyTakeOver(const Verification *v, VerifyRow *r, const Case *c, PetscBool *found)
 {
   PetscFunctionBeginUser;
@@ -136,10 +146,7 @@ PetscErrorCode VerifyTakeOver(const Verification *v, VerifyRow *r, const Case *c
     if (*found && other != r) PetscCall(PetscStrncpy(r->folder, other->folder, sizeof r->folder));
   }
   if (!*found) PetscFunctionReturn(0);
-  PetscCallMPI(MPI_Bcast(r->measures, (PetscMPIInt)r->n_measures, MPIU_REAL, 0, v->comm));
-  PetscCallMPI(MPI_Bcast(&r->summary, sizeof r->summary, MPI_BYTE, 0, v->comm));
-  PetscCallMPI(MPI_Bcast(r->sources, sizeof r->sources, MPI_CHAR, 0, v->comm));
-  r->seconds = r->summary.seconds;
+  PetscCall(VerifyShareRow(v, r));
   r->result = RUN_DONE;
   r->ran = r->taken = PETSC_TRUE;
   PetscFunctionReturn(0);

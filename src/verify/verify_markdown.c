@@ -1,7 +1,7 @@
 /* The tables as Markdown, for the directory of the results and for docs/verification.md. */
-#include <stdlib.h>
 #include <string.h>
 #include <time.h>
+#include "base/text.h"
 #include "verify/verify_private.h"
 #include "talus_version.h"
 
@@ -22,9 +22,10 @@ static void write_head(FILE *out, const VerifyRow *r)
 {
   const StudySpec *study = r->study;
   const PetscBool errors = verify_has_errors(study), agree = study->n_agree > 0;
-  fprintf(out, "| series | %s%s%s%s | reference%s%s%s | value | off by |", study->sweep.symbol,
-          study->sweep.unit ? " [" : "", study->sweep.unit ? study->sweep.unit : "", study->sweep.unit ? "]" : "",
-          r->unit[0] ? " [" : "", r->unit, r->unit[0] ? "]" : "");
+  char variable[TEXT_LABEL], reference[TEXT_LABEL];
+  fprintf(out, "| series | %s | %s | value | off by |",
+          text_with_unit(study->sweep.symbol, study->sweep.unit, variable),
+          text_with_unit("reference", r->unit, reference));
   if (agree) fputs(" apart |", out);
   if (errors) fputs(" error | order |", out);
   fputs(" steps | Newton | s |", out);
@@ -163,15 +164,11 @@ PetscBool verify_is_table(const char *folder)
 
 PetscErrorCode VerifyMarkdown(const Verification *v, PetscBool figures, char **text)
 {
-  char *buffer = NULL;
-  size_t size;
-  FILE *out = open_memstream(&buffer, &size);
+  TextStream stream;
 
   PetscFunctionBeginUser;
-  PetscCheck(out, PETSC_COMM_SELF, PETSC_ERR_MEM, "no memory for a text");
-  write_text(out, v, figures);
-  PetscCheck(fclose(out) == 0, PETSC_COMM_SELF, PETSC_ERR_MEM, "no memory for a text");
-  PetscCall(PetscStrallocpy(buffer, text));
-  free(buffer);
+  PetscCall(TextOpen(&stream));
+  write_text(stream.out, v, figures);
+  PetscCall(TextClose(&stream, text));
   PetscFunctionReturn(0);
 }

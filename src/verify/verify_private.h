@@ -63,6 +63,9 @@ PetscErrorCode VerifyIsCase(const Case *c, const char *text, PetscBool *is);
  * there on as many ranks. */
 PetscErrorCode VerifyTakeOver(const Verification *v, VerifyRow *r, const Case *c, PetscBool *found);
 
+/* Collective. What rank 0 has read of the run, to all. */
+PetscErrorCode VerifyShareRow(const Verification *v, VerifyRow *r);
+
 /* verify_judge.c: compare rows[k], which has run, with its reference and with the rows before it. */
 void verify_judge(VerifyRow *rows, PetscInt k);
 /* Does the study's sweep have a direction in which errors should fall: are errors and orders to be shown? */

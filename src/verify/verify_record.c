@@ -3,6 +3,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include "base/text.h"
 #include "output/directory/run_dir_files.h"
 #include "verify/verify_private.h"
 
@@ -39,20 +40,19 @@ static void write_merged(FILE *out, const char *text, const char *begin, const c
 
 PetscErrorCode VerifyRecord(const char *file, const char *name, const char *section, int *error)
 {
-  char begin[300], end[300], *merged = NULL, *text = read_text(file);
-  size_t size;
+  char begin[300], end[300], *merged, *text = read_text(file);
+  TextStream stream;
 
   PetscFunctionBeginUser;
   *error = text ? 0 : errno;
   if (!text) PetscFunctionReturn(0);
   PetscCall(PetscSNPrintf(begin, sizeof begin, "<!-- begin %s -->", name));
   PetscCall(PetscSNPrintf(end, sizeof end, "<!-- end %s -->", name));
-  FILE *out = open_memstream(&merged, &size);
-  PetscCheck(out, PETSC_COMM_SELF, PETSC_ERR_MEM, "no memory for a text");
-  write_merged(out, text, begin, end, section);
-  PetscCheck(fclose(out) == 0, PETSC_COMM_SELF, PETSC_ERR_MEM, "no memory for a text");
+  PetscCall(TextOpen(&stream));
+  write_merged(stream.out, text, begin, end, section);
+  PetscCall(TextClose(&stream, &merged));
   *error = file_write_text(file, merged);
-  free(merged);
+  PetscCall(PetscFree(merged));
   free(text);
   PetscFunctionReturn(0);
 }

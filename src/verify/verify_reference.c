@@ -1,16 +1,8 @@
 /* The language of reference.yaml, read through the same tables as a case file. */
 #include "verify/verify_reference.h"
-#include <math.h>
-#include <string.h>
 #include "input/case_file.h"
-#include "input/schema/schema.h"
+#include "input/schema/schema_keys.h"
 #include "verify/verify_settings.h"
-
-#define AT(type, member) .offset = offsetof(type, member)
-#define GIVEN(type, member) .present = 1 + offsetof(type, member)
-#define ABOVE(low) .bounded = PETSC_TRUE, .min = (low), .min_open = PETSC_TRUE, .max = INFINITY, .max_open = PETSC_TRUE
-#define AT_LEAST(low) .bounded = PETSC_TRUE, .min = (low), .max = INFINITY, .max_open = PETSC_TRUE
-#define REQUIRED .required = PETSC_TRUE
 
 const char *const confidence_words[] = {"", "given", "recovered", "verified", "assumed"};
 const char *const report_numbers[] = {"iterations", "iterations-per-step", "steps", "halvings", "seconds", NULL};
@@ -31,80 +23,55 @@ static const SchemaWord figures[] = {
   {NULL, 0, NULL},
 };
 
-#define SOURCE_ENTRIES(owner)                                                                          \
-  {.key = "source", .type = TYPE_TEXT, .help = "where the numbers come from", AT(owner, source.text)}, \
-  {                                                                                                    \
-    .key = "confidence", .type = TYPE_WORD, .words = confidences, .help = "how sure they are",         \
-    AT(owner, source.confidence)                                                                       \
-  }
+#define SOURCE_KEYS(owner)                                                          \
+  KEY("source", TEXT, NULL, "where the numbers come from", AT(owner, source.text)), \
+    KEY("confidence", WORD, NULL, "how sure they are", .words = confidences, AT(owner, source.confidence))
+
+#define MOST_SETTINGS 16
 
 static PetscErrorCode OpenSettings(SchemaReader *r, const YamlNode *mapping, void *target)
 {
   PetscFunctionBeginUser;
-  if (mapping->n > VERIFY_MAX_SETTINGS / 4)
-    SchemaError(r, mapping, "more than %d values are changed here", VERIFY_MAX_SETTINGS / 4);
-  PetscCall(SettingsRead(mapping, target));
+  if (mapping->n > MOST_SETTINGS) SchemaError(r, mapping, "more than %d values are changed here", MOST_SETTINGS);
+  PetscCall(SettingListRead(mapping, target));
   PetscFunctionReturn(0);
 }
 
-static const SchemaEntry settings_entries[] = {{.key = NULL}};
+static PetscErrorCode ClearSettings(void *target)
+{
+  PetscFunctionBeginUser;
+  PetscCall(SettingListClear(target));
+  PetscFunctionReturn(0);
+}
+
+static const SchemaEntry no_entries[] = {{.key = NULL}};
 static const SchemaTable settings_table = {.name = "set",
                                            .help = "Values of the case file to change.",
-                                           .entries = settings_entries,
+                                           .entries = no_entries,
                                            .open = OpenSettings,
-                                           .size = sizeof(Settings)};
-#define SET_ENTRY(owner)                                                                                     \
-  {                                                                                                          \
-    .key = "set", .type = TYPE_TABLE, .table = &settings_table, .help = "values of the case file to change", \
-    AT(owner, set)                                                                                           \
-  }
-
-static PetscErrorCode OpenSeriesSettings(SchemaReader *r, const YamlNode *mapping, void *target)
-{
-  SeriesSettings *own = target;
-
-  PetscFunctionBeginUser;
-  PetscCall(OpenSettings(r, mapping, &own->set));
-  PetscFunctionReturn(0);
-}
-
-static const SchemaTable series_settings_table = {.name = "sets",
-                                                  .help = "Values of the case file to change for this series.",
-                                                  .entries = settings_entries,
-                                                  .open = OpenSeriesSettings,
-                                                  .size = sizeof(SeriesSettings)};
+                                           .clear = ClearSettings,
+                                           .size = sizeof(SettingList)};
+#define SET_KEY(owner) \
+  KEY("set", TABLE, NULL, "values of the case file to change", .table = &settings_table, AT(owner, set))
 
 static const SchemaEntry sweep_entries[] = {
-  {.key = "name", .type = TYPE_TEXT, .help = "what varies from row to row, in words", REQUIRED, AT(SweepSpec, name)},
-  {.key = "symbol",
-   .type = TYPE_NAME,
-   .help = "its symbol; $symbol stands for the value in `set`",
-   REQUIRED,
-   AT(SweepSpec, symbol)},
-  {.key = "unit", .type = TYPE_TEXT, .help = "its unit", AT(SweepSpec, unit)},
-  SET_ENTRY(SweepSpec),
+  KEY("name", TEXT, NULL, "what varies from row to row, in words", REQUIRED, AT(SweepSpec, name)),
+  KEY("symbol", NAME, NULL, "its symbol; $symbol stands for the value in `set`", REQUIRED, AT(SweepSpec, symbol)),
+  KEY("unit", TEXT, NULL, "its unit", AT(SweepSpec, unit)),
+  SET_KEY(SweepSpec),
   {.key = NULL},
 };
 static const SchemaTable sweep_table = {
   .name = "sweep", .help = "The variable of the rows.", .entries = sweep_entries, .size = sizeof(SweepSpec)};
 
 static const SchemaEntry series_entries[] = {
-  {.key = "title", .type = TYPE_TEXT, .help = "in pictures; default: its name", AT(SeriesSpec, title)},
-  SET_ENTRY(SeriesSpec),
-  {.key = "full", .type = TYPE_BOOLEAN, .fallback = "false", .help = "only with --full", AT(SeriesSpec, full)},
-  {.key = "time-scale",
-   .type = TYPE_NUMBER,
-   .fallback = "1",
-   .help = "unit of time in a picture of its history, s",
-   ABOVE(0),
-   AT(SeriesSpec, time_scale)},
-  {.key = "tolerance",
-   .type = TYPE_NUMBER,
-   .help = "relative",
-   AT_LEAST(0),
-   AT(SeriesSpec, tolerance),
-   GIVEN(SeriesSpec, has_tolerance)},
-  SOURCE_ENTRIES(SeriesSpec),
+  KEY("title", TEXT, NULL, "in pictures; default: its name", AT(SeriesSpec, title)),
+  SET_KEY(SeriesSpec),
+  KEY("full", BOOLEAN, NULL, "only with --full", .fallback = "false", AT(SeriesSpec, full)),
+  KEY("time-scale", NUMBER, NULL, "unit of time in a picture of its history, s", .fallback = "1", ABOVE(0),
+      AT(SeriesSpec, time_scale)),
+  KEY("tolerance", NUMBER, NULL, "relative", AT_LEAST(0), AT(SeriesSpec, tolerance), GIVEN(SeriesSpec, has_tolerance)),
+  SOURCE_KEYS(SeriesSpec),
   {.key = NULL},
 };
 static const SchemaTable series_table = {
@@ -122,32 +89,16 @@ static PetscErrorCode CheckRow(SchemaReader *r, const YamlNode *mapping, void *t
 }
 
 static const SchemaEntry row_entries[] = {
-  {.key = "at", .type = TYPE_TEXT, .help = "value of the variable", REQUIRED, AT(RowSpec, at)},
-  {.key = "full", .type = TYPE_BOOLEAN, .fallback = "false", .help = "only with --full", AT(RowSpec, full)},
-  SET_ENTRY(RowSpec),
-  {.key = "sets",
-   .type = TYPE_NAMED,
-   .table = &series_settings_table,
-   .help = "values of the case file to change for one series alone",
-   AT(RowSpec, sets),
-   .count = offsetof(RowSpec, n_sets)},
-  {.key = "reference",
-   .type = TYPE_NUMBER,
-   .help = "what every series must give",
-   AT(RowSpec, reference),
-   GIVEN(RowSpec, has_reference)},
-  {.key = "references",
-   .type = TYPE_NUMBERS,
-   .help = "what each series must give",
-   AT(RowSpec, references),
-   .count = offsetof(RowSpec, n_references)},
-  {.key = "tolerance",
-   .type = TYPE_NUMBER,
-   .help = "relative",
-   AT_LEAST(0),
-   AT(RowSpec, tolerance),
-   GIVEN(RowSpec, has_tolerance)},
-  SOURCE_ENTRIES(RowSpec),
+  KEY("at", TEXT, NULL, "value of the variable", REQUIRED, AT(RowSpec, at)),
+  KEY("full", BOOLEAN, NULL, "only with --full", .fallback = "false", AT(RowSpec, full)),
+  SET_KEY(RowSpec),
+  KEY("sets", NAMED, NULL, "values of the case file to change for one series alone", .table = &settings_table,
+      AT(RowSpec, sets), .count = offsetof(RowSpec, n_sets)),
+  KEY("reference", NUMBER, NULL, "what every series must give", AT(RowSpec, reference), GIVEN(RowSpec, has_reference)),
+  KEY("references", NUMBERS, NULL, "what each series must give", AT(RowSpec, references),
+      .count = offsetof(RowSpec, n_references)),
+  KEY("tolerance", NUMBER, NULL, "relative", AT_LEAST(0), AT(RowSpec, tolerance), GIVEN(RowSpec, has_tolerance)),
+  SOURCE_KEYS(RowSpec),
   {.key = NULL},
 };
 static const SchemaGroup row_groups[] = {{GROUP_AT_MOST_ONE, {"reference", "references", NULL}}, {GROUP_NONE, {NULL}}};
@@ -159,35 +110,15 @@ static const SchemaTable row_table = {.name = "row",
                                       .size = sizeof(RowSpec)};
 
 static const SchemaEntry exact_entries[] = {
-  {.key = "value",
-   .type = TYPE_NUMBER,
-   .help = "the limit of every series",
-   AT(ExactSpec, value),
-   GIVEN(ExactSpec, has_value)},
-  {.key = "values",
-   .type = TYPE_NUMBERS,
-   .help = "the limit of each series",
-   AT(ExactSpec, values),
-   .count = offsetof(ExactSpec, n_values)},
-  SOURCE_ENTRIES(ExactSpec),
-  {.key = "order",
-   .type = TYPE_NUMBER,
-   .help = "order of convergence expected",
-   ABOVE(0),
-   .with = "between",
-   AT(ExactSpec, order)},
-  {.key = "order-tolerance",
-   .type = TYPE_NUMBER,
-   .fallback = "0.1",
-   .help = "how far the observed order may be off",
-   ABOVE(0),
-   AT(ExactSpec, order_tolerance)},
-  {.key = "between",
-   .type = TYPE_INTERVAL,
-   .help = "rows [smallest, largest] between which the order is asked for",
-   .with = "order",
-   AT(ExactSpec, from),
-   .second = offsetof(ExactSpec, to)},
+  KEY("value", NUMBER, NULL, "the limit of every series", AT(ExactSpec, value), GIVEN(ExactSpec, has_value)),
+  KEY("values", NUMBERS, NULL, "the limit of each series", AT(ExactSpec, values),
+      .count = offsetof(ExactSpec, n_values)),
+  SOURCE_KEYS(ExactSpec),
+  KEY("order", NUMBER, NULL, "order of convergence expected", ABOVE(0), .with = "between", AT(ExactSpec, order)),
+  KEY("order-tolerance", NUMBER, NULL, "how far the observed order may be off", .fallback = "0.1", ABOVE(0),
+      AT(ExactSpec, order_tolerance)),
+  KEY("between", INTERVAL, NULL, "rows [smallest, largest] between which the order is asked for", .with = "order",
+      AT(ExactSpec, from), .second = offsetof(ExactSpec, to)),
   {.key = NULL},
 };
 static const SchemaGroup exact_groups[] = {{GROUP_ONE, {"value", "values", NULL}}, {GROUP_NONE, {NULL}}};
@@ -198,9 +129,9 @@ static const SchemaTable exact_table = {.name = "exact",
                                         .size = sizeof(ExactSpec)};
 
 static const SchemaEntry agree_entries[] = {
-  {.key = "series", .type = TYPE_NAME, .help = "the series compared", REQUIRED, AT(AgreeSpec, series)},
-  {.key = "with", .type = TYPE_NAME, .help = "an earlier series", REQUIRED, AT(AgreeSpec, with)},
-  {.key = "tolerance", .type = TYPE_NUMBER, .help = "relative", REQUIRED, ABOVE(0), AT(AgreeSpec, tolerance)},
+  KEY("series", NAME, NULL, "the series compared", REQUIRED, AT(AgreeSpec, series)),
+  KEY("with", NAME, NULL, "an earlier series", REQUIRED, AT(AgreeSpec, with)),
+  KEY("tolerance", NUMBER, NULL, "relative", REQUIRED, ABOVE(0), AT(AgreeSpec, tolerance)),
   {.key = NULL},
 };
 static const SchemaTable agree_table = {
@@ -301,104 +232,43 @@ static PetscErrorCode CheckStudy(SchemaReader *r, const YamlNode *mapping, void 
 }
 
 static const SchemaEntry course_entries[] = {
-  {.key = "constant", .type = TYPE_NUMBER, .fallback = "0", .help = "at t = 0", AT(CourseSpec, constant)},
-  {.key = "linear", .type = TYPE_NUMBER, .fallback = "0", .help = "times t", AT(CourseSpec, linear)},
-  {.key = "quadratic", .type = TYPE_NUMBER, .fallback = "0", .help = "times t^2", AT(CourseSpec, quadratic)},
-  {.key = "every",
-   .type = TYPE_NUMBER,
-   .fallback = "0",
-   .help = "compare at multiples of this time, s; 0: at every row of the history",
-   AT_LEAST(0),
-   AT(CourseSpec, every)},
-  {.key = "factor", .type = TYPE_NUMBER, .fallback = "1", .help = "times the distance", AT(CourseSpec, factor)},
+  KEY("constant", NUMBER, NULL, "at t = 0", .fallback = "0", AT(CourseSpec, constant)),
+  KEY("linear", NUMBER, NULL, "times t", .fallback = "0", AT(CourseSpec, linear)),
+  KEY("quadratic", NUMBER, NULL, "times t^2", .fallback = "0", AT(CourseSpec, quadratic)),
+  KEY("every", NUMBER, NULL, "compare at multiples of this time, s; 0: at every row of the history", .fallback = "0",
+      AT_LEAST(0), AT(CourseSpec, every)),
+  KEY("factor", NUMBER, NULL, "times the distance", .fallback = "1", AT(CourseSpec, factor)),
   {.key = NULL},
 };
 static const SchemaTable course_table = {
   .name = "course", .help = "A course in time.", .entries = course_entries, .size = sizeof(CourseSpec)};
 
 static const SchemaEntry study_entries[] = {
-  {.key = "title", .type = TYPE_TEXT, .help = "what the study shows", REQUIRED, AT(StudySpec, title)},
-  {.key = "measure",
-   .type = TYPE_NAME,
-   .help = "the measure of the case that is compared, at the end of the run",
-   REQUIRED,
-   AT(StudySpec, measure)},
-  {.key = "course",
-   .type = TYPE_TABLE,
-   .table = &course_table,
-   .help = "the value is the root of the sum of squared distances of the history from this course",
-   AT(StudySpec, course),
-   GIVEN(StudySpec, has_course)},
-  {.key = "moments",
-   .type = TYPE_BOOLEAN,
-   .fallback = "false",
-   .help = "the rows are moments, in s, of one run: the value is the measure then",
-   AT(StudySpec, moments)},
-  {.key = "sweep",
-   .type = TYPE_TABLE,
-   .table = &sweep_table,
-   .help = "the variable of the rows",
-   REQUIRED,
-   AT(StudySpec, sweep)},
-  {.key = "series",
-   .type = TYPE_NAMED,
-   .table = &series_table,
-   .help = "the columns of results",
-   REQUIRED,
-   AT(StudySpec, series),
-   .count = offsetof(StudySpec, n_series)},
-  {.key = "rows",
-   .type = TYPE_LIST,
-   .table = &row_table,
-   .help = "the rows",
-   REQUIRED,
-   AT(StudySpec, rows),
-   .count = offsetof(StudySpec, n_rows)},
-  {.key = "tolerance",
-   .type = TYPE_NUMBER,
-   .help = "of the references, relative",
-   REQUIRED,
-   AT_LEAST(0),
-   AT(StudySpec, tolerance)},
-  {.key = "absolute",
-   .type = TYPE_NUMBER,
-   .fallback = "0",
-   .help = "added to it, in the unit of the measure",
-   AT_LEAST(0),
-   AT(StudySpec, absolute)},
-  {.key = "at-most",
-   .type = TYPE_BOOLEAN,
-   .fallback = "false",
-   .help = "the references are upper bounds",
-   AT(StudySpec, at_most)},
-  {.key = "pace",
-   .type = TYPE_NAME,
-   .help = "the series with whose run time that of the others is compared",
-   AT(StudySpec, pace)},
-  SOURCE_ENTRIES(StudySpec),
-  {.key = "exact",
-   .type = TYPE_TABLE,
-   .table = &exact_table,
-   .help = "what the values tend to",
-   AT(StudySpec, exact),
-   GIVEN(StudySpec, has_exact)},
-  {.key = "agree",
-   .type = TYPE_LIST,
-   .table = &agree_table,
-   .help = "series that must agree",
-   AT(StudySpec, agree),
-   .count = offsetof(StudySpec, n_agree)},
-  {.key = "limits",
-   .type = TYPE_NUMBERS,
-   .help = "what the numbers of a run may not exceed",
-   AT(StudySpec, limits),
-   .count = offsetof(StudySpec, n_limits)},
-  {.key = "figure",
-   .type = TYPE_WORD,
-   .words = figures,
-   .fallback = "none",
-   .help = "picture of the study",
-   AT(StudySpec, figure)},
+  KEY("title", TEXT, NULL, "what the study shows", REQUIRED, AT(StudySpec, title)),
+  KEY("measure", NAME, NULL, "the measure of the case that is compared, at the end of the run", REQUIRED,
+      AT(StudySpec, measure)),
+  KEY("course", TABLE, NULL, "the value is the root of the sum of squared distances of the history from this course",
+      .table = &course_table, AT(StudySpec, course), GIVEN(StudySpec, has_course)),
+  KEY("moments", BOOLEAN, NULL, "the rows are moments, in s, of one run: the value is the measure then",
+      .fallback = "false", AT(StudySpec, moments)),
+  KEY("sweep", TABLE, NULL, "the variable of the rows", .table = &sweep_table, REQUIRED, AT(StudySpec, sweep)),
+  KEY("series", NAMED, NULL, "the columns of results", .table = &series_table, REQUIRED, AT(StudySpec, series),
+      .count = offsetof(StudySpec, n_series)),
+  KEY("rows", LIST, NULL, "the rows", .table = &row_table, REQUIRED, AT(StudySpec, rows),
+      .count = offsetof(StudySpec, n_rows)),
+  KEY("tolerance", NUMBER, NULL, "of the references, relative", REQUIRED, AT_LEAST(0), AT(StudySpec, tolerance)),
+  KEY("absolute", NUMBER, NULL, "added to it, in the unit of the measure", .fallback = "0", AT_LEAST(0),
+      AT(StudySpec, absolute)),
+  KEY("at-most", BOOLEAN, NULL, "the references are upper bounds", .fallback = "false", AT(StudySpec, at_most)),
+  KEY("pace", NAME, NULL, "the series with whose run time that of the others is compared", AT(StudySpec, pace)),
+  SOURCE_KEYS(StudySpec),
+  KEY("exact", TABLE, NULL, "what the values tend to", .table = &exact_table, AT(StudySpec, exact),
+      GIVEN(StudySpec, has_exact)),
+  KEY("agree", LIST, NULL, "series that must agree", .table = &agree_table, AT(StudySpec, agree),
+      .count = offsetof(StudySpec, n_agree)),
+  KEY("limits", NUMBERS, NULL, "what the numbers of a run may not exceed", AT(StudySpec, limits),
+      .count = offsetof(StudySpec, n_limits)),
+  KEY("figure", WORD, NULL, "picture of the study", .words = figures, .fallback = "none", AT(StudySpec, figure)),
   {.key = NULL},
 };
 static const SchemaTable study_table = {.name = "study",
@@ -408,14 +278,9 @@ static const SchemaTable study_table = {.name = "study",
                                         .size = sizeof(StudySpec)};
 
 static const SchemaEntry reference_entries[] = {
-  {.key = "title", .type = TYPE_TEXT, .help = "the benchmark", REQUIRED, AT(Reference, title)},
-  {.key = "studies",
-   .type = TYPE_NAMED,
-   .table = &study_table,
-   .help = "tables by name",
-   REQUIRED,
-   AT(Reference, studies),
-   .count = offsetof(Reference, n_studies)},
+  KEY("title", TEXT, NULL, "the benchmark", REQUIRED, AT(Reference, title)),
+  KEY("studies", NAMED, NULL, "tables by name", .table = &study_table, REQUIRED, AT(Reference, studies),
+      .count = offsetof(Reference, n_studies)),
   {.key = NULL},
 };
 static const SchemaTable reference_table = {
@@ -442,5 +307,15 @@ PetscErrorCode ReferenceRead(MPI_Comm comm, const char *file, Diag *diag, Refere
     PetscCall(SchemaReadTable(&reader, &reference_table, document->root, *reference));
   }
   if (diag_errors(diag) > before) PetscCall(ReferenceDestroy(reference));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ReferenceDestroy(Reference **reference)
+{
+  PetscFunctionBeginUser;
+  if (!*reference) PetscFunctionReturn(0);
+  PetscCall(SchemaClear(&reference_table, *reference));
+  PetscCall(YamlDestroy(&(*reference)->document));
+  PetscCall(PetscFree(*reference));
   PetscFunctionReturn(0);
 }

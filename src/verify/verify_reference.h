@@ -14,11 +14,12 @@ typedef enum {
 } Confidence;
 extern const char *const confidence_words[];
 
-/* Values of the case file to change, as --set would: path and value. */
+/* Values of the case file to change, as arguments of --set. */
 typedef struct {
+  char *series; /* for this one alone; NULL: for all */
   PetscInt n;
-  char **path, **value;
-} Settings;
+  char **text; /* "path=value" */
+} SettingList;
 
 typedef struct {
   char *text; /* NULL: see the series, then the study */
@@ -28,7 +29,7 @@ typedef struct {
 typedef struct {
   char *name;
   char *title; /* in pictures; NULL: the name */
-  Settings set;
+  SettingList set;
   PetscBool full;       /* only with --full */
   PetscReal time_scale; /* s, unit of time in a picture of its history */
   PetscBool has_tolerance;
@@ -36,18 +37,12 @@ typedef struct {
   Source source;
 } SeriesSpec;
 
-/* What a row changes for one series alone. */
-typedef struct {
-  char *series;
-  Settings set;
-} SeriesSettings;
-
 typedef struct {
   char *at;    /* value of the sweep's variable, as written */
   PetscReal x; /* the same as a number, NaN if it is none */
-  Settings set;
+  SettingList set;
   PetscInt n_sets; /* by series */
-  SeriesSettings *sets;
+  SettingList *sets;
   PetscBool full;
   PetscBool has_reference; /* for every series */
   PetscReal reference;
@@ -76,7 +71,7 @@ typedef struct {
 
 typedef struct {
   char *name, *symbol, *unit;
-  Settings set; /* $symbol stands for the value */
+  SettingList set; /* $symbol stands for the value */
 } SweepSpec;
 
 /* A course in time, constant + linear t + quadratic t^2, from which the history of a measure is compared: at its rows or, if every > 0, at
@@ -131,8 +126,6 @@ extern const char *const report_numbers[];
 PetscErrorCode ReferenceRead(MPI_Comm comm, const char *file, Diag *diag, Reference **reference);
 PetscErrorCode ReferenceDestroy(Reference **reference);
 
-/* Number of this name; NaN if there is none. */
-PetscReal named_value(PetscInt n, const NamedValue *values, const char *name);
 /* What a row must give in a series; NaN if nothing is said. */
 PetscReal reference_value(const RowSpec *row, const SeriesSpec *series);
 PetscReal reference_exact(const StudySpec *study, const SeriesSpec *series);

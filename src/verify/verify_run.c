@@ -66,23 +66,9 @@ static PetscErrorCode ReadResults(Verification *v, PetscReal end, Diag *diag)
     VerifyRow *r = &v->rows[k];
     const PetscInt column = history_column(&history, r->study->measure);
     r->summary = summary;
-    r->seconds = summary.seconds;
     r->measures[r->measure] = column < 0 ? NAN : last[column];
   }
   PetscCall(HistoryFree(&history));
-  PetscFunctionReturn(0);
-}
-
-/* From the rank that reads to all. */
-static PetscErrorCode Share(Verification *v)
-{
-  PetscFunctionBeginUser;
-  for (PetscInt k = 0; k < v->n; ++k) {
-    VerifyRow *r = &v->rows[k];
-    PetscCallMPI(MPI_Bcast(&r->measures[r->measure], 1, MPIU_REAL, 0, v->comm));
-    PetscCallMPI(MPI_Bcast(&r->summary, sizeof r->summary, MPI_BYTE, 0, v->comm));
-    PetscCallMPI(MPI_Bcast(&r->seconds, 1, MPIU_REAL, 0, v->comm));
-  }
   PetscFunctionReturn(0);
 }
 
@@ -91,6 +77,7 @@ static PetscErrorCode Judge(Verification *v, Diag *diag)
   PetscFunctionBeginUser;
   for (PetscInt k = 0; k < v->n; ++k) {
     VerifyRow *r = &v->rows[k];
+    PetscCall(VerifyShareRow(v, r));
     PetscCall(PetscStrncpy(r->folder, v->options->run, sizeof r->folder));
     r->result = RUN_DONE;
     r->ran = PETSC_TRUE;
@@ -119,7 +106,6 @@ static PetscErrorCode Compare(Verification *v, Diag *diag)
   if (v->rank == 0 && v->n && !diag_errors(diag)) PetscCall(ReadResults(v, end, diag));
   PetscCall(DiagReduce(v->comm, diag, &errors));
   if (errors || !v->n) PetscFunctionReturn(0);
-  PetscCall(Share(v));
   PetscCall(Judge(v, diag));
   PetscFunctionReturn(0);
 }

@@ -1,76 +1,48 @@
 #include "verify/verify_settings.h"
 #include <ctype.h>
-#include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
-
-/* Text in double quotes, as YAML reads it back. */
-static void write_quoted(FILE *out, const char *text)
-{
-  fputc('"', out);
-  for (; *text; ++text) {
-    if (*text == '"' || *text == '\\') fputc('\\', out);
-    if (*text == '\n') fputs("\\n", out);
-    else fputc(*text, out);
-  }
-  fputc('"', out);
-}
+#include "base/text.h"
+#include "input/schema/schema.h"
 
 /* A node on one line: what stood in the file, or its equal in flow style. */
 static void write_flow(FILE *out, const YamlNode *node)
 {
   if (node->kind == YAML_SCALAR) {
     if (node->plain) fputs(node->text, out);
-    else write_quoted(out, node->text);
+    else schema_write_text(out, node->text);
     return;
   }
   fputc(node->kind == YAML_MAPPING ? '{' : '[', out);
   for (PetscInt i = 0; i < node->n; ++i) {
     if (i) fputs(", ", out);
-    if (node->kind == YAML_MAPPING) write_quoted(out, node->child[i]->key), fputs(": ", out);
+    if (node->kind == YAML_MAPPING) schema_write_text(out, node->child[i]->key), fputs(": ", out);
     write_flow(out, node->child[i]);
   }
   fputc(node->kind == YAML_MAPPING ? '}' : ']', out);
 }
 
-static PetscErrorCode FlowText(const YamlNode *node, char **text)
+PetscErrorCode SettingListRead(const YamlNode *mapping, SettingList *list)
 {
-  char *buffer = NULL;
-  size_t size;
-  FILE *out = open_memstream(&buffer, &size);
+  TextStream stream;
 
   PetscFunctionBeginUser;
-  PetscCheck(out, PETSC_COMM_SELF, PETSC_ERR_MEM, "no memory for a text");
-  write_flow(out, node);
-  PetscCheck(fclose(out) == 0, PETSC_COMM_SELF, PETSC_ERR_MEM, "no memory for a text");
-  PetscCall(PetscStrallocpy(buffer, text));
-  free(buffer);
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode SettingsRead(const YamlNode *mapping, Settings *settings)
-{
-  PetscFunctionBeginUser;
-  PetscCall(PetscCalloc1(mapping->n, &settings->path));
-  PetscCall(PetscCalloc1(mapping->n, &settings->value));
-  settings->n = mapping->n;
-  for (PetscInt i = 0; i < mapping->n; ++i) {
-    PetscCall(PetscStrallocpy(mapping->child[i]->key, &settings->path[i]));
-    PetscCall(FlowText(mapping->child[i], &settings->value[i]));
+  PetscCall(PetscCalloc1(mapping->n, &list->text));
+  for (; list->n < mapping->n; ++list->n) {
+    const YamlNode *child = mapping->child[list->n];
+    PetscCall(TextOpen(&stream));
+    fprintf(stream.out, "%s=", child->key);
+    write_flow(stream.out, child);
+    PetscCall(TextClose(&stream, &list->text[list->n]));
   }
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode SettingsClear(Settings *settings)
+PetscErrorCode SettingListClear(SettingList *list)
 {
   PetscFunctionBeginUser;
-  for (PetscInt i = 0; i < settings->n; ++i) {
-    PetscCall(PetscFree(settings->path[i]));
-    PetscCall(PetscFree(settings->value[i]));
-  }
-  PetscCall(PetscFree(settings->path));
-  PetscCall(PetscFree(settings->value));
-  settings->n = 0;
+  for (PetscInt i = 0; i < list->n; ++i) PetscCall(PetscFree(list->text[i]));
+  PetscCall(PetscFree(list->text));
+  list->n = 0;
   PetscFunctionReturn(0);
 }
 
@@ -92,21 +64,16 @@ static void write_replaced(FILE *out, const char *text, const char *symbol, cons
     } else fputc(*text++, out);
 }
 
-static PetscErrorCode Append(const Settings *settings, const SweepSpec *sweep, const char *value, SettingList *list)
+static PetscErrorCode Append(const SettingList *settings, const SweepSpec *sweep, const char *value, SettingList *list)
 {
+  TextStream stream;
+
   PetscFunctionBeginUser;
+  PetscCall(PetscRealloc((size_t)(list->n + settings->n) * sizeof(char *), &list->text));
   for (PetscInt i = 0; i < settings->n; ++i) {
-    char *buffer = NULL;
-    size_t size;
-    PetscCheck(list->n < VERIFY_MAX_SETTINGS, PETSC_COMM_SELF, PETSC_ERR_SUP, "more than %d values changed in a row",
-               VERIFY_MAX_SETTINGS);
-    FILE *out = open_memstream(&buffer, &size);
-    PetscCheck(out, PETSC_COMM_SELF, PETSC_ERR_MEM, "no memory for a text");
-    fprintf(out, "%s=", settings->path[i]);
-    write_replaced(out, settings->value[i], sweep->symbol, value);
-    PetscCheck(fclose(out) == 0, PETSC_COMM_SELF, PETSC_ERR_MEM, "no memory for a text");
-    PetscCall(PetscStrallocpy(buffer, &list->text[list->n++]));
-    free(buffer);
+    PetscCall(TextOpen(&stream));
+    write_replaced(stream.out, settings->text[i], sweep->symbol, value);
+    PetscCall(TextClose(&stream, &list->text[list->n++]));
   }
   PetscFunctionReturn(0);
 }
@@ -115,20 +82,12 @@ PetscErrorCode SettingListCreate(const StudySpec *study, const SeriesSpec *serie
                                  SettingList *list)
 {
   PetscFunctionBeginUser;
-  list->n = 0;
+  *list = (SettingList){0};
   PetscCall(Append(&series->set, &study->sweep, row->at, list));
   PetscCall(Append(&study->sweep.set, &study->sweep, row->at, list));
   PetscCall(Append(&row->set, &study->sweep, row->at, list));
   for (PetscInt k = 0; k < row->n_sets; ++k)
-    if (!strcmp(row->sets[k].series, series->name)) PetscCall(Append(&row->sets[k].set, &study->sweep, row->at, list));
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode SettingListClear(SettingList *list)
-{
-  PetscFunctionBeginUser;
-  for (PetscInt i = 0; i < list->n; ++i) PetscCall(PetscFree(list->text[i]));
-  list->n = 0;
+    if (!strcmp(row->sets[k].series, series->name)) PetscCall(Append(&row->sets[k], &study->sweep, row->at, list));
   PetscFunctionReturn(0);
 }
 

@@ -2,20 +2,12 @@
 #pragma once
 #include "verify/verify_reference.h"
 
-#define VERIFY_MAX_SETTINGS 64
-
-typedef struct {
-  PetscInt n;
-  char *text[VERIFY_MAX_SETTINGS]; /* "path=value" */
-} SettingList;
-
 /* Read a mapping {path: value, ...}; values may be lists and mappings. Paths with dots are keys here. */
-PetscErrorCode SettingsRead(const YamlNode *mapping, Settings *settings);
-PetscErrorCode SettingsClear(Settings *settings);
+PetscErrorCode SettingListRead(const YamlNode *mapping, SettingList *list);
+PetscErrorCode SettingListClear(SettingList *list);
 
 /* All that one row of one series changes: of the series, of the sweep ($symbol replaced by the row's
  * value), of the row, of the row for this series. */
 PetscErrorCode SettingListCreate(const StudySpec *study, const SeriesSpec *series, const RowSpec *row,
                                  SettingList *list);
-PetscErrorCode SettingListClear(SettingList *list);
 PetscBool setting_lists_equal(const SettingList *a, const SettingList *b);

@@ -1,5 +1,6 @@
 /* The table of a study on a terminal: one line a row, as it is done. */
 #include <string.h>
+#include "base/text.h"
 #include "verify/verify_private.h"
 
 /* A number, or a dash where there is none. */
@@ -32,18 +33,17 @@ void verify_table_head(FILE *out, const Verification *v, PetscInt first)
 {
   const VerifyRow *r = &v->rows[first];
   const StudySpec *study = r->study;
-  char variable[80];
-  fprintf(out, "\n%s: %s\n  measure %s%s%s%s over %s %s%s%s%s\n", study->name, study->title, study->measure,
-          r->unit[0] ? " [" : "", r->unit, r->unit[0] ? "]" : "", study->sweep.name, study->sweep.symbol,
-          study->sweep.unit ? " [" : "", study->sweep.unit ? study->sweep.unit : "", study->sweep.unit ? "]" : "");
+  char measure[TEXT_LABEL], variable[TEXT_LABEL];
+  fprintf(out, "\n%s: %s\n  measure %s over %s %s\n", study->name, study->title,
+          text_with_unit(study->measure, r->unit, measure), study->sweep.name,
+          text_with_unit(study->sweep.symbol, study->sweep.unit, variable));
   if (study->source.text) {
     fputs("  reference: ", out);
     write_source(out, &study->source);
     fputc('\n', out);
   }
   if (study->has_exact) write_exact(out, study);
-  PetscSNPrintf(variable, sizeof variable, "%s", study->sweep.symbol);
-  fprintf(out, "\n  %-12s %9s %13s %15s %9s", "series", variable, "reference", "value", "off by");
+  fprintf(out, "\n  %-12s %9s %13s %15s %9s", "series", study->sweep.symbol, "reference", "value", "off by");
   if (verify_has_errors(study)) fprintf(out, " %9s %6s", "error", "order");
   fprintf(out, " %6s %6s %8s", "steps", "Newton", "s");
   if (study->pace) fprintf(out, " %6s", "pace");

@@ -1,5 +1,5 @@
-/* A program that has MPI for itself and lets two cases work side by side, each on its half of the ranks: both give the
- * numbers of one rank, and neither meets the other's messages, nor the program's. */
+/* A program that has MPI for itself and lets two cases work side by side, each on its half of the
+ * ranks: both give the numbers of one rank, and neither meets the other's messages, nor the program's. */
 #include "api_test.h"
 
 /* The second half's block is softer, steps finer and hangs in less gravity. */
@@ -10,7 +10,7 @@ typedef struct {
   int which, rank, size; /* first or second half; this process among the half's */
 } Half;
 
-/* The first half is the larger one; one rank alone is the second, whose first rank then is the first of all. */
+/* The first half is the larger one. One rank alone is the second. */
 static Half create_half(void)
 {
   Half half;
@@ -28,7 +28,7 @@ static TalusCase *open_on(MPI_Comm comm, int which)
   return open_block_on(comm, which ? 3 : 0, which ? softer : NULL);
 }
 
-/* Steps the block to its end and tells its measures and, summed over the points, mass and vertical momentum. */
+/* Steps the block to its end: two measures; mass and vertical momentum, summed over the points. */
 static void values_of(MPI_Comm comm, int which, double values[4])
 {
   double local[2] = {0, 0}, buffer[3 * 64], mass[64];
@@ -54,7 +54,7 @@ static void expect_those_of_one_rank(const Half *half, const double values[4])
   CHECK(alone[0] < -1e-4 && alone[2] > 999 && alone[3] < -10);
 }
 
-/* Two models at once, while a message of the program's own waits for anything that comes on the communicator. */
+/* Two models at once, while the program itself waits for any message on the communicator. */
 static void test_models(void **state)
 {
   Half half = create_half();

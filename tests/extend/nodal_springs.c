@@ -1,6 +1,7 @@
-/* A bed of springs: each node of one boundary of the mesh stands on the ground by a spring of its own, along the last axis.
+/* A bed of springs: each node of one boundary of the mesh stands on the ground by a spring of its own, along the last axis; or, on one rank, all
+ * of them stand on a plate that lies on these springs and does not tilt, so that each feels the mean and all are coupled.
  *
- *   petsc: {springs_on: bottom, springs_stiffness: 1e5}    # N/m each
+ *   petsc: {springs_on: bottom, springs_stiffness: 1e5, springs_plate: true}    # N/m each
  */
 #include "grid/directory.h"
 #include "solve/forces/nodal_force.h"
@@ -8,6 +9,7 @@
 typedef struct {
   PetscInt n, *node;
   PetscReal stiffness;
+  PetscBool plate;
   PetscReal *stretch; /* n_nodes: at the start of the step, m */
 } Springs;
 
@@ -22,6 +24,7 @@ static PetscErrorCode Create(const NodalScene *scene, Diag *diag, void **data)
   if (!asked) PetscFunctionReturn(0);
   PetscCall(PetscNew(&s));
   PetscCall(PetscOptionsGetReal(NULL, NULL, "-springs_stiffness", &s->stiffness, NULL));
+  PetscCall(PetscOptionsGetBool(NULL, NULL, "-springs_plate", &s->plate, NULL));
   PetscCall(GridSelectNodes(scene->grid, &(Selector){.boundary = place}, &s->n, &s->node));
   PetscCall(PetscCalloc1(scene->grid->n_nodes, &s->stretch));
   if (diag && !grid_find_set(scene->grid, place)) diag_error(diag, "petsc", "no boundary '%s' for springs", place);
@@ -46,16 +49,41 @@ static void hold(const void *data, const NodalScene *scene, unsigned char *held)
   for (PetscInt k = 0; k < s->n; ++k) held[(s->node[k] + 1) * scene->grid->dim - 1] = 1;
 }
 
-static PetscErrorCode Assemble(void *data, const NodalScene *scene, const NodalOutput *out)
+static PetscErrorCode Couple(const void *data, const NodalScene *scene, NodeGroups *groups)
 {
   const Springs *s = data;
 
+  (void)scene;
+  PetscFunctionBeginUser;
+  if (s->plate) PetscCall(NodeGroupsAppend(groups, s->n, s->node));
+  PetscFunctionReturn(0);
+}
+
+/* What the spring of node k feels, and which others feel with it. */
+static PetscReal stretch_of(const Springs *s, const NodalScene *scene, PetscInt k, PetscInt *first, PetscInt *last)
+{
+  PetscReal sum = 0;
+  *first = s->plate ? 0 : k;
+  *last = s->plate ? s->n - 1 : k;
+  for (PetscInt i = *first; i <= *last; ++i)
+    sum += s->stretch[s->node[i]] + scene->du[(s->node[i] + 1) * scene->grid->dim - 1];
+  return sum / (PetscReal)(*last - *first + 1);
+}
+
+static PetscErrorCode Assemble(void *data, const NodalScene *scene, const NodalOutput *out)
+{
+  const Springs *s = data;
+  const PetscInt dim = scene->grid->dim;
+  PetscInt first, last;
+
   PetscFunctionBeginUser;
   for (PetscInt k = 0; k < s->n; ++k) {
-    const PetscInt node = s->node[k], i = (node + 1) * scene->grid->dim - 1;
+    const PetscInt node = s->node[k], i = (node + 1) * dim - 1;
     if (node >= scene->grid->n_owned) continue;
-    out->force[i] += s->stiffness * (s->stretch[node] + scene->du[i]);
-    if (out->system) nodal_add_tangent(out, scene->grid->dim, system_pair(out->system, node, node), i, i, s->stiffness);
+    out->force[i] += s->stiffness * stretch_of(s, scene, k, &first, &last);
+    for (PetscInt j = first; j <= last && out->system; ++j)
+      nodal_add_tangent(out, dim, system_pair(out->system, node, s->node[j]), i, (s->node[j] + 1) * dim - 1,
+                        s->stiffness / (PetscReal)(last - first + 1));
   }
   PetscFunctionReturn(0);
 }
@@ -93,6 +121,7 @@ const NodalForce nodal_force_springs = {
   .create = Create,
   .destroy = Destroy,
   .hold = hold,
+  .couple = Couple,
   .assemble = Assemble,
   .commit = Commit,
   .to_tables = ToTables,

@@ -1,11 +1,12 @@
-/* Kinematics from outside the house: a thick ring. Stretched alike in radius and hoop its stress is uniform and known, every inner node is in
- * balance, and its faces carry that stress times their area; the tangent is that of the forces. */
+/* Kinematics from outside the house: a thick ring. Stretched alike in radius and hoop its stress
+ * is uniform and known, every inner node is in balance, and its faces carry that stress times
+ * their area; the tangent is that of the forces. */
 #include "../formulation/patch.h"
 
-static const Variant rings[] = {{.cell = CELL_TRIANGLE},
+static const Variant kinds[] = {{.cell = CELL_TRIANGLE},
                                 {.cell = CELL_QUADRILATERAL},
-                                {CELL_QUADRILATERAL, PETSC_TRUE, CLOUD_LME},
-                                {CELL_QUADRILATERAL, PETSC_TRUE, CLOUD_MLS}};
+                                {.cell = CELL_QUADRILATERAL, .cloud = PETSC_TRUE, .kind = CLOUD_LME},
+                                {.cell = CELL_QUADRILATERAL, .cloud = PETSC_TRUE, .kind = CLOUD_MLS}};
 
 static const Kinematics *axisymmetric(void)
 {
@@ -39,7 +40,7 @@ static void test_stretch(void **state)
     PetscReal initial[LAW_MAX_STATE], after[LAW_MAX_STATE], tau[6], *force, virtual[2] = {0, 0}, face = 0, volume = 0;
     const PetscReal dF[9] = {1.1, 0, 0, 0, 0.9, 0, 0, 0, 1.1};
     LawStatus status;
-    ring_begin(&p, &rings[k]);
+    ring_begin(&p, &kinds[k]);
     CALL(PetscMalloc1(p.dofs, &force));
     for (PetscInt i = 0; i < p.dofs; ++i) p.du[i] = (i % 2 ? -0.1 : 0.1) * p.grid->x[i];
     law_initial_state(p.material[0].law, initial);
@@ -79,11 +80,11 @@ static void test_stretch(void **state)
 static void test_differences(void **state)
 {
   (void)state;
-  for (size_t k = 0; k < sizeof rings / sizeof *rings; ++k)
+  for (size_t k = 0; k < sizeof kinds / sizeof *kinds; ++k)
     for (int inertia = 0; inertia < 2; ++inertia) {
       Patch p;
       PetscReal *force, *values, *direction, *slope, size = 0;
-      patch_begin_in(&p, &rings[k], axisymmetric(), 0.25, 0.05);
+      patch_begin_in(&p, &kinds[k], axisymmetric(), 0.25, 0.05);
       CALL(PetscMalloc4(p.dofs, &force, p.dofs * p.dofs, &values, p.dofs, &direction, p.dofs, &slope));
       assemble(&p, 40 * inertia, p.du, force, values);
       fill(&p, direction, 1);

@@ -2,3 +2,6 @@
 talus_extend(talus_extended ${CMAKE_CURRENT_LIST_DIR})
 talus_test(extend/test_nodal_springs RANKS 1 2)
 talus_test(extend/test_kinematics)
+talus_test(extend/test_law)
+talus_test(extend/test_measure RANKS 1 2)
+talus_test(extend/test_time_scheme)

@@ -1,4 +1,5 @@
-/* A grid of two cells a side, full of points of two materials in a random state, and its residual and tangent as dense arrays. */
+/* A grid of two cells a side, full of points of two materials in a random state, and its
+ * residual and tangent as dense arrays. */
 #pragma once
 #include <math.h>
 #include <setjmp.h>
@@ -16,16 +17,21 @@ typedef struct {
   CellType cell;
   PetscBool cloud;
   CloudKind kind;
+  PetscBool ring; /* x is a radius, from 0.25 on */
 } Variant;
 
 static const Variant variants[] = {{.cell = CELL_TRIANGLE},
                                    {.cell = CELL_QUADRILATERAL},
                                    {.cell = CELL_TETRAHEDRON},
                                    {.cell = CELL_HEXAHEDRON},
-                                   {CELL_QUADRILATERAL, PETSC_TRUE, CLOUD_LME},
-                                   {CELL_QUADRILATERAL, PETSC_TRUE, CLOUD_MLS},
-                                   {CELL_HEXAHEDRON, PETSC_TRUE, CLOUD_LME},
-                                   {CELL_HEXAHEDRON, PETSC_TRUE, CLOUD_MLS}};
+                                   {.cell = CELL_QUADRILATERAL, .cloud = PETSC_TRUE, .kind = CLOUD_LME},
+                                   {.cell = CELL_QUADRILATERAL, .cloud = PETSC_TRUE, .kind = CLOUD_MLS},
+                                   {.cell = CELL_HEXAHEDRON, .cloud = PETSC_TRUE, .kind = CLOUD_LME},
+                                   {.cell = CELL_HEXAHEDRON, .cloud = PETSC_TRUE, .kind = CLOUD_MLS},
+                                   {.cell = CELL_TRIANGLE, .ring = PETSC_TRUE},
+                                   {.cell = CELL_QUADRILATERAL, .ring = PETSC_TRUE},
+                                   {CELL_QUADRILATERAL, PETSC_TRUE, CLOUD_LME, PETSC_TRUE}};
+static const Kinematics rings = {.name = "rings", .dim = 2, .hoop = PETSC_TRUE};
 #define N_VARIANTS (sizeof variants / sizeof *variants)
 
 /* A grid of two cells a side, all points in it, two materials. */
@@ -165,7 +171,8 @@ static inline void patch_begin_in(Patch *p, const Variant *variant, const Kinema
 
 static inline void patch_begin(Patch *p, const Variant *variant)
 {
-  patch_begin_in(p, variant, variant->cell >= CELL_TETRAHEDRON ? &kinematics_3d : &kinematics_plane_strain, 0, 0.05);
+  const Kinematics *straight = variant->cell >= CELL_TETRAHEDRON ? &kinematics_3d : &kinematics_plane_strain;
+  patch_begin_in(p, variant, variant->ring ? &rings : straight, variant->ring ? 0.25 : 0, 0.05);
 }
 
 static inline void patch_end(Patch *p)

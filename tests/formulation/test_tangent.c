@@ -65,6 +65,7 @@ static void test_rotated(void **state)
   for (size_t k = 0; k < N_VARIANTS; ++k) {
     Patch p;
     PetscReal Q[9] = {0.6, -0.8, 0, 0.8, 0.6, 0, 0, 0, 1}, *straight, *turned, *du;
+    if (variants[k].ring) continue; /* whose axis would turn */
     patch_begin(&p, &variants[k]);
     const PetscInt dim = p.grid->dim;
     if (dim == 3) random_rotation(&p.random, Q);

@@ -124,7 +124,7 @@ static Model *soft_column(Bench *b, PetscReal gamma)
   bench_motion(b, 1, 0, MOTION_FIXED, 3);
   bench_motion(b, 0, 0, MOTION_FIXED, 1);
   bench_motion(b, 0, h, MOTION_FIXED, 1);
-  bench_tracer(b, MEASURE_DISPLACEMENT, 1, h / 2, HEIGHT, 0);
+  bench_tracer(b, "displacement", 1, h / 2, HEIGHT, 0);
   return bench_model(b, PETSC_COMM_WORLD);
 }
 

@@ -93,8 +93,8 @@ static void sliding(Bench *b, CellType cell, PetscReal size)
   wall->moves = PETSC_TRUE;
   wall->on.min[0] = -size;
   bench_traction(b, 0, 1.5, "body", -1e3, 2e3, 0);
-  bench_tracer(b, MEASURE_POSITION, 0, 0.5, 0.5, 0.5);
-  b->measure[b->c.n_measures++] = (MeasureSpec){.name = "reaction", .kind = MEASURE_REACTION, .component = 1};
+  bench_tracer(b, "position", 0, 0.5, 0.5, 0.5);
+  b->measure[b->c.n_measures++] = (MeasureSpec){.name = "reaction", .kind = "reaction", .component = 1};
   b->c.parallel.imbalance = 1.2;
 }
 
@@ -205,6 +205,7 @@ static void conserves(Bench *b)
   b->c.parallel.imbalance = 0;
   Model *m = bench_model(b, PETSC_COMM_WORLD);
   for (PetscInt s = 0; s < 8; ++s) model_step(m, PETSC_MAX_REAL);
+  CALL(ModelInitialise(m));
   Everything points = gather(m->grid, m->points), tracers = gather(m->grid, m->tracers),
              carriers = gather(m->grid, m->loads->carriers);
   const PetscReal reaction = nodal_sum(m, m->nodes->reaction), held = nodal_sum(m, m->nodes->held);

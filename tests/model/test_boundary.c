@@ -4,7 +4,7 @@
 
 static PetscReal reaction(Model *m, PetscInt entry, PetscInt component)
 {
-  const MeasureSpec measure = {.kind = MEASURE_REACTION, .component = component, .boundary = entry};
+  const MeasureSpec measure = {.kind = "reaction", .component = component, .boundary = entry};
   PetscReal value;
   CALL(ModelMeasure(m, &measure, 0, &value));
   return value;
@@ -54,11 +54,11 @@ static void test_impulse(void **state)
     bench_dynamic(&b, 1, 0.005);
     bench_motion(&b, 1, 0, MOTION_FIXED, 2);
     Model *m = bench_model(&b, PETSC_COMM_WORLD);
-    const PetscReal mass = model_sum(m, MEASURE_MASS, 0);
-    PetscReal before = model_sum(m, MEASURE_MOMENTUM, 1), largest = 0, impulse = 0, gained = 0;
+    const PetscReal mass = model_sum(m, "mass: total", 0);
+    PetscReal before = model_sum(m, "momentum", 1), largest = 0, impulse = 0, gained = 0;
     for (PetscInt s = 0; s < 60; ++s) {
       const StepReport r = model_step(m, 0.005);
-      const PetscReal now = model_sum(m, MEASURE_MOMENTUM, 1), force = reaction(m, 0, 1);
+      const PetscReal now = model_sum(m, "momentum", 1), force = reaction(m, 0, 1);
       impulse += (force - mass * 9.81) * r.dt;
       gained += now - before;
       largest = PetscMax(largest, force);
@@ -87,8 +87,8 @@ static void test_turned_frame(void **state)
       b.c.gravity[turned ? 0 : 1] = turned ? 1.5 : -1.5;
       bench_motion(&b, turned ? 1 : 0, 0, MOTION_FIXED, 3);
       const PetscReal x[2] = {turned ? -0.25 : 3, turned ? 3 : 0.25};
-      bench_tracer(&b, MEASURE_DISPLACEMENT, turned ? 1 : 0, x[0], x[1], 0);
-      bench_tracer(&b, MEASURE_DISPLACEMENT, turned ? 0 : 1, x[0], x[1], 0);
+      bench_tracer(&b, "displacement", turned ? 1 : 0, x[0], x[1], 0);
+      bench_tracer(&b, "displacement", turned ? 0 : 1, x[0], x[1], 0);
       Model *m = bench_model(&b, PETSC_COMM_WORLD);
       model_step(m, 1);
       for (int k = 0; k < 2; ++k) CALL(ModelMeasure(m, &b.measure[k], k, &tip[turned][k]));
@@ -132,7 +132,7 @@ static void test_turned_body(void **state)
     m->boundary->field_context = &whole;
     while (m->time < 1 - 1e-9) {
       CHECK(model_step(m, 1 - m->time).cuts == 0, "a step was halved");
-      const PetscReal now = model_sum(m, MEASURE_ELASTIC_ENERGY, 0);
+      const PetscReal now = model_sum(m, "energy: elastic", 0);
       if (m->time > 0.5 + 1e-9) CHECK_CLOSE(now, energy, 1e-11 * energy);
       energy = now;
     }
@@ -198,8 +198,8 @@ static void test_velocity_table(void **state)
     motion->amplitude = (Amplitude){.n = 3, .time = (PetscReal[]){0, 0.4, 1}, .value = (PetscReal[]){0, 1, 0.5}};
     if (dynamic) bench_dynamic(&b, 1, 0.1);
     else b.c.analysis.step = b.c.analysis.largest = 0.1;
-    bench_tracer(&b, MEASURE_DISPLACEMENT, 0, 0.5, 0.5, 0);
-    bench_tracer(&b, MEASURE_DISPLACEMENT, 1, 0, 0, 0);
+    bench_tracer(&b, "displacement", 0, 0.5, 0.5, 0);
+    bench_tracer(&b, "displacement", 1, 0, 0, 0);
     Model *m = bench_model(&b, PETSC_COMM_WORLD);
     PetscReal u[2];
     while (m->time < 1 - 1e-9) model_step(m, 1 - m->time);
@@ -228,10 +228,10 @@ static void test_load_moves(void **state)
     bench_traction(&b, 0, 0.25, "body", 1000, 0, 0); /* pushes from behind, all along the face */
     b.load[b.c.n_loads++] = (LoadSpec){.kind = LOAD_POINT, .at = {0.5, 0.5, 0.5}, .value = {0, 30 * area, 0}};
     Model *m = bench_model(&b, PETSC_COMM_WORLD);
-    const PetscReal mass = model_sum(m, MEASURE_MASS, 0);
+    const PetscReal mass = model_sum(m, "mass: total", 0);
     for (PetscInt s = 0; s < 50; ++s) CHECK(model_step(m, 0.01).cuts == 0, "a step was halved");
-    CHECK_CLOSE(model_sum(m, MEASURE_MOMENTUM, 0), mass * 1.5 + 1000 * area * 0.5, 1e-9 * mass);
-    CHECK_CLOSE(model_sum(m, MEASURE_MOMENTUM, 1), 30 * area * 0.5, 1e-9 * mass);
+    CHECK_CLOSE(model_sum(m, "momentum", 0), mass * 1.5 + 1000 * area * 0.5, 1e-9 * mass);
+    CHECK_CLOSE(model_sum(m, "momentum", 1), 30 * area * 0.5, 1e-9 * mass);
     PetscReal x = 0, n = 0;
     for (PetscInt p = 0; p < m->loads->carriers->n; ++p)
       if (m->loads->carriers->body[p] == 0) x += point_real(m->loads->carriers, POINT_X, p)[0], n += 1;
@@ -306,7 +306,7 @@ static void test_refused(void **state)
   b.load[b.c.n_loads++] = (LoadSpec){.kind = LOAD_POINT, .at = {3, 0, 0}, .value = {1, 0, 0}};
   bench_refused(&b, PETSC_COMM_WORLD, "loads.points[0].at", "outside the grid");
   bench_init(&b, "mpm", CELL_QUADRILATERAL, 4);
-  bench_tracer(&b, MEASURE_POSITION, 0, 3, 0, 0);
+  bench_tracer(&b, "position", 0, 3, 0, 0);
   bench_refused(&b, PETSC_COMM_WORLD, "measures.tracer.of.tracer", "outside the grid");
 }
 

@@ -35,7 +35,7 @@ static void prepare(Bench *b, const char *method, CellType cell, PetscBool dynam
   }
   bench_motion(b, 0, 0, MOTION_FIXED, 7);
   bench_traction(b, 0, 2, "body", 1000, 0, 0);
-  bench_tracer(b, MEASURE_DISPLACEMENT, 1, 2, 0.25, 0.25);
+  bench_tracer(b, "displacement", 1, 2, 0.25, 0.25);
 }
 
 static void test_all_cells(void **state)

@@ -217,9 +217,9 @@ static void slope(const char *method, CellType cell, PetscReal h, PetscReal tole
   b.body[0].shape = (Shape){.kind = SHAPE_POLYGON, .n_vertices = 6, .vertices = corners};
   bench_motion(&b, 1, 0, MOTION_FIXED, 3);
   for (int side = 0; side < 2; ++side) bench_motion(&b, 0, 30 * side, MOTION_FIXED, 1);
-  b.measure[b.c.n_measures++] = (MeasureSpec){.name = "floor", .kind = MEASURE_REACTION, .component = 1, .boundary = 0};
+  b.measure[b.c.n_measures++] = (MeasureSpec){.name = "floor", .kind = "reaction", .component = 1, .boundary = 0};
   Model *m = bench_model(&b, PETSC_COMM_WORLD);
-  const PetscReal weight = 10 * model_sum(m, MEASURE_MASS, 0);
+  const PetscReal weight = 10 * model_sum(m, "mass: total", 0);
   model_step(m, 1e-6);
   CALL(ModelMeasure(m, &b.measure[0], 0, &value));
   PetscPrintf(PETSC_COMM_WORLD, "%s, cell %d, h = %g m: the floor carries the weight to %.1e\n", method, (int)cell,

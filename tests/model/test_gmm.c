@@ -97,8 +97,8 @@ static void hang(const BasisSpec *basis, CellType cell)
   motion->value[0] = 0.03, motion->value[1] = 0.05;
   b.c.gravity[1] = -9.81;
   b.c.newton.residual = 1e-11;
-  bench_tracer(&b, MEASURE_DISPLACEMENT, 1, 0.5, 1, 0.5);
-  for (int d = 0; d < 2; ++d) b.measure[b.c.n_measures++] = (MeasureSpec){.kind = MEASURE_REACTION, .component = d};
+  bench_tracer(&b, "displacement", 1, 0.5, 1, 0.5);
+  for (int d = 0; d < 2; ++d) b.measure[b.c.n_measures++] = (MeasureSpec){.kind = "reaction", .component = d};
   Model *m = bench_model(&b, PETSC_COMM_WORLD);
   CHECK(model_step(m, 1).cuts == 0, "the step was halved");
   CALL(ModelMeasure(m, &b.measure[0], 0, &moved));
@@ -163,20 +163,20 @@ static void fly(const BasisSpec *basis, CellType cell, PetscReal size, PetscReal
   b.body[0].spin[2] = 12;
   b.body[0].spin_centre[0] = b.body[0].spin_centre[1] = 0.5;
   Model *m = bench_model(&b, PETSC_COMM_WORLD);
-  const PetscReal mass = model_sum(m, MEASURE_MASS, 0),
-                  p0[2] = {model_sum(m, MEASURE_MOMENTUM, 0), model_sum(m, MEASURE_MOMENTUM, 1)};
-  const PetscReal L0 = model_sum(m, MEASURE_ANGULAR_MOMENTUM, 2), E0 = model_sum(m, MEASURE_KINETIC_ENERGY, 0);
+  const PetscReal mass = model_sum(m, "mass: total", 0),
+                  p0[2] = {model_sum(m, "momentum", 0), model_sum(m, "momentum", 1)};
+  const PetscReal L0 = model_sum(m, "angular_momentum", 2), E0 = model_sum(m, "energy: kinetic", 0);
   PetscReal p_drift = 0;
   while (m->time < 0.1 - 1e-9) {
     CHECK(model_step(m, 0.002).cuts == 0, "a step was halved");
-    for (int d = 0; d < 2; ++d) p_drift = PetscMax(p_drift, PetscAbsReal(model_sum(m, MEASURE_MOMENTUM, d) - p0[d]));
+    for (int d = 0; d < 2; ++d) p_drift = PetscMax(p_drift, PetscAbsReal(model_sum(m, "momentum", d) - p0[d]));
   }
-  const PetscReal L = model_sum(m, MEASURE_ANGULAR_MOMENTUM, 2) / L0 - 1;
-  const PetscReal E = (model_sum(m, MEASURE_KINETIC_ENERGY, 0) + model_sum(m, MEASURE_ELASTIC_ENERGY, 0)) / E0 - 1;
+  const PetscReal L = model_sum(m, "angular_momentum", 2) / L0 - 1;
+  const PetscReal E = (model_sum(m, "energy: kinetic", 0) + model_sum(m, "energy: elastic", 0)) / E0 - 1;
   PetscPrintf(PETSC_COMM_WORLD, "%s, cell %d: drift of momentum %.3g, angular momentum %.3g, energy %.3g\n",
               basis->kind == BASIS_LME ? "lme" : "mls", (int)cell, (double)(p_drift / (mass * 2)), (double)L,
               (double)E);
-  CHECK_CLOSE(model_sum(m, MEASURE_MASS, 0), mass, 1e-14 * mass);
+  CHECK_CLOSE(model_sum(m, "mass: total", 0), mass, 1e-14 * mass);
   CHECK(p_drift <= bound * mass * 2, "momentum drifts by %g", (double)(p_drift / (mass * 2)));
   CHECK(PetscAbsReal(L) <= 0.01 && PetscAbsReal(E) <= 0.02, "angular momentum %g, energy %g", (double)L, (double)E);
   CALL(ModelDestroy(&m));
@@ -206,16 +206,16 @@ static void contact(const BasisSpec *basis)
   b.c.gravity[1] = -9.81;
   b.c.newton.residual = 1e-10;
   bench_motion(&b, 1, 0, MOTION_FIXED, 7);
-  b.measure[b.c.n_measures++] = (MeasureSpec){.name = "reaction", .kind = MEASURE_REACTION, .component = 1};
+  b.measure[b.c.n_measures++] = (MeasureSpec){.name = "reaction", .kind = "reaction", .component = 1};
   Model *m = bench_model(&b, PETSC_COMM_WORLD);
-  const PetscReal mass = model_sum(m, MEASURE_MASS, 0), before = model_sum(m, MEASURE_MOMENTUM, 1);
+  const PetscReal mass = model_sum(m, "mass: total", 0), before = model_sum(m, "momentum", 1);
   for (int s = 0; s < 120; ++s) {
     const StepReport r = model_step(m, 0.002);
     CALL(ModelMeasure(m, &b.measure[0], 0, &force));
     impulse += r.dt * (0.5 * (force + last) - mass * 9.81);
     last = force;
-    momentum = model_sum(m, MEASURE_MOMENTUM, 1);
-    const MeasureSpec low = {.kind = MEASURE_EXTENT, .component = 1};
+    momentum = model_sum(m, "momentum", 1);
+    const MeasureSpec low = {.kind = "extent", .component = 1};
     CALL(ModelMeasure(m, &low, 0, &force));
     lowest = PetscMin(lowest, force);
   }
@@ -360,7 +360,7 @@ static void run_both(Bench *b, PetscInt steps, PetscInt cut)
     CALL(ModelMeasure(alone, &b->measure[k], k, &v[1]));
     CHECK_CLOSE(v[0], v[1], 1e-9 * (1 + PetscAbsReal(v[1])));
   }
-  CHECK_CLOSE(model_sum(together, MEASURE_EXTERNAL_WORK, 0), model_sum(alone, MEASURE_EXTERNAL_WORK, 0), 1e-8);
+  CHECK_CLOSE(model_sum(together, "energy: external", 0), model_sum(alone, "energy: external", 0), 1e-8);
   CALL(ModelDestroy(&together));
   CALL(ModelDestroy(&alone));
 }
@@ -378,8 +378,8 @@ static void bar(const BasisSpec *basis, CellType cell, PetscReal size)
   bench_traction(&b, 0, 4, "body", 300, -100, 0);
   bench_traction(&b, 1, 1, NULL, 0, -50, 0);
   b.load[b.c.n_loads++] = (LoadSpec){.kind = LOAD_POINT, .at = {2, 0.5, 0.5}, .value = {0, -100, 0}};
-  bench_tracer(&b, MEASURE_DISPLACEMENT, 1, 4, 0.5, 0.5);
-  b.measure[b.c.n_measures++] = (MeasureSpec){.name = "reaction", .kind = MEASURE_REACTION, .component = 1};
+  bench_tracer(&b, "displacement", 1, 4, 0.5, 0.5);
+  b.measure[b.c.n_measures++] = (MeasureSpec){.name = "reaction", .kind = "reaction", .component = 1};
   run_both(&b, 4, 2);
 }
 
@@ -398,8 +398,8 @@ static void thrown(const BasisSpec *basis, LinearChoice linear)
   b.c.linear = linear;
   bench_dynamic(&b, 1, 0.004);
   bench_motion(&b, 1, 0, MOTION_FIXED, 7);
-  bench_tracer(&b, MEASURE_POSITION, 0, 0.5, 0.5, 0.5);
-  b.measure[b.c.n_measures++] = (MeasureSpec){.name = "reaction", .kind = MEASURE_REACTION, .component = 1};
+  bench_tracer(&b, "position", 0, 0.5, 0.5, 0.5);
+  b.measure[b.c.n_measures++] = (MeasureSpec){.name = "reaction", .kind = "reaction", .component = 1};
   run_both(&b, 60, 20);
 }
 
@@ -436,7 +436,7 @@ static void solvers(PetscBool sand)
   bench_dynamic(&b, 1, 0.002);
   MotionSpec *floor = bench_motion(&b, 1, 0, MOTION_DISPLACEMENT, 3);
   floor->value[0] = 0.02; /* a floor that glides */
-  for (int d = 0; d < 2; ++d) b.measure[b.c.n_measures++] = (MeasureSpec){.kind = MEASURE_REACTION, .component = d};
+  for (int d = 0; d < 2; ++d) b.measure[b.c.n_measures++] = (MeasureSpec){.kind = "reaction", .component = d};
   for (int k = 0; k < 2; ++k) {
     b.c.linear = k ? LINEAR_DIRECT : LINEAR_AUTO;
     m[k] = bench_model(&b, k ? PETSC_COMM_SELF : PETSC_COMM_WORLD);

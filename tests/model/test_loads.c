@@ -160,7 +160,7 @@ static void test_body_force(void **state)
       gather(m, 0.5, force);
       for (PetscInt i = 0; i < m->grid->n_owned * dim; ++i) local[i % dim] += force[i];
       CALL(MPI_Allreduce(local, sum, 3, MPIU_REAL, MPI_SUM, m->comm));
-      const PetscReal mass = model_sum(m, MEASURE_MASS, 0), centre[3] = {0.125, 0.375, 0.25};
+      const PetscReal mass = model_sum(m, "mass: total", 0), centre[3] = {0.125, 0.375, 0.25};
       for (PetscInt d = 0; d < dim; ++d) CHECK_CLOSE(sum[d], 1.5 * mass * centre[d], 1e-9 * mass);
       CALL(PetscFree(force));
       CALL(ModelDestroy(&m));

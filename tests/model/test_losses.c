@@ -20,10 +20,10 @@ static void bar(Bench *b, PetscReal more, PetscReal traction)
   bench_motion(b, 0, 0, MOTION_FIXED, 1);
   bench_motion(b, 1, 0, MOTION_FIXED, 2);
   bench_traction(b, 0, 4, "body", traction, 0, 0);
-  bench_tracer(b, MEASURE_DISPLACEMENT, 0, 4, 0.5, 0);
-  bench_tracer(b, MEASURE_POSITION, 0, 4, 0.5, 0);
-  bench_tracer(b, MEASURE_DISPLACEMENT, 1, 4, 1, 0);
-  bench_tracer(b, MEASURE_VELOCITY, 0, 4, 1, 0);
+  bench_tracer(b, "displacement", 0, 4, 0.5, 0);
+  bench_tracer(b, "position", 0, 4, 0.5, 0);
+  bench_tracer(b, "displacement", 1, 4, 1, 0);
+  bench_tracer(b, "velocity", 0, 4, 1, 0);
   b->c.analysis.step = b->c.analysis.largest = 0.1;
 }
 
@@ -98,11 +98,11 @@ static void check_accounts(Model *m)
 {
   Energies e;
   CALL(ModelEnergies(m, &e));
-  CHECK_CLOSE(model_sum(m, MEASURE_ENERGY_BALANCE, 0), 0, 1e-9);
-  CHECK_CLOSE(model_sum(m, MEASURE_MASS, 0) + model_sum(m, MEASURE_OUTSIDE_MASS, 0), 500, 1e-9);
-  CHECK_CLOSE(model_sum(m, MEASURE_MOMENTUM, 0) + model_sum(m, MEASURE_OUTSIDE_MOMENTUM, 0), 2500, 1e-6);
-  CHECK_CLOSE(model_sum(m, MEASURE_MOMENTUM, 1) + model_sum(m, MEASURE_OUTSIDE_MOMENTUM, 1), 50, 1e-6);
-  CHECK(e.outside == model_sum(m, MEASURE_OUTSIDE_ENERGY, 0), "two accounts of one energy");
+  CHECK_CLOSE(model_sum(m, "energy: balance", 0), 0, 1e-9);
+  CHECK_CLOSE(model_sum(m, "mass: total", 0) + model_sum(m, "outside: mass", 0), 500, 1e-9);
+  CHECK_CLOSE(model_sum(m, "momentum", 0) + model_sum(m, "outside_momentum", 0), 2500, 1e-6);
+  CHECK_CLOSE(model_sum(m, "momentum", 1) + model_sum(m, "outside_momentum", 1), 50, 1e-6);
+  CHECK(e.outside == model_sum(m, "energy: outside", 0), "two accounts of one energy");
 }
 
 static void test_removed_points_are_counted(void **state)
@@ -113,17 +113,17 @@ static void test_removed_points_are_counted(void **state)
   (void)state;
   thrown(&b, OUTSIDE_REMOVE);
   b.c.n_measures = 0;
-  bench_tracer(&b, MEASURE_DISPLACEMENT, 0, 3.5, 0.5, 0);
-  bench_tracer(&b, MEASURE_DISPLACEMENT, 0, 0.5, 0.5, 0);
+  bench_tracer(&b, "displacement", 0, 3.5, 0.5, 0);
+  bench_tracer(&b, "displacement", 0, 0.5, 0.5, 0);
   Model *m = bench_model(&b, PETSC_COMM_WORLD);
   while (m->time < 0.3 - 1e-9) {
     const StepReport report = model_step(m, 0.3 - m->time);
-    const PetscReal removed = model_sum(m, MEASURE_OUTSIDE_REMOVED, 0);
+    const PetscReal removed = model_sum(m, "outside: removed", 0);
     told += report.removed;
     check_accounts(m);
     CHECK((PetscReal)told == removed, "%d removed in steps, %g in all", (int)told, (double)removed);
-    CHECK_CLOSE(model_sum(m, MEASURE_OUTSIDE_MASS, 0), removed * 3.90625, 1e-9);
-    CHECK_CLOSE(model_sum(m, MEASURE_OUTSIDE_ENERGY, 0), removed * 3.90625 * (25 + 0.01) / 2, 1e-6);
+    CHECK_CLOSE(model_sum(m, "outside: mass", 0), removed * 3.90625, 1e-9);
+    CHECK_CLOSE(model_sum(m, "energy: outside", 0), removed * 3.90625 * (25 + 0.01) / 2, 1e-6);
     if (report.removed) CHECK(report.first_outside.x[0] > 4 && report.first_outside.id >= 64, "where?");
     if (removed > 0 && removed < 64) partly = PETSC_TRUE;
     if (m->time < 0.09) CHECK_CLOSE(measure(m, 0), 5 * m->time, 1e-9);
@@ -148,14 +148,14 @@ static void test_kept_points_are_counted(void **state)
     const StepReport report = model_step(m, 0.2 - m->time);
     check_accounts(m);
     CHECK(report.removed == 0, "nothing is removed");
-    CHECK(model_sum(m, MEASURE_OUTSIDE_HELD, 0) == (PetscReal)report.held, "held in the step");
+    CHECK(model_sum(m, "outside: held", 0) == (PetscReal)report.held, "held in the step");
     most = PetscMax(most, (PetscReal)report.held);
     if (report.held) CHECK(report.first_outside.x[0] > 4, "where it would have been");
   }
   CHECK(most > 0 && m->outside.held_most == most && m->outside.held >= most, "%g at most, %g in all", (double)most,
         (double)m->outside.held);
   CHECK_CLOSE(m->outside.held_most_mass, most * 3.90625, 1e-9);
-  CHECK(model_sum(m, MEASURE_OUTSIDE_MOMENTUM, 0) > 10, "the edge has stopped something");
+  CHECK(model_sum(m, "outside_momentum", 0) > 10, "the edge has stopped something");
   CALL(ModelDestroy(&m));
 }
 
@@ -163,25 +163,25 @@ static void test_kept_points_are_counted(void **state)
 static void test_empty_body(void **state)
 {
   static const MeasureSpec empty[] = {
-    {.kind = MEASURE_EXTENT, .maximum = PETSC_TRUE, .body = "gone"},
-    {.kind = MEASURE_EXTENT, .body = "gone"},
-    {.kind = MEASURE_EXTENT, .maximum = PETSC_TRUE, .beyond = 0.1, .body = "gone"},
-    {.kind = MEASURE_SPIN, .component = 2, .body = "gone"},
-    {.kind = MEASURE_MOMENTUM, .body = "gone"},
-    {.kind = MEASURE_KINETIC_ENERGY, .body = "gone"},
-    {.kind = MEASURE_ELASTIC_ENERGY, .body = "gone"},
-    {.kind = MEASURE_SURFACE_FRONT, .body = "gone"},
-    {.kind = MEASURE_SURFACE_HEIGHT, .body = "gone", .has_at = PETSC_TRUE, .at = 3.5},
-    {.kind = MEASURE_SURFACE_SLOPE, .body = "gone"},
+    {.kind = "extent", .maximum = PETSC_TRUE, .body = "gone"},
+    {.kind = "extent", .body = "gone"},
+    {.kind = "extent", .maximum = PETSC_TRUE, .beyond = 0.1, .body = "gone"},
+    {.kind = "spin", .component = 2, .body = "gone"},
+    {.kind = "momentum", .body = "gone"},
+    {.kind = "energy", .word = "kinetic", .body = "gone"},
+    {.kind = "energy", .word = "elastic", .body = "gone"},
+    {.kind = "surface", .word = "front", .body = "gone"},
+    {.kind = "surface", .word = "height", .body = "gone", .has_at = PETSC_TRUE, .at = 3.5},
+    {.kind = "surface", .word = "slope", .body = "gone"},
   };
-  const MeasureSpec mass = {.kind = MEASURE_MASS, .body = "gone"};
+  const MeasureSpec mass = {.kind = "mass", .word = "total", .body = "gone"};
   PetscReal value;
   Bench b;
   (void)state;
   thrown(&b, OUTSIDE_REMOVE);
   b.c.n_measures = 1;
   b.measure[0] =
-    (MeasureSpec){.name = "rest", .kind = MEASURE_RUN_OUT_TIME, .maximum = PETSC_TRUE, .speed = 1, .body = "gone"};
+    (MeasureSpec){.name = "rest", .kind = "run_out_time", .maximum = PETSC_TRUE, .speed = 1, .body = "gone"};
   Model *m = bench_model(&b, PETSC_COMM_WORLD);
   for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(empty); ++k) {
     CALL(ModelMeasure(m, &empty[k], 0, &value));
@@ -195,7 +195,7 @@ static void test_empty_body(void **state)
   CHECK(PetscIsNanReal(measure(m, 0)), "run-out time of an empty body");
   CALL(ModelMeasure(m, &mass, 0, &value));
   CHECK(value == 0, "mass of an empty body: %g", (double)value);
-  CHECK_CLOSE(model_sum(m, MEASURE_KINETIC_ENERGY, 0), 250 * (25 + 0.01) / 2, 1e-6);
+  CHECK_CLOSE(model_sum(m, "energy: kinetic", 0), 250 * (25 + 0.01) / 2, 1e-6);
   CALL(ModelDestroy(&m));
 }
 

@@ -69,8 +69,7 @@ static PetscReal error_with(const char *method, CellType cell, PetscInt n)
   bench_init(&b, method, cell, n);
   bench_motion(&b, -1, 0, MOTION_FIXED, 7);
   Model *m = bench_model(&b, PETSC_COMM_WORLD);
-  m->body_force = body_force;
-  m->body_force_context = &s;
+  CALL(ModelSetBodyForce(m, body_force, &s));
   CHECK(model_step(m, 1).cuts == 0, "the step was halved");
   for (PetscInt p = 0; p < m->points->n; ++p) {
     const PetscReal *x = point_real(m->points, POINT_X, p), *v = point_real(m->points, POINT_U, p);

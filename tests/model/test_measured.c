@@ -20,7 +20,7 @@ static void test_spin(void **state)
       }
       b.body[0].spin[axis] = 7;
       Model *m = bench_model(&b, PETSC_COMM_WORLD);
-      const PetscReal mass = model_sum(m, MEASURE_MASS, 0);
+      const PetscReal mass = model_sum(m, "mass: total", 0);
       const PetscInt i = (axis + 1) % 3, j = (axis + 2) % 3;
       PetscReal local = 0, inertia; /* of the points, about the centre */
       for (PetscInt p = 0; p < m->points->n; ++p) {
@@ -28,11 +28,10 @@ static void test_spin(void **state)
         local += m->points->real[POINT_MASS][p] * (PetscSqr(x[i] - centre[i]) + PetscSqr(x[j] - centre[j]));
       }
       CALL(MPI_Allreduce(&local, &inertia, 1, MPIU_REAL, MPI_SUM, m->comm));
-      CHECK_CLOSE(model_sum(m, MEASURE_SPIN, axis), 7, 1e-9);
-      CHECK_CLOSE(model_sum(m, MEASURE_ANGULAR_MOMENTUM, axis),
+      CHECK_CLOSE(model_sum(m, "spin", axis), 7, 1e-9);
+      CHECK_CLOSE(model_sum(m, "angular_momentum", axis),
                   7 * inertia + mass * (centre[i] * velocity[j] - centre[j] * velocity[i]), 1e-9 * mass);
-      for (PetscInt d = 0; d < m->dim; ++d)
-        CHECK_CLOSE(model_sum(m, MEASURE_MOMENTUM, d), mass * velocity[d], 1e-9 * mass);
+      for (PetscInt d = 0; d < m->dim; ++d) CHECK_CLOSE(model_sum(m, "momentum", d), mass * velocity[d], 1e-9 * mass);
       CALL(ModelDestroy(&m));
     }
   }
@@ -47,8 +46,8 @@ static void test_surface(void **state)
   for (int k = 0; k < 4; ++k) {
     Bench b;
     PetscReal height, front;
-    const MeasureSpec at = {.kind = MEASURE_SURFACE_HEIGHT, .has_at = PETSC_TRUE, .at = 0.3},
-                      end = {.kind = MEASURE_SURFACE_FRONT};
+    const MeasureSpec at = {.kind = "surface", .word = "height", .has_at = PETSC_TRUE, .at = 0.3},
+                      end = {.kind = "surface", .word = "front"};
     bench_init(&b, "mpm", CELL_QUADRILATERAL, 8);
     bench_box(&b, 0, (PetscReal[]){0, 0, 0}, (PetscReal[]){0.5, 0.75, 1});
     bench_dynamic(&b, 1, 0.01);

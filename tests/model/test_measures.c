@@ -41,11 +41,12 @@ static void test_surface_of_a_triangle(void **state)
   for (int k = 0; k < 2; ++k) {
     Bench b;
     Model *m = triangle(&b, seeded[k]);
-    const MeasureSpec front = {.kind = MEASURE_SURFACE_FRONT}, slope = {.kind = MEASURE_SURFACE_SLOPE, .body = "body"};
+    const MeasureSpec front = {.kind = "surface", .word = "front"},
+                      slope = {.kind = "surface", .word = "slope", .body = "body"};
     if (heights[k] == 1) flatten(m);
     CHECK_CLOSE(measure(m, &front, 0), 1, 0.1 + 1e-9);
     for (PetscReal x = 0.2; x < 0.85; x += 0.05) {
-      const MeasureSpec height = {.kind = MEASURE_SURFACE_HEIGHT, .has_at = PETSC_TRUE, .at = x};
+      const MeasureSpec height = {.kind = "surface", .word = "height", .has_at = PETSC_TRUE, .at = x};
       CHECK_CLOSE(measure(m, &height, 0), heights[k] * (1 - x), heights[k] == 1 ? 5e-3 : 0.05);
     }
     CHECK_CLOSE(measure(m, &slope, 0), PetscAtanReal(heights[k]) * 180 / PETSC_PI, heights[k] == 1 ? 0.3 : 3);
@@ -71,9 +72,8 @@ static void test_inner_extent(void **state)
     const int cell = wanted[k].column / 2;
     const PetscReal place = 0.25 * (cell + 0.5 + side); /* from the edge inwards */
     for (int axis = 0; axis < 2; ++axis) {
-      const MeasureSpec high = {
-        .kind = MEASURE_EXTENT, .component = axis, .maximum = PETSC_TRUE, .beyond = wanted[k].beyond};
-      const MeasureSpec low = {.kind = MEASURE_EXTENT, .component = axis, .beyond = wanted[k].beyond, .body = "body"};
+      const MeasureSpec high = {.kind = "extent", .component = axis, .maximum = PETSC_TRUE, .beyond = wanted[k].beyond};
+      const MeasureSpec low = {.kind = "extent", .component = axis, .beyond = wanted[k].beyond, .body = "body"};
       CHECK_CLOSE(measure(m, &high, 0), 1 - place, 1e-9);
       CHECK_CLOSE(measure(m, &low, 0), place, 1e-9);
     }
@@ -98,8 +98,8 @@ static void test_run_out_time(void **state)
     motion->value[0] = 1;
     motion->amplitude = (Amplitude){.n = 3, .time = time, .value = value};
     b.c.n_measures = 3;
-    b.measure[0] = (MeasureSpec){.name = "right", .kind = MEASURE_RUN_OUT_TIME, .maximum = PETSC_TRUE, .speed = 0.25};
-    b.measure[1] = (MeasureSpec){.name = "left", .kind = MEASURE_RUN_OUT_TIME, .speed = 0.25, .body = "body"};
+    b.measure[0] = (MeasureSpec){.name = "right", .kind = "run_out_time", .maximum = PETSC_TRUE, .speed = 0.25};
+    b.measure[1] = (MeasureSpec){.name = "left", .kind = "run_out_time", .speed = 0.25, .body = "body"};
     b.measure[2] = b.measure[0];
     b.measure[2].front = FRONT_SURFACE;
     Model *m = bench_model(&b, PETSC_COMM_WORLD);
@@ -141,7 +141,7 @@ static Energies energies(Model *m)
   return e;
 }
 
-static PetscReal balance(Model *m) { return model_sum(m, MEASURE_ENERGY_BALANCE, 0); }
+static PetscReal balance(Model *m) { return model_sum(m, "energy: balance", 0); }
 
 /* A block held at its foot is thrown against itself. */
 static Model *thrown(Bench *b, const char *method, PetscReal dt)
@@ -216,7 +216,7 @@ static void test_plastic_balance(void **state)
     Model *m = thrown(&b, k ? "mpm" : "fem", 2e-3);
     while (m->time < 0.1 - 1e-9) {
       model_step(m, 0.1 - m->time);
-      const PetscReal now = model_sum(m, MEASURE_DISSIPATED_ENERGY, 0);
+      const PetscReal now = model_sum(m, "energy: dissipated", 0);
       CHECK(now > last - 2e-3 * m->start_energy, "dissipated %g after %g J", (double)now, (double)last);
       last = now;
       worst = PetscMax(worst, PetscAbsReal(balance(m)));
@@ -259,7 +259,7 @@ static void test_shear_dissipation(void **state)
   CHECK_CLOSE(e.dissipated, tau * (gamma - yield), 0.01 * tau * gamma);
   CHECK_CLOSE(e.elastic, 0.5 * tau * yield, 0.01 * tau * yield);
   CHECK_CLOSE(e.boundary, e.dissipated + e.elastic, 1e-6 * e.boundary);
-  const MeasureSpec of_body = {.kind = MEASURE_DISSIPATED_ENERGY, .body = "body"};
+  const MeasureSpec of_body = {.kind = "energy", .word = "dissipated", .body = "body"};
   CHECK_CLOSE(measure(m, &of_body, 0), e.dissipated, 1e-12 * e.dissipated);
   CALL(ModelDestroy(&m));
 }
@@ -340,9 +340,8 @@ static void test_removed_points(void **state)
 /* All ranks together against each alone. */
 static void test_ranks_agree(void **state)
 {
-  static const MeasureKind kinds[] = {MEASURE_DISSIPATED_ENERGY, MEASURE_EXTERNAL_WORK,  MEASURE_DAMPED_ENERGY,
-                                      MEASURE_TRANSFER_ENERGY,   MEASURE_ENERGY_BALANCE, MEASURE_SURFACE_FRONT,
-                                      MEASURE_SURFACE_SLOPE,     MEASURE_RUN_OUT_TIME};
+  static const char *const kinds[] = {"energy: dissipated", "energy: external", "energy: damped", "energy: transfer",
+                                      "energy: balance",    "surface: front",   "surface: slope", "run_out_time"};
   Bench b;
   PetscReal value[2];
   (void)state;
@@ -350,7 +349,7 @@ static void test_ranks_agree(void **state)
     plastic(&b);
     b.c.analysis.damping = 2;
     b.c.n_measures = 1;
-    b.measure[0] = (MeasureSpec){.name = "stop", .kind = MEASURE_RUN_OUT_TIME, .maximum = PETSC_TRUE, .speed = 3};
+    b.measure[0] = (MeasureSpec){.name = "stop", .kind = "run_out_time", .maximum = PETSC_TRUE, .speed = 3};
     Model *all = thrown(&b, fem ? "fem" : "mpm", 2e-3), *alone;
     Diag *diag;
     CALL(DiagCreate(&diag));
@@ -385,7 +384,7 @@ static PetscReal roughness(int kind, PetscInt cells_per_side)
     const PetscReal pressure = kind == 0 ? 7 : kind == 1 ? 7 * x : 7 * turn;
     point_set_tau(m->points, p, (PetscReal[]){-pressure - 2, -pressure + 3, -pressure - 1, 5, 0, 0});
   }
-  const PetscReal value = model_sum(m, MEASURE_ROUGHNESS, 0);
+  const PetscReal value = model_sum(m, "roughness: pressure", 0);
   CALL(ModelDestroy(&m));
   return value;
 }
@@ -403,7 +402,7 @@ static PetscReal nodal_roughness(PetscReal constant, PetscReal amplitude)
     const PetscInt colour = (PetscInt)(6 * (m->grid->x[2 * i] + m->grid->x[2 * i + 1]) + 0.5) % 3;
     m->nodes->scaled_pressure[i] = constant + amplitude * (PetscReal)(colour - 1);
   }
-  const PetscReal value = model_sum(m, MEASURE_ROUGHNESS, 0);
+  const PetscReal value = model_sum(m, "roughness: pressure", 0);
   CALL(ModelDestroy(&m));
   return value;
 }

@@ -273,7 +273,7 @@ static void cook(Bench *b, CellType cell, PetscInt n, PetscReal nu, PetscInt poi
   bench_mesh(b, cook_place, NULL);
   bench_motion(b, 0, 0, MOTION_FIXED, 3);
   bench_traction(b, 0, 48, NULL, 0, 0.0625, 0);
-  bench_tracer(b, MEASURE_DISPLACEMENT, 1, 48, 60, 0);
+  bench_tracer(b, "displacement", 1, 48, 60, 0);
 }
 
 static PetscReal corner(Model *m)
@@ -403,9 +403,9 @@ static void momentum(const char *method, CellType cell, const Solid *solid)
   bench_dynamic(&b, 0.03, 0.003);
   Model *m = bench_model(&b, PETSC_COMM_WORLD);
   PetscReal before[2];
-  for (PetscInt d = 0; d < 2; ++d) before[d] = model_sum(m, MEASURE_MOMENTUM, d);
+  for (PetscInt d = 0; d < 2; ++d) before[d] = model_sum(m, "momentum", d);
   for (int k = 0; k < 10; ++k) (void)model_step(m, 0.003);
-  for (PetscInt d = 0; d < 2; ++d) CHECK_CLOSE(model_sum(m, MEASURE_MOMENTUM, d), before[d], 1e-7 * 1000);
+  for (PetscInt d = 0; d < 2; ++d) CHECK_CLOSE(model_sum(m, "momentum", d), before[d], 1e-7 * 1000);
   CALL(ModelDestroy(&m));
 }
 

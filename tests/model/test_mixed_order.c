@@ -90,7 +90,7 @@ static void solve(const char *method, CellType cell, PetscInt n, PetscReal alpha
   b.c.newton.residual = 1e-10;
   bench_motion(&b, -1, 0, MOTION_FIXED, 3);
   Model *m = bench_model(&b, PETSC_COMM_WORLD);
-  m->body_force = body_force;
+  CALL(ModelSetBodyForce(m, body_force, NULL));
   m->boundary->field = at_boundary;
   CHECK(model_step(m, 1).cuts == 0, "the step was halved");
   errors(m, error);
@@ -120,7 +120,8 @@ static void test_order(void **state)
   convergence("fem", CELL_QUADRILATERAL);
 }
 
-/* Too little lets the pressure oscillate, more than needed costs accuracy in proportion (docs/experiments/pressure.md). */
+/* Too little lets the pressure oscillate, more than needed costs accuracy in proportion
+ * (docs/experiments/pressure.md). */
 static void test_stabilisation(void **state)
 {
   static const PetscReal alphas[] = {0.06, 0.25, 1, 2, 4, 8, 16};

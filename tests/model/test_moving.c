@@ -31,7 +31,7 @@ static void test_carried(void **state)
 
 static PetscReal reaction(Model *m)
 {
-  const MeasureSpec measure = {.kind = MEASURE_REACTION, .component = 1, .boundary = 3};
+  const MeasureSpec measure = {.kind = "reaction", .component = 1, .boundary = 3};
   PetscReal value;
   CALL(ModelMeasure(m, &measure, 0, &value));
   return value;

@@ -21,10 +21,7 @@ static PetscReal frequency(MassMatrix mass)
   return PetscSqrtReal(mass == MASS_LUMPED ? 2 * stiffness : 6 * stiffness / (2 + c));
 }
 
-static PetscReal energy_of(Model *m)
-{
-  return model_sum(m, MEASURE_KINETIC_ENERGY, 0) + model_sum(m, MEASURE_ELASTIC_ENERGY, 0);
-}
+static PetscReal energy_of(Model *m) { return model_sum(m, "energy: kinetic", 0) + model_sum(m, "energy: elastic", 0); }
 
 /* Starts from rest position with the velocity of the mode. */
 static void run_bar(Run *r)
@@ -48,7 +45,7 @@ static void run_bar(Run *r)
   bench_motion(&b, 0, 0, MOTION_FIXED, 1);
   MotionSpec *all = bench_motion(&b, 1, 0, MOTION_FIXED, 2);
   all->on.max[1] = 1;
-  bench_tracer(&b, MEASURE_DISPLACEMENT, 0, 1, 0, 0);
+  bench_tracer(&b, "displacement", 0, 1, 0, 0);
   Model *m = bench_model(&b, PETSC_COMM_WORLD);
   for (PetscInt i = 0; i < m->grid->n_nodes; ++i)
     m->nodes->v[2 * i] = amplitude * omega * sin(PETSC_PI / 2 * m->grid->x[2 * i]);

@@ -56,7 +56,7 @@ static void press(Bench *b, const char *method, PetscReal way)
   bench_motion(b, 1, 0, MOTION_FIXED, 3);
   bench_motion(b, 1, 1, MOTION_DISPLACEMENT, 3)->value[1] = -way;
   b->c.grid.outside = OUTSIDE_KEEP;
-  bench_tracer(b, MEASURE_POSITION, 0, 0.3, 0.6, 0);
+  bench_tracer(b, "position", 0, 0.3, 0.6, 0);
 }
 
 typedef struct {

@@ -54,7 +54,7 @@ static void decay(const Kind *kind)
   Model *m = bench_model(&b, PETSC_COMM_WORLD);
   model_step(m, dt);
   CALL(ModelEnergies(m, &first));
-  const PetscReal start = first.kinetic / (0.5 * model_sum(m, MEASURE_MASS, 0) * (v[0] * v[0] + v[1] * v[1]));
+  const PetscReal start = first.kinetic / (0.5 * model_sum(m, "mass: total", 0) * (v[0] * v[0] + v[1] * v[1]));
   CHECK_CLOSE(start, exp(-2 * alpha * dt), 1.2 * alpha * dt);
   for (int step = 1; step <= 60; ++step) {
     const PetscReal left = exp(-alpha * step * dt);
@@ -87,7 +87,7 @@ static void fall(const Kind *kind)
   b.c.gravity[1] = g;
   b.c.analysis.damping = alpha;
   Model *m = bench_model(&b, PETSC_COMM_WORLD);
-  const PetscReal mass = model_sum(m, MEASURE_MASS, 0);
+  const PetscReal mass = model_sum(m, "mass: total", 0);
   for (int step = 1; step <= 50; ++step) {
     const PetscReal t = step * dt, gone = 1 - exp(-alpha * t), v = g / alpha * gone,
                     fallen = g / alpha * (t - gone / alpha);
@@ -167,7 +167,7 @@ static void test_bossak_inertia(void **state)
     b.c.analysis.beta = PetscSqr(1 - alpha) / 4;
     b.c.analysis.gamma = 0.5 - alpha;
     Model *m = bench_model(&b, PETSC_COMM_SELF);
-    const PetscReal mass = model_sum(m, MEASURE_MASS, 0);
+    const PetscReal mass = model_sum(m, "mass: total", 0);
     CALL(ModelSetBodyForce(m, swing, NULL));
     for (int step = 0; step < 40; ++step) {
       PetscReal a[2], u[2];
@@ -281,7 +281,7 @@ static PetscReal pushed(PetscReal load)
   wall->value[0] = -0.1;
   wall->amplitude = (Amplitude){.n = 3, .time = time, .value = squeeze};
   bench_traction(&b, 1, 1, NULL, 0, load, 0)->amplitude = (Amplitude){.n = 3, .time = time, .value = push};
-  bench_tracer(&b, MEASURE_DISPLACEMENT, 1, 0.5, 1, 0);
+  bench_tracer(&b, "displacement", 1, 0.5, 1, 0);
   Model *m = bench_model(&b, PETSC_COMM_WORLD);
   for (int step = 0; step < 2; ++step) {
     model_step(m, 0.5);

@@ -242,7 +242,7 @@ static void test_roughness(void **state)
     rough += present * PetscSqr(pressure[p] - smooth);
     all += present * PetscSqr(pressure[p]);
   }
-  CHECK_CLOSE(model_sum(m, MEASURE_ROUGHNESS, 0), PetscSqrtReal(rough / all), 1e-12);
+  CHECK_CLOSE(model_sum(m, "roughness: pressure", 0), PetscSqrtReal(rough / all), 1e-12);
   CALL(PetscFree(pressure));
   CALL(ModelDestroy(&m));
 }

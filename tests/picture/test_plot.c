@@ -378,18 +378,28 @@ static void test_convergence(void **state)
   const FigureSeries series[] = {{"fem", FIGURE_LINE_MARKS, 4, h, fem},
                                  {"mpm 'a' \"b\" `date` \\c", FIGURE_LINE_MARKS, 4, h, mpm},
                                  {"none", FIGURE_LINE, 0, h, mpm}};
+  const Figure figure = {.title = "Cantilever",
+                         .x_label = "h [m]",
+                         .y_label = "error",
+                         .log_x = PETSC_TRUE,
+                         .log_y = PETSC_TRUE,
+                         .n_series = 3,
+                         .series = series,
+                         .slope = 2};
+  Figure nothing = figure;
   char folder[64], png[128];
   int width, height;
   PetscBool done;
   Diag *diag;
   (void)state;
+  nothing.n_series = 1, nothing.series = &series[2];
   TestFolder(folder);
   snprintf(png, sizeof png, "%s/it's \"convergence\" `x`.png", folder);
   assert_int_equal(DiagCreate(&diag), 0);
-  assert_int_equal(FigureConvergence("Cantilever", "h [m]", "error", 3, series, 2, png, diag, &done), 0);
+  assert_int_equal(FigureWrite(&figure, png, diag, &done), 0);
   assert_true(done && diag_errors(diag) == 0);
   assert_true(CheckPng(png, &width, &height) > 8000 && width == 900 && height == 600);
-  assert_int_equal(FigureConvergence("Nothing", "h [m]", "error", 1, &series[2], 2, png, diag, &done), 0);
+  assert_int_equal(FigureWrite(&nothing, png, diag, &done), 0);
   assert_true(!done && diag_errors(diag) == 1);
   assert_int_equal(DiagDestroy(&diag), 0);
   TestRemove(folder);

@@ -103,6 +103,6 @@ says err.txt "warning: the transfer between points and grid took " " % of the en
 expect "list measures" 0 "$talus" list measures
 says out.txt "outside " "outside_momentum "
 expect "of a body" 2 "$talus" check fly.yaml --set 'measures.mass.of={body: gone}'
-says err.txt "what has left the grid is known for the whole model only"
+says err.txt "outside: mass is known for the whole model only"
 
 finish

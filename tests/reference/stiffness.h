@@ -1,10 +1,11 @@
-/* The weak form of one point as a textbook has it, in plain loops: what the vectorised kernels of src/formulation must give.
+/* The weak form of one point as a textbook has it, in plain loops: what the vectorised kernels
+ * of src/formulation must give.
  *
  *   f_I  = V tau grad N_I                                        thesis eq. 4.31, docs/theory.md
  *   K_IJ = V (grad N_I . c . grad N_J + (grad N_I . tau grad N_J) 1)
  *
- * Gradients are those at the end of the step, grad N = dF^-T dN. tau (Kirchhoff) and c (L_v tau = c : d) in Voigt's order xx yy zz xy yz zx;
- * dim 2 is plane strain. */
+ * Gradients are those at the end of the step, grad N = dF^-T dN. tau (Kirchhoff) and c (L_v tau
+ * = c : d) in Voigt's order xx yy zz xy yz zx; dim 2 is plane strain. */
 #pragma once
 #include "base/math/tensor.h"
 

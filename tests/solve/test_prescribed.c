@@ -1,11 +1,12 @@
-/* Prescribed unknowns in the system: rows and columns that are cut, diagonals, columns lifted to the right-hand side; in double and
- * single precision, with pressures, on any number of ranks. */
+/* Prescribed unknowns in the system: rows and columns that are cut, diagonals, columns lifted to
+ * the right-hand side; in double and single precision, with pressures, on any number of ranks. */
 #include "made_system.h"
 #include "solve/blocks/blocks.h"
 
 static const PetscReal large = 1e7; /* of the matrices' numbers */
 
-/* A system with `block` unknowns a node, without symmetry; every third node is idle where there are pressures. */
+/* A system with `block` unknowns a node, without symmetry; every third node is idle where there
+ * are pressures. */
 typedef struct {
   Made made;
   unsigned char *none, *idle;
@@ -130,7 +131,8 @@ static void check_lift(const Subject *t, Vec found, Vec wanted, PetscReal bound)
   CALL(VecDestroy(&zero));
 }
 
-/* A x of the free, by the cut matrix as by the whole one; nothing on held rows; held columns give their diagonal alone. */
+/* A x of the free, by the cut matrix as by the whole one; nothing on held rows; held columns
+ * give their diagonal alone. */
 static void check_cut(const Subject *t, Mat cut, Vec whole, PetscReal bound)
 {
   Vec x = random_where(t, PETSC_FALSE), h = random_where(t, PETSC_TRUE), y, zero;

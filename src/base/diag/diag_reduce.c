@@ -4,54 +4,18 @@
 #include <string.h>
 
 typedef struct {
-  int severity, line, column, width;
-  int length[4]; /* of file, text, message, hint; -1: NULL */
+  DiagMessage message; /* its strings follow */
+  int length[4];       /* of file, text, message, hint; -1: NULL */
 } PackedHead;
 
-static void reduce_strings(const DiagMessage *m, const char *strings[4])
+static void pack(const DiagMessage *m, FILE *out)
 {
-  strings[0] = m->file;
-  strings[1] = m->text;
-  strings[2] = m->message;
-  strings[3] = m->hint;
-}
-
-static PackedHead head_of(const DiagMessage *m)
-{
-  PackedHead head = {.severity = (int)m->severity, .line = m->line, .column = m->column, .width = m->width};
-  const char *strings[4];
-  reduce_strings(m, strings);
+  const char *const strings[4] = {m->file, m->text, m->message, m->hint};
+  PackedHead head = {.message = *m};
   for (int k = 0; k < 4; ++k) head.length[k] = strings[k] ? (int)strlen(strings[k]) : -1;
-  return head;
-}
-
-static PetscErrorCode Pack(const Diag *diag, int *size, char **bytes)
-{
-  size_t total = 0;
-  char *p;
-
-  PetscFunctionBeginUser;
-  for (PetscInt i = 0; i < diag->n; ++i) {
-    const PackedHead head = head_of(&diag->messages[i]);
-    total += sizeof(head);
-    for (int k = 0; k < 4; ++k) total += head.length[k] > 0 ? (size_t)head.length[k] : 0;
-  }
-  PetscCall(PetscMalloc1(total, bytes));
-  p = *bytes;
-  for (PetscInt i = 0; i < diag->n; ++i) {
-    const PackedHead head = head_of(&diag->messages[i]);
-    const char *strings[4];
-    reduce_strings(&diag->messages[i], strings);
-    memcpy(p, &head, sizeof(head));
-    p += sizeof(head);
-    for (int k = 0; k < 4; ++k) {
-      if (head.length[k] <= 0) continue;
-      memcpy(p, strings[k], (size_t)head.length[k]);
-      p += head.length[k];
-    }
-  }
-  *size = (int)total;
-  PetscFunctionReturn(0);
+  fwrite(&head, sizeof head, 1, out);
+  for (int k = 0; k < 4; ++k)
+    if (strings[k]) fputs(strings[k], out);
 }
 
 static PetscBool same_text(const char *a, const char *b) { return !strcmp(a ? a : "", b ? b : ""); }
@@ -79,14 +43,8 @@ static void unpack(Diag *diag, const char *p, const char *end)
       strings[k] = strndup(p, (size_t)head.length[k]);
       p += head.length[k];
     }
-    DiagMessage m = {.severity = (DiagSeverity)head.severity,
-                     .line = head.line,
-                     .column = head.column,
-                     .width = head.width,
-                     .file = strings[0],
-                     .text = strings[1],
-                     .message = strings[2],
-                     .hint = strings[3]};
+    DiagMessage m = head.message;
+    m.file = strings[0], m.text = strings[1], m.message = strings[2], m.hint = strings[3];
     if (reduce_known(diag, &m)) diag_message_clear(&m);
     else diag_append(diag, &m);
   }
@@ -109,11 +67,15 @@ static void remove_twins(Diag *diag)
 static PetscErrorCode Gather(MPI_Comm comm, PetscMPIInt rank, PetscMPIInt ranks, Diag *diag)
 {
   int size, total = 0, *sizes, *offsets;
-  char *mine, *all;
+  char *mine = NULL, *all;
+  size_t bytes = 0;
+  FILE *out = open_memstream(&mine, &bytes);
 
   PetscFunctionBeginUser;
-  PetscCall(Pack(diag, &size, &mine));
-  if (rank == 0) size = 0; /* its own messages are there already */
+  PetscCheck(out, PETSC_COMM_SELF, PETSC_ERR_MEM, "no memory for messages");
+  for (PetscInt i = 0; rank && i < diag->n; ++i) pack(&diag->messages[i], out); /* rank 0 has its own already */
+  PetscCheck(!fclose(out), PETSC_COMM_SELF, PETSC_ERR_MEM, "no memory for messages");
+  size = (int)bytes;
   PetscCall(PetscCalloc2(ranks, &sizes, ranks, &offsets));
   PetscCallMPI(MPI_Gather(&size, 1, MPI_INT, sizes, 1, MPI_INT, 0, comm));
   for (PetscMPIInt r = 0; r < ranks; ++r) {
@@ -125,7 +87,7 @@ static PetscErrorCode Gather(MPI_Comm comm, PetscMPIInt rank, PetscMPIInt ranks,
   if (rank == 0) unpack(diag, all, all + total);
   PetscCall(PetscFree(all));
   PetscCall(PetscFree2(sizes, offsets));
-  PetscCall(PetscFree(mine));
+  free(mine);
   PetscFunctionReturn(0);
 }
 

@@ -1,7 +1,8 @@
 /* Kinematics: how many dimensions a case has, and what strains where its nodes move.
  *
- * To add one, copy plane_strain.c and add its name to kinematics.inc: the case file then takes its word. Kernels of all formulations are compiled
- * for the plane, for the plane with a hoop, and for space (formulation/sizes.h), so that nothing is asked inside the loop over points. */
+ * To add one, copy plane_strain.c and add its name to kinematics.inc: the case file then takes
+ * its word. Kernels of all formulations are compiled for the plane, for the plane with a hoop,
+ * and for space (formulation/sizes.h), so that nothing is asked inside the loop over points. */
 #pragma once
 #include <petscsys.h>
 
@@ -21,5 +22,6 @@ static inline PetscInt kinematics_dim(const Kinematics *k) { return k->dim; }
 /* Does nothing strain along z? Then laws may take their plane path. */
 static inline PetscBool kinematics_is_plane(const Kinematics *k) { return k->dim == 2 && !k->hoop; }
 
-/* Volume per area of the plane (per volume in space) at radius x: the full circle, or a unit of thickness. */
+/* Volume per area of the plane (per volume in space) at radius x: the full circle, or a unit of
+ * thickness. */
 static inline PetscReal kinematics_weight(const Kinematics *k, PetscReal x) { return k->hoop ? 2 * PETSC_PI * x : 1; }

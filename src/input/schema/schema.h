@@ -19,7 +19,6 @@ typedef enum {
   TYPE_TEXT,      /* char * */
   TYPE_NAME,      /* char *, fit for a path */
   TYPE_FILE,      /* char *, resolved against the folder of the case */
-  TYPE_LAW,       /* char *, the name of a law */
   TYPE_REFERENCE, /* char *, a name from the list or mapping `target` at the top of the file */
   TYPE_BOUNDARY,  /* PetscInt, index or name of an entry of `boundary` */
   TYPE_VECTOR,    /* PetscReal[3], as many as dimensions */
@@ -49,8 +48,9 @@ typedef struct {
 } SchemaWord;
 
 typedef struct SchemaTable SchemaTable;
+typedef struct SchemaEntry SchemaEntry;
 
-typedef struct SchemaEntry {
+struct SchemaEntry {
   const char *key;
   SchemaType type;
   const char *help;
@@ -74,13 +74,13 @@ typedef struct SchemaEntry {
   PetscBool tagged;       /* giving this key sets the table's tag to `tag`... */
   PetscBool items_tagged; /* ...or that of each item of the list */
   int tag;
-} SchemaEntry;
+};
 
 typedef enum { GROUP_NONE, GROUP_ONE, GROUP_AT_MOST_ONE, GROUP_AT_LEAST_ONE } SchemaGroupKind;
 
 typedef struct {
   SchemaGroupKind kind;
-  const char *keys[16]; /* ended by NULL */
+  const char *keys[8]; /* ended by NULL; none: those that set the table's tag */
 } SchemaGroup;
 
 typedef struct SchemaReader {
@@ -93,12 +93,15 @@ typedef struct SchemaReader {
 struct SchemaTable {
   const char *name; /* unique: a heading of the reference, a definition of the JSON Schema */
   const char *help;
-  const SchemaEntry *entries; /* ended by key = NULL */
-  const SchemaGroup *groups;  /* ended by GROUP_NONE; NULL if there are none */
-  size_t size;                /* of the struct, for lists */
+  const SchemaEntry *entries;       /* ended by key = NULL */
+  SchemaEntry (*entry)(PetscInt i); /* or made from a registry, ended likewise */
+  const SchemaGroup *groups;        /* ended by GROUP_NONE; NULL if there are none */
+  size_t size;                      /* of the struct, for lists */
   size_t tag_offset;
+  PetscBool tag_is_key; /* is the tag no number but the key, a char *? */
   /* Keys that the entries do not list; NULL: they are mistakes. */
   PetscErrorCode (*open)(SchemaReader *r, const YamlNode *mapping, void *target);
+  PetscErrorCode (*clear)(void *target); /* free what `open` has read; NULL: nothing */
   /* After reading without a mistake: resolve defaults, look at keys together. */
   PetscErrorCode (*check)(SchemaReader *r, const YamlNode *mapping, void *target);
   /* Is this entry to be left out when `source` is written? NULL: never. */
@@ -116,11 +119,17 @@ static inline SchemaWord schema_word(const SchemaEntry *e, int i)
 
 /* The whole language. */
 extern const SchemaTable schema_case;
-extern const SchemaTable schema_measure; /* for `talus list measures` */
-extern const SchemaWord schema_methods[];
+
+SchemaEntry schema_entry(const SchemaTable *table, PetscInt i);
+/* The groups of a table of which one tagged key must be given. */
+extern const SchemaGroup schema_one_tag[];
+/* Key k of a group, NULL behind the last. */
+const char *schema_group_key(const SchemaTable *table, const SchemaGroup *group, PetscInt k);
 
 /* --- reading (schema_read.c) --- */
 PetscErrorCode SchemaReadTable(SchemaReader *r, const SchemaTable *table, const YamlNode *mapping, void *target);
+/* Free what SchemaReadTable has read of texts, numbers, tables and lists. */
+PetscErrorCode SchemaClear(const SchemaTable *table, void *target);
 /* One value; dispatches on the type. */
 PetscErrorCode SchemaReadEntry(SchemaReader *r, const SchemaEntry *entry, const YamlNode *node, void *target);
 /* Record a mistake at the value, or at the key. `%s` of the path comes first in the message by habit. */
@@ -128,6 +137,8 @@ PetscErrorCode SchemaReadEntry(SchemaReader *r, const SchemaEntry *entry, const 
 #define SchemaKeyError(r, node, ...) yaml_error((r)->document, (r)->diag, node, PETSC_TRUE, __VA_ARGS__)
 /* "<path> must be <what>, not <what stands there>". */
 void schema_mismatch(SchemaReader *r, const SchemaEntry *entry, const YamlNode *node);
+/* Is the node a list or a mapping with at least so many entries? A mismatch if not. */
+PetscBool schema_is(SchemaReader *r, const SchemaEntry *entry, const YamlNode *node, YamlKind kind, PetscInt least);
 /* "a number > 0, in Pa". Returns buffer. */
 /* Its words joined by commas, the last one by `last`, behind what is in the buffer. */
 void schema_append_words(const SchemaEntry *entry, const char *last, char *buffer, size_t size);
@@ -151,65 +162,43 @@ void schema_hint_words(SchemaReader *r, const char *word, PetscInt n, const char
 PetscInt schema_parse_vector(const YamlNode *node, PetscReal value[3]);
 
 /* --- kinds of values (schema_types.c) --- */
-typedef PetscErrorCode (*SchemaReadType)(SchemaReader *r, const SchemaEntry *entry, const YamlNode *node, void *target);
+typedef PetscErrorCode SchemaReadType(SchemaReader *r, const SchemaEntry *entry, const YamlNode *node, void *target);
 typedef struct {
   const char *what;       /* "a number" */
   const char *short_name; /* for the column of a table: "number" */
   const char *json;       /* its JSON Schema; NULL: made from the entry */
-  SchemaReadType read;    /* NULL: nested, see schema_read.c */
+  SchemaReadType *read;   /* NULL: nested, see schema_read.c */
 } SchemaTypeInfo;
 extern const SchemaTypeInfo schema_types[TYPE_COUNT];
 
-PetscErrorCode SchemaReadInterval(SchemaReader *r, const SchemaEntry *e, const YamlNode *node, void *target);
-PetscErrorCode SchemaReadAmplitude(SchemaReader *r, const SchemaEntry *e, const YamlNode *node, void *target);
-PetscErrorCode SchemaReadPolygon(SchemaReader *r, const SchemaEntry *e, const YamlNode *node, void *target);
-PetscErrorCode SchemaReadEvery(SchemaReader *r, const SchemaEntry *e, const YamlNode *node, void *target);
-PetscErrorCode SchemaReadFields(SchemaReader *r, const SchemaEntry *e, const YamlNode *node, void *target);
-PetscErrorCode SchemaReadNumbers(SchemaReader *r, const SchemaEntry *e, const YamlNode *node, void *target);
-PetscErrorCode SchemaReadOptions(SchemaReader *r, const SchemaEntry *e, const YamlNode *node, void *target);
-PetscErrorCode SchemaReadVector(SchemaReader *r, const SchemaEntry *e, const YamlNode *node, void *target);
-PetscErrorCode SchemaReadSpin(SchemaReader *r, const SchemaEntry *e, const YamlNode *node, void *target);
-PetscErrorCode SchemaReadAxis(SchemaReader *r, const SchemaEntry *e, const YamlNode *node, void *target);
-PetscErrorCode SchemaReadAxes(SchemaReader *r, const SchemaEntry *e, const YamlNode *node, void *target);
-PetscErrorCode SchemaReadSize(SchemaReader *r, const SchemaEntry *e, const YamlNode *node, void *target);
-PetscErrorCode SchemaReadCounts(SchemaReader *r, const SchemaEntry *e, const YamlNode *node, void *target);
-PetscErrorCode SchemaReadNumber(SchemaReader *r, const SchemaEntry *e, const YamlNode *node, void *target);
-PetscErrorCode SchemaReadInteger(SchemaReader *r, const SchemaEntry *e, const YamlNode *node, void *target);
-PetscErrorCode SchemaReadBoolean(SchemaReader *r, const SchemaEntry *e, const YamlNode *node, void *target);
-PetscErrorCode SchemaReadWord(SchemaReader *r, const SchemaEntry *e, const YamlNode *node, void *target);
-PetscErrorCode SchemaReadMember(SchemaReader *r, const SchemaEntry *e, const YamlNode *node, void *target);
-PetscErrorCode SchemaReadWordText(SchemaReader *r, const SchemaEntry *e, const YamlNode *node, void *target);
-PetscErrorCode SchemaReadText(SchemaReader *r, const SchemaEntry *e, const YamlNode *node, void *target);
-PetscErrorCode SchemaReadName(SchemaReader *r, const SchemaEntry *e, const YamlNode *node, void *target);
-PetscErrorCode SchemaReadFile(SchemaReader *r, const SchemaEntry *e, const YamlNode *node, void *target);
-PetscErrorCode SchemaReadLaw(SchemaReader *r, const SchemaEntry *e, const YamlNode *node, void *target);
-PetscErrorCode SchemaReadReference(SchemaReader *r, const SchemaEntry *e, const YamlNode *node, void *target);
-PetscErrorCode SchemaReadBoundary(SchemaReader *r, const SchemaEntry *e, const YamlNode *node, void *target);
+extern SchemaReadType SchemaReadInterval, SchemaReadAmplitude, SchemaReadPolygon, SchemaReadEvery, SchemaReadFields,
+  SchemaReadNumbers, SchemaReadOptions, SchemaReadVector, SchemaReadSpin, SchemaReadAxis, SchemaReadAxes,
+  SchemaReadSize, SchemaReadCounts, SchemaReadNumber, SchemaReadInteger, SchemaReadBoolean, SchemaReadWord,
+  SchemaReadMember, SchemaReadWordText, SchemaReadText, SchemaReadName, SchemaReadFile, SchemaReadReference,
+  SchemaReadBoundary;
 /* Is the name fit for a path and a column of a table? Complains at the node (its key if `key`). */
 PetscBool schema_check_name(SchemaReader *r, const YamlNode *node, const char *name, PetscBool key);
 
 /* Writers of single values (schema_write_types.c). */
 void schema_write_real(FILE *out, PetscReal value);  /* the shortest text that reads back to the same number */
 void schema_write_text(FILE *out, const char *text); /* quoted where YAML wants it */
-typedef void (*SchemaWriteType)(FILE *out, const Case *c, const SchemaEntry *entry, const void *source);
+typedef struct {
+  FILE *out;
+  const Case *c;
+  const SchemaEntry *entry;
+  const void *source; /* the struct that holds the value */
+} SchemaWriting;
+typedef void (*SchemaWriteType)(const SchemaWriting *writing);
 extern const SchemaWriteType schema_writers[TYPE_COUNT];
 
-/* --- checks of tables, by topic --- */
-PetscErrorCode SchemaCheckAnalysis(SchemaReader *r, const YamlNode *mapping, void *target);
-PetscErrorCode SchemaCheckBox(SchemaReader *r, const YamlNode *mapping, void *target);
-PetscErrorCode SchemaCheckGrid(SchemaReader *r, const YamlNode *mapping, void *target);
-PetscErrorCode SchemaCheckShapeBox(SchemaReader *r, const YamlNode *mapping, void *target);
-PetscErrorCode SchemaCheckShape(SchemaReader *r, const YamlNode *mapping, void *target);
-PetscErrorCode SchemaCheckHalfSpace(SchemaReader *r, const YamlNode *mapping, void *target);
-PetscErrorCode SchemaCheckBody(SchemaReader *r, const YamlNode *mapping, void *target);
-PetscErrorCode SchemaCheckSelector(SchemaReader *r, const YamlNode *mapping, void *target);
-PetscErrorCode SchemaCheckMotion(SchemaReader *r, const YamlNode *mapping, void *target);
-PetscErrorCode SchemaCheckMeasure(SchemaReader *r, const YamlNode *mapping, void *target);
+/* --- checks of tables (schema_checks.c) --- */
+typedef PetscErrorCode SchemaCheck(SchemaReader *r, const YamlNode *mapping, void *target);
+extern SchemaCheck SchemaCheckAnalysis, SchemaCheckBox, SchemaCheckGrid, SchemaCheckShapeBox, SchemaCheckShape,
+  SchemaCheckHalfSpace, SchemaCheckBody, SchemaCheckSelector, SchemaCheckMotion;
 /* Materials take the parameters of their law (schema_material.c). */
 PetscErrorCode SchemaOpenMaterial(SchemaReader *r, const YamlNode *mapping, void *target);
 PetscErrorCode SchemaWriteMaterial(FILE *out, int indent, const Case *c, const void *source);
-
-/* What a constant may be, for materials and the reference: young, poisson, bulk, shear, lame; ended by key = NULL. */
-extern const SchemaEntry schema_elastic[];
-/* A parameter of a law as an entry, for messages and the reference. `law_parameter`: a const LawParameter *. */
+/* Elastic constant i as an entry, for messages and the reference; ended by key = NULL. */
+SchemaEntry schema_elastic(PetscInt i);
+/* A parameter of a law likewise. `law_parameter`: a const LawParameter *. */
 SchemaEntry schema_law_entry(const void *law_parameter);

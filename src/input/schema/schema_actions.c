@@ -41,12 +41,10 @@ static const SchemaEntry motion_entries[] = {
       .fallback = "false", AT(MotionSpec, moves)),
   {.key = NULL},
 };
-static const SchemaGroup motion_groups[] = {{GROUP_ONE, {"fix", "displacement", "velocity", "rotation", NULL}},
-                                            {GROUP_NONE, {NULL}}};
 const SchemaTable schema_motion = {.name = "boundary",
                                    .help = "Nodes whose motion is prescribed.",
                                    .entries = motion_entries,
-                                   .groups = motion_groups,
+                                   .groups = schema_one_tag,
                                    .size = sizeof(MotionSpec),
                                    .tag_offset = offsetof(MotionSpec, kind),
                                    .check = SchemaCheckMotion};

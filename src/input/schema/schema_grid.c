@@ -69,7 +69,7 @@ static const SchemaEntry grid_entries[] = {
   {.key = NULL},
 };
 static const SchemaGroup grid_groups[] = {
-  {GROUP_ONE, {"box", "mesh", NULL}}, {GROUP_AT_MOST_ONE, {"size", "counts", NULL}}, {GROUP_NONE, {NULL}}};
+  {GROUP_ONE, {NULL}}, {GROUP_AT_MOST_ONE, {"size", "counts", NULL}}, {GROUP_NONE, {NULL}}};
 static PetscBool hide_in_grid(const SchemaEntry *e, const void *source)
 {
   const GridSpec *g = source;

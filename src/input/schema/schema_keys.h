@@ -27,4 +27,4 @@
 
 /* Tables that others name. */
 extern const SchemaTable schema_shape, schema_selector, schema_grid, schema_body, schema_motion, schema_loads,
-  schema_basis;
+  schema_basis, schema_measure;

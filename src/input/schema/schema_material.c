@@ -29,11 +29,19 @@ static const LawParameter *find_parameter(const Law *law, const char *key)
   return NULL;
 }
 
-static const SchemaEntry *find_elastic(const char *key)
+SchemaEntry schema_elastic(PetscInt i)
 {
-  for (const SchemaEntry *e = schema_elastic; e->key; ++e)
-    if (!strcmp(e->key, key)) return e;
-  return NULL;
+  if (i >= ELASTIC_CONSTANTS) return (SchemaEntry){.key = NULL};
+  const ElasticConstant *c = &elastic_constants[i];
+  return (SchemaEntry){.key = c->name,
+                       .type = TYPE_NUMBER,
+                       .unit = c->unit,
+                       .help = c->help,
+                       .min = c->min,
+                       .max = c->max, /* included: poisson: 0.5 is for the mixed formulation to judge */
+                       .bounded = isfinite(c->min),
+                       .min_open = PETSC_TRUE,
+                       .offset = offsetof(NamedValue, value)};
 }
 
 /* `bulk: inf`: the one number that may be infinite. */
@@ -67,7 +75,7 @@ static void unknown_key(SchemaReader *r, const Law *law, const YamlNode *mapping
   const char *words[LAW_MAX_PARAMETERS + ELASTIC_CONSTANTS + 8] = {"law", "density"};
   char path[512];
   PetscInt n = 2;
-  for (const SchemaEntry *e = schema_elastic; e->key; ++e) words[n++] = e->key;
+  for (int k = 0; k < ELASTIC_CONSTANTS; ++k) words[n++] = elastic_constants[k].name;
   for (const LawParameter *p = law ? law->parameters : NULL;
        p && p->name && n < LAW_MAX_PARAMETERS + ELASTIC_CONSTANTS + 7; ++p)
     words[n++] = p->name;
@@ -81,11 +89,11 @@ static PetscErrorCode ReadConstants(SchemaReader *r, const Law *law, const YamlN
   for (PetscInt i = 0; i < mapping->n; ++i) {
     const YamlNode *node = mapping->child[i];
     const LawParameter *p = law ? find_parameter(law, node->key) : NULL;
-    const SchemaEntry *elastic = find_elastic(node->key);
+    const int elastic = elastic_index(node->key);
     PetscReal value;
     if (!strcmp(node->key, "law") || !strcmp(node->key, "density")) continue;
-    if (p || elastic) {
-      const SchemaEntry entry = p ? schema_law_entry(p) : *elastic;
+    if (p || elastic >= 0) {
+      const SchemaEntry entry = p ? schema_law_entry(p) : schema_elastic(elastic);
       if (is_infinite(node)) PetscCall(Add(material, node->key, INFINITY));
       else if (schema_number(r, &entry, node, &value)) PetscCall(Add(material, node->key, value));
     } else if (law) unknown_key(r, law, mapping, node); /* without a law nobody knows which keys it has */
@@ -124,7 +132,7 @@ static void incompressible(SchemaReader *r, const YamlNode *node)
 
 static void check_pair(SchemaReader *r, const YamlNode *mapping, int first, int second)
 {
-  const char *a_name = schema_elastic[first].key, *b_name = schema_elastic[second].key;
+  const char *a_name = elastic_constants[first].name, *b_name = elastic_constants[second].name;
   const YamlNode *a_node = yaml_find(mapping, a_name), *b_node = yaml_find(mapping, b_name);
   PetscReal value[ELASTIC_CONSTANTS] = {0};
   const unsigned given = 1u << first | 1u << second;
@@ -147,16 +155,16 @@ static PetscErrorCode CheckElastic(SchemaReader *r, const YamlNode *mapping)
   char path[512];
 
   PetscFunctionBeginUser;
-  for (int k = 0; schema_elastic[k].key; ++k)
-    if (yaml_find(mapping, schema_elastic[k].key)) given[n++] = k;
+  for (int k = 0; k < ELASTIC_CONSTANTS; ++k)
+    if (yaml_find(mapping, elastic_constants[k].name)) given[n++] = k;
   if (n == 2) check_pair(r, mapping, given[0], given[1]);
   else if (n > 2)
-    SchemaKeyError(r, yaml_find(mapping, schema_elastic[given[2]].key),
+    SchemaKeyError(r, yaml_find(mapping, elastic_constants[given[2]].name),
                    "%s has %d elastic constants; exactly two must be given", yaml_path(mapping, path, sizeof(path)), n);
   else {
     SchemaKeyError(r, mapping, "%s needs two elastic constants, it has %s", yaml_path(mapping, path, sizeof(path)),
                    n ? "one" : "none");
-    diag_hint(r->diag, "any two of: young [Pa], poisson, bulk [Pa], shear [Pa], lame [Pa]");
+    diag_hint(r->diag, "any two of: %s", elastic_list(ELASTIC_ALL, path, sizeof(path)));
   }
   PetscFunctionReturn(0);
 }
@@ -184,8 +192,8 @@ PetscErrorCode SchemaWriteMaterial(FILE *out, int indent, const Case *c, const v
   for (PetscInt i = 0; i < material->n_parameters; ++i) {
     const NamedValue *value = &material->parameters[i];
     const LawParameter *p = law ? find_parameter(law, value->name) : NULL;
-    const SchemaEntry *elastic = find_elastic(value->name);
-    const char *unit = p ? p->unit : elastic ? elastic->unit : NULL;
+    const int elastic = elastic_index(value->name);
+    const char *unit = p ? p->unit : elastic >= 0 ? elastic_constants[elastic].unit : NULL;
     fprintf(out, "%*s%s: ", indent, "", value->name);
     schema_write_real(out, value->value);
     fprintf(out, unit && unit[0] ? "  # %s\n" : "\n", unit);

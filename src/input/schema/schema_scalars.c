@@ -4,7 +4,6 @@
 #include <string.h>
 #include <unistd.h>
 #include "input/schema/schema.h"
-#include "material/law.h"
 
 /* [+-] digits [. digits] [e [+-] digits], at least one digit before the exponent: no hexadecimal, no inf, no nan. */
 static PetscBool looks_like_number(const char *p)
@@ -245,23 +244,6 @@ PetscErrorCode SchemaReadFile(SchemaReader *r, const SchemaEntry *e, const YamlN
   else if (!strcmp(folder, ".")) snprintf(path, sizeof(path), "%s/%s", here, node->text);
   else snprintf(path, sizeof(path), "%s/%s/%s", here, folder, node->text);
   PetscCall(Store(path, e, target));
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode SchemaReadLaw(SchemaReader *r, const SchemaEntry *e, const YamlNode *node, void *target)
-{
-  const char *words[64] = {NULL};
-  char path[512];
-  PetscInt n = 0;
-
-  PetscFunctionBeginUser;
-  if (node->kind != YAML_SCALAR || yaml_is_null(node)) schema_mismatch(r, e, node);
-  else if (law_find(node->text)) PetscCall(Store(node->text, e, target));
-  else {
-    for (; laws[n] && n < 63; ++n) words[n] = laws[n]->name;
-    SchemaError(r, node, "%s: there is no law '%s'", yaml_path(node, path, sizeof(path)), node->text);
-    schema_hint_words(r, node->text, n, words);
-  }
   PetscFunctionReturn(0);
 }
 

@@ -42,13 +42,10 @@ static const SchemaEntry shape_entries[] = {
       AT(Shape, children), .count = offsetof(Shape, n_children)),
   {.key = NULL},
 };
-static const SchemaGroup shape_groups[] = {
-  {GROUP_ONE, {"box", "circle", "sphere", "polygon", "half-space", "union", "difference", "intersection", NULL}},
-  {GROUP_NONE, {NULL}}};
 const SchemaTable schema_shape = {.name = "shape",
                                   .help = "A set of positions: exactly one of these keys.",
                                   .entries = shape_entries,
-                                  .groups = shape_groups,
+                                  .groups = schema_one_tag,
                                   .size = sizeof(Shape),
                                   .tag_offset = offsetof(Shape, kind),
                                   .check = SchemaCheckShape};

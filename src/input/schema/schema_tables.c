@@ -1,19 +1,10 @@
 /* The keys at the top of the case file, and those of the smaller blocks. The order of the lines is the
  * order of reading, writing and of the reference. */
+#include "formulation/formulation.h"
 #include "input/schema/schema_keys.h"
+#include "material/law.h"
 #include "method/method.h"
 
-const SchemaWord schema_methods[] = {
-  {"mpm", 0, "material point method: points carry the material through a fixed grid"},
-  {"fem", 1, "updated Lagrangian finite elements: the grid moves with the material"},
-  {"gmm", 2, "Galerkin meshfree method: a cloud of nodes and points moves, without cells"},
-  {NULL, 0, NULL},
-};
-static const SchemaWord formulation_words[] = {
-  {"displacement", 0, "displacements are the only unknowns"},
-  {"mixed", 1, "displacements and pressure: for nearly or exactly incompressible materials"},
-  {NULL, 0, NULL},
-};
 static const SchemaWord analysis_words[] = {
   {"static", ANALYSIS_STATIC, "equilibrium at every step, no inertia"},
   {"dynamic", ANALYSIS_DYNAMIC, "Newmark in time, with inertia"},
@@ -73,7 +64,8 @@ static const SchemaTable analysis = {.name = "analysis",
 
 /* --- materials --- */
 static const SchemaEntry material_entries[] = {
-  KEY("law", LAW, NULL, "the constitutive law, see `talus list laws`", REQUIRED, AT(MaterialSpec, law)),
+  KEY("law", WORD_TEXT, NULL, "the constitutive law, see `talus list laws`", .registry = (const void *const *)laws,
+      REQUIRED, AT(MaterialSpec, law)),
   KEY("density", NUMBER, "kg/m3", "mass per volume of the undeformed body", REQUIRED, ABOVE(0),
       AT(MaterialSpec, density)),
   {.key = NULL},
@@ -165,8 +157,9 @@ static const SchemaEntry case_entries[] = {
   KEY("title", TEXT, NULL, "a line for people", .fallback = "", AT(Case, title)),
   KEY("kinematics", MEMBER, NULL, "dimension and symmetry", .registry = (const void *const *)kinematics_list,
       .later = "axisymmetric", REQUIRED, AT(Case, kinematics)),
-  KEY("method", WORD_TEXT, NULL, "numerical method", .words = schema_methods, REQUIRED, AT(Case, method)),
-  KEY("formulation", WORD_TEXT, NULL, "unknowns of the equations", .words = formulation_words,
+  KEY("method", WORD_TEXT, NULL, "numerical method", .registry = (const void *const *)methods, REQUIRED,
+      AT(Case, method)),
+  KEY("formulation", WORD_TEXT, NULL, "unknowns of the equations", .registry = (const void *const *)formulations,
       .fallback = "displacement", AT(Case, formulation)),
   KEY("mixed", TABLE, NULL, "numbers of the mixed formulation", .table = &mixed, ALWAYS, AT(Case, mixed)),
   KEY("analysis", TABLE, NULL, "statics or dynamics, steps", .table = &analysis, REQUIRED, AT(Case, analysis)),
@@ -200,14 +193,3 @@ static PetscBool hide_in_case(const SchemaEntry *e, const void *source)
 }
 const SchemaTable schema_case = {
   .name = "case", .help = "The keys at the top of the file.", .entries = case_entries, .hide = hide_in_case};
-
-/* --- elastic constants: any two; listed here because the reference shows them with the materials --- */
-const SchemaEntry schema_elastic[] = {
-  KEY("young", NUMBER, "Pa", "Young's modulus", ABOVE(0), AT(NamedValue, value)),
-  KEY("poisson", NUMBER, NULL, "Poisson's ratio", .bounded = PETSC_TRUE, .min = -1, .min_open = PETSC_TRUE, .max = 0.5,
-      AT(NamedValue, value)),
-  KEY("bulk", NUMBER, "Pa", "bulk modulus", ABOVE(0), AT(NamedValue, value)),
-  KEY("shear", NUMBER, "Pa", "shear modulus", ABOVE(0), AT(NamedValue, value)),
-  KEY("lame", NUMBER, "Pa", "Lame's first constant", AT(NamedValue, value)),
-  {.key = NULL},
-};

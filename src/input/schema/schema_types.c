@@ -20,7 +20,6 @@ const SchemaTypeInfo schema_types[TYPE_COUNT] = {
   [TYPE_TEXT] = {"a text", "text", "{\"type\": [\"string\", \"number\"]}", SchemaReadText},
   [TYPE_NAME] = {"a name", "name", "{\"type\": [\"string\", \"number\"]}", SchemaReadName},
   [TYPE_FILE] = {"the name of a file", "file", "{\"type\": \"string\"}", SchemaReadFile},
-  [TYPE_LAW] = {"the name of a law", "law", NULL, SchemaReadLaw},
   [TYPE_REFERENCE] = {"a name", "name", "{\"type\": [\"string\", \"number\"]}", SchemaReadReference},
   [TYPE_BOUNDARY] = {"the name or index of a boundary entry", "name or index", "{\"type\": [\"string\", \"integer\"]}",
                      SchemaReadBoundary},

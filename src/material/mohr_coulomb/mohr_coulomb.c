@@ -123,25 +123,10 @@ LANES_INLINE LawStatus update_lanes(const PetscReal *p, PetscInt n, const PetscR
   return lanes_any(&bad) ? give_up(&t.finite, &t.det, n, old, state, tau, c) : LAW_OK;
 }
 
-typedef LawStatus (*UpdateLanes)(const PetscReal *p, PetscInt n, const PetscReal *dF, const PetscReal *old,
-                                 PetscReal *state, PetscReal *tau, PetscReal *c);
-
-LANES_INLINE LawStatus update_batch(UpdateLanes lanes, const PetscReal *p, PetscInt n, const PetscReal *dF,
-                                    const PetscReal *old, PetscReal *state, PetscReal *tau, PetscReal *c)
-{
-  LawStatus worst = LAW_OK;
-  for (PetscInt i = 0; i < n; i += LANES) {
-    const LawStatus status =
-      lanes(p, n - i, dF + 9 * i, old + N_STATE * i, state + N_STATE * i, tau + 6 * i, c ? c + 36 * i : NULL);
-    worst = PetscMax(worst, status);
-  }
-  return worst;
-}
-
 static LawStatus update(const PetscReal *parameters, PetscInt n, const PetscReal *dF, const PetscReal *old,
                         PetscReal *state, PetscReal *tau, PetscReal *c)
 {
-  return update_batch(update_lanes, parameters, n, dF, old, state, tau, c);
+  return lanes_update(update_lanes, N_STATE, parameters, n, dF, old, state, tau, c);
 }
 
 /* The moduli of the plane where 36 components stand for each point. */
@@ -183,7 +168,7 @@ LANES_INLINE LawStatus update_plane_lanes(const PetscReal *p, PetscInt n, const 
 static LawStatus update_plane(const PetscReal *parameters, PetscInt n, const PetscReal *dF, const PetscReal *old,
                               PetscReal *state, PetscReal *tau, PetscReal *c)
 {
-  return update_batch(update_plane_lanes, parameters, n, dF, old, state, tau, c);
+  return lanes_update(update_plane_lanes, N_STATE, parameters, n, dF, old, state, tau, c);
 }
 
 static PetscReal energy(const PetscReal *p, const PetscReal *b)
@@ -249,26 +234,11 @@ static const char *check(const PetscReal *given)
 }
 
 static const LawParameter parameters[] = {
-  {.name = "friction_angle",
-   .unit = "deg",
-   .help = "angle of internal friction",
-   .min = 0,
-   .max = 90,
-   .max_open = PETSC_TRUE,
-   .fallback = NAN},
-  {.name = "dilatancy_angle",
-   .unit = "deg",
-   .help = "dilatancy angle, at most the friction angle",
-   .min = 0,
-   .max = 90,
-   .max_open = PETSC_TRUE,
+  {"friction_angle", "deg", "angle of internal friction", 0, 90, .max_open = PETSC_TRUE, .fallback = NAN},
+  {"dilatancy_angle", "deg", "dilatancy angle, at most the friction angle", 0, 90, .max_open = PETSC_TRUE,
    .fallback = 0},
-  {.name = "cohesion", .unit = "Pa", .help = "cohesion", .min = 0, .max = PETSC_MAX_REAL, .fallback = NAN},
-  {.name = "tension_cutoff",
-   .unit = "Pa",
-   .help = "largest principal tension; 1e300: none but the apex",
-   .min = 0,
-   .max = PETSC_MAX_REAL,
+  {"cohesion", "Pa", "cohesion", 0, PETSC_MAX_REAL, .fallback = NAN},
+  {"tension_cutoff", "Pa", "largest principal tension; 1e300: none but the apex", 0, PETSC_MAX_REAL,
    .fallback = NO_CUTOFF},
   {.name = NULL},
 };

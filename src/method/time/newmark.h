@@ -1,6 +1,7 @@
 /* Newmark's formulas, for schemes that are built on them (thesis eqs. 2.10-2.13).
  *
- *   a1 = (du - dt v) / (beta dt^2) - (1 / (2 beta) - 1) a        v1 = v + dt ((1 - gamma) a + gamma a1) */
+ * a1 = (du - dt v) / (beta dt^2) - (1 / (2 beta) - 1) a        v1 = v + dt ((1 - gamma) a +
+ * gamma a1) */
 #pragma once
 #include "method/time/time_scheme.h"
 

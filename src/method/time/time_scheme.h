@@ -1,4 +1,5 @@
-/* A time scheme: how velocities and accelerations follow from displacements over a step. To add one: a new file, and a line in time_schemes.inc.
+/* A time scheme: how velocities and accelerations follow from displacements over a step. To add
+ * one: a new file, and a line in time_schemes.inc.
  *
  * At the end of a step forces balance with (1 - lag) a1 + lag a + damping v1, times the mass. */
 #pragma once

@@ -10,7 +10,8 @@ typedef struct {
   PetscReal factor[2];
 } NodalField;
 
-/* Dimension and nodes of a cell are constants at the calls below that matter, so that the inner loops unroll; run->nodes 0: each group has its own. */
+/* Sizes are constants at the calls below that matter, so that the inner loops unroll; without
+ * fixed_nn each group has its own number of nodes. */
 #define UNROLLED static inline __attribute__((always_inline))
 
 /* The part of u M w that ties the nodes of one cell together: their deviations from the mean. */
@@ -148,9 +149,9 @@ static PetscErrorCode ForcesAtEnds(const Model *m, PetscReal dt, PetscReal **bef
 /* What stops points where they meet prescribed nodes acts within no time: its work is the impulse times the velocity of the boundary. */
 static PetscReal impulse_work(const Model *m, PetscInt i, PetscReal dt)
 {
-  const Discretisation *s = m->space;
+  const NodalFields *n = m->nodes;
   if (!m->scheme->inertia) return 0;
-  return s->nodes->mass[i / m->dim] * (s->nodes->v[i] - s->nodes->v_points[i]) * m->nodes->prescribed[i] / dt;
+  return n->mass[i / m->dim] * (n->v[i] - n->v_points[i]) * n->prescribed[i] / dt;
 }
 
 /* Work of inertia, with the acceleration that balances the forces at both ends. */

@@ -2,7 +2,7 @@
  *
  * The averaging goes from the points to the nodes and back; a pressure that is an unknown at the nodes makes the round trip from there, since
  * points do not see all of its oscillations: on a triangle 1, -1, 0 is nothing at the centre. */
-#include "model/model_private.h"
+#include "model/measure/measure.h"
 
 static PetscReal point_volume(const Model *m, PetscInt p)
 {
@@ -93,10 +93,11 @@ static PetscErrorCode AtNodes(const Model *m, PetscReal sum[2])
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode RoughnessValue(const Model *m, PetscReal *value)
+static PetscErrorCode Roughness(Model *m, const MeasureSpec *s, PetscInt index, PetscReal *value)
 {
   PetscReal local[2] = {0, 0}, sum[2];
 
+  (void)s, (void)index;
   PetscFunctionBeginUser;
   if (m->nodes->scaled_pressure) PetscCall(AtNodes(m, local));
   else PetscCall(AtPoints(m, local));
@@ -104,3 +105,15 @@ PetscErrorCode RoughnessValue(const Model *m, PetscReal *value)
   *value = sum[1] > 0 ? PetscSqrtReal(sum[0] / sum[1]) : 0;
   PetscFunctionReturn(0);
 }
+
+static const MeasureNumber *const words[] = {
+  WORD(
+    "pressure",
+    "of the whole model's pressure: its root mean square distance from itself averaged over neighbours, over its own "
+    "root mean square: 1 for a checkerboard, and for a smooth pressure less with every refinement",
+    .of = OF_MODEL, .value = Roughness),
+  NULL,
+};
+
+const Measure measure_roughness = {
+  .key = "roughness", .takes = MEASURE_WORD, .number = {.unit = "", .help = "how rough a field is"}, .words = words};

@@ -1,4 +1,14 @@
-#include "model/measure/surface.h"
+/* The free surface of a body in two dimensions: height over x, from the volume of its points.
+ *
+ * Each point shares its volume between the two nearest stations by linear weights, so that the profile integrates to the volume of the body's
+ * material (J at most 1) exactly and does not jump when a point crosses a station. Stations stand one cell apart from the grid's lowest x on. */
+#include "model/measure/measure.h"
+
+typedef struct {
+  PetscInt n;
+  PetscReal x0, dx;  /* station i stands at x0 + i dx, m */
+  PetscReal *height; /* n, m of solid material above the station */
+} Profile;
 
 static PetscReal station_spacing(const Model *m)
 {
@@ -7,7 +17,7 @@ static PetscReal station_spacing(const Model *m)
   return m->grid->smallest;
 }
 
-PetscErrorCode SurfaceProfileCreate(const Model *m, PetscInt body, SurfaceProfile *s)
+static PetscErrorCode ProfileCreate(const Model *m, PetscInt body, Profile *s)
 {
   PetscFunctionBeginUser;
   s->dx = station_spacing(m);
@@ -15,7 +25,7 @@ PetscErrorCode SurfaceProfileCreate(const Model *m, PetscInt body, SurfaceProfil
   s->n = (PetscInt)PetscCeilReal((m->grid->max[0] - s->x0) / s->dx - 1e-9) + 1;
   PetscCall(PetscCalloc1(s->n, &s->height));
   for (PetscInt p = 0; p < m->points->n; ++p) {
-    if (body >= 0 && m->points->body[p] != body) continue;
+    if (!measure_takes_point(m, body, p)) continue;
     /* a loose point may have opened to many times its volume: what it holds of material has not grown */
     const PetscReal volume = PetscMin(1, m->points->real[POINT_J][p]) * m->points->real[POINT_VOLUME][p];
     const PetscReal at = (point_real(m->points, POINT_X, p)[0] - s->x0) / s->dx;
@@ -30,14 +40,8 @@ PetscErrorCode SurfaceProfileCreate(const Model *m, PetscInt body, SurfaceProfil
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode SurfaceProfileDestroy(SurfaceProfile *s)
-{
-  PetscFunctionBeginUser;
-  PetscCall(PetscFree(s->height));
-  PetscFunctionReturn(0);
-}
-
-PetscReal surface_height(const SurfaceProfile *s, PetscReal x)
+/* Height at x, linear between stations. */
+static PetscReal height_at(const Profile *s, PetscReal x)
 {
   const PetscReal at = (x - s->x0) / s->dx;
   const PetscInt i = PetscMax(0, PetscMin(s->n - 2, (PetscInt)PetscFloorReal(at)));
@@ -45,7 +49,8 @@ PetscReal surface_height(const SurfaceProfile *s, PetscReal x)
   return (1 - share) * s->height[i] + share * s->height[i + 1];
 }
 
-PetscReal surface_front(const SurfaceProfile *s)
+/* The farthest x at which the surface is still half a station spacing high. */
+static PetscReal front_of(const Profile *s)
 {
   const PetscReal threshold = 0.5 * s->dx;
   for (PetscInt i = s->n - 1; i >= 0; --i) {
@@ -56,18 +61,64 @@ PetscReal surface_front(const SurfaceProfile *s)
   return s->x0;
 }
 
-PetscReal surface_slope(const SurfaceProfile *s)
+/* Angle (deg, positive if it falls towards +x) of the line fitted by least squares to the surface between 20 % and 80 % of the way
+ * from its highest station to the front. */
+static PetscReal slope_of(const Profile *s)
 {
   PetscInt top = 0;
   PetscReal n = 0, sx = 0, sy = 0, sxx = 0, sxy = 0;
   for (PetscInt i = 1; i < s->n; ++i)
     if (s->height[i] > s->height[top]) top = i;
-  const PetscReal start = s->x0 + (PetscReal)top * s->dx, length = surface_front(s) - start;
+  const PetscReal start = s->x0 + (PetscReal)top * s->dx, length = front_of(s) - start;
   for (PetscInt i = 0; i < s->n; ++i) {
     const PetscReal x = s->x0 + (PetscReal)i * s->dx;
     if (x < start + 0.2 * length || x > start + 0.8 * length) continue;
     n += 1, sx += x, sy += s->height[i], sxx += x * x, sxy += x * s->height[i];
   }
   const PetscReal denominator = n * sxx - sx * sx;
-  return denominator > 0 ? -PetscAtanReal((n * sxy - sx * sy) / denominator) : 0;
+  return denominator > 0 ? -PetscAtanReal((n * sxy - sx * sy) / denominator) * 180 / PETSC_PI : 0;
 }
+
+static PetscBool is_flat(const Profile *profile)
+{
+  for (PetscInt i = 0; i < profile->n; ++i)
+    if (profile->height[i] != 0) return PETSC_FALSE;
+  return PETSC_TRUE;
+}
+
+enum { FRONT, HEIGHT, SLOPE };
+
+/* nan where there is no body. */
+PetscErrorCode MeasureSurface(Model *m, const MeasureSpec *s, PetscInt index, PetscReal *value)
+{
+  const int which = measure_number(s)->which;
+  Profile profile;
+
+  (void)index;
+  PetscFunctionBeginUser;
+  PetscCall(ProfileCreate(m, measure_body(m, s), &profile));
+  if (is_flat(&profile)) *value = NAN;
+  else if (which == HEIGHT) *value = height_at(&profile, s->at);
+  else *value = which == SLOPE ? slope_of(&profile) : front_of(&profile);
+  PetscCall(PetscFree(profile.height));
+  PetscFunctionReturn(0);
+}
+
+static const MeasureNumber *const words[] = {
+  WORD("front", "farthest x at which the surface is still half a cell high, m", "m", .value = MeasureSurface),
+  WORD("height", "height of the material above x = `at`, m", "m", .at = PETSC_TRUE, .value = MeasureSurface,
+       .which = HEIGHT),
+  WORD("slope",
+       "angle of repose, positive if it falls towards +x, by least squares between a fifth and four fifths of the way "
+       "from "
+       "the highest place to the front, deg",
+       "deg", .value = MeasureSurface, .which = SLOPE),
+  NULL,
+};
+
+const Measure measure_surface = {
+  .key = "surface",
+  .takes = MEASURE_WORD,
+  .only_2d = PETSC_TRUE,
+  .number = {.unit = "m or deg", .help = "free surface of a body: from the volume above x, in cells of the grid"},
+  .words = words};

@@ -28,14 +28,6 @@ static const struct {
   {"control_patience", offsetof(Model, control.patience)},
   {"control_since", offsetof(Model, control.since)},
 };
-/* What measures remember. */
-static const struct {
-  const char *name, *unit;
-  size_t offset;
-} memories[] = {
-  {"front", "m", offsetof(MeasureMemory, front)},
-  {"moved", "s", offsetof(MeasureMemory, moved)},
-};
 /* What the grid must be for the rest to mean anything: numbers of the grid as it was made. */
 #define GRID_NUMBERS 9
 
@@ -74,11 +66,9 @@ static PetscErrorCode WholeToTables(Model *m, Tables *tables)
   PetscCall(TableAdd(table, "solver_steps_since", NULL, COLUMN_INT64, 1, NULL, &column));
   *(PetscInt64 *)column->data = newton.since;
   PetscCall(TablesAdd(tables, "measures", PETSC_TRUE, m->c->n_measures, &table));
-  for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(memories); ++i) {
-    PetscCall(TableAdd(table, memories[i].name, memories[i].unit, COLUMN_REAL, 1, NULL, &column));
-    for (PetscInt k = 0; k < m->c->n_measures; ++k)
-      ((PetscReal *)column->data)[k] = *(PetscReal *)((char *)&m->memory[k] + memories[i].offset);
-  }
+  PetscCall(TableAdd(table, "kept", NULL, COLUMN_REAL, MEASURE_KEPT, NULL, &column));
+  for (PetscInt k = 0; k < m->c->n_measures; ++k)
+    PetscCall(PetscArraycpy((PetscReal *)column->data + k * MEASURE_KEPT, m->memory[k].kept, MEASURE_KEPT));
   PetscFunctionReturn(0);
 }
 
@@ -140,7 +130,7 @@ PetscErrorCode ModelToTables(Model *m, Tables *tables)
   PetscCall(PointsToTable(m->tracers, m->grid, "tracers", tables));
   PetscCall(PointsToTable(m->loads->carriers, m->grid, "carriers", tables));
   PetscCall(ForcesToTables(m, tables));
-  if (m->grid->cloud) {
+  if (m->method->clouds) {
     PetscCall(StateCloudToTables(m, tables));
     PetscFunctionReturn(0);
   }
@@ -213,11 +203,9 @@ static void whole_from_tables(Model *m, const Table *table, const Table *measure
   if (!(m->time >= 0 && m->control.next > 0)) snprintf(reason, 256, "its time or step makes no sense");
   if (m->control.patience > STEP_WAIT_MOST || m->control.wait > STEP_WAIT_MOST || m->step > 1000000000)
     snprintf(reason, 256, "what its steps are chosen by makes no sense");
-  for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(memories); ++i) {
-    const PetscReal *data = table_data(measures, memories[i].name, COLUMN_REAL, 1, reason);
-    for (PetscInt k = 0; data && k < m->c->n_measures; ++k)
-      *(PetscReal *)((char *)&m->memory[k] + memories[i].offset) = data[k];
-  }
+  const PetscReal *kept = table_data(measures, "kept", COLUMN_REAL, MEASURE_KEPT, reason);
+  for (PetscInt k = 0; kept && k < m->c->n_measures * MEASURE_KEPT; ++k)
+    m->memory[k / MEASURE_KEPT].kept[k % MEASURE_KEPT] = kept[k];
 }
 
 static PetscErrorCode NodesBack(Model *m, const Tables *tables, char reason[256])
@@ -304,9 +292,9 @@ static void check_tables(const Model *m, const Tables *tables, char reason[256])
                                                                                      "parts"};
   for (int i = 0; i < 6; ++i)
     if (!tables_find(tables, always[i])) snprintf(reason, 256, "%s is missing", always[i]);
-  for (int i = 0; !m->grid->cloud && i < (m->method->restores_grid ? 1 : 2); ++i)
+  for (int i = 0; !m->method->clouds && i < (m->method->restores_grid ? 1 : 2); ++i)
     if (!tables_find(tables, of_cells[i])) snprintf(reason, 256, "%s is missing", of_cells[i]);
-  for (int i = 0; m->grid->cloud && i < 4; ++i)
+  for (int i = 0; m->method->clouds && i < 4; ++i)
     if (!tables_find(tables, of_clouds[i])) snprintf(reason, 256, "%s is missing", of_clouds[i]);
 }
 
@@ -336,7 +324,7 @@ PetscErrorCode ModelFromTables(Model *m, Tables *tables, char reason[256])
   softening_from_table(m, tables_find(tables, "softening"), reason);
   state_lost_from_tables(m, tables, reason);
   PetscCall(ReasonShare(m->comm, reason));
-  if (m->grid->cloud && !reason[0]) {
+  if (m->method->clouds && !reason[0]) {
     PetscCall(CloudBack(m, tables, reason));
     PetscFunctionReturn(0);
   }

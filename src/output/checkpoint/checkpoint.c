@@ -5,12 +5,6 @@
 #include "output/vtk/slab_file.h"
 #include "talus_version.h"
 
-static SlabType slab_type(ColumnType type)
-{
-  static const SlabType types[] = {SLAB_REAL, SLAB_INT64, SLAB_INT32, SLAB_BYTE};
-  return types[type];
-}
-
 /* A slab per column, in the order of the tables; those of tables that are everywhere come from rank 0 and are marked in `everywhere`. */
 static PetscErrorCode MakeSlabs(PetscMPIInt rank, const Tables *tables, PetscInt *n, Slab **slabs)
 {
@@ -25,7 +19,7 @@ static PetscErrorCode MakeSlabs(PetscMPIInt rank, const Tables *tables, PetscInt
       const Column *column = &table->column[k];
       snprintf(slab->path, sizeof slab->path, "%s/%s", table->name, column->name);
       slab->unit = column->unit;
-      slab->type = slab_type(column->type);
+      slab->type = column->type;
       slab->components = column->components;
       slab->whole = table->everywhere;
       slab->rows = table->everywhere && rank ? 0 : table->rows;
@@ -37,12 +31,10 @@ static PetscErrorCode MakeSlabs(PetscMPIInt rank, const Tables *tables, PetscInt
 
 static void describe(const Slab *slab, ContentsEntry *e)
 {
-  static const ColumnType types[] = {
-    [SLAB_REAL] = COLUMN_REAL, [SLAB_INT64] = COLUMN_INT64, [SLAB_INT32] = COLUMN_INT32, [SLAB_BYTE] = COLUMN_BYTE};
   const char *slash = strchr(slab->path, '/');
   snprintf(e->table, sizeof e->table, "%.*s", (int)(slash - slab->path), slab->path);
   snprintf(e->column, sizeof e->column, "%.*s", TABLE_NAME - 1, slash + 1);
-  e->type = types[slab->type];
+  e->type = slab->type;
   e->components = slab->components;
   e->everywhere = slab->whole;
   e->rows = slab->total;
@@ -76,8 +68,8 @@ static size_t user_block(PetscInt n)
 PetscErrorCode CheckpointWrite(MPI_Comm comm, const char *path, const Tables *tables, char reason[256])
 {
   static const PetscInt64 version = CHECKPOINT_VERSION;
-  const SlabAttribute attributes[] = {{"version", NULL, SLAB_INT64, 1, &version},
-                                      {"program", "talus " TALUS_VERSION, SLAB_BYTE, 0, NULL}};
+  const SlabAttribute attributes[] = {{"version", NULL, COLUMN_INT64, 1, &version},
+                                      {"program", "talus " TALUS_VERSION, COLUMN_BYTE, 0, NULL}};
   const char **groups;
   PetscMPIInt rank;
   PetscInt n;

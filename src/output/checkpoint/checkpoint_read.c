@@ -6,20 +6,8 @@
 #include <unistd.h>
 #include "output/checkpoint/checkpoint.h"
 #include "output/checkpoint/checkpoint_contents.h"
+#include "output/directory/run_dir_files.h"
 #include "output/vtk/slab_file.h"
-
-/* Fill n bytes from the offset; 0 or an errno. The file may have become shorter: EIO. */
-static int read_at(int fd, void *bytes, size_t n, off_t offset)
-{
-  char *next = bytes;
-  while (n > 0) {
-    const ssize_t done = pread(fd, next, n, offset);
-    if (done < 0 && errno == EINTR) continue;
-    if (done <= 0) return done ? errno : EIO;
-    next += done, n -= (size_t)done, offset += done;
-  }
-  return 0;
-}
 
 /* Rank 0: the list at the start of the file. */
 static PetscErrorCode ReadContents(const char *path, Contents *contents, char reason[256])
@@ -36,7 +24,7 @@ static PetscErrorCode ReadContents(const char *path, Contents *contents, char re
   const size_t n = error ? 0 : (size_t)PetscMin(info.st_size, CONTENTS_MAX);
   if (!error) bytes = malloc(n + 1);
   if (!error && !bytes) error = ENOMEM;
-  if (!error) error = read_at(fd, bytes, n, 0);
+  if (!error) error = file_read_at(fd, bytes, n, 0);
   if (error) {
     snprintf(reason, 256, "%s", strerror(error));
     code = PETSC_ERR_FILE_OPEN;
@@ -107,7 +95,7 @@ static PetscErrorCode ReadShares(MPI_Comm comm, const char *path, PetscInt n, vo
   PetscFunctionBeginUser;
   const int fd = open(path, O_RDONLY | O_CLOEXEC);
   *error = fd < 0 ? errno : 0;
-  for (PetscInt i = 0; i < n && !*error; ++i) *error = read_at(fd, data[i], (size_t)bytes[i], (off_t)offset[i]);
+  for (PetscInt i = 0; i < n && !*error; ++i) *error = file_read_at(fd, data[i], (size_t)bytes[i], (off_t)offset[i]);
   if (fd >= 0) close(fd);
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, error, 1, MPI_INT, MPI_MAX, comm));
   PetscFunctionReturn(0);

@@ -6,7 +6,6 @@
 #include <string.h>
 #include <sys/file.h>
 #include <sys/stat.h>
-#include <time.h>
 #include <unistd.h>
 #include "output/directory/run_dir_files.h"
 #include "output/directory/run_dir_impl.h"
@@ -131,7 +130,6 @@ static PetscBool on_terminal(void)
 static PetscErrorCode Finish(MPI_Comm comm, PetscMPIInt rank, const char *path, PetscBool quiet, const char *named,
                              FILE *log, int lock, RunDir **dir)
 {
-  struct timespec now;
   int ok = log ? 1 : 0;
 
   PetscFunctionBeginUser;
@@ -141,14 +139,13 @@ static PetscErrorCode Finish(MPI_Comm comm, PetscMPIInt rank, const char *path, 
   if (!ok) PetscFunctionReturn(0);
   PetscCall(PetscNew(dir));
   PetscCallMPI(MPI_Comm_dup(comm, &(*dir)->comm));
-  clock_gettime(CLOCK_MONOTONIC, &now);
   (*dir)->rank = rank;
   (*dir)->log = log;
   log_path(path, named, (*dir)->log_path);
   (*dir)->lock = lock;
   (*dir)->quiet = quiet;
   (*dir)->terminal = on_terminal();
-  (*dir)->start = (PetscReal)now.tv_sec + 1e-9 * (PetscReal)now.tv_nsec;
+  (*dir)->start = MPI_Wtime();
   (*dir)->last_shown = -1;
   PetscCall(PetscStrncpy((*dir)->path, path, sizeof(*dir)->path));
   PetscFunctionReturn(0);

@@ -51,6 +51,18 @@ FILE *file_open_read(const char *path)
   return in;
 }
 
+int file_read_at(int fd, void *bytes, size_t n, off_t offset)
+{
+  char *next = bytes;
+  while (n > 0) {
+    const ssize_t done = pread(fd, next, n, offset);
+    if (done < 0 && errno == EINTR) continue;
+    if (done <= 0) return done ? errno : EIO;
+    next += done, n -= (size_t)done, offset += done;
+  }
+  return 0;
+}
+
 int file_write_at(int fd, const void *bytes, size_t n, off_t offset)
 {
   const char *next = bytes;

@@ -15,6 +15,8 @@ int file_make_folders(const char *path);
 PetscBool file_exists(const char *folder, const char *name);
 /* A plain file for reading; NULL, with errno, for all else: a pipe would be waited for. */
 FILE *file_open_read(const char *path);
+/* Fill n bytes from the offset. The file may have become shorter: EIO. */
+int file_read_at(int fd, void *bytes, size_t n, off_t offset);
 /* Write all n bytes at the offset. */
 int file_write_at(int fd, const void *bytes, size_t n, off_t offset);
 /* Flush fd to the disk and close it, also after an error. */

@@ -16,7 +16,7 @@ struct RunDir {
   HistoryMark mark; /* of history.csv, on rank 0 */
   PetscBool quiet, terminal;
   PetscBool bar;   /* a progress bar stands on the terminal's last line */
-  PetscReal start; /* of the run, on the monotonic clock, s */
+  PetscReal start; /* of the run, on MPI's clock, s */
   ProgressClock clock;
   PetscReal last_shown; /* when progress was last printed, s since the clock's start; < 0: never */
 };

@@ -27,7 +27,7 @@ static herr_t write_numbers(hid_t object, const char *name, hid_t type, hsize_t 
   return status;
 }
 
-static hid_t memory_type(SlabType type)
+static hid_t memory_type(ColumnType type)
 {
   const hid_t types[] = {H5T_NATIVE_DOUBLE, H5T_NATIVE_INT64, H5T_NATIVE_INT32, H5T_NATIVE_UINT8};
   return types[type];

@@ -5,15 +5,13 @@
  * library never meets a full disk (it cannot close a file that it cannot flush), every error has its
  * errno, and no rank waits for another in the middle of a write. */
 #pragma once
-#include <petscsys.h>
-
-typedef enum { SLAB_REAL, SLAB_INT64, SLAB_INT32, SLAB_BYTE } SlabType;
+#include "base/table.h"
 
 /* A dataset of all ranks, of which this one holds `rows` rows from `first` on. */
 typedef struct {
   char path[256];   /* below the group of the head: "PointData/velocity" */
   const char *unit; /* attribute of the dataset; NULL or "": none */
-  SlabType type;
+  ColumnType type;
   PetscInt components; /* numbers a row */
   PetscBool matrix;    /* two-dimensional even with one component */
   PetscBool whole;     /* for the writer: every reader wants all rows */
@@ -23,18 +21,15 @@ typedef struct {
   uint32_t crc;      /* CRC-32 of all rows, on rank 0, if the head asks for it */
 } Slab;
 
-static inline PetscInt64 slab_type_bytes(SlabType type)
+static inline PetscInt64 slab_row_bytes(const Slab *slab)
 {
-  static const PetscInt64 size[] = {sizeof(double), sizeof(PetscInt64), sizeof(int32_t), 1};
-  return size[type];
+  return (PetscInt64)column_type_bytes(slab->type) * slab->components;
 }
-
-static inline PetscInt64 slab_row_bytes(const Slab *slab) { return slab_type_bytes(slab->type) * slab->components; }
 
 /* An attribute of the head's group: a text, or n numbers. */
 typedef struct {
   const char *name, *text; /* text NULL: numbers */
-  SlabType type;
+  ColumnType type;
   PetscInt n;
   const void *values;
 } SlabAttribute;

@@ -12,7 +12,7 @@ typedef struct {
   PetscBool has_cells, has_id; /* on any rank: an empty one has no arrays to tell */
 } Image;
 
-static void add_slab(Image *image, const char *group, const char *name, const char *unit, SlabType type,
+static void add_slab(Image *image, const char *group, const char *name, const char *unit, ColumnType type,
                      PetscInt components, PetscInt64 rows, const void *data)
 {
   Slab *slab = &image->slabs[image->n++];
@@ -52,13 +52,13 @@ static void add_geometry(Image *image, const VtkData *data)
   image->counts[0] = data->n_points;
   image->counts[1] = image->n_cells;
   image->counts[2] = image->n_connectivity;
-  add_slab(image, "", "NumberOfPoints", NULL, SLAB_INT64, 1, 1, &image->counts[0]);
-  add_slab(image, "", "NumberOfCells", NULL, SLAB_INT64, 1, 1, &image->counts[1]);
-  add_slab(image, "", "NumberOfConnectivityIds", NULL, SLAB_INT64, 1, 1, &image->counts[2]);
-  add_slab(image, "", "Points", "m", SLAB_REAL, 3, data->n_points, data->x);
-  add_slab(image, "", "Connectivity", NULL, SLAB_INT64, 1, image->n_connectivity, image->connectivity);
-  add_slab(image, "", "Offsets", NULL, SLAB_INT64, 1, image->n_cells + 1, image->offsets);
-  add_slab(image, "", "Types", NULL, SLAB_BYTE, 1, image->n_cells, image->types);
+  add_slab(image, "", "NumberOfPoints", NULL, COLUMN_INT64, 1, 1, &image->counts[0]);
+  add_slab(image, "", "NumberOfCells", NULL, COLUMN_INT64, 1, 1, &image->counts[1]);
+  add_slab(image, "", "NumberOfConnectivityIds", NULL, COLUMN_INT64, 1, 1, &image->counts[2]);
+  add_slab(image, "", "Points", "m", COLUMN_REAL, 3, data->n_points, data->x);
+  add_slab(image, "", "Connectivity", NULL, COLUMN_INT64, 1, image->n_connectivity, image->connectivity);
+  add_slab(image, "", "Offsets", NULL, COLUMN_INT64, 1, image->n_cells + 1, image->offsets);
+  add_slab(image, "", "Types", NULL, COLUMN_BYTE, 1, image->n_cells, image->types);
 }
 
 static PetscErrorCode ImageCreate(MPI_Comm comm, PetscMPIInt rank, const VtkData *data, Image *image)
@@ -75,14 +75,15 @@ static PetscErrorCode ImageCreate(MPI_Comm comm, PetscMPIInt rank, const VtkData
   add_geometry(image, data);
   for (PetscInt i = 0; i < data->n_point_fields; ++i) {
     const VtkField *field = &data->point_fields[i];
-    add_slab(image, "PointData/", field->name, field->unit, SLAB_REAL, field->components, data->n_points, field->data);
+    add_slab(image, "PointData/", field->name, field->unit, COLUMN_REAL, field->components, data->n_points,
+             field->data);
   }
-  if (image->has_id) add_slab(image, "PointData/", "id", NULL, SLAB_INT64, 1, data->n_points, data->point_id);
+  if (image->has_id) add_slab(image, "PointData/", "id", NULL, COLUMN_INT64, 1, data->n_points, data->point_id);
   for (PetscInt i = 0; i < data->n_cell_fields; ++i) {
     const VtkField *field = &data->cell_fields[i];
-    add_slab(image, "CellData/", field->name, field->unit, SLAB_REAL, field->components, image->n_cells, field->data);
+    add_slab(image, "CellData/", field->name, field->unit, COLUMN_REAL, field->components, image->n_cells, field->data);
   }
-  add_slab(image, "FieldData/", "Time", "s", SLAB_REAL, 1, rank ? 0 : 1, &data->time);
+  add_slab(image, "FieldData/", "Time", "s", COLUMN_REAL, 1, rank ? 0 : 1, &data->time);
   PetscFunctionReturn(0);
 }
 
@@ -99,9 +100,9 @@ PetscErrorCode VtkWrite(MPI_Comm comm, const char *path, const VtkData *data, ch
   static const char *const groups[] = {"PointData", "CellData", "FieldData", NULL};
   static const PetscInt64 version[2] = {1, 0};
   const double time = (double)data->time;
-  const SlabAttribute attributes[] = {{"Version", NULL, SLAB_INT64, 2, version},
-                                      {"Type", "UnstructuredGrid", SLAB_BYTE, 0, NULL},
-                                      {"Time", NULL, SLAB_REAL, 1, &time}};
+  const SlabAttribute attributes[] = {{"Version", NULL, COLUMN_INT64, 2, version},
+                                      {"Type", "UnstructuredGrid", COLUMN_BYTE, 0, NULL},
+                                      {"Time", NULL, COLUMN_REAL, 1, &time}};
   const SlabHead head = {.group = "VTKHDF", .groups = groups, .n_attributes = 3, .attributes = attributes};
   PetscMPIInt rank;
   Image image;

@@ -14,7 +14,6 @@ struct VtkFile {
   PetscBool too_many;
   PetscInt64 *points, *cells, *connectivity; /* of each partition */
   PetscInt n_points, n_cells, n_connectivity;
-  PetscReal time;
   PetscInt n_fields;
   VtkFieldInfo *fields;
 };
@@ -76,6 +75,7 @@ static PetscErrorCode FindFields(VtkFile *file, char reason[256])
 static PetscErrorCode ReadFrame(VtkFile *file, char reason[256])
 {
   char type[32];
+  PetscReal time;
   PetscBool ok[3];
   PetscInt dim = 0;
 
@@ -99,8 +99,7 @@ static PetscErrorCode ReadFrame(VtkFile *file, char reason[256])
     PetscFunctionReturn(0);
   }
   if (dim != 3) snprintf(reason, 256, "its points have %d coordinates instead of 3", (int)dim);
-  if (rows(file, "FieldData/Time") != 1 ||
-      !dataset_read(file->root, "FieldData/Time", H5T_NATIVE_DOUBLE, 1, &file->time))
+  if (rows(file, "FieldData/Time") != 1 || !dataset_read(file->root, "FieldData/Time", H5T_NATIVE_DOUBLE, 1, &time))
     snprintf(reason, 256, "its time is missing");
   PetscCall(FindFields(file, reason));
   PetscFunctionReturn(0);
@@ -169,10 +168,6 @@ PetscErrorCode VtkReadClose(VtkFile **file)
 }
 
 PetscInt vtk_read_points(const VtkFile *file) { return file->n_points; }
-
-PetscInt vtk_read_cells(const VtkFile *file) { return file->n_cells; }
-
-PetscReal vtk_read_time(const VtkFile *file) { return file->time; }
 
 PetscInt vtk_read_fields(const VtkFile *file, const VtkFieldInfo **fields)
 {

@@ -15,8 +15,6 @@ PetscErrorCode VtkReadOpen(const char *path, VtkFile **file, char reason[256]);
 PetscErrorCode VtkReadClose(VtkFile **file);
 
 PetscInt vtk_read_points(const VtkFile *file); /* number of points */
-PetscInt vtk_read_cells(const VtkFile *file);
-PetscReal vtk_read_time(const VtkFile *file);
 PetscInt vtk_read_fields(const VtkFile *file, const VtkFieldInfo **fields); /* of the points */
 
 /* These return PETSC_ERR_FILE_UNEXPECTED plainly, with a reason and nothing to free, if the file is damaged there.

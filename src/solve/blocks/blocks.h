@@ -90,8 +90,6 @@ PetscErrorCode BlocksHaloSum(BlocksHalo *halo, const System *s);
 /* A Krylov method of PETSc for Mats of type shell over Blocks: conjugate gradients, or BiCGStab if they are not symmetric. */
 #define KSPBLOCKS "talus_blocks"
 PetscErrorCode BlocksRegister(void);
-/* Has conjugate gradients met a direction along which the matrix is not positive? Newton's first guess may lie where material buckles.
- * Then the reason is cleared: BiCGStab is to begin anew. */
-PetscBool blocks_are_indefinite(KSP ksp);
-/* Collective. The same under m->projection; ksp's counts and reason are set. */
-PetscErrorCode BlocksSolveProjected(KSP ksp, Blocks *m, const PetscReal *f, PetscReal *y);
+/* Collective. f = K u under m->projection, with the tolerances and monitors of `asked`; its is added to. */
+PetscErrorCode BlocksSolveProjected(KSP asked, Blocks *m, const PetscReal *f, PetscReal *u, PetscInt *its,
+                                    KSPConvergedReason *reason);

@@ -1,9 +1,7 @@
-/* The Krylov methods of blocks_ksp.c where constraints hold: Gauss-Seidel between two projections, sums and vectors in double. */
-#include <petsc/private/kspimpl.h>
+/* PETSc's conjugate gradients and BiCGStab where constraints hold, preconditioned by Gauss-Seidel between two projections; sums and vectors in
+ * double. Both are used in forms that multiply what the preconditioner gave last: the product takes over half of it (blocks_product.c). */
 #include "solve/blocks/blocks.h"
 #include "solve/blocks/projection.h"
-
-enum { VECTOR_R, VECTOR_Z, VECTOR_P, VECTOR_Q, VECTOR_SHADOW, VECTOR_S, VECTORS };
 
 typedef struct {
   Blocks *m;
@@ -12,169 +10,159 @@ typedef struct {
   BlocksProduct product;
   PetscInt n;
   PetscReal size; /* of the right-hand side: keeps single precision within its range */
-  float *x, *t;
-  PetscReal *v[VECTORS];
+  float *half, *t;
+  Vec r, y; /* what is left of the right-hand side without a motion, and the motion */
 } Solve;
 
-static PetscErrorCode Dot(const Solve *s, const PetscReal *a, const PetscReal *b, PetscReal *dot)
-{
-  PetscReal sum = 0;
-
-  PetscFunctionBeginUser;
-  for (PetscInt i = 0; i < s->n; ++i) sum += a[i] * b[i];
-  PetscCall(MPIU_Allreduce(&sum, dot, 1, MPIU_REAL, MPI_SUM, s->m->comm));
-  PetscFunctionReturn(0);
-}
-
 /* z = P M^-1 r for a projected r */
-static PetscErrorCode Precondition(const Solve *s, const PetscReal *r, PetscReal *z)
+static PetscErrorCode Precondition(PC pc, Vec r, Vec z)
 {
+  Solve *s;
+  const PetscReal *in;
+  PetscReal *out;
+
   PetscFunctionBeginUser;
-  (void)s->sweeps->start(s->m, r, 1 / s->size, s->x);
-  s->sweeps->finish(s->m, s->x, s->size, s->t, z);
-  PetscCall(ProjectionMotion(s->projection, z));
+  PetscCall(PCShellGetContext(pc, &s));
+  PetscCall(VecGetArrayRead(r, &in));
+  PetscCall(VecGetArrayWrite(z, &out));
+  (void)s->sweeps->start(s->m, in, 1 / s->size, s->half);
+  s->sweeps->finish(s->m, s->half, s->size, s->t, out);
+  PetscCall(ProjectionMotion(s->projection, out));
+  PetscCall(VecRestoreArrayWrite(z, &out));
+  PetscCall(VecRestoreArrayRead(r, &in));
   PetscFunctionReturn(0);
 }
 
 /* q = P^T K z for the z that Precondition gave last */
-static PetscErrorCode Apply(const Solve *s, const PetscReal *z, PetscReal *q)
+static PetscErrorCode Multiply(Mat matrix, Vec z, Vec q)
 {
+  Solve *s;
+  const PetscReal *in;
+  PetscReal *out;
+
   PetscFunctionBeginUser;
-  PetscCall(BlocksProductApply(&s->product, s->size, z, s->x, s->t, q));
-  projection_weaken(s->projection, z, q);
-  PetscCall(ProjectionForces(s->projection, q));
+  PetscCall(MatShellGetContext(matrix, &s));
+  PetscCall(VecGetArrayRead(z, &in));
+  PetscCall(VecGetArrayWrite(q, &out));
+  PetscCall(BlocksProductApply(&s->product, s->size, in, s->half, s->t, out));
+  projection_weaken(s->projection, in, out);
+  PetscCall(ProjectionForces(s->projection, out));
+  PetscCall(VecRestoreArrayWrite(q, &out));
+  PetscCall(VecRestoreArrayRead(z, &in));
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode Report(KSP ksp, PetscReal norm2, PetscBool *stop)
+/* r = f - K u without what stands on the twins */
+static PetscErrorCode Residual(const Solve *s, const PetscReal *f, const PetscReal *u, PetscReal *r)
 {
   PetscFunctionBeginUser;
-  ksp->rnorm = PetscSqrtReal(PetscMax(norm2, 0));
-  PetscCall(KSPLogResidualHistory(ksp, ksp->rnorm));
-  PetscCall(KSPMonitor(ksp, ksp->its, ksp->rnorm));
-  PetscCall((*ksp->converged)(ksp, ksp->its, ksp->rnorm, &ksp->reason, ksp->cnvP));
-  if (!ksp->reason && ksp->its >= ksp->max_it) ksp->reason = KSP_DIVERGED_ITS;
-  *stop = ksp->reason != 0;
-  PetscFunctionReturn(0);
-}
-
-static PetscErrorCode ConjugateGradients(KSP ksp, const Solve *s, PetscReal *y)
-{
-  PetscReal *r = s->v[VECTOR_R], *z = s->v[VECTOR_Z], *p = s->v[VECTOR_P], *q = s->v[VECTOR_Q], *Kz = s->v[VECTOR_S];
-  PetscReal rz, last = 1, pq;
-  PetscBool stop;
-
-  PetscFunctionBeginUser;
-  PetscCall(Precondition(s, r, z));
-  PetscCall(Dot(s, r, z, &rz));
-  PetscCall(Report(ksp, rz, &stop));
-  while (!stop) {
-    const PetscReal beta = ksp->its ? rz / last : 0;
-    PetscCall(Apply(s, z, Kz));
-    for (PetscInt i = 0; i < s->n; ++i) p[i] = z[i] + beta * p[i], q[i] = Kz[i] + beta * q[i];
-    PetscCall(Dot(s, p, q, &pq));
-    if (!(pq > 0)) {
-      ksp->reason = pq <= 0 ? KSP_DIVERGED_INDEFINITE_MAT : KSP_DIVERGED_NANORINF;
-      break;
-    }
-    const PetscReal alpha = rz / pq;
-    for (PetscInt i = 0; i < s->n; ++i) y[i] += alpha * p[i], r[i] -= alpha * q[i];
-    PetscCall(Precondition(s, r, z));
-    last = rz;
-    PetscCall(Dot(s, r, z, &rz));
-    ++ksp->its;
-    PetscCall(Report(ksp, rz, &stop));
-  }
-  PetscFunctionReturn(0);
-}
-
-/* With the preconditioner on the right; the norm is that of the preconditioned residual where an iteration begins. */
-static PetscErrorCode BiCGStab(KSP ksp, const Solve *s, PetscReal *y)
-{
-  PetscReal *r = s->v[VECTOR_R], *z = s->v[VECTOR_Z], *p = s->v[VECTOR_P], *q = s->v[VECTOR_Q],
-            *shadow = s->v[VECTOR_SHADOW], *t = s->v[VECTOR_S];
-  PetscReal rho, last = 1, alpha = 0, omega = 1, dot, square, norm2;
-  PetscBool stop;
-
-  PetscFunctionBeginUser;
-  PetscCall(PetscArraycpy(shadow, r, s->n));
-  PetscCall(PetscArrayzero(q, s->n));
-  norm2 = s->sweeps->scaled_norm2(s->m, r);
-  PetscCall(MPIU_Allreduce(MPI_IN_PLACE, &norm2, 1, MPIU_REAL, MPI_SUM, s->m->comm));
-  PetscCall(Report(ksp, norm2, &stop));
-  while (!stop) {
-    PetscCall(Dot(s, shadow, r, &rho));
-    const PetscReal beta = ksp->its ? rho / last * (alpha / omega) : 0;
-    for (PetscInt i = 0; i < s->n; ++i) p[i] = r[i] + (ksp->its ? beta * (p[i] - omega * q[i]) : 0);
-    PetscCall(Precondition(s, p, z));
-    PetscCall(Apply(s, z, q));
-    PetscCall(Dot(s, shadow, q, &dot));
-    ksp->reason = dot == 0 || rho == 0 ? KSP_DIVERGED_BREAKDOWN : KSP_CONVERGED_ITERATING;
-    if (ksp->reason) break;
-    alpha = rho / dot;
-    for (PetscInt i = 0; i < s->n; ++i) y[i] += alpha * z[i], r[i] -= alpha * q[i];
-    PetscCall(Precondition(s, r, z));
-    PetscCall(Apply(s, z, t));
-    PetscCall(Dot(s, t, r, &dot));
-    PetscCall(Dot(s, t, t, &square));
-    omega = square > 0 ? dot / square : 0;
-    for (PetscInt i = 0; i < s->n; ++i) y[i] += omega * z[i], r[i] -= omega * t[i];
-    last = rho;
-    ++ksp->its;
-    norm2 = s->sweeps->scaled_norm2(s->m, r);
-    PetscCall(MPIU_Allreduce(MPI_IN_PLACE, &norm2, 1, MPIU_REAL, MPI_SUM, s->m->comm));
-    PetscCall(Report(ksp, norm2, &stop));
-    if (!stop && omega == 0) {
-      ksp->reason = KSP_DIVERGED_BREAKDOWN;
-      break;
-    }
-  }
-  PetscFunctionReturn(0);
-}
-
-/* r = f - K y without what stands on the twins */
-static PetscErrorCode Residual(const Solve *s, const PetscReal *f, const PetscReal *y, PetscReal *r)
-{
-  PetscFunctionBeginUser;
-  PetscCall(ProjectionMultiply(s->projection, y, r));
+  PetscCall(ProjectionMultiply(s->projection, u, r));
   for (PetscInt i = 0; i < s->n; ++i) r[i] = f[i] - r[i];
   for (PetscInt k = 0; k < s->projection->n_own; ++k) r[s->projection->twin[k]] = 0;
   PetscFunctionReturn(0);
 }
 
-/* y closes the gaps, r is what is left then, s->size its norm. */
-static PetscErrorCode Start(Solve *s, const PetscReal *f, PetscReal *y)
+/* u closes the gaps, r is what is left then, s->size its norm. */
+static PetscErrorCode Start(Solve *s, const PetscReal *f, PetscReal *u)
 {
-  PetscReal norm2;
+  PetscReal *r, norm2;
 
   PetscFunctionBeginUser;
-  for (int k = 0; k < VECTORS; ++k) PetscCall(PetscArrayzero(s->v[k], s->n));
-  PetscCall(ProjectionCloseGaps(s->projection, f, y));
-  PetscCall(Residual(s, f, y, s->v[VECTOR_R]));
-  PetscCall(ProjectionForces(s->projection, s->v[VECTOR_R]));
-  norm2 = s->sweeps->scaled_norm2(s->m, s->v[VECTOR_R]);
+  PetscCall(VecGetArrayWrite(s->r, &r));
+  PetscCall(ProjectionCloseGaps(s->projection, f, u));
+  PetscCall(Residual(s, f, u, r));
+  PetscCall(ProjectionForces(s->projection, r));
+  norm2 = s->sweeps->scaled_norm2(s->m, r);
+  PetscCall(VecRestoreArrayWrite(s->r, &r));
   PetscCall(MPIU_Allreduce(MPI_IN_PLACE, &norm2, 1, MPIU_REAL, MPI_SUM, s->m->comm));
   s->size = PetscSqrtReal(norm2);
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode BlocksSolveProjected(KSP ksp, Blocks *m, const PetscReal *f, PetscReal *y)
+static PetscErrorCode Finish(const Solve *s, const PetscReal *f, PetscReal *u)
 {
-  Solve s = {.m = m, .projection = m->projection, .sweeps = block_sweeps(m->dim), .n = m->n * m->dim};
+  const PetscReal *y;
+  PetscReal *r;
 
   PetscFunctionBeginUser;
-  PetscCall(BlocksWork(m, 0, &s.x));
+  PetscCall(VecGetArrayRead(s->y, &y));
+  for (PetscInt i = 0; i < s->n; ++i) u[i] += y[i];
+  PetscCall(VecRestoreArrayRead(s->y, &y));
+  PetscCall(VecGetArrayWrite(s->r, &r));
+  PetscCall(Residual(s, f, u, r));
+  PetscCall(ProjectionMultipliers(s->projection, r, u));
+  PetscCall(VecRestoreArrayWrite(s->r, &r));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode Tell(KSP method, PetscInt iteration, PetscReal norm, void *asked)
+{
+  (void)method;
+  PetscFunctionBeginUser;
+  PetscCall(KSPMonitor(asked, iteration, norm));
+  PetscFunctionReturn(0);
+}
+
+/* A method with the tolerances of `asked`, whose monitors it tells. */
+static PetscErrorCode CreateMethod(KSP asked, Solve *s, KSP *method)
+{
+  PetscReal relative, absolute, divergence;
+  PetscInt most;
+  Mat matrix;
+  PC pc;
+
+  PetscFunctionBeginUser;
+  PetscCall(MatCreateShell(s->m->comm, s->n, s->n, PETSC_DETERMINE, PETSC_DETERMINE, s, &matrix));
+  PetscCall(MatShellSetOperation(matrix, MATOP_MULT, (void (*)(void))Multiply));
+  PetscCall(MatCreateVecs(matrix, &s->y, &s->r));
+  PetscCall(KSPCreate(s->m->comm, method));
+  PetscCall(KSPSetOperators(*method, matrix, matrix));
+  PetscCall(MatDestroy(&matrix));
+  PetscCall(KSPGetPC(*method, &pc));
+  PetscCall(PCSetType(pc, PCSHELL));
+  PetscCall(PCShellSetContext(pc, s));
+  PetscCall(PCShellSetApply(pc, Precondition));
+  PetscCall(KSPGetTolerances(asked, &relative, &absolute, &divergence, &most));
+  PetscCall(KSPSetTolerances(*method, relative, absolute, divergence, most));
+  PetscCall(KSPMonitorSet(*method, Tell, asked, NULL));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode SolveBy(KSP method, PetscBool symmetric, Solve *s, PetscInt *its, KSPConvergedReason *reason)
+{
+  PetscInt more;
+
+  PetscFunctionBeginUser;
+  PetscCall(KSPSetType(method, symmetric ? KSPCG : KSPBCGS));
+  if (symmetric) PetscCall(KSPCGUseSingleReduction(method, PETSC_TRUE));
+  PetscCall(KSPSetNormType(method, symmetric ? KSP_NORM_NATURAL : KSP_NORM_UNPRECONDITIONED));
+  PetscCall(KSPSetPCSide(method, symmetric ? PC_LEFT : PC_RIGHT));
+  PetscCall(KSPSolve(method, s->r, s->y));
+  PetscCall(KSPGetConvergedReason(method, reason));
+  PetscCall(KSPGetIterationNumber(method, &more));
+  *its += more;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode BlocksSolveProjected(KSP asked, Blocks *m, const PetscReal *f, PetscReal *u, PetscInt *its,
+                                    KSPConvergedReason *reason)
+{
+  Solve s = {.m = m, .projection = m->projection, .sweeps = block_sweeps(m->dim), .n = m->n * m->dim};
+  KSP method;
+
+  PetscFunctionBeginUser;
+  PetscCall(BlocksWork(m, 0, &s.half));
   PetscCall(BlocksWork(m, 1, &s.t));
-  for (int k = 0; k < VECTORS; ++k) PetscCall(PetscMalloc1(s.n, &s.v[k]));
   PetscCall(BlocksProductCreate(m, m->projection->n_dofs, m->projection->place, &s.product));
-  PetscCall(Start(&s, f, y));
-  if (!(s.size > 0) || PetscIsInfReal(s.size)) ksp->reason = s.size == 0 ? KSP_CONVERGED_ATOL : KSP_DIVERGED_NANORINF;
-  if (!ksp->reason && m->symmetric) PetscCall(ConjugateGradients(ksp, &s, y));
-  if (blocks_are_indefinite(ksp)) PetscCall(Start(&s, f, y));
-  if (!ksp->reason) PetscCall(BiCGStab(ksp, &s, y));
-  PetscCall(Residual(&s, f, y, s.v[VECTOR_R]));
-  PetscCall(ProjectionMultipliers(s.projection, s.v[VECTOR_R], y));
-  for (int k = 0; k < VECTORS; ++k) PetscCall(PetscFree(s.v[k]));
+  PetscCall(CreateMethod(asked, &s, &method));
+  PetscCall(Start(&s, f, u));
+  if (s.size == 0 || PetscIsInfOrNanReal(s.size)) *reason = s.size == 0 ? KSP_CONVERGED_ATOL : KSP_DIVERGED_NANORINF;
+  else PetscCall(SolveBy(method, m->symmetric, &s, its, reason));
+  if (m->symmetric && *reason == KSP_DIVERGED_INDEFINITE_MAT) PetscCall(SolveBy(method, PETSC_FALSE, &s, its, reason));
+  PetscCall(Finish(&s, f, u));
+  PetscCall(KSPDestroy(&method));
+  PetscCall(VecDestroy(&s.r));
+  PetscCall(VecDestroy(&s.y));
   PetscCall(BlocksProductDestroy(&s.product));
   PetscFunctionReturn(0);
 }

@@ -39,6 +39,8 @@ typedef struct {
   PetscErrorCode (*destroy)(void **data); /* NULL: data belongs to others */
   /* Mark the dofs (n_nodes x dim) that it holds in place as well as a boundary could. */
   void (*hold)(const void *data, const NodalScene *scene, unsigned char *held);
+  /* Append the groups of nodes that it couples beyond those of the support, by NodeGroupsAppend: the system gets their pairs. */
+  PetscErrorCode (*couple)(const void *data, const NodalScene *scene, NodeGroups *groups);
   /* The support or the system's pattern is new: find slots; PETSC_FALSE if the pattern lacks any. */
   PetscBool (*find_slots)(void *data, const System *system);
   /* Collective. Add forces and, through nodal_add_tangent, what they change by with du. */
@@ -81,6 +83,8 @@ typedef struct {
 /* Collective. The list starts empty. */
 PetscErrorCode NodalForcesCreate(const NodalScene *scene, Diag *diag, NodalForces *forces);
 PetscErrorCode NodalForcesDestroy(NodalForces *forces);
+PetscErrorCode NodeGroupsAppend(NodeGroups *groups, PetscInt n, const PetscInt *node);
+PetscErrorCode NodalForcesCouple(const NodalForces *forces, const NodalScene *scene, NodeGroups *groups);
 void nodal_forces_hold(const NodalForces *forces, const NodalScene *scene, unsigned char *held);
 PetscBool nodal_forces_find_slots(const NodalForces *forces, const System *system);
 /* NULL: there are none. */

@@ -15,7 +15,7 @@ typedef struct {
 
 /* Work of F along y. A saddle point has no minimum: with the sign of the pressure equations turned the tangent is positive semi-definite
  * where that of the displacements is, and the work left over falls with the length as it does without pressures. */
-static PetscErrorCode Work(const Search *s, Vec f, PetscReal *work)
+static PetscErrorCode WorkAlong(const Search *s, Vec f, PetscReal *work)
 {
   const PetscReal *fv, *yv;
   PetscInt n;
@@ -38,7 +38,7 @@ static PetscErrorCode Work(const Search *s, Vec f, PetscReal *work)
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode Try(Search *s, PetscReal lambda)
+static PetscErrorCode EvaluateAt(Search *s, PetscReal lambda)
 {
   PetscFunctionBeginUser;
   s->lambda = lambda;
@@ -50,7 +50,7 @@ static PetscErrorCode Try(Search *s, PetscReal lambda)
     s->norm = PETSC_INFINITY;
     PetscFunctionReturn(0);
   }
-  PetscCall(Work(s, s->f, &s->slope));
+  PetscCall(WorkAlong(s, s->f, &s->slope));
   PetscFunctionReturn(0);
 }
 
@@ -69,11 +69,11 @@ static PetscErrorCode Bracket(Search *s, PetscReal slope0, PetscReal norm0)
   for (PetscInt k = 0; k < MAX_TRIES && is_too_far(s, slope0, norm0); ++k) {
     const PetscReal share =
       slope_high == PETSC_INFINITY || slope_low * slope_high >= 0 ? 0.5 : slope_low / (slope_low - slope_high);
-    PetscCall(Try(s, low + PetscMax(0.1, PetscMin(0.9, share)) * (high - low)));
+    PetscCall(EvaluateAt(s, low + PetscMax(0.1, PetscMin(0.9, share)) * (high - low)));
     if (s->slope * slope0 > 0 && s->norm <= EXPLODED * norm0) low = s->lambda, slope_low = s->slope;
     else high = s->lambda, slope_high = s->slope;
   }
-  for (PetscInt k = 0; k < MAX_TRIES && s->norm == PETSC_INFINITY; ++k) PetscCall(Try(s, 0.5 * s->lambda));
+  for (PetscInt k = 0; k < MAX_TRIES && s->norm == PETSC_INFINITY; ++k) PetscCall(EvaluateAt(s, 0.5 * s->lambda));
   PetscFunctionReturn(0);
 }
 
@@ -99,9 +99,9 @@ PetscErrorCode LineSearchDescend(SNESLineSearch search, void *memory)
   PetscCall(SNESLineSearchGetVecs(search, &s.x, &s.f, &s.y, &s.w, &unused));
   PetscCall(SNESGetIterationNumber(s.snes, &iteration));
   s.block = ((LineSearchMemory *)memory)->block;
-  PetscCall(Work(&s, s.f, &slope0));
+  PetscCall(WorkAlong(&s, s.f, &slope0));
   PetscCall(VecNorm(s.f, NORM_2, &norm0));
-  PetscCall(Try(&s, first_length(memory, iteration, norm0)));
+  PetscCall(EvaluateAt(&s, first_length(memory, iteration, norm0)));
   if (iteration || s.norm == PETSC_INFINITY) PetscCall(Bracket(&s, slope0, norm0));
   if (s.norm == PETSC_INFINITY) {
     PetscCall(SNESLineSearchSetReason(search, SNES_LINESEARCH_FAILED_NANORINF));

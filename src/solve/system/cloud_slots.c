@@ -94,7 +94,7 @@ static PetscErrorCode RenewRest(System *s, const Support *w, PetscInt first, Pet
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode Keep(System *s, const Support *w, PetscInt missing)
+static PetscErrorCode RememberClouds(System *s, const Support *w, PetscInt missing)
 {
   CloudsBefore *b = &s->before;
 
@@ -116,7 +116,7 @@ PetscErrorCode SystemCloudSlots(System *s, const Support *support, PetscBool *co
   if (s->before.builds != s->builds) s->before.n = 0;
   const PetscInt first = renew_in_place(s, support, &place, &missing);
   if (first < support->n_groups) PetscCall(RenewRest(s, support, first, place, &missing));
-  PetscCall(Keep(s, support, missing));
+  PetscCall(RememberClouds(s, support, missing));
   if (complete) *complete = !missing;
   PetscFunctionReturn(0);
 }

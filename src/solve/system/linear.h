@@ -1,7 +1,8 @@
 /* Which linear solver suits the problem: `linear: auto`.
  *
- * Measured (docs/experiments/linear-solvers.md): statics in 2D wants a direct solver up to about a million unknowns; dynamics whose step is short
- * beside the time a wave takes through a cell has a matrix ruled by the mass, and conjugate gradients win. */
+ * Measured (docs/experiments/linear-solvers.md): statics in 2D wants a direct solver up to about a
+ * million unknowns; dynamics whose step is short beside the time a wave takes through a cell has a
+ * matrix ruled by the mass, and conjugate gradients win. */
 #pragma once
 #include <petscksp.h>
 #include "case/case.h"

@@ -1,5 +1,6 @@
-/* Prescribed unknowns leave the system here and nowhere else: their columns move to the right-hand side, their rows and columns are cut. Whoever
- * assembles forces and tangents knows nothing of them. */
+/* Prescribed unknowns leave the system here and nowhere else: their columns move to the
+ * right-hand side, their rows and columns are cut. Whoever assembles forces and tangents knows
+ * nothing of them. */
 #include "solve/system/system.h"
 
 /* One bit for each prescribed unknown of a node. */
@@ -11,7 +12,8 @@ static unsigned char held_bits(const System *s, const unsigned char *fixed, cons
   return (unsigned char)bits;
 }
 
-/* One bit for each number of a block that stands in the row or the column of a prescribed unknown. */
+/* One bit for each number of a block that stands in the row or the column of a prescribed
+ * unknown. */
 static unsigned cut_bits(PetscInt block, unsigned row, unsigned column)
 {
   unsigned bits = 0;
@@ -19,7 +21,8 @@ static unsigned cut_bits(PetscInt block, unsigned row, unsigned column)
   return bits;
 }
 
-/* held: of each node. A row is looked through only beside a node that holds anything: there are few. */
+/* held: of each node. A row is looked through only beside a node that holds anything: there are
+ * few. */
 static PetscErrorCode FindCuts(System *s, const unsigned char *held, const unsigned char *beside)
 {
   PetscFunctionBeginUser;

@@ -1,7 +1,7 @@
 #include "solve/system/saddle.h"
 
 /* Global numbers of components first .. first + n - 1 of every active node. */
-static PetscErrorCode Field(const System *s, PetscInt first, PetscInt n, IS *field)
+static PetscErrorCode UnknownsOf(const System *s, PetscInt first, PetscInt n, IS *field)
 {
   PetscInt *index, start;
 
@@ -33,14 +33,14 @@ static PetscErrorCode RigidMotions(const System *s, const Grid *grid, MatNullSpa
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode Fields(PC pc, const System *s, const Grid *grid)
+static PetscErrorCode SplitFields(PC pc, const System *s, const Grid *grid)
 {
   IS displacement, pressure;
   MatNullSpace rigid;
 
   PetscFunctionBeginUser;
-  PetscCall(Field(s, 0, s->dim, &displacement));
-  PetscCall(Field(s, s->dim, 1, &pressure));
+  PetscCall(UnknownsOf(s, 0, s->dim, &displacement));
+  PetscCall(UnknownsOf(s, s->dim, 1, &pressure));
   PetscCall(RigidMotions(s, grid, &rigid));
   PetscCall(PetscObjectCompose((PetscObject)displacement, "nearnullspace", (PetscObject)rigid));
   PetscCall(PCFieldSplitSetIS(pc, "u", displacement));
@@ -100,7 +100,7 @@ PetscErrorCode SaddleConfigure(Saddle *saddle, KSP ksp, const System *s, const G
   PetscCall(PCSetType(pc, PCFIELDSPLIT));
   PetscCall(PCFieldSplitSetType(pc, PC_COMPOSITE_SCHUR));
   PetscCall(PCFieldSplitSetSchurFactType(pc, PC_FIELDSPLIT_SCHUR_FACT_UPPER));
-  PetscCall(Fields(pc, s, grid));
+  PetscCall(SplitFields(pc, s, grid));
   if (dynamic) PetscCall(PCFieldSplitSetSchurPre(pc, PC_FIELDSPLIT_SCHUR_PRE_SELFP, NULL));
   else {
     PetscCall(CreateDiagonal(s, &saddle->schur));

@@ -1,11 +1,15 @@
-/* The linear system of a step: which nodes carry unknowns, the sparse pattern, and group -> matrix slots.
+/* The linear system of a step: which nodes carry unknowns, the sparse pattern, and group ->
+ * matrix slots.
  *
- * Unknowns sit on the nodes of the groups (cells, clouds) handed to SystemBuild; those that no material touches get nothing but a diagonal, so that the pattern (and the symbolic factorisation) may be padded and kept over many steps. */
+ * Unknowns sit on the nodes of the groups (cells, clouds) handed to SystemBuild; those that no
+ * material touches get nothing but a diagonal, so that the pattern (and the symbolic
+ * factorisation) may be padded and kept over many steps. */
 #pragma once
 #include <petscksp.h>
 #include "points/support.h"
 
-/* What the linear solver works on: a matrix of PETSc, or blocks in single precision for symmetric Gauss-Seidel (solve/blocks/blocks.h). */
+/* What the linear solver works on: a matrix of PETSc, or blocks in single precision for
+ * symmetric Gauss-Seidel (solve/blocks/blocks.h). */
 typedef enum { SYSTEM_ASSEMBLED, SYSTEM_BLOCKS } SystemForm;
 
 /* The clouds that the slots were last looked up for: most are the same in the next step. */
@@ -52,8 +56,9 @@ PetscErrorCode SystemDestroy(System **system);
 
 /* Collective. Unknowns on the nodes of the groups, coupled group by group. */
 PetscErrorCode SystemBuild(System *system, const Grid *grid, const NodeGroups *groups);
-/* Look up the slots of every group of the support, one group behind the other. Cells' nodes must all carry unknowns; clouds have ascending nodes, and
- * `complete` tells whether the pattern has all their pairs on this rank. */
+/* Look up the slots of every group of the support, one group behind the other. Cells' nodes must
+ * all carry unknowns; clouds have ascending nodes, and `complete` tells whether the pattern has
+ * all their pairs on this rank. */
 PetscErrorCode SystemSlots(System *system, const Support *support, PetscBool *complete);
 /* The slot of one pair of nodes; -1 if the pattern lacks it. */
 PetscInt system_pair(const System *system, PetscInt I, PetscInt J);
@@ -70,23 +75,28 @@ PetscErrorCode SystemZeroNodes(const System *system, PetscReal *nodes);
 
 /* Collective. Make the matrix in this form, if it is not there yet. */
 PetscErrorCode SystemUse(System *system, SystemForm form, PetscBool symmetric);
-/* May the tangent be gathered in single precision? Only where the matrix works on blocks; forgotten with the pattern. */
+/* May the tangent be gathered in single precision? Only where the matrix works on blocks;
+ * forgotten with the pattern. */
 PetscErrorCode SystemGather(System *system, PetscBool single);
-/* Which unknowns are prescribed from now on, until this is called again or the pattern changes: displacements in fixed (n_nodes x dim, also of
- * nodes that no material touches) and pressures of idle nodes (n_nodes; NULL without pressures), the same on every rank that has the node. */
+/* Which unknowns are prescribed from now on, until this is called again or the pattern changes:
+ * displacements in fixed (n_nodes x dim, also of nodes that no material touches) and pressures
+ * of idle nodes (n_nodes; NULL without pressures), the same on every rank that has the node. */
 PetscErrorCode SystemPrescribe(System *system, const unsigned char *fixed, const unsigned char *idle);
-/* Forces of rows that are not fixed += K lift, lift (n_nodes x dim) being zero where nothing is prescribed; volume: of the pressures' rows. For
- * whole values, as they were assembled, and forces that are not yet summed over ranks. */
+/* Forces of rows that are not fixed += K lift, lift (n_nodes x dim) being zero where nothing is
+ * prescribed; volume: of the pressures' rows. For whole values, as they were assembled, and
+ * forces that are not yet summed over ranks. */
 void system_lift(const System *system, const unsigned char *fixed, const PetscReal *lift, PetscReal *force,
                  PetscReal *volume);
-/* Collective. Values -> matrix, where rows and columns of prescribed unknowns have nothing but a diagonal. */
+/* Collective. Values -> matrix, where rows and columns of prescribed unknowns have nothing but a
+ * diagonal. */
 PetscErrorCode SystemToMatrix(System *system);
-/* What SystemToMatrix consists of (prescribed.c): empty rows and columns, and their diagonals in what the matrix takes. */
+/* What SystemToMatrix consists of (prescribed.c): empty rows and columns, and their diagonals in
+ * what the matrix takes. */
 void system_cut(System *system);
 PetscErrorCode SystemCloseCuts(System *system);
 
-/* Components first .. first + n - 1 of the unknowns in a Vec <-> local array n_nodes x n. ToNodes zeroes nodes without unknowns and fills
- * ghosts; FromNodes takes owners. */
+/* Components first .. first + n - 1 of the unknowns in a Vec <-> local array n_nodes x n.
+ * ToNodes zeroes nodes without unknowns and fills ghosts; FromNodes takes owners. */
 PetscErrorCode SystemToNodes(const System *system, const Grid *grid, Vec x, PetscInt first, PetscInt n,
                              PetscReal *nodes);
 PetscErrorCode SystemFromNodes(const System *system, const PetscReal *nodes, PetscInt first, PetscInt n, Vec x);

@@ -9,35 +9,36 @@ void gravity_at(const Case *c, PetscReal t, PetscReal g[3])
 
 PetscErrorCode InitialAcceleration(Model *m)
 {
+  NodalFields *n = m->nodes;
   const PetscInt dim = m->dim, dofs = m->grid->n_nodes * dim;
   Discretisation *s = m->space;
   PetscReal g[3];
 
   PetscFunctionBeginUser;
   gravity_at(m->c, 0, g);
-  PetscCall(PetscArrayzero(m->nodes->du, dofs));
-  for (PetscInt i = 0; i < dofs; ++i) m->nodes->history[i] = m->c->analysis.damping * m->nodes->v[i] - g[i % dim];
-  const NodalScene scene = nodal_scene(m, 0, m->nodes->du);
-  PetscCall(NodalForcesExternal(&m->forces, &scene, PETSC_TRUE, m->nodes->external));
-  PetscCall(PetscArrayzero(m->nodes->force, dofs));
+  PetscCall(PetscArrayzero(n->du, dofs));
+  for (PetscInt i = 0; i < dofs; ++i) n->history[i] = m->c->analysis.damping * n->v[i] - g[i % dim];
+  const NodalScene scene = nodal_scene(m, 0, n->du);
+  PetscCall(NodalForcesExternal(&m->forces, &scene, PETSC_TRUE, n->external));
+  PetscCall(PetscArrayzero(n->force, dofs));
   pressure_guess(m);
   WeakFormInput in = weak_form_of(m, 0);
-  WeakFormOutput out = {.force = m->nodes->force};
+  WeakFormOutput out = {.force = n->force};
   PetscCall(m->formulation->assemble(&in, &out));
-  PetscCall(GridSumToOwners(m->grid, dim, m->nodes->force));
+  PetscCall(GridSumToOwners(m->grid, dim, n->force));
   for (PetscInt i = 0; i < m->grid->n_owned * dim; ++i) {
-    const PetscReal mass = s->nodes->mass[i / dim];
-    const PetscReal free = m->nodes->external[i] - m->nodes->force[i];
-    s->nodes->a[i] = mass > 1e-300 && !m->boundary->fixed[i] ? free / mass : 0;
-    m->nodes->held[i] = m->nodes->rate[i] = m->boundary->fixed[i] ? -free : 0;
+    const PetscReal mass = n->mass[i / dim];
+    const PetscReal free = n->external[i] - n->force[i];
+    n->a[i] = mass > 1e-300 && !m->boundary->fixed[i] ? free / mass : 0;
+    n->held[i] = n->rate[i] = m->boundary->fixed[i] ? -free : 0;
   }
-  PetscCall(GridToGhosts(m->grid, dim, s->nodes->a));
+  PetscCall(GridToGhosts(m->grid, dim, n->a));
   for (PetscInt q = 0; q < s->support->n_groups; ++q) {
     const PetscInt nn = support_nodes(s->support, q), *node = s->support->node + s->support->node_start[q];
     for (PetscInt p = s->support->point_start[q]; p < s->support->point_start[q + 1]; ++p)
       for (PetscInt i = 0; i < nn * dim; ++i)
         point_real(m->points, POINT_A, p)[i % dim] +=
-          support_N(s->support, q, p)[i / dim] * s->nodes->a[node[i / dim] * dim + i % dim];
+          support_N(s->support, q, p)[i / dim] * n->a[node[i / dim] * dim + i % dim];
   }
   PetscFunctionReturn(0);
 }

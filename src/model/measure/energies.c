@@ -1,0 +1,81 @@
+/* Energies: those of bodies, and those that energy.c keeps for the whole model. */
+#include "model/measure/measure.h"
+
+static PetscReal kinetic(const Model *m, const MeasureSpec *s, PetscInt body)
+{
+  PetscReal sum = 0;
+  (void)s;
+  for (PetscInt p = 0; p < m->points->n; ++p) {
+    const PetscReal *v = point_real(m->points, POINT_V, p);
+    PetscReal square = 0;
+    for (PetscInt d = 0; d < m->dim; ++d) square += v[d] * v[d];
+    if (measure_takes_point(m, body, p)) sum += 0.5 * m->points->real[POINT_MASS][p] * square;
+  }
+  return sum;
+}
+
+static PetscReal elastic(const Model *m, const MeasureSpec *s, PetscInt body)
+{
+  PetscReal sum = 0;
+  (void)s;
+  for (PetscInt p = 0; p < m->points->n; ++p)
+    if (measure_takes_point(m, body, p)) sum += m->points->real[POINT_VOLUME][p] * model_point_energy(m, p);
+  return sum;
+}
+
+static PetscReal dissipated(const Model *m, const MeasureSpec *s, PetscInt body)
+{
+  PetscReal sum = 0;
+  (void)s;
+  for (PetscInt p = 0; p < m->points->n; ++p)
+    if (measure_takes_point(m, body, p))
+      sum += m->points->real[POINT_WORK][p] - m->points->real[POINT_VOLUME][p] * model_point_energy(m, p);
+  return sum;
+}
+
+static PetscErrorCode External(Model *m, const MeasureSpec *s, PetscInt index, PetscReal *value)
+{
+  (void)s, (void)index;
+  PetscFunctionBeginUser;
+  *value = m->external_work + m->boundary_work;
+  PetscFunctionReturn(0);
+}
+
+/* What has come in against where it is now, over the largest of all. */
+static PetscErrorCode BalanceValue(Model *m, const MeasureSpec *s, PetscInt index, PetscReal *value)
+{
+  Energies e;
+  PetscReal largest = 0, sum = 0;
+
+  (void)s, (void)index;
+  PetscFunctionBeginUser;
+  PetscCall(ModelEnergies(m, &e));
+  const PetscReal terms[] = {e.kinetic, e.elastic,   e.dissipated, e.damped, e.transfer,
+                             e.outside, -e.external, -e.boundary,  -e.start};
+  for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(terms); ++k) {
+    sum += terms[k];
+    largest = PetscMax(largest, PetscAbsReal(terms[k]));
+  }
+  *value = largest > 0 ? sum / largest : 0;
+  PetscFunctionReturn(0);
+}
+
+static const MeasureNumber *const words[] = {
+  WORD("kinetic", "energy of motion", .sum = kinetic),
+  WORD("elastic", "stored in the material", .sum = elastic),
+  WORD("dissipated", "work of the stress that is not stored: plastic dissipation", .sum = dissipated),
+  WORD("external", "work done by loads, gravity and prescribed motion", .of = OF_MODEL, .value = External),
+  WORD("damped", "taken by Rayleigh damping", .of = OF_MODEL, .kept = offsetof(Model, damped_energy)),
+  WORD("transfer", "lost between points and grid, and at nodes that stop material", .of = OF_MODEL,
+       .kept = offsetof(Model, transfer_energy)),
+  WORD("outside", "gone with points that left the grid: with those removed, and in stopping those kept on its boundary",
+       .of = OF_MODEL, .kept = offsetof(Model, outside.energy)),
+  WORD("balance",
+       "kinetic + elastic + dissipated + damped + transfer + outside - external, less its value at the start, over the "
+       "largest of these (no unit): 0 if all is accounted for; numerical damping shows here",
+       .unit = "", .of = OF_MODEL, .value = BalanceValue),
+  NULL,
+};
+
+const Measure measure_energy = {
+  .key = "energy", .takes = MEASURE_WORD, .number = {.unit = "J", .help = "energy"}, .words = words};

@@ -1,0 +1,54 @@
+/* A measure: a number that is followed through the run, a column of history.csv.
+ *
+ * To add one: a file with a `const Measure measure_x` (reaction.c is the shortest) and its name in measures.inc. What a case
+ * file may say, the reference, `talus list measures` and the units of results are read from here. */
+#pragma once
+#include "model/model.h"
+
+/* What stands behind the key: an axis, an axis of rotation, one of the words, or a mapping with a side of a body and more. */
+typedef enum { MEASURE_AXIS, MEASURE_SPIN_AXIS, MEASURE_WORD, MEASURE_EXTENT, MEASURE_FRONT } MeasureArgument;
+/* What `of` names: a body, if not all; a tracer; an entry of the boundary; nothing, since the number is of the whole model. */
+typedef enum { OF_BODY, OF_TRACER, OF_BOUNDARY, OF_MODEL } MeasureSubject;
+
+/* A number, and one of three ways to it. */
+typedef struct {
+  const char *word, *help;
+  const char *unit; /* NULL of a word: that of its key */
+  MeasureSubject of;
+  PetscBool at; /* is it taken `at` a place? */
+  /* Collective. index: of the spec among the measures of the case. */
+  PetscErrorCode (*value)(Model *m, const MeasureSpec *s, PetscInt index, PetscReal *value);
+  /* This rank's share of a sum over the points of a body (< 0: of all). A body that is gone has none: nan. */
+  PetscReal (*sum)(const Model *m, const MeasureSpec *s, PetscInt body);
+  int which;   /* tells a value function that several numbers share which of them is asked for */
+  size_t kept; /* offset in Model of a number that it keeps, the first of `component` if the key takes an axis */
+} MeasureNumber;
+
+#define WORD(...) \
+  &(const MeasureNumber) { __VA_ARGS__ }
+
+typedef struct {
+  const char *key;
+  MeasureArgument takes;
+  PetscBool only_2d;
+  MeasureNumber number;              /* of the key: its help; its unit for people, if words have several */
+  const MeasureNumber *const *words; /* with MEASURE_WORD: ended by NULL */
+  /* Collective, or NULL: after every accepted step of dt, and at the start with dt = 0. */
+  PetscErrorCode (*remember)(Model *m, const MeasureSpec *s, PetscReal dt, PetscReal kept[MEASURE_KEPT]);
+} Measure;
+
+extern const Measure *const measures[]; /* ended by NULL */
+const Measure *measure_find(const char *kind);
+/* What the spec asks for. */
+const MeasureNumber *measure_number(const MeasureSpec *spec);
+
+/* -1: all bodies. */
+PetscInt measure_body(const Model *model, const MeasureSpec *spec);
+static inline PetscBool measure_takes_point(const Model *m, PetscInt body, PetscInt p)
+{
+  return body < 0 || m->points->body[p] == body;
+}
+
+/* Collective: the farthest coordinate of a body, and its free surface: the front, unless the spec asks for something else of it. */
+PetscErrorCode MeasureExtent(Model *model, const MeasureSpec *spec, PetscInt index, PetscReal *value);
+PetscErrorCode MeasureSurface(Model *model, const MeasureSpec *spec, PetscInt index, PetscReal *value);

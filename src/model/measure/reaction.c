@@ -1,0 +1,21 @@
+/* What holds a boundary. */
+#include "model/measure/measure.h"
+
+static PetscErrorCode Reaction(Model *m, const MeasureSpec *s, PetscInt index, PetscReal *value)
+{
+  PetscReal sum[3];
+
+  (void)index;
+  PetscFunctionBeginUser;
+  PetscCall(BoundarySum(m->boundary, m->grid, s->boundary, m->nodes->reaction, sum));
+  *value = sum[s->component];
+  PetscFunctionReturn(0);
+}
+
+const Measure measure_reaction = {
+  .key = "reaction",
+  .number = {
+    .unit = "N",
+    .help = "force that holds a boundary; in dynamics its mean over the step, so that times the step it is the impulse",
+    .of = OF_BOUNDARY,
+    .value = Reaction}};

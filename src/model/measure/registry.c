@@ -1,0 +1,34 @@
+/* All measures, from the list in measures.inc. */
+#include "model/measure/measure.h"
+#include <string.h>
+
+#define MEASURE(x) extern const Measure measure_##x;
+#include "model/measure/measures.inc"
+#undef MEASURE
+
+const Measure *const measures[] = {
+#define MEASURE(x) &measure_##x,
+#include "model/measure/measures.inc"
+#undef MEASURE
+  NULL};
+
+const Measure *measure_find(const char *key)
+{
+  for (PetscInt k = 0; key && measures[k]; ++k)
+    if (!strcmp(measures[k]->key, key)) return measures[k];
+  return NULL;
+}
+
+const MeasureNumber *measure_number(const MeasureSpec *s)
+{
+  const Measure *measure = measure_find(s->kind);
+  for (const MeasureNumber *const *w = measure->words; w && *w; ++w)
+    if (!strcmp((*w)->word, s->word)) return *w;
+  return &measure->number;
+}
+
+const char *measure_unit(const MeasureSpec *s)
+{
+  const char *unit = measure_number(s)->unit;
+  return unit ? unit : measure_find(s->kind)->number.unit;
+}
