@@ -7,7 +7,7 @@
  * The effective nodal acceleration is a_I = c0 du_I + h_I; time integration chooses c0 and h (gravity goes into h). */
 #pragma once
 #include "material/law.h"
-#include "points/support.h"
+#include "support/support.h"
 
 typedef struct {
   Kinematics kinematics;
@@ -23,7 +23,8 @@ typedef struct {
   const PetscReal *tie;       /* per group: inertia that ties them together, kg, or NULL */
   const unsigned char *fixed; /* n_nodes x dim: prescribed degrees of freedom; their rows and columns stay empty */
   const PetscReal *lift;      /* n_nodes x dim or NULL: adds K lift on the free rows, for fixed columns */
-  PetscBool half; /* of clouds, whose tangent is symmetric: blocks with a row behind the column are left out */
+  PetscBool
+    half; /* where points are groups of their own and the tangent is symmetric: blocks with a row behind the column are left out */
   const PetscReal *pressure;     /* mixed: n_nodes, the unknown pressure over pressure_scale, m */
   PetscReal pressure_scale;      /* mixed: Pa/m, gives both unknowns the same unit, and both equations N */
   PetscReal alpha;               /* mixed: stabilisation of the pressure is alpha / G */

@@ -4,8 +4,6 @@
 static PetscErrorCode FemStart(Stage *s)
 {
   PetscFunctionBeginUser;
-  PetscCall(PointsSort(s->points));
-  PetscCall(SupportFromCells(s->support, s->points, s->grid));
   PetscCall(StageTouch(s));
   PetscCall(StageNodalMass(s));
   if (s->pressure) PetscCall(StageNodalPressure(s)); /* of the initial state; from then on nodes keep theirs */
@@ -19,9 +17,12 @@ static PetscErrorCode FemStart(Stage *s)
 
 static PetscErrorCode FemInitialise(Stage *s)
 {
+  const BasisInput basis = {.spec = &s->c->basis, .grid = s->grid};
+
   PetscFunctionBeginUser;
+  if (!s->started) PetscCall(PointsSort(s->points));
+  PetscCall(s->basis->support(&basis, s->points, s->support)); /* gradients on the moved mesh */
   if (!s->started) PetscCall(FemStart(s));
-  else PetscCall(SupportFromCells(s->support, s->points, s->grid)); /* gradients on the moved mesh */
   s->started = PETSC_TRUE;
   PetscCall(PetscArraycpy(s->v_points, s->v, s->grid->n_nodes * s->grid->dim));
   PetscCall(PetscArraycpy(s->a_points, s->a, s->grid->n_nodes * s->grid->dim));
@@ -58,6 +59,7 @@ static const MethodField fields[] = {
 const Method method_fem = {
   .name = "fem",
   .help = "updated Lagrangian finite elements: the mesh moves with the body",
+  .basis = "cell",
   .points_move = PETSC_FALSE,
   .initialise = FemInitialise,
   .convect = FemConvect,

@@ -4,7 +4,7 @@
 #include "boundary/boundary.h"
 #include "boundary/loads.h"
 #include "material/law.h"
-#include "points/support.h"
+#include "support/basis.h"
 #include "solve/system/constraints.h"
 #include "solve/newton/newmark.h"
 
@@ -22,6 +22,7 @@ typedef struct Stage {
   Loads *loads;
   const Material *materials;
   PetscBool started; /* has initialise run before? */
+  const Basis *basis;
   Support *support;
   unsigned char *filled;  /* n_cells: does the cell hold points? */
   unsigned char *touched; /* n_nodes: does material reach the node? on every rank that knows it */
@@ -53,6 +54,7 @@ typedef struct {
 
 typedef struct Method {
   const char *name, *help;
+  const char *basis;     /* that it has unless the case names another one */
   PetscBool points_move; /* do points cross cells? */
   /* Phase a, collective: sorted points, support, touched, mass, v, a. Called once before every step (and before output of nodal
    * fields); leaves points alone otherwise. */
@@ -64,7 +66,7 @@ typedef struct Method {
   const MethodField *fields; /* ended by name = NULL; NULL: nodes remember nothing */
   /* For methods whose nodes leave the grid that seeded the points; NULL in others. Collective. Nodes, ranks and neighbours may change here, between steps. */
   PetscErrorCode (*destroy)(Stage *stage);
-  /* Groups of nodes that steps to come may couple; freed by the caller. NULL: the cells. */
+  /* Groups of nodes that steps to come may couple, added to those that are there. NULL: those that the basis couples in the cells. */
   PetscErrorCode (*couplings)(const Stage *stage, NodeGroups *groups);
   /* Send nodes and points to ranks by where they are now. */
   PetscErrorCode (*redistribute)(Stage *stage);
@@ -72,6 +74,8 @@ typedef struct Method {
 
 extern const Method *const methods[]; /* ended by NULL */
 const Method *method_find(const char *name);
+/* Do its nodes and points fit the basis? */
+PetscBool method_takes(const Method *method, const Basis *basis);
 
 PetscErrorCode StageCreate(const Case *c, Grid *grid, Points *points, Points *tracers, Loads *loads,
                            const Material *materials, Stage **stage);

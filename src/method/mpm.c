@@ -3,7 +3,7 @@
 
 #define UNROLLED static inline __attribute__((always_inline))
 
-/* A loop over points, with dimension and nodes of a cell known to the compiler where that pays most. */
+/* A loop over points, with dimension and nodes of a group known to the compiler where that pays most; fixed_nn 0: each group has its own. */
 #define WITH_SIZES(loop, dim, nn, ...)                         \
   do {                                                         \
     if ((dim) == 2 && (nn) == 4) loop(2, 4, __VA_ARGS__);      \
@@ -11,16 +11,18 @@
     else loop(dim, nn, __VA_ARGS__);                           \
   } while (0)
 
-UNROLLED void gather_motion(const PetscInt dim, const PetscInt nn, Stage *s)
+UNROLLED void gather_motion(const PetscInt dim, const PetscInt fixed_nn, Stage *s)
 {
   const Support *w = s->support;
   for (PetscInt g = 0; g < w->n_groups; ++g) {
-    const PetscInt *node = w->node + g * nn;
-    PetscReal momentum[3 * CELL_MAX_NODES] = {0}, force[3 * CELL_MAX_NODES] = {0};
+    const PetscInt nn = fixed_nn ? fixed_nn : support_nodes(w, g), *node = w->node + w->node_start[g];
+    PetscReal momentum[3 * CLOUD_MAX_NODES], force[3 * CLOUD_MAX_NODES];
+    for (PetscInt i = 0; i < nn * dim; ++i) momentum[i] = force[i] = 0;
     for (PetscInt p = w->point_start[g]; p < w->point_start[g + 1]; ++p) {
       const PetscReal *v = point_real(s->points, POINT_V, p), *a = point_real(s->points, POINT_A, p);
+      const PetscReal *N = w->N + w->value_start[g] + (p - w->point_start[g]) * nn;
       for (PetscInt I = 0; I < nn; ++I) {
-        const PetscReal m = w->N[p * nn + I] * s->points->real[POINT_MASS][p];
+        const PetscReal m = N[I] * s->points->real[POINT_MASS][p];
         for (PetscInt d = 0; d < dim; ++d) {
           momentum[I * dim + d] += m * v[d];
           force[I * dim + d] += m * a[d];
@@ -76,54 +78,66 @@ static PetscReal emptiest_corner(const Support *w, PetscInt g, const PetscReal *
   return (PetscReal)(nn * nn) * least / mass;
 }
 
+static PetscErrorCode ReserveStabilisation(Stage *s)
+{
+  PetscFunctionBeginUser;
+  if (s->support->n_groups <= s->group_capacity) PetscFunctionReturn(0);
+  PetscCall(PetscFree(s->lumping));
+  PetscCall(PetscFree(s->soft));
+  PetscCall(PetscFree(s->tie));
+  s->group_capacity = s->support->n_groups + s->support->n_groups / 4;
+  PetscCall(PetscMalloc1(s->group_capacity, &s->lumping));
+  PetscCall(PetscMalloc1(s->group_capacity, &s->soft));
+  PetscCall(PetscMalloc1(s->group_capacity, &s->tie));
+  PetscCall(PetscFree(s->pressure_tie));
+  if (s->pressure) PetscCall(PetscMalloc1(s->group_capacity, &s->pressure_tie));
+  PetscFunctionReturn(0);
+}
+
 /* A cell that its points fill only partly leaves motions of its nodes without stiffness and mass, and so does a quadrilateral or hexahedron whose points
  * stand on a line or at one side, however many they are. In the measure in which it is not full, part of its mass is lumped and its nodes are tied by a weak
- * stiffness and a little inertia (docs/theory.md, "Cells that are not full"). */
+ * stiffness and a little inertia (docs/theory.md, "Cells that are not full"). Where each point of a cell is a group of its own, they share that. */
 static PetscErrorCode Stabilise(Stage *s)
 {
   const Support *w = s->support;
   const PetscInt dim = s->grid->dim;
-  const PetscBool hourglass = s->grid->nodes_per_cell > dim + 1;
+  const PetscBool whole = w->n_runs > 0, hourglass = whole && s->grid->nodes_per_cell > dim + 1;
   PetscReal x[3 * CELL_MAX_NODES];
 
   PetscFunctionBeginUser;
-  if (w->n_groups > s->group_capacity) {
-    PetscCall(PetscFree(s->lumping));
-    PetscCall(PetscFree(s->soft));
-    PetscCall(PetscFree(s->tie));
-    s->group_capacity = w->n_groups + w->n_groups / 4;
-    PetscCall(PetscMalloc1(s->group_capacity, &s->lumping));
-    PetscCall(PetscMalloc1(s->group_capacity, &s->soft));
-    PetscCall(PetscMalloc1(s->group_capacity, &s->tie));
-    PetscCall(PetscFree(s->pressure_tie));
-    if (s->pressure) PetscCall(PetscMalloc1(s->group_capacity, &s->pressure_tie));
-  }
-  for (PetscInt g = 0; g < w->n_groups; ++g) {
+  PetscCall(ReserveStabilisation(s));
+  for (PetscInt g = 0, end; g < w->n_groups; g = end) {
+    const PetscInt cell = s->points->cell[w->point_start[g]];
     PetscReal filled = 0, modulus = 0, shear = 0, mass = 0;
-    for (PetscInt p = w->point_start[g]; p < w->point_start[g + 1]; ++p) {
-      filled += PetscMin(1, s->points->real[POINT_J][p]) * s->points->real[POINT_VOLUME][p];
-      mass += s->points->real[POINT_MASS][p];
-      modulus = PetscMax(modulus, s->materials[s->points->material[p]].wave_modulus);
-      shear = PetscMax(shear, s->materials[s->points->material[p]].elastic.shear);
-    }
-    grid_cell_x(s->grid, s->points->cell[w->point_start[g]], x);
-    const PetscReal volume = cell_volume(s->grid->type, x);
+    for (end = g; end < w->n_groups && s->points->cell[w->point_start[end]] == cell; ++end)
+      for (PetscInt p = w->point_start[end]; p < w->point_start[end + 1]; ++p) {
+        filled += PetscMin(1, s->points->real[POINT_J][p]) * s->points->real[POINT_VOLUME][p];
+        mass += s->points->real[POINT_MASS][p];
+        modulus = PetscMax(modulus, s->materials[s->points->material[p]].wave_modulus);
+        shear = PetscMax(shear, s->materials[s->points->material[p]].elastic.shear);
+      }
+    grid_cell_x(s->grid, cell, x);
+    const PetscReal volume = cell_volume(s->grid->type, x), share = 1 / (PetscReal)(end - g);
     const PetscReal corner = hourglass ? emptiest_corner(w, g, s->points->real[POINT_MASS], mass) : 1;
     const PetscReal lack = PetscMax(0, 1 - PetscMin(filled / volume, corner));
     const PetscReal size = dim == 2 ? PetscSqrtReal(volume) : cbrt(volume);
-    s->lumping[g] = s->c->analysis.mass == MASS_LUMPED ? 1 : s->c->stabilisation.mass * lack;
-    s->tie[g] = s->c->stabilisation.inertia * lack * mass;
-    s->soft[g] = s->c->stabilisation.stiffness * lack * modulus * volume / (size * size);
-    if (s->pressure_tie) s->pressure_tie[g] = s->c->stabilisation.stiffness * lack * volume / shear;
+    for (PetscInt k = g; k < end; ++k) {
+      s->lumping[k] = s->c->analysis.mass == MASS_LUMPED ? 1 : s->c->stabilisation.mass * lack;
+      s->tie[k] = whole ? s->c->stabilisation.inertia * lack * mass : 0;
+      s->soft[k] = share * s->c->stabilisation.stiffness * lack * modulus * volume / (size * size);
+      if (s->pressure_tie) s->pressure_tie[k] = s->c->stabilisation.stiffness * lack * volume / shear;
+    }
   }
   PetscFunctionReturn(0);
 }
 
 static PetscErrorCode MpmInitialise(Stage *s)
 {
+  const BasisInput basis = {.spec = &s->c->basis, .grid = s->grid};
+
   PetscFunctionBeginUser;
   PetscCall(PointsSort(s->points));
-  PetscCall(SupportFromCells(s->support, s->points, s->grid));
+  PetscCall(s->basis->support(&basis, s->points, s->support));
   PetscCall(StageTouch(s));
   PetscCall(Project(s));
   if (s->pressure) PetscCall(StageNodalPressure(s));
@@ -134,13 +148,13 @@ static PetscErrorCode MpmInitialise(Stage *s)
 /* Points take the change of the nodes' velocity, measured from what the points had given them: where the boundary stops a node, it stops
  * its points too (eq. 2.16 as printed would let them keep their velocity for ever; docs/theory.md). Rayleigh damping acts on all motion:
  * on what nodes carry through the balance, on the rest of a point's velocity, which no node sees, here. */
-UNROLLED void move_points(const PetscInt dim, const PetscInt nn, Stage *s, const PetscReal *du)
+UNROLLED void move_points(const PetscInt dim, const PetscInt fixed_nn, Stage *s, const PetscReal *du)
 {
   const Support *w = s->support;
   for (PetscInt g = 0; g < w->n_groups; ++g) {
-    const PetscInt *node = w->node + g * nn;
+    const PetscInt nn = fixed_nn ? fixed_nn : support_nodes(w, g), *node = w->node + w->node_start[g];
     for (PetscInt p = w->point_start[g]; p < w->point_start[g + 1]; ++p) {
-      const PetscReal *N = w->N + p * nn;
+      const PetscReal *N = w->N + w->value_start[g] + (p - w->point_start[g]) * nn;
       PetscReal *x = point_real(s->points, POINT_X, p), *u = point_real(s->points, POINT_U, p);
       PetscReal *v = point_real(s->points, POINT_V, p), *a = point_real(s->points, POINT_A, p);
       for (PetscInt d = 0; d < dim; ++d) {
@@ -182,6 +196,7 @@ static PetscErrorCode MpmConvect(Stage *s, const PetscReal *du)
 const Method method_mpm = {
   .name = "mpm",
   .help = "material point method: points move through a grid that is restored every step",
+  .basis = "cell",
   .points_move = PETSC_TRUE,
   .initialise = MpmInitialise,
   .convect = MpmConvect,

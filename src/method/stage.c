@@ -14,6 +14,7 @@ PetscErrorCode StageCreate(const Case *c, Grid *grid, Points *points, Points *tr
   s->tracers = tracers;
   s->loads = loads;
   s->materials = materials;
+  s->basis = basis_find(c->basis.kind);
   PetscCall(SupportCreate(&s->support));
   PetscCall(PetscCalloc1(grid->n_cells, &s->filled));
   PetscCall(PetscCalloc1(grid->n_nodes, &s->touched));

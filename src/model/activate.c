@@ -66,21 +66,16 @@ static PetscErrorCode AddRings(const Model *m, const unsigned char *occupied, un
 
 PetscErrorCode ModelEnable(Model *m)
 {
-  const PetscInt nn = m->grid->nodes_per_cell;
-  PetscInt n = 0, *node, *start;
+  const BasisInput basis = {.spec = &m->c->basis, .grid = m->grid};
+  const BasisSites sites = {.cell = m->enabled};
+  NodeGroups groups;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(m->grid->n_cells * nn, &node));
-  for (PetscInt c = 0; c < m->grid->n_cells; ++c)
-    if (m->enabled[c]) {
-      PetscCall(PetscArraycpy(node + n * nn, m->grid->cell_node + c * nn, nn));
-      ++n;
-    }
-  PetscCall(PetscMalloc1(n + 1, &start));
-  for (PetscInt g = 0; g <= n; ++g) start[g] = g * nn;
-  PetscCall(SystemBuild(m->system, m->grid, &(NodeGroups){.n = n, .start = start, .node = node}));
-  PetscCall(PetscFree(start));
-  PetscCall(PetscFree(node));
+  PetscCall(NodeGroupsCreate(&groups));
+  if (m->method->couplings) PetscCall(m->method->couplings(m->stage, &groups));
+  else PetscCall(m->stage->basis->couplings(&basis, &sites, &groups));
+  PetscCall(SystemBuild(m->system, m->grid, &groups));
+  PetscCall(NodeGroupsDestroy(&groups));
   PetscFunctionReturn(0);
 }
 
@@ -111,17 +106,13 @@ PetscErrorCode ModelFollowCloud(Model *m)
 static PetscErrorCode ActivateClouds(Model *m)
 {
   PetscBool complete = PETSC_FALSE;
-  NodeGroups groups;
 
   PetscFunctionBeginUser;
   if (m->layouts != m->grid->cloud->layouts) PetscCall(ModelFollowCloud(m));
   else if (m->system->builds) PetscCall(FindSlots(m, &complete));
   if (!complete) {
     PetscCall(PetscArrayzero(m->force, m->grid->n_nodes * m->dim)); /* of nodes that may lose their unknowns */
-    PetscCall(m->method->couplings(m->stage, &groups));
-    PetscCall(SystemBuild(m->system, m->grid, &groups));
-    PetscCall(PetscFree(groups.start));
-    PetscCall(PetscFree(groups.node));
+    PetscCall(ModelEnable(m));
     PetscCall(FindSlots(m, &complete));
     PetscCheck(complete, m->comm, PETSC_ERR_PLIB, "the system lacks couplings that it was built for");
   }
@@ -133,7 +124,7 @@ PetscErrorCode ModelActivate(Model *m)
 {
   const AnalysisSpec *analysis = &m->c->analysis;
   unsigned char *occupied;
-  PetscBool fits;
+  PetscBool fits, complete;
 
   PetscFunctionBeginUser;
   if (m->method->couplings) {
@@ -149,6 +140,7 @@ PetscErrorCode ModelActivate(Model *m)
     PetscCall(ModelEnable(m));
   }
   PetscCall(PetscFree(occupied));
-  PetscCall(SystemSlots(m->system, m->stage->support, NULL));
+  PetscCall(SystemSlots(m->system, m->stage->support, &complete));
+  PetscCheck(complete, PETSC_COMM_SELF, PETSC_ERR_PLIB, "points couple nodes that their basis did not announce");
   PetscFunctionReturn(0);
 }

@@ -14,6 +14,7 @@ static PetscReal cell_weight(void *context, const PetscReal *centre)
 
 static void check_supported(const Case *c, Diag *diag)
 {
+  const Basis *basis = basis_find(c->basis.kind);
   if (c->kinematics == KINEMATICS_AXISYMMETRIC)
     diag_error(diag, "kinematics", "axisymmetric kinematics are not part of this version; plane-strain and 3d are");
   if (!method_find(c->method))
@@ -26,6 +27,12 @@ static void check_supported(const Case *c, Diag *diag)
       diag, "formulation",
       "formulation '%s' is not part of this version for method gmm, which takes displacement; mpm and fem take both",
       c->formulation);
+  else if (formulation_find(c->formulation)->pressure && basis && basis->nodes != BASIS_OF_CELLS)
+    diag_error(diag, "formulation", "formulation '%s' takes no other basis than 'cell', not '%s'", c->formulation,
+               c->basis.kind);
+  if (!basis || (method_find(c->method) && !method_takes(method_find(c->method), basis)))
+    diag_error(diag, "basis", "method %s does not take the basis '%s'", c->method,
+               c->basis.kind ? c->basis.kind : "cell");
   if (c->analysis.keep_velocity && strcmp(c->method, "mpm"))
     diag_error(diag, "analysis.keep_velocity",
                "only points of method mpm have a velocity apart from that of the nodes");
@@ -220,6 +227,7 @@ static PetscErrorCode Build(Model *m, Diag *diag)
   m->formulation = formulation_find(m->c->formulation);
   PetscCall(GridCreate(m->comm, m->c, cell_weight, (void *)m->c, diag, &m->grid));
   if (!m->grid) PetscFunctionReturn(0);
+  if (basis_find(m->c->basis.kind)->check) PetscCall(basis_find(m->c->basis.kind)->check(m->grid, diag));
   PetscCall(CreateBodies(m, diag));
   PetscCall(DiagReduce(m->comm, diag, &errors));
   if (errors) PetscFunctionReturn(0);

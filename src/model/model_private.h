@@ -30,7 +30,7 @@ void guess_make(const Model *model, FirstGuess guess, PetscReal dt, PetscReal *d
 PetscErrorCode GuessLearn(Model *model, PetscReal dt);
 PetscErrorCode GuessToTables(Model *model, Tables *tables);
 PetscErrorCode GuessFromTables(Model *model, const Tables *tables, char reason[256]);
-/* Collective. The system for the cells that are enabled. */
+/* Collective. The system for the cells that are enabled, or for a cloud as it is now. */
 PetscErrorCode ModelEnable(Model *model);
 /* Arrays that the step keeps over the nodes of a cloud, after its ghosts or owners changed. */
 PetscErrorCode ModelFollowCloud(Model *model);

@@ -181,7 +181,7 @@ PetscErrorCode PrepareStep(Model *m, PetscReal dt, StepProblem *p)
     .idle = m->idle,
     .asked = m->asked,
   };
-  p->in.half = m->symmetric && m->grid->cloud;
+  p->in.half = m->symmetric && !m->stage->support->n_runs;
   p->round_off = round_off_of(m, p->in.inertia);
   if (m->stage->constraints) m->stage->constraints->scale = node_stiffness(m, p->in.inertia);
   PetscCall(ForceScales(m, g, dt, &p->weight, &p->inertia));

@@ -1,2 +1,3 @@
 # What somebody adds to talus from outside: a file each, and a line in more_<list>.inc. CONTRIBUTING.md has the recipes.
 talus_extend(talus_extended ${CMAKE_CURRENT_LIST_DIR})
+talus_test(extend/test_basis)

@@ -4,8 +4,7 @@
 #include "case_builder.h"
 
 static const char *const names[] = {"fem", "mpm", "gmm"};
-static const BasisSpec lme = {
-  .kind = BASIS_LME, .gamma = 1.8, .radius = 2, .max_radius = 3.5, .condition = 50, .gap = 2};
+static const BasisSpec lme = {.kind = "lme", .gamma = 1.8, .radius = 2, .max_radius = 3.5, .condition = 50, .gap = 2};
 
 /* Two blocks on one grid, one on the floor; `apart` lies between them. */
 static void two_blocks(Bench *b, const char *method, PetscReal apart)

@@ -1,6 +1,7 @@
 /* The keys at the top of the case file, and those of the smaller blocks. The order of the lines is the
  * order of reading, writing and of the reference. */
 #include "input/schema/schema_keys.h"
+#include "support/basis.h"
 
 static const SchemaWord kinematics_words[] = {
   {"plane-strain", KINEMATICS_PLANE_STRAIN, "two-dimensional, unit thickness"},
@@ -189,7 +190,7 @@ static const SchemaEntry case_entries[] = {
       .count = offsetof(Case, n_measures)),
   KEY("newton", TABLE, NULL, "convergence", .table = &newton, ALWAYS, AT(Case, newton)),
   KEY("linear", WORD, NULL, "linear solver", .words = linear_words, .fallback = "auto", AT(Case, linear)),
-  KEY("basis", TABLE, NULL, "shape functions of gmm", .table = &schema_basis, ALWAYS, AT(Case, basis)),
+  KEY("basis", TABLE, NULL, "shape functions", .table = &schema_basis, ALWAYS, AT(Case, basis)),
   KEY("stabilisation", TABLE, NULL, "cells that are not full", .table = &stabilisation, ALWAYS,
       AT(Case, stabilisation)),
   KEY("output", TABLE, NULL, "what is written", .table = &output, ALWAYS, AT(Case, output)),
@@ -203,7 +204,7 @@ static const SchemaEntry case_entries[] = {
 };
 static PetscBool hide_in_case(const SchemaEntry *e, const void *source)
 {
-  return !strcmp(e->key, "basis") && strcmp(((const Case *)source)->method, "gmm");
+  return !strcmp(e->key, "basis") && basis_find(((const Case *)source)->basis.kind) == basis_find("cell");
 }
 const SchemaTable schema_case = {
   .name = "case", .help = "The keys at the top of the file.", .entries = case_entries, .hide = hide_in_case};

@@ -200,16 +200,17 @@ static PetscReal transfer_of_nodes(const Model *m, const EnergyStep *e, PetscRea
 static PetscReal faded(const Model *m)
 {
   const Stage *s = m->stage;
-  const PetscInt dim = m->dim, nn = s->support->uniform;
+  const Support *w = s->support;
+  const PetscInt dim = m->dim;
   PetscReal sum = 0;
-  for (PetscInt g = 0; g < s->support->n_groups; ++g)
-    for (PetscInt p = s->support->point_start[g]; p < s->support->point_start[g + 1]; ++p)
+  for (PetscInt g = 0; g < w->n_groups; ++g)
+    for (PetscInt p = w->point_start[g]; p < w->point_start[g + 1]; ++p)
       for (PetscInt d = 0; d < dim; ++d) {
         PetscReal v = point_real(m->points, POINT_V, p)[d], unseen = v;
-        for (PetscInt I = 0; I < nn; ++I) {
-          const PetscInt i = s->support->node[g * nn + I] * dim + d;
-          v += s->support->N[p * nn + I] * (s->v1[i] - s->v_points[i]);
-          unseen -= s->support->N[p * nn + I] * s->v_points[i];
+        for (PetscInt I = 0; I < support_nodes(w, g); ++I) {
+          const PetscInt i = w->node[w->node_start[g] + I] * dim + d;
+          v += support_N(w, g, p)[I] * (s->v1[i] - s->v_points[i]);
+          unseen -= support_N(w, g, p)[I] * s->v_points[i];
         }
         sum += m->points->real[POINT_MASS][p] * s->fade * unseen * (v - 0.5 * s->fade * unseen);
       }

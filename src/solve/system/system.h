@@ -3,7 +3,7 @@
  * Unknowns sit on the nodes of the groups (cells, clouds) handed to SystemBuild; those that no material touches get nothing but a diagonal, so that the pattern (and the symbolic factorisation) may be padded and kept over many steps. */
 #pragma once
 #include <petscksp.h>
-#include "points/support.h"
+#include "support/support.h"
 
 /* What the linear solver works on: a matrix of PETSc, or blocks in single precision for symmetric Gauss-Seidel (solve/blocks/blocks.h). */
 typedef enum { SYSTEM_ASSEMBLED, SYSTEM_BLOCKS } SystemForm;
