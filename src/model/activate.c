@@ -71,7 +71,7 @@ PetscErrorCode ModelEnable(Model *m)
   NodeGroups groups;
 
   PetscFunctionBeginUser;
-  PetscCall(NodeGroupsCreate(&groups));
+  PetscCall(NodeGroupsCreate(m->stage->support->n_groups, &groups));
   if (m->method->couplings) PetscCall(m->method->couplings(m->stage, &groups));
   else PetscCall(m->stage->basis->couplings(&basis, &sites, &groups));
   PetscCall(SystemBuild(m->system, m->grid, &groups));

@@ -44,11 +44,12 @@ PetscErrorCode SupportReserve(Support *s, PetscInt groups, PetscInt nodes, Petsc
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode NodeGroupsCreate(NodeGroups *groups)
+PetscErrorCode NodeGroupsCreate(PetscInt expected, NodeGroups *groups)
 {
   PetscFunctionBeginUser;
-  *groups = (NodeGroups){.room_groups = 64};
+  *groups = (NodeGroups){.room_groups = expected + 1, .room_nodes = 16 * expected};
   PetscCall(PetscCalloc1(groups->room_groups, &groups->start));
+  PetscCall(PetscMalloc1(groups->room_nodes, &groups->node));
   PetscFunctionReturn(0);
 }
 

@@ -12,7 +12,8 @@ typedef struct {
   PetscInt room_groups, room_nodes;
 } NodeGroups;
 
-PetscErrorCode NodeGroupsCreate(NodeGroups *groups);
+PetscErrorCode NodeGroupsCreate(PetscInt expected,
+                                NodeGroups *groups); /* with room for so many groups, to begin with */
 PetscErrorCode NodeGroupsAdd(NodeGroups *groups, PetscInt n, const PetscInt *node); /* one more */
 PetscErrorCode NodeGroupsDestroy(NodeGroups *groups);
 
