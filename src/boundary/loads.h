@@ -3,7 +3,7 @@
  * A carrier is a point without mass that holds a force: at the quadrature points of a body's boundary (a traction), or at one
  * material position (a point force). Its force goes to the nodes of its cell that hold material. */
 #pragma once
-#include "points/support.h"
+#include "support/support.h"
 
 /* Faces of the grid under one load: their cells, and the integral of each of the cell's shape functions over the face. */
 typedef struct {

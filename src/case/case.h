@@ -159,15 +159,14 @@ typedef struct {
   PetscInt ease; /* a step that needs at most so many iterations lets the next grow */
 } NewtonSpec;
 
-typedef enum { BASIS_MLS, BASIS_LME } BasisKind;
 typedef enum { ORDER_LINEAR, ORDER_BILINEAR, ORDER_QUADRATIC } BasisOrder;
 typedef enum { WEIGHT_GAUSSIAN, WEIGHT_CUBIC_SPLINE } BasisWeight;
 typedef enum { CLOUD_CHOICE_ADAPTIVE, CLOUD_CHOICE_NEAREST, CLOUD_CHOICE_FIXED } CloudChoice;
 typedef enum { ESSENTIAL_AUTO, ESSENTIAL_DIRECT, ESSENTIAL_CONSTRAINTS } EssentialKind;
 
-/* Shape functions of clouds of nodes (gmm). Lengths are over the cell size of the grid that gives the nodes. */
+/* Shape functions, most numbers of clouds of nodes (gmm). Lengths are over the cell size of the grid that gives the nodes. */
 typedef struct {
-  BasisKind kind;
+  const char *kind; /* one of basis_names[] (support/basis.h); NULL: the cell */
   CloudChoice choice;
   PetscReal radius;           /* of a cloud */
   PetscReal max_radius;       /* that it may grow to */

@@ -7,9 +7,10 @@
 #include "input/schema/schema.h"
 #include "material/law.h"
 #include "model/measure/measure.h"
+#include "support/basis.h"
 
 static const CliUsage usage = {
-  .usage = "talus list laws|methods|cells|measures|fields",
+  .usage = "talus list laws|methods|bases|cells|measures|fields",
   .help = "Prints what a case file can name.",
   .min_words = 1,
   .max_words = 1,
@@ -44,6 +45,11 @@ static void list_methods(void)
   for (const Method *const *method = methods; *method; ++method) printf("%-6s %s\n", (*method)->name, (*method)->help);
 }
 
+static void list_bases(void)
+{
+  for (const BasisName *b = basis_names; b->name; ++b) printf("%-6s %s\n", b->name, b->help);
+}
+
 static void list_cells(void)
 {
   for (int type = 0; type < 4; ++type) {
@@ -76,7 +82,7 @@ static void list_fields(void)
 static const struct {
   const char *name;
   void (*print)(void);
-} lists[] = {{"laws", list_laws},         {"methods", list_methods}, {"cells", list_cells},
+} lists[] = {{"laws", list_laws},         {"methods", list_methods}, {"bases", list_bases}, {"cells", list_cells},
              {"measures", list_measures}, {"fields", list_fields},   {NULL, NULL}};
 
 PetscErrorCode CliList(int argc, char **argv, int *exit_code)
@@ -84,7 +90,7 @@ PetscErrorCode CliList(int argc, char **argv, int *exit_code)
   const char *names[8] = {NULL}, *nearest;
   CliArguments arguments;
   PetscBool go_on;
-  char hint[80] = "laws, methods, cells, measures or fields";
+  char hint[80] = "laws, methods, bases, cells, measures or fields";
 
   PetscFunctionBeginUser;
   PetscCall(CliParse(&usage, argc, argv, &arguments, &go_on, exit_code));

@@ -7,7 +7,7 @@
  * The effective nodal acceleration is a_I = c0 du_I + h_I; time integration chooses c0 and h (gravity goes into h). */
 #pragma once
 #include "material/law.h"
-#include "points/support.h"
+#include "support/support.h"
 
 typedef struct {
   const Kinematics *kinematics;
@@ -21,7 +21,8 @@ typedef struct {
   const PetscReal *lumping; /* per group: share of the mass that is lumped, or NULL (0) */
   const PetscReal *soft;    /* per group: stiffness that ties a hardly filled cell's nodes together, N/m, or NULL */
   const PetscReal *tie;     /* per group: inertia that ties them together, kg, or NULL */
-  PetscBool half; /* of clouds, whose tangent is symmetric: blocks with a row behind the column are left out */
+  /* Where points are groups of their own and the tangent is symmetric: blocks with a row behind the column are left out. */
+  PetscBool half;
   const PetscReal *pressure;     /* mixed: n_nodes, the unknown pressure over pressure_scale, m */
   PetscReal pressure_scale;      /* mixed: Pa/m, gives both unknowns the same unit, and both equations N */
   PetscReal alpha;               /* mixed: stabilisation of the pressure is alpha / G */

@@ -9,6 +9,7 @@ PetscErrorCode DiscretisationCreate(const Discretisation *parts, Discretisation 
   s = *space;
   *s = *parts;
   PetscCall(NodalFieldsCreate(s->grid, case_is_mixed(s->c), &s->nodes));
+  s->basis = basis_find(s->c->basis.kind);
   PetscCall(SupportCreate(&s->support));
   PetscCall(ConstraintsCreate(s->grid->dim, &s->constraints));
   PetscCall(PetscCalloc1(s->grid->n_cells, &s->filled));

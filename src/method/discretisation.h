@@ -4,8 +4,8 @@
 #include "boundary/loads.h"
 #include "material/law.h"
 #include "method/nodal_fields.h"
-#include "points/support.h"
 #include "solve/forces/constraints.h"
+#include "support/basis.h"
 
 typedef struct Discretisation {
   const Case *c;
@@ -15,6 +15,7 @@ typedef struct Discretisation {
   Loads *loads;
   const Material *materials;
   NodalFields *nodes;
+  const Basis *basis;
   Support *support;
   Constraints *constraints; /* none: prescribed motion is that of the nodes themselves */
   PetscBool started;        /* has phase a run before? */

@@ -4,8 +4,6 @@
 static PetscErrorCode FemStart(Discretisation *s)
 {
   PetscFunctionBeginUser;
-  PetscCall(PointsSort(s->points));
-  PetscCall(SupportFromCells(s->support, s->points, s->grid));
   PetscCall(DiscretisationTouch(s));
   PetscCall(DiscretisationMass(s));
   if (s->nodes->pressure)
@@ -20,10 +18,13 @@ static PetscErrorCode FemStart(Discretisation *s)
 
 static PetscErrorCode FemInitialise(Discretisation *s)
 {
+  const BasisInput basis = {.spec = &s->c->basis, .grid = s->grid};
   NodalFields *n = s->nodes;
+
   PetscFunctionBeginUser;
+  if (!s->started) PetscCall(PointsSort(s->points));
+  PetscCall(s->basis->support(&basis, s->points, s->support)); /* gradients on the moved mesh */
   if (!s->started) PetscCall(FemStart(s));
-  else PetscCall(SupportFromCells(s->support, s->points, s->grid)); /* gradients on the moved mesh */
   s->started = PETSC_TRUE;
   PetscCall(PetscArraycpy(n->v_points, n->v, s->grid->n_nodes * s->grid->dim));
   PetscCall(PetscArraycpy(n->a_points, n->a, s->grid->n_nodes * s->grid->dim));
@@ -48,6 +49,7 @@ static PetscErrorCode FemConvect(Discretisation *s)
 const Method method_fem = {
   .name = "fem",
   .help = "updated Lagrangian finite elements: the grid moves with the material",
+  .basis = "cell",
   .takes_pressure = PETSC_TRUE,
   .initialise = FemInitialise,
   .convect = FemConvect,

@@ -4,32 +4,6 @@
 
 #define KEEP_OFF 0.25 /* spacings between nodes, at least */
 
-static void choose_rule(const Discretisation *s, Gmm *g)
-{
-  static const SupportRule rule[] = {SUPPORT_ADAPTIVE, SUPPORT_NEAREST, SUPPORT_FIXED};
-  static const CloudOrder order[] = {CLOUD_LINEAR, CLOUD_BILINEAR, CLOUD_QUADRATIC};
-  const BasisSpec *b = &s->c->basis;
-  const PetscBool mls = b->kind == BASIS_MLS;
-  g->rule.h = s->grid->cloud->spacing;
-  g->rule.support = mls ? support_default_mls : support_default_lme;
-  g->rule.support.rule = rule[b->choice];
-  g->rule.support.radius = b->radius;
-  g->rule.support.max_radius = PetscMax(b->max_radius, b->radius);
-  g->rule.support.condition = b->condition;
-  g->rule.support.minimum = (int)b->minimum;
-  g->rule.support.gap = b->gap;
-  g->rule.basis = (CloudBasis){
-    .kind = mls ? CLOUD_MLS : CLOUD_LME,
-    .order = order[b->order],
-    .weight = b->weight == WEIGHT_CUBIC_SPLINE ? CLOUD_CUBIC_SPLINE : CLOUD_GAUSSIAN,
-    .effective_radius = b->effective_radius,
-    .gamma = b->gamma,
-  };
-  g->at_nodes = g->rule;
-  if (!mls) g->at_nodes.basis = (CloudBasis){.kind = CLOUD_MLS, .effective_radius = 1 / PetscSqrtReal(b->gamma)};
-  g->constraints = b->essential == ESSENTIAL_CONSTRAINTS || (b->essential == ESSENTIAL_AUTO && mls);
-}
-
 static PetscErrorCode GmmStart(Discretisation *s)
 {
   Gmm *g;
@@ -37,7 +11,7 @@ static PetscErrorCode GmmStart(Discretisation *s)
   PetscFunctionBeginUser;
   PetscCall(PetscNew(&g));
   s->own = g;
-  choose_rule(s, g);
+  g->constraints = basis_needs_constraints(&s->c->basis);
   PetscCall(SupportCreate(&g->tracers));
   PetscCall(SupportCreate(&g->carriers));
   PetscCall(SupportCreate(&g->nodes));
@@ -220,6 +194,7 @@ static PetscErrorCode GmmDestroy(Discretisation *s)
 const Method method_gmm = {
   .name = "gmm",
   .help = "Galerkin meshfree method: a cloud of nodes and points moves, without cells",
+  .basis = "lme",
   .clouds = PETSC_TRUE,
   .initialise = GmmInitialise,
   .begin = GmmCarry,

@@ -3,14 +3,11 @@
 #include "method/method.h"
 
 typedef struct {
-  CloudRule rule;
-  CloudRule at_nodes;          /* at nodes and loads: on the hull, where they stand, lme has no smooth values */
   PetscBool constraints;       /* prescribed motion by multipliers? else on the nodes themselves */
   Support *tracers, *carriers; /* clouds of points without mass */
   Support
     *nodes; /* clouds of owned nodes that are no twins, in their order; empty where no prescribed node is near and no
                                * constraint needs them */
-  CloudTally tally; /* of the material points in the last gathering, this rank */
   PetscInt layouts; /* state of the cloud that the arrays of this room fit */
   PetscInt *twin;   /* n_owned: local number of the node's twin, -1 if it has none */
 } Gmm;
@@ -25,5 +22,5 @@ PetscErrorCode GmmCarry(Discretisation *space);
 PetscErrorCode GmmBalance(Discretisation *space);
 /* Collective. Do that now. */
 PetscErrorCode GmmRedistribute(Discretisation *space);
-/* Collective. Groups of nodes that the next steps may couple. */
+/* Collective. Groups of nodes that the next steps may couple: near points and constraints. */
 PetscErrorCode GmmCouplings(const Discretisation *space, NodeGroups *groups);

@@ -13,10 +13,8 @@ typedef struct {
   PetscBool *use;  /* per candidate: does a cloud need it? */
 } Search;
 
-static PetscReal reach_of(const Gmm *g)
-{
-  return SKIN * g->rule.h * PetscMax(g->rule.support.radius, g->rule.support.max_radius);
-}
+/* The radius aimed at, m. */
+static PetscReal radius_of(const Discretisation *s) { return s->c->basis.radius * s->grid->cloud->spacing; }
 
 static void widen_box(PetscInt dim, PetscInt n, const PetscReal *x, PetscReal reach, PetscReal box[6])
 {
@@ -31,7 +29,7 @@ static void widen_box(PetscInt dim, PetscInt n, const PetscReal *x, PetscReal re
 static void search_box(const Discretisation *s, PetscReal box[6])
 {
   const PetscInt dim = s->grid->dim;
-  const PetscReal reach = reach_of(gmm_of(s));
+  const PetscReal reach = SKIN * PetscMax(radius_of(s), s->c->basis.max_radius * s->grid->cloud->spacing);
   for (int d = 0; d < 3; ++d) box[d] = PETSC_MAX_REAL, box[3 + d] = -PETSC_MAX_REAL;
   widen_box(dim, s->points->n, s->points->real[POINT_X], reach, box);
   widen_box(dim, s->tracers->n, s->tracers->real[POINT_X], reach, box);
@@ -51,8 +49,8 @@ static PetscErrorCode SearchBegin(const Discretisation *s, Search *search)
   const PetscInt n = search->remote.n;
   PetscCall(PetscMalloc1(grid->n_owned, &twin));
   for (PetscInt i = 0; i < grid->n_owned; ++i) twin[i] = cloud_is_twin(grid, i);
-  PetscCall(NeighboursCreate(grid->dim, grid->n_owned, grid->x, n, search->remote.x, twin,
-                             gmm_of(s)->rule.support.radius * gmm_of(s)->rule.h, &search->nodes));
+  PetscCall(
+    NeighboursCreate(grid->dim, grid->n_owned, grid->x, n, search->remote.x, twin, radius_of(s), &search->nodes));
   PetscCall(PetscFree(twin));
   PetscCall(PetscMalloc1(n, &search->ghost));
   PetscCall(PetscCalloc1(n, &search->use));
@@ -104,7 +102,7 @@ static Lists lists_of(const Discretisation *s)
 static PetscErrorCode Relayout(Discretisation *s, Search *search)
 {
   const PetscInt dim = s->grid->dim, n_owned = s->grid->n_owned;
-  const PetscReal radius = SKIN * gmm_of(s)->rule.support.radius * gmm_of(s)->rule.h;
+  const PetscReal radius = SKIN * radius_of(s);
   PetscInt near[CLOUD_MAX_NODES];
   PetscReal distance2[CLOUD_MAX_NODES];
 
@@ -155,7 +153,8 @@ static PetscErrorCode GatherNodes(Discretisation *s, const Search *search)
 {
   const Grid *grid = s->grid;
   const Support *w = gmm_of(s)->nodes;
-  CloudTally ignored = {.nodes = 0};
+  const BasisInput basis = {.spec = &s->c->basis, .grid = grid, .nodes = &search->nodes, .on_hull = PETSC_TRUE};
+  Points places = {.dim = grid->dim};
   PetscReal *x;
   PetscInt n = 0;
 
@@ -166,7 +165,9 @@ static PetscErrorCode GatherNodes(Discretisation *s, const Search *search)
       for (PetscInt d = 0; d < grid->dim; ++d) x[n * grid->dim + d] = grid->x[i * grid->dim + d];
       ++n;
     }
-  PetscCall(SupportFromPositions(gmm_of(s)->nodes, n, x, &search->nodes, &gmm_of(s)->at_nodes, &ignored));
+  places.n = n;
+  places.real[POINT_X] = x;
+  PetscCall(s->basis->support(&basis, &places, gmm_of(s)->nodes));
   PetscCall(PetscFree(x));
   constraints_clear(s->constraints);
   for (PetscInt i = 0, k = -1; i < grid->n_owned; ++i) {
@@ -217,17 +218,16 @@ PetscErrorCode GmmGather(Discretisation *s)
 {
   Gmm *g = gmm_of(s);
   Search search;
-  CloudTally ignored = {.nodes = 0};
+  BasisInput basis = {.spec = &s->c->basis, .grid = s->grid, .nodes = &search.nodes};
   PetscBool missing = PETSC_FALSE, any;
 
   PetscFunctionBeginUser;
   PetscCall(Follow(s));
   PetscCall(SearchBegin(s, &search));
-  g->tally = (CloudTally){.nodes = 0};
-  PetscCall(SupportFromClouds(s->support, s->points, &search.nodes, &g->rule, &g->tally));
-  PetscCall(SupportFromClouds(g->tracers, s->tracers, &search.nodes, &g->rule, &ignored));
-  /* carriers stand on the hull, too */
-  PetscCall(SupportFromClouds(g->carriers, s->loads->carriers, &search.nodes, &g->at_nodes, &ignored));
+  PetscCall(s->basis->support(&basis, s->points, s->support));
+  PetscCall(s->basis->support(&basis, s->tracers, g->tracers));
+  basis.on_hull = PETSC_TRUE;
+  PetscCall(s->basis->support(&basis, s->loads->carriers, g->carriers));
   PetscCall(GatherNodes(s, &search));
   const Lists lists = lists_of(s);
   for (int k = 0; k < 5; ++k) mark_used(s, &search, lists.n[k], lists.node[k]);
@@ -243,72 +243,45 @@ PetscErrorCode GmmGather(Discretisation *s)
   PetscFunctionReturn(0);
 }
 
-/* The nodes of the wider cloud of a point and of its present one, ascending. */
-static PetscErrorCode AddGroup(NodeGroups *groups, PetscInt *capacity, PetscInt n, const PetscInt *near, PetscInt n_now,
-                               const PetscInt *now)
-{
-  PetscInt first, total;
-
-  PetscFunctionBeginUser;
-  first = groups->start[groups->n];
-  if (first + n + n_now > *capacity) {
-    *capacity += *capacity / 2 + n + n_now;
-    PetscCall(PetscRealloc((size_t)*capacity * sizeof *groups->node, &groups->node));
-  }
-  PetscCall(PetscArraycpy(groups->node + first, near, n));
-  PetscCall(PetscArraycpy(groups->node + first + n, now, n_now));
-  total = n + n_now;
-  PetscCall(PetscSortRemoveDupsInt(&total, groups->node + first));
-  groups->start[++groups->n] = first + total;
-  PetscFunctionReturn(0);
-}
-
-/* How far a cloud of these nodes may reach before the couplings must be made anew: clouds that had to grow get their share, too. */
-static PetscReal wide_radius(const Discretisation *s, PetscReal skin, const PetscReal *x, PetscInt n,
-                             const PetscInt *node)
+/* The constraints as a support: places of their nodes, and the nodes that hold these, the twin among them. */
+static PetscErrorCode CoupleConstraints(const Discretisation *s, const BasisInput *basis, NodeGroups *groups)
 {
   const PetscInt dim = s->grid->dim;
-  PetscReal farthest2 = PetscSqr(gmm_of(s)->rule.support.radius * gmm_of(s)->rule.h);
-  for (PetscInt i = 0; i < n; ++i) {
-    PetscReal d2 = 0;
-    for (PetscInt d = 0; d < dim; ++d) d2 += PetscSqr(s->grid->x[node[i] * dim + d] - x[d]);
-    farthest2 = PetscMax(farthest2, d2);
+  const Constraints *c = s->constraints;
+  Points places = {.dim = dim, .n = c->n, .components[POINT_X] = dim};
+  Support now = {.n_groups = c->n};
+  const BasisSites sites = {.points = &places, .now = &now, .skin = SKIN_HELD};
+
+  PetscFunctionBeginUser;
+  PetscCall(
+    PetscMalloc3(c->n * dim, &places.real[POINT_X], c->n + 1, &now.node_start, c->start[c->n] + c->n, &now.node));
+  now.node_start[0] = 0;
+  for (PetscInt k = 0, n = 0; k < c->n; ++k) {
+    PetscCall(PetscArraycpy(places.real[POINT_X] + k * dim, s->grid->x + c->at[k] * dim, dim));
+    for (PetscInt i = c->start[k]; i < c->start[k + 1]; ++i) now.node[n++] = c->node[i];
+    now.node[n++] = c->twin[k];
+    now.node_start[k + 1] = n;
   }
-  return skin * PetscSqrtReal(farthest2);
+  PetscCall(s->basis->couplings(basis, &sites, groups));
+  PetscCall(PetscFree3(places.real[POINT_X], now.node_start, now.node));
+  PetscFunctionReturn(0);
 }
 
 PetscErrorCode GmmCouplings(const Discretisation *s, NodeGroups *groups)
 {
   const Grid *grid = s->grid;
-  const Support *w = s->support;
-  const Constraints *c = s->constraints;
-  PetscInt near[CLOUD_MAX_NODES + 1], capacity = 16 * (w->n_groups + c->n);
-  PetscReal distance2[CLOUD_MAX_NODES];
+  const BasisSites sites = {.points = s->points, .now = s->support, .skin = SKIN};
   unsigned char *twin;
   Neighbours nodes;
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(grid->n_nodes, &twin));
   for (PetscInt i = 0; i < grid->n_nodes; ++i) twin[i] = cloud_is_twin(grid, i);
-  PetscCall(NeighboursCreate(grid->dim, grid->n_nodes, grid->x, 0, NULL, twin,
-                             SKIN * gmm_of(s)->rule.support.radius * gmm_of(s)->rule.h, &nodes));
+  PetscCall(NeighboursCreate(grid->dim, grid->n_nodes, grid->x, 0, NULL, twin, SKIN * radius_of(s), &nodes));
   PetscCall(PetscFree(twin));
-  *groups = (NodeGroups){0};
-  PetscCall(PetscCalloc1(w->n_groups + c->n + 1, &groups->start));
-  PetscCall(PetscMalloc1(capacity, &groups->node));
-  for (PetscInt p = 0; p < w->n_groups; ++p) {
-    const PetscInt nn = support_nodes(w, p), *node = w->node + w->node_start[p];
-    const PetscReal *x = point_real(s->points, POINT_X, p), radius = wide_radius(s, SKIN, x, nn, node);
-    const PetscInt n = neighbours_within(&nodes, x, radius, CLOUD_MAX_NODES, near, distance2);
-    PetscCall(AddGroup(groups, &capacity, n, near, nn, node));
-  }
-  for (PetscInt k = 0; k < c->n; ++k) {
-    const PetscInt nn = c->start[k + 1] - c->start[k], *node = c->node + c->start[k];
-    const PetscReal *x = grid->x + c->at[k] * grid->dim, radius = wide_radius(s, SKIN_HELD, x, nn, node);
-    const PetscInt n = neighbours_within(&nodes, x, radius, CLOUD_MAX_NODES, near, distance2);
-    near[n] = c->twin[k];
-    PetscCall(AddGroup(groups, &capacity, n + 1, near, nn, node));
-  }
+  const BasisInput basis = {.spec = &s->c->basis, .grid = grid, .nodes = &nodes};
+  PetscCall(s->basis->couplings(&basis, &sites, groups));
+  PetscCall(CoupleConstraints(s, &basis, groups));
   PetscCall(NeighboursDestroy(&nodes));
   PetscFunctionReturn(0);
 }

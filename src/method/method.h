@@ -6,6 +6,7 @@
 
 typedef struct Method {
   const char *name, *help;
+  const char *basis; /* that it has unless the case names another one */
 
   /* What it can. */
   PetscBool restores_grid; /* points carry all motion, through a grid that stays; else nodes keep theirs */
@@ -27,7 +28,8 @@ typedef struct Method {
   /* Takes `own` away. NULL: there is none. */
   PetscErrorCode (*destroy)(Discretisation *space);
 
-  /* Of clouds. Collective: groups of nodes that steps to come may couple, freed by the caller. */
+  /* Of clouds. Collective: groups of nodes that steps to come may couple, added to those that are
+   * there. */
   PetscErrorCode (*couplings)(const Discretisation *space, NodeGroups *groups);
   /* Collective. Send nodes and points to ranks by where they are now. */
   PetscErrorCode (*redistribute)(Discretisation *space);
@@ -35,3 +37,5 @@ typedef struct Method {
 
 extern const Method *const methods[]; /* ended by NULL */
 const Method *method_find(const char *name);
+/* Do its nodes and points fit the basis? */
+PetscBool method_takes(const Method *method, const Basis *basis);

@@ -3,24 +3,31 @@
 
 #define UNROLLED static inline __attribute__((always_inline))
 
-/* A loop over the points of each kind of cells, with sizes known to the compiler where that pays. */
-#define WITH_SIZES(loop, s)                                                                                \
-  for (const SupportRun *run = (s)->support->run; run < (s)->support->run + (s)->support->n_runs; ++run) { \
-    if ((s)->grid->dim == 2 && run->nodes == 4) loop(2, 4, run, s);                                        \
-    else if ((s)->grid->dim == 3 && run->nodes == 8) loop(3, 8, run, s);                                   \
-    else loop((s)->grid->dim, run->nodes, run, s);                                                         \
-  }
+/* A loop over the points of each kind of cells, with sizes known to the compiler where that pays; nodes 0: each group
+ * has its own. */
+#define WITH_SIZES(loop, s)                                                  \
+  do {                                                                       \
+    const Support *sized = (s)->support;                                     \
+    const SupportRun any = {.nodes = 0, .first = 0, .end = sized->n_groups}; \
+    const SupportRun *run = sized->n_runs ? sized->run : &any;               \
+    for (PetscInt k = 0; k < PetscMax(sized->n_runs, 1); ++k, ++run) {       \
+      if ((s)->grid->dim == 2 && run->nodes == 4) loop(2, 4, run, s);        \
+      else if ((s)->grid->dim == 3 && run->nodes == 8) loop(3, 8, run, s);   \
+      else loop((s)->grid->dim, run->nodes, run, s);                         \
+    }                                                                        \
+  } while (0)
 
-UNROLLED void gather_motion(const PetscInt dim, const PetscInt nn, const SupportRun *run, Discretisation *s)
+UNROLLED void gather_motion(const PetscInt dim, const PetscInt fixed_nn, const SupportRun *run, Discretisation *s)
 {
   NodalFields *n = s->nodes;
   const Support *w = s->support;
   for (PetscInt g = run->first; g < run->end; ++g) {
-    const PetscInt *node = w->node + w->node_start[g];
-    const PetscReal *N = w->N + w->value_start[g];
-    PetscReal momentum[3 * CELL_MAX_NODES] = {0}, force[3 * CELL_MAX_NODES] = {0};
-    for (PetscInt p = w->point_start[g]; p < w->point_start[g + 1]; ++p, N += nn) {
+    const PetscInt nn = fixed_nn ? fixed_nn : support_nodes(w, g), *node = w->node + w->node_start[g];
+    PetscReal momentum[3 * CLOUD_MAX_NODES], force[3 * CLOUD_MAX_NODES];
+    for (PetscInt i = 0; i < nn * dim; ++i) momentum[i] = force[i] = 0;
+    for (PetscInt p = w->point_start[g]; p < w->point_start[g + 1]; ++p) {
       const PetscReal *v = point_real(s->points, POINT_V, p), *a = point_real(s->points, POINT_A, p);
+      const PetscReal *N = w->N + w->value_start[g] + (p - w->point_start[g]) * nn;
       for (PetscInt I = 0; I < nn; ++I) {
         const PetscReal m = N[I] * s->points->real[POINT_MASS][p];
         for (PetscInt d = 0; d < dim; ++d) {
@@ -79,55 +86,67 @@ static PetscReal emptiest_corner(const Support *w, PetscInt g, const PetscReal *
   return (PetscReal)(nn * nn) * least / mass;
 }
 
+static PetscErrorCode ReserveStabilisation(Discretisation *s)
+{
+  PetscFunctionBeginUser;
+  if (s->support->n_groups <= s->group_capacity) PetscFunctionReturn(0);
+  PetscCall(PetscFree(s->lumping));
+  PetscCall(PetscFree(s->soft));
+  PetscCall(PetscFree(s->tie));
+  s->group_capacity = s->support->n_groups + s->support->n_groups / 4;
+  PetscCall(PetscMalloc1(s->group_capacity, &s->lumping));
+  PetscCall(PetscMalloc1(s->group_capacity, &s->soft));
+  PetscCall(PetscMalloc1(s->group_capacity, &s->tie));
+  PetscCall(PetscFree(s->pressure_tie));
+  if (s->nodes->pressure) PetscCall(PetscMalloc1(s->group_capacity, &s->pressure_tie));
+  PetscFunctionReturn(0);
+}
+
 /* A cell that its points fill only partly leaves motions of its nodes without stiffness and mass, and so does a quadrilateral or hexahedron whose points
  * stand on a line or at one side, however many they are. In the measure in which it is not full, part of its mass is lumped and its nodes are tied by a weak
- * stiffness and a little inertia (docs/theory.md, "Cells that are not full"). */
+ * stiffness and a little inertia (docs/theory.md, "Cells that are not full"). Where each point of a cell is a group of its own, they share that. */
 static PetscErrorCode Stabilise(Discretisation *s)
 {
   const Support *w = s->support;
   const PetscInt dim = s->grid->dim;
+  const PetscBool whole = w->n_runs > 0;
   PetscReal x[3 * CELL_MAX_NODES];
 
   PetscFunctionBeginUser;
-  if (w->n_groups > s->group_capacity) {
-    PetscCall(PetscFree(s->lumping));
-    PetscCall(PetscFree(s->soft));
-    PetscCall(PetscFree(s->tie));
-    s->group_capacity = w->n_groups + w->n_groups / 4;
-    PetscCall(PetscMalloc1(s->group_capacity, &s->lumping));
-    PetscCall(PetscMalloc1(s->group_capacity, &s->soft));
-    PetscCall(PetscMalloc1(s->group_capacity, &s->tie));
-    PetscCall(PetscFree(s->pressure_tie));
-    if (s->nodes->pressure) PetscCall(PetscMalloc1(s->group_capacity, &s->pressure_tie));
-  }
-  for (PetscInt g = 0; g < w->n_groups; ++g) {
-    PetscReal filled = 0, modulus = 0, shear = 0, mass = 0;
-    for (PetscInt p = w->point_start[g]; p < w->point_start[g + 1]; ++p) {
-      filled += PetscMin(1, s->points->real[POINT_J][p]) * s->points->real[POINT_VOLUME][p];
-      mass += s->points->real[POINT_MASS][p];
-      modulus = PetscMax(modulus, s->materials[s->points->material[p]].wave_modulus);
-      shear = PetscMax(shear, s->materials[s->points->material[p]].elastic.shear);
-    }
+  PetscCall(ReserveStabilisation(s));
+  for (PetscInt g = 0, end; g < w->n_groups; g = end) {
     const PetscInt cell = s->points->cell[w->point_start[g]];
+    PetscReal filled = 0, modulus = 0, shear = 0, mass = 0;
+    for (end = g; end < w->n_groups && s->points->cell[w->point_start[end]] == cell; ++end)
+      for (PetscInt p = w->point_start[end]; p < w->point_start[end + 1]; ++p) {
+        filled += PetscMin(1, s->points->real[POINT_J][p]) * s->points->real[POINT_VOLUME][p];
+        mass += s->points->real[POINT_MASS][p];
+        modulus = PetscMax(modulus, s->materials[s->points->material[p]].wave_modulus);
+        shear = PetscMax(shear, s->materials[s->points->material[p]].elastic.shear);
+      }
     grid_cell_x(s->grid, cell, x);
-    const PetscReal volume = cell_volume(grid_cell_type(s->grid, cell), x);
-    const PetscReal corner =
-      grid_cell(s->grid, cell)->nodes > dim + 1 ? emptiest_corner(w, g, s->points->real[POINT_MASS], mass) : 1;
+    const PetscReal volume = cell_volume(grid_cell_type(s->grid, cell), x), share = 1 / (PetscReal)(end - g);
+    const PetscBool hourglass = whole && grid_cell(s->grid, cell)->nodes > dim + 1;
+    const PetscReal corner = hourglass ? emptiest_corner(w, g, s->points->real[POINT_MASS], mass) : 1;
     const PetscReal lack = PetscMax(0, 1 - PetscMin(filled / volume, corner));
     const PetscReal size = dim == 2 ? PetscSqrtReal(volume) : cbrt(volume);
-    s->lumping[g] = s->c->analysis.mass == MASS_LUMPED ? 1 : s->c->stabilisation.mass * lack;
-    s->tie[g] = s->c->stabilisation.inertia * lack * mass;
-    s->soft[g] = s->c->stabilisation.stiffness * lack * modulus * volume / (size * size);
-    if (s->pressure_tie) s->pressure_tie[g] = s->c->stabilisation.stiffness * lack * volume / shear;
+    for (PetscInt k = g; k < end; ++k) {
+      s->lumping[k] = s->c->analysis.mass == MASS_LUMPED ? 1 : s->c->stabilisation.mass * lack;
+      s->tie[k] = whole ? s->c->stabilisation.inertia * lack * mass : 0;
+      s->soft[k] = share * s->c->stabilisation.stiffness * lack * modulus * volume / (size * size);
+      if (s->pressure_tie) s->pressure_tie[k] = s->c->stabilisation.stiffness * lack * volume / shear;
+    }
   }
   PetscFunctionReturn(0);
 }
 
 static PetscErrorCode MpmInitialise(Discretisation *s)
 {
+  const BasisInput basis = {.spec = &s->c->basis, .grid = s->grid};
+
   PetscFunctionBeginUser;
   PetscCall(PointsSort(s->points));
-  PetscCall(SupportFromCells(s->support, s->points, s->grid));
+  PetscCall(s->basis->support(&basis, s->points, s->support));
   PetscCall(DiscretisationTouch(s));
   PetscCall(Project(s));
   if (s->nodes->pressure) PetscCall(DiscretisationPressure(s));
@@ -138,14 +157,14 @@ static PetscErrorCode MpmInitialise(Discretisation *s)
 /* Points take the change of the nodes' velocity, measured from what the points had given them: where the boundary stops a node, it stops
  * its points too (eq. 2.16 as printed would let them keep their velocity for ever; docs/theory.md). Rayleigh damping acts on all motion:
  * on what nodes carry through the balance, on the rest of a point's velocity, which no node sees, here. */
-UNROLLED void move_points(const PetscInt dim, const PetscInt nn, const SupportRun *run, Discretisation *s)
+UNROLLED void move_points(const PetscInt dim, const PetscInt fixed_nn, const SupportRun *run, Discretisation *s)
 {
   const Support *w = s->support;
   const NodalFields *n = s->nodes;
   for (PetscInt g = run->first; g < run->end; ++g) {
-    const PetscInt *node = w->node + w->node_start[g];
-    const PetscReal *N = w->N + w->value_start[g];
-    for (PetscInt p = w->point_start[g]; p < w->point_start[g + 1]; ++p, N += nn) {
+    const PetscInt nn = fixed_nn ? fixed_nn : support_nodes(w, g), *node = w->node + w->node_start[g];
+    for (PetscInt p = w->point_start[g]; p < w->point_start[g + 1]; ++p) {
+      const PetscReal *N = w->N + w->value_start[g] + (p - w->point_start[g]) * nn;
       PetscReal *x = point_real(s->points, POINT_X, p), *u = point_real(s->points, POINT_U, p);
       PetscReal *v = point_real(s->points, POINT_V, p), *a = point_real(s->points, POINT_A, p);
       for (PetscInt d = 0; d < dim; ++d) {
@@ -187,6 +206,7 @@ static PetscErrorCode MpmConvect(Discretisation *s)
 const Method method_mpm = {
   .name = "mpm",
   .help = "material point method: points carry the material through a fixed grid",
+  .basis = "cell",
   .restores_grid = PETSC_TRUE,
   .takes_pressure = PETSC_TRUE,
   .initialise = MpmInitialise,

@@ -16,3 +16,9 @@ const Method *method_find(const char *name)
     if (!strcmp(methods[i]->name, name)) return methods[i];
   return NULL;
 }
+
+PetscBool method_takes(const Method *method, const Basis *basis)
+{
+  if (method->couplings) return basis->nodes == BASIS_OF_CLOUD;
+  return basis->nodes == BASIS_OF_CELLS || (basis->nodes == BASIS_OF_GRID && method->restores_grid);
+}

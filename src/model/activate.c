@@ -64,35 +64,20 @@ static PetscErrorCode AddRings(const Model *m, const unsigned char *occupied, un
   PetscFunctionReturn(0);
 }
 
-/* The system for these groups and what nodal forces couple; frees the groups. */
-static PetscErrorCode BuildSystem(Model *m, NodeGroups *groups)
-{
-  const NodalScene scene = nodal_scene(m, m->time, m->nodes->du);
-
-  PetscFunctionBeginUser;
-  PetscCall(NodalForcesCouple(&m->forces, &scene, groups));
-  PetscCall(SystemBuild(m->system, m->grid, groups));
-  PetscCall(PetscFree(groups->start));
-  PetscCall(PetscFree(groups->node));
-  PetscFunctionReturn(0);
-}
-
 PetscErrorCode ModelEnable(Model *m)
 {
-  const PetscInt stride = m->grid->nodes_per_cell;
-  NodeGroups groups = {.n = 0};
+  const NodalScene scene = nodal_scene(m, m->time, m->nodes->du);
+  const BasisInput basis = {.spec = &m->c->basis, .grid = m->grid};
+  const BasisSites sites = {.cell = m->enabled};
+  NodeGroups groups;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(m->grid->n_cells * stride, &groups.node));
-  PetscCall(PetscMalloc1(m->grid->n_cells + 1, &groups.start));
-  groups.start[0] = 0;
-  for (PetscInt c = 0; c < m->grid->n_cells; ++c) {
-    const PetscInt nn = grid_cell(m->grid, c)->nodes, first = groups.start[groups.n];
-    if (!m->enabled[c]) continue;
-    PetscCall(PetscArraycpy(groups.node + first, m->grid->cell_node + c * stride, nn));
-    groups.start[++groups.n] = first + nn;
-  }
-  PetscCall(BuildSystem(m, &groups));
+  PetscCall(NodeGroupsCreate(m->space->support->n_groups, &groups));
+  if (m->method->couplings) PetscCall(m->method->couplings(m->space, &groups));
+  else PetscCall(m->space->basis->couplings(&basis, &sites, &groups));
+  PetscCall(NodalForcesCouple(&m->forces, &scene, &groups));
+  PetscCall(SystemBuild(m->system, m->grid, &groups));
+  PetscCall(NodeGroupsDestroy(&groups));
   PetscFunctionReturn(0);
 }
 
@@ -112,15 +97,13 @@ static PetscErrorCode FindSlots(Model *m, PetscBool *complete)
 static PetscErrorCode ActivateClouds(Model *m)
 {
   PetscBool complete = PETSC_FALSE;
-  NodeGroups groups;
 
   PetscFunctionBeginUser;
   if (m->system->builds && m->layouts == m->grid->cloud->layouts) PetscCall(FindSlots(m, &complete));
   m->layouts = m->grid->cloud->layouts;
   if (!complete) {
     PetscCall(PetscArrayzero(m->nodes->force, m->grid->n_nodes * m->dim)); /* of nodes that may lose their unknowns */
-    PetscCall(m->method->couplings(m->space, &groups));
-    PetscCall(BuildSystem(m, &groups));
+    PetscCall(ModelEnable(m));
     PetscCall(FindSlots(m, &complete));
     PetscCheck(complete, m->comm, PETSC_ERR_PLIB, "the system lacks couplings that it was built for");
   }
@@ -132,7 +115,7 @@ PetscErrorCode ModelActivate(Model *m)
 {
   const AnalysisSpec *analysis = &m->c->analysis;
   unsigned char *occupied;
-  PetscBool fits;
+  PetscBool fits, complete;
 
   PetscFunctionBeginUser;
   PetscCall(ModelInitialise(m));
@@ -149,10 +132,10 @@ PetscErrorCode ModelActivate(Model *m)
     PetscCall(ModelEnable(m));
   }
   PetscCall(PetscFree(occupied));
-  PetscCall(FindSlots(m, &fits));
-  if (fits) PetscFunctionReturn(0);
+  PetscCall(FindSlots(m, &complete));
+  if (complete) PetscFunctionReturn(0);
   PetscCall(ModelEnable(m)); /* nodal forces have met other nodes */
-  PetscCall(FindSlots(m, &fits));
-  PetscCheck(fits, m->comm, PETSC_ERR_PLIB, "the system lacks couplings that it was built for");
+  PetscCall(FindSlots(m, &complete));
+  PetscCheck(complete, m->comm, PETSC_ERR_PLIB, "points couple nodes that their basis did not announce");
   PetscFunctionReturn(0);
 }

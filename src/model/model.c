@@ -40,6 +40,18 @@ static void check_formulation(const Model *m, Diag *diag)
              m->method->name, list);
 }
 
+static void check_basis(const Model *m, Diag *diag)
+{
+  const BasisSpec *spec = &m->c->basis;
+  const Basis *basis = basis_find(spec->kind);
+  if (m->formulation && m->formulation->pressure && basis && basis->nodes != BASIS_OF_CELLS)
+    if (m->method && m->method->takes_pressure)
+      diag_error(diag, "formulation", "formulation '%s' takes no other basis than 'cell', not '%s'", m->c->formulation,
+                 spec->kind);
+  if (!basis || (m->method && !method_takes(m->method, basis)))
+    diag_error(diag, "basis", "method %s does not take the basis '%s'", m->c->method, spec->kind ? spec->kind : "cell");
+}
+
 static void check_scheme(const Case *c, const TimeScheme *scheme, Diag *diag)
 {
   const char *names[32] = {NULL};
@@ -56,6 +68,7 @@ static void check_supported(const Model *m, Diag *diag)
   list_methods(PETSC_FALSE, sizeof list, list);
   if (!m->method) diag_error(diag, "method", "method '%s' is not part of this version; %s are", c->method, list);
   check_formulation(m, diag);
+  check_basis(m, diag);
   check_scheme(c, m->scheme, diag);
   if (!m->method || m->method->restores_grid) return;
   if (c->analysis.keep_velocity)
@@ -232,6 +245,7 @@ static PetscErrorCode Build(Model *m, Diag *diag)
   if (errors) PetscFunctionReturn(0);
   PetscCall(GridCreate(m->comm, m->c, cell_weight, (void *)m->c, diag, &m->grid));
   if (!m->grid) PetscFunctionReturn(0);
+  if (basis_find(m->c->basis.kind)->check) PetscCall(basis_find(m->c->basis.kind)->check(m->grid, diag));
   PetscCall(CreateBodies(m, diag));
   PetscCall(DiagReduce(m->comm, diag, &errors));
   if (errors) PetscFunctionReturn(0);

@@ -28,7 +28,7 @@ void guess_make(const Model *model, FirstGuess guess, PetscReal dt, PetscReal *d
 PetscErrorCode GuessLearn(Model *model, PetscReal dt);
 PetscErrorCode GuessToTables(Model *model, Tables *tables);
 void guess_from_tables(Model *model, const Tables *tables, char reason[256]);
-/* Collective. The system for the cells that are enabled. */
+/* Collective. The system for the cells that are enabled, or for a cloud as it is now. */
 PetscErrorCode ModelEnable(Model *model);
 /* Collective. Geostatic stress of bodies that ask for it, as their law's state: of the material inside the outline that is above them. */
 PetscErrorCode InitialStress(Model *model, const Outline *outline, Diag *diag);

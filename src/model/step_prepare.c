@@ -183,7 +183,7 @@ PetscErrorCode PrepareStep(Model *m, PetscReal dt, StepProblem *p)
     .idle = m->nodes->idle,
     .asked = m->asked,
   };
-  p->in.half = m->symmetric && m->method->clouds;
+  p->in.half = m->symmetric && !m->space->support->n_runs;
   p->round_off = round_off_of(m, inertia);
   m->space->constraints->scale = node_stiffness(m, inertia);
   PetscCall(ForceScales(m, g, dt, &p->weight, &p->inertia));

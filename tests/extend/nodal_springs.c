@@ -55,7 +55,7 @@ static PetscErrorCode Couple(const void *data, const NodalScene *scene, NodeGrou
 
   (void)scene;
   PetscFunctionBeginUser;
-  if (s->plate) PetscCall(NodeGroupsAppend(groups, s->n, s->node));
+  if (s->plate) PetscCall(NodeGroupsAdd(groups, s->n, s->node));
   PetscFunctionReturn(0);
 }
 

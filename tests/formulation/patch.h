@@ -9,6 +9,8 @@
 #include <cmocka.h>
 #include "../conformance/random.h"
 #include "formulation/formulation.h"
+#include "support/basis.h"
+#include "support/cloud.h"
 
 #define CALL(call) assert_int_equal((call), 0)
 
@@ -73,16 +75,16 @@ static inline void patch_support(Patch *p, const Variant *variant)
   const CloudRule rule = {.basis = {.kind = variant->kind, .effective_radius = 1, .gamma = 1.8},
                           .support = variant->kind == CLOUD_MLS ? support_default_mls : support_default_lme,
                           .h = 0.5};
-  CloudTally tally = {{0}, 0};
   Neighbours nodes;
   CALL(SupportCreate(&p->support));
-  CALL(SupportFromCells(p->support, p->points, p->grid));
+  const BasisInput in_cells = {.grid = p->grid};
+  CALL(basis_find("cell")->support(&in_cells, p->points, p->support));
   if (!variant->cloud) return;
   CALL(NeighboursCreate(p->grid->dim, p->grid->n_nodes, p->grid->x, 0, NULL, NULL, 0.5, &nodes));
-  CALL(SupportFromClouds(p->support, p->points, &nodes, &rule, &tally));
+  CALL(SupportFromClouds(p->support, p->points, &nodes, &rule));
   CALL(NeighboursDestroy(&nodes));
   assert_int_equal(p->support->n_runs, 0);
-  assert_int_equal(tally.level[SUPPORT_LOOSE] + tally.level[SUPPORT_EMPTY], 0);
+  assert_int_equal(p->support->tally.level[SUPPORT_LOOSE] + p->support->tally.level[SUPPORT_EMPTY], 0);
 }
 
 static inline void patch_points(Patch *p, Diag *diag)

@@ -37,6 +37,18 @@ static const Bad bads[] = {
   {"unknown alias", "title: *nope\n", {"there is no anchor"}},
   {"alias in itself", "title: &x [*x]\n", {"an alias may not stand inside its own anchor"}},
   {"duplicate key", PLAIN "method: fem\n", {"F:9:1: error: key 'method' stands twice in the file (first in line 2)"}},
+  /* bases */
+  {"basis of another method",
+   PLAIN "basis: {lme: {gamma: 2}}\n",
+   {"F:9:9: error: method mpm does not take the basis 'lme'",
+    "hint: it takes 'cell', linear shape functions of the cell"}},
+  {"unknown basis",
+   PLAIN "basis: {splines: {}}\n",
+   {"F:9:9: error: key 'splines' of basis is not known", "cell, mls, lme"}},
+  {"two bases", PLAIN "basis: {mls: {}, lme: {}}\n", {"F:9:18: error: basis has both 'mls' and 'lme'"}},
+  {"basis without numbers",
+   PLAIN "basis: {cell: {gamma: 2}}\n",
+   {"F:9:16: error: key 'gamma' of basis.cell is not known"}},
   /* keys */
   {"unknown key",
    WITH_MATERIAL("law: neo-hookean, density: 1, yung: 1, young: 1, poisson: 0"),

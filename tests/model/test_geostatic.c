@@ -7,7 +7,8 @@ static void ground(Bench *b, const char *method, CellType cell, PetscReal h, con
   bench_init(b, method, cell, 0);
   bench_grid(b, (PetscReal[]){0, 0, 0}, max, h);
   bench_dynamic(b, 1, 1e-6);
-  b->c.basis = (BasisSpec){.kind = BASIS_LME, .gamma = 1.8, .radius = 2, .max_radius = 3.5, .condition = 50, .gap = 2};
+  if (!strcmp(method, "gmm"))
+    b->c.basis = (BasisSpec){.kind = "lme", .gamma = 1.8, .radius = 2, .max_radius = 3.5, .condition = 50, .gap = 2};
   b->c.gravity[1] = -10;
   b->body[0].has_k0 = PETSC_TRUE;
   b->body[0].k0 = 0.5;

@@ -3,8 +3,8 @@
 #include "model/model_private.h"
 
 static const BasisSpec bases[] = {
-  {.kind = BASIS_LME, .gamma = 1.8, .radius = 2, .max_radius = 3.5, .condition = 50, .gap = 2},
-  {.kind = BASIS_MLS, .effective_radius = 1, .radius = 2, .max_radius = 3.5, .condition = 50, .gap = 2},
+  {.kind = "lme", .gamma = 1.8, .radius = 2, .max_radius = 3.5, .condition = 50, .gap = 2},
+  {.kind = "mls", .effective_radius = 1, .radius = 2, .max_radius = 3.5, .condition = 50, .gap = 2},
 };
 
 /* A block that turns and falls on fixed nodes: clouds change at every step. */

@@ -207,7 +207,7 @@ static void test_tracer_in_the_void(void **state)
   for (int k = 0; k < 2; ++k) {
     bar(&b, 3, 1e4);
     b.c.method = (char *)moved_by[k];
-    b.c.basis = (BasisSpec){.kind = BASIS_LME, .radius = 2, .gamma = 1.8, .choice = CLOUD_CHOICE_FIXED};
+    if (k) b.c.basis = (BasisSpec){.kind = "lme", .radius = 2, .gamma = 1.8, .choice = CLOUD_CHOICE_FIXED};
     b.measure[1].tracer[0] = 6.5;
     b.measure[1].name = "lost";
     bench_refused(&b, PETSC_COMM_WORLD, "measures.lost.of.tracer", "no material carries the tracer");

@@ -2,10 +2,9 @@
  * becomes transfer. */
 #include "case_builder.h"
 
-static const BasisSpec lme = {
-  .kind = BASIS_LME, .gamma = 1.8, .radius = 2, .max_radius = 3.5, .condition = 50, .gap = 2};
+static const BasisSpec lme = {.kind = "lme", .gamma = 1.8, .radius = 2, .max_radius = 3.5, .condition = 50, .gap = 2};
 static const BasisSpec mls = {
-  .kind = BASIS_MLS, .effective_radius = 1, .radius = 2, .max_radius = 3.5, .condition = 50, .gap = 2};
+  .kind = "mls", .effective_radius = 1, .radius = 2, .max_radius = 3.5, .condition = 50, .gap = 2};
 
 typedef struct {
   const char *method;

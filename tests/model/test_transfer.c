@@ -7,7 +7,7 @@
 enum { CELLS = 6, SIDE = CELLS + 1 };
 
 static const BasisSpec usual_lme = {
-  .kind = BASIS_LME, .gamma = 1.8, .radius = 2, .max_radius = 3.5, .condition = 50, .gap = 2};
+  .kind = "lme", .gamma = 1.8, .radius = 2, .max_radius = 3.5, .condition = 50, .gap = 2};
 
 static PetscReal hat(PetscReal x, PetscReal node) { return PetscMax(0, 1 - PetscAbsReal(x - node) * CELLS); }
 

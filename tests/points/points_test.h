@@ -6,7 +6,7 @@
 #include <stdint.h>
 #include <unistd.h>
 #include <cmocka.h>
-#include "points/support.h"
+#include "points/points.h"
 
 /* A rank that failed must not leave the others waiting in a collective call. */
 static inline void check_failed(const char *file, int line, const char *what)

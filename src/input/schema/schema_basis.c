@@ -1,5 +1,6 @@
-/* Keys of the shape functions of clouds of nodes. */
+/* Keys of the bases. Which basis takes which of these tables says support/bases.inc. */
 #include "input/schema/schema_keys.h"
+#include "method/method.h"
 
 static const SchemaWord order_words[] = {
   {"linear", ORDER_LINEAR, "1, x, y"},
@@ -27,7 +28,7 @@ static const SchemaWord essential_words[] = {
   {NULL, 0, NULL},
 };
 
-/* What both bases have. */
+/* What both bases of clouds have. */
 #define CLOUD                                                                                                        \
   KEY("cloud", WORD, NULL, "which nodes carry a point", .words = cloud_words, .fallback = "adaptive",                \
       AT(BasisSpec, choice)),                                                                                        \
@@ -54,7 +55,7 @@ static const SchemaEntry mls_entries[] = {
   ESSENTIAL,
   {.key = NULL},
 };
-static const SchemaTable mls = {
+const SchemaTable schema_keys_mls = {
   .name = "mls", .help = "Moving least squares.", .entries = mls_entries, .size = sizeof(BasisSpec)};
 
 static const SchemaEntry lme_entries[] = {
@@ -64,39 +65,48 @@ static const SchemaEntry lme_entries[] = {
   ESSENTIAL,
   {.key = NULL},
 };
-static const SchemaTable lme = {
+const SchemaTable schema_keys_lme = {
   .name = "lme", .help = "Local maximum entropy.", .entries = lme_entries, .size = sizeof(BasisSpec)};
 
-static const SchemaEntry basis_entries[] = {
-  KEY("mls", TABLE, NULL, "moving least squares", .table = &mls, TAG(BASIS_MLS)),
-  KEY("lme", TABLE, NULL, "local maximum entropy", .table = &lme, TAG(BASIS_LME)),
-  {.key = NULL},
-};
-static const SchemaGroup basis_groups[] = {{GROUP_AT_MOST_ONE, {"mls", "lme", NULL}}, {GROUP_NONE, {NULL}}};
+static const SchemaEntry no_entries[] = {{.key = NULL}};
+const SchemaTable schema_keys_none = {
+  .name = "no keys", .help = "For a basis without numbers of its own.", .entries = no_entries};
 
 static PetscErrorCode CheckBasis(SchemaReader *r, const YamlNode *mapping, void *target)
 {
+  const Method *method = r->c->method ? method_find(r->c->method) : NULL;
+  const YamlNode none = {.kind = YAML_MAPPING};
   BasisSpec *basis = target;
 
-  (void)r;
   PetscFunctionBeginUser;
-  if (!yaml_find(mapping, "mls") && !yaml_find(mapping, "lme"))
-    *basis = (BasisSpec){.kind = BASIS_LME, .gamma = 1.8, .radius = 2, .max_radius = 3.5, .condition = 50, .gap = 2};
+  for (const BasisName *b = basis_names; b->name; ++b)
+    if (yaml_find(mapping, b->name)) basis->kind = b->name;
+  if (!method) PetscFunctionReturn(0);
+  if (basis->kind) {
+    const YamlNode *node = yaml_find(mapping, basis->kind);
+    if (method_takes(method, basis_find(basis->kind))) PetscFunctionReturn(0);
+    SchemaKeyError(r, node, "method %s does not take the basis '%s'", method->name, basis->kind);
+    for (const BasisName *b = basis_names; b->name; ++b)
+      if (method_takes(method, b->basis)) diag_hint(r->diag, "it takes '%s', %s", b->name, b->help);
+    PetscFunctionReturn(0);
+  }
+  basis->kind = method->basis;
+  for (const SchemaEntry *e = schema_bases; e->key; ++e)
+    if (!strcmp(e->key, basis->kind)) PetscCall(SchemaReadTable(r, e->table, &none, basis));
   PetscFunctionReturn(0);
 }
 
 static PetscBool hide_in_basis(const SchemaEntry *e, const void *source)
 {
-  return ((const BasisSpec *)source)->kind != (BasisKind)e->tag;
+  return strcmp(((const BasisSpec *)source)->kind, e->key) != 0;
 }
 
-const SchemaTable schema_basis = {
-  .name = "basis",
-  .help =
-    "Shape functions of gmm; without it lme with its defaults. Lengths are counted in cells of the grid "
-    "that gives the nodes.",
-  .entries = basis_entries,
-  .groups = basis_groups,
-  .tag_offset = offsetof(BasisSpec, kind),
-  .check = CheckBasis,
-  .hide = hide_in_basis};
+const SchemaTable schema_basis = {.name = "basis",
+                                  .help =
+                                    "Shape functions; without it those of the cell for mpm and fem, and lme with its "
+                                    "defaults for gmm. Lengths are counted "
+                                    "in cells of the grid that gives the nodes.",
+                                  .entries = schema_bases,
+                                  .groups = schema_basis_groups,
+                                  .check = CheckBasis,
+                                  .hide = hide_in_basis};

@@ -28,3 +28,7 @@
 /* Tables that others name. */
 extern const SchemaTable schema_shape, schema_selector, schema_grid, schema_body, schema_motion, schema_loads,
   schema_basis, schema_measure;
+/* From support/bases.inc (registry.c), and the tables that it names. */
+extern const SchemaEntry schema_bases[];
+extern const SchemaGroup schema_basis_groups[];
+extern const SchemaTable schema_keys_none, schema_keys_mls, schema_keys_lme;

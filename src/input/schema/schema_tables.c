@@ -4,6 +4,7 @@
 #include "input/schema/schema_keys.h"
 #include "material/law.h"
 #include "method/method.h"
+#include "support/basis.h"
 
 static const SchemaWord analysis_words[] = {
   {"static", ANALYSIS_STATIC, "equilibrium at every step, no inertia"},
@@ -175,7 +176,7 @@ static const SchemaEntry case_entries[] = {
       .count = offsetof(Case, n_measures)),
   KEY("newton", TABLE, NULL, "convergence", .table = &newton, ALWAYS, AT(Case, newton)),
   KEY("linear", WORD, NULL, "linear solver", .words = linear_words, .fallback = "auto", AT(Case, linear)),
-  KEY("basis", TABLE, NULL, "shape functions of gmm", .table = &schema_basis, ALWAYS, AT(Case, basis)),
+  KEY("basis", TABLE, NULL, "shape functions", .table = &schema_basis, ALWAYS, AT(Case, basis)),
   KEY("stabilisation", TABLE, NULL, "cells that are not full", .table = &stabilisation, ALWAYS,
       AT(Case, stabilisation)),
   KEY("output", TABLE, NULL, "what is written", .table = &output, ALWAYS, AT(Case, output)),
@@ -189,7 +190,7 @@ static const SchemaEntry case_entries[] = {
 };
 static PetscBool hide_in_case(const SchemaEntry *e, const void *source)
 {
-  return !strcmp(e->key, "basis") && !method_find(((const Case *)source)->method)->clouds;
+  return !strcmp(e->key, "basis") && basis_find(((const Case *)source)->basis.kind) == basis_find("cell");
 }
 const SchemaTable schema_case = {
   .name = "case", .help = "The keys at the top of the file.", .entries = case_entries, .hide = hide_in_case};

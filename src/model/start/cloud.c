@@ -30,7 +30,6 @@ static void leave_cells(const Grid *mesh, Points *points)
 
 PetscErrorCode ModelToCloud(Model *m)
 {
-  const BasisSpec *basis = &m->c->basis;
   Grid *cloud;
   Boundary *boundary;
   PetscReal spacing;
@@ -39,8 +38,7 @@ PetscErrorCode ModelToCloud(Model *m)
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc2(m->grid->n_owned, &marked, m->grid->n_owned, &twin));
   PetscCall(MarkNodes(m, marked, twin));
-  if (basis->essential == ESSENTIAL_DIRECT || (basis->essential == ESSENTIAL_AUTO && basis->kind == BASIS_LME))
-    PetscCall(PetscArrayzero(twin, m->grid->n_owned));
+  if (!basis_needs_constraints(&m->c->basis)) PetscCall(PetscArrayzero(twin, m->grid->n_owned));
   PetscCall(LoadsLeaveCells(m->loads, m->grid, m->points));
   PetscCall(GridSpacing(m->grid, m->points->n, m->points->cell, &spacing));
   PetscCall(GridCreateCloud(m->grid, spacing, marked, twin, &cloud));

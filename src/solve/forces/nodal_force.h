@@ -26,8 +26,8 @@ typedef struct {
 
 /* Where forces go. The sum over ranks comes later: a node that several ranks know gets its force from one of them. */
 typedef struct {
-  PetscReal *force;      /* residual, n_nodes x dim, N: what pushes a node is subtracted */
-  System *system;        /* gets the tangent; NULL: forces alone */
+  PetscReal *force; /* residual, n_nodes x dim, N: what pushes a node is subtracted */
+  System *system;   /* gets the tangent; NULL: forces alone */
 } NodalOutput;
 
 /* One kind of such forces; functions may be NULL but for create and assemble. */
@@ -39,7 +39,7 @@ typedef struct {
   PetscErrorCode (*destroy)(void **data); /* NULL: data belongs to others */
   /* Mark the dofs (n_nodes x dim) that it holds in place as well as a boundary could. */
   void (*hold)(const void *data, const NodalScene *scene, unsigned char *held);
-  /* Append the groups of nodes that it couples beyond those of the support, by NodeGroupsAppend: the system gets their pairs. */
+  /* Append the groups of nodes that it couples beyond those of the support, by NodeGroupsAdd: the system gets their pairs. */
   PetscErrorCode (*couple)(const void *data, const NodalScene *scene, NodeGroups *groups);
   /* The support or the system's pattern is new: find slots; PETSC_FALSE if the pattern lacks any. */
   PetscBool (*find_slots)(void *data, const System *system);
@@ -83,7 +83,6 @@ typedef struct {
 /* Collective. The list starts empty. */
 PetscErrorCode NodalForcesCreate(const NodalScene *scene, Diag *diag, NodalForces *forces);
 PetscErrorCode NodalForcesDestroy(NodalForces *forces);
-PetscErrorCode NodeGroupsAppend(NodeGroups *groups, PetscInt n, const PetscInt *node);
 PetscErrorCode NodalForcesCouple(const NodalForces *forces, const NodalScene *scene, NodeGroups *groups);
 void nodal_forces_hold(const NodalForces *forces, const NodalScene *scene, unsigned char *held);
 PetscBool nodal_forces_find_slots(const NodalForces *forces, const System *system);

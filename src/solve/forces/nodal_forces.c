@@ -29,18 +29,6 @@ PetscErrorCode NodalForcesDestroy(NodalForces *forces)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode NodeGroupsAppend(NodeGroups *groups, PetscInt n, const PetscInt *node)
-{
-  const PetscInt first = groups->start[groups->n];
-
-  PetscFunctionBeginUser;
-  PetscCall(PetscRealloc((size_t)(groups->n + 2) * sizeof *groups->start, &groups->start));
-  PetscCall(PetscRealloc((size_t)(first + n) * sizeof *groups->node, &groups->node));
-  PetscCall(PetscArraycpy(groups->node + first, node, n));
-  groups->start[++groups->n] = first + n;
-  PetscFunctionReturn(0);
-}
-
 PetscErrorCode NodalForcesCouple(const NodalForces *forces, const NodalScene *scene, NodeGroups *groups)
 {
   PetscFunctionBeginUser;

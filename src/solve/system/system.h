@@ -6,7 +6,7 @@
  * factorisation) may be padded and kept over many steps. */
 #pragma once
 #include <petscksp.h>
-#include "points/support.h"
+#include "support/support.h"
 
 /* What the linear solver works on: a matrix of PETSc, or blocks in single precision for
  * symmetric Gauss-Seidel (solve/blocks/blocks.h). */

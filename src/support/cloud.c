@@ -1,7 +1,7 @@
 /* Support of points that each have a cloud of nodes. */
 #include "base/count.h"
 #include "base/math/tensor.h"
-#include "points/support.h"
+#include "support/cloud.h"
 
 /* F^-T F^-1, dim x dim; PETSC_FALSE where F has lost all meaning. */
 static PetscBool metric_of(PetscInt dim, const PetscReal *F, PetscReal *metric)
@@ -103,11 +103,10 @@ static PetscErrorCode Grow(Support *s, PetscInt nodes, PetscInt dim)
   PetscFunctionReturn(0);
 }
 
-/* points: where F is found; NULL: 1 everywhere. */
-static PetscErrorCode Fill(Support *s, PetscInt n, const PetscReal *x, const Points *points, const Neighbours *nodes,
-                           const CloudRule *rule, CloudTally *tally)
+PetscErrorCode SupportFromClouds(Support *s, const Points *points, const Neighbours *nodes, const CloudRule *rule)
 {
-  const PetscInt dim = nodes->dim;
+  const PetscInt dim = nodes->dim, n = points->n;
+  const PetscBool has_F = points->real[POINT_F] != NULL;
   PetscReal F[9];
   PetscInt entries = 0;
 
@@ -115,44 +114,16 @@ static PetscErrorCode Fill(Support *s, PetscInt n, const PetscReal *x, const Poi
   PetscCall(SupportReserve(s, n, 0, 0, dim));
   s->n_groups = n;
   s->n_runs = 0;
+  s->tally = (CloudTally){.nodes = 0};
   for (PetscInt p = 0; p < n; ++p) {
     PetscCall(Grow(s, entries, dim));
     s->point_start[p] = p;
     s->node_start[p] = s->value_start[p] = entries;
-    if (points) point_F(points, p, F);
-    entries += cloud_at(nodes, rule, x + (size_t)p * (size_t)dim, points ? F : NULL, s->node + entries, s->N + entries,
-                        s->dN + entries * dim, tally);
+    if (has_F) point_F(points, p, F);
+    entries += cloud_at(nodes, rule, points->real[POINT_X] + (size_t)p * (size_t)dim, has_F ? F : NULL,
+                        s->node + entries, s->N + entries, s->dN + entries * dim, &s->tally);
   }
   s->point_start[n] = n;
   s->node_start[n] = s->value_start[n] = entries;
   PetscFunctionReturn(0);
-}
-
-PetscErrorCode SupportFromClouds(Support *s, const Points *points, const Neighbours *nodes, const CloudRule *rule,
-                                 CloudTally *tally)
-{
-  PetscFunctionBeginUser;
-  PetscCall(Fill(s, points->n, points->real[POINT_X], points, nodes, rule, tally));
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode SupportFromPositions(Support *s, PetscInt n, const PetscReal *x, const Neighbours *nodes,
-                                    const CloudRule *rule, CloudTally *tally)
-{
-  PetscFunctionBeginUser;
-  PetscCall(Fill(s, n, x, NULL, nodes, rule, tally));
-  PetscFunctionReturn(0);
-}
-
-PetscBool support_touched(const Support *s, PetscInt group, const unsigned char *touched, PetscReal *N)
-{
-  const PetscInt nn = support_nodes(s, group), *node = s->node + s->node_start[group];
-  PetscReal sum = 0;
-  for (PetscInt I = 0; I < nn; ++I) {
-    N[I] = touched[node[I]] ? s->N[s->value_start[group] + I] : 0;
-    sum += N[I];
-  }
-  if (sum <= 1e-12) return PETSC_FALSE;
-  for (PetscInt I = 0; I < nn; ++I) N[I] /= sum;
-  return PETSC_TRUE;
 }

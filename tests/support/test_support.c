@@ -1,6 +1,8 @@
 /* Support from cells: partition of unity, sum of x dN = I, groups that cover the points; on every cell
  * type, distorted too. */
-#include "points_test.h"
+#include "../points/points_test.h"
+#include "support/basis.h"
+#include "support/cloud.h"
 
 /* Move the inner nodes, so that no Jacobian is constant. A function of the place alone: ghosts move as
  * their owners do. */
@@ -65,7 +67,7 @@ static void every_cell_type(void **state)
     Support *s = NULL;
     CALL(SupportCreate(&s));
     for (int repeat = 0; repeat < 2; ++repeat) {
-      CALL(SupportFromCells(s, points, grid));
+      CALL(basis_find("cell")->support(&(BasisInput){.grid = grid}, points, s));
       CHECK(s->n_groups == grid->n_cells && s->point_start[s->n_groups] == points->n);
       check_support(s, points, grid, repeat == 0);
       distort(grid);
@@ -87,20 +89,20 @@ static void arrays_are_reused(void **state)
   Points *points = seed_points(t, grid);
   Support *s = NULL;
   CALL(SupportCreate(&s));
-  CALL(SupportFromCells(s, points, grid));
+  CALL(basis_find("cell")->support(&(BasisInput){.grid = grid}, points, s));
   const PetscReal *N = s->N;
   const PetscInt n = points->n;
   for (PetscInt p = 0; p < n; p += 3) points->cell[p] = -1;
   CALL(PointsSort(points));
-  CALL(SupportFromCells(s, points, grid));
+  CALL(basis_find("cell")->support(&(BasisInput){.grid = grid}, points, s));
   CHECK(s->N == N && s->point_start[s->n_groups] == n - (n + 2) / 3);
   check_support(s, points, grid, PETSC_TRUE);
   points->n = 0;
-  CALL(SupportFromCells(s, points, grid));
+  CALL(basis_find("cell")->support(&(BasisInput){.grid = grid}, points, s));
   CHECK(s->n_groups == 0 && s->point_start[0] == 0);
   CALL(SupportDestroy(&s));
   CALL(SupportCreate(&s));
-  CALL(SupportFromCells(s, points, grid));
+  CALL(basis_find("cell")->support(&(BasisInput){.grid = grid}, points, s));
   CHECK(s->n_groups == 0 && s->point_start[0] == 0);
   CALL(SupportDestroy(&s));
   CALL(PointsDestroy(&points));

@@ -1,50 +1,6 @@
-/* Support of points that sit in cells: N and dN/dx at every point, one group a cell. */
+/* The linear shape functions of the cell in which a point stands: one group a cell. */
 #include "basis/cell_kernels.h"
-#include "points/support.h"
-
-PetscErrorCode SupportCreate(Support **support)
-{
-  PetscFunctionBeginUser;
-  PetscCall(PetscNew(support));
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode SupportDestroy(Support **support)
-{
-  Support *s = *support;
-  PetscFunctionBeginUser;
-  if (!s) PetscFunctionReturn(0);
-  PetscCall(PetscFree3(s->point_start, s->node_start, s->value_start));
-  PetscCall(PetscFree(s->node));
-  PetscCall(PetscFree2(s->N, s->dN));
-  PetscCall(PetscFree(*support));
-  PetscFunctionReturn(0);
-}
-
-/* Half more than is needed or was there, so that a slowly growing table is not copied at every step. */
-static inline PetscInt grown(PetscInt needed, PetscInt capacity) { return PetscMax(needed, capacity + capacity / 2); }
-
-/* Nothing is kept: the arrays are filled anew at every step. */
-PetscErrorCode SupportReserve(Support *s, PetscInt groups, PetscInt nodes, PetscInt values, PetscInt dim)
-{
-  PetscFunctionBeginUser;
-  if (groups > s->capacity_groups || !s->point_start) {
-    const PetscInt n = s->capacity_groups = grown(groups, s->capacity_groups);
-    PetscCall(PetscFree3(s->point_start, s->node_start, s->value_start));
-    PetscCall(PetscMalloc3(n + 1, &s->point_start, n + 1, &s->node_start, n + 1, &s->value_start));
-  }
-  if (nodes > s->capacity_nodes) {
-    s->capacity_nodes = grown(nodes, s->capacity_nodes);
-    PetscCall(PetscFree(s->node));
-    PetscCall(PetscMalloc1(s->capacity_nodes, &s->node));
-  }
-  if (values > s->capacity_values) {
-    s->capacity_values = grown(values, s->capacity_values);
-    PetscCall(PetscFree2(s->N, s->dN));
-    PetscCall(PetscMalloc2(s->capacity_values, &s->N, (size_t)s->capacity_values * (size_t)dim, &s->dN));
-  }
-  PetscFunctionReturn(0);
-}
+#include "support/basis.h"
 
 /* Groups and points in cells; lost points stand last and have no group. */
 static void count_groups(const Points *points, PetscInt *groups, PetscInt *located)
@@ -128,8 +84,9 @@ static void add_run(Support *s, CellType type, PetscInt first, PetscInt end, con
   }
 }
 
-PetscErrorCode SupportFromCells(Support *support, const Points *points, const Grid *grid)
+static PetscErrorCode CellSupport(const BasisInput *in, const Points *points, Support *support)
 {
+  const Grid *grid = in->grid;
   const PetscReal *xi = points->real[POINT_XI];
   PetscInt groups, located;
   PetscFunctionBeginUser;
@@ -144,3 +101,21 @@ PetscErrorCode SupportFromCells(Support *support, const Points *points, const Gr
   if (!n_first || n_first < groups) add_run(support, grid->type, n_first, groups, grid->x, xi);
   PetscFunctionReturn(0);
 }
+
+static PetscErrorCode CellCouplings(const BasisInput *in, const BasisSites *sites, NodeGroups *groups)
+{
+  const Grid *grid = in->grid;
+
+  PetscFunctionBeginUser;
+  for (PetscInt c = 0; c < grid->n_cells; ++c)
+    if (sites->cell[c])
+      PetscCall(NodeGroupsAdd(groups, grid_cell(grid, c)->nodes, grid->cell_node + c * grid->nodes_per_cell));
+  PetscFunctionReturn(0);
+}
+
+const Basis basis_cell = {
+  .nodes = BASIS_OF_CELLS,
+  .holds_boundary = PETSC_TRUE,
+  .support = CellSupport,
+  .couplings = CellCouplings,
+};

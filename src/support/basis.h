@@ -1,0 +1,55 @@
+/* A basis: which nodes carry a point, with N and dN/dx there, and which nodes that may couple.
+ *
+ * Methods fill their supports through it and do not care which one it is. To add one: a file with a struct basis_<name>, and a line in
+ * bases.inc. */
+#pragma once
+#include "base/diag/diag.h"
+#include "grid/neighbours.h"
+#include "support/support.h"
+
+typedef enum {
+  BASIS_OF_CELLS, /* nodes of the point's cell, of any kind and wherever its nodes have moved */
+  BASIS_OF_GRID,  /* nodes around the point's cell, in a grid that is restored after every step */
+  BASIS_OF_CLOUD, /* nodes near the point, in a cloud */
+} BasisNodes;
+
+/* What a basis works with. */
+typedef struct {
+  const BasisSpec *spec;
+  const Grid *grid;
+  const Neighbours *nodes; /* of clouds: the nodes by their places */
+  PetscBool on_hull; /* do the points stand on the hull of all nodes, as nodes themselves and carriers of loads do? */
+} BasisInput;
+
+/* Where points of the steps to come may be. */
+typedef struct {
+  const unsigned char *cell; /* in a grid: 1 for cells that may hold some */
+  const Points *points;      /* in a cloud: near these, */
+  const Support *now;        /* whose clouds are known, */
+  PetscReal skin;            /* so many times as far as they reach */
+} BasisSites;
+
+typedef struct {
+  BasisNodes nodes;
+  PetscBool
+    holds_boundary; /* do functions of inner nodes vanish on the hull, so that what is prescribed at its nodes holds on it? */
+  /* Collective. What the basis cannot do with this grid goes to diag; NULL: nothing. */
+  PetscErrorCode (*check)(const Grid *grid, Diag *diag);
+  /* Nodes, N and dN of all points. In a grid they are located (xi known) and sorted by cell, lost ones last, which get nothing; grid->x
+   * counts. In a cloud nodes get the numbers of in->nodes. */
+  PetscErrorCode (*support)(const BasisInput *in, const Points *points, Support *support);
+  /* Groups of local nodes that points at these sites may couple, added to those that are there. */
+  PetscErrorCode (*couplings)(const BasisInput *in, const BasisSites *sites, NodeGroups *groups);
+} Basis;
+
+/* A line of bases.inc. */
+typedef struct {
+  const char *name, *help;
+  const Basis *basis;
+} BasisName;
+
+extern const BasisName basis_names[]; /* ended by name = NULL */
+/* NULL stands for the cell. */
+const Basis *basis_find(const char *name);
+/* Must constraints hold prescribed motion, or do the nodes themselves? */
+PetscBool basis_needs_constraints(const BasisSpec *spec);

@@ -1,0 +1,1 @@
+talus_test(support/test_support RANKS 1 2)
