@@ -93,12 +93,12 @@ static PetscErrorCode HoldConstraints(Model *m, PetscReal dt)
   PetscFunctionReturn(0);
 }
 
-/* Norms over owned nodes that material touches: gravity, and the inertia force of stopping within the step. */
-static PetscErrorCode ForceScales(const Model *m, const PetscReal *g, PetscReal dt, PetscReal *weight,
-                                  PetscReal *inertia)
+/* Norms over nodes that material touches: gravity, the inertia force of stopping within the step, and
+ * that of the motion at its start. */
+static PetscErrorCode ForceScales(const Model *m, const PetscReal *g, PetscReal dt, StepProblem *p)
 {
   const NodalFields *n = m->nodes;
-  PetscReal local[2] = {0, 0}, sum[2];
+  PetscReal local[3] = {0, 0, 0}, sum[3];
 
   PetscFunctionBeginUser;
   for (PetscInt node = 0; node < m->grid->n_owned; ++node) {
@@ -106,13 +106,16 @@ static PetscErrorCode ForceScales(const Model *m, const PetscReal *g, PetscReal 
     if (mass == 0) continue;
     for (PetscInt d = 0, i = node * m->dim; d < m->dim; ++d, ++i) {
       const PetscReal stop = m->scheme->inertia ? mass * n->v[i] / dt : 0;
+      const PetscReal going = m->scheme->inertia ? mass * n->a[i] : 0;
       if (!n->fixed[i]) local[0] += mass * g[d] * mass * g[d];
       local[1] += stop * stop;
+      local[2] += going * going;
     }
   }
-  PetscCall(MPIU_Allreduce(local, sum, 2, MPIU_REAL, MPI_SUM, m->comm));
-  *weight = PetscSqrtReal(sum[0]);
-  *inertia = PetscSqrtReal(sum[1]);
+  PetscCall(MPIU_Allreduce(local, sum, 3, MPIU_REAL, MPI_SUM, m->comm));
+  p->weight = PetscSqrtReal(sum[0]);
+  p->inertia = PetscSqrtReal(sum[1]);
+  p->motion = PetscSqrtReal(sum[2]);
   PetscFunctionReturn(0);
 }
 
@@ -186,6 +189,6 @@ PetscErrorCode PrepareStep(Model *m, PetscReal dt, StepProblem *p)
   p->in.half = m->symmetric && !m->space->support->n_runs;
   p->round_off = round_off_of(m, inertia);
   m->space->constraints->scale = node_stiffness(m, inertia);
-  PetscCall(ForceScales(m, g, dt, &p->weight, &p->inertia));
+  PetscCall(ForceScales(m, g, dt, p));
   PetscFunctionReturn(0);
 }

@@ -4,14 +4,15 @@
 #include "model/model_private.h"
 
 /* What nodal forces push with at time t. */
-static void gather(const Model *m, PetscReal t, PetscReal *force)
+static void gather(Model *m, PetscReal t, PetscReal *force)
 {
+  CALL(ModelInitialise(m));
   const NodalScene scene = nodal_scene(m, t, m->nodes->du);
   CALL(NodalForcesExternal(&m->forces, &scene, PETSC_FALSE, force));
 }
 
 /* Sum over owned nodes of the loads at time t, and of their moments about the origin in x and y: f, x f_x, y f_y. */
-static void sum_loads(const Model *m, PetscReal t, PetscReal sum[5])
+static void sum_loads(Model *m, PetscReal t, PetscReal sum[5])
 {
   PetscReal *force, local[5] = {0, 0, 0, 0, 0};
   CALL(PetscCalloc1(m->grid->n_nodes * m->dim, &force));

@@ -29,7 +29,8 @@ typedef struct {
   const unsigned char *idle; /* mixed: n_nodes, no material touches the node: no pressure there */
   PetscBool (*asked)(void);  /* does somebody want the run to end? asked on every rank; NULL: nobody ever does */
   PetscReal round_off;       /* what the last digit of a coordinate makes of the force at a node, N */
-  PetscReal weight, inertia; /* norms of nodal gravity and of the inertia that would stop the motion, N: scales */
+  /* Norms of nodal gravity, of the inertia that would stop the motion and of the present one, N: scales. */
+  PetscReal weight, inertia, motion;
 } StepProblem;
 
 typedef struct {

@@ -6,15 +6,21 @@
 #define STUCK_GAIN 0.5   /* brought the residual below this share of the best before */
 #define STUCK_ABOVE 1e-4 /* a smaller residual is about to converge */
 
+#define EXCUSED 10 /* a first guess is excused so many times all forces that act */
+
 #define STILL 1e3   /* tolerances up to which a residual may stay where increments vanish, unless it is round-off */
 #define TOO_FAR 1e3 /* sizes of the grid that nothing goes in one iteration */
 
-/* The scale of a residual: the loads, the residual at the first guess, and (for motion driven by its boundary or by inertia)
- * a small part of reactions and inertia, well above their round-off. */
+/* The scale of a residual: the loads, the residual at the first guess (a guess that is far off counts no
+ * more than the forces that there are, or its step would be accepted with newtons left over), and, for
+ * motion driven by its boundary or by inertia, a small part of reactions and inertia, well above their
+ * round-off. */
 static PetscReal reference_force(const Newton *n, PetscReal first)
 {
   const StepProblem *p = n->problem;
-  PetscReal reference = PetscMax(first, PetscMax(p->weight, n->external));
+  const PetscReal loads = PetscMax(p->weight, n->external);
+  const PetscReal acting = PetscMax(PetscMax(loads, n->reaction), PetscMax(p->inertia, p->motion));
+  PetscReal reference = PetscMax(acting > 0 ? PetscMin(first, EXCUSED * acting) : first, loads);
   reference = PetscMax(reference, 1e-4 * n->reaction);
   reference = PetscMax(reference, 1e-5 * p->inertia);
   return reference > 0 ? reference : 1;
