@@ -78,7 +78,7 @@ PetscErrorCode PlotSpacing(PetscInt dim, PetscInt n, const PetscReal *x, PetscRe
   if (!(median > 0)) median = size;     /* all in pairs at the same place */
   for (PetscInt i = 0; i < n; ++i) distance[i] = PetscMin(PetscMax(distance[i], 0.3 * median), 2 * median);
   for (PetscInt i = 0; i < n; ++i) { /* corners have few neighbours: no knobs there */
-    const PetscReal around = spacing_around(&points, at + i * dim, 1.5 * size, distance);
+    const PetscReal around = spacing_around(&points, at + i * dim, 2 * size, distance);
     radius[i] = factor * PetscMin(PetscMax(distance[i], 0.95 * around), PetscMin(1.05 * around, 1.5 * median));
   }
   PetscCall(NeighboursDestroy(&points));

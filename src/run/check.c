@@ -144,9 +144,10 @@ static PetscErrorCode ReportSizes(Model *m, FILE *out)
   PetscCall(MPIU_Allreduce(&pairs, &all_pairs, 1, MPIU_INT, MPI_SUM, m->comm));
   const PetscInt unknowns = m->system->n_active_global * m->system->block;
   if (m->grid->cloud) PetscCall(ReportClouds(m, out));
-  say(m, out, "# the model\n#   grid: %d cells (%s), %d nodes, from %s to %s m\n", (int)m->grid->n_cells_global,
-      cells[m->grid->type].name, (int)m->grid->n_nodes_global, text_position(m->dim, m->grid->min, from),
-      text_position(m->dim, m->grid->max, to));
+  say(m, out, "# the model\n#   grid: %d cells (%s%s%s), %d nodes, from %s to %s m\n", (int)m->grid->n_cells_global,
+      cells[m->grid->type].name, grid_is_mixed(m->grid) ? ", " : "",
+      grid_is_mixed(m->grid) ? cells[m->grid->first_type].name : "", (int)m->grid->n_nodes_global,
+      text_position(m->dim, m->grid->min, from), text_position(m->dim, m->grid->max, to));
   say(m, out, "#   points: %d; unknowns at the start: %d\n", (int)points, (int)unknowns);
   say(m, out, "#   memory: about %.3g MB\n", (double)estimated_memory(m, points, unknowns, all_pairs) / 1e6);
   if (m->scheme->inertia)

@@ -1,6 +1,6 @@
 /* Any bytes as a Gmsh file, and the mesh made of it in two and three dimensions. */
 #include "fuzz.h"
-#include "grid/gmsh/msh.h"
+#include "grid/mesh/file_mesh.h"
 
 static FILE *nowhere;
 
@@ -12,16 +12,17 @@ int LLVMFuzzerInitialize(int *argc, char ***argv)
   return 0;
 }
 
-static void Serial(const MshFile *msh, PetscInt dim)
+static void fill(const MshFile *msh, PetscInt dim)
 {
-  SerialMesh *mesh = NULL;
+  FileMesh mesh;
   Diag *diag;
   FUZZ_CALL(DiagCreate(&diag));
-  FUZZ_CALL(SerialMeshCreate(msh, dim, "grid.mesh", diag, &mesh));
-  if (!mesh && !diag_errors(diag)) abort();
+  FUZZ_CALL(FileMeshCreate(PETSC_COMM_SELF, &grid_mesh, dim, &mesh));
+  FUZZ_CALL(FileMeshFill(&mesh, msh, "grid.mesh", diag));
+  if (!mesh.grid->n_cells && !diag_errors(diag)) abort();
   FUZZ_CALL(DiagFlush(diag, nowhere));
   FUZZ_CALL(DiagDestroy(&diag));
-  if (mesh) FUZZ_CALL(SerialMeshDestroy(&mesh));
+  FUZZ_CALL(FileMeshDestroy(&mesh));
 }
 
 static void fuzz_one(const uint8_t *data, size_t n)
@@ -32,8 +33,8 @@ static void fuzz_one(const uint8_t *data, size_t n)
   FUZZ_CALL(MshRead(path, path, &msh, sizeof message, message));
   if (!msh && !message[0]) abort();
   if (msh) {
-    Serial(msh, 2);
-    Serial(msh, 3);
+    fill(msh, 2);
+    fill(msh, 3);
     FUZZ_CALL(MshDestroy(&msh));
   }
   close(fd);

@@ -60,4 +60,13 @@ plate 2
 same "mesh by gmsh"
 awk -F, 'END { exit !($4 > 9999.999 && $4 < 10000.001 && $5 < -19999.99 && $5 > -20000.01) }' run1/history.csv || fail "the wall does not hold the load"
 
+# With an odd number of edges around it no recombination is without a triangle.
+{ cat plate.geo; echo 'Transfinite Curve {1, 3} = 16; Transfinite Curve {2} = 8; Transfinite Curve {4} = 9; Recombine Surface {1};'; } >mixed.geo
+sed 's/plate.geo, parameters: {h: 0.15}/mixed.geo/; s/points_per_cell: 3/points_per_cell: 4/' case.yaml >mixed.yaml
+mv mixed.yaml case.yaml
+expect "check of a mesh of two kinds of cells" 0 "$talus" check case.yaml
+says out.txt "cells (quadrilateral, triangle)"
+same "triangles among quadrilaterals"
+awk -F, 'END { exit !($4 > 9999.999 && $4 < 10000.001 && $5 < -19999.99 && $5 > -20000.01) }' run1/history.csv || fail "the wall does not hold the load"
+
 finish

@@ -9,6 +9,9 @@ typedef struct {
   PetscInt *number; /* of cells: what Gmsh calls them, for messages */
 } FileMesh;
 
+/* Without any cells. */
+PetscErrorCode FileMeshCreate(MPI_Comm comm, const GridOps *ops, PetscInt dim, FileMesh *mesh);
+PetscErrorCode FileMeshDestroy(FileMesh *mesh);
 /* Pick the cells of a file and check them, for an empty grid; mistakes go to diag at `path`. Not
  * collective, as all below. */
 PetscErrorCode FileMeshFill(FileMesh *mesh, const MshFile *msh, const char *path, Diag *diag);

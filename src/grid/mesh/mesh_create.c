@@ -55,16 +55,12 @@ PetscErrorCode GridCreateMesh(MPI_Comm comm, const GridSpec *spec, PetscInt dim,
 {
   PetscMPIInt rank, *owner = NULL;
   PetscInt good;
-  FileMesh mesh = {0};
+  FileMesh mesh;
 
   PetscFunctionBeginUser;
   *grid = NULL;
   PetscCallMPI(MPI_Comm_rank(comm, &rank));
-  PetscCall(PetscNew(&mesh.grid));
-  PetscCall(PetscNew(&mesh.grid->mesh));
-  mesh.grid->ops = &grid_mesh;
-  mesh.grid->comm = comm;
-  mesh.grid->dim = dim;
+  PetscCall(FileMeshCreate(comm, &grid_mesh, dim, &mesh));
   if (!rank) PetscCall(Prepare(&mesh, spec, path, weight, context, diag, &owner));
   good = owner != NULL;
   PetscCallMPI(MPI_Bcast(&good, 1, MPIU_INT, 0, comm));
@@ -72,8 +68,7 @@ PetscErrorCode GridCreateMesh(MPI_Comm comm, const GridSpec *spec, PetscInt dim,
     PetscCall(ShareFacts(comm, mesh.grid));
     PetscCall(MeshFromOwners(mesh.grid, owner, grid));
   }
-  PetscCall(GridDestroy(&mesh.grid));
-  PetscCall(PetscFree(mesh.number));
+  PetscCall(FileMeshDestroy(&mesh));
   PetscCall(PetscFree(owner));
   PetscFunctionReturn(0);
 }

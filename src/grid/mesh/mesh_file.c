@@ -334,3 +334,23 @@ PetscErrorCode FileMeshFill(FileMesh *mesh, const MshFile *msh, const char *path
   PetscCall(PetscFree3(node_of, cell_of, entity_of));
   PetscFunctionReturn(0);
 }
+
+PetscErrorCode FileMeshCreate(MPI_Comm comm, const GridOps *ops, PetscInt dim, FileMesh *mesh)
+{
+  PetscFunctionBeginUser;
+  *mesh = (FileMesh){0};
+  PetscCall(PetscNew(&mesh->grid));
+  PetscCall(PetscNew(&mesh->grid->mesh));
+  mesh->grid->comm = comm;
+  mesh->grid->ops = ops;
+  mesh->grid->dim = dim;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode FileMeshDestroy(FileMesh *mesh)
+{
+  PetscFunctionBeginUser;
+  PetscCall(GridDestroy(&mesh->grid));
+  PetscCall(PetscFree(mesh->number));
+  PetscFunctionReturn(0);
+}

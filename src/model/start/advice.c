@@ -27,7 +27,7 @@ static PetscBool flows_at_constant_volume(const MaterialSpec *spec, const Materi
  * hexahedron asks for little (and holds little: see seeding). */
 static PetscBool cells_lock(const Model *m, const BodySpec *body)
 {
-  const PetscBool simplex = m->grid->type == CELL_TRIANGLE || m->grid->type == CELL_TETRAHEDRON;
+  const PetscBool simplex = cells[m->grid->first_type].nodes == m->dim + 1; /* some of them, in a mixed mesh */
   return simplex || body->points_per_cell > 1;
 }
 
