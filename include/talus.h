@@ -3,24 +3,25 @@
  * @brief talus, an implicit large-deformation solver for solids and granular matter, as a library.
  *
  * A case file becomes a #TalusCase. It is run as a whole with TalusRunCase(), which writes the same
- * directory of results as `talus run`, or it becomes a #TalusModel that the caller advances step by step
- * and looks into.
+ * directory of results as `talus run`, or it becomes a #TalusModel that the caller advances step by
+ * step and looks into.
  *
  * - **Errors.** Every function that can fail returns an `int`: #TALUS_OK (0) or one of #TalusError;
- *   talus_error_string() says it in words. After an error the results asked for are untouched, except that
- *   handles to be created are NULL. A solver that gives up is no error but an outcome.
- * - **Mistakes in a case** are told with file, line and column. Functions that find them take `messages`:
- *   NULL prints the text to the standard error stream (on the first rank), otherwise the caller gets it
- *   (NULL if there is nothing to say; warnings come with #TALUS_OK) and gives it back with TalusTextFree().
- * - **Handles** are opaque. What creates one sets the pointer, what destroys one sets it to NULL and does
- *   nothing for NULL.
- * - **Parallel runs.** A case is opened on a communicator, which its runs and models share: MPI_COMM_WORLD,
- *   or a part of it, so that a program can let several cases work side by side or keep ranks for itself.
- *   Functions marked collective must be called by all ranks of the case with the same arguments; the others
- *   work on this rank alone. The first rank is the first of the case's. Messages of talus cannot meet the
- *   program's own. Not thread-safe: one thread at a time.
- * - **Units** are SI. Stress is positive in tension, pressure in compression; symmetric tensors are stored
- *   in the order xx yy zz xy yz zx. Plane strain has unit thickness.
+ *   talus_error_string() says it in words. After an error the results asked for are untouched,
+ *   except that handles to be created are NULL. A solver that gives up is no error but an outcome.
+ * - **Mistakes in a case** are told with file, line and column. Functions that find them take
+ *   `messages`: NULL prints the text to the standard error stream (on the first rank), otherwise
+ *   the caller gets it (NULL if there is nothing to say; warnings come with #TALUS_OK) and gives it
+ *   back with TalusTextFree().
+ * - **Handles** are opaque. What creates one sets the pointer, what destroys one sets it to NULL
+ *   and does nothing for NULL.
+ * - **Parallel runs.** A case is opened on a communicator, which its runs and models share:
+ *   MPI_COMM_WORLD, or a part of it, so that a program can let several cases work side by side or
+ *   keep ranks for itself. Functions marked collective must be called by all ranks of the case with
+ *   the same arguments; the others work on this rank alone. The first rank is the first of the
+ *   case's. Messages of talus cannot meet the program's own. Not thread-safe: one thread at a time.
+ * - **Units** are SI. Stress is positive in tension, pressure in compression; symmetric tensors are
+ *   stored in the order xx yy zz xy yz zx. Plane strain has unit thickness.
  *
  * @example ten_lines.c
  * Runs the case file that its argument names and prints the final value of every measure.
@@ -37,27 +38,33 @@ extern "C" {
 
 /** What a function returns. */
 typedef enum TalusError {
-  TALUS_OK = 0,             /**< Done. */
-  TALUS_ERROR_ARGUMENT = 1, /**< An argument is NULL, out of range, or too small to hold the result. */
-  TALUS_ERROR_STATE = 2,    /**< TalusInitialize() is missing, or came twice, or after TalusFinalize(). */
-  TALUS_ERROR_INPUT = 3,    /**< The case has mistakes, or the run directory cannot be used; the messages say which. */
-  TALUS_ERROR_UNKNOWN = 4,  /**< There is no measure or field of this name. */
-  TALUS_ERROR_OUTPUT = 5,   /**< A result could not be written; log.txt in the run directory says why. */
-  TALUS_ERROR_MEMORY = 6,   /**< No memory. */
-  TALUS_ERROR_INTERNAL = 7  /**< A fault of talus or of a library; PETSc has printed where. */
+  TALUS_OK = 0, /**< Done. */
+  /** An argument is NULL, out of range, or too small to hold the result. */
+  TALUS_ERROR_ARGUMENT = 1,
+  /** TalusInitialize() is missing, or came twice, or after TalusFinalize(). */
+  TALUS_ERROR_STATE = 2,
+  /** The case has mistakes, or the run directory cannot be used; the messages say which. */
+  TALUS_ERROR_INPUT = 3,
+  TALUS_ERROR_UNKNOWN = 4, /**< There is no measure or field of this name. */
+  /** A result could not be written; log.txt in the run directory says why. */
+  TALUS_ERROR_OUTPUT = 5,
+  TALUS_ERROR_MEMORY = 6,  /**< No memory. */
+  TALUS_ERROR_INTERNAL = 7 /**< A fault of talus or of a library; PETSc has printed where. */
 } TalusError;
 
 /** How a run ended. */
 typedef enum TalusOutcome {
-  TALUS_DONE = 0,   /**< The end time was reached. */
-  TALUS_GAVE_UP = 1 /**< No convergence, a point left the grid, the disk refused, or a signal came. */
+  TALUS_DONE = 0, /**< The end time was reached. */
+  /** No convergence, a point left the grid, the disk refused, or a signal came. */
+  TALUS_GAVE_UP = 1
 } TalusOutcome;
 
 /** What became of a step. */
 typedef enum TalusStep {
-  TALUS_STEP_ACCEPTED = 0,   /**< The model is one step further. */
-  TALUS_STEP_AT_END = 1,     /**< The case's end time was reached before; nothing happened. */
-  TALUS_STEP_TOO_SMALL = 2,  /**< No convergence down to the smallest step; the model is as it was. */
+  TALUS_STEP_ACCEPTED = 0, /**< The model is one step further. */
+  TALUS_STEP_AT_END = 1,   /**< The case's end time was reached before; nothing happened. */
+  /** No convergence down to the smallest step; the model is as it was. */
+  TALUS_STEP_TOO_SMALL = 2,
   TALUS_STEP_POINTS_LOST = 3 /**< Accepted, but points left the grid and the case says to stop. */
 } TalusStep;
 
@@ -65,7 +72,8 @@ typedef enum TalusStep {
 enum TalusRunFlag {
   TALUS_RUN_FORCE = 1, /**< Replace a run that is in the directory already. */
   TALUS_RUN_QUIET = 2, /**< Nothing on the terminal; the log is written all the same. */
-  TALUS_RUN_RESUME = 4 /**< Go on with the run in the directory from its newest checkpoint, on any number of ranks. */
+  /** Go on with the run in the directory from its newest checkpoint, on any number of ranks. */
+  TALUS_RUN_RESUME = 4
 };
 
 /** A validated case. */
@@ -90,10 +98,10 @@ typedef void (*TalusBodyForce)(void *context, const double X[3], double t, doubl
 /**
  * @brief Start MPI and PETSc, unless the program did. Collective over MPI_COMM_WORLD.
  *
- * PETSc's options (`-snes_monitor`, `-log_view`) are read from the command line and PETSC_OPTIONS, not from
- * `petscrc` and `.petscrc`: a working directory must not set them (`-options_file FILE` reads one). A program
- * that calls PetscInitialize itself calls neither this nor TalusFinalize(); one that has only called MPI_Init
- * calls both.
+ * PETSc's options (`-snes_monitor`, `-log_view`) are read from the command line and PETSC_OPTIONS,
+ * not from `petscrc` and `.petscrc`: a working directory must not set them (`-options_file FILE`
+ * reads one). A program that calls PetscInitialize itself calls neither this nor TalusFinalize();
+ * one that has only called MPI_Init calls both.
  * @param argc  of main, or NULL
  * @param argv  of main, or NULL
  * @return #TALUS_OK, or #TALUS_ERROR_STATE if PETSc runs already or has been finalised
@@ -101,7 +109,8 @@ typedef void (*TalusBodyForce)(void *context, const double X[3], double t, doubl
 int TalusInitialize(int *argc, char ***argv);
 
 /**
- * @brief End what TalusInitialize() started; all handles must be gone. Collective over MPI_COMM_WORLD.
+ * @brief End what TalusInitialize() started; all handles must be gone. Collective over
+ * MPI_COMM_WORLD.
  * @return #TALUS_OK, or #TALUS_ERROR_STATE if PETSc does not run
  */
 int TalusFinalize(void);
@@ -133,7 +142,7 @@ void TalusTextFree(char **text);
  * @param file      the case file
  * @param n_set     number of entries in set
  * @param set       n_set strings "path.to.key=value" that change the case before it is validated, as
- * `--set` does; or NULL
+ *                  `--set` does; or NULL
  * @param c         result; NULL after an error
  * @param messages  NULL to print, or result; see above
  * @return #TALUS_OK; #TALUS_ERROR_INPUT: unreadable, or mistakes in it
@@ -144,10 +153,11 @@ int TalusCaseOpen(MPI_Comm comm, const char *file, int n_set, const char *const 
 int TalusCaseClose(TalusCase **c);
 
 /**
- * @brief Let the Gmsh script (.geo) of the case run programs and write files, as `--trust` does. Not collective.
+ * @brief Let the Gmsh script (.geo) of the case run programs and write files, as `--trust` does.
+ * Not collective.
  *
- * Without it a script that does so is refused when the model is made. Before TalusModelCreate() and TalusRunCase(),
- * on every rank.
+ * Without it a script that does so is refused when the model is made. Before TalusModelCreate() and
+ * TalusRunCase(), on every rank.
  * @param c  the case
  */
 int TalusCaseTrust(TalusCase *c);
@@ -173,21 +183,25 @@ int TalusCaseMeasureName(const TalusCase *c, int i, const char **name, const cha
  * @{ */
 
 /**
- * @brief Run a case from start to end and write its directory of results, as `talus run` does. Collective.
+ * @brief Run a case from start to end and write its directory of results, as `talus run` does.
+ * Collective.
  *
- * SIGINT, SIGTERM, SIGQUIT, SIGHUP, SIGUSR1, SIGUSR2 and SIGXCPU end the run with its state written; a step that has not converged by then is given up.
+ * SIGINT, SIGTERM, SIGQUIT, SIGHUP, SIGUSR1, SIGUSR2 and SIGXCPU end the run with its state
+ * written; a step that has not converged by then is given up.
  *
- * With #TALUS_RUN_RESUME the run that is in `out` goes on, as with `talus run --resume`; c is then the file
- * case.yaml in `out`, opened with TalusCaseOpen() (its `set` may change `checkpoint`, `newton`, `linear`, `petsc`,
- * `analysis.smallest`, `analysis.largest`, `grid.outside` and, in dynamics, `analysis.end`), and
- * #TALUS_RUN_FORCE makes no sense beside it. A run without a checkpoint starts again; one that is complete and has
- * left none is #TALUS_DONE with NaN for its measures.
+ * With #TALUS_RUN_RESUME the run that is in `out` goes on, as with `talus run --resume`; c is then
+ * the file case.yaml in `out`, opened with TalusCaseOpen() (its `set` may change `checkpoint`,
+ * `newton`, `linear`, `petsc`, `analysis.smallest`, `analysis.largest`, `grid.outside` and, in
+ * dynamics, `analysis.end`), and #TALUS_RUN_FORCE makes no sense beside it. A run without a
+ * checkpoint starts again; one that is complete and has left none is #TALUS_DONE with NaN for its
+ * measures.
  * @param c         the case
  * @param out       directory of results, made if it is not there
  * @param flags     of #TalusRunFlag, or 0
  * @param run       result; NULL after an error
  * @param messages  NULL to print, or result; see above
- * @return #TALUS_OK, also if the solver gave up; #TALUS_ERROR_INPUT: mistakes that show only when the case
+ * @return #TALUS_OK, also if the solver gave up; #TALUS_ERROR_INPUT: mistakes that show only when
+ *   the case
  * is set up, or a directory that cannot be used (nothing is written then)
  */
 int TalusRunCase(TalusCase *c, const char *out, unsigned flags, TalusRun **run, char **messages);
@@ -216,7 +230,8 @@ int TalusRunDestroy(TalusRun **run);
  * @param c         the case, which must outlive the model
  * @param model     result; NULL after an error
  * @param messages  NULL to print, or result; see above
- * @return #TALUS_OK; #TALUS_ERROR_INPUT: mistakes that show only here, such as a body outside its grid
+ * @return #TALUS_OK; #TALUS_ERROR_INPUT: mistakes that show only here, such as a body outside its
+ *   grid
  */
 int TalusModelCreate(TalusCase *c, TalusModel **model, char **messages);
 
@@ -226,8 +241,8 @@ int TalusModelDestroy(TalusModel **model);
 /**
  * @brief Add a body force to gravity, from the next step on. Collective.
  *
- * It is called for every material point with the time at the end of the step, once for every try of a step. Set
- * before the first step of a dynamic case it also enters the initial acceleration.
+ * It is called for every material point with the time at the end of the step, once for every try of
+ * a step. Set before the first step of a dynamic case it also enters the initial acceleration.
  * @param model    the model
  * @param force    the function, called on every rank for its points, or NULL for none
  * @param context  handed to it
@@ -237,15 +252,18 @@ int TalusModelSetBodyForce(TalusModel *model, TalusBodyForce force, void *contex
 /**
  * @brief Advance by one step, halved until Newton's method converges. Collective.
  * @param model  the model
- * @param limit  s, the longest step to take, even beyond the end of the case; 0: as the case's step control
+ * @param limit  s, the longest step to take, even beyond the end of the case; 0: as the case's step
+ *   control
  * chooses, and up to its end
  * @param step   result; anything but #TALUS_STEP_ACCEPTED ends the loop of most programs
- * @return #TALUS_OK, also where the step failed; #TALUS_ERROR_ARGUMENT for a limit that is negative or no
+ * @return #TALUS_OK, also where the step failed; #TALUS_ERROR_ARGUMENT for a limit that is negative
+ *   or no
  * number
  */
 int TalusModelStep(TalusModel *model, double limit, TalusStep *step);
 
-/** @brief Why the last step failed, in words; "" if it did not. The model owns it until its next step. */
+/** @brief Why the last step failed, in words; "" if it did not. The model owns it until its next
+ * step. */
 const char *TalusModelReason(const TalusModel *model);
 
 /**
@@ -268,17 +286,20 @@ int TalusModelMeasure(const TalusModel *model, const char *name, double *value);
 /**
  * @brief A field of this rank's material points. Not collective.
  *
- * Fields are those of `talus list fields`, and "position": position, displacement, velocity, acceleration
- * (3 components, also in plane strain), stress (6), deformation_gradient (9, row by row), and mass, volume,
- * density, pressure, mises, energy, id, body, material and others (1). The order of points changes from
- * step to step, and in parallel runs points change ranks; "id" tells them apart.
+ * Fields are those of `talus list fields`, and "position": position, displacement, velocity,
+ * acceleration (3 components, also in plane strain), stress (6), deformation_gradient (9, row by
+ * row), and mass, volume, density, pressure, mises, energy, id, body, material and others (1). The
+ * order of points changes from step to step, and in parallel runs points change ranks; "id" tells
+ * them apart.
  * @param model       the model
  * @param field       name of the field
  * @param n           result, number of points of this rank, or NULL
  * @param components  result, numbers a point, or NULL
- * @param buffer      result, n times components numbers, point by point; NULL to ask for the sizes only
+ * @param buffer      result, n times components numbers, point by point; NULL to ask for the sizes
+ *   only
  * @param capacity    how many numbers buffer holds
- * @return #TALUS_OK; #TALUS_ERROR_UNKNOWN; #TALUS_ERROR_ARGUMENT if buffer is too small (n and components
+ * @return #TALUS_OK; #TALUS_ERROR_UNKNOWN; #TALUS_ERROR_ARGUMENT if buffer is too small (n and
+ *   components
  * are set, buffer is not)
  */
 int TalusModelPoints(const TalusModel *model, const char *field, int *n, int *components, double *buffer,

@@ -1,5 +1,6 @@
-/* What the files of the public interface share. A public function checks its arguments, calls a function that returns a
- * PetscErrorCode like all others of this program, and translates the code. */
+/* What the files of the public interface share. A public function checks its arguments, calls a
+ * function that returns a PetscErrorCode like all others of this program, and translates the
+ * code. */
 #pragma once
 #include <petscsys.h>
 #include "talus.h"

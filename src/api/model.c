@@ -124,7 +124,8 @@ int TalusModelMeasure(const TalusModel *model, const char *name, double *value)
   return error;
 }
 
-/* Numbers a point, 0 if there is no such field. Positions and ids are no output fields: every file has them. */
+/* Numbers a point, 0 if there is no such field. Positions and ids are no output fields: every file
+ * has them. */
 static PetscInt field_components(const char *name)
 {
   if (!strcmp(name, "position")) return 3;

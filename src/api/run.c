@@ -4,7 +4,8 @@
 #include "api/api.h"
 #include "run/run.h"
 
-/* Owns copies of the names, so that it may outlive its case. The C library's memory: it may also outlive PETSc. */
+/* Owns copies of the names, so that it may outlive its case. The C library's memory: it may also
+ * outlive PETSc. */
 struct TalusRun {
   TalusOutcome outcome;
   PetscInt n;

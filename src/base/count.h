@@ -8,7 +8,8 @@ static inline size_t count_numbers(PetscInt n, PetscInt each) { return (size_t)n
 /* How many things of so many numbers each a PetscInt can still count the numbers of. */
 static inline PetscInt count_most(PetscInt each) { return PETSC_MAX_INT / PetscMax(each, 1); }
 
-/* had + n x each, if that is at most `most`; else PETSC_FALSE. *sum is what it would be, in any case. */
+/* had + n x each, if that is at most `most`; else PETSC_FALSE. *sum is what it would be, in any
+ * case. */
 static inline PetscBool count_fits(PetscInt had, PetscInt n, PetscInt each, PetscInt most, PetscInt64 *sum)
 {
   *sum = had + (PetscInt64)n * each;

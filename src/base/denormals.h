@@ -1,5 +1,5 @@
-/* Numbers too small to be normalised cost a hundred cycles each, and solutions that decay through a grid are full of
- * them in single precision. Between these two calls they are zero. */
+/* Numbers too small to be normalised cost a hundred cycles each, and solutions that decay through a
+ * grid are full of them in single precision. Between these two calls they are zero. */
 #pragma once
 #if defined(__SSE__)
 #include <xmmintrin.h>

@@ -21,7 +21,8 @@ PetscErrorCode ExchangeCreate(MPI_Comm comm, PetscMPIInt size, const PetscInt *p
   }
   PetscCall(
     PetscCommBuildTwoSided(e->comm, 1, MPIU_INT, e->n_to, e->to, e->to_count, &e->n_from, &e->from, &e->from_count));
-  PetscCall(PetscSortMPIIntWithIntArray(e->n_from, e->from, e->from_count)); /* the same order at every run */
+  /* the same order at every run */
+  PetscCall(PetscSortMPIIntWithIntArray(e->n_from, e->from, e->from_count));
   PetscCall(Offsets(e->n_to, e->to_count, &e->to_start));
   PetscCall(Offsets(e->n_from, e->from_count, &e->from_start));
   PetscFunctionReturn(0);

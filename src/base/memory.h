@@ -1,6 +1,8 @@
-/* PETSc's memory, so that a machine without any says so: PETSc 3.18 itself reports a line number as the code and a function as the message. */
+/* PETSc's memory, so that a machine without any says so: PETSc 3.18 itself reports a line number as
+ * the code and a function as the message. */
 #pragma once
 #include <petscsys.h>
 
-/* Before PetscInitialize, with the words that go to it (or 0, NULL). Nothing happens where PETSc is to debug memory by itself. */
+/* Before PetscInitialize, with the words that go to it (or 0, NULL). Nothing happens where PETSc is
+ * to debug memory by itself. */
 PetscErrorCode MemoryInstall(int argc, char **argv);

@@ -3,16 +3,18 @@
 #include <petsctime.h>
 
 typedef enum {
-  PHASE_REPARTITION, /* who has which part of the grid: looked at in every step, and what it takes to share it anew */
-  PHASE_PATTERN,     /* which nodes carry unknowns, sparse pattern, slots of the groups in it */
-  PHASE_PREPARE,     /* history, first guess, loads */
-  PHASE_POINTS,      /* point work with the scatter into the blocks of the tangent */
-  PHASE_MATRIX,      /* blocks -> matrix, and its making for a new pattern */
-  PHASE_LINEAR,      /* linear solves with the set-up of their preconditioners: factorisations, too */
-  PHASE_NEWTON,      /* Newton's own work with vectors */
-  PHASE_COMMIT,      /* state and F of the accepted step */
-  PHASE_MOVE,        /* points move, find their cells, change ranks, get sorted */
-  PHASE_INITIALISE,  /* shape functions, nodal mass and motion */
+  /* who has which part of the grid: looked at in every step, and what it takes to share it anew */
+  PHASE_REPARTITION,
+  PHASE_PATTERN, /* which nodes carry unknowns, sparse pattern, slots of the groups in it */
+  PHASE_PREPARE, /* history, first guess, loads */
+  PHASE_POINTS,  /* point work with the scatter into the blocks of the tangent */
+  PHASE_MATRIX,  /* blocks -> matrix, and its making for a new pattern */
+  /* linear solves with the set-up of their preconditioners: factorisations, too */
+  PHASE_LINEAR,
+  PHASE_NEWTON,     /* Newton's own work with vectors */
+  PHASE_COMMIT,     /* state and F of the accepted step */
+  PHASE_MOVE,       /* points move, find their cells, change ranks, get sorted */
+  PHASE_INITIALISE, /* shape functions, nodal mass and motion */
   PHASE_N
 } Phase;
 

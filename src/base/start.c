@@ -6,7 +6,8 @@
 
 PetscErrorCode StartPetsc(int *argc, char ***argv)
 {
-  static char name[] = "talus", *own[] = {name, NULL}; /* PETSc looks for files even so if it gets no words at all */
+  /* PETSc looks for files even so if it gets no words at all */
+  static char name[] = "talus", *own[] = {name, NULL};
   char **list = own;
   int n = 1;
   const PetscBool given = argc && argv && *argc > 0;

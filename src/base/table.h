@@ -1,6 +1,8 @@
-/* Tables of plain numbers whose rows are spread over the ranks: how state travels between the model and a checkpoint.
+/* Tables of plain numbers whose rows are spread over the ranks: how state travels between the model
+ * and a checkpoint.
  *
- * The model knows what it must remember, the file format how numbers are kept; this is all that they say to each other. */
+ * The model knows what it must remember, the file format how numbers are kept; this is all that
+ * they say to each other. */
 #pragma once
 #include <petscsys.h>
 
@@ -43,14 +45,17 @@ PetscErrorCode TablesDestroy(Tables **tables);
 PetscErrorCode TablesAdd(Tables *tables, const char *name, PetscBool everywhere, PetscInt64 rows, Table **table);
 Table *tables_find(const Tables *tables, const char *name);
 
-/* A column over data that stays the caller's, or, with data NULL, over zeros of the table's own. *out may be NULL. */
+/* A column over data that stays the caller's, or, with data NULL, over zeros of the table's own.
+ * *out may be NULL. */
 PetscErrorCode TableAdd(Table *table, const char *name, const char *unit, ColumnType type, PetscInt components,
                         void *data, Column **out);
-/* Data of the column of this name, type and width; NULL, with a reason, if there is none like it. */
+/* Data of the column of this name, type and width; NULL, with a reason, if there is none like
+ * it. */
 void *table_data(const Table *table, const char *name, ColumnType type, PetscInt components, char reason[256]);
 
-/* Collective. An everywhere table "parts" at the end: how many rows of each table are each rank's. */
+/* Collective. An everywhere table "parts" at the end: how many rows of each table are each
+ * rank's. */
 PetscErrorCode PartsToTable(MPI_Comm comm, Tables *tables);
-/* Collective. On as many ranks as wrote the parts (*home) every rank gets its own rows back, in their order. A mistake in the tables is told in
- * reason, on all ranks. */
+/* Collective. On as many ranks as wrote the parts (*home) every rank gets its own rows back, in
+ * their order. A mistake in the tables is told in reason, on all ranks. */
 PetscErrorCode PartsTake(MPI_Comm comm, Tables *tables, PetscBool *home, char reason[256]);

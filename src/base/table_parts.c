@@ -1,4 +1,5 @@
-/* Which rows of a table were which rank's: state without numbers of its own goes back to the same ranks, in the same order. */
+/* Which rows of a table were which rank's: state without numbers of its own goes back to the same
+ * ranks, in the same order. */
 #include "base/table.h"
 #include <petscsf.h>
 

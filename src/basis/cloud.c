@@ -1,4 +1,5 @@
-/* One entry for both meshfree bases, and what they share at their edges: bad input, results of a failure. */
+/* One entry for both meshfree bases, and what they share at their edges: bad input, results of a
+ * failure. */
 #include "basis/cloud.h"
 #include "basis/cloud_kernels.h"
 #include "basis/lme.h"

@@ -1,7 +1,7 @@
 /* Chains of hops from a point to the nodes around it.
  *
- * A hop may be as long as the gap, or longer by the material's stretch along it: |d| / |F^-1 d|, up to a limit, because
- * after a large shear F has lost the memory of who was whose neighbour. */
+ * A hop may be as long as the gap, or longer by the material's stretch along it: |d| / |F^-1 d|, up
+ * to a limit, because after a large shear F has lost the memory of who was whose neighbour. */
 #include "basis/cloud_gap.h"
 #include <math.h>
 

@@ -12,6 +12,6 @@ typedef struct {
 void cloud_candidates(int dim, int n, const PetscReal *X, PetscReal h, const PetscReal *metric, const PetscReal *x,
                       CloudCandidates *near);
 
-/* Does a chain of hops through candidates, none longer than the gap, lead from the point to candidate a? Within
- * `radius` <= gap everything is linked. The nearest candidate always is. */
+/* Does a chain of hops through candidates, none longer than the gap, lead from the point to
+ * candidate a? Within `radius` <= gap everything is linked. The nearest candidate always is. */
 PetscBool cloud_linked(CloudCandidates *near, const CloudSupport *support, int a, PetscReal radius);

@@ -1,6 +1,8 @@
-/* What moving least squares and local maximum entropy share: the nodes of a cloud side by side, eight at a time.
+/* What moving least squares and local maximum entropy share: the nodes of a cloud side by side,
+ * eight at a time.
  *
- * A cloud is padded to whole packs by nodes of weight 0 at the point itself, so no loop has a tail. */
+ * A cloud is padded to whole packs by nodes of weight 0 at the point itself, so no loop has a
+ * tail. */
 #pragma once
 #include "base/math/lanes.h"
 #include "basis/cloud.h"
@@ -13,7 +15,8 @@
 typedef Lanes Pack;
 typedef LaneBits PackBits;
 
-/* Lengths in units of h. The weight of a node is exp(exponent) * window before the basis does anything to it. */
+/* Lengths in units of h. The weight of a node is exp(exponent) * window before the basis does
+ * anything to it. */
 typedef struct {
   int n, packs;
   Pack d[3][CLOUD_MAX_PACKS];      /* node - point */
@@ -27,7 +30,8 @@ CLOUD_INLINE PetscReal pack_sum(const Pack *v)
   return (((*v)[0] + (*v)[4]) + ((*v)[2] + (*v)[6])) + (((*v)[1] + (*v)[5]) + ((*v)[3] + (*v)[7]));
 }
 
-/* NaN comes through only if the caller looks at what it did with the numbers: comparisons drop it. */
+/* NaN comes through only if the caller looks at what it did with the numbers: comparisons drop
+ * it. */
 CLOUD_INLINE void pack_max(const Pack *v, Pack *largest)
 {
   const PackBits mask = *v > *largest;
@@ -61,7 +65,8 @@ CLOUD_INLINE void cloud_gather(int dim, int n, const PetscReal *X, PetscReal h, 
 
 #define CLOUD_WINDOW_START 0.7 /* of the reach: inside of this weights are untouched */
 
-/* 1 - s^3 (10 - 15 s + 6 s^2), s from 0 at the start to 1 at the reach: two continuous derivatives. */
+/* 1 - s^3 (10 - 15 s + 6 s^2), s from 0 at the start to 1 at the reach: two continuous
+ * derivatives. */
 CLOUD_INLINE void cloud_window(PetscReal reach, Cloud *cloud)
 {
   const PetscReal start = CLOUD_WINDOW_START * reach, slope = 1.0 / (reach - start);
@@ -76,7 +81,8 @@ CLOUD_INLINE void cloud_window(PetscReal reach, Cloud *cloud)
 /* Upper triangle of a symmetric matrix, row by row. */
 CLOUD_INLINE int cloud_upper(int m, int i, int j) { return i * m - i * (i - 1) / 2 + j - i; }
 
-/* a (upper triangle) = L L^T, in place (column i of L in row i); returns the ratio of the extreme squared pivots, or -1. */
+/* a (upper triangle) = L L^T, in place (column i of L in row i); returns the ratio of the extreme
+ * squared pivots, or -1. */
 CLOUD_INLINE PetscReal cloud_cholesky(int m, PetscReal singular, PetscReal *a)
 {
   PetscReal least = PETSC_MAX_REAL, largest = 0.0;

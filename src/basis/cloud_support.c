@@ -7,8 +7,10 @@
 #define SUPPORT_STEPS 32 /* 1.1^32 = 21 */
 #define SUPPORT_REFINEMENTS 12
 #define SUPPORT_NEAR 0.999 /* share of the bound that ends the refinement */
-#define SUPPORT_WORST 1e4  /* moment matrix of MLS: beyond, small shifts of nodes turn N over; LME has no such limit */
-#define SUPPORT_SLACK 1.5  /* a bound that cannot be reached becomes this many times the condition at the end */
+/* moment matrix of MLS: beyond, small shifts of nodes turn N over; LME has no such limit */
+#define SUPPORT_WORST 1e4
+/* a bound that cannot be reached becomes this many times the condition at the end */
+#define SUPPORT_SLACK 1.5
 
 const CloudSupport support_default_mls = {
   .radius = 2.0, .max_radius = 3.5, .condition = 50.0, .gap = 2.0, .stretch = 1.5};
@@ -39,7 +41,8 @@ static void search_gather(Search *s, int n, PetscReal *X)
     for (int k = 0; k < dim; ++k) X[a * dim + k] = s->near.X[s->chosen[a] * dim + k];
 }
 
-/* Newton starts from the caller's dual variable at each trial: what comes out does not depend on the trials before. */
+/* Newton starts from the caller's dual variable at each trial: what comes out does not depend on
+ * the trials before. */
 static Trial search_evaluate(Search *s, int n, PetscReal radius)
 {
   const int dim = s->near.dim;
@@ -71,8 +74,8 @@ static PetscBool trial_good(const Trial *trial, PetscReal bound)
   return trial->status == CLOUD_OK && trial->condition <= bound;
 }
 
-/* Where between a bad and a good radius to look next: where ln(condition) would meet the bound if it were linear, well
- * inside the interval every second time. */
+/* Where between a bad and a good radius to look next: where ln(condition) would meet the bound if
+ * it were linear, well inside the interval every second time. */
 static PetscReal search_guess(const Trial *bad, const Trial *good, PetscReal bound, int i)
 {
   PetscReal share = 0.5;

@@ -8,10 +8,13 @@
 
 #define MAX_ITERATIONS 60
 #define SMALLEST_DAMPING 1e-3
-#define STEP_TOLERANCE 1e-14     /* of 1 + |xi|: nothing smaller can be told from round-off */
-#define RESIDUAL_TOLERANCE 1e-13 /* of the size of the terms that it sums: where an iteration that stalls has arrived */
-#define FARTHEST 1e6             /* reference units: there lies the line where a trapezoid's sides meet */
-#define LARGEST_RESIDUAL 1e-9    /* of the cell's size: worse than this is no inverse, however far outside */
+#define STEP_TOLERANCE 1e-14 /* of 1 + |xi|: nothing smaller can be told from round-off */
+/* of the size of the terms that it sums: where an iteration that stalls has arrived */
+#define RESIDUAL_TOLERANCE 1e-13
+/* reference units: there lies the line where a trapezoid's sides meet */
+#define FARTHEST 1e6
+/* of the cell's size: worse than this is no inverse, however far outside */
+#define LARGEST_RESIDUAL 1e-9
 
 typedef struct {
   PetscReal x[CELL_MAX_NODES * 3]; /* node positions relative to the first */

@@ -1,5 +1,6 @@
-/* Local maximum entropy: Newton on the dual, safeguarded by a line search, and by Newton with a shifted Hessian where the
- * Hessian is no help. One kernel, compiled for two and three dimensions; lengths in units of h. */
+/* Local maximum entropy: Newton on the dual, safeguarded by a line search, and by Newton with a
+ * shifted Hessian where the Hessian is no help. One kernel, compiled for two and three dimensions;
+ * lengths in units of h. */
 #include "basis/lme.h"
 #include "base/math/eigen.h"
 
@@ -7,17 +8,21 @@
 #define LME_HALVINGS 30
 #define LME_TOLERANCE 1e-13 /* of sum N d, in units of h */
 #define LME_FLOOR 1e-12     /* is good enough where it falls no more, if rounding allows it */
-#define LME_SINGULAR 1e-15  /* a squared pivot of the Hessian relative to the largest: the cloud is flat */
-#define LME_OUTSIDE 1e-12   /* in units of h: a plane between point and nodes is farther from the nodes than this */
-#define LME_STIFFEST 1e4    /* shifts beyond this share of |sum N d| move nothing any more */
-#define LME_WARM 0.5        /* |sum N d| at a given dual variable: from farther away zero is the better start */
+/* a squared pivot of the Hessian relative to the largest: the cloud is flat */
+#define LME_SINGULAR 1e-15
+/* in units of h: a plane between point and nodes is farther from the nodes than this */
+#define LME_OUTSIDE 1e-12
+#define LME_STIFFEST 1e4 /* shifts beyond this share of |sum N d| move nothing any more */
+/* |sum N d| at a given dual variable: from farther away zero is the better start */
+#define LME_WARM 0.5
 
 typedef struct {
   PetscReal lambda[3];
-  PetscReal value;            /* ln Z */
-  PetscReal mean[3];          /* sum N d: the gradient of ln Z */
-  PetscReal hessian[6];       /* sum N d d - mean mean, upper triangle */
-  PetscReal reach;            /* largest lambda.d: below zero lambda is the normal of a plane between point and nodes */
+  PetscReal value;      /* ln Z */
+  PetscReal mean[3];    /* sum N d: the gradient of ln Z */
+  PetscReal hessian[6]; /* sum N d d - mean mean, upper triangle */
+  /* largest lambda.d: below zero lambda is the normal of a plane between point and nodes */
+  PetscReal reach;
   PetscReal sum;              /* of e */
   PetscReal rounding;         /* of the largest exponent that can matter */
   Pack e[CLOUD_MAX_PACKS];    /* Z N before division by the sum, window included */
@@ -92,7 +97,8 @@ CLOUD_INLINE PetscBool lme_direction(int dim, const Lme *s, PetscReal shift, Pet
   return PETSC_TRUE;
 }
 
-/* Along the step to where ln Z has fallen enough. PETSC_FALSE: nowhere, *s is as it was but for its exponentials. */
+/* Along the step to where ln Z has fallen enough. PETSC_FALSE: nowhere, *s is as it was but for its
+ * exponentials. */
 CLOUD_INLINE PetscBool lme_search(int dim, PetscBool windowed, PetscReal gamma, const Cloud *cloud,
                                   const PetscReal *step, Lme *s)
 {
@@ -124,8 +130,9 @@ CLOUD_INLINE void lme_start(int dim, PetscBool windowed, PetscReal gamma, const 
   lme_moments(dim, windowed, gamma, cloud, s);
 }
 
-/* Newton where the Hessian is of use. Where it is not (all weight on one node, or running off to infinity because the
- * point is outside) its shift, a share `ease` of |mean|, adapts: steps grow tenfold as long as they succeed. */
+/* Newton where the Hessian is of use. Where it is not (all weight on one node, or running off to
+ * infinity because the point is outside) its shift, a share `ease` of |mean|, adapts: steps grow
+ * tenfold as long as they succeed. */
 CLOUD_INLINE CloudStatus lme_minimise(int dim, PetscBool windowed, PetscReal gamma, const Cloud *cloud, Lme *s)
 {
   PetscBool definite = PETSC_FALSE;

@@ -1,8 +1,9 @@
 /* Moving least squares. One kernel, compiled for each dimension and set of polynomials.
  *
- * With polynomials fixed at the point (the same functions, since the sets are closed under translation) only w depends
- * on x in M, which gives the exact gradient with two more solves of M per direction, none of M's derivatives formed:
- * a = M^-1 p(0), d_j a = M^-1 (d_j p(0) - sum d_j w (a.p) p), dN = d_j w (a.p) + w (d_j a.p). */
+ * With polynomials fixed at the point (the same functions, since the sets are closed under
+ * translation) only w depends on x in M, which gives the exact gradient with two more solves of M
+ * per direction, none of M's derivatives formed: a = M^-1 p(0), d_j a = M^-1 (d_j p(0) - sum d_j w
+ * (a.p) p), dN = d_j w (a.p) + w (d_j a.p). */
 #include "basis/mls.h"
 
 #define MLS_MAX_FUNCTIONS 10
@@ -28,7 +29,8 @@ CLOUD_INLINE void mls_polynomials(CloudOrder order, int dim, const Cloud *cloud,
   if (order == CLOUD_BILINEAR && dim == 3) p[m] = cloud->d[0][i] * cloud->d[1][i] * cloud->d[2][i];
 }
 
-/* w = exp(-(r^2 - least r^2) / R^2): the constant factor cancels and keeps far nodes from vanishing all together. */
+/* w = exp(-(r^2 - least r^2) / R^2): the constant factor cancels and keeps far nodes from vanishing
+ * all together. */
 CLOUD_INLINE void mls_gaussian(PetscReal radius, const Cloud *cloud, Pack *w, Pack *q)
 {
   const PetscReal rate = 1.0 / (radius * radius);

@@ -1,4 +1,5 @@
-/* Moving least squares: N_I = p(0)^T M^-1 p_I w_I with M = sum w p p^T, polynomials p relative to the point. */
+/* Moving least squares: N_I = p(0)^T M^-1 p_I w_I with M = sum w p p^T, polynomials p relative to
+ * the point. */
 #pragma once
 #include "basis/cloud.h"
 #include "basis/cloud_kernels.h"

@@ -49,7 +49,8 @@ static void report_contradiction(const Boundary *b, const Grid *grid, PetscInt n
   diag_hint(diag, "leave the node out of one of the two selections");
 }
 
-/* Mark the dofs of one entry; the first contradiction with an earlier entry is reported (diag NULL: they were sought before). */
+/* Mark the dofs of one entry; the first contradiction with an earlier entry is reported (diag NULL:
+ * they were sought before). */
 static void mark_entry(Boundary *b, const Grid *grid, PetscInt entry, Diag *diag)
 {
   const MotionSpec *m = &b->c->boundary[entry];

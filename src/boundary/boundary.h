@@ -1,8 +1,9 @@
 /* Prescribed motion of grid nodes and the reactions to it.
  *
- * Motions are increments over a step. On a grid that is restored every step (mpm) they belong to places, which stay or take part in the
- * motion (`moves`); on a mesh that moves (fem) to the nodes selected at the start. Either way a rotation turns the node's present position
- * about its centre. */
+ * Motions are increments over a step. On a grid that is restored every step (mpm) they belong to
+ * places, which stay or take part in the motion (`moves`); on a mesh that moves (fem) to the nodes
+ * selected at the start. Either way a rotation turns the node's present position about its
+ * centre. */
 #pragma once
 #include "grid/cloud/cloud.h"
 
@@ -10,8 +11,9 @@ typedef struct {
   PetscInt n, *node; /* local nodes, ghosts too */
 } MotionNodes;
 
-/* Increment over [t0, t1] of a node that stands at x (dim) at t0, m, in place of what the case prescribes: a field of motion that no
- * list of entries could give, such as a uniform deformation. */
+/* Increment over [t0, t1] of a node that stands at x (dim) at t0, m, in place of what the case
+ * prescribes: a field of motion that no list of entries could give, such as a uniform
+ * deformation. */
 typedef void (*MotionField)(void *context, const PetscReal *x, PetscReal t0, PetscReal t1, PetscReal *increment);
 
 typedef struct Boundary {
@@ -20,25 +22,29 @@ typedef struct Boundary {
   MotionNodes *motion;  /* one per entry of the case's boundary */
   unsigned char *fixed; /* n_nodes x dim */
   PetscInt *entry;      /* n_nodes x dim: the entry that prescribes the dof, -1 if none */
-  PetscReal
-    *member; /* of a cloud: n_nodes x entries, 1 where the entry took the node at the start; follows the nodes */
+  /* of a cloud: n_nodes x entries, 1 where the entry took the node at the start; follows the
+   * nodes */
+  PetscReal *member;
   MotionField field; /* NULL: as the case says */
   void *field_context;
 } Boundary;
 
-/* Collective. Unknown boundaries, entries that select nothing, and contradictory entries go to diag. */
+/* Collective. Unknown boundaries, entries that select nothing, and contradictory entries go to
+ * diag. */
 PetscErrorCode BoundaryCreate(const Grid *grid, const Case *c, Diag *diag, Boundary **boundary);
-/* Collective. Carry a boundary of the mesh over to the cloud made of its owned nodes with marked[node]. */
+/* Collective. Carry a boundary of the mesh over to the cloud made of its owned nodes with
+ * marked[node]. */
 PetscErrorCode BoundaryToCloud(const Boundary *of_mesh, const Grid *mesh, const unsigned char *marked, Grid *cloud,
                                Boundary **boundary);
 /* Lists and marks anew from `member`, after the cloud's ghosts or owners changed. */
 PetscErrorCode BoundaryFollow(Boundary *boundary, const Grid *cloud);
-/* Collective. The same boundary on `grid`, which is the grid that it was made for, shared among the ranks in another way. */
+/* Collective. The same boundary on `grid`, which is the grid that it was made for, shared among the
+ * ranks in another way. */
 PetscErrorCode BoundaryRegrid(Boundary **boundary, const Grid *grid);
 PetscErrorCode BoundaryDestroy(Boundary **boundary);
 
-/* For a grid that is restored: choose anew, at time t, the nodes of the places that move. Where entries have come to overlap, the first of
- * them prescribes. */
+/* For a grid that is restored: choose anew, at time t, the nodes of the places that move. Where
+ * entries have come to overlap, the first of them prescribes. */
 PetscErrorCode BoundaryMove(Boundary *boundary, const Grid *grid, PetscReal t);
 
 /* Increments over [t0, t1] of all prescribed dofs (others untouched), n_nodes x dim, m. */

@@ -1,6 +1,7 @@
 #include "boundary/faces.h"
 
-/* Position on a face from its own coordinates: edges s in [-1, 1], triangles (s, t) barycentric, quadrilaterals [-1, 1]^2. */
+/* Position on a face from its own coordinates: edges s in [-1, 1], triangles (s, t) barycentric,
+ * quadrilaterals [-1, 1]^2. */
 static void face_shape(PetscInt face_nodes, PetscReal s, PetscReal t, PetscReal N[4], PetscReal dN[8])
 {
   if (face_nodes == 2) {
@@ -92,7 +93,8 @@ static int compare_keys(const void *a, const void *b)
   return 0;
 }
 
-/* All ranks' keys, sorted: a face that stands twice lies inside the body. Only selected faces of this body's cells take part. */
+/* All ranks' keys, sorted: a face that stands twice lies inside the body. Only selected faces of
+ * this body's cells take part. */
 static PetscErrorCode GatherKeys(MPI_Comm comm, PetscInt n, const PetscInt *keys, PetscInt *n_all, PetscInt **all)
 {
   PetscMPIInt size, mine, *count, *start;

@@ -9,10 +9,11 @@ typedef struct {
   PetscReal area;        /* weight: m2, or m times the unit thickness */
 } FacePoint;
 
-/* Gauss points of a side of a cell (2 on an edge, 3 on a triangle, 4 on a quadrilateral); returns how many. */
+/* Gauss points of a side of a cell (2 on an edge, 3 on a triangle, 4 on a quadrilateral); returns
+ * how many. */
 PetscInt face_quadrature(const Grid *grid, PetscInt cell, PetscInt side, FacePoint *q);
 
-/* Collective. Faces between the cells that hold points of the body and all others, as far as the selector's coordinates and shape take
- * all their nodes. */
+/* Collective. Faces between the cells that hold points of the body and all others, as far as the
+ * selector's coordinates and shape take all their nodes. */
 PetscErrorCode BodyFaces(const Grid *grid, const Points *points, PetscInt body, const Selector *on, PetscInt *n,
                          PetscInt **cell, PetscInt **side);

@@ -1,11 +1,14 @@
-/* Dead loads: tractions on faces of the grid, and loads carried by points that move with the material.
+/* Dead loads: tractions on faces of the grid, and loads carried by points that move with the
+ * material.
  *
- * A carrier is a point without mass that holds a force: at the quadrature points of a body's boundary (a traction), or at one
- * material position (a point force). Its force goes to the nodes of its cell that hold material. */
+ * A carrier is a point without mass that holds a force: at the quadrature points of a body's
+ * boundary (a traction), or at one material position (a point force). Its force goes to the nodes
+ * of its cell that hold material. */
 #pragma once
 #include "support/support.h"
 
-/* Faces of the grid under one load: their cells, and the integral of each of the cell's shape functions over the face. */
+/* Faces of the grid under one load: their cells, and the integral of each of the cell's shape
+ * functions over the face. */
 typedef struct {
   PetscInt n, *cell;
   PetscReal *N; /* n x nodes_per_cell, m2 */
@@ -21,17 +24,21 @@ typedef struct Loads {
 
 /* Collective. `points` tells which cells each body fills. */
 PetscErrorCode LoadsCreate(const Grid *grid, const Case *c, const Points *points, Diag *diag, Loads **loads);
-/* Collective. Let carriers bear the tractions on faces of the grid too, where its cells hold points: for methods that leave the cells. */
+/* Collective. Let carriers bear the tractions on faces of the grid too, where its cells hold
+ * points: for methods that leave the cells. */
 PetscErrorCode LoadsLeaveCells(Loads *loads, const Grid *grid, const Points *points);
 PetscErrorCode LoadsDestroy(Loads **loads);
-/* Collective. Let the loads stand on `grid`, which is `old` shared among the ranks in another way. */
+/* Collective. Let the loads stand on `grid`, which is `old` shared among the ranks in another
+ * way. */
 PetscErrorCode LoadsRegrid(Loads *loads, const Grid *old, const Grid *grid);
 
-/* Subtract the nodal forces at time t from residual (n_nodes x dim; sums over ranks come later). Faces of the grid are loaded where
- * their cell is filled[cell] by material: beside a body there is nothing to push. Carried forces go to nodes with touched[node] != 0. */
+/* Subtract the nodal forces at time t from residual (n_nodes x dim; sums over ranks come later).
+ * Faces of the grid are loaded where their cell is filled[cell] by material: beside a body there is
+ * nothing to push. Carried forces go to nodes with touched[node] != 0. */
 void loads_push(const Loads *loads, const Grid *grid, PetscReal t, const unsigned char *filled,
                 const unsigned char *touched, PetscReal *residual);
 
-/* Shape functions of a carrier or tracer among touched nodes only, scaled to sum to one; PETSC_FALSE if there is none. */
+/* Shape functions of a carrier or tracer among touched nodes only, scaled to sum to one;
+ * PETSC_FALSE if there is none. */
 PetscBool touched_shape(const Grid *grid, PetscInt cell, const PetscReal *xi, const unsigned char *touched,
                         PetscReal *N);

@@ -1,6 +1,7 @@
 #include "boundary/motion.h"
 
-/* Displacement that the entry asks for at time t, in component d; zero at the start whatever the amplitude. */
+/* Displacement that the entry asks for at time t, in component d; zero at the start whatever the
+ * amplitude. */
 static PetscReal displacement_at(const Case *c, const MotionSpec *m, PetscInt d, PetscReal t)
 {
   if (t <= 0) return 0;
@@ -47,7 +48,8 @@ void motion_origin(const Case *c, const MotionSpec *m, const PetscReal *x, Petsc
     PetscReal moved = 0;
     if (m->kind == MOTION_DISPLACEMENT && m->component[d]) moved = displacement_at(c, m, d, t);
     if (m->kind == MOTION_VELOCITY && m->component[d]) moved = m->value[d] * span;
-    if (m->kind == MOTION_ROTATION) moved = -rotation(m, dim, x, -m->rate * span, d); /* turned back */
+    /* turned back */
+    if (m->kind == MOTION_ROTATION) moved = -rotation(m, dim, x, -m->rate * span, d);
     X[d] = x[d] - moved;
   }
 }

@@ -1,9 +1,11 @@
-/* One prescribed motion: its increment at a place, and where the things that it moves stood at the start. */
+/* One prescribed motion: its increment at a place, and where the things that it moves stood at the
+ * start. */
 #pragma once
 #include "case/case.h"
 
 /* Increment over [t0, t1], in component d, of a node that stands at x (dim), m. */
 PetscReal motion_increment(const Case *c, const MotionSpec *m, const PetscReal *x, PetscInt d, PetscReal t0,
                            PetscReal t1);
-/* X: where what stands at x at time t stood at the start, if it moves as prescribed; components left free do not move. */
+/* X: where what stands at x at time t stood at the start, if it moves as prescribed; components
+ * left free do not move. */
 void motion_origin(const Case *c, const MotionSpec *m, const PetscReal *x, PetscReal t, PetscReal *X);

@@ -1,7 +1,8 @@
 /* The case: what a user asked for, as plain validated data. No YAML, no PETSc objects.
  *
- * SI units; angles in radians here (degrees in files). Names that the program looks up in a registry
- * (law, method) stay strings: this room knows no other. Strings and arrays belong to the case. */
+ * SI units; angles in radians here (degrees in files). Names that the program looks up in a
+ * registry (law, method) stay strings: this room knows no other. Strings and arrays belong to the
+ * case. */
 #pragma once
 #include "case/kinematics/kinematics.h"
 
@@ -59,7 +60,8 @@ typedef struct {
   PetscInt n_parameters; /* numbers handed to a .geo */
   NamedValue *parameters;
   OutsidePolicy outside;
-  PetscBool trusted; /* may a .geo run programs and write files? Said on the command line, never in the case file */
+  /* may a .geo run programs and write files? Said on the command line, never in the case file */
+  PetscBool trusted;
 } GridSpec;
 
 typedef struct {
@@ -80,18 +82,21 @@ typedef struct {
   PointWeights weights;
   PetscReal velocity[3];             /* initial: v + spin x (x - centre) */
   PetscReal spin[3], spin_centre[3]; /* rad/s; 2D uses spin[2] */
-  PetscBool has_k0;                  /* geostatic: sigma_v of the material above, sigma_h = k0 sigma_v */
+  /* geostatic: sigma_v of the material above, sigma_h = k0 sigma_v */
+  PetscBool has_k0;
   PetscReal k0;
   PetscBool has_surface;
-  PetscReal surface; /* height against gravity at which the user believes the material to end, m: only compared */
+  /* height against gravity at which the user believes the material to end, m: only compared */
+  PetscReal surface;
 } BodySpec;
 
 /* Where something acts: every condition given must hold. */
 typedef struct {
   PetscBool has[3];
   PetscReal min[3], max[3]; /* m; x: 0 gives min = max */
-  char *boundary;           /* a physical group of the mesh, or left right bottom top front back of a box */
-  char *body;               /* for loads on a body: its boundary */
+  /* a physical group of the mesh, or left right bottom top front back of a box */
+  char *boundary;
+  char *body; /* for loads on a body: its boundary */
   PetscBool has_shape;
   Shape shape;
 } Selector;
@@ -143,13 +148,15 @@ typedef struct {
   PetscReal end;               /* s; statics: pseudo-time, 1 */
   PetscReal step;              /* s, the first and (without growth) largest step */
   PetscReal smallest, largest; /* s, bounds of step control */
-  PetscReal travel;            /* most cells that a point may cross in a step that has grown; 0: any */
-  char *scheme;                /* of dynamics, by its name; NULL: Newmark's, with bossak Bossak's */
-  PetscReal beta, gamma;       /* Newmark */
-  PetscReal bossak;            /* alpha_B in [-1/3, 0] */
-  PetscReal damping;           /* Rayleigh, mass proportional, 1/s */
+  /* most cells that a point may cross in a step that has grown; 0: any */
+  PetscReal travel;
+  char *scheme;          /* of dynamics, by its name; NULL: Newmark's, with bossak Bossak's */
+  PetscReal beta, gamma; /* Newmark */
+  PetscReal bossak;      /* alpha_B in [-1/3, 0] */
+  PetscReal damping;     /* Rayleigh, mass proportional, 1/s */
   MassMatrix mass;
-  PetscBool keep_velocity; /* mpm: prescribed nodes do not take from points what velocity they bring */
+  /* mpm: prescribed nodes do not take from points what velocity they bring */
+  PetscBool keep_velocity;
 } AnalysisSpec;
 
 typedef struct {
@@ -164,15 +171,17 @@ typedef enum { WEIGHT_GAUSSIAN, WEIGHT_CUBIC_SPLINE } BasisWeight;
 typedef enum { CLOUD_CHOICE_ADAPTIVE, CLOUD_CHOICE_NEAREST, CLOUD_CHOICE_FIXED } CloudChoice;
 typedef enum { ESSENTIAL_AUTO, ESSENTIAL_DIRECT, ESSENTIAL_CONSTRAINTS } EssentialKind;
 
-/* Shape functions, most numbers of clouds of nodes (gmm). Lengths are over the cell size of the grid that gives the nodes. */
+/* Shape functions, most numbers of clouds of nodes (gmm). Lengths are over the cell size of the
+ * grid that gives the nodes. */
 typedef struct {
   const char *kind; /* one of basis_names[] (support/basis.h); NULL: the cell */
   CloudChoice choice;
-  PetscReal radius;           /* of a cloud */
-  PetscReal max_radius;       /* that it may grow to */
-  PetscReal condition;        /* of a basis that needs no more nodes */
-  PetscInt minimum;           /* least number of nodes; 0: what the basis needs */
-  PetscReal gap;              /* nodes farther apart do not belong to the same material; 0: no limit */
+  PetscReal radius;     /* of a cloud */
+  PetscReal max_radius; /* that it may grow to */
+  PetscReal condition;  /* of a basis that needs no more nodes */
+  PetscInt minimum;     /* least number of nodes; 0: what the basis needs */
+  /* nodes farther apart do not belong to the same material; 0: no limit */
+  PetscReal gap;
   PetscReal effective_radius; /* mls: dilation of the weight function */
   BasisOrder order;           /* mls */
   BasisWeight weight;         /* mls */
@@ -205,7 +214,8 @@ typedef struct {
 
 /* How the work is shared among the ranks. */
 typedef struct {
-  PetscReal imbalance; /* the largest share of a rank over the mean at which the grid is shared anew; 0: never */
+  /* the largest share of a rank over the mean at which the grid is shared anew; 0: never */
+  PetscReal imbalance;
 } ParallelSpec;
 
 typedef struct {

@@ -1,10 +1,12 @@
-/* The fields that `output: fields:` knows: one table for the case file, `talus list fields` and the writers. */
+/* The fields that `output: fields:` knows: one table for the case file, `talus list fields` and the
+ * writers. */
 #pragma once
 #include <petscsys.h>
 
 typedef struct {
   const char *name, *unit, *help;
-  PetscInt components;    /* 1 scalar, 3 vector, 6 symmetric tensor (Voigt xx yy zz xy yz zx), 9 tensor row by row */
+  /* 1 scalar, 3 vector, 6 symmetric tensor (Voigt xx yy zz xy yz zx), 9 tensor row by row */
+  PetscInt components;
   PetscBool points, grid; /* where it lives: material points, nodes of the grid, or both */
 } OutputField;
 

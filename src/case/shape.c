@@ -33,7 +33,8 @@ static PetscReal distance_to_segment(const PetscReal *a, const PetscReal *b, con
   return PetscSqrtReal(PetscSqr(v[0] - s * e[0]) + PetscSqr(v[1] - s * e[1]));
 }
 
-/* Even-odd rule; a position on an edge belongs to the polygon, or not if the tolerance is negative. */
+/* Even-odd rule; a position on an edge belongs to the polygon, or not if the tolerance is
+ * negative. */
 static PetscBool polygon_contains(const Shape *s, const PetscReal *x, PetscReal tolerance)
 {
   PetscBool inside = PETSC_FALSE;

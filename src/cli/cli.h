@@ -1,7 +1,8 @@
 /* The command line: a table of subcommands (main.c), one file for each, and one parser of options.
  *
- * A subcommand gets its own arguments: argv[0] is its name, and PETSc's options (single dash) have already gone to
- * PetscInitialize. It runs on every rank of PETSC_COMM_WORLD and sets the exit code that all ranks return. */
+ * A subcommand gets its own arguments: argv[0] is its name, and PETSc's options (single dash) have
+ * already gone to PetscInitialize. It runs on every rank of PETSC_COMM_WORLD and sets the exit code
+ * that all ranks return. */
 #pragma once
 #include <petscsys.h>
 #include "base/diag/diag.h"
@@ -41,8 +42,9 @@ typedef struct {
   const char *values[CLI_MAX_ARGUMENTS]; /* "" for flags */
 } CliArguments;
 
-/* Sort argv into words and options; --name=value and --name value are the same. PETSC_FALSE in *go_on:
- * help was asked for or something is wrong, it has been printed (once), *exit_code is set, and the subcommand returns. */
+/* Sort argv into words and options; --name=value and --name value are the same. PETSC_FALSE in
+ * *go_on: help was asked for or something is wrong, it has been printed (once), *exit_code is set,
+ * and the subcommand returns. */
 PetscErrorCode CliParse(const CliUsage *usage, int argc, char **argv, CliArguments *arguments, PetscBool *go_on,
                         int *exit_code);
 
@@ -54,7 +56,8 @@ PetscInt cli_values(const CliArguments *arguments, const char *name, const char 
 
 /* Print `error: ...` and a hint (or NULL) on rank 0 and set the exit code for bad usage. */
 PetscErrorCode CliUsageError(int *exit_code, const char *hint, const char *format, ...) PETSC_ATTRIBUTE_FORMAT(3, 4);
-/* Collective. Were all ranks started with the same words? If not that has been printed, and the exit code is set. */
+/* Collective. Were all ranks started with the same words? If not that has been printed, and the
+ * exit code is set. */
 PetscErrorCode CliSameCommand(int argc, char **argv, PetscBool *same, int *exit_code);
 /* Is this the rank that prints? */
 PetscBool cli_prints(void);

@@ -1,4 +1,5 @@
-/* talus: dispatch to the subcommands. PETSc's options (single dash) go to PETSc, the rest to the subcommand. */
+/* talus: dispatch to the subcommands. PETSc's options (single dash) go to PETSc, the rest to the
+ * subcommand. */
 #include <ctype.h>
 #include <signal.h>
 #include <stdio.h>
@@ -85,7 +86,8 @@ static PetscBool is_petsc_option(const char *word)
   return word[0] == '-' && isalpha((unsigned char)word[1]) && strcmp(word, "-h");
 }
 
-/* Does the word behind a PETSc option belong to it? PETSc's own rule: yes, unless it is an option. */
+/* Does the word behind a PETSc option belong to it? PETSc's own rule: yes, unless it is an
+ * option. */
 static PetscBool is_value(const char *word)
 {
   return word[0] != '-' || isdigit((unsigned char)word[1]) || word[1] == '.';
@@ -98,7 +100,8 @@ static PetscBool is_command(const char *word)
   return PETSC_FALSE;
 }
 
-/* Share argv out; the first word that is a command is never a value, so that `talus -snes_monitor run` works. Both arrays keep argv[0] and end with NULL. */
+/* Share argv out; the first word that is a command is never a value, so that `talus -snes_monitor
+ * run` works. Both arrays keep argv[0] and end with NULL. */
 static void split(int argc, char **argv, int *n_own, char **own, int *n_petsc, char **petsc)
 {
   PetscBool value = PETSC_FALSE; /* the word before was a PETSc option */

@@ -164,7 +164,8 @@ PetscErrorCode CliPlot(int argc, char **argv, int *exit_code)
   if (!go_on) PetscFunctionReturn(0);
   PetscCall(Understand(&arguments, &options, &go_on, exit_code));
   if (!go_on) PetscFunctionReturn(0);
-  if (cli_prints()) PetscCall(Draw(&options, exit_code)); /* one process draws, the others learn how it went */
+  /* one process draws, the others learn how it went */
+  if (cli_prints()) PetscCall(Draw(&options, exit_code));
   PetscCallMPI(MPI_Bcast(exit_code, 1, MPI_INT, 0, PETSC_COMM_WORLD));
   PetscFunctionReturn(0);
 }

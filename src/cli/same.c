@@ -1,5 +1,5 @@
-/* Ranks that mpiexec has started with different words (`mpiexec -n 1 talus run a.yaml : -n 1 talus run b.yaml`) would
- * wait for each other for ever: it is found out before anything else. */
+/* Ranks that mpiexec has started with different words (`mpiexec -n 1 talus run a.yaml : -n 1 talus
+ * run b.yaml`) would wait for each other for ever: it is found out before anything else. */
 #include <stdlib.h>
 #include <string.h>
 #include "cli/cli.h"

@@ -12,8 +12,9 @@ typedef struct {
   const PetscInt *node;
   const PetscReal *N;
   PetscReal mass, inertia, lumping, soft; /* inertia: mass times c0 */
-  PetscReal g[3 * CLOUD_MAX_NODES];       /* gradients at x_(n+1), as many rows as they have beside each other */
-  PetscReal T[3 * 9 * CLOUD_MAX_NODES];   /* blocks of each row and node */
+  /* gradients at x_(n+1), as many rows as they have beside each other */
+  PetscReal g[3 * CLOUD_MAX_NODES];
+  PetscReal T[3 * 9 * CLOUD_MAX_NODES]; /* blocks of each row and node */
 } CloudWork;
 
 KERNEL void cloud_increment(const int dim, const PetscBool hoop, const WeakFormInput *in, PetscInt p, PetscReal dF[9])

@@ -86,7 +86,8 @@ KERNEL void increment_rows(const int dim, const int nn, const PetscReal *restric
     return;
   }
   Row4 x = {1, 0, 0, 0}, y = {0, 1, 0, 0}, z = {0, 0, 1, 0};
-  for (int I = 0; I < nn; ++I) { /* a row of dN and one number too many; what that gives is not stored */
+  /* a row of dN and one number too many; what that gives is not stored */
+  for (int I = 0; I < nn; ++I) {
     const PetscReal *d = dN + I * dim;
     const Row4 row = I < nn - 1 ? *(const Row4 *)d : (Row4){d[0], d[1], d[2], 0};
     x += du[I * dim] * row;

@@ -4,7 +4,8 @@
  *   K_IJ = sum_p V0 [grad N_I . c . grad N_J + (grad N_I . tau grad N_J) 1] + sum_p c0 m N_I N_J 1
  *
  * with grad N at x_(n+1), tau and c from the law, a_h = sum_J N_J a_J the consistent inertia.
- * The effective nodal acceleration is a_I = c0 du_I + h_I; time integration chooses c0 and h (gravity goes into h). */
+ * The effective nodal acceleration is a_I = c0 du_I + h_I; time integration chooses c0 and h
+ * (gravity goes into h). */
 #pragma once
 #include "material/law.h"
 #include "support/support.h"
@@ -19,21 +20,26 @@ typedef struct {
   PetscReal inertia;        /* c0, 1/s2; 0 in statics */
   PetscBool symmetric;      /* are the tangents of all materials symmetric? */
   const PetscReal *lumping; /* per group: share of the mass that is lumped, or NULL (0) */
-  const PetscReal *soft;    /* per group: stiffness that ties a hardly filled cell's nodes together, N/m, or NULL */
-  const PetscReal *tie;     /* per group: inertia that ties them together, kg, or NULL */
-  /* Where points are groups of their own and the tangent is symmetric: blocks with a row behind the column are left out. */
+  /* per group: stiffness that ties a hardly filled cell's nodes together, N/m, or NULL */
+  const PetscReal *soft;
+  const PetscReal *tie; /* per group: inertia that ties them together, kg, or NULL */
+  /* Where points are groups of their own and the tangent is symmetric: blocks with a row behind the
+   * column are left out. */
   PetscBool half;
-  const PetscReal *pressure;     /* mixed: n_nodes, the unknown pressure over pressure_scale, m */
-  PetscReal pressure_scale;      /* mixed: Pa/m, gives both unknowns the same unit, and both equations N */
-  PetscReal alpha;               /* mixed: stabilisation of the pressure is alpha / G */
-  const PetscReal *pressure_tie; /* mixed: per group, ties the pressures of a hardly filled cell, m3/Pa, or NULL */
+  const PetscReal *pressure; /* mixed: n_nodes, the unknown pressure over pressure_scale, m */
+  /* mixed: Pa/m, gives both unknowns the same unit, and both equations N */
+  PetscReal pressure_scale;
+  PetscReal alpha; /* mixed: stabilisation of the pressure is alpha / G */
+  /* mixed: per group, ties the pressures of a hardly filled cell, m3/Pa, or NULL */
+  const PetscReal *pressure_tie;
 } WeakFormInput;
 
 typedef struct {
-  PetscReal *force;     /* n_nodes x dim, added to */
-  PetscReal *volume;    /* mixed: n_nodes, residual of the pressure equation, N, added to */
-  PetscReal *values;    /* matrix blocks, added to; NULL: residual only, unless there are singles */
-  float *singles;       /* the same in single precision, from formulations that can; instead of values */
+  PetscReal *force;  /* n_nodes x dim, added to */
+  PetscReal *volume; /* mixed: n_nodes, residual of the pressure equation, N, added to */
+  PetscReal *values; /* matrix blocks, added to; NULL: residual only, unless there are singles */
+  /* the same in single precision, from formulations that can; instead of values */
+  float *singles;
   const PetscInt *slot; /* per group nn x nn: block of the pair of nodes in values */
   LawStatus status;     /* worst of all points */
   PetscInt bad_point;   /* a point of that status */
@@ -41,13 +47,15 @@ typedef struct {
 
 typedef struct {
   const char *name, *help;
-  PetscBool pressure; /* is there an unknown pressure at the nodes, behind the displacements in each block? */
-  PetscBool singles;  /* can it add its blocks in single precision, where groups are cells? */
+  /* is there an unknown pressure at the nodes, behind the displacements in each block? */
+  PetscBool pressure;
+  PetscBool singles; /* can it add its blocks in single precision, where groups are cells? */
   PetscErrorCode (*assemble)(const WeakFormInput *in, WeakFormOutput *out);
-  /* Accept the step: new state, F, J, stress and work of every point. `state` of the points is overwritten. */
+  /* Accept the step: new state, F, J, stress and work of every point. `state` of the points is
+   * overwritten. */
   PetscErrorCode (*commit)(const WeakFormInput *in, Points *points, LawStatus *status);
-  /* With a pressure: add to each node (n_nodes) a stand-in of the Schur complement's diagonal in an elastic body at rest, N/m; NULL
-   * without. */
+  /* With a pressure: add to each node (n_nodes) a stand-in of the Schur complement's diagonal in an
+   * elastic body at rest, N/m; NULL without. */
   void (*schur)(const WeakFormInput *in, PetscReal *nodes);
 } Formulation;
 

@@ -8,7 +8,8 @@ typedef struct {
   PetscBool hoop;   /* see Kinematics */
   /* The groups of one run; slot: where those of its first group stand in out->slot. */
   void (*assemble)(const WeakFormInput *in, const SupportRun *run, PetscInt slot, WeakFormOutput *out);
-  LawStatus (*update)(const WeakFormInput *in, PetscBool tangent, Batch *b); /* the stress of one batch */
+  /* the stress of one batch */
+  LawStatus (*update)(const WeakFormInput *in, PetscBool tangent, Batch *b);
 } SizedKernels;
 
 /* Kernels of one size from a file's own assemble_points and batch_update, which take it as

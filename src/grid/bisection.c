@@ -94,7 +94,8 @@ PetscErrorCode SpaceCutsCreate(MPI_Comm comm, PetscInt dim, PetscInt n, const Pe
   PetscCall(PetscMalloc1(2 * size, &cuts->part));
   (void)plant(cuts, 0, size);
   PetscCall(PetscCalloc1(n, &at));
-  for (PetscMPIInt width = size; width > 1; width = (width + 1) / 2) { /* one level of the tree after the other */
+  /* one level of the tree after the other */
+  for (PetscMPIInt width = size; width > 1; width = (width + 1) / 2) {
     PetscCall(FindCuts(comm, dim, n, x, at, cuts));
     for (PetscInt i = 0; i < n; ++i) {
       const SpacePart *p = &cuts->part[at[i]];

@@ -15,8 +15,9 @@
  * top (y) and in 3D front (lowest z) back (highest z); a mesh has its physical groups. */
 typedef struct {
   char *name;
-  PetscInt n_nodes, *nodes;                 /* local nodes, ghosts too */
-  PetscInt n_faces, *face_cell, *face_side; /* local cell and its side; each face on one rank only */
+  PetscInt n_nodes, *nodes; /* local nodes, ghosts too */
+  /* local cell and its side; each face on one rank only */
+  PetscInt n_faces, *face_cell, *face_side;
   PetscInt n_cells, *cells;
 } GridSet;
 
@@ -37,17 +38,20 @@ typedef struct Grid {
   PetscInt n_cells;          /* of this rank */
   PetscInt n_owned, n_nodes; /* nodes owned; owned and ghosts */
   PetscInt n_cells_global, n_nodes_global;
-  PetscInt *cell_node;   /* n_cells x nodes_per_cell, local nodes; a cell of fewer repeats its last one */
+  /* n_cells x nodes_per_cell, local nodes; a cell of fewer repeats its last one */
+  PetscInt *cell_node;
   PetscReal *x;          /* n_nodes x dim; fem moves them */
   PetscInt *global_node; /* n_nodes: owner's first + its local number */
-  PetscInt *global_cell; /* n_cells: its place in the file, or in the box (x fastest), from 0; whatever the ranks */
-  PetscSF node_sf;       /* roots: owned nodes; leaves: ghosts, as local nodes */
+  /* n_cells: its place in the file, or in the box (x fastest), from 0; whatever the ranks */
+  PetscInt *global_cell;
+  PetscSF node_sf; /* roots: owned nodes; leaves: ghosts, as local nodes */
   PetscInt n_sets;
-  GridSet *sets;               /* same names in the same order on every rank */
-  GridSet outer;               /* the whole outer boundary: nodes and faces; has no name */
-  PetscReal min[3], max[3];    /* of the whole grid */
-  PetscReal smallest;          /* smallest cell size over all ranks, m */
-  PetscReal (*rank_bounds)[6]; /* per rank: min[3], max[3] of its cells; who might know a lost point */
+  GridSet *sets;            /* same names in the same order on every rank */
+  GridSet outer;            /* the whole outer boundary: nodes and faces; has no name */
+  PetscReal min[3], max[3]; /* of the whole grid */
+  PetscReal smallest;       /* smallest cell size over all ranks, m */
+  /* per rank: min[3], max[3] of its cells; who might know a lost point */
+  PetscReal (*rank_bounds)[6];
   const GridOps *ops;
   GridBox *box; /* these are NULL but for the kind that it is */
   GridMesh *mesh;

@@ -5,8 +5,9 @@
 #include "grid/partition.h"
 
 struct GridOps {
-  PetscBool aligned;      /* do its sides lie across the axes? */
-  PetscBool starts_alike; /* is it always shared in the same way among as many ranks, for the same case? */
+  PetscBool aligned; /* do its sides lie across the axes? */
+  /* is it always shared in the same way among as many ranks, for the same case? */
+  PetscBool starts_alike;
   /* As GridCreate. */
   PetscErrorCode (*Create)(MPI_Comm comm, const Case *c, GridWeight weight, void *context, Diag *diag, Grid **grid);
   /* Free what only this kind has. */

@@ -66,7 +66,8 @@ PetscErrorCode NeighboursCreate(PetscInt dim, PetscInt n, const PetscReal *x, Pe
   choose_bins(b, b->n, min, max, size);
   const PetscInt bins = b->counts[0] * b->counts[1] * b->counts[2];
   PetscCall(PetscCalloc1(bins + 2, &b->start));
-  PetscInt *next = b->start + 1; /* next[k]: first the start of bin k, in the end its end, the start of bin k + 1 */
+  /* next[k]: first the start of bin k, in the end its end, the start of bin k + 1 */
+  PetscInt *next = b->start + 1;
   for (PetscInt i = 0; i < n_all; ++i)
     if (is_taken(skip, n, i)) ++next[bin_of(b, b->at + i * dim) + 1];
   for (PetscInt k = 0; k < bins; ++k) next[k + 1] += next[k];

@@ -99,7 +99,8 @@ static PetscErrorCode FillHistograms(MPI_Comm comm, const Share *share, PetscInt
                                      PetscInt64 *histogram)
 {
   const VoxelWeights *w = share->weights;
-  const PetscInt64 each = w && w->layer ? share->empty : 0; /* of those that are listed, the others are no cells */
+  /* of those that are listed, the others are no cells */
+  const PetscInt64 each = w && w->layer ? share->empty : 0;
 
   PetscFunctionBeginUser;
   PetscCall(PetscArrayzero(histogram, n));

@@ -39,7 +39,8 @@ static const GridSet *base_set(const Grid *grid, const Selector *on, const GridS
 
 PetscErrorCode GridSelectNodes(const Grid *grid, const Selector *on, PetscInt *n, PetscInt **nodes)
 {
-  const GridSet nothing = {0}, all = {.n_nodes = grid->n_nodes}; /* all: without a list, the number is the node */
+  /* all: without a list, the number is the node */
+  const GridSet nothing = {0}, all = {.n_nodes = grid->n_nodes};
   const GridSet *set = base_set(grid, on, &all, &nothing);
   const PetscReal tolerance = selection_tolerance(grid);
 

@@ -93,8 +93,9 @@ static PetscBool anything_yields(const Case *c)
   return PETSC_FALSE;
 }
 
-/* Measured (docs/theory.md, section 9): elastic bodies keep angular momentum and energy best with a tenth of the mass lumped and no tie,
- * while at the front of a flow, where yielded points carry next to nothing, only both keep Newton's method alive. */
+/* Measured (docs/theory.md, section 9): elastic bodies keep angular momentum and energy best with a
+ * tenth of the mass lumped and no tie, while at the front of a flow, where yielded points carry
+ * next to nothing, only both keep Newton's method alive. */
 static void resolve_stabilisation(const YamlNode *given, Case *c)
 {
   const PetscBool yields = anything_yields(c);
@@ -102,7 +103,8 @@ static void resolve_stabilisation(const YamlNode *given, Case *c)
   if (!yaml_find(given, "inertia")) c->stabilisation.inertia = yields ? 0.01 : 0;
 }
 
-/* Stress that carries the weight means that the weight is there: without a word of the user gravity does not grow. */
+/* Stress that carries the weight means that the weight is there: without a word of the user gravity
+ * does not grow. */
 static PetscErrorCode ResolveGravity(Case *c)
 {
   Amplitude *a = &c->gravity_amplitude;

@@ -4,16 +4,20 @@
 #include "base/diag/diag.h"
 #include "case/case.h"
 
-/* Collective: rank 0 reads, every rank parses the same text. `set` holds n_set strings "path.to.key=value" of --set, applied before
- * validation. On any mistake *c stays NULL and diag says what is wrong (its resolver is installed and lives until DiagDestroy). */
+/* Collective: rank 0 reads, every rank parses the same text. `set` holds n_set strings
+ * "path.to.key=value" of --set, applied before validation. On any mistake *c stays NULL and diag
+ * says what is wrong (its resolver is installed and lives until DiagDestroy). */
 PetscErrorCode CaseRead(MPI_Comm comm, const char *file, PetscInt n_set, const char *const *set, Diag *diag, Case **c);
 
-/* Collective. Rank 0 reads a file of text; every rank gets its bytes (PetscFree), or the reason why there are none. */
+/* Collective. Rank 0 reads a file of text; every rank gets its bytes (PetscFree), or the reason why
+ * there are none. */
 PetscErrorCode FileReadEverywhere(MPI_Comm comm, const char *file, size_t *size, char **bytes, char reason[256]);
 
-/* The resolved case as YAML: every key, defaults too, with units as comments. To be freed with PetscFree. */
+/* The resolved case as YAML: every key, defaults too, with units as comments. To be freed with
+ * PetscFree. */
 PetscErrorCode CaseToYaml(const Case *c, char **text);
 
-/* The reference, printed from the schema table: plain text, Markdown (docs/case-file.md) or JSON Schema. */
+/* The reference, printed from the schema table: plain text, Markdown (docs/case-file.md) or JSON
+ * Schema. */
 typedef enum { SCHEMA_TEXT, SCHEMA_MARKDOWN, SCHEMA_JSON } SchemaStyle;
 PetscErrorCode SchemaPrint(FILE *out, SchemaStyle style);

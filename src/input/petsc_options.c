@@ -117,7 +117,8 @@ static const char *const prefixes[] = {
 static const char *const apart[] = {"mat_mumps_icntl_1", "mat_mumps_icntl_2", "mat_mumps_icntl_3", "mat_mumps_icntl_22",
                                     NULL};
 
-/* Types that run what stands elsewhere: Python, Matlab, and a preconditioner that reads a file `database`. */
+/* Types that run what stands elsewhere: Python, Matlab, and a preconditioner that reads a file
+ * `database`. */
 static const char *const foreign[] = {"python", "matlab", "euclid", NULL};
 
 static PetscBool is_among(const char *word, const char *const *list)

@@ -1,4 +1,5 @@
-/* The reference as JSON Schema, draft 2020-12: one definition for each table, materials split by law. */
+/* The reference as JSON Schema, draft 2020-12: one definition for each table, materials split by
+ * law. */
 #include <string.h>
 #include "case/fields.h"
 #include "input/schema_print.h"
@@ -185,7 +186,8 @@ static void material_properties(FILE *out)
       for (const Law *const *other = laws; other != law; ++other)
         for (const LawParameter *q = (*other)->parameters; q && q->name; ++q)
           if (!strcmp(p->name, q->name)) twice = PETSC_TRUE;
-      if (twice) continue; /* `properties` may not name it again; the law's own entry below tells the rest */
+      /* `properties` may not name it again; the law's own entry below tells the rest */
+      if (twice) continue;
       fputs(",\n    ", out);
       json_string(out, p->name);
       fputs(": {\"type\": \"number\"}", out);

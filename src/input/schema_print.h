@@ -1,5 +1,5 @@
-/* Shared by the printers of the reference: all tables that the top one reaches, each once, in the order they
- * are met. */
+/* Shared by the printers of the reference: all tables that the top one reaches, each once, in the
+ * order they are met. */
 #pragma once
 #include "input/schema/schema.h"
 

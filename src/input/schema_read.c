@@ -127,8 +127,8 @@ static PetscErrorCode SetTag(const SchemaTable *table, const SchemaEntry *entry,
 
   PetscFunctionBeginUser;
   if (!table->tag_is_key) *(int *)tag = entry->tag;
-  else if (!*(char **)tag)
-    PetscCall(PetscStrallocpy(entry->key, (char **)tag)); /* of two keys that exclude each other the first */
+  else if (!*(char **)tag) /* of two keys that exclude each other the first */
+    PetscCall(PetscStrallocpy(entry->key, (char **)tag));
   PetscFunctionReturn(0);
 }
 
@@ -273,7 +273,8 @@ static PetscBool is_whole(const SchemaTable *table, const YamlNode *mapping)
   return PETSC_TRUE;
 }
 
-/* `--set materials.ruber.young=1` where there is a rubber: a part of something that is not there. */
+/* `--set materials.ruber.young=1` where there is a rubber: a part of something that is not
+ * there. */
 static PetscErrorCode NotThere(SchemaReader *r, const SchemaTable *table, const YamlNode *child, PetscBool *tell)
 {
   const YamlNode *list = child->parent;

@@ -154,7 +154,8 @@ void yaml_place(const YamlDocument *document, const YamlNode *node, PetscBool ke
     if (asprintf(&file, "--set %s", document->arguments[node->argument - 1]) < 0) file = NULL;
     *line = file;
     *place = (DiagPlace){.file = file, .width = 1};
-  } else if (key && !node->parent) yaml_place_at(document, (YamlPlace){0}, line, place); /* about the file as a whole */
+    /* about the file as a whole */
+  } else if (key && !node->parent) yaml_place_at(document, (YamlPlace){0}, line, place);
   else yaml_place_at(document, key && node->key_place.line > 0 ? node->key_place : node->place, line, place);
 }
 

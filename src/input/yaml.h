@@ -1,5 +1,6 @@
-/* A YAML file as a tree of nodes that know where they stand. libfyaml reads the syntax (yaml_parse.c);
- * the rest is ours, so that --set can change the tree and every message finds its place. */
+/* A YAML file as a tree of nodes that know where they stand. libfyaml reads the syntax
+ * (yaml_parse.c); the rest is ours, so that --set can change the tree and every message finds its
+ * place. */
 #pragma once
 #include "base/diag/diag.h"
 #include "base/names.h"
@@ -47,7 +48,8 @@ PetscErrorCode YamlDestroy(YamlDocument **document);
 /* Apply "path.to.key=value"; nodes on the way are created. */
 PetscErrorCode YamlSet(YamlDocument *document, const char *argument, Diag *diag);
 
-/* Parse events of `text` into document->root, or into *fragment if that is not NULL (a value of --set, marked so). */
+/* Parse events of `text` into document->root, or into *fragment if that is not NULL (a value of
+ * --set, marked so). */
 PetscErrorCode YamlParseInto(YamlDocument *document, const char *text, size_t size, PetscInt argument, Diag *diag,
                              YamlNode **fragment);
 

@@ -1,5 +1,5 @@
-/* libfyaml's events into our tree. Its messages become ours; what YAML allows and a case file does not
- * is refused here. */
+/* libfyaml's events into our tree. Its messages become ours; what YAML allows and a case file does
+ * not is refused here. */
 #include <libfyaml.h>
 #include <stdlib.h>
 #include <string.h>
@@ -46,7 +46,8 @@ static void mark(struct fy_token *token, YamlNode *node)
   else node->place = (YamlPlace){.width = 1};
 }
 
-/* libfyaml 0.7.12 loses the memory in which it unfolds a text in single quotes that has doubled ones side by side, if there are more than three. */
+/* libfyaml 0.7.12 loses the memory in which it unfolds a text in single quotes that has doubled
+ * ones side by side, if there are more than three. */
 #define MAX_DOUBLED 3
 
 static PetscBool has_too_many_quotes(const Builder *b, struct fy_token *token)
@@ -116,7 +117,8 @@ static PetscErrorCode Attach(Builder *b, YamlNode *node)
     node->key = key->text;
     key->text = NULL;
     node->key_place = key->place;
-    if (node->place.line == 0) node->place = key->place; /* an empty value has no place of its own */
+    /* an empty value has no place of its own */
+    if (node->place.line == 0) node->place = key->place;
     PetscCall(YamlNodeDestroy(&b->pending_key));
   }
   PetscCall(YamlNodeAppend(b->open, node));

@@ -15,9 +15,10 @@ int elastic_index(const char *name);
 /* "young, bulk": those whose bits are set. Returns text. */
 const char *elastic_list(unsigned given, char *text, size_t size);
 
-/* All five from two: `given` has the bits (1 << index) of the two, `value` their numbers. The two given are kept
- * as they are. PETSC_FALSE if they contradict each other or a stable solid (bulk and shear positive). */
+/* All five from two: `given` has the bits (1 << index) of the two, `value` their numbers. The two
+ * given are kept as they are. PETSC_FALSE if they contradict each other or a stable solid (bulk and
+ * shear positive). */
 PetscBool elasticity_from_two(unsigned given, const PetscReal value[ELASTIC_CONSTANTS], Elasticity *elastic);
-/* The same of an exactly incompressible solid: one of the two is poisson 0.5 or an infinite bulk modulus, the other young or shear.
- * bulk and lame are infinite. PETSC_FALSE if it is none. */
+/* The same of an exactly incompressible solid: one of the two is poisson 0.5 or an infinite bulk
+ * modulus, the other young or shear. bulk and lame are infinite. PETSC_FALSE if it is none. */
 PetscBool elasticity_incompressible(unsigned given, const PetscReal value[ELASTIC_CONSTANTS], Elasticity *elastic);

@@ -1,14 +1,16 @@
-/* J2 plasticity in large strains (thesis section 3.2, algorithm 3): radial return on the volume-preserving elastic left
- * Cauchy-Green tensor bbar, with linear isotropic hardening.
+/* J2 plasticity in large strains (thesis section 3.2, algorithm 3): radial return on the
+ * volume-preserving elastic left Cauchy-Green tensor bbar, with linear isotropic hardening.
  *
  *   tau = q I + s,  q = J U'(J),  s = mu dev bbar
  *   f   = |s| - sqrt(2/3) (sigma_Y + H alpha) <= 0
- *   c   = c_vol + (1 - beta1) c_dev - 2 mubar n x (beta3 n + beta4 dev n^2)     (thesis 3.93, not symmetrised)
+ *   c   = c_vol + (1 - beta1) c_dev - 2 mubar n x (beta3 n + beta4 dev n^2)     (thesis 3.93, not
+ *   symmetrised)
  *
- * with mubar = mu tr bbar / 3 and c_dev = 2 mubar (I_sym - I x I / 3) - 2/3 |s| (n x I + I x n) of the trial state.
- * State: bbar, J, alpha. The algorithm keeps the trace of bbar and not its determinant, so J is stored apart; the
- * elastic energy of shape is mu/2 (tr bbar - 3 (det bbar)^(1/3)), whose second term grows with the dissipation.
- * Volumetric laws as in neo_hookean_split.c: j2 with p = K (J - 1), j2-log with p = K ln J / J. */
+ * with mubar = mu tr bbar / 3 and c_dev = 2 mubar (I_sym - I x I / 3) - 2/3 |s| (n x I + I x n) of
+ * the trial state. State: bbar, J, alpha. The algorithm keeps the trace of bbar and not its
+ * determinant, so J is stored apart; the elastic energy of shape is mu/2 (tr bbar - 3 (det
+ * bbar)^(1/3)), whose second term grows with the dissipation. Volumetric laws as in
+ * neo_hookean_split.c: j2 with p = K (J - 1), j2-log with p = K ln J / J. */
 #include "material/volume.h"
 
 enum { YIELD = SPLIT_N, HARDENING };
@@ -23,7 +25,8 @@ LANES_INLINE void norm_of(const Lanes s[6], Lanes *norm, Lanes *inverse)
   for (int l = 0; l < LANES; ++l) (*inverse)[l] = (*norm)[l] > 0.0 ? 1.0 / (*norm)[l] : 0.0;
 }
 
-/* Plastic multiplier, and x = 1 / (1 + H / 3 mubar) where there is flow (else 0). Rounding does not flow. */
+/* Plastic multiplier, and x = 1 / (1 + H / 3 mubar) where there is flow (else 0). Rounding does not
+ * flow. */
 LANES_INLINE void flow_of(const PetscReal *parameters, const Lanes *norm, const Lanes *mubar, const Lanes *alpha,
                           Lanes *gamma, Lanes *x)
 {

@@ -1,8 +1,8 @@
 /* Eight points side by side: a law written once for `Lanes` runs on vector registers of any width.
  *
- * A batch is always worked off in whole lanes (the last point fills those left over), so that a point's result does not
- * depend on the batch it came in, to the last bit. Arrays of points stand in memory point by point; here each component
- * is one Lanes. */
+ * A batch is always worked off in whole lanes (the last point fills those left over), so that a
+ * point's result does not depend on the batch it came in, to the last bit. Arrays of points stand
+ * in memory point by point; here each component is one Lanes. */
 #pragma once
 #include "base/math/lanes.h"
 #include "base/math/tensor.h"
@@ -26,8 +26,9 @@ LANES_INLINE void lanes_points(int components, int first, const Lanes *from, Lan
   lanes_transpose(point);
 }
 
-/* Eight points, in whole registers: one by one, 36 components of a tangent took a quarter of the law. Where a point has fewer components than
- * a register, what is written too far is the next point's, which follows. */
+/* Eight points, in whole registers: one by one, 36 components of a tangent took a quarter of the
+ * law. Where a point has fewer components than a register, what is written too far is the next
+ * point's, which follows. */
 LANES_INLINE void lanes_store_all(int components, const Lanes *from, PetscReal *to)
 {
   Lanes point[LANES];

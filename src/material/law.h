@@ -14,10 +14,11 @@
 typedef enum { LAW_OK = 0, LAW_INVERTED, LAW_NOT_CONVERGED, LAW_NOT_FINITE } LawStatus;
 
 typedef struct {
-  const char *name, *unit, *help; /* key in the case file; unit "" if none, "deg" is converted to rad */
-  PetscReal min, max;             /* closed range */
-  PetscBool min_open, max_open;   /* the bound itself is excluded */
-  PetscReal fallback;             /* default; NAN: must be given */
+  /* key in the case file; unit "" if none, "deg" is converted to rad */
+  const char *name, *unit, *help;
+  PetscReal min, max;           /* closed range */
+  PetscBool min_open, max_open; /* the bound itself is excluded */
+  PetscReal fallback;           /* default; NAN: must be given */
 } LawParameter;
 
 typedef struct {
@@ -43,30 +44,34 @@ typedef union {
   PetscReal constant[ELASTIC_CONSTANTS];
 } Elasticity;
 
-/* Update n points. dF: n x 9, increment of the deformation gradient x_(n+1)/x_n; old, state: n x n_state;
- * tau: n x 6 Kirchhoff stress, Pa; c: n x 36 with L_v tau = c : d, or NULL if not wanted. Never touches old
- * (which may not overlap state). Returns the worst status of the batch. */
+/* Update n points. dF: n x 9, increment of the deformation gradient x_(n+1)/x_n; old, state: n x
+ * n_state; tau: n x 6 Kirchhoff stress, Pa; c: n x 36 with L_v tau = c : d, or NULL if not wanted.
+ * Never touches old (which may not overlap state). Returns the worst status of the batch. */
 typedef LawStatus (*LawUpdate)(const PetscReal *parameters, PetscInt n, const PetscReal *dF, const PetscReal *old,
                                PetscReal *state, PetscReal *tau, PetscReal *c);
 
 typedef struct Law {
   const char *name, *help;
-  const LawParameter *parameters; /* ended by name = NULL; elastic constants and density stand apart */
-  const LawField *fields;         /* stored state, ended by name = NULL */
-  PetscInt n_state;               /* sum of the fields' components */
-  PetscBool symmetric;            /* is the tangent symmetric? */
-  PetscBool yields;               /* can it lose its stiffness? */
+  /* ended by name = NULL; elastic constants and density stand apart */
+  const LawParameter *parameters;
+  const LawField *fields; /* stored state, ended by name = NULL */
+  PetscInt n_state;       /* sum of the fields' components */
+  PetscBool symmetric;    /* is the tangent symmetric? */
+  PetscBool yields;       /* can it lose its stiffness? */
   LawUpdate update;
-  /* The same where dF leaves z alone, or NULL: of c only the components 11, 22, 12 of rows and columns mean something. */
+  /* The same where dF leaves z alone, or NULL: of c only the components 11, 22, 12 of rows and
+   * columns mean something. */
   LawUpdate update_plane;
   /* Stored elastic energy per undeformed volume, J/m3. */
   PetscReal (*energy)(const PetscReal *parameters, const PetscReal *state);
-  /* State that carries the Cauchy stress sigma (6) with no shear history; PETSC_FALSE if there is none. */
+  /* State that carries the Cauchy stress sigma (6) with no shear history; PETSC_FALSE if there is
+   * none. */
   PetscBool (*initial_stress)(const PetscReal *parameters, const PetscReal sigma[6], PetscReal *state);
   /* Turn the user's constants into the packed parameters; complain through diag at `path`. */
   void (*prepare)(const Elasticity *elastic, const PetscReal *given, PetscReal *packed);
-  /* What the mixed formulation needs; NULL: the law has no mixed form. Elastic volume ratio of n states; volumetric part; and, only where
-   * that may be VOLUME_COUPLED, states whose lengths are multiplied by factor (n). */
+  /* What the mixed formulation needs; NULL: the law has no mixed form. Elastic volume ratio of n
+   * states; volumetric part; and, only where that may be VOLUME_COUPLED, states whose lengths are
+   * multiplied by factor (n). */
   void (*volume)(PetscInt n, const PetscReal *state, PetscReal *J);
   VolumeLaw (*volume_law)(const PetscReal *parameters);
   void (*scale)(PetscInt n, const PetscReal *factor, PetscReal *state);
@@ -80,11 +85,13 @@ typedef struct {
   const Law *law;
   PetscReal density; /* kg/m3 */
   Elasticity elastic;
-  PetscReal wave_modulus; /* lambda + 2 mu, Pa: the P-wave modulus, for time scales and stabilisation */
+  /* lambda + 2 mu, Pa: the P-wave modulus, for time scales and stabilisation */
+  PetscReal wave_modulus;
   PetscReal parameters[LAW_MAX_PARAMETERS];
-  VolumeLaw volume;                         /* how the mixed formulation takes the law apart */
-  PetscReal compliance;                     /* 1 / K, 1/Pa: 0 if exactly incompressible */
-  PetscReal deviatoric[LAW_MAX_PARAMETERS]; /* the parameters with K = G, where the mean stress is taken away again */
+  VolumeLaw volume;     /* how the mixed formulation takes the law apart */
+  PetscReal compliance; /* 1 / K, 1/Pa: 0 if exactly incompressible */
+  /* the parameters with K = G, where the mean stress is taken away again */
+  PetscReal deviatoric[LAW_MAX_PARAMETERS];
 } Material;
 
 /* All laws, ended by NULL. */

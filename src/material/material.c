@@ -155,7 +155,8 @@ static void check_density(const Resolver *r)
              r->spec->density);
 }
 
-/* What the mixed formulation needs, and whether this law can give it. An incompressible material has no other parameters. */
+/* What the mixed formulation needs, and whether this law can give it. An incompressible material
+ * has no other parameters. */
 static void prepare_mixed(const Resolver *r, const PetscReal *given, Material *m)
 {
   Elasticity middle = m->elastic;
@@ -179,7 +180,8 @@ static void prepare_mixed(const Resolver *r, const PetscReal *given, Material *m
             "mohr-coulomb without friction and cut-off");
 }
 
-/* The P-wave modulus; of a mixed formulation no larger than with poisson 0.3, since what it scales is shear. */
+/* The P-wave modulus; of a mixed formulation no larger than with poisson 0.3, since what it scales
+ * is shear. */
 static PetscReal wave_modulus(const Elasticity *elastic, PetscBool mixed)
 {
   const PetscReal limit = 13.0 / 6.0 * elastic->shear;

@@ -4,8 +4,9 @@
  *   tau = lambda ln J I + mu (b - I)                          (thesis 3.25)
  *   c   = lambda I x I + 2 (mu - lambda ln J) I_sym           (thesis 3.35)
  *
- * State: the elastic left Cauchy-Green tensor b; J comes from its determinant. Use this file as the starting
- * point for a law of your own: the kernel for eight points at once is `update_lanes`, the rest is what every law has. */
+ * State: the elastic left Cauchy-Green tensor b; J comes from its determinant. Use this file as the
+ * starting point for a law of your own: the kernel for eight points at once is `update_lanes`, the
+ * rest is what every law has. */
 #include "material/lanes.h"
 #include "material/shape.h"
 
@@ -69,7 +70,8 @@ static void b_of_volume(const PetscReal *parameters, const PetscReal sigma[6], P
   for (int k = 0; k < 3; ++k) b[k] += 1.0 - lambda * log_J / mu;
 }
 
-/* Residual ln det b - 2 ln J and its slope in ln J; PETSC_FALSE where b is not positive definite. */
+/* Residual ln det b - 2 ln J and its slope in ln J; PETSC_FALSE where b is not positive
+ * definite. */
 static PetscBool volume_residual(const PetscReal *parameters, const PetscReal sigma[6], PetscReal log_J,
                                  PetscReal *residual, PetscReal *slope)
 {
@@ -84,11 +86,12 @@ static PetscBool volume_residual(const PetscReal *parameters, const PetscReal si
   *residual = log(det) - 2.0 * log_J;
   *slope = -2.0;
   for (int k = 0; k < 9; ++k) *slope += inverse[k] * slope_b[k];
-  return isfinite(*residual) && *slope < 0.0; /* a rising residual: past the limit load in tension */
+  /* a rising residual: past the limit load in tension */
+  return isfinite(*residual) && *slope < 0.0;
 }
 
-/* The volume whose b carries the stress: Newton in ln J from the stress-free state (a stress so large that
- * b is indefinite there: from a smaller volume), steps halved back into b > 0. */
+/* The volume whose b carries the stress: Newton in ln J from the stress-free state (a stress so
+ * large that b is indefinite there: from a smaller volume), steps halved back into b > 0. */
 static PetscBool initial_stress(const PetscReal *parameters, const PetscReal sigma[6], PetscReal *b)
 {
   PetscReal log_J = 0.0, residual, slope;

@@ -4,8 +4,9 @@
  *   tau = q I + s,  q = J p = K J U',  s = mu dev bbar
  *   c   = dq I x I - 2 q I_sym + m (I_sym - I x I / 3) - 2/3 (s x I + I x s)
  *
- * with dq = J dq/dJ = J (p + J dp/dJ) and m = 2/3 mu tr bbar. (The thesis' 3.51 holds the pressure fixed, as a mixed
- * formulation does; the term J^2 dp/dJ makes it the tangent of displacements.) Two laws, by their volumetric part:
+ * with dq = J dq/dJ = J (p + J dp/dJ) and m = 2/3 mu tr bbar. (The thesis' 3.51 holds the pressure
+ * fixed, as a mixed formulation does; the term J^2 dp/dJ makes it the tangent of displacements.)
+ * Two laws, by their volumetric part:
  *
  *   neo-hookean-split       U = (J - 1)^2 / 2    p = K (J - 1)
  *   neo-hookean-split-log   U = (ln J)^2 / 2     p = K ln J / J */

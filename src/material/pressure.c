@@ -15,8 +15,8 @@ static LawStatus trial_volumes(const Law *law, PetscInt n, const PetscReal *dF, 
   return worst;
 }
 
-/* The law's own mean stress q and its slope J dq/dJ are taken away, those of p put in their place. Where nothing but J moves q,
- * 1 : c : 1 = 9 J dq/dJ - 6 q, whatever the law. */
+/* The law's own mean stress q and its slope J dq/dJ are taken away, those of p put in their place.
+ * Where nothing but J moves q, 1 : c : 1 = 9 J dq/dJ - 6 q, whatever the law. */
 static void replace_mean(VolumeLaw law, PetscReal q_p, PetscReal tau[6], PetscReal *c)
 {
   const PetscReal q = (tau[0] + tau[1] + tau[2]) / 3.0, g = q - q_p;
@@ -49,8 +49,9 @@ static LawStatus update_apart(const Material *m, PetscInt n, const PetscReal *dF
   return LAW_OK;
 }
 
-/* With dF~ = f dF, f = (exp(p / K) / J^e)^(1/3), the law feels d - tr d I / 3 and the spin, and d ln f = dp / 3K at constant dF:
- * c = c~ - (c~ : I / 3 + 2/3 tau) x I,  dtau/dp = (c~ : I + 2 tau) / 3K. */
+/* With dF~ = f dF, f = (exp(p / K) / J^e)^(1/3), the law feels d - tr d I / 3 and the spin, and d
+ * ln f = dp / 3K at constant dF: c = c~ - (c~ : I / 3 + 2/3 tau) x I,  dtau/dp = (c~ : I + 2 tau) /
+ * 3K. */
 static void couple(PetscReal compliance, const PetscReal tau[6], PetscReal *c, PetscReal coupling[6])
 {
   for (int i = 0; i < 6; ++i) {

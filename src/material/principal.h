@@ -1,15 +1,16 @@
-/* Isotropic laws in principal axes: from stretches, stresses and their moduli to tensors, exactly also where principal
- * stretches are equal or nearly so.
+/* Isotropic laws in principal axes: from stretches, stresses and their moduli to tensors, exactly
+ * also where principal stretches are equal or nearly so.
  *
- * With n_A the principal directions of the trial b, D_AB = d tau_A / d eps_B (logarithmic stretches) and
- * L_v tau = c : d, the components of c in these axes are
+ * With n_A the principal directions of the trial b, D_AB = d tau_A / d eps_B (logarithmic
+ * stretches) and L_v tau = c : d, the components of c in these axes are
  *
  *   c_AABB = D_AB - 2 tau_A delta_AB
  *   c_ABAB = (tau_A b_B - tau_B b_A) / (b_A - b_B) = (r x coth x - tau_A - tau_B) / 2,
  *            r = (tau_A - tau_B) / x,  x = eps_A - eps_B,
  *
- * all others zero. The second form has no cancellation once the law supplies the divided difference r, which stays
- * within [0, 2 mu]. It takes the place of the thesis' 3.147, whose terms grow like 1 / x and cancel. */
+ * all others zero. The second form has no cancellation once the law supplies the divided difference
+ * r, which stays within [0, 2 mu]. It takes the place of the thesis' 3.147, whose terms grow like 1
+ * / x and cancel. */
 #pragma once
 #include "base/math/eigen.h"
 #include "base/math/tensor.h"

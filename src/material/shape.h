@@ -1,11 +1,13 @@
-/* Shape and volume apart: what the laws with p = K (J - 1) or p = K ln J / J share, off the hot path. */
+/* Shape and volume apart: what the laws with p = K (J - 1) or p = K ln J / J share, off the hot
+ * path. */
 #pragma once
 #include "base/math/tensor.h"
 #include "material/law.h"
 #include <math.h>
 
-/* bbar = s / mu + x I with s = J dev sigma, where x > 0 makes det bbar = 1. That determinant, x^3 - j2 x + j3, is
- * convex above its largest root and positive at the start: Newton comes down to it without overshoot. */
+/* bbar = s / mu + x I with s = J dev sigma, where x > 0 makes det bbar = 1. That determinant, x^3 -
+ * j2 x + j3, is convex above its largest root and positive at the start: Newton comes down to it
+ * without overshoot. */
 static inline PetscBool shape_from_stress(PetscReal mu, PetscReal J, const PetscReal sigma[6], PetscReal *bbar)
 {
   const PetscReal mean = (sigma[0] + sigma[1] + sigma[2]) / 3.0;
@@ -25,12 +27,13 @@ static inline PetscBool shape_from_stress(PetscReal mu, PetscReal J, const Petsc
   return isfinite(x) && fabs(sym_det(bbar) - 1.0) < 1e-10 && bbar[0] > 0.0 && bbar[0] * bbar[1] > bbar[3] * bbar[3];
 }
 
-/* ln J with J p = K ln J: y exp(-y) = p / K has its stable solution below y = 1, where the pressure has its peak in
- * tension. NAN beyond that peak. */
+/* ln J with J p = K ln J: y exp(-y) = p / K has its stable solution below y = 1, where the pressure
+ * has its peak in tension. NAN beyond that peak. */
 static inline PetscReal volume_log_from_pressure(PetscReal K, PetscReal p)
 {
   const PetscReal target = p / K;
-  PetscReal y = target > 0.0 ? 0.0 : -log1p(-target); /* left of the root: the slope only falls from here on */
+  /* left of the root: the slope only falls from here on */
+  PetscReal y = target > 0.0 ? 0.0 : -log1p(-target);
   if (!(target < exp(-1.0))) return NAN;
   for (int iteration = 0; iteration < 200; ++iteration) {
     const PetscReal step = (target * exp(y) - y) / (1.0 - y);

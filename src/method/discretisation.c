@@ -94,7 +94,8 @@ PetscErrorCode DiscretisationPressure(Discretisation *s)
   PetscFunctionReturn(0);
 }
 
-/* A projection from points would flatten a rotation at the boundary. A node of several bodies takes the mean by mass. */
+/* A projection from points would flatten a rotation at the boundary. A node of several bodies takes
+ * the mean by mass. */
 PetscErrorCode DiscretisationBodyVelocity(Discretisation *s)
 {
   const PetscInt dim = s->grid->dim, n = s->grid->n_nodes;
@@ -121,7 +122,8 @@ PetscErrorCode DiscretisationBodyVelocity(Discretisation *s)
   PetscFunctionReturn(0);
 }
 
-/* One carried point with its shape functions: position and displacement add up, velocity and acceleration are those of the field. */
+/* One carried point with its shape functions: position and displacement add up, velocity and
+ * acceleration are those of the field. */
 static void move_carried(const Discretisation *s, Points *carried, PetscInt p, PetscInt nn, const PetscInt *node,
                          const PetscReal *N)
 {

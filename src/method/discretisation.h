@@ -21,7 +21,8 @@ typedef struct Discretisation {
   PetscBool started;        /* has phase a run before? */
   PetscBool present;        /* do support and nodal fields belong to where points are now? */
   unsigned char *filled;    /* n_cells: does the cell hold points? */
-  PetscReal fade;           /* of a point's velocity beyond the nodes': what damping takes in the step */
+  /* of a point's velocity beyond the nodes': what damping takes in the step */
+  PetscReal fade;
   PetscInt group_capacity;
   PetscReal *lumping, *soft, *tie; /* per group, see WeakFormInput */
   PetscReal *pressure_tie;         /* mixed: per group, see WeakFormInput */

@@ -1,4 +1,5 @@
-/* Updated Lagrangian finite elements: the mesh moves with the material, points are the Gauss points of their cell. */
+/* Updated Lagrangian finite elements: the mesh moves with the material, points are the Gauss points
+ * of their cell. */
 #include "method/method.h"
 
 static PetscErrorCode FemStart(Discretisation *s)

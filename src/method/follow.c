@@ -1,5 +1,5 @@
-/* Tracers and carriers of loads follow the field; where they have left the grid, the nodes of its edge carry them, as
- * they would in a larger one: until they are a cell away. */
+/* Tracers and carriers of loads follow the field; where they have left the grid, the nodes of its
+ * edge carry them, as they would in a larger one: until they are a cell away. */
 #include "method/discretisation.h"
 
 static PetscBool within_reach(const Discretisation *s, const Points *followers, PetscInt p)

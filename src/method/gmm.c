@@ -1,5 +1,6 @@
-/* Galerkin meshfree method (thesis algorithm 2): nodes and points both move with the material, and nodes keep their history as in fem.
- * Cells give nodes and points at the start and mean nothing afterwards. */
+/* Galerkin meshfree method (thesis algorithm 2): nodes and points both move with the material, and
+ * nodes keep their history as in fem. Cells give nodes and points at the start and mean nothing
+ * afterwards. */
 #include "method/gmm.h"
 
 #define KEEP_OFF 0.25 /* spacings between nodes, at least */
@@ -27,7 +28,8 @@ static PetscBool is_held(const Discretisation *s, PetscInt node)
   return PETSC_FALSE;
 }
 
-/* How much of the mass is missing that even a node at the corner of a body would have; 0: none, 1: all. */
+/* How much of the mass is missing that even a node at the corner of a body would have; 0: none, 1:
+ * all. */
 static PetscReal starved(const Discretisation *s, PetscInt node, PetscReal density)
 {
   const PetscInt dim = s->grid->dim;
@@ -36,8 +38,9 @@ static PetscReal starved(const Discretisation *s, PetscInt node, PetscReal densi
   return PetscMax(0, 1 - PetscMax(0, s->nodes->mass[node]) / corner);
 }
 
-/* Where a node has hardly any mass its force still counts in full, as in cells that are not full, and the same helps: the points that reach it
- * lump part of their mass and tie their nodes by a weak stiffness. */
+/* Where a node has hardly any mass its force still counts in full, as in cells that are not full,
+ * and the same helps: the points that reach it lump part of their mass and tie their nodes by a
+ * weak stiffness. */
 static PetscErrorCode Stabilise(Discretisation *s)
 {
   const Support *w = s->support;
@@ -90,7 +93,8 @@ static PetscReal motion_of_node(const Discretisation *s, PetscInt i, PetscInt k,
   return sum > 1e-12 ? move / sum : du[i * dim + d];
 }
 
-/* Move x away from those nodes of a cloud that are too near: half of the way that is missing, all of it from a node that is held. */
+/* Move x away from those nodes of a cloud that are too near: half of the way that is missing, all
+ * of it from a node that is held. */
 static void keep_off(const Discretisation *s, PetscInt n, const PetscInt *node, PetscInt self, const PetscReal *old,
                      PetscReal *x)
 {
@@ -106,8 +110,9 @@ static void keep_off(const Discretisation *s, PetscInt n, const PetscInt *node, 
   }
 }
 
-/* Two nodes at one place share their part of the field, and nothing resists when their coefficients go against each other: the stiffness of
- * that falls with the square of their distance. So nodes keep off each other; places of nodes are free, coefficients stay. */
+/* Two nodes at one place share their part of the field, and nothing resists when their coefficients
+ * go against each other: the stiffness of that falls with the square of their distance. So nodes
+ * keep off each other; places of nodes are free, coefficients stay. */
 static PetscErrorCode KeepNodesApart(Discretisation *s)
 {
   const Grid *grid = s->grid;
@@ -126,9 +131,10 @@ static PetscErrorCode KeepNodesApart(Discretisation *s)
   PetscFunctionReturn(0);
 }
 
-/* Prescribed components move as prescribed, nodes that nothing touches stay. All others move with the field at their place, as points do, and
- * not with their own coefficient (as thesis algorithm 2 suggests): then nodes keep their order among points whatever a node with little mass
- * does, and do not cross a wall on which the field vanishes. */
+/* Prescribed components move as prescribed, nodes that nothing touches stay. All others move with
+ * the field at their place, as points do, and not with their own coefficient (as thesis algorithm 2
+ * suggests): then nodes keep their order among points whatever a node with little mass does, and do
+ * not cross a wall on which the field vanishes. */
 static PetscErrorCode MoveNodes(Discretisation *s)
 {
   const Grid *grid = s->grid;
@@ -146,7 +152,8 @@ static PetscErrorCode MoveNodes(Discretisation *s)
   }
   PetscCall(GridToGhosts(grid, dim, grid->x));
   PetscCall(KeepNodesApart(s));
-  for (PetscInt i = 0; i < grid->n_owned; ++i) /* twins stand with their nodes, and go to the same rank */
+  /* twins stand with their nodes, and go to the same rank */
+  for (PetscInt i = 0; i < grid->n_owned; ++i)
     for (PetscInt d = 0; d < dim && gmm_of(s)->twin[i] >= 0; ++d)
       grid->x[gmm_of(s)->twin[i] * dim + d] = grid->x[i * dim + d];
   PetscCall(GridToGhosts(grid, dim, grid->x));

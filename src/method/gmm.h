@@ -5,20 +5,23 @@
 typedef struct {
   PetscBool constraints;       /* prescribed motion by multipliers? else on the nodes themselves */
   Support *tracers, *carriers; /* clouds of points without mass */
-  Support
-    *nodes; /* clouds of owned nodes that are no twins, in their order; empty where no prescribed node is near and no
-                               * constraint needs them */
+  /* clouds of owned nodes that are no twins, in their order; empty where no prescribed node is
+   * near and no constraint needs them */
+  Support *nodes;
   PetscInt layouts; /* state of the cloud that the arrays of this room fit */
   PetscInt *twin;   /* n_owned: local number of the node's twin, -1 if it has none */
 } Gmm;
 
 static inline Gmm *gmm_of(const Discretisation *space) { return space->own; }
 
-/* Collective. Ghosts, clouds and constraints for where nodes and points are now; touched nodes too. */
+/* Collective. Ghosts, clouds and constraints for where nodes and points are now; touched nodes
+ * too. */
 PetscErrorCode GmmGather(Discretisation *space);
-/* Collective. Clouds are new: nodes take what their points carried, and prescribed nodes the rest as an impulse. */
+/* Collective. Clouds are new: nodes take what their points carried, and prescribed nodes the rest
+ * as an impulse. */
 PetscErrorCode GmmCarry(Discretisation *space);
-/* Collective. If clouds have grown too ragged, cut space anew and send nodes and points to their new ranks. */
+/* Collective. If clouds have grown too ragged, cut space anew and send nodes and points to their
+ * new ranks. */
 PetscErrorCode GmmBalance(Discretisation *space);
 /* Collective. Do that now. */
 PetscErrorCode GmmRedistribute(Discretisation *space);

@@ -1,10 +1,12 @@
-/* Momentum over a change of clouds. Points carry the velocity and the acceleration that the field had at their place; in new clouds the same
- * coefficients are another field. So nodes take the motion that comes nearest to that of the points, in the sense of kinetic energy:
+/* Momentum over a change of clouds. Points carry the velocity and the acceleration that the field
+ * had at their place; in new clouds the same coefficients are another field. So nodes take the
+ * motion that comes nearest to that of the points, in the sense of kinetic energy:
  *
  *   sum_p m_p |v_p - sum_I N_I v_I|^2 -> min    over all nodes whose motion is not prescribed,
  *
- * which cannot gain energy. What prescribed nodes keep from being met is their impulse; the little that conjugate gradients leave over goes to the
- * nodes by mass, so that the momentum is the points' to round-off (docs/theory.md, "Reactions"). */
+ * which cannot gain energy. What prescribed nodes keep from being met is their impulse; the little
+ * that conjugate gradients leave over goes to the nodes by mass, so that the momentum is the
+ * points' to round-off (docs/theory.md, "Reactions"). */
 #include "method/gmm.h"
 
 #define ENOUGH 0.3   /* of what was lacking may be left over */
@@ -17,9 +19,11 @@ enum { VELOCITY, ACCELERATION, MOTIONS };
 /* Nodal arrays: n_nodes x (2 dim), velocity and acceleration of a node behind each other. */
 typedef struct {
   const Discretisation *s;
-  PetscInt dim, width, size;                 /* 2 dim, n_nodes x 2 dim */
-  PetscReal *x, *lack, *direction, *product; /* motion, what it lacks of the points' momenta, conjugate gradients */
-  PetscReal *bound, *inverse; /* of the mass matrix's diagonal; its inverse, 0 where motion is prescribed */
+  PetscInt dim, width, size; /* 2 dim, n_nodes x 2 dim */
+  /* motion, what it lacks of the points' momenta, conjugate gradients */
+  PetscReal *x, *lack, *direction, *product;
+  /* of the mass matrix's diagonal; its inverse, 0 where motion is prescribed */
+  PetscReal *bound, *inverse;
 } Carry;
 
 #define UNROLLED static inline __attribute__((always_inline))
@@ -50,7 +54,8 @@ UNROLLED void gather(const PetscInt dim, const Carry *c, PetscReal share, const 
   }
 }
 
-/* What x lacks of the points' motion (share 1), or the product of the mass matrix with x, negative (0). */
+/* What x lacks of the points' motion (share 1), or the product of the mass matrix with x, negative
+ * (0). */
 static PetscErrorCode Gather(const Carry *c, PetscReal share, const PetscReal *x, PetscReal *sum)
 {
   PetscFunctionBeginUser;
@@ -60,8 +65,8 @@ static PetscErrorCode Gather(const Carry *c, PetscReal share, const PetscReal *x
   PetscFunctionReturn(0);
 }
 
-/* Of each node: the sum of its row of the mass matrix without signs, over which no eigenvalue is larger than 1, and the mass of the nodes around
- * it, times that sum. */
+/* Of each node: the sum of its row of the mass matrix without signs, over which no eigenvalue is
+ * larger than 1, and the mass of the nodes around it, times that sum. */
 static PetscErrorCode BoundOfMass(const Carry *c)
 {
   const Support *w = c->s->support;
@@ -186,7 +191,8 @@ static PetscErrorCode Project(const Carry *c)
   PetscFunctionReturn(0);
 }
 
-/* What the points still lack goes to the nodes of their clouds in proportion to weight and mass, which never divides by a small mass. */
+/* What the points still lack goes to the nodes of their clouds in proportion to weight and mass,
+ * which never divides by a small mass. */
 static PetscErrorCode Share(const Carry *c)
 {
   const Support *w = c->s->support;

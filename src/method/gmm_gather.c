@@ -1,11 +1,14 @@
 /* Phase a of gmm: which nodes each point has now, over all ranks. */
 #include "method/gmm.h"
 
-#define SHARE 0.1     /* of a constrained node in the field at its place, at least */
-#define SKIN 1.15     /* ghosts and couplings are kept for clouds so much wider, so that they serve several steps */
-#define SKIN_HELD 1.4 /* couplings of multipliers: they are few, and material comes upon them at full speed */
+#define SHARE 0.1 /* of a constrained node in the field at its place, at least */
+/* ghosts and couplings are kept for clouds so much wider, so that they serve several steps */
+#define SKIN 1.15
+/* couplings of multipliers: they are few, and material comes upon them at full speed */
+#define SKIN_HELD 1.4
 
-/* Nodes as this rank sees them while it searches: owned ones by their numbers, remote of other ranks behind. */
+/* Nodes as this rank sees them while it searches: owned ones by their numbers, remote of other
+ * ranks behind. */
 typedef struct {
   RemoteNodes remote;
   Neighbours nodes;
@@ -139,7 +142,8 @@ static PetscErrorCode Follow(Discretisation *s)
     g->twin[i] = -1;
   }
   PetscCall(PetscSortIntWithArray(grid->n_owned, id, order));
-  for (PetscInt i = 0, k = 0; i < grid->n_owned; ++i) { /* twins stand last, in the order of their nodes */
+  /* twins stand last, in the order of their nodes */
+  for (PetscInt i = 0, k = 0; i < grid->n_owned; ++i) {
     if (id[i] < grid->cloud->first_twin) continue;
     while (id[k] < id[i] - grid->cloud->first_twin) ++k;
     g->twin[order[k]] = order[i];
@@ -148,7 +152,8 @@ static PetscErrorCode Follow(Discretisation *s)
   PetscFunctionReturn(0);
 }
 
-/* The field at the places of nodes: it moves those near prescribed ones, and is held where a node has a twin. */
+/* The field at the places of nodes: it moves those near prescribed ones, and is held where a node
+ * has a twin. */
 static PetscErrorCode GatherNodes(Discretisation *s, const Search *search)
 {
   const Grid *grid = s->grid;
@@ -188,8 +193,9 @@ static PetscReal own_share(const Constraints *c, PetscInt k)
   return 0;
 }
 
-/* Constraints act where material reaches the node; elsewhere it moves as prescribed by itself. So it does where other nodes crowd it: its
- * coefficient, with a small share in the field, would have to be huge. */
+/* Constraints act where material reaches the node; elsewhere it moves as prescribed by itself. So
+ * it does where other nodes crowd it: its coefficient, with a small share in the field, would have
+ * to be huge. */
 static PetscErrorCode Release(Discretisation *s)
 {
   const PetscInt dim = s->grid->dim;
@@ -243,7 +249,8 @@ PetscErrorCode GmmGather(Discretisation *s)
   PetscFunctionReturn(0);
 }
 
-/* The constraints as a support: places of their nodes, and the nodes that hold these, the twin among them. */
+/* The constraints as a support: places of their nodes, and the nodes that hold these, the twin
+ * among them. */
 static PetscErrorCode CoupleConstraints(const Discretisation *s, const BasisInput *basis, NodeGroups *groups)
 {
   const PetscInt dim = s->grid->dim;

@@ -9,8 +9,10 @@ typedef struct Method {
   const char *basis; /* that it has unless the case names another one */
 
   /* What it can. */
-  PetscBool restores_grid; /* points carry all motion, through a grid that stays; else nodes keep theirs */
-  PetscBool clouds; /* nodes leave the cells that gave them: ModelToCloud; the functions at the end are needed then */
+  /* points carry all motion, through a grid that stays; else nodes keep theirs */
+  PetscBool restores_grid;
+  /* nodes leave the cells that gave them: ModelToCloud; the functions at the end are needed then */
+  PetscBool clouds;
   PetscBool takes_pressure; /* has it the mixed formulation? */
 
   /* Phase a, collective: sorted points, support, touched, mass, v, a. Called once before every

@@ -3,8 +3,8 @@
 
 #define UNROLLED static inline __attribute__((always_inline))
 
-/* A loop over the points of each kind of cells, with sizes known to the compiler where that pays; nodes 0: each group
- * has its own. */
+/* A loop over the points of each kind of cells, with sizes known to the compiler where that pays;
+ * nodes 0: each group has its own. */
 #define WITH_SIZES(loop, s)                                                  \
   do {                                                                       \
     const Support *sized = (s)->support;                                     \
@@ -44,8 +44,8 @@ UNROLLED void gather_motion(const PetscInt dim, const PetscInt fixed_nn, const S
   }
 }
 
-/* q_I = sum N m v, f_I = sum N m a (eqs. 2.6-2.9). A node so far from all points that its mass vanishes starts at rest: its
- * velocity counts for nothing. */
+/* q_I = sum N m v, f_I = sum N m a (eqs. 2.6-2.9). A node so far from all points that its mass
+ * vanishes starts at rest: its velocity counts for nothing. */
 static PetscErrorCode Project(Discretisation *s)
 {
   NodalFields *n = s->nodes;
@@ -74,8 +74,9 @@ static PetscErrorCode Project(Discretisation *s)
   PetscFunctionReturn(0);
 }
 
-/* The least mass of a corner of the cell, beside what it would get if points were spread evenly. Two regular points a direction give each corner
- * a quarter of that in the plane and an eighth in space, wherever they stand: that counts as 1. */
+/* The least mass of a corner of the cell, beside what it would get if points were spread evenly.
+ * Two regular points a direction give each corner a quarter of that in the plane and an eighth in
+ * space, wherever they stand: that counts as 1. */
 static PetscReal emptiest_corner(const Support *w, PetscInt g, const PetscReal *point_mass, PetscReal mass)
 {
   const PetscInt nn = support_nodes(w, g);
@@ -102,9 +103,11 @@ static PetscErrorCode ReserveStabilisation(Discretisation *s)
   PetscFunctionReturn(0);
 }
 
-/* A cell that its points fill only partly leaves motions of its nodes without stiffness and mass, and so does a quadrilateral or hexahedron whose points
- * stand on a line or at one side, however many they are. In the measure in which it is not full, part of its mass is lumped and its nodes are tied by a weak
- * stiffness and a little inertia (docs/theory.md, "Cells that are not full"). Where each point of a cell is a group of its own, they share that. */
+/* A cell that its points fill only partly leaves motions of its nodes without stiffness and mass,
+ * and so does a quadrilateral or hexahedron whose points stand on a line or at one side, however
+ * many they are. In the measure in which it is not full, part of its mass is lumped and its nodes
+ * are tied by a weak stiffness and a little inertia (docs/theory.md, "Cells that are not full").
+ * Where each point of a cell is a group of its own, they share that. */
 static PetscErrorCode Stabilise(Discretisation *s)
 {
   const Support *w = s->support;
@@ -154,9 +157,10 @@ static PetscErrorCode MpmInitialise(Discretisation *s)
   PetscFunctionReturn(0);
 }
 
-/* Points take the change of the nodes' velocity, measured from what the points had given them: where the boundary stops a node, it stops
- * its points too (eq. 2.16 as printed would let them keep their velocity for ever; docs/theory.md). Rayleigh damping acts on all motion:
- * on what nodes carry through the balance, on the rest of a point's velocity, which no node sees, here. */
+/* Points take the change of the nodes' velocity, measured from what the points had given them:
+ * where the boundary stops a node, it stops its points too (eq. 2.16 as printed would let them keep
+ * their velocity for ever; docs/theory.md). Rayleigh damping acts on all motion: on what nodes
+ * carry through the balance, on the rest of a point's velocity, which no node sees, here. */
 UNROLLED void move_points(const PetscInt dim, const PetscInt fixed_nn, const SupportRun *run, Discretisation *s)
 {
   const Support *w = s->support;

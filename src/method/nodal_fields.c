@@ -161,7 +161,8 @@ PetscErrorCode NodalFieldsFromTables(NodalFields *nodes, PetscBool move, const T
   for (int k = 0; k < 2 && !reason[0]; ++k) {
     const PetscInt n = list_fields(nodes, order[k], list);
     const Table *table = tables_find(tables, table_names[order[k]]);
-    if (!table && order[k] == KEPT_INCREMENTS) continue; /* of older programs: the next step starts from inertia */
+    /* of older programs: the next step starts from inertia */
+    if (!table && order[k] == KEPT_INCREMENTS) continue;
     PetscCall(NodesFromTable(nodes->grid, order[k] == KEPT_MOTION, n, list, table, reason));
   }
   PetscFunctionReturn(0);

@@ -16,9 +16,10 @@ typedef struct NodalFields {
   PetscInt layouts;       /* state of a cloud that the flags fit */
   unsigned char *touched; /* n_nodes: does material reach the node? on every rank that knows it */
   unsigned char *idle;    /* n_nodes: no material touches the node in the step */
-  unsigned char *dof;     /* n_nodes x dim: DofState where it is not what boundary and touched say */
-  unsigned char *fixed;   /* n_nodes x dim: has no unknown in the step */
-  PetscReal *mass;        /* n_nodes, kg */
+  /* n_nodes x dim: DofState where it is not what boundary and touched say */
+  unsigned char *dof;
+  unsigned char *fixed; /* n_nodes x dim: has no unknown in the step */
+  PetscReal *mass;      /* n_nodes, kg */
   /* n_nodes x dim, as all up to the pressures */
   PetscReal *v, *a;             /* at t_n: what the solve starts from, m/s, m/s2 */
   PetscReal *v_points;          /* v as the points gave it, before prescribed motion replaced it */
@@ -31,10 +32,13 @@ typedef struct NodalFields {
   PetscReal *history;           /* see WeakFormInput */
   PetscReal *force;             /* residual with the rows of prescribed dofs, on owners, N */
   PetscReal *external;          /* dead forces, on owners, N */
-  PetscReal *reaction; /* force of the boundary on the body, in dynamics its mean over the last step, on owners, N */
-  PetscReal *held;     /* the same at the end of the step, without the impulse that stopped points, N */
-  PetscReal *rate;     /* its share in the rate of momentum there (`held` without Bossak's alpha), N */
-  PetscReal *echo;     /* what Bossak's alpha held back of the last acceleration, m/s2 */
+  /* force of the boundary on the body, in dynamics its mean over the last step, on owners, N */
+  PetscReal *reaction;
+  /* the same at the end of the step, without the impulse that stopped points, N */
+  PetscReal *held;
+  /* its share in the rate of momentum there (`held` without Bossak's alpha), N */
+  PetscReal *rate;
+  PetscReal *echo; /* what Bossak's alpha held back of the last acceleration, m/s2 */
   /* n_nodes, NULL where displacements are the only unknowns */
   PetscReal *pressure;        /* at t_n, tension positive, Pa */
   PetscReal *scaled_pressure; /* the unknowns, m, see WeakFormInput */

@@ -1,4 +1,5 @@
-/* Which cells' nodes carry unknowns: those that hold material, and rings around them that let the pattern live for a while. */
+/* Which cells' nodes carry unknowns: those that hold material, and rings around them that let the
+ * pattern live for a while. */
 #include "model/model_private.h"
 
 static void flag_occupied(const Model *m, unsigned char *cell)
@@ -27,7 +28,8 @@ static PetscErrorCode AddRing(const Model *m, unsigned char *cell)
   PetscFunctionReturn(0);
 }
 
-/* The system still fits if every occupied cell is enabled, and not too many enabled cells are empty. */
+/* The system still fits if every occupied cell is enabled, and not too many enabled cells are
+ * empty. */
 static PetscErrorCode StillFits(const Model *m, const unsigned char *occupied, PetscBool *fits)
 {
   PetscInt local[3] = {0, 0, 0}, all[3];
@@ -43,8 +45,9 @@ static PetscErrorCode StillFits(const Model *m, const unsigned char *occupied, P
   PetscFunctionReturn(0);
 }
 
-/* Rings of empty cells cost less than the patterns that they save while they add a tenth of the cells at most; the first one is always
- * there, since without it a moving body would need a new pattern at every step. */
+/* Rings of empty cells cost less than the patterns that they save while they add a tenth of the
+ * cells at most; the first one is always there, since without it a moving body would need a new
+ * pattern at every step. */
 static PetscErrorCode AddRings(const Model *m, const unsigned char *occupied, unsigned char *cell)
 {
   PetscInt local[2], all[2];
@@ -81,7 +84,8 @@ PetscErrorCode ModelEnable(Model *m)
   PetscFunctionReturn(0);
 }
 
-/* Slots of all groups and nodal forces; `complete` is false if the system lacks a pair of them on any rank. */
+/* Slots of all groups and nodal forces; `complete` is false if the system lacks a pair of them on
+ * any rank. */
 static PetscErrorCode FindSlots(Model *m, PetscBool *complete)
 {
   PetscBool here;
@@ -93,7 +97,8 @@ static PetscErrorCode FindSlots(Model *m, PetscBool *complete)
   PetscFunctionReturn(0);
 }
 
-/* Clouds change from step to step: the system lasts until a pair of nodes meets that it does not couple, or nodes changed their ranks. */
+/* Clouds change from step to step: the system lasts until a pair of nodes meets that it does not
+ * couple, or nodes changed their ranks. */
 static PetscErrorCode ActivateClouds(Model *m)
 {
   PetscBool complete = PETSC_FALSE;
@@ -102,7 +107,8 @@ static PetscErrorCode ActivateClouds(Model *m)
   if (m->system->builds && m->layouts == m->grid->cloud->layouts) PetscCall(FindSlots(m, &complete));
   m->layouts = m->grid->cloud->layouts;
   if (!complete) {
-    PetscCall(PetscArrayzero(m->nodes->force, m->grid->n_nodes * m->dim)); /* of nodes that may lose their unknowns */
+    /* of nodes that may lose their unknowns */
+    PetscCall(PetscArrayzero(m->nodes->force, m->grid->n_nodes * m->dim));
     PetscCall(ModelEnable(m));
     PetscCall(FindSlots(m, &complete));
     PetscCheck(complete, m->comm, PETSC_ERR_PLIB, "the system lacks couplings that it was built for");

@@ -1,12 +1,16 @@
-/* Shares the grid among the ranks anew when the material has moved so far that some of them do most of the work.
+/* Shares the grid among the ranks anew when the material has moved so far that some of them do most
+ * of the work.
  *
- * What decides are counts of points and cells, not seconds: the same run does the same on any day, and a resumed run what the first would
- * have done. */
+ * What decides are counts of points and cells, not seconds: the same run does the same on any day,
+ * and a resumed run what the first would have done. */
 #include "model/model_private.h"
 
-#define WORTH 0.75     /* a new partition keeps at most this share of what exceeds a perfect one, or is not made */
-#define WORSENED 1.25  /* what exceeds the last partition's own imbalance by so much is a reason for another try */
-#define RETRY_AFTER 50 /* steps after which even an imbalance that could not be cured is looked at again */
+/* a new partition keeps at most this share of what exceeds a perfect one, or is not made */
+#define WORTH 0.75
+/* what exceeds the last partition's own imbalance by so much is a reason for another try */
+#define WORSENED 1.25
+/* steps after which even an imbalance that could not be cured is looked at again */
+#define RETRY_AFTER 50
 
 PetscReal cell_work(CellType type)
 {
@@ -50,7 +54,8 @@ static PetscErrorCode MeasureImbalance(const Model *m, PetscReal *imbalance)
   PetscFunctionReturn(0);
 }
 
-/* Is it time to try? Not before the first step: nodes start from accelerations of their own, which points do not carry. */
+/* Is it time to try? Not before the first step: nodes start from accelerations of their own, which
+ * points do not carry. */
 static PetscBool is_due(const Model *m)
 {
   const Balance *b = &m->balance;

@@ -1,5 +1,5 @@
-/* Tracers of measures and carriers of loads go with the material, out of the grid too. Where it leaves them behind they
- * end: the measure is empty and the force is gone, and the run says so. */
+/* Tracers of measures and carriers of loads go with the material, out of the grid too. Where it
+ * leaves them behind they end: the measure is empty and the force is gone, and the run says so. */
 #include "model/measure/measure.h"
 #include "model/model_private.h"
 
@@ -26,8 +26,8 @@ static PetscBool has_force(const Points *carriers, PetscInt p)
   return PETSC_FALSE;
 }
 
-/* What no material carries any more: measures first, then loads. The force of such a carrier is taken away. *any: over
- * all ranks. */
+/* What no material carries any more: measures first, then loads. The force of such a carrier is
+ * taken away. *any: over all ranks. */
 static PetscErrorCode FindUncarried(Model *m, Uncarried *u, PetscBool *any)
 {
   const PetscInt n = m->c->n_measures + m->c->n_loads;

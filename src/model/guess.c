@@ -1,12 +1,15 @@
-/* First guesses of a step: what inertia alone would bring, the increments of the step before, and rest.
+/* First guesses of a step: what inertia alone would bring, the increments of the step before, and
+ * rest.
  *
- * Where a flow comes to rest the second is nearer: velocities that points give to the nodes of a restored grid are not those that the last
- * solution had there. Where motion only begins the first is. Whichever would have been nearer to the last solution is tried first; if Newton
- * fails from it, the other one, and then rest. */
+ * Where a flow comes to rest the second is nearer: velocities that points give to the nodes of a
+ * restored grid are not those that the last solution had there. Where motion only begins the first
+ * is. Whichever would have been nearer to the last solution is tried first; if Newton fails from
+ * it, the other one, and then rest. */
 #include "grid/cloud/cloud.h"
 #include "model/model_private.h"
 
-/* Only nodes that stay where they are have increments that mean something one step later; those of a mesh know their own velocity. */
+/* Only nodes that stay where they are have increments that mean something one step later; those of
+ * a mesh know their own velocity. */
 static PetscBool guess_follows(const Model *m) { return m->scheme->inertia && m->method->restores_grid; }
 
 PetscInt guess_order(const Model *m, FirstGuess order[GUESS_N])
@@ -53,7 +56,8 @@ PetscErrorCode GuessLearn(Model *m, PetscReal dt)
 {
   NodalFields *n = m->nodes;
   const PetscReal ratio = m->guess.step > 0 ? dt / m->guess.step : 0;
-  PetscReal local[2] = {0, 0}, sum[2]; /* squares of what was missing: from inertia, from the step before */
+  /* squares of what was missing: from inertia, from the step before */
+  PetscReal local[2] = {0, 0}, sum[2];
 
   PetscFunctionBeginUser;
   if (!guess_follows(m)) PetscFunctionReturn(0);

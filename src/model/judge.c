@@ -1,10 +1,13 @@
-/* What Newton's method found is an equilibrium; whether it is the one that follows from the last state is another question. An implicit step may
- * leap to a solution far away, where a body lies turned over or drawn out to many times its length, and all balances hold there. Such a step is
- * cut: on a shorter one the solution that is connected with the last state is the nearer one (docs/theory.md, "Steps that leap"). */
+/* What Newton's method found is an equilibrium; whether it is the one that follows from the last
+ * state is another question. An implicit step may leap to a solution far away, where a body lies
+ * turned over or drawn out to many times its length, and all balances hold there. Such a step is
+ * cut: on a shorter one the solution that is connected with the last state is the nearer one
+ * (docs/theory.md, "Steps that leap"). */
 #include "base/math/tensor.h"
 #include "model/model_private.h"
 
-#define MOST_STRETCH 10  /* in one step, or to that part: a soft column under its weight may be pressed to an eighth */
+/* in one step, or to that part: a soft column under its weight may be pressed to an eighth */
+#define MOST_STRETCH 10
 #define HARDLY_MOVED 0.2 /* of a cell: nothing can be stretched that much */
 
 static PetscReal square_norm(const PetscReal a[9])
@@ -14,8 +17,8 @@ static PetscReal square_norm(const PetscReal a[9])
   return sum;
 }
 
-/* How much the step stretches or shortens a line at the point, at most: from the sum of squares of all three stretches or their inverses, of
- * which the two others are about 1. */
+/* How much the step stretches or shortens a line at the point, at most: from the sum of squares of
+ * all three stretches or their inverses, of which the two others are about 1. */
 static PetscReal stretch_of(const Model *m, PetscInt g, PetscInt p)
 {
   const Support *w = m->space->support;

@@ -1,10 +1,12 @@
-/* Is a static run about to reach the load that its bodies can just carry? They then move ever farther under the same increment of load, and
- * no step is small enough in the end. */
+/* Is a static run about to reach the load that its bodies can just carry? They then move ever
+ * farther under the same increment of load, and no step is small enough in the end. */
 #include "model/model_private.h"
 
-#define SOFTENED \
-  5 /* times as far per increment as at its stiffest: what hardens, or fails for reasons of its own, does not get there */
-#define RAN_AWAY 4 /* the same of the last try of a tiny step that had no solution: all of a body may yield at once */
+/* times as far per increment as at its stiffest: what hardens, or fails for reasons of its own,
+ * does not get there */
+#define SOFTENED 5
+/* the same of the last try of a tiny step that had no solution: all of a body may yield at once */
+#define RAN_AWAY 4
 
 static PetscBool weighs(const Case *c) { return c->gravity[0] != 0 || c->gravity[1] != 0 || c->gravity[2] != 0; }
 
@@ -74,8 +76,9 @@ static void factors_text(const Case *c, PetscReal t, char *text, size_t size)
   }
 }
 
-/* A body that softened, step by step; or, where all of it yields at once, one whose nodes ran away in the last try of a small step that had no
- * solution: but not because Newton was not let go on. */
+/* A body that softened, step by step; or, where all of it yields at once, one whose nodes ran away
+ * in the last try of a small step that had no solution: but not because Newton was not let go
+ * on. */
 static PetscBool looks_like_limit(const Model *m, const StepReport *report, PetscReal tried)
 {
   const Softening *limit = &m->limit;

@@ -83,7 +83,8 @@ static void check_supported(const Model *m, Diag *diag)
   }
 }
 
-/* The pressure of an exactly incompressible body has no memory: what alternates from step to step in it stays for ever. */
+/* The pressure of an exactly incompressible body has no memory: what alternates from step to step
+ * in it stays for ever. */
 static void check_ringing(const Model *m, const Material *material, Diag *diag)
 {
   if (!m->formulation->pressure || material->compliance > 0) return;
@@ -96,7 +97,8 @@ static void check_ringing(const Model *m, const Material *material, Diag *diag)
   diag_hint(diag, "bossak: -0.1 damps that and little else");
 }
 
-/* Beyond the speed of light a step of a usual size crosses so many cells in waves that inertia drowns in the round-off of stiffness. */
+/* Beyond the speed of light a step of a usual size crosses so many cells in waves that inertia
+ * drowns in the round-off of stiffness. */
 static void check_waves(const Material *material, Diag *diag)
 {
   const PetscReal light = 3e8, speed = PetscSqrtReal(material->wave_modulus / material->density);
@@ -147,7 +149,8 @@ static PetscErrorCode CreatePoints(Model *m, Outline *outline, Diag *diag)
     law_initial_state(m->materials[i].law, initial + i * LAW_MAX_STATE);
   }
   PetscCall(PointsCreate(m->dim, m->n_state, 0, &m->points));
-  if (m->formulation->pressure) m->points->components[POINT_PRESSURE] = 1; /* nothing is stored yet */
+  /* nothing is stored yet */
+  if (m->formulation->pressure) m->points->components[POINT_PRESSURE] = 1;
   PetscCall(PointsSeedOutlined(m->points, m->grid, c, seed, m->method->restores_grid, outline, diag));
   PetscCall(PetscFree2(seed, initial));
   PetscFunctionReturn(0);
@@ -230,7 +233,8 @@ static PetscErrorCode CreateBodies(Model *m, Diag *diag)
   PetscFunctionReturn(0);
 }
 
-/* Everything after the parts that stand alone; each may find mistakes that make the next meaningless. */
+/* Everything after the parts that stand alone; each may find mistakes that make the next
+ * meaningless. */
 static PetscErrorCode Build(Model *m, Diag *diag)
 {
   PetscInt errors;

@@ -9,12 +9,15 @@
 #include "solve/newton/step_control.h"
 
 typedef struct {
-  PetscReal kinetic, elastic;   /* now, J */
-  PetscReal dissipated;         /* stress work that is not stored, since the start, J */
-  PetscReal external, boundary; /* work of gravity and loads, and of prescribed motion, since the start, J */
-  PetscReal damped, transfer;   /* lost by damping, and between points and grid, since the start, J (docs/theory.md) */
-  PetscReal
-    outside;       /* gone with points that left the grid, and in holding others at its boundary, since the start, J */
+  PetscReal kinetic, elastic; /* now, J */
+  PetscReal dissipated;       /* stress work that is not stored, since the start, J */
+  /* work of gravity and loads, and of prescribed motion, since the start, J */
+  PetscReal external, boundary;
+  /* lost by damping, and between points and grid, since the start, J (docs/theory.md) */
+  PetscReal damped, transfer;
+  /* gone with points that left the grid, and in holding others at its boundary, since the start,
+   * J */
+  PetscReal outside;
   PetscReal start; /* kinetic and elastic at the start, J */
 } Energies;
 
@@ -34,8 +37,8 @@ typedef struct {
   PetscReal where[3]; /* the middle of those that went last, m */
 } LoadMemory;
 
-/* What has become of points that left the grid, since the start. All real numbers, counts too: it goes into checkpoints
- * as one row, as do the above from `ended` on. */
+/* What has become of points that left the grid, since the start. All real numbers, counts too: it
+ * goes into checkpoints as one row, as do the above from `ended` on. */
 typedef struct {
   PetscReal removed, mass;             /* taken out: points, kg */
   PetscReal held;                      /* times that a point was put back on the boundary */
@@ -48,7 +51,8 @@ typedef struct {
 
 /* How the work is shared among the ranks: by counts of points and of cells that hold some. */
 typedef struct {
-  PetscReal imbalance;   /* largest share over the mean, at the start of the last step; 0: nobody looked */
+  /* largest share over the mean, at the start of the last step; 0: nobody looked */
+  PetscReal imbalance;
   PetscReal largest;     /* that it was, since the start */
   PetscReal reached;     /* by the last try to share anew; 0: there was none */
   PetscInt tried;        /* step of that try */
@@ -58,8 +62,9 @@ typedef struct {
 /* What the first guess of a step knows of the step before. */
 typedef struct {
   PetscReal step; /* its length, s; 0: there was none */
-  PetscBool
-    previous; /* were the increments of the step before it nearer to its solution than what inertia alone would have brought? */
+  /* were the increments of the step before it nearer to its solution than what inertia alone
+   * would have brought? */
+  PetscBool previous;
 } Guess;
 
 /* Newton's tries that failed before another one led to the solution, or the step was halved. */
@@ -68,7 +73,8 @@ typedef struct {
   PetscInt lost;  /* iterations of tries that failed */
 } Tries;
 
-/* How far a static step moves the body per time, m/s: of the stiffest step, of the last one and of the one before it; 0: there was none. */
+/* How far a static step moves the body per time, m/s: of the stiffest step, of the last one and of
+ * the one before it; 0: there was none. */
 typedef struct {
   PetscReal least, last, before;
 } Softening;
@@ -106,15 +112,18 @@ typedef struct Model {
   PetscBool *option_set;   /* which of the case's PETSc options the model put into the database */
   PetscBool symmetric;     /* are all tangents symmetric? */
   PetscReal courant_speed; /* largest sqrt(M / density), m/s */
-  PetscReal external_work, boundary_work, damped_energy, transfer_energy, start_energy; /* see Energies */
-  PetscReal most_energy;  /* that had come in, by the start, loads, gravity and prescribed motion, at any time, J */
+  /* see Energies */
+  PetscReal external_work, boundary_work, damped_energy, transfer_energy, start_energy;
+  /* that had come in, by the start, loads, gravity and prescribed motion, at any time, J */
+  PetscReal most_energy;
   PetscReal least_energy; /* that is more than round-off, J */
   Outside outside;
   MeasureMemory *memory;   /* one per measure */
   LoadMemory *load_memory; /* one per load */
   Balance balance;
-  PetscInt cuts, total_iterations; /* steps halved, Newton iterations (those of all tries), since the start */
-  Tries tries;                     /* since the start */
+  /* steps halved, Newton iterations (those of all tries), since the start */
+  PetscInt cuts, total_iterations;
+  Tries tries; /* since the start */
   Softening limit;
   PetscReal seconds[PHASE_N]; /* see model_times */
 } Model;
@@ -127,26 +136,31 @@ typedef struct {
   PetscReal dt;  /* of the accepted step */
   PetscInt cuts; /* how often the step was halved */
   Tries tries;
-  NewtonReport newton;     /* of the last try */
-  char reason[768];        /* why the run gives up, in words */
-  char leap[160];          /* why an equilibrium was not accepted, in words: newton.reason then points here */
-  PetscReal imbalance;     /* that made the step share the grid among the ranks anew; 0: it did not */
+  NewtonReport newton; /* of the last try */
+  char reason[768];    /* why the run gives up, in words */
+  /* why an equilibrium was not accepted, in words: newton.reason then points here */
+  char leap[160];
+  /* that made the step share the grid among the ranks anew; 0: it did not */
+  PetscReal imbalance;
   PetscInt moved;          /* points that changed their rank for that */
   PetscInt removed, held;  /* points that left the grid: taken out, put back on its boundary */
   LostPoint first_outside; /* the first of these: id and place only */
 } StepReport;
 
-/* Collective. Build from a case (which must outlive the model); the user's mistakes go to diag and *model stays NULL. */
+/* Collective. Build from a case (which must outlive the model); the user's mistakes go to diag and
+ * *model stays NULL. */
 PetscErrorCode ModelCreate(MPI_Comm comm, const Case *c, Diag *diag, Model **model);
 PetscErrorCode ModelDestroy(Model **model);
 
-/* Collective. Body force besides gravity, NULL for none. Before the first step it also enters the initial acceleration. */
+/* Collective. Body force besides gravity, NULL for none. Before the first step it also enters the
+ * initial acceleration. */
 PetscErrorCode ModelSetBodyForce(Model *model, BodyForce force, void *context);
 
 /* Collective. Phase a: nodes learn from where points are now, unless they have already. A step
  * begins with it; whoever wants nodal fields or measures between steps calls it first. */
 PetscErrorCode ModelInitialise(Model *model);
-/* Collective. Make the linear system fit the cells that hold material now; ModelStep does it by itself. */
+/* Collective. Make the linear system fit the cells that hold material now; ModelStep does it by
+ * itself. */
 PetscErrorCode ModelActivate(Model *model);
 /* Collective. One step of at most `limit` s; halves it until Newton converges. */
 PetscErrorCode ModelStep(Model *model, PetscReal limit, StepReport *report);
@@ -159,7 +173,8 @@ PetscErrorCode ModelEnergies(Model *model, Energies *energies);
 /* Seconds that this rank spent in each phase since the start. */
 void model_times(const Model *model, PetscReal seconds[PHASE_N]);
 
-/* After the run: a warning for each PETSc option, of the case or of the command line, that nobody asked for. */
+/* After the run: a warning for each PETSc option, of the case or of the command line, that nobody
+ * asked for. */
 PetscErrorCode ModelUnusedOptions(const Model *model, Diag *diag);
 
 /* Number of points over all ranks. */

@@ -17,7 +17,8 @@ PetscErrorCode ModelBalance(Model *model, StepReport *report);
  * becomes its own; the next ModelInitialise is the first of the space. *moved: points of this rank
  * that left it. */
 PetscErrorCode ModelRegrid(Model *model, Grid *grid, PetscInt *moved);
-/* guess.c. From where Newton may start: as inertia alone would bring, like the step before, from rest. */
+/* guess.c. From where Newton may start: as inertia alone would bring, like the step before, from
+ * rest. */
 typedef enum { GUESS_INERTIA, GUESS_PREVIOUS, GUESS_REST, GUESS_N } FirstGuess;
 
 /* The first guesses that the next step has, the nearest first. */
@@ -30,9 +31,11 @@ PetscErrorCode GuessToTables(Model *model, Tables *tables);
 void guess_from_tables(Model *model, const Tables *tables, char reason[256]);
 /* Collective. The system for the cells that are enabled, or for a cloud as it is now. */
 PetscErrorCode ModelEnable(Model *model);
-/* Collective. Geostatic stress of bodies that ask for it, as their law's state: of the material inside the outline that is above them. */
+/* Collective. Geostatic stress of bodies that ask for it, as their law's state: of the material
+ * inside the outline that is above them. */
 PetscErrorCode InitialStress(Model *model, const Outline *outline, Diag *diag);
-/* Acceleration at t = 0 from the balance of momentum with lumped mass, so that a body in free fall falls from the first step on. */
+/* Acceleration at t = 0 from the balance of momentum with lumped mass, so that a body in free fall
+ * falls from the first step on. */
 PetscErrorCode InitialAcceleration(Model *model);
 /* forces.c. The body as nodal forces see it at time t, with increments du. */
 NodalScene nodal_scene(const Model *model, PetscReal t, const PetscReal *du);
@@ -42,13 +45,15 @@ PetscErrorCode ForcesToTables(const Model *model, Tables *tables);
 PetscErrorCode ForcesFromTables(Model *model, const Tables *tables, char reason[256]);
 /* Gravity times its amplitude at time t, m/s2. */
 void gravity_at(const Case *c, PetscReal t, PetscReal g[3]);
-/* Collective. Stress and stored energy of the points as the start of all work, and what measures remember. */
+/* Collective. Stress and stored energy of the points as the start of all work, and what measures
+ * remember. */
 PetscErrorCode EnergyStart(Model *model);
 PetscErrorCode MeasuresStart(Model *model);
 /* Collective. After every accepted step of dt, whether or not a row of the history is written. */
 PetscErrorCode MeasuresRemember(Model *model, PetscReal dt);
 
-/* followers.c. Collective. Once the model stands: nothing may follow a place that no material carries. */
+/* followers.c. Collective. Once the model stands: nothing may follow a place that no material
+ * carries. */
 PetscErrorCode FollowersStart(Model *model, Diag *diag);
 /* Collective. After every accepted step: what the material has left behind ends. */
 PetscErrorCode FollowersEnd(Model *model);
@@ -88,23 +93,29 @@ PetscErrorCode ConvectStep(Model *model, PetscReal dt, EnergyStep *energy, StepR
 /* Collective. shortened: was it the caller who made the accepted step that short? */
 PetscErrorCode ChooseNextStep(Model *model, PetscBool shortened, const StepReport *report);
 
-/* Collective. The nodes know the step's end (force, v1, a1), the points still stand at its start. */
+/* Collective. The nodes know the step's end (force, v1, a1), the points still stand at its
+ * start. */
 PetscErrorCode EnergyOfNodes(Model *model, PetscReal dt, EnergyStep *step);
 /* Collective. Points have their new state and have moved: close the step's account. */
 PetscErrorCode EnergyClose(Model *model, EnergyStep *step);
 /* Nodal pressures of the step's start as unknowns; nothing without a mixed formulation. */
 void pressure_guess(const Model *model);
-/* Collective. Leave the cells: nodes that material fills or the boundary holds become a cloud, and all that stood on the mesh moves over. */
+/* Collective. Leave the cells: nodes that material fills or the boundary holds become a cloud, and
+ * all that stood on the mesh moves over. */
 PetscErrorCode ModelToCloud(Model *model);
-/* Collective. Newton converged: unless the step is connected with the last state that is taken back. */
+/* Collective. Newton converged: unless the step is connected with the last state that is taken
+ * back. */
 PetscErrorCode JudgeStep(const Model *model, StepReport *report);
-/* Collective. In statics each body must be held in all directions, by itself or by others that it touches. */
+/* Collective. In statics each body must be held in all directions, by itself or by others that it
+ * touches. */
 PetscErrorCode CheckHeld(const Model *model, Diag *diag);
-/* Collective. After the first step's clouds are known: tell which bodies hang on an obstacle from the start. */
+/* Collective. After the first step's clouds are known: tell which bodies hang on an obstacle from
+ * the start. */
 PetscErrorCode ModelWarnOfObstacles(const Model *model, Diag *diag);
 /* limit.c. Collective. After every accepted step: how soft has the body become? */
 PetscErrorCode LimitWatch(Model *model, PetscReal dt);
-/* Collective. Add to the reason of a static run that gives up that it may be at a limit load, if it looks like one. */
+/* Collective. Add to the reason of a static run that gives up that it may be at a limit load, if it
+ * looks like one. */
 PetscErrorCode LimitDescribe(const Model *model, StepReport *report);
 /* Warnings of what a case asks for and its user hardly means: start/advice.c. */
 void model_advise(const Model *model, Diag *diag);
@@ -114,5 +125,6 @@ static inline PetscReal model_damping(const Model *m) { return m->scheme->inerti
 WeakFormInput weak_form_of(const Model *model, PetscReal inertia);
 /* Prescribed dofs, and nodes with unknowns that no material touches. */
 void mark_fixed(Model *model);
-/* Collective. History, prescribed increments and loads for a step of dt; the first guess is to be made. */
+/* Collective. History, prescribed increments and loads for a step of dt; the first guess is to be
+ * made. */
 PetscErrorCode PrepareStep(Model *model, PetscReal dt, StepProblem *problem);

@@ -68,7 +68,8 @@ void outside_judge(const Model *m, StepReport *report)
   describe_lost(m, report);
 }
 
-/* The axis along which a side of a cell looks out of the grid: that of the largest component of its normal. */
+/* The axis along which a side of a cell looks out of the grid: that of the largest component of its
+ * normal. */
 static PetscInt side_axis(const Model *m, PetscInt cell, PetscInt side, PetscReal *direction)
 {
   const Cell *type = grid_cell(m->grid, cell);
@@ -98,7 +99,8 @@ static PetscBool is_held(const Model *m, PetscInt cell, PetscInt side, PetscInt 
   return PETSC_FALSE;
 }
 
-/* Sides of filled cells at the edge of the grid that nothing holds, per body and direction (-x x -y y -z z). */
+/* Sides of filled cells at the edge of the grid that nothing holds, per body and direction (-x x -y
+ * y -z z). */
 static PetscErrorCode CountFree(const Model *m, PetscInt *count)
 {
   const GridSet *outer = &m->grid->outer;

@@ -102,7 +102,8 @@ PetscErrorCode StepStartRestore(Model *m, const StepStart *start, StepReport *re
   PetscFunctionBeginUser;
   PetscCall(PetscArraycpy(m->nodes->v, m->nodes->v_start, dofs));
   PetscCall(PetscArraycpy(m->nodes->a, m->nodes->a_start, dofs));
-  if (m->method->restores_grid) m->space->present = PETSC_FALSE; /* v_points may have changed, too */
+  /* v_points may have changed, too */
+  if (m->method->restores_grid) m->space->present = PETSC_FALSE;
   if (!report->newton.interrupted) PetscFunctionReturn(0);
   m->control = start->control;
   m->cuts = start->cuts;

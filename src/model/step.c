@@ -10,11 +10,14 @@ PetscErrorCode ModelStep(Model *m, PetscReal limit, StepReport *report)
 
   PetscFunctionBeginUser;
   PetscCall(PetscMemzero(report, sizeof *report));
-  PetscCall(ModelInitialise(m));                 /* (a) nodes learn from where points are */
-  PetscCall(PrepareUnknowns(m, &start, report)); /*     which of them have unknowns, and which are held */
-  PetscCall(SolveStep(m, &dt, report));          /* (b) their increments, in a shorter step if need be */
+  PetscCall(ModelInitialise(m)); /* (a) nodes learn from where points are */
+  /*     which of them have unknowns, and which are held */
+  PetscCall(PrepareUnknowns(m, &start, report));
+  /* (b) their increments, in a shorter step if need be */
+  PetscCall(SolveStep(m, &dt, report));
   if (report->newton.converged) {
-    PetscCall(CommitStep(m, dt, &energy));          /*     stress and history of the points, reactions */
+    /*     stress and history of the points, reactions */
+    PetscCall(CommitStep(m, dt, &energy));
     PetscCall(ConvectStep(m, dt, &energy, report)); /* (c) points move, and nodes or not */
     PetscCall(ChooseNextStep(m, shortened && !report->cuts, report));
     outside_judge(m, report);

@@ -58,8 +58,9 @@ PetscErrorCode PrepareUnknowns(Model *m, StepStart *start, StepReport *report)
   PetscFunctionReturn(0);
 }
 
-/* A prescribed node moves as prescribed from the start of the step on: where the grid is restored its velocity comes from the points
- * that hit it, which would ring for ever in Newmark's formulas. A mesh that moves with the body keeps its own history. */
+/* A prescribed node moves as prescribed from the start of the step on: where the grid is restored
+ * its velocity comes from the points that hit it, which would ring for ever in Newmark's formulas.
+ * A mesh that moves with the body keeps its own history. */
 static void set_boundary_kinematics(Model *m, PetscReal dt)
 {
   NodalFields *n = m->nodes;
@@ -72,8 +73,9 @@ static void set_boundary_kinematics(Model *m, PetscReal dt)
   }
 }
 
-/* A constraint on displacements lets the velocity of the field ring about the prescribed one, as Newmark's formulas do at any node that is stopped.
- * So the coefficients of constrained nodes start each step with the prescribed motion, like prescribed nodes themselves. */
+/* A constraint on displacements lets the velocity of the field ring about the prescribed one, as
+ * Newmark's formulas do at any node that is stopped. So the coefficients of constrained nodes start
+ * each step with the prescribed motion, like prescribed nodes themselves. */
 static PetscErrorCode HoldConstraints(Model *m, PetscReal dt)
 {
   NodalFields *n = m->nodes;
@@ -93,8 +95,8 @@ static PetscErrorCode HoldConstraints(Model *m, PetscReal dt)
   PetscFunctionReturn(0);
 }
 
-/* Norms over nodes that material touches: gravity, the inertia force of stopping within the step, and
- * that of the motion at its start. */
+/* Norms over nodes that material touches: gravity, the inertia force of stopping within the step,
+ * and that of the motion at its start. */
 static PetscErrorCode ForceScales(const Model *m, const PetscReal *g, PetscReal dt, StepProblem *p)
 {
   const NodalFields *n = m->nodes;
@@ -129,7 +131,8 @@ static PetscReal node_stiffness(const Model *m, PetscReal inertia)
   return scale;
 }
 
-/* Force at a node that the last digits of the coordinates stand for, with a margin for what laws and sums lose themselves. */
+/* Force at a node that the last digits of the coordinates stand for, with a margin for what laws
+ * and sums lose themselves. */
 static PetscReal round_off_of(const Model *m, PetscReal inertia)
 {
   PetscReal size = 0;

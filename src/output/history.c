@@ -46,7 +46,8 @@ static void mark_text(HistoryMark *mark, const char *text, size_t n)
   ++mark->lines;
 }
 
-/* Push the row to the system: a run that dies has its history. A row that did not fit is cut off again. */
+/* Push the row to the system: a run that dies has its history. A row that did not fit is cut off
+ * again. */
 static int flush(FILE *file, off_t before)
 {
   errno = 0;
@@ -88,7 +89,8 @@ PetscErrorCode HistoryOpen(RunDir *dir, PetscInt n, const char *const *names, co
   PetscFunctionReturn(status);
 }
 
-/* Copy the rows up to that of `last`; a row that was cut off is dropped too. Returns the step of the last one copied, -1 if there is none. */
+/* Copy the rows up to that of `last`; a row that was cut off is dropped too. Returns the step of
+ * the last one copied, -1 if there is none. */
 static long long copy_rows(FILE *old, FILE *out, PetscInt last, HistoryMark *mark)
 {
   char *line = NULL, *end;
@@ -117,7 +119,8 @@ static PetscBool same_header(FILE *old, const char *header)
   return same;
 }
 
-/* Are the rows that were kept those that the run wrote, and all of them? `was`: NULL if nobody knows. */
+/* Are the rows that were kept those that the run wrote, and all of them? `was`: NULL if nobody
+ * knows. */
 static PetscBool check_rows(const char *path, PetscInt step, long long copied, const HistoryMark *is,
                             const HistoryMark *was, Diag *diag)
 {

@@ -9,8 +9,8 @@ typedef struct {
   PetscReal *values; /* n_rows x n_columns */
 } History;
 
-/* PETSC_ERR_FILE_OPEN (returned plainly, with a reason and nothing to free) if the file is missing, is no history or
- * has a row that is none. A
+/* PETSC_ERR_FILE_OPEN (returned plainly, with a reason and nothing to free) if the file is missing,
+ * is no history or has a row that is none. A
  * last row that was cut off is left out. Not collective. */
 PetscErrorCode HistoryRead(const char *path, History *history, char reason[256]);
 PetscErrorCode HistoryFree(History *history);

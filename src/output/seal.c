@@ -10,7 +10,8 @@
 #define SAMPLE 4096
 #define SAMPLES 64
 
-/* Sample k starts at an equal share of what lies before the last one; a short file is read from end to end. */
+/* Sample k starts at an equal share of what lies before the last one; a short file is read from end
+ * to end. */
 static int sample(int fd, PetscInt64 bytes, PetscInt64 *crc)
 {
   unsigned char block[SAMPLE];

@@ -4,10 +4,12 @@
 
 typedef struct {
   PetscInt64 bytes; /* length of the file; -1: not known */
-  PetscInt64 crc;   /* CRC-32 of the whole file up to 256 KiB, of 64 samples of 4 KiB spread over a longer one */
+  /* CRC-32 of the whole file up to 256 KiB, of 64 samples of 4 KiB spread over a longer one */
+  PetscInt64 crc;
 } FileSeal;
 
 /* Of one process; returns 0 or an errno. */
 int file_seal(const char *path, FileSeal *seal);
-/* Empty if the file is there and has the seal, else what is wrong with it. A seal that is not known fits any file. */
+/* Empty if the file is there and has the seal, else what is wrong with it. A seal that is not known
+ * fits any file. */
 void file_check_seal(const char *path, const FileSeal *seal, char reason[128]);

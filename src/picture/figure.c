@@ -2,8 +2,9 @@
 #include <string.h>
 #include "picture/plot_gnuplot.h"
 
-/* Colours that stay apart in print and for the colour-blind, and marks of different shape: the first
- * is filled, the others are hollow and larger, so that curves that coincide can be told apart. */
+/* Colours that stay apart in print and for the colour-blind, and marks of different shape: the
+ * first is filled, the others are hollow and larger, so that curves that coincide can be told
+ * apart. */
 static const char *const colours[] = {"#0b559f", "#d1495b", "#2a9d5c", "#e08e0b", "#6a4c93", "#555555"};
 static const int marks[] = {7, 4, 8, 12, 10, 6};
 enum { N_COLOURS = 6 };
@@ -59,7 +60,8 @@ static PetscReal share(PetscBool logarithmic, PetscReal min, PetscReal max, Pets
   return logarithmic ? PetscLogReal(value / min) / PetscLogReal(max / min) : (value - min) / (max - min);
 }
 
-/* A place in shares of the picture: is it in one of the corners that the legend could take, left or right (x), bottom or top (y)? */
+/* A place in shares of the picture: is it in one of the corners that the legend could take, left or
+ * right (x), bottom or top (y)? */
 static void count_in_corner(const PetscReal at[2], PetscReal height, PetscInt count[2][2])
 {
   if (at[1] > height && at[1] < 1 - height) return;
@@ -86,7 +88,8 @@ static void count_in_corners(const Figure *figure, const PetscReal min[2], const
   }
 }
 
-/* The legend goes where the fewest curves are; where several corners are as good, to the top and to the left. */
+/* The legend goes where the fewest curves are; where several corners are as good, to the top and to
+ * the left. */
 static void write_key(FILE *out, const Figure *figure, const PetscReal min[2], const PetscReal max[2])
 {
   PetscInt count[2][2] = {{0, 0}, {0, 0}}, named = 0;
@@ -117,7 +120,8 @@ static void write_axes(FILE *out, const Figure *figure, const PetscReal min[2], 
   write_key(out, figure, min, max);
 }
 
-/* Ticks at the first curve's own places, where a logarithmic axis would name one or two numbers only. */
+/* Ticks at the first curve's own places, where a logarithmic axis would name one or two numbers
+ * only. */
 static void write_ticks(FILE *out, const FigureSeries *series)
 {
   if (series->n < 2 || series->n > 8) return;

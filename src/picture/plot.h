@@ -1,4 +1,5 @@
-/* Pictures of a run: states coloured by a field, side by side if there are several, and the histories of its measures. */
+/* Pictures of a run: states coloured by a field, side by side if there are several, and the
+ * histories of its measures. */
 #pragma once
 #include <petscsys.h>
 #include "base/diag/diag.h"
@@ -11,8 +12,9 @@ typedef struct {
   const char *component;            /* NULL: magnitude of a vector, mises of a tensor */
   PetscInt n_times;                 /* the states nearest to these; 0: the last one */
   PetscReal times[PLOT_MAX_STATES]; /* s */
-  PetscInt
-    even; /* so many of all states instead, from the first to the last; no picture where there are less than three */
+  /* so many of all states instead, from the first to the last; no picture where there are less
+   * than three */
+  PetscInt even;
   PetscBool all_times; /* every state instead */
   PetscInt columns;    /* of several states; 0: chosen */
   PetscBool grid;      /* draw the grid too */
@@ -23,7 +25,8 @@ typedef struct {
   const char *out;    /* PNG; NULL: RUN/pictures/state_... */
 } PlotOptions;
 
-/* Draw the states, all on one scale and in one set of colours. Mistakes go to diag, and picture is "" if there is none. One process. */
+/* Draw the states, all on one scale and in one set of colours. Mistakes go to diag, and picture is
+ * "" if there is none. One process. */
 PetscErrorCode PlotState(const PlotOptions *options, Diag *diag, char picture[PETSC_MAX_PATH_LEN]);
 
 /* RUN/pictures/history_NAME.png for every measure of history.csv. `said` is called with the path of

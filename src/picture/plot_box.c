@@ -1,6 +1,6 @@
-/* Axes of a picture in space. The eye looks from +a, -b and above, where a, b, c are the axes with c
- * upwards: so the edges that meet at (+a, -b, +c) stand in front of the body and are not drawn, and the
- * outline below and at the left carries the ticks. */
+/* Axes of a picture in space. The eye looks from +a, -b and above, where a, b, c are the axes with
+ * c upwards: so the edges that meet at (+a, -b, +c) stand in front of the body and are not drawn,
+ * and the outline below and at the left carries the ticks. */
 #include <math.h>
 #include "picture/plot_scene.h"
 
@@ -30,8 +30,8 @@ static PetscReal tick_step(PetscReal length)
   return power * (share < 1.5 ? 1 : share < 3.5 ? 2 : share < 7.5 ? 5 : 10);
 }
 
-/* Ticks along axis d that starts at `from`; they point away along -b (0), +a (1) or to the left of the
- * page. */
+/* Ticks along axis d that starts at `from`; they point away along -b (0), +a (1) or to the left of
+ * the page. */
 static void box_ticks(FILE *out, const PlotScene *scene, PetscInt k, const PetscReal *from, PetscReal size)
 {
   static const char *const names[] = {"x [m]", "y [m]", "z [m]"};

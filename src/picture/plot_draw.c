@@ -39,7 +39,8 @@ static void draw_corner(const PlotPage *page, PetscInt frame, int *left, int *bo
   *bottom = page->bottom + (page->rows - 1 - row) * page->step_y;
 }
 
-/* 1, 2 or 5 times a power of ten: the smallest that leaves so many pixels between ticks of a range that takes `all` pixels. */
+/* 1, 2 or 5 times a power of ten: the smallest that leaves so many pixels between ticks of a range
+ * that takes `all` pixels. */
 static double tick_step(PetscReal range, int all, int pixels)
 {
   const double least = (double)range * pixels / all, power = pow(10, floor(log10(least))), share = least / power;
@@ -93,7 +94,8 @@ static void write_edges(FILE *out, const PlotFrame *f)
   fputs("EOD\n", out);
 }
 
-/* The image is made to lie on the pixels of the field; the invisible point brings the colour bar. */
+/* The image is made to lie on the pixels of the field; the invisible point brings the colour
+ * bar. */
 static void write_plot(FILE *out, const PlotFrame *f, const PlotPage *page, const unsigned char *rgba)
 {
   const double dx = (double)(page->max[0] - page->min[0]) / page->w,

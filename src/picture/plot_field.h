@@ -11,7 +11,7 @@ typedef struct {
   char name[32]; /* "x", "magnitude"; "" for a scalar */
 } PlotScalar;
 
-/* Understand the name of a component (NULL: what suits the field): x y z, xx yy zz xy yz zx, a number,
- * magnitude, mises, mean. */
+/* Understand the name of a component (NULL: what suits the field): x y z, xx yy zz xy yz zx, a
+ * number, magnitude, mises, mean. */
 PetscBool plot_scalar_choose(const char *field, PetscInt components, const char *word, Diag *diag, PlotScalar *scalar);
 PetscReal plot_scalar_value(const PlotScalar *scalar, PetscInt components, const PetscReal *values);

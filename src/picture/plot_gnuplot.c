@@ -31,7 +31,8 @@ void gnuplot_quote(FILE *out, const char *text)
 {
   fputc('"', out);
   for (const char *c = text; *c; ++c) {
-    if (strchr("\"\\`", *c)) fprintf(out, "\\%03o", (unsigned char)*c); /* a backquote would run a command */
+    /* a backquote would run a command */
+    if (strchr("\"\\`", *c)) fprintf(out, "\\%03o", (unsigned char)*c);
     else fputc((unsigned char)*c < ' ' ? ' ' : *c, out);
   }
   fputc('"', out);

@@ -1,4 +1,5 @@
-/* Pictures made by gnuplot, which reads its script from a file without a name: nothing is left behind. */
+/* Pictures made by gnuplot, which reads its script from a file without a name: nothing is left
+ * behind. */
 #pragma once
 #include <petscsys.h>
 #include <stdio.h>
@@ -14,8 +15,8 @@ typedef struct {
 /* Starts a PNG of so many pixels that becomes the file `png`; text is taken as it is (no sub- and
  * superscripts). */
 PetscErrorCode GnuplotBegin(GnuplotScript *script, const char *png, int width, int height);
-/* Let gnuplot run the script and give the picture its name. What goes wrong is told to diag; *done says
- * whether there is a picture. Frees the script. */
+/* Let gnuplot run the script and give the picture its name. What goes wrong is told to diag; *done
+ * says whether there is a picture. Frees the script. */
 PetscErrorCode GnuplotEnd(GnuplotScript *script, const char *png, Diag *diag, PetscBool *done);
 
 /* A text in quotes, for a title or a label. */

@@ -64,11 +64,12 @@ static void draw_ball(const RasterScene *scene, Canvas *canvas, PetscInt p)
     }
 }
 
-/* Fills of gaps are kept apart from balls until they are known to stay: point p is noted as -2 - p. */
+/* Fills of gaps are kept apart from balls until they are known to stay: point p is noted as -2 -
+ * p. */
 static PetscInt fill_of(PetscInt p) { return -2 - p; }
 
-/* Claim the empty samples within `reach` of the ball for its point, the nearest point winning. The border of the image stays empty, so
- * that the body ends there. */
+/* Claim the empty samples within `reach` of the ball for its point, the nearest point winning. The
+ * border of the image stays empty, so that the body ends there. */
 static void claim_around(const RasterScene *scene, Canvas *canvas, PetscInt p, PetscReal reach)
 {
   PetscReal c[2], radius;
@@ -97,7 +98,8 @@ static PetscBool is_rim(const Canvas *canvas, int i, int j)
          (j > 0 && point[-canvas->width] < -1) || (j + 1 < canvas->height && point[canvas->width] < -1);
 }
 
-/* Mark the claims within `reach` of a sample that stayed empty: they lie outside the body, not in a gap. */
+/* Mark the claims within `reach` of a sample that stayed empty: they lie outside the body, not in a
+ * gap. */
 static void withdraw(Canvas *canvas, int i, int j, int reach, unsigned char *outside)
 {
   for (int b = PetscMax(j - reach, 0); b <= PetscMin(j + reach, canvas->height - 1); ++b)
@@ -106,7 +108,8 @@ static void withdraw(Canvas *canvas, int i, int j, int reach, unsigned char *out
         outside[(size_t)b * (size_t)canvas->width + (size_t)a] = 1;
 }
 
-/* Where flow has drawn points apart, the body between them is shown too: grown by the gap, then shrunk by it. */
+/* Where flow has drawn points apart, the body between them is shown too: grown by the gap, then
+ * shrunk by it. */
 static PetscErrorCode FillGaps(const RasterScene *scene, Canvas *canvas)
 {
   const PetscReal gap = PetscMin(scene->gap * canvas->scale, 30 * SAMPLES);

@@ -68,7 +68,8 @@ static int choose_columns(PetscInt n, PetscReal aspect)
   return best;
 }
 
-/* Equal scales: the fields take the shape of what they show, in the middle of the room that they have. */
+/* Equal scales: the fields take the shape of what they show, in the middle of the room that they
+ * have. */
 static void place_fields(PlotPage *page, const int margin[4])
 {
   const PetscReal wide = page->max[0] - page->min[0], high = page->max[1] - page->min[1];

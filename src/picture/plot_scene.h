@@ -28,7 +28,8 @@ typedef struct {
   PetscReal box_min[3], box_max[3]; /* of all points (and the grid), before the projection */
 } PlotScene;
 
-/* Where things stand on the page, in pixels from the lower left corner. All frames have fields of the same size. */
+/* Where things stand on the page, in pixels from the lower left corner. All frames have fields of
+ * the same size. */
 typedef struct {
   int width, height;
   int columns, rows;
@@ -38,7 +39,8 @@ typedef struct {
   PetscReal min[2], max[2]; /* what a field shows, m */
 } PlotPage;
 
-/* A position in space as the picture shows it: right, up, towards the eye. In the plane: as it is. */
+/* A position in space as the picture shows it: right, up, towards the eye. In the plane: as it
+ * is. */
 void plot_project(const PlotScene *scene, const PetscReal *x, PetscReal shown[3]);
 
 /* Fit the scene into a page of the size asked for (0: chosen). */
@@ -50,11 +52,13 @@ void plot_draw_box(FILE *out, const PlotScene *scene);
 /* Draw to a PNG. */
 PetscErrorCode PlotDraw(PlotScene *scene, int width, int height, const char *png, Diag *diag, PetscBool *done);
 
-/* plot_frame.c: read a state into the next frame of the scene, as it is in its file, with the field reduced to a number. Points without
- * a place are left out. A damaged file adds no frame; the reason tells. */
+/* plot_frame.c: read a state into the next frame of the scene, as it is in its file, with the field
+ * reduced to a number. Points without a place are left out. A damaged file adds no frame; the
+ * reason tells. */
 PetscErrorCode PlotFrameRead(VtkFile *file, const VtkFieldInfo *field, const PlotScalar *scalar, PlotScene *scene,
                              char reason[256]);
-/* When all are read: give each its size, see it from where the eye is, and draw the box around all. */
+/* When all are read: give each its size, see it from where the eye is, and draw the box around
+ * all. */
 PetscErrorCode PlotFramesShape(PlotScene *scene);
 /* Lines of a grid in the plane; none, with a reason, of a damaged file. */
 PetscErrorCode PlotFrameGrid(VtkFile *file, PlotScene *scene, PlotFrame *frame, char reason[256]);

@@ -28,7 +28,8 @@ static PetscReal neighbour_distance(const Neighbours *points, const PetscReal *x
 {
   PetscInt item[MAX_NEIGHBOURS + 1];
   PetscReal square[MAX_NEIGHBOURS + 1];
-  for (PetscReal radius = size; radius <= 3 * size; radius *= 3) /* the first one found is the point itself */
+  /* the first one found is the point itself */
+  for (PetscReal radius = size; radius <= 3 * size; radius *= 3)
     if (neighbours_within(points, x, radius, k + 1, item, square) > k) return PetscSqrtReal(square[k]);
   return PETSC_MAX_REAL;
 }

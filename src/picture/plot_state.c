@@ -91,8 +91,8 @@ static PetscErrorCode NoSuchField(PetscInt n, const VtkFieldInfo *fields, const 
   PetscFunctionReturn(0);
 }
 
-/* The field asked for; without one the displacement, else the first that is more than a number of the
- * point. */
+/* The field asked for; without one the displacement, else the first that is more than a number of
+ * the point. */
 static PetscErrorCode FindField(const VtkFile *file, const char *name, Diag *diag, const VtkFieldInfo **field)
 {
   const VtkFieldInfo *fields;

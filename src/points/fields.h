@@ -1,7 +1,7 @@
 /* The table of fields behind Points, for this room only.
  *
- * Whatever treats all fields alike (growing, compacting, sorting, migrating) walks over this table, so that
- * a new field is one new line and can never be forgotten by one of them. */
+ * Whatever treats all fields alike (growing, compacting, sorting, migrating) walks over this table,
+ * so that a new field is one new line and can never be forgotten by one of them. */
 #pragma once
 #include "points/points.h"
 

@@ -120,8 +120,8 @@ PetscErrorCode PointsAppend(Points *points, PetscInt *index)
   PetscFunctionReturn(0);
 }
 
-/* The size is a constant at each call below, so that the copy becomes a few moves instead of a call of
- * memcpy. */
+/* The size is a constant at each call below, so that the copy becomes a few moves instead of a call
+ * of memcpy. */
 static inline void gather_sized(char *restrict to, const char *restrict from, size_t bytes, PetscInt n,
                                 const PetscInt *restrict index)
 {

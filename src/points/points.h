@@ -1,7 +1,7 @@
 /* Material points (and tracers, and carriers of loads: points without mass): structure of arrays.
  *
- * Every field stands in one table, so that migration, sorting, output and checkpoints treat all alike.
- * A real field f has components[f] numbers a point: data = real[f] + p * components[f]. */
+ * Every field stands in one table, so that migration, sorting, output and checkpoints treat all
+ * alike. A real field f has components[f] numbers a point: data = real[f] + p * components[f]. */
 #pragma once
 #include "base/table.h"
 #include "grid/grid.h"
@@ -14,17 +14,23 @@ typedef enum {
   POINT_A,      /* acceleration, m/s2: dim */
   POINT_MASS,   /* kg (per m of thickness in plane strain): 1 */
   POINT_VOLUME, /* undeformed volume, m3: 1 */
-  POINT_F, /* deformation gradient: 9 in 3D; xx xy yx yy zz (5) otherwise. In extreme flow its entries grow without bound and its
-                   * determinant means nothing any more: take POINT_J */
+  /* deformation gradient: 9 in 3D; xx xy yx yy zz (5) otherwise. In extreme flow its entries grow
+   * without bound and its determinant means nothing any more: take POINT_J */
+  POINT_F,
   POINT_J,   /* volume over undeformed volume, the product of the steps' det dF: 1 */
   POINT_TAU, /* Kirchhoff stress of the state, Pa: 6 in 3D; xx yy zz xy (4) otherwise */
-  POINT_WORK, /* energy stored at the start and work of the stress since then, J: what is not stored now has been dissipated: 1 */
+  /* energy stored at the start and work of the stress since then, J: what is not stored now has
+   * been dissipated: 1 */
+  POINT_WORK,
   POINT_XI,    /* reference position in the cell: dim */
   POINT_STATE, /* the law's stored state: the largest n_state of the case */
-  POINT_PRESSURE, /* the mixed formulation's pressure at the point, tension positive, Pa: 1 there, otherwise 0 components */
-  POINT_FORCE,    /* dead force of a load carrier, N: dim (0 components for material points) */
-  POINT_OVERHANG, /* of followers: from their position, the nearest in the grid, to where they really are, m: dim (others:
-                   * 0 components) */
+  /* the mixed formulation's pressure at the point, tension positive, Pa: 1 there, otherwise 0
+   * components */
+  POINT_PRESSURE,
+  POINT_FORCE, /* dead force of a load carrier, N: dim (0 components for material points) */
+  /* of followers: from their position, the nearest in the grid, to where they really are, m: dim
+   * (others: 0 components) */
+  POINT_OVERHANG,
   POINT_N_REAL
 } PointReal;
 
@@ -32,27 +38,30 @@ typedef enum {
 typedef struct {
   PetscInt removed, held;    /* taken out; put back on the boundary */
   PetscReal mass, held_mass; /* theirs, kg */
-  PetscReal kinetic, work;   /* J that went: with those taken out, and in stopping those put back; POINT_WORK */
-  PetscReal momentum[3];     /* kg m/s that went in the same ways */
-  PetscInt64 first;          /* id of the first of them (if there are any) */
-  PetscReal place[3];        /* where that one was, m */
+  /* J that went: with those taken out, and in stopping those put back; POINT_WORK */
+  PetscReal kinetic, work;
+  PetscReal momentum[3]; /* kg m/s that went in the same ways */
+  PetscInt64 first;      /* id of the first of them (if there are any) */
+  PetscReal place[3];    /* where that one was, m */
 } OutsideTally;
 
 typedef struct Points {
   PetscInt dim, n, capacity;
   PetscInt components[POINT_N_REAL];
   PetscReal *real[POINT_N_REAL];
-  PetscInt64 *id;       /* unique over all ranks, for life; does not depend on the number of ranks */
-  PetscInt *cell;       /* local cell, -1 if lost */
-  PetscInt *body;       /* index into the case's bodies (tracers: the measure, carriers: the load) */
+  /* unique over all ranks, for life; does not depend on the number of ranks */
+  PetscInt64 *id;
+  PetscInt *cell; /* local cell, -1 if lost */
+  /* index into the case's bodies (tracers: the measure, carriers: the load) */
+  PetscInt *body;
   PetscInt *material;   /* index into the case's materials */
   OutsideTally outside; /* what the last PointsRelocate did on this rank */
 } Points;
 
 /* n_state: components of POINT_STATE; force: components of POINT_FORCE. */
 PetscErrorCode PointsCreate(PetscInt dim, PetscInt n_state, PetscInt n_force, Points **points);
-/* Followers: points without mass that go with the material, tracers (n_force = 0) and carriers of loads. They may leave
- * the grid with it. */
+/* Followers: points without mass that go with the material, tracers (n_force = 0) and carriers of
+ * loads. They may leave the grid with it. */
 PetscErrorCode FollowersCreate(PetscInt dim, PetscInt n_force, Points **points);
 PetscErrorCode PointsDestroy(Points **points);
 /* Make room for `capacity` points; existing ones stay. */
@@ -103,9 +112,10 @@ static inline void point_set_F(Points *points, PetscInt p, const PetscReal F[9])
   }
 }
 
-/* Seed the bodies: points at the Gauss points of each body's cells, that is, of the cells of the grid (or of the body's own
- * mesh) whose centre lies in its shape or region. Fills x, cell, xi, mass, volume, v, id, body, material and the law's initial
- * state. `density` and `initial` come per material; equal: do points of a cell share its mass equally where the body leaves that to the
+/* Seed the bodies: points at the Gauss points of each body's cells, that is, of the cells of the
+ * grid (or of the body's own mesh) whose centre lies in its shape or region. Fills x, cell, xi,
+ * mass, volume, v, id, body, material and the law's initial state. `density` and `initial` come per
+ * material; equal: do points of a cell share its mass equally where the body leaves that to the
  * method? Collective. */
 typedef struct {
   PetscReal density;
@@ -120,11 +130,13 @@ PetscErrorCode PointsSeed(Points *points, const Grid *grid, const Case *c, const
 PetscErrorCode PointsSeedOutlined(Points *points, const Grid *grid, const Case *c, const PointSeed *per_material,
                                   PetscBool equal, Outline *outline, Diag *diag);
 
-/* Collective. Send every point to the rank owner[p]; those that stay keep their order, arrivals stand behind. */
+/* Collective. Send every point to the rank owner[p]; those that stay keep their order, arrivals
+ * stand behind. */
 PetscErrorCode PointsTransfer(Points *points, const Grid *grid, const PetscMPIInt *owner);
 
-/* Collective. Points of `old`, in the order of its cells, go to the ranks that have their cells in `grid`, which is the same grid shared in another way, and get
- * sorted. *moved grows by the points that leave this rank. */
+/* Collective. Points of `old`, in the order of its cells, go to the ranks that have their cells in
+ * `grid`, which is the same grid shared in another way, and get sorted. *moved grows by the points
+ * that leave this rank. */
 PetscErrorCode PointsRepartition(Points *points, const Grid *old, const Grid *grid, PetscInt *moved);
 
 /* A point found outside the grid. */
@@ -134,12 +146,13 @@ typedef struct {
   PetscInt last_cell; /* the user's number */
 } LostPoint;
 
-/* Find every point's cell again after it moved, send those that left this rank's part to their new owner (messages only
- * among ranks whose cells may hold them), and treat those outside the grid by the policy. Collective. lost (n_lost of
- * them, over all ranks on each, at most 16 kept) describes what left the grid; PetscFree it. Points kept on the
- * boundary do not count; of followers, which go on outside, it is their nearest position that is kept there. A position
- * that is no number is lost under every policy: it is listed first, and stays in the table with cell -1.
- * points->outside says what was taken out or put back. */
+/* Find every point's cell again after it moved, send those that left this rank's part to their new
+ * owner (messages only among ranks whose cells may hold them), and treat those outside the grid by
+ * the policy. Collective. lost (n_lost of them, over all ranks on each, at most 16 kept) describes
+ * what left the grid; PetscFree it. Points kept on the boundary do not count; of followers, which
+ * go on outside, it is their nearest position that is kept there. A position that is no number is
+ * lost under every policy: it is listed first, and stays in the table with cell -1. points->outside
+ * says what was taken out or put back. */
 PetscErrorCode PointsRelocate(Points *points, const Grid *grid, OutsidePolicy policy, PetscInt *n_lost,
                               LostPoint **lost);
 
@@ -151,9 +164,11 @@ static inline void point_place(const Points *points, PetscInt p, PetscReal *x)
            (points->components[POINT_OVERHANG] ? point_real(points, POINT_OVERHANG, p)[d] : 0);
 }
 
-/* The points as a table, every field of them. Columns stand over the points' own arrays where they can. */
+/* The points as a table, every field of them. Columns stand over the points' own arrays where they
+ * can. */
 PetscErrorCode PointsToTable(const Points *points, const Grid *grid, const char *name, Tables *tables);
-/* Collective. Points in place of those that are there, from such a table, however its rows are shared: each goes to the rank that has its cell,
- * and keeps its place among those that go there. reason is left empty, or says on every rank what is wrong with the table. */
+/* Collective. Points in place of those that are there, from such a table, however its rows are
+ * shared: each goes to the rank that has its cell, and keeps its place among those that go there.
+ * reason is left empty, or says on every rank what is wrong with the table. */
 PetscErrorCode PointsFromTable(Points *points, const Grid *grid, const Table *table, PetscInt n_bodies,
                                PetscInt n_materials, char reason[256]);

@@ -1,4 +1,5 @@
-/* Points as a table, and back on any number of ranks: every field of points/fields.h, the cell by its number in the whole grid. */
+/* Points as a table, and back on any number of ranks: every field of points/fields.h, the cell by
+ * its number in the whole grid. */
 #include "base/count.h"
 #include "grid/cloud/cloud.h"
 #include "grid/directory.h"
@@ -62,7 +63,8 @@ static PetscBool is_absent(const Table *table, int field)
   return field == POINT_OVERHANG;
 }
 
-/* This rank's rows of the table behind those in points; cells are still those of the whole grid. No index is trusted. */
+/* This rank's rows of the table behind those in points; cells are still those of the whole grid. No
+ * index is trusted. */
 static PetscErrorCode TakeRows(Points *points, const Table *table, PetscInt n_cells, PetscInt n_bodies,
                                PetscInt n_materials, char reason[256])
 {

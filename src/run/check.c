@@ -52,7 +52,8 @@ static PetscErrorCode CountBodies(const Model *m, BodyCount *count)
   PetscFunctionReturn(0);
 }
 
-/* Cells whose centre lies in the body's shape and that hold no point: gaps that the grid would see as cracks. */
+/* Cells whose centre lies in the body's shape and that hold no point: gaps that the grid would see
+ * as cracks. */
 static PetscErrorCode CountGaps(const Model *m, PetscInt body, PetscInt *gaps)
 {
   const BodySpec *spec = &m->c->bodies[body];
@@ -104,7 +105,8 @@ static PetscErrorCode ReportBodies(const Model *m, Diag *diag, FILE *out)
   PetscFunctionReturn(0);
 }
 
-/* Bytes per rank, roughly: points, support, matrix, and the factor of a direct solver by nested dissection's growth. */
+/* Bytes per rank, roughly: points, support, matrix, and the factor of a direct solver by nested
+ * dissection's growth. */
 static PetscReal estimated_memory(const Model *m, PetscInt points, PetscInt unknowns, PetscInt pairs)
 {
   const PetscReal dim = (PetscReal)m->dim, nn = m->grid->cloud ? 14 : (PetscReal)m->grid->nodes_per_cell,

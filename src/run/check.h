@@ -3,5 +3,6 @@
 #include <stdio.h>
 #include "model/model.h"
 
-/* Collective. Print sizes, estimated memory, regions and bodies (rank 0, to out); doubts become warnings in diag. */
+/* Collective. Print sizes, estimated memory, regions and bodies (rank 0, to out); doubts become
+ * warnings in diag. */
 PetscErrorCode CheckModel(MPI_Comm comm, const Case *c, Diag *diag, FILE *out);

@@ -1,11 +1,13 @@
-/* What a run has lost on the way is said: in the log when it happens, in the summary, and as warnings at the end. */
+/* What a run has lost on the way is said: in the log when it happens, in the summary, and as
+ * warnings at the end. */
 #include "run/losses.h"
 #include "base/text.h"
 
-#define TRANSFER_ALLOWED 0.05 /* share of the energy that came in: about what granular flows lose on usual grids */
+/* share of the energy that came in: about what granular flows lose on usual grids */
+#define TRANSFER_ALLOWED 0.05
 
-/* Has a count that grew by `more` at least doubled, or passed a power of two? So a thousand points take ten lines, not
- * a thousand. */
+/* Has a count that grew by `more` at least doubled, or passed a power of two? So a thousand points
+ * take ten lines, not a thousand. */
 static PetscBool is_worth_a_line(PetscReal count, PetscReal more)
 {
   PetscReal power = 1;

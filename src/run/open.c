@@ -139,7 +139,8 @@ PetscErrorCode RunResume(Run *r, const RunOptions *options, Diag *diag, PetscBoo
   PetscCall(RunDirOpen(r->comm, options->out, options->quiet, options->log, diag, &r->dir));
   if (!r->dir) PetscFunctionReturn(0);
   PetscCall(ExtensionBegin(r, &extension));
-  PetscCall(OutputCreate(r->model, run_dir_path(r->dir), &r->output)); /* node positions at the start */
+  /* node positions at the start */
+  PetscCall(OutputCreate(r->model, run_dir_path(r->dir), &r->output));
   if (extension_allowed(r, &extension, diag)) PetscCall(CheckpointLoad(r, diag, &step, &fits));
   if (fits && step < 0) PetscCall(StartAgain(r, options, &extension, diag, complete));
   if (fits && step >= 0) extension_from_checkpoint(r, &extension, diag);

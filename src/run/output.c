@@ -345,7 +345,8 @@ PetscErrorCode OutputFromTables(Output *o, const Tables *tables, PetscInt count,
   PetscFunctionReturn(0);
 }
 
-/* One file of a state; returns whether something is wrong with it. Only the first few are told one by one. */
+/* One file of a state; returns whether something is wrong with it. Only the first few are told one
+ * by one. */
 static PetscBool check_file(const Output *o, const char *name, PetscInt number, const FileSeal *seal, PetscInt wrong,
                             Diag *diag)
 {

@@ -109,7 +109,8 @@ static PetscErrorCode AfterStep(Run *r, const StepReport *report, PetscInt point
   PetscFunctionReturn(0);
 }
 
-/* After the step's rows and states: a checkpoint if it is time for one, or if somebody wants the run to end. */
+/* After the step's rows and states: a checkpoint if it is time for one, or if somebody wants the
+ * run to end. */
 static PetscErrorCode Pause(Run *r, PetscBool *asked)
 {
   PetscBool due = checkpoint_by_clock(r);
@@ -164,7 +165,8 @@ static PetscErrorCode Advance(Run *r)
       break;
     }
     if (report.outcome != STEP_ACCEPTED) {
-      if (report.outcome == STEP_TOO_SMALL) PetscCall(CheckpointSave(r)); /* the model is as it was */
+      /* the model is as it was */
+      if (report.outcome == STEP_TOO_SMALL) PetscCall(CheckpointSave(r));
       PetscCall(GiveUp(r, "gave up", "the run gave up:", report.reason));
       break;
     }
@@ -176,8 +178,8 @@ static PetscErrorCode Advance(Run *r)
   PetscFunctionReturn(0);
 }
 
-/* May the run go on to a later end some day? A static one would have to take all its steps again. Whoever switches all rules of checkpoints
- * off wants none. */
+/* May the run go on to a later end some day? A static one would have to take all its steps again.
+ * Whoever switches all rules of checkpoints off wants none. */
 static PetscBool may_go_on(const Run *r)
 {
   const CheckpointSpec *spec = &r->c->checkpoint;
@@ -191,7 +193,8 @@ static PetscErrorCode Close(Run *r, PetscReal *measures)
 
   PetscFunctionBeginUser;
   if (!r->failed && (r->n_written || may_go_on(r))) PetscCall(CheckpointSave(r));
-  if (r->row_step == r->model->step) PetscCall(Measure(r)); /* a resumed run may have nothing left to do */
+  /* a resumed run may have nothing left to do */
+  if (r->row_step == r->model->step) PetscCall(Measure(r));
   PetscCall(RunWriteRow(r));
   PetscCall(RunWriteState(r));
   seconds = r->before + (MPI_Wtime() - r->start);
@@ -219,7 +222,8 @@ static PetscErrorCode RunModel(Run *r, const RunOptions *options, Diag *diag, Pe
   if (complete) {
     for (PetscInt k = 0; measures && k < r->c->n_measures; ++k) measures[k] = NAN;
     *result = RUN_DONE;
-  } else if (r->failed) { /* before the first step: nothing is left behind by a run that was not there before */
+    /* before the first step: nothing is left behind by a run that was not there before */
+  } else if (r->failed) {
     diag_error(diag, NULL, "%s", r->summary.reason);
     if (!options->resume) PetscCall(RunDirDiscard(&r->dir));
   } else {

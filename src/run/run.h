@@ -26,10 +26,11 @@ typedef struct {
 
 typedef enum { RUN_DONE = 0, RUN_GAVE_UP = 1, RUN_BAD_INPUT = 2 } RunResult;
 
-/* Collective. Mistakes found while the model is built go to diag with RUN_BAD_INPUT, and nothing is written then. A run
- * that gives up or is interrupted (by a signal of run/signals.h: a step that has not converged is given up) writes a
- * checkpoint and its state and says why. A resumed run goes on as if it had never been cut off: on the same number of
- * ranks it ends with the same bits. `measures` (n_measures numbers, or NULL) gets the final values; NaN where a run is
- * resumed that was complete and has left no checkpoint. */
+/* Collective. Mistakes found while the model is built go to diag with RUN_BAD_INPUT, and nothing is
+ * written then. A run that gives up or is interrupted (by a signal of run/signals.h: a step that
+ * has not converged is given up) writes a checkpoint and its state and says why. A resumed run goes
+ * on as if it had never been cut off: on the same number of ranks it ends with the same bits.
+ * `measures` (n_measures numbers, or NULL) gets the final values; NaN where a run is resumed that
+ * was complete and has left no checkpoint. */
 PetscErrorCode RunCase(MPI_Comm comm, const Case *c, const RunOptions *options, Diag *diag, PetscReal *measures,
                        RunResult *result);

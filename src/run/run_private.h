@@ -3,13 +3,15 @@
 #include "run/output.h"
 #include "run/run.h"
 
-/* When something happens again: every so many seconds (> 0), every so many steps (< 0), or at the end only (0). */
+/* When something happens again: every so many seconds (> 0), every so many steps (< 0), or at the
+ * end only (0). */
 typedef struct {
   PetscReal every;
   PetscInt count; /* how often it happened after the start */
 } Schedule;
 
-/* What a run remembers besides its model. It counts only what was due: the row and the state of a run that was interrupted are extras. */
+/* What a run remembers besides its model. It counts only what was due: the row and the state of a
+ * run that was interrupted are extras. */
 typedef struct {
   PetscInt states, rows;         /* counts of the schedules */
   PetscInt written;              /* state files */
@@ -30,11 +32,12 @@ typedef struct {
   PetscReal *values;
   PetscBool failed; /* gave up */
   RunSummary summary;
-  double start;                        /* of this process, on MPI's clock */
-  HistoryMark history;                 /* of the run that this one resumes; no lines: not known */
-  PetscReal before;                    /* seconds spent by the runs that this one resumes */
-  double last_checkpoint;              /* on MPI's clock */
-  PetscInt checkpoint_step, n_written; /* step of the newest checkpoint, -1 if none; how many there were */
+  double start;           /* of this process, on MPI's clock */
+  HistoryMark history;    /* of the run that this one resumes; no lines: not known */
+  PetscReal before;       /* seconds spent by the runs that this one resumes */
+  double last_checkpoint; /* on MPI's clock */
+  /* step of the newest checkpoint, -1 if none; how many there were */
+  PetscInt checkpoint_step, n_written;
 } Run;
 
 /* The run ends early; the first reason counts. */
@@ -46,10 +49,12 @@ PetscErrorCode RunWriteState(Run *r);
 
 /* Collective. Directory, history, output and first row of a run from its start. */
 PetscErrorCode RunOpen(Run *r, const RunOptions *options, Diag *diag);
-/* Collective. The same for a run that goes on from its newest checkpoint that is whole. *complete: there is nothing to do. */
+/* Collective. The same for a run that goes on from its newest checkpoint that is whole. *complete:
+ * there is nothing to do. */
 PetscErrorCode RunResume(Run *r, const RunOptions *options, Diag *diag, PetscBool *complete);
 
-/* Ends of a run that is resumed, s: that of the case kept in its directory, and the one that is asked for. */
+/* Ends of a run that is resumed, s: that of the case kept in its directory, and the one that is
+ * asked for. */
 typedef struct {
   PetscReal before, now;
 } Extension;
@@ -68,5 +73,6 @@ PetscBool checkpoint_by_clock(const Run *r);
 PetscBool checkpoint_by_step(const Run *r);
 /* Collective. One that cannot be written is told in the log, and the run goes on. */
 PetscErrorCode CheckpointSave(Run *r);
-/* Collective. Bring the model and the run back to the newest checkpoint that is whole; *step = -1 if there is none. */
+/* Collective. Bring the model and the run back to the newest checkpoint that is whole; *step = -1
+ * if there is none. */
 PetscErrorCode CheckpointLoad(Run *r, Diag *diag, PetscInt *step, PetscBool *fits);

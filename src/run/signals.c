@@ -1,8 +1,9 @@
 #include "run/signals.h"
 #include <signal.h>
 
-/* What asks a run to leave. A person who sends one of the first twice insists; the others come again by themselves: a
- * batch system's warnings, SIGXCPU every second, SIGHUP from shell and terminal. */
+/* What asks a run to leave. A person who sends one of the first twice insists; the others come
+ * again by themselves: a batch system's warnings, SIGXCPU every second, SIGHUP from shell and
+ * terminal. */
 static const struct {
   int number;
   PetscBool insists;  /* does the second one end the program at once? */
@@ -42,7 +43,8 @@ void signals_watch(void)
 
 PetscBool signals_came(void) { return asked_by != 0; }
 
-/* One that insisted keeps its default; else a program that embeds talus has its own handlers again. */
+/* One that insisted keeps its default; else a program that embeds talus has its own handlers
+ * again. */
 void signals_forget(void)
 {
   struct sigaction now;

@@ -1,5 +1,5 @@
-/* SIGINT, SIGTERM, SIGQUIT, SIGHUP, SIGUSR1, SIGUSR2 and SIGXCPU ask a run to write its state and leave. A SIGHUP that
- * was ignored when the run began stays ignored (nohup). */
+/* SIGINT, SIGTERM, SIGQUIT, SIGHUP, SIGUSR1, SIGUSR2 and SIGXCPU ask a run to write its state and
+ * leave. A SIGHUP that was ignored when the run began stays ignored (nohup). */
 #pragma once
 #include <petscsys.h>
 
@@ -8,5 +8,6 @@ void signals_watch(void);
 void signals_forget(void);
 /* Has one come to this rank? */
 PetscBool signals_came(void);
-/* Collective: has any rank been asked to stop? In the same message all learn what rank 0 says in *due. */
+/* Collective: has any rank been asked to stop? In the same message all learn what rank 0 says in
+ * *due. */
 PetscErrorCode SignalsAsked(MPI_Comm comm, PetscBool *due, PetscBool *asked);

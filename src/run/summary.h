@@ -1,4 +1,5 @@
-/* What a run says of itself at its start and its end. What the disk refuses comes back as PETSC_ERR_FILE_WRITE, without a trace. */
+/* What a run says of itself at its start and its end. What the disk refuses comes back as
+ * PETSC_ERR_FILE_WRITE, without a trace. */
 #pragma once
 #include "output/directory/run_dir.h"
 #include "model/model.h"

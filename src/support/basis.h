@@ -1,7 +1,7 @@
 /* A basis: which nodes carry a point, with N and dN/dx there, and which nodes that may couple.
  *
- * Methods fill their supports through it and do not care which one it is. To add one: a file with a struct basis_<name>, and a line in
- * bases.inc. */
+ * Methods fill their supports through it and do not care which one it is. To add one: a file with a
+ * struct basis_<name>, and a line in bases.inc. */
 #pragma once
 #include "base/diag/diag.h"
 #include "grid/neighbours.h"
@@ -18,7 +18,8 @@ typedef struct {
   const BasisSpec *spec;
   const Grid *grid;
   const Neighbours *nodes; /* of clouds: the nodes by their places */
-  PetscBool on_hull; /* do the points stand on the hull of all nodes, as nodes themselves and carriers of loads do? */
+  /* do the points stand on the hull of all nodes, as nodes themselves and carriers of loads do? */
+  PetscBool on_hull;
 } BasisInput;
 
 /* Where points of the steps to come may be. */
@@ -31,12 +32,13 @@ typedef struct {
 
 typedef struct {
   BasisNodes nodes;
-  PetscBool
-    holds_boundary; /* do functions of inner nodes vanish on the hull, so that what is prescribed at its nodes holds on it? */
+  /* do functions of inner nodes vanish on the hull, so that what is prescribed at its nodes holds
+   * on it? */
+  PetscBool holds_boundary;
   /* Collective. What the basis cannot do with this grid goes to diag; NULL: nothing. */
   PetscErrorCode (*check)(const Grid *grid, Diag *diag);
-  /* Nodes, N and dN of all points. In a grid they are located (xi known) and sorted by cell, lost ones last, which get nothing; grid->x
-   * counts. In a cloud nodes get the numbers of in->nodes. */
+  /* Nodes, N and dN of all points. In a grid they are located (xi known) and sorted by cell, lost
+   * ones last, which get nothing; grid->x counts. In a cloud nodes get the numbers of in->nodes. */
   PetscErrorCode (*support)(const BasisInput *in, const Points *points, Support *support);
   /* Groups of local nodes that points at these sites may couple, added to those that are there. */
   PetscErrorCode (*couplings)(const BasisInput *in, const BasisSites *sites, NodeGroups *groups);

@@ -17,7 +17,8 @@ static PetscBool metric_of(PetscInt dim, const PetscReal *F, PetscReal *metric)
   return !PetscIsInfOrNanReal(sum);
 }
 
-/* Ascending nodes, with the values that belong to them: each goes behind those with smaller numbers. */
+/* Ascending nodes, with the values that belong to them: each goes behind those with smaller
+ * numbers. */
 static void sort_cloud(PetscInt dim, PetscInt n, PetscInt *node, PetscReal *N, PetscReal *dN)
 {
   PetscInt old_node[CLOUD_MAX_NODES], place[CLOUD_MAX_NODES] = {0};
@@ -52,7 +53,8 @@ static void look_around(const Neighbours *nodes, const PetscReal *x, PetscReal r
     for (PetscInt d = 0; d < dim; ++d) s->X[i * dim + d] = nodes->at[s->place[i] * dim + d];
 }
 
-/* Do nodes beyond the radius aimed at have no part in a cloud of this radius? They have where links lead through them. */
+/* Do nodes beyond the radius aimed at have no part in a cloud of this radius? They have where links
+ * lead through them. */
 static PetscBool radius_is_enough(const CloudSupport *s)
 {
   return s->rule == SUPPORT_FIXED || s->gap <= 0 || s->radius <= s->gap;
@@ -69,7 +71,8 @@ PetscInt cloud_at(const Neighbours *nodes, const CloudRule *rule, const PetscRea
   SupportReport report = {.level = SUPPORT_EMPTY};
 
   const PetscReal *m = F && metric_of(dim, F, metric) ? metric : NULL;
-  for (int far = radius_is_enough(support) ? 0 : 1; far < 2; ++far) { /* few points need to look beyond the radius */
+  /* few points need to look beyond the radius */
+  for (int far = radius_is_enough(support) ? 0 : 1; far < 2; ++far) {
     look_around(nodes, x, (far ? support->max_radius : support->radius) * rule->h, &s);
     report = cloud_support(support, &rule->basis, (int)dim, (int)s.n, s.X, rule->h, m, x, chosen, N, dN, NULL);
     if (report.level == SUPPORT_NOMINAL) break;

@@ -1,4 +1,5 @@
-/* Bases of clouds of nodes: moving least squares and local maximum entropy, as the case's `basis` block describes them. */
+/* Bases of clouds of nodes: moving least squares and local maximum entropy, as the case's `basis`
+ * block describes them. */
 #include "grid/cloud/cloud.h"
 #include "support/basis.h"
 #include "support/cloud.h"
@@ -31,7 +32,8 @@ static PetscErrorCode MlsSupport(const BasisInput *in, const Points *points, Sup
   PetscFunctionReturn(0);
 }
 
-/* On the hull local maximum entropy has no smooth values: there linear moving least squares with its weight take its place. */
+/* On the hull local maximum entropy has no smooth values: there linear moving least squares with
+ * its weight take its place. */
 static PetscErrorCode LmeSupport(const BasisInput *in, const Points *points, Support *support)
 {
   const PetscReal gamma = in->spec->gamma;

@@ -19,7 +19,8 @@ PetscErrorCode SupportDestroy(Support **support)
   PetscFunctionReturn(0);
 }
 
-/* Half more than is needed or was there, so that a slowly growing table is not copied at every step. */
+/* Half more than is needed or was there, so that a slowly growing table is not copied at every
+ * step. */
 static inline PetscInt grown(PetscInt needed, PetscInt capacity) { return PetscMax(needed, capacity + capacity / 2); }
 
 /* Nothing is kept: the arrays are filled anew at every step. */

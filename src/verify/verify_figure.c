@@ -19,7 +19,8 @@ static PetscBool refines_downwards(const Verification *v, PetscInt first, PetscI
   return b->row->x < a->row->x;
 }
 
-/* Does each row's place stand well apart from the last by a factor, as in a series of meshes? Then the axis is logarithmic. */
+/* Does each row's place stand well apart from the last by a factor, as in a series of meshes? Then
+ * the axis is logarithmic. */
 static PetscBool grows_by_factors(const Curves *c)
 {
   for (PetscInt k = 0; k < c->n; ++k) {

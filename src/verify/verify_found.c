@@ -1,7 +1,8 @@
 /* A run directory that is there: is it of this case, and what came out of it?
  *
- * A row's case is known in full (every key with its value), and so is that of a run, which keeps it as case.yaml. Where
- * both say the same, whatever was typed to get there, the run is a run of that row. Keys that came later have their defaults in an older run. */
+ * A row's case is known in full (every key with its value), and so is that of a run, which keeps it
+ * as case.yaml. Where both say the same, whatever was typed to get there, the run is a run of that
+ * row. Keys that came later have their defaults in an older run. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

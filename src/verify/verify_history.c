@@ -1,11 +1,12 @@
-/* A picture of histories: the measure of a study over time, a curve for each of its rows. Where the rows are moments of one run, a curve for
- * each series, with marks where its references are. */
+/* A picture of histories: the measure of a study over time, a curve for each of its rows. Where the
+ * rows are moments of one run, a curve for each series, with marks where its references are. */
 #include <string.h>
 #include "picture/figure.h"
 #include "output/history.h"
 #include "verify/verify_private.h"
 
-/* The curve of one row, whose numbers *values holds (to be freed); an empty one if there is no such history. */
+/* The curve of one row, whose numbers *values holds (to be freed); an empty one if there is no such
+ * history. */
 static PetscErrorCode ReadCurve(const VerifyRow *r, FigureSeries *s, PetscReal **values)
 {
   const PetscReal unit = r->series->time_scale;
@@ -63,7 +64,8 @@ static PetscErrorCode Draw(const Verification *v, const VerifyRow *r, PetscInt n
   PetscFunctionReturn(0);
 }
 
-/* What the rows first .. last - 1 of one series must give at their moments; an empty curve if they are not compared. */
+/* What the rows first .. last - 1 of one series must give at their moments; an empty curve if they
+ * are not compared. */
 static PetscErrorCode ReadReferences(const VerifyRow *first, const VerifyRow *last, FigureSeries *s, PetscReal **values)
 {
   const PetscInt n = (PetscInt)(last - first);

@@ -16,7 +16,8 @@ typedef struct {
   PetscReal *measures;          /* all of them, at the end of the run */
   PetscBool ran, shared;        /* shared: by an earlier study, no run of its own */
   PetscBool taken;              /* over from a run that was there already */
-  char sources[64];             /* what git said of the program that made that run, empty if nothing */
+  /* what git said of the program that made that run, empty if nothing */
+  char sources[64];
   RunResult result;
   RunSummary summary;
   PetscReal seconds; /* of the whole run, building the model included */
@@ -45,30 +46,34 @@ typedef struct {
 
 /* verify_plan.c: the rows to be run, each tried by reading its case. */
 PetscErrorCode VerifyPlan(Verification *v, Diag *diag);
-/* Its two halves: all rows by name, and one of them by its case (to be destroyed; NULL and a message if it cannot be read). */
+/* Its two halves: all rows by name, and one of them by its case (to be destroyed; NULL and a
+ * message if it cannot be read). */
 PetscErrorCode VerifyPlanAll(Verification *v, Diag *diag);
 PetscErrorCode VerifyPlanRow(Verification *v, VerifyRow *r, Diag *diag, Case **read);
 PetscErrorCode VerifyPlanClear(Verification *v);
 PetscErrorCode VerifyRowClear(VerifyRow *r);
 
-/* verify_value.c: Collective. The value of a row that has run: the measure at the end, or the distance
- * of its history from a course, or the measure at a moment. */
+/* verify_value.c: Collective. The value of a row that has run: the measure at the end, or the
+ * distance of its history from a course, or the measure at a moment. */
 PetscErrorCode VerifyValue(const Verification *v, VerifyRow *r, Diag *diag);
 
-/* verify_found.c: Collective. The case of a run directory without what changes no result, to be freed; NULL with a reason if there is none. */
+/* verify_found.c: Collective. The case of a run directory without what changes no result, to be
+ * freed; NULL with a reason if there is none. */
 PetscErrorCode VerifyFoundCase(MPI_Comm comm, const char *folder, char **text, char reason[256]);
 /* Is that text this case's? */
 PetscErrorCode VerifyIsCase(const Case *c, const char *text, PetscBool *is);
-/* Take the results of the row over from its folder, or from that of a row with the same settings, if a run of this case has come to its end
- * there on as many ranks. */
+/* Take the results of the row over from its folder, or from that of a row with the same settings,
+ * if a run of this case has come to its end there on as many ranks. */
 PetscErrorCode VerifyTakeOver(const Verification *v, VerifyRow *r, const Case *c, PetscBool *found);
 
 /* Collective. What rank 0 has read of the run, to all. */
 PetscErrorCode VerifyShareRow(const Verification *v, VerifyRow *r);
 
-/* verify_judge.c: compare rows[k], which has run, with its reference and with the rows before it. */
+/* verify_judge.c: compare rows[k], which has run, with its reference and with the rows before
+ * it. */
 void verify_judge(VerifyRow *rows, PetscInt k);
-/* Does the study's sweep have a direction in which errors should fall: are errors and orders to be shown? */
+/* Does the study's sweep have a direction in which errors should fall: are errors and orders to be
+ * shown? */
 PetscBool verify_has_errors(const StudySpec *study);
 
 /* verify_table.c: rows [first, last) are of one study. */
@@ -80,16 +85,19 @@ void verify_table_run(FILE *out, const Verification *v);
 
 /* verify_markdown.c: all studies; with the names of the figures if `figures`. */
 PetscErrorCode VerifyMarkdown(const Verification *v, PetscBool figures, char **text);
-/* Is the verification.md in the folder such tables? For folders of versions that did not sign them. */
+/* Is the verification.md in the folder such tables? For folders of versions that did not sign
+ * them. */
 PetscBool verify_is_table(const char *folder);
 
-/* verify_history.c: curves of the measure over time, of rows [first, last), into DIR/<study>.png. Of one rank. */
+/* verify_history.c: curves of the measure over time, of rows [first, last), into DIR/<study>.png.
+ * Of one rank. */
 PetscErrorCode VerifyHistoryDraw(const Verification *v, PetscInt first, PetscInt last, Diag *diag, PetscBool *done);
 
 /* verify_figure.c: DIR/<study>.png, if the study asks for one. Of one rank. */
 PetscErrorCode VerifyFigureDraw(const Verification *v, PetscInt first, PetscInt last, Diag *diag, PetscBool *done);
 
-/* verify_record.c: put `section` into the file in place of the section of that name, or at its end. 0 or an errno. */
+/* verify_record.c: put `section` into the file in place of the section of that name, or at its end.
+ * 0 or an errno. */
 PetscErrorCode VerifyRecord(const char *file, const char *name, const char *section, int *error);
 /* docs/verification.md of the tree that holds the case. */
 void verify_record_file(const char *folder, char file[PETSC_MAX_PATH_LEN]);

@@ -167,7 +167,8 @@ static void check_agree(SchemaReader *r, const StudySpec *study, const YamlNode 
   }
 }
 
-/* The series that sets the pace is the first one: its seconds are known when the others have run. */
+/* The series that sets the pace is the first one: its seconds are known when the others have
+ * run. */
 static void check_pace(SchemaReader *r, const StudySpec *study, const YamlNode *pace)
 {
   if (!pace) return;

@@ -74,8 +74,8 @@ typedef struct {
   SettingList set; /* $symbol stands for the value */
 } SweepSpec;
 
-/* A course in time, constant + linear t + quadratic t^2, from which the history of a measure is compared: at its rows or, if every > 0, at
- * multiples of that time. */
+/* A course in time, constant + linear t + quadratic t^2, from which the history of a measure is
+ * compared: at its rows or, if every > 0, at multiples of that time. */
 typedef struct {
   PetscReal constant, linear, quadratic, every, factor;
 } CourseSpec;

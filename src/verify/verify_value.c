@@ -21,7 +21,8 @@ static PetscReal off_course(const CourseSpec *course, PetscReal t, PetscReal val
   return value - (course->constant + t * (course->linear + t * course->quadratic));
 }
 
-/* Root of the sum of squared distances, over all rows after the start, or at the times that the course names. */
+/* Root of the sum of squared distances, over all rows after the start, or at the times that the
+ * course names. */
 static PetscReal distance(const History *history, PetscInt column, const CourseSpec *course)
 {
   const PetscReal end = history->n_rows ? history->values[(history->n_rows - 1) * history->n_columns] : 0;

@@ -47,11 +47,12 @@ PetscInt diag_warnings(const Diag *diag);
 /* Collective: number of errors over all ranks; messages of other ranks travel to rank 0. */
 PetscErrorCode DiagReduce(MPI_Comm comm, Diag *diag, PetscInt *errors);
 /* Print all messages in the order of their lines and forget them:
- * `case.yaml:12:7: error: ...`, the line, a caret, the hint; last how many more there are. The first rank of
- * the newest DiagReduce prints (before any: the first of all), others forget. */
+ * `case.yaml:12:7: error: ...`, the line, a caret, the hint; last how many more there are. The
+ * first rank of the newest DiagReduce prints (before any: the first of all), others forget. */
 PetscErrorCode DiagFlush(Diag *diag, FILE *out);
 
-/* The word of a NULL-terminated list nearest to `word` (Damerau-Levenshtein), NULL if none is near. */
+/* The word of a NULL-terminated list nearest to `word` (Damerau-Levenshtein), NULL if none is
+ * near. */
 const char *diag_nearest(const char *word, const char *const *words);
 /* Under the newest message: "did you mean 'right'? There are: left, right, ...". */
 void diag_hint_names(Diag *diag, const char *word, const char *const *words);

@@ -8,14 +8,17 @@ typedef struct {
   int line, column, width;
 } DiagMessage;
 
-/* Uses the C library's memory, not PETSc's: a mistake on the command line is reported before PETSc is there. */
+/* Uses the C library's memory, not PETSc's: a mistake on the command line is reported before PETSc
+ * is there. */
 struct Diag {
   PetscInt n, capacity;
   DiagMessage *messages;
   PetscInt errors, warnings;
-  PetscInt shown[2], more[2]; /* others, errors: how many messages are kept, and how many only counted */
-  int printer;                /* does this rank print? 1, 0; -1 until DiagReduce: the first of all ranks does */
-  PetscBool stale_hint;       /* the newest message was lost: its hint goes too */
+  /* others, errors: how many messages are kept, and how many only counted */
+  PetscInt shown[2], more[2];
+  /* does this rank print? 1, 0; -1 until DiagReduce: the first of all ranks does */
+  int printer;
+  PetscBool stale_hint; /* the newest message was lost: its hint goes too */
   DiagResolver resolver;
   void *context;
   void (*context_destroy)(void *);

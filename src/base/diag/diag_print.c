@@ -36,7 +36,8 @@ static void print_line(const char *text, int first, int last, FILE *out)
   fputc('\n', out);
 }
 
-/* Spaces up to the column, but a tab for a tab: the caret stands under its character at any tab width. */
+/* Spaces up to the column, but a tab for a tab: the caret stands under its character at any tab
+ * width. */
 static void print_caret(const char *text, int first, const DiagMessage *m, int length, FILE *out)
 {
   const unsigned char *p = (const unsigned char *)text;

@@ -1,4 +1,5 @@
-/* Messages of other ranks travel to rank 0 as one block of bytes: a header of integers, then the strings. */
+/* Messages of other ranks travel to rank 0 as one block of bytes: a header of integers, then the
+ * strings. */
 #include "base/diag/diag_impl.h"
 #include <stdlib.h>
 #include <string.h>
@@ -73,7 +74,8 @@ static PetscErrorCode Gather(MPI_Comm comm, PetscMPIInt rank, PetscMPIInt ranks,
 
   PetscFunctionBeginUser;
   PetscCheck(out, PETSC_COMM_SELF, PETSC_ERR_MEM, "no memory for messages");
-  for (PetscInt i = 0; rank && i < diag->n; ++i) pack(&diag->messages[i], out); /* rank 0 has its own already */
+  /* rank 0 has its own already */
+  for (PetscInt i = 0; rank && i < diag->n; ++i) pack(&diag->messages[i], out);
   PetscCheck(!fclose(out), PETSC_COMM_SELF, PETSC_ERR_MEM, "no memory for messages");
   size = (int)bytes;
   PetscCall(PetscCalloc2(ranks, &sizes, ranks, &offsets));
@@ -103,7 +105,8 @@ PetscErrorCode DiagReduce(MPI_Comm comm, Diag *diag, PetscInt *errors)
   if (ranks > 1) PetscCall(Gather(comm, rank, ranks, diag));
   if (rank > 0) {
     for (PetscInt i = 0; i < diag->n; ++i) diag_message_clear(&diag->messages[i]);
-    diag->n = diag->shown[0] = diag->shown[1] = 0; /* the counts stay: what happened here is still known here */
+    /* the counts stay: what happened here is still known here */
+    diag->n = diag->shown[0] = diag->shown[1] = 0;
   }
   *errors = diag->errors;
   PetscCallMPI(MPI_Bcast(errors, 1, MPIU_INT, 0, comm));

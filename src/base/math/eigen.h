@@ -1,16 +1,19 @@
 /* Eigenvalues and eigenvectors of a symmetric 3 x 3 tensor by Jacobi rotations.
  *
- * Chosen over a closed form for its accuracy: vectors are orthonormal to rounding however close the eigenvalues are, and
- * small eigenvalues of positive definite tensors keep their relative accuracy. A tensor with one known direction
- * (plane strain: yz = zx = 0) takes a single rotation and keeps that direction exactly. */
+ * Chosen over a closed form for its accuracy: vectors are orthonormal to rounding however close the
+ * eigenvalues are, and small eigenvalues of positive definite tensors keep their relative accuracy.
+ * A tensor with one known direction (plane strain: yz = zx = 0) takes a single rotation and keeps
+ * that direction exactly. */
 #pragma once
 #include "base/math/tensor.h"
 #include <math.h>
 
-#define EIGEN_SWEEPS 24 /* quadratic convergence: four are enough, tensors of 32 orders of magnitude take a few more */
+/* quadratic convergence: four are enough, tensors of 32 orders of magnitude take a few more */
+#define EIGEN_SWEEPS 24
 #define EIGEN_INLINE static inline __attribute__((always_inline))
 
-/* Off-diagonals below 1e-18 of the geometric mean of the diagonal change no eigenvalue's last digit. */
+/* Off-diagonals below 1e-18 of the geometric mean of the diagonal change no eigenvalue's last
+ * digit. */
 EIGEN_INLINE int eigen_negligible(PetscReal pp, PetscReal qq, PetscReal pq)
 {
   return pq * pq <= 1e-36 * fabs(pp * qq) || pq == 0.0;

@@ -1,5 +1,6 @@
-/* Eigenvalues and eigenvectors of eight symmetric 3 x 3 tensors side by side: base/math/eigen.h, number for number. A lane that needs no more
- * turns is left as it is, so that its result does not depend on its neighbours. */
+/* Eigenvalues and eigenvectors of eight symmetric 3 x 3 tensors side by side: base/math/eigen.h,
+ * number for number. A lane that needs no more turns is left as it is, so that its result does not
+ * depend on its neighbours. */
 #pragma once
 #include "base/math/eigen.h"
 #include "base/math/lanes.h"

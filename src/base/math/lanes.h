@@ -1,7 +1,9 @@
-/* Eight numbers side by side, and what of the mathematical library they need. GCC and Clang know vector_size and map it on registers of
- * any width; lanes are passed by pointer, because the calling convention for vectors wider than the machine's is not settled.
+/* Eight numbers side by side, and what of the mathematical library they need. GCC and Clang know
+ * vector_size and map it on registers of any width; lanes are passed by pointer, because the
+ * calling convention for vectors wider than the machine's is not settled.
  *
- * Without -ffast-math compilers call scalar log and exp eight times; these here have no calls and no branches. */
+ * Without -ffast-math compilers call scalar log and exp eight times; these here have no calls and
+ * no branches. */
 #pragma once
 #include <math.h>
 #include <petscsys.h>
@@ -11,8 +13,10 @@
 #define LANES_INLINE static inline __attribute__((always_inline))
 
 typedef PetscReal Lanes __attribute__((vector_size(LANES * sizeof(PetscReal))));
-typedef int64_t LaneBits __attribute__((vector_size(LANES * sizeof(int64_t))));    /* of a comparison: -1 where true */
-typedef uint64_t LaneWords __attribute__((vector_size(LANES * sizeof(uint64_t)))); /* bits that are counted with */
+/* of a comparison: -1 where true */
+typedef int64_t LaneBits __attribute__((vector_size(LANES * sizeof(int64_t))));
+/* bits that are counted with */
+typedef uint64_t LaneWords __attribute__((vector_size(LANES * sizeof(uint64_t))));
 
 /* to = mask ? yes : no */
 LANES_INLINE void lanes_select(const LaneBits *mask, const Lanes *yes, const Lanes *no, Lanes *to)
@@ -57,8 +61,9 @@ LANES_INLINE void lanes_cbrt(const Lanes *x, Lanes *y)
   for (int l = 0; l < LANES; ++l) (*y)[l] = cbrt((*x)[l]);
 }
 
-/* y = ln x to 1 ulp, also close to 1; NaN where x is no positive normal number. x = 2^k (1 + f) with 1 + f between sqrt(1/2) and sqrt(2),
- * ln(1 + f) = f - f^2/2 + s (f^2/2 + R(s^2)), s = f / (2 + f); R is the minimax polynomial of Sun's fdlibm. */
+/* y = ln x to 1 ulp, also close to 1; NaN where x is no positive normal number. x = 2^k (1 + f)
+ * with 1 + f between sqrt(1/2) and sqrt(2), ln(1 + f) = f - f^2/2 + s (f^2/2 + R(s^2)), s = f / (2
+ * + f); R is the minimax polynomial of Sun's fdlibm. */
 LANES_INLINE void lanes_log(const Lanes *x, Lanes *y)
 {
   static const PetscReal R[] = {0x1.5555555555593p-1, 0x1.999999997fa04p-2, 0x1.2492494229359p-2, 0x1.c71c51d8e78afp-3,

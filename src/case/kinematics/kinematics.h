@@ -9,7 +9,8 @@
 typedef struct Kinematics {
   const char *name, *help; /* word of the case file */
   PetscInt dim;            /* of positions and displacements */
-  PetscBool hoop; /* x is a radius, y the axis: a ring strains by u_x / x, and volumes go round the full circle */
+  /* x is a radius, y the axis: a ring strains by u_x / x, and volumes go round the full circle */
+  PetscBool hoop;
 } Kinematics;
 
 /* All kinematics, ended by NULL. */

@@ -21,10 +21,11 @@ struct GridBox {
   PetscReal per_length[3]; /* voxels per metre; 0 where the axis is graded */
   PetscReal tolerance;     /* how far outside a position still belongs, m */
   PetscMPIInt rank, size;
-  VoxelBlock *block;        /* per rank, in voxels */
-  PetscInt *cut_axis, *cut; /* the bisection: entry m parts the ranks below m from those from m on */
-  PetscInt *first_node;     /* size + 1: first global node of each rank */
-  VoxelPattern pattern[2];  /* [1]: the odd voxels of alternating diagonals */
+  VoxelBlock *block; /* per rank, in voxels */
+  /* the bisection: entry m parts the ranks below m from those from m on */
+  PetscInt *cut_axis, *cut;
+  PetscInt *first_node;    /* size + 1: first global node of each rank */
+  VoxelPattern pattern[2]; /* [1]: the odd voxels of alternating diagonals */
 };
 
 /* Is this an odd voxel of a chequered pattern? */

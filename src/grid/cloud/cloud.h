@@ -24,7 +24,8 @@ typedef struct GridCloud {
   PetscInt first_twin; /* ids from here on are twins */
   PetscReal spacing;   /* of nodes in the body, at the start, m: unit of length of clouds */
   PetscReal *x0;       /* n_nodes x dim: positions at the start, m */
-  PetscReal *obstacle; /* n_nodes: 1 if the node was prescribed at the start and no cell with material had it; else 0 */
+  /* n_nodes: 1 if the node was prescribed at the start and no cell with material had it; else 0 */
+  PetscReal *obstacle;
   PetscInt n_fields;
   CloudField field[CLOUD_MAX_FIELDS];
   PetscMPIInt *ghost_rank;  /* of each ghost: its owner, */

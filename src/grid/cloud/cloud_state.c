@@ -20,7 +20,8 @@ PetscErrorCode CloudToTables(const Grid *grid, Tables *tables)
       PetscCall(TableAdd(table, c->field[f].name, c->field[f].unit, COLUMN_REAL, c->field[f].components,
                          grid->n_owned ? *c->field[f].data : NULL, NULL));
   PetscCall(TablesAdd(tables, "ghosts", PETSC_FALSE, n_ghosts, &table));
-  PetscCall(TableAdd(table, "owner", NULL, COLUMN_INT64, 2, NULL, &column)); /* rank, and place there */
+  /* rank, and place there */
+  PetscCall(TableAdd(table, "owner", NULL, COLUMN_INT64, 2, NULL, &column));
   for (PetscInt k = 0; k < n_ghosts; ++k) {
     ((PetscInt64 *)column->data)[2 * k] = c->ghost_rank[k];
     ((PetscInt64 *)column->data)[2 * k + 1] = c->ghost_index[k];

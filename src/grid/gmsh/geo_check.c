@@ -81,7 +81,8 @@ static PetscErrorCode Remember(Check *check, const char *path, PetscBool *known)
   char real[PETSC_MAX_PATH_LEN];
 
   PetscFunctionBeginUser;
-  if (!realpath(path, real)) snprintf(real, sizeof real, "%s", path); /* not there: reading it will say so */
+  /* not there: reading it will say so */
+  if (!realpath(path, real)) snprintf(real, sizeof real, "%s", path);
   *known = PETSC_FALSE;
   for (int i = 0; i < check->n_seen; ++i)
     if (!strcmp(check->seen[i], real)) *known = PETSC_TRUE;

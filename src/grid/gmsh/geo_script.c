@@ -6,7 +6,8 @@
 #include <unistd.h>
 
 #define LONGEST_SCRIPT (64 << 20)
-#define LONGEST_TEXT 1000 /* Gmsh cuts a text after 1023 characters and reads its rest as commands */
+/* Gmsh cuts a text after 1023 characters and reads its rest as commands */
+#define LONGEST_TEXT 1000
 
 static PetscErrorCode Load(const char *path, GeoScript *s, const char **why)
 {
@@ -14,7 +15,8 @@ static PetscErrorCode Load(const char *path, GeoScript *s, const char **why)
   ssize_t got = 0;
 
   PetscFunctionBeginUser;
-  const int fd = open(path, O_RDONLY | O_NONBLOCK | O_CLOEXEC); /* a pipe without a writer must not keep us waiting */
+  /* a pipe without a writer must not keep us waiting */
+  const int fd = open(path, O_RDONLY | O_NONBLOCK | O_CLOEXEC);
   *why = fd < 0 || fstat(fd, &info)      ? strerror(errno)
          : !S_ISREG(info.st_mode)        ? "not a plain file"
          : info.st_size > LONGEST_SCRIPT ? "more than 64 MiB, too large for a script"
@@ -78,7 +80,8 @@ static size_t find_doubt(const GeoScript *s)
   const size_t last = line ? (size_t)(line - s->text) + 1 : 0;
   for (size_t at = 0, end; at < last; at = end) {
     end = PetscMax(at + 1, geo_word_end(s, at));
-    if (s->kind[at] == GEO_CODE && makes_gmsh_jump(s->text + at, end - at)) return 0; /* For goes back, too */
+    /* For goes back, too */
+    if (s->kind[at] == GEO_CODE && makes_gmsh_jump(s->text + at, end - at)) return 0;
   }
   return last;
 }

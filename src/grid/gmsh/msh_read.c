@@ -179,7 +179,8 @@ static long file_size(MshReader *r, int fd)
 
 static PetscErrorCode LoadFile(MshReader *r, const char *path)
 {
-  const int fd = open(path, O_RDONLY | O_NONBLOCK | O_CLOEXEC); /* does not wait for the other end of a pipe */
+  /* does not wait for the other end of a pipe */
+  const int fd = open(path, O_RDONLY | O_NONBLOCK | O_CLOEXEC);
   const long size = file_size(r, fd);
   FILE *file = size < 0 ? NULL : fdopen(fd, "rb");
 

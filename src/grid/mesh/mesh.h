@@ -5,8 +5,10 @@
 #include "grid/grid_ops.h"
 
 struct GridMesh {
-  PetscInt *neighbour; /* n_cells x faces: local cell beyond, -1 outside the grid, -2 - r on rank r */
-  PetscInt *far_cell;  /* numbers of the cells on other ranks, in the order in which neighbour names them */
+  /* n_cells x faces: local cell beyond, -1 outside the grid, -2 - r on rank r */
+  PetscInt *neighbour;
+  /* numbers of the cells on other ranks, in the order in which neighbour names them */
+  PetscInt *far_cell;
   PetscInt *file_node; /* n_nodes: place among the nodes in the file, whatever the ranks */
   BoxTree *cell_tree;  /* bounding boxes of the cells */
   BoxTree *face_tree;  /* and of the faces on the outer boundary, as grid->outer lists them */

@@ -46,7 +46,8 @@ static PetscErrorCode GridLike(const Grid *old, Grid **out)
 /* order[c]: the row of local cell c. */
 static PetscErrorCode OrderCells(Grid *grid, const MeshPart *in, PetscInt *order)
 {
-  const PetscInt width = mesh_row(grid), last = grid->nodes_per_cell; /* where a row has its last node */
+  /* where a row has its last node */
+  const PetscInt width = mesh_row(grid), last = grid->nodes_per_cell;
   PetscInt n = 0;
 
   PetscFunctionBeginUser;

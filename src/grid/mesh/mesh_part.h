@@ -18,7 +18,8 @@ typedef struct {
 
 typedef struct {
   PetscInt n_cells,
-    *cell;          /* rows of mesh_row numbers: of the cell, its nodes and the cells beyond its faces (-1: none) */
+    /* rows of mesh_row numbers: of the cell, its nodes and the cells beyond its faces (-1: none) */
+    *cell;
   PetscInt n_nodes; /* those that several ranks send come as often */
   MeshNode *node;
   PetscInt n_members;

@@ -20,7 +20,8 @@ static PetscErrorCode DualGraph(const Grid *grid, Mat *graph)
   }
   start[grid->n_cells] = n;
   PetscCall(
-    MatCreateMPIAdj(PETSC_COMM_SELF, grid->n_cells, grid->n_cells, start, column, NULL, graph)); /* owns the arrays */
+    /* owns the arrays */
+    MatCreateMPIAdj(PETSC_COMM_SELF, grid->n_cells, grid->n_cells, start, column, NULL, graph));
   PetscFunctionReturn(0);
 }
 

@@ -4,7 +4,8 @@
 #include "grid/directory.h"
 #include "grid/mesh/mesh.h"
 
-#define RULER 5         /* intervals to a cell; odd, so that centres of equal cells do not fall between two of them */
+/* intervals to a cell; odd, so that centres of equal cells do not fall between two of them */
+#define RULER 5
 #define MOST_PLACES 1e9 /* that can be numbered */
 
 /* Cells of one size would have this edge; of simplices, the square or cube that is cut into

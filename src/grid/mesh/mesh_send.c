@@ -8,8 +8,9 @@ typedef struct {
   const Grid *grid;
   const PetscMPIInt *owner;
   PetscMPIInt size;
-  PetscInt *first, *order;                 /* cells in the order of their ranks */
-  PetscInt *beyond;                        /* n_cells x faces: number of the cell beyond, -1 outside */
+  PetscInt *first, *order; /* cells in the order of their ranks */
+  /* n_cells x faces: number of the cell beyond, -1 outside */
+  PetscInt *beyond;
   PetscInt *mark;                          /* per node: the last message that it was put into */
   PetscInt *n_cells, *n_nodes, *n_members; /* per rank */
 } SendPlan;

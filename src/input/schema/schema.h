@@ -1,8 +1,9 @@
-/* The language of the case file as data: one table drives reading, writing, the reference and the JSON Schema.
+/* The language of the case file as data: one table drives reading, writing, the reference and the
+ * JSON Schema.
  *
- * A table describes the keys of one mapping and where their values live in a struct of case.h. To add a key:
- * one line in a table (schema_tables.c and its neighbours). To add a kind of value: its reader and JSON in schema_types.c,
- * its writer in schema_write_types.c. */
+ * A table describes the keys of one mapping and where their values live in a struct of case.h. To
+ * add a key: one line in a table (schema_tables.c and its neighbours). To add a kind of value: its
+ * reader and JSON in schema_types.c, its writer in schema_write_types.c. */
 #pragma once
 #include <stddef.h>
 #include <stdio.h>
@@ -64,8 +65,10 @@ struct SchemaEntry {
   PetscBool always;     /* a mapping that is read even if absent: its keys have defaults */
   PetscBool input_only; /* resolved to another key, never written */
   const SchemaWord *words;
-  const void *const *registry; /* instead of words: structs that begin with their word and its help, ended by NULL */
-  const char *later; /* a word that means something, but not in this version: refused by name, offered nowhere */
+  /* instead of words: structs that begin with their word and its help, ended by NULL */
+  const void *const *registry;
+  /* a word that means something, but not in this version: refused by name, offered nowhere */
+  const char *later;
   const SchemaTable *table;
   const char *target;
   const char *with; /* makes sense only beside this key */
@@ -132,7 +135,8 @@ PetscErrorCode SchemaReadTable(SchemaReader *r, const SchemaTable *table, const 
 PetscErrorCode SchemaClear(const SchemaTable *table, void *target);
 /* One value; dispatches on the type. */
 PetscErrorCode SchemaReadEntry(SchemaReader *r, const SchemaEntry *entry, const YamlNode *node, void *target);
-/* Record a mistake at the value, or at the key. `%s` of the path comes first in the message by habit. */
+/* Record a mistake at the value, or at the key. `%s` of the path comes first in the message by
+ * habit. */
 #define SchemaError(r, node, ...) yaml_error((r)->document, (r)->diag, node, PETSC_FALSE, __VA_ARGS__)
 #define SchemaKeyError(r, node, ...) yaml_error((r)->document, (r)->diag, node, PETSC_TRUE, __VA_ARGS__)
 /* "<path> must be <what>, not <what stands there>". */
@@ -180,7 +184,8 @@ extern SchemaReadType SchemaReadInterval, SchemaReadAmplitude, SchemaReadPolygon
 PetscBool schema_check_name(SchemaReader *r, const YamlNode *node, const char *name, PetscBool key);
 
 /* Writers of single values (schema_write_types.c). */
-void schema_write_real(FILE *out, PetscReal value);  /* the shortest text that reads back to the same number */
+/* the shortest text that reads back to the same number */
+void schema_write_real(FILE *out, PetscReal value);
 void schema_write_text(FILE *out, const char *text); /* quoted where YAML wants it */
 typedef struct {
   FILE *out;

@@ -1,4 +1,5 @@
-/* What a single key cannot know: defaults that depend on others, and keys that must fit together. */
+/* What a single key cannot know: defaults that depend on others, and keys that must fit
+ * together. */
 #include <math.h>
 #include <string.h>
 #include "basis/cell.h"

@@ -2,7 +2,8 @@
  *
  *   KEY("radius", NUMBER, "m", "radius", REQUIRED, ABOVE(0), AT(Shape, radius))
  *
- * reads: the key `radius` holds a number in m, greater than 0, that must be given and is stored in Shape.radius. */
+ * reads: the key `radius` holds a number in m, greater than 0, that must be given and is stored in
+ * Shape.radius. */
 #pragma once
 #include <math.h>
 #include <string.h>

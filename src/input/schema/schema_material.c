@@ -1,4 +1,5 @@
-/* Materials: which keys are allowed depends on the law, and any two elastic constants are accepted. */
+/* Materials: which keys are allowed depends on the law, and any two elastic constants are
+ * accepted. */
 #include <math.h>
 #include <string.h>
 #include "input/schema/schema.h"
@@ -38,7 +39,8 @@ SchemaEntry schema_elastic(PetscInt i)
                        .unit = c->unit,
                        .help = c->help,
                        .min = c->min,
-                       .max = c->max, /* included: poisson: 0.5 is for the mixed formulation to judge */
+                       /* included: poisson: 0.5 is for the mixed formulation to judge */
+                       .max = c->max,
                        .bounded = isfinite(c->min),
                        .min_open = PETSC_TRUE,
                        .offset = offsetof(NamedValue, value)};
@@ -96,7 +98,8 @@ static PetscErrorCode ReadConstants(SchemaReader *r, const Law *law, const YamlN
       const SchemaEntry entry = p ? schema_law_entry(p) : schema_elastic(elastic);
       if (is_infinite(node)) PetscCall(Add(material, node->key, INFINITY));
       else if (schema_number(r, &entry, node, &value)) PetscCall(Add(material, node->key, value));
-    } else if (law) unknown_key(r, law, mapping, node); /* without a law nobody knows which keys it has */
+      /* without a law nobody knows which keys it has */
+    } else if (law) unknown_key(r, law, mapping, node);
   }
   PetscFunctionReturn(0);
 }

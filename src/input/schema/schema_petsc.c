@@ -37,7 +37,8 @@ static PetscBool allowed(SchemaReader *r, const YamlNode *node, const char *name
   return PETSC_FALSE;
 }
 
-/* snes_rtol: 1e-9 becomes "-snes_rtol 1e-9"; an option without a value is written with nothing, or true. */
+/* snes_rtol: 1e-9 becomes "-snes_rtol 1e-9"; an option without a value is written with nothing, or
+ * true. */
 static PetscErrorCode ReadOption(SchemaReader *r, const YamlNode *node, char **option)
 {
   const char *name = node->key + (node->key[0] == '-');

@@ -5,7 +5,8 @@
 #include <unistd.h>
 #include "input/schema/schema.h"
 
-/* [+-] digits [. digits] [e [+-] digits], at least one digit before the exponent: no hexadecimal, no inf, no nan. */
+/* [+-] digits [. digits] [e [+-] digits], at least one digit before the exponent: no hexadecimal,
+ * no inf, no nan. */
 static PetscBool looks_like_number(const char *p)
 {
   int digits = 0;
@@ -80,8 +81,8 @@ void schema_mismatch(SchemaReader *r, const SchemaEntry *e, const YamlNode *node
               schema_expected(e, r->dim, expected, sizeof(expected)), describe(node, found, sizeof(found)));
 }
 
-/* Generous: a neutron star has 1e18 kg/m3, light 3e8 m/s. Beyond them sums and products run out of digits or of the machine's range, and
- * a body does not even fall (docs/trust.md). */
+/* Generous: a neutron star has 1e18 kg/m3, light 3e8 m/s. Beyond them sums and products run out of
+ * digits or of the machine's range, and a body does not even fall (docs/trust.md). */
 const SchemaMagnitude schema_magnitudes[] = {
   {"kg/m3", 1e-15, 1e19}, {"Pa", 1e-30, 1e20}, {"N/m2", 0, 1e20},  {"N", 0, 1e30},   {"m", 0, 1e30}, {"m/s", 0, 3e8},
   {"m/s2", 0, 1e15},      {"s", 1e-20, 1e20},  {"rad/s", 0, 1e15}, {"1/s", 0, 1e15}, {NULL, 0, 0},
@@ -247,7 +248,8 @@ PetscErrorCode SchemaReadFile(SchemaReader *r, const SchemaEntry *e, const YamlN
   PetscFunctionReturn(0);
 }
 
-/* Names at the top of the file under `target`: keys of a mapping, or `name` of the entries of a list. */
+/* Names at the top of the file under `target`: keys of a mapping, or `name` of the entries of a
+ * list. */
 static PetscInt collect_names(const SchemaReader *r, const char *target, PetscInt max, const char **names)
 {
   const YamlNode *group = yaml_find(r->document->root, target);

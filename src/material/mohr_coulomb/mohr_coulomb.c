@@ -3,11 +3,12 @@
  *   b^e trial = f b^e f^T,  eps_A = ln lambda_A,  tau = D eps       (Hencky's energy)
  *   f(tau) = k tau_1 - tau_3 - 2 c sqrt k <= 0,  d eps^p = sum gamma dg/dtau,  g = m tau_1 - tau_3
  *
- * The return is that of small strains in the logarithmic principal strains (mohr_coulomb_return.h), the tangent is exact
- * (principal.h). State: b^e and the equivalent plastic strain.
+ * The return is that of small strains in the logarithmic principal strains (mohr_coulomb_return.h),
+ * the tangent is exact (principal.h). State: b^e and the equivalent plastic strain.
  *
- * A point beyond the apex is left with the elastic strain of the apex: with c = 0 it is stress-free, b^e = I. How far it
- * has opened is not remembered, so that the next compression meets a solid at once. There the tangent is zero. */
+ * A point beyond the apex is left with the elastic strain of the apex: with c = 0 it is
+ * stress-free, b^e = I. How far it has opened is not remembered, so that the next compression meets
+ * a solid at once. There the tangent is zero. */
 #include "material/mohr_coulomb/mohr_coulomb_plane.h"
 #include "material/principal.h"
 #include "material/shape.h"
@@ -205,7 +206,8 @@ static void volume(PetscInt n, const PetscReal *state, PetscReal *J) { volume_of
 
 static void scale(PetscInt n, const PetscReal *factor, PetscReal *state) { scale_b(n, N_STATE, factor, state); }
 
-/* Without friction, dilatancy and cut-off (Tresca) the flow neither feels the pressure nor changes the volume. */
+/* Without friction, dilatancy and cut-off (Tresca) the flow neither feels the pressure nor changes
+ * the volume. */
 static VolumeLaw volume_law(const PetscReal *p)
 {
   return p[MC_K] == 1.0 && p[MC_M] == 1.0 && p[MC_CUT] == INFINITY ? VOLUME_LOG : VOLUME_COUPLED;

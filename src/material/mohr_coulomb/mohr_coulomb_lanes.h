@@ -5,7 +5,8 @@
 
 #define MC_STATE 7 /* b^e, equivalent plastic strain */
 
-/* Stresses on the surface or inside. Most points that flow are on the shear plane: that return is made here, others point by point. */
+/* Stresses on the surface or inside. Most points that flow are on the shear plane: that return is
+ * made here, others point by point. */
 LANES_INLINE void mc_return_lanes(const PetscReal *p, const Lanes e[3], Lanes tau[3], LaneBits *regions)
 {
   const Lanes volume = p[MC_LAMBDA] * (e[0] + e[1] + e[2]);
@@ -50,8 +51,9 @@ LANES_INLINE void mc_moduli_lanes(const PetscReal *p, const LaneBits *regions, L
   }
 }
 
-/* (tau_A - tau_B) / (e_A - e_B) of a pair: rise over x. Elastic differences keep 2 mu exactly, equal stresses give 0; in
- * between the return only shrinks differences, which bounds what rounding can do to nearly equal strains. */
+/* (tau_A - tau_B) / (e_A - e_B) of a pair: rise over x. Elastic differences keep 2 mu exactly,
+ * equal stresses give 0; in between the return only shrinks differences, which bounds what rounding
+ * can do to nearly equal strains. */
 LANES_INLINE void mc_difference_lanes(const PetscReal *p, const LaneBits *elastic, const Lanes *x, const Lanes *rise,
                                       Lanes *r)
 {

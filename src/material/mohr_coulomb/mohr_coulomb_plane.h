@@ -1,5 +1,6 @@
-/* The Mohr-Coulomb law where increments and elastic strains leave z alone: one turn finds the principal axes A and B in the plane, z is the
- * third, and only the moduli of the plane are made. What is not made here is in mohr_coulomb.c. */
+/* The Mohr-Coulomb law where increments and elastic strains leave z alone: one turn finds the
+ * principal axes A and B in the plane, z is the third, and only the moduli of the plane are made.
+ * What is not made here is in mohr_coulomb.c. */
 #pragma once
 #include "material/mohr_coulomb/mohr_coulomb_lanes.h"
 
@@ -30,7 +31,8 @@ LANES_INLINE PetscBool mc_plane_push(PetscInt n, const PetscReal *dF, const Lane
   return PETSC_TRUE;
 }
 
-/* Squares of the stretches along A and B, A the larger, and A's direction: base/math/eigen.h's turn in the plane. */
+/* Squares of the stretches along A and B, A the larger, and A's direction: base/math/eigen.h's turn
+ * in the plane. */
 LANES_INLINE void mc_plane_axes(PlaneTrial *t)
 {
   const Lanes none = {0}, h = 0.5 * (t->b[1] - t->b[0]), square = h * h + t->b[3] * t->b[3];
@@ -73,7 +75,8 @@ LANES_INLINE PetscBool mc_plane_trial(PetscInt n, const PetscReal *dF, const Lan
   return PETSC_TRUE;
 }
 
-/* to = what belongs to the place of A, B or z: first if z stands first, last if it stands last, else middle. */
+/* to = what belongs to the place of A, B or z: first if z stands first, last if it stands last,
+ * else middle. */
 LANES_INLINE void mc_plane_pick(const PlaneTrial *t, const Lanes *first, const Lanes *middle, const Lanes *last,
                                 Lanes *to)
 {

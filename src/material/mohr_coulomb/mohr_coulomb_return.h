@@ -1,19 +1,24 @@
-/* Return of principal Kirchhoff stresses to the Mohr-Coulomb surface, cut off at a largest tension if wished.
+/* Return of principal Kirchhoff stresses to the Mohr-Coulomb surface, cut off at a largest tension
+ * if wished.
  *
- * Stresses fall, tension is positive; Hooke's law holds between the principal logarithmic strains and them. The flow
- * rule is non-associated, d eps^p = sum gamma b, on the shear planes a = (k, 0, -1), b = (m, 0, -1) and their
- * neighbours across the edges, and associated on the tension planes tau_1 = T.
+ * Stresses fall, tension is positive; Hooke's law holds between the principal logarithmic strains
+ * and them. The flow rule is non-associated, d eps^p = sum gamma b, on the shear planes a = (k, 0,
+ * -1), b = (m, 0, -1) and their neighbours across the edges, and associated on the tension planes
+ * tau_1 = T.
  *
- *   shear     PLANE (Clausen's region I); LINE1 where tau_1 = tau_2, r = (1, 1, k) (II); LINE2 where tau_2 = tau_3,
+ *   shear     PLANE (Clausen's region I); LINE1 where tau_1 = tau_2, r = (1, 1, k) (II); LINE2
+ *   where tau_2 = tau_3,
  *             r = (1, k, k) (III); APEX (IV)
  *   tension   CUT_PLANE, tau_1 = T; CUT_LINE, tau_1 = tau_2 = T; CUT_APEX, all T
- *   both      CUT_EDGE, tau_1 = T and tau_3 = k T - q, from CUT_CORNER1 (tau_2 = T) to CUT_CORNER2 (tau_2 = tau_3)
+ *   both      CUT_EDGE, tau_1 = T and tau_3 = k T - q, from CUT_CORNER1 (tau_2 = T) to CUT_CORNER2
+ *   (tau_2 = tau_3)
  *
- * No formula divides by k - 1 unless the apex was found to be there: lines are counted from where tau_1 is zero, not
- * from the apex, which for phi = 0 is at infinity. The regions need no boundary planes: the return to the plane leaves
- * the order tau_1 >= tau_2 >= tau_3 if and only if the trial stress lies between p_I-II and p_I-III (they contain the
- * line and the direction of the return). With little dilatancy the flow rule cannot lead to the apex; it is then the
- * return by definition, the continuous one. */
+ * No formula divides by k - 1 unless the apex was found to be there: lines are counted from where
+ * tau_1 is zero, not from the apex, which for phi = 0 is at infinity. The regions need no boundary
+ * planes: the return to the plane leaves the order tau_1 >= tau_2 >= tau_3 if and only if the trial
+ * stress lies between p_I-II and p_I-III (they contain the line and the direction of the return).
+ * With little dilatancy the flow rule cannot lead to the apex; it is then the return by definition,
+ * the continuous one. */
 #pragma once
 #include <math.h>
 #include <petscsys.h>
@@ -94,7 +99,8 @@ static inline PetscReal mc_noise(const PetscReal *p, const PetscReal tau[3])
   return p[MC_NOISE] + 4.0 * PETSC_MACHINE_EPSILON * (p[MC_K] * fabs(tau[0]) + fabs(tau[2]) + p[MC_Q]);
 }
 
-/* tau_1 on the edge base + tau_1 r that the trial strains e lead to; base is the edge's stress where tau_1 = 0. */
+/* tau_1 on the edge base + tau_1 r that the trial strains e lead to; base is the edge's stress
+ * where tau_1 = 0. */
 static inline PetscReal mc_on_line(const PetscReal *p, McRegion region, const PetscReal base[3], const PetscReal e[3])
 {
   const McEdge edge = mc_edge(p, region);
@@ -139,7 +145,8 @@ static inline McRegion mc_return_tension(const PetscReal *p, const PetscReal e[3
   tau[2] -= drop;
   if (tau[1] <= T) return MC_CUT_PLANE;
   tau[1] = T;
-  tau[2] = mu * (3.0 * lambda + 2.0 * mu) / (lambda + mu) * e[2] + lambda / (lambda + mu) * T; /* E e3 + 2 nu T */
+  /* E e3 + 2 nu T */
+  tau[2] = mu * (3.0 * lambda + 2.0 * mu) / (lambda + mu) * e[2] + lambda / (lambda + mu) * T;
   if (tau[2] <= T) return MC_CUT_LINE;
   tau[2] = T;
   return MC_CUT_APEX;

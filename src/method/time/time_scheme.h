@@ -7,7 +7,8 @@
 
 typedef struct {
   PetscReal velocity, acceleration; /* derivatives of v1 and a1 with respect to du, 1/s, 1/s2 */
-  PetscReal lag;  /* share of the step's start in the acceleration that balances the forces of its end */
+  /* share of the step's start in the acceleration that balances the forces of its end */
+  PetscReal lag;
   PetscReal mean; /* share of the end in the mean of the forces over the step, which gives v1 - v */
 } TimeWeights;
 

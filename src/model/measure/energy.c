@@ -1,4 +1,5 @@
-/* Where the energy goes: work put in, stress work, damping, and what is lost between points and grid (docs/theory.md, "Energy").
+/* Where the energy goes: work put in, stress work, damping, and what is lost between points and
+ * grid (docs/theory.md, "Energy").
  *
  * All work is taken by the trapezoidal rule between the step's start and end. */
 #include "material/pressure.h"
@@ -61,7 +62,8 @@ UNROLLED PetscReal product_sized(const PetscInt dim, const PetscInt fixed_nn, co
   return sum;
 }
 
-/* The sum u M w over this rank's points, with the mass matrix of the step: cells that are not full have part of it lumped, and are tied. */
+/* The sum u M w over this rank's points, with the mass matrix of the step: cells that are not full
+ * have part of it lumped, and are tied. */
 static PetscReal mass_product(const Model *m, NodalField u, NodalField w)
 {
   const Support *support = m->space->support;
@@ -146,7 +148,8 @@ static PetscErrorCode ForcesAtEnds(const Model *m, PetscReal dt, PetscReal **bef
   PetscFunctionReturn(0);
 }
 
-/* What stops points where they meet prescribed nodes acts within no time: its work is the impulse times the velocity of the boundary. */
+/* What stops points where they meet prescribed nodes acts within no time: its work is the impulse
+ * times the velocity of the boundary. */
 static PetscReal impulse_work(const Model *m, PetscInt i, PetscReal dt)
 {
   const NodalFields *n = m->nodes;
@@ -163,8 +166,9 @@ static PetscReal inertia_work(const Model *m, PetscReal dt)
   return mass_product(m, du, a);
 }
 
-/* Where clouds are new in every step, what balanced the forces at the end of the last one no longer does in these: the work of what is out of
- * balance, by the trapezoidal rule. `external`: of nodes at the step's start. */
+/* Where clouds are new in every step, what balanced the forces at the end of the last one no longer
+ * does in these: the work of what is out of balance, by the trapezoidal rule. `external`: of nodes
+ * at the step's start. */
 static PetscErrorCode OutOfBalance(const Model *m, const PetscReal *g, const PetscReal *external, PetscReal *work)
 {
   const PetscInt dofs = m->grid->n_nodes * m->dim;
@@ -193,21 +197,24 @@ static PetscErrorCode OutOfBalance(const Model *m, const PetscReal *g, const Pet
   PetscFunctionReturn(0);
 }
 
-/* Nodes that gather their motion from points start neither with the energy of the points nor with the acceleration that balances the
- * forces there. What the first takes is a difference of kinetic energies; the second adds or takes the work of the forces out of balance,
- * which is what the work of all forces leaves over. `held`: work of the boundary without impulses. */
+/* Nodes that gather their motion from points start neither with the energy of the points nor with
+ * the acceleration that balances the forces there. What the first takes is a difference of kinetic
+ * energies; the second adds or takes the work of the forces out of balance, which is what the work
+ * of all forces leaves over. `held`: work of the boundary without impulses. */
 static PetscReal transfer_of_nodes(const Model *m, PetscReal dt, const EnergyStep *e, PetscReal held)
 {
   const NodalFields *n = m->nodes;
   const NodalField mean = {{n->v, n->v1}, {0.5, 0.5}}, gain = {{n->v1, n->v}, {1, -1}};
   PetscReal sum = 0;
-  if (m->scheme->inertia) sum = points_kinetic(m) + mass_product(m, mean, gain); /* |v1|^2 / 2 - |v|^2 / 2 */
+  /* |v1|^2 / 2 - |v|^2 / 2 */
+  if (m->scheme->inertia) sum = points_kinetic(m) + mass_product(m, mean, gain);
   if (!m->method->restores_grid) return sum;
   if (m->scheme->inertia) sum -= inertia_work(m, dt);
   return sum + e->external + held - e->damped + points_work(m);
 }
 
-/* What damping takes from the velocity of points beyond that of the nodes: mpm's points fade towards what the nodes see of them. */
+/* What damping takes from the velocity of points beyond that of the nodes: mpm's points fade
+ * towards what the nodes see of them. */
 static PetscReal faded(const Model *m)
 {
   const Support *w = m->space->support;
@@ -270,7 +277,8 @@ PetscErrorCode EnergyClose(Model *m, EnergyStep *e)
 
   PetscFunctionBeginUser;
   if (m->scheme->inertia) e->transfer -= points_kinetic(m) + gone->kinetic;
-  if (m->method->restores_grid) e->transfer -= points_work(m) + gone->work; /* of the step: what is gone counts apart */
+  /* of the step: what is gone counts apart */
+  if (m->method->restores_grid) e->transfer -= points_work(m) + gone->work;
   local[0] = e->external, local[1] = e->boundary, local[2] = e->damped, local[3] = e->transfer;
   PetscCall(MPIU_Allreduce(local, sum, 4, MPIU_REAL, MPI_SUM, m->comm));
   m->external_work += sum[0];

@@ -3,8 +3,8 @@
 
 #define EXTENT_PARTS 64
 
-/* Mass of the body in equal parts of [low, high] along an axis (sign -1: turned round); what is less than `low` counts to the first, what is more
- * than `high` to none. */
+/* Mass of the body in equal parts of [low, high] along an axis (sign -1: turned round); what is
+ * less than `low` counts to the first, what is more than `high` to none. */
 static PetscErrorCode MassAlong(const Model *m, const MeasureSpec *s, PetscReal sign, PetscReal low, PetscReal high,
                                 PetscReal mass[EXTENT_PARTS])
 {
@@ -21,8 +21,8 @@ static PetscErrorCode MassAlong(const Model *m, const MeasureSpec *s, PetscReal 
   PetscFunctionReturn(0);
 }
 
-/* The place within which all but a share of the mass lies: as good as the farthest point for a front, without its chance. Each round finds the
- * part that holds it. */
+/* The place within which all but a share of the mass lies: as good as the farthest point for a
+ * front, without its chance. Each round finds the part that holds it. */
 static PetscErrorCode InnerExtent(const Model *m, const MeasureSpec *s, PetscReal sign, PetscReal *farthest)
 {
   PetscReal low = sign > 0 ? m->grid->min[s->component] : -m->grid->max[s->component], high = *farthest;
@@ -60,7 +60,8 @@ PetscErrorCode MeasureExtent(Model *m, const MeasureSpec *s, PetscInt index, Pet
   PetscFunctionReturn(0);
 }
 
-/* What a run-out time keeps: the position of the front, counted outwards, m; the last time at which it was fast, s. */
+/* What a run-out time keeps: the position of the front, counted outwards, m; the last time at which
+ * it was fast, s. */
 enum { FRONT, MOVED };
 
 static PetscErrorCode RememberFront(Model *m, const MeasureSpec *s, PetscReal dt, PetscReal kept[MEASURE_KEPT])

@@ -1,13 +1,16 @@
 /* A measure: a number that is followed through the run, a column of history.csv.
  *
- * To add one: a file with a `const Measure measure_x` (reaction.c is the shortest) and its name in measures.inc. What a case
- * file may say, the reference, `talus list measures` and the units of results are read from here. */
+ * To add one: a file with a `const Measure measure_x` (reaction.c is the shortest) and its name in
+ * measures.inc. What a case file may say, the reference, `talus list measures` and the units of
+ * results are read from here. */
 #pragma once
 #include "model/model.h"
 
-/* What stands behind the key: an axis, an axis of rotation, one of the words, or a mapping with a side of a body and more. */
+/* What stands behind the key: an axis, an axis of rotation, one of the words, or a mapping with a
+ * side of a body and more. */
 typedef enum { MEASURE_AXIS, MEASURE_SPIN_AXIS, MEASURE_WORD, MEASURE_EXTENT, MEASURE_FRONT } MeasureArgument;
-/* What `of` names: a body, if not all; a tracer; an entry of the boundary; nothing, since the number is of the whole model. */
+/* What `of` names: a body, if not all; a tracer; an entry of the boundary; nothing, since the
+ * number is of the whole model. */
 typedef enum { OF_BODY, OF_TRACER, OF_BOUNDARY, OF_MODEL } MeasureSubject;
 
 /* A number, and one of three ways to it. */
@@ -18,10 +21,12 @@ typedef struct {
   PetscBool at; /* is it taken `at` a place? */
   /* Collective. index: of the spec among the measures of the case. */
   PetscErrorCode (*value)(Model *m, const MeasureSpec *s, PetscInt index, PetscReal *value);
-  /* This rank's share of a sum over the points of a body (< 0: of all). A body that is gone has none: nan. */
+  /* This rank's share of a sum over the points of a body (< 0: of all). A body that is gone has
+   * none: nan. */
   PetscReal (*sum)(const Model *m, const MeasureSpec *s, PetscInt body);
-  int which;   /* tells a value function that several numbers share which of them is asked for */
-  size_t kept; /* offset in Model of a number that it keeps, the first of `component` if the key takes an axis */
+  int which; /* tells a value function that several numbers share which of them is asked for */
+  /* offset in Model of a number that it keeps, the first of `component` if the key takes an axis */
+  size_t kept;
 } MeasureNumber;
 
 #define WORD(...) \
@@ -31,7 +36,8 @@ typedef struct {
   const char *key;
   MeasureArgument takes;
   PetscBool only_2d;
-  MeasureNumber number;              /* of the key: its help; its unit for people, if words have several */
+  /* of the key: its help; its unit for people, if words have several */
+  MeasureNumber number;
   const MeasureNumber *const *words; /* with MEASURE_WORD: ended by NULL */
   /* Collective, or NULL: after every accepted step of dt, and at the start with dt = 0. */
   PetscErrorCode (*remember)(Model *m, const MeasureSpec *s, PetscReal dt, PetscReal kept[MEASURE_KEPT]);
@@ -49,6 +55,7 @@ static inline PetscBool measure_takes_point(const Model *m, PetscInt body, Petsc
   return body < 0 || m->points->body[p] == body;
 }
 
-/* Collective: the farthest coordinate of a body, and its free surface: the front, unless the spec asks for something else of it. */
+/* Collective: the farthest coordinate of a body, and its free surface: the front, unless the spec
+ * asks for something else of it. */
 PetscErrorCode MeasureExtent(Model *model, const MeasureSpec *spec, PetscInt index, PetscReal *value);
 PetscErrorCode MeasureSurface(Model *model, const MeasureSpec *spec, PetscInt index, PetscReal *value);

@@ -24,7 +24,8 @@ static PetscReal momentum(const Model *m, const MeasureSpec *s, PetscInt body)
   return sum;
 }
 
-/* This rank's mass, first moments, momenta, angular momentum and second moment about an axis; in two dimensions that is z. */
+/* This rank's mass, first moments, momenta, angular momentum and second moment about an axis; in
+ * two dimensions that is z. */
 static void sum_moments(const Model *m, const MeasureSpec *s, PetscInt body, PetscReal q[7])
 {
   const PetscInt i = m->dim == 2 ? 0 : (s->component + 1) % 3, j = m->dim == 2 ? 1 : (s->component + 2) % 3;

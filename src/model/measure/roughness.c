@@ -1,7 +1,8 @@
 /* How rough the pressure is: the share of it that one averaging over neighbours takes away.
  *
- * The averaging goes from the points to the nodes and back; a pressure that is an unknown at the nodes makes the round trip from there, since
- * points do not see all of its oscillations: on a triangle 1, -1, 0 is nothing at the centre. */
+ * The averaging goes from the points to the nodes and back; a pressure that is an unknown at the
+ * nodes makes the round trip from there, since points do not see all of its oscillations: on a
+ * triangle 1, -1, 0 is nothing at the centre. */
 #include "model/measure/measure.h"
 
 static PetscReal point_volume(const Model *m, PetscInt p)
@@ -9,7 +10,8 @@ static PetscReal point_volume(const Model *m, PetscInt p)
   return m->points->real[POINT_VOLUME][p] * m->points->real[POINT_J][p];
 }
 
-/* Averages at the nodes of values at the points, weighted by shape function and present volume; `volume`: the sum of the weights. */
+/* Averages at the nodes of values at the points, weighted by shape function and present volume;
+ * `volume`: the sum of the weights. */
 static PetscErrorCode PointsToNodes(const Model *m, const PetscReal *at_points, PetscReal *at_nodes, PetscReal *volume)
 {
   const Support *w = m->space->support;

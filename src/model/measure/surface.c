@@ -1,7 +1,8 @@
 /* The free surface of a body in two dimensions: height over x, from the volume of its points.
  *
- * Each point shares its volume between the two nearest stations by linear weights, so that the profile integrates to the volume of the body's
- * material (J at most 1) exactly and does not jump when a point crosses a station. Stations stand one cell apart from the grid's lowest x on. */
+ * Each point shares its volume between the two nearest stations by linear weights, so that the
+ * profile integrates to the volume of the body's material (J at most 1) exactly and does not jump
+ * when a point crosses a station. Stations stand one cell apart from the grid's lowest x on. */
 #include "model/measure/measure.h"
 
 typedef struct {
@@ -26,7 +27,8 @@ static PetscErrorCode ProfileCreate(const Model *m, PetscInt body, Profile *s)
   PetscCall(PetscCalloc1(s->n, &s->height));
   for (PetscInt p = 0; p < m->points->n; ++p) {
     if (!measure_takes_point(m, body, p)) continue;
-    /* a loose point may have opened to many times its volume: what it holds of material has not grown */
+    /* a loose point may have opened to many times its volume: what it holds of material has not
+     * grown */
     const PetscReal volume = PetscMin(1, m->points->real[POINT_J][p]) * m->points->real[POINT_VOLUME][p];
     const PetscReal at = (point_real(m->points, POINT_X, p)[0] - s->x0) / s->dx;
     const PetscInt i = PetscMax(0, PetscMin(s->n - 2, (PetscInt)PetscFloorReal(at)));
@@ -61,8 +63,8 @@ static PetscReal front_of(const Profile *s)
   return s->x0;
 }
 
-/* Angle (deg, positive if it falls towards +x) of the line fitted by least squares to the surface between 20 % and 80 % of the way
- * from its highest station to the front. */
+/* Angle (deg, positive if it falls towards +x) of the line fitted by least squares to the surface
+ * between 20 % and 80 % of the way from its highest station to the front. */
 static PetscReal slope_of(const Profile *s)
 {
   PetscInt top = 0;

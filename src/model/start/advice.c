@@ -23,11 +23,13 @@ static PetscBool flows_at_constant_volume(const MaterialSpec *spec, const Materi
   return PETSC_TRUE;
 }
 
-/* Does each cell have more points at which its volume would have to stay than motions to obey them? A single point in a quadrilateral or
- * hexahedron asks for little (and holds little: see seeding). */
+/* Does each cell have more points at which its volume would have to stay than motions to obey them?
+ * A single point in a quadrilateral or hexahedron asks for little (and holds little: see
+ * seeding). */
 static PetscBool cells_lock(const Model *m, const BodySpec *body)
 {
-  const PetscBool simplex = cells[m->grid->first_type].nodes == m->dim + 1; /* some of them, in a mixed mesh */
+  /* some of them, in a mixed mesh */
+  const PetscBool simplex = cells[m->grid->first_type].nodes == m->dim + 1;
   return simplex || body->points_per_cell > 1;
 }
 
@@ -46,8 +48,8 @@ static void hint_mixed(const Model *m, const Material *material, Diag *diag)
   else diag_hint(diag, "`formulation: mixed` keeps that away");
 }
 
-/* Measured (the footing of tests/program/traps.sh): quadrilaterals with four points, and triangles, carry six times Prandtl's load and show no
- * limit. */
+/* Measured (the footing of tests/program/traps.sh): quadrilaterals with four points, and triangles,
+ * carry six times Prandtl's load and show no limit. */
 static void advise_locking(const Model *m, const BodySpec *body, PetscInt i, Diag *diag)
 {
   const MaterialSpec *spec = &m->c->materials[i];
@@ -71,7 +73,8 @@ static void advise_locking(const Model *m, const BodySpec *body, PetscInt i, Dia
 /* --- which way is down? --- */
 static const char *const sides[3][2] = {{"left", "right"}, {"bottom", "top"}, {"front", "back"}};
 
-/* Does the entry hold that component of nodes on that side of the box? Of a shape it is believed. */
+/* Does the entry hold that component of nodes on that side of the box? Of a shape it is
+ * believed. */
 static PetscBool holds_side(const Grid *grid, const MotionSpec *entry, PetscInt axis, int high)
 {
   const PetscReal at = high ? grid->max[axis] : grid->min[axis], slack = 1e-9 * (grid->max[axis] - grid->min[axis]);

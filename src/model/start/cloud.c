@@ -1,7 +1,8 @@
 /* From cells to a cloud: what gmm does once, before the first step. */
 #include "model/model_private.h"
 
-/* Nodes of cells that hold points, and nodes whose motion is prescribed: obstacles, and the body's own boundary. Owners know of all ranks' cells. */
+/* Nodes of cells that hold points, and nodes whose motion is prescribed: obstacles, and the body's
+ * own boundary. Owners know of all ranks' cells. */
 static PetscErrorCode MarkNodes(const Model *m, unsigned char *marked, unsigned char *twin)
 {
   const Grid *mesh = m->grid;
@@ -22,7 +23,8 @@ static PetscErrorCode MarkNodes(const Model *m, unsigned char *marked, unsigned 
   PetscFunctionReturn(0);
 }
 
-/* Points keep the number of the cell where they were born: it orders them in memory, and they stay together. */
+/* Points keep the number of the cell where they were born: it orders them in memory, and they stay
+ * together. */
 static void leave_cells(const Grid *mesh, Points *points)
 {
   for (PetscInt p = 0; p < points->n; ++p) points->cell[p] = mesh->global_cell[points->cell[p]];
@@ -61,8 +63,9 @@ static PetscBool is_held(const Model *m, PetscInt node)
   return PETSC_FALSE;
 }
 
-/* Points whose clouds reach prescribed nodes that the body's cells do not touch hang on them without strain, so that to come off takes a
- * force. Where the body stands on prescribed nodes of its own that is as it should be. */
+/* Points whose clouds reach prescribed nodes that the body's cells do not touch hang on them
+ * without strain, so that to come off takes a force. Where the body stands on prescribed nodes of
+ * its own that is as it should be. */
 PetscErrorCode ModelWarnOfObstacles(const Model *m, Diag *diag)
 {
   const Support *w = m->space->support;

@@ -1,4 +1,5 @@
-/* Geostatic stress at t = 0: that of the material really above each point, under the gravity of t = 0. */
+/* Geostatic stress at t = 0: that of the material really above each point, under the gravity of t =
+ * 0. */
 #include "material/pressure.h"
 #include "model/model_private.h"
 
@@ -27,8 +28,8 @@ static void geostatic(const Upwards *u, PetscReal k0, PetscReal above, PetscReal
   }
 }
 
-/* The state's stress is tau = J sigma, with the J of its own compression: the point's F and undeformed volume take the same J, so that
- * it keeps the volume that it was seeded with. */
+/* The state's stress is tau = J sigma, with the J of its own compression: the point's F and
+ * undeformed volume take the same J, so that it keeps the volume that it was seeded with. */
 static void compress(Points *points, PetscInt p, const Material *material, const PetscReal sigma[6])
 {
   static const PetscReal identity[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};

@@ -1,5 +1,6 @@
-/* Is every body held? In statics a body that nothing prescribed reaches, through other bodies neither, can be anywhere: the tangent is singular,
- * and what a solver makes of that is no answer. */
+/* Is every body held? In statics a body that nothing prescribed reaches, through other bodies
+ * neither, can be anywhere: the tangent is singular, and what a solver makes of that is no
+ * answer. */
 #include "model/model_private.h"
 
 /* Nodes that the body touches, on all copies. */
@@ -18,8 +19,8 @@ static PetscErrorCode TouchedBy(const Model *m, PetscInt body, PetscReal *touche
   PetscFunctionReturn(0);
 }
 
-/* joined (bodies x bodies): do both touch one node? held (bodies x dim): is a node of the body held in this direction, by a prescribed motion or by
- * a nodal force? */
+/* joined (bodies x bodies): do both touch one node? held (bodies x dim): is a node of the body held
+ * in this direction, by a prescribed motion or by a nodal force? */
 static PetscErrorCode Touches(const Model *m, PetscInt *joined, PetscInt *held)
 {
   const PetscInt n = m->c->n_bodies, nodes = m->grid->n_nodes;

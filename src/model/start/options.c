@@ -1,7 +1,9 @@
-/* PETSc options of the case's `petsc:` block. The command line wins; they last as long as the model. */
+/* PETSc options of the case's `petsc:` block. The command line wins; they last as long as the
+ * model. */
 #include "model/model_private.h"
 
-/* "-name value" -> name (with its dash) and value: NULL if there is none, or it is `true`, which switches on flags and viewers alike. */
+/* "-name value" -> name (with its dash) and value: NULL if there is none, or it is `true`, which
+ * switches on flags and viewers alike. */
 static PetscErrorCode Split(const char *option, char name[256], const char **value)
 {
   const char *blank = strchr(option, ' ');
@@ -30,7 +32,8 @@ PetscErrorCode OptionsApply(Model *m)
   PetscFunctionReturn(0);
 }
 
-/* What SNES, KSP and PC make of the options, tried on solvers that are thrown away: PETSc's own error is an internal one, with a trace. */
+/* What SNES, KSP and PC make of the options, tried on solvers that are thrown away: PETSc's own
+ * error is an internal one, with a trace. */
 PetscErrorCode OptionsCheck(const Model *m, Diag *diag)
 {
   SNES snes;

@@ -240,7 +240,8 @@ static NewtonMemory newton_memory(const Table *table, char reason[256])
                         .since = count_of(table, "solver_steps_since", reason)};
 }
 
-/* The partition as it was, where the ranks are as many; others share the grid as a new run does, and anew if that is not good. */
+/* The partition as it was, where the ranks are as many; others share the grid as a new run does,
+ * and anew if that is not good. */
 static PetscErrorCode BalanceBack(Model *m, const Tables *tables, char reason[256])
 {
   const Table *table = tables_find(tables, "balance"), *partition = tables_find(tables, "partition");

@@ -1,8 +1,10 @@
-/* State of a cloud as tables: its nodes, ghosts, and the pattern that the system was made for. On other ranks space is cut anew. */
+/* State of a cloud as tables: its nodes, ghosts, and the pattern that the system was made for. On
+ * other ranks space is cut anew. */
 #include "model/model_private.h"
 #include "model/state/state_private.h"
 
-/* Pairs of local nodes that the system couples; none if it no longer fits the nodes, and the next step makes another one. */
+/* Pairs of local nodes that the system couples; none if it no longer fits the nodes, and the next
+ * step makes another one. */
 static PetscErrorCode PatternToTable(const Model *m, Tables *tables)
 {
   const System *s = m->system;

@@ -1,4 +1,5 @@
-/* What was lost on the way, as tables. All of it are real numbers that stand together in their structs, one row each. */
+/* What was lost on the way, as tables. All of it are real numbers that stand together in their
+ * structs, one row each. */
 #include "model/state/state_private.h"
 
 #define NUMBERS(type, first) ((PetscInt)((sizeof(type) - offsetof(type, first)) / sizeof(PetscReal)))

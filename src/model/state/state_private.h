@@ -4,13 +4,15 @@
 #include "grid/directory.h"
 #include "model/state/state.h"
 
-/* What was lost on the way: energy, points, tracers, carried loads. Checkpoints of older programs do not have it. */
+/* What was lost on the way: energy, points, tracers, carried loads. Checkpoints of older programs
+ * do not have it. */
 PetscErrorCode StateLostToTables(Model *model, Tables *tables);
 void state_lost_from_tables(Model *model, const Tables *tables, char reason[256]);
 
 /* Collective. After all other tables: nodes of a cloud, and which rows are whose. */
 PetscErrorCode StateCloudToTables(const Model *model, Tables *tables);
-/* Collective. First of all: rows to the ranks that wrote them, if these are as many (*home), and the nodes. */
+/* Collective. First of all: rows to the ranks that wrote them, if these are as many (*home), and
+ * the nodes. */
 PetscErrorCode StateCloudNodes(Model *model, Tables *tables, PetscBool *home, char reason[256]);
 /* Collective. Last of all: everything to its rank, the pattern, and phase a. */
 PetscErrorCode StateCloudSettle(Model *model, const Tables *tables, PetscBool home, char reason[256]);

@@ -5,7 +5,8 @@
 #include "output/vtk/slab_file.h"
 #include "talus_version.h"
 
-/* A slab per column, in the order of the tables; those of tables that are everywhere come from rank 0 and are marked in `everywhere`. */
+/* A slab per column, in the order of the tables; those of tables that are everywhere come from rank
+ * 0 and are marked in `everywhere`. */
 static PetscErrorCode MakeSlabs(PetscMPIInt rank, const Tables *tables, PetscInt *n, Slab **slabs)
 {
   PetscFunctionBeginUser;

@@ -23,6 +23,7 @@ extern const char *const contents_types[]; /* real int64 int32 byte, by ColumnTy
 
 /* As text, NUL-terminated, of malloc; NULL without memory. */
 char *contents_write(const Contents *contents);
-/* Read n bytes (which need no NUL) of a file of file_bytes bytes. PETSC_FALSE with a reason if they are no list of this version, if anything in it
- * is damaged, or if it does not fit the file. contents->entries is to be freed after success. Not collective. */
+/* Read n bytes (which need no NUL) of a file of file_bytes bytes. PETSC_FALSE with a reason if they
+ * are no list of this version, if anything in it is damaged, or if it does not fit the file.
+ * contents->entries is to be freed after success. Not collective. */
 PetscBool contents_read(const char *bytes, size_t n, PetscInt64 file_bytes, Contents *contents, char reason[256]);

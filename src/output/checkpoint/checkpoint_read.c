@@ -101,7 +101,8 @@ static PetscErrorCode ReadShares(MPI_Comm comm, const char *path, PetscInt n, vo
   PetscFunctionReturn(0);
 }
 
-/* Compare all checksums; a table that is everywhere counts once, on rank 0, and is the same on the others, who read the same bytes. */
+/* Compare all checksums; a table that is everywhere counts once, on rank 0, and is the same on the
+ * others, who read the same bytes. */
 static PetscErrorCode Verify(MPI_Comm comm, const Contents *c, void **data, PetscInt64 *bytes, PetscErrorCode *code,
                              char reason[256])
 {

@@ -81,7 +81,8 @@ static FILE *open_log(const char *folder, const char *log, const char *mode, Dia
   return file;
 }
 
-/* A run at work holds a lock on its directory, which the system takes away when the process ends, however it ends. */
+/* A run at work holds a lock on its directory, which the system takes away when the process ends,
+ * however it ends. */
 static PetscBool dir_lock(const char *path, Diag *diag, int *lock)
 {
   *lock = open(path, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
@@ -114,8 +115,8 @@ static FILE *prepare(const char *path, PetscBool force, const char *log, Diag *d
   return file ? file : open_log(path, log, "w", diag);
 }
 
-/* Does a person watch? Open MPI gives the first rank a terminal of its own wherever mpiexec's output goes, so there the
- * output of the parent counts: mpiexec, or a daemon. */
+/* Does a person watch? Open MPI gives the first rank a terminal of its own wherever mpiexec's
+ * output goes, so there the output of the parent counts: mpiexec, or a daemon. */
 static PetscBool on_terminal(void)
 {
   char link[64], target[16] = "";

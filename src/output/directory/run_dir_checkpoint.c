@@ -81,7 +81,8 @@ PetscErrorCode RunDirKeepCheckpoints(RunDir *dir, PetscInt keep)
   PetscFunctionReturn(0);
 }
 
-/* What a file of the directory is to a run that goes back to `step` and the first `states` states. */
+/* What a file of the directory is to a run that goes back to `step` and the first `states`
+ * states. */
 static int rewind_files(const RunDir *dir, const char *name, PetscInt states, PetscInt step)
 {
   char path[FILE_PATH], aside[FILE_PATH + 16];

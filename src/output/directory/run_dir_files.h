@@ -27,8 +27,8 @@ int file_finish_stream(FILE *file);
 int file_sync_folder(const char *path);
 /* `path` gets the text, atomically. */
 int file_write_text(const char *path, const char *text);
-/* Let `unfinished` become `path` (which may be there, but no device and no pipe), or remove it if `error` is not 0.
- * Returns error, or that of the
+/* Let `unfinished` become `path` (which may be there, but no device and no pipe), or remove it if
+ * `error` is not 0. Returns error, or that of the
  * renaming. */
 int file_commit(const char *unfinished, const char *path, int error);
 

@@ -21,9 +21,11 @@ struct RunDir {
   PetscReal last_shown; /* when progress was last printed, s since the clock's start; < 0: never */
 };
 
-/* Rank 0. 0, or ESTALE if the directory's name no longer leads to the directory in which the run began. */
+/* Rank 0. 0, or ESTALE if the directory's name no longer leads to the directory in which the run
+ * began. */
 int run_dir_present(const RunDir *dir);
-/* Share rank 0's errno for the file of this name; a refusal is logged and kept for run_dir_reason. Collective. */
+/* Share rank 0's errno for the file of this name; a refusal is logged and kept for run_dir_reason.
+ * Collective. */
 PetscErrorCode RunDirAgree(RunDir *dir, const char *name, int error);
 
 /* After a line for the log: did it get there? */

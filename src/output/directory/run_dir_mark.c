@@ -146,7 +146,8 @@ int run_dir_remove(const char *folder)
   char path[FILE_PATH];
   struct stat info;
   if (!run_dir_is_ours(folder)) return 0;
-  int error = run_dir_sign(folder); /* one of an earlier version that is half removed must be known, too */
+  /* one of an earlier version that is half removed must be known, too */
+  int error = run_dir_sign(folder);
   if (!error || error == ENOSPC) error = remove_files(folder, run_files);
   snprintf(path, sizeof path, "%s/pictures", folder);
   if (!error && !lstat(path, &info) && S_ISDIR(info.st_mode)) error = remove_files(path, picture_files);

@@ -112,8 +112,8 @@ static herr_t release_context(void *context)
   return 0;
 }
 
-/* A file in memory with all that is not raw data in one block at its start, so that no memory is spent
- * on the numbers. */
+/* A file in memory with all that is not raw data in one block at its start, so that no memory is
+ * spent on the numbers. */
 static hid_t create_in_memory(PetscInt n_slabs, size_t user_block, SlabFrame *frame)
 {
   H5FD_file_image_callbacks_t callbacks = {.image_malloc = allocate,

@@ -2,8 +2,8 @@
  *
  * HDF5 lays the file out once, on one rank, in memory: groups, attributes and the place of every
  * dataset. The numbers themselves are written by each rank at the offsets found here. So the HDF5
- * library never meets a full disk (it cannot close a file that it cannot flush), every error has its
- * errno, and no rank waits for another in the middle of a write. */
+ * library never meets a full disk (it cannot close a file that it cannot flush), every error has
+ * its errno, and no rank waits for another in the middle of a write. */
 #pragma once
 #include "base/table.h"
 
@@ -51,6 +51,7 @@ typedef struct {
   PetscInt64 size;
 } SlabFrame;
 
-/* Lay out the datasets (path, unit, type, components, total, crc) and find their offsets. frame->bytes is to
- * be freed. PETSC_FALSE if HDF5 would not; then there is nothing to free. Not collective. */
+/* Lay out the datasets (path, unit, type, components, total, crc) and find their offsets.
+ * frame->bytes is to be freed. PETSC_FALSE if HDF5 would not; then there is nothing to free. Not
+ * collective. */
 PetscBool slab_layout(const SlabHead *head, PetscInt n, Slab *slabs, SlabFrame *frame);

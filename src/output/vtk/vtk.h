@@ -1,8 +1,8 @@
-/* VTKHDF 1.0 UnstructuredGrid files (.hdf) and their time series (.hdf.series), as ParaView 5.11 opens
- * them.
+/* VTKHDF 1.0 UnstructuredGrid files (.hdf) and their time series (.hdf.series), as ParaView 5.11
+ * opens them.
  *
- * All ranks write one file collectively, one partition each (empty ones too). A file is written under a
- * temporary name and renamed when it is complete: a reader never sees half of one. */
+ * All ranks write one file collectively, one partition each (empty ones too). A file is written
+ * under a temporary name and renamed when it is complete: a reader never sees half of one. */
 #pragma once
 #include <petscsys.h>
 
@@ -16,7 +16,8 @@ typedef struct {
   PetscInt n_points;
   const PetscReal *x; /* n_points x 3 */
   PetscInt n_cells;
-  const PetscInt *connectivity; /* n_cells x nodes_per_cell, local points; NULL: one vertex a point */
+  /* n_cells x nodes_per_cell, local points; NULL: one vertex a point */
+  const PetscInt *connectivity;
   PetscInt nodes_per_cell;
   int vtk_type; /* of the cells, but for */
   PetscInt n_first, first_nodes;
@@ -27,11 +28,12 @@ typedef struct {
   PetscReal time;             /* s, kept as an attribute too */
 } VtkData;
 
-/* Collective. Errors of the file system (full disk, no permission) come back as PETSC_ERR_FILE_WRITE on
- * every rank, with the unfinished file removed; the caller reports and goes on or stops. `reason` (256
- * characters) says why. */
+/* Collective. Errors of the file system (full disk, no permission) come back as
+ * PETSC_ERR_FILE_WRITE on every rank, with the unfinished file removed; the caller reports and goes
+ * on or stops. `reason` (256 characters) says why. */
 PetscErrorCode VtkWrite(MPI_Comm comm, const char *path, const VtkData *data, char reason[256]);
-/* Resume: keep the first n entries of DIR/NAME.hdf.series, and forget the others; atomic. Collective. No file is fine if n = 0. */
+/* Resume: keep the first n entries of DIR/NAME.hdf.series, and forget the others; atomic.
+ * Collective. No file is fine if n = 0. */
 PetscErrorCode VtkSeriesKeep(MPI_Comm comm, const char *folder, const char *name, PetscInt n, char reason[256]);
 /* Append (or replace from this time on) an entry of DIR/NAME.hdf.series; atomic. Rank 0 writes.
  * Collective. file NULL: only forget the entries from this time on. */

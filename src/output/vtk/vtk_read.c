@@ -121,7 +121,8 @@ static PetscErrorCode OpenQuietly(const char *path, VtkFile *file, char reason[2
   PetscFunctionReturn(0);
 }
 
-/* All that HDF5 does with the structure of a file, which it believes: 1.10 crashes on some that are damaged. */
+/* All that HDF5 does with the structure of a file, which it believes: 1.10 crashes on some that are
+ * damaged. */
 static void try_structure(void *path, char reason[256])
 {
   static const char *const cells[] = {"Offsets", "Connectivity", "Types"};
@@ -205,7 +206,8 @@ PetscErrorCode VtkReadField(VtkFile *file, const VtkFieldInfo *field, PetscReal 
   PetscFunctionReturn(code);
 }
 
-/* A partition's offsets rise from 0 to the number of its node numbers, and these name its points. */
+/* A partition's offsets rise from 0 to the number of its node numbers, and these name its
+ * points. */
 static PetscBool is_partition(PetscInt64 cells, const PetscInt64 *offsets, PetscInt64 connectivity,
                               const PetscInt64 *local, PetscInt64 points)
 {

@@ -9,16 +9,16 @@ typedef struct {
   PetscInt components;
 } VtkFieldInfo;
 
-/* PETSC_ERR_FILE_OPEN (returned plainly, with a reason) if there is no such file or it is no complete
- * VTKHDF file. */
+/* PETSC_ERR_FILE_OPEN (returned plainly, with a reason) if there is no such file or it is no
+ * complete VTKHDF file. */
 PetscErrorCode VtkReadOpen(const char *path, VtkFile **file, char reason[256]);
 PetscErrorCode VtkReadClose(VtkFile **file);
 
-PetscInt vtk_read_points(const VtkFile *file); /* number of points */
+PetscInt vtk_read_points(const VtkFile *file);                              /* number of points */
 PetscInt vtk_read_fields(const VtkFile *file, const VtkFieldInfo **fields); /* of the points */
 
-/* These return PETSC_ERR_FILE_UNEXPECTED plainly, with a reason and nothing to free, if the file is damaged there.
- * What they give is to be
+/* These return PETSC_ERR_FILE_UNEXPECTED plainly, with a reason and nothing to free, if the file is
+ * damaged there. What they give is to be
  * freed with PetscFree. */
 PetscErrorCode VtkReadCoordinates(VtkFile *file, PetscReal **x, char reason[256]); /* points x 3 */
 /* points x components of one of vtk_read_fields */

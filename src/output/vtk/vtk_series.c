@@ -28,7 +28,8 @@ static void write_entry(FILE *out, PetscBool first, const char *file, PetscReal 
   fprintf(out, "%s    {\"name\": \"%s\", \"time\": %s}", first ? "" : ",\n", file, number);
 }
 
-/* Entries before `time` (but for the last bits of a sum of steps) and at most `most` of them, then the new one. */
+/* Entries before `time` (but for the last bits of a sum of steps) and at most `most` of them, then
+ * the new one. */
 static PetscInt rewrite(FILE *old, FILE *out, const char *file, PetscReal time, PetscInt most)
 {
   const PetscReal before = time - 1e-12 * PetscAbsReal(time);

@@ -14,7 +14,7 @@ typedef struct {
   VtkState *states; /* in the order of time */
 } VtkSeries;
 
-/* No file, or one without entries: n = 0. PETSC_ERR_FILE_UNEXPECTED (returned plainly, with a reason) if it is
- * damaged. Not collective. */
+/* No file, or one without entries: n = 0. PETSC_ERR_FILE_UNEXPECTED (returned plainly, with a
+ * reason) if it is damaged. Not collective. */
 PetscErrorCode VtkSeriesRead(const char *folder, const char *name, VtkSeries *series, char reason[256]);
 PetscErrorCode VtkSeriesFree(VtkSeries *series);

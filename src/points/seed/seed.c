@@ -76,8 +76,9 @@ static void fill_rule(CellType type, PetscInt place, SeedRule *rule)
   (void)cell_quadrature(type, rule->n, rule->xi, rule->weight);
 }
 
-/* PETSC_FALSE, and a message that lists the rules, if this number of points is none. Where a mesh mixes two kinds of
- * cells it may be a number of either, and the other kind takes the rule of the same place in its list. */
+/* PETSC_FALSE, and a message that lists the rules, if this number of points is none. Where a mesh
+ * mixes two kinds of cells it may be a number of either, and the other kind takes the rule of the
+ * same place in its list. */
 static PetscBool choose_rule(Seeding *s)
 {
   const CellType type = s->source->type;
@@ -137,8 +138,8 @@ static PetscBool centre_in_shape(const Seeding *s, PetscInt cell)
   return shape_contains(&s->body->shape, s->source->dim, centre, 0);
 }
 
-/* The cells in the region (if one is named) and in the shape (if there is one). *found is false after a
- * mistake. */
+/* The cells in the region (if one is named) and in the shape (if there is one). *found is false
+ * after a mistake. */
 static PetscErrorCode ChooseCells(Seeding *s, PetscBool *found)
 {
   const GridSet *set = NULL;
@@ -214,8 +215,8 @@ static PetscErrorCode SeedCells(const Seeding *s, Points *points, const PointSee
   PetscFunctionReturn(0);
 }
 
-/* The body's own mesh: only its cells matter. It may be a .geo with the parameters of the grid's. NULL
- * after a mistake. */
+/* The body's own mesh: only its cells matter. It may be a .geo with the parameters of the grid's.
+ * NULL after a mistake. */
 static PetscErrorCode CreateOwnMesh(const Seeding *s, Grid **own)
 {
   GridSpec spec = s->c->grid;

@@ -28,15 +28,17 @@ typedef struct {
 /* Volume that a cell stands for: area times unit thickness, or the full circle. */
 PetscReal seed_cell_volume(const Seeding *s, PetscInt cell);
 
-/* Collective. After the cells were chosen: errors for a body without a cell, warnings where whole cells
- * represent the shape badly, or have a single point that leaves them soft. */
+/* Collective. After the cells were chosen: errors for a body without a cell, warnings where whole
+ * cells represent the shape badly, or have a single point that leaves them soft. */
 PetscErrorCode SeedCheckVolume(const Seeding *s);
-/* Collective. Can every rank count the numbers of its points with those of this body? An error if not. */
+/* Collective. Can every rank count the numbers of its points with those of this body? An error if
+ * not. */
 PetscErrorCode SeedCheckRoom(const Seeding *s, const Points *points, PetscBool *fits);
-/* Collective. taken: per local cell of the grid the body that has it, -1 none; marks this body's cells, and
- * complains of overlap. */
+/* Collective. taken: per local cell of the grid the body that has it, -1 none; marks this body's
+ * cells, and complains of overlap. */
 PetscErrorCode SeedClaimCells(const Seeding *s, PetscInt *taken);
-/* Collective. After points of own meshes were located: errors for bodies that reach beyond the grid. */
+/* Collective. After points of own meshes were located: errors for bodies that reach beyond the
+ * grid. */
 PetscErrorCode SeedCheckLocated(const Points *points, const Grid *grid, const Case *c, Diag *diag);
 
 /* The path of a key of body number `body`; of the body itself if key is "". */

@@ -1,5 +1,5 @@
-/* What a user should know of a seeded body: that it has points at all, that it has its volume, that it
- * overlaps no other. */
+/* What a user should know of a seeded body: that it has points at all, that it has its volume, that
+ * it overlaps no other. */
 #include "points/fields.h"
 #include "points/seed/seed.h"
 #include "base/count.h"
@@ -82,7 +82,8 @@ static PetscReal ball_volume(const Shape *shape, PetscInt dim, PetscReal *moment
   return dim == 3 ? 4.0 / 3.0 * area * shape->radius : area;
 }
 
-/* Volume of a shape where it is easily known, else -1. Rings by Pappus's rule: 2 pi times the first moment. */
+/* Volume of a shape where it is easily known, else -1. Rings by Pappus's rule: 2 pi times the first
+ * moment. */
 static PetscReal shape_volume(const Shape *shape, const Case *c)
 {
   const PetscInt dim = kinematics_dim(c->kinematics);
@@ -109,7 +110,8 @@ static void compare_volume(const Seeding *s, PetscReal seeded)
             "cells whose centre lies in the shape belong to it: let cell faces follow it, or use smaller cells");
 }
 
-/* Material that the grid does not reach would be lost without a word. A shape cut by a region or a mesh of its own is taken as meant. */
+/* Material that the grid does not reach would be lost without a word. A shape cut by a region or a
+ * mesh of its own is taken as meant. */
 static PetscBool tell_outside_shape(const Seeding *s)
 {
   PetscReal min[3], max[3];
@@ -126,7 +128,8 @@ static PetscBool tell_outside_shape(const Seeding *s)
   return PETSC_TRUE;
 }
 
-/* Its middle is the only place where a quadrilateral or hexahedron with one point is felt: it may bend into an hourglass at no cost. */
+/* Its middle is the only place where a quadrilateral or hexahedron with one point is felt: it may
+ * bend into an hourglass at no cost. */
 static void tell_hourglass(const Seeding *s)
 {
   const CellType type = s->source->type;

@@ -1,9 +1,10 @@
-/* Sweeps over rows of small blocks in single precision, with the size of a block known at compile time.
+/* Sweeps over rows of small blocks in single precision, with the size of a block known at compile
+ * time.
  *
- * A node's numbers are one register of four lanes. 2 x 2 blocks are stored row by row and fill it; 3 x 3 blocks are
- * stored column by column, and the fourth lane is zeroed in the end: vectors keep four numbers a node then, and every
- * array of blocks ends with room for one load too many. Registers are the compiler's vectors, as in
- * formulation/displacement_kernels.h. */
+ * A node's numbers are one register of four lanes. 2 x 2 blocks are stored row by row and fill it;
+ * 3 x 3 blocks are stored column by column, and the fourth lane is zeroed in the end: vectors keep
+ * four numbers a node then, and every array of blocks ends with room for one load too many.
+ * Registers are the compiler's vectors, as in formulation/displacement_kernels.h. */
 #pragma once
 #include <petscsys.h>
 
@@ -11,7 +12,8 @@
 
 typedef float Lanes __attribute__((vector_size(16), aligned(4), may_alias));
 typedef double Doubles __attribute__((vector_size(32)));
-typedef double TwoLanes __attribute__((aligned(4), may_alias)); /* 2D: both numbers of a node, moved at once */
+/* 2D: both numbers of a node, moved at once */
+typedef double TwoLanes __attribute__((aligned(4), may_alias));
 typedef double TwoTwice __attribute__((vector_size(16)));
 
 #define BLOCK_PADDING 4
@@ -48,7 +50,8 @@ KERNEL double node_dot(const int dim, Lanes a, Lanes b)
   return dim == 2 ? x[0] + x[1] : x[0] + x[1] + x[2];
 }
 
-/* A sum of products of blocks with nodes. 3D sums the columns apart, so that an addition need not wait for the one before. */
+/* A sum of products of blocks with nodes. 3D sums the columns apart, so that an addition need not
+ * wait for the one before. */
 typedef struct {
   Lanes part[3];
 } BlockSum;
@@ -77,7 +80,8 @@ KERNEL Lanes sum_end(const int dim, const BlockSum *s)
   return __builtin_shufflevector(v, v, 0, 2, 1, 3);
 }
 
-/* v - (row r of rows) x. Towards the diagonal, since the neighbour there is what the sweep has just computed. */
+/* v - (row r of rows) x. Towards the diagonal, since the neighbour there is what the sweep has just
+ * computed. */
 KERNEL Lanes row_forward(const int dim, const BlockRows *rows, PetscInt r, const float *x, Lanes v)
 {
   BlockSum s = sum_start(dim, v);

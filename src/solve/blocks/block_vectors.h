@@ -1,5 +1,5 @@
-/* What Krylov methods do with whole vectors: single precision, sums in double. Eight numbers at a time, since the
- * compiler may not reorder a sum by itself. */
+/* What Krylov methods do with whole vectors: single precision, sums in double. Eight numbers at a
+ * time, since the compiler may not reorder a sum by itself. */
 #pragma once
 #include "solve/blocks/block_kernels.h"
 

@@ -1,7 +1,8 @@
 #include "base/math/tensor.h"
 #include "solve/blocks/blocks.h"
 
-/* One row of the summed matrix while it is walked: a row that only this rank assembles comes straight from the system. */
+/* One row of the summed matrix while it is walked: a row that only this rank assembles comes
+ * straight from the system. */
 typedef struct {
   const System *s;
   const BlocksHalo *halo;
@@ -220,8 +221,8 @@ static inline void scale_unsymmetric_2d(Lanes v, Lanes s, float *block)
                     __builtin_shufflevector(s, s, 1, 1, 3, 3) * __builtin_shufflevector(v, v, 2, 3, 2, 3);
 }
 
-/* The same for 3 x 3: rows of the block are lanes, and its columns go out one after the other; the fourth lane of a store is 0 and belongs to
- * what comes next. column: those of S. */
+/* The same for 3 x 3: rows of the block are lanes, and its columns go out one after the other; the
+ * fourth lane of a store is 0 and belongs to what comes next. column: those of S. */
 static inline void scale_block_3d(const float *values, const Lanes column[3], const float *other, PetscBool symmetric,
                                   float *block)
 {
@@ -237,7 +238,8 @@ static inline void scale_block_3d(const float *values, const Lanes column[3], co
   }
 }
 
-/* block = S_row values T_column, in the order of the kernels: 2 x 2 row by row, 3 x 3 column by column. */
+/* block = S_row values T_column, in the order of the kernels: 2 x 2 row by row, 3 x 3 column by
+ * column. */
 KERNEL const float *scale_blocks(const int dim, const Blocks *m, PetscInt r, const BlockRows *rows, PetscInt k,
                                  const float *values, PetscBool symmetric)
 {

@@ -1,12 +1,13 @@
-/* The matrix of a System as rows of blocks in single precision, made for conjugate gradients with symmetric Gauss-
- * Seidel.
+/* The matrix of a System as rows of blocks in single precision, made for conjugate gradients with
+ * symmetric Gauss- Seidel.
  *
- * Rows and columns are scaled so that the blocks of the diagonal are identities: A^ = S A T = 1 + L + U + O, with O
- * the columns that other ranks own. S D T = 1 for a block D of the diagonal; where A is symmetric T = S^T, else T =
+ * Rows and columns are scaled so that the blocks of the diagonal are identities: A^ = S A T = 1 + L
+ * + U + O, with O the columns that other ranks own. S D T = 1 for a block D of the diagonal; where
+ * A is symmetric T = S^T, else T =
  * 1. Gauss-Seidel on each rank's part is (1 + L)(1 + U), and by Eisenstat's trick
  *   (1 + L)^-1 A^ (1 + U)^-1 p = t + (1 + L)^-1 (p - t + O t),   t = (1 + U)^-1 p
- * needs no product with the matrix. Single precision moves half the bytes and makes Newton inexact by 1e-7 of the
- * matrix; residuals stay double (docs/decisions.md). */
+ * needs no product with the matrix. Single precision moves half the bytes and makes Newton inexact
+ * by 1e-7 of the matrix; residuals stay double (docs/decisions.md). */
 #pragma once
 #include "solve/blocks/block_kernels.h"
 #include "solve/system/system.h"
@@ -19,17 +20,20 @@ typedef struct Blocks {
   PetscInt dim, n;     /* size of a block; rows, one for each node with unknowns */
   PetscInt n_columns;  /* rows, and columns that other ranks own */
   PetscBool symmetric; /* T = S^T */
-  PetscBool singular;  /* a block of the diagonal has no inverse (or is not positive definite) on some rank */
-  float *scale;        /* S of each column, dim x dim row by row */
+  /* a block of the diagonal has no inverse (or is not positive definite) on some rank */
+  PetscBool singular;
+  float *scale; /* S of each column, dim x dim row by row */
   BlockRows lower, upper;
   PetscInt n_outer, *outer_row; /* rows that have columns of other ranks, ascending */
   BlockRows outer;              /* their blocks: row k is outer_row[k] */
   BlocksHalo *halo;
-  struct Projection *projection; /* constraints that the solver has to keep (not owned); NULL: none */
-  float *work[7];                /* vectors of the Krylov methods, made when they are first used */
+  /* constraints that the solver has to keep (not owned); NULL: none */
+  struct Projection *projection;
+  float *work[7]; /* vectors of the Krylov methods, made when they are first used */
 } Blocks;
 
-/* Collective. The pattern; the system must live on unchanged until BlocksDestroy. Blocks are 2 x 2 or 3 x 3. */
+/* Collective. The pattern; the system must live on unchanged until BlocksDestroy. Blocks are 2 x 2
+ * or 3 x 3. */
 PetscErrorCode BlocksCreate(const System *system, PetscBool symmetric, Blocks **blocks);
 PetscErrorCode BlocksDestroy(Blocks **blocks);
 /* Collective. Take the singles of the system. */
@@ -46,7 +50,8 @@ typedef struct {
   double (*scaled_norm2)(const Blocks *m, const PetscReal *b); /* |S b|^2 */
   double (*start)(const Blocks *m, const PetscReal *b, PetscReal factor,
                   float *r); /* r = (1 + L)^-1 S b factor; r . r */
-  void (*backward)(const Blocks *m, const float *r, PetscReal beta, float *p, float *t); /* p = r + beta p, t */
+  /* p = r + beta p, t */
+  void (*backward)(const Blocks *m, const float *r, PetscReal beta, float *p, float *t);
   double (*forward)(const Blocks *m, const float *p, const float *t, const float *q,
                     float *y); /* y = (1 + L)^-1 (p - t + O t); q . (t + y) */
   void (*finish)(const Blocks *m, const float *x, PetscReal factor, float *t,
@@ -54,13 +59,15 @@ typedef struct {
 } BlockSweeps;
 const BlockSweeps *block_sweeps(PetscInt dim);
 
-/* Products right after the sweeps start() and finish() where the result z of the latter has been changed in some places (blocks_product.c). */
+/* Products right after the sweeps start() and finish() where the result z of the latter has been
+ * changed in some places (blocks_product.c). */
 typedef struct {
   Blocks *m;
   PetscInt n_changed;
-  const PetscInt *changed; /* numbers in this rank's vectors that may differ; below 0: of another rank */
-  unsigned char *whole;    /* per row: does it have such a column? */
-  PetscReal *inverse;      /* S^-1 */
+  /* numbers in this rank's vectors that may differ; below 0: of another rank */
+  const PetscInt *changed;
+  unsigned char *whole; /* per row: does it have such a column? */
+  PetscReal *inverse;   /* S^-1 */
 } BlocksProduct;
 #define BLOCKS_PRODUCT_WORK 2 /* a work vector of its own */
 /* Collective. `changed` must live on. */
@@ -70,7 +77,8 @@ PetscErrorCode BlocksProductDestroy(BlocksProduct *product);
 PetscErrorCode BlocksProductApply(const BlocksProduct *product, PetscReal size, const PetscReal *z, const float *x,
                                   float *t, PetscReal *q);
 
-/* What crosses ranks: values of rows that others assembled too, and columns that others own (blocks_halo.c). */
+/* What crosses ranks: values of rows that others assembled too, and columns that others own
+ * (blocks_halo.c). */
 struct BlocksHalo {
   PetscSF columns; /* roots: rows; leaves: columns of others */
   PetscSF pairs;   /* roots: incoming blocks; leaves: pairs of rows that others own */
@@ -87,9 +95,11 @@ PetscErrorCode BlocksHaloDestroy(BlocksHalo **halo);
 /* Collective. Sum the shared rows. */
 PetscErrorCode BlocksHaloSum(BlocksHalo *halo, const System *s);
 
-/* A Krylov method of PETSc for Mats of type shell over Blocks: conjugate gradients, or BiCGStab if they are not symmetric. */
+/* A Krylov method of PETSc for Mats of type shell over Blocks: conjugate gradients, or BiCGStab if
+ * they are not symmetric. */
 #define KSPBLOCKS "talus_blocks"
 PetscErrorCode BlocksRegister(void);
-/* Collective. f = K u under m->projection, with the tolerances and monitors of `asked`; its is added to. */
+/* Collective. f = K u under m->projection, with the tolerances and monitors of `asked`; its is
+ * added to. */
 PetscErrorCode BlocksSolveProjected(KSP asked, Blocks *m, const PetscReal *f, PetscReal *u, PetscInt *its,
                                     KSPConvergedReason *reason);

@@ -1,7 +1,8 @@
 /* Rows that several ranks assemble, and columns that other ranks own.
  *
- * A rank's cells fill rows of nodes that another rank owns; their blocks go to the owner. There they may meet columns
- * which the owner's own cells do not couple, or nodes that its part of the grid does not even hold. */
+ * A rank's cells fill rows of nodes that another rank owns; their blocks go to the owner. There
+ * they may meet columns which the owner's own cells do not couple, or nodes that its part of the
+ * grid does not even hold. */
 #include "solve/blocks/blocks.h"
 
 /* Ghost rows stand behind the owned ones: row n + g. Which node is theirs, as a global number? */
@@ -14,7 +15,8 @@ static PetscErrorCode GhostNumbers(const System *s, PetscInt **number)
   PetscFunctionReturn(0);
 }
 
-/* Which incoming blocks belong to each owned row (in_start), and where this rank's ghost rows begin at their owner. */
+/* Which incoming blocks belong to each owned row (in_start), and where this rank's ghost rows begin
+ * at their owner. */
 static PetscErrorCode Offsets(const System *s, PetscSF rows, PetscInt **in_start, PetscInt *remote)
 {
   const PetscInt n = s->n_active, ghosts = s->n_rows - n, *degree;
@@ -77,8 +79,8 @@ static PetscErrorCode IncomingNumbers(const System *s, PetscSF pairs, PetscInt n
   PetscFunctionReturn(0);
 }
 
-/* Global numbers -> columns: owned rows, then ghost rows, then nodes that no cell of this rank holds. The numbers of all columns of others
- * are returned in their order. */
+/* Global numbers -> columns: owned rows, then ghost rows, then nodes that no cell of this rank
+ * holds. The numbers of all columns of others are returned in their order. */
 static PetscErrorCode LocalColumns(const System *s, PetscInt first, const PetscInt *ghost, PetscInt n_incoming,
                                    PetscInt *column, PetscInt *n_outer, PetscInt **outer)
 {

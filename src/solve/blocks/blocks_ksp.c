@@ -1,9 +1,10 @@
 /* Conjugate gradients and BiCGStab on Blocks, as a KSP: tolerances, monitors and views are PETSc's.
  *
- * Both work on the matrix between the two halves of Gauss-Seidel and on the right-hand side divided by its norm,
- * which keeps single precision within its range. Sums are double. PETSc's own methods on a shell of that matrix, with
- * vectors in double, take as many iterations and 1.6 times as long: 6 % of a step of the falling block, 5 % of the
- * granular column. A method tells its iterations and its reason through PETSc's private header alone. */
+ * Both work on the matrix between the two halves of Gauss-Seidel and on the right-hand side divided
+ * by its norm, which keeps single precision within its range. Sums are double. PETSc's own methods
+ * on a shell of that matrix, with vectors in double, take as many iterations and 1.6 times as long:
+ * 6 % of a step of the falling block, 5 % of the granular column. A method tells its iterations and
+ * its reason through PETSc's private header alone. */
 #include <petsc/private/kspimpl.h>
 #include "base/denormals.h"
 #include "solve/blocks/block_vectors.h"
@@ -124,7 +125,8 @@ static PetscErrorCode Start(Solve *s, const PetscReal *b, double *norm2)
   PetscFunctionReturn(0);
 }
 
-/* One solve from u = 0; *indefinite: conjugate gradients met a matrix that is not theirs, BiCGStab went on. */
+/* One solve from u = 0; *indefinite: conjugate gradients met a matrix that is not theirs, BiCGStab
+ * went on. */
 static PetscErrorCode SolveOnBlocks(KSP ksp, Blocks *m, const PetscReal *b, PetscReal *u, PetscBool *indefinite)
 {
   Solve s = {.m = m, .sweeps = block_sweeps(m->dim), .n = m->n * block_stride((int)m->dim)};
@@ -152,8 +154,9 @@ static PetscErrorCode SolveOnBlocks(KSP ksp, Blocks *m, const PetscReal *b, Pets
   PetscFunctionReturn(0);
 }
 
-/* On an indefinite matrix residuals grow by orders on their way, and in single precision the one that BiCGStab carries along is no longer that of its
- * solution. So what is left is looked at and, unless it is as small as asked for, solved for once more. */
+/* On an indefinite matrix residuals grow by orders on their way, and in single precision the one
+ * that BiCGStab carries along is no longer that of its solution. So what is left is looked at and,
+ * unless it is as small as asked for, solved for once more. */
 static PetscErrorCode Refine(KSP ksp, Blocks *m, Mat A)
 {
   PetscBool indefinite = PETSC_TRUE;

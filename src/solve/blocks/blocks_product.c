@@ -1,6 +1,8 @@
-/* The product with the matrix that a method with projections needs right after Gauss-Seidel: by Eisenstat's trick
+/* The product with the matrix that a method with projections needs right after Gauss-Seidel: by
+ * Eisenstat's trick
  *   A^ t = x + L t + O t,   t = (1 + U)^-1 x,
- * and only rows beside constrained nodes, where the projection has changed t, take their whole length. */
+ * and only rows beside constrained nodes, where the projection has changed t, take their whole
+ * length. */
 #include "base/math/tensor.h"
 #include "solve/blocks/blocks.h"
 

@@ -1,5 +1,6 @@
-/* PETSc's conjugate gradients and BiCGStab where constraints hold, preconditioned by Gauss-Seidel between two projections; sums and vectors in
- * double. Both are used in forms that multiply what the preconditioner gave last: the product takes over half of it (blocks_product.c). */
+/* PETSc's conjugate gradients and BiCGStab where constraints hold, preconditioned by Gauss-Seidel
+ * between two projections; sums and vectors in double. Both are used in forms that multiply what
+ * the preconditioner gave last: the product takes over half of it (blocks_product.c). */
 #include "solve/blocks/blocks.h"
 #include "solve/blocks/projection.h"
 

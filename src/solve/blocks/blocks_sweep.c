@@ -25,7 +25,8 @@ KERNEL double scaled_norm2(const int dim, const Blocks *m, const PetscReal *b)
 KERNEL double start(const int dim, const Blocks *m, const PetscReal *b, PetscReal factor, float *x)
 {
   const BlockRows lower =
-    m->lower; /* copies: a store to a vector might change what m points to, as far as the compiler knows */
+    /* copies: a store to a vector might change what m points to, as far as the compiler knows */
+    m->lower;
   const int stride = block_stride(dim);
   const PetscInt n = m->n;
   double norm2 = 0;

@@ -1,7 +1,8 @@
 #include "solve/blocks/projection.h"
 #include "solve/blocks/block_kernels.h"
 
-#define WEAKEST 1e-3 /* of its neighbours' diagonal: from 1e-4 to 1e-1 the preconditioner is as good */
+/* of its neighbours' diagonal: from 1e-4 to 1e-1 the preconditioner is as good */
+#define WEAKEST 1e-3
 
 /* Entries of C in the making: the rows of one rank, or of all. */
 typedef struct {
@@ -191,8 +192,9 @@ static PetscErrorCode FetchDiagonal(Projection *p)
   PetscFunctionReturn(0);
 }
 
-/* A node that a point's support has just reached has a diagonal many powers of ten below its neighbours', and plastic flow leaves it of any
- * sign: no preconditioner stands that. There such a diagonal is raised to WEAKEST of the largest that shares a row with it. */
+/* A node that a point's support has just reached has a diagonal many powers of ten below its
+ * neighbours', and plastic flow leaves it of any sign: no preconditioner stands that. There such a
+ * diagonal is raised to WEAKEST of the largest that shares a row with it. */
 static void strengthen_weak(Projection *p)
 {
   PetscReal *largest = p->t; /* of each row */
@@ -224,7 +226,8 @@ void projection_weaken(const Projection *p, const PetscReal *z, PetscReal *q)
     if (p->place[k] >= 0) q[p->place[k]] -= p->shift[k] * z[p->place[k]];
 }
 
-/* 1 / |D| where C has a column: D weighs the projection, and every positive weight makes one. Plastic flow leaves some of D negative. */
+/* 1 / |D| where C has a column: D weighs the projection, and every positive weight makes one.
+ * Plastic flow leaves some of D negative. */
 static void invert_diagonal(Projection *p)
 {
   for (PetscInt k = 0; k < p->n_dofs; ++k) {

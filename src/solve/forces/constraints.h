@@ -1,7 +1,9 @@
-/* Linear constraints on nodal increments, sum_I N_I du_I = prescribed increment at a place, by Lagrange multipliers.
+/* Linear constraints on nodal increments, sum_I N_I du_I = prescribed increment at a place, by
+ * Lagrange multipliers.
  *
- * Each constraint has a node of its own, the twin, whose unknowns mu are the multipliers over `scale`: the system stays one of nodes and
- * symmetric. The force on the body, scale N_I mu at its nodes and scale mu in all, is the reaction. */
+ * Each constraint has a node of its own, the twin, whose unknowns mu are the multipliers over
+ * `scale`: the system stays one of nodes and symmetric. The force on the body, scale N_I mu at its
+ * nodes and scale mu in all, is the reaction. */
 #pragma once
 #include "solve/system/system.h"
 
@@ -12,7 +14,8 @@ typedef struct Constraints {
   PetscReal *N;
   PetscInt *at, *twin; /* the node whose motion is prescribed, and its twin */
   PetscInt *slot;      /* per node of each cloud: pair (node, twin), pair (twin, node) */
-  PetscReal scale;     /* N/m: brings multipliers and gaps to the size of the other unknowns and forces */
+  /* N/m: brings multipliers and gaps to the size of the other unknowns and forces */
+  PetscReal scale;
 } Constraints;
 
 PetscErrorCode ConstraintsCreate(PetscInt dim, Constraints **constraints);
@@ -23,8 +26,10 @@ PetscErrorCode ConstraintsAdd(Constraints *constraints, PetscInt at, PetscInt tw
                               const PetscReal *N);
 /* Places of the pairs in the system's pattern; PETSC_FALSE if it lacks any. */
 PetscBool constraints_find_slots(Constraints *constraints, const System *system);
-/* One sweep that brings the field of v nearer to `target` at the constrained places, by the coefficients of the constrained nodes alone. Each takes its
- * gap over the share of all held nodes, not over its own: slower, but it does not swing up where a node has less of the field than its neighbours. Dofs
- * with held[] only (of the constrained nodes). correction: as long as v, zero at call and return. */
+/* One sweep that brings the field of v nearer to `target` at the constrained places, by the
+ * coefficients of the constrained nodes alone. Each takes its gap over the share of all held nodes,
+ * not over its own: slower, but it does not swing up where a node has less of the field than its
+ * neighbours. Dofs with held[] only (of the constrained nodes). correction: as long as v, zero at
+ * call and return. */
 void constraints_relax(const Constraints *constraints, const unsigned char *held, const PetscReal *target,
                        PetscReal scale, PetscReal *v, PetscReal *correction);

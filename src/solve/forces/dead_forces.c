@@ -1,4 +1,5 @@
-/* Nodal forces that do not depend on the step's motion: the loads of the case, and a body force that a caller gives. */
+/* Nodal forces that do not depend on the step's motion: the loads of the case, and a body force
+ * that a caller gives. */
 #include "solve/forces/nodal_force.h"
 
 static PetscErrorCode CreateLoads(const NodalScene *scene, Diag *diag, void **data)

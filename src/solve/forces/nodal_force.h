@@ -1,10 +1,12 @@
-/* What acts on nodes besides stress: loads, constraints; walls, springs, pressures that follow. To add one: a file with its table, and a
- * line in nodal_forces.inc. The model makes the list of those that a case asks for, and Newton's method walks it. */
+/* What acts on nodes besides stress: loads, constraints; walls, springs, pressures that follow. To
+ * add one: a file with its table, and a line in nodal_forces.inc. The model makes the list of those
+ * that a case asks for, and Newton's method walks it. */
 #pragma once
 #include "boundary/loads.h"
 #include "solve/forces/constraints.h"
 
-/* Body force per mass at the undeformed position X (dim) and time t, m/s2, besides gravity: a centrifuge, a manufactured solution. */
+/* Body force per mass at the undeformed position X (dim) and time t, m/s2, besides gravity: a
+ * centrifuge, a manufactured solution. */
 typedef void (*BodyForce)(void *context, const PetscReal *X, PetscReal t, PetscReal *b);
 
 /* The body as these forces see it; arrays go over local nodes. */
@@ -13,18 +15,23 @@ typedef struct {
   const Grid *grid;
   const Points *points;
   const Support *support;
-  const unsigned char *filled, *touched; /* n_cells, n_nodes: does material fill the cell, and reach the node? */
-  const unsigned char *fixed;            /* n_nodes x dim: prescribed, or on a node that no material touches */
-  const PetscReal *prescribed;           /* n_nodes x dim: increments over the step of what is prescribed, m */
-  const PetscReal *du;                   /* n_nodes x dim: increments since the start of the step, m */
-  PetscReal t;                           /* with these increments, s */
+  /* n_cells, n_nodes: does material fill the cell, and reach the node? */
+  const unsigned char *filled, *touched;
+  /* n_nodes x dim: prescribed, or on a node that no material touches */
+  const unsigned char *fixed;
+  /* n_nodes x dim: increments over the step of what is prescribed, m */
+  const PetscReal *prescribed;
+  /* n_nodes x dim: increments since the start of the step, m */
+  const PetscReal *du;
+  PetscReal t; /* with these increments, s */
   const Loads *loads;
   Constraints *constraints; /* NULL: prescribed motion is that of the nodes themselves */
   BodyForce body_force;     /* NULL: none */
   void *body_force_context;
 } NodalScene;
 
-/* Where forces go. The sum over ranks comes later: a node that several ranks know gets its force from one of them. */
+/* Where forces go. The sum over ranks comes later: a node that several ranks know gets its force
+ * from one of them. */
 typedef struct {
   PetscReal *force; /* residual, n_nodes x dim, N: what pushes a node is subtracted */
   System *system;   /* gets the tangent; NULL: forces alone */
@@ -33,32 +40,37 @@ typedef struct {
 /* One kind of such forces; functions may be NULL but for create and assemble. */
 typedef struct {
   const char *name, *help;
-  PetscBool dead; /* the same whatever du is: gathered once in a step, and its norm scales the residual */
-  /* Collective. *data stays NULL where the case asks for nothing of the kind; the user's mistakes go to diag (NULL: sought before). */
+  /* the same whatever du is: gathered once in a step, and its norm scales the residual */
+  PetscBool dead;
+  /* Collective. *data stays NULL where the case asks for nothing of the kind; the user's mistakes
+   * go to diag (NULL: sought before). */
   PetscErrorCode (*create)(const NodalScene *scene, Diag *diag, void **data);
   PetscErrorCode (*destroy)(void **data); /* NULL: data belongs to others */
   /* Mark the dofs (n_nodes x dim) that it holds in place as well as a boundary could. */
   void (*hold)(const void *data, const NodalScene *scene, unsigned char *held);
-  /* Append the groups of nodes that it couples beyond those of the support, by NodeGroupsAdd: the system gets their pairs. */
+  /* Append the groups of nodes that it couples beyond those of the support, by NodeGroupsAdd: the
+   * system gets their pairs. */
   PetscErrorCode (*couple)(const void *data, const NodalScene *scene, NodeGroups *groups);
-  /* The support or the system's pattern is new: find slots; PETSC_FALSE if the pattern lacks any. */
+  /* The support or the system's pattern is new: find slots; PETSC_FALSE if the pattern lacks
+   * any. */
   PetscBool (*find_slots)(void *data, const System *system);
   /* Collective. Add forces and, through nodal_add_tangent, what they change by with du. */
   PetscErrorCode (*assemble)(void *data, const NodalScene *scene, const NodalOutput *out);
   /* Collective. The step is accepted: friction remembers; points have not moved yet. */
   PetscErrorCode (*commit)(void *data, const NodalScene *scene);
-  /* Collective. What outlives a step, in tables of its own for checkpoints and new partitions, and back into data just created. */
+  /* Collective. What outlives a step, in tables of its own for checkpoints and new partitions, and
+   * back into data just created. */
   PetscErrorCode (*to_tables)(const void *data, const NodalScene *scene, Tables *tables);
   PetscErrorCode (*from_tables)(void *data, const NodalScene *scene, const Tables *tables, char reason[256]);
-  /* The linear constraints whose multipliers these forces are: a linear solver may keep them by projections, and their work is that
-   * of the boundary. */
+  /* The linear constraints whose multipliers these forces are: a linear solver may keep them by
+   * projections, and their work is that of the boundary. */
   const Constraints *(*constraints)(const void *data);
 } NodalForce;
 
 extern const NodalForce *const nodal_forces[]; /* ended by NULL */
 
-/* Add d residual[row] / d du[column], for dofs node * dim + component of the pair of nodes at `slot` of the system. What is prescribed is cut
- * later. */
+/* Add d residual[row] / d du[column], for dofs node * dim + component of the pair of nodes at
+ * `slot` of the system. What is prescribed is cut later. */
 static inline void nodal_add_tangent(const NodalOutput *out, PetscInt dim, PetscInt slot, PetscInt row, PetscInt column,
                                      PetscReal value)
 {
@@ -90,8 +102,8 @@ PetscBool nodal_forces_find_slots(const NodalForces *forces, const System *syste
 const Constraints *nodal_forces_constraints(const NodalForces *forces);
 /* Collective. All that are not dead, in every iteration. */
 PetscErrorCode NodalForcesAssemble(const NodalForces *forces, const NodalScene *scene, const NodalOutput *out);
-/* Collective. Dead forces, and all others but those of constraints if so asked, summed over ranks with the sign of loads: n_nodes x dim, zero
- * where others own the node. */
+/* Collective. Dead forces, and all others but those of constraints if so asked, summed over ranks
+ * with the sign of loads: n_nodes x dim, zero where others own the node. */
 PetscErrorCode NodalForcesExternal(const NodalForces *forces, const NodalScene *scene, PetscBool all,
                                    PetscReal *external);
 PetscErrorCode NodalForcesCommit(const NodalForces *forces, const NodalScene *scene);

@@ -13,8 +13,9 @@ typedef struct {
   PetscReal slope;        /* y . F there: the work that is left along the direction */
 } Search;
 
-/* Work of F along y. A saddle point has no minimum: with the sign of the pressure equations turned the tangent is positive semi-definite
- * where that of the displacements is, and the work left over falls with the length as it does without pressures. */
+/* Work of F along y. A saddle point has no minimum: with the sign of the pressure equations turned
+ * the tangent is positive semi-definite where that of the displacements is, and the work left over
+ * falls with the length as it does without pressures. */
 static PetscErrorCode WorkAlong(const Search *s, Vec f, PetscReal *work)
 {
   const PetscReal *fv, *yv;
@@ -60,7 +61,8 @@ static PetscBool is_too_far(const Search *s, PetscReal slope0, PetscReal norm0)
   return PetscAbsReal(s->slope) > GOOD_ENOUGH * PetscAbsReal(slope0) || s->norm > EXPLODED * norm0;
 }
 
-/* Find where the slope vanishes between low (slope of the sign of slope0) and high (the other sign, or the law fails there). */
+/* Find where the slope vanishes between low (slope of the sign of slope0) and high (the other sign,
+ * or the law fails there). */
 static PetscErrorCode Bracket(Search *s, PetscReal slope0, PetscReal norm0)
 {
   PetscReal low = 0, slope_low = slope0, high = s->lambda, slope_high = s->slope;

@@ -4,7 +4,8 @@
 #include <petsctime.h>
 
 #define ISOLATED_AFTER 10 /* steps after which a failure of the iterative solver counts no more */
-#define FORGIVEN_AFTER 50 /* where failures followed each other: steps of the direct solver before the next chance */
+/* where failures followed each other: steps of the direct solver before the next chance */
+#define FORGIVEN_AFTER 50
 
 PetscErrorCode NewtonCreate(MPI_Comm comm, const NewtonSpec *spec, Newton **newton)
 {
@@ -59,13 +60,15 @@ void newton_forget(Newton *n, const System *system, const NewtonMemory *memory)
   n->built = memory->courant >= 0 ? system->builds : -1;
 }
 
-/* One linear step that carries the prescribed increments into the interior: what is left of them at du is moved to the
- * right-hand side through the columns of the tangent. Skipped if the first guess has them already. */
+/* One linear step that carries the prescribed increments into the interior: what is left of them at
+ * du is moved to the right-hand side through the columns of the tangent. Skipped if the first guess
+ * has them already. */
 static PetscErrorCode LiftPrescribed(Newton *n)
 {
   StepProblem *p = n->problem;
   const PetscInt dofs = p->grid->n_nodes * p->grid->dim;
-  PetscReal *lift, local[2] = {0, 0}, all[2]; /* largest increments: what is left of them, and whole */
+  /* largest increments: what is left of them, and whole */
+  PetscReal *lift, local[2] = {0, 0}, all[2];
   KSP ksp;
   Vec y;
   double start;
@@ -115,8 +118,7 @@ static PetscErrorCode UpdateProjection(Newton *n)
   PetscFunctionBeginUser;
   if (!n->projects) PetscFunctionReturn(0);
   PetscCall(ProjectionDestroy(&n->projection));
-  PetscCall(ProjectionCreate(p->system, p->grid, nodal_forces_constraints(p->forces), p->fixed,
-                             &n->projection));
+  PetscCall(ProjectionCreate(p->system, p->grid, nodal_forces_constraints(p->forces), p->fixed, &n->projection));
   p->system->blocks->projection = n->projection;
   PetscFunctionReturn(0);
 }
@@ -167,7 +169,8 @@ static PetscErrorCode NewtonTry(Newton *n, NewtonReport *report)
   report->reason = newton_reason(reason, report->status);
   PetscCall(PetscTime(&end));
   n->t_newton += (end - start) - (n->t_points + n->t_matrix + n->t_linear - parts);
-  if (reason == SNES_DIVERGED_LINEAR_SOLVE) n->built = -1; /* PETSc would not factorise again after a zero pivot */
+  /* PETSc would not factorise again after a zero pivot */
+  if (reason == SNES_DIVERGED_LINEAR_SOLVE) n->built = -1;
   const PetscBool useless = reason == SNES_DIVERGED_LINEAR_SOLVE || reason == SNES_DIVERGED_INNER;
   n->retry = useless && !n->direct;
   n->failures += n->retry;

@@ -1,7 +1,8 @@
 /* Newton's method on one step, through PETSc SNES.
  *
- * Residual and tangent come from the same pass over the points. Full steps, halved only where a point would be turned inside out:
- * from rest a good iteration lets the residual grow by two orders before it falls (docs/decisions.md). */
+ * Residual and tangent come from the same pass over the points. Full steps, halved only where a
+ * point would be turned inside out: from rest a good iteration lets the residual grow by two orders
+ * before it falls (docs/decisions.md). */
 #pragma once
 #include <petscsnes.h>
 #include "formulation/formulation.h"
@@ -16,20 +17,25 @@ typedef struct {
   const Grid *grid;
   System *system;
   const Formulation *formulation;
-  const NodalForces *forces; /* all that act besides stress; the dead ones stand in external */
-  NodalScene scene;          /* for them, at the end of the step */
-  WeakFormInput in;          /* du and pressure are set here by Newton */
-  const unsigned char *fixed;     /* prescribed, or on a node that no material touches */
-  const PetscReal *prescribed;    /* increment of fixed dofs, m */
-  const PetscReal *external;      /* dead nodal forces, N; owners' values count */
-  PetscReal *du;                  /* in: first guess; out: solution */
-  PetscReal *force;               /* out: residual with the rows of fixed dofs: reactions, on owners */
-  PetscReal *pressure; /* mixed: n_nodes, like du; m, see WeakFormInput. NULL: displacements alone, as the next two */
-  PetscReal *volume;   /* mixed: n_nodes, residual of the pressure equation, N */
+  const NodalForces *forces;   /* all that act besides stress; the dead ones stand in external */
+  NodalScene scene;            /* for them, at the end of the step */
+  WeakFormInput in;            /* du and pressure are set here by Newton */
+  const unsigned char *fixed;  /* prescribed, or on a node that no material touches */
+  const PetscReal *prescribed; /* increment of fixed dofs, m */
+  const PetscReal *external;   /* dead nodal forces, N; owners' values count */
+  PetscReal *du;               /* in: first guess; out: solution */
+  /* out: residual with the rows of fixed dofs: reactions, on owners */
+  PetscReal *force;
+  /* mixed: n_nodes, like du; m, see WeakFormInput. NULL: displacements alone, as the next two */
+  PetscReal *pressure;
+  PetscReal *volume;         /* mixed: n_nodes, residual of the pressure equation, N */
   const unsigned char *idle; /* mixed: n_nodes, no material touches the node: no pressure there */
-  PetscBool (*asked)(void);  /* does somebody want the run to end? asked on every rank; NULL: nobody ever does */
-  PetscReal round_off;       /* what the last digit of a coordinate makes of the force at a node, N */
-  /* Norms of nodal gravity, of the inertia that would stop the motion and of the present one, N: scales. */
+  /* does somebody want the run to end? asked on every rank; NULL: nobody ever does */
+  PetscBool (*asked)(void);
+  /* what the last digit of a coordinate makes of the force at a node, N */
+  PetscReal round_off;
+  /* Norms of nodal gravity, of the inertia that would stop the motion and of the present one, N:
+   * scales. */
   PetscReal weight, inertia, motion;
 } StepProblem;
 
@@ -37,10 +43,12 @@ typedef struct {
   PetscBool converged;
   PetscBool interrupted; /* somebody asked, on any rank, before it converged */
   PetscInt iterations, linear_iterations;
-  PetscInt lost;                      /* iterations before them, until the iterative linear solver failed */
-  PetscReal residual[NEWTON_HISTORY]; /* |R| / reference after each iteration; [0] at the first guess */
-  PetscReal reference;                /* N */
-  const char *reason;                 /* why it stopped, in words */
+  /* iterations before them, until the iterative linear solver failed */
+  PetscInt lost;
+  /* |R| / reference after each iteration; [0] at the first guess */
+  PetscReal residual[NEWTON_HISTORY];
+  PetscReal reference; /* N */
+  const char *reason;  /* why it stopped, in words */
   LawStatus status;
   PetscInt bad_point; /* local, of that status; -1 */
 } NewtonReport;
@@ -51,8 +59,8 @@ PetscErrorCode NewtonCreate(MPI_Comm comm, const NewtonSpec *spec, Newton **newt
 PetscErrorCode NewtonDestroy(Newton **newton);
 /* Collective. Solve; du and force hold the solution only if report->converged. */
 PetscErrorCode NewtonSolve(Newton *newton, StepProblem *problem, const LinearProblem *linear, NewtonReport *report);
-/* What Newton's method remembers from step to step: which linear solver it chose when the pattern was made, and how often the iterative one
- * failed. */
+/* What Newton's method remembers from step to step: which linear solver it chose when the pattern
+ * was made, and how often the iterative one failed. */
 typedef struct {
   PetscReal courant;        /* that the choice was made with; < 0: the next step chooses anew */
   PetscInt failures, since; /* of the iterative solver, and steps since the last */
@@ -65,5 +73,6 @@ void newton_set_memory(Newton *newton, const System *system, const NewtonMemory 
 void newton_forget(Newton *newton, const System *system, const NewtonMemory *memory);
 /* Name of the linear solver in use, for the log. */
 const char *newton_linear_name(const Newton *newton);
-/* Seconds spent so far: points and scatter, matrix filling, linear solves, and the rest of Newton's method. */
+/* Seconds spent so far: points and scatter, matrix filling, linear solves, and the rest of Newton's
+ * method. */
 void newton_times(const Newton *newton, PetscReal *points, PetscReal *matrix, PetscReal *linear, PetscReal *rest);

@@ -8,13 +8,14 @@
 
 #define EXCUSED 10 /* a first guess is excused so many times all forces that act */
 
-#define STILL 1e3   /* tolerances up to which a residual may stay where increments vanish, unless it is round-off */
+/* tolerances up to which a residual may stay where increments vanish, unless it is round-off */
+#define STILL 1e3
 #define TOO_FAR 1e3 /* sizes of the grid that nothing goes in one iteration */
 
-/* The scale of a residual: the loads, the residual at the first guess (a guess that is far off counts no
- * more than the forces that there are, or its step would be accepted with newtons left over), and, for
- * motion driven by its boundary or by inertia, a small part of reactions and inertia, well above their
- * round-off. */
+/* The scale of a residual: the loads, the residual at the first guess (a guess that is far off
+ * counts no more than the forces that there are, or its step would be accepted with newtons left
+ * over), and, for motion driven by its boundary or by inertia, a small part of reactions and
+ * inertia, well above their round-off. */
 static PetscReal reference_force(const Newton *n, PetscReal first)
 {
   const StepProblem *p = n->problem;
@@ -37,14 +38,16 @@ static PetscReal dofs_of(const Newton *n)
   return (PetscReal)(n->problem->system->n_active_global * n->problem->system->block);
 }
 
-/* Is the increment round-off, of the step's displacement or of the size of a cell? Then the residual falls no more. */
+/* Is the increment round-off, of the step's displacement or of the size of a cell? Then the
+ * residual falls no more. */
 static PetscBool at_floor(const Newton *n, PetscReal xnorm, PetscReal snorm)
 {
   return snorm <= 1e-9 * xnorm || snorm <= 1e-12 * n->problem->grid->smallest * PetscSqrtReal(dofs_of(n));
 }
 
-/* A residual that round-off alone can leave: coordinates and increments are known to their last digit, and a strain made of it acts through the
- * stiffness of every node. A singular or useless linear solve ends in vanishing increments, too, but far above this. */
+/* A residual that round-off alone can leave: coordinates and increments are known to their last
+ * digit, and a strain made of it acts through the stiffness of every node. A singular or useless
+ * linear solve ends in vanishing increments, too, but far above this. */
 static PetscBool is_round_off(const Newton *n, PetscReal fnorm)
 {
   return fnorm <= n->problem->round_off * PetscSqrtReal(dofs_of(n));
@@ -59,8 +62,8 @@ static PetscBool is_too_far(const Newton *n, PetscReal snorm)
   return snorm > TOO_FAR * PetscSqrtReal(size * dofs_of(n));
 }
 
-/* An iteration that wanders between the sides of yield surfaces, as most that fail do after ten to fifteen iterations, and few that would
- * come through (counted in docs/experiments/newton.md). */
+/* An iteration that wanders between the sides of yield surfaces, as most that fail do after ten to
+ * fifteen iterations, and few that would come through (counted in docs/experiments/newton.md). */
 static PetscBool is_stuck(const PetscReal *residual, PetscInt k)
 {
   PetscReal before = PETSC_MAX_REAL, lately = PETSC_MAX_REAL;

@@ -5,42 +5,50 @@
 #include "solve/blocks/projection.h"
 #include "solve/system/saddle.h"
 
-#define NEWTON_FAILURES 3 /* of the iterative solver, one soon after another: the direct one stays for a while */
+/* of the iterative solver, one soon after another: the direct one stays for a while */
+#define NEWTON_FAILURES 3
 
 struct Newton {
   MPI_Comm comm;
   NewtonSpec spec;
   SNES snes;
   Vec x, f;
-  PetscInt built;      /* system->builds that snes was set up for */
-  PetscReal courant;   /* of the step that it was set up in */
-  PetscBool learns;    /* the preconditioner keeps something of earlier matrices: it is made anew for every solve */
-  PetscInt remembered; /* system->builds whose solver was chosen with this courant before a checkpoint; -1: none */
+  PetscInt built;    /* system->builds that snes was set up for */
+  PetscReal courant; /* of the step that it was set up in */
+  /* the preconditioner keeps something of earlier matrices: it is made anew for every solve */
+  PetscBool learns;
+  /* system->builds whose solver was chosen with this courant before a checkpoint; -1: none */
+  PetscInt remembered;
   LineSearchMemory search;
   Saddle saddle;
   PetscBool direct;
-  PetscBool projects; /* does the linear solver keep constraints by projections? else by multipliers in its matrix */
+  /* does the linear solver keep constraints by projections? else by multipliers in its matrix */
+  PetscBool projects;
   Projection *projection;
   PetscInt failures; /* of the iterative solver, not yet forgiven */
   PetscInt since;    /* steps since the last of them */
   PetscBool retry;   /* this try takes the direct solver */
   const char *linear;
   StepProblem *problem;
-  const PetscReal *lift; /* n_nodes x dim, what prescribed dofs have still to go at this assembly; NULL: nothing */
+  /* n_nodes x dim, what prescribed dofs have still to go at this assembly; NULL: nothing */
+  const PetscReal *lift;
   NewtonReport *report;
   PetscBool asked;              /* did any rank want the run to end, at the last assembly? */
   PetscReal reaction, external; /* norms at the last assembly, N */
-  PetscReal last, before;       /* norms of the residual one iteration ago, and two, N; before: 0 if there was none */
-  PetscBool tangent;            /* do the system's values belong to du? */
+  /* norms of the residual one iteration ago, and two, N; before: 0 if there was none */
+  PetscReal last, before;
+  PetscBool tangent; /* do the system's values belong to du? */
   double t_points, t_matrix, t_linear, t_newton;
   double solving; /* when the linear solve that is going on began */
 };
 
-/* newton_setup.c. Everything made for one pattern of the system; does nothing if it is there already. Times count as `matrix`. Collective. */
+/* newton_setup.c. Everything made for one pattern of the system; does nothing if it is there
+ * already. Times count as `matrix`. Collective. */
 PetscErrorCode NewtonSetUp(Newton *n, StepProblem *p, const LinearProblem *linear);
 PetscErrorCode NewtonReset(Newton *n);
 
-/* newton_residual.c. Residual (and tangent values) at problem->du. A point that fails makes the status of all ranks bad. Collective. */
+/* newton_residual.c. Residual (and tangent values) at problem->du. A point that fails makes the
+ * status of all ranks bad. Collective. */
 PetscErrorCode NewtonAssemble(Newton *n, PetscBool tangent);
 /* Values -> matrix; where constraints are projections they have no part in it. */
 PetscErrorCode NewtonFillMatrix(Newton *n);
@@ -56,9 +64,11 @@ void newton_rest_without_unknowns(const StepProblem *p);
 PetscErrorCode NewtonFunction(SNES snes, Vec x, Vec f, void *context);
 PetscErrorCode NewtonJacobian(SNES snes, Vec x, Mat matrix, Mat preconditioner, void *context);
 
-/* newton_converge.c. Will this residual be the last? If it falls by the same factor once more it is far below the tolerance: no tangent will be asked for. */
+/* newton_converge.c. Will this residual be the last? If it falls by the same factor once more it is
+ * far below the tolerance: no tangent will be asked for. */
 PetscBool newton_is_last(const Newton *n);
-/* The convergence test of SNES; context: the Newton. Writes the report's residuals and its reference. */
+/* The convergence test of SNES; context: the Newton. Writes the report's residuals and its
+ * reference. */
 PetscErrorCode NewtonConverged(SNES snes, PetscInt it, PetscReal xnorm, PetscReal snorm, PetscReal fnorm,
                                SNESConvergedReason *reason, void *context);
 /* Why it stopped, in words. */

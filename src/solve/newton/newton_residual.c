@@ -1,9 +1,11 @@
-/* What SNES asks for: the residual and the tangent of the increments that its unknowns stand for. */
+/* What SNES asks for: the residual and the tangent of the increments that its unknowns stand
+ * for. */
 #include "solve/newton/newton_private.h"
 #include <petsctime.h>
 
-/* Internal and inertia forces -> residual, and the norms of reactions and external forces, over owned dofs. Nodes without unknowns have
- * no forces: they are often most of a grid, and are left alone. */
+/* Internal and inertia forces -> residual, and the norms of reactions and external forces, over
+ * owned dofs. Nodes without unknowns have no forces: they are often most of a grid, and are left
+ * alone. */
 static PetscErrorCode Balance(Newton *n)
 {
   const StepProblem *p = n->problem;
@@ -135,7 +137,8 @@ PetscErrorCode NewtonFunction(SNES snes, Vec x, Vec f, void *context)
 PetscErrorCode NewtonFillMatrix(Newton *n)
 {
   PetscFunctionBeginUser;
-  if (n->projects) PetscCall(ProjectionFactor(n->projection)); /* first: the blocks take its shift */
+  /* first: the blocks take its shift */
+  if (n->projects) PetscCall(ProjectionFactor(n->projection));
   PetscCall(SystemToMatrix(n->problem->system));
   PetscFunctionReturn(0);
 }
@@ -147,7 +150,8 @@ PetscErrorCode NewtonJacobian(SNES snes, Vec x, Mat matrix, Mat preconditioner, 
 
   (void)snes, (void)matrix, (void)preconditioner;
   PetscFunctionBeginUser;
-  if (!n->tangent) PetscCall(NewtonAssemble(n, PETSC_TRUE)); /* du is still where the residual was taken */
+  /* du is still where the residual was taken */
+  if (!n->tangent) PetscCall(NewtonAssemble(n, PETSC_TRUE));
   PetscCall(PetscTime(&start));
   PetscCall(NewtonFillMatrix(n));
   PetscCall(PetscTime(&end));

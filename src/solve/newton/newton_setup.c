@@ -26,8 +26,9 @@ static PetscErrorCode LinearSolved(KSP ksp, Vec b, Vec x, void *context)
   PetscFunctionReturn(0);
 }
 
-/* Factorisations and point methods depend on their matrix alone. Algebraic multigrid builds its interpolation once and keeps it as long as the
- * pattern lives, so that a step would depend on all steps before it, and a resumed run would be another one. */
+/* Factorisations and point methods depend on their matrix alone. Algebraic multigrid builds its
+ * interpolation once and keeps it as long as the pattern lives, so that a step would depend on all
+ * steps before it, and a resumed run would be another one. */
 static PetscErrorCode Learns(KSP ksp, PetscBool *learns)
 {
   PC pc;
@@ -72,7 +73,8 @@ PetscErrorCode NewtonSetUp(Newton *n, StepProblem *p, const LinearProblem *linea
   PetscCall(SNESLineSearchSetType(search, SNESLINESEARCHSHELL));
   PetscCall(SNESLineSearchShellSetUserFunc(search, LineSearchDescend, &n->search));
   PetscCall(SNESGetKSP(n->snes, &ksp));
-  PetscCall(KSPSetOperators(ksp, p->system->matrix, p->system->matrix)); /* some choices ask for the matrix at once */
+  /* some choices ask for the matrix at once */
+  PetscCall(KSPSetOperators(ksp, p->system->matrix, p->system->matrix));
   PetscCall(KSPSetPostSolve(ksp, LinearSolved, n));
   PetscCall(LinearConfigure(ksp, &chosen, &n->direct, &n->linear));
   if (chosen.mixed && !n->direct) PetscCall(SaddleConfigure(&n->saddle, ksp, p->system, p->grid, chosen.dynamic));

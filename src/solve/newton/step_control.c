@@ -19,8 +19,8 @@ PetscReal step_control_cut(StepControl *c, PetscReal dt)
   return c->next;
 }
 
-/* Twice as large after an easy step; a little larger as long as iterations stay below one and a half times that; and, between `step` and `largest`,
- * smaller before Newton fails. */
+/* Twice as large after an easy step; a little larger as long as iterations stay below one and a
+ * half times that; and, between `step` and `largest`, smaller before Newton fails. */
 static PetscReal factor(const AnalysisSpec *a, PetscInt ease, PetscInt iterations)
 {
   if (iterations <= ease) return 2;
@@ -35,8 +35,9 @@ void step_control_accept(StepControl *c, const AnalysisSpec *a, PetscInt ease, c
   const PetscReal f = factor(a, ease, taken->iterations);
   PetscReal next = f * taken->dt;
   if (f < 1) next = PetscMax(next, PetscMin(a->step, taken->dt));
-  if (c->since == 1 && f > 1) next = taken->dt;         /* it was cut: not back at once */
-  if (taken->shortened) next = PetscMax(next, c->next); /* an output was due: that says nothing about larger steps */
+  if (c->since == 1 && f > 1) next = taken->dt; /* it was cut: not back at once */
+  /* an output was due: that says nothing about larger steps */
+  if (taken->shortened) next = PetscMax(next, c->next);
   if (c->failed < PETSC_MAX_REAL) next = PetscMin(next, PetscMax(0.75 * c->failed, taken->dt));
   if (a->largest > a->step) next = PetscMin(next, PetscMax(taken->reach, a->step));
   c->next = PetscMin(next, a->largest);

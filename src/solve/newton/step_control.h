@@ -1,5 +1,6 @@
-/* How large the next step is. It grows after easy steps, up to `largest`; it remembers at which size Newton failed and does not go there again
- * at once; and where points flow through a grid none of them may travel too far in a step. */
+/* How large the next step is. It grows after easy steps, up to `largest`; it remembers at which
+ * size Newton failed and does not go there again at once; and where points flow through a grid none
+ * of them may travel too far in a step. */
 #pragma once
 #include "case/case.h"
 
@@ -18,11 +19,13 @@ typedef struct {
   PetscReal dt;        /* s */
   PetscInt iterations; /* of the try that converged */
   PetscBool shortened; /* by the caller (an output was due), not by the control */
-  PetscReal reach;     /* a step in which the fastest point goes as far as it may, s; PETSC_MAX_REAL if nothing flows */
+  /* a step in which the fastest point goes as far as it may, s; PETSC_MAX_REAL if nothing flows */
+  PetscReal reach;
 } StepTaken;
 
 void step_control_start(StepControl *control, PetscReal step);
 /* Newton failed with dt: the step to try instead. */
 PetscReal step_control_cut(StepControl *control, PetscReal dt);
-/* Newton solved the step: chooses `next`. Never takes it below analysis->step for the sake of iterations or reach. */
+/* Newton solved the step: chooses `next`. Never takes it below analysis->step for the sake of
+ * iterations or reach. */
 void step_control_accept(StepControl *control, const AnalysisSpec *analysis, PetscInt ease, const StepTaken *taken);

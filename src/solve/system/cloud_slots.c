@@ -1,4 +1,5 @@
-/* Slots of clouds. In a step few clouds change their nodes, so what was found in the step before is kept. */
+/* Slots of clouds. In a step few clouds change their nodes, so what was found in the step before is
+ * kept. */
 #include "solve/system/system.h"
 
 PetscErrorCode SystemReserveSlots(System *s, PetscInt n)
@@ -20,7 +21,8 @@ PetscErrorCode SystemFreeSlots(System *s)
   PetscFunctionReturn(0);
 }
 
-/* Slots of a group whose nodes ascend, by walking along each row once; a pair that the pattern lacks gets -1. Returns how many. */
+/* Slots of a group whose nodes ascend, by walking along each row once; a pair that the pattern
+ * lacks gets -1. Returns how many. */
 static PetscInt merge_slots(const System *s, PetscInt nn, const PetscInt *node, PetscInt *slot)
 {
   PetscInt missing = 0;
@@ -54,8 +56,8 @@ static PetscErrorCode Reserve(PetscInt n, PetscInt *capacity, PetscInt **data)
   PetscFunctionReturn(0);
 }
 
-/* Groups from the front on that have as many nodes as before: their slots stay where they are. Returns the first other one; place: that of its
- * slots. */
+/* Groups from the front on that have as many nodes as before: their slots stay where they are.
+ * Returns the first other one; place: that of its slots. */
 static PetscInt renew_in_place(System *s, const Support *w, PetscInt *place, PetscInt *missing)
 {
   const CloudsBefore *b = &s->before;
@@ -129,8 +131,8 @@ PetscInt system_pair(const System *s, PetscInt I, PetscInt J)
   return k < 0 ? -1 : s->row_start[row] + k;
 }
 
-/* Rows come in the order of their nodes, so that those that have a node as a column before their diagonal come in the order of the columns behind
- * the diagonal of that node's own row. */
+/* Rows come in the order of their nodes, so that those that have a node as a column before their
+ * diagonal come in the order of the columns behind the diagonal of that node's own row. */
 PetscErrorCode SystemMirror(System *s)
 {
   const PetscInt size = s->block;

@@ -1,12 +1,15 @@
 #include "solve/system/linear.h"
 #include "solve/blocks/blocks.h"
 
-#define ITERATE_BELOW \
-  100 /* cells that a wave crosses in a step up to which a dynamic problem is solved by iteration first */
-#define PROJECT_BELOW \
-  3 /* cells that a wave crosses in a step up to which unsymmetric systems with multipliers take projections */
-#define REFINE_ABOVE \
-  3 /* cells that a wave crosses in a step from which on ILU of unsymmetric systems has a first level */
+/* cells that a wave crosses in a step up to which a dynamic problem is solved by iteration
+ * first */
+#define ITERATE_BELOW 100
+/* cells that a wave crosses in a step up to which unsymmetric systems with multipliers take
+ * projections */
+#define PROJECT_BELOW 3
+/* cells that a wave crosses in a step from which on ILU of unsymmetric systems has a first
+ * level */
+#define REFINE_ABOVE 3
 
 static PetscErrorCode UseDirect(KSP ksp, PetscBool symmetric, const char **what)
 {
@@ -20,7 +23,8 @@ static PetscErrorCode UseDirect(KSP ksp, PetscBool symmetric, const char **what)
   PetscFunctionReturn(0);
 }
 
-/* Rows of multipliers have no diagonal, so their pivots come late, and the factor outgrows the estimate of the analysis. */
+/* Rows of multipliers have no diagonal, so their pivots come late, and the factor outgrows the
+ * estimate of the analysis. */
 static PetscErrorCode LeaveRoomForPivots(KSP ksp)
 {
   PC pc;
@@ -33,8 +37,9 @@ static PetscErrorCode LeaveRoomForPivots(KSP ksp)
   PetscFunctionReturn(0);
 }
 
-/* The mass dominates: a cheap preconditioner on each rank's part, and as few bytes as possible. Symmetric Gauss-Seidel by Eisenstat's
- * trick costs no more than the product with the matrix, needs no set-up and cannot be indefinite, as incomplete factorisations can. */
+/* The mass dominates: a cheap preconditioner on each rank's part, and as few bytes as possible.
+ * Symmetric Gauss-Seidel by Eisenstat's trick costs no more than the product with the matrix, needs
+ * no set-up and cannot be indefinite, as incomplete factorisations can. */
 static PetscErrorCode UseBlocks(KSP ksp, const LinearProblem *p, const char **what)
 {
   PC pc;
@@ -58,14 +63,16 @@ static PetscErrorCode UseKrylov(KSP ksp, const LinearProblem *p, const char **wh
   if (!p->symmetric) PetscCall(PCSetType(pc, PCBJACOBI));
   else
     PetscCall(
-      PCSetType(pc, p->idle_ranks ? PCSOR : PCEISENSTAT)); /* PETSc 3.18's trick fails where a rank has no rows */
+      /* PETSc 3.18's trick fails where a rank has no rows */
+      PCSetType(pc, p->idle_ranks ? PCSOR : PCEISENSTAT));
   *what = p->symmetric ? "conjugate gradients, symmetric Gauss-Seidel" : "BiCGStab, block Jacobi with ILU";
   PetscCall(KSPSetTolerances(ksp, 1e-4, PETSC_DEFAULT, PETSC_DEFAULT, 500));
   PetscFunctionReturn(0);
 }
 
-/* A step in which waves cross several cells couples neighbours so strongly that fill of the first level pays. The blocks exist only once
- * the preconditioner is set up; what the user asked for stays. */
+/* A step in which waves cross several cells couples neighbours so strongly that fill of the first
+ * level pays. The blocks exist only once the preconditioner is set up; what the user asked for
+ * stays. */
 PetscErrorCode LinearRefine(KSP ksp, Mat matrix, const LinearProblem *p)
 {
   PC pc, block;
@@ -88,9 +95,10 @@ PetscErrorCode LinearRefine(KSP ksp, Mat matrix, const LinearProblem *p)
   PetscFunctionReturn(0);
 }
 
-/* The last front of a saddle point may hold pressures that nothing but each other fixes. Spread over the ranks by ScaLAPACK it is
- * factorised without pivots of two rows, and fails there; on one rank it is not. Without stabilisation the matrix may be singular for
- * pressures that no point feels (docs/theory.md, "Mixed formulation"): these are set to 0. */
+/* The last front of a saddle point may hold pressures that nothing but each other fixes. Spread
+ * over the ranks by ScaLAPACK it is factorised without pivots of two rows, and fails there; on one
+ * rank it is not. Without stabilisation the matrix may be singular for pressures that no point
+ * feels (docs/theory.md, "Mixed formulation"): these are set to 0. */
 static PetscErrorCode PrepareSaddlePoint(KSP ksp, PetscBool undetermined)
 {
   PC pc;

@@ -19,9 +19,12 @@ typedef struct {
   PetscReal courant;      /* wave speed * dt / h */
 } LinearProblem;
 
-/* What that solver works on: blocks where our own conjugate gradients or BiCGStab run, unless options ask PETSc for a solver of its own. */
+/* What that solver works on: blocks where our own conjugate gradients or BiCGStab run, unless
+ * options ask PETSc for a solver of its own. */
 PetscErrorCode LinearForm(const LinearProblem *problem, SystemForm *form);
-/* Choose a solver, set it on ksp, whose operators are known (the options database still overrides it); `what` gets a short name for the log. */
+/* Choose a solver, set it on ksp, whose operators are known (the options database still overrides
+ * it); `what` gets a short name for the log. */
 PetscErrorCode LinearConfigure(KSP ksp, const LinearProblem *problem, PetscBool *direct, const char **what);
-/* Collective. After the options were read and with the matrix of the system: what needs its blocks. */
+/* Collective. After the options were read and with the matrix of the system: what needs its
+ * blocks. */
 PetscErrorCode LinearRefine(KSP ksp, Mat matrix, const LinearProblem *problem);

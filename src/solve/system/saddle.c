@@ -51,7 +51,8 @@ static PetscErrorCode SplitFields(PC pc, const System *s, const Grid *grid)
   PetscFunctionReturn(0);
 }
 
-/* One application of a preconditioner each; the options -fieldsplit_u_ and -fieldsplit_p_ still override. */
+/* One application of a preconditioner each; the options -fieldsplit_u_ and -fieldsplit_p_ still
+ * override. */
 static PetscErrorCode InnerSolvers(PC pc, PetscBool dynamic)
 {
   KSP *inner;
@@ -106,7 +107,8 @@ PetscErrorCode SaddleConfigure(Saddle *saddle, KSP ksp, const System *s, const G
     PetscCall(CreateDiagonal(s, &saddle->schur));
     PetscCall(PCFieldSplitSetSchurPre(pc, PC_FIELDSPLIT_SCHUR_PRE_USER, saddle->schur));
   }
-  PetscCall(MatSetValuesCOO(s->matrix, s->values, INSERT_VALUES)); /* a matrix without numbers cannot be split */
+  /* a matrix without numbers cannot be split */
+  PetscCall(MatSetValuesCOO(s->matrix, s->values, INSERT_VALUES));
   PetscCall(InnerSolvers(pc, dynamic));
   PetscFunctionReturn(0);
 }

@@ -107,7 +107,8 @@ static PetscErrorCode SystemPattern(System *s, const NodeGroups *groups)
   PetscCall(PetscMalloc1(s->n_nodes, &s->row));
   for (PetscInt i = 0; i < s->n_nodes; ++i) s->row[i] = -1;
   for (PetscInt i = 0; i < n; ++i) s->row[groups->node[i]] = 0;
-  for (PetscInt k = 0; k < s->n_active; ++k) s->row[s->active[k]] = 0; /* owned, even if only others' groups hold it */
+  /* owned, even if only others' groups hold it */
+  for (PetscInt k = 0; k < s->n_active; ++k) s->row[s->active[k]] = 0;
   s->n_rows = 0;
   for (PetscInt i = 0; i < s->n_nodes; ++i)
     if (s->row[i] == 0) s->row[i] = s->n_rows++;
@@ -147,7 +148,8 @@ static PetscErrorCode SystemPattern(System *s, const NodeGroups *groups)
 
 static PetscInt system_numbers(const System *s) { return s->row_start[s->n_rows] * s->block * s->block; }
 
-/* One COO entry for each number in `values`: the matrix is filled by one call, ghost rows travel inside it. */
+/* One COO entry for each number in `values`: the matrix is filled by one call, ghost rows travel
+ * inside it. */
 static PetscErrorCode AssembledMatrix(System *s)
 {
   const PetscInt size = s->block, n = s->n_active * size, pairs = s->row_start[s->n_rows];
@@ -229,8 +231,8 @@ PetscErrorCode SystemBuild(System *s, const Grid *grid, const NodeGroups *groups
   PetscFunctionReturn(0);
 }
 
-/* Place of the pair (row of node I, node J) in the pattern. Rows are so short that counting the columns before J, without a branch,
- * is faster than bisection. */
+/* Place of the pair (row of node I, node J) in the pattern. Rows are so short that counting the
+ * columns before J, without a branch, is faster than bisection. */
 static inline PetscInt pair_slot(const System *s, PetscInt I, PetscInt J)
 {
   const PetscInt row = s->row[I], end = s->row_start[row + 1];

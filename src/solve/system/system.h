@@ -28,25 +28,33 @@ typedef struct {
 
 typedef struct System {
   MPI_Comm comm;
-  PetscInt dim, block; /* displacements, and all unknowns, per node: dim, or dim + 1 with a pressure */
-  PetscInt n_nodes;    /* local nodes of the grid or cloud */
-  PetscInt n_active;   /* owned nodes that carry unknowns */
+  /* displacements, and all unknowns, per node: dim, or dim + 1 with a pressure */
+  PetscInt dim, block;
+  PetscInt n_nodes;                         /* local nodes of the grid or cloud */
+  PetscInt n_active;                        /* owned nodes that carry unknowns */
   PetscInt n_active_global, n_active_least; /* over all ranks: sum and smallest */
   PetscInt *active;                         /* n_active local nodes, ascending */
-  PetscInt *number;                         /* n_nodes: global number of the node's unknowns, -1 if none */
-  PetscInt n_rows;                          /* local nodes with unknowns, ghosts too: rows of the local pattern */
-  PetscInt *row;                            /* n_nodes: row of the local pattern, -1 if none */
-  PetscInt *row_start, *column;             /* pattern of node pairs: n_rows + 1, and local nodes, ascending in a row */
-  PetscInt *diagonal;                       /* n_rows: place of the diagonal pair */
-  PetscReal *values;                        /* block x block numbers of pair k at k * block * block */
-  float *singles;                           /* the same in single precision, which is all that blocks need */
-  PetscBool single;                         /* is the tangent gathered in singles, or else in values? */
-  PetscInt n_slots, *slot;                  /* SystemSlots: nn x nn pairs of each group */
-  PetscInt n_cuts, capacity_cuts;           /* SystemPrescribe */
+  /* n_nodes: global number of the node's unknowns, -1 if none */
+  PetscInt *number;
+  /* local nodes with unknowns, ghosts too: rows of the local pattern */
+  PetscInt n_rows;
+  PetscInt *row; /* n_nodes: row of the local pattern, -1 if none */
+  /* pattern of node pairs: n_rows + 1, and local nodes, ascending in a row */
+  PetscInt *row_start, *column;
+  PetscInt *diagonal; /* n_rows: place of the diagonal pair */
+  /* block x block numbers of pair k at k * block * block */
+  PetscReal *values;
+  /* the same in single precision, which is all that blocks need */
+  float *singles;
+  /* is the tangent gathered in singles, or else in values? */
+  PetscBool single;
+  PetscInt n_slots, *slot;        /* SystemSlots: nn x nn pairs of each group */
+  PetscInt n_cuts, capacity_cuts; /* SystemPrescribe */
   SystemCut *cut;
   CloudsBefore before;
   SystemForm form;
-  Mat matrix;            /* what the linear solver gets: assembled, or a shell over blocks; made by SystemUse */
+  /* what the linear solver gets: assembled, or a shell over blocks; made by SystemUse */
+  Mat matrix;
   struct Blocks *blocks; /* of that shell */
   PetscInt builds;       /* how often the pattern was made */
 } System;
