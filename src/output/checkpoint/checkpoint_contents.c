@@ -8,7 +8,7 @@
 #include "output/checkpoint/checkpoint.h"
 
 /*   talus checkpoint
- *   version 2
+ *   version 3
  *   bytes 123456
  *   datasets 2
  *   points/position real 2 1000 8192 0123abcd
