@@ -3,8 +3,8 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include "api/api.h"
-#include "base/start.h"
-#include "base/threads.h"
+#include "base/process/start.h"
+#include "base/process/threads.h"
 #include "talus_version.h"
 
 const char *TalusVersion(void) { return TALUS_VERSION; }

@@ -5,10 +5,10 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include "base/memory.h"
-#include "base/mpi_end.h"
-#include "base/start.h"
-#include "base/threads.h"
+#include "base/process/memory.h"
+#include "base/process/mpi_end.h"
+#include "base/process/start.h"
+#include "base/process/threads.h"
 #include "cli/cli.h"
 
 static const struct Command {

@@ -8,7 +8,7 @@
 #include <petscdmplex.h>
 #include "basis/cell.h"
 #include "base/diag/diag.h"
-#include "base/table.h"
+#include "base/table/table.h"
 #include "case/case.h"
 
 /* A named set: of nodes and faces (boundary) or of cells (region). A box has left right (x), bottom

@@ -2,7 +2,7 @@
  * do. */
 #pragma once
 #include "grid/grid.h"
-#include "grid/partition.h"
+#include "grid/partition/partition.h"
 
 struct GridOps {
   PetscBool aligned; /* do its sides lie across the axes? */

@@ -1,5 +1,5 @@
 /* Nodal fields and sets of cells as tables, and back on any number of ranks. */
-#include "grid/directory.h"
+#include "grid/search/directory.h"
 
 static PetscErrorCode CountNumbers(const Grid *grid, PetscInt *n)
 {

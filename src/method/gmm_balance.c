@@ -1,7 +1,7 @@
 /* Which rank has which nodes and points. A cloud's owners move with the material, so their parts
  * stay compact while a body only bends or turns; when it flows they grow ragged and need ever more
  * ghosts. Then space is cut anew. */
-#include "grid/bisection.h"
+#include "grid/partition/bisection.h"
 #include "method/gmm.h"
 
 #define RAGGED 1.5 /* so many times the ghosts of fresh cuts call for new ones */

@@ -1,6 +1,6 @@
 #include "method/nodal_fields.h"
 #include "grid/cloud/cloud.h"
-#include "grid/directory.h"
+#include "grid/search/directory.h"
 
 /* Of which table a field is in checkpoints. Fields of no table are made anew in every step. */
 typedef enum { KEPT_NOWHERE, KEPT_MOTION, KEPT_BOUNDARY, KEPT_INCREMENTS, KEPT_CLOUD, KEPT_N } Kept;

@@ -2,7 +2,7 @@
  * cloud, put away in checkpoints and handed over to a grid that is shared anew. Arrays go over
  * the local nodes of the grid. */
 #pragma once
-#include "base/table.h"
+#include "base/table/table.h"
 #include "grid/grid.h"
 
 typedef enum {

@@ -90,6 +90,7 @@ PetscErrorCode StepStartKeep(Model *m, StepStart *start)
   PetscFunctionBeginUser;
   *start = (StepStart){.control = m->control, .cuts = m->cuts, .iterations = m->total_iterations, .tries = m->tries};
   newton_get_memory(m->newton, m->system, &start->newton);
+  if (m->method->restores_grid) PetscFunctionReturn(0);
   PetscCall(PetscArraycpy(m->nodes->v_start, m->nodes->v, dofs));
   PetscCall(PetscArraycpy(m->nodes->a_start, m->nodes->a, dofs));
   PetscFunctionReturn(0);
@@ -100,10 +101,11 @@ PetscErrorCode StepStartRestore(Model *m, const StepStart *start, StepReport *re
   const PetscInt dofs = m->grid->n_nodes * m->dim;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscArraycpy(m->nodes->v, m->nodes->v_start, dofs));
-  PetscCall(PetscArraycpy(m->nodes->a, m->nodes->a_start, dofs));
-  /* v_points may have changed, too */
-  if (m->method->restores_grid) m->space->present = PETSC_FALSE;
+  if (m->method->restores_grid) m->space->present = PETSC_FALSE; /* points tell the nodes again */
+  else {
+    PetscCall(PetscArraycpy(m->nodes->v, m->nodes->v_start, dofs));
+    PetscCall(PetscArraycpy(m->nodes->a, m->nodes->a_start, dofs));
+  }
   if (!report->newton.interrupted) PetscFunctionReturn(0);
   m->control = start->control;
   m->cuts = start->cuts;

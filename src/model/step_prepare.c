@@ -150,9 +150,10 @@ static void set_history(Model *m, PetscReal dt, const PetscReal *g)
   NodalFields *n = m->nodes;
   for (PetscInt i = 0; i < dofs; ++i) n->du[i] = 0;
   m->scheme->end(analysis, dt, dofs, n->du, n->v, n->a, n->v1, n->a1);
-  for (PetscInt i = 0; i < dofs; ++i) {
-    if (!n->touched[i / dim] || (m->method->clouds && cloud_is_twin(m->grid, i / dim))) continue;
-    n->history[i] = (1 - w.lag) * n->a1[i] + w.lag * n->a[i] + analysis->damping * n->v1[i] - g[i % dim];
+  for (PetscInt node = 0; node < m->grid->n_nodes; ++node) {
+    if (!n->touched[node] || (m->method->clouds && cloud_is_twin(m->grid, node))) continue;
+    for (PetscInt d = 0, i = node * dim; d < dim; ++d, ++i)
+      n->history[i] = (1 - w.lag) * n->a1[i] + w.lag * n->a[i] + analysis->damping * n->v1[i] - g[d];
   }
 }
 

@@ -1,6 +1,6 @@
 #include "picture/plot_spacing.h"
 #include <math.h>
-#include "grid/neighbours.h"
+#include "grid/search/neighbours.h"
 
 enum { MAX_NEIGHBOURS = 6, MAX_AROUND = 64 };
 

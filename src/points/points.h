@@ -3,7 +3,7 @@
  * Every field stands in one table, so that migration, sorting, output and checkpoints treat all
  * alike. A real field f has components[f] numbers a point: data = real[f] + p * components[f]. */
 #pragma once
-#include "base/table.h"
+#include "base/table/table.h"
 #include "grid/grid.h"
 #include "points/seed/outline.h"
 

@@ -2,7 +2,7 @@
  * its number in the whole grid. */
 #include "base/count.h"
 #include "grid/cloud/cloud.h"
-#include "grid/directory.h"
+#include "grid/search/directory.h"
 #include "points/fields.h"
 #include "points/migrate.h"
 

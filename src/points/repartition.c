@@ -1,5 +1,5 @@
 /* Points follow their cells to the ranks that have them after a grid was shared anew. */
-#include "grid/directory.h"
+#include "grid/search/directory.h"
 #include "points/points.h"
 
 /* Points stand in the order of their cells: the number of each cell that holds some, once. at[p]:

@@ -1,6 +1,6 @@
 /* States of a model as VTKHDF files. */
 #pragma once
-#include "base/table.h"
+#include "base/table/table.h"
 #include "case/fields.h"
 #include "model/model.h"
 

@@ -4,7 +4,7 @@
  * struct basis_<name>, and a line in bases.inc. */
 #pragma once
 #include "base/diag/diag.h"
-#include "grid/neighbours.h"
+#include "grid/search/neighbours.h"
 #include "support/support.h"
 
 typedef enum {

@@ -1,6 +1,6 @@
 /* Support of points that each have a cloud of nodes: those near them, chosen by a rule. */
 #pragma once
-#include "grid/neighbours.h"
+#include "grid/search/neighbours.h"
 #include "support/support.h"
 
 /* How clouds are chosen and what stands in them. */

@@ -5,7 +5,7 @@
 #include <stdint.h>
 #include <string.h>
 #include <cmocka.h>
-#include "base/table.h"
+#include "base/table/table.h"
 
 #define OK(call) assert_int_equal((call), 0)
 

@@ -3,7 +3,7 @@
  *
  *   petsc: {springs_on: bottom, springs_stiffness: 1e5, springs_plate: true}    # N/m each
  */
-#include "grid/directory.h"
+#include "grid/search/directory.h"
 #include "solve/forces/nodal_force.h"
 
 typedef struct {

@@ -1,5 +1,5 @@
 /* A mesh goes from rank to rank: what arrives is the grid that reading it would have made, whatever way it went; and the cuts balance weights. */
-#include "grid/directory.h"
+#include "grid/search/directory.h"
 #include "grid/mesh/mesh.h"
 #include "mesh_test.h"
 

@@ -14,7 +14,7 @@
 #include <sys/mman.h>
 #include <sys/wait.h>
 #include "../model/case_builder.h"
-#include "base/memory.h"
+#include "base/process/memory.h"
 #include "input/case_file.h"
 
 #ifdef __SANITIZE_ADDRESS__

@@ -5,7 +5,7 @@
  * that all that works on nodes works on clouds. What others keep per node follows along: they
  * register their arrays, and a change of ghosts or owners moves the contents. */
 #pragma once
-#include "base/table.h"
+#include "base/table/table.h"
 #include "grid/grid.h"
 
 #define CLOUD_MAX_FIELDS 32

@@ -2,7 +2,7 @@
  * on: rows are this rank's own, and where they come back to other ranks whoever cuts space sends
  * them on. */
 #include "grid/cloud/cloud.h"
-#include "grid/directory.h"
+#include "grid/search/directory.h"
 
 PetscErrorCode CloudToTables(const Grid *grid, Tables *tables)
 {

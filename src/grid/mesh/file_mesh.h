@@ -2,7 +2,7 @@
 #pragma once
 #include "grid/gmsh/msh.h"
 #include "grid/mesh/mesh.h"
-#include "grid/tuple_table.h"
+#include "grid/search/tuple_table.h"
 
 typedef struct {
   Grid *grid;       /* without what only ranks and searches need */

@@ -1,7 +1,7 @@
 /* Cells that lie anywhere: how they know each other, how a position finds them, and how they go to
  * other ranks. */
 #pragma once
-#include "grid/box_tree.h"
+#include "grid/search/box_tree.h"
 #include "grid/grid_ops.h"
 
 struct GridMesh {

@@ -1,7 +1,7 @@
 /* Makes the grid of a rank's cells when they have arrived: cells in the order of the file, those of
  * the lesser kind first. A node belongs to the lowest rank that has it; owners number theirs in the
  * order of the file. Nothing depends on where they came from. */
-#include "grid/directory.h"
+#include "grid/search/directory.h"
 #include "grid/mesh/mesh_part.h"
 
 /* The nodes here, by their numbers in the file. */

@@ -1,7 +1,7 @@
 /* Shares a mesh among the ranks by coordinate bisection of its cells' centres, which are read
  * off a ruler over the box around the mesh that is cut like a box grid; or cell by cell, as a
  * table says. */
-#include "grid/directory.h"
+#include "grid/search/directory.h"
 #include "grid/mesh/mesh.h"
 
 /* intervals to a cell; odd, so that centres of equal cells do not fall between two of them */

@@ -139,7 +139,8 @@ static PetscErrorCode ForcesAtEnds(const Model *m, PetscReal dt, PetscReal **bef
   PetscReal *zero;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc2(dofs, before, dofs, after));
+  PetscCall(PetscCalloc2(dofs, before, dofs, after));
+  if (!m->forces.n) PetscFunctionReturn(0);
   PetscCall(PetscCalloc1(dofs, &zero));
   const NodalScene start = nodal_scene(m, m->time, zero), end = nodal_scene(m, m->time + dt, m->nodes->du);
   PetscCall(NodalForcesExternal(&m->forces, &start, PETSC_TRUE, *before));

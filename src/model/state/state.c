@@ -1,5 +1,5 @@
 #include "model/state/state.h"
-#include "grid/directory.h"
+#include "grid/search/directory.h"
 #include "model/model_private.h"
 #include "model/state/state_private.h"
 

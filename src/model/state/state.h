@@ -4,7 +4,7 @@
  * matrix) is left out. A model that was brought back takes the same next step as the one that was
  * put away, bit by bit on the same number of ranks. */
 #pragma once
-#include "base/table.h"
+#include "base/table/table.h"
 #include "model/model.h"
 
 /* Collective. The state at the end of a step, of which there must have been one: the first starts

@@ -1,7 +1,7 @@
 /* What the files that put a model's state away share. */
 #pragma once
 #include "grid/cloud/cloud.h"
-#include "grid/directory.h"
+#include "grid/search/directory.h"
 #include "model/state/state.h"
 
 /* What was lost on the way: energy, points, tracers, carried loads. Checkpoints of older programs

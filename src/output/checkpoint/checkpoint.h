@@ -4,7 +4,7 @@
  * type, size, place and CRC-32, and the CRC-32 of the list. Reading needs nothing else, so that a
  * damaged file is found out before anything believes it. */
 #pragma once
-#include "base/table.h"
+#include "base/table/table.h"
 
 #define CHECKPOINT_VERSION 3
 

@@ -1,6 +1,6 @@
 /* The contents list of a checkpoint: text at the start of the file. */
 #pragma once
-#include "base/table.h"
+#include "base/table/table.h"
 
 #define CONTENTS_MAX 65536 /* bytes of the list at most */
 

@@ -5,7 +5,7 @@
  * library never meets a full disk (it cannot close a file that it cannot flush), every error has
  * its errno, and no rank waits for another in the middle of a write. */
 #pragma once
-#include "base/table.h"
+#include "base/table/table.h"
 
 /* A dataset of all ranks, of which this one holds `rows` rows from `first` on. */
 typedef struct {

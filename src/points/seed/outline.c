@@ -1,5 +1,5 @@
 #include "points/seed/outline.h"
-#include "grid/tuple_table.h"
+#include "grid/search/tuple_table.h"
 
 static PetscErrorCode Append(Outline *outline, const OutlineFace *face)
 {

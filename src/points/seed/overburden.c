@@ -1,7 +1,7 @@
 /* Columns of material against gravity: a line from a position upwards leaves and enters bodies
  * through their outlines. */
 #include <stdlib.h>
-#include "grid/box_tree.h"
+#include "grid/search/box_tree.h"
 #include "points/seed/outline.h"
 
 /* A face as the lines along `up` see it. */

@@ -6,7 +6,7 @@
  * 6 % of a step of the falling block, 5 % of the granular column. A method tells its iterations and
  * its reason through PETSc's private header alone. */
 #include <petsc/private/kspimpl.h>
-#include "base/denormals.h"
+#include "base/process/denormals.h"
 #include "solve/blocks/block_vectors.h"
 #include "solve/blocks/blocks.h"
 #include "solve/blocks/projection.h"

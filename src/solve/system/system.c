@@ -255,10 +255,11 @@ PetscErrorCode SystemSlots(System *s, const Support *support, PetscBool *complet
   PetscCall(SystemReserveSlots(s, size));
   PetscInt *slot = s->slot;
   for (const SupportRun *r = support->run; r < support->run + support->n_runs; ++r)
-    for (PetscInt g = r->first; g < r->end; ++g)
-      for (PetscInt I = 0; I < r->nodes; ++I)
-        for (PetscInt J = 0; J < r->nodes; ++J)
-          *slot++ = pair_slot(s, support->node[support->node_start[g] + I], support->node[support->node_start[g] + J]);
+    for (PetscInt g = r->first, nn = r->nodes; g < r->end; ++g, slot += nn * nn) {
+      const PetscInt *node = support->node + support->node_start[g];
+      for (PetscInt I = 0; I < nn; ++I)
+        for (PetscInt J = 0; J < nn; ++J) slot[I * nn + J] = pair_slot(s, node[I], node[J]);
+    }
   if (complete) *complete = PETSC_TRUE;
   PetscFunctionReturn(0);
 }

@@ -4,7 +4,7 @@
  * below the middle m take what lies below the cut. Entry m of `cut` is that cut, so that the tree
  * needs no pointers. Each rank knows the weights of some voxels; only histograms along the axes
  * travel. Weights are whole numbers, so that the cuts do not depend on who knows what. */
-#include "grid/partition.h"
+#include "grid/partition/partition.h"
 
 /* Weight of an empty voxel relative to the mean of those that carry something: its nodes still cost
  * memory and loops. */

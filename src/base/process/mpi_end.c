@@ -1,4 +1,4 @@
-#include "base/mpi_end.h"
+#include "base/process/mpi_end.h"
 #include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>

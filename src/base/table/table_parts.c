@@ -1,6 +1,6 @@
 /* Which rows of a table were which rank's: state without numbers of its own goes back to the same
  * ranks, in the same order. */
-#include "base/table.h"
+#include "base/table/table.h"
 #include <petscsf.h>
 
 PetscErrorCode PartsToTable(MPI_Comm comm, Tables *tables)

@@ -2,7 +2,7 @@
 #pragma once
 #include <petscsys.h>
 
-/* PetscInitialize with our memory (base/memory.h), and without the files petscrc and .petscrc of
+/* PetscInitialize with our memory (base/process/memory.h), and without the files petscrc and .petscrc of
  * the working directory and of the home: a folder from somebody else must not set options, some of
  * which load code. Options are read from argv and from PETSC_OPTIONS; argc and argv may be NULL. */
 PetscErrorCode StartPetsc(int *argc, char ***argv);

@@ -1,4 +1,4 @@
-#include "grid/bisection.h"
+#include "grid/partition/bisection.h"
 
 #define HALVINGS 40
 

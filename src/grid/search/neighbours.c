@@ -1,4 +1,4 @@
-#include "grid/neighbours.h"
+#include "grid/search/neighbours.h"
 #include "base/math/lanes.h"
 
 /* Bins over the bounding box; stragglers far away must not make them countless. */

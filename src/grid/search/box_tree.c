@@ -1,5 +1,5 @@
 /* Bounding boxes in a balanced binary tree, split at the median of their centres. */
-#include "grid/box_tree.h"
+#include "grid/search/box_tree.h"
 
 #define LEAF_SIZE 4
 #define MAX_DEPTH 64

@@ -1,7 +1,7 @@
 /* Who holds what, by numbers that do not depend on how the grid is shared among the ranks: for
  * state that comes back from a file. */
 #pragma once
-#include "base/table.h"
+#include "base/table/table.h"
 #include "grid/grid.h"
 
 /* Where a number was found. */

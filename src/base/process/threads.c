@@ -1,4 +1,4 @@
-#include "base/threads.h"
+#include "base/process/threads.h"
 #include <dlfcn.h>
 #include <stdlib.h>
 

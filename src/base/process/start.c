@@ -1,8 +1,8 @@
-#include "base/start.h"
+#include "base/process/start.h"
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
-#include "base/memory.h"
+#include "base/process/memory.h"
 
 PetscErrorCode StartPetsc(int *argc, char ***argv)
 {

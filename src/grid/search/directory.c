@@ -1,6 +1,6 @@
 /* The directory itself is spread over the ranks in equal shares, so that no rank knows all
  * numbers. */
-#include "grid/directory.h"
+#include "grid/search/directory.h"
 
 PetscErrorCode ReasonShare(MPI_Comm comm, char reason[256])
 {

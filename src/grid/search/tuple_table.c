@@ -1,5 +1,5 @@
 /* A hash table of small sets of nodes, by which the two cells of a face find each other. */
-#include "grid/tuple_table.h"
+#include "grid/search/tuple_table.h"
 
 struct TupleTable {
   PetscInt width, n;

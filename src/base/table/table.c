@@ -1,4 +1,4 @@
-#include "base/table.h"
+#include "base/table/table.h"
 #include <string.h>
 
 PetscErrorCode TablesCreate(Tables **tables)
