@@ -77,18 +77,25 @@ KERNEL void cloud_force(const int dim, const PetscBool hoop, const WeakFormInput
     }
 }
 
-/* T_j[J] = V0 sum_l (c_ajbl + delta_ab tau_jl) g_l[J], a block of dim x dim. */
+/* V0 (c_ajbl + delta_ab tau_jl) of one j: a block of dim x dim for each row l of the gradients. */
+KERNEL void cloud_moduli(const int dim, const int rows, const int j, const PetscReal *tau, const PetscReal *c,
+                         PetscReal volume, PetscReal modulus[3][9])
+{
+  for (int l = 0; l < rows; ++l)
+    for (int a = 0; a < dim; ++a)
+      for (int b = 0; b < dim; ++b)
+        modulus[l][a * dim + b] =
+          is_felt(dim, a, j) && is_felt(dim, b, l) ? volume * modulus_of(dim, a, j, b, l, tau, c) : 0;
+}
+
+/* T_j[J] = sum_l of these times g_l[J], a block of dim x dim. */
 KERNEL void cloud_products(const int dim, const PetscBool hoop, const PetscReal *tau, const PetscReal *c,
                            PetscReal volume, CloudWork *w)
 {
   const int rows = gradient_rows(dim, hoop);
   for (int j = 0; j < rows; ++j) {
     PetscReal modulus[3][9];
-    for (int l = 0; l < rows; ++l)
-      for (int a = 0; a < dim; ++a)
-        for (int b = 0; b < dim; ++b)
-          modulus[l][a * dim + b] =
-            is_felt(dim, a, j) && is_felt(dim, b, l) ? volume * modulus_of(dim, a, j, b, l, tau, c) : 0;
+    cloud_moduli(dim, rows, j, tau, c, volume, modulus);
     for (PetscInt J = 0; J < w->nn; ++J) {
       PetscReal *T = w->T + (j * w->nn + J) * dim * dim;
       if (dim == 2) {

@@ -60,8 +60,7 @@ static PetscBool read_entry(const char *line, PetscInt64 file_bytes, ContentsEnt
   char type[8], flag[12] = "", rest;
   int components;
   int64_t rows, offset;
-  /* NOLINTNEXTLINE(cert-err34-c): a number out of range cannot pass the checksum or the checks
-   * below */
+  /* NOLINTNEXTLINE(cert-err34-c): checksum and checks below stop a number out of range */
   const int found = sscanf(line, "%47[a-z_0-9]/%47[a-z_0-9] %7s %d %" SCNd64 " %" SCNd64 " %8" SCNx32 " %11s %c",
                            e->table, e->column, type, &components, &rows, &offset, &e->crc, flag, &rest);
   if (found != 7 && found != 8) return PETSC_FALSE;
@@ -113,14 +112,12 @@ static PetscBool read_list(char *text, PetscInt64 file_bytes, Contents *c, char 
 {
   int version = 0, n = 0, head = 0;
   int64_t bytes = 0;
-  /* NOLINTNEXTLINE(cert-err34-c): a number out of range cannot pass the checksum or the checks
-   * below */
+  /* NOLINTNEXTLINE(cert-err34-c): checksum and checks below stop a number out of range */
   if (sscanf(text + strlen(title), "version %d\n", &version) != 1)
     return refuse(reason, "it does not tell its version");
   if (version != CHECKPOINT_VERSION)
     return refuse(reason, "it is of version %d, this program reads version %d", version, CHECKPOINT_VERSION);
-  /* NOLINTNEXTLINE(cert-err34-c): a number out of range cannot pass the checksum or the checks
-   * below */
+  /* NOLINTNEXTLINE(cert-err34-c): checksum and checks below stop a number out of range */
   if (sscanf(text + strlen(title), "version %d\nbytes %" SCNd64 "\ndatasets %d%n", &version, &bytes, &n, &head) < 3 ||
       n < 0 || n > CONTENTS_MAX / 16 || text[strlen(title) + (size_t)head] != '\n')
     return refuse(reason, "its contents make no sense");
@@ -147,8 +144,7 @@ PetscBool contents_read(const char *bytes, size_t n, PetscInt64 file_bytes, Cont
   text[n] = 0;
   char *end = strstr(text, "\nend ");
   PetscBool ok = PETSC_FALSE;
-  /* NOLINTNEXTLINE(cert-err34-c): a number out of range cannot pass the checksum or the checks
-   * below */
+  /* NOLINTNEXTLINE(cert-err34-c): checksum and checks below stop a number out of range */
   if (!end || sscanf(end, "\nend %8" SCNx32, &crc) != 1) refuse(reason, "its contents are cut off");
   else if (text_crc(text, (size_t)(end + 1 - text)) != crc) refuse(reason, "the checksum of its contents is wrong");
   else {
