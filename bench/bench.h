@@ -1,4 +1,5 @@
-/* What the solver's benchmarks share: cases made by hand, one isolated pass over the points, memory, the machine's bandwidth.
+/* What the solver's benchmarks share: cases made by hand, one isolated pass over the points,
+ * memory, the machine's bandwidth.
  *
  * Included by one program each; everything is static. */
 #pragma once
@@ -75,8 +76,8 @@ static inline void bench_case(BenchCase *b, PetscInt dim, PetscReal young, Petsc
   b->c.gravity[dim - 1] = -9.81;
 }
 
-/* A block of n cells along its edge of 1 m, in the cells from `first` on of a grid of 2 m that holds it at its floor alone. The time step goes
- * with the cell: a Courant number of 5.5. */
+/* A block of n cells along its edge of 1 m, in the cells from `first` on of a grid of 2 m that
+ * holds it at its floor alone. The time step goes with the cell: a Courant number of 5.5. */
 static inline void bench_block(BenchCase *b, PetscInt dim, PetscInt n, PetscInt first)
 {
   const PetscReal h = 1.0 / (PetscReal)n, dt = 0.15 * h;
@@ -138,9 +139,10 @@ static inline PetscErrorCode SubjectDestroy(Subject *s)
   PetscFunctionReturn(0);
 }
 
-/* Bytes that a pass moves if every array passes the memory bus once each time it is named here: N, dN, volume, mass, material and state
- * of a point; nodes, slots and stabilisation of a group; du, history, fixed (read) and force (zeroed, read, written) of a node with
- * unknowns; the tangent's values zeroed, read and written by the scatter, then read and written into the matrix. */
+/* Bytes that a pass moves if every array passes the memory bus once each time it is named here: N,
+ * dN, volume, mass, material and state of a point; nodes, slots and stabilisation of a group; du,
+ * history, fixed (read) and force (zeroed, read, written) of a node with unknowns; the tangent's
+ * values zeroed, read and written by the scatter, then read and written into the matrix. */
 static inline PetscReal pass_bytes(const Model *m)
 {
   const PetscReal dim = (PetscReal)m->dim, nn = (PetscReal)m->grid->nodes_per_cell, real = sizeof(PetscReal),
@@ -184,7 +186,8 @@ static inline PetscErrorCode PassMeasure(Model *m, PetscReal inertia, PetscInt r
   PetscFunctionReturn(0);
 }
 
-/* Bytes per second of a = b + s c on arrays that no cache holds, best of five: what STREAM calls triad. */
+/* Bytes per second of a = b + s c on arrays that no cache holds, best of five: what STREAM calls
+ * triad. */
 static inline PetscErrorCode TriadMeasure(PetscReal *bandwidth)
 {
   const PetscInt n = 32 * 1024 * 1024;

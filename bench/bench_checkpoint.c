@@ -1,6 +1,7 @@
 /* A checkpoint of an elastic block that falls: seconds to write and to read it back, bytes a point.
  *
- *   mpiexec -n 2 build/bench/bench_checkpoint [-dim 2] [-points 1000000] [-folder /tmp] [-repeat 3] */
+ *   mpiexec -n 2 build/bench/bench_checkpoint [-dim 2] [-points 1000000] [-folder /tmp] [-repeat
+ *   3] */
 #include "bench.h"
 #include "output/checkpoint/checkpoint.h"
 #include "model/state/state.h"

@@ -1,9 +1,10 @@
-/* Nanoseconds for the meshfree shape functions of a point, on one core: the bases alone, then with the choice of the cloud
- * among its candidates.
+/* Nanoseconds for the meshfree shape functions of a point, on one core: the bases alone, then with
+ * the choice of the cloud among its candidates.
  *
  *   cmake --build build --target bench_cloud && build/bench/bench_cloud
  *
- * Nodes are a disordered lattice (15 % of the spacing); every figure is the best of seven passes over 500 points. */
+ * Nodes are a disordered lattice (15 % of the spacing); every figure is the best of seven passes
+ * over 500 points. */
 #include "basis/cloud_support.h"
 #include <stdio.h>
 #include <stdlib.h>
@@ -13,7 +14,8 @@
 
 typedef struct {
   int dim, n;
-  PetscReal x[POINTS][3], X[POINTS][CLOUD_MAX_NODES * 3]; /* the n nodes nearest to each point, nearest first */
+  /* the n nodes nearest to each point, nearest first */
+  PetscReal x[POINTS][3], X[POINTS][CLOUD_MAX_NODES * 3];
 } Sample;
 
 static PetscReal uniform(void) { return (PetscReal)rand() / RAND_MAX - 0.5; }
@@ -46,7 +48,8 @@ static void fill(Sample *sample, int dim, int n)
   }
 }
 
-/* Mean time of a point; with `support` the cloud is chosen among the sample's nodes, else it is all of them. */
+/* Mean time of a point; with `support` the cloud is chosen among the sample's nodes, else it is all
+ * of them. */
 static double measure(const Sample *sample, const CloudBasis *basis, const CloudSupport *support, double *nodes)
 {
   static PetscReal N[CLOUD_MAX_NODES], dN[CLOUD_MAX_NODES * 3];

@@ -1,13 +1,16 @@
-/* The dry column of cases/granular-collapse (aspect ratio 1.2, mesh 2): what a step and a Newton iteration cost, and how many 0.5 s of
- * collapse take with fixed steps and with steps under control.
+/* The dry column of cases/granular-collapse (aspect ratio 1.2, mesh 2): what a step and a Newton
+ * iteration cost, and how many 0.5 s of collapse take with fixed steps and with steps under
+ * control.
  *
  *   build/bench/bench_column [-full] [-case cases/granular-collapse/case.yaml]
  *
- * Seconds are those in which a core worked for this process. Steps of 0.1 ms go to 0.05 s, with -full to 0.5 s. */
+ * Seconds are those in which a core worked for this process. Steps of 0.1 ms go to 0.05 s, with
+ * -full to 0.5 s. */
 #include "bench.h"
 #include "input/case_file.h"
 
-#define THESIS_SECONDS 290.0 /* the code of the thesis, for the same 0.5 s, on this kind of machine */
+/* the code of the thesis, for the same 0.5 s, on this kind of machine */
+#define THESIS_SECONDS 290.0
 #define END 0.5
 
 typedef struct {

@@ -1,7 +1,8 @@
-/* An elastic block lands on the floor of its grid and bounces: the cost of a step, and how it grows with the number of points at the
- * same Courant number and with the same number of steps.
+/* An elastic block lands on the floor of its grid and bounces: the cost of a step, and how it grows
+ * with the number of points at the same Courant number and with the same number of steps.
  *
- *   build/bench/bench_dynamic [-dim 2] [-points 10000,100000,1000000] [-steps 20] [-repeat 1] [-weak]
+ *   build/bench/bench_dynamic [-dim 2] [-points 10000,100000,1000000] [-steps 20] [-repeat 1]
+ *   [-weak]
  *
  * -weak: so many points for each rank, for weak scaling. */
 #include "bench.h"

@@ -1,9 +1,12 @@
-/* The rolling disk of cases/rolling-disk by mpm and by gmm: what a step costs, by phase, and gmm's cost as a ratio to mpm's.
+/* The rolling disk of cases/rolling-disk by mpm and by gmm: what a step costs, by phase, and gmm's
+ * cost as a ratio to mpm's.
  *
- *   build/bench/bench_gmm [-size 0.02] [-step 2e-3] [-steps 40] [-repeat 3] [-only NAME [-alone]] [-case cases/rolling-disk/case.yaml]
+ *   build/bench/bench_gmm [-size 0.02] [-step 2e-3] [-steps 40] [-repeat 3] [-only NAME [-alone]]
+ *   [-case cases/rolling-disk/case.yaml]
  *
- * Ratios are taken inside one run, from the best of several rounds in which all methods take turns; seconds are those in which a core worked
- * for this process. The disk stands one cell above the plane at the start, as in the case. */
+ * Ratios are taken inside one run, from the best of several rounds in which all methods take turns;
+ * seconds are those in which a core worked for this process. The disk stands one cell above the
+ * plane at the start, as in the case. */
 #include "bench.h"
 #include "input/case_file.h"
 
@@ -92,7 +95,8 @@ static PetscErrorCode Measure(const Plan *plan, const Variant *variant, Outcome 
   PetscCall(DiagCreate(&diag));
   PetscCall(ReadCase(plan, variant, diag, &c));
   if (c) PetscCall(ModelCreate(PETSC_COMM_WORLD, c, diag, &m));
-  if (!m) PetscCall(DiagFlush(diag, stderr)); /* the warning that the disk starts within reach of the plane is known */
+  /* the warning that the disk starts within reach of the plane is known */
+  if (!m) PetscCall(DiagFlush(diag, stderr));
   PetscCheck(m, PETSC_COMM_WORLD, PETSC_ERR_USER, "the benchmark's case has mistakes: %s", plan->file);
   PetscCall(Advance(m, plan->steps, o));
   PetscCall(Describe(m, o));
@@ -107,7 +111,8 @@ static void print_row(const char *name, const Outcome *o, const Outcome *mpm)
   const double steps = (double)o->steps;
   PetscReal clock = 0;
   for (int k = 0; k < PHASE_N; ++k) clock += o->phase[k];
-  const double ms = 1e3 * o->seconds / steps, share = o->seconds / clock; /* phases are timed by the clock */
+  /* phases are timed by the clock */
+  const double ms = 1e3 * o->seconds / steps, share = o->seconds / clock;
   printf("%-13s %6.1f %7d %6.2f %8.4f", name, (double)o->entries / (double)o->points, (int)o->unknowns,
          (double)o->iterations / steps, (double)o->way);
   for (int k = 0; k < PHASE_N; ++k) printf(" %10.2f", 1e3 * o->phase[k] * share / steps);

@@ -1,12 +1,14 @@
 /* Points per second of the laws' batch update, on one core.
  *
  *   cc -O3 -march=native -fno-math-errno -fno-trapping-math -D_GNU_SOURCE -Isrc bench/bench_law.c \
- *      src/material/neo_hookean.c src/material/neo_hookean_split.c src/material/j2.c src/material/mohr_coulomb/mohr_coulomb.c \
- *      src/material/registry.c $(pkg-config --cflags --libs PETSc) $(mpicc --showme:compile) -lm
+ *      src/material/neo_hookean.c src/material/neo_hookean_split.c src/material/j2.c
+ *      src/material/mohr_coulomb/mohr_coulomb.c \ src/material/registry.c $(pkg-config --cflags
+ *      --libs PETSc) $(mpicc --showme:compile) -lm
  *   ./a.out [points per batch, 32]
  *
- * Prints one line per case: million points per second with the tangent and without, and nanoseconds per point with it.
- * Plastic cases start on the yield surface, stressed and turned, and go on yielding; `plane` has no strain along z. */
+ * Prints one line per case: million points per second with the tangent and without, and nanoseconds
+ * per point with it. Plastic cases start on the yield surface, stressed and turned, and go on
+ * yielding; `plane` has no strain along z. */
 #include "material/law.h"
 #include <math.h>
 #include <stdio.h>
@@ -41,7 +43,8 @@ static double now(void)
   return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
 
-/* Increments of all directions, each the same in every step; compressed a little, so that granular matter has a load. */
+/* Increments of all directions, each the same in every step; compressed a little, so that granular
+ * matter has a load. */
 static void set_up(const BenchCase *b, int n, PetscReal *dF)
 {
   for (int p = 0; p < n; ++p)
@@ -56,7 +59,7 @@ static double speed(const BenchCase *b, int n, int tangent)
 {
   static PetscReal dF[9 * LAW_BATCH], old[LAW_MAX_STATE * LAW_BATCH], state[LAW_MAX_STATE * LAW_BATCH];
   static PetscReal tau[6 * LAW_BATCH], c[36 * LAW_BATCH];
-  const Elasticity elastic = {2.6, 0.3, 2.6 / 1.2, 1.0, 1.5};
+  const Elasticity elastic = {.constant = {2.6, 0.3, 2.6 / 1.2, 1.0, 1.5}};
   const Law *law = law_find(b->law);
   PetscReal packed[LAW_MAX_PARAMETERS] = {0};
   double best = 0.0;

@@ -1,9 +1,12 @@
-/* The three reference loads: where the time of a step goes, and what it is beside the bare linear solves of its matrices.
+/* The three reference loads: where the time of a step goes, and what it is beside the bare linear
+ * solves of its matrices.
  *
- *   build/bench/bench_loads [-only 3] [-scale 1]     (from the root of the project; -scale: more or fewer steps of the dynamic loads)
+ *   build/bench/bench_loads [-only 3] [-scale 1]     (from the root of the project; -scale: more or
+ *   fewer steps of the dynamic loads)
  *
- * Each load runs twice, the second time with PETSc's assembled matrix and usual solver in place of what talus chooses: the same steps, the
- * same matrices (to the tolerance of the solvers), other linear solves. Seconds are those in which the core worked for this process. */
+ * Each load runs twice, the second time with PETSc's assembled matrix and usual solver in place of
+ * what talus chooses: the same steps, the same matrices (to the tolerance of the solvers), other
+ * linear solves. Seconds are those in which the core worked for this process. */
 #include "bench.h"
 #include "input/case_file.h"
 
@@ -12,8 +15,10 @@
 typedef struct {
   int load;
   const char *name, *file, *set[SETTINGS];
-  PetscInt before, steps; /* steps that only lead to where it is measured, and those that are measured */
-  const char *other;      /* PETSc's options for the second run; NULL: talus takes PETSc's solver already */
+  /* steps that only lead to where it is measured, and those that are measured */
+  PetscInt before, steps;
+  /* PETSc's options for the second run; NULL: talus takes PETSc's solver already */
+  const char *other;
 } Load;
 
 #define COLUMN "cases/granular-collapse/case.yaml"
@@ -37,7 +42,8 @@ static const Load loads[] = {
 
 typedef struct {
   PetscInt points, unknowns, steps, iterations, linear_iterations;
-  PetscReal seconds, idle, phase[PHASE_N]; /* of the steps that are measured; the phases by the clock */
+  /* of the steps that are measured; the phases by the clock */
+  PetscReal seconds, idle, phase[PHASE_N];
   char solver[64];
 } Outcome;
 

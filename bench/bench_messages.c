@@ -1,9 +1,12 @@
-/* What the ranks say to each other in a step, by phase: messages, bytes, collective calls; and what it costs to share the grid anew.
- * Counts, not seconds: more ranks than cores do no harm. docs/scaling.md has the table and what it means for 1,000 ranks.
+/* What the ranks say to each other in a step, by phase: messages, bytes, collective calls; and what
+ * it costs to share the grid anew. Counts, not seconds: more ranks than cores do no harm.
+ * docs/scaling.md has the table and what it means for 1,000 ranks.
  *
- *   mpiexec --oversubscribe -n 4 build/bench/bench_messages [-dim 2] [-points 10000] [-per_rank 2500] [-steps 5] [-mesh]
+ *   mpiexec --oversubscribe -n 4 build/bench/bench_messages [-dim 2] [-points 10000] [-per_rank
+ *   2500] [-steps 5] [-mesh]
  *
- * -points: of the whole body; -per_rank instead: of each rank. -mesh: the grid comes from a file. */
+ * -points: of the whole body; -per_rank instead: of each rank. -mesh: the grid comes from a
+ * file. */
 #include "messages.h"
 
 #include "box_mesh.h"
@@ -93,8 +96,8 @@ static PetscErrorCode ShareBy(PetscBool points, PetscInt *moved)
   PetscFunctionReturn(0);
 }
 
-/* Share the grid by cells alone, which moves many points, and back by points: seconds of processor of one such sharing and of the pattern that the
- * step after it makes, over those of a step. */
+/* Share the grid by cells alone, which moves many points, and back by points: seconds of processor
+ * of one such sharing and of the pattern that the step after it makes, over those of a step. */
 static PetscErrorCode Repartition(void)
 {
   PetscReal seconds[2] = {0, 0};

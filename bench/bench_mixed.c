@@ -1,5 +1,6 @@
-/* A nearly incompressible block in three dimensions, clamped below and pressed on half of its top, in one static step of the mixed
- * formulation: linear iterations and the cost of a Newton iteration, iterative against direct solver where both can be had.
+/* A nearly incompressible block in three dimensions, clamped below and pressed on half of its top,
+ * in one static step of the mixed formulation: linear iterations and the cost of a Newton
+ * iteration, iterative against direct solver where both can be had.
  *
  *   build/bench/bench_mixed [-cells 8,12,16] [-hexahedra] [-poisson 0.4999] [-direct_up_to 12] */
 #include "bench.h"

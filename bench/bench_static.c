@@ -1,5 +1,5 @@
-/* Cantilever under its own weight in one static step, direct solver: the cost of a Newton iteration, and what it is beside the
- * factorisation of its matrix and the bytes that it must move.
+/* Cantilever under its own weight in one static step, direct solver: the cost of a Newton
+ * iteration, and what it is beside the factorisation of its matrix and the bytes that it must move.
  *
  *   build/bench/bench_static [-spacings 0.0625,0.03125] [-repeat 5] */
 #include "bench.h"
@@ -77,7 +77,8 @@ static PetscErrorCode Measure(PetscReal h, PetscInt repeats, Result *r)
       r->total = total;
       model_times(s.model, r->phase);
     }
-    if (k == 0) r->resident = (resident_bytes() - s.bytes_before) / s.points; /* later ones reuse freed memory */
+    /* later ones reuse freed memory */
+    if (k == 0) r->resident = (resident_bytes() - s.bytes_before) / s.points;
     r->iterations = report.newton.iterations;
     r->points = s.points;
     r->unknowns = s.model->system->n_active_global * s.model->dim;

@@ -1,8 +1,10 @@
-/* Counts what a rank says to others: MPI's profiling interface (MPI_ stands here, PMPI_ in the library) sees the calls of this program and of PETSc.
+/* Counts what a rank says to others: MPI's profiling interface (MPI_ stands here, PMPI_ in the
+ * library) sees the calls of this program and of PETSc.
  *
- * Included by one program, before PETSc's headers, which hide MPI behind macros. A call is charged to the phase of the step in which it happens. No
- * phase says when it begins; but all read MPI's clock at their ends, and then add to their seconds: calls between two readings form a
- * span, and the span belongs to the phase whose seconds have grown when the next call comes. */
+ * Included by one program, before PETSc's headers, which hide MPI behind macros. A call is charged
+ * to the phase of the step in which it happens. No phase says when it begins; but all read MPI's
+ * clock at their ends, and then add to their seconds: calls between two readings form a span, and
+ * the span belongs to the phase whose seconds have grown when the next call comes. */
 #pragma once
 #include <mpi.h>
 #include <string.h>
@@ -24,7 +26,8 @@ static struct {
   int n_phases;
   double seconds[MESSAGE_PHASES];
   MessageCount phase[MESSAGE_PHASES + 1], span[MESSAGE_SPANS]; /* the last phase: none */
-  int n_spans;                                                 /* closed ones; span[n_spans] is open */
+  /* closed ones; span[n_spans] is open */
+  int n_spans;
   struct {
     MPI_Request request;
     double bytes;

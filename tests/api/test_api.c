@@ -1,5 +1,5 @@
-/* The public interface as a user's program sees it: only talus.h. The tests run in order; the first starts MPI and
- * PETSc, the last ends them. */
+/* The public interface as a user's program sees it: only talus.h. The tests run in order; the first
+ * starts MPI and PETSc, the last ends them. */
 #include "api_test.h"
 
 /* Each rank starts in a folder whose petscrc asks PETSc to write a file in the end. */
@@ -197,7 +197,8 @@ static void test_steps_equal_run(void **state)
     CHECK(run_value == model_value);
   }
   CALL(
-    TalusModelMeasure(model, "top", &model_value)); /* the free top falls freely, news from the bottom takes 0.027 s */
+    /* the free top falls freely, news from the bottom takes 0.027 s */
+    TalusModelMeasure(model, "top", &model_value));
   CHECK_CLOSE(model_value, -0.5 * 9.81 * 0.01 * 0.01, 2e-5);
   CHECK_ERROR(TalusRunMeasure(run, "bottom", &run_value), TALUS_ERROR_UNKNOWN);
   CALL(TalusRunDestroy(&run));
@@ -213,7 +214,8 @@ static void test_steps_equal_run(void **state)
   remove_folder(folder);
 }
 
-/* The values of a run of the block to this end, of the same block that ran to half of it and was resumed, and of one that was resumed at its end. */
+/* The values of a run of the block to this end, of the same block that ran to half of it and was
+ * resumed, and of one that was resumed at its end. */
 static void test_resume(void **state)
 {
   static const char *const often[] = {"checkpoint.steps=2", "analysis.end=0.02"}, *const half[] = {
@@ -300,7 +302,8 @@ static void test_limits(void **state)
   CALL(TalusModelTime(model, &time, NULL));
   CHECK(step == TALUS_STEP_ACCEPTED && time == 0.0005);
   run_to_end(model);
-  CALL(TalusModelStep(model, 0.001, &step)); /* asked for, a model goes on beyond the end of its case */
+  /* asked for, a model goes on beyond the end of its case */
+  CALL(TalusModelStep(model, 0.001, &step));
   CALL(TalusModelTime(model, &time, NULL));
   CHECK(step == TALUS_STEP_ACCEPTED);
   CHECK_CLOSE(time, 0.011, 1e-12);
@@ -328,7 +331,8 @@ static void test_failed_step(void **state)
   CALL(TalusCaseClose(&c));
 }
 
-/* A run that gives up is no error of the call, and no run that is done; what it had reached is there. */
+/* A run that gives up is no error of the call, and no run that is done; what it had reached is
+ * there. */
 static void test_gave_up(void **state)
 {
   const char *const set[] = {"analysis.smallest=0.0015", "newton.max_iterations=1", "newton.residual=1e-14",
@@ -397,7 +401,8 @@ static void test_points(void **state)
   CALL(TalusCaseClose(&c));
 }
 
-/* A body under its own weight starts with just the stress that carries it, in the volume it was seeded with. */
+/* A body under its own weight starts with just the stress that carries it, in the volume it was
+ * seeded with. */
 static void test_geostatic_stress(void **state)
 {
   const char *const set[] = {"bodies[0].k0=0.5", "bodies[0].surface=1", "materials.rubber.young=1e5"};

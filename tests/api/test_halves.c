@@ -1,5 +1,6 @@
 /* A program that has MPI for itself and lets two cases work side by side, each on its half of the
- * ranks: both give the numbers of one rank, and neither meets the other's messages, nor the program's. */
+ * ranks: both give the numbers of one rank, and neither meets the other's messages, nor the
+ * program's. */
 #include "api_test.h"
 
 /* The second half's block is softer, steps finer and hangs in less gravity. */

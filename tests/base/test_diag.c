@@ -108,7 +108,8 @@ static void SortedByLine(void **state)
   assert_int_equal(DiagDestroy(&diag), 0);
 }
 
-/* A thousand mistakes are counted; the first of them are shown, and no warning takes an error's place. */
+/* A thousand mistakes are counted; the first of them are shown, and no warning takes an error's
+ * place. */
 static void ManyAreCounted(void **state)
 {
   Diag *diag;
@@ -208,7 +209,8 @@ static void Reduce(void **state)
   assert_int_equal(DiagDestroy(&diag), 0);
 }
 
-/* Two things about the same place are two messages, whoever says them; the same thing said twice is one. */
+/* Two things about the same place are two messages, whoever says them; the same thing said twice is
+ * one. */
 static void ReduceKeepsWords(void **state)
 {
   const DiagPlace place = {"c", "text", 7, 2, 1};

@@ -43,7 +43,8 @@ static void test_known(void **state)
   }
 }
 
-/* No rounding at all where there is nothing to turn; one turn in a plane leaves the third direction alone. */
+/* No rounding at all where there is nothing to turn; one turn in a plane leaves the third direction
+ * alone. */
 static void test_exact(void **state)
 {
   (void)state;
@@ -59,7 +60,8 @@ static void test_exact(void **state)
   check(none, value, v);
 }
 
-/* Graded positive tensors D A D keep the small eigenvalues to relative accuracy: their product is the determinant. */
+/* Graded positive tensors D A D keep the small eigenvalues to relative accuracy: their product is
+ * the determinant. */
 static void test_graded(void **state)
 {
   (void)state;

@@ -1,5 +1,5 @@
-/* Meant to fail, on the last rank only: the message must be there, and the other ranks must not wait in their barrier
- * until the time is up. */
+/* Meant to fail, on the last rank only: the message must be there, and the other ranks must not
+ * wait in their barrier until the time is up. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>

@@ -62,7 +62,8 @@ static void test_ends(void **state)
   assert_true(isnan(y[4]) && y[5] == 1);
 }
 
-/* One lane: the values of base/math/eigen.h, and vectors that are orthonormal and belong to them. */
+/* One lane: the values of base/math/eigen.h, and vectors that are orthonormal and belong to
+ * them. */
 static void check_lane(int l, const PetscReal s[6], const Lanes values[3], const Lanes vectors[9])
 {
   PetscReal value[3], v[9];

@@ -4,7 +4,8 @@
 #include "../conformance/basis_suite.h"
 #include "../conformance/random.h"
 
-/* A lattice of side^dim nodes, spacing h about the origin, each moved by up to disorder * h. Returns their number. */
+/* A lattice of side^dim nodes, spacing h about the origin, each moved by up to disorder * h.
+ * Returns their number. */
 static inline int lattice_cloud(Random *random, int dim, int side, PetscReal h, PetscReal disorder, PetscReal *X)
 {
   int n = 1;

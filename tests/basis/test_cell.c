@@ -109,7 +109,8 @@ static void test_inverse_map_refuses(void **state)
   }
 }
 
-/* A trapezoid whose sides meet at (0, 2): beyond that point the map folds, and no xi may be made up. */
+/* A trapezoid whose sides meet at (0, 2): beyond that point the map folds, and no xi may be made
+ * up. */
 static void test_inverse_map_beyond_fold(void **state)
 {
   (void)state;
@@ -140,7 +141,8 @@ static void test_outside(void **state)
   }
 }
 
-/* Area vector of a face of the reference cell, outward by the right-hand rule; exact for planar faces. */
+/* Area vector of a face of the reference cell, outward by the right-hand rule; exact for planar
+ * faces. */
 static void face_area(CellType type, PetscInt face, PetscReal area[3])
 {
   const Cell *cell = &cells[type];

@@ -49,7 +49,8 @@ static void assert_basis(const PetscReal *X, const PetscReal *x, const Result *r
       for (int j = 0; j < 2; ++j) slope[2 * i + j] += d * result->dN[2 * a + j];
     }
   }
-  /* Last resorts reach far outside their few nodes: rounding grows with the moment matrix' condition. */
+  /* Last resorts reach far outside their few nodes: rounding grows with the moment matrix'
+   * condition. */
   const PetscBool bad = result->report.level == SUPPORT_POOR || result->report.level == SUPPORT_MLS;
   assert_true(fabs(sum - 1.0) <= (bad ? 1e-13 * PetscMax(10.0, result->report.condition) : 1e-12));
   for (int i = 0; i < 2 && gradients; ++i) {
@@ -71,8 +72,9 @@ static void deform(const PetscReal f[4], int n, PetscReal *X, PetscReal *metric)
     for (int j = 0; j < 2; ++j) metric[2 * i + j] = inverse[i] * inverse[j] + inverse[2 + i] * inverse[2 + j];
 }
 
-/* Inside a disordered lattice under any isochoric stretch up to 3 and shear up to 5 there is a basis of the kind asked
- * for; what stops it beyond is that no neighbours are left within max_radius across the stretch. */
+/* Inside a disordered lattice under any isochoric stretch up to 3 and shear up to 5 there is a
+ * basis of the kind asked for; what stops it beyond is that no neighbours are left within
+ * max_radius across the stretch. */
 static void stretched_and_sheared(void **state)
 {
   (void)state;
@@ -152,7 +154,8 @@ static PetscReal largest_change(const CloudSupport *support, const CloudBasis *b
   return largest;
 }
 
-/* Weights end smoothly: ten times the steps, a tenth of the change, also where radii grow. The paper's rule jumps. */
+/* Weights end smoothly: ten times the steps, a tenth of the change, also where radii grow. The
+ * paper's rule jumps. */
 static void no_jumps(void **state)
 {
   (void)state;
@@ -175,7 +178,8 @@ static void no_jumps(void **state)
     }
 }
 
-/* Two halves move apart: links end when the gap is wider than said, and growing radii do not bring them back. */
+/* Two halves move apart: links end when the gap is wider than said, and growing radii do not bring
+ * them back. */
 static void split(void **state)
 {
   (void)state;
@@ -184,7 +188,8 @@ static void split(void **state)
     PetscReal X[NODES * 2];
     int across[2] = {0};
     lattice_cloud(&random, 2, SIDE, 1.0, 0.05, X);
-    for (int a = 0; a < NODES; ++a) X[2 * a] += X[2 * a] > 0.5 ? gap : 0.0; /* columns are at 0 and 1 + gap */
+    /* columns are at 0 and 1 + gap */
+    for (int a = 0; a < NODES; ++a) X[2 * a] += X[2 * a] > 0.5 ? gap : 0.0;
     for (int trial = 0; trial < 100; ++trial) {
       const PetscReal x[2] = {random_real(&random, -0.95, -0.1), random_real(&random, -2, 2)};
       CloudSupport support = support_default_lme;
@@ -220,7 +225,8 @@ static void stretch_is_no_gap(void **state)
   find_cloud(&support, &mls, NODES, X, NULL, x, &without);
   assert_int_equal(with.report.level, SUPPORT_NOMINAL);
   assert_basis(X, x, &with, PETSC_TRUE);
-  assert_true(with.report.n >= 13 && without.report.level == SUPPORT_LOOSE); /* one column only: no gradient across */
+  /* one column only: no gradient across */
+  assert_true(with.report.n >= 13 && without.report.level == SUPPORT_LOOSE);
 }
 
 static void last_resorts(void **state)
@@ -246,7 +252,8 @@ static void last_resorts(void **state)
   for (int k = 0; k < 2 * result.report.n; ++k) assert_true(result.dN[k] == 0.0);
 }
 
-/* The paper's rule: six nodes for MLS, more for LME until the Hessian's condition is below the bound. */
+/* The paper's rule: six nodes for MLS, more for LME until the Hessian's condition is below the
+ * bound. */
 static void paper_rule(void **state)
 {
   (void)state;
@@ -272,8 +279,8 @@ static void paper_rule(void **state)
   assert_true(grown > 100);
 }
 
-/* On a lattice the numbers of nodes are known: those within the radius, and those on it; more only where a least number
- * wants them, and then without a word about growing. */
+/* On a lattice the numbers of nodes are known: those within the radius, and those on it; more only
+ * where a least number wants them, and then without a word about growing. */
 static void counts_on_a_lattice(void **state)
 {
   static const struct {

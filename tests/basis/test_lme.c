@@ -1,4 +1,5 @@
-/* Local maximum entropy: the suite of every basis, golden numbers, the hull, the finite-element limit, bad clouds. */
+/* Local maximum entropy: the suite of every basis, golden numbers, the hull, the finite-element
+ * limit, bad clouds. */
 #include "clouds.h"
 #include "../conformance/golden.h"
 
@@ -88,7 +89,8 @@ static void near_hull(void **state)
   }
 }
 
-/* With growing gamma: linear finite elements on the Delaunay triangulation, here hexagons' equilateral triangles. */
+/* With growing gamma: linear finite elements on the Delaunay triangulation, here hexagons'
+ * equilateral triangles. */
 static void finite_element_limit(void **state)
 {
   (void)state;
@@ -131,12 +133,14 @@ static void bad_clouds(void **state)
   assert_int_equal(cloud_basis(&basis, 2, 4, square, 1, far, N, dN, &condition, NULL), CLOUD_OUTSIDE);
   assert_true(condition == PETSC_MAX_REAL);
   for (int k = 0; k < 8; ++k) assert_true(dN[k] == 0.0);
-  assert_int_equal(cloud_basis(&basis, 2, 4, square, 1, on, N, dN, &condition, dual), CLOUD_OK); /* a useless start */
+  /* a useless start */
+  assert_int_equal(cloud_basis(&basis, 2, 4, square, 1, on, N, dN, &condition, dual), CLOUD_OK);
   for (int a = 0; a < 4; ++a) assert_true(fabs(N[a] - 0.25) <= 1e-12);
   assert_true(hypot(dual[0], dual[1]) <= 1e-12);
 }
 
-/* Random clouds of any shape at random positions: a basis that reproduces, or a status; never a NaN. */
+/* Random clouds of any shape at random positions: a basis that reproduces, or a status; never a
+ * NaN. */
 static void anything(void **state)
 {
   (void)state;

@@ -12,7 +12,8 @@ static void suite(void **state)
   cloud_suite("mls linear", &linear, 1e-8);
   cloud_suite("mls bilinear", &bilinear, 1e-8);
   cloud_suite("mls quadratic", &quadratic, 1e-8);
-  cloud_suite("mls linear, cubic spline", &spline, 1e-6); /* its third derivative jumps: differences lose an order */
+  /* its third derivative jumps: differences lose an order */
+  cloud_suite("mls linear, cubic spline", &spline, 1e-6);
   cloud_suite("mls linear, windowed", &windowed, 1e-6);
 }
 

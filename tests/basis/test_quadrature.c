@@ -1,4 +1,5 @@
-/* Gauss rules: every monomial up to the rule's degree to 1e-14, and the first degree beyond it missed. */
+/* Gauss rules: every monomial up to the rule's degree to 1e-14, and the first degree beyond it
+ * missed. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -41,7 +42,8 @@ static PetscReal quadrature(CellType type, PetscInt n, const PetscReal *xi, cons
   return sum;
 }
 
-/* Largest error over the monomials of this degree (total for simplices, in each direction for cubes). */
+/* Largest error over the monomials of this degree (total for simplices, in each direction for
+ * cubes). */
 static PetscReal largest_error(CellType type, PetscInt n, PetscInt degree)
 {
   const PetscBool simplex = type == CELL_TRIANGLE || type == CELL_TETRAHEDRON;

@@ -28,7 +28,8 @@ static void Integral(void **state)
   (void)state;
   ASSERT_NEAR(amplitude_integral(&table, 1, 9), 0, 1e-15);
   ASSERT_NEAR(amplitude_integral(&table, 2, 9), 1.5, 1e-15);
-  ASSERT_NEAR(amplitude_integral(&table, 3, 9), 1.5 + 2, 1e-15); /* 3 falls to 1 within a second: mean 2 */
+  /* 3 falls to 1 within a second: mean 2 */
+  ASSERT_NEAR(amplitude_integral(&table, 3, 9), 1.5 + 2, 1e-15);
   ASSERT_NEAR(amplitude_integral(&table, 4, 9), 3.5, 1e-15);
   ASSERT_NEAR(amplitude_integral(&table, 6, 9), 1.5, 1e-15);
   ASSERT_NEAR(amplitude_integral(&none, 6, 9), 54, 0);

@@ -70,7 +70,8 @@ static void HalfSpace(void **state)
   assert_true(In2(&slope, -4, 4));
   assert_false(In2(&slope, 0.1, 1));
   assert_true(
-    In2(&slope, 0.6 * 0.9 * tolerance, 1 + 0.8 * 0.9 * tolerance)); /* a distance, whatever the normal's length */
+    /* a distance, whatever the normal's length */
+    In2(&slope, 0.6 * 0.9 * tolerance, 1 + 0.8 * 0.9 * tolerance));
   assert_false(In2(&slope, 0.6 * 1.1 * tolerance, 1 + 0.8 * 1.1 * tolerance));
   shape_bounds(&slope, 2, min, max);
   assert_true(max[0] == PETSC_MAX_REAL && max[1] == PETSC_MAX_REAL);

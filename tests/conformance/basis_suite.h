@@ -1,6 +1,8 @@
-/* What every basis must do, whatever it is made of: cells, moving least squares, local maximum entropy...
+/* What every basis must do, whatever it is made of: cells, moving least squares, local maximum
+ * entropy...
  *
- * Fill a BasisUnderTest and call basis_suite_run() inside a cmocka test. A failure names the basis. */
+ * Fill a BasisUnderTest and call basis_suite_run() inside a cmocka test. A failure names the
+ * basis. */
 #pragma once
 #include <math.h>
 #include <setjmp.h>
@@ -53,8 +55,8 @@ static inline void basis_suite_partition_of_unity(const BasisUnderTest *basis, c
     basis_suite_near(basis, "sum of dN", gradient[d], 0.0, basis->tolerance / basis->size);
 }
 
-/* sum N x = x, sum x dN = 1; x counted from the position itself, so that no digits go to its distance from the
- * origin. */
+/* sum N x = x, sum x dN = 1; x counted from the position itself, so that no digits go to its
+ * distance from the origin. */
 static inline void basis_suite_linear_reproduction(const BasisUnderTest *basis, const PetscReal *point,
                                                    const PetscReal *N, const PetscReal *dN)
 {

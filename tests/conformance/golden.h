@@ -19,7 +19,8 @@ static inline struct fy_document *golden_open(const char *name)
   return document;
 }
 
-/* Numbers below `node`, in the order of the file whatever their nesting; returns how many (at most max are kept). */
+/* Numbers below `node`, in the order of the file whatever their nesting; returns how many (at most
+ * max are kept). */
 static inline PetscInt golden_flatten(struct fy_node *node, PetscInt max, PetscReal *values)
 {
   if (!node || max <= 0) return 0;

@@ -1,4 +1,5 @@
-/* What every material law must do. A new law adds one line to the list in tests/material/test_laws.c. */
+/* What every material law must do. A new law adds one line to the list in
+ * tests/material/test_laws.c. */
 #pragma once
 #include <math.h>
 #include <setjmp.h>
@@ -112,8 +113,8 @@ static inline void law_suite_random_increment(LawSuite *suite, PetscReal dF[9])
   } while (tensor_det(dF) < 0.2);
 }
 
-/* Along one axis, or uniform, in a random direction: principal stretches that are equal, or apart by anything down to
- * rounding. */
+/* Along one axis, or uniform, in a random direction: principal stretches that are equal, or apart
+ * by anything down to rounding. */
 static inline void law_suite_coaxial_increment(LawSuite *suite, PetscReal dF[9])
 {
   const PetscReal size = suite->test->strain, near = size * pow(10, -random_real(&suite->random, 2, 17));
@@ -129,8 +130,9 @@ static inline void law_suite_coaxial_increment(LawSuite *suite, PetscReal dF[9])
   tensor_multiply(left, qt, dF);
 }
 
-/* A point at a state that the law itself reached in two steps, with a third increment done; or (one in four) after one
- * coaxial increment from rest. Always the first try for laws that never fail; others may refuse some. */
+/* A point at a state that the law itself reached in two steps, with a third increment done; or (one
+ * in four) after one coaxial increment from rest. Always the first try for laws that never fail;
+ * others may refuse some. */
 static inline void law_suite_random_law_point(LawSuite *suite, LawPoint *p)
 {
   for (int tries = 0; tries < 100; ++tries) {
@@ -214,8 +216,8 @@ static inline PetscBool law_suite_one_sided(const LawSuite *suite, const LawPoin
   return PETSC_TRUE;
 }
 
-/* Column k of c against differences of tau. At a kink, where the two one-sided differences disagree, it has to be the
- * derivative of one side; between kinks (a corner) it cannot be told. */
+/* Column k of c against differences of tau. At a kink, where the two one-sided differences
+ * disagree, it has to be the derivative of one side; between kinks (a corner) it cannot be told. */
 static inline LawSuiteColumn law_suite_tangent_column(const LawSuite *suite, const LawPoint *p, PetscInt k)
 {
   const PetscReal scale = law_suite_largest(36, p->c) + law_suite_largest(6, p->tau), h = LAW_SUITE_STEP;
@@ -285,7 +287,8 @@ static inline void law_suite_rotate_state(const Law *law, const PetscReal q[9], 
   }
 }
 
-/* Turning the old configuration by r and the new one by q turns the stress and the state by q, and nothing else. */
+/* Turning the old configuration by r and the new one by q turns the stress and the state by q, and
+ * nothing else. */
 static inline void law_suite_objectivity(LawSuite *suite)
 {
   LawPoint p = {0}, turned = {0};
@@ -417,7 +420,8 @@ static inline void law_suite_bad_increments(LawSuite *suite)
       }
 }
 
-/* A batch of n is n batches of one, to the last bit, with the tangent or without; nothing else is written. */
+/* A batch of n is n batches of one, to the last bit, with the tangent or without; nothing else is
+ * written. */
 static inline void law_suite_batches(LawSuite *suite)
 {
   const Law *law = suite->law;
@@ -462,8 +466,9 @@ static inline PetscReal law_suite_volume(const Law *law, const PetscReal *state,
   return fallback;
 }
 
-/* initial_stress(sigma) -> state -> tau = J sigma, for stresses up to a tenth of the softer modulus in any component.
- * J is read from the elastic strain; a law without that field is only asked for the direction of the stress. */
+/* initial_stress(sigma) -> state -> tau = J sigma, for stresses up to a tenth of the softer modulus
+ * in any component. J is read from the elastic strain; a law without that field is only asked for
+ * the direction of the stress. */
 static inline void law_suite_initial_stress(LawSuite *suite)
 {
   const Law *law = suite->law;
@@ -488,8 +493,8 @@ static inline void law_suite_initial_stress(LawSuite *suite)
   }
 }
 
-/* With the pressure that the law itself has, K theta, the mixed form is the law: stress, and tangent once the pressure is
- * eliminated. */
+/* With the pressure that the law itself has, K theta, the mixed form is the law: stress, and
+ * tangent once the pressure is eliminated. */
 static inline void law_suite_pressure_is_own(LawSuite *suite)
 {
   for (int s = 0; s < 1000; ++s) {
@@ -511,7 +516,8 @@ static inline void law_suite_pressure_is_own(LawSuite *suite)
   }
 }
 
-/* Slopes by the pressure, and of the volumetric strain; a kink may stand between two differences. */
+/* Slopes by the pressure, and of the volumetric strain; a kink may stand between two
+ * differences. */
 static inline void law_suite_pressure_slopes(LawSuite *suite)
 {
   PetscInt kinks = 0;
@@ -542,7 +548,8 @@ static inline void law_suite_pressure_slopes(LawSuite *suite)
   if (kinks > 20) fail_msg("%s: %d of 1000 slopes by the pressure are wrong", suite->law->name, (int)kinks);
 }
 
-/* The mixed form: tangents, objectivity, agreement with the law. Symmetric where shape and volume stand apart. */
+/* The mixed form: tangents, objectivity, agreement with the law. Symmetric where shape and volume
+ * stand apart. */
 static inline void law_suite_pressure(LawSuite *suite)
 {
   if (!suite->law->volume) return;

@@ -1,5 +1,5 @@
-/* A measure from outside the house: a coordinate of the centre of mass, `{centre: y, of: {body: stone}}`. Its file, and a line in
- * more_measures.inc, are all that a measure is. */
+/* A measure from outside the house: a coordinate of the centre of mass, `{centre: y, of: {body:
+ * stone}}`. Its file, and a line in more_measures.inc, are all that a measure is. */
 #include "model/measure/measure.h"
 
 static PetscErrorCode Centre(Model *m, const MeasureSpec *s, PetscInt index, PetscReal *value)

@@ -1,4 +1,5 @@
-/* A law from outside the house: Hencky's solid, linear between the logarithmic strains and the Kirchhoff stress (thesis 3.99),
+/* A law from outside the house: Hencky's solid, linear between the logarithmic strains and the
+ * Kirchhoff stress (thesis 3.99),
  *
  *   tau_A = K ln J + 2 mu (eps_A - ln J / 3),   eps_A = ln lambda_A
  *
@@ -9,7 +10,8 @@
 
 enum { BULK, SHEAR };
 
-/* c_AABB = K - 2 mu / 3 + 2 (mu - tau_A) delta_AB, and the shears of material/principal.h with r = 2 mu. */
+/* c_AABB = K - 2 mu / 3 + 2 (mu - tau_A) delta_AB, and the shears of material/principal.h with r =
+ * 2 mu. */
 static void tangent(const PetscReal *parameters, const PetscReal strain[3], const PetscReal tau[3],
                     const PetscReal basis[36], PetscReal *c)
 {

@@ -1,5 +1,6 @@
-/* A bed of springs: each node of one boundary of the mesh stands on the ground by a spring of its own, along the last axis; or, on one rank, all
- * of them stand on a plate that lies on these springs and does not tilt, so that each feels the mean and all are coupled.
+/* A bed of springs: each node of one boundary of the mesh stands on the ground by a spring of its
+ * own, along the last axis; or, on one rank, all of them stand on a plate that lies on these
+ * springs and does not tilt, so that each feels the mean and all are coupled.
  *
  *   petsc: {springs_on: bottom, springs_stiffness: 1e5, springs_plate: true}    # N/m each
  */

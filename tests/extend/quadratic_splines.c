@@ -1,9 +1,10 @@
 /* A basis from outside: quadratic B-splines on a box of equal squares, for mpm in the plane.
  *
- * In each direction the function of node i is the mean of its hat over a window of one cell, so a point sees the node next to it and the two beside
- * that, in two directions nine nodes. Where one of them would lie outside the box, the field there is the linear extrapolation of the two nodes
- * inside, which leaves linear functions between the edge and the middle of its cell: sums and linear fields stay exact, and what is prescribed at
- * the edge's nodes holds on the edge. */
+ * In each direction the function of node i is the mean of its hat over a window of one cell, so a
+ * point sees the node next to it and the two beside that, in two directions nine nodes. Where one
+ * of them would lie outside the box, the field there is the linear extrapolation of the two nodes
+ * inside, which leaves linear functions between the edge and the middle of its cell: sums and
+ * linear fields stay exact, and what is prescribed at the edge's nodes holds on the edge. */
 #include "support/basis.h"
 
 /* Cells of the box in each direction, from the numbering of cells: x runs fastest. */
@@ -39,7 +40,8 @@ static PetscErrorCode SplineCheck(const Grid *grid, Diag *diag)
   PetscFunctionReturn(0);
 }
 
-/* Lattice nodes that carry the coordinate t in [0, 1] of cell i of n, with N and dN/dt; returns how many. */
+/* Lattice nodes that carry the coordinate t in [0, 1] of cell i of n, with N and dN/dt; returns how
+ * many. */
 static int line_functions(PetscInt i, PetscInt n, PetscReal t, PetscInt *first, PetscReal N[3], PetscReal dN[3])
 {
   const PetscInt nearest = t < 0.5 ? i : i + 1;
@@ -56,7 +58,8 @@ static int line_functions(PetscInt i, PetscInt n, PetscReal t, PetscInt *first, 
   return 2;
 }
 
-/* Nodes of a point, ascending, since on one rank they count like cells; N and dN/dx. Returns how many. */
+/* Nodes of a point, ascending, since on one rank they count like cells; N and dN/dx. Returns how
+ * many. */
 static PetscInt spline_at(const Grid *grid, const PetscInt count[2], PetscInt cell, const PetscReal *xi, PetscInt *node,
                           PetscReal *N, PetscReal *dN)
 {

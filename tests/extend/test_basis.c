@@ -1,4 +1,5 @@
-/* A basis that no file under src knows: quadratic B-splines in mpm, from the case file to the stress in a body. */
+/* A basis that no file under src knows: quadratic B-splines in mpm, from the case file to the
+ * stress in a body. */
 #include "../conformance/basis_suite.h"
 #include "../input/test_case.h"
 #include "../model/case_builder.h"
@@ -59,7 +60,8 @@ static void suite(void **state)
   CALL(GridDestroy(&grid));
 }
 
-/* Two Gauss points a direction give the node at the wall 13/24 of a cell's mass, where linear functions give a half. */
+/* Two Gauss points a direction give the node at the wall 13/24 of a cell's mass, where linear
+ * functions give a half. */
 static void mass_at_the_wall(void **state)
 {
   Grid *grid = box(4, 1);
@@ -84,8 +86,9 @@ static void press(void *context, const PetscReal *x, PetscReal t0, PetscReal t1,
   increment[1] = 0;
 }
 
-/* Points stand in rows of equal distances, a whole number of them in a cell, so that the sum of the splines' gradients over them is that of the
- * integral, wherever they are: where nodes are free the forces of the uniform stress vanish. The body's end crosses eight cells in the first step. */
+/* Points stand in rows of equal distances, a whole number of them in a cell, so that the sum of the
+ * splines' gradients over them is that of the integral, wherever they are: where nodes are free the
+ * forces of the uniform stress vanish. The body's end crosses eight cells in the first step. */
 static void patch(void **state)
 {
   const PetscReal F[9] = {0.25, 0, 0, 0, 1, 0, 0, 0, 1};
@@ -121,7 +124,8 @@ static void patch(void **state)
   bench_end(&b);
 }
 
-/* A body that flies and turns nowhere keeps its velocity while it crosses cells, damped as it is told. */
+/* A body that flies and turns nowhere keeps its velocity while it crosses cells, damped as it is
+ * told. */
 static void flight(void **state)
 {
   Bench b;
@@ -147,8 +151,9 @@ static void flight(void **state)
   bench_end(&b);
 }
 
-/* A column of sixteen cells that settles by a fifth under its weight in twenty static steps: in uniaxial strain the vertical stress is the weight
- * above. Returns how far it is off, over all points. */
+/* A column of sixteen cells that settles by a fifth under its weight in twenty static steps: in
+ * uniaxial strain the vertical stress is the weight above. Returns how far it is off, over all
+ * points. */
 static PetscReal column(const char *basis)
 {
   const PetscReal n = 16, g = 30, weight = 1000 * g;

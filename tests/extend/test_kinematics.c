@@ -58,7 +58,8 @@ static void test_stretch(void **state)
     }
     assert_true(PetscAbsReal(virtual[0] - volume * (tau[0] + tau[2])) <= 1e-13 * PetscAbsReal(virtual[0]));
     assert_true(PetscAbsReal(virtual[1] - volume * tau[1]) <= 1e-13 * PetscAbsReal(virtual[1]));
-    const PetscReal J = 1.1 * 1.1 * 0.9, area = 2 * PETSC_PI * 2 * 1.1 * 0.9; /* of the outer face, now */
+    /* of the outer face, now */
+    const PetscReal J = 1.1 * 1.1 * 0.9, area = 2 * PETSC_PI * 2 * 1.1 * 0.9;
     assert_true(PetscAbsReal(face - tau[0] / J * area) <= 1e-13 * PetscAbsReal(face));
     WeakFormInput in = input_of(&p, 0, p.du);
     CALL(formulation_displacement.commit(&in, p.points, &status));

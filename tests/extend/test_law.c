@@ -13,7 +13,8 @@ static void test_suite(void **state)
   for (int k = 0; k < 2; ++k) law_suite_run(&list[k]);
 }
 
-/* Pulled to 1.5 of its length between smooth walls: sigma_x = (lambda + 2 mu) ln s / s, sigma_y = lambda ln s / s, lambda = mu = 0.4 MPa. */
+/* Pulled to 1.5 of its length between smooth walls: sigma_x = (lambda + 2 mu) ln s / s, sigma_y =
+ * lambda ln s / s, lambda = mu = 0.4 MPa. */
 static const char pulled[] =
   "kinematics: plane-strain\nmethod: fem\nanalysis: {type: static, steps: 4}\n"
   "grid: {box: {min: [0, 0], max: [1, 1]}, size: 0.5}\n"

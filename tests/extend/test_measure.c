@@ -1,4 +1,5 @@
-/* A measure from outside the house: the case file knows its key, and what it tells of a thrown stone is y0 + v t - g t^2 / 2. */
+/* A measure from outside the house: the case file knows its key, and what it tells of a thrown
+ * stone is y0 + v t - g t^2 / 2. */
 #include "../input/test_case.h"
 #include "model/measure/measure.h"
 

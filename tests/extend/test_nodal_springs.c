@@ -1,4 +1,5 @@
-/* A heavy block on springs settles by W / (n k), in steps, through a checkpoint, and on several ranks. */
+/* A heavy block on springs settles by W / (n k), in steps, through a checkpoint, and on several
+ * ranks. */
 #include "../model/case_builder.h"
 #include "model/state/state.h"
 
@@ -76,7 +77,8 @@ static void test_settlement(void **state)
       if (again == 1) m = continued(&b, m);
       half_step(m);
       CHECK_CLOSE(settlement(m, springs), settles, 1e-10 * settles);
-      CALL(ModelEnergies(m, &e)); /* gravity's work went into the springs, but for what the block keeps */
+      /* gravity's work went into the springs, but for what the block keeps */
+      CALL(ModelEnergies(m, &e));
       CHECK_CLOSE(e.external, e.elastic, 1e-6 * WEIGHT * settles);
       CALL(ModelDestroy(&m));
     }

@@ -1,5 +1,6 @@
-/* The assembled tangent against differences of the residual, for every kernel of cells and of clouds, at a random state
- * (strains and with them shear stresses at the start of the step) with inertia, lumping and ties; its symmetry. */
+/* The assembled tangent against differences of the residual, for every kernel of cells and of
+ * clouds, at a random state (strains and with them shear stresses at the start of the step) with
+ * inertia, lumping and ties; its symmetry. */
 #include "patch.h"
 
 static void check_tangent(const Variant *variant, PetscReal inertia, PetscBool stabilised)
@@ -58,7 +59,8 @@ static void test_residual_alone(void **state)
   }
 }
 
-/* A rotation of a strained state turns the forces and leaves the tangent's turned form: K(Q du) = Q K(du) Q^T. */
+/* A rotation of a strained state turns the forces and leaves the tangent's turned form: K(Q du) = Q
+ * K(du) Q^T. */
 static void test_rotated(void **state)
 {
   (void)state;

@@ -1,4 +1,5 @@
-/* What the fuzzers share: PETSc started once, a second of processor time for each input, and inputs as files in memory. */
+/* What the fuzzers share: PETSc started once, a second of processor time for each input, and inputs
+ * as files in memory. */
 #pragma once
 #include <petscsys.h>
 #include <sanitizer/lsan_interface.h>

@@ -1,4 +1,5 @@
-/* Any bytes as a case file. What is accepted must be accepted again when it is written down and read back. */
+/* Any bytes as a case file. What is accepted must be accepted again when it is written down and
+ * read back. */
 #include "fuzz.h"
 #include "input/case_file.h"
 

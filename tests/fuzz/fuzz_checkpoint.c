@@ -1,5 +1,6 @@
-/* Any bytes as a checkpoint; the same with the checksum of its contents mended, so that the parser behind it is reached; and the tables of a
- * model with any bytes in them, as a file would hand them on whose checksums are right and whose numbers are not. The first byte chooses. */
+/* Any bytes as a checkpoint; the same with the checksum of its contents mended, so that the parser
+ * behind it is reached; and the tables of a model with any bytes in them, as a file would hand them
+ * on whose checksums are right and whose numbers are not. The first byte chooses. */
 #include <zlib.h>
 #include "fuzz.h"
 #include "input/case_file.h"

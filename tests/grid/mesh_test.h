@@ -1,4 +1,5 @@
-/* Meshes for tests: made by gmsh in a folder of the run's own, read, and compared with what their drawings say. */
+/* Meshes for tests: made by gmsh in a folder of the run's own, read, and compared with what their
+ * drawings say. */
 #pragma once
 #include <stdlib.h>
 #include <string.h>
@@ -149,7 +150,8 @@ static inline void check_plane(const Grid *grid)
   check_ghosts(grid);
 }
 
-/* A position in each cell of each rank, at the weights given to its nodes. All ranks look for it. */
+/* A position in each cell of each rank, at the weights given to its nodes. All ranks look for
+ * it. */
 static inline void locate_in_cells(const Grid *grid, const PetscReal *weights)
 {
   PetscMPIInt size, rank;

@@ -305,9 +305,9 @@ static void selection(void **state)
   on.boundary = "nowhere";
   assert_int_equal(selected_owned(grid, &on), 0);
   assert_int_equal(selected_faces(grid, &on), 0);
-  on = (Selector){
-    .has_shape = PETSC_TRUE,
-    .shape = {.kind = SHAPE_BALL, .centre = {-1.0, 0.5}, .radius = 0.5}}; /* the corner and its two neighbours */
+  on = (Selector){.has_shape = PETSC_TRUE,
+                  /* the corner and its two neighbours */
+                  .shape = {.kind = SHAPE_BALL, .centre = {-1.0, 0.5}, .radius = 0.5}};
   assert_int_equal(selected_owned(grid, &on), 3);
   assert_int_equal(selected_faces(grid, &on), 2);
   CALL(GridDestroy(&grid));

@@ -1,5 +1,5 @@
-/* Scripts of Gmsh that act are refused with their place; those that only draw and mesh pass, whatever their texts and
- * comments say. */
+/* Scripts of Gmsh that act are refused with their place; those that only draw and mesh pass,
+ * whatever their texts and comments say. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -166,7 +166,8 @@ static void WhatIsReadInIsLookedThrough(void **state)
   refused("MergeWithBoundingBox \"sub/c.geo\";\n", "sub/c.geo:2:2: error");
   refused(BRANCH "// Include \"sub/c.geo\";\n", "sub/c.geo:2:2: error");
   passes("// Include \"sub/c.geo\";\n");
-  put_text("sub/c.geo", "Include \"../a.geo\"; Include \"b.geo\"; Include \"c.geo\";\n"); /* in circles */
+  /* in circles */
+  put_text("sub/c.geo", "Include \"../a.geo\"; Include \"b.geo\"; Include \"c.geo\";\n");
   passes("Include \"sub/b.geo\";\n");
   passes(BRANCH "// Include \"not-there.geo\";\n");
   refused("Include \"not-there.geo\";\n",

@@ -282,7 +282,8 @@ static void bad_meshes(void **state)
               "no tetrahedra or hexahedra");
   refuse_text(HEAD SQUARE "$Elements\n2\n11 2 2 0 1 1 2 3\n12 2 2 0 1 1 4 3\n$EndElements\n", 2,
               "1 of 2 cells are inverted or have no volume: element 12");
-  refuse_text(HEAD SQUARE "$Elements\n1\n11 3 2 0 1 1 3 2 4\n$EndElements\n", 2, "inverted"); /* a bow tie */
+  /* a bow tie */
+  refuse_text(HEAD SQUARE "$Elements\n1\n11 3 2 0 1 1 3 2 4\n$EndElements\n", 2, "inverted");
   refuse_text(HEAD
               "$Nodes\n9\n1 0 0 0\n2 1 0 0\n3 1 1 0\n4 0 1 0\n5 0 0 1\n6 1 0 1\n7 1 1 1\n8 0 1 1\n9 2 0 0\n$EndNodes\n"
               "$Elements\n2\n1 5 2 0 1 1 2 3 4 5 6 7 8\n2 4 2 0 1 2 9 3 6\n$EndElements\n",

@@ -1,4 +1,5 @@
-/* A mesh goes from rank to rank: what arrives is the grid that reading it would have made, whatever way it went; and the cuts balance weights. */
+/* A mesh goes from rank to rank: what arrives is the grid that reading it would have made, whatever
+ * way it went; and the cuts balance weights. */
 #include "grid/search/directory.h"
 #include "grid/mesh/mesh.h"
 #include "mesh_test.h"
@@ -181,8 +182,8 @@ static Grid *share_by_disk(const Grid *old, PetscReal x, PetscReal y, PetscReal 
   return grid;
 }
 
-/* A disk of weight goes through the mesh, and the ranks after it. Cells without weight count a little, a fifteenth of all here, and their ranks have
- * so much less of the disk. */
+/* A disk of weight goes through the mesh, and the ranks after it. Cells without weight count a
+ * little, a fifteenth of all here, and their ranks have so much less of the disk. */
 static void follows_weight(void **state)
 {
   PetscReal reached, *weight;

@@ -1,4 +1,5 @@
-/* Helpers of the tests of case files: write a text to a temporary file, read it, keep what was said. */
+/* Helpers of the tests of case files: write a text to a temporary file, read it, keep what was
+ * said. */
 #pragma once
 #include <setjmp.h>
 #include <stdarg.h>
@@ -35,7 +36,8 @@ static inline void write_case(const char *bytes, size_t size, char name[64])
   assert_int_equal(MPI_Bcast(name, 64, MPI_CHAR, 0, PETSC_COMM_WORLD), 0);
 }
 
-/* Read a text as a case file. *said (to be freed) is what DiagFlush prints, with the file's name replaced by "F". */
+/* Read a text as a case file. *said (to be freed) is what DiagFlush prints, with the file's name
+ * replaced by "F". */
 __attribute__((noinline, unused)) static Case *read_bytes(const char *bytes, size_t size, PetscInt n_set,
                                                           const char *const *set, char **said)
 {

@@ -335,7 +335,9 @@ static void AllAtOnce(void **state)
   (void)state;
   assert_null(c);
   assert_int_equal(Count(said, ": error: "),
-                   9); /* size along x and y, material, shape, density, yung, poisson, one elastic constant, linear */
+                   /* size along x and y, material, shape, density, yung, poisson, one elastic
+                    * constant, linear */
+                   9);
   assert_true(strstr(said, "F:4:") < strstr(said, "F:6:") && strstr(said, "F:6:") < strstr(said, "F:7:") &&
               strstr(said, "F:8:") < strstr(said, "F:9:"));
   free(said);
@@ -387,7 +389,8 @@ static void TextBomb(void **state)
   free(text);
 }
 
-/* As many as a slip of a program makes: each took the time of all before it (49 s), and a line of print. */
+/* As many as a slip of a program makes: each took the time of all before it (49 s), and a line of
+ * print. */
 static void ManyUnknownKeys(void **state)
 {
   enum { MANY = 50000 };

@@ -1,4 +1,5 @@
-/* Good case files: values, defaults, and the way back through CaseToYaml. Runs on several ranks: all get the same. */
+/* Good case files: values, defaults, and the way back through CaseToYaml. Runs on several ranks:
+ * all get the same. */
 #include "test_case.h"
 
 static const char everything[] =
@@ -238,7 +239,8 @@ static char *ToYaml(const Case *c)
   return text;
 }
 
-/* What is written reads back to the same: the second text equals the first, and the numbers agree to the last bit. */
+/* What is written reads back to the same: the second text equals the first, and the numbers agree
+ * to the last bit. */
 static void RoundTrip(void **state)
 {
   const char *const texts[] = {everything, PLAIN, solid, soft};
@@ -312,7 +314,8 @@ static void YamlForms(void **state)
   CaseDestroy(&c);
 }
 
-/* Each component has its own place, in the plane and in space, for whatever is prescribed or acts. */
+/* Each component has its own place, in the plane and in space, for whatever is prescribed or
+ * acts. */
 static void Components(void **state)
 {
   static const char space[] =

@@ -1,4 +1,5 @@
-/* The reference: valid JSON that names every table, and docs/case-file.md as the program prints it. */
+/* The reference: valid JSON that names every table, and docs/case-file.md as the program prints
+ * it. */
 #include <libfyaml.h>
 #include "test_case.h"
 

@@ -116,7 +116,8 @@ static void Mistakes(void **state)
   }
 }
 
-/* Paths of other rooms find their line; what came by --set is named so; a missing key shows its parent. */
+/* Paths of other rooms find their line; what came by --set is named so; a missing key shows its
+ * parent. */
 static void Resolve(void **state)
 {
   const char *const set[] = {"newton.ease=3"};

@@ -1,5 +1,5 @@
-/* What a case file may say to PETSc: solvers, tolerances, words on the terminal; nothing that writes, draws, connects,
- * loads or starts. */
+/* What a case file may say to PETSc: solvers, tolerances, words on the terminal; nothing that
+ * writes, draws, connects, loads or starts. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>

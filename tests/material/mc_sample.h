@@ -48,7 +48,8 @@ static inline void mc_sort(PetscReal e[3])
       }
 }
 
-/* Falling principal strains around the surface; some of them equal or nearly so (from 1e-2 down to rounding). */
+/* Falling principal strains around the surface; some of them equal or nearly so (from 1e-2 down to
+ * rounding). */
 static inline void mc_sample_trial(Random *random, PetscReal scale, PetscReal e[3])
 {
   const PetscReal size = scale * pow(10, random_real(random, -1, 1.5)), kind = random_real(random, 0, 5);

@@ -1,4 +1,5 @@
-/* J2 laws against golden numbers (a direct solve of the thesis' 3.68 to 3.70) and against closed forms. */
+/* J2 laws against golden numbers (a direct solve of the thesis' 3.68 to 3.70) and against closed
+ * forms. */
 #include "../conformance/golden.h"
 #include "../conformance/random.h"
 #include "base/math/tensor.h"
@@ -33,7 +34,8 @@ static int check_golden(struct fy_node *item)
   golden[0] = golden_number(item, "J"), golden[1] = golden_number(item, "alpha");
   assert_near("J, alpha", 2, state + 6, golden, 1e-12);
   golden_numbers(item, "c_lie_voigt", 36, golden);
-  const PetscReal blur = golden_number(item, "fd_uncertainty"); /* golden tangents are differences */
+  /* golden tangents are differences */
+  const PetscReal blur = golden_number(item, "fd_uncertainty");
   assert_near("c", 36, c, golden, fmax(1e-9 * packed_largest(36, golden), blur));
   return golden_number(item, "f_trial") > 0.0;
 }
@@ -59,7 +61,8 @@ static PetscReal deviator_norm(const PetscReal tau[6])
   return sqrt(norm2);
 }
 
-/* The stress is on or inside the yield surface after every step of random paths, on it whenever alpha grew. */
+/* The stress is on or inside the yield surface after every step of random paths, on it whenever
+ * alpha grew. */
 static void test_yield(void **unused)
 {
   (void)unused;
@@ -87,8 +90,8 @@ static void test_yield(void **unused)
   assert_true(plastic > 5000);
 }
 
-/* Monotonous simple shear under perfect plasticity: the shear stress stays at sigma_Y / sqrt 3, and the plastic strain
- * is the shear over sqrt 3 less the elastic part. */
+/* Monotonous simple shear under perfect plasticity: the shear stress stays at sigma_Y / sqrt 3, and
+ * the plastic strain is the shear over sqrt 3 less the elastic part. */
 static void test_shear(void **unused)
 {
   (void)unused;
@@ -106,8 +109,8 @@ static void test_shear(void **unused)
   assert_near("alpha", 1, &state[7], &plastic, 1e-4 * plastic);
 }
 
-/* The elastic energy stays at what the yield stress can store, however far the flow goes, and the work not stored was
- * dissipated. */
+/* The elastic energy stays at what the yield stress can store, however far the flow goes, and the
+ * work not stored was dissipated. */
 static void test_dissipation(void **unused)
 {
   (void)unused;

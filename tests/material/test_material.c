@@ -1,4 +1,5 @@
-/* From the case to a material: elastic constants, ranges, defaults, degrees, and every complaint with its path. */
+/* From the case to a material: elastic constants, ranges, defaults, degrees, and every complaint
+ * with its path. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>

@@ -1,4 +1,5 @@
-/* Mohr-Coulomb: the return in principal stresses and the law, against golden numbers and an independent solution. */
+/* Mohr-Coulomb: the return in principal stresses and the law, against golden numbers and an
+ * independent solution. */
 #include "../conformance/golden.h"
 #include "../reference/mohr_coulomb.h"
 #include "base/math/eigen.h"
@@ -85,7 +86,8 @@ static TextbookSoil soil_of(const McSample *s, const PetscReal *p)
                         s->dilatancy * rad, s->cohesion, s->cutoff < 1e300 ? s->cutoff : INFINITY};
 }
 
-/* An increment and an elastic state before it whose trial strains are e, in directions of chance; flat: z stays what it is. */
+/* An increment and an elastic state before it whose trial strains are e, in directions of chance;
+ * flat: z stays what it is. */
 static void random_increment(Random *random, PetscBool flat, const PetscReal e[3], PetscReal f[9], PetscReal old[7])
 {
   PetscReal q[9], diagonal[6] = {0}, trial[6], back[9];
@@ -129,7 +131,8 @@ static int compare_textbook(const McSample *sample, const PetscReal *p, const Pe
   return region;
 }
 
-/* Can the return of this soil end there? A face of tension that is cut off takes the place of the apex. */
+/* Can the return of this soil end there? A face of tension that is cut off takes the place of the
+ * apex. */
 static PetscBool reaches(const PetscReal *p, int region)
 {
   const PetscBool cut = isfinite(p[MC_CUT]) != 0;
@@ -180,7 +183,8 @@ static void test_continuity(void **unused)
       mc_sample_trial(&random, scale, a);
       mc_sample_trial(&random, scale, b);
       McRegion ra = mc_return(p, a, ta), rb = mc_return(p, b, tb);
-      for (int halved = 0; halved < 60 && ra != rb; ++halved) { /* come to a border between the two */
+      /* come to a border between the two */
+      for (int halved = 0; halved < 60 && ra != rb; ++halved) {
         PetscReal middle[3], tau[3];
         for (int k = 0; k < 3; ++k) middle[k] = 0.5 * (a[k] + b[k]);
         const McRegion region = mc_return(p, middle, tau);
@@ -216,7 +220,8 @@ static void test_yield(void **unused)
       assert_int_equal(law->update(p, 1, unit, old, state, tau, NULL), LAW_OK);
       sym_eigen(tau, principal, v);
       const PetscReal f = fmax(mc_yield(p, principal), principal[0] - p[MC_CUT]);
-      /* stress scale: what the strains at hand amount to, and the rounding of b, which starts at 1 */
+      /* stress scale: what the strains at hand amount to, and the rounding of b, which starts at
+       * 1 */
       const PetscReal trial = (p[MC_LAMBDA] + 2.0 * p[MC_MU]) * fmax(packed_largest(3, e), 1e-4);
       assert_true(f <= 1e-10 * (trial + p[MC_Q]));
       assert_true(state[6] >= 0.25);
@@ -225,7 +230,8 @@ static void test_yield(void **unused)
   }
 }
 
-/* A cohesionless point that opens carries nothing, forgets how far it opened, and resists at once when it closes. */
+/* A cohesionless point that opens carries nothing, forgets how far it opened, and resists at once
+ * when it closes. */
 static void test_separation(void **unused)
 {
   (void)unused;
@@ -249,8 +255,9 @@ static void test_separation(void **unused)
   assert_true(state[6] == old[6]);
 }
 
-/* Biaxial compression in plane strain: at failure the in-plane stresses stand in the ratio k, nothing flows across the
- * plane, and the flow within it is gamma (m, -1), with gamma for the equivalent plastic strain. */
+/* Biaxial compression in plane strain: at failure the in-plane stresses stand in the ratio k,
+ * nothing flows across the plane, and the flow within it is gamma (m, -1), with gamma for the
+ * equivalent plastic strain. */
 static void test_plane_strain_failure(void **unused)
 {
   (void)unused;

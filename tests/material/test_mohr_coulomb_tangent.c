@@ -1,5 +1,5 @@
-/* The tangent of the Mohr-Coulomb law against differences, in every region, on and beside its borders, and at equal and
- * nearly equal principal stretches in random directions. */
+/* The tangent of the Mohr-Coulomb law against differences, in every region, on and beside its
+ * borders, and at equal and nearly equal principal stretches in random directions. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -33,7 +33,8 @@ static void point_at(Random *random, const PetscReal e[3], Point *point)
   assert_int_equal(point->law->update(point->p, 1, unit, point->old, state, point->tau, point->c), LAW_OK);
 }
 
-/* tau under the strain h d, d being the unit rate of Voigt component k; less d tau + tau d, to first order. */
+/* tau under the strain h d, d being the unit rate of Voigt component k; less d tau + tau d, to
+ * first order. */
 static void stress_at(const Point *point, int k, PetscReal h, PetscReal tau[6])
 {
   PetscReal f[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1}, d[9] = {0}, t[9], dt[9], state[7];
@@ -54,7 +55,8 @@ static PetscReal column_error(const Point *point, int k, const PetscReal column[
   return error;
 }
 
-/* The least errors over steps from 1e-4 to 1e-8 against central and against second-order one-sided differences. */
+/* The least errors over steps from 1e-4 to 1e-8 against central and against second-order one-sided
+ * differences. */
 static Match match_column(const Point *point, int k)
 {
   const PetscReal scale = packed_largest(36, point->c) + packed_largest(6, point->tau);
@@ -83,8 +85,8 @@ static void no_corner(const char *name, int region, const int count[3])
   if (count[CORNER]) fail_msg("%s, region %d: %d columns of c match no difference", name, region, count[CORNER]);
 }
 
-/* Every region, with equal and nearly equal strains among the states. Within rounding of a border a column can only be
- * confirmed from one side: that must stay the exception. */
+/* Every region, with equal and nearly equal strains among the states. Within rounding of a border a
+ * column can only be confirmed from one side: that must stay the exception. */
 static void test_regions(void **unused)
 {
   (void)unused;
@@ -106,7 +108,8 @@ static void test_regions(void **unused)
   }
 }
 
-/* Halve the way between two states of different regions down to rounding; PETSC_FALSE if they are of one region. */
+/* Halve the way between two states of different regions down to rounding; PETSC_FALSE if they are
+ * of one region. */
 static PetscBool find_border(const PetscReal *p, PetscReal a[3], PetscReal b[3])
 {
   PetscReal tau[3], middle[3];
@@ -121,9 +124,9 @@ static PetscBool find_border(const PetscReal *p, PetscReal a[3], PetscReal b[3])
 
 static PetscReal least_gap(const PetscReal e[3]) { return fmin(e[0] - e[1], e[1] - e[2]); }
 
-/* On both sides of a border c is the derivative of one side. (Beside equal strains a border is a corner: a shear either
- * way splits them and leaves the region; there, and where they are nearer than the steps of the differences can tell,
- * c is only asked to be finite.) */
+/* On both sides of a border c is the derivative of one side. (Beside equal strains a border is a
+ * corner: a shear either way splits them and leaves the region; there, and where they are nearer
+ * than the steps of the differences can tell, c is only asked to be finite.) */
 static void test_borders(void **unused)
 {
   (void)unused;
@@ -150,10 +153,12 @@ static void test_borders(void **unused)
   print_message("%d kinds of borders; columns of c confirmed: %d centrally, %d from one side, %d not\n", kinds,
                 count[CENTRAL], count[ONE_SIDE], count[CORNER]);
   assert_true(kinds >= 15 && count[ONE_SIDE] > 1000);
-  assert_true(count[CORNER] <= count[ONE_SIDE] / 2000); /* strains along the border, or next to a third region */
+  /* strains along the border, or next to a third region */
+  assert_true(count[CORNER] <= count[ONE_SIDE] / 2000);
 }
 
-/* Points whose principal axes are A and B in the plane, and z: any of them may carry the largest stretch. */
+/* Points whose principal axes are A and B in the plane, and z: any of them may carry the largest
+ * stretch. */
 static void plane_points(Random *random, PetscReal scale, int n, PetscReal *old, PetscReal *dF)
 {
   for (int i = 0; i < n; ++i) {
@@ -177,8 +182,9 @@ static PetscReal largest_difference(int n, const PetscReal *a, const PetscReal *
   return largest;
 }
 
-/* The law of the plane against the law: stresses and states, and the moduli of the plane; these may differ where rounding takes another
- * region, and between strains that are nearly equal. In batches of all sizes. */
+/* The law of the plane against the law: stresses and states, and the moduli of the plane; these may
+ * differ where rounding takes another region, and between strains that are nearly equal. In batches
+ * of all sizes. */
 static void test_plane(void **unused)
 {
   enum { MOST = 19 };
@@ -212,7 +218,8 @@ static void test_plane(void **unused)
   assert_true(others <= points / 500);
 }
 
-/* Shear strains out of the plane (an initial stress may have them) take the whole law; a point that is turned inside out is told. */
+/* Shear strains out of the plane (an initial stress may have them) take the whole law; a point that
+ * is turned inside out is told. */
 static void test_out_of_plane(void **unused)
 {
   PetscReal p[LAW_MAX_PARAMETERS], state[2][14], tau[2][12];

@@ -1,4 +1,5 @@
-/* Neo-Hookean laws against golden numbers (energies differentiated twice in 40 digits) and against closed forms. */
+/* Neo-Hookean laws against golden numbers (energies differentiated twice in 40 digits) and against
+ * closed forms. */
 #include "../conformance/golden.h"
 #include "base/math/tensor.h"
 #include "material/elasticity.h"
@@ -109,7 +110,8 @@ static void test_energy_of_a_stretch(void **state)
   }
 }
 
-/* Where there is no such state, the answer is no; where there is one beyond the easy start, it is found. */
+/* Where there is no such state, the answer is no; where there is one beyond the easy start, it is
+ * found. */
 static void test_initial_stress_limits(void **state)
 {
   (void)state;
@@ -127,13 +129,15 @@ static void test_initial_stress_limits(void **state)
     assert_true(fabs(tau[0] - 1.5 * J) < 1e-13 && fabs(tau[1] + 1.5 * J) < 1e-13 && fabs(tau[2]) < 1e-13);
   }
   pack(law_find("neo-hookean"), 3.0, 0.4, packed);
-  assert_false(law_find("neo-hookean")->initial_stress(packed, pull, b)); /* its peak tension is lower */
+  /* its peak tension is lower */
+  assert_false(law_find("neo-hookean")->initial_stress(packed, pull, b));
   assert_true(law_find("neo-hookean")->initial_stress(packed, push, b));
   pack(law_find("neo-hookean-split"), 3.0, 0.4, packed);
   assert_false(law_find("neo-hookean-split")->initial_stress(packed, push, b)); /* p > -K always */
   assert_true(law_find("neo-hookean-split")->initial_stress(packed, pull, b));
   pack(law_find("neo-hookean-split-log"), 3.0, 0.4, packed);
-  assert_false(law_find("neo-hookean-split-log")->initial_stress(packed, pull, b)); /* p < K / e always */
+  /* p < K / e always */
+  assert_false(law_find("neo-hookean-split-log")->initial_stress(packed, pull, b));
   assert_true(law_find("neo-hookean-split-log")->initial_stress(packed, push, b));
 }
 

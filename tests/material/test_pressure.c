@@ -1,4 +1,5 @@
-/* The mean stress as an unknown of its own: volumes and energies of states under a pressure that is not theirs. */
+/* The mean stress as an unknown of its own: volumes and energies of states under a pressure that is
+ * not theirs. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -65,7 +66,8 @@ static void test_scale(void **state)
   }
 }
 
-/* A point keeps the volume of its displacements, whatever the pressure asks for, over several steps. */
+/* A point keeps the volume of its displacements, whatever the pressure asks for, over several
+ * steps. */
 static void test_volume_is_kept(void **state)
 {
   Random random = {5};
@@ -92,8 +94,8 @@ static void test_volume_is_kept(void **state)
   }
 }
 
-/* What is stored of volume is p^2 / 2K where the law keeps it apart from shape; where it does not, what the law stores
- * at exp(p / K). */
+/* What is stored of volume is p^2 / 2K where the law keeps it apart from shape; where it does not,
+ * what the law stores at exp(p / K). */
 static void test_energy(void **state)
 {
   const PetscReal bulk = 1e6 / (3 * (1 - 0.9)), pressures[] = {-2e5, -1e4, 0, 3e4, 1e5};

@@ -1,6 +1,8 @@
-/* Cases made by hand for tests of the whole solver, models from them, and checks that stop all ranks together.
+/* Cases made by hand for tests of the whole solver, models from them, and checks that stop all
+ * ranks together.
  *
- * A Bench owns a Case and all that it points to; it must not move, since the case holds its addresses. */
+ * A Bench owns a Case and all that it points to; it must not move, since the case holds its
+ * addresses. */
 #pragma once
 #include <math.h>
 #include <setjmp.h>
@@ -27,7 +29,8 @@ typedef struct {
   char mesh[PETSC_MAX_PATH_LEN];
 } Bench;
 
-/* A failed check on one rank ends all: the others would wait for it in a collective call for ever. */
+/* A failed check on one rank ends all: the others would wait for it in a collective call for
+ * ever. */
 #define CHECK(condition, ...)                                         \
   do {                                                                \
     if (!(condition)) {                                               \
@@ -45,7 +48,8 @@ typedef struct {
   CHECK(PetscAbsReal((value) - (expected)) <= (tolerance), "%.16g, not %.16g, off by %.3g > %.3g", (double)(value), \
         (double)(expected), (double)PetscAbsReal((value) - (expected)), (double)(tolerance))
 
-/* Statics in one step of a body of neo-Hookean rubber (E = 1 MPa, nu = 0.3, 1000 kg/m3) on a grid of the unit square or cube. */
+/* Statics in one step of a body of neo-Hookean rubber (E = 1 MPa, nu = 0.3, 1000 kg/m3) on a grid
+ * of the unit square or cube. */
 static inline void bench_init(Bench *b, const char *method, CellType cell, PetscInt cells_per_side)
 {
   const PetscBool is_3d = cell >= CELL_TETRAHEDRON;
@@ -102,7 +106,8 @@ static inline void bench_dynamic(Bench *b, PetscReal end, PetscReal step)
   b->c.analysis.smallest = step / 1024;
 }
 
-/* Prescribe the components in mask (bit d) of all nodes on the plane x_axis = at; axis < 0: the whole outer boundary. */
+/* Prescribe the components in mask (bit d) of all nodes on the plane x_axis = at; axis < 0: the
+ * whole outer boundary. */
 static inline MotionSpec *bench_motion(Bench *b, int axis, PetscReal at, MotionKind kind, unsigned mask)
 {
   MotionSpec *m = &b->motion[b->c.n_boundary++];
@@ -200,7 +205,8 @@ static inline PetscReal model_max(const Model *model, PetscReal local)
   return all;
 }
 
-/* Cauchy stress of the neo-Hookean law from F, written down again: lambda ln J I + mu (b - I), over J. */
+/* Cauchy stress of the neo-Hookean law from F, written down again: lambda ln J I + mu (b - I), over
+ * J. */
 static inline void rubber_stress(const PetscReal F[9], PetscReal sigma[6])
 {
   const PetscReal E = 1e6, nu = 0.3, mu = E / (2 * (1 + nu)), lambda = E * nu / ((1 + nu) * (1 - 2 * nu));
@@ -213,7 +219,8 @@ static inline void rubber_stress(const PetscReal F[9], PetscReal sigma[6])
   }
 }
 
-/* Largest difference of a field between the points of two models, matched by id; `serial` holds all points on each rank. */
+/* Largest difference of a field between the points of two models, matched by id; `serial` holds all
+ * points on each rank. */
 static inline PetscReal points_difference(const Model *parallel, const Model *serial, PointReal field)
 {
   const Points *a = parallel->points, *s = serial->points;
@@ -247,8 +254,8 @@ static inline PetscBool on_plane(PetscReal x, PetscInt n, const PetscReal *plane
   return PETSC_FALSE;
 }
 
-/* Replace the box grid of the case by a Gmsh file of the same cells whose nodes are put elsewhere. Collective; bench_end removes the
- * file. */
+/* Replace the box grid of the case by a Gmsh file of the same cells whose nodes are put elsewhere.
+ * Collective; bench_end removes the file. */
 typedef void (*BenchPlace)(void *context, PetscInt dim, PetscReal size, PetscReal *x);
 
 /* An element of the file. */
@@ -324,7 +331,8 @@ static inline void bench_shake(void *context, PetscInt dim, PetscReal size, Pets
   for (PetscInt i = 0; i < dim && !keep; ++i) x[i] += d->amount * size * random_real(&d->random, -1, 1);
 }
 
-/* Nodes displaced at random by up to `amount` of the smallest cell; those on one of the planes (of any axis) stay. */
+/* Nodes displaced at random by up to `amount` of the smallest cell; those on one of the planes (of
+ * any axis) stay. */
 static inline void bench_distort(Bench *b, PetscReal amount, PetscInt n_planes, const PetscReal *plane)
 {
   BenchDistortion distortion = {.random = {7}, .amount = amount, .n_planes = n_planes, .plane = plane};
@@ -342,7 +350,8 @@ static inline void bench_end(Bench *b)
   }
 }
 
-/* What prescribes the affine motion x = F X between two instants: dx = (F1 F0^-1 - 1) x at the place x of the first. */
+/* What prescribes the affine motion x = F X between two instants: dx = (F1 F0^-1 - 1) x at the
+ * place x of the first. */
 static inline void affine_increment(PetscInt dim, const PetscReal F0[9], const PetscReal F1[9], const PetscReal *x,
                                     PetscReal *increment)
 {

@@ -1,5 +1,6 @@
-/* A step is accepted only in equilibrium, and only in the one that follows from the last state: bodies that nothing holds, linear solvers that do
- * nothing, tangents without a pivot, and equilibria that a body would have to leap to. */
+/* A step is accepted only in equilibrium, and only in the one that follows from the last state:
+ * bodies that nothing holds, linear solvers that do nothing, tangents without a pivot, and
+ * equilibria that a body would have to leap to. */
 #include <string.h>
 #include "case_builder.h"
 
@@ -19,7 +20,8 @@ static void two_blocks(Bench *b, const char *method, PetscReal apart)
   bench_box(b, 1, (PetscReal[]){0, 1 + apart, 0}, (PetscReal[]){1, 2 + apart, 0});
 }
 
-/* In statics a body is held by a boundary or by another body that is; the message names body and directions. Motion needs no hold. */
+/* In statics a body is held by a boundary or by another body that is; the message names body and
+ * directions. Motion needs no hold. */
 static void test_held(void **state)
 {
   (void)state;
@@ -44,8 +46,9 @@ static void test_held(void **state)
   }
 }
 
-/* A hinge on one node: held in x and y, but free to turn, so that the first tangent has no last pivot. Whatever the solver makes of it, no step is accepted whose
- * residual was not brought down. */
+/* A hinge on one node: held in x and y, but free to turn, so that the first tangent has no last
+ * pivot. Whatever the solver makes of it, no step is accepted whose residual was not brought
+ * down. */
 static void test_hinge(void **state)
 {
   (void)state;
@@ -99,7 +102,8 @@ static void test_useless_solver(void **state)
 #define WEIGHT 800.0 /* N/m3 */
 #define SHEAR 5000.0 /* Pa; Poisson's ratio 0 */
 
-/* How far the top of a column sinks under `share` of its weight: shear (l - 1/l) = -weight (height - Y), integrated. */
+/* How far the top of a column sinks under `share` of its weight: shear (l - 1/l) = -weight (height
+ * - Y), integrated. */
 static PetscReal sinks(PetscReal share)
 {
   const PetscReal q = share * WEIGHT * HEIGHT / SHEAR;
@@ -127,8 +131,9 @@ static Model *soft_column(Bench *b, PetscReal gamma)
   return bench_model(b, PETSC_COMM_WORLD);
 }
 
-/* Under seven tenths of its weight the foot of the column is pressed to a fifth, where shape functions as wide as the first cells no longer
- * see single nodes, and another equilibrium lies 400 m below the floor. All that is accepted is the column's own. */
+/* Under seven tenths of its weight the foot of the column is pressed to a fifth, where shape
+ * functions as wide as the first cells no longer see single nodes, and another equilibrium lies 400
+ * m below the floor. All that is accepted is the column's own. */
 static void test_leap(void **state)
 {
   PetscReal top;

@@ -1,5 +1,5 @@
-/* The grid is shared among the ranks anew as the material moves: nothing is lost on the way, nothing changes but who has it, and the answers
- * stay those of one rank. */
+/* The grid is shared among the ranks anew as the material moves: nothing is lost on the way,
+ * nothing changes but who has it, and the answers stay those of one rank. */
 #include "case_builder.h"
 #include "model/model_private.h"
 #include "points/fields.h"
@@ -76,8 +76,8 @@ static PetscReal nodal_sum(const Model *m, const PetscReal *values)
   return all;
 }
 
-/* A block that slides along the floor of a long trough from one end to the other, pushed by a wall that moves, with a load that it carries and a
- * tracer. */
+/* A block that slides along the floor of a long trough from one end to the other, pushed by a wall
+ * that moves, with a load that it carries and a tracer. */
 static void sliding(Bench *b, CellType cell, PetscReal size)
 {
   bench_init(b, "mpm", cell, 0);
@@ -198,7 +198,8 @@ static void test_sliding_mesh(void **state)
   }
 }
 
-/* Before and after a repartition: points, tracers and carriers to the last bit, the boundary's forces, nodal mass and motion. */
+/* Before and after a repartition: points, tracers and carriers to the last bit, the boundary's
+ * forces, nodal mass and motion. */
 static void conserves(Bench *b)
 {
   StepReport report = {0};
@@ -236,7 +237,8 @@ static void test_conservation(void **state)
   bench_end(&b);
 }
 
-/* A body of one column of cells cannot be shared by cutting along it: the attempt must not be repeated at every step, nor change anything. */
+/* A body of one column of cells cannot be shared by cutting along it: the attempt must not be
+ * repeated at every step, nor change anything. */
 static void test_hopeless(void **state)
 {
   Bench b;

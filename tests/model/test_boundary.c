@@ -1,5 +1,6 @@
-/* Boundary and loads in a running model: reactions balance what acts, rotation is objective, velocities follow their table, loads move
- * with the body, and geostatic stress is in equilibrium. */
+/* Boundary and loads in a running model: reactions balance what acts, rotation is objective,
+ * velocities follow their table, loads move with the body, and geostatic stress is in
+ * equilibrium. */
 #include "case_builder.h"
 
 static PetscReal reaction(Model *m, PetscInt entry, PetscInt component)
@@ -10,7 +11,8 @@ static PetscReal reaction(Model *m, PetscInt entry, PetscInt component)
   return value;
 }
 
-/* A bar clamped at one end (two entries, one per component) under gravity, a traction and a point force. */
+/* A bar clamped at one end (two entries, one per component) under gravity, a traction and a point
+ * force. */
 static void balance(const char *method, CellType cell)
 {
   Bench b;
@@ -40,7 +42,8 @@ static void test_balance(void **state)
   }
 }
 
-/* Dynamics: the impulse of the reaction is the change of momentum less that of gravity, step by step. The block lands on a floor. */
+/* Dynamics: the impulse of the reaction is the change of momentum less that of gravity, step by
+ * step. The block lands on a floor. */
 static void test_impulse(void **state)
 {
   (void)state;
@@ -65,7 +68,8 @@ static void test_impulse(void **state)
       before = now;
     }
     CHECK(largest > mass * 9.81, "the floor carried %g N", (double)largest);
-    /* Newmark's end-of-step force stands for the whole step: the sums agree to first order of the step. */
+    /* Newmark's end-of-step force stands for the whole step: the sums agree to first order of the
+     * step. */
     CHECK_CLOSE(gained, impulse, 0.05 * mass);
     CALL(ModelDestroy(&m));
   }
@@ -100,8 +104,8 @@ static void test_turned_frame(void **state)
   }
 }
 
-/* Loaded (a stretch of the whole body), then turned by 90 degrees about a point in ten steps with all nodes prescribed: F and stress turn
- * with the body, energy and |x - centre| stay. */
+/* Loaded (a stretch of the whole body), then turned by 90 degrees about a point in ten steps with
+ * all nodes prescribed: F and stress turn with the body, energy and |x - centre| stay. */
 typedef struct {
   PetscInt dim;
 } Whole;
@@ -148,7 +152,8 @@ static void test_turned_body(void **state)
   }
 }
 
-/* The same through the case's own rotation, about a centre and (3D) a tilted axis: a body that turns as a whole has no stress. */
+/* The same through the case's own rotation, about a centre and (3D) a tilted axis: a body that
+ * turns as a whole has no stress. */
 static void rotate(CellType cell, PetscInt steps)
 {
   Bench b;
@@ -211,8 +216,8 @@ static void test_velocity_table(void **state)
   }
 }
 
-/* Carried loads: the resultant is exact, and when the body flies on it takes them along: a constant force accelerates it as a mass point,
- * the same as if its cells had not changed. */
+/* Carried loads: the resultant is exact, and when the body flies on it takes them along: a constant
+ * force accelerates it as a mass point, the same as if its cells had not changed. */
 static void test_load_moves(void **state)
 {
   (void)state;
@@ -243,8 +248,9 @@ static void test_load_moves(void **state)
   }
 }
 
-/* A column of soil-like stiffness with its geostatic stress, held at the sides: the first static step does nothing. For sides that do not
- * move K0 is nu / (1 - nu) in the limit of small strains; the stress of the law is exact for any K0. */
+/* A column of soil-like stiffness with its geostatic stress, held at the sides: the first static
+ * step does nothing. For sides that do not move K0 is nu / (1 - nu) in the limit of small strains;
+ * the stress of the law is exact for any K0. */
 static void test_geostatic(void **state)
 {
   (void)state;

@@ -1,11 +1,13 @@
-/* What happens at the faces of cells: bodies that slide slowly over them, spray of single points, points that leave the grid. */
+/* What happens at the faces of cells: bodies that slide slowly over them, spray of single points,
+ * points that leave the grid. */
 #include <string.h>
 #include "case_builder.h"
 
 /* How a run went. */
 typedef struct {
   PetscInt steps, cuts, most_iterations;
-  PetscReal stress, speed; /* largest component over all points and steps, Pa; largest deviation of a velocity, m/s */
+  /* largest component over all points and steps, Pa; largest deviation of a velocity, m/s */
+  PetscReal stress, speed;
   PetscBool finished;
 } Course;
 
@@ -55,8 +57,8 @@ static void tell(const char *what, const Bench *b, const Course *c)
               (double)c->speed);
 }
 
-/* A block pressed on a smooth floor by its weight (5 kPa at its foot) slides at 1/37 of a cell a step over the faces of more than five
- * cells. */
+/* A block pressed on a smooth floor by its weight (5 kPa at its foot) slides at 1/37 of a cell a
+ * step over the faces of more than five cells. */
 static void slide(CellType cell, PetscBool stabilised)
 {
   Bench b;
@@ -80,7 +82,8 @@ static void slide(CellType cell, PetscBool stabilised)
   if (!stabilised) return; /* for the record: none of these needs it */
   CHECK(c.finished && c.cuts == 0 && c.most_iterations <= 4, "the block stumbles");
   CHECK(c.stress < 1e4, "stress %g Pa", (double)c.stress);
-  CHECK(c.speed < 0.1, "speed off by %g m/s", (double)c.speed); /* the foot starts to sag: a slow swing */
+  /* the foot starts to sag: a slow swing */
+  CHECK(c.speed < 0.1, "speed off by %g m/s", (double)c.speed);
 }
 
 static void test_slide(void **state)
@@ -91,7 +94,8 @@ static void test_slide(void **state)
   slide(CELL_HEXAHEDRON, PETSC_TRUE);
 }
 
-/* A block carried sideways on its clamped foot, statics: the nodes that it leaves behind and those that it enters hold slivers. */
+/* A block carried sideways on its clamped foot, statics: the nodes that it leaves behind and those
+ * that it enters hold slivers. */
 static void creep(CellType cell, PetscInt points_per_cell, PetscReal step, PetscBool stabilised)
 {
   Bench b;
@@ -129,8 +133,9 @@ static void test_creep(void **state)
     }
 }
 
-/* Points alone in their cells, each on a course of its own: most points of a block are taken away, the rest fly apart and fall. Alone in
- * its nodes' cells a point is a free mass, so that its course is exact. */
+/* Points alone in their cells, each on a course of its own: most points of a block are taken away,
+ * the rest fly apart and fall. Alone in its nodes' cells a point is a free mass, so that its course
+ * is exact. */
 static void spray(CellType cell, PetscBool stabilised)
 {
   Bench b;

@@ -1,5 +1,5 @@
-/* Free bodies: mass and linear momentum to round-off, angular momentum and energy within bounds that shrink with the step; free fall and
- * rigid flight are exact. */
+/* Free bodies: mass and linear momentum to round-off, angular momentum and energy within bounds
+ * that shrink with the step; free fall and rigid flight are exact. */
 #include "case_builder.h"
 
 /* A block of 0.5 m in a wide empty grid, nothing held. */
@@ -11,7 +11,8 @@ static void free_block(Bench *b, const char *method, CellType cell, PetscReal si
   bench_dynamic(b, 1, dt);
 }
 
-/* Position and velocity of every point after n steps against x + v t + g t^2 / 2, v + g t; stress stays zero. */
+/* Position and velocity of every point after n steps against x + v t + g t^2 / 2, v + g t; stress
+ * stays zero. */
 static void fall(const char *method, CellType cell, const PetscReal v[3], const PetscReal g[3], PetscReal dt,
                  PetscInt steps)
 {
@@ -70,8 +71,8 @@ static Sums sums_of(Model *m)
   return s;
 }
 
-/* A block that flies, spins and swings (the spin suddenly loads it by centrifugal forces) for 0.1 s. Returns the final drift of angular
- * momentum and energy, relative to the start. */
+/* A block that flies, spins and swings (the spin suddenly loads it by centrifugal forces) for 0.1
+ * s. Returns the final drift of angular momentum and energy, relative to the start. */
 static void fly(const char *method, CellType cell, PetscReal size, PetscReal bossak, PetscReal dt, PetscReal inertia,
                 PetscReal *angular, PetscReal *energy)
 {
@@ -107,8 +108,8 @@ static void fly(const char *method, CellType cell, PetscReal size, PetscReal bos
   CALL(ModelDestroy(&m));
 }
 
-/* fem with the trapezoidal rule keeps neither angular momentum nor energy of a turning body exactly: the balance is met at the end of the
- * step only. Both drifts vanish with the step. */
+/* fem with the trapezoidal rule keeps neither angular momentum nor energy of a turning body
+ * exactly: the balance is met at the end of the step only. Both drifts vanish with the step. */
 static void test_fem_drift(void **state)
 {
   PetscReal angular[2], energy[2];
@@ -125,9 +126,10 @@ static void test_fem_drift(void **state)
   }
 }
 
-/* In mpm points move with nodal velocities that lumped mass has smoothed, so that x and v of a point part a little: angular momentum and
- * energy drift by something that belongs to the grid, not to the step. Asserted: it is bounded, and half the
- * bound holds on a grid of half the spacing (the energy's drift may pass through zero: lumping takes what the projection adds). */
+/* In mpm points move with nodal velocities that lumped mass has smoothed, so that x and v of a
+ * point part a little: angular momentum and energy drift by something that belongs to the grid, not
+ * to the step. Asserted: it is bounded, and half the bound holds on a grid of half the spacing (the
+ * energy's drift may pass through zero: lumping takes what the projection adds). */
 static void test_mpm_drift(void **state)
 {
   PetscReal angular[2], energy[2];
@@ -136,7 +138,8 @@ static void test_mpm_drift(void **state)
     const int flat = cell <= CELL_QUADRILATERAL;
     for (int k = 0; k <= flat; ++k)
       fly("mpm", cell, (flat ? 0.125 : 0.25) / (1 << k), 0, 2e-3, 0, &angular[k], &energy[k]);
-    /* in 3D the block is two cells across, all of them half empty as it turns: lumping weighs most there */
+    /* in 3D the block is two cells across, all of them half empty as it turns: lumping weighs most
+     * there */
     CHECK(PetscAbsReal(angular[0]) < (flat ? 0.01 : 0.025), "drift of angular momentum %g", (double)angular[0]);
     CHECK(PetscAbsReal(energy[0]) < (flat ? 0.03 : 0.15), "drift of energy %g", (double)energy[0]);
     if (!flat) continue;
@@ -155,7 +158,8 @@ static void test_bossak(void **state)
   CHECK(energy[1] < energy[0], "drifts %g and %g", (double)energy[0], (double)energy[1]);
 }
 
-/* The tie of inertia, as cases with yielding material have it, keeps linear momentum; of the spin of a block so small it takes a percent more. */
+/* The tie of inertia, as cases with yielding material have it, keeps linear momentum; of the spin
+ * of a block so small it takes a percent more. */
 static void test_tied(void **state)
 {
   PetscReal angular, energy;

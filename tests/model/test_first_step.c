@@ -1,4 +1,5 @@
-/* In its first step mpm with Gauss weights is fem: the same positions, deformations and stresses to 1e-10. */
+/* In its first step mpm with Gauss weights is fem: the same positions, deformations and stresses to
+ * 1e-10. */
 #include "case_builder.h"
 
 static void compare(Bench *mpm, Bench *fem, PetscReal dt)

@@ -1,7 +1,9 @@
-/* k0: the vertical stress at the start is that of the material really above, along gravity, whatever the surface, the layers and the ranks. */
+/* k0: the vertical stress at the start is that of the material really above, along gravity,
+ * whatever the surface, the layers and the ranks. */
 #include "case_builder.h"
 
-/* Grid of the unit square or cube (or what `max` says) with cells of h; gravity acts from the start, in dynamics, so that nothing has moved. */
+/* Grid of the unit square or cube (or what `max` says) with cells of h; gravity acts from the
+ * start, in dynamics, so that nothing has moved. */
 static void ground(Bench *b, const char *method, CellType cell, PetscReal h, const PetscReal max[3])
 {
   bench_init(b, method, cell, 0);
@@ -205,8 +207,9 @@ static void test_gravity_at_the_start(void **state)
 }
 
 /* --- what carries it --- */
-/* A slope of 30 m x 20 m whose toe is 10 m high: the floor carries its weight from the start. The free nodes' forces, which are all that the
- * stress of columns leaves over, are those of shear: none of them is vertical. */
+/* A slope of 30 m x 20 m whose toe is 10 m high: the floor carries its weight from the start. The
+ * free nodes' forces, which are all that the stress of columns leaves over, are those of shear:
+ * none of them is vertical. */
 static void slope(const char *method, CellType cell, PetscReal h, PetscReal tolerance)
 {
   static PetscReal corners[] = {0, 0, 30, 0, 30, 10, 20, 10, 10, 20, 0, 20};

@@ -1,6 +1,6 @@
-/* The meshfree method as a whole: uniform deformation on random clouds in both bases, constraints that hold where shape functions do not
- * interpolate, reactions, free flight, turning, contact, and the same answers on one rank and on many, also when nodes and points change
- * their ranks. */
+/* The meshfree method as a whole: uniform deformation on random clouds in both bases, constraints
+ * that hold where shape functions do not interpolate, reactions, free flight, turning, contact, and
+ * the same answers on one rank and on many, also when nodes and points change their ranks. */
 #include "case_builder.h"
 #include "method/gmm.h"
 
@@ -30,7 +30,8 @@ static void affine_motion(void *context, const PetscReal *x, PetscReal t0, Petsc
   affine_increment(dim, F0, F1, x, increment);
 }
 
-/* Error of F against the uniform one of time t: root of the mean square over all components and the volume. */
+/* Error of F against the uniform one of time t: root of the mean square over all components and the
+ * volume. */
 static PetscReal gradient_error(const Model *m, PetscReal t)
 {
   PetscReal sum[2] = {0, 0}, corner[3], F[9];
@@ -49,7 +50,8 @@ static PetscReal gradient_error(const Model *m, PetscReal t)
   return PetscSqrtReal(sum[0] / sum[1]);
 }
 
-/* All nodes prescribed: F is exact at every point. (Only the boundary prescribed: test_gmm_quadrature.) */
+/* All nodes prescribed: F is exact at every point. (Only the boundary prescribed:
+ * test_gmm_quadrature.) */
 static PetscReal patch(const BasisSpec *basis, CellType cell, PetscInt points_per_cell)
 {
   Bench b;
@@ -59,7 +61,8 @@ static PetscReal patch(const BasisSpec *basis, CellType cell, PetscInt points_pe
   MotionSpec *motion = bench_motion(&b, -1, 0, MOTION_FIXED, 7);
   motion->on.has_shape = PETSC_TRUE;
   motion->on.shape = (Shape){.kind = SHAPE_BOX, .min = {-1, -1, -1}, .max = {2, 2, 2}};
-  b.c.basis.essential = ESSENTIAL_DIRECT; /* linear functions have their own values as coefficients */
+  /* linear functions have their own values as coefficients */
+  b.c.basis.essential = ESSENTIAL_DIRECT;
   b.c.analysis.step = b.c.analysis.largest = 0.5;
   b.c.newton.residual = 1e-10;
   Model *m = bench_model(&b, PETSC_COMM_WORLD);
@@ -85,8 +88,9 @@ static void test_patch(void **state)
 }
 
 /* --- constraints --- */
-/* A block hangs from its upper side, which moves; wide supports, so that no node's unknown is the displacement of its place. A tracer on
- * that side moves as prescribed, and the reaction is the weight. */
+/* A block hangs from its upper side, which moves; wide supports, so that no node's unknown is the
+ * displacement of its place. A tracer on that side moves as prescribed, and the reaction is the
+ * weight. */
 static void hang(const BasisSpec *basis, CellType cell)
 {
   Bench b;
@@ -122,8 +126,8 @@ static void test_hang(void **state)
   hang(&lme, CELL_QUADRILATERAL);
 }
 
-/* The options: the paper's rule (at least six nodes, more while the condition is bad) and sets of polynomials; what is not part of it is
- * refused. */
+/* The options: the paper's rule (at least six nodes, more while the condition is bad) and sets of
+ * polynomials; what is not part of it is refused. */
 static void test_options(void **state)
 {
   BasisSpec nearest[2] = {usual_mls, usual_lme}, mls = usual_mls;
@@ -149,7 +153,8 @@ static void test_options(void **state)
 }
 
 /* --- free bodies --- */
-/* A block that flies and spins: mass and momentum to round-off, angular momentum and energy as in fem. */
+/* A block that flies and spins: mass and momentum to round-off, angular momentum and energy as in
+ * fem. */
 static void fly(const BasisSpec *basis, CellType cell, PetscReal size, PetscReal bound)
 {
   Bench b;
@@ -189,8 +194,9 @@ static void test_fly(void **state)
 }
 
 /* --- contact --- */
-/* A block falls on a row of fixed nodes, which is not in its clouds from the start: it comes to rest before it reaches them and jumps back, and
- * what its momentum changes is the impulse of reaction and gravity. */
+/* A block falls on a row of fixed nodes, which is not in its clouds from the start: it comes to
+ * rest before it reaches them and jumps back, and what its momentum changes is the impulse of
+ * reaction and gravity. */
 static void contact(const BasisSpec *basis)
 {
   Bench b;
@@ -251,8 +257,8 @@ static PetscInt warnings_at(PetscReal bottom)
   return warnings;
 }
 
-/* Clouds reach two spacings: a body one above the floor sticks to it from the start, and that is told; one that stands on it or flies is
- * not. */
+/* Clouds reach two spacings: a body one above the floor sticks to it from the start, and that is
+ * told; one that stands on it or flies is not. */
 static void test_obstacles(void **state)
 {
   const PetscReal bottoms[] = {0, 0.125, 0.25, 0.375};
@@ -280,8 +286,9 @@ static PetscReal nearest_nodes(const Model *m)
   return nearest / grid->cloud->spacing;
 }
 
-/* A heap spreads over the floor: its nodes come upon those of the floor and keep off them (it takes a few steps to push aside several that crowd), no step fails,
- * ranks agree, and on one rank the iterative solver never gives way to the direct one. */
+/* A heap spreads over the floor: its nodes come upon those of the floor and keep off them (it takes
+ * a few steps to push aside several that crowd), no step fails, ranks agree, and on one rank the
+ * iterative solver never gives way to the direct one. */
 static void heap(const BasisSpec *basis)
 {
   Bench b;
@@ -379,7 +386,8 @@ static void bar(const BasisSpec *basis, CellType cell, PetscReal size)
   run_both(&b, 4, 2);
 }
 
-/* A block with a spin thrown on a floor: ghosts change as it deforms and meets nodes that it did not know. */
+/* A block with a spin thrown on a floor: ghosts change as it deforms and meets nodes that it did
+ * not know. */
 static void thrown(const BasisSpec *basis, LinearChoice linear)
 {
   Bench b;
@@ -411,7 +419,8 @@ static void test_ranks(void **state)
 }
 
 /* --- linear solvers --- */
-/* Constraints by multipliers in a direct solver's matrix, and by projections in the iterative solver: the same motion, reactions too. */
+/* Constraints by multipliers in a direct solver's matrix, and by projections in the iterative
+ * solver: the same motion, reactions too. */
 static void solvers(PetscBool sand)
 {
   Bench b;

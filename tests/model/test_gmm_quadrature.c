@@ -1,9 +1,12 @@
-/* A patch of which only the boundary is prescribed: meshfree shape functions and a few points do not give it exactly, and this is why.
+/* A patch of which only the boundary is prescribed: meshfree shape functions and a few points do
+ * not give it exactly, and this is why.
  *
- * Insert the exact motion, with its uniform P. What stands at a node is P sum_p V_p grad N_I, and nothing else: it would vanish inside if points
- * integrated the divergence exactly. The error follows that sum: it falls with more points if these carry volumes of a rule that integrates (not
- * equal shares of a distorted cell) and the clouds end where weights are small; it vanishes where functions become those of linear
- * finite elements; finer cells with the same points leave the error of F as it is and take that of u down. */
+ * Insert the exact motion, with its uniform P. What stands at a node is P sum_p V_p grad N_I, and
+ * nothing else: it would vanish inside if points integrated the divergence exactly. The error
+ * follows that sum: it falls with more points if these carry volumes of a rule that integrates (not
+ * equal shares of a distorted cell) and the clouds end where weights are small; it vanishes where
+ * functions become those of linear finite elements; finer cells with the same points leave the
+ * error of F as it is and take that of u down. */
 #include "case_builder.h"
 
 #define SIDE 8
@@ -116,7 +119,8 @@ static void check_forces(const BasisSpec *basis)
   Patch p = {.basis = *basis, .cell = CELL_QUADRILATERAL, .points = 4, .side = SIDE, .shake = 0.2, .all = PETSC_TRUE};
   Bench b;
   PetscReal F[9], inverse[9], sigma[6], P[4], off = 0, size = 0;
-  Model *m = patch_model(&p, &b, PETSC_COMM_SELF); /* owners may change in a step, and with them the order of nodes */
+  /* owners may change in a step, and with them the order of nodes */
+  Model *m = patch_model(&p, &b, PETSC_COMM_SELF);
   PetscReal *G = divergence(m);
   CHECK_CLOSE(m->grid->cloud->spacing, 1.0 / SIDE, 1e-14); /* whatever the shortest edge */
   model_step(m, 1);

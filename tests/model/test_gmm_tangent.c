@@ -1,4 +1,5 @@
-/* Short cuts of the meshfree tangent give what the long way gives: slots kept from the step before, and half of a symmetric matrix. */
+/* Short cuts of the meshfree tangent give what the long way gives: slots kept from the step before,
+ * and half of a symmetric matrix. */
 #include "case_builder.h"
 #include "model/model_private.h"
 
@@ -41,7 +42,8 @@ static void check_slots(Model *m)
   CALL(PetscFree(kept));
 }
 
-/* Forces and values at the present increments, with half of the pairs or all; prescribed dofs are lifted. */
+/* Forces and values at the present increments, with half of the pairs or all; prescribed dofs are
+ * lifted. */
 static void assemble(Model *m, const PetscReal *lift, PetscBool half, PetscReal *force, PetscReal *values)
 {
   const PetscInt dofs = m->grid->n_nodes * m->dim, n = m->system->row_start[m->system->n_rows] * m->dim * m->dim;

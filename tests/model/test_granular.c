@@ -1,11 +1,13 @@
-/* Dry grains (Mohr-Coulomb without cohesion): a grain that touches the far nodes of its cell with next to nothing of its mass, what damping
- * does to motion that no node sees, and a small column with steps that grow. */
+/* Dry grains (Mohr-Coulomb without cohesion): a grain that touches the far nodes of its cell with
+ * next to nothing of its mass, what damping does to motion that no node sees, and a small column
+ * with steps that grow. */
 #include "case_builder.h"
 
 static NamedValue sand_constants[] = {
   {"young", 0.84e6}, {"poisson", 0.3}, {"friction_angle", 31}, {"dilatancy_angle", 1}, {"cohesion", 0}};
 
-/* Sand in a box [0, x] x [0, y] on a rough floor against a smooth wall, cells of 5 mm with 9 points. */
+/* Sand in a box [0, x] x [0, y] on a rough floor against a smooth wall, cells of 5 mm with 9
+ * points. */
 static void sand(Bench *b, PetscReal x, PetscReal y, PetscReal width, PetscReal height, PetscReal end, PetscReal step)
 {
   bench_init(b, "mpm", CELL_QUADRILATERAL, 0);
@@ -29,8 +31,9 @@ typedef struct {
   PetscInt most, cuts;
 } Effort;
 
-/* A layer one cell thick; the middle one of its topmost points is lifted into the cell above, by `gap` of a cell, and slides. Its share of the
- * mass of that cell's upper nodes is `gap`, while their stiffness comes and goes with its stress. */
+/* A layer one cell thick; the middle one of its topmost points is lifted into the cell above, by
+ * `gap` of a cell, and slides. Its share of the mass of that cell's upper nodes is `gap`, while
+ * their stiffness comes and goes with its stress. */
 static Effort graze(PetscReal gap, PetscReal vx, PetscReal vy, PetscReal inertia)
 {
   Bench b;
@@ -60,7 +63,8 @@ static Effort graze(PetscReal gap, PetscReal vx, PetscReal vy, PetscReal inertia
   return effort;
 }
 
-/* Without the tie of inertia Newton goes in circles between "apart" and "in touch" (5 cuts, 23 iterations). */
+/* Without the tie of inertia Newton goes in circles between "apart" and "in touch" (5 cuts, 23
+ * iterations). */
 static void test_grazing(void **state)
 {
   static const PetscReal v[3][2] = {{0.001, -0.01}, {0.001, -1e-5}, {0.1, -1e-5}};
@@ -76,8 +80,9 @@ static void test_grazing(void **state)
   CHECK(loose.most > 12, "the tie is not needed: %d iterations, %d cuts", (int)loose.most, (int)loose.cuts);
 }
 
-/* A motion within the cells that all nodes see as rest: (1, -2 m_edge / m_middle, 1) across each row of three points. Damping takes it like any
- * other motion, no force moves anything, and the energy is accounted for. */
+/* A motion within the cells that all nodes see as rest: (1, -2 m_edge / m_middle, 1) across each
+ * row of three points. Damping takes it like any other motion, no force moves anything, and the
+ * energy is accounted for. */
 static void test_unseen_motion_fades(void **state)
 {
   const PetscReal alpha = 1.5, dt = 0.02;
@@ -111,8 +116,9 @@ static void test_unseen_motion_fades(void **state)
   CALL(ModelDestroy(&m));
 }
 
-/* A cell of which every node is fixed: its points are stopped at once, and the boundary's reaction is the impulse; or they keep what velocity they
- * have for ever, as (2.16) is printed, go nowhere, and the boundary feels nothing of them. */
+/* A cell of which every node is fixed: its points are stopped at once, and the boundary's reaction
+ * is the impulse; or they keep what velocity they have for ever, as (2.16) is printed, go nowhere,
+ * and the boundary feels nothing of them. */
 static void test_keep_velocity(void **state)
 {
   (void)state;
@@ -152,8 +158,9 @@ static void test_keep_velocity_elsewhere(void **state)
   bench_refused(&b, PETSC_COMM_WORLD, "analysis.keep_velocity", "only points of method mpm");
 }
 
-/* A column of 6 x 7 cells falls over and comes to rest: with steps that grow as far as without, in a fifth of the steps and no more cuts than a
- * hand counts. The front is where 5 % of the grains lie beyond: the farthest grain alone scatters by more. It goes out with the step to first order,
+/* A column of 6 x 7 cells falls over and comes to rest: with steps that grow as far as without, in
+ * a fifth of the steps and no more cuts than a hand counts. The front is where 5 % of the grains
+ * lie beyond: the farthest grain alone scatters by more. It goes out with the step to first order,
  * by 2 % a ms in a column this small (docs/experiments/granular-columns.md). */
 static PetscInt collapse(PetscReal step, PetscReal largest, PetscReal *front, PetscInt *cuts)
 {
@@ -240,7 +247,8 @@ static void pairs(PetscInt k, PetscReal *xi)
   xi[1] = k / 2 % 2 ? 0 : -0.999;
 }
 
-/* A cell that nine points fill by their volume is not full if they leave one of its corners without mass. */
+/* A cell that nine points fill by their volume is not full if they leave one of its corners without
+ * mass. */
 static void test_points_on_a_line(void **state)
 {
   Bench b;
@@ -248,9 +256,12 @@ static void test_points_on_a_line(void **state)
   sand(&b, 0.03, 0.02, 0.05, 0.03, 1, 2e-4);
   Model *m = bench_model(&b, PETSC_COMM_SELF);
   CHECK_CLOSE(lumping_of(m, evenly), 0, 1e-12);
-  CHECK_CLOSE(lumping_of(m, across), 0, 1e-12); /* corners beside the diagonal get two thirds of an even share */
-  CHECK_CLOSE(lumping_of(m, upright), 1 - 4 * 0.02, 1e-12);    /* those on the right 1 + xi = 0.02 of it */
-  CHECK_CLOSE(lumping_of(m, pairs), 1 - 4 * 2. / 9, 4 * 1e-3); /* the far one 2 points of 9, each at its middle: 1/4 */
+  /* corners beside the diagonal get two thirds of an even share */
+  CHECK_CLOSE(lumping_of(m, across), 0, 1e-12);
+  /* those on the right 1 + xi = 0.02 of it */
+  CHECK_CLOSE(lumping_of(m, upright), 1 - 4 * 0.02, 1e-12);
+  /* the far one 2 points of 9, each at its middle: 1/4 */
+  CHECK_CLOSE(lumping_of(m, pairs), 1 - 4 * 2. / 9, 4 * 1e-3);
   CALL(ModelDestroy(&m));
 }
 

@@ -14,8 +14,8 @@ static Model *sliding(Bench *b)
   return bench_model(b, PETSC_COMM_WORLD);
 }
 
-/* Inertia alone: dt (v + a dt / 2). The step before: its increments in the ratio of the steps, where they were solved
- * for. Rest: nothing. */
+/* Inertia alone: dt (v + a dt / 2). The step before: its increments in the ratio of the steps,
+ * where they were solved for. Rest: nothing. */
 static void test_values(void **state)
 {
   Bench b;
@@ -47,7 +47,8 @@ static void test_values(void **state)
   CALL(ModelDestroy(&m));
 }
 
-/* Whichever would have been nearer to the last solution comes first, the other one next, rest last. */
+/* Whichever would have been nearer to the last solution comes first, the other one next, rest
+ * last. */
 static void test_order(void **state)
 {
   Bench b;
@@ -79,7 +80,8 @@ static void test_learning(void **state)
       m->nodes->previous[i] = m->nodes->touched[i / 2] && !m->nodes->fixed[i] ? 1e-3 : 0;
       m->nodes->v[i] = 1;
       m->nodes->a[i] = 0;
-      m->nodes->du[i] = nearer ? 0.5e-3 : 0.005; /* half of the step before, or the velocity for as long */
+      /* half of the step before, or the velocity for as long */
+      m->nodes->du[i] = nearer ? 0.5e-3 : 0.005;
     }
     m->guess = (Guess){.step = 0.01, .previous = !nearer};
     CALL(GuessLearn(m, 0.005));

@@ -1,6 +1,7 @@
-/* A block falls on its floor, stays or bounces: what the floor gives over all steps is the change of momentum and what gravity took, in
- * every method, for steps of any length; and what the transfer takes closes the balance of energy although every work is computed for
- * itself. (Bossak's damping stays open, and with steps of changing length what it echoes over a change of clouds.) */
+/* A block falls on its floor, stays or bounces: what the floor gives over all steps is the change
+ * of momentum and what gravity took, in every method, for steps of any length; and what the
+ * transfer takes closes the balance of energy although every work is computed for itself. (Bossak's
+ * damping stays open, and with steps of changing length what it echoes over a change of clouds.) */
 #include "case_builder.h"
 
 typedef struct {
@@ -8,10 +9,12 @@ typedef struct {
   const char *basis;
   PetscReal bossak, step;
   CellType cell;
-  PetscReal until; /* s. With lme and Bossak the block may tear when it has bounced: its impact counts */
+  /* s. With lme and Bossak the block may tear when it has bounced: its impact counts */
+  PetscReal until;
 } Fall;
 
-/* A block of rubber (1 m3) that starts 3.4 cells above the floor with 2 m/s; off the grid's lines in x. */
+/* A block of rubber (1 m3) that starts 3.4 cells above the floor with 2 m/s; off the grid's lines
+ * in x. */
 static Model *falling(Bench *b, const Fall *f)
 {
   const PetscReal h = f->cell == CELL_HEXAHEDRON ? 0.25 : 0.125;
@@ -85,8 +88,9 @@ static void test_impulse(void **state)
   for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(falls); ++k) impact(&falls[k]);
 }
 
-/* A block that hangs from its upper side and is let go at t = 0: the trapezoidal rule takes the reaction at both ends of a step, at the start of
- * the first one, too. In fem nodes keep their accelerations, in the others points carry them. */
+/* A block that hangs from its upper side and is let go at t = 0: the trapezoidal rule takes the
+ * reaction at both ends of a step, at the start of the first one, too. In fem nodes keep their
+ * accelerations, in the others points carry them. */
 static void test_hanging(void **state)
 {
   static const char *const names[] = {"fem", "mpm", "gmm"};

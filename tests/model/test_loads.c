@@ -1,5 +1,5 @@
-/* Loads in numbers: the sum of the nodal forces and their moments, of each load by its own amplitude, on bodies and on
- * the grid. */
+/* Loads in numbers: the sum of the nodal forces and their moments, of each load by its own
+ * amplitude, on bodies and on the grid. */
 #include "case_builder.h"
 #include "model/model_private.h"
 
@@ -11,7 +11,8 @@ static void gather(Model *m, PetscReal t, PetscReal *force)
   CALL(NodalForcesExternal(&m->forces, &scene, PETSC_FALSE, force));
 }
 
-/* Sum over owned nodes of the loads at time t, and of their moments about the origin in x and y: f, x f_x, y f_y. */
+/* Sum over owned nodes of the loads at time t, and of their moments about the origin in x and y: f,
+ * x f_x, y f_y. */
 static void sum_loads(Model *m, PetscReal t, PetscReal sum[5])
 {
   PetscReal *force, local[5] = {0, 0, 0, 0, 0};
@@ -27,7 +28,8 @@ static void sum_loads(Model *m, PetscReal t, PetscReal sum[5])
 
 static PetscBool is_space(CellType cell) { return cell >= CELL_TETRAHEDRON; }
 
-/* The whole surface of a block inside the grid, and no face inside it: value times its area, at its centre. */
+/* The whole surface of a block inside the grid, and no face inside it: value times its area, at its
+ * centre. */
 static void test_whole_surface(void **state)
 {
   (void)state;
@@ -76,7 +78,8 @@ static void test_between_bodies(void **state)
   }
 }
 
-/* Each load by its own amplitude, carried or on the grid; a face of the grid without material bears nothing. */
+/* Each load by its own amplitude, carried or on the grid; a face of the grid without material bears
+ * nothing. */
 static void test_amplitudes(void **state)
 {
   static PetscReal time[] = {0, 1}, rise[] = {0, 1}, fall[] = {2, 0};
@@ -126,7 +129,8 @@ static void test_boundary_sum(void **state)
     CALL(BoundarySum(m->boundary, m->grid, 0, force, sum));
     CHECK_CLOSE(sum[0], side, 1e-12);
     CHECK_CLOSE(sum[1], 10 * side, 1e-12);
-    CALL(BoundarySum(m->boundary, m->grid, 1, force, sum)); /* its y is free but where the other boundary holds it */
+    /* its y is free but where the other boundary holds it */
+    CALL(BoundarySum(m->boundary, m->grid, 1, force, sum));
     CHECK_CLOSE(sum[0], side, 1e-12);
     CHECK_CLOSE(sum[1], 10 * (is_space(cell) ? 7 : 1), 1e-12);
     CALL(PetscFree(force));
@@ -134,7 +138,8 @@ static void test_boundary_sum(void **state)
   }
 }
 
-/* A body force belongs to the material: it is asked for where a point was at the start, wherever it is now. */
+/* A body force belongs to the material: it is asked for where a point was at the start, wherever it
+ * is now. */
 static void as_far(void *context, const PetscReal *X, PetscReal t, PetscReal *b)
 {
   const PetscInt dim = *(const PetscInt *)context;

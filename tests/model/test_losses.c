@@ -1,5 +1,5 @@
-/* What leaves the grid: tracers and loads go with their body, points are counted with all that they take along, and
- * what is empty says so. */
+/* What leaves the grid: tracers and loads go with their body, points are counted with all that they
+ * take along, and what is empty says so. */
 #include "case_builder.h"
 
 static PetscReal measure(Model *m, PetscInt index)
@@ -9,8 +9,8 @@ static PetscReal measure(Model *m, PetscInt index)
   return value;
 }
 
-/* A bar of 4 m x 1 m in x >= 0 that slides on y = 0, pulled at its end; the grid ends with the bar, or `more` beyond
- * it. nu = 0. */
+/* A bar of 4 m x 1 m in x >= 0 that slides on y = 0, pulled at its end; the grid ends with the bar,
+ * or `more` beyond it. nu = 0. */
 static void bar(Bench *b, PetscReal more, PetscReal traction)
 {
   bench_init(b, "mpm", CELL_QUADRILATERAL, 0);
@@ -41,7 +41,8 @@ static void pulled(Bench *b, PetscReal value[4])
 /* A grid of the bar's own size gives what a larger one gives; both are the bar. */
 static void test_tip_leaves_the_grid(void **state)
 {
-  const PetscReal stretch = 0.01 + PetscSqrtReal(1 + 1e-4), exact = 4 * (stretch - 1); /* P = E/2 (s - 1/s) */
+  /* P = E/2 (s - 1/s) */
+  const PetscReal stretch = 0.01 + PetscSqrtReal(1 + 1e-4), exact = 4 * (stretch - 1);
   PetscReal own[4], large[4];
   Bench b;
   (void)state;
@@ -59,7 +60,8 @@ static void test_tip_leaves_the_grid(void **state)
   CHECK_CLOSE(own[0], exact, 0.02 * exact);
 }
 
-/* The same where the grid is a mesh, whose edge is found by search: the tip of a distorted one moves as that of fem. */
+/* The same where the grid is a mesh, whose edge is found by search: the tip of a distorted one
+ * moves as that of fem. */
 static void test_tip_leaves_a_mesh(void **state)
 {
   const PetscReal planes[] = {0, 1, 4};
@@ -93,7 +95,8 @@ static void thrown(Bench *b, OutsidePolicy outside)
   bench_dynamic(b, 0.3, 4e-3);
 }
 
-/* Of each block 64 points of 3.90625 kg, 5 m/s: what is gone and what is there are what there was. */
+/* Of each block 64 points of 3.90625 kg, 5 m/s: what is gone and what is there are what there
+ * was. */
 static void check_accounts(Model *m)
 {
   Energies e;
@@ -159,7 +162,8 @@ static void test_kept_points_are_counted(void **state)
   CALL(ModelDestroy(&m));
 }
 
-/* What is asked of a body without points has no value; its mass is 0, and sums over all bodies are sums. */
+/* What is asked of a body without points has no value; its mass is 0, and sums over all bodies are
+ * sums. */
 static void test_empty_body(void **state)
 {
   static const MeasureSpec empty[] = {
@@ -260,7 +264,8 @@ static void expect_edges(Bench *b, const char *words)
   free(text);
 }
 
-/* Only edges that are filled and free are told, by where they look; methods whose nodes move have none. */
+/* Only edges that are filled and free are told, by where they look; methods whose nodes move have
+ * none. */
 static void test_full_grid_is_told(void **state)
 {
   Bench b;

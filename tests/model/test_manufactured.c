@@ -1,8 +1,10 @@
-/* A manufactured solution in finite strains: with the body force that makes a chosen smooth displacement the solution, the error falls
- * with the square of the cell size, in fem and in mpm's first step.
+/* A manufactured solution in finite strains: with the body force that makes a chosen smooth
+ * displacement the solution, the error falls with the square of the cell size, in fem and in mpm's
+ * first step.
  *
- * u = A (a sin sin sin) vanishes on the boundary of the unit square or cube; b = - Div P / density with P from F by the law's first
- * Piola-Kirchhoff stress, Div by differences of sixth order: nothing of the program takes part in it. */
+ * u = A (a sin sin sin) vanishes on the boundary of the unit square or cube; b = - Div P / density
+ * with P from F by the law's first Piola-Kirchhoff stress, Div by differences of sixth order:
+ * nothing of the program takes part in it. */
 #include "case_builder.h"
 
 static const PetscReal direction[3] = {1, -0.6, 0.4};
@@ -108,7 +110,8 @@ static void test_3d(void **state)
 {
   (void)state;
   convergence("fem", CELL_HEXAHEDRON, 2, 3, 1.9);
-  convergence("fem", CELL_TETRAHEDRON, 4, 3, 1.87); /* 1.70, 1.89, ... : sixteen tetrahedra a side are still coarse */
+  /* 1.70, 1.89, ... : sixteen tetrahedra a side are still coarse */
+  convergence("fem", CELL_TETRAHEDRON, 4, 3, 1.87);
   convergence("mpm", CELL_HEXAHEDRON, 2, 3, 1.9);
 }
 

@@ -1,8 +1,8 @@
 /* Measures against closed forms of states that are made by hand. */
 #include "case_builder.h"
 
-/* A body that turns about its own centre while it flies: its spin is that of the body, wherever it is; angular momentum
- * is that about the origin. */
+/* A body that turns about its own centre while it flies: its spin is that of the body, wherever it
+ * is; angular momentum is that about the origin. */
 static void test_spin(void **state)
 {
   (void)state;
@@ -37,8 +37,8 @@ static void test_spin(void **state)
   }
 }
 
-/* The height of a surface is that of its material: what has come apart is no higher, what is pressed together is
- * lower. */
+/* The height of a surface is that of its material: what has come apart is no higher, what is
+ * pressed together is lower. */
 static void test_surface(void **state)
 {
   static const PetscReal J[] = {1, 2, 10, 0.5};
@@ -57,7 +57,8 @@ static void test_surface(void **state)
     CALL(ModelMeasure(m, &end, 0, &front));
     const PetscReal expected = 0.75 * PetscMin(1, J[k]);
     CHECK_CLOSE(height, expected, 1e-12);
-    /* the station at the end has half of the height and the next one none: down to half a spacing */
+    /* the station at the end has half of the height and the next one none: down to half a
+     * spacing */
     CHECK_CLOSE(front, 0.5 + 0.125 * (expected / 2 - 0.0625) / (expected / 2), 1e-12);
     CALL(ModelDestroy(&m));
   }

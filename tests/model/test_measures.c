@@ -8,7 +8,8 @@ static PetscReal measure(Model *m, const MeasureSpec *spec, PetscInt index)
   return value;
 }
 
-/* Points of a right triangle with its corner at the origin, 1 m wide and `height` high, on cells of 0.1 m, four points a side of a cell. */
+/* Points of a right triangle with its corner at the origin, 1 m wide and `height` high, on cells of
+ * 0.1 m, four points a side of a cell. */
 static Model *triangle(Bench *b, PetscReal height)
 {
   static PetscReal vertices[6];
@@ -21,8 +22,8 @@ static Model *triangle(Bench *b, PetscReal height)
   return bench_model(b, PETSC_COMM_WORLD);
 }
 
-/* The seeded triangle is stairs of whole cells; squeezing each column of points to the line y = 1 - x makes the shape exact. Volumes change
- * with the height that a column loses. */
+/* The seeded triangle is stairs of whole cells; squeezing each column of points to the line y = 1 -
+ * x makes the shape exact. Volumes change with the height that a column loses. */
 static void flatten(Model *m)
 {
   const PetscReal dx = 0.1;
@@ -54,7 +55,8 @@ static void test_surface_of_a_triangle(void **state)
   }
 }
 
-/* A unit square of 4 x 4 cells with 4 points each: eight columns of points with an eighth of the mass each. */
+/* A unit square of 4 x 4 cells with 4 points each: eight columns of points with an eighth of the
+ * mass each. */
 static void test_inner_extent(void **state)
 {
   static const struct {
@@ -81,8 +83,9 @@ static void test_inner_extent(void **state)
   CALL(ModelDestroy(&m));
 }
 
-/* A block is thrown along x and stopped by a prescribed amplitude: all its nodes move with v = 1 m/s until 0.1 s, then slow down linearly to
- * rest at 0.2 s. Its front is slower than 0.25 m/s from 0.175 s on. */
+/* A block is thrown along x and stopped by a prescribed amplitude: all its nodes move with v = 1
+ * m/s until 0.1 s, then slow down linearly to rest at 0.2 s. Its front is slower than 0.25 m/s from
+ * 0.175 s on. */
 static void test_run_out_time(void **state)
 {
   PetscReal time[] = {0, 0.1, 0.2}, value[] = {1, 1, 0};
@@ -168,8 +171,8 @@ static PetscReal worst_balance(Model *m)
   return worst;
 }
 
-/* All energy goes back and forth between motion, stress and gravity: what the trapezoidal rule calls dissipated is its own error, and
- * vanishes with the square of the step. */
+/* All energy goes back and forth between motion, stress and gravity: what the trapezoidal rule
+ * calls dissipated is its own error, and vanishes with the square of the step. */
 static void test_elastic_balance(void **state)
 {
   PetscReal worst[2], apparent[2];
@@ -194,7 +197,8 @@ static void test_elastic_balance(void **state)
         (double)apparent[1]);
 }
 
-/* The same block of a metal that yields: half of the energy and more is dissipated, never given back. */
+/* The same block of a metal that yields: half of the energy and more is dissipated, never given
+ * back. */
 static void plastic(Bench *b)
 {
   static NamedValue constants[] = {{"young", 1e6}, {"poisson", 0.3}, {"yield_stress", 1e4}};
@@ -235,8 +239,9 @@ static void test_plastic_balance(void **state)
   }
 }
 
-/* Simple shear of perfectly plastic metal by gamma: tau = sigma_y / sqrt 3 after gamma_y = tau / G, so that tau (gamma - gamma_y) per volume is
- * dissipated and tau gamma_y / 2 stored; the boundary does the work. */
+/* Simple shear of perfectly plastic metal by gamma: tau = sigma_y / sqrt 3 after gamma_y = tau / G,
+ * so that tau (gamma - gamma_y) per volume is dissipated and tau gamma_y / 2 stored; the boundary
+ * does the work. */
 static void test_shear_dissipation(void **state)
 {
   const PetscReal tau = 1e4 / PetscSqrtReal(3), G = 1e6 / 2.6, gamma = 0.06, yield = tau / G;
@@ -264,7 +269,8 @@ static void test_shear_dissipation(void **state)
   CALL(ModelDestroy(&m));
 }
 
-/* Dead load on rubber in one static step: the load grows with the step, its work is half of force times way and is stored. */
+/* Dead load on rubber in one static step: the load grows with the step, its work is half of force
+ * times way and is stored. */
 static void test_static_work(void **state)
 {
   (void)state;
@@ -286,8 +292,9 @@ static void test_static_work(void **state)
   }
 }
 
-/* A block hits a wall of fixed nodes in mpm: what the impact and the transfers take is told to the last digit. A boundary that drives
- * material does the work of its impulses, and loses the half of it that an inelastic impact loses. */
+/* A block hits a wall of fixed nodes in mpm: what the impact and the transfers take is told to the
+ * last digit. A boundary that drives material does the work of its impulses, and loses the half of
+ * it that an inelastic impact loses. */
 static void test_impact_is_told(void **state)
 {
   (void)state;
@@ -389,7 +396,8 @@ static PetscReal roughness(int kind, PetscInt cells_per_side)
   return value;
 }
 
-/* The oscillation that triangles of equal order leave free: 1, -1, 0 at the nodes of each, nothing at their centres. */
+/* The oscillation that triangles of equal order leave free: 1, -1, 0 at the nodes of each, nothing
+ * at their centres. */
 static PetscReal nodal_roughness(PetscReal constant, PetscReal amplitude)
 {
   Bench b;
@@ -413,7 +421,8 @@ static void test_roughness(void **state)
   CHECK_CLOSE(roughness(0, 4), 0, 1e-14);
   CHECK(roughness(1, 4) < 0.1, "a linear pressure is smooth");
   CHECK(roughness(1, 8) < 0.5 * roughness(1, 4), "and smoother on finer cells");
-  /* inside, six triangles about a node cancel; at the rim each node sees two of one sign and one of the other */
+  /* inside, six triangles about a node cancel; at the rim each node sees two of one sign and one of
+   * the other */
   CHECK_CLOSE(roughness(2, 8), 1, 0.05);
   CHECK_CLOSE(nodal_roughness(0, 3), 1, 1e-14);
   CHECK_CLOSE(nodal_roughness(3, 0), 0, 1e-14);

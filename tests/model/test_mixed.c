@@ -1,5 +1,6 @@
-/* The mixed formulation as a whole: patch test, tangent, Cook's membrane against values of an independent code, volume, momentum,
- * numbers of points and of ranks, and which materials it takes. */
+/* The mixed formulation as a whole: patch test, tangent, Cook's membrane against values of an
+ * independent code, volume, momentum, numbers of points and of ranks, and which materials it
+ * takes. */
 #include "case_builder.h"
 #include "material/pressure.h"
 #include "model/model_private.h"
@@ -192,7 +193,8 @@ static void check_tangent(const char *method, CellType cell, const Solid *solid,
   bench_motion(&b, 1, 0, MOTION_FIXED, 7);
   s.m = bench_model(&b, PETSC_COMM_WORLD);
   CALL(ModelActivate(s.m));
-  for (PetscInt g = 0; s.m->space->soft && g < s.m->space->support->n_groups; ++g) { /* as if cells were not full */
+  /* as if cells were not full */
+  for (PetscInt g = 0; s.m->space->soft && g < s.m->space->support->n_groups; ++g) {
     s.m->space->soft[g] = 1e4 * (PetscReal)(g + 1);
     s.m->space->tie[g] = 10 * (PetscReal)(g + 1);
     s.m->space->pressure_tie[g] = 1e-8 * (PetscReal)(g + 1);
@@ -254,7 +256,8 @@ static void cook_place(void *context, PetscInt dim, PetscReal size, PetscReal *x
   x[1] = low + (high - low) * x[1];
 }
 
-/* Clamped at x = 0, pulled up by 1 N at x = 48; E = 70 Pa; triangles cut from low left to high right. */
+/* Clamped at x = 0, pulled up by 1 N at x = 48; E = 70 Pa; triangles cut from low left to high
+ * right. */
 static void cook(Bench *b, CellType cell, PetscInt n, PetscReal nu, PetscInt points, PetscReal alpha)
 {
   static NamedValue value[2];
@@ -266,7 +269,8 @@ static void cook(Bench *b, CellType cell, PetscInt n, PetscReal nu, PetscInt poi
   b->material.n_parameters = 2;
   b->material.parameters = value;
   b->c.mixed.stabilisation = alpha;
-  b->c.newton.residual = 1e-11; /* 1e-12 lies below the round-off of 512 cells without stabilisation */
+  /* 1e-12 lies below the round-off of 512 cells without stabilisation */
+  b->c.newton.residual = 1e-11;
   b->body[0].points_per_cell = points;
   b->body[0].weights = WEIGHTS_GAUSS;
   b->body[0].shape = (Shape){.kind = SHAPE_POLYGON, .n_vertices = 4, .vertices = outline};
@@ -297,7 +301,8 @@ static PetscReal cook_corner(CellType cell, PetscInt n, PetscReal nu, PetscInt p
   return value;
 }
 
-/* Values of an independent code (five digits; see docs/theory.md for the formulation that they share). */
+/* Values of an independent code (five digits; see docs/theory.md for the formulation that they
+ * share). */
 static void test_cook(void **state)
 {
   static const struct {
@@ -315,7 +320,8 @@ static void test_cook(void **state)
               6e-6); /* locked: a third of the converged value */
 }
 
-/* 16 cells a side with the program's default stabilisation, against the limit of fine meshes (cases/cook); displacements alone lock. */
+/* 16 cells a side with the program's default stabilisation, against the limit of fine meshes
+ * (cases/cook); displacements alone lock. */
 static void test_locking(void **state)
 {
   const PetscReal limit = 0.2762;
@@ -325,7 +331,8 @@ static void test_locking(void **state)
   CHECK(u < 0.3 * limit, "the displacement formulation should lock: %g m", (double)u);
 }
 
-/* Exactly incompressible: the limit of nearly so, with any number of points in a cell the same equations. */
+/* Exactly incompressible: the limit of nearly so, with any number of points in a cell the same
+ * equations. */
 static void test_incompressible(void **state)
 {
   const PetscReal one = cook_corner(CELL_TRIANGLE, 8, 0.5, 1, 8, "mixed"),
@@ -361,7 +368,8 @@ static void test_newton(void **state)
   bench_end(&b);
 }
 
-/* Share of the nodal pressure that alternates from node to node: sum over cells of what the projection takes away. */
+/* Share of the nodal pressure that alternates from node to node: sum over cells of what the
+ * projection takes away. */
 static PetscReal roughness(PetscReal alpha)
 {
   Bench b;
@@ -453,7 +461,8 @@ static void test_ranks(void **state)
 }
 
 /* --- geostatic start --- */
-/* A layer that starts with the stress of its weight stays where it is; without that it would settle by millimetres. */
+/* A layer that starts with the stress of its weight stays where it is; without that it would settle
+ * by millimetres. */
 static void geostatic(const char *method, const Solid *solid, PetscReal k0, PetscReal alpha)
 {
   Bench b;
@@ -477,7 +486,8 @@ static void geostatic(const char *method, const Solid *solid, PetscReal k0, Pets
     off = PetscMax(off, PetscAbsReal(sigma[1] + 1e4 * (1 - point_real(m->points, POINT_X, p)[1])));
     for (int d = 0; d < 2; ++d) largest = PetscMax(largest, PetscAbsReal(point_real(m->points, POINT_U, p)[d]));
   }
-  /* in a corner that belongs to one triangle only the stabilisation tells an incompressible body's pressure */
+  /* in a corner that belongs to one triangle only the stabilisation tells an incompressible body's
+   * pressure */
   CHECK(largest <= (alpha > 0 ? 5e-6 : 1e-8), "%s: moved by %g m", solid->law, (double)largest);
   CHECK(off <= (alpha > 0 ? 150 : 0.1), "%s: stress off by %g Pa", solid->law, (double)off);
   CALL(ModelDestroy(&m));

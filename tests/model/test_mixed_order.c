@@ -1,9 +1,12 @@
-/* A manufactured solution that keeps all volumes, for the mixed formulation: with the body force that makes it the solution, the displacement's
- * error falls with the square of the cell size and the pressure's faster than with the cell size.
+/* A manufactured solution that keeps all volumes, for the mixed formulation: with the body force
+ * that makes it the solution, the displacement's error falls with the square of the cell size and
+ * the pressure's faster than with the cell size.
  *
- * x = X + a sin(pi Y), y = Y + b sin(pi x) has det F = 1; the pressure is chosen freely. b = -Div P / density, P = tau F^-T by differences of
- * sixth order: nothing of the program takes part in it. All of the boundary is prescribed, which leaves the mean pressure to the volume
- * that the polygon between boundary nodes happens to have: it is taken off. Poisson's ratio is so near to 0.5 that p / K means nothing. */
+ * x = X + a sin(pi Y), y = Y + b sin(pi x) has det F = 1; the pressure is chosen freely. b = -Div P
+ * / density, P = tau F^-T by differences of sixth order: nothing of the program takes part in it.
+ * All of the boundary is prescribed, which leaves the mean pressure to the volume that the polygon
+ * between boundary nodes happens to have: it is taken off. Poisson's ratio is so near to 0.5 that p
+ * / K means nothing. */
 #include "case_builder.h"
 
 #define SHEAR (1e6 / 3) /* young 1e6, poisson 0.5 */
@@ -59,7 +62,8 @@ static void at_boundary(void *context, const PetscReal *X, PetscReal t0, PetscRe
   for (int d = 0; d < 2; ++d) increment[d] = x[d] - X[d];
 }
 
-/* L2 norms over the points: displacement, m, and pressure without its mean, over the shear modulus. */
+/* L2 norms over the points: displacement, m, and pressure without its mean, over the shear
+ * modulus. */
 static void errors(const Model *m, PetscReal error[2])
 {
   PetscReal local[4] = {0, 0, 0, 0}, all[4], to[2];

@@ -1,7 +1,9 @@
-/* Prescribed motion whose place takes part in it: rigid bodies that go through a grid which is restored every step. */
+/* Prescribed motion whose place takes part in it: rigid bodies that go through a grid which is
+ * restored every step. */
 #include "case_builder.h"
 
-/* A place that holds all of the material carries it rigidly, over many cells; one that stays would press it out. */
+/* A place that holds all of the material carries it rigidly, over many cells; one that stays would
+ * press it out. */
 static void test_carried(void **state)
 {
   (void)state;
@@ -37,8 +39,9 @@ static PetscReal reaction(Model *m)
   return value;
 }
 
-/* A plate presses a column in a box to 0.7 of its height, through two rows of nodes and a half: the force is that of uniform compression,
- * but for the cell that is stiff since the plate's underside cuts it, and for what sampling by moving points loses. */
+/* A plate presses a column in a box to 0.7 of its height, through two rows of nodes and a half: the
+ * force is that of uniform compression, but for the cell that is stiff since the plate's underside
+ * cuts it, and for what sampling by moving points loses. */
 static void test_pressed(void **state)
 {
   const PetscReal width = 0.25, shortest = 0.7;
@@ -54,9 +57,11 @@ static void test_pressed(void **state)
     bench_motion(&b, 1, 0, MOTION_FIXED, 2);
     MotionSpec *plate = bench_motion(&b, 1, 1, MOTION_DISPLACEMENT, 2);
     b.body[0].points_per_cell =
-      cell == CELL_TRIANGLE ? 12 : 16; /* fewer leave cells unevenly filled, which softens the column */
+      /* fewer leave cells unevenly filled, which softens the column */
+      cell == CELL_TRIANGLE ? 12 : 16;
     plate->moves = PETSC_TRUE;
-    plate->on.min[1] = 1 - 0.125 + 1e-6, plate->on.max[1] = 1.2; /* the cell that its underside cuts, too */
+    /* the cell that its underside cuts, too */
+    plate->on.min[1] = 1 - 0.125 + 1e-6, plate->on.max[1] = 1.2;
     plate->value[1] = shortest - 1;
     Model *m = bench_model(&b, PETSC_COMM_WORLD);
     while (m->time < 1 - 1e-9) {
@@ -69,7 +74,8 @@ static void test_pressed(void **state)
   }
 }
 
-/* A plate that comes down on a held floor: where both prescribe a node, the entry that stands first does. */
+/* A plate that comes down on a held floor: where both prescribe a node, the entry that stands first
+ * does. */
 static void test_first_entry_holds(void **state)
 {
   (void)state;

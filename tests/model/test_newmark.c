@@ -1,7 +1,9 @@
 /* Time integration on the first axial mode of a bar, against the exact motion of the same mesh.
  *
- * With linear elements of equal length and consistent mass, nodal values sin(k x), k = pi / 2, are a mode of a bar of length 1 fixed at
- * x = 0, with omega^2 = 6 E / (rho h^2) (1 - cos kh) / (2 + cos kh), and with lumped mass 2 E / (rho h^2) (1 - cos kh). nu = 0 and no motion along y make the strip of quadrilaterals that bar. */
+ * With linear elements of equal length and consistent mass, nodal values sin(k x), k = pi / 2, are
+ * a mode of a bar of length 1 fixed at x = 0, with omega^2 = 6 E / (rho h^2) (1 - cos kh) / (2 +
+ * cos kh), and with lumped mass 2 E / (rho h^2) (1 - cos kh). nu = 0 and no motion along y make the
+ * strip of quadrilaterals that bar. */
 #include "case_builder.h"
 
 enum { CELLS = 16 };
@@ -12,7 +14,8 @@ typedef struct {
   PetscReal strain; /* largest */
   PetscReal bossak, damping;
   MassMatrix mass;
-  PetscReal displacement, energy[2]; /* out: of the tip at the end; at the first step and at the end */
+  /* out: of the tip at the end; at the first step and at the end */
+  PetscReal displacement, energy[2];
 } Run;
 
 static PetscReal frequency(MassMatrix mass)
@@ -123,7 +126,8 @@ static void test_bossak_order(void **state)
   CHECK(PetscAbsReal(order - 2) < 0.1, "order %g", (double)order);
 }
 
-/* Damping c = alpha M: the amplitude falls with exp(-alpha t / 2), the energy (mean over a cycle) with its square. */
+/* Damping c = alpha M: the amplitude falls with exp(-alpha t / 2), the energy (mean over a cycle)
+ * with its square. */
 static void test_rayleigh(void **state)
 {
   const PetscReal period = 2 * PETSC_PI / frequency(MASS_CONSISTENT), alpha = 2;

@@ -1,8 +1,10 @@
-/* Newton's iteration and the control of the step: quadratic convergence, halving, giving up without a trace, growing again. */
+/* Newton's iteration and the control of the step: quadratic convergence, halving, giving up without
+ * a trace, growing again. */
 #include <string.h>
 #include "case_builder.h"
 
-/* The cantilever of the case book: 8 m x 1 m, E = 90 MPa, nu = 0, bent by its weight in one step. */
+/* The cantilever of the case book: 8 m x 1 m, E = 90 MPa, nu = 0, bent by its weight in one
+ * step. */
 static void cantilever(Bench *b, const char *method, PetscReal size)
 {
   bench_init(b, method, CELL_QUADRILATERAL, 0);
@@ -85,7 +87,8 @@ static void check_unchanged(Snapshot *s, const Points *p)
   }
 }
 
-/* The top would have to pass the bottom: whatever the method, the step is halved, then given up, and the model stands as it stood. */
+/* The top would have to pass the bottom: whatever the method, the step is halved, then given up,
+ * and the model stands as it stood. */
 static void test_gives_up(void **state)
 {
   (void)state;
@@ -96,7 +99,8 @@ static void test_gives_up(void **state)
       press(&b, fem ? "fem" : "mpm", 3);
       if (dynamic) bench_dynamic(&b, 1, 1);
       b.motion[1].amplitude =
-        (Amplitude){.n = 2, .time = (PetscReal[]){0, 1e-9}, .value = (PetscReal[]){0, 1}}; /* at once */
+        /* at once */
+        (Amplitude){.n = 2, .time = (PetscReal[]){0, 1e-9}, .value = (PetscReal[]){0, 1}};
       b.c.analysis.smallest = 0.1;
       Model *m = bench_model(&b, PETSC_COMM_WORLD);
       Snapshot points = snapshot(m->points), tracers = snapshot(m->tracers);
@@ -176,7 +180,8 @@ static void test_grows_again(void **state)
   CALL(ModelDestroy(&m));
 }
 
-/* Half as long again in one step: the linear step that carries the boundary's motion inside is not held against the iteration. */
+/* Half as long again in one step: the linear step that carries the boundary's motion inside is not
+ * held against the iteration. */
 static void test_large_stretch(void **state)
 {
   (void)state;
@@ -203,7 +208,8 @@ static void slow_block(Bench *b)
   b->c.newton.residual = 1e-10;
 }
 
-/* A blow: the points of the upper layers fly against each other, so fast that with inertia alone they would pass within a step. */
+/* A blow: the points of the upper layers fly against each other, so fast that with inertia alone
+ * they would pass within a step. */
 static void blow(Model *m)
 {
   for (PetscInt p = 0; p < m->points->n; ++p) {
@@ -213,8 +219,9 @@ static void blow(Model *m)
   CALL(m->method->initialise(m->space));
 }
 
-/* Newton fails from inertia's guess and finds the solution from the increments of the step before: no step is halved, the failed try is counted, and the
- * solution is that of a model on one rank that starts from the better guess at once. */
+/* Newton fails from inertia's guess and finds the solution from the increments of the step before:
+ * no step is halved, the failed try is counted, and the solution is that of a model on one rank
+ * that starts from the better guess at once. */
 static void test_second_try(void **state)
 {
   Bench b;

@@ -1,5 +1,5 @@
-/* Patch tests: a uniform deformation prescribed on the boundary, or a uniform traction, makes a uniform stress in every cell type, on
- * regular and distorted meshes, in fem and mpm. */
+/* Patch tests: a uniform deformation prescribed on the boundary, or a uniform traction, makes a
+ * uniform stress in every cell type, on regular and distorted meshes, in fem and mpm. */
 #include "case_builder.h"
 
 /* x(t) = F(t) X with F(t) = 1 + t (F - 1). */
@@ -148,8 +148,9 @@ static void test_hexahedra(void **state)
   patch_all(CELL_HEXAHEDRON, 0.5);
 }
 
-/* Stretch of a bar pulled by the dead traction T along x, free at its other sides: P_xx = T, the rest of P vanishes. Two unknowns
- * (along, across), Newton with differences. In plane strain one side is held. */
+/* Stretch of a bar pulled by the dead traction T along x, free at its other sides: P_xx = T, the
+ * rest of P vanishes. Two unknowns (along, across), Newton with differences. In plane strain one
+ * side is held. */
 static void uniaxial(PetscInt dim, PetscReal T, PetscReal F[9])
 {
   PetscReal s[2] = {1, 1}, sigma[6], r[2], k[2][2];
@@ -172,8 +173,8 @@ static void uniaxial(PetscInt dim, PetscReal T, PetscReal F[9])
   F[0] = s[0], F[4] = s[1], F[8] = dim == 3 ? s[1] : 1;
 }
 
-/* Rollers on the low sides, a dead traction on x = 1: on faces of the grid (pushing, so that points stay inside) or carried by the body
- * (pulling). */
+/* Rollers on the low sides, a dead traction on x = 1: on faces of the grid (pushing, so that points
+ * stay inside) or carried by the body (pulling). */
 static void traction(const char *method, CellType cell, PetscBool carried, PetscBool distorted, PetscInt halved)
 {
   Bench b;

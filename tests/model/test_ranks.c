@@ -1,5 +1,5 @@
-/* The same answers on one rank and on many: every rank computes the case alone (PETSC_COMM_SELF) and together with the others, and
- * compares all its points by id, and the measures. */
+/* The same answers on one rank and on many: every rank computes the case alone (PETSC_COMM_SELF)
+ * and together with the others, and compares all its points by id, and the measures. */
 #include "case_builder.h"
 
 static const struct {
@@ -52,7 +52,8 @@ static PetscInt run_both(Bench *b, PetscInt steps)
   return all;
 }
 
-/* A bar 4 m long held at x = 0, bent by gravity; its tip carries a traction and a point force, and is followed. */
+/* A bar 4 m long held at x = 0, bent by gravity; its tip carries a traction and a point force, and
+ * is followed. */
 static void cantilever(const char *method, CellType cell, PetscReal size)
 {
   Bench b;
@@ -82,7 +83,8 @@ static void test_cantilever(void **state)
   }
 }
 
-/* A block thrown at a floor with some spin; on its way it crosses the borders of the ranks' parts. */
+/* A block thrown at a floor with some spin; on its way it crosses the borders of the ranks'
+ * parts. */
 static void thrown_block(CellType cell, PetscReal size, LinearChoice linear, PetscInt steps)
 {
   Bench b;
@@ -92,7 +94,8 @@ static void thrown_block(CellType cell, PetscReal size, LinearChoice linear, Pet
   bench_box(&b, 0, (PetscReal[]){0.25, 0.25, 0.25}, (PetscReal[]){0.75, 0.75, 0.75});
   b.body[0].velocity[0] = 2.5;
   b.body[0].velocity[1] = -2;
-  if (cell == CELL_HEXAHEDRON || cell == CELL_TETRAHEDRON) b.body[0].velocity[2] = 0.6; /* whichever way space is cut */
+  /* whichever way space is cut */
+  if (cell == CELL_HEXAHEDRON || cell == CELL_TETRAHEDRON) b.body[0].velocity[2] = 0.6;
   b.body[0].spin[2] = 0.5;
   b.body[0].spin_centre[0] = b.body[0].spin_centre[1] = 0.5;
   b.c.gravity[1] = -9.81;

@@ -1,4 +1,5 @@
-/* Linear solvers of the mixed formulation: the iterative one against the direct one, and on several ranks against one. */
+/* Linear solvers of the mixed formulation: the iterative one against the direct one, and on several
+ * ranks against one. */
 #include "case_builder.h"
 #include "model/model_private.h"
 
@@ -26,7 +27,8 @@ static void use_solid(Bench *b, const Solid *solid)
   b->material.parameters = (NamedValue *)solid->value;
 }
 
-/* The iterative solver gives the direct one's answer, in statics and dynamics, with few iterations. */
+/* The iterative solver gives the direct one's answer, in statics and dynamics, with few
+ * iterations. */
 static void solvers(const char *method, CellType cell, PetscInt cells_per_side, const Solid *solid, PetscBool dynamic)
 {
   Model *m[2];

@@ -1,5 +1,5 @@
-/* Energies and motions term by term against closed forms. The balance alone says little: what nobody accounts for
- * becomes transfer. */
+/* Energies and motions term by term against closed forms. The balance alone says little: what
+ * nobody accounts for becomes transfer. */
 #include "case_builder.h"
 
 static const BasisSpec lme = {.kind = "lme", .gamma = 1.8, .radius = 2, .max_radius = 3.5, .condition = 50, .gap = 2};
@@ -38,9 +38,9 @@ static PetscReal fastest_off(const Model *m, PetscReal vx, PetscReal vy)
   return model_max(m, worst);
 }
 
-/* Without a force v falls as exp(-alpha t) and the kinetic energy with its square; all of it is counted as damped. The
- * trapezoidal rule makes (1 - a) / (1 + a) of exp(-2 a), a = alpha dt / 2: off by a^3 / 1.5 a step. The first step
- * starts without acceleration. */
+/* Without a force v falls as exp(-alpha t) and the kinetic energy with its square; all of it is
+ * counted as damped. The trapezoidal rule makes (1 - a) / (1 + a) of exp(-2 a), a = alpha dt / 2:
+ * off by a^3 / 1.5 a step. The first step starts without acceleration. */
 static void decay(const Kind *kind)
 {
   const PetscReal alpha = 4, dt = 0.005, v[2] = {0.8, -0.4};
@@ -75,8 +75,8 @@ static void test_decay(void **state)
   for (size_t k = 0; k < N_KINDS; ++k) decay(&kinds[k]);
 }
 
-/* A fall through something that damps: v = g (1 - exp(-alpha t)) / alpha; gravity's work is what moves and what was
- * damped. */
+/* A fall through something that damps: v = g (1 - exp(-alpha t)) / alpha; gravity's work is what
+ * moves and what was damped. */
 static void fall(const Kind *kind)
 {
   const PetscReal alpha = 3, g = -10, dt = 0.004;
@@ -96,7 +96,8 @@ static void fall(const Kind *kind)
           (double)t);
     CHECK_CLOSE(e.damped, e.external - e.kinetic, 1e-9 * e.external);
     CHECK_CLOSE(e.transfer, 0, 1e-9 * e.external);
-    if (step < 20) continue; /* the start, without damping, is off by alpha dt / 2 of so short a time */
+    /* the start, without damping, is off by alpha dt / 2 of so short a time */
+    if (step < 20) continue;
     CHECK_CLOSE(e.kinetic, 0.5 * mass * v * v, 1e-3 * mass * g * fallen);
     CHECK_CLOSE(e.external, mass * g * fallen, 1e-3 * mass * g * fallen);
   }
@@ -109,8 +110,8 @@ static void test_damped_fall(void **state)
   for (size_t k = 0; k < N_KINDS; ++k) fall(&kinds[k]);
 }
 
-/* Velocities that no node sees: each point of a cell of nine has its own. Without stiffness damping is all that acts on
- * them, and takes them as fast as those that nodes see. */
+/* Velocities that no node sees: each point of a cell of nine has its own. Without stiffness damping
+ * is all that acts on them, and takes them as fast as those that nodes see. */
 static void test_unseen_decay(void **state)
 {
   const PetscReal alpha = 4, dt = 0.005;
@@ -140,9 +141,9 @@ static void test_unseen_decay(void **state)
   CALL(ModelDestroy(&m));
 }
 
-/* A rigid block under a force that swings: without Rayleigh damping its acceleration a lags behind the force by
- * Bossak's weights, and transfer is the work of what the start of each step leaves out of balance, m (b - a) du / 2
- * (docs/theory.md, "Energy"). */
+/* A rigid block under a force that swings: without Rayleigh damping its acceleration a lags behind
+ * the force by Bossak's weights, and transfer is the work of what the start of each step leaves out
+ * of balance, m (b - a) du / 2 (docs/theory.md, "Energy"). */
 static void swing(void *context, const PetscReal *X, PetscReal t, PetscReal *b)
 {
   (void)context;
@@ -192,8 +193,8 @@ static void test_bossak_inertia(void **state)
   }
 }
 
-/* Every law with its stiffness: a small uniform strain stores K e^2 / 2 + G dev : dev, by either formulation, and
- * nothing dissipates. */
+/* Every law with its stiffness: a small uniform strain stores K e^2 / 2 + G dev : dev, by either
+ * formulation, and nothing dissipates. */
 typedef struct {
   const char *law, *formulation;
   PetscReal poisson;
@@ -264,8 +265,8 @@ static void test_stored(void **state)
   store(&kinds[8], &elastic[2]);
 }
 
-/* A load so small beside the reactions of a squeezed block that they would hide it still moves it: a hundred-thousandth
- * of a load moves it by a hundred-thousandth. */
+/* A load so small beside the reactions of a squeezed block that they would hide it still moves it:
+ * a hundred-thousandth of a load moves it by a hundred-thousandth. */
 static PetscReal pushed(PetscReal load)
 {
   static PetscReal time[] = {0, 0.5, 1}, squeeze[] = {0, 1, 1}, push[] = {0, 0, 1};

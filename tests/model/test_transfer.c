@@ -1,6 +1,7 @@
-/* What goes between points and nodes, in numbers: the sums of the projection, what convection gives back, when a cell
- * counts as filled, and how far nodes of a cloud keep off each other. Shape functions are written down again here, and
- * nodes are known by their places, so that sums over ranks can be checked against sums over all points. */
+/* What goes between points and nodes, in numbers: the sums of the projection, what convection gives
+ * back, when a cell counts as filled, and how far nodes of a cloud keep off each other. Shape
+ * functions are written down again here, and nodes are known by their places, so that sums over
+ * ranks can be checked against sums over all points. */
 #include "case_builder.h"
 #include "method/gmm.h"
 
@@ -101,8 +102,8 @@ static void test_projection(void **state)
   check_projection(CELL_HEXAHEDRON);
 }
 
-/* x and u by the increment, a anew, v by what nodes gained over what points had given them, less a share of what no
- * node sees. */
+/* x and u by the increment, a anew, v by what nodes gained over what points had given them, less a
+ * share of what no node sees. */
 static void check_convection(CellType cell)
 {
   Bench b;
@@ -153,8 +154,8 @@ static void test_convection(void **state)
   check_convection(CELL_HEXAHEDRON);
 }
 
-/* Nodes that are held, or move evenly, have that velocity and no acceleration, whatever hits them: a block that lands
- * on a floor, which itself slides. */
+/* Nodes that are held, or move evenly, have that velocity and no acceleration, whatever hits them:
+ * a block that lands on a floor, which itself slides. */
 static void test_held_nodes(void **state)
 {
   (void)state;
@@ -185,7 +186,8 @@ static void test_held_nodes(void **state)
   }
 }
 
-/* At t = 0 all that is free falls, and nothing moves what is held: points of the lowest cells know both. */
+/* At t = 0 all that is free falls, and nothing moves what is held: points of the lowest cells know
+ * both. */
 static void test_first_acceleration(void **state)
 {
   (void)state;
@@ -206,7 +208,8 @@ static void test_first_acceleration(void **state)
   }
 }
 
-/* What one averaging over neighbours takes away of a pressure, by present volumes: to the nodes and back. */
+/* What one averaging over neighbours takes away of a pressure, by present volumes: to the nodes and
+ * back. */
 static void test_roughness(void **state)
 {
   Bench b;
@@ -247,8 +250,8 @@ static void test_roughness(void **state)
   CALL(ModelDestroy(&m));
 }
 
-/* A cell is as full as the undeformed volume of its points, less what they are pressed together: material that has come
- * apart fills no more than it did. What it lacks is lumped and tied. */
+/* A cell is as full as the undeformed volume of its points, less what they are pressed together:
+ * material that has come apart fills no more than it did. What it lacks is lumped and tied. */
 static void check_filling(CellType cell, PetscReal volume, PetscReal J, PetscReal lack)
 {
   const PetscReal M = 1e6 * 0.7 / (1.3 * 0.4);
@@ -288,8 +291,9 @@ static void test_filling(void **state)
   }
 }
 
-/* Points that stand at one side leave the corners of the other without mass, however many they are: a corner should
- * have a sixteenth of the mass in the plane, a quarter of what regular points give it. */
+/* Points that stand at one side leave the corners of the other without mass, however many they are:
+ * a corner should have a sixteenth of the mass in the plane, a quarter of what regular points give
+ * it. */
 static void test_one_sided(void **state)
 {
   static const PetscReal side[] = {0.5, 0.7, 0.8, 0.9, 0.99};
@@ -312,7 +316,8 @@ static void test_one_sided(void **state)
 }
 
 /* --- clouds --- */
-/* Statics without any force on a block over a floor: nothing moves but nodes that stand too near. */
+/* Statics without any force on a block over a floor: nothing moves but nodes that stand too
+ * near. */
 static Model *resting(Bench *b)
 {
   bench_init(b, "gmm", CELL_QUADRILATERAL, 0);
@@ -333,8 +338,8 @@ static PetscInt node_at(const Model *m, PetscReal x, PetscReal y)
   return -1;
 }
 
-/* Put a node so near to another (along (0.6, 0.8)), and let a step pass: how far apart are they, and how far did the
- * other go? */
+/* Put a node so near to another (along (0.6, 0.8)), and let a step pass: how far apart are they,
+ * and how far did the other go? */
 static void check_apart(PetscReal other_y, PetscReal distance, PetscReal expected, PetscReal other_goes)
 {
   Bench b;
@@ -381,8 +386,8 @@ static void look_at_floor(const Model *m, PetscBool *near, PetscBool *touched)
   }
 }
 
-/* A block that slides over a floor whose nodes are in clouds of its nodes, but of none of its points: its nodes move as
- * it does. */
+/* A block that slides over a floor whose nodes are in clouds of its nodes, but of none of its
+ * points: its nodes move as it does. */
 static void test_nodes_follow(void **state)
 {
   int seen = 0;

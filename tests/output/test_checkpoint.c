@@ -1,4 +1,5 @@
-/* Checkpoint files: what was written is read back on any number of ranks, and no damage goes unnoticed. */
+/* Checkpoint files: what was written is read back on any number of ranks, and no damage goes
+ * unnoticed. */
 #include "test_output.h"
 #include <fcntl.h>
 #include <math.h>
@@ -115,7 +116,8 @@ static void Flip(const char *path, long at, unsigned char bits)
   close(fd);
 }
 
-/* A bit anywhere: the file is refused, or every number is still right (HDF5's own part is not what is read). */
+/* A bit anywhere: the file is refused, or every number is still right (HDF5's own part is not what
+ * is read). */
 static void test_wrong_bits(void **state)
 {
   char folder[64], path[128];

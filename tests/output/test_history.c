@@ -1,4 +1,5 @@
-/* history.csv: what is written is read back bit by bit, and a resumed run goes on where it stood. */
+/* history.csv: what is written is read back bit by bit, and a resumed run goes on where it
+ * stood. */
 #include "test_output.h"
 #include "output/history.h"
 #include "output/directory/run_dir.h"

@@ -14,8 +14,8 @@ static void test_durations(void **state)
   progress_duration(NAN, text), assert_string_equal(text, "?");
 }
 
-/* A steady run: the time left is exact. When steps get twice as slow the estimate follows, without a
- * jump. */
+/* A steady run: the time left is exact. When steps get twice as slow the estimate follows, without
+ * a jump. */
 static void test_time_left(void **state)
 {
   ProgressClock clock = {0};

@@ -22,7 +22,8 @@ static void CloudCreate(PetscInt n, Cloud *cloud)
   PetscInt last;
   MPI_Scan(&n, &last, 1, MPIU_INT, MPI_SUM, PETSC_COMM_WORLD);
   cloud->n = n;
-  cloud->first = last - n; /* an empty rank has NULL for its arrays, the first one but for the ids */
+  /* an empty rank has NULL for its arrays, the first one but for the ids */
+  cloud->first = last - n;
   assert_int_equal(PetscMalloc5(3 * n, &cloud->x, 3 * n, &cloud->velocity, 6 * n, &cloud->stress, n, &cloud->mass,
                                 n + (cloud->first == 0), &cloud->id),
                    0);

@@ -1,5 +1,5 @@
-/* Files that cannot be written: the same error on every rank, nothing left behind, and the program goes
- * on. */
+/* Files that cannot be written: the same error on every rank, nothing left behind, and the program
+ * goes on. */
 #include "test_output.h"
 #include <signal.h>
 #include <sys/mount.h>

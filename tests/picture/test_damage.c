@@ -1,4 +1,5 @@
-/* Files of a run that were damaged: each is read, or refused with a reason; never a crash, never an error of PETSc. */
+/* Files of a run that were damaged: each is read, or refused with a reason; never a crash, never an
+ * error of PETSc. */
 #include "../output/test_output.h"
 #include <hdf5.h>
 #include <math.h>
@@ -77,7 +78,8 @@ static void WriteValid(const char *name)
   assert_int_equal(VtkWrite(PETSC_COMM_WORLD, PathOf(name), &data, reason), 0);
 }
 
-/* Everything that a picture takes from a file but the drawing; what was refused is told in reason. */
+/* Everything that a picture takes from a file but the drawing; what was refused is told in
+ * reason. */
 static void ReadForPicture(const char *name, char reason[256])
 {
   static PlotScene scene;

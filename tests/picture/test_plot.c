@@ -1,5 +1,5 @@
-/* Pictures: points fill their body, colours mean their values, and gnuplot makes a PNG of it, or says
- * why not. */
+/* Pictures: points fill their body, colours mean their values, and gnuplot makes a PNG of it, or
+ * says why not. */
 #include "../output/test_output.h"
 #include <math.h>
 #include <sys/stat.h>
@@ -33,8 +33,8 @@ static void test_spacing(void **state)
   (void)state;
   PetscInt n = GaussPoints(2, 20, x);
   assert_int_equal(PlotSpacing(2, n, x, radius), 0);
-  for (PetscInt i = 0; i < n; ++i)
-    assert_true(radius[i] > 0.408 / 20 && radius[i] < 0.6 / 20); /* half the diagonal of the gap; more in corners */
+  for (PetscInt i = 0; i < n; ++i) /* half the diagonal of the gap; more in corners */
+    assert_true(radius[i] > 0.408 / 20 && radius[i] < 0.6 / 20);
   n = GaussPoints(3, 8, x);
   assert_int_equal(PlotSpacing(3, n, x, radius), 0);
   for (PetscInt i = 0; i < n; ++i) assert_true(radius[i] > 0.4 / 8 && radius[i] < 0.7 / 8);
@@ -45,7 +45,8 @@ static void test_spacing(void **state)
   }
 }
 
-/* The square is filled, all else is empty, and each place has the colour of its value (which is x). */
+/* The square is filled, all else is empty, and each place has the colour of its value (which is
+ * x). */
 static void test_raster(void **state)
 {
   enum { W = 120, H = 100 };
@@ -85,7 +86,8 @@ static void test_raster_depth(void **state)
   assert_int_equal(rgba[4 * 12], 253);
 }
 
-/* Two columns of balls, 0.1 in radius, with 0.4 between them: the gap is filled from both sides, and nothing beyond the outline. */
+/* Two columns of balls, 0.1 in radius, with 0.4 between them: the gap is filled from both sides,
+ * and nothing beyond the outline. */
 static void test_raster_gap(void **state)
 {
   enum { W = 100, H = 100 };

@@ -1,4 +1,5 @@
-/* What the tests of the points share: cases made by hand, checks that end all ranks when one fails, sums over ranks. */
+/* What the tests of the points share: cases made by hand, checks that end all ranks when one fails,
+ * sums over ranks. */
 #pragma once
 #include <setjmp.h>
 #include <stdarg.h>

@@ -1,5 +1,5 @@
-/* Points and unstructured meshes: bodies that are regions, bodies with a mesh of their own, wandering,
- * keep-on-boundary. */
+/* Points and unstructured meshes: bodies that are regions, bodies with a mesh of their own,
+ * wandering, keep-on-boundary. */
 #include <string.h>
 #include "points_test.h"
 
@@ -22,7 +22,8 @@ static void write_nodes(FILE *out, const PetscReal *origin, PetscReal length)
   fprintf(out, "$EndNodes\n");
 }
 
-/* Every fourth line of nodes is straight (see write_nodes), so that the halves have straight sides. */
+/* Every fourth line of nodes is straight (see write_nodes), so that the halves have straight
+ * sides. */
 static void write_triangles(FILE *out)
 {
   int number = 0;
@@ -38,8 +39,8 @@ static void write_triangles(FILE *out)
   fprintf(out, "$EndElements\n");
 }
 
-/* A square of distorted triangles; its left half is the region "west", the right one "east". All ranks get
- * the file's name. */
+/* A square of distorted triangles; its left half is the region "west", the right one "east". All
+ * ranks get the file's name. */
 static void write_square(char *path, PetscReal x, PetscReal y, PetscReal length)
 {
   const PetscReal origin[2] = {x, y};

@@ -1,13 +1,13 @@
-/* Migration: points wander over all ranks and nothing of them is lost; what happens to those that leave the
- * grid. */
+/* Migration: points wander over all ranks and nothing of them is lost; what happens to those that
+ * leave the grid. */
 #include "points_test.h"
 
 static const PetscReal size_of_grid[3] = {3, 2, 2};
 
 static PetscReal wrapped(PetscReal x, PetscReal length) { return x < 0 ? x + length : x > length ? x - length : x; }
 
-/* One step of a point: its velocity follows from its id; what leaves on one side comes in on the other, far
- * away. */
+/* One step of a point: its velocity follows from its id; what leaves on one side comes in on the
+ * other, far away. */
 static void advect(PetscInt64 id, PetscInt dim, PetscReal *x)
 {
   for (PetscInt d = 0; d < dim; ++d) x[d] = wrapped(x[d] + pseudo_random(3 * id + d) - 0.5, size_of_grid[d]);
@@ -36,7 +36,8 @@ static void check_fields(const Points *points)
   }
 }
 
-/* Where all points are, by id: followed on every rank without any migration. And which of them are here. */
+/* Where all points are, by id: followed on every rank without any migration. And which of them are
+ * here. */
 typedef struct {
   PetscInt dim, n, arrived;
   PetscReal *x;
@@ -99,7 +100,8 @@ static void wander(CellType type, PetscInt steps)
   check_ids_unique(points);
   PetscMPIInt size;
   MPI_Comm_size(PETSC_COMM_WORLD, &size);
-  CHECK(size == 1 ? track.arrived == 0 : count_over_ranks(track.arrived) > n); /* or the test would show nothing */
+  /* or the test would show nothing */
+  CHECK(size == 1 ? track.arrived == 0 : count_over_ranks(track.arrived) > n);
   CALL(PetscFree(track.x));
   CALL(PetscFree(track.here));
   CALL(PointsDestroy(&points));
@@ -128,7 +130,8 @@ static void points_wander_hexahedra(void **state)
   wander(CELL_HEXAHEDRON, 20);
 }
 
-/* Positions on faces, edges and nodes of cells, where several ranks might claim them: each has one owner. */
+/* Positions on faces, edges and nodes of cells, where several ranks might claim them: each has one
+ * owner. */
 static void shared_positions_have_one_owner(void **state)
 {
   (void)state;
@@ -155,8 +158,8 @@ static void shared_positions_have_one_owner(void **state)
   }
 }
 
-/* One point in each cell of 3 x 2; the three of the lower row are thrown out at the right, below, and
- * through a corner. */
+/* One point in each cell of 3 x 2; the three of the lower row are thrown out at the right, below,
+ * and through a corner. */
 typedef struct {
   TestCase *t;
   Grid *grid;

@@ -1,4 +1,5 @@
-/* Seeding: volumes and masses to round-off, the same points on any number of ranks, mistakes that are told. */
+/* Seeding: volumes and masses to round-off, the same points on any number of ranks, mistakes that
+ * are told. */
 #include <string.h>
 #include "points/seed/seed.h"
 #include "points_test.h"
@@ -152,8 +153,8 @@ static void bodies_stand_side_by_side(void **state)
   }
 }
 
-/* Ids are those of points of a body after those of the body before it, wherever in the grid they stand: the first may
- * hold the last cells, and the next ones the first. */
+/* Ids are those of points of a body after those of the body before it, wherever in the grid they
+ * stand: the first may hold the last cells, and the next ones the first. */
 static void ids_belong_to_one_point(void **state)
 {
   (void)state;
@@ -328,7 +329,8 @@ static void polygon_volume_is_known(void **state)
   CALL(PetscFree(t));
 }
 
-/* 44,000,000 cells of 64 points would wrap a PetscInt to a negative number; nothing is allocated. */
+/* 44,000,000 cells of 64 points would wrap a PetscInt to a negative number; nothing is
+ * allocated. */
 static void too_many_points_are_told(void **state)
 {
   Seeding s = {.n_cells = 44000000, .rule.n = 64};

@@ -120,7 +120,8 @@ static void check_order(const Points *points)
   }
 }
 
-/* Few cells (long runs), many cells (most of them empty), and some points lost, which stand last. */
+/* Few cells (long runs), many cells (most of them empty), and some points lost, which stand
+ * last. */
 static void sort_orders_all_fields(void **state)
 {
   (void)state;

@@ -1,5 +1,6 @@
-/* To be loaded before MPI: its end crashes in a thread of its own, as Open MPI's now and then does on a busy machine.
- * */
+/* To be loaded before MPI: its end crashes in a thread of its own, as Open MPI's now and then does
+ * on a busy machine.
+ */
 #include <pthread.h>
 #include <signal.h>
 #include <unistd.h>

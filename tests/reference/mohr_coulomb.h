@@ -1,8 +1,10 @@
-/* The Mohr-Coulomb law for one point, as a textbook writes it (docs/theory.md, "Mohr-Coulomb"; thesis section 3.3).
+/* The Mohr-Coulomb law for one point, as a textbook writes it (docs/theory.md, "Mohr-Coulomb";
+ * thesis section 3.3).
  *
- * Read this first: src/material/mohr_coulomb does the same for eight points at once, with closed formulas for every region.
- * Here the stress that is too large returns along the flow of planes until no plane is violated: of one (a face), of two
- * (an edge) or of three (a corner), and if none of them does, to the apex. Nothing of src is used, so that it is the law's oracle. */
+ * Read this first: src/material/mohr_coulomb does the same for eight points at once, with closed
+ * formulas for every region. Here the stress that is too large returns along the flow of planes
+ * until no plane is violated: of one (a face), of two (an edge) or of three (a corner), and if none
+ * of them does, to the apex. Nothing of src is used, so that it is the law's oracle. */
 #pragma once
 #include <math.h>
 
@@ -33,7 +35,8 @@ static const struct {
 };
 enum { TEXTBOOK_APEX = 11, TEXTBOOK_REGIONS };
 
-/* Values and directions (columns of v) of a symmetric tensor: Jacobi's rotations, then sorted, the largest first. */
+/* Values and directions (columns of v) of a symmetric tensor: Jacobi's rotations, then sorted, the
+ * largest first. */
 static inline void textbook_principal(double a[3][3], double value[3], double v[3][3])
 {
   for (int i = 0; i < 3; ++i)
@@ -96,7 +99,8 @@ static inline int textbook_solve(int n, double A[3][3], double x[3])
   return 1;
 }
 
-/* The planes a . tau = limit with their flow b: those of shear next to tau_1 >= tau_2 >= tau_3, and those of tension. */
+/* The planes a . tau = limit with their flow b: those of shear next to tau_1 >= tau_2 >= tau_3, and
+ * those of tension. */
 static inline void textbook_planes(const TextbookSoil *m, double a[PLANES][3], double b[PLANES][3],
                                    double limit[PLANES])
 {
@@ -116,7 +120,8 @@ static inline double textbook_dot(const double x[3], const double y[3])
   return x[0] * y[0] + x[1] * y[1] + x[2] * y[2];
 }
 
-/* tau = trial - sum gamma_s D b_s on the planes of the region; 0 if a gamma is negative or a plane is violated. */
+/* tau = trial - sum gamma_s D b_s on the planes of the region; 0 if a gamma is negative or a plane
+ * is violated. */
 static inline int textbook_try(const TextbookSoil *m, int region, const double trial[3], double tau[3])
 {
   const int n = textbook_regions[region].n, *plane = textbook_regions[region].plane;
@@ -154,7 +159,8 @@ static inline int textbook_return(const TextbookSoil *m, const double e[3], doub
   return TEXTBOOK_APEX;
 }
 
-/* One step: b = F b F^T, its logarithmic principal strains, the return, and b and the plastic strain of what is left. */
+/* One step: b = F b F^T, its logarithmic principal strains, the return, and b and the plastic
+ * strain of what is left. */
 static inline int textbook_update(const TextbookSoil *m, double F[3][3], double b[3][3], double *plastic,
                                   double tau[3][3])
 {

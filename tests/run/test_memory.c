@@ -1,9 +1,11 @@
-/* Memory that runs out at every place in turn: reading a case and its mesh, building the model, the first step. Each time the error must come back
- * as a code, and the process must live.
+/* Memory that runs out at every place in turn: reading a case and its mesh, building the model, the
+ * first step. Each time the error must come back as a code, and the process must live.
  *
- * Each try is a child process in which allocation number n fails, if it is made by talus, HDF5, or PETSc through PetscMalloc. Not tried are those of libfyaml
- * 0.7.12, which reads through NULL then, of PETSc's hash tables, which ask malloc and never look, and of MPI, MUMPS and BLAS, which end the process by themselves. TALUS_MEMORY_STRIDE=1 tries every one
- * (make test-kill); usually most are left out. */
+ * Each try is a child process in which allocation number n fails, if it is made by talus, HDF5, or
+ * PETSc through PetscMalloc. Not tried are those of libfyaml 0.7.12, which reads through NULL then,
+ * of PETSc's hash tables, which ask malloc and never look, and of MPI, MUMPS and BLAS, which end
+ * the process by themselves. TALUS_MEMORY_STRIDE=1 tries every one (make test-kill); usually most
+ * are left out. */
 #include <errno.h>
 #include <execinfo.h>
 #include <link.h>
@@ -172,7 +174,8 @@ static void exhaust(const char *name, const char *text)
   const unsigned long stride = stride_text ? strtoul(stride_text, NULL, 10) : all / tries + 1;
   for (unsigned long n = first_text ? strtoul(first_text, NULL, 10) : 1; n <= all; n += stride, ++done) {
     const int status = try(shared, n, file);
-    codes += shared->code == PETSC_ERR_MEM || shared->code == 1; /* 1: PETSc 3.18, of its own objects */
+    /* 1: PETSc 3.18, of its own objects */
+    codes += shared->code == PETSC_ERR_MEM || shared->code == 1;
     messages += !shared->code && shared->said;
     if (loud) printf("code %d\n", shared->code);
     if (!status && (!shared->caller || shared->code > 0 || shared->said)) continue;

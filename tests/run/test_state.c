@@ -1,4 +1,5 @@
-/* A model put away in a file and brought back takes the same steps: bit by bit on the same ranks, to round-off on one. */
+/* A model put away in a file and brought back takes the same steps: bit by bit on the same ranks,
+ * to round-off on one. */
 #include "../model/case_builder.h"
 #include "output/checkpoint/checkpoint.h"
 #include "model/state/state.h"
@@ -71,7 +72,8 @@ static PetscBool on_one_rank(void)
   return size == 1;
 }
 
-/* bits: does the solver promise the same bits on several ranks? Returns the model that was brought back, after its steps. */
+/* bits: does the solver promise the same bits on several ranks? Returns the model that was brought
+ * back, after its steps. */
 static Model *check(Bench *b, PetscInt before, PetscInt after, PetscBool bits)
 {
   Model *whole = bench_model(b, PETSC_COMM_WORLD);
@@ -102,7 +104,8 @@ static void check_only(Bench *b, PetscInt before, PetscInt after, PetscBool bits
   CALL(ModelDestroy(&m));
 }
 
-/* A body that falls, turns and crosses from rank to rank, with a load that it carries and a tracer. */
+/* A body that falls, turns and crosses from rank to rank, with a load that it carries and a
+ * tracer. */
 static void flying(const char *method, CellType cell, PetscReal size, PetscBool mesh)
 {
   static const PetscReal plane[] = {0, 0.5, 1, 1.5, 2, 3};
@@ -142,7 +145,8 @@ static void test_mpm_3d(void **state)
   flying("mpm", CELL_HEXAHEDRON, 0.25, PETSC_FALSE);
 }
 
-/* A block that leaves the part of its rank: the grid is shared anew before the checkpoint and after it. */
+/* A block that leaves the part of its rank: the grid is shared anew before the checkpoint and after
+ * it. */
 static void leaving(PetscBool mesh)
 {
   static const PetscReal plane[] = {0, 0.5, 1, 1.5, 4};
@@ -188,7 +192,8 @@ static void test_mesh(void **state)
   flying("fem", CELL_QUADRILATERAL, 0.125, PETSC_TRUE);
 }
 
-/* A block with a spin, thrown on a floor: ghosts, the pattern and constraints come and go; with a tracer and a carried load. */
+/* A block with a spin, thrown on a floor: ghosts, the pattern and constraints come and go; with a
+ * tracer and a carried load. */
 static void thrown(const char *kind, LinearChoice linear, CellType cell, PetscReal size)
 {
   Bench b;
@@ -235,8 +240,8 @@ static PetscBool somebody_asks(void)
   return --assemblies < 0 && rank == size - 1;
 }
 
-/* A step that is given up between two iterations leaves the model as it was, and the run that goes on from there is the one that was not
- * interrupted. */
+/* A step that is given up between two iterations leaves the model as it was, and the run that goes
+ * on from there is the one that was not interrupted. */
 static void given_up(Bench *b)
 {
   StepReport report;
@@ -267,7 +272,8 @@ static void test_given_up(void **state)
 {
   static const char *const methods_[] = {"mpm", "fem", "gmm"};
   (void)state;
-  for (int k = 0; k < (on_one_rank() ? 4 : 3); ++k) { /* the last: constraints, which take a direct solver */
+  /* the last: constraints, which take a direct solver */
+  for (int k = 0; k < (on_one_rank() ? 4 : 3); ++k) {
     Bench b;
     bench_init(&b, methods_[PetscMin(k, 2)], CELL_QUADRILATERAL, 8);
     if (k == 3)
@@ -284,7 +290,8 @@ static void test_given_up(void **state)
   }
 }
 
-/* Statics in steps with factorisations, whose bits depend on the arrival of messages where there are several ranks. */
+/* Statics in steps with factorisations, whose bits depend on the arrival of messages where there
+ * are several ranks. */
 static void test_static(void **state)
 {
   Bench b;

@@ -1,9 +1,11 @@
-/* Systems made of random matrices of cells, the same on any number of ranks, for tests of linear solvers. */
+/* Systems made of random matrices of cells, the same on any number of ranks, for tests of linear
+ * solvers. */
 #pragma once
 #include "../model/case_builder.h"
 #include "solve/system/system.h"
 
-/* A system over some cells of a grid; its values depend on the cells and not on the ranks that own them. */
+/* A system over some cells of a grid; its values depend on the cells and not on the ranks that own
+ * them. */
 typedef struct {
   Bench b;
   Grid *grid;
@@ -24,13 +26,15 @@ static inline void make_grid(Made *s, CellType type)
   CALL(DiagDestroy(&diag));
 }
 
-/* Unknowns on the cells whose first node lies left of `width`: a small width leaves ranks without any. */
+/* Unknowns on the cells whose first node lies left of `width`: a small width leaves ranks without
+ * any. */
 static inline void make_pattern(Made *s, PetscReal width)
 {
   const Grid *grid = s->grid;
   const PetscInt nn = grid->nodes_per_cell;
   CALL(PetscMalloc2(grid->n_cells + 1, &s->cells.node_start, grid->n_cells * nn, &s->cells.node));
-  CALL(PetscMalloc1(grid->n_cells, &s->cells.point_start)); /* here: the cell's number over all ranks */
+  /* here: the cell's number over all ranks */
+  CALL(PetscMalloc1(grid->n_cells, &s->cells.point_start));
   for (PetscInt c = 0; c < grid->n_cells; ++c) {
     const PetscInt *node = grid->cell_node + c * nn;
     if (grid->x[node[0] * grid->dim] >= width) continue;

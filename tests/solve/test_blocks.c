@@ -1,5 +1,6 @@
-/* The matrix as scaled blocks in single precision against PETSc's: products, solutions, rows that ranks share, ranks
- * without rows, prescribed dofs, right-hand sides of any size, and matrices that it must refuse. */
+/* The matrix as scaled blocks in single precision against PETSc's: products, solutions, rows that
+ * ranks share, ranks without rows, prescribed dofs, right-hand sides of any size, and matrices that
+ * it must refuse. */
 #include "made_system.h"
 #include "solve/blocks/blocks.h"
 
@@ -103,7 +104,8 @@ static void test_zero(void **state)
   drop(&s);
 }
 
-/* A symmetric matrix with some negative eigenvalues, as where material buckles: conjugate gradients stop, BiCGStab goes on. */
+/* A symmetric matrix with some negative eigenvalues, as where material buckles: conjugate gradients
+ * stop, BiCGStab goes on. */
 static void test_indefinite(void **state)
 {
   Made s;

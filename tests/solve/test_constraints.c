@@ -1,5 +1,5 @@
-/* One constraint by hand: its gap, the forces of its multiplier, its part of the tangent, and a sweep that closes gaps
- * of motions. */
+/* One constraint by hand: its gap, the forces of its multiplier, its part of the tangent, and a
+ * sweep that closes gaps of motions. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -88,7 +88,8 @@ static void test_values(void **state)
   CALL(ConstraintsDestroy(&c));
 }
 
-/* A sweep gives a held node what is missing at its place, over the share that held nodes have there. */
+/* A sweep gives a held node what is missing at its place, over the share that held nodes have
+ * there. */
 static void test_relax(void **state)
 {
   const PetscReal target[DOFS] = {0, 0, 0.6, -0.2};

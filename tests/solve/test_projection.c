@@ -1,4 +1,5 @@
-/* Constraints kept by projections against the whole system with its multipliers, and what a node does to them that hardly counts. */
+/* Constraints kept by projections against the whole system with its multipliers, and what a node
+ * does to them that hardly counts. */
 #include "made_system.h"
 #include "solve/blocks/blocks.h"
 #include "solve/blocks/projection.h"
@@ -14,8 +15,8 @@ static PetscBool is_weak(const Grid *grid, PetscInt node)
   return PetscAbsReal(x[0] - 5 * h) < h / 2 && PetscAbsReal(x[1] - 10 * h) < h / 2;
 }
 
-/* The top row has multipliers in place of motions. What couples the weak node takes `factor`, its own block the other sign as well: a point
- * in plastic flow has just reached it. */
+/* The top row has multipliers in place of motions. What couples the weak node takes `factor`, its
+ * own block the other sign as well: a point in plastic flow has just reached it. */
 static void make_special(Made *s, PetscReal factor)
 {
   const System *y = s->system;
@@ -28,7 +29,8 @@ static void make_special(Made *s, PetscReal factor)
     }
 }
 
-/* The first cell of this rank that has the node; it holds the pairs of the constraint in the system's pattern. */
+/* The first cell of this rank that has the node; it holds the pairs of the constraint in the
+ * system's pattern. */
 static const PetscInt *cell_of(const Grid *grid, PetscInt node)
 {
   for (PetscInt c = 0; c < grid->n_cells; ++c)
@@ -139,7 +141,8 @@ static void test_constraints(void **state)
   }
 }
 
-/* As many iterations as without it; the node's own equation takes no part in the residual, so small is it. */
+/* As many iterations as without it; the node's own equation takes no part in the residual, so small
+ * is it. */
 static void test_node_that_hardly_counts(void **state)
 {
   (void)state;

@@ -1,4 +1,5 @@
-/* The choice of the next step: growth, holding, shrinking before Newton fails, the memory of failures, and how far points may travel. */
+/* The choice of the next step: growth, holding, shrinking before Newton fails, the memory of
+ * failures, and how far points may travel. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -48,8 +49,8 @@ static void test_fixed(void **state)
   near(accept(&c, &fixed, 1, 0.1), 1);
 }
 
-/* After a failure at 8 the step is 4, then up to 6 for as long as the failure is remembered, then free again; a failure soon after is
- * remembered twice as long. */
+/* After a failure at 8 the step is 4, then up to 6 for as long as the failure is remembered, then
+ * free again; a failure soon after is remembered twice as long. */
 static void test_memory(void **state)
 {
   StepControl c;

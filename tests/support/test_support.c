@@ -1,11 +1,11 @@
-/* Support from cells: partition of unity, sum of x dN = I, groups that cover the points; on every cell
- * type, distorted too. */
+/* Support from cells: partition of unity, sum of x dN = I, groups that cover the points; on every
+ * cell type, distorted too. */
 #include "../points/points_test.h"
 #include "support/basis.h"
 #include "support/cloud.h"
 
-/* Move the inner nodes, so that no Jacobian is constant. A function of the place alone: ghosts move as
- * their owners do. */
+/* Move the inner nodes, so that no Jacobian is constant. A function of the place alone: ghosts move
+ * as their owners do. */
 static void distort(Grid *grid)
 {
   for (PetscInt n = 0; n < grid->n_nodes; ++n) {
@@ -110,8 +110,8 @@ static void arrays_are_reused(void **state)
   CALL(PetscFree(t));
 }
 
-/* Clouds turn with the material: a lattice drawn out so far that only its stretch tells that its nodes are neighbours
- * still has the same cloud when it is turned, with its F. */
+/* Clouds turn with the material: a lattice drawn out so far that only its stretch tells that its
+ * nodes are neighbours still has the same cloud when it is turned, with its F. */
 static void clouds_turn_with_the_material(void **state)
 {
   const CloudRule rule = {.basis = {.kind = CLOUD_LME, .gamma = 1.8}, .support = support_default_lme, .h = 1};

@@ -1,4 +1,5 @@
-/* Whole verifications of a small cantilever: right, off, given up, wrongly asked for; on any number of ranks. */
+/* Whole verifications of a small cantilever: right, off, given up, wrongly asked for; on any number
+ * of ranks. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -107,7 +108,8 @@ static void copy_case(const char *folder)
   write_file(folder, "case.yaml", text);
 }
 
-/* A folder with the cantilever and a reference; `value` of the first row, `more` keys for the second. */
+/* A folder with the cantilever and a reference; `value` of the first row, `more` keys for the
+ * second. */
 static void make_case(const char *name, const char *value, const char *more)
 {
   char text[4096], path[512];
@@ -288,8 +290,9 @@ static void a_verification_goes_on(void **state)
   remove_file("out-more/tip/mpm/h_0.25/timings.txt"); /* was cut off */
   make_case("more", "-0.5996592", ", sets: {fem: {materials.rubber.poisson: 0.1}}");
   assert_int_equal(verify("more", (VerifyOptions){.resume = PETSC_TRUE}, &text), VERIFY_OFF);
-  SAYS(text, "2 of 4 rows pass"); /* that of fem is another case now, with which mpm no longer agrees */
-  SAYS(text, "0.000340813");      /* of a study that shares a run taken over */
+  /* that of fem is another case now, with which mpm no longer agrees */
+  SAYS(text, "2 of 4 rows pass");
+  SAYS(text, "0.000340813"); /* of a study that shares a run taken over */
   free(text);
   assert_false(is_there("out-more/tip/fem/h_0.5/log.txt") || is_there("out-more/tip/mpm/h_0.5/log.txt") ||
                is_there("out-more/way/mpm/h_0.5/log.txt"));

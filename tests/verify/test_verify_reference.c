@@ -225,8 +225,9 @@ static void judges_what_is_right(void **state)
   for (int k = 0; k < 4; ++k) assert_true(rows[k].pass);
   assert_true(rows[0].deviation == 0 && PetscIsNanReal(rows[1].deviation) && PetscIsNanReal(rows[0].difference));
   assert_true(rows[0].error == 0.25 && PetscIsNanReal(rows[0].order));
-  assert_true(fabs(rows[1].order - 2) < 1e-14); /* the variable grows with refinement: the error falls all the same */
-  assert_true(PetscIsNanReal(rows[2].order));   /* not across series */
+  /* the variable grows with refinement: the error falls all the same */
+  assert_true(fabs(rows[1].order - 2) < 1e-14);
+  assert_true(PetscIsNanReal(rows[2].order)); /* not across series */
   assert_true(rows[2].difference == 0 && rows[3].difference == 0);
   OK(ReferenceDestroy(&reference));
 }

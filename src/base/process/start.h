@@ -2,9 +2,10 @@
 #pragma once
 #include <petscsys.h>
 
-/* PetscInitialize with our memory (base/process/memory.h), and without the files petscrc and .petscrc of
- * the working directory and of the home: a folder from somebody else must not set options, some of
- * which load code. Options are read from argv and from PETSC_OPTIONS; argc and argv may be NULL. */
+/* PetscInitialize with our memory (base/process/memory.h), and without the files petscrc and
+ * .petscrc of the working directory and of the home: a folder from somebody else must not set
+ * options, some of which load code. Options are read from argv and from PETSC_OPTIONS; argc and
+ * argv may be NULL. */
 PetscErrorCode StartPetsc(int *argc, char ***argv);
 /* The file of options that is passed over, "" if there is none or the words for PETSc show that its
  * user knows. */
