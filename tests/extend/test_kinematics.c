@@ -8,9 +8,9 @@ static const Variant kinds[] = {{.cell = CELL_TRIANGLE},
                                 {.cell = CELL_QUADRILATERAL, .cloud = PETSC_TRUE, .kind = CLOUD_LME},
                                 {.cell = CELL_QUADRILATERAL, .cloud = PETSC_TRUE, .kind = CLOUD_MLS}};
 
-static const Kinematics *axisymmetric(void)
+static const Kinematics *revolution(void)
 {
-  const Kinematics *kinematics = kinematics_find("axisymmetric");
+  const Kinematics *kinematics = kinematics_find("revolution");
   assert_non_null(kinematics);
   return kinematics;
 }
@@ -18,7 +18,7 @@ static const Kinematics *axisymmetric(void)
 /* From radius 1 to 2 and 0 to 1 along the axis: straight cells, no strain yet, one material. */
 static void ring_begin(Patch *p, const Variant *variant)
 {
-  patch_begin_in(p, variant, axisymmetric(), 1, 0);
+  patch_begin_in(p, variant, revolution(), 1, 0);
   const PetscReal one[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1}, none[6] = {0};
   p->material[1] = p->material[0];
   for (PetscInt q = 0; q < p->points->n; ++q) {
@@ -85,7 +85,7 @@ static void test_differences(void **state)
     for (int inertia = 0; inertia < 2; ++inertia) {
       Patch p;
       PetscReal *force, *values, *direction, *slope, size = 0;
-      patch_begin_in(&p, &kinds[k], axisymmetric(), 0.25, 0.05);
+      patch_begin_in(&p, &kinds[k], revolution(), 0.25, 0.05);
       CALL(PetscMalloc4(p.dofs, &force, p.dofs * p.dofs, &values, p.dofs, &direction, p.dofs, &slope));
       assemble(&p, 40 * inertia, p.du, force, values);
       fill(&p, direction, 1);

@@ -67,9 +67,6 @@ changed "nothing held" 's/{x: 0}/{x: 77}/' "case.yaml:11:6: error: boundary[0].o
 changed "tracer outside" 's/\[8, 0.5\]/[80, 0.5]/' "case.yaml:14:31: error: the tracer starts outside the grid"
 changed "contradiction" 's/^loads/  - {on: {y: 0}, velocity: {x: 1}}\nloads/' "case.yaml:12:5: error: boundary[1] contradicts boundary[0]: both prescribe x of the node at (0, 0), but not the same motion"
 
-# What this version cannot do
-changed "axisymmetric" 's/plane-strain/axisymmetric/' "case.yaml:2:13: error: axisymmetric kinematics are not part of this version"
-
 # Options of PETSc
 changed "option of PETSc" '$a petsc: {pc_type: luu}' "case.yaml:16:" "PETSc refuses an option" "luu"
 changed "number of PETSc" '$a petsc: {ksp_rtol: small}' "case.yaml:16:" "PETSc refuses an option" "small"

@@ -16,7 +16,7 @@ typedef struct Kinematics {
 /* All kinematics, ended by NULL. */
 extern const Kinematics *const kinematics_list[];
 const Kinematics *kinematics_find(const char *name);
-extern const Kinematics kinematics_plane_strain, kinematics_3d;
+extern const Kinematics kinematics_plane_strain, kinematics_axisymmetric, kinematics_3d;
 
 static inline PetscInt kinematics_dim(const Kinematics *k) { return k->dim; }
 

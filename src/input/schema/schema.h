@@ -67,8 +67,6 @@ struct SchemaEntry {
   const SchemaWord *words;
   /* instead of words: structs that begin with their word and its help, ended by NULL */
   const void *const *registry;
-  /* a word that means something, but not in this version: refused by name, offered nowhere */
-  const char *later;
   const SchemaTable *table;
   const char *target;
   const char *with; /* makes sense only beside this key */

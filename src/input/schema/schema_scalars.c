@@ -147,16 +147,10 @@ PetscErrorCode SchemaReadBoolean(SchemaReader *r, const SchemaEntry *e, const Ya
 static SchemaWord find_word(SchemaReader *r, const SchemaEntry *e, const YamlNode *node)
 {
   const char *words[32] = {NULL}, *text = node->kind == YAML_SCALAR ? node->text : NULL;
-  char all[256] = "";
   int n = 0;
   for (; schema_word(e, n).word && n < 31; ++n) {
     words[n] = schema_word(e, n).word;
     if (text && !strcmp(text, words[n])) return schema_word(e, n);
-  }
-  if (text && e->later && !strcmp(text, e->later)) {
-    schema_append_words(e, " and ", all, sizeof all);
-    SchemaError(r, node, "%s %s are not part of this version; %s are", text, e->key, all);
-    return schema_word(e, n);
   }
   schema_mismatch(r, e, node);
   if (text && diag_nearest(text, words)) schema_hint_words(r, text, n, words);

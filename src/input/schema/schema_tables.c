@@ -156,8 +156,8 @@ static const SchemaTable parallel = {
 /* --- the whole file --- */
 static const SchemaEntry case_entries[] = {
   KEY("title", TEXT, NULL, "a line for people", .fallback = "", AT(Case, title)),
-  KEY("kinematics", MEMBER, NULL, "dimension and symmetry", .registry = (const void *const *)kinematics_list,
-      .later = "axisymmetric", REQUIRED, AT(Case, kinematics)),
+  KEY("kinematics", MEMBER, NULL, "dimension and symmetry", .registry = (const void *const *)kinematics_list, REQUIRED,
+      AT(Case, kinematics)),
   KEY("method", WORD_TEXT, NULL, "numerical method", .registry = (const void *const *)methods, REQUIRED,
       AT(Case, method)),
   KEY("formulation", WORD_TEXT, NULL, "unknowns of the equations", .registry = (const void *const *)formulations,
