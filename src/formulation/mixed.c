@@ -74,8 +74,10 @@ KERNEL void mixed_store(const int dim, const int nn, const WeakFormInput *in, Pe
 KERNEL LawStatus batch_update(const int dim, const int nn, const PetscBool hoop, const WeakFormInput *in,
                               PetscBool tangent, Batch *b)
 {
+  const Law *law = batch_material(in, b)->law;
+  const LawUpdate update = hoop && law->update_hoop ? law->update_hoop : law->update;
   batch_increments(dim, nn, hoop, PETSC_TRUE, in, b);
-  return pressure_update(batch_material(in, b), b->n, b->dF, b->p, batch_old(in, b), b->state, tangent, &b->s);
+  return pressure_update(batch_material(in, b), update, b->n, b->dF, b->p, batch_old(in, b), b->state, tangent, &b->s);
 }
 
 /* Point k of the batch into its cell. */
