@@ -77,6 +77,10 @@ KERNEL LawStatus batch_update(const int dim, const int nn, const PetscBool hoop,
   const Law *law = batch_material(in, b)->law;
   const LawUpdate update = hoop && law->update_hoop ? law->update_hoop : law->update;
   batch_increments(dim, nn, hoop, PETSC_TRUE, in, b);
+  const Law *law = batch_material(in, b)->law;
+  const LawUpdate update = hoop && law->update_hoop ? law->update_hoop : law->update;
+  batch_increments(dim, nn, hoop, PETSC_TRUE, in, b);
+  if (batch_crosses_axis(in, b)) return LAW_INVERTED;
   return pressure_update(batch_material(in, b), update, b->n, b->dF, b->p, batch_old(in, b), b->state, tangent, &b->s);
 }
 
