@@ -443,10 +443,11 @@ static void test_momentum(void **state)
 }
 
 /* --- ranks --- */
-static void ranks(const char *method, CellType cell, const Solid *solid, PetscBool dynamic)
+static void ranks(const char *method, CellType cell, PetscBool ring, const Solid *solid, PetscBool dynamic)
 {
   Bench b;
   bench_init(&b, method, cell, 4);
+  if (ring) b.c.kinematics = &kinematics_axisymmetric;
   use_solid(&b, solid);
   b.body[0].shape.max[1] = 0.75;
   b.c.gravity[1] = -20;
@@ -468,10 +469,12 @@ static void ranks(const char *method, CellType cell, const Solid *solid, PetscBo
 static void test_ranks(void **state)
 {
   (void)state;
-  ranks("fem", CELL_TRIANGLE, &solids[1], PETSC_FALSE);
-  ranks("mpm", CELL_QUADRILATERAL, &solids[3], PETSC_TRUE);
-  ranks("mpm", CELL_TRIANGLE, &solids[5], PETSC_TRUE);
-  ranks("mpm", CELL_TETRAHEDRON, &solids[0], PETSC_FALSE);
+  for (int ring = 0; ring < 2; ++ring) {
+    ranks("fem", CELL_TRIANGLE, (PetscBool)ring, &solids[1], PETSC_FALSE);
+    ranks("mpm", CELL_QUADRILATERAL, (PetscBool)ring, &solids[3], PETSC_TRUE);
+    ranks("mpm", CELL_TRIANGLE, (PetscBool)ring, &solids[5], PETSC_TRUE);
+  }
+  ranks("mpm", CELL_TETRAHEDRON, PETSC_FALSE, &solids[0], PETSC_FALSE);
 }
 
 /* --- geostatic start --- */
