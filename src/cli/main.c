@@ -21,6 +21,7 @@ static const struct Command {
   {"schema", "the reference of the case file: text, Markdown, JSON Schema", CliSchema},
   {"verify", "run a verification case and compare with its reference", CliVerify},
   {"sweep", "run a case over values of its keys: a table and pictures", CliSweep},
+  {"calibrate", "which parameters give what was measured: a region", CliCalibrate},
   {"plot", "pictures of a run", CliPlot},
   {"version", "versions of talus and of its libraries (also --version)", CliVersion},
   {NULL, NULL, NULL},

@@ -48,23 +48,38 @@ static PetscInt take_words(const CliArguments *a, SweepWord *words)
   return n;
 }
 
-static PetscErrorCode Check(const CliArguments *a, const SweepOptions *o, PetscBool *ok, int *exit_code)
+PetscInt cli_jobs(const CliArguments *arguments)
 {
-  const char *jobs = cli_value(a, "jobs");
+  const char *jobs = cli_value(arguments, "jobs");
+  return jobs ? (PetscInt)strtol(jobs, NULL, 10) : 0;
+}
+
+PetscErrorCode CliCheckJobs(const CliArguments *arguments, PetscBool *ok, int *exit_code)
+{
+  const char *jobs = cli_value(arguments, "jobs");
   PetscMPIInt size;
 
   PetscFunctionBeginUser;
-  *ok = PETSC_FALSE;
   PetscCallMPI(MPI_Comm_size(PETSC_COMM_WORLD, &size));
+  *ok = PETSC_FALSE;
   if (size > 1)
-    PetscCall(CliUsageError(exit_code, "without mpiexec: --jobs N runs N members at a time, each on one rank",
-                            "a sweep is one process"));
-  else if (jobs && (o->jobs < 1 || jobs[strspn(jobs, "0123456789")]))
+    PetscCall(CliUsageError(exit_code, "without mpiexec: --jobs N runs N at a time, each on one rank",
+                            "this command is one process, which starts others"));
+  else if (jobs && (cli_jobs(arguments) < 1 || jobs[strspn(jobs, "0123456789")]))
     PetscCall(CliUsageError(exit_code, NULL, "--jobs is a number of processes, not '%s'", jobs));
-  else if (o->name && o->n_words)
-    PetscCall(
-      CliUsageError(exit_code, "--set changes the case of a sweep by name",
-                    "--name takes a sweep from sweep.yaml: --over, --along, --measure and --band make none beside it"));
+  else *ok = PETSC_TRUE;
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode Check(const CliArguments *a, const SweepOptions *o, PetscBool *ok, int *exit_code)
+{
+  PetscFunctionBeginUser;
+  PetscCall(CliCheckJobs(a, ok, exit_code));
+  if (!*ok) PetscFunctionReturn(0);
+  *ok = PETSC_FALSE;
+  if (o->name && o->n_words)
+    PetscCall(CliUsageError(exit_code, "--set changes the case of a sweep by name",
+                            "--name takes a sweep from sweep.yaml: no --over, --along, --measure, --band beside it"));
   else if (o->quick && !o->name)
     PetscCall(CliUsageError(exit_code, NULL, "--quick is told by a sweep of sweep.yaml: it needs --name"));
   else *ok = PETSC_TRUE;
@@ -83,7 +98,6 @@ PetscErrorCode CliSweep(int argc, char **argv, int *exit_code)
   PetscFunctionBeginUser;
   PetscCall(CliParse(&usage, argc, argv, &arguments, &go_on, exit_code));
   if (!go_on) PetscFunctionReturn(0);
-  const char *jobs = cli_value(&arguments, "jobs");
   const SweepOptions options = {
     .file = arguments.words[0],
     .name = cli_value(&arguments, "name"),
@@ -92,7 +106,7 @@ PetscErrorCode CliSweep(int argc, char **argv, int *exit_code)
     .n_set = cli_values(&arguments, "set", set),
     .set = set,
     .out = cli_value(&arguments, "out"),
-    .jobs = jobs ? (PetscInt)strtol(jobs, NULL, 10) : 0,
+    .jobs = cli_jobs(&arguments),
     .quick = cli_flag(&arguments, "quick"),
     .force = cli_flag(&arguments, "force"),
     .keep = cli_flag(&arguments, "keep"),

@@ -1,29 +1,16 @@
 #include "sweep/sweep.h"
-#include <errno.h>
-#include <fcntl.h>
 #include <limits.h>
-#include <sched.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/file.h>
-#include <sys/stat.h>
 #include <unistd.h>
-#include "output/directory/run_dir_files.h"
-#include "output/directory/run_dir_mark.h"
 #include "sweep/sweep_private.h"
 
-/* The case file may be named by its folder. */
 static void find_case(SweepRun *s)
 {
-  struct stat info;
-  const char *file = s->options->file, *slash = strrchr(file, '/');
-  if (!stat(file, &info) && S_ISDIR(info.st_mode)) {
-    PetscSNPrintf(s->file, sizeof s->file, "%s/case.yaml", file);
-    PetscStrncpy(s->folder, file, sizeof s->folder);
-  } else {
-    PetscStrncpy(s->file, file, sizeof s->file);
-    PetscSNPrintf(s->folder, sizeof s->folder, "%.*s", slash ? (int)PetscMax(slash - file, 1) : 1, slash ? file : ".");
-  }
+  members_case_file(s->options->file, s->file);
+  const char *slash = strrchr(s->file, '/');
+  PetscSNPrintf(s->folder, sizeof s->folder, "%.*s", slash ? (int)PetscMax(slash - s->file, 1) : 1,
+                slash ? s->file : ".");
 }
 
 /* runs/sweep/<case>, and below it the sweep's name. */
@@ -80,32 +67,6 @@ static PetscErrorCode Choose(SweepRun *s)
   PetscFunctionReturn(0);
 }
 
-/* Ours to write into, and nobody else's at this time; *lock: to be closed. */
-static void prepare_folder(SweepRun *s, int *lock)
-{
-  int error = file_make_folders(s->out);
-  if (!error && !run_dir_is_signed(s->out) && file_exists(s->out, "sweep.csv")) {
-    diag_error(s->diag, NULL, "'%s' holds a sweep.csv that talus has not written: it would be overwritten", s->out);
-    diag_hint(s->diag, "name another directory with --out");
-    return;
-  }
-  if (!error && access(s->out, W_OK | X_OK)) error = errno;
-  if (!error) error = run_dir_sign(s->out);
-  if (error) {
-    diag_error(s->diag, NULL, "cannot write into '%s': %s", s->out, strerror(error));
-    return;
-  }
-  *lock = open(s->out, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  if (*lock >= 0 && flock(*lock, LOCK_EX | LOCK_NB) && errno == EWOULDBLOCK)
-    diag_error(s->diag, NULL, "another sweep is at work in '%s'", s->out);
-}
-
-static PetscInt count_cores(void)
-{
-  cpu_set_t set;
-  return sched_getaffinity(0, sizeof set, &set) ? 1 : PetscMax(CPU_COUNT(&set), 1);
-}
-
 static void tell_plan(const SweepRun *s)
 {
   PetscInt resumed = 0, kept = members_count(&s->members, MEMBER_DONE);
@@ -153,7 +114,7 @@ static PetscErrorCode Prepare(SweepRun *s, int *lock)
   PetscCall(Choose(s));
   if (!s->sweep) PetscFunctionReturn(0);
   find_out(s);
-  if (!s->options->dry) prepare_folder(s, lock);
+  if (!s->options->dry) members_prepare_folder(s->out, "sweep.csv", s->diag, lock);
   if (!diag_errors(s->diag)) PetscCall(SweepPlan(s));
   PetscFunctionReturn(0);
 }
@@ -172,7 +133,7 @@ PetscErrorCode SweepCase(const SweepOptions *options, FILE *out, Diag *diag, Swe
   s.members.context = &s;
   PetscCall(Prepare(&s, &lock));
   if (!diag_errors(diag)) {
-    s.members.jobs = PetscMin(options->jobs ? options->jobs : count_cores(), s.members.n);
+    s.members.jobs = PetscMin(members_jobs(options->jobs), s.members.n);
     tell_plan(&s);
     if (options->dry) *outcome = SWEEP_DONE;
     else PetscCall(RunAll(&s, outcome));
