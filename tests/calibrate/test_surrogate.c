@@ -63,15 +63,19 @@ static void test_functions(void **state)
   static const struct {
     PetscInt dim, n;
     Function *f;
-    PetscReal error; /* at most */
-  } cases[] = {
-    {3, 10, plane, 1e-9}, {2, 8, constant, 1e-9}, {2, 24, hill, 0.07}, {2, 48, hill, 0.035}, {2, 60, stop, 0.12}};
+    PetscReal error;  /* at most */
+    PetscReal within; /* two deviations, at least */
+  } cases[] = {{3, 10, plane, 1e-9, 0},
+               {2, 8, constant, 1e-9, 0},
+               {2, 24, hill, 0.07, 0.95},
+               {2, 48, hill, 0.035, 0.95},
+               {2, 60, stop, 0.05, 0.85}};
   (void)state;
   for (size_t k = 0; k < sizeof cases / sizeof cases[0]; ++k) {
     Surrogate *s = learn(cases[k].dim, cases[k].n, cases[k].f, 0);
     PetscReal within;
     const PetscReal largest = try_out(s, cases[k].dim, cases[k].f, &within);
-    if (largest > cases[k].error || (within < 0.9 && largest > 1e-9))
+    if (largest > cases[k].error || (within < cases[k].within && largest > 1e-9))
       fail_msg("function %zu: off by %g, %g within two deviations", k, (double)largest, (double)within);
     OK(SurrogateDestroy(&s));
   }
