@@ -15,6 +15,7 @@ PetscErrorCode CliCheck(int argc, char **argv, int *exit_code);
 PetscErrorCode CliList(int argc, char **argv, int *exit_code);
 PetscErrorCode CliSchema(int argc, char **argv, int *exit_code);
 PetscErrorCode CliVerify(int argc, char **argv, int *exit_code);
+PetscErrorCode CliSweep(int argc, char **argv, int *exit_code);
 PetscErrorCode CliPlot(int argc, char **argv, int *exit_code);
 PetscErrorCode CliVersion(int argc, char **argv, int *exit_code);
 
