@@ -9,6 +9,9 @@ typedef struct {
 #define WITH_BODY(body) PLAIN_TOP PLAIN_GRID "bodies: [" body "]\n" PLAIN_MATERIALS
 #define WITH_MATERIAL(constants) PLAIN_TOP PLAIN_GRID PLAIN_BODIES "materials: {rubber: {" constants "}}\n"
 #define WITH_GRID(grid) PLAIN_TOP "grid: {" grid "}\n" PLAIN_BODIES PLAIN_MATERIALS
+#define AROUND(box, more)                                                        \
+  "kinematics: axisymmetric\nmethod: mpm\nanalysis: {type: static}\ngrid: {" box \
+  ", size: 0.5}\n" PLAIN_BODIES PLAIN_MATERIALS more
 #define WITH_ANALYSIS(analysis) \
   "kinematics: plane-strain\nmethod: mpm\nanalysis: {" analysis "}\n" PLAIN_GRID PLAIN_BODIES PLAIN_MATERIALS
 #define BOX "box: {min: [0, 0], max: [4, 2]}"
@@ -49,6 +52,21 @@ static const Bad bads[] = {
   {"basis without numbers",
    PLAIN "basis: {cell: {gamma: 2}}\n",
    {"F:9:16: error: key 'gamma' of basis.cell is not known"}},
+  /* what means nothing where the plane turns about its axis */
+  {"a grid across the axis",
+   AROUND("box: {min: [-0.5, 0], max: [4, 2]}", ""),
+   {"F:4:20: error: grid.box.min: x is the radius, it cannot begin at -0.5", "hint: the axis is at x = 0"}},
+  {"gravity along the radius",
+   AROUND(BOX, "loads: {gravity: [1, -9.81]}\n"),
+   {"F:9:19: error: loads.gravity: 1 along x is not axisymmetric, gravity acts along the axis",
+    "hint: the axis is y: gravity: [0, -9.81]"}},
+  {"a rotation in axisymmetry",
+   AROUND(BOX, "boundary: [{on: {x: 0}, rotation: {centre: [0, 0], rate: 1}}]\n"),
+   {"F:9:25: error: key 'rotation' of boundary[0] has no meaning in axisymmetry"}},
+  {"spins in axisymmetry",
+   AROUND(BOX, "measures: {a: {spin: z}, b: {angular_momentum: z}, c: {momentum: x}, d: {momentum: y}}\n"),
+   {"F:9:16: error: key 'spin' of measures.a has no meaning", "F:9:30: error: key 'angular_momentum' of measures.b",
+    "F:9:66: error: measures.c.momentum: x: round the full circle it is zero", "hint: along the axis it means"}},
   /* keys */
   {"unknown key",
    WITH_MATERIAL("law: neo-hookean, density: 1, yung: 1, young: 1, poisson: 0"),
@@ -278,6 +296,19 @@ static const Bad bads[] = {
   {"place without a height",
    PLAIN "measures: {a: {surface: front, at: 1}}\n",
    {"measures.a.at means nothing to surface: front"}},
+  {"shape beside what knows none",
+   PLAIN "measures: {a: {surface: front, in: {circle: {centre: [0, 0], radius: 1}}}}\n",
+   {"measures.a.in means nothing to surface: front"}},
+  {"angle about nothing",
+   PLAIN "measures: {a: {centre_of_mass: angle}}\n",
+   {"key 'about' of measures.a is missing", "centre_of_mass: angle, about: [x, y]"}},
+  {"rate over no time", PLAIN "measures: {a: {mass: total, rate: {window: 0}}}\n", {"must be longer than 0 s"}},
+  {"rate after the end",
+   PLAIN "measures: {a: {mass: total, rate: {window: [1, 2]}}}\n",
+   {"measures.a.rate.window begins when the run is over, at 1 s"}},
+  {"a part of a surface that is more than all",
+   PLAIN "measures: {a: {free_surface: inclination, middle: 1.5}}\n",
+   {"measures.a.middle"}},
   {"front without a speed", PLAIN "measures: {a: {run_out_time: {max: x}}}\n", {"speed"}},
   {"speed of nothing",
    PLAIN "measures: {a: {run_out_time: {max: x, speed: 0}}}\n",
