@@ -32,7 +32,7 @@ static PetscErrorCode FindCases(CalibrateRun *r)
     else PetscCall(PetscSNPrintf(path, sizeof path, "%s/%s", r->folder, instrument->folder));
     members_case_file(path, r->cases[i]);
     PetscCall(PetscSNPrintf(path, sizeof path, "%s/%s", r->out, instrument->name));
-    const int error = file_make_folders(path);
+    const int error = r->options->dry ? 0 : file_make_folders(path);
     if (error) diag_error(r->diag, NULL, "cannot make '%s': %s", path, strerror(error));
   }
   PetscFunctionReturn(0);
@@ -61,7 +61,7 @@ static PetscErrorCode Prepare(CalibrateRun *r, int *lock)
   find_folders(r);
   PetscCall(CalibrationRead(r->options->file, r->diag, &r->c));
   if (!r->c) PetscFunctionReturn(0);
-  members_prepare_folder(r->out, "region.csv", r->diag, lock);
+  if (!r->options->dry) members_prepare_folder(r->out, "region.csv", r->diag, lock);
   if (!diag_errors(r->diag)) PetscCall(FindCases(r));
   PetscCall(FindTargets(r));
   if (!diag_errors(r->diag)) PetscCall(CalibrateDesign(r));
@@ -126,6 +126,8 @@ static PetscErrorCode Search(CalibrateRun *r, CalibrateOutcome *outcome)
           "%s: %" PetscInt_FMT " sets of parameters, %" PetscInt_FMT " runs, %" PetscInt_FMT " done before; into %s\n",
           r->c->title, r->n, r->members.n, members_count(&r->members, MEMBER_DONE), r->out);
   fflush(r->told);
+  *outcome = CALIBRATE_DONE;
+  if (r->options->dry) PetscFunctionReturn(0);
   PetscCall(RunAndFit(r));
   PetscCall(Refine(r));
   PetscCall(Confirm(r));

@@ -10,6 +10,7 @@ typedef struct {
   PetscInt jobs;   /* runs at a time; 0: as many as there are cores */
   PetscBool quick; /* with the settings for that */
   PetscBool force, keep, trust;
+  PetscBool dry; /* say what would be run */
 } CalibrateOptions;
 
 /* The same numbers as the exit codes of the program. CALIBRATE_NONE: no parameters meet all targets,

@@ -10,6 +10,7 @@ static const CliOption options_known[] = {
   {"quick", NULL, "with the settings for that"},
   {"force", NULL, "run all again, also what is done"},
   {"keep", NULL, "keep the states (.hdf) of runs that are done"},
+  {"dry", NULL, "only read all cases, and say how many runs there would be at first"},
   {"trust", NULL,
    "let the .geo of a case run programs and write files (Gmsh's SystemCall, Save, ...): only if you know it"},
   {NULL, NULL, NULL},
@@ -45,6 +46,7 @@ PetscErrorCode CliCalibrate(int argc, char **argv, int *exit_code)
     .quick = cli_flag(&arguments, "quick"),
     .force = cli_flag(&arguments, "force"),
     .keep = cli_flag(&arguments, "keep"),
+    .dry = cli_flag(&arguments, "dry"),
     .trust = cli_flag(&arguments, "trust"),
   };
   PetscCall(DiagCreate(&diag));

@@ -68,6 +68,10 @@ sed -i 's/target: 120/target: 500/' force.yaml
 expect "none meets it" 3 "$talus" calibrate force.yaml --out f
 says out.txt "There is no region"
 
+expect "not run" 0 "$talus" calibrate block.yaml --out dry --dry
+says out.txt "14 sets of parameters, 28 runs, 0 done before"
+[ ! -e dry ] || fail "$name: something was written"
+
 # Mistakes
 mistake() {
   message=$1
