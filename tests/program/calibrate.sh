@@ -87,6 +87,9 @@ mistake "bad.yaml:7:3: error: the case of oedometer/E=500000,nu=0.1 cannot be ru
 mistake "has no measure 'tip'" -e 's/measure: top/measure: tip/'
 mistake "is empty" -e 's/\[0.1, 0.45\]/0.3/'
 mistake "there is no such file" -e 's/oedometer.yaml/eodometer.yaml/'
+mkdir foreign && echo mine >foreign/region.csv
+expect "a foreign table" 2 "$talus" calibrate block.yaml --out foreign
+says err.txt "that talus has not written"
 expect "no file" 2 "$talus" calibrate nothing.yaml
 says err.txt "nothing.yaml: error: there is no such file"
 finish
