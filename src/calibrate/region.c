@@ -80,6 +80,16 @@ static PetscBool shrink(Region *r)
   return share < 0.8;
 }
 
+/* Where nothing is inside, runs about the nearest point tell most: not all on top of it. */
+static void widen(Region *r)
+{
+  for (PetscInt d = 0; d < r->dim; ++d) {
+    const PetscReal best = r->x[r->best * r->dim + d];
+    r->low[d] = PetscMax(best - 0.1, 0);
+    r->high[d] = PetscMin(best + 0.1, 1);
+  }
+}
+
 PetscErrorCode RegionCreate(PetscInt dim, PetscInt n_targets, const Target *const *target, Surrogate *const *surrogate,
                             Region *r)
 {
@@ -90,6 +100,10 @@ PetscErrorCode RegionCreate(PetscInt dim, PetscInt n_targets, const Target *cons
   for (PetscInt d = 0; d < dim; ++d) r->high[d] = 1;
   fill(r);
   for (int k = 0; k < CLOSER && r->inside < ENOUGH && shrink(r); ++k) fill(r);
+  if (!r->inside) {
+    widen(r);
+    fill(r);
+  }
   PetscFunctionReturn(0);
 }
 
