@@ -15,6 +15,8 @@ PetscErrorCode CliCheck(int argc, char **argv, int *exit_code);
 PetscErrorCode CliList(int argc, char **argv, int *exit_code);
 PetscErrorCode CliSchema(int argc, char **argv, int *exit_code);
 PetscErrorCode CliVerify(int argc, char **argv, int *exit_code);
+PetscErrorCode CliSweep(int argc, char **argv, int *exit_code);
+PetscErrorCode CliCalibrate(int argc, char **argv, int *exit_code);
 PetscErrorCode CliPlot(int argc, char **argv, int *exit_code);
 PetscErrorCode CliVersion(int argc, char **argv, int *exit_code);
 
@@ -59,5 +61,10 @@ PetscErrorCode CliUsageError(int *exit_code, const char *hint, const char *forma
 /* Collective. Were all ranks started with the same words? If not that has been printed, and the
  * exit code is set. */
 PetscErrorCode CliSameCommand(int argc, char **argv, PetscBool *same, int *exit_code);
+/* The number behind --jobs, 0 without it. */
+PetscInt cli_jobs(const CliArguments *arguments);
+/* Of a command whose runs are processes of their own: --jobs is a number, and nobody started it on
+ * several ranks; otherwise that has been printed, and *ok is false. */
+PetscErrorCode CliCheckJobs(const CliArguments *arguments, PetscBool *ok, int *exit_code);
 /* Is this the rank that prints? */
 PetscBool cli_prints(void);

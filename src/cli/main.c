@@ -20,6 +20,8 @@ static const struct Command {
   {"list", "what there is: laws, methods, cells, measures, fields", CliList},
   {"schema", "the reference of the case file: text, Markdown, JSON Schema", CliSchema},
   {"verify", "run a verification case and compare with its reference", CliVerify},
+  {"sweep", "run a case over values of its keys: a table and pictures", CliSweep},
+  {"calibrate", "which parameters give what was measured: a region", CliCalibrate},
   {"plot", "pictures of a run", CliPlot},
   {"version", "versions of talus and of its libraries (also --version)", CliVersion},
   {NULL, NULL, NULL},
@@ -119,8 +121,8 @@ static void split(int argc, char **argv, int *n_own, char **own, int *n_petsc, c
 /* `-out runs/a` would vanish in PETSc's option table without a word. */
 static const char *single_dash_mistake(int n, char **petsc)
 {
-  static const char *const ours[] = {"set",   "out",  "quiet", "force",    "resume", "log",
-                                     "trust", "full", "json",  "markdown", NULL};
+  static const char *const ours[] = {"set",  "out",  "quiet",    "force", "resume", "log",  "trust",
+                                     "full", "json", "markdown", "over",  "name",   "jobs", NULL};
   for (int i = 1; i < n; ++i)
     for (int k = 0; ours[k]; ++k)
       if (petsc[i][0] == '-' && !strcmp(petsc[i] + 1, ours[k])) return ours[k];

@@ -17,6 +17,10 @@ PetscErrorCode FileReadEverywhere(MPI_Comm comm, const char *file, size_t *size,
  * PetscFree. */
 PetscErrorCode CaseToYaml(const Case *c, char **text);
 
+/* Unit of the key at a path as in --set ("materials.sand.young": Pa); NULL if it has none, or there
+ * is no such key. */
+const char *schema_unit(const char *path);
+
 /* The reference, printed from the schema table: plain text, Markdown (docs/case-file.md) or JSON
  * Schema. */
 typedef enum { SCHEMA_TEXT, SCHEMA_MARKDOWN, SCHEMA_JSON } SchemaStyle;

@@ -349,7 +349,8 @@ PetscErrorCode SchemaClear(const SchemaTable *table, void *target)
   for (const SchemaEntry *entry = table->entries; entry->key; ++entry) {
     void *at = (char *)target + entry->offset;
     const PetscInt n = entry->count ? *(PetscInt *)((char *)target + entry->count) : 0;
-    if (entry->type == TYPE_TEXT || entry->type == TYPE_NAME) PetscCall(PetscFree(*(char **)at));
+    if (entry->type == TYPE_TEXT || entry->type == TYPE_NAME || entry->type == TYPE_VALUES)
+      PetscCall(PetscFree(*(char **)at));
     if (entry->type == TYPE_TABLE) PetscCall(SchemaClear(entry->table, at));
     if (entry->type == TYPE_LIST || entry->type == TYPE_NAMED) PetscCall(ClearItems(entry, n, at));
     if (entry->type != TYPE_NUMBERS) continue;

@@ -20,7 +20,7 @@ static PetscInt count_items(const SchemaEntry *e, const void *source)
 
 static PetscBool is_text(SchemaType type)
 {
-  return type == TYPE_TEXT || type == TYPE_NAME || type == TYPE_FILE || type == TYPE_REFERENCE;
+  return type == TYPE_TEXT || type == TYPE_NAME || type == TYPE_VALUES || type == TYPE_FILE || type == TYPE_REFERENCE;
 }
 
 static PetscBool is_tag(const SchemaTable *table, const SchemaEntry *e, const void *tag)

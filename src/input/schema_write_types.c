@@ -185,13 +185,30 @@ static void write_options(const SchemaWriting *w)
   fputc('}', w->out);
 }
 
+void schema_write_flow(FILE *out, const YamlNode *node)
+{
+  if (node->kind == YAML_SCALAR) {
+    if (node->plain) fputs(node->text, out);
+    else schema_write_text(out, node->text);
+    return;
+  }
+  fputc(node->kind == YAML_MAPPING ? '{' : '[', out);
+  for (PetscInt i = 0; i < node->n; ++i) {
+    if (i) fputs(", ", out);
+    if (node->kind == YAML_MAPPING) schema_write_text(out, node->child[i]->key), fputs(": ", out);
+    schema_write_flow(out, node->child[i]);
+  }
+  fputc(node->kind == YAML_MAPPING ? '}' : ']', out);
+}
+
 const SchemaWriteType schema_writers[TYPE_COUNT] = {
-  [TYPE_NUMBER] = write_number,     [TYPE_INTEGER] = write_integer,  [TYPE_BOOLEAN] = write_boolean,
-  [TYPE_WORD] = write_word,         [TYPE_WORD_TEXT] = write_string, [TYPE_TEXT] = write_string,
-  [TYPE_NAME] = write_string,       [TYPE_FILE] = write_string,      [TYPE_REFERENCE] = write_string,
-  [TYPE_BOUNDARY] = write_boundary, [TYPE_VECTOR] = write_vector,    [TYPE_SPIN] = write_spin,
-  [TYPE_AXIS] = write_axis,         [TYPE_SPIN_AXIS] = write_axis,   [TYPE_AXES] = write_axes,
-  [TYPE_INTERVAL] = write_interval, [TYPE_COUNTS] = write_counts,    [TYPE_AMPLITUDE] = write_amplitude,
-  [TYPE_POLYGON] = write_polygon,   [TYPE_EVERY] = write_every,      [TYPE_MEMBER] = write_member,
-  [TYPE_FIELDS] = write_fields,     [TYPE_NUMBERS] = write_numbers,  [TYPE_OPTIONS] = write_options,
+  [TYPE_NUMBER] = write_number,       [TYPE_INTEGER] = write_integer,   [TYPE_BOOLEAN] = write_boolean,
+  [TYPE_WORD] = write_word,           [TYPE_WORD_TEXT] = write_string,  [TYPE_TEXT] = write_string,
+  [TYPE_NAME] = write_string,         [TYPE_VALUES] = write_string,     [TYPE_FILE] = write_string,
+  [TYPE_REFERENCE] = write_string,    [TYPE_BOUNDARY] = write_boundary, [TYPE_VECTOR] = write_vector,
+  [TYPE_SPIN] = write_spin,           [TYPE_AXIS] = write_axis,         [TYPE_SPIN_AXIS] = write_axis,
+  [TYPE_AXES] = write_axes,           [TYPE_INTERVAL] = write_interval, [TYPE_COUNTS] = write_counts,
+  [TYPE_AMPLITUDE] = write_amplitude, [TYPE_POLYGON] = write_polygon,   [TYPE_EVERY] = write_every,
+  [TYPE_MEMBER] = write_member,       [TYPE_FIELDS] = write_fields,     [TYPE_NUMBERS] = write_numbers,
+  [TYPE_OPTIONS] = write_options,
 };

@@ -1,5 +1,6 @@
 #include "output/progress.h"
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 #include <sys/ioctl.h>
 #include <unistd.h>
@@ -80,6 +81,16 @@ void progress_bar(const RunProgress *p, PetscReal elapsed, PetscReal left, int w
   text[n++] = ']';
   text[n] = 0;
   for (int i = 0; i < parts; ++i) n += snprintf(text + n, 512 - (size_t)n, "%s", part[i]);
+}
+
+PetscBool progress_on_terminal(void)
+{
+  char link[64], target[16] = "";
+  if (!isatty(STDOUT_FILENO)) return PETSC_FALSE;
+  if (!getenv("OMPI_COMM_WORLD_SIZE")) return PETSC_TRUE;
+  snprintf(link, sizeof link, "/proc/%d/fd/1", (int)getppid());
+  if (readlink(link, target, sizeof target - 1) < 0) return PETSC_FALSE;
+  return !strncmp(target, "/dev/pts/", 9) || !strncmp(target, "/dev/tty", 8) || !strncmp(target, "/dev/console", 12);
 }
 
 static int terminal_width(void)

@@ -2,6 +2,10 @@
 #pragma once
 #include "output/directory/run_dir.h"
 
+/* Does a person watch standard output? Open MPI gives the first rank a terminal of its own wherever
+ * mpiexec's output goes, so there the output of the parent counts: mpiexec, or a daemon. */
+PetscBool progress_on_terminal(void);
+
 /* Remembers how fast the simulated time moves. */
 typedef struct {
   PetscBool started;

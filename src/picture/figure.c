@@ -15,7 +15,7 @@ static PetscBool figure_visible(const Figure *figure, PetscReal x, PetscReal y)
   return !((figure->log_x && x <= 0) || (figure->log_y && y <= 0));
 }
 
-/* All visible points lie in [min, max]; returns how many there are. */
+/* All visible points lie in [min, max], and all bands; returns how many points there are. */
 static PetscInt bounds(const Figure *figure, PetscReal min[2], PetscReal max[2])
 {
   PetscInt n = 0;
@@ -29,6 +29,10 @@ static PetscInt bounds(const Figure *figure, PetscReal min[2], PetscReal max[2])
       }
       ++n;
     }
+  for (PetscInt b = 0; b < figure->n_bands && n > 0; ++b) {
+    min[1] = PetscMin(min[1], figure->bands[b].low);
+    max[1] = PetscMax(max[1], figure->bands[b].high);
+  }
   return n;
 }
 
@@ -92,7 +96,7 @@ static void count_in_corners(const Figure *figure, const PetscReal min[2], const
  * the left. */
 static void write_key(FILE *out, const Figure *figure, const PetscReal min[2], const PetscReal max[2])
 {
-  PetscInt count[2][2] = {{0, 0}, {0, 0}}, named = 0;
+  PetscInt count[2][2] = {{0, 0}, {0, 0}}, named = figure->n_bands;
   int right = figure->slope < 0, top = 1; /* where falling curves leave room */
   for (PetscInt k = 0; k < figure->n_series; ++k) named += figure->series[k].name ? 1 : 0;
   count_in_corners(figure, min, max, PetscMin(0.45, 0.05 + 0.05 * (PetscReal)named), count);
@@ -149,7 +153,8 @@ static PetscBool any_visible(const Figure *figure, const FigureSeries *series)
 
 static void write_curve(FILE *out, const FigureSeries *series, PetscInt index)
 {
-  static const char *const with[] = {"lines lw 2", "points", "linespoints lw 2", "lines lw 2 dt 2"};
+  static const char *const with[] = {"lines lw 2", "points", "linespoints lw 2", "lines lw 2 dt 2",
+                                     "points pt 7 ps 0.35"};
   const char *colour = colours[index % N_COLOURS];
   fprintf(out, "$s%" PetscInt_FMT " with %s", index, with[series->style]);
   if (series->style == FIGURE_MARKS || series->style == FIGURE_LINE_MARKS)
@@ -157,6 +162,26 @@ static void write_curve(FILE *out, const FigureSeries *series, PetscInt index)
   fprintf(out, " lc rgb '%s' ", colour);
   if (series->name) fputs("title ", out), gnuplot_quote(out, series->name);
   else fputs("notitle", out);
+}
+
+/* A filled strip behind the curves, from edge to edge, with the colour of its number from the end:
+ * the first colours are those of the first curves. */
+static void write_band(FILE *out, const FigureBand *band, PetscInt index)
+{
+  const char *colour = colours[N_COLOURS - 1 - index % N_COLOURS];
+  if (band->high > band->low)
+    fprintf(out, "$b%" PetscInt_FMT " using 1:2:3 with filledcurves fs solid 0.18 noborder lc rgb '%s' title ", index,
+            colour);
+  else fprintf(out, "$b%" PetscInt_FMT " using 1:2 with lines lw 1.5 dt 3 lc rgb '%s' title ", index, colour);
+  gnuplot_quote(out, band->name);
+}
+
+static void write_band_data(FILE *out, const FigureBand *band, PetscInt index, PetscReal from, PetscReal to)
+{
+  fprintf(out, "$b%" PetscInt_FMT " << EOD\n", index);
+  for (int end = 0; end < 2; ++end)
+    fprintf(out, "%.15g %.15g %.15g\n", (double)(end ? to : from), (double)band->low, (double)band->high);
+  fputs("EOD\n", out);
 }
 
 /* The reference line, which lies below the middle of the curves. */
@@ -174,7 +199,7 @@ static void write_slope(FILE *out, PetscReal slope, const PetscReal min[2], cons
 static void write_figure(FILE *out, const Figure *figure, const PetscReal min[2], const PetscReal max[2])
 {
   PetscBool first = PETSC_TRUE;
-  PetscBool named = figure->slope != 0;
+  PetscBool named = figure->slope != 0 || figure->n_bands;
   for (PetscInt s = 0; s < figure->n_series; ++s)
     if (figure->series[s].name) named = PETSC_TRUE;
   const PetscBool slope = figure->slope != 0 && figure->log_x && figure->log_y;
@@ -188,7 +213,12 @@ static void write_figure(FILE *out, const Figure *figure, const PetscReal min[2]
   if (figure->log_x && max[0] / min[0] < 100) write_ticks(out, &figure->series[0]);
   for (PetscInt s = 0; s < figure->n_series; ++s) write_data(out, figure, &figure->series[s], s);
   if (slope) write_slope(out, figure->slope, min, max);
+  for (PetscInt b = 0; b < figure->n_bands; ++b) write_band_data(out, &figure->bands[b], b, min[0], max[0]);
   fputs("plot ", out);
+  for (PetscInt b = 0; b < figure->n_bands; ++b, first = PETSC_FALSE) {
+    if (!first) fputs(", ", out);
+    write_band(out, &figure->bands[b], b);
+  }
   for (PetscInt s = 0; s < figure->n_series; ++s) {
     if (!any_visible(figure, &figure->series[s])) continue;
     if (!first) fputs(", ", out);

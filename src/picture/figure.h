@@ -3,7 +3,7 @@
 #include <petscsys.h>
 #include "base/diag/diag.h"
 
-typedef enum { FIGURE_LINE, FIGURE_MARKS, FIGURE_LINE_MARKS, FIGURE_DASHES } FigureStyle;
+typedef enum { FIGURE_LINE, FIGURE_MARKS, FIGURE_LINE_MARKS, FIGURE_DASHES, FIGURE_DOTS } FigureStyle;
 
 typedef struct {
   const char *name; /* in the legend; NULL: none */
@@ -12,11 +12,19 @@ typedef struct {
   const PetscReal *x, *y;
 } FigureSeries;
 
+/* A range of y that is shaded over the whole width: what experiments allow. low = high is a line. */
+typedef struct {
+  const char *name; /* in the legend */
+  PetscReal low, high;
+} FigureBand;
+
 typedef struct {
   const char *title, *x_label, *y_label; /* NULL: none */
   PetscBool log_x, log_y;
   PetscInt n_series;
   const FigureSeries *series;
+  PetscInt n_bands;
+  const FigureBand *bands;
   PetscReal slope;   /* of a reference triangle's line in a log-log figure; 0: none */
   int width, height; /* pixels; 0: 900 x 600 */
 } Figure;

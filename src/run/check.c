@@ -1,6 +1,5 @@
-#include "run/check.h"
+#include "run/check_private.h"
 #include <stdarg.h>
-#include "base/text.h"
 
 /* What is known of each body over all ranks. */
 typedef struct {
@@ -212,6 +211,7 @@ PetscErrorCode CheckModel(MPI_Comm comm, const Case *c, Diag *diag, FILE *out)
   PetscCall(ReportSizes(m, out));
   PetscCall(ReportSets(m, out));
   PetscCall(ReportBodies(m, diag, out));
+  PetscCall(CheckOpenings(m, diag));
   PetscCall(ModelDestroy(&m));
   fflush(out);
   PetscFunctionReturn(0);

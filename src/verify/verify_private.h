@@ -57,13 +57,8 @@ PetscErrorCode VerifyRowClear(VerifyRow *r);
  * distance of its history from a course, or the measure at a moment. */
 PetscErrorCode VerifyValue(const Verification *v, VerifyRow *r, Diag *diag);
 
-/* verify_found.c: Collective. The case of a run directory without what changes no result, to be
- * freed; NULL with a reason if there is none. */
-PetscErrorCode VerifyFoundCase(MPI_Comm comm, const char *folder, char **text, char reason[256]);
-/* Is that text this case's? */
-PetscErrorCode VerifyIsCase(const Case *c, const char *text, PetscBool *is);
-/* Take the results of the row over from its folder, or from that of a row with the same settings,
- * if a run of this case has come to its end there on as many ranks. */
+/* verify_found.c: Collective. Take the results of the row over from its folder, or from that of a
+ * row with the same settings, if a run of this case has come to its end there on as many ranks. */
 PetscErrorCode VerifyTakeOver(const Verification *v, VerifyRow *r, const Case *c, PetscBool *found);
 
 /* Collective. What rank 0 has read of the run, to all. */

@@ -2,7 +2,6 @@
 #include "verify/verify_reference.h"
 #include "input/case_file.h"
 #include "input/schema/schema_keys.h"
-#include "verify/verify_settings.h"
 
 const char *const confidence_words[] = {"", "given", "recovered", "verified", "assumed"};
 const char *const report_numbers[] = {"iterations", "iterations-per-step", "steps", "halvings", "seconds", NULL};
@@ -27,38 +26,11 @@ static const SchemaWord figures[] = {
   KEY("source", TEXT, NULL, "where the numbers come from", AT(owner, source.text)), \
     KEY("confidence", WORD, NULL, "how sure they are", .words = confidences, AT(owner, source.confidence))
 
-#define MOST_SETTINGS 16
-
-static PetscErrorCode OpenSettings(SchemaReader *r, const YamlNode *mapping, void *target)
-{
-  PetscFunctionBeginUser;
-  if (mapping->n > MOST_SETTINGS) SchemaError(r, mapping, "more than %d values are changed here", MOST_SETTINGS);
-  PetscCall(SettingListRead(mapping, target));
-  PetscFunctionReturn(0);
-}
-
-static PetscErrorCode ClearSettings(void *target)
-{
-  PetscFunctionBeginUser;
-  PetscCall(SettingListClear(target));
-  PetscFunctionReturn(0);
-}
-
-static const SchemaEntry no_entries[] = {{.key = NULL}};
-static const SchemaTable settings_table = {.name = "set",
-                                           .help = "Values of the case file to change.",
-                                           .entries = no_entries,
-                                           .open = OpenSettings,
-                                           .clear = ClearSettings,
-                                           .size = sizeof(SettingList)};
-#define SET_KEY(owner) \
-  KEY("set", TABLE, NULL, "values of the case file to change", .table = &settings_table, AT(owner, set))
-
 static const SchemaEntry sweep_entries[] = {
   KEY("name", TEXT, NULL, "what varies from row to row, in words", REQUIRED, AT(SweepSpec, name)),
   KEY("symbol", NAME, NULL, "its symbol; $symbol stands for the value in `set`", REQUIRED, AT(SweepSpec, symbol)),
   KEY("unit", TEXT, NULL, "its unit", AT(SweepSpec, unit)),
-  SET_KEY(SweepSpec),
+  SET_KEY("set", "values of the case file to change", SweepSpec, set),
   {.key = NULL},
 };
 static const SchemaTable sweep_table = {
@@ -66,7 +38,7 @@ static const SchemaTable sweep_table = {
 
 static const SchemaEntry series_entries[] = {
   KEY("title", TEXT, NULL, "in pictures; default: its name", AT(SeriesSpec, title)),
-  SET_KEY(SeriesSpec),
+  SET_KEY("set", "values of the case file to change", SeriesSpec, set),
   KEY("full", BOOLEAN, NULL, "only with --full", .fallback = "false", AT(SeriesSpec, full)),
   KEY("time-scale", NUMBER, NULL, "unit of time in a picture of its history, s", .fallback = "1", ABOVE(0),
       AT(SeriesSpec, time_scale)),
@@ -91,8 +63,8 @@ static PetscErrorCode CheckRow(SchemaReader *r, const YamlNode *mapping, void *t
 static const SchemaEntry row_entries[] = {
   KEY("at", TEXT, NULL, "value of the variable", REQUIRED, AT(RowSpec, at)),
   KEY("full", BOOLEAN, NULL, "only with --full", .fallback = "false", AT(RowSpec, full)),
-  SET_KEY(RowSpec),
-  KEY("sets", NAMED, NULL, "values of the case file to change for one series alone", .table = &settings_table,
+  SET_KEY("set", "values of the case file to change", RowSpec, set),
+  KEY("sets", NAMED, NULL, "values of the case file to change for one series alone", .table = &schema_settings,
       AT(RowSpec, sets), .count = offsetof(RowSpec, n_sets)),
   KEY("reference", NUMBER, NULL, "what every series must give", AT(RowSpec, reference), GIVEN(RowSpec, has_reference)),
   KEY("references", NUMBERS, NULL, "what each series must give", AT(RowSpec, references),
@@ -290,23 +262,10 @@ static const SchemaTable reference_table = {
 PetscErrorCode ReferenceRead(MPI_Comm comm, const char *file, Diag *diag, Reference **reference)
 {
   const PetscInt before = diag_errors(diag);
-  const DiagPlace whole = {.file = file, .width = 1};
-  char *bytes, reason[256];
-  size_t size = 0;
 
   PetscFunctionBeginUser;
   PetscCall(PetscNew(reference));
-  PetscCall(FileReadEverywhere(comm, file, &size, &bytes, reason));
-  if (reason[0]) diag_at(diag, DIAG_ERROR, &whole, "%s", reason);
-  else PetscCall(YamlCreate(file, bytes, size, diag, &(*reference)->document));
-  PetscCall(PetscFree(bytes));
-  YamlDocument *document = (*reference)->document;
-  if (document && document->root && document->root->kind != YAML_MAPPING)
-    yaml_error(document, diag, document->root, PETSC_FALSE, "the file must be a mapping of keys");
-  else if (document && document->root) {
-    SchemaReader reader = {.document = document, .diag = diag};
-    PetscCall(SchemaReadTable(&reader, &reference_table, document->root, *reference));
-  }
+  PetscCall(SchemaReadDocument(comm, file, &reference_table, diag, &(*reference)->document, *reference));
   if (diag_errors(diag) > before) PetscCall(ReferenceDestroy(reference));
   PetscFunctionReturn(0);
 }

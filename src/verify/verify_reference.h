@@ -2,7 +2,7 @@
  * The language is told in docs/verification.md. */
 #pragma once
 #include "case/case.h"
-#include "input/yaml.h"
+#include "input/settings.h"
 
 /* Where a number comes from; the words stand in reference.yaml. */
 typedef enum {
@@ -13,13 +13,6 @@ typedef enum {
   CONFIDENCE_ASSUMED
 } Confidence;
 extern const char *const confidence_words[];
-
-/* Values of the case file to change, as arguments of --set. */
-typedef struct {
-  char *series; /* for this one alone; NULL: for all */
-  PetscInt n;
-  char **text; /* "path=value" */
-} SettingList;
 
 typedef struct {
   char *text; /* NULL: see the series, then the study */
@@ -41,8 +34,8 @@ typedef struct {
   char *at;    /* value of the sweep's variable, as written */
   PetscReal x; /* the same as a number, NaN if it is none */
   SettingList set;
-  PetscInt n_sets; /* by series */
-  SettingList *sets;
+  PetscInt n_sets;   /* by series */
+  SettingList *sets; /* their names are those of series */
   PetscBool full;
   PetscBool has_reference; /* for every series */
   PetscReal reference;

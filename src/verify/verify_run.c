@@ -6,6 +6,7 @@
 #include "output/history.h"
 #include "output/directory/run_dir_files.h"
 #include "run/summary.h"
+#include "run/found.h"
 #include "verify/verify_private.h"
 
 /* The case of the run. NULL and a message if there is none. */
@@ -14,7 +15,7 @@ static PetscErrorCode ReadRunCase(const Verification *v, Diag *diag, char **text
   char reason[256];
 
   PetscFunctionBeginUser;
-  PetscCall(VerifyFoundCase(v->comm, v->options->run, text, reason));
+  PetscCall(FoundCase(v->comm, v->options->run, text, reason));
   if (!*text)
     diag_error(diag, NULL, "'%s' is no run directory: %s/case.yaml: %s", v->options->run, v->options->run, reason);
   PetscFunctionReturn(0);
@@ -34,7 +35,7 @@ static PetscErrorCode KeepRows(Verification *v, const char *text, Diag *diag, Pe
     is = PETSC_FALSE;
     if (!diag_errors(diag)) {
       PetscCall(VerifyPlanRow(v, r, diag, &c));
-      if (c) PetscCall(VerifyIsCase(c, text, &is));
+      if (c) PetscCall(FoundIsCase(c, text, &is));
       if (is) *end = c->analysis.end;
       PetscCall(CaseDestroy(&c));
     }

@@ -6,29 +6,10 @@
 #include <stdlib.h>
 #include <sys/wait.h>
 #include <unistd.h>
+#include "base/process/environment.h"
 #include "grid/gmsh/msh.h"
 
 #define OUTPUT_KEPT 4096
-
-/* The environment without what the MPI launcher left there: a gmsh that was built with MPI would
- * take itself for a rank. */
-static PetscErrorCode CleanEnvironment(char ***out)
-{
-  static const char *const launchers[] = {"OMPI_", "PMIX_", "PMI_", "PRTE_", "HYDRA_"};
-  PetscInt n = 0, kept = 0;
-
-  PetscFunctionBeginUser;
-  while (environ[n]) ++n;
-  PetscCall(PetscMalloc1(n + 1, out));
-  for (PetscInt k = 0; k < n; ++k) {
-    PetscBool drop = PETSC_FALSE;
-    for (size_t p = 0; p < sizeof launchers / sizeof *launchers; ++p)
-      if (!strncmp(environ[k], launchers[p], strlen(launchers[p]))) drop = PETSC_TRUE;
-    if (!drop) (*out)[kept++] = environ[k];
-  }
-  (*out)[kept] = NULL;
-  PetscFunctionReturn(0);
-}
 
 /* gmsh -2 file.geo -o out -format msh41 -bin -setnumber name value ... ; values get room of their
  * own. */
@@ -178,7 +159,7 @@ PetscErrorCode GeoRun(const char *path, PetscInt dim, PetscInt n_parameters, con
   }
   (void)close(fd);
   PetscCall(Arguments(path, dim, n_parameters, parameters, output, &argv, &room));
-  PetscCall(CleanEnvironment(&environment));
+  PetscCall(EnvironmentForChild(0, &environment));
   if (!run_gmsh(argv, environment, message_size, message)) {
     (void)unlink(output);
     output[0] = 0;

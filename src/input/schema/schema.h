@@ -19,6 +19,7 @@ typedef enum {
   TYPE_MEMBER,    /* const struct *, from `registry` */
   TYPE_TEXT,      /* char * */
   TYPE_NAME,      /* char *, fit for a path */
+  TYPE_VALUES,    /* char *: any value or list on one line */
   TYPE_FILE,      /* char *, resolved against the folder of the case */
   TYPE_REFERENCE, /* char *, a name from the list or mapping `target` at the top of the file */
   TYPE_BOUNDARY,  /* PetscInt, index or name of an entry of `boundary` */
@@ -178,8 +179,8 @@ extern const SchemaTypeInfo schema_types[TYPE_COUNT];
 extern SchemaReadType SchemaReadInterval, SchemaReadAmplitude, SchemaReadPolygon, SchemaReadEvery, SchemaReadFields,
   SchemaReadNumbers, SchemaReadOptions, SchemaReadVector, SchemaReadSpin, SchemaReadAxis, SchemaReadAxes,
   SchemaReadSize, SchemaReadCounts, SchemaReadNumber, SchemaReadInteger, SchemaReadBoolean, SchemaReadWord,
-  SchemaReadMember, SchemaReadWordText, SchemaReadText, SchemaReadName, SchemaReadFile, SchemaReadReference,
-  SchemaReadBoundary;
+  SchemaReadMember, SchemaReadWordText, SchemaReadText, SchemaReadName, SchemaReadValues, SchemaReadFile,
+  SchemaReadReference, SchemaReadBoundary;
 /* Is the name fit for a path and a column of a table? Complains at the node (its key if `key`). */
 PetscBool schema_check_name(SchemaReader *r, const YamlNode *node, const char *name, PetscBool key);
 
@@ -187,6 +188,8 @@ PetscBool schema_check_name(SchemaReader *r, const YamlNode *node, const char *n
 /* the shortest text that reads back to the same number */
 void schema_write_real(FILE *out, PetscReal value);
 void schema_write_text(FILE *out, const char *text); /* quoted where YAML wants it */
+/* A node on one line: what stood in the file, or its equal in flow style. */
+void schema_write_flow(FILE *out, const YamlNode *node);
 typedef struct {
   FILE *out;
   const Case *c;

@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
+#include "base/text.h"
 #include "input/schema/schema.h"
 
 /* [+-] digits [. digits] [e [+-] digits], at least one digit before the exponent: no hexadecimal,
@@ -219,6 +220,30 @@ PetscErrorCode SchemaReadName(SchemaReader *r, const SchemaEntry *e, const YamlN
   PetscFunctionBeginUser;
   if (node->kind != YAML_SCALAR || yaml_is_null(node)) schema_mismatch(r, e, node);
   else if (schema_check_name(r, node, node->text, PETSC_FALSE)) PetscCall(Store(node->text, e, target));
+  PetscFunctionReturn(0);
+}
+
+/* The entries of a list are joined by commas. */
+PetscErrorCode SchemaReadValues(SchemaReader *r, const SchemaEntry *e, const YamlNode *node, void *target)
+{
+  TextStream stream;
+  char *text;
+
+  PetscFunctionBeginUser;
+  if (yaml_is_null(node) || (node->kind != YAML_SCALAR && !node->n)) {
+    schema_mismatch(r, e, node);
+    PetscFunctionReturn(0);
+  }
+  PetscCall(TextOpen(&stream));
+  for (PetscInt i = 0; node->kind == YAML_SEQUENCE && i < node->n; ++i) {
+    if (i) fputs(", ", stream.out);
+    schema_write_flow(stream.out, node->child[i]);
+  }
+  if (node->kind == YAML_SCALAR) fputs(node->text, stream.out);
+  else if (node->kind == YAML_MAPPING) schema_write_flow(stream.out, node);
+  PetscCall(TextClose(&stream, &text));
+  PetscCall(Store(text, e, target));
+  PetscCall(PetscFree(text));
   PetscFunctionReturn(0);
 }
 

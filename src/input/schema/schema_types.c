@@ -19,6 +19,7 @@ const SchemaTypeInfo schema_types[TYPE_COUNT] = {
   [TYPE_MEMBER] = {"one of", "word", NULL, SchemaReadMember},
   [TYPE_TEXT] = {"a text", "text", "{\"type\": [\"string\", \"number\"]}", SchemaReadText},
   [TYPE_NAME] = {"a name", "name", "{\"type\": [\"string\", \"number\"]}", SchemaReadName},
+  [TYPE_VALUES] = {"a value or a list of values", "values", "{}", SchemaReadValues},
   [TYPE_FILE] = {"the name of a file", "file", "{\"type\": \"string\"}", SchemaReadFile},
   [TYPE_REFERENCE] = {"a name", "name", "{\"type\": [\"string\", \"number\"]}", SchemaReadReference},
   [TYPE_BOUNDARY] = {"the name or index of a boundary entry", "name or index", "{\"type\": [\"string\", \"integer\"]}",

@@ -115,18 +115,6 @@ static FILE *prepare(const char *path, PetscBool force, const char *log, Diag *d
   return file ? file : open_log(path, log, "w", diag);
 }
 
-/* Does a person watch? Open MPI gives the first rank a terminal of its own wherever mpiexec's
- * output goes, so there the output of the parent counts: mpiexec, or a daemon. */
-static PetscBool on_terminal(void)
-{
-  char link[64], target[16] = "";
-  if (!isatty(STDOUT_FILENO)) return PETSC_FALSE;
-  if (!getenv("OMPI_COMM_WORLD_SIZE")) return PETSC_TRUE;
-  snprintf(link, sizeof link, "/proc/%d/fd/1", (int)getppid());
-  if (readlink(link, target, sizeof target - 1) < 0) return PETSC_FALSE;
-  return !strncmp(target, "/dev/pts/", 9) || !strncmp(target, "/dev/tty", 8) || !strncmp(target, "/dev/console", 12);
-}
-
 /* The same answer on all ranks: a directory with the open log, or none. */
 static PetscErrorCode Finish(MPI_Comm comm, PetscMPIInt rank, const char *path, PetscBool quiet, const char *named,
                              FILE *log, int lock, RunDir **dir)
@@ -145,7 +133,7 @@ static PetscErrorCode Finish(MPI_Comm comm, PetscMPIInt rank, const char *path, 
   log_path(path, named, (*dir)->log_path);
   (*dir)->lock = lock;
   (*dir)->quiet = quiet;
-  (*dir)->terminal = on_terminal();
+  (*dir)->terminal = progress_on_terminal();
   (*dir)->start = MPI_Wtime();
   (*dir)->last_shown = -1;
   PetscCall(PetscStrncpy((*dir)->path, path, sizeof(*dir)->path));

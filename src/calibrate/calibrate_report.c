@@ -1,0 +1,238 @@
+/* What a calibration has found: the report, tables of region and runs, pictures. */
+#include <math.h>
+#include <string.h>
+#include "base/text.h"
+#include "calibrate/calibrate_private.h"
+#include "output/directory/run_dir_files.h"
+#include "picture/figure.h"
+
+const char *calibrate_label(const Parameter *p) { return p->label ? p->label : p->name; }
+
+static PetscReal value_at(const Parameter *p, PetscReal x) { return p->low + x * (p->high - p->low); }
+
+static const Member *member_of(const CalibrateRun *r, PetscInt point, PetscInt k)
+{
+  return &r->members.member[point * r->c->n_instruments + r->instrument[k]];
+}
+
+static const char *unit_of(const CalibrateRun *r, PetscInt k) { return member_of(r, 0, k)->units[r->number[k]]; }
+
+PetscBool calibrate_is_confirmed(const CalibrateRun *r)
+{
+  PetscBool all = r->confirmed >= 0;
+  for (PetscInt k = 0; k < r->n_targets && all; ++k)
+    all = PetscAbsReal(calibrate_found(r, r->confirmed, k) - r->target[k]->value) <= r->target[k]->uncertainty;
+  return all;
+}
+
+/* "granufall flow mean" */
+static const char *target_name(const CalibrateRun *r, PetscInt k, char name[256])
+{
+  char taken[128];
+  PetscSNPrintf(name, 256, "%s %s", r->c->instruments[r->instrument[k]].name, taken_name(&r->target[k]->taken, taken));
+  return name;
+}
+
+static void tell_targets(FILE *out, const CalibrateRun *r)
+{
+  char name[256];
+  fputs("\n| measure | target | left out, a run is predicted within (root mean square) |\n|---|---|---|\n", out);
+  for (PetscInt k = 0; k < r->n_targets; ++k) {
+    const PetscReal error = surrogate_left_out(r->surrogate[k]);
+    fprintf(out, "| %s | %g +- %g %s | %.3g %s |\n", target_name(r, k, name), (double)r->target[k]->value,
+            (double)r->target[k]->uncertainty, unit_of(r, k), (double)error, unit_of(r, k));
+  }
+}
+
+/* A parameter whose whole range is possible is not determined. */
+static void tell_ranges(FILE *out, const CalibrateRun *r)
+{
+  PetscReal low, high;
+  fputs("\n| parameter | in the region | looked at | |\n|---|---|---|---|\n", out);
+  for (PetscInt p = 0; p < r->c->n_parameters; ++p) {
+    const Parameter *parameter = &r->c->parameters[p];
+    const char *unit = parameter->unit ? parameter->unit : "";
+    region_range(&r->region, p, &low, &high);
+    const char *verdict = high - low > 0.95                 ? "not determined"
+                          : low < 0.01 && high - low < 0.95 ? "not bounded from below by what was looked at"
+                          : high > 0.99                     ? "not bounded from above by what was looked at"
+                                                            : "";
+    fprintf(out, "| %s | %.4g to %.4g %s | %g to %g | %s |\n", calibrate_label(parameter),
+            (double)value_at(parameter, low), (double)value_at(parameter, high), unit, (double)parameter->low,
+            (double)parameter->high, verdict);
+  }
+}
+
+static void tell_couples(FILE *out, const CalibrateRun *r)
+{
+  for (PetscInt a = 0; a < r->c->n_parameters; ++a)
+    for (PetscInt b = 0; b < a; ++b) {
+      const PetscReal correlation = region_correlation(&r->region, b, a);
+      if (PetscAbsReal(correlation) < 0.7) continue;
+      fprintf(out, "%s and %s go together in it: where one is larger, the other is %s (correlation %.2f).\n",
+              calibrate_label(&r->c->parameters[b]), calibrate_label(&r->c->parameters[a]),
+              correlation > 0 ? "larger, too" : "smaller", (double)correlation);
+    }
+}
+
+static void tell_best(FILE *out, const CalibrateRun *r)
+{
+  const Region *region = &r->region;
+  char name[256];
+  fprintf(out, "\n%s:", region->inside ? "Best point" : "Nearest point");
+  for (PetscInt p = 0; p < r->c->n_parameters; ++p) {
+    const Parameter *parameter = &r->c->parameters[p];
+    char text[32];
+    PetscReal x = r->confirmed >= 0 ? r->x[r->confirmed * region->dim + p] : region->x[region->best * region->dim + p];
+    fprintf(out, "%s %s = %s %s", p ? "," : "", calibrate_label(parameter), calibrate_value(parameter, &x, text),
+            parameter->unit ? parameter->unit : "");
+  }
+  fputs("\n\n| measure | target | predicted | its run |\n|---|---|---|---|\n", out);
+  for (PetscInt k = 0; k < r->n_targets; ++k) {
+    const PetscInt at = region->best * r->n_targets + k;
+    fprintf(out, "| %s | %g +- %g | %.4g +- %.2g |", target_name(r, k, name), (double)r->target[k]->value,
+            (double)r->target[k]->uncertainty, (double)region->value[at], (double)region->deviation[at]);
+    if (r->confirmed >= 0) fprintf(out, " %.4g %s |\n", (double)calibrate_found(r, r->confirmed, k), unit_of(r, k));
+    else fputs(" - |\n", out);
+  }
+  if (calibrate_is_confirmed(r)) fputs("\nThe run at the best point meets all targets.\n", out);
+  else fputs("\nNo run at this point meets all targets.\n", out);
+}
+
+static void tell(FILE *out, const CalibrateRun *r)
+{
+  const PetscReal doubt = region_doubt(&r->region);
+  fprintf(out,
+          "# %s\n\n%" PetscInt_FMT " sets of parameters were run, %" PetscInt_FMT " of %" PetscInt_FMT
+          " runs came to their end.\n",
+          r->c->title, r->n, members_count(&r->members, MEMBER_DONE), r->members.n);
+  tell_targets(out, r);
+  if (r->region.inside) {
+    fprintf(out,
+            "\nThe region in which all predictions lie within uncertainty and their own error is %.2g %% of what "
+            "was looked at.\n",
+            (double)(100 * region_volume(&r->region)));
+    tell_ranges(out, r);
+    fputc('\n', out);
+    tell_couples(out, r);
+  } else
+    fputs("\nThere is no region: no parameters within the ranges meet all targets, as far as the runs tell.\n", out);
+  fprintf(out, "The predictions' own error is at most %.2g of the uncertainties there%s.\n", (double)doubt,
+          doubt > r->c->resolve ? ": more rounds would make the region smaller" : "");
+  tell_best(out, r);
+}
+
+static void write_header(FILE *out, const CalibrateRun *r, PetscBool predicted)
+{
+  char name[256], label[TEXT_LABEL];
+  for (PetscInt p = 0; p < r->c->n_parameters; ++p)
+    fprintf(out, "%s%s", p ? "," : "", text_with_unit(r->c->parameters[p].name, r->c->parameters[p].unit, label));
+  for (PetscInt k = 0; k < r->n_targets; ++k) {
+    fprintf(out, ",%s", text_with_unit(target_name(r, k, name), unit_of(r, k), label));
+    if (predicted) fprintf(out, ",+- [%s]", unit_of(r, k));
+  }
+  fputs(predicted ? "\n" : ",ended\n", out);
+}
+
+static void write_region(FILE *out, const CalibrateRun *r)
+{
+  const Region *region = &r->region;
+  write_header(out, r, PETSC_TRUE);
+  for (PetscInt i = 0; i < region->n; ++i) {
+    if (region->miss[i] > 1) continue;
+    for (PetscInt p = 0; p < region->dim; ++p)
+      fprintf(out, "%s%.6g", p ? "," : "", (double)value_at(&r->c->parameters[p], region->x[i * region->dim + p]));
+    for (PetscInt k = i * r->n_targets; k < (i + 1) * r->n_targets; ++k)
+      fprintf(out, ",%.6g,%.3g", (double)region->value[k], (double)region->deviation[k]);
+    fputc('\n', out);
+  }
+}
+
+/* How the runs of a point ended: done, or what the first that was not has come to. */
+static const char *how_ended(const CalibrateRun *r, PetscInt point)
+{
+  for (PetscInt i = 0; i < r->c->n_instruments; ++i) {
+    const Member *m = &r->members.member[point * r->c->n_instruments + i];
+    if (m->state != MEMBER_DONE) return member_states[m->state];
+  }
+  return member_states[MEMBER_DONE];
+}
+
+static void write_runs(FILE *out, const CalibrateRun *r)
+{
+  char text[32];
+  write_header(out, r, PETSC_FALSE);
+  for (PetscInt i = 0; i < r->n; ++i) {
+    for (PetscInt p = 0; p < r->c->n_parameters; ++p)
+      fprintf(out, "%s%s", p ? "," : "",
+              calibrate_value(&r->c->parameters[p], &r->x[i * r->c->n_parameters + p], text));
+    for (PetscInt k = 0; k < r->n_targets; ++k) {
+      const PetscReal value = calibrate_found(r, i, k);
+      if (PetscIsNanReal(value)) fputc(',', out);
+      else fprintf(out, ",%.10g", (double)value);
+    }
+    fprintf(out, ",%s\n", how_ended(r, i));
+  }
+}
+
+/* The region seen along all other parameters, and what was run. */
+static PetscErrorCode Draw(CalibrateRun *r, PetscInt a, PetscInt b)
+{
+  const Parameter *pa = &r->c->parameters[a], *pb = &r->c->parameters[b];
+  const Region *region = &r->region;
+  const PetscInt dim = region->dim, best[2] = {r->confirmed >= 0 ? 1 : 0, PetscMax(r->confirmed, 0)};
+  char png[PETSC_MAX_PATH_LEN], x_label[TEXT_LABEL], y_label[TEXT_LABEL];
+  PetscReal *x, *y;
+  PetscInt n = 0;
+  PetscBool done;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc2(region->n + r->n, &x, region->n + r->n, &y));
+  for (PetscInt i = 0; i < region->n; ++i)
+    if (region->miss[i] <= 1)
+      x[n] = value_at(pa, region->x[i * dim + a]), y[n++] = value_at(pb, region->x[i * dim + b]);
+  for (PetscInt i = 0; i < r->n; ++i)
+    x[n + i] = value_at(pa, r->x[i * dim + a]), y[n + i] = value_at(pb, r->x[i * dim + b]);
+  const FigureSeries series[] = {{"the region", FIGURE_DOTS, n, x, y},
+                                 {"runs", FIGURE_MARKS, r->n, x + n, y + n},
+                                 {"run at the best point", FIGURE_MARKS, best[0], x + n + best[1], y + n + best[1]}};
+  const Figure figure = {.title = r->c->title,
+                         .x_label = text_with_unit(calibrate_label(pa), pa->unit, x_label),
+                         .y_label = text_with_unit(calibrate_label(pb), pb->unit, y_label),
+                         .n_series = 3,
+                         .series = series};
+  PetscCall(PetscSNPrintf(png, sizeof png, "%s/%s-%s.png", r->out, pa->name, pb->name));
+  PetscCall(FigureWrite(&figure, png, r->diag, &done));
+  if (done) fprintf(r->told, "picture: %s\n", png);
+  PetscCall(PetscFree2(x, y));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode WriteFile(CalibrateRun *r, const char *name, void (*write)(FILE *out, const CalibrateRun *r),
+                                PetscBool tell_it)
+{
+  char path[PETSC_MAX_PATH_LEN], *text;
+  TextStream stream;
+
+  PetscFunctionBeginUser;
+  PetscCall(TextOpen(&stream));
+  (*write)(stream.out, r);
+  PetscCall(TextClose(&stream, &text));
+  PetscCall(PetscSNPrintf(path, sizeof path, "%s/%s", r->out, name));
+  const int error = file_write_text(path, text);
+  if (error) diag_error(r->diag, NULL, "cannot write '%s': %s", path, strerror(error));
+  if (tell_it) fprintf(r->told, "\n%s\nreport: %s\n", text, path);
+  PetscCall(PetscFree(text));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode CalibrateReport(CalibrateRun *r)
+{
+  PetscFunctionBeginUser;
+  PetscCall(WriteFile(r, "runs.csv", write_runs, PETSC_FALSE));
+  PetscCall(WriteFile(r, "region.csv", write_region, PETSC_FALSE));
+  PetscCall(WriteFile(r, "report.md", tell, PETSC_TRUE));
+  for (PetscInt a = 0; a < r->c->n_parameters; ++a)
+    for (PetscInt b = a + 1; b < r->c->n_parameters; ++b) PetscCall(Draw(r, a, b));
+  PetscFunctionReturn(0);
+}

@@ -1,0 +1,191 @@
+#include "calibrate/region.h"
+#include <math.h>
+
+enum { CLOUD = 12000, ENOUGH = 600, CLOSER = 5, BOXED = 120 };
+
+void region_halton(PetscInt dim, PetscInt i, PetscReal *x)
+{
+  static const PetscInt primes[SURROGATE_MOST] = {2, 3, 5, 7, 11, 13};
+  for (PetscInt d = 0; d < dim; ++d) {
+    PetscReal share = 1;
+    x[d] = 0;
+    /* the first numbers of large primes lie on a line */
+    for (PetscInt k = i + 20; k > 0; k /= primes[d]) {
+      share /= (PetscReal)primes[d];
+      x[d] += share * (PetscReal)(k % primes[d]);
+    }
+  }
+}
+
+static void evaluate(Region *r, PetscInt i)
+{
+  r->miss[i] = r->doubt[i] = r->far[i] = 0;
+  for (PetscInt k = 0; k < r->n_targets; ++k) {
+    const PetscReal u = r->target[k]->uncertainty;
+    PetscReal *v = &r->value[i * r->n_targets + k], *s = &r->deviation[i * r->n_targets + k];
+    surrogate_at(r->surrogate[k], r->x + i * r->dim, v, s);
+    const PetscReal off = PetscAbsReal(*v - r->target[k]->value);
+    r->miss[i] = PetscMax(r->miss[i], off / (u + *s));
+    r->far[i] = PetscMax(r->far[i], off / u);
+    r->doubt[i] = PetscMax(r->doubt[i], *s / u);
+  }
+}
+
+static void fill(Region *r)
+{
+  r->inside = r->best = 0;
+  for (PetscInt i = 0; i < r->n; ++i) {
+    PetscReal *x = r->x + i * r->dim;
+    region_halton(r->dim, i, x);
+    for (PetscInt d = 0; d < r->dim; ++d) x[d] = r->low[d] + x[d] * (r->high[d] - r->low[d]);
+    evaluate(r, i);
+    const PetscBool in = r->miss[i] <= 1, best_in = r->miss[r->best] <= 1;
+    r->inside += in;
+    if (in && best_in ? r->far[i] < r->far[r->best] : r->miss[i] < r->miss[r->best]) r->best = i;
+  }
+}
+
+/* The miss that so many points do not exceed, by halving. */
+static PetscReal miss_of_best(const Region *r, PetscInt wanted)
+{
+  PetscReal low = 0, high = 0;
+  for (PetscInt i = 0; i < r->n; ++i) high = PetscMax(high, r->miss[i]);
+  for (int step = 0; step < 60; ++step) {
+    const PetscReal middle = (low + high) / 2;
+    PetscInt n = 0;
+    for (PetscInt i = 0; i < r->n; ++i) n += r->miss[i] <= middle;
+    if (n < wanted) low = middle;
+    else high = middle;
+  }
+  return high;
+}
+
+/* About what may be the region, with a fifth of air; PETSC_FALSE if that is no smaller. */
+static PetscBool shrink(Region *r)
+{
+  const PetscReal limit = PetscMax(1, miss_of_best(r, BOXED));
+  PetscReal share = 1;
+  for (PetscInt d = 0; d < r->dim; ++d) {
+    PetscReal low = 1, high = 0;
+    for (PetscInt i = 0; i < r->n; ++i) {
+      if (r->miss[i] > limit) continue;
+      low = PetscMin(low, r->x[i * r->dim + d]);
+      high = PetscMax(high, r->x[i * r->dim + d]);
+    }
+    const PetscReal air = 0.2 * (high - low) + 1e-6, width = r->high[d] - r->low[d];
+    r->low[d] = PetscMax(r->low[d], low - air);
+    r->high[d] = PetscMin(r->high[d], high + air);
+    share *= (r->high[d] - r->low[d]) / width;
+  }
+  return share < 0.8;
+}
+
+/* Where nothing is inside, runs about the nearest point tell most: not all on top of it. */
+static void widen(Region *r)
+{
+  for (PetscInt d = 0; d < r->dim; ++d) {
+    const PetscReal best = r->x[r->best * r->dim + d];
+    r->low[d] = PetscMax(best - 0.1, 0);
+    r->high[d] = PetscMin(best + 0.1, 1);
+  }
+}
+
+PetscErrorCode RegionCreate(PetscInt dim, PetscInt n_targets, const Target *const *target, Surrogate *const *surrogate,
+                            Region *r)
+{
+  PetscFunctionBeginUser;
+  *r = (Region){.dim = dim, .n_targets = n_targets, .target = target, .surrogate = surrogate, .n = CLOUD};
+  PetscCall(PetscMalloc6(r->n * dim, &r->x, r->n * n_targets, &r->value, r->n * n_targets, &r->deviation, r->n,
+                         &r->miss, r->n, &r->doubt, r->n, &r->far));
+  for (PetscInt d = 0; d < dim; ++d) r->high[d] = 1;
+  fill(r);
+  for (int k = 0; k < CLOSER && r->inside < ENOUGH && shrink(r); ++k) fill(r);
+  if (!r->inside) {
+    widen(r);
+    fill(r);
+  }
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode RegionDestroy(Region *r)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscFree6(r->x, r->value, r->deviation, r->miss, r->doubt, r->far));
+  r->n = 0;
+  PetscFunctionReturn(0);
+}
+
+PetscReal region_volume(const Region *r)
+{
+  PetscReal box = 1;
+  for (PetscInt d = 0; d < r->dim; ++d) box *= r->high[d] - r->low[d];
+  return box * (PetscReal)r->inside / (PetscReal)r->n;
+}
+
+void region_range(const Region *r, PetscInt parameter, PetscReal *low, PetscReal *high)
+{
+  *low = 1, *high = 0;
+  for (PetscInt i = 0; i < r->n; ++i) {
+    if (r->miss[i] > 1) continue;
+    *low = PetscMin(*low, r->x[i * r->dim + parameter]);
+    *high = PetscMax(*high, r->x[i * r->dim + parameter]);
+  }
+}
+
+PetscReal region_correlation(const Region *r, PetscInt a, PetscInt b)
+{
+  PetscReal n = 0, mean[2] = {0, 0}, c[3] = {0, 0, 0};
+  for (PetscInt i = 0; i < r->n; ++i)
+    if (r->miss[i] <= 1) ++n, mean[0] += r->x[i * r->dim + a], mean[1] += r->x[i * r->dim + b];
+  for (PetscInt i = 0; i < r->n; ++i) {
+    if (r->miss[i] > 1) continue;
+    const PetscReal da = r->x[i * r->dim + a] - mean[0] / n, db = r->x[i * r->dim + b] - mean[1] / n;
+    c[0] += da * da, c[1] += db * db, c[2] += da * db;
+  }
+  return c[0] > 0 && c[1] > 0 ? c[2] / PetscSqrtReal(c[0] * c[1]) : 0;
+}
+
+PetscReal region_doubt(const Region *r)
+{
+  PetscReal doubt = r->inside ? 0 : r->doubt[r->best];
+  for (PetscInt i = 0; i < r->n; ++i)
+    if (r->miss[i] <= 1) doubt = PetscMax(doubt, r->doubt[i]);
+  return doubt;
+}
+
+/* Distance from a point of the cloud, in widths of its box. */
+static PetscReal distance(const Region *r, const PetscReal *a, const PetscReal *b)
+{
+  PetscReal d2 = 0;
+  for (PetscInt d = 0; d < r->dim; ++d) {
+    const PetscReal t = (a[d] - b[d]) / (r->high[d] - r->low[d]);
+    d2 += t * t;
+  }
+  return PetscSqrtReal(d2);
+}
+
+/* What a run at point i would tell: the doubt, where the region may be with twice the deviation; a
+ * point that is farther off counts the less the more it is. Less again near other runs. */
+static PetscReal worth(const Region *r, PetscInt i, PetscReal nearest)
+{
+  const PetscReal apart = PetscMin(1, nearest / 0.3), off = PetscMax(r->miss[i] - 1.5, 0);
+  return apart * (r->doubt[i] + 1e-3) / (1 + 100 * off * off);
+}
+
+PetscInt region_next(const Region *r, PetscInt n, const PetscReal *x, PetscInt most, PetscInt *next)
+{
+  PetscInt found = 0;
+  for (; found < most; ++found) {
+    PetscReal best = 0;
+    for (PetscInt i = 0; i < r->n; ++i) {
+      const PetscReal *at = r->x + i * r->dim;
+      PetscReal nearest = INFINITY;
+      for (PetscInt k = 0; k < n; ++k) nearest = PetscMin(nearest, distance(r, at, x + k * r->dim));
+      for (PetscInt k = 0; k < found; ++k) nearest = PetscMin(nearest, distance(r, at, r->x + next[k] * r->dim));
+      const PetscReal value = worth(r, i, nearest);
+      if (value > best) best = value, next[found] = i;
+    }
+    if (!(best > 0)) break;
+  }
+  return found;
+}

@@ -1,0 +1,36 @@
+/* A number that is taken from the history of a run: a measure at the end, or what it was over a
+ * while. */
+#pragma once
+#include "input/schema/schema_keys.h"
+#include "output/history.h"
+
+typedef enum { TAKE_END, TAKE_MAX, TAKE_MIN, TAKE_MEAN, TAKE_SLOPE } Take;
+extern const SchemaWord take_words[];
+
+typedef struct {
+  char *measure; /* of the case */
+  Take take;
+  PetscBool has_window;
+  PetscReal from, to; /* s; without a window the whole run */
+  PetscReal times;    /* what is taken is shown times this, ... */
+  char *unit;         /* ...in this unit; NULL: the measure's own */
+  char *label;        /* in pictures; NULL: its name */
+} Taken;
+
+/* The keys of such a number, in the tables of whoever holds one. */
+#define TAKEN_KEYS(owner, member)                                                                                    \
+  KEY("measure", NAME, NULL, "a measure of the case", REQUIRED, AT(owner, member.measure)),                          \
+    KEY("take", WORD, NULL, "what of it", .words = take_words, .fallback = "end", AT(owner, member.take)),           \
+    KEY("window", INTERVAL, "s", "between these moments", AT(owner, member.from),                                    \
+        .second = offsetof(owner, member.to), GIVEN(owner, member.has_window)),                                      \
+    KEY("times", NUMBER, NULL, "shown times this number", .fallback = "1", .with = "unit", AT(owner, member.times)), \
+    KEY("unit", TEXT, NULL, "its unit then", .with = "times", AT(owner, member.unit)),                               \
+    KEY("label", TEXT, NULL, "what pictures call it", AT(owner, member.label))
+
+/* "flow", or "flow mean" */
+const char *taken_name(const Taken *taken, char name[128]);
+/* Its unit, from that of the measure. Returns buffer. */
+const char *taken_unit(const Taken *taken, const char *measure, char unit[64]);
+/* NaN where the history has no such number: no row within the window. The mean is over time
+ * (trapezia), the slope by least squares, per second. */
+PetscReal taken_value(const Taken *taken, const History *history);
