@@ -1,5 +1,5 @@
-/* Openings too narrow to let material through: gaps of less than two cells between held parts of the
- * outer boundary, and orifices on the axis of a body of revolution (their diameter counts). One
+/* Openings too narrow to let material through: gaps of less than two cells between held parts of
+ * the outer boundary, and orifices on the axis of a body of revolution (their diameter counts). One
  * cell is shut, since all its nodes are held. In the plane only. */
 #include "run/check_private.h"
 
