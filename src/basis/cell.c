@@ -99,3 +99,20 @@ PetscReal cell_volume(CellType type, const PetscReal *x)
   for (PetscInt p = 0; p < n; ++p) volume += weight[p] * cell_gradients(type, x, xi + p * cells[type].dim, N, dNdx);
   return volume;
 }
+
+/* r det dx/dxi is linear in a triangle, at most quadratic in each direction in a quadrilateral:
+ * these rules are exact, too. */
+PetscReal cell_volume_in(const Kinematics *kinematics, CellType type, const PetscReal *x)
+{
+  const PetscInt n = type == CELL_TRIANGLE ? 3 : 4;
+  PetscReal xi[4 * 2], weight[4], N[CELL_MAX_NODES], dNdx[CELL_MAX_NODES * 3], volume = 0.0;
+  if (!kinematics->hoop) return cell_volume(type, x);
+  cell_quadrature(type, n, xi, weight);
+  for (PetscInt p = 0; p < n; ++p) {
+    const PetscReal area = weight[p] * cell_gradients(type, x, xi + 2 * p, N, dNdx);
+    PetscReal radius = 0;
+    for (PetscInt i = 0; i < cells[type].nodes; ++i) radius += N[i] * x[2 * i];
+    volume += area * kinematics_weight(kinematics, radius);
+  }
+  return volume;
+}

@@ -35,6 +35,9 @@ PetscBool cell_inverse_map(CellType type, const PetscReal *x, const PetscReal *p
 PetscReal cell_outside(CellType type, const PetscReal *xi);
 
 PetscReal cell_volume(CellType type, const PetscReal *x);
+/* The volume that a cell stands for, m3: its area times the unit thickness, or all round the
+ * circle. */
+PetscReal cell_volume_in(const Kinematics *kinematics, CellType type, const PetscReal *x);
 
 /* Gauss rule with n points (triangle 1 3 6 12, quadrilateral 1 4 9 16, tetrahedron 1 4 14 24,
  * hexahedron 1 8 27 64): xi is n x dim, weights sum to the reference volume. PETSC_FALSE if there

@@ -2,6 +2,25 @@
 #include "boundary/motion.h"
 #include "boundary/slip.h"
 
+/* Behind the entries of the case stands one of the program's own: where the plane turns about x = 0
+ * nothing leaves the axis. */
+static const MotionSpec axis_entry = {.on = {.has = {PETSC_TRUE}}, .kind = MOTION_FIXED, .component = {PETSC_TRUE}};
+
+static PetscInt count_entries(const Boundary *b) { return b->c->n_boundary + (b->c->kinematics->hoop ? 1 : 0); }
+
+static const MotionSpec *entry_of(const Boundary *b, PetscInt k)
+{
+  return k < b->c->n_boundary ? &b->c->boundary[k] : &axis_entry;
+}
+
+PetscInt boundary_axis(const Boundary *b) { return b->c->kinematics->hoop ? b->c->n_boundary : -1; }
+
+PetscBool boundary_slides_on_axis(const Boundary *b, PetscInt node)
+{
+  const PetscInt axis = boundary_axis(b), x = node * b->dim;
+  return axis >= 0 && b->entry[x] == axis && !b->fixed[x + 1];
+}
+
 void boundary_increments(const Boundary *b, const Grid *grid, PetscReal t0, PetscReal t1, PetscReal *increment)
 {
   PetscReal field[3];
@@ -12,7 +31,7 @@ void boundary_increments(const Boundary *b, const Grid *grid, PetscReal t0, Pets
       increment[i] = field[i % b->dim];
     } else {
       increment[i] =
-        motion_increment(b->c, &b->c->boundary[b->entry[i]], grid->x + (i / b->dim) * b->dim, i % b->dim, t0, t1);
+        motion_increment(b->c, entry_of(b, b->entry[i]), grid->x + (i / b->dim) * b->dim, i % b->dim, t0, t1);
     }
   }
 }
@@ -43,6 +62,12 @@ static void report_contradiction(const Boundary *b, const Grid *grid, PetscInt n
   char path[64], at[64];
   PetscSNPrintf(path, sizeof path, "boundary[%d]", (int)entry);
   boundary_place(b->dim, x, at);
+  if (entry == boundary_axis(b)) {
+    PetscSNPrintf(path, sizeof path, "boundary[%d]", (int)b->entry[node * b->dim + d]);
+    diag_error(diag, path, "%s moves the node at %s along x, but it lies on the axis, which nothing leaves", path, at);
+    diag_hint(diag, "leave nodes with x = 0 out of the selection, or x out of the motion");
+    return;
+  }
   diag_error(diag, path,
              "boundary[%d] contradicts boundary[%d]: both prescribe %c of the node at %s, but not the same motion",
              (int)entry, (int)b->entry[node * b->dim + d], axis[d], at);
@@ -53,7 +78,7 @@ static void report_contradiction(const Boundary *b, const Grid *grid, PetscInt n
  * they were sought before). */
 static void mark_entry(Boundary *b, const Grid *grid, PetscInt entry, Diag *diag)
 {
-  const MotionSpec *m = &b->c->boundary[entry];
+  const MotionSpec *m = entry_of(b, entry);
   PetscBool reported = !diag;
   for (PetscInt k = 0; k < b->motion[entry].n; ++k) {
     const PetscInt node = b->motion[entry].node[k];
@@ -61,7 +86,7 @@ static void mark_entry(Boundary *b, const Grid *grid, PetscInt entry, Diag *diag
       const PetscInt i = node * b->dim + d;
       if (!m->component[d] && m->kind != MOTION_ROTATION) continue;
       if (b->fixed[i] && diag && !reported &&
-          !motions_agree(b->c, m, &b->c->boundary[b->entry[i]], grid->x + node * b->dim, d)) {
+          !motions_agree(b->c, m, entry_of(b, b->entry[i]), grid->x + node * b->dim, d)) {
         report_contradiction(b, grid, node, d, entry, diag);
         reported = PETSC_TRUE;
       }
@@ -104,10 +129,10 @@ static PetscErrorCode SelectNodes(Boundary *b, const Grid *grid, Diag *diag)
   PetscCall(PetscCalloc1(b->n_nodes * b->dim, &b->fixed));
   PetscCall(PetscMalloc1(b->n_nodes * b->dim, &b->entry));
   for (PetscInt i = 0; i < b->n_nodes * b->dim; ++i) b->entry[i] = -1;
-  PetscCall(PetscCalloc1(b->c->n_boundary, &b->motion));
-  for (PetscInt k = 0; k < b->c->n_boundary; ++k) {
-    PetscCall(GridSelectNodes(grid, &b->c->boundary[k].on, &b->motion[k].n, &b->motion[k].node));
-    if (diag) PetscCall(CheckSelection(b, grid, k, diag));
+  PetscCall(PetscCalloc1(count_entries(b), &b->motion));
+  for (PetscInt k = 0; k < count_entries(b); ++k) {
+    PetscCall(GridSelectNodes(grid, &entry_of(b, k)->on, &b->motion[k].n, &b->motion[k].node));
+    if (diag && k < b->c->n_boundary) PetscCall(CheckSelection(b, grid, k, diag));
     mark_entry(b, grid, k, diag);
   }
   PetscCall(WallNormals(grid, b->c, &b->n_walls, &b->walls));
@@ -143,7 +168,7 @@ PetscErrorCode BoundaryRegrid(Boundary **boundary, const Grid *grid)
 PetscErrorCode BoundaryToCloud(const Boundary *of_mesh, const Grid *mesh, const unsigned char *marked, Grid *cloud,
                                Boundary **boundary)
 {
-  const PetscInt n_entries = of_mesh->c->n_boundary;
+  const PetscInt n_entries = count_entries(of_mesh);
   Boundary *b;
   PetscInt *local;
 
@@ -169,7 +194,7 @@ PetscErrorCode BoundaryToCloud(const Boundary *of_mesh, const Grid *mesh, const 
 
 PetscErrorCode BoundaryFollow(Boundary *b, const Grid *cloud)
 {
-  const PetscInt n_entries = b->c->n_boundary, dofs = cloud->n_nodes * b->dim;
+  const PetscInt n_entries = count_entries(b), dofs = cloud->n_nodes * b->dim;
 
   PetscFunctionBeginUser;
   b->n_nodes = cloud->n_nodes;
@@ -196,7 +221,7 @@ PetscErrorCode BoundaryDestroy(Boundary **boundary)
 
   PetscFunctionBeginUser;
   if (!b) PetscFunctionReturn(0);
-  for (PetscInt k = 0; k < b->c->n_boundary; ++k) PetscCall(PetscFree(b->motion[k].node));
+  for (PetscInt k = 0; k < count_entries(b); ++k) PetscCall(PetscFree(b->motion[k].node));
   PetscCall(PetscFree(b->motion));
   PetscCall(PetscFree(b->member));
   PetscCall(PetscFree(b->fixed));
@@ -218,9 +243,9 @@ PetscErrorCode BoundaryMove(Boundary *b, const Grid *grid, PetscReal t)
   if (!any) PetscFunctionReturn(0);
   PetscCall(PetscArrayzero(b->fixed, dofs));
   for (PetscInt i = 0; i < dofs; ++i) b->entry[i] = -1;
-  for (PetscInt k = 0; k < b->c->n_boundary; ++k) {
+  for (PetscInt k = 0; k < count_entries(b); ++k) {
     MotionNodes *motion = &b->motion[k];
-    if (b->c->boundary[k].moves) {
+    if (entry_of(b, k)->moves) {
       PetscCall(PetscFree(motion->node));
       PetscCall(PetscMalloc1(b->n_nodes, &motion->node));
       motion->n = 0;

@@ -25,7 +25,7 @@ typedef void (*MotionField)(void *context, const PetscReal *x, PetscReal t0, Pet
 typedef struct Boundary {
   const Case *c;
   PetscInt dim, n_nodes;
-  MotionNodes *motion;  /* one per entry of the case's boundary */
+  MotionNodes *motion;  /* one per entry of the case's boundary; in axisymmetry the axis behind them */
   unsigned char *fixed; /* n_nodes x dim */
   PetscInt *entry;      /* n_nodes x dim: the entry that prescribes the dof, -1 if none */
   PetscInt n_walls;     /* nodes that slide */
@@ -51,6 +51,11 @@ PetscErrorCode BoundaryFollow(Boundary *boundary, const Grid *cloud);
  * ranks in another way. */
 PetscErrorCode BoundaryRegrid(Boundary **boundary, const Grid *grid);
 PetscErrorCode BoundaryDestroy(Boundary **boundary);
+
+/* Which of `motion` is the axis, whose nodes the program holds along x; -1: there is none. */
+PetscInt boundary_axis(const Boundary *boundary);
+/* Is the node held by the axis alone? It slides along it. */
+PetscBool boundary_slides_on_axis(const Boundary *boundary, PetscInt node);
 
 /* For a grid that is restored: choose anew, at time t, the nodes of the places that move. Where
  * entries have come to overlap, the first of them prescribes. */

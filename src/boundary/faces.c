@@ -35,7 +35,7 @@ static PetscReal face_jacobian(PetscInt dim, PetscInt nf, PetscReal x[4][3], con
   return PetscSqrtReal(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
 }
 
-PetscInt face_quadrature(const Grid *grid, PetscInt cell, PetscInt side, FacePoint *q)
+PetscInt face_quadrature(const Kinematics *kinematics, const Grid *grid, PetscInt cell, PetscInt side, FacePoint *q)
 {
   static const PetscReal third[3][2] = {{1. / 6, 1. / 6}, {2. / 3, 1. / 6}, {1. / 6, 2. / 3}};
   const PetscReal g = 0.57735026918962576451;
@@ -58,7 +58,7 @@ PetscInt face_quadrature(const Grid *grid, PetscInt cell, PetscInt side, FacePoi
         q[k].xi[d] += N[i] * type->reference[type->face[side][i]][d];
       }
     }
-    q[k].area = face_jacobian(grid->dim, nf, x, dN) * (nf == 3 ? 1. / 6 : 1);
+    q[k].area = face_jacobian(grid->dim, nf, x, dN) * (nf == 3 ? 1. / 6 : 1) * kinematics_weight(kinematics, q[k].x[0]);
   }
   return nf;
 }

@@ -6,12 +6,12 @@
 
 typedef struct {
   PetscReal x[3], xi[3]; /* position, and reference position in the cell */
-  PetscReal area;        /* weight: m2, or m times the unit thickness */
+  PetscReal area;        /* weight, m2: an edge is as thick as one, or goes round the circle */
 } FacePoint;
 
 /* Gauss points of a side of a cell (2 on an edge, 3 on a triangle, 4 on a quadrilateral); returns
  * how many. */
-PetscInt face_quadrature(const Grid *grid, PetscInt cell, PetscInt side, FacePoint *q);
+PetscInt face_quadrature(const Kinematics *kinematics, const Grid *grid, PetscInt cell, PetscInt side, FacePoint *q);
 
 /* Collective. Faces between the cells that hold points of the body and all others, as far as the
  * selector's coordinates and shape take all their nodes. */

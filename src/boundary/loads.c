@@ -65,7 +65,7 @@ static PetscErrorCode GridTraction(Loads *loads, const Grid *grid, PetscInt load
   PetscCall(GridSelectFaces(grid, &loads->c->loads[load].on, &faces->n, &faces->cell, &side));
   PetscCall(PetscCalloc1(faces->n * nn, &faces->N));
   for (PetscInt f = 0; f < faces->n; ++f) {
-    const PetscInt nq = face_quadrature(grid, faces->cell[f], side[f], q);
+    const PetscInt nq = face_quadrature(loads->c->kinematics, grid, faces->cell[f], side[f], q);
     for (PetscInt k = 0; k < nq; ++k) {
       grid_shape(grid, faces->cell[f], q[k].xi, N);
       for (PetscInt I = 0; I < nn; ++I) faces->N[f * nn + I] += N[I] * q[k].area;
@@ -88,7 +88,7 @@ static PetscErrorCode BodyTraction(Loads *loads, const Grid *grid, const Points 
   while (body < loads->c->n_bodies && strcmp(loads->c->bodies[body].name, spec->on.body)) ++body;
   PetscCall(BodyFaces(grid, points, body, &spec->on, &n, &cell, &side));
   for (PetscInt f = 0; f < n; ++f) {
-    const PetscInt nq = face_quadrature(grid, cell[f], side[f], q);
+    const PetscInt nq = face_quadrature(loads->c->kinematics, grid, cell[f], side[f], q);
     for (PetscInt k = 0; k < nq; ++k) {
       for (PetscInt d = 0; d < loads->dim; ++d) force[d] = q[k].area * spec->value[d];
       PetscCall(AddCarrier(loads, load, cell[f], q[k].x, q[k].xi, force));
@@ -160,7 +160,7 @@ PetscErrorCode LoadsLeaveCells(Loads *l, const Grid *grid, const Points *points)
     l->faces[k].n = 0;
     PetscCall(GridSelectFaces(grid, &l->c->loads[k].on, &n, &cell, &side));
     for (PetscInt f = 0; f < n; ++f) {
-      const PetscInt nq = filled[cell[f]] ? face_quadrature(grid, cell[f], side[f], q) : 0;
+      const PetscInt nq = filled[cell[f]] ? face_quadrature(l->c->kinematics, grid, cell[f], side[f], q) : 0;
       for (PetscInt i = 0; i < nq; ++i) {
         for (PetscInt d = 0; d < l->dim; ++d) force[d] = q[i].area * l->c->loads[k].value[d];
         PetscCall(AddCarrier(l, k, cell[f], q[i].x, q[i].xi, force));

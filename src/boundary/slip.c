@@ -84,7 +84,7 @@ static PetscBool goes_through(const Boundary *b, const Grid *grid, const WallNod
   for (PetscInt k = 0; k < 6 * wall->n; ++k) {
     PetscReal through = 0, size = 0;
     for (PetscInt d = 0, i = wall->node * b->dim; d < b->dim; ++d, ++i) {
-      if (!b->fixed[i]) continue;
+      if (!b->fixed[i] || b->entry[i] == boundary_axis(b)) continue;
       const PetscReal t = part[k % 6] * b->c->analysis.end;
       const PetscReal move = motion_increment(b->c, &b->c->boundary[b->entry[i]], x, d, 0, t);
       if (move != 0) *entry = b->entry[i];

@@ -75,6 +75,7 @@ KERNEL LawStatus batch_update(const int dim, const int nn, const PetscBool hoop,
                               PetscBool tangent, Batch *b)
 {
   batch_increments(dim, nn, hoop, PETSC_TRUE, in, b);
+  if (batch_crosses_axis(in, b)) return LAW_INVERTED;
   return pressure_update(batch_material(in, b), b->n, b->dF, b->p, batch_old(in, b), b->state, tangent, &b->s);
 }
 

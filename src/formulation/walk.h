@@ -51,9 +51,18 @@ static inline const PetscReal *batch_old(const WeakFormInput *in, Batch *b)
   return b->old;
 }
 
+/* Would a ring of the batch turn inside out across its axis? */
+static inline PetscBool batch_crosses_axis(const WeakFormInput *in, const Batch *b)
+{
+  for (PetscInt k = 0; in->kinematics->hoop && k < b->n; ++k)
+    if (b->dF[9 * k + 8] <= 0) return PETSC_TRUE;
+  return PETSC_FALSE;
+}
+
 /* Call the law on the increments b->dF. */
 static inline LawStatus batch_law(const WeakFormInput *in, PetscBool tangent, Batch *b)
 {
+  if (batch_crosses_axis(in, b)) return LAW_INVERTED;
   const Material *material = batch_material(in, b);
   const Law *law = material->law;
   const PetscBool plane = law->update_plane && kinematics_is_plane(in->kinematics);

@@ -68,6 +68,9 @@ PetscErrorCode GridCreate(MPI_Comm comm, const Case *c, GridWeight weight, void 
  * of the case: for bodies that bring their own mesh. Collective. */
 PetscErrorCode GridCreateMesh(MPI_Comm comm, const GridSpec *spec, PetscInt dim, const char *path, GridWeight weight,
                               void *context, Diag *diag, Grid **grid);
+/* Collective. A mesh that reaches beyond the axis of these kinematics is a mistake, told at `path`:
+ * *grid is then NULL. */
+PetscErrorCode GridCheckAxis(const Kinematics *kinematics, const char *path, Diag *diag, Grid **grid);
 PetscErrorCode GridDestroy(Grid **grid);
 
 /* Collective. The grid that `old` is, shared among the ranks by `weight` of its local cells (>= 0;

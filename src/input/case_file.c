@@ -76,12 +76,14 @@ static PetscErrorCode FolderOf(const char *file, char **folder)
   PetscFunctionReturn(0);
 }
 
-/* The number of dimensions decides how long vectors are: it is read ahead of everything else. */
-static PetscInt peek_dimensions(const YamlNode *root)
+/* The kinematics decide how long vectors are and which keys mean something: they are read ahead of
+ * everything else. */
+static void peek_kinematics(const YamlNode *root, SchemaReader *r)
 {
   const YamlNode *node = yaml_find(root, "kinematics");
   const Kinematics *kinematics = node && node->kind == YAML_SCALAR ? kinematics_find(node->text) : NULL;
-  return kinematics ? kinematics->dim : 0;
+  r->dim = kinematics ? kinematics->dim : 0;
+  r->hoop = kinematics ? kinematics->hoop : PETSC_FALSE;
 }
 
 static PetscBool anything_yields(const Case *c)
@@ -120,13 +122,14 @@ static PetscErrorCode ResolveGravity(Case *c)
 
 static PetscErrorCode ReadDocument(const char *file, YamlDocument *document, Diag *diag, Case **c)
 {
-  SchemaReader reader = {.document = document, .diag = diag, .dim = peek_dimensions(document->root)};
+  SchemaReader reader = {.document = document, .diag = diag};
 
   PetscFunctionBeginUser;
   PetscCall(PetscNew(c));
   PetscCall(PetscStrallocpy(file, &(*c)->file));
   PetscCall(FolderOf(file, &(*c)->folder));
   reader.c = *c;
+  peek_kinematics(document->root, &reader);
   PetscCall(SchemaReadTable(&reader, &schema_case, document->root, *c));
   resolve_stabilisation(yaml_find(document->root, "stabilisation"), *c);
   PetscCall(ResolveGravity(*c));

@@ -49,7 +49,10 @@ static const char *print_kind(const SchemaEntry *e, PetscBool markdown, char *bu
   return buffer;
 }
 
-static const char *print_where(const SchemaEntry *e) { return e->only_2d ? " (2D)" : e->only_3d ? " (3D)" : ""; }
+static const char *print_where(const SchemaEntry *e)
+{
+  return e->turns ? " (not in axisymmetry)" : e->only_2d ? " (2D)" : e->only_3d ? " (3D)" : "";
+}
 
 /* --- text --- */
 static void text_entry(FILE *out, const SchemaEntry *e)

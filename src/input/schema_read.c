@@ -29,7 +29,7 @@ static SchemaEntry find_entry(const SchemaTable *table, const char *key)
 
 static PetscBool fits(const SchemaReader *r, const SchemaEntry *entry)
 {
-  return !((entry->only_2d && r->dim == 3) || (entry->only_3d && r->dim == 2));
+  return !((entry->only_2d && r->dim == 3) || (entry->only_3d && r->dim == 2) || (entry->turns && r->hoop));
 }
 
 /* A key with nothing behind it counts as absent where a mapping or a list may be absent. */
@@ -71,9 +71,10 @@ static PetscErrorCode UnknownKeys(SchemaReader *r, const SchemaTable *table, con
     entry = find_entry(table, child->key);
     if (entry.key && fits(r, &entry)) continue;
     if (entry.key) {
-      SchemaKeyError(
-        r, child, "key '%s' of %s belongs to %s", child->key, yaml_path(mapping, path, sizeof(path)),
-        entry.only_2d ? "two dimensions, this case is 3d" : "kinematics: 3d, this case is two-dimensional");
+      SchemaKeyError(r, child, "key '%s' of %s %s", child->key, yaml_path(mapping, path, sizeof(path)),
+                     entry.turns     ? "has no meaning in axisymmetry: nothing turns, about the axis nor across it"
+                     : entry.only_2d ? "belongs to two dimensions, this case is 3d"
+                                     : "belongs to kinematics: 3d, this case is two-dimensional");
       if (!strcmp(child->key, "circle")) diag_hint(r->diag, "in 3d there is 'sphere'");
       if (!strcmp(child->key, "sphere")) diag_hint(r->diag, "in two dimensions there is 'circle'");
     } else {

@@ -32,6 +32,7 @@ static PetscBool written(const Case *c, const SchemaTable *table, const SchemaEn
 {
   const PetscInt dim = kinematics_dim(c->kinematics);
   if (e->input_only || (e->only_2d && dim == 3) || (e->only_3d && dim == 2)) return PETSC_FALSE;
+  if (e->turns && c->kinematics->hoop) return PETSC_FALSE;
   if (e->tagged && !is_tag(table, e, at(source, table->tag_offset))) return PETSC_FALSE;
   if (e->present && !*(const PetscBool *)at(source, e->present - 1)) return PETSC_FALSE;
   if (table->hide && table->hide(e, source)) return PETSC_FALSE;

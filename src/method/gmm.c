@@ -29,13 +29,15 @@ static PetscBool is_held(const Discretisation *s, PetscInt node)
 }
 
 /* How much of the mass is missing that even a node at the corner of a body would have; 0: none, 1:
- * all. */
+ * all. A corner at the axis weighs as much as a ring of a third of a spacing. */
 static PetscReal starved(const Discretisation *s, PetscInt node, PetscReal density)
 {
   const PetscInt dim = s->grid->dim;
-  const PetscReal h = s->grid->cloud->spacing, corner = density * (dim == 3 ? h * h * h / 16 : h * h / 8);
-  if (is_held(s, node)) return 0; /* what it would do without mass does not matter */
-  return PetscMax(0, 1 - PetscMax(0, s->nodes->mass[node]) / corner);
+  const PetscReal h = s->grid->cloud->spacing, corner = dim == 3 ? h * h * h / 16 : h * h / 8;
+  const PetscReal round = kinematics_weight(s->c->kinematics, PetscMax(s->grid->x[node * dim], h / 3));
+  /* what it would do without mass does not matter */
+  if (is_held(s, node) && !boundary_slides_on_axis(s->boundary, node)) return 0;
+  return PetscMax(0, 1 - PetscMax(0, s->nodes->mass[node]) / (density * corner * round));
 }
 
 /* Where a node has hardly any mass its force still counts in full, as in cells that are not full,
@@ -60,7 +62,8 @@ static PetscErrorCode Stabilise(Discretisation *s)
     for (PetscInt i = w->node_start[p]; i < w->node_start[p + 1]; ++i)
       lack = PetscMax(lack, starved(s, w->node[i], material->density));
     s->lumping[p] = s->c->analysis.mass == MASS_LUMPED ? 1 : s->c->stabilisation.mass * lack;
-    s->soft[p] = s->c->stabilisation.stiffness * lack * material->wave_modulus * length;
+    s->soft[p] = s->c->stabilisation.stiffness * lack * material->wave_modulus * length *
+                 kinematics_weight(s->c->kinematics, *point_real(s->points, POINT_X, p));
   }
   PetscFunctionReturn(0);
 }

@@ -128,11 +128,12 @@ static PetscErrorCode Stabilise(Discretisation *s)
         shear = PetscMax(shear, s->materials[s->points->material[p]].elastic.shear);
       }
     grid_cell_x(s->grid, cell, x);
-    const PetscReal volume = cell_volume(grid_cell_type(s->grid, cell), x), share = 1 / (PetscReal)(end - g);
+    const CellType type = grid_cell_type(s->grid, cell);
+    const PetscReal volume = cell_volume_in(s->c->kinematics, type, x), share = 1 / (PetscReal)(end - g);
     const PetscBool hourglass = whole && grid_cell(s->grid, cell)->nodes > dim + 1;
     const PetscReal corner = hourglass ? emptiest_corner(w, g, s->points->real[POINT_MASS], mass) : 1;
     const PetscReal lack = PetscMax(0, 1 - PetscMin(filled / volume, corner));
-    const PetscReal size = dim == 2 ? PetscSqrtReal(volume) : cbrt(volume);
+    const PetscReal size = dim == 2 ? PetscSqrtReal(cell_volume(type, x)) : cbrt(volume);
     for (PetscInt k = g; k < end; ++k) {
       s->lumping[k] = s->c->analysis.mass == MASS_LUMPED ? 1 : s->c->stabilisation.mass * lack;
       s->tie[k] = whole ? s->c->stabilisation.inertia * lack * mass : 0;

@@ -127,10 +127,12 @@ static PetscErrorCode ForceScales(const Model *m, const PetscReal *g, PetscReal 
   PetscFunctionReturn(0);
 }
 
-/* Stiffness of one node, about: multipliers over it are displacements, gaps times it are forces. */
+/* Stiffness of one node, of the outermost ring: multipliers over it are displacements, gaps times
+ * it are forces. */
 static PetscReal node_stiffness(const Model *m, PetscReal inertia)
 {
-  const PetscReal h = m->grid->smallest, area = m->dim == 3 ? h * h : h;
+  const PetscReal h = m->grid->smallest;
+  const PetscReal area = m->dim == 3 ? h * h : h * kinematics_weight(m->c->kinematics, m->grid->max[0]);
   PetscReal scale = 0;
   for (PetscInt i = 0; i < m->c->n_materials; ++i)
     scale = PetscMax(scale, m->materials[i].wave_modulus * area / h + inertia * m->materials[i].density * area * h);

@@ -158,6 +158,30 @@ static PetscErrorCode ReportSizes(Model *m, FILE *out)
   PetscFunctionReturn(0);
 }
 
+static PetscErrorCode CountHeld(const Model *m, PetscInt motion, PetscInt *all)
+{
+  const MotionNodes *nodes = &m->boundary->motion[motion];
+  PetscInt local = 0;
+
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < nodes->n; ++i) local += nodes->node[i] < m->grid->n_owned;
+  PetscCall(MPIU_Allreduce(&local, all, 1, MPIU_INT, MPI_SUM, m->comm));
+  PetscFunctionReturn(0);
+}
+
+/* What nobody wrote into the case file. */
+static PetscErrorCode ReportAxis(const Model *m, FILE *out)
+{
+  PetscInt all;
+
+  PetscFunctionBeginUser;
+  if (boundary_axis(m->boundary) < 0) PetscFunctionReturn(0);
+  PetscCall(CountHeld(m, boundary_axis(m->boundary), &all));
+  say(m, out, "#   full circle: volumes, masses, forces and energies are those of the whole body of revolution\n");
+  say(m, out, "#   axis: %d nodes at x = 0 are held along x, whatever `boundary` says\n", (int)all);
+  PetscFunctionReturn(0);
+}
+
 static PetscErrorCode ReportSets(const Model *m, FILE *out)
 {
   PetscFunctionBeginUser;
@@ -170,11 +194,11 @@ static PetscErrorCode ReportSets(const Model *m, FILE *out)
     else say(m, out, "#   boundary %s: %d nodes, %d faces\n", set->name, (int)all[0], (int)all[1]);
   }
   for (PetscInt k = 0; k < m->c->n_boundary; ++k) {
-    PetscInt local = 0, all;
-    for (PetscInt i = 0; i < m->boundary->motion[k].n; ++i) local += m->boundary->motion[k].node[i] < m->grid->n_owned;
-    PetscCall(MPIU_Allreduce(&local, &all, 1, MPIU_INT, MPI_SUM, m->comm));
+    PetscInt all;
+    PetscCall(CountHeld(m, k, &all));
     say(m, out, "#   boundary[%d]: moves %d nodes\n", (int)k, (int)all);
   }
+  PetscCall(ReportAxis(m, out));
   PetscFunctionReturn(0);
 }
 

@@ -31,6 +31,8 @@ PetscErrorCode SummaryBegin(Model *m, RunDir *dir)
   PetscCallMPI(MPI_Comm_size(m->comm, &size));
   if (m->c->title) PetscCall(RunDirLog(dir, "title = %s", m->c->title));
   if (case_has_k0(m->c)) PetscCall(RunDirLog(dir, "gravity = from the start, whose stress k0 gives"));
+  if (m->c->kinematics->hoop)
+    PetscCall(RunDirLog(dir, "kinematics = axisymmetric: volumes, masses, forces and energies of the full circle"));
   PetscCall(RunDirLog(dir, "method = %s", m->method->name));
   PetscCall(RunDirLog(dir, "cells = %d nodes = %d points = %d ranks = %d", (int)m->grid->n_cells_global,
                       (int)m->grid->n_nodes_global, (int)points, (int)size));

@@ -9,6 +9,9 @@ typedef struct {
 #define WITH_BODY(body) PLAIN_TOP PLAIN_GRID "bodies: [" body "]\n" PLAIN_MATERIALS
 #define WITH_MATERIAL(constants) PLAIN_TOP PLAIN_GRID PLAIN_BODIES "materials: {rubber: {" constants "}}\n"
 #define WITH_GRID(grid) PLAIN_TOP "grid: {" grid "}\n" PLAIN_BODIES PLAIN_MATERIALS
+#define AROUND(box, more)                                                        \
+  "kinematics: axisymmetric\nmethod: mpm\nanalysis: {type: static}\ngrid: {" box \
+  ", size: 0.5}\n" PLAIN_BODIES PLAIN_MATERIALS more
 #define WITH_ANALYSIS(analysis) \
   "kinematics: plane-strain\nmethod: mpm\nanalysis: {" analysis "}\n" PLAIN_GRID PLAIN_BODIES PLAIN_MATERIALS
 #define BOX "box: {min: [0, 0], max: [4, 2]}"
@@ -49,6 +52,21 @@ static const Bad bads[] = {
   {"basis without numbers",
    PLAIN "basis: {cell: {gamma: 2}}\n",
    {"F:9:16: error: key 'gamma' of basis.cell is not known"}},
+  /* what means nothing where the plane turns about its axis */
+  {"a grid across the axis",
+   AROUND("box: {min: [-0.5, 0], max: [4, 2]}", ""),
+   {"F:4:20: error: grid.box.min: x is the radius, it cannot begin at -0.5", "hint: the axis is at x = 0"}},
+  {"gravity along the radius",
+   AROUND(BOX, "loads: {gravity: [1, -9.81]}\n"),
+   {"F:9:19: error: loads.gravity: 1 along x is not axisymmetric, gravity acts along the axis",
+    "hint: the axis is y: gravity: [0, -9.81]"}},
+  {"a rotation in axisymmetry",
+   AROUND(BOX, "boundary: [{on: {x: 0}, rotation: {centre: [0, 0], rate: 1}}]\n"),
+   {"F:9:25: error: key 'rotation' of boundary[0] has no meaning in axisymmetry"}},
+  {"spins in axisymmetry",
+   AROUND(BOX, "measures: {a: {spin: z}, b: {angular_momentum: z}, c: {momentum: x}, d: {momentum: y}}\n"),
+   {"F:9:16: error: key 'spin' of measures.a has no meaning", "F:9:30: error: key 'angular_momentum' of measures.b",
+    "F:9:66: error: measures.c.momentum: x: round the full circle it is zero", "hint: along the axis it means"}},
   /* keys */
   {"unknown key",
    WITH_MATERIAL("law: neo-hookean, density: 1, yung: 1, young: 1, poisson: 0"),

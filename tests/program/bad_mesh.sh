@@ -99,6 +99,11 @@ sed 's/region: soil/region: soyl/' good.yaml >case.yaml
 check "unknown region" "case.yaml:6:27: error: " "'soyl'" "did you mean 'soil'?"
 sed 's/boundary: wall/boundary: wal/' good.yaml >case.yaml
 check "unknown boundary" "case.yaml:10:" "'wal'" "did you mean 'wall'?"
+sed 's/plane-strain/axisymmetric/' good.yaml >case.yaml
+plate 's/^\([14]\) 0 \([01]\) 0/\1 -1 \2 0/' >plate.msh
+check "a mesh across the axis" "case.yaml:4:14: error: the mesh crosses the axis x = 0: x is the radius, but its nodes go from x = -1 to 2" \
+  "hint: mesh the half of the section with x >= 0"
+plate '' >plate.msh
 printf 'Point(1) = {0, 0, 0;\n' >wrong.geo
 sed 's/plate.msh/wrong.geo/' good.yaml >case.yaml
 check "wrong geo" "wrong.geo"

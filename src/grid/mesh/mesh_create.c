@@ -73,11 +73,29 @@ PetscErrorCode GridCreateMesh(MPI_Comm comm, const GridSpec *spec, PetscInt dim,
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode GridCheckAxis(const Kinematics *kinematics, const char *path, Diag *diag, Grid **grid)
+{
+  PetscMPIInt rank;
+
+  PetscFunctionBeginUser;
+  if (!*grid || !kinematics->hoop || (*grid)->min[0] >= -1e-9 * ((*grid)->max[0] - (*grid)->min[0]))
+    PetscFunctionReturn(0);
+  PetscCallMPI(MPI_Comm_rank((*grid)->comm, &rank));
+  if (!rank) {
+    diag_error(diag, path, "the mesh %s the axis x = 0: x is the radius, but its nodes go from x = %g to %g",
+               (*grid)->max[0] > 0 ? "crosses" : "lies beyond", (double)(*grid)->min[0], (double)(*grid)->max[0]);
+    diag_hint(diag, "mesh the half of the section with x >= 0");
+  }
+  PetscCall(GridDestroy(grid));
+  PetscFunctionReturn(0);
+}
+
 static PetscErrorCode Create(MPI_Comm comm, const Case *c, GridWeight weight, void *context, Diag *diag, Grid **grid)
 {
   PetscFunctionBeginUser;
   PetscCall(GeoCheckParameters(comm, c, diag));
   PetscCall(GridCreateMesh(comm, &c->grid, kinematics_dim(c->kinematics), "grid.mesh", weight, context, diag, grid));
+  PetscCall(GridCheckAxis(c->kinematics, "grid.mesh", diag, grid));
   PetscFunctionReturn(0);
 }
 

@@ -62,6 +62,7 @@ struct SchemaEntry {
   PetscReal min, max;   /* if bounded */
   PetscBool bounded, min_open, max_open;
   PetscBool required, only_2d, only_3d;
+  PetscBool turns;      /* a rotation: means nothing where the plane itself turns about its axis */
   PetscBool endless;    /* a number beyond what its unit can mean has a meaning: none */
   PetscBool always;     /* a mapping that is read even if absent: its keys have defaults */
   PetscBool input_only; /* resolved to another key, never written */
@@ -89,7 +90,8 @@ typedef struct SchemaReader {
   YamlDocument *document;
   Diag *diag;
   Case *c;
-  PetscInt dim; /* 0: kinematics could not be read, lengths are not checked */
+  PetscInt dim;   /* 0: kinematics could not be read, lengths are not checked */
+  PetscBool hoop; /* do the kinematics have one? */
 } SchemaReader;
 
 struct SchemaTable {
@@ -198,7 +200,7 @@ extern const SchemaWriteType schema_writers[TYPE_COUNT];
 /* --- checks of tables (schema_checks.c) --- */
 typedef PetscErrorCode SchemaCheck(SchemaReader *r, const YamlNode *mapping, void *target);
 extern SchemaCheck SchemaCheckAnalysis, SchemaCheckBox, SchemaCheckGrid, SchemaCheckShapeBox, SchemaCheckShape,
-  SchemaCheckHalfSpace, SchemaCheckBody, SchemaCheckSelector, SchemaCheckMotion;
+  SchemaCheckHalfSpace, SchemaCheckBody, SchemaCheckSelector, SchemaCheckMotion, SchemaCheckLoads;
 /* Materials take the parameters of their law (schema_material.c). */
 PetscErrorCode SchemaOpenMaterial(SchemaReader *r, const YamlNode *mapping, void *target);
 PetscErrorCode SchemaWriteMaterial(FILE *out, int indent, const Case *c, const void *source);

@@ -33,7 +33,7 @@ static const SchemaEntry motion_entries[] = {
   KEY("displacement", TABLE, NULL, "prescribed displacement from the start", .table = &components,
       TAG(MOTION_DISPLACEMENT)),
   KEY("velocity", TABLE, NULL, "prescribed velocity", .table = &components, TAG(MOTION_VELOCITY)),
-  KEY("rotation", TABLE, NULL, "rigid rotation about a point", .table = &rotation, TAG(MOTION_ROTATION)),
+  KEY("rotation", TABLE, NULL, "rigid rotation about a point", .table = &rotation, TAG(MOTION_ROTATION), TURNS),
   KEY("amplitude", AMPLITUDE, NULL, "factor over time: [[time, factor], ...], linear between",
       .note = "1, or time / end for a displacement", AT(MotionSpec, amplitude)),
   KEY("moves", BOOLEAN, NULL,
@@ -56,7 +56,8 @@ const SchemaTable schema_motion = {.name = "boundary",
 static const SchemaEntry traction_entries[] = {
   KEY("on", TABLE, NULL, "a boundary of the grid, or of a body (then the load moves with it)",
       .table = &schema_selector, REQUIRED, AT(LoadSpec, on)),
-  KEY("value", VECTOR, "N/m2", "force per undeformed boundary", REQUIRED, AT(LoadSpec, value)),
+  KEY("value", VECTOR, "N/m2", "force per undeformed boundary; it goes all round in axisymmetry", REQUIRED,
+      AT(LoadSpec, value)),
   KEY("amplitude", AMPLITUDE, NULL, "factor over time", .note = "time / end in statics, 1 in dynamics",
       AT(LoadSpec, amplitude)),
   {.key = NULL},
@@ -69,7 +70,7 @@ static const SchemaTable traction = {.name = "traction",
 static const SchemaEntry point_load_entries[] = {
   KEY("at", VECTOR, "m", "the piece of material that carries it, by its position at the start", REQUIRED,
       AT(LoadSpec, at)),
-  KEY("force", VECTOR, "N", "the force", REQUIRED, AT(LoadSpec, value)),
+  KEY("force", VECTOR, "N", "the force; in axisymmetry that of the whole circle", REQUIRED, AT(LoadSpec, value)),
   KEY("amplitude", AMPLITUDE, NULL, "factor over time", .note = "time / end in statics, 1 in dynamics",
       AT(LoadSpec, amplitude)),
   {.key = NULL},
@@ -89,4 +90,5 @@ static const SchemaEntry loads_entries[] = {
       ITEMS(LOAD_POINT)),
   {.key = NULL},
 };
-const SchemaTable schema_loads = {.name = "loads", .help = "What acts on the material.", .entries = loads_entries};
+const SchemaTable schema_loads = {
+  .name = "loads", .help = "What acts on the material.", .entries = loads_entries, .check = SchemaCheckLoads};

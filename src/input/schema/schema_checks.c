@@ -71,9 +71,15 @@ static void check_corners(SchemaReader *r, const YamlNode *mapping, const PetscR
 PetscErrorCode SchemaCheckBox(SchemaReader *r, const YamlNode *mapping, void *target)
 {
   const GridSpec *grid = target;
+  const YamlNode *min = yaml_find(mapping, "min");
 
   PetscFunctionBeginUser;
   check_corners(r, mapping, grid->min, grid->max);
+  if (r->hoop && grid->min[0] < 0) {
+    SchemaError(r, min->n ? min->child[0] : min, "grid.box.min: x is the radius, it cannot begin at %g",
+                (double)grid->min[0]);
+    diag_hint(r->diag, "the axis is at x = 0: a body that reaches it begins there");
+  }
   PetscFunctionReturn(0);
 }
 
@@ -281,5 +287,19 @@ PetscErrorCode SchemaCheckMotion(SchemaReader *r, const YamlNode *mapping, void 
       SchemaError(r, yaml_find(rotation, "axis"), "%s.rotation.axis has no direction",
                   yaml_path(mapping, path, sizeof(path)));
   }
+  PetscFunctionReturn(0);
+}
+
+/* --- loads --- */
+PetscErrorCode SchemaCheckLoads(SchemaReader *r, const YamlNode *mapping, void *target)
+{
+  const Case *c = target;
+  const YamlNode *gravity = yaml_find(mapping, "gravity");
+
+  PetscFunctionBeginUser;
+  if (!r->hoop || c->gravity[0] == 0) PetscFunctionReturn(0);
+  SchemaError(r, gravity->n ? gravity->child[0] : gravity,
+              "loads.gravity: %g along x is not axisymmetric, gravity acts along the axis", (double)c->gravity[0]);
+  diag_hint(r->diag, "the axis is y: gravity: [0, -9.81]");
   PetscFunctionReturn(0);
 }

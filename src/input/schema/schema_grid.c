@@ -22,8 +22,8 @@ static const SchemaWord outside_words[] = {
   {NULL, 0, NULL},
 };
 static const SchemaWord weights_words[] = {
-  {"auto", WEIGHTS_AUTO, "equal for mpm, gauss for fem and gmm"},
-  {"equal", WEIGHTS_EQUAL, "the points of a cell share its mass equally"},
+  {"auto", WEIGHTS_AUTO, "equal for mpm (in axisymmetry of triangles alone), gauss for fem and gmm"},
+  {"equal", WEIGHTS_EQUAL, "the points of a cell share its mass equally; in axisymmetry its section"},
   {"gauss", WEIGHTS_GAUSS, "by the weights of the Gauss rule"},
   {NULL, 0, NULL},
 };
@@ -99,9 +99,9 @@ static const SchemaEntry body_entries[] = {
   KEY("weights", WORD, NULL, "how the points of a cell share its mass", .words = weights_words, .fallback = "auto",
       AT(BodySpec, weights)),
   KEY("velocity", VECTOR, "m/s", "at the start", .note = "0", AT(BodySpec, velocity)),
-  KEY("spin", SPIN, "rad/s", "at the start, about `spin_centre`: a number in 2D, a vector in 3D", .note = "0",
+  KEY("spin", SPIN, "rad/s", "at the start, about `spin_centre`: a number in 2D, a vector in 3D", .note = "0", TURNS,
       AT(BodySpec, spin)),
-  KEY("spin_centre", VECTOR, "m", "position that does not move by the spin", .note = "the origin",
+  KEY("spin_centre", VECTOR, "m", "position that does not move by the spin", .note = "the origin", TURNS,
       AT(BodySpec, spin_centre)),
   KEY(
     "k0", NUMBER, NULL,

@@ -24,6 +24,7 @@
 #define ALWAYS .always = PETSC_TRUE
 #define ONLY_2D .only_2d = PETSC_TRUE
 #define ONLY_3D .only_3d = PETSC_TRUE
+#define TURNS .turns = PETSC_TRUE
 #define INPUT_ONLY .input_only = PETSC_TRUE
 
 /* Tables that others name. */

@@ -78,6 +78,7 @@ static SchemaEntry entry_of(const Measure *measure)
   entry.help = measure->number.help;
   entry.registry = (const void *const *)measure->words;
   entry.only_2d = measure->only_2d;
+  entry.turns = measure->takes == MEASURE_SPIN_AXIS;
   entry.tagged = PETSC_TRUE;
   return entry;
 }
@@ -114,6 +115,14 @@ static void check_front(SchemaReader *r, const YamlNode *mapping, const MeasureS
     SchemaError(r, front, "%s.%s.front: the surface's front is max: x", path, m->kind);
 }
 
+/* Round the circle radial momenta add up to nothing. */
+static void check_component(SchemaReader *r, const YamlNode *mapping, const MeasureSpec *m, const char *path)
+{
+  if (!r->hoop || m->component || !measure_find(m->kind)->no_radial) return;
+  SchemaError(r, yaml_find(mapping, m->kind), "%s.%s: x: round the full circle it is zero", path, m->kind);
+  diag_hint(r->diag, "along the axis it means something: %s: y", m->kind);
+}
+
 static void check_subject(SchemaReader *r, const YamlNode *mapping, const MeasureSpec *m, const char *path)
 {
   const YamlNode *of_node = yaml_find(mapping, "of");
@@ -138,6 +147,7 @@ static PetscErrorCode CheckMeasure(SchemaReader *r, const YamlNode *mapping, voi
   yaml_path(mapping, path, sizeof(path));
   check_place(r, mapping, target, path);
   check_front(r, mapping, target, path);
+  check_component(r, mapping, target, path);
   check_subject(r, mapping, target, path);
   PetscFunctionReturn(0);
 }

@@ -36,6 +36,7 @@ typedef struct {
   const char *key;
   MeasureArgument takes;
   PetscBool only_2d;
+  PetscBool no_radial; /* a vector whose radial component adds up to zero in axisymmetry */
   /* of the key: its help; its unit for people, if words have several */
   MeasureNumber number;
   const MeasureNumber *const *words; /* with MEASURE_WORD: ended by NULL */

@@ -65,8 +65,8 @@ const Measure measure_mass = {.key = "mass",
                               .number = {.unit = "kg", .help = "mass"},
                               .words = (const MeasureNumber *const[]){
                                 WORD("total", "of all points, or of the body given by `of`", .value = Mass), NULL}};
-const Measure measure_momentum = {.key = "momentum",
-                                  .number = {.unit = "kg m/s", .help = "linear momentum", .sum = momentum}};
+const Measure measure_momentum = {
+  .key = "momentum", .no_radial = PETSC_TRUE, .number = {.unit = "kg m/s", .help = "linear momentum", .sum = momentum}};
 const Measure measure_angular_momentum = {
   .key = "angular_momentum",
   .takes = MEASURE_SPIN_AXIS,

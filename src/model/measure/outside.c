@@ -16,6 +16,7 @@ const Measure measure_outside = {.key = "outside",
                                  .words = words};
 const Measure measure_outside_momentum = {
   .key = "outside_momentum",
+  .no_radial = PETSC_TRUE,
   .number = {
     .unit = "kg m/s",
     .help = "momentum that went with points that left the grid: with those removed, and in stopping those kept on its "

@@ -16,6 +16,9 @@ const Measure measure_reaction = {
   .key = "reaction",
   .number = {
     .unit = "N",
-    .help = "force that holds a boundary; in dynamics its mean over the step, so that times the step it is the impulse",
+    .help =
+      "force that holds a boundary; in dynamics its mean over the step, so that times the step it is the impulse; "
+      "in axisymmetry y is the whole axial force, x the radial one added up round the circle, which has no "
+      "resultant but does the work",
     .of = OF_BOUNDARY,
     .value = Reaction}};

@@ -2,7 +2,8 @@
  *
  * Each point shares its volume between the two nearest stations by linear weights, so that the
  * profile integrates to the volume of the body's material (J at most 1) exactly and does not jump
- * when a point crosses a station. Stations stand one cell apart from the grid's lowest x on. */
+ * when a point crosses a station. Stations stand one cell apart from the grid's lowest x on. Where
+ * x is a radius the outer stations stand for wider rings. */
 #include "model/measure/measure.h"
 
 typedef struct {
@@ -16,6 +17,14 @@ static PetscReal station_spacing(const Model *m)
   const GridSpec *spec = &m->c->grid;
   if (spec->kind == GRID_BOX) return (spec->max[0] - spec->min[0]) / (PetscReal)spec->counts[0];
   return m->grid->smallest;
+}
+
+/* What one m of height above station i holds, m2: the integral of its weights over x, or over rings. */
+static PetscReal station_area(const Model *m, const Profile *s, PetscInt i)
+{
+  const PetscReal half = i == 0 || i == s->n - 1 ? 0.5 : 1;
+  const PetscReal inward = i == 0 ? s->dx / 3 : i == s->n - 1 ? -s->dx / 3 : 0; /* middle of half a hat */
+  return half * s->dx * kinematics_weight(m->c->kinematics, s->x0 + (PetscReal)i * s->dx + inward);
 }
 
 static PetscErrorCode ProfileCreate(const Model *m, PetscInt body, Profile *s)
@@ -33,12 +42,11 @@ static PetscErrorCode ProfileCreate(const Model *m, PetscInt body, Profile *s)
     const PetscReal at = (point_real(m->points, POINT_X, p)[0] - s->x0) / s->dx;
     const PetscInt i = PetscMax(0, PetscMin(s->n - 2, (PetscInt)PetscFloorReal(at)));
     const PetscReal share = PetscMax(0, PetscMin(1, at - (PetscReal)i));
-    s->height[i] += (1 - share) * volume / s->dx;
-    s->height[i + 1] += share * volume / s->dx;
+    s->height[i] += (1 - share) * volume;
+    s->height[i + 1] += share * volume;
   }
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, s->height, (PetscMPIInt)s->n, MPIU_REAL, MPI_SUM, m->comm));
-  s->height[0] *= 2; /* the outer stations stand for half a spacing */
-  s->height[s->n - 1] *= 2;
+  for (PetscInt i = 0; i < s->n; ++i) s->height[i] /= station_area(m, s, i);
   PetscFunctionReturn(0);
 }
 

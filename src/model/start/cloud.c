@@ -2,7 +2,8 @@
 #include "model/model_private.h"
 
 /* Nodes of cells that hold points, and nodes whose motion is prescribed: obstacles, and the body's
- * own boundary. Owners know of all ranks' cells. */
+ * own boundary. The axis is no obstacle where the body has no nodes on it. Owners know of all ranks'
+ * cells. */
 static PetscErrorCode MarkNodes(const Model *m, unsigned char *marked, unsigned char *twin)
 {
   const Grid *mesh = m->grid;
@@ -17,6 +18,7 @@ static PetscErrorCode MarkNodes(const Model *m, unsigned char *marked, unsigned 
   for (PetscInt i = 0; i < mesh->n_owned; ++i) {
     twin[i] = 0;
     for (PetscInt d = 0; d < m->dim; ++d) twin[i] |= m->boundary->fixed[i * m->dim + d];
+    if (mark[i] <= 0 && boundary_slides_on_axis(m->boundary, i)) twin[i] = 0;
     marked[i] = mark[i] > 0 ? CLOUD_BODY : (twin[i] ? CLOUD_OBSTACLE : 0);
   }
   PetscCall(PetscFree(mark));

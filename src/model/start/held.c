@@ -89,6 +89,7 @@ PetscErrorCode CheckHeld(const Model *m, Diag *diag)
   if (m->scheme->inertia || !points) PetscFunctionReturn(0);
   PetscCall(PetscCalloc2(n * n, &joined, n * dim, &held));
   PetscCall(Touches(m, joined, held));
+  for (PetscInt b = 0; b < n && m->c->kinematics->hoop; ++b) held[b * dim] = 1; /* a ring by its hoop */
   spread(n, dim, joined, held);
   for (PetscInt b = 0; b < n; ++b) {
     name_directions(dim, held + b * dim, directions);

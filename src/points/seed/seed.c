@@ -27,25 +27,11 @@ static PetscReal map_point(CellType type, const PetscReal *x, const PetscReal *x
   return det;
 }
 
-/* r det J is bilinear in a triangle and of second order in a quadrilateral: this rule is exact. */
-static PetscReal ring_volume(const Kinematics *kinematics, CellType type, const PetscReal *x)
-{
-  const PetscInt n = type == CELL_TRIANGLE ? 3 : 4;
-  PetscReal xi[8], weight[4], position[2], sum = 0;
-  (void)cell_quadrature(type, n, xi, weight);
-  for (PetscInt q = 0; q < n; ++q) {
-    const PetscReal det = map_point(type, x, xi + 2 * q, position);
-    sum += kinematics_weight(kinematics, position[0]) * det * weight[q];
-  }
-  return sum;
-}
-
 PetscReal seed_cell_volume(const Seeding *s, PetscInt cell)
 {
   PetscReal x[CELL_MAX_NODES * 3];
   grid_cell_x(s->source, cell, x);
-  const CellType type = grid_cell_type(s->source, cell);
-  return s->c->kinematics->hoop ? ring_volume(s->c->kinematics, type, x) : cell_volume(type, x);
+  return cell_volume_in(s->c->kinematics, grid_cell_type(s->source, cell), x);
 }
 
 static PetscErrorCode FindMaterial(Seeding *s)
@@ -170,7 +156,17 @@ void body_velocity(const BodySpec *body, PetscInt dim, const PetscReal *x, Petsc
   for (PetscInt d = 0; d < dim; ++d) v[d] = body->velocity[d] + full[d];
 }
 
-/* The q-th point of a cell with nodes at x. */
+/* Do the points of such a cell take equal parts? In rings of its section: times 2 pi r that is as
+ * good as the Gauss rule in triangles, while in a quadrilateral that is no rectangle even a uniform
+ * strain would be out of balance. */
+static PetscBool shares_equally(const Seeding *s, CellType type)
+{
+  if (s->body->weights != WEIGHTS_AUTO) return s->body->weights == WEIGHTS_EQUAL;
+  return s->equal && (!s->c->kinematics->hoop || type == CELL_TRIANGLE);
+}
+
+/* The q-th point of a cell with nodes at x. share: its part of the section, or of the volume in
+ * space; < 0: that of the Gauss rule. */
 static PetscErrorCode SeedPoint(const Seeding *s, Points *points, PetscInt cell, const PetscReal *x, PetscReal share,
                                 PetscInt q, const PointSeed *seed)
 {
@@ -182,8 +178,8 @@ static PetscErrorCode SeedPoint(const Seeding *s, Points *points, PetscInt cell,
   PetscCall(PointsAppend(points, &p));
   PetscReal *position = point_real(points, POINT_X, p);
   const PetscReal det = map_point(grid_cell_type(s->source, cell), x, xi, position);
-  const PetscReal weight = rule->weight[q] * det * kinematics_weight(s->c->kinematics, position[0]);
-  const PetscReal volume = s->equal ? share : weight;
+  const PetscReal section = share < 0 ? rule->weight[q] * det : share;
+  const PetscReal volume = section * kinematics_weight(s->c->kinematics, position[0]);
   *point_real(points, POINT_VOLUME, p) = volume;
   *point_real(points, POINT_MASS, p) = seed->density * volume;
   body_velocity(s->body, dim, position, point_real(points, POINT_V, p));
@@ -208,8 +204,9 @@ static PetscErrorCode SeedCells(const Seeding *s, Points *points, const PointSee
   PetscCall(PointsReserveMore(points, s->n_cells * s->rule.n));
   for (PetscInt k = 0; k < s->n_cells; ++k) {
     const PetscInt n = rule_of(s, s->cells[k])->n;
-    const PetscReal share = seed_cell_volume(s, s->cells[k]) / (PetscReal)n;
+    const CellType type = grid_cell_type(s->source, s->cells[k]);
     grid_cell_x(s->source, s->cells[k], x);
+    const PetscReal share = shares_equally(s, type) ? cell_volume(type, x) / (PetscReal)n : -1;
     for (PetscInt q = 0; q < n; ++q) PetscCall(SeedPoint(s, points, s->cells[k], x, share, q, seed));
   }
   PetscFunctionReturn(0);
@@ -226,6 +223,7 @@ static PetscErrorCode CreateOwnMesh(const Seeding *s, Grid **own)
   spec.mesh = s->body->mesh;
   seed_path(s->b, "mesh", sizeof path, path);
   PetscCall(GridCreateMesh(s->grid->comm, &spec, s->grid->dim, path, NULL, NULL, s->diag, own));
+  PetscCall(GridCheckAxis(s->c->kinematics, path, s->diag, own));
   PetscFunctionReturn(0);
 }
 
@@ -268,7 +266,6 @@ static PetscErrorCode SeedBody(Seeding *s, Points *points, PetscInt *taken, cons
 {
   Grid *own = NULL;
   PetscFunctionBeginUser;
-  if (s->body->weights != WEIGHTS_AUTO) s->equal = s->body->weights == WEIGHTS_EQUAL;
   s->source = s->grid;
   PetscCall(FindMaterial(s));
   if (s->material < 0) PetscFunctionReturn(0);

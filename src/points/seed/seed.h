@@ -20,7 +20,7 @@ typedef struct {
   const Grid *source;        /* whose cells give the points: the grid, or the body's own mesh */
   PetscInt n_cells, *cells;  /* local cells of the source that belong to the body */
   SeedRule rule, first_rule; /* for cells of the source's type, and of its first_type */
-  PetscBool equal;           /* a cell's volume is shared equally among its points */
+  PetscBool equal;           /* `weights: auto` shares cells equally */
   PetscInt64 first_id;
   Outline *outline; /* gets the surface of these cells; NULL: nobody wants it */
 } Seeding;

@@ -15,7 +15,8 @@ static void print_bounds(PetscInt dim, const PetscReal *min, const PetscReal *ma
   }
 }
 
-/* Do the bounds leave the grid on a side where they are finite? apart: they do not even meet it. */
+/* Do the bounds leave the grid on a side where they are finite? apart: they do not even meet it.
+ * What turns about x = 0 is on its other side, too. */
 static PetscBool reaches_out(const Seeding *s, const PetscReal *min, const PetscReal *max, PetscBool *apart)
 {
   const PetscReal infinite = 0.5 * PETSC_MAX_REAL;
@@ -23,7 +24,8 @@ static PetscBool reaches_out(const Seeding *s, const PetscReal *min, const Petsc
   *apart = PETSC_FALSE;
   for (PetscInt d = 0; d < s->source->dim; ++d) {
     const PetscReal slack = 1e-9 * (s->source->max[d] - s->source->min[d]);
-    const PetscBool below = min[d] > -infinite && min[d] < s->source->min[d] - slack;
+    const PetscReal low = d == 0 && s->c->kinematics->hoop ? PetscMax(0, min[d]) : min[d];
+    const PetscBool below = low > -infinite && low < s->source->min[d] - slack;
     if (below || (max[d] < infinite && max[d] > s->source->max[d] + slack)) out = PETSC_TRUE;
     if (min[d] >= s->source->max[d] || max[d] <= s->source->min[d]) *apart = PETSC_TRUE;
   }
@@ -67,39 +69,49 @@ static PetscReal polygon_area(const Shape *shape, PetscReal *moment)
   return PetscAbsReal(area);
 }
 
-static PetscReal box_volume(const Shape *shape, PetscInt dim, PetscReal *moment)
+static PetscReal box_volume(const Shape *shape, PetscInt dim)
 {
   PetscReal volume = 1;
   for (PetscInt d = 0; d < dim; ++d) volume *= shape->max[d] - shape->min[d];
-  *moment = 0.5 * (shape->min[0] + shape->max[0]) * volume;
   return volume;
 }
 
-static PetscReal ball_volume(const Shape *shape, PetscInt dim, PetscReal *moment)
+/* Volume of a shape where it is easily known, else -1. */
+static PetscReal shape_volume(const Shape *shape, PetscInt dim)
 {
-  const PetscReal area = PETSC_PI * PetscSqr(shape->radius);
-  *moment = shape->centre[0] * area;
-  return dim == 3 ? 4.0 / 3.0 * area * shape->radius : area;
-}
-
-/* Volume of a shape where it is easily known, else -1. Rings by Pappus's rule: 2 pi times the first
- * moment. */
-static PetscReal shape_volume(const Shape *shape, const Case *c)
-{
-  const PetscInt dim = kinematics_dim(c->kinematics);
-  PetscReal volume, moment;
+  PetscReal moment;
   switch (shape->kind) {
-  case SHAPE_BOX: volume = box_volume(shape, dim, &moment); break;
-  case SHAPE_BALL: volume = ball_volume(shape, dim, &moment); break;
-  case SHAPE_POLYGON: volume = polygon_area(shape, &moment); break;
+  case SHAPE_BOX: return box_volume(shape, dim);
+  case SHAPE_BALL: return PETSC_PI * PetscSqr(shape->radius) * (dim == 3 ? 4.0 / 3.0 * shape->radius : 1);
+  case SHAPE_POLYGON: return polygon_area(shape, &moment);
   default: return -1;
   }
-  return volume > 0 ? volume * kinematics_weight(c->kinematics, moment / volume) : volume;
+}
+
+/* The same of what turns about x = 0: by Pappus's rule 2 pi times the first moment. A shape that
+ * crosses the axis counts for its part with x > 0. */
+static PetscReal ring_volume(const Shape *shape)
+{
+  const PetscReal in = PetscMax(0, shape->min[0]), out = shape->max[0];
+  const PetscReal centre = shape->centre[0], radius = shape->radius;
+  PetscReal moment, min[3], max[3];
+  shape_bounds(shape, 2, min, max);
+  switch (shape->kind) {
+  case SHAPE_BOX: return PETSC_PI * (out * out - in * in) * (max[1] - min[1]);
+  case SHAPE_BALL:
+    if (centre == 0) return 4.0 / 3.0 * PETSC_PI * radius * radius * radius;
+    return centre >= radius ? 2 * PETSC_PI * centre * PETSC_PI * radius * radius : -1;
+  case SHAPE_POLYGON: (void)polygon_area(shape, &moment); return min[0] >= 0 ? 2 * PETSC_PI * moment : -1;
+  default: return -1;
+  }
 }
 
 static void compare_volume(const Seeding *s, PetscReal seeded)
 {
-  const PetscReal wanted = s->body->has_shape && !s->body->region ? shape_volume(&s->body->shape, s->c) : -1;
+  const Shape *shape = s->body->has_shape && !s->body->region ? &s->body->shape : NULL;
+  const PetscReal wanted = !shape                   ? -1
+                           : s->c->kinematics->hoop ? ring_volume(shape)
+                                                    : shape_volume(shape, s->source->dim);
   const char *unit = kinematics_is_plane(s->c->kinematics) ? "m2" : "m3";
   char path[128];
   if (wanted <= 0 || PetscAbsReal(seeded - wanted) <= 0.01 * wanted) return;
