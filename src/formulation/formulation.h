@@ -15,6 +15,7 @@ typedef struct {
   const Points *points;
   const Support *support;
   const Material *materials;
+  const PetscReal *x;       /* n_nodes x dim: positions at the start of the step, m; mixed rings */
   const PetscReal *du;      /* n_nodes x dim: displacement since the start of the step, m */
   const PetscReal *history; /* n_nodes x dim: h, m/s2 */
   PetscReal inertia;        /* c0, 1/s2; 0 in statics */

@@ -32,12 +32,16 @@ KERNEL void mixed_load(const int dim, const int nn, const WeakFormInput *in, Pet
 }
 
 /* The projection's integral is that over the cell, whatever the number of its points. */
-KERNEL void mixed_project(const int dim, const int nn, PetscReal scale, MixedWork *w)
+KERNEL void mixed_project(const int dim, const int nn, const PetscBool hoop, const WeakFormInput *in, PetscInt group,
+                          MixedWork *w)
 {
-  const PetscReal hold = w->hold * scale * scale;
+  const PetscReal hold = w->hold * in->pressure_scale * in->pressure_scale;
+  PetscReal radius[CELL_MAX_NODES], ring[CELL_MAX_NODES * CELL_MAX_NODES];
+  for (int I = 0; hoop && I < nn; ++I) radius[I] = in->x[cell_nodes(in, group)[I] * dim];
+  if (hoop) ring_projection(nn, radius, ring);
   for (int I = 0; I < nn; ++I)
     for (int J = 0; J < nn; ++J) {
-      const PetscReal entry = hold * projection_entry(dim, nn, I, J);
+      const PetscReal entry = hold * (hoop ? ring[I * nn + J] : projection_entry(dim, nn, I, J));
       w->fp[I] -= entry * w->p[J];
       w->Kpp[I * row_width(nn) + J] -= entry;
     }
@@ -59,12 +63,12 @@ KERNEL void mixed_scatter(const int dim, const int nn, const PetscInt *slot, con
     }
 }
 
-KERNEL void mixed_store(const int dim, const int nn, const WeakFormInput *in, PetscInt group, PetscInt slot,
-                        MixedWork *w, WeakFormOutput *out)
+KERNEL void mixed_store(const int dim, const int nn, const PetscBool hoop, const WeakFormInput *in, PetscInt group,
+                        PetscInt slot, MixedWork *w, WeakFormOutput *out)
 {
   const PetscInt *node = cell_nodes(in, group);
   cell_close(dim, nn, in, group, out->values != NULL, &w->u);
-  mixed_project(dim, nn, in->pressure_scale, w);
+  mixed_project(dim, nn, hoop, in, group, w);
   if (out->values) mixed_scatter(dim, nn, out->slot + slot, w, out->values);
   cell_give_force(dim, nn, node, &w->u, out->force);
   for (int I = 0; I < nn; ++I)
@@ -74,9 +78,11 @@ KERNEL void mixed_store(const int dim, const int nn, const WeakFormInput *in, Pe
 KERNEL LawStatus batch_update(const int dim, const int nn, const PetscBool hoop, const WeakFormInput *in,
                               PetscBool tangent, Batch *b)
 {
+  const Law *law = batch_material(in, b)->law;
+  const LawUpdate update = hoop && law->update_hoop ? law->update_hoop : law->update;
   batch_increments(dim, nn, hoop, PETSC_TRUE, in, b);
   if (batch_crosses_axis(in, b)) return LAW_INVERTED;
-  return pressure_update(batch_material(in, b), b->n, b->dF, b->p, batch_old(in, b), b->state, tangent, &b->s);
+  return pressure_update(batch_material(in, b), update, b->n, b->dF, b->p, batch_old(in, b), b->state, tangent, &b->s);
 }
 
 /* Point k of the batch into its cell. */
@@ -120,14 +126,14 @@ KERNEL void assemble_points(const int dim, const int nn, const PetscBool hoop, c
     if (!batch_is_good(&b, batch_update(dim, nn, hoop, in, tangent, &b), out)) return;
     for (PetscInt k = 0; k < b.n; ++k) {
       while (b.first + k >= in->support->point_start[group + 1]) {
-        mixed_store(dim, nn, in, group++, slot, &w, out);
+        mixed_store(dim, nn, hoop, in, group++, slot, &w, out);
         slot += nn * nn;
         mixed_load(dim, nn, in, group, &w);
       }
       add_point(dim, nn, hoop, in, tangent, &b, k, group, &w);
     }
   }
-  mixed_store(dim, nn, in, group, slot, &w, out);
+  mixed_store(dim, nn, hoop, in, group, slot, &w, out);
 }
 
 CELL_SIZES(SIZED_KERNELS)

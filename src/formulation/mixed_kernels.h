@@ -20,6 +20,34 @@ KERNEL PetscReal projection_entry(const int dim, const int nn, int I, int J)
   return product - mean;
 }
 
+/* Integral of N_I N_J N_K over a triangle or quadrilateral of area 1, on the reference cell. */
+KERNEL PetscReal triple_entry(const int nn, int I, int J, int K)
+{
+  static const int corner[4] = {0, 1, 3, 2}; /* bits: upper end along x, y */
+  if (nn == 3) return I == J && J == K ? 1.0 / 10.0 : (I == J || J == K || K == I ? 1.0 / 30.0 : 1.0 / 60.0);
+  PetscReal product = 1.0;
+  for (int d = 0; d < 2; ++d)
+    product *= ((corner[I] ^ corner[J]) | (corner[J] ^ corner[K])) >> d & 1 ? 1.0 / 12.0 : 1.0 / 4.0;
+  return product;
+}
+
+/* The same projection in a ring, nodes at these radii: integrals weighted with r over the ring's
+ * volume, so that P (nn x nn) still vanishes for a uniform pressure. */
+KERNEL void ring_projection(const int nn, const PetscReal *radius, PetscReal *P)
+{
+  PetscReal share[CELL_MAX_NODES] = {0}, volume = 0;
+  for (int I = 0; I < nn; ++I) {
+    for (int J = 0; J < nn; ++J) {
+      P[I * nn + J] = 0;
+      for (int K = 0; K < nn; ++K) P[I * nn + J] += triple_entry(nn, I, J, K) * radius[K];
+      share[I] += P[I * nn + J];
+    }
+    volume += share[I];
+  }
+  for (int I = 0; I < nn; ++I)
+    for (int J = 0; J < nn; ++J) P[I * nn + J] = (P[I * nn + J] - share[I] * share[J] / volume) / volume;
+}
+
 /* Kup[I][a][J] += V0 s sum_j g_Ij t_aj N_J, t = dtau/dp. */
 KERNEL void add_pressure_force(const int dim, const int nn, const PetscBool hoop, const PetscReal *restrict g,
                                const PetscReal *restrict t, const PetscReal *restrict N, PetscReal volume,

@@ -64,10 +64,8 @@ static inline LawStatus batch_law(const WeakFormInput *in, PetscBool tangent, Ba
 {
   if (batch_crosses_axis(in, b)) return LAW_INVERTED;
   const Material *material = batch_material(in, b);
-  const Law *law = material->law;
-  const PetscBool plane = law->update_plane && kinematics_is_plane(in->kinematics);
-  return (plane ? law->update_plane : law->update)(material->parameters, b->n, b->dF, batch_old(in, b), b->state,
-                                                   b->s.tau, tangent ? b->s.c : NULL);
+  const LawUpdate update = law_update_in(material->law, in->kinematics);
+  return update(material->parameters, b->n, b->dF, batch_old(in, b), b->state, b->s.tau, tangent ? b->s.c : NULL);
 }
 
 /* The worst status so far; PETSC_FALSE if it is bad: the step is cut, and nothing counts any

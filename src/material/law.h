@@ -60,8 +60,8 @@ typedef struct Law {
   PetscBool yields;       /* can it lose its stiffness? */
   LawUpdate update;
   /* The same where dF leaves z alone, or NULL: of c only the components 11, 22, 12 of rows and
-   * columns mean something. */
-  LawUpdate update_plane;
+   * columns mean something; and where z strains by itself (dF_33 alone), with 33 as well. */
+  LawUpdate update_plane, update_hoop;
   /* Stored elastic energy per undeformed volume, J/m3. */
   PetscReal (*energy)(const PetscReal *parameters, const PetscReal *state);
   /* State that carries the Cauchy stress sigma (6) with no shear history; PETSC_FALSE if there is
@@ -78,6 +78,13 @@ typedef struct Law {
   /* What is wrong with parameters that are each in their range, or NULL. May itself be NULL. */
   const char *(*check)(const PetscReal *given);
 } Law;
+
+/* What strains in these kinematics decides which update is the quickest. */
+static inline LawUpdate law_update_in(const Law *law, const Kinematics *kinematics)
+{
+  if (kinematics->hoop && law->update_hoop) return law->update_hoop;
+  return kinematics_is_plane(kinematics) && law->update_plane ? law->update_plane : law->update;
+}
 
 /* A material of a case: a law with its packed parameters. */
 typedef struct {

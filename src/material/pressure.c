@@ -33,10 +33,10 @@ static void replace_mean(VolumeLaw law, PetscReal q_p, PetscReal tau[6], PetscRe
   }
 }
 
-static LawStatus update_apart(const Material *m, PetscInt n, const PetscReal *dF, const PetscReal *p,
+static LawStatus update_apart(const Material *m, LawUpdate update, PetscInt n, const PetscReal *dF, const PetscReal *p,
                               const PetscReal *old, PetscReal *state, PetscBool tangent, PressureStress *s)
 {
-  const LawStatus status = m->law->update(m->deviatoric, n, dF, old, state, s->tau, tangent ? s->c : NULL);
+  const LawStatus status = update(m->deviatoric, n, dF, old, state, s->tau, tangent ? s->c : NULL);
   if (status != LAW_OK) return status;
   for (PetscInt k = 0; k < n; ++k) {
     const PetscReal J = s->theta[k]; /* left there by the caller */
@@ -61,8 +61,9 @@ static void couple(PetscReal compliance, const PetscReal tau[6], PetscReal *c, P
   }
 }
 
-static LawStatus update_coupled(const Material *m, PetscInt n, const PetscReal *dF, const PetscReal *p,
-                                const PetscReal *old, PetscReal *state, PetscBool tangent, PressureStress *s)
+static LawStatus update_coupled(const Material *m, LawUpdate update, PetscInt n, const PetscReal *dF,
+                                const PetscReal *p, const PetscReal *old, PetscReal *state, PetscBool tangent,
+                                PressureStress *s)
 {
   PetscReal scaled[9 * LAW_BATCH], back[LAW_BATCH];
   for (PetscInt k = 0; k < n; ++k) {
@@ -72,7 +73,7 @@ static LawStatus update_coupled(const Material *m, PetscInt n, const PetscReal *
     back[k] = 1.0 / factor;
     for (int i = 0; i < 9; ++i) scaled[9 * k + i] = factor * dF[9 * k + i];
   }
-  const LawStatus status = m->law->update(m->parameters, n, scaled, old, state, s->tau, tangent ? s->c : NULL);
+  const LawStatus status = update(m->parameters, n, scaled, old, state, s->tau, tangent ? s->c : NULL);
   if (status != LAW_OK) return status;
   m->law->volume(n, state, s->pressure);
   for (PetscInt k = 0; k < n; ++k) s->pressure[k] = log(s->pressure[k]) / m->compliance;
@@ -81,13 +82,13 @@ static LawStatus update_coupled(const Material *m, PetscInt n, const PetscReal *
   return LAW_OK;
 }
 
-LawStatus pressure_update(const Material *m, PetscInt n, const PetscReal *dF, const PetscReal *p, const PetscReal *old,
-                          PetscReal *state, PetscBool tangent, PressureStress *s)
+LawStatus pressure_update(const Material *m, LawUpdate update, PetscInt n, const PetscReal *dF, const PetscReal *p,
+                          const PetscReal *old, PetscReal *state, PetscBool tangent, PressureStress *s)
 {
   const LawStatus status = trial_volumes(m->law, n, dF, old, s->theta);
   if (status != LAW_OK) return status;
-  if (m->volume == VOLUME_COUPLED) return update_coupled(m, n, dF, p, old, state, tangent, s);
-  return update_apart(m, n, dF, p, old, state, tangent, s);
+  if (m->volume == VOLUME_COUPLED) return update_coupled(m, update, n, dF, p, old, state, tangent, s);
+  return update_apart(m, update, n, dF, p, old, state, tangent, s);
 }
 
 PetscReal pressure_of_state(const Material *m, const PetscReal *state, const PetscReal tau[6])

@@ -22,9 +22,12 @@ typedef struct {
   PetscReal coupling[6 * LAW_BATCH]; /* d tau / d p at constant deformation */
 } PressureStress;
 
-/* As Law.update, with the pressure p of each point (n) given; c and coupling only if `tangent`. */
-LawStatus pressure_update(const Material *material, PetscInt n, const PetscReal *dF, const PetscReal *p,
-                          const PetscReal *old, PetscReal *state, PetscBool tangent, PressureStress *s);
+/* As Law.update, with the pressure p of each point (n) given; c and coupling only if `tangent`.
+ * `update` is the law's own or its update_hoop (p strains z in the plane, too), which then says what
+ * of c means something. */
+LawStatus pressure_update(const Material *material, LawUpdate update, PetscInt n, const PetscReal *dF,
+                          const PetscReal *p, const PetscReal *old, PetscReal *state, PetscBool tangent,
+                          PressureStress *s);
 
 /* Pressure unknown that belongs to a stress state of the law itself: its Kirchhoff stress, and the
  * volume of its state. */

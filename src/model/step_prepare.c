@@ -8,6 +8,7 @@ WeakFormInput weak_form_of(const Model *m, PetscReal inertia)
     .points = m->points,
     .support = m->space->support,
     .materials = m->materials,
+    .x = m->grid->x,
     .du = m->nodes->du,
     .history = m->nodes->history,
     .inertia = inertia,

@@ -85,7 +85,8 @@ static inline void law_suite_near(const LawSuite *suite, const char *what, Petsc
 static inline void law_suite_update_mixed(const LawSuite *suite, LawPoint *p)
 {
   PressureStress s;
-  p->status = pressure_update(&suite->material, 1, p->dF, &p->pressure, p->old, p->state, PETSC_TRUE, &s);
+  p->status =
+    pressure_update(&suite->material, suite->law->update, 1, p->dF, &p->pressure, p->old, p->state, PETSC_TRUE, &s);
   if (p->status != LAW_OK) return;
   memcpy(p->tau, s.tau, sizeof p->tau);
   memcpy(p->c, s.c, sizeof p->c);
@@ -456,6 +457,70 @@ static inline void law_suite_batches(LawSuite *suite)
   }
 }
 
+/* The kernels of the plane, where z strains by itself (dF_33) or not at all, are the law: stress,
+ * state, and the moduli that they make. At a kink rounding may take the other side's moduli. */
+static inline void law_suite_in_plane(LawSuite *suite, LawUpdate update, PetscBool hoop)
+{
+  static const int component[4] = {0, 1, 3, 2};
+  const Law *law = suite->law;
+  int others = 0;
+  for (int s = 0; update && s < LAW_SUITE_STATES / 10; ++s) {
+    LawPoint p = {0}, own;
+    law_initial_state(law, p.old);
+    for (int step = 0; step < 3; ++step) {
+      const PetscReal modulus = suite->material.wave_modulus;
+      PetscReal error = 0;
+      for (int k = 0; k < 9; ++k) {
+        const PetscBool moves = k < 2 || k == 3 || k == 4 || (hoop && k == 8);
+        p.dF[k] = (k % 4 == 0) + (moves ? suite->test->strain * random_real(&suite->random, -1, 1) : 0);
+      }
+      if (tensor_det(p.dF) < 0.2) break;
+      own = p;
+      law_suite_update(suite, &p);
+      if (p.status != LAW_OK) break;
+      assert_int_equal(update(suite->material.parameters, 1, own.dF, own.old, own.state, own.tau, own.c), LAW_OK);
+      law_suite_near(suite, "stress of the plane", 6, own.tau, p.tau, 1e-12 * law_suite_modulus(suite, &p));
+      law_suite_near(suite, "state of the plane", law->n_state, own.state, p.state, 1e-12);
+      for (int i = 0; i < (hoop ? 4 : 3); ++i)
+        for (int j = 0; j < (hoop ? 4 : 3); ++j) {
+          const int at = 6 * component[i] + component[j];
+          error = fmax(error, fabs(own.c[at] - p.c[at]));
+        }
+      others += !(error < 1e-9 * modulus);
+      memcpy(p.old, p.state, sizeof p.old);
+    }
+  }
+  if (others > 3 * LAW_SUITE_STATES / 10 / 500) fail_msg("%s: %d moduli of the plane differ", law->name, others);
+}
+
+/* The mixed form by the kernel with a hoop is that by the law. */
+static inline void law_suite_pressure_in_plane(LawSuite *suite)
+{
+  for (int s = 0; suite->law->update_hoop && s < LAW_SUITE_STATES / 10; ++s) {
+    const PetscReal size = suite->test->strain;
+    PressureStress whole, ring;
+    LawPoint p = {0};
+    PetscReal state[LAW_MAX_STATE];
+    law_initial_state(suite->law, p.old);
+    for (int k = 0; k < 9; ++k)
+      p.dF[k] = (k % 4 == 0) + (k < 2 || k == 3 || k == 4 || k == 8 ? size * random_real(&suite->random, -1, 1) : 0);
+    if (tensor_det(p.dF) < 0.2) continue;
+    const PetscReal pressure = size * suite->material.wave_modulus * random_real(&suite->random, -1, 1);
+    const LawStatus status =
+      pressure_update(&suite->material, suite->law->update, 1, p.dF, &pressure, p.old, p.state, PETSC_TRUE, &whole);
+    if (status != LAW_OK) continue;
+    assert_int_equal(
+      pressure_update(&suite->material, suite->law->update_hoop, 1, p.dF, &pressure, p.old, state, PETSC_TRUE, &ring),
+      LAW_OK);
+    const PetscReal modulus = suite->material.wave_modulus + fabs(pressure);
+    law_suite_near(suite, "mixed stress of a ring", 6, ring.tau, whole.tau, 1e-12 * modulus);
+    law_suite_near(suite, "mixed state of a ring", suite->law->n_state, state, p.state, 1e-12);
+    for (int i = 0; i < 4; ++i)
+      law_suite_near(suite, "mixed moduli of a ring", 4, ring.c + 6 * i, whole.c + 6 * i, 1e-9 * modulus);
+    law_suite_near(suite, "coupling of a ring", 4, ring.coupling, whole.coupling, 1e-12 * (1 + modulus));
+  }
+}
+
 /* J of a state: from the elastic strain or the volume ratio, whichever the law stores. */
 static inline PetscReal law_suite_volume(const Law *law, const PetscReal *state, PetscReal fallback)
 {
@@ -558,6 +623,7 @@ static inline void law_suite_pressure(LawSuite *suite)
   law_suite_pressure_slopes(suite);
   law_suite_objectivity(suite);
   law_suite_tangent(suite);
+  law_suite_pressure_in_plane(suite);
   if (suite->material.volume != VOLUME_COUPLED) law_suite_symmetry(suite);
   suite->mixed = PETSC_FALSE;
 }
@@ -576,6 +642,8 @@ static inline void law_suite_run(const LawUnderTest *test)
   law_suite_extremes(&suite);
   law_suite_bad_increments(&suite);
   law_suite_batches(&suite);
+  law_suite_in_plane(&suite, suite.law->update_plane, PETSC_FALSE);
+  law_suite_in_plane(&suite, suite.law->update_hoop, PETSC_TRUE);
   law_suite_initial_stress(&suite);
   law_suite_pressure(&suite);
 }

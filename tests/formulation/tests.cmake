@@ -1,2 +1,3 @@
 talus_test(formulation/test_tangent)
 talus_test(formulation/test_reference)
+talus_test(formulation/test_ring_pressure)

@@ -82,7 +82,7 @@ static void test_volume_is_kept(void **state)
       const PetscReal p = random_real(&random, -1e5, 1e5);
       random_increment(&random, dF);
       J *= tensor_det(dF);
-      assert_int_equal(pressure_update(&m, 1, dF, &p, old, now, PETSC_FALSE, &s), LAW_OK);
+      assert_int_equal(pressure_update(&m, m.law->update, 1, dF, &p, old, now, PETSC_FALSE, &s), LAW_OK);
       m.law->volume(1, now, &found);
       ASSERT_NEAR(found, J, 1e-12);
       ASSERT_NEAR(s.theta[0], m.volume == VOLUME_LINEAR ? J - 1 : log(J), 1e-12);

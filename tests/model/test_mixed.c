@@ -38,24 +38,27 @@ static void use_solid(Bench *b, const Solid *solid)
 }
 
 /* --- patch test --- */
-/* x(t) = F(t) X, F = R(t) (1 + t G): a strain and a rotation. */
-static void gradient_at(PetscInt dim, PetscReal t, PetscReal F[9])
+/* x(t) = F(t) X, F = R(t) (1 + t G): a strain, and a rotation but in rings. */
+static void gradient_at(const Kinematics *kinematics, PetscReal t, PetscReal F[9])
 {
-  static const PetscReal G[2][9] = {{0.15, 0.18, 0, -0.07, -0.1, 0, 0, 0, 0},
-                                    {0.12, 0.15, -0.06, -0.08, -0.1, 0.11, 0.05, -0.09, 0.2}};
-  const PetscReal c = cos(0.7 * t), s = sin(0.7 * t), R[9] = {c, -s, 0, s, c, 0, 0, 0, 1};
+  static const PetscReal plane[9] = {0.15, 0.18, 0, -0.07, -0.1, 0, 0, 0, 0},
+                         space[9] = {0.12, 0.15, -0.06, -0.08, -0.1, 0.11, 0.05, -0.09, 0.2},
+                         ring[9] = {0.1, 0, 0, 0, -0.2, 0, 0, 0, 0.1};
+  const PetscReal *G = kinematics->hoop ? ring : (kinematics->dim == 2 ? plane : space);
+  const PetscReal turn = kinematics->hoop ? 0 : 0.7 * t, c = cos(turn), s = sin(turn);
+  const PetscReal R[9] = {c, -s, 0, s, c, 0, 0, 0, 1};
   PetscReal S[9];
-  for (int i = 0; i < 9; ++i) S[i] = (i % 4 == 0) + t * G[dim - 2][i];
+  for (int i = 0; i < 9; ++i) S[i] = (i % 4 == 0) + t * G[i];
   tensor_multiply(R, S, F);
 }
 
 static void affine_motion(void *context, const PetscReal *x, PetscReal t0, PetscReal t1, PetscReal *increment)
 {
-  const PetscInt dim = *(const PetscInt *)context;
+  const Kinematics *kinematics = context;
   PetscReal F0[9], F1[9];
-  gradient_at(dim, t0, F0);
-  gradient_at(dim, t1, F1);
-  affine_increment(dim, F0, F1, x, increment);
+  gradient_at(kinematics, t0, F0);
+  gradient_at(kinematics, t1, F1);
+  affine_increment(kinematics->dim, F0, F1, x, increment);
 }
 
 /* Stress and pressure as the law alone gives them, and nodes with the same pressure. */
@@ -63,7 +66,7 @@ static void check_patch(const Model *m)
 {
   PetscReal F[9], initial[LAW_MAX_STATE], state[LAW_MAX_STATE], tau[6], worst[3] = {0, 0, 0};
   const Material *material = &m->materials[0];
-  gradient_at(m->dim, m->time, F);
+  gradient_at(m->c->kinematics, m->time, F);
   law_initial_state(material->law, initial);
   CHECK(material->law->update(material->parameters, 1, F, initial, state, tau, NULL) == LAW_OK, "no stress");
   const PetscReal p = pressure_of_state(material, state, tau);
@@ -81,15 +84,18 @@ static void check_patch(const Model *m)
   for (int k = 0; k < 3; ++k) CHECK(worst[k] <= 1e-10, "number %d is off by %g", k, (double)worst[k]);
 }
 
-static void patch(const char *method, CellType cell, const Solid *solid, PetscBool distorted, PetscInt halved)
+static void patch(const char *method, CellType cell, const Kinematics *kinematics, const Solid *solid,
+                  PetscBool distorted, PetscInt halved)
 {
   Bench b;
   const PetscBool is_mpm = !strcmp(method, "mpm"), is_3d = cell >= CELL_TETRAHEDRON;
   const PetscReal below = is_mpm ? -0.5 : 0, above = 1 - below, planes[] = {below, 0, 1, above};
-  PetscInt dim = is_3d ? 3 : 2;
+  const PetscInt dim = is_3d ? 3 : 2;
   bench_init(&b, method, cell, 0);
+  b.c.kinematics = kinematics;
   use_solid(&b, solid);
-  bench_grid(&b, (PetscReal[]){below, below, below}, (PetscReal[]){above, above, above}, is_3d ? 0.5 : 0.25);
+  bench_grid(&b, (PetscReal[]){kinematics->hoop ? 0 : below, below, below}, (PetscReal[]){above, above, above},
+             is_3d ? 0.5 : 0.25);
   b.body[0].weights = WEIGHTS_GAUSS;
   b.halved = halved;
   if (distorted) bench_distort(&b, 0.2, 4, planes);
@@ -98,7 +104,7 @@ static void patch(const char *method, CellType cell, const Solid *solid, PetscBo
     for (int side = 0; side < 2; ++side) bench_motion(&b, d, side, MOTION_FIXED, 7);
   Model *m = bench_model(&b, PETSC_COMM_WORLD);
   m->boundary->field = affine_motion;
-  m->boundary->field_context = &dim;
+  m->boundary->field_context = (void *)kinematics;
   while (m->time < 1 - 1e-9) CHECK(model_step(m, 1 - m->time).cuts == 0, "the step was halved");
   check_patch(m);
   CALL(ModelDestroy(&m));
@@ -112,11 +118,17 @@ static void test_patch(void **state)
   for (CellType cell = CELL_TRIANGLE; cell <= CELL_HEXAHEDRON; ++cell)
     for (int k = 0; k < 2; ++k)
       for (int distorted = 0; distorted < 2; ++distorted) {
-        patch(method[k], cell, &solids[0], distorted != 0, 0);
-        patch(method[k], cell, &solids[2], distorted != 0, 0);
+        const Kinematics *straight = cell < CELL_TETRAHEDRON ? &kinematics_plane_strain : &kinematics_3d;
+        patch(method[k], cell, straight, &solids[0], distorted != 0, 0);
+        patch(method[k], cell, straight, &solids[2], distorted != 0, 0);
+        if (cell >= CELL_TETRAHEDRON) continue;
+        patch(method[k], cell, &kinematics_axisymmetric, &solids[0], distorted != 0, 0);
+        patch(method[k], cell, &kinematics_axisymmetric, &solids[2], distorted != 0, 0);
       }
-  for (int k = 0; k < 2; ++k)
-    patch(method[k], CELL_QUADRILATERAL, &solids[2], PETSC_TRUE, 3); /* some are two triangles */
+  for (int k = 0; k < 2; ++k) { /* some are two triangles */
+    patch(method[k], CELL_QUADRILATERAL, &kinematics_plane_strain, &solids[2], PETSC_TRUE, 3);
+    patch(method[k], CELL_QUADRILATERAL, &kinematics_axisymmetric, &solids[2], PETSC_TRUE, 3);
+  }
 }
 
 /* --- tangent --- */
@@ -179,7 +191,7 @@ static void direction(const Subject *s, PetscInt seed, Vec out)
   CALL(SystemFromNodes(m->system, m->nodes->volume, m->dim, 1, out));
 }
 
-static void check_tangent(const char *method, CellType cell, const Solid *solid, PetscBool dynamic)
+static void check_tangent(const char *method, CellType cell, PetscBool ring, const Solid *solid, PetscBool dynamic)
 {
   Bench b;
   Subject s = {.random = {5}};
@@ -187,6 +199,7 @@ static void check_tangent(const char *method, CellType cell, const Solid *solid,
   PetscReal off, size;
   const PetscReal h = 1e-6;
   bench_init(&b, method, cell, 2);
+  if (ring) b.c.kinematics = &kinematics_axisymmetric;
   use_solid(&b, solid);
   b.body[0].shape.max[0] = 0.5;
   if (dynamic) bench_dynamic(&b, 1, 0.01);
@@ -244,7 +257,8 @@ static void test_tangent(void **state)
   (void)state;
   for (CellType cell = CELL_TRIANGLE; cell <= CELL_HEXAHEDRON; ++cell)
     for (size_t k = 0; k < sizeof solids / sizeof solids[0]; ++k)
-      check_tangent(k % 2 ? "mpm" : "fem", cell, &solids[k], k % 3 == 0);
+      for (int ring = 0; ring < (cell < CELL_TETRAHEDRON ? 2 : 1); ++ring)
+        check_tangent(k % 2 ? "mpm" : "fem", cell, ring != 0, &solids[k], k % 3 == 0);
 }
 
 /* --- Cook's membrane --- */

@@ -130,28 +130,26 @@ static LawStatus update(const PetscReal *parameters, PetscInt n, const PetscReal
   return lanes_update(update_lanes, N_STATE, parameters, n, dF, old, state, tau, c);
 }
 
-/* The moduli of the plane where 36 components stand for each point. */
-LANES_INLINE void store_plane(PetscInt n, const Lanes plane[9], PetscReal *c)
+/* Moduli of 11, 22, 33 and 12 where 36 components stand for each point; no row of 33 in the plane. */
+LANES_INLINE void store_plane(const PetscBool hoop, PetscInt n, Lanes moduli[16], PetscReal *c)
 {
-  static const int row[3] = {0, 1, 3};
-  const Lanes none = {0};
-  Lanes some[16] = {plane[0], plane[1], none, plane[2], plane[3], plane[4], none, plane[5],
-                    plane[6], plane[7], none, plane[8], none,     none,     none, none};
-  lanes_transpose(some);
-  lanes_transpose(some + 8);
+  lanes_transpose(moduli);
+  lanes_transpose(moduli + 8);
   for (int l = 0; l < PetscMin(n, LANES); ++l)
-    for (int i = 0; i < 3; ++i)
-      __builtin_memcpy(c + 36 * l + 6 * row[i], (const PetscReal *)&some[8 * (i / 2) + l] + 4 * (i % 2), 4 * sizeof *c);
+    for (int i = 0; i < 4; ++i) {
+      const PetscReal *row = (const PetscReal *)&moduli[8 * (i / 2) + l] + 4 * (i % 2);
+      if (hoop || i != 2) __builtin_memcpy(c + 36 * l + 6 * i, row, 4 * sizeof *c);
+    }
 }
 
-LANES_INLINE LawStatus update_plane_lanes(const PetscReal *p, PetscInt n, const PetscReal *dF, const PetscReal *old,
-                                          PetscReal *state, PetscReal *tau, PetscReal *c)
+LANES_INLINE LawStatus update_in_plane(const PetscBool hoop, const PetscReal *p, PetscInt n, const PetscReal *dF,
+                                       const PetscReal *old, PetscReal *state, PetscReal *tau, PetscReal *c)
 {
-  Lanes before[N_STATE], now[N_STATE], principal[3], stress[6] = {{0}}, moduli[9];
+  Lanes before[N_STATE], now[N_STATE], principal[3], stress[6] = {{0}}, moduli[16];
   LaneBits regions;
   PlaneTrial t;
   lanes_load(N_STATE, n, old, before);
-  if (!mc_plane_trial(n, dF, before, &t)) return update(p, PetscMin(n, LANES), dF, old, state, tau, c);
+  if (!mc_plane_trial(hoop, n, dF, before, &t)) return update(p, PetscMin(n, LANES), dF, old, state, tau, c);
   mc_plane_return(p, &t, principal, &regions);
   now[6] = before[6];
   mc_plane_state(p, &t, principal, &regions, now);
@@ -159,18 +157,28 @@ LANES_INLINE LawStatus update_plane_lanes(const PetscReal *p, PetscInt n, const 
   lanes_store(N_STATE, n, now, state);
   lanes_store(6, n, stress, tau);
   if (c) {
-    mc_plane_moduli(p, &t, &regions, principal, moduli);
-    store_plane(n, moduli, c);
+    mc_plane_moduli(hoop, p, &t, &regions, principal, moduli);
+    store_plane(hoop, n, moduli, c);
   }
   const LaneBits bad = ~t.finite;
   return lanes_any(&bad) ? give_up(&t.finite, &t.det, n, old, state, tau, c) : LAW_OK;
 }
 
-static LawStatus update_plane(const PetscReal *parameters, PetscInt n, const PetscReal *dF, const PetscReal *old,
-                              PetscReal *state, PetscReal *tau, PetscReal *c)
-{
-  return lanes_update(update_plane_lanes, N_STATE, parameters, n, dF, old, state, tau, c);
-}
+/* Both kernels of the plane: the one where z does not strain, and the one where it is a hoop. */
+#define PLANE_UPDATE(name, hoop)                                                                                 \
+  LANES_INLINE LawStatus name##_lanes(const PetscReal *p, PetscInt n, const PetscReal *dF, const PetscReal *old, \
+                                      PetscReal *state, PetscReal *tau, PetscReal *c)                            \
+  {                                                                                                              \
+    return update_in_plane(hoop, p, n, dF, old, state, tau, c);                                                  \
+  }                                                                                                              \
+  static LawStatus name(const PetscReal *parameters, PetscInt n, const PetscReal *dF, const PetscReal *old,      \
+                        PetscReal *state, PetscReal *tau, PetscReal *c)                                          \
+  {                                                                                                              \
+    return lanes_update(name##_lanes, N_STATE, parameters, n, dF, old, state, tau, c);                           \
+  }
+
+PLANE_UPDATE(update_plane, PETSC_FALSE)
+PLANE_UPDATE(update_hoop, PETSC_TRUE)
 
 static PetscReal energy(const PetscReal *p, const PetscReal *b)
 {
@@ -261,6 +269,7 @@ const Law law_mohr_coulomb = {
   .yields = PETSC_TRUE,
   .update = update,
   .update_plane = update_plane,
+  .update_hoop = update_hoop,
   .energy = energy,
   .initial_stress = initial_stress,
   .volume = volume,

@@ -1,11 +1,15 @@
-/* The Mohr-Coulomb law where increments and elastic strains leave z alone: one turn finds the
- * principal axes A and B in the plane, z is the third, and only the moduli of the plane are made.
- * What is not made here is in mohr_coulomb.c. */
+/* The Mohr-Coulomb law where increments and elastic strains do not turn z: one turn finds the
+ * principal axes A and B in the plane, z is the third, and only the moduli of the plane are made;
+ * with a `hoop`, where z strains by itself, those of z, too. What is not made here is in
+ * mohr_coulomb.c. */
 #pragma once
 #include "material/mohr_coulomb/mohr_coulomb_lanes.h"
 
 /* A, B and z; axis[] is the direction of A, that of B is turned by a right angle. */
 enum { MC_A, MC_B, MC_Z };
+
+/* Where 11, 22 and 12 stand among 11, 22, 33 and 12. */
+static const int mc_plane_row[3] = {0, 1, 3};
 
 typedef struct {
   Lanes b[4], stretch2[3], strain[3], axis[2]; /* b: 11, 22, 33, 12 */
@@ -15,7 +19,8 @@ typedef struct {
 } PlaneTrial;
 
 /* b = f b f^T; PETSC_FALSE if a point has shear strains out of the plane. */
-LANES_INLINE PetscBool mc_plane_push(PetscInt n, const PetscReal *dF, const Lanes old[MC_STATE], PlaneTrial *t)
+LANES_INLINE PetscBool mc_plane_push(const PetscBool hoop, PetscInt n, const PetscReal *dF, const Lanes old[MC_STATE],
+                                     PlaneTrial *t)
 {
   const LaneBits out = (old[4] != 0.0) | (old[5] != 0.0);
   Lanes f[9];
@@ -25,9 +30,10 @@ LANES_INLINE PetscBool mc_plane_push(PetscInt n, const PetscReal *dF, const Lane
   const Lanes y0 = f[3] * old[0] + f[4] * old[3], y1 = f[3] * old[3] + f[4] * old[1];
   t->b[0] = x0 * f[0] + x1 * f[1];
   t->b[1] = y0 * f[3] + y1 * f[4];
-  t->b[2] = old[2];
+  t->b[2] = hoop ? f[8] * f[8] * old[2] : old[2];
   t->b[3] = x0 * f[3] + x1 * f[4];
   t->det = f[0] * f[4] - f[1] * f[3];
+  if (hoop) t->det *= f[8];
   return PETSC_TRUE;
 }
 
@@ -53,11 +59,12 @@ LANES_INLINE void mc_plane_axes(PlaneTrial *t)
   t->stretch2[MC_Z] = t->b[2];
 }
 
-LANES_INLINE PetscBool mc_plane_trial(PetscInt n, const PetscReal *dF, const Lanes old[MC_STATE], PlaneTrial *t)
+LANES_INLINE PetscBool mc_plane_trial(const PetscBool hoop, PetscInt n, const PetscReal *dF, const Lanes old[MC_STATE],
+                                      PlaneTrial *t)
 {
   const Lanes one = (Lanes){0} + 1.0, none = {0};
   Lanes size, sum = none;
-  if (!mc_plane_push(n, dF, old, t)) return PETSC_FALSE;
+  if (!mc_plane_push(hoop, n, dF, old, t)) return PETSC_FALSE;
   for (int k = 0; k < 4; ++k) {
     lanes_abs(&t->b[k], &size);
     sum += size;
@@ -131,20 +138,46 @@ LANES_INLINE void mc_plane_state(const PetscReal *p, const PlaneTrial *t, const 
   for (int k = 0; k < 4; ++k) lanes_select(&plastic, &b[k], &state[k], &state[k]);
 }
 
-/* Moduli of 11, 22 and 12 (3 x 3). */
-LANES_INLINE void mc_plane_moduli(const PetscReal *p, const PlaneTrial *t, const LaneBits *regions, const Lanes tau[3],
-                                  Lanes c[9])
+/* d tau_i / d eps_j of i and j among A, B and z, from those of falling strains (3 x 3). */
+LANES_INLINE void mc_plane_modulus(const PlaneTrial *t, const Lanes D[9], const int i, const int j, Lanes *to)
+{
+  /* of A, B, z: z first, in the middle, last */
+  static const int place[3][3] = {{1, 2, 0}, {0, 2, 1}, {0, 1, 2}};
+  mc_plane_pick(t, &D[3 * place[0][i] + place[0][j]], &D[3 * place[1][i] + place[1][j]],
+                &D[3 * place[2][i] + place[2][j]], to);
+}
+
+/* Row and column of 33 among the moduli (4 x 4); A, B: 11, 22 and 12 of n_A n_A and n_B n_B. */
+LANES_INLINE void mc_hoop_moduli(const PlaneTrial *t, const Lanes D[9], const Lanes tau[3], const Lanes A[3],
+                                 const Lanes B[3], Lanes c[16])
+{
+  Lanes AZ, BZ, ZA, ZB;
+  mc_plane_modulus(t, D, MC_A, MC_Z, &AZ);
+  mc_plane_modulus(t, D, MC_B, MC_Z, &BZ);
+  mc_plane_modulus(t, D, MC_Z, MC_A, &ZA);
+  mc_plane_modulus(t, D, MC_Z, MC_B, &ZB);
+  mc_plane_modulus(t, D, MC_Z, MC_Z, &c[10]);
+  c[10] -= 2.0 * tau[MC_Z];
+  for (int i = 0; i < 3; ++i) {
+    c[4 * mc_plane_row[i] + 2] = AZ * A[i] + BZ * B[i];
+    c[8 + mc_plane_row[i]] = ZA * A[i] + ZB * B[i];
+  }
+}
+
+/* Moduli of 11, 22, 33 and 12 (4 x 4), of 33 zeros unless there is a hoop. */
+LANES_INLINE void mc_plane_moduli(const PetscBool hoop, const PetscReal *p, const PlaneTrial *t,
+                                  const LaneBits *regions, const Lanes tau[3], Lanes c[16])
 {
   const Lanes x = t->axis[0], y = t->axis[1], rise = tau[MC_A] - tau[MC_B], apart = t->strain[MC_A] - t->strain[MC_B];
-  const Lanes A[3] = {x * x, y * y, x * y}, B[3] = {y * y, x * x, -(x * y)};
+  const Lanes A[3] = {x * x, y * y, x * y}, B[3] = {y * y, x * x, -(x * y)}, none = {0};
   const Lanes mixed[3] = {-2.0 * x * y, 2.0 * x * y, x * x - y * y};
   const LaneBits elastic = (*regions == MC_ELASTIC) | (t->z_first & (*regions == MC_CUT_PLANE));
   Lanes D[9], AA, AB, BA, BB, r, coth;
   mc_moduli_lanes(p, regions, D);
-  mc_plane_pick(t, &D[4], &D[0], &D[0], &AA);
-  mc_plane_pick(t, &D[5], &D[2], &D[1], &AB);
-  mc_plane_pick(t, &D[7], &D[6], &D[3], &BA);
-  mc_plane_pick(t, &D[8], &D[8], &D[4], &BB);
+  mc_plane_modulus(t, D, MC_A, MC_A, &AA);
+  mc_plane_modulus(t, D, MC_A, MC_B, &AB);
+  mc_plane_modulus(t, D, MC_B, MC_A, &BA);
+  mc_plane_modulus(t, D, MC_B, MC_B, &BB);
   mc_difference_lanes(p, &elastic, &apart, &rise, &r);
   lanes_principal_coth(&apart, &t->stretch2[MC_A], &t->stretch2[MC_B], &coth);
   const Lanes shear = 0.5 * (r * coth - tau[MC_A] - tau[MC_B]);
@@ -152,6 +185,9 @@ LANES_INLINE void mc_plane_moduli(const PetscReal *p, const PlaneTrial *t, const
   BB -= 2.0 * tau[MC_B];
   for (int j = 0; j < 3; ++j) {
     const Lanes along = AA * A[j] + AB * B[j], across = BA * A[j] + BB * B[j], turn = shear * mixed[j];
-    for (int i = 0; i < 3; ++i) c[3 * i + j] = A[i] * along + B[i] * across + mixed[i] * turn;
+    for (int i = 0; i < 3; ++i)
+      c[4 * mc_plane_row[i] + mc_plane_row[j]] = A[i] * along + B[i] * across + mixed[i] * turn;
   }
+  for (int k = 0; k < 4; ++k) c[4 * k + 2] = c[8 + k] = none;
+  if (hoop) mc_hoop_moduli(t, D, tau, A, B, c);
 }

@@ -116,7 +116,8 @@ PetscErrorCode EnergyStart(Model *m)
     const PetscReal *old = point_real(m->points, POINT_STATE, p);
     if (m->formulation->pressure) {
       PressureStress s;
-      pressure_update(material, 1, identity, m->points->real[POINT_PRESSURE] + p, old, state, PETSC_FALSE, &s);
+      pressure_update(material, material->law->update, 1, identity, m->points->real[POINT_PRESSURE] + p, old, state,
+                      PETSC_FALSE, &s);
       point_set_tau(m->points, p, s.tau);
     } else {
       material->law->update(material->parameters, 1, identity, old, state, tau, NULL);
