@@ -144,6 +144,14 @@ typedef struct {
   PetscReal at;    /* x, m */
   PetscReal speed; /* run-out time: a slower front has come to rest, m/s */
   FrontKind front; /* run-out time: whose front */
+  PetscBool has_in;
+  Shape in; /* only what lies in it */
+  PetscBool has_about;
+  PetscReal about[3]; /* centre of a container, m */
+  PetscReal middle;   /* share of the chord of a free surface that a line is fitted to; 0: usual */
+  /* change per time: over the last window[0] s, or with window[0] < window[1] between two times */
+  PetscBool has_rate;
+  PetscReal window[2];
 } MeasureSpec;
 
 typedef struct {

@@ -85,7 +85,6 @@ PetscErrorCode ConvectStep(Model *m, PetscReal dt, EnergyStep *energy, StepRepor
   ++m->step;
   PetscCall(EnergyClose(m, energy));
   PetscCall(OutsideAdd(m, report));
-  PetscCall(MeasuresRemember(m, dt));
   PetscCall(PhaseEnd(m->seconds, PHASE_COMMIT, &clock));
   report->outcome = STEP_ACCEPTED;
   report->dt = dt;

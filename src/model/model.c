@@ -268,6 +268,7 @@ static PetscErrorCode Build(Model *m, Diag *diag)
   PetscCall(BoundaryCreate(m->grid, m->c, diag, &m->boundary));
   PetscCall(LoadsCreate(m->grid, m->c, m->points, diag, &m->loads));
   PetscCall(CreateTracers(m, diag));
+  measures_check(m, diag);
   model_advise(m, diag);
   PetscCall(DiagReduce(m->comm, diag, &errors));
   if (errors) PetscFunctionReturn(0);
@@ -325,7 +326,7 @@ PetscErrorCode ModelDestroy(Model **model)
   if (m->points) PetscCall(PointsDestroy(&m->points));
   if (m->grid) PetscCall(GridDestroy(&m->grid));
   PetscCall(PetscFree(m->materials));
-  PetscCall(PetscFree(m->memory));
+  PetscCall(MeasuresEnd(m));
   PetscCall(PetscFree(m->load_memory));
   PetscCall(PetscFree(*model));
   PetscFunctionReturn(0);

@@ -27,6 +27,9 @@ typedef struct {
   PetscReal kept[MEASURE_KEPT]; /* what it keeps for itself */
   PetscReal ended;              /* when the material left its tracer behind, s; 0: it did not */
   PetscReal where[3];           /* the tracer was then, m */
+  /* more that it keeps, as many numbers as it likes: see MemoryAppend */
+  PetscInt n_list, capacity;
+  PetscReal *list;
 } MeasureMemory;
 
 /* A load whose carriers, or some of them, the material has left behind. */
@@ -167,6 +170,8 @@ PetscErrorCode ModelStep(Model *model, PetscReal limit, StepReport *report);
 
 /* Collective. Value of one measure of the case now. */
 PetscErrorCode ModelMeasure(Model *model, const MeasureSpec *measure, PetscInt index, PetscReal *value);
+/* Numbers behind the list that a measure keeps. */
+PetscErrorCode MemoryAppend(MeasureMemory *memory, PetscInt n, const PetscReal *numbers);
 const char *measure_unit(const MeasureSpec *measure);
 PetscErrorCode ModelEnergies(Model *model, Energies *energies);
 

@@ -48,7 +48,10 @@ void gravity_at(const Case *c, PetscReal t, PetscReal g[3]);
 /* Collective. Stress and stored energy of the points as the start of all work, and what measures
  * remember. */
 PetscErrorCode EnergyStart(Model *model);
+/* Measures of places that no point can reach are mistakes. */
+void measures_check(const Model *model, Diag *diag);
 PetscErrorCode MeasuresStart(Model *model);
+PetscErrorCode MeasuresEnd(Model *model);
 /* Collective. After every accepted step of dt, whether or not a row of the history is written. */
 PetscErrorCode MeasuresRemember(Model *model, PetscReal dt);
 

@@ -62,6 +62,18 @@ static const SchemaTable run_out = {
   .groups = schema_one_tag,
   .tag_offset = offsetof(MeasureSpec, maximum)};
 
+/* --- its rate --- */
+static const SchemaEntry rate_entries[] = {
+  KEY(
+    "window", INTERVAL, "s",
+    "a line of least squares through the values of all steps: of the last so many seconds, or [from, to]: between two "
+    "times",
+    REQUIRED, AT_LEAST(0), AT(MeasureSpec, window[0]), .second = offsetof(MeasureSpec, window[1])),
+  {.key = NULL},
+};
+static const SchemaTable rate = {
+  .name = "rate", .help = "How fast a measure changes: its unit per second.", .entries = rate_entries};
+
 /* --- a measure --- */
 static SchemaEntry entry_of(const Measure *measure)
 {
@@ -87,7 +99,17 @@ static SchemaEntry measure_entry(PetscInt i)
 {
   static const SchemaEntry beside[] = {
     KEY("at", NUMBER, "m", "x of a number that is taken at a place", AT(MeasureSpec, at), GIVEN(MeasureSpec, has_at)),
+    KEY("about", VECTOR, "m", "the centre of a container, for a number that is taken about one", AT(MeasureSpec, about),
+        GIVEN(MeasureSpec, has_about)),
+    KEY("middle", NUMBER, NULL, "share of a surface, from wall to wall, that a line is fitted to", .note = "0.85",
+        .bounded = PETSC_TRUE, .min = 0, .max = 1, .min_open = PETSC_TRUE, AT(MeasureSpec, middle)),
+    KEY(
+      "in", TABLE, NULL,
+      "only what lies in this shape; a point that its surface cuts counts in part: its domain, a square or cube of its "
+      "volume, is sampled",
+      .table = &schema_shape, AT(MeasureSpec, in), GIVEN(MeasureSpec, has_in)),
     KEY("of", TABLE, NULL, "which tracer, body or boundary", .table = &of),
+    KEY("rate", TABLE, NULL, "how fast that changes, instead of it", .table = &rate, GIVEN(MeasureSpec, has_rate)),
     {.key = NULL},
   };
   PetscInt n = 0;
@@ -95,15 +117,40 @@ static SchemaEntry measure_entry(PetscInt i)
   return measures[n] ? entry_of(measures[n]) : beside[i - n];
 }
 
-static void check_place(SchemaReader *r, const YamlNode *mapping, const MeasureSpec *m, const char *path)
+/* Keys that belong to some numbers only: must or may they stand beside this one? */
+static void check_beside(SchemaReader *r, const YamlNode *mapping, const MeasureSpec *m, const char *path)
 {
-  const PetscBool needed = measure_number(m)->at;
-  if (needed && !m->has_at) {
-    SchemaKeyError(r, mapping, "key 'at' of %s is missing", path);
-    diag_hint(r->diag, "write %s: %s, at: x", m->kind, m->word);
+  const MeasureNumber *number = measure_number(m);
+  const struct {
+    const char *key, *example;
+    PetscBool needed, allowed;
+  } keys[] = {
+    {"at", "at: x", number->at, number->at},
+    {"about", "about: [x, y]", number->about, number->about || number->may_about},
+    {"middle", NULL, PETSC_FALSE, number->middle},
+    {"in", NULL, PETSC_FALSE, number->in || number->sum},
+  };
+  for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(keys); ++k) {
+    const YamlNode *node = yaml_find(mapping, keys[k].key);
+    if (keys[k].needed && !node) {
+      SchemaKeyError(r, mapping, "key '%s' of %s is missing", keys[k].key, path);
+      diag_hint(r->diag, "write %s: %s, %s", m->kind, m->word, keys[k].example);
+    }
+    if (!keys[k].allowed && node)
+      SchemaKeyError(r, node, "%s.%s means nothing to %s%s%s", path, keys[k].key, m->kind, m->word ? ": " : "",
+                     m->word ? m->word : "");
   }
-  if (!needed && m->has_at)
-    SchemaKeyError(r, yaml_find(mapping, "at"), "%s.at means nothing to %s: %s", path, m->kind, m->word ? m->word : "");
+}
+
+static void check_rate(SchemaReader *r, const YamlNode *mapping, const MeasureSpec *m, const char *path)
+{
+  const YamlNode *window = yaml_find(yaml_find(mapping, "rate"), "window");
+  if (!window) return;
+  if (m->window[0] == m->window[1] && !(m->window[0] > 0))
+    SchemaError(r, window, "%s.rate.window must be longer than 0 s", path);
+  else if (m->window[0] < m->window[1] && m->window[0] >= r->c->analysis.end)
+    SchemaError(r, window, "%s.rate.window begins when the run is over, at %g s (analysis.end)", path,
+                (double)r->c->analysis.end);
 }
 
 static void check_front(SchemaReader *r, const YamlNode *mapping, const MeasureSpec *m, const char *path)
@@ -145,7 +192,8 @@ static PetscErrorCode CheckMeasure(SchemaReader *r, const YamlNode *mapping, voi
 
   PetscFunctionBeginUser;
   yaml_path(mapping, path, sizeof(path));
-  check_place(r, mapping, target, path);
+  check_beside(r, mapping, target, path);
+  check_rate(r, mapping, target, path);
   check_front(r, mapping, target, path);
   check_component(r, mapping, target, path);
   check_subject(r, mapping, target, path);
@@ -156,6 +204,7 @@ static PetscBool hide_in_measure(const SchemaEntry *e, const void *source)
 {
   const MeasureSpec *m = source;
   const MeasureSubject subject = measure_number(m)->of;
+  if (!strcmp(e->key, "middle")) return m->middle == 0;
   return e->table == &of && (subject == OF_MODEL || (subject == OF_BODY && !m->body));
 }
 

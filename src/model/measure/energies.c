@@ -4,12 +4,11 @@
 static PetscReal kinetic(const Model *m, const MeasureSpec *s, PetscInt body)
 {
   PetscReal sum = 0;
-  (void)s;
   for (PetscInt p = 0; p < m->points->n; ++p) {
     const PetscReal *v = point_real(m->points, POINT_V, p);
     PetscReal square = 0;
     for (PetscInt d = 0; d < m->dim; ++d) square += v[d] * v[d];
-    if (measure_takes_point(m, body, p)) sum += 0.5 * m->points->real[POINT_MASS][p] * square;
+    sum += 0.5 * measure_share(m, s, body, p) * m->points->real[POINT_MASS][p] * square;
   }
   return sum;
 }
@@ -17,19 +16,21 @@ static PetscReal kinetic(const Model *m, const MeasureSpec *s, PetscInt body)
 static PetscReal elastic(const Model *m, const MeasureSpec *s, PetscInt body)
 {
   PetscReal sum = 0;
-  (void)s;
-  for (PetscInt p = 0; p < m->points->n; ++p)
-    if (measure_takes_point(m, body, p)) sum += m->points->real[POINT_VOLUME][p] * model_point_energy(m, p);
+  for (PetscInt p = 0; p < m->points->n; ++p) {
+    const PetscReal share = measure_share(m, s, body, p);
+    if (share > 0) sum += share * m->points->real[POINT_VOLUME][p] * model_point_energy(m, p);
+  }
   return sum;
 }
 
 static PetscReal dissipated(const Model *m, const MeasureSpec *s, PetscInt body)
 {
   PetscReal sum = 0;
-  (void)s;
-  for (PetscInt p = 0; p < m->points->n; ++p)
-    if (measure_takes_point(m, body, p))
-      sum += m->points->real[POINT_WORK][p] - m->points->real[POINT_VOLUME][p] * model_point_energy(m, p);
+  for (PetscInt p = 0; p < m->points->n; ++p) {
+    const PetscReal share = measure_share(m, s, body, p);
+    const PetscReal *work = m->points->real[POINT_WORK], *volume = m->points->real[POINT_VOLUME];
+    if (share > 0) sum += share * (work[p] - volume[p] * model_point_energy(m, p));
+  }
   return sum;
 }
 

@@ -18,7 +18,11 @@ typedef struct {
   const char *word, *help;
   const char *unit; /* NULL of a word: that of its key */
   MeasureSubject of;
-  PetscBool at; /* is it taken `at` a place? */
+  PetscBool at;        /* is it taken `at` a place? */
+  PetscBool about;     /* is it taken `about` a centre? */
+  PetscBool may_about; /* may it be? */
+  PetscBool middle;    /* is it fitted to the `middle` of something? */
+  PetscBool in;        /* may it be that of the points `in` a shape alone? Every sum may */
   /* Collective. index: of the spec among the measures of the case. */
   PetscErrorCode (*value)(Model *m, const MeasureSpec *s, PetscInt index, PetscReal *value);
   /* This rank's share of a sum over the points of a body (< 0: of all). A body that is gone has
@@ -55,6 +59,33 @@ static inline PetscBool measure_takes_point(const Model *m, PetscInt body, Petsc
 {
   return body < 0 || m->points->body[p] == body;
 }
+
+/* Share of a point that counts: that of its domain which lies in the shape of the spec, if there is
+ * one; none of other bodies (powder/share.c). */
+PetscReal measure_share_in(const Model *m, const Shape *shape, PetscInt p);
+static inline PetscReal measure_share(const Model *m, const MeasureSpec *s, PetscInt body, PetscInt p)
+{
+  if (!measure_takes_point(m, body, p)) return 0;
+  return s->has_in ? measure_share_in(m, &s->in, p) : 1;
+}
+/* Volume of a point's material, m3: a loose point may have opened to many times its volume, but what
+ * it holds has not grown. */
+static inline PetscReal measure_solid_volume(const Model *m, PetscInt p)
+{
+  return PetscMin(1, m->points->real[POINT_J][p]) * m->points->real[POINT_VOLUME][p];
+}
+/* Unit vectors against gravity (without: y) and to the right of it, in two dimensions. */
+void measure_up(const Model *m, PetscReal right[2], PetscReal up[2]);
+
+/* Collective. Angle of the centre of mass below the centre that the spec is `about`, rad. */
+PetscErrorCode MassAngle(const Model *m, const MeasureSpec *s, PetscReal *angle);
+
+/* A measure that is asked for its rate (powder/rate.c): its value at the end of an accepted step,
+ * and what comes of the values kept. */
+PetscErrorCode RateRemember(Model *m, const MeasureSpec *s, MeasureMemory *memory, PetscReal value);
+PetscReal rate_value(const MeasureSpec *s, const MeasureMemory *memory);
+/* "kg/s" of "kg". */
+const char *rate_unit(const char *unit);
 
 /* Collective: the farthest coordinate of a body, and its free surface: the front, unless the spec
  * asks for something else of it. */

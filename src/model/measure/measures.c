@@ -1,4 +1,5 @@
 /* The measures of a case: their values, and what they remember. */
+#include "base/text.h"
 #include "model/measure/measure.h"
 #include "model/model_private.h"
 #include <string.h>
@@ -22,7 +23,8 @@ static PetscErrorCode PointSum(const Model *m, const MeasureSpec *s, const Measu
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode ModelMeasure(Model *m, const MeasureSpec *s, PetscInt index, PetscReal *value)
+/* Collective. Whatever the spec asks for, without its rate. */
+static PetscErrorCode Value(Model *m, const MeasureSpec *s, PetscInt index, PetscReal *value)
 {
   const MeasureNumber *number = measure_number(s);
 
@@ -32,6 +34,37 @@ PetscErrorCode ModelMeasure(Model *m, const MeasureSpec *s, PetscInt index, Pets
   else if (number->sum) PetscCall(PointSum(m, s, number, value));
   else *value = ((const PetscReal *)((const char *)m + number->kept))[number->word ? 0 : s->component];
   PetscFunctionReturn(0);
+}
+
+PetscErrorCode ModelMeasure(Model *m, const MeasureSpec *s, PetscInt index, PetscReal *value)
+{
+  PetscFunctionBeginUser;
+  if (s->has_rate) *value = rate_value(s, &m->memory[index]);
+  else PetscCall(Value(m, s, index, value));
+  PetscFunctionReturn(0);
+}
+
+static void outside_grid(const Model *m, const MeasureSpec *s, const char *key, Diag *diag)
+{
+  char path[256], from[80], to[80];
+  PetscSNPrintf(path, sizeof path, "measures.%s.%s", s->name, key);
+  diag_error(diag, path, "this is outside the grid, which reaches from %s to %s m: nothing will ever be there",
+             text_position(m->dim, m->grid->min, from), text_position(m->dim, m->grid->max, to));
+}
+
+void measures_check(const Model *m, Diag *diag)
+{
+  for (PetscInt k = 0; k < m->c->n_measures; ++k) {
+    const MeasureSpec *s = &m->c->measures[k];
+    const PetscReal *low = m->grid->min, *high = m->grid->max;
+    PetscReal min[3], max[3];
+    PetscBool meets = PETSC_TRUE;
+    if (s->has_at && (s->at < low[0] || s->at > high[0])) outside_grid(m, s, "at", diag);
+    if (!s->has_in) continue;
+    shape_bounds(&s->in, m->dim, min, max);
+    for (PetscInt d = 0; d < m->dim; ++d) meets = meets && min[d] < high[d] && max[d] > low[d];
+    if (!meets) outside_grid(m, s, "in", diag);
+  }
 }
 
 PetscErrorCode MeasuresStart(Model *m)
@@ -44,12 +77,25 @@ PetscErrorCode MeasuresStart(Model *m)
 
 PetscErrorCode MeasuresRemember(Model *m, PetscReal dt)
 {
+  PetscReal value;
+
   PetscFunctionBeginUser;
   for (PetscInt k = 0; k < m->c->n_measures; ++k) {
     const MeasureSpec *s = &m->c->measures[k];
     const Measure *measure = measure_find(s->kind);
     if (measure->remember) PetscCall(measure->remember(m, s, dt, m->memory[k].kept));
+    if (!s->has_rate) continue;
+    PetscCall(Value(m, s, k, &value));
+    PetscCall(RateRemember(m, s, &m->memory[k], value));
   }
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode MeasuresEnd(Model *m)
+{
+  PetscFunctionBeginUser;
+  for (PetscInt k = 0; m->memory && k < m->c->n_measures; ++k) PetscCall(PetscFree(m->memory[k].list));
+  PetscCall(PetscFree(m->memory));
   PetscFunctionReturn(0);
 }
 

@@ -1,26 +1,12 @@
-/* Mass, momentum and spin: sums over points. */
+/* Momentum and spin: sums over points. */
 #include "model/measure/measure.h"
-
-/* Of a body that is gone the mass is known: 0. */
-static PetscErrorCode Mass(Model *m, const MeasureSpec *s, PetscInt index, PetscReal *value)
-{
-  const PetscInt body = measure_body(m, s);
-  PetscReal sum = 0;
-
-  (void)index;
-  PetscFunctionBeginUser;
-  for (PetscInt p = 0; p < m->points->n; ++p)
-    if (measure_takes_point(m, body, p)) sum += m->points->real[POINT_MASS][p];
-  PetscCall(MPIU_Allreduce(&sum, value, 1, MPIU_REAL, MPI_SUM, m->comm));
-  PetscFunctionReturn(0);
-}
 
 static PetscReal momentum(const Model *m, const MeasureSpec *s, PetscInt body)
 {
   PetscReal sum = 0;
   for (PetscInt p = 0; p < m->points->n; ++p)
-    if (measure_takes_point(m, body, p))
-      sum += m->points->real[POINT_MASS][p] * point_real(m->points, POINT_V, p)[s->component];
+    sum +=
+      measure_share(m, s, body, p) * m->points->real[POINT_MASS][p] * point_real(m->points, POINT_V, p)[s->component];
   return sum;
 }
 
@@ -30,8 +16,7 @@ static void sum_moments(const Model *m, const MeasureSpec *s, PetscInt body, Pet
 {
   const PetscInt i = m->dim == 2 ? 0 : (s->component + 1) % 3, j = m->dim == 2 ? 1 : (s->component + 2) % 3;
   for (PetscInt p = 0; p < m->points->n; ++p) {
-    if (!measure_takes_point(m, body, p)) continue;
-    const PetscReal mass = m->points->real[POINT_MASS][p];
+    const PetscReal mass = measure_share(m, s, body, p) * m->points->real[POINT_MASS][p];
     const PetscReal *x = point_real(m->points, POINT_X, p), *v = point_real(m->points, POINT_V, p);
     const PetscReal add[7] = {1, x[i], x[j], v[i], v[j], x[i] * v[j] - x[j] * v[i], x[i] * x[i] + x[j] * x[j]};
     for (int k = 0; k < 7; ++k) q[k] += mass * add[k];
@@ -60,11 +45,6 @@ static PetscErrorCode Spin(Model *m, const MeasureSpec *s, PetscInt index, Petsc
   PetscFunctionReturn(0);
 }
 
-const Measure measure_mass = {.key = "mass",
-                              .takes = MEASURE_WORD,
-                              .number = {.unit = "kg", .help = "mass"},
-                              .words = (const MeasureNumber *const[]){
-                                WORD("total", "of all points, or of the body given by `of`", .value = Mass), NULL}};
 const Measure measure_momentum = {
   .key = "momentum", .no_radial = PETSC_TRUE, .number = {.unit = "kg m/s", .help = "linear momentum", .sum = momentum}};
 const Measure measure_angular_momentum = {
@@ -76,4 +56,5 @@ const Measure measure_spin = {
   .takes = MEASURE_SPIN_AXIS,
   .number = {.unit = "rad/s",
              .help = "angular velocity: angular momentum over inertia, both about the centre of mass",
+             .in = PETSC_TRUE,
              .value = Spin}};

@@ -29,6 +29,6 @@ const MeasureNumber *measure_number(const MeasureSpec *s)
 
 const char *measure_unit(const MeasureSpec *s)
 {
-  const char *unit = measure_number(s)->unit;
-  return unit ? unit : measure_find(s->kind)->number.unit;
+  const char *own = measure_number(s)->unit, *unit = own ? own : measure_find(s->kind)->number.unit;
+  return s->has_rate ? rate_unit(unit) : unit;
 }

@@ -126,6 +126,7 @@ PetscErrorCode ModelToTables(Model *m, Tables *tables)
   PetscCall(TriesToTables(m, tables));
   PetscCall(SofteningToTables(m, tables));
   PetscCall(StateLostToTables(m, tables));
+  PetscCall(StateListsToTables(m, tables));
   PetscCall(PointsToTable(m->points, m->grid, "points", tables));
   PetscCall(PointsToTable(m->tracers, m->grid, "tracers", tables));
   PetscCall(PointsToTable(m->loads->carriers, m->grid, "carriers", tables));
@@ -324,6 +325,7 @@ PetscErrorCode ModelFromTables(Model *m, Tables *tables, char reason[256])
   tries_from_table(m, tables_find(tables, "tries"), reason);
   softening_from_table(m, tables_find(tables, "softening"), reason);
   state_lost_from_tables(m, tables, reason);
+  PetscCall(StateListsFromTables(m, tables, reason));
   PetscCall(ReasonShare(m->comm, reason));
   if (m->method->clouds && !reason[0]) {
     PetscCall(CloudBack(m, tables, reason));

@@ -19,7 +19,7 @@ static void list_tables(Model *m, LostTable table[4])
   table[2] = (LostTable){"ended",
                          "when_where",
                          m->c->n_measures,
-                         NUMBERS(MeasureMemory, ended),
+                         1 + 3, /* ended, where */
                          (char *)m->memory + offsetof(MeasureMemory, ended),
                          sizeof *m->memory};
   table[3] = (LostTable){"ended_loads",          "when_carriers_force_where", m->c->n_loads, NUMBERS(LoadMemory, ended),

@@ -9,6 +9,10 @@
 PetscErrorCode StateLostToTables(Model *model, Tables *tables);
 void state_lost_from_tables(Model *model, const Tables *tables, char reason[256]);
 
+/* Lists of measures. */
+PetscErrorCode StateListsToTables(const Model *model, Tables *tables);
+PetscErrorCode StateListsFromTables(Model *model, const Tables *tables, char reason[256]);
+
 /* Collective. After all other tables: nodes of a cloud, and which rows are whose. */
 PetscErrorCode StateCloudToTables(const Model *model, Tables *tables);
 /* Collective. First of all: rows to the ranks that wrote them, if these are as many (*home), and
