@@ -1,5 +1,6 @@
 #include "boundary/boundary.h"
 #include "boundary/motion.h"
+#include "boundary/slip.h"
 
 /* Behind the entries of the case stands one of the program's own: where the plane turns about x = 0
  * nothing leaves the axis. */
@@ -47,8 +48,7 @@ static PetscBool motions_agree(const Case *c, const MotionSpec *a, const MotionS
   return PETSC_TRUE;
 }
 
-/* (x, y) or (x, y, z) */
-static void position_text(PetscInt dim, const PetscReal *x, char text[64])
+void boundary_place(PetscInt dim, const PetscReal *x, char text[64])
 {
   if (dim == 3) snprintf(text, 64, "(%g, %g, %g)", (double)x[0], (double)x[1], (double)x[2]);
   else snprintf(text, 64, "(%g, %g)", (double)x[0], (double)x[1]);
@@ -61,7 +61,7 @@ static void report_contradiction(const Boundary *b, const Grid *grid, PetscInt n
   const PetscReal *x = grid->x + node * b->dim;
   char path[64], at[64];
   PetscSNPrintf(path, sizeof path, "boundary[%d]", (int)entry);
-  position_text(b->dim, x, at);
+  boundary_place(b->dim, x, at);
   if (entry == boundary_axis(b)) {
     PetscSNPrintf(path, sizeof path, "boundary[%d]", (int)b->entry[node * b->dim + d]);
     diag_error(diag, path, "%s moves the node at %s along x, but it lies on the axis, which nothing leaves", path, at);
@@ -113,8 +113,8 @@ static PetscErrorCode CheckSelection(const Boundary *b, const Grid *grid, PetscI
     PetscCall(PetscFree(names));
   } else if (!all) {
     PetscCall(PetscSNPrintf(path, sizeof path, "boundary[%d].on", (int)entry));
-    position_text(b->dim, grid->min, from);
-    position_text(b->dim, grid->max, to);
+    boundary_place(b->dim, grid->min, from);
+    boundary_place(b->dim, grid->max, to);
     diag_error(diag, path, "%s selects no node of the grid, which spans %s to %s", path, from, to);
   }
   PetscFunctionReturn(0);
@@ -135,6 +135,9 @@ static PetscErrorCode SelectNodes(Boundary *b, const Grid *grid, Diag *diag)
     if (diag && k < b->c->n_boundary) PetscCall(CheckSelection(b, grid, k, diag));
     mark_entry(b, grid, k, diag);
   }
+  PetscCall(WallNormals(grid, b->c, &b->n_walls, &b->walls));
+  PetscCall(SlipMark(b, grid, diag));
+  if (diag) PetscCall(SlipCheck(b, grid, diag));
   PetscFunctionReturn(0);
 }
 
@@ -223,6 +226,8 @@ PetscErrorCode BoundaryDestroy(Boundary **boundary)
   PetscCall(PetscFree(b->member));
   PetscCall(PetscFree(b->fixed));
   PetscCall(PetscFree(b->entry));
+  PetscCall(PetscFree(b->walls));
+  PetscCall(FramesDestroy(&b->frames));
   PetscCall(PetscFree(*boundary));
   PetscFunctionReturn(0);
 }
@@ -251,6 +256,7 @@ PetscErrorCode BoundaryMove(Boundary *b, const Grid *grid, PetscReal t)
     }
     mark_entry(b, grid, k, NULL);
   }
+  PetscCall(SlipMark(b, grid, NULL));
   PetscFunctionReturn(0);
 }
 
@@ -264,7 +270,7 @@ PetscErrorCode BoundarySum(const Boundary *b, const Grid *grid, PetscInt entry, 
     const PetscInt node = b->motion[entry].node[k];
     if (node >= grid->n_owned) continue;
     for (PetscInt d = 0; d < b->dim; ++d)
-      if (b->fixed[node * b->dim + d]) local[d] += force[node * b->dim + d];
+      if (boundary_holds(b, node, d)) local[d] += force[node * b->dim + d];
   }
   PetscCall(MPIU_Allreduce(local, sum, 3, MPIU_REAL, MPI_SUM, grid->comm));
   PetscFunctionReturn(0);

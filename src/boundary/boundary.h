@@ -3,8 +3,14 @@
  * Motions are increments over a step. On a grid that is restored every step (mpm) they belong to
  * places, which stay or take part in the motion (`moves`); on a mesh that moves (fem) to the nodes
  * selected at the start. Either way a rotation turns the node's present position about its
- * centre. */
+ * centre.
+ *
+ * Nodes that slide along walls (`fix: [normal]`) may have frames of their own: `fixed` and `entry`
+ * are of the components in the frame. Their prescribed increments are zero but for axes that the
+ * frame leaves as they are, so that these are components along the axes, too. */
 #pragma once
+#include "boundary/frames.h"
+#include "boundary/normals.h"
 #include "grid/cloud/cloud.h"
 
 typedef struct {
@@ -22,10 +28,13 @@ typedef struct Boundary {
   MotionNodes *motion;  /* one per entry of the case's boundary; in axisymmetry the axis behind them */
   unsigned char *fixed; /* n_nodes x dim */
   PetscInt *entry;      /* n_nodes x dim: the entry that prescribes the dof, -1 if none */
+  PetscInt n_walls;     /* nodes that slide */
+  WallNode *walls;
+  Frames frames; /* of those that need one */
   /* of a cloud: n_nodes x entries, 1 where the entry took the node at the start; follows the
    * nodes */
   PetscReal *member;
-  MotionField field; /* NULL: as the case says */
+  MotionField field; /* NULL: as the case says; not where nodes slide */
   void *field_context;
 } Boundary;
 
@@ -54,6 +63,15 @@ PetscErrorCode BoundaryMove(Boundary *boundary, const Grid *grid, PetscReal t);
 
 /* Increments over [t0, t1] of all prescribed dofs (others untouched), n_nodes x dim, m. */
 void boundary_increments(const Boundary *boundary, const Grid *grid, PetscReal t0, PetscReal t1, PetscReal *increment);
+
+/* May the boundary hold the node along this axis, in its frame or as it is? */
+static inline PetscBool boundary_holds(const Boundary *boundary, PetscInt node, PetscInt axis)
+{
+  return boundary->fixed[node * boundary->dim + axis] || frame_of(&boundary->frames, node);
+}
+
+/* (x, y) or (x, y, z) */
+void boundary_place(PetscInt dim, const PetscReal *x, char text[64]);
 
 /* Collective. Sum over the nodes of one entry of nodal forces (n_nodes x dim, owners count), N. */
 PetscErrorCode BoundarySum(const Boundary *boundary, const Grid *grid, PetscInt entry, const PetscReal *force,

@@ -103,12 +103,15 @@ typedef struct {
 
 typedef enum { MOTION_FIXED, MOTION_DISPLACEMENT, MOTION_VELOCITY, MOTION_ROTATION } MotionKind;
 
+/* The normal of a wall, beside the axes 0 1 2. */
+#define NORMAL 3
+
 /* Prescribed motion of the nodes selected. Components not in `component` stay free. */
 typedef struct {
   Selector on;
   PetscBool moves; /* does the place `on` take part in the motion, on a grid that is restored? */
   MotionKind kind;
-  PetscBool component[3];
+  PetscBool component[4];             /* x y z; NORMAL: nodes slide along the wall that they stand in */
   PetscReal value[3];                 /* m or m/s, times the amplitude */
   PetscReal centre[3], axis[3], rate; /* rotation, rad/s (times the amplitude) */
   Amplitude amplitude;

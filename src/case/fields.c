@@ -16,7 +16,7 @@ const OutputField output_fields[] = {
   {"equivalent_plastic_strain", "", "accumulated plastic strain, 0 for elastic laws", 1, P},
   {"mass", "kg", "mass of a point; on the grid the mass gathered at a node", 1, PG},
   {"density", "kg/m3", "current density", 1, P},
-  {"volume", "m3", "current volume (for unit thickness in plane strain)", 1, P},
+  {"volume", "m3", "current volume (for unit thickness in plane strain, all round in axisymmetry)", 1, P},
   {"energy", "J/m3", "stored elastic energy per undeformed volume", 1, P},
   {"id", "", "number of the point, the same through the whole run", 1, P},
   {"body", "", "index of the body in the case file", 1, P},

@@ -3,7 +3,7 @@
 #include "case/fields.h"
 #include "input/schema/schema.h"
 
-static const char *const axis_words[] = {"x", "y", "z", NULL};
+static const char *const axis_words[] = {"x", "y", "z", [NORMAL] = "normal", NULL};
 
 PetscInt schema_parse_vector(const YamlNode *node, PetscReal value[3])
 {
@@ -48,7 +48,7 @@ PetscErrorCode SchemaReadSpin(SchemaReader *r, const SchemaEntry *e, const YamlN
   PetscFunctionReturn(0);
 }
 
-/* 0 1 2 for x y z, -1 and a message for anything else. */
+/* 0 1 2 for x y z, NORMAL where lists take it, -1 and a message for anything else. */
 static PetscInt values_axis(SchemaReader *r, const SchemaEntry *e, const YamlNode *node)
 {
   const PetscInt first = e->type == TYPE_SPIN_AXIS && r->dim == 2 ? 2 : 0;
@@ -56,7 +56,10 @@ static PetscInt values_axis(SchemaReader *r, const SchemaEntry *e, const YamlNod
   SchemaEntry one = *e;
   for (PetscInt d = first; d <= last; ++d)
     if (node->kind == YAML_SCALAR && !strcmp(node->text, axis_words[d])) return d;
-  if (e->type == TYPE_AXES) one.type = TYPE_AXIS;
+  if (e->type == TYPE_AXES) {
+    if (node->kind == YAML_SCALAR && !strcmp(node->text, axis_words[NORMAL])) return NORMAL;
+    one.type = TYPE_DIRECTION;
+  }
   schema_mismatch(r, &one, node);
   return -1;
 }

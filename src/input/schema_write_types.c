@@ -112,6 +112,7 @@ static void write_axes(const SchemaWriting *w)
   fputc('[', w->out);
   for (PetscInt d = 0; d < 3; ++d)
     if (component[d]) fprintf(w->out, "%s%c", n++ ? ", " : "", "xyz"[d]);
+  if (component[NORMAL]) fprintf(w->out, "%snormal", n ? ", " : "");
   fputc(']', w->out);
 }
 

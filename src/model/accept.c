@@ -20,6 +20,9 @@ static void store_reactions(Model *m, PetscReal dt)
 {
   const TimeWeights w = m->scheme->weights(&m->c->analysis, dt);
   NodalFields *n = m->nodes;
+  PetscReal *vectors[] = {n->force, n->rate, n->v, n->a, n->v_points, n->a_points, n->held, n->reaction};
+  const Frames *frames = &m->boundary->frames;
+  for (int k = 0; k < 6; ++k) frames_turn(frames, m->dim, vectors[k]);
   for (PetscInt i = 0; i < m->grid->n_owned * m->dim; ++i) {
     const PetscReal mass = n->mass[i / m->dim];
     const PetscReal before = n->rate[i] + mass * (n->a[i] - n->a_points[i]);
@@ -30,6 +33,7 @@ static void store_reactions(Model *m, PetscReal dt)
     if (!fixed) continue;
     n->reaction[i] = (1 - w.mean) * before + w.mean * n->rate[i] + mass * (n->v[i] - n->v_points[i]) / dt;
   }
+  for (int k = 0; k < 8; ++k) frames_turn(frames, m->dim, vectors[k]);
 }
 
 /* Velocities and accelerations of the nodes at the end of the step. */

@@ -39,6 +39,13 @@ static void guess_inertia(const Model *m, PetscReal dt, PetscReal *du)
   }
 }
 
+/* Along an axis: all of them where the node slides in a frame of its own. */
+static PetscBool has_increment(const Model *m, PetscInt i)
+{
+  if (!m->nodes->fixed[i]) return PETSC_TRUE;
+  return frame_of(&m->boundary->frames, i / m->dim) && !m->nodes->idle[i / m->dim];
+}
+
 void guess_make(const Model *m, FirstGuess guess, PetscReal dt, PetscReal *du)
 {
   const NodalFields *n = m->nodes;
@@ -49,7 +56,7 @@ void guess_make(const Model *m, FirstGuess guess, PetscReal dt, PetscReal *du)
   }
   guess_inertia(m, dt, du); /* nodes that the last step did not move know no other */
   for (PetscInt i = 0; guess == GUESS_PREVIOUS && i < dofs; ++i)
-    if (!n->fixed[i] && n->previous[i] != 0) du[i] = dt / m->guess.step * n->previous[i];
+    if (n->previous[i] != 0 && has_increment(m, i)) du[i] = dt / m->guess.step * n->previous[i];
 }
 
 PetscErrorCode GuessLearn(Model *m, PetscReal dt)
@@ -63,7 +70,7 @@ PetscErrorCode GuessLearn(Model *m, PetscReal dt)
   if (!guess_follows(m)) PetscFunctionReturn(0);
   for (PetscInt k = 0; k < m->system->n_active; ++k)
     for (PetscInt d = 0, i = m->system->active[k] * m->dim; d < m->dim; ++d, ++i) {
-      if (n->fixed[i] || n->previous[i] == 0) continue;
+      if (n->previous[i] == 0 || !has_increment(m, i)) continue;
       const PetscReal inertia = n->du[i] - inertia_alone(m->nodes, dt, i);
       const PetscReal before = n->du[i] - ratio * n->previous[i];
       local[0] += inertia * inertia;
@@ -71,7 +78,7 @@ PetscErrorCode GuessLearn(Model *m, PetscReal dt)
     }
   PetscCall(MPIU_Allreduce(local, sum, 2, MPIU_REAL, MPI_SUM, m->comm));
   m->guess = (Guess){.step = dt, .previous = sum[1] < sum[0]};
-  for (PetscInt i = 0; i < m->grid->n_nodes * m->dim; ++i) n->previous[i] = n->fixed[i] ? 0 : n->du[i];
+  for (PetscInt i = 0; i < m->grid->n_nodes * m->dim; ++i) n->previous[i] = has_increment(m, i) ? n->du[i] : 0;
   PetscFunctionReturn(0);
 }
 

@@ -61,6 +61,17 @@ static void check_scheme(const Case *c, const TimeScheme *scheme, Diag *diag)
   diag_hint_names(diag, c->analysis.scheme, names);
 }
 
+/* Nodes of a cloud move with the field and not with their coefficients: they have no frames. */
+static void check_slip(const Case *c, const Method *method, Diag *diag)
+{
+  char path[64];
+  for (PetscInt k = 0; k < c->n_boundary && method->clouds; ++k) {
+    PetscSNPrintf(path, sizeof path, "boundary[%d].fix", (int)k);
+    if (c->boundary[k].component[NORMAL])
+      diag_error(diag, path, "method %s cannot let nodes slide along a normal: mpm and fem can", method->name);
+  }
+}
+
 static void check_supported(const Model *m, Diag *diag)
 {
   const Case *c = m->c;
@@ -71,6 +82,7 @@ static void check_supported(const Model *m, Diag *diag)
   check_basis(m, diag);
   check_scheme(c, m->scheme, diag);
   if (!m->method || m->method->restores_grid) return;
+  check_slip(c, m->method, diag);
   if (c->analysis.keep_velocity)
     diag_error(diag, "analysis.keep_velocity",
                "only points of method mpm have a velocity apart from that of the nodes");

@@ -94,7 +94,7 @@ static PetscBool is_held(const Model *m, PetscInt cell, PetscInt side, PetscInt 
   const Cell *type = grid_cell(m->grid, cell);
   for (PetscInt k = 0; k < type->face_nodes; ++k) {
     const PetscInt node = m->grid->cell_node[cell * m->grid->nodes_per_cell + type->face[side][k]];
-    if (m->boundary->fixed[node * m->dim + axis]) return PETSC_TRUE;
+    if (boundary_holds(m->boundary, node, axis)) return PETSC_TRUE;
   }
   return PETSC_FALSE;
 }

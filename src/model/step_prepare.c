@@ -52,6 +52,7 @@ PetscErrorCode PrepareUnknowns(Model *m, StepStart *start, StepReport *report)
   PetscCall(PhaseEnd(m->seconds, PHASE_REPARTITION, &clock));
   PetscCall(ModelActivate(m));
   if (m->method->restores_grid) PetscCall(BoundaryMove(m->boundary, m->grid, m->time));
+  m->system->frames = &m->boundary->frames;
   mark_fixed(m);
   PetscCall(StepStartKeep(m, start));
   if (m->method->begin && m->scheme->inertia) PetscCall(m->method->begin(m->space));
@@ -65,13 +66,16 @@ PetscErrorCode PrepareUnknowns(Model *m, StepStart *start, StepReport *report)
 static void set_boundary_kinematics(Model *m, PetscReal dt)
 {
   NodalFields *n = m->nodes;
+  PetscReal *motion[] = {n->v, n->a, n->v_points};
   if (!m->method->restores_grid && m->step > 0) return;
+  for (int k = 0; k < 3; ++k) frames_turn(&m->boundary->frames, m->dim, motion[k]);
   for (PetscInt i = 0; i < m->grid->n_nodes * m->dim; ++i) {
     if (!m->boundary->fixed[i] || !n->fixed[i]) continue;
     n->v[i] = n->prescribed[i] / dt;
     n->a[i] = 0;
     if (m->c->analysis.keep_velocity) n->v_points[i] = n->v[i];
   }
+  for (int k = 0; k < 3; ++k) frames_turn(&m->boundary->frames, m->dim, motion[k]);
 }
 
 /* A constraint on displacements lets the velocity of the field ring about the prescribed one, as
@@ -105,12 +109,14 @@ static PetscErrorCode ForceScales(const Model *m, const PetscReal *g, PetscReal 
 
   PetscFunctionBeginUser;
   for (PetscInt node = 0; node < m->grid->n_owned; ++node) {
-    const PetscReal mass = n->mass[node];
+    const PetscReal mass = n->mass[node], *w = frame_of(&m->boundary->frames, node);
+    PetscReal pull[3] = {g[0], g[1], g[2]};
     if (mass == 0) continue;
+    if (w) frame_turn(m->dim, w, pull);
     for (PetscInt d = 0, i = node * m->dim; d < m->dim; ++d, ++i) {
       const PetscReal stop = m->scheme->inertia ? mass * n->v[i] / dt : 0;
       const PetscReal going = m->scheme->inertia ? mass * n->a[i] : 0;
-      if (!n->fixed[i]) local[0] += mass * g[d] * mass * g[d];
+      if (!n->fixed[i]) local[0] += mass * pull[d] * mass * pull[d];
       local[1] += stop * stop;
       local[2] += going * going;
     }
@@ -176,6 +182,7 @@ PetscErrorCode PrepareStep(Model *m, PetscReal dt, StepProblem *p)
   set_history(m, dt, g);
   const NodalScene scene = nodal_scene(m, m->time + dt, m->nodes->du);
   PetscCall(NodalForcesExternal(&m->forces, &scene, PETSC_FALSE, m->nodes->external));
+  frames_turn(&m->boundary->frames, m->dim, m->nodes->external);
   *p = (StepProblem){
     .grid = m->grid,
     .system = m->system,

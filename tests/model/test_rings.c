@@ -290,6 +290,139 @@ static void test_flight(void **state)
   fly("mpm", PETSC_FALSE);
 }
 
+/* --- Newton's method, in every law --- */
+
+/* One step: a ring on a floor that holds its foot is pressed down at its top, by a strain of some
+ * per cent that differs from place to place. Once the residual is small each iteration squares
+ * it. */
+static void test_quadratic(void **state)
+{
+  static NamedValue split[] = {{"young", 1e6}, {"poisson", 0.3}},
+                    metal[] = {{"young", 1e6}, {"poisson", 0.3}, {"yield_stress", 2e4}, {"hardening", 1e5}},
+                    soil[] = {{"young", 1e6},
+                              {"poisson", 0.3},
+                              {"friction_angle", 30},
+                              {"dilatancy_angle", 10},
+                              {"cohesion", 8e3}};
+  static const struct {
+    const char *law;
+    NamedValue *parameters;
+    PetscInt n;
+  } cases[] = {
+    {"neo-hookean", split, 2}, {"neo-hookean-split", split, 2}, {"neo-hookean-split-log", split, 2}, {"j2", metal, 4},
+    {"j2-log", metal, 4},      {"mohr-coulomb", soil, 5}};
+  (void)state;
+  for (size_t k = 0; k < sizeof cases / sizeof *cases; ++k) {
+    Bench b;
+    tube(&b, "fem", CELL_QUADRILATERAL, 0, 1, 1, 6);
+    b.material = (MaterialSpec){.name = "rubber",
+                                .law = (char *)cases[k].law,
+                                .density = 1000,
+                                .n_parameters = cases[k].n,
+                                .parameters = cases[k].parameters};
+    bench_motion(&b, 1, 0, MOTION_FIXED, 3);
+    tube_moved(&b, 1, 1, 1, -0.05);
+    b.c.newton.residual = 1e-13;
+    b.c.newton.increment = 0;
+    Model *m = bench_model(&b, PETSC_COMM_WORLD);
+    const StepReport r = model_step(m, 1);
+    PetscInt squared = 0;
+    PetscPrintf(PETSC_COMM_WORLD, "%s:", cases[k].law);
+    for (PetscInt i = 0; i <= r.newton.iterations; ++i) {
+      const PetscReal now = r.newton.residual[i], next = i < r.newton.iterations ? r.newton.residual[i + 1] : 1;
+      PetscPrintf(PETSC_COMM_WORLD, " %.1e", (double)now);
+      squared += now < 1e-2 && now > 1e-7 && next <= PetscMax(30 * now * now, 1e-13);
+    }
+    PetscPrintf(PETSC_COMM_WORLD, "\n");
+    CHECK(r.cuts == 0, "the step was halved");
+    CHECK(squared >= 1, "%s: not quadratic", cases[k].law);
+    CALL(ModelDestroy(&m));
+  }
+}
+
+/* --- O15: a ring in space --- */
+
+/* The box [1, 2] x [0, h] x [0, 1] becomes a quarter of a tube about y. */
+static void turn(void *context, PetscInt dim, PetscReal size, PetscReal *x)
+{
+  const PetscReal radius = x[0], angle = x[2] * PETSC_PI / 2;
+  (void)context, (void)dim, (void)size;
+  x[0] = x[2] == 1 ? 0 : radius * PetscCosReal(angle);
+  x[2] = radius * PetscSinReal(angle);
+}
+
+static void inflate_quarter(void *context, const PetscReal *x, PetscReal t0, PetscReal t1, PetscReal *increment)
+{
+  const PetscReal growth = ((const Inflation *)context)->radius - 1, size = PetscSqrtReal(x[0] * x[0] + x[2] * x[2]);
+  const PetscBool inner = PetscAbsReal(size - 1 - t0 * growth) < 1e-6;
+  for (int d = 0; d < 3; ++d) increment[d] = inner && d != 1 ? (t1 - t0) * growth * x[d] / size : 0;
+}
+
+/* Outer radius of the tube inflated to 1.5, as a quarter in space of n cells through the wall. */
+static PetscReal quarter(PetscInt n)
+{
+  Bench b;
+  Inflation inflation = {1.5};
+  const PetscReal height = 1. / (PetscReal)n;
+  bench_init(&b, "fem", CELL_HEXAHEDRON, n);
+  bench_grid(&b, (PetscReal[]){1, 0, 0}, (PetscReal[]){2, height, 1}, height);
+  b.c.grid.counts[2] = 2 * n;
+  b.body[0].shape = upper_half;
+  bench_mesh(&b, turn, NULL);
+  bench_motion(&b, 1, 0, MOTION_FIXED, 2);
+  bench_motion(&b, 1, height, MOTION_FIXED, 2);
+  bench_motion(&b, 0, 0, MOTION_FIXED, 1);
+  bench_motion(&b, 2, 0, MOTION_FIXED, 4);
+  MotionSpec *inner = bench_motion(&b, -1, 0, MOTION_FIXED, 5); /* a ball just beyond the inner edge */
+  inner->on.has_shape = PETSC_TRUE;
+  inner->on.shape = (Shape){.kind = SHAPE_BALL, .radius = PetscSqrtReal(1 + height * height)};
+  b.c.analysis.step = b.c.analysis.largest = 0.25;
+  Model *m = bench_model(&b, PETSC_COMM_WORLD);
+  m->boundary->field = inflate_quarter;
+  m->boundary->field_context = &inflation;
+  run_through(m);
+  PetscReal outer = 0;
+  for (PetscInt i = 0; i < m->grid->n_nodes; ++i)
+    if (PetscAbsReal(m->grid->x[3 * i + 2]) < 1e-9) outer = PetscMax(outer, m->grid->x[3 * i]);
+  outer = model_max(m, outer);
+  CALL(ModelDestroy(&m));
+  bench_end(&b);
+  return outer;
+}
+
+/* Both tend to the same, with order 2. */
+static void test_space(void **state)
+{
+  PetscReal error[2];
+  (void)state;
+  for (int fine = 0; fine < 2; ++fine) error[fine] = quarter(fine ? 8 : 4) - 2.345244168;
+  PetscPrintf(PETSC_COMM_WORLD, "in space: off by %g and %g\n", (double)error[0], (double)error[1]);
+  CHECK(PetscAbsReal(error[1]) < 1e-2, "off by %g", (double)error[1]);
+  CHECK(order_of(error[0], error[1]) > 1.8, "order %g", (double)order_of(error[0], error[1]));
+}
+
+/* --- the free surface: a cylinder is as high on the axis as at its rim --- */
+static void test_surface(void **state)
+{
+  (void)state;
+  for (int from = 0; from < 2; ++from) {
+    Bench b;
+    tube(&b, "mpm", CELL_QUADRILATERAL, from, from + 1, 1, 8);
+    bench_box(&b, 0, (PetscReal[]){from, 0, 0}, (PetscReal[]){from + 1, 0.5, 0});
+    tube_moved(&b, 1, 0, 1, 0);
+    Model *m = bench_model(&b, PETSC_COMM_WORLD);
+    for (int k = 0; k <= 16; ++k) {
+      PetscReal height;
+      const MeasureSpec measure = {.kind = "surface", .word = "height", .at = from + k / 16., .has_at = PETSC_TRUE};
+      CALL(ModelMeasure(m, &measure, 0, &height));
+      CHECK_CLOSE(height, 0.5, 1e-13);
+    }
+    CHECK_CLOSE(model_sum(m, "surface: front", 0), from + 1, 1e-12);
+    CHECK_CLOSE(model_sum(m, "surface: slope", 0), 0, 1e-9);
+    CALL(ModelDestroy(&m));
+  }
+}
+
 /* --- clouds --- */
 static const BasisSpec clouds[] = {
   {.kind = "lme", .gamma = 1.8, .radius = 2, .max_radius = 3.5, .condition = 50, .gap = 2},
@@ -328,9 +461,10 @@ static void test_cloud(void **state)
 
 int main(int argc, char **argv)
 {
-  const struct CMUnitTest tests[] = {
-    cmocka_unit_test(test_sphere), cmocka_unit_test(test_breathing_cylinder), cmocka_unit_test(test_breathing_sphere),
-    cmocka_unit_test(test_fill),   cmocka_unit_test(test_geostatic),          cmocka_unit_test(test_flight),
-    cmocka_unit_test(test_cloud)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_sphere),           cmocka_unit_test(test_breathing_cylinder),
+                                     cmocka_unit_test(test_breathing_sphere), cmocka_unit_test(test_fill),
+                                     cmocka_unit_test(test_geostatic),        cmocka_unit_test(test_flight),
+                                     cmocka_unit_test(test_quadratic),        cmocka_unit_test(test_space),
+                                     cmocka_unit_test(test_surface),          cmocka_unit_test(test_cloud)};
   return run_model_tests(argc, argv, tests);
 }

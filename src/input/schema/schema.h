@@ -27,7 +27,8 @@ typedef enum {
   TYPE_SPIN,      /* PetscReal[3]: a number about z in 2D, a vector in 3D */
   TYPE_AXIS,      /* PetscInt 0 1 2 */
   TYPE_SPIN_AXIS, /* the same for rotations: only z in 2D */
-  TYPE_AXES,      /* PetscBool[3] */
+  TYPE_DIRECTION, /* 0 1 2, NORMAL */
+  TYPE_AXES,      /* PetscBool[4], of directions */
   TYPE_INTERVAL,  /* number or [min, max]: PetscReal at offset and at second */
   TYPE_SIZE,      /* cell size: resolved to counts by the check of the grid */
   TYPE_COUNTS,    /* PetscInt[3] */

@@ -26,7 +26,10 @@ static const SchemaTable rotation = {.name = "rotation", .help = "A rigid rotati
 static const SchemaEntry motion_entries[] = {
   KEY("name", NAME, NULL, "how `measures` may call it", AT(MotionSpec, name)),
   KEY("on", TABLE, NULL, "which nodes of the grid", .table = &schema_selector, REQUIRED, AT(MotionSpec, on)),
-  KEY("fix", AXES, NULL, "components that do not move: [x], [x, y], ...", TAG(MOTION_FIXED), AT(MotionSpec, component)),
+  KEY("fix", AXES, NULL,
+      "components that do not move: [x], [x, y], ...; or [normal]: nodes slide along the boundary that they stand in, "
+      "inclined or curved, and do not leave it; where two such walls meet at more than 40 degrees they keep to both",
+      TAG(MOTION_FIXED), AT(MotionSpec, component)),
   KEY("displacement", TABLE, NULL, "prescribed displacement from the start", .table = &components,
       TAG(MOTION_DISPLACEMENT)),
   KEY("velocity", TABLE, NULL, "prescribed velocity", .table = &components, TAG(MOTION_VELOCITY)),

@@ -252,6 +252,16 @@ PetscErrorCode SchemaCheckSelector(SchemaReader *r, const YamlNode *mapping, voi
   PetscFunctionReturn(0);
 }
 
+/* Beside a normal an axis says all in the plane, and nothing that is true of any wall in space. */
+static void check_slip(SchemaReader *r, const YamlNode *mapping, const MotionSpec *m)
+{
+  char path[512];
+  if (!m->component[0] && !m->component[1] && !m->component[2]) return;
+  SchemaError(r, yaml_find(mapping, "fix"), "%s.fix: beside the normal no other component stands",
+              yaml_path(mapping, path, sizeof(path)));
+  diag_hint(r->diag, r->dim == 2 ? "[x, y] holds nodes in the plane" : "give the others an entry of their own");
+}
+
 PetscErrorCode SchemaCheckMotion(SchemaReader *r, const YamlNode *mapping, void *target)
 {
   MotionSpec *m = target;
@@ -269,6 +279,7 @@ PetscErrorCode SchemaCheckMotion(SchemaReader *r, const YamlNode *mapping, void 
                    m->on.boundary ? "a boundary of the grid stays where it is" : "what is fixed does not move");
     diag_hint(r->diag, m->on.boundary ? "select by x, y or shape" : "leave it away");
   }
+  if (m->component[NORMAL]) check_slip(r, mapping, m);
   if (m->kind == MOTION_ROTATION) {
     for (PetscInt d = 0; d < r->dim; ++d) m->component[d] = PETSC_TRUE;
     if (r->dim == 2) m->axis[2] = 1;

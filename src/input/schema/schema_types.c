@@ -6,6 +6,7 @@
 /* JSON pieces shared by several kinds. */
 #define JSON_VECTOR "{\"type\": \"array\", \"items\": {\"type\": \"number\"}, \"minItems\": 2, \"maxItems\": 3}"
 #define JSON_AXIS "{\"enum\": [\"x\", \"y\", \"z\"]}"
+#define JSON_DIRECTION "{\"enum\": [\"x\", \"y\", \"z\", \"normal\"]}"
 #define JSON_PAIRS                                                                                              \
   "{\"type\": \"array\", \"items\": {\"type\": \"array\", \"items\": {\"type\": \"number\"}, \"minItems\": 2, " \
   "\"maxItems\": 2}, \"minItems\": "
@@ -29,8 +30,9 @@ const SchemaTypeInfo schema_types[TYPE_COUNT] = {
                  "{\"anyOf\": [{\"type\": \"number\"}, " JSON_VECTOR "]}", SchemaReadSpin},
   [TYPE_AXIS] = {"an axis", "axis", JSON_AXIS, SchemaReadAxis},
   [TYPE_SPIN_AXIS] = {"an axis", "axis", JSON_AXIS, SchemaReadAxis},
+  [TYPE_DIRECTION] = {"a direction", "direction", JSON_DIRECTION, NULL},
   [TYPE_AXES] = {"a list of axes like [x, y]", "list of axes",
-                 "{\"type\": \"array\", \"items\": " JSON_AXIS ", \"minItems\": 1, \"uniqueItems\": true}",
+                 "{\"type\": \"array\", \"items\": " JSON_DIRECTION ", \"minItems\": 1, \"uniqueItems\": true}",
                  SchemaReadAxes},
   [TYPE_INTERVAL] = {"a number, or two [min, max]", "number or [min, max]",
                      "{\"anyOf\": [{\"type\": \"number\"}, {\"type\": \"array\", \"items\": {\"type\": \"number\"}, "
@@ -81,6 +83,7 @@ const char *schema_range(const SchemaEntry *e, char *buffer, size_t size)
 
 static const char *types_axes(const SchemaEntry *e, PetscInt dim)
 {
+  if (e->type == TYPE_DIRECTION) return dim == 2 ? "x, y or normal" : "x, y, z or normal";
   if (e->type == TYPE_AXIS) return dim == 2 ? "x or y" : "x, y or z";
   return dim == 2 ? "z" : "x, y or z";
 }
@@ -105,7 +108,8 @@ const char *schema_expected(const SchemaEntry *e, PetscInt dim, char *buffer, si
   else if (schema_word(e, 0).word) {
     snprintf(buffer, size, "%s ", schema_types[e->type].what);
     schema_append_words(e, " or ", buffer, size);
-  } else if (e->type == TYPE_AXIS || e->type == TYPE_SPIN_AXIS) snprintf(buffer, size, "%s", types_axes(e, dim));
+  } else if (e->type == TYPE_AXIS || e->type == TYPE_SPIN_AXIS || e->type == TYPE_DIRECTION)
+    snprintf(buffer, size, "%s", types_axes(e, dim));
   else if (e->type == TYPE_VECTOR)
     snprintf(buffer, size, "a vector %s", dim == 3 ? "[x, y, z]" : dim == 2 ? "[x, y]" : "[x, y] or [x, y, z]");
   else snprintf(buffer, size, "%s%s%s", schema_types[e->type].what, range[0] ? " " : "", range);

@@ -27,18 +27,18 @@ static PetscReal station_area(const Model *m, const Profile *s, PetscInt i)
   return half * s->dx * kinematics_weight(m->c->kinematics, s->x0 + (PetscReal)i * s->dx + inward);
 }
 
-static PetscErrorCode ProfileCreate(const Model *m, PetscInt body, Profile *s)
+static PetscErrorCode ProfileCreate(const Model *m, const MeasureSpec *spec, Profile *s)
 {
+  const PetscInt body = measure_body(m, spec);
+
   PetscFunctionBeginUser;
   s->dx = station_spacing(m);
   s->x0 = m->grid->min[0];
   s->n = (PetscInt)PetscCeilReal((m->grid->max[0] - s->x0) / s->dx - 1e-9) + 1;
   PetscCall(PetscCalloc1(s->n, &s->height));
   for (PetscInt p = 0; p < m->points->n; ++p) {
-    if (!measure_takes_point(m, body, p)) continue;
-    /* a loose point may have opened to many times its volume: what it holds of material has not
-     * grown */
-    const PetscReal volume = PetscMin(1, m->points->real[POINT_J][p]) * m->points->real[POINT_VOLUME][p];
+    const PetscReal volume = measure_share(m, spec, body, p) * measure_solid_volume(m, p);
+    if (volume == 0) continue;
     const PetscReal at = (point_real(m->points, POINT_X, p)[0] - s->x0) / s->dx;
     const PetscInt i = PetscMax(0, PetscMin(s->n - 2, (PetscInt)PetscFloorReal(at)));
     const PetscReal share = PetscMax(0, PetscMin(1, at - (PetscReal)i));
@@ -106,7 +106,7 @@ PetscErrorCode MeasureSurface(Model *m, const MeasureSpec *s, PetscInt index, Pe
 
   (void)index;
   PetscFunctionBeginUser;
-  PetscCall(ProfileCreate(m, measure_body(m, s), &profile));
+  PetscCall(ProfileCreate(m, s, &profile));
   if (is_flat(&profile)) *value = NAN;
   else if (which == HEIGHT) *value = height_at(&profile, s->at);
   else *value = which == SLOPE ? slope_of(&profile) : front_of(&profile);
@@ -115,14 +115,15 @@ PetscErrorCode MeasureSurface(Model *m, const MeasureSpec *s, PetscInt index, Pe
 }
 
 static const MeasureNumber *const words[] = {
-  WORD("front", "farthest x at which the surface is still half a cell high, m", "m", .value = MeasureSurface),
-  WORD("height", "height of the material above x = `at`, m", "m", .at = PETSC_TRUE, .value = MeasureSurface,
-       .which = HEIGHT),
+  WORD("front", "farthest x at which the surface is still half a cell high, m", "m", .in = PETSC_TRUE,
+       .value = MeasureSurface),
+  WORD("height", "height of the material above x = `at`, m", "m", .at = PETSC_TRUE, .in = PETSC_TRUE,
+       .value = MeasureSurface, .which = HEIGHT),
   WORD("slope",
        "angle of repose, positive if it falls towards +x, by least squares between a fifth and four fifths of the way "
        "from "
        "the highest place to the front, deg",
-       "deg", .value = MeasureSurface, .which = SLOPE),
+       "deg", .in = PETSC_TRUE, .value = MeasureSurface, .which = SLOPE),
   NULL,
 };
 

@@ -32,8 +32,8 @@ static PetscErrorCode Touches(const Model *m, PetscInt *joined, PetscInt *held)
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(nodes, &touched));
   PetscCall(PetscCalloc1(nodes, &before));
-  PetscCall(PetscMalloc1(nodes * m->dim, &holds));
-  PetscCall(PetscArraycpy(holds, m->boundary->fixed, nodes * m->dim));
+  PetscCall(PetscCalloc1(nodes * m->dim, &holds));
+  for (PetscInt k = 0; k < nodes * m->dim; ++k) holds[k] |= boundary_holds(m->boundary, k / m->dim, k % m->dim);
   nodal_forces_hold(&m->forces, &scene, holds);
   for (PetscInt b = 0; b < n; ++b) {
     PetscCall(TouchedBy(m, b, touched));

@@ -26,12 +26,17 @@ PetscErrorCode InitialAcceleration(Model *m)
   WeakFormOutput out = {.force = n->force};
   PetscCall(m->formulation->assemble(&in, &out));
   PetscCall(GridSumToOwners(m->grid, dim, n->force));
+  frames_turn(&m->boundary->frames, dim, n->external);
+  frames_turn(&m->boundary->frames, dim, n->force);
   for (PetscInt i = 0; i < m->grid->n_owned * dim; ++i) {
     const PetscReal mass = n->mass[i / dim];
     const PetscReal free = n->external[i] - n->force[i];
     n->a[i] = mass > 1e-300 && !m->boundary->fixed[i] ? free / mass : 0;
     n->held[i] = n->rate[i] = m->boundary->fixed[i] ? -free : 0;
   }
+  frames_turn(&m->boundary->frames, dim, n->a);
+  frames_turn(&m->boundary->frames, dim, n->held);
+  frames_turn(&m->boundary->frames, dim, n->rate);
   PetscCall(GridToGhosts(m->grid, dim, n->a));
   for (PetscInt q = 0; q < s->support->n_groups; ++q) {
     const PetscInt nn = support_nodes(s->support, q), *node = s->support->node + s->support->node_start[q];

@@ -60,31 +60,41 @@ void newton_forget(Newton *n, const System *system, const NewtonMemory *memory)
   n->built = memory->courant >= 0 ? system->builds : -1;
 }
 
+/* What the first guess lacks of the prescribed increments, and the largest of that and of the
+ * increments on this rank. */
+static void lack_of_guess(const StepProblem *p, PetscReal *lift, PetscReal largest[2])
+{
+  newton_turn(p, p->du);
+  for (PetscInt i = 0; i < p->grid->n_nodes * p->grid->dim; ++i)
+    if (p->fixed[i]) lift[i] = p->prescribed[i] - p->du[i];
+  newton_turn(p, p->du);
+  for (PetscInt k = 0; k < p->system->n_active; ++k)
+    for (PetscInt d = 0, i = p->system->active[k] * p->grid->dim; d < p->grid->dim; ++d, ++i) {
+      if (!p->fixed[i]) continue;
+      largest[0] = PetscMax(largest[0], PetscAbsReal(lift[i]));
+      largest[1] = PetscMax(largest[1], PetscAbsReal(p->prescribed[i]));
+    }
+}
+
 /* One linear step that carries the prescribed increments into the interior: what is left of them at
  * du is moved to the right-hand side through the columns of the tangent. Skipped if the first guess
  * has them already. */
 static PetscErrorCode LiftPrescribed(Newton *n)
 {
   StepProblem *p = n->problem;
-  const PetscInt dofs = p->grid->n_nodes * p->grid->dim;
-  /* largest increments: what is left of them, and whole */
   PetscReal *lift, local[2] = {0, 0}, all[2];
   KSP ksp;
   Vec y;
   double start;
 
   PetscFunctionBeginUser;
-  for (PetscInt k = 0; k < p->system->n_active; ++k)
-    for (PetscInt d = 0, i = p->system->active[k] * p->grid->dim; d < p->grid->dim; ++d, ++i) {
-      if (!p->fixed[i]) continue;
-      local[0] = PetscMax(local[0], PetscAbsReal(p->prescribed[i] - p->du[i]));
-      local[1] = PetscMax(local[1], PetscAbsReal(p->prescribed[i]));
-    }
+  PetscCall(PetscCalloc1(p->grid->n_nodes * p->grid->dim, &lift));
+  lack_of_guess(p, lift, local);
   PetscCall(MPIU_Allreduce(local, all, 2, MPIU_REAL, MPIU_MAX, n->comm));
-  if (all[0] <= 1e-12 * all[1] || all[1] == 0) PetscFunctionReturn(0);
-  PetscCall(PetscCalloc1(dofs, &lift));
-  for (PetscInt i = 0; i < dofs; ++i)
-    if (p->fixed[i]) lift[i] = p->prescribed[i] - p->du[i];
+  if (all[0] <= 1e-12 * all[1] || all[1] == 0) {
+    PetscCall(PetscFree(lift));
+    PetscFunctionReturn(0);
+  }
   n->lift = lift;
   PetscCall(NewtonAssemble(n, PETSC_TRUE));
   n->lift = NULL;
@@ -160,6 +170,7 @@ static PetscErrorCode NewtonTry(Newton *n, NewtonReport *report)
   PetscCall(NewtonGetUnknowns(n, n->x));
   PetscCall(SNESSetTolerances(n->snes, 0, 0, 0, n->spec.max_iterations - report->iterations, PETSC_MAX_INT));
   PetscCall(SNESSolve(n->snes, NULL, n->x));
+  newton_turn(p, p->force);
   PetscCall(SNESGetConvergedReason(n->snes, &reason));
   PetscCall(SNESGetIterationNumber(n->snes, &its));
   PetscCall(SNESGetLinearSolveIterations(n->snes, &report->linear_iterations));

@@ -17,13 +17,16 @@ typedef struct {
   const Grid *grid;
   System *system;
   const Formulation *formulation;
-  const NodalForces *forces;   /* all that act besides stress; the dead ones stand in external */
-  NodalScene scene;            /* for them, at the end of the step */
-  WeakFormInput in;            /* du and pressure are set here by Newton */
-  const unsigned char *fixed;  /* prescribed, or on a node that no material touches */
+  const NodalForces *forces; /* all that act besides stress; the dead ones stand in external */
+  NodalScene scene;          /* for them, at the end of the step */
+  WeakFormInput in;          /* du and pressure are set here by Newton */
+  /* prescribed, or on a node that no material touches; in the frames of the nodes, like
+   * prescribed (boundary.h) */
+  const unsigned char *fixed;
   const PetscReal *prescribed; /* increment of fixed dofs, m */
-  const PetscReal *external;   /* dead nodal forces, N; owners' values count */
-  PetscReal *du;               /* in: first guess; out: solution */
+  /* dead nodal forces, N, in the frames of the nodes; owners' values count */
+  const PetscReal *external;
+  PetscReal *du; /* in: first guess; out: solution */
   /* out: residual with the rows of fixed dofs: reactions, on owners */
   PetscReal *force;
   /* mixed: n_nodes, like du; m, see WeakFormInput. NULL: displacements alone, as the next two */

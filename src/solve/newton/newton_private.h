@@ -54,6 +54,8 @@ PetscErrorCode NewtonAssemble(Newton *n, PetscBool tangent);
 PetscErrorCode NewtonFillMatrix(Newton *n);
 /* Forces of the last assembly -> residual; infinite if a point had failed. */
 PetscErrorCode NewtonGetResidual(Newton *n, Vec f);
+/* Vectors (n_nodes x dim) into the frames of their nodes, or out of them. */
+void newton_turn(const StepProblem *p, PetscReal *vectors);
 /* du and pressure -> unknowns. */
 PetscErrorCode NewtonGetUnknowns(const Newton *n, Vec x);
 /* Unknowns -> du and pressure, keeping what is prescribed. */

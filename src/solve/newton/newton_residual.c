@@ -49,6 +49,8 @@ PetscErrorCode NewtonAssemble(Newton *n, PetscBool tangent)
   if (tangent && p->in.half) PetscCall(SystemMirror(p->system));
   const NodalOutput acting = {.force = p->force, .system = tangent ? p->system : NULL};
   PetscCall(NodalForcesAssemble(p->forces, &p->scene, &acting));
+  if (tangent) system_turn(p->system);
+  newton_turn(p, p->force);
   if (n->lift) system_lift(p->system, p->fixed, n->lift, p->force, p->volume);
   PetscInt status = (PetscInt)out.status, worst;
   PetscCall(MPIU_Allreduce(&status, &worst, 1, MPIU_INT, MPI_MAX, n->comm));
@@ -62,12 +64,19 @@ PetscErrorCode NewtonAssemble(Newton *n, PetscBool tangent)
   PetscFunctionReturn(0);
 }
 
+void newton_turn(const StepProblem *p, PetscReal *vectors)
+{
+  if (p->system->frames) frames_turn(p->system->frames, p->grid->dim, vectors);
+}
+
 PetscErrorCode NewtonGetUnknowns(const Newton *n, Vec x)
 {
   const StepProblem *p = n->problem;
 
   PetscFunctionBeginUser;
+  newton_turn(p, p->du);
   PetscCall(SystemFromNodes(p->system, p->du, 0, p->system->dim, x));
+  newton_turn(p, p->du);
   if (p->pressure) PetscCall(SystemFromNodes(p->system, p->pressure, p->system->dim, 1, x));
   PetscFunctionReturn(0);
 }
@@ -96,6 +105,7 @@ PetscErrorCode NewtonSetIncrements(Newton *n, Vec x)
     for (PetscInt d = 0, i = p->system->active[k] * dim; d < dim; ++d, ++i)
       p->du[i] = p->fixed[i] ? p->prescribed[i] : v[k * p->system->block + d];
   PetscCall(VecRestoreArrayRead(x, &v));
+  newton_turn(p, p->du); /* of nodes without unknowns it is zero, and ghosts follow */
   PetscCall(GridToGhosts(p->grid, dim, p->du));
   if (p->pressure) PetscCall(SystemToNodes(p->system, p->grid, x, dim, 1, p->pressure));
   PetscFunctionReturn(0);

@@ -54,6 +54,7 @@ PetscErrorCode SystemPrescribe(System *s, const unsigned char *fixed, const unsi
     for (PetscInt k = s->row_start[r]; held[node] && k < s->row_start[r + 1]; ++k) beside[s->column[k]] = 1;
   }
   PetscCall(FindCuts(s, held, beside));
+  PetscCall(SystemFindTurned(s));
   PetscCall(PetscFree2(held, beside));
   PetscFunctionReturn(0);
 }

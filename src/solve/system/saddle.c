@@ -15,6 +15,26 @@ static PetscErrorCode UnknownsOf(const System *s, PetscInt first, PetscInt n, IS
   PetscFunctionReturn(0);
 }
 
+/* Into the frames of the nodes: they stay orthonormal. */
+static PetscErrorCode TurnMotions(const System *s, MatNullSpace rigid)
+{
+  const Vec *motion;
+  PetscInt n;
+  PetscReal *v;
+
+  PetscFunctionBeginUser;
+  PetscCall(MatNullSpaceGetVecs(rigid, NULL, &n, &motion));
+  for (PetscInt k = 0; s->frames && k < n; ++k) {
+    PetscCall(VecGetArray(motion[k], &v));
+    for (PetscInt f = 0; f < s->frames->n; ++f) {
+      const PetscInt row = s->row[s->frames->node[f]];
+      if (row >= 0 && row < s->n_active) frame_turn(s->dim, s->frames->w + 3 * f, v + row * s->dim);
+    }
+    PetscCall(VecRestoreArray(motion[k], &v));
+  }
+  PetscFunctionReturn(0);
+}
+
 /* Rigid motions of the active nodes, which multigrid must be told of. */
 static PetscErrorCode RigidMotions(const System *s, const Grid *grid, MatNullSpace *rigid)
 {
@@ -30,6 +50,7 @@ static PetscErrorCode RigidMotions(const System *s, const Grid *grid, MatNullSpa
   PetscCall(VecRestoreArrayWrite(places, &v));
   PetscCall(MatNullSpaceCreateRigidBody(places, rigid));
   PetscCall(VecDestroy(&places));
+  PetscCall(TurnMotions(s, *rigid));
   PetscFunctionReturn(0);
 }
 

@@ -36,6 +36,7 @@ PetscErrorCode SystemDestroy(System **system)
   PetscCall(SystemFreePattern(*system));
   PetscCall(SystemFreeSlots(*system));
   PetscCall(PetscFree((*system)->cut));
+  PetscCall(PetscFree((*system)->turned));
   PetscCall(PetscFree(*system));
   PetscFunctionReturn(0);
 }

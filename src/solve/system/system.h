@@ -6,6 +6,7 @@
  * factorisation) may be padded and kept over many steps. */
 #pragma once
 #include <petscksp.h>
+#include "boundary/frames.h"
 #include "support/support.h"
 
 /* What the linear solver works on: a matrix of PETSc, or blocks in single precision for
@@ -25,6 +26,11 @@ typedef struct {
   PetscInt pair, row; /* of the pattern; the row's node */
   unsigned bits;      /* numbers of the block, row by row, that stand in its row or column */
 } SystemCut;
+
+/* A pair of nodes of which one has a frame (turned.c). */
+typedef struct {
+  PetscInt pair, row; /* of the pattern; the row's node */
+} SystemPair;
 
 typedef struct System {
   MPI_Comm comm;
@@ -51,6 +57,9 @@ typedef struct System {
   PetscInt n_slots, *slot;        /* SystemSlots: nn x nn pairs of each group */
   PetscInt n_cuts, capacity_cuts; /* SystemPrescribe */
   SystemCut *cut;
+  const Frames *frames;               /* of the nodes: the unknowns are components in them; NULL: along the axes */
+  PetscInt n_turned, capacity_turned; /* SystemFindTurned */
+  SystemPair *turned;
   CloudsBefore before;
   SystemForm form;
   /* what the linear solver gets: assembled, or a shell over blocks; made by SystemUse */
@@ -92,9 +101,13 @@ PetscErrorCode SystemGather(System *system, PetscBool single);
 PetscErrorCode SystemPrescribe(System *system, const unsigned char *fixed, const unsigned char *idle);
 /* Forces of rows that are not fixed += K lift, lift (n_nodes x dim) being zero where nothing is
  * prescribed; volume: of the pressures' rows. For whole values, as they were assembled, and
- * forces that are not yet summed over ranks. */
+ * forces that are not yet summed over ranks; all in the frames of the nodes. */
 void system_lift(const System *system, const unsigned char *fixed, const PetscReal *lift, PetscReal *force,
                  PetscReal *volume);
+/* Into the frames of the nodes: which pairs, after the pattern or the frames have changed; the
+ * tangent as it was assembled, along the axes, before anything is cut or lifted. */
+PetscErrorCode SystemFindTurned(System *system);
+void system_turn(System *system);
 /* Collective. Values -> matrix, where rows and columns of prescribed unknowns have nothing but a
  * diagonal. */
 PetscErrorCode SystemToMatrix(System *system);

@@ -1,0 +1,2 @@
+h = 1 / 150;
+Include "column.geo";
