@@ -10,10 +10,11 @@
 
 /* What the list of the measure begins with; behind it rows of EVENT_N numbers. */
 enum {
-  STATE_PHASE,    /* one of the phases below */
-  STATE_CALM,     /* since when it has been calm, s; < 0: it is not */
-  STATE_CREEP,    /* the usual energy while nothing slides, J; < 0: not known yet */
-  STATE_HIGH,     /* threshold of the present event, J */
+  STATE_PHASE, /* one of the phases below */
+  STATE_CALM,  /* since when it has been calm, s; < 0: it is not */
+  STATE_CREEP, /* the usual energy while nothing slides, J; < 0: not known yet */
+  STATE_HIGH,  /* thresholds, J */
+  STATE_LOW,
   STATE_POWER,    /* of gravity on the relative motion at the end of the last step, W */
   STATE_RELEASED, /* work of gravity on it since the beginning, J */
   STATE_EVENT     /* what would be its row now */
@@ -159,13 +160,17 @@ static void follow_creep(const MeasureSpec *s, const Motion *motion, PetscReal d
   const PetscReal weight = state[STATE_CREEP] < 0 ? 1 : 1 - PetscExpReal(-dt / a->creep);
   state[STATE_CREEP] = (1 - weight) * PetscMax(0, state[STATE_CREEP]) + weight * motion->relative;
   if (state[STATE_PHASE] == SLIDING) return;
-  state[STATE_HIGH] = a->times > 0 ? a->times * PetscMax(state[STATE_CREEP], motion->carried) : a->kinetic;
+  const PetscReal high = a->times > 0 ? a->times * PetscMax(state[STATE_CREEP], motion->carried) : a->kinetic;
+  /* what is stirring must reach the threshold of its beginning, since creep follows it; creep that
+   * stays higher ends it */
+  if (state[STATE_PHASE] == QUIET) state[STATE_HIGH] = high;
+  state[STATE_LOW] = a->ends * high;
 }
 
 /* Collective. A step within an event, or what may become one. */
 static PetscErrorCode Slide(Model *m, const MeasureSpec *s, PetscReal dt, const Motion *motion, PetscReal *state)
 {
-  PetscReal *largest = state + STATE_EVENT + EVENT_KINETIC, low = s->avalanche.ends * state[STATE_HIGH];
+  PetscReal *largest = state + STATE_EVENT + EVENT_KINETIC, low = state[STATE_LOW];
 
   PetscFunctionBeginUser;
   state[STATE_RELEASED] += 0.5 * dt * (state[STATE_POWER] + motion->power);
@@ -196,7 +201,7 @@ static PetscErrorCode RememberAvalanches(Model *m, const MeasureSpec *s, PetscRe
   PetscCall(FindMotion(m, s, dt, state[STATE_PHASE] != QUIET ? carried_component(m, s) : -1, &motion));
   if (state[STATE_PHASE] != SLIDING || state[STATE_CALM] >= 0) follow_creep(s, &motion, dt, state);
   if (state[STATE_PHASE] != QUIET) PetscCall(Slide(m, s, dt, &motion, state));
-  else if (motion.relative > s->avalanche.ends * state[STATE_HIGH]) PetscCall(Begin(m, s, &motion, state));
+  else if (motion.relative > state[STATE_LOW]) PetscCall(Begin(m, s, &motion, state));
   if (state[STATE_PHASE] != SLIDING || state[STATE_CALM] < 0) PetscFunctionReturn(0);
   if (m->time < state[STATE_CALM] + s->avalanche.calm * (1 - 1e-9)) PetscFunctionReturn(0);
   state[STATE_PHASE] = QUIET;
