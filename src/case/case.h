@@ -130,6 +130,21 @@ typedef struct {
 
 typedef enum { FRONT_POINTS, FRONT_SURFACE } FrontKind;
 
+/* When a powder slides: more energy of motion, relative to its container, than a threshold. */
+typedef struct {
+  PetscBool has_container;
+  PetscInt container; /* index into boundary[]: the prescribed motion that carries the powder */
+  /* over the energy while it creeps, or of moving with the container if that is more; 0: not given */
+  PetscReal times;
+  PetscReal kinetic; /* or J */
+  PetscReal creep;   /* s over which the energy while it creeps is averaged */
+  PetscReal ends;    /* low threshold over the high one */
+  PetscReal fades;   /* share of its peak below which an event may be over, too */
+  PetscReal calm;    /* s that it must stay there */
+  PetscReal from;    /* no event before, s */
+  PetscReal carried; /* what moved farther than this has taken part, m; 0: one cell */
+} AvalancheSpec;
+
 typedef struct {
   char *name;
   char *kind;          /* a measure's key, "energy" (model/measure) */
@@ -152,7 +167,20 @@ typedef struct {
   /* change per time: over the last window[0] s, or with window[0] < window[1] between two times */
   PetscBool has_rate;
   PetscReal window[2];
+  AvalancheSpec avalanche;
 } MeasureSpec;
+
+typedef enum { UNTIL_BELOW, UNTIL_ABOVE, UNTIL_COUNT } UntilKind;
+
+/* What ends a run before its end. */
+typedef struct {
+  UntilKind kind;
+  char *measure;      /* by its name */
+  PetscReal value;    /* of the measure, in its unit: below, above */
+  PetscInt count;     /* of its events */
+  PetscReal duration; /* s for which that must hold */
+  PetscReal after;    /* s before which it does not matter */
+} UntilSpec;
 
 typedef struct {
   AnalysisType type;
@@ -168,6 +196,8 @@ typedef struct {
   MassMatrix mass;
   /* mpm: prescribed nodes do not take from points what velocity they bring */
   PetscBool keep_velocity;
+  PetscInt n_until;
+  UntilSpec *until; /* any of them ends the run; `end` is the latest time */
 } AnalysisSpec;
 
 typedef struct {

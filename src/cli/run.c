@@ -26,7 +26,7 @@ static const CliUsage usage = {
     "minutes (checkpoint: in the case) and when a signal asks the run to leave (SIGINT, SIGTERM, SIGHUP, SIGUSR1 ...)\n"
     "the whole state is put away there; with --resume a run that was cut off goes on as if nothing had been. Then\n"
     "--set may change checkpoint, newton, linear, parallel, petsc, analysis.smallest and .largest, grid.outside and,\n"
-    "in dynamics, analysis.end.\n"
+    "in dynamics, analysis.end and .until.\n"
     "If the case has a reference.yaml beside it that knows this very case, the results are compared with it.",
   .options = options_known,
   .min_words = 0,
@@ -35,8 +35,8 @@ static const CliUsage usage = {
 
 /* What a resumed run may change: how it is solved, not what. */
 static const char *const may_change[] = {
-  "checkpoint",        "newton",           "linear",       "parallel",     "petsc",
-  "analysis.smallest", "analysis.largest", "analysis.end", "grid.outside", NULL};
+  "checkpoint",       "newton",       "linear",         "parallel",     "petsc", "analysis.smallest",
+  "analysis.largest", "analysis.end", "analysis.until", "grid.outside", NULL};
 
 /* PATH=VALUE names one of these, or a key below it. */
 static PetscBool may_change_on_resume(const char *set)
@@ -106,11 +106,12 @@ static PetscErrorCode CheckArguments(const CliArguments *a, PetscInt n_set, cons
   else *ok = PETSC_TRUE;
   for (PetscInt i = 0; folder && *ok && i < n_set; ++i) {
     if (may_change_on_resume(set[i])) continue;
-    PetscCall(CliUsageError(exit_code,
-                            "it may change checkpoint, newton, linear, petsc, analysis.smallest, "
-                            "analysis.largest, grid.outside and, in dynamics, analysis.end; for all else start a "
-                            "new run: talus run DIR/case.yaml --out ANOTHER --set ...",
-                            "a resumed run cannot change %.*s", (int)strcspn(set[i], "="), set[i]));
+    PetscCall(CliUsageError(
+      exit_code,
+      "it may change checkpoint, newton, linear, petsc, analysis.smallest, "
+      "analysis.largest, grid.outside and, in dynamics, analysis.end and analysis.until; for all else start a "
+      "new run: talus run DIR/case.yaml --out ANOTHER --set ...",
+      "a resumed run cannot change %.*s", (int)strcspn(set[i], "="), set[i]));
     *ok = PETSC_FALSE;
   }
   PetscFunctionReturn(0);

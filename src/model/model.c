@@ -163,6 +163,8 @@ static PetscErrorCode CreatePoints(Model *m, Outline *outline, Diag *diag)
   PetscCall(PointsCreate(m->dim, m->n_state, 0, &m->points));
   /* nothing is stored yet */
   if (m->formulation->pressure) m->points->components[POINT_PRESSURE] = 1;
+  for (PetscInt k = 0; k < c->n_measures; ++k)
+    m->points->components[POINT_CARRIED] += measure_find(c->measures[k].kind)->events != NULL;
   PetscCall(PointsSeedOutlined(m->points, m->grid, c, seed, m->method->restores_grid, outline, diag));
   PetscCall(PetscFree2(seed, initial));
   PetscFunctionReturn(0);

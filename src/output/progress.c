@@ -46,7 +46,7 @@ void progress_line(const RunProgress *p, PetscReal left, char text[256])
              p->step, (double)p->time, (double)p->dt, p->iterations, (double)p->residual);
   if (left < 0) return;
   progress_duration(left, duration);
-  snprintf(text + n, 256 - (size_t)n, " left = %s", duration);
+  snprintf(text + n, 256 - (size_t)n, " left %s %s", p->earlier ? "<=" : "=", duration);
 }
 
 /* 950, 12.3k, 1.05M */
@@ -66,7 +66,7 @@ void progress_bar(const RunProgress *p, PetscReal elapsed, PetscReal left, int w
   progress_duration(elapsed, spent);
   progress_duration(left, rest);
   snprintf(part[0], 64, " %3.0f %%", floor(100 * (double)done));
-  snprintf(part[1], 64, "  left %s", rest);
+  snprintf(part[1], 64, "  left %s%s", p->earlier ? "<= " : "", rest);
   snprintf(part[2], 64, "  step %" PetscInt_FMT "  t %.6g s", p->step, (double)p->time);
   snprintf(part[3], 64, "  dt %.3g", (double)p->dt);
   snprintf(part[4], 64, "  %" PetscInt_FMT " it", p->iterations);
@@ -122,7 +122,7 @@ PetscErrorCode RunDirProgress(RunDir *dir, const RunProgress *progress)
   progress_line(progress, left, line);
   if (dir->log) fprintf(dir->log, "%s\n", line);
   run_dir_note_log(dir);
-  const PetscBool last = progress->time >= progress->end * (1 - 1e-12);
+  const PetscBool last = progress->last || progress->time >= progress->end * (1 - 1e-12);
   if (dir->quiet || !(last || dir->last_shown < 0 || wall - dir->last_shown >= pause)) PetscFunctionReturn(0);
   dir->last_shown = wall;
   if (dir->terminal) {

@@ -31,6 +31,8 @@ typedef enum {
   /* of followers: from their position, the nearest in the grid, to where they really are, m: dim
    * (others: 0 components) */
   POINT_OVERHANG,
+  /* how far it was carried in the present event of each measure that counts some, m: one each */
+  POINT_CARRIED,
   POINT_N_REAL
 } PointReal;
 

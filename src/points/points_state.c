@@ -24,6 +24,7 @@ static const struct {
   [POINT_PRESSURE] = {"pressure", "Pa"},
   [POINT_FORCE] = {"force", "N"},
   [POINT_OVERHANG] = {"overhang", "m"},
+  [POINT_CARRIED] = {"carried", "m"},
 };
 
 /* Points of a cloud remember the cell of their birth by this number already. */

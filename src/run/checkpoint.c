@@ -30,6 +30,7 @@ static PetscErrorCode Fingerprint(const Case *c, PetscInt64 *value)
   copy.parallel = (ParallelSpec){0};
   copy.n_petsc = 0;
   copy.grid.outside = OUTSIDE_STOP;
+  copy.analysis.n_until = 0;
   copy.analysis.smallest = copy.analysis.largest = copy.analysis.step;
   if (c->analysis.type == ANALYSIS_DYNAMIC) copy.analysis.end = 1;
   PetscCall(CaseToYaml(&copy, &yaml));
@@ -124,6 +125,7 @@ static PetscErrorCode Write(Run *r, const char *path, char reason[256], PetscErr
   PetscCall(TablesCreate(&tables));
   PetscCall(ModelToTables(r->model, tables));
   PetscCall(MemoryToTables(r, tables));
+  PetscCall(UntilToTables(&r->until, r->c, tables));
   PetscCall(OutputToTables(r->output, tables));
   *code = CheckpointWrite(r->comm, path, tables, reason);
   PetscCall(TablesDestroy(&tables));
@@ -205,6 +207,7 @@ PetscErrorCode CheckpointLoad(Run *r, Diag *diag, PetscInt *step, PetscBool *fit
   PetscCall(MemoryFromTables(r, tables, &memory, reason));
   if (!reason[0]) PetscCall(OutputFromTables(r->output, tables, memory.written, reason));
   if (!reason[0]) PetscCall(ModelFromTables(r->model, tables, reason));
+  until_from_tables(&r->until, r->c, tables, reason);
   PetscCall(TablesDestroy(&tables));
   if (!reason[0]) {
     remember(r, &memory);

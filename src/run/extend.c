@@ -52,10 +52,16 @@ void extension_without_checkpoint(const Run *r, const Extension *e, Diag *diag)
 void extension_from_checkpoint(const Run *r, const Extension *e, Diag *diag)
 {
   const PetscReal time = r->model->time;
+  char reason[256];
+  until_reason(&r->until, r->c, reason);
   if (time > e->now * (1 + 1e-12)) {
     diag_error(diag, "analysis.end", "the run in '%s' has come to t = %g s already, later than analysis.end = %g s",
                run_dir_path(r->dir), (double)time, (double)e->now);
     diag_hint(diag, "an end after that lets it go on; its states up to there are in '%s'", run_dir_path(r->dir));
+  } else if (reason[0]) {
+    diag_warning(diag, NULL, "the run in '%s' has ended at t = %g s, since %s: there is nothing left to do",
+                 run_dir_path(r->dir), (double)time, reason);
+    diag_hint(diag, "other conditions let it go on, or none: --set 'analysis.until=[]'");
   } else if (time >= e->now * (1 - 1e-12)) {
     diag_warning(diag, NULL, "the run in '%s' is complete at t = %g s: there is nothing left to do",
                  run_dir_path(r->dir), (double)time);

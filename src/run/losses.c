@@ -144,8 +144,9 @@ PetscErrorCode LossesWarn(const Model *m, const PetscReal *values, Diag *diag)
   for (PetscInt k = 0; k < m->c->n_measures; ++k) {
     if (!PetscIsNanReal(values[k]) || m->memory[k].ended > 0) continue;
     snprintf(path, sizeof path, "measures.%s", m->c->measures[k].name);
-    diag_warning(diag, path, "'%s' is empty (nan) at the end: no point is left of what it measures",
-                 m->c->measures[k].name);
+    diag_warning(diag, path, "'%s' is empty (nan) at the end: %s", m->c->measures[k].name,
+                 m->c->measures[k].has_rate ? "fewer than two steps with a value lie in its window"
+                                            : "no point is left of what it measures");
   }
   if (o->removed > 0)
     diag_warning(diag, "grid.outside", "%.0f points of %.4g kg left the grid and were removed", (double)o->removed,

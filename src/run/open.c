@@ -5,6 +5,7 @@
 #include "output/vtk/vtk.h"
 #include "run/run_private.h"
 #include "run/summary.h"
+#include "run/watch/events.h"
 
 /* Open the history: a new one, or (diag given) that of the run that is resumed. */
 static PetscErrorCode OpenHistory(Run *r, Diag *diag)
@@ -52,6 +53,8 @@ PetscErrorCode RunOpen(Run *r, const RunOptions *options, Diag *diag)
   if (r->failed) PetscFunctionReturn(0);
   if (!r->output) PetscCall(OutputCreate(r->model, run_dir_path(r->dir), &r->output));
   PetscCall(SummaryBegin(r->model, r->dir));
+  PetscCall(UntilLook(&r->until, r->model));
+  PetscCall(RunWritten(r, EventsWatch(r->model, r->dir, PETSC_TRUE, r->events)));
   PetscCall(RunWriteRow(r));
   if (r->c->output.every != 0 && !r->failed) PetscCall(RunWriteState(r));
   PetscFunctionReturn(0);
@@ -88,6 +91,7 @@ static PetscErrorCode Rewind(Run *r, PetscInt step, Diag *diag)
   if (errors || r->failed) PetscFunctionReturn(0);
   PetscCall(RunWritten(r, RunDirRewind(r->dir, states, step)));
   if (!r->failed) PetscCall(WriteCase(r));
+  if (!r->failed) PetscCall(RunWritten(r, EventsWatch(r->model, r->dir, PETSC_TRUE, r->events)));
   PetscFunctionReturn(0);
 }
 

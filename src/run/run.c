@@ -2,6 +2,7 @@
 #include "run/run_private.h"
 #include "run/signals.h"
 #include "run/summary.h"
+#include "run/watch/events.h"
 
 /* Time until the schedule next wants the run to stop exactly. */
 static PetscReal until_next(const Schedule *s, PetscReal time, PetscReal end)
@@ -84,15 +85,17 @@ PetscErrorCode RunWriteState(Run *r)
 static PetscErrorCode AfterStep(Run *r, const StepReport *report, PetscInt points)
 {
   const PetscInt last = PetscMin(report->newton.iterations, NEWTON_HISTORY - 1);
+  PetscFunctionBeginUser;
+  PetscCall(UntilLook(&r->until, r->model));
   const RunProgress progress = {.step = r->model->step,
                                 .iterations = report->newton.iterations,
                                 .time = r->model->time,
                                 .end = r->c->analysis.end,
                                 .dt = report->dt,
                                 .residual = report->newton.residual[last],
-                                .points = points};
-
-  PetscFunctionBeginUser;
+                                .points = points,
+                                .earlier = r->until.n > 0,
+                                .last = r->until.ended > 0};
   if (report->imbalance > 0)
     PetscCall(RunDirLog(r->dir, "repartition = step %d imbalance = %.3f to %.3f moved = %d of %d points",
                         (int)r->model->step, (double)report->imbalance, (double)r->model->balance.reached,
@@ -103,6 +106,7 @@ static PetscErrorCode AfterStep(Run *r, const StepReport *report, PetscInt point
                         (int)r->model->step, (int)report->tries.again, (int)report->tries.lost, (int)report->cuts,
                         (double)report->dt));
   PetscCall(LossesLogStep(r->model, r->dir, report));
+  PetscCall(RunWritten(r, EventsWatch(r->model, r->dir, PETSC_FALSE, r->events)));
   PetscCall(RunDirProgress(r->dir, &progress));
   if (is_due(&r->rows, r->model->time, r->model->step)) PetscCall(RunWriteRow(r));
   if (is_due(&r->states, r->model->time, r->model->step)) PetscCall(RunWriteState(r));
@@ -147,7 +151,7 @@ static PetscErrorCode Interrupted(Run *r)
   PetscFunctionReturn(0);
 }
 
-/* Steps until the end, a failure or a signal. */
+/* Steps until the end, a condition, a failure or a signal. */
 static PetscErrorCode Advance(Run *r)
 {
   const PetscReal end = r->c->analysis.end;
@@ -156,7 +160,7 @@ static PetscErrorCode Advance(Run *r)
   PetscInt points;
 
   PetscFunctionBeginUser;
-  while (!r->failed && r->model->time < end * (1 - 1e-12)) {
+  while (!r->failed && !r->until.ended && r->model->time < end * (1 - 1e-12)) {
     const PetscReal limit =
       PetscMin(until_next(&r->states, r->model->time, end), until_next(&r->rows, r->model->time, end));
     PetscCall(ModelStep(r->model, limit, &report));
@@ -203,6 +207,7 @@ static PetscErrorCode Close(Run *r, PetscReal *measures)
   r->summary.halvings = r->model->cuts;
   r->summary.iterations = r->model->total_iterations;
   r->summary.seconds = seconds;
+  until_reason(&r->until, r->c, r->summary.ended);
   r->summary.resumable = r->failed && r->checkpoint_step >= 0;
   r->summary.checkpoint_step = r->checkpoint_step;
   PetscCall(RunWritten(r, SummaryEnd(r->model, r->dir, &r->summary, r->values)));
@@ -252,12 +257,16 @@ PetscErrorCode RunCase(MPI_Comm comm, const Case *c, const RunOptions *options, 
   *result = RUN_BAD_INPUT;
   PetscCall(ModelCreate(comm, c, diag, &run.model));
   if (!run.model) PetscFunctionReturn(0);
+  PetscCall(UntilCreate(c, &run.until));
+  PetscCall(PetscCalloc1(c->n_measures, &run.events));
   if (options->warnings) PetscCall(DiagFlush(diag, options->warnings));
   signals_watch();
   run.model->asked = signals_came;
   PetscCall(RunModel(&run, options, diag, measures, result));
   signals_forget();
   PetscCall(PetscFree(run.values));
+  PetscCall(PetscFree(run.events));
+  PetscCall(UntilDestroy(&run.until));
   PetscCall(OutputDestroy(&run.output));
   PetscCall(RunDirDestroy(&run.dir));
   PetscCall(ModelDestroy(&run.model));

@@ -11,6 +11,7 @@ typedef struct {
   PetscBool interrupted;                    /* by a signal */
   PetscBool resumable;                      /* ended early, and has a checkpoint... */
   PetscInt checkpoint_step;                 /* ...of this step */
+  char ended[256];                          /* which condition ended it, empty if none */
   char reason[1024];                        /* why the run ended early, empty if it did not */
 } RunSummary;
 

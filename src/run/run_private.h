@@ -2,6 +2,7 @@
 #pragma once
 #include "run/output.h"
 #include "run/run.h"
+#include "run/watch/until.h"
 
 /* When something happens again: every so many seconds (> 0), every so many steps (< 0), or at the
  * end only (0). */
@@ -30,6 +31,8 @@ typedef struct {
   Schedule states, rows;
   PetscInt state_step, row_step; /* step of the newest state and row, -1 if none */
   PetscReal *values;
+  PetscInt *events; /* per measure: how many of its events the run has told of */
+  Until until;
   PetscBool failed; /* gave up */
   RunSummary summary;
   double start;           /* of this process, on MPI's clock */

@@ -2,6 +2,7 @@
 #include "output/directory/run_dir_files.h"
 #include <stdlib.h>
 #include "run/losses.h"
+#include "run/watch/events.h"
 #include "talus_version.h"
 
 PetscErrorCode SummaryVersion(MPI_Comm comm, RunDir *dir)
@@ -85,7 +86,7 @@ PetscErrorCode SummaryEnd(Model *m, RunDir *dir, const RunSummary *summary, cons
 {
   const PetscReal seconds = summary->seconds;
   PetscReal phase[PHASE_N], rest = seconds;
-  char text[2048] = "";
+  char text[2560] = "";
 
   PetscFunctionBeginUser;
   model_times(m, phase);
@@ -94,7 +95,9 @@ PetscErrorCode SummaryEnd(Model *m, RunDir *dir, const RunSummary *summary, cons
   for (PetscInt k = 0; k < m->c->n_measures; ++k)
     PetscCall(
       RunDirLog(dir, "%s = %.10g %s", m->c->measures[k].name, (double)values[k], measure_unit(&m->c->measures[k])));
+  PetscCall(EventsSummary(m, dir));
   PetscCall(LossesLogEnd(m, dir));
+  if (summary->ended[0]) PetscCall(RunDirLog(dir, "ended = %s, at t = %g s", summary->ended, (double)m->time));
   PetscCall(RunDirLog(dir, "steps = %d iterations = %d halvings = %d seconds = %.3g", (int)summary->steps,
                       (int)summary->iterations, (int)summary->halvings, (double)seconds));
   if (m->tries.again || m->cuts)
@@ -111,11 +114,12 @@ PetscErrorCode SummaryEnd(Model *m, RunDir *dir, const RunSummary *summary, cons
   PetscCall(PetscSNPrintf(text + end, sizeof text - end,
                           "steps = %d\niterations = %d\nmost iterations in a step = %d\nhalvings = %d\n"
                           "tries from another first guess = %d\niterations of tries that failed = %d\n"
-                          "patterns = %d\nrepartitions = %d\nlargest imbalance = %.3f\noutcome = %s\n",
+                          "patterns = %d\nrepartitions = %d\nlargest imbalance = %.3f\noutcome = %s\n%s%s%s",
                           (int)summary->steps, (int)summary->iterations, (int)summary->iterations_per_step,
                           (int)summary->halvings, (int)m->tries.again, (int)m->tries.lost, (int)m->system->builds,
                           (int)m->balance.repartitions, (double)PetscMax(m->balance.largest, 1),
-                          summary->reason[0] ? "gave up" : "done"));
+                          summary->reason[0] ? "gave up" : "done", summary->ended[0] ? "ended = " : "", summary->ended,
+                          summary->ended[0] ? "\n" : ""));
   const PetscErrorCode status = RunDirWriteText(dir, "timings.txt", text);
   PetscFunctionReturn(status);
 }
@@ -129,6 +133,10 @@ void summary_read(const char *folder, RunSummary *summary)
   FILE *in = file_open_read(path);
   while (in && fgets(line, sizeof line, in)) {
     const char *equals = strstr(line, " = ");
+    if (!strncmp(line, "ended = ", 8)) {
+      line[strcspn(line, "\n")] = '\0';
+      PetscStrncpy(summary->ended, line + 8, sizeof summary->ended);
+    }
     const double value = equals ? strtod(equals + 3, &end) : 0;
     if (!equals || end == equals + 3) continue;
     const size_t n = (size_t)(equals - line);

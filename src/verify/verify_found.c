@@ -23,13 +23,13 @@ static PetscErrorCode ReadFinished(const Verification *v, const char *folder, Ve
   PetscCall(PetscSNPrintf(path, sizeof path, "%s/history.csv", folder));
   if (HistoryRead(path, &history, reason)) PetscFunctionReturn(0);
   const PetscReal *last = history.n_rows ? history.values + (history.n_rows - 1) * history.n_columns : NULL;
-  *finished = last && last[0] >= c->analysis.end * (1 - 1e-9);
+  summary_read(folder, &r->summary);
+  *finished = last && (r->summary.ended[0] || last[0] >= c->analysis.end * (1 - 1e-9));
   for (PetscInt k = 0; k < r->n_measures && *finished; ++k) {
     const PetscInt column = history_column(&history, c->measures[k].name);
     r->measures[k] = column < 0 ? NAN : last[column];
   }
   PetscCall(HistoryFree(&history));
-  summary_read(folder, &r->summary);
   PetscFunctionReturn(0);
 }
 

@@ -314,6 +314,27 @@ static const Bad bads[] = {
   {"a part of a surface that is more than all",
    PLAIN "measures: {a: {free_surface: inclination, middle: 1.5}}\n",
    {"measures.a.middle"}},
+  {"many times of what",
+   PLAIN "measures: {a: {avalanches: {times: 10}}}\n",
+   {"measures.a.avalanches.times: of which motion?", "give `kinetic`"}},
+  {"a container at rest",
+   PLAIN "boundary:\n  - {name: tub, on: {x: 0}, fix: [x]}\nmeasures: {a: {agitation: {container: tub}}}\n",
+   {"measures.a.agitation.container does not move"}},
+  {"until an unknown measure",
+   PLAIN_GRID PLAIN_BODIES PLAIN_MATERIALS
+   "kinematics: plane-strain\nmethod: mpm\nanalysis: {type: static, until: [{measure: enrgy, below: 1}]}\n"
+   "measures: {energy: {energy: kinetic}}\n",
+   {"enrgy", "did you mean 'energy'"}},
+  {"until so many of nothing",
+   PLAIN_GRID PLAIN_BODIES PLAIN_MATERIALS
+   "kinematics: plane-strain\nmethod: mpm\nanalysis: {type: static, until: [{measure: energy, count: 1}]}\n"
+   "measures: {energy: {energy: kinetic}}\n",
+   {"analysis.until[0].count: the measure 'energy' counts no events", "avalanches do"}},
+  {"until nothing in particular",
+   PLAIN_GRID PLAIN_BODIES PLAIN_MATERIALS
+   "kinematics: plane-strain\nmethod: mpm\nanalysis: {type: static, until: [{measure: energy}]}\n"
+   "measures: {energy: {energy: kinetic}}\n",
+   {"analysis.until[0] needs one of 'below', 'above' or 'count'"}},
   {"front without a speed", PLAIN "measures: {a: {run_out_time: {max: x}}}\n", {"speed"}},
   {"speed of nothing",
    PLAIN "measures: {a: {run_out_time: {max: x, speed: 0}}}\n",

@@ -211,6 +211,64 @@ static void test_elevation(void **state)
   CALL(ModelDestroy(&m));
 }
 
+/* The row of a push of test_avalanches. Velocities are means of steps. */
+static void check_push(const PetscReal *event, PetscReal begin, PetscReal moved, PetscReal dt)
+{
+  const PetscReal way = 0.06 - 0.01 * 0.283 * 0.283;
+  CHECK_CLOSE(event[0], begin + 0.00283, 1.5 * dt + 1e-9);
+  CHECK_CLOSE(event[1], begin + 0.07 - 0.00283, 1.5 * dt + 1e-9);
+  CHECK_CLOSE(event[6], moved, 1e-6);
+  CHECK_CLOSE(event[7], 1000 * way, 1000 * 2 * dt);
+  CHECK_CLOSE(event[8], 250, 1);
+}
+
+/* A block of 500 kg is pushed along x twice: all its nodes have v = 1 m/s for 0.05 s, with ramps of
+ * 0.01 s. Its energy passes 20 J on the way up and down at v = 0.283; gravity of 2 m/s2 along x does 1000 N
+ * times the way. Motion that a container shares is none. */
+static void test_avalanches(void **state)
+{
+  PetscReal time[] = {0, 0.02, 0.03, 0.08, 0.09, 0.2, 0.21, 0.26, 0.27}, value[] = {0, 0, 1, 1, 0, 0, 1, 1, 0};
+  const PetscReal dt = 1e-3;
+  Bench b;
+  (void)state;
+  bench_init(&b, "mpm", CELL_QUADRILATERAL, 0);
+  bench_grid(&b, (PetscReal[]){0, 0, 0}, (PetscReal[]){2, 1, 0}, 0.25);
+  bench_box(&b, 0, (PetscReal[]){0.5, 0, 0}, (PetscReal[]){1, 0.5, 0});
+  b.material.density = 2000;
+  b.c.gravity[0] = 2;
+  bench_dynamic(&b, 0.4, dt);
+  MotionSpec *motion = bench_motion(&b, 1, 0, MOTION_VELOCITY, 3);
+  motion->on.min[1] = -1, motion->on.max[1] = 2;
+  motion->value[0] = 1;
+  motion->amplitude = (Amplitude){.n = 9, .time = time, .value = value};
+  const AvalancheSpec slides = {.kinetic = 60, .ends = 1. / 3, .calm = 0.02, .carried = 0.05};
+  b.c.n_measures = 4;
+  for (int k = 0; k < 4; ++k)
+    b.measure[k] = (MeasureSpec){.name = "slides", .kind = k == 3 ? "agitation" : "avalanches", .avalanche = slides};
+  b.measure[1].avalanche.from = 0.15;   /* the second alone */
+  b.measure[1].avalanche.carried = 0.1; /* nothing comes so far */
+  b.measure[2].avalanche = (AvalancheSpec){.has_container = PETSC_TRUE, .times = 0.01, .ends = 0.5, .creep = 0.1};
+  b.measure[3].avalanche.has_container = PETSC_TRUE;
+  Model *m = bench_model(&b, PETSC_COMM_WORLD);
+  while (m->time < 0.15) model_step(m, 0.15 - m->time);
+  CHECK(measure(m, &b.measure[0], 0) == 1 && measure(m, &b.measure[1], 1) == 0, "events at 0.15 s");
+  while (m->time < 0.24) {
+    model_step(m, 0.24 - m->time);
+    CHECK(m->time < 0.208 || m->time > 0.239 || measure_under_way(m, 0, &(PetscReal){0}), "no event at %g",
+          (double)m->time);
+    const PetscReal agitation = measure(m, &b.measure[3], 3);
+    CHECK(PetscIsNanReal(agitation) || agitation < 1e-2, "agitation %g", (double)agitation);
+  }
+  while (m->time < 0.4 - 1e-9) model_step(m, 0.4 - m->time);
+  CHECK(measure_n_events(m, 0) == 2 && measure_n_events(m, 1) == 1 && measure_n_events(m, 2) == 0,
+        "%d, %d, %d events at the end", (int)measure_n_events(m, 0), (int)measure_n_events(m, 1),
+        (int)measure_n_events(m, 2));
+  check_push(measure_event(m, 0, 0), 0.02, 500, dt);
+  check_push(measure_event(m, 0, 1), 0.2, 500, dt);
+  check_push(measure_event(m, 1, 0), 0.2, 0, dt);
+  CALL(ModelDestroy(&m));
+}
+
 /* What no point can ever reach is a mistake. */
 static void test_nowhere(void **state)
 {
@@ -232,6 +290,6 @@ int main(int argc, char **argv)
   const struct CMUnitTest tests[] = {cmocka_unit_test(test_half_planes), cmocka_unit_test(test_disc),
                                      cmocka_unit_test(test_balls),       cmocka_unit_test(test_rate),
                                      cmocka_unit_test(test_inclination), cmocka_unit_test(test_elevation),
-                                     cmocka_unit_test(test_nowhere)};
+                                     cmocka_unit_test(test_avalanches),  cmocka_unit_test(test_nowhere)};
   return run_model_tests(argc, argv, tests);
 }

@@ -62,6 +62,50 @@ static const SchemaTable run_out = {
   .groups = schema_one_tag,
   .tag_offset = offsetof(MeasureSpec, maximum)};
 
+/* --- avalanches --- */
+#define CONTAINER(...)                                                                                             \
+  KEY("container", BOUNDARY, NULL,                                                                                 \
+      "the entry of `boundary` whose motion carries the powder, its name or index: what moves with it is at rest", \
+      AT(MeasureSpec, avalanche.container), GIVEN(MeasureSpec, avalanche.has_container), __VA_ARGS__)
+
+static const SchemaEntry agitation_entries[] = {CONTAINER(REQUIRED), {.key = NULL}};
+static const SchemaTable agitation = {
+  .name = "agitation", .help = "How much a powder moves in a container that moves.", .entries = agitation_entries};
+
+static const SchemaEntry avalanche_entries[] = {
+  CONTAINER(.note = "one at rest"),
+  KEY("times", NUMBER, NULL,
+      "an avalanche has a kinetic energy, relative to the container, so many times that while the powder creeps, or "
+      "that of moving with the container if this is more",
+      ABOVE(0), AT(MeasureSpec, avalanche.times)),
+  KEY("kinetic", NUMBER, "J", "or of more than this", ABOVE(0), AT(MeasureSpec, avalanche.kinetic)),
+  KEY("ends", NUMBER, NULL, "it begins when this share of that is exceeded, and ends when no more is left...",
+      .fallback = "0.3", BETWEEN(0, 1), AT(MeasureSpec, avalanche.ends)),
+  KEY("fades", NUMBER, NULL, "...or no more than this share of its own peak...", .fallback = "0.05", BETWEEN(0, 1),
+      AT(MeasureSpec, avalanche.fades)),
+  KEY("calm", NUMBER, "s", "...for so long", .fallback = "0.1", AT_LEAST(0), AT(MeasureSpec, avalanche.calm)),
+  KEY("creep", NUMBER, "s", "the energy while the powder creeps is its mean over about so long", .fallback = "0.5",
+      ABOVE(0), AT(MeasureSpec, avalanche.creep)),
+  KEY("from", NUMBER, "s", "what moves before is no event", .fallback = "0", AT_LEAST(0),
+      AT(MeasureSpec, avalanche.from)),
+  KEY("carried", NUMBER, "m", "mass that is carried farther than this, relative to the container, has taken part",
+      .note = "the smallest cell", ABOVE(0), AT(MeasureSpec, avalanche.carried)),
+  {.key = NULL},
+};
+static const SchemaGroup avalanche_groups[] = {{GROUP_ONE, {"times", "kinetic", NULL}}, {GROUP_NONE, {NULL}}};
+static PetscBool hide_in_avalanches(const SchemaEntry *e, const void *source)
+{
+  const AvalancheSpec *a = &((const MeasureSpec *)source)->avalanche;
+  if (!strcmp(e->key, "times")) return a->times == 0;
+  if (!strcmp(e->key, "kinetic")) return a->kinetic == 0;
+  return !strcmp(e->key, "carried") && a->carried == 0;
+}
+static const SchemaTable avalanches = {.name = "avalanches",
+                                       .help = "When a powder slides.",
+                                       .entries = avalanche_entries,
+                                       .groups = avalanche_groups,
+                                       .hide = hide_in_avalanches};
+
 /* --- its rate --- */
 static const SchemaEntry rate_entries[] = {
   KEY(
@@ -83,6 +127,8 @@ static SchemaEntry entry_of(const Measure *measure)
     [MEASURE_WORD] = {.type = TYPE_WORD_TEXT, AT(MeasureSpec, word)},
     [MEASURE_EXTENT] = {.type = TYPE_TABLE, .table = &extent},
     [MEASURE_FRONT] = {.type = TYPE_TABLE, .table = &run_out},
+    [MEASURE_AVALANCHES] = {.type = TYPE_TABLE, .table = &avalanches},
+    [MEASURE_CONTAINER] = {.type = TYPE_TABLE, .table = &agitation},
   };
   SchemaEntry entry = takes[measure->takes];
   entry.key = measure->key;
@@ -153,6 +199,20 @@ static void check_rate(SchemaReader *r, const YamlNode *mapping, const MeasureSp
                 (double)r->c->analysis.end);
 }
 
+/* Of what moves with a container that stands still nothing is a multiple. */
+static void check_container(SchemaReader *r, const YamlNode *mapping, const MeasureSpec *m, const char *path)
+{
+  const YamlNode *of_key = yaml_find(mapping, m->kind);
+  const PetscBool needed = !strcmp(m->kind, "agitation") || m->avalanche.times > 0;
+  const AvalancheSpec *a = &m->avalanche;
+  if (!needed) return;
+  if (!a->has_container) {
+    SchemaError(r, yaml_find(of_key, "times"), "%s.%s.times: of which motion? Name the `container`", path, m->kind);
+    diag_hint(r->diag, "for a container at rest give `kinetic`, in J");
+  } else if (a->container < r->c->n_boundary && r->c->boundary[a->container].kind == MOTION_FIXED)
+    SchemaError(r, yaml_find(of_key, "container"), "%s.%s.container does not move", path, m->kind);
+}
+
 static void check_front(SchemaReader *r, const YamlNode *mapping, const MeasureSpec *m, const char *path)
 {
   const YamlNode *front = yaml_find(yaml_find(mapping, m->kind), "front");
@@ -196,7 +256,27 @@ static PetscErrorCode CheckMeasure(SchemaReader *r, const YamlNode *mapping, voi
   check_rate(r, mapping, target, path);
   check_front(r, mapping, target, path);
   check_component(r, mapping, target, path);
+  check_container(r, mapping, target, path);
   check_subject(r, mapping, target, path);
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode SchemaCheckUntil(SchemaReader *r, const YamlNode *mapping, void *target)
+{
+  const UntilSpec *until = target;
+  const YamlNode *spec = yaml_find(yaml_find(r->document->root, "measures"), until->measure);
+  const Measure *counts = NULL;
+  char path[512];
+
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; spec && i < spec->n && !counts; ++i) {
+    const Measure *measure = measure_find(spec->child[i]->key);
+    if (measure && measure->events) counts = measure;
+  }
+  if (until->kind != UNTIL_COUNT || counts) PetscFunctionReturn(0);
+  SchemaError(r, yaml_find(mapping, "count"), "%s.count: the measure '%s' counts no events",
+              yaml_path(mapping, path, sizeof(path)), until->measure);
+  diag_hint(r->diag, "avalanches do; of others take `below` or `above`");
   PetscFunctionReturn(0);
 }
 

@@ -24,9 +24,33 @@ static const SchemaWord linear_words[] = {
 };
 
 /* --- analysis --- */
+static const SchemaEntry until_entries[] = {
+  KEY("measure", REFERENCE, NULL, "a name from `measures`", .target = "measures", REQUIRED, AT(UntilSpec, measure)),
+  KEY("below", NUMBER, NULL, "its value has fallen below this, in its unit", TAG(UNTIL_BELOW), AT(UntilSpec, value)),
+  KEY("above", NUMBER, NULL, "its value has risen above this", TAG(UNTIL_ABOVE), AT(UntilSpec, value)),
+  KEY("count", INTEGER, NULL, "so many events are over, of a measure that counts some", AT_LEAST(1), TAG(UNTIL_COUNT),
+      AT(UntilSpec, count)),
+  KEY("for", NUMBER, "s", "and has stayed there for so long", .fallback = "0", AT_LEAST(0), AT(UntilSpec, duration)),
+  KEY("after", NUMBER, "s", "what is before this time does not matter", .fallback = "0", AT_LEAST(0),
+      AT(UntilSpec, after)),
+  {.key = NULL},
+};
+static const SchemaTable until = {
+  .name = "until",
+  .help =
+    "What ends a run before `end`. A value falls below another only if it was not below before: what starts from "
+    "rest is not over at once.",
+  .entries = until_entries,
+  .groups = schema_one_tag,
+  .size = sizeof(UntilSpec),
+  .tag_offset = offsetof(UntilSpec, kind),
+  .check = SchemaCheckUntil};
+
 static const SchemaEntry analysis_entries[] = {
   KEY("type", WORD, NULL, "static or dynamic", .words = analysis_words, REQUIRED, AT(AnalysisSpec, type)),
   KEY("end", NUMBER, "s", "time at the end of the run", .note = "static: 1", ABOVE(0), AT(AnalysisSpec, end)),
+  KEY("until", LIST, NULL, "any of these ends the run earlier", .table = &until, AT(AnalysisSpec, until),
+      .count = offsetof(AnalysisSpec, n_until)),
   KEY("steps", INTEGER, NULL, "number of equal steps up to the end", .note = "static: 1, if `step` is not given",
       AT_LEAST(1), INPUT_ONLY, AT(AnalysisSpec, step)),
   KEY("step", NUMBER, "s", "the first step, and the largest one unless `largest` says otherwise", ABOVE(0),

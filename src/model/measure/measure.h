@@ -8,7 +8,15 @@
 
 /* What stands behind the key: an axis, an axis of rotation, one of the words, or a mapping with a
  * side of a body and more. */
-typedef enum { MEASURE_AXIS, MEASURE_SPIN_AXIS, MEASURE_WORD, MEASURE_EXTENT, MEASURE_FRONT } MeasureArgument;
+typedef enum {
+  MEASURE_AXIS,
+  MEASURE_SPIN_AXIS,
+  MEASURE_WORD,
+  MEASURE_EXTENT,
+  MEASURE_FRONT,
+  MEASURE_AVALANCHES,
+  MEASURE_CONTAINER
+} MeasureArgument;
 /* What `of` names: a body, if not all; a tracer; an entry of the boundary; nothing, since the
  * number is of the whole model. */
 typedef enum { OF_BODY, OF_TRACER, OF_BOUNDARY, OF_MODEL } MeasureSubject;
@@ -36,6 +44,15 @@ typedef struct {
 #define WORD(...) \
   &(const MeasureNumber) { __VA_ARGS__ }
 
+/* What a measure notes of each event that is over: a row of events.csv. They stand in its list
+ * behind `header` numbers of its own. */
+typedef struct {
+  PetscInt header, n; /* n: columns */
+  /* of the header, whose first number is 1 while an event is under way: when that began, s */
+  PetscInt begun;
+  const char *const *names, *const *units;
+} MeasureEvents;
+
 typedef struct {
   const char *key;
   MeasureArgument takes;
@@ -46,12 +63,20 @@ typedef struct {
   const MeasureNumber *const *words; /* with MEASURE_WORD: ended by NULL */
   /* Collective, or NULL: after every accepted step of dt, and at the start with dt = 0. */
   PetscErrorCode (*remember)(Model *m, const MeasureSpec *s, PetscReal dt, PetscReal kept[MEASURE_KEPT]);
+  const MeasureEvents *events; /* NULL: it counts none */
 } Measure;
 
 extern const Measure *const measures[]; /* ended by NULL */
 const Measure *measure_find(const char *kind);
 /* What the spec asks for. */
 const MeasureNumber *measure_number(const MeasureSpec *spec);
+
+/* Events of measure k that are over, and event i of them: as many numbers as its table has columns. */
+PetscInt measure_n_events(const Model *m, PetscInt k);
+PetscBool measure_under_way(const Model *m, PetscInt k, PetscReal *since);
+/* Can the list of measure k be so long? */
+PetscBool measure_list_fits(const Model *m, PetscInt k, PetscInt64 length);
+const PetscReal *measure_event(const Model *m, PetscInt k, PetscInt i);
 
 /* -1: all bodies. */
 PetscInt measure_body(const Model *model, const MeasureSpec *spec);
@@ -79,6 +104,9 @@ void measure_up(const Model *m, PetscReal right[2], PetscReal up[2]);
 
 /* Collective. Angle of the centre of mass below the centre that the spec is `about`, rad. */
 PetscErrorCode MassAngle(const Model *m, const MeasureSpec *s, PetscReal *angle);
+
+/* Collective. Inclination of the free surface, deg, and how far it is from a line, m (powder/free_surface.c). */
+PetscErrorCode SurfaceFit(const Model *m, const MeasureSpec *s, PetscReal *inclination, PetscReal *deviation);
 
 /* A measure that is asked for its rate (powder/rate.c): its value at the end of an accepted step,
  * and what comes of the values kept. */

@@ -67,6 +67,33 @@ void measures_check(const Model *m, Diag *diag)
   }
 }
 
+PetscBool measure_under_way(const Model *m, PetscInt k, PetscReal *since)
+{
+  const MeasureEvents *events = measure_find(m->c->measures[k].kind)->events;
+  if (!events || m->memory[k].list[0] != 1) return PETSC_FALSE;
+  *since = m->memory[k].list[events->begun];
+  return PETSC_TRUE;
+}
+
+PetscBool measure_list_fits(const Model *m, PetscInt k, PetscInt64 length)
+{
+  const MeasureEvents *events = measure_find(m->c->measures[k].kind)->events;
+  if (events) return length >= events->header && (length - events->header) % events->n == 0;
+  return m->c->measures[k].has_rate ? length >= 0 && length % 2 == 0 : length == 0;
+}
+
+PetscInt measure_n_events(const Model *m, PetscInt k)
+{
+  const MeasureEvents *events = measure_find(m->c->measures[k].kind)->events;
+  return events ? (m->memory[k].n_list - events->header) / events->n : 0;
+}
+
+const PetscReal *measure_event(const Model *m, PetscInt k, PetscInt i)
+{
+  const MeasureEvents *events = measure_find(m->c->measures[k].kind)->events;
+  return m->memory[k].list + events->header + i * events->n;
+}
+
 PetscErrorCode MeasuresStart(Model *m)
 {
   PetscFunctionBeginUser;

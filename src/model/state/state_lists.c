@@ -1,5 +1,6 @@
 /* Lists that measures keep (values for a rate, events), one behind the other, as tables; runs without
  * such have none. */
+#include "model/measure/measure.h"
 #include "model/state/state_private.h"
 
 PetscErrorCode StateListsToTables(const Model *m, Tables *tables)
@@ -24,17 +25,18 @@ PetscErrorCode StateListsToTables(const Model *m, Tables *tables)
 PetscErrorCode StateListsFromTables(Model *m, const Tables *tables, char reason[256])
 {
   const Table *lists = tables_find(tables, "measure_lists"), *numbers = tables_find(tables, "measure_numbers");
+  const PetscInt64 *length = lists ? table_data(lists, "length", COLUMN_INT64, 1, reason) : NULL;
+  const PetscReal *number = numbers ? table_data(numbers, "number", COLUMN_REAL, 1, reason) : NULL;
+  PetscInt64 left = numbers ? numbers->rows : 0;
 
   PetscFunctionBeginUser;
-  for (PetscInt k = 0; k < m->c->n_measures; ++k) m->memory[k].n_list = 0; /* what the start brought */
-  if (!lists || !numbers || reason[0]) PetscFunctionReturn(0);
-  if (lists->rows != m->c->n_measures) snprintf(reason, 256, "%s has %d rows", lists->name, (int)lists->rows);
-  const PetscInt64 *length = table_data(lists, "length", COLUMN_INT64, 1, reason);
-  const PetscReal *number = table_data(numbers, "number", COLUMN_REAL, 1, reason);
-  PetscInt64 left = numbers->rows;
-  for (PetscInt k = 0; k < m->c->n_measures && !reason[0]; left -= length[k], ++k) {
-    if (length[k] < 0 || length[k] > left) snprintf(reason, 256, "%s makes no sense", lists->name);
-    else PetscCall(MemoryAppend(&m->memory[k], (PetscInt)length[k], number + (numbers->rows - left)));
+  if (lists && lists->rows != m->c->n_measures) snprintf(reason, 256, "%s has %d rows", lists->name, (int)lists->rows);
+  for (PetscInt k = 0; k < m->c->n_measures && !reason[0]; ++k) {
+    const PetscInt64 n = length ? length[k] : 0;
+    m->memory[k].n_list = 0; /* what the start brought */
+    if (n > left || !measure_list_fits(m, k, n)) snprintf(reason, 256, "what measure %d keeps is not there", (int)k);
+    else if (n > 0) PetscCall(MemoryAppend(&m->memory[k], (PetscInt)n, number + (numbers->rows - left)));
+    left -= n;
   }
   PetscFunctionReturn(0);
 }

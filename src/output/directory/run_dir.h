@@ -2,6 +2,7 @@
  *
  *   made-by-talus.txt   the signature, written first: without it nothing is removed or overwritten
  *   case.yaml     the resolved case (every key with its value)      history.csv   measures
+ *   events.csv    what measures that count events noted of them
  *   log.txt       what the run said                                 timings.txt   where the time
  *   went version.txt   talus, PETSc, MPI, compiler, number of ranks      pictures/     of talus
  *   plot points_000000.hdf ... points.hdf.series, grid_000000.hdf ... grid.hdf.series
@@ -46,6 +47,8 @@ typedef struct {
   PetscReal time, end, dt; /* s */
   PetscReal residual;      /* relative, at the end of Newton */
   PetscInt points;         /* global */
+  PetscBool earlier;       /* may the run be over before `end`... */
+  PetscBool last;          /* ...and is it now? */
 } RunProgress;
 PetscErrorCode RunDirProgress(RunDir *dir, const RunProgress *progress);
 

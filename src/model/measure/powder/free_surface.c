@@ -171,8 +171,7 @@ static PetscErrorCode StartRaster(const Model *m, const MeasureSpec *s, Raster *
   PetscFunctionReturn(0);
 }
 
-/* Collective. Inclination of the surface, deg, and how far it is from a line. */
-static PetscErrorCode FitSurface(const Model *m, const MeasureSpec *s, PetscReal *inclination, PetscReal *deviation)
+PetscErrorCode SurfaceFit(const Model *m, const MeasureSpec *s, PetscReal *inclination, PetscReal *deviation)
 {
   const PetscReal middle = s->middle > 0 ? s->middle : MIDDLE;
   PetscReal right[2], up[2], side;
@@ -235,7 +234,7 @@ static PetscErrorCode FreeSurface(Model *m, const MeasureSpec *s, PetscInt index
   PetscFunctionBeginUser;
   if (which == ELEVATION) PetscCall(Elevation(m, s, value));
   else {
-    PetscCall(FitSurface(m, s, &inclination, &deviation));
+    PetscCall(SurfaceFit(m, s, &inclination, &deviation));
     *value = which == DEVIATION ? deviation : inclination;
   }
   PetscFunctionReturn(0);
