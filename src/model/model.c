@@ -272,6 +272,7 @@ static PetscErrorCode Build(Model *m, Diag *diag)
   PetscCall(CreateTracers(m, diag));
   measures_check(m, diag);
   model_advise(m, diag);
+  PetscCall(AdviseOpenDrum(m, diag));
   PetscCall(DiagReduce(m->comm, diag, &errors));
   if (errors) PetscFunctionReturn(0);
   if (m->method->clouds) PetscCall(ModelToCloud(m));

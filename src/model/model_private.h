@@ -122,6 +122,8 @@ PetscErrorCode LimitWatch(Model *model, PetscReal dt);
 PetscErrorCode LimitDescribe(const Model *model, StepReport *report);
 /* Warnings of what a case asks for and its user hardly means: start/advice.c. */
 void model_advise(const Model *model, Diag *diag);
+/* Collective. The same of a drum that is not closed: start/drum.c. */
+PetscErrorCode AdviseOpenDrum(const Model *model, Diag *diag);
 /* Rayleigh damping, where there is inertia, 1/s. */
 static inline PetscReal model_damping(const Model *m) { return m->scheme->inertia ? m->c->analysis.damping : 0; }
 /* Input of the weak form for the model's present arrays. */

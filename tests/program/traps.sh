@@ -193,6 +193,54 @@ says out.txt "mass 2000 kg"
 expect "a number for a .msh" 2 "$talus" check case.yaml --set grid.parameters.h=1
 says err.txt "parameters are for a .geo; a .msh takes none"
 
+# --- a drum: its rim must be closed ---
+# drum EDGE...: four triangles about the middle, `rim`: these of their four outer edges.
+drum() {
+  cat <<'END'
+$MeshFormat
+2.2 0 8
+$EndMeshFormat
+$PhysicalNames
+2
+1 1 "rim"
+2 2 "inside"
+$EndPhysicalNames
+$Nodes
+5
+1 -1 0 0
+2 0 -1 0
+3 1 0 0
+4 0 1 0
+5 0 0 0
+$EndNodes
+$Elements
+END
+  echo $(($# + 4))
+  for edge; do echo "$edge 1 2 1 1 $edge $((edge % 4 + 1))"; done
+  for edge in 1 2 3 4; do echo "$((4 + edge)) 2 2 2 1 $edge $((edge % 4 + 1)) 5"; done
+  echo '$EndElements'
+}
+cat >case.yaml <<'END'
+kinematics: plane-strain
+method: mpm
+analysis: {type: dynamic, end: 1, step: 0.1}
+grid: {mesh: drum.msh}
+bodies:
+  - {name: powder, shape: {polygon: [[-1, 0], [0, -1], [0, 0]]}, points_per_cell: 3, material: rubber}
+materials:
+  rubber: {law: neo-hookean, density: 1000, young: 1e6, poisson: 0.3}
+boundary:
+  - {on: {boundary: rim}, rotation: {centre: [0, 0], rate: -1}}
+END
+drum 1 2 3 4 >drum.msh
+warned "a drum" --
+drum 1 2 3 >drum.msh
+warned "a drum that is not closed" "case.yaml:10:21: warning: 'rim' turns but is not closed: it ends at (-1, 0) and (0, 1) m" "every line of the drum's rim" --
+for ranks in 2 3; do
+  expect "the same on $ranks ranks" 0 on_ranks $ranks "$talus" check case.yaml
+  says err.txt "'rim' turns but is not closed: it ends at (" "(-1, 0)" "(0, 1)"
+done
+
 # --- numbers that cannot be meant together (each by itself: input/test_case_bad) ---
 block >case.yaml
 expect "waves faster than light" 2 "$talus" check case.yaml --set materials.rubber.density=1e-14
