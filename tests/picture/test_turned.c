@@ -7,10 +7,18 @@
 #include "picture/plot_scene.h"
 #include "picture/revolution/revolution.h"
 
+enum { W = 37, H = 23 };
+
+/* Of two pixels. */
+static double between(int i, int k)
+{
+  const int across = i % W - k % W, up = i / W - k / W;
+  return hypot(across, up);
+}
+
 /* Against all pairs, of sparse and of dense images, and of one without anything. */
 static void test_distances(void **state)
 {
-  enum { W = 37, H = 23 };
   static unsigned char in[W * H];
   static float distance[W * H];
   static int nearest[W * H];
@@ -22,14 +30,14 @@ static void test_distances(void **state)
     for (int i = 0; i < W * H; ++i) {
       double least = INFINITY;
       for (int k = 0; k < W * H; ++k)
-        if (in[k]) least = fmin(least, hypot(i % W - k % W, i / W - k / W));
+        if (in[k]) least = fmin(least, between(i, k));
       if (isinf(least)) {
         assert_true(isinf(distance[i]) && nearest[i] == -1);
         continue;
       }
       const int k = nearest[i];
       assert_true(fabs((double)distance[i] - least) < 1e-5 && in[k]);
-      assert_true(fabs(hypot(i % W - k % W, i / W - k / W) - least) < 1e-5);
+      assert_true(fabs(between(i, k) - least) < 1e-5);
     }
   }
 }
@@ -52,7 +60,8 @@ static void Look(const PetscReal x[3], const PetscReal y[3], const PetscReal z[3
                        .width = IMAGE,
                        .height = IMAGE};
   for (int i = 0; i < SECTION_W * SECTION_H; ++i) {
-    const PetscReal r = fabs(-1.2 + (i % SECTION_W + 0.5) * pixel), h = -0.2 + (i / SECTION_W + 0.5) * pixel;
+    const int column = i % SECTION_W, row = i / SECTION_W;
+    const PetscReal r = fabs(-1.2 + (column + 0.5) * pixel), h = -0.2 + (row + 0.5) * pixel;
     const PetscBool in = r > 0.5 && r < 1 && h > 0 && h < 1;
     section[4 * i] = (unsigned char)lround(200 * fmin(r, 1.2)), section[4 * i + 1] = 200, section[4 * i + 2] = 0;
     section[4 * i + 3] = in ? 255 : 0;

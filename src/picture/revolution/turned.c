@@ -177,7 +177,8 @@ static void draw_pixel(const Solid *solid, PetscReal u, PetscReal v, PetscReal p
   Ray middle = {.at = {u, v, solid->eye}};
   const PetscBool any = follow(solid, pixel, &middle);
   for (int k = 0; k < RAYS * RAYS && any; ++k) {
-    Ray ray = {.at = {u + to_first + (k % RAYS) * apart, v + to_first + (k / RAYS) * apart, middle.at[2]}};
+    const int i = k % RAYS, j = k / RAYS;
+    Ray ray = {.at = {u + to_first + i * apart, v + to_first + j * apart, middle.at[2]}};
     if (follow(solid, 0.2 * pixel, &ray)) hits += add_colour(solid, &ray, sum);
   }
   for (int c = 0; c < 3; ++c) rgba[c] = (unsigned char)lround(hits ? PetscMin(sum[c] / hits, 255) : 255);
