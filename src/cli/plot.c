@@ -17,6 +17,8 @@ static const CliOption options_known[] = {
   {"range", "A:B", "values of the first and the last colour"},
   {"size", "WxH", "pixels, for example 1200x800 (default: to suit the body)"},
   {"up", "x|y|z", "the axis that points up in a picture in space (default: z)"},
+  {"half", NULL, "of an axisymmetric run: one side of the axis alone"},
+  {"turned", NULL, "of an axisymmetric run: the whole body in space, with a quarter cut out"},
   {"out", "FILE", "the picture of the state (default: RUN_DIR/pictures/state_...png)"},
   {NULL, NULL, NULL},
 };
@@ -25,7 +27,7 @@ static const CliUsage usage = {
   .usage = "talus plot RUN_DIR [options]",
   .help =
     "Draws a state of a run coloured by a field, or several side by side, and the histories of its measures, as PNG\n"
-    "pictures in RUN_DIR/pictures.",
+    "pictures in RUN_DIR/pictures. Of an axisymmetric run both sides of the axis are shown.",
   .options = options_known,
   .min_words = 1,
   .max_words = 1,
@@ -95,6 +97,8 @@ static PetscErrorCode Understand(const CliArguments *arguments, PlotOptions *opt
   options->component = cli_value(arguments, "component");
   options->out = cli_value(arguments, "out");
   options->grid = cli_flag(arguments, "grid");
+  options->half = cli_flag(arguments, "half");
+  options->turned = cli_flag(arguments, "turned");
   options->has_range = range != NULL;
   options->up = up ? tolower((unsigned char)up[0]) - 'x' : 2;
   if (time && !plot_times(time, options))
@@ -109,6 +113,8 @@ static PetscErrorCode Understand(const CliArguments *arguments, PlotOptions *opt
   else if (size && !plot_size(size, &options->width, &options->height))
     PetscCall(
       CliUsageError(exit_code, "from 200x150 to 10000x10000", "--size wants pixels as in 1200x800, not '%s'", size));
+  else if (options->half && options->turned)
+    PetscCall(CliUsageError(exit_code, NULL, "--half and --turned: a picture shows the one or the other"));
   else if (up && (options->up < 0 || options->up > 2 || up[1]))
     PetscCall(CliUsageError(exit_code, NULL, "--up wants x, y or z, not '%s'", up));
   else *ok = PETSC_TRUE;

@@ -22,7 +22,10 @@ typedef struct {
   PetscReal range[2]; /* of the colours, in the field's own unit */
   int width, height;  /* pixels; 0: chosen to suit the body */
   PetscInt up;        /* axis that points up in a picture in space: 0 1 2 */
-  const char *out;    /* PNG; NULL: RUN/pictures/state_... */
+  /* of bodies of revolution, which are shown on both sides of their axis: */
+  PetscBool half;   /* one side alone */
+  PetscBool turned; /* the whole body in space, with a quarter cut out */
+  const char *out;  /* PNG; NULL: RUN/pictures/state_... */
 } PlotOptions;
 
 /* Draw the states, all on one scale and in one set of colours. Mistakes go to diag, and picture is

@@ -31,8 +31,9 @@ static PetscReal tick_step(PetscReal length)
 }
 
 /* Ticks along axis d that starts at `from`; they point away along -b (0), +a (1) or to the left of
- * the page. */
-static void box_ticks(FILE *out, const PlotScene *scene, PetscInt k, const PetscReal *from, PetscReal size)
+ * the page. pixel: m. */
+static void box_ticks(FILE *out, const PlotScene *scene, PetscInt k, const PetscReal *from, PetscReal size,
+                      PetscReal pixel)
 {
   static const char *const names[] = {"x [m]", "y [m]", "z [m]"};
   static const PetscReal away[3][2] = {{-0.3, -1}, {0.5, -1}, {-1, 0}};
@@ -45,7 +46,7 @@ static void box_ticks(FILE *out, const PlotScene *scene, PetscInt k, const Petsc
   for (PetscReal t = ceil(scene->box_min[d] / step - 1e-9); t * step <= scene->box_max[d] + 1e-9 * step; t += 1) {
     x[d] = t * step;
     plot_project(scene, x, p);
-    const double a = (double)(p[0] + 0.012 * size * away[k][0]), b = (double)(p[1] + 0.012 * size * away[k][1]);
+    const double a = (double)(p[0] + 7 * pixel * away[k][0]), b = (double)(p[1] + 7 * pixel * away[k][1]);
     fprintf(out, "set arrow from %.9g,%.9g to %.9g,%.9g nohead front lw 1 lc rgb '#444444'\n", (double)p[0],
             (double)p[1], a, b);
     fprintf(out, "set label '%.6g' at %.9g,%.9g %s front offset %s\n",
@@ -53,13 +54,14 @@ static void box_ticks(FILE *out, const PlotScene *scene, PetscInt k, const Petsc
   }
   x[d] = 0.5 * (scene->box_min[d] + scene->box_max[d]);
   plot_project(scene, x, p);
-  const PetscReal far[3] = {0.075, 0.075, 0.085};
-  fprintf(out, "set label '%s' at %.9g,%.9g %s%s front\n", names[d], (double)(p[0] + far[k] * size * away[k][0]),
-          (double)(p[1] + far[k] * size * away[k][1]), k == 2 ? "center" : sides[k], k == 2 ? " rotate by 90" : "");
+  const PetscReal far = (k == 2 ? 68 : 42) * pixel;
+  fprintf(out, "set label '%s' at %.9g,%.9g %s%s front\n", names[d], (double)(p[0] + far * away[k][0]),
+          (double)(p[1] + far * away[k][1]), k == 2 ? "center" : sides[k], k == 2 ? " rotate by 90" : "");
 }
 
-void plot_draw_box(FILE *out, const PlotScene *scene)
+void plot_draw_box(FILE *out, const PlotScene *scene, const PlotPage *page)
 {
+  const PetscReal pixel = (page->max[0] - page->min[0]) / page->w;
   PetscReal from[3], to[3], size = 0;
   for (int d = 0; d < 3; ++d) size = PetscMax(size, scene->box_max[d] - scene->box_min[d]);
   for (int corner = 0; corner < 8; ++corner)
@@ -75,8 +77,8 @@ void plot_draw_box(FILE *out, const PlotScene *scene)
       line(out, scene, from, to, "#c4c4c4");
     }
   box_corner(scene, 0, 0, 0, from);
-  box_ticks(out, scene, 0, from, size);
-  box_ticks(out, scene, 2, from, size);
+  box_ticks(out, scene, 0, from, size, pixel);
+  box_ticks(out, scene, 2, from, size, pixel);
   box_corner(scene, 1, 0, 0, from);
-  box_ticks(out, scene, 1, from, size);
+  box_ticks(out, scene, 1, from, size, pixel);
 }

@@ -47,6 +47,19 @@ static double tick_step(PetscReal range, int all, int pixels)
   return power * (share <= 1 ? 1 : share <= 2 ? 2 : share <= 5 ? 5 : 10);
 }
 
+/* Radii are counted from the axis, which is drawn, to both sides. */
+static void write_radii(FILE *out, const PlotPage *page, double step, PetscBool named)
+{
+  const int first = (int)ceil((double)page->min[0] / step);
+  char radius[32];
+  fputs("set xtics (", out);
+  for (int k = first; k * step <= (double)page->max[0]; ++k) {
+    snprintf(radius, sizeof radius, "%.6g", abs(k) * step);
+    fprintf(out, "%s'%s' %.9g", k > first ? ", " : "", named ? radius : "", k * step);
+  }
+  fputs(")\nset arrow from 0, graph 0 to 0, graph 1 nohead front dt '_._' lw 1 lc rgb '#707070'\n", out);
+}
+
 /* Names of the axes where they are nobody else's: at the left, and where no field lies below. */
 static void write_axes(FILE *out, const PlotScene *scene, const PlotPage *page, PetscInt frame)
 {
@@ -59,13 +72,18 @@ static void write_axes(FILE *out, const PlotScene *scene, const PlotPage *page, 
           "set border 15 lw 1 lc rgb '#444444'\nset tics out nomirror scale 0.6 textcolor rgb '#000000'\nset xlabel "
           "'%s' offset 0,0.4\nset "
           "ylabel '%s'\nset format x '%s'\nset format y '%s'\n",
-          last ? "x [m]" : "", left ? "y [m]" : "", last ? "%g" : "", left ? "%g" : "");
+          !last               ? ""
+          : scene->revolution ? "radius x [m]"
+                              : "x [m]",
+          left ? "y [m]" : "", last ? "%g" : "", left ? "%g" : "");
   if (scene->n_frames > 1)
     fprintf(out, "set xtics %.6g\nset ytics %.6g\n", tick_step(page->max[0] - page->min[0], page->w, 45),
             tick_step(page->max[1] - page->min[1], page->h, 30));
   else if (page->h < 160)
     fprintf(out, "set ytics %.3g\n",
             pow(10, floor(log10((double)(page->max[1] - page->min[1])))) * (page->h < 80 ? 1 : 0.5));
+  if (scene->mirrored)
+    write_radii(out, page, tick_step(page->max[0] - page->min[0], page->w, scene->n_frames > 1 ? 45 : 70), last);
 }
 
 static void write_field(FILE *out, const PlotScene *scene, const PlotPage *page, PetscInt frame)
@@ -112,29 +130,6 @@ static void write_plot(FILE *out, const PlotFrame *f, const PlotPage *page, cons
   fputc('\n', out);
 }
 
-static PetscErrorCode MakeImage(const PlotScene *scene, const PlotFrame *f, const PlotPage *page, unsigned char *rgba)
-{
-  const PetscReal span = scene->high - scene->low;
-  PetscReal *colour;
-
-  PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(f->n, &colour));
-  for (PetscInt i = 0; i < f->n; ++i) colour[i] = (f->value[i] - scene->low) / span;
-  const RasterScene raster = {.n = f->n,
-                              .x = f->x,
-                              .radius = f->radius,
-                              .value = colour,
-                              .shaded = scene->dim == 3,
-                              .gap = scene->gap,
-                              .min = {page->min[0], page->min[1]},
-                              .max = {page->max[0], page->max[1]},
-                              .width = page->w,
-                              .height = page->h};
-  PetscCall(RasterDraw(&raster, rgba));
-  PetscCall(PetscFree(colour));
-  PetscFunctionReturn(0);
-}
-
 PetscErrorCode PlotDraw(PlotScene *scene, int width, int height, const char *png, Diag *diag, PetscBool *done)
 {
   GnuplotScript script;
@@ -146,10 +141,10 @@ PetscErrorCode PlotDraw(PlotScene *scene, int width, int height, const char *png
   PetscCall(PetscMalloc1((size_t)page.w * (size_t)page.h * 4, &rgba));
   PetscCall(GnuplotBegin(&script, png, page.width, page.height));
   write_colour_bar(script.out, scene, &page);
-  if (scene->dim == 3) plot_draw_box(script.out, scene);
+  if (scene->dim == 3) plot_draw_box(script.out, scene, &page);
   if (scene->n_frames > 1) fputs("set multiplot\n", script.out);
   for (PetscInt k = 0; k < scene->n_frames; ++k) {
-    PetscCall(MakeImage(scene, &scene->frames[k], &page, rgba));
+    PetscCall(PlotImage(scene, &scene->frames[k], &page, rgba));
     if (k == 1) fputs("unset colorbox\n", script.out); /* one serves all */
     write_field(script.out, scene, &page, k);
     write_plot(script.out, &scene->frames[k], &page, rgba);

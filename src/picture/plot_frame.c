@@ -26,18 +26,40 @@ static void take_points(PlotScene *scene, PlotFrame *f, PetscInt n, const PetscR
   }
 }
 
+/* The box about both sides of the axis, and about the circle where the body is turned. */
+static void turn_box(PlotScene *scene)
+{
+  const PetscReal radius = PetscMax(scene->box_max[0], -scene->box_min[0]);
+  for (int d = 0; d < 3; d += 2) {
+    if (!(d ? scene->turned : scene->mirrored)) continue;
+    scene->box_min[d] = -radius, scene->box_max[d] = radius;
+  }
+}
+
+/* The other side of the axis. */
+static void mirror_points(PlotFrame *f)
+{
+  const PetscInt n = f->n;
+  for (PetscInt i = 0; i < n; ++i, ++f->n) {
+    const PetscReal *p = f->x + 3 * i;
+    f->x[3 * f->n] = -p[0], f->x[3 * f->n + 1] = p[1], f->x[3 * f->n + 2] = p[2];
+    f->value[f->n] = f->value[i];
+  }
+}
+
 PetscErrorCode PlotFrameRead(VtkFile *file, const VtkFieldInfo *field, const PlotScalar *scalar, PlotScene *scene,
                              char reason[256])
 {
-  const PetscInt n = vtk_read_points(file);
+  const PetscInt n = vtk_read_points(file), most = n * (scene->mirrored ? 2 : 1);
   PlotFrame *f = &scene->frames[scene->n_frames];
   PetscReal *x, *data;
 
   PetscFunctionBeginUser;
   if (VtkReadCoordinates(file, &x, reason)) PetscFunctionReturn(0);
   if (VtkReadField(file, field, &data, reason) == 0) {
-    PetscCall(PetscMalloc3(3 * (size_t)n, &f->x, n, &f->value, n, &f->radius));
+    PetscCall(PetscMalloc3(3 * (size_t)most, &f->x, most, &f->value, most, &f->radius));
     take_points(scene, f, n, x, scalar, field->components, data);
+    if (scene->mirrored) mirror_points(f);
     ++scene->n_frames;
     PetscCall(PetscFree(data));
   }
@@ -52,7 +74,7 @@ PetscErrorCode PlotFramesShape(PlotScene *scene)
   PetscReal largest = 0, shown[3];
 
   PetscFunctionBeginUser;
-  scene->dim = scene->box_max[2] - scene->box_min[2] > 1e-9 * wide ? 3 : 2;
+  scene->dim = !scene->turned && scene->box_max[2] - scene->box_min[2] > 1e-9 * wide ? 3 : 2;
   for (PetscInt k = 0; k < scene->n_frames; ++k) {
     PlotFrame *f = &scene->frames[k];
     PetscCall(PlotSpacing(scene->dim, f->n, f->x, f->radius));
@@ -65,6 +87,8 @@ PetscErrorCode PlotFramesShape(PlotScene *scene)
   }
   scene->gap *= 2; /* from point to point */
   for (int d = 0; d < scene->dim; ++d) scene->box_min[d] -= 0.9 * largest, scene->box_max[d] += 0.9 * largest;
+  if (scene->turned) scene->dim = 3;
+  turn_box(scene);
   PetscFunctionReturn(0);
 }
 
@@ -76,13 +100,13 @@ static PetscInt cell_lines(int vtk_type, const int **pairs)
   return vtk_type == 9 ? 4 : vtk_type == 5 ? 3 : 0;
 }
 
-/* Lines of cells in the plane, all whose ends have a place. */
-static PetscErrorCode TakeLines(const VtkCells *cells, const PetscReal *x, PlotFrame *f)
+/* Lines of cells in the plane, all whose ends have a place; on both sides of the axis, if so. */
+static PetscErrorCode TakeLines(const VtkCells *cells, const PetscReal *x, PetscInt sides, PlotFrame *f)
 {
   const int *pairs;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(16 * (size_t)cells->n, &f->edges));
+  PetscCall(PetscMalloc1(sides * 16 * (size_t)cells->n, &f->edges));
   for (PetscInt c = 0; c < cells->n; ++c)
     for (PetscInt k = 0, lines = cell_lines(cells->type[c], &pairs); k < lines; ++k) {
       const PetscInt *node = cells->node + cells->start[c];
@@ -92,6 +116,8 @@ static PetscErrorCode TakeLines(const VtkCells *cells, const PetscReal *x, PlotF
       edge[0] = a[0], edge[1] = a[1], edge[2] = b[0], edge[3] = b[1];
       ++f->n_edges;
     }
+  for (PetscInt i = 0, n = sides > 1 ? f->n_edges : 0; i < n; ++i, ++f->n_edges)
+    for (int k = 0; k < 4; ++k) f->edges[4 * f->n_edges + k] = (k % 2 ? 1 : -1) * f->edges[4 * i + k];
   PetscFunctionReturn(0);
 }
 
@@ -109,7 +135,8 @@ PetscErrorCode PlotFrameGrid(VtkFile *file, PlotScene *scene, PlotFrame *f, char
         scene->box_min[d] = PetscMin(scene->box_min[d], x[3 * i + d]);
         scene->box_max[d] = PetscMax(scene->box_max[d], x[3 * i + d]);
       }
-    if (scene->dim == 2) PetscCall(TakeLines(&cells, x, f));
+    turn_box(scene);
+    if (scene->dim == 2) PetscCall(TakeLines(&cells, x, scene->mirrored ? 2 : 1, f));
     PetscCall(VtkCellsFree(&cells));
   }
   PetscCall(PetscFree(x));

@@ -25,6 +25,9 @@ typedef struct {
   PetscReal low, high;              /* of the colours */
   PetscReal gap;                    /* how far apart points stand in the first frame, m */
   PetscInt up;                      /* axis that points up, in space */
+  PetscBool revolution;             /* x is a radius */
+  PetscBool mirrored;               /* both sides of the axis x = 0 are there, the other one as x < 0 */
+  PetscBool turned;                 /* in space, of points that lie in the plane, on both sides */
   PetscReal box_min[3], box_max[3]; /* of all points (and the grid), before the projection */
 } PlotScene;
 
@@ -47,7 +50,10 @@ void plot_project(const PlotScene *scene, const PetscReal *x, PetscReal shown[3]
 void plot_lay_out(const PlotScene *scene, int width, int height, PlotPage *page);
 
 /* Axes in space: the box's edges behind the body, with ticks and names along three of them. */
-void plot_draw_box(FILE *out, const PlotScene *scene);
+void plot_draw_box(FILE *out, const PlotScene *scene, const PlotPage *page);
+
+/* The image of one frame on the page: rgba of page->w x page->h pixels. */
+PetscErrorCode PlotImage(const PlotScene *scene, const PlotFrame *frame, const PlotPage *page, unsigned char *rgba);
 
 /* Draw to a PNG. */
 PetscErrorCode PlotDraw(PlotScene *scene, int width, int height, const char *png, Diag *diag, PetscBool *done);

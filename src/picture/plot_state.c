@@ -6,6 +6,7 @@
 #include "picture/figure.h"
 #include "picture/plot.h"
 #include "picture/plot_scene.h"
+#include "picture/revolution/revolution.h"
 #include "output/directory/run_dir_files.h"
 #include "output/vtk/vtk_series.h"
 
@@ -205,12 +206,26 @@ static PetscErrorCode AddFrame(const PlotOptions *options, const VtkState *state
   PetscFunctionReturn(0);
 }
 
+/* The whole section of a body of revolution, unless half of it is asked for; its axis points up. */
+static PetscErrorCode FindKind(const PlotOptions *options, Diag *diag, PlotScene *scene)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PlotIsRevolution(options->run, &scene->revolution));
+  scene->mirrored = scene->revolution && !options->half;
+  scene->turned = scene->revolution && options->turned;
+  scene->up = scene->turned ? 1 : options->up;
+  if (!scene->revolution && (options->half || options->turned))
+    diag_error(diag, NULL, "'%s' is no axisymmetric run: there is nothing to %s", options->run,
+               options->turned ? "turn" : "halve");
+  PetscFunctionReturn(0);
+}
+
 /* Everything of the picture but its place on the page. */
 static PetscErrorCode FillScene(const PlotOptions *options, PetscInt n, const VtkState *states, PlotSubject *subject,
                                 Diag *diag, PlotScene *scene)
 {
   PetscFunctionBeginUser;
-  scene->up = options->up;
+  PetscCall(FindKind(options, diag, scene));
   scene->columns = options->columns;
   for (PetscInt k = 0; k < n && !diag_errors(diag); ++k) {
     PetscCall(AddFrame(options, &states[k], subject, scene, diag));
@@ -234,8 +249,9 @@ static void picture_name(const PlotOptions *options, PetscInt n, const VtkState 
   const PlotScalar *scalar = &subject->scalar;
   const char *number = n == 1 ? strchr(state->file, '_') : NULL;
   const int digits = number ? (int)strcspn(number, ".") : 0;
-  snprintf(name, sizeof name, "state%s_%.120s%s%.30s%.*s.png", n == 1 ? "" : "s", subject->field.name,
-           scalar->name[0] ? "_" : "", scalar->name, PetscMin(digits, 13), number ? number : "");
+  snprintf(name, sizeof name, "state%s_%.120s%s%.30s%s%.*s.png", n == 1 ? "" : "s", subject->field.name,
+           scalar->name[0] ? "_" : "", scalar->name, options->turned ? "_turned" : "", PetscMin(digits, 13),
+           number ? number : "");
   plot_file_name(name);
   if (options->out) snprintf(path, PETSC_MAX_PATH_LEN, "%s", options->out);
   else snprintf(path, PETSC_MAX_PATH_LEN, "%s/pictures/%s", options->run, name);

@@ -87,6 +87,19 @@ static void judge_pace(VerifyRow *rows, PetscInt k)
   if (other && !r->shared && !other->shared && other->seconds > 0) r->pace = r->seconds / other->seconds;
 }
 
+static void judge_powers(VerifyRow *rows, PetscInt k)
+{
+  VerifyRow *r = &rows[k];
+  for (PetscInt i = 0; i < r->study->n_powers; ++i) {
+    const PowerSpec *power = &r->study->powers[i];
+    const PetscReal exponent = verify_exponent(rows, k, power);
+    if (!power->has_exponent || PetscIsNanReal(exponent)) continue;
+    if (power->series && strcmp(power->series, r->series->name)) continue;
+    if (!(PetscAbsReal(exponent - power->exponent) <= power->within))
+      fail(r, "exponent %.3f, expected %g within %g", (double)exponent, (double)power->exponent, (double)power->within);
+  }
+}
+
 static PetscReal reported(const VerifyRow *r, const char *name)
 {
   const RunSummary *s = &r->summary;
@@ -127,6 +140,7 @@ void verify_judge(VerifyRow *rows, PetscInt k)
   judge_reference(r);
   judge_order(r, before);
   judge_agreement(rows, k);
+  judge_powers(rows, k);
   judge_pace(rows, k);
   judge_limits(r);
 }

@@ -110,6 +110,11 @@ static void write_study(FILE *out, const Verification *v, PetscInt first, PetscI
   for (PetscInt i = 0; i < study->n_agree; ++i)
     fprintf(out, "- `%s` must agree with `%s` to %g (column *apart*).\n", study->agree[i].series, study->agree[i].with,
             (double)study->agree[i].tolerance);
+  for (PetscInt i = 0; i < study->n_powers; ++i) {
+    char text[512];
+    verify_power_text(v->rows, first, last, &study->powers[i], text);
+    if (text[0]) fprintf(out, "- %s.\n", text);
+  }
   for (PetscInt i = 0; i < study->n_limits; ++i)
     fprintf(out, "- Limit: %s at most %g.\n", study->limits[i].name, (double)study->limits[i].value);
   if (figures && study->figure != VERIFY_FIGURE_NONE) fprintf(out, "\n![%s](%s.png)\n", study->title, study->name);

@@ -71,6 +71,12 @@ void verify_judge(VerifyRow *rows, PetscInt k);
  * shown? */
 PetscBool verify_has_errors(const StudySpec *study);
 
+/* verify_power.c: the exponent of the power law in the series of rows[k], from its rows up to this
+ * one; NaN before all rows that it is fitted to have run. */
+PetscReal verify_exponent(const VerifyRow *rows, PetscInt k, const PowerSpec *power);
+/* Its line below a table, without an end; "" if it is known of no series. */
+void verify_power_text(const VerifyRow *rows, PetscInt first, PetscInt last, const PowerSpec *power, char text[512]);
+
 /* verify_table.c: rows [first, last) are of one study. */
 void verify_table_head(FILE *out, const Verification *v, PetscInt first);
 void verify_table_row(FILE *out, const VerifyRow *r);

@@ -106,6 +106,19 @@ static const SchemaEntry agree_entries[] = {
   KEY("tolerance", NUMBER, NULL, "relative", REQUIRED, ABOVE(0), AT(AgreeSpec, tolerance)),
   {.key = NULL},
 };
+static const SchemaEntry power_entries[] = {
+  KEY("between", INTERVAL, NULL, "rows [smallest, largest] that it is fitted to", REQUIRED, AT(PowerSpec, from),
+      .second = offsetof(PowerSpec, to)),
+  KEY("offset", NUMBER, NULL, "what is taken from the measure, in its unit", .fallback = "0", AT(PowerSpec, offset)),
+  KEY("exponent", NUMBER, NULL, "what it must be", .with = "within", AT(PowerSpec, exponent),
+      GIVEN(PowerSpec, has_exponent)),
+  KEY("within", NUMBER, NULL, "how far it may be off", .with = "exponent", ABOVE(0), AT(PowerSpec, within)),
+  KEY("series", NAME, NULL, "the series that must have this exponent; default: all", AT(PowerSpec, series)),
+  {.key = NULL},
+};
+static const SchemaTable power_table = {
+  .name = "power", .help = "A power law of the rows.", .entries = power_entries, .size = sizeof(PowerSpec)};
+
 static const SchemaTable agree_table = {
   .name = "agree", .help = "Two series that must agree.", .entries = agree_entries, .size = sizeof(AgreeSpec)};
 
@@ -136,6 +149,17 @@ static void check_agree(SchemaReader *r, const StudySpec *study, const YamlNode 
     const PetscInt b = series_named(r, study, with, study->agree[k].with, PETSC_FALSE);
     if (a < 0 || b < 0 || b < a) continue;
     SchemaError(r, with, "'%s' must stand before '%s' among the series", study->agree[k].with, study->agree[k].series);
+  }
+}
+
+static void check_powers(SchemaReader *r, const StudySpec *study, const YamlNode *list)
+{
+  for (PetscInt k = 0; k < study->n_powers; ++k) {
+    const YamlNode *series = yaml_find(list->child[k], "series");
+    PetscInt n = 0;
+    if (series) series_named(r, study, series, study->powers[k].series, PETSC_FALSE);
+    for (PetscInt i = 0; i < study->n_rows; ++i) n += power_takes(&study->powers[k], &study->rows[i]);
+    if (n < 2) SchemaError(r, yaml_find(list->child[k], "between"), "a power law needs two rows above 0 between these");
   }
 }
 
@@ -199,6 +223,7 @@ static PetscErrorCode CheckStudy(SchemaReader *r, const YamlNode *mapping, void 
   } else if (study->figure == VERIFY_FIGURE_CONVERGENCE)
     SchemaError(r, yaml_find(mapping, "figure"), "a figure of convergence needs `exact`");
   check_agree(r, study, yaml_find(mapping, "agree"));
+  check_powers(r, study, yaml_find(mapping, "powers"));
   check_pace(r, study, yaml_find(mapping, "pace"));
   check_limits(r, yaml_find(mapping, "limits"));
   PetscFunctionReturn(0);
@@ -239,6 +264,8 @@ static const SchemaEntry study_entries[] = {
       GIVEN(StudySpec, has_exact)),
   KEY("agree", LIST, NULL, "series that must agree", .table = &agree_table, AT(StudySpec, agree),
       .count = offsetof(StudySpec, n_agree)),
+  KEY("powers", LIST, NULL, "power laws of the rows", .table = &power_table, AT(StudySpec, powers),
+      .count = offsetof(StudySpec, n_powers)),
   KEY("limits", NUMBERS, NULL, "what the numbers of a run may not exceed", AT(StudySpec, limits),
       .count = offsetof(StudySpec, n_limits)),
   KEY("figure", WORD, NULL, "picture of the study", .words = figures, .fallback = "none", AT(StudySpec, figure)),

@@ -62,6 +62,15 @@ typedef struct {
   PetscReal tolerance; /* relative */
 } AgreeSpec;
 
+/* A power law: how value - offset grows with the variable, by least squares of the logarithms. */
+typedef struct {
+  PetscReal from, to; /* rows of the sweep that it is fitted to */
+  PetscReal offset;   /* of the measure */
+  PetscBool has_exponent;
+  PetscReal exponent, within;
+  char *series; /* the one that must have the exponent; NULL: all */
+} PowerSpec;
+
 typedef struct {
   char *name, *symbol, *unit;
   SettingList set; /* $symbol stands for the value */
@@ -99,6 +108,8 @@ typedef struct {
   ExactSpec exact;
   PetscInt n_agree;
   AgreeSpec *agree;
+  PetscInt n_powers;
+  PowerSpec *powers;
   PetscInt n_limits;
   NamedValue *limits; /* of report_numbers */
   VerifyFigure figure;
@@ -125,4 +136,6 @@ PetscReal reference_exact(const StudySpec *study, const SeriesSpec *series);
 PetscReal reference_tolerance(const StudySpec *study, const RowSpec *row, const SeriesSpec *series);
 /* The nearest source: the row's, the series', the study's; NULL if there is none. */
 const Source *reference_source(const StudySpec *study, const RowSpec *row, const SeriesSpec *series);
+/* Is the power law fitted to this row? */
+PetscBool power_takes(const PowerSpec *power, const RowSpec *row);
 PetscInt reference_series(const StudySpec *study, const char *name); /* index, -1: none */

@@ -86,6 +86,11 @@ void verify_table_foot(FILE *out, const Verification *v, PetscInt first, PetscIn
     passed += v->rows[k].pass ? 1 : 0;
   }
   for (PetscInt i = 0; i < study->n_agree; ++i) write_agreement(out, v, first, last, &study->agree[i]);
+  for (PetscInt i = 0; i < study->n_powers; ++i) {
+    char text[512];
+    verify_power_text(v->rows, first, last, &study->powers[i], text);
+    if (text[0]) fprintf(out, "  %s\n", text);
+  }
   fprintf(out, "  %d of %d rows pass, %.1f s\n", (int)passed, (int)(last - first), (double)seconds);
   fflush(out);
 }

@@ -335,6 +335,9 @@ static const Bad bads[] = {
    "kinematics: plane-strain\nmethod: mpm\nanalysis: {type: static, until: [{measure: energy}]}\n"
    "measures: {energy: {energy: kinetic}}\n",
    {"analysis.until[0] needs one of 'below', 'above' or 'count'"}},
+  {"a share beyond the surface's front",
+   PLAIN "measures: {a: {run_out_time: {max: x, speed: 1, front: surface, beyond: 0.1}}}\n",
+   {"measures.a.run_out_time.beyond", "the surface"}},
   {"front without a speed", PLAIN "measures: {a: {run_out_time: {max: x}}}\n", {"speed"}},
   {"speed of nothing",
    PLAIN "measures: {a: {run_out_time: {max: x, speed: 0}}}\n",

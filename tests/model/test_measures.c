@@ -83,6 +83,33 @@ static void test_inner_extent(void **state)
   CALL(ModelDestroy(&m));
 }
 
+/* A disc of radius 1 and thickness 1, 4 x 4 cells with 4 points each, all round: the mass of a
+ * column of points goes with its radius. Within which one all but a share of it lie is told by
+ * adding up from outside. */
+static void test_inner_extent_of_rings(void **state)
+{
+  PetscReal radius[8], total = 0;
+  Bench b;
+  (void)state;
+  bench_init(&b, "mpm", CELL_QUADRILATERAL, 4);
+  b.c.kinematics = &kinematics_axisymmetric;
+  b.body[0].points_per_cell = 4;
+  bench_motion(&b, 1, 0, MOTION_FIXED, 7);
+  Model *m = bench_model(&b, PETSC_COMM_WORLD);
+  for (int k = 0; k < 8; ++k) {
+    radius[k] = 0.25 * (k / 2 + 0.5 + (k % 2 ? 0.5 : -0.5) / PetscSqrtReal(3));
+    total += radius[k];
+  }
+  for (PetscReal beyond = 0.001; beyond < 1; beyond += 0.0173) {
+    const MeasureSpec spec = {.kind = "extent", .maximum = PETSC_TRUE, .beyond = beyond};
+    PetscReal outside = 0;
+    int k = 7;
+    while (outside + radius[k] <= beyond * total) outside += radius[k--];
+    CHECK_CLOSE(measure(m, &spec, 0), radius[k], 1e-9);
+  }
+  CALL(ModelDestroy(&m));
+}
+
 /* A block is thrown along x and stopped by a prescribed amplitude: all its nodes move with v = 1
  * m/s until 0.1 s, then slow down linearly to rest at 0.2 s. Its front is slower than 0.25 m/s from
  * 0.175 s on. */
@@ -100,15 +127,18 @@ static void test_run_out_time(void **state)
     motion->on.min[1] = -1, motion->on.max[1] = 2;
     motion->value[0] = 1;
     motion->amplitude = (Amplitude){.n = 3, .time = time, .value = value};
-    b.c.n_measures = 3;
+    b.c.n_measures = 4;
     b.measure[0] = (MeasureSpec){.name = "right", .kind = "run_out_time", .maximum = PETSC_TRUE, .speed = 0.25};
     b.measure[1] = (MeasureSpec){.name = "left", .kind = "run_out_time", .speed = 0.25, .body = "body"};
     b.measure[2] = b.measure[0];
     b.measure[2].front = FRONT_SURFACE;
+    b.measure[3] = b.measure[0];
+    b.measure[3].beyond = 0.3; /* of a block that moves as one this place stops with the others */
     Model *m = bench_model(&b, PETSC_COMM_WORLD);
     CHECK(measure(m, &b.measure[0], 0) == 0, "it moved before the start");
     while (m->time < 0.3 - 1e-9) model_step(m, 0.3 - m->time);
     CHECK_CLOSE(measure(m, &b.measure[0], 0), 0.175, 5e-3 + 1e-9);
+    CHECK_CLOSE(measure(m, &b.measure[3], 3), 0.175, 5e-3 + 1e-9);
     CHECK(measure(m, &b.measure[1], 1) == 0, "the left side does not advance to the left");
     if (!k) CHECK_CLOSE(measure(m, &b.measure[2], 2), 0.175, 0.03);
     CALL(ModelDestroy(&m));
@@ -433,12 +463,19 @@ static void test_roughness(void **state)
 int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {
-    cmocka_unit_test(test_surface_of_a_triangle), cmocka_unit_test(test_inner_extent),
-    cmocka_unit_test(test_run_out_time),          cmocka_unit_test(test_volume_ratio),
-    cmocka_unit_test(test_elastic_balance),       cmocka_unit_test(test_plastic_balance),
-    cmocka_unit_test(test_shear_dissipation),     cmocka_unit_test(test_static_work),
-    cmocka_unit_test(test_impact_is_told),        cmocka_unit_test(test_removed_points),
-    cmocka_unit_test(test_ranks_agree),           cmocka_unit_test(test_roughness),
+    cmocka_unit_test(test_surface_of_a_triangle),
+    cmocka_unit_test(test_inner_extent),
+    cmocka_unit_test(test_inner_extent_of_rings),
+    cmocka_unit_test(test_run_out_time),
+    cmocka_unit_test(test_volume_ratio),
+    cmocka_unit_test(test_elastic_balance),
+    cmocka_unit_test(test_plastic_balance),
+    cmocka_unit_test(test_shear_dissipation),
+    cmocka_unit_test(test_static_work),
+    cmocka_unit_test(test_impact_is_told),
+    cmocka_unit_test(test_removed_points),
+    cmocka_unit_test(test_ranks_agree),
+    cmocka_unit_test(test_roughness),
   };
   return run_model_tests(argc, argv, tests);
 }

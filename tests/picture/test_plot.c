@@ -283,6 +283,45 @@ static void test_state_in_space(void **state)
   TestRemove(folder);
 }
 
+/* Each mistake has its word, and there is no picture. */
+static void Refused(const PlotOptions *options, const char *word)
+{
+  char picture[PETSC_MAX_PATH_LEN];
+  char *text = Plot(options, picture);
+  assert_non_null(strstr(text, word));
+  assert_string_equal(picture, "");
+  free(text);
+}
+
+/* Both sides of the axis make a picture twice as wide; the body in space is asked for. */
+static void test_body_of_revolution(void **state)
+{
+  char folder[64], path[128], picture[PETSC_MAX_PATH_LEN];
+  int width, height[3];
+  (void)state;
+  TestFolder(folder);
+  WriteState(folder, 2, 0, 0);
+  WriteState(folder, 2, 1, 0.5);
+  WriteGrid(folder);
+  PlotOptions options = {.run = folder, .field = "stress", .component = "xx", .turned = PETSC_TRUE, .up = 2};
+  Refused(&options, "is no axisymmetric run: there is nothing to turn");
+  snprintf(path, sizeof path, "%s/case.yaml", folder);
+  FILE *out = fopen(path, "w");
+  assert_true(fputs("kinematics: axisymmetric\n", out) >= 0 && !fclose(out));
+  for (int k = 0; k < 3; ++k) {
+    options.half = k == 1, options.turned = k == 2, options.grid = k < 2;
+    options.width = 900;
+    char *text = Plot(&options, picture);
+    assert_string_equal(text, "");
+    assert_non_null(
+      strstr(picture, k == 2 ? "/pictures/state_stress_xx_turned_000001.png" : "/pictures/state_stress_xx_000001.png"));
+    assert_true(CheckPng(picture, &width, &height[k]) > 5000 && width == 900);
+    free(text);
+  }
+  assert_true(height[0] < height[1] - 100);
+  TestRemove(folder);
+}
+
 static void test_histories(void **state)
 {
   const char *const names[] = {"tip of/beam", "mass", "gone"}, *const units[] = {"m", "kg", "m"};
@@ -310,16 +349,6 @@ static void test_histories(void **state)
   assert_false(TestExists(folder, "pictures/history_gone.png"));
   free(text);
   TestRemove(folder);
-}
-
-/* Each mistake has its word, and there is no picture. */
-static void Refused(const PlotOptions *options, const char *word)
-{
-  char picture[PETSC_MAX_PATH_LEN];
-  char *text = Plot(options, picture);
-  assert_non_null(strstr(text, word));
-  assert_string_equal(picture, "");
-  free(text);
 }
 
 static void test_mistakes(void **state)
@@ -413,9 +442,9 @@ static int Tests(void)
                                      cmocka_unit_test(test_raster_depth),   cmocka_unit_test(test_raster_gap),
                                      cmocka_unit_test(test_several_states), cmocka_unit_test(test_scalars),
                                      cmocka_unit_test(test_units),          cmocka_unit_test(test_state_in_the_plane),
-                                     cmocka_unit_test(test_state_in_space), cmocka_unit_test(test_histories),
-                                     cmocka_unit_test(test_mistakes),       cmocka_unit_test(test_no_gnuplot),
-                                     cmocka_unit_test(test_convergence)};
+                                     cmocka_unit_test(test_state_in_space), cmocka_unit_test(test_body_of_revolution),
+                                     cmocka_unit_test(test_histories),      cmocka_unit_test(test_mistakes),
+                                     cmocka_unit_test(test_no_gnuplot),     cmocka_unit_test(test_convergence)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
 

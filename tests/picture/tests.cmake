@@ -1,2 +1,3 @@
 talus_test(picture/test_plot TIMEOUT 300)
 talus_test(picture/test_damage)
+talus_test(picture/test_turned)

@@ -42,6 +42,10 @@ for picture in $(sed -n 's/^picture = //p' out.txt); do
 done
 expect "plot of an unknown field" 2 "$talus" plot run --field stres
 says err.txt "stres" "stress"
+expect "plot of a plane run turned" 2 "$talus" plot run --turned
+says err.txt "'run' is no axisymmetric run: there is nothing to turn"
+expect "plot of half and whole" 2 "$talus" plot run --half --turned
+says err.txt "a picture shows the one or the other"
 expect "plot of nothing" 2 "$talus" plot nowhere
 says err.txt "there is no run directory 'nowhere'"
 

@@ -169,6 +169,9 @@ static void mistakes_have_places(void **state)
     {16, "    exact: {value: 1, order: 2}", ":16:23: error:", "'between'"},
     {16, "", ":19:13: error:", "needs `exact`"},
     {17, "    agree: [{series: fem, with: mpm, tolerance: 1}]", ":17:33: error:", "must stand before 'fem'"},
+    {18, "    powers: [{between: [2, 4], series: mpn}]", ":18:40: error:", "did you mean 'mpm'?"},
+    {18, "    powers: [{between: [3, 4]}]", ":18:24: error:", "two rows above 0 between these"},
+    {18, "    powers: [{between: [2, 4], exponent: 1}]", ":18:32: error:", "'within'"},
     {18, "    limits: {iteration: 7}", ":18:14: error:", "did you mean 'iterations'?"},
     {19, "    figure: convergance", ":19:13: error:", "did you mean 'convergence'?"},
     {19, "    figure: [", ": error:", ""},
@@ -411,6 +414,48 @@ static void judges_orders(void **state)
   }
 }
 
+/* (value - 5) goes with x^p by least squares: p from the covariance of the logarithms. Rows at 1, 2,
+ * 4 and, not fitted, 64. */
+static void judges_powers(void **state)
+{
+  static const struct {
+    PetscReal at_1, at_2, at_4, exponent, within;
+    char *series;
+    PetscBool pass;
+    PetscReal observed;
+  } table[] = {{1, 2, 4, 1, 0.01, NULL, PETSC_TRUE, 1},     {3, 12, 48, 1, 0.01, NULL, PETSC_FALSE, 2},
+               {3, 12, 48, 2, 0.01, name_a, PETSC_TRUE, 2}, {3, 12, 48, 1, 0.01, name_b, PETSC_TRUE, 2},
+               {4, 2, 1, -1, 0.01, NULL, PETSC_TRUE, -1},   {1, 7, 4, 1, 0.01, NULL, PETSC_TRUE, 1},
+               {1, 2, 4, 1.2, 0.19, NULL, PETSC_FALSE, 1},  {1, 2, 4, 1.2, 0.21, NULL, PETSC_TRUE, 1},
+               {1, 2, 4, 0.8, 0.19, NULL, PETSC_FALSE, 1},  {1, 1, 2, 0.5, 0.01, NULL, PETSC_TRUE, 0.5},
+               {1, 2, -1, 1, 2, NULL, PETSC_FALSE, -500},   {1, 2, 0, 1, 2, NULL, PETSC_FALSE, -500}};
+  (void)state;
+  for (size_t k = 0; k < sizeof table / sizeof *table; ++k) {
+    RowSpec row[4] = {{.x = 1}, {.x = 2}, {.x = 4}, {.x = 64}};
+    PowerSpec power = {.from = 1, .to = 4, .offset = 5, .has_exponent = PETSC_TRUE, .series = table[k].series};
+    power.exponent = table[k].exponent, power.within = table[k].within;
+    const StudySpec study = {
+      .n_series = 1, .series = abc, .n_rows = 4, .rows = row, .n_powers = 1, .powers = &power, .measure = name_a};
+    const PetscReal values[] = {table[k].at_1, table[k].at_2, table[k].at_4, 1e5};
+    VerifyRow rows[4];
+    char text[512];
+    for (int i = 0; i < 4; ++i) {
+      rows[i] = (VerifyRow){.study = &study, .series = abc, .row = &row[i], .result = RUN_DONE, .value = 5 + values[i]};
+      verify_judge(rows, i);
+      const PetscReal found = verify_exponent(rows, i, &power);
+      assert_true(i == 2 ? fabs(found - table[k].observed) < 1e-12 || (table[k].observed < -400 && found < -100)
+                         : PetscIsNanReal(found));
+      assert_true(i == 2 || rows[i].pass);
+    }
+    if (rows[2].pass != table[k].pass) print_error("power %d: %s\n", (int)k, rows[2].why);
+    assert_true(rows[2].pass == table[k].pass);
+    verify_power_text(rows, 0, 2, &power, text);
+    assert_string_equal(text, "");
+    rows[1].result = RUN_GAVE_UP; /* not known any more */
+    assert_true(PetscIsNanReal(verify_exponent(rows, 2, &power)));
+  }
+}
+
 static void judges_pace(void **state)
 {
   (void)state;
@@ -467,6 +512,7 @@ int main(int argc, char **argv)
     cmocka_unit_test(judges_distances),
     cmocka_unit_test(judges_every_limit),
     cmocka_unit_test(judges_orders),
+    cmocka_unit_test(judges_powers),
     cmocka_unit_test(judges_pace),
     cmocka_unit_test(record_replaces_one_section),
   };

@@ -35,11 +35,11 @@ static const SchemaTable of = {
   KEY("max", AXIS, NULL, what "largest coordinate along this axis", TAG(1), AT(MeasureSpec, component)), \
     KEY("min", AXIS, NULL, what "smallest coordinate along this axis", TAG(0), AT(MeasureSpec, component))
 
+#define BEYOND(what) KEY("beyond", NUMBER, NULL, what, .fallback = "0", BETWEEN(0, 1), AT(MeasureSpec, beyond))
+
 static const SchemaEntry extent_entries[] = {
   SIDES(""),
-  KEY("beyond", NUMBER, NULL,
-      "share of the mass that may lie beyond: 0 is the farthest point, 0.01 the place within which 99 % are",
-      .fallback = "0", BETWEEN(0, 1), AT(MeasureSpec, beyond)),
+  BEYOND("share of the mass that may lie beyond: 0 is the farthest point, 0.01 the place within which 99 % are"),
   {.key = NULL},
 };
 static const SchemaTable extent = {.name = "extent",
@@ -53,6 +53,7 @@ static const SchemaEntry run_out_entries[] = {
   KEY("speed", NUMBER, "m/s", "a front that advances more slowly has come to rest", REQUIRED, ABOVE(0),
       AT(MeasureSpec, speed)),
   KEY("front", WORD, NULL, "what is farthest", .words = front_words, .fallback = "points", AT(MeasureSpec, front)),
+  BEYOND("share of the mass that the front of points leaves beyond: 0.01 follows the place within which 99 % are"),
   {.key = NULL},
 };
 static const SchemaTable run_out = {
@@ -220,6 +221,9 @@ static void check_front(SchemaReader *r, const YamlNode *mapping, const MeasureS
   if (r->dim == 3) SchemaError(r, front, "%s.%s.front: a free surface is known in 2D only", path, m->kind);
   else if (!m->maximum || m->component)
     SchemaError(r, front, "%s.%s.front: the surface's front is max: x", path, m->kind);
+  if (m->beyond > 0)
+    SchemaError(r, yaml_find(yaml_find(mapping, m->kind), "beyond"),
+                "%s.%s.beyond means nothing to the front of the surface", path, m->kind);
 }
 
 /* Round the circle radial momenta add up to nothing. */

@@ -1,0 +1,71 @@
+/* From the balls of a frame to an image of colours. */
+#include <math.h>
+#include "picture/plot_raster.h"
+#include "picture/plot_scene.h"
+#include "picture/revolution/revolution.h"
+
+/* Pixels along a section that is turned: more are of no use. */
+#define SECTION_PIXELS 2000
+
+static PetscErrorCode Balls(const PlotScene *scene, const PlotFrame *f, RasterScene *raster, unsigned char *rgba)
+{
+  const PetscReal span = scene->high - scene->low;
+  PetscReal *colour;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(f->n, &colour));
+  for (PetscInt i = 0; i < f->n; ++i) colour[i] = (f->value[i] - scene->low) / span;
+  raster->n = f->n;
+  raster->x = f->x, raster->radius = f->radius, raster->value = colour;
+  raster->gap = scene->gap;
+  PetscCall(RasterDraw(raster, rgba));
+  PetscCall(PetscFree(colour));
+  PetscFunctionReturn(0);
+}
+
+/* The section as a flat image with air around it, then turned. */
+static PetscErrorCode Turned(const PlotScene *scene, const PlotFrame *f, const PlotPage *page, unsigned char *rgba)
+{
+  const PetscReal *min = scene->box_min, *max = scene->box_max, air = scene->gap;
+  const PetscReal wide = max[0] - min[0] + 2 * air, high = max[1] - min[1] + 2 * air;
+  const PetscReal pixel = PetscMax((page->max[0] - page->min[0]) / page->w, PetscMax(wide, high) / SECTION_PIXELS);
+  RasterScene flat = {.min = {min[0] - air, min[1] - air},
+                      .width = PetscMax((int)ceil(wide / pixel), 2),
+                      .height = PetscMax((int)ceil(high / pixel), 2)};
+  TurnedScene turned = {.section_width = flat.width,
+                        .section_height = flat.height,
+                        .section_min = {flat.min[0], flat.min[1]},
+                        .pixel = pixel,
+                        .smooth = 0.35 * scene->gap,
+                        .min = {page->min[0], page->min[1]},
+                        .max = {page->max[0], page->max[1]},
+                        .width = page->w,
+                        .height = page->h};
+  unsigned char *section;
+
+  PetscFunctionBeginUser;
+  flat.max[0] = flat.min[0] + flat.width * pixel, flat.max[1] = flat.min[1] + flat.height * pixel;
+  plot_project(scene, (PetscReal[]){1, 0, 0}, turned.x);
+  plot_project(scene, (PetscReal[]){0, 1, 0}, turned.y);
+  plot_project(scene, (PetscReal[]){0, 0, 1}, turned.z);
+  PetscCall(PetscMalloc1((size_t)flat.width * (size_t)flat.height * 4, &section));
+  PetscCall(Balls(scene, f, &flat, section));
+  turned.section = section;
+  PetscCall(TurnedDraw(&turned, rgba));
+  PetscCall(PetscFree(section));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode PlotImage(const PlotScene *scene, const PlotFrame *f, const PlotPage *page, unsigned char *rgba)
+{
+  RasterScene raster = {.shaded = scene->dim == 3,
+                        .min = {page->min[0], page->min[1]},
+                        .max = {page->max[0], page->max[1]},
+                        .width = page->w,
+                        .height = page->h};
+
+  PetscFunctionBeginUser;
+  if (scene->turned) PetscCall(Turned(scene, f, page, rgba));
+  else PetscCall(Balls(scene, f, &raster, rgba));
+  PetscFunctionReturn(0);
+}
