@@ -13,7 +13,7 @@
 #include "material/principal.h"
 #include "material/shape.h"
 
-enum { FRICTION, DILATANCY, COHESION, CUTOFF };
+enum { FRICTION, DILATANCY, COHESION, CUTOFF, MEMORY };
 
 #define N_STATE MC_STATE
 #define NO_CUTOFF 1e300
@@ -34,6 +34,9 @@ LANES_INLINE void trial_lanes(PetscInt n, const PetscReal *dF, const PetscReal *
   t->flow = before[6];
   lanes_det(f, &t->det);
   lanes_push_forward(f, before, t->b);
+  Lanes together;
+  mc_reopen(&before[7], &together);
+  for (int k = 0; k < 6; ++k) t->b[k] *= together;
   for (int k = 0; k < 6; ++k) {
     lanes_abs(&t->b[k], &size);
     sum += size;
@@ -116,6 +119,7 @@ LANES_INLINE LawStatus update_lanes(const PetscReal *p, PetscInt n, const PetscR
   mc_return_lanes(p, t.strain, principal, &regions);
   state_lanes(p, &t, principal, &regions, now, &flow);
   now[6] = t.flow + flow;
+  mc_opening(p, &regions, t.strain, principal, &now[7]);
   lanes_principal_tensor(principal, t.basis, stress);
   lanes_store(N_STATE, n, now, state);
   lanes_store(6, n, stress, tau);
@@ -206,7 +210,7 @@ static PetscBool initial_stress(const PetscReal *p, const PetscReal sigma[6], Pe
   mc_compliance(p, tau, e);
   for (int a = 0; a < 3; ++a) e[a] = exp(2.0 * e[a]);
   principal_tensor(e, basis, state);
-  state[6] = 0.0;
+  state[6] = state[7] = 0.0;
   return PETSC_TRUE;
 }
 
@@ -234,6 +238,7 @@ static void prepare(const Elasticity *elastic, const PetscReal *given, PetscReal
   p[MC_Q] = 2.0 * given[COHESION] * sqrt(k);
   p[MC_CUT] = given[CUTOFF] < NO_CUTOFF && (k - 1.0) * given[CUTOFF] < p[MC_Q] ? given[CUTOFF] : INFINITY;
   for (int i = 0; i < 3; ++i) p[MC_R0 + i] = r[i] / (k * r[0] - r[2]);
+  p[MC_MEMORY] = given[MEMORY];
   p[MC_NOISE] = 4.0 * PETSC_MACHINE_EPSILON * (k + 1.0) * (lambda + 2.0 * mu);
 }
 
@@ -250,12 +255,14 @@ static const LawParameter parameters[] = {
   {"cohesion", "Pa", "cohesion", 0, PETSC_MAX_REAL, .fallback = NAN},
   {"tension_cutoff", "Pa", "largest principal tension; 1e300: none but the apex", 0, PETSC_MAX_REAL,
    .fallback = NO_CUTOFF},
+  {"opening_memory", "", "1: grains that came apart bear again when they have come together", 0, 1, .fallback = 0},
   {.name = NULL},
 };
 
 static const LawField fields[] = {
   {"elastic_strain", "", "elastic left Cauchy-Green tensor b", 6, {1, 1, 1, 0, 0, 0}},
   {"equivalent_plastic_strain", "", "sum of |d eps^p| / sqrt(1 + m^2)", 1, {0}},
+  {"opening", "", "ln of the volume by which grains are apart", 1, {0}},
   {.name = NULL},
 };
 

@@ -3,7 +3,7 @@
 #include "material/mohr_coulomb/mohr_coulomb_return.h"
 #include "material/principal_lanes.h"
 
-#define MC_STATE 7 /* b^e, equivalent plastic strain */
+#define MC_STATE 8 /* b^e, equivalent plastic strain, opening */
 
 /* Stresses on the surface or inside. Most points that flow are on the shear plane: that return is
  * made here, others point by point. */
@@ -62,4 +62,22 @@ LANES_INLINE void mc_difference_lanes(const PetscReal *p, const LaneBits *elasti
   lanes_select(&less, &slope, &full, r);
   lanes_select(&equal, &none, r, r);
   lanes_select(elastic, &full, r, r);
+}
+
+/* Factor of b^e that lets grains that came apart come together again before they bear. */
+LANES_INLINE void mc_reopen(const Lanes *opening, Lanes *factor)
+{
+  const Lanes twice = (2.0 / 3.0) * *opening;
+  lanes_exp(&twice, factor);
+}
+
+/* What is left open: of points at the apex all volume beyond its own. */
+LANES_INLINE void mc_opening(const PetscReal *p, const LaneBits *regions, const Lanes strain[3], const Lanes tau[3],
+                             Lanes *opening)
+{
+  const Lanes none = {0};
+  const Lanes gap = p[MC_MEMORY] * (strain[0] + strain[1] + strain[2] -
+                    (tau[0] + tau[1] + tau[2]) / (3.0 * p[MC_LAMBDA] + 2.0 * p[MC_MU]));
+  const LaneBits apex = ((*regions == MC_APEX) | (*regions == MC_CUT_APEX)) & (gap > 0.0);
+  lanes_select(&apex, &gap, &none, opening);
 }

@@ -32,6 +32,9 @@ LANES_INLINE PetscBool mc_plane_push(const PetscBool hoop, PetscInt n, const Pet
   t->b[1] = y0 * f[3] + y1 * f[4];
   t->b[2] = hoop ? f[8] * f[8] * old[2] : old[2];
   t->b[3] = x0 * f[3] + x1 * f[4];
+  Lanes together;
+  mc_reopen(&old[7], &together);
+  for (int k = 0; k < 4; ++k) t->b[k] *= together;
   t->det = f[0] * f[4] - f[1] * f[3];
   if (hoop) t->det *= f[8];
   return PETSC_TRUE;
@@ -123,7 +126,7 @@ LANES_INLINE void mc_plane_state(const PetscReal *p, const PlaneTrial *t, const 
   const LaneBits plastic = *regions != MC_ELASTIC;
   Lanes stretch2[3], b[4], norm2 = none, flow;
   for (int k = 0; k < 4; ++k) state[k] = t->b[k];
-  state[4] = state[5] = none;
+  state[4] = state[5] = state[7] = none;
   if (!lanes_any(&plastic)) return;
   for (int a = 0; a < 3; ++a) {
     const Lanes elastic = (tau[a] - share) / (2.0 * p[MC_MU]), twice = 2.0 * elastic;
@@ -135,6 +138,7 @@ LANES_INLINE void mc_plane_state(const PetscReal *p, const PlaneTrial *t, const 
   lanes_sqrt(&norm2, &norm2);
   lanes_select(&plastic, &norm2, &none, &flow);
   state[6] += flow;
+  mc_opening(p, regions, t->strain, tau, &state[7]);
   for (int k = 0; k < 4; ++k) lanes_select(&plastic, &b[k], &state[k], &state[k]);
 }
 

@@ -35,6 +35,7 @@ enum {
   MC_R1,
   MC_R2,
   MC_NOISE, /* rounding of f at small strains, Pa */
+  MC_MEMORY, /* 1: openings are remembered */
   MC_N_PARAMETERS
 };
 
