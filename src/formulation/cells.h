@@ -6,11 +6,11 @@
 
 /* What one cell gathers before it is scattered. */
 typedef struct {
-  PetscReal du[3 * CELL_MAX_NODES];                 /* nn x dim */
-  PetscReal a[3 * CELL_MAX_NODES];                  /* dim rows, effective acceleration */
-  PetscReal f[3 * CELL_MAX_NODES];                  /* dim rows */
-  PetscReal M[CELL_MAX_NODES * CELL_MAX_NODES];     /* nn rows */
-  PetscReal K[9 * CELL_MAX_NODES * CELL_MAX_NODES]; /* nn x dim x dim rows */
+  PetscReal du[3 * CELL_MAX_NODES];                   /* nn x dim */
+  PetscReal a[3 * CELL_MAX_NODES];                    /* dim rows, effective acceleration */
+  PetscReal f[3 * CELL_MAX_NODES];                    /* dim rows */
+  PetscReal M[(CELL_MAX_NODES + 1) * CELL_MAX_NODES]; /* nn rows, and one of lumped masses */
+  PetscReal K[9 * CELL_MAX_NODES * CELL_MAX_NODES];   /* nn x dim x dim rows */
 } CellWork;
 
 KERNEL const PetscInt *cell_nodes(const WeakFormInput *in, PetscInt group)
@@ -34,7 +34,7 @@ KERNEL void cell_load(const int dim, const int nn, const WeakFormInput *in, Pets
     for (int d = 0; d < dim; ++d)
       w->a[d * width + I] = in->inertia * w->du[I * dim + d] + in->history[node[I] * dim + d];
   for (int i = 0; i < dim * width; ++i) w->f[i] = 0;
-  for (int i = 0; i < nn * width; ++i) w->M[i] = 0;
+  for (int i = 0; i < (nn + 1) * width; ++i) w->M[i] = 0;
   for (int i = 0; i < dim * dim * nn * width; ++i) w->K[i] = 0;
 }
 
@@ -58,7 +58,9 @@ KERNEL void cell_close(const int dim, const int nn, const WeakFormInput *in, Pet
 {
   const int width = row_width(nn);
   if (in->soft && in->soft[group] > 0) cell_soften(dim, nn, in->soft[group], tangent, w);
-  if (in->tie && in->tie[group] > 0) add_tie(dim, nn, in->tie[group], w->a, w->f, w->M);
+  add_lumped_mass(nn, w->M);
+  if (in->tie && in->tie[group] > 0) add_tie(nn, in->tie[group], w->M);
+  add_inertia_force(dim, nn, w->M, w->a, w->f);
   for (int I = 0; tangent && I < nn; ++I)
     for (int d = 0; d < dim; ++d) row_add(nn, in->inertia, w->M + I * width, w->K + ((I * dim + d) * dim + d) * width);
 }
@@ -69,26 +71,36 @@ KERNEL void cell_give_force(const int dim, const int nn, const PetscInt *node, c
     for (int d = 0; d < dim; ++d) force[node[I] * dim + d] += w->f[d * row_width(nn) + I];
 }
 
-/* dF of the points of a batch, and where `pressure` is the unknown pressure there. */
+/* sum_I N_I x_I, x every `stride`-th number. */
+KERNEL PetscReal node_mean(const int nn, const PetscReal *N, const int stride, const PetscReal *x)
+{
+  PetscReal sum = 0;
+  for (int I = 0; I < nn; ++I) sum += N[I] * x[I * stride];
+  return sum;
+}
+
+/* dF of the points of a batch, and where `pressure` is the unknown pressure there. In triangles and
+ * tetrahedra it is that of the cell's first point, but for the hoop. */
 KERNEL void batch_increments(const int dim, const int nn, const PetscBool hoop, const PetscBool pressure,
                              const WeakFormInput *in, Batch *b)
 {
   const Support *support = in->support;
-  PetscReal du[3 * CELL_MAX_NODES], at_node[CELL_MAX_NODES];
+  PetscReal du[3 * CELL_MAX_NODES] = {0}, at_node[CELL_MAX_NODES] = {0}, dF[9] = {0};
   PetscInt group = -1, next = b->group, offset = 0;
 
   for (PetscInt k = 0, p = b->first; k < b->n; ++k, ++p) {
+    PetscBool another = nn != dim + 1;
     while (group < 0 || p >= support->point_start[group + 1]) {
       group = next++;
+      another = PETSC_TRUE;
       offset = support->value_start[group] - support->point_start[group] * nn;
       cell_motion(dim, nn, in, group, du);
       for (int I = 0; pressure && I < nn; ++I) at_node[I] = in->pressure_scale * in->pressure[cell_nodes(in, group)[I]];
     }
     const PetscReal *N = support->N + offset + p * nn;
-    increment_rows(dim, nn, support->dN + (offset + p * nn) * dim, du, b->dF + 9 * k);
-    for (int I = 0; hoop && I < nn; ++I) b->dF[9 * k + 8] += N[I] * du[I * dim] / *point_real(in->points, POINT_X, p);
-    if (!pressure) continue;
-    b->p[k] = 0;
-    for (int I = 0; I < nn; ++I) b->p[k] += N[I] * at_node[I];
+    if (another) increment_rows(dim, nn, support->dN + (offset + p * nn) * dim, du, dF);
+    for (int i = 0; i < 9; ++i) b->dF[9 * k + i] = dF[i];
+    if (hoop) b->dF[9 * k + 8] += node_mean(nn, N, 2, du) / *point_real(in->points, POINT_X, p);
+    if (pressure) b->p[k] = node_mean(nn, N, 1, at_node);
   }
 }

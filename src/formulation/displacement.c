@@ -5,6 +5,7 @@
  * gathers is scattered once. */
 #include "formulation/cells.h"
 #include "formulation/displacement_cloud.h"
+#include "formulation/simplex_kernels.h"
 
 KERNEL PetscBool wants_tangent(const WeakFormOutput *out) { return out->values || out->singles; }
 
@@ -14,10 +15,26 @@ KERNEL void cell_prefetch(const int dim, const int nn, const PetscInt *slot, con
   else prefetch_blocks(dim, nn, slot, out->values, sizeof(PetscReal));
 }
 
-KERNEL void cell_store(const int dim, const int nn, const WeakFormInput *in, PetscInt group, PetscInt slot, CellWork *w,
-                       WeakFormOutput *out)
+/* What one cell gathers: its own kind of sum where gradients are the same everywhere in it. */
+typedef struct {
+  CellWork cell;
+  SimplexSum simplex;
+} Work;
+
+KERNEL void work_load(const int dim, const int nn, const WeakFormInput *in, PetscInt group, Work *w)
+{
+  cell_load(dim, nn, in, group, &w->cell);
+  const PetscReal *dN = in->support->dN + in->support->value_start[group] * dim;
+  if (is_simplex(dim, nn)) simplex_begin(dim, nn, dN, w->cell.du, &w->simplex);
+}
+
+KERNEL void work_store(const int dim, const int nn, const PetscBool hoop, const WeakFormInput *in, PetscInt group,
+                       PetscInt slot, Work *work, WeakFormOutput *out)
 {
   const PetscBool tangent = wants_tangent(out);
+  CellWork *w = &work->cell;
+  if (is_simplex(dim, nn) && in->symmetric) simplex_end(dim, nn, hoop, PETSC_TRUE, tangent, &work->simplex, w->f, w->K);
+  else if (is_simplex(dim, nn)) simplex_end(dim, nn, hoop, PETSC_FALSE, tangent, &work->simplex, w->f, w->K);
   if (in->symmetric && tangent) mirror_stiffness(dim, nn, w->K);
   cell_close(dim, nn, in, group, tangent, w);
   if (out->singles) scatter_blocks(dim, nn, PETSC_TRUE, out->slot + slot, w->K, out->singles);
@@ -32,14 +49,34 @@ KERNEL LawStatus batch_update(const int dim, const int nn, const PetscBool hoop,
   return batch_law(in, tangent, b);
 }
 
-/* Points first .. first + n - 1 of the batch, all of one cell, at most RUN_POINTS. */
+KERNEL const PetscReal *shape_values(const int nn, const WeakFormInput *in, PetscInt group, PetscInt p)
+{
+  const Support *s = in->support;
+  return s->N + s->value_start[group] + (p - s->point_start[group]) * nn;
+}
+
+/* Points first .. first + n - 1 of the batch, all of one triangle or tetrahedron. */
+KERNEL void add_to_simplex(const int dim, const int nn, const PetscBool hoop, const WeakFormInput *in,
+                           PetscBool tangent, const Batch *b, PetscInt first, PetscInt n, PetscInt group, Work *w)
+{
+  const PetscReal lumping = in->lumping ? in->lumping[group] : 0;
+  for (PetscInt k = first; k < first + n; ++k) {
+    const PetscInt p = b->first + k;
+    const PetscReal *tau = b->s.tau + 6 * k, *c = b->s.c + 36 * k, volume = in->points->real[POINT_VOLUME][p];
+    PetscReal N[CELL_MAX_NODES], h[CELL_MAX_NODES];
+    row_load(nn, 1, shape_values(nn, in, group, p), N);
+    if (hoop) row_scale(nn, 1 / (b->dF[9 * k + 8] * *point_real(in->points, POINT_X, p)), N, h);
+    simplex_add(dim, hoop, tau, tangent ? c : NULL, volume, h, &w->simplex);
+    add_mass(nn, N, in->points->real[POINT_MASS][p], lumping, w->cell.M);
+  }
+}
+
+/* The same of another cell, at most RUN_POINTS. */
 KERNEL void add_points(const int dim, const int nn, const PetscBool hoop, const WeakFormInput *in, PetscBool tangent,
                        const Batch *b, PetscInt first, PetscInt n, PetscInt group, CellWork *w)
 {
   const Points *points = in->points;
-  const Support *support = in->support;
   const PetscReal lumping = in->lumping ? in->lumping[group] : 0;
-  const PetscInt offset = support->value_start[group] - support->point_start[group] * nn;
   PetscReal N[CELL_MAX_NODES];
   PointRun run;
 
@@ -48,11 +85,11 @@ KERNEL void add_points(const int dim, const int nn, const PetscBool hoop, const 
     const PetscInt k = first + i, p = b->first + k;
     const PetscReal volume = points->real[POINT_VOLUME][p], mass = points->real[POINT_MASS][p];
     const PetscReal radius = hoop ? *point_real(points, POINT_X, p) : 0;
-    row_load(nn, 1, support->N + offset + p * nn, N);
-    current_gradients(dim, nn, hoop, support->dN + (offset + p * nn) * dim, N, radius, b->dF + 9 * k, run.g[i]);
+    const PetscReal *values = shape_values(nn, in, group, p), *dN = in->support->dN + (values - in->support->N) * dim;
+    row_load(nn, 1, values, N);
+    current_gradients(dim, nn, hoop, dN, N, radius, b->dF + 9 * k, run.g[i]);
     add_internal_force(dim, nn, hoop, run.g[i], b->s.tau + 6 * k, volume, w->f);
-    add_inertia_force(dim, nn, N, w->a, mass, lumping, w->f);
-    if (tangent && in->inertia > 0) add_mass(nn, N, mass, lumping, w->M);
+    add_mass(nn, N, mass, lumping, w->M);
     run.tau[i] = b->s.tau + 6 * k;
     run.c[i] = b->s.c + 36 * k;
     run.volume[i] = volume;
@@ -67,25 +104,26 @@ KERNEL void assemble_points(const int dim, const int nn, const PetscBool hoop, c
   const Support *support = in->support;
   const PetscBool tangent = wants_tangent(out);
   PetscInt group = cells_of->first;
-  CellWork w;
+  Work w;
   Batch b;
 
-  cell_load(dim, nn, in, group, &w);
+  work_load(dim, nn, in, group, &w);
   batch_begin(cells_of, support, &b);
   while (batch_next(in, &b)) {
     if (!batch_is_good(&b, batch_update(dim, nn, hoop, in, tangent, &b), out)) return;
     for (PetscInt k = 0, run; k < b.n; k += run) {
       while (b.first + k >= support->point_start[group + 1]) {
-        cell_store(dim, nn, in, group++, slot, &w, out);
+        work_store(dim, nn, hoop, in, group++, slot, &w, out);
         slot += nn * nn;
-        cell_load(dim, nn, in, group, &w);
+        work_load(dim, nn, in, group, &w);
         if (tangent) cell_prefetch(dim, nn, out->slot + slot, out);
       }
       run = PetscMin(PetscMin(b.n - k, RUN_POINTS), support->point_start[group + 1] - (b.first + k));
-      add_points(dim, nn, hoop, in, tangent, &b, k, run, group, &w);
+      if (is_simplex(dim, nn)) add_to_simplex(dim, nn, hoop, in, tangent, &b, k, run, group, &w);
+      else add_points(dim, nn, hoop, in, tangent, &b, k, run, group, &w.cell);
     }
   }
-  cell_store(dim, nn, in, group, slot, &w, out);
+  work_store(dim, nn, hoop, in, group, slot, &w, out);
 }
 
 CELL_SIZES(SIZED_KERNELS)

@@ -259,42 +259,33 @@ KERNEL void scatter_blocks(const int dim, const int nn, const PetscBool single, 
   }
 }
 
-/* Consistent inertia and body force: f_I += m N_I ((1 - lumping) sum_J N_J a_J + lumping a_I). */
-KERNEL void add_inertia_force(const int dim, const int nn, const PetscReal *restrict N, const PetscReal *restrict a,
-                              PetscReal mass, PetscReal lumping, PetscReal *restrict f)
-{
-  const int w = row_width(nn);
-  for (int d = 0; d < dim; ++d) {
-    PetscReal mean = 0;
-    for (int I = 0; I < nn; ++I) mean += N[I] * a[d * w + I];
-    row_add(nn, mass * (1.0 - lumping) * mean, N, f + d * w);
-    if (lumping > 0)
-      for (int I = 0; I < nn; ++I) f[d * w + I] += mass * lumping * N[I] * a[d * w + I];
-  }
-}
-
-/* M is nn rows. */
+/* Mass of a point: its consistent share to M, nn rows, the lumped one to the row behind them. */
 KERNEL void add_mass(const int nn, const PetscReal *restrict N, PetscReal mass, PetscReal lumping,
                      PetscReal *restrict M)
 {
   const int w = row_width(nn);
-  for (int I = 0; I < nn; ++I) {
-    row_add(nn, mass * (1.0 - lumping) * N[I], N, M + I * w);
-    if (lumping > 0) M[I * w + I] += mass * lumping * N[I];
-  }
+  row_add(nn, mass * lumping, N, M + nn * w);
+  for (int I = 0; lumping < 1 && I < nn; ++I) row_add(nn, mass * (1.0 - lumping) * N[I], N, M + I * w);
 }
 
-/* Inertia that ties the nodes of a cell to their mean: f_I += s (a_I - mean), no force on a
- * uniform acceleration. M is nn rows. */
-KERNEL void add_tie(const int dim, const int nn, PetscReal s, const PetscReal *restrict a, PetscReal *restrict f,
-                    PetscReal *restrict M)
+/* M += its lumped row. */
+KERNEL void add_lumped_mass(const int nn, PetscReal *restrict M)
+{
+  for (int I = 0; I < nn; ++I) M[I * row_width(nn) + I] += M[nn * row_width(nn) + I];
+}
+
+/* Inertia that ties the nodes of a cell to their mean: no force on a uniform acceleration. */
+KERNEL void add_tie(const int nn, PetscReal s, PetscReal *restrict M)
+{
+  for (int I = 0; I < nn; ++I)
+    for (int J = 0; J < nn; ++J) M[I * row_width(nn) + J] += s * ((I == J) - 1.0 / nn);
+}
+
+/* Inertia and body force: f_I += sum_J M_IJ a_J. */
+KERNEL void add_inertia_force(const int dim, const int nn, const PetscReal *restrict M, const PetscReal *restrict a,
+                              PetscReal *restrict f)
 {
   const int w = row_width(nn);
-  for (int d = 0; d < dim; ++d) {
-    PetscReal mean = 0;
-    for (int I = 0; I < nn; ++I) mean += a[d * w + I] / nn;
-    for (int I = 0; I < nn; ++I) f[d * w + I] += s * (a[d * w + I] - mean);
-  }
-  for (int I = 0; I < nn; ++I)
-    for (int J = 0; J < nn; ++J) M[I * w + J] += s * ((I == J) - 1.0 / nn);
+  for (int d = 0; d < dim; ++d)
+    for (int J = 0; J < nn; ++J) row_add(nn, a[d * w + J], M + J * w, f + d * w);
 }

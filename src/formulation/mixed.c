@@ -100,7 +100,7 @@ KERNEL void add_point(const int dim, const int nn, const PetscBool hoop, const W
   row_load(nn, 1, support_N(in->support, group, p), N);
   current_gradients(dim, nn, hoop, support_dN(in->support, group, p, dim), N, radius, b->dF + 9 * k, run.g[0]);
   add_internal_force(dim, nn, hoop, run.g[0], b->s.tau + 6 * k, volume, w->u.f);
-  add_inertia_force(dim, nn, N, w->u.a, mass, lumping, w->u.f);
+  add_mass(nn, N, mass, lumping, w->u.M);
   row_add(nn, scaled * (b->s.theta[k] - b->p[k] * material->compliance), N, w->fp);
   w->hold += in->alpha / material->elastic.shear * volume;
   if (!tangent) return;
@@ -109,7 +109,6 @@ KERNEL void add_point(const int dim, const int nn, const PetscBool hoop, const W
   add_dilation(dim, nn, hoop, run.g[0], N, scaled * b->s.rate[k], w->Kpu);
   for (int I = 0; I < nn; ++I)
     row_add(nn, -scaled * in->pressure_scale * material->compliance * N[I], N, w->Kpp + I * row_width(nn));
-  if (in->inertia > 0) add_mass(nn, N, mass, lumping, w->u.M);
 }
 
 KERNEL void assemble_points(const int dim, const int nn, const PetscBool hoop, const WeakFormInput *in,
