@@ -56,7 +56,7 @@ int main(int argc, char **argv)
 {
   PetscReal until = 0.02;
   PetscInt points;
-  Pass pass;
+  Pass pass = {0};
   Model *m = NULL;
   Diag *diag;
   Case *c;

@@ -111,6 +111,7 @@ static void write_axes(FILE *out, const Figure *figure, const PetscReal min[2], 
   write_label(out, "title", figure->title);
   write_label(out, "xlabel", figure->x_label);
   write_label(out, "ylabel", figure->y_label);
+  fputs("set format '%g'\n", out); /* gnuplot's own has five decimals, in which small numbers are the same */
   if (figure->log_x) fputs("set logscale x\nset format x '%g'\n", out);
   if (figure->log_y) fputs("set logscale y\nset format y '%.0e'\n", out);
   if (figure->log_y && max[1] / min[1] < 1e3) fputs("set format y '%g'\n", out);

@@ -153,6 +153,57 @@ static void test_units(void **state)
   assert_true(figure_unit("m", 0, unit) == 1 && figure_unit("Pa", INFINITY, unit) == 1);
 }
 
+/* A gnuplot in this folder that draws with letters, into its file `text`. */
+static void LetterGnuplot(const char *folder, const char *paths)
+{
+  char path[128];
+  snprintf(path, sizeof path, "%s/gnuplot", folder);
+  FILE *out = fopen(path, "w");
+  assert_non_null(out);
+  fprintf(out, "#!/bin/sh\nPATH='%s'\n", paths);
+  fprintf(out, "sed 's,^set terminal.*,set terminal dumb 100 30,; s,^set output.*,set output \"%s/text\",' |\n",
+          folder);
+  fputs("gnuplot -d -\n", out);
+  fclose(out);
+  assert_int_equal(chmod(path, 0700), 0);
+}
+
+/* Ticks of numbers that are small, or close to each other, have names of their own. */
+static void test_tick_names(void **state)
+{
+  const PetscReal x[] = {0, 1}, y[2][2] = {{-9e-5, -7e-5}, {0.12341, 0.12343}};
+  char folder[64], text[128], png[128], line[128], name[64], last[64], *paths = strdup(getenv("PATH"));
+  (void)state;
+  TestFolder(folder);
+  LetterGnuplot(folder, paths);
+  setenv("PATH", folder, 1);
+  snprintf(png, sizeof png, "%s/figure.png", folder);
+  snprintf(text, sizeof text, "%s/text", folder);
+  for (int k = 0; k < 2; ++k) {
+    const FigureSeries series = {.style = FIGURE_LINE, .n = 2, .x = x, .y = y[k]};
+    const Figure figure = {.title = "small", .x_label = "x", .n_series = 1, .series = &series};
+    PetscBool done;
+    Diag *diag;
+    int names = 0;
+    assert_int_equal(DiagCreate(&diag), 0);
+    assert_int_equal(FigureWrite(&figure, png, diag, &done), 0); /* letters are no PNG */
+    assert_int_equal(DiagDestroy(&diag), 0);
+    FILE *in = fopen(text, "r");
+    assert_non_null(in);
+    for (last[0] = 0; fgets(line, sizeof line, in);) {
+      if (!strpbrk(line, "|+") || sscanf(line, "%63s", name) != 1 || !strpbrk(name, "0123456789")) continue;
+      assert_string_not_equal(name, last);
+      strcpy(last, name);
+      ++names;
+    }
+    fclose(in);
+    assert_true(names >= 3);
+  }
+  setenv("PATH", paths, 1);
+  free(paths);
+  TestRemove(folder);
+}
+
 /* Width, height and length of a PNG file; it must be a whole one. */
 static long CheckPng(const char *path, int *width, int *height)
 {
@@ -438,13 +489,21 @@ static void test_convergence(void **state)
 
 static int Tests(void)
 {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_spacing),        cmocka_unit_test(test_raster),
-                                     cmocka_unit_test(test_raster_depth),   cmocka_unit_test(test_raster_gap),
-                                     cmocka_unit_test(test_several_states), cmocka_unit_test(test_scalars),
-                                     cmocka_unit_test(test_units),          cmocka_unit_test(test_state_in_the_plane),
-                                     cmocka_unit_test(test_state_in_space), cmocka_unit_test(test_body_of_revolution),
-                                     cmocka_unit_test(test_histories),      cmocka_unit_test(test_mistakes),
-                                     cmocka_unit_test(test_no_gnuplot),     cmocka_unit_test(test_convergence)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_spacing),
+                                     cmocka_unit_test(test_raster),
+                                     cmocka_unit_test(test_raster_depth),
+                                     cmocka_unit_test(test_raster_gap),
+                                     cmocka_unit_test(test_several_states),
+                                     cmocka_unit_test(test_scalars),
+                                     cmocka_unit_test(test_units),
+                                     cmocka_unit_test(test_tick_names),
+                                     cmocka_unit_test(test_state_in_the_plane),
+                                     cmocka_unit_test(test_state_in_space),
+                                     cmocka_unit_test(test_body_of_revolution),
+                                     cmocka_unit_test(test_histories),
+                                     cmocka_unit_test(test_mistakes),
+                                     cmocka_unit_test(test_no_gnuplot),
+                                     cmocka_unit_test(test_convergence)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
 
