@@ -218,6 +218,17 @@ static PetscErrorCode Count(Model *m, const MeasureSpec *s, PetscInt index, Pets
   PetscFunctionReturn(0);
 }
 
+/* Mean over the avalanches that are over; nan if none is. */
+static PetscErrorCode MeanOfEvents(Model *m, const MeasureSpec *s, PetscInt index, PetscReal *value)
+{
+  const PetscInt n = measure_n_events(m, index);
+
+  PetscFunctionBeginUser;
+  *value = n ? 0 : NAN;
+  for (PetscInt i = 0; i < n; ++i) *value += measure_event(m, index, i)[measure_number(s)->which] / (PetscReal)n;
+  PetscFunctionReturn(0);
+}
+
 /* Keeps what it was in the last step: its length is not known later. */
 static PetscErrorCode RememberAgitation(Model *m, const MeasureSpec *s, PetscReal dt, PetscReal kept[MEASURE_KEPT])
 {
@@ -246,15 +257,23 @@ const Measure measure_agitation = {
              .in = PETSC_TRUE,
              .value = Agitation},
   .remember = RememberAgitation};
+
+#define TOLD(...) WORD(.in = PETSC_TRUE, .middle = PETSC_TRUE, .may_about = PETSC_TRUE, __VA_ARGS__)
+const MeasureNumber *const measure_avalanche_words[] = {
+  TOLD(.word = "number", .help = "how many are over", .value = Count),
+  TOLD(.word = "before", .help = "mean inclination of the surface before those that are over", .unit = "deg",
+       .value = MeanOfEvents, .which = EVENT_SURFACE_BEFORE),
+  TOLD(.word = "after", .help = "mean inclination of the surface after them", .unit = "deg", .value = MeanOfEvents,
+       .which = EVENT_SURFACE_AFTER),
+  NULL,
+};
+
 const Measure measure_avalanches = {
   .key = "avalanches",
   .takes = MEASURE_AVALANCHES,
   .number = {.unit = "",
-             .help = "number of avalanches that are over; events.csv has a row for each",
-             .in = PETSC_TRUE,
-             .middle = PETSC_TRUE,
-             .may_about = PETSC_TRUE,
-             .value = Count},
+             .help = "avalanches that are over, their number or mean angles; events.csv has a row for each"},
+  .words = measure_avalanche_words,
   .remember = RememberAvalanches,
   .events = &(const MeasureEvents){
     .header = STATE_N,
