@@ -93,6 +93,8 @@ static const SchemaEntry avalanche_entries[] = {
       AT(MeasureSpec, avalanche.from)),
   KEY("carried", NUMBER, "m", "mass that is carried farther than this, relative to the container, has taken part",
       .note = "the smallest cell", ABOVE(0), AT(MeasureSpec, avalanche.carried)),
+  KEY("least", NUMBER, "kg", "where less mass has taken part, single points leapt: no avalanche", .fallback = "0",
+      AT_LEAST(0), AT(MeasureSpec, avalanche.least)),
   {.key = NULL},
 };
 static const SchemaGroup avalanche_groups[] = {{GROUP_ONE, {"times", "kinetic", NULL}}, {GROUP_NONE, {NULL}}};

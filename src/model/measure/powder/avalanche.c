@@ -3,7 +3,8 @@
  * What counts is the energy of motion relative to the container. An event begins when it exceeds a
  * low threshold, if it then reaches a high one before it falls back; it is over when it has stayed
  * below the low one, or below a small share of its own peak, for a while, and its end is when it
- * came there. In between gravity works on the relative motion, and every point is carried some way. */
+ * came there. In between gravity works on the relative motion, and every point is carried some way.
+ * Where too little mass was carried far, single grains leapt: that is none. */
 #include "boundary/motion.h"
 #include "model/measure/measure.h"
 #include "model/model_private.h"
@@ -206,7 +207,7 @@ static PetscErrorCode RememberAvalanches(Model *m, const MeasureSpec *s, PetscRe
   if (m->time < state[STATE_CALM] + s->avalanche.calm * (1 - 1e-9)) PetscFunctionReturn(0);
   state[STATE_PHASE] = QUIET;
   PetscCall(PetscArraycpy(row, state + STATE_EVENT, EVENT_N)); /* the list may move */
-  PetscCall(MemoryAppend(memory, EVENT_N, row));
+  if (row[EVENT_MOVED] >= s->avalanche.least) PetscCall(MemoryAppend(memory, EVENT_N, row));
   PetscFunctionReturn(0);
 }
 
