@@ -19,6 +19,7 @@ typedef struct {
   PetscReal min, max;           /* closed range */
   PetscBool min_open, max_open; /* the bound itself is excluded */
   PetscReal fallback;           /* default; NAN: must be given */
+  PetscBool not_mixed;          /* in the mixed formulation only the default will do */
 } LawParameter;
 
 typedef struct {

@@ -6,21 +6,24 @@
 
 typedef struct {
   const char *name;
-  PetscReal young, poisson, friction, dilatancy, cohesion, cutoff; /* degrees */
+  PetscReal young, poisson, friction, dilatancy, cohesion, cutoff, memory; /* degrees */
 } McSample;
 
 static const McSample mc_samples[] = {
-  {"cohesive soil", 1.8e6, 0.3, 25, 0, 5e3, 1e300},
-  {"dense sand", 0.84e6, 0.3, 31, 1, 0, 1e300},
-  {"sugar", 1e6, 0.3, 39, 0, 16, 1e300},
-  {"dilatant", 2e6, 0.3, 30, 25, 5e3, 1e300},
-  {"associated", 5e7, 0.25, 30, 30, 2e4, 1e300},
-  {"Tresca", 1e4, 0.495, 0, 0, 100, 1e300},
-  {"auxetic", 1e6, -0.3, 45, 10, 1e3, 1e300},
-  {"associated, cut off", 5e7, 0.25, 30, 30, 2e4, 1e4},
-  {"cohesive, cut off", 1.8e6, 0.3, 25, 0, 5e3, 3e3},
-  {"no tension", 2e6, 0.2, 35, 12, 4e3, 0},
-  {"Tresca, cut off", 1e4, 0.4, 0, 0, 100, 50},
+  {"cohesive soil", 1.8e6, 0.3, 25, 0, 5e3, 1e300, 0},
+  {"dense sand", 0.84e6, 0.3, 31, 1, 0, 1e300, 0},
+  {"sugar", 1e6, 0.3, 39, 0, 16, 1e300, 0},
+  {"dilatant", 2e6, 0.3, 30, 25, 5e3, 1e300, 0},
+  {"associated", 5e7, 0.25, 30, 30, 2e4, 1e300, 0},
+  {"Tresca", 1e4, 0.495, 0, 0, 100, 1e300, 0},
+  {"auxetic", 1e6, -0.3, 45, 10, 1e3, 1e300, 0},
+  {"associated, cut off", 5e7, 0.25, 30, 30, 2e4, 1e4, 0},
+  {"cohesive, cut off", 1.8e6, 0.3, 25, 0, 5e3, 3e3, 0},
+  {"no tension", 2e6, 0.2, 35, 12, 4e3, 0, 0},
+  {"Tresca, cut off", 1e4, 0.4, 0, 0, 100, 50, 0},
+  {"dense sand that remembers", 0.84e6, 0.3, 31, 1, 0, 1e300, 1},
+  {"dilatant soil that remembers half", 2e6, 0.3, 30, 25, 5e3, 1e300, 0.5},
+  {"soil without tension that remembers", 2e6, 0.2, 35, 12, 4e3, 0, 1},
 };
 
 #define MC_SAMPLES ((int)(sizeof mc_samples / sizeof mc_samples[0]))
@@ -28,7 +31,7 @@ static const McSample mc_samples[] = {
 static inline const Law *mc_sample_pack(const McSample *s, PetscReal *packed)
 {
   const PetscReal rad = PETSC_PI / 180.0;
-  const PetscReal given[4] = {s->friction * rad, s->dilatancy * rad, s->cohesion, s->cutoff};
+  const PetscReal given[5] = {s->friction * rad, s->dilatancy * rad, s->cohesion, s->cutoff, s->memory};
   return packed_law("mohr-coulomb", s->young, s->poisson, given, packed);
 }
 
@@ -36,6 +39,14 @@ static inline const Law *mc_sample_pack(const McSample *s, PetscReal *packed)
 static inline PetscReal mc_sample_strain(const PetscReal *p, PetscReal young)
 {
   return p[MC_Q] > 0.0 ? p[MC_Q] / young : 1e-3;
+}
+
+/* Let some of the state's volume be an opening (of a law that remembers): the trial strains stay. */
+static inline void mc_sample_opening(Random *random, const PetscReal *p, PetscReal state[MC_STATE])
+{
+  const PetscBool open = p[MC_MEMORY] > 0.0 && random_real(random, 0, 1) < 0.5;
+  state[7] = open ? pow(10, random_real(random, -6, 0)) : 0.0;
+  for (int k = 0; k < 6; ++k) state[k] *= exp(-2.0 / 3.0 * state[7]);
 }
 
 static inline void mc_sort(PetscReal e[3])

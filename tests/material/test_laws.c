@@ -32,6 +32,16 @@
     }                                                                                                                 \
   }
 
+#define REMEMBERS(E, nu, phi, psi, c, memory)                                                                         \
+  6,                                                                                                                  \
+  {                                                                                                                   \
+    {(char *)"young", E}, {(char *)"poisson", nu}, {(char *)"friction_angle", phi}, {(char *)"dilatancy_angle", psi}, \
+      {(char *)"cohesion", c},                                                                                        \
+    {                                                                                                                 \
+      (char *)"opening_memory", memory                                                                                \
+    }                                                                                                                 \
+  }
+
 static const LawUnderTest list[] = {
   {"neo-hookean", ELASTIC(90e6, 0.0), .strain = 0.3, .hyperelastic = PETSC_TRUE},
   {"neo-hookean", ELASTIC(70.0, 0.4999), .strain = 0.3, .hyperelastic = PETSC_TRUE},
@@ -53,6 +63,8 @@ static const LawUnderTest list[] = {
   {"mohr-coulomb", MOHR_COULOMB(1e6, -0.3, 45, 10, 1e5), .strain = 0.3},
   {"mohr-coulomb", CUT_OFF(2e6, 0.2, 35, 12, 4e4, 2e4), .strain = 0.1},
   {"mohr-coulomb", CUT_OFF(1e4, 0.4, 0, 0, 100, 0), .strain = 0.1},
+  {"mohr-coulomb", REMEMBERS(0.84e6, 0.3, 31, 1, 0, 1), .strain = 0.3, .not_mixed = PETSC_TRUE},
+  {"mohr-coulomb", REMEMBERS(1e6, 0.3, 39, 0, 16, 0.5), .strain = 0.05, .not_mixed = PETSC_TRUE},
 };
 
 static void test_suite(void **state)

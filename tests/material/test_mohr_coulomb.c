@@ -16,7 +16,7 @@ static void assert_near(const char *what, PetscInt n, const PetscReal *value, co
 
 static const Law *golden_law(struct fy_node *item, PetscReal *packed)
 {
-  const PetscReal given[4] = {golden_number(item, "phi"), golden_number(item, "psi"), golden_number(item, "c"), 1e300};
+  const PetscReal given[5] = {golden_number(item, "phi"), golden_number(item, "psi"), golden_number(item, "c"), 1e300};
   return packed_law("mohr-coulomb", golden_number(item, "E"), golden_number(item, "nu"), given, packed);
 }
 
@@ -24,7 +24,7 @@ static const Law *golden_law(struct fy_node *item, PetscReal *packed)
 static void check_principal(struct fy_node *item)
 {
   const PetscReal unit[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
-  PetscReal packed[LAW_MAX_PARAMETERS], old[7] = {0}, state[7], tau[6], c[36], e[3], golden[9], trial[3];
+  PetscReal packed[LAW_MAX_PARAMETERS], old[MC_STATE] = {0}, state[MC_STATE], tau[6], c[36], e[3], golden[9], trial[3];
   const Law *law = golden_law(item, packed);
   golden_numbers(item, "eps_e_trial", 3, e);
   for (int a = 0; a < 3; ++a) old[a] = exp(2.0 * e[a]);
@@ -46,7 +46,7 @@ static void check_principal(struct fy_node *item)
 
 static void check_tensor(struct fy_node *item)
 {
-  PetscReal packed[LAW_MAX_PARAMETERS], f[9], old[7] = {0}, state[7], tau[6], c[36], golden[36], trial[3];
+  PetscReal packed[LAW_MAX_PARAMETERS], f[9], old[MC_STATE] = {0}, state[MC_STATE], tau[6], c[36], golden[36], trial[3];
   const Law *law = golden_law(item, packed);
   golden_numbers(item, "f", 9, f);
   golden_symmetric(item, "be_n", old);
@@ -83,12 +83,13 @@ static TextbookSoil soil_of(const McSample *s, const PetscReal *p)
 {
   const PetscReal rad = PETSC_PI / 180.0;
   return (TextbookSoil){p[MC_LAMBDA],       p[MC_MU],    s->friction * rad,
-                        s->dilatancy * rad, s->cohesion, s->cutoff < 1e300 ? s->cutoff : INFINITY};
+                        s->dilatancy * rad, s->cohesion, s->cutoff < 1e300 ? s->cutoff : INFINITY, s->memory};
 }
 
 /* An increment and an elastic state before it whose trial strains are e, in directions of chance;
  * flat: z stays what it is. */
-static void random_increment(Random *random, PetscBool flat, const PetscReal e[3], PetscReal f[9], PetscReal old[7])
+static void random_increment(Random *random, const PetscReal *p, PetscBool flat, const PetscReal e[3], PetscReal f[9],
+                             PetscReal old[MC_STATE])
 {
   PetscReal q[9], diagonal[6] = {0}, trial[6], back[9];
   for (int k = 0; k < 9; ++k) f[k] = (k % 4 == 0) + random_real(random, -0.1, 0.1);
@@ -105,18 +106,19 @@ static void random_increment(Random *random, PetscBool flat, const PetscReal e[3
   tensor_inverse(f, back);
   sym_push_forward(back, trial, old);
   old[6] = random_real(random, 0, 1);
+  mc_sample_opening(random, p, old);
 }
 
 /* One point of the textbook against what the law made of it. */
-static int compare_textbook(const McSample *sample, const PetscReal *p, const PetscReal f[9], const PetscReal old[7],
-                            const PetscReal state[7], const PetscReal tau[6])
+static int compare_textbook(const McSample *sample, const PetscReal *p, const PetscReal f[9], const PetscReal old[MC_STATE],
+                            const PetscReal state[MC_STATE], const PetscReal tau[6])
 {
   const TextbookSoil soil = soil_of(sample, p);
-  double F[3][3], b[3][3], full[9], stress[3][3], plastic = old[6];
+  double F[3][3], b[3][3], full[9], stress[3][3], plastic = old[6], opening = old[7];
   memcpy(F, f, sizeof F);
   sym_to_full(old, full);
   memcpy(b, full, sizeof b);
-  const int region = textbook_update(&soil, F, b, &plastic, stress);
+  const int region = textbook_update(&soil, F, b, &plastic, &opening, stress);
   PetscReal strain = 1e-4; /* b starts from 1: strains below this have fewer digits */
   for (int k = 0; k < 6; ++k) strain = fmax(strain, fabs(state[k] - (k < 3)));
   const PetscReal size = packed_largest(6, tau) + p[MC_Q] + (p[MC_LAMBDA] + 2.0 * p[MC_MU]) * strain;
@@ -128,6 +130,8 @@ static int compare_textbook(const McSample *sample, const PetscReal *p, const Pe
   }
   if (!(fabs(state[6] - plastic) <= 1e-10))
     fail_msg("%s: plastic strain %.17g, not %.17g", sample->name, state[6], plastic);
+  if (!(fabs(state[7] - opening) <= 1e-10))
+    fail_msg("%s, %s: opening %.17g, not %.17g", sample->name, textbook_regions[region].name, state[7], opening);
   return region;
 }
 
@@ -148,18 +152,18 @@ static void test_against_textbook(void **unused)
   (void)unused;
   Random random = {2019};
   for (int m = 0; m < MC_SAMPLES; ++m) {
-    PetscReal p[LAW_MAX_PARAMETERS], e[3], f[9 * BATCH], old[7 * BATCH], state[7 * BATCH], tau[6 * BATCH];
+    PetscReal p[LAW_MAX_PARAMETERS], e[3], f[9 * BATCH], old[MC_STATE * BATCH], state[MC_STATE * BATCH], tau[6 * BATCH];
     int count[TEXTBOOK_REGIONS] = {0};
     const Law *law = mc_sample_pack(&mc_samples[m], p);
     for (int s = 0; s < 2500; ++s) {
       const PetscBool flat = s % 3 == 0;
       for (int k = 0; k < BATCH; ++k) {
         mc_sample_trial(&random, mc_sample_strain(p, mc_samples[m].young), e);
-        random_increment(&random, flat, e, f + 9 * k, old + 7 * k);
+        random_increment(&random, p, flat, e, f + 9 * k, old + MC_STATE * k);
       }
       assert_int_equal((flat ? law->update_plane : law->update)(p, BATCH, f, old, state, tau, NULL), LAW_OK);
       for (int k = 0; k < BATCH; ++k)
-        ++count[compare_textbook(&mc_samples[m], p, f + 9 * k, old + 7 * k, state + 7 * k, tau + 6 * k)];
+        ++count[compare_textbook(&mc_samples[m], p, f + 9 * k, old + MC_STATE * k, state + MC_STATE * k, tau + 6 * k)];
     }
     for (int r = 0; r < TEXTBOOK_REGIONS; ++r) {
       if (getenv("TALUS_TEST_PRINT"))
@@ -209,7 +213,7 @@ static void test_yield(void **unused)
   Random random = {5};
   for (int m = 0; m < MC_SAMPLES; ++m) {
     const PetscReal unit[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
-    PetscReal p[LAW_MAX_PARAMETERS], e[3], q[9], diagonal[6] = {0}, old[7], state[7], tau[6], principal[3], v[9];
+    PetscReal p[LAW_MAX_PARAMETERS], e[3], q[9], diagonal[6] = {0}, old[MC_STATE], state[MC_STATE], tau[6], principal[3], v[9];
     const Law *law = mc_sample_pack(&mc_samples[m], p);
     for (int s = 0; s < 3000; ++s) {
       mc_sample_trial(&random, mc_sample_strain(p, mc_samples[m].young), e);
@@ -217,6 +221,7 @@ static void test_yield(void **unused)
       for (int k = 0; k < 3; ++k) diagonal[k] = exp(2.0 * e[k]);
       sym_push_forward(q, diagonal, old);
       old[6] = 0.25;
+      mc_sample_opening(&random, p, old);
       assert_int_equal(law->update(p, 1, unit, old, state, tau, NULL), LAW_OK);
       sym_eigen(tau, principal, v);
       const PetscReal f = fmax(mc_yield(p, principal), principal[0] - p[MC_CUT]);
@@ -237,7 +242,7 @@ static void test_separation(void **unused)
   (void)unused;
   const PetscReal open[9] = {1.1, 0.02, 0, 0, 1.2, 0, 0, 0, 1}, close[9] = {0.999, 0, 0, 0, 0.999, 0, 0, 0, 0.999};
   const PetscReal unit[6] = {1, 1, 1, 0, 0, 0}, none[6] = {0};
-  PetscReal p[LAW_MAX_PARAMETERS], old[7], state[7], tau[6], c[36];
+  PetscReal p[LAW_MAX_PARAMETERS], old[MC_STATE], state[MC_STATE], tau[6], c[36];
   const Law *law = mc_sample_pack(&mc_samples[1], p);
   law_initial_state(law, old);
   for (int step = 0; step < 50; ++step) {
@@ -262,7 +267,7 @@ static void test_plane_strain_failure(void **unused)
 {
   (void)unused;
   const PetscReal f[9] = {0.9999, 0, 0, 0, 1.00009, 0, 0, 0, 1}, sigma[6] = {-1e3, -1e3, -1e3, 0, 0, 0};
-  PetscReal p[LAW_MAX_PARAMETERS], first[7], old[7], state[7], tau[6];
+  PetscReal p[LAW_MAX_PARAMETERS], first[MC_STATE], old[MC_STATE], state[MC_STATE], tau[6];
   const Law *law = mc_sample_pack(&mc_samples[1], p);
   assert_true(law->initial_stress(p, sigma, first));
   memcpy(old, first, sizeof old);
@@ -283,7 +288,7 @@ static void test_initial_stress(void **unused)
   (void)unused;
   const PetscReal inside[6] = {-50e3, -80e3, -60e3, 5e3, 0, 0}, outside[6] = {-50e3, -300e3, -60e3, 5e3, 0, 0};
   const PetscReal pulled[6] = {4e3, 0, 0, 0, 0, 0};
-  PetscReal p[LAW_MAX_PARAMETERS], state[7];
+  PetscReal p[LAW_MAX_PARAMETERS], state[MC_STATE];
   const Law *law = mc_sample_pack(&mc_samples[0], p);
   assert_true(law->initial_stress(p, inside, state));
   assert_false(law->initial_stress(p, outside, state));

@@ -9,13 +9,13 @@
 #include "mc_sample.h"
 #include <string.h>
 
-#define STATES 2000 /* of each material: 22000 in all */
+#define STATES 2000 /* of each material: 28000 in all */
 #define TOLERANCE 1e-6
 
 typedef struct {
   const Law *law;
   const PetscReal *p;
-  PetscReal old[7], tau[6], c[36];
+  PetscReal old[MC_STATE], tau[6], c[36];
 } Point;
 
 /* How a column of c was confirmed. */
@@ -25,11 +25,12 @@ typedef enum { CENTRAL, ONE_SIDE, CORNER } Match;
 static void point_at(Random *random, const PetscReal e[3], Point *point)
 {
   const PetscReal unit[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
-  PetscReal q[9], diagonal[6] = {0}, state[7];
+  PetscReal q[9], diagonal[6] = {0}, state[MC_STATE];
   random_rotation(random, q);
   for (int k = 0; k < 3; ++k) diagonal[k] = exp(2.0 * e[k]);
   sym_push_forward(q, diagonal, point->old);
   point->old[6] = 0.0;
+  mc_sample_opening(random, point->p, point->old);
   assert_int_equal(point->law->update(point->p, 1, unit, point->old, state, point->tau, point->c), LAW_OK);
 }
 
@@ -37,7 +38,7 @@ static void point_at(Random *random, const PetscReal e[3], Point *point)
  * first order. */
 static void stress_at(const Point *point, int k, PetscReal h, PetscReal tau[6])
 {
-  PetscReal f[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1}, d[9] = {0}, t[9], dt[9], state[7];
+  PetscReal f[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1}, d[9] = {0}, t[9], dt[9], state[MC_STATE];
   const int i = voigt_row[k], j = voigt_column[k];
   d[3 * i + j] += 0.5, d[3 * j + i] += 0.5;
   for (int m = 0; m < 9; ++m) f[m] += h * d[m];
@@ -159,7 +160,8 @@ static void test_borders(void **unused)
 
 /* Points whose principal axes are A and B in the plane, and z: any of them may carry the largest
  * stretch. z strains in a ring alone. */
-static void plane_points(Random *random, PetscBool ring, PetscReal scale, int n, PetscReal *old, PetscReal *dF)
+static void plane_points(Random *random, const PetscReal *p, PetscBool ring, PetscReal scale, int n, PetscReal *old,
+                         PetscReal *dF)
 {
   for (int i = 0; i < n; ++i) {
     const PetscReal turn = random_real(random, 0, 2 * PETSC_PI), c = cos(turn), s = sin(turn);
@@ -168,8 +170,9 @@ static void plane_points(Random *random, PetscBool ring, PetscReal scale, int n,
     PetscReal e[3], diagonal[6] = {0};
     mc_sample_trial(random, scale, e);
     for (int a = 0; a < 3; ++a) diagonal[(a + first) % 3] = exp(2.0 * e[a]);
-    sym_push_forward(q, diagonal, old + 7 * i);
-    old[7 * i + 6] = random_real(random, 0, 1);
+    sym_push_forward(q, diagonal, old + MC_STATE * i);
+    old[MC_STATE * i + 6] = random_real(random, 0, 1);
+    mc_sample_opening(random, p, old + MC_STATE * i);
     for (int k = 0; k < 9; ++k) {
       const PetscBool moves = k < 2 || k == 3 || k == 4 || (ring && k == 8);
       dF[9 * i + k] = (k % 4 == 0) + (moves ? 0.1 * scale * random_real(random, -1, 1) : 0.0);
@@ -214,12 +217,12 @@ static void in_plane(PetscBool ring)
     const Law *law = mc_sample_pack(&mc_samples[m], p);
     const PetscReal scale = mc_sample_strain(p, mc_samples[m].young), young = mc_samples[m].young;
     for (int batch = 0; batch < STATES / 10; ++batch) {
-      PetscReal old[7 * MOST], dF[9 * MOST], state[2][7 * MOST], tau[2][6 * MOST], c[2][36 * MOST];
+      PetscReal old[MC_STATE * MOST], dF[9 * MOST], state[2][MC_STATE * MOST], tau[2][6 * MOST], c[2][36 * MOST];
       const int n = 1 + batch % MOST;
-      plane_points(&random, ring, scale, n, old, dF);
+      plane_points(&random, p, ring, scale, n, old, dF);
       assert_int_equal(law->update(p, n, dF, old, state[0], tau[0], c[0]), LAW_OK);
       assert_int_equal((ring ? law->update_hoop : law->update_plane)(p, n, dF, old, state[1], tau[1], c[1]), LAW_OK);
-      assert_true(largest_difference(7 * n, state[0], state[1]) < 1e-13);
+      assert_true(largest_difference(MC_STATE * n, state[0], state[1]) < 1e-13);
       assert_true(largest_difference(6 * n, tau[0], tau[1]) < 1e-13 * young);
       others += moduli_that_differ(ring, n, c[0], c[1], 1e-9 * young);
       points += n;
@@ -240,9 +243,9 @@ static void test_plane(void **unused)
  * is turned inside out is told, and so is a ring that is no longer one. */
 static void out_of_plane(LawUpdate update, PetscReal hoop)
 {
-  PetscReal p[LAW_MAX_PARAMETERS], state[2][14], tau[2][12];
+  PetscReal p[LAW_MAX_PARAMETERS], state[2][2 * MC_STATE], tau[2][12];
   const Law *law = mc_sample_pack(&mc_samples[0], p);
-  PetscReal old[14] = {1.001, 0.999, 1, 0.001, 0.002, -0.001, 0, 1, 1, 1, 0, 0, 0, 0};
+  PetscReal old[2 * MC_STATE] = {1.001, 0.999, 1, 0.001, 0.002, -0.001, 0, 0, 1, 1, 1};
   PetscReal dF[18] = {1.001, 0.002, 0, 0, 0.998, 0, 0, 0, hoop, 1, 0.001, 0, 0, 1, 0, 0, 0, hoop};
   assert_int_equal(law->update(p, 2, dF, old, state[0], tau[0], NULL), LAW_OK);
   assert_int_equal(update(p, 2, dF, old, state[1], tau[1], NULL), LAW_OK);
@@ -253,7 +256,7 @@ static void out_of_plane(LawUpdate update, PetscReal hoop)
     const PetscReal kept = dF[k];
     dF[k] = -1;
     assert_int_equal(update(p, 2, dF, old, state[1], tau[1], NULL), LAW_INVERTED);
-    assert_memory_equal(state[1] + 7, old + 7, 7 * sizeof old[0]);
+    assert_memory_equal(state[1] + MC_STATE, old + MC_STATE, MC_STATE * sizeof old[0]);
     dF[k] = kept;
   }
 }

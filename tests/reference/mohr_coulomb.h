@@ -12,6 +12,7 @@ typedef struct {
   double lambda, mu; /* Lamé's constants, Pa */
   double phi, psi;   /* angles of friction and of dilatancy, rad */
   double c, T;       /* cohesion and largest tension, Pa; T infinite: none but the apex */
+  double memory;     /* share of an opening that has to close again, 0 to 1 */
 } TextbookSoil;
 
 /* Where the stress returns to: so many planes of those numbered below. */
@@ -33,7 +34,7 @@ static const struct {
   {"edge tau_2 = tau_3 and cut-off", 3, {FACE, LEFT, TENSION_1}},
   {"apex", 0, {0}},
 };
-enum { TEXTBOOK_APEX = 11, TEXTBOOK_REGIONS };
+enum { TEXTBOOK_CUT_APEX = 6, TEXTBOOK_APEX = 11, TEXTBOOK_REGIONS };
 
 /* Values and directions (columns of v) of a symmetric tensor: Jacobi's rotations, then sorted, the
  * largest first. */
@@ -159,25 +160,36 @@ static inline int textbook_return(const TextbookSoil *m, const double e[3], doub
   return TEXTBOOK_APEX;
 }
 
-/* One step: b = F b F^T, its logarithmic principal strains, the return, and b and the plastic
- * strain of what is left. */
-static inline int textbook_update(const TextbookSoil *m, double F[3][3], double b[3][3], double *plastic,
+/* The gap that is left when the strain e became `elastic` at the apex: what it grows by is
+ * remembered in part, what it shrinks by is gone. */
+static inline double textbook_gap(const TextbookSoil *m, const double e[3], const double elastic[3], double gap)
+{
+  double apart = 0;
+  for (int i = 0; i < 3; ++i) apart += e[i] - elastic[i];
+  const double grown = apart - gap;
+  return fmax(0, gap + (grown > 0 ? m->memory * grown : grown));
+}
+
+/* One step: b = F b F^T, its logarithmic principal strains and a third of the gap in each, the
+ * return, and b, the plastic strain and the gap of what is left. */
+static inline int textbook_update(const TextbookSoil *m, double F[3][3], double b[3][3], double *plastic, double *gap,
                                   double tau[3][3])
 {
   const double d = (1 + sin(m->psi)) / (1 - sin(m->psi));
-  double Fb[3][3], trial[3][3], stretch2[3], v[3][3], e[3], principal[3], norm2 = 0;
+  double Fb[3][3], trial[3][3], stretch2[3], v[3][3], e[3], elastic[3], principal[3], norm2 = 0;
   for (int i = 0; i < 3; ++i)
     for (int j = 0; j < 3; ++j) Fb[i][j] = F[i][0] * b[0][j] + F[i][1] * b[1][j] + F[i][2] * b[2][j];
   for (int i = 0; i < 3; ++i)
     for (int j = 0; j < 3; ++j) trial[i][j] = textbook_dot(Fb[i], F[j]);
   textbook_principal(trial, stretch2, v);
-  for (int i = 0; i < 3; ++i) e[i] = 0.5 * log(stretch2[i]);
+  for (int i = 0; i < 3; ++i) e[i] = 0.5 * log(stretch2[i]) + *gap / 3;
   const int region = textbook_return(m, e, principal);
   const double volume = (principal[0] + principal[1] + principal[2]) / (3 * m->lambda + 2 * m->mu);
+  for (int i = 0; i < 3; ++i) elastic[i] = (principal[i] - m->lambda * volume) / (2 * m->mu);
+  *gap = region == TEXTBOOK_APEX || region == TEXTBOOK_CUT_APEX ? textbook_gap(m, e, elastic, *gap) : 0;
   for (int i = 0; i < 3; ++i) {
-    const double elastic = (principal[i] - m->lambda * volume) / (2 * m->mu);
-    norm2 += (e[i] - elastic) * (e[i] - elastic);
-    stretch2[i] = exp(2 * elastic);
+    norm2 += (e[i] - elastic[i] - *gap / 3) * (e[i] - elastic[i] - *gap / 3);
+    stretch2[i] = exp(2 * elastic[i]);
   }
   *plastic += sqrt(norm2 / (1 + d * d));
   for (int i = 0; i < 3; ++i)

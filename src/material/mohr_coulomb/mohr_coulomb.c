@@ -7,8 +7,16 @@
  * the tangent is exact (principal.h). State: b^e and the equivalent plastic strain.
  *
  * A point beyond the apex is left with the elastic strain of the apex: with c = 0 it is
- * stress-free, b^e = I. How far it has opened is not remembered, so that the next compression meets
- * a solid at once. There the tangent is zero. */
+ * stress-free, b^e = I. There the tangent is zero. How far it has opened is not remembered, so that
+ * the next compression meets a solid at once; unless `opening_memory` is 1: then omega = ln (V / V
+ * of the apex) is kept, trial strains begin with omega / 3, and nothing bears before they have
+ * closed it. Of what opens the share `opening_memory` is kept, and of what closes all goes from
+ * omega, so that neither depends on the steps. Only what opens in all directions is remembered:
+ * volume that shearing takes by dilatancy stays, and so do cracks of the cut-off (CUT_PLANE,
+ * CUT_LINE), which have a direction.
+ *
+ * Cohesion holds on to what opens: with c > 0 the tension of the apex stays until omega is zero
+ * again. Its work on the way out comes back on the way in, and counts as stored. */
 #include "material/mohr_coulomb/mohr_coulomb_plane.h"
 #include "material/principal.h"
 #include "material/shape.h"
@@ -21,7 +29,7 @@ enum { FRICTION, DILATANCY, COHESION, CUTOFF, MEMORY };
 /* What the spectral decomposition of eight points gave. */
 typedef struct {
   Lanes b[6], stretch2[3], strain[3], basis[36];
-  Lanes det, flow; /* of the increment; equivalent plastic strain so far */
+  Lanes det, flow, opening; /* of the increment; equivalent plastic strain and opening before it */
   LaneBits finite; /* is b of use? */
 } Trial;
 
@@ -32,11 +40,10 @@ LANES_INLINE void trial_lanes(PetscInt n, const PetscReal *dF, const PetscReal *
   lanes_load(9, n, dF, f);
   lanes_load(N_STATE, n, old, before);
   t->flow = before[6];
+  t->opening = before[7];
   lanes_det(f, &t->det);
   lanes_push_forward(f, before, t->b);
-  Lanes together;
-  mc_reopen(&before[7], &together);
-  for (int k = 0; k < 6; ++k) t->b[k] *= together;
+  mc_with_opening(&before[7], 6, t->b);
   for (int k = 0; k < 6; ++k) {
     lanes_abs(&t->b[k], &size);
     sum += size;
@@ -52,25 +59,30 @@ LANES_INLINE void trial_lanes(PetscInt n, const PetscReal *dF, const PetscReal *
   lanes_principal_basis(v, t->basis);
 }
 
-/* b^e of the returned stress. An elastic point keeps its trial b to the last bit. */
+/* b^e of the returned stress, equivalent plastic strain and opening. An elastic point keeps its
+ * trial b to the last bit. */
 LANES_INLINE void state_lanes(const PetscReal *p, const Trial *t, const Lanes tau[3], const LaneBits *regions,
-                              Lanes state[6], Lanes *flow)
+                              Lanes state[N_STATE])
 {
   const Lanes share = p[MC_LAMBDA] / (3.0 * p[MC_LAMBDA] + 2.0 * p[MC_MU]) * (tau[0] + tau[1] + tau[2]), none = {0};
   const LaneBits plastic = *regions != MC_ELASTIC;
-  Lanes stretch2[3], b[6], norm2 = none;
+  Lanes stretch2[3], b[6], norm2 = none, flow;
   for (int k = 0; k < 6; ++k) state[k] = t->b[k];
-  *flow = none;
+  state[6] = t->flow;
+  state[7] = none;
   if (!lanes_any(&plastic)) return;
+  mc_opening(p, regions, t->strain, tau, &t->opening, &state[7]);
   for (int a = 0; a < 3; ++a) {
     const Lanes elastic = (tau[a] - share) / (2.0 * p[MC_MU]), twice = 2.0 * elastic;
-    norm2 += (t->strain[a] - elastic) * (t->strain[a] - elastic);
+    const Lanes plastic_strain = t->strain[a] - elastic - state[7] / 3.0;
+    norm2 += plastic_strain * plastic_strain;
     lanes_exp(&twice, &stretch2[a]);
   }
   lanes_principal_tensor(stretch2, t->basis, b);
   norm2 /= 1.0 + p[MC_M] * p[MC_M];
   lanes_sqrt(&norm2, &norm2);
-  lanes_select(&plastic, &norm2, &none, flow);
+  lanes_select(&plastic, &norm2, &none, &flow);
+  state[6] += flow;
   for (int k = 0; k < 6; ++k) lanes_select(&plastic, &b[k], &state[k], &state[k]);
 }
 
@@ -112,14 +124,12 @@ static LawStatus give_up(const LaneBits *finite, const Lanes *det, PetscInt n, c
 LANES_INLINE LawStatus update_lanes(const PetscReal *p, PetscInt n, const PetscReal *dF, const PetscReal *old,
                                     PetscReal *state, PetscReal *tau, PetscReal *c)
 {
-  Lanes principal[3], now[N_STATE], stress[6], flow;
+  Lanes principal[3], now[N_STATE], stress[6];
   LaneBits regions;
   Trial t;
   trial_lanes(n, dF, old, &t);
   mc_return_lanes(p, t.strain, principal, &regions);
-  state_lanes(p, &t, principal, &regions, now, &flow);
-  now[6] = t.flow + flow;
-  mc_opening(p, &regions, t.strain, principal, &now[7]);
+  state_lanes(p, &t, principal, &regions, now);
   lanes_principal_tensor(principal, t.basis, stress);
   lanes_store(N_STATE, n, now, state);
   lanes_store(6, n, stress, tau);
@@ -156,6 +166,7 @@ LANES_INLINE LawStatus update_in_plane(const PetscBool hoop, const PetscReal *p,
   if (!mc_plane_trial(hoop, n, dF, before, &t)) return update(p, PetscMin(n, LANES), dF, old, state, tau, c);
   mc_plane_return(p, &t, principal, &regions);
   now[6] = before[6];
+  now[7] = before[7];
   mc_plane_state(p, &t, principal, &regions, now);
   mc_plane_tensor(&t, principal, stress);
   lanes_store(N_STATE, n, now, state);
@@ -184,16 +195,23 @@ LANES_INLINE LawStatus update_in_plane(const PetscBool hoop, const PetscReal *p,
 PLANE_UPDATE(update_plane, PETSC_FALSE)
 PLANE_UPDATE(update_hoop, PETSC_TRUE)
 
-static PetscReal energy(const PetscReal *p, const PetscReal *b)
+/* Tension of the apex, Pa. */
+static PetscReal apex(const PetscReal *p)
+{
+  return p[MC_CUT] < INFINITY ? p[MC_CUT] : p[MC_Q] / (p[MC_K] - 1.0);
+}
+
+static PetscReal energy(const PetscReal *p, const PetscReal *state)
 {
   PetscReal stretch2[3], v[9], trace = 0.0, norm2 = 0.0;
-  sym_eigen(b, stretch2, v);
+  sym_eigen(state, stretch2, v);
   for (int a = 0; a < 3; ++a) {
     const PetscReal e = 0.5 * log(stretch2[a]);
     trace += e;
     norm2 += e * e;
   }
-  return 0.5 * p[MC_LAMBDA] * trace * trace + p[MC_MU] * norm2;
+  const PetscReal held = state[7] > 0.0 ? apex(p) * state[7] : 0.0;
+  return 0.5 * p[MC_LAMBDA] * trace * trace + p[MC_MU] * norm2 + held;
 }
 
 /* tau = J sigma with ln J = tr tau / 3K; PETSC_FALSE outside the yield surface. */
@@ -255,14 +273,15 @@ static const LawParameter parameters[] = {
   {"cohesion", "Pa", "cohesion", 0, PETSC_MAX_REAL, .fallback = NAN},
   {"tension_cutoff", "Pa", "largest principal tension; 1e300: none but the apex", 0, PETSC_MAX_REAL,
    .fallback = NO_CUTOFF},
-  {"opening_memory", "", "1: grains that came apart bear again when they have come together", 0, 1, .fallback = 0},
+  {"opening_memory", "", "share of an opening that must close before anything bears; 1: grains keep their density",
+   0, 1, .fallback = 0, .not_mixed = PETSC_TRUE},
   {.name = NULL},
 };
 
 static const LawField fields[] = {
   {"elastic_strain", "", "elastic left Cauchy-Green tensor b", 6, {1, 1, 1, 0, 0, 0}},
   {"equivalent_plastic_strain", "", "sum of |d eps^p| / sqrt(1 + m^2)", 1, {0}},
-  {"opening", "", "ln of the volume by which grains are apart", 1, {0}},
+  {"opening", "", "ln of the volume by which grains are apart, with opening_memory", 1, {0}},
   {.name = NULL},
 };
 

@@ -3,8 +3,6 @@
 #include "material/mohr_coulomb/mohr_coulomb_return.h"
 #include "material/principal_lanes.h"
 
-#define MC_STATE 8 /* b^e, equivalent plastic strain, opening */
-
 /* Stresses on the surface or inside. Most points that flow are on the shear plane: that return is
  * made here, others point by point. */
 LANES_INLINE void mc_return_lanes(const PetscReal *p, const Lanes e[3], Lanes tau[3], LaneBits *regions)
@@ -64,20 +62,30 @@ LANES_INLINE void mc_difference_lanes(const PetscReal *p, const LaneBits *elasti
   lanes_select(elastic, &full, r, r);
 }
 
-/* Factor of b^e that lets grains that came apart come together again before they bear. */
-LANES_INLINE void mc_reopen(const Lanes *opening, Lanes *factor)
+/* What is open counts as strain before anything bears: b^e of n components as if it were closed by
+ * elastic strain alone. */
+LANES_INLINE void mc_with_opening(const Lanes *opening, int n, Lanes *b)
 {
+  const LaneBits open = *opening > 0.0;
+  if (!lanes_any(&open)) return;
   const Lanes twice = (2.0 / 3.0) * *opening;
-  lanes_exp(&twice, factor);
+  Lanes factor;
+  lanes_exp(&twice, &factor);
+  for (int k = 0; k < n; ++k) b[k] *= factor;
 }
 
-/* What is left open: of points at the apex all volume beyond its own. */
+/* What is open at the end: at the apex all volume beyond that of the apex, of what opened now the
+ * share that is remembered. */
 LANES_INLINE void mc_opening(const PetscReal *p, const LaneBits *regions, const Lanes strain[3], const Lanes tau[3],
-                             Lanes *opening)
+                             const Lanes *before, Lanes *opening)
 {
   const Lanes none = {0};
-  const Lanes gap = p[MC_MEMORY] * (strain[0] + strain[1] + strain[2] -
-                    (tau[0] + tau[1] + tau[2]) / (3.0 * p[MC_LAMBDA] + 2.0 * p[MC_MU]));
-  const LaneBits apex = ((*regions == MC_APEX) | (*regions == MC_CUT_APEX)) & (gap > 0.0);
-  lanes_select(&apex, &gap, &none, opening);
+  const PetscReal three_bulk = 3.0 * p[MC_LAMBDA] + 2.0 * p[MC_MU];
+  *opening = none;
+  if (!(p[MC_MEMORY] > 0.0)) return;
+  const Lanes gap = strain[0] + strain[1] + strain[2] - (tau[0] + tau[1] + tau[2]) / three_bulk;
+  const Lanes wider = *before + p[MC_MEMORY] * (gap - *before);
+  const LaneBits apex = ((*regions == MC_APEX) | (*regions == MC_CUT_APEX)) & (gap > 0.0), opens = gap > *before;
+  lanes_select(&opens, &wider, &gap, opening);
+  lanes_select(&apex, opening, &none, opening);
 }

@@ -32,9 +32,7 @@ LANES_INLINE PetscBool mc_plane_push(const PetscBool hoop, PetscInt n, const Pet
   t->b[1] = y0 * f[3] + y1 * f[4];
   t->b[2] = hoop ? f[8] * f[8] * old[2] : old[2];
   t->b[3] = x0 * f[3] + x1 * f[4];
-  Lanes together;
-  mc_reopen(&old[7], &together);
-  for (int k = 0; k < 4; ++k) t->b[k] *= together;
+  mc_with_opening(&old[7], 4, t->b);
   t->det = f[0] * f[4] - f[1] * f[3];
   if (hoop) t->det *= f[8];
   return PETSC_TRUE;
@@ -118,19 +116,23 @@ LANES_INLINE void mc_plane_tensor(const PlaneTrial *t, const Lanes value[3], Lan
   s[3] = rise * (t->axis[0] * t->axis[1]);
 }
 
-/* b^e and the equivalent plastic strain; an elastic point keeps its trial b. */
+/* b^e, the equivalent plastic strain and the opening, which `state` brings from before; an elastic
+ * point keeps its trial b. */
 LANES_INLINE void mc_plane_state(const PetscReal *p, const PlaneTrial *t, const Lanes tau[3], const LaneBits *regions,
                                  Lanes state[MC_STATE])
 {
   const Lanes share = p[MC_LAMBDA] / (3.0 * p[MC_LAMBDA] + 2.0 * p[MC_MU]) * (tau[0] + tau[1] + tau[2]), none = {0};
   const LaneBits plastic = *regions != MC_ELASTIC;
+  const Lanes before = state[7];
   Lanes stretch2[3], b[4], norm2 = none, flow;
   for (int k = 0; k < 4; ++k) state[k] = t->b[k];
   state[4] = state[5] = state[7] = none;
   if (!lanes_any(&plastic)) return;
+  mc_opening(p, regions, t->strain, tau, &before, &state[7]);
   for (int a = 0; a < 3; ++a) {
     const Lanes elastic = (tau[a] - share) / (2.0 * p[MC_MU]), twice = 2.0 * elastic;
-    norm2 += (t->strain[a] - elastic) * (t->strain[a] - elastic);
+    const Lanes plastic_strain = t->strain[a] - elastic - state[7] / 3.0;
+    norm2 += plastic_strain * plastic_strain;
     lanes_exp(&twice, &stretch2[a]);
   }
   mc_plane_tensor(t, stretch2, b);
@@ -138,7 +140,6 @@ LANES_INLINE void mc_plane_state(const PetscReal *p, const PlaneTrial *t, const 
   lanes_sqrt(&norm2, &norm2);
   lanes_select(&plastic, &norm2, &none, &flow);
   state[6] += flow;
-  mc_opening(p, regions, t->strain, tau, &state[7]);
   for (int k = 0; k < 4; ++k) lanes_select(&plastic, &b[k], &state[k], &state[k]);
 }
 

@@ -23,6 +23,8 @@
 #include <math.h>
 #include <petscsys.h>
 
+#define MC_STATE 8 /* b^e, equivalent plastic strain, opening */
+
 /* Packed parameters. */
 enum {
   MC_LAMBDA,
@@ -35,7 +37,7 @@ enum {
   MC_R1,
   MC_R2,
   MC_NOISE, /* rounding of f at small strains, Pa */
-  MC_MEMORY, /* 1: openings are remembered */
+  MC_MEMORY, /* share of an opening that is remembered */
   MC_N_PARAMETERS
 };
 
