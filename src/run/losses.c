@@ -114,6 +114,24 @@ static void warn_of_transfer(const Model *m, Diag *diag)
             "(docs/theory.md, Energy)");
 }
 
+/* Stress that acts at the end of a step and not at its start, or the other way round, has half its
+ * work over the whole step: on what comes apart within a step, more than had been stored. */
+static PetscErrorCode WarnOfGain(Model *m, Diag *diag)
+{
+  Energies e;
+
+  PetscFunctionBeginUser;
+  PetscCall(ModelEnergies(m, &e));
+  const PetscReal share = m->most_energy > m->least_energy ? -e.dissipated / m->most_energy : 0;
+  if (m->c->analysis.type != ANALYSIS_DYNAMIC || !(share > TRANSFER_ALLOWED)) PetscFunctionReturn(0);
+  diag_warning(diag, NULL, "stresses gave %.4g J more than had been put into them, %.2g %% of the %.4g J that came in",
+               (double)-e.dissipated, (double)(100 * share), (double)m->most_energy);
+  diag_hint(diag,
+            "steps must see an impact: no longer than a wave takes through a cell, size / sqrt((lambda + 2 mu) / "
+            "density), or with `analysis: {bossak: -0.3}` (docs/theory.md, Energy)");
+  PetscFunctionReturn(0);
+}
+
 static void warn_of_followers(const Model *m, Diag *diag)
 {
   char path[256], at[80];
@@ -135,7 +153,7 @@ static void warn_of_followers(const Model *m, Diag *diag)
         text_position(m->dim, m->load_memory[k].where, at));
 }
 
-PetscErrorCode LossesWarn(const Model *m, const PetscReal *values, Diag *diag)
+PetscErrorCode LossesWarn(Model *m, const PetscReal *values, Diag *diag)
 {
   char path[256];
   const Outside *o = &m->outside;
@@ -158,5 +176,6 @@ PetscErrorCode LossesWarn(const Model *m, const PetscReal *values, Diag *diag)
                  "points that left the grid were kept on its boundary %.0f times, at most %.0f of %.4g kg in a step",
                  (double)o->held, (double)o->held_most, (double)o->held_most_mass);
   warn_of_transfer(m, diag);
+  PetscCall(WarnOfGain(m, diag));
   PetscFunctionReturn(0);
 }

@@ -7,6 +7,6 @@
 PetscErrorCode LossesLogStep(Model *model, RunDir *dir, const StepReport *report);
 /* Collective. At the end: how much it was. */
 PetscErrorCode LossesLogEnd(const Model *model, RunDir *dir);
-/* At the end, with the last values of the measures: what the user must know before believing
- * them. */
-PetscErrorCode LossesWarn(const Model *model, const PetscReal *values, Diag *diag);
+/* Collective. At the end, with the last values of the measures: what the user must know before
+ * believing them. */
+PetscErrorCode LossesWarn(Model *model, const PetscReal *values, Diag *diag);

@@ -184,6 +184,32 @@ static void test_fem(void **state)
   flying("fem", CELL_HEXAHEDRON, 0.25, PETSC_FALSE);
 }
 
+/* Sand that flies apart and remembers by how much: what is open goes on closing. */
+static void test_opening(void **state)
+{
+  static NamedValue sand[] = {{"young", 1e6},         {"poisson", 0.3}, {"friction_angle", 31},
+                              {"dilatancy_angle", 0}, {"cohesion", 0},  {"opening_memory", 1}};
+  Bench b;
+  PetscReal open = 0;
+  (void)state;
+  bench_init(&b, "mpm", CELL_QUADRILATERAL, 0);
+  bench_grid(&b, (PetscReal[]){0, 0, 0}, (PetscReal[]){2, 1.5, 1}, 0.125);
+  bench_box(&b, 0, (PetscReal[]){0.5, 0.25, 0}, (PetscReal[]){1.5, 0.75, 1});
+  b.material = (MaterialSpec){
+    .name = "rubber", .law = "mohr-coulomb", .density = 1500, .n_parameters = 6, .parameters = sand};
+  bench_dynamic(&b, 1, 2e-3);
+  bench_motion(&b, 1, 0, MOTION_FIXED, 3);
+  b.c.linear = LINEAR_ITERATIVE;
+  b.c.newton.residual = 1e-9;
+  b.body[0].spin[2] = 6;
+  b.body[0].velocity[1] = -4;
+  b.c.gravity[1] = -9.81;
+  Model *m = check(&b, 40, 6, PETSC_TRUE);
+  for (PetscInt p = 0; p < m->points->n; ++p) open = PetscMax(open, point_real(m->points, POINT_STATE, p)[7]);
+  CHECK(model_max(m, open) > 0.01, "nothing is open");
+  CALL(ModelDestroy(&m));
+}
+
 /* A mesh is shared in another way each time that a process reads it. */
 static void test_mesh(void **state)
 {
@@ -355,7 +381,7 @@ int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {cmocka_unit_test(test_mpm_2d),      cmocka_unit_test(test_mpm_3d),
                                      cmocka_unit_test(test_repartition), cmocka_unit_test(test_fem),
-                                     cmocka_unit_test(test_mesh),        cmocka_unit_test(test_gmm),
+                                     cmocka_unit_test(test_opening), cmocka_unit_test(test_mesh),        cmocka_unit_test(test_gmm),
                                      cmocka_unit_test(test_static),      cmocka_unit_test(test_at_start),
                                      cmocka_unit_test(test_other_model), cmocka_unit_test(test_given_up)};
   PetscMPIInt rank;
