@@ -143,6 +143,7 @@ typedef struct {
   PetscReal calm;    /* s that it must stay there */
   PetscReal from;    /* no event before, s */
   PetscReal carried; /* what moved farther than this has taken part, m; 0: one cell */
+  PetscReal least;   /* kg that must have taken part */
 } AvalancheSpec;
 
 typedef struct {

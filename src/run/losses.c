@@ -2,6 +2,7 @@
  * warnings at the end. */
 #include "run/losses.h"
 #include "base/text.h"
+#include "model/measure/measure.h"
 
 /* share of the energy that came in: about what granular flows lose on usual grids */
 #define TRANSFER_ALLOWED 0.05
@@ -163,8 +164,9 @@ PetscErrorCode LossesWarn(Model *m, const PetscReal *values, Diag *diag)
     if (!PetscIsNanReal(values[k]) || m->memory[k].ended > 0) continue;
     snprintf(path, sizeof path, "measures.%s", m->c->measures[k].name);
     diag_warning(diag, path, "'%s' is empty (nan) at the end: %s", m->c->measures[k].name,
-                 m->c->measures[k].has_rate ? "fewer than two steps with a value lie in its window"
-                                            : "no point is left of what it measures");
+                 m->c->measures[k].has_rate                     ? "fewer than two steps with a value lie in its window"
+                 : measure_find(m->c->measures[k].kind)->events ? "none of what it counts is over"
+                                                                : "no point is left of what it measures");
   }
   if (o->removed > 0)
     diag_warning(diag, "grid.outside", "%.0f points of %.4g kg left the grid and were removed", (double)o->removed,

@@ -23,7 +23,7 @@ typedef struct {
   BodySpec body[2];
   MotionSpec motion[8];
   LoadSpec load[4];
-  MeasureSpec measure[4];
+  MeasureSpec measure[6];
   Amplitude amplitude;
   PetscInt halved; /* in a mesh, of so many quadrilaterals one is two triangles; 0: none */
   char mesh[PETSC_MAX_PATH_LEN];

@@ -242,13 +242,16 @@ static void test_avalanches(void **state)
   motion->value[0] = 1;
   motion->amplitude = (Amplitude){.n = 9, .time = time, .value = value};
   const AvalancheSpec slides = {.kinetic = 60, .ends = 1. / 3, .calm = 0.02, .carried = 0.05};
-  b.c.n_measures = 4;
-  for (int k = 0; k < 4; ++k)
-    b.measure[k] = (MeasureSpec){.name = "slides", .kind = k == 3 ? "agitation" : "avalanches", .avalanche = slides};
+  b.c.n_measures = 6;
+  for (int k = 0; k < 6; ++k)
+    b.measure[k] = (MeasureSpec){
+      .name = "slides", .kind = k == 3 ? "agitation" : "avalanches", .word = "number", .avalanche = slides};
   b.measure[1].avalanche.from = 0.15;   /* the second alone */
   b.measure[1].avalanche.carried = 0.1; /* nothing comes so far */
   b.measure[2].avalanche = (AvalancheSpec){.has_container = PETSC_TRUE, .times = 0.01, .ends = 0.5, .creep = 0.1};
   b.measure[3].avalanche.has_container = PETSC_TRUE;
+  b.measure[4].word = "after";
+  b.measure[5].avalanche.least = 501; /* more than there is */
   Model *m = bench_model(&b, PETSC_COMM_WORLD);
   while (m->time < 0.15) model_step(m, 0.15 - m->time);
   CHECK(measure(m, &b.measure[0], 0) == 1 && measure(m, &b.measure[1], 1) == 0, "events at 0.15 s");
@@ -260,9 +263,12 @@ static void test_avalanches(void **state)
     CHECK(PetscIsNanReal(agitation) || agitation < 1e-2, "agitation %g", (double)agitation);
   }
   while (m->time < 0.4 - 1e-9) model_step(m, 0.4 - m->time);
+  CHECK(measure_n_events(m, 5) == 0, "an event of 500 kg counts, though 501 are asked for");
   CHECK(measure_n_events(m, 0) == 2 && measure_n_events(m, 1) == 1 && measure_n_events(m, 2) == 0,
         "%d, %d, %d events at the end", (int)measure_n_events(m, 0), (int)measure_n_events(m, 1),
         (int)measure_n_events(m, 2));
+  for (int k = 0; k < 2; ++k) ((PetscReal *)measure_event(m, 4, k))[3] = 36 + 4 * k;
+  CHECK_CLOSE(measure(m, &b.measure[4], 4), 38, 1e-12);
   check_push(measure_event(m, 0, 0), 0.02, 500, dt);
   check_push(measure_event(m, 0, 1), 0.2, 500, dt);
   check_push(measure_event(m, 1, 0), 0.2, 0, dt);

@@ -74,6 +74,8 @@ static const SchemaTable agitation = {
   .name = "agitation", .help = "How much a powder moves in a container that moves.", .entries = agitation_entries};
 
 static const SchemaEntry avalanche_entries[] = {
+  KEY("tells", WORD_TEXT, NULL, "what the measure is", .registry = (const void *const *)measure_avalanche_words,
+      .fallback = "number", AT(MeasureSpec, word)),
   CONTAINER(.note = "one at rest"),
   KEY("times", NUMBER, NULL,
       "an avalanche has a kinetic energy, relative to the container, so many times that while the powder creeps, or "
@@ -91,6 +93,8 @@ static const SchemaEntry avalanche_entries[] = {
       AT(MeasureSpec, avalanche.from)),
   KEY("carried", NUMBER, "m", "mass that is carried farther than this, relative to the container, has taken part",
       .note = "the smallest cell", ABOVE(0), AT(MeasureSpec, avalanche.carried)),
+  KEY("least", NUMBER, "kg", "where less mass has taken part, single points leapt: no avalanche", .fallback = "0",
+      AT_LEAST(0), AT(MeasureSpec, avalanche.least)),
   {.key = NULL},
 };
 static const SchemaGroup avalanche_groups[] = {{GROUP_ONE, {"times", "kinetic", NULL}}, {GROUP_NONE, {NULL}}};
@@ -135,7 +139,7 @@ static SchemaEntry entry_of(const Measure *measure)
   entry.key = measure->key;
   entry.unit = measure->number.unit;
   entry.help = measure->number.help;
-  entry.registry = (const void *const *)measure->words;
+  entry.registry = entry.type == TYPE_WORD_TEXT ? (const void *const *)measure->words : NULL;
   entry.only_2d = measure->only_2d;
   entry.turns = measure->takes == MEASURE_SPIN_AXIS;
   entry.tagged = PETSC_TRUE;

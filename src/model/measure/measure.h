@@ -60,13 +60,15 @@ typedef struct {
   PetscBool no_radial; /* a vector whose radial component adds up to zero in axisymmetry */
   /* of the key: its help; its unit for people, if words have several */
   MeasureNumber number;
-  const MeasureNumber *const *words; /* with MEASURE_WORD: ended by NULL */
+  /* with MEASURE_WORD, MEASURE_AVALANCHES: ended by NULL; the first is the default of the latter */
+  const MeasureNumber *const *words;
   /* Collective, or NULL: after every accepted step of dt, and at the start with dt = 0. */
   PetscErrorCode (*remember)(Model *m, const MeasureSpec *s, PetscReal dt, PetscReal kept[MEASURE_KEPT]);
   const MeasureEvents *events; /* NULL: it counts none */
 } Measure;
 
-extern const Measure *const measures[]; /* ended by NULL */
+extern const Measure *const measures[];                      /* ended by NULL */
+extern const MeasureNumber *const measure_avalanche_words[]; /* what `tells` may name */
 const Measure *measure_find(const char *kind);
 /* What the spec asks for. */
 const MeasureNumber *measure_number(const MeasureSpec *spec);

@@ -3,7 +3,8 @@
  * What counts is the energy of motion relative to the container. An event begins when it exceeds a
  * low threshold, if it then reaches a high one before it falls back; it is over when it has stayed
  * below the low one, or below a small share of its own peak, for a while, and its end is when it
- * came there. In between gravity works on the relative motion, and every point is carried some way. */
+ * came there. In between gravity works on the relative motion, and every point is carried some way.
+ * Where too little mass was carried far, single grains leapt: that is none. */
 #include "boundary/motion.h"
 #include "model/measure/measure.h"
 #include "model/model_private.h"
@@ -206,7 +207,7 @@ static PetscErrorCode RememberAvalanches(Model *m, const MeasureSpec *s, PetscRe
   if (m->time < state[STATE_CALM] + s->avalanche.calm * (1 - 1e-9)) PetscFunctionReturn(0);
   state[STATE_PHASE] = QUIET;
   PetscCall(PetscArraycpy(row, state + STATE_EVENT, EVENT_N)); /* the list may move */
-  PetscCall(MemoryAppend(memory, EVENT_N, row));
+  if (row[EVENT_MOVED] >= s->avalanche.least) PetscCall(MemoryAppend(memory, EVENT_N, row));
   PetscFunctionReturn(0);
 }
 
@@ -215,6 +216,17 @@ static PetscErrorCode Count(Model *m, const MeasureSpec *s, PetscInt index, Pets
   (void)s;
   PetscFunctionBeginUser;
   *value = (PetscReal)measure_n_events(m, index);
+  PetscFunctionReturn(0);
+}
+
+/* Mean over the avalanches that are over; nan if none is. */
+static PetscErrorCode MeanOfEvents(Model *m, const MeasureSpec *s, PetscInt index, PetscReal *value)
+{
+  const PetscInt n = measure_n_events(m, index);
+
+  PetscFunctionBeginUser;
+  *value = n ? 0 : NAN;
+  for (PetscInt i = 0; i < n; ++i) *value += measure_event(m, index, i)[measure_number(s)->which] / (PetscReal)n;
   PetscFunctionReturn(0);
 }
 
@@ -246,15 +258,23 @@ const Measure measure_agitation = {
              .in = PETSC_TRUE,
              .value = Agitation},
   .remember = RememberAgitation};
+
+#define TOLD(...) WORD(.in = PETSC_TRUE, .middle = PETSC_TRUE, .may_about = PETSC_TRUE, __VA_ARGS__)
+const MeasureNumber *const measure_avalanche_words[] = {
+  TOLD(.word = "number", .help = "how many are over", .value = Count),
+  TOLD(.word = "before", .help = "mean inclination of the surface before those that are over", .unit = "deg",
+       .value = MeanOfEvents, .which = EVENT_SURFACE_BEFORE),
+  TOLD(.word = "after", .help = "mean inclination of the surface after them", .unit = "deg", .value = MeanOfEvents,
+       .which = EVENT_SURFACE_AFTER),
+  NULL,
+};
+
 const Measure measure_avalanches = {
   .key = "avalanches",
   .takes = MEASURE_AVALANCHES,
   .number = {.unit = "",
-             .help = "number of avalanches that are over; events.csv has a row for each",
-             .in = PETSC_TRUE,
-             .middle = PETSC_TRUE,
-             .may_about = PETSC_TRUE,
-             .value = Count},
+             .help = "avalanches that are over, their number or mean angles; events.csv has a row for each"},
+  .words = measure_avalanche_words,
   .remember = RememberAvalanches,
   .events = &(const MeasureEvents){
     .header = STATE_N,
