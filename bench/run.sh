@@ -22,6 +22,8 @@ title "the three reference loads: statics, the dry column, a 3D collapse"
 
 title "a collapsing column: aspect ratio 1.2, mesh 2, 0.5 s"
 "$bench/bench_column"
+title "powder in a tube: rings of triangles"
+"$bench/bench_tube"
 title "meshfree bases"
 "$bench/bench_cloud"
 
