@@ -138,7 +138,8 @@ static void resolve_parameter(const Resolver *r, const Law *law, const LawParame
     diag_error(r->diag, path_of(r, p->name, path), "%s must lie in %c%g, %g%c (%s), not %g", p->help,
                p->min_open ? '(' : '[', p->min, p->max, p->max_open ? ')' : ']', unit_of(p->unit), *value);
   if (r->mixed && p->not_mixed && *value != p->fallback) {
-    diag_error(r->diag, path_of(r, p->name, path), "`formulation: mixed` cannot take %s: only %g", p->name, p->fallback);
+    diag_error(r->diag, path_of(r, p->name, path), "`formulation: mixed` cannot take %s: only %g", p->name,
+               p->fallback);
     diag_hint(r->diag, "take `formulation: displacement`: pressures at nodes would spread it over the neighbours");
   }
   if (p->unit && !strcmp(p->unit, "deg")) *value *= PETSC_PI / 180.0;

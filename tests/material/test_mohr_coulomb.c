@@ -83,7 +83,8 @@ static TextbookSoil soil_of(const McSample *s, const PetscReal *p)
 {
   const PetscReal rad = PETSC_PI / 180.0;
   return (TextbookSoil){p[MC_LAMBDA],       p[MC_MU],    s->friction * rad,
-                        s->dilatancy * rad, s->cohesion, s->cutoff < 1e300 ? s->cutoff : INFINITY, s->memory};
+                        s->dilatancy * rad, s->cohesion, s->cutoff < 1e300 ? s->cutoff : INFINITY,
+                        s->memory};
 }
 
 /* An increment and an elastic state before it whose trial strains are e, in directions of chance;
@@ -110,8 +111,8 @@ static void random_increment(Random *random, const PetscReal *p, PetscBool flat,
 }
 
 /* One point of the textbook against what the law made of it. */
-static int compare_textbook(const McSample *sample, const PetscReal *p, const PetscReal f[9], const PetscReal old[MC_STATE],
-                            const PetscReal state[MC_STATE], const PetscReal tau[6])
+static int compare_textbook(const McSample *sample, const PetscReal *p, const PetscReal f[9],
+                            const PetscReal old[MC_STATE], const PetscReal state[MC_STATE], const PetscReal tau[6])
 {
   const TextbookSoil soil = soil_of(sample, p);
   double F[3][3], b[3][3], full[9], stress[3][3], plastic = old[6], opening = old[7];
@@ -213,7 +214,8 @@ static void test_yield(void **unused)
   Random random = {5};
   for (int m = 0; m < MC_SAMPLES; ++m) {
     const PetscReal unit[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
-    PetscReal p[LAW_MAX_PARAMETERS], e[3], q[9], diagonal[6] = {0}, old[MC_STATE], state[MC_STATE], tau[6], principal[3], v[9];
+    PetscReal p[LAW_MAX_PARAMETERS], e[3], q[9], diagonal[6] = {0}, old[MC_STATE], state[MC_STATE], tau[6],
+                                                 principal[3], v[9];
     const Law *law = mc_sample_pack(&mc_samples[m], p);
     for (int s = 0; s < 3000; ++s) {
       mc_sample_trial(&random, mc_sample_strain(p, mc_samples[m].young), e);

@@ -38,10 +38,7 @@ static void move(Grain *g, const PetscReal dF[9])
 static PetscReal apex_of(const Grain *g) { return g->p[MC_Q] / (g->p[MC_K] - 1.0); }
 
 /* ln J at which nothing is open: the volume that the tension of the apex holds. */
-static PetscReal apex_volume(const Grain *g)
-{
-  return 3.0 * apex_of(g) / (3.0 * g->p[MC_LAMBDA] + 2.0 * g->p[MC_MU]);
-}
+static PetscReal apex_volume(const Grain *g) { return 3.0 * apex_of(g) / (3.0 * g->p[MC_LAMBDA] + 2.0 * g->p[MC_MU]); }
 
 static void assert_near(const char *what, PetscReal value, PetscReal expected, PetscReal tolerance)
 {
@@ -74,7 +71,8 @@ static void random_step(Random *random, Kind kind, PetscReal volume, PetscReal s
 /* Compression that bears, far from isotropic, with a turn in the plane. */
 static void compress(Kind kind, PetscReal f[9])
 {
-  const PetscReal c = cos(0.3), s = sin(0.3), u[9] = {0.9992, 1e-4, 0, 1e-4, 0.9996, 0, 0, 0, kind == PLANE ? 1 : 0.9994};
+  const PetscReal c = cos(0.3), s = sin(0.3),
+                  u[9] = {0.9992, 1e-4, 0, 1e-4, 0.9996, 0, 0, 0, kind == PLANE ? 1 : 0.9994};
   const PetscReal turn[9] = {c, -s, 0, s, c, 0, 0, 0, 1};
   tensor_multiply(turn, u, f);
 }

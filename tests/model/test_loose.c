@@ -74,8 +74,7 @@ static void test_column_falls_back(void **state)
     for (int memory = 0; memory < 2; ++memory)
       lifted(method[k], memory, &opened[memory], &ratio[memory], &centre[memory]);
     PetscPrintf(PETSC_COMM_WORLD, "%s: opened to %.3f, at rest %.5f, centre %.5f m; without memory %.5f, %.5f m\n",
-                method[k], (double)opened[1], (double)ratio[1], (double)centre[1], (double)ratio[0],
-                (double)centre[0]);
+                method[k], (double)opened[1], (double)ratio[1], (double)centre[1], (double)ratio[0], (double)centre[0]);
     CHECK(opened[1] > 1.02, "%s: nothing came apart", method[k]);
     const PetscReal dense = 1 - weight * H / (2 * M), low = H / 2 - weight * H * H / (3 * M);
     CHECK(ratio[0] > 1.05 && centre[0] > 1.1 * low, "%s: without memory it is no looser", method[k]);

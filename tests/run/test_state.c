@@ -195,8 +195,8 @@ static void test_opening(void **state)
   bench_init(&b, "mpm", CELL_QUADRILATERAL, 0);
   bench_grid(&b, (PetscReal[]){0, 0, 0}, (PetscReal[]){2, 1.5, 1}, 0.125);
   bench_box(&b, 0, (PetscReal[]){0.5, 0.25, 0}, (PetscReal[]){1.5, 0.75, 1});
-  b.material = (MaterialSpec){
-    .name = "rubber", .law = "mohr-coulomb", .density = 1500, .n_parameters = 6, .parameters = sand};
+  b.material =
+    (MaterialSpec){.name = "rubber", .law = "mohr-coulomb", .density = 1500, .n_parameters = 6, .parameters = sand};
   bench_dynamic(&b, 1, 2e-3);
   bench_motion(&b, 1, 0, MOTION_FIXED, 3);
   b.c.linear = LINEAR_ITERATIVE;
@@ -379,11 +379,11 @@ static void test_other_model(void **state)
 
 int main(int argc, char **argv)
 {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_mpm_2d),      cmocka_unit_test(test_mpm_3d),
-                                     cmocka_unit_test(test_repartition), cmocka_unit_test(test_fem),
-                                     cmocka_unit_test(test_opening), cmocka_unit_test(test_mesh),        cmocka_unit_test(test_gmm),
-                                     cmocka_unit_test(test_static),      cmocka_unit_test(test_at_start),
-                                     cmocka_unit_test(test_other_model), cmocka_unit_test(test_given_up)};
+  const struct CMUnitTest tests[] = {
+    cmocka_unit_test(test_mpm_2d),      cmocka_unit_test(test_mpm_3d),  cmocka_unit_test(test_repartition),
+    cmocka_unit_test(test_fem),         cmocka_unit_test(test_opening), cmocka_unit_test(test_mesh),
+    cmocka_unit_test(test_gmm),         cmocka_unit_test(test_static),  cmocka_unit_test(test_at_start),
+    cmocka_unit_test(test_other_model), cmocka_unit_test(test_given_up)};
   PetscMPIInt rank;
   int pid;
   if (PetscInitialize(&argc, &argv, NULL, NULL)) return 1;

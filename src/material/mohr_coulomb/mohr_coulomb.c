@@ -30,7 +30,7 @@ enum { FRICTION, DILATANCY, COHESION, CUTOFF, MEMORY };
 typedef struct {
   Lanes b[6], stretch2[3], strain[3], basis[36];
   Lanes det, flow, opening; /* of the increment; equivalent plastic strain and opening before it */
-  LaneBits finite; /* is b of use? */
+  LaneBits finite;          /* is b of use? */
 } Trial;
 
 LANES_INLINE void trial_lanes(PetscInt n, const PetscReal *dF, const PetscReal *old, Trial *t)
@@ -196,10 +196,7 @@ PLANE_UPDATE(update_plane, PETSC_FALSE)
 PLANE_UPDATE(update_hoop, PETSC_TRUE)
 
 /* Tension of the apex, Pa. */
-static PetscReal apex(const PetscReal *p)
-{
-  return p[MC_CUT] < INFINITY ? p[MC_CUT] : p[MC_Q] / (p[MC_K] - 1.0);
-}
+static PetscReal apex(const PetscReal *p) { return p[MC_CUT] < INFINITY ? p[MC_CUT] : p[MC_Q] / (p[MC_K] - 1.0); }
 
 static PetscReal energy(const PetscReal *p, const PetscReal *state)
 {
@@ -273,8 +270,8 @@ static const LawParameter parameters[] = {
   {"cohesion", "Pa", "cohesion", 0, PETSC_MAX_REAL, .fallback = NAN},
   {"tension_cutoff", "Pa", "largest principal tension; 1e300: none but the apex", 0, PETSC_MAX_REAL,
    .fallback = NO_CUTOFF},
-  {"opening_memory", "", "share of an opening that must close before anything bears; 1: grains keep their density",
-   0, 1, .fallback = 0, .not_mixed = PETSC_TRUE},
+  {"opening_memory", "", "share of an opening that must close before anything bears; 1: grains keep their density", 0,
+   1, .fallback = 0, .not_mixed = PETSC_TRUE},
   {.name = NULL},
 };
 

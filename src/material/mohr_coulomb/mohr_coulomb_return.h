@@ -36,7 +36,7 @@ enum {
   MC_R0,  /* direction of the return to the plane, D b / (a . D b) */
   MC_R1,
   MC_R2,
-  MC_NOISE, /* rounding of f at small strains, Pa */
+  MC_NOISE,  /* rounding of f at small strains, Pa */
   MC_MEMORY, /* share of an opening that is remembered */
   MC_N_PARAMETERS
 };
