@@ -80,7 +80,8 @@ PetscErrorCode CalibrateAdd(CalibrateRun *r, const PetscReal *x, PetscInt *point
     if (same == dim) PetscFunctionReturn(0);
   }
   PetscCall(PetscRealloc((size_t)((r->n + 1) * dim) * sizeof(PetscReal), &r->x));
-  PetscCall(PetscArraycpy(r->x + r->n++ * dim, at, dim));
+  PetscCall(PetscArraycpy(r->x + r->n * dim, at, dim));
+  ++r->n;
   for (PetscInt i = 0; i < r->c->n_instruments && !diag_errors(r->diag); ++i) PetscCall(AddMember(r, i, name, at));
   PetscFunctionReturn(0);
 }

@@ -53,7 +53,7 @@ static const SchemaEntry calibration_entries[] = {
   KEY("instruments", NAMED, NULL, "cases, by name", REQUIRED, .table = &instrument_table, AT(Calibration, instruments),
       .count = offsetof(Calibration, n_instruments)),
   KEY("points", INTEGER, NULL, "sets of parameters that are run at first; 0: eight for each parameter", .fallback = "0",
-      BETWEEN(0, SURROGATE_RUNS / 2), AT(Calibration, points)),
+      BETWEEN(0, 0.5 * SURROGATE_RUNS), AT(Calibration, points)),
   KEY("rounds", INTEGER, NULL, "how often more are run where the region is not clear", .fallback = "3", BETWEEN(0, 20),
       AT(Calibration, rounds)),
   KEY("batch", INTEGER, NULL, "how many in each round", .fallback = "6", BETWEEN(1, 40), AT(Calibration, batch)),

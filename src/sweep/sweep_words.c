@@ -69,7 +69,7 @@ static PetscErrorCode AddMeasure(const SweepWord *word, Diag *diag, SweepSpecifi
     sweep_word_error(diag, word, "there is nothing of this name to be taken from a measure");
     diag_hint_names(diag, part[1], words);
   } else taken->take = (Take)take_words[take].value;
-  if (n > 2 && n == 4 && !rest) {
+  if (n == 4 && !rest) {
     taken->has_window = PETSC_TRUE;
     taken->from = (PetscReal)strtod(part[2], &end[0]);
     taken->to = (PetscReal)strtod(part[3], &end[1]);

@@ -35,7 +35,10 @@ PetscErrorCode StateListsFromTables(Model *m, const Tables *tables, char reason[
     const PetscInt64 n = length ? length[k] : 0;
     m->memory[k].n_list = 0; /* what the start brought */
     if (n > left || !measure_list_fits(m, k, n)) snprintf(reason, 256, "what measure %d keeps is not there", (int)k);
-    else if (n > 0) PetscCall(MemoryAppend(&m->memory[k], (PetscInt)n, number + (numbers->rows - left)));
+    else if (n > 0) {
+      PetscCall(MemoryAppend(&m->memory[k], (PetscInt)n, number));
+      number += n;
+    }
     left -= n;
   }
   PetscFunctionReturn(0);

@@ -188,6 +188,7 @@ static PetscErrorCode Slide(Model *m, const MeasureSpec *s, PetscReal dt, const 
   PetscFunctionReturn(0);
 }
 
+/* NOLINTNEXTLINE(readability-non-const-parameter): as the other measures have it */
 static PetscErrorCode RememberAvalanches(Model *m, const MeasureSpec *s, PetscReal dt, PetscReal kept[MEASURE_KEPT])
 {
   static const PetscReal start[STATE_N] = {[STATE_CREEP] = -1};

@@ -26,7 +26,7 @@ PetscReal measure_share_in(const Model *m, const Shape *shape, PetscInt p)
   if (!shape_contains(shape, m->dim, x, reach)) return 0;
   if (shape_contains(shape, m->dim, x, -reach)) return 1;
   for (PetscInt k = 0; k < SAMPLES; ++k) {
-    PetscReal at[3];
+    PetscReal at[3] = {0};
     for (PetscInt d = 0; d < m->dim; ++d)
       at[d] = x[d] + side * (((PetscReal)(k * multiplier[d] % SAMPLES) + 0.5) / SAMPLES - 0.5);
     if (m->c->kinematics->hoop) at[0] = PetscAbsReal(at[0]);
