@@ -13,7 +13,7 @@
 
 typedef struct {
   const char *law, *what;
-  PetscReal given[4]; /* angles in rad */
+  PetscReal given[5]; /* angles in rad */
   PetscReal strain;   /* size of the increments */
   const Kinematics *kinematics;
   int steps; /* steps towards the state that is measured: with 0 from rest */
@@ -31,6 +31,7 @@ static const BenchCase cases[] = {
   {"mohr-coulomb", "elastic, ring", {0.54, 0.02, 1, 1e300}, 1e-3, &kinematics_axisymmetric, 0},
   {"mohr-coulomb", "plastic, ring", {0.54, 0.02, 1e-3, 1e300}, 1e-3, &kinematics_axisymmetric, 5},
   {"mohr-coulomb", "cut off, ring", {0.54, 0.02, 1e-3, 5e-4}, 1e-3, &kinematics_axisymmetric, 5},
+  {"mohr-coulomb", "remembers, ring", {0.54, 0.02, 1e-3, 1e300, 1}, 1e-3, &kinematics_axisymmetric, 5},
   {"mohr-coulomb", "elastic, 3d", {0.54, 0.02, 1, 1e300}, 1e-3, &kinematics_3d, 0},
   {"mohr-coulomb", "plastic, 3d", {0.54, 0.02, 1e-3, 1e300}, 1e-3, &kinematics_3d, 5},
   {"mohr-coulomb", "cut off, 3d", {0.54, 0.02, 1e-3, 5e-4}, 1e-3, &kinematics_3d, 5},

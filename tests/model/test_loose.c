@@ -35,7 +35,7 @@ static void volumes(const Model *m, PetscReal *ratio, PetscReal *centre)
 
 /* A column of 2 x 10 cells between smooth walls on a floor that holds it. For 0.03 s gravity lifts
  * it, so that its lowest row opens; then it falls back and comes to rest. Steps see waves pass (a
- * quarter of a cell in each): the trapezoidal rule makes energy of contact that it cannot see. */
+ * third of a cell in each): the trapezoidal rule makes energy of contact that it cannot see. */
 static void lifted(const char *method, PetscReal memory, PetscReal *opened, PetscReal *ratio, PetscReal *centre)
 {
   static PetscReal time[] = {0.03, 0.0301}, up[] = {-1, 1};
