@@ -160,6 +160,7 @@ static PetscReal column(const char *basis, PetscInt n, PetscReal curvature)
     local[1] += volume;
   }
   CALL(MPI_Allreduce(local, sum, 2, MPIU_REAL, MPIU_SUM, PETSC_COMM_WORLD));
+  CHECK_CLOSE(model_sum(m, "overburden: mean", 0), sum[0] / sum[1], 1e-14);
   CALL(ModelDestroy(&m));
   bench_end(&b);
   PetscPrintf(PETSC_COMM_WORLD, "column of %d cells with %s: stress off by %.3g\n", (int)n, basis,
