@@ -43,5 +43,8 @@ PetscReal cell_volume_in(const Kinematics *kinematics, CellType type, const Pets
  * hexahedron 1 8 27 64): xi is n x dim, weights sum to the reference volume. PETSC_FALSE if there
  * is no such rule. */
 PetscBool cell_quadrature(CellType type, PetscInt n, PetscReal *xi, PetscReal *weight);
+/* The same number of points in the middle of equal parts of the cell, where the rule is a product of
+ * `side` points a direction; 0 and nothing if it is none. */
+PetscInt cell_lattice(CellType type, PetscInt n, PetscReal *xi, PetscReal *weight);
 /* The numbers of points for which a rule exists, ended by 0. */
 const PetscInt *cell_rules(CellType type);

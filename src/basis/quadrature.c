@@ -114,6 +114,22 @@ static void expand_simplex(PetscInt dim, PetscReal volume, const SimplexRule *ru
   }
 }
 
+PetscInt cell_lattice(CellType type, PetscInt n, PetscReal *xi, PetscReal *weight)
+{
+  const PetscInt dim = cells[type].dim;
+  PetscInt r = 0;
+  if (type == CELL_TRIANGLE || type == CELL_TETRAHEDRON) return 0;
+  while (rules[type][r] && rules[type][r] != n) ++r;
+  if (!rules[type][r]) return 0;
+  const PetscInt side = r + 1;
+  for (PetscInt p = 0; p < n; ++p) {
+    weight[p] = cells[type].reference_volume / (PetscReal)n;
+    for (PetscInt d = 0, rest = p; d < dim; ++d, rest /= side)
+      xi[p * dim + d] = (PetscReal)(2 * (rest % side) + 1 - side) / (PetscReal)side;
+  }
+  return side;
+}
+
 /* The first direction runs fastest. */
 static void expand_cube(PetscInt dim, PetscInt side, PetscInt n, PetscReal *xi, PetscReal *weight)
 {

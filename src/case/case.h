@@ -233,6 +233,7 @@ typedef struct {
 
 typedef struct {
   PetscReal stiffness, mass, inertia; /* see docs/theory.md, cells that are not full */
+  PetscReal curvature;                /* see docs/theory.md, smooth shape functions */
 } StabilisationSpec;
 
 typedef struct {

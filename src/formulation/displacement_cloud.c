@@ -52,25 +52,22 @@ KERNEL void cloud_gradients(const int dim, const PetscBool hoop, const PetscReal
   }
 }
 
-/* f_I += V0 tau g_I + m N_I ((1 - lumping) a_h + lumping a_I) + soft (du_I - mean) */
+/* f_I += V0 tau g_I + m N_I ((1 - lumping) a_h + lumping a_I) */
 KERNEL void cloud_force(const int dim, const PetscBool hoop, const WeakFormInput *in, const PetscReal *tau,
                         PetscReal volume, const CloudWork *w, PetscReal *force)
 {
   const int rows = gradient_rows(dim, hoop);
-  const PetscReal part = 1 / (PetscReal)w->nn;
-  PetscReal mean_a[3] = {0, 0, 0}, mean_u[3] = {0, 0, 0};
+  PetscReal mean_a[3] = {0, 0, 0};
   for (PetscInt I = 0; I < w->nn; ++I)
     for (int d = 0; d < dim; ++d) {
       const PetscInt k = w->node[I] * dim + d;
       mean_a[d] += w->N[I] * (in->inertia * in->du[k] + in->history[k]);
-      mean_u[d] += in->du[k] * part;
     }
   for (PetscInt I = 0; I < w->nn; ++I)
     for (int d = 0; d < dim; ++d) {
       const PetscInt k = w->node[I] * dim + d;
       const PetscReal a = in->inertia * in->du[k] + in->history[k];
-      PetscReal f =
-        w->mass * w->N[I] * ((1 - w->lumping) * mean_a[d] + w->lumping * a) + w->soft * (in->du[k] - mean_u[d]);
+      PetscReal f = w->mass * w->N[I] * ((1 - w->lumping) * mean_a[d] + w->lumping * a);
       for (int j = 0; j < rows; ++j)
         if (is_felt(dim, d, j)) f += volume * tau[strain_of(dim, d, j)] * w->g[I * rows + j];
       force[k] += f;
@@ -115,8 +112,8 @@ KERNEL void cloud_products(const int dim, const PetscBool hoop, const PetscReal 
 KERNEL void cloud_block(const int dim, const CloudWork *w, PetscInt I, PetscInt J, PetscReal *restrict block)
 {
   const PetscReal *T = w->T + J * dim * dim;
-  PetscReal mass = w->inertia * (1 - w->lumping) * w->N[I] * w->N[J] - w->soft / (PetscReal)w->nn;
-  if (I == J) mass += w->inertia * w->lumping * w->N[I] + w->soft;
+  PetscReal mass = w->inertia * (1 - w->lumping) * w->N[I] * w->N[J];
+  if (I == J) mass += w->inertia * w->lumping * w->N[I];
   for (int e = 0; e < dim * dim; ++e) {
     PetscReal k = e % (dim + 1) == 0 ? mass : 0;
     for (int j = 0; j < dim; ++j) k += w->g[I * dim + j] * T[j * w->nn * dim * dim + e];
@@ -129,18 +126,18 @@ KERNEL void cloud_matrix_2d(const PetscBool hoop, const PetscBool half, const Pe
                             PetscReal *values)
 {
   const int rows = gradient_rows(2, hoop);
-  const PetscReal soft = w->soft / (PetscReal)w->nn, share = w->inertia * (1 - w->lumping);
+  const PetscReal share = w->inertia * (1 - w->lumping);
   const Row4 diagonal = {1, 0, 0, 1};
   for (PetscInt I = 0; I < w->nn; ++I) {
-    const Row4 mass = diagonal * (share * w->N[I]), none = diagonal * soft;
+    const Row4 mass = diagonal * (share * w->N[I]);
     Row4 g[3];
     for (int j = 0; j < rows; ++j) g[j] = diagonal * 0 + w->g[rows * I + j];
     for (PetscInt J = half ? I : 0; J < w->nn; ++J) {
       Row4 sum = g[0] * *(const Row4 *)(w->T + J * 4);
       for (int j = 1; j < rows; ++j) sum += g[j] * *(const Row4 *)(w->T + (j * w->nn + J) * 4);
-      *(Row4 *)(values + (size_t)slot[I * w->nn + J] * 4) += sum + (mass * w->N[J] - none);
+      *(Row4 *)(values + (size_t)slot[I * w->nn + J] * 4) += sum + mass * w->N[J];
     }
-    *(Row4 *)(values + (size_t)slot[I * w->nn + I] * 4) += diagonal * (w->inertia * w->lumping * w->N[I] + w->soft);
+    *(Row4 *)(values + (size_t)slot[I * w->nn + I] * 4) += diagonal * (w->inertia * w->lumping * w->N[I]);
   }
 }
 
@@ -154,6 +151,43 @@ KERNEL void cloud_matrix(const int dim, const PetscBool hoop, const PetscBool ha
   for (PetscInt I = 0; I < w->nn; ++I)
     for (PetscInt J = half ? I : 0; J < w->nn; ++J)
       cloud_block(dim, w, I, J, values + (size_t)slot[I * w->nn + J] * dim * dim);
+}
+
+/* Motions that nothing holds, as unit vectors over the nodes, across each other: constant, and on a
+ * lattice linear along each axis. Returns how many. */
+static int free_parts(PetscInt axes, PetscInt dim, const CloudWork *w, const PetscReal *x,
+                      PetscReal part[4][CLOUD_MAX_NODES])
+{
+  int n = 0;
+  for (PetscInt k = 0; k <= axes; ++k) {
+    PetscReal mean = 0, square = 0;
+    for (PetscInt I = 0; k && I < w->nn; ++I) mean += x[w->node[I] * dim + k - 1] / (PetscReal)w->nn;
+    for (PetscInt I = 0; I < w->nn; ++I) {
+      part[n][I] = k ? x[w->node[I] * dim + k - 1] - mean : 1;
+      square += PetscSqr(part[n][I]);
+    }
+    if (square == 0) continue;
+    for (PetscInt I = 0; I < w->nn; ++I) part[n][I] /= PetscSqrtReal(square);
+    ++n;
+  }
+  return n;
+}
+
+/* Holds a point's nodes to these parts of their motion: f_I += soft (du_I - sum_k b_kI b_k . du). */
+static void cloud_hold(PetscInt dim, const WeakFormInput *in, const PetscInt *slot, const CloudWork *w,
+                       WeakFormOutput *out)
+{
+  PetscReal part[4][CLOUD_MAX_NODES];
+  const int n = free_parts(in->lattice ? dim : 0, dim, w, in->x, part);
+  for (PetscInt I = 0; I < w->nn; ++I)
+    for (PetscInt J = 0; J < w->nn; ++J) {
+      PetscReal s = I == J;
+      for (int k = 0; k < n; ++k) s -= part[k][I] * part[k][J];
+      for (PetscInt d = 0; d < dim; ++d) out->force[w->node[I] * dim + d] += w->soft * s * in->du[w->node[J] * dim + d];
+      if (!out->values || (in->half && J < I)) continue;
+      PetscReal *block = out->values + (size_t)slot[I * w->nn + J] * (size_t)(dim * dim);
+      for (PetscInt d = 0; d < dim; ++d) block[d * (dim + 1)] += w->soft * s;
+    }
 }
 
 KERNEL void cloud_point(const int dim, const PetscBool hoop, const WeakFormInput *in, const Batch *b, PetscInt k,
@@ -171,6 +205,7 @@ KERNEL void cloud_point(const int dim, const PetscBool hoop, const WeakFormInput
   w->soft = in->soft ? in->soft[p] : 0;
   cloud_gradients(dim, hoop, s->dN + s->value_start[p] * dim, *point_real(in->points, POINT_X, p), b->dF + 9 * k, w);
   cloud_force(dim, hoop, in, b->s.tau + 6 * k, volume, w, out->force);
+  if (w->soft > 0) cloud_hold(dim, in, out->slot + slot, w, out);
   if (!out->values) return;
   cloud_products(dim, hoop, b->s.tau + 6 * k, b->s.c + 36 * k, volume, w);
   if (in->half) cloud_matrix(dim, hoop, PETSC_TRUE, out->slot + slot, w, out->values);

@@ -15,14 +15,16 @@ typedef struct {
   const Points *points;
   const Support *support;
   const Material *materials;
-  const PetscReal *x;       /* n_nodes x dim: positions at the start of the step, m; mixed rings */
+  const PetscReal *x;       /* n_nodes x dim: positions at the start of the step, m; mixed rings, soft */
   const PetscReal *du;      /* n_nodes x dim: displacement since the start of the step, m */
   const PetscReal *history; /* n_nodes x dim: h, m/s2 */
   PetscReal inertia;        /* c0, 1/s2; 0 in statics */
   PetscBool symmetric;      /* are the tangents of all materials symmetric? */
   const PetscReal *lumping; /* per group: share of the mass that is lumped, or NULL (0) */
-  /* per group: stiffness that ties a hardly filled cell's nodes together, N/m, or NULL */
+  /* per group: stiffness that ties a hardly filled cell's nodes together, N/m, or NULL; where each point
+   * has a part of a lattice of its own, to the linear part of their motion */
   const PetscReal *soft;
+  PetscBool lattice;
   const PetscReal *tie; /* per group: inertia that ties them together, kg, or NULL */
   /* Where points are groups of their own and the tangent is symmetric: blocks with a row behind the
    * column are left out. */

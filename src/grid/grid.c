@@ -32,6 +32,20 @@ PetscErrorCode GridDestroy(Grid **grid)
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode GridWiden(Grid **grid, PetscInt layers)
+{
+  PetscMPIInt size;
+  Grid *wide;
+
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_size((*grid)->comm, &size));
+  if (size == 1 || !layers || !(*grid)->ops->Widen) PetscFunctionReturn(0);
+  PetscCall((*grid)->ops->Widen(*grid, layers, &wide));
+  PetscCall(GridDestroy(grid));
+  *grid = wide;
+  PetscFunctionReturn(0);
+}
+
 static PetscErrorCode GatherBounds(Grid *grid)
 {
   PetscMPIInt size;

@@ -71,6 +71,9 @@ PetscErrorCode GridCreateMesh(MPI_Comm comm, const GridSpec *spec, PetscInt dim,
 /* Collective. A mesh that reaches beyond the axis of these kinematics is a mistake, told at `path`:
  * *grid is then NULL. */
 PetscErrorCode GridCheckAxis(const Kinematics *kinematics, const char *path, Diag *diag, Grid **grid);
+/* Collective. The same grid, shared alike, in its place, where each rank knows so many layers of
+ * nodes beyond those of its cells. A box on several ranks; others stay as they are. */
+PetscErrorCode GridWiden(Grid **grid, PetscInt layers);
 PetscErrorCode GridDestroy(Grid **grid);
 
 /* Collective. The grid that `old` is, shared among the ranks by `weight` of its local cells (>= 0;

@@ -17,6 +17,8 @@ struct GridOps {
   void (*clamp)(const Grid *grid, PetscReal *x);
   PetscInt (*candidates)(const Grid *grid, const PetscReal *x, PetscInt max, PetscMPIInt *ranks);
   PetscBool (*cells_alike)(const Grid *grid);
+  /* As GridWiden. */
+  PetscErrorCode (*Widen)(const Grid *old, PetscInt halo, Grid **grid);
   /* Share anew: this rank's cells on a lattice of voxels (arrays to be freed with PetscFree2), and
    * the grid for cuts of that lattice. Collective. */
   PetscErrorCode (*WeighCells)(const Grid *grid, const PetscReal *weight, VoxelWeights *voxels);

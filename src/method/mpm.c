@@ -146,7 +146,7 @@ static PetscErrorCode Stabilise(Discretisation *s)
 
 static PetscErrorCode MpmInitialise(Discretisation *s)
 {
-  const BasisInput basis = {.spec = &s->c->basis, .grid = s->grid};
+  const BasisInput basis = {.spec = &s->c->basis, .grid = s->grid, .hoop = s->c->kinematics->hoop};
 
   PetscFunctionBeginUser;
   PetscCall(PointsSort(s->points));
@@ -155,6 +155,7 @@ static PetscErrorCode MpmInitialise(Discretisation *s)
   PetscCall(Project(s));
   if (s->nodes->pressure) PetscCall(DiscretisationPressure(s));
   PetscCall(Stabilise(s));
+  if (s->basis->domains) PetscCall(DiscretisationCuts(s, s->soft));
   PetscFunctionReturn(0);
 }
 

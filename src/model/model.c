@@ -163,6 +163,7 @@ static PetscErrorCode CreatePoints(Model *m, Outline *outline, Diag *diag)
   PetscCall(PointsCreate(m->dim, m->n_state, 0, &m->points));
   /* nothing is stored yet */
   if (m->formulation->pressure) m->points->components[POINT_PRESSURE] = 1;
+  if (basis_find(c->basis.kind)->domains) m->points->components[POINT_DOMAIN] = m->dim;
   for (PetscInt k = 0; k < c->n_measures; ++k)
     m->points->components[POINT_CARRIED] += measure_find(c->measures[k].kind)->events != NULL;
   PetscCall(PointsSeedOutlined(m->points, m->grid, c, seed, m->method->restores_grid, outline, diag));
@@ -247,6 +248,18 @@ static PetscErrorCode CreateBodies(Model *m, Diag *diag)
   PetscFunctionReturn(0);
 }
 
+/* What the basis asks of the grid. */
+static PetscErrorCode PrepareGrid(Model *m, Diag *diag, PetscInt *errors)
+{
+  const Basis *basis = basis_find(m->c->basis.kind);
+
+  PetscFunctionBeginUser;
+  if (basis->check) PetscCall(basis->check(m->grid, diag));
+  PetscCall(DiagReduce(m->comm, diag, errors));
+  if (!*errors) PetscCall(GridWiden(&m->grid, basis->halo));
+  PetscFunctionReturn(0);
+}
+
 /* Everything after the parts that stand alone; each may find mistakes that make the next
  * meaningless. */
 static PetscErrorCode Build(Model *m, Diag *diag)
@@ -263,7 +276,8 @@ static PetscErrorCode Build(Model *m, Diag *diag)
   if (errors) PetscFunctionReturn(0);
   PetscCall(GridCreate(m->comm, m->c, cell_weight, (void *)m->c, diag, &m->grid));
   if (!m->grid) PetscFunctionReturn(0);
-  if (basis_find(m->c->basis.kind)->check) PetscCall(basis_find(m->c->basis.kind)->check(m->grid, diag));
+  PetscCall(PrepareGrid(m, diag, &errors));
+  if (errors) PetscFunctionReturn(0);
   PetscCall(CreateBodies(m, diag));
   PetscCall(DiagReduce(m->comm, diag, &errors));
   if (errors) PetscFunctionReturn(0);

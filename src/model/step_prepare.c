@@ -15,6 +15,7 @@ WeakFormInput weak_form_of(const Model *m, PetscReal inertia)
     .symmetric = m->symmetric,
     .lumping = m->space->lumping,
     .soft = m->space->soft,
+    .lattice = m->space->basis->domains,
     .tie = m->space->tie,
     .pressure = m->nodes->scaled_pressure,
     .pressure_scale = m->pressure_scale,

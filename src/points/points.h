@@ -31,6 +31,9 @@ typedef enum {
   /* of followers: from their position, the nearest in the grid, to where they really are, m: dim
    * (others: 0 components) */
   POINT_OVERHANG,
+  /* half lengths along the axes, at the start, of the domain over which shape functions are averaged,
+   * m: dim where the basis has such domains, otherwise 0 components */
+  POINT_DOMAIN,
   /* how far it was carried in the present event of each measure that counts some, m: one each */
   POINT_CARRIED,
   POINT_N_REAL

@@ -108,7 +108,8 @@ static PetscErrorCode ReportBodies(const Model *m, Diag *diag, FILE *out)
  * dissection's growth. */
 static PetscReal estimated_memory(const Model *m, PetscInt points, PetscInt unknowns, PetscInt pairs)
 {
-  const PetscReal dim = (PetscReal)m->dim, nn = m->grid->cloud ? 14 : (PetscReal)m->grid->nodes_per_cell,
+  const PetscInt most = m->space->basis->domains ? m->dim == 2 ? 9 : 27 : m->grid->nodes_per_cell;
+  const PetscReal dim = (PetscReal)m->dim, nn = m->grid->cloud ? 14 : (PetscReal)most,
                   n = (PetscReal)PetscMax(unknowns, 2), block = (PetscReal)m->system->block;
   PetscReal per_point = 24 + 8 * nn * (1 + dim);
   for (PetscInt f = 0; f < POINT_N_REAL; ++f) per_point += 8 * (PetscReal)m->points->components[f];

@@ -17,6 +17,7 @@ typedef enum {
 typedef struct {
   const BasisSpec *spec;
   const Grid *grid;
+  PetscBool hoop;          /* see Kinematics */
   const Neighbours *nodes; /* of clouds: the nodes by their places */
   /* do the points stand on the hull of all nodes, as nodes themselves and carriers of loads do? */
   PetscBool on_hull;
@@ -32,6 +33,8 @@ typedef struct {
 
 typedef struct {
   BasisNodes nodes;
+  PetscInt halo;     /* of a grid: layers of nodes beyond those of the cells that points may see */
+  PetscBool domains; /* do points have domains (POINT_DOMAIN)? */
   /* do functions of inner nodes vanish on the hull, so that what is prescribed at its nodes holds
    * on it? */
   PetscBool holds_boundary;

@@ -153,6 +153,9 @@ static void test_sliding(void **state)
   all_the_way(&b, 20);
   sliding(&b, CELL_TRIANGLE, 0.25);
   all_the_way(&b, 16);
+  sliding(&b, CELL_QUADRILATERAL, 0.125);
+  b.c.basis.kind = "gimp";
+  all_the_way(&b, 20);
 }
 
 static void test_sliding_3d(void **state)

@@ -54,12 +54,13 @@ static PetscInt run_both(Bench *b, PetscInt steps)
 
 /* A bar 4 m long held at x = 0, bent by gravity; its tip carries a traction and a point force, and
  * is followed. */
-static void cantilever(const char *method, CellType cell, PetscReal size)
+static void cantilever(const char *method, const char *basis, CellType cell, PetscReal size)
 {
   Bench b;
   bench_init(&b, method, cell, 0);
   bench_grid(&b, (PetscReal[]){0, -1, 0}, (PetscReal[]){4.5, 1.5, 1}, size);
   bench_box(&b, 0, (PetscReal[]){0, 0, 0}, (PetscReal[]){4, 1, 1});
+  b.c.basis.kind = basis;
   b.c.gravity[1] = -0.5;
   b.c.analysis.step = b.c.analysis.largest = 0.5;
   bench_motion(&b, 0, 0, MOTION_FIXED, 7);
@@ -76,20 +77,23 @@ static void test_cantilever(void **state)
   (void)state;
   for (int k = 0; k < 2; ++k) {
     const char *method = k ? "fem" : "mpm";
-    cantilever(method, CELL_QUADRILATERAL, 0.25);
-    cantilever(method, CELL_TRIANGLE, 0.25);
-    cantilever(method, CELL_HEXAHEDRON, 0.5);
-    cantilever(method, CELL_TETRAHEDRON, 0.5);
+    cantilever(method, "cell", CELL_QUADRILATERAL, 0.25);
+    cantilever(method, "cell", CELL_TRIANGLE, 0.25);
+    cantilever(method, "cell", CELL_HEXAHEDRON, 0.5);
+    cantilever(method, "cell", CELL_TETRAHEDRON, 0.5);
   }
+  cantilever("mpm", "gimp", CELL_QUADRILATERAL, 0.25);
+  cantilever("mpm", "gimp", CELL_HEXAHEDRON, 0.5);
 }
 
 /* A block thrown at a floor with some spin; on its way it crosses the borders of the ranks'
  * parts. */
-static void thrown_block(CellType cell, PetscReal size, LinearChoice linear, PetscInt steps)
+static void thrown_block(const char *basis, CellType cell, PetscReal size, LinearChoice linear, PetscInt steps)
 {
   Bench b;
   PetscMPIInt ranks;
   bench_init(&b, "mpm", cell, 0);
+  b.c.basis.kind = basis;
   bench_grid(&b, (PetscReal[]){0, 0, 0}, (PetscReal[]){2, 1.5, 1}, size);
   bench_box(&b, 0, (PetscReal[]){0.25, 0.25, 0.25}, (PetscReal[]){0.75, 0.75, 0.75});
   b.body[0].velocity[0] = 2.5;
@@ -112,10 +116,12 @@ static void thrown_block(CellType cell, PetscReal size, LinearChoice linear, Pet
 static void test_thrown_block(void **state)
 {
   (void)state;
-  thrown_block(CELL_QUADRILATERAL, 0.125, LINEAR_DIRECT, 80);
-  thrown_block(CELL_TRIANGLE, 0.125, LINEAR_AUTO, 80);
-  thrown_block(CELL_HEXAHEDRON, 0.25, LINEAR_DIRECT, 60);
-  thrown_block(CELL_TETRAHEDRON, 0.25, LINEAR_AUTO, 60);
+  thrown_block("cell", CELL_QUADRILATERAL, 0.125, LINEAR_DIRECT, 80);
+  thrown_block("cell", CELL_TRIANGLE, 0.125, LINEAR_AUTO, 80);
+  thrown_block("cell", CELL_HEXAHEDRON, 0.25, LINEAR_DIRECT, 60);
+  thrown_block("cell", CELL_TETRAHEDRON, 0.25, LINEAR_AUTO, 60);
+  thrown_block("gimp", CELL_QUADRILATERAL, 0.125, LINEAR_AUTO, 80);
+  thrown_block("gimp", CELL_HEXAHEDRON, 0.25, LINEAR_DIRECT, 60);
 }
 
 /* fem: a block that stands on a floor and is pushed. */

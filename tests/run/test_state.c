@@ -316,6 +316,27 @@ static void test_given_up(void **state)
   }
 }
 
+/* Domains of points travel, and the ranks' parts have a halo. */
+static void test_gimp(void **state)
+{
+  Bench b;
+  (void)state;
+  bench_init(&b, "mpm", CELL_QUADRILATERAL, 0);
+  bench_grid(&b, (PetscReal[]){0, 0, 0}, (PetscReal[]){2, 1.5, 1}, 0.125);
+  bench_box(&b, 0, (PetscReal[]){0.25, 0.25, 0.25}, (PetscReal[]){0.75, 0.75, 0.75});
+  b.c.basis.kind = "gimp";
+  bench_dynamic(&b, 1, 4e-3);
+  b.c.linear = LINEAR_ITERATIVE;
+  b.body[0].velocity[0] = 1.5;
+  b.body[0].velocity[1] = -4;
+  b.body[0].spin[2] = 2;
+  b.c.gravity[1] = -9.81;
+  bench_motion(&b, 1, 0, MOTION_FIXED, 7);
+  bench_traction(&b, 0, 0.75, "body", 100, 0, 0);
+  bench_tracer(&b, "position", 0, 0.5, 0.5, 0.5);
+  for (PetscInt before = 1; before <= 13; before += 6) check_only(&b, before, 6, PETSC_TRUE);
+}
+
 /* Statics in steps with factorisations, whose bits depend on the arrival of messages where there
  * are several ranks. */
 static void test_static(void **state)
@@ -381,7 +402,7 @@ int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(test_mpm_2d),      cmocka_unit_test(test_mpm_3d),  cmocka_unit_test(test_repartition),
-    cmocka_unit_test(test_fem),         cmocka_unit_test(test_opening), cmocka_unit_test(test_mesh),
+    cmocka_unit_test(test_fem),         cmocka_unit_test(test_opening), cmocka_unit_test(test_mesh), cmocka_unit_test(test_gimp),
     cmocka_unit_test(test_gmm),         cmocka_unit_test(test_static),  cmocka_unit_test(test_at_start),
     cmocka_unit_test(test_other_model), cmocka_unit_test(test_given_up)};
   PetscMPIInt rank;

@@ -20,6 +20,9 @@ struct GridBox {
   PetscReal *line[3];      /* counts + 1 coordinates along each axis */
   PetscReal per_length[3]; /* voxels per metre; 0 where the axis is graded */
   PetscReal tolerance;     /* how far outside a position still belongs, m */
+  PetscInt halo;           /* layers of nodes that a rank has beyond those of its voxels */
+  VoxelBlock nodes;        /* lattice nodes of this rank, halo and all, */
+  PetscInt *lattice;       /* and the local number of each */
   PetscMPIInt rank, size;
   VoxelBlock *block; /* per rank, in voxels */
   /* the bisection: entry m parts the ranks below m from those from m on */
@@ -43,7 +46,7 @@ PetscErrorCode BoxCopy(MPI_Comm comm, const GridBox *old, GridBox **box);
 PetscErrorCode BoxDestroy(GridBox **box);
 /* The ranks' blocks from the cuts. */
 PetscErrorCode BoxCut(GridBox *box, const PetscInt *cut_axis, const PetscInt *cut);
-/* Lattice nodes that a block touches, and those that its owner owns. */
+/* Lattice nodes that a block's owner knows, those of its voxels and the halo, and that it owns. */
 VoxelBlock box_nodes(const GridBox *box, const VoxelBlock *voxels);
 VoxelBlock box_owned_nodes(const GridBox *box, const VoxelBlock *voxels);
 PetscBool box_has_centres(const GridBox *box);
@@ -59,6 +62,14 @@ PetscInt box_candidates(const Grid *grid, const PetscReal *x, PetscInt max, Pets
 /* The rank that owns a voxel. */
 PetscMPIInt box_owner(const GridBox *box, const PetscInt ijk[3]);
 
+/* The voxel of a local cell, from 0 along each axis, and the local number of a lattice node that
+ * this rank knows. */
+void box_voxel_of(const Grid *grid, PetscInt cell, PetscInt ijk[3]);
+static inline PetscInt box_node(const GridBox *box, const PetscInt ijk[3])
+{
+  return box->lattice[block_index(&box->nodes, ijk)];
+}
+
 /* box_build.c. Collective. The grid of a box whose blocks are known; takes the box. */
 PetscErrorCode BoxBuild(MPI_Comm comm, const GridOps *ops, CellType type, GridBox *box, Grid **grid);
 
@@ -66,6 +77,7 @@ PetscErrorCode BoxBuild(MPI_Comm comm, const GridOps *ops, CellType type, GridBo
 PetscErrorCode BoxPartition(MPI_Comm comm, GridBox *box, GridWeight weight, void *context);
 /* See GridOps. */
 PetscErrorCode BoxWeighCells(const Grid *grid, const PetscReal *weight, VoxelWeights *voxels);
+PetscErrorCode BoxWiden(const Grid *old, PetscInt halo, Grid **grid);
 PetscErrorCode BoxFromCuts(const Grid *old, const PetscInt *cut_axis, const PetscInt *cut, Grid **grid);
 PetscErrorCode BoxPartitionToTable(const Grid *grid, Tables *tables);
 PetscErrorCode BoxFromPartition(const Grid *old, const Table *table, Grid **grid, char reason[256]);

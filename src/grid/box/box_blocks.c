@@ -5,7 +5,10 @@ VoxelBlock box_nodes(const GridBox *box, const VoxelBlock *voxels)
 {
   VoxelBlock nodes = *voxels;
   const PetscInt some = block_size(voxels) > 0;
-  for (PetscInt d = 0; d < box->dim; ++d) nodes.hi[d] = some ? nodes.hi[d] + 1 : nodes.lo[d];
+  for (PetscInt d = 0; d < box->dim; ++d) {
+    nodes.hi[d] = some ? PetscMin(nodes.hi[d] + box->halo, box->counts[d]) + 1 : nodes.lo[d];
+    nodes.lo[d] = some ? PetscMax(nodes.lo[d] - box->halo, 0) : nodes.lo[d];
+  }
   return nodes;
 }
 
@@ -16,6 +19,14 @@ VoxelBlock box_owned_nodes(const GridBox *box, const VoxelBlock *voxels)
   for (PetscInt d = 0; d < box->dim; ++d)
     nodes.hi[d] = some ? nodes.hi[d] + (nodes.hi[d] == box->counts[d]) : nodes.lo[d];
   return nodes;
+}
+
+void box_voxel_of(const Grid *grid, PetscInt cell, PetscInt ijk[3])
+{
+  const PetscInt *counts = grid->box->counts, voxel = grid->global_cell[cell] / grid->box->pattern[0].n_cells;
+  ijk[0] = voxel % counts[0];
+  ijk[1] = voxel / counts[0] % counts[1];
+  ijk[2] = voxel / counts[0] / counts[1];
 }
 
 PetscBool box_has_centres(const GridBox *box) { return box->pattern[0].code[0][2] == VOXEL_CENTRE; }
@@ -83,6 +94,7 @@ PetscErrorCode BoxCopy(MPI_Comm comm, const GridBox *old, GridBox **out)
   PetscFunctionBeginUser;
   PetscCall(PetscNew(&box));
   *box = *old;
+  box->lattice = NULL;
   for (int d = 0; d < 3; ++d) {
     PetscCall(PetscMalloc1(box->counts[d] + 1, &box->line[d]));
     PetscCall(PetscArraycpy(box->line[d], old->line[d], box->counts[d] + 1));
@@ -97,6 +109,7 @@ PetscErrorCode BoxDestroy(GridBox **box)
   PetscFunctionBeginUser;
   if (!*box) PetscFunctionReturn(0);
   for (int d = 0; d < 3; ++d) PetscCall(PetscFree((*box)->line[d]));
+  PetscCall(PetscFree((*box)->lattice));
   PetscCall(PetscFree4((*box)->block, (*box)->cut_axis, (*box)->cut, (*box)->first_node));
   PetscCall(PetscFree(*box));
   PetscFunctionReturn(0);

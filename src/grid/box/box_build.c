@@ -215,20 +215,19 @@ static PetscErrorCode FillSides(Grid *grid, const VoxelBlock *nodes, const Petsc
 
 static PetscErrorCode FillBox(Grid *grid)
 {
-  const GridBox *box = grid->box;
+  GridBox *box = grid->box;
   const VoxelBlock *voxels = box->block + box->rank, nodes = box_nodes(box, voxels);
-  PetscInt *lattice;
 
   PetscFunctionBeginUser;
   grid->n_cells = block_size(voxels) * box->pattern[0].n_cells;
   PetscCall(PetscMalloc1(grid->n_cells * grid->nodes_per_cell, &grid->cell_node));
   PetscCall(PetscMalloc1(grid->n_cells, &grid->global_cell));
   PetscCall(CountNodes(grid, &nodes));
-  PetscCall(PetscMalloc1(block_size(&nodes), &lattice));
-  PetscCall(PlaceLattice(grid, &nodes, lattice));
-  fill_cells(grid, &nodes, lattice);
-  PetscCall(FillSides(grid, &nodes, lattice));
-  PetscCall(PetscFree(lattice));
+  PetscCall(PetscMalloc1(block_size(&nodes), &box->lattice));
+  box->nodes = nodes;
+  PetscCall(PlaceLattice(grid, &nodes, box->lattice));
+  fill_cells(grid, &nodes, box->lattice);
+  PetscCall(FillSides(grid, &nodes, box->lattice));
   PetscFunctionReturn(0);
 }
 

@@ -73,6 +73,7 @@ const GridOps grid_box = {
   .candidates = box_candidates,
   .cells_alike = cells_alike,
   .WeighCells = BoxWeighCells,
+  .Widen = BoxWiden,
   .FromCuts = BoxFromCuts,
   .PartitionToTable = BoxPartitionToTable,
   .FromPartition = BoxFromPartition,

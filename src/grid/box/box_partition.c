@@ -61,6 +61,18 @@ PetscErrorCode BoxWeighCells(const Grid *grid, const PetscReal *weight, VoxelWei
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode BoxWiden(const Grid *old, PetscInt halo, Grid **grid)
+{
+  GridBox *box = NULL;
+
+  PetscFunctionBeginUser;
+  PetscCall(BoxCopy(old->comm, old->box, &box));
+  box->halo = halo;
+  PetscCall(BoxCut(box, old->box->cut_axis, old->box->cut));
+  PetscCall(BoxBuild(old->comm, old->ops, old->type, box, grid));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode BoxFromCuts(const Grid *old, const PetscInt *cut_axis, const PetscInt *cut, Grid **grid)
 {
   GridBox *box = NULL;

@@ -72,6 +72,18 @@ static const SchemaEntry no_entries[] = {{.key = NULL}};
 const SchemaTable schema_keys_none = {
   .name = "no keys", .help = "For a basis without numbers of its own.", .entries = no_entries};
 
+/* Those that the method takes. */
+static void hint_bases(SchemaReader *r, const Method *method)
+{
+  char list[256] = "";
+  for (const BasisName *b = basis_names; b->name; ++b) {
+    const size_t used = strlen(list);
+    if (method_takes(method, b->basis))
+      snprintf(list + used, sizeof list - used, "%s'%s'", used ? " or " : "", b->name);
+  }
+  diag_hint(r->diag, "it takes %s", list);
+}
+
 static PetscErrorCode CheckBasis(SchemaReader *r, const YamlNode *mapping, void *target)
 {
   const Method *method = r->c->method ? method_find(r->c->method) : NULL;
@@ -86,8 +98,7 @@ static PetscErrorCode CheckBasis(SchemaReader *r, const YamlNode *mapping, void 
     const YamlNode *node = yaml_find(mapping, basis->kind);
     if (method_takes(method, basis_find(basis->kind))) PetscFunctionReturn(0);
     SchemaKeyError(r, node, "method %s does not take the basis '%s'", method->name, basis->kind);
-    for (const BasisName *b = basis_names; b->name; ++b)
-      if (method_takes(method, b->basis)) diag_hint(r->diag, "it takes '%s', %s", b->name, b->help);
+    hint_bases(r, method);
     PetscFunctionReturn(0);
   }
   basis->kind = method->basis;

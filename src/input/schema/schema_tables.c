@@ -125,6 +125,10 @@ static const SchemaTable newton = {
 static const SchemaEntry stabilisation_entries[] = {
   KEY("stiffness", NUMBER, NULL, "share of the material's stiffness that empty parts of cells keep", .fallback = "1e-6",
       AT_LEAST(0), AT(StabilisationSpec, stiffness)),
+  KEY("curvature", NUMBER, NULL,
+      "basis gimp, in place of `stiffness`: share of the material's stiffness against curvature where points hardly "
+      "reach a node",
+      .fallback = "0.01", AT_LEAST(0), AT(StabilisationSpec, curvature)),
   KEY("mass", NUMBER, NULL, "share of the mass that is lumped at the nodes, times the empty part of the cell",
       .note = "1 if a law of the case yields, 0.1 if all are elastic", BETWEEN(0, 1), AT(StabilisationSpec, mass)),
   KEY("inertia", NUMBER, NULL,

@@ -56,10 +56,12 @@ static PetscInt find_rule(CellType type, PetscInt n)
   return -1;
 }
 
-static void fill_rule(CellType type, PetscInt place, SeedRule *rule)
+/* Domains shall cover their cell once: their points stand in the middle of equal parts. */
+static void fill_rule(CellType type, PetscInt place, PetscBool domains, SeedRule *rule)
 {
   rule->n = cell_rules(type)[place];
-  (void)cell_quadrature(type, rule->n, rule->xi, rule->weight);
+  rule->side = domains ? cell_lattice(type, rule->n, rule->xi, rule->weight) : 0;
+  if (!rule->side) (void)cell_quadrature(type, rule->n, rule->xi, rule->weight);
 }
 
 /* PETSC_FALSE, and a message that lists the rules, if this number of points is none. Where a mesh
@@ -73,8 +75,8 @@ static PetscBool choose_rule(Seeding *s)
   char path[128], list[128] = "";
   if (place < 0 && grid_is_mixed(s->source)) place = find_rule(s->source->first_type, n);
   if (place >= 0) {
-    fill_rule(type, place, &s->rule);
-    fill_rule(s->source->first_type, place, &s->first_rule);
+    fill_rule(type, place, s->domains, &s->rule);
+    fill_rule(s->source->first_type, place, s->domains, &s->first_rule);
     return PETSC_TRUE;
   }
   for (PetscInt i = 0; rules[i]; ++i) {
@@ -183,6 +185,8 @@ static PetscErrorCode SeedPoint(const Seeding *s, Points *points, PetscInt cell,
   *point_real(points, POINT_VOLUME, p) = volume;
   *point_real(points, POINT_MASS, p) = seed->density * volume;
   body_velocity(s->body, dim, position, point_real(points, POINT_V, p));
+  if (s->domains)
+    seed_domain(grid_cell_type(s->source, cell), x, xi, rule->side, section, point_real(points, POINT_DOMAIN, p));
   if (seed->n_state) PetscCall(PetscArraycpy(point_real(points, POINT_STATE, p), seed->initial, seed->n_state));
   points->id[p] = s->first_id + (PetscInt64)s->source->global_cell[cell] * s->rule.n + q;
   points->body[p] = s->b;
@@ -307,6 +311,7 @@ PetscErrorCode PointsSeedOutlined(Points *points, const Grid *grid, const Case *
                  .b = b,
                  .body = c->bodies + b,
                  .first_id = next,
+                 .domains = points->components[POINT_DOMAIN] > 0,
                  .equal = equal,
                  .outline = outline};
     PetscCall(SeedBody(&s, points, taken, per_material, &next));

@@ -7,6 +7,7 @@
 /* Where points stand in a cell. */
 typedef struct {
   PetscInt n;
+  PetscInt side; /* of points with domains: a lattice of so many a direction; 0: it is none */
   PetscReal xi[3 * SEED_MAX_RULE], weight[SEED_MAX_RULE];
 } SeedRule;
 
@@ -20,6 +21,7 @@ typedef struct {
   const Grid *source;        /* whose cells give the points: the grid, or the body's own mesh */
   PetscInt n_cells, *cells;  /* local cells of the source that belong to the body */
   SeedRule rule, first_rule; /* for cells of the source's type, and of its first_type */
+  PetscBool domains;         /* do the points have some? */
   PetscBool equal;           /* `weights: auto` shares cells equally */
   PetscInt64 first_id;
   Outline *outline; /* gets the surface of these cells; NULL: nobody wants it */
@@ -27,6 +29,11 @@ typedef struct {
 
 /* Volume that a cell stands for: area times unit thickness, or the full circle. */
 PetscReal seed_cell_volume(const Seeding *s, PetscInt cell);
+
+/* Half lengths l of the domain of a point at xi, in a cell with nodes at x whose lattice has `side`
+ * points a direction; 0: it stands for this part of the section, or of the volume in space. */
+void seed_domain(CellType type, const PetscReal *x, const PetscReal *xi, PetscInt side, PetscReal section,
+                 PetscReal *l);
 
 /* Collective. After the cells were chosen: errors for a body without a cell, warnings where whole
  * cells represent the shape badly, or have a single point that leaves them soft. */

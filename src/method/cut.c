@@ -1,0 +1,53 @@
+/* Nodes that domains of points hardly reach: a body that ends anywhere in a cell cuts off as little of
+ * their functions as it likes (docs/theory.md, "Smooth shape functions"). */
+#include "method/discretisation.h"
+
+/* Of each node: the volume of the material around it, and that of its share of the cells. */
+static PetscErrorCode NodalVolumes(const Discretisation *s, PetscReal *volume, PetscReal *whole)
+{
+  const Support *w = s->support;
+  const Grid *grid = s->grid;
+  const PetscInt nn = grid->nodes_per_cell;
+  PetscReal x[3 * CELL_MAX_NODES];
+
+  PetscFunctionBeginUser;
+  for (PetscInt g = 0; g < w->n_groups; ++g)
+    for (PetscInt p = w->point_start[g]; p < w->point_start[g + 1]; ++p)
+      for (PetscInt I = 0; I < support_nodes(w, g); ++I)
+        volume[w->node[w->node_start[g] + I]] +=
+          support_N(w, g, p)[I] * s->points->real[POINT_J][p] * s->points->real[POINT_VOLUME][p];
+  for (PetscInt c = 0; c < grid->n_cells; ++c) {
+    const PetscInt *node = grid->cell_node + c * nn;
+    PetscBool near = PETSC_FALSE;
+    for (PetscInt I = 0; I < nn; ++I) near |= s->nodes->touched[node[I]];
+    if (!near) continue;
+    grid_cell_x(grid, c, x);
+    const PetscReal share = cell_volume_in(s->c->kinematics, grid->type, x) / (PetscReal)nn;
+    for (PetscInt I = 0; I < nn; ++I) whole[node[I]] += share;
+  }
+  PetscCall(GridSumToOwners(grid, 1, volume));
+  PetscCall(GridSumToOwners(grid, 1, whole));
+  PetscCall(GridToGhosts(grid, 1, volume));
+  PetscCall(GridToGhosts(grid, 1, whole));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode DiscretisationCuts(Discretisation *s, PetscReal *soft)
+{
+  const Support *w = s->support;
+  PetscReal *volume, *whole;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc2(s->grid->n_nodes, &volume, s->grid->n_nodes, &whole));
+  PetscCall(NodalVolumes(s, volume, whole));
+  for (PetscInt g = 0; g < w->n_groups; ++g) {
+    const PetscInt p = w->point_start[g], nn = support_nodes(w, g), *node = w->node + w->node_start[g];
+    PetscReal filled = 1, square = 0;
+    for (PetscInt I = 0; I < nn; ++I) filled = PetscMin(filled, 2 * volume[node[I]] / whole[node[I]]);
+    for (PetscInt i = 0; i < nn * s->grid->dim; ++i) square += PetscSqr((w->dN + w->value_start[g] * s->grid->dim)[i]);
+    soft[g] = s->c->stabilisation.curvature * (1 - filled) * s->materials[s->points->material[p]].wave_modulus *
+              s->points->real[POINT_VOLUME][p] * square / (PetscReal)nn;
+  }
+  PetscCall(PetscFree2(volume, whole));
+  PetscFunctionReturn(0);
+}
