@@ -49,6 +49,7 @@ PetscErrorCode PointsCreate(PetscInt dim, PetscInt n_state, PetscInt n_force, Po
   new->components[POINT_PRESSURE] = 0;
   new->components[POINT_FORCE] = n_force;
   new->components[POINT_OVERHANG] = 0;
+  new->components[POINT_SLOPE] = 0;
   new->components[POINT_CARRIED] = 0;
   *points = new;
   PetscFunctionReturn(0);

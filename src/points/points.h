@@ -31,6 +31,9 @@ typedef enum {
   /* of followers: from their position, the nearest in the grid, to where they really are, m: dim
    * (others: 0 components) */
   POINT_OVERHANG,
+  /* gradients of velocity, 1/s, and acceleration, 1/s2, row by row: dim x dim each where the transfer
+   * asks for them, otherwise 0 components */
+  POINT_SLOPE,
   /* how far it was carried in the present event of each measure that counts some, m: one each */
   POINT_CARRIED,
   POINT_N_REAL

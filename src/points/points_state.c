@@ -24,6 +24,7 @@ static const struct {
   [POINT_PRESSURE] = {"pressure", "Pa"},
   [POINT_FORCE] = {"force", "N"},
   [POINT_OVERHANG] = {"overhang", "m"},
+  [POINT_SLOPE] = {"slope", NULL},
   [POINT_CARRIED] = {"carried", "m"},
 };
 
