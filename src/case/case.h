@@ -195,6 +195,7 @@ typedef struct {
   PetscReal bossak;      /* alpha_B in [-1/3, 0] */
   PetscReal damping;     /* Rayleigh, mass proportional, 1/s */
   MassMatrix mass;
+  char *transfer; /* mpm: between points and nodes, by its name; NULL: the thesis's */
   /* mpm: prescribed nodes do not take from points what velocity they bring */
   PetscBool keep_velocity;
   PetscInt n_until;

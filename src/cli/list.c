@@ -6,11 +6,12 @@
 #include "cli/cli.h"
 #include "input/schema/schema.h"
 #include "material/law.h"
+#include "method/transfer/transfer.h"
 #include "model/measure/measure.h"
 #include "support/basis.h"
 
 static const CliUsage usage = {
-  .usage = "talus list laws|methods|bases|cells|measures|fields",
+  .usage = "talus list laws|methods|transfers|bases|cells|measures|fields",
   .help = "Prints what a case file can name.",
   .min_words = 1,
   .max_words = 1,
@@ -43,6 +44,11 @@ static void list_laws(void)
 static void list_methods(void)
 {
   for (const Method *const *method = methods; *method; ++method) printf("%-6s %s\n", (*method)->name, (*method)->help);
+}
+
+static void list_transfers(void)
+{
+  for (const Transfer *const *t = transfers; *t; ++t) printf("%-10s %s\n", (*t)->name, (*t)->help);
 }
 
 static void list_bases(void)
@@ -82,15 +88,15 @@ static void list_fields(void)
 static const struct {
   const char *name;
   void (*print)(void);
-} lists[] = {{"laws", list_laws},         {"methods", list_methods}, {"bases", list_bases}, {"cells", list_cells},
-             {"measures", list_measures}, {"fields", list_fields},   {NULL, NULL}};
+} lists[] = {{"laws", list_laws},   {"methods", list_methods},   {"transfers", list_transfers}, {"bases", list_bases},
+             {"cells", list_cells}, {"measures", list_measures}, {"fields", list_fields},       {NULL, NULL}};
 
 PetscErrorCode CliList(int argc, char **argv, int *exit_code)
 {
-  const char *names[8] = {NULL}, *nearest;
+  const char *names[9] = {NULL}, *nearest;
   CliArguments arguments;
   PetscBool go_on;
-  char hint[80] = "laws, methods, bases, cells, measures or fields";
+  char hint[80] = "laws, methods, transfers, bases, cells, measures or fields";
 
   PetscFunctionBeginUser;
   PetscCall(CliParse(&usage, argc, argv, &arguments, &go_on, exit_code));

@@ -1,4 +1,4 @@
-#include "method/discretisation.h"
+#include "method/transfer/transfer.h"
 
 PetscErrorCode DiscretisationCreate(const Discretisation *parts, Discretisation **space)
 {
@@ -10,6 +10,7 @@ PetscErrorCode DiscretisationCreate(const Discretisation *parts, Discretisation 
   *s = *parts;
   PetscCall(NodalFieldsCreate(s->grid, case_is_mixed(s->c), &s->nodes));
   s->basis = basis_find(s->c->basis.kind);
+  s->transfer = transfer_find(s->c->analysis.transfer);
   PetscCall(SupportCreate(&s->support));
   PetscCall(ConstraintsCreate(s->grid->dim, &s->constraints));
   PetscCall(PetscCalloc1(s->grid->n_cells, &s->filled));
@@ -120,6 +121,15 @@ PetscErrorCode DiscretisationBodyVelocity(Discretisation *s)
   for (PetscInt i = 0; i < n * dim; ++i) s->nodes->v[i] = weight[i / dim] > 0 ? q[i] / weight[i / dim] : 0;
   PetscCall(PetscFree2(q, weight));
   PetscFunctionReturn(0);
+}
+
+void discretisation_impulses(Discretisation *s)
+{
+  NodalFields *n = s->nodes;
+  for (PetscInt i = 0; i < s->grid->n_owned * s->grid->dim; ++i) {
+    n->impulse[i] = n->mass[i / s->grid->dim] * (n->v[i] - n->v_points[i]);
+    n->lost_force[i] = n->mass[i / s->grid->dim] * (n->a[i] - n->a_points[i]);
+  }
 }
 
 /* One carried point with its shape functions: position and displacement add up, velocity and

@@ -17,10 +17,11 @@ typedef struct Discretisation {
   NodalFields *nodes;
   const Basis *basis;
   Support *support;
-  Constraints *constraints; /* none: prescribed motion is that of the nodes themselves */
-  PetscBool started;        /* has phase a run before? */
-  PetscBool present;        /* do support and nodal fields belong to where points are now? */
-  unsigned char *filled;    /* n_cells: does the cell hold points? */
+  const struct Transfer *transfer; /* of methods that restore their grid */
+  Constraints *constraints;        /* none: prescribed motion is that of the nodes themselves */
+  PetscBool started;               /* has phase a run before? */
+  PetscBool present;               /* do support and nodal fields belong to where points are now? */
+  unsigned char *filled;           /* n_cells: does the cell hold points? */
   /* of a point's velocity beyond the nodes': what damping takes in the step */
   PetscReal fade;
   PetscInt group_capacity;
@@ -48,6 +49,8 @@ PetscErrorCode DiscretisationCuts(Discretisation *space, PetscReal *soft);
 /* Nodes that keep their history take the velocity of their body where they stand; m and touched
  * must be known. */
 PetscErrorCode DiscretisationBodyVelocity(Discretisation *space);
+/* impulse and lost_force where prescribed motion changes v and a of its nodes alone. */
+void discretisation_impulses(Discretisation *space);
 /* Points, tracers or carriers follow the field: in their cells, and the same with clouds. */
 PetscErrorCode DiscretisationMoveCarried(Discretisation *space, Points *carried);
 PetscErrorCode DiscretisationMoveClouds(Discretisation *space, Points *carried, const Support *support);

@@ -21,6 +21,10 @@ typedef struct Method {
   /* Collective. What a step with inertia changes of v and a before its solve, undone if it is
    * not accepted. NULL: nothing. */
   PetscErrorCode (*begin)(Discretisation *space);
+  /* Collective, in steps with inertia: v and a of prescribed dofs are those of the boundary now. What
+   * the other nodes make of it, and impulse and lost_force; NULL: they go on, and what changed counts with
+   * the mass of its node. */
+  PetscErrorCode (*hold)(Discretisation *space);
   /* Phase c, collective: the step is accepted, du, v1 and a1 are known. State and F of the
    * points are committed already. */
   PetscErrorCode (*convect)(Discretisation *space);

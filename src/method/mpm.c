@@ -1,76 +1,18 @@
 /* Implicit material point method (thesis algorithm 1): a fixed grid, restored after every step. */
 #include "method/method.h"
+#include "method/transfer/loops.h"
+#include "method/transfer/transfer.h"
 
-#define UNROLLED static inline __attribute__((always_inline))
-
-/* A loop over the points of each kind of cells, with sizes known to the compiler where that pays;
- * nodes 0: each group has its own. */
-#define WITH_SIZES(loop, s)                                                  \
-  do {                                                                       \
-    const Support *sized = (s)->support;                                     \
-    const SupportRun any = {.nodes = 0, .first = 0, .end = sized->n_groups}; \
-    const SupportRun *run = sized->n_runs ? sized->run : &any;               \
-    for (PetscInt k = 0; k < PetscMax(sized->n_runs, 1); ++k, ++run) {       \
-      if ((s)->grid->dim == 2 && run->nodes == 4) loop(2, 4, run, s);        \
-      else if ((s)->grid->dim == 3 && run->nodes == 8) loop(3, 8, run, s);   \
-      else loop((s)->grid->dim, run->nodes, run, s);                         \
-    }                                                                        \
-  } while (0)
-
-UNROLLED void gather_motion(const PetscInt dim, const PetscInt fixed_nn, const SupportRun *run, Discretisation *s)
-{
-  NodalFields *n = s->nodes;
-  const Support *w = s->support;
-  for (PetscInt g = run->first; g < run->end; ++g) {
-    const PetscInt nn = fixed_nn ? fixed_nn : support_nodes(w, g), *node = w->node + w->node_start[g];
-    PetscReal momentum[3 * CLOUD_MAX_NODES], force[3 * CLOUD_MAX_NODES];
-    for (PetscInt i = 0; i < nn * dim; ++i) momentum[i] = force[i] = 0;
-    for (PetscInt p = w->point_start[g]; p < w->point_start[g + 1]; ++p) {
-      const PetscReal *v = point_real(s->points, POINT_V, p), *a = point_real(s->points, POINT_A, p);
-      const PetscReal *N = w->N + w->value_start[g] + (p - w->point_start[g]) * nn;
-      for (PetscInt I = 0; I < nn; ++I) {
-        const PetscReal m = N[I] * s->points->real[POINT_MASS][p];
-        for (PetscInt d = 0; d < dim; ++d) {
-          momentum[I * dim + d] += m * v[d];
-          force[I * dim + d] += m * a[d];
-        }
-      }
-    }
-    for (PetscInt I = 0; I < nn; ++I)
-      for (PetscInt d = 0; d < dim; ++d) {
-        n->v[node[I] * dim + d] += momentum[I * dim + d];
-        n->a[node[I] * dim + d] += force[I * dim + d];
-      }
-  }
-}
-
-/* q_I = sum N m v, f_I = sum N m a (eqs. 2.6-2.9). A node so far from all points that its mass
- * vanishes starts at rest: its velocity counts for nothing. */
+/* q_I = sum N m v, f_I = sum N m a (eqs. 2.6-2.9), and what the transfer makes of them. */
 static PetscErrorCode Project(Discretisation *s)
 {
   NodalFields *n = s->nodes;
-  const Grid *grid = s->grid;
-  const PetscInt dim = grid->dim, dofs = grid->n_nodes * dim;
+  const PetscInt dofs = s->grid->n_nodes * s->grid->dim;
 
   PetscFunctionBeginUser;
-  PetscCall(DiscretisationMass(s));
-  PetscCall(PetscArrayzero(n->v, dofs));
-  PetscCall(PetscArrayzero(n->a, dofs));
-  WITH_SIZES(gather_motion, s);
-  PetscCall(GridSumToOwners(grid, dim, n->v));
-  PetscCall(GridSumToOwners(grid, dim, n->a));
-  for (PetscInt node = 0; node < grid->n_owned; ++node) {
-    if (n->mass[node] == 0) continue;
-    const PetscReal inverse = n->mass[node] > 1e-300 ? 1 / n->mass[node] : 0;
-    for (PetscInt i = node * dim; i < (node + 1) * dim; ++i) {
-      n->v[i] *= inverse;
-      n->a[i] *= inverse;
-    }
-  }
-  PetscCall(GridToGhosts(grid, dim, n->v));
-  PetscCall(GridToGhosts(grid, dim, n->a));
-  PetscCall(PetscArraycpy(n->v_points, n->v, dofs));
-  PetscCall(PetscArraycpy(n->a_points, n->a, dofs));
+  PetscCall(s->transfer->gather(s));
+  PetscCall(PetscArraycpy(n->v, n->v_points, dofs));
+  PetscCall(PetscArraycpy(n->a, n->a_points, dofs));
   PetscFunctionReturn(0);
 }
 
@@ -152,43 +94,37 @@ static PetscErrorCode MpmInitialise(Discretisation *s)
   PetscCall(PointsSort(s->points));
   PetscCall(s->basis->support(&basis, s->points, s->support));
   PetscCall(DiscretisationTouch(s));
-  PetscCall(Project(s));
-  if (s->nodes->pressure) PetscCall(DiscretisationPressure(s));
+  PetscCall(DiscretisationMass(s));
   PetscCall(Stabilise(s));
   if (s->basis->domains) PetscCall(DiscretisationCuts(s, s->soft));
+  PetscCall(Project(s));
+  if (s->nodes->pressure) PetscCall(DiscretisationPressure(s));
   PetscFunctionReturn(0);
 }
 
-/* Points take the change of the nodes' velocity, measured from what the points had given them:
- * where the boundary stops a node, it stops its points too (eq. 2.16 as printed would let them keep
- * their velocity for ever; docs/theory.md). Rayleigh damping acts on all motion: on what nodes
- * carry through the balance, on the rest of a point's velocity, which no node sees, here. */
 UNROLLED void move_points(const PetscInt dim, const PetscInt fixed_nn, const SupportRun *run, Discretisation *s)
 {
   const Support *w = s->support;
-  const NodalFields *n = s->nodes;
   for (PetscInt g = run->first; g < run->end; ++g) {
     const PetscInt nn = fixed_nn ? fixed_nn : support_nodes(w, g), *node = w->node + w->node_start[g];
     for (PetscInt p = w->point_start[g]; p < w->point_start[g + 1]; ++p) {
       const PetscReal *N = w->N + w->value_start[g] + (p - w->point_start[g]) * nn;
       PetscReal *x = point_real(s->points, POINT_X, p), *u = point_real(s->points, POINT_U, p);
-      PetscReal *v = point_real(s->points, POINT_V, p), *a = point_real(s->points, POINT_A, p);
       for (PetscInt d = 0; d < dim; ++d) {
-        PetscReal move = 0, gain = 0, acceleration = 0, seen = 0;
-        for (PetscInt I = 0; I < nn; ++I) {
-          const PetscInt i = node[I] * dim + d;
-          move += N[I] * n->du[i];
-          gain += N[I] * (n->v1[i] - n->v_points[i]);
-          acceleration += N[I] * n->a1[i];
-          seen += N[I] * n->v_points[i];
-        }
+        PetscReal move = 0;
+        for (PetscInt I = 0; I < nn; ++I) move += N[I] * s->nodes->du[node[I] * dim + d];
         x[d] += move;
         u[d] += move;
-        v[d] += gain - s->fade * (v[d] - seen);
-        a[d] = acceleration;
       }
     }
   }
+}
+
+static PetscErrorCode MpmHold(Discretisation *s)
+{
+  PetscFunctionBeginUser;
+  PetscCall(s->transfer->hold(s));
+  PetscFunctionReturn(0);
 }
 
 static PetscErrorCode MpmConvect(Discretisation *s)
@@ -197,7 +133,8 @@ static PetscErrorCode MpmConvect(Discretisation *s)
   PetscInt n_ignored;
 
   PetscFunctionBeginUser;
-  WITH_SIZES(move_points, s);
+  PetscCall(s->transfer->give(s));
+  WITH_SIZES(move_points, s, s);
   PetscCall(DiscretisationMoveCarried(s, s->tracers));
   PetscCall(DiscretisationMoveCarried(s, s->loads->carriers));
   PetscCall(PetscFree(s->lost));
@@ -216,6 +153,7 @@ const Method method_mpm = {
   .restores_grid = PETSC_TRUE,
   .takes_pressure = PETSC_TRUE,
   .initialise = MpmInitialise,
+  .hold = MpmHold,
   .convect = MpmConvect,
   .carries = cell_carries,
 };

@@ -30,6 +30,8 @@ static const FieldKind kinds[] = {
   FIELD(a, KEPT_MOTION, "acceleration", "m/s2", PETSC_FALSE, PETSC_FALSE),
   SCRATCH(v_points),
   SCRATCH(a_points),
+  SCRATCH(impulse),
+  SCRATCH(lost_force),
   SCRATCH(v_start),
   SCRATCH(a_start),
   SCRATCH(v1),

@@ -21,9 +21,12 @@ typedef struct NodalFields {
   unsigned char *fixed; /* n_nodes x dim: has no unknown in the step */
   PetscReal *mass;      /* n_nodes, kg */
   /* n_nodes x dim, as all up to the pressures */
-  PetscReal *v, *a;             /* at t_n: what the solve starts from, m/s, m/s2 */
-  PetscReal *v_points;          /* v as the points gave it, before prescribed motion replaced it */
-  PetscReal *a_points;          /* likewise a */
+  PetscReal *v, *a;    /* at t_n: what the solve starts from, m/s, m/s2 */
+  PetscReal *v_points; /* v as the points gave it, before prescribed motion replaced it */
+  PetscReal *a_points; /* likewise a */
+  /* at prescribed dofs: momentum and force that the change from v_points and a_points took, on owners,
+   * kg m/s, N */
+  PetscReal *impulse, *lost_force;
   PetscReal *v_start, *a_start; /* v and a before the step changed them */
   PetscReal *v1, *a1;           /* at t_(n+1), of an accepted step */
   PetscReal *du;                /* increments of the step, m */

@@ -20,20 +20,19 @@ static void store_reactions(Model *m, PetscReal dt)
 {
   const TimeWeights w = m->scheme->weights(&m->c->analysis, dt);
   NodalFields *n = m->nodes;
-  PetscReal *vectors[] = {n->force, n->rate, n->v, n->a, n->v_points, n->a_points, n->held, n->reaction};
+  PetscReal *vectors[] = {n->force, n->rate, n->impulse, n->lost_force, n->held, n->reaction};
   const Frames *frames = &m->boundary->frames;
-  for (int k = 0; k < 6; ++k) frames_turn(frames, m->dim, vectors[k]);
+  for (int k = 0; k < 4; ++k) frames_turn(frames, m->dim, vectors[k]);
   for (PetscInt i = 0; i < m->grid->n_owned * m->dim; ++i) {
-    const PetscReal mass = n->mass[i / m->dim];
-    const PetscReal before = n->rate[i] + mass * (n->a[i] - n->a_points[i]);
+    const PetscReal before = n->rate[i] + n->lost_force[i];
     const PetscBool fixed = m->boundary->fixed[i] != 0;
     n->reaction[i] = n->held[i] = fixed ? n->force[i] : 0;
     if (!m->scheme->inertia) continue;
     n->rate[i] = fixed ? (n->held[i] - w.lag * before) / (1 - w.lag) : 0;
     if (!fixed) continue;
-    n->reaction[i] = (1 - w.mean) * before + w.mean * n->rate[i] + mass * (n->v[i] - n->v_points[i]) / dt;
+    n->reaction[i] = (1 - w.mean) * before + w.mean * n->rate[i] + n->impulse[i] / dt;
   }
-  for (int k = 0; k < 8; ++k) frames_turn(frames, m->dim, vectors[k]);
+  for (int k = 0; k < 6; ++k) frames_turn(frames, m->dim, vectors[k]);
 }
 
 /* Velocities and accelerations of the nodes at the end of the step. */

@@ -1,5 +1,6 @@
 #include "model/model.h"
 #include "model/measure/measure.h"
+#include "method/transfer/transfer.h"
 #include "model/model_private.h"
 
 /* Work of a cell with this centre, in points: balances the partition. */
@@ -72,6 +73,23 @@ static void check_slip(const Case *c, const Method *method, Diag *diag)
   }
 }
 
+static void check_transfer(const Case *c, const Method *method, Diag *diag)
+{
+  const Transfer *transfer = transfer_find(c->analysis.transfer);
+  const char *names[32] = {NULL};
+  for (PetscInt i = 0; transfers[i] && i < 31; ++i) names[i] = transfers[i]->name;
+  if (!transfer) {
+    diag_error(diag, "analysis.transfer", "there is no transfer '%s'", c->analysis.transfer);
+    diag_hint_names(diag, c->analysis.transfer, names);
+  } else if (!method->restores_grid && transfer != transfers[0]) {
+    diag_error(diag, "analysis.transfer", "nodes of method %s keep their motion; only mpm takes it from points",
+               method->name);
+  } else if (c->analysis.keep_velocity && !transfer->keeps_velocity) {
+    diag_error(diag, "analysis.keep_velocity", "is the floor of transfer thesis; transfer %s knows no such floor",
+               transfer->name);
+  }
+}
+
 static void check_supported(const Model *m, Diag *diag)
 {
   const Case *c = m->c;
@@ -81,6 +99,7 @@ static void check_supported(const Model *m, Diag *diag)
   check_formulation(m, diag);
   check_basis(m, diag);
   check_scheme(c, m->scheme, diag);
+  if (m->method) check_transfer(c, m->method, diag);
   if (!m->method || m->method->restores_grid) return;
   check_slip(c, m->method, diag);
   if (c->analysis.keep_velocity)
@@ -164,6 +183,7 @@ static PetscErrorCode CreatePoints(Model *m, Outline *outline, Diag *diag)
   /* nothing is stored yet */
   if (m->formulation->pressure) m->points->components[POINT_PRESSURE] = 1;
   if (basis_find(c->basis.kind)->domains) m->points->components[POINT_DOMAIN] = m->dim;
+  if (transfer_find(c->analysis.transfer)->slopes) m->points->components[POINT_SLOPE] = 2 * m->dim * m->dim;
   for (PetscInt k = 0; k < c->n_measures; ++k)
     m->points->components[POINT_CARRIED] += measure_find(c->measures[k].kind)->events != NULL;
   PetscCall(PointsSeedOutlined(m->points, m->grid, c, seed, m->method->restores_grid, outline, diag));

@@ -180,6 +180,8 @@ PetscErrorCode PrepareStep(Model *m, PetscReal dt, StepProblem *p)
   boundary_increments(m->boundary, m->grid, m->time, m->time + dt, m->nodes->prescribed);
   if (m->scheme->inertia) set_boundary_kinematics(m, dt);
   if (m->scheme->inertia) PetscCall(HoldConstraints(m, dt));
+  if (m->scheme->inertia && m->method->hold) PetscCall(m->method->hold(m->space));
+  else discretisation_impulses(m->space);
   set_history(m, dt, g);
   const NodalScene scene = nodal_scene(m, m->time + dt, m->nodes->du);
   PetscCall(NodalForcesExternal(&m->forces, &scene, PETSC_FALSE, m->nodes->external));

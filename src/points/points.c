@@ -50,6 +50,7 @@ PetscErrorCode PointsCreate(PetscInt dim, PetscInt n_state, PetscInt n_force, Po
   new->components[POINT_FORCE] = n_force;
   new->components[POINT_OVERHANG] = 0;
   new->components[POINT_DOMAIN] = 0;
+  new->components[POINT_SLOPE] = 0;
   new->components[POINT_CARRIED] = 0;
   *points = new;
   PetscFunctionReturn(0);

@@ -34,6 +34,9 @@ typedef enum {
   /* half lengths along the axes, at the start, of the domain over which shape functions are averaged,
    * m: dim where the basis has such domains, otherwise 0 components */
   POINT_DOMAIN,
+  /* gradients of velocity, 1/s, and acceleration, 1/s2, row by row: dim x dim each where the transfer
+   * asks for them, otherwise 0 components */
+  POINT_SLOPE,
   /* how far it was carried in the present event of each measure that counts some, m: one each */
   POINT_CARRIED,
   POINT_N_REAL

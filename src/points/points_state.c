@@ -25,6 +25,7 @@ static const struct {
   [POINT_FORCE] = {"force", "N"},
   [POINT_OVERHANG] = {"overhang", "m"},
   [POINT_DOMAIN] = {"domain", "m"},
+  [POINT_SLOPE] = {"slope", NULL},
   [POINT_CARRIED] = {"carried", "m"},
 };
 

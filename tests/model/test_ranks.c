@@ -88,7 +88,8 @@ static void test_cantilever(void **state)
 
 /* A block thrown at a floor with some spin; on its way it crosses the borders of the ranks'
  * parts. */
-static void thrown_block(const char *basis, CellType cell, PetscReal size, LinearChoice linear, PetscInt steps)
+static void thrown_block(const char *basis, const char *transfer, CellType cell, PetscReal size, LinearChoice linear,
+                         PetscInt steps)
 {
   Bench b;
   PetscMPIInt ranks;
@@ -104,6 +105,7 @@ static void thrown_block(const char *basis, CellType cell, PetscReal size, Linea
   b.body[0].spin_centre[0] = b.body[0].spin_centre[1] = 0.5;
   b.c.gravity[1] = -9.81;
   b.c.linear = linear;
+  b.c.analysis.transfer = (char *)transfer;
   bench_dynamic(&b, 1, 0.005);
   bench_motion(&b, 1, 0, MOTION_FIXED, 2);
   bench_tracer(&b, "position", 0, 0.5, 0.5, 0.5);
@@ -116,12 +118,14 @@ static void thrown_block(const char *basis, CellType cell, PetscReal size, Linea
 static void test_thrown_block(void **state)
 {
   (void)state;
-  thrown_block("cell", CELL_QUADRILATERAL, 0.125, LINEAR_DIRECT, 80);
-  thrown_block("cell", CELL_TRIANGLE, 0.125, LINEAR_AUTO, 80);
-  thrown_block("cell", CELL_HEXAHEDRON, 0.25, LINEAR_DIRECT, 60);
-  thrown_block("cell", CELL_TETRAHEDRON, 0.25, LINEAR_AUTO, 60);
-  thrown_block("gimp", CELL_QUADRILATERAL, 0.125, LINEAR_AUTO, 80);
-  thrown_block("gimp", CELL_HEXAHEDRON, 0.25, LINEAR_DIRECT, 60);
+  thrown_block("cell", "thesis", CELL_QUADRILATERAL, 0.125, LINEAR_DIRECT, 80);
+  thrown_block("cell", "thesis", CELL_TRIANGLE, 0.125, LINEAR_AUTO, 80);
+  thrown_block("cell", "thesis", CELL_HEXAHEDRON, 0.25, LINEAR_DIRECT, 60);
+  thrown_block("cell", "thesis", CELL_TETRAHEDRON, 0.25, LINEAR_AUTO, 60);
+  thrown_block("cell", "consistent", CELL_QUADRILATERAL, 0.125, LINEAR_AUTO, 50);
+  thrown_block("cell", "consistent", CELL_HEXAHEDRON, 0.25, LINEAR_AUTO, 60);
+  thrown_block("gimp", "thesis", CELL_QUADRILATERAL, 0.125, LINEAR_AUTO, 80);
+  thrown_block("gimp", "thesis", CELL_HEXAHEDRON, 0.25, LINEAR_DIRECT, 60);
 }
 
 /* fem: a block that stands on a floor and is pushed. */

@@ -4,6 +4,7 @@
 #include "input/schema/schema_keys.h"
 #include "material/law.h"
 #include "method/method.h"
+#include "method/transfer/transfer.h"
 #include "support/basis.h"
 
 static const SchemaWord analysis_words[] = {
@@ -73,6 +74,8 @@ static const SchemaEntry analysis_entries[] = {
   KEY("damping", NUMBER, "1/s", "Rayleigh damping proportional to mass", .fallback = "0", AT_LEAST(0),
       AT(AnalysisSpec, damping)),
   KEY("mass", WORD, NULL, "mass matrix", .words = mass_words, .fallback = "consistent", AT(AnalysisSpec, mass)),
+  KEY("transfer", WORD_TEXT, NULL, "mpm: what nodes take of the points' motion, see `talus list transfers`",
+      .registry = (const void *const *)transfers, .fallback = "thesis", AT(AnalysisSpec, transfer)),
   KEY(
     "keep_velocity", BOOLEAN, NULL,
     "mpm: points beside prescribed nodes keep the velocity that they bring, as thesis (2.16) is printed, so that what "

@@ -156,7 +156,7 @@ static PetscReal impulse_work(const Model *m, PetscInt i, PetscReal dt)
 {
   const NodalFields *n = m->nodes;
   if (!m->scheme->inertia) return 0;
-  return n->mass[i / m->dim] * (n->v[i] - n->v_points[i]) * n->prescribed[i] / dt;
+  return n->impulse[i] * n->prescribed[i] / dt;
 }
 
 /* Work of inertia, with the acceleration that balances the forces at both ends. */

@@ -38,6 +38,7 @@ PetscErrorCode InitialAcceleration(Model *m)
   frames_turn(&m->boundary->frames, dim, n->held);
   frames_turn(&m->boundary->frames, dim, n->rate);
   PetscCall(GridToGhosts(m->grid, dim, n->a));
+  PetscCall(PetscArraycpy(n->a_points, n->a, dofs));
   for (PetscInt q = 0; q < s->support->n_groups; ++q) {
     const PetscInt nn = support_nodes(s->support, q), *node = s->support->node + s->support->node_start[q];
     for (PetscInt p = s->support->point_start[q]; p < s->support->point_start[q + 1]; ++p)

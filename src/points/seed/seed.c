@@ -158,6 +158,19 @@ void body_velocity(const BodySpec *body, PetscInt dim, const PetscReal *x, Petsc
   for (PetscInt d = 0; d < dim; ++d) v[d] = body->velocity[d] + full[d];
 }
 
+/* Its gradient, the same everywhere: columns are what a metre along each axis changes. */
+static void seed_slope(const BodySpec *body, PetscInt dim, PetscReal *slope)
+{
+  PetscReal here[3], there[3], x[3] = {0, 0, 0};
+  body_velocity(body, dim, x, here);
+  for (PetscInt j = 0; j < dim; ++j) {
+    x[j] = 1;
+    body_velocity(body, dim, x, there);
+    x[j] = 0;
+    for (PetscInt i = 0; i < dim; ++i) slope[i * dim + j] = there[i] - here[i];
+  }
+}
+
 /* Do the points of such a cell take equal parts? In rings of its section: times 2 pi r that is as
  * good as the Gauss rule in triangles, while in a quadrilateral that is no rectangle even a uniform
  * strain would be out of balance. */
@@ -187,6 +200,7 @@ static PetscErrorCode SeedPoint(const Seeding *s, Points *points, PetscInt cell,
   body_velocity(s->body, dim, position, point_real(points, POINT_V, p));
   if (s->domains)
     seed_domain(grid_cell_type(s->source, cell), x, xi, rule->side, section, point_real(points, POINT_DOMAIN, p));
+  if (points->components[POINT_SLOPE]) seed_slope(s->body, dim, point_real(points, POINT_SLOPE, p));
   if (seed->n_state) PetscCall(PetscArraycpy(point_real(points, POINT_STATE, p), seed->initial, seed->n_state));
   points->id[p] = s->first_id + (PetscInt64)s->source->global_cell[cell] * s->rule.n + q;
   points->body[p] = s->b;

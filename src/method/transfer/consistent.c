@@ -1,0 +1,99 @@
+/* Nodes take the motion that has the momentum of the points by the mass matrix M of the balance, and
+ * prescribed ones stop them with the least loss:
+ *
+ *   M v~ = sum_p N m_p v_p (+ slopes),    M_ff (v - v~)_f = - M_fc (v - v~)_c
+ *
+ * f free, c prescribed dofs; likewise a. So the work of the step's forces is what the points' energy
+ * changes by (docs/theory.md, "What points and nodes hand each other"). */
+#include "method/transfer/mass.h"
+#include "method/transfer/slopes.h"
+#include "method/transfer/transfer.h"
+
+#define TOLERANCE 1e-6 /* of what is lacking before the solve; momentum does not depend on it */
+
+/* From the means by mass. */
+static PetscErrorCode ConsistentGather(Discretisation *s)
+{
+  NodalFields *n = s->nodes;
+  PetscReal whole[MOTIONS];
+  MassSolve c;
+
+  PetscFunctionBeginUser;
+  PetscCall(MassSolveCreate(s, &c));
+  slopes_gather(s, c.lack);
+  PetscCall(GridSumToOwners(s->grid, c.width, c.lack));
+  PetscCall(TransferSum(s));
+  mass_pack(&c, n->v_points, n->a_points, c.product);
+  for (PetscInt i = 0; i < s->grid->n_owned * c.width; ++i) c.lack[i] += c.product[i];
+  PetscCall(MassLack(&c, whole));
+  PetscCall(MassSolveClose(&c));
+  PetscCall(MassSubtract(&c));
+  PetscCall(MassSolveRun(&c, TOLERANCE, whole));
+  PetscCall(MassSolveClose(&c));
+  mass_unpack(&c, c.x, n->v_points, n->a_points);
+  PetscCall(MassSolveDestroy(&c));
+  PetscFunctionReturn(0);
+}
+
+/* x = what prescribed dofs have changed by, 0 at the others, whatever an earlier try of the step has
+ * left there; in the frames. */
+static void changes_of_prescribed(MassSolve *c)
+{
+  const NodalFields *n = c->s->nodes;
+  const unsigned char *fixed = c->s->boundary->fixed;
+  mass_pack(c, n->v, n->a, c->x);
+  mass_pack(c, n->v_points, n->a_points, c->direction);
+  for (PetscInt i = 0; i < c->size; ++i) c->x[i] -= c->direction[i];
+  mass_turn(c, c->x);
+  for (PetscInt i = 0; i < c->size; ++i) {
+    if (fixed[i / c->width * c->dim + i % c->dim]) c->inverse[i] = 0;
+    else c->x[i] = 0;
+  }
+}
+
+/* No impulse acts on free nodes when prescribed ones are set to their motion. What the rows of the
+ * others lack is the boundary's. */
+static PetscErrorCode ConsistentHold(Discretisation *s)
+{
+  NodalFields *n = s->nodes;
+  PetscReal whole[MOTIONS];
+  MassSolve c;
+
+  PetscFunctionBeginUser;
+  PetscCall(MassSolveCreate(s, &c));
+  c.framed = PETSC_TRUE;
+  changes_of_prescribed(&c);
+  PetscCall(MassSubtract(&c));
+  PetscCall(MassLack(&c, whole));
+  PetscCall(MassSolveRun(&c, TOLERANCE, whole));
+  PetscCall(MassSolveClose(&c));
+  for (PetscInt i = 0; i < s->grid->n_owned * c.width; ++i)
+    c.lack[i] = s->boundary->fixed[i / c.width * c.dim + i % c.dim] ? -c.lack[i] : 0;
+  mass_turn(&c, c.x);
+  mass_turn(&c, c.lack);
+  mass_pack(&c, n->v_points, n->a_points, c.direction);
+  for (PetscInt i = 0; i < c.size; ++i) c.x[i] += c.direction[i];
+  mass_unpack(&c, c.x, n->v, n->a);
+  mass_unpack(&c, c.lack, n->impulse, n->lost_force);
+  PetscCall(MassSolveDestroy(&c));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode ConsistentGive(Discretisation *s)
+{
+  PetscFunctionBeginUser;
+  PetscCall(TransferGiveChange(s));
+  slopes_give(s);
+  PetscFunctionReturn(0);
+}
+
+const Transfer transfer_consistent = {
+  .name = "consistent",
+  .help =
+    "nodes take the momentum of their points by the mass matrix of the balance, points their gradient: rotation "
+    "is kept, and most of the energy",
+  .slopes = PETSC_TRUE,
+  .gather = ConsistentGather,
+  .hold = ConsistentHold,
+  .give = ConsistentGive,
+};

@@ -1,0 +1,198 @@
+#include "method/transfer/mass.h"
+#include "method/transfer/loops.h"
+
+#define MAX_SWEEPS 200
+
+PetscErrorCode MassSolveDestroy(MassSolve *c)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscFree5(c->x, c->lack, c->inverse, c->direction, c->product));
+  PetscFunctionReturn(0);
+}
+
+/* sum += M x over the points of a run. */
+UNROLLED void multiply(const PetscInt dim, const PetscInt fixed_nn, const SupportRun *run, const Discretisation *s,
+                       const PetscReal *x, PetscReal *sum)
+{
+  const Support *w = s->support;
+  const PetscInt width = 2 * dim;
+  for (PetscInt g = run->first; g < run->end; ++g) {
+    const PetscInt nn = fixed_nn ? fixed_nn : support_nodes(w, g), *node = w->node + w->node_start[g];
+    const PetscReal lumped = s->lumping[g], tie = s->tie[g];
+    PetscReal in[6 * CLOUD_MAX_NODES], out[6 * CLOUD_MAX_NODES], weight[CLOUD_MAX_NODES], mean[6];
+    for (PetscInt k = 0; k < width; ++k) mean[k] = 0;
+    for (PetscInt I = 0; I < nn; ++I) {
+      weight[I] = tie;
+      for (PetscInt k = 0; k < width; ++k) {
+        in[I * width + k] = x[node[I] * width + k];
+        mean[k] -= tie / (PetscReal)nn * in[I * width + k];
+      }
+    }
+    for (PetscInt i = 0; i < nn * width; ++i) out[i] = mean[i % width];
+    for (PetscInt p = w->point_start[g]; p < w->point_start[g + 1]; ++p) {
+      const PetscReal *N = w->N + w->value_start[g] + (p - w->point_start[g]) * nn;
+      const PetscReal m = s->points->real[POINT_MASS][p];
+      PetscReal at[6] = {0, 0, 0, 0, 0, 0};
+      for (PetscInt I = 0; I < nn; ++I) {
+        weight[I] += lumped * m * N[I];
+        for (PetscInt k = 0; k < width; ++k) at[k] += N[I] * in[I * width + k];
+      }
+      for (PetscInt k = 0; k < width; ++k) at[k] *= (1 - lumped) * m;
+      for (PetscInt I = 0; I < nn; ++I)
+        for (PetscInt k = 0; k < width; ++k) out[I * width + k] += N[I] * at[k];
+    }
+    for (PetscInt I = 0; I < nn; ++I)
+      for (PetscInt k = 0; k < width; ++k)
+        sum[node[I] * width + k] += out[I * width + k] + weight[I] * in[I * width + k];
+  }
+}
+
+/* sum += the diagonal of M, a number for each node. */
+UNROLLED void add_diagonal(const PetscInt dim, const PetscInt fixed_nn, const SupportRun *run, const Discretisation *s,
+                           PetscReal *sum)
+{
+  const Support *w = s->support;
+  (void)dim;
+  for (PetscInt g = run->first; g < run->end; ++g) {
+    const PetscInt nn = fixed_nn ? fixed_nn : support_nodes(w, g), *node = w->node + w->node_start[g];
+    for (PetscInt I = 0; I < nn; ++I) sum[node[I]] += s->tie[g] * (1 - 1 / (PetscReal)nn);
+    for (PetscInt p = w->point_start[g]; p < w->point_start[g + 1]; ++p) {
+      const PetscReal *N = w->N + w->value_start[g] + (p - w->point_start[g]) * nn;
+      const PetscReal m = s->points->real[POINT_MASS][p];
+      for (PetscInt I = 0; I < nn; ++I) sum[node[I]] += m * N[I] * ((1 - s->lumping[g]) * N[I] + s->lumping[g]);
+    }
+  }
+}
+
+PetscErrorCode MassSolveCreate(const Discretisation *s, MassSolve *c)
+{
+  const PetscInt n = s->grid->n_nodes, dim = s->grid->dim, width = 2 * dim, size = n * width;
+
+  PetscFunctionBeginUser;
+  *c = (MassSolve){.s = s, .dim = dim, .width = width, .size = size};
+  PetscCall(PetscCalloc5(size, &c->x, size, &c->lack, size, &c->inverse, size, &c->direction, size, &c->product));
+  WITH_SIZES(add_diagonal, s, s, c->product);
+  PetscCall(GridSumToOwners(s->grid, 1, c->product));
+  for (PetscInt i = 0; i < s->grid->n_owned * width; ++i)
+    c->inverse[i] = c->product[i / width] > 1e-300 ? 1 / c->product[i / width] : 0;
+  PetscFunctionReturn(0);
+}
+
+void mass_turn(const MassSolve *c, PetscReal *x)
+{
+  const Frames *frames = &c->s->boundary->frames;
+  for (PetscInt k = 0; c->framed && k < frames->n; ++k)
+    for (PetscInt f = 0; f < MOTIONS; ++f)
+      frame_turn(c->dim, frames->w + 3 * k, x + frames->node[k] * c->width + f * c->dim);
+}
+
+/* product = M x, on owners. */
+static PetscErrorCode Multiply(MassSolve *c, PetscReal *x)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscArrayzero(c->product, c->size));
+  mass_turn(c, x);
+  WITH_SIZES(multiply, c->s, c->s, x, c->product);
+  mass_turn(c, x);
+  PetscCall(GridSumToOwners(c->s->grid, c->width, c->product));
+  mass_turn(c, c->product);
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode MassSubtract(MassSolve *c)
+{
+  PetscFunctionBeginUser;
+  PetscCall(Multiply(c, c->x));
+  for (PetscInt i = 0; i < c->s->grid->n_owned * c->width; ++i) c->lack[i] -= c->product[i];
+  PetscFunctionReturn(0);
+}
+
+/* Sums over owned nodes of x y z, of velocity and acceleration apart. */
+static PetscErrorCode Products(const MassSolve *c, const PetscReal *x, const PetscReal *y, const PetscReal *z,
+                               PetscReal sum[MOTIONS])
+{
+  PetscReal local[MOTIONS] = {0, 0};
+
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < c->s->grid->n_owned * c->width; i += c->dim)
+    for (PetscInt d = 0; d < c->dim; ++d) local[(i / c->dim) % MOTIONS] += x[i + d] * y[i + d] * (z ? z[i + d] : 1);
+  PetscCall(MPIU_Allreduce(local, sum, MOTIONS, MPIU_REAL, MPI_SUM, c->s->grid->comm));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode MassLack(const MassSolve *c, PetscReal square[MOTIONS])
+{
+  PetscFunctionBeginUser;
+  PetscCall(Products(c, c->lack, c->lack, c->inverse, square));
+  PetscFunctionReturn(0);
+}
+
+/* One sweep; lengths of 0 leave a motion alone. */
+static PetscErrorCode Sweep(MassSolve *c, const PetscBool done[MOTIONS], PetscReal now[MOTIONS],
+                            PetscReal grow[MOTIONS])
+{
+  const PetscInt owned = c->s->grid->n_owned * c->width;
+  PetscReal curvature[MOTIONS], length[MOTIONS], before[MOTIONS];
+
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < owned; i += c->dim)
+    for (PetscInt d = 0; d < c->dim; ++d)
+      c->direction[i + d] = c->inverse[i + d] * c->lack[i + d] + grow[(i / c->dim) % MOTIONS] * c->direction[i + d];
+  PetscCall(GridToGhosts(c->s->grid, c->width, c->direction));
+  PetscCall(Multiply(c, c->direction));
+  PetscCall(Products(c, c->direction, c->product, NULL, curvature));
+  for (int f = 0; f < MOTIONS; ++f) length[f] = !done[f] && curvature[f] > 0 ? now[f] / curvature[f] : 0;
+  for (PetscInt i = 0; i < c->size; i += c->dim)
+    for (PetscInt d = 0; d < c->dim; ++d) {
+      c->x[i + d] += length[(i / c->dim) % MOTIONS] * c->direction[i + d];
+      c->lack[i + d] -= length[(i / c->dim) % MOTIONS] * c->product[i + d];
+    }
+  PetscCall(PetscArraycpy(before, now, MOTIONS));
+  PetscCall(MassLack(c, now));
+  for (int f = 0; f < MOTIONS; ++f) grow[f] = before[f] > 0 ? now[f] / before[f] : 0;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode MassSolveRun(MassSolve *c, PetscReal tolerance, const PetscReal size[MOTIONS])
+{
+  PetscReal now[MOTIONS], grow[MOTIONS] = {0, 0};
+  PetscBool done[MOTIONS];
+  int sweep = 0;
+
+  PetscFunctionBeginUser;
+  PetscCall(MassLack(c, now));
+  PetscCall(PetscArrayzero(c->direction, c->size));
+  do {
+    for (int f = 0; f < MOTIONS; ++f) done[f] = now[f] <= PetscSqr(tolerance) * size[f];
+    if (done[VELOCITY] && done[ACCELERATION]) break;
+    PetscCall(Sweep(c, done, now, grow));
+  } while (++sweep < MAX_SWEEPS);
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode MassSolveClose(MassSolve *c)
+{
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < c->s->grid->n_owned * c->width; ++i)
+    if (c->inverse[i] > 0) c->x[i] += c->lack[i] / c->s->nodes->mass[i / c->width];
+  PetscCall(GridToGhosts(c->s->grid, c->width, c->x));
+  PetscFunctionReturn(0);
+}
+
+void mass_pack(const MassSolve *c, const PetscReal *v, const PetscReal *a, PetscReal *x)
+{
+  for (PetscInt i = 0; i < c->size; i += c->width)
+    for (PetscInt d = 0; d < c->dim; ++d) {
+      x[i + d] = v[i / MOTIONS + d];
+      x[i + c->dim + d] = a[i / MOTIONS + d];
+    }
+}
+
+void mass_unpack(const MassSolve *c, const PetscReal *x, PetscReal *v, PetscReal *a)
+{
+  for (PetscInt i = 0; i < c->size; i += c->width)
+    for (PetscInt d = 0; d < c->dim; ++d) {
+      v[i / MOTIONS + d] = x[i + d];
+      a[i / MOTIONS + d] = x[i + c->dim + d];
+    }
+}

@@ -1,0 +1,42 @@
+/* Equations with the mass matrix of the step's balance, of two motions at a time: the velocity and
+ * the acceleration of nodes.
+ *
+ *   (M x)_I = sum_g [ sum_p m N_I ((1 - l_g) sum_J N_J x_J + l_g x_I) + t_g (x_I - mean_g x) ]
+ *
+ * with the lumped share l and the tie t of the group g (docs/theory.md, "Cells that are not
+ * full"). Nodal arrays are n_nodes x width, velocity and acceleration of a node behind each
+ * other. */
+#pragma once
+#include "method/discretisation.h"
+
+enum { VELOCITY, ACCELERATION, MOTIONS };
+
+typedef struct {
+  const Discretisation *s;
+  PetscInt dim, width, size; /* width: 2 dim; size: n_nodes x width */
+  /* the motion sought, on all copies when the equations are solved, m/s, m/s2 */
+  PetscReal *x;
+  PetscReal *lack;    /* right-hand side - M x, on owners, kg m/s, N */
+  PetscReal *inverse; /* of M's diagonal, 0 where x is given or nothing has mass, on owners, 1/kg */
+  PetscReal *direction, *product;
+  PetscBool framed; /* are components those in the frames of nodes that slide? */
+} MassSolve;
+
+/* Collective. x and lack are 0. */
+PetscErrorCode MassSolveCreate(const Discretisation *space, MassSolve *solve);
+PetscErrorCode MassSolveDestroy(MassSolve *solve);
+/* Collective. lack -= M x; x is right on all copies. */
+PetscErrorCode MassSubtract(MassSolve *solve);
+/* Collective. |lack|^2 of each motion, in the norm of the inverse diagonal. */
+PetscErrorCode MassLack(const MassSolve *solve, PetscReal square[MOTIONS]);
+/* Collective. Conjugate gradients from x and its lack until that has fallen to `tolerance` of
+ * `square`, as MassLack gives it. */
+PetscErrorCode MassSolveRun(MassSolve *solve, PetscReal tolerance, const PetscReal square[MOTIONS]);
+/* Collective. What is lacking goes to the nodes by mass where `inverse` is not 0: then the sum of M x is that of
+ * the right-hand side to round-off. x is right on all copies after that. */
+PetscErrorCode MassSolveClose(MassSolve *solve);
+/* Between components along the axes and those in the frames, if these are used. */
+void mass_turn(const MassSolve *solve, PetscReal *x);
+/* Two fields of n_nodes x dim to such an array, and back. */
+void mass_pack(const MassSolve *solve, const PetscReal *v, const PetscReal *a, PetscReal *x);
+void mass_unpack(const MassSolve *solve, const PetscReal *x, PetscReal *v, PetscReal *a);

@@ -1,0 +1,75 @@
+#include "method/transfer/slopes.h"
+#include "base/math/tensor.h"
+#include "method/transfer/loops.h"
+
+/* sum += factor G x, of both motions. */
+UNROLLED void add_linear(const PetscInt dim, PetscReal factor, const PetscReal *G, const PetscReal *x, PetscReal *sum)
+{
+  for (PetscInt k = 0; k < 2 * dim; ++k)
+    for (PetscInt d = 0; d < dim; ++d) sum[k] += factor * G[k * dim + d] * x[d];
+}
+
+/* The tie of a group, which holds its nodes to their mean: G is the mean of its points. */
+UNROLLED void add_tied(const PetscInt dim, const PetscInt nn, const Discretisation *s, PetscReal tie,
+                       const PetscInt *node, const PetscReal *G, PetscReal *sum)
+{
+  PetscReal mean[3] = {0, 0, 0}, from[3];
+  for (PetscInt I = 0; I < nn; ++I)
+    for (PetscInt d = 0; d < dim; ++d) mean[d] += s->grid->x[node[I] * dim + d] / (PetscReal)nn;
+  for (PetscInt I = 0; I < nn; ++I) {
+    for (PetscInt d = 0; d < dim; ++d) from[d] = s->grid->x[node[I] * dim + d] - mean[d];
+    add_linear(dim, tie, G, from, sum + node[I] * 2 * dim);
+  }
+}
+
+UNROLLED void gather_slopes(const PetscInt dim, const PetscInt fixed_nn, const SupportRun *run, const Discretisation *s,
+                            PetscReal *sum)
+{
+  const Support *w = s->support;
+  for (PetscInt g = run->first; g < run->end; ++g) {
+    const PetscInt nn = fixed_nn ? fixed_nn : support_nodes(w, g), *node = w->node + w->node_start[g];
+    PetscReal mean[18] = {0}, mass = 0, from[3];
+    if (s->lumping[g] == 0 && s->tie[g] == 0) continue;
+    for (PetscInt p = w->point_start[g]; p < w->point_start[g + 1]; ++p) {
+      const PetscReal *N = w->N + w->value_start[g] + (p - w->point_start[g]) * nn, m = s->points->real[POINT_MASS][p];
+      const PetscReal *G = point_real(s->points, POINT_SLOPE, p), *x = point_real(s->points, POINT_X, p);
+      mass += m;
+      for (PetscInt k = 0; k < 2 * dim * dim; ++k) mean[k] += m * G[k];
+      for (PetscInt I = 0; I < nn; ++I) {
+        for (PetscInt d = 0; d < dim; ++d) from[d] = s->grid->x[node[I] * dim + d] - x[d];
+        add_linear(dim, s->lumping[g] * m * N[I], G, from, sum + node[I] * 2 * dim);
+      }
+    }
+    if (s->tie[g] > 0) add_tied(dim, nn, s, s->tie[g] / mass, node, mean, sum);
+  }
+}
+
+void slopes_gather(const Discretisation *s, PetscReal *sum) { WITH_SIZES(gather_slopes, s, s, sum); }
+
+/* The gradients at the step's start are those with respect to places that dF moves on. */
+UNROLLED void give_slopes(const PetscInt dim, const PetscInt fixed_nn, const SupportRun *run, Discretisation *s)
+{
+  const Support *w = s->support;
+  const NodalFields *n = s->nodes;
+  for (PetscInt g = run->first; g < run->end; ++g) {
+    const PetscInt nn = fixed_nn ? fixed_nn : support_nodes(w, g), *node = w->node + w->node_start[g];
+    for (PetscInt p = w->point_start[g]; p < w->point_start[g + 1]; ++p) {
+      const PetscReal *dN = w->dN + dim * (w->value_start[g] + (p - w->point_start[g]) * nn);
+      PetscReal dF[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1}, inverse[9], before[18] = {0};
+      PetscReal *G = point_real(s->points, POINT_SLOPE, p);
+      for (PetscInt I = 0; I < nn; ++I)
+        for (PetscInt i = 0; i < dim; ++i)
+          for (PetscInt j = 0; j < dim; ++j) {
+            dF[3 * i + j] += n->du[node[I] * dim + i] * dN[I * dim + j];
+            before[i * dim + j] += n->v1[node[I] * dim + i] * dN[I * dim + j];
+            before[(dim + i) * dim + j] += n->a1[node[I] * dim + i] * dN[I * dim + j];
+          }
+      tensor_inverse(dF, inverse);
+      for (PetscInt k = 0; k < 2 * dim * dim; ++k) G[k] = 0;
+      for (PetscInt k = 0; k < 2 * dim * dim; ++k)
+        for (PetscInt j = 0; j < dim; ++j) G[k / dim * dim + j] += before[k] * inverse[3 * (k % dim) + j];
+    }
+  }
+}
+
+void slopes_give(Discretisation *s) { WITH_SIZES(give_slopes, s, s); }

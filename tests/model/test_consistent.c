@@ -1,0 +1,134 @@
+/* Transfer `consistent`, seen from outside: nodes reproduce any linear motion of the points, also
+ * where cells are not full; the momentum of the nodes by the mass matrix, written down again here, is
+ * that of the points; the impulse of prescribed nodes is all that these take. */
+#include "case_builder.h"
+
+enum { CELLS = 6, SIDE = CELLS + 1 };
+
+static PetscReal hat(PetscReal x, PetscReal node) { return PetscMax(0, 1 - PetscAbsReal(x - node) * CELLS); }
+
+/* Of a quadrilateral's node at the point x, CELLS cells along a side of 1 m. */
+static PetscReal shape_at(const PetscReal *node, const PetscReal *x) { return hat(x[0], node[0]) * hat(x[1], node[1]); }
+
+static PetscReal sum_over(const Model *m, PetscReal part)
+{
+  CALL(MPI_Allreduce(MPI_IN_PLACE, &part, 1, MPIU_REAL, MPI_SUM, m->comm));
+  return part;
+}
+
+static Model *block(Bench *b, CellType cell, PetscBool held)
+{
+  bench_init(b, "mpm", cell, CELLS);
+  bench_box(b, 0, (PetscReal[]){1. / 3, 0, 1. / 6}, (PetscReal[]){5. / 6, 5. / 6, 2. / 3});
+  bench_dynamic(b, 1, 1e-3);
+  b->c.analysis.transfer = (char *)"consistent";
+  b->c.stabilisation = (StabilisationSpec){.stiffness = 1e-6, .mass = 1, .inertia = 0.05};
+  if (held) bench_motion(b, 1, 0, MOTION_FIXED, 3);
+  return bench_model(b, PETSC_COMM_WORLD);
+}
+
+/* Two motions that are linear in x. */
+static PetscReal linear_at(PetscInt motion, PetscInt d, const PetscReal *x, PetscInt dim)
+{
+  PetscReal sum = 0.3 * (PetscReal)(d + 1);
+  for (PetscInt j = 0; j < dim; ++j) sum += (motion ? 7 : 1) * sin(1 + (PetscReal)(3 * d + j)) * x[j];
+  return sum;
+}
+
+/* Masses of their own, and cells half empty. */
+static void set_linear(Model *m)
+{
+  const PetscReal none[3] = {0, 0, 0};
+  for (PetscInt p = 0; p < m->points->n; ++p) {
+    Random random = {(uint64_t)m->points->id[p] + 3};
+    m->points->real[POINT_MASS][p] *= random_real(&random, 0.5, 1.5);
+    m->points->real[POINT_J][p] = random_real(&random, 0.3, 0.9);
+    for (PetscInt k = 0; k < 2; ++k)
+      for (PetscInt d = 0; d < m->dim; ++d) {
+        PetscReal *slope = point_real(m->points, POINT_SLOPE, p) + (k * m->dim + d) * m->dim;
+        point_real(m->points, k ? POINT_A : POINT_V, p)[d] = linear_at(k, d, point_real(m->points, POINT_X, p), m->dim);
+        for (PetscInt j = 0; j < m->dim; ++j) {
+          const PetscReal one[3] = {j == 0, j == 1, j == 2};
+          slope[j] = linear_at(k, d, one, m->dim) - linear_at(k, d, none, m->dim);
+        }
+      }
+  }
+}
+
+/* To the tolerance of the solve, 1e-6 of the motion, over the least eigenvalue, some per cent. */
+static void test_linear(void **state)
+{
+  (void)state;
+  for (CellType cell = CELL_TRIANGLE; cell <= CELL_HEXAHEDRON; ++cell) {
+    Bench b;
+    Model *m = block(&b, cell, PETSC_FALSE);
+    set_linear(m);
+    CALL(m->method->initialise(m->space));
+    for (PetscInt i = 0; i < m->grid->n_nodes * m->dim; ++i) {
+      const PetscReal *x = m->grid->x + i / m->dim * m->dim;
+      if (!m->nodes->touched[i / m->dim]) continue;
+      CHECK_CLOSE(m->nodes->v[i], linear_at(0, i % m->dim, x, m->dim), 1e-4);
+      CHECK_CLOSE(m->nodes->a[i], linear_at(1, i % m->dim, x, m->dim), 1e-3);
+    }
+    CALL(ModelDestroy(&m));
+  }
+}
+
+/* sum_p N_I m (sum_J N_J v_J) of full cells, against sum_p N_I m v_p; and its sum over all nodes. */
+static void test_momentum(void **state)
+{
+  Bench b;
+  (void)state;
+  Model *m = block(&b, CELL_QUADRILATERAL, PETSC_FALSE);
+  PetscReal sum[2] = {0, 0}, points[2] = {0, 0}, mass = 0;
+  for (PetscInt p = 0; p < m->points->n; ++p)
+    for (PetscInt d = 0; d < 2; ++d) {
+      Random random = {(uint64_t)(2 * m->points->id[p] + d)};
+      const PetscReal v = random_real(&random, -1, 1);
+      point_real(m->points, POINT_V, p)[d] = v;
+      points[d] += m->points->real[POINT_MASS][p] * v;
+      mass += m->points->real[POINT_MASS][p] / 2;
+    }
+  CALL(m->method->initialise(m->space));
+  PetscReal gap[SIDE * SIDE][2] = {{0}};
+  for (PetscInt p = 0; p < m->points->n; ++p) {
+    const PetscReal *x = point_real(m->points, POINT_X, p);
+    PetscReal v[2] = {0, 0};
+    for (PetscInt i = 0; i < m->grid->n_nodes; ++i)
+      for (PetscInt d = 0; d < 2; ++d) v[d] += shape_at(m->grid->x + 2 * i, x) * m->nodes->v[2 * i + d];
+    for (PetscInt k = 0; k < SIDE * SIDE; ++k) {
+      const PetscReal at[2] = {(PetscReal)(k % SIDE) / CELLS, (PetscReal)(k / SIDE) / CELLS};
+      for (PetscInt d = 0; d < 2; ++d)
+        gap[k][d] += shape_at(at, x) * m->points->real[POINT_MASS][p] * (v[d] - point_real(m->points, POINT_V, p)[d]);
+    }
+  }
+  for (PetscInt i = 0; i < m->grid->n_owned * 2; ++i) sum[i % 2] += m->nodes->mass[i / 2] * m->nodes->v[i];
+  CALL(MPI_Allreduce(MPI_IN_PLACE, gap, SIDE * SIDE * 2, MPIU_REAL, MPI_SUM, m->comm));
+  for (PetscInt d = 0; d < 2; ++d) CHECK_CLOSE(sum_over(m, sum[d]), sum_over(m, points[d]), 1e-12 * sum_over(m, mass));
+  for (PetscInt k = 0; k < SIDE * SIDE * 2; ++k) CHECK_CLOSE(gap[k / 2][k % 2], 0, 1e-5 * sum_over(m, mass));
+  CALL(ModelDestroy(&m));
+}
+
+/* Two bodies that cannot have it: nodes of fem keep their motion, and the floor that takes nothing is
+ * the thesis's. */
+static void test_refused(void **state)
+{
+  Bench b;
+  (void)state;
+  bench_init(&b, "fem", CELL_QUADRILATERAL, 4);
+  bench_dynamic(&b, 1, 1e-3);
+  b.c.analysis.transfer = (char *)"consistent";
+  bench_refused(&b, PETSC_COMM_WORLD, "analysis.transfer", "only mpm takes it from points");
+  bench_init(&b, "mpm", CELL_QUADRILATERAL, 4);
+  bench_dynamic(&b, 1, 1e-3);
+  b.c.analysis.transfer = (char *)"consistent";
+  b.c.analysis.keep_velocity = PETSC_TRUE;
+  bench_refused(&b, PETSC_COMM_WORLD, "analysis.keep_velocity", "transfer consistent knows no such floor");
+}
+
+int main(int argc, char **argv)
+{
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_linear), cmocka_unit_test(test_momentum),
+                                     cmocka_unit_test(test_refused)};
+  return run_model_tests(argc, argv, tests);
+}
