@@ -87,6 +87,12 @@ static void check_transfer(const Case *c, const Method *method, Diag *diag)
   } else if (c->analysis.keep_velocity && !transfer->keeps_velocity) {
     diag_error(diag, "analysis.keep_velocity", "is the floor of transfer thesis; transfer %s knows no such floor",
                transfer->name);
+  } else if (transfer->slopes && basis_find(c->basis.kind)->domains) {
+    diag_error(diag, "analysis.transfer",
+               "transfer %s makes energy with basis %s when steps are long; only linear "
+               "functions take it",
+               transfer->name, c->basis.kind);
+    diag_hint(diag, "transfer: thesis with this basis, or transfer: %s without it", transfer->name);
   }
 }
 
@@ -118,7 +124,7 @@ static void check_supported(const Model *m, Diag *diag)
  * in it stays for ever. */
 static void check_ringing(const Model *m, const Material *material, Diag *diag)
 {
-  if (!m->formulation->pressure || material->compliance > 0) return;
+  if (diag_errors(diag) || !m->formulation->pressure || material->compliance > 0) return;
   if (m->scheme->weights(&m->c->analysis, m->c->analysis.step).mean > 0.5) return;
   diag_warning(
     diag, "analysis.bossak",

@@ -220,6 +220,10 @@ static void test_refused(void **state)
   b.c.basis.kind = "gimp";
   b.c.formulation = "mixed";
   bench_refused(&b, PETSC_COMM_WORLD, "formulation", "takes no other basis than 'cell', not 'gimp'");
+  bench_init(&b, "mpm", CELL_QUADRILATERAL, 3);
+  b.c.basis.kind = "gimp";
+  b.c.analysis.transfer = (char *)"consistent";
+  bench_refused(&b, PETSC_COMM_WORLD, "analysis.transfer", "makes energy with basis gimp");
   bench_init(&b, "fem", CELL_QUADRILATERAL, 3);
   b.c.basis.kind = "gimp";
   bench_refused(&b, PETSC_COMM_WORLD, "basis", "method fem does not take the basis 'gimp'");

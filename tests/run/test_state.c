@@ -401,10 +401,10 @@ static void test_other_model(void **state)
 int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {
-    cmocka_unit_test(test_mpm_2d),      cmocka_unit_test(test_mpm_3d),  cmocka_unit_test(test_repartition),
-    cmocka_unit_test(test_fem),         cmocka_unit_test(test_opening), cmocka_unit_test(test_mesh), cmocka_unit_test(test_gimp),
-    cmocka_unit_test(test_gmm),         cmocka_unit_test(test_static),  cmocka_unit_test(test_at_start),
-    cmocka_unit_test(test_other_model), cmocka_unit_test(test_given_up)};
+    cmocka_unit_test(test_mpm_2d),   cmocka_unit_test(test_mpm_3d),      cmocka_unit_test(test_repartition),
+    cmocka_unit_test(test_fem),      cmocka_unit_test(test_opening),     cmocka_unit_test(test_mesh),
+    cmocka_unit_test(test_gimp),     cmocka_unit_test(test_gmm),         cmocka_unit_test(test_static),
+    cmocka_unit_test(test_at_start), cmocka_unit_test(test_other_model), cmocka_unit_test(test_given_up)};
   PetscMPIInt rank;
   int pid;
   if (PetscInitialize(&argc, &argv, NULL, NULL)) return 1;
