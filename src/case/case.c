@@ -112,6 +112,7 @@ PetscErrorCode CaseDestroy(Case **c)
   PetscCall(PetscFree((*c)->method));
   PetscCall(PetscFree((*c)->formulation));
   PetscCall(PetscFree((*c)->analysis.scheme));
+  PetscCall(PetscFree((*c)->analysis.transfer));
   for (PetscInt i = 0; i < (*c)->analysis.n_until; ++i) PetscCall(PetscFree((*c)->analysis.until[i].measure));
   PetscCall(PetscFree((*c)->analysis.until));
   PetscCall(PetscFree((*c)->grid.mesh));

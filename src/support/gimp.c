@@ -76,7 +76,7 @@ static PetscInt axis_functions(const BasisInput *in, const Points *points, Petsc
   const GridBox *box = in->grid->box;
   const PetscReal *x = point_real(points, POINT_X, p);
   PetscInt ijk[3], n = 1;
-  PetscReal size[3], l[3];
+  PetscReal size[3] = {0}, l[3] = {0};
   box_voxel_of(in->grid, points->cell[p], ijk);
   for (PetscInt d = 0; d < box->dim; ++d) size[d] = box->line[d][ijk[d] + 1] - box->line[d][ijk[d]];
   domain_now(points, p, size, l);

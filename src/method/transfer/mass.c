@@ -10,6 +10,20 @@ PetscErrorCode MassSolveDestroy(MassSolve *c)
   PetscFunctionReturn(0);
 }
 
+/* out += N m (1 - l) N x of a point; weight += N m l. */
+UNROLLED void multiply_point(const PetscInt nn, const PetscInt width, PetscReal m, PetscReal lumped, const PetscReal *N,
+                             const PetscReal *in, PetscReal *weight, PetscReal *out)
+{
+  PetscReal at[6] = {0, 0, 0, 0, 0, 0};
+  for (PetscInt I = 0; I < nn; ++I) {
+    weight[I] += lumped * m * N[I];
+    for (PetscInt k = 0; k < width; ++k) at[k] += N[I] * in[I * width + k];
+  }
+  for (PetscInt k = 0; k < width; ++k) at[k] *= (1 - lumped) * m;
+  for (PetscInt I = 0; I < nn; ++I)
+    for (PetscInt k = 0; k < width; ++k) out[I * width + k] += N[I] * at[k];
+}
+
 /* sum += M x over the points of a run. */
 UNROLLED void multiply(const PetscInt dim, const PetscInt fixed_nn, const SupportRun *run, const Discretisation *s,
                        const PetscReal *x, PetscReal *sum)
@@ -18,9 +32,9 @@ UNROLLED void multiply(const PetscInt dim, const PetscInt fixed_nn, const Suppor
   const PetscInt width = 2 * dim;
   for (PetscInt g = run->first; g < run->end; ++g) {
     const PetscInt nn = fixed_nn ? fixed_nn : support_nodes(w, g), *node = w->node + w->node_start[g];
-    const PetscReal lumped = s->lumping[g], tie = s->tie[g];
-    PetscReal in[6 * CLOUD_MAX_NODES], out[6 * CLOUD_MAX_NODES], weight[CLOUD_MAX_NODES], mean[6];
-    for (PetscInt k = 0; k < width; ++k) mean[k] = 0;
+    const PetscReal tie = s->tie[g];
+    PetscReal in[6 * CLOUD_MAX_NODES], out[6 * CLOUD_MAX_NODES], weight[CLOUD_MAX_NODES];
+    PetscReal mean[6] = {0, 0, 0, 0, 0, 0};
     for (PetscInt I = 0; I < nn; ++I) {
       weight[I] = tie;
       for (PetscInt k = 0; k < width; ++k) {
@@ -29,21 +43,11 @@ UNROLLED void multiply(const PetscInt dim, const PetscInt fixed_nn, const Suppor
       }
     }
     for (PetscInt i = 0; i < nn * width; ++i) out[i] = mean[i % width];
-    for (PetscInt p = w->point_start[g]; p < w->point_start[g + 1]; ++p) {
-      const PetscReal *N = w->N + w->value_start[g] + (p - w->point_start[g]) * nn;
-      const PetscReal m = s->points->real[POINT_MASS][p];
-      PetscReal at[6] = {0, 0, 0, 0, 0, 0};
-      for (PetscInt I = 0; I < nn; ++I) {
-        weight[I] += lumped * m * N[I];
-        for (PetscInt k = 0; k < width; ++k) at[k] += N[I] * in[I * width + k];
-      }
-      for (PetscInt k = 0; k < width; ++k) at[k] *= (1 - lumped) * m;
-      for (PetscInt I = 0; I < nn; ++I)
-        for (PetscInt k = 0; k < width; ++k) out[I * width + k] += N[I] * at[k];
-    }
-    for (PetscInt I = 0; I < nn; ++I)
-      for (PetscInt k = 0; k < width; ++k)
-        sum[node[I] * width + k] += out[I * width + k] + weight[I] * in[I * width + k];
+    for (PetscInt p = w->point_start[g]; p < w->point_start[g + 1]; ++p)
+      multiply_point(nn, width, s->points->real[POINT_MASS][p], s->lumping[g],
+                     w->N + w->value_start[g] + (p - w->point_start[g]) * nn, in, weight, out);
+    for (PetscInt i = 0; i < nn * width; ++i)
+      sum[node[i / width] * width + i % width] += out[i] + weight[i / width] * in[i];
   }
 }
 
