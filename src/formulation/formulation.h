@@ -35,6 +35,7 @@ typedef struct {
   PetscReal alpha; /* mixed: stabilisation of the pressure is alpha / G */
   /* mixed: per group, ties the pressures of a hardly filled cell, m3/Pa, or NULL */
   const PetscReal *pressure_tie;
+  const PetscInt *cell_node; /* mixed, points with nodes of their own: the corners of each cell of their grid */
 } WeakFormInput;
 
 typedef struct {

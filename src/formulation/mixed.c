@@ -8,6 +8,7 @@
  * unknowns are m and all equations N, and the tangent is symmetric where the law's is. Points
  * run in batches of one material as in displacement.c. */
 #include "formulation/cells.h"
+#include "formulation/mixed_cloud.h"
 #include "formulation/mixed_kernels.h"
 #include "formulation/sizes.h"
 
@@ -78,11 +79,8 @@ KERNEL void mixed_store(const int dim, const int nn, const PetscBool hoop, const
 KERNEL LawStatus batch_update(const int dim, const int nn, const PetscBool hoop, const WeakFormInput *in,
                               PetscBool tangent, Batch *b)
 {
-  const Law *law = batch_material(in, b)->law;
-  const LawUpdate update = hoop && law->update_hoop ? law->update_hoop : law->update;
   batch_increments(dim, nn, hoop, PETSC_TRUE, in, b);
-  if (batch_crosses_axis(in, b)) return LAW_INVERTED;
-  return pressure_update(batch_material(in, b), update, b->n, b->dF, b->p, batch_old(in, b), b->state, tangent, &b->s);
+  return batch_pressure_law(in, tangent, b);
 }
 
 /* Point k of the batch into its cell. */
@@ -139,14 +137,19 @@ CELL_SIZES(SIZED_KERNELS)
 
 static const SizedKernels kernels[] = {CELL_SIZES(SIZED_ROW){0}};
 
+static const SizedKernels *kernels_of(const WeakFormInput *in)
+{
+  return in->support->n_runs ? kernels : mixed_cloud_kernels;
+}
+
 static PetscErrorCode MixedAssemble(const WeakFormInput *in, WeakFormOutput *out)
 {
-  return SizedAssemble(kernels, in, out);
+  return SizedAssemble(kernels_of(in), in, out);
 }
 
 static PetscErrorCode MixedCommit(const WeakFormInput *in, Points *points, LawStatus *status)
 {
-  return SizedCommit(kernels, in, points, status);
+  return SizedCommit(kernels_of(in), in, points, status);
 }
 
 /* Mass over G + 1/K, lumped: B A^-1 B^T of a body with the stiffness 2G against shear is the

@@ -68,6 +68,15 @@ static inline LawStatus batch_law(const WeakFormInput *in, PetscBool tangent, Ba
   return update(material->parameters, b->n, b->dF, batch_old(in, b), b->state, b->s.tau, tangent ? b->s.c : NULL);
 }
 
+/* The same with the pressures b->p. */
+static inline LawStatus batch_pressure_law(const WeakFormInput *in, PetscBool tangent, Batch *b)
+{
+  if (batch_crosses_axis(in, b)) return LAW_INVERTED;
+  const Law *law = batch_material(in, b)->law;
+  const LawUpdate update = in->kinematics->hoop && law->update_hoop ? law->update_hoop : law->update;
+  return pressure_update(batch_material(in, b), update, b->n, b->dF, b->p, batch_old(in, b), b->state, tangent, &b->s);
+}
+
 /* The worst status so far; PETSC_FALSE if it is bad: the step is cut, and nothing counts any
  * more. */
 static inline PetscBool batch_is_good(const Batch *b, LawStatus status, WeakFormOutput *out)

@@ -32,7 +32,7 @@ static PetscErrorCode NodalVolumes(const Discretisation *s, PetscReal *volume, P
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode DiscretisationCuts(Discretisation *s, PetscReal *soft)
+PetscErrorCode DiscretisationCuts(Discretisation *s)
 {
   const Support *w = s->support;
   PetscReal *volume, *whole;
@@ -45,8 +45,10 @@ PetscErrorCode DiscretisationCuts(Discretisation *s, PetscReal *soft)
     PetscReal filled = 1, square = 0;
     for (PetscInt I = 0; I < nn; ++I) filled = PetscMin(filled, 2 * volume[node[I]] / whole[node[I]]);
     for (PetscInt i = 0; i < nn * s->grid->dim; ++i) square += PetscSqr((w->dN + w->value_start[g] * s->grid->dim)[i]);
-    soft[g] = s->c->stabilisation.curvature * (1 - filled) * s->materials[s->points->material[p]].wave_modulus *
-              s->points->real[POINT_VOLUME][p] * square / (PetscReal)nn;
+    const Material *material = &s->materials[s->points->material[p]];
+    const PetscReal share = s->c->stabilisation.curvature * (1 - filled) * s->points->real[POINT_VOLUME][p];
+    s->soft[g] = share * material->wave_modulus * square / (PetscReal)nn;
+    if (s->pressure_tie) s->pressure_tie[g] = share / material->elastic.shear;
   }
   PetscCall(PetscFree2(volume, whole));
   PetscFunctionReturn(0);

@@ -43,9 +43,9 @@ PetscErrorCode DiscretisationTouch(Discretisation *space);
 PetscErrorCode DiscretisationMass(Discretisation *space);
 /* p_I = sum N m_p p / m_I (thesis eq. 5.20), on all copies; after DiscretisationMass. */
 PetscErrorCode DiscretisationPressure(Discretisation *space);
-/* Of a basis whose points are groups of their own in a grid: soft (per group, N/m) where a node gets
+/* Of a basis whose points are groups of their own in a grid: soft and pressure_tie where a node gets
  * less than half of its volume; after DiscretisationTouch. */
-PetscErrorCode DiscretisationCuts(Discretisation *space, PetscReal *soft);
+PetscErrorCode DiscretisationCuts(Discretisation *space);
 /* Nodes that keep their history take the velocity of their body where they stand; m and touched
  * must be known. */
 PetscErrorCode DiscretisationBodyVelocity(Discretisation *space);

@@ -96,7 +96,7 @@ static PetscErrorCode MpmInitialise(Discretisation *s)
   PetscCall(DiscretisationTouch(s));
   PetscCall(DiscretisationMass(s));
   PetscCall(Stabilise(s));
-  if (s->basis->domains) PetscCall(DiscretisationCuts(s, s->soft));
+  if (s->basis->domains) PetscCall(DiscretisationCuts(s));
   PetscCall(Project(s));
   if (s->nodes->pressure) PetscCall(DiscretisationPressure(s));
   PetscFunctionReturn(0);

@@ -45,10 +45,6 @@ static void check_basis(const Model *m, Diag *diag)
 {
   const BasisSpec *spec = &m->c->basis;
   const Basis *basis = basis_find(spec->kind);
-  if (m->formulation && m->formulation->pressure && basis && basis->nodes != BASIS_OF_CELLS)
-    if (m->method && m->method->takes_pressure)
-      diag_error(diag, "formulation", "formulation '%s' takes no other basis than 'cell', not '%s'", m->c->formulation,
-                 spec->kind);
   if (!basis || (m->method && !method_takes(m->method, basis)))
     diag_error(diag, "basis", "method %s does not take the basis '%s'", m->c->method, spec->kind ? spec->kind : "cell");
 }

@@ -21,6 +21,7 @@ WeakFormInput weak_form_of(const Model *m, PetscReal inertia)
     .pressure_scale = m->pressure_scale,
     .alpha = m->c->mixed.stabilisation,
     .pressure_tie = m->space->pressure_tie,
+    .cell_node = m->grid->cell_node,
   };
 }
 

@@ -9,7 +9,9 @@
 
 typedef enum {
   BASIS_OF_CELLS, /* nodes of the point's cell, of any kind and wherever its nodes have moved */
-  BASIS_OF_GRID,  /* nodes around the point's cell, in a grid that is restored after every step */
+  /* nodes around the point's cell and its corners, in a grid of quadrilaterals or hexahedra that is
+   * restored after every step */
+  BASIS_OF_GRID,
   BASIS_OF_CLOUD, /* nodes near the point, in a cloud */
 } BasisNodes;
 

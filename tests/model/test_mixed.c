@@ -191,7 +191,8 @@ static void direction(const Subject *s, PetscInt seed, Vec out)
   CALL(SystemFromNodes(m->system, m->nodes->volume, m->dim, 1, out));
 }
 
-static void check_tangent(const char *method, CellType cell, PetscBool ring, const Solid *solid, PetscBool dynamic)
+static void check_tangent(const char *method, const char *basis, CellType cell, PetscBool ring, const Solid *solid,
+                          PetscBool dynamic)
 {
   Bench b;
   Subject s = {.random = {5}};
@@ -201,6 +202,7 @@ static void check_tangent(const char *method, CellType cell, PetscBool ring, con
   bench_init(&b, method, cell, 2);
   if (ring) b.c.kinematics = &kinematics_axisymmetric;
   use_solid(&b, solid);
+  b.c.basis.kind = basis;
   b.body[0].shape.max[0] = 0.5;
   if (dynamic) bench_dynamic(&b, 1, 0.01);
   bench_motion(&b, 1, 0, MOTION_FIXED, 7);
@@ -258,7 +260,12 @@ static void test_tangent(void **state)
   for (CellType cell = CELL_TRIANGLE; cell <= CELL_HEXAHEDRON; ++cell)
     for (size_t k = 0; k < sizeof solids / sizeof solids[0]; ++k)
       for (int ring = 0; ring < (cell < CELL_TETRAHEDRON ? 2 : 1); ++ring)
-        check_tangent(k % 2 ? "mpm" : "fem", cell, ring != 0, &solids[k], k % 3 == 0);
+        check_tangent(k % 2 ? "mpm" : "fem", "cell", cell, ring != 0, &solids[k], k % 3 == 0);
+  for (size_t k = 0; k < sizeof solids / sizeof solids[0]; ++k) {
+    check_tangent("mpm", "gimp", CELL_QUADRILATERAL, PETSC_FALSE, &solids[k], k % 3 == 0);
+    check_tangent("mpm", "gimp", CELL_QUADRILATERAL, PETSC_TRUE, &solids[k], k % 3 == 1);
+    check_tangent("mpm", "gimp", CELL_HEXAHEDRON, PETSC_FALSE, &solids[k], k % 3 == 2);
+  }
 }
 
 /* --- Cook's membrane --- */
@@ -412,11 +419,12 @@ static void test_checkerboard(void **state)
 
 /* --- dynamics --- */
 /* A free body that turns, flies and is out of balance keeps its momentum. */
-static void momentum(const char *method, CellType cell, const Solid *solid)
+static void momentum(const char *method, const char *basis, CellType cell, const Solid *solid)
 {
   Bench b;
   bench_init(&b, method, cell, 0);
   use_solid(&b, solid);
+  b.c.basis.kind = basis;
   bench_grid(&b, (PetscReal[]){-0.5, -0.5, -0.5}, (PetscReal[]){1.5, 1.5, 1.5}, 0.25);
   if (strcmp(method, "mpm")) bench_grid(&b, (PetscReal[]){0, 0, 0}, (PetscReal[]){1, 1, 1}, 0.25);
   b.body[0].velocity[0] = 3;
@@ -435,20 +443,24 @@ static void test_momentum(void **state)
 {
   (void)state;
   for (CellType cell = CELL_TRIANGLE; cell <= CELL_QUADRILATERAL; ++cell) {
-    momentum("fem", cell, &solids[0]);
-    momentum("mpm", cell, &solids[0]);
-    momentum("mpm", cell, &solids[1]);
-    momentum("mpm", cell, &solids[4]);
+    momentum("fem", "cell", cell, &solids[0]);
+    momentum("mpm", "cell", cell, &solids[0]);
+    momentum("mpm", "cell", cell, &solids[1]);
+    momentum("mpm", "cell", cell, &solids[4]);
   }
+  momentum("mpm", "gimp", CELL_QUADRILATERAL, &solids[0]);
+  momentum("mpm", "gimp", CELL_QUADRILATERAL, &solids[4]);
 }
 
 /* --- ranks --- */
-static void ranks(const char *method, CellType cell, PetscBool ring, const Solid *solid, PetscBool dynamic)
+static void ranks(const char *method, const char *basis, CellType cell, PetscBool ring, const Solid *solid,
+                  PetscBool dynamic)
 {
   Bench b;
   bench_init(&b, method, cell, 4);
   if (ring) b.c.kinematics = &kinematics_axisymmetric;
   use_solid(&b, solid);
+  b.c.basis.kind = basis;
   b.body[0].shape.max[1] = 0.75;
   b.c.gravity[1] = -20;
   if (dynamic) bench_dynamic(&b, 0.01, 0.002);
@@ -470,11 +482,13 @@ static void test_ranks(void **state)
 {
   (void)state;
   for (int ring = 0; ring < 2; ++ring) {
-    ranks("fem", CELL_TRIANGLE, (PetscBool)ring, &solids[1], PETSC_FALSE);
-    ranks("mpm", CELL_QUADRILATERAL, (PetscBool)ring, &solids[3], PETSC_TRUE);
-    ranks("mpm", CELL_TRIANGLE, (PetscBool)ring, &solids[5], PETSC_TRUE);
+    ranks("fem", "cell", CELL_TRIANGLE, (PetscBool)ring, &solids[1], PETSC_FALSE);
+    ranks("mpm", "cell", CELL_QUADRILATERAL, (PetscBool)ring, &solids[3], PETSC_TRUE);
+    ranks("mpm", "cell", CELL_TRIANGLE, (PetscBool)ring, &solids[5], PETSC_TRUE);
+    ranks("mpm", "gimp", CELL_QUADRILATERAL, (PetscBool)ring, &solids[1], PETSC_TRUE);
   }
-  ranks("mpm", CELL_TETRAHEDRON, PETSC_FALSE, &solids[0], PETSC_FALSE);
+  ranks("mpm", "cell", CELL_TETRAHEDRON, PETSC_FALSE, &solids[0], PETSC_FALSE);
+  ranks("mpm", "gimp", CELL_HEXAHEDRON, PETSC_FALSE, &solids[5], PETSC_FALSE);
 }
 
 /* --- geostatic start --- */
