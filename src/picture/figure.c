@@ -125,14 +125,30 @@ static void write_axes(FILE *out, const Figure *figure, const PetscReal min[2], 
   write_key(out, figure, min, max);
 }
 
-/* Ticks at the first curve's own places, where a logarithmic axis would name one or two numbers
- * only. */
-static void write_ticks(FILE *out, const FigureSeries *series)
+/* Do all curves have their points at these places, as those of one sweep have? */
+static PetscBool has_places(const FigureSeries *series, const FigureSeries *places)
 {
-  if (series->n < 2 || series->n > 8) return;
+  for (PetscInt i = 0, k = 0; i < series->n; ++i) {
+    while (k < places->n && places->x[k] != series->x[i]) ++k;
+    if (k == places->n) return PETSC_FALSE;
+  }
+  return PETSC_TRUE;
+}
+
+/* A logarithmic axis would name one or two numbers only: ticks at the curves' own places, or at 1, 2
+ * and 5 of each decade. */
+static void write_ticks(FILE *out, const Figure *figure, PetscReal min, PetscReal max)
+{
+  const FigureSeries *places = &figure->series[0];
+  PetscBool common = places->n >= 2 && places->n <= 8;
+  for (PetscInt s = 1; s < figure->n_series; ++s) common = common && has_places(&figure->series[s], places);
   fputs("set xtics (", out);
-  for (PetscInt i = 0; i < series->n; ++i)
-    fprintf(out, "%s'%.4g' %.15g", i ? ", " : "", (double)series->x[i], (double)series->x[i]);
+  for (PetscInt i = 0; common && i < places->n; ++i)
+    fprintf(out, "%s'%.4g' %.15g", i ? ", " : "", (double)places->x[i], (double)places->x[i]);
+  const char *separator = "";
+  for (PetscInt k = (PetscInt)PetscFloorReal(PetscLog10Real(min)); !common && PetscPowReal(10, k) <= max; ++k)
+    for (int i = 0; i < 3; ++i, separator = ", ")
+      fprintf(out, "%s%.15g", separator, (double)((i == 2 ? 5 : i + 1) * PetscPowReal(10, k)));
   fputs(")\n", out);
 }
 
@@ -211,7 +227,7 @@ static void write_figure(FILE *out, const Figure *figure, const PetscReal min[2]
   }
   write_axes(out, figure, low, high);
   if (!named) fputs("unset key\n", out);
-  if (figure->log_x && max[0] / min[0] < 100) write_ticks(out, &figure->series[0]);
+  if (figure->log_x && max[0] / min[0] < 100) write_ticks(out, figure, min[0], max[0]);
   for (PetscInt s = 0; s < figure->n_series; ++s) write_data(out, figure, &figure->series[s], s);
   if (slope) write_slope(out, figure->slope, min, max);
   for (PetscInt b = 0; b < figure->n_bands; ++b) write_band_data(out, &figure->bands[b], b, min[0], max[0]);

@@ -1,4 +1,5 @@
-/* A picture of a study: errors over refinement, or values beside their references. */
+/* A picture of a study: errors over refinement or over time of computing, or values beside their
+ * references. */
 #include <math.h>
 #include <string.h>
 #include "picture/figure.h"
@@ -35,7 +36,8 @@ static PetscBool grows_by_factors(const Curves *c)
 static void add_curve(Curves *c, const Verification *v, PetscInt first, PetscInt last, PetscBool inverse,
                       PetscBool reference, FigureStyle style)
 {
-  const PetscBool errors = v->rows[first].study->figure == VERIFY_FIGURE_CONVERGENCE;
+  const PetscBool errors = verify_draws_errors(v->rows[first].study);
+  const PetscBool cost = v->rows[first].study->figure == VERIFY_FIGURE_COST;
   const SeriesSpec *spec = v->rows[first].series;
   const char *title = spec->title ? spec->title : spec->name;
   FigureSeries *s = &c->series[c->n++];
@@ -43,7 +45,7 @@ static void add_curve(Curves *c, const Verification *v, PetscInt first, PetscInt
   for (PetscInt k = first; k < last; ++k) {
     const VerifyRow *r = &v->rows[k];
     if (!r->ran || r->result != RUN_DONE || PetscIsNanReal(r->row->x)) continue;
-    c->x[c->used] = inverse ? 1 / r->row->x : r->row->x;
+    c->x[c->used] = cost ? r->summary.seconds : inverse ? 1 / r->row->x : r->row->x;
     c->y[c->used++] = errors ? r->error : reference ? r->reference : r->value;
     ++s->n;
   }
@@ -65,15 +67,18 @@ static PetscErrorCode Draw(const Verification *v, PetscInt first, const Curves *
   const StudySpec *study = v->rows[first].study;
   const SweepSpec *sweep = &study->sweep;
   const char *unit = sweep->unit ? sweep->unit : "";
-  const PetscBool errors = study->figure == VERIFY_FIGURE_CONVERGENCE;
+  const PetscBool errors = verify_draws_errors(study), cost = study->figure == VERIFY_FIGURE_COST;
   char png[PETSC_MAX_PATH_LEN], x_label[200], y_label[200];
 
   PetscFunctionBeginUser;
   PetscCall(PetscSNPrintf(png, sizeof png, "%s/%s.png", v->out, study->name));
-  PetscCall(PetscSNPrintf(x_label, sizeof x_label, inverse ? "1/%s%s%s%s" : "%s%s%s%s", sweep->symbol,
-                          unit[0] ? inverse ? " [1/" : " [" : "", unit, unit[0] ? "]" : ""));
-  PetscCall(PetscSNPrintf(y_label, sizeof y_label, errors ? "relative error of %s" : "%s [%s]", study->measure,
-                          v->rows[first].unit));
+  if (cost) PetscCall(PetscStrncpy(x_label, "time of the run [s]", sizeof x_label));
+  else
+    PetscCall(PetscSNPrintf(x_label, sizeof x_label, inverse ? "1/%s%s%s%s" : "%s%s%s%s", sweep->symbol,
+                            unit[0] ? inverse ? " [1/" : " [" : "", unit, unit[0] ? "]" : ""));
+  PetscCall(PetscSNPrintf(y_label, sizeof y_label,
+                          errors ? study->exact.value == 0 ? "error: %s" : "relative error of %s" : "%s [%s]",
+                          study->measure, v->rows[first].unit));
   const Figure figure = {.title = study->title,
                          .x_label = x_label,
                          .y_label = y_label,
@@ -81,7 +86,7 @@ static PetscErrorCode Draw(const Verification *v, PetscInt first, const Curves *
                          .log_y = errors,
                          .n_series = c->n,
                          .series = c->series,
-                         .slope = errors ? (inverse ? -1 : 1) * study->exact.order : 0};
+                         .slope = errors && !cost ? (inverse ? -1 : 1) * study->exact.order : 0};
   PetscCall(FigureWrite(&figure, png, diag, done));
   PetscFunctionReturn(0);
 }

@@ -16,6 +16,7 @@ static const SchemaWord confidences[] = {
 static const SchemaWord figures[] = {
   {"none", VERIFY_FIGURE_NONE, "no figure"},
   {"convergence", VERIFY_FIGURE_CONVERGENCE, "relative error, both axes logarithmic"},
+  {"cost", VERIFY_FIGURE_COST, "the same over the seconds that a run took"},
   {"values", VERIFY_FIGURE_VALUES, "values and references over the variable"},
   {"history", VERIFY_FIGURE_HISTORY, "the measure over time, a curve for each row"},
   {"normal-history", VERIFY_FIGURE_NORMAL_HISTORY, "the same over its value at the end"},
@@ -220,8 +221,8 @@ static PetscErrorCode CheckStudy(SchemaReader *r, const YamlNode *mapping, void 
   if (study->has_exact) {
     check_series_names(r, study, yaml_find(exact, "values"));
     if (!study->exact.source.text && !study->source.text) SchemaKeyError(r, exact, "the exact value has no source");
-  } else if (study->figure == VERIFY_FIGURE_CONVERGENCE)
-    SchemaError(r, yaml_find(mapping, "figure"), "a figure of convergence needs `exact`");
+  } else if (verify_draws_errors(study))
+    SchemaError(r, yaml_find(mapping, "figure"), "a figure of convergence or cost needs `exact`");
   check_agree(r, study, yaml_find(mapping, "agree"));
   check_powers(r, study, yaml_find(mapping, "powers"));
   check_pace(r, study, yaml_find(mapping, "pace"));

@@ -85,6 +85,7 @@ typedef struct {
 typedef enum {
   VERIFY_FIGURE_NONE,
   VERIFY_FIGURE_CONVERGENCE,
+  VERIFY_FIGURE_COST,
   VERIFY_FIGURE_VALUES,
   VERIFY_FIGURE_HISTORY,
   VERIFY_FIGURE_NORMAL_HISTORY
@@ -122,6 +123,12 @@ typedef struct {
   StudySpec *studies;
   YamlDocument *document; /* for the places of messages */
 } Reference;
+
+/* Does its figure show errors? */
+static inline PetscBool verify_draws_errors(const StudySpec *study)
+{
+  return study->figure == VERIFY_FIGURE_CONVERGENCE || study->figure == VERIFY_FIGURE_COST;
+}
 
 /* What `limits` may bound. */
 extern const char *const report_numbers[];

@@ -151,7 +151,7 @@ static void test_rings(void **state)
 static PetscReal column(const char *formulation, const char *basis, PetscInt n, PetscReal curvature)
 {
   const PetscReal l0 = 50, h = l0 / (PetscReal)n, weight = 800;
-  PetscReal local[2] = {0, 0}, sum[2], sigma[6];
+  PetscReal local[2] = {0, 0}, sum[2], sigma[6], ratio[2] = {-PETSC_MAX_REAL, -PETSC_MAX_REAL};
   Bench b;
   bench_init(&b, "mpm", CELL_QUADRILATERAL, 1);
   bench_grid(&b, (PetscReal[3]){0, 0, 0}, (PetscReal[3]){h, l0 + h, 0}, h);
@@ -176,7 +176,12 @@ static PetscReal column(const char *formulation, const char *basis, PetscInt n, 
     CALL(ModelPointStress(m, p, sigma));
     local[0] += volume * PetscAbsReal(sigma[1] + weight * (l0 - Y)) / (weight * l0);
     local[1] += volume;
+    ratio[0] = PetscMax(ratio[0], sigma[1] / (weight * (l0 - Y)));
+    ratio[1] = PetscMax(ratio[1], -sigma[1] / (weight * (l0 - Y)));
   }
+  CALL(MPI_Allreduce(MPI_IN_PLACE, ratio, 2, MPIU_REAL, MPI_MAX, PETSC_COMM_WORLD));
+  CHECK_CLOSE(model_sum(m, "overburden: lowest_ratio", 0), -ratio[0], 1e-12);
+  CHECK_CLOSE(model_sum(m, "overburden: highest_ratio", 0), ratio[1], 1e-12);
   CALL(MPI_Allreduce(local, sum, 2, MPIU_REAL, MPIU_SUM, PETSC_COMM_WORLD));
   CHECK_CLOSE(model_sum(m, "overburden: mean", 0), sum[0] / sum[1], 1e-14);
   CALL(ModelDestroy(&m));
