@@ -71,6 +71,34 @@ KERNEL void cell_give_force(const int dim, const int nn, const PetscInt *node, c
     for (int d = 0; d < dim; ++d) force[node[I] * dim + d] += w->f[d * row_width(nn) + I];
 }
 
+KERNEL PetscBool wants_tangent(const WeakFormOutput *out) { return out->values || out->singles; }
+
+KERNEL void cell_prefetch(const int dim, const int nn, const PetscInt *slot, const WeakFormOutput *out)
+{
+  if (out->singles) prefetch_blocks(dim, nn, slot, out->singles, sizeof(float));
+  else prefetch_blocks(dim, nn, slot, out->values, sizeof(PetscReal));
+}
+
+/* All of a cell of displacements alone, when its points are done: a symmetric K only has its blocks
+ * a <= b. */
+KERNEL void cell_store(const int dim, const int nn, const WeakFormInput *in, PetscInt group, PetscInt slot, CellWork *w,
+                       WeakFormOutput *out)
+{
+  const PetscBool tangent = wants_tangent(out);
+  if (in->symmetric && tangent) mirror_stiffness(dim, nn, w->K);
+  cell_close(dim, nn, in, group, tangent, w);
+  if (out->singles) scatter_blocks(dim, nn, PETSC_TRUE, out->slot + slot, w->K, out->singles);
+  else if (tangent) scatter_blocks(dim, nn, PETSC_FALSE, out->slot + slot, w->K, out->values);
+  cell_give_force(dim, nn, cell_nodes(in, group), w, out->force);
+}
+
+/* N of a point of a cell of nn nodes. */
+KERNEL const PetscReal *support_values(const int nn, const WeakFormInput *in, PetscInt group, PetscInt p)
+{
+  const Support *s = in->support;
+  return s->N + s->value_start[group] + (p - s->point_start[group]) * nn;
+}
+
 /* sum_I N_I x_I, x every `stride`-th number. */
 KERNEL PetscReal node_mean(const int nn, const PetscReal *N, const int stride, const PetscReal *x)
 {

@@ -7,14 +7,6 @@
 #include "formulation/displacement_cloud.h"
 #include "formulation/simplex_kernels.h"
 
-KERNEL PetscBool wants_tangent(const WeakFormOutput *out) { return out->values || out->singles; }
-
-KERNEL void cell_prefetch(const int dim, const int nn, const PetscInt *slot, const WeakFormOutput *out)
-{
-  if (out->singles) prefetch_blocks(dim, nn, slot, out->singles, sizeof(float));
-  else prefetch_blocks(dim, nn, slot, out->values, sizeof(PetscReal));
-}
-
 /* What one cell gathers: its own kind of sum where gradients are the same everywhere in it. */
 typedef struct {
   CellWork cell;
@@ -35,11 +27,7 @@ KERNEL void work_store(const int dim, const int nn, const PetscBool hoop, const 
   CellWork *w = &work->cell;
   if (is_simplex(dim, nn) && in->symmetric) simplex_end(dim, nn, hoop, PETSC_TRUE, tangent, &work->simplex, w->f, w->K);
   else if (is_simplex(dim, nn)) simplex_end(dim, nn, hoop, PETSC_FALSE, tangent, &work->simplex, w->f, w->K);
-  if (in->symmetric && tangent) mirror_stiffness(dim, nn, w->K);
-  cell_close(dim, nn, in, group, tangent, w);
-  if (out->singles) scatter_blocks(dim, nn, PETSC_TRUE, out->slot + slot, w->K, out->singles);
-  else if (tangent) scatter_blocks(dim, nn, PETSC_FALSE, out->slot + slot, w->K, out->values);
-  cell_give_force(dim, nn, cell_nodes(in, group), w, out->force);
+  cell_store(dim, nn, in, group, slot, w, out);
 }
 
 KERNEL LawStatus batch_update(const int dim, const int nn, const PetscBool hoop, const WeakFormInput *in,
@@ -47,12 +35,6 @@ KERNEL LawStatus batch_update(const int dim, const int nn, const PetscBool hoop,
 {
   batch_increments(dim, nn, hoop, PETSC_FALSE, in, b);
   return batch_law(in, tangent, b);
-}
-
-KERNEL const PetscReal *shape_values(const int nn, const WeakFormInput *in, PetscInt group, PetscInt p)
-{
-  const Support *s = in->support;
-  return s->N + s->value_start[group] + (p - s->point_start[group]) * nn;
 }
 
 /* Points first .. first + n - 1 of the batch, all of one triangle or tetrahedron. */
@@ -64,7 +46,7 @@ KERNEL void add_to_simplex(const int dim, const int nn, const PetscBool hoop, co
     const PetscInt p = b->first + k;
     const PetscReal *tau = b->s.tau + 6 * k, *c = b->s.c + 36 * k, volume = in->points->real[POINT_VOLUME][p];
     PetscReal N[CELL_MAX_NODES], h[CELL_MAX_NODES];
-    row_load(nn, 1, shape_values(nn, in, group, p), N);
+    row_load(nn, 1, support_values(nn, in, group, p), N);
     if (hoop) row_scale(nn, 1 / (b->dF[9 * k + 8] * *point_real(in->points, POINT_X, p)), N, h);
     simplex_add(dim, hoop, tau, tangent ? c : NULL, volume, h, &w->simplex);
     add_mass(nn, N, in->points->real[POINT_MASS][p], lumping, w->cell.M);
@@ -85,7 +67,7 @@ KERNEL void add_points(const int dim, const int nn, const PetscBool hoop, const 
     const PetscInt k = first + i, p = b->first + k;
     const PetscReal volume = points->real[POINT_VOLUME][p], mass = points->real[POINT_MASS][p];
     const PetscReal radius = hoop ? *point_real(points, POINT_X, p) : 0;
-    const PetscReal *values = shape_values(nn, in, group, p), *dN = in->support->dN + (values - in->support->N) * dim;
+    const PetscReal *values = support_values(nn, in, group, p), *dN = in->support->dN + (values - in->support->N) * dim;
     row_load(nn, 1, values, N);
     current_gradients(dim, nn, hoop, dN, N, radius, b->dF + 9 * k, run.g[i]);
     add_internal_force(dim, nn, hoop, run.g[i], b->s.tau + 6 * k, volume, w->f);

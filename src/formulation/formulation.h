@@ -29,6 +29,8 @@ typedef struct {
   /* Where points are groups of their own and the tangent is symmetric: blocks with a row behind the
    * column are left out. */
   PetscBool half;
+  /* Do points keep their place in their cell, so that det F is what has become of it? */
+  PetscBool carried;
   const PetscReal *pressure; /* mixed: n_nodes, the unknown pressure over pressure_scale, m */
   /* mixed: Pa/m, gives both unknowns the same unit, and both equations N */
   PetscReal pressure_scale;
@@ -53,6 +55,7 @@ typedef struct {
   const char *name, *help;
   /* is there an unknown pressure at the nodes, behind the displacements in each block? */
   PetscBool pressure;
+  PetscBool cells;   /* do points of one cell need each other, so that their nodes must be those of cells? */
   PetscBool singles; /* can it add its blocks in single precision, where groups are cells? */
   PetscErrorCode (*assemble)(const WeakFormInput *in, WeakFormOutput *out);
   /* Accept the step: new state, F, J, stress and work of every point. `state` of the points is
@@ -65,7 +68,7 @@ typedef struct {
 
 extern const Formulation *const formulations[]; /* ended by NULL */
 const Formulation *formulation_find(const char *name);
-extern const Formulation formulation_displacement, formulation_mixed;
+extern const Formulation formulation_displacement, formulation_mean_dilatation, formulation_mixed;
 
 /* Increment of the deformation gradient of one point with nodes' increments du (nn x dim). */
 static inline void increment_gradient(PetscInt dim, PetscInt nn, const PetscReal *dN, const PetscReal *du,

@@ -13,17 +13,20 @@ typedef struct {
 } SizedKernels;
 
 /* Kernels of one size from a file's own assemble_points and batch_update, which take it as
- * constants. */
-#define SIZED_KERNELS(dim, nn, hoop)                                                                         \
+ * constants; the former alone where the file has a commit of its own. */
+#define SIZED_ASSEMBLE(dim, nn, hoop)                                                                        \
   static void assemble_##dim##d_##nn##_##hoop(const WeakFormInput *in, const SupportRun *run, PetscInt slot, \
                                               WeakFormOutput *out)                                           \
   {                                                                                                          \
     assemble_points(dim, nn, hoop, in, run, slot, out);                                                      \
-  }                                                                                                          \
-  static LawStatus update_##dim##d_##nn##_##hoop(const WeakFormInput *in, PetscBool tangent, Batch *b)       \
-  {                                                                                                          \
-    return batch_update(dim, nn, hoop, in, tangent, b);                                                      \
   }
+#define SIZED_KERNELS(dim, nn, hoop)                                                                   \
+  SIZED_ASSEMBLE(dim, nn, hoop)                                                                        \
+  static LawStatus update_##dim##d_##nn##_##hoop(const WeakFormInput *in, PetscBool tangent, Batch *b) \
+  {                                                                                                    \
+    return batch_update(dim, nn, hoop, in, tangent, b);                                                \
+  }
+#define SIZED_ASSEMBLE_ROW(dim, nn, hoop) {dim, nn, hoop, assemble_##dim##d_##nn##_##hoop, NULL},
 #define SIZED_ROW(dim, nn, hoop) {dim, nn, hoop, assemble_##dim##d_##nn##_##hoop, update_##dim##d_##nn##_##hoop},
 
 /* All cells in all kinematics. */

@@ -104,25 +104,38 @@ static inline PetscReal stress_work(const PetscReal dF[9], const PetscReal old[6
   return work;
 }
 
-static inline void commit_point(Points *points, PetscInt p, const PetscReal dF[9], const PetscReal tau[6])
+/* F and J at the end of a step in which the volume grew by the factor `ratio`. */
+static inline void commit_deformation(Points *points, PetscInt p, const PetscReal dF[9], PetscReal ratio)
 {
-  PetscReal F[9], updated[9], old[6];
-  point_tau(points, p, old);
+  PetscReal F[9], updated[9];
   point_F(points, p, F);
   tensor_multiply(dF, F, updated);
   point_set_F(points, p, updated);
-  points->real[POINT_J][p] *= tensor_det(dF);
+  points->real[POINT_J][p] *= ratio;
+}
+
+static inline void commit_point(Points *points, PetscInt p, const PetscReal dF[9], const PetscReal tau[6])
+{
+  PetscReal old[6];
+  point_tau(points, p, old);
+  commit_deformation(points, p, dF, tensor_det(dF));
   points->real[POINT_WORK][p] += points->real[POINT_VOLUME][p] * stress_work(dF, old, tau);
   point_set_tau(points, p, tau);
+}
+
+static inline void batch_commit_state(const WeakFormInput *in, const Batch *b, PetscInt k, Points *points)
+{
+  const PetscInt n_state = batch_material(in, b)->law->n_state, stride = points->components[POINT_STATE];
+  for (PetscInt i = 0; i < n_state; ++i)
+    points->real[POINT_STATE][(b->first + k) * stride + i] = b->state[k * n_state + i];
 }
 
 /* Write the batch's new state into the points. */
 static inline void batch_commit(const WeakFormInput *in, const Batch *b, Points *points)
 {
-  const PetscInt n_state = batch_material(in, b)->law->n_state, stride = points->components[POINT_STATE];
   for (PetscInt k = 0, p = b->first; k < b->n; ++k, ++p) {
     commit_point(points, p, b->dF + 9 * k, b->s.tau + 6 * k);
     if (in->pressure) points->real[POINT_PRESSURE][p] = b->s.pressure[k];
-    for (PetscInt i = 0; i < n_state; ++i) points->real[POINT_STATE][p * stride + i] = b->state[k * n_state + i];
+    batch_commit_state(in, b, k, points);
   }
 }

@@ -33,7 +33,13 @@ static void check_formulation(const Model *m, Diag *diag)
   const char *name = m->c->formulation;
   char list[256];
   if (!m->formulation)
-    diag_error(diag, "formulation", "formulation '%s' is not part of this version; displacement and mixed are", name);
+    diag_error(diag, "formulation",
+               "formulation '%s' is not part of this version; displacement, mean-dilatation and mixed are", name);
+  if (m->formulation && m->formulation->cells && m->method && m->method->clouds)
+    diag_error(diag, "formulation",
+               "formulation '%s' shares the volume of a cell among its points, and method %s has no cells; mpm and "
+               "fem have",
+               name, m->method->name);
   if (!m->formulation || !m->formulation->pressure || !m->method || m->method->takes_pressure) return;
   list_methods(PETSC_TRUE, sizeof list, list);
   diag_error(diag, "formulation",
@@ -45,6 +51,10 @@ static void check_basis(const Model *m, Diag *diag)
 {
   const BasisSpec *spec = &m->c->basis;
   const Basis *basis = basis_find(spec->kind);
+  if (m->formulation && m->formulation->cells && m->method && !m->method->clouds && basis &&
+      basis->nodes != BASIS_OF_CELLS)
+    diag_error(diag, "formulation", "formulation '%s' takes no other basis than 'cell', not '%s'", m->c->formulation,
+               spec->kind);
   if (!basis || (m->method && !method_takes(m->method, basis)))
     diag_error(diag, "basis", "method %s does not take the basis '%s'", m->c->method, spec->kind ? spec->kind : "cell");
 }

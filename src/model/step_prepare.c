@@ -17,6 +17,7 @@ WeakFormInput weak_form_of(const Model *m, PetscReal inertia)
     .soft = m->space->soft,
     .lattice = m->space->basis->domains,
     .tie = m->space->tie,
+    .carried = !m->method->restores_grid,
     .pressure = m->nodes->scaled_pressure,
     .pressure_scale = m->pressure_scale,
     .alpha = m->c->mixed.stabilisation,

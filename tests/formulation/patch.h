@@ -43,6 +43,7 @@ typedef struct {
   Points *points;
   Support *support;
   Material material[2];
+  const Formulation *formulation;
   PetscInt dofs;
   PetscInt *slot;
   PetscReal *lumping, *soft, *tie, *history, *du;
@@ -143,7 +144,7 @@ static inline void patch_begin_in(Patch *p, const Variant *variant, const Kinema
 {
   const CellType cell = variant->cell;
   Diag *diag;
-  *p = (Patch){.random = {11}};
+  *p = (Patch){.random = {11}, .formulation = &formulation_displacement};
   p->c = (Case){.kinematics = kinematics, .method = "mpm"};
   p->c.grid = (GridSpec){
     .kind = GRID_BOX, .cell = cell, .min = {from}, .max = {from + 1, 1, 1}, .counts = {2, 2, 2}, .grading = {1, 1, 1}};
@@ -192,7 +193,7 @@ static inline void assemble(const Patch *p, PetscReal inertia, const PetscReal *
   WeakFormOutput out = {.force = force, .values = values, .slot = p->slot};
   CALL(PetscArrayzero(force, p->dofs));
   if (values) CALL(PetscArrayzero(values, p->dofs * p->dofs));
-  CALL(formulation_displacement.assemble(&in, &out));
+  CALL(p->formulation->assemble(&in, &out));
   assert_int_equal(out.status, LAW_OK);
 }
 
@@ -224,4 +225,34 @@ static inline void difference(const Patch *p, PetscReal inertia, const PetscReal
     for (PetscInt i = 0; i < p->dofs; ++i) slope[i] += weight[k] * force[i] / h;
   }
   CALL(PetscFree2(du, force));
+}
+
+/* K times a direction is what forces do along it. */
+static inline void check_slopes(Patch *p, PetscReal inertia, const PetscReal *values)
+{
+  PetscReal *direction, *slope, *product;
+  CALL(PetscMalloc3(p->dofs, &direction, p->dofs, &slope, p->dofs, &product));
+  for (int trial = 0; trial < 3; ++trial) {
+    fill(p, direction, 1);
+    difference(p, inertia, direction, 1e-4, slope);
+    for (PetscInt i = 0; i < p->dofs; ++i) {
+      product[i] = 0;
+      for (PetscInt j = 0; j < p->dofs; ++j) product[i] += entry(p, values, i, j) * direction[j];
+      slope[i] -= product[i];
+    }
+    assert_true(norm(p->dofs, slope) <= 1e-9 * norm(p->dofs, product));
+  }
+  CALL(PetscFree3(direction, slope, product));
+}
+
+/* The largest difference across the diagonal, beside the largest entry. */
+static inline PetscReal skew_of(const Patch *p, const PetscReal *values)
+{
+  PetscReal skew = 0, largest = 0;
+  for (PetscInt i = 0; i < p->dofs; ++i)
+    for (PetscInt j = 0; j < p->dofs; ++j) {
+      skew = PetscMax(skew, PetscAbsReal(entry(p, values, i, j) - entry(p, values, j, i)));
+      largest = PetscMax(largest, PetscAbsReal(entry(p, values, i, j)));
+    }
+  return skew / largest;
 }

@@ -3,36 +3,6 @@
  * inertia, lumping and ties; its symmetry. */
 #include "patch.h"
 
-/* K times a direction is what forces do along it. */
-static void check_slopes(Patch *p, PetscReal inertia, const PetscReal *values)
-{
-  PetscReal *direction, *slope, *product;
-  CALL(PetscMalloc3(p->dofs, &direction, p->dofs, &slope, p->dofs, &product));
-  for (int trial = 0; trial < 3; ++trial) {
-    fill(p, direction, 1);
-    difference(p, inertia, direction, 1e-4, slope);
-    for (PetscInt i = 0; i < p->dofs; ++i) {
-      product[i] = 0;
-      for (PetscInt j = 0; j < p->dofs; ++j) product[i] += entry(p, values, i, j) * direction[j];
-      slope[i] -= product[i];
-    }
-    assert_true(norm(p->dofs, slope) <= 1e-9 * norm(p->dofs, product));
-  }
-  CALL(PetscFree3(direction, slope, product));
-}
-
-/* The largest difference across the diagonal, beside the largest entry. */
-static PetscReal skew_of(const Patch *p, const PetscReal *values)
-{
-  PetscReal skew = 0, largest = 0;
-  for (PetscInt i = 0; i < p->dofs; ++i)
-    for (PetscInt j = 0; j < p->dofs; ++j) {
-      skew = PetscMax(skew, PetscAbsReal(entry(p, values, i, j) - entry(p, values, j, i)));
-      largest = PetscMax(largest, PetscAbsReal(entry(p, values, i, j)));
-    }
-  return skew / largest;
-}
-
 static void check_tangent(const Variant *variant, PetscReal inertia, PetscBool stabilised)
 {
   Patch p;

@@ -1,3 +1,4 @@
 talus_test(formulation/test_tangent)
 talus_test(formulation/test_reference)
 talus_test(formulation/test_ring_pressure)
+talus_test(formulation/test_mean_dilatation)

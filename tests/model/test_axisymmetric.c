@@ -31,6 +31,8 @@ static void check_squeezed(const Model *m, PetscReal tolerance)
   }
 }
 
+static const char *formulation = "displacement"; /* of the next test */
+
 /* O1. Everything around the body is prescribed, its inside must follow; the axis is not. */
 static void squeezed(const char *method, CellType cell, PointWeights weights, PetscBool distorted, PetscInt halved)
 {
@@ -38,6 +40,7 @@ static void squeezed(const char *method, CellType cell, PointWeights weights, Pe
   const PetscReal planes[] = {0, 1, 1.5};
   tube(&b, method, cell, 0, strcmp(method, "mpm") ? 1 : 1.5, 1, strcmp(method, "mpm") ? 4 : 6);
   bench_box(&b, 0, (PetscReal[]){0, 0, 0}, (PetscReal[]){1, 1, 0});
+  b.c.formulation = (char *)formulation;
   b.body[0].weights = weights;
   b.halved = halved;
   if (distorted) bench_distort(&b, 0.2, 3, planes);
@@ -72,6 +75,13 @@ static void test_uniform(void **state)
       squeezed(method[k], CELL_QUADRILATERAL, WEIGHTS_AUTO, (PetscBool)distorted, 3);
     }
   squeezed("mpm", CELL_QUADRILATERAL, WEIGHTS_EQUAL, PETSC_FALSE, 0);
+}
+
+static void test_uniform_shared(void **state)
+{
+  formulation = "mean-dilatation";
+  test_uniform(state);
+  formulation = "displacement";
 }
 
 /* Moved along the axis nothing strains. */
@@ -300,9 +310,10 @@ static void test_pressed_tube(void **state)
 
 int main(int argc, char **argv)
 {
-  const struct CMUnitTest tests[] = {
-    cmocka_unit_test(test_uniform),  cmocka_unit_test(test_axial_shift), cmocka_unit_test(test_radial_shift),
-    cmocka_unit_test(test_inverted), cmocka_unit_test(test_compression), cmocka_unit_test(test_grains),
-    cmocka_unit_test(test_lame),     cmocka_unit_test(test_thick_tube),  cmocka_unit_test(test_pressed_tube)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_uniform),     cmocka_unit_test(test_uniform_shared),
+                                     cmocka_unit_test(test_axial_shift), cmocka_unit_test(test_radial_shift),
+                                     cmocka_unit_test(test_inverted),    cmocka_unit_test(test_compression),
+                                     cmocka_unit_test(test_grains),      cmocka_unit_test(test_lame),
+                                     cmocka_unit_test(test_thick_tube),  cmocka_unit_test(test_pressed_tube)};
   return run_model_tests(argc, argv, tests);
 }

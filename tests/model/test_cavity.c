@@ -155,6 +155,31 @@ static void test_incompressible(void **state)
   }
 }
 
+/* A solid of nu = 0.4999 whose cells share their volume: between it and the exactly incompressible
+ * one are 2e-4 of the radius outside and less than 1e-3 of the pressure. */
+static void test_nearly_incompressible(void **state)
+{
+  static const Matter rubber = {"neo-hookean-split", 2, {V("shear", 1e6), V("poisson", 0.4999)}};
+  static const struct {
+    Form form;
+    PetscReal la, outside;
+  } row[] = {{TUBE, 1.5, 2.2912878}, {TUBE, 2, 2.6457513}, {SHELL, 1.5, 2.1810353}, {SHELL, 2, 2.4662121}};
+  (void)state;
+  for (size_t k = 0; k < sizeof row / sizeof *row; ++k) {
+    const PetscReal exact = rubber_pressure(row[k].form, row[k].la, row[k].outside / 2);
+    PetscReal error[2];
+    for (int fine = 0; fine < 2; ++fine) {
+      const Opened o = opened(row[k].form, &rubber, "mean-dilatation", fine ? 16 : 8, row[k].la, 10);
+      error[fine] = o.pressure / 1e6 / exact - 1;
+      for (int side = 0; fine && side <= (row[k].form == SHELL); ++side)
+        CHECK_CLOSE(o.outside[side], row[k].outside, side ? 2e-3 : 2e-4);
+    }
+    if (row[k].form == TUBE) CHECK(PetscAbsReal(error[1]) < 5e-4, "pressure off by %g", (double)error[1]);
+    else CHECK(order_of(error[0], error[1]) > 1.8, "%g, then %g", (double)error[0], (double)error[1]);
+    CHECK(PetscAbsReal(error[1]) < 2.5e-3, "pressure off by %g", (double)error[1]);
+  }
+}
+
 /* --- limit loads --- */
 
 /* Of a wall whose radii stand in this ratio: cohesion 1, m = 1 in a tube and 2 in a shell. In a
@@ -183,6 +208,11 @@ static void test_limit_loads(void **state)
     Form form;
     PetscReal friction, within; /* 16 cells over the wall */
   } row[] = {{&j2, "mixed", TUBE, 0, 2.5e-3},
+             {&j2, "mean-dilatation", TUBE, 0, 2.5e-3},
+             {&clay, "mean-dilatation", TUBE, 0, 2.5e-3},
+             {&clay, "mean-dilatation", SHELL, 0, 2.5e-3},
+             {&sand[0], "mean-dilatation", TUBE, PETSC_PI / 6, 2.5e-3},
+             {&sand[0], "mean-dilatation", SHELL, PETSC_PI / 6, 2.5e-3},
              {&clay, "mixed", TUBE, 0, 2.5e-3},
              {&clay, "mixed", SHELL, 0, 2.5e-3},
              {&sand[0], "mixed", TUBE, PETSC_PI / 6, 2.5e-3},
@@ -209,6 +239,7 @@ static void test_limit_loads(void **state)
 
 int main(int argc, char **argv)
 {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_incompressible), cmocka_unit_test(test_limit_loads)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_incompressible),
+                                     cmocka_unit_test(test_nearly_incompressible), cmocka_unit_test(test_limit_loads)};
   return run_model_tests(argc, argv, tests);
 }

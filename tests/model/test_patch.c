@@ -6,6 +6,8 @@
 static const PetscReal final_F[2][9] = {{1.15, 0.18, 0, -0.07, 0.88, 0, 0, 0, 1},
                                         {1.12, 0.15, -0.06, -0.08, 0.9, 0.11, 0.05, -0.09, 1.2}};
 
+static const char *formulation = "displacement"; /* of all that follows */
+
 static void gradient_at(PetscInt dim, PetscReal t, PetscReal F[9])
 {
   for (int i = 0; i < 9; ++i) F[i] = (i % 4 == 0) + t * (final_F[dim - 2][i] - (i % 4 == 0));
@@ -58,6 +60,7 @@ static void body_bench(Bench *b, const char *method, CellType cell, Diagonal dia
   const PetscReal below = !strcmp(method, "mpm") ? -0.5 : 0, above = 1 - below, planes[] = {below, 0, 1, above};
   bench_init(b, method, cell, 0);
   bench_grid(b, (PetscReal[]){below, below, below}, (PetscReal[]){above, above, above}, size);
+  b->c.formulation = (char *)formulation;
   b->c.grid.diagonal = diagonal;
   b->body[0].weights = WEIGHTS_GAUSS;
   b->halved = halved;
@@ -184,6 +187,7 @@ static void traction(const char *method, CellType cell, PetscBool carried, Petsc
                   size = is_3d ? 0.5 : 0.25;
   bench_init(&b, method, cell, 0);
   bench_grid(&b, (PetscReal[]){0, 0, 0}, (PetscReal[]){x_end, 1.5, 1.5}, size);
+  b.c.formulation = (char *)formulation;
   b.body[0].weights = WEIGHTS_GAUSS;
   b.halved = halved;
   if (distorted) bench_distort(&b, 0.2, 4, planes);
@@ -210,11 +214,23 @@ static void test_traction(void **state)
     for (int carried = 0; carried < 2; ++carried) traction(method[k], CELL_QUADRILATERAL, carried != 0, PETSC_TRUE, 3);
 }
 
+/* The same where cells share their volume. */
+static void test_shared_volume(void **state)
+{
+  formulation = "mean-dilatation";
+  test_quadrilaterals(state);
+  test_hexahedra(state);
+  test_mixed_cells(state);
+  test_traction(state);
+  formulation = "displacement";
+}
+
 int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {
-    cmocka_unit_test(test_triangles), cmocka_unit_test(test_quadrilaterals), cmocka_unit_test(test_tetrahedra),
-    cmocka_unit_test(test_hexahedra), cmocka_unit_test(test_mixed_cells),    cmocka_unit_test(test_traction),
+    cmocka_unit_test(test_triangles),     cmocka_unit_test(test_quadrilaterals), cmocka_unit_test(test_tetrahedra),
+    cmocka_unit_test(test_hexahedra),     cmocka_unit_test(test_mixed_cells),    cmocka_unit_test(test_traction),
+    cmocka_unit_test(test_shared_volume),
   };
   return run_model_tests(argc, argv, tests);
 }

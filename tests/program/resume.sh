@@ -64,6 +64,8 @@ cantilever | sed 's/size: 0.5/size: 0.25/; s/steps: 1/steps: 5/' >case.yaml
 cut_and_resumed "static fem" 1 --set method=fem
 cut_and_resumed "static fem" 2 --set method=fem
 cut_and_resumed "static mpm" 1
+cut_and_resumed "shared volumes of fem" 1 --set method=fem --set formulation=mean-dilatation
+cut_and_resumed "shared volumes of mpm" 2 --set formulation=mean-dilatation
 cut_and_resumed "multigrid" 2 --set linear=iterative
 cut_and_resumed "dynamic fem" 2 --set method=fem --set 'analysis={type: dynamic, end: 0.1, step: 0.02}'
 cat >case.yaml <<'END'

@@ -75,14 +75,21 @@ boundary:
 loads: {tractions: [{on: {body: soil, x: [0, 1], y: 0}, value: [0, -1000]}]}
 END
 warned "undrained clay" "case.yaml:8:86: warning: 'clay' yields without any change of its volume: with displacements as the only unknowns quadrilaterals lock" \
-  '`formulation: mixed` keeps that away' --
-warned "triangles" "triangles lock" -- --set grid.cell=triangle --set 'bodies[0].points_per_cell=3'
+  '`formulation: mean-dilatation` keeps that away, and so does `mixed`' --
+warned "triangles" "triangles lock" '`formulation: mixed` keeps that away' -- --set grid.cell=triangle --set 'bodies[0].points_per_cell=3'
 warned "clouds" "clouds lock" "method gmm has no mixed form: take mpm or fem" -- --set method=gmm
 warned "J2" "'clay' yields without any change of its volume" -- \
   --set 'materials.clay={law: j2, density: 1, young: 1e5, poisson: 0.3, yield_stress: 100}'
 warned "rubber" "'clay' hardly changes its volume" -- --set 'materials.clay={law: neo-hookean, density: 1, young: 1e5, poisson: 0.49}'
 warned "rubber by its moduli" "'clay' hardly changes its volume" -- --set 'materials.clay={law: neo-hookean, density: 1, bulk: 1e6, shear: 1e4}'
 warned "mixed" -- --set formulation=mixed
+warned "a shared volume" -- --set formulation=mean-dilatation
+warned "a shared volume of triangles" "formulation 'mean-dilatation' does nothing for linear triangles" "take quadrilaterals" -- \
+  --set formulation=mean-dilatation --set grid.cell=triangle --set 'bodies[0].points_per_cell=3'
+expect "a shared volume by gmm" 2 "$talus" check case.yaml --set formulation=mean-dilatation --set method=gmm
+says err.txt "formulation 'mean-dilatation' shares the volume of a cell among its points, and method gmm has no cells"
+expect "a shared volume by gimp" 2 "$talus" check case.yaml --set formulation=mean-dilatation --set method=mpm --set 'basis={gimp: {}}'
+says err.txt "formulation 'mean-dilatation' takes no other basis than 'cell', not 'gimp'"
 warned "friction" -- --set materials.clay.friction_angle=20
 warned "an ordinary solid" -- --set 'materials.clay={law: neo-hookean, density: 1, young: 1e5, poisson: 0.45}'
 

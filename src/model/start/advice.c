@@ -23,6 +23,11 @@ static PetscBool flows_at_constant_volume(const MaterialSpec *spec, const Materi
   return PETSC_TRUE;
 }
 
+static PetscBool only_simplices(const Model *m)
+{
+  return !grid_is_mixed(m->grid) && cells[m->grid->type].nodes == m->dim + 1;
+}
+
 /* Does each cell have more points at which its volume would have to stay than motions to obey them?
  * A single point in a quadrilateral or hexahedron asks for little (and holds little: see
  * seeding). */
@@ -33,9 +38,12 @@ static PetscBool cells_lock(const Model *m, const BodySpec *body)
   return simplex || body->points_per_cell > 1;
 }
 
-static void hint_mixed(const Model *m, const Material *material, Diag *diag)
+static void hint_unlocked(const Model *m, const Material *material, Diag *diag)
 {
-  if (!material->law->volume)
+  if (!m->method->clouds && !only_simplices(m))
+    diag_hint(diag, "`formulation: mean-dilatation` keeps that away%s",
+              material->law->volume ? ", and so does `mixed`" : "");
+  else if (!material->law->volume)
     diag_hint(diag,
               "the law %s has no mixed form: a law that has one (see `talus list laws`), or a material that is less "
               "stiff against changes of volume",
@@ -48,6 +56,20 @@ static void hint_mixed(const Model *m, const Material *material, Diag *diag)
   else diag_hint(diag, "`formulation: mixed` keeps that away");
 }
 
+/* A linear triangle has one gradient and one change of volume, for all its points; rings of one differ a
+ * little. */
+static void advise_sharing(const Model *m, Diag *diag)
+{
+  const PetscBool rings = m->c->kinematics->hoop;
+  if (!m->formulation->cells || !only_simplices(m)) return;
+  diag_warning(diag, "formulation",
+               "formulation '%s' does %s for linear %s, which have %s change of volume at all their points",
+               m->formulation->name, rings ? "next to nothing" : "nothing", cells_plural[m->grid->type],
+               rings ? "almost the same" : "the same");
+  diag_hint(diag, "take %s, or `formulation: mixed` where the volume hardly changes",
+            m->dim == 2 ? "quadrilaterals (of Gmsh: `Mesh.RecombineAll = 1;`)" : "hexahedra");
+}
+
 /* Measured (the footing of tests/program/traps.sh): quadrilaterals with four points, and triangles,
  * carry six times Prandtl's load and show no limit. */
 static void advise_locking(const Model *m, const BodySpec *body, PetscInt i, Diag *diag)
@@ -56,7 +78,7 @@ static void advise_locking(const Model *m, const BodySpec *body, PetscInt i, Dia
   const Material *material = &m->materials[i];
   const char *key = "poisson", *what;
   char path[256];
-  if (m->formulation->pressure || !cells_lock(m, body)) return;
+  if (m->formulation->pressure || m->formulation->cells || !cells_lock(m, body)) return;
   if (flows_at_constant_volume(spec, material, &key)) what = "yields without any change of its volume";
   else if (material->elastic.poisson >= NEARLY_INCOMPRESSIBLE) what = "hardly changes its volume";
   else return;
@@ -67,7 +89,7 @@ static void advise_locking(const Model *m, const BodySpec *body, PetscInt i, Dia
     "'%s' %s: with displacements as the only unknowns %s lock, so that the body is too stiff and carries too "
     "much, often several times",
     spec->name, what, m->method->clouds ? "clouds" : cells_plural[m->grid->type]);
-  hint_mixed(m, material, diag);
+  hint_unlocked(m, material, diag);
 }
 
 /* --- which way is down? --- */
@@ -113,5 +135,6 @@ void model_advise(const Model *m, Diag *diag)
   for (PetscInt b = 0; b < m->c->n_bodies; ++b)
     for (PetscInt i = 0; i < m->c->n_materials; ++i)
       if (!strcmp(m->c->bodies[b].material, m->c->materials[i].name)) advise_locking(m, &m->c->bodies[b], i, diag);
+  advise_sharing(m, diag);
   advise_floor(m, diag);
 }
