@@ -5,6 +5,7 @@
 #include <sys/stat.h>
 #include "input/schema/schema.h"
 #include "material/law.h"
+#include "method/transfer/transfer.h"
 
 static void destroy_document(void *document)
 {
@@ -95,14 +96,35 @@ static PetscBool anything_yields(const Case *c)
   return PETSC_FALSE;
 }
 
-/* Measured (docs/theory.md, section 9): elastic bodies keep angular momentum and energy best with a
- * tenth of the mass lumped and no tie, while at the front of a flow, where yielded points carry
- * next to nothing, only both keep Newton's method alive. */
+/* Do points hand over all that they have? */
+static PetscBool keeps_all(const Case *c)
+{
+  const Transfer *transfer = transfer_find(c->analysis.transfer);
+  const Basis *basis = basis_find(c->basis.kind);
+  return c->analysis.type == ANALYSIS_DYNAMIC && transfer && transfer->slopes && basis && basis->domains;
+}
+
+/* Measured (docs/theory.md, section 9): elastic bodies keep angular momentum and energy best
+ * with a tenth of the mass lumped and no tie, while at the front of a flow, where yielded points
+ * carry next to nothing, only both keep Newton's method alive. Where points have domains,
+ * curvature is held instead, and without lumped mass the transfer loses no angular momentum at
+ * all (section 16). */
 static void resolve_stabilisation(const YamlNode *given, Case *c)
 {
-  const PetscBool yields = anything_yields(c);
-  if (!yaml_find(given, "mass")) c->stabilisation.mass = yields ? 1 : 0.1;
+  const PetscBool yields = anything_yields(c), exact = keeps_all(c);
+  if (!yaml_find(given, "mass")) c->stabilisation.mass = yields ? 1 : exact ? 0 : 0.1;
   if (!yaml_find(given, "inertia")) c->stabilisation.inertia = yields ? 0.01 : 0;
+  if (!yaml_find(given, "curvature")) c->stabilisation.curvature = exact ? 0.1 : 0.01;
+}
+
+/* An acceleration that points carry is out of balance on the next grid (docs/theory.md, "The
+ * midpoint rule"). */
+static PetscErrorCode ResolveScheme(Case *c)
+{
+  PetscFunctionBeginUser;
+  if (keeps_all(c) && !c->analysis.scheme && c->analysis.bossak == 0)
+    PetscCall(PetscStrallocpy("midpoint", &c->analysis.scheme));
+  PetscFunctionReturn(0);
 }
 
 /* Stress that carries the weight means that the weight is there: without a word of the user gravity
@@ -132,6 +154,7 @@ static PetscErrorCode ReadDocument(const char *file, YamlDocument *document, Dia
   peek_kinematics(document->root, &reader);
   PetscCall(SchemaReadTable(&reader, &schema_case, document->root, *c));
   resolve_stabilisation(yaml_find(document->root, "stabilisation"), *c);
+  PetscCall(ResolveScheme(*c));
   PetscCall(ResolveGravity(*c));
   PetscFunctionReturn(0);
 }

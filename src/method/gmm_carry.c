@@ -8,23 +8,12 @@
  * that conjugate gradients leave over goes to the nodes by mass, so that the momentum is the
  * points' to round-off (docs/theory.md, "Reactions"). */
 #include "method/gmm.h"
+#include "method/transfer/mass.h"
 
 #define ENOUGH 0.3   /* of what was lacking may be left over */
 #define NOTHING 1e-3 /* of the motion itself may lack */
 #define LIGHT 0.5    /* of the mass of the nodes around: what has less waits for the rest */
 #define MAX_SWEEPS 30
-
-enum { VELOCITY, ACCELERATION, MOTIONS };
-
-/* Nodal arrays: n_nodes x (2 dim), velocity and acceleration of a node behind each other. */
-typedef struct {
-  const Discretisation *s;
-  PetscInt dim, width, size; /* 2 dim, n_nodes x 2 dim */
-  /* motion, what it lacks of the points' momenta, conjugate gradients */
-  PetscReal *x, *lack, *direction, *product;
-  /* of the mass matrix's diagonal; its inverse, 0 where motion is prescribed */
-  PetscReal *bound, *inverse;
-} Carry;
 
 #define UNROLLED static inline __attribute__((always_inline))
 
@@ -36,7 +25,7 @@ typedef struct {
   } while (0)
 
 /* sum_I += N_I m_p (share u_p - sum_J N_J x_J) */
-UNROLLED void gather(const PetscInt dim, const Carry *c, PetscReal share, const PetscReal *x, PetscReal *sum)
+UNROLLED void gather(const PetscInt dim, const MassSolve *c, PetscReal share, const PetscReal *x, PetscReal *sum)
 {
   const Support *w = c->s->support;
   for (PetscInt p = 0; p < w->n_groups; ++p) {
@@ -54,20 +43,29 @@ UNROLLED void gather(const PetscInt dim, const Carry *c, PetscReal share, const 
   }
 }
 
-/* What x lacks of the points' motion (share 1), or the product of the mass matrix with x, negative
- * (0). */
-static PetscErrorCode Gather(const Carry *c, PetscReal share, const PetscReal *x, PetscReal *sum)
+/* What x lacks of the points' motion. */
+static PetscErrorCode Lack(MassSolve *c)
 {
   PetscFunctionBeginUser;
-  PetscCall(PetscArrayzero(sum, c->size));
-  WITH_DIM(gather, c, share, x, sum);
-  PetscCall(GridSumToOwners(c->s->grid, c->width, sum));
+  PetscCall(PetscArrayzero(c->lack, c->size));
+  WITH_DIM(gather, c, 1, c->x, c->lack);
+  PetscCall(GridSumToOwners(c->s->grid, c->width, c->lack));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode Multiply(MassSolve *c, PetscReal *x)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscArrayzero(c->product, c->size));
+  WITH_DIM(gather, c, 0, x, c->product);
+  PetscCall(GridSumToOwners(c->s->grid, c->width, c->product));
+  for (PetscInt i = 0; i < c->s->grid->n_owned * c->width; ++i) c->product[i] = -c->product[i];
   PetscFunctionReturn(0);
 }
 
 /* Of each node: the sum of its row of the mass matrix without signs, over which no eigenvalue is
  * larger than 1, and the mass of the nodes around it, times that sum. */
-static PetscErrorCode BoundOfMass(const Carry *c)
+static PetscErrorCode BoundOfMass(const MassSolve *c, PetscReal *bounds)
 {
   const Support *w = c->s->support;
 
@@ -81,83 +79,38 @@ static PetscErrorCode BoundOfMass(const Carry *c)
       around += PetscAbsReal(N[I]) * PetscMax(0, c->s->nodes->mass[node[I]]);
     }
     for (PetscInt I = 0; I < nn; ++I) {
-      c->bound[2 * node[I]] += m * PetscAbsReal(N[I]) * all;
-      c->bound[2 * node[I] + 1] += m * PetscAbsReal(N[I]) * around;
+      bounds[2 * node[I]] += m * PetscAbsReal(N[I]) * all;
+      bounds[2 * node[I] + 1] += m * PetscAbsReal(N[I]) * around;
     }
   }
-  PetscCall(GridSumToOwners(c->s->grid, 2, c->bound));
+  PetscCall(GridSumToOwners(c->s->grid, 2, bounds));
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode CarryCreate(const Discretisation *s, Carry *c)
+static PetscErrorCode CarryCreate(const Discretisation *s, MassSolve *c)
 {
-  const PetscInt n = s->grid->n_nodes, dim = s->grid->dim, width = 2 * dim, size = n * width;
+  const PetscInt n = s->grid->n_nodes, dim = s->grid->dim, width = 2 * dim;
+  PetscReal *bounds;
 
   PetscFunctionBeginUser;
-  *c = (Carry){.s = s, .dim = dim, .width = width, .size = size};
-  PetscCall(PetscMalloc2(size, &c->x, size, &c->lack));
-  PetscCall(PetscCalloc4(size, &c->direction, size, &c->product, size, &c->inverse, 2 * n, &c->bound));
-  PetscCall(BoundOfMass(c));
+  PetscCall(MassSolveAllocate(s, Multiply, c));
+  PetscCall(PetscCalloc1(2 * n, &bounds));
+  PetscCall(BoundOfMass(c, bounds));
   for (PetscInt node = 0, i = 0; node < n; ++node)
     for (PetscInt d = 0; d < dim; ++d, ++i) {
-      const PetscReal bound = c->bound[2 * node], around = c->bound[2 * node + 1];
+      const PetscReal bound = bounds[2 * node], around = bounds[2 * node + 1];
       const PetscBool counts = bound > 0 && s->nodes->mass[node] * bound > LIGHT * around;
       const PetscReal inverse = counts && !s->boundary->fixed[i] ? 1 / bound : 0;
       c->x[node * width + d] = s->nodes->v[i];
       c->x[node * width + dim + d] = s->nodes->a[i];
       c->inverse[node * width + d] = c->inverse[node * width + dim + d] = inverse;
     }
-  PetscFunctionReturn(0);
-}
-
-static PetscErrorCode CarryDestroy(Carry *c)
-{
-  PetscFunctionBeginUser;
-  PetscCall(PetscFree2(c->x, c->lack));
-  PetscCall(PetscFree4(c->direction, c->product, c->inverse, c->bound));
-  PetscFunctionReturn(0);
-}
-
-/* Two sums over owned nodes of x y z, of velocity and acceleration apart. */
-static PetscErrorCode Products(const Carry *c, const PetscReal *x, const PetscReal *y, const PetscReal *z,
-                               PetscReal sum[MOTIONS])
-{
-  PetscReal local[MOTIONS] = {0, 0};
-
-  PetscFunctionBeginUser;
-  for (PetscInt i = 0; i < c->s->grid->n_owned * c->width; i += c->dim)
-    for (PetscInt d = 0; d < c->dim; ++d) local[(i / c->dim) % MOTIONS] += x[i + d] * y[i + d] * (z ? z[i + d] : 1);
-  PetscCall(MPIU_Allreduce(local, sum, MOTIONS, MPIU_REAL, MPI_SUM, c->s->grid->comm));
-  PetscFunctionReturn(0);
-}
-
-/* One sweep of conjugate gradients; lengths of 0 leave a motion alone. */
-static PetscErrorCode Sweep(const Carry *c, const PetscBool done[MOTIONS], PetscReal now[MOTIONS],
-                            PetscReal grow[MOTIONS])
-{
-  PetscReal curvature[MOTIONS], length[MOTIONS], before[MOTIONS];
-
-  PetscFunctionBeginUser;
-  for (PetscInt i = 0; i < c->s->grid->n_owned * c->width; i += c->dim)
-    for (PetscInt d = 0; d < c->dim; ++d)
-      c->direction[i + d] = c->inverse[i + d] * c->lack[i + d] + grow[(i / c->dim) % MOTIONS] * c->direction[i + d];
-  PetscCall(GridToGhosts(c->s->grid, c->width, c->direction));
-  PetscCall(Gather(c, 0, c->direction, c->product));
-  PetscCall(Products(c, c->direction, c->product, NULL, curvature));
-  for (int f = 0; f < MOTIONS; ++f) length[f] = !done[f] && curvature[f] < 0 ? -now[f] / curvature[f] : 0;
-  for (PetscInt i = 0; i < c->size; i += c->dim)
-    for (PetscInt d = 0; d < c->dim; ++d) {
-      c->x[i + d] += length[(i / c->dim) % MOTIONS] * c->direction[i + d];
-      c->lack[i + d] += length[(i / c->dim) % MOTIONS] * c->product[i + d];
-    }
-  PetscCall(PetscArraycpy(before, now, MOTIONS));
-  PetscCall(Products(c, c->lack, c->lack, c->inverse, now));
-  for (int f = 0; f < MOTIONS; ++f) grow[f] = before[f] > 0 ? now[f] / before[f] : 0;
+  PetscCall(PetscFree(bounds));
   PetscFunctionReturn(0);
 }
 
 /* Twice the kinetic energy of the points, and the same of their accelerations. */
-static PetscErrorCode Whole(const Carry *c, PetscReal whole[MOTIONS])
+static PetscErrorCode Whole(const MassSolve *c, PetscReal whole[MOTIONS])
 {
   const Points *points = c->s->points;
   PetscReal local[MOTIONS] = {0, 0};
@@ -171,29 +124,22 @@ static PetscErrorCode Whole(const Carry *c, PetscReal whole[MOTIONS])
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode Project(const Carry *c)
+static PetscErrorCode Project(MassSolve *c)
 {
-  PetscReal now[MOTIONS], start[MOTIONS], whole[MOTIONS], grow[MOTIONS] = {0, 0};
-  PetscBool done[MOTIONS];
-  int sweep = 0;
+  PetscReal start[MOTIONS], whole[MOTIONS], enough[MOTIONS];
 
   PetscFunctionBeginUser;
-  PetscCall(Gather(c, 1, c->x, c->lack));
-  PetscCall(Products(c, c->lack, c->lack, c->inverse, start));
-  PetscCall(PetscArraycpy(now, start, MOTIONS));
+  PetscCall(Lack(c));
+  PetscCall(MassLack(c, start));
   PetscCall(Whole(c, whole));
-  do {
-    for (int f = 0; f < MOTIONS; ++f)
-      done[f] = now[f] <= PetscSqr(ENOUGH) * start[f] || now[f] <= PetscSqr(NOTHING) * whole[f];
-    if (done[VELOCITY] && done[ACCELERATION]) break;
-    PetscCall(Sweep(c, done, now, grow));
-  } while (++sweep < MAX_SWEEPS);
+  for (int f = 0; f < MOTIONS; ++f) enough[f] = PetscMax(PetscSqr(ENOUGH) * start[f], PetscSqr(NOTHING) * whole[f]);
+  PetscCall(MassSolveRun(c, enough, MAX_SWEEPS));
   PetscFunctionReturn(0);
 }
 
 /* What the points still lack goes to the nodes of their clouds in proportion to weight and mass,
  * which never divides by a small mass. */
-static PetscErrorCode Share(const Carry *c)
+static PetscErrorCode Share(const MassSolve *c)
 {
   const Support *w = c->s->support;
   PetscReal u[6];
@@ -226,7 +172,7 @@ PetscErrorCode GmmCarry(Discretisation *s)
 {
   NodalFields *n = s->nodes;
   const PetscInt dim = s->grid->dim;
-  Carry c;
+  MassSolve c;
 
   PetscFunctionBeginUser;
   PetscCall(CarryCreate(s, &c));
@@ -241,7 +187,7 @@ PetscErrorCode GmmCarry(Discretisation *s)
     n->v[i] = n->v_points[i];
     n->a[i] = n->a_points[i];
   }
-  PetscCall(CarryDestroy(&c));
+  PetscCall(MassSolveDestroy(&c));
   PetscCall(GridToGhosts(s->grid, dim, n->v));
   PetscCall(GridToGhosts(s->grid, dim, n->a));
   PetscFunctionReturn(0);

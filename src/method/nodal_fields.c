@@ -30,6 +30,7 @@ static const FieldKind kinds[] = {
   FIELD(a, KEPT_MOTION, "acceleration", "m/s2", PETSC_FALSE, PETSC_FALSE),
   SCRATCH(v_points),
   SCRATCH(a_points),
+  SCRATCH(v_mean),
   SCRATCH(impulse),
   SCRATCH(lost_force),
   SCRATCH(v_start),

@@ -24,6 +24,7 @@ typedef struct NodalFields {
   PetscReal *v, *a;    /* at t_n: what the solve starts from, m/s, m/s2 */
   PetscReal *v_points; /* v as the points gave it, before prescribed motion replaced it */
   PetscReal *a_points; /* likewise a */
+  PetscReal *v_mean;   /* of points by mass: smooth, for first guesses; of grids that are restored */
   /* at prescribed dofs: momentum and force that the change from v_points and a_points took, on owners,
    * kg m/s, N */
   PetscReal *impulse, *lost_force;

@@ -54,6 +54,7 @@ PetscErrorCode CommitStep(Model *m, PetscReal dt, EnergyStep *energy)
 
   PetscFunctionBeginUser;
   PetscCall(PetscTime(&clock));
+  for (PetscInt i = 0; i < m->grid->n_nodes * m->dim; ++i) m->nodes->prescribed[i] /= time_solved(m->scheme);
   end_motion(m, dt);
   set_multipliers(m);
   PetscCall(EnergyOfNodes(m, dt, energy));

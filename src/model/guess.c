@@ -25,17 +25,20 @@ PetscInt guess_order(const Model *m, FirstGuess order[GUESS_N])
   return n;
 }
 
-/* Acceleration stays. */
-static PetscReal inertia_alone(const NodalFields *n, PetscReal dt, PetscInt i)
+/* Acceleration stays. Where nodes take their velocity from points by a mass matrix, those hardly
+ * reached may have any, which Newton's method does not always come back from: the mean of points
+ * is smooth. */
+static PetscReal inertia_alone(const Model *m, PetscReal dt, PetscInt i)
 {
-  return dt * (n->v[i] + 0.5 * dt * n->a[i]);
+  const NodalFields *n = m->nodes;
+  return dt * ((guess_follows(m) ? n->v_mean[i] : n->v[i]) + 0.5 * dt * n->a[i]);
 }
 
 static void guess_inertia(const Model *m, PetscReal dt, PetscReal *du)
 {
   for (PetscInt node = 0; node < m->grid->n_nodes; ++node) {
     const PetscBool moves = m->nodes->touched[node] && !(m->method->clouds && cloud_is_twin(m->grid, node));
-    for (PetscInt d = 0, i = node * m->dim; d < m->dim; ++d, ++i) du[i] = moves ? inertia_alone(m->nodes, dt, i) : 0;
+    for (PetscInt d = 0, i = node * m->dim; d < m->dim; ++d, ++i) du[i] = moves ? inertia_alone(m, dt, i) : 0;
   }
 }
 
@@ -71,7 +74,7 @@ PetscErrorCode GuessLearn(Model *m, PetscReal dt)
   for (PetscInt k = 0; k < m->system->n_active; ++k)
     for (PetscInt d = 0, i = m->system->active[k] * m->dim; d < m->dim; ++d, ++i) {
       if (n->previous[i] == 0 || !has_increment(m, i)) continue;
-      const PetscReal inertia = n->du[i] - inertia_alone(m->nodes, dt, i);
+      const PetscReal inertia = n->du[i] - inertia_alone(m, dt, i);
       const PetscReal before = n->du[i] - ratio * n->previous[i];
       local[0] += inertia * inertia;
       local[1] += before * before;

@@ -59,11 +59,25 @@ static void check_basis(const Model *m, Diag *diag)
     diag_error(diag, "basis", "method %s does not take the basis '%s'", m->c->method, spec->kind ? spec->kind : "cell");
 }
 
-static void check_scheme(const Case *c, const TimeScheme *scheme, Diag *diag)
+/* Nodes that keep their motion, and pressures, are known at the ends of steps. */
+static void check_middle(const Case *c, const TimeScheme *scheme, const Method *method, Diag *diag)
+{
+  if (method && !method->restores_grid)
+    diag_error(diag, "analysis.scheme", "scheme %s is for method mpm, whose nodes keep no acceleration", scheme->name);
+  if (case_is_mixed(c))
+    diag_error(diag, "analysis.scheme",
+               "scheme %s knows no pressure at the end of a step; it takes displacements alone", scheme->name);
+}
+
+static void check_scheme(const Case *c, const TimeScheme *scheme, const Method *method, Diag *diag)
 {
   const char *names[32] = {NULL};
   for (PetscInt i = 0; time_schemes[i] && i < 31; ++i) names[i] = time_schemes[i]->name;
-  if (scheme) return;
+  if (scheme && !scheme->middle) return;
+  if (scheme) {
+    check_middle(c, scheme, method, diag);
+    return;
+  }
   diag_error(diag, "analysis.scheme", "there is no time scheme '%s'", c->analysis.scheme);
   diag_hint_names(diag, c->analysis.scheme, names);
 }
@@ -93,12 +107,13 @@ static void check_transfer(const Case *c, const Method *method, Diag *diag)
   } else if (c->analysis.keep_velocity && !transfer->keeps_velocity) {
     diag_error(diag, "analysis.keep_velocity", "is the floor of transfer thesis; transfer %s knows no such floor",
                transfer->name);
-  } else if (transfer->slopes && basis_find(c->basis.kind)->domains) {
-    diag_error(diag, "analysis.transfer",
-               "transfer %s makes energy with basis %s when steps are long; only linear "
-               "functions take it",
-               transfer->name, c->basis.kind);
-    diag_hint(diag, "transfer: thesis with this basis, or transfer: %s without it", transfer->name);
+  } else if (transfer->slopes && basis_find(c->basis.kind)->domains && !time_scheme_of(&c->analysis)->middle) {
+    diag_error(
+      diag, "analysis.scheme",
+      "transfer %s with basis %s takes scheme midpoint: an acceleration that points carry is out of balance on "
+      "the next grid, and makes energy",
+      transfer->name, c->basis.kind);
+    diag_hint(diag, "midpoint is what it takes where the case names neither scheme nor bossak");
   }
 }
 
@@ -110,7 +125,7 @@ static void check_supported(const Model *m, Diag *diag)
   if (!m->method) diag_error(diag, "method", "method '%s' is not part of this version; %s are", c->method, list);
   check_formulation(m, diag);
   check_basis(m, diag);
-  check_scheme(c, m->scheme, diag);
+  check_scheme(c, m->scheme, m->method, diag);
   if (m->method) check_transfer(c, m->method, diag);
   if (!m->method || m->method->restores_grid) return;
   check_slip(c, m->method, diag);
@@ -195,7 +210,8 @@ static PetscErrorCode CreatePoints(Model *m, Outline *outline, Diag *diag)
   /* nothing is stored yet */
   if (m->formulation->pressure) m->points->components[POINT_PRESSURE] = 1;
   if (basis_find(c->basis.kind)->domains) m->points->components[POINT_DOMAIN] = m->dim;
-  if (transfer_find(c->analysis.transfer)->slopes) m->points->components[POINT_SLOPE] = 2 * m->dim * m->dim;
+  if (transfer_find(c->analysis.transfer)->slopes && !basis_find(c->basis.kind)->domains)
+    m->points->components[POINT_SLOPE] = 2 * m->dim * m->dim;
   for (PetscInt k = 0; k < c->n_measures; ++k)
     m->points->components[POINT_CARRIED] += measure_find(c->measures[k].kind)->events != NULL;
   PetscCall(PointsSeedOutlined(m->points, m->grid, c, seed, m->method->restores_grid, outline, diag));

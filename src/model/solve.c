@@ -20,6 +20,35 @@ static void count_try(Model *m, PetscBool again, StepReport *report)
   report->tries.lost += lost;
 }
 
+static void scale(PetscInt n, PetscReal factor, PetscReal *x)
+{
+  for (PetscInt i = 0; i < n && factor != 1; ++i) x[i] *= factor;
+}
+
+/* From the middle of the step, if forces balance there, on to its end: there must be stress,
+ * too. */
+static PetscErrorCode GoOn(Model *m, StepReport *report)
+{
+  const PetscInt dofs = m->grid->n_nodes * m->dim;
+  WeakFormInput in = weak_form_of(m, 0);
+  WeakFormOutput out = {0};
+  PetscInt status, worst;
+
+  PetscFunctionBeginUser;
+  if (!m->scheme->middle) PetscFunctionReturn(0);
+  scale(dofs, 1 / time_solved(m->scheme), m->nodes->du);
+  PetscCall(PetscCalloc1(dofs, &out.force));
+  PetscCall(m->formulation->assemble(&in, &out));
+  PetscCall(PetscFree(out.force));
+  status = (PetscInt)out.status;
+  PetscCall(MPIU_Allreduce(&status, &worst, 1, MPIU_INT, MPI_MAX, m->comm));
+  report->newton.status = (LawStatus)worst;
+  if (worst == (PetscInt)LAW_OK) PetscFunctionReturn(0);
+  report->newton.converged = PETSC_FALSE;
+  report->newton.reason = "no stress where the motion of the step's middle goes on to";
+  PetscFunctionReturn(0);
+}
+
 /* Newton from the nearest first guess, and where it fails from the others: a step is halved only
  * if none of them leads to its solution. */
 static PetscErrorCode SolveFromGuesses(Model *m, PetscReal dt, const LinearProblem *linear, StepReport *report)
@@ -34,9 +63,11 @@ static PetscErrorCode SolveFromGuesses(Model *m, PetscReal dt, const LinearProbl
   const PetscInt guesses = guess_order(m, guess);
   for (PetscInt k = 0; k < guesses; ++k) {
     guess_make(m, guess[k], dt, m->nodes->du);
+    scale(m->grid->n_nodes * m->dim, time_solved(m->scheme), m->nodes->du);
     pressure_guess(m);
     PetscCall(PhaseEnd(m->seconds, PHASE_PREPARE, &clock));
     PetscCall(NewtonSolve(m->newton, &problem, linear, &report->newton));
+    if (report->newton.converged) PetscCall(GoOn(m, report));
     if (report->newton.converged) PetscCall(JudgeStep(m, report));
     PetscCall(PetscTime(&clock));
     count_try(m, k > 0, report);

@@ -158,14 +158,17 @@ static void set_history(Model *m, PetscReal dt, const PetscReal *g)
 {
   const AnalysisSpec *analysis = &m->c->analysis;
   const TimeWeights w = m->scheme->weights(analysis, dt);
+  const PetscReal solved = time_solved(m->scheme);
   const PetscInt dim = m->dim, dofs = m->grid->n_nodes * dim;
   NodalFields *n = m->nodes;
   for (PetscInt i = 0; i < dofs; ++i) n->du[i] = 0;
   m->scheme->end(analysis, dt, dofs, n->du, n->v, n->a, n->v1, n->a1);
   for (PetscInt node = 0; node < m->grid->n_nodes; ++node) {
     if (!n->touched[node] || (m->method->clouds && cloud_is_twin(m->grid, node))) continue;
-    for (PetscInt d = 0, i = node * dim; d < dim; ++d, ++i)
-      n->history[i] = (1 - w.lag) * n->a1[i] + w.lag * n->a[i] + analysis->damping * n->v1[i] - g[d];
+    for (PetscInt d = 0, i = node * dim; d < dim; ++d, ++i) {
+      const PetscReal v = n->v[i] + solved * (n->v1[i] - n->v[i]);
+      n->history[i] = (1 - w.lag) * n->a1[i] + w.lag * n->a[i] + analysis->damping * v - g[d];
+    }
   }
 }
 
@@ -173,11 +176,12 @@ PetscErrorCode PrepareStep(Model *m, PetscReal dt, StepProblem *p)
 {
   const PetscInt dofs = m->grid->n_nodes * m->dim;
   const TimeWeights weights = m->scheme->weights(&m->c->analysis, dt);
-  const PetscReal inertia = time_inertia(&weights, m->c->analysis.damping);
+  const PetscReal solved = time_solved(m->scheme), t = m->time + solved * dt;
+  const PetscReal inertia = time_inertia(&weights, solved, m->c->analysis.damping);
   PetscReal g[3];
 
   PetscFunctionBeginUser;
-  gravity_at(m->c, m->time + dt, g);
+  gravity_at(m->c, t, g);
   PetscCall(PetscArrayzero(m->nodes->prescribed, dofs));
   boundary_increments(m->boundary, m->grid, m->time, m->time + dt, m->nodes->prescribed);
   if (m->scheme->inertia) set_boundary_kinematics(m, dt);
@@ -185,7 +189,8 @@ PetscErrorCode PrepareStep(Model *m, PetscReal dt, StepProblem *p)
   if (m->scheme->inertia && m->method->hold) PetscCall(m->method->hold(m->space));
   else discretisation_impulses(m->space);
   set_history(m, dt, g);
-  const NodalScene scene = nodal_scene(m, m->time + dt, m->nodes->du);
+  for (PetscInt i = 0; i < dofs; ++i) m->nodes->prescribed[i] *= solved;
+  const NodalScene scene = nodal_scene(m, t, m->nodes->du);
   PetscCall(NodalForcesExternal(&m->forces, &scene, PETSC_FALSE, m->nodes->external));
   frames_turn(&m->boundary->frames, m->dim, m->nodes->external);
   *p = (StepProblem){

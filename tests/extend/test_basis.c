@@ -2,7 +2,7 @@
  * stress in a body. */
 #include "../conformance/basis_suite.h"
 #include "../input/test_case.h"
-#include "../model/case_builder.h"
+#include "../model/smooth.h"
 #include "support/basis.h"
 
 #define SPLINES "quadratic_splines"
@@ -76,52 +76,13 @@ static void mass_at_the_wall(void **state)
   CALL(GridDestroy(&grid));
 }
 
-/* A body of sixteen cells pressed to a half, a third, a quarter of its length. */
-static PetscReal length_at(PetscReal t) { return 1 / (1 + 3 * t); }
-
-static void press(void *context, const PetscReal *x, PetscReal t0, PetscReal t1, PetscReal *increment)
-{
-  (void)context;
-  increment[0] = (length_at(t1) / length_at(t0) - 1) * x[0];
-  increment[1] = 0;
-}
-
 /* Points stand in rows of equal distances, a whole number of them in a cell, so that the sum of the
  * splines' gradients over them is that of the integral, wherever they are: where nodes are free the
  * forces of the uniform stress vanish. The body's end crosses eight cells in the first step. */
 static void patch(void **state)
 {
-  const PetscReal F[9] = {0.25, 0, 0, 0, 1, 0, 0, 0, 1};
-  PetscReal sigma[6], expected[6];
-  Bench b;
   (void)state;
-  bench_init(&b, "mpm", CELL_QUADRILATERAL, 1);
-  bench_grid(&b, (PetscReal[3]){0, 0, 0}, (PetscReal[3]){16, 4, 0}, 1);
-  bench_box(&b, 0, (PetscReal[3]){0, 0, 0}, (PetscReal[3]){16, 4, 0});
-  b.body[0].points_per_cell = 1;
-  b.c.basis.kind = SPLINES;
-  b.c.analysis.step = b.c.analysis.largest = 1.0 / 3;
-  bench_motion(&b, 0, 0, MOTION_FIXED, 1);
-  bench_motion(&b, 1, 0, MOTION_FIXED, 2);
-  bench_motion(&b, 1, 4, MOTION_FIXED, 2);
-  bench_motion(&b, 0, 16, MOTION_FIXED, 3)->on.min[0] = 3.5;
-  Model *m = bench_model(&b, PETSC_COMM_WORLD);
-  m->boundary->field = press;
-  while (m->time < 1 - 1e-9) CHECK(model_step(m, 1 - m->time).cuts == 0, "the step was halved");
-  CHECK(m->step == 3, "%d steps", (int)m->step);
-  rubber_stress(F, expected);
-  for (PetscInt p = 0; p < m->points->n; ++p) {
-    const PetscReal *x = point_real(m->points, POINT_X, p), *u = point_real(m->points, POINT_U, p);
-    PetscReal f[9];
-    point_F(m->points, p, f);
-    for (int i = 0; i < 9; ++i) CHECK_CLOSE(f[i], F[i], 1e-13);
-    CALL(ModelPointStress(m, p, sigma));
-    for (int i = 0; i < 6; ++i) CHECK_CLOSE(sigma[i] / 1e6, expected[i] / 1e6, 1e-12);
-    CHECK_CLOSE(x[0], 0.25 * (x[0] - u[0]), 1e-13);
-    CHECK_CLOSE(u[1], 0, 1e-13);
-  }
-  CALL(ModelDestroy(&m));
-  bench_end(&b);
+  pressed_body("displacement", SPLINES, 1, 16, 1e-12);
 }
 
 /* A body that flies and turns nowhere keeps its velocity while it crosses cells, damped as it is
@@ -151,42 +112,12 @@ static void flight(void **state)
   bench_end(&b);
 }
 
-/* A column of sixteen cells that settles by a fifth under its weight in twenty static steps: in
- * uniaxial strain the vertical stress is the weight above. Returns how far it is off, over all
- * points. */
-static PetscReal column(const char *basis)
-{
-  const PetscReal n = 16, g = 30, weight = 1000 * g;
-  PetscReal off = 0, all = 0, sigma[6];
-  Bench b;
-  bench_init(&b, "mpm", CELL_QUADRILATERAL, 1);
-  bench_grid(&b, (PetscReal[3]){0, 0, 0}, (PetscReal[3]){1 / n, 1, 0}, 1 / n);
-  bench_box(&b, 0, (PetscReal[3]){0, 0, 0}, (PetscReal[3]){1 / n, 1, 0});
-  b.constants[0].value = 5e4;
-  b.c.basis.kind = basis;
-  b.c.gravity[1] = -g;
-  b.c.analysis.step = b.c.analysis.largest = 0.05;
-  bench_motion(&b, 0, 0, MOTION_FIXED, 1);
-  bench_motion(&b, 0, 1 / n, MOTION_FIXED, 1);
-  bench_motion(&b, 1, 0, MOTION_FIXED, 2);
-  Model *m = bench_model(&b, PETSC_COMM_WORLD);
-  while (m->time < 1 - 1e-9) model_step(m, 1 - m->time);
-  for (PetscInt p = 0; p < m->points->n; ++p) {
-    const PetscReal exact = -weight * (1 - point_real(m->points, POINT_X, p)[1] + point_real(m->points, POINT_U, p)[1]);
-    CALL(ModelPointStress(m, p, sigma));
-    off += PetscAbsReal(sigma[1] - exact);
-    all -= exact;
-  }
-  CALL(ModelDestroy(&m));
-  bench_end(&b);
-  PetscPrintf(PETSC_COMM_WORLD, "column with %s: stress off by %.4g\n", basis, (double)(off / all));
-  return off / all;
-}
-
+/* How far stresses are off in the mean. */
 static void smoother_than_cells(void **state)
 {
   (void)state;
-  CHECK(column(SPLINES) < 0.2 * column("cell"), "splines are no better");
+  CHECK(settled_column("displacement", SPLINES, 16, 0) < 0.2 * settled_column("displacement", "cell", 16, 0),
+        "splines are no better");
 }
 
 /* The case file knows it by its name, and where it does not fit says so. */

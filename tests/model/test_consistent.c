@@ -124,6 +124,15 @@ static void test_refused(void **state)
   b.c.analysis.transfer = (char *)"consistent";
   b.c.analysis.keep_velocity = PETSC_TRUE;
   bench_refused(&b, PETSC_COMM_WORLD, "analysis.keep_velocity", "transfer consistent knows no such floor");
+  bench_init(&b, "fem", CELL_QUADRILATERAL, 4);
+  bench_dynamic(&b, 1, 1e-3);
+  b.c.analysis.scheme = (char *)"midpoint";
+  bench_refused(&b, PETSC_COMM_WORLD, "analysis.scheme", "is for method mpm");
+  bench_init(&b, "mpm", CELL_TRIANGLE, 4);
+  bench_dynamic(&b, 1, 1e-3);
+  b.c.analysis.scheme = (char *)"midpoint";
+  b.c.formulation = "mixed";
+  bench_refused(&b, PETSC_COMM_WORLD, "analysis.scheme", "displacements alone");
 }
 
 int main(int argc, char **argv)

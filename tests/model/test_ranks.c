@@ -110,6 +110,10 @@ static void thrown_block(const char *basis, const char *transfer, CellType cell,
   b.c.gravity[1] = -9.81;
   b.c.linear = linear;
   b.c.analysis.transfer = (char *)transfer;
+  if (!strcmp(basis, "gimp") && !strcmp(transfer, "consistent")) {
+    b.c.analysis.scheme = (char *)"midpoint";
+    b.c.stabilisation = (StabilisationSpec){.curvature = 0.1};
+  }
   bench_dynamic(&b, 1, 0.005);
   bench_motion(&b, 1, 0, MOTION_FIXED, 2);
   bench_tracer(&b, "position", 0, 0.5, 0.5, 0.5);
@@ -130,6 +134,7 @@ static void test_thrown_block(void **state)
   thrown_block("cell", "consistent", CELL_HEXAHEDRON, 0.25, LINEAR_AUTO, 60);
   thrown_block("gimp", "thesis", CELL_QUADRILATERAL, 0.125, LINEAR_AUTO, 80);
   thrown_block("gimp", "thesis", CELL_HEXAHEDRON, 0.25, LINEAR_DIRECT, 60);
+  thrown_block("gimp", "consistent", CELL_QUADRILATERAL, 0.125, LINEAR_DIRECT, 50);
 }
 
 /* fem: a block that stands on a floor and is pushed. */

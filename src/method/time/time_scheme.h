@@ -1,7 +1,8 @@
 /* A time scheme: how velocities and accelerations follow from displacements over a step. To add
  * one: a new file, and a line in time_schemes.inc.
  *
- * At the end of a step forces balance with (1 - lag) a1 + lag a + damping v1, times the mass. */
+ * At the end of a step forces balance with (1 - lag) a1 + lag a + damping v1, times the mass; if in its
+ * middle, with a1 + damping (v + v1) / 2. */
 #pragma once
 #include "case/case.h"
 
@@ -15,6 +16,9 @@ typedef struct {
 typedef struct TimeScheme {
   const char *name, *help;
   PetscBool inertia; /* has matter any? else steps end in equilibrium, and time only orders them */
+  /* Do forces balance in the middle of the step, and not at its end? What is solved for is then
+   * the first half of du, and the second half goes on like it. */
+  PetscBool middle;
   TimeWeights (*weights)(const AnalysisSpec *analysis, PetscReal dt);
   /* Of n components: v1 and a1 at the end of a step of dt that moves them by du, linear in it. */
   void (*end)(const AnalysisSpec *analysis, PetscReal dt, PetscInt n, const PetscReal *du, const PetscReal *v,
@@ -25,8 +29,12 @@ extern const TimeScheme *const time_schemes[]; /* ended by NULL */
 /* The scheme that a case asks for; NULL if there is none of that name. */
 const TimeScheme *time_scheme_of(const AnalysisSpec *analysis);
 
-/* Derivative with respect to du of what balances the forces, over the mass, 1/s2. */
-static inline PetscReal time_inertia(const TimeWeights *w, PetscReal damping)
+/* Part of the step at whose end forces balance. */
+static inline PetscReal time_solved(const TimeScheme *scheme) { return scheme->middle ? 0.5 : 1; }
+
+/* Derivative with respect to the part of du that is solved for of what balances the forces, over
+ * the mass, 1/s2. */
+static inline PetscReal time_inertia(const TimeWeights *w, PetscReal solved, PetscReal damping)
 {
-  return (1 - w->lag) * w->acceleration + damping * w->velocity;
+  return (1 - w->lag) * w->acceleration / solved + damping * w->velocity;
 }

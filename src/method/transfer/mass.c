@@ -1,15 +1,6 @@
 #include "method/transfer/mass.h"
 #include "method/transfer/loops.h"
 
-#define MAX_SWEEPS 200
-
-PetscErrorCode MassSolveDestroy(MassSolve *c)
-{
-  PetscFunctionBeginUser;
-  PetscCall(PetscFree5(c->x, c->lack, c->inverse, c->direction, c->product));
-  PetscFunctionReturn(0);
-}
-
 /* out += N m (1 - l) N x of a point; weight += N m l. */
 UNROLLED void multiply_point(const PetscInt nn, const PetscInt width, PetscReal m, PetscReal lumped, const PetscReal *N,
                              const PetscReal *in, PetscReal *weight, PetscReal *out)
@@ -68,20 +59,6 @@ UNROLLED void add_diagonal(const PetscInt dim, const PetscInt fixed_nn, const Su
   }
 }
 
-PetscErrorCode MassSolveCreate(const Discretisation *s, MassSolve *c)
-{
-  const PetscInt n = s->grid->n_nodes, dim = s->grid->dim, width = 2 * dim, size = n * width;
-
-  PetscFunctionBeginUser;
-  *c = (MassSolve){.s = s, .dim = dim, .width = width, .size = size};
-  PetscCall(PetscCalloc5(size, &c->x, size, &c->lack, size, &c->inverse, size, &c->direction, size, &c->product));
-  WITH_SIZES(add_diagonal, s, s, c->product);
-  PetscCall(GridSumToOwners(s->grid, 1, c->product));
-  for (PetscInt i = 0; i < s->grid->n_owned * width; ++i)
-    c->inverse[i] = c->product[i / width] > 1e-300 ? 1 / c->product[i / width] : 0;
-  PetscFunctionReturn(0);
-}
-
 void mass_turn(const MassSolve *c, PetscReal *x)
 {
   const Frames *frames = &c->s->boundary->frames;
@@ -103,74 +80,22 @@ static PetscErrorCode Multiply(MassSolve *c, PetscReal *x)
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode MassSolveCreate(const Discretisation *s, MassSolve *c)
+{
+  PetscFunctionBeginUser;
+  PetscCall(MassSolveAllocate(s, Multiply, c));
+  WITH_SIZES(add_diagonal, s, s, c->product);
+  PetscCall(GridSumToOwners(s->grid, 1, c->product));
+  for (PetscInt i = 0; i < s->grid->n_owned * c->width; ++i)
+    c->inverse[i] = c->product[i / c->width] > 1e-300 ? 1 / c->product[i / c->width] : 0;
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode MassSubtract(MassSolve *c)
 {
   PetscFunctionBeginUser;
   PetscCall(Multiply(c, c->x));
   for (PetscInt i = 0; i < c->s->grid->n_owned * c->width; ++i) c->lack[i] -= c->product[i];
-  PetscFunctionReturn(0);
-}
-
-/* Sums over owned nodes of x y z, of velocity and acceleration apart. */
-static PetscErrorCode Products(const MassSolve *c, const PetscReal *x, const PetscReal *y, const PetscReal *z,
-                               PetscReal sum[MOTIONS])
-{
-  PetscReal local[MOTIONS] = {0, 0};
-
-  PetscFunctionBeginUser;
-  for (PetscInt i = 0; i < c->s->grid->n_owned * c->width; i += c->dim)
-    for (PetscInt d = 0; d < c->dim; ++d) local[(i / c->dim) % MOTIONS] += x[i + d] * y[i + d] * (z ? z[i + d] : 1);
-  PetscCall(MPIU_Allreduce(local, sum, MOTIONS, MPIU_REAL, MPI_SUM, c->s->grid->comm));
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode MassLack(const MassSolve *c, PetscReal square[MOTIONS])
-{
-  PetscFunctionBeginUser;
-  PetscCall(Products(c, c->lack, c->lack, c->inverse, square));
-  PetscFunctionReturn(0);
-}
-
-/* One sweep; lengths of 0 leave a motion alone. */
-static PetscErrorCode Sweep(MassSolve *c, const PetscBool done[MOTIONS], PetscReal now[MOTIONS],
-                            PetscReal grow[MOTIONS])
-{
-  const PetscInt owned = c->s->grid->n_owned * c->width;
-  PetscReal curvature[MOTIONS], length[MOTIONS], before[MOTIONS];
-
-  PetscFunctionBeginUser;
-  for (PetscInt i = 0; i < owned; i += c->dim)
-    for (PetscInt d = 0; d < c->dim; ++d)
-      c->direction[i + d] = c->inverse[i + d] * c->lack[i + d] + grow[(i / c->dim) % MOTIONS] * c->direction[i + d];
-  PetscCall(GridToGhosts(c->s->grid, c->width, c->direction));
-  PetscCall(Multiply(c, c->direction));
-  PetscCall(Products(c, c->direction, c->product, NULL, curvature));
-  for (int f = 0; f < MOTIONS; ++f) length[f] = !done[f] && curvature[f] > 0 ? now[f] / curvature[f] : 0;
-  for (PetscInt i = 0; i < c->size; i += c->dim)
-    for (PetscInt d = 0; d < c->dim; ++d) {
-      c->x[i + d] += length[(i / c->dim) % MOTIONS] * c->direction[i + d];
-      c->lack[i + d] -= length[(i / c->dim) % MOTIONS] * c->product[i + d];
-    }
-  PetscCall(PetscArraycpy(before, now, MOTIONS));
-  PetscCall(MassLack(c, now));
-  for (int f = 0; f < MOTIONS; ++f) grow[f] = before[f] > 0 ? now[f] / before[f] : 0;
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode MassSolveRun(MassSolve *c, PetscReal tolerance, const PetscReal size[MOTIONS])
-{
-  PetscReal now[MOTIONS], grow[MOTIONS] = {0, 0};
-  PetscBool done[MOTIONS];
-  int sweep = 0;
-
-  PetscFunctionBeginUser;
-  PetscCall(MassLack(c, now));
-  PetscCall(PetscArrayzero(c->direction, c->size));
-  do {
-    for (int f = 0; f < MOTIONS; ++f) done[f] = now[f] <= PetscSqr(tolerance) * size[f];
-    if (done[VELOCITY] && done[ACCELERATION]) break;
-    PetscCall(Sweep(c, done, now, grow));
-  } while (++sweep < MAX_SWEEPS);
   PetscFunctionReturn(0);
 }
 

@@ -11,8 +11,13 @@
 
 enum { VELOCITY, ACCELERATION, MOTIONS };
 
-typedef struct {
+typedef struct MassSolve MassSolve;
+/* Collective. product = M x, on owners; x is right on all copies. */
+typedef PetscErrorCode (*MassMultiply)(MassSolve *solve, PetscReal *x);
+
+struct MassSolve {
   const Discretisation *s;
+  MassMultiply multiply;
   PetscInt dim, width, size; /* width: 2 dim; size: n_nodes x width */
   /* the motion sought, on all copies when the equations are solved, m/s, m/s2 */
   PetscReal *x;
@@ -20,8 +25,10 @@ typedef struct {
   PetscReal *inverse; /* of M's diagonal, 0 where x is given or nothing has mass, on owners, 1/kg */
   PetscReal *direction, *product;
   PetscBool framed; /* are components those in the frames of nodes that slide? */
-} MassSolve;
+};
 
+/* All arrays 0, `inverse` too: for another matrix than this one. */
+PetscErrorCode MassSolveAllocate(const Discretisation *space, MassMultiply multiply, MassSolve *solve);
 /* Collective. x and lack are 0. */
 PetscErrorCode MassSolveCreate(const Discretisation *space, MassSolve *solve);
 PetscErrorCode MassSolveDestroy(MassSolve *solve);
@@ -29,9 +36,9 @@ PetscErrorCode MassSolveDestroy(MassSolve *solve);
 PetscErrorCode MassSubtract(MassSolve *solve);
 /* Collective. |lack|^2 of each motion, in the norm of the inverse diagonal. */
 PetscErrorCode MassLack(const MassSolve *solve, PetscReal square[MOTIONS]);
-/* Collective. Conjugate gradients from x and its lack until that has fallen to `tolerance` of
- * `square`, as MassLack gives it. */
-PetscErrorCode MassSolveRun(MassSolve *solve, PetscReal tolerance, const PetscReal square[MOTIONS]);
+/* Collective. Conjugate gradients from x and its lack until that is `enough`, as MassLack gives
+ * it, or after so many sweeps. */
+PetscErrorCode MassSolveRun(MassSolve *solve, const PetscReal enough[MOTIONS], int sweeps);
 /* Collective. What is lacking goes to the nodes by mass where `inverse` is not 0: then the sum of M x is that of
  * the right-hand side to round-off. x is right on all copies after that. */
 PetscErrorCode MassSolveClose(MassSolve *solve);

@@ -99,6 +99,14 @@ PetscErrorCode TransferGiveChange(Discretisation *s)
   PetscFunctionReturn(0);
 }
 
+static PetscErrorCode ThesisGather(Discretisation *s)
+{
+  PetscFunctionBeginUser;
+  PetscCall(TransferMean(s));
+  PetscCall(PetscArraycpy(s->nodes->v_mean, s->nodes->v_points, s->grid->n_nodes * s->grid->dim));
+  PetscFunctionReturn(0);
+}
+
 /* Free nodes stay as they are. */
 static PetscErrorCode ThesisHold(Discretisation *s)
 {
@@ -111,7 +119,7 @@ const Transfer transfer_thesis = {
   .name = "thesis",
   .help = "nodes take the mean of their points by mass: smooth, but rotation and energy are lost",
   .keeps_velocity = PETSC_TRUE,
-  .gather = TransferMean,
+  .gather = ThesisGather,
   .hold = ThesisHold,
   .give = TransferGiveChange,
 };

@@ -23,6 +23,11 @@ static PetscReal elastic(const Model *m, const MeasureSpec *s, PetscInt body)
   return sum;
 }
 
+static PetscReal mechanical(const Model *m, const MeasureSpec *s, PetscInt body)
+{
+  return kinetic(m, s, body) + elastic(m, s, body);
+}
+
 static PetscReal dissipated(const Model *m, const MeasureSpec *s, PetscInt body)
 {
   PetscReal sum = 0;
@@ -64,6 +69,7 @@ static PetscErrorCode BalanceValue(Model *m, const MeasureSpec *s, PetscInt inde
 static const MeasureNumber *const words[] = {
   WORD("kinetic", "energy of motion", .sum = kinetic),
   WORD("elastic", "stored in the material", .sum = elastic),
+  WORD("mechanical", "kinetic and elastic: what an elastic body that is left alone keeps", .sum = mechanical),
   WORD("dissipated", "work of the stress that is not stored: plastic dissipation", .sum = dissipated),
   WORD("external", "work done by loads, gravity and prescribed motion", .of = OF_MODEL, .value = External),
   WORD("damped", "taken by Rayleigh damping", .of = OF_MODEL, .kept = offsetof(Model, damped_energy)),

@@ -1,7 +1,8 @@
 /* Where the energy goes: work put in, stress work, damping, and what is lost between points and
  * grid (docs/theory.md, "Energy").
  *
- * All work is taken by the trapezoidal rule between the step's start and end. */
+ * All work is taken by the trapezoidal rule between the step's start and end; where forces balance in
+ * the middle of the step, that of loads and reactions is theirs there. */
 #include "material/pressure.h"
 #include "model/model_private.h"
 
@@ -133,20 +134,29 @@ PetscErrorCode EnergyStart(Model *m)
   PetscFunctionReturn(0);
 }
 
-/* What nodal forces add to gravity at both ends of the step; freed by PetscFree2. */
+/* Share of the forces that the step was solved with in its work. */
+static PetscReal share_of_end(const Model *m) { return m->scheme->middle ? 1 : 0.5; }
+
+/* What nodal forces add to gravity at both ends of the step, or twice in its middle; freed by
+ * PetscFree2. */
 static PetscErrorCode ForcesAtEnds(const Model *m, PetscReal dt, PetscReal **before, PetscReal **after)
 {
   const PetscInt dofs = m->grid->n_nodes * m->dim;
-  PetscReal *zero;
+  const PetscReal first = m->scheme->middle ? 0.5 : 0, last = m->scheme->middle ? 0.5 : 1;
+  PetscReal *u0, *u1;
 
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc2(dofs, before, dofs, after));
   if (!m->forces.n) PetscFunctionReturn(0);
-  PetscCall(PetscCalloc1(dofs, &zero));
-  const NodalScene start = nodal_scene(m, m->time, zero), end = nodal_scene(m, m->time + dt, m->nodes->du);
+  PetscCall(PetscMalloc2(dofs, &u0, dofs, &u1));
+  for (PetscInt i = 0; i < dofs; ++i) {
+    u0[i] = first * m->nodes->du[i];
+    u1[i] = last * m->nodes->du[i];
+  }
+  const NodalScene start = nodal_scene(m, m->time + first * dt, u0), end = nodal_scene(m, m->time + last * dt, u1);
   PetscCall(NodalForcesExternal(&m->forces, &start, PETSC_TRUE, *before));
   PetscCall(NodalForcesExternal(&m->forces, &end, PETSC_TRUE, *after));
-  PetscCall(PetscFree(zero));
+  PetscCall(PetscFree2(u0, u1));
   PetscFunctionReturn(0);
 }
 
@@ -164,7 +174,8 @@ static PetscReal inertia_work(const Model *m, PetscReal dt)
 {
   const NodalFields *n = m->nodes;
   const PetscReal lag = m->scheme->weights(&m->c->analysis, dt).lag;
-  const NodalField du = {{n->du, n->du}, {1, 0}}, a = {{n->a, n->a1}, {0.5 * (1 + lag), 0.5 * (1 - lag)}};
+  const PetscReal end = share_of_end(m);
+  const NodalField du = {{n->du, n->du}, {1, 0}}, a = {{n->a, n->a1}, {1 - end + 0.5 * lag, end - 0.5 * lag}};
   return mass_product(m, du, a);
 }
 
@@ -242,18 +253,19 @@ PetscErrorCode EnergyOfNodes(Model *m, PetscReal dt, EnergyStep *e)
 {
   const PetscReal damping = model_damping(m);
   const NodalFields *n = m->nodes;
+  const PetscReal end = share_of_end(m);
   PetscReal g0[3], g1[3], *before, *after, held = 0, impulse = 0, unbalanced = 0;
 
   PetscFunctionBeginUser;
   *e = (EnergyStep){0};
   PetscCall(ForcesAtEnds(m, dt, &before, &after));
-  gravity_at(m->c, m->time, g0);
-  gravity_at(m->c, m->time + dt, g1);
+  gravity_at(m->c, m->time + (m->scheme->middle ? 0.5 : 0) * dt, g0);
+  gravity_at(m->c, m->time + time_solved(m->scheme) * dt, g1);
   for (PetscInt i = 0; i < m->grid->n_owned * m->dim; ++i) {
     const PetscInt d = i % m->dim;
     e->external += 0.5 * (n->mass[i / m->dim] * (g0[d] + g1[d]) + before[i] + after[i]) * n->du[i];
     if (!m->boundary->fixed[i]) continue;
-    held += 0.5 * (n->held[i] + n->force[i]) * n->prescribed[i];
+    held += ((1 - end) * n->held[i] + end * n->force[i]) * n->prescribed[i];
     impulse += impulse_work(m, i, dt);
   }
   if (m->method->begin) PetscCall(OutOfBalance(m, g0, before, &unbalanced));
