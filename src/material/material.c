@@ -140,7 +140,9 @@ static void resolve_parameter(const Resolver *r, const Law *law, const LawParame
   if (r->mixed && p->not_mixed && *value != p->fallback) {
     diag_error(r->diag, path_of(r, p->name, path), "`formulation: mixed` cannot take %s: only %g", p->name,
                p->fallback);
-    diag_hint(r->diag, "take `formulation: displacement`: pressures at nodes would spread it over the neighbours");
+    diag_hint(
+      r->diag,
+      "take `formulation: displacement` or `mean-dilatation`: pressures at nodes would spread it over the neighbours");
   }
   if (p->unit && !strcmp(p->unit, "deg")) *value *= PETSC_PI / 180.0;
 }
