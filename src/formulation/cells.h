@@ -79,6 +79,18 @@ KERNEL PetscReal node_mean(const int nn, const PetscReal *N, const int stride, c
   return sum;
 }
 
+/* One gradient for all points of a triangle or tetrahedron: most of dN is never read, and what is lies too far apart
+ * for the processor to foresee. */
+#define AHEAD 8
+
+KERNEL void prefetch_gradients(const int dim, const Support *support, PetscInt group)
+{
+  if (group >= support->n_groups) return;
+  const PetscReal *dN = support->dN + support->value_start[group] * dim;
+  __builtin_prefetch(dN);
+  __builtin_prefetch(dN + dim * (dim + 1) - 1);
+}
+
 /* dF of the points of a batch, and where `pressure` is the unknown pressure there. In triangles and
  * tetrahedra it is that of the cell's first point, but for the hoop. */
 KERNEL void batch_increments(const int dim, const int nn, const PetscBool hoop, const PetscBool pressure,
@@ -91,6 +103,7 @@ KERNEL void batch_increments(const int dim, const int nn, const PetscBool hoop, 
     const PetscInt end = PetscMin(b->n, support->point_start[group + 1] - b->first), first = k;
     const PetscInt offset = support->value_start[group] - support->point_start[group] * nn;
     cell_motion(dim, nn, in, group, du);
+    if (nn == dim + 1) prefetch_gradients(dim, support, group + AHEAD);
     for (int I = 0; pressure && I < nn; ++I) at_node[I] = in->pressure_scale * in->pressure[cell_nodes(in, group)[I]];
     for (; k < end; ++k) {
       const PetscInt p = b->first + k;
