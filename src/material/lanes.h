@@ -96,9 +96,8 @@ LANES_INLINE LawStatus lanes_update(LawUpdate eight, int n_state, const PetscRea
 {
   LawStatus worst = LAW_OK;
   for (PetscInt p = 0; p < n; p += LANES) {
-    const LawStatus status =
-      eight(parameters, n - p, dF + 9 * p, old + n_state * p, state ? state + n_state * p : NULL, tau + 6 * p,
-            c ? c + 36 * p : NULL);
+    const LawStatus status = eight(parameters, n - p, dF + 9 * p, old + n_state * p, state ? state + n_state * p : NULL,
+                                   tau + 6 * p, c ? c + 36 * p : NULL);
     worst = PetscMax(worst, status);
   }
   return worst;
