@@ -9,6 +9,7 @@ typedef struct {
   const StepProblem *p;
   const Patch *patch;
   PetscInt dim, m;
+  PetscBool tangent; /* is it wanted with the residual? */
   PetscInt *slot;    /* nn x nn of each group: pairs of the patch, or the one behind all others */
   PetscReal *blocks; /* dim x dim of each pair */
   PetscReal *matrix; /* m x m */
@@ -48,11 +49,11 @@ static PetscErrorCode AssembleGroups(Work *w, LawStatus *worst)
   const Patch *patch = w->patch;
   Support part = *w->p->in.support;
   WeakFormInput in = w->p->in;
-  WeakFormOutput out = {.force = w->force, .values = w->blocks, .slot = w->slot};
+  WeakFormOutput out = {.force = w->force, .values = w->tangent ? w->blocks : NULL, .slot = w->slot};
 
   PetscFunctionBeginUser;
   zero_forces(w);
-  PetscCall(PetscArrayzero(w->blocks, (patch->n * patch->n + 1) * w->dim * w->dim));
+  if (w->tangent) PetscCall(PetscArrayzero(w->blocks, (patch->n * patch->n + 1) * w->dim * w->dim));
   in.support = &part;
   in.du = w->p->du;
   part.n_runs = 1;
@@ -123,6 +124,8 @@ static PetscErrorCode Iterate(Work *w, PetscReal enough, PetscReal *best)
   get_increments(w, best);
   PetscCall(PetscArrayzero(w->y, w->m));
   PetscCall(LineTry(&line, 0));
+  w->tangent = PETSC_TRUE; /* most patches need none */
+  if (line.norm > enough) PetscCall(LineTry(&line, 0));
   least = line.norm;
   for (PetscInt it = 0; it < MOST_ITERATIONS && line.norm > enough && line.norm < PETSC_INFINITY; ++it) {
     if (!find_direction(w, &slope)) break;
