@@ -98,7 +98,7 @@ int main(int argc, char **argv)
   PetscCall(PassMeasure(m, 4 / PetscSqr(m->control.next), 50, &pass));
   printf("  pass %.0f ns a point, blocks to matrix %.0f\n", (double)(1e9 * pass.points / (PetscReal)points),
          (double)(1e9 * pass.matrix / (PetscReal)points));
-  PetscCall(PassInFlow(m, getenv("REP") ? atoi(getenv("REP")) : 50, flowing));
+  PetscCall(PassInFlow(m, 50, flowing));
   printf("  in flow %.0f ns a point, without tangent %.0f\n", (double)(1e9 * flowing[0] / (PetscReal)points),
          (double)(1e9 * flowing[1] / (PetscReal)points));
   PetscCall(ModelDestroy(&m));
