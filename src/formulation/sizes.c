@@ -52,6 +52,7 @@ PetscErrorCode SizedCommit(const SizedKernels *table, const WeakFormInput *in, P
   for (PetscInt r = 0; r < n; ++r) {
     PetscCall(FindKernels(table, in, run[r].nodes, &k));
     batch_begin(&run[r], in->support, &b);
+    b.keeps_state = PETSC_TRUE;
     while (batch_next(in, &b)) {
       *status = k->update(in, PETSC_FALSE, &b);
       if (*status != LAW_OK) PetscFunctionReturn(0);

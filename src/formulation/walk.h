@@ -9,6 +9,7 @@
 typedef struct {
   PetscInt first, n, end; /* points first .. first + n - 1; no further than end */
   PetscInt group;         /* of the first */
+  PetscBool keeps_state;  /* will the new state be asked for? */
   PetscReal dF[9 * LAW_BATCH], p[LAW_BATCH];
   PetscReal old[LAW_MAX_STATE * LAW_BATCH], state[LAW_MAX_STATE * LAW_BATCH];
   PressureStress s; /* without an unknown pressure tau and c alone */
@@ -21,6 +22,7 @@ static inline void batch_begin(const SupportRun *run, const Support *support, Ba
   b->end = support->point_start[run->end];
   b->group = run->first;
   b->n = 0;
+  b->keeps_state = PETSC_FALSE;
 }
 
 /* PETSC_FALSE if there is none. */
@@ -65,7 +67,8 @@ static inline LawStatus batch_law(const WeakFormInput *in, PetscBool tangent, Ba
   if (batch_crosses_axis(in, b)) return LAW_INVERTED;
   const Material *material = batch_material(in, b);
   const LawUpdate update = law_update_in(material->law, in->kinematics);
-  return update(material->parameters, b->n, b->dF, batch_old(in, b), b->state, b->s.tau, tangent ? b->s.c : NULL);
+  PetscReal *state = b->keeps_state || !material->law->spares_state ? b->state : NULL;
+  return update(material->parameters, b->n, b->dF, batch_old(in, b), state, b->s.tau, tangent ? b->s.c : NULL);
 }
 
 /* The same with the pressures b->p. */

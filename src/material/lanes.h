@@ -8,12 +8,18 @@
 #include "base/math/tensor.h"
 #include "material/law.h"
 
-/* to[k] = component k of the n points at `from`, `components` numbers each. */
+/* to[k] = component k of the n points at `from`, `components` numbers each; as many of them as fill a
+ * register are loaded at once, and turned. */
 LANES_INLINE void lanes_load(int components, PetscInt n, const PetscReal *from, Lanes *to)
 {
   const PetscReal *point[LANES];
+  const int whole = components / LANES * LANES;
   for (int l = 0; l < LANES; ++l) point[l] = from + (n >= LANES || l < n ? l : n - 1) * components;
-  for (int k = 0; k < components; ++k)
+  for (int first = 0; first < whole; first += LANES) {
+    for (int l = 0; l < LANES; ++l) __builtin_memcpy(to + first + l, point[l] + first, sizeof *to);
+    lanes_transpose(to + first);
+  }
+  for (int k = whole; k < components; ++k)
     to[k] =
       (Lanes){point[0][k], point[1][k], point[2][k], point[3][k], point[4][k], point[5][k], point[6][k], point[7][k]};
 }
@@ -90,8 +96,8 @@ LANES_INLINE LawStatus lanes_update(LawUpdate eight, int n_state, const PetscRea
 {
   LawStatus worst = LAW_OK;
   for (PetscInt p = 0; p < n; p += LANES) {
-    const LawStatus status =
-      eight(parameters, n - p, dF + 9 * p, old + n_state * p, state + n_state * p, tau + 6 * p, c ? c + 36 * p : NULL);
+    const LawStatus status = eight(parameters, n - p, dF + 9 * p, old + n_state * p, state ? state + n_state * p : NULL,
+                                   tau + 6 * p, c ? c + 36 * p : NULL);
     worst = PetscMax(worst, status);
   }
   return worst;

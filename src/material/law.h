@@ -59,6 +59,7 @@ typedef struct Law {
   PetscInt n_state;       /* sum of the fields' components */
   PetscBool symmetric;    /* is the tangent symmetric? */
   PetscBool yields;       /* can it lose its stiffness? */
+  PetscBool spares_state; /* may `state` be NULL where only stress and tangent are wanted? */
   LawUpdate update;
   /* The same where dF leaves z alone, or NULL: of c only the components 11, 22, 12 of rows and
    * columns mean something; and where z strains by itself (dF_33 alone), with 33 as well. */

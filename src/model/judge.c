@@ -56,13 +56,16 @@ PetscErrorCode JudgeStep(const Model *m, StepReport *report)
   PetscCallMPI(MPI_Comm_rank(m->comm, &rank));
   local.rank = rank;
   const PetscInt groups = hardly_moved(m) ? 0 : w->n_groups;
-  for (PetscInt g = 0; g < groups; ++g)
-    for (PetscInt p = w->point_start[g]; p < w->point_start[g + 1]; ++p) {
+  for (PetscInt g = 0; g < groups; ++g) {
+    const PetscBool alike = support_nodes(w, g) == m->dim + 1 && w->n_runs; /* triangles, tetrahedra */
+    const PetscInt first = w->point_start[g], end = alike ? first + 1 : w->point_start[g + 1];
+    for (PetscInt p = first; p < end; ++p) {
       const PetscReal stretch = stretch_of(m, g, p);
       if (stretch <= local.stretch) continue;
       local.stretch = stretch;
       at = p;
     }
+  }
   PetscCallMPI(MPI_Allreduce(&local, &worst, 1, MPI_DOUBLE_INT, MPI_MAXLOC, m->comm));
   if (worst.stretch <= MOST_STRETCH) PetscFunctionReturn(0);
   for (PetscInt d = 0; d < m->dim && rank == worst.rank; ++d) x[d] = point_real(m->points, POINT_X, at)[d];

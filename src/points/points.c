@@ -139,7 +139,10 @@ void field_gather(void *to, const void *from, size_t bytes, PetscInt n, const Pe
   case 8: gather_sized(to, from, 8, n, index); break;
   case 16: gather_sized(to, from, 16, n, index); break;
   case 24: gather_sized(to, from, 24, n, index); break;
+  case 32: gather_sized(to, from, 32, n, index); break;
   case 40: gather_sized(to, from, 40, n, index); break;
+  case 48: gather_sized(to, from, 48, n, index); break;
+  case 64: gather_sized(to, from, 64, n, index); break;
   case 72: gather_sized(to, from, 72, n, index); break;
   default: gather_sized(to, from, bytes, n, index);
   }

@@ -58,32 +58,42 @@ static void counting_order(Points *points, PetscInt n_keys, PetscInt *count, Pet
   for (PetscInt c = 0, start = 0; c < n_keys; start = count[c++]) sort_run(points, count[c] - start, order + start);
 }
 
-/* Only [first, first + n) is out of place; the buffer holds n points of the widest field. */
-static void permute(Points *points, PetscInt first, PetscInt n, const PetscInt *order, char *buffer)
+static PetscBool is_first_of_size(const Points *points, int field, size_t size)
 {
-  for (int f = 0; f < N_FIELDS; ++f) {
-    size_t bytes;
-    char *data = points_field(points, f, &bytes);
-    if (!bytes) continue;
-    field_gather(buffer, data, bytes, n, order + first);
-    memcpy(data + bytes * (size_t)first, buffer, bytes * (size_t)n);
+  size_t bytes;
+  for (int f = 0; f < field; ++f) {
+    (void)points_field(points, f, &bytes);
+    if (bytes == size) return PETSC_FALSE;
   }
+  return PETSC_TRUE;
 }
 
-static size_t widest(const Points *points)
+/* Every field is gathered into a spare array of its size, which becomes the field's, and the field's the spare one
+ * for the next of that size: nothing is copied back. */
+static PetscErrorCode Permute(Points *points, const PetscInt *order)
 {
-  size_t most = 0, bytes;
+  PetscFunctionBeginUser;
   for (int f = 0; f < N_FIELDS; ++f) {
-    (void)points_field(points, f, &bytes);
-    most = PetscMax(most, bytes);
+    size_t size, bytes;
+    char *spare;
+    (void)points_field(points, f, &size);
+    if (!size || !is_first_of_size(points, f, size)) continue;
+    PetscCall(PetscMalloc1(size * (size_t)points->capacity, &spare));
+    for (int other = f; other < N_FIELDS; ++other) {
+      char *data = points_field(points, other, &bytes);
+      if (bytes != size) continue;
+      field_gather(spare, data, bytes, points->n, order);
+      points_set_field(points, other, spare);
+      spare = data;
+    }
+    PetscCall(PetscFree(spare));
   }
-  return most;
+  PetscFunctionReturn(0);
 }
 
 PetscErrorCode PointsSort(Points *points)
 {
-  PetscInt n_keys = 0, *count, *order, first = 0, end = points->n;
-  char *buffer;
+  PetscInt n_keys = 0, *count, *order;
   PetscFunctionBeginUser;
   if (is_sorted(points)) PetscFunctionReturn(0);
   for (PetscInt p = 0; p < points->n; ++p) n_keys = PetscMax(n_keys, points->cell[p] + 1);
@@ -91,11 +101,7 @@ PetscErrorCode PointsSort(Points *points)
   PetscCall(PetscCalloc1(n_keys + 1, &count));
   PetscCall(PetscMalloc1(points->n, &order));
   counting_order(points, n_keys, count, order);
-  while (order[first] == first) ++first;
-  while (order[end - 1] == end - 1) --end;
-  PetscCall(PetscMalloc1(widest(points) * (size_t)(end - first), &buffer));
-  permute(points, first, end - first, order, buffer);
-  PetscCall(PetscFree(buffer));
+  PetscCall(Permute(points, order));
   PetscCall(PetscFree(order));
   PetscCall(PetscFree(count));
   PetscFunctionReturn(0);

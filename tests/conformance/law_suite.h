@@ -422,6 +422,18 @@ static inline void law_suite_bad_increments(LawSuite *suite)
       }
 }
 
+/* Stress and tangent without the new state are those with it, to the last bit. */
+static inline void law_suite_spare(LawSuite *suite, LawUpdate update, PetscInt n, const PetscReal *dF,
+                                   const PetscReal *old)
+{
+  PetscReal state[LAW_MAX_STATE * LAW_BATCH], tau[2][6 * LAW_BATCH] = {{0}}, c[2][36 * LAW_BATCH] = {{0}};
+  for (int spared = 0; spared < 2; ++spared)
+    assert_int_equal(update(suite->material.parameters, n, dF, old, spared ? NULL : state, tau[spared], c[spared]),
+                     LAW_OK);
+  assert_memory_equal(tau[0], tau[1], sizeof tau[0]);
+  assert_memory_equal(c[0], c[1], sizeof c[0]);
+}
+
 /* A batch of n is n batches of one, to the last bit, with the tangent or without; nothing else is
  * written. */
 static inline void law_suite_batches(LawSuite *suite)
@@ -446,6 +458,7 @@ static inline void law_suite_batches(LawSuite *suite)
     assert_int_equal(law->update(suite->material.parameters, n, dF, old, state2, tau2, NULL), LAW_OK);
     assert_memory_equal(state, state2, (size_t)(n * ns) * sizeof *state);
     assert_memory_equal(tau, tau2, (size_t)(6 * n) * sizeof *tau);
+    if (law->spares_state) law_suite_spare(suite, law->update, n, dF, old);
     for (PetscInt p = 0; p < n; ++p) {
       LawPoint one = {0};
       memcpy(one.dF, dF + 9 * p, sizeof one.dF);
@@ -480,6 +493,7 @@ static inline void law_suite_in_plane(LawSuite *suite, LawUpdate update, PetscBo
       law_suite_update(suite, &p);
       if (p.status != LAW_OK) break;
       assert_int_equal(update(suite->material.parameters, 1, own.dF, own.old, own.state, own.tau, own.c), LAW_OK);
+      if (law->spares_state) law_suite_spare(suite, update, 1, own.dF, own.old);
       law_suite_near(suite, "stress of the plane", 6, own.tau, p.tau, 1e-12 * law_suite_modulus(suite, &p));
       law_suite_near(suite, "state of the plane", law->n_state, own.state, p.state, 1e-12);
       for (int i = 0; i < (hoop ? 4 : 3); ++i)

@@ -114,7 +114,7 @@ static LawStatus give_up(const LaneBits *finite, const Lanes *det, PetscInt n, c
     if ((*finite)[l]) continue;
     const LawStatus status = (*det)[l] <= 0.0 ? LAW_INVERTED : LAW_NOT_FINITE;
     worst = PetscMax(worst, status);
-    for (int k = 0; k < N_STATE; ++k) state[l * N_STATE + k] = old[l * N_STATE + k];
+    for (int k = 0; state && k < N_STATE; ++k) state[l * N_STATE + k] = old[l * N_STATE + k];
     for (int k = 0; k < 6; ++k) tau[l * 6 + k] = 0.0;
     for (int k = 0; c && k < 36; ++k) c[l * 36 + k] = 0.0;
   }
@@ -129,9 +129,11 @@ LANES_INLINE LawStatus update_lanes(const PetscReal *p, PetscInt n, const PetscR
   Trial t;
   trial_lanes(n, dF, old, &t);
   mc_return_lanes(p, t.strain, principal, &regions);
-  state_lanes(p, &t, principal, &regions, now);
   lanes_principal_tensor(principal, t.basis, stress);
-  lanes_store(N_STATE, n, now, state);
+  if (state) {
+    state_lanes(p, &t, principal, &regions, now);
+    lanes_store(N_STATE, n, now, state);
+  }
   lanes_store(6, n, stress, tau);
   if (c) tangent_lanes(p, &t, &regions, principal, n, c);
   const LaneBits bad = ~t.finite;
@@ -165,11 +167,13 @@ LANES_INLINE LawStatus update_in_plane(const PetscBool hoop, const PetscReal *p,
   lanes_load(N_STATE, n, old, before);
   if (!mc_plane_trial(hoop, n, dF, before, &t)) return update(p, PetscMin(n, LANES), dF, old, state, tau, c);
   mc_plane_return(p, &t, principal, &regions);
-  now[6] = before[6];
-  now[7] = before[7];
-  mc_plane_state(p, &t, principal, &regions, now);
   mc_plane_tensor(&t, principal, stress);
-  lanes_store(N_STATE, n, now, state);
+  if (state) {
+    now[6] = before[6];
+    now[7] = before[7];
+    mc_plane_state(p, &t, principal, &regions, now);
+    lanes_store(N_STATE, n, now, state);
+  }
   lanes_store(6, n, stress, tau);
   if (c) {
     mc_plane_moduli(hoop, p, &t, &regions, principal, moduli);
@@ -290,6 +294,7 @@ const Law law_mohr_coulomb = {
   .n_state = N_STATE,
   .symmetric = PETSC_FALSE,
   .yields = PETSC_TRUE,
+  .spares_state = PETSC_TRUE,
   .update = update,
   .update_plane = update_plane,
   .update_hoop = update_hoop,

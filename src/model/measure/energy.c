@@ -72,7 +72,8 @@ static PetscReal mass_product(const Model *m, NodalField u, NodalField w)
   PetscReal sum = 0;
   if (!support->n_runs) return product_sized(m->dim, 0, &all, m, &u, &w);
   for (const SupportRun *run = support->run; run < support->run + support->n_runs; ++run) {
-    if (m->dim == 2 && run->nodes == 4) sum += product_sized(2, 4, run, m, &u, &w);
+    if (m->dim == 2 && run->nodes == 3) sum += product_sized(2, 3, run, m, &u, &w);
+    else if (m->dim == 2 && run->nodes == 4) sum += product_sized(2, 4, run, m, &u, &w);
     else if (m->dim == 3 && run->nodes == 8) sum += product_sized(3, 8, run, m, &u, &w);
     else sum += product_sized(m->dim, run->nodes, run, m, &u, &w);
   }

@@ -100,6 +100,7 @@ void nodal_forces_hold(const NodalForces *forces, const NodalScene *scene, unsig
 PetscBool nodal_forces_find_slots(const NodalForces *forces, const System *system);
 /* NULL: there are none. */
 const Constraints *nodal_forces_constraints(const NodalForces *forces);
+PetscBool nodal_forces_are_dead(const NodalForces *forces);
 /* Collective. All that are not dead, in every iteration. */
 PetscErrorCode NodalForcesAssemble(const NodalForces *forces, const NodalScene *scene, const NodalOutput *out);
 /* Collective. Dead forces, and all others but those of constraints if so asked, summed over ranks

@@ -58,6 +58,13 @@ const Constraints *nodal_forces_constraints(const NodalForces *forces)
   return NULL;
 }
 
+PetscBool nodal_forces_are_dead(const NodalForces *forces)
+{
+  for (PetscInt k = 0; k < forces->n; ++k)
+    if (!forces->one[k].kind->dead) return PETSC_FALSE;
+  return PETSC_TRUE;
+}
+
 PetscErrorCode NodalForcesAssemble(const NodalForces *forces, const NodalScene *scene, const NodalOutput *out)
 {
   PetscFunctionBeginUser;

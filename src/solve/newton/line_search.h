@@ -2,11 +2,29 @@
 #pragma once
 #include <petscsnes.h>
 
+/* The way from a place along a direction: x - lambda y. */
+typedef struct {
+  /* |F| there, infinite or NaN where a law fails, and y . F: the work that is left along y */
+  PetscErrorCode (*evaluate)(void *context, PetscReal lambda, PetscReal *norm, PetscReal *slope);
+  void *context;
+  PetscReal lambda, norm, slope; /* the last place tried; norm and slope infinite where the law fails */
+} Line;
+
+PetscErrorCode LineTry(Line *line, PetscReal lambda);
+/* After a first try: a bracketed secant on the slope, unless little enough work is left there; slope0 and norm0
+ * are those at lambda = 0. norm stays infinite if the law fails wherever it was tried. */
+PetscErrorCode LineShorten(Line *line, PetscReal slope0, PetscReal norm0);
+
 /* What a search remembers from one iteration of a step to the next. */
 typedef struct {
   PetscReal best; /* smallest residual of this step */
   PetscInt stale; /* iterations since it was met */
   PetscInt block; /* unknowns per node of which the last is a pressure; 0: none is */
+  /* Collective; NULL: nothing. From the residual where a direction starts, and its norm; and what is
+   * done to every place along it before the residual there is taken. */
+  PetscErrorCode (*choose)(void *context, PetscInt iteration, Vec f, PetscReal norm);
+  PetscErrorCode (*settle)(void *context, Vec x);
+  void *context;
 } LineSearchMemory;
 
 /* For SNESLineSearchShellSetUserFunc, with a LineSearchMemory as context. The first direction of a

@@ -27,10 +27,11 @@ static PetscReal reference_force(const Newton *n, PetscReal first)
   return reference > 0 ? reference : 1;
 }
 
+PetscReal newton_tolerance(const Newton *n) { return n->spec.residual * reference_force(n, n->report->reference); }
+
 PetscBool newton_is_last(const Newton *n)
 {
-  const PetscReal enough = n->spec.residual * reference_force(n, n->report->reference);
-  return n->before > 0 && n->last * n->last < 0.1 * enough * n->before;
+  return n->before > 0 && n->last * n->last < 0.1 * newton_tolerance(n) * n->before;
 }
 
 static PetscReal dofs_of(const Newton *n)

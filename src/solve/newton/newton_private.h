@@ -1,5 +1,6 @@
 /* Newton's own state, and what its parts ask of each other: for the files of newton*.c alone. */
 #pragma once
+#include "solve/newton/eliminate.h"
 #include "solve/newton/line_search.h"
 #include "solve/newton/newton.h"
 #include "solve/blocks/projection.h"
@@ -20,6 +21,7 @@ struct Newton {
   /* system->builds whose solver was chosen with this courant before a checkpoint; -1: none */
   PetscInt remembered;
   LineSearchMemory search;
+  Elimination elimination;
   Saddle saddle;
   PetscBool direct;
   /* does the linear solver keep constraints by projections? else by multipliers in its matrix */
@@ -66,7 +68,14 @@ void newton_rest_without_unknowns(const StepProblem *p);
 PetscErrorCode NewtonFunction(SNES snes, Vec x, Vec f, void *context);
 PetscErrorCode NewtonJacobian(SNES snes, Vec x, Mat matrix, Mat preconditioner, void *context);
 
-/* newton_converge.c. Will this residual be the last? If it falls by the same factor once more it is
+/* newton_eliminate.c. May it, for this problem? And what the line search then does; context: the Newton. */
+PetscBool newton_eliminates(const StepProblem *p, const LinearProblem *linear);
+PetscErrorCode NewtonChoose(void *context, PetscInt iteration, Vec f, PetscReal norm);
+PetscErrorCode NewtonSettle(void *context, Vec x);
+
+/* newton_converge.c. The norm below which a residual has converged, N. */
+PetscReal newton_tolerance(const Newton *n);
+/* Will this residual be the last? If it falls by the same factor once more it is
  * far below the tolerance: no tangent will be asked for. */
 PetscBool newton_is_last(const Newton *n);
 /* The convergence test of SNES; context: the Newton. Writes the report's residuals and its

@@ -10,6 +10,7 @@ PetscErrorCode NewtonReset(Newton *n)
   PetscCall(ProjectionDestroy(&n->projection));
   PetscCall(VecDestroy(&n->x));
   PetscCall(VecDestroy(&n->f));
+  PetscCall(EliminationReset(&n->elimination));
   PetscFunctionReturn(0);
 }
 
@@ -61,6 +62,11 @@ PetscErrorCode NewtonSetUp(Newton *n, StepProblem *p, const LinearProblem *linea
   n->projects = chosen.multipliers && form == SYSTEM_BLOCKS;
   PetscCall(SystemUse(p->system, form, linear->symmetric));
   PetscCall(SystemGather(p->system, p->formulation->singles && p->in.support->n_runs));
+  const PetscBool eliminates = newton_eliminates(p, linear);
+  if (eliminates) PetscCall(EliminationSetUp(&n->elimination, p));
+  n->search.choose = eliminates ? NewtonChoose : NULL;
+  n->search.settle = eliminates ? NewtonSettle : NULL;
+  n->search.context = n;
   n->search.block = p->pressure ? p->system->block : 0;
   PetscCall(SystemCreateVec(p->system, &n->x));
   PetscCall(VecDuplicate(n->x, &n->f));

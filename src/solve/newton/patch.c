@@ -1,0 +1,179 @@
+#include "solve/newton/patch.h"
+#include "base/math/lu.h"
+#include "solve/newton/line_search.h"
+
+#define MOST_ITERATIONS 10
+
+/* A patch at work; its m unknowns stand node by node. */
+typedef struct {
+  const StepProblem *p;
+  const Patch *patch;
+  PetscInt dim, m;
+  PetscBool tangent; /* is it wanted with the residual? */
+  PetscInt *slot;    /* nn x nn of each group: pairs of the patch, or the one behind all others */
+  PetscReal *blocks; /* dim x dim of each pair */
+  PetscReal *matrix; /* m x m */
+  PetscReal *f, *y;  /* residual, direction */
+  PetscReal *from;   /* increments where the direction starts */
+  PetscReal *force;  /* n_nodes x dim */
+} Work;
+
+/* Unknown i of the patch among those of all nodes. */
+static inline PetscInt place_of(const Work *w, PetscInt i) { return w->patch->node[i / w->dim] * w->dim + i % w->dim; }
+
+static void get_increments(const Work *w, PetscReal *x)
+{
+  for (PetscInt i = 0; i < w->m; ++i) x[i] = w->p->du[place_of(w, i)];
+}
+
+static void zero_forces(const Work *w)
+{
+  const Support *s = w->p->in.support;
+  for (PetscInt k = 0; k < w->patch->n_groups; ++k)
+    for (PetscInt i = s->node_start[w->patch->group[k]]; i < s->node_start[w->patch->group[k] + 1]; ++i)
+      for (PetscInt d = 0; d < w->dim; ++d) w->force[s->node[i] * w->dim + d] = 0;
+}
+
+/* Groups k .. end - 1 of the patch follow each other in the support, too, and have as many nodes. */
+static PetscInt run_end(const Work *w, PetscInt k)
+{
+  const PetscInt *group = w->patch->group, nn = support_nodes(w->p->in.support, group[k]);
+  for (++k; k < w->patch->n_groups && group[k] == group[k - 1] + 1; ++k)
+    if (support_nodes(w->p->in.support, group[k]) != nn) break;
+  return k;
+}
+
+/* Forces and blocks of the patch's groups alone: to the formulation they are a support of few. */
+static PetscErrorCode AssembleGroups(Work *w, LawStatus *worst)
+{
+  const Patch *patch = w->patch;
+  Support part = *w->p->in.support;
+  WeakFormInput in = w->p->in;
+  WeakFormOutput out = {.force = w->force, .values = w->tangent ? w->blocks : NULL, .slot = w->slot};
+
+  PetscFunctionBeginUser;
+  zero_forces(w);
+  if (w->tangent) PetscCall(PetscArrayzero(w->blocks, (patch->n * patch->n + 1) * w->dim * w->dim));
+  in.support = &part;
+  in.du = w->p->du;
+  part.n_runs = 1;
+  *worst = LAW_OK;
+  for (PetscInt k = 0, end; k < patch->n_groups; k = end) {
+    const PetscInt first = patch->group[k], nn = support_nodes(&part, first);
+    end = run_end(w, k);
+    part.run[0] = (SupportRun){.nodes = nn, .first = first, .end = first + end - k};
+    PetscCall(w->p->formulation->assemble(&in, &out));
+    *worst = PetscMax(*worst, out.status);
+    out.slot += (end - k) * nn * nn;
+  }
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode EvaluateAt(void *context, PetscReal lambda, PetscReal *norm, PetscReal *slope)
+{
+  Work *w = context;
+  const StepProblem *p = w->p;
+  LawStatus status;
+
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < w->m; ++i) p->du[place_of(w, i)] = w->from[i] - lambda * w->y[i];
+  PetscCall(AssembleGroups(w, &status));
+  *norm = *slope = 0;
+  for (PetscInt i = 0; i < w->m; ++i) {
+    const PetscInt at = place_of(w, i);
+    w->f[i] = p->fixed[at] ? 0 : w->force[at] - p->external[at];
+    *norm += w->f[i] * w->f[i];
+    *slope += w->y[i] * w->f[i];
+  }
+  *norm = status == LAW_OK ? PetscSqrtReal(*norm) : PETSC_INFINITY;
+  PetscFunctionReturn(0);
+}
+
+/* Blocks -> matrix, with nothing but a diagonal where something is prescribed. */
+static void fill_matrix(Work *w)
+{
+  const PetscInt dim = w->dim, n = w->patch->n;
+  const unsigned char *fixed = w->p->fixed;
+  for (PetscInt i = 0; i < w->m; ++i)
+    for (PetscInt j = 0; j < w->m; ++j) {
+      const PetscReal value = w->blocks[((i / dim * n + j / dim) * dim + i % dim) * dim + j % dim];
+      const PetscBool cut = fixed[place_of(w, i)] || fixed[place_of(w, j)];
+      w->matrix[i * w->m + j] = cut ? (PetscReal)(i == j) : value;
+    }
+}
+
+/* y = K^-1 F and y . F; PETSC_FALSE if there is none. */
+static PetscBool find_direction(Work *w, PetscReal *slope)
+{
+  fill_matrix(w);
+  for (PetscInt i = 0; i < w->m; ++i) w->y[i] = w->f[i];
+  if (!lu_solve(w->m, w->matrix, w->y)) return PETSC_FALSE;
+  *slope = 0;
+  for (PetscInt i = 0; i < w->m; ++i) *slope += w->y[i] * w->f[i];
+  return PETSC_TRUE;
+}
+
+/* best: the increments where |F| is least. */
+static PetscErrorCode Iterate(Work *w, PetscReal enough, PetscReal *best)
+{
+  Line line = {.evaluate = EvaluateAt, .context = w};
+  PetscReal least, slope, norm;
+
+  PetscFunctionBeginUser;
+  get_increments(w, w->from);
+  get_increments(w, best);
+  PetscCall(PetscArrayzero(w->y, w->m));
+  PetscCall(LineTry(&line, 0));
+  w->tangent = PETSC_TRUE; /* most patches need none */
+  if (line.norm > enough) PetscCall(LineTry(&line, 0));
+  least = line.norm;
+  for (PetscInt it = 0; it < MOST_ITERATIONS && line.norm > enough && line.norm < PETSC_INFINITY; ++it) {
+    if (!find_direction(w, &slope)) break;
+    norm = line.norm;
+    get_increments(w, w->from);
+    PetscCall(LineTry(&line, 1));
+    PetscCall(LineShorten(&line, slope, norm));
+    if (!(line.norm < least)) continue;
+    least = line.norm;
+    get_increments(w, best);
+  }
+  for (PetscInt i = 0; i < w->m; ++i) w->p->du[place_of(w, i)] = best[i];
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode FindSlots(Work *w, PetscInt *place)
+{
+  const Patch *patch = w->patch;
+  const Support *s = w->p->in.support;
+  PetscInt size = 0;
+
+  PetscFunctionBeginUser;
+  for (PetscInt k = 0; k < patch->n_groups; ++k) size += PetscSqr(support_nodes(s, patch->group[k]));
+  PetscCall(PetscMalloc1(size, &w->slot));
+  for (PetscInt k = 0; k < patch->n; ++k) place[patch->node[k]] = k;
+  for (PetscInt k = 0, *slot = w->slot; k < patch->n_groups; ++k) {
+    const PetscInt nn = support_nodes(s, patch->group[k]), *node = s->node + s->node_start[patch->group[k]];
+    for (PetscInt i = 0; i < nn * nn; ++i) {
+      const PetscInt row = place[node[i / nn]], column = place[node[i % nn]];
+      *slot++ = row < 0 || column < 0 ? patch->n * patch->n : row * patch->n + column;
+    }
+  }
+  for (PetscInt k = 0; k < patch->n; ++k) place[patch->node[k]] = -1;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode PatchSolve(const StepProblem *problem, const Patch *patch, PetscReal enough, PetscInt *place,
+                          PetscReal *force)
+{
+  const PetscInt dim = problem->grid->dim, m = patch->n * dim;
+  Work w = {.p = problem, .patch = patch, .dim = dim, .m = m, .force = force};
+  PetscReal *best;
+
+  PetscFunctionBeginUser;
+  PetscCall(FindSlots(&w, place));
+  PetscCall(PetscMalloc6(m * m + dim * dim, &w.blocks, m * m, &w.matrix, m, &w.f, m, &w.y, m, &w.from, m, &best));
+  PetscCall(Iterate(&w, enough, best));
+  PetscCall(PetscFree6(w.blocks, w.matrix, w.f, w.y, w.from, best));
+  PetscCall(PetscFree(w.slot));
+  PetscFunctionReturn(0);
+}
