@@ -79,7 +79,7 @@ KERNEL void assemble_points(const int dim, const int nn, const PetscBool hoop, c
 {
   Batch b;
   CloudWork w;
-  batch_begin(run, in->support, &b);
+  batch_begin(run, in->support, PETSC_FALSE, &b);
   while (batch_next(in, &b)) {
     if (!batch_is_good(&b, batch_update(dim, nn, hoop, in, out->values != NULL, &b), out)) return;
     for (PetscInt k = 0; k < b.n; ++k) {

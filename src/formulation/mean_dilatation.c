@@ -110,9 +110,10 @@ KERNEL LawStatus shared_update(const int dim, const int nn, const PetscBool hoop
   return batch_law(in, tangent, &s->b);
 }
 
-static void shared_begin(const SupportRun *run, const Support *support, SharedBatch *s)
+/* As batch_begin; commit: the new state will be asked for. */
+static void shared_begin(const SupportRun *run, const Support *support, PetscBool commit, SharedBatch *s)
 {
-  batch_begin(run, support, &s->b);
+  batch_begin(run, support, commit, &s->b);
   s->group = -1;
 }
 
@@ -146,7 +147,7 @@ KERNEL PetscReal cell_pressure(const int dim, const int nn, const PetscBool hoop
   const SupportRun alone = {.nodes = nn, .first = group, .end = group + 1};
   PetscReal sum = 0;
   SharedBatch s;
-  shared_begin(&alone, in->support, &s);
+  shared_begin(&alone, in->support, PETSC_FALSE, &s);
   while (shared_next(in, &s)) {
     if (shared_update(dim, nn, hoop, PETSC_FALSE, in, PETSC_FALSE, &s) != LAW_OK) return 0; /* its batch will tell */
     sum += pressure_of(dim, hoop, in, &s.b, 0, s.b.n);
@@ -234,7 +235,7 @@ KERNEL void assemble_points(const int dim, const int nn, const PetscBool hoop, c
   SharedWork w;
 
   shared_load(dim, nn, in, group, &w);
-  shared_begin(run, in->support, &s);
+  shared_begin(run, in->support, PETSC_FALSE, &s);
   while (shared_next(in, &s)) {
     const LawStatus status = shared_update(dim, nn, hoop, PETSC_FALSE, in, tangent, &s);
     if (!batch_is_good(&s.b, status, out)) return;
@@ -287,7 +288,7 @@ static PetscErrorCode MeanDilatationCommit(const WeakFormInput *in, Points *poin
   *status = LAW_OK;
   for (PetscInt r = 0; r < in->support->n_runs; ++r) {
     const SupportRun *run = &in->support->run[r];
-    shared_begin(run, in->support, &s);
+    shared_begin(run, in->support, PETSC_TRUE, &s);
     while (shared_next(in, &s)) {
       *status = shared_update(dim, (int)run->nodes, hoop, PETSC_TRUE, in, PETSC_FALSE, &s);
       if (*status != LAW_OK) PetscFunctionReturn(0);

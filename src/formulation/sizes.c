@@ -51,8 +51,7 @@ PetscErrorCode SizedCommit(const SizedKernels *table, const WeakFormInput *in, P
   const PetscInt n = runs_of(in->support, run);
   for (PetscInt r = 0; r < n; ++r) {
     PetscCall(FindKernels(table, in, run[r].nodes, &k));
-    batch_begin(&run[r], in->support, &b);
-    b.keeps_state = PETSC_TRUE;
+    batch_begin(&run[r], in->support, PETSC_TRUE, &b);
     while (batch_next(in, &b)) {
       *status = k->update(in, PETSC_FALSE, &b);
       if (*status != LAW_OK) PetscFunctionReturn(0);

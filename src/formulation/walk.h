@@ -16,13 +16,13 @@ typedef struct {
 } Batch;
 
 /* Before the first batch of a run. */
-static inline void batch_begin(const SupportRun *run, const Support *support, Batch *b)
+static inline void batch_begin(const SupportRun *run, const Support *support, PetscBool keeps_state, Batch *b)
 {
   b->first = support->point_start[run->first];
   b->end = support->point_start[run->end];
   b->group = run->first;
   b->n = 0;
-  b->keeps_state = PETSC_FALSE;
+  b->keeps_state = keeps_state;
 }
 
 /* PETSC_FALSE if there is none. */
