@@ -37,6 +37,24 @@ typedef struct {
   PetscReal bulk;          /* D[I] bulk D[J] */
 } MeanModuli;
 
+/* Rows and columns of c summed over what shares, with 2 tau, over d; returns their sum, the moduli
+ * between two mean dilatations. */
+KERNEL PetscReal mean_rows(const int dim, const PetscBool hoop, const PetscReal *restrict tau,
+                           const PetscReal *restrict c, MeanModuli *restrict m)
+{
+  const int d = sharing_directions(dim, hoop);
+  PetscReal all = 2 * mean_stress(dim, hoop, tau) / d;
+  for (int i = 0; i < 6; ++i) {
+    m->left[i] = m->right[i] = 0;
+    if (!is_strain(dim, hoop, i)) continue;
+    for (int j = 0; j < d; ++j) m->left[i] += c[6 * i + j], m->right[i] += c[6 * j + i];
+    if (i < d) all += m->left[i] / (d * d);
+    m->left[i] = (m->left[i] + 2 * tau[i]) / d;
+    m->right[i] = (m->right[i] + 2 * tau[i]) / d;
+  }
+  return all;
+}
+
 /* From the law's tau and c; weight: P v_p / (sum v) over V0 of the point.
  *
  * tr(grad u grad w) is 2 sym grad u : sym grad w - grad u : grad w, that is moduli 2 I_s and a stress of
@@ -45,26 +63,16 @@ KERNEL void mean_moduli(const int dim, const PetscBool hoop, const PetscReal *re
                         PetscReal weight, MeanModuli *restrict m)
 {
   const int d = sharing_directions(dim, hoop);
-  const PetscReal mean = mean_stress(dim, hoop, tau), s = mean - weight;
-  PetscReal all = 2 * mean / d;
+  const PetscReal s = mean_stress(dim, hoop, tau) - weight, all = mean_rows(dim, hoop, tau, c, m);
   for (int i = 0; i < 6; ++i) {
-    m->left[i] = m->right[i] = m->tau[i] = 0;
-    if (!is_strain(dim, hoop, i)) continue;
-    for (int j = 0; j < d; ++j) m->left[i] += c[6 * i + j], m->right[i] += c[6 * j + i];
-    if (i < d) all += m->left[i] / (d * d);
-    m->left[i] = (m->left[i] + 2 * tau[i]) / d;
-    m->right[i] = (m->right[i] + 2 * tau[i]) / d;
-    m->tau[i] = tau[i] - (i < d ? s : 0);
-  }
-  for (int i = 0; i < 6; ++i)
+    m->tau[i] = is_strain(dim, hoop, i) ? tau[i] - (i < d ? s : 0) : 0;
     for (int j = 0; j < 6; ++j) {
       if (!is_strain(dim, hoop, i) || !is_strain(dim, hoop, j)) continue;
-      m->c[6 * i + j] = c[6 * i + j] - (j < d ? m->left[i] : 0) - (i < d ? m->right[j] : 0) +
-                        (i < d && j < d ? all + weight : 0) +
-                        (i != j  ? 0
-                         : i < 3 ? 2 * s
-                                 : s);
+      m->c[6 * i + j] =
+        c[6 * i + j] - (j < d ? m->left[i] : 0) - (i < d ? m->right[j] : 0) + (i < d && j < d ? all + weight : 0);
     }
+    if (is_strain(dim, hoop, i)) m->c[7 * i] += i < 3 ? 2 * s : s;
+  }
   for (int i = 0; i < d; ++i) m->left[i] -= all, m->right[i] -= all;
   m->bulk = all;
 }

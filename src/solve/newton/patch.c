@@ -166,10 +166,11 @@ PetscErrorCode PatchSolve(const StepProblem *problem, const Patch *patch, PetscR
                           PetscReal *force)
 {
   const PetscInt dim = problem->grid->dim, m = patch->n * dim;
-  Work w = {.p = problem, .patch = patch, .dim = dim, .m = m, .force = force};
+  Work w = {.p = problem, .patch = patch, .dim = dim, .m = m};
   PetscReal *best;
 
   PetscFunctionBeginUser;
+  w.force = force;
   PetscCall(FindSlots(&w, place));
   PetscCall(PetscMalloc6(m * m + dim * dim, &w.blocks, m * m, &w.matrix, m, &w.f, m, &w.y, m, &w.from, m, &best));
   PetscCall(Iterate(&w, enough, best));
