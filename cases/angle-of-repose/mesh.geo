@@ -3,7 +3,8 @@
 DefineConstant[ h = {0.0015, Min 0.0002, Name "size of triangles"}, outlet = {0.016, Name "diameter of the outlet"},
                 half = {30, Name "angle of the wall from the axis, deg"}, volume = {150e-6, Name "powder, m3"},
                 fall = {0.085, Name "outlet above the support"}, base = {0.1, Name "diameter of the support"},
-                stand = {0.025, Name "height of the support"}, rim = {0.07, Name "radius of the floor"} ];
+                stand = {0.025, Name "height of the support"}, rim = {0.07, Name "radius of the floor"},
+                quads = {0, Min 0, Max 1, Name "quadrilaterals, by pairs of triangles"} ];
 If (outlet < 2 * h)
   Error("the outlet is narrower than two triangles: nothing could flow through it");
   Abort;
@@ -49,6 +50,9 @@ Curve Loop(3) = {9, 10, 11, -15};
 Plane Surface(1) = {1};
 Plane Surface(2) = {2};
 Plane Surface(3) = {3};
+If (quads)
+  Recombine Surface {1, 2, 3};
+EndIf
 Physical Surface("air") = {1, 3};
 Physical Surface("powder") = {2};
 Physical Curve("support") = {1};
