@@ -79,6 +79,11 @@ static PetscErrorCode BoundaryAndLoadsClear(Case *c)
     PetscCall(PetscFree(c->boundary[i].name));
   }
   PetscCall(PetscFree(c->boundary));
+  for (PetscInt i = 0; i < c->n_walls; ++i) {
+    PetscCall(PetscFree(c->walls[i].name));
+    PetscCall(ShapeClear(&c->walls[i].shape));
+  }
+  PetscCall(PetscFree(c->walls));
   for (PetscInt i = 0; i < c->n_loads; ++i) {
     PetscCall(SelectorClear(&c->loads[i].on));
     PetscCall(AmplitudeClear(&c->loads[i].amplitude));

@@ -118,6 +118,18 @@ typedef struct {
   char *name; /* for measures and messages; NULL if it has none */
 } MotionSpec;
 
+typedef enum { CONTACT_FRICTIONLESS, CONTACT_FRICTION, CONTACT_STICK, CONTACT_BONDED } ContactKind;
+
+/* A rigid body that material meets anywhere in the grid: it does not go into it. */
+typedef struct {
+  char *name;
+  Shape shape;      /* where the wall is, */
+  PetscBool inside; /* or where it is not: a container */
+  ContactKind contact;
+  PetscReal friction; /* tangent of the angle of friction */
+  PetscReal adhesion; /* N/m2: tangential stress that contact bears without pressure */
+} WallSpec;
+
 typedef enum { LOAD_TRACTION, LOAD_POINT } LoadKind;
 
 typedef struct {
@@ -278,6 +290,8 @@ typedef struct {
   MaterialSpec *materials;
   PetscInt n_boundary;
   MotionSpec *boundary;
+  PetscInt n_walls;
+  WallSpec *walls;
   PetscReal gravity[3];
   Amplitude gravity_amplitude;
   PetscInt n_loads;

@@ -203,7 +203,8 @@ extern const SchemaWriteType schema_writers[TYPE_COUNT];
 /* --- checks of tables (schema_checks.c) --- */
 typedef PetscErrorCode SchemaCheck(SchemaReader *r, const YamlNode *mapping, void *target);
 extern SchemaCheck SchemaCheckAnalysis, SchemaCheckUntil, SchemaCheckBox, SchemaCheckGrid, SchemaCheckShapeBox,
-  SchemaCheckShape, SchemaCheckHalfSpace, SchemaCheckBody, SchemaCheckSelector, SchemaCheckMotion, SchemaCheckLoads;
+  SchemaCheckShape, SchemaCheckHalfSpace, SchemaCheckBody, SchemaCheckSelector, SchemaCheckMotion, SchemaCheckWall,
+  SchemaCheckLoads;
 /* Materials take the parameters of their law (schema_material.c). */
 PetscErrorCode SchemaOpenMaterial(SchemaReader *r, const YamlNode *mapping, void *target);
 PetscErrorCode SchemaWriteMaterial(FILE *out, int indent, const Case *c, const void *source);

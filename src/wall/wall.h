@@ -1,0 +1,29 @@
+/* Rigid walls as geometry, independent of the grid: how far a position is from a wall, which way
+ * leads away from it, and how the wall's matter moves. */
+#pragma once
+#include "base/diag/diag.h"
+#include "case/case.h"
+
+/* The walls of a case; each by its index in Case.walls. */
+typedef struct Walls Walls;
+
+/* What a wall is to a position near it. */
+typedef struct {
+  PetscReal gap;          /* signed distance to its surface, m: negative inside the wall */
+  PetscReal normal[3];    /* unit, out of the wall: the gradient of gap */
+  PetscReal curvature[9]; /* 3 x 3, the Hessian of gap, 1/m: 0 along flat faces */
+} WallPlace;
+
+/* Mistakes of the geometry (files that cannot be read, surfaces that are not closed) go to diag. */
+PetscErrorCode WallsCreate(const Case *c, Diag *diag, Walls **walls);
+PetscErrorCode WallsDestroy(Walls **walls);
+/* The wall of index k as x (dim coordinates) sees it at time t. PETSC_FALSE if x is farther than
+ * `within` (m) away, or the wall does not stand at that time: *place is left alone then. side: of a
+ * wall without an inside, the one on which x was before (what wall_side gave); of others 0. */
+PetscBool wall_near(const Walls *walls, PetscInt k, PetscReal t, const PetscReal *x, PetscReal within, int side,
+                    WallPlace *place);
+/* On which side of wall k is x at time t? 0 for walls that have an inside. */
+int wall_side(const Walls *walls, PetscInt k, PetscReal t, const PetscReal *x);
+/* What the wall's matter that is at x at t0 moves by until t1, m. */
+void wall_motion(const Walls *walls, PetscInt k, PetscReal t0, PetscReal t1, const PetscReal *x,
+                 PetscReal increment[3]);
