@@ -224,7 +224,7 @@ static PetscReal transfer_of_nodes(const Model *m, PetscReal dt, const EnergySte
   if (m->scheme->inertia) sum = points_kinetic(m) + mass_product(m, mean, gain);
   if (!m->method->restores_grid) return sum;
   if (m->scheme->inertia) sum -= inertia_work(m, dt);
-  return sum + e->external + held - e->damped + points_work(m);
+  return sum + e->external + held - e->friction - e->damped + points_work(m);
 }
 
 /* What damping takes from the velocity of points beyond that of the nodes: mpm's points fade
@@ -255,7 +255,7 @@ PetscErrorCode EnergyOfNodes(Model *m, PetscReal dt, EnergyStep *e)
   const PetscReal damping = model_damping(m);
   const NodalFields *n = m->nodes;
   const PetscReal end = share_of_end(m);
-  PetscReal g0[3], g1[3], *before, *after, held = 0, impulse = 0, unbalanced = 0;
+  PetscReal g0[3], g1[3], *before, *after, held = 0, impulse = 0, unbalanced = 0, moving;
 
   PetscFunctionBeginUser;
   *e = (EnergyStep){0};
@@ -275,6 +275,8 @@ PetscErrorCode EnergyOfNodes(Model *m, PetscReal dt, EnergyStep *e)
     const NodalField du = {{n->du, n->du}, {1, 0}}, mean = {{n->v, n->v1}, {0.5, 0.5}};
     e->damped = damping * mass_product(m, du, mean);
   }
+  contact_work(m, &moving, &e->friction);
+  held += moving;
   e->boundary = held + impulse;
   e->transfer = impulse - unbalanced + transfer_of_nodes(m, dt, e, held);
   if (m->method->restores_grid && m->space->fade > 0) {
@@ -288,18 +290,20 @@ PetscErrorCode EnergyOfNodes(Model *m, PetscReal dt, EnergyStep *e)
 PetscErrorCode EnergyClose(Model *m, EnergyStep *e)
 {
   const OutsideTally *gone = &m->points->outside;
-  PetscReal local[4], sum[4];
+  PetscReal local[5], sum[5];
 
   PetscFunctionBeginUser;
   if (m->scheme->inertia) e->transfer -= points_kinetic(m) + gone->kinetic;
   /* of the step: what is gone counts apart */
   if (m->method->restores_grid) e->transfer -= points_work(m) + gone->work;
   local[0] = e->external, local[1] = e->boundary, local[2] = e->damped, local[3] = e->transfer;
-  PetscCall(MPIU_Allreduce(local, sum, 4, MPIU_REAL, MPI_SUM, m->comm));
+  local[4] = e->friction;
+  PetscCall(MPIU_Allreduce(local, sum, 5, MPIU_REAL, MPI_SUM, m->comm));
   m->external_work += sum[0];
   m->boundary_work += sum[1];
   m->damped_energy += sum[2];
   m->transfer_energy += sum[3];
+  m->friction_energy += sum[4];
   m->most_energy = PetscMax(m->most_energy, m->start_energy + m->external_work + m->boundary_work);
   PetscFunctionReturn(0);
 }
@@ -318,6 +322,7 @@ PetscErrorCode ModelEnergies(Model *m, Energies *e)
                   .boundary = m->boundary_work,
                   .damped = m->damped_energy,
                   .transfer = m->transfer_energy,
+                  .friction = m->friction_energy,
                   .outside = m->outside.energy,
                   .start = m->start_energy};
   PetscFunctionReturn(0);
