@@ -6,6 +6,8 @@
 
 #define WALL_NUMBERS ((PetscInt)(sizeof(WallState) / sizeof(PetscReal)))
 
+#define LEANS 0.1 /* a normal with such a share of an axis holds along it */
+
 #define CLOSED 1e-5 /* of a cell: gaps and slips that remain of contact */
 #define MOST_CHANGES 12
 
@@ -146,6 +148,18 @@ static PetscErrorCode Begin(void *data, const NodalScene *scene)
   PetscFunctionReturn(0);
 }
 
+/* What touches a wall at the start cannot leave through it, nor along it if it rubs. */
+static void hold(const void *data, const NodalScene *scene, unsigned char *held)
+{
+  const Contact *s = data;
+  (void)scene;
+  for (const ContactPoint *c = s->point; c < s->point + s->n; ++c)
+    for (PetscInt e = c->first; e < c->first + c->n && c->touches; ++e)
+      for (PetscInt d = 0; d < s->dim; ++d)
+        if (c->law.kind != CONTACT_FRICTIONLESS || PetscAbsReal(c->normal[d]) > LEANS)
+          held[s->node[e] * s->dim + d] = 1;
+}
+
 static PetscBool find_slots(void *data, const System *system)
 {
   Contact *s = data;
@@ -222,6 +236,7 @@ const NodalForce nodal_force_contact = {
   .apart = PETSC_TRUE,
   .create = Create,
   .begin = Begin,
+  .hold = hold,
   .find_slots = find_slots,
   .assemble = Assemble,
   .augment = Augment,
