@@ -99,22 +99,59 @@ PetscErrorCode ContactEnd(Model *m, PetscReal dt)
   PetscFunctionReturn(0);
 }
 
+/* Of the mean force in the step: on what the wall's matter moves by, and against what slides along it. */
+static void point_work(const Model *m, const ContactPoint *c, PetscReal *moving, PetscReal *sliding)
+{
+  const PetscReal end = m->scheme->middle ? 1 : 0.5;
+  PetscReal f[3], x[3], pressure = 0;
+  contact_force(c, f);
+  contact_place(m->contact, c, m->nodes->du, 1, x);
+  *moving = *sliding = 0;
+  for (int d = 0; d < 3; ++d) {
+    f[d] = (1 - end) * c->start[d] + end * f[d];
+    *moving += f[d] * c->swept[d];
+    pressure += f[d] * c->normal[d];
+  }
+  for (int d = 0; d < 3; ++d) *sliding -= (f[d] - pressure * c->normal[d]) * (x[d] - c->x[d] - c->swept[d]);
+}
+
 void contact_work(const Model *m, PetscReal *moving, PetscReal *sliding)
 {
   const Contact *s = m->contact;
-  const PetscReal end = m->scheme->middle ? 1 : 0.5;
   *moving = *sliding = 0;
   for (PetscInt k = 0; s && k < s->n; ++k) {
-    const ContactPoint *c = s->point + k;
-    PetscReal f[3], x[3], pressure = 0;
-    contact_force(c, f);
-    for (int d = 0; d < 3; ++d) f[d] = (1 - end) * c->start[d] + end * f[d];
-    for (int d = 0; d < 3; ++d) *moving += f[d] * c->swept[d], pressure += f[d] * c->normal[d];
-    contact_place(s, c, m->nodes->du, 1, x);
-    PetscReal work = 0;
-    for (int d = 0; d < 3; ++d) work -= (f[d] - pressure * c->normal[d]) * (x[d] - c->x[d] - c->swept[d]);
-    *sliding += work;
+    PetscReal work[2];
+    point_work(m, s->point + k, &work[0], &work[1]);
+    *moving += work[0];
+    *sliding += work[1];
   }
+}
+
+/* What measures ask of each wall after the step. */
+static PetscErrorCode Survey(const Model *m)
+{
+  const Contact *s = m->contact;
+  const PetscInt n = m->c->n_walls;
+  PetscReal *sums, *deepest, moving, sliding;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc2(2 * n, &sums, n, &deepest));
+  for (const ContactPoint *c = s->point; c < s->point + s->n; ++c) {
+    point_work(m, c, &moving, &sliding);
+    sums[c->wall] += sliding;
+    if (c->state == CONTACT_OPEN) continue;
+    sums[n + c->wall] += c->section;
+    deepest[c->wall] = PetscMax(deepest[c->wall], -c->gap);
+  }
+  PetscCall(MPIU_Allreduce(MPI_IN_PLACE, sums, (PetscMPIInt)(2 * n), MPIU_REAL, MPI_SUM, m->comm));
+  PetscCall(MPIU_Allreduce(MPI_IN_PLACE, deepest, (PetscMPIInt)n, MPIU_REAL, MPI_MAX, m->comm));
+  for (PetscInt k = 0; k < n; ++k) {
+    s->wall[k].friction += sums[k];
+    s->wall[k].area = sums[n + k];
+    s->wall[k].deepest = deepest[k];
+  }
+  PetscCall(PetscFree2(sums, deepest));
+  PetscFunctionReturn(0);
 }
 
 /* sum += factor x */
@@ -161,5 +198,14 @@ PetscErrorCode ContactForces(Model *m, PetscReal dt)
     add(&wall->rate, 1, now + 3 * n + k);
   }
   PetscCall(PetscFree(now));
+  PetscCall(Survey(m));
   PetscFunctionReturn(0);
+}
+
+void contact_force_on(const Model *m, PetscInt p, PetscReal force[3])
+{
+  const PetscReal *kept = point_real(m->points, POINT_CONTACT, p);
+  force[0] = force[1] = force[2] = 0;
+  for (PetscInt k = 0; k < m->c->n_walls; ++k, kept += CONTACT_KEPT(m->dim))
+    for (PetscInt d = 0; d < m->dim; ++d) force[d] += kept[1 + d];
 }

@@ -188,6 +188,8 @@ PetscErrorCode ModelUnusedOptions(const Model *model, Diag *diag);
 
 /* Number of points over all ranks. */
 PetscErrorCode ModelCountPoints(const Model *model, PetscInt *n);
+/* Force of all walls on one point at the end of the last step, N. */
+void contact_force_on(const Model *model, PetscInt p, PetscReal force[3]);
 /* Stored energy of one point per undeformed volume, J/m3. */
 PetscReal model_point_energy(const Model *model, PetscInt p);
 /* Cauchy stress (Voigt) of one point, from its state. */

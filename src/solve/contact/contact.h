@@ -39,6 +39,7 @@ typedef struct {
   ContactSum rate;    /* what its forces at the end of the last step are in the rate of momentum */
   ContactSum mean;    /* over the last step: times dt it is all momentum that came from the wall */
   PetscReal friction; /* work of sliding along it since the start, J */
+  PetscReal area;     /* of the surface in contact after the last step, m2 */
   PetscReal deepest;  /* largest penetration after the last step, m */
 } WallState;
 
