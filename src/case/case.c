@@ -113,6 +113,7 @@ static PetscErrorCode MeasuresClear(Case *c)
     PetscCall(PetscFree(c->measures[i].kind));
     PetscCall(PetscFree(c->measures[i].word));
     PetscCall(PetscFree(c->measures[i].body));
+    PetscCall(PetscFree(c->measures[i].wall));
     PetscCall(ShapeClear(&c->measures[i].in));
   }
   PetscCall(PetscFree(c->measures));

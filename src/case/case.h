@@ -190,6 +190,7 @@ typedef struct {
   PetscReal tracer[3]; /* material position of the tracer at the start */
   char *body;          /* NULL: all */
   PetscInt boundary;   /* reaction: index into boundary[] of the case */
+  char *wall;          /* by its name */
   PetscBool has_at;
   PetscReal at;    /* x, m */
   PetscReal speed; /* run-out time: a slower front has come to rest, m/s */

@@ -19,6 +19,7 @@ const OutputField output_fields[] = {
   {"density", "kg/m3", "current density", 1, P},
   {"volume", "m3", "current volume (for unit thickness in plane strain, all round in axisymmetry)", 1, P},
   {"energy", "J/m3", "stored elastic energy per undeformed volume", 1, P},
+  {"contact_force", "N", "force of all walls on the point, at the end of the step", 3, P},
   {"id", "", "number of the point, the same through the whole run", 1, P},
   {"body", "", "index of the body in the case file", 1, P},
   {"material", "", "index of the material in the case file", 1, P},

@@ -121,10 +121,12 @@ PetscErrorCode ModelActivate(Model *m)
 {
   const AnalysisSpec *analysis = &m->c->analysis;
   unsigned char *occupied;
-  PetscBool fits, complete;
+  PetscBool fits = PETSC_FALSE, complete;
 
   PetscFunctionBeginUser;
   PetscCall(ModelInitialise(m));
+  const NodalScene scene = nodal_scene(m, m->time, m->nodes->du);
+  PetscCall(NodalForcesBegin(&m->forces, &scene));
   if (m->method->clouds) {
     PetscCall(ActivateClouds(m));
     PetscFunctionReturn(0);

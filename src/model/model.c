@@ -176,7 +176,7 @@ static PetscErrorCode CreateMaterials(Model *m, Diag *diag)
 
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc1(c->n_materials, &m->materials));
-  m->symmetric = PETSC_TRUE;
+  m->symmetric = !walls_rub(c);
   for (PetscInt i = 0; i < c->n_materials; ++i) {
     Material *material = &m->materials[i];
     PetscCall(MaterialResolve(c, i, diag, material));
@@ -212,6 +212,8 @@ static PetscErrorCode CreatePoints(Model *m, Outline *outline, Diag *diag)
   if (basis_find(c->basis.kind)->domains) m->points->components[POINT_DOMAIN] = m->dim;
   if (transfer_find(c->analysis.transfer)->slopes && !basis_find(c->basis.kind)->domains)
     m->points->components[POINT_SLOPE] = 2 * m->dim * m->dim;
+  if (c->n_walls) m->points->components[POINT_REACH] = 1;
+  m->points->components[POINT_CONTACT] = c->n_walls * CONTACT_KEPT(m->dim);
   for (PetscInt k = 0; k < c->n_measures; ++k)
     m->points->components[POINT_CARRIED] += measure_find(c->measures[k].kind)->events != NULL;
   PetscCall(PointsSeedOutlined(m->points, m->grid, c, seed, m->method->restores_grid, outline, diag));
@@ -329,6 +331,7 @@ static PetscErrorCode Build(Model *m, Diag *diag)
   PetscCall(CreateBodies(m, diag));
   PetscCall(DiagReduce(m->comm, diag, &errors));
   if (errors) PetscFunctionReturn(0);
+  PetscCall(WallsStart(m, diag));
   PetscCall(BoundaryCreate(m->grid, m->c, diag, &m->boundary));
   PetscCall(LoadsCreate(m->grid, m->c, m->points, diag, &m->loads));
   PetscCall(CreateTracers(m, diag));
@@ -382,6 +385,8 @@ PetscErrorCode ModelDestroy(Model **model)
   if (!m) PetscFunctionReturn(0);
   PetscCall(OptionsForget(m));
   PetscCall(NodalForcesDestroy(&m->forces));
+  PetscCall(ContactDestroy(&m->contact));
+  PetscCall(WallsDestroy(&m->walls));
   PetscCall(NewtonDestroy(&m->newton));
   PetscCall(SystemDestroy(&m->system));
   PetscCall(ModelDestroyFields(m));

@@ -5,6 +5,7 @@
 #include "base/phase.h"
 #include "method/method.h"
 #include "method/time/time_scheme.h"
+#include "solve/contact/contact.h"
 #include "solve/newton/newton.h"
 #include "solve/newton/step_control.h"
 
@@ -15,6 +16,7 @@ typedef struct {
   PetscReal external, boundary;
   /* lost by damping, and between points and grid, since the start, J (docs/theory.md) */
   PetscReal damped, transfer;
+  PetscReal friction; /* taken by sliding along walls, since the start, J */
   /* gone with points that left the grid, and in holding others at its boundary, since the start,
    * J */
   PetscReal outside;
@@ -96,6 +98,8 @@ typedef struct Model {
   Boundary *boundary;
   Loads *loads;
   NodalForces forces;
+  Walls *walls;     /* NULL: the case has none */
+  Contact *contact; /* likewise */
   Discretisation *space;
   NodalFields *nodes; /* those of space */
   const TimeScheme *scheme;
@@ -116,7 +120,7 @@ typedef struct Model {
   PetscBool symmetric;     /* are all tangents symmetric? */
   PetscReal courant_speed; /* largest sqrt(M / density), m/s */
   /* see Energies */
-  PetscReal external_work, boundary_work, damped_energy, transfer_energy, start_energy;
+  PetscReal external_work, boundary_work, damped_energy, transfer_energy, friction_energy, start_energy;
   /* that had come in, by the start, loads, gravity and prescribed motion, at any time, J */
   PetscReal most_energy;
   PetscReal least_energy; /* that is more than round-off, J */
@@ -184,6 +188,8 @@ PetscErrorCode ModelUnusedOptions(const Model *model, Diag *diag);
 
 /* Number of points over all ranks. */
 PetscErrorCode ModelCountPoints(const Model *model, PetscInt *n);
+/* Force of all walls on one point at the end of the last step, N. */
+void contact_force_on(const Model *model, PetscInt p, PetscReal force[3]);
 /* Stored energy of one point per undeformed volume, J/m3. */
 PetscReal model_point_energy(const Model *model, PetscInt p);
 /* Cauchy stress (Voigt) of one point, from its state. */

@@ -68,8 +68,8 @@ PetscErrorCode OutsideAdd(Model *model, StepReport *report);
 PetscErrorCode OutsideWarn(const Model *model, Diag *diag);
 
 /* This rank's share of the energies of a step that is being accepted, J. */
-typedef struct {
-  PetscReal external, boundary, damped, transfer;
+typedef struct EnergyStep {
+  PetscReal external, boundary, damped, transfer, friction;
 } EnergyStep;
 
 /* What a step changes although it is not accepted, besides v and a of the nodes. */
@@ -95,6 +95,25 @@ PetscErrorCode CommitStep(Model *model, PetscReal dt, EnergyStep *energy);
 PetscErrorCode ConvectStep(Model *model, PetscReal dt, EnergyStep *energy, StepReport *report);
 /* Collective. shortened: was it the caller who made the accepted step that short? */
 PetscErrorCode ChooseNextStep(Model *model, PetscBool shortened, const StepReport *report);
+
+/* contact.c. Collective. Walls of the case, and what of the material touches them at the start. */
+PetscErrorCode WallsStart(Model *model, Diag *diag);
+/* Does a wall of the case rub? Then tangents are not symmetric. */
+PetscBool walls_rub(const Case *c);
+/* Collective, in PrepareStep: what is in contact starts the step with the motion of its wall. */
+PetscErrorCode ContactHold(Model *model, PetscReal dt, PetscReal inertia);
+/* Collective. Likewise ends it, once v1 and a1 are known. */
+PetscErrorCode ContactEnd(Model *model, PetscReal dt, struct EnergyStep *energy);
+/* Work of walls on the material in a step, J: of their motion; lost in sliding along them; of closing the
+ * gap to them; half of that of the forces at the step's start. */
+typedef struct {
+  PetscReal moving, sliding, closing, start;
+} ContactWork;
+
+/* On this rank. */
+ContactWork contact_work(const Model *model);
+/* Collective, before the step is committed: mean forces of the step, and what is remembered. */
+PetscErrorCode ContactForces(Model *model, PetscReal dt);
 
 /* Collective. The nodes know the step's end (force, v1, a1), the points still stand at its
  * start. */

@@ -188,6 +188,7 @@ PetscErrorCode PrepareStep(Model *m, PetscReal dt, StepProblem *p)
   if (m->scheme->inertia) PetscCall(HoldConstraints(m, dt));
   if (m->scheme->inertia && m->method->hold) PetscCall(m->method->hold(m->space));
   else discretisation_impulses(m->space);
+  PetscCall(ContactHold(m, dt, inertia));
   set_history(m, dt, g);
   for (PetscInt i = 0; i < dofs; ++i) m->nodes->prescribed[i] *= solved;
   const NodalScene scene = nodal_scene(m, t, m->nodes->du);

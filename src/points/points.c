@@ -51,6 +51,8 @@ PetscErrorCode PointsCreate(PetscInt dim, PetscInt n_state, PetscInt n_force, Po
   new->components[POINT_OVERHANG] = 0;
   new->components[POINT_DOMAIN] = 0;
   new->components[POINT_SLOPE] = 0;
+  new->components[POINT_REACH] = 0;
+  new->components[POINT_CONTACT] = 0;
   new->components[POINT_CARRIED] = 0;
   *points = new;
   PetscFunctionReturn(0);

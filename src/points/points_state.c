@@ -26,6 +26,8 @@ static const struct {
   [POINT_OVERHANG] = {"overhang", "m"},
   [POINT_DOMAIN] = {"domain", "m"},
   [POINT_SLOPE] = {"slope", NULL},
+  [POINT_REACH] = {"reach", "m"},
+  [POINT_CONTACT] = {"contact", "N"},
   [POINT_CARRIED] = {"carried", "m"},
 };
 

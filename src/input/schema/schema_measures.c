@@ -15,14 +15,17 @@ static const SchemaEntry of_entries[] = {
   KEY("body", REFERENCE, NULL, "a name from `bodies`", .target = "bodies", AT(MeasureSpec, body)),
   KEY("boundary", BOUNDARY, NULL, "an entry of `boundary`: its name, or its index counted from 0",
       AT(MeasureSpec, boundary)),
+  KEY("wall", REFERENCE, NULL, "a name from `walls`", .target = "walls", AT(MeasureSpec, wall)),
   {.key = NULL},
 };
 static const struct {
   const char *key, *hint;
 } subjects[] = {[OF_BODY] = {"body", "write of: {body: name}"},
                 [OF_TRACER] = {"tracer", "write of: {tracer: [x, y]}"},
-                [OF_BOUNDARY] = {"boundary", "write of: {boundary: name or index}"}};
-static const SchemaGroup of_groups[] = {{GROUP_ONE, {"tracer", "body", "boundary", NULL}}, {GROUP_NONE, {NULL}}};
+                [OF_BOUNDARY] = {"boundary", "write of: {boundary: name or index}"},
+                [OF_WALL] = {"wall", "write of: {wall: name}"}};
+static const SchemaGroup of_groups[] = {{GROUP_ONE, {"tracer", "body", "boundary", "wall", NULL}},
+                                        {GROUP_NONE, {NULL}}};
 static PetscBool hide_in_of(const SchemaEntry *e, const void *source)
 {
   return strcmp(e->key, subjects[measure_number(source)->of].key) != 0;
@@ -159,7 +162,7 @@ static SchemaEntry measure_entry(PetscInt i)
       "only what lies in this shape; a point that its surface cuts counts in part: its domain, a square or cube of its "
       "volume, is sampled",
       .table = &schema_shape, AT(MeasureSpec, in), GIVEN(MeasureSpec, has_in)),
-    KEY("of", TABLE, NULL, "which tracer, body or boundary", .table = &of),
+    KEY("of", TABLE, NULL, "which tracer, body, boundary or wall", .table = &of),
     KEY("rate", TABLE, NULL, "how fast that changes, instead of it", .table = &rate, GIVEN(MeasureSpec, has_rate)),
     {.key = NULL},
   };

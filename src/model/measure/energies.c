@@ -56,8 +56,8 @@ static PetscErrorCode BalanceValue(Model *m, const MeasureSpec *s, PetscInt inde
   (void)s, (void)index;
   PetscFunctionBeginUser;
   PetscCall(ModelEnergies(m, &e));
-  const PetscReal terms[] = {e.kinetic, e.elastic,   e.dissipated, e.damped, e.transfer,
-                             e.outside, -e.external, -e.boundary,  -e.start};
+  const PetscReal terms[] = {e.kinetic,  e.elastic, e.dissipated, e.damped,    e.transfer,
+                             e.friction, e.outside, -e.external,  -e.boundary, -e.start};
   for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(terms); ++k) {
     sum += terms[k];
     largest = PetscMax(largest, PetscAbsReal(terms[k]));
@@ -75,10 +75,12 @@ static const MeasureNumber *const words[] = {
   WORD("damped", "taken by Rayleigh damping", .of = OF_MODEL, .kept = offsetof(Model, damped_energy)),
   WORD("transfer", "lost between points and grid, and at nodes that stop material", .of = OF_MODEL,
        .kept = offsetof(Model, transfer_energy)),
+  WORD("friction", "taken by sliding along walls", .of = OF_MODEL, .kept = offsetof(Model, friction_energy)),
   WORD("outside", "gone with points that left the grid: with those removed, and in stopping those kept on its boundary",
        .of = OF_MODEL, .kept = offsetof(Model, outside.energy)),
   WORD("balance",
-       "kinetic + elastic + dissipated + damped + transfer + outside - external, less its value at the start, over the "
+       "kinetic + elastic + dissipated + damped + transfer + friction + outside - external, less its value at the "
+       "start, over the "
        "largest of these (no unit): 0 if all is accounted for; numerical damping shows here",
        .unit = "", .of = OF_MODEL, .value = BalanceValue),
   NULL,

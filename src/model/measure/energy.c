@@ -180,6 +180,8 @@ static PetscReal inertia_work(const Model *m, PetscReal dt)
   return mass_product(m, du, a);
 }
 
+static PetscBool is_twin(const Model *m, PetscInt node) { return m->method->clouds && cloud_is_twin(m->grid, node); }
+
 /* Where clouds are new in every step, what balanced the forces at the end of the last one no longer
  * does in these: the work of what is out of balance, by the trapezoidal rule. `external`: of nodes
  * at the step's start. */
@@ -194,7 +196,7 @@ static PetscErrorCode OutOfBalance(const Model *m, const PetscReal *g, const Pet
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc3(dofs, &zero, dofs, &force, dofs, &history));
   for (PetscInt i = 0; i < m->grid->n_owned * m->dim; ++i)
-    if (n->touched[i / m->dim] && !cloud_is_twin(m->grid, i / m->dim))
+    if (n->touched[i / m->dim] && !is_twin(m, i / m->dim))
       history[i] = (m->scheme->inertia ? n->a[i] - n->echo[i] + damping * n->v[i] : 0) - g[i % m->dim];
   PetscCall(GridToGhosts(m->grid, m->dim, history));
   in.du = zero;
@@ -204,7 +206,7 @@ static PetscErrorCode OutOfBalance(const Model *m, const PetscReal *g, const Pet
   PetscCall(GridSumToOwners(m->grid, m->dim, force));
   *work = 0;
   for (PetscInt i = 0; i < m->grid->n_owned * m->dim; ++i) {
-    if (!cloud_is_twin(m->grid, i / m->dim)) *work += 0.5 * m->nodes->du[i] * (force[i] - external[i]);
+    if (!is_twin(m, i / m->dim)) *work += 0.5 * m->nodes->du[i] * (force[i] - external[i]);
     if (m->boundary->fixed[i]) *work -= 0.5 * m->nodes->prescribed[i] * m->nodes->held[i];
   }
   PetscCall(PetscFree3(zero, force, history));
@@ -224,7 +226,7 @@ static PetscReal transfer_of_nodes(const Model *m, PetscReal dt, const EnergySte
   if (m->scheme->inertia) sum = points_kinetic(m) + mass_product(m, mean, gain);
   if (!m->method->restores_grid) return sum;
   if (m->scheme->inertia) sum -= inertia_work(m, dt);
-  return sum + e->external + held - e->damped + points_work(m);
+  return sum + e->external + held - e->friction - e->damped + points_work(m);
 }
 
 /* What damping takes from the velocity of points beyond that of the nodes: mpm's points fade
@@ -255,6 +257,7 @@ PetscErrorCode EnergyOfNodes(Model *m, PetscReal dt, EnergyStep *e)
   const PetscReal damping = model_damping(m);
   const NodalFields *n = m->nodes;
   const PetscReal end = share_of_end(m);
+  const ContactWork contact = contact_work(m);
   PetscReal g0[3], g1[3], *before, *after, held = 0, impulse = 0, unbalanced = 0;
 
   PetscFunctionBeginUser;
@@ -269,14 +272,19 @@ PetscErrorCode EnergyOfNodes(Model *m, PetscReal dt, EnergyStep *e)
     held += ((1 - end) * n->held[i] + end * n->force[i]) * n->prescribed[i];
     impulse += impulse_work(m, i, dt);
   }
-  if (m->method->begin) PetscCall(OutOfBalance(m, g0, before, &unbalanced));
+  const PetscBool jumps = m->method->begin || (m->contact && !m->method->restores_grid);
+  if (jumps) PetscCall(OutOfBalance(m, g0, before, &unbalanced));
+  if (jumps) unbalanced -= contact.start;
   PetscCall(PetscFree2(before, after));
   if (damping > 0) {
     const NodalField du = {{n->du, n->du}, {1, 0}}, mean = {{n->v, n->v1}, {0.5, 0.5}};
     e->damped = damping * mass_product(m, du, mean);
   }
+  e->friction = contact.sliding;
+  held += contact.moving;
   e->boundary = held + impulse;
   e->transfer = impulse - unbalanced + transfer_of_nodes(m, dt, e, held);
+  if (!m->method->restores_grid) e->transfer += contact.closing;
   if (m->method->restores_grid && m->space->fade > 0) {
     const PetscReal more = faded(m);
     e->damped += more;
@@ -288,18 +296,20 @@ PetscErrorCode EnergyOfNodes(Model *m, PetscReal dt, EnergyStep *e)
 PetscErrorCode EnergyClose(Model *m, EnergyStep *e)
 {
   const OutsideTally *gone = &m->points->outside;
-  PetscReal local[4], sum[4];
+  PetscReal local[5], sum[5];
 
   PetscFunctionBeginUser;
   if (m->scheme->inertia) e->transfer -= points_kinetic(m) + gone->kinetic;
   /* of the step: what is gone counts apart */
   if (m->method->restores_grid) e->transfer -= points_work(m) + gone->work;
   local[0] = e->external, local[1] = e->boundary, local[2] = e->damped, local[3] = e->transfer;
-  PetscCall(MPIU_Allreduce(local, sum, 4, MPIU_REAL, MPI_SUM, m->comm));
+  local[4] = e->friction;
+  PetscCall(MPIU_Allreduce(local, sum, 5, MPIU_REAL, MPI_SUM, m->comm));
   m->external_work += sum[0];
   m->boundary_work += sum[1];
   m->damped_energy += sum[2];
   m->transfer_energy += sum[3];
+  m->friction_energy += sum[4];
   m->most_energy = PetscMax(m->most_energy, m->start_energy + m->external_work + m->boundary_work);
   PetscFunctionReturn(0);
 }
@@ -318,6 +328,7 @@ PetscErrorCode ModelEnergies(Model *m, Energies *e)
                   .boundary = m->boundary_work,
                   .damped = m->damped_energy,
                   .transfer = m->transfer_energy,
+                  .friction = m->friction_energy,
                   .outside = m->outside.energy,
                   .start = m->start_energy};
   PetscFunctionReturn(0);

@@ -17,9 +17,9 @@ typedef enum {
   MEASURE_AVALANCHES,
   MEASURE_CONTAINER
 } MeasureArgument;
-/* What `of` names: a body, if not all; a tracer; an entry of the boundary; nothing, since the
+/* What `of` names: a body, if not all; a tracer; an entry of the boundary; a wall; nothing, since the
  * number is of the whole model. */
-typedef enum { OF_BODY, OF_TRACER, OF_BOUNDARY, OF_MODEL } MeasureSubject;
+typedef enum { OF_BODY, OF_TRACER, OF_BOUNDARY, OF_WALL, OF_MODEL } MeasureSubject;
 
 /* A number, and one of three ways to it. */
 typedef struct {

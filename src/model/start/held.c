@@ -33,6 +33,7 @@ static PetscErrorCode Touches(const Model *m, PetscInt *joined, PetscInt *held)
   PetscCall(PetscMalloc1(nodes, &touched));
   PetscCall(PetscCalloc1(nodes, &before));
   PetscCall(PetscCalloc1(nodes * m->dim, &holds));
+  PetscCall(NodalForcesBegin(&m->forces, &scene));
   for (PetscInt k = 0; k < nodes * m->dim; ++k) holds[k] |= boundary_holds(m->boundary, k / m->dim, k % m->dim);
   nodal_forces_hold(&m->forces, &scene, holds);
   for (PetscInt b = 0; b < n; ++b) {

@@ -14,6 +14,7 @@ static const struct {
   {"external_work", "J", offsetof(Model, external_work)},
   {"boundary_work", "J", offsetof(Model, boundary_work)},
   {"damped_energy", "J", offsetof(Model, damped_energy)},
+  {"friction_energy", "J", offsetof(Model, friction_energy)},
   {"transfer_energy", "J", offsetof(Model, transfer_energy)},
   {"start_energy", "J", offsetof(Model, start_energy)},
 };

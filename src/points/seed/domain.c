@@ -19,3 +19,26 @@ void seed_domain(CellType type, const PetscReal *x, const PetscReal *xi, PetscIn
     l[d] = side ? PetscSqrtReal(square) : 0.5 * PetscPowReal(section, 1 / (PetscReal)dim);
   }
 }
+
+/* From the line or plane of a side: through its first nodes. */
+static PetscReal distance_to_side(const Cell *cell, PetscInt side, const PetscReal *x, const PetscReal *position)
+{
+  const PetscInt dim = cell->dim;
+  const PetscReal *a = x + cell->face[side][0] * dim, *b = x + cell->face[side][1] * dim;
+  const PetscReal *c = x + cell->face[side][dim - 1] * dim;
+  PetscReal e[3] = {0, 0, 0}, f[3] = {0, 0, 1}, r[3] = {0, 0, 0}, normal[3], along = 0, square = 0;
+  for (PetscInt d = 0; d < dim; ++d) e[d] = b[d] - a[d], r[d] = position[d] - a[d];
+  for (PetscInt d = 0; d < dim && dim == 3; ++d) f[d] = c[d] - a[d];
+  for (int d = 0; d < 3; ++d) normal[d] = e[(d + 1) % 3] * f[(d + 2) % 3] - e[(d + 2) % 3] * f[(d + 1) % 3];
+  for (int d = 0; d < 3; ++d) along += normal[d] * r[d], square += normal[d] * normal[d];
+  return PetscAbsReal(along) / PetscSqrtReal(square);
+}
+
+PetscReal seed_reach(CellType type, const PetscReal *x, const PetscReal *position, PetscReal section)
+{
+  const Cell *cell = cells + type;
+  PetscReal reach = 0.5 * PetscPowReal(section, 1 / (PetscReal)cell->dim);
+  for (PetscInt side = 0; side < cell->faces; ++side)
+    reach = PetscMin(reach, distance_to_side(cell, side, x, position));
+  return reach;
+}

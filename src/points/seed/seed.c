@@ -200,6 +200,8 @@ static PetscErrorCode SeedPoint(const Seeding *s, Points *points, PetscInt cell,
   body_velocity(s->body, dim, position, point_real(points, POINT_V, p));
   if (s->domains)
     seed_domain(grid_cell_type(s->source, cell), x, xi, rule->side, section, point_real(points, POINT_DOMAIN, p));
+  if (points->components[POINT_REACH])
+    *point_real(points, POINT_REACH, p) = seed_reach(grid_cell_type(s->source, cell), x, position, section);
   if (points->components[POINT_SLOPE]) seed_slope(s->body, dim, point_real(points, POINT_SLOPE, p));
   if (seed->n_state) PetscCall(PetscArraycpy(point_real(points, POINT_STATE, p), seed->initial, seed->n_state));
   points->id[p] = s->first_id + (PetscInt64)s->source->global_cell[cell] * s->rule.n + q;

@@ -35,6 +35,10 @@ PetscReal seed_cell_volume(const Seeding *s, PetscInt cell);
 void seed_domain(CellType type, const PetscReal *x, const PetscReal *xi, PetscInt side, PetscReal section,
                  PetscReal *l);
 
+/* Distance of a point at `position` from the nearest side of its cell, with nodes at x; at most half the
+ * side of a square or cube of its part of the section, or of the volume in space. */
+PetscReal seed_reach(CellType type, const PetscReal *x, const PetscReal *position, PetscReal section);
+
 /* Collective. After the cells were chosen: errors for a body without a cell, warnings where whole
  * cells represent the shape badly, or have a single point that leaves them soft. */
 PetscErrorCode SeedCheckVolume(const Seeding *s);

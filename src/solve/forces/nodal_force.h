@@ -3,6 +3,7 @@
  * that a case asks for, and Newton's method walks it. */
 #pragma once
 #include "boundary/loads.h"
+#include "material/law.h"
 #include "solve/forces/constraints.h"
 
 /* Body force per mass at the undeformed position X (dim) and time t, m/s2, besides gravity: a
@@ -24,6 +25,11 @@ typedef struct {
   /* n_nodes x dim: increments since the start of the step, m */
   const PetscReal *du;
   PetscReal t; /* with these increments, s */
+  /* increments of the whole step over du, and its end, s: of schemes that balance in the middle */
+  PetscReal whole, end;
+  PetscBool first; /* is it the first step of all? */
+  const Material *materials;
+  struct Contact *contact; /* NULL: there are no walls */
   const Loads *loads;
   Constraints *constraints; /* NULL: prescribed motion is that of the nodes themselves */
   BodyForce body_force;     /* NULL: none */
@@ -42,10 +48,13 @@ typedef struct {
   const char *name, *help;
   /* the same whatever du is: gathered once in a step, and its norm scales the residual */
   PetscBool dead;
+  PetscBool apart; /* their work has an account of its own (model/contact.c) */
   /* Collective. *data stays NULL where the case asks for nothing of the kind; the user's mistakes
    * go to diag (NULL: sought before). */
   PetscErrorCode (*create)(const NodalScene *scene, Diag *diag, void **data);
   PetscErrorCode (*destroy)(void **data); /* NULL: data belongs to others */
+  /* Points and their nodes are known: what a step starts with, before find_slots. */
+  PetscErrorCode (*begin)(void *data, const NodalScene *scene);
   /* Mark the dofs (n_nodes x dim) that it holds in place as well as a boundary could. */
   void (*hold)(const void *data, const NodalScene *scene, unsigned char *held);
   /* Append the groups of nodes that it couples beyond those of the support, by NodeGroupsAdd: the
@@ -56,6 +65,9 @@ typedef struct {
   PetscBool (*find_slots)(void *data, const System *system);
   /* Collective. Add forces and, through nodal_add_tangent, what they change by with du. */
   PetscErrorCode (*assemble)(void *data, const NodalScene *scene, const NodalOutput *out);
+  /* Collective. Newton's method has converged, for the change-th time: forces that are found by
+   * multipliers bring them nearer to what they shall be, and say whether it must go on. */
+  PetscErrorCode (*augment)(void *data, const NodalScene *scene, PetscInt change, PetscBool *again);
   /* Collective. The step is accepted: friction remembers; points have not moved yet. */
   PetscErrorCode (*commit)(void *data, const NodalScene *scene);
   /* Collective. What outlives a step, in tables of its own for checkpoints and new partitions, and
@@ -103,7 +115,11 @@ const Constraints *nodal_forces_constraints(const NodalForces *forces);
 PetscBool nodal_forces_are_dead(const NodalForces *forces);
 /* Collective. All that are not dead, in every iteration. */
 PetscErrorCode NodalForcesAssemble(const NodalForces *forces, const NodalScene *scene, const NodalOutput *out);
-/* Collective. Dead forces, and all others but those of constraints if so asked, summed over ranks
+PetscErrorCode NodalForcesBegin(const NodalForces *forces, const NodalScene *scene);
+/* Collective. *again: does any of them want Newton's method to go on? */
+PetscErrorCode NodalForcesAugment(const NodalForces *forces, const NodalScene *scene, PetscInt change,
+                                  PetscBool *again);
+/* Collective. Dead forces, and all others but those of constraints and walls if so asked, summed over ranks
  * with the sign of loads: n_nodes x dim, zero where others own the node. */
 PetscErrorCode NodalForcesExternal(const NodalForces *forces, const NodalScene *scene, PetscBool all,
                                    PetscReal *external);

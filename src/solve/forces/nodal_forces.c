@@ -84,13 +84,34 @@ PetscErrorCode NodalForcesExternal(const NodalForces *forces, const NodalScene *
   PetscCall(PetscArrayzero(external, dofs));
   for (PetscInt k = 0; k < forces->n; ++k) {
     const NodalForce *kind = forces->one[k].kind;
-    if (!kind->dead && (!all || kind->constraints)) continue;
+    if (!kind->dead && (!all || kind->constraints || kind->apart)) continue;
     PetscCall(kind->assemble(forces->one[k].data, scene, &out));
     any = PETSC_TRUE;
   }
   if (!any) PetscFunctionReturn(0);
   PetscCall(GridSumToOwners(scene->grid, scene->grid->dim, external));
   for (PetscInt i = 0; i < dofs; ++i) external[i] = i < owned ? -external[i] : 0;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode NodalForcesBegin(const NodalForces *forces, const NodalScene *scene)
+{
+  PetscFunctionBeginUser;
+  for (PetscInt k = 0; k < forces->n; ++k)
+    if (forces->one[k].kind->begin) PetscCall(forces->one[k].kind->begin(forces->one[k].data, scene));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode NodalForcesAugment(const NodalForces *forces, const NodalScene *scene, PetscInt change, PetscBool *again)
+{
+  PetscFunctionBeginUser;
+  *again = PETSC_FALSE;
+  for (PetscInt k = 0; k < forces->n; ++k) {
+    PetscBool wants = PETSC_FALSE;
+    if (!forces->one[k].kind->augment) continue;
+    PetscCall(forces->one[k].kind->augment(forces->one[k].data, scene, change, &wants));
+    *again = *again || wants;
+  }
   PetscFunctionReturn(0);
 }
 

@@ -74,6 +74,25 @@ static PetscBool is_stuck(const PetscReal *residual, PetscInt k)
   return lately > STUCK_GAIN * before;
 }
 
+/* Converged with the multipliers that there are. Others make another residual at the same place. */
+static PetscErrorCode AugmentForces(Newton *n, SNESConvergedReason *reason)
+{
+  PetscBool again;
+  Vec f;
+
+  PetscFunctionBeginUser;
+  PetscCall(NodalForcesAugment(n->problem->forces, &n->problem->scene, n->changes, &again));
+  if (!again) PetscFunctionReturn(0);
+  ++n->changes;
+  *reason = SNES_CONVERGED_ITERATING;
+  PetscCall(NewtonAssemble(n, PETSC_TRUE));
+  PetscCall(SNESGetFunction(n->snes, &f, NULL, NULL));
+  PetscCall(NewtonGetResidual(n, f));
+  PetscCall(VecNorm(f, NORM_2, &n->last));
+  n->before = 0;
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode NewtonConverged(SNES snes, PetscInt it, PetscReal xnorm, PetscReal snorm, PetscReal fnorm,
                                SNESConvergedReason *reason, void *context)
 {
@@ -102,6 +121,7 @@ PetscErrorCode NewtonConverged(SNES snes, PetscInt it, PetscReal xnorm, PetscRea
   else if (is_stuck(r->residual, k)) *reason = SNES_DIVERGED_LOCAL_MIN;
   n->before = it > 0 ? n->last : 0;
   n->last = fnorm;
+  if (*reason > 0) PetscCall(AugmentForces(n, reason));
   PetscFunctionReturn(0);
 }
 

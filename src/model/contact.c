@@ -1,0 +1,228 @@
+/* Walls over the life of a model: what touches them, and what they do to motion, momentum and
+ * energy. */
+#include "model/model_private.h"
+
+#define SUM_NUMBERS ((PetscInt)(sizeof(ContactSum) / sizeof(PetscReal)))
+
+#define THROUGH 1e-9 /* of a cell: material that reaches deeper into a wall at the start is a mistake */
+
+PetscBool walls_rub(const Case *c)
+{
+  for (PetscInt k = 0; k < c->n_walls; ++k)
+    if (c->walls[k].contact == CONTACT_FRICTION || c->walls[k].contact == CONTACT_STICK) return PETSC_TRUE;
+  return PETSC_FALSE;
+}
+
+/* What stands nearer to a wall than its cell's side does touches it: the body was made to fit. A point
+ * inside the wall is a mistake. *deepest: gap of the worst. */
+static void fit_to_wall(Model *m, PetscInt k, PetscReal *deepest, PetscReal worst[3])
+{
+  WallPlace place;
+  for (PetscInt p = 0; p < m->points->n; ++p) {
+    const PetscReal *x = point_real(m->points, POINT_X, p);
+    PetscReal *reach = point_real(m->points, POINT_REACH, p);
+    const int side = wall_side(m->walls, k, 0, x);
+    if (!wall_near(m->walls, k, 0, x, *reach, side, &place)) continue;
+    if (place.gap > THROUGH * m->grid->smallest) *reach = PetscMin(*reach, place.gap);
+    if (place.gap >= *deepest) continue;
+    *deepest = place.gap;
+    for (PetscInt d = 0; d < m->dim; ++d) worst[d] = x[d];
+  }
+}
+
+PetscErrorCode WallsStart(Model *m, Diag *diag)
+{
+  PetscFunctionBeginUser;
+  if (!m->c->n_walls) PetscFunctionReturn(0);
+  PetscCall(WallsCreate(m->c, diag, &m->walls));
+  PetscCall(ContactCreate(m->c, m->walls, &m->contact));
+  for (PetscInt k = 0; k < m->c->n_walls; ++k) {
+    struct {
+      double gap;
+      int rank;
+    } local, all;
+    PetscReal deepest = 0, x[3] = {0, 0, 0};
+    PetscMPIInt rank;
+    char path[64];
+    fit_to_wall(m, k, &deepest, x);
+    PetscCallMPI(MPI_Comm_rank(m->comm, &rank));
+    local.gap = (double)deepest, local.rank = rank;
+    PetscCallMPI(MPI_Allreduce(&local, &all, 1, MPI_DOUBLE_INT, MPI_MINLOC, m->comm));
+    if (all.gap >= 0) continue;
+    PetscCallMPI(MPI_Bcast(x, 3, MPIU_REAL, all.rank, m->comm));
+    PetscCall(PetscSNPrintf(path, sizeof path, "walls[%d]", (int)k));
+    diag_error(diag, path,
+               "wall '%s' goes through a body at the start: the point at (%g, %g, %g) m is %.3g m inside it",
+               m->c->walls[k].name, (double)x[0], (double)x[1], (double)x[2], -all.gap);
+  }
+  PetscFunctionReturn(0);
+}
+
+static ContactMotion motion_of(const Model *m, PetscReal *motion, PetscReal *velocity, PetscReal dt, PetscBool start)
+{
+  return (ContactMotion){.grid = m->grid,
+                         .mass = m->nodes->mass,
+                         .fixed = m->nodes->fixed,
+                         .motion = motion,
+                         .velocity = velocity,
+                         .rate = motion == velocity ? 1 / dt : 0,
+                         .wall = 1 / dt,
+                         .pulls = !start,
+                         .start = start};
+}
+
+/* A scheme that balances forces in the middle of the step remembers none, and lets nothing ring. */
+static PetscBool holds(const Model *m) { return m->scheme->inertia && !m->scheme->middle; }
+
+/* A point that was stopped by a wall rings about it for ever in Newmark's formulas, as a prescribed
+ * node would. */
+PetscErrorCode ContactHold(Model *m, PetscReal dt, PetscReal inertia)
+{
+  PetscFunctionBeginUser;
+  if (!m->contact) PetscFunctionReturn(0);
+  contact_prepare(m->contact, m->time, dt, inertia);
+  if (!holds(m)) PetscFunctionReturn(0);
+  PetscReal *const v = m->nodes->v, *const a = m->nodes->a;
+  const ContactMotion first = motion_of(m, a, v, dt, PETSC_TRUE), second = motion_of(m, v, v, dt, PETSC_TRUE);
+  PetscCall(ContactProject(m->contact, &first, m->contact->impulse + m->c->n_walls));
+  PetscCall(ContactProject(m->contact, &second, m->contact->impulse));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ContactEnd(Model *m, PetscReal dt, EnergyStep *energy)
+{
+  Contact *s = m->contact;
+
+  PetscFunctionBeginUser;
+  if (!s) PetscFunctionReturn(0);
+  PetscCall(PetscArrayzero(s->late, m->c->n_walls));
+  if (!holds(m)) PetscFunctionReturn(0);
+  PetscReal *const v = m->nodes->v1, *const a = m->nodes->a1;
+  const ContactMotion first = motion_of(m, a, v, dt, PETSC_FALSE), second = motion_of(m, v, v, dt, PETSC_FALSE);
+  PetscCall(ContactProject(s, &first, s->late));
+  PetscCall(ContactProject(s, &second, s->impulse));
+  for (PetscInt k = 0; k < m->c->n_walls; ++k) {
+    energy->friction += s->impulse[k].sliding;
+    energy->transfer -= s->impulse[k].sliding;
+  }
+  PetscFunctionReturn(0);
+}
+
+/* Of the mean force in the step. */
+static ContactWork point_work(const Model *m, const ContactPoint *c)
+{
+  const PetscReal end = m->scheme->middle ? 1 : 0.5;
+  PetscReal f[3], x[3], pressure = 0, closing = 0;
+  ContactWork work = {0};
+  contact_force(c, f);
+  contact_place(m->contact, c, m->nodes->du, 1, x);
+  for (int d = 0; d < 3; ++d) {
+    f[d] = (1 - end) * c->start[d] + end * f[d];
+    pressure += f[d] * c->normal[d];
+    closing += (x[d] - c->x[d] - c->swept[d]) * c->normal[d];
+  }
+  for (int d = 0; d < 3; ++d) {
+    work.start += 0.5 * c->start[d] * (x[d] - c->x[d]);
+    work.moving += f[d] * c->swept[d];
+    work.sliding -= (f[d] - pressure * c->normal[d]) * (x[d] - c->x[d] - c->swept[d]);
+  }
+  work.closing = pressure * closing;
+  return work;
+}
+
+ContactWork contact_work(const Model *m)
+{
+  const Contact *s = m->contact;
+  ContactWork sum = {0};
+  for (PetscInt k = 0; s && k < s->n; ++k) {
+    const ContactWork work = point_work(m, s->point + k);
+    sum.start += work.start;
+    sum.moving += work.moving;
+    sum.sliding += work.sliding;
+    sum.closing += work.closing;
+  }
+  return sum;
+}
+
+/* What measures ask of each wall after the step. */
+static PetscErrorCode Survey(const Model *m)
+{
+  const Contact *s = m->contact;
+  const PetscInt n = m->c->n_walls;
+  PetscReal *sums, *deepest;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc2(2 * n, &sums, n, &deepest));
+  for (const ContactPoint *c = s->point; c < s->point + s->n; ++c) {
+    sums[c->wall] += point_work(m, c).sliding;
+    if (c->state == CONTACT_OPEN) continue;
+    sums[n + c->wall] += c->section;
+    deepest[c->wall] = PetscMax(deepest[c->wall], -c->gap);
+  }
+  PetscCall(MPIU_Allreduce(MPI_IN_PLACE, sums, (PetscMPIInt)(2 * n), MPIU_REAL, MPI_SUM, m->comm));
+  PetscCall(MPIU_Allreduce(MPI_IN_PLACE, deepest, (PetscMPIInt)n, MPIU_REAL, MPI_MAX, m->comm));
+  for (PetscInt k = 0; k < n; ++k) {
+    s->wall[k].friction += sums[k];
+    s->wall[k].area = sums[n + k];
+    s->wall[k].deepest = deepest[k];
+  }
+  PetscCall(PetscFree2(sums, deepest));
+  PetscFunctionReturn(0);
+}
+
+/* sum += factor x */
+static void add(ContactSum *sum, PetscReal factor, const ContactSum *x)
+{
+  for (int d = 0; d < 3; ++d) {
+    sum->force[d] += factor * x->force[d];
+    sum->torque[d] += factor * x->torque[d];
+  }
+}
+
+/* As reactions of the boundary (accept.c): over the step the scheme weighs the forces of both ends,
+ * and impulses count besides. */
+PetscErrorCode ContactForces(Model *m, PetscReal dt)
+{
+  const TimeWeights w = m->scheme->weights(&m->c->analysis, dt);
+  const PetscInt n = m->c->n_walls;
+  Contact *s = m->contact;
+  ContactSum *now;
+
+  PetscFunctionBeginUser;
+  if (!s) PetscFunctionReturn(0);
+  PetscCall(PetscCalloc1(4 * n, &now)); /* forces at the end, impulses, forces lost at the start and at the end */
+  for (PetscInt k = 0; k < s->n; ++k) {
+    PetscReal f[3];
+    contact_force(s->point + k, f);
+    contact_add(s->point + k, m->dim, f, now + s->point[k].wall);
+  }
+  PetscCall(PetscArraycpy(now + n, s->impulse, 2 * n));
+  PetscCall(PetscArraycpy(now + 3 * n, s->late, n));
+  PetscCall(MPIU_Allreduce(MPI_IN_PLACE, now, (PetscMPIInt)(4 * n * SUM_NUMBERS), MPIU_REAL, MPI_SUM, m->comm));
+  for (PetscInt k = 0; k < n; ++k) {
+    WallState *wall = s->wall + k;
+    ContactSum before = wall->rate;
+    wall->mean = wall->rate = (ContactSum){0};
+    add(&before, 1, now + 2 * n + k);
+    add(&wall->rate, 1 / (1 - w.lag), now + k);
+    add(&wall->rate, -w.lag / (1 - w.lag), &before);
+    wall->friction += now[n + k].sliding;
+    if (m->scheme->inertia) {
+      add(&wall->mean, 1 - w.mean, &before);
+      add(&wall->mean, w.mean, &wall->rate);
+      add(&wall->mean, 1 / dt, now + n + k);
+    } else add(&wall->mean, 1, now + k);
+    add(&wall->rate, 1, now + 3 * n + k);
+  }
+  PetscCall(PetscFree(now));
+  PetscCall(Survey(m));
+  PetscFunctionReturn(0);
+}
+
+void contact_force_on(const Model *m, PetscInt p, PetscReal force[3])
+{
+  const PetscReal *kept = point_real(m->points, POINT_CONTACT, p);
+  force[0] = force[1] = force[2] = 0;
+  for (PetscInt k = 0; k < m->c->n_walls; ++k, kept += CONTACT_KEPT(m->dim))
+    for (PetscInt d = 0; d < m->dim; ++d) force[d] += kept[1 + d];
+}

@@ -1,0 +1,249 @@
+#include "solve/contact/contact.h"
+
+/* Penalty of a contact point, over the stiffness and inertia that a cell opposes to it. Penetration
+ * falls by this factor with every change of the multipliers; larger ones make linear systems harder. */
+#define STIFFER 20
+
+#define WALL_NUMBERS ((PetscInt)(sizeof(WallState) / sizeof(PetscReal)))
+
+#define LEANS 0.1 /* a normal with such a share of an axis holds along it */
+
+#define CLOSED 1e-5 /* of a cell: gaps and slips that remain of contact */
+#define MOST_CHANGES 12
+
+PetscErrorCode ContactCreate(const Case *c, const Walls *walls, Contact **contact)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscNew(contact));
+  (*contact)->walls = walls;
+  (*contact)->dim = c->kinematics->dim;
+  (*contact)->n_walls = c->n_walls;
+  PetscCall(PetscCalloc1(c->n_walls, &(*contact)->wall));
+  PetscCall(PetscCalloc2(2 * c->n_walls, &(*contact)->impulse, c->n_walls, &(*contact)->late));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ContactDestroy(Contact **contact)
+{
+  Contact *s = *contact;
+
+  PetscFunctionBeginUser;
+  if (!s) PetscFunctionReturn(0);
+  PetscCall(PetscFree(s->point));
+  PetscCall(PetscFree(s->node));
+  PetscCall(PetscFree(s->N));
+  PetscCall(PetscFree(s->slot));
+  PetscCall(PetscFree(s->wall));
+  PetscCall(PetscFree2(s->impulse, s->late));
+  PetscCall(PetscFree(*contact));
+  PetscFunctionReturn(0);
+}
+
+/* Those of the last step; what had none and touches the wall gets one so small that it counts for
+ * nothing: it is in contact from the first iteration on. */
+static void first_multiplier(const Contact *s, ContactPoint *c)
+{
+  c->multiplier = (ContactForce){0};
+  for (int d = 0; d < 3; ++d) c->multiplier.pressure += c->last[d] * c->normal[d];
+  for (int d = 0; d < 3; ++d) c->multiplier.shear[d] = c->last[d] - c->multiplier.pressure * c->normal[d];
+  if (c->touches && c->before == CONTACT_OPEN) c->multiplier.pressure = 0.1 * CLOSED * s->length * c->law.penalty;
+}
+
+void contact_prepare(Contact *s, PetscReal t, PetscReal dt, PetscReal inertia)
+{
+  for (ContactPoint *c = s->point; c < s->point + s->n; ++c) {
+    const PetscReal h = s->length;
+    c->law.penalty = STIFFER * c->section * (c->modulus / h + inertia * c->density * h);
+    wall_motion(s->walls, c->wall, t, t + dt, c->x, c->swept);
+    first_multiplier(s, c);
+  }
+}
+
+void contact_place(const Contact *s, const ContactPoint *c, const PetscReal *du, PetscReal whole, PetscReal x[3])
+{
+  for (int d = 0; d < 3; ++d) x[d] = c->x[d];
+  for (PetscInt I = 0; I < c->n; ++I)
+    for (PetscInt d = 0; d < s->dim; ++d) x[d] += whole * s->N[c->first + I] * du[s->node[c->first + I] * s->dim + d];
+}
+
+/* The law at the present increments; PETSC_FALSE where there is no contact. */
+static PetscBool meets(const Contact *s, ContactPoint *c, const NodalScene *scene, PetscReal *K)
+{
+  PetscReal x[3];
+  WallPlace place;
+  contact_place(s, c, scene->du, scene->whole, x);
+  c->state = CONTACT_OPEN;
+  c->now = (ContactForce){0};
+  c->gap = PETSC_MAX_REAL;
+  if (!wall_near(s->walls, c->wall, scene->end, x, 2 * s->near, c->side, &place)) return PETSC_FALSE;
+  for (int d = 0; d < 3; ++d) c->slip[d] = x[d] - c->x[d] - c->swept[d], c->normal[d] = place.normal[d];
+  c->gap = place.gap;
+  c->state = contact_law(&c->law, &place, c->slip, &c->multiplier, &c->now, K);
+  return c->state != CONTACT_OPEN;
+}
+
+void contact_force(const ContactPoint *c, PetscReal f[3])
+{
+  for (int d = 0; d < 3; ++d) f[d] = c->now.pressure * c->normal[d] + c->now.shear[d];
+}
+
+static void add_tangent(const Contact *s, const ContactPoint *c, const NodalScene *scene, const PetscReal *K,
+                        const NodalOutput *out)
+{
+  const PetscInt dim = s->dim;
+  for (PetscInt I = 0; I < c->n; ++I)
+    for (PetscInt J = 0; J < c->n; ++J) {
+      const PetscReal weight = scene->whole * s->N[c->first + I] * s->N[c->first + J];
+      const PetscInt slot = s->slot[c->slot + I * c->n + J], row = s->node[c->first + I] * dim,
+                     column = s->node[c->first + J] * dim;
+      for (PetscInt i = 0; i < dim; ++i)
+        for (PetscInt j = 0; j < dim; ++j)
+          nodal_add_tangent(out, dim, slot, row + i, column + j, weight * K[3 * i + j]);
+    }
+}
+
+static PetscErrorCode Assemble(void *data, const NodalScene *scene, const NodalOutput *out)
+{
+  const Contact *s = data;
+  PetscReal K[9], f[3];
+
+  PetscFunctionBeginUser;
+  for (ContactPoint *c = s->point; c < s->point + s->n; ++c) {
+    if (!meets(s, c, scene, out->system ? K : NULL)) continue;
+    contact_force(c, f);
+    for (PetscInt I = 0; I < c->n; ++I)
+      for (PetscInt d = 0; d < s->dim; ++d) out->force[s->node[c->first + I] * s->dim + d] -= s->N[c->first + I] * f[d];
+    if (out->system) add_tangent(s, c, scene, K, out);
+  }
+  PetscFunctionReturn(0);
+}
+
+/* Multipliers become the forces that there are, and the balance is sought again, unless gaps and
+ * slips of what is in contact have all but vanished. */
+static PetscErrorCode Augment(void *data, const NodalScene *scene, PetscInt change, PetscBool *again)
+{
+  Contact *s = data;
+  PetscReal worst = 0, of_all;
+
+  PetscFunctionBeginUser;
+  for (const ContactPoint *c = s->point; c < s->point + s->n; ++c) {
+    if (c->state == CONTACT_OPEN) continue;
+    const PetscReal along = PetscAbsReal((c->now.pressure - c->multiplier.pressure) / c->law.penalty);
+    worst = PetscMax(worst, along);
+    if (c->state == CONTACT_STICKS)
+      for (int d = 0; d < 3; ++d)
+        worst = PetscMax(worst, PetscAbsReal(c->now.shear[d] - c->multiplier.shear[d]) / c->law.penalty);
+  }
+  PetscCall(MPIU_Allreduce(&worst, &of_all, 1, MPIU_REAL, MPIU_MAX, scene->grid->comm));
+  *again = of_all > CLOSED * s->length && change < MOST_CHANGES;
+  if (!*again) PetscFunctionReturn(0);
+  for (ContactPoint *c = s->point; c < s->point + s->n; ++c) c->multiplier = c->now;
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode Begin(void *data, const NodalScene *scene)
+{
+  PetscFunctionBeginUser;
+  PetscCall(ContactFind(data, scene));
+  PetscFunctionReturn(0);
+}
+
+/* What touches a wall at the start cannot leave through it, nor along it if it rubs. */
+static void hold(const void *data, const NodalScene *scene, unsigned char *held)
+{
+  const Contact *s = data;
+  (void)scene;
+  for (const ContactPoint *c = s->point; c < s->point + s->n; ++c)
+    for (PetscInt e = c->first; e < c->first + c->n && c->touches; ++e)
+      for (PetscInt d = 0; d < s->dim; ++d)
+        if (c->law.kind != CONTACT_FRICTIONLESS || PetscAbsReal(c->normal[d]) > LEANS)
+          held[s->node[e] * s->dim + d] = 1;
+}
+
+static PetscBool find_slots(void *data, const System *system)
+{
+  Contact *s = data;
+  PetscInt missing = 0;
+  for (const ContactPoint *c = s->point; c < s->point + s->n; ++c)
+    for (PetscInt I = 0; I < c->n; ++I)
+      for (PetscInt J = 0; J < c->n; ++J) {
+        const PetscInt slot = system_pair(system, s->node[c->first + I], s->node[c->first + J]);
+        s->slot[c->slot + I * c->n + J] = slot;
+        missing += slot < 0;
+      }
+  return !missing;
+}
+
+static PetscErrorCode Create(const NodalScene *scene, Diag *diag, void **data)
+{
+  (void)diag;
+  PetscFunctionBeginUser;
+  *data = scene->contact;
+  PetscFunctionReturn(0);
+}
+
+/* Carriers keep what acted on them. */
+static PetscErrorCode Commit(void *data, const NodalScene *scene)
+{
+  const Contact *s = data;
+  const PetscInt dim = s->dim;
+  PetscReal f[3];
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscArrayzero(scene->points->real[POINT_CONTACT], scene->points->n * s->n_walls * CONTACT_KEPT(dim)));
+  for (const ContactPoint *c = s->point; c < s->point + s->n; ++c) {
+    if (c->state == CONTACT_OPEN) continue;
+    PetscReal *kept = point_real(scene->points, POINT_CONTACT, c->owner) + c->wall * CONTACT_KEPT(dim);
+    kept[0] = (PetscReal)c->state;
+    contact_force(c, f);
+    for (PetscInt d = 0; d < dim; ++d) {
+      kept[1 + d] = f[d];
+      kept[1 + dim + d] = c->late[d];
+    }
+  }
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode ToTables(const void *data, const NodalScene *scene, Tables *tables)
+{
+  const Contact *s = data;
+  Table *table;
+  Column *column;
+
+  (void)scene;
+  PetscFunctionBeginUser;
+  PetscCall(TablesAdd(tables, "walls", PETSC_TRUE, s->n_walls, &table));
+  PetscCall(TableAdd(table, "state", NULL, COLUMN_REAL, WALL_NUMBERS, NULL, &column));
+  PetscCall(PetscMemcpy(column->data, s->wall, (size_t)s->n_walls * sizeof *s->wall));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode FromTables(void *data, const NodalScene *scene, const Tables *tables, char reason[256])
+{
+  Contact *s = data;
+  const Table *table = tables_find(tables, "walls");
+
+  (void)scene;
+  PetscFunctionBeginUser;
+  if (!table) snprintf(reason, 256, "walls is missing");
+  if (reason[0]) PetscFunctionReturn(0);
+  const PetscReal *state = table_data(table, "state", COLUMN_REAL, WALL_NUMBERS, reason);
+  if (state && table->rows != s->n_walls) snprintf(reason, 256, "walls are others");
+  if (!reason[0]) PetscCall(PetscMemcpy(s->wall, state, (size_t)s->n_walls * sizeof *s->wall));
+  PetscFunctionReturn(0);
+}
+
+const NodalForce nodal_force_contact = {
+  .name = "contact",
+  .help = "rigid walls that material meets, with friction",
+  .apart = PETSC_TRUE,
+  .create = Create,
+  .begin = Begin,
+  .hold = hold,
+  .find_slots = find_slots,
+  .assemble = Assemble,
+  .augment = Augment,
+  .commit = Commit,
+  .to_tables = ToTables,
+  .from_tables = FromTables,
+};

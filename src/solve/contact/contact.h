@@ -1,0 +1,97 @@
+/* Contact of material with rigid walls, inside Newton's method.
+ *
+ * What meets a wall are contact points: of each material point near it the place on the surface of
+ * its part of the body that is nearest to the wall (mpm, gmm), or nodes (fem). Each moves with the
+ * field at that place, sum_I N_I du_I, and has its own multipliers, so that as many may act in a
+ * cell as there are: their forces need not be unique for those of the nodes to be. */
+#pragma once
+#include "solve/contact/contact_law.h"
+#include "solve/forces/nodal_force.h"
+
+typedef struct {
+  PetscInt owner; /* the material point, or the node */
+  PetscInt wall;
+  int side;
+  PetscInt first, n;          /* nodes that carry it: node[first] .. of Contact, */
+  PetscInt slot;              /* and the first of their n x n pairs */
+  PetscReal x[3];             /* at the start of the step, m */
+  PetscReal swept[3];         /* what the wall's matter there moves by in the step, m */
+  PetscReal section;          /* of the surface that it stands for, m2 */
+  PetscReal modulus, density; /* of its material, Pa, kg/m3 */
+  ContactLaw law;
+  ContactForce multiplier, now;
+  ContactState state;  /* at the last assembly */
+  ContactState before; /* at the end of the last step */
+  PetscBool touches;   /* is there no gap at the start of the step? */
+  PetscReal gap;       /* at the last assembly, m */
+  PetscReal normal[3]; /* at the last assembly */
+  PetscReal slip[3];   /* likewise: motion against the wall, m */
+  PetscReal last[3];   /* force at the end of the last step, N */
+  /* the same as acceleration remembers it, and what is taken from it at the start of this step; likewise
+   * what is taken from it at the end, N */
+  PetscReal start[3], late[3];
+} ContactPoint;
+
+/* Resultants of one wall on the material: force, N, and torque about the origin, N m. */
+typedef struct {
+  PetscReal force[3], torque[3];
+  PetscReal sliding; /* of impulses: work lost in sliding, J */
+} ContactSum;
+
+/* Of one wall. */
+typedef struct {
+  ContactSum rate;    /* what its forces at the end of the last step are in the rate of momentum */
+  ContactSum mean;    /* over the last step: times dt it is all momentum that came from the wall */
+  PetscReal friction; /* work of sliding along it since the start, J */
+  PetscReal area;     /* of the surface in contact after the last step, m2 */
+  PetscReal deepest;  /* largest penetration after the last step, m */
+} WallState;
+
+typedef struct Contact {
+  const Walls *walls;
+  PetscInt dim, n_walls;
+  PetscInt n, capacity;
+  ContactPoint *point;
+  PetscInt n_nodes, capacity_nodes, *node;
+  PetscReal *N;
+  PetscInt n_slots, capacity_slots, *slot;
+  PetscReal near;   /* m: what is farther away cannot be reached in a step */
+  PetscReal length; /* of a cell, m: scale of gaps */
+  WallState *wall;
+  /* of this rank and step, of each wall: momentum, and behind it force, that setting what is in contact to
+   * the wall's motion took at the start; force that it took at the end */
+  ContactSum *impulse, *late;
+} Contact;
+
+/* Numbers that a carrier of contact keeps for each wall from step to step: state, and forces
+ * `last` and `late`. */
+#define CONTACT_KEPT(dim) (1 + 2 * (dim))
+
+PetscErrorCode ContactCreate(const Case *c, const Walls *walls, Contact **contact);
+PetscErrorCode ContactDestroy(Contact **contact);
+/* Forget the contact points and find those of this step. The scene stands at its start. */
+PetscErrorCode ContactFind(Contact *contact, const NodalScene *scene);
+/* Before the solve of a step of dt: penalties, and how walls move. inertia: see WeakFormInput. */
+void contact_prepare(Contact *contact, PetscReal t, PetscReal dt, PetscReal inertia);
+/* Position of a contact point with the field's increments, times `whole`. */
+void contact_place(const Contact *contact, const ContactPoint *c, const PetscReal *du, PetscReal whole, PetscReal x[3]);
+
+/* What a projection works with; arrays go over local nodes. */
+typedef struct {
+  const Grid *grid;
+  const PetscReal *mass;      /* n_nodes, kg */
+  const unsigned char *fixed; /* n_nodes x dim: dofs that do not take part */
+  PetscReal *motion;          /* n_nodes x dim: velocity or acceleration, changed */
+  const PetscReal *velocity;  /* n_nodes x dim: which way it slides; may be the motion */
+  PetscReal rate;             /* times `swept` it is the motion of the wall, */
+  PetscReal wall;             /* and this its velocity */
+  PetscBool pulls;            /* may the wall pull? Else only what moves into it is stopped */
+  PetscBool start;            /* of those in contact before the step, or of those in contact after it? */
+} ContactMotion;
+
+/* Collective. The least change, by mass, of nodal motion that lets points in contact go with their
+ * wall: in the direction of the normal, and across it where they stick. sum: momentum (or force) that
+ * it takes from each wall (n_walls of them, on this rank). */
+PetscErrorCode ContactProject(Contact *contact, const ContactMotion *motion, ContactSum *sum);
+void contact_force(const ContactPoint *c, PetscReal f[3]); /* of the last assembly */
+void contact_add(const ContactPoint *c, PetscInt dim, const PetscReal force[3], ContactSum *sum);

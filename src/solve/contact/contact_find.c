@@ -1,0 +1,144 @@
+/* Which material may meet a wall in this step, and the nodes that carry it there. */
+#include "material/law.h"
+#include "solve/contact/contact.h"
+
+/* Shortest and longest that a layer of the surface counts as, over its thickness at the start: laws of
+ * flow let F grow without bound. */
+#define THINNEST 0.5
+#define THICKEST 2
+
+/* Friction of a wall along which nothing slides: a force that did not vanish with the pressure would
+ * leave no solution where contact opens. */
+#define STICKING 20
+
+/* Share of a cell within which what had no force at the start of the step counts as touching. */
+#define TOUCHES 1e-6
+
+/* Thickness of the material point's part of the body towards n: planes of the undeformed body along
+ * its surface, of which those r apart are r |F^T n| apart now. */
+static PetscReal reach_of(const Points *points, PetscInt p, const PetscReal n[3])
+{
+  PetscReal F[9], square = 0;
+  point_F(points, p, F);
+  for (int j = 0; j < 3; ++j) square += PetscSqr(F[j] * n[0] + F[3 + j] * n[1] + F[6 + j] * n[2]);
+  const PetscReal stretch = PetscMax(THINNEST, PetscMin(THICKEST, PetscSqrtReal(square)));
+  return stretch * points->real[POINT_REACH][p];
+}
+
+static PetscErrorCode AddPoint(Contact *s, ContactPoint **c)
+{
+  PetscFunctionBeginUser;
+  if (s->n == s->capacity) {
+    s->capacity += s->capacity / 2 + 64;
+    PetscCall(PetscRealloc((size_t)s->capacity * sizeof *s->point, &s->point));
+  }
+  *c = s->point + s->n++;
+  **c = (ContactPoint){.first = s->n_nodes, .slot = s->n_slots};
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode AddNodes(Contact *s, ContactPoint *c, PetscInt n)
+{
+  PetscFunctionBeginUser;
+  if (s->n_nodes + n > s->capacity_nodes) {
+    s->capacity_nodes += s->capacity_nodes / 2 + n + 256;
+    PetscCall(PetscRealloc((size_t)s->capacity_nodes * sizeof *s->node, &s->node));
+    PetscCall(PetscRealloc((size_t)s->capacity_nodes * sizeof *s->N, &s->N));
+  }
+  if (s->n_slots + n * n > s->capacity_slots) {
+    s->capacity_slots += s->capacity_slots / 2 + n * n + 1024;
+    PetscCall(PetscRealloc((size_t)s->capacity_slots * sizeof *s->slot, &s->slot));
+  }
+  c->n = n;
+  s->n_nodes += n;
+  s->n_slots += n * n;
+  PetscFunctionReturn(0);
+}
+
+/* What the carrier kept of its contact with the wall. */
+static void remember(ContactPoint *c, PetscInt dim, const PetscReal *kept, const WallPlace *place)
+{
+  c->before = (ContactState)(int)(kept[0] + 0.5);
+  for (PetscInt d = 0; d < dim; ++d) {
+    c->last[d] = kept[1 + d];
+    c->start[d] = kept[1 + d] + kept[1 + dim + d];
+  }
+  c->state = c->before;
+  for (int d = 0; d < 3; ++d) c->normal[d] = place->normal[d];
+}
+
+static ContactLaw law_of(const WallSpec *w, PetscReal section)
+{
+  const PetscBool sticks = w->contact == CONTACT_STICK;
+  return (ContactLaw){.kind = w->contact, .friction = sticks ? STICKING : w->friction, .bond = w->adhesion * section};
+}
+
+/* A bonded wall holds what it touches at the start, and nothing that comes later. */
+static PetscBool is_let_go(const Contact *s, const ContactPoint *c, ContactKind kind, PetscReal gap, PetscBool first)
+{
+  if (kind != CONTACT_BONDED || c->before != CONTACT_OPEN) return PETSC_FALSE;
+  return !first || gap > TOUCHES * s->length;
+}
+
+static PetscReal section_of(const NodalScene *scene, PetscInt p)
+{
+  const PetscReal volume = scene->points->real[POINT_J][p] * scene->points->real[POINT_VOLUME][p];
+  const PetscReal radius = point_real(scene->points, POINT_X, p)[0];
+  const PetscReal round = kinematics_weight(scene->c->kinematics, radius); /* of the ring */
+  const PetscReal part = scene->grid->dim == 2 ? PetscSqrtReal(volume / round) : PetscPowReal(volume, 2. / 3.);
+  return part * round;
+}
+
+/* The surface of point p, of group g, before wall k. */
+static PetscErrorCode MeetPoint(Contact *s, const NodalScene *scene, PetscInt g, PetscInt p, PetscInt k)
+{
+  const PetscInt dim = s->dim;
+  const Points *points = scene->points;
+  const PetscReal *x = point_real(points, POINT_X, p), *kept = point_real(points, POINT_CONTACT, p);
+  const int side = wall_side(s->walls, k, scene->t, x);
+  const Material *material = scene->materials + points->material[p];
+  WallPlace place;
+  ContactPoint *c = NULL;
+
+  PetscFunctionBeginUser;
+  if (!wall_near(s->walls, k, scene->t, x, s->near + THICKEST * points->real[POINT_REACH][p], side, &place))
+    PetscFunctionReturn(0);
+  const PetscReal reach = reach_of(points, p, place.normal);
+  const PetscInt nn = support_nodes(scene->support, g), *node = scene->support->node + scene->support->node_start[g];
+  const PetscReal *N = support_N(scene->support, g, p), *dN = support_dN(scene->support, g, p, dim);
+  PetscCall(AddPoint(s, &c));
+  c->owner = p, c->wall = k, c->side = side;
+  c->section = section_of(scene, p);
+  c->modulus = material->wave_modulus, c->density = material->density;
+  c->law = law_of(scene->c->walls + k, c->section);
+  remember(c, dim, kept + k * CONTACT_KEPT(dim), &place);
+  place.gap -= reach;
+  if (is_let_go(s, c, c->law.kind, place.gap, scene->first) || place.gap > s->near) {
+    --s->n;
+    PetscFunctionReturn(0);
+  }
+  c->touches = place.gap <= TOUCHES * s->length;
+  PetscCall(AddNodes(s, c, nn));
+  for (PetscInt d = 0; d < dim; ++d) c->x[d] = x[d] - reach * place.normal[d];
+  for (PetscInt I = 0; I < nn; ++I) {
+    PetscReal change = 0;
+    for (PetscInt d = 0; d < dim; ++d) change -= dN[I * dim + d] * reach * place.normal[d];
+    s->node[c->first + I] = node[I];
+    s->N[c->first + I] = N[I] + change;
+  }
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ContactFind(Contact *s, const NodalScene *scene)
+{
+  const Support *w = scene->support;
+
+  PetscFunctionBeginUser;
+  s->n = s->n_nodes = s->n_slots = 0;
+  PetscCall(PetscArrayzero(s->impulse, 2 * s->n_walls));
+  s->length = s->near = scene->grid->smallest;
+  for (PetscInt g = 0; g < w->n_groups; ++g)
+    for (PetscInt p = w->point_start[g]; p < w->point_start[g + 1]; ++p)
+      for (PetscInt k = 0; k < s->n_walls; ++k) PetscCall(MeetPoint(s, scene, g, p, k));
+  PetscFunctionReturn(0);
+}

@@ -1,0 +1,62 @@
+#include "solve/contact/contact_law.h"
+
+static PetscReal dot(const PetscReal a[3], const PetscReal b[3]) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+
+/* What is left of a beside the normal. */
+static void across(const PetscReal n[3], const PetscReal a[3], PetscReal b[3])
+{
+  const PetscReal along = dot(n, a);
+  for (int i = 0; i < 3; ++i) b[i] = a[i] - along * n[i];
+}
+
+/* The part of the normal force, p n. */
+static void normal_stiffness(const ContactLaw *law, const WallPlace *place, PetscReal pressure, PetscReal *K)
+{
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j)
+      K[3 * i + j] = law->penalty * place->normal[i] * place->normal[j] - pressure * place->curvature[3 * i + j];
+}
+
+/* The part of t where it does not slide: r across the normal. */
+static void stick(const ContactLaw *law, const PetscReal n[3], PetscReal *K)
+{
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) K[3 * i + j] += law->penalty * ((i == j) - n[i] * n[j]);
+}
+
+/* Where it slides along `way`, with a force `bound` that was to be `size`. */
+static void slide(const ContactLaw *law, const PetscReal n[3], const PetscReal way[3], PetscReal bound, PetscReal size,
+                  PetscReal *K)
+{
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j)
+      K[3 * i + j] +=
+        law->penalty * (law->friction * way[i] * n[j] + bound / size * ((i == j) - n[i] * n[j] - way[i] * way[j]));
+}
+
+ContactState contact_law(const ContactLaw *law, const WallPlace *place, const PetscReal slip[3],
+                         const ContactForce *multiplier, ContactForce *now, PetscReal *K)
+{
+  const PetscReal *n = place->normal;
+  PetscReal trial[3];
+  *now = (ContactForce){.pressure = multiplier->pressure - law->penalty * place->gap};
+  if (now->pressure <= 0 && law->kind != CONTACT_BONDED) {
+    now->pressure = 0;
+    for (int i = 0; K && i < 9; ++i) K[i] = 0;
+    return CONTACT_OPEN;
+  }
+  if (K) normal_stiffness(law, place, now->pressure, K);
+  if (law->kind == CONTACT_FRICTIONLESS) return CONTACT_SLIDES;
+  for (int i = 0; i < 3; ++i) trial[i] = multiplier->shear[i] - law->penalty * slip[i];
+  across(n, trial, now->shear);
+  const PetscReal size = PetscSqrtReal(dot(now->shear, now->shear));
+  const PetscReal bound = law->kind == CONTACT_BONDED ? PETSC_MAX_REAL : law->friction * now->pressure + law->bond;
+  if (size <= bound) {
+    if (K) stick(law, n, K);
+    return CONTACT_STICKS;
+  }
+  for (int i = 0; i < 3; ++i) trial[i] = now->shear[i] / size;
+  if (K) slide(law, n, trial, bound, size, K);
+  for (int i = 0; i < 3; ++i) now->shear[i] = bound * trial[i];
+  return CONTACT_SLIDES;
+}

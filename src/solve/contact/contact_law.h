@@ -1,0 +1,32 @@
+/* The law of an interface at one contact point: what a rigid wall does to the material there.
+ *
+ * With the gap g along the normal n and the slip s, the motion against the wall since the start of
+ * the step, forces are those of an augmented Lagrangian (Alart and Curnier 1991):
+ *
+ *   p = max(0, p_k - r g),    t = t_k - r s, but no longer than friction p + bond,    f = p n + t.
+ *
+ * p_k, t_k are multipliers that Newton's method keeps while it iterates, and which become p, t when
+ * it has converged (contact.c): with them g and s of what is in contact and does not slide go to
+ * zero, whatever r is. */
+#pragma once
+#include "wall/wall.h"
+
+typedef enum { CONTACT_OPEN, CONTACT_SLIDES, CONTACT_STICKS } ContactState;
+
+typedef struct {
+  ContactKind kind;
+  PetscReal friction; /* tangent of the angle */
+  PetscReal bond;     /* tangential force without pressure, N */
+  PetscReal penalty;  /* r, N/m */
+} ContactLaw;
+
+/* What the wall does to the material, N. */
+typedef struct {
+  PetscReal pressure; /* along the normal: pushes if positive */
+  PetscReal shear[3]; /* across it */
+} ContactForce;
+
+/* `now`, from the multipliers and where the point is against the wall. stiffness: 3 x 3, minus the
+ * derivative of p n + t by the position, N/m; NULL: not wanted. */
+ContactState contact_law(const ContactLaw *law, const WallPlace *place, const PetscReal slip[3],
+                         const ContactForce *multiplier, ContactForce *now, PetscReal *stiffness);

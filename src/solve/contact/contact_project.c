@@ -1,0 +1,250 @@
+/* The motion of nodes that lets points in contact go with their walls: the change of least kinetic
+ * energy, by impulses at these points,
+ *
+ *   v := v + M^-1 A^T p,    A v = wall,
+ *
+ * with the lumped mass M and A v, the motion of the contact points in the directions that are held.
+ * Where more points are in contact than nodes can follow, p is not unique: a little of it counts as
+ * motion, so that there is one. What slides is rubbed by the impulses, too: friction p against the
+ * way that it goes. */
+#include "solve/contact/contact.h"
+
+#define MOST_SWEEPS 60
+#define ENOUGH 1e-7   /* of what is lacking */
+#define SOFTENED 1e-5 /* of what an impulse moves: counts as motion */
+#define MOST_LET_GO 8 /* times that points are let go that would pull */
+
+/* Conjugate gradients over impulses, three numbers a contact point. */
+typedef struct {
+  const Contact *s;
+  const ContactMotion *m;
+  PetscReal *p, *r, *q, *z; /* 3 per contact point */
+  PetscReal *own;           /* 1 per contact point: what a unit impulse moves itself */
+  unsigned char *held;      /* 0: not at all, 1: along the normal, 3: in all directions */
+  PetscReal *nodes;         /* n_nodes x dim */
+} Projection;
+
+static void hold(const Projection *w, PetscInt k, PetscReal *a)
+{
+  const PetscReal *n = w->s->point[k].normal;
+  if (w->held[k] == 3) return;
+  const PetscReal along = w->held[k] ? a[0] * n[0] + a[1] * n[1] + a[2] * n[2] : 0;
+  for (int d = 0; d < 3; ++d) a[d] = along * n[d];
+}
+
+static PetscReal inverse_mass(const ContactMotion *m, PetscInt dim, PetscInt node, PetscInt d)
+{
+  return m->fixed[node * dim + d] || m->mass[node] < 1e-300 ? 0 : 1 / m->mass[node];
+}
+
+/* nodes = M^-1 A^T p, on all copies. */
+static PetscErrorCode Spread(Projection *w, const PetscReal *p)
+{
+  const Contact *s = w->s;
+  const PetscInt dim = s->dim;
+  const Grid *grid = w->m->grid;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscArrayzero(w->nodes, grid->n_nodes * dim));
+  for (PetscInt k = 0; k < s->n; ++k) {
+    if (!w->held[k]) continue;
+    for (PetscInt e = s->point[k].first; e < s->point[k].first + s->point[k].n; ++e)
+      for (PetscInt d = 0; d < dim; ++d) w->nodes[s->node[e] * dim + d] += s->N[e] * p[3 * k + d];
+  }
+  PetscCall(GridSumToOwners(grid, dim, w->nodes));
+  for (PetscInt i = 0; i < grid->n_owned * dim; ++i) w->nodes[i] *= inverse_mass(w->m, dim, i / dim, i % dim);
+  PetscCall(GridToGhosts(grid, dim, w->nodes));
+  PetscFunctionReturn(0);
+}
+
+/* a = A nodes. */
+static void gather(const Projection *w, const PetscReal *nodes, PetscInt k, PetscReal a[3])
+{
+  const Contact *s = w->s;
+  const ContactPoint *c = s->point + k;
+  a[0] = a[1] = a[2] = 0;
+  for (PetscInt e = c->first; e < c->first + c->n; ++e)
+    for (PetscInt d = 0; d < s->dim; ++d) a[d] += s->N[e] * nodes[s->node[e] * s->dim + d];
+  hold(w, k, a);
+}
+
+static PetscReal dot(PetscInt n, const PetscReal *a, const PetscReal *b)
+{
+  PetscReal sum = 0;
+  for (PetscInt i = 0; i < n; ++i) sum += a[i] * b[i];
+  return sum;
+}
+
+/* q = (A M^-1 A^T + softening) z */
+static PetscErrorCode Apply(Projection *w, const PetscReal *z, PetscReal *q)
+{
+  PetscFunctionBeginUser;
+  PetscCall(Spread(w, z));
+  for (PetscInt k = 0; k < w->s->n; ++k) {
+    gather(w, w->nodes, k, q + 3 * k);
+    for (int d = 0; d < 3; ++d) q[3 * k + d] += SOFTENED * w->own[k] * z[3 * k + d];
+  }
+  PetscFunctionReturn(0);
+}
+
+/* p, for what the points in contact lack of the motion of their walls. */
+static PetscErrorCode Solve(Projection *w)
+{
+  const Contact *s = w->s;
+  const PetscInt n = 3 * s->n;
+  MPI_Comm comm = w->m->grid->comm;
+  PetscReal local, rr, start, zq;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscArrayzero(w->p, n));
+  for (PetscInt k = 0; k < s->n; ++k) {
+    PetscReal *r = w->r + 3 * k;
+    gather(w, w->m->motion, k, r);
+    PetscReal target[3];
+    for (int d = 0; d < 3; ++d) target[d] = w->m->rate * s->point[k].swept[d];
+    hold(w, k, target);
+    for (int d = 0; d < 3; ++d) r[d] = target[d] - r[d];
+  }
+  PetscCall(PetscArraycpy(w->z, w->r, n));
+  local = dot(n, w->r, w->r);
+  PetscCall(MPIU_Allreduce(&local, &rr, 1, MPIU_REAL, MPI_SUM, comm));
+  start = rr;
+  for (int sweep = 0; sweep < MOST_SWEEPS && rr > ENOUGH * ENOUGH * start; ++sweep) {
+    PetscCall(Apply(w, w->z, w->q));
+    local = dot(n, w->z, w->q);
+    PetscCall(MPIU_Allreduce(&local, &zq, 1, MPIU_REAL, MPI_SUM, comm));
+    if (zq <= 0) break;
+    for (PetscInt i = 0; i < n; ++i) {
+      w->p[i] += rr / zq * w->z[i];
+      w->r[i] -= rr / zq * w->q[i];
+    }
+    const PetscReal before = rr;
+    local = dot(n, w->r, w->r);
+    PetscCall(MPIU_Allreduce(&local, &rr, 1, MPIU_REAL, MPI_SUM, comm));
+    for (PetscInt i = 0; i < n; ++i) w->z[i] = w->r[i] + rr / before * w->z[i];
+  }
+  PetscFunctionReturn(0);
+}
+
+/* Walls that do not pull let go what would have to be held back. */
+static PetscErrorCode LetGo(Projection *w, PetscBool *any)
+{
+  PetscBool here = PETSC_FALSE;
+
+  PetscFunctionBeginUser;
+  for (PetscInt k = 0; k < w->s->n && !w->m->pulls; ++k) {
+    const ContactPoint *c = w->s->point + k;
+    if (!w->held[k] || c->law.kind == CONTACT_BONDED || dot(3, c->normal, w->p + 3 * k) >= 0) continue;
+    w->held[k] = 0;
+    here = PETSC_TRUE;
+  }
+  PetscCallMPI(MPI_Allreduce(&here, any, 1, MPIU_BOOL, MPI_LOR, w->m->grid->comm));
+  PetscFunctionReturn(0);
+}
+
+static unsigned char held_of(const Contact *s, const ContactPoint *c, const ContactMotion *m)
+{
+  const ContactState state = m->start ? c->before : c->state;
+  (void)s;
+  if (state == CONTACT_STICKS) return 3;
+  return state == CONTACT_SLIDES || (m->start && c->touches);
+}
+
+/* Motion of a contact point along its wall, 3 numbers. */
+static void slip_of(const Projection *w, PetscInt k, PetscReal v[3])
+{
+  const ContactPoint *c = w->s->point + k;
+  PetscReal along = 0;
+  v[0] = v[1] = v[2] = 0;
+  for (PetscInt e = c->first; e < c->first + c->n; ++e)
+    for (PetscInt d = 0; d < w->s->dim; ++d) v[d] += w->s->N[e] * w->m->velocity[w->s->node[e] * w->s->dim + d];
+  for (int d = 0; d < 3; ++d) v[d] -= w->m->wall * c->swept[d], along += v[d] * c->normal[d];
+  for (int d = 0; d < 3; ++d) v[d] -= along * c->normal[d];
+}
+
+/* Of a wall that rubs, against the slip. */
+static void rub(const Projection *w, PetscInt k, PetscReal *p)
+{
+  const ContactPoint *c = w->s->point + k;
+  PetscReal v[3];
+  if (w->held[k] != 1 || c->law.friction == 0) return;
+  slip_of(w, k, v);
+  const PetscReal size = PetscSqrtReal(dot(3, v, v)), pressure = dot(3, p, c->normal);
+  for (int d = 0; d < 3 && size > 0; ++d) p[d] -= c->law.friction * pressure * v[d] / size;
+}
+
+/* Half of the work that impulses take from sliding: by the motion before them, or after. */
+static void lose(const Projection *w, ContactSum *sum)
+{
+  PetscReal v[3];
+  for (PetscInt k = 0; k < w->s->n && w->m->velocity == w->m->motion; ++k) {
+    slip_of(w, k, v);
+    sum[w->s->point[k].wall].sliding -= 0.5 * dot(3, v, w->p + 3 * k);
+  }
+}
+
+void contact_add(const ContactPoint *c, PetscInt dim, const PetscReal f[3], ContactSum *sum)
+{
+  for (PetscInt d = 0; d < dim; ++d) sum->force[d] += f[d];
+  for (int d = 0; d < 3; ++d) sum->torque[d] += c->x[(d + 1) % 3] * f[(d + 2) % 3] - c->x[(d + 2) % 3] * f[(d + 1) % 3];
+}
+
+static PetscErrorCode Create(const Contact *s, const ContactMotion *m, Projection *w, PetscBool *any)
+{
+  PetscBool here = PETSC_FALSE;
+
+  PetscFunctionBeginUser;
+  *w = (Projection){.s = s, .m = m};
+  PetscCall(
+    PetscCalloc6(3 * s->n, &w->p, 3 * s->n, &w->r, 3 * s->n, &w->q, 3 * s->n, &w->z, s->n, &w->own, s->n, &w->held));
+  PetscCall(PetscMalloc1(m->grid->n_nodes * s->dim, &w->nodes));
+  for (PetscInt k = 0; k < s->n; ++k) {
+    const ContactPoint *c = s->point + k;
+    w->held[k] = held_of(s, c, m);
+    here = here || w->held[k];
+    for (PetscInt e = c->first; e < c->first + c->n; ++e)
+      w->own[k] += m->mass[s->node[e]] > 1e-300 ? s->N[e] * s->N[e] / m->mass[s->node[e]] : 0;
+  }
+  PetscCallMPI(MPI_Allreduce(&here, any, 1, MPIU_BOOL, MPI_LOR, m->grid->comm));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode Destroy(Projection *w)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscFree6(w->p, w->r, w->q, w->z, w->own, w->held));
+  PetscCall(PetscFree(w->nodes));
+  PetscFunctionReturn(0);
+}
+
+/* What was taken from forces, point by point. */
+static void keep(Projection *w, Contact *s)
+{
+  for (PetscInt k = 0; k < s->n && w->m->velocity != w->m->motion; ++k)
+    for (int d = 0; d < 3; ++d) {
+      if (w->m->start) s->point[k].start[d] += w->p[3 * k + d];
+      else s->point[k].late[d] = w->p[3 * k + d];
+    }
+}
+
+PetscErrorCode ContactProject(Contact *s, const ContactMotion *m, ContactSum *sum)
+{
+  Projection w;
+  PetscBool any;
+
+  PetscFunctionBeginUser;
+  PetscCall(Create(s, m, &w, &any));
+  for (int k = 0; k < MOST_LET_GO && any; ++k) {
+    PetscCall(Solve(&w));
+    PetscCall(LetGo(&w, &any));
+  }
+  for (PetscInt k = 0; k < s->n; ++k) rub(&w, k, w.p + 3 * k);
+  lose(&w, sum);
+  PetscCall(Spread(&w, w.p));
+  for (PetscInt i = 0; i < m->grid->n_nodes * s->dim; ++i) m->motion[i] += w.nodes[i];
+  lose(&w, sum);
+  for (PetscInt k = 0; k < s->n; ++k) contact_add(s->point + k, s->dim, w.p + 3 * k, sum + s->point[k].wall);
+  keep(&w, s);
+  PetscCall(Destroy(&w));
+  PetscFunctionReturn(0);
+}
