@@ -77,6 +77,7 @@ loads: {gravity: [0, -9.81]}
 measures:
   tip: {displacement: y, of: {tracer: [8, 0.5]}}
   weight: {reaction: y, of: {boundary: 0}}
+basis: {cell: {}}
 END
 }
 
