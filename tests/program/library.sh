@@ -107,6 +107,7 @@ measures:
   external: {energy: external}
   floor: {reaction: y, of: {boundary: 0}}
 output: {every: 0.1}
+basis: {cell: {}}
 END
 }
 
