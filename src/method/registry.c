@@ -35,7 +35,7 @@ static PetscBool lacks_middle(const Case *c)
   return case_is_mixed(c) || c->analysis.bossak != 0 || (c->analysis.scheme && scheme && !scheme->middle);
 }
 
-/* What keeps the case from the basis, in words that go on behind its name; NULL: nothing. */
+/* What keeps the case from having the basis by default, in words that go on behind its name; NULL: nothing. */
 static const char *misfit(const Case *c, const Basis *basis)
 {
   const Formulation *formulation = c->formulation ? formulation_find(c->formulation) : NULL;
@@ -44,7 +44,9 @@ static const char *misfit(const Case *c, const Basis *basis)
     return "has no cells whose points could share their volume";
   if (transfer && transfer->slopes && basis->domains && lacks_middle(c))
     return "takes another transfer, or displacements alone and scheme midpoint";
-  return basis->misfit ? basis->misfit(&c->grid) : NULL;
+  const char *grid = basis->misfit ? basis->misfit(&c->grid) : NULL;
+  if (grid || !basis->domains || !c->kinematics || kinematics_dim(c->kinematics) < 3) return grid;
+  return "takes 7 to 13 times as long in space";
 }
 
 const char *method_basis(const Method *method, const Case *c)
