@@ -46,9 +46,9 @@ typedef struct Shape {
   PetscReal point[3], normal[3]; /* half-space: all x with (x - point) . normal <= 0 */
   PetscInt n_vertices;           /* polygon, 2D, closed by itself; line */
   PetscReal *vertices;           /* n_vertices x 2; revolved: radius and height */
-  /* cylinder, cone: its axis begins at `point` and goes `length` along `normal`; revolved likewise */
+  /* cylinder, cone, revolved: the axis begins at `point` and goes `length` along `normal` */
   PetscReal radii[2], length; /* of both ends; disk: of its hole and its rim */
-  PetscReal angle[2];         /* arc: from, to, counter-clockwise from x, degrees */
+  PetscReal angle[2];         /* arc: from, to, counter-clockwise from x, in degrees (as in files) */
   PetscBool open;             /* revolved, surface: thin, without an inside */
   char *file, *group;         /* surface: STL or .msh, and a physical group of it or NULL */
   PetscReal scale, offset[3]; /* of what the file gives: x = scale X + offset, m */
@@ -349,7 +349,8 @@ PetscReal case_factor(const Case *c, const Amplitude *amplitude, PetscReal t);
 PetscReal amplitude_integral(const Amplitude *amplitude, PetscReal t, PetscReal fallback);
 /* Has the shape an inside? (Lines, arcs, disks and open surfaces have none.) */
 PetscBool shape_is_solid(const Shape *shape);
-/* Is x (2 or 3 coordinates) in the shape? Not for those of walls alone. Its surface belongs to it, within `tolerance` m. */
+/* Is x (2 or 3 coordinates) in the shape? Its surface belongs to it, within `tolerance` m. Not for
+ * shapes of walls alone. */
 PetscBool shape_contains(const Shape *shape, PetscInt dim, const PetscReal *x, PetscReal tolerance);
 /* Smallest box around the shape; unbounded sides are +-PETSC_MAX_REAL. */
 void shape_bounds(const Shape *shape, PetscInt dim, PetscReal min[3], PetscReal max[3]);

@@ -29,7 +29,7 @@ static void check_crossing(const Shape *s, PetscBool closed, const char *path, D
 }
 
 /* --- axisymmetry --- */
-/* What of a shape is beyond the axis, or NULL. A shape that is cut by the axis must be symmetric. */
+/* What of a shape is beyond the axis, or NULL. What is cut by the axis must be symmetric. */
 static const char *beyond_axis(const Shape *s)
 {
   const PetscReal tolerance = 1e-12 * s->radius;

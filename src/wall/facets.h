@@ -29,8 +29,8 @@ typedef struct Facets {
   struct FarField *far; /* where the surface is far, and on which side; NULL: not worth it */
 } Facets;
 
-/* Segments between n vertices (n x 2), in their order: out of the polygon, which is closed by itself
- * (counter-clockwise or not), or of a line, to its right. axis: x = 0 is an axis of symmetry;
+/* Segments between n vertices (n x 2), in their order. Normals point out of a polygon, which is
+ * closed by itself (counter-clockwise or not), and to the right of a line. axis: x = 0 is an axis of symmetry;
  * segments on it are no surface. */
 PetscErrorCode FacetsOfLine(PetscInt n, const PetscReal *vertices, PetscBool closed, PetscBool axis, Facets **facets);
 /* Triangles (n x 3 corners) of vertices x (n_vertices x 3); edge (n x 3): numbers of their edges.
@@ -49,5 +49,6 @@ Nearness facets_search(const Facets *facets, const PetscReal x[3], PetscReal lea
 /* --- far_field.c: distances on a lattice of the box around the surface --- */
 PetscErrorCode FarFieldCreate(Facets *facets);
 PetscErrorCode FarFieldDestroy(struct FarField **far);
-/* Signed distance of a lattice point near x, and how far x is from it; PETSC_FALSE: x is outside. */
+/* Signed distance of a lattice point near x, and how far x is from it; PETSC_FALSE if x is
+ * outside. */
 PetscBool far_field_at(const struct FarField *far, const PetscReal x[3], PetscReal *gap, PetscReal *away);

@@ -1,6 +1,6 @@
 /* A lattice of signed distances in the box around a surface. Distances change by no more than one
- * metre a metre: a lattice point tells at once that x is far from the surface, and on which side, or
- * how far a search for the nearest facet has to go. */
+ * metre a metre: a lattice point tells at once that x is far from the surface, and on which side,
+ * or how far a search for the nearest facet has to go. */
 #include "wall/facets.h"
 #include <math.h>
 

@@ -117,6 +117,57 @@ static void BadTriangles(void **state)
   soup_close(&soup);
 }
 
+enum { LONGEST = 8000 };
+
+/* One to six bytes, words or pieces of a file are not what they were. Returns its length. */
+static size_t damage(char *data, size_t n, PetscBool same_length)
+{
+  const size_t whole = n;
+  for (int k = (int)(1 + 6 * uniform()); k > 0; --k) {
+    const size_t at = (size_t)(uniform() * (double)n), piece = (size_t)(60 * uniform());
+    const double what = uniform();
+    if (what < 0.3) data[at] = (char)(256 * uniform());
+    else if (what < 0.7) data[at] = "0123456789.-e+ \nvf"[(int)(18 * uniform())];
+    else if (at + piece < n) memmove(data + at, data + at + piece, n - at - piece), n -= piece;
+  }
+  return same_length ? whole : n;
+}
+
+/* Whatever is in a file: an error, or a wall that answers with numbers. */
+static void DamagedFiles(void **state)
+{
+  const double min[3] = {0, 0, 0}, max[3] = {1, 1, 1};
+  char data[LONGEST];
+  int walls = 0;
+  Soup soup;
+  (void)state;
+  soup_open(&soup);
+  soup_add_box(&soup, min, max);
+  for (int k = 0; k < 900; ++k) {
+    const char *path = k % 3 == 0   ? write_binary(&soup, "damaged.stl")
+                       : k % 3 == 1 ? write_ascii(&soup, "damaged.stl")
+                                    : write_msh(&soup, 6, "damaged.msh");
+    FILE *file = fopen(path, "rb");
+    const size_t n = damage(data, fread(data, 1, LONGEST, file), k % 3 == 0);
+    fclose(file);
+    WallSpec spec = surface_of(write_text(strrchr(path, '/') + 1, data, n));
+    OneWall one;
+    spec.shape.open = uniform() < 0.5;
+    wall_open(&one, &kinematics_3d, spec);
+    walls += !diag_errors(one.diag);
+    for (int q = 0; q < 20; ++q) {
+      double x[3];
+      WallPlace place;
+      random_in(3, -1, 2, x);
+      if (!wall_near(one.walls, 0, 0, x, 1e300, 0, &place)) continue;
+      assert_true(isfinite(place.gap) && isfinite(place.normal[0]) && isfinite(place.curvature[0]));
+    }
+    wall_close(&one);
+  }
+  assert_true(walls > 50 && walls < 850);
+  soup_close(&soup);
+}
+
 /* A band with half a turn. */
 static void Moebius(void **state)
 {
@@ -201,8 +252,9 @@ static void BeyondTheAxis(void **state)
 
 int main(void)
 {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(NoSurface), cmocka_unit_test(BadTriangles),
-                                     cmocka_unit_test(Moebius),   cmocka_unit_test(Sizes),
-                                     cmocka_unit_test(Lines),     cmocka_unit_test(BeyondTheAxis)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(NoSurface),    cmocka_unit_test(BadTriangles),
+                                     cmocka_unit_test(Moebius),      cmocka_unit_test(DamagedFiles),
+                                     cmocka_unit_test(Sizes),        cmocka_unit_test(Lines),
+                                     cmocka_unit_test(BeyondTheAxis)};
   return cmocka_run_group_tests(tests, make_folder, remove_folder);
 }

@@ -118,6 +118,13 @@ static void Line(void **state)
   const double below[2] = {-0.6 + 0.1 * t[1] - 0.01 * t[0], -0.5 - 0.1 * t[0] - 0.01 * t[1]};
   assert_int_equal(wall_side(one.walls, 0, 0, beyond), 0);
   assert_int_equal(wall_side(one.walls, 0, 0, above) * wall_side(one.walls, 0, 0, below), -1);
+  const double *ends[3] = {beyond, above, below};
+  for (int k = 0; k < 6; ++k) { /* nothing is behind a rim */
+    const double *x = ends[k / 2], r[2] = {x[0] + 0.6, x[1] + 0.5};
+    assert_true(wall_near(one.walls, 0, 0, x, 9, k % 2 ? 1 : -1, &place));
+    ASSERT_NEAR(place.gap, hypot(r[0], r[1]), 1e-15);
+    for (int d = 0; d < 2; ++d) ASSERT_NEAR(place.normal[d], r[d] / place.gap, 1e-13);
+  }
   wall_close(&one);
   samples_close(&samples);
 }

@@ -20,7 +20,8 @@ static PetscBool ends_with(const char *name, const char *ending)
 }
 
 /* --- from a mesh --- */
-/* The physical group of surfaces of that name; 0 without a name, -1 and an error if there is none. */
+/* The physical group of surfaces of that name; 0 without a name, -1 and an error if there is no
+ * such group. */
 static PetscInt find_group(const Source *s, const MshFile *msh)
 {
   const char *names[64] = {NULL};
