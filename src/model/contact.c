@@ -84,7 +84,7 @@ PetscErrorCode ContactHold(Model *m, PetscReal dt, PetscReal inertia)
   if (!holds(m)) PetscFunctionReturn(0);
   PetscReal *const v = m->nodes->v, *const a = m->nodes->a;
   const ContactMotion first = motion_of(m, a, v, dt, PETSC_TRUE), second = motion_of(m, v, v, dt, PETSC_TRUE);
-  PetscCall(ContactProject(m->contact, &first, m->contact->impulse + m->c->n_walls));
+  PetscCall(ContactRelease(m->contact, &first, m->contact->impulse + m->c->n_walls));
   PetscCall(ContactProject(m->contact, &second, m->contact->impulse));
   PetscFunctionReturn(0);
 }
@@ -97,9 +97,8 @@ PetscErrorCode ContactEnd(Model *m, PetscReal dt, EnergyStep *energy)
   if (!s) PetscFunctionReturn(0);
   PetscCall(PetscArrayzero(s->late, m->c->n_walls));
   if (!holds(m)) PetscFunctionReturn(0);
-  PetscReal *const v = m->nodes->v1, *const a = m->nodes->a1;
-  const ContactMotion first = motion_of(m, a, v, dt, PETSC_FALSE), second = motion_of(m, v, v, dt, PETSC_FALSE);
-  PetscCall(ContactProject(s, &first, s->late));
+  PetscReal *const v = m->nodes->v1;
+  const ContactMotion second = motion_of(m, v, v, dt, PETSC_FALSE);
   PetscCall(ContactProject(s, &second, s->impulse));
   for (PetscInt k = 0; k < m->c->n_walls; ++k) {
     energy->friction += s->impulse[k].sliding;

@@ -93,5 +93,7 @@ typedef struct {
  * wall: in the direction of the normal, and across it where they stick. sum: momentum (or force) that
  * it takes from each wall (n_walls of them, on this rank). */
 PetscErrorCode ContactProject(Contact *contact, const ContactMotion *motion, ContactSum *sum);
+/* Collective. Take the forces of the last step out of the acceleration that nodes remember. */
+PetscErrorCode ContactRelease(Contact *contact, const ContactMotion *motion, ContactSum *sum);
 void contact_force(const ContactPoint *c, PetscReal f[3]); /* of the last assembly */
 void contact_add(const ContactPoint *c, PetscInt dim, const PetscReal force[3], ContactSum *sum);

@@ -259,3 +259,26 @@ PetscErrorCode ContactProject(Contact *s, const ContactMotion *m, ContactSum *su
   PetscCall(Destroy(&w));
   PetscFunctionReturn(0);
 }
+
+PetscErrorCode ContactRelease(Contact *s, const ContactMotion *m, ContactSum *sum)
+{
+  const PetscInt dim = s->dim;
+  PetscReal *nodes;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(m->grid->n_nodes * dim, &nodes));
+  for (ContactPoint *c = s->point; c < s->point + s->n; ++c) {
+    PetscReal f[3];
+    for (int d = 0; d < 3; ++d) f[d] = -c->start[d];
+    for (PetscInt e = c->first; e < c->first + c->n; ++e)
+      for (PetscInt d = 0; d < dim; ++d) nodes[s->node[e] * dim + d] += s->N[e] * f[d];
+    contact_add(c, dim, f, sum + c->wall);
+    for (int d = 0; d < 3; ++d) c->start[d] = 0;
+  }
+  PetscCall(GridSumToOwners(m->grid, dim, nodes));
+  for (PetscInt i = 0; i < m->grid->n_owned * dim; ++i) nodes[i] *= inverse_mass(m, dim, i / dim, i % dim);
+  PetscCall(GridToGhosts(m->grid, dim, nodes));
+  for (PetscInt i = 0; i < m->grid->n_nodes * dim; ++i) m->motion[i] += nodes[i];
+  PetscCall(PetscFree(nodes));
+  PetscFunctionReturn(0);
+}
