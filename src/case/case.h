@@ -252,7 +252,8 @@ typedef enum { ESSENTIAL_AUTO, ESSENTIAL_DIRECT, ESSENTIAL_CONSTRAINTS } Essenti
 /* Shape functions, most numbers of clouds of nodes (gmm). Lengths are over the cell size of the
  * grid that gives the nodes. */
 typedef struct {
-  const char *kind; /* one of basis_names[] (support/basis.h); NULL: the cell */
+  const char *kind;     /* one of basis_names[] (support/basis.h); NULL: the cell */
+  PetscBool by_default; /* the case does not name it */
   CloudChoice choice;
   PetscReal radius;     /* of a cloud */
   PetscReal max_radius; /* that it may grow to */

@@ -50,7 +50,7 @@ static PetscErrorCode FemConvect(Discretisation *s)
 const Method method_fem = {
   .name = "fem",
   .help = "updated Lagrangian finite elements: the grid moves with the material",
-  .basis = "cell",
+  .bases = {"cell"},
   .takes_pressure = PETSC_TRUE,
   .initialise = FemInitialise,
   .convect = FemConvect,

@@ -204,7 +204,7 @@ static PetscErrorCode GmmDestroy(Discretisation *s)
 const Method method_gmm = {
   .name = "gmm",
   .help = "Galerkin meshfree method: a cloud of nodes and points moves, without cells",
-  .basis = "lme",
+  .bases = {"lme"},
   .clouds = PETSC_TRUE,
   .initialise = GmmInitialise,
   .begin = GmmCarry,

@@ -6,7 +6,8 @@
 
 typedef struct Method {
   const char *name, *help;
-  const char *basis; /* that it has unless the case names another one */
+  /* of these it has the first that goes with the case, unless that names one; the last always does */
+  const char *bases[3];
 
   /* What it can. */
   /* points carry all motion, through a grid that stays; else nodes keep theirs */
@@ -45,3 +46,7 @@ extern const Method *const methods[]; /* ended by NULL */
 const Method *method_find(const char *name);
 /* Do its nodes and points fit the basis? */
 PetscBool method_takes(const Method *method, const Basis *basis);
+/* The basis of a case that names none. */
+const char *method_basis(const Method *method, const Case *c);
+/* Which basis the case has, and why if it did not name it: a line for people. */
+void method_tell_basis(const Method *method, const Case *c, size_t size, char *text);

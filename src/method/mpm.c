@@ -149,7 +149,7 @@ static PetscErrorCode MpmConvect(Discretisation *s)
 const Method method_mpm = {
   .name = "mpm",
   .help = "material point method: points carry the material through a fixed grid",
-  .basis = "cell",
+  .bases = {"gimp", "cell"},
   .restores_grid = PETSC_TRUE,
   .takes_pressure = PETSC_TRUE,
   .initialise = MpmInitialise,

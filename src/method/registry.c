@@ -1,4 +1,7 @@
 #include "method/method.h"
+#include "formulation/formulation.h"
+#include "method/time/time_scheme.h"
+#include "method/transfer/transfer.h"
 
 #define METHOD(symbol) extern const Method symbol;
 #include "method/methods.inc"
@@ -21,4 +24,44 @@ PetscBool method_takes(const Method *method, const Basis *basis)
 {
   if (method->couplings) return basis->nodes == BASIS_OF_CLOUD;
   return basis->nodes == BASIS_OF_CELLS || (basis->nodes == BASIS_OF_GRID && method->restores_grid);
+}
+
+/* What points carry of their gradients is out of balance on the next grid, unless forces balance in
+ * the middle of a step; that is what such a case then takes, if it may (docs/theory.md 16). */
+static PetscBool lacks_middle(const Case *c)
+{
+  const TimeScheme *scheme = time_scheme_of(&c->analysis);
+  if (c->analysis.type == ANALYSIS_STATIC) return PETSC_FALSE;
+  return case_is_mixed(c) || c->analysis.bossak != 0 || (c->analysis.scheme && scheme && !scheme->middle);
+}
+
+/* What keeps the case from the basis, in words that go on behind its name; NULL: nothing. */
+static const char *misfit(const Case *c, const Basis *basis)
+{
+  const Formulation *formulation = c->formulation ? formulation_find(c->formulation) : NULL;
+  const Transfer *transfer = transfer_find(c->analysis.transfer);
+  if (formulation && formulation->cells && basis->nodes != BASIS_OF_CELLS)
+    return "has no cells whose points could share their volume";
+  if (transfer && transfer->slopes && basis->domains && lacks_middle(c))
+    return "takes another transfer, or displacements alone and scheme midpoint";
+  return basis->misfit ? basis->misfit(&c->grid) : NULL;
+}
+
+const char *method_basis(const Method *method, const Case *c)
+{
+  const char *const *name = method->bases;
+  while (name[1] && misfit(c, basis_find(name[0]))) ++name;
+  return name[0];
+}
+
+void method_tell_basis(const Method *method, const Case *c, size_t size, char *text)
+{
+  const char *kind = c->basis.kind ? c->basis.kind : "cell", *first = method->bases[0], *last = method->bases[1];
+  if (!c->basis.by_default) snprintf(text, size, "%s", kind);
+  else if (strcmp(kind, first))
+    snprintf(text, size, "%s, since %s, the default of %s, %s", kind, first, method->name,
+             misfit(c, basis_find(first)));
+  else
+    snprintf(text, size, "%s, the default of %s%s%s%s", kind, method->name, last ? "; basis: {" : "", last ? last : "",
+             last ? ": {}} is the thesis's" : "");
 }

@@ -51,12 +51,19 @@ static void check_basis(const Model *m, Diag *diag)
 {
   const BasisSpec *spec = &m->c->basis;
   const Basis *basis = basis_find(spec->kind);
+  const char *misfit = basis && basis->misfit ? basis->misfit(&m->c->grid) : NULL;
+  char path[64];
   if (m->formulation && m->formulation->cells && m->method && !m->method->clouds && basis &&
       basis->nodes != BASIS_OF_CELLS)
     diag_error(diag, "formulation", "formulation '%s' takes no other basis than 'cell', not '%s'", m->c->formulation,
                spec->kind);
   if (!basis || (m->method && !method_takes(m->method, basis)))
     diag_error(diag, "basis", "method %s does not take the basis '%s'", m->c->method, spec->kind ? spec->kind : "cell");
+  else if (misfit) {
+    snprintf(path, sizeof path, "basis.%s", spec->kind);
+    diag_error(diag, path, "basis '%s' %s", spec->kind, misfit);
+    diag_hint(diag, "'cell' takes every grid");
+  }
 }
 
 /* Nodes that keep their motion, and pressures, are known at the ends of steps. */
@@ -107,7 +114,8 @@ static void check_transfer(const Case *c, const Method *method, Diag *diag)
   } else if (c->analysis.keep_velocity && !transfer->keeps_velocity) {
     diag_error(diag, "analysis.keep_velocity", "is the floor of transfer thesis; transfer %s knows no such floor",
                transfer->name);
-  } else if (transfer->slopes && basis_find(c->basis.kind)->domains && !time_scheme_of(&c->analysis)->middle) {
+  } else if (c->analysis.type == ANALYSIS_DYNAMIC && transfer->slopes && basis_find(c->basis.kind)->domains &&
+             !time_scheme_of(&c->analysis)->middle) {
     diag_error(
       diag, "analysis.scheme",
       "transfer %s with basis %s takes scheme midpoint: an acceleration that points carry is out of balance on "
@@ -298,18 +306,6 @@ static PetscErrorCode CreateBodies(Model *m, Diag *diag)
   PetscFunctionReturn(0);
 }
 
-/* What the basis asks of the grid. */
-static PetscErrorCode PrepareGrid(Model *m, Diag *diag, PetscInt *errors)
-{
-  const Basis *basis = basis_find(m->c->basis.kind);
-
-  PetscFunctionBeginUser;
-  if (basis->check) PetscCall(basis->check(m->grid, diag));
-  PetscCall(DiagReduce(m->comm, diag, errors));
-  if (!*errors) PetscCall(GridWiden(&m->grid, basis->halo));
-  PetscFunctionReturn(0);
-}
-
 /* Everything after the parts that stand alone; each may find mistakes that make the next
  * meaningless. */
 static PetscErrorCode Build(Model *m, Diag *diag)
@@ -326,8 +322,7 @@ static PetscErrorCode Build(Model *m, Diag *diag)
   if (errors) PetscFunctionReturn(0);
   PetscCall(GridCreate(m->comm, m->c, cell_weight, (void *)m->c, diag, &m->grid));
   if (!m->grid) PetscFunctionReturn(0);
-  PetscCall(PrepareGrid(m, diag, &errors));
-  if (errors) PetscFunctionReturn(0);
+  PetscCall(GridWiden(&m->grid, basis_find(m->c->basis.kind)->halo));
   PetscCall(CreateBodies(m, diag));
   PetscCall(DiagReduce(m->comm, diag, &errors));
   if (errors) PetscFunctionReturn(0);

@@ -137,7 +137,7 @@ static PetscErrorCode ReportClouds(const Model *m, FILE *out)
 static PetscErrorCode ReportSizes(Model *m, FILE *out)
 {
   PetscInt points, pairs, all_pairs;
-  char from[80], to[80];
+  char from[80], to[80], told[256];
 
   PetscFunctionBeginUser;
   PetscCall(ModelActivate(m));
@@ -150,6 +150,8 @@ static PetscErrorCode ReportSizes(Model *m, FILE *out)
       cells[m->grid->type].name, grid_is_mixed(m->grid) ? ", " : "",
       grid_is_mixed(m->grid) ? cells[m->grid->first_type].name : "", (int)m->grid->n_nodes_global,
       text_position(m->dim, m->grid->min, from), text_position(m->dim, m->grid->max, to));
+  method_tell_basis(m->method, m->c, sizeof told, told);
+  say(m, out, "#   basis: %s\n", told);
   say(m, out, "#   points: %d; unknowns at the start: %d\n", (int)points, (int)unknowns);
   say(m, out, "#   memory: about %.3g MB\n", (double)estimated_memory(m, points, unknowns, all_pairs) / 1e6);
   if (m->scheme->inertia)

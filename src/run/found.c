@@ -2,7 +2,8 @@
  *
  * A case is known in full (every key with its value), and so is that of a run, which keeps it as
  * case.yaml. Where both say the same, whatever was typed to get there, the run is a run of that
- * case. Keys that came later have their defaults in an older run. */
+ * case. Keys that came later have their defaults in an older run; if that names no basis, it had that of
+ * the cell. */
 #include "run/found.h"
 #include <string.h>
 #include "input/case_file.h"
@@ -33,6 +34,7 @@ static void drop_idle(char *text)
 
 PetscErrorCode FoundCase(MPI_Comm comm, const char *folder, char **text, char reason[256])
 {
+  static const char *const cell = "basis={cell: {}}";
   char file[PETSC_MAX_PATH_LEN];
   size_t size;
   Diag *ignored;
@@ -41,10 +43,12 @@ PetscErrorCode FoundCase(MPI_Comm comm, const char *folder, char **text, char re
   PetscFunctionBeginUser;
   PetscCall(PetscSNPrintf(file, sizeof file, "%s/case.yaml", folder));
   PetscCall(FileReadEverywhere(comm, file, &size, text, reason));
-  PetscCall(PetscFree(*text));
   if (reason[0]) PetscFunctionReturn(0);
+  (*text)[size] = '\0';
+  const PetscBool named = strstr(*text, "\nbasis:") != NULL;
+  PetscCall(PetscFree(*text));
   PetscCall(DiagCreate(&ignored));
-  PetscCall(CaseRead(comm, file, 0, NULL, ignored, &c));
+  PetscCall(CaseRead(comm, file, named ? 0 : 1, &cell, ignored, &c));
   if (c) {
     PetscCall(CaseToYaml(c, text));
     drop_idle(*text);

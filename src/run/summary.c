@@ -24,6 +24,7 @@ PetscErrorCode SummaryVersion(MPI_Comm comm, RunDir *dir)
 
 PetscErrorCode SummaryBegin(Model *m, RunDir *dir)
 {
+  char told[256];
   PetscInt points;
   PetscMPIInt size;
 
@@ -35,6 +36,8 @@ PetscErrorCode SummaryBegin(Model *m, RunDir *dir)
   if (m->c->kinematics->hoop)
     PetscCall(RunDirLog(dir, "kinematics = axisymmetric: volumes, masses, forces and energies of the full circle"));
   PetscCall(RunDirLog(dir, "method = %s", m->method->name));
+  method_tell_basis(m->method, m->c, sizeof told, told);
+  PetscCall(RunDirLog(dir, "basis = %s", told));
   PetscCall(RunDirLog(dir, "cells = %d nodes = %d points = %d ranks = %d", (int)m->grid->n_cells_global,
                       (int)m->grid->n_nodes_global, (int)points, (int)size));
   PetscFunctionReturn(0);

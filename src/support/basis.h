@@ -40,8 +40,9 @@ typedef struct {
   /* do functions of inner nodes vanish on the hull, so that what is prescribed at its nodes holds
    * on it? */
   PetscBool holds_boundary;
-  /* Collective. What the basis cannot do with this grid goes to diag; NULL: nothing. */
-  PetscErrorCode (*check)(const Grid *grid, Diag *diag);
+  /* What the basis lacks in this grid, in words that go on behind its name; NULL: nothing. NULL for
+   * the function: it takes every grid. */
+  const char *(*misfit)(const GridSpec *grid);
   /* Nodes, N and dN of all points. In a grid they are located (xi known) and sorted by cell, lost
    * ones last, which get nothing; grid->x counts. In a cloud nodes get the numbers of in->nodes. */
   PetscErrorCode (*support)(const BasisInput *in, const Points *points, Support *support);

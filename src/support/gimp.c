@@ -164,30 +164,22 @@ static PetscErrorCode GimpCouplings(const BasisInput *in, const BasisSites *site
 }
 
 /* With cells more than twice as large as their neighbours a domain could reach two nodes away. */
-static PetscBool graded_gently(const GridBox *box)
+static PetscBool graded_gently(const GridSpec *grid)
 {
-  for (PetscInt d = 0; d < box->dim; ++d)
-    for (PetscInt i = 1; i < box->counts[d]; ++i) {
-      const PetscReal *line = box->line[d] + i, below = line[0] - line[-1], above = line[1] - line[0];
-      if (PetscMax(below, above) > 2 * PetscMin(below, above)) return PETSC_FALSE;
-    }
+  for (PetscInt d = 0; d < cells[grid->cell].dim; ++d) {
+    const PetscReal all = grid->grading[d] > 0 ? PetscAbsReal(PetscLogReal(grid->grading[d])) : 0;
+    if (grid->counts[d] > 1 && all > PetscLogReal(2) * (PetscReal)(grid->counts[d] - 1) + 1e-9) return PETSC_FALSE;
+  }
   return PETSC_TRUE;
 }
 
-static PetscErrorCode GimpCheck(const Grid *grid, Diag *diag)
+static const char *gimp_misfit(const GridSpec *grid)
 {
-  PetscMPIInt rank;
-
-  PetscFunctionBeginUser;
-  PetscCallMPI(MPI_Comm_rank(grid->comm, &rank));
-  if (rank) PetscFunctionReturn(0);
-  if (!grid->box || (grid->type != CELL_QUADRILATERAL && grid->type != CELL_HEXAHEDRON)) {
-    diag_error(diag, "basis.gimp", "averages over points' domains need a box of %s, which `grid` is not",
-               grid->dim == 2 ? "quadrilaterals" : "hexahedra");
-    diag_hint(diag, "'cell' takes every grid");
-  } else if (!graded_gently(grid->box))
-    diag_error(diag, "basis.gimp", "the box is graded too steeply: a cell is more than twice as long as the next one");
-  PetscFunctionReturn(0);
+  if (grid->kind != GRID_BOX || (grid->cell != CELL_QUADRILATERAL && grid->cell != CELL_HEXAHEDRON))
+    return "needs a box of quadrilaterals or hexahedra";
+  if (!graded_gently(grid))
+    return "needs a box that is not graded too steeply: no cell may be more than twice as long as the next";
+  return NULL;
 }
 
 const Basis basis_gimp = {
@@ -195,7 +187,7 @@ const Basis basis_gimp = {
   .halo = 1,
   .domains = PETSC_TRUE,
   .holds_boundary = PETSC_TRUE,
-  .check = GimpCheck,
+  .misfit = gimp_misfit,
   .support = GimpSupport,
   .couplings = GimpCouplings,
 };

@@ -16,28 +16,17 @@ static void count_cells(const Grid *grid, PetscInt count[2])
   count[1] = grid->n_cells / count[0];
 }
 
-static PetscBool all_equal(const Grid *grid)
+static const char *spline_misfit(const GridSpec *grid)
 {
-  PetscReal x[8];
-  for (PetscInt c = 0; c < grid->n_cells; ++c) {
-    grid_cell_x(grid, c, x);
-    const PetscReal width = x[4] - x[0], height = x[5] - x[1];
-    if (width > grid->smallest * (1 + 1e-9) || height > grid->smallest * (1 + 1e-9)) return PETSC_FALSE;
-  }
-  return PETSC_TRUE;
-}
-
-static PetscErrorCode SplineCheck(const Grid *grid, Diag *diag)
-{
+  const PetscReal width = (grid->max[0] - grid->min[0]) / (PetscReal)grid->counts[0];
+  const PetscReal height = (grid->max[1] - grid->min[1]) / (PetscReal)grid->counts[1];
   PetscMPIInt size;
-
-  PetscFunctionBeginUser;
-  PetscCallMPI(MPI_Comm_size(grid->comm, &size));
-  if (size > 1)
-    diag_error(diag, "basis", "quadratic splines run on one rank: at its border they reach nodes that others have");
-  else if (!grid->box || grid->type != CELL_QUADRILATERAL || !all_equal(grid))
-    diag_error(diag, "basis", "quadratic splines need a box of equal squares");
-  PetscFunctionReturn(0);
+  MPI_Comm_size(PETSC_COMM_WORLD, &size);
+  if (size > 1) return "runs on one rank: at its border it reaches nodes that others have";
+  if (grid->kind == GRID_BOX && grid->cell == CELL_QUADRILATERAL && PetscAbsReal(width - height) < 1e-9 * width &&
+      PetscMax(grid->grading[0], grid->grading[1]) <= 1)
+    return NULL;
+  return "needs a box of equal squares";
 }
 
 /* Lattice nodes that carry the coordinate t in [0, 1] of cell i of n, with N and dN/dt; returns how
@@ -118,7 +107,7 @@ static PetscErrorCode SplineCouplings(const BasisInput *in, const BasisSites *si
 const Basis basis_quadratic_splines = {
   .nodes = BASIS_OF_GRID,
   .holds_boundary = PETSC_TRUE,
-  .check = SplineCheck,
+  .misfit = spline_misfit,
   .support = SplineSupport,
   .couplings = SplineCouplings,
 };

@@ -138,7 +138,7 @@ static void in_case_files(void **state)
   Bench b;
   bench_init(&b, "mpm", CELL_TRIANGLE, 2);
   b.c.basis.kind = SPLINES;
-  bench_refused(&b, PETSC_COMM_WORLD, "basis", "a box of equal squares");
+  bench_refused(&b, PETSC_COMM_WORLD, "basis." SPLINES, "a box of equal squares");
 }
 
 int main(int argc, char **argv)

@@ -68,8 +68,8 @@ changed "tracer outside" 's/\[8, 0.5\]/[80, 0.5]/' "case.yaml:14:31: error: the 
 changed "contradiction" 's/^loads/  - {on: {y: 0}, velocity: {x: 1}}\nloads/' "case.yaml:12:5: error: boundary[1] contradicts boundary[0]: both prescribe x of the node at (0, 0), but not the same motion"
 
 # Options of PETSc
-changed "option of PETSc" '$a petsc: {pc_type: luu}' "case.yaml:16:" "PETSc refuses an option" "luu"
-changed "number of PETSc" '$a petsc: {ksp_rtol: small}' "case.yaml:16:" "PETSc refuses an option" "small"
+changed "option of PETSc" '$a petsc: {pc_type: luu}' "case.yaml:17:" "PETSc refuses an option" "luu"
+changed "number of PETSc" '$a petsc: {ksp_rtol: small}' "case.yaml:17:" "PETSc refuses an option" "small"
 
 # All at once, in the order of their lines
 changed "several" 's/young/yung/; s/\[0, -9.81\]/down/; s/type: static/type: statick/' "case.yaml:4:18: error: " "case.yaml:9:45: error: " "case.yaml:12:18: error: "

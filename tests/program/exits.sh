@@ -44,6 +44,8 @@ tip=$(tail -n 1 two/history.csv | cut -d, -f3)
 reference "$tip"
 expect "verify" 0 "$talus" verify beam --out right
 expect "a run that is right" 0 "$talus" verify beam --run two
+cp -r two older && sed '/^basis:/,/^  cell/d' two/case.yaml >older/case.yaml
+expect "a run of a program that did not write its basis" 0 "$talus" verify beam --run older
 reference -0.5
 expect "verify what is off" 3 "$talus" verify beam --out off
 expect "a run that is off" 3 "$talus" verify beam --run two

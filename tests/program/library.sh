@@ -77,6 +77,7 @@ loads: {gravity: [0, -9.81]}
 measures:
   tip: {displacement: y, of: {tracer: [8, 0.5]}}
   weight: {reaction: y, of: {boundary: 0}}
+basis: {cell: {}}
 END
 }
 
@@ -106,6 +107,7 @@ measures:
   external: {energy: external}
   floor: {reaction: y, of: {boundary: 0}}
 output: {every: 0.1}
+basis: {cell: {}}
 END
 }
 

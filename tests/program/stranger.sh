@@ -16,7 +16,7 @@ mkdir -p pictures/old && echo mine >pictures/old/file && echo mine >mine.txt
 printf 'petsc: {snes_monitor: "draw::draw_lg", draw_type: image, draw_save: %s, draw_save_movie: .gif}\n' "'m\$(touch PWNED)'" >>case.yaml
 harmless "a picture that runs a command" 2 "$talus" check case.yaml
 harmless "a picture" 2 "$talus" run case.yaml --out run
-says err.txt "case.yaml:16:24: error: petsc.snes_monitor may not be 'draw::draw_lg'" "error: a case file may not set the PETSc option 'draw_save'" \
+says err.txt "case.yaml:17:24: error: petsc.snes_monitor may not be 'draw::draw_lg'" "error: a case file may not set the PETSc option 'draw_save'" \
   "other options of PETSc belong on the command line: -draw_save"
 [ ! -e run ] || fail "$name: something was written"
 cantilever >case.yaml

@@ -252,9 +252,9 @@ done
 block >case.yaml
 expect "waves faster than light" 2 "$talus" check case.yaml --set materials.rubber.density=1e-14
 says err.txt "case.yaml:10:3: error: waves would run through 'rubber' at 5.19e+09 m/s, faster than light"
-# at the bounds a body still falls: 5 cm in 0.1 s
+# at the bounds a body still falls: 5 cm in 0.1 s (functions that are averaged round differently: E times 1e-16 is no longer little there)
 for extreme in young=6e19 density=1e-10; do
-  expect "free fall with $extreme" 0 "$talus" run case.yaml --out run --force --quiet --set materials.rubber.$extreme --set boundary=[] --set bodies[0].spin=0 \
+  expect "free fall with $extreme" 0 "$talus" run case.yaml --out run --force --quiet --set materials.rubber.$extreme --set 'basis={cell: {}}' --set boundary=[] --set bodies[0].spin=0 \
     --set bodies[0].velocity='[0, 0]' --set loads.gravity='[0, -10]' --set analysis.end=0.1 --set 'measures={y: {displacement: y, of: {tracer: [1, 0.75]}}}'
   awk -v y="$(last 3)" 'BEGIN { exit !(y < -0.04999999 && y > -0.05000001) }' || fail "$name: by $(last 3) m"
 done

@@ -101,7 +101,8 @@ static PetscErrorCode CheckBasis(SchemaReader *r, const YamlNode *mapping, void 
     hint_bases(r, method);
     PetscFunctionReturn(0);
   }
-  basis->kind = method->basis;
+  basis->kind = method_basis(method, r->c);
+  basis->by_default = PETSC_TRUE;
   for (const SchemaEntry *e = schema_bases; e->key; ++e)
     if (!strcmp(e->key, basis->kind)) PetscCall(SchemaReadTable(r, e->table, &none, basis));
   PetscFunctionReturn(0);
@@ -109,15 +110,17 @@ static PetscErrorCode CheckBasis(SchemaReader *r, const YamlNode *mapping, void 
 
 static PetscBool hide_in_basis(const SchemaEntry *e, const void *source)
 {
-  return strcmp(((const BasisSpec *)source)->kind, e->key) != 0;
+  return basis_find(((const BasisSpec *)source)->kind) != basis_find(e->key);
 }
 
-const SchemaTable schema_basis = {.name = "basis",
-                                  .help =
-                                    "Shape functions; without it those of the cell for mpm and fem, and lme with its "
-                                    "defaults for gmm. Lengths are counted "
-                                    "in cells of the grid that gives the nodes.",
-                                  .entries = schema_bases,
-                                  .groups = schema_basis_groups,
-                                  .check = CheckBasis,
-                                  .hide = hide_in_basis};
+const SchemaTable schema_basis = {
+  .name = "basis",
+  .help =
+    "Shape functions. Without it mpm has gimp in boxes of quadrilaterals or hexahedra, "
+    "and cell where that does not go (other grids, formulation mean-dilatation; transfer "
+    "consistent with formulation mixed, bossak, or another scheme than midpoint); fem "
+    "has cell, gmm lme. Lengths are counted in cells of the grid that gives the nodes.",
+  .entries = schema_bases,
+  .groups = schema_basis_groups,
+  .check = CheckBasis,
+  .hide = hide_in_basis};

@@ -5,7 +5,6 @@
 #include "material/law.h"
 #include "method/method.h"
 #include "method/transfer/transfer.h"
-#include "support/basis.h"
 
 static const SchemaWord analysis_words[] = {
   {"static", ANALYSIS_STATIC, "equilibrium at every step, no inertia"},
@@ -223,9 +222,4 @@ static const SchemaEntry case_entries[] = {
       AT(Case, petsc), .count = offsetof(Case, n_petsc)),
   {.key = NULL},
 };
-static PetscBool hide_in_case(const SchemaEntry *e, const void *source)
-{
-  return !strcmp(e->key, "basis") && basis_find(((const Case *)source)->basis.kind) == basis_find("cell");
-}
-const SchemaTable schema_case = {
-  .name = "case", .help = "The keys at the top of the file.", .entries = case_entries, .hide = hide_in_case};
+const SchemaTable schema_case = {.name = "case", .help = "The keys at the top of the file.", .entries = case_entries};
