@@ -1,0 +1,2 @@
+Include "block.geo";
+Physical Surface("block") = {1};

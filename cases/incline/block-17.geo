@@ -1,0 +1,3 @@
+angle = 17;
+Include "block.geo";
+Physical Surface("block") = {1};
