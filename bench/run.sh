@@ -26,6 +26,8 @@ title "powder in a tube: rings of triangles"
 "$bench/bench_tube"
 title "meshfree bases"
 "$bench/bench_cloud"
+title "rigid walls of triangles"
+"$bench/bench_wall"
 
 title "a rolling disk: gmm beside mpm, cells of 0.04 m and steps of 4 ms, then 0.02 m and 2 ms"
 "$bench/bench_gmm" -size 0.04 -step 4e-3 -steps 100 -repeat 3

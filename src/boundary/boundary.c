@@ -1,5 +1,5 @@
 #include "boundary/boundary.h"
-#include "boundary/motion.h"
+#include "case/motion.h"
 #include "boundary/slip.h"
 
 /* Behind the entries of the case stands one of the program's own: where the plane turns about x = 0

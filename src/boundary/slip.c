@@ -1,5 +1,5 @@
 #include "boundary/slip.h"
-#include "boundary/motion.h"
+#include "case/motion.h"
 
 #define ALONG_AXIS 1e-14   /* a direction that leaves its axis by no more is that axis */
 #define CONTRADICTION 1e-9 /* share of a motion that may go through a wall */

@@ -15,6 +15,8 @@ static PetscErrorCode ShapeClear(Shape *shape)
   for (PetscInt i = 0; i < shape->n_children; ++i) PetscCall(ShapeClear(&shape->children[i]));
   PetscCall(PetscFree(shape->children));
   PetscCall(PetscFree(shape->vertices));
+  PetscCall(PetscFree(shape->file));
+  PetscCall(PetscFree(shape->group));
   PetscFunctionReturn(0);
 }
 
@@ -79,17 +81,27 @@ static PetscErrorCode BoundaryAndLoadsClear(Case *c)
     PetscCall(PetscFree(c->boundary[i].name));
   }
   PetscCall(PetscFree(c->boundary));
-  for (PetscInt i = 0; i < c->n_walls; ++i) {
-    PetscCall(PetscFree(c->walls[i].name));
-    PetscCall(ShapeClear(&c->walls[i].shape));
-  }
-  PetscCall(PetscFree(c->walls));
   for (PetscInt i = 0; i < c->n_loads; ++i) {
     PetscCall(SelectorClear(&c->loads[i].on));
     PetscCall(AmplitudeClear(&c->loads[i].amplitude));
   }
   PetscCall(PetscFree(c->loads));
   PetscCall(AmplitudeClear(&c->gravity_amplitude));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode WallsClear(Case *c)
+{
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < c->n_walls; ++i) {
+    WallSpec *wall = &c->walls[i];
+    PetscCall(PetscFree(wall->name));
+    PetscCall(ShapeClear(&wall->shape));
+    for (PetscInt k = 0; k < wall->n_motions; ++k) PetscCall(AmplitudeClear(&wall->motions[k].amplitude));
+    PetscCall(PetscFree(wall->motions));
+    PetscCall(StringsClear(wall->n_bodies, &wall->bodies));
+  }
+  PetscCall(PetscFree(c->walls));
   PetscFunctionReturn(0);
 }
 
@@ -126,6 +138,7 @@ PetscErrorCode CaseDestroy(Case **c)
   PetscCall(BodiesClear(*c));
   PetscCall(MaterialsClear(*c));
   PetscCall(BoundaryAndLoadsClear(*c));
+  PetscCall(WallsClear(*c));
   PetscCall(MeasuresClear(*c));
   PetscCall(StringsClear((*c)->output.n_fields, &(*c)->output.fields));
   PetscCall(StringsClear((*c)->n_petsc, &(*c)->petsc));

@@ -27,7 +27,15 @@ typedef enum {
   SHAPE_HALF_SPACE,
   SHAPE_UNION,
   SHAPE_DIFFERENCE,
-  SHAPE_INTERSECTION
+  SHAPE_INTERSECTION,
+  SHAPE_CYLINDER,
+  SHAPE_CONE,
+  /* of walls alone: */
+  SHAPE_LINE,
+  SHAPE_ARC,
+  SHAPE_DISK,
+  SHAPE_REVOLVED,
+  SHAPE_SURFACE
 } ShapeKind;
 
 /* A set of positions. A difference is its first child without all the others. */
@@ -36,8 +44,14 @@ typedef struct Shape {
   PetscReal min[3], max[3];      /* box */
   PetscReal centre[3], radius;   /* ball: a circle in 2D */
   PetscReal point[3], normal[3]; /* half-space: all x with (x - point) . normal <= 0 */
-  PetscInt n_vertices;           /* polygon, 2D, closed by itself */
-  PetscReal *vertices;           /* n_vertices x 2 */
+  PetscInt n_vertices;           /* polygon, 2D, closed by itself; line */
+  PetscReal *vertices;           /* n_vertices x 2; revolved: radius and height */
+  /* cylinder, cone: its axis begins at `point` and goes `length` along `normal`; revolved likewise */
+  PetscReal radii[2], length; /* of both ends; disk: of its hole and its rim */
+  PetscReal angle[2];         /* arc: from, to, counter-clockwise from x, degrees */
+  PetscBool open;             /* revolved, surface: thin, without an inside */
+  char *file, *group;         /* surface: STL or .msh, and a physical group of it or NULL */
+  PetscReal scale, offset[3]; /* of what the file gives: x = scale X + offset, m */
   PetscInt n_children;
   struct Shape *children;
 } Shape;
@@ -123,8 +137,16 @@ typedef enum { CONTACT_FRICTIONLESS, CONTACT_FRICTION, CONTACT_STICK, CONTACT_BO
 /* A rigid body that material meets anywhere in the grid: it does not go into it. */
 typedef struct {
   char *name;
-  Shape shape;      /* where the wall is, */
-  PetscBool inside; /* or where it is not: a container */
+  Shape shape;         /* where the wall is, */
+  PetscBool inside;    /* or where it is not: a container */
+  PetscReal thickness; /* of a shape without an inside, m */
+  PetscInt n_motions;
+  MotionSpec *motions; /* each moves what those before it have made; `on` is empty */
+  PetscReal from;      /* s; the wall stands after it, if it is not 0, */
+  PetscBool has_until;
+  PetscReal until;   /* and up to this time */
+  PetscInt n_bodies; /* 0: all */
+  char **bodies;     /* that meet it */
   ContactKind contact;
   PetscReal friction; /* tangent of the angle of friction */
   PetscReal adhesion; /* N/m2: tangential stress that contact bears without pressure */
@@ -324,7 +346,9 @@ PetscReal amplitude_value(const Amplitude *amplitude, PetscReal t, PetscReal fal
 PetscReal case_factor(const Case *c, const Amplitude *amplitude, PetscReal t);
 /* Integral over [0, t], for prescribed velocities. */
 PetscReal amplitude_integral(const Amplitude *amplitude, PetscReal t, PetscReal fallback);
-/* Is x (2 or 3 coordinates) in the shape? Its surface belongs to it, within `tolerance` m. */
+/* Has the shape an inside? (Lines, arcs, disks and open surfaces have none.) */
+PetscBool shape_is_solid(const Shape *shape);
+/* Is x (2 or 3 coordinates) in the shape? Not for those of walls alone. Its surface belongs to it, within `tolerance` m. */
 PetscBool shape_contains(const Shape *shape, PetscInt dim, const PetscReal *x, PetscReal tolerance);
 /* Smallest box around the shape; unbounded sides are +-PETSC_MAX_REAL. */
 void shape_bounds(const Shape *shape, PetscInt dim, PetscReal min[3], PetscReal max[3]);

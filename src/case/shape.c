@@ -46,6 +46,27 @@ static PetscBool polygon_contains(const Shape *s, const PetscReal *x, PetscReal 
   return inside;
 }
 
+/* Height along the axis and distance from it. */
+static void about_axis(const Shape *s, const PetscReal *x, PetscReal *height, PetscReal *radius)
+{
+  PetscReal along = 0, square = 0, norm = 0;
+  for (PetscInt d = 0; d < 3; ++d) norm += s->normal[d] * s->normal[d];
+  norm = PetscSqrtReal(norm);
+  for (PetscInt d = 0; d < 3; ++d) along += (x[d] - s->point[d]) * s->normal[d] / norm;
+  for (PetscInt d = 0; d < 3; ++d) square += PetscSqr(x[d] - s->point[d] - along * s->normal[d] / norm);
+  *height = along;
+  *radius = PetscSqrtReal(square);
+}
+
+static PetscBool cone_contains(const Shape *s, const PetscReal *x, PetscReal tolerance)
+{
+  const PetscReal slope = (s->radii[1] - s->radii[0]) / s->length;
+  PetscReal height, radius;
+  about_axis(s, x, &height, &radius);
+  return height >= -tolerance && height <= s->length + tolerance &&
+         radius - s->radii[0] - slope * height <= tolerance * PetscSqrtReal(1 + slope * slope);
+}
+
 static PetscBool children_contain(const Shape *s, PetscInt dim, const PetscReal *x, PetscReal tolerance)
 {
   PetscInt hits = 0;
@@ -67,8 +88,18 @@ PetscBool shape_contains(const Shape *s, PetscInt dim, const PetscReal *x, Petsc
   case SHAPE_BALL: return ball_contains(s, dim, x, tolerance);
   case SHAPE_POLYGON: return polygon_contains(s, x, tolerance);
   case SHAPE_HALF_SPACE: return half_space_contains(s, dim, x, tolerance);
-  default: return children_contain(s, dim, x, tolerance);
+  case SHAPE_CYLINDER:
+  case SHAPE_CONE: return cone_contains(s, x, tolerance);
+  case SHAPE_UNION:
+  case SHAPE_DIFFERENCE:
+  case SHAPE_INTERSECTION: return children_contain(s, dim, x, tolerance);
+  default: return PETSC_FALSE;
   }
+}
+
+PetscBool shape_is_solid(const Shape *s)
+{
+  return s->kind != SHAPE_LINE && s->kind != SHAPE_ARC && s->kind != SHAPE_DISK && !s->open;
 }
 
 static void half_space_bounds(const Shape *s, PetscInt dim, PetscReal min[3], PetscReal max[3])
@@ -108,6 +139,19 @@ static void polygon_bounds(const Shape *s, PetscReal min[3], PetscReal max[3])
   }
 }
 
+/* A disk of radius r reaches r sqrt(1 - n_d^2) along axis d. */
+static void cone_bounds(const Shape *s, PetscReal min[3], PetscReal max[3])
+{
+  PetscReal norm = 0;
+  for (PetscInt d = 0; d < 3; ++d) norm += s->normal[d] * s->normal[d];
+  for (PetscInt d = 0; d < 3; ++d) {
+    const PetscReal n = s->normal[d] / PetscSqrtReal(norm), reach = PetscSqrtReal(PetscMax(0, 1 - n * n));
+    const PetscReal end = s->point[d] + n * s->length;
+    min[d] = PetscMin(s->point[d] - s->radii[0] * reach, end - s->radii[1] * reach);
+    max[d] = PetscMax(s->point[d] + s->radii[0] * reach, end + s->radii[1] * reach);
+  }
+}
+
 void shape_bounds(const Shape *s, PetscInt dim, PetscReal min[3], PetscReal max[3])
 {
   for (PetscInt d = 0; d < 3; ++d) {
@@ -129,6 +173,11 @@ void shape_bounds(const Shape *s, PetscInt dim, PetscReal min[3], PetscReal max[
     break;
   case SHAPE_POLYGON: polygon_bounds(s, min, max); break;
   case SHAPE_HALF_SPACE: half_space_bounds(s, dim, min, max); break;
-  default: children_bounds(s, dim, min, max);
+  case SHAPE_CYLINDER:
+  case SHAPE_CONE: cone_bounds(s, min, max); break;
+  case SHAPE_UNION:
+  case SHAPE_DIFFERENCE:
+  case SHAPE_INTERSECTION: children_bounds(s, dim, min, max); break;
+  default: break; /* of walls alone */
   }
 }

@@ -166,7 +166,7 @@ PetscErrorCode SchemaReadPolygon(SchemaReader *r, const SchemaEntry *e, const Ya
   char path[512];
 
   PetscFunctionBeginUser;
-  if (!schema_is(r, e, node, YAML_SEQUENCE, 3)) PetscFunctionReturn(0);
+  if (!schema_is(r, e, node, YAML_SEQUENCE, e->type == TYPE_LINE ? 2 : 3)) PetscFunctionReturn(0);
   PetscCall(PetscFree(*vertices));
   PetscCall(PetscCalloc1(2 * (size_t)node->n, vertices));
   *(PetscInt *)((char *)target + e->count) = node->n;

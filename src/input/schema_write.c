@@ -39,7 +39,7 @@ static PetscBool written(const Case *c, const SchemaTable *table, const SchemaEn
   if (is_text(e->type)) return *(char *const *)at(source, e->offset) != NULL;
   if (e->type == TYPE_AMPLITUDE) return ((const Amplitude *)at(source, e->offset))->n > 0;
   if (e->type == TYPE_LIST || e->type == TYPE_NAMED) return count_items(e, source) > 0;
-  if (e->type == TYPE_OPTIONS) return *(const PetscInt *)at(source, e->count) > 0;
+  if (e->type == TYPE_OPTIONS || e->type == TYPE_REFERENCES) return *(const PetscInt *)at(source, e->count) > 0;
   return PETSC_TRUE;
 }
 

@@ -151,11 +151,14 @@ static void write_every(const SchemaWriting *w)
   else schema_write_real(w->out, every);
 }
 
-static void write_fields(const SchemaWriting *w)
+static void write_texts(const SchemaWriting *w)
 {
   const PetscInt n = FIELD_AT(PetscInt, count);
   fputc('[', w->out);
-  for (PetscInt i = 0; i < n; ++i) fprintf(w->out, "%s%s", i ? ", " : "", FIELD(char **)[i]);
+  for (PetscInt i = 0; i < n; ++i) {
+    fputs(i ? ", " : "", w->out);
+    schema_write_text(w->out, FIELD(char **)[i]);
+  }
   fputc(']', w->out);
 }
 
@@ -210,6 +213,6 @@ const SchemaWriteType schema_writers[TYPE_COUNT] = {
   [TYPE_SPIN] = write_spin,           [TYPE_AXIS] = write_axis,         [TYPE_SPIN_AXIS] = write_axis,
   [TYPE_AXES] = write_axes,           [TYPE_INTERVAL] = write_interval, [TYPE_COUNTS] = write_counts,
   [TYPE_AMPLITUDE] = write_amplitude, [TYPE_POLYGON] = write_polygon,   [TYPE_EVERY] = write_every,
-  [TYPE_MEMBER] = write_member,       [TYPE_FIELDS] = write_fields,     [TYPE_NUMBERS] = write_numbers,
-  [TYPE_OPTIONS] = write_options,
+  [TYPE_MEMBER] = write_member,       [TYPE_FIELDS] = write_texts,      [TYPE_NUMBERS] = write_numbers,
+  [TYPE_OPTIONS] = write_options,     [TYPE_REFERENCES] = write_texts,  [TYPE_LINE] = write_polygon,
 };

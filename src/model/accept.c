@@ -58,7 +58,7 @@ PetscErrorCode CommitStep(Model *m, PetscReal dt, EnergyStep *energy)
   end_motion(m, dt);
   set_multipliers(m);
   PetscCall(EnergyOfNodes(m, dt, energy));
-  PetscCall(ContactEnd(m, dt)); /* what that takes is lost in the transfer */
+  PetscCall(ContactEnd(m, dt, energy)); /* what that takes is lost in the transfer */
   store_reactions(m, dt);
   PetscCall(ContactForces(m, dt));
   PetscCall(GuessLearn(m, dt));

@@ -2,6 +2,8 @@
  * energy. */
 #include "model/model_private.h"
 
+#define SUM_NUMBERS ((PetscInt)(sizeof(ContactSum) / sizeof(PetscReal)))
+
 #define THROUGH 1e-9 /* of a cell: material that reaches deeper into a wall at the start is a mistake */
 
 PetscBool walls_rub(const Case *c)
@@ -69,6 +71,9 @@ static ContactMotion motion_of(const Model *m, PetscReal *motion, PetscReal *vel
                          .start = start};
 }
 
+/* A scheme that balances forces in the middle of the step remembers none, and lets nothing ring. */
+static PetscBool holds(const Model *m) { return m->scheme->inertia && !m->scheme->middle; }
+
 /* A point that was stopped by a wall rings about it for ever in Newmark's formulas, as a prescribed
  * node would. */
 PetscErrorCode ContactHold(Model *m, PetscReal dt, PetscReal inertia)
@@ -76,7 +81,7 @@ PetscErrorCode ContactHold(Model *m, PetscReal dt, PetscReal inertia)
   PetscFunctionBeginUser;
   if (!m->contact) PetscFunctionReturn(0);
   contact_prepare(m->contact, m->time, dt, inertia);
-  if (!m->scheme->inertia) PetscFunctionReturn(0);
+  if (!holds(m)) PetscFunctionReturn(0);
   PetscReal *const v = m->nodes->v, *const a = m->nodes->a;
   const ContactMotion first = motion_of(m, a, v, dt, PETSC_TRUE), second = motion_of(m, v, v, dt, PETSC_TRUE);
   PetscCall(ContactProject(m->contact, &first, m->contact->impulse + m->c->n_walls));
@@ -84,47 +89,59 @@ PetscErrorCode ContactHold(Model *m, PetscReal dt, PetscReal inertia)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode ContactEnd(Model *m, PetscReal dt)
+PetscErrorCode ContactEnd(Model *m, PetscReal dt, EnergyStep *energy)
 {
   Contact *s = m->contact;
 
   PetscFunctionBeginUser;
   if (!s) PetscFunctionReturn(0);
   PetscCall(PetscArrayzero(s->late, m->c->n_walls));
-  if (!m->scheme->inertia) PetscFunctionReturn(0);
+  if (!holds(m)) PetscFunctionReturn(0);
   PetscReal *const v = m->nodes->v1, *const a = m->nodes->a1;
   const ContactMotion first = motion_of(m, a, v, dt, PETSC_FALSE), second = motion_of(m, v, v, dt, PETSC_FALSE);
   PetscCall(ContactProject(s, &first, s->late));
   PetscCall(ContactProject(s, &second, s->impulse));
+  for (PetscInt k = 0; k < m->c->n_walls; ++k) {
+    energy->friction += s->impulse[k].sliding;
+    energy->transfer -= s->impulse[k].sliding;
+  }
   PetscFunctionReturn(0);
 }
 
-/* Of the mean force in the step: on what the wall's matter moves by, and against what slides along it. */
-static void point_work(const Model *m, const ContactPoint *c, PetscReal *moving, PetscReal *sliding)
+/* Of the mean force in the step. */
+static ContactWork point_work(const Model *m, const ContactPoint *c)
 {
   const PetscReal end = m->scheme->middle ? 1 : 0.5;
-  PetscReal f[3], x[3], pressure = 0;
+  PetscReal f[3], x[3], pressure = 0, closing = 0;
+  ContactWork work = {0};
   contact_force(c, f);
   contact_place(m->contact, c, m->nodes->du, 1, x);
-  *moving = *sliding = 0;
   for (int d = 0; d < 3; ++d) {
     f[d] = (1 - end) * c->start[d] + end * f[d];
-    *moving += f[d] * c->swept[d];
     pressure += f[d] * c->normal[d];
+    closing += (x[d] - c->x[d] - c->swept[d]) * c->normal[d];
   }
-  for (int d = 0; d < 3; ++d) *sliding -= (f[d] - pressure * c->normal[d]) * (x[d] - c->x[d] - c->swept[d]);
+  for (int d = 0; d < 3; ++d) {
+    work.start += 0.5 * c->start[d] * (x[d] - c->x[d]);
+    work.moving += f[d] * c->swept[d];
+    work.sliding -= (f[d] - pressure * c->normal[d]) * (x[d] - c->x[d] - c->swept[d]);
+  }
+  work.closing = pressure * closing;
+  return work;
 }
 
-void contact_work(const Model *m, PetscReal *moving, PetscReal *sliding)
+ContactWork contact_work(const Model *m)
 {
   const Contact *s = m->contact;
-  *moving = *sliding = 0;
+  ContactWork sum = {0};
   for (PetscInt k = 0; s && k < s->n; ++k) {
-    PetscReal work[2];
-    point_work(m, s->point + k, &work[0], &work[1]);
-    *moving += work[0];
-    *sliding += work[1];
+    const ContactWork work = point_work(m, s->point + k);
+    sum.start += work.start;
+    sum.moving += work.moving;
+    sum.sliding += work.sliding;
+    sum.closing += work.closing;
   }
+  return sum;
 }
 
 /* What measures ask of each wall after the step. */
@@ -132,13 +149,12 @@ static PetscErrorCode Survey(const Model *m)
 {
   const Contact *s = m->contact;
   const PetscInt n = m->c->n_walls;
-  PetscReal *sums, *deepest, moving, sliding;
+  PetscReal *sums, *deepest;
 
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc2(2 * n, &sums, n, &deepest));
   for (const ContactPoint *c = s->point; c < s->point + s->n; ++c) {
-    point_work(m, c, &moving, &sliding);
-    sums[c->wall] += sliding;
+    sums[c->wall] += point_work(m, c).sliding;
     if (c->state == CONTACT_OPEN) continue;
     sums[n + c->wall] += c->section;
     deepest[c->wall] = PetscMax(deepest[c->wall], -c->gap);
@@ -182,7 +198,7 @@ PetscErrorCode ContactForces(Model *m, PetscReal dt)
   }
   PetscCall(PetscArraycpy(now + n, s->impulse, 2 * n));
   PetscCall(PetscArraycpy(now + 3 * n, s->late, n));
-  PetscCall(MPIU_Allreduce(MPI_IN_PLACE, now, (PetscMPIInt)(24 * n), MPIU_REAL, MPI_SUM, m->comm));
+  PetscCall(MPIU_Allreduce(MPI_IN_PLACE, now, (PetscMPIInt)(4 * n * SUM_NUMBERS), MPIU_REAL, MPI_SUM, m->comm));
   for (PetscInt k = 0; k < n; ++k) {
     WallState *wall = s->wall + k;
     ContactSum before = wall->rate;
@@ -190,6 +206,7 @@ PetscErrorCode ContactForces(Model *m, PetscReal dt)
     add(&before, 1, now + 2 * n + k);
     add(&wall->rate, 1 / (1 - w.lag), now + k);
     add(&wall->rate, -w.lag / (1 - w.lag), &before);
+    wall->friction += now[n + k].sliding;
     if (m->scheme->inertia) {
       add(&wall->mean, 1 - w.mean, &before);
       add(&wall->mean, w.mean, &wall->rate);

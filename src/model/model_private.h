@@ -68,7 +68,7 @@ PetscErrorCode OutsideAdd(Model *model, StepReport *report);
 PetscErrorCode OutsideWarn(const Model *model, Diag *diag);
 
 /* This rank's share of the energies of a step that is being accepted, J. */
-typedef struct {
+typedef struct EnergyStep {
   PetscReal external, boundary, damped, transfer, friction;
 } EnergyStep;
 
@@ -103,9 +103,15 @@ PetscBool walls_rub(const Case *c);
 /* Collective, in PrepareStep: what is in contact starts the step with the motion of its wall. */
 PetscErrorCode ContactHold(Model *model, PetscReal dt, PetscReal inertia);
 /* Collective. Likewise ends it, once v1 and a1 are known. */
-PetscErrorCode ContactEnd(Model *model, PetscReal dt);
-/* Work of walls that move, and of sliding along them, on this rank, J. */
-void contact_work(const Model *model, PetscReal *moving, PetscReal *sliding);
+PetscErrorCode ContactEnd(Model *model, PetscReal dt, struct EnergyStep *energy);
+/* Work of walls on the material in a step, J: of their motion; lost in sliding along them; of closing the
+ * gap to them; half of that of the forces at the step's start. */
+typedef struct {
+  PetscReal moving, sliding, closing, start;
+} ContactWork;
+
+/* On this rank. */
+ContactWork contact_work(const Model *model);
 /* Collective, before the step is committed: mean forces of the step, and what is remembered. */
 PetscErrorCode ContactForces(Model *model, PetscReal dt);
 

@@ -40,7 +40,7 @@ typedef enum {
   /* distance from the nearest side of the cell that it was seeded in, at the start, m: 1 where there are
    * walls, otherwise 0 components */
   POINT_REACH,
-  /* of each wall, what it did to the point in the last step: state and force (solve/contact), N; 0
+  /* of each wall, what it did to the point in the last step: state and forces (solve/contact), N; 0
    * components where there are none */
   POINT_CONTACT,
   /* how far it was carried in the present event of each measure that counts some, m: one each */

@@ -1,50 +1,122 @@
 #include "wall/wall.h"
+#include <math.h>
+#include "wall/check.h"
+#include "wall/form.h"
+#include "wall/frame.h"
+
+typedef struct {
+  const WallSpec *spec;
+  Form *form;
+  /* where it was when somebody asked last: most questions are of one time */
+  PetscReal asked;
+  Frame frame;
+} Wall;
 
 struct Walls {
   const Case *c;
+  PetscInt dim;
+  Wall *wall;
 };
 
 PetscErrorCode WallsCreate(const Case *c, Diag *diag, Walls **walls)
 {
-  (void)diag;
+  char path[64];
+
   PetscFunctionBeginUser;
   PetscCall(PetscNew(walls));
   (*walls)->c = c;
+  (*walls)->dim = kinematics_dim(c->kinematics);
+  PetscCall(PetscCalloc1(c->n_walls, &(*walls)->wall));
+  for (PetscInt k = 0; k < c->n_walls; ++k) {
+    Wall *wall = (*walls)->wall + k;
+    wall->spec = c->walls + k;
+    snprintf(path, sizeof path, "walls[%" PetscInt_FMT "].shape", k);
+    PetscCall(FormCreate(&wall->spec->shape, (*walls)->dim, c->kinematics->hoop, path, diag, &wall->form));
+    if (wall->form) wall_check(c, wall->spec, wall->form, path, diag);
+    wall->asked = NAN;
+  }
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode WallsDestroy(Walls **walls)
 {
   PetscFunctionBeginUser;
+  if (!*walls) PetscFunctionReturn(0);
+  for (PetscInt k = 0; k < (*walls)->c->n_walls; ++k) PetscCall(FormDestroy(&(*walls)->wall[k].form));
+  PetscCall(PetscFree((*walls)->wall));
   PetscCall(PetscFree(*walls));
   PetscFunctionReturn(0);
+}
+
+/* A step that ends at `until` but for rounding still meets the wall, one that ends at `from` does
+ * not yet. */
+PetscBool wall_stands(const Walls *walls, PetscInt k, PetscReal t)
+{
+  const WallSpec *w = walls->c->walls + k;
+  if (!walls->wall[k].form) return PETSC_FALSE;
+  if (w->from > 0 && t <= w->from * (1 + 1e-9)) return PETSC_FALSE;
+  return !w->has_until || t <= w->until * (1 + 1e-9);
+}
+
+/* x in the frame of the wall at time t. */
+static void to_origin(const Walls *walls, Wall *wall, PetscReal t, const PetscReal *x, PetscReal X[3])
+{
+  PetscReal at[3] = {x[0], x[1], walls->dim == 3 ? x[2] : 0};
+  if (!wall->spec->n_motions) {
+    for (int d = 0; d < 3; ++d) X[d] = at[d];
+    return;
+  }
+  if (t != wall->asked) frame_at(walls->c, wall->spec, t, &wall->frame);
+  wall->asked = t;
+  frame_origin(&wall->frame, at, X);
+}
+
+static void from_origin(const Wall *wall, WallPlace *place)
+{
+  const WallPlace own = *place;
+  if (!wall->spec->n_motions) return;
+  frame_turn(&wall->frame, own.normal, place->normal);
+  frame_turn_tensor(&wall->frame, own.curvature, place->curvature);
+}
+
+/* A surface without an inside, as seen from one of its sides; beside its rim from anywhere. */
+static void see_from(int side, Nearness near, PetscReal thickness, WallPlace *place)
+{
+  const int own = place->gap < 0 ? -1 : 1, way = near != NEAR || !side ? own : side;
+  place->gap = way * place->gap - thickness / 2;
+  for (int d = 0; d < 3; ++d) place->normal[d] *= way;
+  for (int k = 0; k < 9; ++k) place->curvature[k] *= way;
 }
 
 PetscBool wall_near(const Walls *walls, PetscInt k, PetscReal t, const PetscReal *x, PetscReal within, int side,
                     WallPlace *place)
 {
-  const WallSpec *w = walls->c->walls + k;
-  const Shape *s = &w->shape;
-  const PetscInt dim = walls->c->kinematics->dim;
-  PetscReal gap = 0, length = 0;
-  (void)t, (void)side;
-  for (PetscInt d = 0; d < dim; ++d) length += s->normal[d] * s->normal[d];
-  length = (w->inside ? -1 : 1) * PetscSqrtReal(length);
-  for (PetscInt d = 0; d < dim; ++d) gap += (x[d] - s->point[d]) * s->normal[d] / length;
-  if (gap > within) return PETSC_FALSE;
-  *place = (WallPlace){.gap = gap};
-  for (PetscInt d = 0; d < dim; ++d) place->normal[d] = s->normal[d] / length;
+  Wall *wall = walls->wall + k;
+  const PetscBool thin = wall->form && wall->form->thin;
+  const PetscReal half = thin ? wall->spec->thickness / 2 : 0;
+  PetscReal X[3];
+  if (!wall_stands(walls, k, t)) return PETSC_FALSE;
+  to_origin(walls, wall, t, x, X);
+  const Nearness near = form_near(wall->form, X, wall->spec->inside ? -1 : 1, within + half, place);
+  if (near == NEAR_NOT) return PETSC_FALSE;
+  if (thin) see_from(side, near, 2 * half, place);
+  from_origin(wall, place);
   return PETSC_TRUE;
 }
 
 int wall_side(const Walls *walls, PetscInt k, PetscReal t, const PetscReal *x)
 {
-  (void)walls, (void)k, (void)t, (void)x;
-  return 0;
+  Wall *wall = walls->wall + k;
+  WallPlace place;
+  PetscReal X[3];
+  if (!wall_stands(walls, k, t) || !wall->form->thin) return 0;
+  to_origin(walls, wall, t, x, X);
+  const Nearness near = form_near(wall->form, X, 1, PETSC_MAX_REAL, &place);
+  return near == NEAR_RIM ? 0 : place.gap < 0 ? -1 : 1;
 }
 
 void wall_motion(const Walls *walls, PetscInt k, PetscReal t0, PetscReal t1, const PetscReal *x, PetscReal increment[3])
 {
-  (void)walls, (void)k, (void)t0, (void)t1, (void)x;
-  for (int d = 0; d < 3; ++d) increment[d] = 0;
+  const PetscReal at[3] = {x[0], x[1], walls->dim == 3 ? x[2] : 0};
+  frame_increment(walls->c, walls->c->walls + k, t0, t1, at, increment);
 }

@@ -1,5 +1,6 @@
 /* Rigid walls as geometry, independent of the grid: how far a position is from a wall, which way
- * leads away from it, and how the wall's matter moves. */
+ * leads away from it, and how the wall's matter moves. In axisymmetry all is meant in the plane of
+ * radius and height. Not collective; each rank has all walls. */
 #pragma once
 #include "base/diag/diag.h"
 #include "case/case.h"
@@ -17,12 +18,17 @@ typedef struct {
 /* Mistakes of the geometry (files that cannot be read, surfaces that are not closed) go to diag. */
 PetscErrorCode WallsCreate(const Case *c, Diag *diag, Walls **walls);
 PetscErrorCode WallsDestroy(Walls **walls);
+/* Does wall k stand at time t? Up to `until`, and after `from` (from the start, if that is 0). */
+PetscBool wall_stands(const Walls *walls, PetscInt k, PetscReal t);
 /* The wall of index k as x (dim coordinates) sees it at time t. PETSC_FALSE if x is farther than
- * `within` (m) away, or the wall does not stand at that time: *place is left alone then. side: of a
- * wall without an inside, the one on which x was before (what wall_side gave); of others 0. */
+ * `within` (m) away, or the wall does not stand at that time: *place is left alone then. What lies
+ * in a wall that has an inside is never far. side: of a wall without an inside, the one on which x
+ * was before (what wall_side gave), then gap is negative on the other one; 0: gap is the distance
+ * (less half the thickness), as it is from any side where a rim is nearest. */
 PetscBool wall_near(const Walls *walls, PetscInt k, PetscReal t, const PetscReal *x, PetscReal within, int side,
                     WallPlace *place);
-/* On which side of wall k is x at time t? 0 for walls that have an inside. */
+/* On which side of wall k is x at time t, 1 or -1? 0 for walls that have an inside, and beyond the
+ * rim of others, where neither side is behind the other: ask anew in every step. */
 int wall_side(const Walls *walls, PetscInt k, PetscReal t, const PetscReal *x);
 /* What the wall's matter that is at x at t0 moves by until t1, m. */
 void wall_motion(const Walls *walls, PetscInt k, PetscReal t0, PetscReal t1, const PetscReal *x,

@@ -232,6 +232,62 @@ static void Mesh3D(void **state)
   assert_int_equal(CaseDestroy(&c), 0);
 }
 
+static const char walls_2d[] = PLAIN
+  "walls:\n"
+  "  - {name: floor, shape: {half-space: {point: [0, 0], normal: [0, 1]}}, friction_angle: 30, adhesion: 5}\n"
+  "  - {name: gate, shape: {line: [[1, 0], [1, 0.3], [1.1, 2]]}, until: 0.4, thickness: 0.01, bodies: [beam]}\n"
+  "  - {name: drum, shape: {circle: {centre: [1, 1], radius: 2}}, inside: true, contact: stick, from: 0.1,\n"
+  "     motion: [{rotation: {centre: [1, 1], rate: 3}, amplitude: [[0, 0], [1, 1]]}, {velocity: {y: -0.1}}]}\n"
+  "  - {name: lip, shape: {arc: {centre: [1, 1], radius: 2, from: 270, to: 45}}, friction: 0.3}\n";
+static const char walls_3d[] =
+  "kinematics: 3d\nmethod: fem\nanalysis: {type: static, steps: 4}\ngrid: {mesh: /tmp/a.msh}\n"
+  "bodies: [{name: a, region: b, material: rubber, points_per_cell: 4}]\n" PLAIN_MATERIALS
+  "walls:\n"
+  "  - {name: a, shape: {cylinder: {base: [0, 0, 1], axis: [0, 0, 2], length: 3, radius: 0.5}}}\n"
+  "  - {name: b, shape: {difference: [{cone: {base: [0, 0, 1], axis: [0, 1, 2], length: 3, radius: 0.5}},\n"
+  "     {cone: {base: [0, 0, 1], axis: [0, 1, 2], length: 3, radius: 0, end_radius: 0.25}}]}, contact: bonded}\n"
+  "  - {name: c, shape: {disk: {centre: [0, 0, 1], normal: [0, 0, 2], radius: 3, hole: 0.5}}}\n"
+  "  - {name: d, shape: {revolved: {base: [0, 0, 1], axis: [1, 0, 0], line: [[0.1, 0], [0.5, 0.4]]}}}\n"
+  "  - {name: e, shape: {revolved: {base: [0, 0, 1], axis: [1, 0, 0], polygon: [[0.1, 0], [0.5, 0.4], [0, 1]]}}}\n"
+  "  - {name: f, shape: {surface: {file: /tmp/a.stl, scale: 0.001, offset: [0, 0.5, 0]}}, inside: true}\n"
+  "  - {name: g, shape: {surface: {file: /tmp/a.msh, group: top, open: true}},\n"
+  "     motion: [{displacement: {x: 0.1, z: 2}}, {rotation: {centre: [0, 0, 0], axis: [0, 1, 1], rate: 3}}]}\n";
+
+static void WallsOfThePlane(void **state)
+{
+  Case *c = read_good(walls_2d);
+  (void)state;
+  assert_int_equal(c->n_walls, 4);
+  assert_int_equal(c->walls[0].contact, CONTACT_FRICTION);
+  ASSERT_NEAR(c->walls[0].friction, 0.57735026918962576, 1e-15);
+  assert_int_equal(c->walls[1].shape.n_vertices, 3);
+  assert_true(c->walls[1].has_until && !c->walls[0].has_until);
+  assert_int_equal(c->walls[1].n_bodies, 1);
+  assert_string_equal(c->walls[1].bodies[0], "beam");
+  assert_int_equal(c->walls[2].n_motions, 2);
+  assert_int_equal(c->walls[2].motions[0].kind, MOTION_ROTATION);
+  ASSERT_NEAR(c->walls[2].motions[0].axis[2], 1, 0);
+  assert_int_equal(c->walls[2].motions[0].amplitude.n, 2);
+  ASSERT_NEAR(c->walls[2].motions[1].value[1], -0.1, 0);
+  ASSERT_NEAR(c->walls[3].shape.angle[1], 405, 0);
+  assert_int_equal(CaseDestroy(&c), 0);
+}
+
+static void WallsOfSpace(void **state)
+{
+  Case *c = read_good(walls_3d);
+  (void)state;
+  assert_int_equal(c->n_walls, 7);
+  ASSERT_NEAR(c->walls[0].shape.radii[1], 0.5, 0);
+  assert_int_equal(c->walls[1].shape.children[1].kind, SHAPE_CONE);
+  assert_false(shape_is_solid(&c->walls[2].shape) || shape_is_solid(&c->walls[3].shape));
+  assert_true(shape_is_solid(&c->walls[4].shape) && shape_is_solid(&c->walls[5].shape));
+  ASSERT_NEAR(c->walls[5].shape.scale, 0.001, 0);
+  ASSERT_NEAR(c->walls[6].shape.scale, 1, 0);
+  assert_string_equal(c->walls[6].shape.group, "top");
+  assert_int_equal(CaseDestroy(&c), 0);
+}
+
 static char *ToYaml(const Case *c)
 {
   char *text;
@@ -243,9 +299,9 @@ static char *ToYaml(const Case *c)
  * to the last bit. */
 static void RoundTrip(void **state)
 {
-  const char *const texts[] = {everything, PLAIN, solid, soft};
+  const char *const texts[] = {everything, PLAIN, solid, soft, walls_2d, walls_3d};
   (void)state;
-  for (int i = 0; i < 4; ++i) {
+  for (int i = 0; i < 6; ++i) {
     Case *first = read_good(texts[i]), *second;
     char *once = ToYaml(first), *twice;
     second = read_good(once);
@@ -369,6 +425,8 @@ int main(int argc, char **argv)
                                      cmocka_unit_test(Mixed),
                                      cmocka_unit_test(Mesh3D),
                                      cmocka_unit_test(RoundTrip),
+                                     cmocka_unit_test(WallsOfThePlane),
+                                     cmocka_unit_test(WallsOfSpace),
                                      cmocka_unit_test(RoundTripOddValues),
                                      cmocka_unit_test(YamlForms)};
   PetscMPIInt rank;

@@ -3,10 +3,7 @@
  * PETSc's own reader would abort on some broken files and wait for ever on others (rank 0 stops
  * while the rest stand in a broadcast); it also forgets the element numbers that messages must
  * name. */
-#include <errno.h>
-#include <fcntl.h>
-#include <sys/stat.h>
-#include <unistd.h>
+#include "base/file.h"
 #include "grid/gmsh/msh_reader.h"
 
 /* A double-quoted string on the rest of the line. */
@@ -162,41 +159,17 @@ static PetscErrorCode ResolveNodes(MshReader *r)
   PetscFunctionReturn(0);
 }
 
-static void cannot_read(MshReader *r, const char *why)
-{
-  r->failed = PETSC_TRUE;
-  (void)snprintf(r->message, r->message_size, "cannot read '%s': %s", r->path, why);
-}
-
-/* The size of a plain file, which alone has one; -1 after a complaint. */
-static long file_size(MshReader *r, int fd)
-{
-  struct stat info;
-  if (fd < 0 || fstat(fd, &info)) cannot_read(r, strerror(errno));
-  else if (!S_ISREG(info.st_mode)) cannot_read(r, "not a file");
-  return r->failed ? -1 : (long)info.st_size;
-}
-
 static PetscErrorCode LoadFile(MshReader *r, const char *path)
 {
-  /* does not wait for the other end of a pipe */
-  const int fd = open(path, O_RDONLY | O_NONBLOCK | O_CLOEXEC);
-  const long size = file_size(r, fd);
-  FILE *file = size < 0 ? NULL : fdopen(fd, "rb");
+  const char *why;
+  size_t length;
 
   PetscFunctionBeginUser;
-  if (!file) {
-    if (fd >= 0) (void)close(fd);
-    if (!r->failed) cannot_read(r, strerror(errno));
-    PetscFunctionReturn(0);
-  }
-  PetscCall(PetscMalloc1((size_t)size + 1, &r->data));
-  const size_t got = fread(r->data, 1, (size_t)size, file);
-  r->data[got] = 0; /* stops strtod at the end */
+  PetscCall(FileLoad(path, &r->data, &length, &why));
   r->at = r->data;
-  r->end = r->data + got;
-  if (ferror(file)) cannot_read(r, strerror(errno));
-  (void)fclose(file);
+  r->end = r->data + length;
+  if (why) (void)snprintf(r->message, r->message_size, "cannot read '%s': %s", r->path, why);
+  r->failed = why != NULL;
   PetscFunctionReturn(0);
 }
 

@@ -115,7 +115,7 @@ void mesh_clamp(const Grid *grid, PetscReal *x)
   const Probe probe = {grid, at};
   PetscReal xi[3], nearest[3], nodes[3 * CELL_MAX_NODES], N[CELL_MAX_NODES], dN[3 * CELL_MAX_NODES];
   if (mesh_locate(grid, x, -1, xi) >= 0) return;
-  const PetscInt face = box_tree_nearest(grid->mesh->face_tree, at, probe_face, (void *)&probe);
+  const PetscInt face = box_tree_nearest(grid->mesh->face_tree, at, PETSC_MAX_REAL, probe_face, (void *)&probe);
   if (face < 0) return;
   (void)nearest_on_face(grid, face, at, nearest);
   for (PetscInt d = 0; d < grid->dim; ++d) x[d] = nearest[d];

@@ -123,29 +123,21 @@ void box_tree_holding(const BoxTree *tree, const PetscReal x[3], BoxVisit visit,
   }
 }
 
-static PetscReal squared_distance(const PetscReal bounds[6], const PetscReal x[3])
-{
-  PetscReal sum = 0;
-  for (int d = 0; d < 3; ++d) {
-    const PetscReal gap = PetscMax(PetscMax(bounds[d] - x[d], x[d] - bounds[d + 3]), 0.0);
-    sum += gap * gap;
-  }
-  return sum;
-}
-
-PetscInt box_tree_nearest(const BoxTree *tree, const PetscReal x[3], BoxDistance distance, void *context)
+PetscInt box_tree_nearest(const BoxTree *tree, const PetscReal x[3], PetscReal within, BoxDistance distance,
+                          void *context)
 {
   PetscInt stack[MAX_DEPTH], depth = 0, nearest = -1;
-  PetscReal least = PETSC_MAX_REAL;
+  PetscReal least = within;
   if (tree->n_nodes) stack[depth++] = 0;
   while (depth) {
     const PetscInt at = stack[--depth];
     const TreeNode *node = tree->nodes + at;
-    if (squared_distance(node->bounds, x) >= least) continue;
+    if (box_squared_distance(node->bounds, x) >= least) continue;
     if (node->right) {
       /* The nearer child first: it narrows the search. */
       const PetscInt a = at + 1, b = node->right;
-      const PetscBool swap = squared_distance(tree->nodes[a].bounds, x) < squared_distance(tree->nodes[b].bounds, x);
+      const PetscBool swap =
+        box_squared_distance(tree->nodes[a].bounds, x) < box_squared_distance(tree->nodes[b].bounds, x);
       stack[depth++] = swap ? b : a;
       stack[depth++] = swap ? a : b;
       continue;

@@ -11,10 +11,21 @@ PetscErrorCode BoxTreeDestroy(BoxTree **tree);
 /* Call `visit` for the boxes that hold x, until it returns PETSC_FALSE. */
 typedef PetscBool (*BoxVisit)(void *context, PetscInt index);
 void box_tree_holding(const BoxTree *tree, const PetscReal x[3], BoxVisit visit, void *context);
-/* The nearest object, by `distance` (squared), which is never less than that of its box; -1: there
- * is none. */
+/* The nearest object, by `distance` (squared), which is never less than that of its box; -1: none is
+ * nearer than `within` (squared, m2). */
 typedef PetscReal (*BoxDistance)(void *context, PetscInt index);
-PetscInt box_tree_nearest(const BoxTree *tree, const PetscReal x[3], BoxDistance distance, void *context);
+PetscInt box_tree_nearest(const BoxTree *tree, const PetscReal x[3], PetscReal within, BoxDistance distance,
+                          void *context);
+/* Squared distance of x from a box, 0 inside. */
+static inline PetscReal box_squared_distance(const PetscReal bounds[6], const PetscReal x[3])
+{
+  PetscReal sum = 0;
+  for (int d = 0; d < 3; ++d) {
+    const PetscReal gap = PetscMax(PetscMax(bounds[d] - x[d], x[d] - bounds[d + 3]), 0.0);
+    sum += gap * gap;
+  }
+  return sum;
+}
 
 /* The box around n positions x (n x dim). */
 static inline void box_around(PetscInt dim, PetscInt n, const PetscReal *x, PetscReal bounds[6])

@@ -11,36 +11,38 @@
 #include "input/yaml.h"
 
 typedef enum {
-  TYPE_NUMBER,    /* PetscReal */
-  TYPE_INTEGER,   /* PetscInt */
-  TYPE_BOOLEAN,   /* PetscBool */
-  TYPE_WORD,      /* an enum, from `words` */
-  TYPE_WORD_TEXT, /* char *, from `words` */
-  TYPE_MEMBER,    /* const struct *, from `registry` */
-  TYPE_TEXT,      /* char * */
-  TYPE_NAME,      /* char *, fit for a path */
-  TYPE_VALUES,    /* char *: any value or list on one line */
-  TYPE_FILE,      /* char *, resolved against the folder of the case */
-  TYPE_REFERENCE, /* char *, a name from the list or mapping `target` at the top of the file */
-  TYPE_BOUNDARY,  /* PetscInt, index or name of an entry of `boundary` */
-  TYPE_VECTOR,    /* PetscReal[3], as many as dimensions */
-  TYPE_SPIN,      /* PetscReal[3]: a number about z in 2D, a vector in 3D */
-  TYPE_AXIS,      /* PetscInt 0 1 2 */
-  TYPE_SPIN_AXIS, /* the same for rotations: only z in 2D */
-  TYPE_DIRECTION, /* 0 1 2, NORMAL */
-  TYPE_AXES,      /* PetscBool[4], of directions */
-  TYPE_INTERVAL,  /* number or [min, max]: PetscReal at offset and at second */
-  TYPE_SIZE,      /* cell size: resolved to counts by the check of the grid */
-  TYPE_COUNTS,    /* PetscInt[3] */
-  TYPE_AMPLITUDE, /* Amplitude */
-  TYPE_POLYGON,   /* vertices at offset, their number at count */
-  TYPE_EVERY,     /* PetscReal: end = 0, s > 0, {steps: n} = -n */
-  TYPE_FIELDS,    /* char ** and their number: words of output_fields */
-  TYPE_NUMBERS,   /* NamedValue * and their number: any key: a number */
-  TYPE_OPTIONS,   /* char ** and their number: options of PETSc */
-  TYPE_TABLE,     /* a nested mapping */
-  TYPE_LIST,      /* a list of mappings: array of structs and its number */
-  TYPE_NAMED,     /* a mapping of name: mapping; the struct begins with its name */
+  TYPE_NUMBER,     /* PetscReal */
+  TYPE_INTEGER,    /* PetscInt */
+  TYPE_BOOLEAN,    /* PetscBool */
+  TYPE_WORD,       /* an enum, from `words` */
+  TYPE_WORD_TEXT,  /* char *, from `words` */
+  TYPE_MEMBER,     /* const struct *, from `registry` */
+  TYPE_TEXT,       /* char * */
+  TYPE_NAME,       /* char *, fit for a path */
+  TYPE_VALUES,     /* char *: any value or list on one line */
+  TYPE_FILE,       /* char *, resolved against the folder of the case */
+  TYPE_REFERENCE,  /* char *, a name from the list or mapping `target` at the top of the file */
+  TYPE_REFERENCES, /* char ** and their number */
+  TYPE_BOUNDARY,   /* PetscInt, index or name of an entry of `boundary` */
+  TYPE_VECTOR,     /* PetscReal[3], as many as dimensions */
+  TYPE_SPIN,       /* PetscReal[3]: a number about z in 2D, a vector in 3D */
+  TYPE_AXIS,       /* PetscInt 0 1 2 */
+  TYPE_SPIN_AXIS,  /* the same for rotations: only z in 2D */
+  TYPE_DIRECTION,  /* 0 1 2, NORMAL */
+  TYPE_AXES,       /* PetscBool[4], of directions */
+  TYPE_INTERVAL,   /* number or [min, max]: PetscReal at offset and at second */
+  TYPE_SIZE,       /* cell size: resolved to counts by the check of the grid */
+  TYPE_COUNTS,     /* PetscInt[3] */
+  TYPE_AMPLITUDE,  /* Amplitude */
+  TYPE_POLYGON,    /* vertices at offset, their number at count */
+  TYPE_LINE,       /* the same, of two or more */
+  TYPE_EVERY,      /* PetscReal: end = 0, s > 0, {steps: n} = -n */
+  TYPE_FIELDS,     /* char ** and their number: words of output_fields */
+  TYPE_NUMBERS,    /* NamedValue * and their number: any key: a number */
+  TYPE_OPTIONS,    /* char ** and their number: options of PETSc */
+  TYPE_TABLE,      /* a nested mapping */
+  TYPE_LIST,       /* a list of mappings: array of structs and its number */
+  TYPE_NAMED,      /* a mapping of name: mapping; the struct begins with its name */
   TYPE_COUNT
 } SchemaType;
 
@@ -177,11 +179,11 @@ typedef struct {
 } SchemaTypeInfo;
 extern const SchemaTypeInfo schema_types[TYPE_COUNT];
 
-extern SchemaReadType SchemaReadInterval, SchemaReadAmplitude, SchemaReadPolygon, SchemaReadEvery, SchemaReadFields,
-  SchemaReadNumbers, SchemaReadOptions, SchemaReadVector, SchemaReadSpin, SchemaReadAxis, SchemaReadAxes,
-  SchemaReadSize, SchemaReadCounts, SchemaReadNumber, SchemaReadInteger, SchemaReadBoolean, SchemaReadWord,
-  SchemaReadMember, SchemaReadWordText, SchemaReadText, SchemaReadName, SchemaReadValues, SchemaReadFile,
-  SchemaReadReference, SchemaReadBoundary;
+extern SchemaReadType SchemaReadInterval, SchemaReadAmplitude, SchemaReadPolygon, SchemaReadReferences, SchemaReadEvery,
+  SchemaReadFields, SchemaReadNumbers, SchemaReadOptions, SchemaReadVector, SchemaReadSpin, SchemaReadAxis,
+  SchemaReadAxes, SchemaReadSize, SchemaReadCounts, SchemaReadNumber, SchemaReadInteger, SchemaReadBoolean,
+  SchemaReadWord, SchemaReadMember, SchemaReadWordText, SchemaReadText, SchemaReadName, SchemaReadValues,
+  SchemaReadFile, SchemaReadReference, SchemaReadBoundary;
 /* Is the name fit for a path and a column of a table? Complains at the node (its key if `key`). */
 PetscBool schema_check_name(SchemaReader *r, const YamlNode *node, const char *name, PetscBool key);
 
@@ -203,8 +205,8 @@ extern const SchemaWriteType schema_writers[TYPE_COUNT];
 /* --- checks of tables (schema_checks.c) --- */
 typedef PetscErrorCode SchemaCheck(SchemaReader *r, const YamlNode *mapping, void *target);
 extern SchemaCheck SchemaCheckAnalysis, SchemaCheckUntil, SchemaCheckBox, SchemaCheckGrid, SchemaCheckShapeBox,
-  SchemaCheckShape, SchemaCheckHalfSpace, SchemaCheckBody, SchemaCheckSelector, SchemaCheckMotion, SchemaCheckWall,
-  SchemaCheckLoads;
+  SchemaCheckShape, SchemaCheckHalfSpace, SchemaCheckCylinder, SchemaCheckCone, SchemaCheckDisk, SchemaCheckArc,
+  SchemaCheckBody, SchemaCheckSelector, SchemaCheckMotion, SchemaCheckWall, SchemaCheckWallMotion, SchemaCheckLoads;
 /* Materials take the parameters of their law (schema_material.c). */
 PetscErrorCode SchemaOpenMaterial(SchemaReader *r, const YamlNode *mapping, void *target);
 PetscErrorCode SchemaWriteMaterial(FILE *out, int indent, const Case *c, const void *source);

@@ -9,9 +9,9 @@ static const SchemaEntry component_entries[] = {
   {.key = NULL},
 };
 static const SchemaGroup component_groups[] = {{GROUP_AT_LEAST_ONE, {"x", "y", "z", NULL}}, {GROUP_NONE, {NULL}}};
-static const SchemaTable components = {
+const SchemaTable schema_components = {
   .name = "components",
-  .help = "Prescribed components, in m (displacement) or m/s (velocity); those not named stay free.",
+  .help = "Prescribed components, in m (displacement) or m/s (velocity); those not named stay free, or 0 of a wall.",
   .entries = component_entries,
   .groups = component_groups};
 
@@ -21,7 +21,7 @@ static const SchemaEntry rotation_entries[] = {
   KEY("axis", VECTOR, NULL, "axis through the centre, any length", ONLY_3D, REQUIRED, AT(MotionSpec, axis)),
   {.key = NULL},
 };
-static const SchemaTable rotation = {.name = "rotation", .help = "A rigid rotation.", .entries = rotation_entries};
+const SchemaTable schema_rotation = {.name = "rotation", .help = "A rigid rotation.", .entries = rotation_entries};
 
 static const SchemaEntry motion_entries[] = {
   KEY("name", NAME, NULL, "how `measures` may call it", AT(MotionSpec, name)),
@@ -30,10 +30,10 @@ static const SchemaEntry motion_entries[] = {
       "components that do not move: [x], [x, y], ...; or [normal]: nodes slide along the boundary that they stand in, "
       "inclined or curved, and do not leave it; where two such walls meet at more than 40 degrees they keep to both",
       TAG(MOTION_FIXED), AT(MotionSpec, component)),
-  KEY("displacement", TABLE, NULL, "prescribed displacement from the start", .table = &components,
+  KEY("displacement", TABLE, NULL, "prescribed displacement from the start", .table = &schema_components,
       TAG(MOTION_DISPLACEMENT)),
-  KEY("velocity", TABLE, NULL, "prescribed velocity", .table = &components, TAG(MOTION_VELOCITY)),
-  KEY("rotation", TABLE, NULL, "rigid rotation about a point", .table = &rotation, TAG(MOTION_ROTATION), TURNS),
+  KEY("velocity", TABLE, NULL, "prescribed velocity", .table = &schema_components, TAG(MOTION_VELOCITY)),
+  KEY("rotation", TABLE, NULL, "rigid rotation about a point", .table = &schema_rotation, TAG(MOTION_ROTATION), TURNS),
   KEY("amplitude", AMPLITUDE, NULL, "factor over time: [[time, factor], ...], linear between",
       .note = "1, or time / end for a displacement", AT(MotionSpec, amplitude)),
   KEY("moves", BOOLEAN, NULL,

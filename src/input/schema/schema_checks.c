@@ -174,7 +174,7 @@ PetscErrorCode SchemaCheckShape(SchemaReader *r, const YamlNode *mapping, void *
 
   PetscFunctionBeginUser;
   yaml_path(mapping, path, sizeof(path));
-  if (s->kind == SHAPE_POLYGON && !(polygon_area(s) > 0))
+  if ((s->kind == SHAPE_POLYGON || (s->kind == SHAPE_REVOLVED && !s->open)) && !(polygon_area(s) > 0))
     SchemaKeyError(r, mapping, "%s: the polygon has no area", path);
   if (s->kind == SHAPE_DIFFERENCE && s->n_children < 2)
     SchemaKeyError(r, mapping, "%s: a difference needs two shapes or more", path);
@@ -186,11 +186,62 @@ PetscErrorCode SchemaCheckShape(SchemaReader *r, const YamlNode *mapping, void *
 PetscErrorCode SchemaCheckHalfSpace(SchemaReader *r, const YamlNode *mapping, void *target)
 {
   const Shape *s = target;
+  const YamlNode *node = yaml_find(mapping, "normal") ? yaml_find(mapping, "normal") : yaml_find(mapping, "axis");
   char path[512];
 
   PetscFunctionBeginUser;
   if (s->normal[0] == 0 && s->normal[1] == 0 && s->normal[2] == 0)
-    SchemaError(r, yaml_find(mapping, "normal"), "%s.normal has no direction", yaml_path(mapping, path, sizeof(path)));
+    SchemaError(r, node, "%s has no direction", yaml_path(node, path, sizeof(path)));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode SchemaCheckCylinder(SchemaReader *r, const YamlNode *mapping, void *target)
+{
+  Shape *s = target;
+
+  PetscFunctionBeginUser;
+  s->radii[1] = s->radii[0];
+  PetscCall(SchemaCheckHalfSpace(r, mapping, target));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode SchemaCheckCone(SchemaReader *r, const YamlNode *mapping, void *target)
+{
+  const Shape *s = target;
+  char path[512];
+
+  PetscFunctionBeginUser;
+  if (!(s->radii[0] + s->radii[1] > 0))
+    SchemaError(r, yaml_find(mapping, "radius"), "%s: both ends have radius 0", yaml_path(mapping, path, sizeof(path)));
+  PetscCall(SchemaCheckHalfSpace(r, mapping, target));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode SchemaCheckDisk(SchemaReader *r, const YamlNode *mapping, void *target)
+{
+  const Shape *s = target;
+  char path[512];
+
+  PetscFunctionBeginUser;
+  if (s->radii[0] >= s->radii[1])
+    SchemaError(r, yaml_find(mapping, "hole"), "%s.hole must be smaller than the radius, %g m",
+                yaml_path(mapping, path, sizeof(path)), (double)s->radii[1]);
+  PetscCall(SchemaCheckHalfSpace(r, mapping, target));
+  PetscFunctionReturn(0);
+}
+
+/* From 270 to 90 is the right half. */
+PetscErrorCode SchemaCheckArc(SchemaReader *r, const YamlNode *mapping, void *target)
+{
+  Shape *s = target;
+  char path[512];
+
+  PetscFunctionBeginUser;
+  if (s->angle[1] < s->angle[0]) s->angle[1] += 360;
+  if (s->angle[1] > s->angle[0] && s->angle[1] - s->angle[0] < 360) PetscFunctionReturn(0);
+  SchemaError(r, yaml_find(mapping, "to"), "%s goes over %g degrees, an arc over more than 0 and less than 360",
+              yaml_path(mapping, path, sizeof(path)), (double)(s->angle[1] - s->angle[0]));
+  diag_hint(r->diag, "all of a circle, with an inside or as a container, is a `circle`");
   PetscFunctionReturn(0);
 }
 

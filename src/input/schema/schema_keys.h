@@ -28,8 +28,8 @@
 #define INPUT_ONLY .input_only = PETSC_TRUE
 
 /* Tables that others name. */
-extern const SchemaTable schema_shape, schema_selector, schema_grid, schema_body, schema_motion, schema_wall,
-  schema_loads, schema_basis, schema_measure;
+extern const SchemaTable schema_shape, schema_wall_shape, schema_selector, schema_grid, schema_body, schema_motion,
+  schema_components, schema_rotation, schema_wall, schema_loads, schema_basis, schema_measure;
 /* From support/bases.inc (registry.c), and the tables that it names. */
 extern const SchemaEntry schema_bases[];
 extern const SchemaGroup schema_basis_groups[];

@@ -316,6 +316,27 @@ PetscErrorCode SchemaReadReference(SchemaReader *r, const SchemaEntry *e, const 
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode SchemaReadReferences(SchemaReader *r, const SchemaEntry *e, const YamlNode *node, void *target)
+{
+  char ***names = (char ***)((char *)target + e->offset);
+  PetscInt *n = (PetscInt *)((char *)target + e->count);
+  SchemaEntry one = *e;
+  PetscBool found;
+
+  PetscFunctionBeginUser;
+  one.type = TYPE_REFERENCE;
+  if (!schema_is(r, e, node, YAML_SEQUENCE, 1)) PetscFunctionReturn(0);
+  PetscCall(PetscCalloc1(node->n, names));
+  for (PetscInt i = 0; i < node->n; ++i) {
+    const YamlNode *child = node->child[i];
+    found = PETSC_FALSE;
+    if (child->kind != YAML_SCALAR || yaml_is_null(child)) schema_mismatch(r, &one, child);
+    else PetscCall(CheckReference(r, child, e->target, &found));
+    if (found) PetscCall(PetscStrallocpy(child->text, &(*names)[(*n)++]));
+  }
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode SchemaReadBoundary(SchemaReader *r, const SchemaEntry *e, const YamlNode *node, void *target)
 {
   const YamlNode *list = yaml_find(r->document->root, "boundary");

@@ -23,6 +23,9 @@ const SchemaTypeInfo schema_types[TYPE_COUNT] = {
   [TYPE_VALUES] = {"a value or a list of values", "values", "{}", SchemaReadValues},
   [TYPE_FILE] = {"the name of a file", "file", "{\"type\": \"string\"}", SchemaReadFile},
   [TYPE_REFERENCE] = {"a name", "name", "{\"type\": [\"string\", \"number\"]}", SchemaReadReference},
+  [TYPE_REFERENCES] = {"a list of names", "names",
+                       "{\"type\": \"array\", \"items\": {\"type\": [\"string\", \"number\"]}, \"minItems\": 1}",
+                       SchemaReadReferences},
   [TYPE_BOUNDARY] = {"the name or index of a boundary entry", "name or index", "{\"type\": [\"string\", \"integer\"]}",
                      SchemaReadBoundary},
   [TYPE_VECTOR] = {"a vector", "vector", JSON_VECTOR, SchemaReadVector},
@@ -51,6 +54,7 @@ const SchemaTypeInfo schema_types[TYPE_COUNT] = {
                       SchemaReadAmplitude},
   [TYPE_POLYGON] = {"a list of three corners or more [[x, y], ...]", "[[x, y], ...]", JSON_PAIRS "3}",
                     SchemaReadPolygon},
+  [TYPE_LINE] = {"a list of two corners or more [[x, y], ...]", "[[x, y], ...]", JSON_PAIRS "2}", SchemaReadPolygon},
   [TYPE_EVERY] =
     {"`end`, a time in s above 0, or {steps: n}", "end, s, {steps: n}",
      "{\"anyOf\": [{\"const\": \"end\"}, {\"type\": \"number\", \"exclusiveMinimum\": 0}, {\"type\": \"object\", "

@@ -9,37 +9,102 @@ static const SchemaWord contact_words[] = {
   {NULL, 0, NULL},
 };
 
+static const SchemaEntry wall_motion_entries[] = {
+  KEY("displacement", TABLE, NULL, "displacement from the start", .table = &schema_components,
+      TAG(MOTION_DISPLACEMENT)),
+  KEY("velocity", TABLE, NULL, "velocity", .table = &schema_components, TAG(MOTION_VELOCITY)),
+  KEY("rotation", TABLE, NULL, "rotation about a point that stays", .table = &schema_rotation, TAG(MOTION_ROTATION),
+      TURNS),
+  KEY("amplitude", AMPLITUDE, NULL, "factor over time: [[time, factor], ...], linear between",
+      .note = "1, or time / end for a displacement in statics", AT(MotionSpec, amplitude)),
+  {.key = NULL},
+};
+static const SchemaTable wall_motion = {.name = "motion of a wall",
+                                        .help = "A translation or a rotation of what those before it have made.",
+                                        .entries = wall_motion_entries,
+                                        .groups = schema_one_tag,
+                                        .size = sizeof(MotionSpec),
+                                        .tag_offset = offsetof(MotionSpec, kind),
+                                        .check = SchemaCheckWallMotion};
+
 static const SchemaEntry wall_entries[] = {
   KEY("name", NAME, NULL, "how `measures` and messages call it", REQUIRED, AT(WallSpec, name)),
-  KEY("shape", TABLE, NULL, "where the wall is", .table = &schema_shape, REQUIRED, AT(WallSpec, shape)),
+  KEY("shape", TABLE, NULL, "where the wall is", .table = &schema_wall_shape, REQUIRED, AT(WallSpec, shape)),
   KEY("inside", BOOLEAN, NULL, "a container: material is inside the shape, the wall is all around it",
       .fallback = "false", AT(WallSpec, inside)),
+  KEY("thickness", NUMBER, "m", "of a line, arc, disk or open surface, with round ends", .fallback = "0", AT_LEAST(0),
+      AT(WallSpec, thickness)),
+  KEY("motion", LIST, NULL,
+      "how it moves; each entry moves what those before it have made: [rotation about its own "
+      "centre, then velocity] rolls",
+      .table = &wall_motion, AT(WallSpec, motions), .count = offsetof(WallSpec, n_motions)),
+  KEY("from", NUMBER, "s", "it stands only after this time, if it is not 0", .fallback = "0", AT_LEAST(0),
+      AT(WallSpec, from)),
+  KEY("until", NUMBER, "s", "and up to this one: a gate that vanishes", .note = "for ever", ABOVE(0),
+      AT(WallSpec, until), GIVEN(WallSpec, has_until)),
+  KEY("bodies", REFERENCES, NULL, "names of the bodies that meet it", .note = "all", .target = "bodies",
+      AT(WallSpec, bodies), .count = offsetof(WallSpec, n_bodies)),
   KEY("contact", WORD, NULL, "law of the interface", .words = contact_words,
-      .note = "friction if `friction` or `adhesion` is given, else frictionless", AT(WallSpec, contact)),
-  KEY("friction", NUMBER, NULL, "coefficient of friction, the tangent of its angle", .fallback = "0", AT_LEAST(0),
+      .note = "friction if `friction`, `friction_angle` or `adhesion` is given, else frictionless",
+      AT(WallSpec, contact)),
+  KEY("friction", NUMBER, NULL, "coefficient of friction, the tangent of its angle", .note = "0", AT_LEAST(0),
       AT(WallSpec, friction)),
+  KEY("friction_angle", NUMBER, "deg", "the angle instead", .bounded = PETSC_TRUE, .min = 0, .max = 90,
+      .max_open = PETSC_TRUE, INPUT_ONLY, AT(WallSpec, friction)),
   KEY("adhesion", NUMBER, "N/m2", "tangential stress that contact bears without pressure", .fallback = "0", AT_LEAST(0),
       AT(WallSpec, adhesion)),
   {.key = NULL},
 };
+static const SchemaGroup wall_groups[] = {{GROUP_AT_MOST_ONE, {"friction", "friction_angle", NULL}},
+                                          {GROUP_NONE, {NULL}}};
 const SchemaTable schema_wall = {.name = "wall",
                                  .help = "A rigid body that material meets anywhere in the grid.",
                                  .entries = wall_entries,
+                                 .groups = wall_groups,
                                  .size = sizeof(WallSpec),
                                  .check = SchemaCheckWall};
 
-PetscErrorCode SchemaCheckWall(SchemaReader *r, const YamlNode *mapping, void *target)
+PetscErrorCode SchemaCheckWallMotion(SchemaReader *r, const YamlNode *mapping, void *target)
 {
-  WallSpec *w = target;
+  const MotionSpec *m = target;
+  const YamlNode *moves = yaml_find(mapping, m->kind == MOTION_VELOCITY ? "velocity" : "displacement");
+  const YamlNode *x = yaml_find(moves, "x");
   char path[512];
 
   PetscFunctionBeginUser;
+  PetscCall(SchemaCheckMotion(r, mapping, target));
+  if (r->hoop && m->kind != MOTION_ROTATION && m->value[0] != 0)
+    SchemaError(r, x, "%s: x is the radius, and a rigid ring keeps its own", yaml_path(x, path, sizeof(path)));
+  PetscFunctionReturn(0);
+}
+
+static void check_contact(SchemaReader *r, const YamlNode *mapping, WallSpec *w, const char *path)
+{
+  if (yaml_find(mapping, "friction_angle")) w->friction = tan(w->friction * PETSC_PI / 180);
   const PetscBool rubs = w->friction > 0 || w->adhesion > 0;
   if (!yaml_find(mapping, "contact")) w->contact = rubs ? CONTACT_FRICTION : CONTACT_FRICTIONLESS;
   else if (w->contact != CONTACT_FRICTION && rubs)
     SchemaError(r, yaml_find(mapping, "contact"),
-                "%s: friction and adhesion mean something with `contact: friction` "
-                "alone",
-                yaml_path(mapping, path, sizeof(path)));
+                "%s: friction and adhesion mean something with `contact: friction` alone", path);
+}
+
+PetscErrorCode SchemaCheckWall(SchemaReader *r, const YamlNode *mapping, void *target)
+{
+  WallSpec *w = target;
+  const PetscBool solid = shape_is_solid(&w->shape);
+  char path[512];
+
+  PetscFunctionBeginUser;
+  yaml_path(mapping, path, sizeof(path));
+  if (w->inside && !solid) {
+    SchemaError(r, yaml_find(mapping, "inside"), "%s.inside: the shape of this wall has no inside", path);
+    diag_hint(r->diag, "a line, an arc, a disk and an open surface are thin: material may be on both of their sides");
+  }
+  if (w->thickness > 0 && solid)
+    SchemaError(r, yaml_find(mapping, "thickness"), "%s.thickness: a shape that has an inside is as thick as it is",
+                path);
+  if (w->has_until && w->until <= w->from)
+    SchemaError(r, yaml_find(mapping, "until"), "%s.until must be later than `from`, %g s", path, (double)w->from);
+  check_contact(r, mapping, w, path);
   PetscFunctionReturn(0);
 }

@@ -180,6 +180,8 @@ static PetscReal inertia_work(const Model *m, PetscReal dt)
   return mass_product(m, du, a);
 }
 
+static PetscBool is_twin(const Model *m, PetscInt node) { return m->method->clouds && cloud_is_twin(m->grid, node); }
+
 /* Where clouds are new in every step, what balanced the forces at the end of the last one no longer
  * does in these: the work of what is out of balance, by the trapezoidal rule. `external`: of nodes
  * at the step's start. */
@@ -194,7 +196,7 @@ static PetscErrorCode OutOfBalance(const Model *m, const PetscReal *g, const Pet
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc3(dofs, &zero, dofs, &force, dofs, &history));
   for (PetscInt i = 0; i < m->grid->n_owned * m->dim; ++i)
-    if (n->touched[i / m->dim] && !cloud_is_twin(m->grid, i / m->dim))
+    if (n->touched[i / m->dim] && !is_twin(m, i / m->dim))
       history[i] = (m->scheme->inertia ? n->a[i] - n->echo[i] + damping * n->v[i] : 0) - g[i % m->dim];
   PetscCall(GridToGhosts(m->grid, m->dim, history));
   in.du = zero;
@@ -204,7 +206,7 @@ static PetscErrorCode OutOfBalance(const Model *m, const PetscReal *g, const Pet
   PetscCall(GridSumToOwners(m->grid, m->dim, force));
   *work = 0;
   for (PetscInt i = 0; i < m->grid->n_owned * m->dim; ++i) {
-    if (!cloud_is_twin(m->grid, i / m->dim)) *work += 0.5 * m->nodes->du[i] * (force[i] - external[i]);
+    if (!is_twin(m, i / m->dim)) *work += 0.5 * m->nodes->du[i] * (force[i] - external[i]);
     if (m->boundary->fixed[i]) *work -= 0.5 * m->nodes->prescribed[i] * m->nodes->held[i];
   }
   PetscCall(PetscFree3(zero, force, history));
@@ -255,7 +257,8 @@ PetscErrorCode EnergyOfNodes(Model *m, PetscReal dt, EnergyStep *e)
   const PetscReal damping = model_damping(m);
   const NodalFields *n = m->nodes;
   const PetscReal end = share_of_end(m);
-  PetscReal g0[3], g1[3], *before, *after, held = 0, impulse = 0, unbalanced = 0, moving;
+  const ContactWork contact = contact_work(m);
+  PetscReal g0[3], g1[3], *before, *after, held = 0, impulse = 0, unbalanced = 0;
 
   PetscFunctionBeginUser;
   *e = (EnergyStep){0};
@@ -269,16 +272,19 @@ PetscErrorCode EnergyOfNodes(Model *m, PetscReal dt, EnergyStep *e)
     held += ((1 - end) * n->held[i] + end * n->force[i]) * n->prescribed[i];
     impulse += impulse_work(m, i, dt);
   }
-  if (m->method->begin) PetscCall(OutOfBalance(m, g0, before, &unbalanced));
+  const PetscBool jumps = m->method->begin || (m->contact && !m->method->restores_grid);
+  if (jumps) PetscCall(OutOfBalance(m, g0, before, &unbalanced));
+  if (jumps) unbalanced -= contact.start;
   PetscCall(PetscFree2(before, after));
   if (damping > 0) {
     const NodalField du = {{n->du, n->du}, {1, 0}}, mean = {{n->v, n->v1}, {0.5, 0.5}};
     e->damped = damping * mass_product(m, du, mean);
   }
-  contact_work(m, &moving, &e->friction);
-  held += moving;
+  e->friction = contact.sliding;
+  held += contact.moving;
   e->boundary = held + impulse;
   e->transfer = impulse - unbalanced + transfer_of_nodes(m, dt, e, held);
+  if (!m->method->restores_grid) e->transfer += contact.closing;
   if (m->method->restores_grid && m->space->fade > 0) {
     const PetscReal more = faded(m);
     e->damped += more;

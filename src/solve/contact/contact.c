@@ -44,8 +44,8 @@ PetscErrorCode ContactDestroy(Contact **contact)
 static void first_multiplier(const Contact *s, ContactPoint *c)
 {
   c->multiplier = (ContactForce){0};
-  for (int d = 0; d < 3; ++d) c->multiplier.pressure += c->start[d] * c->normal[d];
-  for (int d = 0; d < 3; ++d) c->multiplier.shear[d] = c->start[d] - c->multiplier.pressure * c->normal[d];
+  for (int d = 0; d < 3; ++d) c->multiplier.pressure += c->last[d] * c->normal[d];
+  for (int d = 0; d < 3; ++d) c->multiplier.shear[d] = c->last[d] - c->multiplier.pressure * c->normal[d];
   if (c->touches && c->before == CONTACT_OPEN) c->multiplier.pressure = 0.1 * CLOSED * s->length * c->law.penalty;
 }
 
@@ -196,7 +196,10 @@ static PetscErrorCode Commit(void *data, const NodalScene *scene)
     PetscReal *kept = point_real(scene->points, POINT_CONTACT, c->owner) + c->wall * CONTACT_KEPT(dim);
     kept[0] = (PetscReal)c->state;
     contact_force(c, f);
-    for (PetscInt d = 0; d < dim; ++d) kept[1 + d] = f[d];
+    for (PetscInt d = 0; d < dim; ++d) {
+      kept[1 + d] = f[d];
+      kept[1 + dim + d] = c->late[d];
+    }
   }
   PetscFunctionReturn(0);
 }

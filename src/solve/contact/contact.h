@@ -26,12 +26,16 @@ typedef struct {
   PetscReal gap;       /* at the last assembly, m */
   PetscReal normal[3]; /* at the last assembly */
   PetscReal slip[3];   /* likewise: motion against the wall, m */
-  PetscReal start[3];  /* force at the end of the last step, N */
+  PetscReal last[3];   /* force at the end of the last step, N */
+  /* the same as acceleration remembers it, and what is taken from it at the start of this step; likewise
+   * what is taken from it at the end, N */
+  PetscReal start[3], late[3];
 } ContactPoint;
 
 /* Resultants of one wall on the material: force, N, and torque about the origin, N m. */
 typedef struct {
   PetscReal force[3], torque[3];
+  PetscReal sliding; /* of impulses: work lost in sliding, J */
 } ContactSum;
 
 /* Of one wall. */
@@ -59,8 +63,9 @@ typedef struct Contact {
   ContactSum *impulse, *late;
 } Contact;
 
-/* Numbers that a carrier of contact keeps for each wall from step to step: state and force. */
-#define CONTACT_KEPT(dim) (1 + (dim))
+/* Numbers that a carrier of contact keeps for each wall from step to step: state, and forces
+ * `last` and `late`. */
+#define CONTACT_KEPT(dim) (1 + 2 * (dim))
 
 PetscErrorCode ContactCreate(const Case *c, const Walls *walls, Contact **contact);
 PetscErrorCode ContactDestroy(Contact **contact);
@@ -87,6 +92,6 @@ typedef struct {
 /* Collective. The least change, by mass, of nodal motion that lets points in contact go with their
  * wall: in the direction of the normal, and across it where they stick. sum: momentum (or force) that
  * it takes from each wall (n_walls of them, on this rank). */
-PetscErrorCode ContactProject(const Contact *contact, const ContactMotion *motion, ContactSum *sum);
+PetscErrorCode ContactProject(Contact *contact, const ContactMotion *motion, ContactSum *sum);
 void contact_force(const ContactPoint *c, PetscReal f[3]); /* of the last assembly */
 void contact_add(const ContactPoint *c, PetscInt dim, const PetscReal force[3], ContactSum *sum);

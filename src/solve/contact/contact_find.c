@@ -59,7 +59,10 @@ static PetscErrorCode AddNodes(Contact *s, ContactPoint *c, PetscInt n)
 static void remember(ContactPoint *c, PetscInt dim, const PetscReal *kept, const WallPlace *place)
 {
   c->before = (ContactState)(int)(kept[0] + 0.5);
-  for (PetscInt d = 0; d < dim; ++d) c->start[d] = kept[1 + d];
+  for (PetscInt d = 0; d < dim; ++d) {
+    c->last[d] = kept[1 + d];
+    c->start[d] = kept[1 + d] + kept[1 + dim + d];
+  }
   c->state = c->before;
   for (int d = 0; d < 3; ++d) c->normal[d] = place->normal[d];
 }

@@ -150,20 +150,37 @@ static unsigned char held_of(const Contact *s, const ContactPoint *c, const Cont
   return state == CONTACT_SLIDES || (m->start && c->touches);
 }
 
-/* Of a wall that rubs, against the slip at the contact point. */
-static void rub(const Projection *w, PetscInt k, const PetscReal *velocity, PetscReal *p)
+/* Motion of a contact point along its wall, 3 numbers. */
+static void slip_of(const Projection *w, PetscInt k, PetscReal v[3])
 {
   const ContactPoint *c = w->s->point + k;
-  PetscReal v[3] = {0, 0, 0}, along = 0, size = 0, pressure = 0;
-  if (w->held[k] != 1 || c->law.friction == 0) return;
+  PetscReal along = 0;
+  v[0] = v[1] = v[2] = 0;
   for (PetscInt e = c->first; e < c->first + c->n; ++e)
-    for (PetscInt d = 0; d < w->s->dim; ++d) v[d] += w->s->N[e] * velocity[w->s->node[e] * w->s->dim + d];
+    for (PetscInt d = 0; d < w->s->dim; ++d) v[d] += w->s->N[e] * w->m->velocity[w->s->node[e] * w->s->dim + d];
   for (int d = 0; d < 3; ++d) v[d] -= w->m->wall * c->swept[d], along += v[d] * c->normal[d];
-  for (int d = 0; d < 3; ++d) pressure += p[d] * c->normal[d];
-  for (int d = 0; d < 3; ++d) v[d] -= along * c->normal[d], size += v[d] * v[d];
-  size = PetscSqrtReal(size);
-  if (size == 0) return;
-  for (int d = 0; d < 3; ++d) p[d] -= c->law.friction * pressure * v[d] / size;
+  for (int d = 0; d < 3; ++d) v[d] -= along * c->normal[d];
+}
+
+/* Of a wall that rubs, against the slip. */
+static void rub(const Projection *w, PetscInt k, PetscReal *p)
+{
+  const ContactPoint *c = w->s->point + k;
+  PetscReal v[3];
+  if (w->held[k] != 1 || c->law.friction == 0) return;
+  slip_of(w, k, v);
+  const PetscReal size = PetscSqrtReal(dot(3, v, v)), pressure = dot(3, p, c->normal);
+  for (int d = 0; d < 3 && size > 0; ++d) p[d] -= c->law.friction * pressure * v[d] / size;
+}
+
+/* Half of the work that impulses take from sliding: by the motion before them, or after. */
+static void lose(const Projection *w, ContactSum *sum)
+{
+  PetscReal v[3];
+  for (PetscInt k = 0; k < w->s->n && w->m->velocity == w->m->motion; ++k) {
+    slip_of(w, k, v);
+    sum[w->s->point[k].wall].sliding -= 0.5 * dot(3, v, w->p + 3 * k);
+  }
 }
 
 void contact_add(const ContactPoint *c, PetscInt dim, const PetscReal f[3], ContactSum *sum)
@@ -200,7 +217,17 @@ static PetscErrorCode Destroy(Projection *w)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode ContactProject(const Contact *s, const ContactMotion *m, ContactSum *sum)
+/* What was taken from forces, point by point. */
+static void keep(Projection *w, Contact *s)
+{
+  for (PetscInt k = 0; k < s->n && w->m->velocity != w->m->motion; ++k)
+    for (int d = 0; d < 3; ++d) {
+      if (w->m->start) s->point[k].start[d] += w->p[3 * k + d];
+      else s->point[k].late[d] = w->p[3 * k + d];
+    }
+}
+
+PetscErrorCode ContactProject(Contact *s, const ContactMotion *m, ContactSum *sum)
 {
   Projection w;
   PetscBool any;
@@ -211,10 +238,13 @@ PetscErrorCode ContactProject(const Contact *s, const ContactMotion *m, ContactS
     PetscCall(Solve(&w));
     PetscCall(LetGo(&w, &any));
   }
-  for (PetscInt k = 0; k < s->n; ++k) rub(&w, k, m->velocity, w.p + 3 * k);
+  for (PetscInt k = 0; k < s->n; ++k) rub(&w, k, w.p + 3 * k);
+  lose(&w, sum);
   PetscCall(Spread(&w, w.p));
   for (PetscInt i = 0; i < m->grid->n_nodes * s->dim; ++i) m->motion[i] += w.nodes[i];
+  lose(&w, sum);
   for (PetscInt k = 0; k < s->n; ++k) contact_add(s->point + k, s->dim, w.p + 3 * k, sum + s->point[k].wall);
+  keep(&w, s);
   PetscCall(Destroy(&w));
   PetscFunctionReturn(0);
 }

@@ -5,7 +5,7 @@
  * below the low one, or below a small share of its own peak, for a while, and its end is when it
  * came there. In between gravity works on the relative motion, and every point is carried some way.
  * Where too little mass was carried far, single grains leapt: that is none. */
-#include "boundary/motion.h"
+#include "case/motion.h"
 #include "model/measure/measure.h"
 #include "model/model_private.h"
 

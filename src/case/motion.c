@@ -1,4 +1,4 @@
-#include "boundary/motion.h"
+#include "case/motion.h"
 
 /* Displacement that the entry asks for at time t, in component d; zero at the start whatever the
  * amplitude. */

@@ -1,0 +1,159 @@
+/* Bodies on rigid walls, in every method, against what mechanics says of rigid bodies: momentum that
+ * the wall gives, how a block slides, that it rests, and what it weighs. */
+#include "case_builder.h"
+
+typedef struct {
+  const char *method, *basis;
+  CellType cell;
+  PetscReal friction;
+  const char *scheme, *transfer;
+} Block;
+
+#define SLOPE (PETSC_PI / 6)
+
+static int up_of(const Block *r) { return r->cell == CELL_HEXAHEDRON ? 2 : 1; }
+
+/* A block of 1 x 0.5 (x 0.5) m stands on a wall, half a cell above a line of the grid. */
+static Model *standing(Bench *b, const Block *r, PetscReal slope, PetscBool dynamic, WallSpec *wall)
+{
+  const int up = up_of(r);
+  bench_init(b, r->method, r->cell, 0);
+  bench_grid(b, (PetscReal[]){0.125, 0.25, 0}, (PetscReal[]){3.125, 1.5, 1}, 0.25);
+  bench_box(b, 0, (PetscReal[]){0.625, 0.5, 0.25}, (PetscReal[]){1.625, 1, 0.75});
+  if (dynamic) bench_dynamic(b, 1, 5e-3);
+  b->c.analysis.scheme = (char *)r->scheme;
+  b->c.analysis.transfer = (char *)r->transfer;
+  b->c.basis = (BasisSpec){
+    .kind = r->basis, .gamma = 1.8, .effective_radius = 1, .radius = 2, .max_radius = 3.5, .condition = 50, .gap = 2};
+  b->c.linear = LINEAR_AUTO;
+  b->c.newton = (NewtonSpec){.residual = 1e-11, .increment = 1e-12, .max_iterations = 25, .ease = 6};
+  b->c.stabilisation.curvature = 0.1;
+  b->c.gravity[0] = 9.81 * PetscSinReal(slope);
+  b->c.gravity[up] = -9.81 * PetscCosReal(slope);
+  *wall = (WallSpec){.name = (char *)"floor",
+                     .shape = {.kind = SHAPE_HALF_SPACE},
+                     .contact = r->friction > 0 ? CONTACT_FRICTION : CONTACT_FRICTIONLESS,
+                     .friction = r->friction};
+  wall->shape.point[up] = up == 2 ? 0.25 : 0.5;
+  wall->shape.normal[up] = 1;
+  b->c.n_walls = 1;
+  b->c.walls = wall;
+  return bench_model(b, PETSC_COMM_WORLD);
+}
+
+static PetscReal measure(Model *m, const char *kind, const char *word, PetscInt component)
+{
+  const MeasureSpec s = {.kind = (char *)kind, .word = (char *)word, .component = component, .wall = (char *)"floor"};
+  PetscReal value;
+  CALL(ModelMeasure(m, &s, 0, &value));
+  return value;
+}
+
+/* Impulses of the wall are the change of momentum; their ratio is the friction; the block is as fast as
+ * a rigid one, but for the waves in it; it is not in the wall; no energy is made. Steps of changing length. */
+static void slide(const Block *r)
+{
+  Bench b;
+  WallSpec wall;
+  const int up = up_of(r);
+  const PetscReal mass = up == 2 ? 250 : 500;
+  PetscReal given[3] = {0, 0, 0}, off = 0, deepest = 0;
+  Energies e;
+  Model *m = standing(&b, r, SLOPE, PETSC_TRUE, &wall);
+  for (PetscInt k = 0; m->time < 0.3; ++k) {
+    const PetscReal before = m->time;
+    model_step(m, k % 3 == 1 ? 2e-3 : 5e-3);
+    for (PetscInt d = 0; d < m->dim; ++d) {
+      given[d] += (m->time - before) * measure(m, "wall_force", NULL, d);
+      off = PetscMax(off, PetscAbsReal(given[d] + mass * b.c.gravity[d] * m->time - model_sum(m, "momentum", d)));
+    }
+    deepest = PetscMax(deepest, measure(m, "contact", "penetration", 0));
+  }
+  CALL(ModelEnergies(m, &e));
+  const PetscReal speed = 9.81 * (PetscSinReal(SLOPE) - r->friction * PetscCosReal(SLOPE)) * m->time;
+  const PetscReal found = model_sum(m, "momentum", 0) / mass, ratio = -given[0] / given[up];
+  PetscPrintf(PETSC_COMM_WORLD,
+              "%s %s cell %d mu %g %s %s: impulse off %.2g of %.4g, ratio %.6g, speed %.6g of %.6g, "
+              "%.2g m deep, transfer %.3g of %.6g J\n",
+              r->method, r->basis, (int)r->cell, (double)r->friction, r->scheme ? r->scheme : "",
+              r->transfer ? r->transfer : "", (double)off, (double)given[up], (double)ratio, (double)found,
+              (double)speed, (double)deepest, (double)e.transfer, (double)e.external);
+  CHECK(off <= 1e-8 * given[up] && given[up] > 500, "impulse off by %g of %g", (double)off, (double)given[up]);
+  CHECK(PetscAbsReal(ratio - r->friction) < 2e-3, "ratio %g", (double)ratio);
+  CHECK(PetscAbsReal(found - speed) < 0.03 * speed, "speed %g, not %g", (double)found, (double)speed);
+  CHECK(deepest <= 1e-4 * 0.25, "it is %g m deep in the wall", (double)deepest);
+  CHECK(e.transfer > -0.06 * e.external, "%g J of %g were made", (double)-e.transfer, (double)e.external);
+  CALL(ModelDestroy(&m));
+}
+
+static void test_slides(void **state)
+{
+  static const Block blocks[] = {
+    {"mpm", "cell", CELL_QUADRILATERAL, 0, NULL, "thesis"},
+    {"mpm", "cell", CELL_QUADRILATERAL, 0.2, NULL, "thesis"},
+    {"mpm", "cell", CELL_TRIANGLE, 0.2, NULL, "thesis"},
+    {"mpm", "cell", CELL_QUADRILATERAL, 0.2, NULL, "consistent"},
+    {"mpm", "cell", CELL_QUADRILATERAL, 0.2, "midpoint", "thesis"},
+    {"mpm", "gimp", CELL_QUADRILATERAL, 0.2, NULL, "thesis"},
+    {"mpm", "gimp", CELL_QUADRILATERAL, 0.2, "midpoint", "consistent"},
+    {"mpm", "cell", CELL_HEXAHEDRON, 0.2, NULL, "thesis"},
+    {"fem", "cell", CELL_QUADRILATERAL, 0, NULL, "thesis"},
+    {"fem", "cell", CELL_QUADRILATERAL, 0.2, NULL, "thesis"},
+    {"gmm", "lme", CELL_QUADRILATERAL, 0.2, NULL, "thesis"},
+  };
+  (void)state;
+  for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(blocks); ++k) slide(&blocks[k]);
+}
+
+/* Steeper friction than the slope: the block stays where it is, in statics. The floor bears its weight. */
+static void rest(const Block *r)
+{
+  Bench b;
+  WallSpec wall;
+  const int up = up_of(r);
+  const PetscReal weight = 9.81 * (up == 2 ? 250 : 500);
+  Model *m = standing(&b, r, SLOPE, PETSC_FALSE, &wall);
+  while (m->time < 1 - 1e-9) model_step(m, 0.25);
+  const PetscReal normal = measure(m, "wall_force", NULL, up), along = measure(m, "wall_force", NULL, 0);
+  PetscPrintf(PETSC_COMM_WORLD, "%s %s cell %d at rest: %.12g and %.12g N, %.2g m deep, %d iterations\n", r->method,
+              r->basis, (int)r->cell, (double)normal, (double)along, (double)measure(m, "contact", "penetration", 0),
+              (int)m->total_iterations);
+  CHECK(PetscAbsReal(normal - weight * PetscCosReal(SLOPE)) < 1e-8 * weight, "normal force %g", (double)normal);
+  CHECK(PetscAbsReal(along + weight * PetscSinReal(SLOPE)) < 1e-8 * weight, "shear force %g", (double)along);
+  CHECK(measure(m, "contact", "penetration", 0) < 1e-4 * 0.25, "deep in the wall");
+  CALL(ModelDestroy(&m));
+}
+
+static void test_rests(void **state)
+{
+  static const Block blocks[] = {
+    {"mpm", "cell", CELL_QUADRILATERAL, 0.8, NULL, "thesis"}, {"mpm", "gimp", CELL_QUADRILATERAL, 0.8, NULL, "thesis"},
+    {"mpm", "cell", CELL_HEXAHEDRON, 0.8, NULL, "thesis"},    {"fem", "cell", CELL_QUADRILATERAL, 0.8, NULL, "thesis"},
+    {"gmm", "lme", CELL_QUADRILATERAL, 0.8, NULL, "thesis"},
+  };
+  (void)state;
+  for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(blocks); ++k) rest(&blocks[k]);
+}
+
+/* A wall through the middle of the block. */
+static void test_through(void **state)
+{
+  static const Block block = {"mpm", "cell", CELL_QUADRILATERAL, 0.8, NULL, "thesis"};
+  Bench b;
+  WallSpec wall;
+  (void)state;
+  Model *m = standing(&b, &block, 0, PETSC_FALSE, &wall);
+  CALL(ModelDestroy(&m));
+  wall.shape.point[1] = 0.7;
+  bench_refused(&b, PETSC_COMM_WORLD, "walls[0]", "goes through a body");
+}
+
+int main(int argc, char **argv)
+{
+  const struct CMUnitTest tests[] = {
+    cmocka_unit_test(test_slides),
+    cmocka_unit_test(test_rests),
+    cmocka_unit_test(test_through),
+  };
+  return run_model_group(argc, argv, tests, PETSC_STATIC_ARRAY_LENGTH(tests));
+}

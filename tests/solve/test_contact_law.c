@@ -1,0 +1,158 @@
+/* The law of an interface: its tangent against central differences, Coulomb's cone, what opens, and
+ * that it turns with the wall. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <cmocka.h>
+#include "solve/contact/contact_law.h"
+
+/* A plane through the origin with unit normal n, or a sphere of radius 2 whose top is there. */
+typedef struct {
+  PetscReal n[3];
+  PetscBool sphere;
+} Wall;
+
+static WallPlace place_of(const Wall *w, const PetscReal x[3])
+{
+  WallPlace place = {0};
+  PetscReal r[3], length = 0;
+  if (!w->sphere) {
+    for (int d = 0; d < 3; ++d) place.gap += x[d] * w->n[d], place.normal[d] = w->n[d];
+    return place;
+  }
+  for (int d = 0; d < 3; ++d) r[d] = x[d] + 2 * w->n[d], length += r[d] * r[d];
+  length = PetscSqrtReal(length);
+  place.gap = length - 2;
+  for (int d = 0; d < 3; ++d) place.normal[d] = r[d] / length;
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) place.curvature[3 * i + j] = ((i == j) - place.normal[i] * place.normal[j]) / length;
+  return place;
+}
+
+static ContactState force_at(const ContactLaw *law, const Wall *w, const ContactForce *multiplier, const PetscReal x[3],
+                             PetscReal f[3], PetscReal *K)
+{
+  ContactForce now;
+  const WallPlace place = place_of(w, x);
+  const ContactState state = contact_law(law, &place, x, multiplier, &now, K);
+  for (int d = 0; d < 3; ++d) f[d] = now.pressure * place.normal[d] + now.shear[d];
+  return state;
+}
+
+/* The same numbers in every run. */
+static PetscReal number(unsigned *seed)
+{
+  *seed = *seed * 1103515245u + 12345u;
+  return (PetscReal)((*seed >> 8) & 0xffff) / 32768 - 1;
+}
+
+static void unit(unsigned *seed, PetscReal n[3])
+{
+  PetscReal length = 0;
+  for (int d = 0; d < 3; ++d) n[d] = number(seed), length += n[d] * n[d];
+  for (int d = 0; d < 3; ++d) n[d] /= PetscSqrtReal(length);
+}
+
+static void compare(const ContactLaw *law, const Wall *w, const ContactForce *multiplier, const PetscReal x[3],
+                    PetscInt *seen)
+{
+  const PetscReal step = 1e-6;
+  PetscReal f[3], plus[3], minus[3], K[9];
+  const ContactState state = force_at(law, w, multiplier, x, f, K);
+  for (int j = 0; j < 3; ++j) {
+    PetscReal there[3] = {x[0], x[1], x[2]};
+    there[j] += step;
+    if (force_at(law, w, multiplier, there, plus, NULL) != state) return; /* at a corner of the law */
+    there[j] -= 2 * step;
+    if (force_at(law, w, multiplier, there, minus, NULL) != state) return;
+    for (int i = 0; i < 3; ++i)
+      assert_true(PetscAbsReal(K[3 * i + j] + (plus[i] - minus[i]) / (2 * step)) <= 1e-6 * law->penalty);
+  }
+  ++seen[state];
+}
+
+/* Curved walls only without friction: across them the tangent leaves out how the plane of the shear turns. */
+static void test_tangent(void **state)
+{
+  PetscInt seen[3] = {0, 0, 0};
+  unsigned seed = 1;
+  (void)state;
+  for (int k = 0; k < 2000; ++k) {
+    Wall w = {.sphere = k % 3 == 0};
+    unit(&seed, w.n);
+    const ContactLaw law = {.kind = w.sphere ? CONTACT_FRICTIONLESS : CONTACT_FRICTION,
+                            .friction = w.sphere ? 0 : 0.4,
+                            .bond = k % 2 ? 0 : 3,
+                            .penalty = 100};
+    const ContactForce multiplier = {.pressure = 20 * (1 + number(&seed)), .shear = {number(&seed), number(&seed), 2}};
+    const PetscReal x[3] = {0.2 * number(&seed), 0.2 * number(&seed), 0.2 * number(&seed)};
+    compare(&law, &w, &multiplier, x, seen);
+  }
+  assert_true(seen[CONTACT_OPEN] > 50 && seen[CONTACT_SLIDES] > 300 && seen[CONTACT_STICKS] > 100);
+}
+
+/* No force in the cone's outside, none that pulls; the shear lies in the plane and against the slip. */
+static void test_cone(void **state)
+{
+  unsigned seed = 7;
+  (void)state;
+  for (int k = 0; k < 2000; ++k) {
+    Wall w = {.sphere = PETSC_FALSE};
+    unit(&seed, w.n);
+    const ContactLaw law = {.kind = CONTACT_FRICTION, .friction = 0.3, .bond = 1, .penalty = 50};
+    const ContactForce none = {.pressure = 5};
+    const PetscReal x[3] = {number(&seed), number(&seed), number(&seed)};
+    const WallPlace place = place_of(&w, x);
+    ContactForce now;
+    PetscReal shear = 0, out = 0, work = 0;
+    const ContactState is = contact_law(&law, &place, x, &none, &now, NULL);
+    for (int d = 0; d < 3; ++d) {
+      shear += now.shear[d] * now.shear[d];
+      out += now.shear[d] * w.n[d];
+      work += now.shear[d] * x[d];
+    }
+    assert_true((is == CONTACT_OPEN) == (5 - 50 * place.gap <= 0) && now.pressure >= 0);
+    assert_true(PetscSqrtReal(shear) <= 0.3 * now.pressure + (is == CONTACT_OPEN ? 0 : 1) + 1e-12);
+    assert_true(PetscAbsReal(out) < 1e-12 && work <= 1e-12);
+  }
+}
+
+/* Turned about z by a right angle: (x, y) -> (-y, x). */
+static void test_turned(void **state)
+{
+  const Wall w = {.n = {0.6, 0.8, 0}}, turned = {.n = {-0.8, 0.6, 0}};
+  const ContactLaw law = {.kind = CONTACT_FRICTION, .friction = 0.5, .penalty = 10};
+  const ContactForce m = {.pressure = 4, .shear = {0.8, -0.6, 0.1}}, mt = {.pressure = 4, .shear = {0.6, 0.8, 0.1}};
+  const PetscReal x[3] = {0.3, -0.4, 0.2}, xt[3] = {0.4, 0.3, 0.2};
+  PetscReal f[3], ft[3];
+  (void)state;
+  assert_int_equal(force_at(&law, &w, &m, x, f, NULL), force_at(&law, &turned, &mt, xt, ft, NULL));
+  assert_true(PetscAbsReal(ft[0] + f[1]) < 1e-14 && PetscAbsReal(ft[1] - f[0]) < 1e-14);
+  assert_true(PetscAbsReal(ft[2] - f[2]) < 1e-14);
+}
+
+/* A bonded wall pulls, and does not slide. */
+static void test_bonded(void **state)
+{
+  const Wall w = {.n = {0, 1, 0}};
+  const ContactLaw law = {.kind = CONTACT_BONDED, .penalty = 10};
+  const ContactForce none = {0};
+  const PetscReal x[3] = {2, 0.5, -1};
+  PetscReal f[3];
+  (void)state;
+  assert_int_equal(force_at(&law, &w, &none, x, f, NULL), CONTACT_STICKS);
+  assert_true(PetscAbsReal(f[0] + 20) < 1e-13 && PetscAbsReal(f[1] + 5) < 1e-13 && PetscAbsReal(f[2] - 10) < 1e-13);
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {
+    cmocka_unit_test(test_tangent),
+    cmocka_unit_test(test_cone),
+    cmocka_unit_test(test_turned),
+    cmocka_unit_test(test_bonded),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
