@@ -89,6 +89,14 @@ static PetscReal section_of(const NodalScene *scene, PetscInt p)
   return part * round;
 }
 
+static PetscBool meets_body(const Case *c, PetscInt k, PetscInt body)
+{
+  const WallSpec *w = c->walls + k;
+  for (PetscInt i = 0; i < w->n_bodies; ++i)
+    if (!strcmp(w->bodies[i], c->bodies[body].name)) return PETSC_TRUE;
+  return !w->n_bodies;
+}
+
 /* The surface of point p, of group g, before wall k. */
 static PetscErrorCode MeetPoint(Contact *s, const NodalScene *scene, PetscInt g, PetscInt p, PetscInt k)
 {
@@ -101,6 +109,7 @@ static PetscErrorCode MeetPoint(Contact *s, const NodalScene *scene, PetscInt g,
   ContactPoint *c = NULL;
 
   PetscFunctionBeginUser;
+  if (!meets_body(scene->c, k, points->body[p])) PetscFunctionReturn(0);
   if (!wall_near(s->walls, k, scene->t, x, s->near + THICKEST * points->real[POINT_REACH][p], side, &place))
     PetscFunctionReturn(0);
   const PetscReal reach = reach_of(points, p, place.normal);

@@ -163,7 +163,7 @@ static PetscErrorCode NewtonTry(Newton *n, NewtonReport *report)
   PetscCall(PetscTime(&start));
   newton_rest_without_unknowns(p);
   n->before = 0;
-  n->changes = 0;
+  n->changes = n->changed = 0;
   PetscCall(UpdateSaddle(n));
   PetscCall(UpdateProjection(n));
   PetscCall(SystemPrescribe(p->system, n->projects ? n->projection->held : p->fixed, p->idle));

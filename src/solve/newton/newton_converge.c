@@ -65,17 +65,18 @@ static PetscBool is_too_far(const Newton *n, PetscReal snorm)
 
 /* An iteration that wanders between the sides of yield surfaces, as most that fail do after ten to
  * fifteen iterations, and few that would come through (counted in docs/experiments/newton.md). */
-static PetscBool is_stuck(const PetscReal *residual, PetscInt k)
+static PetscBool is_stuck(const PetscReal *residual, PetscInt first, PetscInt k)
 {
   PetscReal before = PETSC_MAX_REAL, lately = PETSC_MAX_REAL;
-  if (k < STUCK_AFTER || k >= NEWTON_HISTORY || residual[k] <= STUCK_ABOVE) return PETSC_FALSE;
-  for (PetscInt i = 0; i <= k - STUCK_WINDOW; ++i) before = PetscMin(before, residual[i]);
+  if (k - first < STUCK_AFTER || k >= NEWTON_HISTORY || residual[k] <= STUCK_ABOVE) return PETSC_FALSE;
+  for (PetscInt i = first + (first > 0); i <= k - STUCK_WINDOW; ++i) before = PetscMin(before, residual[i]);
   for (PetscInt i = k - STUCK_WINDOW + 1; i <= k; ++i) lately = PetscMin(lately, residual[i]);
   return lately > STUCK_GAIN * before;
 }
 
-/* Converged with the multipliers that there are. Others make another residual at the same place. */
-static PetscErrorCode AugmentForces(Newton *n, SNESConvergedReason *reason)
+/* Converged with the multipliers that there are. Others make another residual at the same place, from
+ * which progress counts anew. */
+static PetscErrorCode AugmentForces(Newton *n, PetscInt iteration, SNESConvergedReason *reason)
 {
   PetscBool again;
   Vec f;
@@ -90,6 +91,9 @@ static PetscErrorCode AugmentForces(Newton *n, SNESConvergedReason *reason)
   PetscCall(NewtonGetResidual(n, f));
   PetscCall(VecNorm(f, NORM_2, &n->last));
   n->before = 0;
+  n->search.best = PETSC_MAX_REAL;
+  n->search.stale = 0;
+  n->changed = iteration;
   PetscFunctionReturn(0);
 }
 
@@ -118,10 +122,10 @@ PetscErrorCode NewtonConverged(SNES snes, PetscInt it, PetscReal xnorm, PetscRea
   else if (floored) *reason = SNES_DIVERGED_INNER;
   else if (it > 0 && is_too_far(n, snorm)) *reason = SNES_DIVERGED_FUNCTION_DOMAIN;
   else if (k > 2 && relative > 1e8) *reason = SNES_DIVERGED_DTOL;
-  else if (is_stuck(r->residual, k)) *reason = SNES_DIVERGED_LOCAL_MIN;
+  else if (is_stuck(r->residual, n->changed, k)) *reason = SNES_DIVERGED_LOCAL_MIN;
   n->before = it > 0 ? n->last : 0;
   n->last = fnorm;
-  if (*reason > 0) PetscCall(AugmentForces(n, reason));
+  if (*reason > 0) PetscCall(AugmentForces(n, k, reason));
   PetscFunctionReturn(0);
 }
 

@@ -39,7 +39,8 @@ struct Newton {
   PetscReal reaction, external; /* norms at the last assembly, N */
   /* norms of the residual one iteration ago, and two, N; before: 0 if there was none */
   PetscReal last, before;
-  PetscInt changes;  /* of multipliers in this solve (NodalForce.augment) */
+  /* of multipliers in this solve (NodalForce.augment), and the iteration of the last one */
+  PetscInt changes, changed;
   PetscBool tangent; /* do the system's values belong to du? */
   double t_points, t_matrix, t_linear, t_newton;
   double solving; /* when the linear solve that is going on began */
