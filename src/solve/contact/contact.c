@@ -1,15 +1,16 @@
 #include "solve/contact/contact.h"
 
-/* Penalty of a contact point, over the stiffness and inertia that a cell opposes to it. Penetration
- * falls by this factor with every change of the multipliers; larger ones make linear systems harder. */
-#define STIFFER 20
+/* Penalty of a contact point, over the stiffness and inertia that a cell opposes to it. Gaps fall by
+ * about this factor with every change of the multipliers. With 100 the sides of the law hand Newton's
+ * iteration back and forth (docs/decisions.md, 106). */
+#define STIFFER 5
 
 #define WALL_NUMBERS ((PetscInt)(sizeof(WallState) / sizeof(PetscReal)))
 
 #define LEANS 0.1 /* a normal with such a share of an axis holds along it */
 
 #define CLOSED 1e-5 /* of a cell: gaps and slips that remain of contact */
-#define MOST_CHANGES 12
+#define MOST_CHANGES 40
 
 PetscErrorCode ContactCreate(const Case *c, const Walls *walls, Contact **contact)
 {

@@ -6,6 +6,9 @@
 #define STUCK_GAIN 0.5   /* brought the residual below this share of the best before */
 #define STUCK_ABOVE 1e-4 /* a smaller residual is about to converge */
 
+/* residual over the reference at which multipliers may be renewed before all has converged */
+#define NEARLY 1e-3
+
 #define EXCUSED 10 /* a first guess is excused so many times all forces that act */
 
 /* tolerances up to which a residual may stay where increments vanish, unless it is round-off */
@@ -125,7 +128,8 @@ PetscErrorCode NewtonConverged(SNES snes, PetscInt it, PetscReal xnorm, PetscRea
   else if (is_stuck(r->residual, n->changed, k)) *reason = SNES_DIVERGED_LOCAL_MIN;
   n->before = it > 0 ? n->last : 0;
   n->last = fnorm;
-  if (*reason > 0) PetscCall(AugmentForces(n, k, reason));
+  const PetscBool soon = *reason == SNES_CONVERGED_ITERATING && it > 0 && relative <= NEARLY;
+  if (*reason > 0 || soon) PetscCall(AugmentForces(n, k, reason));
   PetscFunctionReturn(0);
 }
 
