@@ -2,6 +2,7 @@
 #include <math.h>
 #include "picture/plot_raster.h"
 #include "picture/plot_scene.h"
+#include "picture/plot_walls.h"
 #include "picture/revolution/revolution.h"
 
 /* Pixels along a section that is turned: more are of no use. */
@@ -67,5 +68,6 @@ PetscErrorCode PlotImage(const PlotScene *scene, const PlotFrame *f, const PlotP
   PetscFunctionBeginUser;
   if (scene->turned) PetscCall(Turned(scene, f, page, rgba));
   else PetscCall(Balls(scene, f, &raster, rgba));
+  plot_walls_draw(scene, f, page, rgba);
   PetscFunctionReturn(0);
 }

@@ -5,6 +5,7 @@
 #include "picture/plot.h"
 #include "picture/plot_field.h"
 #include "output/vtk/vtk_read.h"
+#include "wall/wall.h"
 
 /* One state. */
 typedef struct {
@@ -13,6 +14,7 @@ typedef struct {
   PetscReal *value;  /* n */
   PetscReal *radius; /* n, m */
   char title[256];
+  PetscReal time; /* s */
   PetscInt n_edges;
   PetscReal *edges; /* n_edges x 4: the grid's lines on the page */
 } PlotFrame;
@@ -20,14 +22,16 @@ typedef struct {
 typedef struct {
   PetscInt dim, n_frames;
   PlotFrame frames[PLOT_MAX_STATES];
-  PetscInt columns;                 /* in which frames stand; 0: chosen */
-  char label[128];                  /* of the colours, with the unit */
-  PetscReal low, high;              /* of the colours */
-  PetscReal gap;                    /* how far apart points stand in the first frame, m */
-  PetscInt up;                      /* axis that points up, in space */
-  PetscBool revolution;             /* x is a radius */
-  PetscBool mirrored;               /* both sides of the axis x = 0 are there, the other one as x < 0 */
-  PetscBool turned;                 /* in space, of points that lie in the plane, on both sides */
+  PetscInt columns;     /* in which frames stand; 0: chosen */
+  char label[128];      /* of the colours, with the unit */
+  PetscReal low, high;  /* of the colours */
+  PetscReal gap;        /* how far apart points stand in the first frame, m */
+  PetscInt up;          /* axis that points up, in space */
+  PetscBool revolution; /* x is a radius */
+  PetscBool mirrored;   /* both sides of the axis x = 0 are there, the other one as x < 0 */
+  PetscBool turned;     /* in space, of points that lie in the plane, on both sides */
+  Case *walled;         /* whose walls are drawn; NULL: none */
+  Walls *walls;
   PetscReal box_min[3], box_max[3]; /* of all points (and the grid), before the projection */
 } PlotScene;
 

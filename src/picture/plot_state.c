@@ -6,6 +6,7 @@
 #include "picture/figure.h"
 #include "picture/plot.h"
 #include "picture/plot_scene.h"
+#include "picture/plot_walls.h"
 #include "picture/revolution/revolution.h"
 #include "output/directory/run_dir_files.h"
 #include "output/vtk/vtk_series.h"
@@ -230,12 +231,15 @@ static PetscErrorCode FillScene(const PlotOptions *options, PetscInt n, const Vt
   for (PetscInt k = 0; k < n && !diag_errors(diag); ++k) {
     PetscCall(AddFrame(options, &states[k], subject, scene, diag));
     char *title = scene->frames[k].title;
+    scene->frames[k].time = states[k].time;
     if (n == 1) snprintf(title, 256, "%s at t = %.6g s", subject->words, (double)states[k].time);
     else snprintf(title, 256, "t = %.6g s", (double)states[k].time);
   }
   if (diag_errors(diag)) PetscFunctionReturn(0);
   choose_colours(scene, options, subject->field.unit, subject->words);
   PetscCall(PlotFramesShape(scene));
+  PetscCall(PlotWallsOpen(options->run, diag, scene));
+  plot_walls_extend(scene);
   for (PetscInt k = 0; k < n && options->grid; ++k)
     PetscCall(AddGrid(scene, &scene->frames[k], options->run, &states[k], diag));
   PetscFunctionReturn(0);
@@ -275,6 +279,7 @@ PetscErrorCode PlotState(const PlotOptions *options, Diag *diag, char picture[PE
     PetscCall(PlotDraw(&scene, options->width, options->height, picture, diag, &done));
   }
   if (!done) picture[0] = 0;
+  PetscCall(PlotWallsClose(&scene));
   PetscCall(PlotFramesFree(&scene));
   PetscFunctionReturn(0);
 }

@@ -120,3 +120,31 @@ void wall_motion(const Walls *walls, PetscInt k, PetscReal t0, PetscReal t1, con
   const PetscReal at[3] = {x[0], x[1], walls->dim == 3 ? x[2] : 0};
   frame_increment(walls->c, walls->c->walls + k, t0, t1, at, increment);
 }
+
+/* Of a wall that moves the box around the corners of its own one. */
+void wall_bounds(const Walls *walls, PetscInt k, PetscReal t, PetscReal min[3], PetscReal max[3])
+{
+  const Form *form = walls->wall[k].form;
+  const PetscReal *own = form->bounds, half = form->thin ? walls->c->walls[k].thickness / 2 : 0;
+  PetscBool endless = PETSC_FALSE;
+  Frame frame;
+  frame_at(walls->c, walls->c->walls + k, t, &frame);
+  for (int d = 0; d < 3; ++d) {
+    endless |= own[d] <= -PETSC_MAX_REAL || own[d + 3] >= PETSC_MAX_REAL;
+    min[d] = PETSC_MAX_REAL, max[d] = -PETSC_MAX_REAL;
+  }
+  for (int corner = 0; corner < 8 && !endless; ++corner) {
+    PetscReal X[3], x[3];
+    for (int d = 0; d < 3; ++d) X[d] = corner >> d & 1 ? own[d + 3] : own[d];
+    frame_turn(&frame, X, x);
+    for (int d = 0; d < 3; ++d) {
+      min[d] = PetscMin(min[d], x[d] + frame.T[d] - half);
+      max[d] = PetscMax(max[d], x[d] + frame.T[d] + half);
+    }
+  }
+  for (int d = 0; d < 3 && endless; ++d) {
+    const PetscBool moves = walls->c->walls[k].n_motions > 0;
+    min[d] = moves ? -PETSC_MAX_REAL : own[d];
+    max[d] = moves ? PETSC_MAX_REAL : own[d + 3];
+  }
+}

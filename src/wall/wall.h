@@ -33,3 +33,5 @@ int wall_side(const Walls *walls, PetscInt k, PetscReal t, const PetscReal *x);
 /* What the wall's matter that is at x at t0 moves by until t1, m. */
 void wall_motion(const Walls *walls, PetscInt k, PetscReal t0, PetscReal t1, const PetscReal *x,
                  PetscReal increment[3]);
+/* The box around wall k at time t; PETSC_MAX_REAL, with a sign, where it has no end. */
+void wall_bounds(const Walls *walls, PetscInt k, PetscReal t, PetscReal min[3], PetscReal max[3]);

@@ -80,6 +80,31 @@ static void HalfSpace(void **state)
   assert_true(min[1] == -PETSC_MAX_REAL && max[0] == PETSC_MAX_REAL);
 }
 
+/* Along the diagonal of the plane z = 1: a tolerance is a distance from the slanted surface, too. */
+static void CylinderAndCone(void **state)
+{
+  const Shape cylinder = {
+    .kind = SHAPE_CYLINDER, .point = {1, 1, 1}, .normal = {3, 4, 0}, .length = 5, .radii = {2, 2}};
+  const Shape cone = {.kind = SHAPE_CONE, .point = {0, 0, 0}, .normal = {0, 0, 7}, .length = 4, .radii = {3, 0}};
+  const PetscReal end[3] = {4, 5, 1}, side[3] = {1 - 0.8 * 2, 1 + 0.6 * 2, 1}, beyond[3] = {4.1, 5.1, 1};
+  const PetscReal n[2] = {0.8, 0.6}; /* of the cone, in the plane of radius and height */
+  PetscReal min[3], max[3];
+  (void)state;
+  assert_true(shape_contains(&cylinder, 3, end, tolerance) && shape_contains(&cylinder, 3, side, tolerance));
+  assert_false(shape_contains(&cylinder, 3, beyond, tolerance));
+  shape_bounds(&cylinder, 3, min, max);
+  ASSERT_NEAR(min[0], 1 - 2 * 0.8, 1e-15);
+  ASSERT_NEAR(max[1], 5 + 2 * 0.6, 1e-15);
+  ASSERT_NEAR(max[2], 3, 1e-15);
+  for (int k = 0; k < 2; ++k) {
+    const PetscReal away = (k ? 1.1 : 0.9) * tolerance, x[3] = {0, 1.5 + away * n[0], 2 + away * n[1]};
+    assert_int_equal(shape_contains(&cone, 3, x, tolerance), k == 0);
+  }
+  shape_bounds(&cone, 3, min, max);
+  ASSERT_NEAR(min[0], -3, 0);
+  ASSERT_NEAR(max[2], 4, 0);
+}
+
 /* A plate with a hole; the rim of the hole belongs to the plate. */
 static void Difference(void **state)
 {
@@ -119,8 +144,12 @@ static void UnionAndIntersection(void **state)
 
 int main(void)
 {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(Box),        cmocka_unit_test(Ball),
-                                     cmocka_unit_test(Polygon),    cmocka_unit_test(HalfSpace),
-                                     cmocka_unit_test(Difference), cmocka_unit_test(UnionAndIntersection)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(Box),
+                                     cmocka_unit_test(Ball),
+                                     cmocka_unit_test(Polygon),
+                                     cmocka_unit_test(HalfSpace),
+                                     cmocka_unit_test(CylinderAndCone),
+                                     cmocka_unit_test(Difference),
+                                     cmocka_unit_test(UnionAndIntersection)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -79,7 +79,8 @@ static void slide(const Block *r)
               r->transfer ? r->transfer : "", (double)off, (double)given[up], (double)ratio, (double)found,
               (double)speed, (double)deepest, (double)e.transfer, (double)e.external);
   CHECK(off <= 1e-8 * given[up] && given[up] > 500, "impulse off by %g of %g", (double)off, (double)given[up]);
-  CHECK(PetscAbsReal(ratio - r->friction) < 2e-3, "ratio %g", (double)ratio);
+  /* where it sticks for a moment, hopping, there is less */
+  CHECK(ratio < r->friction + 1e-3 && ratio >= 0.96 * r->friction, "ratio %g", (double)ratio);
   CHECK(PetscAbsReal(found - speed) < 0.03 * speed, "speed %g, not %g", (double)found, (double)speed);
   CHECK(deepest <= 1e-4 * 0.25, "it is %g m deep in the wall", (double)deepest);
   CHECK(e.transfer > -0.06 * e.external, "%g J of %g were made", (double)-e.transfer, (double)e.external);

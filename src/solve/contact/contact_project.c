@@ -11,7 +11,7 @@
 
 #define MOST_SWEEPS 60
 #define ENOUGH 1e-7   /* of what is lacking */
-#define SOFTENED 1e-5 /* of what an impulse moves: counts as motion */
+#define SOFTENED 0.1  /* of what an impulse moves itself: counts as motion */
 #define MOST_LET_GO 8 /* times that points are let go that would pull */
 
 /* Conjugate gradients over impulses, three numbers a contact point. */
@@ -162,15 +162,26 @@ static void slip_of(const Projection *w, PetscInt k, PetscReal v[3])
   for (int d = 0; d < 3; ++d) v[d] -= along * c->normal[d];
 }
 
-/* Of a wall that rubs, against the slip. */
+/* Of a wall that rubs: what slides is rubbed against its way by the impulse along the normal, or gets
+ * back what the solve has taken too much; what sticks is held by no more than friction can. */
 static void rub(const Projection *w, PetscInt k, PetscReal *p)
 {
   const ContactPoint *c = w->s->point + k;
-  PetscReal v[3];
-  if (w->held[k] != 1 || c->law.friction == 0) return;
+  const PetscBool velocity = w->m->velocity == w->m->motion;
+  PetscReal v[3], shear[3];
+  if (!w->held[k] || c->law.friction == 0 || c->law.kind == CONTACT_BONDED) return;
+  const PetscReal normal = dot(3, p, c->normal), friction = c->law.friction;
+  const PetscReal pressing =
+    (velocity ? 1 / w->m->wall : 1) * (w->m->start ? dot(3, c->last, c->normal) : c->now.pressure);
+  for (int d = 0; d < 3; ++d) shear[d] = p[d] - normal * c->normal[d];
+  if (w->held[k] == 3) {
+    const PetscReal size = PetscSqrtReal(dot(3, shear, shear)), most = friction * (PetscAbsReal(normal) + pressing);
+    for (int d = 0; d < 3 && size > most; ++d) p[d] -= (1 - most / size) * shear[d];
+    return;
+  }
   slip_of(w, k, v);
-  const PetscReal size = PetscSqrtReal(dot(3, v, v)), pressure = dot(3, p, c->normal);
-  for (int d = 0; d < 3 && size > 0; ++d) p[d] -= c->law.friction * pressure * v[d] / size;
+  const PetscReal speed = PetscSqrtReal(dot(3, v, v));
+  for (int d = 0; d < 3 && speed > 0; ++d) p[d] -= friction * normal * v[d] / speed;
 }
 
 /* Half of the work that impulses take from sliding: by the motion before them, or after. */

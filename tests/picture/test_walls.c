@@ -1,0 +1,117 @@
+/* Walls in pictures: grey where they are, an outline, the body before the grey and behind the
+ * outline. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <string.h>
+#include <cmocka.h>
+#include "picture/plot_walls.h"
+
+enum { W = 200, H = 100 };
+
+typedef struct {
+  Case c;
+  WallSpec walls[2];
+  PlotScene scene;
+  PlotPage page;
+  unsigned char rgba[4 * W * H];
+} Picture;
+
+/* A page of 2 m x 1 m around the origin. */
+static void open_picture(Picture *p, const Kinematics *kinematics, PetscInt n)
+{
+  Diag *diag;
+  p->c = (Case){.kinematics = kinematics, .n_walls = n, .walls = p->walls};
+  p->c.grid = (GridSpec){.kind = GRID_BOX, .min = {-3, -3}, .max = {3, 3}};
+  p->page = (PlotPage){.w = W, .h = H, .min = {-1, -0.5}, .max = {1, 0.5}};
+  p->scene = (PlotScene){.dim = 2, .n_frames = 1, .walled = &p->c, .mirrored = kinematics->hoop};
+  assert_int_equal(DiagCreate(&diag), 0);
+  assert_int_equal(WallsCreate(&p->c, diag, &p->scene.walls), 0);
+  assert_int_equal(diag_errors(diag), 0);
+  assert_int_equal(DiagDestroy(&diag), 0);
+}
+
+static void close_picture(Picture *p) { assert_int_equal(WallsDestroy(&p->scene.walls), 0); }
+
+static const unsigned char *pixel_at(const Picture *p, PetscReal x, PetscReal y)
+{
+  return p->rgba + 4 * ((int)((y + 0.5) * H) * W + (int)((x + 1) * W / 2));
+}
+
+/* Where an outline of two pixels runs, one whose middle is half a pixel beside it is covered but for
+ * less than 1 %. */
+static void is_grey(const unsigned char *pixel, int grey, int alpha)
+{
+  for (int c = 0; c < 3; ++c) assert_in_range(pixel[c], grey - 2, grey + 2);
+  assert_in_range(pixel[3], alpha - 2, alpha);
+}
+
+/* A circle that moves to the right, over an image whose lower half is full of red. */
+static void CircleThatMoves(void **state)
+{
+  static Picture p;
+  MotionSpec motion = {.kind = MOTION_VELOCITY, .component = {1, 0}, .value = {0.5, 0}};
+  (void)state;
+  p.walls[0] = (WallSpec){
+    .shape = {.kind = SHAPE_BALL, .centre = {-0.5, 0.05}, .radius = 0.3}, .n_motions = 1, .motions = &motion};
+  open_picture(&p, &kinematics_plane_strain, 1);
+  for (int k = 0; k < 2; ++k) {
+    const PlotFrame frame = {.time = k};
+    const PetscReal centre = -0.5 + 0.5 * k;
+    memset(p.rgba, 0, sizeof p.rgba);
+    for (int i = 0; i < W * H / 2; ++i) p.rgba[4 * i] = 200, p.rgba[4 * i + 3] = 255;
+    plot_walls_draw(&p.scene, &frame, &p.page, p.rgba);
+    is_grey(pixel_at(&p, centre, 0.1), 214, 255);
+    is_grey(pixel_at(&p, centre + 0.25, 0.1), 214, 255);
+    is_grey(pixel_at(&p, centre + 0.301, 0.055), 50, 255); /* the outline */
+    assert_int_equal(pixel_at(&p, centre + 0.35, 0.1)[3], 0);
+    assert_int_equal(pixel_at(&p, centre, -0.1)[0], 200); /* the body hides the grey, */
+    is_grey(pixel_at(&p, centre, -0.249), 50, 255);       /* and not the outline */
+    assert_int_equal(pixel_at(&p, centre, -0.3)[0], 200);
+  }
+  /* the page reaches to its ends, those of the frames' times */
+  p.scene.box_min[0] = -0.1, p.scene.box_max[0] = 0.1;
+  p.scene.frames[0].time = 1;
+  plot_walls_extend(&p.scene);
+  assert_true(fabs(p.scene.box_min[0] + 0.3) < 1e-14 && fabs(p.scene.box_max[0] - 0.3) < 1e-14);
+  assert_true(fabs(p.scene.box_max[1] - 0.35) < 1e-14);
+  close_picture(&p);
+}
+
+/* A container is grey all around, on both sides of the axis; a gate only while it stands. */
+static void ContainerOnBothSides(void **state)
+{
+  static Picture p;
+  double gate[] = {0, -0.2, 0.6, -0.2};
+  (void)state;
+  p.walls[0] = (WallSpec){.shape = {.kind = SHAPE_BOX, .min = {0, -0.4}, .max = {0.6, 5}}, .inside = PETSC_TRUE};
+  p.walls[1] =
+    (WallSpec){.shape = {.kind = SHAPE_LINE, .n_vertices = 2, .vertices = gate}, .has_until = PETSC_TRUE, .until = 1};
+  open_picture(&p, &kinematics_axisymmetric, 2);
+  for (int k = 0; k < 2; ++k) {
+    const PlotFrame frame = {.time = 2 * k};
+    memset(p.rgba, 0, sizeof p.rgba);
+    plot_walls_draw(&p.scene, &frame, &p.page, p.rgba);
+    for (int side = -1; side < 2; side += 2) {
+      is_grey(pixel_at(&p, side * 0.8, 0.1), 214, 255);
+      is_grey(pixel_at(&p, side * 0.2, -0.45), 214, 255);
+      assert_int_equal(pixel_at(&p, side * 0.2, 0.1)[3], 0);
+      assert_int_equal(pixel_at(&p, side * 0.005, 0.1)[3], 0); /* nothing on the axis */
+      if (k == 0) is_grey(pixel_at(&p, side * 0.2, -0.201), 50, 255);
+      else assert_int_equal(pixel_at(&p, side * 0.2, -0.201)[3], 0);
+    }
+  }
+  /* as far as the grid goes */
+  plot_walls_extend(&p.scene);
+  assert_true(p.scene.box_max[1] == 3 && fabs(p.scene.box_max[0] - 0.6) < 1e-14 &&
+              p.scene.box_min[0] == -p.scene.box_max[0]);
+  close_picture(&p);
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {cmocka_unit_test(CircleThatMoves), cmocka_unit_test(ContainerOnBothSides)};
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
