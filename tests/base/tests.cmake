@@ -1,5 +1,6 @@
 talus_test(base/test_diag RANKS 1 2 3)
 talus_test(base/test_eigen)
+talus_test(base/test_formula)
 talus_test(base/test_lanes)
 talus_test(base/test_lu)
 talus_test(base/test_names)

@@ -83,9 +83,39 @@ static void test_stress(void **state)
   CALL(ModelDestroy(&m));
 }
 
+/* The mean over a body is by the volume that its material has: sum of tau V0 over sum of J V0. What
+ * comes of measures is named in their list. */
+static void test_mean_stress(void **state)
+{
+  MeasureSpec list[] = {{.name = "along", .kind = "stress", .word = "yy"},
+                        {.name = "shear", .kind = "stress", .word = "xy", .has_in = PETSC_TRUE},
+                        {.name = "both", .kind = "formula", .word = "2 * along + shear^2"}};
+  PetscReal value[3];
+  Bench b;
+  (void)state;
+  bench_init(&b, "mpm", CELL_QUADRILATERAL, 4);
+  bench_dynamic(&b, 1, 0.01);
+  list[1].in = b.body[0].shape;
+  for (int d = 0; d < 3; ++d) list[1].in.min[d] -= 1, list[1].in.max[d] += 1; /* points that grew, too */
+  b.c.measures = list;
+  b.c.n_measures = 3;
+  Model *m = bench_model(&b, PETSC_COMM_WORLD);
+  for (PetscInt p = 0; p < m->points->n; ++p) {
+    const PetscBool right = point_real(m->points, POINT_X, p)[0] > 0.5;
+    const PetscReal tau[6] = {1, right ? 6 : 2, 3, 4, 5, 6};
+    point_set_tau(m->points, p, tau);
+    m->points->real[POINT_J][p] = right ? 1.5 : 0.5;
+  }
+  for (PetscInt k = 0; k < 3; ++k) CALL(ModelMeasure(m, &list[k], k, &value[k]));
+  CHECK_CLOSE(value[0], (2 + 6) / (0.5 + 1.5), 1e-12);
+  CHECK_CLOSE(value[1], 4, 1e-12);
+  CHECK_CLOSE(value[2], 24, 1e-12);
+  CALL(ModelDestroy(&m));
+}
+
 int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {cmocka_unit_test(test_spin), cmocka_unit_test(test_surface),
-                                     cmocka_unit_test(test_stress)};
+                                     cmocka_unit_test(test_stress), cmocka_unit_test(test_mean_stress)};
   return run_model_tests(argc, argv, tests);
 }

@@ -1,4 +1,5 @@
 /* Keys of the measures: those of the registry, and what stands behind and beside them. */
+#include "base/formula.h"
 #include "input/schema/schema_keys.h"
 #include "model/measure/measure.h"
 
@@ -137,6 +138,7 @@ static SchemaEntry entry_of(const Measure *measure)
     [MEASURE_FRONT] = {.type = TYPE_TABLE, .table = &run_out},
     [MEASURE_AVALANCHES] = {.type = TYPE_TABLE, .table = &avalanches},
     [MEASURE_CONTAINER] = {.type = TYPE_TABLE, .table = &agitation},
+    [MEASURE_TEXT] = {.type = TYPE_TEXT, AT(MeasureSpec, word)},
   };
   SchemaEntry entry = takes[measure->takes];
   entry.key = measure->key;
@@ -257,6 +259,37 @@ static void check_subject(SchemaReader *r, const YamlNode *mapping, const Measur
   diag_hint(r->diag, "%s", subjects[wanted].hint);
 }
 
+/* Names of a formula: those of the measures above it. */
+static PetscErrorCode KnownAbove(void *context, const char *name, PetscBool *known, PetscReal *value)
+{
+  const YamlNode *measure = context, *all = measure->parent;
+
+  PetscFunctionBeginUser;
+  *value = 1;
+  *known = PETSC_FALSE;
+  for (PetscInt k = 0; all->child[k] != measure && !*known; ++k)
+    *known = strcmp(all->child[k]->key, name) ? PETSC_FALSE : PETSC_TRUE;
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode CheckFormula(SchemaReader *r, const YamlNode *mapping, const MeasureSpec *m, const char *path)
+{
+  Formula formula = {.value = KnownAbove, .context = (void *)mapping, .at = m->word};
+  PetscReal value;
+
+  PetscFunctionBeginUser;
+  if (strcmp(m->kind, "formula") != 0) PetscFunctionReturn(0);
+  PetscCall(FormulaValue(&formula, &value));
+  if (!formula.wrong) PetscFunctionReturn(0);
+  const YamlNode *text = yaml_find(mapping, m->kind);
+  if (!formula.name[0]) SchemaError(r, text, "%s.formula makes no sense from '%s' on", path, formula.wrong);
+  else {
+    SchemaError(r, text, "%s.formula: '%s' is no measure above it", path, formula.name);
+    diag_hint(r->diag, "names are those of measures that stand before it, of letters, digits and _");
+  }
+  PetscFunctionReturn(0);
+}
+
 static PetscErrorCode CheckMeasure(SchemaReader *r, const YamlNode *mapping, void *target)
 {
   char path[512];
@@ -269,6 +302,7 @@ static PetscErrorCode CheckMeasure(SchemaReader *r, const YamlNode *mapping, voi
   check_component(r, mapping, target, path);
   check_container(r, mapping, target, path);
   check_subject(r, mapping, target, path);
+  PetscCall(CheckFormula(r, mapping, target, path));
   PetscFunctionReturn(0);
 }
 

@@ -15,7 +15,8 @@ typedef enum {
   MEASURE_EXTENT,
   MEASURE_FRONT,
   MEASURE_AVALANCHES,
-  MEASURE_CONTAINER
+  MEASURE_CONTAINER,
+  MEASURE_TEXT /* in `word` */
 } MeasureArgument;
 /* What `of` names: a body, if not all; a tracer; an entry of the boundary; a wall; nothing, since the
  * number is of the whole model. */

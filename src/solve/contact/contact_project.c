@@ -142,12 +142,12 @@ static PetscErrorCode LetGo(Projection *w, PetscBool *any)
   PetscFunctionReturn(0);
 }
 
-static unsigned char held_of(const Contact *s, const ContactPoint *c, const ContactMotion *m)
+/* What has just met a wall that lets nothing slide does not slide there either. */
+static unsigned char held_of(const ContactPoint *c, const ContactMotion *m)
 {
   const ContactState state = m->start ? c->before : c->state;
-  (void)s;
-  if (state == CONTACT_STICKS) return 3;
-  return state == CONTACT_SLIDES || (m->start && c->touches);
+  const PetscBool meets = state != CONTACT_OPEN || (m->start && c->touches);
+  return state == CONTACT_STICKS || (meets && c->law.kind == CONTACT_STICK) ? 3 : meets;
 }
 
 /* Motion of a contact point along its wall, 3 numbers. */
@@ -211,7 +211,7 @@ static PetscErrorCode Create(const Contact *s, const ContactMotion *m, Projectio
   PetscCall(PetscMalloc1(m->grid->n_nodes * s->dim, &w->nodes));
   for (PetscInt k = 0; k < s->n; ++k) {
     const ContactPoint *c = s->point + k;
-    w->held[k] = held_of(s, c, m);
+    w->held[k] = held_of(c, m);
     here = here || w->held[k];
     for (PetscInt e = c->first; e < c->first + c->n; ++e)
       w->own[k] += m->mass[s->node[e]] > 1e-300 ? s->N[e] * s->N[e] / m->mass[s->node[e]] : 0;

@@ -1,0 +1,7 @@
+// The sand: 3.5 x 1 m in cells of h of its own.
+DefineConstant[ h = 0.1 ];
+Point(1) = {0, 0, 0}; Point(2) = {3.5, 0, 0}; Point(3) = {3.5, 1, 0}; Point(4) = {0, 1, 0};
+Line(1) = {1, 2}; Line(2) = {2, 3}; Line(3) = {3, 4}; Line(4) = {4, 1};
+Curve Loop(1) = {1, 2, 3, 4}; Plane Surface(1) = {1};
+Transfinite Curve {1, 3} = Round(3.5 / h) + 1; Transfinite Curve {2, 4} = Round(1 / h) + 1;
+Transfinite Surface {1}; Recombine Surface {1};

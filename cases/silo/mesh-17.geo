@@ -1,0 +1,2 @@
+angle = 17;
+Include "mesh.geo";

@@ -1,0 +1,2 @@
+angle = 45;
+Include "mesh.geo";
