@@ -223,5 +223,5 @@ void contact_force_on(const Model *m, PetscInt p, PetscReal force[3])
   const PetscReal *kept = point_real(m->points, POINT_CONTACT, p);
   force[0] = force[1] = force[2] = 0;
   for (PetscInt k = 0; k < m->c->n_walls; ++k, kept += CONTACT_KEPT(m->dim))
-    for (PetscInt d = 0; d < m->dim; ++d) force[d] += kept[1 + d];
+    for (PetscInt d = 0; d < m->dim; ++d) force[d] += kept[2 + d];
 }

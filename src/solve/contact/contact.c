@@ -11,6 +11,10 @@
 
 #define CLOSED 1e-5 /* of a cell: gaps and slips that remain of contact */
 #define MOST_CHANGES 40
+/* Where more points touch than nodes can follow, gaps of some stay, and their multipliers would grow
+ * against each other for ever: a gap that falls no faster may stay, up to so much of a cell. */
+#define STALLS 0.5
+#define ALLOWED 1e-3
 
 PetscErrorCode ContactCreate(const Case *c, const Walls *walls, Contact **contact)
 {
@@ -33,6 +37,7 @@ PetscErrorCode ContactDestroy(Contact **contact)
   PetscCall(PetscFree(s->point));
   PetscCall(PetscFree(s->node));
   PetscCall(PetscFree(s->N));
+  PetscCall(PetscFree(s->lead));
   PetscCall(PetscFree(s->slot));
   PetscCall(PetscFree(s->wall));
   PetscCall(PetscFree2(s->impulse, s->late));
@@ -136,7 +141,9 @@ static PetscErrorCode Augment(void *data, const NodalScene *scene, PetscInt chan
         worst = PetscMax(worst, PetscAbsReal(c->now.shear[d] - c->multiplier.shear[d]) / c->law.penalty);
   }
   PetscCall(MPIU_Allreduce(&worst, &of_all, 1, MPIU_REAL, MPIU_MAX, scene->grid->comm));
-  *again = of_all > CLOSED * s->length && change < MOST_CHANGES;
+  const PetscBool stalls = change > 0 && of_all > STALLS * s->worst && of_all <= ALLOWED * s->length;
+  *again = of_all > CLOSED * s->length && change < MOST_CHANGES && !stalls;
+  s->worst = of_all;
   if (!*again) PetscFunctionReturn(0);
   for (ContactPoint *c = s->point; c < s->point + s->n; ++c) c->multiplier = c->now;
   PetscFunctionReturn(0);
@@ -183,6 +190,17 @@ static PetscErrorCode Create(const NodalScene *scene, Diag *diag, void **data)
   PetscFunctionReturn(0);
 }
 
+/* Distance of the material point from its surface at the end of the step: that of where both have gone,
+ * so that the next step starts with the gap that this one ends with. */
+static PetscReal reach_at_end(const Contact *s, const ContactPoint *c, const NodalScene *scene)
+{
+  const PetscReal first = scene->points->real[POINT_REACH][c->owner];
+  PetscReal reach = c->reach;
+  for (PetscInt e = c->first; e < c->first + c->n; ++e)
+    for (PetscInt d = 0; d < s->dim; ++d) reach -= c->normal[d] * s->lead[e] * scene->du[s->node[e] * s->dim + d];
+  return PetscMax(THINNEST * first, PetscMin(THICKEST * first, reach));
+}
+
 /* Carriers keep what acted on them. */
 static PetscErrorCode Commit(void *data, const NodalScene *scene)
 {
@@ -193,13 +211,13 @@ static PetscErrorCode Commit(void *data, const NodalScene *scene)
   PetscFunctionBeginUser;
   PetscCall(PetscArrayzero(scene->points->real[POINT_CONTACT], scene->points->n * s->n_walls * CONTACT_KEPT(dim)));
   for (const ContactPoint *c = s->point; c < s->point + s->n; ++c) {
-    if (c->state == CONTACT_OPEN) continue;
     PetscReal *kept = point_real(scene->points, POINT_CONTACT, c->owner) + c->wall * CONTACT_KEPT(dim);
     kept[0] = (PetscReal)c->state;
+    kept[1] = reach_at_end(s, c, scene);
     contact_force(c, f);
-    for (PetscInt d = 0; d < dim; ++d) {
-      kept[1 + d] = f[d];
-      kept[1 + dim + d] = c->late[d];
+    for (PetscInt d = 0; d < dim && c->state != CONTACT_OPEN; ++d) {
+      kept[2 + d] = f[d];
+      kept[2 + dim + d] = c->late[d];
     }
   }
   PetscFunctionReturn(0);

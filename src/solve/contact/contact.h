@@ -14,6 +14,7 @@ typedef struct {
   int side;
   PetscInt first, n;          /* nodes that carry it: node[first] .. of Contact, */
   PetscInt slot;              /* and the first of their n x n pairs */
+  PetscReal reach;            /* from the material point to its surface, at the start of the step, m */
   PetscReal x[3];             /* at the start of the step, m */
   PetscReal swept[3];         /* what the wall's matter there moves by in the step, m */
   PetscReal section;          /* of the surface that it stands for, m2 */
@@ -54,7 +55,9 @@ typedef struct Contact {
   ContactPoint *point;
   PetscInt n_nodes, capacity_nodes, *node;
   PetscReal *N;
+  PetscReal *lead; /* what N is at the surface beyond what it is at the material point */
   PetscInt n_slots, capacity_slots, *slot;
+  PetscReal worst;  /* gap or slip when multipliers were last looked at, m */
   PetscReal near;   /* m: what is farther away cannot be reached in a step */
   PetscReal length; /* of a cell, m: scale of gaps */
   WallState *wall;
@@ -63,9 +66,14 @@ typedef struct Contact {
   ContactSum *impulse, *late;
 } Contact;
 
-/* Numbers that a carrier of contact keeps for each wall from step to step: state, and forces
+/* Shortest and longest that a point's part of the surface layer counts as, over its reach at the start:
+ * laws of flow stretch without bound. */
+#define THINNEST 0.25
+#define THICKEST 2
+
+/* Numbers that a carrier of contact keeps for each wall from step to step: state, reach, and forces
  * `last` and `late`. */
-#define CONTACT_KEPT(dim) (1 + 2 * (dim))
+#define CONTACT_KEPT(dim) (2 + 2 * (dim))
 
 PetscErrorCode ContactCreate(const Case *c, const Walls *walls, Contact **contact);
 PetscErrorCode ContactDestroy(Contact **contact);

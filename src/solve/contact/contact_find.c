@@ -2,11 +2,6 @@
 #include "material/law.h"
 #include "solve/contact/contact.h"
 
-/* Shortest and longest that a layer of the surface counts as, over its thickness at the start: laws of
- * flow let F grow without bound. */
-#define THINNEST 0.5
-#define THICKEST 2
-
 /* Friction of a wall along which nothing slides: a force that did not vanish with the pressure would
  * leave no solution where contact opens. */
 #define STICKING 20
@@ -44,6 +39,7 @@ static PetscErrorCode AddNodes(Contact *s, ContactPoint *c, PetscInt n)
     s->capacity_nodes += s->capacity_nodes / 2 + n + 256;
     PetscCall(PetscRealloc((size_t)s->capacity_nodes * sizeof *s->node, &s->node));
     PetscCall(PetscRealloc((size_t)s->capacity_nodes * sizeof *s->N, &s->N));
+    PetscCall(PetscRealloc((size_t)s->capacity_nodes * sizeof *s->lead, &s->lead));
   }
   if (s->n_slots + n * n > s->capacity_slots) {
     s->capacity_slots += s->capacity_slots / 2 + n * n + 1024;
@@ -60,8 +56,8 @@ static void remember(ContactPoint *c, PetscInt dim, const PetscReal *kept, const
 {
   c->before = (ContactState)(int)(kept[0] + 0.5);
   for (PetscInt d = 0; d < dim; ++d) {
-    c->last[d] = kept[1 + d];
-    c->start[d] = kept[1 + d] + kept[1 + dim + d];
+    c->last[d] = kept[2 + d];
+    c->start[d] = kept[2 + d] + kept[2 + dim + d];
   }
   c->state = c->before;
   for (int d = 0; d < 3; ++d) c->normal[d] = place->normal[d];
@@ -112,11 +108,13 @@ static PetscErrorCode MeetPoint(Contact *s, const NodalScene *scene, PetscInt g,
   if (!meets_body(scene->c, k, points->body[p])) PetscFunctionReturn(0);
   if (!wall_near(s->walls, k, scene->t, x, s->near + THICKEST * points->real[POINT_REACH][p], side, &place))
     PetscFunctionReturn(0);
-  const PetscReal reach = reach_of(points, p, place.normal);
+  const PetscReal before = kept[k * CONTACT_KEPT(dim) + 1];
+  const PetscReal reach = before > 0 ? before : reach_of(points, p, place.normal);
   const PetscInt nn = support_nodes(scene->support, g), *node = scene->support->node + scene->support->node_start[g];
   const PetscReal *N = support_N(scene->support, g, p), *dN = support_dN(scene->support, g, p, dim);
   PetscCall(AddPoint(s, &c));
   c->owner = p, c->wall = k, c->side = side;
+  c->reach = reach;
   c->section = section_of(scene, p);
   c->modulus = material->wave_modulus, c->density = material->density;
   c->law = law_of(scene->c->walls + k, c->section);
@@ -134,6 +132,7 @@ static PetscErrorCode MeetPoint(Contact *s, const NodalScene *scene, PetscInt g,
     for (PetscInt d = 0; d < dim; ++d) change -= dN[I * dim + d] * reach * place.normal[d];
     s->node[c->first + I] = node[I];
     s->N[c->first + I] = N[I] + change;
+    s->lead[c->first + I] = change;
   }
   PetscFunctionReturn(0);
 }
