@@ -74,17 +74,26 @@ static ContactMotion motion_of(const Model *m, PetscReal *motion, PetscReal *vel
 /* A scheme that balances forces in the middle of the step remembers none, and lets nothing ring. */
 static PetscBool holds(const Model *m) { return m->scheme->inertia && !m->scheme->middle; }
 
+/* What a wall's force is of what the balance at the end of a step asks for: with inertia it acts over the
+ * whole step, and Newmark's formulas would weigh it as that of one end (docs/theory.md 18). */
+static PetscReal share_of_force(const Model *m)
+{
+  const TimeWeights w = m->scheme->weights(&m->c->analysis, 1);
+  return holds(m) ? w.mean / (1 - w.lag) : 1;
+}
+
 /* A point that was stopped by a wall rings about it for ever in Newmark's formulas, as a prescribed
  * node would. */
 PetscErrorCode ContactHold(Model *m, PetscReal dt, PetscReal inertia)
 {
   PetscFunctionBeginUser;
   if (!m->contact) PetscFunctionReturn(0);
-  contact_prepare(m->contact, m->time, dt, inertia);
+  contact_prepare(m->contact, m->time, dt, inertia, share_of_force(m));
   if (!holds(m)) PetscFunctionReturn(0);
   PetscReal *const v = m->nodes->v, *const a = m->nodes->a;
   const ContactMotion first = motion_of(m, a, v, dt, PETSC_TRUE), second = motion_of(m, v, v, dt, PETSC_TRUE);
-  PetscCall(ContactRelease(m->contact, &first, m->contact->impulse + m->c->n_walls));
+  const PetscReal lag = m->scheme->weights(&m->c->analysis, dt).lag;
+  PetscCall(ContactRelease(m->contact, &first, 1 / (1 - lag), m->contact->impulse + m->c->n_walls));
   PetscCall(ContactProject(m->contact, &second, m->contact->impulse));
   PetscFunctionReturn(0);
 }
@@ -110,13 +119,13 @@ PetscErrorCode ContactEnd(Model *m, PetscReal dt, EnergyStep *energy)
 /* Of the mean force in the step. */
 static ContactWork point_work(const Model *m, const ContactPoint *c)
 {
-  const PetscReal end = m->scheme->middle ? 1 : 0.5;
+  const PetscReal end = m->scheme->inertia ? share_of_force(m) : 0.5, first = m->scheme->inertia ? 0 : 0.5;
   PetscReal f[3], x[3], pressure = 0, closing = 0;
   ContactWork work = {0};
   contact_force(c, f);
   contact_place(m->contact, c, m->nodes->du, 1, x);
   for (int d = 0; d < 3; ++d) {
-    f[d] = (1 - end) * c->start[d] + end * f[d];
+    f[d] = first * c->start[d] + end * f[d];
     pressure += f[d] * c->normal[d];
     closing += (x[d] - c->x[d] - c->swept[d]) * c->normal[d];
   }
@@ -223,5 +232,5 @@ void contact_force_on(const Model *m, PetscInt p, PetscReal force[3])
   const PetscReal *kept = point_real(m->points, POINT_CONTACT, p);
   force[0] = force[1] = force[2] = 0;
   for (PetscInt k = 0; k < m->c->n_walls; ++k, kept += CONTACT_KEPT(m->dim))
-    for (PetscInt d = 0; d < m->dim; ++d) force[d] += kept[2 + d];
+    for (PetscInt d = 0; d < m->dim; ++d) force[d] += share_of_force(m) * kept[2 + d];
 }

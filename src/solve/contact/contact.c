@@ -55,11 +55,12 @@ static void first_multiplier(const Contact *s, ContactPoint *c)
   if (c->touches && c->before == CONTACT_OPEN) c->multiplier.pressure = 0.1 * CLOSED * s->length * c->law.penalty;
 }
 
-void contact_prepare(Contact *s, PetscReal t, PetscReal dt, PetscReal inertia)
+void contact_prepare(Contact *s, PetscReal t, PetscReal dt, PetscReal inertia, PetscReal share)
 {
   for (ContactPoint *c = s->point; c < s->point + s->n; ++c) {
     const PetscReal h = s->length;
     c->law.penalty = STIFFER * c->section * (c->modulus / h + inertia * c->density * h);
+    c->law.bond = c->bond / share;
     wall_motion(s->walls, c->wall, t, t + dt, c->x, c->swept);
     first_multiplier(s, c);
   }

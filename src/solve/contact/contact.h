@@ -19,6 +19,7 @@ typedef struct {
   PetscReal swept[3];         /* what the wall's matter there moves by in the step, m */
   PetscReal section;          /* of the surface that it stands for, m2 */
   PetscReal modulus, density; /* of its material, Pa, kg/m3 */
+  PetscReal bond;             /* that the wall bears along itself without pressure, N */
   ContactLaw law;
   ContactForce multiplier, now;
   ContactState state;  /* at the last assembly */
@@ -79,8 +80,9 @@ PetscErrorCode ContactCreate(const Case *c, const Walls *walls, Contact **contac
 PetscErrorCode ContactDestroy(Contact **contact);
 /* Forget the contact points and find those of this step. The scene stands at its start. */
 PetscErrorCode ContactFind(Contact *contact, const NodalScene *scene);
-/* Before the solve of a step of dt: penalties, and how walls move. inertia: see WeakFormInput. */
-void contact_prepare(Contact *contact, PetscReal t, PetscReal dt, PetscReal inertia);
+/* Before the solve of a step of dt: penalties, and how walls move. inertia: see WeakFormInput; share: the
+ * walls' forces over those of the balance. */
+void contact_prepare(Contact *contact, PetscReal t, PetscReal dt, PetscReal inertia, PetscReal share);
 /* Position of a contact point with the field's increments, times `whole`. */
 void contact_place(const Contact *contact, const ContactPoint *c, const PetscReal *du, PetscReal whole, PetscReal x[3]);
 
@@ -101,7 +103,7 @@ typedef struct {
  * wall: in the direction of the normal, and across it where they stick. sum: momentum (or force) that
  * it takes from each wall (n_walls of them, on this rank). */
 PetscErrorCode ContactProject(Contact *contact, const ContactMotion *motion, ContactSum *sum);
-/* Collective. Take the forces of the last step out of the acceleration that nodes remember. */
-PetscErrorCode ContactRelease(Contact *contact, const ContactMotion *motion, ContactSum *sum);
+/* Collective. Take the forces of the last step, times `share`, out of the acceleration that nodes remember. */
+PetscErrorCode ContactRelease(Contact *contact, const ContactMotion *motion, PetscReal share, ContactSum *sum);
 void contact_force(const ContactPoint *c, PetscReal f[3]); /* of the last assembly */
 void contact_add(const ContactPoint *c, PetscInt dim, const PetscReal force[3], ContactSum *sum);

@@ -63,10 +63,10 @@ static void remember(ContactPoint *c, PetscInt dim, const PetscReal *kept, const
   for (int d = 0; d < 3; ++d) c->normal[d] = place->normal[d];
 }
 
-static ContactLaw law_of(const WallSpec *w, PetscReal section)
+static ContactLaw law_of(const WallSpec *w)
 {
   const PetscBool sticks = w->contact == CONTACT_STICK;
-  return (ContactLaw){.kind = w->contact, .friction = sticks ? STICKING : w->friction, .bond = w->adhesion * section};
+  return (ContactLaw){.kind = w->contact, .friction = sticks ? STICKING : w->friction};
 }
 
 /* A bonded wall holds what it touches at the start, and nothing that comes later. */
@@ -117,7 +117,8 @@ static PetscErrorCode MeetPoint(Contact *s, const NodalScene *scene, PetscInt g,
   c->reach = reach;
   c->section = section_of(scene, p);
   c->modulus = material->wave_modulus, c->density = material->density;
-  c->law = law_of(scene->c->walls + k, c->section);
+  c->law = law_of(scene->c->walls + k);
+  c->bond = scene->c->walls[k].adhesion * c->section;
   remember(c, dim, kept + k * CONTACT_KEPT(dim), &place);
   place.gap -= reach;
   if (is_let_go(s, c, c->law.kind, place.gap, scene->first) || place.gap > s->near) {

@@ -260,7 +260,7 @@ PetscErrorCode ContactProject(Contact *s, const ContactMotion *m, ContactSum *su
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode ContactRelease(Contact *s, const ContactMotion *m, ContactSum *sum)
+PetscErrorCode ContactRelease(Contact *s, const ContactMotion *m, PetscReal share, ContactSum *sum)
 {
   const PetscInt dim = s->dim;
   PetscReal *nodes;
@@ -269,7 +269,7 @@ PetscErrorCode ContactRelease(Contact *s, const ContactMotion *m, ContactSum *su
   PetscCall(PetscCalloc1(m->grid->n_nodes * dim, &nodes));
   for (ContactPoint *c = s->point; c < s->point + s->n; ++c) {
     PetscReal f[3];
-    for (int d = 0; d < 3; ++d) f[d] = -c->start[d];
+    for (int d = 0; d < 3; ++d) f[d] = -share * c->start[d];
     for (PetscInt e = c->first; e < c->first + c->n; ++e)
       for (PetscInt d = 0; d < dim; ++d) nodes[s->node[e] * dim + d] += s->N[e] * f[d];
     contact_add(c, dim, f, sum + c->wall);
