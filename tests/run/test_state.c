@@ -74,6 +74,15 @@ static PetscBool on_one_rank(void)
   return size == 1;
 }
 
+/* How near a model on one rank comes. Multipliers of walls are renewed until gaps are below 1e-5 of a cell,
+ * on other ranks perhaps once more: increments differ by so much, velocities by that over the step. */
+static PetscReal nearness(const Bench *b, PointReal f)
+{
+  const PetscReal gap = 1e-5 * 0.125, dt = b->c.analysis.step;
+  if (!b->c.n_walls) return 1e-9;
+  return f == POINT_V ? 2 * gap / dt : f == POINT_A ? 4 * gap / (dt * dt) : 10 * gap;
+}
+
 /* bits: does the solver promise the same bits on several ranks? Returns the model that was brought
  * back, after its steps. */
 static Model *check(Bench *b, PetscInt before, PetscInt after, PetscBool bits)
@@ -93,8 +102,7 @@ static Model *check(Bench *b, PetscInt before, PetscInt after, PetscBool bits)
   if (bits) same_models(whole, again);
   for (int f = 0; f < POINT_TAU; ++f) {
     const PetscReal off = points_difference(whole, alone, (PointReal)f);
-    /* multipliers of walls are renewed until gaps are small, and may be once more */
-    CHECK(off <= (!b->c.n_walls ? 1e-9 : f == POINT_A ? 1e-3 : 1e-6), "alone, field %d is off by %g", f, (double)off);
+    CHECK(off <= nearness(b, (PointReal)f), "alone, field %d is off by %g", f, (double)off);
   }
   CALL(ModelDestroy(&whole));
   CALL(ModelDestroy(&alone));
@@ -273,11 +281,10 @@ static void test_walls(void **state)
     b.c.gravity[1] = -9.81;
     b.c.n_walls = 1;
     b.c.walls = &wall;
-    Model *m = check(&b, 12, 6, PETSC_TRUE);
-    CHECK(m->contact->wall[0].rate.force[1] > 100 && m->friction_energy != 0, "it did not meet the wall: %g N, %g J",
-          (double)m->contact->wall[0].rate.force[1], (double)m->friction_energy);
+    Model *m = check(&b, 7, 5, PETSC_TRUE);
+    CHECK(m->friction_energy > 1, "it did not rub on the wall: %g J", (double)m->friction_energy);
     CALL(ModelDestroy(&m));
-    given_up(&b, 12);
+    given_up(&b, 7);
   }
 }
 
