@@ -71,13 +71,13 @@ static void cover(const PlotScene *scene, PetscReal t, const PetscReal x[2], Pet
   }
 }
 
-/* A grey of this share over (or, where there is something already, behind) a pixel. */
-static void blend(unsigned char *rgba, PetscReal grey, PetscReal alpha, PetscBool behind)
+/* A grey of this share over a pixel. What points are drawn as is larger than the material, which does not
+ * go into walls. */
+static void blend(unsigned char *rgba, PetscReal grey, PetscReal alpha)
 {
-  const PetscReal there = rgba[3] / 255., own = behind ? alpha * (1 - there) : alpha;
-  const PetscReal kept = behind ? there : there * (1 - alpha), all = own + kept;
-  if (own <= 0) return;
-  for (int c = 0; c < 3; ++c) rgba[c] = (unsigned char)lround((own * grey + kept * rgba[c]) / all);
+  const PetscReal kept = rgba[3] / 255. * (1 - alpha), all = alpha + kept;
+  if (alpha <= 0) return;
+  for (int c = 0; c < 3; ++c) rgba[c] = (unsigned char)lround((alpha * grey + kept * rgba[c]) / all);
   rgba[3] = (unsigned char)lround(255 * all);
 }
 
@@ -90,7 +90,7 @@ void plot_walls_draw(const PlotScene *scene, const PlotFrame *frame, const PlotP
       PetscReal x[2] = {page->min[0] + (column + 0.5) * pixel, page->min[1] + (row + 0.5) * pixel}, fill, line;
       if (scene->mirrored) x[0] = fabs(x[0]);
       cover(scene, frame->time, x, pixel, &fill, &line);
-      blend(rgba, FILL, fill, PETSC_TRUE);
-      blend(rgba, LINE, line, PETSC_FALSE);
+      blend(rgba, FILL, fill);
+      blend(rgba, LINE, line);
     }
 }

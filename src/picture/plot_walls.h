@@ -1,4 +1,4 @@
-/* Rigid walls in pictures of the plane: grey where they are, with an outline. */
+/* Rigid walls in pictures of the plane: grey where they are, over the body, with an outline. */
 #pragma once
 #include "picture/plot_scene.h"
 
