@@ -24,23 +24,29 @@ static double processor_now(void)
 
 static double uniform(void) { return rand() / (RAND_MAX + 1.0); }
 
-/* An octant of an octahedron in SIDE x SIDE triangles, blown up to the unit sphere. */
-static void write_octant(FILE *out, int octant)
+/* One triangle of an octant, by its corners' numbers along two sides, blown up to the unit sphere. */
+static void write_triangle(FILE *out, int octant, const int place[3][2])
 {
   const int odd = (octant & 1) ^ (octant >> 1 & 1) ^ (octant >> 2 & 1);
+  float value[12] = {0};
+  const uint16_t none = 0;
+  for (int k = 0; k < 3; ++k) {
+    const int a = place[odd ? 2 - k : k][0], b = place[odd ? 2 - k : k][1], c = SIDE - a - b;
+    const double x[3] = {a, b, c}, length = sqrt(a * a + b * b + c * c);
+    for (int d = 0; d < 3; ++d) value[3 + 3 * k + d] = (float)((octant >> d & 1 ? -1 : 1) * x[d] / length);
+  }
+  fwrite(value, sizeof value, 1, out);
+  fwrite(&none, sizeof none, 1, out);
+}
+
+/* An octant of an octahedron in SIDE x SIDE triangles. */
+static void write_octant(FILE *out, int octant)
+{
   for (int i = 0; i < SIDE; ++i)
     for (int j = 0; j < SIDE - i; ++j)
       for (int up = 0; up < 2 - (i + j == SIDE - 1); ++up) {
         const int place[2][3][2] = {{{i, j}, {i + 1, j}, {i, j + 1}}, {{i + 1, j}, {i + 1, j + 1}, {i, j + 1}}};
-        float value[12] = {0};
-        const uint16_t none = 0;
-        for (int k = 0; k < 3; ++k) {
-          const int a = place[up][odd ? 2 - k : k][0], b = place[up][odd ? 2 - k : k][1], c = SIDE - a - b;
-          const double x[3] = {a, b, c}, length = sqrt(a * a + b * b + c * c);
-          for (int d = 0; d < 3; ++d) value[3 + 3 * k + d] = (float)((octant >> d & 1 ? -1 : 1) * x[d] / length);
-        }
-        fwrite(value, sizeof value, 1, out);
-        fwrite(&none, sizeof none, 1, out);
+        write_triangle(out, octant, place[up]);
       }
 }
 

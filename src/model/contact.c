@@ -58,7 +58,8 @@ PetscErrorCode WallsStart(Model *m, Diag *diag)
   PetscFunctionReturn(0);
 }
 
-static ContactMotion motion_of(const Model *m, PetscReal *motion, PetscReal *velocity, PetscReal dt, PetscBool start)
+static ContactMotion motion_of(const Model *m, PetscReal *motion, const PetscReal *velocity, PetscReal dt,
+                               PetscBool start)
 {
   return (ContactMotion){.grid = m->grid,
                          .mass = m->nodes->mass,

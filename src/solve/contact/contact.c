@@ -245,11 +245,13 @@ static PetscErrorCode FromTables(void *data, const NodalScene *scene, const Tabl
 
   (void)scene;
   PetscFunctionBeginUser;
-  if (!table) snprintf(reason, 256, "walls is missing");
-  if (reason[0]) PetscFunctionReturn(0);
+  if (!table) {
+    snprintf(reason, 256, "walls is missing");
+    PetscFunctionReturn(0);
+  }
   const PetscReal *state = table_data(table, "state", COLUMN_REAL, WALL_NUMBERS, reason);
   if (state && table->rows != s->n_walls) snprintf(reason, 256, "walls are others");
-  if (!reason[0]) PetscCall(PetscMemcpy(s->wall, state, (size_t)s->n_walls * sizeof *s->wall));
+  if (state && !reason[0]) PetscCall(PetscMemcpy(s->wall, state, (size_t)s->n_walls * sizeof *s->wall));
   PetscFunctionReturn(0);
 }
 
