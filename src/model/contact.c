@@ -58,16 +58,13 @@ PetscErrorCode WallsStart(Model *m, Diag *diag)
   PetscFunctionReturn(0);
 }
 
-static ContactMotion motion_of(const Model *m, PetscReal *motion, const PetscReal *velocity, PetscReal dt,
-                               PetscBool start)
+static ContactMotion motion_of(const Model *m, PetscReal *motion, PetscReal dt, PetscBool start)
 {
   return (ContactMotion){.grid = m->grid,
                          .mass = m->nodes->mass,
                          .fixed = m->nodes->fixed,
                          .motion = motion,
-                         .velocity = velocity,
-                         .rate = motion == velocity ? 1 / dt : 0,
-                         .wall = 1 / dt,
+                         .rate = 1 / dt,
                          .pulls = !start,
                          .start = start};
 }
@@ -91,11 +88,10 @@ PetscErrorCode ContactHold(Model *m, PetscReal dt, PetscReal inertia)
   if (!m->contact) PetscFunctionReturn(0);
   contact_prepare(m->contact, m->time, dt, inertia, share_of_force(m));
   if (!holds(m)) PetscFunctionReturn(0);
-  PetscReal *const v = m->nodes->v, *const a = m->nodes->a;
-  const ContactMotion first = motion_of(m, a, v, dt, PETSC_TRUE), second = motion_of(m, v, v, dt, PETSC_TRUE);
+  const ContactMotion a = motion_of(m, m->nodes->a, dt, PETSC_TRUE), v = motion_of(m, m->nodes->v, dt, PETSC_TRUE);
   const PetscReal lag = m->scheme->weights(&m->c->analysis, dt).lag;
-  PetscCall(ContactRelease(m->contact, &first, 1 / (1 - lag), m->contact->impulse + m->c->n_walls));
-  PetscCall(ContactProject(m->contact, &second, m->contact->impulse));
+  PetscCall(ContactRelease(m->contact, &a, 1 / (1 - lag), m->contact->impulse + m->c->n_walls));
+  PetscCall(ContactProject(m->contact, &v, m->contact->impulse));
   PetscFunctionReturn(0);
 }
 
@@ -104,12 +100,9 @@ PetscErrorCode ContactEnd(Model *m, PetscReal dt, EnergyStep *energy)
   Contact *s = m->contact;
 
   PetscFunctionBeginUser;
-  if (!s) PetscFunctionReturn(0);
-  PetscCall(PetscArrayzero(s->late, m->c->n_walls));
-  if (!holds(m)) PetscFunctionReturn(0);
-  PetscReal *const v = m->nodes->v1;
-  const ContactMotion second = motion_of(m, v, v, dt, PETSC_FALSE);
-  PetscCall(ContactProject(s, &second, s->impulse));
+  if (!s || !holds(m)) PetscFunctionReturn(0);
+  const ContactMotion end = motion_of(m, m->nodes->v1, dt, PETSC_FALSE);
+  PetscCall(ContactProject(s, &end, s->impulse));
   for (PetscInt k = 0; k < m->c->n_walls; ++k) {
     energy->friction += s->impulse[k].sliding;
     energy->transfer -= s->impulse[k].sliding;
@@ -199,15 +192,14 @@ PetscErrorCode ContactForces(Model *m, PetscReal dt)
 
   PetscFunctionBeginUser;
   if (!s) PetscFunctionReturn(0);
-  PetscCall(PetscCalloc1(4 * n, &now)); /* forces at the end, impulses, forces lost at the start and at the end */
+  PetscCall(PetscCalloc1(3 * n, &now)); /* forces at the end, impulses, forces lost at the start */
   for (PetscInt k = 0; k < s->n; ++k) {
     PetscReal f[3];
     contact_force(s->point + k, f);
     contact_add(s->point + k, m->dim, f, now + s->point[k].wall);
   }
   PetscCall(PetscArraycpy(now + n, s->impulse, 2 * n));
-  PetscCall(PetscArraycpy(now + 3 * n, s->late, n));
-  PetscCall(MPIU_Allreduce(MPI_IN_PLACE, now, (PetscMPIInt)(4 * n * SUM_NUMBERS), MPIU_REAL, MPI_SUM, m->comm));
+  PetscCall(MPIU_Allreduce(MPI_IN_PLACE, now, (PetscMPIInt)(3 * n * SUM_NUMBERS), MPIU_REAL, MPI_SUM, m->comm));
   for (PetscInt k = 0; k < n; ++k) {
     WallState *wall = s->wall + k;
     ContactSum before = wall->rate;
@@ -221,7 +213,6 @@ PetscErrorCode ContactForces(Model *m, PetscReal dt)
       add(&wall->mean, w.mean, &wall->rate);
       add(&wall->mean, 1 / dt, now + n + k);
     } else add(&wall->mean, 1, now + k);
-    add(&wall->rate, 1, now + 3 * n + k);
   }
   PetscCall(PetscFree(now));
   PetscCall(Survey(m));

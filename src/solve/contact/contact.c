@@ -24,7 +24,7 @@ PetscErrorCode ContactCreate(const Case *c, const Walls *walls, Contact **contac
   (*contact)->dim = c->kinematics->dim;
   (*contact)->n_walls = c->n_walls;
   PetscCall(PetscCalloc1(c->n_walls, &(*contact)->wall));
-  PetscCall(PetscCalloc2(2 * c->n_walls, &(*contact)->impulse, c->n_walls, &(*contact)->late));
+  PetscCall(PetscCalloc1(2 * c->n_walls, &(*contact)->impulse));
   PetscFunctionReturn(0);
 }
 
@@ -40,7 +40,7 @@ PetscErrorCode ContactDestroy(Contact **contact)
   PetscCall(PetscFree(s->lead));
   PetscCall(PetscFree(s->slot));
   PetscCall(PetscFree(s->wall));
-  PetscCall(PetscFree2(s->impulse, s->late));
+  PetscCall(PetscFree(s->impulse));
   PetscCall(PetscFree(*contact));
   PetscFunctionReturn(0);
 }
@@ -216,10 +216,7 @@ static PetscErrorCode Commit(void *data, const NodalScene *scene)
     kept[0] = (PetscReal)c->state;
     kept[1] = reach_at_end(s, c, scene);
     contact_force(c, f);
-    for (PetscInt d = 0; d < dim && c->state != CONTACT_OPEN; ++d) {
-      kept[2 + d] = f[d];
-      kept[2 + dim + d] = c->late[d];
-    }
+    for (PetscInt d = 0; d < dim && c->state != CONTACT_OPEN; ++d) kept[2 + d] = f[d];
   }
   PetscFunctionReturn(0);
 }

@@ -29,9 +29,7 @@ typedef struct {
   PetscReal normal[3]; /* at the last assembly */
   PetscReal slip[3];   /* likewise: motion against the wall, m */
   PetscReal last[3];   /* force at the end of the last step, N */
-  /* the same as acceleration remembers it, and what is taken from it at the start of this step; likewise
-   * what is taken from it at the end, N */
-  PetscReal start[3], late[3];
+  PetscReal start[3];  /* of it, what nodes remember as acceleration, N */
 } ContactPoint;
 
 /* Resultants of one wall on the material: force, N, and torque about the origin, N m. */
@@ -62,9 +60,9 @@ typedef struct Contact {
   PetscReal near;   /* m: what is farther away cannot be reached in a step */
   PetscReal length; /* of a cell, m: scale of gaps */
   WallState *wall;
-  /* of this rank and step, of each wall: momentum, and behind it force, that setting what is in contact to
-   * the wall's motion took at the start; force that it took at the end */
-  ContactSum *impulse, *late;
+  /* of this rank and step, of each wall: momentum that setting what is in contact to its velocity took,
+   * and behind it the force taken out of acceleration at the start */
+  ContactSum *impulse;
 } Contact;
 
 /* Shortest and longest that a point's part of the surface layer counts as, over its reach at the start:
@@ -72,9 +70,9 @@ typedef struct Contact {
 #define THINNEST 0.25
 #define THICKEST 2
 
-/* Numbers that a carrier of contact keeps for each wall from step to step: state, reach, and forces
- * `last` and `late`. */
-#define CONTACT_KEPT(dim) (2 + 2 * (dim))
+/* Numbers that a carrier of contact keeps for each wall from step to step: state, reach, and the force
+ * `last`. */
+#define CONTACT_KEPT(dim) (2 + (dim))
 
 PetscErrorCode ContactCreate(const Case *c, const Walls *walls, Contact **contact);
 PetscErrorCode ContactDestroy(Contact **contact);
@@ -92,9 +90,7 @@ typedef struct {
   const PetscReal *mass;      /* n_nodes, kg */
   const unsigned char *fixed; /* n_nodes x dim: dofs that do not take part */
   PetscReal *motion;          /* n_nodes x dim: velocity or acceleration, changed */
-  const PetscReal *velocity;  /* n_nodes x dim: which way it slides; may be the motion */
-  PetscReal rate;             /* times `swept` it is the motion of the wall, */
-  PetscReal wall;             /* and this its velocity */
+  PetscReal rate;             /* times `swept` it is the velocity of the wall */
   PetscBool pulls;            /* may the wall pull? Else only what moves into it is stopped */
   PetscBool start;            /* of those in contact before the step, or of those in contact after it? */
 } ContactMotion;

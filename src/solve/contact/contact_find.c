@@ -55,10 +55,7 @@ static PetscErrorCode AddNodes(Contact *s, ContactPoint *c, PetscInt n)
 static void remember(ContactPoint *c, PetscInt dim, const PetscReal *kept, const WallPlace *place)
 {
   c->before = (ContactState)(int)(kept[0] + 0.5);
-  for (PetscInt d = 0; d < dim; ++d) {
-    c->last[d] = kept[2 + d];
-    c->start[d] = kept[2 + d] + kept[2 + dim + d];
-  }
+  for (PetscInt d = 0; d < dim; ++d) c->last[d] = c->start[d] = kept[2 + d];
   c->state = c->before;
   for (int d = 0; d < 3; ++d) c->normal[d] = place->normal[d];
 }

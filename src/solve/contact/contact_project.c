@@ -157,8 +157,8 @@ static void slip_of(const Projection *w, PetscInt k, PetscReal v[3])
   PetscReal along = 0;
   v[0] = v[1] = v[2] = 0;
   for (PetscInt e = c->first; e < c->first + c->n; ++e)
-    for (PetscInt d = 0; d < w->s->dim; ++d) v[d] += w->s->N[e] * w->m->velocity[w->s->node[e] * w->s->dim + d];
-  for (int d = 0; d < 3; ++d) v[d] -= w->m->wall * c->swept[d], along += v[d] * c->normal[d];
+    for (PetscInt d = 0; d < w->s->dim; ++d) v[d] += w->s->N[e] * w->m->motion[w->s->node[e] * w->s->dim + d];
+  for (int d = 0; d < 3; ++d) v[d] -= w->m->rate * c->swept[d], along += v[d] * c->normal[d];
   for (int d = 0; d < 3; ++d) v[d] -= along * c->normal[d];
 }
 
@@ -167,12 +167,10 @@ static void slip_of(const Projection *w, PetscInt k, PetscReal v[3])
 static void rub(const Projection *w, PetscInt k, PetscReal *p)
 {
   const ContactPoint *c = w->s->point + k;
-  const PetscBool velocity = w->m->velocity == w->m->motion;
   PetscReal v[3], shear[3];
   if (!w->held[k] || c->law.friction == 0 || c->law.kind == CONTACT_BONDED) return;
   const PetscReal normal = dot(3, p, c->normal), friction = c->law.friction;
-  const PetscReal pressing =
-    (velocity ? 1 / w->m->wall : 1) * (w->m->start ? dot(3, c->last, c->normal) : c->now.pressure);
+  const PetscReal pressing = (1 / w->m->rate) * (w->m->start ? dot(3, c->last, c->normal) : c->now.pressure);
   for (int d = 0; d < 3; ++d) shear[d] = p[d] - normal * c->normal[d];
   if (w->held[k] == 3) {
     const PetscReal size = PetscSqrtReal(dot(3, shear, shear)), most = friction * (PetscAbsReal(normal) + pressing);
@@ -188,7 +186,7 @@ static void rub(const Projection *w, PetscInt k, PetscReal *p)
 static void lose(const Projection *w, ContactSum *sum)
 {
   PetscReal v[3];
-  for (PetscInt k = 0; k < w->s->n && w->m->velocity == w->m->motion; ++k) {
+  for (PetscInt k = 0; k < w->s->n; ++k) {
     slip_of(w, k, v);
     sum[w->s->point[k].wall].sliding -= 0.5 * dot(3, v, w->p + 3 * k);
   }
@@ -228,16 +226,6 @@ static PetscErrorCode Destroy(Projection *w)
   PetscFunctionReturn(0);
 }
 
-/* What was taken from forces, point by point. */
-static void keep(Projection *w, Contact *s)
-{
-  for (PetscInt k = 0; k < s->n && w->m->velocity != w->m->motion; ++k)
-    for (int d = 0; d < 3; ++d) {
-      if (w->m->start) s->point[k].start[d] += w->p[3 * k + d];
-      else s->point[k].late[d] = w->p[3 * k + d];
-    }
-}
-
 PetscErrorCode ContactProject(Contact *s, const ContactMotion *m, ContactSum *sum)
 {
   Projection w;
@@ -255,7 +243,6 @@ PetscErrorCode ContactProject(Contact *s, const ContactMotion *m, ContactSum *su
   for (PetscInt i = 0; i < m->grid->n_nodes * s->dim; ++i) m->motion[i] += w.nodes[i];
   lose(&w, sum);
   for (PetscInt k = 0; k < s->n; ++k) contact_add(s->point + k, s->dim, w.p + 3 * k, sum + s->point[k].wall);
-  keep(&w, s);
   PetscCall(Destroy(&w));
   PetscFunctionReturn(0);
 }
