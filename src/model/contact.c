@@ -80,8 +80,8 @@ static PetscReal share_of_force(const Model *m)
   return holds(m) ? w.mean / (1 - w.lag) : 1;
 }
 
-/* A point that was stopped by a wall rings about it for ever in Newmark's formulas, as a prescribed
- * node would. */
+/* The forces of the last step are taken out of what Newmark's formulas remember, or they would push what
+ * leaves; and what was in contact starts with its wall's velocity, as a prescribed node does. */
 PetscErrorCode ContactHold(Model *m, PetscReal dt, PetscReal inertia)
 {
   PetscFunctionBeginUser;

@@ -6,7 +6,7 @@
  *   p = max(0, p_k - r g),    t = t_k - r s, but no longer than friction p + bond,    f = p n + t.
  *
  * p_k, t_k are multipliers that Newton's method keeps while it iterates, and which become p, t when
- * it has converged (contact.c): with them g and s of what is in contact and does not slide go to
+ * it is about to converge (contact.c): with them g and s of what is in contact and does not slide go to
  * zero, whatever r is. */
 #pragma once
 #include "wall/wall.h"

@@ -4,8 +4,8 @@
  *   v := v + M^-1 A^T p,    A v = wall,
  *
  * with the lumped mass M and A v, the motion of the contact points in the directions that are held.
- * Where more points are in contact than nodes can follow, p is not unique: a little of it counts as
- * motion, so that there is one. What slides is rubbed by the impulses, too: friction p against the
+ * Where more points are in contact than nodes can follow, p is not unique: some of it counts as
+ * motion, so that it stays small. What slides is rubbed by the impulses, too: friction p against the
  * way that it goes. */
 #include "solve/contact/contact.h"
 
