@@ -39,12 +39,18 @@ static void store_reactions(Model *m, PetscReal dt)
 static void end_motion(Model *m, PetscReal dt)
 {
   const AnalysisSpec *analysis = &m->c->analysis;
-  const PetscReal lag = m->scheme->weights(analysis, dt).lag;
   const PetscInt dofs = m->grid->n_nodes * m->dim;
   NodalFields *n = m->nodes;
   m->scheme->end(analysis, dt, dofs, n->du, n->v, n->a, n->v1, n->a1);
-  for (PetscInt i = 0; i < dofs; ++i) n->echo[i] = lag * (n->a1[i] - n->a[i]);
   m->space->fade = 1 - PetscExpReal(-model_damping(m) * dt);
+}
+
+/* For the next step; until then it is what the last one had held back. */
+static void keep_echo(const Model *m, PetscReal dt)
+{
+  const PetscReal lag = m->scheme->weights(&m->c->analysis, dt).lag;
+  NodalFields *n = m->nodes;
+  for (PetscInt i = 0; i < m->grid->n_nodes * m->dim; ++i) n->echo[i] = lag * (n->a1[i] - n->a[i]);
 }
 
 PetscErrorCode CommitStep(Model *m, PetscReal dt, EnergyStep *energy)
@@ -58,6 +64,7 @@ PetscErrorCode CommitStep(Model *m, PetscReal dt, EnergyStep *energy)
   end_motion(m, dt);
   set_multipliers(m);
   PetscCall(EnergyOfNodes(m, dt, energy));
+  keep_echo(m, dt);
   PetscCall(ContactEnd(m, dt, energy)); /* what that takes is lost in the transfer */
   store_reactions(m, dt);
   PetscCall(ContactForces(m, dt));

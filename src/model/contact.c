@@ -84,13 +84,18 @@ static PetscReal share_of_force(const Model *m)
  * leaves; and what was in contact starts with its wall's velocity, as a prescribed node does. */
 PetscErrorCode ContactHold(Model *m, PetscReal dt, PetscReal inertia)
 {
+  const PetscInt dofs = m->grid->n_nodes * m->dim;
+  NodalFields *n = m->nodes;
+
   PetscFunctionBeginUser;
   if (!m->contact) PetscFunctionReturn(0);
   contact_prepare(m->contact, m->time, dt, inertia, share_of_force(m));
   if (!holds(m)) PetscFunctionReturn(0);
   const ContactMotion a = motion_of(m, m->nodes->a, dt, PETSC_TRUE), v = motion_of(m, m->nodes->v, dt, PETSC_TRUE);
   const PetscReal lag = m->scheme->weights(&m->c->analysis, dt).lag;
+  for (PetscInt i = 0; i < dofs; ++i) n->echo[i] -= lag * n->a[i];
   PetscCall(ContactRelease(m->contact, &a, 1 / (1 - lag), m->contact->impulse + m->c->n_walls));
+  for (PetscInt i = 0; i < dofs; ++i) n->echo[i] += lag * n->a[i]; /* of what is left */
   PetscCall(ContactProject(m->contact, &v, m->contact->impulse));
   PetscFunctionReturn(0);
 }
@@ -129,6 +134,7 @@ static ContactWork point_work(const Model *m, const ContactPoint *c)
     work.sliding -= (f[d] - pressure * c->normal[d]) * (x[d] - c->x[d] - c->swept[d]);
   }
   work.closing = pressure * closing;
+  if (m->scheme->inertia) work.more = (1 - 0.5 / end) * (work.closing + work.moving - work.sliding);
   return work;
 }
 
@@ -142,6 +148,7 @@ ContactWork contact_work(const Model *m)
     sum.moving += work.moving;
     sum.sliding += work.sliding;
     sum.closing += work.closing;
+    sum.more += work.more;
   }
   return sum;
 }

@@ -16,7 +16,8 @@ typedef struct {
   PetscReal external, boundary;
   /* lost by damping, and between points and grid, since the start, J (docs/theory.md) */
   PetscReal damped, transfer;
-  PetscReal friction; /* taken by sliding along walls, since the start, J */
+  PetscReal friction;  /* taken by sliding along walls, since the start, J */
+  PetscReal numerical; /* taken by the damping of the time scheme, since the start, J; 0 in mpm */
   /* gone with points that left the grid, and in holding others at its boundary, since the start,
    * J */
   PetscReal outside;
@@ -120,7 +121,8 @@ typedef struct Model {
   PetscBool symmetric;     /* are all tangents symmetric? */
   PetscReal courant_speed; /* largest sqrt(M / density), m/s */
   /* see Energies */
-  PetscReal external_work, boundary_work, damped_energy, transfer_energy, friction_energy, start_energy;
+  PetscReal external_work, boundary_work, damped_energy, transfer_energy, friction_energy, numerical_energy;
+  PetscReal start_energy;
   /* that had come in, by the start, loads, gravity and prescribed motion, at any time, J */
   PetscReal most_energy;
   PetscReal least_energy; /* that is more than round-off, J */

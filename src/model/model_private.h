@@ -69,7 +69,7 @@ PetscErrorCode OutsideWarn(const Model *model, Diag *diag);
 
 /* This rank's share of the energies of a step that is being accepted, J. */
 typedef struct EnergyStep {
-  PetscReal external, boundary, damped, transfer, friction;
+  PetscReal external, boundary, damped, transfer, friction, numerical;
 } EnergyStep;
 
 /* What a step changes although it is not accepted, besides v and a of the nodes. */
@@ -105,9 +105,10 @@ PetscErrorCode ContactHold(Model *model, PetscReal dt, PetscReal inertia);
 /* Collective. Likewise ends it, once v1 and a1 are known. */
 PetscErrorCode ContactEnd(Model *model, PetscReal dt, struct EnergyStep *energy);
 /* Work of walls on the material in a step, J: of their motion; lost in sliding along them; of closing the
- * gap to them; half of that of the forces at the step's start. */
+ * gap to them; half of that of the forces at the step's start; what of all this is more than the
+ * trapezoidal rule with no force at the start gives. */
 typedef struct {
-  PetscReal moving, sliding, closing, start;
+  PetscReal moving, sliding, closing, start, more;
 } ContactWork;
 
 /* On this rank. */

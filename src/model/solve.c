@@ -124,6 +124,7 @@ PetscErrorCode StepStartKeep(Model *m, StepStart *start)
   if (m->method->restores_grid) PetscFunctionReturn(0);
   PetscCall(PetscArraycpy(m->nodes->v_start, m->nodes->v, dofs));
   PetscCall(PetscArraycpy(m->nodes->a_start, m->nodes->a, dofs));
+  PetscCall(PetscArraycpy(m->nodes->echo_start, m->nodes->echo, dofs));
   PetscFunctionReturn(0);
 }
 
@@ -136,6 +137,7 @@ PetscErrorCode StepStartRestore(Model *m, const StepStart *start, StepReport *re
   else {
     PetscCall(PetscArraycpy(m->nodes->v, m->nodes->v_start, dofs));
     PetscCall(PetscArraycpy(m->nodes->a, m->nodes->a_start, dofs));
+    PetscCall(PetscArraycpy(m->nodes->echo, m->nodes->echo_start, dofs));
   }
   if (!report->newton.interrupted) PetscFunctionReturn(0);
   m->control = start->control;

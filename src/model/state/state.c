@@ -15,6 +15,7 @@ static const struct {
   {"boundary_work", "J", offsetof(Model, boundary_work)},
   {"damped_energy", "J", offsetof(Model, damped_energy)},
   {"friction_energy", "J", offsetof(Model, friction_energy)},
+  {"numerical_energy", "J", offsetof(Model, numerical_energy)},
   {"transfer_energy", "J", offsetof(Model, transfer_energy)},
   {"start_energy", "J", offsetof(Model, start_energy)},
 };
