@@ -118,15 +118,22 @@ static PetscErrorCode PrepareSaddlePoint(KSP ksp, PetscBool undetermined)
 /* what takes more has failed, and a factorisation is tried: 15 to 30 are usual */
 #define MOST_CYCLES 300
 
-static PetscErrorCode UseMultigrid(KSP ksp, const LinearProblem *p, const char **what)
+PetscErrorCode LinearMultigrid(PC pc)
 {
   PetscReal weakest[] = {WEAKEST_LINK};
+  PetscFunctionBeginUser;
+  PetscCall(PCSetType(pc, PCGAMG));
+  PetscCall(PCGAMGSetThreshold(pc, weakest, 1));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode UseMultigrid(KSP ksp, const LinearProblem *p, const char **what)
+{
   PC pc;
   PetscFunctionBeginUser;
   PetscCall(KSPGetPC(ksp, &pc));
   PetscCall(KSPSetType(ksp, p->symmetric ? KSPCG : KSPGMRES));
-  PetscCall(PCSetType(pc, PCGAMG));
-  PetscCall(PCGAMGSetThreshold(pc, weakest, 1));
+  PetscCall(LinearMultigrid(pc));
   PetscCall(KSPGMRESSetRestart(ksp, 100));
   PetscCall(KSPSetTolerances(ksp, 1e-8, PETSC_DEFAULT, PETSC_DEFAULT, MOST_CYCLES));
   *what = p->symmetric ? "conjugate gradients, algebraic multigrid" : "GMRES, algebraic multigrid";

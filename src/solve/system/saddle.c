@@ -47,7 +47,7 @@ static PetscErrorCode InnerSolvers(PC pc, PetscBool dynamic)
   PetscCall(PCFieldSplitSchurGetSubKSP(pc, &n, &inner));
   PetscCall(KSPSetType(inner[0], KSPPREONLY));
   PetscCall(KSPGetPC(inner[0], &one));
-  PetscCall(PCSetType(one, PCGAMG));
+  PetscCall(LinearMultigrid(one));
   PetscCall(PCGAMGSetReuseInterpolation(one, PETSC_TRUE));
   PetscCall(KSPSetType(inner[1], KSPPREONLY));
   PetscCall(KSPGetPC(inner[1], &one));
