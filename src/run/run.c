@@ -107,7 +107,7 @@ static PetscErrorCode AfterStep(Run *r, const StepReport *report, PetscInt point
                         (double)report->dt));
   PetscCall(LossesLogStep(r->model, r->dir, report));
   PetscCall(RunWritten(r, EventsWatch(r->model, r->dir, PETSC_FALSE, r->events)));
-  PetscCall(RunDirProgress(r->dir, &progress));
+  if (!r->strength.n) PetscCall(RunDirProgress(r->dir, &progress)); /* each factor tells of itself */
   if (is_due(&r->rows, r->model->time, r->model->step)) PetscCall(RunWriteRow(r));
   if (is_due(&r->states, r->model->time, r->model->step)) PetscCall(RunWriteState(r));
   PetscFunctionReturn(0);

@@ -45,6 +45,12 @@ expect "cohesion alone" 0 "$talus" run block.yaml --out run --force --set materi
 near 1.2
 expect "tension cut off" 0 "$talus" run block.yaml --out run --force --set materials.soil.tension_cutoff=7e4 --set 'loads.tractions[0].value=[0, 5e4]'
 near 1.4
+sed 's/law: mohr-coulomb.*/law: j2, density: 2000, young: 1e9, poisson: 0.3, yield_stress: 120e3}/' block.yaml >j2.yaml
+expect "J2" 0 "$talus" run j2.yaml --out run --force
+near 1.385641 # 2 / sqrt(3) yield stress in plane strain
+sed 's/^materials:/  - {name: stone, shape: {box: {min: [0, 0], max: [1, 0.5]}}, points_per_cell: 4, material: stone}\n&\n  stone: {law: neo-hookean, density: 2000, young: 1e9, poisson: 0.3}/; s/box: {min: \[0, 0\], max: \[1, 1\]}}, points/box: {min: [0, 0.5], max: [1, 1]}}, points/' block.yaml >stone.yaml
+expect "on a stone" 0 "$talus" run stone.yaml --out run --force --set materials.soil.friction_angle=0 --set 'analysis.reduction.bodies=[block]'
+awk -F, 'END { exit !($3 >= 1.2) }' run/history.csv || fail "$name: weaker than by itself"
 expect "below one" 0 "$talus" run block.yaml --out run --force --set materials.soil.friction_angle=0 --set materials.soil.cohesion=3e4
 near 0.6
 says out.txt "warning = it does not stand with a factor of 1: sought downwards"

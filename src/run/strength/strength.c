@@ -201,8 +201,8 @@ static PetscErrorCode TellBracket(const StrengthRun *s, const char *by, Says yes
   for (PetscInt i = 0; i < s->n; ++i)
     if (no(s, i) && s->tries[i].factor > lower) upper = PetscMin(upper, s->tries[i].factor);
   if (upper < PETSC_MAX_REAL)
-    PetscCall(RunDirLog(dir, "by %s = %.4g ... %.4g: %s", by, (double)lower, (double)upper, what));
-  else PetscCall(RunDirLog(dir, "by %s > %.4g: %s", by, (double)lower, what));
+    PetscCall(RunDirLog(dir, "by %s = %.5g ... %.5g: %s", by, (double)lower, (double)upper, what));
+  else PetscCall(RunDirLog(dir, "by %s > %.5g: %s", by, (double)lower, what));
   PetscFunctionReturn(0);
 }
 
@@ -222,6 +222,7 @@ static PetscErrorCode TellAnswer(const StrengthRun *s, const Model *m, RunDir *d
 {
   const ReductionSpec *spec = &m->c->analysis.reduction;
   const PetscReal stable = s->search.stable, failed = s->search.failed;
+  const int digits = (int)PetscMax(2, PetscCeilReal(-PetscLog10Real(failed - stable)) + 1);
 
   PetscFunctionBeginUser;
   PetscCall(TellBracket(s, "Newton", balances, fails, "beyond it no equilibrium is found", dir));
@@ -234,8 +235,8 @@ static PetscErrorCode TellAnswer(const StrengthRun *s, const Model *m, RunDir *d
     PetscCall(RunDirLog(dir,
                         "warning = Newton's method lost its way before anything slid: the factor may be larger "
                         "(another mesh, or a small dilatancy angle, tells)"));
-  PetscCall(RunDirLog(dir, "factor of safety = %.4g (%.4g ... %.4g)", (double)m->strength.value, (double)stable,
-                      (double)failed));
+  PetscCall(RunDirLog(dir, "factor of safety = %.*f (%.*f ... %.*f)", digits, (double)m->strength.value, digits,
+                      (double)stable, digits, (double)failed));
   PetscFunctionReturn(0);
 }
 
