@@ -171,13 +171,18 @@ static PetscBool slides(const StrengthRun *s, PetscInt i)
 static PetscBool stands(const StrengthRun *s, PetscInt i) { return s->tries[i].outcome == TRY_STANDS; }
 static PetscBool fails(const StrengthRun *s, PetscInt i) { return !balances(s, i); }
 
+/* The last that stood before try i > 0. */
+static PetscInt stood_before(const StrengthRun *s, PetscInt i)
+{
+  for (--i; i > 0 && !stands(s, i);) --i;
+  return i;
+}
+
 /* The part of the work of loads and gravity since the last stable state that was dissipated; all of it
  * where nothing more is stored. */
 static PetscReal share_dissipated(const StrengthRun *s, PetscInt i)
 {
-  PetscInt before = i - 1;
-  while (before > 0 && !stands(s, before)) --before;
-  const Try *a = &s->tries[before], *b = &s->tries[i];
+  const Try *a = &s->tries[stood_before(s, i)], *b = &s->tries[i];
   return b->work > a->work ? (b->dissipated - a->dissipated) / (b->work - a->work) : 0;
 }
 
@@ -188,7 +193,7 @@ static PetscBool stores(const StrengthRun *s, PetscInt i)
 
 static PetscBool stores_nothing(const StrengthRun *s, PetscInt i) { return stands(s, i) && i > 0 && !stores(s, i); }
 
-/* "by Newton = between 1.38 and 1.39": the largest factor of which one says yes, and the smallest beyond
+/* "by Newton = 1.38 ... 1.39": the largest factor of which one says yes, and the smallest beyond
  * it of which the other says no. */
 static PetscErrorCode TellBracket(const StrengthRun *s, const char *by, Says yes, Says no, const char *what,
                                   RunDir *dir)
@@ -202,7 +207,7 @@ static PetscErrorCode TellBracket(const StrengthRun *s, const char *by, Says yes
     if (no(s, i) && s->tries[i].factor > lower) upper = PetscMin(upper, s->tries[i].factor);
   if (upper < PETSC_MAX_REAL)
     PetscCall(RunDirLog(dir, "by %s = %.5g ... %.5g: %s", by, (double)lower, (double)upper, what));
-  else PetscCall(RunDirLog(dir, "by %s > %.5g: %s", by, (double)lower, what));
+  else PetscCall(RunDirLog(dir, "by %s > %.5g", by, (double)lower));
   PetscFunctionReturn(0);
 }
 
@@ -210,10 +215,9 @@ static PetscErrorCode TellBracket(const StrengthRun *s, const char *by, Says yes
  * slide. */
 static PetscBool is_doubtful(const StrengthRun *s)
 {
-  PetscInt last = s->n - 1;
-  if (s->tries[last].outcome != TRY_LOST) return PETSC_FALSE;
-  while (last > 0 && !stands(s, last)) --last;
-  const PetscInt before = PetscMax(last - 1, 0);
+  const PetscInt last = stood_before(s, s->n - 1);
+  if (s->tries[s->n - 1].outcome != TRY_LOST || last == 0) return PETSC_FALSE;
+  const PetscInt before = stood_before(s, last);
   const PetscReal taken = s->tries[last].factor - s->tries[before].factor;
   return s->tries[last].moved < 0.1 * SLIDES * s->height * taken;
 }
@@ -222,7 +226,7 @@ static PetscErrorCode TellAnswer(const StrengthRun *s, const Model *m, RunDir *d
 {
   const ReductionSpec *spec = &m->c->analysis.reduction;
   const PetscReal stable = s->search.stable, failed = s->search.failed;
-  const int digits = (int)PetscMax(2, PetscCeilReal(-PetscLog10Real(failed - stable)) + 1);
+  const int digits = (int)PetscMax(2, PetscCeilReal(-PetscLog10Real(failed - stable)));
 
   PetscFunctionBeginUser;
   PetscCall(TellBracket(s, "Newton", balances, fails, "beyond it no equilibrium is found", dir));
