@@ -1,4 +1,5 @@
 /* Displacement over the factor that divides the strength: where it turns, the body slides. */
+#include <stdlib.h>
 #include <string.h>
 #include "base/file.h"
 #include "output/directory/run_dir_files.h"
@@ -13,18 +14,26 @@ typedef struct {
   PetscReal factor[MOST_TRIES], displacement[MOST_TRIES], failed;
 } FactorCurve;
 
+/* A line of factor.csv; the header has no factor. */
 static void read_line(const char *line, FactorCurve *curve)
 {
-  double factor, displacement;
-  char stable[8];
-  if (sscanf(line, "%lf,%7[^,],%*[^,],%*d,%*[^,],%lf", &factor, stable, &displacement) != 3) return;
-  if (strcmp(stable, "yes")) {
-    curve->failed = (PetscReal)factor;
+  enum { FACTOR, STABLE, DISPLACEMENT = 5, COLUMNS };
+  const char *column[COLUMNS];
+  char *end;
+  for (int k = 0; k < COLUMNS; ++k) {
+    column[k] = k ? strchr(column[k - 1], ',') : line;
+    if (!column[k]) return;
+    column[k] += k > 0;
+  }
+  const PetscReal factor = (PetscReal)strtod(column[FACTOR], &end);
+  if (end == column[FACTOR]) return;
+  if (strncmp(column[STABLE], "yes,", 4)) {
+    curve->failed = factor;
     return;
   }
   if (curve->n == MOST_TRIES) return;
-  curve->factor[curve->n] = (PetscReal)factor;
-  curve->displacement[curve->n++] = (PetscReal)displacement;
+  curve->factor[curve->n] = factor;
+  curve->displacement[curve->n++] = (PetscReal)strtod(column[DISPLACEMENT], NULL);
 }
 
 PetscErrorCode PlotFactor(const PlotOptions *options, Diag *diag, void (*said)(const char *path))
