@@ -133,6 +133,7 @@ PetscErrorCode CaseDestroy(Case **c)
   PetscCall(PetscFree((*c)->analysis.transfer));
   for (PetscInt i = 0; i < (*c)->analysis.n_until; ++i) PetscCall(PetscFree((*c)->analysis.until[i].measure));
   PetscCall(PetscFree((*c)->analysis.until));
+  PetscCall(StringsClear((*c)->analysis.reduction.n_bodies, &(*c)->analysis.reduction.bodies));
   PetscCall(PetscFree((*c)->grid.mesh));
   PetscCall(NamedValuesClear((*c)->grid.n_parameters, &(*c)->grid.parameters));
   PetscCall(BodiesClear(*c));
@@ -147,6 +148,15 @@ PetscErrorCode CaseDestroy(Case **c)
 }
 
 PetscBool case_is_mixed(const Case *c) { return c->formulation && !strcmp(c->formulation, "mixed"); }
+
+PetscBool case_is_static(const AnalysisSpec *analysis) { return analysis->type != ANALYSIS_DYNAMIC; }
+
+PetscBool case_writes(const Case *c, const char *field)
+{
+  for (PetscInt f = 0; f < c->output.n_fields; ++f)
+    if (!strcmp(c->output.fields[f], field)) return PETSC_TRUE;
+  return PETSC_FALSE;
+}
 
 PetscBool case_has_k0(const Case *c)
 {

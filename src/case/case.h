@@ -6,7 +6,7 @@
 #pragma once
 #include "case/kinematics/kinematics.h"
 
-typedef enum { ANALYSIS_STATIC, ANALYSIS_DYNAMIC } AnalysisType;
+typedef enum { ANALYSIS_STATIC, ANALYSIS_DYNAMIC, ANALYSIS_FACTOR } AnalysisType;
 typedef enum { MASS_CONSISTENT, MASS_LUMPED } MassMatrix;
 typedef enum { CELL_TRIANGLE, CELL_QUADRILATERAL, CELL_TETRAHEDRON, CELL_HEXAHEDRON } CellType;
 typedef enum { DIAGONAL_RIGHT, DIAGONAL_LEFT, DIAGONAL_ALTERNATING, DIAGONAL_CROSSED } Diagonal;
@@ -218,8 +218,19 @@ typedef struct {
   PetscReal after;    /* s before which it does not matter */
 } UntilSpec;
 
+/* By what the strength may be divided before a body fails. */
+typedef struct {
+  PetscReal from;      /* the first factor that is tried once the loads are on */
+  PetscReal step;      /* to the next one, as long as none has failed */
+  PetscReal tolerance; /* width of the bracket that is good enough, over the factor */
+  PetscReal most;      /* beyond it nobody looks */
+  PetscInt n_bodies;   /* 0: all */
+  char **bodies;       /* whose strength is divided */
+} ReductionSpec;
+
 typedef struct {
   AnalysisType type;
+  ReductionSpec reduction;     /* of a factor of safety */
   PetscReal end;               /* s; statics: pseudo-time, 1 */
   PetscReal step;              /* s, the first and (without growth) largest step */
   PetscReal smallest, largest; /* s, bounds of step control */
@@ -335,6 +346,10 @@ typedef struct {
 
 /* Is the pressure an unknown beside the displacements? */
 PetscBool case_is_mixed(const Case *c);
+/* Equilibrium at every step, no inertia: a factor of safety is found so, too. */
+PetscBool case_is_static(const AnalysisSpec *analysis);
+/* Is that one of the fields of states? */
+PetscBool case_writes(const Case *c, const char *field);
 /* Does any body start with the stress of its weight? */
 PetscBool case_has_k0(const Case *c);
 

@@ -53,6 +53,26 @@ static void keep_echo(const Model *m, PetscReal dt)
   for (PetscInt i = 0; i < m->grid->n_nodes * m->dim; ++i) n->echo[i] = lag * (n->a1[i] - n->a[i]);
 }
 
+const PetscReal *model_state_field(const Model *m, PetscInt p, const char *name)
+{
+  const PetscReal *state = point_real(m->points, POINT_STATE, p);
+  for (const LawField *f = m->materials[m->points->material[p]].law->fields; f->name; ++f) {
+    if (!strcmp(f->name, name)) return state;
+    state += f->components;
+  }
+  return NULL;
+}
+
+/* Before the new state is there (sign -1) and after: what it has more of plastic strain. */
+static void note_flow(Model *m, PetscReal sign)
+{
+  for (PetscInt p = 0; m->points->components[POINT_FLOW] && p < m->points->n; ++p) {
+    const PetscReal *strain = model_state_field(m, p, "equivalent_plastic_strain");
+    PetscReal *flow = point_real(m->points, POINT_FLOW, p);
+    if (strain) *flow = sign * *strain + (sign > 0 ? *flow : 0);
+  }
+}
+
 PetscErrorCode CommitStep(Model *m, PetscReal dt, EnergyStep *energy)
 {
   LawStatus status;
@@ -71,7 +91,9 @@ PetscErrorCode CommitStep(Model *m, PetscReal dt, EnergyStep *energy)
   PetscCall(GuessLearn(m, dt));
   PetscCall(LimitWatch(m, dt));
   WeakFormInput in = weak_form_of(m, 0);
+  note_flow(m, -1);
   PetscCall(m->formulation->commit(&in, m->points, &status));
+  note_flow(m, 1);
   PetscCheck(status == LAW_OK, PETSC_COMM_SELF, PETSC_ERR_PLIB, "a converged state could not be committed");
   for (PetscInt node = 0; m->nodes->pressure && node < m->grid->n_nodes; ++node)
     m->nodes->pressure[node] = m->pressure_scale * m->nodes->scaled_pressure[node];

@@ -221,6 +221,7 @@ static PetscErrorCode CreatePoints(Model *m, Outline *outline, Diag *diag)
   if (transfer_find(c->analysis.transfer)->slopes && !basis_find(c->basis.kind)->domains)
     m->points->components[POINT_SLOPE] = 2 * m->dim * m->dim;
   if (c->n_walls) m->points->components[POINT_REACH] = 1;
+  m->points->components[POINT_FLOW] = case_writes(c, "plastic_increment");
   m->points->components[POINT_CONTACT] = c->n_walls * CONTACT_KEPT(m->dim);
   for (PetscInt k = 0; k < c->n_measures; ++k)
     m->points->components[POINT_CARRIED] += measure_find(c->measures[k].kind)->events != NULL;
@@ -320,6 +321,7 @@ static PetscErrorCode Build(Model *m, Diag *diag)
   if (m->formulation && m->scheme) PetscCall(CreateMaterials(m, diag));
   PetscCall(DiagReduce(m->comm, diag, &errors));
   if (errors) PetscFunctionReturn(0);
+  strength_start(m, diag);
   PetscCall(GridCreate(m->comm, m->c, cell_weight, (void *)m->c, diag, &m->grid));
   if (!m->grid) PetscFunctionReturn(0);
   PetscCall(GridWiden(&m->grid, basis_find(m->c->basis.kind)->halo));

@@ -67,6 +67,13 @@ PetscErrorCode OutsideAdd(Model *model, StepReport *report);
 /* Collective. A warning for each body that fills the grid to an edge where nothing holds it. */
 PetscErrorCode OutsideWarn(const Model *model, Diag *diag);
 
+/* strength.c. Which materials are reduced; what cannot be is a mistake. */
+void strength_start(Model *model, Diag *diag);
+/* Materials, and the factor in force, as they are when the strength is divided by it. */
+void strength_set(Model *model, PetscReal factor);
+/* Collective. Forces balance: but is it a body that stands, or one that has slid? */
+PetscErrorCode StrengthJudge(Model *model, StepReport *report);
+
 /* This rank's share of the energies of a step that is being accepted, J. */
 typedef struct EnergyStep {
   PetscReal external, boundary, damped, transfer, friction, numerical;

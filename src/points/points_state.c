@@ -29,6 +29,7 @@ static const struct {
   [POINT_REACH] = {"reach", "m"},
   [POINT_CONTACT] = {"contact", "N"},
   [POINT_CARRIED] = {"carried", "m"},
+  [POINT_FLOW] = {"flow", ""},
 };
 
 /* Points of a cloud remember the cell of their birth by this number already. */
