@@ -164,3 +164,20 @@ PetscBool case_has_k0(const Case *c)
     if (c->bodies[b].has_k0) return PETSC_TRUE;
   return PETSC_FALSE;
 }
+
+const char *case_load_path(const Case *c, PetscInt k, char path[64])
+{
+  static const char *const lists[LOAD_KINDS] = {
+    [LOAD_TRACTION] = "tractions", [LOAD_POINT] = "points", [LOAD_PRESSURE] = "pressures"};
+  PetscInt i = 0;
+  for (PetscInt j = 0; j < k; ++j) i += c->loads[j].kind == c->loads[k].kind;
+  snprintf(path, 64, "loads.%s[%d]", lists[c->loads[k].kind], (int)i);
+  return path;
+}
+
+PetscBool case_load_follows(const Case *c)
+{
+  for (PetscInt k = 0; k < c->n_loads; ++k)
+    if (c->loads[k].kind == LOAD_PRESSURE) return PETSC_TRUE;
+  return PETSC_FALSE;
+}

@@ -152,13 +152,13 @@ typedef struct {
   PetscReal adhesion; /* N/m2: tangential stress that contact bears without pressure */
 } WallSpec;
 
-typedef enum { LOAD_TRACTION, LOAD_POINT } LoadKind;
+typedef enum { LOAD_TRACTION, LOAD_POINT, LOAD_PRESSURE, LOAD_KINDS } LoadKind;
 
 typedef struct {
   LoadKind kind;
-  Selector on;        /* traction: boundary faces of the grid, or of a body (carried by it) */
+  Selector on;        /* traction, pressure: boundary faces of the grid, or of a body (carried by it) */
   PetscReal at[3];    /* point load: the material position at the start */
-  PetscReal value[3]; /* N/m2 of undeformed boundary, or N */
+  PetscReal value[3]; /* N/m2 of undeformed boundary, or N; pressure: value[0], N/m2 of the present one */
   Amplitude amplitude;
 } LoadSpec;
 
@@ -344,6 +344,10 @@ typedef struct {
   char **petsc;
 } Case;
 
+/* Where load k stands in the case: loads.tractions[0], loads.points[2]... Returns path. */
+const char *case_load_path(const Case *c, PetscInt k, char path[64]);
+/* Does a load follow the surface that it acts on? */
+PetscBool case_load_follows(const Case *c);
 /* Is the pressure an unknown beside the displacements? */
 PetscBool case_is_mixed(const Case *c);
 /* Equilibrium at every step, no inertia: a factor of safety is found so, too. */

@@ -226,6 +226,15 @@ PetscErrorCode ContactForces(Model *m, PetscReal dt)
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode ModelTractions(const Model *m, PetscInt wall, PetscInt *n, ContactTraction **tractions)
+{
+  PetscFunctionBeginUser;
+  *n = 0, *tractions = NULL;
+  if (!m->contact) PetscFunctionReturn(0);
+  PetscCall(ContactTractions(m->contact, m->grid, wall, m->nodes->du, share_of_force(m), n, tractions));
+  PetscFunctionReturn(0);
+}
+
 void contact_force_on(const Model *m, PetscInt p, PetscReal force[3])
 {
   const PetscReal *kept = point_real(m->points, POINT_CONTACT, p);

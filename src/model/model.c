@@ -184,7 +184,7 @@ static PetscErrorCode CreateMaterials(Model *m, Diag *diag)
 
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc1(c->n_materials, &m->materials));
-  m->symmetric = !walls_rub(c);
+  m->symmetric = !walls_rub(c) && !case_load_follows(c);
   for (PetscInt i = 0; i < c->n_materials; ++i) {
     Material *material = &m->materials[i];
     PetscCall(MaterialResolve(c, i, diag, material));

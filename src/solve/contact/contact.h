@@ -24,6 +24,7 @@ typedef struct {
   ContactForce multiplier, now;
   ContactState state;  /* at the last assembly */
   ContactState before; /* at the end of the last step */
+  PetscBool gone;      /* has the wall vanished when the step begins? Its last force is to be forgotten */
   PetscBool touches;   /* is there no gap at the start of the step? */
   PetscReal gap;       /* at the last assembly, m */
   PetscReal normal[3]; /* at the last assembly */
@@ -81,8 +82,22 @@ PetscErrorCode ContactFind(Contact *contact, const NodalScene *scene);
 /* Before the solve of a step of dt: penalties, and how walls move. inertia: see WeakFormInput; share: the
  * walls' forces over those of the balance. */
 void contact_prepare(Contact *contact, PetscReal t, PetscReal dt, PetscReal inertia, PetscReal share);
+/* contact_section.c. Surface that material point p stands for before a wall with the normal n, m2. */
+PetscReal contact_section(const NodalScene *scene, PetscInt p, const PetscReal n[3]);
 /* Position of a contact point with the field's increments, times `whole`. */
 void contact_place(const Contact *contact, const ContactPoint *c, const PetscReal *du, PetscReal whole, PetscReal x[3]);
+
+/* What a wall does to the surface of the material at one place. */
+typedef struct {
+  PetscReal x[3], normal[3];    /* at the end of the step, m */
+  PetscReal pressure, shear[3]; /* Pa: along the normal, across it */
+  PetscReal section, force[3];  /* of the contact point alone, m2, N */
+} ContactTraction;
+
+/* Collective. Tractions of one wall at this rank's points in contact, freed with PetscFree. du: increments of
+ * the last step; share: the walls' forces over those of the balance (contact_traction.c). */
+PetscErrorCode ContactTractions(const Contact *contact, const Grid *grid, PetscInt wall, const PetscReal *du,
+                                PetscReal share, PetscInt *n, ContactTraction **tractions);
 
 /* What a projection works with; arrays go over local nodes. */
 typedef struct {

@@ -73,15 +73,6 @@ static PetscBool is_let_go(const Contact *s, const ContactPoint *c, ContactKind 
   return !first || gap > TOUCHES * s->length;
 }
 
-static PetscReal section_of(const NodalScene *scene, PetscInt p)
-{
-  const PetscReal volume = scene->points->real[POINT_J][p] * scene->points->real[POINT_VOLUME][p];
-  const PetscReal radius = point_real(scene->points, POINT_X, p)[0];
-  const PetscReal round = kinematics_weight(scene->c->kinematics, radius); /* of the ring */
-  const PetscReal part = scene->grid->dim == 2 ? PetscSqrtReal(volume / round) : PetscPowReal(volume, 2. / 3.);
-  return part * round;
-}
-
 static PetscBool meets_body(const Case *c, PetscInt k, PetscInt body)
 {
   const WallSpec *w = c->walls + k;
@@ -112,7 +103,7 @@ static PetscErrorCode MeetPoint(Contact *s, const NodalScene *scene, PetscInt g,
   PetscCall(AddPoint(s, &c));
   c->owner = p, c->wall = k, c->side = side;
   c->reach = reach;
-  c->section = section_of(scene, p);
+  c->section = contact_section(scene, p, place.normal);
   c->modulus = material->wave_modulus, c->density = material->density;
   c->law = law_of(scene->c->walls + k);
   c->bond = scene->c->walls[k].adhesion * c->section;
@@ -122,7 +113,8 @@ static PetscErrorCode MeetPoint(Contact *s, const NodalScene *scene, PetscInt g,
     --s->n;
     PetscFunctionReturn(0);
   }
-  c->touches = place.gap <= TOUCHES * s->length;
+  c->gone = !wall_comes(s->walls, k, scene->t);
+  c->touches = !c->gone && place.gap <= TOUCHES * s->length;
   PetscCall(AddNodes(s, c, nn));
   for (PetscInt d = 0; d < dim; ++d) c->x[d] = x[d] - reach * place.normal[d];
   for (PetscInt I = 0; I < nn; ++I) {
