@@ -101,16 +101,17 @@ static void test_rate(void **state)
   bench_dynamic(&b, 0.35, 1e-3);
   b.c.gravity[1] = -g;
   const Shape above = {.kind = SHAPE_HALF_SPACE, .point = {0, 1.19}, .normal = {0, -1}};
-  for (int k = 0; k < 3; ++k)
+  for (int k = 0; k < 4; ++k)
     b.measure[k] = (MeasureSpec){.name = "flow",
                                  .kind = "mass",
                                  .word = "total",
                                  .has_in = PETSC_TRUE,
                                  .in = above,
-                                 .has_rate = PETSC_TRUE,
+                                 .has_rate = k < 3,
+                                 .has_mean = k == 3,
                                  .window = {k < 2 ? 0.08 : 0.15, k < 2 ? 0.08 : 0.25}};
   b.measure[1].has_in = PETSC_FALSE; /* of all: nothing is lost */
-  b.c.n_measures = 3;
+  b.c.n_measures = 4;
   Model *m = bench_model(&b, PETSC_COMM_WORLD);
   CHECK(PetscIsNanReal(measure(m, &b.measure[0], 0)), "one value has a rate");
   PetscReal noise = 0;
@@ -124,6 +125,8 @@ static void test_rate(void **state)
   CHECK(noise < 0.04, "%g", (double)noise);
   CHECK_CLOSE(measure(m, &b.measure[2], 2), -kg_per_m * g * 0.2, 0.01 * kg_per_m * g * 0.2);
   CHECK_CLOSE(measure(m, &b.measure[1], 1), 0, 1e-9);
+  /* of 0.61 m - g t^2 / 2 from 0.15 to 0.25 s */
+  CHECK_CLOSE(measure(m, &b.measure[3], 3), kg_per_m * (0.61 - g / 2 * 0.0408333), 0.005 * kg_per_m);
   CALL(ModelDestroy(&m));
 }
 
