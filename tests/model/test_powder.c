@@ -178,7 +178,12 @@ static void test_inclination(void **state)
     /* beyond 80 deg what is steep is found from the centre of mass alone */
     const MeasureSpec surface = {.kind = "free_surface", .word = "inclination", .has_about = k > 32},
                       deviation = {.kind = "free_surface", .word = "deviation", .has_about = k > 32},
-                      mass = {.kind = "centre_of_mass", .word = "angle", .has_about = PETSC_TRUE};
+                      mass = {.kind = "centre_of_mass", .word = "angle", .has_about = PETSC_TRUE},
+                      height = {.kind = "centre_of_mass", .word = "height", .has_about = PETSC_TRUE};
+    /* of a segment of the circle, 0.15 below its centre */
+    const PetscReal radius = 0.97 / PetscSqrtReal(2), half = PetscSqrtReal(radius * radius - 0.15 * 0.15);
+    const PetscReal area = radius * radius * PetscAcosReal(0.15 / radius) - 0.15 * half;
+    CHECK_CLOSE(measure(m, &height, 0), -2 * half * half * half / (3 * area) * PetscCosReal(radian), 0.002);
     worst = PetscMax(worst, PetscAbsReal(measure(m, &surface, 0) - angle));
     worst_mass = PetscMax(worst_mass, PetscAbsReal(measure(m, &mass, 0) - angle));
     rough = PetscMax(rough, measure(m, &deviation, 0));
