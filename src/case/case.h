@@ -200,8 +200,8 @@ typedef struct {
   PetscBool has_about;
   PetscReal about[3]; /* centre of a container, m */
   PetscReal middle;   /* share of the chord of a free surface that a line is fitted to; 0: usual */
-  /* change per time: over the last window[0] s, or with window[0] < window[1] between two times */
-  PetscBool has_rate;
+  /* change per time, or mean: over the last window[0] s, or with window[0] < window[1] between two times */
+  PetscBool has_rate, has_mean;
   PetscReal window[2];
   AvalancheSpec avalanche;
 } MeasureSpec;

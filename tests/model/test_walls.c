@@ -7,6 +7,7 @@ typedef struct {
   CellType cell;
   PetscReal friction;
   const char *scheme, *transfer;
+  PetscBool lumped;
 } Block;
 
 #define SLOPE (PETSC_PI / 6)
@@ -28,6 +29,7 @@ static Model *standing(Bench *b, const Block *r, PetscReal slope, PetscBool dyna
     b->c.analysis.beta = 1.3 * 1.3 / 4;
     b->c.analysis.gamma = 0.8;
   }
+  if (r->lumped) b->c.analysis.mass = MASS_LUMPED;
   b->c.basis = (BasisSpec){
     .kind = r->basis, .gamma = 1.8, .effective_radius = 1, .radius = 2, .max_radius = 3.5, .condition = 50, .gap = 2};
   b->c.linear = LINEAR_AUTO;
@@ -99,10 +101,12 @@ static void test_slides(void **state)
   static const Block blocks[] = {
     {"mpm", "cell", CELL_QUADRILATERAL, 0, NULL, "thesis"},
     {"mpm", "cell", CELL_QUADRILATERAL, 0.2, NULL, "thesis"},
+    {"mpm", "cell", CELL_QUADRILATERAL, 0.2, NULL, "thesis", PETSC_TRUE},
     {"mpm", "cell", CELL_TRIANGLE, 0.2, NULL, "thesis"},
     {"mpm", "cell", CELL_QUADRILATERAL, 0.2, NULL, "consistent"},
     {"mpm", "cell", CELL_QUADRILATERAL, 0.2, "midpoint", "thesis"},
     {"mpm", "gimp", CELL_QUADRILATERAL, 0.2, NULL, "thesis"},
+    {"mpm", "gimp", CELL_QUADRILATERAL, 0.2, NULL, "thesis", PETSC_TRUE},
     {"mpm", "gimp", CELL_QUADRILATERAL, 0.2, "midpoint", "consistent"},
     {"mpm", "cell", CELL_HEXAHEDRON, 0.2, NULL, "thesis"},
     {"fem", "cell", CELL_QUADRILATERAL, 0, NULL, "thesis"},
