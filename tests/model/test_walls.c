@@ -50,10 +50,7 @@ static Model *standing(Bench *b, const Block *r, PetscReal slope, PetscBool dyna
 
 static PetscReal measure(Model *m, const char *kind, const char *word, PetscInt component)
 {
-  const MeasureSpec s = {.kind = (char *)kind, .word = (char *)word, .component = component, .wall = (char *)"floor"};
-  PetscReal value;
-  CALL(ModelMeasure(m, &s, 0, &value));
-  return value;
+  return model_wall(m, "floor", kind, word, component);
 }
 
 /* Impulses of the wall are the change of momentum; their ratio is the friction; the block is as fast as

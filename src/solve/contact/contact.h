@@ -117,4 +117,6 @@ PetscErrorCode ContactProject(Contact *contact, const ContactMotion *motion, Con
 /* Collective. Take the forces of the last step, times `share`, out of the acceleration that nodes remember. */
 PetscErrorCode ContactRelease(Contact *contact, const ContactMotion *motion, PetscReal share, ContactSum *sum);
 void contact_force(const ContactPoint *c, PetscReal f[3]); /* of the last assembly */
+/* Of all forces of this rank at the last assembly, N2; contact may be NULL. */
+PetscReal contact_square(const Contact *contact);
 void contact_add(const ContactPoint *c, PetscInt dim, const PetscReal force[3], ContactSum *sum);
