@@ -294,6 +294,7 @@ typedef struct {
   PetscReal every;   /* s between states; 0: only the end; < 0: every |every| steps */
   PetscReal history; /* the same for history.csv; -1: every accepted step */
   PetscBool grid;    /* write the grid's fields too */
+  PetscBool walls;   /* and walls, with what touches them */
 } OutputSpec;
 
 /* When the state is put away so that a run can go on after an accident. */

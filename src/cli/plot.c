@@ -14,6 +14,7 @@ static const CliOption options_known[] = {
    "the way to it)"},
   {"columns", "N", "of several states (default: what makes a picture as wide as a screen)"},
   {"grid", NULL, "draw the grid as well"},
+  {"profile", "WALL", "instead: the pressure and the shear of a wall, as a picture and a table (profile_WALL.csv)"},
   {"range", "A:B", "values of the first and the last colour"},
   {"size", "WxH", "pixels, for example 1200x800 (default: to suit the body)"},
   {"up", "x|y|z", "the axis that points up in a picture in space (default: z)"},
@@ -97,6 +98,7 @@ static PetscErrorCode Understand(const CliArguments *arguments, PlotOptions *opt
   options->component = cli_value(arguments, "component");
   options->out = cli_value(arguments, "out");
   options->grid = cli_flag(arguments, "grid");
+  options->profile = cli_value(arguments, "profile");
   options->half = cli_flag(arguments, "half");
   options->turned = cli_flag(arguments, "turned");
   options->has_range = range != NULL;
@@ -147,6 +149,7 @@ static PetscErrorCode Draw(const PlotOptions *options, int *exit_code)
   PetscCall(DiagCreate(&diag));
   if (stat(options->run, &status) || !S_ISDIR(status.st_mode))
     diag_error(diag, NULL, "there is no run directory '%s'", options->run);
+  else if (options->profile) PetscCall(PlotProfile(options, diag, say));
   else PetscCall(PlotState(options, diag, picture));
   if (picture[0]) {
     say(picture);

@@ -18,6 +18,7 @@ typedef struct {
   PetscBool all_times; /* every state instead */
   PetscInt columns;    /* of several states; 0: chosen */
   PetscBool grid;      /* draw the grid too */
+  const char *profile; /* of PlotProfile: a wall, by its name */
   PetscBool has_range;
   PetscReal range[2]; /* of the colours, in the field's own unit */
   int width, height;  /* pixels; 0: chosen to suit the body */
@@ -38,6 +39,10 @@ PetscErrorCode PlotHistories(const PlotOptions *options, Diag *diag, void (*said
 
 /* RUN/pictures/factor.png of a run that has a factor.csv: displacement over the factor of its strength. */
 PetscErrorCode PlotFactor(const PlotOptions *options, Diag *diag, void (*said)(const char *path));
+
+/* RUN/pictures/profile_WALL.png (or `out`) and .csv: normal and shear tractions of the state nearest to the
+ * first time, along the coordinate in which what touches the wall reaches farthest. */
+PetscErrorCode PlotProfile(const PlotOptions *options, Diag *diag, void (*said)(const char *path));
 
 /* RUN/pictures/, made if it is not there; PETSC_FALSE and a diagnostic if it cannot be. */
 PetscBool plot_folder(const char *run, Diag *diag);

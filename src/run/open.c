@@ -87,6 +87,10 @@ static PetscErrorCode Rewind(Run *r, PetscInt step, Diag *diag)
   PetscCall(OpenHistory(r, diag));
   PetscCall(KeepSeries(r, "points", states, diag));
   if (r->c->output.grid) PetscCall(KeepSeries(r, "grid", states, diag));
+  if (r->c->output.walls && r->c->n_walls) {
+    PetscCall(KeepSeries(r, "walls", states, diag));
+    PetscCall(KeepSeries(r, "contact", states, diag));
+  }
   PetscCall(DiagReduce(r->comm, diag, &errors));
   if (errors || r->failed) PetscFunctionReturn(0);
   PetscCall(RunWritten(r, RunDirRewind(r->dir, states, step)));

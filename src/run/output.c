@@ -1,11 +1,9 @@
-#include "run/output.h"
+#include "run/output_private.h"
 #include <unistd.h>
 #include "base/count.h"
 #include "case/fields.h"
 #include "grid/cloud/cloud.h"
 #include "output/directory/run_dir_files.h"
-#include "output/seal.h"
-#include "output/vtk/vtk.h"
 
 #define MAX_FIELDS 32
 
@@ -118,8 +116,8 @@ static PetscErrorCode Seal(MPI_Comm comm, const char *path, FileSeal *seal)
 }
 
 /* Put the file in place and enter it in its series. */
-static PetscErrorCode WriteState(Output *o, MPI_Comm comm, const char *name, const VtkData *data, FileSeal *seal,
-                                 PetscBool *ok, char reason[256])
+PetscErrorCode OutputState(Output *o, MPI_Comm comm, const char *name, const VtkData *data, FileSeal *seal,
+                           PetscBool *ok, char reason[256])
 {
   char file[64], path[PETSC_MAX_PATH_LEN];
 
@@ -132,7 +130,7 @@ static PetscErrorCode WriteState(Output *o, MPI_Comm comm, const char *name, con
     if (code) unlink(path); /* a state that no series names would be found by nobody */
   }
   if (code) *ok = PETSC_FALSE;
-  else PetscCall(Seal(comm, path, seal));
+  else if (seal) PetscCall(Seal(comm, path, seal));
   PetscFunctionReturn(0);
 }
 
@@ -161,7 +159,7 @@ static PetscErrorCode WritePoints(Output *o, Model *m, PetscBool *ok, char reaso
                        .point_fields = fields,
                        .point_id = m->points->id,
                        .time = m->time};
-  PetscCall(WriteState(o, m->comm, "points", &vtk, &o->seals[o->count].points, ok, reason));
+  PetscCall(OutputState(o, m->comm, "points", &vtk, &o->seals[o->count].points, ok, reason));
   for (PetscInt f = 0; f < n; ++f) PetscCall(PetscFree(data[f]));
   PetscCall(PetscFree(x));
   PetscFunctionReturn(0);
@@ -264,7 +262,7 @@ static PetscErrorCode WriteGrid(Output *o, Model *m, PetscBool *ok, char reason[
                  .point_fields = fields,
                  .time = m->time};
   if (grid->cloud) PetscCall(WriteCloud(grid, &vtk, n, fields));
-  PetscCall(WriteState(o, m->comm, "grid", &vtk, &o->seals[o->count].grid, ok, reason));
+  PetscCall(OutputState(o, m->comm, "grid", &vtk, &o->seals[o->count].grid, ok, reason));
   for (PetscInt f = 0; f < n; ++f) PetscCall(PetscFree(data[f]));
   PetscCall(PetscFree(x));
   PetscFunctionReturn(0);
@@ -288,6 +286,8 @@ PetscErrorCode OutputWrite(Output *o, Model *m, PetscBool *ok, char reason[256])
   PetscCall(ReserveSeals(o, o->count + 1));
   PetscCall(WritePoints(o, m, ok, reason));
   if (*ok && m->c->output.grid) PetscCall(WriteGrid(o, m, ok, reason));
+  if (*ok && m->walls && m->c->output.walls) PetscCall(OutputWalls(o, m, ok, reason));
+  if (*ok && m->walls && m->c->output.walls) PetscCall(OutputContact(o, m, ok, reason));
   if (*ok) ++o->count;
   PetscFunctionReturn(0);
 }

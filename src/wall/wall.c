@@ -3,6 +3,7 @@
 #include "wall/check.h"
 #include "wall/form.h"
 #include "wall/frame.h"
+#include "wall/mesh.h"
 
 typedef struct {
   const WallSpec *spec;
@@ -168,4 +169,35 @@ void wall_bounds(const Walls *walls, PetscInt k, PetscReal t, PetscReal min[3], 
     min[d] = moves ? -PETSC_MAX_REAL : own[d];
     max[d] = moves ? PETSC_MAX_REAL : own[d + 3];
   }
+}
+
+/* Of a wall that moves all is looked at that may come into view. */
+PetscErrorCode WallMeshAdd(const Walls *walls, PetscInt k, PetscReal t, const WallView *view, WallMesh *mesh)
+{
+  const WallSpec *spec = walls->c->walls + k;
+  const PetscInt first = mesh->n;
+  PetscReal min[3], max[3], centre[3] = {0, 0, 0}, reach = 0;
+  WallView own = *view;
+  Frame frame;
+
+  PetscFunctionBeginUser;
+  if (!walls->wall[k].form) PetscFunctionReturn(0);
+  frame_at(walls->c, spec, t, &frame);
+  for (PetscInt d = 0; d < walls->dim; ++d) {
+    centre[d] = (view->min[d] + view->max[d]) / 2;
+    reach += (view->max[d] - view->min[d]) / 2;
+  }
+  frame_origin(&frame, centre, centre);
+  for (int d = 0; d < 3; ++d) min[d] = centre[d] - reach, max[d] = centre[d] + reach;
+  if (spec->n_motions) own.min = min, own.max = max;
+  PetscCall(FormMesh(walls->wall[k].form, &own, mesh));
+  for (PetscInt i = first; i < mesh->n; ++i) {
+    mesh->wall[i] = (PetscReal)k;
+    for (PetscInt c = i * walls->dim; c < (i + 1) * walls->dim; ++c) {
+      PetscReal x[3];
+      frame_turn(&frame, mesh->x + 3 * c, x);
+      for (int d = 0; d < 3; ++d) mesh->x[3 * c + d] = x[d] + frame.T[d];
+    }
+  }
+  PetscFunctionReturn(0);
 }

@@ -187,6 +187,11 @@ static const SchemaEntry output_entries[] = {
   KEY("history", EVERY, NULL, "when rows of history.csv are written", .fallback = "{steps: 1}",
       AT(OutputSpec, history)),
   KEY("grid", BOOLEAN, NULL, "write the fields of the grid too", .fallback = "true", AT(OutputSpec, grid)),
+  KEY(
+    "walls", BOOLEAN, NULL,
+    "of a case with walls: write their surfaces (walls_*.hdf), and the places that touch them with the tractions there "
+    "(contact_*.hdf, for ParaView and `talus plot --profile`)",
+    .fallback = "true", AT(OutputSpec, walls)),
   {.key = NULL},
 };
 static const SchemaTable output = {.name = "output", .help = "What is written, and when.", .entries = output_entries};

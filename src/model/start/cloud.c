@@ -93,7 +93,9 @@ PetscErrorCode ModelWarnOfObstacles(const Model *m, Diag *diag)
       diag, path,
       "%d points of '%s' have prescribed nodes in their clouds which the body does not touch: it sticks to them",
       (int)count[b], m->c->bodies[b].name);
-    diag_hint(diag, "a body that is to come off later must start farther away than its clouds reach: %g m",
+    diag_hint(diag,
+              "a body that is to slide or come off meets `walls:` on its surface; of prescribed nodes it must start "
+              "farther away than its clouds reach: %g m",
               (double)(m->c->basis.radius * m->grid->cloud->spacing));
   }
   PetscCall(PetscFree(count));

@@ -6,7 +6,7 @@
  *   factor.csv    factors that were tried, of a factor of safety
  *   log.txt       what the run said                                 timings.txt   where the time
  *   went version.txt   talus, PETSc, MPI, compiler, number of ranks      pictures/     of talus
- *   plot points_000000.hdf ... points.hdf.series, grid_000000.hdf ... grid.hdf.series
+ *   plot points_000000.hdf ... points.hdf.series, likewise grid_..., walls_..., contact_...
  *   checkpoint_000000100.h5 ...   the state after so many steps (output/checkpoint/checkpoint.h)
  *
  * As long as a run is at work the directory is locked: a second one in the same place is

@@ -85,11 +85,14 @@ PetscErrorCode RunDirKeepCheckpoints(RunDir *dir, PetscInt keep)
  * states. */
 static int rewind_files(const RunDir *dir, const char *name, PetscInt states, PetscInt step)
 {
+  static const char *const kinds[] = {"points_", "grid_", "walls_", "contact_"};
   char path[FILE_PATH], aside[FILE_PATH + 16];
   const size_t n = strlen(name), tail = strlen(FILE_UNFINISHED);
-  const PetscInt point = number_of(name, "points_", ".hdf"), grid = number_of(name, "grid_", ".hdf");
+  PetscInt number = -1; /* of a state; a name begins with one of these at most */
+  for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(kinds); ++k)
+    number = PetscMax(number, number_of(name, kinds[k], ".hdf"));
   snprintf(path, sizeof path, "%s/%s", dir->path, name);
-  if ((n > tail && !strcmp(name + n - tail, FILE_UNFINISHED)) || point >= states || grid >= states)
+  if ((n > tail && !strcmp(name + n - tail, FILE_UNFINISHED)) || number >= states)
     return unlink(path) && errno != ENOENT ? errno : 0;
   if (checkpoint_step(name) <= step) return 0;
   snprintf(aside, sizeof aside, "%s.damaged", path);

@@ -1,0 +1,63 @@
+#!/bin/sh
+# Cases with walls leave their walls and what touches them beside the states: from the start to the end, after a
+# resumption too, on 1, 2 and 3 ranks; and the pressure along a wall becomes a table.
+. "$(dirname "$0")/library.sh"
+
+cat >case.yaml <<'END'
+kinematics: plane-strain
+method: mpm
+analysis: {type: dynamic, step: 0.01, end: 0.2, damping: 20}
+grid: {box: {min: [0, 0], max: [2, 1]}, size: 0.125}
+bodies:
+  - {name: block, shape: {box: {min: [0.5, 0.25], max: [1.5, 0.75]}}, points_per_cell: 4, material: rubber}
+materials:
+  rubber: {law: neo-hookean, density: 1000, young: 1e6, poisson: 0}
+walls:
+  - {name: floor, shape: {half-space: {point: [0, 0.25], normal: [0, 1]}}, friction: 0.5}
+  - {name: gate, shape: {box: {min: [1.7, 0.25], max: [1.8, 1]}}, until: 0.125}
+loads: {gravity: [0, -9.81]}
+measures:
+  pressure: {contact: pressure, of: {wall: floor}}
+  force: {wall_force: y, of: {wall: floor}}
+output: {every: 0.05}
+END
+
+expect "whole" 0 "$talus" run case.yaml --out whole --quiet --set checkpoint.steps=7 --set checkpoint.keep=100
+for kind in points walls contact; do
+  [ "$(ls whole/${kind}_*.hdf | wc -l)" -eq 5 ] || fail "$name: $(ls whole/${kind}_*.hdf | wc -l) files of $kind"
+  [ "$(grep -c '"time"' whole/$kind.hdf.series)" -eq 5 ] || fail "$name: another series of $kind"
+done
+awk -F, '$1 > 0.1249 && $1 < 0.1251 {found = 1} END {exit !found}' whole/history.csv || fail "$name: no step ends at 0.125 s"
+
+cp -r whole cut
+rm cut/checkpoint_0000000[12]*.h5 cut/timings.txt
+expect "resumed" 0 "$talus" run --resume cut --quiet
+cmp -s whole/history.csv cut/history.csv || fail "$name: another history"
+for kind in walls contact; do
+  for file in whole/${kind}_*.hdf; do
+    cmp -s "$file" "cut/$(basename "$file")" || fail "$name: $(basename "$file") differs"
+  done
+  cmp -s whole/$kind.hdf.series cut/$kind.hdf.series || fail "$name: another series of $kind"
+done
+
+for ranks in 2 3; do
+  expect "$ranks ranks" 0 on_ranks $ranks "$talus" run case.yaml --out ranks --force --quiet
+  [ "$(ls ranks/contact_*.hdf | wc -l)" -eq 5 ] || fail "$name: files of contact"
+  expect "$ranks ranks, profile" 0 "$talus" plot ranks --profile floor
+  [ "$(wc -l <ranks/pictures/profile_floor.csv)" -eq 17 ] || fail "$name: $(wc -l <ranks/pictures/profile_floor.csv) lines"
+done
+
+# The weight of 500 kg over 1 m; the block still breathes a little
+expect "profile" 0 "$talus" plot whole --profile floor
+awk -F, 'NR > 1 {n++; sum += $4; if ($1 < last) bad = 1; last = $1} END {exit bad || n != 16 || sum / n < 4500 || sum / n > 5300}' \
+  whole/pictures/profile_floor.csv || fail "$name: $(cat whole/pictures/profile_floor.csv)"
+[ -s whole/pictures/profile_floor.png ] || fail "$name: no picture"
+expect "no such wall" 2 "$talus" plot whole --profile flor
+says err.txt "the run 'whole' has no wall 'flor'" "did you mean 'floor'?"
+expect "nothing touches" 2 "$talus" plot whole --profile gate
+says err.txt "nothing touches the wall 'gate'"
+expect "without" 0 "$talus" run case.yaml --out without --quiet --set output.walls=false
+[ ! -e without/walls.hdf.series ] && [ ! -e without/contact.hdf.series ] || fail "$name: files of walls"
+expect "no profile" 2 "$talus" plot without --profile floor
+says err.txt "no contact.hdf.series"
+finish
