@@ -96,21 +96,21 @@ static void slide(const Block *r)
 static void test_slides(void **state)
 {
   static const Block blocks[] = {
-    {"mpm", "cell", CELL_QUADRILATERAL, 0, NULL, "thesis"},
-    {"mpm", "cell", CELL_QUADRILATERAL, 0.2, NULL, "thesis"},
+    {"mpm", "cell", CELL_QUADRILATERAL, 0, NULL, "thesis", PETSC_FALSE},
+    {"mpm", "cell", CELL_QUADRILATERAL, 0.2, NULL, "thesis", PETSC_FALSE},
     {"mpm", "cell", CELL_QUADRILATERAL, 0.2, NULL, "thesis", PETSC_TRUE},
-    {"mpm", "cell", CELL_TRIANGLE, 0.2, NULL, "thesis"},
-    {"mpm", "cell", CELL_QUADRILATERAL, 0.2, NULL, "consistent"},
-    {"mpm", "cell", CELL_QUADRILATERAL, 0.2, "midpoint", "thesis"},
-    {"mpm", "gimp", CELL_QUADRILATERAL, 0.2, NULL, "thesis"},
+    {"mpm", "cell", CELL_TRIANGLE, 0.2, NULL, "thesis", PETSC_FALSE},
+    {"mpm", "cell", CELL_QUADRILATERAL, 0.2, NULL, "consistent", PETSC_FALSE},
+    {"mpm", "cell", CELL_QUADRILATERAL, 0.2, "midpoint", "thesis", PETSC_FALSE},
+    {"mpm", "gimp", CELL_QUADRILATERAL, 0.2, NULL, "thesis", PETSC_FALSE},
     {"mpm", "gimp", CELL_QUADRILATERAL, 0.2, NULL, "thesis", PETSC_TRUE},
-    {"mpm", "gimp", CELL_QUADRILATERAL, 0.2, "midpoint", "consistent"},
-    {"mpm", "cell", CELL_HEXAHEDRON, 0.2, NULL, "thesis"},
-    {"fem", "cell", CELL_QUADRILATERAL, 0, NULL, "thesis"},
-    {"fem", "cell", CELL_QUADRILATERAL, 0.2, NULL, "thesis"},
-    {"fem", "cell", CELL_QUADRILATERAL, 0.2, "bossak", "thesis"},
-    {"gmm", "lme", CELL_QUADRILATERAL, 0.2, NULL, "thesis"},
-    {"gmm", "lme", CELL_QUADRILATERAL, 0.2, "bossak", "thesis"},
+    {"mpm", "gimp", CELL_QUADRILATERAL, 0.2, "midpoint", "consistent", PETSC_FALSE},
+    {"mpm", "cell", CELL_HEXAHEDRON, 0.2, NULL, "thesis", PETSC_FALSE},
+    {"fem", "cell", CELL_QUADRILATERAL, 0, NULL, "thesis", PETSC_FALSE},
+    {"fem", "cell", CELL_QUADRILATERAL, 0.2, NULL, "thesis", PETSC_FALSE},
+    {"fem", "cell", CELL_QUADRILATERAL, 0.2, "bossak", "thesis", PETSC_FALSE},
+    {"gmm", "lme", CELL_QUADRILATERAL, 0.2, NULL, "thesis", PETSC_FALSE},
+    {"gmm", "lme", CELL_QUADRILATERAL, 0.2, "bossak", "thesis", PETSC_FALSE},
   };
   (void)state;
   for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(blocks); ++k) slide(&blocks[k]);
@@ -138,9 +138,11 @@ static void rest(const Block *r)
 static void test_rests(void **state)
 {
   static const Block blocks[] = {
-    {"mpm", "cell", CELL_QUADRILATERAL, 0.8, NULL, "thesis"}, {"mpm", "gimp", CELL_QUADRILATERAL, 0.8, NULL, "thesis"},
-    {"mpm", "cell", CELL_HEXAHEDRON, 0.8, NULL, "thesis"},    {"fem", "cell", CELL_QUADRILATERAL, 0.8, NULL, "thesis"},
-    {"gmm", "lme", CELL_QUADRILATERAL, 0.8, NULL, "thesis"},
+    {"mpm", "cell", CELL_QUADRILATERAL, 0.8, NULL, "thesis", PETSC_FALSE},
+    {"mpm", "gimp", CELL_QUADRILATERAL, 0.8, NULL, "thesis", PETSC_FALSE},
+    {"mpm", "cell", CELL_HEXAHEDRON, 0.8, NULL, "thesis", PETSC_FALSE},
+    {"fem", "cell", CELL_QUADRILATERAL, 0.8, NULL, "thesis", PETSC_FALSE},
+    {"gmm", "lme", CELL_QUADRILATERAL, 0.8, NULL, "thesis", PETSC_FALSE},
   };
   (void)state;
   for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(blocks); ++k) rest(&blocks[k]);
@@ -149,7 +151,7 @@ static void test_rests(void **state)
 /* A wall through the middle of the block. */
 static void test_through(void **state)
 {
-  static const Block block = {"mpm", "cell", CELL_QUADRILATERAL, 0.8, NULL, "thesis"};
+  static const Block block = {"mpm", "cell", CELL_QUADRILATERAL, 0.8, NULL, "thesis", PETSC_FALSE};
   Bench b;
   WallSpec wall;
   (void)state;
