@@ -99,7 +99,7 @@ static PetscErrorCode FitInterface(Model *m, const SurfaceInput *in, const Petsc
   const PetscInt a = case_body(m->c, s->between[0]), b = case_body(m->c, s->between[1]);
   const PetscReal within = SURFACE_SEARCH * m->grid->smallest;
   PetscReal deepest = 0, all;
-  LostPoint worst;
+  LostPoint worst = {0};
   Surface first, second;
   char path[64];
 
