@@ -32,7 +32,9 @@ static PetscErrorCode Create(TalusCase *c, TalusModel **model, char **messages)
 
   PetscFunctionBeginUser;
   PetscCall(PetscNew(&made));
-  PetscCall(ModelCreate(c->comm, c->c, c->diag, &made->model));
+  if (c->c->analysis.type == ANALYSIS_FACTOR)
+    diag_error(c->diag, "analysis.type", "a factor of safety is sought by a whole run, not step by step");
+  else PetscCall(ModelCreate(c->comm, c->c, c->diag, &made->model));
   PetscCall(TalusTell(c->comm, c->diag, messages));
   if (made->model) *model = made;
   else PetscCall(Destroy(&made));

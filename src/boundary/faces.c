@@ -21,18 +21,17 @@ static void face_shape(PetscInt face_nodes, PetscReal s, PetscReal t, PetscReal 
   }
 }
 
-/* Length or area per unit of the face's own coordinates. */
-static PetscReal face_jacobian(PetscInt dim, PetscInt nf, PetscReal x[4][3], const PetscReal dN[8])
+/* Length or area per unit of the face's own coordinates, along the normal: nodes of a face turn around the
+ * one that leads out. */
+static void face_normal(PetscInt dim, PetscInt nf, PetscReal x[4][3], const PetscReal dN[8], PetscReal n[3])
 {
-  PetscReal u[3] = {0, 0, 0}, v[3] = {0, 0, 0};
+  PetscReal u[3] = {0, 0, 0}, v[3] = {0, 0, dim == 2};
   for (PetscInt i = 0; i < nf; ++i)
     for (PetscInt d = 0; d < dim; ++d) {
       u[d] += dN[i] * x[i][d];
-      v[d] += dN[nf + i] * x[i][d];
+      if (dim == 3) v[d] += dN[nf + i] * x[i][d];
     }
-  if (dim == 2) return PetscSqrtReal(u[0] * u[0] + u[1] * u[1]);
-  const PetscReal n[3] = {u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]};
-  return PetscSqrtReal(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
+  for (int d = 0; d < 3; ++d) n[d] = u[(d + 1) % 3] * v[(d + 2) % 3] - u[(d + 2) % 3] * v[(d + 1) % 3];
 }
 
 PetscInt face_quadrature(const Kinematics *kinematics, const Grid *grid, PetscInt cell, PetscInt side, FacePoint *q)
@@ -58,7 +57,11 @@ PetscInt face_quadrature(const Kinematics *kinematics, const Grid *grid, PetscIn
         q[k].xi[d] += N[i] * type->reference[type->face[side][i]][d];
       }
     }
-    q[k].area = face_jacobian(grid->dim, nf, x, dN) * (nf == 3 ? 1. / 6 : 1) * kinematics_weight(kinematics, q[k].x[0]);
+    const PetscReal weight = (nf == 3 ? 1. / 6 : 1) * kinematics_weight(kinematics, q[k].x[0]);
+    PetscReal *n = q[k].vector;
+    face_normal(grid->dim, nf, x, dN, n);
+    for (int d = 0; d < 3; ++d) n[d] *= weight;
+    q[k].area = PetscSqrtReal(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
   }
   return nf;
 }

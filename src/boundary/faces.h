@@ -7,6 +7,7 @@
 typedef struct {
   PetscReal x[3], xi[3]; /* position, and reference position in the cell */
   PetscReal area;        /* weight, m2: an edge is as thick as one, or goes round the circle */
+  PetscReal vector[3];   /* area times the unit normal out of the cell */
 } FacePoint;
 
 /* Gauss points of a side of a cell (2 on an edge, 3 on a triangle, 4 on a quadrilateral); returns

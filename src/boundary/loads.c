@@ -16,6 +16,48 @@ PetscBool touched_shape(const Grid *grid, PetscInt cell, const PetscReal *xi, co
   return PETSC_TRUE;
 }
 
+/* N and dN (nn x dim) of nodes that are touched, scaled to sum to one; returns PETSC_FALSE if there is none. */
+static PetscBool among_touched(PetscInt dim, PetscInt nn, const PetscInt *node, const unsigned char *touched,
+                               PetscReal *N, PetscReal *dN)
+{
+  PetscReal sum = 0, slope[3] = {0, 0, 0};
+  for (PetscInt I = 0; I < nn; ++I) {
+    if (!touched[node[I]]) N[I] = 0;
+    for (PetscInt d = 0; d < dim; ++d) {
+      if (!touched[node[I]]) dN[I * dim + d] = 0;
+      slope[d] += dN[I * dim + d];
+    }
+    sum += N[I];
+  }
+  if (sum <= 1e-12) return PETSC_FALSE;
+  for (PetscInt I = 0; I < nn; ++I) {
+    N[I] /= sum;
+    for (PetscInt d = 0; d < dim; ++d) dN[I * dim + d] = (dN[I * dim + d] - N[I] * slope[d]) / sum;
+  }
+  return PETSC_TRUE;
+}
+
+PetscInt carrier_shape(const Loads *l, const Grid *grid, PetscInt p, const unsigned char *touched,
+                       const PetscInt **node, PetscReal *N, PetscReal *dN)
+{
+  const PetscInt dim = l->dim, cell = l->carriers->cell[p];
+  PetscReal x[CELL_MAX_NODES * 3];
+  PetscInt nn;
+  if (l->support) {
+    nn = support_nodes(l->support, p);
+    *node = l->support->node + l->support->node_start[p];
+    for (PetscInt I = 0; I < nn; ++I) N[I] = support_N(l->support, p, p)[I];
+    for (PetscInt i = 0; i < nn * dim; ++i) dN[i] = support_dN(l->support, p, p, dim)[i];
+  } else {
+    if (cell < 0) return 0;
+    nn = grid_cell(grid, cell)->nodes;
+    *node = grid->cell_node + cell * grid->nodes_per_cell;
+    grid_cell_x(grid, cell, x);
+    (void)cell_gradients(grid_cell_type(grid, cell), x, point_real(l->carriers, POINT_XI, p), N, dN);
+  }
+  return among_touched(dim, nn, *node, touched, N, dN) ? nn : 0;
+}
+
 static PetscErrorCode AddCarrier(Loads *loads, const Grid *grid, PetscInt load, PetscInt cell, const PetscReal *x,
                                  const PetscReal *xi, const PetscReal *force)
 {
@@ -78,25 +120,63 @@ static PetscErrorCode GridTraction(Loads *loads, const Grid *grid, PetscInt load
   PetscFunctionReturn(0);
 }
 
+/* The load's force on the surface around a quadrature point: a pressure pushes into the material. */
+static void force_on(const LoadSpec *load, const FacePoint *q, PetscReal force[3])
+{
+  const PetscBool pushes = load->kind == LOAD_PRESSURE;
+  for (int d = 0; d < 3; ++d) force[d] = pushes ? -load->value[0] * q->vector[d] : q->area * load->value[d];
+}
+
+static PetscErrorCode CarryFaces(Loads *loads, const Grid *grid, PetscInt load, PetscInt n, const PetscInt *cell,
+                                 const PetscInt *side)
+{
+  FacePoint q[FACE_MAX_POINTS];
+  PetscReal force[3];
+
+  PetscFunctionBeginUser;
+  for (PetscInt f = 0; f < n; ++f) {
+    const PetscInt nq = face_quadrature(loads->c->kinematics, grid, cell[f], side[f], q);
+    for (PetscInt k = 0; k < nq; ++k) {
+      force_on(&loads->c->loads[load], &q[k], force);
+      PetscCall(AddCarrier(loads, grid, load, cell[f], q[k].x, q[k].xi, force));
+    }
+  }
+  PetscFunctionReturn(0);
+}
+
 static PetscErrorCode BodyTraction(Loads *loads, const Grid *grid, const Points *points, PetscInt load,
                                    PetscInt *n_faces)
 {
   const LoadSpec *spec = &loads->c->loads[load];
   PetscInt n, *cell, *side, body = 0;
-  FacePoint q[FACE_MAX_POINTS];
-  PetscReal force[3];
 
   PetscFunctionBeginUser;
   while (body < loads->c->n_bodies && strcmp(loads->c->bodies[body].name, spec->on.body)) ++body;
   PetscCall(BodyFaces(grid, points, body, &spec->on, &n, &cell, &side));
-  for (PetscInt f = 0; f < n; ++f) {
-    const PetscInt nq = face_quadrature(loads->c->kinematics, grid, cell[f], side[f], q);
-    for (PetscInt k = 0; k < nq; ++k) {
-      for (PetscInt d = 0; d < loads->dim; ++d) force[d] = q[k].area * spec->value[d];
-      PetscCall(AddCarrier(loads, grid, load, cell[f], q[k].x, q[k].xi, force));
-    }
-  }
+  PetscCall(CarryFaces(loads, grid, load, n, cell, side));
   PetscCall(MPIU_Allreduce(&n, n_faces, 1, MPIU_INT, MPI_SUM, grid->comm));
+  PetscCall(PetscFree(cell));
+  PetscCall(PetscFree(side));
+  PetscFunctionReturn(0);
+}
+
+/* Carriers on the faces of the grid whose cells hold points. */
+static PetscErrorCode CarryBoundary(Loads *loads, const Grid *grid, const Points *points, PetscInt load,
+                                    PetscInt *n_faces)
+{
+  PetscBool *filled;
+  PetscInt n, kept = 0, *cell, *side;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(grid->n_cells, &filled));
+  for (PetscInt p = 0; p < points->n; ++p)
+    if (points->cell[p] >= 0) filled[points->cell[p]] = PETSC_TRUE;
+  PetscCall(GridSelectFaces(grid, &loads->c->loads[load].on, &n, &cell, &side));
+  for (PetscInt f = 0; f < n; ++f)
+    if (filled[cell[f]]) cell[kept] = cell[f], side[kept++] = side[f];
+  PetscCall(CarryFaces(loads, grid, load, kept, cell, side));
+  PetscCall(MPIU_Allreduce(&kept, n_faces, 1, MPIU_INT, MPI_SUM, grid->comm));
+  PetscCall(PetscFree(filled));
   PetscCall(PetscFree(cell));
   PetscCall(PetscFree(side));
   PetscFunctionReturn(0);
@@ -121,8 +201,8 @@ static PetscErrorCode TellNoFace(const Grid *grid, const Selector *on, const cha
 PetscErrorCode LoadsCreate(const Grid *grid, const Case *c, const Points *points, Diag *diag, Loads **loads)
 {
   Loads *l;
-  PetscInt faces, tractions = 0, forces = 0;
-  char path[64];
+  PetscInt faces;
+  char list[64], path[80];
 
   PetscFunctionBeginUser;
   PetscCall(PetscNew(&l));
@@ -133,14 +213,15 @@ PetscErrorCode LoadsCreate(const Grid *grid, const Case *c, const Points *points
   PetscCall(FollowersCreate(l->dim, l->dim, &l->carriers));
   l->carriers->components[POINT_FIELD] = points->components[POINT_FIELD];
   for (PetscInt k = 0; k < c->n_loads; ++k) {
-    if (c->loads[k].kind == LOAD_POINT) {
-      PetscCall(PetscSNPrintf(path, sizeof path, "loads.points[%d].at", (int)forces++));
+    const LoadKind kind = c->loads[k].kind;
+    PetscCall(PetscSNPrintf(path, sizeof path, "%s.%s", case_load_path(c, k, list), kind == LOAD_POINT ? "at" : "on"));
+    if (kind == LOAD_POINT) {
       PetscCall(PointLoad(l, grid, points, k, path, diag));
       continue;
     }
     if (c->loads[k].on.body) PetscCall(BodyTraction(l, grid, points, k, &faces));
+    else if (kind == LOAD_PRESSURE) PetscCall(CarryBoundary(l, grid, points, k, &faces));
     else PetscCall(GridTraction(l, grid, k, &faces));
-    PetscCall(PetscSNPrintf(path, sizeof path, "loads.tractions[%d].on", (int)tractions++));
     if (!faces) PetscCall(TellNoFace(grid, &c->loads[k].on, path, diag));
   }
   PetscCall(PointsSort(l->carriers));
@@ -150,29 +231,14 @@ PetscErrorCode LoadsCreate(const Grid *grid, const Case *c, const Points *points
 
 PetscErrorCode LoadsLeaveCells(Loads *l, const Grid *grid, const Points *points)
 {
-  PetscBool *filled;
-  PetscInt n, *cell, *side;
-  FacePoint q[FACE_MAX_POINTS];
-  PetscReal force[3];
+  PetscInt faces;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscCalloc1(grid->n_cells, &filled));
-  for (PetscInt p = 0; p < points->n; ++p) filled[points->cell[p]] = PETSC_TRUE;
   for (PetscInt k = 0; k < l->c->n_loads; ++k) {
-    if (!l->faces[k].n) continue;
+    const LoadSpec *load = l->c->loads + k;
     l->faces[k].n = 0;
-    PetscCall(GridSelectFaces(grid, &l->c->loads[k].on, &n, &cell, &side));
-    for (PetscInt f = 0; f < n; ++f) {
-      const PetscInt nq = filled[cell[f]] ? face_quadrature(l->c->kinematics, grid, cell[f], side[f], q) : 0;
-      for (PetscInt i = 0; i < nq; ++i) {
-        for (PetscInt d = 0; d < l->dim; ++d) force[d] = q[i].area * l->c->loads[k].value[d];
-        PetscCall(AddCarrier(l, grid, k, cell[f], q[i].x, q[i].xi, force));
-      }
-    }
-    PetscCall(PetscFree(cell));
-    PetscCall(PetscFree(side));
+    if (load->kind == LOAD_TRACTION && !load->on.body) PetscCall(CarryBoundary(l, grid, points, k, &faces));
   }
-  PetscCall(PetscFree(filled));
   PetscCall(PointsSort(l->carriers));
   PetscFunctionReturn(0);
 }
@@ -183,7 +249,7 @@ PetscErrorCode LoadsRegrid(Loads *l, const Grid *old, const Grid *grid)
 
   PetscFunctionBeginUser;
   for (PetscInt k = 0; k < l->c->n_loads; ++k) {
-    if (l->c->loads[k].kind == LOAD_POINT || l->c->loads[k].on.body) continue;
+    if (l->c->loads[k].kind != LOAD_TRACTION || l->c->loads[k].on.body) continue;
     PetscCall(PetscFree(l->faces[k].cell));
     PetscCall(PetscFree(l->faces[k].N));
     PetscCall(GridTraction(l, grid, k, &faces));
@@ -244,6 +310,9 @@ void loads_push(const Loads *l, const Grid *grid, PetscReal t, const unsigned ch
   for (PetscInt k = 0; k < l->c->n_loads; ++k)
     push_faces(&l->faces[k], grid, l->c->loads[k].value, case_factor(l->c, &l->c->loads[k].amplitude, t), filled,
                residual);
-  for (PetscInt p = 0; p < l->carriers->n; ++p)
-    push_carrier(l, grid, p, case_factor(l->c, &l->c->loads[l->carriers->body[p]].amplitude, t), touched, residual);
+  for (PetscInt p = 0; p < l->carriers->n; ++p) {
+    const LoadSpec *load = l->c->loads + l->carriers->body[p];
+    if (load->kind != LOAD_PRESSURE)
+      push_carrier(l, grid, p, case_factor(l->c, &load->amplitude, t), touched, residual);
+  }
 }

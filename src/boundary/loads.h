@@ -1,9 +1,9 @@
-/* Dead loads: tractions on faces of the grid, and loads carried by points that move with the
- * material.
+/* Loads: tractions on faces of the grid, and loads carried by points that move with the material.
  *
  * A carrier is a point without mass that holds a force: at the quadrature points of a body's
- * boundary (a traction), or at one material position (a point force). Its force goes to the nodes
- * of its cell that hold material. */
+ * boundary (a traction, a pressure), or at one material position (a point force). Its force goes to the
+ * nodes of its cell that hold material. All are dead but pressures, whose force turns and grows with
+ * the surface (solve/forces/pressures.c). */
 #pragma once
 #include "support/support.h"
 
@@ -17,8 +17,10 @@ typedef struct {
 typedef struct Loads {
   const Case *c;
   PetscInt dim, n_nodes;
-  LoadFaces *faces;       /* one per load */
-  Points *carriers;       /* POINT_FORCE at amplitude 1; body = index of the load */
+  LoadFaces *faces; /* one per load */
+  /* POINT_FORCE at amplitude 1, of a pressure on the surface as it is when the step begins; body = index
+   * of the load */
+  Points *carriers;
   const Support *support; /* nodes that carriers push; NULL: those of their cells */
 } Loads;
 
@@ -32,11 +34,16 @@ PetscErrorCode LoadsDestroy(Loads **loads);
  * way. */
 PetscErrorCode LoadsRegrid(Loads *loads, const Grid *old, const Grid *grid);
 
-/* Subtract the nodal forces at time t from residual (n_nodes x dim; sums over ranks come later).
+/* Subtract the nodal forces of dead loads at time t from residual (n_nodes x dim; sums over ranks come later).
  * Faces of the grid are loaded where their cell is filled[cell] by material: beside a body there is
  * nothing to push. Carried forces go to nodes with touched[node] != 0. */
 void loads_push(const Loads *loads, const Grid *grid, PetscReal t, const unsigned char *filled,
                 const unsigned char *touched, PetscReal *residual);
+
+/* Nodes of a carrier, and its shape functions among those that are touched, scaled to sum to one, with
+ * their gradients (room for CLOUD_MAX_NODES); 0 if there is none. */
+PetscInt carrier_shape(const Loads *loads, const Grid *grid, PetscInt p, const unsigned char *touched,
+                       const PetscInt **node, PetscReal *N, PetscReal *dN);
 
 /* Shape functions of a carrier or tracer among touched nodes only, scaled to sum to one;
  * PETSC_FALSE if there is none. */

@@ -17,7 +17,10 @@ PetscReal amplitude_value(const Amplitude *a, PetscReal t, PetscReal fallback)
 
 PetscReal case_factor(const Case *c, const Amplitude *amplitude, PetscReal t)
 {
-  return amplitude_value(amplitude, t, c->analysis.type == ANALYSIS_STATIC ? t / c->analysis.end : 1);
+  const PetscBool grows = case_is_static(&c->analysis);
+  /* a factor of safety is sought when all loads are on: time goes on then, and they stay */
+  if (c->analysis.type == ANALYSIS_FACTOR) t = PetscMin(t, c->analysis.end);
+  return amplitude_value(amplitude, t, grows ? t / c->analysis.end : 1);
 }
 
 /* Integral from the first entry's time to t, for any t. */

@@ -145,6 +145,7 @@ PetscErrorCode CaseDestroy(Case **c)
   PetscCall(PetscFree((*c)->analysis.transfer));
   for (PetscInt i = 0; i < (*c)->analysis.n_until; ++i) PetscCall(PetscFree((*c)->analysis.until[i].measure));
   PetscCall(PetscFree((*c)->analysis.until));
+  PetscCall(StringsClear((*c)->analysis.reduction.n_bodies, &(*c)->analysis.reduction.bodies));
   PetscCall(PetscFree((*c)->grid.mesh));
   PetscCall(NamedValuesClear((*c)->grid.n_parameters, &(*c)->grid.parameters));
   PetscCall(BodiesClear(*c));
@@ -161,9 +162,35 @@ PetscErrorCode CaseDestroy(Case **c)
 
 PetscBool case_is_mixed(const Case *c) { return c->formulation && !strcmp(c->formulation, "mixed"); }
 
+PetscBool case_is_static(const AnalysisSpec *analysis) { return analysis->type != ANALYSIS_DYNAMIC; }
+
+PetscBool case_writes(const Case *c, const char *field)
+{
+  for (PetscInt f = 0; f < c->output.n_fields; ++f)
+    if (!strcmp(c->output.fields[f], field)) return PETSC_TRUE;
+  return PETSC_FALSE;
+}
+
 PetscBool case_has_k0(const Case *c)
 {
   for (PetscInt b = 0; b < c->n_bodies; ++b)
     if (c->bodies[b].has_k0) return PETSC_TRUE;
+  return PETSC_FALSE;
+}
+
+const char *case_load_path(const Case *c, PetscInt k, char path[64])
+{
+  static const char *const lists[LOAD_KINDS] = {
+    [LOAD_TRACTION] = "tractions", [LOAD_POINT] = "points", [LOAD_PRESSURE] = "pressures"};
+  PetscInt i = 0;
+  for (PetscInt j = 0; j < k; ++j) i += c->loads[j].kind == c->loads[k].kind;
+  snprintf(path, 64, "loads.%s[%d]", lists[c->loads[k].kind], (int)i);
+  return path;
+}
+
+PetscBool case_load_follows(const Case *c)
+{
+  for (PetscInt k = 0; k < c->n_loads; ++k)
+    if (c->loads[k].kind == LOAD_PRESSURE) return PETSC_TRUE;
   return PETSC_FALSE;
 }

@@ -6,7 +6,7 @@
 #pragma once
 #include "case/kinematics/kinematics.h"
 
-typedef enum { ANALYSIS_STATIC, ANALYSIS_DYNAMIC } AnalysisType;
+typedef enum { ANALYSIS_STATIC, ANALYSIS_DYNAMIC, ANALYSIS_FACTOR } AnalysisType;
 typedef enum { MASS_CONSISTENT, MASS_LUMPED } MassMatrix;
 typedef enum { CELL_TRIANGLE, CELL_QUADRILATERAL, CELL_TETRAHEDRON, CELL_HEXAHEDRON } CellType;
 typedef enum { DIAGONAL_RIGHT, DIAGONAL_LEFT, DIAGONAL_ALTERNATING, DIAGONAL_CROSSED } Diagonal;
@@ -162,13 +162,13 @@ typedef struct {
   PetscReal adhesion; /* N/m2: tangential stress that contact bears without pressure */
 } InterfaceSpec;
 
-typedef enum { LOAD_TRACTION, LOAD_POINT } LoadKind;
+typedef enum { LOAD_TRACTION, LOAD_POINT, LOAD_PRESSURE, LOAD_KINDS } LoadKind;
 
 typedef struct {
   LoadKind kind;
-  Selector on;        /* traction: boundary faces of the grid, or of a body (carried by it) */
+  Selector on;        /* traction, pressure: boundary faces of the grid, or of a body (carried by it) */
   PetscReal at[3];    /* point load: the material position at the start */
-  PetscReal value[3]; /* N/m2 of undeformed boundary, or N */
+  PetscReal value[3]; /* N/m2 of undeformed boundary, or N; pressure: value[0], N/m2 of the present one */
   Amplitude amplitude;
 } LoadSpec;
 
@@ -211,8 +211,8 @@ typedef struct {
   PetscBool has_about;
   PetscReal about[3]; /* centre of a container, m */
   PetscReal middle;   /* share of the chord of a free surface that a line is fitted to; 0: usual */
-  /* change per time: over the last window[0] s, or with window[0] < window[1] between two times */
-  PetscBool has_rate;
+  /* change per time, or mean: over the last window[0] s, or with window[0] < window[1] between two times */
+  PetscBool has_rate, has_mean;
   PetscReal window[2];
   AvalancheSpec avalanche;
 } MeasureSpec;
@@ -229,8 +229,19 @@ typedef struct {
   PetscReal after;    /* s before which it does not matter */
 } UntilSpec;
 
+/* By what the strength may be divided before a body fails. */
+typedef struct {
+  PetscReal from;      /* the first factor that is tried once the loads are on */
+  PetscReal step;      /* to the next one, as long as none has failed */
+  PetscReal tolerance; /* width of the bracket that is good enough, over the factor */
+  PetscReal most;      /* beyond it nobody looks */
+  PetscInt n_bodies;   /* 0: all */
+  char **bodies;       /* whose strength is divided */
+} ReductionSpec;
+
 typedef struct {
   AnalysisType type;
+  ReductionSpec reduction;     /* of a factor of safety */
   PetscReal end;               /* s; statics: pseudo-time, 1 */
   PetscReal step;              /* s, the first and (without growth) largest step */
   PetscReal smallest, largest; /* s, bounds of step control */
@@ -346,8 +357,16 @@ typedef struct {
   char **petsc;
 } Case;
 
+/* Where load k stands in the case: loads.tractions[0], loads.points[2]... Returns path. */
+const char *case_load_path(const Case *c, PetscInt k, char path[64]);
+/* Does a load follow the surface that it acts on? */
+PetscBool case_load_follows(const Case *c);
 /* Is the pressure an unknown beside the displacements? */
 PetscBool case_is_mixed(const Case *c);
+/* Equilibrium at every step, no inertia: a factor of safety is found so, too. */
+PetscBool case_is_static(const AnalysisSpec *analysis);
+/* Is that one of the fields of states? */
+PetscBool case_writes(const Case *c, const char *field);
 /* Does any body start with the stress of its weight? */
 PetscBool case_has_k0(const Case *c);
 

@@ -5,6 +5,7 @@
 #include <sys/stat.h>
 #include "input/schema/schema.h"
 #include "material/law.h"
+#include "method/method.h"
 #include "method/transfer/transfer.h"
 
 static void destroy_document(void *document)
@@ -127,6 +128,19 @@ static PetscErrorCode ResolveScheme(Case *c)
   PetscFunctionReturn(0);
 }
 
+/* What yields without a change of volume locks with displacements alone, and nothing fails: who asks
+ * for a factor of safety and names no formulation gets one that does not. */
+static PetscErrorCode ResolveFormulation(const YamlNode *given, Case *c)
+{
+  const Method *method = c->method ? method_find(c->method) : NULL;
+
+  PetscFunctionBeginUser;
+  if (given || c->analysis.type != ANALYSIS_FACTOR || !method || !method->takes_pressure) PetscFunctionReturn(0);
+  PetscCall(PetscFree(c->formulation));
+  PetscCall(PetscStrallocpy("mixed", &c->formulation));
+  PetscFunctionReturn(0);
+}
+
 /* Stress that carries the weight means that the weight is there: without a word of the user gravity
  * does not grow. */
 static PetscErrorCode ResolveGravity(Case *c)
@@ -134,7 +148,7 @@ static PetscErrorCode ResolveGravity(Case *c)
   Amplitude *a = &c->gravity_amplitude;
 
   PetscFunctionBeginUser;
-  if (a->n || c->analysis.type != ANALYSIS_STATIC || !case_has_k0(c)) PetscFunctionReturn(0);
+  if (a->n || !case_is_static(&c->analysis) || !case_has_k0(c)) PetscFunctionReturn(0);
   a->n = 1;
   PetscCall(PetscCalloc1(1, &a->time));
   PetscCall(PetscMalloc1(1, &a->value));
@@ -154,6 +168,7 @@ static PetscErrorCode ReadDocument(const char *file, YamlDocument *document, Dia
   peek_kinematics(document->root, &reader);
   PetscCall(SchemaReadTable(&reader, &schema_case, document->root, *c));
   resolve_stabilisation(yaml_find(document->root, "stabilisation"), *c);
+  PetscCall(ResolveFormulation(yaml_find(document->root, "formulation"), *c));
   PetscCall(ResolveScheme(*c));
   PetscCall(ResolveGravity(*c));
   PetscFunctionReturn(0);

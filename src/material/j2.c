@@ -156,6 +156,13 @@ static void prepare_log(const Elasticity *elastic, const PetscReal *given, Petsc
   packed[SPLIT_VOLUME] = VOLUME_LOG;
 }
 
+/* The yield stress at any strain over the factor. */
+static void reduce(const PetscReal *given, PetscReal factor, PetscReal *reduced)
+{
+  reduced[0] = factor > 0.0 ? given[0] / factor : 1e30;
+  reduced[1] = factor > 0.0 ? given[1] / factor : 0.0;
+}
+
 static void volume(PetscInt n, const PetscReal *state, PetscReal *J)
 {
   for (PetscInt p = 0; p < n; ++p) J[p] = state[p * N_STATE + 6];
@@ -175,10 +182,11 @@ static const LawField fields[] = {
   {.name = NULL},
 };
 
-#define J2(...)                                                                                                   \
-  {                                                                                                               \
-    .parameters = parameters, .fields = fields, .n_state = N_STATE, .yields = PETSC_TRUE, .update = update,       \
-    .energy = energy, .initial_stress = initial_stress, .volume = volume, .volume_law = split_volume, __VA_ARGS__ \
+#define J2(...)                                                                                             \
+  {                                                                                                         \
+    .parameters = parameters, .fields = fields, .n_state = N_STATE, .yields = PETSC_TRUE, .update = update, \
+    .energy = energy, .initial_stress = initial_stress, .volume = volume, .volume_law = split_volume,       \
+    .reduce = reduce, __VA_ARGS__                                                                           \
   }
 
 const Law law_j2 = J2(.name = "j2", .prepare = prepare_linear,

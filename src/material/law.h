@@ -77,6 +77,9 @@ typedef struct Law {
   void (*volume)(PetscInt n, const PetscReal *state, PetscReal *J);
   VolumeLaw (*volume_law)(const PetscReal *parameters);
   void (*scale)(PetscInt n, const PetscReal *factor, PetscReal *state);
+  /* The user's constants of a material whose strength is divided by factor > 0, or, with factor = 0, of
+   * one that does not yield; NULL: the law has no strength. */
+  void (*reduce)(const PetscReal *given, PetscReal factor, PetscReal *reduced);
   /* What is wrong with parameters that are each in their range, or NULL. May itself be NULL. */
   const char *(*check)(const PetscReal *given);
 } Law;
@@ -96,7 +99,9 @@ typedef struct {
   Elasticity elastic;
   /* lambda + 2 mu, Pa: the P-wave modulus, for time scales and stabilisation */
   PetscReal wave_modulus;
+  PetscReal given[LAW_MAX_PARAMETERS]; /* the user's, in SI units, angles in radians */
   PetscReal parameters[LAW_MAX_PARAMETERS];
+  PetscBool mixed;      /* is the pressure an unknown of its own? then the following count: */
   VolumeLaw volume;     /* how the mixed formulation takes the law apart */
   PetscReal compliance; /* 1 / K, 1/Pa: 0 if exactly incompressible */
   /* the parameters with K = G, where the mean stress is taken away again */
@@ -109,5 +114,7 @@ const Law *law_find(const char *name);
 
 /* Resolve materials[index] of the case; mistakes go to diag with their paths. */
 PetscErrorCode MaterialResolve(const Case *c, PetscInt index, Diag *diag, Material *material);
+/* Divide the strength of a material by factor (0: it does not yield); that of the case is factor 1. */
+void material_reduce(Material *material, PetscReal factor);
 /* Write the initial state of one point, n_state numbers. */
 void law_initial_state(const Law *law, PetscReal *state);

@@ -162,19 +162,25 @@ static void check_density(const Resolver *r)
              r->spec->density);
 }
 
+/* Parameters of the deviatoric part: those of the law with K = G. */
+static void prepare_deviatoric(const PetscReal *given, Material *m)
+{
+  Elasticity middle = m->elastic;
+  middle.bulk = middle.shear;
+  middle.lame = middle.shear / 3.0;
+  m->law->prepare(&middle, given, m->deviatoric);
+}
+
 /* What the mixed formulation needs, and whether this law can give it. An incompressible material
  * has no other parameters. */
 static void prepare_mixed(const Resolver *r, const PetscReal *given, Material *m)
 {
-  Elasticity middle = m->elastic;
   char path[MAX_PATH];
   if (!m->law->volume) {
     diag_error(r->diag, path_of(r, "law", path), "the law %s has no mixed form", m->law->name);
     return;
   }
-  middle.bulk = middle.shear;
-  middle.lame = middle.shear / 3.0;
-  m->law->prepare(&middle, given, m->deviatoric);
+  prepare_deviatoric(given, m);
   m->volume = m->law->volume_law(m->deviatoric);
   m->compliance = 1.0 / m->elastic.bulk;
   if (isfinite(m->elastic.bulk)) return;
@@ -198,7 +204,7 @@ static PetscReal wave_modulus(const Elasticity *elastic, PetscBool mixed)
 PetscErrorCode MaterialResolve(const Case *c, PetscInt index, Diag *diag, Material *material)
 {
   const Resolver r = {&c->materials[index], diag, case_is_mixed(c)};
-  PetscReal given[LAW_MAX_PARAMETERS] = {0};
+  PetscReal *given = material->given;
   const PetscInt before = diag_errors(diag);
 
   PetscFunctionBeginUser;
@@ -207,6 +213,7 @@ PetscErrorCode MaterialResolve(const Case *c, PetscInt index, Diag *diag, Materi
   PetscCall(PetscMemzero(material, sizeof *material));
   material->name = r.spec->name;
   material->density = r.spec->density;
+  material->mixed = r.mixed;
   check_density(&r);
   material->law = find_law(&r);
   const PetscBool elastic = resolve_elastic(&r, &material->elastic);
@@ -220,4 +227,15 @@ PetscErrorCode MaterialResolve(const Case *c, PetscInt index, Diag *diag, Materi
   material->law->prepare(&material->elastic, given, material->parameters);
   if (r.mixed) prepare_mixed(&r, given, material);
   PetscFunctionReturn(0);
+}
+
+void material_reduce(Material *m, PetscReal factor)
+{
+  PetscReal reduced[LAW_MAX_PARAMETERS];
+  m->law->reduce(m->given, factor, reduced);
+  m->law->prepare(&m->elastic, reduced, m->parameters);
+  if (!m->mixed) return;
+  prepare_deviatoric(reduced, m);
+  if (isfinite(m->elastic.bulk)) return;
+  memcpy(m->parameters, m->deviatoric, sizeof m->parameters);
 }

@@ -3,13 +3,13 @@
 #include "grid/search/directory.h"
 
 /* Of which table a field is in checkpoints. Fields of no table are made anew in every step. */
-typedef enum { KEPT_NOWHERE, KEPT_MOTION, KEPT_BOUNDARY, KEPT_INCREMENTS, KEPT_CLOUD, KEPT_N } Kept;
+typedef enum { KEPT_NOWHERE, KEPT_MOTION, KEPT_BOUNDARY, KEPT_INCREMENTS, KEPT_N } Kept;
 
 static const char *const table_names[KEPT_N] = {
   [KEPT_MOTION] = "nodes", [KEPT_BOUNDARY] = "boundary", [KEPT_INCREMENTS] = "increments"};
 
 /* Clouds let the motion of their nodes and forces of the boundary follow. */
-static PetscBool follows(Kept kept) { return kept == KEPT_MOTION || kept == KEPT_BOUNDARY || kept == KEPT_CLOUD; }
+static PetscBool follows(Kept kept) { return kept == KEPT_MOTION || kept == KEPT_BOUNDARY; }
 
 typedef struct {
   size_t offset;
@@ -35,6 +35,7 @@ static const FieldKind kinds[] = {
   SCRATCH(lost_force),
   SCRATCH(v_start),
   SCRATCH(a_start),
+  SCRATCH(echo_start),
   SCRATCH(v1),
   SCRATCH(a1),
   SCRATCH(du),
@@ -46,7 +47,7 @@ static const FieldKind kinds[] = {
   FIELD(reaction, KEPT_BOUNDARY, "reaction", "N", PETSC_FALSE, PETSC_FALSE),
   FIELD(held, KEPT_BOUNDARY, "held", "N", PETSC_FALSE, PETSC_FALSE),
   FIELD(rate, KEPT_BOUNDARY, "rate", "N", PETSC_FALSE, PETSC_FALSE),
-  FIELD(echo, KEPT_CLOUD, "echo", "m/s2", PETSC_FALSE, PETSC_FALSE),
+  FIELD(echo, KEPT_MOTION, "echo", "m/s2", PETSC_FALSE, PETSC_FALSE),
   FIELD(pressure, KEPT_MOTION, "pressure", "Pa", PETSC_TRUE, PETSC_TRUE),
   FIELD(scaled_pressure, KEPT_NOWHERE, NULL, NULL, PETSC_TRUE, PETSC_TRUE),
   FIELD(volume, KEPT_NOWHERE, NULL, NULL, PETSC_TRUE, PETSC_TRUE),

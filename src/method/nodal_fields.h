@@ -28,14 +28,14 @@ typedef struct NodalFields {
   /* at prescribed dofs: momentum and force that the change from v_points and a_points took, on owners,
    * kg m/s, N */
   PetscReal *impulse, *lost_force;
-  PetscReal *v_start, *a_start; /* v and a before the step changed them */
-  PetscReal *v1, *a1;           /* at t_(n+1), of an accepted step */
-  PetscReal *du;                /* increments of the step, m */
-  PetscReal *previous;          /* those of the last step where they were solved for, else 0 */
-  PetscReal *prescribed;        /* increments of prescribed dofs, m */
-  PetscReal *history;           /* see WeakFormInput */
-  PetscReal *force;             /* residual with the rows of prescribed dofs, on owners, N */
-  PetscReal *external;          /* dead forces, on owners, N */
+  PetscReal *v_start, *a_start, *echo_start; /* v, a and echo before the step changed them */
+  PetscReal *v1, *a1;                        /* at t_(n+1), of an accepted step */
+  PetscReal *du;                             /* increments of the step, m */
+  PetscReal *previous;                       /* those of the last step where they were solved for, else 0 */
+  PetscReal *prescribed;                     /* increments of prescribed dofs, m */
+  PetscReal *history;                        /* see WeakFormInput */
+  PetscReal *force;                          /* residual with the rows of prescribed dofs, on owners, N */
+  PetscReal *external;                       /* dead forces, on owners, N */
   /* force of the boundary on the body, in dynamics its mean over the last step, on owners, N */
   PetscReal *reaction;
   /* the same at the end of the step, without the impulse that stopped points, N */

@@ -31,7 +31,7 @@ PetscBool method_takes(const Method *method, const Basis *basis)
 static PetscBool lacks_middle(const Case *c)
 {
   const TimeScheme *scheme = time_scheme_of(&c->analysis);
-  if (c->analysis.type == ANALYSIS_STATIC) return PETSC_FALSE;
+  if (case_is_static(&c->analysis)) return PETSC_FALSE;
   return case_is_mixed(c) || c->analysis.bossak != 0 || (c->analysis.scheme && scheme && !scheme->middle);
 }
 

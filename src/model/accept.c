@@ -39,12 +39,38 @@ static void store_reactions(Model *m, PetscReal dt)
 static void end_motion(Model *m, PetscReal dt)
 {
   const AnalysisSpec *analysis = &m->c->analysis;
-  const PetscReal lag = m->scheme->weights(analysis, dt).lag;
   const PetscInt dofs = m->grid->n_nodes * m->dim;
   NodalFields *n = m->nodes;
   m->scheme->end(analysis, dt, dofs, n->du, n->v, n->a, n->v1, n->a1);
-  for (PetscInt i = 0; i < dofs; ++i) n->echo[i] = lag * (n->a1[i] - n->a[i]);
   m->space->fade = 1 - PetscExpReal(-model_damping(m) * dt);
+}
+
+/* For the next step; until then it is what the last one had held back. */
+static void keep_echo(const Model *m, PetscReal dt)
+{
+  const PetscReal lag = m->scheme->weights(&m->c->analysis, dt).lag;
+  NodalFields *n = m->nodes;
+  for (PetscInt i = 0; i < m->grid->n_nodes * m->dim; ++i) n->echo[i] = lag * (n->a1[i] - n->a[i]);
+}
+
+const PetscReal *model_state_field(const Model *m, PetscInt p, const char *name)
+{
+  const PetscReal *state = point_real(m->points, POINT_STATE, p);
+  for (const LawField *f = m->materials[m->points->material[p]].law->fields; f->name; ++f) {
+    if (!strcmp(f->name, name)) return state;
+    state += f->components;
+  }
+  return NULL;
+}
+
+/* Before the new state is there (sign -1) and after: what it has more of plastic strain. */
+static void note_flow(Model *m, PetscReal sign)
+{
+  for (PetscInt p = 0; m->points->components[POINT_FLOW] && p < m->points->n; ++p) {
+    const PetscReal *strain = model_state_field(m, p, "equivalent_plastic_strain");
+    PetscReal *flow = point_real(m->points, POINT_FLOW, p);
+    if (strain) *flow = sign * *strain + (sign > 0 ? *flow : 0);
+  }
 }
 
 PetscErrorCode CommitStep(Model *m, PetscReal dt, EnergyStep *energy)
@@ -58,13 +84,16 @@ PetscErrorCode CommitStep(Model *m, PetscReal dt, EnergyStep *energy)
   end_motion(m, dt);
   set_multipliers(m);
   PetscCall(EnergyOfNodes(m, dt, energy));
+  keep_echo(m, dt);
   PetscCall(ContactEnd(m, dt, energy)); /* what that takes is lost in the transfer */
   store_reactions(m, dt);
   PetscCall(ContactForces(m, dt));
   PetscCall(GuessLearn(m, dt));
   PetscCall(LimitWatch(m, dt));
   WeakFormInput in = weak_form_of(m, 0);
+  note_flow(m, -1);
   PetscCall(m->formulation->commit(&in, m->points, &status));
+  note_flow(m, 1);
   PetscCheck(status == LAW_OK, PETSC_COMM_SELF, PETSC_ERR_PLIB, "a converged state could not be committed");
   for (PetscInt node = 0; m->nodes->pressure && node < m->grid->n_nodes; ++node)
     m->nodes->pressure[node] = m->pressure_scale * m->nodes->scaled_pressure[node];

@@ -1,8 +1,12 @@
 /* Walls and interfaces over the life of a model: what touches them, and what they do to motion,
  * momentum and energy. */
+#include "method/transfer/mass.h"
 #include "model/model_private.h"
 
 #define SUM_NUMBERS ((PetscInt)(sizeof(ContactSum) / sizeof(PetscReal)))
+
+#define RELEASED 1e-6 /* of the acceleration by walls may stay */
+#define MOST_SWEEPS 100
 
 #define THROUGH 1e-9 /* of a cell: material that reaches deeper into a wall at the start is a mistake */
 
@@ -85,17 +89,31 @@ static PetscReal share_of_force(const Model *m)
   return holds(m) ? w.mean / (1 - w.lag) : 1;
 }
 
+/* Do points carry an acceleration to other nodes that walls' forces can be taken out of where they acted?
+ * With a consistent mass single forces are accelerations of both signs of nodes hardly reached. */
+static PetscBool releases(const Model *m)
+{
+  return holds(m) && m->method->restores_grid && m->c->analysis.mass == MASS_LUMPED;
+}
+
 /* The forces of the last step are taken out of what Newmark's formulas remember, or they would push what
- * leaves; and what was in contact starts with its wall's velocity, as a prescribed node does. */
+ * leaves; and what was in contact starts with its wall's velocity, as a prescribed node does. Where points
+ * carry the acceleration the first has been done (release). */
 PetscErrorCode ContactHold(Model *m, PetscReal dt, PetscReal inertia)
 {
+  const PetscInt dofs = m->grid->n_nodes * m->dim;
+  NodalFields *n = m->nodes;
+
   PetscFunctionBeginUser;
   if (!m->contact) PetscFunctionReturn(0);
   contact_prepare(m->contact, m->time, dt, inertia, share_of_force(m));
   if (!holds(m)) PetscFunctionReturn(0);
   const ContactMotion a = motion_of(m, m->nodes->a, dt, PETSC_TRUE), v = motion_of(m, m->nodes->v, dt, PETSC_TRUE);
   const PetscReal lag = m->scheme->weights(&m->c->analysis, dt).lag;
-  PetscCall(ContactRelease(m->contact, &a, 1 / (1 - lag), m->contact->impulse + m->contact->n_partners));
+  for (PetscInt i = 0; i < dofs; ++i) n->echo[i] -= lag * n->a[i];
+  if (!releases(m))
+    PetscCall(ContactRelease(m->contact, &a, 1 / (1 - lag), m->contact->impulse + m->contact->n_partners));
+  for (PetscInt i = 0; i < dofs; ++i) n->echo[i] += lag * n->a[i]; /* of what is left */
   PetscCall(ContactProject(m->contact, &v, m->contact->impulse));
   PetscFunctionReturn(0);
 }
@@ -134,6 +152,7 @@ static ContactWork point_work(const Model *m, const ContactPoint *c)
     work.sliding -= (f[d] - pressure * c->normal[d]) * (x[d] - c->x[d] - c->swept[d]);
   }
   work.closing = pressure * closing;
+  if (m->scheme->inertia) work.more = (1 - 0.5 / end) * (work.closing + work.moving - work.sliding);
   return work;
 }
 
@@ -147,6 +166,7 @@ ContactWork contact_work(const Model *m)
     sum.moving += work.moving;
     sum.sliding += work.sliding;
     sum.closing += work.closing;
+    sum.more += work.more;
   }
   return sum;
 }
@@ -186,6 +206,52 @@ static void add(ContactSum *sum, PetscReal factor, const ContactSum *x)
   }
 }
 
+/* lack = forces of walls at the end of the step, as rates of momentum of free dofs. */
+static PetscErrorCode SumForces(const Model *m, PetscReal share, MassSolve *c)
+{
+  const Contact *s = m->contact;
+  const PetscInt dim = m->dim;
+
+  PetscFunctionBeginUser;
+  for (const ContactPoint *p = s->point; p < s->point + s->n; ++p) {
+    PetscReal f[3];
+    contact_force(p, f);
+    for (PetscInt e = p->first; e < p->first + p->n; ++e)
+      for (PetscInt d = 0; d < dim; ++d)
+        c->lack[s->node[e] * c->width + ACCELERATION * dim + d] += share * s->N[e] * f[d];
+  }
+  PetscCall(GridSumToOwners(m->grid, c->width, c->lack));
+  mass_turn(c, c->lack);
+  for (PetscInt i = 0; i < m->grid->n_owned * c->width; ++i)
+    if (m->nodes->fixed[i / c->width * dim + i % dim]) c->lack[i] = c->inverse[i] = 0;
+  PetscFunctionReturn(0);
+}
+
+/* Points that carry acceleration to other nodes do so without what walls made of it, taken out at the
+ * nodes that felt their forces: to others, of which some have hardly any mass, they would be leaps. */
+static PetscErrorCode Release(Model *m, PetscReal dt)
+{
+  const PetscReal lag = m->scheme->weights(&m->c->analysis, dt).lag;
+  PetscReal enough[MOTIONS];
+  MassSolve c;
+
+  PetscFunctionBeginUser;
+  if (!releases(m)) PetscFunctionReturn(0);
+  PetscCall(MassSolveCreate(m->space, &c));
+  c.framed = PETSC_TRUE;
+  PetscCall(SumForces(m, 1 / (1 - lag), &c));
+  PetscCall(MassLack(&c, enough));
+  enough[ACCELERATION] *= PetscSqr(RELEASED);
+  PetscCall(MassSolveRun(&c, enough, MOST_SWEEPS));
+  PetscCall(MassSolveClose(&c));
+  mass_turn(&c, c.x);
+  for (PetscInt i = 0; i < m->grid->n_nodes * m->dim; ++i)
+    m->nodes->a1[i] -= c.x[i / m->dim * c.width + ACCELERATION * m->dim + i % m->dim];
+  for (PetscInt k = 0; k < m->contact->n_partners; ++k) m->contact->wall[k].rate = (ContactSum){0};
+  PetscCall(MassSolveDestroy(&c));
+  PetscFunctionReturn(0);
+}
+
 /* As reactions of the boundary (accept.c): over the step the scheme weighs the forces of both ends,
  * and impulses count besides. */
 PetscErrorCode ContactForces(Model *m, PetscReal dt)
@@ -221,6 +287,16 @@ PetscErrorCode ContactForces(Model *m, PetscReal dt)
   }
   PetscCall(PetscFree(now));
   PetscCall(Survey(m));
+  PetscCall(Release(m, dt));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ModelTractions(const Model *m, PetscInt wall, PetscInt *n, ContactTraction **tractions)
+{
+  PetscFunctionBeginUser;
+  *n = 0, *tractions = NULL;
+  if (!m->contact) PetscFunctionReturn(0);
+  PetscCall(ContactTractions(m->contact, m->grid, wall, m->nodes->du, share_of_force(m), n, tractions));
   PetscFunctionReturn(0);
 }
 

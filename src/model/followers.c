@@ -90,19 +90,10 @@ PetscErrorCode FollowersEnd(Model *m)
   PetscFunctionReturn(0);
 }
 
-/* Path of load k in the case: loads.tractions[i] or loads.points[i]. */
-static void load_path(const Case *c, PetscInt k, char path[64])
-{
-  PetscInt i = 0;
-  for (PetscInt j = 0; j < k; ++j) i += c->loads[j].kind == c->loads[k].kind;
-  if (c->loads[k].kind == LOAD_POINT) snprintf(path, 64, "loads.points[%d].at", (int)i);
-  else snprintf(path, 64, "loads.tractions[%d].on", (int)i);
-}
-
 PetscErrorCode FollowersStart(Model *m, Diag *diag)
 {
   const PetscInt n_measures = m->c->n_measures, n = n_measures + m->c->n_loads;
-  char path[256];
+  char path[256], list[64];
   Uncarried *u;
   PetscBool any;
 
@@ -114,7 +105,9 @@ PetscErrorCode FollowersStart(Model *m, Diag *diag)
   for (PetscInt k = 0; k < n && any; ++k) {
     if (u[k].n == 0) continue;
     if (k < n_measures) snprintf(path, sizeof path, "measures.%s.of.tracer", m->c->measures[k].name);
-    else load_path(m->c, k - n_measures, path);
+    else
+      PetscSNPrintf(path, sizeof path, "%s.%s", case_load_path(m->c, k - n_measures, list),
+                    m->c->loads[k - n_measures].kind == LOAD_POINT ? "at" : "on");
     diag_error(diag, path,
                k < n_measures ? "no material carries the tracer: it starts outside of all bodies"
                               : "no material carries the force: it acts outside of all bodies");

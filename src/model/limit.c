@@ -59,6 +59,7 @@ static void factors_text(const Case *c, PetscReal t, char *text, size_t size)
 {
   PetscBool same = PETSC_TRUE;
   PetscReal first = weighs(c) ? case_factor(c, &c->gravity_amplitude, t) : case_factor(c, &c->loads[0].amplitude, t);
+  char path[64];
   size_t used;
   for (PetscInt k = 0; k < c->n_loads; ++k)
     if (case_factor(c, &c->loads[k].amplitude, t) != first) same = PETSC_FALSE;
@@ -68,12 +69,9 @@ static void factors_text(const Case *c, PetscReal t, char *text, size_t size)
   }
   used = (size_t)snprintf(text, size, "at factors");
   if (weighs(c)) used += (size_t)snprintf(text + used, size - used, " %.4g of gravity", (double)first);
-  for (PetscInt k = 0, number[2] = {0, 0}; k < c->n_loads && used < size; ++k) {
-    const LoadSpec *load = &c->loads[k];
-    used += (size_t)snprintf(text + used, size - used, "%s %.4g of loads.%s[%d]",
-                             used > strlen("at factors") ? "," : "", (double)case_factor(c, &load->amplitude, t),
-                             load->kind == LOAD_POINT ? "points" : "tractions", (int)number[load->kind]++);
-  }
+  for (PetscInt k = 0; k < c->n_loads && used < size; ++k)
+    used += (size_t)snprintf(text + used, size - used, "%s %.4g of %s", used > strlen("at factors") ? "," : "",
+                             (double)case_factor(c, &c->loads[k].amplitude, t), case_load_path(c, k, path));
 }
 
 /* A body that softened, step by step; or, where all of it yields at once, one whose nodes ran away

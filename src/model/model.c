@@ -184,7 +184,7 @@ static PetscErrorCode CreateMaterials(Model *m, Diag *diag)
 
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc1(c->n_materials, &m->materials));
-  m->symmetric = !contact_rubs(c);
+  m->symmetric = !contact_rubs(c) && !case_load_follows(c);
   for (PetscInt i = 0; i < c->n_materials; ++i) {
     Material *material = &m->materials[i];
     PetscCall(MaterialResolve(c, i, diag, material));
@@ -223,6 +223,7 @@ static PetscErrorCode CreatePoints(Model *m, Outline *outline, Diag *diag)
   if (c->n_walls + c->n_interfaces) m->points->components[POINT_REACH] = 1;
   m->points->components[POINT_CONTACT] = (c->n_walls + c->n_interfaces) * CONTACT_KEPT(m->dim);
   if (m->grid->n_fields > 1) m->points->components[POINT_FIELD] = 1;
+  m->points->components[POINT_FLOW] = case_writes(c, "plastic_increment");
   for (PetscInt k = 0; k < c->n_measures; ++k)
     m->points->components[POINT_CARRIED] += measure_find(c->measures[k].kind)->events != NULL;
   PetscCall(PointsSeedOutlined(m->points, m->grid, c, seed, m->method->restores_grid, outline, diag));
@@ -324,6 +325,7 @@ static PetscErrorCode Build(Model *m, Diag *diag)
   if (m->formulation && m->scheme) PetscCall(CreateMaterials(m, diag));
   PetscCall(DiagReduce(m->comm, diag, &errors));
   if (errors) PetscFunctionReturn(0);
+  strength_start(m, diag);
   PetscCall(GridCreate(m->comm, m->c, cell_weight, (void *)m->c, diag, &m->grid));
   if (!m->grid) PetscFunctionReturn(0);
   PetscCall(GridWiden(&m->grid, basis_find(m->c->basis.kind)->halo + (m->c->n_interfaces ? CONTACT_HALO : 0)));

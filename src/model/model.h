@@ -16,7 +16,8 @@ typedef struct {
   PetscReal external, boundary;
   /* lost by damping, and between points and grid, since the start, J (docs/theory.md) */
   PetscReal damped, transfer;
-  PetscReal friction; /* taken by sliding along walls, since the start, J */
+  PetscReal friction;  /* taken by sliding along walls, since the start, J */
+  PetscReal numerical; /* taken by the damping of the time scheme, since the start, J; 0 in mpm */
   /* gone with points that left the grid, and in holding others at its boundary, since the start,
    * J */
   PetscReal outside;
@@ -84,6 +85,16 @@ typedef struct {
   PetscReal least, last, before;
 } Softening;
 
+/* Strength divided by a factor (strength.c): 1 unless the analysis is for a factor of safety. */
+typedef struct {
+  PetscReal factor; /* that divides it in this state; 0: nothing yields yet */
+  /* the largest with an equilibrium and the smallest without, and their middle when the search is
+   * over; nan: not known */
+  PetscReal lower, upper, value;
+  PetscBool trying; /* a step for another factor: it is not made smaller */
+  PetscReal reach;  /* no node of a body that stands moves farther in such a step, m */
+} Strength;
+
 typedef struct Model {
   MPI_Comm comm;
   const Case *c;
@@ -120,7 +131,8 @@ typedef struct Model {
   PetscBool symmetric;     /* are all tangents symmetric? */
   PetscReal courant_speed; /* largest sqrt(M / density), m/s */
   /* see Energies */
-  PetscReal external_work, boundary_work, damped_energy, transfer_energy, friction_energy, start_energy;
+  PetscReal external_work, boundary_work, damped_energy, transfer_energy, friction_energy, numerical_energy;
+  PetscReal start_energy;
   /* that had come in, by the start, loads, gravity and prescribed motion, at any time, J */
   PetscReal most_energy;
   PetscReal least_energy; /* that is more than round-off, J */
@@ -132,6 +144,7 @@ typedef struct Model {
   PetscInt cuts, total_iterations;
   Tries tries; /* since the start */
   Softening limit;
+  Strength strength;
   PetscReal seconds[PHASE_N]; /* see model_times */
 } Model;
 
@@ -172,6 +185,11 @@ PetscErrorCode ModelActivate(Model *model);
 /* Collective. One step of at most `limit` s; halves it until Newton converges. */
 PetscErrorCode ModelStep(Model *model, PetscReal limit, StepReport *report);
 
+/* Collective. After all loads are on: one step to the equilibrium with a larger factor. It stands if
+ * Newton finds one in which no node has moved farther than strength.reach; if not, the model is as it
+ * was, and report->leap says how far it slid, if that was why. *moved: the largest increment of a node,
+ * m; where Newton gave up, its last one. */
+PetscErrorCode ModelTryFactor(Model *model, PetscReal factor, StepReport *report, PetscReal *moved);
 /* Collective. Value of one measure of the case now. */
 PetscErrorCode ModelMeasure(Model *model, const MeasureSpec *measure, PetscInt index, PetscReal *value);
 /* Numbers behind the list that a measure keeps. */
@@ -190,7 +208,12 @@ PetscErrorCode ModelUnusedOptions(const Model *model, Diag *diag);
 PetscErrorCode ModelCountPoints(const Model *model, PetscInt *n);
 /* Force of all walls on one point at the end of the last step, N. */
 void contact_force_on(const Model *model, PetscInt p, PetscReal force[3]);
+/* Collective. Tractions of a wall on the material after the step that was taken last, on this rank: none
+ * before the first one and in a model just resumed; PetscFree them. */
+PetscErrorCode ModelTractions(const Model *model, PetscInt wall, PetscInt *n, ContactTraction **tractions);
 /* Stored energy of one point per undeformed volume, J/m3. */
 PetscReal model_point_energy(const Model *model, PetscInt p);
+/* First number of a named field of the point's state, or NULL if its law has none. */
+const PetscReal *model_state_field(const Model *model, PetscInt p, const char *name);
 /* Cauchy stress (Voigt) of one point, from its state. */
 PetscErrorCode ModelPointStress(const Model *model, PetscInt p, PetscReal sigma[6]);

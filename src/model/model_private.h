@@ -67,9 +67,16 @@ PetscErrorCode OutsideAdd(Model *model, StepReport *report);
 /* Collective. A warning for each body that fills the grid to an edge where nothing holds it. */
 PetscErrorCode OutsideWarn(const Model *model, Diag *diag);
 
+/* strength.c. Which materials are reduced; what cannot be is a mistake. */
+void strength_start(Model *model, Diag *diag);
+/* Materials, and the factor in force, as they are when the strength is divided by it. */
+void strength_set(Model *model, PetscReal factor);
+/* Collective. Forces balance: but is it a body that stands, or one that has slid? */
+PetscErrorCode StrengthJudge(Model *model, StepReport *report);
+
 /* This rank's share of the energies of a step that is being accepted, J. */
 typedef struct EnergyStep {
-  PetscReal external, boundary, damped, transfer, friction;
+  PetscReal external, boundary, damped, transfer, friction, numerical;
 } EnergyStep;
 
 /* What a step changes although it is not accepted, besides v and a of the nodes. */
@@ -108,9 +115,10 @@ PetscErrorCode ContactHold(Model *model, PetscReal dt, PetscReal inertia);
 /* Collective. Likewise ends it, once v1 and a1 are known. */
 PetscErrorCode ContactEnd(Model *model, PetscReal dt, struct EnergyStep *energy);
 /* Work of walls on the material in a step, J: of their motion; lost in sliding along them; of closing the
- * gap to them; half of that of the forces at the step's start. */
+ * gap to them; half of that of the forces at the step's start; what of all this is more than the
+ * trapezoidal rule with no force at the start gives. */
 typedef struct {
-  PetscReal moving, sliding, closing, start;
+  PetscReal moving, sliding, closing, start, more;
 } ContactWork;
 
 /* On this rank. */

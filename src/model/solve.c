@@ -69,6 +69,7 @@ static PetscErrorCode SolveFromGuesses(Model *m, PetscReal dt, const LinearProbl
     PetscCall(NewtonSolve(m->newton, &problem, linear, &report->newton));
     if (report->newton.converged) PetscCall(GoOn(m, report));
     if (report->newton.converged) PetscCall(JudgeStep(m, report));
+    if (report->newton.converged) PetscCall(StrengthJudge(m, report));
     PetscCall(PetscTime(&clock));
     count_try(m, k > 0, report);
     if (report->newton.converged || report->newton.interrupted) break;
@@ -103,7 +104,7 @@ PetscErrorCode SolveStep(Model *m, PetscReal *dt, StepReport *report)
     if (report->newton.converged || report->newton.interrupted) PetscFunctionReturn(0);
     ++m->cuts;
     ++report->cuts;
-    if (*dt / 2 < smallest) break;
+    if (m->strength.trying || *dt / 2 < smallest) break;
   }
   report->outcome = STEP_TOO_SMALL;
   report->dt = *dt;
@@ -124,6 +125,7 @@ PetscErrorCode StepStartKeep(Model *m, StepStart *start)
   if (m->method->restores_grid) PetscFunctionReturn(0);
   PetscCall(PetscArraycpy(m->nodes->v_start, m->nodes->v, dofs));
   PetscCall(PetscArraycpy(m->nodes->a_start, m->nodes->a, dofs));
+  PetscCall(PetscArraycpy(m->nodes->echo_start, m->nodes->echo, dofs));
   PetscFunctionReturn(0);
 }
 
@@ -136,6 +138,7 @@ PetscErrorCode StepStartRestore(Model *m, const StepStart *start, StepReport *re
   else {
     PetscCall(PetscArraycpy(m->nodes->v, m->nodes->v_start, dofs));
     PetscCall(PetscArraycpy(m->nodes->a, m->nodes->a_start, dofs));
+    PetscCall(PetscArraycpy(m->nodes->echo, m->nodes->echo_start, dofs));
   }
   if (!report->newton.interrupted) PetscFunctionReturn(0);
   m->control = start->control;

@@ -3,6 +3,8 @@
 
 PetscErrorCode ModelStep(Model *m, PetscReal limit, StepReport *report)
 {
+  const PetscReal change = m->walls ? walls_until_change(m->walls, m->time) : PETSC_MAX_REAL;
+  limit = PetscMin(limit, change); /* no step goes over the time at which a wall appears or vanishes */
   const PetscBool shortened = limit < m->control.next;
   PetscReal dt = PetscMin(limit, m->control.next);
   StepStart start;

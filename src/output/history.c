@@ -89,9 +89,10 @@ PetscErrorCode HistoryOpen(RunDir *dir, PetscInt n, const char *const *names, co
   PetscFunctionReturn(status);
 }
 
-/* Copy the rows up to that of `last`; a row that was cut off is dropped too. Returns the step of
- * the last one copied, -1 if there is none. */
-static long long copy_rows(FILE *old, FILE *out, PetscInt last, HistoryMark *mark)
+/* Copy the rows up to that of `last`; a row that was cut off is dropped too, and one that says once
+ * more what became of step `last` when all was known, after `was`. Returns the step of the last one
+ * copied, -1 if there is none. */
+static long long copy_rows(FILE *old, FILE *out, PetscInt last, const HistoryMark *was, HistoryMark *mark)
 {
   char *line = NULL, *end;
   size_t size = 0;
@@ -100,7 +101,7 @@ static long long copy_rows(FILE *old, FILE *out, PetscInt last, HistoryMark *mar
     (void)strtod(line, &end);
     if (end == line || *end != ',' || line[n - 1] != '\n') continue;
     const long long step = strtoll(end + 1, NULL, 10);
-    if (step > last) continue;
+    if (step > last || (step == copied && was && mark->lines >= was->lines)) continue;
     fputs(line, out);
     mark_text(mark, line, (size_t)n);
     copied = step;
@@ -158,7 +159,7 @@ static int keep_rows(const char *path, const char *header, PetscInt step, const 
   if (out) {
     fputs(header, out);
     mark_text(mark, header, strlen(header));
-    if (old) copied = copy_rows(old, out, step, mark);
+    if (old) copied = copy_rows(old, out, step, was, mark);
     if (old && ferror(old)) error = EIO;
     const int closing = file_finish_stream(out);
     if (!error) error = closing;

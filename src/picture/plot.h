@@ -36,6 +36,9 @@ PetscErrorCode PlotState(const PlotOptions *options, Diag *diag, char picture[PE
  * each. */
 PetscErrorCode PlotHistories(const PlotOptions *options, Diag *diag, void (*said)(const char *path));
 
+/* RUN/pictures/factor.png of a run that has a factor.csv: displacement over the factor of its strength. */
+PetscErrorCode PlotFactor(const PlotOptions *options, Diag *diag, void (*said)(const char *path));
+
 /* RUN/pictures/, made if it is not there; PETSC_FALSE and a diagnostic if it cannot be. */
 PetscBool plot_folder(const char *run, Diag *diag);
 /* Turn what a file name should not hold into '_'. */

@@ -47,6 +47,9 @@ typedef enum {
   POINT_FIELD,
   /* how far it was carried in the present event of each measure that counts some, m: one each */
   POINT_CARRIED,
+  /* equivalent plastic strain that the last step added: 1 where it is to be written, otherwise 0
+   * components */
+  POINT_FLOW,
   POINT_N_REAL
 } PointReal;
 

@@ -30,6 +30,7 @@ static const struct {
   [POINT_CONTACT] = {"contact", "N"},
   [POINT_FIELD] = {"velocity_field", NULL},
   [POINT_CARRIED] = {"carried", "m"},
+  [POINT_FLOW] = {"flow", ""},
 };
 
 /* Points of a cloud remember the cell of their birth by this number already. */

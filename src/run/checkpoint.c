@@ -126,6 +126,7 @@ static PetscErrorCode Write(Run *r, const char *path, char reason[256], PetscErr
   PetscCall(ModelToTables(r->model, tables));
   PetscCall(MemoryToTables(r, tables));
   PetscCall(UntilToTables(&r->until, r->c, tables));
+  PetscCall(StrengthToTables(&r->strength, tables));
   PetscCall(OutputToTables(r->output, tables));
   *code = CheckpointWrite(r->comm, path, tables, reason);
   PetscCall(TablesDestroy(&tables));
@@ -208,6 +209,7 @@ PetscErrorCode CheckpointLoad(Run *r, Diag *diag, PetscInt *step, PetscBool *fit
   if (!reason[0]) PetscCall(OutputFromTables(r->output, tables, memory.written, reason));
   if (!reason[0]) PetscCall(ModelFromTables(r->model, tables, reason));
   until_from_tables(&r->until, r->c, tables, reason);
+  PetscCall(StrengthFromTables(&r->strength, tables, reason));
   PetscCall(TablesDestroy(&tables));
   if (!reason[0]) {
     remember(r, &memory);

@@ -27,7 +27,7 @@ static void hint_new_run(const Run *r, const Extension *e, Diag *diag)
 
 PetscBool extension_allowed(const Run *r, const Extension *e, Diag *diag)
 {
-  if (r->c->analysis.type != ANALYSIS_STATIC || e->now == e->before) return PETSC_TRUE;
+  if (!case_is_static(&r->c->analysis) || e->now == e->before) return PETSC_TRUE;
   diag_error(diag, "analysis.end",
              "a static run cannot go on to another end than its own, %g s: loads grow with time over analysis.end, so "
              "that all its steps would be others",
@@ -54,6 +54,8 @@ void extension_from_checkpoint(const Run *r, const Extension *e, Diag *diag)
   const PetscReal time = r->model->time;
   char reason[256];
   until_reason(&r->until, r->c, reason);
+  if (r->c->analysis.type == ANALYSIS_FACTOR && time > e->now)
+    return; /* the search goes on beyond the end of loading */
   if (time > e->now * (1 + 1e-12)) {
     diag_error(diag, "analysis.end", "the run in '%s' has come to t = %g s already, later than analysis.end = %g s",
                run_dir_path(r->dir), (double)time, (double)e->now);

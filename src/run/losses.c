@@ -162,9 +162,10 @@ PetscErrorCode LossesWarn(Model *m, const PetscReal *values, Diag *diag)
   warn_of_followers(m, diag);
   for (PetscInt k = 0; k < m->c->n_measures; ++k) {
     if (!PetscIsNanReal(values[k]) || m->memory[k].ended > 0) continue;
+    if (!strcmp(m->c->measures[k].kind, "factor_of_safety")) continue; /* the log says why it has none */
     snprintf(path, sizeof path, "measures.%s", m->c->measures[k].name);
     diag_warning(diag, path, "'%s' is empty (nan) at the end: %s", m->c->measures[k].name,
-                 m->c->measures[k].has_rate                     ? "fewer than two steps with a value lie in its window"
+                 measure_has_window(m->c->measures + k)         ? "fewer than two steps with a value lie in its window"
                  : measure_find(m->c->measures[k].kind)->events ? "none of what it counts is over"
                                                                 : "no point is left of what it measures");
   }

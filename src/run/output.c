@@ -56,17 +56,6 @@ static PetscReal mises(const PetscReal s[6])
   return PetscSqrtReal(0.5 * (a * a + b * b + c * c) + 3 * (s[3] * s[3] + s[4] * s[4] + s[5] * s[5]));
 }
 
-/* First number of a named field of the point's state, or NULL if its law has none. */
-static const PetscReal *state_field(const Model *m, PetscInt p, const char *name)
-{
-  const PetscReal *state = point_real(m->points, POINT_STATE, p);
-  for (const LawField *f = m->materials[m->points->material[p]].law->fields; f->name; ++f) {
-    if (!strcmp(f->name, name)) return state;
-    state += f->components;
-  }
-  return NULL;
-}
-
 /* One field of one point. */
 static PetscErrorCode PointValue(const Model *m, PetscInt p, const char *name, PetscReal *out)
 {
@@ -84,13 +73,14 @@ static PetscErrorCode PointValue(const Model *m, PetscInt p, const char *name, P
     PetscCall(PetscArraycpy(out, F, 9));
   } else if (!strcmp(name, "mass")) *out = points->real[POINT_MASS][p];
   else if (!strcmp(name, "volume")) *out = volume;
+  else if (!strcmp(name, "plastic_increment")) *out = points->real[POINT_FLOW][p];
   else if (!strcmp(name, "contact_force")) contact_force_on(m, p, out);
   else if (!strcmp(name, "density")) *out = points->real[POINT_MASS][p] / volume;
   else if (!strcmp(name, "energy")) *out = model_point_energy(m, p);
   else if (!strcmp(name, "body")) *out = (PetscReal)points->body[p];
   else if (!strcmp(name, "material")) *out = (PetscReal)points->material[p];
   else {
-    const PetscReal *state = state_field(m, p, name);
+    const PetscReal *state = model_state_field(m, p, name);
     *out = state ? *state : 0;
   }
   PetscFunctionReturn(0);
@@ -107,13 +97,6 @@ PetscErrorCode OutputPointField(const Model *m, const OutputField *field, PetscR
   else
     for (PetscInt p = 0; p < n; ++p) PetscCall(PointValue(m, p, field->name, data + count_numbers(p, k)));
   PetscFunctionReturn(0);
-}
-
-static PetscBool is_asked(const Case *c, const char *name)
-{
-  for (PetscInt f = 0; f < c->output.n_fields; ++f)
-    if (!strcmp(c->output.fields[f], name)) return PETSC_TRUE;
-  return PETSC_FALSE;
 }
 
 static void state_file(const char *name, PetscInt number, char file[64])
@@ -163,7 +146,7 @@ static PetscErrorCode WritePoints(Output *o, Model *m, PetscBool *ok, char reaso
   PetscCall(PetscMalloc1(count_numbers(m->points->n, 3), &x));
   widen(m->points->n, m->dim, m->points->real[POINT_X], x);
   for (const OutputField *f = output_fields; f->name && n < MAX_FIELDS; ++f) {
-    if (!f->points || !strcmp(f->name, "id") || !is_asked(m->c, f->name)) continue;
+    if (!f->points || !strcmp(f->name, "id") || !case_writes(m->c, f->name)) continue;
     PetscCall(PetscMalloc1(count_numbers(m->points->n, f->components), &data[n]));
     PetscCall(OutputPointField(m, f, data[n]));
     fields[n] = (VtkField){.name = f->name, .unit = f->unit, .components = f->components, .data = data[n]};
@@ -262,7 +245,7 @@ static PetscErrorCode WriteGrid(Output *o, Model *m, PetscBool *ok, char reason[
   PetscCall(PetscMalloc1(count_numbers(grid->n_nodes, 3), &x));
   widen(grid->n_nodes, m->dim, grid->x, x);
   for (const OutputField *f = output_fields; f->name && n < MAX_FIELDS; ++f) {
-    if (!f->grid || !is_asked(m->c, f->name)) continue;
+    if (!f->grid || !case_writes(m->c, f->name)) continue;
     if (!strcmp(f->name, "pressure") && !m->nodes->scaled_pressure) continue; /* nodes know none */
     PetscCall(GridField(o, m, f, &data[n]));
     fields[n] = (VtkField){.name = f->name, .unit = f->unit, .components = f->components, .data = data[n]};

@@ -107,7 +107,7 @@ static PetscErrorCode AfterStep(Run *r, const StepReport *report, PetscInt point
                         (double)report->dt));
   PetscCall(LossesLogStep(r->model, r->dir, report));
   PetscCall(RunWritten(r, EventsWatch(r->model, r->dir, PETSC_FALSE, r->events)));
-  PetscCall(RunDirProgress(r->dir, &progress));
+  if (!r->strength.n) PetscCall(RunDirProgress(r->dir, &progress)); /* each factor tells of itself */
   if (is_due(&r->rows, r->model->time, r->model->step)) PetscCall(RunWriteRow(r));
   if (is_due(&r->states, r->model->time, r->model->step)) PetscCall(RunWriteState(r));
   PetscFunctionReturn(0);
@@ -182,12 +182,44 @@ static PetscErrorCode Advance(Run *r)
   PetscFunctionReturn(0);
 }
 
+/* All loads are on: larger and larger factors, until none is left to try. */
+static PetscErrorCode SearchFactor(Run *r)
+{
+  const ReductionSpec *spec = &r->c->analysis.reduction;
+  StrengthRun *s = &r->strength;
+  StepReport report;
+  PetscBool asked = PETSC_FALSE;
+  PetscInt points;
+
+  PetscFunctionBeginUser;
+  if (!s->n) PetscCall(StrengthBegin(s, r->model));
+  while (!r->failed && !r->until.ended && search_next(&s->search, spec) > 0) {
+    PetscCall(StrengthTry(s, r->model, r->dir, &report));
+    if (report.outcome == STEP_INTERRUPTED) {
+      PetscCall(Interrupted(r));
+      break;
+    }
+    if (report.outcome == STEP_POINTS_LOST) {
+      PetscCall(GiveUp(r, "gave up", "the run gave up:", report.reason));
+      break;
+    }
+    PetscCall(RunWritten(r, StrengthWrite(s, r->dir)));
+    if (report.outcome != STEP_ACCEPTED) continue;
+    PetscCall(ModelCountPoints(r->model, &points));
+    PetscCall(AfterStep(r, &report, points));
+    PetscCall(Pause(r, &asked));
+    if (asked) PetscCall(Interrupted(r));
+  }
+  if (!r->failed) PetscCall(StrengthEnd(s, r->model, r->dir));
+  PetscFunctionReturn(0);
+}
+
 /* May the run go on to a later end some day? A static one would have to take all its steps again.
  * Whoever switches all rules of checkpoints off wants none. */
 static PetscBool may_go_on(const Run *r)
 {
   const CheckpointSpec *spec = &r->c->checkpoint;
-  return r->c->analysis.type == ANALYSIS_DYNAMIC && (spec->minutes > 0 || spec->steps > 0);
+  return r->c->analysis.type != ANALYSIS_STATIC && (spec->minutes > 0 || spec->steps > 0);
 }
 
 /* A run that ended and had a checkpoint, or may go on to a later end, leaves one of its end. */
@@ -199,6 +231,7 @@ static PetscErrorCode Close(Run *r, PetscReal *measures)
   if (!r->failed && (r->n_written || may_go_on(r))) PetscCall(CheckpointSave(r));
   /* a resumed run may have nothing left to do */
   if (r->row_step == r->model->step) PetscCall(Measure(r));
+  if (r->strength.n) r->row_step = -1; /* the last row once more, with the answer */
   PetscCall(RunWriteRow(r));
   PetscCall(RunWriteState(r));
   seconds = r->before + (MPI_Wtime() - r->start);
@@ -233,6 +266,7 @@ static PetscErrorCode RunModel(Run *r, const RunOptions *options, Diag *diag, Pe
     if (!options->resume) PetscCall(RunDirDiscard(&r->dir));
   } else {
     PetscCall(Advance(r));
+    if (r->c->analysis.type == ANALYSIS_FACTOR && !r->failed) PetscCall(SearchFactor(r));
     PetscCall(Close(r, measures));
     PetscCall(LossesWarn(r->model, r->values, diag));
     PetscCall(ModelUnusedOptions(r->model, diag));
@@ -264,6 +298,7 @@ PetscErrorCode RunCase(MPI_Comm comm, const Case *c, const RunOptions *options, 
   run.model->asked = signals_came;
   PetscCall(RunModel(&run, options, diag, measures, result));
   signals_forget();
+  PetscCall(StrengthRunDestroy(&run.strength));
   PetscCall(PetscFree(run.values));
   PetscCall(PetscFree(run.events));
   PetscCall(UntilDestroy(&run.until));

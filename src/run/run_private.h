@@ -2,6 +2,7 @@
 #pragma once
 #include "run/output.h"
 #include "run/run.h"
+#include "run/strength/strength.h"
 #include "run/watch/until.h"
 
 /* When something happens again: every so many seconds (> 0), every so many steps (< 0), or at the
@@ -33,7 +34,8 @@ typedef struct {
   PetscReal *values;
   PetscInt *events; /* per measure: how many of its events the run has told of */
   Until until;
-  PetscBool failed; /* gave up */
+  StrengthRun strength; /* of an analysis for a factor of safety */
+  PetscBool failed;     /* gave up */
   RunSummary summary;
   double start;           /* of this process, on MPI's clock */
   HistoryMark history;    /* of the run that this one resumes; no lines: not known */

@@ -1,6 +1,5 @@
 #include "wall/check.h"
 #include <math.h>
-#include "base/text.h"
 
 /* --- lines that cross themselves --- */
 static PetscReal turn_of(const PetscReal *a, const PetscReal *b, const PetscReal *c)
@@ -65,27 +64,21 @@ static void check_shape(const Shape *s, PetscBool axis, const char *path, Diag *
 }
 
 /* --- against the grid --- */
-static void check_size(const Case *c, const WallSpec *wall, const Form *form, const char *path, Diag *diag)
+static void check_size(const Case *c, const Form *form, const char *path, Diag *diag)
 {
   const PetscReal *b = form->bounds;
   PetscReal size = 0, grid = 0;
-  PetscBool apart = PETSC_FALSE;
-  char low[80], high[80];
   for (PetscInt d = 0; d < form->dim; ++d) {
     size = PetscMax(size, b[d + 3] - b[d]);
     grid = PetscMax(grid, c->grid.max[d] - c->grid.min[d]);
-    apart |= b[d] > c->grid.max[d] || b[d + 3] < c->grid.min[d];
   }
-  if (wall->shape.kind == SHAPE_SURFACE && size > 50 * grid) {
-    diag_warning(diag, path, "the surface is %.4g m large, and the grid %.4g m", (double)size, (double)grid);
-    diag_hint(diag, "if the file is in mm: scale: 0.001");
-  } else if (apart && !wall->n_motions && !wall->inside)
-    diag_warning(diag, path, "the wall lies outside of the grid, from %s to %s m", text_position(form->dim, b, low),
-                 text_position(form->dim, b + 3, high));
+  if (size <= 50 * grid) return;
+  diag_warning(diag, path, "the surface is %.4g m large, and the grid %.4g m", (double)size, (double)grid);
+  diag_hint(diag, "if the file is in mm: scale: 0.001");
 }
 
 void wall_check(const Case *c, const WallSpec *wall, const Form *form, const char *path, Diag *diag)
 {
   check_shape(&wall->shape, form->axis, path, diag);
-  if (c->grid.kind == GRID_BOX) check_size(c, wall, form, path, diag);
+  if (c->grid.kind == GRID_BOX && wall->shape.kind == SHAPE_SURFACE) check_size(c, form, path, diag);
 }

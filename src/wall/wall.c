@@ -48,14 +48,32 @@ PetscErrorCode WallsDestroy(Walls **walls)
   PetscFunctionReturn(0);
 }
 
-/* A step that ends at `until` but for rounding still meets the wall, one that ends at `from` does
- * not yet. */
+/* But for rounding. */
+static PetscBool is_later(PetscReal t, PetscReal than) { return t > than * (1 + 1e-9); }
+
+/* A step that ends at `until` still meets the wall, one that ends at `from` does not yet. */
 PetscBool wall_stands(const Walls *walls, PetscInt k, PetscReal t)
 {
   const WallSpec *w = walls->c->walls + k;
   if (!walls->wall[k].form) return PETSC_FALSE;
-  if (w->from > 0 && t <= w->from * (1 + 1e-9)) return PETSC_FALSE;
-  return !w->has_until || t <= w->until * (1 + 1e-9);
+  if (w->from > 0 && !is_later(t, w->from)) return PETSC_FALSE;
+  return !w->has_until || !is_later(t, w->until);
+}
+
+PetscBool wall_comes(const Walls *walls, PetscInt k, PetscReal t)
+{
+  const WallSpec *w = walls->c->walls + k;
+  return walls->wall[k].form && !is_later(w->from, t) && (!w->has_until || is_later(w->until, t));
+}
+
+PetscReal walls_until_change(const Walls *walls, PetscReal t)
+{
+  PetscReal next = PETSC_MAX_REAL;
+  for (const WallSpec *w = walls->c->walls; w < walls->c->walls + walls->c->n_walls; ++w) {
+    if (is_later(w->from, t)) next = PetscMin(next, w->from - t);
+    if (w->has_until && is_later(w->until, t)) next = PetscMin(next, w->until - t);
+  }
+  return next;
 }
 
 /* x in the frame of the wall at time t. */
@@ -95,7 +113,7 @@ PetscBool wall_near(const Walls *walls, PetscInt k, PetscReal t, const PetscReal
   const PetscBool thin = wall->form && wall->form->thin;
   const PetscReal half = thin ? wall->spec->thickness / 2 : 0;
   PetscReal X[3];
-  if (!wall_stands(walls, k, t)) return PETSC_FALSE;
+  if (!wall_stands(walls, k, t) && !wall_comes(walls, k, t)) return PETSC_FALSE;
   to_origin(walls, wall, t, x, X);
   const Nearness near = form_near(wall->form, X, wall->spec->inside ? -1 : 1, within + half, place);
   if (near == NEAR_NOT) return PETSC_FALSE;
@@ -109,7 +127,7 @@ int wall_side(const Walls *walls, PetscInt k, PetscReal t, const PetscReal *x)
   Wall *wall = walls->wall + k;
   WallPlace place;
   PetscReal X[3];
-  if (!wall_stands(walls, k, t) || !wall->form->thin) return 0;
+  if (!wall->form || !wall->form->thin) return 0;
   to_origin(walls, wall, t, x, X);
   const Nearness near = form_near(wall->form, X, 1, PETSC_MAX_REAL, &place);
   return near == NEAR_RIM ? 0 : place.gap < 0 ? -1 : 1;
@@ -124,8 +142,11 @@ void wall_motion(const Walls *walls, PetscInt k, PetscReal t0, PetscReal t1, con
 /* Of a wall that moves the box around the corners of its own one. */
 void wall_bounds(const Walls *walls, PetscInt k, PetscReal t, PetscReal min[3], PetscReal max[3])
 {
-  const Form *form = walls->wall[k].form;
-  const PetscReal *own = form->bounds, half = form->thin ? walls->c->walls[k].thickness / 2 : 0;
+  static const PetscReal anywhere[] = {-PETSC_MAX_REAL, -PETSC_MAX_REAL, -PETSC_MAX_REAL,
+                                       PETSC_MAX_REAL,  PETSC_MAX_REAL,  PETSC_MAX_REAL};
+  const Form *form = walls->wall[k].form; /* NULL: a mistake was found in it */
+  const PetscReal *own = form ? form->bounds : anywhere,
+                  half = form && form->thin ? walls->c->walls[k].thickness / 2 : 0;
   PetscBool endless = PETSC_FALSE;
   Frame frame;
   frame_at(walls->c, walls->c->walls + k, t, &frame);

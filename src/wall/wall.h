@@ -18,10 +18,16 @@ typedef struct {
 /* Mistakes of the geometry (files that cannot be read, surfaces that are not closed) go to diag. */
 PetscErrorCode WallsCreate(const Case *c, Diag *diag, Walls **walls);
 PetscErrorCode WallsDestroy(Walls **walls);
-/* Does wall k stand at time t? Up to `until`, and after `from` (from the start, if that is 0). */
+/* Does wall k stand in a step that ends at time t? Up to `until`, and after `from` (from the start, if
+ * that is 0). */
 PetscBool wall_stands(const Walls *walls, PetscInt k, PetscReal t);
+/* And in one that begins at t? From `from` on, and before `until`. */
+PetscBool wall_comes(const Walls *walls, PetscInt k, PetscReal t);
+/* How long from t until a wall appears or vanishes, s; PETSC_MAX_REAL: none does. Differences that
+ * wall_stands overlooks are none here either. */
+PetscReal walls_until_change(const Walls *walls, PetscReal t);
 /* The wall of index k as x (dim coordinates) sees it at time t. PETSC_FALSE if x is farther than
- * `within` (m) away, or the wall does not stand at that time: *place is left alone then. What lies
+ * `within` (m) away, or the wall stands in no step that begins or ends then: *place is left alone then. What lies
  * in a wall that has an inside is never far. side: of a wall without an inside, the one on which x
  * was before (what wall_side gave), then gap is negative on the other one; 0: gap is the distance
  * (less half the thickness), as it is from any side where a rim is nearest. */

@@ -13,7 +13,7 @@ enum { MANY = 100000 };
 
 static void FindsAll(void **state)
 {
-  static char text[MANY][8];
+  static char text[MANY][16];
   Names names = {0};
   (void)state;
   assert_int_equal(names_find(&names, "a"), -1);
@@ -33,7 +33,7 @@ static void FindsAll(void **state)
 /* A few steps for each name, not one for each of the others. */
 static void WorkIsLinear(void **state)
 {
-  static char text[MANY][8];
+  static char text[MANY][16];
   Names names = {0};
   (void)state;
   for (PetscInt i = 0; i < MANY; ++i) {

@@ -18,7 +18,7 @@ typedef struct {
 static void find_cloud(const CloudSupport *support, const CloudBasis *basis, int n, const PetscReal *X,
                        const PetscReal *metric, const PetscReal *x, Result *result)
 {
-  PetscReal sorted[NODES * 2], r[NODES];
+  PetscReal sorted[NODES * 2] = {0}, r[NODES];
   int order[NODES];
   for (int a = 0; a < n; ++a) {
     const PetscReal distance = hypot(X[2 * a] - x[0], X[2 * a + 1] - x[1]);

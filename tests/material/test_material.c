@@ -176,6 +176,58 @@ static void test_all_mistakes_together(void **state)
   finish(&out, 4, "materials.rubber.wetness", "materials.rubber.young");
 }
 
+/* The material after `factor` has the parameters of the other one. */
+static void check_reduced(const char *law, PetscReal factor, PetscInt n, const NamedValue *before,
+                          const NamedValue *after)
+{
+  Outcome a, b;
+  resolve(law, 1000, n, before, &a);
+  resolve(law, 1000, n, after, &b);
+  material_reduce(&a.material, factor);
+  for (int k = 0; k < LAW_MAX_PARAMETERS; ++k) {
+    const PetscReal x = a.material.parameters[k], y = b.material.parameters[k];
+    assert_true(x == y || fabs(x - y) <= 1e-14 * fabs(y));
+  }
+  finish(&a, 0, NULL, NULL);
+  finish(&b, 0, NULL, NULL);
+}
+
+/* tan 45 deg over the root of 3 is tan 30 deg, and no more dilates. */
+static void test_reduced(void **state)
+{
+  const PetscReal f = sqrt(3.0);
+  (void)state;
+#define SOIL(phi, psi, c, T)                                                                                   \
+  {                                                                                                            \
+    P("young", 1e6), P("poisson", 0.3), P("friction_angle", phi), P("dilatancy_angle", psi), P("cohesion", c), \
+      P("tension_cutoff", T)                                                                                   \
+  }
+  const NamedValue soil[] = SOIL(45, 40, 100 * f, 10 * f), weaker[] = SOIL(30, 30, 100, 10);
+  const NamedValue little[] = SOIL(45, 5, 100 * f, 10 * f), as_little[] = SOIL(30, 5, 100, 10);
+  const NamedValue steel[] = {P("young", 2e11), P("poisson", 0.3), P("yield_stress", 2e8), P("hardening", 4e9)};
+  const NamedValue softer[] = {P("young", 2e11), P("poisson", 0.3), P("yield_stress", 1e8), P("hardening", 2e9)};
+  check_reduced("mohr-coulomb", f, 6, soil, weaker);
+  check_reduced("mohr-coulomb", f, 6, little, as_little);
+  check_reduced("mohr-coulomb", 1, 6, soil, soil);
+  check_reduced("j2", 2, 4, steel, softer);
+}
+
+/* With factor 0 nothing yields: stress is Hooke's in the logarithmic strain. */
+static void test_endless(void **state)
+{
+  const NamedValue clay[] = {P("young", 1e6), P("poisson", 0.25), P("friction_angle", 20), P("cohesion", 1)};
+  const PetscReal stretch = 1.01, dF[9] = {1 / stretch, 0, 0, 0, stretch, 0, 0, 0, 1};
+  PetscReal old[LAW_MAX_STATE], now[LAW_MAX_STATE], tau[6];
+  Outcome out;
+  (void)state;
+  resolve("mohr-coulomb", 1000, 4, clay, &out);
+  material_reduce(&out.material, 0);
+  law_initial_state(out.material.law, old);
+  assert_int_equal(out.material.law->update(out.material.parameters, 1, dF, old, now, tau, NULL), LAW_OK);
+  assert_true(fabs(tau[1] - 8e5 * log(stretch)) < 1e-6); /* 2 mu = 8e5 */
+  finish(&out, 0, NULL, NULL);
+}
+
 int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {
@@ -186,6 +238,8 @@ int main(int argc, char **argv)
     cmocka_unit_test(test_mistakes),
     cmocka_unit_test(test_bad_constants),
     cmocka_unit_test(test_all_mistakes_together),
+    cmocka_unit_test(test_reduced),
+    cmocka_unit_test(test_endless),
   };
   if (PetscInitialize(&argc, &argv, NULL, NULL)) return 1;
   for (int i = 0; i < ELASTIC_CONSTANTS; ++i)

@@ -198,6 +198,17 @@ static inline PetscReal model_sum(Model *model, const char *what, PetscInt compo
   return value;
 }
 
+/* Of a wall: kind and word of a measure as the case file has them, "contact", "area". */
+static inline PetscReal model_wall(Model *model, const char *wall, const char *kind, const char *word,
+                                   PetscInt component)
+{
+  const MeasureSpec measure = {
+    .kind = (char *)kind, .word = (char *)word, .component = component, .wall = (char *)wall};
+  PetscReal value;
+  CALL(ModelMeasure(model, &measure, 0, &value));
+  return value;
+}
+
 static inline PetscReal model_max(const Model *model, PetscReal local)
 {
   PetscReal all;

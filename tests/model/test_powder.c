@@ -101,16 +101,17 @@ static void test_rate(void **state)
   bench_dynamic(&b, 0.35, 1e-3);
   b.c.gravity[1] = -g;
   const Shape above = {.kind = SHAPE_HALF_SPACE, .point = {0, 1.19}, .normal = {0, -1}};
-  for (int k = 0; k < 3; ++k)
+  for (int k = 0; k < 4; ++k)
     b.measure[k] = (MeasureSpec){.name = "flow",
                                  .kind = "mass",
                                  .word = "total",
                                  .has_in = PETSC_TRUE,
                                  .in = above,
-                                 .has_rate = PETSC_TRUE,
+                                 .has_rate = k < 3,
+                                 .has_mean = k == 3,
                                  .window = {k < 2 ? 0.08 : 0.15, k < 2 ? 0.08 : 0.25}};
   b.measure[1].has_in = PETSC_FALSE; /* of all: nothing is lost */
-  b.c.n_measures = 3;
+  b.c.n_measures = 4;
   Model *m = bench_model(&b, PETSC_COMM_WORLD);
   CHECK(PetscIsNanReal(measure(m, &b.measure[0], 0)), "one value has a rate");
   PetscReal noise = 0;
@@ -124,6 +125,8 @@ static void test_rate(void **state)
   CHECK(noise < 0.04, "%g", (double)noise);
   CHECK_CLOSE(measure(m, &b.measure[2], 2), -kg_per_m * g * 0.2, 0.01 * kg_per_m * g * 0.2);
   CHECK_CLOSE(measure(m, &b.measure[1], 1), 0, 1e-9);
+  /* of 0.61 m - g t^2 / 2 from 0.15 to 0.25 s */
+  CHECK_CLOSE(measure(m, &b.measure[3], 3), kg_per_m * (0.61 - g / 2 * 0.0408333), 0.005 * kg_per_m);
   CALL(ModelDestroy(&m));
 }
 
@@ -175,7 +178,12 @@ static void test_inclination(void **state)
     /* beyond 80 deg what is steep is found from the centre of mass alone */
     const MeasureSpec surface = {.kind = "free_surface", .word = "inclination", .has_about = k > 32},
                       deviation = {.kind = "free_surface", .word = "deviation", .has_about = k > 32},
-                      mass = {.kind = "centre_of_mass", .word = "angle", .has_about = PETSC_TRUE};
+                      mass = {.kind = "centre_of_mass", .word = "angle", .has_about = PETSC_TRUE},
+                      height = {.kind = "centre_of_mass", .word = "height", .has_about = PETSC_TRUE};
+    /* of a segment of the circle, 0.15 below its centre */
+    const PetscReal radius = 0.97 / PetscSqrtReal(2), half = PetscSqrtReal(radius * radius - 0.15 * 0.15);
+    const PetscReal area = radius * radius * PetscAcosReal(0.15 / radius) - 0.15 * half;
+    CHECK_CLOSE(measure(m, &height, 0), -2 * half * half * half / (3 * area) * PetscCosReal(radian), 0.002);
     worst = PetscMax(worst, PetscAbsReal(measure(m, &surface, 0) - angle));
     worst_mass = PetscMax(worst_mass, PetscAbsReal(measure(m, &mass, 0) - angle));
     rough = PetscMax(rough, measure(m, &deviation, 0));

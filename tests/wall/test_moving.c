@@ -175,7 +175,12 @@ static void FromUntil(void **state)
     for (int i = 0; i < k; ++i) t += 0.01;
     assert_int_equal(wall_stands(before.walls, 0, t), k <= 30);
     assert_int_equal(wall_stands(after.walls, 0, t), k > 30);
+    assert_int_equal(wall_comes(before.walls, 0, t), k < 30); /* steps that begin then */
+    assert_int_equal(wall_comes(after.walls, 0, t), k >= 30);
     assert_int_equal(wall_near(before.walls, 0, t, x, 9, 0, &place), k <= 30);
+    assert_int_equal(wall_near(after.walls, 0, t, x, 9, 0, &place), k >= 30);
+    assert_int_equal(walls_until_change(before.walls, t) < 1, k < 30);
+    if (k < 30) ASSERT_NEAR(walls_until_change(after.walls, t), 0.3 - t, 1e-14);
   }
   wall_close(&before);
   wall_close(&after);

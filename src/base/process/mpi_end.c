@@ -10,14 +10,6 @@ int mpi_begin(int *argc, char ***argv)
   return MPI_Init_thread(argc, argv, MPI_THREAD_FUNNELED, &provided) == MPI_SUCCESS ? 0 : 1;
 }
 
-static volatile sig_atomic_t last_code;
-
-static void end_at_once(int number)
-{
-  (void)number;
-  _exit((int)last_code);
-}
-
 /* Sanitizers look for leaks after main, and their findings are not to be hidden. */
 #if defined(__SANITIZE_ADDRESS__)
 #define SANITIZED 1
@@ -25,6 +17,16 @@ static void end_at_once(int number)
 #if __has_feature(address_sanitizer)
 #define SANITIZED 1
 #endif
+#endif
+
+#ifndef SANITIZED
+static volatile sig_atomic_t last_code;
+
+static void end_at_once(int number)
+{
+  (void)number;
+  _exit((int)last_code);
+}
 #endif
 
 void mpi_end(int exit_code)

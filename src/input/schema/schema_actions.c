@@ -67,6 +67,22 @@ static const SchemaTable traction = {.name = "traction",
                                      .entries = traction_entries,
                                      .size = sizeof(LoadSpec),
                                      .tag_offset = offsetof(LoadSpec, kind)};
+static const SchemaEntry pressure_entries[] = {
+  KEY("on", TABLE, NULL,
+      "a boundary of the grid, or of a body, as the material fills it at the start; it moves with it",
+      .table = &schema_selector, REQUIRED, AT(LoadSpec, on)),
+  KEY("value", NUMBER, "N/m2",
+      "force per present boundary, along its present normal: pushes into the material if positive", REQUIRED,
+      AT(LoadSpec, value[0])),
+  KEY("amplitude", AMPLITUDE, NULL, "factor over time", .note = "time / end in statics, 1 in dynamics",
+      AT(LoadSpec, amplitude)),
+  {.key = NULL},
+};
+static const SchemaTable pressure = {.name = "pressure",
+                                     .help = "A pressure that turns and grows with the surface that it acts on.",
+                                     .entries = pressure_entries,
+                                     .size = sizeof(LoadSpec),
+                                     .tag_offset = offsetof(LoadSpec, kind)};
 static const SchemaEntry point_load_entries[] = {
   KEY("at", VECTOR, "m", "the piece of material that carries it, by its position at the start", REQUIRED,
       AT(LoadSpec, at)),
@@ -86,6 +102,8 @@ static const SchemaEntry loads_entries[] = {
       AT(Case, gravity_amplitude)),
   KEY("tractions", LIST, NULL, "loads spread over boundaries", .table = &traction, AT(Case, loads),
       .count = offsetof(Case, n_loads), ITEMS(LOAD_TRACTION)),
+  KEY("pressures", LIST, NULL, "pressures that follow the surface", .table = &pressure, AT(Case, loads),
+      .count = offsetof(Case, n_loads), ITEMS(LOAD_PRESSURE)),
   KEY("points", LIST, NULL, "point forces", .table = &point_load, AT(Case, loads), .count = offsetof(Case, n_loads),
       ITEMS(LOAD_POINT)),
   {.key = NULL},

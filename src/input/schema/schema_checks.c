@@ -8,7 +8,7 @@
 /* --- analysis --- */
 static void resolve_steps(SchemaReader *r, const YamlNode *mapping, AnalysisSpec *a)
 {
-  const PetscBool is_static = a->type == ANALYSIS_STATIC;
+  const PetscBool is_static = case_is_static(a);
   const YamlNode *steps = yaml_find(mapping, "steps"), *step = yaml_find(mapping, "step");
   PetscInt n = 1;
   if (!yaml_find(mapping, "end")) {
@@ -41,7 +41,7 @@ static void resolve_newmark(SchemaReader *r, const YamlNode *mapping, AnalysisSp
   const YamlNode *beta = yaml_find(mapping, "beta"), *gamma = yaml_find(mapping, "gamma");
   if (!beta) a->beta = 0.25 * (1 - a->bossak) * (1 - a->bossak);
   if (!gamma) a->gamma = 0.5 - a->bossak;
-  if (a->type == ANALYSIS_STATIC) return;
+  if (case_is_static(a)) return;
   if (a->gamma < 0.5 - a->bossak - 1e-12)
     diag_warning(r->diag, "analysis.gamma",
                  "gamma < 0.5 - bossak: the time integration gains energy and is not stable");
@@ -49,9 +49,26 @@ static void resolve_newmark(SchemaReader *r, const YamlNode *mapping, AnalysisSp
     diag_warning(r->diag, "analysis.beta", "beta < gamma / 2: stable for small enough steps only");
 }
 
+PetscErrorCode SchemaCheckReduction(SchemaReader *r, const YamlNode *mapping, void *target)
+{
+  const ReductionSpec *s = target;
+  const YamlNode *most = mapping ? yaml_find(mapping, "most") : NULL;
+
+  PetscFunctionBeginUser;
+  if (s->most <= s->from)
+    SchemaError(r, most ? most : mapping, "analysis.reduction.most must be larger than the first factor (%g), not %g",
+                (double)s->from, (double)s->most);
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode SchemaCheckAnalysis(SchemaReader *r, const YamlNode *mapping, void *target)
 {
+  const AnalysisSpec *a = target;
+  const YamlNode *reduction = yaml_find(mapping, "reduction");
+
   PetscFunctionBeginUser;
+  if (reduction && a->type != ANALYSIS_FACTOR)
+    SchemaKeyError(r, reduction, "analysis.reduction belongs to `type: factor-of-safety`");
   resolve_steps(r, mapping, target);
   resolve_bounds(r, mapping, target);
   resolve_newmark(r, mapping, target);

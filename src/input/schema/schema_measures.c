@@ -117,17 +117,16 @@ static const SchemaTable avalanches = {.name = "avalanches",
                                        .groups = avalanche_groups,
                                        .hide = hide_in_avalanches};
 
-/* --- its rate --- */
-static const SchemaEntry rate_entries[] = {
-  KEY(
-    "window", INTERVAL, "s",
-    "a line of least squares through the values of all steps: of the last so many seconds, or [from, to]: between two "
-    "times",
-    REQUIRED, AT_LEAST(0), AT(MeasureSpec, window[0]), .second = offsetof(MeasureSpec, window[1])),
-  {.key = NULL},
-};
+/* --- its rate, its mean --- */
+#define SPAN " all steps: of the last so many seconds, or [from, to]: between two times"
+#define WINDOW(help)                                                                         \
+  KEY("window", INTERVAL, "s", help SPAN, REQUIRED, AT_LEAST(0), AT(MeasureSpec, window[0]), \
+      .second = offsetof(MeasureSpec, window[1]))
+static const SchemaEntry rate_entries[] = {WINDOW("a line of least squares through the values of"), {.key = NULL}};
 static const SchemaTable rate = {
   .name = "rate", .help = "How fast a measure changes: its unit per second.", .entries = rate_entries};
+static const SchemaEntry mean_entries[] = {WINDOW("the mean over time of"), {.key = NULL}};
+static const SchemaTable mean = {.name = "mean", .help = "What a measure is on the average.", .entries = mean_entries};
 
 /* --- a measure --- */
 static SchemaEntry entry_of(const Measure *measure)
@@ -168,6 +167,7 @@ static SchemaEntry measure_entry(PetscInt i)
       .table = &schema_shape, AT(MeasureSpec, in), GIVEN(MeasureSpec, has_in)),
     KEY("of", TABLE, NULL, "which tracer, body, boundary or wall", .table = &of),
     KEY("rate", TABLE, NULL, "how fast that changes, instead of it", .table = &rate, GIVEN(MeasureSpec, has_rate)),
+    KEY("mean", TABLE, NULL, "what it is on the average, instead of it", .table = &mean, GIVEN(MeasureSpec, has_mean)),
     {.key = NULL},
   };
   PetscInt n = 0;
@@ -200,14 +200,17 @@ static void check_beside(SchemaReader *r, const YamlNode *mapping, const Measure
   }
 }
 
-static void check_rate(SchemaReader *r, const YamlNode *mapping, const MeasureSpec *m, const char *path)
+static void check_window(SchemaReader *r, const YamlNode *mapping, const MeasureSpec *m, const char *path)
 {
-  const YamlNode *window = yaml_find(yaml_find(mapping, "rate"), "window");
+  const char *over = m->has_rate ? "rate" : "mean";
+  const YamlNode *window = yaml_find(yaml_find(mapping, over), "window");
+  if (m->has_rate && m->has_mean)
+    SchemaKeyError(r, yaml_find(mapping, "mean"), "%s takes a rate or a mean, not both", path);
   if (!window) return;
   if (m->window[0] == m->window[1] && !(m->window[0] > 0))
-    SchemaError(r, window, "%s.rate.window must be longer than 0 s", path);
+    SchemaError(r, window, "%s.%s.window must be longer than 0 s", path, over);
   else if (m->window[0] < m->window[1] && m->window[0] >= r->c->analysis.end)
-    SchemaError(r, window, "%s.rate.window begins when the run is over, at %g s (analysis.end)", path,
+    SchemaError(r, window, "%s.%s.window begins when the run is over, at %g s (analysis.end)", path, over,
                 (double)r->c->analysis.end);
 }
 
@@ -299,7 +302,7 @@ static PetscErrorCode CheckMeasure(SchemaReader *r, const YamlNode *mapping, voi
   PetscFunctionBeginUser;
   yaml_path(mapping, path, sizeof(path));
   check_beside(r, mapping, target, path);
-  check_rate(r, mapping, target, path);
+  check_window(r, mapping, target, path);
   check_front(r, mapping, target, path);
   check_component(r, mapping, target, path);
   check_container(r, mapping, target, path);

@@ -9,6 +9,7 @@
 static const SchemaWord analysis_words[] = {
   {"static", ANALYSIS_STATIC, "equilibrium at every step, no inertia"},
   {"dynamic", ANALYSIS_DYNAMIC, "Newmark in time, with inertia"},
+  {"factor-of-safety", ANALYSIS_FACTOR, "static; all loads on, strength is divided until nothing balances any more"},
   {NULL, 0, NULL},
 };
 static const SchemaWord mass_words[] = {
@@ -46,9 +47,30 @@ static const SchemaTable until = {
   .tag_offset = offsetof(UntilSpec, kind),
   .check = SchemaCheckUntil};
 
+static const SchemaEntry reduction_entries[] = {
+  KEY("from", NUMBER, NULL, "the first factor that is tried", .fallback = "1", ABOVE(0), AT(ReductionSpec, from)),
+  KEY("step", NUMBER, NULL, "from one factor to the next, until one has failed", .fallback = "0.1", ABOVE(0),
+      AT(ReductionSpec, step)),
+  KEY("tolerance", NUMBER, NULL, "width of the bracket at which the search ends, over the factor", .fallback = "0.005",
+      .bounded = PETSC_TRUE, .min = 0, .min_open = PETSC_TRUE, .max = 0.5, AT(ReductionSpec, tolerance)),
+  KEY("most", NUMBER, NULL, "what stands with this factor is not tried any further", .fallback = "10", ABOVE(0),
+      AT(ReductionSpec, most)),
+  KEY("bodies", REFERENCES, NULL, "bodies whose strength is divided", .note = "all", .target = "bodies",
+      AT(ReductionSpec, bodies), .count = offsetof(ReductionSpec, n_bodies)),
+  {.key = NULL},
+};
+static const SchemaTable reduction = {.name = "reduction",
+                                      .help = "Of a factor of safety: the factors that are tried.",
+                                      .entries = reduction_entries,
+                                      .check = SchemaCheckReduction};
+
 static const SchemaEntry analysis_entries[] = {
-  KEY("type", WORD, NULL, "static or dynamic", .words = analysis_words, REQUIRED, AT(AnalysisSpec, type)),
-  KEY("end", NUMBER, "s", "time at the end of the run", .note = "static: 1", ABOVE(0), AT(AnalysisSpec, end)),
+  KEY("type", WORD, NULL, "static, dynamic or factor-of-safety", .words = analysis_words, REQUIRED,
+      AT(AnalysisSpec, type)),
+  KEY("reduction", TABLE, NULL, "factor-of-safety: the factors that are tried", .table = &reduction, ALWAYS,
+      AT(AnalysisSpec, reduction)),
+  KEY("end", NUMBER, "s", "time at the end of the run; factor-of-safety: when all loads are on", .note = "static: 1",
+      ABOVE(0), AT(AnalysisSpec, end)),
   KEY("until", LIST, NULL, "any of these ends the run earlier", .table = &until, AT(AnalysisSpec, until),
       .count = offsetof(AnalysisSpec, n_until)),
   KEY("steps", INTEGER, NULL, "number of equal steps up to the end", .note = "static: 1, if `step` is not given",
@@ -84,11 +106,17 @@ static const SchemaEntry analysis_entries[] = {
   {.key = NULL},
 };
 static const SchemaGroup analysis_groups[] = {{GROUP_AT_MOST_ONE, {"steps", "step", NULL}}, {GROUP_NONE, {NULL}}};
+static PetscBool hide_in_analysis(const SchemaEntry *e, const void *source)
+{
+  return !strcmp(e->key, "reduction") && ((const AnalysisSpec *)source)->type != ANALYSIS_FACTOR;
+}
+
 static const SchemaTable analysis = {.name = "analysis",
                                      .help = "Statics or dynamics, and the steps in time.",
                                      .entries = analysis_entries,
                                      .groups = analysis_groups,
-                                     .check = SchemaCheckAnalysis};
+                                     .check = SchemaCheckAnalysis,
+                                     .hide = hide_in_analysis};
 
 /* --- materials --- */
 static const SchemaEntry material_entries[] = {

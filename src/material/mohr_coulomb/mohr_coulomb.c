@@ -25,6 +25,7 @@ enum { FRICTION, DILATANCY, COHESION, CUTOFF, MEMORY };
 
 #define N_STATE MC_STATE
 #define NO_CUTOFF 1e300
+#define ENDLESS 1e30 /* Pa: what never yields */
 
 /* What the spectral decomposition of eight points gave. */
 typedef struct {
@@ -267,6 +268,17 @@ static const char *check(const PetscReal *given)
   return given[DILATANCY] > given[FRICTION] ? "the dilatancy angle must not be larger than the friction angle" : NULL;
 }
 
+/* c, tan phi and the cut-off over the factor; psi as it is, up to the phi that is left. */
+static void reduce(const PetscReal *given, PetscReal factor, PetscReal *reduced)
+{
+  memcpy(reduced, given, (MEMORY + 1) * sizeof *reduced);
+  if (factor == 1.0) return;
+  reduced[CUTOFF] = factor > 0.0 && given[CUTOFF] < NO_CUTOFF ? given[CUTOFF] / factor : NO_CUTOFF;
+  reduced[COHESION] = factor > 0.0 ? given[COHESION] / factor : ENDLESS;
+  if (factor > 0.0) reduced[FRICTION] = atan(tan(given[FRICTION]) / factor);
+  reduced[DILATANCY] = PetscMin(given[DILATANCY], reduced[FRICTION]);
+}
+
 static const LawParameter parameters[] = {
   {"friction_angle", "deg", "angle of internal friction", 0, 90, .max_open = PETSC_TRUE, .fallback = NAN},
   {"dilatancy_angle", "deg", "dilatancy angle, at most the friction angle", 0, 90, .max_open = PETSC_TRUE,
@@ -304,5 +316,6 @@ const Law law_mohr_coulomb = {
   .volume_law = volume_law,
   .scale = scale,
   .prepare = prepare,
+  .reduce = reduce,
   .check = check,
 };

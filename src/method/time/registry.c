@@ -14,7 +14,7 @@ const TimeScheme *const time_schemes[] = {
 const TimeScheme *time_scheme_of(const AnalysisSpec *a)
 {
   const char *usual = a->bossak != 0 ? "bossak" : "newmark";
-  const char *name = a->type == ANALYSIS_STATIC ? "static" : a->scheme ? a->scheme : usual;
+  const char *name = case_is_static(a) ? "static" : a->scheme ? a->scheme : usual;
   for (PetscInt i = 0; time_schemes[i]; ++i)
     if (!strcmp(time_schemes[i]->name, name)) return time_schemes[i];
   return NULL;

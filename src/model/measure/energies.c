@@ -56,8 +56,8 @@ static PetscErrorCode BalanceValue(Model *m, const MeasureSpec *s, PetscInt inde
   (void)s, (void)index;
   PetscFunctionBeginUser;
   PetscCall(ModelEnergies(m, &e));
-  const PetscReal terms[] = {e.kinetic,  e.elastic, e.dissipated, e.damped,    e.transfer,
-                             e.friction, e.outside, -e.external,  -e.boundary, -e.start};
+  const PetscReal terms[] = {e.kinetic,   e.elastic, e.dissipated, e.damped,    e.transfer, e.friction,
+                             e.numerical, e.outside, -e.external,  -e.boundary, -e.start};
   for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(terms); ++k) {
     sum += terms[k];
     largest = PetscMax(largest, PetscAbsReal(terms[k]));
@@ -77,12 +77,14 @@ static const MeasureNumber *const words[] = {
        .kept = offsetof(Model, transfer_energy)),
   WORD("friction", "taken by sliding along walls and other bodies", .of = OF_MODEL,
        .kept = offsetof(Model, friction_energy)),
+  WORD("numerical",
+       "taken by the damping of the time scheme (bossak, beta, gamma) in fem and gmm; mpm's is in transfer",
+       .of = OF_MODEL, .kept = offsetof(Model, numerical_energy)),
   WORD("outside", "gone with points that left the grid: with those removed, and in stopping those kept on its boundary",
        .of = OF_MODEL, .kept = offsetof(Model, outside.energy)),
   WORD("balance",
-       "kinetic + elastic + dissipated + damped + transfer + friction + outside - external, less its value at the "
-       "start, over the "
-       "largest of these (no unit): 0 if all is accounted for; numerical damping shows here",
+       "kinetic + elastic + dissipated + damped + transfer + friction + numerical + outside - external, less its "
+       "value at the start, over the largest of these (no unit): 0 if all is accounted for",
        .unit = "", .of = OF_MODEL, .value = BalanceValue),
   NULL,
 };

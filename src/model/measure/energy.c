@@ -213,6 +213,19 @@ static PetscErrorCode OutOfBalance(const Model *m, const PetscReal *g, const Pet
   PetscFunctionReturn(0);
 }
 
+/* What the scheme's own damping takes where nodes keep their motion: work of the inertia that the forces
+ * at both ends balance, less what motion gains. With Newmark's beta = 1/4, gamma = 1/2 it is nothing. */
+static PetscReal numerical_damping(const Model *m, PetscReal dt)
+{
+  const AnalysisSpec *a = &m->c->analysis;
+  const NodalFields *n = m->nodes;
+  const NodalField du = {{n->du, n->du}, {1, 0}}, echo = {{n->echo, n->echo}, {0.5, 0}};
+  const NodalField mean = {{n->v, n->v1}, {0.5, 0.5}}, gain = {{n->v1, n->v}, {1, -1}};
+  if (m->method->restores_grid || !m->scheme->inertia) return 0;
+  if (a->beta == 0.25 && a->gamma == 0.5 && m->scheme->weights(a, dt).lag == 0) return 0;
+  return inertia_work(m, dt) - mass_product(m, du, echo) - mass_product(m, mean, gain);
+}
+
 /* Nodes that gather their motion from points start neither with the energy of the points nor with
  * the acceleration that balances the forces there. What the first takes is a difference of kinetic
  * energies; the second adds or takes the work of the forces out of balance, which is what the work
@@ -284,7 +297,10 @@ PetscErrorCode EnergyOfNodes(Model *m, PetscReal dt, EnergyStep *e)
   held += contact.moving;
   e->boundary = held + impulse;
   e->transfer = impulse - unbalanced + transfer_of_nodes(m, dt, e, held);
-  if (!m->method->restores_grid) e->transfer += contact.closing;
+  if (!m->method->restores_grid) {
+    e->transfer -= contact.closing;
+    e->numerical = numerical_damping(m, dt) + contact.more;
+  }
   if (m->method->restores_grid && m->space->fade > 0) {
     const PetscReal more = faded(m);
     e->damped += more;
@@ -296,20 +312,21 @@ PetscErrorCode EnergyOfNodes(Model *m, PetscReal dt, EnergyStep *e)
 PetscErrorCode EnergyClose(Model *m, EnergyStep *e)
 {
   const OutsideTally *gone = &m->points->outside;
-  PetscReal local[5], sum[5];
+  PetscReal local[6], sum[6];
 
   PetscFunctionBeginUser;
   if (m->scheme->inertia) e->transfer -= points_kinetic(m) + gone->kinetic;
   /* of the step: what is gone counts apart */
   if (m->method->restores_grid) e->transfer -= points_work(m) + gone->work;
   local[0] = e->external, local[1] = e->boundary, local[2] = e->damped, local[3] = e->transfer;
-  local[4] = e->friction;
-  PetscCall(MPIU_Allreduce(local, sum, 5, MPIU_REAL, MPI_SUM, m->comm));
+  local[4] = e->friction, local[5] = e->numerical;
+  PetscCall(MPIU_Allreduce(local, sum, 6, MPIU_REAL, MPI_SUM, m->comm));
   m->external_work += sum[0];
   m->boundary_work += sum[1];
   m->damped_energy += sum[2];
   m->transfer_energy += sum[3];
   m->friction_energy += sum[4];
+  m->numerical_energy += sum[5];
   m->most_energy = PetscMax(m->most_energy, m->start_energy + m->external_work + m->boundary_work);
   PetscFunctionReturn(0);
 }
@@ -329,6 +346,7 @@ PetscErrorCode ModelEnergies(Model *m, Energies *e)
                   .damped = m->damped_energy,
                   .transfer = m->transfer_energy,
                   .friction = m->friction_energy,
+                  .numerical = m->numerical_energy,
                   .outside = m->outside.energy,
                   .start = m->start_energy};
   PetscFunctionReturn(0);

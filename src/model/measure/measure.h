@@ -111,10 +111,11 @@ PetscErrorCode MassAngle(const Model *m, const MeasureSpec *s, PetscReal *angle)
 /* Collective. Inclination of the free surface, deg, and how far it is from a line, m (powder/free_surface.c). */
 PetscErrorCode SurfaceFit(const Model *m, const MeasureSpec *s, PetscReal *inclination, PetscReal *deviation);
 
-/* A measure that is asked for its rate (powder/rate.c): its value at the end of an accepted step,
- * and what comes of the values kept. */
-PetscErrorCode RateRemember(Model *m, const MeasureSpec *s, MeasureMemory *memory, PetscReal value);
-PetscReal rate_value(const MeasureSpec *s, const MeasureMemory *memory);
+/* A measure that is asked for its rate or its mean in a window (powder/rate.c): its value at the end
+ * of an accepted step, and what comes of the values kept. */
+static inline PetscBool measure_has_window(const MeasureSpec *s) { return s->has_rate || s->has_mean; }
+PetscErrorCode WindowRemember(Model *m, const MeasureSpec *s, MeasureMemory *memory, PetscReal value);
+PetscReal window_value(const MeasureSpec *s, const MeasureMemory *memory);
 /* "kg/s" of "kg". */
 const char *rate_unit(const char *unit);
 

@@ -23,7 +23,7 @@ static PetscErrorCode PointSum(const Model *m, const MeasureSpec *s, const Measu
   PetscFunctionReturn(0);
 }
 
-/* Collective. Whatever the spec asks for, without its rate. */
+/* Collective. Whatever the spec asks for at this moment. */
 static PetscErrorCode Value(Model *m, const MeasureSpec *s, PetscInt index, PetscReal *value)
 {
   const MeasureNumber *number = measure_number(s);
@@ -39,7 +39,7 @@ static PetscErrorCode Value(Model *m, const MeasureSpec *s, PetscInt index, Pets
 PetscErrorCode ModelMeasure(Model *m, const MeasureSpec *s, PetscInt index, PetscReal *value)
 {
   PetscFunctionBeginUser;
-  if (s->has_rate) *value = rate_value(s, &m->memory[index]);
+  if (measure_has_window(s)) *value = window_value(s, &m->memory[index]);
   else PetscCall(Value(m, s, index, value));
   PetscFunctionReturn(0);
 }
@@ -79,7 +79,7 @@ PetscBool measure_list_fits(const Model *m, PetscInt k, PetscInt64 length)
 {
   const MeasureEvents *events = measure_find(m->c->measures[k].kind)->events;
   if (events) return length >= events->header && (length - events->header) % events->n == 0;
-  return m->c->measures[k].has_rate ? length >= 0 && length % 2 == 0 : length == 0;
+  return measure_has_window(m->c->measures + k) ? length >= 0 && length % 2 == 0 : length == 0;
 }
 
 PetscInt measure_n_events(const Model *m, PetscInt k)
@@ -111,9 +111,9 @@ PetscErrorCode MeasuresRemember(Model *m, PetscReal dt)
     const MeasureSpec *s = &m->c->measures[k];
     const Measure *measure = measure_find(s->kind);
     if (measure->remember) PetscCall(measure->remember(m, s, dt, m->memory[k].kept));
-    if (!s->has_rate) continue;
+    if (!measure_has_window(s)) continue;
     PetscCall(Value(m, s, k, &value));
-    PetscCall(RateRemember(m, s, &m->memory[k], value));
+    PetscCall(WindowRemember(m, s, &m->memory[k], value));
   }
   PetscFunctionReturn(0);
 }

@@ -1,4 +1,5 @@
 /* What a model would do without a word, and its user hardly means: said before the first step. */
+#include "base/text.h"
 #include "model/model_private.h"
 
 #define NEARLY_INCOMPRESSIBLE 0.49
@@ -130,8 +131,37 @@ static void advise_floor(const Model *m, Diag *diag)
   }
 }
 
+/* --- walls that nothing meets --- */
+/* " from (0, 0) to (1, 2) m", or nothing of a wall without end. */
+static const char *extent_of(PetscInt dim, const PetscReal *min, const PetscReal *max, char text[192])
+{
+  char from[80], to[80];
+  text[0] = 0;
+  for (PetscInt d = 0; d < dim; ++d)
+    if (min[d] <= -PETSC_MAX_REAL || max[d] >= PETSC_MAX_REAL) return text;
+  snprintf(text, 192, " from %s to %s m", text_position(dim, min, from), text_position(dim, max, to));
+  return text;
+}
+
+/* A mesh goes with its body, which may well come to a wall that it does not reach at the start. */
+static void advise_wall(const Model *m, PetscInt k, Diag *diag)
+{
+  const WallSpec *wall = m->c->walls + k;
+  PetscReal min[3], max[3];
+  PetscBool apart = PETSC_FALSE;
+  char path[64], walls[192], grid[192];
+  if (!m->method->restores_grid || wall->n_motions || wall->inside) return;
+  wall_bounds(m->walls, k, 0, min, max);
+  for (PetscInt d = 0; d < m->dim; ++d) apart |= min[d] > m->grid->max[d] || max[d] < m->grid->min[d];
+  if (!apart) return;
+  PetscSNPrintf(path, sizeof path, "walls[%d].shape", (int)k);
+  diag_warning(diag, path, "wall '%s'%s lies outside of the grid%s: nothing meets it", wall->name,
+               extent_of(m->dim, min, max, walls), extent_of(m->dim, m->grid->min, m->grid->max, grid));
+}
+
 void model_advise(const Model *m, Diag *diag)
 {
+  for (PetscInt k = 0; m->walls && k < m->c->n_walls; ++k) advise_wall(m, k, diag);
   for (PetscInt b = 0; b < m->c->n_bodies; ++b)
     for (PetscInt i = 0; i < m->c->n_materials; ++i)
       if (!strcmp(m->c->bodies[b].material, m->c->materials[i].name)) advise_locking(m, &m->c->bodies[b], i, diag);

@@ -15,6 +15,7 @@ static const struct {
   {"boundary_work", "J", offsetof(Model, boundary_work)},
   {"damped_energy", "J", offsetof(Model, damped_energy)},
   {"friction_energy", "J", offsetof(Model, friction_energy)},
+  {"numerical_energy", "J", offsetof(Model, numerical_energy)},
   {"transfer_energy", "J", offsetof(Model, transfer_energy)},
   {"start_energy", "J", offsetof(Model, start_energy)},
 };
@@ -98,6 +99,26 @@ static PetscErrorCode SofteningToTables(Model *m, Tables *tables)
   PetscFunctionReturn(0);
 }
 
+/* The bracket is known to whoever seeks the factor. */
+static PetscErrorCode StrengthToTables(const Model *m, Tables *tables)
+{
+  Table *table;
+
+  PetscFunctionBeginUser;
+  if (m->c->analysis.type != ANALYSIS_FACTOR) PetscFunctionReturn(0);
+  PetscCall(TablesAdd(tables, "strength", PETSC_TRUE, 1, &table));
+  PetscCall(TableAdd(table, "factor", NULL, COLUMN_REAL, 1, (void *)&m->strength.factor, NULL));
+  PetscFunctionReturn(0);
+}
+
+static void strength_from_table(Model *m, const Table *table, char reason[256])
+{
+  const PetscReal *kept = table && !reason[0] ? table_data(table, "factor", COLUMN_REAL, 1, reason) : NULL;
+  if (!kept || m->c->analysis.type != ANALYSIS_FACTOR) return;
+  if (table->rows != 1 || !(*kept >= 0 && *kept <= PETSC_MAX_REAL)) snprintf(reason, 256, "strength makes no sense");
+  else strength_set(m, *kept);
+}
+
 /* Which partition there is and how it came about; several ranks alone have one. */
 static PetscErrorCode BalanceToTables(const Model *m, Tables *tables)
 {
@@ -126,6 +147,7 @@ PetscErrorCode ModelToTables(Model *m, Tables *tables)
   PetscCall(WholeToTables(m, tables));
   PetscCall(TriesToTables(m, tables));
   PetscCall(SofteningToTables(m, tables));
+  PetscCall(StrengthToTables(m, tables));
   PetscCall(StateLostToTables(m, tables));
   PetscCall(StateListsToTables(m, tables));
   PetscCall(PointsToTable(m->points, m->grid, "points", tables));
@@ -325,6 +347,7 @@ PetscErrorCode ModelFromTables(Model *m, Tables *tables, char reason[256])
   whole_from_tables(m, tables_find(tables, "model"), tables_find(tables, "measures"), reason);
   tries_from_table(m, tables_find(tables, "tries"), reason);
   softening_from_table(m, tables_find(tables, "softening"), reason);
+  strength_from_table(m, tables_find(tables, "strength"), reason);
   state_lost_from_tables(m, tables, reason);
   PetscCall(StateListsFromTables(m, tables, reason));
   PetscCall(ReasonShare(m->comm, reason));

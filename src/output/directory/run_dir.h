@@ -3,6 +3,7 @@
  *   made-by-talus.txt   the signature, written first: without it nothing is removed or overwritten
  *   case.yaml     the resolved case (every key with its value)      history.csv   measures
  *   events.csv    what measures that count events noted of them
+ *   factor.csv    factors that were tried, of a factor of safety
  *   log.txt       what the run said                                 timings.txt   where the time
  *   went version.txt   talus, PETSc, MPI, compiler, number of ranks      pictures/     of talus
  *   plot points_000000.hdf ... points.hdf.series, grid_000000.hdf ... grid.hdf.series

@@ -19,19 +19,12 @@ static const char signature[] =
 static const char unfinished[] = "*" FILE_UNFINISHED;
 #define STATE_FILES "points_[0-9]*.hdf", "grid_[0-9]*.hdf", "points.hdf.series", "grid.hdf.series"
 /* What a run leaves behind, and what `--force` removes. */
-static const char *const run_files[] = {"case.yaml",
-                                        "log.txt",
-                                        "version.txt",
-                                        "timings.txt",
-                                        "history.csv",
-                                        "events.csv",
-                                        STATE_FILES,
-                                        "checkpoint_[0-9]*.h5",
-                                        "checkpoint_[0-9]*.h5.damaged",
-                                        unfinished,
-                                        NULL};
+static const char *const run_files[] = {
+  "case.yaml",  "log.txt",    "version.txt", "timings.txt",          "history.csv",
+  "events.csv", "factor.csv", STATE_FILES,   "checkpoint_[0-9]*.h5", "checkpoint_[0-9]*.h5.damaged",
+  unfinished,   NULL};
 static const char *const state_files[] = {STATE_FILES, NULL};
-static const char *const picture_files[] = {"state_*.png", "history_*.png", unfinished, NULL};
+static const char *const picture_files[] = {"state_*.png", "history_*.png", "factor.png", unfinished, NULL};
 
 /* Does the plain file begin so? */
 static PetscBool begins(const char *folder, const char *name, const char *words)

@@ -1,6 +1,8 @@
 /* The domain of a point: the part of its cell that it stands for. */
 #include "points/seed/seed.h"
 
+#define NEXT 1.5 /* times the distance of the nearest points: layers of a rule are farther apart */
+
 /* In a lattice the parts are images of equal cubes, 2 / side long in the reference cell: the box with
  * the second moments of such a parallelogram has l_d^2 = sum_k (dx_d / dxi_k)^2 / side^2. Those of a
  * simplex have no sides of their own, and take a square or cube of their volume. */
@@ -34,11 +36,26 @@ static PetscReal distance_to_side(const Cell *cell, PetscInt side, const PetscRe
   return PetscAbsReal(along) / PetscSqrtReal(square);
 }
 
-PetscReal seed_reach(CellType type, const PetscReal *x, const PetscReal *position, PetscReal section)
+/* Is the q-th point of the rule in the layer of its cell that is next to this side? */
+static PetscBool is_next_to(const Cell *cell, PetscInt side, const SeedRule *rule, PetscInt q)
+{
+  PetscReal x[CELL_MAX_NODES * 3], nearest = PETSC_MAX_REAL;
+  for (PetscInt i = 0; i < cell->nodes; ++i)
+    for (PetscInt d = 0; d < cell->dim; ++d) x[i * cell->dim + d] = cell->reference[i][d];
+  for (PetscInt p = 0; p < rule->n; ++p)
+    nearest = PetscMin(nearest, distance_to_side(cell, side, x, rule->xi + p * cell->dim));
+  return distance_to_side(cell, side, x, rule->xi + q * cell->dim) < NEXT * nearest;
+}
+
+PetscReal seed_reach(CellType type, const PetscReal *x, const PetscReal *position, PetscReal section,
+                     const SeedRule *rule, PetscInt q, const unsigned char *outer)
 {
   const Cell *cell = cells + type;
-  PetscReal reach = 0.5 * PetscPowReal(section, 1 / (PetscReal)cell->dim);
-  for (PetscInt side = 0; side < cell->faces; ++side)
-    reach = PetscMin(reach, distance_to_side(cell, side, x, position));
-  return reach;
+  PetscReal reach = 0.5 * PetscPowReal(section, 1 / (PetscReal)cell->dim), surface = PETSC_MAX_REAL;
+  for (PetscInt side = 0; side < cell->faces; ++side) {
+    const PetscReal distance = distance_to_side(cell, side, x, position);
+    reach = PetscMin(reach, distance);
+    if (outer[side] && is_next_to(cell, side, rule, q)) surface = PetscMin(surface, distance);
+  }
+  return surface < PETSC_MAX_REAL ? surface : reach;
 }

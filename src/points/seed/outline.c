@@ -1,5 +1,4 @@
 #include "points/seed/outline.h"
-#include "grid/search/tuple_table.h"
 
 static PetscErrorCode Append(Outline *outline, const OutlineFace *face)
 {
@@ -59,29 +58,14 @@ static PetscErrorCode AddFace(Outline *outline, const Grid *source, PetscInt cel
 PetscErrorCode OutlineAdd(Outline *outline, const Grid *source, PetscInt n_cells, const PetscInt *chosen, PetscInt body,
                           PetscReal density)
 {
-  const PetscInt n_faces = cells[source->type].faces;
   const OutlineFace face = {.body = body, .density = density};
-  TupleTable *seen;
-  PetscInt *times, *id, key[4];
+  unsigned char *outer;
 
   PetscFunctionBeginUser;
-  PetscCall(TupleTableCreate(cells[source->type].face_nodes, n_cells * n_faces, &seen));
-  PetscCall(PetscCalloc1(n_cells * n_faces, &times));
-  PetscCall(PetscMalloc1(n_cells * n_faces, &id));
-  for (PetscInt k = 0; k < n_cells * n_faces; ++k) {
-    const PetscInt cell = chosen[k / n_faces], side = k % n_faces,
-                   *node = source->cell_node + cell * source->nodes_per_cell;
-    const Cell *type = grid_cell(source, cell);
-    id[k] = -1;
-    if (side >= type->faces) continue;
-    for (PetscInt i = 0; i < type->face_nodes; ++i) key[i] = node[type->face[side][i]];
-    id[k] = tuple_add(seen, key);
-    ++times[id[k]];
-  }
-  for (PetscInt k = 0; k < n_cells * n_faces; ++k)
-    if (id[k] >= 0 && times[id[k]] == 1) PetscCall(AddFace(outline, source, chosen[k / n_faces], k % n_faces, face));
-  PetscCall(PetscFree(times));
-  PetscCall(PetscFree(id));
-  PetscCall(TupleTableDestroy(&seen));
+  PetscCall(PetscMalloc1(n_cells * CELL_MOST_SIDES, &outer));
+  PetscCall(OutlineSides(source, n_cells, chosen, outer));
+  for (PetscInt k = 0; k < n_cells * CELL_MOST_SIDES; ++k)
+    if (outer[k]) PetscCall(AddFace(outline, source, chosen[k / CELL_MOST_SIDES], k % CELL_MOST_SIDES, face));
+  PetscCall(PetscFree(outer));
   PetscFunctionReturn(0);
 }

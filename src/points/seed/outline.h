@@ -19,6 +19,12 @@ typedef struct {
   OutlineFace *face;
 } Outline;
 
+/* outer (n_cells x CELL_MOST_SIDES): is the side of the chosen cell no side of another one of this rank? */
+#define CELL_MOST_SIDES 6 /* of a cell, at most */
+PetscErrorCode OutlineSides(const Grid *source, PetscInt n_cells, const PetscInt *chosen, unsigned char *outer);
+/* Collective. The same, of other ranks neither. */
+PetscErrorCode OutlineSidesOfAll(const Grid *source, PetscInt n_cells, const PetscInt *chosen, unsigned char *outer);
+
 /* Add the faces that belong to one of these cells alone. */
 PetscErrorCode OutlineAdd(Outline *outline, const Grid *source, PetscInt n_cells, const PetscInt *chosen, PetscInt body,
                           PetscReal density);

@@ -181,12 +181,12 @@ static PetscBool shares_equally(const Seeding *s, CellType type)
   return s->equal && (!s->c->kinematics->hoop || type == CELL_TRIANGLE);
 }
 
-/* The q-th point of a cell with nodes at x. share: its part of the section, or of the volume in
+/* The q-th point of the k-th cell, with nodes at x. share: its part of the section, or of the volume in
  * space; < 0: that of the Gauss rule. */
-static PetscErrorCode SeedPoint(const Seeding *s, Points *points, PetscInt cell, const PetscReal *x, PetscReal share,
+static PetscErrorCode SeedPoint(const Seeding *s, Points *points, PetscInt k, const PetscReal *x, PetscReal share,
                                 PetscInt q, const PointSeed *seed)
 {
-  const PetscInt dim = points->dim;
+  const PetscInt dim = points->dim, cell = s->cells[k];
   const SeedRule *rule = rule_of(s, cell);
   const PetscReal *xi = rule->xi + q * dim;
   PetscInt p;
@@ -201,8 +201,9 @@ static PetscErrorCode SeedPoint(const Seeding *s, Points *points, PetscInt cell,
   body_velocity(s->body, dim, position, point_real(points, POINT_V, p));
   if (s->domains)
     seed_domain(grid_cell_type(s->source, cell), x, xi, rule->side, section, point_real(points, POINT_DOMAIN, p));
-  if (points->components[POINT_REACH])
-    *point_real(points, POINT_REACH, p) = seed_reach(grid_cell_type(s->source, cell), x, position, section);
+  if (s->outer)
+    *point_real(points, POINT_REACH, p) =
+      seed_reach(grid_cell_type(s->source, cell), x, position, section, rule, q, s->outer + k * CELL_MOST_SIDES);
   if (points->components[POINT_SLOPE]) seed_slope(s->body, dim, point_real(points, POINT_SLOPE, p));
   if (seed->n_state) PetscCall(PetscArraycpy(point_real(points, POINT_STATE, p), seed->initial, seed->n_state));
   points->id[p] = s->first_id + (PetscInt64)s->source->global_cell[cell] * s->rule.n + q;
@@ -229,7 +230,7 @@ static PetscErrorCode SeedCells(const Seeding *s, Points *points, const PointSee
     const CellType type = grid_cell_type(s->source, s->cells[k]);
     grid_cell_x(s->source, s->cells[k], x);
     const PetscReal share = shares_equally(s, type) ? cell_volume(type, x) / (PetscReal)n : -1;
-    for (PetscInt q = 0; q < n; ++q) PetscCall(SeedPoint(s, points, s->cells[k], x, share, q, seed));
+    for (PetscInt q = 0; q < n; ++q) PetscCall(SeedPoint(s, points, k, x, share, q, seed));
   }
   PetscFunctionReturn(0);
 }
@@ -275,7 +276,12 @@ static PetscErrorCode SeedSource(Seeding *s, Points *points, PetscInt *taken, co
     PetscFunctionReturn(0);
   }
   if (s->source == s->grid) PetscCall(SeedClaimCells(s, taken));
+  if (points->components[POINT_REACH]) {
+    PetscCall(PetscMalloc1(s->n_cells * CELL_MOST_SIDES, &s->outer));
+    PetscCall(OutlineSidesOfAll(s->source, s->n_cells, s->cells, s->outer));
+  }
   PetscCall(SeedCells(s, points, per_material + s->material));
+  PetscCall(PetscFree(s->outer));
   if (s->outline)
     PetscCall(OutlineAdd(s->outline, s->source, s->n_cells, s->cells, s->b, per_material[s->material].density));
   PetscCall(AdvanceIds(s, next));

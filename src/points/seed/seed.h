@@ -20,6 +20,7 @@ typedef struct {
   PetscInt material;
   const Grid *source;        /* whose cells give the points: the grid, or the body's own mesh */
   PetscInt n_cells, *cells;  /* local cells of the source that belong to the body */
+  unsigned char *outer;      /* n_cells x CELL_MOST_SIDES: is it the body's surface? NULL: nobody asks */
   SeedRule rule, first_rule; /* for cells of the source's type, and of its first_type */
   PetscBool domains;         /* do the points have some? */
   PetscBool equal;           /* `weights: auto` shares cells equally */
@@ -35,9 +36,12 @@ PetscReal seed_cell_volume(const Seeding *s, PetscInt cell);
 void seed_domain(CellType type, const PetscReal *x, const PetscReal *xi, PetscInt side, PetscReal section,
                  PetscReal *l);
 
-/* Distance of a point at `position` from the nearest side of its cell, with nodes at x; at most half the
- * side of a square or cube of its part of the section, or of the volume in space. */
-PetscReal seed_reach(CellType type, const PetscReal *x, const PetscReal *position, PetscReal section);
+/* Distance of the q-th point of the rule, at `position` in a cell with nodes at x, from the body's
+ * surface: of points next to sides that are `outer` (faces of the cell) the nearest of these. Of others
+ * that from the nearest side, at most half the side of a square or cube of its part of the section, or of
+ * the volume in space. */
+PetscReal seed_reach(CellType type, const PetscReal *x, const PetscReal *position, PetscReal section,
+                     const SeedRule *rule, PetscInt q, const unsigned char *outer);
 
 /* Collective. After the cells were chosen: errors for a body without a cell, warnings where whole
  * cells represent the shape badly, or have a single point that leaves them soft. */

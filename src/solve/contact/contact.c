@@ -114,6 +114,17 @@ void contact_force(const ContactPoint *c, PetscReal f[3])
   for (int d = 0; d < 3; ++d) f[d] = c->now.pressure * c->normal[d] + c->now.shear[d];
 }
 
+PetscReal contact_square(const Contact *s)
+{
+  PetscReal sum = 0;
+  for (PetscInt k = 0; s && k < s->n; ++k) {
+    PetscReal f[3];
+    contact_force(s->point + k, f);
+    for (PetscInt d = 0; d < s->dim; ++d) sum += f[d] * f[d];
+  }
+  return sum;
+}
+
 static void add_tangent(const Contact *s, const ContactPoint *c, const NodalScene *scene, const PetscReal *K,
                         const NodalOutput *out)
 {

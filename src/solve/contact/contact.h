@@ -31,6 +31,7 @@ typedef struct {
   ContactForce multiplier, now;
   ContactState state;  /* at the last assembly */
   ContactState before; /* at the end of the last step */
+  PetscBool gone;      /* has the wall vanished when the step begins? Its last force is to be forgotten */
   PetscBool touches;   /* is there no gap at the start of the step? */
   PetscReal gap;       /* at the last assembly, m */
   PetscReal normal[3]; /* at the last assembly */
@@ -97,7 +98,6 @@ void contact_prepare(Contact *contact, PetscReal t, PetscReal dt, PetscReal iner
 PetscErrorCode ContactAdd(Contact *contact, ContactPoint **c);
 PetscErrorCode ContactAddNodes(Contact *contact, ContactPoint *c, PetscInt n);
 PetscReal contact_reach(const PetscReal F[9], const PetscReal n[3], PetscReal first);
-PetscReal contact_section(const NodalScene *scene, PetscInt p);
 /* What the carrier kept of its contact with a partner. */
 void contact_remember(ContactPoint *c, PetscInt dim, const PetscReal *kept, const PetscReal normal[3]);
 ContactLaw contact_law_of(ContactKind kind, PetscReal friction);
@@ -105,8 +105,22 @@ ContactLaw contact_law_of(ContactKind kind, PetscReal friction);
 PetscBool contact_passes(const Contact *contact, ContactPoint *c, PetscReal gap, PetscBool first);
 /* Collective. Those between bodies. */
 PetscErrorCode ContactFindBodies(Contact *contact, const NodalScene *scene);
+/* contact_section.c. Surface that material point p stands for before a wall with the normal n, m2. */
+PetscReal contact_section(const NodalScene *scene, PetscInt p, const PetscReal n[3]);
 /* Position of a contact point with the field's increments, times `whole`. */
 void contact_place(const Contact *contact, const ContactPoint *c, const PetscReal *du, PetscReal whole, PetscReal x[3]);
+
+/* What a wall does to the surface of the material at one place. */
+typedef struct {
+  PetscReal x[3], normal[3];    /* at the end of the step, m */
+  PetscReal pressure, shear[3]; /* Pa: along the normal, across it */
+  PetscReal section, force[3];  /* of the contact point alone, m2, N */
+} ContactTraction;
+
+/* Collective. Tractions of one wall at this rank's points in contact, freed with PetscFree. du: increments of
+ * the last step; share: the walls' forces over those of the balance (contact_traction.c). */
+PetscErrorCode ContactTractions(const Contact *contact, const Grid *grid, PetscInt wall, const PetscReal *du,
+                                PetscReal share, PetscInt *n, ContactTraction **tractions);
 
 /* What a projection works with; arrays go over local nodes. */
 typedef struct {
@@ -126,4 +140,6 @@ PetscErrorCode ContactProject(Contact *contact, const ContactMotion *motion, Con
 /* Collective. Take the forces of the last step, times `share`, out of the acceleration that nodes remember. */
 PetscErrorCode ContactRelease(Contact *contact, const ContactMotion *motion, PetscReal share, ContactSum *sum);
 void contact_force(const ContactPoint *c, PetscReal f[3]); /* of the last assembly */
+/* Of all forces of this rank at the last assembly, N2; contact may be NULL. */
+PetscReal contact_square(const Contact *contact);
 void contact_add(const ContactPoint *c, PetscInt dim, const PetscReal force[3], ContactSum *sum);

@@ -74,7 +74,7 @@ static PetscErrorCode Meet(Contact *s, const NodalScene *scene, const NodeFinder
   PetscCall(ContactAdd(s, &c));
   c->owner = p->owner, c->wall = partner;
   c->reach = kept[1] > 0 ? kept[1] : contact_reach(p->F, pair->normal, p->reach);
-  c->section = contact_section(scene, p->owner);
+  c->section = contact_section(scene, p->owner, pair->normal);
   c->modulus[0] = p->modulus, c->density[0] = p->density;
   c->modulus[1] = pair->other->modulus, c->density[1] = pair->other->density;
   c->law = contact_law_of(spec->contact, spec->friction);

@@ -76,15 +76,6 @@ PetscBool contact_passes(const Contact *s, ContactPoint *c, PetscReal gap, Petsc
   return gap > s->near || is_let_go(c, first);
 }
 
-PetscReal contact_section(const NodalScene *scene, PetscInt p)
-{
-  const PetscReal volume = scene->points->real[POINT_J][p] * scene->points->real[POINT_VOLUME][p];
-  const PetscReal radius = point_real(scene->points, POINT_X, p)[0];
-  const PetscReal round = kinematics_weight(scene->c->kinematics, radius); /* of the ring */
-  const PetscReal part = scene->grid->dim == 2 ? PetscSqrtReal(volume / round) : PetscPowReal(volume, 2. / 3.);
-  return part * round;
-}
-
 static PetscBool meets_body(const Case *c, PetscInt k, PetscInt body)
 {
   const WallSpec *w = c->walls + k;
@@ -117,7 +108,7 @@ static PetscErrorCode MeetPoint(Contact *s, const NodalScene *scene, PetscInt g,
   PetscCall(ContactAdd(s, &c));
   c->owner = p, c->wall = k, c->side = side;
   c->reach = reach;
-  c->section = contact_section(scene, p);
+  c->section = contact_section(scene, p, place.normal);
   c->modulus[0] = material->wave_modulus, c->density[0] = material->density;
   c->law = contact_law_of(scene->c->walls[k].contact, scene->c->walls[k].friction);
   c->bond = scene->c->walls[k].adhesion * c->section;
@@ -127,6 +118,8 @@ static PetscErrorCode MeetPoint(Contact *s, const NodalScene *scene, PetscInt g,
     --s->n;
     PetscFunctionReturn(0);
   }
+  c->gone = !wall_comes(s->walls, k, scene->t);
+  c->touches = c->touches && !c->gone;
   PetscCall(ContactAddNodes(s, c, nn));
   for (PetscInt d = 0; d < dim; ++d) c->x[d] = x[d] - reach * place.normal[d];
   for (PetscInt I = 0; I < nn; ++I) {

@@ -151,6 +151,7 @@ static unsigned char held_of(const ContactPoint *c, const ContactMotion *m)
 {
   const ContactState state = m->start ? c->before : c->state;
   const PetscBool meets = state != CONTACT_OPEN || (m->start && c->touches);
+  if (m->start && c->gone) return 0;
   return state == CONTACT_STICKS || (meets && c->law.kind == CONTACT_STICK) ? 3 : meets;
 }
 

@@ -1,16 +1,17 @@
 /* What SNES asks for: the residual and the tangent of the increments that its unknowns stand
  * for. */
+#include "solve/contact/contact.h"
 #include "solve/newton/newton_private.h"
 #include <petsctime.h>
 
-/* Internal and inertia forces -> residual, and the norms of reactions and external forces, over
- * owned dofs. Nodes without unknowns have no forces: they are often most of a grid, and are left
+/* Internal and inertia forces -> residual, and the norms of reactions, those of walls too, and of
+ * external forces, over owned dofs. Nodes without unknowns have no forces: they are often most of a grid, and are left
  * alone. */
 static PetscErrorCode Balance(Newton *n)
 {
   const StepProblem *p = n->problem;
   const PetscInt dim = p->grid->dim;
-  PetscReal local[3] = {0, 0, p->asked && p->asked() ? 1 : 0}, sum[3];
+  PetscReal local[3] = {contact_square(p->scene.contact), 0, p->asked && p->asked() ? 1 : 0}, sum[3];
 
   PetscFunctionBeginUser;
   for (PetscInt k = 0; k < p->system->n_active; ++k)

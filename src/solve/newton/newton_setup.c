@@ -1,5 +1,6 @@
 /* SNES, its line search and the linear solver below it, made for one pattern of the system. */
 #include "solve/newton/newton_private.h"
+#include "solve/system/rigid_motions.h"
 #include <petsctime.h>
 
 PetscErrorCode NewtonReset(Newton *n)
@@ -39,6 +40,17 @@ static PetscErrorCode Learns(KSP ksp, PetscBool *learns)
   PetscCall(PetscObjectTypeCompareAny((PetscObject)pc, learns, PCNONE, PCJACOBI, PCPBJACOBI, PCVPBJACOBI, PCSOR,
                                       PCEISENSTAT, PCILU, PCICC, PCLU, PCCHOLESKY, PCBJACOBI, PCASM, ""));
   *learns = !*learns;
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode TellRigidMotions(const StepProblem *p)
+{
+  MatNullSpace rigid;
+
+  PetscFunctionBeginUser;
+  PetscCall(RigidMotions(p->system, p->grid, &rigid));
+  PetscCall(MatSetNearNullSpace(p->system->matrix, rigid));
+  PetscCall(MatNullSpaceDestroy(&rigid));
   PetscFunctionReturn(0);
 }
 
@@ -84,6 +96,7 @@ PetscErrorCode NewtonSetUp(Newton *n, StepProblem *p, const LinearProblem *linea
   PetscCall(KSPSetPostSolve(ksp, LinearSolved, n));
   PetscCall(LinearConfigure(ksp, &chosen, &n->direct, &n->linear));
   if (chosen.mixed && !n->direct) PetscCall(SaddleConfigure(&n->saddle, ksp, p->system, p->grid, chosen.dynamic));
+  else if (!n->direct && !chosen.mixed && !chosen.dynamic) PetscCall(TellRigidMotions(p));
   PetscCall(SNESSetFromOptions(n->snes));
   PetscCall(LinearRefine(ksp, p->system->matrix, &chosen));
   PetscCall(Learns(ksp, &n->learns));

@@ -112,24 +112,42 @@ static PetscErrorCode PrepareSaddlePoint(KSP ksp, PetscBool undetermined)
   PetscFunctionReturn(0);
 }
 
+/* Couplings below this share of what holds their nodes do not count in coarsening, and above all not
+ * the zeros of cells that the pattern keeps for points to come (docs/experiments/linear-solvers.md). */
+#define WEAKEST_LINK 0.02
+/* what takes more has failed, and a factorisation is tried: 15 to 30 are usual */
+#define MOST_CYCLES 300
+
+PetscErrorCode LinearMultigrid(PC pc)
+{
+  PetscReal weakest[] = {WEAKEST_LINK};
+  PetscFunctionBeginUser;
+  PetscCall(PCSetType(pc, PCGAMG));
+  PetscCall(PCGAMGSetThreshold(pc, weakest, 1));
+  PetscFunctionReturn(0);
+}
+
 static PetscErrorCode UseMultigrid(KSP ksp, const LinearProblem *p, const char **what)
 {
   PC pc;
   PetscFunctionBeginUser;
   PetscCall(KSPGetPC(ksp, &pc));
   PetscCall(KSPSetType(ksp, p->symmetric ? KSPCG : KSPGMRES));
-  PetscCall(PCSetType(pc, PCGAMG));
-  PetscCall(KSPSetTolerances(ksp, 1e-8, PETSC_DEFAULT, PETSC_DEFAULT, 1000));
+  PetscCall(LinearMultigrid(pc));
+  PetscCall(KSPGMRESSetRestart(ksp, 100));
+  PetscCall(KSPSetTolerances(ksp, 1e-8, PETSC_DEFAULT, PETSC_DEFAULT, MOST_CYCLES));
   *what = p->symmetric ? "conjugate gradients, algebraic multigrid" : "GMRES, algebraic multigrid";
   PetscFunctionReturn(0);
 }
 
-/* Fill-in makes a factorisation of a 3D matrix costly much earlier than of a 2D one. */
+/* Fill-in makes a factorisation of a 3D matrix costly much earlier than of a 2D one. Tangents of soil
+ * that is about to fail are unsymmetric, and multigrid may not find their solution. */
 static PetscBool direct_pays(const LinearProblem *p)
 {
   if (p->mixed) return p->unknowns < (p->dim == 2 ? 500000 : 20000);
   if (p->dynamic && p->courant < ITERATE_BELOW) return PETSC_FALSE;
-  return p->unknowns < (p->dim == 2 ? 1000000 : 100000);
+  if (p->dim == 2) return p->unknowns < 1000000;
+  return p->unknowns < (p->symmetric ? 25000 : 100000);
 }
 
 static PetscBool prefers_direct(const LinearProblem *p)

@@ -25,6 +25,8 @@ PetscErrorCode LinearForm(const LinearProblem *problem, SystemForm *form);
 /* Choose a solver, set it on ksp, whose operators are known (the options database still overrides
  * it); `what` gets a short name for the log. */
 PetscErrorCode LinearConfigure(KSP ksp, const LinearProblem *problem, PetscBool *direct, const char **what);
+/* Algebraic multigrid for displacements. */
+PetscErrorCode LinearMultigrid(PC pc);
 /* Collective. After the options were read and with the matrix of the system: what needs its
  * blocks. */
 PetscErrorCode LinearRefine(KSP ksp, Mat matrix, const LinearProblem *problem);

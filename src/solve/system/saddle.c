@@ -1,4 +1,5 @@
 #include "solve/system/saddle.h"
+#include "solve/system/rigid_motions.h"
 
 /* Global numbers of components first .. first + n - 1 of every active node. */
 static PetscErrorCode UnknownsOf(const System *s, PetscInt first, PetscInt n, IS *field)
@@ -12,45 +13,6 @@ static PetscErrorCode UnknownsOf(const System *s, PetscInt first, PetscInt n, IS
     for (PetscInt a = 0; a < n; ++a) index[k * n + a] = start + k * s->block + first + a;
   PetscCall(ISCreateGeneral(s->comm, s->n_active * n, index, PETSC_OWN_POINTER, field));
   PetscCall(ISSetBlockSize(*field, n));
-  PetscFunctionReturn(0);
-}
-
-/* Into the frames of the nodes: they stay orthonormal. */
-static PetscErrorCode TurnMotions(const System *s, MatNullSpace rigid)
-{
-  const Vec *motion;
-  PetscInt n;
-  PetscReal *v;
-
-  PetscFunctionBeginUser;
-  PetscCall(MatNullSpaceGetVecs(rigid, NULL, &n, &motion));
-  for (PetscInt k = 0; s->frames && k < n; ++k) {
-    PetscCall(VecGetArray(motion[k], &v));
-    for (PetscInt f = 0; f < s->frames->n; ++f) {
-      const PetscInt row = s->row[s->frames->node[f]];
-      if (row >= 0 && row < s->n_active) frame_turn(s->dim, s->frames->w + 3 * f, v + row * s->dim);
-    }
-    PetscCall(VecRestoreArray(motion[k], &v));
-  }
-  PetscFunctionReturn(0);
-}
-
-/* Rigid motions of the active nodes, which multigrid must be told of. */
-static PetscErrorCode RigidMotions(const System *s, const Grid *grid, MatNullSpace *rigid)
-{
-  Vec places;
-  PetscReal *v;
-
-  PetscFunctionBeginUser;
-  PetscCall(VecCreateMPI(s->comm, s->n_active * s->dim, PETSC_DETERMINE, &places));
-  PetscCall(VecSetBlockSize(places, s->dim));
-  PetscCall(VecGetArrayWrite(places, &v));
-  for (PetscInt k = 0; k < s->n_active; ++k)
-    for (PetscInt d = 0; d < s->dim; ++d) v[k * s->dim + d] = grid->x[s->active[k] * s->dim + d];
-  PetscCall(VecRestoreArrayWrite(places, &v));
-  PetscCall(MatNullSpaceCreateRigidBody(places, rigid));
-  PetscCall(VecDestroy(&places));
-  PetscCall(TurnMotions(s, *rigid));
   PetscFunctionReturn(0);
 }
 
@@ -85,7 +47,7 @@ static PetscErrorCode InnerSolvers(PC pc, PetscBool dynamic)
   PetscCall(PCFieldSplitSchurGetSubKSP(pc, &n, &inner));
   PetscCall(KSPSetType(inner[0], KSPPREONLY));
   PetscCall(KSPGetPC(inner[0], &one));
-  PetscCall(PCSetType(one, PCGAMG));
+  PetscCall(LinearMultigrid(one));
   PetscCall(PCGAMGSetReuseInterpolation(one, PETSC_TRUE));
   PetscCall(KSPSetType(inner[1], KSPPREONLY));
   PetscCall(KSPGetPC(inner[1], &one));

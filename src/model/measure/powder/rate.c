@@ -1,4 +1,5 @@
-/* How fast any measure changes: the slope of the line through its values by least squares.
+/* How fast any measure changes in a window: the slope of the line through its values by least
+ * squares; and their mean.
  *
  * A difference of two values would be all noise. A value counts with the time that it stands for,
  * half of the steps before and behind it, so that short steps do not count more than long ones. The
@@ -30,7 +31,7 @@ static void forget(const MeasureSpec *s, MeasureMemory *memory)
   if (old) memmove(memory->list, memory->list + old, sizeof(PetscReal) * (size_t)memory->n_list);
 }
 
-PetscErrorCode RateRemember(Model *m, const MeasureSpec *s, MeasureMemory *memory, PetscReal value)
+PetscErrorCode WindowRemember(Model *m, const MeasureSpec *s, MeasureMemory *memory, PetscReal value)
 {
   const PetscReal slack = 1e-9 * s->window[1], t = m->time;
 
@@ -48,16 +49,16 @@ static PetscReal weight(const PetscReal *list, PetscInt i, PetscInt n)
   return list[2 * PetscMin(i + 1, n - 1)] - list[2 * PetscMax(i - 1, 0)];
 }
 
-PetscReal rate_value(const MeasureSpec *s, const MeasureMemory *memory)
+PetscReal window_value(const MeasureSpec *s, const MeasureMemory *memory)
 {
   const PetscInt n = memory->n_list / 2;
   const PetscReal *list = memory->list;
   PetscReal sum = 0, time = 0, value = 0, up = 0, square = 0;
-  (void)s;
   for (PetscInt i = 0; i < n; ++i) {
     const PetscReal w = weight(list, i, n);
     sum += w, time += w * list[2 * i], value += w * list[2 * i + 1];
   }
+  if (s->has_mean) return sum > 0 ? value / sum : NAN; /* one value stands for no time */
   for (PetscInt i = 0; i < n; ++i) {
     const PetscReal w = weight(list, i, n), dt = list[2 * i] - time / sum;
     up += w * dt * (list[2 * i + 1] - value / sum), square += w * dt * dt;

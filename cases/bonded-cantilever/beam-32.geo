@@ -1,0 +1,3 @@
+n = 32;
+Include "beam.geo";
+Physical Surface("beam") = {1};

@@ -1,0 +1,3 @@
+n = 4;
+Include "beam.geo";
+Physical Surface("beam") = {1};

@@ -1,0 +1,2 @@
+a = 0.6;
+Include "column-1.geo";

@@ -1,0 +1,2 @@
+a = 2;
+Include "column-1.geo";

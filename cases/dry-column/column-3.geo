@@ -1,0 +1,2 @@
+a = 3;
+Include "column-1.geo";

@@ -1,0 +1,2 @@
+a = 5;
+Include "column-1.geo";

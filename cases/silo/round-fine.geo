@@ -1,0 +1,2 @@
+h = 0.05;
+Include "round.geo";

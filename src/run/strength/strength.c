@@ -1,0 +1,308 @@
+#include "run/strength/strength.h"
+#include "base/text.h"
+#include "output/directory/run_dir_files.h"
+
+/* What slides goes so many of its heights farther for a factor larger by one; what stands does not. */
+#define SLIDES 0.1
+#define ALL_DISSIPATED 0.99
+#define EASY 8 /* Newton's iterations after which the next step is larger */
+
+static const char *const outcome_words[TRY_N] = {"stands", "slides", "runs", "lost"};
+
+PetscErrorCode StrengthRunDestroy(StrengthRun *s)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscFree(s->tries));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode Append(StrengthRun *s, const Try *try)
+{
+  PetscFunctionBeginUser;
+  if (s->n == s->capacity) {
+    s->capacity = PetscMax(16, 2 * s->capacity);
+    PetscCall(PetscRealloc((size_t)s->capacity * sizeof *s->tries, &s->tries));
+  }
+  s->tries[s->n++] = *try;
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode LargestDisplacement(const Model *m, PetscReal *largest)
+{
+  PetscReal local = 0;
+
+  PetscFunctionBeginUser;
+  for (PetscInt p = 0; p < m->points->n; ++p) {
+    PetscReal square = 0;
+    for (PetscInt d = 0; d < m->dim; ++d) square += PetscSqr(point_real(m->points, POINT_U, p)[d]);
+    local = PetscMax(local, square);
+  }
+  PetscCall(MPIU_Allreduce(&local, largest, 1, MPIU_REAL, MPIU_MAX, m->comm));
+  *largest = PetscSqrtReal(*largest);
+  PetscFunctionReturn(0);
+}
+
+/* What the model tells of itself where it stands. */
+static PetscErrorCode Look(Model *m, Try *try)
+{
+  Energies energies;
+
+  PetscFunctionBeginUser;
+  PetscCall(LargestDisplacement(m, &try->displacement));
+  PetscCall(ModelEnergies(m, &energies));
+  try->dissipated = energies.dissipated;
+  try->work = energies.external;
+  PetscFunctionReturn(0);
+}
+
+/* Of the material at the start of the search, along the axis that gravity is nearest to. */
+static PetscErrorCode Height(const Model *m, PetscReal *height)
+{
+  PetscReal low = PETSC_MAX_REAL, high = -PETSC_MAX_REAL, all[2];
+  PetscInt axis = m->dim - 1;
+
+  PetscFunctionBeginUser;
+  for (PetscInt d = 0; d < m->dim; ++d)
+    if (PetscAbsReal(m->c->gravity[d]) > PetscAbsReal(m->c->gravity[axis])) axis = d;
+  for (PetscInt p = 0; p < m->points->n; ++p) {
+    const PetscReal x = point_real(m->points, POINT_X, p)[axis];
+    low = PetscMin(low, x);
+    high = PetscMax(high, x);
+  }
+  PetscReal local[2] = {-low, high};
+  PetscCall(MPIU_Allreduce(local, all, 2, MPIU_REAL, MPIU_MAX, m->comm));
+  *height = all[0] + all[1];
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode StrengthBegin(StrengthRun *s, Model *m)
+{
+  Try try = {.outcome = TRY_STANDS};
+
+  PetscFunctionBeginUser;
+  s->search = search_begin(&m->c->analysis.reduction);
+  PetscCall(Height(m, &s->height));
+  PetscCall(Look(m, &try));
+  PetscCall(Append(s, &try));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode Tell(const Try *try, const StepReport *report, RunDir *dir)
+{
+  PetscFunctionBeginUser;
+  if (try->outcome == TRY_STANDS)
+    PetscCall(RunDirLog(dir, "factor = %.5g stands iterations = %d displacement = %.4g m dissipated = %.3g J",
+                        (double)try->factor, (int)try->iterations, (double)try->displacement, (double)try->dissipated));
+  else
+    PetscCall(RunDirLog(dir, "factor = %.5g %s iterations = %d (%s)", (double)try->factor,
+                        outcome_words[(TryOutcome)try->outcome], (int)try->iterations, report->newton.reason));
+  PetscFunctionReturn(0);
+}
+
+static void know_bracket(const StrengthRun *s, Model *m)
+{
+  m->strength.lower = s->search.stable > 0 ? s->search.stable : NAN;
+  m->strength.upper = s->search.failed > 0 ? s->search.failed : NAN;
+}
+
+PetscErrorCode StrengthTry(StrengthRun *s, Model *m, RunDir *dir, StepReport *report)
+{
+  const ReductionSpec *spec = &m->c->analysis.reduction;
+  Try try = {.factor = search_next(&s->search, spec)};
+
+  PetscFunctionBeginUser;
+  m->strength.reach = SLIDES * s->height * PetscMin(try.factor - s->search.stable, spec->tolerance * try.factor);
+  PetscCall(ModelTryFactor(m, try.factor, report, &try.moved));
+  if (report->outcome == STEP_INTERRUPTED || report->outcome == STEP_POINTS_LOST) PetscFunctionReturn(0);
+  const TryOutcome outcome = report->outcome == STEP_ACCEPTED ? TRY_STANDS
+                             : report->leap[0]                ? TRY_SLIDES
+                             : try.moved > m->strength.reach  ? TRY_RUNS
+                                                              : TRY_LOST;
+  try.outcome = (PetscReal)outcome;
+  try.iterations = (PetscReal)report->newton.iterations;
+  PetscCall(Look(m, &try));
+  PetscCall(Append(s, &try));
+  search_tell(&s->search, spec, try.factor, outcome, report->newton.iterations <= EASY);
+  know_bracket(s, m);
+  PetscCall(Tell(&try, report, dir));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode StrengthWrite(const StrengthRun *s, RunDir *dir)
+{
+  TextStream stream;
+  char *text, number[32];
+
+  PetscFunctionBeginUser;
+  PetscCall(TextOpen(&stream));
+  fputs("factor,stable,outcome,iterations,increment [m],displacement [m],dissipated [J],work [J]\n", stream.out);
+  for (PetscInt i = 0; i < s->n; ++i) {
+    const Try *try = &s->tries[i];
+    const PetscReal columns[] = {try->moved, try->displacement, try->dissipated, try->work};
+    file_format_real(try->factor, number);
+    const TryOutcome outcome = (TryOutcome)try->outcome;
+    fprintf(stream.out, "%s,%s,%s,%d", number, outcome == TRY_STANDS ? "yes" : "no", outcome_words[outcome],
+            (int)try->iterations);
+    for (int k = 0; k < 4; ++k) {
+      file_format_real(columns[k], number);
+      fprintf(stream.out, ",%s", number);
+    }
+    fputc('\n', stream.out);
+  }
+  PetscCall(TextClose(&stream, &text));
+  const PetscErrorCode status = RunDirWriteText(dir, "factor.csv", text);
+  PetscCall(PetscFree(text));
+  PetscFunctionReturn(status);
+}
+
+/* Does the try tell how far equilibria go, or where there is none? */
+typedef PetscBool (*Says)(const StrengthRun *s, PetscInt i);
+
+static PetscBool balances(const StrengthRun *s, PetscInt i)
+{
+  return s->tries[i].outcome == TRY_STANDS || s->tries[i].outcome == TRY_SLIDES;
+}
+
+static PetscBool slides(const StrengthRun *s, PetscInt i)
+{
+  return s->tries[i].outcome == TRY_SLIDES || s->tries[i].outcome == TRY_RUNS;
+}
+
+static PetscBool stands(const StrengthRun *s, PetscInt i) { return s->tries[i].outcome == TRY_STANDS; }
+static PetscBool fails(const StrengthRun *s, PetscInt i) { return !balances(s, i); }
+
+/* The last that stood before try i > 0. */
+static PetscInt stood_before(const StrengthRun *s, PetscInt i)
+{
+  for (--i; i > 0 && !stands(s, i);) --i;
+  return i;
+}
+
+/* The part of the work of loads and gravity since the last stable state that was dissipated; all of it
+ * where nothing more is stored. */
+static PetscReal share_dissipated(const StrengthRun *s, PetscInt i)
+{
+  const Try *a = &s->tries[stood_before(s, i)], *b = &s->tries[i];
+  return b->work > a->work ? (b->dissipated - a->dissipated) / (b->work - a->work) : 0;
+}
+
+static PetscBool stores(const StrengthRun *s, PetscInt i)
+{
+  return stands(s, i) && (i == 0 || share_dissipated(s, i) < ALL_DISSIPATED);
+}
+
+static PetscBool stores_nothing(const StrengthRun *s, PetscInt i) { return stands(s, i) && i > 0 && !stores(s, i); }
+
+/* "by Newton = 1.38 ... 1.39": the largest factor of which one says yes, and the smallest beyond
+ * it of which the other says no. */
+static PetscErrorCode TellBracket(const StrengthRun *s, const char *by, Says yes, Says no, const char *what,
+                                  RunDir *dir)
+{
+  PetscReal lower = 0, upper = PETSC_MAX_REAL;
+
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < s->n; ++i)
+    if (yes(s, i)) lower = PetscMax(lower, s->tries[i].factor);
+  for (PetscInt i = 0; i < s->n; ++i)
+    if (no(s, i) && s->tries[i].factor > lower) upper = PetscMin(upper, s->tries[i].factor);
+  if (upper < PETSC_MAX_REAL)
+    PetscCall(RunDirLog(dir, "by %s = %.5g ... %.5g: %s", by, (double)lower, (double)upper, what));
+  else PetscCall(RunDirLog(dir, "by %s > %.5g", by, (double)lower));
+  PetscFunctionReturn(0);
+}
+
+/* Newton's method gave up in the smallest step, but what stood before did not move as if it were to
+ * slide. */
+static PetscBool is_doubtful(const StrengthRun *s)
+{
+  const PetscInt last = stood_before(s, s->n - 1);
+  if (s->tries[s->n - 1].outcome != TRY_LOST || last == 0) return PETSC_FALSE;
+  const PetscInt before = stood_before(s, last);
+  const PetscReal taken = s->tries[last].factor - s->tries[before].factor;
+  return s->tries[last].moved < 0.1 * SLIDES * s->height * taken;
+}
+
+static PetscErrorCode TellAnswer(const StrengthRun *s, const Model *m, RunDir *dir)
+{
+  const ReductionSpec *spec = &m->c->analysis.reduction;
+  const PetscReal stable = s->search.stable, failed = s->search.failed;
+  const int digits = (int)PetscMax(2, PetscCeilReal(-PetscLog10Real(failed - stable)));
+
+  PetscFunctionBeginUser;
+  PetscCall(TellBracket(s, "Newton", balances, fails, "beyond it no equilibrium is found", dir));
+  PetscCall(TellBracket(s, "displacement", stands, slides, "beyond it the body slides", dir));
+  PetscCall(TellBracket(s, "energy", stores, stores_nothing, "beyond it 99 % of the work is dissipated", dir));
+  if (failed <= spec->from)
+    PetscCall(
+      RunDirLog(dir, "warning = it does not stand with a factor of %.4g: sought downwards", (double)spec->from));
+  if (is_doubtful(s))
+    PetscCall(RunDirLog(dir,
+                        "warning = Newton's method lost its way before anything slid: the factor may be larger "
+                        "(another mesh, or a small dilatancy angle, tells)"));
+  PetscCall(RunDirLog(dir, "factor of safety = %.*f (%.*f ... %.*f)", digits, (double)m->strength.value, digits,
+                      (double)stable, digits, (double)failed));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode StrengthEnd(const StrengthRun *s, Model *m, RunDir *dir)
+{
+  const PetscReal stable = s->search.stable, failed = s->search.failed;
+
+  PetscFunctionBeginUser;
+  know_bracket(s, m);
+  if (failed == 0)
+    PetscCall(
+      RunDirLog(dir, "factor of safety > %.4g: it stands with the largest factor that was asked for", (double)stable));
+  else if (stable == 0)
+    PetscCall(RunDirLog(dir, "factor of safety < %.4g: it does not stand, however strong", (double)failed));
+  else {
+    m->strength.value = 0.5 * (stable + failed);
+    PetscCall(TellAnswer(s, m, dir));
+  }
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode StrengthToTables(const StrengthRun *s, Tables *tables)
+{
+  Table *table;
+
+  PetscFunctionBeginUser;
+  if (!s->n) PetscFunctionReturn(0);
+  PetscCall(TablesAdd(tables, "factor", PETSC_TRUE, 1, &table));
+  PetscCall(TableAdd(table, "search", NULL, COLUMN_REAL, SEARCH_NUMBERS, (void *)&s->search, NULL));
+  PetscCall(TableAdd(table, "height", "m", COLUMN_REAL, 1, (void *)&s->height, NULL));
+  PetscCall(TablesAdd(tables, "factors_tried", PETSC_TRUE, s->n, &table));
+  PetscCall(TableAdd(table, "numbers", NULL, COLUMN_REAL, TRY_NUMBERS, (void *)s->tries, NULL));
+  PetscFunctionReturn(0);
+}
+
+static PetscBool makes_sense(const PetscReal *search, const Table *tries, const PetscReal *numbers)
+{
+  for (int k = 0; k < SEARCH_NUMBERS; ++k)
+    if (!(search[k] >= 0 && search[k] <= PETSC_MAX_REAL)) return PETSC_FALSE;
+  for (PetscInt i = 0; i < tries->rows; ++i) {
+    const PetscReal outcome = ((const Try *)numbers)[i].outcome;
+    if (!(outcome >= 0 && outcome < TRY_N)) return PETSC_FALSE;
+  }
+  return PETSC_TRUE;
+}
+
+PetscErrorCode StrengthFromTables(StrengthRun *s, const Tables *tables, char reason[256])
+{
+  const Table *whole = tables_find(tables, "factor"), *tries = tables_find(tables, "factors_tried");
+
+  PetscFunctionBeginUser;
+  if (!whole || !tries || reason[0]) PetscFunctionReturn(0);
+  const PetscReal *search = table_data(whole, "search", COLUMN_REAL, SEARCH_NUMBERS, reason);
+  const PetscReal *height = table_data(whole, "height", COLUMN_REAL, 1, reason);
+  const PetscReal *numbers = table_data(tries, "numbers", COLUMN_REAL, TRY_NUMBERS, reason);
+  if (reason[0]) PetscFunctionReturn(0);
+  if (whole->rows != 1 || !(*height >= 0) || !makes_sense(search, tries, numbers)) {
+    snprintf(reason, 256, "factor makes no sense");
+    PetscFunctionReturn(0);
+  }
+  PetscCall(PetscArraycpy((PetscReal *)&s->search, search, SEARCH_NUMBERS));
+  s->height = *height;
+  for (PetscInt i = 0; i < tries->rows; ++i) PetscCall(Append(s, (const Try *)numbers + i));
+  PetscFunctionReturn(0);
+}

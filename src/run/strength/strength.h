@@ -1,0 +1,38 @@
+/* A factor of safety: tries of ever larger factors, their table, and what it says in the end. */
+#pragma once
+#include "base/table/table.h"
+#include "model/model.h"
+#include "output/directory/run_dir.h"
+#include "run/strength/search.h"
+
+/* One factor that was tried; row 0 is the state before the first: all loads on, nothing yields. */
+typedef struct {
+  PetscReal factor;
+  PetscReal outcome; /* a TryOutcome */
+  PetscReal iterations;
+  PetscReal moved;        /* largest increment of a node; where Newton gave up, its last one, m */
+  PetscReal displacement; /* the largest of a point since the start, in the last stable state, m */
+  PetscReal dissipated;   /* by plastic flow since the start, there, J */
+  PetscReal work;         /* of loads and gravity since the start, there, J */
+} Try;
+#define TRY_NUMBERS 7
+
+typedef struct {
+  Search search;
+  PetscReal height; /* of the material, against gravity, m */
+  PetscInt n, capacity;
+  Try *tries;
+} StrengthRun;
+
+PetscErrorCode StrengthRunDestroy(StrengthRun *run);
+/* Collective. The row of the state before the first try. */
+PetscErrorCode StrengthBegin(StrengthRun *run, Model *model);
+/* Collective. One try; it and its line in the log are kept. The next factor: search_next. */
+PetscErrorCode StrengthTry(StrengthRun *run, Model *model, RunDir *dir, StepReport *report);
+/* Collective. factor.csv, as far as it goes. What the disk refuses comes back as
+ * PETSC_ERR_FILE_WRITE, without a trace. */
+PetscErrorCode StrengthWrite(const StrengthRun *run, RunDir *dir);
+/* Collective. The answer: into the model for its measures, and into the log. */
+PetscErrorCode StrengthEnd(const StrengthRun *run, Model *model, RunDir *dir);
+PetscErrorCode StrengthToTables(const StrengthRun *run, Tables *tables);
+PetscErrorCode StrengthFromTables(StrengthRun *run, const Tables *tables, char reason[256]);

@@ -1,0 +1,86 @@
+#!/bin/sh
+# A factor of safety: blocks whose factor is known in closed form, what the run says and writes, one to three ranks, going on
+# from a checkpoint, and what is refused.
+. "$(dirname "$0")/library.sh"
+
+# A block between a smooth floor and a traction of 100 kPa, free at its sides, in plane strain.
+cat >block.yaml <<'END'
+kinematics: plane-strain
+method: fem
+analysis: {type: factor-of-safety, reduction: {tolerance: 1e-3}}
+grid: {box: {min: [0, 0], max: [1, 1]}, size: 0.5}
+bodies:
+  - {name: block, shape: {box: {min: [0, 0], max: [1, 1]}}, points_per_cell: 4, material: soil}
+materials:
+  soil: {law: mohr-coulomb, density: 2000, young: 1e9, poisson: 0.3, friction_angle: 25, cohesion: 60e3}
+boundary:
+  - {on: {boundary: bottom}, fix: [y]}
+  - {on: {x: 0.5, y: 0}, fix: [x]}
+loads: {tractions: [{on: {boundary: top}, value: [0, -1e5]}]}
+measures:
+  F: {factor_of_safety: value}
+  lower: {factor_of_safety: lower}
+  upper: {factor_of_safety: upper}
+END
+
+# near FACTOR: the bracket holds it (within what a block moves elastically) and is as narrow as asked for.
+near() {
+  awk -F, -v f="$1" 'END { if (!($4 < f * 1.001 && $5 > f * 0.999 && $5 - $4 <= 1.001e-3 * $4 && $3 == ($4 + $5) / 2)) { print $0; exit 1 } }' \
+    run/history.csv || fail "$name: not $1"
+}
+
+# 1e5 = 2 (c/F) (t + sqrt(1 + t^2)), t = tan(phi)/F: what a block bears whose strength is divided by F
+bears=$(awk 'BEGIN { low = 1; high = 3; for (i = 0; i < 60; ++i) { F = (low + high) / 2; t = 0.46630765815 / F; if (2 * 6e4 / F * (t + sqrt(1 + t * t)) > 1e5) low = F; else high = F } print F }')
+for ranks in 1 2 3; do
+  expect "friction and cohesion on $ranks" 0 on_ranks $ranks "$talus" run block.yaml --out run --force
+  near "$bears"
+done
+says out.txt "by Newton " "by displacement = 1." "by energy " "factor of safety = 1."
+says run/factor.csv "factor,stable,outcome,iterations,increment [m],displacement [m],dissipated [J],work [J]" "1,yes,stands," ",no,"
+expect "without dilatancy, mean dilatation" 0 "$talus" run block.yaml --out run --force --set formulation=mean-dilatation
+near "$bears"
+expect "with dilatancy" 0 "$talus" run block.yaml --out run --force --set materials.soil.dilatancy_angle=25
+near "$bears"
+expect "cohesion alone" 0 "$talus" run block.yaml --out run --force --set materials.soil.friction_angle=0
+near 1.2
+expect "tension cut off" 0 "$talus" run block.yaml --out run --force --set materials.soil.tension_cutoff=7e4 --set 'loads.tractions[0].value=[0, 5e4]'
+near 1.4
+sed 's/law: mohr-coulomb.*/law: j2, density: 2000, young: 1e9, poisson: 0.3, yield_stress: 120e3}/' block.yaml >j2.yaml
+expect "J2" 0 "$talus" run j2.yaml --out run --force
+near 1.385641 # 2 / sqrt(3) yield stress in plane strain
+sed 's/^materials:/  - {name: stone, shape: {box: {min: [0, 0], max: [1, 0.5]}}, points_per_cell: 4, material: stone}\n&\n  stone: {law: neo-hookean, density: 2000, young: 1e9, poisson: 0.3}/; s/box: {min: \[0, 0\], max: \[1, 1\]}}, points/box: {min: [0, 0.5], max: [1, 1]}}, points/' block.yaml >stone.yaml
+expect "on a stone" 0 "$talus" run stone.yaml --out run --force --set materials.soil.friction_angle=0 --set 'analysis.reduction.bodies=[block]'
+awk -F, 'END { exit !($3 >= 1.2) }' run/history.csv || fail "$name: weaker than by itself"
+expect "below one" 0 "$talus" run block.yaml --out run --force --set materials.soil.friction_angle=0 --set materials.soil.cohesion=3e4
+near 0.6
+says out.txt "warning = it does not stand with a factor of 1: sought downwards"
+expect "more than asked for" 0 "$talus" run block.yaml --out run --force --set analysis.reduction.most=1.2
+says out.txt "factor of safety > 1.2"
+expect "displacements alone" 0 "$talus" run block.yaml --out run --force --set formulation=displacement
+says err.txt "formulation=displacement: warning: " "locks: the factor of" "formulation: mixed"
+
+# Resumed anywhere: the same bits; and its end is an end
+expect "whole" 0 "$talus" run block.yaml --out whole --quiet --set checkpoint.steps=3 --set checkpoint.keep=99
+cp -r whole cut
+ls cut/checkpoint_*.h5 | sed -n '2,$p' | xargs rm
+rm cut/timings.txt
+expect "resumed" 0 "$talus" run --resume cut --quiet
+for file in factor.csv history.csv; do cmp -s whole/$file cut/$file || fail "$name: $file differs"; done
+expect "resumed at its end" 0 "$talus" run --resume whole
+for file in factor.csv history.csv; do cmp -s whole/$file cut/$file || fail "$name: $file differs"; done
+
+# What cannot be
+sed 's/law: mohr-coulomb.*/law: neo-hookean, density: 2000, young: 1e9, poisson: 0.3}/' block.yaml >elastic.yaml
+expect "a law without strength" 2 "$talus" run elastic.yaml --out bad
+says err.txt "elastic.yaml:8:15: error:" "the law neo-hookean of 'block' has no strength" "bodies: [...]"
+expect "no such body" 2 "$talus" run block.yaml --out bad --set 'analysis.reduction.bodies=[blok]'
+says err.txt "did you mean 'block'"
+expect "nothing to look for" 2 "$talus" run block.yaml --out bad --set analysis.reduction.most=0.5
+says err.txt "analysis.reduction.most must be larger than the first factor (1)"
+sed 's/type: factor-of-safety/type: static/' block.yaml >static.yaml
+expect "no factor" 2 "$talus" run static.yaml --out bad
+says err.txt "static.yaml:3:" "belongs to \`type: factor-of-safety\`"
+sed 's/^materials:/  - {name: other, shape: {box: {min: [0, 0], max: [0.5, 0.5]}}, points_per_cell: 4, material: soil}\n&/' block.yaml >two.yaml
+expect "a material of both" 2 "$talus" run two.yaml --out bad --set 'analysis.reduction.bodies=[block]'
+says err.txt "'other' is to keep its strength, but its material 'soil'"
+finish
