@@ -46,17 +46,17 @@ static void part_around(const Surface *s, const PetscReal *x, PetscReal radius, 
   }
 }
 
-/* The point of the hull that is farthest along the unit vector d. */
+/* The point of the hull that is farthest along the unit vector d; the part holds some. */
 static void farthest(const Part *part, const PetscReal d[2], PetscReal out[2])
 {
-  const SurfacePoint *best = NULL;
-  PetscReal most = -PETSC_MAX_REAL, wider;
+  const SurfacePoint *best = part->point[0];
+  PetscReal most = -PETSC_MAX_REAL;
   for (PetscInt k = 0; k < part->n; ++k) {
     const SurfacePoint *s = part->point[k];
     const PetscReal height = s->x[0] * d[0] + s->x[1] * d[1] + s->reach - part->least;
     if (height > most) most = height, best = s;
   }
-  wider = best->reach - part->least;
+  const PetscReal wider = best->reach - part->least;
   for (int i = 0; i < 2; ++i) out[i] = best->x[i] + wider * d[i];
 }
 
