@@ -1,5 +1,5 @@
-/* Walls over the life of a model: what touches them, and what they do to motion, momentum and
- * energy. */
+/* Walls and interfaces over the life of a model: what touches them, and what they do to motion,
+ * momentum and energy. */
 #include "method/transfer/mass.h"
 #include "model/model_private.h"
 
@@ -10,10 +10,14 @@
 
 #define THROUGH 1e-9 /* of a cell: material that reaches deeper into a wall at the start is a mistake */
 
-PetscBool walls_rub(const Case *c)
+static PetscBool rubs(ContactKind kind) { return kind == CONTACT_FRICTION || kind == CONTACT_STICK; }
+
+PetscBool contact_rubs(const Case *c)
 {
   for (PetscInt k = 0; k < c->n_walls; ++k)
-    if (c->walls[k].contact == CONTACT_FRICTION || c->walls[k].contact == CONTACT_STICK) return PETSC_TRUE;
+    if (rubs(c->walls[k].contact)) return PETSC_TRUE;
+  for (PetscInt k = 0; k < c->n_interfaces; ++k)
+    if (rubs(c->interfaces[k].contact)) return PETSC_TRUE;
   return PETSC_FALSE;
 }
 
@@ -37,9 +41,10 @@ static void fit_to_wall(Model *m, PetscInt k, PetscReal *deepest, PetscReal wors
 PetscErrorCode WallsStart(Model *m, Diag *diag)
 {
   PetscFunctionBeginUser;
-  if (!m->c->n_walls) PetscFunctionReturn(0);
+  if (!m->c->n_walls && !m->c->n_interfaces) PetscFunctionReturn(0);
   PetscCall(WallsCreate(m->c, diag, &m->walls));
   PetscCall(ContactCreate(m->c, m->walls, &m->contact));
+  PetscCall(InterfacesStart(m, diag));
   for (PetscInt k = 0; k < m->c->n_walls; ++k) {
     struct {
       double gap;
@@ -106,7 +111,8 @@ PetscErrorCode ContactHold(Model *m, PetscReal dt, PetscReal inertia)
   const ContactMotion a = motion_of(m, m->nodes->a, dt, PETSC_TRUE), v = motion_of(m, m->nodes->v, dt, PETSC_TRUE);
   const PetscReal lag = m->scheme->weights(&m->c->analysis, dt).lag;
   for (PetscInt i = 0; i < dofs; ++i) n->echo[i] -= lag * n->a[i];
-  if (!releases(m)) PetscCall(ContactRelease(m->contact, &a, 1 / (1 - lag), m->contact->impulse + m->c->n_walls));
+  if (!releases(m))
+    PetscCall(ContactRelease(m->contact, &a, 1 / (1 - lag), m->contact->impulse + m->contact->n_partners));
   for (PetscInt i = 0; i < dofs; ++i) n->echo[i] += lag * n->a[i]; /* of what is left */
   PetscCall(ContactProject(m->contact, &v, m->contact->impulse));
   PetscFunctionReturn(0);
@@ -120,7 +126,7 @@ PetscErrorCode ContactEnd(Model *m, PetscReal dt, EnergyStep *energy)
   if (!s || !holds(m)) PetscFunctionReturn(0);
   const ContactMotion end = motion_of(m, m->nodes->v1, dt, PETSC_FALSE);
   PetscCall(ContactProject(s, &end, s->impulse));
-  for (PetscInt k = 0; k < m->c->n_walls; ++k) {
+  for (PetscInt k = 0; k < s->n_partners; ++k) {
     energy->friction += s->impulse[k].sliding;
     energy->transfer -= s->impulse[k].sliding;
   }
@@ -169,7 +175,7 @@ ContactWork contact_work(const Model *m)
 static PetscErrorCode Survey(const Model *m)
 {
   const Contact *s = m->contact;
-  const PetscInt n = m->c->n_walls;
+  const PetscInt n = s->n_partners;
   PetscReal *sums, *deepest;
 
   PetscFunctionBeginUser;
@@ -241,7 +247,7 @@ static PetscErrorCode Release(Model *m, PetscReal dt)
   mass_turn(&c, c.x);
   for (PetscInt i = 0; i < m->grid->n_nodes * m->dim; ++i)
     m->nodes->a1[i] -= c.x[i / m->dim * c.width + ACCELERATION * m->dim + i % m->dim];
-  for (PetscInt k = 0; k < m->c->n_walls; ++k) m->contact->wall[k].rate = (ContactSum){0};
+  for (PetscInt k = 0; k < m->contact->n_partners; ++k) m->contact->wall[k].rate = (ContactSum){0};
   PetscCall(MassSolveDestroy(&c));
   PetscFunctionReturn(0);
 }
@@ -251,8 +257,8 @@ static PetscErrorCode Release(Model *m, PetscReal dt)
 PetscErrorCode ContactForces(Model *m, PetscReal dt)
 {
   const TimeWeights w = m->scheme->weights(&m->c->analysis, dt);
-  const PetscInt n = m->c->n_walls;
   Contact *s = m->contact;
+  const PetscInt n = s ? s->n_partners : 0;
   ContactSum *now;
 
   PetscFunctionBeginUser;
@@ -298,6 +304,6 @@ void contact_force_on(const Model *m, PetscInt p, PetscReal force[3])
 {
   const PetscReal *kept = point_real(m->points, POINT_CONTACT, p);
   force[0] = force[1] = force[2] = 0;
-  for (PetscInt k = 0; k < m->c->n_walls; ++k, kept += CONTACT_KEPT(m->dim))
+  for (PetscInt k = 0; k < m->c->n_walls + m->c->n_interfaces; ++k, kept += CONTACT_KEPT(m->dim))
     for (PetscInt d = 0; d < m->dim; ++d) force[d] += share_of_force(m) * kept[2 + d];
 }

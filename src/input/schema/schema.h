@@ -207,7 +207,7 @@ typedef PetscErrorCode SchemaCheck(SchemaReader *r, const YamlNode *mapping, voi
 extern SchemaCheck SchemaCheckAnalysis, SchemaCheckReduction, SchemaCheckUntil, SchemaCheckBox, SchemaCheckGrid,
   SchemaCheckShapeBox, SchemaCheckShape, SchemaCheckHalfSpace, SchemaCheckCylinder, SchemaCheckCone, SchemaCheckDisk,
   SchemaCheckArc, SchemaCheckBody, SchemaCheckSelector, SchemaCheckMotion, SchemaCheckWall, SchemaCheckWallMotion,
-  SchemaCheckLoads;
+  SchemaCheckInterface, SchemaCheckLoads;
 /* Materials take the parameters of their law (schema_material.c). */
 PetscErrorCode SchemaOpenMaterial(SchemaReader *r, const YamlNode *mapping, void *target);
 PetscErrorCode SchemaWriteMaterial(FILE *out, int indent, const Case *c, const void *source);
