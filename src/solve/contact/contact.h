@@ -25,6 +25,7 @@ typedef struct {
   ContactState state;  /* at the last assembly */
   ContactState before; /* at the end of the last step */
   PetscBool gone;      /* has the wall vanished when the step begins? Its last force is to be forgotten */
+  PetscReal open;      /* gap at the start of the step, m */
   PetscBool touches;   /* is there no gap at the start of the step? */
   PetscReal gap;       /* at the last assembly, m */
   PetscReal normal[3]; /* at the last assembly */
