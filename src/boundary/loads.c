@@ -58,8 +58,8 @@ PetscInt carrier_shape(const Loads *l, const Grid *grid, PetscInt p, const unsig
   return among_touched(dim, nn, *node, touched, N, dN) ? nn : 0;
 }
 
-static PetscErrorCode AddCarrier(Loads *loads, PetscInt load, PetscInt cell, const PetscReal *x, const PetscReal *xi,
-                                 const PetscReal *force)
+static PetscErrorCode AddCarrier(Loads *loads, const Grid *grid, PetscInt load, PetscInt cell, const PetscReal *x,
+                                 const PetscReal *xi, const PetscReal *force)
 {
   Points *p = loads->carriers;
   PetscInt i;
@@ -69,6 +69,7 @@ static PetscErrorCode AddCarrier(Loads *loads, PetscInt load, PetscInt cell, con
   p->cell[i] = cell;
   p->body[i] = load;
   p->id[i] = ((PetscInt64)load << 40) + i;
+  if (p->components[POINT_FIELD]) p->real[POINT_FIELD][i] = (PetscReal)grid_field_of(grid, cell);
   for (PetscInt d = 0; d < loads->dim; ++d) {
     point_real(p, POINT_X, i)[d] = x[d];
     point_real(p, POINT_XI, i)[d] = xi[d];
@@ -78,7 +79,8 @@ static PetscErrorCode AddCarrier(Loads *loads, PetscInt load, PetscInt cell, con
 }
 
 /* A point force: the lowest rank that holds the position carries it. */
-static PetscErrorCode PointLoad(Loads *loads, const Grid *grid, PetscInt load, const char *path, Diag *diag)
+static PetscErrorCode PointLoad(Loads *loads, const Grid *grid, const Points *points, PetscInt load, const char *path,
+                                Diag *diag)
 {
   const LoadSpec *spec = &loads->c->loads[load];
   PetscReal xi[3];
@@ -87,10 +89,10 @@ static PetscErrorCode PointLoad(Loads *loads, const Grid *grid, PetscInt load, c
   PetscFunctionBeginUser;
   PetscCallMPI(MPI_Comm_rank(grid->comm, &rank));
   PetscCallMPI(MPI_Comm_size(grid->comm, &size));
-  const PetscInt cell = grid_locate(grid, spec->at, -1, xi);
+  const PetscInt cell = grid_cell_in(grid, grid_locate(grid, spec->at, -1, xi), points_field_near(points, spec->at));
   mine = cell >= 0 ? rank : size;
   PetscCallMPI(MPI_Allreduce(&mine, &first, 1, MPI_INT, MPI_MIN, grid->comm));
-  if (first == rank) PetscCall(AddCarrier(loads, load, cell, spec->at, xi, spec->value));
+  if (first == rank) PetscCall(AddCarrier(loads, grid, load, cell, spec->at, xi, spec->value));
   if (first == size) diag_error(diag, path, "the force acts at a position outside the grid");
   PetscFunctionReturn(0);
 }
@@ -136,7 +138,7 @@ static PetscErrorCode CarryFaces(Loads *loads, const Grid *grid, PetscInt load, 
     const PetscInt nq = face_quadrature(loads->c->kinematics, grid, cell[f], side[f], q);
     for (PetscInt k = 0; k < nq; ++k) {
       force_on(&loads->c->loads[load], &q[k], force);
-      PetscCall(AddCarrier(loads, load, cell[f], q[k].x, q[k].xi, force));
+      PetscCall(AddCarrier(loads, grid, load, cell[f], q[k].x, q[k].xi, force));
     }
   }
   PetscFunctionReturn(0);
@@ -209,11 +211,12 @@ PetscErrorCode LoadsCreate(const Grid *grid, const Case *c, const Points *points
   l->n_nodes = grid->n_nodes;
   PetscCall(PetscCalloc1(c->n_loads, &l->faces));
   PetscCall(FollowersCreate(l->dim, l->dim, &l->carriers));
+  l->carriers->components[POINT_FIELD] = points->components[POINT_FIELD];
   for (PetscInt k = 0; k < c->n_loads; ++k) {
     const LoadKind kind = c->loads[k].kind;
     PetscCall(PetscSNPrintf(path, sizeof path, "%s.%s", case_load_path(c, k, list), kind == LOAD_POINT ? "at" : "on"));
     if (kind == LOAD_POINT) {
-      PetscCall(PointLoad(l, grid, k, path, diag));
+      PetscCall(PointLoad(l, grid, points, k, path, diag));
       continue;
     }
     if (c->loads[k].on.body) PetscCall(BodyTraction(l, grid, points, k, &faces));

@@ -105,6 +105,17 @@ static PetscErrorCode WallsClear(Case *c)
   PetscFunctionReturn(0);
 }
 
+static PetscErrorCode InterfacesClear(Case *c)
+{
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < c->n_interfaces; ++i) {
+    PetscCall(PetscFree(c->interfaces[i].name));
+    PetscCall(StringsClear(c->interfaces[i].n_between, &c->interfaces[i].between));
+  }
+  PetscCall(PetscFree(c->interfaces));
+  PetscFunctionReturn(0);
+}
+
 static PetscErrorCode MeasuresClear(Case *c)
 {
   PetscFunctionBeginUser;
@@ -114,6 +125,7 @@ static PetscErrorCode MeasuresClear(Case *c)
     PetscCall(PetscFree(c->measures[i].word));
     PetscCall(PetscFree(c->measures[i].body));
     PetscCall(PetscFree(c->measures[i].wall));
+    PetscCall(PetscFree(c->measures[i].interface));
     PetscCall(ShapeClear(&c->measures[i].in));
   }
   PetscCall(PetscFree(c->measures));
@@ -139,6 +151,7 @@ PetscErrorCode CaseDestroy(Case **c)
   PetscCall(MaterialsClear(*c));
   PetscCall(BoundaryAndLoadsClear(*c));
   PetscCall(WallsClear(*c));
+  PetscCall(InterfacesClear(*c));
   PetscCall(MeasuresClear(*c));
   PetscCall(StringsClear((*c)->output.n_fields, &(*c)->output.fields));
   PetscCall(StringsClear((*c)->n_petsc, &(*c)->petsc));

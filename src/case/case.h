@@ -152,6 +152,16 @@ typedef struct {
   PetscReal adhesion; /* N/m2: tangential stress that contact bears without pressure */
 } WallSpec;
 
+/* How bodies meet that do not stick to each other: the second is to the first what a wall is. */
+typedef struct {
+  char *name; /* NULL if it has none */
+  PetscInt n_between;
+  char **between; /* two bodies */
+  ContactKind contact;
+  PetscReal friction; /* tangent of the angle of friction */
+  PetscReal adhesion; /* N/m2: tangential stress that contact bears without pressure */
+} InterfaceSpec;
+
 typedef enum { LOAD_TRACTION, LOAD_POINT, LOAD_PRESSURE, LOAD_KINDS } LoadKind;
 
 typedef struct {
@@ -191,6 +201,7 @@ typedef struct {
   char *body;          /* NULL: all */
   PetscInt boundary;   /* reaction: index into boundary[] of the case */
   char *wall;          /* by its name */
+  char *interface;     /* likewise */
   PetscBool has_at;
   PetscReal at;    /* x, m */
   PetscReal speed; /* run-out time: a slower front has come to rest, m/s */
@@ -317,6 +328,8 @@ typedef struct {
   MotionSpec *boundary;
   PetscInt n_walls;
   WallSpec *walls;
+  PetscInt n_interfaces;
+  InterfaceSpec *interfaces;
   PetscReal gravity[3];
   Amplitude gravity_amplitude;
   PetscInt n_loads;
@@ -342,6 +355,14 @@ PetscBool case_load_follows(const Case *c);
 PetscBool case_is_mixed(const Case *c);
 /* Does any body start with the stress of its weight? */
 PetscBool case_has_k0(const Case *c);
+
+/* Do the two bodies meet at an interface? Its index, or -1; *first: is body a its first one? */
+PetscInt case_interface(const Case *c, PetscInt a, PetscInt b, PetscBool *first);
+PetscInt case_body(const Case *c, const char *name); /* its index; the name is one of the bodies' */
+/* The velocity field of a body: the lowest one without a body before it that it meets at an interface;
+ * and how many there are. Bodies of one field stick to each other where they share nodes. */
+PetscInt case_field(const Case *c, PetscInt body);
+PetscInt case_fields(const Case *c);
 
 PetscErrorCode CaseDestroy(Case **c);
 

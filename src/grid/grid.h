@@ -31,6 +31,9 @@ typedef struct GridCloud GridCloud;
 typedef struct Grid {
   MPI_Comm comm;
   PetscInt dim;
+  /* velocity fields: cells and nodes stand so many times, field by field, each where the others are;
+   * 0 of a mesh or cloud, which has one */
+  PetscInt n_fields;
   CellType type;             /* of cells; where a mesh mixes two, the one with more nodes */
   CellType first_type;       /* and the other one, the same if there is none: */
   PetscInt n_first;          /* as many of its cells stand before those of `type` on this rank */
@@ -104,7 +107,7 @@ PetscErrorCode GridSelectFaces(const Grid *grid, const Selector *on, PetscInt *n
  *
  * Local cell that holds the position x, or -1; `guess` is tried first (-1: none). xi gets the
  * reference position (dim). A position on a face between cells belongs to one of them, the same at
- * every call. */
+ * every call. Of several fields the cell is that of the first. */
 PetscInt grid_locate(const Grid *grid, const PetscReal *x, PetscInt guess, PetscReal *xi);
 /* The nearest position inside the grid as a whole (for `outside: keep-on-boundary`): of a box
  * exactly; of a mesh the nearest boundary face of this rank. */
@@ -124,6 +127,16 @@ PetscBool grid_cells_alike(const Grid *grid);
  * to the owner (the ghosts keep their part). Collective. */
 PetscErrorCode GridToGhosts(const Grid *grid, PetscInt components, PetscReal *values);
 PetscErrorCode GridSumToOwners(const Grid *grid, PetscInt components, PetscReal *values);
+
+/* The cell in another field than the first, and the field of a cell. */
+static inline PetscInt grid_cell_in(const Grid *grid, PetscInt cell, PetscInt field)
+{
+  return field && cell >= 0 ? cell + field * (grid->n_cells / grid->n_fields) : cell;
+}
+static inline PetscInt grid_field_of(const Grid *grid, PetscInt cell)
+{
+  return grid->n_fields > 1 ? cell / (grid->n_cells / grid->n_fields) : 0;
+}
 
 static inline PetscBool grid_is_mixed(const Grid *grid) { return grid->first_type != grid->type; }
 

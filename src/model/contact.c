@@ -1,15 +1,19 @@
-/* Walls over the life of a model: what touches them, and what they do to motion, momentum and
- * energy. */
+/* Walls and interfaces over the life of a model: what touches them, and what they do to motion,
+ * momentum and energy. */
 #include "model/model_private.h"
 
 #define SUM_NUMBERS ((PetscInt)(sizeof(ContactSum) / sizeof(PetscReal)))
 
 #define THROUGH 1e-9 /* of a cell: material that reaches deeper into a wall at the start is a mistake */
 
-PetscBool walls_rub(const Case *c)
+static PetscBool rubs(ContactKind kind) { return kind == CONTACT_FRICTION || kind == CONTACT_STICK; }
+
+PetscBool contact_rubs(const Case *c)
 {
   for (PetscInt k = 0; k < c->n_walls; ++k)
-    if (c->walls[k].contact == CONTACT_FRICTION || c->walls[k].contact == CONTACT_STICK) return PETSC_TRUE;
+    if (rubs(c->walls[k].contact)) return PETSC_TRUE;
+  for (PetscInt k = 0; k < c->n_interfaces; ++k)
+    if (rubs(c->interfaces[k].contact)) return PETSC_TRUE;
   return PETSC_FALSE;
 }
 
@@ -33,9 +37,10 @@ static void fit_to_wall(Model *m, PetscInt k, PetscReal *deepest, PetscReal wors
 PetscErrorCode WallsStart(Model *m, Diag *diag)
 {
   PetscFunctionBeginUser;
-  if (!m->c->n_walls) PetscFunctionReturn(0);
+  if (!m->c->n_walls && !m->c->n_interfaces) PetscFunctionReturn(0);
   PetscCall(WallsCreate(m->c, diag, &m->walls));
   PetscCall(ContactCreate(m->c, m->walls, &m->contact));
+  PetscCall(InterfacesStart(m, diag));
   for (PetscInt k = 0; k < m->c->n_walls; ++k) {
     struct {
       double gap;
@@ -90,7 +95,7 @@ PetscErrorCode ContactHold(Model *m, PetscReal dt, PetscReal inertia)
   if (!holds(m)) PetscFunctionReturn(0);
   const ContactMotion a = motion_of(m, m->nodes->a, dt, PETSC_TRUE), v = motion_of(m, m->nodes->v, dt, PETSC_TRUE);
   const PetscReal lag = m->scheme->weights(&m->c->analysis, dt).lag;
-  PetscCall(ContactRelease(m->contact, &a, 1 / (1 - lag), m->contact->impulse + m->c->n_walls));
+  PetscCall(ContactRelease(m->contact, &a, 1 / (1 - lag), m->contact->impulse + m->contact->n_partners));
   PetscCall(ContactProject(m->contact, &v, m->contact->impulse));
   PetscFunctionReturn(0);
 }
@@ -103,7 +108,7 @@ PetscErrorCode ContactEnd(Model *m, PetscReal dt, EnergyStep *energy)
   if (!s || !holds(m)) PetscFunctionReturn(0);
   const ContactMotion end = motion_of(m, m->nodes->v1, dt, PETSC_FALSE);
   PetscCall(ContactProject(s, &end, s->impulse));
-  for (PetscInt k = 0; k < m->c->n_walls; ++k) {
+  for (PetscInt k = 0; k < s->n_partners; ++k) {
     energy->friction += s->impulse[k].sliding;
     energy->transfer -= s->impulse[k].sliding;
   }
@@ -150,7 +155,7 @@ ContactWork contact_work(const Model *m)
 static PetscErrorCode Survey(const Model *m)
 {
   const Contact *s = m->contact;
-  const PetscInt n = m->c->n_walls;
+  const PetscInt n = s->n_partners;
   PetscReal *sums, *deepest;
 
   PetscFunctionBeginUser;
@@ -186,8 +191,8 @@ static void add(ContactSum *sum, PetscReal factor, const ContactSum *x)
 PetscErrorCode ContactForces(Model *m, PetscReal dt)
 {
   const TimeWeights w = m->scheme->weights(&m->c->analysis, dt);
-  const PetscInt n = m->c->n_walls;
   Contact *s = m->contact;
+  const PetscInt n = s ? s->n_partners : 0;
   ContactSum *now;
 
   PetscFunctionBeginUser;
@@ -232,6 +237,6 @@ void contact_force_on(const Model *m, PetscInt p, PetscReal force[3])
 {
   const PetscReal *kept = point_real(m->points, POINT_CONTACT, p);
   force[0] = force[1] = force[2] = 0;
-  for (PetscInt k = 0; k < m->c->n_walls; ++k, kept += CONTACT_KEPT(m->dim))
+  for (PetscInt k = 0; k < m->c->n_walls + m->c->n_interfaces; ++k, kept += CONTACT_KEPT(m->dim))
     for (PetscInt d = 0; d < m->dim; ++d) force[d] += share_of_force(m) * kept[2 + d];
 }

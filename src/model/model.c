@@ -184,7 +184,7 @@ static PetscErrorCode CreateMaterials(Model *m, Diag *diag)
 
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc1(c->n_materials, &m->materials));
-  m->symmetric = !walls_rub(c) && !case_load_follows(c);
+  m->symmetric = !contact_rubs(c) && !case_load_follows(c);
   for (PetscInt i = 0; i < c->n_materials; ++i) {
     Material *material = &m->materials[i];
     PetscCall(MaterialResolve(c, i, diag, material));
@@ -220,8 +220,9 @@ static PetscErrorCode CreatePoints(Model *m, Outline *outline, Diag *diag)
   if (basis_find(c->basis.kind)->domains) m->points->components[POINT_DOMAIN] = m->dim;
   if (transfer_find(c->analysis.transfer)->slopes && !basis_find(c->basis.kind)->domains)
     m->points->components[POINT_SLOPE] = 2 * m->dim * m->dim;
-  if (c->n_walls) m->points->components[POINT_REACH] = 1;
-  m->points->components[POINT_CONTACT] = c->n_walls * CONTACT_KEPT(m->dim);
+  if (c->n_walls + c->n_interfaces) m->points->components[POINT_REACH] = 1;
+  m->points->components[POINT_CONTACT] = (c->n_walls + c->n_interfaces) * CONTACT_KEPT(m->dim);
+  if (m->grid->n_fields > 1) m->points->components[POINT_FIELD] = 1;
   for (PetscInt k = 0; k < c->n_measures; ++k)
     m->points->components[POINT_CARRIED] += measure_find(c->measures[k].kind)->events != NULL;
   PetscCall(PointsSeedOutlined(m->points, m->grid, c, seed, m->method->restores_grid, outline, diag));
@@ -241,10 +242,12 @@ static PetscErrorCode CreateTracers(Model *m, Diag *diag)
   PetscCallMPI(MPI_Comm_rank(m->comm, &rank));
   PetscCallMPI(MPI_Comm_size(m->comm, &size));
   PetscCall(FollowersCreate(m->dim, 0, &m->tracers));
+  m->tracers->components[POINT_FIELD] = m->points->components[POINT_FIELD];
   for (PetscInt k = 0; k < m->c->n_measures; ++k) {
     const MeasureSpec *s = &m->c->measures[k];
     if (measure_number(s)->of != OF_TRACER) continue;
-    const PetscInt cell = grid_locate(m->grid, s->tracer, -1, xi);
+    const PetscInt field = points_field_near(m->points, s->tracer);
+    const PetscInt cell = grid_cell_in(m->grid, grid_locate(m->grid, s->tracer, -1, xi), field);
     mine = cell >= 0 ? rank : size;
     PetscCallMPI(MPI_Allreduce(&mine, &first, 1, MPI_INT, MPI_MIN, m->comm));
     if (first == size) {
@@ -256,6 +259,7 @@ static PetscErrorCode CreateTracers(Model *m, Diag *diag)
     m->tracers->cell[i] = cell;
     m->tracers->id[i] = k;
     m->tracers->body[i] = k;
+    if (m->tracers->components[POINT_FIELD]) m->tracers->real[POINT_FIELD][i] = (PetscReal)field;
     for (PetscInt d = 0; d < m->dim; ++d) {
       point_real(m->tracers, POINT_X, i)[d] = s->tracer[d];
       point_real(m->tracers, POINT_XI, i)[d] = xi[d];
@@ -322,7 +326,7 @@ static PetscErrorCode Build(Model *m, Diag *diag)
   if (errors) PetscFunctionReturn(0);
   PetscCall(GridCreate(m->comm, m->c, cell_weight, (void *)m->c, diag, &m->grid));
   if (!m->grid) PetscFunctionReturn(0);
-  PetscCall(GridWiden(&m->grid, basis_find(m->c->basis.kind)->halo));
+  PetscCall(GridWiden(&m->grid, basis_find(m->c->basis.kind)->halo + (m->c->n_interfaces ? CONTACT_HALO : 0)));
   PetscCall(CreateBodies(m, diag));
   PetscCall(DiagReduce(m->comm, diag, &errors));
   if (errors) PetscFunctionReturn(0);

@@ -98,8 +98,11 @@ PetscErrorCode ChooseNextStep(Model *model, PetscBool shortened, const StepRepor
 
 /* contact.c. Collective. Walls of the case, and what of the material touches them at the start. */
 PetscErrorCode WallsStart(Model *model, Diag *diag);
-/* Does a wall of the case rub? Then tangents are not symmetric. */
-PetscBool walls_rub(const Case *c);
+/* start/interfaces.c. Collective. What no interfaces can be made of, and bodies that go through each
+ * other at the start. */
+PetscErrorCode InterfacesStart(Model *model, Diag *diag);
+/* Does a wall or an interface of the case rub? Then tangents are not symmetric. */
+PetscBool contact_rubs(const Case *c);
 /* Collective, in PrepareStep: what is in contact starts the step with the motion of its wall. */
 PetscErrorCode ContactHold(Model *model, PetscReal dt, PetscReal inertia);
 /* Collective. Likewise ends it, once v1 and a1 are known. */

@@ -126,7 +126,7 @@ PetscErrorCode LeaversClamp(const Leavers *l, Points *points, const Grid *grid)
       ++points->outside.held;
       points->outside.held_mass += points->real[POINT_MASS][p];
     }
-    points->cell[p] = grid_locate(grid, point_real(points, POINT_X, p), -1, point_real(points, POINT_XI, p));
+    points->cell[p] = point_locate(points, p, grid, -1);
     if (points->cell[p] >= 0) l->owner[i] = LEAVER_HERE;
   }
   PetscCall(PetscFree(all));

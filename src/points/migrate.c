@@ -204,7 +204,7 @@ PetscErrorCode ArrivalsUnpack(Arrivals *arrivals, Points *points, const Grid *gr
   PetscFunctionBeginUser;
   PetscCall(AppendArrivals(arrivals, points));
   for (PetscInt p = first; p < points->n; ++p) {
-    points->cell[p] = grid_locate(grid, point_real(points, POINT_X, p), -1, point_real(points, POINT_XI, p));
+    points->cell[p] = point_locate(points, p, grid, -1);
     PetscCheck(points->cell[p] >= 0, PETSC_COMM_SELF, PETSC_ERR_PLIB,
                "a point arrived that this rank had claimed, and is not here");
   }

@@ -53,6 +53,7 @@ PetscErrorCode PointsCreate(PetscInt dim, PetscInt n_state, PetscInt n_force, Po
   new->components[POINT_SLOPE] = 0;
   new->components[POINT_REACH] = 0;
   new->components[POINT_CONTACT] = 0;
+  new->components[POINT_FIELD] = 0;
   new->components[POINT_CARRIED] = 0;
   *points = new;
   PetscFunctionReturn(0);
@@ -64,6 +65,20 @@ PetscErrorCode FollowersCreate(PetscInt dim, PetscInt n_force, Points **points)
   PetscCall(PointsCreate(dim, 0, n_force, points));
   (*points)->components[POINT_OVERHANG] = dim; /* nothing is stored yet */
   PetscFunctionReturn(0);
+}
+
+PetscInt points_field_near(const Points *points, const PetscReal *x)
+{
+  PetscReal nearest = PETSC_MAX_REAL;
+  PetscInt field = 0;
+  for (PetscInt p = 0; p < points->n && points->components[POINT_FIELD]; ++p) {
+    PetscReal square = 0;
+    for (PetscInt d = 0; d < points->dim; ++d) square += PetscSqr(point_real(points, POINT_X, p)[d] - x[d]);
+    if (square >= nearest) continue;
+    nearest = square;
+    field = point_field(points, p);
+  }
+  return field;
 }
 
 PetscErrorCode PointsDestroy(Points **points)

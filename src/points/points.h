@@ -43,6 +43,8 @@ typedef enum {
   /* of each wall, what it did to the point in the last step: state and forces (solve/contact), N; 0
    * components where there are none */
   POINT_CONTACT,
+  /* which velocity field of the grid carries it: 1 where bodies meet at interfaces, otherwise 0 components */
+  POINT_FIELD,
   /* how far it was carried in the present event of each measure that counts some, m: one each */
   POINT_CARRIED,
   POINT_N_REAL
@@ -91,6 +93,21 @@ static inline PetscReal *point_real(const Points *points, PointReal field, Petsc
 {
   return points->real[field] + (size_t)p * (size_t)points->components[field];
 }
+
+static inline PetscInt point_field(const Points *points, PetscInt p)
+{
+  return points->components[POINT_FIELD] ? (PetscInt)points->real[POINT_FIELD][p] : 0;
+}
+
+/* The local cell of its field that holds the point; its xi. */
+static inline PetscInt point_locate(const Points *points, PetscInt p, const Grid *grid, PetscInt guess)
+{
+  const PetscInt cell = grid_locate(grid, point_real(points, POINT_X, p), guess, point_real(points, POINT_XI, p));
+  return grid_cell_in(grid, cell, point_field(points, p));
+}
+
+/* The velocity field of the point nearest to x on this rank. */
+PetscInt points_field_near(const Points *points, const PetscReal *x);
 
 /* F of point p as a full 3 x 3. */
 static inline void point_F(const Points *points, PetscInt p, PetscReal F[9])

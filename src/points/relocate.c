@@ -28,7 +28,7 @@ static PetscInt locate_here(Points *points, const Grid *grid)
     const PetscReal *x = point_real(points, POINT_X, p);
     const PetscInt old = points->cell[p];
     const PetscBool sane = position_is_finite(points->dim, x);
-    const PetscInt cell = sane ? grid_locate(grid, x, old, point_real(points, POINT_XI, p)) : -1;
+    const PetscInt cell = sane ? point_locate(points, p, grid, old) : -1;
     points->cell[p] = cell >= 0 ? cell : -2 - old;
     n_leave += cell < 0;
   }

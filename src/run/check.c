@@ -56,6 +56,7 @@ static PetscErrorCode CountBodies(const Model *m, BodyCount *count)
 static PetscErrorCode CountGaps(const Model *m, PetscInt body, PetscInt *gaps)
 {
   const BodySpec *spec = &m->c->bodies[body];
+  const PetscInt field = m->grid->n_fields > 1 ? case_field(m->c, body) : 0;
   PetscInt local = 0;
   PetscReal centre[3];
   PetscBool *filled;
@@ -66,6 +67,7 @@ static PetscErrorCode CountGaps(const Model *m, PetscInt body, PetscInt *gaps)
   PetscCall(PetscCalloc1(m->grid->n_cells, &filled));
   for (PetscInt p = 0; p < m->points->n; ++p) filled[m->points->cell[p]] = PETSC_TRUE;
   for (PetscInt c = 0; spec->has_shape && c < m->grid->n_cells; ++c) {
+    if (grid_field_of(m->grid, c) != field) continue;
     grid_cell_centre(m->grid, c, centre);
     local += !filled[c] && shape_contains(&spec->shape, m->dim, centre, 0);
   }
@@ -204,6 +206,25 @@ static PetscErrorCode ReportSets(const Model *m, FILE *out)
   PetscFunctionReturn(0);
 }
 
+static PetscErrorCode ReportInterfaces(const Model *m, FILE *out)
+{
+  PetscFunctionBeginUser;
+  if (m->grid->n_fields > 1)
+    say(m, out, "#   velocity fields: %d, each with its share of these cells and nodes\n", (int)m->grid->n_fields);
+  for (PetscInt k = 0; k < m->c->n_interfaces; ++k) {
+    PetscInt local[2] = {0, 0}, all[2];
+    for (const ContactPoint *c = m->contact->point; c < m->contact->point + m->contact->n; ++c) {
+      if (c->wall != m->c->n_walls + k) continue;
+      ++local[0];
+      local[1] += c->touches;
+    }
+    PetscCall(MPIU_Allreduce(local, all, 2, MPIU_INT, MPI_SUM, m->comm));
+    say(m, out, "#   interface %s: %d points of '%s' touch '%s', %d more are near it\n", m->c->interfaces[k].name,
+        (int)all[1], m->c->interfaces[k].between[0], m->c->interfaces[k].between[1], (int)(all[0] - all[1]));
+  }
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode CheckModel(MPI_Comm comm, const Case *c, Diag *diag, FILE *out)
 {
   Model *m;
@@ -214,6 +235,7 @@ PetscErrorCode CheckModel(MPI_Comm comm, const Case *c, Diag *diag, FILE *out)
   PetscCall(ReportSizes(m, out));
   PetscCall(ReportSets(m, out));
   PetscCall(ReportBodies(m, diag, out));
+  PetscCall(ReportInterfaces(m, out));
   PetscCall(CheckOpenings(m, diag));
   PetscCall(ModelDestroy(&m));
   fflush(out);

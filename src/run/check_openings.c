@@ -21,7 +21,7 @@ static PetscErrorCode AddFaces(const Grid *grid, const Selector *on, unsigned ch
     const PetscInt *face = grid_cell(grid, cell[k])->face[side[k]],
                    *node = grid->cell_node + cell[k] * grid->nodes_per_cell;
     const PetscReal *a = grid->x + node[face[0]] * 2, *b = grid->x + node[face[1]] * 2;
-    if (seen[cell[k]] & (1 << side[k])) continue;
+    if (grid_field_of(grid, cell[k]) || seen[cell[k]] & (1 << side[k])) continue;
     seen[cell[k]] |= (unsigned char)(1 << side[k]);
     for (int i = 0; i < 2; ++i) {
       PetscReal *s = around + node[face[i]] * 3;

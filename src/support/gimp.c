@@ -70,14 +70,16 @@ static void weigh_ring(PetscReal radius, LineFunctions *f)
   for (PetscInt i = 0; i < f->n; ++i) f->dN[i] += f->moment[i] / radius;
 }
 
-/* What a point sees along each axis; returns how many nodes that are together. */
-static PetscInt axis_functions(const BasisInput *in, const Points *points, PetscInt p, LineFunctions f[3])
+/* What a point sees along each axis; returns how many nodes that are together. field: whose they are. */
+static PetscInt axis_functions(const BasisInput *in, const Points *points, PetscInt p, LineFunctions f[3],
+                               PetscInt *field)
 {
   const GridBox *box = in->grid->box;
   const PetscReal *x = point_real(points, POINT_X, p);
   PetscInt ijk[3], n = 1;
   PetscReal size[3] = {0}, l[3] = {0};
   box_voxel_of(in->grid, points->cell[p], ijk);
+  *field = box->dim == 2 ? ijk[2] : 0;
   for (PetscInt d = 0; d < box->dim; ++d) size[d] = box->line[d][ijk[d] + 1] - box->line[d][ijk[d]];
   domain_now(points, p, size, l);
   for (PetscInt d = 0; d < box->dim; ++d) {
@@ -90,12 +92,12 @@ static PetscInt axis_functions(const BasisInput *in, const Points *points, Petsc
 
 /* Products over the axes. The nodes of a rank do not count as they stand in space: they are put in
  * order by insertion, as groups of single points want them. */
-static void point_functions(const GridBox *box, const LineFunctions f[3], PetscInt n, PetscInt *node, PetscReal *N,
-                            PetscReal *dN)
+static void point_functions(const GridBox *box, const LineFunctions f[3], PetscInt field, PetscInt n, PetscInt *node,
+                            PetscReal *N, PetscReal *dN)
 {
   const PetscInt dim = box->dim;
   for (PetscInt q = 0; q < n; ++q) {
-    PetscInt at[3], ijk[3] = {0, 0, 0}, k = q;
+    PetscInt at[3], ijk[3] = {0, 0, field}, k = q;
     PetscReal product = 1, gradient[3];
     for (PetscInt d = 0, rest = q; d < dim; rest /= f[d++].n) {
       at[d] = rest % f[d].n;
@@ -122,16 +124,16 @@ static PetscErrorCode GimpSupport(const BasisInput *in, const Points *points, Su
 {
   const PetscInt dim = in->grid->dim, most = dim == 2 ? 9 : 27;
   LineFunctions f[3];
-  PetscInt n = 0, p = 0;
+  PetscInt n = 0, p = 0, field;
 
   PetscFunctionBeginUser;
   PetscCheck(points->components[POINT_DOMAIN] == dim, PETSC_COMM_SELF, PETSC_ERR_ARG_WRONG, "points without domains");
   PetscCall(SupportReserve(s, points->n, most * points->n, most * points->n, dim));
   for (; p < points->n && points->cell[p] >= 0; ++p) {
-    const PetscInt nn = axis_functions(in, points, p, f);
+    const PetscInt nn = axis_functions(in, points, p, f, &field);
     s->point_start[p] = p;
     s->node_start[p] = s->value_start[p] = n;
-    point_functions(in->grid->box, f, nn, s->node + n, s->N + n, s->dN + n * dim);
+    point_functions(in->grid->box, f, field, nn, s->node + n, s->N + n, s->dN + n * dim);
     n += nn;
   }
   s->n_groups = s->point_start[p] = p;
@@ -151,6 +153,7 @@ static PetscErrorCode GimpCouplings(const BasisInput *in, const BasisSites *site
     PetscInt n = 0;
     if (!sites->cell[c]) continue;
     box_voxel_of(in->grid, c, ijk);
+    lo[2] = hi[2] = ijk[2];
     for (PetscInt d = 0; d < box->dim; ++d) {
       lo[d] = PetscMax(ijk[d] - 1, 0);
       hi[d] = PetscMin(ijk[d] + 2, box->counts[d]);

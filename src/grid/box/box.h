@@ -16,7 +16,7 @@ typedef struct {
 
 /* A box grid knows every rank's block, so that owners and global numbers need no messages. */
 struct GridBox {
-  PetscInt dim, counts[3];
+  PetscInt dim, counts[3]; /* in the plane counts[2] is the number of fields: layers that share no node */
   PetscReal *line[3];      /* counts + 1 coordinates along each axis */
   PetscReal per_length[3]; /* voxels per metre; 0 where the axis is graded */
   PetscReal tolerance;     /* how far outside a position still belongs, m */
@@ -31,8 +31,11 @@ struct GridBox {
   VoxelPattern pattern[2]; /* [1]: the odd voxels of alternating diagonals */
 };
 
-/* Is this an odd voxel of a chequered pattern? */
-static inline int voxel_odd(const PetscInt ijk[3]) { return (int)((ijk[0] + ijk[1] + ijk[2]) & 1); }
+/* The pattern of a voxel, chequered in each field alike. */
+static inline const VoxelPattern *box_pattern(const GridBox *box, const PetscInt ijk[3])
+{
+  return box->pattern + ((ijk[0] + ijk[1] + (box->dim == 3 ? ijk[2] : 0)) & 1);
+}
 
 /* All voxels. */
 static inline VoxelBlock box_voxels(const GridBox *box)

@@ -45,7 +45,7 @@ static void fill_line(PetscReal min, PetscReal max, PetscInt n, PetscReal gradin
   line[n] = max;
 }
 
-static PetscErrorCode Lines(GridBox *box, const GridSpec *spec)
+static PetscErrorCode Lines(GridBox *box, const GridSpec *spec, PetscInt n_fields)
 {
   PetscFunctionBeginUser;
   box->tolerance = 0;
@@ -53,7 +53,7 @@ static PetscErrorCode Lines(GridBox *box, const GridSpec *spec)
     const PetscBool real = d < box->dim;
     const PetscReal min = real ? spec->min[d] : 0, max = real ? spec->max[d] : 1;
     const PetscReal grading = real && spec->grading[d] > 0 ? spec->grading[d] : 1.0;
-    box->counts[d] = real ? spec->counts[d] : 1;
+    box->counts[d] = real ? spec->counts[d] : n_fields;
     PetscCall(PetscMalloc1(box->counts[d] + 1, &box->line[d]));
     fill_line(min, max, box->counts[d], grading, box->line[d]);
     if (grading == 1.0) box->per_length[d] = (PetscReal)box->counts[d] / (max - min);
@@ -81,7 +81,7 @@ PetscErrorCode BoxCreate(MPI_Comm comm, const Case *c, GridBox **out)
   PetscCall(PetscNew(&box));
   box->dim = kinematics_dim(c->kinematics);
   voxel_patterns(c->grid.cell, c->grid.diagonal, box->pattern);
-  PetscCall(Lines(box, &c->grid));
+  PetscCall(Lines(box, &c->grid, case_fields(c)));
   PetscCall(RanksCreate(comm, box));
   *out = box;
   PetscFunctionReturn(0);

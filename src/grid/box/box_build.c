@@ -99,7 +99,7 @@ static void fill_cells(Grid *grid, const VoxelBlock *nodes, const PetscInt *latt
   for (ijk[2] = voxels->lo[2]; ijk[2] < voxels->hi[2]; ++ijk[2])
     for (ijk[1] = voxels->lo[1]; ijk[1] < voxels->hi[1]; ++ijk[1])
       for (ijk[0] = voxels->lo[0]; ijk[0] < voxels->hi[0]; ++ijk[0]) {
-        const VoxelPattern *pattern = box->pattern + voxel_odd(ijk);
+        const VoxelPattern *pattern = box_pattern(box, ijk);
         voxel_nodes(grid, nodes, lattice, ijk, block_size(&owned), local);
         if (centres) place_centre(grid, ijk, local[VOXEL_CENTRE]);
         for (PetscInt s = 0; s < n_sub; ++s, ++cell) {
@@ -123,7 +123,7 @@ static void voxel_side_faces(const Grid *grid, const PetscInt ijk[3], PetscInt a
 {
   const GridBox *box = grid->box;
   const Cell *cell = cells + grid->type;
-  const VoxelPattern *pattern = box->pattern + voxel_odd(ijk);
+  const VoxelPattern *pattern = box_pattern(box, ijk);
   const PetscInt first = block_index(box->block + box->rank, ijk) * pattern->n_cells;
   for (PetscInt s = 0; s < pattern->n_cells; ++s)
     for (PetscInt f = 0; f < cell->faces; ++f) {
@@ -253,6 +253,7 @@ PetscErrorCode BoxBuild(MPI_Comm comm, const GridOps *ops, CellType type, GridBo
   grid->dim = box->dim;
   grid->type = grid->first_type = type;
   grid->nodes_per_cell = cells[type].nodes;
+  grid->n_fields = box->dim == 2 ? box->counts[2] : 1;
   grid->ops = ops;
   grid->box = box;
   grid->n_cells_global = box->pattern[0].n_cells * box->counts[0] * box->counts[1] * box->counts[2];

@@ -94,7 +94,7 @@ PetscInt box_locate(const Grid *grid, const PetscReal *x, PetscInt guess, PetscR
     const PetscReal *line = box->line[d] + ijk[d];
     s[d] = (x[d] - line[0]) / (line[1] - line[0]);
   }
-  const VoxelPattern *pattern = box->pattern + voxel_odd(ijk);
+  const VoxelPattern *pattern = box_pattern(box, ijk);
   const PetscInt first = block_index(block, ijk) * pattern->n_cells;
   if (grid->nodes_per_cell == dim + 1) return first + pick_simplex(pattern, dim, s, xi);
   for (PetscInt d = 0; d < dim; ++d) xi[d] = 2.0 * s[d] - 1.0;

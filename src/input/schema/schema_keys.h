@@ -29,7 +29,7 @@
 
 /* Tables that others name. */
 extern const SchemaTable schema_shape, schema_wall_shape, schema_selector, schema_grid, schema_body, schema_motion,
-  schema_components, schema_rotation, schema_wall, schema_loads, schema_basis, schema_measure;
+  schema_components, schema_rotation, schema_wall, schema_interface, schema_loads, schema_basis, schema_measure;
 /* From support/bases.inc (registry.c), and the tables that it names. */
 extern const SchemaEntry schema_bases[];
 extern const SchemaGroup schema_basis_groups[];

@@ -17,6 +17,7 @@ static const SchemaEntry of_entries[] = {
   KEY("boundary", BOUNDARY, NULL, "an entry of `boundary`: its name, or its index counted from 0",
       AT(MeasureSpec, boundary)),
   KEY("wall", REFERENCE, NULL, "a name from `walls`", .target = "walls", AT(MeasureSpec, wall)),
+  KEY("interface", REFERENCE, NULL, "a name from `interfaces`", .target = "interfaces", AT(MeasureSpec, interface)),
   {.key = NULL},
 };
 static const struct {
@@ -24,8 +25,9 @@ static const struct {
 } subjects[] = {[OF_BODY] = {"body", "write of: {body: name}"},
                 [OF_TRACER] = {"tracer", "write of: {tracer: [x, y]}"},
                 [OF_BOUNDARY] = {"boundary", "write of: {boundary: name or index}"},
-                [OF_WALL] = {"wall", "write of: {wall: name}"}};
-static const SchemaGroup of_groups[] = {{GROUP_ONE, {"tracer", "body", "boundary", "wall", NULL}},
+                [OF_WALL] = {"wall", "write of: {wall: name}"},
+                [OF_INTERFACE] = {"interface", "write of: {interface: name}"}};
+static const SchemaGroup of_groups[] = {{GROUP_ONE, {"tracer", "body", "boundary", "wall", "interface", NULL}},
                                         {GROUP_NONE, {NULL}}};
 static PetscBool hide_in_of(const SchemaEntry *e, const void *source)
 {

@@ -1,4 +1,4 @@
-/* Keys of rigid walls. */
+/* Keys of rigid walls, and of interfaces between bodies. */
 #include "input/schema/schema_keys.h"
 
 static const SchemaWord contact_words[] = {
@@ -78,12 +78,13 @@ PetscErrorCode SchemaCheckWallMotion(SchemaReader *r, const YamlNode *mapping, v
   PetscFunctionReturn(0);
 }
 
-static void check_contact(SchemaReader *r, const YamlNode *mapping, WallSpec *w, const char *path)
+static void check_contact(SchemaReader *r, const YamlNode *mapping, ContactKind *contact, PetscReal *friction,
+                          PetscReal adhesion, const char *path)
 {
-  if (yaml_find(mapping, "friction_angle")) w->friction = tan(w->friction * PETSC_PI / 180);
-  const PetscBool rubs = w->friction > 0 || w->adhesion > 0;
-  if (!yaml_find(mapping, "contact")) w->contact = rubs ? CONTACT_FRICTION : CONTACT_FRICTIONLESS;
-  else if (w->contact != CONTACT_FRICTION && rubs)
+  if (yaml_find(mapping, "friction_angle")) *friction = tan(*friction * PETSC_PI / 180);
+  const PetscBool rubs = *friction > 0 || adhesion > 0;
+  if (!yaml_find(mapping, "contact")) *contact = rubs ? CONTACT_FRICTION : CONTACT_FRICTIONLESS;
+  else if (*contact != CONTACT_FRICTION && rubs)
     SchemaError(r, yaml_find(mapping, "contact"),
                 "%s: friction and adhesion mean something with `contact: friction` alone", path);
 }
@@ -105,6 +106,57 @@ PetscErrorCode SchemaCheckWall(SchemaReader *r, const YamlNode *mapping, void *t
                 path);
   if (w->has_until && w->until <= w->from)
     SchemaError(r, yaml_find(mapping, "until"), "%s.until must be later than `from`, %g s", path, (double)w->from);
-  check_contact(r, mapping, w, path);
+  check_contact(r, mapping, &w->contact, &w->friction, w->adhesion, path);
+  PetscFunctionReturn(0);
+}
+
+/* --- interfaces --- */
+static const SchemaWord interface_words[] = {
+  {"frictionless", CONTACT_FRICTIONLESS, "the bodies slide along each other and part freely"},
+  {"friction", CONTACT_FRICTION,
+   "Coulomb: they slide where the tangential force reaches friction times the normal one"},
+  {"stick", CONTACT_STICK, "they do not slide while in contact, and part freely"},
+  {"bonded", CONTACT_BONDED, "what is in contact at the start stays together"},
+  {NULL, 0, NULL},
+};
+
+static const SchemaEntry interface_entries[] = {
+  KEY("name", NAME, NULL, "how `measures` and messages call it", REQUIRED, AT(InterfaceSpec, name)),
+  KEY("between", REFERENCES, NULL,
+      "the names of two bodies; the surface of the first is kept out of that of the second", REQUIRED,
+      .target = "bodies", AT(InterfaceSpec, between), .count = offsetof(InterfaceSpec, n_between)),
+  KEY("contact", WORD, NULL, "law of the interface", .words = interface_words,
+      .note = "friction if `friction`, `friction_angle` or `adhesion` is given, else frictionless",
+      AT(InterfaceSpec, contact)),
+  KEY("friction", NUMBER, NULL, "coefficient of friction, the tangent of its angle", .note = "0", AT_LEAST(0),
+      AT(InterfaceSpec, friction)),
+  KEY("friction_angle", NUMBER, "deg", "the angle instead", .bounded = PETSC_TRUE, .min = 0, .max = 90,
+      .max_open = PETSC_TRUE, INPUT_ONLY, AT(InterfaceSpec, friction)),
+  KEY("adhesion", NUMBER, "N/m2", "tangential stress that contact bears without pressure", .fallback = "0", AT_LEAST(0),
+      AT(InterfaceSpec, adhesion)),
+  {.key = NULL},
+};
+const SchemaTable schema_interface = {
+  .name = "interface",
+  .help =
+    "Two bodies that meet, each with a velocity field of its own; without an interface they stick where they "
+    "share nodes.",
+  .entries = interface_entries,
+  .groups = wall_groups,
+  .size = sizeof(InterfaceSpec),
+  .check = SchemaCheckInterface};
+
+PetscErrorCode SchemaCheckInterface(SchemaReader *r, const YamlNode *mapping, void *target)
+{
+  InterfaceSpec *s = target;
+  const YamlNode *between = yaml_find(mapping, "between");
+  char path[512];
+
+  PetscFunctionBeginUser;
+  yaml_path(mapping, path, sizeof(path));
+  if (s->n_between != 2) SchemaError(r, between, "%s.between must name two bodies, not %d", path, (int)s->n_between);
+  else if (!strcmp(s->between[0], s->between[1]))
+    SchemaError(r, between, "%s.between: '%s' cannot meet itself", path, s->between[0]);
+  check_contact(r, mapping, &s->contact, &s->friction, s->adhesion, path);
   PetscFunctionReturn(0);
 }

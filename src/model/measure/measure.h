@@ -18,9 +18,9 @@ typedef enum {
   MEASURE_CONTAINER,
   MEASURE_TEXT /* in `word` */
 } MeasureArgument;
-/* What `of` names: a body, if not all; a tracer; an entry of the boundary; a wall; nothing, since the
- * number is of the whole model. */
-typedef enum { OF_BODY, OF_TRACER, OF_BOUNDARY, OF_WALL, OF_MODEL } MeasureSubject;
+/* What `of` names: a body, if not all; a tracer; an entry of the boundary; a wall; an interface;
+ * nothing, since the number is of the whole model. */
+typedef enum { OF_BODY, OF_TRACER, OF_BOUNDARY, OF_WALL, OF_INTERFACE, OF_MODEL } MeasureSubject;
 
 /* A number, and one of three ways to it. */
 typedef struct {

@@ -1,10 +1,14 @@
-/* What walls do to the material. */
+/* What walls do to the material, and bodies to each other. */
 #include <string.h>
 #include "model/measure/measure.h"
 
 static const WallState *wall_of(const Model *m, const MeasureSpec *s)
 {
   PetscInt k = 0;
+  if (measure_number(s)->of == OF_INTERFACE) {
+    while (strcmp(m->c->interfaces[k].name, s->interface)) ++k;
+    return m->contact->wall + m->c->n_walls + k;
+  }
   while (strcmp(m->c->walls[k].name, s->wall)) ++k; /* the schema has found it */
   return m->contact->wall + k;
 }
@@ -109,6 +113,25 @@ static const MeasureNumber *const words[] = {
   NULL,
 };
 
+static const MeasureNumber *const between[] = {
+  WORD("penetration", "how deep one body is in the other, at most", .unit = "m", .of = OF_INTERFACE, .value = Contacts,
+       .which = PENETRATION),
+  WORD("sliding", "work of friction between the bodies since the start", .unit = "J", .of = OF_INTERFACE,
+       .value = Contacts, .which = SLIDING),
+  WORD("area", "of the first body's surface in contact: a length in the plane", .unit = "m2", .of = OF_INTERFACE,
+       .value = Contacts, .which = AREA),
+  NULL,
+};
+
+const Measure measure_interface_force = {
+  .key = "interface_force",
+  .number = {.unit = "N",
+             .help = "force of the second body of an interface on the first; in dynamics its mean over the step, so "
+                     "that times the step it is the impulse",
+             .of = OF_INTERFACE,
+             .value = Force}};
+const Measure measure_interface = {
+  .key = "interface", .takes = MEASURE_WORD, .number = {.help = "contact between two bodies"}, .words = between};
 const Measure measure_wall_force = {
   .key = "wall_force",
   .number = {.unit = "N",

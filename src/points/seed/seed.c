@@ -141,6 +141,7 @@ static PetscErrorCode ChooseCells(Seeding *s, PetscBool *found)
   PetscCall(PetscMalloc1(n, &s->cells));
   for (PetscInt k = 0; k < n; ++k) {
     const PetscInt cell = set ? set->cells[k] : k;
+    if (s->source == s->grid && grid_field_of(s->grid, cell) != s->field) continue;
     if (centre_in_shape(s, cell)) s->cells[s->n_cells++] = cell;
   }
   *found = PETSC_TRUE;
@@ -206,6 +207,7 @@ static PetscErrorCode SeedPoint(const Seeding *s, Points *points, PetscInt cell,
   if (seed->n_state) PetscCall(PetscArraycpy(point_real(points, POINT_STATE, p), seed->initial, seed->n_state));
   points->id[p] = s->first_id + (PetscInt64)s->source->global_cell[cell] * s->rule.n + q;
   points->body[p] = s->b;
+  if (points->components[POINT_FIELD]) *point_real(points, POINT_FIELD, p) = (PetscReal)s->field;
   points->material[p] = s->material;
   if (s->source == s->grid) {
     points->cell[p] = cell;
@@ -325,6 +327,7 @@ PetscErrorCode PointsSeedOutlined(Points *points, const Grid *grid, const Case *
                  .grid = grid,
                  .diag = diag,
                  .b = b,
+                 .field = grid->n_fields > 1 ? case_field(c, b) : 0,
                  .body = c->bodies + b,
                  .first_id = next,
                  .domains = points->components[POINT_DOMAIN] > 0,

@@ -15,7 +15,7 @@ typedef struct {
   const Case *c;
   const Grid *grid; /* where the points live */
   Diag *diag;
-  PetscInt b; /* the body */
+  PetscInt b, field; /* the body, and its velocity field */
   const BodySpec *body;
   PetscInt material;
   const Grid *source;        /* whose cells give the points: the grid, or the body's own mesh */

@@ -23,8 +23,9 @@ PetscErrorCode ContactCreate(const Case *c, const Walls *walls, Contact **contac
   (*contact)->walls = walls;
   (*contact)->dim = c->kinematics->dim;
   (*contact)->n_walls = c->n_walls;
-  PetscCall(PetscCalloc1(c->n_walls, &(*contact)->wall));
-  PetscCall(PetscCalloc1(2 * c->n_walls, &(*contact)->impulse));
+  (*contact)->n_partners = c->n_walls + c->n_interfaces;
+  PetscCall(PetscCalloc1((*contact)->n_partners, &(*contact)->wall));
+  PetscCall(PetscCalloc1(2 * (*contact)->n_partners, &(*contact)->impulse));
   PetscFunctionReturn(0);
 }
 
@@ -57,13 +58,20 @@ static void first_multiplier(const Contact *s, ContactPoint *c)
   if (c->touches && c->before == CONTACT_OPEN) c->multiplier.pressure = 0.1 * CLOSED * s->length * c->law.penalty;
 }
 
+/* What a cell of one material opposes to a pressure, N/m3; of two that stand behind each other. */
+static PetscReal stiffness_of(const ContactPoint *c, PetscReal h, PetscReal inertia)
+{
+  const PetscReal k = c->modulus[0] / h + inertia * c->density[0] * h;
+  const PetscReal other = c->modulus[1] / h + inertia * c->density[1] * h;
+  return other > 0 ? k * other / (k + other) : k;
+}
+
 void contact_prepare(Contact *s, PetscReal t, PetscReal dt, PetscReal inertia, PetscReal share)
 {
   for (ContactPoint *c = s->point; c < s->point + s->n; ++c) {
-    const PetscReal h = s->length;
-    c->law.penalty = STIFFER * c->section * (c->modulus / h + inertia * c->density * h);
+    c->law.penalty = STIFFER * c->section * stiffness_of(c, s->length, inertia);
     c->law.bond = c->bond / share;
-    wall_motion(s->walls, c->wall, t, t + dt, c->x, c->swept);
+    if (c->wall < s->n_walls) wall_motion(s->walls, c->wall, t, t + dt, c->x, c->swept);
     first_multiplier(s, c);
   }
 }
@@ -75,6 +83,18 @@ void contact_place(const Contact *s, const ContactPoint *c, const PetscReal *du,
     for (PetscInt d = 0; d < s->dim; ++d) x[d] += whole * s->N[c->first + I] * du[s->node[c->first + I] * s->dim + d];
 }
 
+/* The wall as the contact point sees it at x, or the other body: a plane that goes with it. */
+static PetscBool place_of(const Contact *s, const ContactPoint *c, PetscReal t, const PetscReal x[3], WallPlace *place)
+{
+  if (c->wall < s->n_walls) return wall_near(s->walls, c->wall, t, x, 2 * s->near, c->side, place);
+  *place = (WallPlace){.gap = c->open};
+  for (int d = 0; d < 3; ++d) {
+    place->normal[d] = c->normal[d];
+    place->gap += (x[d] - c->x[d]) * c->normal[d];
+  }
+  return PETSC_TRUE;
+}
+
 /* The law at the present increments; PETSC_FALSE where there is no contact. */
 static PetscBool meets(const Contact *s, ContactPoint *c, const NodalScene *scene, PetscReal *K)
 {
@@ -84,7 +104,7 @@ static PetscBool meets(const Contact *s, ContactPoint *c, const NodalScene *scen
   c->state = CONTACT_OPEN;
   c->now = (ContactForce){0};
   c->gap = PETSC_MAX_REAL;
-  if (!wall_near(s->walls, c->wall, scene->end, x, 2 * s->near, c->side, &place)) return PETSC_FALSE;
+  if (!place_of(s, c, scene->end, x, &place)) return PETSC_FALSE;
   for (int d = 0; d < 3; ++d) c->slip[d] = x[d] - c->x[d] - c->swept[d], c->normal[d] = place.normal[d];
   c->gap = place.gap;
   c->state = contact_law(&c->law, &place, c->slip, &c->multiplier, &c->now, K);
@@ -185,6 +205,18 @@ static PetscBool find_slots(void *data, const System *system)
   return !missing;
 }
 
+/* Walls couple nodes of the same points, bodies those of two. */
+static PetscErrorCode Couple(const void *data, const NodalScene *scene, NodeGroups *groups)
+{
+  const Contact *s = data;
+
+  (void)scene;
+  PetscFunctionBeginUser;
+  for (const ContactPoint *c = s->point; c < s->point + s->n; ++c)
+    if (c->wall >= s->n_walls) PetscCall(NodeGroupsAdd(groups, c->n, s->node + c->first));
+  PetscFunctionReturn(0);
+}
+
 static PetscErrorCode Create(const NodalScene *scene, Diag *diag, void **data)
 {
   (void)diag;
@@ -212,7 +244,7 @@ static PetscErrorCode Commit(void *data, const NodalScene *scene)
   PetscReal f[3];
 
   PetscFunctionBeginUser;
-  PetscCall(PetscArrayzero(scene->points->real[POINT_CONTACT], scene->points->n * s->n_walls * CONTACT_KEPT(dim)));
+  PetscCall(PetscArrayzero(scene->points->real[POINT_CONTACT], scene->points->n * s->n_partners * CONTACT_KEPT(dim)));
   for (const ContactPoint *c = s->point; c < s->point + s->n; ++c) {
     PetscReal *kept = point_real(scene->points, POINT_CONTACT, c->owner) + c->wall * CONTACT_KEPT(dim);
     kept[0] = (PetscReal)c->state;
@@ -231,9 +263,9 @@ static PetscErrorCode ToTables(const void *data, const NodalScene *scene, Tables
 
   (void)scene;
   PetscFunctionBeginUser;
-  PetscCall(TablesAdd(tables, "walls", PETSC_TRUE, s->n_walls, &table));
+  PetscCall(TablesAdd(tables, "walls", PETSC_TRUE, s->n_partners, &table));
   PetscCall(TableAdd(table, "state", NULL, COLUMN_REAL, WALL_NUMBERS, NULL, &column));
-  PetscCall(PetscMemcpy(column->data, s->wall, (size_t)s->n_walls * sizeof *s->wall));
+  PetscCall(PetscMemcpy(column->data, s->wall, (size_t)s->n_partners * sizeof *s->wall));
   PetscFunctionReturn(0);
 }
 
@@ -249,18 +281,19 @@ static PetscErrorCode FromTables(void *data, const NodalScene *scene, const Tabl
     PetscFunctionReturn(0);
   }
   const PetscReal *state = table_data(table, "state", COLUMN_REAL, WALL_NUMBERS, reason);
-  if (state && table->rows != s->n_walls) snprintf(reason, 256, "walls are others");
-  if (state && !reason[0]) PetscCall(PetscMemcpy(s->wall, state, (size_t)s->n_walls * sizeof *s->wall));
+  if (state && table->rows != s->n_partners) snprintf(reason, 256, "walls are others");
+  if (state && !reason[0]) PetscCall(PetscMemcpy(s->wall, state, (size_t)s->n_partners * sizeof *s->wall));
   PetscFunctionReturn(0);
 }
 
 const NodalForce nodal_force_contact = {
   .name = "contact",
-  .help = "rigid walls that material meets, with friction",
+  .help = "rigid walls that material meets, and bodies that meet each other, with friction",
   .apart = PETSC_TRUE,
   .create = Create,
   .begin = Begin,
   .hold = hold,
+  .couple = Couple,
   .find_slots = find_slots,
   .assemble = Assemble,
   .augment = Augment,

@@ -1,31 +1,37 @@
-/* Contact of material with rigid walls, inside Newton's method.
+/* Contact of material with rigid walls and of bodies with each other, inside Newton's method.
  *
  * What meets a wall are contact points: of each material point near it the place on the surface of
  * its part of the body that is nearest to the wall (mpm, gmm), or nodes (fem). Each moves with the
  * field at that place, sum_I N_I du_I, and has its own multipliers, so that as many may act in a
- * cell as there are: their forces need not be unique for those of the nodes to be. */
+ * cell as there are: their forces need not be unique for those of the nodes to be.
+ *
+ * Of two bodies that meet at an interface the second is to the first what a wall is, a plane about the
+ * part of it that is nearest (surfaces.h). The place moves against it with sum_I N_I du_I over the nodes
+ * of both fields, those of the second with -N: so forces come in pairs, and all that follows is the same
+ * for walls and interfaces. */
 #pragma once
 #include "solve/contact/contact_law.h"
 #include "solve/forces/nodal_force.h"
 
 typedef struct {
   PetscInt owner; /* the material point, or the node */
-  PetscInt wall;
+  PetscInt wall;  /* or the number of walls + the interface */
   int side;
-  PetscInt first, n;          /* nodes that carry it: node[first] .. of Contact, */
-  PetscInt slot;              /* and the first of their n x n pairs */
-  PetscReal reach;            /* from the material point to its surface, at the start of the step, m */
-  PetscReal x[3];             /* at the start of the step, m */
-  PetscReal swept[3];         /* what the wall's matter there moves by in the step, m */
-  PetscReal section;          /* of the surface that it stands for, m2 */
-  PetscReal modulus, density; /* of its material, Pa, kg/m3 */
-  PetscReal bond;             /* that the wall bears along itself without pressure, N */
+  PetscInt first, n;  /* nodes that carry it: node[first] .. of Contact, */
+  PetscInt slot;      /* and the first of their n x n pairs */
+  PetscReal reach;    /* from the material point to its surface, at the start of the step, m */
+  PetscReal x[3];     /* at the start of the step, m */
+  PetscReal swept[3]; /* what the wall's matter there moves by in the step, m */
+  PetscReal section;  /* of the surface that it stands for, m2 */
+  /* of its material, and of that of the other body (0: a wall), Pa, kg/m3 */
+  PetscReal modulus[2], density[2];
+  PetscReal open; /* gap at the start of the step, m */
+  PetscReal bond; /* that the wall bears along itself without pressure, N */
   ContactLaw law;
   ContactForce multiplier, now;
   ContactState state;  /* at the last assembly */
   ContactState before; /* at the end of the last step */
   PetscBool gone;      /* has the wall vanished when the step begins? Its last force is to be forgotten */
-  PetscReal open;      /* gap at the start of the step, m */
   PetscBool touches;   /* is there no gap at the start of the step? */
   PetscReal gap;       /* at the last assembly, m */
   PetscReal normal[3]; /* at the last assembly */
@@ -40,7 +46,7 @@ typedef struct {
   PetscReal sliding; /* of impulses: work lost in sliding, J */
 } ContactSum;
 
-/* Of one wall. */
+/* Of one wall, or interface: then of what the second body does to the first. */
 typedef struct {
   ContactSum rate;    /* what its forces at the end of the last step are in the rate of momentum */
   ContactSum mean;    /* over the last step: times dt it is all momentum that came from the wall */
@@ -52,6 +58,7 @@ typedef struct {
 typedef struct Contact {
   const Walls *walls;
   PetscInt dim, n_walls;
+  PetscInt n_partners; /* walls and interfaces */
   PetscInt n, capacity;
   ContactPoint *point;
   PetscInt n_nodes, capacity_nodes, *node;
@@ -72,9 +79,13 @@ typedef struct Contact {
 #define THINNEST 0.25
 #define THICKEST 2
 
-/* Numbers that a carrier of contact keeps for each wall from step to step: state, reach, and the force
- * `last`. */
+/* Numbers that a carrier of contact keeps for each partner from step to step: state, reach, and the
+ * force `last`. */
 #define CONTACT_KEPT(dim) (2 + (dim))
+
+/* Layers of nodes that a rank knows beyond those of its basis where bodies meet others: of the other
+ * body's points in reach. */
+#define CONTACT_HALO 2
 
 PetscErrorCode ContactCreate(const Case *c, const Walls *walls, Contact **contact);
 PetscErrorCode ContactDestroy(Contact **contact);
@@ -83,6 +94,17 @@ PetscErrorCode ContactFind(Contact *contact, const NodalScene *scene);
 /* Before the solve of a step of dt: penalties, and how walls move. inertia: see WeakFormInput; share: the
  * walls' forces over those of the balance. */
 void contact_prepare(Contact *contact, PetscReal t, PetscReal dt, PetscReal inertia, PetscReal share);
+/* What else the room finds: contact points with nodes, and the surface of a part of a body. */
+PetscErrorCode ContactAdd(Contact *contact, ContactPoint **c);
+PetscErrorCode ContactAddNodes(Contact *contact, ContactPoint *c, PetscInt n);
+PetscReal contact_reach(const PetscReal F[9], const PetscReal n[3], PetscReal first);
+/* What the carrier kept of its contact with a partner. */
+void contact_remember(ContactPoint *c, PetscInt dim, const PetscReal *kept, const PetscReal normal[3]);
+ContactLaw contact_law_of(ContactKind kind, PetscReal friction);
+/* Is a contact point with this gap at the start of the step none? Says whether it touches. */
+PetscBool contact_passes(const Contact *contact, ContactPoint *c, PetscReal gap, PetscBool first);
+/* Collective. Those between bodies. */
+PetscErrorCode ContactFindBodies(Contact *contact, const NodalScene *scene);
 /* contact_section.c. Surface that material point p stands for before a wall with the normal n, m2. */
 PetscReal contact_section(const NodalScene *scene, PetscInt p, const PetscReal n[3]);
 /* Position of a contact point with the field's increments, times `whole`. */

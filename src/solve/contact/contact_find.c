@@ -11,16 +11,15 @@
 
 /* Thickness of the material point's part of the body towards n: planes of the undeformed body along
  * its surface, of which those r apart are r |F^T n| apart now. */
-static PetscReal reach_of(const Points *points, PetscInt p, const PetscReal n[3])
+PetscReal contact_reach(const PetscReal F[9], const PetscReal n[3], PetscReal first)
 {
-  PetscReal F[9], square = 0;
-  point_F(points, p, F);
+  PetscReal square = 0;
   for (int j = 0; j < 3; ++j) square += PetscSqr(F[j] * n[0] + F[3 + j] * n[1] + F[6 + j] * n[2]);
   const PetscReal stretch = PetscMax(THINNEST, PetscMin(THICKEST, PetscSqrtReal(square)));
-  return stretch * points->real[POINT_REACH][p];
+  return stretch * first;
 }
 
-static PetscErrorCode AddPoint(Contact *s, ContactPoint **c)
+PetscErrorCode ContactAdd(Contact *s, ContactPoint **c)
 {
   PetscFunctionBeginUser;
   if (s->n == s->capacity) {
@@ -32,7 +31,7 @@ static PetscErrorCode AddPoint(Contact *s, ContactPoint **c)
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode AddNodes(Contact *s, ContactPoint *c, PetscInt n)
+PetscErrorCode ContactAddNodes(Contact *s, ContactPoint *c, PetscInt n)
 {
   PetscFunctionBeginUser;
   if (s->n_nodes + n > s->capacity_nodes) {
@@ -51,26 +50,30 @@ static PetscErrorCode AddNodes(Contact *s, ContactPoint *c, PetscInt n)
   PetscFunctionReturn(0);
 }
 
-/* What the carrier kept of its contact with the wall. */
-static void remember(ContactPoint *c, PetscInt dim, const PetscReal *kept, const WallPlace *place)
+void contact_remember(ContactPoint *c, PetscInt dim, const PetscReal *kept, const PetscReal normal[3])
 {
   c->before = (ContactState)(int)(kept[0] + 0.5);
   for (PetscInt d = 0; d < dim; ++d) c->last[d] = c->start[d] = kept[2 + d];
   c->state = c->before;
-  for (int d = 0; d < 3; ++d) c->normal[d] = place->normal[d];
+  for (int d = 0; d < 3; ++d) c->normal[d] = normal[d];
 }
 
-static ContactLaw law_of(const WallSpec *w)
+ContactLaw contact_law_of(ContactKind kind, PetscReal friction)
 {
-  const PetscBool sticks = w->contact == CONTACT_STICK;
-  return (ContactLaw){.kind = w->contact, .friction = sticks ? STICKING : w->friction};
+  return (ContactLaw){.kind = kind, .friction = kind == CONTACT_STICK ? STICKING : friction};
 }
 
-/* A bonded wall holds what it touches at the start, and nothing that comes later. */
-static PetscBool is_let_go(const Contact *s, const ContactPoint *c, ContactKind kind, PetscReal gap, PetscBool first)
+/* A bonded interface holds what touches at the start, and nothing that comes later. */
+static PetscBool is_let_go(const ContactPoint *c, PetscBool first)
 {
-  if (kind != CONTACT_BONDED || c->before != CONTACT_OPEN) return PETSC_FALSE;
-  return !first || gap > TOUCHES * s->length;
+  if (c->law.kind != CONTACT_BONDED || c->before != CONTACT_OPEN) return PETSC_FALSE;
+  return !first || !c->touches;
+}
+
+PetscBool contact_passes(const Contact *s, ContactPoint *c, PetscReal gap, PetscBool first)
+{
+  c->touches = gap <= TOUCHES * s->length;
+  return gap > s->near || is_let_go(c, first);
 }
 
 static PetscBool meets_body(const Case *c, PetscInt k, PetscInt body)
@@ -90,6 +93,7 @@ static PetscErrorCode MeetPoint(Contact *s, const NodalScene *scene, PetscInt g,
   const int side = wall_side(s->walls, k, scene->t, x);
   const Material *material = scene->materials + points->material[p];
   WallPlace place;
+  PetscReal F[9];
   ContactPoint *c = NULL;
 
   PetscFunctionBeginUser;
@@ -97,26 +101,27 @@ static PetscErrorCode MeetPoint(Contact *s, const NodalScene *scene, PetscInt g,
   if (!wall_near(s->walls, k, scene->t, x, s->near + THICKEST * points->real[POINT_REACH][p], side, &place))
     PetscFunctionReturn(0);
   const PetscReal before = kept[k * CONTACT_KEPT(dim) + 1];
-  const PetscReal reach = before > 0 ? before : reach_of(points, p, place.normal);
+  point_F(points, p, F);
+  const PetscReal reach = before > 0 ? before : contact_reach(F, place.normal, points->real[POINT_REACH][p]);
   const PetscInt nn = support_nodes(scene->support, g), *node = scene->support->node + scene->support->node_start[g];
   const PetscReal *N = support_N(scene->support, g, p), *dN = support_dN(scene->support, g, p, dim);
-  PetscCall(AddPoint(s, &c));
+  PetscCall(ContactAdd(s, &c));
   c->owner = p, c->wall = k, c->side = side;
   c->reach = reach;
   c->section = contact_section(scene, p, place.normal);
-  c->modulus = material->wave_modulus, c->density = material->density;
-  c->law = law_of(scene->c->walls + k);
+  c->modulus[0] = material->wave_modulus, c->density[0] = material->density;
+  c->law = contact_law_of(scene->c->walls[k].contact, scene->c->walls[k].friction);
   c->bond = scene->c->walls[k].adhesion * c->section;
-  remember(c, dim, kept + k * CONTACT_KEPT(dim), &place);
+  contact_remember(c, dim, kept + k * CONTACT_KEPT(dim), place.normal);
   place.gap -= reach;
-  if (is_let_go(s, c, c->law.kind, place.gap, scene->first) || place.gap > s->near) {
+  if (contact_passes(s, c, place.gap, scene->first)) {
     --s->n;
     PetscFunctionReturn(0);
   }
   c->gone = !wall_comes(s->walls, k, scene->t);
   c->open = place.gap;
-  c->touches = !c->gone && place.gap <= TOUCHES * s->length;
-  PetscCall(AddNodes(s, c, nn));
+  c->touches = c->touches && !c->gone;
+  PetscCall(ContactAddNodes(s, c, nn));
   for (PetscInt d = 0; d < dim; ++d) c->x[d] = x[d] - reach * place.normal[d];
   for (PetscInt I = 0; I < nn; ++I) {
     PetscReal change = 0;
@@ -134,10 +139,11 @@ PetscErrorCode ContactFind(Contact *s, const NodalScene *scene)
 
   PetscFunctionBeginUser;
   s->n = s->n_nodes = s->n_slots = 0;
-  PetscCall(PetscArrayzero(s->impulse, 2 * s->n_walls));
+  PetscCall(PetscArrayzero(s->impulse, 2 * s->n_partners));
   s->length = s->near = scene->grid->smallest;
   for (PetscInt g = 0; g < w->n_groups; ++g)
     for (PetscInt p = w->point_start[g]; p < w->point_start[g + 1]; ++p)
       for (PetscInt k = 0; k < s->n_walls; ++k) PetscCall(MeetPoint(s, scene, g, p, k));
+  if (s->n_partners > s->n_walls) PetscCall(ContactFindBodies(s, scene));
   PetscFunctionReturn(0);
 }

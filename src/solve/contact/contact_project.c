@@ -21,7 +21,8 @@ typedef struct {
   PetscReal *p, *r, *q, *z; /* 3 per contact point */
   PetscReal *own;           /* 1 per contact point: what a unit impulse moves itself */
   unsigned char *held;      /* 0: not at all, 1: along the normal, 3: in all directions */
-  PetscReal *nodes;         /* n_nodes x dim */
+  PetscReal *nodes;         /* n_nodes x dim, zero but for these: */
+  PetscInt n_moved, *moved; /* local nodes that impulses move, on any rank */
 } Projection;
 
 static void hold(const Projection *w, PetscInt k, PetscReal *a)
@@ -45,14 +46,17 @@ static PetscErrorCode Spread(Projection *w, const PetscReal *p)
   const Grid *grid = w->m->grid;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscArrayzero(w->nodes, grid->n_nodes * dim));
+  for (PetscInt i = 0; i < w->n_moved * dim; ++i) w->nodes[w->moved[i / dim] * dim + i % dim] = 0;
   for (PetscInt k = 0; k < s->n; ++k) {
     if (!w->held[k]) continue;
     for (PetscInt e = s->point[k].first; e < s->point[k].first + s->point[k].n; ++e)
       for (PetscInt d = 0; d < dim; ++d) w->nodes[s->node[e] * dim + d] += s->N[e] * p[3 * k + d];
   }
   PetscCall(GridSumToOwners(grid, dim, w->nodes));
-  for (PetscInt i = 0; i < grid->n_owned * dim; ++i) w->nodes[i] *= inverse_mass(w->m, dim, i / dim, i % dim);
+  for (PetscInt i = 0; i < w->n_moved * dim; ++i) {
+    const PetscInt node = w->moved[i / dim];
+    if (node < grid->n_owned) w->nodes[node * dim + i % dim] *= inverse_mass(w->m, dim, node, i % dim);
+  }
   PetscCall(GridToGhosts(grid, dim, w->nodes));
   PetscFunctionReturn(0);
 }
@@ -199,6 +203,26 @@ void contact_add(const ContactPoint *c, PetscInt dim, const PetscReal f[3], Cont
   for (int d = 0; d < 3; ++d) sum->torque[d] += c->x[(d + 1) % 3] * f[(d + 2) % 3] - c->x[(d + 2) % 3] * f[(d + 1) % 3];
 }
 
+static PetscErrorCode ListMoved(Projection *w)
+{
+  const Contact *s = w->s;
+  const Grid *grid = w->m->grid;
+  PetscReal *used;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(grid->n_nodes, &used));
+  for (PetscInt k = 0; k < s->n; ++k)
+    for (PetscInt e = s->point[k].first; e < s->point[k].first + s->point[k].n && w->held[k]; ++e) used[s->node[e]] = 1;
+  PetscCall(GridSumToOwners(grid, 1, used));
+  PetscCall(GridToGhosts(grid, 1, used));
+  PetscCall(PetscMalloc1(grid->n_nodes, &w->moved));
+  for (PetscInt i = 0; i < grid->n_nodes; ++i)
+    if (used[i] > 0) w->moved[w->n_moved++] = i;
+  PetscCall(PetscFree(used));
+  PetscCall(PetscCalloc1(grid->n_nodes * s->dim, &w->nodes));
+  PetscFunctionReturn(0);
+}
+
 static PetscErrorCode Create(const Contact *s, const ContactMotion *m, Projection *w, PetscBool *any)
 {
   PetscBool here = PETSC_FALSE;
@@ -207,7 +231,6 @@ static PetscErrorCode Create(const Contact *s, const ContactMotion *m, Projectio
   *w = (Projection){.s = s, .m = m};
   PetscCall(
     PetscCalloc6(3 * s->n, &w->p, 3 * s->n, &w->r, 3 * s->n, &w->q, 3 * s->n, &w->z, s->n, &w->own, s->n, &w->held));
-  PetscCall(PetscMalloc1(m->grid->n_nodes * s->dim, &w->nodes));
   for (PetscInt k = 0; k < s->n; ++k) {
     const ContactPoint *c = s->point + k;
     w->held[k] = held_of(c, m);
@@ -216,6 +239,7 @@ static PetscErrorCode Create(const Contact *s, const ContactMotion *m, Projectio
       w->own[k] += m->mass[s->node[e]] > 1e-300 ? s->N[e] * s->N[e] / m->mass[s->node[e]] : 0;
   }
   PetscCallMPI(MPI_Allreduce(&here, any, 1, MPIU_BOOL, MPI_LOR, m->grid->comm));
+  if (*any) PetscCall(ListMoved(w));
   PetscFunctionReturn(0);
 }
 
@@ -224,6 +248,7 @@ static PetscErrorCode Destroy(Projection *w)
   PetscFunctionBeginUser;
   PetscCall(PetscFree6(w->p, w->r, w->q, w->z, w->own, w->held));
   PetscCall(PetscFree(w->nodes));
+  PetscCall(PetscFree(w->moved));
   PetscFunctionReturn(0);
 }
 
@@ -234,6 +259,10 @@ PetscErrorCode ContactProject(Contact *s, const ContactMotion *m, ContactSum *su
 
   PetscFunctionBeginUser;
   PetscCall(Create(s, m, &w, &any));
+  if (!any) {
+    PetscCall(Destroy(&w));
+    PetscFunctionReturn(0);
+  }
   for (int k = 0; k < MOST_LET_GO && any; ++k) {
     PetscCall(Solve(&w));
     PetscCall(LetGo(&w, &any));
@@ -241,7 +270,10 @@ PetscErrorCode ContactProject(Contact *s, const ContactMotion *m, ContactSum *su
   for (PetscInt k = 0; k < s->n; ++k) rub(&w, k, w.p + 3 * k);
   lose(&w, sum);
   PetscCall(Spread(&w, w.p));
-  for (PetscInt i = 0; i < m->grid->n_nodes * s->dim; ++i) m->motion[i] += w.nodes[i];
+  for (PetscInt i = 0; i < w.n_moved * s->dim; ++i) {
+    const PetscInt dof = w.moved[i / s->dim] * s->dim + i % s->dim;
+    m->motion[dof] += w.nodes[dof];
+  }
   lose(&w, sum);
   for (PetscInt k = 0; k < s->n; ++k) contact_add(s->point + k, s->dim, w.p + 3 * k, sum + s->point[k].wall);
   PetscCall(Destroy(&w));

@@ -1,0 +1,128 @@
+/* Contact points between bodies: those of the first body of an interface, with the nodes that carry them
+ * in its field and in that of the second body. */
+#include <stdlib.h>
+#include <string.h>
+#include "solve/contact/contact.h"
+#include "solve/contact/surface.h"
+
+/* Local nodes by their numbers in the whole grid: owned ones follow each other, ghosts are sorted. */
+typedef struct {
+  PetscInt number, node;
+} GhostNode;
+
+typedef struct {
+  const Grid *grid;
+  GhostNode *ghost;
+} NodeFinder;
+
+static int compare(const void *a, const void *b)
+{
+  const GhostNode *x = a, *y = b;
+  return (x->number > y->number) - (x->number < y->number);
+}
+
+static PetscErrorCode FinderCreate(const Grid *grid, NodeFinder *f)
+{
+  const PetscInt n = grid->n_nodes - grid->n_owned;
+
+  PetscFunctionBeginUser;
+  f->grid = grid;
+  PetscCall(PetscMalloc1(n, &f->ghost));
+  for (PetscInt k = 0; k < n; ++k)
+    f->ghost[k] = (GhostNode){.number = grid->global_node[grid->n_owned + k], .node = grid->n_owned + k};
+  if (n) qsort(f->ghost, (size_t)n, sizeof *f->ghost, compare);
+  PetscFunctionReturn(0);
+}
+
+/* -1: this rank does not know it. */
+static PetscInt local_node(const NodeFinder *f, PetscInt number)
+{
+  const GhostNode key = {.number = number};
+  const PetscInt n = f->grid->n_nodes - f->grid->n_owned,
+                 place = f->grid->n_owned ? number - f->grid->global_node[0] : -1;
+  if (place >= 0 && place < f->grid->n_owned) return place;
+  const GhostNode *found = n ? bsearch(&key, f->ghost, (size_t)n, sizeof key, compare) : NULL;
+  return found ? found->node : -1;
+}
+
+/* Nodes of one body's point with their part of the place x, its field taken on from there by first order. */
+static PetscErrorCode Carry(Contact *s, ContactPoint *c, const NodeFinder *f, const SurfacePoint *p, PetscReal sign,
+                            PetscInt first)
+{
+  PetscFunctionBeginUser;
+  for (PetscInt I = 0; I < p->n; ++I) {
+    const PetscInt e = c->first + first + I;
+    PetscReal change = 0;
+    for (PetscInt d = 0; d < s->dim; ++d) change += p->dN[I * s->dim + d] * (c->x[d] - p->x[d]);
+    s->node[e] = local_node(f, p->node[I]);
+    PetscCheck(s->node[e] >= 0, PETSC_COMM_SELF, PETSC_ERR_PLIB, "a body meets another one on an unknown node");
+    s->N[e] = sign * (p->N[I] + change);
+    s->lead[e] = sign > 0 ? change : 0;
+  }
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode Meet(Contact *s, const NodalScene *scene, const NodeFinder *f, PetscInt interface,
+                           const SurfacePoint *p, const SurfacePair *pair)
+{
+  const InterfaceSpec *spec = scene->c->interfaces + interface;
+  const PetscInt partner = s->n_walls + interface;
+  const PetscReal *kept = point_real(scene->points, POINT_CONTACT, p->owner) + partner * CONTACT_KEPT(s->dim);
+  ContactPoint *c = NULL;
+
+  PetscFunctionBeginUser;
+  PetscCall(ContactAdd(s, &c));
+  c->owner = p->owner, c->wall = partner;
+  c->reach = kept[1] > 0 ? kept[1] : contact_reach(p->F, pair->normal, p->reach);
+  c->section = contact_section(scene, p->owner, pair->normal);
+  c->modulus[0] = p->modulus, c->density[0] = p->density;
+  c->modulus[1] = pair->other->modulus, c->density[1] = pair->other->density;
+  c->law = contact_law_of(spec->contact, spec->friction);
+  c->bond = spec->adhesion * c->section;
+  contact_remember(c, s->dim, kept, pair->normal);
+  c->open = pair->gap - c->reach;
+  if (contact_passes(s, c, c->open, scene->first)) {
+    --s->n;
+    PetscFunctionReturn(0);
+  }
+  for (PetscInt d = 0; d < s->dim; ++d) c->x[d] = p->x[d] - c->reach * pair->normal[d];
+  PetscCall(ContactAddNodes(s, c, p->n + pair->other->n));
+  PetscCall(Carry(s, c, f, p, 1, 0));
+  PetscCall(Carry(s, c, f, pair->other, -1, p->n));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ContactFindBodies(Contact *s, const NodalScene *scene)
+{
+  const Case *c = scene->c;
+  const SurfaceInput in = {.comm = scene->grid->comm,
+                           .kinematics = c->kinematics,
+                           .grid = scene->grid,
+                           .points = scene->points,
+                           .materials = scene->materials,
+                           .support = scene->support};
+  NodeFinder finder;
+  PetscReal *bounds;
+  PetscMPIInt rank;
+  Surface first, second;
+  SurfacePair pair;
+
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_rank(in.comm, &rank));
+  PetscCall(PetscMalloc1(6 * c->n_bodies, &bounds));
+  PetscCall(SurfaceBounds(&in, c->n_bodies, bounds));
+  PetscCall(FinderCreate(scene->grid, &finder));
+  for (PetscInt k = 0; k < c->n_interfaces; ++k) {
+    const PetscInt a = case_body(c, c->interfaces[k].between[0]), b = case_body(c, c->interfaces[k].between[1]);
+    PetscCall(SurfaceGather(&in, a, bounds + 6 * b, SURFACE_SEARCH * s->length, &first));
+    PetscCall(SurfaceGather(&in, b, bounds + 6 * a, SURFACE_SEARCH * s->length, &second));
+    for (const SurfacePoint *p = first.point; p < first.point + first.n; ++p)
+      if (p->rank == rank && surface_meet(&first, p, &second, s->length, &pair))
+        PetscCall(Meet(s, scene, &finder, k, p, &pair));
+    PetscCall(SurfaceClear(&first));
+    PetscCall(SurfaceClear(&second));
+  }
+  PetscCall(PetscFree(finder.ghost));
+  PetscCall(PetscFree(bounds));
+  PetscFunctionReturn(0);
+}

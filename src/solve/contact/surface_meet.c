@@ -1,0 +1,184 @@
+/* How a material point stands against another body.
+ *
+ * Each point is a disk on the surface of its body, as wide as its reach. The normal of contact is the
+ * way along which the convex hulls of the parts of both bodies around the place are farthest apart:
+ * across the flatter of both surfaces, exactly where one is plane, whatever lattice its points stand in. */
+#include "solve/contact/contact.h"
+#include "solve/contact/surface.h"
+
+#define MOST_POINTS 512
+#define MOST_SWEEPS 50
+#define FLAT 1e-12
+#define OUTSTANDING 0.05 /* of a point's size: how much farther out makes up for standing that far aside */
+
+/* Points around a place; disks are so much wider than the smallest. */
+typedef struct {
+  PetscInt n;
+  const SurfacePoint *point[MOST_POINTS];
+  PetscReal least;
+} Part;
+
+/* Place of the first point of the surface that is at least at x. */
+static PetscInt first_at(const Surface *s, PetscReal x)
+{
+  PetscInt lo = 0, hi = s->n;
+  while (lo < hi) {
+    const PetscInt middle = lo + (hi - lo) / 2;
+    if (s->point[middle].x[0] < x) lo = middle + 1;
+    else hi = middle;
+  }
+  return lo;
+}
+
+static PetscReal distance(const PetscReal *a, const PetscReal *b)
+{
+  return PetscSqrtReal(PetscSqr(a[0] - b[0]) + PetscSqr(a[1] - b[1]));
+}
+
+static void part_around(const Surface *s, const PetscReal *x, PetscReal radius, Part *part)
+{
+  part->n = 0;
+  part->least = PETSC_MAX_REAL;
+  for (PetscInt k = first_at(s, x[0] - radius); k < s->n && s->point[k].x[0] <= x[0] + radius; ++k) {
+    if (distance(s->point[k].x, x) > radius || part->n == MOST_POINTS) continue;
+    part->point[part->n++] = s->point + k;
+    part->least = PetscMin(part->least, s->point[k].reach);
+  }
+}
+
+/* The point of the hull that is farthest along the unit vector d. */
+static void farthest(const Part *part, const PetscReal d[2], PetscReal out[2])
+{
+  const SurfacePoint *best = NULL;
+  PetscReal most = -PETSC_MAX_REAL, wider;
+  for (PetscInt k = 0; k < part->n; ++k) {
+    const SurfacePoint *s = part->point[k];
+    const PetscReal height = s->x[0] * d[0] + s->x[1] * d[1] + s->reach - part->least;
+    if (height > most) most = height, best = s;
+  }
+  wider = best->reach - part->least;
+  for (int i = 0; i < 2; ++i) out[i] = best->x[i] + wider * d[i];
+}
+
+/* The place nearest to the origin on the way from a to b; what of its ends is needed for it stays in s. */
+static PetscInt nearest_on(const PetscReal a[2], const PetscReal b[2], PetscReal s[2][2], PetscReal v[2])
+{
+  const PetscReal way[2] = {b[0] - a[0], b[1] - a[1]}, square = way[0] * way[0] + way[1] * way[1];
+  const PetscReal t = square > 0 ? -(a[0] * way[0] + a[1] * way[1]) / square : 0;
+  const PetscReal *end = t <= 0 ? a : b;
+  for (int i = 0; i < 2; ++i) {
+    s[0][i] = t > 0 && t < 1 ? a[i] : end[i];
+    s[1][i] = b[i];
+    v[i] = t > 0 && t < 1 ? a[i] + t * way[i] : end[i];
+  }
+  return t > 0 && t < 1 ? 2 : 1;
+}
+
+static PetscBool holds_origin(PetscReal s[2][2], const PetscReal w[2])
+{
+  const PetscReal *corner[3] = {s[0], s[1], w};
+  int left = 0;
+  for (int i = 0; i < 3; ++i) {
+    const PetscReal *a = corner[i], *b = corner[(i + 1) % 3];
+    left += a[0] * (b[1] - a[1]) - a[1] * (b[0] - a[0]) > 0 ? 1 : -1;
+  }
+  return left == 3 || left == -3;
+}
+
+/* The way from b to a, unit, by the algorithm of Gilbert, Johnson and Keerthi; PETSC_FALSE where they overlap.
+ * n comes with a first guess. */
+static PetscBool separate(const Part *a, const Part *b, PetscReal n[2])
+{
+  PetscReal s[2][2] = {{0}}, v[2] = {0, 0}, length = PETSC_MAX_REAL;
+  PetscInt corners = 0;
+  for (int sweep = 0; sweep < MOST_SWEEPS; ++sweep) {
+    const PetscReal back[2] = {-n[0], -n[1]};
+    PetscReal here[2], there[2], w[2], first[2][2], second[2][2], u[2], best[2];
+    farthest(a, back, here);
+    farthest(b, n, there);
+    for (int i = 0; i < 2; ++i) w[i] = here[i] - there[i];
+    if (corners && length - (w[0] * n[0] + w[1] * n[1]) <= FLAT * length) break;
+    if (corners == 2 && holds_origin(s, w)) return PETSC_FALSE;
+    const PetscInt kept = corners ? nearest_on(s[0], w, first, best) : nearest_on(w, w, first, best);
+    const PetscInt other = corners == 2 ? nearest_on(s[1], w, second, u) : 0;
+    const PetscBool take = other && u[0] * u[0] + u[1] * u[1] < best[0] * best[0] + best[1] * best[1];
+    const PetscReal *to = take ? u : best;
+    const PetscReal now = PetscSqrtReal(to[0] * to[0] + to[1] * to[1]);
+    if (now >= length) break;
+    if (now == 0) return PETSC_FALSE;
+    corners = take ? other : kept;
+    length = now;
+    for (int i = 0; i < 2; ++i) {
+      s[0][i] = take ? second[0][i] : first[0][i];
+      s[1][i] = take ? second[1][i] : first[1][i];
+      v[i] = to[i], n[i] = v[i] / length;
+    }
+  }
+  return PETSC_TRUE;
+}
+
+static const SurfacePoint *nearest_of(const Surface *b, const PetscReal *x, PetscReal within, PetscReal *least)
+{
+  const SurfacePoint *best = NULL;
+  *least = within;
+  for (PetscInt k = first_at(b, x[0] - within); k < b->n && b->point[k].x[0] <= x[0] + *least; ++k) {
+    const PetscReal now = distance(b->point[k].x, x);
+    if (now < *least) *least = now, best = b->point + k;
+  }
+  return best;
+}
+
+/* Offset of q from p, along n and across it. */
+static void offset(const SurfacePoint *p, const SurfacePoint *q, const PetscReal n[2], PetscReal *along,
+                   PetscReal *across)
+{
+  const PetscReal r[2] = {p->x[0] - q->x[0], p->x[1] - q->x[1]};
+  *along = r[0] * n[0] + r[1] * n[1];
+  *across = PetscAbsReal(r[0] * n[1] - r[1] * n[0]);
+}
+
+/* Does another point of its body stand before p? */
+static PetscBool is_behind(const Part *a, const SurfacePoint *p, const PetscReal n[2])
+{
+  PetscReal along, across;
+  for (PetscInt k = 0; k < a->n; ++k) {
+    offset(p, a->point[k], n, &along, &across);
+    if (along > 0.5 * p->size && across < 0.375 * (p->size + a->point[k]->size)) return PETSC_TRUE;
+  }
+  return PETSC_FALSE;
+}
+
+/* The outermost point of b whose part lies before that of p; of those as far out the nearest. */
+static PetscBool choose(const Part *b, const SurfacePoint *p, SurfacePair *pair)
+{
+  PetscReal along, across, least = PETSC_MAX_REAL;
+  for (PetscInt k = 0; k < b->n; ++k) {
+    const SurfacePoint *q = b->point[k];
+    offset(p, q, pair->normal, &along, &across);
+    if (across > 0.5 * (p->size + q->size)) continue;
+    const PetscReal gap = along - contact_reach(q->F, pair->normal, q->reach);
+    const PetscReal key = gap + OUTSTANDING * across * across / q->size;
+    if (key >= least) continue;
+    least = key;
+    pair->gap = gap;
+    pair->other = q;
+  }
+  return least < PETSC_MAX_REAL;
+}
+
+PetscBool surface_meet(const Surface *a, const SurfacePoint *p, const Surface *b, PetscReal h, SurfacePair *pair)
+{
+  Part mine, theirs;
+  PetscReal least;
+  const SurfacePoint *q = nearest_of(b, p->x, 3 * h, &least);
+  if (!q || least > h + p->reach + q->reach + p->size) return PETSC_FALSE;
+  part_around(a, q->x, least + h, &mine);
+  part_around(b, p->x, least + h, &theirs);
+  const PetscReal scale = least > 0 ? 1 / least : 0; /* 0: one lies on the other, and any way will do */
+  const PetscReal first[2] = {scale > 0 ? scale * (p->x[0] - q->x[0]) : 1, scale * (p->x[1] - q->x[1])};
+  PetscReal n[2] = {first[0], first[1]};
+  const PetscBool apart = separate(&mine, &theirs, n);
+  for (int i = 0; i < 2; ++i) pair->normal[i] = apart ? n[i] : first[i];
+  pair->normal[2] = 0;
+  return !is_behind(&mine, p, pair->normal) && choose(&theirs, p, pair);
+}

@@ -1,0 +1,148 @@
+/* How a material point finds the surface of another body: gaps and normals of lattices whose surfaces
+ * are known, at any angle, staggered, with corners and curved. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <cmocka.h>
+#include "solve/contact/surface.h"
+
+#define MOST 600
+
+typedef struct {
+  SurfacePoint point[MOST];
+  Surface surface;
+} Body;
+
+static int compare(const void *a, const void *b)
+{
+  const SurfacePoint *p = a, *q = b;
+  return (p->x[0] > q->x[0]) - (p->x[0] < q->x[0]);
+}
+
+static void add(Body *b, PetscReal x, PetscReal y, PetscReal size)
+{
+  SurfacePoint *p = b->point + b->surface.n++;
+  assert_true(b->surface.n <= MOST);
+  *p = (SurfacePoint){
+    .id = b->surface.n, .x = {x, y}, .F = {1, 0, 0, 0, 1, 0, 0, 0, 1}, .reach = 0.5 * size, .size = size};
+}
+
+static void close_body(Body *b)
+{
+  b->surface.point = b->point;
+  qsort(b->point, (size_t)b->surface.n, sizeof *b->point, compare);
+}
+
+/* Points of a block along (c, s) from u0 to u1, from w0 to w1 across; turned about the origin. */
+static void block(Body *b, PetscReal angle, PetscReal u0, PetscReal u1, PetscReal w0, PetscReal w1, PetscReal size)
+{
+  const PetscReal c = PetscCosReal(angle), s = PetscSinReal(angle);
+  b->surface.n = 0;
+  for (PetscReal u = u0 + 0.5 * size; u < u1; u += size)
+    for (PetscReal w = w0 + 0.5 * size; w < w1; w += size) add(b, c * u - s * w, s * u + c * w, size);
+  close_body(b);
+}
+
+/* Two blocks with a gap between them, their points in lattices that do not fit: all of the first row of
+ * the upper block meets the lower one, with the gap and the normal of the plane between them. */
+static void test_planes(void **state)
+{
+  static Body upper, lower;
+  const PetscReal h = 0.25, gap = 0.01;
+  (void)state;
+  for (int k = 0; k < 24; ++k) {
+    const PetscReal angle = 0.27 * k, c = PetscCosReal(angle), s = PetscSinReal(angle);
+    int met = 0;
+    block(&lower, angle, -1.5, 1.5, -0.5, 0, 0.125);
+    block(&upper, angle, -0.57 + 0.01 * k, 0.5, gap, 0.5, 0.1);
+    for (const SurfacePoint *p = upper.point; p < upper.point + upper.surface.n; ++p) {
+      SurfacePair pair;
+      const PetscReal height = -s * p->x[0] + c * p->x[1];
+      const PetscBool meets = surface_meet(&upper.surface, p, &lower.surface, h, &pair);
+      assert_int_equal(meets, height < gap + 0.1);
+      if (!meets) continue;
+      ++met;
+      assert_true(PetscAbsReal(pair.normal[0] + s) < 1e-9 && PetscAbsReal(pair.normal[1] - c) < 1e-9);
+      assert_true(PetscAbsReal(pair.gap - p->reach - gap) < 1e-9);
+    }
+    assert_true(met >= 8);
+  }
+}
+
+/* A block that stands on its corner: the flat body gives the normal, and the corner alone is near. */
+static void test_corner(void **state)
+{
+  static Body upper, lower;
+  const PetscReal corner = PetscSqrtReal(0.5) * 0.125; /* of its lowest point's part, below its middle */
+  PetscReal least = 1;
+  (void)state;
+  block(&lower, 0, -1.5, 1.5, -0.5, 0, 0.125);
+  block(&upper, PETSC_PI / 4, 0, 1, 0, 1, 0.125);
+  for (SurfacePoint *p = upper.point; p < upper.point + upper.surface.n; ++p) p->x[1] += 0.05;
+  for (const SurfacePoint *p = upper.point; p < upper.point + upper.surface.n; ++p) {
+    SurfacePair pair;
+    if (!surface_meet(&upper.surface, p, &lower.surface, 0.25, &pair)) continue;
+    assert_true(PetscAbsReal(pair.normal[0]) < 1e-9 && pair.normal[1] > 0);
+    least = PetscMin(least, pair.gap);
+  }
+  assert_true(PetscAbsReal(least - 0.05 - corner) < 1e-9);
+}
+
+/* Two circles of points: before their line of centres the normal is along it, and the gap that of the
+ * circles, both within what polygons of so many corners are off. */
+static void test_circles(void **state)
+{
+  static Body left, right;
+  const PetscReal R = 1, size = PETSC_PI / 40, centre = 2 * R + 0.02;
+  PetscReal least = 1, turned = 0;
+  (void)state;
+  for (int shift = 0; shift < 5; ++shift) {
+    left.surface.n = right.surface.n = 0;
+    for (int k = 0; k < 80; ++k)
+      for (int ring = 0; ring < 3; ++ring) {
+        const PetscReal r = R - (0.5 + ring) * size, a = (k + 0.2 * shift) * size, b = k * size;
+        add(&left, r * PetscCosReal(a), r * PetscSinReal(a), size);
+        add(&right, centre - r * PetscCosReal(b), r * PetscSinReal(b), size);
+      }
+    close_body(&left);
+    close_body(&right);
+    for (const SurfacePoint *p = left.point; p < left.point + left.surface.n; ++p) {
+      SurfacePair pair;
+      if (PetscAbsReal(p->x[1]) > size || !surface_meet(&left.surface, p, &right.surface, 0.15, &pair)) continue;
+      turned = PetscMax(turned, PetscAbsReal(pair.normal[1]));
+      least = PetscMin(least, pair.gap - p->reach);
+    }
+  }
+  print_message("circles: normal off by %.3g, least gap %.5g of 0.02\n", (double)turned, (double)least);
+  assert_true(turned < 0.04 && PetscAbsReal(least - 0.02) < 0.005 * size);
+}
+
+/* Beside the other body there is nothing to meet, and where bodies overlap there is still an answer. */
+static void test_edges(void **state)
+{
+  static Body upper, lower;
+  SurfacePair pair;
+  (void)state;
+  block(&lower, 0, -0.5, 0, -0.5, 0, 0.125);
+  block(&upper, 0, 0.25, 1, 0.01, 0.5, 0.125);
+  for (const SurfacePoint *p = upper.point; p < upper.point + upper.surface.n; ++p)
+    if (surface_meet(&upper.surface, p, &lower.surface, 0.25, &pair)) assert_true(pair.gap > p->reach + 0.1);
+  block(&upper, 0, -0.5, 0, -0.25, 0.25, 0.125);
+  PetscReal deepest = 0;
+  for (const SurfacePoint *p = upper.point; p < upper.point + upper.surface.n; ++p)
+    if (surface_meet(&upper.surface, p, &lower.surface, 0.25, &pair)) deepest = PetscMin(deepest, pair.gap - p->reach);
+  assert_true(deepest < -0.1);
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {
+    cmocka_unit_test(test_planes),
+    cmocka_unit_test(test_corner),
+    cmocka_unit_test(test_circles),
+    cmocka_unit_test(test_edges),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
