@@ -116,6 +116,23 @@ static void test_shears(void **state)
   CALL(ModelDestroy(&m));
 }
 
+/* A body so stiff that the gap that a step may leave would lift it off: the next step finds its floor again. */
+static void test_stiff(void **state)
+{
+  const Block block = {"mpm", "cell", CELL_QUADRILATERAL, &kinematics_plane_strain, 4};
+  Bench b;
+  WallSpec wall;
+  (void)state;
+  standing(&b, &block, &wall);
+  b.constants[0].value = 1e10;
+  add_measure(&b, "pressure", 0);
+  Model *m = bench_model(&b, PETSC_COMM_WORLD);
+  while (m->time < 1 - 1e-9) model_step(m, 0.5);
+  CHECK(m->step == 2, "%d steps", (int)m->step);
+  CHECK_CLOSE(number(m, 0), PRESSURE, 1e-6 * PRESSURE);
+  CALL(ModelDestroy(&m));
+}
+
 /* The floor of a block vanishes between two steps: one ends just then, and from then on the block falls. */
 static void test_gate(void **state)
 {
@@ -210,8 +227,8 @@ static void test_out_of_reach(void **state)
 int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {
-    cmocka_unit_test(test_presses), cmocka_unit_test(test_shears),       cmocka_unit_test(test_gate),
-    cmocka_unit_test(test_appears), cmocka_unit_test(test_out_of_reach),
+    cmocka_unit_test(test_presses), cmocka_unit_test(test_shears),  cmocka_unit_test(test_stiff),
+    cmocka_unit_test(test_gate),    cmocka_unit_test(test_appears), cmocka_unit_test(test_out_of_reach),
   };
   return run_model_group(argc, argv, tests, PETSC_STATIC_ARRAY_LENGTH(tests));
 }

@@ -46,13 +46,15 @@ PetscErrorCode ContactDestroy(Contact **contact)
   PetscFunctionReturn(0);
 }
 
-/* Those of the last step; what had none and touches the wall gets one so small that it counts for
- * nothing: it is in contact from the first iteration on. */
+/* Those of the last step, and as much more as the gap that it left takes away: of a stiff body that is no
+ * little force, and if it let go everywhere at once nothing would hold it. What had none and touches the
+ * wall gets one so small that it counts for nothing: it is in contact from the first iteration on. */
 static void first_multiplier(const Contact *s, ContactPoint *c)
 {
   c->multiplier = (ContactForce){0};
   for (int d = 0; d < 3; ++d) c->multiplier.pressure += c->last[d] * c->normal[d];
   for (int d = 0; d < 3; ++d) c->multiplier.shear[d] = c->last[d] - c->multiplier.pressure * c->normal[d];
+  if (c->before != CONTACT_OPEN && c->open > 0) c->multiplier.pressure += c->law.penalty * c->open;
   if (c->touches && c->before == CONTACT_OPEN) c->multiplier.pressure = 0.1 * CLOSED * s->length * c->law.penalty;
 }
 

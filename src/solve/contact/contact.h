@@ -25,7 +25,7 @@ typedef struct {
   PetscReal section;  /* of the surface that it stands for, m2 */
   /* of its material, and of that of the other body (0: a wall), Pa, kg/m3 */
   PetscReal modulus[2], density[2];
-  PetscReal open; /* of an interface: gap at the start of the step, m */
+  PetscReal open; /* gap at the start of the step, m */
   PetscReal bond; /* that the wall bears along itself without pressure, N */
   ContactLaw law;
   ContactForce multiplier, now;

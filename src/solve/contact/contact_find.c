@@ -119,6 +119,7 @@ static PetscErrorCode MeetPoint(Contact *s, const NodalScene *scene, PetscInt g,
     PetscFunctionReturn(0);
   }
   c->gone = !wall_comes(s->walls, k, scene->t);
+  c->open = place.gap;
   c->touches = c->touches && !c->gone;
   PetscCall(ContactAddNodes(s, c, nn));
   for (PetscInt d = 0; d < dim; ++d) c->x[d] = x[d] - reach * place.normal[d];
