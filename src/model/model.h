@@ -17,7 +17,7 @@ typedef struct {
   /* lost by damping, and between points and grid, since the start, J (docs/theory.md) */
   PetscReal damped, transfer;
   PetscReal friction;  /* taken by sliding along walls, since the start, J */
-  PetscReal numerical; /* taken by the damping of the time scheme, since the start, J; 0 in mpm */
+  PetscReal numerical; /* taken by the damping of the time scheme, since the start, J */
   /* gone with points that left the grid, and in holding others at its boundary, since the start,
    * J */
   PetscReal outside;

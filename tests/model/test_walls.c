@@ -102,6 +102,7 @@ static void test_slides(void **state)
     {"mpm", "cell", CELL_TRIANGLE, 0.2, NULL, "thesis", PETSC_FALSE},
     {"mpm", "cell", CELL_QUADRILATERAL, 0.2, NULL, "consistent", PETSC_FALSE},
     {"mpm", "cell", CELL_QUADRILATERAL, 0.2, "midpoint", "thesis", PETSC_FALSE},
+    {"mpm", "cell", CELL_QUADRILATERAL, 0.2, "bossak", "thesis", PETSC_FALSE},
     {"mpm", "gimp", CELL_QUADRILATERAL, 0.2, NULL, "thesis", PETSC_FALSE},
     {"mpm", "gimp", CELL_QUADRILATERAL, 0.2, NULL, "thesis", PETSC_TRUE},
     {"mpm", "gimp", CELL_QUADRILATERAL, 0.2, "midpoint", "consistent", PETSC_FALSE},

@@ -213,17 +213,18 @@ static PetscErrorCode OutOfBalance(const Model *m, const PetscReal *g, const Pet
   PetscFunctionReturn(0);
 }
 
-/* What the scheme's own damping takes where nodes keep their motion: work of the inertia that the forces
- * at both ends balance, less what motion gains. With Newmark's beta = 1/4, gamma = 1/2 it is nothing. */
+/* What the scheme's own damping takes: work of the inertia that the forces at both ends balance, less what
+ * motion gains. With Newmark's beta = 1/4, gamma = 1/2 it is nothing. mpm's nodes know of no step before. */
 static PetscReal numerical_damping(const Model *m, PetscReal dt)
 {
   const AnalysisSpec *a = &m->c->analysis;
   const NodalFields *n = m->nodes;
   const NodalField du = {{n->du, n->du}, {1, 0}}, echo = {{n->echo, n->echo}, {0.5, 0}};
   const NodalField mean = {{n->v, n->v1}, {0.5, 0.5}}, gain = {{n->v1, n->v}, {1, -1}};
-  if (m->method->restores_grid || !m->scheme->inertia) return 0;
+  if (!m->scheme->inertia || m->scheme->middle) return 0;
   if (a->beta == 0.25 && a->gamma == 0.5 && m->scheme->weights(a, dt).lag == 0) return 0;
-  return inertia_work(m, dt) - mass_product(m, du, echo) - mass_product(m, mean, gain);
+  const PetscReal before = m->method->restores_grid ? 0 : mass_product(m, du, echo);
+  return inertia_work(m, dt) - before - mass_product(m, mean, gain);
 }
 
 /* Nodes that gather their motion from points start neither with the energy of the points nor with
@@ -297,10 +298,8 @@ PetscErrorCode EnergyOfNodes(Model *m, PetscReal dt, EnergyStep *e)
   held += contact.moving;
   e->boundary = held + impulse;
   e->transfer = impulse - unbalanced + transfer_of_nodes(m, dt, e, held);
-  if (!m->method->restores_grid) {
-    e->transfer -= contact.closing;
-    e->numerical = numerical_damping(m, dt) + contact.more;
-  }
+  e->transfer -= m->method->restores_grid ? contact.more : contact.closing;
+  e->numerical = numerical_damping(m, dt) + contact.more;
   if (m->method->restores_grid && m->space->fade > 0) {
     const PetscReal more = faded(m);
     e->damped += more;
