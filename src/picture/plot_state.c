@@ -221,6 +221,13 @@ static PetscErrorCode FindKind(const PlotOptions *options, Diag *diag, PlotScene
   PetscFunctionReturn(0);
 }
 
+/* When it was; where strength is divided the factor, which goes on from the time of the loads, 1. */
+static void say_when(const PlotOptions *options, PetscReal time, char text[64])
+{
+  if (time > 1 && file_exists(options->run, "factor.csv")) snprintf(text, 64, "F = %.5g", (double)(time - 1));
+  else snprintf(text, 64, "t = %.6g s", (double)time);
+}
+
 /* Everything of the picture but its place on the page. */
 static PetscErrorCode FillScene(const PlotOptions *options, PetscInt n, const VtkState *states, PlotSubject *subject,
                                 Diag *diag, PlotScene *scene)
@@ -230,10 +237,11 @@ static PetscErrorCode FillScene(const PlotOptions *options, PetscInt n, const Vt
   scene->columns = options->columns;
   for (PetscInt k = 0; k < n && !diag_errors(diag); ++k) {
     PetscCall(AddFrame(options, &states[k], subject, scene, diag));
-    char *title = scene->frames[k].title;
+    char *title = scene->frames[k].title, when[64];
     scene->frames[k].time = states[k].time;
-    if (n == 1) snprintf(title, 256, "%s at t = %.6g s", subject->words, (double)states[k].time);
-    else snprintf(title, 256, "t = %.6g s", (double)states[k].time);
+    say_when(options, states[k].time, when);
+    if (n == 1) snprintf(title, 256, "%.160s at %s", subject->words, when);
+    else snprintf(title, 256, "%s", when);
   }
   if (diag_errors(diag)) PetscFunctionReturn(0);
   choose_colours(scene, options, subject->field.unit, subject->words);
