@@ -142,8 +142,9 @@ static PetscErrorCode AddCrowd(const Model *m, PetscReal sum[2])
 
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc1(grid->n_cells, &filled));
-  for (PetscInt p = 0; p < m->points->n; ++p)
-    filled[m->points->cell[p]] += m->points->real[POINT_J][p] * m->points->real[POINT_VOLUME][p];
+  for (PetscInt p = 0; p < m->points->n; ++p) /* what has just left the grid is in none */
+    if (m->points->cell[p] >= 0)
+      filled[m->points->cell[p]] += m->points->real[POINT_J][p] * m->points->real[POINT_VOLUME][p];
   for (PetscInt cell = 0; cell < grid->n_cells; ++cell) {
     if (filled[cell] <= 0) continue;
     grid_cell_x(grid, cell, x);
