@@ -81,6 +81,17 @@ typedef struct {
 
 extern const NodalForce *const nodal_forces[]; /* ended by NULL */
 
+/* Slots (n x n) of the pairs of n local nodes; PETSC_FALSE if the pattern lacks any. */
+static inline PetscBool nodal_find_slots(const System *system, PetscInt n, const PetscInt *node, PetscInt *slot)
+{
+  PetscBool all = PETSC_TRUE;
+  for (PetscInt k = 0; k < n * n; ++k) {
+    slot[k] = system_pair(system, node[k / n], node[k % n]);
+    all = all && slot[k] >= 0;
+  }
+  return all;
+}
+
 /* Add d residual[row] / d du[column], for dofs node * dim + component of the pair of nodes at
  * `slot` of the system. What is prescribed is cut later. */
 static inline void nodal_add_tangent(const NodalOutput *out, PetscInt dim, PetscInt slot, PetscInt row, PetscInt column,

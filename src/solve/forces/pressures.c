@@ -123,12 +123,7 @@ static PetscBool find_slots(void *data, const System *system)
   Pressures *s = data;
   PetscInt missing = 0;
   for (const Pushed *c = s->pushed; c < s->pushed + s->n; ++c)
-    for (PetscInt I = 0; I < c->n; ++I)
-      for (PetscInt J = 0; J < c->n; ++J) {
-        const PetscInt slot = system_pair(system, s->node[c->first + I], s->node[c->first + J]);
-        s->slot[c->slot + I * c->n + J] = slot;
-        missing += slot < 0;
-      }
+    missing += !nodal_find_slots(system, c->n, s->node + c->first, s->slot + c->slot);
   return !missing;
 }
 
