@@ -7,8 +7,9 @@
 #include "picture/plot.h"
 
 static const CliOption options_known[] = {
-  {"field", "NAME", "the field that gives the colours (default: displacement)"},
-  {"component", "WORD", "x y z, xx yy zz xy yz zx, magnitude, mises, mean (default: magnitude, mises of a tensor)"},
+  {"field", "FIELD", "the field that gives the colours (default: displacement)"},
+  {"component", "COMPONENT",
+   "x y z, xx yy zz xy yz zx, magnitude, mises, mean (default: magnitude, mises of a tensor)"},
   {"time", "T[,T...]",
    "the states nearest to these times in seconds, or 'all'; several stand side by side (default: the last, and six on "
    "the way to it)"},
@@ -24,11 +25,15 @@ static const CliOption options_known[] = {
   {NULL, NULL, NULL},
 };
 
-static const CliUsage usage = {
+const CliUsage cli_plot_usage = {
   .usage = "talus plot RUN_DIR [options]",
   .help =
     "Draws a state of a run coloured by a field, or several side by side, and the histories of its measures, as PNG\n"
     "pictures in RUN_DIR/pictures. Of an axisymmetric run both sides of the axis are shown.",
+  .examples =
+    "talus plot runs/cantilever\n"
+    "talus plot runs/slope --field stress --component yy --range -2e5:0\n"
+    "talus plot runs/collapse --time 0,0.2,0.4 --columns 3 --out collapse.png",
   .options = options_known,
   .min_words = 1,
   .max_words = 1,
@@ -170,7 +175,7 @@ PetscErrorCode CliPlot(int argc, char **argv, int *exit_code)
   PetscBool go_on;
 
   PetscFunctionBeginUser;
-  PetscCall(CliParse(&usage, argc, argv, &arguments, &go_on, exit_code));
+  PetscCall(CliParse(&cli_plot_usage, argc, argv, &arguments, &go_on, exit_code));
   if (!go_on) PetscFunctionReturn(0);
   PetscCall(Understand(&arguments, &options, &go_on, exit_code));
   if (!go_on) PetscFunctionReturn(0);
