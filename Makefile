@@ -18,7 +18,7 @@ MAKEFLAGS  += --no-print-directory
 export OMPI_ALLOW_RUN_AS_ROOT := 1
 export OMPI_ALLOW_RUN_AS_ROOT_CONFIRM := 1
 
-.PHONY: build help deps configure run test check test-sanitize test-kill test-mutants fuzz bench verify install docs format format-check tidy clean
+.PHONY: build help deps configure run test check test-sanitize test-kill test-mutants fuzz bench verify install docs gallery format format-check tidy clean
 
 build: configure ## Build the program, build/talus, and its tests (the default). PORTABLE=1: for any machine
 	@cmake --build $(BUILD) --parallel $(JOBS)
@@ -78,10 +78,14 @@ verify: build ## Verify every case that has reference values; FULL=1: on the fin
 install: build ## Install program, library, header and package files under PREFIX=/usr/local
 	@cmake --install $(BUILD) --prefix $(abspath $(PREFIX))
 
-docs: ## Reference of the public header, in build/docs/html
+docs: ## Build the site of the documentation, in build/docs/html
 	@cmake/debian-packages.sh build docs
 	@$(MAKE) configure
+	@cmake --build $(BUILD) --parallel $(JOBS) --target talus
 	@cmake --build $(BUILD) --target docs
+
+gallery: build ## Measure the seconds that the gallery says of the cases (half an hour)
+	@python3 docs/site/measure.py $(TALUS)
 
 format: ## Format all sources in place
 	@cmake/debian-packages.sh format

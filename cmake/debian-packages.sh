@@ -9,7 +9,8 @@ packages_of() {
       echo petsc-dev libopenmpi-dev openmpi-bin libhdf5-openmpi-dev libopenblas-dev
       echo libfyaml-dev zlib1g-dev libcmocka-dev gmsh gnuplot-nox
       ;;
-    docs) echo doxygen ;;
+    # The site: pages and theme, formulas set at build time, the reference of the header.
+    docs) echo python3-sphinx python3-myst-parser furo katex doxygen ;;
     format) echo clang-format ;;
     tidy) echo clang-tidy ;;
     fuzz) echo clang libclang-rt-dev ;;
