@@ -18,7 +18,7 @@ MAKEFLAGS  += --no-print-directory
 export OMPI_ALLOW_RUN_AS_ROOT := 1
 export OMPI_ALLOW_RUN_AS_ROOT_CONFIRM := 1
 
-.PHONY: build tests help deps configure run test check test-sanitize test-kill test-mutants fuzz bench verify install docs format format-check tidy clean
+.PHONY: build tests help deps configure run test check test-sanitize test-kill test-mutants fuzz bench verify install package release-check docs gallery format format-check tidy clean
 
 build: configure ## Build the program, build/talus, its library and manual (the default). PORTABLE=1: for any machine
 	@cmake --build $(BUILD) --parallel $(JOBS)
@@ -81,10 +81,21 @@ verify: build ## Verify every case that has reference values; FULL=1: on the fin
 install: build ## Install program, library, manual, completions and cases under PREFIX=/usr/local; `make docs` before: these, too
 	@cmake --install $(BUILD) --prefix $(abspath $(PREFIX))
 
-docs: ## Reference of the public header, in build/docs/html
+package: ## Build Debian packages for any x86-64 or arm64 machine, in build/package: program, library, Python, documentation
+	@cmake/debian-packages.sh build docs package
+	@sh packaging/build.sh $(BUILD)/package
+
+release-check: ## Before a tag: do all files tell the same version, and is nothing left open? VERSION=0.2.0
+	@sh packaging/release-check.sh $(VERSION)
+
+docs: ## Build the site of the documentation, in build/docs/html
 	@cmake/debian-packages.sh build docs
 	@$(MAKE) configure
+	@cmake --build $(BUILD) --parallel $(JOBS) --target talus
 	@cmake --build $(BUILD) --target docs
+
+gallery: build ## Measure the seconds that the gallery says of the cases (half an hour)
+	@python3 docs/site/measure.py $(TALUS)
 
 format: ## Format all sources in place
 	@cmake/debian-packages.sh format
