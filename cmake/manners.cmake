@@ -31,4 +31,8 @@ install(FILES ${manners}/talus.1 DESTINATION ${CMAKE_INSTALL_MANDIR}/man1)
 install(FILES ${manners}/talus.bash DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions RENAME talus)
 install(FILES ${manners}/_talus DESTINATION ${TALUS_ZSH_COMPLETIONS})
 install(FILES ${manners}/talus.fish DESTINATION ${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d)
-install(DIRECTORY ${PROJECT_SOURCE_DIR}/cases/ DESTINATION ${CMAKE_INSTALL_DATADIR}/talus/cases)
+
+# Cases without their pictures, which the site shows; the site if `make docs` has built it.
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/cases/ DESTINATION ${CMAKE_INSTALL_DATADIR}/talus/cases PATTERN "*.png" EXCLUDE)
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/docs/example DESTINATION ${CMAKE_INSTALL_DOCDIR})
+install(DIRECTORY ${PROJECT_BINARY_DIR}/docs/html DESTINATION ${CMAKE_INSTALL_DOCDIR} OPTIONAL)

@@ -19,6 +19,7 @@ BELOW = [
     ("src/*/*/README", "src/README"),
     ("docs/example/*", "library"),
     ("docs/site/README", "CONTRIBUTING"),
+    ("packaging/README", "CONTRIBUTING"),
     ("tests/*", "CONTRIBUTING"),
     ("bench/*", "bench/README"),
 ]
