@@ -9,8 +9,8 @@ chroot=${2:-$(mktemp -d)/debian}
 [ "$(id -u)" -eq 0 ] || { echo "try-in-chroot.sh: needs root, for debootstrap and chroot" >&2; exit 2; }
 
 leave() {
-  umount "$chroot/proc" "$chroot/dev/shm" 2>/dev/null || :
-  [ -n "${2:-}" ] || [ -n "${KEEP:-}" ] || rm -rf "$chroot"
+  umount "$chroot/proc" "$chroot/sys" "$chroot/dev/shm" 2>/dev/null || :
+  [ -n "${KEEP:-}" ] || rm -rf "$chroot"
 }
 KEEP=${2:-}
 trap 'leave' EXIT
@@ -19,7 +19,9 @@ if [ ! -x "$chroot/usr/bin/apt-get" ]; then
   debootstrap --variant=minbase bookworm "$chroot" ${MIRROR:-} >"$packages/debootstrap.log"
 fi
 mount -t proc proc "$chroot/proc"
-mkdir -p "$chroot/dev/shm" && mount -t tmpfs tmpfs "$chroot/dev/shm"
+mount -t sysfs -o ro sysfs "$chroot/sys" # MPI asks it for cores
+mkdir -p "$chroot/dev/shm"
+mount -t tmpfs tmpfs "$chroot/dev/shm"
 cp /etc/resolv.conf "$chroot/etc/" 2>/dev/null || :
 
 rm -rf "$chroot/packages" && mkdir "$chroot/packages"

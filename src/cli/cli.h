@@ -20,6 +20,7 @@ PetscErrorCode CliCalibrate(int argc, char **argv, int *exit_code);
 PetscErrorCode CliPlot(int argc, char **argv, int *exit_code);
 PetscErrorCode CliVersion(int argc, char **argv, int *exit_code);
 PetscErrorCode CliInit(int argc, char **argv, int *exit_code);
+PetscErrorCode CliImport(int argc, char **argv, int *exit_code);
 PetscErrorCode CliHelp(int argc, char **argv, int *exit_code);
 PetscErrorCode CliCompletion(int argc, char **argv, int *exit_code);
 
@@ -37,9 +38,9 @@ typedef struct {
   const CliOption *options; /* ended by name = NULL; --help is always there */
   int min_words, max_words; /* how many words that are no options */
 } CliUsage;
-extern const CliUsage cli_run_usage, cli_check_usage, cli_init_usage, cli_list_usage, cli_schema_usage,
-  cli_verify_usage, cli_sweep_usage, cli_calibrate_usage, cli_plot_usage, cli_version_usage, cli_help_usage,
-  cli_completion_usage;
+extern const CliUsage cli_run_usage, cli_check_usage, cli_init_usage, cli_import_usage, cli_list_usage,
+  cli_schema_usage, cli_verify_usage, cli_sweep_usage, cli_calibrate_usage, cli_plot_usage, cli_version_usage,
+  cli_help_usage, cli_completion_usage;
 
 /* A subcommand; the table is in main.c, ended by name = NULL. */
 typedef struct {

@@ -15,6 +15,7 @@ const CliCommand cli_commands[] = {
   {"run", "run a case file", CliRun, &cli_run_usage},
   {"check", "validate a case file and print what was understood", CliCheck, &cli_check_usage},
   {"init", "a first case to begin with, or a copy of an installed one", CliInit, &cli_init_usage},
+  {"import", "a case from a project of another program: Kratos", CliImport, &cli_import_usage},
   {"list", "what there is: laws, methods, cells, measures, fields", CliList, &cli_list_usage},
   {"schema", "the reference of the case file: text, Markdown, JSON Schema", CliSchema, &cli_schema_usage},
   {"verify", "run a verification case and compare with its reference", CliVerify, &cli_verify_usage},

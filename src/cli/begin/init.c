@@ -35,6 +35,7 @@ static void read_title(const char *file, char title[160])
   while (in && !title[0] && fgets(line, sizeof line, in))
     if (sscanf(line, "title: %159[^\n#]", title) != 1) title[0] = '\0';
   if (in) fclose(in);
+  for (size_t n = strlen(title); n && title[n - 1] == ' '; --n) title[n - 1] = '\0';
 }
 
 static PetscErrorCode List(int *exit_code)
