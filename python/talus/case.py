@@ -4,13 +4,12 @@ import contextlib
 import copy
 import ctypes
 import re
-import warnings
 from pathlib import Path
 
 from . import _yaml
 from ._callbacks import Callbacks
 from ._library import library
-from .errors import CaseError, RunError, TalusError, TalusWarning, read_messages
+from .errors import CaseError, RunError, TalusError, read_messages, warn_of
 from .runs import Run
 
 
@@ -132,9 +131,7 @@ class Case:
             raise CaseError(text, read_messages(text, keys))
         if code:
             raise TalusError(f"{lib.text('talus_error_string', code)}\n{text}")
-        for mistake in read_messages(text, keys):
-            if mistake.severity == "warning":
-                warnings.warn(f"{mistake.text}" + (f" ({mistake.hint})" if mistake.hint else ""), TalusWarning, 4)
+        warn_of(text, 4)
 
     def check(self):
         """Read and validate the case; CaseError tells all its mistakes.

@@ -1,6 +1,7 @@
 """What can go wrong, as exceptions that carry what a program needs to react."""
 
 import re
+import warnings
 from dataclasses import dataclass
 
 
@@ -76,3 +77,11 @@ def read_messages(text, key_of_line=None):
         elif line.startswith("  hint: ") and found:
             found[-1]["hint"] = line[8:]
     return [Mistake(**fields) for fields in found]
+
+
+def warn_of(text, stacklevel):
+    """Hand the warnings of a text on to :mod:`warnings`, as of the caller so many levels up."""
+    for mistake in read_messages(text):
+        if mistake.severity == "warning":
+            hint = f" ({mistake.hint})" if mistake.hint else ""
+            warnings.warn(mistake.text + hint, TalusWarning, stacklevel + 1)

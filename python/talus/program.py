@@ -11,7 +11,7 @@ from pathlib import Path
 
 from . import _yaml
 from .case import Case
-from .errors import CaseError, RunError, TalusError, read_messages
+from .errors import CaseError, RunError, TalusError, read_messages, warn_of
 from .runs import Run
 from .runs import open as open_results
 
@@ -82,9 +82,9 @@ def _follow(process, log, progress):
             words = line.split()
             if words[:2] == ["step", "="] and words[3:5] == ["time", "="] and not stopped:
                 stopped = bool(progress(int(words[2]), float(words[5])))
+                if stopped and not ended:
+                    process.send_signal(signal.SIGTERM)  # once: a second one would end it at once
         at = whole
-        if stopped and not ended:
-            process.send_signal(signal.SIGTERM)
         if ended:
             return stopped
         clock.sleep(0.05)
@@ -106,13 +106,13 @@ def run(case, out, ranks=1, force=False, resume=False, progress=None, trust=Fals
         words = [str(find_program()), "run", *words, "--quiet"] + ["--force"] * bool(force) + ["--trust"] * bool(trust)
         if ranks > 1:
             words = ["mpiexec", "--oversubscribe", "-n", str(ranks), *words]
-        log = out / "log.txt"
-        skip = log.stat().st_size if resume and log.is_file() else 0
+        told = progress or (lambda *_: False)
+        if resume and progress and out.is_dir():
+            told = _only_new(progress, Run(out).history["step"][-1])
         with tempfile.TemporaryFile() as said:
             process = subprocess.Popen(words, stdout=said, stderr=said, env=_environment())
             try:
-                stopped = _follow(process, log, progress or (lambda *_: False)) if not skip else _follow(
-                    process, log, _only_new(progress, Run(out)))
+                stopped = _follow(process, out / "log.txt", told)
             except BaseException:
                 process.terminate()
                 process.wait()
@@ -121,13 +121,13 @@ def run(case, out, ranks=1, force=False, resume=False, progress=None, trust=Fals
             text = said.read().decode(errors="replace")
     if not stopped:
         _raise_for(process.returncode, text, keys, Run(out) if (out / "case.yaml").is_file() else None)
+        warn_of(text, 2)
     return Run(out)
 
 
-def _only_new(progress, run_before):
+def _only_new(progress, before):
     """Progress of the steps that a resumed run has not taken before."""
-    before = run_before.history["step"][-1]
-    return lambda step, time: bool(progress and step > before and progress(step, time))
+    return lambda step, time: step > before and progress(step, time)
 
 
 def _call(words):

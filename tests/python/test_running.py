@@ -132,6 +132,12 @@ class Running(InFolder):
         run = talus.run(case, "by-program", progress=lambda step, time: seen.append((step, time)))
         self.assertEqual([step for step, _ in seen], [1, 2, 3, 4, 5])
         self.assertEqual(run.case["materials"]["rubber"]["young"], 2e6)
+        talus.run(BLOCK, "cut", progress=lambda step, time: True)
+        longer = talus.Case("cut")
+        longer["analysis.end"] = 0.014
+        del seen[:]
+        run = talus.run(longer, "cut", resume=True, progress=lambda step, time: seen.append(step))
+        self.assertEqual((seen[-1], run.history.time[-1]), (7, 0.014))
         self.assertEqual(list(Path(".").glob("talus-*")), [])
         case["materials.rubber.poison"] = 0.2
         with self.assertRaises(talus.CaseError) as caught:
