@@ -19,7 +19,7 @@ tells packaging/debian/control "$(sed -n 's/^Package: libtalus\([0-9.]*\)$/\1/p'
 for file in docs/example/README.md packaging/try.sh; do
   tells $file "$(sed -n 's/.*find_package(talus \([0-9.]*\).*/\1/p' $file | head -n 1)" "$minor"
 done
-if [ -f python/pyproject.toml ] && ! grep -q '^dynamic *=.*version' python/pyproject.toml; then
+if grep -q "^version" python/pyproject.toml 2>/dev/null; then # otherwise it is read from CMakeLists.txt
   tells python/pyproject.toml "$(sed -n 's/^version *= *"\(.*\)"/\1/p' python/pyproject.toml)" "$version"
 fi
 [ "${1:-}" != --agree ] || { [ $wrong -eq 0 ] && echo "all files tell $version"; exit $wrong; }
