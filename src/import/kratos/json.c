@@ -1,4 +1,5 @@
 /* Values of the JSON files, and what is complained of. */
+#include <ctype.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
@@ -67,4 +68,11 @@ const char *kratos_part(const char *full)
 {
   const char *point = strchr(full, '.');
   return point ? point + 1 : full;
+}
+
+void kratos_name(const char *part, char name[KRATOS_NAME])
+{
+  snprintf(name, KRATOS_NAME, "%s", part);
+  for (char *c = name; *c; ++c)
+    if (!isalnum((unsigned char)*c)) *c = '_';
 }

@@ -75,6 +75,7 @@ static void read_body(KratosProject *p, const YamlNode *item, KratosBody *body)
 
   *body = (KratosBody){.node = item};
   snprintf(body->part, sizeof body->part, "%s", kratos_part(kratos_text(item, "model_part_name")));
+  kratos_name(body->part, body->name);
   const MdpaPart *part = mdpa_part(p->body, body->part);
   if (!part) kratos_refuse(f, item, "%s has no model part '%s'", p->body->file, body->part);
   if (!variables) {

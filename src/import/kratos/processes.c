@@ -14,6 +14,7 @@ static PetscErrorCode Add(KratosProject *p, KratosKind kind, const YamlNode *par
   *action = &p->actions[p->n_actions++];
   **action = (KratosAction){.kind = kind};
   snprintf((*action)->part, KRATOS_NAME, "%s", kratos_part(kratos_text(parameters, "model_part_name")));
+  kratos_name((*action)->part, (*action)->name);
   if (!mdpa_part(p->grid, (*action)->part))
     kratos_refuse(&p->parameters, named ? named : parameters,
                   "%s has no model part '%s': only parts of the grid are held and loaded", p->grid->file,

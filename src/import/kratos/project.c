@@ -35,7 +35,7 @@ static const char *const settings_known[] = {
   "line_search",
   "move_mesh_flag",
   "newmark_beta",
-  "bossak_factor",
+  "damp_factor_m",
   NULL,
 };
 
@@ -52,8 +52,9 @@ static void read_scheme(KratosProject *p, const YamlNode *settings)
                   "talus is implicit: explicit integration is not read");
   if (!p->dynamic) return;
   p->beta = kratos_number(&p->parameters, settings, "newmark_beta", 0.25);
-  if (!strcmp(scheme, "bossak")) p->bossak = kratos_number(&p->parameters, settings, "bossak_factor", -0.3);
-  else if (scheme[0] && strcmp(scheme, "newmark"))
+  if (!scheme[0] || !strcmp(scheme, "bossak"))
+    p->bossak = kratos_number(&p->parameters, settings, "damp_factor_m", -0.3);
+  else if (strcmp(scheme, "newmark"))
     kratos_refuse(&p->parameters, yaml_find(settings, "scheme_type"), "a scheme '%s' is not read: newmark, bossak",
                   scheme);
 }

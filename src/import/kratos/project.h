@@ -13,6 +13,7 @@ typedef struct {
 
 typedef struct {
   char part[KRATOS_NAME]; /* of the body's mesh */
+  char name[KRATOS_NAME]; /* the same as a name of the case */
   char law[64];           /* talus's */
   PetscInt n_constants;   /* the rest of the material */
   const char *key[6];
@@ -27,7 +28,7 @@ typedef enum { KRATOS_HELD, KRATOS_SLIP, KRATOS_LINE_LOAD, KRATOS_POINT_LOAD } K
 /* Something that acts at a part of the grid. */
 typedef struct {
   KratosKind kind;
-  char part[KRATOS_NAME];
+  char part[KRATOS_NAME], name[KRATOS_NAME];
   PetscBool set[3];   /* which components */
   PetscReal value[3]; /* m in each step, N/m2, N */
 } KratosAction;
@@ -68,6 +69,8 @@ PetscBool kratos_vector(const KratosFile *f, const YamlNode *mapping, const char
 void kratos_path(const KratosProject *p, const char *named, const char *ending, char path[PETSC_MAX_PATH_LEN]);
 /* The name of a model part behind its first point: "Background_Grid.Floor": "Floor". */
 const char *kratos_part(const char *full);
+/* Letters, digits and underscores of it, as names in a case are. */
+void kratos_name(const char *part, char name[KRATOS_NAME]);
 
 PetscErrorCode KratosOpen(Diag *diag, const char *path, KratosFile *file);
 /* project.c: read all; diag has errors if it cannot be computed. */

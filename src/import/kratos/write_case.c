@@ -37,7 +37,7 @@ static void write_bodies(const KratosProject *p, FILE *out)
   for (PetscInt b = 0; b < p->n_bodies; ++b) {
     const KratosBody *body = &p->bodies[b];
     fprintf(out, "  - {name: %s, mesh: body.msh, region: %s, points_per_cell: %" PetscInt_FMT ", material: %s",
-            body->part, body->part, body->points, body->part);
+            body->name, body->name, body->points, body->name);
     if (body->velocity[0] != 0 || body->velocity[1] != 0 || body->velocity[2] != 0) {
       fputs(", velocity: ", out);
       write_vector(out, body->velocity, p->dim);
@@ -46,7 +46,7 @@ static void write_bodies(const KratosProject *p, FILE *out)
   }
   fputs("materials:\n", out);
   for (PetscInt b = 0; b < p->n_bodies; ++b) {
-    fprintf(out, "  %s: {law: %s", p->bodies[b].part, p->bodies[b].law);
+    fprintf(out, "  %s: {law: %s", p->bodies[b].name, p->bodies[b].law);
     for (PetscInt i = 0; i < p->bodies[b].n_constants; ++i) {
       fprintf(out, ", %s: ", p->bodies[b].key[i]);
       schema_write_real(out, p->bodies[b].constant[i]);
@@ -62,7 +62,7 @@ static void write_held(const KratosProject *p, const KratosAction *a, PetscBool 
   for (PetscInt d = 0; d < p->dim; ++d) {
     if (!a->set[d] || (a->value[d] != 0) != moves) continue;
     if (first)
-      fprintf(out, "  - {name: %s%s, on: {boundary: %s}, %s", a->part, moves ? "_moves" : "", a->part,
+      fprintf(out, "  - {name: %s%s, on: {boundary: %s}, %s", a->name, moves ? "_moves" : "", a->name,
               moves ? "displacement: {" : "fix: [");
     fprintf(out, "%s%c", first ? "" : ", ", "xyz"[d]);
     if (moves) {
@@ -82,7 +82,7 @@ static void write_boundary(const KratosProject *p, FILE *out)
     if (a->kind != KRATOS_HELD && a->kind != KRATOS_SLIP) continue;
     if (!any) fputs("boundary:\n", out);
     any = PETSC_TRUE;
-    if (a->kind == KRATOS_SLIP) fprintf(out, "  - {name: %s, on: {boundary: %s}, fix: [normal]}\n", a->part, a->part);
+    if (a->kind == KRATOS_SLIP) fprintf(out, "  - {name: %s, on: {boundary: %s}, fix: [normal]}\n", a->name, a->name);
     else {
       write_held(p, a, PETSC_FALSE, out);
       write_held(p, a, PETSC_TRUE, out);
@@ -122,7 +122,7 @@ static void write_loads_of(const KratosProject *p, KratosKind kind, const char *
     any = PETSC_TRUE;
     if (kind == KRATOS_POINT_LOAD) write_points(p, a, out);
     else {
-      fprintf(out, "    - {on: {boundary: %s}, value: ", a->part);
+      fprintf(out, "    - {on: {boundary: %s}, value: ", a->name);
       write_vector(out, a->value, p->dim);
       write_amplitude(p, "amplitude", out);
       fputs("}\n", out);

@@ -109,7 +109,7 @@ PetscErrorCode KratosWriteGrid(const KratosProject *p, const char *file)
   for (PetscInt a = 0; a < p->n_actions; ++a)
     if (first_of_part(p, a))
       fprintf(out, "0 %" PetscInt_FMT " \"%s\"\n%" PetscInt_FMT " %" PetscInt_FMT " \"%s\"\n", a + 2,
-              p->actions[a].part, p->dim - 1, a + 2, p->actions[a].part);
+              p->actions[a].name, p->dim - 1, a + 2, p->actions[a].name);
   fputs("$EndPhysicalNames\n", out);
   write_nodes(out, p->grid);
   fprintf(out, "$Elements\n%" PetscInt_FMT "\n", write_grid_elements(NULL, p));
@@ -134,7 +134,7 @@ PetscErrorCode KratosWriteBody(const KratosProject *p, const char *file)
   PetscCall(Open(file, &out));
   fprintf(out, "%" PetscInt_FMT "\n", p->n_bodies);
   for (PetscInt b = 0; b < p->n_bodies; ++b)
-    fprintf(out, "%" PetscInt_FMT " %" PetscInt_FMT " \"%s\"\n", p->dim, b + 1, p->bodies[b].part);
+    fprintf(out, "%" PetscInt_FMT " %" PetscInt_FMT " \"%s\"\n", p->dim, b + 1, p->bodies[b].name);
   fputs("$EndPhysicalNames\n", out);
   write_nodes(out, p->body);
   fprintf(out, "$Elements\n%" PetscInt_FMT "\n", write_body_elements(NULL, p));
