@@ -1,5 +1,6 @@
 /* The processes of ProjectParameters.json: what holds, pushes and starts the material. */
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 #include "import/kratos/project.h"
 
@@ -22,14 +23,14 @@ static PetscErrorCode Add(KratosProject *p, KratosKind kind, const YamlNode *par
   PetscFunctionReturn(0);
 }
 
-/* Only what acts all the time is read. */
+/* Only what acts all the time is read: from 0, or before, to "End", or beyond. */
 static void check_interval(KratosProject *p, const YamlNode *parameters)
 {
   const YamlNode *interval = yaml_find(parameters, "interval");
   if (!interval || interval->kind != YAML_SEQUENCE || interval->n != 2) return;
-  const YamlNode *from = interval->child[0], *to = interval->child[1];
-  const PetscBool ends = strcmp(to->text ? to->text : "", "End") && atof(to->text ? to->text : "0") < p->end;
-  if (ends || atof(from->text ? from->text : "1") > 0)
+  const char *from = interval->child[0]->text, *to = interval->child[1]->text;
+  const PetscBool ends = to && strcmp(to, "End") && strtod(to, NULL) < p->end;
+  if (ends || !from || strtod(from, NULL) > 0)
     kratos_refuse(&p->parameters, interval, "what begins or ends within the run is not read");
 }
 

@@ -166,7 +166,7 @@ PetscErrorCode KratosRead(const char *path, Diag *diag, KratosProject *p)
                  *settings = root ? yaml_find(root, "solver_settings") : NULL;
   if (root && (!problem || !settings || settings->kind != YAML_MAPPING))
     diag_error(diag, NULL, "%s has no problem_data or no solver_settings: no project of Kratos", file);
-  if (!problem || diag_errors(diag)) PetscFunctionReturn(0);
+  if (!problem || !settings || diag_errors(diag)) PetscFunctionReturn(0);
   snprintf(p->name, sizeof p->name, "%s", kratos_text(problem, "problem_name"));
   PetscCall(ReadSettings(p, settings));
   read_times(p, problem, settings);
