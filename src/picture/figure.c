@@ -1,6 +1,6 @@
 #include "picture/figure.h"
 #include <string.h>
-#include "picture/plot_gnuplot.h"
+#include "picture/gnuplot.h"
 
 /* Colours that stay apart in print and for the colour-blind, and marks of different shape: the
  * first is filled, the others are hollow and larger, so that curves that coincide can be told
