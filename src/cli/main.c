@@ -22,7 +22,8 @@ static const struct Command {
   {"verify", "run a verification case and compare with its reference", CliVerify},
   {"sweep", "run a case over values of its keys: a table and pictures", CliSweep},
   {"calibrate", "which parameters give what was measured: a region", CliCalibrate},
-  {"plot", "pictures of a run", CliPlot},
+  {"plot", "pictures of a run, histories of several", CliPlot},
+  {"compare", "how far the histories of runs are apart, and in which keys", CliCompare},
   {"version", "versions of talus and of its libraries (also --version)", CliVersion},
   {NULL, NULL, NULL},
 };

@@ -3,12 +3,34 @@
 #include <spawn.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 #include <sys/wait.h>
 #include <unistd.h>
 #include "output/directory/run_dir_files.h"
 
-PetscErrorCode GnuplotBegin(GnuplotScript *script, const char *png, int width, int height)
+/* Terminals by the ending of the file; fonts have the size that they have in a PNG. */
+static const struct Format {
+  const char *ending, *terminal;
+  double unit; /* of its sizes, pixels; fonts are in points in all */
+} formats[] = {{".png", "pngcairo truecolor", 1},
+               {".svg", "svg dynamic background rgb 'white'", 1},
+               {".pdf", "pdfcairo", 96},
+               {".gif", "gif animate delay 10 loop 0 optimize", 1}};
+enum { N_FORMATS = sizeof formats / sizeof formats[0] };
+
+static const struct Format *format_of(const char *path)
 {
+  const char *ending = strrchr(path, '.');
+  for (int k = 0; k < N_FORMATS && ending; ++k)
+    if (!strcasecmp(ending, formats[k].ending)) return &formats[k];
+  return NULL;
+}
+
+PetscBool gnuplot_knows(const char *path) { return format_of(path) != NULL; }
+
+PetscErrorCode GnuplotBegin(GnuplotScript *script, const char *path, int width, int height)
+{
+  const struct Format *format = gnuplot_knows(path) ? format_of(path) : &formats[0];
   char unfinished[FILE_PATH];
 
   PetscFunctionBeginUser;
@@ -16,10 +38,9 @@ PetscErrorCode GnuplotBegin(GnuplotScript *script, const char *png, int width, i
   script->size = 0;
   script->out = open_memstream(&script->text, &script->size);
   PetscCheck(script->out, PETSC_COMM_SELF, PETSC_ERR_MEM, "No memory for a script");
-  fprintf(script->out,
-          "set encoding utf8\nset terminal pngcairo noenhanced truecolor size %d,%d font 'DejaVu Sans,%d'\n", width,
-          height, height >= 600 ? 13 : 12);
-  PetscCall(PetscSNPrintf(unfinished, sizeof unfinished, "%s" FILE_UNFINISHED, png));
+  fprintf(script->out, "set encoding utf8\nset terminal %s noenhanced size %g,%g font 'DejaVu Sans,%d'\n",
+          format->terminal, width / format->unit, height / format->unit, height >= 600 ? 13 : 12);
+  PetscCall(PetscSNPrintf(unfinished, sizeof unfinished, "%s" FILE_UNFINISHED, path));
   (void)unlink(unfinished); /* a link would be written through */
   fputs("set output ", script->out);
   gnuplot_quote(script->out, unfinished);
@@ -86,19 +107,19 @@ static PetscBool run_script(const GnuplotScript *script, FILE *input, FILE *comp
   return PETSC_FALSE;
 }
 
-PetscErrorCode GnuplotEnd(GnuplotScript *script, const char *png, Diag *diag, PetscBool *done)
+PetscErrorCode GnuplotEnd(GnuplotScript *script, const char *path, Diag *diag, PetscBool *done)
 {
   char unfinished[FILE_PATH];
   FILE *input = tmpfile(), *complaints = tmpfile();
 
   PetscFunctionBeginUser;
   *done = PETSC_FALSE;
-  PetscCall(PetscSNPrintf(unfinished, sizeof unfinished, "%s" FILE_UNFINISHED, png));
+  PetscCall(PetscSNPrintf(unfinished, sizeof unfinished, "%s" FILE_UNFINISHED, path));
   PetscCheck(!fclose(script->out), PETSC_COMM_SELF, PETSC_ERR_MEM, "No memory for a script");
   if (input && complaints) {
     const PetscBool ran = run_script(script, input, complaints, diag);
-    const int error = file_commit(unfinished, png, ran ? 0 : ECANCELED);
-    if (ran && error) diag_error(diag, NULL, "cannot write the picture '%s': %s", png, strerror(error));
+    const int error = file_commit(unfinished, path, ran ? 0 : ECANCELED);
+    if (ran && error) diag_error(diag, NULL, "cannot write the picture '%s': %s", path, strerror(error));
     *done = ran && !error;
   } else {
     diag_error(diag, NULL, "cannot make a temporary file: %s", strerror(errno));

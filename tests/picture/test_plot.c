@@ -457,9 +457,10 @@ static void test_convergence(void **state)
 {
   const PetscReal h[] = {0.5, 0.25, 0.125, 0.0625}, fem[] = {0.1, 0.025, 0.00625, 0.0015625},
                   mpm[] = {0.2, 0.05, NAN, 0};
-  const FigureSeries series[] = {{"fem", FIGURE_LINE_MARKS, 4, h, fem},
-                                 {"mpm 'a' \"b\" `date` \\c", FIGURE_LINE_MARKS, 4, h, mpm},
-                                 {"none", FIGURE_LINE, 0, h, mpm}};
+  const FigureSeries series[] = {
+    {.name = "fem", .style = FIGURE_LINE_MARKS, .n = 4, .x = h, .y = fem},
+    {.name = "mpm 'a' \"b\" `date` \\c", .style = FIGURE_LINE_MARKS, .n = 4, .x = h, .y = mpm},
+    {.name = "none", .style = FIGURE_LINE, .n = 0, .x = h, .y = mpm}};
   const Figure figure = {.title = "Cantilever",
                          .x_label = "h [m]",
                          .y_label = "error",

@@ -23,6 +23,10 @@ PetscBool plot_folder(const char *run, Diag *diag)
   return !(error || link);
 }
 
+const char *const plot_formats[] = {"png", "svg", "pdf", NULL};
+
+const char *plot_ending(const char *format) { return format ? format : "png"; }
+
 void plot_file_name(char *name)
 {
   for (char *c = name; *c; ++c)
@@ -261,9 +265,9 @@ static void picture_name(const PlotOptions *options, PetscInt n, const VtkState 
   const PlotScalar *scalar = &subject->scalar;
   const char *number = n == 1 ? strchr(state->file, '_') : NULL;
   const int digits = number ? (int)strcspn(number, ".") : 0;
-  snprintf(name, sizeof name, "state%s_%.120s%s%.30s%s%.*s.png", n == 1 ? "" : "s", subject->field.name,
+  snprintf(name, sizeof name, "state%s_%.120s%s%.30s%s%.*s.%s", n == 1 ? "" : "s", subject->field.name,
            scalar->name[0] ? "_" : "", scalar->name, options->turned ? "_turned" : "", PetscMin(digits, 13),
-           number ? number : "");
+           number ? number : "", plot_ending(options->format));
   plot_file_name(name);
   if (options->out) snprintf(path, PETSC_MAX_PATH_LEN, "%s", options->out);
   else snprintf(path, PETSC_MAX_PATH_LEN, "%s/pictures/%s", options->run, name);
