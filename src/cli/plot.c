@@ -18,7 +18,7 @@ static const CliOption options_known[] = {
   {"profile", "WALL", "instead: the pressure and the shear of a wall, as a picture and a table (profile_WALL.csv)"},
   {"range", "A:B", "values of the first and the last colour"},
   {"size", "WxH", "pixels, for example 1200x800 (default: to suit the body)"},
-  {"up", "x|y|z", "the axis that points up in a picture in space (default: z)"},
+  {"up", "x|y|z", "the axis that points up in a picture in space (default: that of gravity)"},
   {"half", NULL, "of an axisymmetric run: one side of the axis alone"},
   {"turned", NULL, "of an axisymmetric run: the whole body in space, with a quarter cut out"},
   {"y", "MEASURE",
@@ -112,7 +112,7 @@ static PetscErrorCode Understand(const CliArguments *arguments, PlotOptions *opt
   options->half = cli_flag(arguments, "half");
   options->turned = cli_flag(arguments, "turned");
   options->has_range = range != NULL;
-  options->up = up ? tolower((unsigned char)up[0]) - 'x' : 2;
+  options->up = up ? tolower((unsigned char)up[0]) - 'x' : -1;
   if (time && !plot_times(time, options))
     PetscCall(
       CliUsageError(exit_code, "for example --time 0,0.5,1", "--time wants seconds, 'last' or 'all', not '%s'", time));

@@ -26,7 +26,7 @@ typedef struct {
   PetscBool has_range;
   PetscReal range[2]; /* of the colours, in the field's own unit */
   int width, height;  /* pixels; 0: chosen to suit the body */
-  PetscInt up;        /* axis that points up in a picture in space: 0 1 2 */
+  PetscInt up;        /* axis that points up in a picture in space: 0 1 2; -1: that of gravity */
   /* of bodies of revolution, which are shown on both sides of their axis: */
   PetscBool half;     /* one side alone */
   PetscBool turned;   /* the whole body in space, with a quarter cut out */

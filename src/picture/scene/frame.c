@@ -67,6 +67,33 @@ PetscErrorCode PlotFrameRead(VtkFile *file, const VtkFieldInfo *field, const Plo
   PetscFunctionReturn(0);
 }
 
+/* Do neighbours stay neighbours, as far as the case tells? */
+static PetscBool is_elastic(const Case *c)
+{
+  for (PetscInt k = 0; c && k < c->n_materials; ++k)
+    if (strncmp(c->materials[k].law, "neo-hookean", 11) != 0) return PETSC_FALSE;
+  return c != NULL;
+}
+
+/* How far apart points of the frame may be and still be one body: as far as two of them were in the first frame, since
+ * flow draws them apart; half of that in elastic bodies, which keep the corners between them, unless they are
+ * stretched. */
+static PetscErrorCode ChooseGap(PlotScene *scene, PlotFrame *f)
+{
+  PetscReal *sorted;
+
+  PetscFunctionBeginUser;
+  if (!f->n) PetscFunctionReturn(0);
+  PetscCall(PetscMalloc1(f->n, &sorted));
+  PetscCall(PetscArraycpy(sorted, f->radius, f->n));
+  PetscCall(PetscSortReal(f->n, sorted));
+  if (f == scene->frames) scene->gap = sorted[f->n / 2];
+  const PetscBool stretched = sorted[f->n - 1 - f->n / 10] > 1.2 * scene->gap;
+  f->gap = (is_elastic(scene->walled) && !stretched ? 1 : 2) * scene->gap;
+  PetscCall(PetscFree(sorted));
+  PetscFunctionReturn(0);
+}
+
 /* A body is as large as its balls. */
 PetscErrorCode PlotFramesShape(PlotScene *scene)
 {
@@ -78,11 +105,15 @@ PetscErrorCode PlotFramesShape(PlotScene *scene)
   for (PetscInt k = 0; k < scene->n_frames; ++k) {
     PlotFrame *f = &scene->frames[k];
     PetscCall(PlotSpacing(scene->dim, f->n, f->x, f->radius));
-    if (k == 0 && f->n) PetscCall(PlotMedian(f->n, f->radius, &scene->gap));
+    PetscCall(ChooseGap(scene, f));
     for (PetscInt i = 0; i < f->n; ++i) {
       largest = PetscMax(largest, f->radius[i]);
       plot_project(scene, f->x + 3 * i, shown);
       memcpy(f->x + 3 * i, shown, sizeof shown);
+    }
+    for (PetscInt i = 0; i < 3 * f->n_triangles; ++i) {
+      plot_project(scene, f->corner + 3 * i, shown);
+      memcpy(f->corner + 3 * i, shown, sizeof shown);
     }
   }
   scene->gap *= 2; /* from point to point */
@@ -149,6 +180,9 @@ PetscErrorCode PlotFramesFree(PlotScene *scene)
   for (PetscInt k = 0; k < scene->n_frames; ++k) {
     PlotFrame *f = &scene->frames[k];
     PetscCall(PetscFree3(f->x, f->value, f->radius));
+    PetscCall(PetscFree3(f->corner, f->corner_value, f->side));
+    PetscCall(PetscFree2(f->first, f->first_radius));
+    PetscCall(PetscFree(f->line));
     PetscCall(PetscFree(f->edges));
   }
   PetscFunctionReturn(0);

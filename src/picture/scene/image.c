@@ -10,17 +10,22 @@
 
 static PetscErrorCode Balls(const PlotScene *scene, const PlotFrame *f, RasterScene *raster, unsigned char *rgba)
 {
-  const PetscReal span = scene->high - scene->low;
-  PetscReal *colour;
+  const PetscReal low = scene->named ? 0 : scene->low, span = scene->named ? 1 : scene->high - scene->low;
+  PetscReal *colour, *corner;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(f->n, &colour));
-  for (PetscInt i = 0; i < f->n; ++i) colour[i] = (f->value[i] - scene->low) / span;
+  PetscCall(PetscMalloc2(f->n, &colour, 3 * f->n_triangles, &corner));
+  for (PetscInt i = 0; i < f->n; ++i) colour[i] = (f->value[i] - low) / span;
+  for (PetscInt i = 0; i < 3 * f->n_triangles; ++i) corner[i] = (f->corner_value[i] - low) / span;
   raster->n = f->n;
   raster->x = f->x, raster->radius = f->radius, raster->value = colour;
-  raster->gap = scene->gap;
+  raster->n_triangles = f->n_triangles;
+  raster->corner = f->corner, raster->corner_value = corner, raster->side = scene->grid ? f->side : NULL;
+  raster->n_lines = f->n_lines, raster->line = f->line;
+  raster->named = scene->named;
+  raster->gap = f->gap;
   PetscCall(RasterDraw(raster, rgba));
-  PetscCall(PetscFree(colour));
+  PetscCall(PetscFree2(colour, corner));
   PetscFunctionReturn(0);
 }
 

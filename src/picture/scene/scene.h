@@ -17,6 +17,14 @@ typedef struct {
   PetscReal time; /* s */
   PetscInt n_edges;
   PetscReal *edges; /* n_edges x 4: the grid's lines on the page */
+  PetscInt n_triangles;
+  PetscReal *corner, *corner_value; /* n_triangles x 3 x 3 and x 3: cells of fem, as RasterScene has them */
+  unsigned char *side;
+  PetscInt n_lines;
+  PetscReal *line; /* n_lines x 2 x 3: walls in space */
+  PetscInt n_first;
+  PetscReal *first, *first_radius; /* n_first x 3: where the points began, in the plane */
+  PetscReal gap;                   /* of the balls: RasterScene */
 } PlotFrame;
 
 typedef struct {
@@ -25,12 +33,14 @@ typedef struct {
   PetscInt columns;     /* in which frames stand; 0: chosen */
   char label[128];      /* of the colours, with the unit */
   PetscReal low, high;  /* of the colours */
+  PetscBool named;      /* values are numbers of bodies or materials: they have names instead */
+  PetscBool grid;       /* lines of the cells */
   PetscReal gap;        /* how far apart points stand in the first frame, m */
   PetscInt up;          /* axis that points up, in space */
   PetscBool revolution; /* x is a radius */
   PetscBool mirrored;   /* both sides of the axis x = 0 are there, the other one as x < 0 */
   PetscBool turned;     /* in space, of points that lie in the plane, on both sides */
-  Case *walled;         /* whose walls are drawn; NULL: none */
+  Case *walled;         /* the run's case, with walls and names; NULL: it cannot be read */
   Walls *walls;
   PetscReal box_min[3], box_max[3]; /* of all points (and the grid), before the projection */
 } PlotScene;
@@ -50,6 +60,10 @@ typedef struct {
  * is. */
 void plot_project(const PlotScene *scene, const PetscReal *x, PetscReal shown[3]);
 
+/* 1, 2 or 5 times a power of ten: the smallest that leaves so many pixels between ticks of a range
+ * that takes `all` pixels. */
+double plot_tick_step(PetscReal range, double all, double pixels);
+
 /* Fit the scene into a page of the size asked for (0: chosen). */
 void plot_lay_out(const PlotScene *scene, int width, int height, PlotPage *page);
 
@@ -67,6 +81,16 @@ PetscErrorCode PlotDraw(PlotScene *scene, int width, int height, const char *png
  * reason tells. */
 PetscErrorCode PlotFrameRead(VtkFile *file, const VtkFieldInfo *field, const PlotScalar *scalar, PlotScene *scene,
                              char reason[256]);
+/* mesh.c: let the cells of a mesh, which moves with its body, stand for the points of the frame. */
+PetscErrorCode PlotFrameMesh(VtkFile *file, PetscInt dim, const VtkFieldInfo *field, const PlotScalar *scalar,
+                             PlotScene *scene, PlotFrame *frame, char reason[256]);
+/* colours.c: colours from the smallest to the largest value, or as asked for, in a unit that suits. */
+void plot_choose_colours(PlotScene *scene, const PlotOptions *options, const char *unit, const char *what);
+/* Is the field one of those whose values are numbers of bodies or materials? Their names, and which are in the picture. */
+#define PLOT_MAX_NAMES 64
+PetscBool plot_has_names(const char *field);
+const char *plot_name(const PlotScene *scene, PetscInt value, char buffer[64]);
+void plot_find_names(const PlotScene *scene, PetscBool there[PLOT_MAX_NAMES]);
 /* When all are read: give each its size, see it from where the eye is, and draw the box around
  * all. */
 PetscErrorCode PlotFramesShape(PlotScene *scene);

@@ -45,13 +45,13 @@ static void extend(PlotScene *scene, int d, PetscReal low, PetscReal high)
 
 void plot_walls_extend(PlotScene *scene)
 {
-  if (!scene->walls || scene->dim != 2) return;
+  if (!scene->walls || scene->turned) return;
   for (PetscInt f = 0; f < scene->n_frames; ++f)
     for (PetscInt k = 0; k < scene->walled->n_walls; ++k) {
       PetscReal min[3], max[3];
       if (!wall_stands(scene->walls, k, scene->frames[f].time)) continue;
       wall_bounds(scene->walls, k, scene->frames[f].time, min, max);
-      for (int d = 0; d < 2; ++d) extend(scene, d, min[d], max[d]);
+      for (int d = 0; d < scene->dim; ++d) extend(scene, d, min[d], max[d]);
     }
   if (scene->mirrored) scene->box_min[0] = -scene->box_max[0];
 }
