@@ -15,6 +15,7 @@ static const CliOption options_known[] = {
    "the way to it)"},
   {"columns", "N", "of several states (default: what makes a picture as wide as a screen)"},
   {"grid", NULL, "draw the grid as well"},
+  {"bare", NULL, "without the outline that bodies had at first, and without lines where the grid is held"},
   {"profile", "WALL", "instead: the pressure and the shear of a wall, as a picture and a table (profile_WALL.csv)"},
   {"range", "A:B", "values of the first and the last colour"},
   {"size", "WxH", "pixels, for example 1200x800 (default: to suit the body)"},
@@ -108,6 +109,7 @@ static PetscErrorCode Understand(const CliArguments *arguments, PlotOptions *opt
   options->out = cli_value(arguments, "out");
   options->format = cli_value(arguments, "format");
   options->grid = cli_flag(arguments, "grid");
+  options->bare = cli_flag(arguments, "bare");
   options->profile = cli_value(arguments, "profile");
   options->half = cli_flag(arguments, "half");
   options->turned = cli_flag(arguments, "turned");
@@ -154,8 +156,8 @@ static PetscErrorCode UnderstandOutput(const CliArguments *arguments, PetscBool 
 /* What pictures of histories take no notice of, and what those of states do not. */
 static PetscErrorCode UnderstandCurves(const CliArguments *arguments, PetscBool curves, PetscBool *ok, int *exit_code)
 {
-  static const char *const of_states[] = {"field", "component", "time", "columns", "grid", "profile",
-                                          "range", "up",        "half", "turned",  NULL};
+  static const char *const of_states[] = {"field",   "component", "time", "columns", "grid",   "bare",
+                                          "profile", "range",     "up",   "half",    "turned", NULL};
   static const char *const of_curves[] = {"x", "legend", NULL};
 
   PetscFunctionBeginUser;

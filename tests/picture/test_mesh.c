@@ -3,7 +3,7 @@
 #include <math.h>
 #include "picture/raster/raster.h"
 #include "picture/raster/spacing.h"
-#include "picture/scene/cells.h"
+#include "picture/body/cells.h"
 
 /* n x n (x n) sheared cells of the unit square (cube). */
 static void Cells(PetscInt dim, PetscInt n, PetscReal *x, VtkCells *cells)

@@ -6,7 +6,7 @@
 #include <stdint.h>
 #include <string.h>
 #include <cmocka.h>
-#include "picture/scene/walls.h"
+#include "picture/walls/walls.h"
 
 enum { W = 200, H = 100 };
 

@@ -2,6 +2,7 @@
 #include "picture/gnuplot.h"
 #include "picture/raster/raster.h"
 #include "picture/scene/scene.h"
+#include "picture/walls/walls.h"
 
 static void write_palette(FILE *out, const PlotScene *scene)
 {
@@ -166,6 +167,7 @@ PetscErrorCode PlotDraw(PlotScene *scene, int width, int height, const char *png
   PetscCall(GnuplotBegin(&script, png, page.width, page.height));
   if (!scene->named) write_colour_bar(script.out, scene, &page);
   if (scene->dim == 3) plot_draw_box(script.out, scene, &page);
+  plot_floor_draw(script.out, scene, &page);
   if (scene->n_frames > 1) fputs("set multiplot\n", script.out);
   for (PetscInt k = 0; k < scene->n_frames; ++k) {
     PetscCall(PlotImage(scene, &scene->frames[k], &page, rgba));

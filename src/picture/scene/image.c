@@ -2,11 +2,19 @@
 #include <math.h>
 #include "picture/raster/raster.h"
 #include "picture/scene/scene.h"
-#include "picture/scene/walls.h"
+#include "picture/walls/walls.h"
 #include "picture/revolution/revolution.h"
 
 /* Pixels along a section that is turned: more are of no use. */
 #define SECTION_PIXELS 2000
+
+void plot_blend(unsigned char *rgba, PetscReal grey, PetscReal alpha)
+{
+  const PetscReal kept = rgba[3] / 255. * (1 - alpha), all = alpha + kept;
+  if (alpha <= 0) return;
+  for (int c = 0; c < 3; ++c) rgba[c] = (unsigned char)lround((alpha * grey + kept * rgba[c]) / all);
+  rgba[3] = (unsigned char)lround(255 * all);
+}
 
 static PetscErrorCode Balls(const PlotScene *scene, const PlotFrame *f, RasterScene *raster, unsigned char *rgba)
 {
@@ -73,6 +81,7 @@ PetscErrorCode PlotImage(const PlotScene *scene, const PlotFrame *f, const PlotP
   PetscFunctionBeginUser;
   if (scene->turned) PetscCall(Turned(scene, f, page, rgba));
   else PetscCall(Balls(scene, f, &raster, rgba));
+  if (scene->dim == 2) PetscCall(PlotFirstDraw(scene, f, page, rgba));
   plot_walls_draw(scene, f, page, rgba);
   PetscFunctionReturn(0);
 }

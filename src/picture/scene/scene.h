@@ -23,7 +23,8 @@ typedef struct {
   PetscInt n_lines;
   PetscReal *line; /* n_lines x 2 x 3: walls in space */
   PetscInt n_first;
-  PetscReal *first, *first_radius; /* n_first x 3: where the points began, in the plane */
+  PetscReal *first, *first_radius; /* n_first x 3: where the points began, in the plane; NULL: not drawn */
+  PetscReal *first_corner;         /* n_triangles x 3 x 3: where cells began */
   PetscReal gap;                   /* of the balls: RasterScene */
 } PlotFrame;
 
@@ -35,6 +36,7 @@ typedef struct {
   PetscReal low, high;  /* of the colours */
   PetscBool named;      /* values are numbers of bodies or materials: they have names instead */
   PetscBool grid;       /* lines of the cells */
+  PetscBool bare;       /* without the first outline, and where the grid is held */
   PetscReal gap;        /* how far apart points stand in the first frame, m */
   PetscInt up;          /* axis that points up, in space */
   PetscBool revolution; /* x is a radius */
@@ -81,7 +83,7 @@ PetscErrorCode PlotDraw(PlotScene *scene, int width, int height, const char *png
  * reason tells. */
 PetscErrorCode PlotFrameRead(VtkFile *file, const VtkFieldInfo *field, const PlotScalar *scalar, PlotScene *scene,
                              char reason[256]);
-/* mesh.c: let the cells of a mesh, which moves with its body, stand for the points of the frame. */
+/* body/mesh.c: let the cells of a mesh, which moves with its body, stand for the points of the frame. */
 PetscErrorCode PlotFrameMesh(VtkFile *file, PetscInt dim, const VtkFieldInfo *field, const PlotScalar *scalar,
                              PlotScene *scene, PlotFrame *frame, char reason[256]);
 /* colours.c: colours from the smallest to the largest value, or as asked for, in a unit that suits. */
@@ -96,4 +98,11 @@ void plot_find_names(const PlotScene *scene, PetscBool there[PLOT_MAX_NAMES]);
 PetscErrorCode PlotFramesShape(PlotScene *scene);
 /* Lines of a grid in the plane; none, with a reason, of a damaged file. */
 PetscErrorCode PlotFrameGrid(VtkFile *file, PlotScene *scene, PlotFrame *frame, char reason[256]);
+/* first.c: displacements of a file, NULL without such a field; the outlines that bodies had in the beginning: their
+ * size, and a line of each into the image of a frame. */
+PetscErrorCode PlotReadDisplacement(VtkFile *file, PetscReal **u, char reason[256]);
+PetscErrorCode PlotFirstShape(PlotScene *scene);
+PetscErrorCode PlotFirstDraw(const PlotScene *scene, const PlotFrame *frame, const PlotPage *page, unsigned char *rgba);
+/* image.c: a grey of this share over a pixel. */
+void plot_blend(unsigned char *rgba, PetscReal grey, PetscReal alpha);
 PetscErrorCode PlotFramesFree(PlotScene *scene);

@@ -5,7 +5,7 @@
 #include <sys/stat.h>
 #include "picture/plot.h"
 #include "picture/scene/scene.h"
-#include "picture/scene/walls.h"
+#include "picture/walls/walls.h"
 #include "picture/revolution/revolution.h"
 #include "output/directory/run_dir_files.h"
 #include "output/vtk/vtk_series.h"
@@ -262,6 +262,7 @@ static PetscErrorCode FillScene(const PlotOptions *options, PetscInt n, const Vt
   PetscCall(PlotWallsOpen(options->run, diag, scene));
   PetscCall(FindKind(options, diag, scene));
   scene->grid = options->grid;
+  scene->bare = options->bare;
   scene->columns = options->columns;
   for (PetscInt k = 0; k < n && !diag_errors(diag); ++k) {
     PetscCall(AddFrame(options, &states[k], subject, scene, diag));

@@ -10,5 +10,7 @@ PetscErrorCode PlotWallsClose(PlotScene *scene);
 void plot_walls_extend(PlotScene *scene);
 /* In space: their edges and outlines into the frames. */
 PetscErrorCode PlotWallsLines(PlotScene *scene);
+/* Lines where the grid is held, in the plane. */
+void plot_floor_draw(FILE *out, const PlotScene *scene, const PlotPage *page);
 /* Draw them into the image of a frame: behind what is there, their outline before it. */
 void plot_walls_draw(const PlotScene *scene, const PlotFrame *frame, const PlotPage *page, unsigned char *rgba);

@@ -2,7 +2,7 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include "picture/scene/walls.h"
+#include "picture/walls/walls.h"
 #include "wall/mesh.h"
 
 /* Pieces of what is curved are at most so much of the longest side of the box. */

@@ -2,7 +2,7 @@
  * the points of each cell; in space the outer faces alone. */
 #include <stdlib.h>
 #include <string.h>
-#include "picture/scene/cells.h"
+#include "picture/body/cells.h"
 #include "picture/scene/scene.h"
 
 /* The cells of a state, and their colours. */
@@ -12,6 +12,7 @@ typedef struct {
   PetscReal *at_node; /* NULL: the cells have values */
   PetscReal *of_cell;
   PetscInt *points; /* in each cell */
+  PetscReal *u;     /* displacements of the nodes, where the first outline is drawn; NULL */
 } Mesh;
 
 /* Values at the nodes, if the grid has such a field. */
@@ -116,18 +117,26 @@ static void add_triangle(const Mesh *mesh, const Face *face, const int corner[3]
   for (int k = 0; k < 3; ++k) {
     const PetscInt node = face->node[corner[k]];
     memcpy(f->corner + 9 * t + 3 * k, mesh->x + 3 * node, 3 * sizeof(PetscReal));
+    for (int d = 0; d < 3 && mesh->u; ++d)
+      f->first_corner[9 * t + 3 * k + d] = mesh->x[3 * node + d] - mesh->u[3 * node + d];
     f->corner_value[3 * t + k] = mesh->at_node ? mesh->at_node[node] : mesh->of_cell[face->cell];
   }
   f->side[t] = (unsigned char)sides;
 }
 
+static void mirror_corners(PetscReal *corner, PetscInt n)
+{
+  memcpy(corner + 9 * n, corner, 9 * (size_t)n * sizeof(PetscReal));
+  for (PetscInt i = 3 * n; i < 6 * n; ++i) corner[3 * i] = -corner[3 * i];
+}
+
 static void mirror_triangles(PlotFrame *f)
 {
   const PetscInt n = f->n_triangles;
-  memcpy(f->corner + 9 * n, f->corner, 9 * (size_t)n * sizeof(PetscReal));
+  mirror_corners(f->corner, n);
+  if (f->first_corner) mirror_corners(f->first_corner, n);
   memcpy(f->corner_value + 3 * n, f->corner_value, 3 * (size_t)n * sizeof(PetscReal));
   memcpy(f->side + n, f->side, (size_t)n);
-  for (PetscInt i = 3 * n; i < 6 * n; ++i) f->corner[3 * i] = -f->corner[3 * i];
   f->n_triangles *= 2;
 }
 
@@ -138,6 +147,7 @@ static PetscErrorCode TakeFaces(PlotScene *scene, const Mesh *mesh, PetscInt n, 
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc3(9 * room, &f->corner, 3 * room, &f->corner_value, room, &f->side));
+  if (mesh->u) PetscCall(PetscMalloc1(9 * room, &f->first_corner));
   for (PetscInt i = 0; i < n; ++i) {
     const PetscBool four = faces[i].node[3] >= 0;
     add_triangle(mesh, &faces[i], first, four ? 1 | 2 : 1 | 2 | 4, f);
@@ -164,12 +174,17 @@ PetscErrorCode PlotFrameMesh(VtkFile *file, PetscInt dim, const VtkFieldInfo *fi
   if (VtkReadCoordinates(file, &mesh.x, reason)) PetscFunctionReturn(0);
   if (VtkReadTopology(file, &mesh.cells, reason) == 0) {
     if (!scene->named) PetscCall(ReadNodes(file, field, scalar, &mesh));
+    if (f->first) PetscCall(PlotReadDisplacement(file, &mesh.u, reason));
     PetscCall(CountPoints(scene, f, dim, &mesh));
     PetscCall(FindFaces(&mesh, dim, &n, &faces));
     PetscCall(TakeFaces(scene, &mesh, n, faces, f));
-    if (n) f->n = 0; /* cells stand for their points */
+    if (n) { /* cells stand for their points */
+      f->n = f->n_first = 0;
+      PetscCall(PetscFree2(f->first, f->first_radius));
+    }
     PetscCall(PetscFree(faces));
     PetscCall(PetscFree(mesh.at_node));
+    PetscCall(PetscFree(mesh.u));
     PetscCall(PetscFree2(mesh.of_cell, mesh.points));
     PetscCall(VtkCellsFree(&mesh.cells));
   }

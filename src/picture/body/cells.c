@@ -1,5 +1,5 @@
 /* Points are found in bins, in which cells stand by their boxes. */
-#include "picture/scene/cells.h"
+#include "picture/body/cells.h"
 #include <math.h>
 
 static const int triangle[1][4] = {{0, 1, 2, -1}}, quadrilateral[1][4] = {{0, 1, 2, 3}},
