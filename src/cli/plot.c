@@ -2,9 +2,9 @@
 #include <ctype.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 #include <sys/stat.h>
 #include "cli/cli.h"
-#include "picture/gnuplot.h"
 #include "picture/plot.h"
 
 static const CliOption options_known[] = {
@@ -22,13 +22,14 @@ static const CliOption options_known[] = {
   {"up", "x|y|z", "the axis that points up in a picture in space (default: that of gravity)"},
   {"half", NULL, "of an axisymmetric run: one side of the axis alone"},
   {"turned", NULL, "of an axisymmetric run: the whole body in space, with a quarter cut out"},
+  {"animate", NULL, "instead: all states one after the other, as a GIF, or a film with --format mp4 (ffmpeg)"},
   {"y", "MEASURE",
    "instead: this measure over --x; again for more curves (those of a second unit have the right axis)"},
   {"x", "MEASURE", "of --y: time, step or a measure (default: time)"},
   {"legend", "names|keys",
    "of several runs: by their names, or by the keys in which their cases differ (default: keys, where there are two "
    "at most)"},
-  {"format", "png|svg|pdf", "of the pictures (default: png)"},
+  {"format", "png|svg|pdf", "of the pictures (default: png); gif or mp4 of an animation (default: gif)"},
   {"out", "FILE", "the picture (default: RUN_DIR/pictures/...); its ending is the format"},
   {NULL, NULL, NULL},
 };
@@ -110,6 +111,7 @@ static PetscErrorCode Understand(const CliArguments *arguments, PlotOptions *opt
   options->format = cli_value(arguments, "format");
   options->grid = cli_flag(arguments, "grid");
   options->bare = cli_flag(arguments, "bare");
+  options->animate = cli_flag(arguments, "animate");
   options->profile = cli_value(arguments, "profile");
   options->half = cli_flag(arguments, "half");
   options->turned = cli_flag(arguments, "turned");
@@ -127,6 +129,8 @@ static PetscErrorCode Understand(const CliArguments *arguments, PlotOptions *opt
   else if (size && !plot_size(size, &options->width, &options->height))
     PetscCall(
       CliUsageError(exit_code, "from 200x150 to 10000x10000", "--size wants pixels as in 1200x800, not '%s'", size));
+  else if (cli_flag(arguments, "animate") && (time || columns || options->profile))
+    PetscCall(CliUsageError(exit_code, NULL, "--animate shows all states, without --time, --columns or --profile"));
   else if (options->half && options->turned)
     PetscCall(CliUsageError(exit_code, NULL, "--half and --turned: a picture shows the one or the other"));
   else if (up && (options->up < 0 || options->up > 2 || up[1]))
@@ -135,20 +139,29 @@ static PetscErrorCode Understand(const CliArguments *arguments, PlotOptions *opt
   PetscFunctionReturn(0);
 }
 
+static PetscBool is_one_of(const char *word, const char *const *words)
+{
+  while (*words && strcasecmp(word, *words) != 0) ++words;
+  return *words != NULL;
+}
+
 /* Where pictures go, and as what. */
 static PetscErrorCode UnderstandOutput(const CliArguments *arguments, PetscBool *ok, int *exit_code)
 {
   const char *out = cli_value(arguments, "out"), *format = cli_value(arguments, "format");
   const char *slash = out ? strrchr(out, '/') : NULL, *ending = out ? strrchr(slash ? slash : out, '.') : NULL;
+  const PetscBool film = cli_flag(arguments, "animate");
+  const char *const *known = film ? plot_films : plot_formats;
 
   PetscFunctionBeginUser;
-  PetscCall(CliOneOf("format", format, plot_formats, ok, exit_code));
+  PetscCall(CliOneOf("format", format, known, ok, exit_code));
   if (!*ok) PetscFunctionReturn(0);
   *ok = PETSC_FALSE;
   if (out && format)
     PetscCall(CliUsageError(exit_code, NULL, "--out and --format: the ending of '%s' is the format", out));
-  else if (ending && ending != out && !gnuplot_knows(out))
-    PetscCall(CliUsageError(exit_code, "there are .png, .svg and .pdf", "no picture is drawn as '%s'", ending));
+  else if ((ending && ending != out && !is_one_of(ending + 1, known)) || (film && out && !ending))
+    PetscCall(CliUsageError(exit_code, film ? "there are .gif and .mp4" : "there are .png, .svg and .pdf",
+                            "no %s is drawn as '%s'", film ? "animation" : "picture", ending ? ending : out));
   else *ok = PETSC_TRUE;
   PetscFunctionReturn(0);
 }
@@ -156,8 +169,8 @@ static PetscErrorCode UnderstandOutput(const CliArguments *arguments, PetscBool 
 /* What pictures of histories take no notice of, and what those of states do not. */
 static PetscErrorCode UnderstandCurves(const CliArguments *arguments, PetscBool curves, PetscBool *ok, int *exit_code)
 {
-  static const char *const of_states[] = {"field",   "component", "time", "columns", "grid",   "bare",
-                                          "profile", "range",     "up",   "half",    "turned", NULL};
+  static const char *const of_states[] = {"field", "component", "time", "columns", "grid",    "bare", "profile",
+                                          "range", "up",        "half", "turned",  "animate", NULL};
   static const char *const of_curves[] = {"x", "legend", NULL};
 
   PetscFunctionBeginUser;
@@ -228,6 +241,7 @@ static PetscErrorCode Draw(const PlotOptions *options, int *exit_code)
   if (stat(options->run, &status) || !S_ISDIR(status.st_mode))
     diag_error(diag, NULL, "there is no run directory '%s'", options->run);
   else if (options->profile) PetscCall(PlotProfile(options, diag, say));
+  else if (options->animate) PetscCall(PlotAnimate(options, diag, say));
   else PetscCall(PlotState(options, diag, picture));
   if (picture[0]) {
     say(picture);

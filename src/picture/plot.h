@@ -8,7 +8,7 @@
 #define PLOT_MAX_CURVES 30
 
 /* Words of options, ended by NULL. */
-extern const char *const plot_formats[], *const plot_legends[];
+extern const char *const plot_formats[], *const plot_films[], *const plot_legends[];
 
 typedef struct {
   const char *run;                  /* the run directory */
@@ -23,6 +23,7 @@ typedef struct {
   PetscInt columns;    /* of several states; 0: chosen */
   PetscBool grid;      /* draw the grid too */
   PetscBool bare;      /* without the outline that the body had at first, and where the grid is held */
+  PetscBool animate;   /* PlotAnimate */
   const char *profile; /* of PlotProfile: a wall, by its name */
   PetscBool has_range;
   PetscReal range[2]; /* of the colours, in the field's own unit */
@@ -53,6 +54,9 @@ PetscErrorCode PlotState(const PlotOptions *options, Diag *diag, char picture[PE
 /* RUN/pictures/history_NAME.png for every measure of history.csv. `said` is called with the path of
  * each. */
 PetscErrorCode PlotHistories(const PlotOptions *options, Diag *diag, void (*said)(const char *path));
+
+/* RUN/pictures/animation_FIELD.gif (or .mp4): all states of the run one after the other. */
+PetscErrorCode PlotAnimate(const PlotOptions *options, Diag *diag, void (*said)(const char *path));
 
 /* Measures over a measure: a curve for each y of each run. Units stand at the axes; measures of a second unit have
  * the right one. `said` is called with the path. */

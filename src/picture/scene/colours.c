@@ -42,11 +42,13 @@ void plot_choose_colours(PlotScene *scene, const PlotOptions *options, const cha
 {
   char prefixed[64];
   PetscInt frame = 0, i = 0;
+  scene->factor = 1;
   find_range(scene);
   snprintf(scene->label, sizeof scene->label, "%.60s", what);
   if (scene->named) return;
   if (options->has_range) scene->low = options->range[0], scene->high = options->range[1];
   const PetscReal factor = figure_unit(unit, PetscMax(fabs(scene->low), fabs(scene->high)), prefixed);
+  scene->factor = factor;
   for (PetscReal *v; (v = next_value(scene, &frame, &i));) *v *= factor;
   scene->low *= factor, scene->high *= factor;
   const PetscReal middle = 0.5 * (scene->low + scene->high), least = middle != 0 ? 1e-6 * fabs(middle) : 1e-12;

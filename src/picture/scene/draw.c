@@ -155,7 +155,25 @@ static void write_plot(FILE *out, const PlotScene *scene, const PlotFrame *f, co
   fputc('\n', out);
 }
 
-PetscErrorCode PlotDraw(PlotScene *scene, int width, int height, const char *png, Diag *diag, PetscBool *done)
+void plot_draw_around(FILE *out, const PlotScene *scene, const PlotPage *page)
+{
+  if (!scene->named) write_colour_bar(out, scene, page);
+  if (scene->dim == 3) plot_draw_box(out, scene, page);
+  plot_floor_draw(out, scene, page);
+}
+
+PetscErrorCode PlotDrawFrame(FILE *out, const PlotScene *scene, PetscInt frame, const PlotPage *page,
+                             unsigned char *rgba)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PlotImage(scene, &scene->frames[frame], page, rgba));
+  if (frame == 1) fputs("unset colorbox\n", out); /* one serves all */
+  write_field(out, scene, page, frame);
+  write_plot(out, scene, &scene->frames[frame], page, rgba);
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode PlotDraw(PlotScene *scene, int width, int height, const char *path, Diag *diag, PetscBool *done)
 {
   GnuplotScript script;
   PlotPage page;
@@ -164,19 +182,12 @@ PetscErrorCode PlotDraw(PlotScene *scene, int width, int height, const char *png
   PetscFunctionBeginUser;
   plot_lay_out(scene, width, height, &page);
   PetscCall(PetscMalloc1((size_t)page.w * (size_t)page.h * 4, &rgba));
-  PetscCall(GnuplotBegin(&script, png, page.width, page.height));
-  if (!scene->named) write_colour_bar(script.out, scene, &page);
-  if (scene->dim == 3) plot_draw_box(script.out, scene, &page);
-  plot_floor_draw(script.out, scene, &page);
+  PetscCall(GnuplotBegin(&script, path, page.width, page.height));
+  plot_draw_around(script.out, scene, &page);
   if (scene->n_frames > 1) fputs("set multiplot\n", script.out);
-  for (PetscInt k = 0; k < scene->n_frames; ++k) {
-    PetscCall(PlotImage(scene, &scene->frames[k], &page, rgba));
-    if (k == 1) fputs("unset colorbox\n", script.out); /* one serves all */
-    write_field(script.out, scene, &page, k);
-    write_plot(script.out, scene, &scene->frames[k], &page, rgba);
-  }
+  for (PetscInt k = 0; k < scene->n_frames; ++k) PetscCall(PlotDrawFrame(script.out, scene, k, &page, rgba));
   if (scene->n_frames > 1) fputs("unset multiplot\n", script.out);
   PetscCall(PetscFree(rgba));
-  PetscCall(GnuplotEnd(&script, png, diag, done));
+  PetscCall(GnuplotEnd(&script, path, diag, done));
   PetscFunctionReturn(0);
 }

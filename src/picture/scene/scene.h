@@ -5,6 +5,7 @@
 #include "picture/plot.h"
 #include "picture/scene/field.h"
 #include "output/vtk/vtk_read.h"
+#include "output/vtk/vtk_series.h"
 #include "wall/wall.h"
 
 /* One state. */
@@ -31,9 +32,10 @@ typedef struct {
 typedef struct {
   PetscInt dim, n_frames;
   PlotFrame frames[PLOT_MAX_STATES];
-  PetscInt columns;     /* in which frames stand; 0: chosen */
-  char label[128];      /* of the colours, with the unit */
-  PetscReal low, high;  /* of the colours */
+  PetscInt columns;    /* in which frames stand; 0: chosen */
+  char label[128];     /* of the colours, with the unit */
+  PetscReal low, high; /* of the colours, in the unit that is shown: `factor` times the field's own */
+  PetscReal factor;
   PetscBool named;      /* values are numbers of bodies or materials: they have names instead */
   PetscBool grid;       /* lines of the cells */
   PetscBool bare;       /* without the first outline, and where the grid is held */
@@ -75,7 +77,26 @@ void plot_draw_box(FILE *out, const PlotScene *scene, const PlotPage *page);
 /* The image of one frame on the page: rgba of page->w x page->h pixels. */
 PetscErrorCode PlotImage(const PlotScene *scene, const PlotFrame *frame, const PlotPage *page, unsigned char *rgba);
 
-/* Draw to a PNG. */
+/* What is drawn: a field of the states, and its name, unit and component. */
+typedef struct {
+  VtkFieldInfo field;
+  PlotScalar scalar;
+  char words[192]; /* "velocity magnitude" */
+} PlotSubject;
+
+/* state.c: n states as a scene, everything but its place on the page; mistakes go to diag. To be freed in any case. */
+PetscErrorCode PlotSceneFill(const PlotOptions *options, PetscInt n, const VtkState *states, PlotSubject *subject,
+                             Diag *diag, PlotScene *scene);
+PetscErrorCode PlotSceneFree(PlotScene *scene);
+/* Where the picture of these states goes, of one by its number. */
+void plot_picture_name(const PlotOptions *options, const char *kind, PetscInt n, const VtkState *state,
+                       const PlotSubject *subject, char *path);
+
+/* draw.c: what all frames have around them; then one frame after the other. */
+void plot_draw_around(FILE *out, const PlotScene *scene, const PlotPage *page);
+PetscErrorCode PlotDrawFrame(FILE *out, const PlotScene *scene, PetscInt frame, const PlotPage *page,
+                             unsigned char *rgba);
+/* Draw to a file. */
 PetscErrorCode PlotDraw(PlotScene *scene, int width, int height, const char *png, Diag *diag, PetscBool *done);
 
 /* frame.c: read a state into the next frame of the scene, as it is in its file, with the field

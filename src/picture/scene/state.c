@@ -22,7 +22,7 @@ PetscBool plot_folder(const char *run, Diag *diag)
   return !(error || link);
 }
 
-const char *const plot_formats[] = {"png", "svg", "pdf", NULL};
+const char *const plot_formats[] = {"png", "svg", "pdf", NULL}, *const plot_films[] = {"gif", "mp4", NULL};
 
 const char *plot_ending(const char *format) { return format ? format : "png"; }
 
@@ -159,13 +159,6 @@ static PetscErrorCode AddGrid(PlotScene *scene, PlotFrame *frame, const char *ru
   PetscFunctionReturn(0);
 }
 
-/* What is drawn: a field of the states, and its name, unit and component. */
-typedef struct {
-  VtkFieldInfo field;
-  PlotScalar scalar;
-  char words[192]; /* "velocity magnitude" */
-} PlotSubject;
-
 static void name_subject(PlotSubject *s)
 {
   const PlotScalar *scalar = &s->scalar;
@@ -254,9 +247,16 @@ static void say_when(const PlotOptions *options, PetscReal time, char text[64])
   else snprintf(text, 64, "t = %.6g s", (double)time);
 }
 
-/* Everything of the picture but its place on the page. */
-static PetscErrorCode FillScene(const PlotOptions *options, PetscInt n, const VtkState *states, PlotSubject *subject,
-                                Diag *diag, PlotScene *scene)
+PetscErrorCode PlotSceneFree(PlotScene *scene)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PlotWallsClose(scene));
+  PetscCall(PlotFramesFree(scene));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode PlotSceneFill(const PlotOptions *options, PetscInt n, const VtkState *states, PlotSubject *subject,
+                             Diag *diag, PlotScene *scene)
 {
   PetscFunctionBeginUser;
   PetscCall(PlotWallsOpen(options->run, diag, scene));
@@ -283,16 +283,16 @@ static PetscErrorCode FillScene(const PlotOptions *options, PetscInt n, const Vt
 }
 
 /* state_displacement_magnitude_000012.png; states_displacement_magnitude.png for several. */
-static void picture_name(const PlotOptions *options, PetscInt n, const VtkState *state, const PlotSubject *subject,
-                         char *path)
+void plot_picture_name(const PlotOptions *options, const char *kind, PetscInt n, const VtkState *state,
+                       const PlotSubject *subject, char *path)
 {
   char name[256];
   const PlotScalar *scalar = &subject->scalar;
   const char *number = n == 1 ? strchr(state->file, '_') : NULL;
   const int digits = number ? (int)strcspn(number, ".") : 0;
-  snprintf(name, sizeof name, "state%s_%.120s%s%.30s%s%.*s.%s", n == 1 ? "" : "s", subject->field.name,
-           scalar->name[0] ? "_" : "", scalar->name, options->turned ? "_turned" : "", PetscMin(digits, 13),
-           number ? number : "", plot_ending(options->format));
+  snprintf(name, sizeof name, "%s_%.120s%s%.30s%s%.*s.%s", kind, subject->field.name, scalar->name[0] ? "_" : "",
+           scalar->name, options->turned ? "_turned" : "", PetscMin(digits, 13), number ? number : "",
+           plot_ending(options->format));
   plot_file_name(name);
   if (options->out) snprintf(path, PETSC_MAX_PATH_LEN, "%s", options->out);
   else snprintf(path, PETSC_MAX_PATH_LEN, "%s/pictures/%s", options->run, name);
@@ -310,13 +310,12 @@ PetscErrorCode PlotState(const PlotOptions *options, Diag *diag, char picture[PE
   picture[0] = 0;
   PetscCall(FindStates(options, diag, &n, states));
   if (n == 0) PetscFunctionReturn(0);
-  PetscCall(FillScene(options, n, states, &subject, diag, &scene));
+  PetscCall(PlotSceneFill(options, n, states, &subject, diag, &scene));
   if (!diag_errors(diag) && (options->out || plot_folder(options->run, diag))) {
-    picture_name(options, n, states, &subject, picture);
+    plot_picture_name(options, n == 1 ? "state" : "states", n, states, &subject, picture);
     PetscCall(PlotDraw(&scene, options->width, options->height, picture, diag, &done));
   }
   if (!done) picture[0] = 0;
-  PetscCall(PlotWallsClose(&scene));
-  PetscCall(PlotFramesFree(&scene));
+  PetscCall(PlotSceneFree(&scene));
   PetscFunctionReturn(0);
 }
