@@ -18,6 +18,7 @@ PetscErrorCode CliVerify(int argc, char **argv, int *exit_code);
 PetscErrorCode CliSweep(int argc, char **argv, int *exit_code);
 PetscErrorCode CliCalibrate(int argc, char **argv, int *exit_code);
 PetscErrorCode CliPlot(int argc, char **argv, int *exit_code);
+PetscErrorCode CliCompare(int argc, char **argv, int *exit_code);
 PetscErrorCode CliVersion(int argc, char **argv, int *exit_code);
 PetscErrorCode CliInit(int argc, char **argv, int *exit_code);
 PetscErrorCode CliImport(int argc, char **argv, int *exit_code);
@@ -39,7 +40,7 @@ typedef struct {
   int min_words, max_words; /* how many words that are no options */
 } CliUsage;
 extern const CliUsage cli_run_usage, cli_check_usage, cli_init_usage, cli_import_usage, cli_list_usage,
-  cli_schema_usage, cli_verify_usage, cli_sweep_usage, cli_calibrate_usage, cli_plot_usage, cli_version_usage,
+  cli_schema_usage, cli_verify_usage, cli_sweep_usage, cli_calibrate_usage, cli_plot_usage, cli_compare_usage, cli_version_usage,
   cli_help_usage, cli_completion_usage;
 
 /* A subcommand; the table is in main.c, ended by name = NULL. */
@@ -77,6 +78,8 @@ PetscInt cli_values(const CliArguments *arguments, const char *name, const char 
 
 /* Print `error: ...` and a hint (or NULL) on rank 0 and set the exit code for bad usage. */
 PetscErrorCode CliUsageError(int *exit_code, const char *hint, const char *format, ...) PETSC_ATTRIBUTE_FORMAT(3, 4);
+/* Is the word of an option one of these? If not that is printed, with the nearest, and *ok is false; NULL is fine. */
+PetscErrorCode CliOneOf(const char *option, const char *word, const char *const *words, PetscBool *ok, int *exit_code);
 /* Collective. Were all ranks started with the same words? If not that has been printed, and the
  * exit code is set. */
 PetscErrorCode CliSameCommand(int argc, char **argv, PetscBool *same, int *exit_code);

@@ -82,7 +82,12 @@ PetscBool value_word(const char *name, int i, char word[128])
 PetscBool value_of_word(const CliUsage *usage, int i, char name[128])
 {
   const char *text = usage->usage;
-  for (i += 2; i > 0 && *text; --i) text += strcspn(text, " "), text += strspn(text, " ");
+  for (i += 2; i > 0 && *text; --i) {
+    const size_t length = strcspn(text, " ");
+    if (strstr(text, "...") && strstr(text, "...") < text + length) break; /* as often as one likes */
+    text += length;
+    text += strspn(text, " ");
+  }
   if (*text == '[') ++text;
   const size_t length = strcspn(text, " ],.");
   copy_word(text, length, name);

@@ -18,8 +18,8 @@ ValueKind value_kind(const char *name);
 /* Word i of VALUE_WORDS and VALUE_KEYS; PETSC_FALSE behind the last. */
 PetscBool value_word(const char *name, int i, char word[128]);
 
-/* What the usage of a command calls its word i ("CASE"), without brackets; PETSC_FALSE if there is
- * none. */
+/* What the usage of a command calls its word i ("CASE"), without brackets; "[RUN...]" is all from
+ * there on. PETSC_FALSE if there is none. */
 PetscBool value_of_word(const CliUsage *usage, int i, char name[128]);
 
 /* The text with a backslash before each character of `special`, on one line. */
