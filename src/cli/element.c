@@ -72,7 +72,7 @@ PetscErrorCode CliElement(int argc, char **argv, int *exit_code)
   /* a point is one rank's work */
   if (cli_prints()) {
     PetscCall(DiagCreate(&diag));
-    PetscCall(ElementRun(&options, stdout, diag, &outcome));
+    PetscCall(ElementRun(&options, stdout, diag, NULL, &outcome));
     PetscCall(DiagFlush(diag, stderr));
     PetscCall(DiagDestroy(&diag));
   }

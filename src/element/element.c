@@ -11,7 +11,7 @@ typedef struct {
   ElementSpec *spec;
   DrivePoint point;
   ElementTable table;
-  PetscInt iterations, increments, substeps;
+  ElementSummary summary;
   Diag *diag;
 } Element;
 
@@ -91,13 +91,14 @@ static PetscErrorCode Follow(Element *e, PetscInt stage, PetscBool *done)
   *done = PETSC_TRUE;
   element_stage(s, &e->point, &control, first, last);
   memcpy(from, first, sizeof from);
-  for (PetscInt i = 0; i < s->steps && *done; ++i, ++e->increments) {
+  for (PetscInt i = 0; i < s->steps && *done; ++i, ++e->summary.increments) {
     const PetscReal share = (PetscReal)(i + 1) / (PetscReal)s->steps;
     DriveReport report = {0};
     for (int k = 0; k < 6; ++k) to[k] = i + 1 == s->steps ? last[k] : first[k] + share * (last[k] - first[k]);
     *done = drive_advance(&e->point, &control, from, to, &report);
-    e->iterations += report.iterations;
-    e->substeps += report.substeps;
+    e->summary.iterations += report.iterations;
+    e->summary.most_iterations = PetscMax(e->summary.most_iterations, report.iterations);
+    e->summary.substeps += report.substeps;
     memcpy(from, to, sizeof from);
     if (*done || report.reached > 0) PetscCall(ElementTableAdd(&e->table, stage + 1, &e->point));
     if (!*done) tell_stuck(e, stage, &control, &report, ((PetscReal)i + report.reached) / (PetscReal)s->steps);
@@ -113,10 +114,12 @@ static PetscErrorCode Write(const Element *e, const char *folder, FILE *out)
   PetscFunctionBeginUser;
   PetscCall(PetscSNPrintf(csv, sizeof csv, "%s/element.csv", folder));
   PetscCall(PetscSNPrintf(png, sizeof png, "%s/element.png", folder));
-  element_report(out, e->spec, &e->table);
-  fprintf(out, "%" PetscInt_FMT " increments in %" PetscInt_FMT " parts, %" PetscInt_FMT " iterations\n", e->increments,
-          e->substeps, e->iterations);
   PetscCall(ElementTableWrite(&e->table, csv, e->diag));
+  if (!out) PetscFunctionReturn(0);
+  fprintf(out, "%s (%s)\n", e->spec->title, e->spec->material.law->name);
+  element_report(out, e->spec, &e->table);
+  fprintf(out, "%" PetscInt_FMT " increments in %" PetscInt_FMT " parts, %" PetscInt_FMT " iterations\n",
+          e->summary.increments, e->summary.substeps, e->summary.iterations);
   fprintf(out, "table: %s\n", csv);
   PetscCall(ElementFigure(e->spec, &e->table, png, e->diag, &done));
   if (done) fprintf(out, "picture: %s\n", png);
@@ -128,15 +131,27 @@ static PetscErrorCode FollowAll(Element *e, const char *folder, FILE *out, Eleme
   PetscBool done = PETSC_TRUE;
 
   PetscFunctionBeginUser;
-  fprintf(out, "%s (%s)\n", e->spec->title, e->spec->material.law->name);
   PetscCall(ElementTableAdd(&e->table, 0, &e->point));
   for (PetscInt s = 0; s < e->spec->n_stages && done; ++s) PetscCall(Follow(e, s, &done));
+  element_measure(&e->table, e->summary.measures);
   PetscCall(Write(e, folder, out));
   *outcome = done ? ELEMENT_DONE : ELEMENT_STUCK;
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode ElementRun(const ElementOptions *options, FILE *out, Diag *diag, ElementOutcome *outcome)
+PetscErrorCode ElementCheck(const ElementOptions *options, Diag *diag, PetscBool *good)
+{
+  Element e = {.options = options, .diag = diag};
+
+  PetscFunctionBeginUser;
+  PetscCall(ElementRead(options, diag, &e.spec));
+  *good = e.spec && start(&e) ? PETSC_TRUE : PETSC_FALSE;
+  PetscCall(ElementSpecDestroy(&e.spec));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ElementRun(const ElementOptions *options, FILE *out, Diag *diag, ElementSummary *summary,
+                          ElementOutcome *outcome)
 {
   Element e = {.options = options, .diag = diag};
   char folder[PETSC_MAX_PATH_LEN];
@@ -148,6 +163,7 @@ PetscErrorCode ElementRun(const ElementOptions *options, FILE *out, Diag *diag, 
     find_out(&e, folder);
     if (start(&e) && prepare_folder(folder, diag)) PetscCall(FollowAll(&e, folder, out, outcome));
   }
+  if (summary) *summary = e.summary;
   PetscCall(PetscFree(e.table.values));
   PetscCall(ElementSpecDestroy(&e.spec));
   PetscFunctionReturn(0);

@@ -20,5 +20,21 @@ typedef struct {
  * its end; what was reached is written. */
 typedef enum { ELEMENT_DONE = 0, ELEMENT_STUCK = 1, ELEMENT_BAD_INPUT = 2 } ElementOutcome;
 
-/* Of one process. What the point did goes to `out`. */
-PetscErrorCode ElementRun(const ElementOptions *options, FILE *out, Diag *diag, ElementOutcome *outcome);
+/* What a path gives at its end (element_measures.c). */
+#define ELEMENT_N_MEASURES 13
+typedef struct {
+  const char *name, *unit, *help;
+} ElementMeasure;
+extern const ElementMeasure element_measures[ELEMENT_N_MEASURES + 1]; /* ended by name = NULL */
+
+typedef struct {
+  PetscReal measures[ELEMENT_N_MEASURES];
+  PetscInt increments, substeps, iterations, most_iterations; /* most: of one increment */
+} ElementSummary;
+
+/* Of one process. What the point did goes to `out` (NULL: nobody is told, and nothing is drawn), and
+ * its numbers into `summary`, unless that is NULL. */
+PetscErrorCode ElementRun(const ElementOptions *options, FILE *out, Diag *diag, ElementSummary *summary,
+                          ElementOutcome *outcome);
+/* Could it be run, as far as reading tells? If not diag says why. */
+PetscErrorCode ElementCheck(const ElementOptions *options, Diag *diag, PetscBool *good);

@@ -34,5 +34,7 @@ PetscErrorCode ElementTableWrite(const ElementTable *table, const char *path, Di
 /* element_figure.c: the picture of it, in one PNG. */
 PetscErrorCode ElementFigure(const ElementSpec *spec, const ElementTable *table, const char *png, Diag *diag,
                              PetscBool *done);
+/* element_measures.c: what stands in the last row, and the peak of q. */
+void element_measure(const ElementTable *table, PetscReal values[ELEMENT_N_MEASURES]);
 /* element_report.c: a line for each stage, on the terminal. */
 void element_report(FILE *out, const ElementSpec *spec, const ElementTable *table);

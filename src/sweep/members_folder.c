@@ -4,7 +4,6 @@
 #include <sched.h>
 #include <string.h>
 #include <sys/file.h>
-#include <sys/stat.h>
 #include <unistd.h>
 #include "output/directory/run_dir_files.h"
 #include "output/directory/run_dir_mark.h"
