@@ -17,6 +17,7 @@ PetscErrorCode CliSchema(int argc, char **argv, int *exit_code);
 PetscErrorCode CliVerify(int argc, char **argv, int *exit_code);
 PetscErrorCode CliSweep(int argc, char **argv, int *exit_code);
 PetscErrorCode CliCalibrate(int argc, char **argv, int *exit_code);
+PetscErrorCode CliElement(int argc, char **argv, int *exit_code);
 PetscErrorCode CliPlot(int argc, char **argv, int *exit_code);
 PetscErrorCode CliCompare(int argc, char **argv, int *exit_code);
 PetscErrorCode CliVersion(int argc, char **argv, int *exit_code);
@@ -40,8 +41,8 @@ typedef struct {
   int min_words, max_words; /* how many words that are no options */
 } CliUsage;
 extern const CliUsage cli_run_usage, cli_check_usage, cli_init_usage, cli_import_usage, cli_list_usage,
-  cli_schema_usage, cli_verify_usage, cli_sweep_usage, cli_calibrate_usage, cli_plot_usage, cli_compare_usage, cli_version_usage,
-  cli_help_usage, cli_completion_usage;
+  cli_schema_usage, cli_verify_usage, cli_sweep_usage, cli_calibrate_usage, cli_plot_usage, cli_compare_usage,
+  cli_element_usage, cli_version_usage, cli_help_usage, cli_completion_usage;
 
 /* A subcommand; the table is in main.c, ended by name = NULL. */
 typedef struct {

@@ -21,6 +21,7 @@ const CliCommand cli_commands[] = {
   {"verify", "run a verification case and compare with its reference", CliVerify, &cli_verify_usage},
   {"sweep", "run a case over values of its keys: a table and pictures", CliSweep, &cli_sweep_usage},
   {"calibrate", "which parameters give what was measured: a region", CliCalibrate, &cli_calibrate_usage},
+  {"element", "one material point on a path: triaxial, oedometer, shear", CliElement, &cli_element_usage},
   {"plot", "pictures of a run, histories of several", CliPlot, &cli_plot_usage},
   {"compare", "how far the histories of runs are apart, and in which keys", CliCompare, &cli_compare_usage},
   {"version", "versions of talus and of its libraries (also --version)", CliVersion, &cli_version_usage},

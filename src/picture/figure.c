@@ -295,6 +295,28 @@ PetscErrorCode FigureWrite(const Figure *figure, const char *png, Diag *diag, Pe
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode FigureSheet(const char *title, PetscInt n, const Figure *figures, PetscInt columns, const char *png,
+                           Diag *diag, PetscBool *done)
+{
+  const int rows = (int)((n + columns - 1) / columns);
+  GnuplotScript script;
+
+  PetscFunctionBeginUser;
+  PetscCall(GnuplotBegin(&script, png, 640 * (int)columns, 460 * rows));
+  fprintf(script.out, "set multiplot layout %d,%d", rows, (int)columns);
+  if (title && title[0]) fputs(" title ", script.out), gnuplot_quote(script.out, title);
+  fputc('\n', script.out);
+  for (PetscInt k = 0; k < n; ++k) {
+    PetscReal min[N_AXES] = {0}, max[N_AXES] = {0};
+    fputs("reset\n", script.out);
+    if (bounds(&figures[k], min, max)) write_figure(script.out, &figures[k], min, max);
+    else fputs("set multiplot next\n", script.out);
+  }
+  fputs("unset multiplot\n", script.out);
+  PetscCall(GnuplotEnd(&script, png, diag, done));
+  PetscFunctionReturn(0);
+}
+
 /* Units with a prefix of their own, powers and reciprocals stay as they are. */
 static PetscBool takes_prefix(const char *unit)
 {
