@@ -1,6 +1,6 @@
 #!/bin/sh
 # build.sh FOLDER: Debian packages from the files that git tracks, as they are now, into FOLDER; then lintian over them.
-# DEB_BUILD_OPTIONS=nodoc leaves the site out. Fails if a package does not build or lintian finds an error.
+# DEB_BUILD_PROFILES=nodoc leaves the site out. Fails if a package does not build or lintian finds an error.
 set -eu
 source=$(cd "$(dirname "$0")/.." && pwd)
 mkdir -p "$1"

@@ -187,6 +187,11 @@ wrong '/^End Conditions/,$d' "the end of the file"
 wrong 's/Element2D4N/Quadrilateral/' "a type that ends with its number of nodes"
 wrong 's/Begin Nodes/Nodes/' "the begin of a block is expected, not 'Nodes'"
 wrong 's/^   13 /   999999999999 /' "a number of a node or element is expected"
+wrong '/^Begin Nodes/,/^End Nodes/d' "a node that the file has is expected, not '1'"
+wrong '/^Begin SubModelPart Wall/,$d' "has no model part 'Wall'"
+wrong 's/^Begin SubModelPart Wall/& Begin SubModelPart Wall/' "a block ends with another name than it began with"
+for depth in 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16 17 18; do echo "Begin SubModelPart P$depth"; done >deep.mdpa
+wrong '$r deep.mdpa' "parts are not that deep in each other"
 : >pulled/ProjectParameters.json
 expect "an empty file" 2 "$talus" import kratos pulled --out none
 expect "no project" 2 "$talus" import kratos nowhere --out none

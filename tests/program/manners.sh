@@ -82,7 +82,11 @@ if command -v fish >/dev/null; then
   [ "$(fish -c 'source complete.fish; complete -C "talus plot x --field mis"' | cut -f 1)" = "mises" ] || fail "$name: a field"
 fi
 if command -v zsh >/dev/null; then
-  zsh -n complete.zsh || fail "zsh does not read its completion"
+  name="zsh"
+  zsh -n complete.zsh || fail "$name does not read its completion"
+  mkdir functions && cp complete.zsh functions/_talus
+  taken=$(zsh -fc 'fpath=($PWD/functions $fpath); autoload -Uz compinit; compinit -u -d dump; print -- $_comps[talus]; autoload +X _talus' 2>&1)
+  [ "$taken" = _talus ] || fail "$name: compinit says '$taken'"
 fi
 expect "no such shell" 2 "$talus" completion csh
 says err.txt "'csh' is no shell that is known" "bash, zsh or fish"

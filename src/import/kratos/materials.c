@@ -91,9 +91,10 @@ static void read_body(KratosProject *p, const YamlNode *item, KratosBody *body)
     body->n_constants = i + 1;
   }
   body->thickness = kratos_number(f, variables, "THICKNESS", 1);
-  body->points = points_of((PetscInt)kratos_number(f, variables, "PARTICLES_PER_ELEMENT",
-                                                   kratos_number(f, variables, "MATERIAL_POINTS_PER_ELEMENT", 1)),
-                           nodes_of_part(p->body, part), p->dim);
+  const PetscReal older = kratos_number(f, variables, "PARTICLES_PER_ELEMENT", 1),
+                  points = kratos_number(f, variables, "MATERIAL_POINTS_PER_ELEMENT", older);
+  if (!(points >= 1 && points < 1000)) kratos_refuse(f, variables, "a number of points in each element is expected");
+  else body->points = points_of((PetscInt)points, nodes_of_part(p->body, part), p->dim);
 }
 
 PetscErrorCode KratosReadMaterials(KratosProject *p)

@@ -4,7 +4,8 @@
 #include <string.h>
 #include "base/file.h"
 
-#define MDPA_MOST_ID 100000000 /* a table of ids is as long as the largest */
+#define MDPA_MOST_ID 20000000 /* a table of ids is as long as the largest */
+#define MDPA_DEEPEST 16       /* parts within parts */
 
 /* Words of the text, one after the other; comments are none. */
 typedef struct {
@@ -130,7 +131,7 @@ static PetscErrorCode ReadEntities(Reader *r, MdpaEntities *list, const char *bl
     (void)next(r); /* its properties: materials are by model parts */
     for (PetscInt i = 0; i < n && next(r); ++i) {
       const PetscInt id = integer(r);
-      if (!r->bad && (id > m->most || m->index[id] < 0)) complain(r, "a node that the file has is expected");
+      if (!r->bad && mdpa_node(m, id) < 0) complain(r, "a node that the file has is expected");
       if (!r->bad) e->node[i] = m->index[id];
     }
   }
@@ -163,7 +164,7 @@ static void skip(Reader *r)
 }
 
 /* Behind "Begin SubModelPart"; `outer`: the name of the part around it and a point, or "". */
-static PetscErrorCode ReadPart(Reader *r, const char *outer)
+static PetscErrorCode ReadPart(Reader *r, const char *outer, int depth)
 {
   Mdpa *m = r->model;
   const PetscInt part = m->n_parts++;
@@ -182,7 +183,8 @@ static PetscErrorCode ReadPart(Reader *r, const char *outer)
     else if (is(r, "SubModelPartElements")) PetscCall(ReadIds(r, &m->parts[part].elements, "SubModelPartElements"));
     else if (is(r, "SubModelPartConditions"))
       PetscCall(ReadIds(r, &m->parts[part].conditions, "SubModelPartConditions"));
-    else if (is(r, "SubModelPart")) PetscCall(ReadPart(r, name));
+    else if (is(r, "SubModelPart") && depth == MDPA_DEEPEST) complain(r, "parts are not that deep in each other");
+    else if (is(r, "SubModelPart")) PetscCall(ReadPart(r, name, depth + 1));
     else skip(r);
   }
   end_block(r, "SubModelPart");
@@ -205,7 +207,7 @@ static PetscErrorCode ReadBlocks(Reader *r)
     else if (is(r, "Nodes")) PetscCall(ReadNodes(r));
     else if (is(r, "Elements")) PetscCall(ReadEntities(r, &m->elements, "Elements"));
     else if (is(r, "Conditions")) PetscCall(ReadEntities(r, &m->conditions, "Conditions"));
-    else if (is(r, "SubModelPart")) PetscCall(ReadPart(r, ""));
+    else if (is(r, "SubModelPart")) PetscCall(ReadPart(r, "", 0));
     else {
       if (strcmp(r->word, "ModelPartData") && strcmp(r->word, "Properties") && strcmp(r->word, "Table"))
         diag_warning(r->diag, NULL, "%s:%d: the block %s is left out", m->file, r->line, r->word);
@@ -270,6 +272,8 @@ const MdpaPart *mdpa_part(const Mdpa *model, const char *name)
     if (!strcmp(model->parts[i].name, name)) return &model->parts[i];
   return NULL;
 }
+
+PetscInt mdpa_node(const Mdpa *model, PetscInt id) { return model->index && id <= model->most ? model->index[id] : -1; }
 
 PetscInt mdpa_find(const MdpaEntities *entities, PetscInt id)
 {

@@ -44,5 +44,7 @@ PetscErrorCode MdpaRead(const char *file, Diag *diag, Mdpa **model);
 PetscErrorCode MdpaDestroy(Mdpa **model);
 /* NULL if there is none. */
 const MdpaPart *mdpa_part(const Mdpa *model, const char *name);
+/* Index of the node with this id, -1 if there is none. */
+PetscInt mdpa_node(const Mdpa *model, PetscInt id);
 /* Index of the entity with this id, -1 if there is none; entities are in the order of their ids. */
 PetscInt mdpa_find(const MdpaEntities *entities, PetscInt id);

@@ -65,7 +65,7 @@ static void read_times(KratosProject *p, const YamlNode *problem, const YamlNode
   const YamlNode *stepping = yaml_find(settings, "time_stepping");
   p->end = kratos_number(&p->parameters, problem, "end_time", 1) - start;
   p->step = kratos_number(&p->parameters, stepping, "time_step", 0);
-  if (!(p->step > 0) || !(p->end > 0)) {
+  if (!(p->step > 0) || !(p->end > 0) || p->end / p->step > 1e9) {
     kratos_refuse(&p->parameters, settings, "a time_step > 0 and an end_time behind the start_time are expected");
     p->step = p->end = 1;
   }
@@ -115,8 +115,8 @@ static PetscErrorCode ReadSettings(KratosProject *p, const YamlNode *settings)
     while (settings_known[k] && strcmp(settings_known[k], settings->child[i]->key)) ++k;
     if (!settings_known[k]) diag_warning(p->diag, NULL, "solver_settings.%s is left out", settings->child[i]->key);
   }
-  p->dim = (PetscInt)kratos_number(&p->parameters, settings, "domain_size", 2);
-  if (p->dim != 2 && p->dim != 3)
+  p->dim = kratos_number(&p->parameters, settings, "domain_size", 2) == 3 ? 3 : 2;
+  if (kratos_number(&p->parameters, settings, "domain_size", 2) != p->dim)
     kratos_refuse(&p->parameters, yaml_find(settings, "domain_size"), "domain_size is 2 or 3");
   p->axisymmetric = kratos_flag(settings, "axis_symmetric_flag");
   p->mixed = kratos_flag(settings, "pressure_dofs");

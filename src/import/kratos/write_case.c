@@ -103,8 +103,10 @@ static void write_points(const KratosProject *p, const KratosAction *a, FILE *ou
 {
   const MdpaPart *part = mdpa_part(p->grid, a->part);
   for (PetscInt k = 0; k < part->nodes.n; ++k) {
+    const PetscInt node = mdpa_node(p->grid, part->nodes.id[k]);
+    if (node < 0) continue;
     fputs("    - {at: ", out);
-    write_vector(out, p->grid->x[p->grid->index[part->nodes.id[k]]], p->dim);
+    write_vector(out, p->grid->x[node], p->dim);
     fputs(", force: ", out);
     write_vector(out, a->value, p->dim);
     write_amplitude(p, "amplitude", out);

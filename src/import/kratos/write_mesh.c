@@ -46,7 +46,7 @@ static PetscInt write_part(FILE *out, const Mdpa *m, const MdpaPart *part, Petsc
                            PetscInt number)
 {
   for (PetscInt k = 0; k < part->nodes.n; ++k) {
-    const PetscInt node = part->nodes.id[k] <= m->most ? m->index[part->nodes.id[k]] : -1;
+    const PetscInt node = mdpa_node(m, part->nodes.id[k]);
     if (node < 0) continue;
     ++number;
     if (out) write_element(out, number, 15, group, m, 1, &node);

@@ -123,8 +123,9 @@ static PetscBool entry_position(const KratosProject *p, const YamlNode *entry, l
 {
   const long number = entry_number(entry->key);
   if (strncmp(entry->key, "NODE_", 5)) return point_position(p, (PetscInt)(number - first), x);
-  if (number > p->grid->most || p->grid->index[number] < 0) return PETSC_FALSE;
-  for (int d = 0; d < 3; ++d) x[d] = p->grid->x[p->grid->index[number]][d];
+  const PetscInt node = number > p->grid->most ? -1 : mdpa_node(p->grid, (PetscInt)number);
+  if (node < 0) return PETSC_FALSE;
+  for (int d = 0; d < 3; ++d) x[d] = p->grid->x[node][d];
   return PETSC_TRUE;
 }
 
