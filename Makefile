@@ -49,7 +49,7 @@ check: tests ## What a change must pass besides the tests: format-check, tidy CH
 test-sanitize: deps ## The same tests under AddressSanitizer and UndefinedBehaviorSanitizer; FAST=1: those of a second or less
 	@cmake -S . -B $(SANITIZE) -G Ninja --log-level=WARNING -DCMAKE_BUILD_TYPE=RelWithDebInfo -DTALUS_SANITIZE=ON \
 	  $(OPTIONS) >/dev/null
-	@cmake --build $(SANITIZE) --parallel $(JOBS) --target all $(if $(FAST),fast_tests,tests)
+	@cmake --build $(SANITIZE) --parallel $(JOBS) --target $(if $(FAST),fast_tests,talus tests)
 	@cmake/run-tests.sh $(SANITIZE) $(TEST_JOBS) $(if $(FAST),-L fast) $(TEST_ARGS)
 
 test-kill: tests ## Kill a run 50 times at random moments on one rank, 50 times on two; let every allocation fail once: KILLS=50

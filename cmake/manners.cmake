@@ -24,7 +24,10 @@ talus_says(talus.bash completion bash)
 talus_says(_talus completion zsh)
 talus_says(talus.fish completion fish)
 get_property(said DIRECTORY PROPERTY TALUS_MANNERS)
-add_custom_target(talus_manners ALL DEPENDS ${said})
+add_custom_target(talus_manners DEPENDS ${said})
+if(NOT TALUS_SANITIZE) # which would look for leaks of MPI, too
+  set_target_properties(talus_manners PROPERTIES EXCLUDE_FROM_ALL OFF)
+endif()
 
 set(TALUS_ZSH_COMPLETIONS ${CMAKE_INSTALL_DATADIR}/zsh/site-functions CACHE STRING "Where zsh looks for completions of packages")
 install(FILES ${manners}/talus.1 DESTINATION ${CMAKE_INSTALL_MANDIR}/man1)

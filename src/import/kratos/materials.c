@@ -44,8 +44,7 @@ static void read_law(const KratosFile *f, const YamlNode *law, KratosBody *body,
     diag_warning(f->diag, NULL, "%s is taken as %s: %s", name, laws_known[i].law, laws_known[i].said);
 }
 
-/* Kratos counts points of hexahedra by those of one of their faces; `cells`: 3 or 4 nodes (2D), 4 or
- * 8 (3D). Of tetrahedra 3 stands for 4. */
+/* Kratos counts points of hexahedra by those of one of their faces; of tetrahedra 3 stands for 4. */
 static PetscInt points_of(PetscInt n, PetscInt nodes, PetscInt dim)
 {
   if (dim == 3 && nodes == 8) return n == 4 ? 8 : n == 9 ? 27 : n == 16 ? 64 : n;

@@ -82,6 +82,6 @@ PetscErrorCode KratosReadMaterials(KratosProject *project);
 /* Writers. */
 PetscErrorCode KratosWriteGrid(const KratosProject *project, const char *file);
 PetscErrorCode KratosWriteBody(const KratosProject *project, const char *file);
-/* Case and reference together: what is compared becomes a measure. `reference`: empty if nothing is. */
+/* What is compared becomes a measure of the case and n rows of the reference. */
 PetscErrorCode KratosWriteCase(const KratosProject *project, FILE *out);
 PetscErrorCode KratosWriteReference(const KratosProject *project, FILE *measures, FILE *reference, PetscInt *n);

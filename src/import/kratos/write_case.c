@@ -55,7 +55,7 @@ static void write_bodies(const KratosProject *p, FILE *out)
   }
 }
 
-/* The grid starts anew in every step, so what Kratos prescribes is the displacement of each step. */
+/* The grid starts anew in every step: what Kratos prescribes is the displacement of each step. */
 static void write_held(const KratosProject *p, const KratosAction *a, PetscBool moves, FILE *out)
 {
   PetscBool first = PETSC_TRUE;

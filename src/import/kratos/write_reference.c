@@ -1,5 +1,5 @@
-/* What the project compares itself with becomes measures of the case and rows of its reference.yaml:
- * of each component that is checked, the node or material point that has the most of it at the
+/* What the project compares itself with becomes measures of the case and rows of its
+ * reference.yaml: of each component that is checked, the node or material point that has the most of it at the
  * end; of stresses the mean over all material points. */
 #include <ctype.h>
 #include <math.h>
@@ -38,7 +38,8 @@ static long entry_number(const char *key)
   return -1;
 }
 
-/* Points that Kratos places in a cell, and in which order, by shape functions of its nodes; 0: not known here. */
+/* Points that Kratos places in a cell, and in which order, by shape functions of its nodes; 0: not
+ * known here. */
 static PetscInt cell_points(PetscInt nodes, PetscInt dim, PetscInt points, PetscInt q, PetscReal N[MDPA_MAX_NODES])
 {
   static const PetscReal xi[4] = {-1, 1, 1, -1}, eta[4] = {-1, -1, 1, 1};
