@@ -18,10 +18,13 @@ MAKEFLAGS  += --no-print-directory
 export OMPI_ALLOW_RUN_AS_ROOT := 1
 export OMPI_ALLOW_RUN_AS_ROOT_CONFIRM := 1
 
-.PHONY: build help deps configure run test check test-sanitize test-kill test-mutants fuzz bench verify install docs format format-check tidy clean
+.PHONY: build tests help deps configure run test check test-sanitize test-kill test-mutants fuzz bench verify install package release-check docs gallery format format-check tidy clean
 
-build: configure ## Build the program, build/talus, and its tests (the default). PORTABLE=1: for any machine
+build: configure ## Build the program, build/talus, its library and manual (the default). PORTABLE=1: for any machine
 	@cmake --build $(BUILD) --parallel $(JOBS)
+
+tests: configure ## Build the tests, too
+	@cmake --build $(BUILD) --parallel $(JOBS) --target all tests
 
 help: ## This list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / {printf "  make %-14s %s\n", $$1, $$2}' $(MAKEFILE_LIST)
@@ -37,19 +40,19 @@ run: build ## Run a case and draw it: CASE=cases/granular-collapse, into RUN=run
 	@$(TALUS) plot $(RUN)
 	@echo "pictures:"; find $(RUN) -name '*.png' | sort
 
-test: build ## Run all tests
+test: tests ## Run all tests
 	@cmake/run-tests.sh $(BUILD) $(TEST_JOBS) $(TEST_ARGS)
 
-check: build ## What a change must pass besides the tests: format-check, tidy CHANGED=1, test-sanitize FAST=1
+check: tests ## What a change must pass besides the tests: format-check, tidy CHANGED=1, test-sanitize FAST=1
 	@cmake/run-checks.sh $(BUILD)
 
 test-sanitize: deps ## The same tests under AddressSanitizer and UndefinedBehaviorSanitizer; FAST=1: those of a second or less
 	@cmake -S . -B $(SANITIZE) -G Ninja --log-level=WARNING -DCMAKE_BUILD_TYPE=RelWithDebInfo -DTALUS_SANITIZE=ON \
 	  $(OPTIONS) >/dev/null
-	@cmake --build $(SANITIZE) --parallel $(JOBS) $(if $(FAST),--target fast_tests)
+	@cmake --build $(SANITIZE) --parallel $(JOBS) --target $(if $(FAST),fast_tests,talus tests)
 	@cmake/run-tests.sh $(SANITIZE) $(TEST_JOBS) $(if $(FAST),-L fast) $(TEST_ARGS)
 
-test-kill: build ## Kill a run 50 times at random moments on one rank, 50 times on two; let every allocation fail once: KILLS=50
+test-kill: tests ## Kill a run 50 times at random moments on one rank, 50 times on two; let every allocation fail once: KILLS=50
 	@OPENBLAS_NUM_THREADS=1 sh tests/program/kill.sh $(abspath $(TALUS)) 1 $(KILLS)
 	@OPENBLAS_NUM_THREADS=1 sh tests/program/kill.sh $(abspath $(TALUS)) 2 $(KILLS)
 	@OPENBLAS_NUM_THREADS=1 TALUS_MEMORY_STRIDE=1 $(BUILD)/tests/bin/run_test_memory
@@ -75,13 +78,24 @@ verify: build ## Verify every case that has reference values; FULL=1: on the fin
 	  $(TALUS) verify $(if $(FULL),--full) "$$(dirname "$$reference")" || status=$$?; \
 	done; exit $$status
 
-install: build ## Install program, library, header and package files under PREFIX=/usr/local
+install: build ## Install program, library, manual, completions and cases under PREFIX=/usr/local; `make docs` before: these, too
 	@cmake --install $(BUILD) --prefix $(abspath $(PREFIX))
 
-docs: ## Reference of the public header, in build/docs/html
+package: ## Build Debian packages for any x86-64 or arm64 machine, in build/package: program, library, Python, documentation
+	@cmake/debian-packages.sh build docs package
+	@sh packaging/build.sh $(BUILD)/package
+
+release-check: ## Before a tag: do all files tell the same version, and is nothing left open? VERSION=0.2.0
+	@sh packaging/release-check.sh $(VERSION)
+
+docs: ## Build the site of the documentation, in build/docs/html
 	@cmake/debian-packages.sh build docs
 	@$(MAKE) configure
+	@cmake --build $(BUILD) --parallel $(JOBS) --target talus
 	@cmake --build $(BUILD) --target docs
+
+gallery: build ## Measure the seconds that the gallery says of the cases (half an hour)
+	@python3 docs/site/measure.py $(TALUS)
 
 format: ## Format all sources in place
 	@cmake/debian-packages.sh format

@@ -8,8 +8,12 @@ packages_of() {
       echo build-essential cmake ninja-build pkg-config
       echo petsc-dev libopenmpi-dev openmpi-bin libhdf5-openmpi-dev libopenblas-dev
       echo libfyaml-dev zlib1g-dev libcmocka-dev gmsh gnuplot-nox
+      echo python3-numpy python3-h5py python3-mpi4py
       ;;
-    docs) echo doxygen ;;
+    # The site: pages and theme, formulas set at build time, the reference of the header.
+    docs) echo python3-sphinx python3-myst-parser furo katex doxygen ;;
+    # What Debian's own builds use, its critic, and a bare Debian to try what comes out in.
+    package) echo debhelper dh-python dpkg-dev fakeroot lintian debootstrap ;;
     format) echo clang-format ;;
     tidy) echo clang-tidy ;;
     fuzz) echo clang libclang-rt-dev ;;

@@ -1,4 +1,4 @@
-# Targets that nobody builds by default: `bench` (bench/*.c, each a program) and `docs` (the public header).
+# Targets that nobody builds by default: `bench` (bench/*.c, each a program) and `docs` (the site).
 add_custom_target(bench)
 file(GLOB bench_sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/bench/*.c)
 if(TARGET talus_library)
@@ -27,5 +27,5 @@ if(TALUS_FUZZ)
 endif()
 
 configure_file(${PROJECT_SOURCE_DIR}/docs/Doxyfile.in ${PROJECT_BINARY_DIR}/Doxyfile @ONLY)
-add_custom_target(docs COMMAND doxygen ${PROJECT_BINARY_DIR}/Doxyfile WORKING_DIRECTORY ${PROJECT_SOURCE_DIR}
-  COMMENT "Reference of the public header: ${PROJECT_BINARY_DIR}/docs/html/index.html" VERBATIM)
+add_custom_target(docs COMMAND sh ${PROJECT_SOURCE_DIR}/docs/site/build.sh $<TARGET_FILE:talus> ${PROJECT_BINARY_DIR}
+  WORKING_DIRECTORY ${PROJECT_SOURCE_DIR} USES_TERMINAL VERBATIM)

@@ -3,6 +3,7 @@
 get_target_property(options talus_flags INTERFACE_COMPILE_OPTIONS)
 string(TOUPPER "${CMAKE_BUILD_TYPE}" build_type)
 string(JOIN " " TALUS_BUILD_FLAGS ${CMAKE_C_FLAGS} ${CMAKE_C_FLAGS_${build_type}} ${options})
+string(REGEX REPLACE " ?-f[a-z]+-prefix-map=[^ ]+" "" TALUS_BUILD_FLAGS "${TALUS_BUILD_FLAGS}") # where a package was built is nobody's
 set(TALUS_GIT_DESCRIBE "@TALUS_GIT_DESCRIBE@") # stays open for the second pass
 configure_file(${PROJECT_SOURCE_DIR}/cmake/talus_version.h.in ${PROJECT_BINARY_DIR}/talus_version.h.in @ONLY)
 

@@ -27,19 +27,6 @@ PetscErrorCode CliUsageError(int *exit_code, const char *hint, const char *forma
   PetscFunctionReturn(0);
 }
 
-static void print_help(const CliUsage *usage)
-{
-  char left[64];
-  if (!cli_prints()) return;
-  printf("usage: %s\n\n%s\n\noptions:\n", usage->usage, usage->help);
-  for (const CliOption *option = usage->options; option && option->name; ++option) {
-    snprintf(left, sizeof(left), "--%s %s", option->name, option->value ? option->value : "");
-    printf("  %-30s %s\n", left, option->help);
-  }
-  printf("  %-30s %s\n", "--help", "show this");
-  fflush(stdout);
-}
-
 static const CliOption *find_option(const CliUsage *usage, const char *name, size_t length)
 {
   for (const CliOption *option = usage->options; option && option->name; ++option)
@@ -122,7 +109,7 @@ PetscErrorCode CliParse(const CliUsage *usage, int argc, char **argv, CliArgumen
   *exit_code = CLI_DONE;
   for (int i = 1; i < argc; ++i)
     if (!strcmp(argv[i], "--help") || !strcmp(argv[i], "-h")) {
-      print_help(usage);
+      cli_print_usage(stdout, usage);
       PetscFunctionReturn(0);
     }
   for (int i = 1; i < argc; ++i) {
@@ -151,4 +138,18 @@ PetscInt cli_values(const CliArguments *arguments, const char *name, const char 
   for (int i = 0; i < arguments->n_options; ++i)
     if (!strcmp(arguments->names[i], name)) values[n++] = arguments->values[i];
   return n;
+}
+
+PetscErrorCode CliOneOf(const char *option, const char *word, const char *const *words, PetscBool *ok, int *exit_code)
+{
+  char hint[160];
+
+  PetscFunctionBeginUser;
+  for (int k = 0; words[k]; ++k)
+    if (!word || !strcmp(word, words[k])) PetscFunctionReturn(0);
+  const char *nearest = diag_nearest(word, words);
+  snprintf(hint, sizeof hint, "did you mean %s?", nearest ? nearest : "");
+  PetscCall(CliUsageError(exit_code, nearest ? hint : NULL, "--%s has no '%s': see --help", option, word));
+  *ok = PETSC_FALSE;
+  PetscFunctionReturn(0);
 }

@@ -16,13 +16,15 @@ static const CliOption options_known[] = {
   {NULL, NULL, NULL},
 };
 
-static const CliUsage usage = {
+const CliUsage cli_calibrate_usage = {
   .usage = "talus calibrate FILE [options]",
   .help =
     "Looks for the parameters of a material with which the cases of FILE (instruments) give what was measured: as a\n"
     "region, with the errors of its own predictions, and not as a point. Says which parameters are not determined,\n"
     "and confirms the best point by a run. The same command again goes on. The exit code is 3 if there is no such\n"
     "region, or its best point is not confirmed. docs/calibrate.md tells the language of the file.",
+  .examples =
+    "talus calibrate cases/sugar/S1.yaml --dry   # how many runs?\ntalus calibrate cases/sugar/S1.yaml --quick",
   .options = options_known,
   .min_words = 1,
   .max_words = 1,
@@ -36,7 +38,7 @@ PetscErrorCode CliCalibrate(int argc, char **argv, int *exit_code)
   Diag *diag;
 
   PetscFunctionBeginUser;
-  PetscCall(CliParse(&usage, argc, argv, &arguments, &go_on, exit_code));
+  PetscCall(CliParse(&cli_calibrate_usage, argc, argv, &arguments, &go_on, exit_code));
   if (go_on) PetscCall(CliCheckJobs(&arguments, &go_on, exit_code));
   if (!go_on) PetscFunctionReturn(0);
   const CalibrateOptions options = {

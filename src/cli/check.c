@@ -10,11 +10,12 @@ static const CliOption options[] = {
   {NULL, NULL, NULL},
 };
 
-static const CliUsage usage = {
+const CliUsage cli_check_usage = {
   .usage = "talus check CASE [--set PATH=VALUE]... [--trust]",
   .help =
     "Validates a case file without running it, and prints the resolved case (every key with its value, defaults too),\n"
     "sizes, estimated memory, the regions found, and warnings.",
+  .examples = "talus check case.yaml\ntalus check case.yaml --set grid.size=0.05   # how large would it be?",
   .options = options,
   .min_words = 1,
   .max_words = 1,
@@ -44,7 +45,7 @@ PetscErrorCode CliCheck(int argc, char **argv, int *exit_code)
   Case *c;
 
   PetscFunctionBeginUser;
-  PetscCall(CliParse(&usage, argc, argv, &arguments, &go_on, exit_code));
+  PetscCall(CliParse(&cli_check_usage, argc, argv, &arguments, &go_on, exit_code));
   if (!go_on) PetscFunctionReturn(0);
   PetscCall(DiagCreate(&diag));
   const PetscInt n_set = cli_values(&arguments, "set", set);

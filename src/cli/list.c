@@ -10,9 +10,10 @@
 #include "model/measure/measure.h"
 #include "support/basis.h"
 
-static const CliUsage usage = {
+const CliUsage cli_list_usage = {
   .usage = "talus list laws|methods|transfers|bases|cells|measures|fields",
   .help = "Prints what a case file can name.",
+  .examples = "talus list laws\ntalus list fields",
   .min_words = 1,
   .max_words = 1,
 };
@@ -85,11 +86,33 @@ static void list_fields(void)
                                 : "points");
 }
 
+static const char *law_word(int i) { return laws[i] ? laws[i]->name : NULL; }
+static const char *method_word(int i) { return methods[i] ? methods[i]->name : NULL; }
+static const char *transfer_word(int i) { return transfers[i] ? transfers[i]->name : NULL; }
+static const char *basis_word(int i) { return basis_names[i].name; }
+static const char *cell_word(int i) { return i < 4 ? cells[i].name : NULL; }
+static const char *measure_word(int i) { return measures[i] ? measures[i]->key : NULL; }
+static const char *field_word(int i) { return output_fields[i].name; }
+
 static const struct {
   const char *name;
   void (*print)(void);
-} lists[] = {{"laws", list_laws},   {"methods", list_methods},   {"transfers", list_transfers}, {"bases", list_bases},
-             {"cells", list_cells}, {"measures", list_measures}, {"fields", list_fields},       {NULL, NULL}};
+  const char *(*word)(int i);
+} lists[] = {{"laws", list_laws, law_word},
+             {"methods", list_methods, method_word},
+             {"transfers", list_transfers, transfer_word},
+             {"bases", list_bases, basis_word},
+             {"cells", list_cells, cell_word},
+             {"measures", list_measures, measure_word},
+             {"fields", list_fields, field_word},
+             {NULL, NULL, NULL}};
+
+const char *cli_list_word(const char *list, int i)
+{
+  for (int k = 0; lists[k].name; ++k)
+    if (!strcmp(lists[k].name, list)) return lists[k].word(i);
+  return NULL;
+}
 
 PetscErrorCode CliList(int argc, char **argv, int *exit_code)
 {
@@ -99,7 +122,7 @@ PetscErrorCode CliList(int argc, char **argv, int *exit_code)
   char hint[80] = "laws, methods, transfers, bases, cells, measures or fields";
 
   PetscFunctionBeginUser;
-  PetscCall(CliParse(&usage, argc, argv, &arguments, &go_on, exit_code));
+  PetscCall(CliParse(&cli_list_usage, argc, argv, &arguments, &go_on, exit_code));
   if (!go_on) PetscFunctionReturn(0);
   for (int i = 0; lists[i].name; ++i) {
     names[i] = lists[i].name;

@@ -11,47 +11,39 @@
 #include "base/process/threads.h"
 #include "cli/cli.h"
 
-static const struct Command {
-  const char *name, *help;
-  PetscErrorCode (*run)(int argc, char **argv, int *exit_code);
-} commands[] = {
-  {"run", "run a case file", CliRun},
-  {"check", "validate a case file and print what was understood", CliCheck},
-  {"list", "what there is: laws, methods, cells, measures, fields", CliList},
-  {"schema", "the reference of the case file: text, Markdown, JSON Schema", CliSchema},
-  {"verify", "run a verification case and compare with its reference", CliVerify},
-  {"sweep", "run a case over values of its keys: a table and pictures", CliSweep},
-  {"calibrate", "which parameters give what was measured: a region", CliCalibrate},
-  {"plot", "pictures of a run", CliPlot},
-  {"version", "versions of talus and of its libraries (also --version)", CliVersion},
-  {NULL, NULL, NULL},
+const CliCommand cli_commands[] = {
+  {"run", "run a case file", CliRun, &cli_run_usage},
+  {"check", "validate a case file and print what was understood", CliCheck, &cli_check_usage},
+  {"init", "a first case to begin with, or a copy of an installed one", CliInit, &cli_init_usage},
+  {"import", "a case from a project of another program: Kratos", CliImport, &cli_import_usage},
+  {"list", "what there is: laws, methods, cells, measures, fields", CliList, &cli_list_usage},
+  {"schema", "the reference of the case file: text, Markdown, JSON Schema", CliSchema, &cli_schema_usage},
+  {"verify", "run a verification case and compare with its reference", CliVerify, &cli_verify_usage},
+  {"sweep", "run a case over values of its keys: a table and pictures", CliSweep, &cli_sweep_usage},
+  {"calibrate", "which parameters give what was measured: a region", CliCalibrate, &cli_calibrate_usage},
+  {"element", "one material point on a path: triaxial, oedometer, shear", CliElement, &cli_element_usage},
+  {"plot", "pictures of a run, histories of several", CliPlot, &cli_plot_usage},
+  {"compare", "how far the histories of runs are apart, and in which keys", CliCompare, &cli_compare_usage},
+  {"version", "versions of talus and of its libraries (also --version)", CliVersion, &cli_version_usage},
+  {"completion", "what makes a shell complete: bash, zsh or fish", CliCompletion, &cli_completion_usage},
+  {"help", "this, or the help of a command; the man page", CliHelp, &cli_help_usage},
+  {NULL, NULL, NULL, NULL},
 };
 
-static void print_help(FILE *out)
+const CliCommand *cli_find_command(const char *name)
 {
-  if (!cli_prints()) return;
-  fprintf(out,
-          "talus - implicit large-deformation solver for granular matter and solids\n\n"
-          "usage: talus COMMAND ... [PETSc options]\n       mpiexec -n N talus COMMAND ...\n\ncommands:\n");
-  for (const struct Command *command = commands; command->name; ++command)
-    fprintf(out, "  %-10s %s\n", command->name, command->help);
-  fprintf(
-    out,
-    "\n`talus COMMAND --help` tells more. Options with a single dash are PETSc's: -snes_monitor, -ksp_view, "
-    "-log_view.\n"
-    "Root, as in a container, tells Open MPI's mpiexec by OMPI_ALLOW_RUN_AS_ROOT=1 and "
-    "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1\nin the environment that it may start.\n"
-    "Exit codes: 0 done, 1 the solver gave up, 2 bad input or usage, 3 a verification fell outside its tolerance.\n");
-  fflush(out);
+  for (const CliCommand *command = cli_commands; command->name; ++command)
+    if (!strcmp(command->name, name)) return command;
+  return NULL;
 }
 
 static PetscErrorCode UnknownCommand(const char *word, int *exit_code)
 {
-  const char *names[sizeof(commands) / sizeof(commands[0])] = {NULL}, *nearest;
+  const char *names[sizeof(cli_commands) / sizeof(cli_commands[0])] = {NULL}, *nearest;
   char hint[200] = "see talus --help";
 
   PetscFunctionBeginUser;
-  for (int i = 0; commands[i].name; ++i) names[i] = commands[i].name;
+  for (int i = 0; cli_commands[i].name; ++i) names[i] = cli_commands[i].name;
   nearest = diag_nearest(word, names);
   if (nearest) snprintf(hint, sizeof(hint), "did you mean 'talus %s'?", nearest);
   else if (strstr(word, ".yaml")) snprintf(hint, sizeof(hint), "to run a case: talus run %.120s", word);
@@ -62,21 +54,20 @@ static PetscErrorCode UnknownCommand(const char *word, int *exit_code)
 static PetscErrorCode Dispatch(int argc, char **argv, int *exit_code)
 {
   const char *word = argc > 1 ? argv[1] : NULL;
-  const struct Command *command = commands;
 
   PetscFunctionBeginUser;
   if (!word) {
-    print_help(stderr);
+    cli_print_overview(stderr);
     *exit_code = CLI_BAD_INPUT;
     PetscFunctionReturn(0);
   }
-  if (!strcmp(word, "--help") || !strcmp(word, "-h") || !strcmp(word, "help")) {
-    print_help(stdout);
+  if (!strcmp(word, "--help") || !strcmp(word, "-h")) {
+    cli_print_overview(stdout);
     PetscFunctionReturn(0);
   }
   if (!strcmp(word, "--version")) word = "version";
-  while (command->name && strcmp(command->name, word)) ++command;
-  if (command->name) PetscCall((*command->run)(argc - 1, argv + 1, exit_code));
+  const CliCommand *command = cli_find_command(word);
+  if (command) PetscCall((*command->run)(argc - 1, argv + 1, exit_code));
   else if (word[0] == '-')
     PetscCall(CliUsageError(exit_code, "the command comes first, see talus --help", "'%s' is no command", word));
   else PetscCall(UnknownCommand(word, exit_code));
@@ -95,13 +86,6 @@ static PetscBool is_value(const char *word)
   return word[0] != '-' || isdigit((unsigned char)word[1]) || word[1] == '.';
 }
 
-static PetscBool is_command(const char *word)
-{
-  for (const struct Command *command = commands; command->name; ++command)
-    if (!strcmp(command->name, word)) return PETSC_TRUE;
-  return PETSC_FALSE;
-}
-
 /* Share argv out; the first word that is a command is never a value, so that `talus -snes_monitor
  * run` works. Both arrays keep argv[0] and end with NULL. */
 static void split(int argc, char **argv, int *n_own, char **own, int *n_petsc, char **petsc)
@@ -111,7 +95,8 @@ static void split(int argc, char **argv, int *n_own, char **own, int *n_petsc, c
   own[0] = petsc[0] = argv[0];
   for (int i = 1; i < argc; ++i) {
     const PetscBool option = is_petsc_option(argv[i]);
-    if (option || (value && is_value(argv[i]) && !(*n_own == 1 && is_command(argv[i])))) petsc[(*n_petsc)++] = argv[i];
+    if (option || (value && is_value(argv[i]) && !(*n_own == 1 && cli_find_command(argv[i]))))
+      petsc[(*n_petsc)++] = argv[i];
     else own[(*n_own)++] = argv[i];
     value = option;
   }
@@ -121,11 +106,10 @@ static void split(int argc, char **argv, int *n_own, char **own, int *n_petsc, c
 /* `-out runs/a` would vanish in PETSc's option table without a word. */
 static const char *single_dash_mistake(int n, char **petsc)
 {
-  static const char *const ours[] = {"set",  "out",  "quiet",    "force", "resume", "log",  "trust",
-                                     "full", "json", "markdown", "over",  "name",   "jobs", NULL};
   for (int i = 1; i < n; ++i)
-    for (int k = 0; ours[k]; ++k)
-      if (petsc[i][0] == '-' && !strcmp(petsc[i] + 1, ours[k])) return ours[k];
+    for (const CliCommand *command = cli_commands; command->name && petsc[i][0] == '-'; ++command)
+      for (const CliOption *o = command->usage->options; o && o->name; ++o)
+        if (!strcmp(petsc[i] + 1, o->name)) return o->name;
   return NULL;
 }
 

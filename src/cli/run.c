@@ -11,7 +11,7 @@ static const CliOption options_known[] = {
   {"set", "PATH=VALUE", "change a value of the case, e.g. --set materials.rubber.young=1e6; may be given often"},
   {"out", "DIR", "where the results go; default: runs/<name of the case>"},
   {"force", NULL, "replace a run that is in DIR already"},
-  {"resume", "DIR", "go on with the run in DIR from its newest checkpoint, on any number of ranks; no CASE then"},
+  {"resume", "RUN_DIR", "go on with the run in DIR from its newest checkpoint, on any number of ranks; no CASE then"},
   {"quiet", NULL, "nothing on the terminal but errors"},
   {"log", "FILE", "write the log there instead of to DIR/log.txt"},
   {"trust", NULL,
@@ -19,8 +19,8 @@ static const CliOption options_known[] = {
   {NULL, NULL, NULL},
 };
 
-static const CliUsage usage = {
-  .usage = "talus run CASE [options], or talus run --resume DIR [options]",
+const CliUsage cli_run_usage = {
+  .usage = "talus run CASE [options], or talus run --resume RUN_DIR [options]",
   .help =
     "Runs a case file and writes states (.hdf, for ParaView), history.csv and a log into a run directory. Every ten\n"
     "minutes (checkpoint: in the case) and when a signal asks the run to leave (SIGINT, SIGTERM, SIGHUP, SIGUSR1 ...)\n"
@@ -28,6 +28,11 @@ static const CliUsage usage = {
     "--set may change checkpoint, newton, linear, parallel, petsc, analysis.smallest and .largest, grid.outside and,\n"
     "in dynamics, analysis.end and .until.\n"
     "If the case has a reference.yaml beside it that knows this very case, the results are compared with it.",
+  .examples =
+    "talus run cases/cantilever/case.yaml\n"
+    "talus run case.yaml --out runs/soft --set materials.rubber.young=1e6 --set grid.size=0.25\n"
+    "mpiexec -n 4 talus run case.yaml\n"
+    "talus run --resume runs/soft   # go on after a power cut",
   .options = options_known,
   .min_words = 0,
   .max_words = 1,
@@ -175,7 +180,7 @@ PetscErrorCode CliRun(int argc, char **argv, int *exit_code)
   const char *set[CLI_MAX_ARGUMENTS];
 
   PetscFunctionBeginUser;
-  PetscCall(CliParse(&usage, argc, argv, &arguments, &go_on, exit_code));
+  PetscCall(CliParse(&cli_run_usage, argc, argv, &arguments, &go_on, exit_code));
   if (!go_on) PetscFunctionReturn(0);
   const PetscInt n_set = cli_values(&arguments, "set", set);
   PetscCall(CheckArguments(&arguments, n_set, set, &go_on, exit_code));

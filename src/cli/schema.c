@@ -8,12 +8,13 @@ static const CliOption options[] = {
   {NULL, NULL, NULL},
 };
 
-static const CliUsage usage = {
+const CliUsage cli_schema_usage = {
   .usage = "talus schema [--json | --markdown]",
   .help =
     "Prints the reference of the case file: every key with its type, unit, default, range and meaning.\n"
     "For completion in an editor: talus schema --json > talus.schema.json, and in the case file the first line\n"
     "# yaml-language-server: $schema=talus.schema.json",
+  .examples = "talus schema | less\ntalus schema --json > talus.schema.json",
   .options = options,
 };
 
@@ -23,7 +24,7 @@ PetscErrorCode CliSchema(int argc, char **argv, int *exit_code)
   PetscBool go_on;
 
   PetscFunctionBeginUser;
-  PetscCall(CliParse(&usage, argc, argv, &arguments, &go_on, exit_code));
+  PetscCall(CliParse(&cli_schema_usage, argc, argv, &arguments, &go_on, exit_code));
   if (!go_on) PetscFunctionReturn(0);
   const PetscBool json = cli_flag(&arguments, "json"), markdown = cli_flag(&arguments, "markdown");
   if (json && markdown) PetscCall(CliUsageError(exit_code, NULL, "choose one of --json and --markdown"));

@@ -22,15 +22,17 @@ static const CliOption options_known[] = {
   {NULL, NULL, NULL},
 };
 
-static const CliUsage usage = {
+const CliUsage cli_sweep_usage = {
   .usage = "talus sweep CASE [options]",
   .help =
     "Runs a case (a file, or its folder) for all combinations of values of some of its keys, as many at a time as\n"
     "there are cores, each in a directory of its own, and puts what came out into one table (sweep.csv) and one\n"
     "picture for each measure: over the first key, a curve for each value of the others. The same command again\n"
     "goes on: members that are done are kept, those that were cut off go on from their checkpoints.\n"
-    "  talus sweep cases/cantilever --over materials.rubber.young=30e6:90e6:20e6 --over grid.size=0.25,0.125\n"
     "The exit code is 1 if a member did not come to its end. docs/sweep.md tells the language of sweep.yaml.",
+  .examples =
+    "talus sweep cases/cantilever --over materials.rubber.young=30e6:90e6:20e6 --over grid.size=0.25,0.125\n"
+    "talus sweep cases/granular-collapse --over materials.grains.friction_angle=20,30,40 --measure front --jobs 2",
   .options = options_known,
   .min_words = 1,
   .max_words = 1,
@@ -96,7 +98,7 @@ PetscErrorCode CliSweep(int argc, char **argv, int *exit_code)
   Diag *diag;
 
   PetscFunctionBeginUser;
-  PetscCall(CliParse(&usage, argc, argv, &arguments, &go_on, exit_code));
+  PetscCall(CliParse(&cli_sweep_usage, argc, argv, &arguments, &go_on, exit_code));
   if (!go_on) PetscFunctionReturn(0);
   const SweepOptions options = {
     .file = arguments.words[0],

@@ -15,12 +15,15 @@ static const CliOption options_known[] = {
   {NULL, NULL, NULL},
 };
 
-static const CliUsage usage = {
+const CliUsage cli_verify_usage = {
   .usage = "talus verify CASE_DIR [options]",
   .help =
     "Runs every row of CASE_DIR/reference.yaml, compares it with its reference, and draws the figures.\n"
     "With --run it only looks at a run that is there already.\n"
     "The exit code is 3 if a row is off, 1 if a run gave up. docs/verification.md tells the language of the file.",
+  .examples =
+    "talus verify cases/cantilever\ntalus verify cases/cantilever --full --keep\ntalus verify cases/cantilever --run "
+    "runs/cantilever",
   .options = options_known,
   .min_words = 1,
   .max_words = 1,
@@ -52,7 +55,7 @@ PetscErrorCode CliVerify(int argc, char **argv, int *exit_code)
   Diag *diag;
 
   PetscFunctionBeginUser;
-  PetscCall(CliParse(&usage, argc, argv, &arguments, &go_on, exit_code));
+  PetscCall(CliParse(&cli_verify_usage, argc, argv, &arguments, &go_on, exit_code));
   if (!go_on) PetscFunctionReturn(0);
   const VerifyOptions options = {
     .folder = arguments.words[0],

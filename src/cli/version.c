@@ -5,9 +5,10 @@
 #include "cli/cli.h"
 #include "talus_version.h"
 
-static const CliUsage usage = {
+const CliUsage cli_version_usage = {
   .usage = "talus version",
   .help = "Prints the versions of talus, PETSc, MPI and HDF5.",
+  .examples = "talus version\ntalus --version",
 };
 
 static void print_mpi(void)
@@ -28,7 +29,7 @@ PetscErrorCode CliVersion(int argc, char **argv, int *exit_code)
   unsigned h5[3];
 
   PetscFunctionBeginUser;
-  PetscCall(CliParse(&usage, argc, argv, &arguments, &go_on, exit_code));
+  PetscCall(CliParse(&cli_version_usage, argc, argv, &arguments, &go_on, exit_code));
   if (!go_on || !cli_prints()) PetscFunctionReturn(0);
   PetscCall(PetscGetVersionNumber(&major, &minor, &subminor, NULL));
   H5get_libversion(&h5[0], &h5[1], &h5[2]);

@@ -28,6 +28,12 @@ check() {
 }
 
 "$prefix/bin/talus" --version >/dev/null || fail "bin/talus --version"
+for file in man/man1/talus.1 bash-completion/completions/talus zsh/site-functions/_talus fish/vendor_completions.d/talus.fish; do
+  [ -s "$prefix/share/$file" ] || fail "share/$file is not there"
+done
+# What an installation gives to begin with is its own, not that of the source tree.
+(cd "$work" && "$prefix/bin/talus" init mine --like cantilever >init.log) || fail "bin/talus init --like"
+cmp "$work/mine/case.yaml" "$prefix/share/talus/cases/cantilever/case.yaml" || fail "talus init copies another case"
 pc=$(cd "$prefix" && find . -name talus.pc)
 export PKG_CONFIG_PATH="$prefix/${pc%/talus.pc}"
 libdir=$(dirname "$PKG_CONFIG_PATH")

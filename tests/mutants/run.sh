@@ -74,7 +74,7 @@ copy_sources() {
 }
 prepare() { # the copy of one worker, whole and built
   copy_sources "$1" && cmake -S "$1" -B "$1/build" -G Ninja --log-level=WARNING -DCMAKE_BUILD_TYPE=Release \
-    -DTALUS_TEST_SHARED=ON $launcher >"$1/configure.log" && ninja -C "$1/build" >"$1/build.log"
+    -DTALUS_TEST_SHARED=ON $launcher >"$1/configure.log" && ninja -C "$1/build" talus tests >"$1/build.log"
 }
 passes() { # test, seconds: a test that hangs has failed
   timeout -k 10 "$2" ctest --test-dir build -R "^$1\$" --no-tests=error >test.log 2>&1 </dev/null
@@ -121,7 +121,7 @@ try() {
   cp "$file" original
   if ! put_in "$mutant" . >patch.log 2>&1; then
     echo "broken does not fit"
-  elif ! ninja -C build >build.log 2>&1; then
+  elif ! ninja -C build talus tests >build.log 2>&1; then
     echo "broken does not compile"
   else
     while read -r test limit; do

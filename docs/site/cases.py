@@ -1,0 +1,73 @@
+"""What the gallery says of each case: taken from its README.md, its case.yaml and times.tsv; nothing is listed here."""
+import re
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[2]
+TIMES = Path(__file__).resolve().with_name("times.tsv")
+
+
+def plain(markdown):
+    """Markdown without its marks."""
+    text = re.sub(r"!?\[([^\]]*)\]\([^)]*\)", r"\1", markdown)
+    return re.sub(r"[`*]", "", text)
+
+
+def first_sentence(paragraph):
+    """Up to the first full stop that ends a sentence; abbreviations end none, parentheses are left out."""
+    text = re.sub(r" \([^()]*\)", "", " ".join(paragraph.split()))
+    for end in re.finditer(r"[.?](?= |$)", text):
+        if not re.search(r"(et al|e\.g|i\.e|fig|eq|sec)\.$", text[: end.end()]):
+            return text[: end.start()] + ("?" if end.group() == "?" else ".")
+    return text
+
+
+def times():
+    """{case: processor time in words} as measured, and the lines on machine and date."""
+    rows, notes = {}, []
+    for line in TIMES.read_text().splitlines() if TIMES.exists() else []:
+        if line.startswith("#"):
+            notes.append(line[1:].strip())
+        elif "\t" in line:
+            name, seconds = line.split("\t")[:2]
+            rows[name] = seconds + " s" if seconds[0].isdigit() else seconds
+    return rows, notes
+
+
+class Case:
+    """A folder of cases/ as the gallery sees it."""
+
+    def __init__(self, folder):
+        self.folder, self.name = folder, folder.name
+        self.readme = (folder / "README.md").read_text()
+        self.title = re.search(r"^# (.*)", self.readme, re.M).group(1)
+        body = self.readme.split("\n", 1)[1]
+        paragraphs = [p for p in re.split(r"\n\s*\n", body.strip("\n")) if not re.match(r"[`|!#>\s-]", p)]
+        self.sentence = first_sentence(plain(paragraphs[0])) if paragraphs else self.title
+        self.pictures = re.findall(r"!\[[^\]]*\]\(([^)\s]+)\)", self.readme)
+
+    @property
+    def command(self):
+        """The first command that the README shows and the remark behind it."""
+        found = re.search(rf"^\s*(talus \w+ cases/{self.name}/\S+)([^#\n]*)(#.*)?$", self.readme, re.M)
+        if found:
+            return found.group(1), (found.group(3) or "").lstrip("# ").strip()
+        return f"talus run cases/{self.name}/case.yaml", ""
+
+    @property
+    def stated_time(self):
+        """The time that the remark behind the command states, in its words."""
+        number = r"(?:a quarter of an?|half an?|an?|one|two|three|five|six|ten|some|a few|\d+)"
+        found = re.findall(rf"\b((?:{number} )?(?:hours?|minutes?|seconds?|s)\b(?: or (?:more|so))?)", self.command[1])
+        return found[-1] if found else ""
+
+    @property
+    def is_long(self):
+        """Whether the README states more than a minute."""
+        seconds = re.match(r"(\d+) s", self.stated_time)
+        return bool(re.search(r"(?<!half a )(?<!quarter of a )(minute|hour)", self.stated_time)
+                    or (seconds and int(seconds.group(1)) > 60))
+
+
+def all_cases():
+    """Every folder of cases/ with a README.md, by name."""
+    return [Case(readme.parent) for readme in sorted(ROOT.glob("cases/*/README.md"))]

@@ -1,0 +1,54 @@
+#!/usr/bin/env python3
+"""measure.py TALUS [LIMIT]: runs every case of the gallery that takes less than LIMIT (60) seconds of processor time, one at a
+time on one rank, and writes docs/site/times.tsv. Those whose README states minutes are not tried."""
+import datetime
+import os
+import resource
+import subprocess
+import sys
+import tempfile
+
+from cases import ROOT, TIMES, all_cases
+
+
+def processor():
+    for line in open("/proc/cpuinfo"):
+        if line.startswith("model name"):
+            return line.split(":", 1)[1].strip()
+    return os.uname().machine
+
+
+def seconds_of(talus, case, limit):
+    """Processor time of the case's command, or None where it needs more than limit. A run that fails ends the measurement."""
+    with tempfile.TemporaryDirectory() as folder:
+        before = resource.getrusage(resource.RUSAGE_CHILDREN)
+        status = subprocess.run(
+            [talus, "run", str(case.folder / "case.yaml"), "--out", folder + "/run", "--quiet"], cwd=folder,
+            stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, env={**os.environ, "OPENBLAS_NUM_THREADS": "1"},
+            preexec_fn=lambda: (os.nice(10), resource.setrlimit(resource.RLIMIT_CPU, (limit, limit + 5)))).returncode
+        after = resource.getrusage(resource.RUSAGE_CHILDREN)
+    seconds = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
+    if status and seconds < limit:
+        sys.exit(f"{case.name}: the run failed")
+    return seconds if seconds < limit else None
+
+
+def main():
+    talus, limit = os.path.abspath(sys.argv[1]), int(sys.argv[2]) if len(sys.argv) > 2 else 60
+    version = subprocess.run([talus, "version"], capture_output=True, text=True).stdout.split("\n")[0]
+    head = [f"# {version}, {processor()}, one rank, {datetime.date.today()}", "# case\tseconds of processor time"]
+    rows = []
+    for case in all_cases():
+        if not (case.folder / "case.yaml").exists() or case.is_long:
+            continue
+        seconds = seconds_of(talus, case, limit)
+        print(f"{case.name}: {'more than the limit, or failed' if seconds is None else f'{seconds:.1f} s'}", flush=True)
+        if seconds is None:
+            text = f"more than {limit} s"
+        else:
+            text = f"{seconds:.1f}" if seconds < 9.95 else f"{seconds:.0f}"
+        rows.append(f"{case.name}\t{text}")
+        TIMES.write_text("\n".join(head + rows) + "\n")
+
+
+main()

@@ -1,0 +1,121 @@
+#include <math.h>
+#include "picture/raster/raster_private.h"
+
+/* The viridis colour map (public domain, CC0) at ten places. */
+const unsigned char palette_stops[PALETTE_STOPS][3] = {{68, 1, 84},    {72, 40, 120},  {62, 74, 137},  {49, 104, 142},
+                                                       {38, 130, 142}, {31, 158, 137}, {53, 183, 121}, {109, 205, 89},
+                                                       {180, 222, 44}, {253, 231, 37}};
+
+/* Okabe and Ito's colours, told apart by everybody, and lighter ones of some. */
+const unsigned char palette_names[PALETTE_NAMES][3] = {{0, 114, 178},   {230, 159, 0},  {0, 158, 115},  {204, 121, 167},
+                                                       {86, 180, 233},  {213, 94, 0},   {240, 228, 66}, {110, 110, 110},
+                                                       {158, 202, 225}, {161, 217, 155}};
+
+void palette_colour(PetscReal value, PetscReal rgb[3])
+{
+  const PetscReal s = PetscMin(PetscMax(value, 0), 1) * (PALETTE_STOPS - 1);
+  const int k = PetscMin((int)s, PALETTE_STOPS - 2);
+  for (int c = 0; c < 3; ++c) rgb[c] = palette_stops[k][c] + (s - k) * (palette_stops[k + 1][c] - palette_stops[k][c]);
+  if (PetscIsNanReal(value)) rgb[0] = rgb[1] = rgb[2] = 160;
+}
+
+static PetscErrorCode CanvasCreate(const RasterScene *scene, Canvas *canvas)
+{
+  PetscFunctionBeginUser;
+  canvas->width = scene->width * SAMPLES;
+  canvas->height = scene->height * SAMPLES;
+  canvas->scale = canvas->width / (scene->max[0] - scene->min[0]);
+  const size_t n = (size_t)canvas->width * (size_t)canvas->height;
+  PetscCall(PetscMalloc2(n, &canvas->front, n, &canvas->point));
+  for (size_t i = 0; i < n; ++i) canvas->point[i] = -1;
+  PetscFunctionReturn(0);
+}
+
+static void draw_ball(const RasterScene *scene, Canvas *canvas, PetscInt p)
+{
+  PetscReal c[3];
+  canvas_place(scene, canvas, scene->x + 3 * p, c);
+  if (!(fabs(c[0]) < 1e8 && fabs(c[1]) < 1e8)) return;
+  const PetscReal radius = canvas_radius(scene, canvas, p);
+  const int i0 = PetscMax((int)ceil(c[0] - radius), 0), i1 = PetscMin((int)floor(c[0] + radius), canvas->width - 1);
+  const int j0 = PetscMax((int)ceil(c[1] - radius), 0), j1 = PetscMin((int)floor(c[1] + radius), canvas->height - 1);
+  for (int j = j0; j <= j1; ++j)
+    for (int i = i0; i <= i1; ++i) {
+      const PetscReal h2 = radius * radius - (i - c[0]) * (i - c[0]) - (j - c[1]) * (j - c[1]);
+      const size_t at = canvas_at(canvas, i, j);
+      if (h2 < 0) continue;
+      const float front = (float)(c[2] + sqrt(h2));
+      if (canvas->point[at] >= 0 && canvas->front[at] >= front) continue;
+      canvas->front[at] = front;
+      canvas->point[at] = p;
+    }
+}
+
+/* Light from the upper left, in front. */
+static PetscReal ball_light(const RasterScene *scene, const Canvas *canvas, PetscInt p, int i, int j)
+{
+  PetscReal c[3];
+  if (!scene->shaded) return 1;
+  canvas_place(scene, canvas, scene->x + 3 * p, c);
+  const PetscReal radius = canvas_radius(scene, canvas, p), a = (i - c[0]) / radius, b = (j - c[1]) / radius,
+                  h = sqrt(PetscMax(1 - a * a - b * b, 0));
+  return 0.72 + 0.28 * PetscMax(-0.35 * a + 0.50 * b + 0.79 * h, 0);
+}
+
+static void value_colour(const RasterScene *scene, PetscReal value, PetscReal rgb[3])
+{
+  if (!scene->named || !(value >= 0)) {
+    palette_colour(value, rgb);
+    return;
+  }
+  for (int c = 0; c < 3; ++c) rgb[c] = palette_names[(PetscInt)(value + 0.5) % PALETTE_NAMES][c];
+}
+
+/* The colour of a sample that shows something. */
+static void sample_colour(const RasterScene *scene, const Canvas *canvas, int i, int j, PetscReal rgb[3])
+{
+  const PetscInt p = canvas->point[canvas_at(canvas, i, j)], t = p - scene->n;
+  PetscReal light = 1;
+  PetscBool line = PETSC_FALSE;
+  if (p == CANVAS_LINE) {
+    rgb[0] = rgb[1] = rgb[2] = 70;
+    return;
+  }
+  if (t < 0) value_colour(scene, scene->value[p], rgb), light = ball_light(scene, canvas, p, i, j);
+  else value_colour(scene, triangle_value(scene, canvas, t, i, j, &line), rgb), light = triangle_light(scene, t);
+  if (line) light *= 0.55;
+  for (int c = 0; c < 3; ++c) rgb[c] *= light;
+}
+
+/* Mean colour of a pixel's samples, and how many of them are covered. */
+static void raster_pixel(const RasterScene *scene, const Canvas *canvas, int column, int row, unsigned char rgba[4])
+{
+  PetscReal sum[3] = {0}, rgb[3];
+  int covered = 0;
+  for (int j = row * SAMPLES; j < (row + 1) * SAMPLES; ++j)
+    for (int i = column * SAMPLES; i < (column + 1) * SAMPLES; ++i) {
+      if (canvas->point[canvas_at(canvas, i, j)] == -1) continue;
+      sample_colour(scene, canvas, i, j, rgb);
+      for (int c = 0; c < 3; ++c) sum[c] += rgb[c];
+      ++covered;
+    }
+  for (int c = 0; c < 3; ++c) rgba[c] = (unsigned char)lround(covered ? sum[c] / covered : 255);
+  rgba[3] = (unsigned char)(covered * 255 / (SAMPLES * SAMPLES));
+}
+
+PetscErrorCode RasterDraw(const RasterScene *scene, unsigned char *rgba)
+{
+  Canvas canvas;
+
+  PetscFunctionBeginUser;
+  PetscCall(CanvasCreate(scene, &canvas));
+  for (PetscInt p = 0; p < scene->n; ++p) draw_ball(scene, &canvas, p);
+  if (scene->gap > 0 && !scene->shaded) PetscCall(CanvasShape(scene, &canvas));
+  canvas_triangles(scene, &canvas);
+  canvas_lines(scene, &canvas);
+  for (int row = 0; row < scene->height; ++row)
+    for (int column = 0; column < scene->width; ++column)
+      raster_pixel(scene, &canvas, column, row, rgba + 4 * ((size_t)row * (size_t)scene->width + (size_t)column));
+  PetscCall(PetscFree2(canvas.front, canvas.point));
+  PetscFunctionReturn(0);
+}
