@@ -193,9 +193,10 @@ static PetscErrorCode Draw(CalibrateRun *r, PetscInt a, PetscInt b)
       x[n] = value_at(pa, region->x[i * dim + a]), y[n++] = value_at(pb, region->x[i * dim + b]);
   for (PetscInt i = 0; i < r->n; ++i)
     x[n + i] = value_at(pa, r->x[i * dim + a]), y[n + i] = value_at(pb, r->x[i * dim + b]);
-  const FigureSeries series[] = {{"the region", FIGURE_DOTS, n, x, y},
-                                 {"runs", FIGURE_MARKS, r->n, x + n, y + n},
-                                 {"run at the best point", FIGURE_MARKS, best[0], x + n + best[1], y + n + best[1]}};
+  const FigureSeries series[] = {
+    {.name = "the region", .style = FIGURE_DOTS, .n = n, .x = x, .y = y},
+    {.name = "runs", .style = FIGURE_MARKS, .n = r->n, .x = x + n, .y = y + n},
+    {.name = "run at the best point", .style = FIGURE_MARKS, .n = best[0], .x = x + n + best[1], .y = y + n + best[1]}};
   const Figure figure = {.title = r->c->title,
                          .x_label = text_with_unit(calibrate_label(pa), pa->unit, x_label),
                          .y_label = text_with_unit(calibrate_label(pb), pb->unit, y_label),

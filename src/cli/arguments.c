@@ -152,3 +152,17 @@ PetscInt cli_values(const CliArguments *arguments, const char *name, const char 
     if (!strcmp(arguments->names[i], name)) values[n++] = arguments->values[i];
   return n;
 }
+
+PetscErrorCode CliOneOf(const char *option, const char *word, const char *const *words, PetscBool *ok, int *exit_code)
+{
+  char hint[160];
+
+  PetscFunctionBeginUser;
+  for (int k = 0; words[k]; ++k)
+    if (!word || !strcmp(word, words[k])) PetscFunctionReturn(0);
+  const char *nearest = diag_nearest(word, words);
+  snprintf(hint, sizeof hint, "did you mean %s?", nearest ? nearest : "");
+  PetscCall(CliUsageError(exit_code, nearest ? hint : NULL, "--%s has no '%s': see --help", option, word));
+  *ok = PETSC_FALSE;
+  PetscFunctionReturn(0);
+}

@@ -19,6 +19,7 @@ PetscErrorCode CliSweep(int argc, char **argv, int *exit_code);
 PetscErrorCode CliCalibrate(int argc, char **argv, int *exit_code);
 PetscErrorCode CliElement(int argc, char **argv, int *exit_code);
 PetscErrorCode CliPlot(int argc, char **argv, int *exit_code);
+PetscErrorCode CliCompare(int argc, char **argv, int *exit_code);
 PetscErrorCode CliVersion(int argc, char **argv, int *exit_code);
 
 /* An option --name; `value` names what follows it ("DIR"), NULL for a flag. */
@@ -59,6 +60,8 @@ PetscInt cli_values(const CliArguments *arguments, const char *name, const char 
 
 /* Print `error: ...` and a hint (or NULL) on rank 0 and set the exit code for bad usage. */
 PetscErrorCode CliUsageError(int *exit_code, const char *hint, const char *format, ...) PETSC_ATTRIBUTE_FORMAT(3, 4);
+/* Is the word of an option one of these? If not that is printed, with the nearest, and *ok is false; NULL is fine. */
+PetscErrorCode CliOneOf(const char *option, const char *word, const char *const *words, PetscBool *ok, int *exit_code);
 /* Collective. Were all ranks started with the same words? If not that has been printed, and the
  * exit code is set. */
 PetscErrorCode CliSameCommand(int argc, char **argv, PetscBool *same, int *exit_code);

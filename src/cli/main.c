@@ -23,7 +23,8 @@ static const struct Command {
   {"sweep", "run a case over values of its keys: a table and pictures", CliSweep},
   {"calibrate", "which parameters give what was measured: a region", CliCalibrate},
   {"element", "one material point on a path: triaxial, oedometer, shear", CliElement},
-  {"plot", "pictures of a run", CliPlot},
+  {"plot", "pictures of a run, histories of several", CliPlot},
+  {"compare", "how far the histories of runs are apart, and in which keys", CliCompare},
   {"version", "versions of talus and of its libraries (also --version)", CliVersion},
   {NULL, NULL, NULL},
 };

@@ -9,44 +9,54 @@ static const char *const colours[] = {"#0b559f", "#d1495b", "#2a9d5c", "#e08e0b"
 static const int marks[] = {7, 4, 8, 12, 10, 6};
 enum { N_COLOURS = 6 };
 
-static PetscBool figure_visible(const Figure *figure, PetscReal x, PetscReal y)
+/* Axes of a figure; y of a series is along the left one or the right one. */
+enum { AXIS_X, AXIS_LEFT, AXIS_RIGHT, N_AXES };
+
+static int axis_of(const FigureSeries *series) { return series->right ? AXIS_RIGHT : AXIS_LEFT; }
+
+static PetscBool figure_visible(const Figure *figure, const FigureSeries *series, PetscInt i)
 {
+  const PetscReal x = series->x[i], y = series->y[i];
   if (PetscIsInfOrNanReal(x) || PetscIsInfOrNanReal(y)) return PETSC_FALSE;
-  return !((figure->log_x && x <= 0) || (figure->log_y && y <= 0));
+  return !((figure->log_x && x <= 0) || (figure->log_y && !series->right && y <= 0));
 }
 
-/* All visible points lie in [min, max], and all bands; returns how many points there are. */
-static PetscInt bounds(const Figure *figure, PetscReal min[2], PetscReal max[2])
+/* All visible points lie in [min, max] of their axes, and all bands; returns how many points there are. */
+static PetscInt bounds(const Figure *figure, PetscReal min[N_AXES], PetscReal max[N_AXES])
 {
-  PetscInt n = 0;
+  PetscInt n[N_AXES] = {0};
   for (PetscInt s = 0; s < figure->n_series; ++s)
     for (PetscInt i = 0; i < figure->series[s].n; ++i) {
-      const PetscReal p[2] = {figure->series[s].x[i], figure->series[s].y[i]};
-      if (!figure_visible(figure, p[0], p[1])) continue;
+      const FigureSeries *series = &figure->series[s];
+      const int axes[2] = {AXIS_X, axis_of(series)};
+      const PetscReal p[2] = {series->x[i], series->y[i]};
+      if (!figure_visible(figure, series, i)) continue;
       for (int d = 0; d < 2; ++d) {
-        min[d] = n ? PetscMin(min[d], p[d]) : p[d];
-        max[d] = n ? PetscMax(max[d], p[d]) : p[d];
+        const int axis = axes[d];
+        min[axis] = n[axis] ? PetscMin(min[axis], p[d]) : p[d];
+        max[axis] = n[axis] ? PetscMax(max[axis], p[d]) : p[d];
+        ++n[axis];
       }
-      ++n;
     }
-  for (PetscInt b = 0; b < figure->n_bands && n > 0; ++b) {
-    min[1] = PetscMin(min[1], figure->bands[b].low);
-    max[1] = PetscMax(max[1], figure->bands[b].high);
+  for (PetscInt b = 0; b < figure->n_bands && n[AXIS_X] > 0; ++b) {
+    min[AXIS_LEFT] = PetscMin(min[AXIS_LEFT], figure->bands[b].low);
+    max[AXIS_LEFT] = PetscMax(max[AXIS_LEFT], figure->bands[b].high);
   }
-  return n;
+  return n[AXIS_X];
 }
 
 /* A little air around the curves; on a logarithmic axis by a factor. */
-static void write_range(FILE *out, char axis, PetscBool logarithmic, PetscReal min, PetscReal max, PetscReal share)
+static void write_range(FILE *out, const char *axis, PetscBool logarithmic, PetscReal min, PetscReal max,
+                        PetscReal share)
 {
   if (logarithmic) {
     const PetscReal factor = max > min ? PetscPowReal(max / min, share) : 2;
-    fprintf(out, "set %crange [%.15g:%.15g]\n", axis, (double)(min / factor), (double)(max * factor));
+    fprintf(out, "set %srange [%.15g:%.15g]\n", axis, (double)(min / factor), (double)(max * factor));
   } else {
     PetscReal air = share * (max - min);
     const PetscReal size = PetscMax(PetscAbsReal(min), PetscAbsReal(max));
     if (!(max - min > 1e-12 * size)) air = PetscMax(0.1 * size, 1e-12);
-    fprintf(out, "set %crange [%.15g:%.15g]\n", axis, (double)(min - air), (double)(max + air));
+    fprintf(out, "set %srange [%.15g:%.15g]\n", axis, (double)(min - air), (double)(max + air));
   }
 }
 
@@ -72,18 +82,26 @@ static void count_in_corner(const PetscReal at[2], PetscReal height, PetscInt co
   if (at[0] < 0.32 || at[0] > 0.68) ++count[at[0] > 0.5][at[1] > 0.5];
 }
 
+/* A sample of a curve in shares of the picture. */
+static void place_of(const Figure *figure, const FigureSeries *s, PetscInt i, const PetscReal *min,
+                     const PetscReal *max, PetscReal at[2])
+{
+  const int axis = axis_of(s);
+  at[0] = share(figure->log_x, min[AXIS_X], max[AXIS_X], s->x[i]);
+  at[1] = share(figure->log_y && axis == AXIS_LEFT, min[axis], max[axis], s->y[i]);
+}
+
 /* Samples of curves in the corners. */
-static void count_in_corners(const Figure *figure, const PetscReal min[2], const PetscReal max[2], PetscReal height,
+static void count_in_corners(const Figure *figure, const PetscReal *min, const PetscReal *max, PetscReal height,
                              PetscInt count[2][2])
 {
   for (PetscInt k = 0; k < figure->n_series; ++k) {
     const FigureSeries *s = &figure->series[k];
     for (PetscInt i = 0; i + 1 < s->n; ++i) {
-      if (!figure_visible(figure, s->x[i], s->y[i]) || !figure_visible(figure, s->x[i + 1], s->y[i + 1])) continue;
-      const PetscReal a[2] = {share(figure->log_x, min[0], max[0], s->x[i]),
-                              share(figure->log_y, min[1], max[1], s->y[i])};
-      const PetscReal b[2] = {share(figure->log_x, min[0], max[0], s->x[i + 1]),
-                              share(figure->log_y, min[1], max[1], s->y[i + 1])};
+      PetscReal a[2], b[2];
+      if (!figure_visible(figure, s, i) || !figure_visible(figure, s, i + 1)) continue;
+      place_of(figure, s, i, min, max, a);
+      place_of(figure, s, i + 1, min, max, b);
       for (int part = 0; part <= 8; ++part) {
         const PetscReal t = part / 8.0, at[2] = {a[0] + t * (b[0] - a[0]), a[1] + t * (b[1] - a[1])};
         count_in_corner(at, height, count);
@@ -94,7 +112,7 @@ static void count_in_corners(const Figure *figure, const PetscReal min[2], const
 
 /* The legend goes where the fewest curves are; where several corners are as good, to the top and to
  * the left. */
-static void write_key(FILE *out, const Figure *figure, const PetscReal min[2], const PetscReal max[2])
+static void write_key(FILE *out, const Figure *figure, const PetscReal *min, const PetscReal *max)
 {
   PetscInt count[2][2] = {{0, 0}, {0, 0}}, named = figure->n_bands;
   int right = figure->slope < 0, top = 1; /* where falling curves leave room */
@@ -106,7 +124,16 @@ static void write_key(FILE *out, const Figure *figure, const PetscReal min[2], c
   fprintf(out, "set key %s %s\n", top ? "top" : "bottom", right ? "right" : "left");
 }
 
-static void write_axes(FILE *out, const Figure *figure, const PetscReal min[2], const PetscReal max[2])
+/* Has the figure a right axis? Where it has, ticks of the left one end at the left. */
+static void write_right_axis(FILE *out, const Figure *figure, const PetscReal *min, const PetscReal *max)
+{
+  if (!figure->right_label) return;
+  write_label(out, "y2label", figure->right_label);
+  write_range(out, "y2", PETSC_FALSE, min[AXIS_RIGHT], max[AXIS_RIGHT], 0.06);
+  fputs("set y2tics\n", out);
+}
+
+static void write_axes(FILE *out, const Figure *figure, const PetscReal *min, const PetscReal *max)
 {
   write_label(out, "title", figure->title);
   write_label(out, "xlabel", figure->x_label);
@@ -115,8 +142,9 @@ static void write_axes(FILE *out, const Figure *figure, const PetscReal min[2], 
   if (figure->log_x) fputs("set logscale x\nset format x '%g'\n", out);
   if (figure->log_y) fputs("set logscale y\nset format y '%.0e'\n", out);
   if (figure->log_y && max[1] / min[1] < 1e3) fputs("set format y '%g'\n", out);
-  write_range(out, 'x', figure->log_x, min[0], max[0], figure->log_x ? 0.06 : 0);
-  write_range(out, 'y', figure->log_y, min[1], max[1], 0.06);
+  write_range(out, "x", figure->log_x, min[0], max[0], figure->log_x ? 0.06 : 0);
+  write_range(out, "y", figure->log_y, min[1], max[1], 0.06);
+  write_right_axis(out, figure, min, max);
   fputs(
     "set border lw 1 lc rgb '#444444'\nset tics textcolor rgb '#000000'\n"
     "set grid xtics ytics lc rgb '#e2e2e2' lw 1 lt 1\nset tics nomirror\n"
@@ -156,15 +184,14 @@ static void write_data(FILE *out, const Figure *figure, const FigureSeries *seri
 {
   fprintf(out, "$s%" PetscInt_FMT " << EOD\n", index);
   for (PetscInt i = 0; i < series->n; ++i)
-    if (figure_visible(figure, series->x[i], series->y[i]))
-      fprintf(out, "%.15g %.15g\n", (double)series->x[i], (double)series->y[i]);
+    if (figure_visible(figure, series, i)) fprintf(out, "%.15g %.15g\n", (double)series->x[i], (double)series->y[i]);
   fputs("EOD\n", out);
 }
 
 static PetscBool any_visible(const Figure *figure, const FigureSeries *series)
 {
   for (PetscInt i = 0; i < series->n; ++i)
-    if (figure_visible(figure, series->x[i], series->y[i])) return PETSC_TRUE;
+    if (figure_visible(figure, series, i)) return PETSC_TRUE;
   return PETSC_FALSE;
 }
 
@@ -173,7 +200,10 @@ static void write_curve(FILE *out, const FigureSeries *series, PetscInt index)
   static const char *const with[] = {"lines lw 2", "points", "linespoints lw 2", "lines lw 2 dt 2",
                                      "points pt 7 ps 0.35"};
   const char *colour = colours[index % N_COLOURS];
-  fprintf(out, "$s%" PetscInt_FMT " with %s", index, with[series->style]);
+  fprintf(out, "$s%" PetscInt_FMT " %swith %s", index, series->right ? "axes x1y2 " : "", with[series->style]);
+  /* the colours come again */
+  if (index >= N_COLOURS && (series->style == FIGURE_LINE || series->style == FIGURE_LINE_MARKS))
+    fprintf(out, " dt %d", 1 + (int)(index / N_COLOURS) % 5);
   if (series->style == FIGURE_MARKS || series->style == FIGURE_LINE_MARKS)
     fprintf(out, " pt %d ps %g", marks[index % N_COLOURS], index ? 2. : 1.2);
   fprintf(out, " lc rgb '%s' ", colour);
@@ -213,14 +243,14 @@ static void write_slope(FILE *out, PetscReal slope, const PetscReal min[2], cons
           (double)slope_value(slope, min, max, min[0]), (double)max[0], (double)slope_value(slope, min, max, max[0]));
 }
 
-static void write_figure(FILE *out, const Figure *figure, const PetscReal min[2], const PetscReal max[2])
+static void write_figure(FILE *out, const Figure *figure, const PetscReal *min, const PetscReal *max)
 {
   PetscBool first = PETSC_TRUE;
   PetscBool named = figure->slope != 0 || figure->n_bands;
   for (PetscInt s = 0; s < figure->n_series; ++s)
     if (figure->series[s].name) named = PETSC_TRUE;
   const PetscBool slope = figure->slope != 0 && figure->log_x && figure->log_y;
-  PetscReal low[2] = {min[0], min[1]}, high[2] = {max[0], max[1]};
+  PetscReal low[N_AXES] = {min[0], min[1], min[2]}, high[N_AXES] = {max[0], max[1], max[2]};
   for (int end = 0; end < 2 && slope; ++end) {
     const PetscReal y = slope_value(figure->slope, min, max, end ? max[0] : min[0]);
     low[1] = PetscMin(low[1], y), high[1] = PetscMax(high[1], y);
@@ -250,7 +280,7 @@ static void write_figure(FILE *out, const Figure *figure, const PetscReal min[2]
 
 PetscErrorCode FigureWrite(const Figure *figure, const char *png, Diag *diag, PetscBool *done)
 {
-  PetscReal min[2] = {0, 0}, max[2] = {0, 0};
+  PetscReal min[N_AXES] = {0}, max[N_AXES] = {0};
   GnuplotScript script;
 
   PetscFunctionBeginUser;
@@ -277,7 +307,7 @@ PetscErrorCode FigureSheet(const char *title, PetscInt n, const Figure *figures,
   if (title && title[0]) fputs(" title ", script.out), gnuplot_quote(script.out, title);
   fputc('\n', script.out);
   for (PetscInt k = 0; k < n; ++k) {
-    PetscReal min[2] = {0, 0}, max[2] = {0, 0};
+    PetscReal min[N_AXES] = {0}, max[N_AXES] = {0};
     fputs("reset\n", script.out);
     if (bounds(&figures[k], min, max)) write_figure(script.out, &figures[k], min, max);
     else fputs("set multiplot next\n", script.out);

@@ -1,4 +1,4 @@
-/* Figures of curves: several series of (x, y) on linear or logarithmic axes, as PNG. */
+/* Figures of curves: several series of (x, y) on linear or logarithmic axes. */
 #pragma once
 #include <petscsys.h>
 #include "base/diag/diag.h"
@@ -10,6 +10,7 @@ typedef struct {
   FigureStyle style;
   PetscInt n;
   const PetscReal *x, *y;
+  PetscBool right; /* y along the right axis, which is linear */
 } FigureSeries;
 
 /* A range of y that is shaded over the whole width: what experiments allow. low = high is a line. */
@@ -20,6 +21,7 @@ typedef struct {
 
 typedef struct {
   const char *title, *x_label, *y_label; /* NULL: none */
+  const char *right_label;               /* of the right axis; NULL: there is none */
   PetscBool log_x, log_y;
   PetscInt n_series;
   const FigureSeries *series;
@@ -29,7 +31,7 @@ typedef struct {
   int width, height; /* pixels; 0: 900 x 600 */
 } Figure;
 
-/* What goes wrong (no gnuplot, nothing to draw, no permission) is told to diag. Points that an axis
+/* A PNG, or what the ending of the file says (picture/gnuplot.h). What goes wrong (no gnuplot, nothing to draw, no permission) is told to diag. Points that an axis
  * cannot show (not finite, or not positive on a logarithmic one) are left out. Not collective. */
 PetscErrorCode FigureWrite(const Figure *figure, const char *png, Diag *diag, PetscBool *done);
 

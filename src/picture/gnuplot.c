@@ -3,23 +3,43 @@
 #include <spawn.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 #include <sys/wait.h>
 #include <unistd.h>
 #include "output/directory/run_dir_files.h"
 
-PetscErrorCode GnuplotBegin(GnuplotScript *script, const char *png, int width, int height)
+/* Terminals by the ending of the file; fonts have the size that they have in a PNG. */
+static const struct Format {
+  const char *ending, *terminal;
+  double unit; /* of its sizes, pixels; fonts are in points in all */
+} formats[] = {{".png", "pngcairo truecolor", 1},
+               {".svg", "svg dynamic background rgb 'white'", 1},
+               {".pdf", "pdfcairo", 96},
+               {".gif", "gif animate delay 10 loop 0 optimize", 1},
+               {".mp4", "gif animate delay 10 loop 0 optimize", 1}};
+enum { N_FORMATS = sizeof formats / sizeof formats[0] };
+
+static const struct Format *format_of(const char *path)
 {
+  const char *ending = strrchr(path, '.');
+  for (int k = 0; k < N_FORMATS && ending; ++k)
+    if (!strcasecmp(ending, formats[k].ending)) return &formats[k];
+  return NULL;
+}
+
+PetscBool gnuplot_knows(const char *path) { return format_of(path) != NULL; }
+
+PetscErrorCode GnuplotBegin(GnuplotScript *script, const char *path, int width, int height)
+{
+  const struct Format *format = gnuplot_knows(path) ? format_of(path) : &formats[0];
   char unfinished[FILE_PATH];
 
   PetscFunctionBeginUser;
-  script->text = NULL;
-  script->size = 0;
-  script->out = open_memstream(&script->text, &script->size);
-  PetscCheck(script->out, PETSC_COMM_SELF, PETSC_ERR_MEM, "No memory for a script");
-  fprintf(script->out,
-          "set encoding utf8\nset terminal pngcairo noenhanced truecolor size %d,%d font 'DejaVu Sans,%d'\n", width,
-          height, height >= 600 ? 13 : 12);
-  PetscCall(PetscSNPrintf(unfinished, sizeof unfinished, "%s" FILE_UNFINISHED, png));
+  script->out = tmpfile();
+  PetscCheck(script->out, PETSC_COMM_SELF, PETSC_ERR_FILE_OPEN, "Cannot make a temporary file: %s", strerror(errno));
+  fprintf(script->out, "set encoding utf8\nset terminal %s noenhanced size %g,%g font 'DejaVu Sans,%d'\n",
+          format->terminal, width / format->unit, height / format->unit, height >= 600 ? 13 : 12);
+  PetscCall(PetscSNPrintf(unfinished, sizeof unfinished, "%s" FILE_UNFINISHED, path));
   (void)unlink(unfinished); /* a link would be written through */
   fputs("set output ", script->out);
   gnuplot_quote(script->out, unfinished);
@@ -38,16 +58,27 @@ void gnuplot_quote(FILE *out, const char *text)
   fputc('"', out);
 }
 
-/* Start gnuplot with these files as its input and its complaints; returns 0 or an errno. */
-static int gnuplot_spawn(FILE *input, FILE *complaints, pid_t *pid)
+PetscBool gnuplot_has_program(const char *name)
 {
-  char *const arguments[] = {(char[]){"gnuplot"}, (char[]){"-d"}, (char[]){"-"}, NULL};
+  const char *paths = getenv("PATH");
+  char path[FILE_PATH];
+  for (size_t n; paths && *paths; paths += n + (paths[n] == ':')) {
+    n = strcspn(paths, ":");
+    snprintf(path, sizeof path, "%.*s/%s", (int)n, paths, name);
+    if (!access(path, X_OK)) return PETSC_TRUE;
+  }
+  return PETSC_FALSE;
+}
+
+/* Start a program with these files as its input and its complaints; returns 0 or an errno. */
+static int spawn_program(char *const *arguments, FILE *input, FILE *complaints, pid_t *pid)
+{
   posix_spawn_file_actions_t actions;
   posix_spawn_file_actions_init(&actions);
   posix_spawn_file_actions_adddup2(&actions, fileno(input), STDIN_FILENO);
   posix_spawn_file_actions_adddup2(&actions, fileno(complaints), STDOUT_FILENO);
   posix_spawn_file_actions_adddup2(&actions, fileno(complaints), STDERR_FILENO);
-  const int error = posix_spawnp(pid, "gnuplot", &actions, NULL, arguments, environ);
+  const int error = posix_spawnp(pid, arguments[0], &actions, NULL, arguments, environ);
   posix_spawn_file_actions_destroy(&actions);
   return error;
 }
@@ -63,48 +94,73 @@ static void first_complaint(FILE *complaints, char text[256])
       snprintf(text, 256, "%.*s", (int)strcspn(line, "\n"), line + strspn(line, " \t"));
 }
 
-static PetscBool run_script(const GnuplotScript *script, FILE *input, FILE *complaints, Diag *diag)
+/* Let a program do its part of the picture. */
+static PetscBool run_program(char *const *arguments, FILE *input, Diag *diag)
 {
   char text[256];
-  pid_t pid;
+  pid_t pid = 0;
   int status = 0;
-  if (fwrite(script->text, 1, script->size, input) != script->size || fflush(input)) {
-    diag_error(diag, NULL, "no room for temporary files: %s", strerror(errno));
-    return PETSC_FALSE;
-  }
-  rewind(input);
-  const int error = gnuplot_spawn(input, complaints, &pid);
+  FILE *complaints = tmpfile();
+  const int error = complaints ? spawn_program(arguments, input, complaints, &pid) : EMFILE;
   if (error) {
-    diag_error(diag, NULL, "cannot start gnuplot, which draws the pictures: %s", strerror(error));
-    diag_hint(diag, "install it: apt install gnuplot-nox");
+    diag_error(diag, NULL, "cannot start %s, which draws the pictures: %s", arguments[0], strerror(error));
+    diag_hint(diag, "install it: apt install %s", strcmp(arguments[0], "gnuplot") ? arguments[0] : "gnuplot-nox");
+    if (complaints) fclose(complaints);
     return PETSC_FALSE;
   }
   while (waitpid(pid, &status, 0) < 0 && errno == EINTR) continue;
-  if (WIFEXITED(status) && WEXITSTATUS(status) == 0) return PETSC_TRUE;
+  const PetscBool ran = WIFEXITED(status) && WEXITSTATUS(status) == 0;
   first_complaint(complaints, text);
-  diag_error(diag, NULL, "gnuplot could not draw the picture: %s", text);
-  return PETSC_FALSE;
+  if (!ran) diag_error(diag, NULL, "%s could not draw the picture: %s", arguments[0], text);
+  fclose(complaints);
+  return ran;
 }
 
-PetscErrorCode GnuplotEnd(GnuplotScript *script, const char *png, Diag *diag, PetscBool *done)
+/* The frames of a GIF as a film with its final name and .film; sizes of films are even. */
+static PetscBool make_film(char *gif, char *film, FILE *nothing, Diag *diag)
 {
-  char unfinished[FILE_PATH];
-  FILE *input = tmpfile(), *complaints = tmpfile();
+  char *const arguments[] = {(char[]){"ffmpeg"},
+                             (char[]){"-y"},
+                             (char[]){"-loglevel"},
+                             (char[]){"error"},
+                             (char[]){"-f"},
+                             (char[]){"gif"},
+                             (char[]){"-i"},
+                             gif,
+                             (char[]){"-movflags"},
+                             (char[]){"+faststart"},
+                             (char[]){"-pix_fmt"},
+                             (char[]){"yuv420p"},
+                             (char[]){"-vf"},
+                             (char[]){"crop=trunc(iw/2)*2:trunc(ih/2)*2"},
+                             (char[]){"-f"},
+                             (char[]){"mp4"},
+                             film,
+                             NULL};
+  return run_program(arguments, nothing, diag);
+}
+
+PetscErrorCode GnuplotEnd(GnuplotScript *script, const char *path, Diag *diag, PetscBool *done)
+{
+  char *const arguments[] = {(char[]){"gnuplot"}, (char[]){"-d"}, (char[]){"-"}, NULL};
+  char unfinished[FILE_PATH], film[FILE_PATH];
+  const struct Format *format = format_of(path);
 
   PetscFunctionBeginUser;
-  *done = PETSC_FALSE;
-  PetscCall(PetscSNPrintf(unfinished, sizeof unfinished, "%s" FILE_UNFINISHED, png));
-  PetscCheck(!fclose(script->out), PETSC_COMM_SELF, PETSC_ERR_MEM, "No memory for a script");
-  if (input && complaints) {
-    const PetscBool ran = run_script(script, input, complaints, diag);
-    const int error = file_commit(unfinished, png, ran ? 0 : ECANCELED);
-    if (ran && error) diag_error(diag, NULL, "cannot write the picture '%s': %s", png, strerror(error));
-    *done = ran && !error;
-  } else {
-    diag_error(diag, NULL, "cannot make a temporary file: %s", strerror(errno));
+  PetscCall(PetscSNPrintf(unfinished, sizeof unfinished, "%s" FILE_UNFINISHED, path));
+  PetscCall(PetscSNPrintf(film, sizeof film, "%s.film" FILE_UNFINISHED, path));
+  *done = !fflush(script->out) && !ferror(script->out);
+  if (!*done) diag_error(diag, NULL, "no room for temporary files: %s", strerror(errno));
+  rewind(script->out);
+  *done = *done && run_program(arguments, script->out, diag);
+  if (*done && format && !strcmp(format->ending, ".mp4")) {
+    (void)unlink(film);
+    *done = make_film(unfinished, film, script->out, diag);
+    (void)file_commit(film, unfinished, *done ? 0 : ECANCELED);
   }
-  if (input) fclose(input);
-  if (complaints) fclose(complaints);
-  free(script->text);
+  const int error = file_commit(unfinished, path, *done ? 0 : ECANCELED);
+  if (*done && error) diag_error(diag, NULL, "cannot write the picture '%s': %s", path, strerror(error));
+  *done = *done && !error;
+  fclose(script->out);
   PetscFunctionReturn(0);
 }

@@ -1,10 +1,14 @@
 /* Pictures of a run: states coloured by a field, side by side if there are several, and the
- * histories of its measures. */
+ * histories of its measures; those of several runs over each other. */
 #pragma once
 #include <petscsys.h>
 #include "base/diag/diag.h"
 
 #define PLOT_MAX_STATES 36
+#define PLOT_MAX_CURVES 30
+
+/* Words of options, ended by NULL. */
+extern const char *const plot_formats[], *const plot_films[], *const plot_legends[];
 
 typedef struct {
   const char *run;                  /* the run directory */
@@ -18,16 +22,30 @@ typedef struct {
   PetscBool all_times; /* every state instead */
   PetscInt columns;    /* of several states; 0: chosen */
   PetscBool grid;      /* draw the grid too */
+  PetscBool bare;      /* without the outline that the body had at first, and where the grid is held */
+  PetscBool animate;   /* PlotAnimate */
   const char *profile; /* of PlotProfile: a wall, by its name */
   PetscBool has_range;
   PetscReal range[2]; /* of the colours, in the field's own unit */
   int width, height;  /* pixels; 0: chosen to suit the body */
-  PetscInt up;        /* axis that points up in a picture in space: 0 1 2 */
+  PetscInt up;        /* axis that points up in a picture in space: 0 1 2; -1: that of gravity */
   /* of bodies of revolution, which are shown on both sides of their axis: */
-  PetscBool half;   /* one side alone */
-  PetscBool turned; /* the whole body in space, with a quarter cut out */
-  const char *out;  /* PNG; NULL: RUN/pictures/state_... */
+  PetscBool half;     /* one side alone */
+  PetscBool turned;   /* the whole body in space, with a quarter cut out */
+  const char *out;    /* its ending is the format; NULL: RUN/pictures/state_... */
+  const char *format; /* png svg pdf: of pictures whose name is chosen; NULL: png */
 } PlotOptions;
+
+typedef struct {
+  PetscInt n_runs, n_y;
+  const char *const *runs; /* run directories */
+  const char *x;           /* a measure, "time" or "step"; NULL: time */
+  const char *const *y;
+  const char *legend; /* "names" of runs or the "keys" in which they differ; NULL: keys, where there are two at most */
+  const char *out;    /* NULL: pictures/Y_over_X.png of the first run */
+  const char *format;
+  int width, height; /* pixels; 0: chosen */
+} PlotXYOptions;
 
 /* Draw the states, all on one scale and in one set of colours. Mistakes go to diag, and picture is
  * "" if there is none. One process. */
@@ -36,6 +54,13 @@ PetscErrorCode PlotState(const PlotOptions *options, Diag *diag, char picture[PE
 /* RUN/pictures/history_NAME.png for every measure of history.csv. `said` is called with the path of
  * each. */
 PetscErrorCode PlotHistories(const PlotOptions *options, Diag *diag, void (*said)(const char *path));
+
+/* RUN/pictures/animation_FIELD.gif (or .mp4): all states of the run one after the other. */
+PetscErrorCode PlotAnimate(const PlotOptions *options, Diag *diag, void (*said)(const char *path));
+
+/* Measures over a measure: a curve for each y of each run. Units stand at the axes; measures of a second unit have
+ * the right one. `said` is called with the path. */
+PetscErrorCode PlotXY(const PlotXYOptions *options, Diag *diag, void (*said)(const char *path));
 
 /* RUN/pictures/factor.png of a run that has a factor.csv: displacement over the factor of its strength. */
 PetscErrorCode PlotFactor(const PlotOptions *options, Diag *diag, void (*said)(const char *path));
@@ -46,5 +71,7 @@ PetscErrorCode PlotProfile(const PlotOptions *options, Diag *diag, void (*said)(
 
 /* RUN/pictures/, made if it is not there; PETSC_FALSE and a diagnostic if it cannot be. */
 PetscBool plot_folder(const char *run, Diag *diag);
+/* The ending of pictures: the format, or "png" for NULL. */
+const char *plot_ending(const char *format);
 /* Turn what a file name should not hold into '_'. */
 void plot_file_name(char *name);

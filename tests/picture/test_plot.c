@@ -45,6 +45,23 @@ static void test_spacing(void **state)
   }
 }
 
+/* A share of the numbers, also where half a million of them are equal, as in a lattice. */
+static void test_quantile(void **state)
+{
+  enum { N = 500000 };
+  static PetscReal values[N];
+  const PetscReal few[] = {3, 1, 2, 5, 4};
+  PetscReal q;
+  (void)state;
+  assert_int_equal(PlotQuantile(5, few, 0.5, &q), 0);
+  assert_true(q == 3);
+  assert_int_equal(PlotQuantile(5, few, 1, &q), 0);
+  assert_true(q == 5);
+  for (PetscInt i = 0; i < N; ++i) values[i] = i % 1000 ? 1 : 2;
+  assert_int_equal(PlotQuantile(N, values, 0.5, &q), 0);
+  assert_true(q == 1);
+}
+
 /* The square is filled, all else is empty, and each place has the colour of its value (which is
  * x). */
 static void test_raster(void **state)
@@ -86,8 +103,8 @@ static void test_raster_depth(void **state)
   assert_int_equal(rgba[4 * 12], 253);
 }
 
-/* Two columns of balls, 0.1 in radius, with 0.4 between them: the gap is filled from both sides,
- * and nothing beyond the outline. */
+/* Two columns of balls, 0.1 in radius, with 0.4 between them: the gap is filled from both sides, and the outline is
+ * drawn back by half a radius, with sharp corners. */
 static void test_raster_gap(void **state)
 {
   enum { W = 100, H = 100 };
@@ -107,11 +124,10 @@ static void test_raster_gap(void **state)
   assert_int_equal(RasterDraw(&scene, rgba), 0);
   for (int column = 2; column < W - 2; ++column) {
     const unsigned char *before = plain + 4 * (50 * W + column), *after = rgba + 4 * (50 * W + column);
-    const int between = column > 31 && column < 68;
-    if (!between && column > 27 && column < 72) continue;
-    assert_int_equal(after[3], between ? 255 : before[3]);
-    if (between) assert_int_equal(before[3], 0);
-    if (between) assert_int_equal(after[0], column < 50 ? 68 : 253);
+    const int body = column > 15 && column < 84;
+    if (column > 30 && column < 69) assert_int_equal(before[3], 0);
+    if (abs(column - 15) > 1 && abs(column - 84) > 1) assert_int_equal(after[3], body ? 255 : 0);
+    if (body && column > 17 && column < 82) assert_int_equal(after[0], column < 50 ? 68 : 253);
   }
   scene.gap = 0.15; /* too little to close it */
   assert_int_equal(RasterDraw(&scene, rgba), 0);
@@ -453,13 +469,132 @@ static void test_no_gnuplot(void **state)
   TestRemove(folder);
 }
 
+static char film[PETSC_MAX_PATH_LEN];
+static void Said(const char *path) { snprintf(film, sizeof film, "%s", path); }
+
+static char *Animate(const PlotOptions *options)
+{
+  char *text = NULL;
+  size_t size;
+  Diag *diag;
+  film[0] = 0;
+  assert_int_equal(DiagCreate(&diag), 0);
+  assert_int_equal(PlotAnimate(options, diag, Said), 0);
+  FILE *out = open_memstream(&text, &size);
+  assert_int_equal(DiagFlush(diag, out), 0);
+  fclose(out);
+  assert_int_equal(DiagDestroy(&diag), 0);
+  return text;
+}
+
+/* A GIF has an image for each state; ffmpeg, here a stand-in, makes a film of it; nothing is left of what fails. */
+static void test_animation(void **state)
+{
+  char folder[64], path[512], *paths = strdup(getenv("PATH"));
+  PlotOptions options = {.run = folder, .up = -1, .width = 400};
+  int images = 0;
+  (void)state;
+  TestFolder(folder);
+  WriteState(folder, 2, 0, 0);
+  char *text = Animate(&options);
+  assert_non_null(strstr(text, "a single state: nothing moves"));
+  free(text);
+  WriteState(folder, 2, 1, 0.5);
+  WriteState(folder, 2, 2, 1);
+  text = Animate(&options);
+  assert_string_equal(text, "");
+  assert_non_null(strstr(film, "/pictures/animation_displacement_magnitude.gif"));
+  FILE *in = fopen(film, "rb");
+  for (int c, last[2] = {0, 0}; (c = fgetc(in)) != EOF; last[0] = last[1], last[1] = c)
+    images += last[0] == 0x21 && last[1] == 0xf9 && c == 4;
+  fclose(in);
+  assert_int_equal(images, 3);
+  free(text);
+  options.format = "mp4";
+  setenv("PATH", folder, 1);
+  text = Animate(&options);
+  assert_non_null(strstr(text, "apt install ffmpeg, or a GIF"));
+  free(text);
+  snprintf(path, sizeof path, "%s/ffmpeg", folder);
+  for (int fails = 1; fails >= 0; --fails) {
+    FILE *out = fopen(path, "w");
+    fprintf(out, "#!/bin/sh\nfor last; do :; done\nhead -c 3 \"$7\" >\"$last\"\n%s\n",
+            fails ? "echo no such codec; exit 1" : "[ $6 = gif ] || exit 0");
+    assert_true(!fclose(out) && !chmod(path, 0700));
+    snprintf(path, sizeof path, "%s:%.400s", folder, paths);
+    setenv("PATH", path, 1);
+    snprintf(path, sizeof path, "%s/ffmpeg", folder);
+    text = Animate(&options);
+    if (fails) assert_non_null(strstr(text, "ffmpeg could not draw the picture: no such codec"));
+    else assert_string_equal(text, "");
+    assert_int_equal(film[0] != 0, !fails);
+    assert_int_equal(TestExists(folder, "pictures/animation_displacement_magnitude.mp4"), !fails);
+    assert_false(TestExists(folder, "pictures/animation_displacement_magnitude.mp4.tmp-unfinished"));
+    assert_false(TestExists(folder, "pictures/animation_displacement_magnitude.mp4.film.tmp-unfinished"));
+    free(text);
+  }
+  setenv("PATH", paths, 1);
+  free(paths);
+  TestRemove(folder);
+}
+
+/* Bodies have their names in the legend, and a mesh of fem is drawn by its cells. */
+static void test_names_and_cells(void **state)
+{
+  const PetscReal x[] = {0.25, 0.25, 0, 1.25, 0.25, 0}, body[] = {0, 1}, u[6] = {0},
+                  node[] = {0, 0, 0, 1, 0, 0, 2, 0, 0, 0, 1, 0, 1, 1, 0, 2, 1, 0};
+  const PetscInt cells[] = {0, 1, 4, 3, 1, 2, 5, 4};
+  char folder[64], path[128], picture[PETSC_MAX_PATH_LEN], reason[256];
+  (void)state;
+  TestFolder(folder);
+  snprintf(path, sizeof path, "%s/case.yaml", folder);
+  FILE *out = fopen(path, "w");
+  fputs(
+    "kinematics: plane-strain\nmethod: fem\nanalysis: {type: static, steps: 1}\n"
+    "grid: {box: {min: [0, 0], max: [2, 1]}, size: 1, cell: quadrilateral}\n"
+    "bodies:\n- {name: steel & iron, shape: {box: {min: [0, 0], max: [1, 1]}}, material: m}\n"
+    "- {name: wood, shape: {box: {min: [1, 0], max: [2, 1]}}, material: m}\n"
+    "materials: {m: {law: neo-hookean, density: 1, young: 1, poisson: 0}}\n",
+    out);
+  assert_int_equal(fclose(out), 0);
+  const VtkField fields[] = {{"body", "", 1, body}, {"displacement", "m", 3, u}};
+  const VtkData points = {.n_points = 2, .x = x, .n_point_fields = 2, .point_fields = fields},
+                grid = {
+                  .n_points = 6, .x = node, .n_cells = 2, .connectivity = cells, .nodes_per_cell = 4, .vtk_type = 9};
+  snprintf(path, sizeof path, "%s/points_000000.hdf", folder);
+  assert_int_equal(VtkWrite(PETSC_COMM_WORLD, path, &points, reason), 0);
+  assert_int_equal(VtkSeriesAppend(PETSC_COMM_WORLD, folder, "points", "points_000000.hdf", 0, reason), 0);
+  snprintf(path, sizeof path, "%s/grid_000000.hdf", folder);
+  assert_int_equal(VtkWrite(PETSC_COMM_WORLD, path, &grid, reason), 0);
+  for (int k = 0; k < 2; ++k) {
+    const PlotOptions options = {.run = folder, .field = "body", .up = -1, .format = "svg", .grid = k};
+    char *text = Plot(&options, picture);
+    assert_string_equal(text, "");
+    char *svg = TestRead(folder, "pictures/state_body_000000.svg");
+    assert_non_null(svg);
+    assert_true(strstr(svg, "steel &amp; iron") && strstr(svg, "wood"));
+    free(svg);
+    free(text);
+  }
+  /* without a case, numbers */
+  snprintf(path, sizeof path, "%s/case.yaml", folder);
+  assert_int_equal(remove(path), 0);
+  const PlotOptions options = {.run = folder, .field = "body", .up = -1, .format = "svg"};
+  char *text = Plot(&options, picture), *svg = TestRead(folder, "pictures/state_body_000000.svg");
+  assert_true(strstr(svg, "body 1") && !strstr(svg, "wood"));
+  free(svg);
+  free(text);
+  TestRemove(folder);
+}
+
 static void test_convergence(void **state)
 {
   const PetscReal h[] = {0.5, 0.25, 0.125, 0.0625}, fem[] = {0.1, 0.025, 0.00625, 0.0015625},
                   mpm[] = {0.2, 0.05, NAN, 0};
-  const FigureSeries series[] = {{"fem", FIGURE_LINE_MARKS, 4, h, fem},
-                                 {"mpm 'a' \"b\" `date` \\c", FIGURE_LINE_MARKS, 4, h, mpm},
-                                 {"none", FIGURE_LINE, 0, h, mpm}};
+  const FigureSeries series[] = {
+    {.name = "fem", .style = FIGURE_LINE_MARKS, .n = 4, .x = h, .y = fem},
+    {.name = "mpm 'a' \"b\" `date` \\c", .style = FIGURE_LINE_MARKS, .n = 4, .x = h, .y = mpm},
+    {.name = "none", .style = FIGURE_LINE, .n = 0, .x = h, .y = mpm}};
   const Figure figure = {.title = "Cantilever",
                          .x_label = "h [m]",
                          .y_label = "error",
@@ -489,21 +624,15 @@ static void test_convergence(void **state)
 
 static int Tests(void)
 {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_spacing),
-                                     cmocka_unit_test(test_raster),
-                                     cmocka_unit_test(test_raster_depth),
-                                     cmocka_unit_test(test_raster_gap),
-                                     cmocka_unit_test(test_several_states),
-                                     cmocka_unit_test(test_scalars),
-                                     cmocka_unit_test(test_units),
-                                     cmocka_unit_test(test_tick_names),
-                                     cmocka_unit_test(test_state_in_the_plane),
-                                     cmocka_unit_test(test_state_in_space),
-                                     cmocka_unit_test(test_body_of_revolution),
-                                     cmocka_unit_test(test_histories),
-                                     cmocka_unit_test(test_mistakes),
-                                     cmocka_unit_test(test_no_gnuplot),
-                                     cmocka_unit_test(test_convergence)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_spacing),         cmocka_unit_test(test_quantile),
+                                     cmocka_unit_test(test_raster),          cmocka_unit_test(test_raster_depth),
+                                     cmocka_unit_test(test_raster_gap),      cmocka_unit_test(test_several_states),
+                                     cmocka_unit_test(test_scalars),         cmocka_unit_test(test_units),
+                                     cmocka_unit_test(test_tick_names),      cmocka_unit_test(test_state_in_the_plane),
+                                     cmocka_unit_test(test_state_in_space),  cmocka_unit_test(test_body_of_revolution),
+                                     cmocka_unit_test(test_histories),       cmocka_unit_test(test_mistakes),
+                                     cmocka_unit_test(test_no_gnuplot),      cmocka_unit_test(test_animation),
+                                     cmocka_unit_test(test_names_and_cells), cmocka_unit_test(test_convergence)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
 

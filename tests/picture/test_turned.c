@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include "output/vtk/vtk.h"
 #include "picture/scene/scene.h"
+#include "picture/raster/distance.h"
 #include "picture/revolution/revolution.h"
 
 enum { W = 37, H = 23 };

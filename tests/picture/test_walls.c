@@ -4,9 +4,10 @@
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
+#include <stdlib.h>
 #include <string.h>
 #include <cmocka.h>
-#include "picture/scene/walls.h"
+#include "picture/walls/walls.h"
 
 enum { W = 200, H = 100 };
 
@@ -109,8 +110,87 @@ static void ContainerOnBothSides(void **state)
   close_picture(&p);
 }
 
+/* Lines of a wall in space, in a box of 4 m about the origin; to be freed by PlotFramesFree. */
+static void wires_of(Picture *p, const Shape *shape)
+{
+  p->walls[0] = (WallSpec){.shape = *shape};
+  open_picture(p, &kinematics_3d, 1);
+  p->scene.dim = 3, p->scene.up = 2;
+  for (int d = 0; d < 3; ++d) p->scene.box_min[d] = -2, p->scene.box_max[d] = 2;
+  p->scene.frames[0] = (PlotFrame){0};
+  assert_int_equal(PlotWallsLines(&p->scene), 0);
+}
+
+static PetscReal length_of_all(const PlotFrame *f)
+{
+  PetscReal sum = 0;
+  for (PetscInt l = 0; l < f->n_lines; ++l) {
+    const PetscReal *e = f->line + 6 * l;
+    sum += sqrt(pow(e[3] - e[0], 2) + pow(e[4] - e[1], 2) + pow(e[5] - e[2], 2));
+  }
+  return sum;
+}
+
+/* A box has twelve edges; of a sphere the outline is seen, at its radius from the middle; a plane ends where the
+ * picture does. */
+static void LinesInSpace(void **state)
+{
+  static Picture p;
+  const Shape box = {.kind = SHAPE_BOX, .min = {-1, -0.5, 0}, .max = {1, 0.5, 0.5}},
+              ball = {.kind = SHAPE_BALL, .centre = {0.3, 0, 0}, .radius = 0.5},
+              plane = {.kind = SHAPE_HALF_SPACE, .normal = {0, 0, 1}};
+  PetscReal middle[3];
+  (void)state;
+  wires_of(&p, &box);
+  assert_true(fabs(length_of_all(&p.scene.frames[0]) - 4 * (2 + 1 + 0.5)) < 1e-9);
+  assert_int_equal(PlotFramesFree(&p.scene), 0);
+  close_picture(&p);
+  wires_of(&p, &plane); /* a hundredth of the picture beyond its box, on each side */
+  assert_true(fabs(length_of_all(&p.scene.frames[0]) - 4 * 4 * 1.04) < 1e-9);
+  assert_int_equal(PlotFramesFree(&p.scene), 0);
+  close_picture(&p);
+  wires_of(&p, &ball);
+  plot_project(&p.scene, ball.centre, middle);
+  assert_true(p.scene.frames[0].n_lines > 10);
+  for (PetscInt k = 0; k < 2 * p.scene.frames[0].n_lines; ++k) {
+    const PetscReal *at = p.scene.frames[0].line + 3 * k;
+    assert_true(fabs(hypot(at[0] - middle[0], at[1] - middle[1]) - 0.5) < 0.03);
+  }
+  assert_int_equal(PlotFramesFree(&p.scene), 0);
+  close_picture(&p);
+}
+
+/* Lines where nodes do not move across them, no farther than the grid goes. */
+static void FloorOfAGrid(void **state)
+{
+  static Picture p;
+  static char bottom[] = "bottom", left[] = "left";
+  MotionSpec boundary[] = {
+    {.on = {.boundary = bottom}, .component = {1, 1}},
+    {.on = {.boundary = left}, .component = {0, 1}}, /* moves across it */
+    {.on = {.has = {1, 1}, .min = {0.5, -1}, .max = {0.5, 0}}, .component = {1}},
+    {.on = {.has = {0, 1}, .min = {0, 0.2}, .max = {0, 0.2}}, .kind = MOTION_VELOCITY, .component = {0, 1}}};
+  char *text = NULL;
+  size_t size;
+  (void)state;
+  open_picture(&p, &kinematics_plane_strain, 0);
+  p.c.grid = (GridSpec){.kind = GRID_BOX, .min = {-0.8, -0.3}, .max = {3, 3}};
+  p.c.n_boundary = 4, p.c.boundary = boundary;
+  FILE *out = open_memstream(&text, &size);
+  plot_floor_draw(out, &p.scene, &p.page);
+  p.scene.bare = PETSC_TRUE;
+  plot_floor_draw(out, &p.scene, &p.page);
+  fclose(out);
+  assert_string_equal(text,
+                      "set arrow from -0.8,-0.3 to 1,-0.3 nohead front lw 1.5 lc rgb '#505050'\n"
+                      "set arrow from 0.5,-0.5 to 0.5,0 nohead front lw 1.5 lc rgb '#505050'\n");
+  free(text);
+  close_picture(&p);
+}
+
 int main(void)
 {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(CircleThatMoves), cmocka_unit_test(ContainerOnBothSides)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(CircleThatMoves), cmocka_unit_test(ContainerOnBothSides),
+                                     cmocka_unit_test(LinesInSpace), cmocka_unit_test(FloorOfAGrid)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

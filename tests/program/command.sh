@@ -6,7 +6,7 @@ cantilever >case.yaml
 expect "help" 0 "$talus" --help
 says out.txt "usage: talus COMMAND" "Exit codes: 0 done, 1 the solver gave up, 2 bad input or usage, 3 a verification"
 commands=$(sed -n '/^commands:/,/^$/s/^  \([a-z]*\) .*/\1/p' out.txt)
-[ "$(echo $commands)" = "run check list schema verify sweep calibrate plot version" ] || fail "help: commands are '$commands'"
+[ "$(echo $commands)" = "run check list schema verify sweep calibrate plot compare version" ] || fail "help: commands are '$commands'"
 for command in $commands; do
   expect "$command --help" 0 "$talus" $command --help
   says out.txt "usage: talus $command" "options:" "--help"

@@ -46,6 +46,18 @@ expect "plot of a plane run turned" 2 "$talus" plot run --turned
 says err.txt "'run' is no axisymmetric run: there is nothing to turn"
 expect "plot of half and whole" 2 "$talus" plot run --half --turned
 says err.txt "a picture shows the one or the other"
+expect "plot of two runs" 0 "$talus" plot run again --y corner --y low --legend names --out both.svg
+says out.txt "picture = both.svg"
+grep -q ">again: corner<" both.svg || fail "plot of two runs: no legend"
+expect "plot without a measure" 2 "$talus" plot run again
+says err.txt "several runs are drawn with --y MEASURE alone"
+expect "plot as a photograph" 2 "$talus" plot run --out run.jpg
+says err.txt "no picture is drawn as '.jpg'"
+expect "compare" 0 "$talus" compare run again --tolerance 0 --out compared
+says out.txt "The cases do not differ" "corner [m]" "picture = compared/history_corner.png"
+[ "$(sed -n 2p compared/differences.csv | cut -d, -f7)" = 0 ] || fail "compare: the same run differs"
+expect "compare with nothing" 2 "$talus" compare run nowhere
+says err.txt "there is no run directory 'nowhere'"
 expect "plot of nothing" 2 "$talus" plot nowhere
 says err.txt "there is no run directory 'nowhere'"
 

@@ -64,7 +64,7 @@ PetscErrorCode PlotFactor(const PlotOptions *options, Diag *diag, void (*said)(c
                          .y_label = "displacement [m]",
                          .n_series = PetscIsNanReal(curve.failed) ? 1 : 2,
                          .series = series};
-  PetscCall(PetscSNPrintf(png, sizeof png, "%s/pictures/factor.png", options->run));
+  PetscCall(PetscSNPrintf(png, sizeof png, "%s/pictures/factor.%s", options->run, plot_ending(options->format)));
   PetscCall(FigureWrite(&figure, png, diag, &done));
   if (done && said) said(png);
   PetscFunctionReturn(0);

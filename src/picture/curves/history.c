@@ -58,7 +58,7 @@ static PetscErrorCode DrawAll(const PlotOptions *options, const History *history
       diag_warning(diag, NULL, "the measure '%s' has no value in any row: it is not drawn", history->names[column]);
       continue;
     }
-    snprintf(name, sizeof name, "history_%.150s.png", history->names[column]);
+    snprintf(name, sizeof name, "history_%.150s.%s", history->names[column], plot_ending(options->format));
     plot_file_name(name);
     PetscCall(PetscSNPrintf(png, sizeof png, "%s/pictures/%s", options->run, name));
     PetscCall(DrawMeasure(history, column, png, diag, &done));

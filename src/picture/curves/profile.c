@@ -228,7 +228,7 @@ PetscErrorCode PlotProfile(const PlotOptions *options, Diag *diag, void (*said)(
   if (!p.n) diag_error(diag, NULL, "nothing touches the wall '%s' at %g s", options->profile, (double)state.time);
   else if (plot_folder(options->run, diag) && write_table(&p, path, diag)) {
     said(path);
-    PetscCall(PetscSNPrintf(path, sizeof path, "%s/pictures/%s.png", options->run, name));
+    PetscCall(PetscSNPrintf(path, sizeof path, "%s/pictures/%s.%s", options->run, name, plot_ending(options->format)));
     PetscCall(DrawProfile(&p, space, title, options->out ? options->out : path, diag, &done));
     if (done) said(options->out ? options->out : path);
   }

@@ -1,4 +1,4 @@
-/* Points drawn as balls that hide what lies behind them, into an image of colours. */
+/* Points drawn as balls, triangles and lines that hide what lies behind them, into an image of colours. */
 #pragma once
 #include <petscsys.h>
 
@@ -7,14 +7,25 @@
 #define PALETTE_STOPS 10
 extern const unsigned char palette_stops[PALETTE_STOPS][3];
 void palette_colour(PetscReal value, PetscReal rgb[3]);
+/* Colours of things that are told apart by name, again from the first one after the last. */
+#define PALETTE_NAMES 10
+extern const unsigned char palette_names[PALETTE_NAMES][3];
 
 typedef struct {
   PetscInt n;
   const PetscReal *x;      /* n x 3: right, up, towards the eye, m */
   const PetscReal *radius; /* n, m */
   const PetscReal *value;  /* n, in [0, 1]; NaN is grey */
-  PetscBool shaded;        /* as balls in space; otherwise flat */
-  /* m; gaps between balls up to twice this wide are filled (flat images only) */
+  PetscInt n_triangles;
+  const PetscReal *corner;       /* n_triangles x 3 x 3, as x */
+  const PetscReal *corner_value; /* n_triangles x 3, as value; linear between corners */
+  const unsigned char *side;     /* n_triangles: bit k: from corner k to the next a line is drawn; NULL: none */
+  PetscInt n_lines;
+  const PetscReal *line; /* n_lines x 2 x 3, as x: dark, where nothing hides them */
+  PetscBool named;       /* values are numbers of names, 0, 1, ... */
+  PetscBool shaded;      /* as bodies in space; otherwise flat */
+  /* m; gaps between balls up to twice this wide are filled (flat images only), and the outline of what they fill is
+   * drawn back by half their radius, to where the material ends; 0: neither */
   PetscReal gap;
   PetscReal min[2], max[2]; /* what the image shows, m */
   int width, height;        /* pixels */

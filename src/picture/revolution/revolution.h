@@ -24,7 +24,3 @@ typedef struct {
 /* rgba: width x height x 4 as in RasterDraw. The quarter x > 0, z > 0 is cut out; light comes from
  * the upper left, in front. */
 PetscErrorCode TurnedDraw(const TurnedScene *scene, unsigned char *rgba);
-
-/* Of each pixel the distance to the nearest one that is `in`, in pixels, and which that is; -1 and
- * infinity if none is. */
-PetscErrorCode DistanceTo(int width, int height, const unsigned char *in, float *distance, int *nearest);

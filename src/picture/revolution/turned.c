@@ -3,6 +3,7 @@
  * of the quarter. So a ray may go as far as the distance without missing anything, and arrives
  * after a dozen leaps. */
 #include <math.h>
+#include "picture/raster/distance.h"
 #include "picture/revolution/revolution.h"
 
 /* Rays a pixel along each axis make edges smooth. */

@@ -23,13 +23,6 @@ static void line(FILE *out, const PlotScene *scene, const PetscReal *from, const
           (double)q[0], (double)q[1], colour);
 }
 
-/* 1, 2 or 5 times a power of ten, so that there are three to six ticks. */
-static PetscReal tick_step(PetscReal length)
-{
-  const PetscReal power = PetscPowReal(10, floor(log10(length / 4))), share = length / 4 / power;
-  return power * (share < 1.5 ? 1 : share < 3.5 ? 2 : share < 7.5 ? 5 : 10);
-}
-
 /* Ticks along axis d that starts at `from`; they point away along -b (0), +a (1) or to the left of
  * the page. pixel: m. */
 static void box_ticks(FILE *out, const PlotScene *scene, PetscInt k, const PetscReal *from, PetscReal size,
@@ -40,9 +33,14 @@ static void box_ticks(FILE *out, const PlotScene *scene, PetscInt k, const Petsc
   static const char *const sides[] = {"right", "left", "right"};
   const PetscInt d = (scene->up + 1 + k) % 3;
   const PetscReal length = scene->box_max[d] - scene->box_min[d];
-  PetscReal x[3] = {from[0], from[1], from[2]}, p[3];
+  PetscReal x[3] = {from[0], from[1], from[2]}, p[3], end[3];
   if (!(length > 1e-9 * size)) return;
-  const PetscReal step = tick_step(PetscMax(length, 0.25 * size));
+  plot_project(scene, x, p);
+  x[d] = scene->box_max[d];
+  plot_project(scene, x, end);
+  /* five ticks, but none nearer to the next than their names are wide */
+  const double along = hypot((double)(end[0] - p[0]), (double)(end[1] - p[1])) / (double)pixel;
+  const double step = plot_tick_step(length, along, PetscMax(k == 2 ? 28 : 44, along / 5));
   for (PetscReal t = ceil(scene->box_min[d] / step - 1e-9); t * step <= scene->box_max[d] + 1e-9 * step; t += 1) {
     x[d] = t * step;
     plot_project(scene, x, p);

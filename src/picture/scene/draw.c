@@ -2,6 +2,7 @@
 #include "picture/gnuplot.h"
 #include "picture/raster/raster.h"
 #include "picture/scene/scene.h"
+#include "picture/walls/walls.h"
 
 static void write_palette(FILE *out, const PlotScene *scene)
 {
@@ -12,6 +13,34 @@ static void write_palette(FILE *out, const PlotScene *scene)
   fprintf(out, ") maxcolors 0\nset cbrange [%.15g:%.15g]\nset format cb '%%.4g'\nset cblabel ", (double)scene->low,
           (double)scene->high);
   gnuplot_quote(out, scene->label);
+}
+
+/* The legend of names stands where the bar does; entries only for those that are drawn. */
+static void write_names(FILE *out, const PlotScene *scene, const PlotPage *page)
+{
+  const double w = page->width, h = page->height;
+  if (page->bar_below) {
+    const double all = page->w + (page->columns - 1) * page->step_x;
+    fprintf(out, "set key at screen %.6f,%.6f center top horizontal", (page->left + 0.5 * all) / w,
+            (page->bottom - (scene->dim == 3 ? 15 : 65)) / h);
+  } else
+    fprintf(out, "set key at screen %.6f,%.6f left top vertical", (page->left + page->w + 10) / w,
+            (page->bottom + page->h) / h);
+  fputs(" Left reverse samplen 1 spacing 1.3 width 0 nobox\n", out);
+}
+
+/* What the key shows: squares of the colours of names. */
+static void write_entries(FILE *out, const PlotScene *scene)
+{
+  PetscBool there[PLOT_MAX_NAMES];
+  char name[64];
+  plot_find_names(scene, there);
+  for (PetscInt k = 0; k < PLOT_MAX_NAMES; ++k) {
+    const unsigned char *c = palette_names[k % PALETTE_NAMES];
+    if (!there[k]) continue;
+    fprintf(out, ", keyentry with points pt 5 ps 2 lc rgb '#%02x%02x%02x' title ", c[0], c[1], c[2]);
+    gnuplot_quote(out, plot_name(scene, k, name));
+  }
 }
 
 /* The bar is as long as the field is wide or high, within reason. */
@@ -39,14 +68,6 @@ static void draw_corner(const PlotPage *page, PetscInt frame, int *left, int *bo
   *bottom = page->bottom + (page->rows - 1 - row) * page->step_y;
 }
 
-/* 1, 2 or 5 times a power of ten: the smallest that leaves so many pixels between ticks of a range
- * that takes `all` pixels. */
-static double tick_step(PetscReal range, int all, int pixels)
-{
-  const double least = (double)range * pixels / all, power = pow(10, floor(log10(least))), share = least / power;
-  return power * (share <= 1 ? 1 : share <= 2 ? 2 : share <= 5 ? 5 : 10);
-}
-
 /* Radii are counted from the axis, which is drawn, to both sides. */
 static void write_radii(FILE *out, const PlotPage *page, double step, PetscBool named)
 {
@@ -65,7 +86,7 @@ static void write_axes(FILE *out, const PlotScene *scene, const PlotPage *page, 
 {
   const PetscBool left = frame % page->columns == 0, last = frame + page->columns >= scene->n_frames;
   if (scene->dim == 3) {
-    fputs("unset border\nunset tics\nset cbtics\n", out);
+    fputs("unset border\nunset tics\nset cbtics out nomirror scale 0.6\n", out);
     return;
   }
   fprintf(out,
@@ -77,13 +98,13 @@ static void write_axes(FILE *out, const PlotScene *scene, const PlotPage *page, 
                               : "x [m]",
           left ? "y [m]" : "", last ? "%g" : "", left ? "%g" : "");
   if (scene->n_frames > 1)
-    fprintf(out, "set xtics %.6g\nset ytics %.6g\n", tick_step(page->max[0] - page->min[0], page->w, 45),
-            tick_step(page->max[1] - page->min[1], page->h, 30));
+    fprintf(out, "set xtics %.6g\nset ytics %.6g\n", plot_tick_step(page->max[0] - page->min[0], page->w, 45),
+            plot_tick_step(page->max[1] - page->min[1], page->h, 30));
   else if (page->h < 160)
     fprintf(out, "set ytics %.3g\n",
             pow(10, floor(log10((double)(page->max[1] - page->min[1])))) * (page->h < 80 ? 1 : 0.5));
   if (scene->mirrored)
-    write_radii(out, page, tick_step(page->max[0] - page->min[0], page->w, scene->n_frames > 1 ? 45 : 70), last);
+    write_radii(out, page, plot_tick_step(page->max[0] - page->min[0], page->w, scene->n_frames > 1 ? 45 : 70), last);
 }
 
 static void write_field(FILE *out, const PlotScene *scene, const PlotPage *page, PetscInt frame)
@@ -99,6 +120,7 @@ static void write_field(FILE *out, const PlotScene *scene, const PlotPage *page,
           (double)page->max[0], (double)page->min[1], (double)page->max[1]);
   gnuplot_quote(out, scene->frames[frame].title);
   fprintf(out, " offset 0,%g\nunset key\n", scene->n_frames > 1 ? -0.5 : 0.);
+  if (scene->named && frame == 0) write_names(out, scene, page);
   write_axes(out, scene, page, frame);
 }
 
@@ -114,23 +136,44 @@ static void write_edges(FILE *out, const PlotFrame *f)
 
 /* The image is made to lie on the pixels of the field; the invisible point brings the colour
  * bar. */
-static void write_plot(FILE *out, const PlotFrame *f, const PlotPage *page, const unsigned char *rgba)
+static void write_plot(FILE *out, const PlotScene *scene, const PlotFrame *f, const PlotPage *page,
+                       const unsigned char *rgba)
 {
   const double dx = (double)(page->max[0] - page->min[0]) / page->w,
                dy = (double)(page->max[1] - page->min[1]) / page->h;
   if (f->n_edges) write_edges(out, f);
   fputs("plot ", out);
-  if (f->n_edges) fputs("$grid with lines lw 0.7 lc rgb '#b8b8b8', ", out);
-  fprintf(
-    out,
-    "'-' binary array=(%d,%d) origin=(%.15g,%.15g) dx=%.15g dy=%.15g format='%%uchar' using 1:2:3:4 with rgbalpha, ",
-    page->w, page->h, (double)page->min[0] + 0.5 * dx, (double)page->min[1] + 0.5 * dy, dx, dy);
-  fputs("'+' using (NaN):(NaN):(0) with points palette\n", out);
+  if (f->n_edges) fputs("$grid with lines lw 0.7 lc rgb '#b8b8b8' notitle, ", out);
+  fprintf(out,
+          "'-' binary array=(%d,%d) origin=(%.15g,%.15g) dx=%.15g dy=%.15g format='%%uchar' using 1:2:3:4 with "
+          "rgbalpha notitle",
+          page->w, page->h, (double)page->min[0] + 0.5 * dx, (double)page->min[1] + 0.5 * dy, dx, dy);
+  if (!scene->named) fputs(", '+' using (NaN):(NaN):(0) with points palette notitle", out);
+  else if (f == scene->frames) write_entries(out, scene);
+  fputc('\n', out);
   fwrite(rgba, 4, (size_t)page->w * (size_t)page->h, out);
   fputc('\n', out);
 }
 
-PetscErrorCode PlotDraw(PlotScene *scene, int width, int height, const char *png, Diag *diag, PetscBool *done)
+void plot_draw_around(FILE *out, const PlotScene *scene, const PlotPage *page)
+{
+  if (!scene->named) write_colour_bar(out, scene, page);
+  if (scene->dim == 3) plot_draw_box(out, scene, page);
+  plot_floor_draw(out, scene, page);
+}
+
+PetscErrorCode PlotDrawFrame(FILE *out, const PlotScene *scene, PetscInt frame, const PlotPage *page,
+                             unsigned char *rgba)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PlotImage(scene, &scene->frames[frame], page, rgba));
+  if (frame == 1) fputs("unset colorbox\n", out); /* one serves all */
+  write_field(out, scene, page, frame);
+  write_plot(out, scene, &scene->frames[frame], page, rgba);
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode PlotDraw(PlotScene *scene, int width, int height, const char *path, Diag *diag, PetscBool *done)
 {
   GnuplotScript script;
   PlotPage page;
@@ -139,18 +182,12 @@ PetscErrorCode PlotDraw(PlotScene *scene, int width, int height, const char *png
   PetscFunctionBeginUser;
   plot_lay_out(scene, width, height, &page);
   PetscCall(PetscMalloc1((size_t)page.w * (size_t)page.h * 4, &rgba));
-  PetscCall(GnuplotBegin(&script, png, page.width, page.height));
-  write_colour_bar(script.out, scene, &page);
-  if (scene->dim == 3) plot_draw_box(script.out, scene, &page);
+  PetscCall(GnuplotBegin(&script, path, page.width, page.height));
+  plot_draw_around(script.out, scene, &page);
   if (scene->n_frames > 1) fputs("set multiplot\n", script.out);
-  for (PetscInt k = 0; k < scene->n_frames; ++k) {
-    PetscCall(PlotImage(scene, &scene->frames[k], &page, rgba));
-    if (k == 1) fputs("unset colorbox\n", script.out); /* one serves all */
-    write_field(script.out, scene, &page, k);
-    write_plot(script.out, &scene->frames[k], &page, rgba);
-  }
+  for (PetscInt k = 0; k < scene->n_frames; ++k) PetscCall(PlotDrawFrame(script.out, scene, k, &page, rgba));
   if (scene->n_frames > 1) fputs("unset multiplot\n", script.out);
   PetscCall(PetscFree(rgba));
-  PetscCall(GnuplotEnd(&script, png, diag, done));
+  PetscCall(GnuplotEnd(&script, path, diag, done));
   PetscFunctionReturn(0);
 }

@@ -36,6 +36,29 @@ static void turn_box(PlotScene *scene)
   }
 }
 
+/* In the plane: where the points of the frame began. Points without a place have none there either. */
+static PetscErrorCode TakeFirst(VtkFile *file, const PlotScene *scene, PetscInt n, const PetscReal *x, PlotFrame *f)
+{
+  const PetscInt sides = scene->mirrored ? 2 : 1;
+  char reason[256];
+  PetscReal *u;
+
+  PetscFunctionBeginUser;
+  if (scene->bare || !scene->walled || scene->walled->kinematics->dim != 2) PetscFunctionReturn(0);
+  PetscCall(PlotReadDisplacement(file, &u, reason));
+  if (!u) PetscFunctionReturn(0);
+  PetscCall(PetscMalloc2(3 * (size_t)(sides * n), &f->first, sides * n, &f->first_radius));
+  for (PetscInt side = 0; side < sides; ++side)
+    for (PetscInt i = 0; i < n; ++i) {
+      if (!has_place(x + 3 * i)) continue;
+      PetscReal *at = f->first + 3 * f->n_first++;
+      for (int d = 0; d < 3; ++d) at[d] = x[3 * i + d] - u[3 * i + d];
+      if (side) at[0] = -at[0];
+    }
+  PetscCall(PetscFree(u));
+  PetscFunctionReturn(0);
+}
+
 /* The other side of the axis. */
 static void mirror_points(PlotFrame *f)
 {
@@ -60,10 +83,34 @@ PetscErrorCode PlotFrameRead(VtkFile *file, const VtkFieldInfo *field, const Plo
     PetscCall(PetscMalloc3(3 * (size_t)most, &f->x, most, &f->value, most, &f->radius));
     take_points(scene, f, n, x, scalar, field->components, data);
     if (scene->mirrored) mirror_points(f);
+    PetscCall(TakeFirst(file, scene, n, x, f));
     ++scene->n_frames;
     PetscCall(PetscFree(data));
   }
   PetscCall(PetscFree(x));
+  PetscFunctionReturn(0);
+}
+
+/* Do neighbours stay neighbours, as far as the case tells? */
+static PetscBool is_elastic(const Case *c)
+{
+  for (PetscInt k = 0; c && k < c->n_materials; ++k)
+    if (strncmp(c->materials[k].law, "neo-hookean", 11) != 0) return PETSC_FALSE;
+  return c != NULL;
+}
+
+/* How far apart points of the frame may be and still be one body: as far as two of them were in the first frame, since
+ * flow draws them apart; half of that in elastic bodies, which keep the corners between them, unless they are
+ * stretched. */
+static PetscErrorCode ChooseGap(PlotScene *scene, PlotFrame *f)
+{
+  PetscReal far;
+
+  PetscFunctionBeginUser;
+  if (!f->n) PetscFunctionReturn(0);
+  if (f == scene->frames) PetscCall(PlotQuantile(f->n, f->radius, 0.5, &scene->gap));
+  PetscCall(PlotQuantile(f->n, f->radius, 0.9, &far));
+  f->gap = (is_elastic(scene->walled) && far <= 1.2 * scene->gap ? 1 : 2) * scene->gap;
   PetscFunctionReturn(0);
 }
 
@@ -78,15 +125,20 @@ PetscErrorCode PlotFramesShape(PlotScene *scene)
   for (PetscInt k = 0; k < scene->n_frames; ++k) {
     PlotFrame *f = &scene->frames[k];
     PetscCall(PlotSpacing(scene->dim, f->n, f->x, f->radius));
-    if (k == 0 && f->n) PetscCall(PlotMedian(f->n, f->radius, &scene->gap));
+    PetscCall(ChooseGap(scene, f));
     for (PetscInt i = 0; i < f->n; ++i) {
       largest = PetscMax(largest, f->radius[i]);
       plot_project(scene, f->x + 3 * i, shown);
       memcpy(f->x + 3 * i, shown, sizeof shown);
     }
+    for (PetscInt i = 0; i < 3 * f->n_triangles; ++i) {
+      plot_project(scene, f->corner + 3 * i, shown);
+      memcpy(f->corner + 3 * i, shown, sizeof shown);
+    }
   }
   scene->gap *= 2; /* from point to point */
   for (int d = 0; d < scene->dim; ++d) scene->box_min[d] -= 0.9 * largest, scene->box_max[d] += 0.9 * largest;
+  if (scene->dim == 2 && !scene->turned) PetscCall(PlotFirstShape(scene));
   if (scene->turned) scene->dim = 3;
   turn_box(scene);
   PetscFunctionReturn(0);
@@ -149,6 +201,10 @@ PetscErrorCode PlotFramesFree(PlotScene *scene)
   for (PetscInt k = 0; k < scene->n_frames; ++k) {
     PlotFrame *f = &scene->frames[k];
     PetscCall(PetscFree3(f->x, f->value, f->radius));
+    PetscCall(PetscFree3(f->corner, f->corner_value, f->side));
+    PetscCall(PetscFree2(f->first, f->first_radius));
+    PetscCall(PetscFree(f->first_corner));
+    PetscCall(PetscFree(f->line));
     PetscCall(PetscFree(f->edges));
   }
   PetscFunctionReturn(0);

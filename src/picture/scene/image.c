@@ -2,25 +2,38 @@
 #include <math.h>
 #include "picture/raster/raster.h"
 #include "picture/scene/scene.h"
-#include "picture/scene/walls.h"
+#include "picture/walls/walls.h"
 #include "picture/revolution/revolution.h"
 
 /* Pixels along a section that is turned: more are of no use. */
 #define SECTION_PIXELS 2000
 
+void plot_blend(unsigned char *rgba, PetscReal grey, PetscReal alpha)
+{
+  const PetscReal kept = rgba[3] / 255. * (1 - alpha), all = alpha + kept;
+  if (alpha <= 0) return;
+  for (int c = 0; c < 3; ++c) rgba[c] = (unsigned char)lround((alpha * grey + kept * rgba[c]) / all);
+  rgba[3] = (unsigned char)lround(255 * all);
+}
+
 static PetscErrorCode Balls(const PlotScene *scene, const PlotFrame *f, RasterScene *raster, unsigned char *rgba)
 {
-  const PetscReal span = scene->high - scene->low;
-  PetscReal *colour;
+  const PetscReal low = scene->named ? 0 : scene->low, span = scene->named ? 1 : scene->high - scene->low;
+  PetscReal *colour, *corner;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(f->n, &colour));
-  for (PetscInt i = 0; i < f->n; ++i) colour[i] = (f->value[i] - scene->low) / span;
+  PetscCall(PetscMalloc2(f->n, &colour, 3 * f->n_triangles, &corner));
+  for (PetscInt i = 0; i < f->n; ++i) colour[i] = (f->value[i] - low) / span;
+  for (PetscInt i = 0; i < 3 * f->n_triangles; ++i) corner[i] = (f->corner_value[i] - low) / span;
   raster->n = f->n;
   raster->x = f->x, raster->radius = f->radius, raster->value = colour;
-  raster->gap = scene->gap;
+  raster->n_triangles = f->n_triangles;
+  raster->corner = f->corner, raster->corner_value = corner, raster->side = scene->grid ? f->side : NULL;
+  raster->n_lines = f->n_lines, raster->line = f->line;
+  raster->named = scene->named;
+  raster->gap = f->gap;
   PetscCall(RasterDraw(raster, rgba));
-  PetscCall(PetscFree(colour));
+  PetscCall(PetscFree2(colour, corner));
   PetscFunctionReturn(0);
 }
 
@@ -68,6 +81,7 @@ PetscErrorCode PlotImage(const PlotScene *scene, const PlotFrame *f, const PlotP
   PetscFunctionBeginUser;
   if (scene->turned) PetscCall(Turned(scene, f, page, rgba));
   else PetscCall(Balls(scene, f, &raster, rgba));
+  if (scene->dim == 2) PetscCall(PlotFirstDraw(scene, f, page, rgba));
   plot_walls_draw(scene, f, page, rgba);
   PetscFunctionReturn(0);
 }

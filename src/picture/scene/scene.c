@@ -16,6 +16,12 @@ void plot_project(const PlotScene *scene, const PetscReal *x, PetscReal shown[3]
   shown[2] = ce * (ca * a + sa * b) + se * c;
 }
 
+double plot_tick_step(PetscReal range, double all, double pixels)
+{
+  const double least = (double)range * pixels / all, power = pow(10, floor(log10(least))), share = least / power;
+  return power * (share <= 1 ? 1 : share <= 2 ? 2 : share <= 5 ? 5 : 10);
+}
+
 /* What the corners of the box span on the page. */
 static void extent(const PlotScene *scene, PetscReal min[2], PetscReal max[2])
 {
@@ -45,15 +51,15 @@ static void add_air(const PlotScene *scene, PetscReal min[2], PetscReal max[2])
 static void margins(const PlotPage *page, PetscBool space, int margin[4])
 {
   const PetscBool several = page->columns * page->rows > 1;
-  margin[0] = space ? 20 : several ? 90 : 120;                 /* left */
+  margin[0] = space ? 45 : several ? 90 : 120;                 /* left */
   margin[1] = page->bar_below ? 40 : 150;                      /* right */
   margin[2] = (space ? 15 : 80) + (page->bar_below ? 105 : 0); /* bottom */
   margin[3] = several ? 45 : 55;                               /* top */
 }
 
 /* Between fields; above each stands its title. */
-#define GAP_X 25
 #define GAP_Y 42
+static int gap_x(const PlotScene *scene) { return scene->dim == 3 ? 50 : 25; }
 
 /* Columns that make a page of several fields about as wide as a screen. */
 static int choose_columns(PetscInt n, PetscReal aspect)
@@ -70,17 +76,17 @@ static int choose_columns(PetscInt n, PetscReal aspect)
 
 /* Equal scales: the fields take the shape of what they show, in the middle of the room that they
  * have. */
-static void place_fields(PlotPage *page, const int margin[4])
+static void place_fields(PlotPage *page, const int margin[4], int gap)
 {
   const PetscReal wide = page->max[0] - page->min[0], high = page->max[1] - page->min[1];
-  const int room_w = PetscMax(page->width - margin[0] - margin[1] - (page->columns - 1) * GAP_X, 50 * page->columns),
+  const int room_w = PetscMax(page->width - margin[0] - margin[1] - (page->columns - 1) * gap, 50 * page->columns),
             room_h = PetscMax(page->height - margin[2] - margin[3] - (page->rows - 1) * GAP_Y, 30 * page->rows);
   const PetscReal scale = PetscMin(room_w / (page->columns * wide), room_h / (page->rows * high));
   page->w = PetscMax((int)floor(wide * scale + 0.5 / page->columns), 2);
   page->h = PetscMax((int)floor(high * scale + 0.5 / page->rows), 2);
   page->left = margin[0] + (room_w - page->columns * page->w) / 2;
   page->bottom = margin[2] + (room_h - page->rows * page->h) / 2;
-  page->step_x = page->w + GAP_X;
+  page->step_x = page->w + gap;
   page->step_y = page->h + GAP_Y;
   /* whole pixels: the upper bounds follow the field */
   page->max[0] = page->min[0] + page->w / scale;
@@ -101,12 +107,12 @@ void plot_lay_out(const PlotScene *scene, int width, int height, PlotPage *page)
   page->width = width ? width : 1200;
   page->height = height;
   margins(page, scene->dim == 3, margin);
-  const int beside_w = margin[0] + margin[1] + (page->columns - 1) * GAP_X,
+  const int beside_w = margin[0] + margin[1] + (page->columns - 1) * gap_x(scene),
             beside_h = margin[2] + margin[3] + (page->rows - 1) * GAP_Y;
   if (!height) {
     const PetscReal high = (page->width - beside_w) / aspect, most = scene->n_frames > 1 ? 1200 : 800;
     page->height = PetscMin(PetscMax((int)lround(high), 60), (int)most) + beside_h;
     if (!width && high > most) page->width = PetscMax((int)lround(most * aspect), 300) + beside_w;
   }
-  place_fields(page, margin);
+  place_fields(page, margin, gap_x(scene));
 }

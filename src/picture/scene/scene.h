@@ -5,6 +5,7 @@
 #include "picture/plot.h"
 #include "picture/scene/field.h"
 #include "output/vtk/vtk_read.h"
+#include "output/vtk/vtk_series.h"
 #include "wall/wall.h"
 
 /* One state. */
@@ -17,20 +18,33 @@ typedef struct {
   PetscReal time; /* s */
   PetscInt n_edges;
   PetscReal *edges; /* n_edges x 4: the grid's lines on the page */
+  PetscInt n_triangles;
+  PetscReal *corner, *corner_value; /* n_triangles x 3 x 3 and x 3: cells of fem, as RasterScene has them */
+  unsigned char *side;
+  PetscInt n_lines;
+  PetscReal *line; /* n_lines x 2 x 3: walls in space */
+  PetscInt n_first;
+  PetscReal *first, *first_radius; /* n_first x 3: where the points began, in the plane; NULL: not drawn */
+  PetscReal *first_corner;         /* n_triangles x 3 x 3: where cells began */
+  PetscReal gap;                   /* of the balls: RasterScene */
 } PlotFrame;
 
 typedef struct {
   PetscInt dim, n_frames;
   PlotFrame frames[PLOT_MAX_STATES];
-  PetscInt columns;     /* in which frames stand; 0: chosen */
-  char label[128];      /* of the colours, with the unit */
-  PetscReal low, high;  /* of the colours */
+  PetscInt columns;    /* in which frames stand; 0: chosen */
+  char label[128];     /* of the colours, with the unit */
+  PetscReal low, high; /* of the colours, in the unit that is shown: `factor` times the field's own */
+  PetscReal factor;
+  PetscBool named;      /* values are numbers of bodies or materials: they have names instead */
+  PetscBool grid;       /* lines of the cells */
+  PetscBool bare;       /* without the first outline, and where the grid is held */
   PetscReal gap;        /* how far apart points stand in the first frame, m */
   PetscInt up;          /* axis that points up, in space */
   PetscBool revolution; /* x is a radius */
   PetscBool mirrored;   /* both sides of the axis x = 0 are there, the other one as x < 0 */
   PetscBool turned;     /* in space, of points that lie in the plane, on both sides */
-  Case *walled;         /* whose walls are drawn; NULL: none */
+  Case *walled;         /* the run's case, with walls and names; NULL: it cannot be read */
   Walls *walls;
   PetscReal box_min[3], box_max[3]; /* of all points (and the grid), before the projection */
 } PlotScene;
@@ -50,6 +64,10 @@ typedef struct {
  * is. */
 void plot_project(const PlotScene *scene, const PetscReal *x, PetscReal shown[3]);
 
+/* 1, 2 or 5 times a power of ten: the smallest that leaves so many pixels between ticks of a range
+ * that takes `all` pixels. */
+double plot_tick_step(PetscReal range, double all, double pixels);
+
 /* Fit the scene into a page of the size asked for (0: chosen). */
 void plot_lay_out(const PlotScene *scene, int width, int height, PlotPage *page);
 
@@ -59,7 +77,26 @@ void plot_draw_box(FILE *out, const PlotScene *scene, const PlotPage *page);
 /* The image of one frame on the page: rgba of page->w x page->h pixels. */
 PetscErrorCode PlotImage(const PlotScene *scene, const PlotFrame *frame, const PlotPage *page, unsigned char *rgba);
 
-/* Draw to a PNG. */
+/* What is drawn: a field of the states, and its name, unit and component. */
+typedef struct {
+  VtkFieldInfo field;
+  PlotScalar scalar;
+  char words[192]; /* "velocity magnitude" */
+} PlotSubject;
+
+/* state.c: n states as a scene, everything but its place on the page; mistakes go to diag. To be freed in any case. */
+PetscErrorCode PlotSceneFill(const PlotOptions *options, PetscInt n, const VtkState *states, PlotSubject *subject,
+                             Diag *diag, PlotScene *scene);
+PetscErrorCode PlotSceneFree(PlotScene *scene);
+/* Where the picture of these states goes, of one by its number. */
+void plot_picture_name(const PlotOptions *options, const char *kind, PetscInt n, const VtkState *state,
+                       const PlotSubject *subject, char *path);
+
+/* draw.c: what all frames have around them; then one frame after the other. */
+void plot_draw_around(FILE *out, const PlotScene *scene, const PlotPage *page);
+PetscErrorCode PlotDrawFrame(FILE *out, const PlotScene *scene, PetscInt frame, const PlotPage *page,
+                             unsigned char *rgba);
+/* Draw to a file. */
 PetscErrorCode PlotDraw(PlotScene *scene, int width, int height, const char *png, Diag *diag, PetscBool *done);
 
 /* frame.c: read a state into the next frame of the scene, as it is in its file, with the field
@@ -67,9 +104,26 @@ PetscErrorCode PlotDraw(PlotScene *scene, int width, int height, const char *png
  * reason tells. */
 PetscErrorCode PlotFrameRead(VtkFile *file, const VtkFieldInfo *field, const PlotScalar *scalar, PlotScene *scene,
                              char reason[256]);
+/* body/mesh.c: let the cells of a mesh, which moves with its body, stand for the points of the frame. */
+PetscErrorCode PlotFrameMesh(VtkFile *file, PetscInt dim, const VtkFieldInfo *field, const PlotScalar *scalar,
+                             PlotScene *scene, PlotFrame *frame, char reason[256]);
+/* colours.c: colours from the smallest to the largest value, or as asked for, in a unit that suits. */
+void plot_choose_colours(PlotScene *scene, const PlotOptions *options, const char *unit, const char *what);
+/* Is the field one of those whose values are numbers of bodies or materials? Their names, and which are in the picture. */
+#define PLOT_MAX_NAMES 64
+PetscBool plot_has_names(const char *field);
+const char *plot_name(const PlotScene *scene, PetscInt value, char buffer[64]);
+void plot_find_names(const PlotScene *scene, PetscBool there[PLOT_MAX_NAMES]);
 /* When all are read: give each its size, see it from where the eye is, and draw the box around
  * all. */
 PetscErrorCode PlotFramesShape(PlotScene *scene);
 /* Lines of a grid in the plane; none, with a reason, of a damaged file. */
 PetscErrorCode PlotFrameGrid(VtkFile *file, PlotScene *scene, PlotFrame *frame, char reason[256]);
+/* first.c: displacements of a file, NULL without such a field; the outlines that bodies had in the beginning: their
+ * size, and a line of each into the image of a frame. */
+PetscErrorCode PlotReadDisplacement(VtkFile *file, PetscReal **u, char reason[256]);
+PetscErrorCode PlotFirstShape(PlotScene *scene);
+PetscErrorCode PlotFirstDraw(const PlotScene *scene, const PlotFrame *frame, const PlotPage *page, unsigned char *rgba);
+/* image.c: a grey of this share over a pixel. */
+void plot_blend(unsigned char *rgba, PetscReal grey, PetscReal alpha);
 PetscErrorCode PlotFramesFree(PlotScene *scene);

@@ -3,10 +3,9 @@
 #include <math.h>
 #include <string.h>
 #include <sys/stat.h>
-#include "picture/figure.h"
 #include "picture/plot.h"
 #include "picture/scene/scene.h"
-#include "picture/scene/walls.h"
+#include "picture/walls/walls.h"
 #include "picture/revolution/revolution.h"
 #include "output/directory/run_dir_files.h"
 #include "output/vtk/vtk_series.h"
@@ -22,6 +21,10 @@ PetscBool plot_folder(const char *run, Diag *diag)
   if (link) diag_error(diag, NULL, "'%s' is a link: the pictures would go elsewhere", folder);
   return !(error || link);
 }
+
+const char *const plot_formats[] = {"png", "svg", "pdf", NULL}, *const plot_films[] = {"gif", "mp4", NULL};
+
+const char *plot_ending(const char *format) { return format ? format : "png"; }
 
 void plot_file_name(char *name)
 {
@@ -113,62 +116,48 @@ static PetscErrorCode FindField(const VtkFile *file, const char *name, Diag *dia
   PetscFunctionReturn(0);
 }
 
-/* Colours from the smallest to the largest value, or as asked for; in a unit that suits. */
-static void choose_colours(PlotScene *scene, const PlotOptions *options, const char *unit, const char *what)
-{
-  char prefixed[64];
-  scene->low = PETSC_MAX_REAL, scene->high = -PETSC_MAX_REAL;
-  for (PetscInt k = 0; k < scene->n_frames; ++k)
-    for (PetscInt i = 0; i < scene->frames[k].n; ++i) {
-      const PetscReal value = scene->frames[k].value[i];
-      if (fabs(value) < 1e300) scene->low = PetscMin(scene->low, value), scene->high = PetscMax(scene->high, value);
-    }
-  if (scene->low > scene->high) scene->low = 0, scene->high = 1;
-  if (options->has_range) scene->low = options->range[0], scene->high = options->range[1];
-  const PetscReal factor = figure_unit(unit, PetscMax(fabs(scene->low), fabs(scene->high)), prefixed);
-  for (PetscInt k = 0; k < scene->n_frames; ++k)
-    for (PetscInt i = 0; i < scene->frames[k].n; ++i) scene->frames[k].value[i] *= factor;
-  scene->low *= factor, scene->high *= factor;
-  const PetscReal middle = 0.5 * (scene->low + scene->high), least = middle != 0 ? 1e-6 * fabs(middle) : 1e-12;
-  if (scene->high - scene->low < least) scene->low = middle - least, scene->high = middle + least;
-  if (prefixed[0]) snprintf(scene->label, sizeof scene->label, "%.60s [%s]", what, prefixed);
-  else snprintf(scene->label, sizeof scene->label, "%.60s", what);
-}
-
 static void cannot_read(Diag *diag, const char *path, const char *reason)
 {
   diag_error(diag, NULL, "cannot read '%s': %s", path, reason);
   diag_hint(diag, "--time chooses other states; the same run with --force writes all of them anew");
 }
 
-/* grid_000012.hdf beside points_000012.hdf; without one, the grid is left out with a word. */
-static PetscErrorCode AddGrid(PlotScene *scene, PlotFrame *frame, const char *run, const VtkState *state, Diag *diag)
+/* grid_000012.hdf beside points_000012.hdf; NULL, with the reason, if it cannot be read, and without one if there is
+ * none. */
+static PetscErrorCode OpenGrid(const char *run, const VtkState *state, VtkFile **file, Diag *diag)
 {
   char path[FILE_PATH + VTK_SERIES_NAME], name[VTK_SERIES_NAME + 8], reason[256];
   const char *number = strchr(state->file, '_');
-  VtkFile *file;
 
   PetscFunctionBeginUser;
+  *file = NULL;
   snprintf(name, sizeof name, "grid%s", number ? number : ".hdf");
-  if (!file_exists(run, name)) {
-    diag_warning(diag, NULL, "the grid is not drawn: there is no '%s/%s'", run, name);
-    PetscFunctionReturn(0);
-  }
+  if (!file_exists(run, name)) PetscFunctionReturn(0);
   PetscCall(PetscSNPrintf(path, sizeof path, "%s/%s", run, name));
-  if (VtkReadOpen(path, &file, reason) == 0) {
-    PetscCall(PlotFrameGrid(file, scene, frame, reason));
-    PetscCall(VtkReadClose(&file));
+  if (VtkReadOpen(path, file, reason)) {
+    *file = NULL;
+    cannot_read(diag, path, reason);
   }
-  if (reason[0]) cannot_read(diag, path, reason);
   PetscFunctionReturn(0);
 }
 
-/* What is drawn: a field of the states, and its name, unit and component. */
-typedef struct {
-  VtkFieldInfo field;
-  PlotScalar scalar;
-  char words[192]; /* "velocity magnitude" */
-} PlotSubject;
+/* The grid's lines; without a file of it they are left out with a word. */
+static PetscErrorCode AddGrid(PlotScene *scene, PlotFrame *frame, const char *run, const VtkState *state, Diag *diag)
+{
+  char reason[256] = "";
+  VtkFile *file;
+
+  PetscFunctionBeginUser;
+  if (frame->n_triangles) PetscFunctionReturn(0); /* cells have their lines */
+  PetscCall(OpenGrid(run, state, &file, diag));
+  if (file) {
+    PetscCall(PlotFrameGrid(file, scene, frame, reason));
+    PetscCall(VtkReadClose(&file));
+  } else if (!diag_errors(diag))
+    diag_warning(diag, NULL, "the grid is not drawn: '%s' has no file of it at %g s", run, (double)state->time);
+  if (reason[0]) cannot_read(diag, "the grid", reason);
+  PetscFunctionReturn(0);
+}
 
 static void name_subject(PlotSubject *s)
 {
@@ -178,6 +167,25 @@ static void name_subject(PlotSubject *s)
   else snprintf(s->words, sizeof s->words, "%s%s%s", s->field.name, scalar->name[0] ? " " : "", scalar->name);
   for (char *c = s->words; *c; ++c)
     if (*c == '_') *c = ' ';
+}
+
+/* The cells of fem, which are the body itself; points, where there is no file of them. */
+static PetscErrorCode AddMesh(const PlotOptions *options, const VtkState *state, const PlotSubject *subject,
+                              PlotScene *scene, Diag *diag)
+{
+  const Case *c = scene->walled;
+  PlotFrame *frame = &scene->frames[scene->n_frames - 1];
+  char reason[256] = "";
+  VtkFile *file;
+
+  PetscFunctionBeginUser;
+  if (!c || strcmp(c->method, "fem") != 0) PetscFunctionReturn(0);
+  PetscCall(OpenGrid(options->run, state, &file, diag));
+  if (!file) PetscFunctionReturn(0);
+  PetscCall(PlotFrameMesh(file, c->kinematics->dim, &subject->field, &subject->scalar, scene, frame, reason));
+  PetscCall(VtkReadClose(&file));
+  if (reason[0]) cannot_read(diag, "the grid", reason);
+  PetscFunctionReturn(0);
 }
 
 /* The next frame of the scene. A mistake leaves the scene as it is. */
@@ -198,13 +206,24 @@ static PetscErrorCode AddFrame(const PlotOptions *options, const VtkState *state
   if (field && plot_scalar_choose(field->name, field->components, options->component, diag, &subject->scalar)) {
     subject->field = *field;
     name_subject(subject);
+    scene->named = plot_has_names(field->name);
     PetscCall(PlotFrameRead(file, field, &subject->scalar, scene, reason));
     if (reason[0]) cannot_read(diag, path, reason);
     else if (scene->frames[scene->n_frames - 1].n == 0)
       diag_error(diag, NULL, "the state at %.9g s has no points", (double)state->time);
+    else PetscCall(AddMesh(options, state, subject, scene, diag));
   }
   PetscCall(VtkReadClose(&file));
   PetscFunctionReturn(0);
+}
+
+/* The axis along which gravity is largest; z without any. */
+static PetscInt against_gravity(const Case *c)
+{
+  PetscInt up = 2;
+  for (PetscInt d = 1; c && d >= 0; --d)
+    if (PetscAbsReal(c->gravity[d]) > PetscAbsReal(c->gravity[up])) up = d;
+  return up;
 }
 
 /* The whole section of a body of revolution, unless half of it is asked for; its axis points up. */
@@ -214,7 +233,7 @@ static PetscErrorCode FindKind(const PlotOptions *options, Diag *diag, PlotScene
   PetscCall(PlotIsRevolution(options->run, &scene->revolution));
   scene->mirrored = scene->revolution && !options->half;
   scene->turned = scene->revolution && options->turned;
-  scene->up = scene->turned ? 1 : options->up;
+  scene->up = scene->turned ? 1 : options->up >= 0 ? options->up : against_gravity(scene->walled);
   if (!scene->revolution && (options->half || options->turned))
     diag_error(diag, NULL, "'%s' is no axisymmetric run: there is nothing to %s", options->run,
                options->turned ? "turn" : "halve");
@@ -228,12 +247,22 @@ static void say_when(const PlotOptions *options, PetscReal time, char text[64])
   else snprintf(text, 64, "t = %.6g s", (double)time);
 }
 
-/* Everything of the picture but its place on the page. */
-static PetscErrorCode FillScene(const PlotOptions *options, PetscInt n, const VtkState *states, PlotSubject *subject,
-                                Diag *diag, PlotScene *scene)
+PetscErrorCode PlotSceneFree(PlotScene *scene)
 {
   PetscFunctionBeginUser;
+  PetscCall(PlotWallsClose(scene));
+  PetscCall(PlotFramesFree(scene));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode PlotSceneFill(const PlotOptions *options, PetscInt n, const VtkState *states, PlotSubject *subject,
+                             Diag *diag, PlotScene *scene)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PlotWallsOpen(options->run, diag, scene));
   PetscCall(FindKind(options, diag, scene));
+  scene->grid = options->grid;
+  scene->bare = options->bare;
   scene->columns = options->columns;
   for (PetscInt k = 0; k < n && !diag_errors(diag); ++k) {
     PetscCall(AddFrame(options, &states[k], subject, scene, diag));
@@ -244,26 +273,26 @@ static PetscErrorCode FillScene(const PlotOptions *options, PetscInt n, const Vt
     else snprintf(title, 256, "%s", when);
   }
   if (diag_errors(diag)) PetscFunctionReturn(0);
-  choose_colours(scene, options, subject->field.unit, subject->words);
+  plot_choose_colours(scene, options, subject->field.unit, subject->words);
   PetscCall(PlotFramesShape(scene));
-  PetscCall(PlotWallsOpen(options->run, diag, scene));
   plot_walls_extend(scene);
+  PetscCall(PlotWallsLines(scene));
   for (PetscInt k = 0; k < n && options->grid; ++k)
     PetscCall(AddGrid(scene, &scene->frames[k], options->run, &states[k], diag));
   PetscFunctionReturn(0);
 }
 
 /* state_displacement_magnitude_000012.png; states_displacement_magnitude.png for several. */
-static void picture_name(const PlotOptions *options, PetscInt n, const VtkState *state, const PlotSubject *subject,
-                         char *path)
+void plot_picture_name(const PlotOptions *options, const char *kind, PetscInt n, const VtkState *state,
+                       const PlotSubject *subject, char *path)
 {
   char name[256];
   const PlotScalar *scalar = &subject->scalar;
   const char *number = n == 1 ? strchr(state->file, '_') : NULL;
   const int digits = number ? (int)strcspn(number, ".") : 0;
-  snprintf(name, sizeof name, "state%s_%.120s%s%.30s%s%.*s.png", n == 1 ? "" : "s", subject->field.name,
-           scalar->name[0] ? "_" : "", scalar->name, options->turned ? "_turned" : "", PetscMin(digits, 13),
-           number ? number : "");
+  snprintf(name, sizeof name, "%s_%.120s%s%.30s%s%.*s.%s", kind, subject->field.name, scalar->name[0] ? "_" : "",
+           scalar->name, options->turned ? "_turned" : "", PetscMin(digits, 13), number ? number : "",
+           plot_ending(options->format));
   plot_file_name(name);
   if (options->out) snprintf(path, PETSC_MAX_PATH_LEN, "%s", options->out);
   else snprintf(path, PETSC_MAX_PATH_LEN, "%s/pictures/%s", options->run, name);
@@ -281,13 +310,12 @@ PetscErrorCode PlotState(const PlotOptions *options, Diag *diag, char picture[PE
   picture[0] = 0;
   PetscCall(FindStates(options, diag, &n, states));
   if (n == 0) PetscFunctionReturn(0);
-  PetscCall(FillScene(options, n, states, &subject, diag, &scene));
+  PetscCall(PlotSceneFill(options, n, states, &subject, diag, &scene));
   if (!diag_errors(diag) && (options->out || plot_folder(options->run, diag))) {
-    picture_name(options, n, states, &subject, picture);
+    plot_picture_name(options, n == 1 ? "state" : "states", n, states, &subject, picture);
     PetscCall(PlotDraw(&scene, options->width, options->height, picture, diag, &done));
   }
   if (!done) picture[0] = 0;
-  PetscCall(PlotWallsClose(&scene));
-  PetscCall(PlotFramesFree(&scene));
+  PetscCall(PlotSceneFree(&scene));
   PetscFunctionReturn(0);
 }

@@ -1,4 +1,4 @@
-/* Rigid walls in pictures of the plane: grey where they are, over the body, with an outline. */
+/* Rigid walls: in the plane grey where they are, over the body, with an outline; in space as lines. */
 #pragma once
 #include "picture/scene/scene.h"
 
@@ -8,5 +8,9 @@ PetscErrorCode PlotWallsOpen(const char *run, Diag *diag, PlotScene *scene);
 PetscErrorCode PlotWallsClose(PlotScene *scene);
 /* Let the scene reach to the ends of its walls, as far as the grid goes. */
 void plot_walls_extend(PlotScene *scene);
+/* In space: their edges and outlines into the frames. */
+PetscErrorCode PlotWallsLines(PlotScene *scene);
+/* Lines where the grid is held, in the plane. */
+void plot_floor_draw(FILE *out, const PlotScene *scene, const PlotPage *page);
 /* Draw them into the image of a frame: behind what is there, their outline before it. */
 void plot_walls_draw(const PlotScene *scene, const PlotFrame *frame, const PlotPage *page, unsigned char *rgba);

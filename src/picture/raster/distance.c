@@ -2,7 +2,7 @@
  * (Felzenszwalb and Huttenlocher 2012): along columns, then along rows as the lower envelope of
  * parabolas. */
 #include <math.h>
-#include "picture/revolution/revolution.h"
+#include "picture/raster/distance.h"
 
 /* Where the parabolas over q and r, which begin at f[q] and f[r], cross. */
 static double crossing(const float *f, int q, int r)

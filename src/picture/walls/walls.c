@@ -1,4 +1,4 @@
-#include "picture/scene/walls.h"
+#include "picture/walls/walls.h"
 #include <math.h>
 #include "input/case_file.h"
 #include "output/directory/run_dir_files.h"
@@ -45,13 +45,13 @@ static void extend(PlotScene *scene, int d, PetscReal low, PetscReal high)
 
 void plot_walls_extend(PlotScene *scene)
 {
-  if (!scene->walls || scene->dim != 2) return;
+  if (!scene->walls || scene->turned) return;
   for (PetscInt f = 0; f < scene->n_frames; ++f)
     for (PetscInt k = 0; k < scene->walled->n_walls; ++k) {
       PetscReal min[3], max[3];
       if (!wall_stands(scene->walls, k, scene->frames[f].time)) continue;
       wall_bounds(scene->walls, k, scene->frames[f].time, min, max);
-      for (int d = 0; d < 2; ++d) extend(scene, d, min[d], max[d]);
+      for (int d = 0; d < scene->dim; ++d) extend(scene, d, min[d], max[d]);
     }
   if (scene->mirrored) scene->box_min[0] = -scene->box_max[0];
 }
@@ -71,16 +71,6 @@ static void cover(const PlotScene *scene, PetscReal t, const PetscReal x[2], Pet
   }
 }
 
-/* A grey of this share over a pixel. What points are drawn as is larger than the material, which does not
- * go into walls. */
-static void blend(unsigned char *rgba, PetscReal grey, PetscReal alpha)
-{
-  const PetscReal kept = rgba[3] / 255. * (1 - alpha), all = alpha + kept;
-  if (alpha <= 0) return;
-  for (int c = 0; c < 3; ++c) rgba[c] = (unsigned char)lround((alpha * grey + kept * rgba[c]) / all);
-  rgba[3] = (unsigned char)lround(255 * all);
-}
-
 void plot_walls_draw(const PlotScene *scene, const PlotFrame *frame, const PlotPage *page, unsigned char *rgba)
 {
   const PetscReal pixel = (page->max[0] - page->min[0]) / page->w;
@@ -90,7 +80,7 @@ void plot_walls_draw(const PlotScene *scene, const PlotFrame *frame, const PlotP
       PetscReal x[2] = {page->min[0] + (column + 0.5) * pixel, page->min[1] + (row + 0.5) * pixel}, fill, line;
       if (scene->mirrored) x[0] = fabs(x[0]);
       cover(scene, frame->time, x, pixel, &fill, &line);
-      blend(rgba, FILL, fill);
-      blend(rgba, LINE, line);
+      plot_blend(rgba, FILL, fill);
+      plot_blend(rgba, LINE, line);
     }
 }

@@ -1,0 +1,188 @@
+#include "picture/compare/compare_private.h"
+#include <string.h>
+#include "output/directory/run_dir_files.h"
+#include "picture/plot.h"
+
+static PetscErrorCode ColumnOf(const CurveRun *run, PetscInt column, PetscReal *time, PetscReal *value, Curve *curve)
+{
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < run->history.n_rows; ++i) {
+    time[i] = curve_run_value(run, i, 0);
+    value[i] = curve_run_value(run, i, column);
+  }
+  *curve = (Curve){.n = run->history.n_rows, .time = time, .value = value};
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode Compare(const Comparison *c, PetscInt column, CompareRow *row)
+{
+  const CurveRun *a = &c->runs[0], *b = &c->runs[row->run];
+  const PetscInt n = a->history.n_rows, m = b->history.n_rows;
+  PetscReal *values;
+  Curve first, second;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(2 * (n + m), &values));
+  PetscCall(ColumnOf(a, column, values, values + n, &first));
+  PetscCall(ColumnOf(b, history_column(&b->history, row->measure), values + 2 * n, values + 2 * n + m, &second));
+  row->met = curve_difference(&first, &second, &row->difference);
+  PetscCall(PetscFree(values));
+  PetscFunctionReturn(0);
+}
+
+static PetscBool is_wanted(const CompareOptions *o, const char *name)
+{
+  for (PetscInt k = 0; k < o->n_measures; ++k)
+    if (!strcmp(o->measures[k], name)) return PETSC_TRUE;
+  return o->n_measures == 0;
+}
+
+/* Has every run this column of the first, in the same unit? */
+static PetscBool is_common(const Comparison *c, PetscInt column)
+{
+  const History *h = &c->runs[0].history;
+  for (PetscInt r = 1; r < c->options->n_runs; ++r) {
+    const History *other = &c->runs[r].history;
+    const PetscInt its = history_column(other, h->names[column]);
+    if (its < 0 || strcmp(h->units[column], other->units[its]) != 0) return PETSC_FALSE;
+  }
+  return PETSC_TRUE;
+}
+
+/* "load, tip": the measures of one run; without those that `but`, if there is one, has in the same unit. */
+static void list_measures(const CurveRun *run, const CurveRun *but, char list[300])
+{
+  list[0] = 0;
+  for (PetscInt i = 0; i < run->history.n_columns; ++i) {
+    const char *name = run->history.names[i];
+    const PetscInt its = but ? history_column(&but->history, name) : -1;
+    const size_t used = strlen(list);
+    if (curve_run_counts(run, i) || (its >= 0 && !strcmp(run->history.units[i], but->history.units[its]))) continue;
+    if (used + strlen(name) < 280) snprintf(list + used, 300 - used, "%s%s", used ? ", " : "", name);
+    else if (used < 290 && list[used - 1] != '.') snprintf(list + used, 300 - used, ", ...");
+  }
+}
+
+/* What only one of two runs measures. */
+static void tell_missing(const CurveRun *run, const CurveRun *other, Diag *diag)
+{
+  char list[300];
+  list_measures(run, other, list);
+  if (list[0]) diag_warning(diag, NULL, "not compared, as '%s' has no such measure: %s", other->folder, list);
+}
+
+/* A row for each measure that all runs have, and each run but the first. */
+static PetscErrorCode FillRows(Comparison *c)
+{
+  const History *h = &c->runs[0].history;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(h->n_columns * c->options->n_runs, &c->rows));
+  for (PetscInt column = 0; column < h->n_columns; ++column) {
+    if (curve_run_counts(&c->runs[0], column) || !is_wanted(c->options, h->names[column])) continue;
+    if (!is_common(c, column)) continue;
+    for (PetscInt r = 1; r < c->options->n_runs; ++r) {
+      CompareRow *row = &c->rows[c->n_rows++];
+      *row = (CompareRow){.measure = h->names[column], .unit = h->units[column], .run = r};
+      PetscCall(Compare(c, column, row));
+    }
+  }
+  PetscFunctionReturn(0);
+}
+
+/* Measures that were asked for by name must be there. */
+static PetscErrorCode CheckMeasures(const Comparison *c, Diag *diag)
+{
+  PetscInt column;
+
+  PetscFunctionBeginUser;
+  for (PetscInt k = 0; k < c->options->n_measures; ++k)
+    for (PetscInt r = 0; r < c->options->n_runs; ++r)
+      PetscCall(CurveRunColumn(&c->runs[r], c->options->measures[k], diag, &column));
+  PetscFunctionReturn(0);
+}
+
+/* Is there anything to compare? */
+static void check_rows(const Comparison *c, Diag *diag)
+{
+  const CurveRun *first = &c->runs[0], *second = &c->runs[1];
+  char list[2][300];
+  if (c->n_rows == 0) {
+    list_measures(first, NULL, list[0]), list_measures(second, NULL, list[1]);
+    diag_error(diag, NULL, "the runs have no measure in common");
+    diag_hint(diag, "'%s' has: %s; '%s' has: %s", first->folder, list[0], second->folder, list[1]);
+    return;
+  }
+  for (PetscInt r = 1; r < c->options->n_runs && !c->options->n_measures; ++r) {
+    tell_missing(first, &c->runs[r], diag);
+    tell_missing(&c->runs[r], first, diag);
+  }
+  for (PetscInt i = 0; i < c->n_rows; ++i)
+    if (c->rows[i].met) return;
+  diag_error(diag, NULL, "the runs have no time in common: '%s' goes from %g to %g s, '%s' from %g to %g s",
+             first->folder, (double)first->history.values[0],
+             (double)curve_run_value(first, first->history.n_rows - 1, 0), second->folder,
+             (double)second->history.values[0], (double)curve_run_value(second, second->history.n_rows - 1, 0));
+}
+
+/* runs/compare/A-B, if no folder is given. */
+static void choose_folder(Comparison *c)
+{
+  char name[256] = "";
+  for (PetscInt r = 0; r < c->options->n_runs; ++r)
+    snprintf(name + strlen(name), sizeof name - strlen(name), "%s%s", r ? "-" : "", c->runs[r].name);
+  plot_file_name(name);
+  if (c->options->out) snprintf(c->folder, sizeof c->folder, "%s", c->options->out);
+  else snprintf(c->folder, sizeof c->folder, "runs/compare/%s", name);
+}
+
+static PetscErrorCode Draw(const Comparison *c, Diag *diag, void (*said)(const char *path))
+{
+  const CompareOptions *o = c->options;
+
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < c->n_rows && !diag_errors(diag); ++i) {
+    char name[192], path[FILE_PATH + 256];
+    if (!c->rows[i].met || (i > 0 && c->rows[i - 1].met && c->rows[i].measure == c->rows[i - 1].measure)) continue;
+    snprintf(name, sizeof name, "history_%.150s.%s", c->rows[i].measure, plot_ending(o->format));
+    plot_file_name(name);
+    snprintf(path, sizeof path, "%s/%s", c->folder, name);
+    const PlotXYOptions curves = {
+      .n_runs = o->n_runs, .n_y = 1, .runs = o->runs, .y = &c->rows[i].measure, .legend = o->legend, .out = path};
+    PetscCall(PlotXY(&curves, diag, said));
+  }
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode Report(Comparison *c, FILE *table, Diag *diag, void (*said)(const char *path))
+{
+  PetscFunctionBeginUser;
+  compare_print(table, c);
+  choose_folder(c);
+  const int error = file_make_folders(c->folder);
+  if (error) diag_error(diag, NULL, "cannot create the folder '%s': %s", c->folder, strerror(error));
+  if (!error) PetscCall(CompareTables(c, diag, said));
+  if (!diag_errors(diag)) PetscCall(Draw(c, diag, said));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode CompareRuns(const CompareOptions *options, FILE *table, Diag *diag, void (*said)(const char *path),
+                           PetscReal *worst)
+{
+  Comparison c = {.options = options};
+
+  PetscFunctionBeginUser;
+  *worst = 0;
+  PetscCall(CurveRunsOpen(options->n_runs, options->runs, diag, &c.runs));
+  PetscCall(KeysDiffer(options->n_runs, options->runs, &c.keys));
+  if (!diag_errors(diag)) PetscCall(CheckMeasures(&c, diag));
+  if (!diag_errors(diag)) PetscCall(FillRows(&c));
+  if (!diag_errors(diag)) check_rows(&c, diag);
+  if (!diag_errors(diag)) PetscCall(Report(&c, table, diag, said));
+  for (PetscInt i = 0; i < c.n_rows; ++i)
+    if (c.rows[i].met) *worst = PetscMax(*worst, c.rows[i].difference.relative);
+  PetscCall(PetscFree(c.rows));
+  PetscCall(DifferingKeysFree(&c.keys));
+  PetscCall(CurveRunsClose(options->n_runs, &c.runs));
+  PetscFunctionReturn(0);
+}

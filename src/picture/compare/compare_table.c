@@ -1,0 +1,128 @@
+/* The tables of a comparison: on the terminal, and for programs. */
+#include <string.h>
+#include "base/text.h"
+#include "input/case_file.h"
+#include "output/directory/run_dir_files.h"
+#include "picture/compare/compare_private.h"
+
+/* Keys that the terminal shows; keys.csv has all. */
+enum { SHOWN_KEYS = 20 };
+
+static const char *value_of(const DifferingKeys *keys, PetscInt key, PetscInt run)
+{
+  const char *value = keys->value[key * keys->n_runs + run];
+  return value ? value : "-";
+}
+
+static void print_keys(FILE *out, const Comparison *c)
+{
+  const DifferingKeys *keys = &c->keys;
+  if (!keys->n) fputs("The cases do not differ in any key that changes numbers.\n", out);
+  else fprintf(out, "%-44s", "key");
+  for (PetscInt r = 0; r < keys->n_runs && keys->n; ++r) fprintf(out, " %16.16s", c->runs[r].name);
+  if (keys->n) fputc('\n', out);
+  for (PetscInt k = 0; k < PetscMin(keys->n, SHOWN_KEYS); ++k) {
+    const char *unit = schema_unit(keys->key[k]);
+    fprintf(out, "%-44s", keys->key[k]);
+    for (PetscInt r = 0; r < keys->n_runs; ++r) fprintf(out, " %16.40s", value_of(keys, k, r));
+    fprintf(out, "%s%s\n", unit ? "  " : "", unit ? unit : "");
+  }
+  if (keys->n > SHOWN_KEYS) fprintf(out, "... and %d more (keys.csv)\n", (int)keys->n - SHOWN_KEYS);
+  fputc('\n', out);
+}
+
+void compare_print(FILE *out, const Comparison *c)
+{
+  char label[TEXT_LABEL];
+  print_keys(out, c);
+  fprintf(out, "Differences from %s:\n", c->runs[0].folder);
+  fprintf(out, "%-28s %-16s %13s %13s %11s %9s %13s\n", "measure", "run", "largest value", "difference", "at [s]",
+          "relative", "at the end");
+  for (PetscInt i = 0; i < c->n_rows; ++i) {
+    const CompareRow *row = &c->rows[i];
+    const Difference *d = &row->difference;
+    fprintf(out, "%-28s %-16.16s", text_with_unit(row->measure, row->unit, label), c->runs[row->run].name);
+    if (row->met)
+      fprintf(out, " %13.6g %13.6g %11.6g %9.2e %13.6g\n", (double)d->size, (double)d->largest, (double)d->at,
+              (double)d->relative, (double)d->last);
+    else fputs(" no time at which both have values\n", out);
+  }
+  fputc('\n', out);
+  fflush(out);
+}
+
+/* In quotes where CSV wants it. */
+static void write_cell(FILE *out, const char *text)
+{
+  const PetscBool quoted = strpbrk(text, ",\"\n") != NULL;
+  if (quoted) fputc('"', out);
+  for (; *text; ++text) {
+    if (*text == '"') fputc('"', out);
+    fputc(*text, out);
+  }
+  if (quoted) fputc('"', out);
+}
+
+static void write_differences(FILE *out, const Comparison *c)
+{
+  fputs("measure,unit,run,from [s],to [s],largest value,difference,at [s],relative,at the end\n", out);
+  for (PetscInt i = 0; i < c->n_rows; ++i) {
+    const CompareRow *row = &c->rows[i];
+    const Difference *d = &row->difference;
+    const PetscReal values[] = {d->from, d->to, d->size, d->largest, d->at, d->relative, d->last};
+    if (!row->met) continue;
+    write_cell(out, row->measure), fputc(',', out);
+    write_cell(out, row->unit), fputc(',', out);
+    write_cell(out, c->runs[row->run].folder);
+    for (int k = 0; k < 7; ++k) {
+      char number[32];
+      file_format_real(values[k], number);
+      fprintf(out, ",%s", number);
+    }
+    fputc('\n', out);
+  }
+}
+
+static void write_keys(FILE *out, const Comparison *c)
+{
+  const DifferingKeys *keys = &c->keys;
+  fputs("key,unit", out);
+  for (PetscInt r = 0; r < keys->n_runs; ++r) fputc(',', out), write_cell(out, c->runs[r].folder);
+  fputc('\n', out);
+  for (PetscInt k = 0; k < keys->n; ++k) {
+    const char *unit = schema_unit(keys->key[k]);
+    write_cell(out, keys->key[k]), fputc(',', out);
+    write_cell(out, unit ? unit : "");
+    for (PetscInt r = 0; r < keys->n_runs; ++r) {
+      const char *value = keys->value[k * keys->n_runs + r];
+      fputc(',', out), write_cell(out, value ? value : "");
+    }
+    fputc('\n', out);
+  }
+}
+
+static PetscErrorCode WriteTable(const Comparison *c, const char *name, void (*write)(FILE *, const Comparison *),
+                                 Diag *diag, void (*said)(const char *path))
+{
+  char path[FILE_PATH], *text;
+  TextStream stream;
+
+  PetscFunctionBeginUser;
+  PetscCall(TextOpen(&stream));
+  write(stream.out, c);
+  PetscCall(TextClose(&stream, &text));
+  PetscCall(PetscSNPrintf(path, sizeof path, "%s/%s", c->folder, name));
+  const int error = file_write_text(path, text);
+  PetscCall(PetscFree(text));
+  if (error) diag_error(diag, NULL, "cannot write '%s': %s", path, strerror(error));
+  else if (said) said(path);
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode CompareTables(const Comparison *c, Diag *diag, void (*said)(const char *path))
+{
+  PetscFunctionBeginUser;
+  PetscCall(WriteTable(c, "differences.csv", write_differences, diag, said));
+  PetscCall(WriteTable(c, "keys.csv", write_keys, diag, said));
+  PetscFunctionReturn(0);
+}

@@ -1,0 +1,174 @@
+#include "picture/curves/keys.h"
+#include <string.h>
+#include "base/names.h"
+#include "base/text.h"
+#include "input/case_file.h"
+#include "input/yaml.h"
+#include "output/directory/run_dir_files.h"
+
+/* All keys of all cases in the order in which they were met, with their values. */
+typedef struct {
+  Names names;
+  PetscInt n, capacity, n_runs;
+  char **key, **value;
+} Table;
+
+static PetscErrorCode TableAdd(Table *t, const char *key, PetscInt run, const char *value)
+{
+  PetscInt at = names_find(&t->names, key);
+
+  PetscFunctionBeginUser;
+  if (at < 0) {
+    if (t->n == t->capacity) {
+      t->capacity = 2 * t->capacity + 64;
+      PetscCall(PetscRealloc((size_t)t->capacity * sizeof(char *), &t->key));
+      PetscCall(PetscRealloc((size_t)(t->capacity * t->n_runs) * sizeof(char *), &t->value));
+    }
+    at = t->n++;
+    PetscCall(PetscStrallocpy(key, &t->key[at]));
+    for (PetscInt r = 0; r < t->n_runs; ++r) t->value[at * t->n_runs + r] = NULL;
+    PetscCall(NamesSet(&t->names, t->key[at], at));
+  }
+  PetscCall(PetscFree(t->value[at * t->n_runs + run]));
+  PetscCall(PetscStrallocpy(value, &t->value[at * t->n_runs + run]));
+  PetscFunctionReturn(0);
+}
+
+static PetscBool plain_values(const YamlNode *node)
+{
+  for (PetscInt i = 0; i < node->n; ++i)
+    if (node->child[i]->kind != YAML_SCALAR) return PETSC_FALSE;
+  return node->kind == YAML_SEQUENCE;
+}
+
+static void write_value(FILE *out, const YamlNode *node)
+{
+  if (node->kind == YAML_SCALAR) fputs(node->text, out);
+  else if (node->kind == YAML_SEQUENCE) {
+    fputc('[', out);
+    for (PetscInt i = 0; i < node->n; ++i) fprintf(out, "%s%s", i ? ", " : "", node->child[i]->text);
+    fputc(']', out);
+  }
+}
+
+/* Depth of YamlNodes is bounded by YAML_MAX_DEPTH. */
+// NOLINTNEXTLINE(misc-no-recursion)
+static PetscErrorCode Walk(const YamlNode *node, PetscInt run, Table *t)
+{
+  char path[1024], *value;
+  TextStream stream;
+
+  PetscFunctionBeginUser;
+  if (node->kind != YAML_SCALAR && !plain_values(node)) {
+    for (PetscInt i = 0; i < node->n; ++i) PetscCall(Walk(node->child[i], run, t));
+    PetscFunctionReturn(0);
+  }
+  PetscCall(TextOpen(&stream));
+  write_value(stream.out, node);
+  PetscCall(TextClose(&stream, &value));
+  PetscCall(TableAdd(t, yaml_path(node, path, sizeof path), run, value));
+  PetscCall(PetscFree(value));
+  PetscFunctionReturn(0);
+}
+
+/* What says nothing of the numbers of a run. */
+static PetscBool is_idle(const char *key)
+{
+  static const char *const idle[] = {"title", "output", "checkpoint", NULL};
+  for (int k = 0; idle[k]; ++k) {
+    const size_t n = strlen(idle[k]);
+    if (!strncmp(key, idle[k], n) && (!key[n] || key[n] == '.')) return PETSC_TRUE;
+  }
+  return PETSC_FALSE;
+}
+
+static PetscErrorCode ReadCase(const char *folder, PetscInt run, Table *t, PetscBool *read)
+{
+  char path[FILE_PATH], reason[256], *text;
+  size_t size;
+  YamlDocument *document = NULL;
+  Diag *ignored;
+
+  PetscFunctionBeginUser;
+  *read = PETSC_FALSE;
+  PetscCall(PetscSNPrintf(path, sizeof path, "%s/case.yaml", folder));
+  if (!file_exists(folder, "case.yaml")) PetscFunctionReturn(0);
+  PetscCall(FileReadEverywhere(PETSC_COMM_SELF, path, &size, &text, reason));
+  if (reason[0]) PetscFunctionReturn(0);
+  PetscCall(DiagCreate(&ignored));
+  PetscCall(YamlCreate(path, text, size, ignored, &document));
+  if (document->root) PetscCall(Walk(document->root, run, t));
+  *read = document->root != NULL;
+  PetscCall(YamlDestroy(&document));
+  PetscCall(DiagDestroy(&ignored));
+  PetscCall(PetscFree(text));
+  PetscFunctionReturn(0);
+}
+
+static PetscBool row_differs(const Table *t, PetscInt at)
+{
+  char *const *value = t->value + at * t->n_runs;
+  for (PetscInt r = 1; r < t->n_runs; ++r)
+    if (!value[0] != !value[r] || (value[0] && strcmp(value[0], value[r]))) return PETSC_TRUE;
+  return PETSC_FALSE;
+}
+
+/* Keep the rows that differ, free the others. */
+static PetscErrorCode Keep(Table *t, PetscBool any)
+{
+  const PetscInt n = t->n;
+
+  PetscFunctionBeginUser;
+  t->n = 0;
+  for (PetscInt i = 0; i < n; ++i) {
+    const PetscBool kept = any && !is_idle(t->key[i]) && row_differs(t, i);
+    for (PetscInt r = 0; r < t->n_runs; ++r) {
+      char **value = &t->value[i * t->n_runs + r];
+      if (kept) t->value[t->n * t->n_runs + r] = *value;
+      else PetscCall(PetscFree(*value));
+    }
+    if (kept) t->key[t->n++] = t->key[i];
+    else PetscCall(PetscFree(t->key[i]));
+  }
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode KeysDiffer(PetscInt n_runs, const char *const *folders, DifferingKeys *keys)
+{
+  Table t = {.n_runs = n_runs};
+  PetscBool all = PETSC_TRUE;
+
+  PetscFunctionBeginUser;
+  for (PetscInt r = 0; r < n_runs; ++r) {
+    PetscBool read;
+    PetscCall(ReadCase(folders[r], r, &t, &read));
+    all = all && read;
+  }
+  PetscCall(NamesFree(&t.names));
+  PetscCall(Keep(&t, all));
+  *keys = (DifferingKeys){.n = t.n, .n_runs = n_runs, .key = t.key, .value = t.value};
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode DifferingKeysFree(DifferingKeys *keys)
+{
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < keys->n; ++i) PetscCall(PetscFree(keys->key[i]));
+  for (PetscInt i = 0; i < keys->n * keys->n_runs; ++i) PetscCall(PetscFree(keys->value[i]));
+  PetscCall(PetscFree(keys->key));
+  PetscCall(PetscFree(keys->value));
+  PetscFunctionReturn(0);
+}
+
+void keys_legend(const DifferingKeys *keys, PetscInt run, char legend[128])
+{
+  int used = 0;
+  legend[0] = 0;
+  for (PetscInt i = 0; i < keys->n && used < 64; ++i) {
+    const char *value = keys->value[i * keys->n_runs + run], *unit = schema_unit(keys->key[i]),
+               *dot = strrchr(keys->key[i], '.');
+    used += snprintf(legend + used, 128 - (size_t)used, "%s%s = %s%s%s", i ? ", " : "", dot ? dot + 1 : keys->key[i],
+                     value ? value : "-", value && unit ? " " : "", value && unit ? unit : "");
+  }
+  if (used >= 64) legend[0] = 0;
+}

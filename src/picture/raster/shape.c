@@ -1,0 +1,74 @@
+/* The body that balls fill: grown by the gap that may be between them, then shrunk by that and by what balls reach
+ * beyond the material. Growing and shrinking a straight edge or a corner gives it back, so that outlines have neither
+ * the bumps of balls nor their round corners. */
+#include <math.h>
+#include "picture/raster/distance.h"
+#include "picture/raster/raster_private.h"
+
+/* Points of cells stand half a ball's radius from the border: 0.49 of it with 2 x 2 Gauss points, 0.39 with 3 x 3,
+ * 0.67 in a lattice of points that each are in the middle of what is theirs. */
+#define WITHIN 0.5
+
+/* Samples with a margin into which the body may grow. */
+typedef struct {
+  int width, height, margin;
+  unsigned char *in;
+  float *distance;
+  int *nearest, *owner; /* owner: the ball, counted from 1 where the sample is of the body; 0 */
+} Room;
+
+static PetscErrorCode RoomCreate(const Canvas *canvas, PetscReal gap, Room *room)
+{
+  PetscFunctionBeginUser;
+  room->margin = (int)ceil(gap) + 2;
+  room->width = canvas->width + 2 * room->margin;
+  room->height = canvas->height + 2 * room->margin;
+  const size_t n = (size_t)room->width * (size_t)room->height;
+  PetscCall(PetscMalloc3(n, &room->in, n, &room->distance, n, &room->nearest));
+  PetscCall(PetscCalloc1(n, &room->owner));
+  for (int j = 0; j < canvas->height; ++j)
+    for (int i = 0; i < canvas->width; ++i) {
+      const PetscInt p = canvas->point[canvas_at(canvas, i, j)];
+      room->owner[(size_t)(j + room->margin) * (size_t)room->width + (size_t)(i + room->margin)] = (int)p + 1;
+    }
+  PetscFunctionReturn(0);
+}
+
+/* Let the body grow by the gap; what is added is of the nearest ball. */
+static PetscErrorCode Grow(PetscReal gap, Room *room)
+{
+  const size_t n = (size_t)room->width * (size_t)room->height;
+
+  PetscFunctionBeginUser;
+  for (size_t i = 0; i < n; ++i) room->in[i] = room->owner[i] > 0;
+  PetscCall(DistanceTo(room->width, room->height, room->in, room->distance, room->nearest));
+  for (size_t i = 0; i < n; ++i)
+    if (!room->in[i] && room->nearest[i] >= 0 && room->distance[i] <= gap) room->owner[i] = -room->nearest[i] - 1;
+  /* places first, owners then: a place that was added must not give what it has just got */
+  for (size_t i = 0; i < n; ++i)
+    if (room->owner[i] < 0) room->owner[i] = room->owner[-room->owner[i] - 1];
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode CanvasShape(const RasterScene *scene, Canvas *canvas)
+{
+  const PetscReal gap = PetscMin(scene->gap * canvas->scale, 30 * SAMPLES);
+  Room room;
+
+  PetscFunctionBeginUser;
+  PetscCall(RoomCreate(canvas, gap, &room));
+  PetscCall(Grow(gap, &room));
+  const size_t n = (size_t)room.width * (size_t)room.height;
+  for (size_t i = 0; i < n; ++i) room.in[i] = room.owner[i] == 0;
+  PetscCall(DistanceTo(room.width, room.height, room.in, room.distance, room.nearest));
+  for (int j = 0; j < canvas->height; ++j)
+    for (int i = 0; i < canvas->width; ++i) {
+      const size_t at = (size_t)(j + room.margin) * (size_t)room.width + (size_t)(i + room.margin);
+      const PetscInt p = room.owner[at] - 1;
+      const PetscReal back = p < 0 ? 0 : gap + (1 - WITHIN) * canvas_radius(scene, canvas, p);
+      canvas->point[canvas_at(canvas, i, j)] = p >= 0 && room.distance[at] > back ? p : -1;
+    }
+  PetscCall(PetscFree3(room.in, room.distance, room.nearest));
+  PetscCall(PetscFree(room.owner));
+  PetscFunctionReturn(0);
+}

@@ -1,0 +1,269 @@
+/* Curves of runs beside each other: differences are exact whatever the times, keys that differ are found, pictures are
+ * drawn in three formats, and mistakes have their word. */
+#include "../output/test_output.h"
+#include <math.h>
+#include <sys/stat.h>
+#include "picture/compare/compare.h"
+#include "picture/compare/difference.h"
+#include "picture/curves/keys.h"
+#include "picture/plot.h"
+
+/* What lies on the straight line between entries, by looking at all of them. */
+static PetscReal Between(const Curve *c, PetscReal t)
+{
+  for (PetscInt i = 0; i + 1 < c->n; ++i)
+    if (c->time[i] <= t && t <= c->time[i + 1] && c->time[i] < c->time[i + 1])
+      return c->value[i] + (c->value[i + 1] - c->value[i]) * (t - c->time[i]) / (c->time[i + 1] - c->time[i]);
+  return NAN;
+}
+
+/* Irregular times, waves: no sample of a million is farther apart than what is found, and one nearly is as far. */
+static void test_difference_of_waves(void **state)
+{
+  enum { N = 37, M = 23, SAMPLES = 1000000 };
+  PetscReal ta[N], a[N], tb[M], b[M], largest = 0, at = 0, size = 0;
+  Difference d;
+  (void)state;
+  for (int i = 0; i < N; ++i) ta[i] = pow(i / (N - 1.), 1.3), a[i] = sin(9 * ta[i]);
+  for (int i = 0; i < M; ++i) tb[i] = 0.1 + 1.2 * pow(i / (M - 1.), 0.8), b[i] = sin(9.5 * tb[i]) + 0.02;
+  const Curve first = {N, ta, a}, second = {M, tb, b};
+  assert_true(curve_difference(&first, &second, &d));
+  assert_true(d.from == 0.1 && d.to == 1);
+  for (int k = 0; k <= SAMPLES; ++k) {
+    const PetscReal t = 0.1 + 0.9 * k / SAMPLES, value = Between(&first, t), apart = Between(&second, t) - value;
+    size = PetscMax(size, fabs(value));
+    if (fabs(apart) > fabs(largest)) largest = apart, at = t;
+  }
+  assert_true(fabs(d.largest) >= fabs(largest) - 1e-14 && fabs(d.largest - largest) < 1e-4);
+  assert_true(fabs(d.at - at) < 1e-5 && fabs(d.size - size) < 1e-4);
+  assert_true(fabs(d.relative - fabs(d.largest) / d.size) < 1e-15);
+  assert_true(fabs(d.last - (Between(&second, 1) - sin(9))) < 1e-14);
+}
+
+static void test_difference_by_hand(void **state)
+{
+  const PetscReal ta[] = {0, 1}, a[] = {0, 2}, tb[] = {0, 0.25, 1}, b[] = {0, 1, 2}, late[] = {3, 4};
+  const PetscReal tc[] = {0, 0.25, 0.25, 0.5, 1}, c[] = {0, 9, 1, NAN, 2}, none[] = {NAN, NAN}, zero[] = {0, 0};
+  const Curve first = {2, ta, a}, second = {3, tb, b}, third = {5, tc, c}, after = {2, late, a}, empty = {2, ta, none},
+              touching = {2, (PetscReal[]){1, 2}, a}, still = {2, ta, zero};
+  Difference d;
+  (void)state;
+  assert_true(curve_difference(&first, &second, &d));
+  assert_true(d.largest == 0.5 && d.at == 0.25 && d.size == 2 && d.relative == 0.25 && d.last == 0);
+  assert_true(curve_difference(&second, &first, &d) && d.largest == -0.5);
+  /* of two entries at a time the last counts, and one without a value is none */
+  assert_true(curve_difference(&second, &third, &d) && d.largest == 0 && d.relative == 0);
+  assert_true(curve_difference(&first, &touching, &d) && d.from == 1 && d.to == 1 && d.largest == -2);
+  assert_true(curve_difference(&still, &first, &d) && isinf(d.relative) && d.largest == 2);
+  assert_false(curve_difference(&first, &after, &d));
+  assert_false(curve_difference(&first, &empty, &d));
+}
+
+static void WriteFile(const char *folder, const char *name, const char *text)
+{
+  char path[256];
+  snprintf(path, sizeof path, "%s/%s", folder, name);
+  FILE *out = fopen(path, "w");
+  assert_non_null(out);
+  assert_true(fputs(text, out) >= 0 && !fclose(out));
+}
+
+/* A run whose tip goes to `end` in n steps, and whose load is twice as many kN. */
+static void WriteRun(const char *folder, const char *name, PetscInt n, PetscReal end, PetscReal young)
+{
+  char path[128], text[4096] = "time [s],step,tip [m],load [N],weight [N],slope [deg]\n", yaml[400];
+  snprintf(path, sizeof path, "%s/%s", folder, name);
+  assert_int_equal(mkdir(path, 0700), 0);
+  for (PetscInt i = 0; i <= n; ++i) {
+    const double t = (double)i / (double)n;
+    sprintf(text + strlen(text), "%.9g,%d,%.9g,%.9g,3,%.9g\n", t, (int)i, t * end, 2e3 * t * end, t);
+  }
+  WriteFile(path, "history.csv", text);
+  snprintf(yaml, sizeof yaml,
+           "title: %s\nmaterials:\n  rubber: {law: neo-hookean, young: %g}\nloads:\n  gravity: [0, %g]\nbodies:\n- "
+           "{name: a, shape: {box: {min: [0, 0], max: [1, 1]}}}\n",
+           name, (double)young, -9.81);
+  WriteFile(path, "case.yaml", yaml);
+}
+
+static void test_keys(void **state)
+{
+  char folder[64], a[128], b[128], c[128], legend[128];
+  const char *const runs[] = {a, b, c};
+  DifferingKeys keys;
+  (void)state;
+  TestFolder(folder);
+  WriteRun(folder, "a", 4, 1, 5e6), WriteRun(folder, "b", 8, 1.5, 7e6), WriteRun(folder, "c", 8, 1.5, 7e6);
+  snprintf(a, sizeof a, "%s/a", folder), snprintf(b, sizeof b, "%s/b", folder), snprintf(c, sizeof c, "%s/c", folder);
+  WriteFile(c, "case.yaml",
+            "materials: {rubber: {law: neo-hookean, young: 7e6}}\nloads: {gravity: [0, -1]}\nbodies: [{name: a}]\n");
+  assert_int_equal(KeysDiffer(2, runs, &keys), 0);
+  assert_int_equal(keys.n, 1);
+  assert_string_equal(keys.key[0], "materials.rubber.young");
+  assert_true(!strcmp(keys.value[0], "5e+06") && !strcmp(keys.value[1], "7e+06"));
+  keys_legend(&keys, 1, legend);
+  assert_string_equal(legend, "young = 7e+06 Pa");
+  assert_int_equal(DifferingKeysFree(&keys), 0);
+  assert_int_equal(KeysDiffer(3, runs, &keys), 0);
+  assert_int_equal(keys.n, 4); /* the text 7e6 is another than 7e+06; gravity; two lists of the box */
+  assert_string_equal(keys.key[1], "loads.gravity");
+  assert_string_equal(keys.value[3 + 2], "[0, -1]");
+  assert_true(!strcmp(keys.key[2], "bodies[0].shape.box.min") && !keys.value[6 + 2]);
+  assert_int_equal(DifferingKeysFree(&keys), 0);
+  TestRemove(folder);
+}
+
+static char last_said[PETSC_MAX_PATH_LEN];
+static int times_said;
+static void Said(const char *path) { snprintf(last_said, sizeof last_said, "%s", path), ++times_said; }
+
+/* What the drawing complained about, to be freed. */
+static char *Draw(const PlotXYOptions *options)
+{
+  char *text = NULL;
+  size_t size;
+  Diag *diag;
+  last_said[0] = 0;
+  assert_int_equal(DiagCreate(&diag), 0);
+  assert_int_equal(PlotXY(options, diag, Said), 0);
+  FILE *out = open_memstream(&text, &size);
+  assert_int_equal(DiagFlush(diag, out), 0);
+  fclose(out);
+  assert_int_equal(DiagDestroy(&diag), 0);
+  return text;
+}
+
+static void Begins(const char *path, const char *with)
+{
+  char begin[8] = "";
+  FILE *in = fopen(path, "rb");
+  assert_non_null(in);
+  assert_true(fread(begin, 1, strlen(with), in) == strlen(with));
+  fclose(in);
+  assert_memory_equal(begin, with, strlen(with));
+}
+
+static void test_formats(void **state)
+{
+  char folder[64], a[128], b[128];
+  const char *const runs[] = {a, b}, *const y[] = {"tip", "load", "weight"};
+  const char *const formats[] = {"png", "svg", "pdf"}, *const begin[] = {"\x89PNG", "<?xml", "%PDF"};
+  (void)state;
+  TestFolder(folder);
+  WriteRun(folder, "a", 4, 1, 5e6), WriteRun(folder, "b", 8, 1.5, 7e6);
+  snprintf(a, sizeof a, "%s/a/", folder), snprintf(b, sizeof b, "%s/b", folder);
+  for (int k = 0; k < 3; ++k) {
+    const PlotXYOptions options = {.n_runs = 2, .runs = runs, .n_y = 3, .y = y, .x = "slope", .format = formats[k]};
+    char *text = Draw(&options);
+    assert_string_equal(text, "");
+    assert_non_null(strstr(last_said, "a//pictures/tip_load_weight_over_slope_of_several_runs."));
+    Begins(last_said, begin[k]);
+    if (k == 1) { /* text of an SVG can be read: legends, and both axes with their units */
+      char *svg = TestRead(folder, "a/pictures/tip_load_weight_over_slope_of_several_runs.svg");
+      assert_true(strstr(svg, "young = 5e+06 Pa: tip") && strstr(svg, "young = 7e+06 Pa: weight (right axis)"));
+      assert_true(strstr(svg, ">tip [m]<") && strstr(svg, ">load, weight [N]<") && strstr(svg, ">slope [deg]<"));
+      free(svg);
+    }
+    free(text);
+  }
+  TestRemove(folder);
+}
+
+static void Refused(const PlotXYOptions *options, const char *word)
+{
+  char *text = Draw(options);
+  assert_non_null(strstr(text, word));
+  assert_string_equal(last_said, "");
+  free(text);
+}
+
+static void test_mistakes(void **state)
+{
+  char folder[64], a[128];
+  const char *const runs[] = {a}, *y[] = {"tip", "load", "slope"};
+  PlotXYOptions options = {.n_runs = 1, .runs = runs, .n_y = 3, .y = y};
+  (void)state;
+  TestFolder(folder);
+  snprintf(a, sizeof a, "%s/a", folder);
+  Refused(&options, "there is no run directory");
+  WriteRun(folder, "a", 4, 1, 5e6);
+  Refused(&options, "'slope' is in deg, but the axes are in m and N already");
+  y[2] = "wieght";
+  Refused(&options, "did you mean 'weight'?");
+  options.n_y = 1, options.x = "tme";
+  Refused(&options, "did you mean 'time'?");
+  WriteFile(a, "history.csv", "time [s],step,tip [m]\n0,0,1\n");
+  options.x = NULL;
+  Refused(&options, "a single row");
+  WriteFile(a, "history.csv", "time [s],step,tip [m]\n0,0,nan\n1,1,nan\n");
+  Refused(&options, "nothing to draw");
+  assert_false(TestExists(a, "pictures/tip_over_time.png"));
+  TestRemove(folder);
+}
+
+/* Compare, and what was said to the terminal and as diagnostics, to be freed. */
+static char *Compare(const CompareOptions *options, PetscReal *worst)
+{
+  char *text = NULL;
+  size_t size;
+  Diag *diag;
+  times_said = 0;
+  assert_int_equal(DiagCreate(&diag), 0);
+  FILE *out = open_memstream(&text, &size);
+  assert_int_equal(CompareRuns(options, out, diag, Said, worst), 0);
+  assert_int_equal(DiagFlush(diag, out), 0);
+  fclose(out);
+  assert_int_equal(DiagDestroy(&diag), 0);
+  return text;
+}
+
+static void test_compare(void **state)
+{
+  char folder[64], a[128], b[128], c[128], out[128];
+  const char *const runs[] = {a, b}, *const strangers[] = {a, c};
+  CompareOptions options = {.n_runs = 2, .runs = runs, .out = out};
+  PetscReal worst;
+  (void)state;
+  TestFolder(folder);
+  WriteRun(folder, "a", 4, 1, 5e6), WriteRun(folder, "b", 8, 1.5, 7e6), WriteRun(folder, "c", 1, 1, 1);
+  snprintf(a, sizeof a, "%s/a", folder), snprintf(b, sizeof b, "%s/b", folder), snprintf(c, sizeof c, "%s/c", folder);
+  snprintf(out, sizeof out, "%s/out", folder);
+  char *text = Compare(&options, &worst);
+  assert_true(fabs(worst - 0.5) < 1e-14 && times_said == 2 + 4);
+  assert_true(strstr(text, "materials.rubber.young") && strstr(text, "5.00e-01") && strstr(text, "load [N]"));
+  free(text);
+  char *csv = TestRead(folder, "out/differences.csv"), *line = strstr(csv, "\nload,N,");
+  double d[7];
+  assert_int_equal(
+    sscanf(strstr(line, "/b,"), "/b,%lf,%lf,%lf,%lf,%lf,%lf,%lf", d, d + 1, d + 2, d + 3, d + 4, d + 5, d + 6), 7);
+  assert_true(d[0] == 0 && d[1] == 1 && d[2] == 2000 && d[3] == 1000 && d[4] == 1 && d[5] == 0.5 && d[6] == 1000);
+  free(csv);
+  assert_true(TestExists(out, "keys.csv") && TestExists(out, "history_tip.png"));
+  options.runs = strangers;
+  WriteFile(c, "history.csv", "time [s],step,spin [1/s]\n0,0,1\n1,1,1\n");
+  text = Compare(&options, &worst);
+  assert_true(strstr(text, "no measure in common") && strstr(text, "has: spin") && !times_said);
+  free(text);
+  WriteFile(c, "history.csv", "time [s],step,tip [m],load [kN]\n7,0,1,1\n8,1,1,1\n");
+  text = Compare(&options, &worst);
+  assert_true(strstr(text, "no time in common") && strstr(text, "from 7 to 8 s") && !times_said);
+  free(text);
+  WriteFile(c, "history.csv", "time [s],step,tip [m],load [kN]\n0,0,0,1\n1,1,1,1\n");
+  text = Compare(&options, &worst);
+  assert_true(worst == 0 && strstr(text, "no such measure: load, weight, slope"));
+  free(text);
+  TestRemove(folder);
+}
+
+static int Tests(void)
+{
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_difference_of_waves),
+                                     cmocka_unit_test(test_difference_by_hand),
+                                     cmocka_unit_test(test_keys),
+                                     cmocka_unit_test(test_formats),
+                                     cmocka_unit_test(test_mistakes),
+                                     cmocka_unit_test(test_compare)};
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
+
+int main(int argc, char **argv) { return TestMain(argc, argv, Tests); }
