@@ -22,7 +22,7 @@ static const CliUsage usage = {
     "q over p' and of what is over the strain, and a line for each stage. FILE tells material and path, or is a case\n"
     "(or its folder), one of whose materials is tested:\n"
     "  talus element clay.yaml\n"
-    "  talus element cases/dry-column --test triaxial --confining 100e3 --to 0.1\n"
+    "  talus element cases/dry-column --test triaxial --confining 2e3 --to 0.05\n"
     "  talus element case.yaml --material sand --test oedometer --to 0.02,0.01,0.03\n"
     "The exit code is 1 if the path cannot be followed to its end. docs/element.md tells the language of the file.",
   .options = options_known,
