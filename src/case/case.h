@@ -196,11 +196,12 @@ typedef struct {
 
 typedef struct {
   char *name;
-  char *kind;          /* a measure's key, "energy" (model/measure) */
-  char *word;          /* and one of its words, "kinetic"; NULL if it has none */
-  PetscInt component;  /* 0 1 2 */
-  PetscBool maximum;   /* extent, run-out time: max, else min */
-  PetscReal beyond;    /* extent: share of the mass that is left out */
+  char *kind;         /* a measure's key, "energy" (model/measure) */
+  char *word;         /* and one of its words, "kinetic"; NULL if it has none */
+  PetscInt component; /* 0 1 2 */
+  PetscBool maximum;  /* extent, run-out time: max, else min */
+  PetscReal beyond;   /* extent: share of the mass that is left out */
+  PetscBool has_tracer;
   PetscReal tracer[3]; /* material position of the tracer at the start */
   char *body;          /* NULL: all */
   PetscInt boundary;   /* reaction: index into boundary[] of the case */

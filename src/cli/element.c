@@ -24,7 +24,7 @@ const CliUsage cli_element_usage = {
     "The exit code is 1 if the path cannot be followed to its end. docs/element.md tells the language of the file.",
   .examples =
     "talus element clay.yaml\n"
-    "talus element cases/dry-column --test triaxial --confining 100e3 --to 0.1\n"
+    "talus element cases/dry-column --test triaxial --confining 2e3 --to 0.05\n"
     "talus element case.yaml --material sand --test oedometer --to 0.02,0.01,0.03",
   .options = options_known,
   .min_words = 1,

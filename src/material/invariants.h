@@ -4,7 +4,10 @@
 #include "base/math/eigen.h"
 
 /* p = - tr sigma / 3 */
-static inline PetscReal stress_pressure(const PetscReal sigma[6]) { return -(sigma[0] + sigma[1] + sigma[2]) / 3.0; }
+static inline PetscReal stress_pressure(const PetscReal sigma[6])
+{
+  return 0.0 - (sigma[0] + sigma[1] + sigma[2]) / 3.0;
+}
 
 /* s : s of the deviator s of a symmetric tensor whose shears are not doubled. */
 static inline PetscReal deviator_norm2(const PetscReal a[6])

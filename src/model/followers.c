@@ -59,7 +59,7 @@ static PetscErrorCode FindUncarried(Model *m, Uncarried *u, PetscBool *any)
 static PetscBool has_followers(const Model *m)
 {
   for (PetscInt k = 0; k < m->c->n_measures; ++k)
-    if (measure_number(&m->c->measures[k])->of == OF_TRACER) return PETSC_TRUE;
+    if (measure_has_tracer(&m->c->measures[k])) return PETSC_TRUE;
   return m->c->n_loads != 0;
 }
 

@@ -246,7 +246,7 @@ static PetscErrorCode CreateTracers(Model *m, Diag *diag)
   m->tracers->components[POINT_FIELD] = m->points->components[POINT_FIELD];
   for (PetscInt k = 0; k < m->c->n_measures; ++k) {
     const MeasureSpec *s = &m->c->measures[k];
-    if (measure_number(s)->of != OF_TRACER) continue;
+    if (!measure_has_tracer(s)) continue;
     const PetscInt field = points_field_near(m->points, s->tracer);
     const PetscInt cell = grid_cell_in(m->grid, grid_locate(m->grid, s->tracer, -1, xi), field);
     mine = cell >= 0 ? rank : size;

@@ -98,10 +98,10 @@ static void first_complaint(FILE *complaints, char text[256])
 static PetscBool run_program(char *const *arguments, FILE *input, Diag *diag)
 {
   char text[256];
-  pid_t pid;
+  pid_t pid = 0;
   int status = 0;
   FILE *complaints = tmpfile();
-  const int error = complaints ? spawn_program(arguments, input, complaints, &pid) : errno;
+  const int error = complaints ? spawn_program(arguments, input, complaints, &pid) : EMFILE;
   if (error) {
     diag_error(diag, NULL, "cannot start %s, which draws the pictures: %s", arguments[0], strerror(error));
     diag_hint(diag, "install it: apt install %s", strcmp(arguments[0], "gnuplot") ? arguments[0] : "gnuplot-nox");

@@ -3,6 +3,7 @@
 #include "base/count.h"
 #include "case/fields.h"
 #include "grid/cloud/cloud.h"
+#include "material/invariants.h"
 #include "output/directory/run_dir_files.h"
 
 #define MAX_FIELDS 32
@@ -48,10 +49,26 @@ static void widen(PetscInt n, PetscInt dim, const PetscReal *from, PetscReal *to
     for (PetscInt d = 0; d < 3; ++d) to[d] = d < dim ? from[d] : 0;
 }
 
-static PetscReal mises(const PetscReal s[6])
+/* Invariants of the stress; PETSC_FALSE if the field is none. */
+static PetscBool stress_number(const char *name, const PetscReal sigma[6], PetscReal *out)
 {
-  const PetscReal a = s[0] - s[1], b = s[1] - s[2], c = s[2] - s[0];
-  return PetscSqrtReal(0.5 * (a * a + b * b + c * c) + 3 * (s[3] * s[3] + s[4] * s[4] + s[5] * s[5]));
+  if (!strcmp(name, "pressure")) *out = stress_pressure(sigma);
+  else if (!strcmp(name, "mises")) *out = stress_deviatoric(sigma);
+  else if (!strcmp(name, "mobilised_friction")) *out = stress_mobilised_friction(sigma) * 180 / PETSC_PI;
+  else return PETSC_FALSE;
+  return PETSC_TRUE;
+}
+
+static PetscBool is_strain(const char *name) { return !strcmp(name, "strain") || !strcmp(name, "deviatoric_strain"); }
+
+static void strain_numbers(const Points *points, PetscInt p, const char *name, PetscReal *out)
+{
+  PetscReal F[9], strain[6];
+  point_F(points, p, F);
+  strain_logarithmic(F, strain);
+  if (strcmp(name, "strain") != 0) *out = strain_deviatoric(strain);
+  else
+    for (int k = 0; k < 6; ++k) out[k] = strain[k];
 }
 
 /* One field of one point. */
@@ -62,11 +79,12 @@ static PetscErrorCode PointValue(const Model *m, PetscInt p, const char *name, P
 
   PetscFunctionBeginUser;
   const PetscReal volume = points->real[POINT_J][p] * points->real[POINT_VOLUME][p];
-  if (!strcmp(name, "stress")) PetscCall(ModelPointStress(m, p, out));
-  else if (!strcmp(name, "pressure") || !strcmp(name, "mises")) {
-    PetscCall(ModelPointStress(m, p, sigma));
-    *out = name[0] == 'p' ? -(sigma[0] + sigma[1] + sigma[2]) / 3 : mises(sigma);
-  } else if (!strcmp(name, "deformation_gradient")) {
+  PetscCall(ModelPointStress(m, p, sigma));
+  if (!strcmp(name, "stress")) PetscCall(PetscArraycpy(out, sigma, 6));
+  else if (stress_number(name, sigma, out)) PetscFunctionReturn(0);
+  else if (is_strain(name)) strain_numbers(points, p, name, out);
+  else if (!strcmp(name, "volume_strain")) *out = PetscLogReal(points->real[POINT_J][p]);
+  else if (!strcmp(name, "deformation_gradient")) {
     point_F(points, p, F);
     PetscCall(PetscArraycpy(out, F, 9));
   } else if (!strcmp(name, "mass")) *out = points->real[POINT_MASS][p];
@@ -188,6 +206,7 @@ static PetscErrorCode NodalDisplacement(const Output *o, const Model *m, PetscRe
   PetscFunctionReturn(0);
 }
 
+/* What nodes know by themselves; of all else they have the mean of the points. */
 static PetscErrorCode GridField(const Output *o, const Model *m, const OutputField *field, PetscReal **data)
 {
   const PetscInt n = m->grid->n_nodes;
@@ -198,9 +217,14 @@ static PetscErrorCode GridField(const Output *o, const Model *m, const OutputFie
   if (!strcmp(field->name, "velocity")) widen(n, m->dim, m->nodes->v, *data);
   else if (!strcmp(field->name, "acceleration")) widen(n, m->dim, m->nodes->a, *data);
   else if (!strcmp(field->name, "mass")) PetscCall(PetscArraycpy(*data, m->nodes->mass, n));
-  else if (!strcmp(field->name, "pressure"))
+  else if (!strcmp(field->name, "pressure") && m->nodes->scaled_pressure)
     for (PetscInt i = 0; i < n; ++i) (*data)[i] = -m->nodes->pressure[i];
-  else {
+  else if (strcmp(field->name, "displacement") != 0) {
+    PetscCall(PetscMalloc1(count_numbers(m->points->n, field->components), &u));
+    PetscCall(OutputPointField(m, field, u));
+    PetscCall(OutputNodalAverage(m, field->components, u, *data));
+    PetscCall(PetscFree(u));
+  } else {
     PetscCall(PetscMalloc1(count_numbers(n, m->dim), &u));
     PetscCall(NodalDisplacement(o, m, u));
     widen(n, m->dim, u, *data);
@@ -244,7 +268,6 @@ static PetscErrorCode WriteGrid(Output *o, Model *m, PetscBool *ok, char reason[
   widen(grid->n_nodes, m->dim, grid->x, x);
   for (const OutputField *f = output_fields; f->name && n < MAX_FIELDS; ++f) {
     if (!f->grid || !case_writes(m->c, f->name)) continue;
-    if (!strcmp(f->name, "pressure") && !m->nodes->scaled_pressure) continue; /* nodes know none */
     PetscCall(GridField(o, m, f, &data[n]));
     fields[n] = (VtkField){.name = f->name, .unit = f->unit, .components = f->components, .data = data[n]};
     ++n;

@@ -45,6 +45,23 @@ static void test_spacing(void **state)
   }
 }
 
+/* A share of the numbers, also where half a million of them are equal, as in a lattice. */
+static void test_quantile(void **state)
+{
+  enum { N = 500000 };
+  static PetscReal values[N];
+  const PetscReal few[] = {3, 1, 2, 5, 4};
+  PetscReal q;
+  (void)state;
+  assert_int_equal(PlotQuantile(5, few, 0.5, &q), 0);
+  assert_true(q == 3);
+  assert_int_equal(PlotQuantile(5, few, 1, &q), 0);
+  assert_true(q == 5);
+  for (PetscInt i = 0; i < N; ++i) values[i] = i % 1000 ? 1 : 2;
+  assert_int_equal(PlotQuantile(N, values, 0.5, &q), 0);
+  assert_true(q == 1);
+}
+
 /* The square is filled, all else is empty, and each place has the colour of its value (which is
  * x). */
 static void test_raster(void **state)
@@ -607,23 +624,15 @@ static void test_convergence(void **state)
 
 static int Tests(void)
 {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_spacing),
-                                     cmocka_unit_test(test_raster),
-                                     cmocka_unit_test(test_raster_depth),
-                                     cmocka_unit_test(test_raster_gap),
-                                     cmocka_unit_test(test_several_states),
-                                     cmocka_unit_test(test_scalars),
-                                     cmocka_unit_test(test_units),
-                                     cmocka_unit_test(test_tick_names),
-                                     cmocka_unit_test(test_state_in_the_plane),
-                                     cmocka_unit_test(test_state_in_space),
-                                     cmocka_unit_test(test_body_of_revolution),
-                                     cmocka_unit_test(test_histories),
-                                     cmocka_unit_test(test_mistakes),
-                                     cmocka_unit_test(test_no_gnuplot),
-                                     cmocka_unit_test(test_animation),
-                                     cmocka_unit_test(test_names_and_cells),
-                                     cmocka_unit_test(test_convergence)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_spacing),         cmocka_unit_test(test_quantile),
+                                     cmocka_unit_test(test_raster),          cmocka_unit_test(test_raster_depth),
+                                     cmocka_unit_test(test_raster_gap),      cmocka_unit_test(test_several_states),
+                                     cmocka_unit_test(test_scalars),         cmocka_unit_test(test_units),
+                                     cmocka_unit_test(test_tick_names),      cmocka_unit_test(test_state_in_the_plane),
+                                     cmocka_unit_test(test_state_in_space),  cmocka_unit_test(test_body_of_revolution),
+                                     cmocka_unit_test(test_histories),       cmocka_unit_test(test_mistakes),
+                                     cmocka_unit_test(test_no_gnuplot),      cmocka_unit_test(test_animation),
+                                     cmocka_unit_test(test_names_and_cells), cmocka_unit_test(test_convergence)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
 

@@ -61,6 +61,7 @@ static void check_fields(CellType cell)
   PetscReal norm2 = 0;
   for (int k = 0; k < 6; ++k) norm2 += (k < 3 ? 1 : 2) * PetscSqr(t[k] - (k < 3 ? (16. + 32 + 64) / 3 : 0));
   check_scalar(m, "mises", PetscSqrtReal(1.5 * norm2) / J);
+  check_scalar(m, "volume_strain", log(J));
   PetscReal *stress = field_of(m, "stress", 6), *gradient = field_of(m, "deformation_gradient", 9);
   for (PetscInt p = 0; p < m->points->n; ++p) {
     for (int k = 0; k < 6; ++k) CHECK_CLOSE(stress[6 * p + k], t[k] / J, 1e-13);

@@ -12,7 +12,7 @@ static const SchemaEntry of_entries[] = {
   KEY("tracer", VECTOR, "m",
       "a massless point carried by the material, out of the grid too, by its position at the start; nan from when no "
       "node of the grid carries it any more",
-      AT(MeasureSpec, tracer)),
+      AT(MeasureSpec, tracer), GIVEN(MeasureSpec, has_tracer)),
   KEY("body", REFERENCE, NULL, "a name from `bodies`", .target = "bodies", AT(MeasureSpec, body)),
   KEY("boundary", BOUNDARY, NULL, "an entry of `boundary`: its name, or its index counted from 0",
       AT(MeasureSpec, boundary)),
@@ -31,7 +31,8 @@ static const SchemaGroup of_groups[] = {{GROUP_ONE, {"tracer", "body", "boundary
                                         {GROUP_NONE, {NULL}}};
 static PetscBool hide_in_of(const SchemaEntry *e, const void *source)
 {
-  return strcmp(e->key, subjects[measure_number(source)->of].key) != 0;
+  const MeasureSubject of = measure_has_tracer(source) ? OF_TRACER : measure_number(source)->of;
+  return strcmp(e->key, subjects[of].key) != 0;
 }
 static const SchemaTable of = {
   .name = "of", .help = "What is measured.", .entries = of_entries, .groups = of_groups, .hide = hide_in_of};
@@ -186,7 +187,7 @@ static void check_beside(SchemaReader *r, const YamlNode *mapping, const Measure
     {"at", "at: x", number->at, number->at},
     {"about", "about: [x, y]", number->about, number->about || number->may_about},
     {"middle", NULL, PETSC_FALSE, number->middle},
-    {"in", NULL, PETSC_FALSE, number->in || number->sum},
+    {"in", NULL, PETSC_FALSE, (number->in || number->sum) && !measure_has_tracer(m)},
   };
   for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(keys); ++k) {
     const YamlNode *node = yaml_find(mapping, keys[k].key);
@@ -259,6 +260,7 @@ static void check_subject(SchemaReader *r, const YamlNode *mapping, const Measur
     return;
   }
   if (of_node ? yaml_find(of_node, subjects[wanted].key) != NULL : wanted == OF_BODY) return;
+  if (measure_number(m)->may_trace && m->has_tracer) return;
   if (!of_node) SchemaKeyError(r, mapping, "key 'of' of %s is missing", path);
   else SchemaKeyError(r, of_node, "%s.of must name a %s", path, subjects[wanted].key);
   diag_hint(r->diag, "%s", subjects[wanted].hint);
@@ -335,7 +337,7 @@ static PetscBool hide_in_measure(const SchemaEntry *e, const void *source)
   const MeasureSpec *m = source;
   const MeasureSubject subject = measure_number(m)->of;
   if (!strcmp(e->key, "middle")) return m->middle == 0;
-  return e->table == &of && (subject == OF_MODEL || (subject == OF_BODY && !m->body));
+  return e->table == &of && (subject == OF_MODEL || (subject == OF_BODY && !m->body && !measure_has_tracer(m)));
 }
 
 const SchemaTable schema_measure = {.name = "measure",

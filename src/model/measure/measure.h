@@ -30,6 +30,7 @@ typedef struct {
   PetscBool at;        /* is it taken `at` a place? */
   PetscBool about;     /* is it taken `about` a centre? */
   PetscBool may_about; /* may it be? */
+  PetscBool may_trace; /* may it be that at a tracer, in place of a body's? */
   PetscBool middle;    /* is it fitted to the `middle` of something? */
   PetscBool in;        /* may it be that of the points `in` a shape alone? Every sum may */
   /* Collective. index: of the spec among the measures of the case. */
@@ -73,6 +74,12 @@ extern const MeasureNumber *const measure_avalanche_words[]; /* what `tells` may
 const Measure *measure_find(const char *kind);
 /* What the spec asks for. */
 const MeasureNumber *measure_number(const MeasureSpec *spec);
+/* Is it followed at a place of the material? */
+static inline PetscBool measure_has_tracer(const MeasureSpec *s)
+{
+  const MeasureNumber *number = measure_number(s);
+  return number->of == OF_TRACER || (number->may_trace && s->has_tracer);
+}
 
 /* Events of measure k that are over, and event i of them: as many numbers as its table has columns. */
 PetscInt measure_n_events(const Model *m, PetscInt k);

@@ -1,5 +1,6 @@
 #include "picture/raster/spacing.h"
 #include <math.h>
+#include <stdlib.h>
 #include "grid/search/neighbours.h"
 
 enum { MAX_NEIGHBOURS = 6, MAX_AROUND = 64 };
@@ -45,15 +46,22 @@ static PetscReal spacing_around(const Neighbours *points, const PetscReal *x, Pe
   return sum / (PetscReal)n;
 }
 
-PetscErrorCode PlotMedian(PetscInt n, const PetscReal *values, PetscReal *median)
+static int compare_reals(const void *a, const void *b)
+{
+  const PetscReal x = *(const PetscReal *)a, y = *(const PetscReal *)b;
+  return (x > y) - (x < y);
+}
+
+PetscErrorCode PlotQuantile(PetscInt n, const PetscReal *values, PetscReal share, PetscReal *quantile)
 {
   PetscReal *sorted;
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(n, &sorted));
   PetscCall(PetscArraycpy(sorted, values, n));
-  PetscCall(PetscSortReal(n, sorted));
-  *median = sorted[n / 2];
+  /* PetscSortReal takes a time that is quadratic in values that are equal, as those of a lattice are */
+  qsort(sorted, (size_t)n, sizeof *sorted, compare_reals);
+  *quantile = sorted[PetscMin((PetscInt)(share * (PetscReal)n), n - 1)];
   PetscCall(PetscFree(sorted));
   PetscFunctionReturn(0);
 }
@@ -74,7 +82,7 @@ PetscErrorCode PlotSpacing(PetscInt dim, PetscInt n, const PetscReal *x, PetscRe
   const PetscReal size = choose_size(dim, n, at);
   PetscCall(NeighboursCreate(dim, n, at, 0, NULL, NULL, size, &points));
   for (PetscInt i = 0; i < n; ++i) distance[i] = neighbour_distance(&points, at + i * dim, size, k);
-  PetscCall(PlotMedian(n, distance, &median));
+  PetscCall(PlotQuantile(n, distance, 0.5, &median));
   if (!(median < 1e100)) median = size; /* a handful of points, without enough neighbours */
   if (!(median > 0)) median = size;     /* all in pairs at the same place */
   for (PetscInt i = 0; i < n; ++i) distance[i] = PetscMin(PetscMax(distance[i], 0.3 * median), 2 * median);

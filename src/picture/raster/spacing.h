@@ -6,5 +6,5 @@
  * grows. x is n x 3; dim 2 looks at the first two coordinates. Points that fly alone are not blown
  * up. */
 PetscErrorCode PlotSpacing(PetscInt dim, PetscInt n, const PetscReal *x, PetscReal *radius);
-/* The number that half of them do not exceed. */
-PetscErrorCode PlotMedian(PetscInt n, const PetscReal *values, PetscReal *median);
+/* The number that this share of them do not exceed: 0.5 gives the median. */
+PetscErrorCode PlotQuantile(PetscInt n, const PetscReal *values, PetscReal share, PetscReal *quantile);

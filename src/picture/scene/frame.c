@@ -104,17 +104,13 @@ static PetscBool is_elastic(const Case *c)
  * stretched. */
 static PetscErrorCode ChooseGap(PlotScene *scene, PlotFrame *f)
 {
-  PetscReal *sorted;
+  PetscReal far;
 
   PetscFunctionBeginUser;
   if (!f->n) PetscFunctionReturn(0);
-  PetscCall(PetscMalloc1(f->n, &sorted));
-  PetscCall(PetscArraycpy(sorted, f->radius, f->n));
-  PetscCall(PetscSortReal(f->n, sorted));
-  if (f == scene->frames) scene->gap = sorted[f->n / 2];
-  const PetscBool stretched = sorted[f->n - 1 - f->n / 10] > 1.2 * scene->gap;
-  f->gap = (is_elastic(scene->walled) && !stretched ? 1 : 2) * scene->gap;
-  PetscCall(PetscFree(sorted));
+  if (f == scene->frames) PetscCall(PlotQuantile(f->n, f->radius, 0.5, &scene->gap));
+  PetscCall(PlotQuantile(f->n, f->radius, 0.9, &far));
+  f->gap = (is_elastic(scene->walled) && far <= 1.2 * scene->gap ? 1 : 2) * scene->gap;
   PetscFunctionReturn(0);
 }
 

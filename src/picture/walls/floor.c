@@ -22,8 +22,9 @@ static PetscBool side_of_box(const GridSpec *grid, const char *name, Held *held)
 }
 
 /* Is it a line whose nodes do not move across it? */
-static PetscBool is_held(const Case *c, const MotionSpec *motion, Held *held)
+static PetscBool is_held(const PlotScene *scene, const MotionSpec *motion, Held *held)
 {
+  const Case *c = scene->walled;
   const Selector *on = &motion->on;
   if (motion->kind != MOTION_FIXED || on->has_shape || on->body) return PETSC_FALSE;
   if (on->boundary) return side_of_box(&c->grid, on->boundary, held) && motion->component[held->axis];
@@ -31,7 +32,7 @@ static PetscBool is_held(const Case *c, const MotionSpec *motion, Held *held)
     const int other = 1 - axis;
     if (!on->has[axis] || on->min[axis] != on->max[axis] || !motion->component[axis]) continue;
     if (on->has[other] && on->min[other] == on->max[other]) return PETSC_FALSE; /* a point */
-    *held = (Held){axis, on->min[axis], -PETSC_MAX_REAL, PETSC_MAX_REAL};
+    *held = (Held){axis, on->min[axis], scene->box_min[other], scene->box_max[other]};
     if (on->has[other]) held->from = on->min[other], held->to = on->max[other];
     else if (c->grid.kind == GRID_BOX) held->from = c->grid.min[other], held->to = c->grid.max[other];
     return PETSC_TRUE;
@@ -56,7 +57,7 @@ void plot_floor_draw(FILE *out, const PlotScene *scene, const PlotPage *page)
   if (!c || c->kinematics->dim != 2 || scene->dim != 2 || scene->bare) return;
   for (PetscInt k = 0; k < c->n_boundary; ++k) {
     Held held;
-    if (!is_held(c, &c->boundary[k], &held) || (scene->mirrored && held.axis == 0 && held.at == 0)) continue;
+    if (!is_held(scene, &c->boundary[k], &held) || (scene->mirrored && held.axis == 0 && held.at == 0)) continue;
     draw(out, page, &held);
     if (!scene->mirrored) continue;
     if (held.axis) held = (Held){1, held.at, -held.to, -held.from};
