@@ -1,0 +1,15 @@
+# The documents: links lead somewhere, and what the tutorial tells to type works and prints what it says.
+find_program(TALUS_PYTHON NAMES python3 PATHS /usr/bin NO_DEFAULT_PATH)
+if(TALUS_PYTHON)
+  add_test(NAME docs/links COMMAND ${TALUS_PYTHON} ${CMAKE_CURRENT_LIST_DIR}/links.py ${PROJECT_SOURCE_DIR})
+  if(TARGET talus)
+    file(GLOB pages CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/docs/tutorial/*.md)
+    foreach(page ${PROJECT_SOURCE_DIR}/README.md ${pages})
+      get_filename_component(name ${page} NAME_WE)
+      add_test(NAME docs/${name} COMMAND ${TALUS_PYTHON} ${CMAKE_CURRENT_LIST_DIR}/tutorial.py $<TARGET_FILE:talus> ${page})
+      math(EXPR limit "240 * ${TALUS_TEST_PATIENCE}")
+      set_tests_properties(docs/${name} PROPERTIES TIMEOUT ${limit} SKIP_RETURN_CODE 77 PROCESSORS 2
+        ENVIRONMENT "${TALUS_TEST_ENVIRONMENT}")
+    endforeach()
+  endif()
+endif()
