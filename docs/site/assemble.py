@@ -26,6 +26,8 @@ def sources():
 
 def page_of(target, pages):
     """The page, without .md, that shows a path of the repository; None where it is shown as it is."""
+    if target == ROOT / "cases":
+        return "gallery"
     if target.is_dir():
         target = target / "README.md"
     name = os.path.relpath(target, ROOT)
@@ -167,10 +169,13 @@ class Site:
                 "A case is a text file and a page that says what came out; the picture leads there.", "",
                 "Times: processor time of the command, measured by `make gallery`"
                 + (f" ({notes[0]})" if notes else "") + "; in words where the case's page states it.", "",
-                '<div class="gallery">']
-        for case in cases.all_cases():
-            text.append(self.card(case, seconds.get(case.name)))
-        self.write("gallery", "\n".join(text + ["</div>", ""]) + toctree(self.order()[0]["gallery"], None))
+                ""]
+        everything = cases.all_cases()
+        for group in cases.GROUPS:
+            text += [f"## {group}", "", '<div class="gallery">']
+            text += [self.card(case, seconds.get(case.name)) for case in everything if case.group == group]
+            text += ["</div>", ""]
+        self.write("gallery", "\n".join(text) + toctree(self.order()[0]["gallery"], None))
 
     def card(self, case, seconds):
         page = f"cases/{case.name}/README.html"
@@ -182,7 +187,8 @@ class Site:
             picture = f'<a href="{page}"><img loading="lazy" src="{source}" alt="{html.escape(case.title, quote=True)}"></a>'
         time = seconds or case.stated_time
         return (f'<div class="case"><p class="picture">{picture}</p><p class="title"><a href="{page}">{html.escape(case.title)}</a></p>'
-                f'<p>{html.escape(case.sentence)}</p><p class="command"><code>{html.escape(command)}</code>'
+                f'<p>{html.escape(case.sentence)}</p><p class="words">{html.escape(", ".join(case.words))}</p>'
+                f'<p class="command"><code>{html.escape(command)}</code>'
                 f'<span class="time">{html.escape(time)}</span></p></div>')
 
     def order(self):

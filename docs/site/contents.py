@@ -3,9 +3,9 @@ name. A new docs/*.md that nothing names stands under "Use", a new case in the g
 
 PARTS = [
     ("Learn", ["docs/tutorial/*", "gallery", "docs/guide/choose", "docs/guide/resolution", "docs/guide/loads",
-               "docs/guide/trust", "docs/guide/limits", "docs/guide/*", "docs/messages"]),
-    ("Use", ["docs/sweep", "docs/calibrate", "docs/checkpoint", "docs/trust", "docs/python", "docs/*"]),
-    ("Reference", ["docs/case-file", "laws", "lists", "commands", "library"]),
+               "docs/guide/trust", "docs/guide/limits", "docs/guide/*"]),
+    ("Use", ["docs/messages", "docs/sweep", "docs/calibrate", "docs/checkpoint", "docs/trust", "docs/python", "docs/*"]),
+    ("Reference", ["docs/case-file", "lists", "docs/command-line", "commands", "library"]),
     ("Background", ["docs/theory", "docs/verification", "bench/README", "docs/scaling", "docs/decisions",
                     "docs/experiments/README", "CHANGELOG"]),
     ("Extend", ["CONTRIBUTING", "src/README"]),

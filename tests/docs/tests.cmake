@@ -2,6 +2,7 @@
 find_program(TALUS_PYTHON NAMES python3 PATHS /usr/bin NO_DEFAULT_PATH)
 if(TALUS_PYTHON)
   add_test(NAME docs/links COMMAND ${TALUS_PYTHON} ${CMAKE_CURRENT_LIST_DIR}/links.py ${PROJECT_SOURCE_DIR})
+  add_test(NAME docs/messages COMMAND ${TALUS_PYTHON} ${CMAKE_CURRENT_LIST_DIR}/messages.py ${PROJECT_SOURCE_DIR})
   if(TARGET talus)
     file(GLOB pages CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/docs/tutorial/*.md)
     foreach(page ${PROJECT_SOURCE_DIR}/README.md ${pages})

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""tutorial.py TALUS PAGE [--long]: does what a page of the tutorial says, in a new folder with `cases`, `talus` on the path.
+"""tutorial.py TALUS PAGE [--long]: does what a page of the tutorial says, in a new folder with `cases`, `build/talus`, and `talus` on the path.
 
 Blocks of the page, in order: `sh` is run and must end with 0; `sh long` only with --long (then nothing else of the page is left
 out); `sh fails` must not end with 0; `sh not-run` is for readers; `yaml NAME`, `python NAME` and so on are written into NAME. A
@@ -80,6 +80,7 @@ def main():
         sys.exit(SKIPPED)
     with tempfile.TemporaryDirectory() as folder:
         os.symlink(ROOT / "cases", folder + "/cases")
+        os.symlink(talus.parent, folder + "/build")
         page, ran = Page(path, folder, environment), False
         for line, info, body in found:
             kind, words = (info or [""])[0], info[1:]
