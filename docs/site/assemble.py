@@ -13,7 +13,6 @@ import cases
 import contents
 
 ROOT = cases.ROOT
-LANGUAGES = {".c": "c", ".h": "c", ".py": "python", ".sh": "bash", ".yaml": "yaml", ".geo": "c", ".inc": "c"}
 FENCE = re.compile(r"^(\s*)(```+|~~~+)")
 
 
@@ -44,7 +43,6 @@ class Site:
     def __init__(self, talus, out):
         self.talus, self.out = talus, out
         self.pages = [name for name in sources() if name != "README"] + ["gallery", "commands", "lists", "library"]
-        self.files = set()
         self.written = set()
 
     def write(self, name, text):
@@ -63,24 +61,25 @@ class Site:
         for path in [p for p in self.out.rglob("*") if p.is_file() and p not in self.written]:
             path.unlink()
 
-    def link(self, folder, page, target):
-        """A link of a page in `folder` of the repository as the site has it."""
+    def link(self, folder, page, words, target):
+        """The Markdown of a link of a page in `folder` of the repository as the site has it."""
         path, _, anchor = target.partition("#")
-        if re.match(r"[a-z]+:", target) or not path:
-            return target
-        there = page_of((ROOT / folder / path).resolve(), self.pages)
+        there = None if re.match(r"[a-z]+:", target) or not path else page_of((ROOT / folder / path).resolve(), self.pages)
         if there is None:
-            return target
+            return f"[{words}]({target})"
+        here = os.path.dirname(page) or "."
         if there.startswith("files/"):
-            self.files.add(there[len("files/"):])
-        return os.path.relpath(there, os.path.dirname(page) or ".") + ".md" + ("#" + anchor if anchor else "")
+            self.put("_extra/" + there + ".txt", (ROOT / there[len("files/"):]).read_bytes())
+            words = re.sub("`([^`]*)`", r"<code>\1</code>", words)
+            return f'<a href="{os.path.relpath(there, here)}.txt">{words}</a>'
+        return f"[{words}]({os.path.relpath(there, here)}.md{'#' + anchor if anchor else ''})"
 
     def rewrite(self, name, text):
         """The links of a Markdown text of the page `name`; a path in `code` that is a case or a page becomes a link, too."""
         folder, page = os.path.dirname(name), "index" if name == "README" else name
 
         def linked(match):
-            return f"{match.group(1)}{self.link(folder, page, match.group(2))})"
+            return self.link(folder, page, *match.groups())
 
         def named(match):
             path = match.group(1).rstrip("/")
@@ -99,7 +98,7 @@ class Site:
             elif mark and line.strip().startswith(fence):
                 fence = None
             elif not fence and not line.startswith("    "):
-                line = re.sub(r"(\]\()([^)\s]+)\)", linked, line)
+                line = re.sub(r"(?<!!)\[((?:[^\[\]`]|`[^`]*`)*)\]\(([^)\s]+)\)", linked, line)
                 line = re.sub(r"(?<!\[)`((?:docs|cases)/[\w./-]+)`(?!\])", named, line)
             if not fence and re.match(r"\s*\$\$", line):
                 lines.append("")  # the parser knows displayed formulas only as paragraphs of their own
@@ -124,19 +123,11 @@ class Site:
         if folder.parent != ROOT / "cases" or not folder.is_dir():
             return ""
         others = [p.name for p in sorted(folder.iterdir()) if p.suffix in (".yaml", ".geo", ".py") and p != case]
-        self.files.update(f"cases/{folder.name}/{other}" for other in others)
         text = "\n\n## The files\n\n"
         if others:
-            text += "Beside the case file: " + ", ".join(
-                f"[{other}](../../files/cases/{folder.name}/{other}.md)" for other in others) + ".\n\n"
+            links = [self.link(folder, name, other, other) for other in others]
+            text += f"Beside the case file: {', '.join(links)}.\n\n"
         return text + (f"`case.yaml`:\n\n```yaml\n{case.read_text()}```\n" if case.exists() else "")
-
-    def copy_files(self):
-        """A page for each file that is linked to."""
-        for name in sorted(self.files):
-            path = ROOT / name
-            language = LANGUAGES.get(path.suffix, "cmake" if path.name == "CMakeLists.txt" else "text")
-            self.write("files/" + name, f"---\norphan: true\n---\n# {name}\n\n````{language}\n{path.read_text()}\n````\n")
 
     def run(self, *words):
         return subprocess.run([self.talus, *words], capture_output=True, text=True, check=True).stdout
@@ -159,9 +150,10 @@ class Site:
         self.write("lists", text)
 
     def make_library(self):
-        self.files.add("include/talus.h")
-        self.write("library", "# The C library\n\nAll that the program does is open to a program of your own through one header,\n"
-                   "[talus.h](files/include/talus.h.md): <a href=\"library/index.html\">its reference, by Doxygen</a>, is a part of this site.\n" + toctree(self.order()[0].get("library", []), None))
+        header = self.link("", "library", "talus.h", "include/talus.h")
+        self.write("library", f"# The C library\n\nAll that the program does is open to a program of your own through one header, {header}:\n"
+                   "<a href=\"library/index.html\">its reference, by Doxygen</a>, is a part of this site.\n"
+                   + toctree(self.order()[0].get("library", []), None))
 
     def make_gallery(self):
         seconds, notes = cases.times()
@@ -223,7 +215,7 @@ class Site:
 def toctree(pages, caption):
     if not pages:
         return ""
-    head = "\n```{toctree}\n:hidden:\n" + (f":caption: {caption}\n" if caption else "")
+    head = "\n```{toctree}\n:hidden:\n:titlesonly:\n" + (f":caption: {caption}\n" if caption else "")
     return head + "".join(f"/{page}\n" for page in pages) + "```\n"
 
 
@@ -235,7 +227,6 @@ def main():
     site.make_lists()
     site.make_library()
     site.make_gallery()
-    site.copy_files()
     site.remove_others()
 
 

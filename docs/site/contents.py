@@ -2,8 +2,9 @@
 name. A new docs/*.md that nothing names stands under "Use", a new case in the gallery."""
 
 PARTS = [
-    ("Learn", ["docs/tutorial/*", "gallery", "docs/guide/choose", "docs/guide/resolution", "docs/guide/loads",
-               "docs/guide/trust", "docs/guide/limits", "docs/guide/*"]),
+    ("Learn", ["docs/tutorial/*", "gallery"]),
+    ("Guide", ["docs/guide/choose", "docs/guide/resolution", "docs/guide/loads", "docs/guide/trust", "docs/guide/limits",
+               "docs/guide/*"]),
     ("Use", ["docs/messages", "docs/sweep", "docs/calibrate", "docs/checkpoint", "docs/trust", "docs/python", "docs/*"]),
     ("Reference", ["docs/case-file", "lists", "docs/command-line", "commands", "library"]),
     ("Background", ["docs/theory", "docs/verification", "bench/README", "docs/scaling", "docs/decisions",
