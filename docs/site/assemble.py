@@ -188,7 +188,7 @@ class Site:
         below, parts, rest = {}, [], []
         for page in self.pages:
             for pattern, parent in contents.BELOW:
-                if fnmatch.fnmatchcase(page, pattern) and page != parent:
+                if fnmatch.fnmatchcase(page, pattern) and page != parent and parent in self.pages:
                     below.setdefault(parent, []).append(page)
                     break
             else:
@@ -201,8 +201,6 @@ class Site:
                          and (page == pattern or (page not in named and fnmatch.fnmatchcase(page, pattern)))]
             rest = [page for page in rest if page not in mine]
             parts.append((caption, mine))
-        if rest:
-            sys.exit(f"contents.py has no place for: {', '.join(rest)}")
         return below, parts
 
     def make_index(self):

@@ -1,5 +1,6 @@
 """In which part of the site a page stands. A page belongs to the first pattern that fits; what fits together is in order of
-name. A new docs/*.md that nothing names stands under "Use", a new case in the gallery."""
+name. A new docs/*.md that nothing names stands under "Use", a new case in the gallery,
+any other page under "Extend"."""
 
 PARTS = [
     ("Learn", ["docs/tutorial/*", "gallery"]),
@@ -9,7 +10,7 @@ PARTS = [
     ("Reference", ["docs/case-file", "lists", "docs/command-line", "commands", "library"]),
     ("Background", ["docs/theory", "docs/verification", "bench/README", "docs/scaling", "docs/decisions",
                     "docs/experiments/README", "CHANGELOG"]),
-    ("Extend", ["CONTRIBUTING", "src/README"]),
+    ("Extend", ["CONTRIBUTING", "src/README", "*"]),
 ]
 
 # Pages that stand below another one: the gallery has the cases, an overview its folder.
@@ -19,6 +20,7 @@ BELOW = [
     ("src/*/README", "src/README"),
     ("src/*/*/README", "src/README"),
     ("docs/example/*", "library"),
+    ("python/*", "docs/python"),
     ("docs/site/README", "CONTRIBUTING"),
     ("tests/*", "CONTRIBUTING"),
     ("bench/*", "bench/README"),
