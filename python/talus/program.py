@@ -126,7 +126,7 @@ def run(case, out, ranks=1, force=False, resume=False, progress=None, trust=Fals
             text = said.read().decode(errors="replace")
     if not stopped:
         _raise_for(process.returncode, text, keys, Run(out) if (out / "case.yaml").is_file() else None)
-        warn_of(text, 2)
+        warn_of(text)
     return Run(out)
 
 
