@@ -1,5 +1,6 @@
 #include "case/case.h"
 #include <string.h>
+#include "case/relief.h"
 
 static PetscErrorCode AmplitudeClear(Amplitude *amplitude)
 {
@@ -15,6 +16,7 @@ static PetscErrorCode ShapeClear(Shape *shape)
   for (PetscInt i = 0; i < shape->n_children; ++i) PetscCall(ShapeClear(&shape->children[i]));
   PetscCall(PetscFree(shape->children));
   PetscCall(PetscFree(shape->vertices));
+  PetscCall(ReliefDestroy(&shape->relief));
   PetscCall(PetscFree(shape->file));
   PetscCall(PetscFree(shape->group));
   PetscFunctionReturn(0);

@@ -30,6 +30,7 @@ typedef enum {
   SHAPE_INTERSECTION,
   SHAPE_CYLINDER,
   SHAPE_CONE,
+  SHAPE_TERRAIN,
   /* of walls alone: */
   SHAPE_LINE,
   SHAPE_ARC,
@@ -50,8 +51,9 @@ typedef struct Shape {
   PetscReal radii[2], length; /* of both ends; disk: of its hole and its rim */
   PetscReal angle[2];         /* arc: from, to, counter-clockwise from x, in degrees (as in files) */
   PetscBool open;             /* revolved, surface: thin, without an inside */
-  char *file, *group;         /* surface: STL or .msh, and a physical group of it or NULL */
+  char *file, *group;         /* surface: STL or .msh, and a physical group of it or NULL; terrain: .asc */
   PetscReal scale, offset[3]; /* of what the file gives: x = scale X + offset, m */
+  struct Relief *relief;      /* terrain: what the file gives */
   PetscInt n_children;
   struct Shape *children;
 } Shape;

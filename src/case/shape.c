@@ -1,4 +1,5 @@
 #include "case/case.h"
+#include "case/relief.h"
 
 static PetscBool box_contains(const Shape *s, PetscInt dim, const PetscReal *x, PetscReal tolerance)
 {
@@ -90,6 +91,7 @@ PetscBool shape_contains(const Shape *s, PetscInt dim, const PetscReal *x, Petsc
   case SHAPE_HALF_SPACE: return half_space_contains(s, dim, x, tolerance);
   case SHAPE_CYLINDER:
   case SHAPE_CONE: return cone_contains(s, x, tolerance);
+  case SHAPE_TERRAIN: return relief_contains(s->relief, x, tolerance);
   case SHAPE_UNION:
   case SHAPE_DIFFERENCE:
   case SHAPE_INTERSECTION: return children_contain(s, dim, x, tolerance);
@@ -175,6 +177,7 @@ void shape_bounds(const Shape *s, PetscInt dim, PetscReal min[3], PetscReal max[
   case SHAPE_HALF_SPACE: half_space_bounds(s, dim, min, max); break;
   case SHAPE_CYLINDER:
   case SHAPE_CONE: cone_bounds(s, min, max); break;
+  case SHAPE_TERRAIN: relief_bounds(s->relief, min, max); break;
   case SHAPE_UNION:
   case SHAPE_DIFFERENCE:
   case SHAPE_INTERSECTION: children_bounds(s, dim, min, max); break;

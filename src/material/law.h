@@ -116,5 +116,7 @@ const Law *law_find(const char *name);
 PetscErrorCode MaterialResolve(const Case *c, PetscInt index, Diag *diag, Material *material);
 /* Divide the strength of a material by factor (0: it does not yield); that of the case is factor 1. */
 void material_reduce(Material *material, PetscReal factor);
+/* lambda + 2 mu, Pa, of a mixed formulation, too: infinite where incompressible. */
+PetscReal material_confined(const Material *material);
 /* Write the initial state of one point, n_state numbers. */
 void law_initial_state(const Law *law, PetscReal *state);

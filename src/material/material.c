@@ -201,6 +201,8 @@ static PetscReal wave_modulus(const Elasticity *elastic, PetscBool mixed)
   return (mixed ? PetscMin(elastic->bulk, limit) : elastic->bulk) + 4.0 / 3.0 * elastic->shear;
 }
 
+PetscReal material_confined(const Material *m) { return m->elastic.bulk + 4.0 / 3.0 * m->elastic.shear; }
+
 PetscErrorCode MaterialResolve(const Case *c, PetscInt index, Diag *diag, Material *material)
 {
   const Resolver r = {&c->materials[index], diag, case_is_mixed(c)};

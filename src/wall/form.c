@@ -43,8 +43,7 @@ Nearness form_near(const Form *f, const PetscReal x[3], int flip, PetscReal high
 {
   WallPlace found;
   if (f->n) return combined_near(f, x, flip, high, place);
-  if (f->facets && f->shape->kind != SHAPE_POLYGON && f->shape->kind != SHAPE_LINE && f->shape->kind != SHAPE_SURFACE)
-    return revolved_near(f, x, flip, high, place);
+  if (f->facets && !form_is_flat(f)) return revolved_near(f, x, flip, high, place);
   if (f->facets) return facets_near(f->facets, x, flip, f->thin, high, place);
   const Nearness near = with_formula(f, x, &found);
   if (flip < 0) turn_over(&found);
@@ -116,7 +115,7 @@ static PetscErrorCode FacetsOfShape(Form *f, const char *path, Diag *diag)
   const Shape *s = f->shape;
 
   PetscFunctionBeginUser;
-  if (s->kind == SHAPE_SURFACE) PetscCall(SurfaceRead(s, path, diag, &f->facets));
+  if (s->kind == SHAPE_SURFACE || s->kind == SHAPE_TERRAIN) PetscCall(SurfaceRead(s, path, diag, &f->facets));
   else PetscCall(FacetsOfLine(s->n_vertices, s->vertices, s->kind == SHAPE_POLYGON, f->axis, &f->facets));
   for (int d = 0; d < 6 && f->facets; ++d) f->bounds[d] = f->facets->bounds[d];
   PetscFunctionReturn(0);
@@ -152,7 +151,8 @@ PetscErrorCode FormCreate(const Shape *shape, PetscInt dim, PetscBool axis, cons
     break;
   case SHAPE_POLYGON:
   case SHAPE_LINE:
-  case SHAPE_SURFACE: PetscCall(FacetsOfShape(f, path, diag)); break;
+  case SHAPE_SURFACE:
+  case SHAPE_TERRAIN: PetscCall(FacetsOfShape(f, path, diag)); break;
   case SHAPE_CYLINDER:
   case SHAPE_CONE:
   case SHAPE_DISK:

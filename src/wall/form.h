@@ -15,6 +15,13 @@ struct Form {
   Form *child;
 };
 
+/* Are its facets the surface itself, not a section that is turned about an axis? */
+static inline PetscBool form_is_flat(const Form *f)
+{
+  const ShapeKind kind = f->shape->kind;
+  return kind == SHAPE_POLYGON || kind == SHAPE_LINE || kind == SHAPE_SURFACE || kind == SHAPE_TERRAIN;
+}
+
 /* Mistakes go to diag at `path`; *form is NULL then. axis: of axisymmetric kinematics. */
 PetscErrorCode FormCreate(const Shape *shape, PetscInt dim, PetscBool axis, const char *path, Diag *diag, Form **form);
 PetscErrorCode FormDestroy(Form **form);

@@ -220,13 +220,12 @@ static PetscErrorCode AddPlane(const Making *m, const Form *f)
 static PetscErrorCode AddForm(const Making *m, const Form *f)
 {
   const Shape *s = f->shape;
-  const PetscBool revolved = s->kind != SHAPE_POLYGON && s->kind != SHAPE_LINE && s->kind != SHAPE_SURFACE;
 
   PetscFunctionBeginUser;
   for (PetscInt i = 0; i < f->n; ++i) PetscCall(AddForm(m, f->child + i));
   for (PetscInt i = 0; f->facets && i < f->facets->n; ++i) {
     const PetscReal(*corner)[3] = (const PetscReal(*)[3])f->facets->corner[i];
-    if (revolved) PetscCall(Turn(m, f->base, f->direction, corner[0], corner[1]));
+    if (!form_is_flat(f)) PetscCall(Turn(m, f->base, f->direction, corner[0], corner[1]));
     else PetscCall(Add(m, corner));
   }
   if (s->kind == SHAPE_BOX) PetscCall(AddBox(m, s));

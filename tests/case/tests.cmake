@@ -1,2 +1,3 @@
 talus_test(case/test_shape)
 talus_test(case/test_amplitude)
+talus_test(case/test_relief)

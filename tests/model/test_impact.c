@@ -99,8 +99,11 @@ static void test_impulse(void **state)
     {"mpm", "gimp", 0, 2e-3, CELL_QUADRILATERAL, 0.3, "consistent"},
     {"mpm", "gimp", 0, 4e-3, CELL_HEXAHEDRON, 0.3, "consistent"},
   };
+  PetscMPIInt size;
   (void)state;
-  for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(falls); ++k) impact(&falls[k]);
+  CALL(MPI_Comm_size(PETSC_COMM_WORLD, &size));
+  for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(falls); ++k)
+    if (size == 1 || falls[k].step >= 2e-3) impact(&falls[k]); /* of ranks a shorter step tells nothing */
 }
 
 /* A block that hangs from its upper side and is let go at t = 0: the trapezoidal rule takes the

@@ -3,6 +3,7 @@
 #include <math.h>
 #include <string.h>
 #include "basis/cell.h"
+#include "case/relief.h"
 #include "input/schema/schema.h"
 
 /* --- analysis --- */
@@ -231,6 +232,19 @@ PetscErrorCode SchemaCheckCone(SchemaReader *r, const YamlNode *mapping, void *t
   if (!(s->radii[0] + s->radii[1] > 0))
     SchemaError(r, yaml_find(mapping, "radius"), "%s: both ends have radius 0", yaml_path(mapping, path, sizeof(path)));
   PetscCall(SchemaCheckHalfSpace(r, mapping, target));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode SchemaCheckTerrain(SchemaReader *r, const YamlNode *mapping, void *target)
+{
+  Shape *s = target;
+  char message[1024];
+
+  PetscFunctionBeginUser;
+  if (!s->file) PetscFunctionReturn(0);
+  PetscCall(ReliefDestroy(&s->relief));
+  PetscCall(ReliefRead(s->file, s->scale, s->offset, &s->relief, sizeof message, message));
+  if (!s->relief) SchemaError(r, yaml_find(mapping, "file"), "%s", message);
   PetscFunctionReturn(0);
 }
 

@@ -50,21 +50,40 @@ static const SchemaTable cone = {.name = "cone",
                                  .entries = cone_entries,
                                  .check = SchemaCheckCone};
 
+static const SchemaEntry terrain_entries[] = {
+  KEY("file", FILE, NULL, "heights as an ESRI ASCII grid (.asc); gdal_translate -of AAIGrid makes one of a GeoTIFF",
+      REQUIRED, AT(Shape, file)),
+  KEY("scale", NUMBER, NULL, "m for one unit of the file, of its coordinates and heights", .fallback = "1", ABOVE(0),
+      AT(Shape, scale)),
+  KEY("offset", VECTOR, "m", "where the file's origin is", .note = "0", AT(Shape, offset)),
+  {.key = NULL},
+};
+static const SchemaTable terrain = {
+  .name = "terrain",
+  .help =
+    "What lies below a surface of heights along z, flat between three posts. The difference of two is what lies "
+    "between "
+    "them: a slide on its bed. Where a post has no height (NODATA_value) there is nothing.",
+  .entries = terrain_entries,
+  .check = SchemaCheckTerrain};
+
 /* What bodies, selectors and walls may be. */
-#define SOLIDS                                                                                              \
-  KEY("box", TABLE, NULL, "a box along the axes", .table = &shape_box, TAG(SHAPE_BOX)),                     \
-    KEY("circle", TABLE, NULL, "a circle", .table = &ball, ONLY_2D, TAG(SHAPE_BALL)),                       \
-    KEY("sphere", TABLE, NULL, "a sphere", .table = &ball, ONLY_3D, TAG(SHAPE_BALL)),                       \
-    KEY("cylinder", TABLE, NULL, "a cylinder", .table = &cylinder, ONLY_3D, TAG(SHAPE_CYLINDER)),           \
-    KEY("cone", TABLE, NULL, "a cone or a frustum", .table = &cone, ONLY_3D, TAG(SHAPE_CONE)),              \
-    KEY("polygon", POLYGON, "m", "a polygon by its corners, closed by itself", ONLY_2D, TAG(SHAPE_POLYGON), \
-        AT(Shape, vertices), .count = offsetof(Shape, n_vertices)),                                         \
-    KEY("half-space", TABLE, NULL, "one side of a plane", .table = &half_space, TAG(SHAPE_HALF_SPACE)),     \
-    KEY("union", LIST, NULL, "what lies in any of these shapes", .table = &schema_shape, TAG(SHAPE_UNION),  \
-        AT(Shape, children), .count = offsetof(Shape, n_children)),                                         \
-    KEY("difference", LIST, NULL, "the first shape without all the others", .table = &schema_shape,         \
-        TAG(SHAPE_DIFFERENCE), AT(Shape, children), .count = offsetof(Shape, n_children)),                  \
-    KEY("intersection", LIST, NULL, "what lies in all of these shapes", .table = &schema_shape,             \
+#define SOLIDS                                                                                                  \
+  KEY("box", TABLE, NULL, "a box along the axes", .table = &shape_box, TAG(SHAPE_BOX)),                         \
+    KEY("circle", TABLE, NULL, "a circle", .table = &ball, ONLY_2D, TAG(SHAPE_BALL)),                           \
+    KEY("sphere", TABLE, NULL, "a sphere", .table = &ball, ONLY_3D, TAG(SHAPE_BALL)),                           \
+    KEY("cylinder", TABLE, NULL, "a cylinder", .table = &cylinder, ONLY_3D, TAG(SHAPE_CYLINDER)),               \
+    KEY("cone", TABLE, NULL, "a cone or a frustum", .table = &cone, ONLY_3D, TAG(SHAPE_CONE)),                  \
+    KEY("terrain", TABLE, NULL, "what lies below a surface of heights from a file", .table = &terrain, ONLY_3D, \
+        TAG(SHAPE_TERRAIN)),                                                                                    \
+    KEY("polygon", POLYGON, "m", "a polygon by its corners, closed by itself", ONLY_2D, TAG(SHAPE_POLYGON),     \
+        AT(Shape, vertices), .count = offsetof(Shape, n_vertices)),                                             \
+    KEY("half-space", TABLE, NULL, "one side of a plane", .table = &half_space, TAG(SHAPE_HALF_SPACE)),         \
+    KEY("union", LIST, NULL, "what lies in any of these shapes", .table = &schema_shape, TAG(SHAPE_UNION),      \
+        AT(Shape, children), .count = offsetof(Shape, n_children)),                                             \
+    KEY("difference", LIST, NULL, "the first shape without all the others", .table = &schema_shape,             \
+        TAG(SHAPE_DIFFERENCE), AT(Shape, children), .count = offsetof(Shape, n_children)),                      \
+    KEY("intersection", LIST, NULL, "what lies in all of these shapes", .table = &schema_shape,                 \
         TAG(SHAPE_INTERSECTION), AT(Shape, children), .count = offsetof(Shape, n_children))
 
 static const SchemaEntry shape_entries[] = {

@@ -1,6 +1,18 @@
 /* Keys of rigid walls, and of interfaces between bodies. */
 #include "input/schema/schema_keys.h"
 
+/* The law of what meets, of walls and interfaces alike. */
+#define CONTACT_KEYS(spec, law_words)                                                                            \
+  KEY("contact", WORD, NULL, "law of the interface", .words = law_words,                                         \
+      .note = "friction if `friction`, `friction_angle` or `adhesion` is given, else frictionless",              \
+      AT(spec, contact)),                                                                                        \
+    KEY("friction", NUMBER, NULL, "coefficient of friction, the tangent of its angle", .note = "0", AT_LEAST(0), \
+        AT(spec, friction)),                                                                                     \
+    KEY("friction_angle", NUMBER, "deg", "the angle instead", .bounded = PETSC_TRUE, .min = 0, .max = 90,        \
+        .max_open = PETSC_TRUE, INPUT_ONLY, AT(spec, friction)),                                                 \
+    KEY("adhesion", NUMBER, "N/m2", "tangential stress that contact bears without pressure", .fallback = "0",    \
+        AT_LEAST(0), AT(spec, adhesion))
+
 static const SchemaWord contact_words[] = {
   {"frictionless", CONTACT_FRICTIONLESS, "material slides along the wall and leaves it freely"},
   {"friction", CONTACT_FRICTION, "Coulomb: it slides where the tangential force reaches friction times the normal one"},
@@ -44,15 +56,7 @@ static const SchemaEntry wall_entries[] = {
       ABOVE(0), AT(WallSpec, until), GIVEN(WallSpec, has_until)),
   KEY("bodies", REFERENCES, NULL, "names of the bodies that meet it", .note = "all", .target = "bodies",
       AT(WallSpec, bodies), .count = offsetof(WallSpec, n_bodies)),
-  KEY("contact", WORD, NULL, "law of the interface", .words = contact_words,
-      .note = "friction if `friction`, `friction_angle` or `adhesion` is given, else frictionless",
-      AT(WallSpec, contact)),
-  KEY("friction", NUMBER, NULL, "coefficient of friction, the tangent of its angle", .note = "0", AT_LEAST(0),
-      AT(WallSpec, friction)),
-  KEY("friction_angle", NUMBER, "deg", "the angle instead", .bounded = PETSC_TRUE, .min = 0, .max = 90,
-      .max_open = PETSC_TRUE, INPUT_ONLY, AT(WallSpec, friction)),
-  KEY("adhesion", NUMBER, "N/m2", "tangential stress that contact bears without pressure", .fallback = "0", AT_LEAST(0),
-      AT(WallSpec, adhesion)),
+  CONTACT_KEYS(WallSpec, contact_words),
   {.key = NULL},
 };
 static const SchemaGroup wall_groups[] = {{GROUP_AT_MOST_ONE, {"friction", "friction_angle", NULL}},
@@ -125,15 +129,7 @@ static const SchemaEntry interface_entries[] = {
   KEY("between", REFERENCES, NULL,
       "the names of two bodies; the surface of the first is kept out of that of the second", REQUIRED,
       .target = "bodies", AT(InterfaceSpec, between), .count = offsetof(InterfaceSpec, n_between)),
-  KEY("contact", WORD, NULL, "law of the interface", .words = interface_words,
-      .note = "friction if `friction`, `friction_angle` or `adhesion` is given, else frictionless",
-      AT(InterfaceSpec, contact)),
-  KEY("friction", NUMBER, NULL, "coefficient of friction, the tangent of its angle", .note = "0", AT_LEAST(0),
-      AT(InterfaceSpec, friction)),
-  KEY("friction_angle", NUMBER, "deg", "the angle instead", .bounded = PETSC_TRUE, .min = 0, .max = 90,
-      .max_open = PETSC_TRUE, INPUT_ONLY, AT(InterfaceSpec, friction)),
-  KEY("adhesion", NUMBER, "N/m2", "tangential stress that contact bears without pressure", .fallback = "0", AT_LEAST(0),
-      AT(InterfaceSpec, adhesion)),
+  CONTACT_KEYS(InterfaceSpec, interface_words),
   {.key = NULL},
 };
 const SchemaTable schema_interface = {

@@ -15,6 +15,10 @@
  * against each other for ever: a gap that falls no faster may stay, up to so much of a cell. */
 #define STALLS 0.5
 #define ALLOWED 1e-3
+/* Of a mixed formulation the penalty is measured by shear, which is what a free surface feels; where
+ * matter is locked in it feels its volume, and gaps fall slowly: then the penalty rises until they fall
+ * by about so much, up to what volume opposes. */
+#define FALLS 10
 
 PetscErrorCode ContactCreate(const Case *c, const Walls *walls, Contact **contact)
 {
@@ -70,6 +74,8 @@ void contact_prepare(Contact *s, PetscReal t, PetscReal dt, PetscReal inertia, P
 {
   for (ContactPoint *c = s->point; c < s->point + s->n; ++c) {
     c->law.penalty = STIFFER * c->section * stiffness_of(c, s->length, inertia);
+    c->stiffest = c->stiffer * c->law.penalty;
+    c->left = 0;
     c->law.bond = c->bond / share;
     if (c->wall < s->n_walls) wall_motion(s->walls, c->wall, t, t + dt, c->x, c->swept);
     first_multiplier(s, c);
@@ -158,28 +164,54 @@ static PetscErrorCode Assemble(void *data, const NodalScene *scene, const NodalO
   PetscFunctionReturn(0);
 }
 
+/* Gap or slip that its forces leave, m. */
+static PetscReal left_of(const ContactPoint *c)
+{
+  PetscReal left = PetscAbsReal(c->now.pressure - c->multiplier.pressure);
+  if (c->state == CONTACT_OPEN) return 0;
+  for (int d = 0; d < 3 && c->state == CONTACT_STICKS; ++d)
+    left = PetscMax(left, PetscAbsReal(c->now.shear[d] - c->multiplier.shear[d]));
+  return left / c->law.penalty;
+}
+
+/* Does what is left fall slowly, although a higher penalty would be no more than volume opposes? */
+static PetscBool is_soft(const ContactPoint *c, PetscReal left)
+{
+  return c->left > 0 && left > STALLS * c->left && c->law.penalty < c->stiffest;
+}
+
+/* Gaps fall by 1 + penalty / stiffness of what is pressed: what is measured says which that is. */
+static void stiffen(ContactPoint *c, PetscReal left)
+{
+  const PetscReal rate = PetscMin(left / c->left, 0.9);
+  c->law.penalty = PetscMin(c->stiffest, c->law.penalty * (FALLS - 1) * rate / (1 - rate));
+}
+
 /* Multipliers become the forces that there are, and the balance is sought again, unless gaps and
  * slips of what is in contact have all but vanished. */
 static PetscErrorCode Augment(void *data, const NodalScene *scene, PetscInt change, PetscBool *again)
 {
   Contact *s = data;
-  PetscReal worst = 0, of_all;
+  PetscReal worst[2] = {0, 0}, of_all[2]; /* of all points, of those that may be stiffened */
 
   PetscFunctionBeginUser;
   for (const ContactPoint *c = s->point; c < s->point + s->n; ++c) {
-    if (c->state == CONTACT_OPEN) continue;
-    const PetscReal along = PetscAbsReal((c->now.pressure - c->multiplier.pressure) / c->law.penalty);
-    worst = PetscMax(worst, along);
-    if (c->state == CONTACT_STICKS)
-      for (int d = 0; d < 3; ++d)
-        worst = PetscMax(worst, PetscAbsReal(c->now.shear[d] - c->multiplier.shear[d]) / c->law.penalty);
+    const PetscReal left = left_of(c);
+    worst[0] = PetscMax(worst[0], left);
+    if (is_soft(c, left)) worst[1] = PetscMax(worst[1], left);
   }
-  PetscCall(MPIU_Allreduce(&worst, &of_all, 1, MPIU_REAL, MPIU_MAX, scene->grid->comm));
-  const PetscBool stalls = change > 0 && of_all > STALLS * s->worst && of_all <= ALLOWED * s->length;
-  *again = of_all > CLOSED * s->length && change < MOST_CHANGES && !stalls;
-  s->worst = of_all;
+  PetscCall(MPIU_Allreduce(worst, of_all, 2, MPIU_REAL, MPIU_MAX, scene->grid->comm));
+  const PetscBool slow = change > 0 && of_all[0] > STALLS * s->worst, soft = of_all[1] > CLOSED * s->length;
+  const PetscBool stalls = slow && !soft && of_all[0] <= ALLOWED * s->length;
+  *again = of_all[0] > CLOSED * s->length && change < MOST_CHANGES && !stalls;
+  s->worst = of_all[0];
   if (!*again) PetscFunctionReturn(0);
-  for (ContactPoint *c = s->point; c < s->point + s->n; ++c) c->multiplier = c->now;
+  for (ContactPoint *c = s->point; c < s->point + s->n; ++c) {
+    const PetscReal left = left_of(c);
+    if (is_soft(c, left)) stiffen(c, left);
+    c->multiplier = c->now;
+    c->left = left;
+  }
   PetscFunctionReturn(0);
 }
 

@@ -25,9 +25,12 @@ typedef struct {
   PetscReal section;  /* of the surface that it stands for, m2 */
   /* of its material, and of that of the other body (0: a wall), Pa, kg/m3 */
   PetscReal modulus[2], density[2];
-  PetscReal open; /* gap at the start of the step, m */
-  PetscReal bond; /* that the wall bears along itself without pressure, N */
+  PetscReal stiffer; /* by so much does it oppose a change of volume more than `modulus` says */
+  PetscReal open;    /* gap at the start of the step, m */
+  PetscReal bond;    /* that the wall bears along itself without pressure, N */
   ContactLaw law;
+  PetscReal stiffest; /* penalty, N/m */
+  PetscReal left;     /* gap or slip when multipliers were last changed, m; 0: not yet in contact */
   ContactForce multiplier, now;
   ContactState state;  /* at the last assembly */
   ContactState before; /* at the end of the last step */

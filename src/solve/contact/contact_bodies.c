@@ -76,6 +76,7 @@ static PetscErrorCode Meet(Contact *s, const NodalScene *scene, const NodeFinder
   c->reach = kept[1] > 0 ? kept[1] : contact_reach(p->F, pair->normal, p->reach);
   c->section = contact_section(scene, p->owner, pair->normal);
   c->modulus[0] = p->modulus, c->density[0] = p->density;
+  c->stiffer = PetscMax(p->stiffer, pair->other->stiffer);
   c->modulus[1] = pair->other->modulus, c->density[1] = pair->other->density;
   c->law = contact_law_of(spec->contact, spec->friction);
   c->bond = spec->adhesion * c->section;

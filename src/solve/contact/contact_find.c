@@ -110,6 +110,7 @@ static PetscErrorCode MeetPoint(Contact *s, const NodalScene *scene, PetscInt g,
   c->reach = reach;
   c->section = contact_section(scene, p, place.normal);
   c->modulus[0] = material->wave_modulus, c->density[0] = material->density;
+  c->stiffer = material_confined(material) / material->wave_modulus;
   c->law = contact_law_of(scene->c->walls[k].contact, scene->c->walls[k].friction);
   c->bond = scene->c->walls[k].adhesion * c->section;
   contact_remember(c, dim, kept + k * CONTACT_KEPT(dim), place.normal);

@@ -15,6 +15,7 @@ typedef struct {
   PetscReal reach;            /* POINT_REACH, m */
   PetscReal size;             /* side of a square of its part of the section, m */
   PetscReal modulus, density; /* of its material, Pa, kg/m3 */
+  PetscReal stiffer;          /* see ContactPoint */
   PetscInt n;                 /* its nodes, by their numbers in the whole grid; 0: not asked for */
   PetscInt node[SURFACE_NODES];
   PetscReal N[SURFACE_NODES], dN[2 * SURFACE_NODES];

@@ -37,6 +37,7 @@ static void describe(const SurfaceInput *in, PetscInt p, SurfacePoint *s)
                       .owner = p,
                       .reach = points->real[POINT_REACH][p],
                       .modulus = material->wave_modulus,
+                      .stiffer = material_confined(material) / material->wave_modulus,
                       .density = material->density};
   for (PetscInt d = 0; d < points->dim; ++d) s->x[d] = x[d];
   point_F(points, p, s->F);

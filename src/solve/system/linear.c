@@ -1,9 +1,11 @@
 #include "solve/system/linear.h"
 #include "solve/blocks/blocks.h"
 
-/* cells that a wave crosses in a step up to which a dynamic problem is solved by iteration
- * first */
-#define ITERATE_BELOW 100
+/* cells that a wave crosses in a step up to which a dynamic problem is solved by iteration first: in
+ * space, in the plane, there with an unsymmetric tangent */
+#define ITERATE_BELOW_3D 1000
+#define ITERATE_BELOW_2D 300
+#define ITERATE_BELOW_SOIL 100
 /* cells that a wave crosses in a step up to which unsymmetric systems with multipliers take
  * projections */
 #define PROJECT_BELOW 3
@@ -140,12 +142,18 @@ static PetscErrorCode UseMultigrid(KSP ksp, const LinearProblem *p, const char *
   PetscFunctionReturn(0);
 }
 
+static PetscReal iterate_below(const LinearProblem *p)
+{
+  if (p->dim == 3) return ITERATE_BELOW_3D;
+  return p->symmetric ? ITERATE_BELOW_2D : ITERATE_BELOW_SOIL;
+}
+
 /* Fill-in makes a factorisation of a 3D matrix costly much earlier than of a 2D one. Tangents of soil
  * that is about to fail are unsymmetric, and multigrid may not find their solution. */
 static PetscBool direct_pays(const LinearProblem *p)
 {
   if (p->mixed) return p->unknowns < (p->dim == 2 ? 500000 : 20000);
-  if (p->dynamic && p->courant < ITERATE_BELOW) return PETSC_FALSE;
+  if (p->dynamic && p->courant < iterate_below(p)) return PETSC_FALSE;
   if (p->dim == 2) return p->unknowns < 1000000;
   return p->unknowns < (p->symmetric ? 25000 : 100000);
 }

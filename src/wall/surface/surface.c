@@ -1,4 +1,4 @@
-/* A surface of triangles from a file: STL, or the triangles and quadrilaterals of a Gmsh mesh. */
+/* A surface of triangles from a file: STL, the triangles and quadrilaterals of a Gmsh mesh, or terrain. */
 #include <string.h>
 #include "base/text.h"
 #include "grid/gmsh/msh.h"
@@ -91,7 +91,8 @@ static PetscErrorCode ReadTriangles(const Source *s, Triangles *t)
   char message[1024] = "";
 
   PetscFunctionBeginUser;
-  if (ends_with(shape->file, ".stl")) PetscCall(StlRead(shape->file, t, sizeof message, message));
+  if (shape->relief) PetscCall(TerrainTriangles(shape->relief, t, sizeof message, message));
+  else if (ends_with(shape->file, ".stl")) PetscCall(StlRead(shape->file, t, sizeof message, message));
   else if (ends_with(shape->file, ".msh")) PetscCall(ReadMesh(s, t, sizeof message, message));
   else (void)snprintf(message, sizeof message, "'%s' is neither a .stl nor a .msh file", shape->file);
   if (message[0]) diag_error(s->diag, s->path, "%s", message);
@@ -101,7 +102,7 @@ static PetscErrorCode ReadTriangles(const Source *s, Triangles *t)
     t->n = 0;
   }
   PetscReal *x = (PetscReal *)t->corner;
-  for (PetscInt i = 0; i < 9 * t->n; ++i) x[i] = shape->scale * x[i] + shape->offset[i % 3];
+  for (PetscInt i = 0; i < 9 * t->n && !shape->relief; ++i) x[i] = shape->scale * x[i] + shape->offset[i % 3];
   PetscFunctionReturn(0);
 }
 
@@ -192,7 +193,7 @@ PetscErrorCode SurfaceRead(const Shape *shape, const char *path, Diag *diag, Fac
 
   PetscFunctionBeginUser;
   *facets = NULL;
-  (void)snprintf(s.path, sizeof s.path, "%.480s.surface.file", path);
+  (void)snprintf(s.path, sizeof s.path, "%.480s.%s.file", path, shape->relief ? "terrain" : "surface");
   PetscCall(ReadTriangles(&s, &t));
   if (t.n) PetscCall(MakeFacets(&s, &t, facets));
   PetscCall(TrianglesFree(&t));

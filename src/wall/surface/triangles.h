@@ -24,6 +24,10 @@ PetscErrorCode TrianglesAllocate(PetscInt n, Triangles *t);
 /* --- stl.c --- ASCII or binary; a mistake is told by `message`, which is empty otherwise. */
 PetscErrorCode StlRead(const char *path, Triangles *t, size_t size, char *message);
 
+/* --- terrain.c --- The solid below heights: its surface, its sides and a bottom. A post without a height is
+ * told by `message`. */
+PetscErrorCode TerrainTriangles(const struct Relief *relief, Triangles *t, size_t size, char *message);
+
 /* --- weld.c --- */
 /* Vertices of the corners; triangles that have lost one of their three are left out, the first of
  * them is number *first. */

@@ -1,0 +1,47 @@
+#include "case/relief.h"
+#include <math.h>
+
+PetscErrorCode ReliefDestroy(Relief **relief)
+{
+  PetscFunctionBeginUser;
+  if (*relief) PetscCall(PetscFree((*relief)->height));
+  PetscCall(PetscFree(*relief));
+  PetscFunctionReturn(0);
+}
+
+/* The square that x is in, and where: 0 to 1. */
+static PetscBool find(const Relief *r, const PetscReal x[2], PetscReal tolerance, PetscInt square[2], PetscReal at[2])
+{
+  for (int d = 0; d < 2; ++d) {
+    const PetscReal along = (x[d] - r->low[d]) / r->step, slack = PetscAbsReal(tolerance) / r->step;
+    if (!(along >= -slack && along <= (PetscReal)(r->n[d] - 1) + slack)) return PETSC_FALSE;
+    square[d] = PetscMax(0, PetscMin(r->n[d] - 2, (PetscInt)floor(along)));
+    at[d] = along - (PetscReal)square[d];
+  }
+  return PETSC_TRUE;
+}
+
+PetscBool relief_contains(const Relief *r, const PetscReal x[3], PetscReal tolerance)
+{
+  PetscInt s[2];
+  PetscReal u[2];
+  if (!find(r, x, tolerance, s, u)) return PETSC_FALSE;
+  const PetscReal a = relief_post(r, s[0], s[1]), c = relief_post(r, s[0] + 1, s[1] + 1);
+  const PetscReal b = u[0] >= u[1] ? relief_post(r, s[0] + 1, s[1]) : relief_post(r, s[0], s[1] + 1);
+  const PetscReal far = PetscMax(u[0], u[1]), near = PetscMin(u[0], u[1]);
+  const PetscReal slope = PetscSqrtReal(PetscSqr(b - a) + PetscSqr(c - b)) / r->step;
+  const PetscReal height = a + far * (b - a) + near * (c - b);
+  /* a comparison with NaN is false */
+  return x[2] <= height + tolerance * PetscSqrtReal(1 + slope * slope) && x[2] >= r->bottom - tolerance;
+}
+
+void relief_bounds(const Relief *r, PetscReal min[3], PetscReal max[3])
+{
+  for (int d = 0; d < 2; ++d) {
+    min[d] = r->low[d];
+    max[d] = r->low[d] + (PetscReal)(r->n[d] - 1) * r->step;
+  }
+  min[2] = max[2] = r->bottom;
+  for (PetscInt i = 0; i < r->n[0] * r->n[1]; ++i)
+    if (r->height[i] > max[2]) max[2] = r->height[i];
+}
