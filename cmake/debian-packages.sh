@@ -8,6 +8,7 @@ packages_of() {
       echo build-essential cmake ninja-build pkg-config
       echo petsc-dev libopenmpi-dev openmpi-bin libhdf5-openmpi-dev libopenblas-dev
       echo libfyaml-dev zlib1g-dev libcmocka-dev gmsh gnuplot-nox
+      echo python3-numpy python3-h5py python3-mpi4py
       ;;
     # The site: pages and theme, formulas set at build time, the reference of the header.
     docs) echo python3-sphinx python3-myst-parser furo katex doxygen ;;

@@ -92,6 +92,28 @@ typedef struct TalusModel TalusModel;
  */
 typedef void (*TalusBodyForce)(void *context, const double X[3], double t, double b[3]);
 
+/**
+ * @brief The same for all points of this rank at once, m/s2.
+ * @param context  what was handed over with the function
+ * @param n        number of points; 0 on a rank that has none
+ * @param X        undeformed positions, m, n x 3; the third is 0 in plane strain
+ * @param x        positions at the start of the step, m, n x 3
+ * @param t        time, s
+ * @param b        result, n x 3, zero on entry
+ */
+typedef void (*TalusBodyForces)(void *context, int n, const double *X, const double *x, double t, double *b);
+
+/**
+ * @brief Told of every step of a run, on every rank.
+ * @param context  what was handed to TalusCaseSetProgress()
+ * @param step     number of steps so far
+ * @param time     s
+ * @param end      end time of the case, s
+ * @return 0 to go on; anything else, on any rank, ends the run as a signal does: state and
+ *   checkpoint are written, the outcome is #TALUS_GAVE_UP
+ */
+typedef int (*TalusProgress)(void *context, int step, double time, double end);
+
 /** @name Session
  * @{ */
 
@@ -129,6 +151,17 @@ const char *TalusVersion(void);
 /** @brief A #TalusError in words, never NULL. Needs no TalusInitialize(). */
 const char *talus_error_string(int error);
 
+/**
+ * @brief Fields of material points and nodes, those of `talus list fields`. Needs no
+ * TalusInitialize().
+ * @param i           from 0
+ * @param name        result, which the library keeps, or NULL
+ * @param unit        result, "" if it has none, or NULL
+ * @param components  result, numbers a point, 0 if points do not have it, or NULL
+ * @return #TALUS_OK, or #TALUS_ERROR_ARGUMENT past the last one
+ */
+int TalusField(int i, const char **name, const char **unit, int *components);
+
 /** @brief Give back a text that the library handed out; *text becomes NULL. */
 void TalusTextFree(char **text);
 
@@ -148,6 +181,50 @@ void TalusTextFree(char **text);
  * @return #TALUS_OK; #TALUS_ERROR_INPUT: unreadable, or mistakes in it
  */
 int TalusCaseOpen(MPI_Comm comm, const char *file, int n_set, const char *const *set, TalusCase **c, char **messages);
+
+/**
+ * @brief Validate a case that stands in memory. Collective over `comm`.
+ *
+ * As TalusCaseOpen(), of a text in place of a file.
+ * @param comm      the ranks that will work on it; it must outlive the case
+ * @param file      the name that messages give it; files that the case names are looked for from
+ *   its folder. It need not be there.
+ * @param text      YAML or JSON, the same on all ranks
+ * @param n_set     number of entries in set
+ * @param set       changes, or NULL
+ * @param c         result; NULL after an error
+ * @param messages  NULL to print, or result
+ * @return #TALUS_OK; #TALUS_ERROR_INPUT: mistakes in it
+ */
+int TalusCaseParse(MPI_Comm comm, const char *file, const char *text, int n_set, const char *const *set, TalusCase **c,
+                   char **messages);
+
+/**
+ * @brief The resolved case as YAML: every key with its value, defaults too, as case.yaml of a run
+ * has it. Not collective.
+ * @param c     the case
+ * @param text  result, to be given back with TalusTextFree()
+ */
+int TalusCaseText(const TalusCase *c, char **text);
+
+/**
+ * @brief Body forces besides gravity, of the runs and models of the case made from now on. Not
+ * collective, but the same on every rank.
+ *
+ * When they are asked for, TalusModelSetBodyForce() tells. A run that is resumed needs them again.
+ * @param c        the case
+ * @param force    the function, called on every rank for its points, or NULL for none
+ * @param context  handed to it
+ */
+int TalusCaseSetBodyForces(TalusCase *c, TalusBodyForces force, void *context);
+
+/**
+ * @brief Be told of the steps of TalusRunCase(). Not collective, but the same on every rank.
+ * @param c         the case
+ * @param progress  the function, or NULL for none
+ * @param context   handed to it
+ */
+int TalusCaseSetProgress(TalusCase *c, TalusProgress progress, void *context);
 
 /** @brief Forget a case; its models must be gone before it. Collective. */
 int TalusCaseClose(TalusCase **c);
@@ -249,6 +326,9 @@ int TalusModelDestroy(TalusModel **model);
  */
 int TalusModelSetBodyForce(TalusModel *model, TalusBodyForce force, void *context);
 
+/** @brief The same with a function for all points at once. Collective. */
+int TalusModelSetBodyForces(TalusModel *model, TalusBodyForces force, void *context);
+
 /**
  * @brief Advance by one step, halved until Newton's method converges. Collective.
  * @param model  the model
@@ -304,6 +384,35 @@ int TalusModelMeasure(const TalusModel *model, const char *name, double *value);
  */
 int TalusModelPoints(const TalusModel *model, const char *field, int *n, int *components, double *buffer,
                      size_t capacity);
+
+/**
+ * @brief The model's own array of this rank's points: nothing is copied. Not collective.
+ *
+ * It is the model's until its next step, after which it must be asked for anew: points come, go and
+ * change their order. Arrays, with dim components for vectors (2 in the plane and in axisymmetry):
+ * position, displacement (m), velocity (m/s), acceleration (m/s2), mass (kg), deformation_gradient
+ * (9 row by row in 3D, else xx xy yx yy zz), kirchhoff_stress (Pa; 6 in 3D, else xx yy zz xy), state
+ * (what the law remembers, as many numbers as the largest law of the case needs).
+ *
+ * What may be written, is followed by TalusModelChanged(): state, with any method; velocity and
+ * acceleration, where points carry the motion (mpm; with fem and gmm nodes keep theirs). The
+ * model's energies do not count what that gives or takes.
+ * @param model       the model
+ * @param name        one of the above
+ * @param data        result
+ * @param n           result, number of points of this rank, or NULL
+ * @param components  result, numbers a point (0: the case has no such array), or NULL
+ * @param writable    result, may it be written?, or NULL
+ * @return #TALUS_OK, or #TALUS_ERROR_UNKNOWN
+ */
+int TalusModelArray(const TalusModel *model, const char *name, double **data, int *n, int *components, int *writable);
+
+/**
+ * @brief Arrays of the points have been written: the nodes learn again from them. Collective.
+ *
+ * Before the first step of a dynamic case accelerations are found anew, whatever was written.
+ */
+int TalusModelChanged(TalusModel *model);
 
 /** @} */
 

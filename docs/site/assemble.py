@@ -64,7 +64,10 @@ class Site:
     def link(self, folder, page, words, target):
         """The Markdown of a link of a page in `folder` of the repository as the site has it."""
         path, _, anchor = target.partition("#")
-        there = None if re.match(r"[a-z]+:", target) or not path else page_of((ROOT / folder / path).resolve(), self.pages)
+        place = (ROOT / folder / path).resolve()
+        there = None if re.match(r"[a-z]+:", target) or not path else page_of(place, self.pages)
+        if there is None and path and place.is_dir():
+            return words  # a folder that has no page
         if there is None:
             return f"[{words}]({target})"
         here = os.path.dirname(page) or "."

@@ -9,10 +9,20 @@
 
 _Static_assert(sizeof(PetscReal) == sizeof(double), "the public interface is written for PETSc with double precision");
 
+/* A caller's forces; talus_ask_forces asks for them as a BodyForce, with a TalusForce as its context. */
+typedef struct {
+  TalusBodyForces force;
+  void *context;
+} TalusForce;
+void talus_ask_forces(void *force, PetscInt n, const PetscReal *X, const PetscReal *x, PetscReal t, PetscReal *b);
+
 struct TalusCase {
   MPI_Comm comm; /* PETSc's copy of the user's, for no other messages than talus's */
   Case *c;
-  Diag *diag; /* knows where in the file each value stands */
+  Diag *diag;             /* knows where in the file each value stands */
+  TalusForce force;       /* of runs and models made from now on; force NULL: none */
+  TalusProgress progress; /* NULL: nobody is told */
+  void *progress_context;
 };
 
 /* PETSc's code as one of ours. */

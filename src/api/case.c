@@ -12,8 +12,9 @@ static PetscErrorCode Close(TalusCase **c)
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode Open(MPI_Comm comm, const char *file, PetscInt n_set, const char *const *set, TalusCase **c,
-                           char **messages)
+/* text NULL: that of the file. */
+static PetscErrorCode Open(MPI_Comm comm, const char *file, const char *text, PetscInt n_set, const char *const *set,
+                           TalusCase **c, char **messages)
 {
   TalusCase *opened;
 
@@ -21,14 +22,16 @@ static PetscErrorCode Open(MPI_Comm comm, const char *file, PetscInt n_set, cons
   PetscCall(PetscNew(&opened));
   PetscCall(DiagCreate(&opened->diag));
   PetscCall(PetscCommDuplicate(comm, &opened->comm, NULL));
-  PetscCall(CaseRead(opened->comm, file, n_set, set, opened->diag, &opened->c));
+  if (text) PetscCall(CaseReadText(file, strlen(text), text, n_set, set, opened->diag, &opened->c));
+  else PetscCall(CaseRead(opened->comm, file, n_set, set, opened->diag, &opened->c));
   PetscCall(TalusTell(opened->comm, opened->diag, messages));
   if (opened->c) *c = opened;
   else PetscCall(Close(&opened));
   PetscFunctionReturn(0);
 }
 
-int TalusCaseOpen(MPI_Comm comm, const char *file, int n_set, const char *const *set, TalusCase **c, char **messages)
+static int open_checked(MPI_Comm comm, const char *file, const char *text, int n_set, const char *const *set,
+                        TalusCase **c, char **messages)
 {
   if (messages) *messages = NULL;
   if (!c) return TALUS_ERROR_ARGUMENT;
@@ -37,9 +40,20 @@ int TalusCaseOpen(MPI_Comm comm, const char *file, int n_set, const char *const 
   if (comm == MPI_COMM_NULL || !file || n_set < 0 || (n_set > 0 && !set)) return TALUS_ERROR_ARGUMENT;
   for (int i = 0; i < n_set; ++i)
     if (!set[i]) return TALUS_ERROR_ARGUMENT;
-  const int error = talus_code(Open(comm, file, n_set, set, c, messages));
+  const int error = talus_code(Open(comm, file, text, n_set, set, c, messages));
   if (error) return error;
   return *c ? TALUS_OK : TALUS_ERROR_INPUT;
+}
+
+int TalusCaseOpen(MPI_Comm comm, const char *file, int n_set, const char *const *set, TalusCase **c, char **messages)
+{
+  return open_checked(comm, file, NULL, n_set, set, c, messages);
+}
+
+int TalusCaseParse(MPI_Comm comm, const char *file, const char *text, int n_set, const char *const *set, TalusCase **c,
+                   char **messages)
+{
+  return open_checked(comm, text ? file : NULL, text, n_set, set, c, messages);
 }
 
 int TalusCaseClose(TalusCase **c)
@@ -52,6 +66,39 @@ int TalusCaseTrust(TalusCase *c)
 {
   if (!c) return TALUS_ERROR_ARGUMENT;
   c->c->grid.trusted = PETSC_TRUE;
+  return TALUS_OK;
+}
+
+static PetscErrorCode Text(const Case *c, char **text)
+{
+  char *yaml;
+
+  PetscFunctionBeginUser;
+  PetscCall(CaseToYaml(c, &yaml));
+  *text = strdup(yaml); /* the C library's memory, as TalusTextFree takes it */
+  PetscCall(PetscFree(yaml));
+  PetscCheck(*text, PETSC_COMM_SELF, PETSC_ERR_MEM, "no memory for a case in words");
+  PetscFunctionReturn(0);
+}
+
+int TalusCaseText(const TalusCase *c, char **text)
+{
+  if (!c || !text) return TALUS_ERROR_ARGUMENT;
+  return talus_is_running() ? talus_code(Text(c->c, text)) : TALUS_ERROR_STATE;
+}
+
+int TalusCaseSetBodyForces(TalusCase *c, TalusBodyForces force, void *context)
+{
+  if (!c) return TALUS_ERROR_ARGUMENT;
+  c->force = (TalusForce){force, context};
+  return TALUS_OK;
+}
+
+int TalusCaseSetProgress(TalusCase *c, TalusProgress progress, void *context)
+{
+  if (!c) return TALUS_ERROR_ARGUMENT;
+  c->progress = progress;
+  c->progress_context = context;
   return TALUS_OK;
 }
 

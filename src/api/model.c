@@ -8,8 +8,9 @@
 struct TalusModel {
   Model *model;
   StepReport report;
-  TalusBodyForce force;
-  void *force_context;
+  TalusForce force;
+  TalusBodyForce single; /* asked for one point at a time */
+  void *single_context;
 };
 
 static PetscErrorCode Destroy(TalusModel **model)
@@ -26,6 +27,20 @@ int TalusModelDestroy(TalusModel **model)
   return talus_is_running() ? talus_code(Destroy(model)) : TALUS_ERROR_STATE;
 }
 
+void talus_ask_forces(void *force, PetscInt n, const PetscReal *X, const PetscReal *x, PetscReal t, PetscReal *b)
+{
+  const TalusForce *f = force;
+  f->force(f->context, (int)n, X, x, t, b);
+}
+
+static PetscErrorCode SetForce(TalusModel *m, TalusBodyForces force, void *context)
+{
+  PetscFunctionBeginUser;
+  m->force = (TalusForce){force, context};
+  PetscCall(ModelSetBodyForce(m->model, force ? talus_ask_forces : NULL, &m->force));
+  PetscFunctionReturn(0);
+}
+
 static PetscErrorCode Create(TalusCase *c, TalusModel **model, char **messages)
 {
   TalusModel *made;
@@ -36,6 +51,7 @@ static PetscErrorCode Create(TalusCase *c, TalusModel **model, char **messages)
     diag_error(c->diag, "analysis.type", "a factor of safety is sought by a whole run, not step by step");
   else PetscCall(ModelCreate(c->comm, c->c, c->diag, &made->model));
   PetscCall(TalusTell(c->comm, c->diag, messages));
+  if (made->model && c->force.force) PetscCall(SetForce(made, c->force.force, c->force.context));
   if (made->model) *model = made;
   else PetscCall(Destroy(&made));
   PetscFunctionReturn(0);
@@ -53,22 +69,25 @@ int TalusModelCreate(TalusCase *c, TalusModel **model, char **messages)
   return *model ? TALUS_OK : TALUS_ERROR_INPUT;
 }
 
-/* The model's points have dim coordinates, the public ones three. */
-static void body_force(void *context, const PetscReal *X, PetscReal t, PetscReal *b)
+static void point_by_point(void *context, int n, const double *X, const double *x, double t, double *b)
 {
   const TalusModel *m = context;
-  double position[3] = {0, 0, 0}, force[3] = {0, 0, 0};
-  for (PetscInt d = 0; d < m->model->dim; ++d) position[d] = X[d];
-  m->force(m->force_context, position, t, force);
-  for (PetscInt d = 0; d < m->model->dim; ++d) b[d] = force[d];
+  (void)x;
+  for (size_t p = 0; p < (size_t)n; ++p) m->single(m->single_context, X + 3 * p, t, b + 3 * p);
 }
 
 int TalusModelSetBodyForce(TalusModel *model, TalusBodyForce force, void *context)
 {
   if (!model) return TALUS_ERROR_ARGUMENT;
-  model->force = force;
-  model->force_context = context;
-  return talus_code(ModelSetBodyForce(model->model, force ? body_force : NULL, model));
+  model->single = force;
+  model->single_context = context;
+  return talus_code(SetForce(model, force ? point_by_point : NULL, model));
+}
+
+int TalusModelSetBodyForces(TalusModel *model, TalusBodyForces force, void *context)
+{
+  if (!model) return TALUS_ERROR_ARGUMENT;
+  return talus_code(SetForce(model, force, context));
 }
 
 static TalusStep step_of(StepOutcome outcome)
@@ -160,4 +179,42 @@ int TalusModelPoints(const TalusModel *model, const char *field, int *n, int *co
   if (!buffer) return TALUS_OK;
   if (capacity < (size_t)count * (size_t)k) return TALUS_ERROR_ARGUMENT;
   return talus_code(CopyField(model->model, field, buffer));
+}
+
+/* Arrays of the points that are shown as they are; those that may be written carry the motion or the
+ * memory of a law, which the next step begins with. */
+static const struct {
+  const char *name;
+  PointReal field;
+  PetscBool written;
+} arrays[] = {
+  {"position", POINT_X, PETSC_FALSE},
+  {"displacement", POINT_U, PETSC_FALSE},
+  {"velocity", POINT_V, PETSC_TRUE},
+  {"acceleration", POINT_A, PETSC_TRUE},
+  {"mass", POINT_MASS, PETSC_FALSE},
+  {"deformation_gradient", POINT_F, PETSC_FALSE},
+  {"kirchhoff_stress", POINT_TAU, PETSC_FALSE},
+  {"state", POINT_STATE, PETSC_TRUE},
+};
+
+int TalusModelArray(const TalusModel *model, const char *name, double **data, int *n, int *components, int *writable)
+{
+  size_t k = 0;
+  if (!model || !name || !data) return TALUS_ERROR_ARGUMENT;
+  while (k < PETSC_STATIC_ARRAY_LENGTH(arrays) && strcmp(arrays[k].name, name)) ++k;
+  if (k == PETSC_STATIC_ARRAY_LENGTH(arrays)) return TALUS_ERROR_UNKNOWN;
+  const Points *points = model->model->points;
+  const PetscBool motion = arrays[k].field == POINT_V || arrays[k].field == POINT_A;
+  *data = points->real[arrays[k].field];
+  if (n) *n = (int)points->n;
+  if (components) *components = (int)points->components[arrays[k].field];
+  /* nodes that keep their motion do not ask the points */
+  if (writable) *writable = arrays[k].written && (!motion || model->model->method->restores_grid);
+  return TALUS_OK;
+}
+
+int TalusModelChanged(TalusModel *model)
+{
+  return model ? talus_code(ModelPointsChanged(model->model)) : TALUS_ERROR_ARGUMENT;
 }

@@ -38,6 +38,12 @@ static TalusRun *create_run(const Case *c)
   return run;
 }
 
+static PetscBool watch(void *context, PetscInt step, PetscReal time, PetscReal end)
+{
+  const TalusCase *c = context;
+  return (PetscBool)(c->progress(c->progress_context, (int)step, time, end) != 0);
+}
+
 static PetscErrorCode Run(TalusCase *c, const RunOptions *options, TalusRun *run, RunResult *result, char **messages)
 {
   RunSummary summary = {0};
@@ -45,6 +51,10 @@ static PetscErrorCode Run(TalusCase *c, const RunOptions *options, TalusRun *run
 
   PetscFunctionBeginUser;
   asked.summary = &summary;
+  asked.watcher = c->progress ? watch : NULL;
+  asked.watcher_context = c;
+  asked.body_force = c->force.force ? talus_ask_forces : NULL;
+  asked.body_force_context = &c->force;
   PetscCall(RunCase(c->comm, c->c, &asked, c->diag, run->values, result));
   if (summary.reason[0]) diag_error(c->diag, NULL, "%s", summary.reason);
   PetscCall(TalusTell(c->comm, c->diag, messages));

@@ -5,6 +5,7 @@
 #include "api/api.h"
 #include "base/process/start.h"
 #include "base/process/threads.h"
+#include "case/fields.h"
 #include "talus_version.h"
 
 const char *TalusVersion(void) { return TALUS_VERSION; }
@@ -109,4 +110,15 @@ PetscErrorCode TalusTell(MPI_Comm comm, Diag *diag, char **messages)
   fclose(out);
   PetscCall(ShareText(comm, messages, length));
   PetscFunctionReturn(0);
+}
+
+int TalusField(int i, const char **name, const char **unit, int *components)
+{
+  PetscInt k = 0;
+  while (k < i && output_fields[k].name) ++k;
+  if (i < 0 || !output_fields[k].name) return TALUS_ERROR_ARGUMENT;
+  if (name) *name = output_fields[k].name;
+  if (unit) *unit = output_fields[k].unit;
+  if (components) *components = output_fields[k].points ? (int)output_fields[k].components : 0;
+  return TALUS_OK;
 }

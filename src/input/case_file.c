@@ -174,12 +174,27 @@ static PetscErrorCode ReadDocument(const char *file, YamlDocument *document, Dia
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode CaseRead(MPI_Comm comm, const char *file, PetscInt n_set, const char *const *set, Diag *diag, Case **c)
+PetscErrorCode CaseReadText(const char *file, size_t size, const char *text, PetscInt n_set, const char *const *set,
+                            Diag *diag, Case **c)
 {
   const PetscInt before = diag_errors(diag);
+  YamlDocument *document;
+
+  PetscFunctionBeginUser;
+  *c = NULL;
+  PetscCall(YamlCreate(file, text, size, diag, &document));
+  PetscCall(DiagSetResolver(diag, yaml_resolve, document));
+  PetscCall(DiagOwnContext(diag, destroy_document));
+  for (PetscInt i = 0; i < n_set; ++i) PetscCall(YamlSet(document, set[i], diag));
+  if (document->root) PetscCall(ReadDocument(file, document, diag, c));
+  if (diag_errors(diag) > before) PetscCall(CaseDestroy(c));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode CaseRead(MPI_Comm comm, const char *file, PetscInt n_set, const char *const *set, Diag *diag, Case **c)
+{
   char *bytes, reason[256];
   size_t size = 0;
-  YamlDocument *document;
 
   PetscFunctionBeginUser;
   *c = NULL;
@@ -187,15 +202,7 @@ PetscErrorCode CaseRead(MPI_Comm comm, const char *file, PetscInt n_set, const c
   if (reason[0]) {
     const DiagPlace place = {.file = file, .width = 1};
     diag_at(diag, DIAG_ERROR, &place, "%s", reason);
-    PetscCall(PetscFree(bytes));
-    PetscFunctionReturn(0);
-  }
-  PetscCall(YamlCreate(file, bytes, size, diag, &document));
+  } else PetscCall(CaseReadText(file, size, bytes, n_set, set, diag, c));
   PetscCall(PetscFree(bytes));
-  PetscCall(DiagSetResolver(diag, yaml_resolve, document));
-  PetscCall(DiagOwnContext(diag, destroy_document));
-  for (PetscInt i = 0; i < n_set; ++i) PetscCall(YamlSet(document, set[i], diag));
-  if (document->root) PetscCall(ReadDocument(file, document, diag, c));
-  if (diag_errors(diag) > before) PetscCall(CaseDestroy(c));
   PetscFunctionReturn(0);
 }

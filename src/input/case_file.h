@@ -8,6 +8,10 @@
  * "path.to.key=value" of --set, applied before validation. On any mistake *c stays NULL and diag
  * says what is wrong (its resolver is installed and lives until DiagDestroy). */
 PetscErrorCode CaseRead(MPI_Comm comm, const char *file, PetscInt n_set, const char *const *set, Diag *diag, Case **c);
+/* The same of a text that all ranks have: as if it stood in a file of this name, from whose folder
+ * other files are looked for. */
+PetscErrorCode CaseReadText(const char *file, size_t size, const char *text, PetscInt n_set, const char *const *set,
+                            Diag *diag, Case **c);
 
 /* Collective. Rank 0 reads a file of text; every rank gets its bytes (PetscFree), or the reason why
  * there are none. */

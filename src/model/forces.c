@@ -54,6 +54,25 @@ PetscErrorCode ForcesFromTables(Model *m, const Tables *tables, char reason[256]
   PetscFunctionReturn(0);
 }
 
+/* Before the first step nodes have accelerations of their own, which no points carry. */
+static PetscErrorCode StartAgain(Model *m)
+{
+  PetscFunctionBeginUser;
+  if (m->step > 0 || !m->scheme->inertia) PetscFunctionReturn(0);
+  PetscCall(PetscArrayzero(m->points->real[POINT_A], m->points->n * m->dim));
+  PetscCall(InitialAcceleration(m));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ModelPointsChanged(Model *m)
+{
+  PetscFunctionBeginUser;
+  if (m->method->restores_grid) m->space->present = PETSC_FALSE; /* points tell the nodes again */
+  PetscCall(ModelInitialise(m));
+  PetscCall(StartAgain(m));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode ModelSetBodyForce(Model *m, BodyForce force, void *context)
 {
   Tables *kept;
@@ -68,8 +87,6 @@ PetscErrorCode ModelSetBodyForce(Model *m, BodyForce force, void *context)
   PetscCall(ForcesFromTables(m, kept, reason));
   PetscCall(TablesDestroy(&kept));
   PetscCheck(!reason[0], m->comm, PETSC_ERR_PLIB, "%s", reason);
-  if (m->step > 0 || !m->scheme->inertia) PetscFunctionReturn(0);
-  PetscCall(PetscArrayzero(m->points->real[POINT_A], m->points->n * m->dim));
-  PetscCall(InitialAcceleration(m));
+  PetscCall(StartAgain(m));
   PetscFunctionReturn(0);
 }

@@ -176,6 +176,11 @@ PetscErrorCode ModelDestroy(Model **model);
  * initial acceleration. */
 PetscErrorCode ModelSetBodyForce(Model *model, BodyForce force, void *context);
 
+/* Collective. Somebody has changed velocities, accelerations or states of points between steps:
+ * nodes learn of it where points carry the motion. Before the first step accelerations are found
+ * anew. */
+PetscErrorCode ModelPointsChanged(Model *model);
+
 /* Collective. Phase a: nodes learn from where points are now, unless they have already. A step
  * begins with it; whoever wants nodal fields or measures between steps calls it first. */
 PetscErrorCode ModelInitialise(Model *model);

@@ -113,14 +113,30 @@ static PetscErrorCode AfterStep(Run *r, const StepReport *report, PetscInt point
   PetscFunctionReturn(0);
 }
 
-/* After the step's rows and states: a checkpoint if it is time for one, or if somebody wants the
- * run to end. */
-static PetscErrorCode Pause(Run *r, PetscBool *asked)
+/* Has any rank's watcher had enough? */
+static PetscErrorCode Watch(const Run *r, PetscBool *enough)
 {
-  PetscBool due = checkpoint_by_clock(r);
+  int any;
 
   PetscFunctionBeginUser;
-  PetscCall(SignalsAsked(r->comm, &due, asked));
+  *enough = PETSC_FALSE;
+  if (!r->watcher) PetscFunctionReturn(0);
+  any = r->watcher(r->watcher_context, r->model->step, r->model->time, r->c->analysis.end);
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &any, 1, MPI_INT, MPI_MAX, r->comm));
+  *enough = any != 0;
+  PetscFunctionReturn(0);
+}
+
+/* After the step's rows and states: a checkpoint if it is time for one, or if somebody wants the
+ * run to end; NULL: nobody. */
+static PetscErrorCode Pause(Run *r, const char **asked)
+{
+  PetscBool due = checkpoint_by_clock(r), signal, enough;
+
+  PetscFunctionBeginUser;
+  PetscCall(Watch(r, &enough));
+  PetscCall(SignalsAsked(r->comm, &due, &signal));
+  *asked = signal ? "a signal" : enough ? "the program that called it" : NULL;
   if (!r->failed && (due || *asked || checkpoint_by_step(r))) PetscCall(CheckpointSave(r));
   PetscFunctionReturn(0);
 }
@@ -138,14 +154,14 @@ static PetscErrorCode GiveUp(Run *r, const char *what, const char *sentence, con
   PetscFunctionReturn(0);
 }
 
-/* By a signal: the model stands after its last whole step. */
-static PetscErrorCode Interrupted(Run *r)
+/* The model stands after its last whole step. */
+static PetscErrorCode Interrupted(Run *r, const char *whom)
 {
   char text[64];
 
   PetscFunctionBeginUser;
   PetscCall(CheckpointSave(r));
-  snprintf(text, sizeof text, "by a signal, after step %d", (int)r->model->step);
+  snprintf(text, sizeof text, "by %s, after step %d", whom, (int)r->model->step);
   PetscCall(GiveUp(r, "interrupted", "the run was interrupted", text));
   r->summary.interrupted = PETSC_TRUE;
   PetscFunctionReturn(0);
@@ -156,7 +172,7 @@ static PetscErrorCode Advance(Run *r)
 {
   const PetscReal end = r->c->analysis.end;
   StepReport report;
-  PetscBool asked = PETSC_FALSE;
+  const char *asked = NULL;
   PetscInt points;
 
   PetscFunctionBeginUser;
@@ -165,7 +181,7 @@ static PetscErrorCode Advance(Run *r)
       PetscMin(until_next(&r->states, r->model->time, end), until_next(&r->rows, r->model->time, end));
     PetscCall(ModelStep(r->model, limit, &report));
     if (report.outcome == STEP_INTERRUPTED) {
-      PetscCall(Interrupted(r));
+      PetscCall(Interrupted(r, "a signal"));
       break;
     }
     if (report.outcome != STEP_ACCEPTED) {
@@ -177,7 +193,7 @@ static PetscErrorCode Advance(Run *r)
     PetscCall(ModelCountPoints(r->model, &points));
     PetscCall(AfterStep(r, &report, points));
     PetscCall(Pause(r, &asked));
-    if (asked) PetscCall(Interrupted(r));
+    if (asked) PetscCall(Interrupted(r, asked));
   }
   PetscFunctionReturn(0);
 }
@@ -188,7 +204,7 @@ static PetscErrorCode SearchFactor(Run *r)
   const ReductionSpec *spec = &r->c->analysis.reduction;
   StrengthRun *s = &r->strength;
   StepReport report;
-  PetscBool asked = PETSC_FALSE;
+  const char *asked = NULL;
   PetscInt points;
 
   PetscFunctionBeginUser;
@@ -196,7 +212,7 @@ static PetscErrorCode SearchFactor(Run *r)
   while (!r->failed && !r->until.ended && search_next(&s->search, spec) > 0) {
     PetscCall(StrengthTry(s, r->model, r->dir, &report));
     if (report.outcome == STEP_INTERRUPTED) {
-      PetscCall(Interrupted(r));
+      PetscCall(Interrupted(r, "a signal"));
       break;
     }
     if (report.outcome == STEP_POINTS_LOST) {
@@ -208,7 +224,7 @@ static PetscErrorCode SearchFactor(Run *r)
     PetscCall(ModelCountPoints(r->model, &points));
     PetscCall(AfterStep(r, &report, points));
     PetscCall(Pause(r, &asked));
-    if (asked) PetscCall(Interrupted(r));
+    if (asked) PetscCall(Interrupted(r, asked));
   }
   if (!r->failed) PetscCall(StrengthEnd(s, r->model, r->dir));
   PetscFunctionReturn(0);
@@ -285,12 +301,15 @@ PetscErrorCode RunCase(MPI_Comm comm, const Case *c, const RunOptions *options, 
              .rows = {.every = c->output.history},
              .state_step = -1,
              .row_step = -1,
-             .checkpoint_step = -1};
+             .checkpoint_step = -1,
+             .watcher = options->watcher,
+             .watcher_context = options->watcher_context};
 
   PetscFunctionBeginUser;
   *result = RUN_BAD_INPUT;
   PetscCall(ModelCreate(comm, c, diag, &run.model));
   if (!run.model) PetscFunctionReturn(0);
+  if (options->body_force) PetscCall(ModelSetBodyForce(run.model, options->body_force, options->body_force_context));
   PetscCall(UntilCreate(c, &run.until));
   PetscCall(PetscCalloc1(c->n_measures, &run.events));
   if (options->warnings) PetscCall(DiagFlush(diag, options->warnings));

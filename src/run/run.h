@@ -8,12 +8,15 @@ typedef struct {
   PetscInt steps, halvings;
   PetscInt iterations, iterations_per_step; /* Newton's: all of the run, and most of one step */
   PetscReal seconds;                        /* from the model's first state to its last */
-  PetscBool interrupted;                    /* by a signal */
+  PetscBool interrupted;                    /* by a signal, or by who called it */
   PetscBool resumable;                      /* ended early, and has a checkpoint... */
   PetscInt checkpoint_step;                 /* ...of this step */
   char ended[256];                          /* which condition ended it, empty if none */
   char reason[1024];                        /* why the run ended early, empty if it did not */
 } RunSummary;
+
+/* Told of every step on every rank. PETSC_TRUE on any of them ends the run as a signal does. */
+typedef PetscBool (*RunWatcher)(void *context, PetscInt step, PetscReal time, PetscReal end);
 
 typedef struct {
   const char *out;  /* run directory */
@@ -23,6 +26,10 @@ typedef struct {
   FILE *warnings;      /* gets what diag knows before the first step; NULL: the caller prints it */
   const char *log;     /* file, or NULL: log.txt in the run directory */
   RunSummary *summary; /* out: filled in unless NULL; the same on all ranks but for the seconds */
+  RunWatcher watcher;  /* NULL: nobody watches */
+  void *watcher_context;
+  BodyForce body_force; /* NULL: gravity alone */
+  void *body_force_context;
 } RunOptions;
 
 typedef enum { RUN_DONE = 0, RUN_GAVE_UP = 1, RUN_BAD_INPUT = 2 } RunResult;

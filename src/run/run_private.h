@@ -36,6 +36,8 @@ typedef struct {
   Until until;
   StrengthRun strength; /* of an analysis for a factor of safety */
   PetscBool failed;     /* gave up */
+  RunWatcher watcher;   /* NULL: nobody watches */
+  void *watcher_context;
   RunSummary summary;
   double start;           /* of this process, on MPI's clock */
   HistoryMark history;    /* of the run that this one resumes; no lines: not known */

@@ -1,5 +1,6 @@
 talus_test(api/test_api RANKS 1 2 3)
 talus_test(api/test_halves RANKS 1 2 3)
+talus_test(api/test_hooks RANKS 1 2 3)
 
 # The header alone, as C++ reads it (without MPI's own C++, which is no more).
 include(CheckLanguage)

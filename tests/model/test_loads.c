@@ -140,10 +140,11 @@ static void test_boundary_sum(void **state)
 
 /* A body force belongs to the material: it is asked for where a point was at the start, wherever it
  * is now. */
-static void as_far(void *context, const PetscReal *X, PetscReal t, PetscReal *b)
+static void as_far(void *context, PetscInt n, const PetscReal *X, const PetscReal *x, PetscReal t, PetscReal *b)
 {
-  const PetscInt dim = *(const PetscInt *)context;
-  for (PetscInt d = 0; d < dim; ++d) b[d] = (1 + t) * X[d];
+  (void)context;
+  (void)x;
+  for (PetscInt i = 0; i < 3 * n; ++i) b[i] = (1 + t) * X[i];
 }
 
 static void test_body_force(void **state)
@@ -161,7 +162,7 @@ static void test_body_force(void **state)
       b.body[0].velocity[0] = 4;
       Model *m = bench_model(&b, PETSC_COMM_WORLD);
       model_step(m, 0.1);
-      CALL(ModelSetBodyForce(m, as_far, &dim));
+      CALL(ModelSetBodyForce(m, as_far, NULL));
       CALL(PetscCalloc1(m->grid->n_nodes * dim, &force));
       gather(m, 0.5, force);
       for (PetscInt i = 0; i < m->grid->n_owned * dim; ++i) local[i % dim] += force[i];

@@ -44,13 +44,10 @@ static void piola(const Manufactured *s, const PetscReal *X, PetscReal P[9])
       P[3 * i + j] = mu * (F[3 * i + j] - inverse[3 * j + i]) + lambda * log_J * inverse[3 * j + i];
 }
 
-static void body_force(void *context, const PetscReal *X, PetscReal t, PetscReal *b)
+static void force_at(const Manufactured *s, const PetscReal *X, PetscReal *b)
 {
   static const PetscReal weight[3] = {3. / 4, -3. / 20, 1. / 60};
-  const Manufactured *s = context;
   const PetscReal h = 5e-3;
-  (void)t;
-  for (PetscInt i = 0; i < s->dim; ++i) b[i] = 0;
   for (PetscInt j = 0; j < s->dim; ++j)
     for (int k = -3; k <= 3; ++k) {
       PetscReal at[3] = {0, 0, 0}, P[9];
@@ -60,6 +57,14 @@ static void body_force(void *context, const PetscReal *X, PetscReal t, PetscReal
       for (PetscInt i = 0; i < s->dim; ++i)
         b[i] -= (k > 0 ? 1 : -1) * weight[PetscAbsInt(k) - 1] * P[3 * i + j] / h / 1000;
     }
+}
+
+static void body_force(void *context, PetscInt n, const PetscReal *X, const PetscReal *x, PetscReal t, PetscReal *b)
+{
+  const Manufactured *s = context;
+  (void)x;
+  (void)t;
+  for (PetscInt p = 0; p < n; ++p) force_at(s, X + 3 * p, b + 3 * p);
 }
 
 /* L2 norm of the error of the displacement over the points. */

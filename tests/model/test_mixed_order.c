@@ -36,13 +36,10 @@ static void piola(const PetscReal *X, PetscReal P[4])
   P[3] = -tau[2] * F[2] + tau[1] * F[0];
 }
 
-static void body_force(void *context, const PetscReal *X, PetscReal t, PetscReal *b)
+static void force_at(const PetscReal *X, PetscReal *b)
 {
   static const PetscReal weight[3] = {3. / 4, -3. / 20, 1. / 60};
   const PetscReal h = 5e-3;
-  (void)context;
-  (void)t;
-  b[0] = b[1] = 0;
   for (int j = 0; j < 2; ++j)
     for (int k = -3; k <= 3; ++k) {
       PetscReal P[4];
@@ -50,6 +47,14 @@ static void body_force(void *context, const PetscReal *X, PetscReal t, PetscReal
       piola((PetscReal[]){X[0] + (j == 0 ? k * h : 0), X[1] + (j == 1 ? k * h : 0)}, P);
       for (int i = 0; i < 2; ++i) b[i] -= (k > 0 ? 1 : -1) * weight[abs(k) - 1] * P[2 * i + j] / h / 1000;
     }
+}
+
+static void body_force(void *context, PetscInt n, const PetscReal *X, const PetscReal *x, PetscReal t, PetscReal *b)
+{
+  (void)context;
+  (void)x;
+  (void)t;
+  for (PetscInt p = 0; p < n; ++p) force_at(X + 3 * p, b + 3 * p);
 }
 
 static void at_boundary(void *context, const PetscReal *X, PetscReal t0, PetscReal t1, PetscReal *increment)

@@ -144,13 +144,15 @@ static void test_unseen_decay(void **state)
 /* A rigid block under a force that swings: without Rayleigh damping its acceleration a lags behind
  * the force by Bossak's weights, and transfer is the work of what the start of each step leaves out
  * of balance, m (b - a) du / 2 (docs/theory.md, "Energy"). */
-static void swing(void *context, const PetscReal *X, PetscReal t, PetscReal *b)
+static void swing(void *context, PetscInt n, const PetscReal *X, const PetscReal *x, PetscReal t, PetscReal *b)
 {
   (void)context;
   (void)X;
-  b[0] = 3 * cos(20 * t);
-  b[1] = -2 * sin(30 * t + 1);
-  b[2] = 0;
+  (void)x;
+  for (PetscInt p = 0; p < n; ++p, b += 3) {
+    b[0] = 3 * cos(20 * t);
+    b[1] = -2 * sin(30 * t + 1);
+  }
 }
 
 static void test_bossak_inertia(void **state)
@@ -172,10 +174,10 @@ static void test_bossak_inertia(void **state)
     for (int step = 0; step < 40; ++step) {
       PetscReal a[2], u[2];
       for (int d = 0; d < 2; ++d) a[d] = m->points->real[POINT_A][d], u[d] = m->points->real[POINT_U][d];
-      swing(NULL, NULL, m->time, force[0]);
+      swing(NULL, 1, NULL, NULL, m->time, force[0]);
       const PetscInt64 id = m->points->id[0];
       model_step(m, dt);
-      swing(NULL, NULL, m->time, force[1]);
+      swing(NULL, 1, NULL, NULL, m->time, force[1]);
       PetscInt p = 0;
       while (m->points->id[p] != id) ++p;
       for (int d = 0; d < 2; ++d) {

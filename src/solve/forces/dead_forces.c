@@ -33,25 +33,31 @@ static PetscErrorCode CreateBody(const NodalScene *scene, Diag *diag, void **dat
   PetscFunctionReturn(0);
 }
 
-/* Of the places where the points were at the start. */
+/* All points are asked for at once: a caller in another language pays for each call. */
 static PetscErrorCode AssembleBody(void *data, const NodalScene *scene, const NodalOutput *out)
 {
   const PetscInt dim = scene->grid->dim;
   const Points *points = data;
   const Support *w = scene->support;
-  PetscReal X[3], b[3];
+  const size_t n = 3 * (size_t)points->n;
+  PetscReal *X, *x, *b;
 
   PetscFunctionBeginUser;
+  PetscCall(PetscCalloc3(n, &X, n, &x, n, &b));
+  for (PetscInt i = 0; i < points->n * dim; ++i) {
+    const PetscInt k = 3 * (i / dim) + i % dim;
+    x[k] = points->real[POINT_X][i];
+    X[k] = x[k] - points->real[POINT_U][i];
+  }
+  scene->body_force(scene->body_force_context, points->n, X, x, scene->t, b);
   for (PetscInt g = 0; g < w->n_groups; ++g) {
     const PetscInt nn = support_nodes(w, g), *node = w->node + w->node_start[g];
-    for (PetscInt p = w->point_start[g]; p < w->point_start[g + 1]; ++p) {
-      for (PetscInt d = 0; d < dim; ++d) X[d] = point_real(points, POINT_X, p)[d] - point_real(points, POINT_U, p)[d];
-      scene->body_force(scene->body_force_context, X, scene->t, b);
+    for (PetscInt p = w->point_start[g]; p < w->point_start[g + 1]; ++p)
       for (PetscInt i = 0; i < nn * dim; ++i)
         out->force[node[i / dim] * dim + i % dim] -=
-          support_N(w, g, p)[i / dim] * points->real[POINT_MASS][p] * b[i % dim];
-    }
+          support_N(w, g, p)[i / dim] * points->real[POINT_MASS][p] * b[3 * p + i % dim];
   }
+  PetscCall(PetscFree3(X, x, b));
   PetscFunctionReturn(0);
 }
 

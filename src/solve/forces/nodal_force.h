@@ -6,9 +6,10 @@
 #include "material/law.h"
 #include "solve/forces/constraints.h"
 
-/* Body force per mass at the undeformed position X (dim) and time t, m/s2, besides gravity: a
- * centrifuge, a manufactured solution. */
-typedef void (*BodyForce)(void *context, const PetscReal *X, PetscReal t, PetscReal *b);
+/* Body force per mass of n points at time t, m/s2, besides gravity: a centrifuge, a manufactured
+ * solution. X, x: undeformed and present positions, m; b: result, zero on entry; n x 3 each, in the
+ * plane too. */
+typedef void (*BodyForce)(void *context, PetscInt n, const PetscReal *X, const PetscReal *x, PetscReal t, PetscReal *b);
 
 /* The body as these forces see it; arrays go over local nodes. */
 typedef struct {

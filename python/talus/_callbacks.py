@@ -1,0 +1,53 @@
+"""Python functions where the library wants C functions. What they raise is kept and raised when the library has
+returned: nothing of C may be left by an exception."""
+
+import contextlib
+
+import numpy as np
+
+
+def _view(pointer, n):
+    """n x 3 numbers of C as an array, not copied."""
+    return np.ctypeslib.as_array(pointer, (n, 3)) if n else np.zeros((0, 3))
+
+
+class Callbacks:
+    def __init__(self, header):
+        self._types = header.callbacks
+        self._raised = None
+
+    @contextlib.contextmanager
+    def _kept(self):
+        try:
+            yield
+        except BaseException as error:  # KeyboardInterrupt, too
+            self._raised = self._raised or error
+
+    def raise_kept(self):
+        """Raise what a function has raised meanwhile."""
+        error, self._raised = self._raised, None
+        if error is not None:
+            raise error
+
+    def body_force(self, function):
+        """A TalusBodyForces of function(X, x, t); NULL of None."""
+        if function is None:
+            return self._types["TalusBodyForces"]()
+
+        def ask(_, n, X, x, t, b):
+            with self._kept():
+                wanted = _view(b, n)
+                force = np.asarray(function(_view(X, n), _view(x, n), t), dtype=float)
+                wanted[:, :force.shape[-1] if force.ndim else 3] = force
+
+        return self._types["TalusBodyForces"](ask)
+
+    def progress(self, function):
+        """A TalusProgress of function(step, time, end), or one that only stops after another's exception."""
+        def tell(_, step, time, end):
+            stop = True
+            with self._kept():
+                stop = bool(function(step, time, end)) if function else False
+            return int(stop or self._raised is not None)
+
+        return self._types["TalusProgress"](tell)

@@ -1,0 +1,209 @@
+"""A case that is stepped: look at its points, change them, push them."""
+
+import contextlib
+import ctypes
+from collections.abc import Mapping
+
+import numpy as np
+
+from ._callbacks import Callbacks
+from ._library import fields, library
+from .errors import RunError, TalusError
+
+_ARRAYS = {"position": "m", "displacement": "m", "velocity": "m/s", "acceleration": "m/s2", "mass": "kg",
+           "deformation_gradient": "", "kirchhoff_stress": "Pa", "state": ""}
+
+
+class Points(Mapping):
+    """Fields of the material points of this rank, by name.
+
+    The model's own arrays are shown as they are, without a copy, and cannot be written: position,
+    displacement [m], velocity [m/s], acceleration [m/s2] with shape (n, 2), in space (n, 3); mass [kg] (n,);
+    deformation_gradient (n, 5): xx xy yx yy zz, in space (n, 9) row by row; kirchhoff_stress [Pa] (n, 4):
+    xx yy zz xy, in space (n, 6): xx yy zz xy yz zx; state (n, k): what the law remembers. **They are the model's
+    until its next step**: ask anew, or keep a copy. All other fields of :func:`talus.fields` are computed
+    when they are asked for: stress [Pa] (n, 6), pressure, mises, density, volume, id, body, ... (n,).
+
+    Points change their order from step to step, and ranks; "id" tells them apart.
+
+    >>> with talus.Case(block).model() as model:
+    ...     model.points["velocity"].shape, model.points["stress"].shape, model.points.units["stress"]
+    ((64, 2), (64, 6), 'Pa')
+    """
+
+    def __init__(self, model):
+        self._model = model
+        self.units = {name: unit for name, (components, unit) in fields().items() if components}
+        self.units.update(_ARRAYS)
+
+    def _array(self, name):
+        """The model's own array, and whether it may be written."""
+        lib, data = library(), ctypes.POINTER(ctypes.c_double)()
+        n, components, writable = ctypes.c_int(), ctypes.c_int(), ctypes.c_int()
+        lib.call("TalusModelArray", self._model.handle, name.encode(), ctypes.byref(data), ctypes.byref(n),
+                 ctypes.byref(components), ctypes.byref(writable))
+        shape = (n.value, components.value)
+        array = np.ctypeslib.as_array(data, shape) if n.value * components.value else np.zeros(shape)
+        return array[:, 0] if name == "mass" else array, bool(writable.value)
+
+    def _computed(self, name):
+        lib, n, components = library(), ctypes.c_int(), ctypes.c_int()
+        ask = (self._model.handle, name.encode(), ctypes.byref(n), ctypes.byref(components))
+        lib.call("TalusModelPoints", *ask, None, 0)
+        out = np.empty((n.value, components.value))
+        lib.call("TalusModelPoints", *ask, out.ctypes.data_as(ctypes.POINTER(ctypes.c_double)), out.size)
+        out = out.astype(np.int64) if name in ("id", "body", "material") else out
+        return out[:, 0] if components.value == 1 else out
+
+    def __getitem__(self, name):
+        if name not in self.units:
+            raise KeyError(f"points have no field '{name}'; there are: {', '.join(self)}")
+        if name not in _ARRAYS:
+            return self._computed(name)
+        array, _ = self._array(name)
+        array.flags.writeable = False
+        return array
+
+    @contextlib.contextmanager
+    def edit(self, name):
+        """Change an array of the model in a `with`; at its end the nodes learn of it. Collective.
+
+        These may be changed: velocity and acceleration where points carry the motion (mpm), state with any
+        method. The model's energies do not count what that gives or takes.
+
+        >>> with talus.Case(block).model() as model:
+        ...     with model.points.edit("velocity") as v:
+        ...         v += [0.5, 0]
+        ...     model.step(), bool((model.points["position"][:, 0] > model.points["displacement"][:, 0]).all())
+        (True, True)
+        """
+        if name not in _ARRAYS:
+            raise KeyError(f"'{name}' is computed from other fields and cannot be changed")
+        array, writable = self._array(name)
+        if not writable:
+            raise TalusError(f"'{name}' of the points cannot be changed"
+                             + (": nodes keep the motion with this method" if name in ("velocity", "acceleration") else ""))
+        try:
+            yield array
+        finally:
+            array.flags.writeable = False
+            library().call("TalusModelChanged", self._model.handle)
+
+    def __iter__(self):
+        return iter(self.units)
+
+    def __len__(self):
+        return len(self.units)
+
+    def __repr__(self):
+        return f"<talus.Points: {len(self['id'])} with {', '.join(self)}>"
+
+
+class _Measures(Mapping):
+    def __init__(self, model, units):
+        self._model, self.units = model, units
+
+    def __getitem__(self, name):
+        if name not in self.units:
+            raise KeyError(f"the case has no measure '{name}'; there are: {', '.join(self.units)}")
+        value = ctypes.c_double()
+        library().call("TalusModelMeasure", self._model.handle, name.encode(), ctypes.byref(value))
+        return value.value
+
+    def __iter__(self):
+        return iter(self.units)
+
+    def __len__(self):
+        return len(self.units)
+
+
+class Model:
+    """The state of a case in time; :meth:`talus.Case.model` makes it. Use it in a `with`, or `close()` it.
+
+    `points` are its material points (:class:`talus.Points`), `measures` the values of the case's measures now:
+    `model.measures["top"]`, with `model.measures.units`. Getting a measure is collective.
+    """
+
+    def __init__(self, case):
+        lib = library()
+        self._callbacks, self._hook = Callbacks(lib.header), None
+        self.handle, messages = ctypes.c_void_p(), ctypes.c_void_p()
+        self._stack = contextlib.ExitStack()
+        opened = self._stack.enter_context(case.opened())
+        try:
+            code = lib.code("TalusModelCreate", opened, ctypes.byref(self.handle), ctypes.byref(messages))
+            case.tell(lib, code, messages)
+        except BaseException:
+            self.close()
+            raise
+        lib.watch(self)
+        self.points, self.measures = Points(self), _Measures(self, case.measures_of(opened))
+        self._body_force = None
+        if case.body_force:
+            self.body_force = case.body_force
+
+    def close(self):
+        """Give the model back; its views mean nothing any more. Collective."""
+        if self.handle.value:
+            library().call("TalusModelDestroy", ctypes.byref(self.handle))
+        self._stack.close()
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        self.close()
+
+    @property
+    def body_force(self):
+        """A force per mass besides gravity, m/s2, or None: a function of (X, x, t).
+
+        X and x are where the points of this rank were at the start of the model and are at the start of the
+        step, m, both (n, 3), with zeros as the third column in the plane; t is the end of the step, s. It
+        returns what can be put into (n, 3) or (n, 2). It is called for every try of a step.
+
+        >>> with talus.Case(block).model() as model:
+        ...     model.body_force = lambda X, x, t: [3 * t, 0]
+        ...     model.step()
+        True
+        """
+        return self._body_force
+
+    @body_force.setter
+    def body_force(self, function):
+        hook = self._callbacks.body_force(function)
+        library().call("TalusModelSetBodyForces", self.handle, hook, None)
+        self._body_force, self._hook = function, hook  # the library keeps what it points to
+        self._callbacks.raise_kept()
+
+    def step(self, limit=0.0):
+        """One step, halved until Newton's method converges; returns False if the end was reached before.
+
+        `limit` [s] is the longest step to take, even beyond the end of the case; 0: as the case's step control
+        chooses, up to its end. RunError: no step converged (the model is as it was), or points were lost.
+        Collective.
+        """
+        lib, step = library(), ctypes.c_int()
+        lib.call("TalusModelStep", self.handle, limit, ctypes.byref(step))
+        self._callbacks.raise_kept()
+        if step.value in (lib.constants["TALUS_STEP_TOO_SMALL"], lib.constants["TALUS_STEP_POINTS_LOST"]):
+            raise RunError(lib.text("TalusModelReason", self.handle))
+        return step.value == lib.constants["TALUS_STEP_ACCEPTED"]
+
+    def _times(self):
+        time, end = ctypes.c_double(), ctypes.c_double()
+        library().call("TalusModelTime", self.handle, ctypes.byref(time), ctypes.byref(end))
+        return time.value, end.value
+
+    @property
+    def time(self):
+        """Time of the present state, s."""
+        return self._times()[0]
+
+    @property
+    def end(self):
+        """End time of the case, s."""
+        return self._times()[1]
+
+    def __repr__(self):
+        return f"<talus.Model at {self.time:g} of {self.end:g} s>" if self.handle.value else "<talus.Model, closed>"

@@ -1,0 +1,292 @@
+"""Cases built, changed, run and stepped from Python, beside what the C library and the program give."""
+
+import os
+import re
+import subprocess
+import sys
+import unittest
+import warnings
+from pathlib import Path
+
+import numpy as np
+
+import talus
+from fixture import BLOCK, SOURCE, InFolder
+from fixture import talus as program
+from talus import _yaml
+from talus._header import Header, find_header
+from talus._library import library
+
+
+def block(**changes):
+    """The block of the C library's tests as a dict, with changes by path."""
+    case = talus.Case(talus.Case(BLOCK).resolved())
+    for path, value in changes.items():
+        case[path] = value
+    return case
+
+
+class Interface(unittest.TestCase):
+    def test_every_declaration_of_the_header_is_known(self):
+        text = find_header().read_text()
+        header = Header(text)
+        symbols = subprocess.run(["nm", "-D", "--defined-only", library()._dll._name], capture_output=True, text=True)
+        exported = {line.split()[-1] for line in symbols.stdout.splitlines()}
+        code = re.sub(r"//.*|/\*.*?\*/", "", text, flags=re.S)
+        self.assertEqual(set(header.functions), set(re.findall(r"\b([Tt]alus\w*)\(", code)))
+        self.assertLessEqual(set(header.functions), exported)
+        for name, (_, arguments) in header.functions.items():
+            self.assertNotIn(None, arguments, name)
+        self.assertEqual(set(header.callbacks), {"TalusBodyForce", "TalusBodyForces", "TalusProgress"})
+
+    def test_a_declaration_that_is_not_understood_is_told(self):
+        with self.assertRaises(KeyError):
+            Header("int TalusNew(quad *x);")
+
+    def test_versions_agree(self):
+        self.assertIn(f"VERSION {talus.__version__} ", (SOURCE / "CMakeLists.txt").read_text())
+        self.assertEqual(library().text("TalusVersion"), talus.__version__)
+        self.assertIn(talus.__version__, subprocess.run([talus.find_program(), "--version"], capture_output=True, text=True).stdout)
+
+    def test_fields_are_those_of_the_program(self):
+        listed = subprocess.run([talus.find_program(), "list", "fields"], capture_output=True, text=True).stdout
+        for name in talus.fields():
+            self.assertIn(f"{name} ", listed)
+
+
+class Cases(InFolder):
+    def test_resolved_cases_come_back(self):
+        """Of every case of the sources: as a dict it is the same case again."""
+        for file in sorted((SOURCE / "cases").glob("*/case.yaml")):
+            with warnings.catch_warnings():
+                warnings.simplefilter("ignore")
+                case = talus.Case(file)
+                first = case.resolved()
+                again = talus.Case(first, folder=file.parent)
+                self.assertEqual(again.resolved(), first, file)
+                with case.opened() as a, again.opened() as b:
+                    self.assertEqual(case._resolved_text(a), again._resolved_text(b), file)
+
+    def test_mistakes_of_a_dict_have_their_key(self):
+        case = block()
+        case["materials.rubber.yung"] = 1e6
+        case["bodies[0].points_per_cell"] = -4
+        case["bodies[0].material"] = "ruber"
+        with self.assertRaises(talus.CaseError) as caught:
+            case.check()
+        found = {mistake.key: mistake for mistake in caught.exception.mistakes}
+        self.assertEqual(set(found), {"materials.rubber.yung", "bodies[0].points_per_cell", "bodies[0].material"})
+        self.assertEqual(found["materials.rubber.yung"].hint, "did you mean 'young'?")
+        self.assertIn('"yung": 1000000.0', str(caught.exception))
+
+    def test_mistakes_of_a_file_have_their_place(self):
+        Path("bad.yaml").write_text(BLOCK.read_text().replace("density", "densty"))
+        lines = Path("bad.yaml").read_text().splitlines()
+        line = [number for number, text in enumerate(lines, 1) if "densty" in text][0]
+        with self.assertRaises(talus.CaseError) as caught:
+            talus.Case("bad.yaml").check()
+        unknown = [mistake for mistake in caught.exception.mistakes if "densty" in mistake.text][0]
+        self.assertEqual((unknown.file, unknown.line, unknown.column), ("bad.yaml", line, lines[line - 1].index("densty") + 1))
+        with self.assertRaisesRegex(talus.CaseError, "no such file"):
+            talus.Case("nothing.yaml").check()
+        case = block(**{"grid.box.min": [5, -0.5], "grid.box.max": [7, 1.5]})
+        with self.assertRaisesRegex(talus.CaseError, "block") as caught:  # shows only when the grid is there
+            case.run("nowhere")
+        self.assertFalse(Path("nowhere").exists())
+
+    def test_warnings_are_of_the_line_that_led_there(self):
+        case = block(**{"grid.counts": [16, 16], "bodies[0].shape.box.max": [1.2, 1]})
+        for act in (lambda: case.model().close(), lambda: case.run("coarse"), lambda: talus.run(case, "coarse-too")):
+            with warnings.catch_warnings(record=True) as caught:
+                warnings.simplefilter("always")
+                act()
+            self.assertEqual({warning.filename for warning in caught}, {__file__})
+            self.assertIn("whole cells represent body 'block'", str(caught[0].message))
+
+    def test_getting_and_setting(self):
+        case = talus.Case(BLOCK)
+        case["bodies[0].velocity"] = np.array([1.5, 0])
+        case["method"] = "fem"
+        self.assertEqual(case.settings(), ['bodies[0].velocity=[1.5, 0.0]', 'method="fem"'])
+        self.assertEqual(case.resolved()["bodies"][0]["velocity"], [1.5, 0])
+        del case["method"]
+        self.assertEqual(case["method"], "mpm")
+        self.assertEqual(case.measures, {"top": "m", "falling": "m/s", "mass": "kg"})
+        with self.assertRaisesRegex(KeyError, "no 'materials.sand.young': no 'sand'; there are: rubber"):
+            case["materials.sand.young"]
+        with self.assertRaisesRegex(TypeError, "not object"):
+            block(title=object()).check()
+        with self.assertRaisesRegex(ValueError, "cannot hold nan"):
+            block(**{"analysis.end": np.nan}).check()
+
+    def test_yaml_of_flow_collections(self):
+        self.assertEqual(_yaml.loads('a: {b: [1, "x, y", {c: -.inf}], "d e": ""}  # end\nf: "a # b"\n'),
+                         {"a": {"b": [1, "x, y", {"c": float("-inf")}], "d e": ""}, "f": "a # b"})
+
+
+class Running(InFolder):
+    def test_run_equals_the_program(self):
+        program("run", BLOCK, "--out", "program", "--quiet")
+        by_dict = block().run("dict")
+        by_file = talus.run(BLOCK, "file")
+        for run in (by_dict, by_file):
+            self.assertEqual((run.path / "history.csv").read_text(), Path("program/history.csv").read_text())
+        with self.assertRaisesRegex(talus.CaseError, "dict"):
+            block().run("dict")
+        block().run("dict", force=True)
+
+    def test_a_dict_by_the_program(self):
+        case = block(**{"materials.rubber.young": 2e6})
+        seen = []
+        run = talus.run(case, "by-program", progress=lambda step, time: seen.append((step, time)))
+        self.assertEqual([step for step, _ in seen], [1, 2, 3, 4, 5])
+        self.assertEqual(run.case["materials"]["rubber"]["young"], 2e6)
+        talus.run(BLOCK, "cut", progress=lambda step, time: True)
+        longer = talus.Case("cut")
+        longer["analysis.end"] = 0.014
+        del seen[:]
+        run = talus.run(longer, "cut", resume=True, progress=lambda step, time: seen.append(step))
+        self.assertEqual((seen[-1], run.history.time[-1]), (7, 0.014))
+        self.assertEqual(list(Path(".").glob("talus-*")), [])
+        case["materials.rubber.poison"] = 0.2
+        with self.assertRaises(talus.CaseError) as caught:
+            talus.run(case, "bad")
+        self.assertEqual(caught.exception.mistakes[0].key, "materials.rubber.poison")
+
+    def test_a_run_that_gives_up(self):
+        case = block(**{"newton.max_iterations": 1, "newton.residual": 1e-14, "analysis.smallest": 1e-3})
+        with self.assertRaisesRegex(talus.RunError, "gave up") as caught:
+            case.run("hard")
+        self.assertEqual(caught.exception.run.outcome, "gave up")
+        with self.assertRaisesRegex(talus.RunError, "gave up"):
+            talus.run(case, "hard-program")
+        with case.model() as model:
+            with self.assertRaises(talus.RunError):
+                model.step()
+            self.assertEqual(model.time, 0)
+
+    def test_what_a_callback_raises_ends_the_run(self):
+        def fail(step, time, end):
+            raise ZeroDivisionError(f"after step {step}")
+
+        with self.assertRaisesRegex(ZeroDivisionError, "after step 1"):
+            block().run("raised", progress=fail)
+        self.assertEqual(talus.open("raised").outcome, "interrupted")
+        case = block()
+        case.body_force = lambda X, x, t: 1 / 0
+        with self.assertRaises(ZeroDivisionError):
+            case.run("raised-force")
+        self.assertLessEqual(talus.open("raised-force").summary["steps"], 1)
+
+    def test_body_force_is_gravity(self):
+        light = block(**{"loads.gravity": [0, 0]})
+        light.body_force = lambda X, x, t: np.tile([0, -9.81, 0], (len(X), 1))
+        by_force, heavy = light.run("force").history, block().run("weight").history
+        np.testing.assert_allclose(by_force["top"], heavy["top"], rtol=1e-9)
+        with self.assertRaisesRegex(talus.TalusError, "a function of this process"):
+            talus.run(light, "force-program")
+
+    def test_trust(self):
+        Path("square.geo").write_text('Point(1) = {0, 0, 0, 0.5}; l() = Extrude {1, 0, 0} { Point{1}; };\n'
+                                      's() = Extrude {0, 1, 0} { Curve{l(1)}; };\nPrintf("x") > "made";\n')
+        case = talus.Case({"kinematics": "plane-strain", "method": "fem", "analysis": {"type": "static", "steps": 1},
+                           "grid": {"mesh": "square.geo"},
+                           "bodies": [{"name": "b", "shape": {"box": {"min": [0, 0], "max": [1, 1]}}, "points_per_cell": 3,
+                                       "material": "m"}],
+                           "materials": {"m": {"law": "neo-hookean", "density": 1, "young": 1, "poisson": 0}},
+                           "boundary": [{"on": {"x": 0}, "fix": ["x", "y"]}]})
+        with self.assertRaisesRegex(talus.CaseError, "square.geo:3:13"):
+            case.run("untrusted")
+        self.assertFalse(Path("made").exists())
+
+
+class Stepping(InFolder):
+    def test_steps_equal_the_run(self):
+        run = block().run("run")
+        with block().model() as model:
+            steps = 0
+            while model.step():
+                steps += 1
+                self.assertEqual(model.measures["top"], run.history["top"][steps])
+            self.assertEqual((steps, model.time, model.end, model.measures.units["top"]), (5, 0.01, 0.01, "m"))
+
+    def test_views_are_the_model_s_own(self):
+        with block().model() as model:
+            model.step()
+            points = model.points
+            for name, width in (("position", 2), ("velocity", 2), ("deformation_gradient", 5), ("kirchhoff_stress", 4)):
+                first, again = points[name], points[name]
+                self.assertEqual(first.shape, (64, width), name)
+                self.assertTrue(np.shares_memory(first, again) and not first.flags.writeable, name)
+            np.testing.assert_array_equal(library_copy(model, "velocity")[:, :2], points["velocity"])
+            F = points["deformation_gradient"]
+            J = (F[:, 0] * F[:, 3] - F[:, 1] * F[:, 2]) * F[:, 4]
+            np.testing.assert_allclose(points["stress"][:, [0, 1, 2, 3]] * J[:, None], points["kirchhoff_stress"], rtol=1e-9, atol=1e-6)
+            np.testing.assert_allclose(points["mass"], points["density"] * points["volume"], rtol=1e-12)
+            with self.assertRaises(ValueError):
+                points["velocity"][0] = 1
+            with self.assertRaisesRegex(KeyError, "no field 'colour'"):
+                points["colour"]
+
+    def test_a_velocity_that_is_set_is_that_of_the_case(self):
+        with block(**{"bodies[0].velocity": [0.5, -1]}).model() as given, block().model() as changed:
+            with changed.points.edit("velocity") as v:
+                v[:] = [0.5, -1]
+            with self.assertRaises(ValueError):
+                v[0] = 0  # only within
+            while given.step() and changed.step():
+                np.testing.assert_array_equal(changed.points["velocity"], given.points["velocity"])
+
+    def test_what_cannot_be_changed(self):
+        case = block(method="fem")
+        del case["basis"]
+        with case.model() as model:
+            with self.assertRaisesRegex(talus.TalusError, "nodes keep the motion"):
+                model.points.edit("velocity").__enter__()
+            with self.assertRaisesRegex(talus.TalusError, "cannot be changed"):
+                model.points.edit("position").__enter__()
+            with self.assertRaisesRegex(KeyError, "computed from other fields"):
+                model.points.edit("stress").__enter__()
+
+    def test_momentum_follows_a_force_of_place_and_time(self):
+        """A free block under b = (2 t, -x): its momentum grows by the sum of mass times force, step by step."""
+        case = block(**{"loads.gravity": [0, 0], "analysis.end": 0.05, "grid.box.min": [-1, -1.5], "grid.box.max": [3, 2.5],
+                        "grid.counts": [16, 16], "boundary": []})
+        with case.model() as model:
+            asked = []
+
+            def force(X, x, t):
+                asked.append((t, x.copy()))
+                return np.stack([np.full(len(x), 2 * t), -x[:, 0]], axis=1)
+
+            model.body_force = force
+            momentum, before = np.zeros(2), None
+            while model.step():
+                t, x = asked[-1]
+                now = np.array([2 * t * 1000, -(model.points["mass"] * x[:, 0]).sum()])
+                dt = 0.002
+                if before is not None:
+                    momentum += 0.5 * dt * (now + before)  # Newmark with gamma = 1/2
+                else:
+                    momentum += 0.5 * dt * (now + [0, -(1000 * 0.75)])
+                before = now
+            found = (model.points["mass"][:, None] * model.points["velocity"]).sum(axis=0)
+            np.testing.assert_allclose(found, momentum, rtol=2e-3)
+            self.assertGreater(abs(found[1]), 30)
+
+    def test_closing(self):
+        model = block().model()
+        model.close()
+        model.close()
+        self.assertIn("closed", repr(model))
+        code = ("import talus, sys; case = talus.Case(sys.argv[1]); model = case.model(); model.step(); print('left open')")
+        done = subprocess.run([sys.executable, "-c", code, str(BLOCK)], capture_output=True, text=True, env=dict(os.environ))
+        self.assertEqual((done.returncode, done.stdout, done.stderr), (0, "left open\n", ""))
+
+
+def library_copy(model, name):
+    return model.points._computed(name)
+
+
+if __name__ == "__main__":
+    unittest.main()
