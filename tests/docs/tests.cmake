@@ -9,7 +9,10 @@ if(TALUS_PYTHON)
       get_filename_component(name ${page} NAME_WE)
       add_test(NAME docs/${name} COMMAND ${TALUS_PYTHON} ${CMAKE_CURRENT_LIST_DIR}/tutorial.py $<TARGET_FILE:talus> ${page})
       math(EXPR limit "240 * ${TALUS_TEST_PATIENCE}")
-      set_tests_properties(docs/${name} PROPERTIES TIMEOUT ${limit} SKIP_RETURN_CODE 77 PROCESSORS 2
+      file(STRINGS ${page} ranks REGEX "^mpiexec -n 2")
+      list(LENGTH ranks cores)
+      math(EXPR cores "1 + ${cores}")
+      set_tests_properties(docs/${name} PROPERTIES TIMEOUT ${limit} SKIP_RETURN_CODE 77 PROCESSORS ${cores}
         ENVIRONMENT "${TALUS_TEST_ENVIRONMENT}")
     endforeach()
   endif()
