@@ -33,7 +33,7 @@ def times():
     return rows, notes
 
 
-GROUPS = ["Solids", "Contact", "Soil", "Grains and powders", "Many runs"]
+GROUPS = ["Solids", "Contact", "Soil", "Grains and powders", "Other commands"]
 
 
 class Case:
@@ -64,7 +64,7 @@ class Case:
     def group(self):
         """What the case is about, told from its case file."""
         if not self.words:
-            return "Many runs"
+            return "Other commands"
         if not re.match("neo-hookean|j2", self.value("law")):
             flows = self.value("type") == "dynamic" and self.value("friction_angle") != "0"
             return "Grains and powders" if flows else "Soil"
