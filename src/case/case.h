@@ -13,6 +13,7 @@ typedef enum { DIAGONAL_RIGHT, DIAGONAL_LEFT, DIAGONAL_ALTERNATING, DIAGONAL_CRO
 typedef enum { OUTSIDE_STOP, OUTSIDE_REMOVE, OUTSIDE_KEEP } OutsidePolicy;
 typedef enum { LINEAR_AUTO, LINEAR_DIRECT, LINEAR_ITERATIVE } LinearChoice;
 typedef enum { WEIGHTS_AUTO, WEIGHTS_EQUAL, WEIGHTS_GAUSS } PointWeights;
+typedef enum { FILL_CELLS, FILL_SHAPE } BodyFill;
 
 /* A function of time, linear between its entries and constant outside them. n = 0: not given. */
 typedef struct {
@@ -96,6 +97,7 @@ typedef struct {
   char *mesh;   /* a mesh of its own that only seeds points, or NULL */
   PetscInt points_per_cell;
   PointWeights weights;
+  BodyFill fill;                     /* whole cells, or what of them lies in the shape */
   PetscReal velocity[3];             /* initial: v + spin x (x - centre) */
   PetscReal spin[3], spin_centre[3]; /* rad/s; 2D uses spin[2] */
   /* geostatic: sigma_v of the material above, sigma_h = k0 sigma_v */

@@ -37,11 +37,25 @@ PetscBool relief_contains(const Relief *r, const PetscReal x[3], PetscReal toler
 
 void relief_bounds(const Relief *r, PetscReal min[3], PetscReal max[3])
 {
-  for (int d = 0; d < 2; ++d) {
-    min[d] = r->low[d];
-    max[d] = r->low[d] + (PetscReal)(r->n[d] - 1) * r->step;
+  for (int d = 0; d < 3; ++d) min[d] = PETSC_MAX_REAL, max[d] = -PETSC_MAX_REAL;
+  for (PetscInt i = 0; i < r->n[0] * r->n[1]; ++i) {
+    if (isnan(r->height[i])) continue;
+    const PetscReal x[3] = {r->low[0] + (PetscReal)(i % r->n[0]) * r->step,
+                            r->low[1] + (PetscReal)(i / r->n[0]) * r->step, r->height[i]};
+    for (int d = 0; d < 3; ++d) min[d] = PetscMin(min[d], x[d]), max[d] = PetscMax(max[d], x[d]);
   }
-  min[2] = max[2] = r->bottom;
-  for (PetscInt i = 0; i < r->n[0] * r->n[1]; ++i)
-    if (r->height[i] > max[2]) max[2] = r->height[i];
+  min[2] = r->bottom;
+}
+
+PetscReal relief_lowest(const Relief *r, const PetscReal min[2], const PetscReal max[2])
+{
+  PetscInt from[2], to[2];
+  PetscReal lowest = PETSC_MAX_REAL, at[2];
+  if (!find(r, min, 1e-9 * r->step, from, at) || !find(r, max, 1e-9 * r->step, to, at)) return r->bottom;
+  for (PetscInt j = from[1]; j <= to[1] + 1; ++j)
+    for (PetscInt i = from[0]; i <= to[0] + 1; ++i) {
+      if (isnan(relief_post(r, i, j))) return r->bottom;
+      lowest = PetscMin(lowest, relief_post(r, i, j));
+    }
+  return lowest;
 }

@@ -17,7 +17,9 @@ PetscErrorCode ReliefRead(const char *path, PetscReal scale, const PetscReal off
 PetscErrorCode ReliefDestroy(Relief **relief);
 /* Is x in the solid, or within a tolerance (m) of it? Where posts have no height there is none. */
 PetscBool relief_contains(const Relief *relief, const PetscReal x[3], PetscReal tolerance);
-/* The box around the solid, m. */
+/* The box around the solid where posts have heights, m. */
 void relief_bounds(const Relief *relief, PetscReal min[3], PetscReal max[3]);
+/* No surface is lower in a rectangle; the bottom where that has posts without a height, or none. */
+PetscReal relief_lowest(const Relief *relief, const PetscReal min[2], const PetscReal max[2]);
 /* Height of post (i, j). */
 static inline PetscReal relief_post(const Relief *r, PetscInt i, PetscInt j) { return r->height[j * r->n[0] + i]; }

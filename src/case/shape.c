@@ -129,6 +129,13 @@ static void children_bounds(const Shape *s, PetscInt dim, PetscReal min[3], Pets
   }
 }
 
+/* What lies on terrain lies no lower than that does there. */
+static void raise_to_terrain(const Shape *s, PetscReal min[3], const PetscReal max[3])
+{
+  for (PetscInt i = 1; i < s->n_children && s->children[0].kind == SHAPE_TERRAIN; ++i)
+    if (s->children[i].kind == SHAPE_TERRAIN) min[2] = PetscMax(min[2], relief_lowest(s->children[i].relief, min, max));
+}
+
 static void polygon_bounds(const Shape *s, PetscReal min[3], PetscReal max[3])
 {
   for (PetscInt d = 0; d < 2; ++d) {
@@ -180,7 +187,10 @@ void shape_bounds(const Shape *s, PetscInt dim, PetscReal min[3], PetscReal max[
   case SHAPE_TERRAIN: relief_bounds(s->relief, min, max); break;
   case SHAPE_UNION:
   case SHAPE_DIFFERENCE:
-  case SHAPE_INTERSECTION: children_bounds(s, dim, min, max); break;
+  case SHAPE_INTERSECTION:
+    children_bounds(s, dim, min, max);
+    if (s->kind == SHAPE_DIFFERENCE) raise_to_terrain(s, min, max);
+    break;
   default: break; /* of walls alone */
   }
 }

@@ -118,6 +118,31 @@ static void NoHeight(void **state)
   assert_int_equal(ReliefDestroy(&r), 0);
 }
 
+/* The box around what lies between two surfaces. */
+static void Between(void **state)
+{
+  const PetscReal zero[3] = {0, 0, 0};
+  PetscReal min[3], max[3];
+  Relief *bed =
+    read_text("ncols 4\nnrows 3\nxllcenter 0\nyllcenter 0\ncellsize 1\n3 2 1 0\n3 2 1 0\n3 2 1 0\n", 1, zero);
+  Relief *top = read_text(
+    "ncols 4\nnrows 3\nxllcenter 0\nyllcenter 0\ncellsize 1\nnodata_value -9\n"
+    "-9 -9 -9 -9\n4 3 -9 -9\n4 3 -9 -9\n",
+    1, zero);
+  Shape parts[2] = {{.kind = SHAPE_TERRAIN, .relief = top}, {.kind = SHAPE_TERRAIN, .relief = bed}};
+  const Shape s = {.kind = SHAPE_DIFFERENCE, .n_children = 2, .children = parts};
+  (void)state;
+  assert_true(bed && top);
+  shape_bounds(&s, 3, min, max);
+  assert_true(min[0] == 0 && max[0] == 1 && min[1] == 0 && max[1] == 1 && max[2] == 4);
+  assert_true(min[2] >= 1 && min[2] <= 2);
+  assert_true(shape_contains(&s, 3, (const PetscReal[]){0.5, 0.5, 3}, 1e-9));
+  assert_false(shape_contains(&s, 3, (const PetscReal[]){0.5, 0.5, 2.4}, 1e-9));
+  assert_false(shape_contains(&s, 3, (const PetscReal[]){2.5, 0.5, 0}, 1e-9));
+  assert_int_equal(ReliefDestroy(&bed), 0);
+  assert_int_equal(ReliefDestroy(&top), 0);
+}
+
 static void Mistakes(void **state)
 {
   static const struct {
@@ -148,7 +173,7 @@ static void Mistakes(void **state)
 
 int main(void)
 {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(Reads), cmocka_unit_test(Plane), cmocka_unit_test(Fold),
-                                     cmocka_unit_test(NoHeight), cmocka_unit_test(Mistakes)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(Reads),    cmocka_unit_test(Plane),   cmocka_unit_test(Fold),
+                                     cmocka_unit_test(NoHeight), cmocka_unit_test(Between), cmocka_unit_test(Mistakes)};
   return cmocka_run_group_tests(tests, open_file, remove_file);
 }

@@ -359,15 +359,81 @@ static void too_many_points_are_told(void **state)
   free_all(t, grid, NULL);
 }
 
+/* A body that fills its shape has the volume and the middle of a ball that cuts its cells, and all points
+ * are inside; the rest of the grid has what is left. */
+static void shape_is_filled(void **state)
+{
+  const Shape ball = {.kind = SHAPE_BALL, .centre = {1.37, 0.96, 1.04}, .radius = 0.83};
+  (void)state;
+  for (int type = 0; type < 4; ++type) {
+    const PetscBool flat = type < CELL_TETRAHEDRON;
+    const PetscReal part = PETSC_PI * PetscSqr(ball.radius) * (flat ? 1 : 4.0 / 3.0 * ball.radius);
+    Shape rest[2] = {box_shape(0, 0, 0, 3, 2, 2), ball};
+    TestCase *t = test_case((CellType)type, 12, 8, 8);
+    Grid *grid = make_grid(PETSC_COMM_WORLD, &t->c);
+    t->body[0].has_shape = PETSC_TRUE;
+    t->body[0].fill = FILL_SHAPE;
+    for (int inside = 1; inside >= 0; --inside) {
+      const PetscReal wanted = inside ? part : (flat ? area : volume) - part;
+      t->body[0].shape = inside ? ball : (Shape){.kind = SHAPE_DIFFERENCE, .n_children = 2, .children = rest};
+      Points *points = seed_points(t, grid);
+      PetscReal middle[3] = {0, 0, 0};
+      check_ids_unique(points);
+      check_located(points, grid);
+      CHECK_CLOSE(total(points, POINT_VOLUME), wanted, 5e-4 * wanted);
+      for (PetscInt p = 0; p < points->n; ++p) {
+        const PetscReal *x = point_real(points, POINT_X, p);
+        if (inside) CHECK(shape_contains(&ball, grid->dim, x, 1e-12));
+        for (PetscInt d = 0; d < grid->dim; ++d) middle[d] += x[d] * *point_real(points, POINT_VOLUME, p) / wanted;
+      }
+      CALL(MPI_Allreduce(MPI_IN_PLACE, middle, 3, MPIU_REAL, MPIU_SUM, PETSC_COMM_WORLD));
+      for (PetscInt d = 0; d < grid->dim && inside; ++d) CHECK_CLOSE(middle[d], ball.centre[d], 2e-3);
+      CALL(PointsDestroy(&points));
+    }
+    free_all(t, grid, NULL);
+  }
+}
+
+/* Where its surface follows the cells it is seeded as ever. */
+static void aligned_shape_is_the_same(void **state)
+{
+  (void)state;
+  for (int type = 0; type < 4; ++type) {
+    TestCase *t = test_case((CellType)type, 12, 8, 4);
+    Grid *grid = make_grid(PETSC_COMM_WORLD, &t->c);
+    set_box(t->body, 0.5, 0.25, 1.75, 1);
+    Points *cells_points = seed_points(t, grid);
+    t->body[0].fill = FILL_SHAPE;
+    Points *points = seed_points(t, grid);
+    CHECK(points->n == cells_points->n);
+    for (PetscInt p = 0; p < points->n; ++p) {
+      CHECK(points->id[p] == cells_points->id[p]);
+      CHECK(*point_real(points, POINT_VOLUME, p) == *point_real(cells_points, POINT_VOLUME, p));
+      CHECK(!memcmp(point_real(points, POINT_X, p), point_real(cells_points, POINT_X, p),
+                    (size_t)grid->dim * sizeof(PetscReal)));
+    }
+    CALL(PointsDestroy(&cells_points));
+    free_all(t, grid, points);
+  }
+}
+
 int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {
-    cmocka_unit_test(every_rule_fills_the_volume), cmocka_unit_test(method_chooses_the_weights),
-    cmocka_unit_test(grading_keeps_the_volume),    cmocka_unit_test(axisymmetric_volume_is_the_full_circle),
-    cmocka_unit_test(bodies_stand_side_by_side),   cmocka_unit_test(ranks_do_not_matter),
-    cmocka_unit_test(mistakes_are_told),           cmocka_unit_test(overlap_is_told),
-    cmocka_unit_test(too_many_points_are_told),    cmocka_unit_test(bad_volume_is_told),
-    cmocka_unit_test(ids_belong_to_one_point),     cmocka_unit_test(polygon_volume_is_known),
+    cmocka_unit_test(shape_is_filled),
+    cmocka_unit_test(aligned_shape_is_the_same),
+    cmocka_unit_test(every_rule_fills_the_volume),
+    cmocka_unit_test(method_chooses_the_weights),
+    cmocka_unit_test(grading_keeps_the_volume),
+    cmocka_unit_test(axisymmetric_volume_is_the_full_circle),
+    cmocka_unit_test(bodies_stand_side_by_side),
+    cmocka_unit_test(ranks_do_not_matter),
+    cmocka_unit_test(mistakes_are_told),
+    cmocka_unit_test(overlap_is_told),
+    cmocka_unit_test(too_many_points_are_told),
+    cmocka_unit_test(bad_volume_is_told),
+    cmocka_unit_test(ids_belong_to_one_point),
+    cmocka_unit_test(polygon_volume_is_known),
   };
   return run_point_tests(argc, argv, tests, sizeof tests / sizeof *tests);
 }

@@ -28,6 +28,13 @@ static const SchemaWord weights_words[] = {
   {NULL, 0, NULL},
 };
 
+static const SchemaWord fill_words[] = {
+  {"cells", FILL_CELLS, "whole cells, those whose middle lies in the shape"},
+  {"shape", FILL_SHAPE,
+   "what of each cell lies in the shape: points have the volume and the middle of their parts (mpm, without k0)"},
+  {NULL, 0, NULL},
+};
+
 /* --- grid --- */
 static const SchemaEntry box_entries[] = {
   KEY("min", VECTOR, "m", "lower corner", REQUIRED, AT(GridSpec, min)),
@@ -98,6 +105,8 @@ static const SchemaEntry body_entries[] = {
       AT_LEAST(1), AT(BodySpec, points_per_cell)),
   KEY("weights", WORD, NULL, "how the points of a cell share its mass", .words = weights_words, .fallback = "auto",
       AT(BodySpec, weights)),
+  KEY("fill", WORD, NULL, "what stands for a shape whose surface cuts cells", .words = fill_words, .fallback = "cells",
+      AT(BodySpec, fill)),
   KEY("velocity", VECTOR, "m/s", "at the start", .note = "0", AT(BodySpec, velocity)),
   KEY("spin", SPIN, "rad/s", "at the start, about `spin_centre`: a number in 2D, a vector in 3D", .note = "0", TURNS,
       AT(BodySpec, spin)),

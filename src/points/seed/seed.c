@@ -126,6 +126,29 @@ static PetscBool centre_in_shape(const Seeding *s, PetscInt cell)
   return shape_contains(&s->body->shape, s->source->dim, centre, 0);
 }
 
+static PetscBool fills_shape(const Seeding *s) { return s->body->fill == FILL_SHAPE; }
+
+typedef struct {
+  PetscReal min[3], max[3];
+} ShapeBox;
+
+/* Most cells are far from a body: their samples need not be asked. */
+static PetscBool near_shape(const Seeding *s, PetscInt cell, const ShapeBox *b)
+{
+  const PetscInt dim = s->source->dim;
+  PetscReal x[CELL_MAX_NODES * 3];
+  grid_cell_x(s->source, cell, x);
+  for (PetscInt d = 0; d < dim; ++d) {
+    PetscReal low = PETSC_MAX_REAL, high = -PETSC_MAX_REAL;
+    for (PetscInt i = 0; i < grid_cell(s->source, cell)->nodes; ++i) {
+      low = PetscMin(low, x[i * dim + d]);
+      high = PetscMax(high, x[i * dim + d]);
+    }
+    if (low > b->max[d] || high < b->min[d]) return PETSC_FALSE;
+  }
+  return PETSC_TRUE;
+}
+
 /* The cells in the region (if one is named) and in the shape (if there is one). *found is false
  * after a mistake. */
 static PetscErrorCode ChooseCells(Seeding *s, PetscBool *found)
@@ -138,11 +161,21 @@ static PetscErrorCode ChooseCells(Seeding *s, PetscBool *found)
     if (!set) PetscFunctionReturn(0);
   }
   const PetscInt n = set ? set->n_cells : s->source->n_cells;
+  ShapeBox b;
   PetscCall(PetscMalloc1(n, &s->cells));
+  if (fills_shape(s)) {
+    PetscCall(PetscMalloc1(n, &s->cut));
+    shape_bounds(&s->body->shape, s->source->dim, b.min, b.max);
+  }
   for (PetscInt k = 0; k < n; ++k) {
     const PetscInt cell = set ? set->cells[k] : k;
     if (s->source == s->grid && grid_field_of(s->grid, cell) != s->field) continue;
-    if (centre_in_shape(s, cell)) s->cells[s->n_cells++] = cell;
+    const SeedFill fill = !fills_shape(s)           ? (centre_in_shape(s, cell) ? SEED_WHOLE : SEED_NONE)
+                          : near_shape(s, cell, &b) ? seed_fill(s, cell)
+                                                    : SEED_NONE;
+    if (fill == SEED_NONE) continue;
+    if (s->cut) s->cut[s->n_cells] = fill == SEED_CUT;
+    s->cells[s->n_cells++] = cell;
   }
   *found = PETSC_TRUE;
   PetscFunctionReturn(0);
@@ -182,28 +215,30 @@ static PetscBool shares_equally(const Seeding *s, CellType type)
 }
 
 /* The q-th point of the k-th cell, with nodes at x. share: its part of the section, or of the volume in
- * space; < 0: that of the Gauss rule. */
+ * space; < 0: that of the Gauss rule. part: what of it lies in the body. */
 static PetscErrorCode SeedPoint(const Seeding *s, Points *points, PetscInt k, const PetscReal *x, PetscReal share,
-                                PetscInt q, const PointSeed *seed)
+                                PetscInt q, const SeedPart *part, const PointSeed *seed)
 {
   const PetscInt dim = points->dim, cell = s->cells[k];
   const SeedRule *rule = rule_of(s, cell);
-  const PetscReal *xi = rule->xi + q * dim;
+  const PetscReal *xi = part ? part->xi : rule->xi + q * dim;
   PetscInt p;
   PetscFunctionBeginUser;
   PetscCall(PointsAppend(points, &p));
   PetscReal *position = point_real(points, POINT_X, p);
   const PetscReal det = map_point(grid_cell_type(s->source, cell), x, xi, position);
-  const PetscReal section = share < 0 ? rule->weight[q] * det : share;
+  const PetscReal whole = share < 0 ? rule->weight[q] * det : share, section = part ? part->share * whole : whole;
   const PetscReal volume = section * kinematics_weight(s->c->kinematics, position[0]);
   *point_real(points, POINT_VOLUME, p) = volume;
   *point_real(points, POINT_MASS, p) = seed->density * volume;
   body_velocity(s->body, dim, position, point_real(points, POINT_V, p));
   if (s->domains)
-    seed_domain(grid_cell_type(s->source, cell), x, xi, rule->side, section, point_real(points, POINT_DOMAIN, p));
-  if (s->outer)
+    seed_domain(grid_cell_type(s->source, cell), x, xi, part && part->share < 1 ? 0 : rule->side, section,
+                point_real(points, POINT_DOMAIN, p));
+  if (s->outer) /* the surface that cuts a part is no farther than the sides of all of it */
     *point_real(points, POINT_REACH, p) =
-      seed_reach(grid_cell_type(s->source, cell), x, position, section, rule, q, s->outer + k * CELL_MOST_SIDES);
+      part ? 0.5 * PetscPowReal(whole, 1 / (PetscReal)dim)
+           : seed_reach(grid_cell_type(s->source, cell), x, position, section, rule, q, s->outer + k * CELL_MOST_SIDES);
   if (points->components[POINT_SLOPE]) seed_slope(s->body, dim, point_real(points, POINT_SLOPE, p));
   if (seed->n_state) PetscCall(PetscArraycpy(point_real(points, POINT_STATE, p), seed->initial, seed->n_state));
   points->id[p] = s->first_id + (PetscInt64)s->source->global_cell[cell] * s->rule.n + q;
@@ -230,7 +265,11 @@ static PetscErrorCode SeedCells(const Seeding *s, Points *points, const PointSee
     const CellType type = grid_cell_type(s->source, s->cells[k]);
     grid_cell_x(s->source, s->cells[k], x);
     const PetscReal share = shares_equally(s, type) ? cell_volume(type, x) / (PetscReal)n : -1;
-    for (PetscInt q = 0; q < n; ++q) PetscCall(SeedPoint(s, points, k, x, share, q, seed));
+    SeedPart part[SEED_MAX_RULE];
+    const PetscBool cut = s->cut && s->cut[k];
+    if (cut) seed_parts(s, s->cells[k], rule_of(s, s->cells[k]), part);
+    for (PetscInt q = 0; q < n; ++q)
+      if (!cut || part[q].share > 0) PetscCall(SeedPoint(s, points, k, x, share, q, cut ? part + q : NULL, seed));
   }
   PetscFunctionReturn(0);
 }
@@ -266,6 +305,13 @@ static PetscErrorCode SeedSource(Seeding *s, Points *points, PetscInt *taken, co
 {
   PetscBool found;
   PetscFunctionBeginUser;
+  if (fills_shape(s) && !s->equal) {
+    char path[128];
+    seed_path(s->b, "fill", sizeof path, path);
+    if (seed_tells(s->grid))
+      diag_error(s->diag, path, "shape: fem and gmm take whole cells; let the mesh follow the body");
+    PetscFunctionReturn(0);
+  }
   if (!choose_rule(s)) PetscFunctionReturn(0);
   PetscCall(ChooseCells(s, &found));
   if (!found) PetscFunctionReturn(0);
@@ -273,6 +319,7 @@ static PetscErrorCode SeedSource(Seeding *s, Points *points, PetscInt *taken, co
   PetscCall(SeedCheckRoom(s, points, &found));
   if (!found) {
     PetscCall(PetscFree(s->cells));
+    PetscCall(PetscFree(s->cut));
     PetscFunctionReturn(0);
   }
   if (s->source == s->grid) PetscCall(SeedClaimCells(s, taken));
@@ -282,6 +329,7 @@ static PetscErrorCode SeedSource(Seeding *s, Points *points, PetscInt *taken, co
   }
   PetscCall(SeedCells(s, points, per_material + s->material));
   PetscCall(PetscFree(s->outer));
+  PetscCall(PetscFree(s->cut));
   if (s->outline)
     PetscCall(OutlineAdd(s->outline, s->source, s->n_cells, s->cells, s->b, per_material[s->material].density));
   PetscCall(AdvanceIds(s, next));

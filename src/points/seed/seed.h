@@ -11,6 +11,13 @@ typedef struct {
   PetscReal xi[3 * SEED_MAX_RULE], weight[SEED_MAX_RULE];
 } SeedRule;
 
+/* What of a point's part of its cell lies in the body: its share, and where the middle of that is. */
+typedef struct {
+  PetscReal share, xi[3];
+} SeedPart;
+
+typedef enum { SEED_NONE, SEED_CUT, SEED_WHOLE } SeedFill;
+
 typedef struct {
   const Case *c;
   const Grid *grid; /* where the points live */
@@ -20,6 +27,7 @@ typedef struct {
   PetscInt material;
   const Grid *source;        /* whose cells give the points: the grid, or the body's own mesh */
   PetscInt n_cells, *cells;  /* local cells of the source that belong to the body */
+  unsigned char *cut;        /* n_cells: is it cut by the surface of the body? NULL: cells are whole */
   unsigned char *outer;      /* n_cells x CELL_MOST_SIDES: is it the body's surface? NULL: nobody asks */
   SeedRule rule, first_rule; /* for cells of the source's type, and of its first_type */
   PetscBool domains;         /* do the points have some? */
@@ -30,6 +38,11 @@ typedef struct {
 
 /* Volume that a cell stands for: area times unit thickness, or the full circle. */
 PetscReal seed_cell_volume(const Seeding *s, PetscInt cell);
+
+/* --- parts.c, of bodies that fill their shape --- */
+SeedFill seed_fill(const Seeding *s, PetscInt cell);
+/* Parts of a cell, one for each point of the rule; those without a share have no point. */
+void seed_parts(const Seeding *s, PetscInt cell, const SeedRule *rule, SeedPart *part);
 
 /* Half lengths l of the domain of a point at xi, in a cell with nodes at x whose lattice has `side`
  * points a direction; 0: it stands for this part of the section, or of the volume in space. */

@@ -179,11 +179,25 @@ PetscErrorCode SeedCheckRoom(const Seeding *s, const Points *points, PetscBool *
   PetscFunctionReturn(0);
 }
 
+/* Of the k-th cell that which its points will have. */
+static PetscReal volume_in(const Seeding *s, PetscInt k)
+{
+  const PetscReal whole = seed_cell_volume(s, s->cells[k]);
+  const PetscBool first = s->cells[k] < s->source->n_first;
+  const SeedRule *rule = first ? &s->first_rule : &s->rule;
+  SeedPart part[SEED_MAX_RULE];
+  PetscReal share = 0;
+  if (!s->cut || !s->cut[k]) return whole;
+  seed_parts(s, s->cells[k], rule, part);
+  for (PetscInt q = 0; q < rule->n; ++q) share += part[q].share / (PetscReal)rule->n;
+  return share * whole;
+}
+
 PetscErrorCode SeedCheckVolume(const Seeding *s)
 {
   PetscReal mine[2] = {(PetscReal)s->n_cells, 0}, sum[2];
   PetscFunctionBeginUser;
-  for (PetscInt k = 0; k < s->n_cells; ++k) mine[1] += seed_cell_volume(s, s->cells[k]);
+  for (PetscInt k = 0; k < s->n_cells; ++k) mine[1] += volume_in(s, k);
   PetscCallMPI(MPI_Allreduce(mine, sum, 2, MPIU_REAL, MPIU_SUM, s->grid->comm));
   if (!seed_tells(s->grid)) PetscFunctionReturn(0);
   if (sum[0] == 0) tell_empty(s);
@@ -202,6 +216,7 @@ PetscErrorCode SeedClaimCells(const Seeding *s, PetscInt *taken)
   PetscFunctionBeginUser;
   for (PetscInt k = 0; k < s->n_cells; ++k) {
     PetscInt *body = taken + s->cells[k];
+    if (s->cut && s->cut[k]) continue; /* what others leave of it, for all that is known */
     if (*body >= 0) ++shared, other = PetscMax(other, *body);
     *body = s->b;
   }
