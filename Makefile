@@ -72,11 +72,12 @@ bench: build ## Build and run the performance benchmarks
 	@cmake --build $(BUILD) --parallel $(JOBS) --target bench
 	@if [ -f bench/run.sh ]; then OPENBLAS_NUM_THREADS=1 sh bench/run.sh $(BUILD); else echo "bench/run.sh is not there"; exit 1; fi
 
-verify: build ## Verify every case that has reference values; FULL=1: on the finest grids too
+verify: build ## Verify every case that has reference values, and all of the tutorial; FULL=1: on the finest grids too
 	@status=0; for reference in cases/*/reference.yaml; do \
 	  [ -f "$$reference" ] || continue; \
 	  $(TALUS) verify $(if $(FULL),--full) "$$(dirname "$$reference")" || status=$$?; \
-	done; exit $$status
+	done; \
+	for page in docs/tutorial/*.md; do python3 tests/docs/tutorial.py $(TALUS) $$page --long || status=$$?; done; exit $$status
 
 install: build ## Install program, library, manual, completions and cases under PREFIX=/usr/local; `make docs` before: these, too
 	@cmake --install $(BUILD) --prefix $(abspath $(PREFIX))

@@ -1,6 +1,6 @@
 #!/bin/bash
-# run-checks.sh BUILD: what a change must pass besides the tests: the format, clang-tidy on what changed, the fast tests under
-# sanitizers. The last line is `N passed, N failed`, kept in BUILD/check-summary.txt too.
+# run-checks.sh BUILD: what a change must pass besides the tests: the format, clang-tidy on what changed, the site of the
+# documentation, the fast tests under sanitizers. The last line is `N passed, N failed`, kept in BUILD/check-summary.txt too.
 set -u
 build=$1 passed=0 failed=0
 mkdir -p "$build"
@@ -12,7 +12,7 @@ count() {
   echo "$1: $([ "$2" -eq 0 ] && echo good || echo FAILED), $3 s"
 }
 
-for check in format-check 'tidy CHANGED=1'; do
+for check in format-check 'tidy CHANGED=1' docs; do
   SECONDS=0
   tools=${check%%[- ]*}
   if ! cmake/debian-packages.sh "$tools"; then

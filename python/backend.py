@@ -10,6 +10,7 @@ import base64
 import hashlib
 import re
 import sys
+import tomllib
 import zipfile
 from pathlib import Path
 
@@ -18,26 +19,22 @@ SOURCE = HERE.parent
 VERSION = re.search(r"project\(talus VERSION ([0-9.]+)", (SOURCE / "CMakeLists.txt").read_text()).group(1)
 INFO = f"talus-{VERSION}.dist-info"
 
-METADATA = f"""Metadata-Version: 2.1
-Name: talus
-Version: {VERSION}
-Summary: Implicit large-deformation solver for granular matter and solids: results, cases and models in Python
-License-File: LICENSE
-Requires-Python: >=3.9
-Requires-Dist: numpy
-Requires-Dist: h5py
-Provides-Extra: examples
-Requires-Dist: scipy; extra == "examples"
-Requires-Dist: matplotlib; extra == "examples"
-Provides-Extra: mpi
-Requires-Dist: mpi4py; extra == "mpi"
-"""
+
+def metadata():
+    """What pyproject.toml says, as METADATA says it."""
+    project = tomllib.loads((HERE / "pyproject.toml").read_text())["project"]
+    lines = ["Metadata-Version: 2.1", f"Name: {project['name']}", f"Version: {VERSION}", f"Summary: {project['description']}",
+             f"Requires-Python: {project['requires-python']}"]
+    lines += [f"Requires-Dist: {name}" for name in project["dependencies"]]
+    for extra, names in project["optional-dependencies"].items():
+        lines += [f"Provides-Extra: {extra}", *(f'Requires-Dist: {name}; extra == "{extra}"' for name in names)]
+    return "\n".join(lines) + "\n"
 
 
 def information():
     """Files about the package: {name: bytes}."""
     wheel = "Wheel-Version: 1.0\nGenerator: talus\nRoot-Is-Purelib: true\nTag: py3-none-any\n"
-    return {f"{INFO}/METADATA": METADATA.encode(), f"{INFO}/WHEEL": wheel.encode(),
+    return {f"{INFO}/METADATA": metadata().encode(), f"{INFO}/WHEEL": wheel.encode(),
             f"{INFO}/LICENSE": (SOURCE / "LICENSE").read_bytes()}
 
 

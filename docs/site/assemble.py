@@ -13,7 +13,6 @@ import cases
 import contents
 
 ROOT = cases.ROOT
-LANGUAGES = {".c": "c", ".h": "c", ".py": "python", ".sh": "bash", ".yaml": "yaml", ".geo": "c", ".inc": "c"}
 FENCE = re.compile(r"^(\s*)(```+|~~~+)")
 
 
@@ -26,6 +25,8 @@ def sources():
 
 def page_of(target, pages):
     """The page, without .md, that shows a path of the repository; None where it is shown as it is."""
+    if target == ROOT / "cases":
+        return "gallery"
     if target.is_dir():
         target = target / "README.md"
     name = os.path.relpath(target, ROOT)
@@ -42,7 +43,6 @@ class Site:
     def __init__(self, talus, out):
         self.talus, self.out = talus, out
         self.pages = [name for name in sources() if name != "README"] + ["gallery", "commands", "lists", "library"]
-        self.files = set()
         self.written = set()
 
     def write(self, name, text):
@@ -61,24 +61,28 @@ class Site:
         for path in [p for p in self.out.rglob("*") if p.is_file() and p not in self.written]:
             path.unlink()
 
-    def link(self, folder, page, target):
-        """A link of a page in `folder` of the repository as the site has it."""
+    def link(self, folder, page, words, target):
+        """The Markdown of a link of a page in `folder` of the repository as the site has it."""
         path, _, anchor = target.partition("#")
-        if re.match(r"[a-z]+:", target) or not path:
-            return target
-        there = page_of((ROOT / folder / path).resolve(), self.pages)
+        place = (ROOT / folder / path).resolve()
+        there = None if re.match(r"[a-z]+:", target) or not path else page_of(place, self.pages)
+        if there is None and path and place.is_dir():
+            return words  # a folder that has no page
         if there is None:
-            return target
+            return f"[{words}]({target})"
+        here = os.path.dirname(page) or "."
         if there.startswith("files/"):
-            self.files.add(there[len("files/"):])
-        return os.path.relpath(there, os.path.dirname(page) or ".") + ".md" + ("#" + anchor if anchor else "")
+            self.put("_extra/" + there + ".txt", (ROOT / there[len("files/"):]).read_bytes())
+            words = re.sub("`([^`]*)`", r"<code>\1</code>", words)
+            return f'<a href="{os.path.relpath(there, here)}.txt">{words}</a>'
+        return f"[{words}]({os.path.relpath(there, here)}.md{'#' + anchor if anchor else ''})"
 
     def rewrite(self, name, text):
         """The links of a Markdown text of the page `name`; a path in `code` that is a case or a page becomes a link, too."""
         folder, page = os.path.dirname(name), "index" if name == "README" else name
 
         def linked(match):
-            return f"{match.group(1)}{self.link(folder, page, match.group(2))})"
+            return self.link(folder, page, *match.groups())
 
         def named(match):
             path = match.group(1).rstrip("/")
@@ -97,7 +101,7 @@ class Site:
             elif mark and line.strip().startswith(fence):
                 fence = None
             elif not fence and not line.startswith("    "):
-                line = re.sub(r"(\]\()([^)\s]+)\)", linked, line)
+                line = re.sub(r"(?<!!)\[((?:[^\[\]`]|`[^`]*`)*)\]\(([^)\s]+)\)", linked, line)
                 line = re.sub(r"(?<!\[)`((?:docs|cases)/[\w./-]+)`(?!\])", named, line)
             if not fence and re.match(r"\s*\$\$", line):
                 lines.append("")  # the parser knows displayed formulas only as paragraphs of their own
@@ -122,19 +126,11 @@ class Site:
         if folder.parent != ROOT / "cases" or not folder.is_dir():
             return ""
         others = [p.name for p in sorted(folder.iterdir()) if p.suffix in (".yaml", ".geo", ".py") and p != case]
-        self.files.update(f"cases/{folder.name}/{other}" for other in others)
         text = "\n\n## The files\n\n"
         if others:
-            text += "Beside the case file: " + ", ".join(
-                f"[{other}](../../files/cases/{folder.name}/{other}.md)" for other in others) + ".\n\n"
+            links = [self.link(folder, name, other, other) for other in others]
+            text += f"Beside the case file: {', '.join(links)}.\n\n"
         return text + (f"`case.yaml`:\n\n```yaml\n{case.read_text()}```\n" if case.exists() else "")
-
-    def copy_files(self):
-        """A page for each file that is linked to."""
-        for name in sorted(self.files):
-            path = ROOT / name
-            language = LANGUAGES.get(path.suffix, "cmake" if path.name == "CMakeLists.txt" else "text")
-            self.write("files/" + name, f"---\norphan: true\n---\n# {name}\n\n````{language}\n{path.read_text()}\n````\n")
 
     def run(self, *words):
         return subprocess.run([self.talus, *words], capture_output=True, text=True, check=True).stdout
@@ -157,9 +153,10 @@ class Site:
         self.write("lists", text)
 
     def make_library(self):
-        self.files.add("include/talus.h")
-        self.write("library", "# The C library\n\nAll that the program does is open to a program of your own through one header,\n"
-                   "[talus.h](files/include/talus.h.md): <a href=\"library/index.html\">its reference, by Doxygen</a>, is a part of this site.\n" + toctree(self.order()[0].get("library", []), None))
+        header = self.link("", "library", "talus.h", "include/talus.h")
+        self.write("library", f"# The C library\n\nAll that the program does is open to a program of your own through one header, {header}:\n"
+                   "<a href=\"library/index.html\">its reference, by Doxygen</a>, is a part of this site.\n"
+                   + toctree(self.order()[0].get("library", []), None))
 
     def make_gallery(self):
         seconds, notes = cases.times()
@@ -167,10 +164,13 @@ class Site:
                 "A case is a text file and a page that says what came out; the picture leads there.", "",
                 "Times: processor time of the command, measured by `make gallery`"
                 + (f" ({notes[0]})" if notes else "") + "; in words where the case's page states it.", "",
-                '<div class="gallery">']
-        for case in cases.all_cases():
-            text.append(self.card(case, seconds.get(case.name)))
-        self.write("gallery", "\n".join(text + ["</div>", ""]) + toctree(self.order()[0]["gallery"], None))
+                ""]
+        everything = cases.all_cases()
+        for group in cases.GROUPS:
+            text += [f"## {group}", "", '<div class="gallery">']
+            text += [self.card(case, seconds.get(case.name)) for case in everything if case.group == group]
+            text += ["</div>", ""]
+        self.write("gallery", "\n".join(text) + toctree(self.order()[0]["gallery"], None))
 
     def card(self, case, seconds):
         page = f"cases/{case.name}/README.html"
@@ -182,7 +182,8 @@ class Site:
             picture = f'<a href="{page}"><img loading="lazy" src="{source}" alt="{html.escape(case.title, quote=True)}"></a>'
         time = seconds or case.stated_time
         return (f'<div class="case"><p class="picture">{picture}</p><p class="title"><a href="{page}">{html.escape(case.title)}</a></p>'
-                f'<p>{html.escape(case.sentence)}</p><p class="command"><code>{html.escape(command)}</code>'
+                f'<p>{html.escape(case.sentence)}</p><p class="words">{html.escape(", ".join(case.words))}</p>'
+                f'<p class="command"><code>{html.escape(command)}</code>'
                 f'<span class="time">{html.escape(time)}</span></p></div>')
 
     def order(self):
@@ -190,7 +191,7 @@ class Site:
         below, parts, rest = {}, [], []
         for page in self.pages:
             for pattern, parent in contents.BELOW:
-                if fnmatch.fnmatchcase(page, pattern) and page != parent:
+                if fnmatch.fnmatchcase(page, pattern) and page != parent and parent in self.pages:
                     below.setdefault(parent, []).append(page)
                     break
             else:
@@ -203,8 +204,6 @@ class Site:
                          and (page == pattern or (page not in named and fnmatch.fnmatchcase(page, pattern)))]
             rest = [page for page in rest if page not in mine]
             parts.append((caption, mine))
-        if rest:
-            sys.exit(f"contents.py has no place for: {', '.join(rest)}")
         return below, parts
 
     def make_index(self):
@@ -217,7 +216,7 @@ class Site:
 def toctree(pages, caption):
     if not pages:
         return ""
-    head = "\n```{toctree}\n:hidden:\n" + (f":caption: {caption}\n" if caption else "")
+    head = "\n```{toctree}\n:hidden:\n:titlesonly:\n" + (f":caption: {caption}\n" if caption else "")
     return head + "".join(f"/{page}\n" for page in pages) + "```\n"
 
 
@@ -229,7 +228,6 @@ def main():
     site.make_lists()
     site.make_library()
     site.make_gallery()
-    site.copy_files()
     site.remove_others()
 
 

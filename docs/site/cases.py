@@ -33,6 +33,9 @@ def times():
     return rows, notes
 
 
+GROUPS = ["Solids", "Contact", "Soil", "Grains and powders", "Other commands"]
+
+
 class Case:
     """A folder of cases/ as the gallery sees it."""
 
@@ -44,6 +47,28 @@ class Case:
         paragraphs = [p for p in re.split(r"\n\s*\n", body.strip("\n")) if not re.match(r"[`|!#>\s-]", p)]
         self.sentence = first_sentence(plain(paragraphs[0])) if paragraphs else self.title
         self.pictures = re.findall(r"!\[[^\]]*\]\(([^)\s]+)\)", self.readme)
+
+    def value(self, key):
+        """The first value of a key in the case file, wherever it stands; an empty text if there is none."""
+        path = self.folder / "case.yaml"
+        text = re.sub(r"#.*", "", path.read_text()) if path.exists() else ""
+        found = re.search(rf"\b{key}: *([\w.-]*)", text)
+        return (found.group(1) or "yes") if found else ""
+
+    @property
+    def words(self):
+        """Method, kinematics, analysis and law, as the case file names them."""
+        return [word for word in map(self.value, ("method", "kinematics", "type", "law", "formulation")) if word]
+
+    @property
+    def group(self):
+        """What the case is about, told from its case file."""
+        if not self.words:
+            return "Other commands"
+        if not re.match("neo-hookean|j2", self.value("law")):
+            flows = self.value("type") == "dynamic" and self.value("friction_angle") != "0"
+            return "Grains and powders" if flows else "Soil"
+        return "Contact" if self.value("walls") or self.value("interfaces") else "Solids"
 
     @property
     def command(self):

@@ -30,6 +30,8 @@ exclude_patterns = ["_extra"]
 html_math_renderer = "katex"
 html_copy_source = False
 html_show_sphinx = False
+html_show_copyright = False
+highlight_language = "text"
 html_theme_options = {"navigation_with_keys": True}
 
 

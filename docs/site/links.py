@@ -39,8 +39,7 @@ def main():
                     ids[there] = anchors(texts.get(there, ""))
                 if unquote(anchor) not in ids[there]:
                     wrong.append(f"{name}: no anchor #{anchor} in {there.relative_to(root)}")
-    print("\n".join(sorted(set(wrong))))
-    print(f"{len(texts)} pages, {links} links")
+    print("\n".join(sorted(set(wrong)) + [f"{len(texts)} pages, {links} links"]))
     sys.exit(1 if wrong else 0)
 
 

@@ -6,12 +6,11 @@ import talus
 
 column = Path(__file__).with_name("column.yaml")
 angles = [25, 31, 37]
-found = talus.sweep(column, {"materials.grains.friction_angle": angles}, measures=["run_out", "height"],
-                    out="runs/friction-sweep")
+found = talus.sweep(column, {"materials.grains.friction_angle": angles}, measures=["run_out"], out="runs/friction-sweep")
 
-print("friction [deg]   run-out   height [m]")
-for angle, run_out, height in zip(angles, found.table["run_out"], found.table["height"]):
-    print(f"{angle:14g} {run_out:9.3f} {height:12.4f}")
+print("friction [deg]   run-out")
+for angle, run_out in zip(angles, found.table["run_out"]):
+    print(f"{angle:14g} {run_out:9.3f}")
 
 # Each row has its run: how far had the front come by half the time?
 for angle, run in zip(angles, found.runs):

@@ -131,7 +131,7 @@ class Case:
             raise CaseError(text, read_messages(text, keys))
         if code:
             raise TalusError(f"{lib.text('talus_error_string', code)}\n{text}")
-        warn_of(text, 4)
+        warn_of(text)
 
     def check(self):
         """Read and validate the case; CaseError tells all its mistakes.

@@ -1,6 +1,9 @@
 """What can go wrong, as exceptions that carry what a program needs to react."""
 
+import contextlib
+import os
 import re
+import sys
 import warnings
 from dataclasses import dataclass
 
@@ -79,9 +82,12 @@ def read_messages(text, key_of_line=None):
     return [Mistake(**fields) for fields in found]
 
 
-def warn_of(text, stacklevel):
-    """Hand the warnings of a text on to :mod:`warnings`, as of the caller so many levels up."""
+def warn_of(text):
+    """Hand the warnings of a text on to :mod:`warnings`, at the line of the user that led here."""
+    level, frame, ours = 1, sys._getframe(), (os.path.dirname(__file__), contextlib.__file__)
+    while frame and frame.f_code.co_filename.startswith(ours):
+        level, frame = level + 1, frame.f_back
     for mistake in read_messages(text):
         if mistake.severity == "warning":
             hint = f" ({mistake.hint})" if mistake.hint else ""
-            warnings.warn(mistake.text + hint, TalusWarning, stacklevel + 1)
+            warnings.warn(mistake.text + hint, TalusWarning, level)

@@ -52,6 +52,7 @@ class Points(Mapping):
         lib.call("TalusModelPoints", *ask, None, 0)
         out = np.empty((n.value, components.value))
         lib.call("TalusModelPoints", *ask, out.ctypes.data_as(ctypes.POINTER(ctypes.c_double)), out.size)
+        out = out.astype(np.int64) if name in ("id", "body", "material") else out
         return out[:, 0] if components.value == 1 else out
 
     def __getitem__(self, name):

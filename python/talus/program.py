@@ -37,11 +37,16 @@ def find_program():
                                                          "; TALUS_PROGRAM may name it"))
 
 
+@contextlib.contextmanager
 def _environment():
-    """That of this process as it began: what MPI has put there since, or its mpiexec, is not the child's."""
-    ours = ("OMPI_", "PMIX_", "PMI_", "OPAL_", "ORTE_", "PRTE_")
-    kept = ("OMPI_MCA_rmaps", "OMPI_MCA_pml", "OMPI_MCA_btl", "OMPI_ALLOW")
-    return {key: value for key, value in os.environ.items() if not key.startswith(ours) or key.startswith(kept)}
+    """That of this process as Python knows it: what MPI has put there since, or an mpiexec that started us, is not
+    the child's. MPI gets a folder of its own: of two that share one, the first to end takes it away."""
+    launched = "OMPI_COMM_WORLD_SIZE" in os.environ or "PMI_SIZE" in os.environ
+    of_mpi = ("OMPI_", "PMIX_", "PMI_", "PRTE_", "HYDRA_")
+    mine = {key: value for key, value in os.environ.items()
+            if not launched or not key.startswith(of_mpi) or key.startswith("OMPI_ALLOW")}
+    with tempfile.TemporaryDirectory(prefix="talus-mpi-", ignore_cleanup_errors=True) as folder:
+        yield dict(mine, OMPI_MCA_orte_tmpdir_base=folder)
 
 
 @contextlib.contextmanager
@@ -101,7 +106,7 @@ def run(case, out, ranks=1, force=False, resume=False, progress=None, trust=Fals
     '2'
     """
     out = Path(out)
-    with _as_file(case) as (words, keys):
+    with _as_file(case) as (words, keys), _environment() as env:
         words = ["--resume", str(out), *words[1:]] if resume else [*words, "--out", str(out)]
         words = [str(find_program()), "run", *words, "--quiet"] + ["--force"] * bool(force) + ["--trust"] * bool(trust)
         if ranks > 1:
@@ -110,7 +115,7 @@ def run(case, out, ranks=1, force=False, resume=False, progress=None, trust=Fals
         if resume and progress and out.is_dir():
             told = _only_new(progress, Run(out).history["step"][-1])
         with tempfile.TemporaryFile() as said:
-            process = subprocess.Popen(words, stdout=said, stderr=said, env=_environment())
+            process = subprocess.Popen(words, stdout=said, stderr=said, env=env)
             try:
                 stopped = _follow(process, out / "log.txt", told)
             except BaseException:
@@ -121,7 +126,7 @@ def run(case, out, ranks=1, force=False, resume=False, progress=None, trust=Fals
             text = said.read().decode(errors="replace")
     if not stopped:
         _raise_for(process.returncode, text, keys, Run(out) if (out / "case.yaml").is_file() else None)
-        warn_of(text, 2)
+        warn_of(text)
     return Run(out)
 
 
@@ -131,7 +136,8 @@ def _only_new(progress, before):
 
 
 def _call(words):
-    done = subprocess.run([str(find_program()), *words], capture_output=True, text=True, env=_environment())
+    with _environment() as env:
+        done = subprocess.run([str(find_program()), *words], capture_output=True, text=True, env=env)
     return done.returncode, done.stderr
 
 

@@ -89,7 +89,8 @@ static PetscErrorCode PointValue(const Model *m, PetscInt p, const char *name, P
     PetscCall(PetscArraycpy(out, F, 9));
   } else if (!strcmp(name, "mass")) *out = points->real[POINT_MASS][p];
   else if (!strcmp(name, "volume")) *out = volume;
-  else if (!strcmp(name, "plastic_increment")) *out = points->real[POINT_FLOW][p];
+  else if (!strcmp(name, "plastic_increment"))
+    *out = points->components[POINT_FLOW] ? points->real[POINT_FLOW][p] : 0; /* kept where it is written */
   else if (!strcmp(name, "contact_force")) contact_force_on(m, p, out);
   else if (!strcmp(name, "density")) *out = points->real[POINT_MASS][p] / volume;
   else if (!strcmp(name, "energy")) *out = model_point_energy(m, p);

@@ -16,15 +16,23 @@ static double measure(const TalusModel *model, const char *name)
   return value;
 }
 
+/* The list, and that a model gives each of them, whether or not the case writes it. */
 static void test_fields(void **state)
 {
   const char *name, *unit;
-  int components, n = 0, stress = 0;
+  int components, found, n = 0, stress = 0;
+  double buffer[9 * 64];
   (void)state;
+  TalusCase *c = open_block(0, NULL);
+  TalusModel *model = create_model(c);
   while (!TalusField(n, &name, &unit, &components)) {
     stress += !strcmp(name, "stress") && !strcmp(unit, "Pa") && components == 6;
+    CALL(TalusModelPoints(model, name, NULL, &found, buffer, 9 * 64));
+    CHECK(found == components);
     ++n;
   }
+  CALL(TalusModelDestroy(&model));
+  CALL(TalusCaseClose(&c));
   CHECK(n > 10 && stress == 1);
   CHECK_ERROR(TalusField(-1, NULL, NULL, NULL), TALUS_ERROR_ARGUMENT);
 }

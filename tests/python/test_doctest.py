@@ -3,13 +3,16 @@
 import doctest
 import importlib
 import inspect
+import os
 import pkgutil
+import re
 import unittest
+import warnings
 
 import numpy as np
 
 import talus
-from fixture import BLOCK, InFolder
+from fixture import BLOCK, SOURCE, InFolder
 from fixture import talus as program
 
 
@@ -25,6 +28,21 @@ class Docstrings(InFolder):
             self.assertEqual(result.failed, 0, module.__name__)
             attempted += result.attempted
         self.assertGreater(attempted, 30)
+
+    def test_the_page(self):
+        """The sessions of docs/python.md, one after the other, as a reader would type them."""
+        os.symlink(SOURCE / "python", "python")
+        page = (SOURCE / "docs" / "python.md").read_text()
+        sessions = re.findall(r"```pycon\n(.*?)```", page, re.S)
+        self.assertGreater(len(sessions), 8)
+        names, runner = {}, doctest.DocTestRunner(optionflags=doctest.ELLIPSIS)
+        for number, session in enumerate(sessions):
+            test = doctest.DocTestParser().get_doctest(session, names, f"docs/python.md, session {number + 1}", None, 0)
+            with warnings.catch_warnings():
+                warnings.simplefilter("ignore", talus.TalusWarning)  # the column is coarse, and says so
+                runner.run(test, clear_globs=False)
+            names = test.globs
+        self.assertEqual(runner.summarize().failed, 0)
 
     def test_everything_public_is_told(self):
         for name in talus.__all__:

@@ -94,6 +94,15 @@ class Cases(InFolder):
             case.run("nowhere")
         self.assertFalse(Path("nowhere").exists())
 
+    def test_warnings_are_of_the_line_that_led_there(self):
+        case = block(**{"grid.counts": [16, 16], "bodies[0].shape.box.max": [1.2, 1]})
+        for act in (lambda: case.model().close(), lambda: case.run("coarse"), lambda: talus.run(case, "coarse-too")):
+            with warnings.catch_warnings(record=True) as caught:
+                warnings.simplefilter("always")
+                act()
+            self.assertEqual({warning.filename for warning in caught}, {__file__})
+            self.assertIn("whole cells represent body 'block'", str(caught[0].message))
+
     def test_getting_and_setting(self):
         case = talus.Case(BLOCK)
         case["bodies[0].velocity"] = np.array([1.5, 0])
