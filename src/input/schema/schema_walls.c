@@ -53,6 +53,9 @@ static const SchemaEntry wall_entries[] = {
       .max_open = PETSC_TRUE, INPUT_ONLY, AT(WallSpec, friction)),
   KEY("adhesion", NUMBER, "N/m2", "tangential stress that contact bears without pressure", .fallback = "0", AT_LEAST(0),
       AT(WallSpec, adhesion)),
+  KEY("absent", BOOLEAN, NULL,
+      "of a case with stages: it is not there, until one of them says that it is; and from one on that says it is not",
+      .fallback = "false", AT(WallSpec, absent), STAGED),
   {.key = NULL},
 };
 static const SchemaGroup wall_groups[] = {{GROUP_AT_MOST_ONE, {"friction", "friction_angle", NULL}},
