@@ -186,6 +186,20 @@ class Running(InFolder):
         with self.assertRaisesRegex(talus.TalusError, "a function of this process"):
             talus.run(light, "force-program")
 
+    def test_body_force_goes_through_stages(self):
+        """Gravity as a function, in two stages, cut off in the second and resumed."""
+        stages = [{"name": "falls"}, {"name": "stiffens", "materials": {"hard": {
+            "law": "neo-hookean", "density": 1000, "young": 2e6, "poisson": 0.3}}, "bodies": [{"name": "block", "material": "hard"}]}]
+        heavy = block(stages=stages)
+        whole = heavy.run("stages").history
+        self.assertEqual((whole["stage"][-1], whole.time[-1]), (2, 0.02))
+        light = block(**{"loads.gravity": [0, 0], "stages": stages})
+        light.body_force = lambda X, x, t: [0, -9.81, 0]
+        light.run("stages-force", progress=lambda step, time, end: step == 7)
+        again = talus.Case("stages-force", body_force=light.body_force)
+        found = again.run("stages-force", resume=True).history
+        np.testing.assert_allclose(found["top"], whole["top"], rtol=1e-9)
+
     def test_trust(self):
         Path("square.geo").write_text('Point(1) = {0, 0, 0, 0.5}; l() = Extrude {1, 0, 0} { Point{1}; };\n'
                                       's() = Extrude {0, 1, 0} { Curve{l(1)}; };\nPrintf("x") > "made";\n')
