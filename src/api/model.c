@@ -13,20 +13,6 @@ struct TalusModel {
   void *single_context;
 };
 
-static PetscErrorCode Destroy(TalusModel **model)
-{
-  PetscFunctionBeginUser;
-  PetscCall(ModelDestroy(&(*model)->model));
-  PetscCall(PetscFree(*model));
-  PetscFunctionReturn(0);
-}
-
-int TalusModelDestroy(TalusModel **model)
-{
-  if (!model || !*model) return TALUS_OK;
-  return talus_is_running() ? talus_code(Destroy(model)) : TALUS_ERROR_STATE;
-}
-
 void talus_ask_forces(void *force, PetscInt n, const PetscReal *X, const PetscReal *x, PetscReal t, PetscReal *b)
 {
   const TalusForce *f = force;
@@ -39,6 +25,20 @@ static PetscErrorCode SetForce(TalusModel *m, TalusBodyForces force, void *conte
   m->force = (TalusForce){force, context};
   PetscCall(ModelSetBodyForce(m->model, force ? talus_ask_forces : NULL, &m->force));
   PetscFunctionReturn(0);
+}
+
+static PetscErrorCode Destroy(TalusModel **model)
+{
+  PetscFunctionBeginUser;
+  PetscCall(ModelDestroy(&(*model)->model));
+  PetscCall(PetscFree(*model));
+  PetscFunctionReturn(0);
+}
+
+int TalusModelDestroy(TalusModel **model)
+{
+  if (!model || !*model) return TALUS_OK;
+  return talus_is_running() ? talus_code(Destroy(model)) : TALUS_ERROR_STATE;
 }
 
 static PetscErrorCode Create(TalusCase *c, TalusModel **model, char **messages)
