@@ -186,7 +186,8 @@ class Case:
         then the one of that directory (`talus.Case("runs/x")`). `quiet=False` prints what the program would.
         `progress(step, time, end)` is called after every step (times in s); if it returns True the run ends
         there, with its state and a checkpoint, and so it does on what progress or a body force raises.
-        A solver that gives up is a RunError, whose `run` holds what there is. Collective.
+        A solver that gives up is a RunError, whose `run` holds what there is; a signal (Ctrl-C) ends the run in the same
+        way with a checkpoint, and is a KeyboardInterrupt. Collective.
 
         >>> run = talus.Case(block).run("runs/three", progress=lambda step, time, end: step == 3)
         >>> run, run.history["step"]
@@ -220,6 +221,8 @@ class Case:
             text = lib.take_text(messages)
             if not any(stopped[-1:]):
                 errors = [mistake.text for mistake in read_messages(text) if mistake.severity == "error"]
+                if any("interrupted by a signal" in error for error in errors):
+                    raise KeyboardInterrupt("\n".join(errors))
                 raise RunError("\n".join(errors) or text, Run(out))
         else:
             self.tell(lib, code, messages)

@@ -2,6 +2,7 @@
 
 import os
 import re
+import signal
 import subprocess
 import sys
 import unittest
@@ -152,6 +153,23 @@ class Running(InFolder):
         with self.assertRaises(talus.CaseError) as caught:
             talus.run(case, "bad")
         self.assertEqual(caught.exception.mistakes[0].key, "materials.rubber.poison")
+
+    def test_interrupted(self):
+        """Ctrl-C, in this process and while the program runs: a checkpoint is written, and the run goes on from it."""
+        endless = block(**{"analysis.end": 1e3})
+        with self.assertRaisesRegex(KeyboardInterrupt, "by a signal, after step 3"):
+            endless.run("endless", progress=lambda step, time, end: step == 3 and os.kill(os.getpid(), signal.SIGINT))
+        self.assertEqual(talus.open("endless").outcome, "interrupted")
+
+        def interrupt(step, time):
+            raise KeyboardInterrupt
+
+        for _ in range(2):  # the second time there is the log of the first
+            with self.assertRaises(KeyboardInterrupt):
+                talus.run(endless, "endless-program", force=True, progress=interrupt)
+            run = talus.open("endless-program")
+            self.assertEqual(run.outcome, "interrupted")
+            self.assertTrue(list(run.path.glob("checkpoint_*.h5")))
 
     def test_a_run_that_gives_up(self):
         case = block(**{"newton.max_iterations": 1, "newton.residual": 1e-14, "analysis.smallest": 1e-3})
