@@ -77,8 +77,8 @@ def _raise_for(code, text, keys, run=None):
 
 @contextlib.contextmanager
 def _process(words, said):
-    """A process that hears signals only from here: on Ctrl-C, and on whatever else is raised, it is asked to leave, once,
-    and writes its checkpoint (a second signal would end it at once)."""
+    """A process that hears signals only from here: on Ctrl-C, and on whatever else is raised, it is asked to leave,
+    once, and writes its checkpoint (a second signal would end it at once)."""
     with _environment() as env:
         process = subprocess.Popen(words, stdout=subprocess.DEVNULL, stderr=said, env=env,
                                    start_new_session=True)
@@ -95,8 +95,8 @@ def _state_of(file):
 
 
 def _follow(process, log, before, progress):
-    """Tell progress of each new step of the log until the process ends; ask it to leave if that wants no more. The log of
-    an earlier run, known by its state `before`, is none of it."""
+    """Tell progress of each new step of the log until the process ends; ask it to leave if that wants no more. The log
+    of an earlier run, known by its state `before`, is none of it."""
     at, stopped = 0, False
     while True:
         ended = process.poll() is not None
@@ -164,13 +164,16 @@ def sweep(case, over, measures=(), out=None, along=None, jobs=None, force=False)
     """`talus sweep`: a case over values of its keys, several runs at a time; returns the :class:`Sweep`.
 
     `over` is {key: values}: all combinations are run. `along` is {key: {other key: values}}: keys that vary along
-    with one of `over`. `measures` are as `--measure` takes them ("tip:max", "flow:mean:0.2:0.8"); default: all, at the end. `out` is the
-    directory, default `runs/sweep/<case>`; the same call again goes on. A member that fails is told in its row.
+    with one of `over`. `measures` are as `--measure` takes them ("tip:max", "flow:mean:0.2:0.8"); default: all, at the
+    end. `out` is the directory, default `runs/sweep/<case>` (a dict has no name and needs it); the same call again goes
+    on. A member that fails is told in its row.
 
     >>> found = talus.sweep(block, {"materials.rubber.young": [1e6, 2e6]}, out="runs/young")
     >>> found.table["materials.rubber.young"], found.table["ended"]
     (array([1000000., 2000000.]), array(['done', 'done'], dtype='<U4'))
     """
+    if out is None and (isinstance(case, dict) or getattr(case, "document", None) is not None):
+        raise TalusError("a case of a dict has no name: say where its sweep goes, out=...")
     with _as_file(case) as (words, keys):
         for key, values in over.items():
             words += ["--over", f"{key}={_values(values)}"]

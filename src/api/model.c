@@ -183,8 +183,8 @@ int TalusModelPoints(const TalusModel *model, const char *field, int *n, int *co
   return talus_code(CopyField(model->model, field, buffer));
 }
 
-/* Arrays of the points that are shown as they are; those that may be written carry the motion or the
- * memory of a law, which the next step begins with. */
+/* Arrays of the points that are shown as they are; those that may be written carry the motion or
+ * the memory of a law, which the next step begins with. */
 static const struct {
   const char *name;
   PointReal field;
