@@ -121,8 +121,8 @@ def run(case, out, ranks=1, force=False, resume=False, progress=None, trust=Fals
     returns True the run is asked to leave with its state. `resume` goes on with the run in `out`, with the
     changes made to `case` (`talus.Case("runs/x")`). Mistakes are a CaseError, a run that gave up a RunError.
 
-    >>> talus.run(block, "runs/two-ranks", ranks=2).version["ranks"]
-    '2'
+    >>> talus.run(block, "runs/by-program").history.last["step"]
+    5.0
     """
     out = Path(out)
     with _as_file(case) as (words, keys):
@@ -167,10 +167,6 @@ def sweep(case, over, measures=(), out=None, along=None, jobs=None, force=False)
     with one of `over`. `measures` are as `--measure` takes them ("tip:max", "flow:mean:0.2:0.8"); default: all, at the
     end. `out` is the directory, default `runs/sweep/<case>` (a dict has no name and needs it); the same call again goes
     on. A member that fails is told in its row.
-
-    >>> found = talus.sweep(block, {"materials.rubber.young": [1e6, 2e6]}, out="runs/young")
-    >>> found.table["materials.rubber.young"], found.table["ended"]
-    (array([1000000., 2000000.]), array(['done', 'done'], dtype='<U4'))
     """
     if out is None and (isinstance(case, dict) or getattr(case, "document", None) is not None):
         raise TalusError("a case of a dict has no name: say where its sweep goes, out=...")
