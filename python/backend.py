@@ -23,8 +23,8 @@ INFO = f"talus-{VERSION}.dist-info"
 def metadata():
     """What pyproject.toml says, as METADATA says it."""
     project = tomllib.loads((HERE / "pyproject.toml").read_text())["project"]
-    lines = ["Metadata-Version: 2.1", f"Name: {project['name']}", f"Version: {VERSION}", f"Summary: {project['description']}",
-             f"Requires-Python: {project['requires-python']}"]
+    lines = ["Metadata-Version: 2.1", f"Name: {project['name']}", f"Version: {VERSION}",
+             f"Summary: {project['description']}", f"Requires-Python: {project['requires-python']}"]
     lines += [f"Requires-Dist: {name}" for name in project["dependencies"]]
     for extra, names in project["optional-dependencies"].items():
         lines += [f"Provides-Extra: {extra}", *(f'Requires-Dist: {name}; extra == "{extra}"' for name in names)]

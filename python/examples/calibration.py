@@ -1,7 +1,7 @@
 """Which angle of friction has a material whose column ran out so far? SciPy asks, talus answers.
 
-What was "measured" is the front of a run with 28 degrees over time, so that the answer is known. `talus calibrate` looks for
-several parameters and says how well they are determined (docs/calibrate.md).
+What was "measured" is the front of a run with 28 degrees over time, so that the answer is known. `talus calibrate`
+looks for several parameters and says how well they are determined (docs/calibrate.md).
 """
 
 import sys

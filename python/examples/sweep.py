@@ -6,7 +6,8 @@ import talus
 
 column = Path(__file__).with_name("column.yaml")
 angles = [25, 31, 37]
-found = talus.sweep(column, {"materials.grains.friction_angle": angles}, measures=["run_out"], out="runs/friction-sweep")
+found = talus.sweep(column, {"materials.grains.friction_angle": angles}, measures=["run_out"],
+                    out="runs/friction-sweep")
 
 print("friction [deg]   run-out")
 for angle, run_out in zip(angles, found.table["run_out"]):

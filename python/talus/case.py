@@ -109,7 +109,8 @@ class Case:
         lib = library()
         handle, messages = ctypes.c_void_p(), ctypes.c_void_p()
         changes = [change.encode() for change in self.settings()]
-        common = (len(changes), (ctypes.c_char_p * len(changes))(*changes), ctypes.byref(handle), ctypes.byref(messages))
+        texts = (ctypes.c_char_p * len(changes))(*changes)
+        common = (len(changes), texts, ctypes.byref(handle), ctypes.byref(messages))
         comm, file, keys = lib.communicator(self.comm), str(self.file).encode(), None
         if self.document is None:
             code = lib.code("TalusCaseOpen", comm, file, *common)
@@ -186,7 +187,8 @@ class Case:
         then the one of that directory (`talus.Case("runs/x")`). `quiet=False` prints what the program would.
         `progress(step, time, end)` is called after every step (times in s); if it returns True the run ends
         there, with its state and a checkpoint, and so it does on what progress or a body force raises.
-        A solver that gives up is a RunError, whose `run` holds what there is. Collective.
+        A solver that gives up is a RunError, whose `run` holds what there is; a signal (Ctrl-C) ends the run in the
+        same way with a checkpoint, and is a KeyboardInterrupt. Collective.
 
         >>> run = talus.Case(block).run("runs/three", progress=lambda step, time, end: step == 3)
         >>> run, run.history["step"]
@@ -210,7 +212,8 @@ class Case:
             hooks = callbacks.body_force(self.body_force), callbacks.progress(watch)
             lib.call("TalusCaseSetBodyForces", handle, hooks[0], None)
             lib.call("TalusCaseSetProgress", handle, hooks[1], None)
-            code = lib.code("TalusRunCase", handle, str(out).encode(), flags, ctypes.byref(ended), ctypes.byref(messages))
+            code = lib.code("TalusRunCase", handle, str(out).encode(), flags, ctypes.byref(ended),
+                            ctypes.byref(messages))
             if not code:
                 lib.call("TalusRunOutcome", ended, ctypes.byref(outcome))
                 lib.call("TalusRunDestroy", ctypes.byref(ended))
@@ -220,6 +223,8 @@ class Case:
             text = lib.take_text(messages)
             if not any(stopped[-1:]):
                 errors = [mistake.text for mistake in read_messages(text) if mistake.severity == "error"]
+                if any("interrupted by a signal" in error for error in errors):
+                    raise KeyboardInterrupt("\n".join(errors))
                 raise RunError("\n".join(errors) or text, Run(out))
         else:
             self.tell(lib, code, messages)

@@ -54,7 +54,8 @@ class RunError(TalusError):
         self.run = run
 
 
-_HEAD = re.compile(r"^(?:(?P<file>.*?)(?::(?P<line>\d+):(?P<column>\d+))?: )?(?P<severity>error|warning): (?P<text>.*)$")
+_HEAD = re.compile(r"^(?:(?P<file>.*?)(?::(?P<line>\d+):(?P<column>\d+))?: )?"
+                   r"(?P<severity>error|warning): (?P<text>.*)$")
 
 
 def read_messages(text, key_of_line=None):
@@ -62,8 +63,9 @@ def read_messages(text, key_of_line=None):
 
     `key_of_line` maps lines of a text that this package has written to the paths of their keys.
 
-    >>> read_messages("a.yaml:3:5: error: key 'yung' of materials.m is not known\\n  hint: did you mean 'young'?")
-    [Mistake(severity='error', text="key 'yung' of materials.m is not known", file='a.yaml', line=3, column=5, key=None, hint="did you mean 'young'?")]
+    >>> (found,) = read_messages("a.yaml:3:5: error: key 'yung' is not known\\n  hint: did you mean 'young'?")
+    >>> found.file, found.line, found.column, found.text, found.hint
+    ('a.yaml', 3, 5, "key 'yung' is not known", "did you mean 'young'?")
     """
     found = []
     for line in (text or "").splitlines():

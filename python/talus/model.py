@@ -81,8 +81,8 @@ class Points(Mapping):
             raise KeyError(f"'{name}' is computed from other fields and cannot be changed")
         array, writable = self._array(name)
         if not writable:
-            raise TalusError(f"'{name}' of the points cannot be changed"
-                             + (": nodes keep the motion with this method" if name in ("velocity", "acceleration") else ""))
+            why = ": nodes keep the motion with this method" if name in ("velocity", "acceleration") else ""
+            raise TalusError(f"'{name}' of the points cannot be changed{why}")
         try:
             yield array
         finally:

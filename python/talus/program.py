@@ -3,7 +3,6 @@
 import contextlib
 import os
 import shutil
-import signal
 import subprocess
 import tempfile
 import time as clock
@@ -76,19 +75,39 @@ def _raise_for(code, text, keys, run=None):
         raise RunError("\n".join(errors) or text or f"the program ended with code {code}", run)
 
 
-def _follow(process, log, progress):
-    """Tell progress of each new step of the log until the process ends; ask it to leave if that wants no more."""
+@contextlib.contextmanager
+def _process(words, said):
+    """A process that hears signals only from here: on Ctrl-C, and on whatever else is raised, it is asked to leave,
+    once, and writes its checkpoint (a second signal would end it at once)."""
+    with _environment() as env:
+        process = subprocess.Popen(words, stdout=subprocess.DEVNULL, stderr=said, env=env,
+                                   start_new_session=True)
+        try:
+            yield process
+        except BaseException:
+            process.terminate()
+            process.wait()
+            raise
+
+
+def _state_of(file):
+    return (file.stat().st_ino, file.stat().st_size, file.stat().st_mtime_ns) if file.is_file() else None
+
+
+def _follow(process, log, before, progress):
+    """Tell progress of each new step of the log until the process ends; ask it to leave if that wants no more. The log
+    of an earlier run, known by its state `before`, is none of it."""
     at, stopped = 0, False
     while True:
         ended = process.poll() is not None
-        text = log.read_text(errors="replace") if log.is_file() else ""
+        text = log.read_text(errors="replace") if _state_of(log) not in (None, before) else ""
         whole = text.rfind("\n") + 1
         for line in text[at:whole].splitlines():
             words = line.split()
             if words[:2] == ["step", "="] and words[3:5] == ["time", "="] and not stopped:
                 stopped = bool(progress(int(words[2]), float(words[5])))
                 if stopped and not ended:
-                    process.send_signal(signal.SIGTERM)  # once: a second one would end it at once
+                    process.terminate()
         at = whole
         if ended:
             return stopped
@@ -102,11 +121,11 @@ def run(case, out, ranks=1, force=False, resume=False, progress=None, trust=Fals
     returns True the run is asked to leave with its state. `resume` goes on with the run in `out`, with the
     changes made to `case` (`talus.Case("runs/x")`). Mistakes are a CaseError, a run that gave up a RunError.
 
-    >>> talus.run(block, "runs/two-ranks", ranks=2).version["ranks"]
-    '2'
+    >>> talus.run(block, "runs/by-program").history.last["step"]
+    5.0
     """
     out = Path(out)
-    with _as_file(case) as (words, keys), _environment() as env:
+    with _as_file(case) as (words, keys):
         words = ["--resume", str(out), *words[1:]] if resume else [*words, "--out", str(out)]
         words = [str(find_program()), "run", *words, "--quiet"] + ["--force"] * bool(force) + ["--trust"] * bool(trust)
         if ranks > 1:
@@ -114,16 +133,11 @@ def run(case, out, ranks=1, force=False, resume=False, progress=None, trust=Fals
         told = progress or (lambda *_: False)
         if resume and progress and out.is_dir():
             told = _only_new(progress, Run(out).history["step"][-1])
-        with tempfile.TemporaryFile() as said:
-            process = subprocess.Popen(words, stdout=said, stderr=said, env=env)
-            try:
-                stopped = _follow(process, out / "log.txt", told)
-            except BaseException:
-                process.terminate()
-                process.wait()
-                raise
-            said.seek(0)
-            text = said.read().decode(errors="replace")
+        log = out / "log.txt"
+        before = _state_of(log)
+        with tempfile.TemporaryFile() as said, _process(words, said) as process:
+            stopped = _follow(process, log, before, told)
+            text = _said(said)
     if not stopped:
         _raise_for(process.returncode, text, keys, Run(out) if (out / "case.yaml").is_file() else None)
         warn_of(text)
@@ -135,23 +149,27 @@ def _only_new(progress, before):
     return lambda step, time: step > before and progress(step, time)
 
 
+def _said(file):
+    file.seek(0)
+    return file.read().decode(errors="replace")
+
+
 def _call(words):
-    with _environment() as env:
-        done = subprocess.run([str(find_program()), *words], capture_output=True, text=True, env=env)
-    return done.returncode, done.stderr
+    with tempfile.TemporaryFile() as said, _process([str(find_program()), *words], said) as process:
+        process.wait()
+        return process.returncode, _said(said)
 
 
 def sweep(case, over, measures=(), out=None, along=None, jobs=None, force=False):
     """`talus sweep`: a case over values of its keys, several runs at a time; returns the :class:`Sweep`.
 
     `over` is {key: values}: all combinations are run. `along` is {key: {other key: values}}: keys that vary along
-    with one of `over`. `measures` are as `--measure` takes them ("tip:max", "flow:mean:0.2:0.8"); default: all, at the end. `out` is the
-    directory, default `runs/sweep/<case>`; the same call again goes on. A member that fails is told in its row.
-
-    >>> found = talus.sweep(block, {"materials.rubber.young": [1e6, 2e6]}, out="runs/young")
-    >>> found.table["materials.rubber.young"], found.table["ended"]
-    (array([1000000., 2000000.]), array(['done', 'done'], dtype='<U4'))
+    with one of `over`. `measures` are as `--measure` takes them ("tip:max", "flow:mean:0.2:0.8"); default: all, at the
+    end. `out` is the directory, default `runs/sweep/<case>` (a dict has no name and needs it); the same call again goes
+    on. A member that fails is told in its row.
     """
+    if out is None and (isinstance(case, dict) or getattr(case, "document", None) is not None):
+        raise TalusError("a case of a dict has no name: say where its sweep goes, out=...")
     with _as_file(case) as (words, keys):
         for key, values in over.items():
             words += ["--over", f"{key}={_values(values)}"]

@@ -9,7 +9,8 @@
 
 _Static_assert(sizeof(PetscReal) == sizeof(double), "the public interface is written for PETSc with double precision");
 
-/* A caller's forces; talus_ask_forces asks for them as a BodyForce, with a TalusForce as its context. */
+/* A caller's forces; talus_ask_forces asks for them as a BodyForce, with a TalusForce as its
+ * context. */
 typedef struct {
   TalusBodyForces force;
   void *context;

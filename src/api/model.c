@@ -13,20 +13,6 @@ struct TalusModel {
   void *single_context;
 };
 
-static PetscErrorCode Destroy(TalusModel **model)
-{
-  PetscFunctionBeginUser;
-  PetscCall(ModelDestroy(&(*model)->model));
-  PetscCall(PetscFree(*model));
-  PetscFunctionReturn(0);
-}
-
-int TalusModelDestroy(TalusModel **model)
-{
-  if (!model || !*model) return TALUS_OK;
-  return talus_is_running() ? talus_code(Destroy(model)) : TALUS_ERROR_STATE;
-}
-
 void talus_ask_forces(void *force, PetscInt n, const PetscReal *X, const PetscReal *x, PetscReal t, PetscReal *b)
 {
   const TalusForce *f = force;
@@ -41,6 +27,20 @@ static PetscErrorCode SetForce(TalusModel *m, TalusBodyForces force, void *conte
   PetscFunctionReturn(0);
 }
 
+static PetscErrorCode Destroy(TalusModel **model)
+{
+  PetscFunctionBeginUser;
+  PetscCall(ModelDestroy(&(*model)->model));
+  PetscCall(PetscFree(*model));
+  PetscFunctionReturn(0);
+}
+
+int TalusModelDestroy(TalusModel **model)
+{
+  if (!model || !*model) return TALUS_OK;
+  return talus_is_running() ? talus_code(Destroy(model)) : TALUS_ERROR_STATE;
+}
+
 static PetscErrorCode Create(TalusCase *c, TalusModel **model, char **messages)
 {
   TalusModel *made;
@@ -49,6 +49,8 @@ static PetscErrorCode Create(TalusCase *c, TalusModel **model, char **messages)
   PetscCall(PetscNew(&made));
   if (c->c->analysis.type == ANALYSIS_FACTOR)
     diag_error(c->diag, "analysis.type", "a factor of safety is sought by a whole run, not step by step");
+  else if (c->c->n_stages || c->c->initial.run)
+    diag_error(c->diag, c->c->n_stages ? "stages" : "initial", "stages, and states of other runs, are for whole runs");
   else PetscCall(ModelCreate(c->comm, c->c, c->diag, &made->model));
   PetscCall(TalusTell(c->comm, c->diag, messages));
   if (made->model && c->force.force) PetscCall(SetForce(made, c->force.force, c->force.context));
@@ -181,8 +183,8 @@ int TalusModelPoints(const TalusModel *model, const char *field, int *n, int *co
   return talus_code(CopyField(model->model, field, buffer));
 }
 
-/* Arrays of the points that are shown as they are; those that may be written carry the motion or the
- * memory of a law, which the next step begins with. */
+/* Arrays of the points that are shown as they are; those that may be written carry the motion or
+ * the memory of a law, which the next step begins with. */
 static const struct {
   const char *name;
   PointReal field;

@@ -131,6 +131,7 @@ static PetscErrorCode SelectNodes(Boundary *b, const Grid *grid, Diag *diag)
   for (PetscInt i = 0; i < b->n_nodes * b->dim; ++i) b->entry[i] = -1;
   PetscCall(PetscCalloc1(count_entries(b), &b->motion));
   for (PetscInt k = 0; k < count_entries(b); ++k) {
+    if (entry_of(b, k)->absent) continue;
     PetscCall(GridSelectNodes(grid, &entry_of(b, k)->on, &b->motion[k].n, &b->motion[k].node));
     if (diag && k < b->c->n_boundary) PetscCall(CheckSelection(b, grid, k, diag));
     mark_entry(b, grid, k, diag);
@@ -245,7 +246,7 @@ PetscErrorCode BoundaryMove(Boundary *b, const Grid *grid, PetscReal t)
   for (PetscInt i = 0; i < dofs; ++i) b->entry[i] = -1;
   for (PetscInt k = 0; k < count_entries(b); ++k) {
     MotionNodes *motion = &b->motion[k];
-    if (entry_of(b, k)->moves) {
+    if (entry_of(b, k)->moves && !entry_of(b, k)->absent) {
       PetscCall(PetscFree(motion->node));
       PetscCall(PetscMalloc1(b->n_nodes, &motion->node));
       motion->n = 0;

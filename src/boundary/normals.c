@@ -17,7 +17,7 @@ static PetscErrorCode CollectSides(const Grid *grid, const Case *c, Walls *walls
   *walls = (Walls){0};
   PetscCall(PetscCalloc1(grid->n_cells * SIDES, &seen));
   for (PetscInt k = 0; k < c->n_boundary; ++k) {
-    if (!c->boundary[k].component[NORMAL]) continue;
+    if (!c->boundary[k].component[NORMAL] || c->boundary[k].absent) continue;
     PetscCall(GridSelectFaces(grid, &c->boundary[k].on, &n, &cell, &side));
     PetscCall(PetscRealloc((size_t)(walls->n + n) * sizeof(PetscInt), &walls->cell));
     PetscCall(PetscRealloc((size_t)(walls->n + n) * sizeof(PetscInt), &walls->side));

@@ -4,6 +4,7 @@ PetscReal amplitude_value(const Amplitude *a, PetscReal t, PetscReal fallback)
 {
   PetscInt low = 0, high = a->n - 1;
   if (a->n == 0) return fallback;
+  t -= a->origin;
   if (t <= a->time[low]) return a->value[low];
   if (t >= a->time[high]) return a->value[high];
   while (high - low > 1) {
@@ -17,19 +18,21 @@ PetscReal amplitude_value(const Amplitude *a, PetscReal t, PetscReal fallback)
 
 PetscReal case_factor(const Case *c, const Amplitude *amplitude, PetscReal t)
 {
-  const PetscBool grows = case_is_static(&c->analysis);
+  /* what an earlier stage has brought is there */
+  const PetscBool grows = case_is_static(&c->analysis) && amplitude->since == c->stage;
   /* a factor of safety is sought when all loads are on: time goes on then, and they stay */
   if (c->analysis.type == ANALYSIS_FACTOR) t = PetscMin(t, c->analysis.end);
-  return amplitude_value(amplitude, t, grows ? t / c->analysis.end : 1);
+  return amplitude_value(amplitude, t, grows ? (t - c->start) / (c->analysis.end - c->start) : 1);
 }
 
-/* Integral from the first entry's time to t, for any t. */
+/* Integral from the first entry's time to t, for any t; both count from the amplitude's origin. */
 static PetscReal integral_from_first(const Amplitude *a, PetscReal t)
 {
   PetscReal sum = 0;
   if (t <= a->time[0]) return (t - a->time[0]) * a->value[0];
   for (PetscInt i = 1; i < a->n; ++i) {
-    if (t <= a->time[i]) return sum + 0.5 * (t - a->time[i - 1]) * (a->value[i - 1] + amplitude_value(a, t, 0));
+    if (t <= a->time[i])
+      return sum + 0.5 * (t - a->time[i - 1]) * (a->value[i - 1] + amplitude_value(a, t + a->origin, 0));
     sum += 0.5 * (a->time[i] - a->time[i - 1]) * (a->value[i - 1] + a->value[i]);
   }
   return sum + (t - a->time[a->n - 1]) * a->value[a->n - 1];
@@ -37,5 +40,6 @@ static PetscReal integral_from_first(const Amplitude *a, PetscReal t)
 
 PetscReal amplitude_integral(const Amplitude *a, PetscReal t, PetscReal fallback)
 {
+  t -= a->origin;
   return a->n == 0 ? fallback * t : integral_from_first(a, t) - integral_from_first(a, 0);
 }

@@ -134,10 +134,27 @@ static PetscErrorCode MeasuresClear(Case *c)
   PetscFunctionReturn(0);
 }
 
+static PetscErrorCode StagesClear(Case *c)
+{
+  PetscFunctionBeginUser;
+  PetscCall(StringsClear(c->strength.n_bodies, &c->strength.bodies));
+  PetscCall(PetscFree(c->initial.run));
+  PetscCall(PetscFree(c->initial.stage));
+  for (PetscInt k = 0; k < c->n_stages; ++k) {
+    PetscCall(PetscFree(c->stages[k].name));
+    PetscCall(PetscFree(c->stages[k].text));
+    if (c->stage_case) PetscCall(CaseDestroy(&c->stage_case[k]));
+  }
+  PetscCall(PetscFree(c->stages));
+  PetscCall(PetscFree(c->stage_case));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode CaseDestroy(Case **c)
 {
   PetscFunctionBeginUser;
   if (!*c) PetscFunctionReturn(0);
+  PetscCall(StagesClear(*c));
   PetscCall(PetscFree((*c)->file));
   PetscCall(PetscFree((*c)->folder));
   PetscCall(PetscFree((*c)->title));
@@ -176,7 +193,7 @@ PetscBool case_writes(const Case *c, const char *field)
 PetscBool case_has_k0(const Case *c)
 {
   for (PetscInt b = 0; b < c->n_bodies; ++b)
-    if (c->bodies[b].has_k0) return PETSC_TRUE;
+    if (c->bodies[b].has_k0 && !c->bodies[b].absent) return PETSC_TRUE;
   return PETSC_FALSE;
 }
 

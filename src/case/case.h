@@ -19,6 +19,8 @@ typedef enum { FILL_CELLS, FILL_SHAPE } BodyFill;
 typedef struct {
   PetscInt n;
   PetscReal *time, *value;
+  PetscInt since;   /* stage of the case whose words brought it, */
+  PetscReal origin; /* when that began, s: times count from there */
 } Amplitude;
 
 typedef enum {
@@ -106,6 +108,7 @@ typedef struct {
   PetscBool has_surface;
   /* height against gravity at which the user believes the material to end, m: only compared */
   PetscReal surface;
+  PetscBool absent; /* not yet, or no more: a stage places and removes */
 } BodySpec;
 
 /* Where something acts: every condition given must hold. */
@@ -134,6 +137,7 @@ typedef struct {
   PetscReal centre[3], axis[3], rate; /* rotation, rad/s (times the amplitude) */
   Amplitude amplitude;
   char *name; /* for measures and messages; NULL if it has none */
+  PetscBool absent;
 } MotionSpec;
 
 typedef enum { CONTACT_FRICTIONLESS, CONTACT_FRICTION, CONTACT_STICK, CONTACT_BONDED } ContactKind;
@@ -154,6 +158,8 @@ typedef struct {
   ContactKind contact;
   PetscReal friction; /* tangent of the angle of friction */
   PetscReal adhesion; /* N/m2: tangential stress that contact bears without pressure */
+  PetscInt since;     /* stage whose words brought it: from and until count from its start */
+  PetscBool absent;
 } WallSpec;
 
 /* How bodies meet that do not stick to each other: the second is to the first what a wall is. */
@@ -244,6 +250,38 @@ typedef struct {
   char **bodies;       /* whose strength is divided */
 } ReductionSpec;
 
+/* Strength divided by a factor from the start. */
+typedef struct {
+  PetscReal factor; /* 0: not given */
+  /* or by so many times the smallest factor that failed in the stage before; 0: not given */
+  PetscReal beyond_failure;
+  PetscInt n_bodies; /* 0: all */
+  char **bodies;
+} StrengthSpec;
+
+/* What a state loses when something else begins with it. */
+typedef struct {
+  PetscBool displacement, velocity;
+} ResetSpec;
+
+/* Where a case starts from. */
+typedef struct {
+  char *run;   /* directory of another run; NULL: from the undeformed bodies */
+  char *stage; /* of that run: its end; NULL: the newest state */
+  ResetSpec reset;
+  PetscBool has_release;
+  PetscReal release; /* s, see Case.release */
+} InitialSpec;
+
+/* A stage, besides what it changes of the case. */
+typedef struct {
+  char *name;
+  ResetSpec reset;
+  PetscBool has_release;
+  PetscReal release; /* s, see Case.release */
+  char *text;        /* what it changes, resolved: keys of a case */
+} StageSpec;
+
 typedef struct {
   AnalysisType type;
   ReductionSpec reduction;     /* of a factor of safety */
@@ -326,7 +364,7 @@ typedef struct {
   PetscReal imbalance;
 } ParallelSpec;
 
-typedef struct {
+typedef struct Case {
   char *file;   /* as the user named it */
   char *folder; /* where it stands, "." at least: relative names start here */
   char *title;
@@ -361,7 +399,27 @@ typedef struct {
   ParallelSpec parallel;
   PetscInt n_petsc; /* options of the petsc: block, in order: "-name value" */
   char **petsc;
+  StrengthSpec strength;
+  InitialSpec initial;
+  PetscInt n_stages; /* 0: the case is what is run */
+  StageSpec *stages;
+  struct Case **stage_case; /* of each: the case with the words of the stages so far */
+  /* of a stage: */
+  PetscInt stage;         /* its number, 0 for the first; 0 of a case without stages */
+  const StageSpec *spec;  /* NULL: the case is no stage */
+  PetscBool seeks_factor; /* does any stage seek a factor of safety? */
+  PetscReal start;        /* when it began, s */
+  PetscReal release;      /* s over which what is out of balance at the start fades; 0: at once */
 } Case;
+
+/* The case of stage k; of a case without stages the case itself. */
+const Case *case_stage(const Case *c, PetscInt k);
+PetscInt case_stages(const Case *c); /* 1 without stages */
+/* Does it start from a state that is there? Not the first stage of a case that names no run. */
+PetscBool case_goes_on(const Case *c);
+/* The stage is about to begin, at start[c->stage]; start: of all stages so far, s. From now on all its
+ * times are those of the run. */
+void case_begin(Case *c, const PetscReal *start);
 
 /* Where load k stands in the case: loads.tractions[0], loads.points[2]... Returns path. */
 const char *case_load_path(const Case *c, PetscInt k, char path[64]);

@@ -4,7 +4,7 @@
  * amplitude. */
 static PetscReal displacement_at(const Case *c, const MotionSpec *m, PetscInt d, PetscReal t)
 {
-  if (t <= 0) return 0;
+  if (t <= m->amplitude.origin) return 0;
   return m->value[d] * case_factor(c, &m->amplitude, t);
 }
 

@@ -4,6 +4,7 @@
 #include <string.h>
 #include <sys/stat.h>
 #include "input/schema/schema.h"
+#include "input/stages.h"
 #include "material/law.h"
 #include "method/method.h"
 #include "method/transfer/transfer.h"
@@ -137,12 +138,13 @@ static PetscErrorCode ResolveScheme(Case *c)
 
 /* What yields without a change of volume locks with displacements alone, and nothing fails: who asks
  * for a factor of safety and names no formulation gets one that does not. */
-static PetscErrorCode ResolveFormulation(const YamlNode *given, Case *c)
+static PetscErrorCode ResolveFormulation(const YamlNode *root, Case *c)
 {
   const Method *method = c->method ? method_find(c->method) : NULL;
+  const PetscBool seeks = c->analysis.type == ANALYSIS_FACTOR || c->seeks_factor;
 
   PetscFunctionBeginUser;
-  if (given || c->analysis.type != ANALYSIS_FACTOR || !method || !method->takes_pressure) PetscFunctionReturn(0);
+  if (yaml_find(root, "formulation") || !seeks || !method || !method->takes_pressure) PetscFunctionReturn(0);
   PetscCall(PetscFree(c->formulation));
   PetscCall(PetscStrallocpy("mixed", &c->formulation));
   PetscFunctionReturn(0);
@@ -155,7 +157,8 @@ static PetscErrorCode ResolveGravity(Case *c)
   Amplitude *a = &c->gravity_amplitude;
 
   PetscFunctionBeginUser;
-  if (a->n || !case_is_static(&c->analysis) || !case_has_k0(c)) PetscFunctionReturn(0);
+  if (a->n || !case_is_static(&c->analysis) || !(case_has_k0(c) || (c->initial.run && c->stage == 0)))
+    PetscFunctionReturn(0);
   a->n = 1;
   PetscCall(PetscCalloc1(1, &a->time));
   PetscCall(PetscMalloc1(1, &a->value));
@@ -163,21 +166,108 @@ static PetscErrorCode ResolveGravity(Case *c)
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode ReadDocument(const char *file, YamlDocument *document, Diag *diag, Case **c)
+/* Does any of the stages seek a factor? Formulations are of all of them. */
+static PetscBool seeks_factor(const YamlNode *stages)
+{
+  for (PetscInt k = 0; stages && stages->kind == YAML_SEQUENCE && k < stages->n; ++k) {
+    const YamlNode *type = yaml_find(yaml_find(stages->child[k], "analysis"), "type");
+    if (type && type->kind == YAML_SCALAR && !strcmp(type->text, "factor-of-safety")) return PETSC_TRUE;
+  }
+  return PETSC_FALSE;
+}
+
+/* What is out of balance at the start of statics fades over all of it. */
+static void resolve_release(Case *c, const StageSpec *stage)
+{
+  const PetscReal usual = case_is_static(&c->analysis) ? c->analysis.end : 0;
+  if (!case_goes_on(c)) return;
+  if (c->stage > 0) c->release = stage->has_release ? stage->release : usual;
+  else c->release = c->initial.has_release ? c->initial.release : usual;
+}
+
+/* whole: NULL, or the case of which it is stage k. */
+static PetscErrorCode ReadDocument(const char *file, YamlDocument *document, Diag *diag, const Case *whole, PetscInt k,
+                                   Case **c)
 {
   SchemaReader reader = {.document = document, .diag = diag};
 
   PetscFunctionBeginUser;
   PetscCall(PetscNew(c));
+  (*c)->stage = k;
+  (*c)->spec = whole ? whole->stages + k : NULL;
+  (*c)->seeks_factor = whole ? whole->seeks_factor : seeks_factor(yaml_find(document->root, "stages"));
   PetscCall(PetscStrallocpy(file, &(*c)->file));
   PetscCall(FolderOf(file, &(*c)->folder));
   reader.c = *c;
   peek_kinematics(document->root, &reader);
   PetscCall(SchemaReadTable(&reader, &schema_case, document->root, *c));
   resolve_stabilisation(yaml_find(document->root, "stabilisation"), *c);
-  PetscCall(ResolveFormulation(yaml_find(document->root, "formulation"), *c));
+  PetscCall(ResolveFormulation(document->root, *c));
   PetscCall(ResolveScheme(*c));
   PetscCall(ResolveGravity(*c));
+  resolve_release(*c, (*c)->spec);
+  PetscFunctionReturn(0);
+}
+
+/* Since when each thing of a stage is there. */
+static void tell_ages(const YamlNode *root, Case *c)
+{
+  static const char *const lists[] = {"tractions", "pressures", "points"};
+  const YamlNode *boundary = yaml_find(root, "boundary"), *walls = yaml_find(root, "walls"),
+                 *loads = yaml_find(root, "loads");
+  const YamlNode *gravity = yaml_find(loads, "gravity_amplitude");
+  if (!gravity) gravity = yaml_find(loads, "gravity");
+  if (gravity) c->gravity_amplitude.since = gravity->stage;
+  for (PetscInt i = 0; i < c->n_boundary; ++i) c->boundary[i].amplitude.since = boundary->child[i]->stage;
+  for (PetscInt i = 0; i < c->n_walls; ++i) {
+    c->walls[i].since = walls->child[i]->stage;
+    for (PetscInt k = 0; k < c->walls[i].n_motions; ++k) c->walls[i].motions[k].amplitude.since = c->walls[i].since;
+  }
+  for (PetscInt l = 0, n = 0; l < 3; ++l) {
+    const YamlNode *list = yaml_find(loads, lists[l]);
+    for (PetscInt i = 0; list && i < list->n; ++i) c->loads[n++].amplitude.since = list->child[i]->stage;
+  }
+}
+
+/* Loads on what is not there. */
+static void check_gone(const Case *c, Diag *diag)
+{
+  char path[64], on[96];
+  for (PetscInt k = 0; k < c->n_loads; ++k) {
+    if (!c->loads[k].on.body || !c->bodies[case_body(c, c->loads[k].on.body)].absent) continue;
+    snprintf(on, sizeof on, "%s.on.body", case_load_path(c, k, path));
+    diag_error(diag, on, "the load acts on '%s', which is not there", c->loads[k].on.body);
+  }
+}
+
+/* Only a search knows what fails. */
+static void check_beyond(const Case *before, const Case *c, Diag *diag)
+{
+  if (c->strength.beyond_failure == 0) return;
+  if (before && (before->analysis.type == ANALYSIS_FACTOR || before->strength.beyond_failure > 0)) return;
+  diag_error(diag, "strength.beyond_failure", "no search for a factor of safety comes before: there is no failure yet");
+}
+
+static PetscErrorCode ReadStages(const char *file, YamlDocument *document, Diag *diag, Case *whole)
+{
+  YamlNode *root = document->root;
+
+  PetscFunctionBeginUser;
+  const PetscInt before = diag_errors(diag);
+  PetscCall(StagesLay(document, diag));
+  PetscCall(PetscCalloc1(whole->n_stages, &whole->stage_case));
+  for (PetscInt k = 0; k < whole->n_stages && diag_errors(diag) == before; ++k) {
+    document->root = document->stage[k];
+    diag_of_stage(diag, k, whole->stages[k].name);
+    PetscCall(ReadDocument(file, document, diag, whole, k, &whole->stage_case[k]));
+    if (diag_errors(diag) > before) break;
+    tell_ages(document->root, whole->stage_case[k]);
+    check_gone(whole->stage_case[k], diag);
+    check_beyond(k ? whole->stage_case[k - 1] : NULL, whole->stage_case[k], diag);
+    PetscCall(StageText(k ? whole->stage_case[k - 1] : whole, whole->stage_case[k], &whole->stages[k].text));
+  }
+  document->root = root;
+  diag_of_stage(diag, -1, NULL);
   PetscFunctionReturn(0);
 }
 
@@ -193,7 +283,9 @@ PetscErrorCode CaseReadText(const char *file, size_t size, const char *text, Pet
   PetscCall(DiagSetResolver(diag, yaml_resolve, document));
   PetscCall(DiagOwnContext(diag, destroy_document));
   for (PetscInt i = 0; i < n_set; ++i) PetscCall(YamlSet(document, set[i], diag));
-  if (document->root) PetscCall(ReadDocument(file, document, diag, c));
+  if (document->root) PetscCall(ReadDocument(file, document, diag, NULL, 0, c));
+  if (*c) check_beyond(NULL, *c, diag);
+  if (diag_errors(diag) == before && *c && (*c)->n_stages) PetscCall(ReadStages(file, document, diag, *c));
   if (diag_errors(diag) > before) PetscCall(CaseDestroy(c));
   PetscFunctionReturn(0);
 }

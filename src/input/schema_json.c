@@ -73,6 +73,11 @@ static void json_value(FILE *out, const SchemaEntry *e)
   case TYPE_MEMBER:
   case TYPE_WORD_TEXT: enumerate(out, e); break;
   case TYPE_FIELDS: json_fields(out); break;
+  case TYPE_FLAGS:
+    fputs("\"type\": \"array\", \"uniqueItems\": true, \"items\": {", out);
+    enumerate(out, e);
+    fputc('}', out);
+    break;
   case TYPE_TABLE: json_reference(out, e->table); break;
   case TYPE_LIST:
     fputs("\"type\": \"array\", \"items\": {", out);

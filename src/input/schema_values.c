@@ -90,6 +90,41 @@ PetscErrorCode SchemaReadAxes(SchemaReader *r, const SchemaEntry *e, const YamlN
   PetscFunctionReturn(0);
 }
 
+/* Which of the words is it? NULL: none. */
+static const SchemaWord *flag_of(const SchemaEntry *e, const YamlNode *node)
+{
+  const SchemaWord *word = e->words;
+  while (word->word && (node->kind != YAML_SCALAR || strcmp(word->word, node->text))) ++word;
+  return word->word ? word : NULL;
+}
+
+PetscErrorCode SchemaReadFlags(SchemaReader *r, const SchemaEntry *e, const YamlNode *node, void *target)
+{
+  PetscBool *flags = (PetscBool *)((char *)target + e->offset);
+  char path[512], words[200] = "";
+
+  PetscFunctionBeginUser;
+  schema_append_words(e, " or ", words, sizeof(words));
+  if (!schema_is(r, e, node, YAML_SEQUENCE, 0)) PetscFunctionReturn(0);
+  for (PetscInt i = 0; i < node->n; ++i) {
+    const SchemaWord *word = flag_of(e, node->child[i]);
+    if (word) flags[word->value] = PETSC_TRUE;
+    else
+      SchemaError(r, node->child[i], "%s must be %s, not '%s'", yaml_path(node->child[i], path, sizeof(path)), words,
+                  node->child[i]->kind == YAML_SCALAR ? node->child[i]->text : "a list or a mapping");
+  }
+  PetscFunctionReturn(0);
+}
+
+/* Its keys are read, and its mistakes found, with the case of which it becomes a part. */
+PetscErrorCode SchemaReadPart(SchemaReader *r, const SchemaEntry *e, const YamlNode *node, void *target)
+{
+  (void)target;
+  PetscFunctionBeginUser;
+  if (node->kind == YAML_SCALAR && strcmp(e->key, "linear")) schema_mismatch(r, e, node);
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode SchemaReadInterval(SchemaReader *r, const SchemaEntry *e, const YamlNode *node, void *target)
 {
   PetscReal *min = (PetscReal *)((char *)target + e->offset), *max = (PetscReal *)((char *)target + e->second);

@@ -31,6 +31,8 @@ static PetscBool is_tag(const SchemaTable *table, const SchemaEntry *e, const vo
 static PetscBool written(const Case *c, const SchemaTable *table, const SchemaEntry *e, const void *source)
 {
   const PetscInt dim = kinematics_dim(c->kinematics);
+  const PetscBool stages = c->n_stages || c->spec;
+  if (e->staged && !stages && !*(const PetscBool *)at(source, e->offset)) return PETSC_FALSE;
   if (e->input_only || (e->only_2d && dim == 3) || (e->only_3d && dim == 2)) return PETSC_FALSE;
   if (e->turns && c->kinematics->hoop) return PETSC_FALSE;
   if (e->tagged && !is_tag(table, e, at(source, table->tag_offset))) return PETSC_FALSE;
@@ -38,6 +40,8 @@ static PetscBool written(const Case *c, const SchemaTable *table, const SchemaEn
   if (table->hide && table->hide(e, source)) return PETSC_FALSE;
   if (is_text(e->type)) return *(char *const *)at(source, e->offset) != NULL;
   if (e->type == TYPE_AMPLITUDE) return ((const Amplitude *)at(source, e->offset))->n > 0;
+  /* a list that a stage has emptied */
+  if (c->spec && e->items_tagged && count_items(e, source) == 0) return PETSC_TRUE;
   if (e->type == TYPE_LIST || e->type == TYPE_NAMED) return count_items(e, source) > 0;
   if (e->type == TYPE_OPTIONS || e->type == TYPE_REFERENCES) return *(const PetscInt *)at(source, e->count) > 0;
   return PETSC_TRUE;
@@ -66,7 +70,7 @@ static PetscErrorCode WriteItems(FILE *out, int indent, const Case *c, const Sch
   const char *item = *(char *const *)at(source, e->offset);
 
   PetscFunctionBeginUser;
-  fputc('\n', out);
+  fputs(count_items(e, source) ? "\n" : " []\n", out);
   for (PetscInt i = 0; i < n; ++i, item += table->size) {
     PetscBool first = PETSC_TRUE;
     if (e->items_tagged && *(const int *)(item + table->tag_offset) != e->tag) continue;

@@ -162,6 +162,15 @@ static void write_texts(const SchemaWriting *w)
   fputc(']', w->out);
 }
 
+static void write_flags(const SchemaWriting *w)
+{
+  PetscInt n = 0;
+  fputc('[', w->out);
+  for (const SchemaWord *word = w->entry->words; word->word; ++word)
+    if ((&FIELD(PetscBool))[word->value]) fprintf(w->out, "%s%s", n++ ? ", " : "", word->word);
+  fputc(']', w->out);
+}
+
 static void write_numbers(const SchemaWriting *w)
 {
   const PetscInt n = FIELD_AT(PetscInt, count);
@@ -214,5 +223,6 @@ const SchemaWriteType schema_writers[TYPE_COUNT] = {
   [TYPE_AXES] = write_axes,           [TYPE_INTERVAL] = write_interval, [TYPE_COUNTS] = write_counts,
   [TYPE_AMPLITUDE] = write_amplitude, [TYPE_POLYGON] = write_polygon,   [TYPE_EVERY] = write_every,
   [TYPE_MEMBER] = write_member,       [TYPE_FIELDS] = write_texts,      [TYPE_NUMBERS] = write_numbers,
-  [TYPE_OPTIONS] = write_options,     [TYPE_REFERENCES] = write_texts,  [TYPE_LINE] = write_polygon,
+  [TYPE_FLAGS] = write_flags,         [TYPE_OPTIONS] = write_options,   [TYPE_REFERENCES] = write_texts,
+  [TYPE_LINE] = write_polygon,
 };

@@ -83,6 +83,8 @@ PetscErrorCode YamlDestroy(YamlDocument **document)
   PetscFunctionBeginUser;
   if (!*document) PetscFunctionReturn(0);
   PetscCall(YamlNodeDestroy(&(*document)->root));
+  for (PetscInt k = 0; k < (*document)->n_stages; ++k) PetscCall(YamlNodeDestroy(&(*document)->stage[k]));
+  PetscCall(PetscFree((*document)->stage));
   for (PetscInt i = 0; i < (*document)->n_arguments; ++i) PetscCall(PetscFree((*document)->arguments[i]));
   PetscCall(PetscFree((*document)->arguments));
   PetscCall(PetscFree((*document)->file));
@@ -102,6 +104,25 @@ YamlNode *yaml_find(const YamlNode *mapping, const char *key)
   for (PetscInt i = 0; i < mapping->n; ++i)
     if (!strcmp(mapping->child[i]->key, key)) return mapping->child[i];
   return NULL;
+}
+
+static PetscBool equal_scalars(const YamlNode *a, const YamlNode *b)
+{
+  char *end_a, *end_b;
+  if (!strcmp(a->text, b->text)) return PETSC_TRUE;
+  const double x = strtod(a->text, &end_a), y = strtod(b->text, &end_b);
+  return end_a > a->text && end_b > b->text && !*end_a && !*end_b && x == y ? PETSC_TRUE : PETSC_FALSE;
+}
+
+PetscBool yaml_equal(const YamlNode *a, const YamlNode *b)
+{
+  if (a->kind != b->kind || a->n != b->n) return PETSC_FALSE;
+  if (a->kind == YAML_SCALAR) return equal_scalars(a, b);
+  for (PetscInt i = 0; i < a->n; ++i) {
+    const YamlNode *other = a->kind == YAML_MAPPING ? yaml_find(b, a->child[i]->key) : b->child[i];
+    if (!other || !yaml_equal(a->child[i], other)) return PETSC_FALSE;
+  }
+  return PETSC_TRUE;
 }
 
 PetscBool yaml_is_null(const YamlNode *node)

@@ -24,6 +24,7 @@ typedef struct YamlNode {
   YamlPlace place; /* of the value; line 0: not from the file */
   YamlPlace key_place;
   PetscInt argument; /* 1 + index of the --set that brought it, 0: from the file */
+  PetscInt stage;    /* of a case with stages: the one whose words it is among */
   PetscInt n, capacity;
   struct YamlNode **child;
   Names *keys; /* of a mapping with many: which child has which; else NULL */
@@ -39,7 +40,9 @@ typedef struct {
   PetscInt n_nodes;
   PetscInt64 n_copied; /* bytes of text that aliases have copied */
   YamlNode *root;      /* NULL after a syntax error */
-  char *resolved;      /* the line that the last resolved place shows (malloc) */
+  PetscInt n_stages;   /* the file as each stage changes it, see stages.h */
+  YamlNode **stage;
+  char *resolved; /* the line that the last resolved place shows (malloc) */
 } YamlDocument;
 
 /* Parse a text; mistakes go to diag. `text` is copied. */
@@ -57,6 +60,8 @@ PetscErrorCode YamlNodeCreate(YamlDocument *document, YamlKind kind, YamlNode **
 PetscErrorCode YamlNodeDestroy(YamlNode **node);
 PetscErrorCode YamlNodeAppend(YamlNode *parent, YamlNode *child);
 
+/* The same value: numbers by what they are, keys in any order. */
+PetscBool yaml_equal(const YamlNode *a, const YamlNode *b);
 /* Value of `key` in a mapping; NULL if there is none (or the node is no mapping). */
 YamlNode *yaml_find(const YamlNode *mapping, const char *key);
 /* Is it empty: `key:` with nothing behind it, `~` or `null`? */

@@ -53,13 +53,24 @@ static const YamlNode *follow(const YamlNode *root, const char *path)
   return node;
 }
 
+/* "@2:materials.sand": of the file as stage 2 changes it; the path begins behind that. */
+static const YamlNode *root_of(const YamlDocument *document, const char **path)
+{
+  char *end;
+  if (!*path || **path != '@') return document->root;
+  const long stage = strtol(*path + 1, &end, 10);
+  *path = end + (*end == ':');
+  return stage >= 0 && stage < document->n_stages ? document->stage[stage] : document->root;
+}
+
 void yaml_resolve(void *context, const char *path, DiagPlace *place)
 {
   YamlDocument *document = context;
-  const YamlNode *node = document->root && path ? follow(document->root, path) : NULL;
+  const YamlNode *root = root_of(document, &path);
+  const YamlNode *node = root && path ? follow(root, path) : NULL;
   char *line = NULL;
   place->file = document->file;
-  if (!node || node == document->root) return;
+  if (!node || node == root) return;
   yaml_place(document, node, node->kind != YAML_SCALAR, &line, place);
   /* Diag copies a place at once, but after this function has returned:
    * the document keeps the line until the next call. */

@@ -9,7 +9,7 @@ static PetscReal cell_weight(void *context, const PetscReal *centre)
   const Case *c = context;
   const PetscInt dim = kinematics_dim(c->kinematics);
   for (PetscInt b = 0; b < c->n_bodies; ++b)
-    if (c->bodies[b].has_shape && shape_contains(&c->bodies[b].shape, dim, centre, 0))
+    if (c->bodies[b].has_shape && !c->bodies[b].absent && shape_contains(&c->bodies[b].shape, dim, centre, 0))
       return (PetscReal)c->bodies[b].points_per_cell + cell_work(c->grid.cell);
   return 0;
 }

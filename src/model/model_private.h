@@ -34,7 +34,10 @@ PetscErrorCode ModelEnable(Model *model);
 /* Collective. Geostatic stress of bodies that ask for it, as their law's state: of the material
  * inside the outline that is above them. */
 PetscErrorCode InitialStress(Model *model, const Outline *outline, Diag *diag);
-/* Acceleration at t = 0 from the balance of momentum with lumped mass, so that a body in free fall
+/* A point whose POINT_VOLUME is what it fills now, with J = 1: its state carries the Cauchy stress, F, J and
+ * volume become those of this state. PETSC_FALSE: the law has no such state. */
+PetscBool point_carry_stress(Points *points, PetscInt p, const Material *material, PetscReal sigma[6]);
+/* Acceleration now from the balance of momentum with lumped mass, so that a body in free fall
  * falls from the first step on. */
 PetscErrorCode InitialAcceleration(Model *model);
 /* forces.c. The body as nodal forces see it at time t, with increments du. */
@@ -48,6 +51,8 @@ void gravity_at(const Case *c, PetscReal t, PetscReal g[3]);
 /* Collective. Stress and stored energy of the points as the start of all work, and what measures
  * remember. */
 PetscErrorCode EnergyStart(Model *model);
+/* The stress of a point is what its law makes of its state. */
+void energy_stress(Model *model, PetscInt p);
 /* Measures of places that no point can reach are mistakes. */
 void measures_check(const Model *model, Diag *diag);
 PetscErrorCode MeasuresStart(Model *model);
@@ -69,6 +74,8 @@ PetscErrorCode OutsideWarn(const Model *model, Diag *diag);
 
 /* strength.c. Which materials are reduced; what cannot be is a mistake. */
 void strength_start(Model *model, Diag *diag);
+/* The factor that only the stage before knows. */
+void strength_go_on(Model *model, const Model *before, Diag *diag);
 /* Materials, and the factor in force, as they are when the strength is divided by it. */
 void strength_set(Model *model, PetscReal factor);
 /* Collective. Forces balance: but is it a body that stands, or one that has slid? */

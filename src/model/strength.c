@@ -2,11 +2,14 @@
  * step to the equilibrium with another factor. */
 #include "model/model_private.h"
 
-static PetscBool is_reduced(const ReductionSpec *spec, const BodySpec *body)
+static PetscBool is_reduced(const Case *c, const BodySpec *body)
 {
-  for (PetscInt k = 0; k < spec->n_bodies; ++k)
-    if (!strcmp(spec->bodies[k], body->name)) return PETSC_TRUE;
-  return spec->n_bodies == 0;
+  const PetscBool seeks = c->analysis.type == ANALYSIS_FACTOR;
+  const PetscInt n = seeks ? c->analysis.reduction.n_bodies : c->strength.n_bodies;
+  char *const *bodies = seeks ? c->analysis.reduction.bodies : c->strength.bodies;
+  for (PetscInt k = 0; k < n; ++k)
+    if (!strcmp(bodies[k], body->name)) return PETSC_TRUE;
+  return n == 0;
 }
 
 /* Is the strength of material i divided? */
@@ -14,7 +17,7 @@ static PetscBool material_is_reduced(const Model *m, PetscInt i)
 {
   const Case *c = m->c;
   for (PetscInt b = 0; b < c->n_bodies; ++b)
-    if (is_reduced(&c->analysis.reduction, &c->bodies[b]) && !strcmp(c->bodies[b].material, c->materials[i].name))
+    if (!c->bodies[b].absent && is_reduced(c, &c->bodies[b]) && !strcmp(c->bodies[b].material, c->materials[i].name))
       return PETSC_TRUE;
   return PETSC_FALSE;
 }
@@ -31,7 +34,7 @@ static void check_body(const Model *m, PetscInt b, Diag *diag)
 {
   const Case *c = m->c;
   const BodySpec *body = &c->bodies[b];
-  const PetscBool reduced = is_reduced(&c->analysis.reduction, body);
+  const PetscBool reduced = is_reduced(c, body);
   char path[256];
   for (PetscInt i = 0; i < c->n_materials; ++i) {
     if (strcmp(body->material, c->materials[i].name)) continue;
@@ -40,7 +43,8 @@ static void check_body(const Model *m, PetscInt b, Diag *diag)
     if (reduced && !law->reduce) {
       diag_error(diag, path, "the law %s of '%s' has no strength that could be divided by a factor of safety",
                  law->name, body->name);
-      diag_hint(diag, "name the bodies that may fail: analysis: {reduction: {bodies: [...]}}");
+      diag_hint(diag, "name the bodies that may fail: %s: {bodies: [...]}",
+                c->analysis.type == ANALYSIS_FACTOR ? "analysis.reduction" : "strength");
     }
     snprintf(path, sizeof path, "bodies[%d].material", (int)b);
     if (!reduced && material_is_reduced(m, i))
@@ -64,11 +68,31 @@ static void warn_of_locking(const Model *m, Diag *diag)
 void strength_start(Model *m, Diag *diag)
 {
   m->strength = (Strength){.factor = 1, .lower = NAN, .upper = NAN, .value = NAN};
-  if (m->c->analysis.type != ANALYSIS_FACTOR) return;
-  warn_of_locking(m, diag);
+  const StrengthSpec *given = &m->c->strength;
+  const PetscBool seeks = m->c->analysis.type == ANALYSIS_FACTOR,
+                  divides = given->factor > 0 || given->beyond_failure > 0;
   const PetscInt before = diag_errors(diag);
-  for (PetscInt b = 0; b < m->c->n_bodies; ++b) check_body(m, b, diag);
-  if (diag_errors(diag) == before) strength_set(m, 0);
+  if (!seeks && !divides) return;
+  if (seeks) warn_of_locking(m, diag);
+  if (seeks && divides)
+    diag_error(diag, "strength", "a search for the factor of safety divides the strength itself: it takes no other");
+  for (PetscInt b = 0; b < m->c->n_bodies; ++b)
+    if (!m->c->bodies[b].absent) check_body(m, b, diag);
+  if (diag_errors(diag) > before) return;
+  if (seeks) strength_set(m, 0);
+  else if (given->factor > 0) strength_set(m, given->factor);
+}
+
+void strength_go_on(Model *m, const Model *before, Diag *diag)
+{
+  const PetscReal beyond = m->c->strength.beyond_failure;
+  if (beyond == 0) return;
+  if (before->c->analysis.type != ANALYSIS_FACTOR) strength_set(m, before->strength.factor);
+  else if (before->strength.upper > 0) strength_set(m, beyond * before->strength.upper);
+  else
+    diag_error(diag, "strength.beyond_failure",
+               "the search before this stage has found no factor that fails (up to %g)",
+               (double)before->c->analysis.reduction.most);
 }
 
 /* The largest increment of a node. */

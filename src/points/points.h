@@ -198,6 +198,21 @@ static inline void point_place(const Points *points, PetscInt p, PetscReal *x)
            (points->components[POINT_OVERHANG] ? point_real(points, POINT_OVERHANG, p)[d] : 0);
 }
 
+/* Points of another case: what its bodies are here, -1 if they are gone. Materials stay those of the other
+ * case. */
+typedef struct {
+  PetscInt n_bodies, n_materials; /* of the other case */
+  const PetscInt *body;
+} PointsChange;
+/* Collective. As PointsFromTable; fields that are not in the table become 0, those of another width are cut, or
+ * filled up with 0. */
+PetscErrorCode PointsTake(Points *points, const Grid *grid, const Table *table, const PointsChange *change,
+                          char reason[256]);
+/* Another number of components of POINT_STATE: numbers behind the new ones are lost, new ones are 0. */
+PetscErrorCode PointsSetState(Points *points, PetscInt n_state);
+/* The points p with take[p], appended to `to`, which has the same fields. */
+PetscErrorCode PointsCopy(const Points *points, const PetscBool *take, Points *to);
+
 /* The points as a table, every field of them. Columns stand over the points' own arrays where they
  * can. */
 PetscErrorCode PointsToTable(const Points *points, const Grid *grid, const char *name, Tables *tables);

@@ -107,6 +107,61 @@ static PetscErrorCode TakeRows(Points *points, const Table *table, PetscInt n_ce
   PetscFunctionReturn(0);
 }
 
+/* Width of a column of reals, 0 if there is none of the name. */
+static PetscInt find_width(const Table *table, const char *name)
+{
+  for (PetscInt k = 0; k < table->n; ++k)
+    if (!strcmp(table->column[k].name, name) && table->column[k].type == COLUMN_REAL)
+      return table->column[k].components;
+  return 0;
+}
+
+/* Rows row[0 .. n) of one field, as wide as they fit. */
+static void take_field(Points *points, int f, const Table *table, PetscInt n, const PetscInt *row, char reason[256])
+{
+  const PetscInt width = points->components[f], has = find_width(table, reals[f].name), both = PetscMin(width, has);
+  const PetscReal *data = has ? table_data(table, reals[f].name, COLUMN_REAL, has, reason) : NULL;
+  for (PetscInt p = 0; p < n; ++p)
+    for (PetscInt i = 0; i < width; ++i) {
+      PetscReal *to = points->real[f] + (size_t)p * (size_t)width + i;
+      *to = data && i < both ? data[(size_t)row[p] * (size_t)has + (size_t)i] : 0;
+    }
+}
+
+/* Rows whose bodies are still there; no index is trusted. */
+static PetscErrorCode TakeChanged(Points *points, const Table *table, PetscInt n_cells, const PointsChange *change,
+                                  char reason[256])
+{
+  const PetscInt64 *id = table_data(table, "id", COLUMN_INT64, 1, reason),
+                   *cell = table_data(table, "cell", COLUMN_INT64, 1, reason);
+  const int32_t *body = table_data(table, "body", COLUMN_INT32, 1, reason),
+                *material = table_data(table, "material", COLUMN_INT32, 1, reason);
+  PetscInt n = 0, *row;
+
+  PetscFunctionBeginUser;
+  if (reason[0]) PetscFunctionReturn(0);
+  PetscCall(PetscMalloc1(table->rows, &row));
+  for (PetscInt r = 0; r < table->rows && !reason[0]; ++r) {
+    if (cell[r] < -1 || cell[r] >= n_cells || body[r] < 0 || body[r] >= change->n_bodies || material[r] < 0 ||
+        material[r] >= change->n_materials)
+      snprintf(reason, 256, "%s: point %lld is in a cell or of a body that the case does not have", table->name,
+               (long long)id[r]);
+    else if (change->body[body[r]] >= 0) row[n++] = r;
+  }
+  points->n = 0;
+  PetscCall(PointsReserve(points, n));
+  for (PetscInt p = 0; p < n; ++p) {
+    points->id[p] = id[row[p]];
+    points->cell[p] = (PetscInt)cell[row[p]];
+    points->body[p] = change->body[body[row[p]]];
+    points->material[p] = material[row[p]];
+  }
+  for (int f = 0; f < POINT_N_REAL; ++f) take_field(points, f, table, n, row, reason);
+  points->n = n;
+  PetscCall(PetscFree(row));
+  PetscFunctionReturn(0);
+}
+
 /* Every point to the rank that has its cell; a lost one stays where it is. */
 static PetscErrorCode SendHome(Points *points, const Grid *grid, const char *name, char reason[256])
 {
@@ -142,5 +197,48 @@ PetscErrorCode PointsFromTable(Points *points, const Grid *grid, const Table *ta
   PetscCall(TakeRows(points, table, n_cells, n_bodies, n_materials, reason));
   PetscCall(ReasonShare(grid->comm, reason));
   if (!reason[0] && !grid->cloud) PetscCall(SendHome(points, grid, table->name, reason));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode PointsTake(Points *points, const Grid *grid, const Table *table, const PointsChange *change,
+                          char reason[256])
+{
+  PetscFunctionBeginUser;
+  PetscCall(TakeChanged(points, table, grid->n_cells_global, change, reason));
+  PetscCall(ReasonShare(grid->comm, reason));
+  if (!reason[0]) PetscCall(SendHome(points, grid, table->name, reason));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode PointsSetState(Points *points, PetscInt n_state)
+{
+  const PetscInt before = points->components[POINT_STATE], both = PetscMin(before, n_state);
+  PetscReal *state;
+
+  PetscFunctionBeginUser;
+  if (before == n_state) PetscFunctionReturn(0);
+  PetscCall(PetscCalloc1(count_numbers(PetscMax(points->capacity, 1), n_state), &state));
+  for (PetscInt p = 0; p < points->n; ++p)
+    PetscCall(PetscArraycpy(state + count_numbers(p, n_state), point_real(points, POINT_STATE, p), both));
+  PetscCall(PetscFree(points->real[POINT_STATE]));
+  points->real[POINT_STATE] = state;
+  points->components[POINT_STATE] = n_state;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode PointsCopy(const Points *points, const PetscBool *take, Points *to)
+{
+  PetscInt n = 0, *index;
+  char *buffer;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(points->n, &index));
+  for (PetscInt p = 0; p < points->n; ++p)
+    if (take[p]) index[n++] = p;
+  PetscCall(PetscMalloc1((size_t)n * points_bytes(points), &buffer));
+  points_pack(points, n, index, buffer);
+  PetscCall(PointsUnpack(to, n, buffer));
+  PetscCall(PetscFree(buffer));
+  PetscCall(PetscFree(index));
   PetscFunctionReturn(0);
 }

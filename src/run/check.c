@@ -1,4 +1,5 @@
 #include "run/check_private.h"
+#include "run/stages/initial.h"
 #include <stdarg.h>
 
 /* What is known of each body over all ranks. */
@@ -86,6 +87,7 @@ static PetscErrorCode ReportBodies(const Model *m, Diag *diag, FILE *out)
   PetscCall(PetscMalloc1(m->c->n_bodies, &count));
   PetscCall(CountBodies(m, count));
   for (PetscInt b = 0; b < m->c->n_bodies; ++b) {
+    if (m->c->bodies[b].absent) continue;
     const char *name = m->c->bodies[b].name;
     say(m, out, "#   body %s: %d points in %d cells, volume %g m3, mass %g kg\n", name, (int)count[b].points,
         (int)count[b].cells, (double)count[b].volume, (double)count[b].mass);
@@ -225,19 +227,38 @@ static PetscErrorCode ReportInterfaces(const Model *m, FILE *out)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode CheckModel(MPI_Comm comm, const Case *c, Diag *diag, FILE *out)
+/* One model: of a case, or of a stage, from what is seeded. */
+static PetscErrorCode CheckOne(MPI_Comm comm, const Case *c, Diag *diag, FILE *out)
 {
+  Imbalance unsaid;
   Model *m;
 
   PetscFunctionBeginUser;
   PetscCall(ModelCreate(comm, c, diag, &m));
   if (!m) PetscFunctionReturn(0);
+  if (c->spec) say(m, out, "# stage %d: %s\n", (int)c->stage + 1, c->spec->name);
   PetscCall(ReportSizes(m, out));
   PetscCall(ReportSets(m, out));
   PetscCall(ReportBodies(m, diag, out));
   PetscCall(ReportInterfaces(m, out));
   PetscCall(CheckOpenings(m, diag));
+  if (c->initial.run && c->stage == 0) PetscCall(InitialTake(m, diag, &unsaid));
   PetscCall(ModelDestroy(&m));
   fflush(out);
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode CheckModel(MPI_Comm comm, const Case *c, Diag *diag, FILE *out)
+{
+  PetscInt errors = 0;
+
+  PetscFunctionBeginUser;
+  for (PetscInt k = 0; k < case_stages(c) && !errors; ++k) {
+    if (c->n_stages) c->stage_case[k]->grid.trusted = c->grid.trusted;
+    if (c->n_stages) diag_of_stage(diag, k, c->stages[k].name);
+    PetscCall(CheckOne(comm, case_stage(c, k), diag, out));
+    PetscCall(DiagReduce(comm, diag, &errors));
+  }
+  diag_of_stage(diag, -1, NULL);
   PetscFunctionReturn(0);
 }

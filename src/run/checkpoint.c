@@ -50,6 +50,35 @@ static RunMemory memory_of(const Run *r)
                      .seconds = r->before + (MPI_Wtime() - r->start)};
 }
 
+/* Of a run with stages: which it is in, and when each began. */
+static PetscErrorCode StageToTable(const Run *r, Table *table)
+{
+  Column *column;
+
+  PetscFunctionBeginUser;
+  if (!r->whole->n_stages) PetscFunctionReturn(0);
+  PetscCall(TableAdd(table, "stage", NULL, COLUMN_INT64, 1, NULL, &column));
+  *(PetscInt64 *)column->data = r->stage;
+  PetscCall(TableAdd(table, "stages_begin", "s", COLUMN_REAL, r->whole->n_stages, r->starts, NULL));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode StageFromTables(Run *r, const Tables *tables, char reason[256])
+{
+  const Table *table = tables_find(tables, "run");
+  const PetscInt n = r->whole->n_stages;
+
+  PetscFunctionBeginUser;
+  if (!n || reason[0]) PetscFunctionReturn(0);
+  const PetscInt64 *stage = table_data(table, "stage", COLUMN_INT64, 1, reason);
+  const PetscReal *starts = table_data(table, "stages_begin", COLUMN_REAL, n, reason);
+  if (stage && (*stage < 0 || *stage >= n)) snprintf(reason, 256, "run/stage makes no sense");
+  for (PetscInt k = 0; starts && k < n; ++k)
+    if (!(starts[k] >= 0 && starts[k] <= PETSC_MAX_REAL)) snprintf(reason, 256, "run/stages_begin makes no sense");
+  if (!reason[0]) PetscCall(RunEnterStage(r, (PetscInt)*stage, starts));
+  PetscFunctionReturn(0);
+}
+
 static PetscErrorCode MemoryToTables(const Run *r, Tables *tables)
 {
   RunMemory memory = memory_of(r);
@@ -60,7 +89,7 @@ static PetscErrorCode MemoryToTables(const Run *r, Tables *tables)
   PetscFunctionBeginUser;
   PetscCall(TablesAdd(tables, "run", PETSC_TRUE, 1, &table));
   PetscCall(TableAdd(table, "case", NULL, COLUMN_INT64, 1, NULL, &column));
-  PetscCall(Fingerprint(r->c, column->data));
+  PetscCall(Fingerprint(r->whole, column->data));
   PetscCall(TableAdd(table, "history", NULL, COLUMN_INT64, 3, NULL, &column));
   PetscCall(HistoryGetMark(r->dir, &mark));
   PetscCall(PetscArraycpy((PetscInt64 *)column->data, ((PetscInt64[]){mark.lines, mark.bytes, mark.crc}), 3));
@@ -70,6 +99,7 @@ static PetscErrorCode MemoryToTables(const Run *r, Tables *tables)
     PetscCall(TableAdd(table, counts[i].name, NULL, COLUMN_INT64, 1, NULL, &column));
     *(PetscInt64 *)column->data = *(PetscInt *)((char *)&memory + counts[i].offset);
   }
+  PetscCall(StageToTable(r, table));
   PetscFunctionReturn(0);
 }
 
@@ -92,7 +122,7 @@ static PetscErrorCode MemoryFromTables(Run *r, const Tables *tables, RunMemory *
   if (reason[0]) PetscFunctionReturn(0);
   const PetscInt64 *kept = table_data(table, "case", COLUMN_INT64, 1, reason);
   const PetscReal *seconds = table_data(table, "seconds", COLUMN_REAL, 1, reason);
-  PetscCall(Fingerprint(r->c, &fingerprint));
+  PetscCall(Fingerprint(r->whole, &fingerprint));
   if (kept && *kept != fingerprint) snprintf(reason, 256, "it is of another case than the case.yaml beside it");
   memory->seconds = seconds ? *seconds : 0;
   mark_from_table(table, &memory->history);
@@ -107,13 +137,13 @@ static PetscErrorCode MemoryFromTables(Run *r, const Tables *tables, RunMemory *
 
 PetscBool checkpoint_by_clock(const Run *r)
 {
-  const PetscReal minutes = r->c->checkpoint.minutes;
+  const PetscReal minutes = r->whole->checkpoint.minutes;
   return minutes > 0 && MPI_Wtime() - r->last_checkpoint >= 60 * minutes;
 }
 
 PetscBool checkpoint_by_step(const Run *r)
 {
-  const PetscInt steps = r->c->checkpoint.steps;
+  const PetscInt steps = r->whole->checkpoint.steps;
   return steps > 0 && r->model->step % steps == 0;
 }
 
@@ -131,6 +161,17 @@ static PetscErrorCode Write(Run *r, const char *path, char reason[256], PetscErr
   *code = CheckpointWrite(r->comm, path, tables, reason);
   PetscCall(TablesDestroy(&tables));
   if (*code != PETSC_ERR_FILE_WRITE) PetscCall(*code);
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode CheckpointSaveAs(Run *r, const char *path)
+{
+  char reason[256];
+  PetscErrorCode code = 0;
+
+  PetscFunctionBeginUser;
+  PetscCall(Write(r, path, reason, &code));
+  if (code) PetscCall(RunDirLog(r->dir, "warning = cannot write %s: %s", path, reason));
   PetscFunctionReturn(0);
 }
 
@@ -156,7 +197,7 @@ PetscErrorCode CheckpointSave(Run *r)
   }
   r->checkpoint_step = r->model->step;
   ++r->n_written;
-  PetscCall(RunDirKeepCheckpoints(r->dir, PetscMax(1, r->c->checkpoint.keep)));
+  PetscCall(RunDirKeepCheckpoints(r->dir, PetscMax(1, r->whole->checkpoint.keep)));
   PetscCall(RunDirLog(r->dir, "checkpoint = step %d time = %.9g seconds = %.3g", (int)r->model->step,
                       (double)r->model->time, r->last_checkpoint - start));
   PetscFunctionReturn(0);
@@ -206,6 +247,7 @@ PetscErrorCode CheckpointLoad(Run *r, Diag *diag, PetscInt *step, PetscBool *fit
   PetscCall(ReadNewest(r, step, &tables));
   if (!tables) PetscFunctionReturn(0);
   PetscCall(MemoryFromTables(r, tables, &memory, reason));
+  PetscCall(StageFromTables(r, tables, reason));
   if (!reason[0]) PetscCall(OutputFromTables(r->output, tables, memory.written, reason));
   if (!reason[0]) PetscCall(ModelFromTables(r->model, tables, reason));
   until_from_tables(&r->until, r->c, tables, reason);

@@ -9,7 +9,7 @@ PetscErrorCode ExtensionBegin(const Run *r, Extension *extension)
   Case *kept = NULL;
 
   PetscFunctionBeginUser;
-  extension->before = extension->now = r->c->analysis.end;
+  extension->before = extension->now = r->whole->analysis.end;
   PetscCall(PetscSNPrintf(path, sizeof path, "%s/case.yaml", run_dir_path(r->dir)));
   PetscCall(DiagCreate(&unheard));
   PetscCall(CaseRead(r->comm, path, 0, NULL, unheard, &kept));
@@ -27,7 +27,7 @@ static void hint_new_run(const Run *r, const Extension *e, Diag *diag)
 
 PetscBool extension_allowed(const Run *r, const Extension *e, Diag *diag)
 {
-  if (!case_is_static(&r->c->analysis) || e->now == e->before) return PETSC_TRUE;
+  if (!case_is_static(&r->whole->analysis) || e->now == e->before) return PETSC_TRUE;
   diag_error(diag, "analysis.end",
              "a static run cannot go on to another end than its own, %g s: loads grow with time over analysis.end, so "
              "that all its steps would be others",
@@ -53,6 +53,14 @@ void extension_from_checkpoint(const Run *r, const Extension *e, Diag *diag)
 {
   const PetscReal time = r->model->time;
   char reason[256];
+  if (r->whole->n_stages) {
+    /* others begin where one ends */
+    if (r->stage + 1 == r->whole->n_stages && time >= r->c->analysis.end * (1 - 1e-12) &&
+        r->c->analysis.type != ANALYSIS_FACTOR)
+      diag_warning(diag, NULL, "the run in '%s' is complete at t = %g s: there is nothing left to do",
+                   run_dir_path(r->dir), (double)time);
+    return;
+  }
   until_reason(&r->until, r->c, reason);
   if (r->c->analysis.type == ANALYSIS_FACTOR && time > e->now)
     return; /* the search goes on beyond the end of loading */

@@ -4,6 +4,7 @@
 #include "output/directory/run_dir_files.h"
 #include "output/vtk/vtk.h"
 #include "run/run_private.h"
+#include "run/stages/initial.h"
 #include "run/summary.h"
 #include "run/watch/events.h"
 
@@ -11,14 +12,16 @@
 static PetscErrorCode OpenHistory(Run *r, Diag *diag)
 {
   const char **names, **units;
-  const PetscInt n = r->c->n_measures;
+  const PetscInt first = r->whole->n_stages ? 1 : 0, n = first + r->c->n_measures;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc2(n, &names, n, &units));
+  PetscCall(PetscMalloc2(n + 1, &names, n + 1, &units));
   PetscCall(PetscCalloc1(n, &r->values));
-  for (PetscInt k = 0; k < n; ++k) {
-    names[k] = r->c->measures[k].name;
-    units[k] = measure_unit(&r->c->measures[k]);
+  PetscCall(PetscCalloc1(n, &r->row));
+  names[0] = "stage", units[0] = "";
+  for (PetscInt k = 0; k < r->c->n_measures; ++k) {
+    names[first + k] = r->c->measures[k].name;
+    units[first + k] = measure_unit(&r->c->measures[k]);
   }
   PetscCall(RunWritten(
     r, diag ? HistoryOpenFrom(r->dir, n, names, units, r->row_step, r->history.lines ? &r->history : NULL, diag)
@@ -32,7 +35,7 @@ static PetscErrorCode WriteCase(Run *r)
   char *yaml;
 
   PetscFunctionBeginUser;
-  PetscCall(CaseToYaml(r->c, &yaml));
+  PetscCall(CaseToYaml(r->whole, &yaml));
   PetscCall(RunWritten(r, RunDirWriteText(r->dir, "case.yaml", yaml)));
   PetscCall(PetscFree(yaml));
   if (!r->failed) PetscCall(RunWritten(r, SummaryVersion(r->comm, r->dir)));
@@ -51,8 +54,13 @@ PetscErrorCode RunOpen(Run *r, const RunOptions *options, Diag *diag)
   PetscCall(WriteCase(r));
   if (!r->failed) PetscCall(OpenHistory(r, NULL));
   if (r->failed) PetscFunctionReturn(0);
-  if (!r->output) PetscCall(OutputCreate(r->model, run_dir_path(r->dir), &r->output));
+  if (r->output) output_set_folder(r->output, run_dir_path(r->dir));
+  else PetscCall(OutputCreate(r->model, run_dir_path(r->dir), &r->output));
   PetscCall(SummaryBegin(r->model, r->dir));
+  if (r->whole->n_stages)
+    PetscCall(RunDirLog(r->dir, "stage = 1 of %d (%s)", (int)r->whole->n_stages, r->c->spec->name));
+  if (r->c->initial.run) PetscCall(RunDirLog(r->dir, "initial = %s", r->c->initial.run));
+  if (r->c->initial.run) PetscCall(RunTellImbalance(r, &r->imbalance));
   PetscCall(UntilLook(&r->until, r->model));
   PetscCall(RunWritten(r, EventsWatch(r->model, r->dir, PETSC_TRUE, r->events)));
   PetscCall(RunWriteRow(r));
@@ -128,9 +136,10 @@ static PetscErrorCode StartAgain(Run *r, const RunOptions *options, const Extens
   PetscCall(IsComplete(r, complete));
   if (*complete) extension_without_checkpoint(r, extension, diag);
   if (*complete) PetscFunctionReturn(0);
-  PetscCall(OutputDestroy(&r->output));
   PetscCall(RunDirDestroy(&r->dir));
   again.force = PETSC_TRUE;
+  if (r->c->initial.run) PetscCall(InitialTake(r->model, diag, &r->imbalance));
+  if (diag_errors(diag)) PetscFunctionReturn(0);
   PetscCall(RunOpen(r, &again, diag));
   if (r->dir) PetscCall(RunDirLog(r->dir, "warning = there was no checkpoint to resume from: the run starts again"));
   PetscFunctionReturn(0);
@@ -148,7 +157,8 @@ PetscErrorCode RunResume(Run *r, const RunOptions *options, Diag *diag, PetscBoo
   if (!r->dir) PetscFunctionReturn(0);
   PetscCall(ExtensionBegin(r, &extension));
   /* node positions at the start */
-  PetscCall(OutputCreate(r->model, run_dir_path(r->dir), &r->output));
+  if (r->output) output_set_folder(r->output, run_dir_path(r->dir));
+  else PetscCall(OutputCreate(r->model, run_dir_path(r->dir), &r->output));
   if (extension_allowed(r, &extension, diag)) PetscCall(CheckpointLoad(r, diag, &step, &fits));
   if (fits && step < 0) PetscCall(StartAgain(r, options, &extension, diag, complete));
   if (fits && step >= 0) extension_from_checkpoint(r, &extension, diag);

@@ -32,6 +32,8 @@ PetscErrorCode OutputCreate(const Model *m, const char *folder, Output **output)
   PetscFunctionReturn(0);
 }
 
+void output_set_folder(Output *output, const char *folder) { output->folder = folder; }
+
 PetscErrorCode OutputDestroy(Output **output)
 {
   PetscFunctionBeginUser;

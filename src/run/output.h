@@ -7,6 +7,8 @@
 typedef struct Output Output;
 
 PetscErrorCode OutputCreate(const Model *model, const char *folder, Output **output);
+/* For who creates it before there is a directory. */
+void output_set_folder(Output *output, const char *folder);
 PetscErrorCode OutputDestroy(Output **output);
 /* Collective. points_NNNNNN.hdf (and grid_NNNNNN.hdf if the case asks) of the present state, and
  * their series. If the file system refuses, *ok is false and reason says why; files written before

@@ -1,6 +1,7 @@
 #include "run/losses.h"
 #include "run/run_private.h"
 #include "run/signals.h"
+#include "run/stages/initial.h"
 #include "run/summary.h"
 #include "run/watch/events.h"
 
@@ -48,7 +49,10 @@ PetscErrorCode RunWriteRow(Run *r)
   if (r->row_step == r->model->step) PetscFunctionReturn(0);
   PetscCall(Measure(r));
   r->row_step = r->model->step;
-  PetscCall(RunWritten(r, HistoryWrite(r->dir, r->model->time, r->model->step, r->values)));
+  PetscInt n = 0;
+  if (r->whole->n_stages) r->row[n++] = (PetscReal)(r->stage + 1);
+  for (PetscInt k = 0; k < r->c->n_measures; ++k) r->row[n++] = r->values[k];
+  PetscCall(RunWritten(r, HistoryWrite(r->dir, r->model->time, r->model->step, r->row)));
   PetscFunctionReturn(0);
 }
 
@@ -230,12 +234,25 @@ static PetscErrorCode SearchFactor(Run *r)
   PetscFunctionReturn(0);
 }
 
-/* May the run go on to a later end some day? A static one would have to take all its steps again.
- * Whoever switches all rules of checkpoints off wants none. */
+/* May the run go on to a later end some day, or another one start from its end? Whoever switches all rules of
+ * checkpoints off wants none. */
 static PetscBool may_go_on(const Run *r)
 {
-  const CheckpointSpec *spec = &r->c->checkpoint;
-  return r->c->analysis.type != ANALYSIS_STATIC && (spec->minutes > 0 || spec->steps > 0);
+  const CheckpointSpec *spec = &r->whole->checkpoint;
+  return spec->minutes > 0 || spec->steps > 0;
+}
+
+/* All stages, or the case itself. */
+static PetscErrorCode RunStages(Run *r, Diag *diag)
+{
+  PetscFunctionBeginUser;
+  for (;;) {
+    PetscCall(Advance(r));
+    if (r->c->analysis.type == ANALYSIS_FACTOR && !r->failed) PetscCall(SearchFactor(r));
+    if (r->failed || r->stage + 1 == case_stages(r->whole)) PetscFunctionReturn(0);
+    PetscCall(RunEndStage(r));
+    if (!r->failed) PetscCall(RunNextStage(r, diag));
+  }
 }
 
 /* A run that ended and had a checkpoint, or may go on to a later end, leaves one of its end. */
@@ -281,8 +298,7 @@ static PetscErrorCode RunModel(Run *r, const RunOptions *options, Diag *diag, Pe
     diag_error(diag, NULL, "%s", r->summary.reason);
     if (!options->resume) PetscCall(RunDirDiscard(&r->dir));
   } else {
-    PetscCall(Advance(r));
-    if (r->c->analysis.type == ANALYSIS_FACTOR && !r->failed) PetscCall(SearchFactor(r));
+    PetscCall(RunStages(r, diag));
     PetscCall(Close(r, measures));
     PetscCall(LossesWarn(r->model, r->values, diag));
     PetscCall(ModelUnusedOptions(r->model, diag));
@@ -292,13 +308,37 @@ static PetscErrorCode RunModel(Run *r, const RunOptions *options, Diag *diag, Pe
   PetscFunctionReturn(0);
 }
 
+/* The first model; others are tried, so that all mistakes are told now. NULL if there are any. */
+static PetscErrorCode ModelsCreate(Run *r, const RunOptions *options, Diag *diag)
+{
+  PetscInt errors;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(case_stages(r->whole), &r->starts));
+  run_begin_stage(r, 0);
+  PetscCall(ModelCreate(r->comm, r->c, diag, &r->model));
+  if (r->model && options->body_force)
+    PetscCall(ModelSetBodyForce(r->model, options->body_force, options->body_force_context));
+  if (r->model) PetscCall(RunCheckStages(r->comm, r->whole, diag));
+  if (r->model && r->c->initial.run) PetscCall(OutputCreate(r->model, NULL, &r->output)); /* nodes as undeformed */
+  if (r->model && r->c->initial.run && !options->resume) PetscCall(InitialTake(r->model, diag, &r->imbalance));
+  PetscCall(DiagReduce(r->comm, diag, &errors));
+  if (!errors) PetscFunctionReturn(0);
+  PetscCall(OutputDestroy(&r->output));
+  PetscCall(ModelDestroy(&r->model));
+  PetscCall(PetscFree(r->starts));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode RunCase(MPI_Comm comm, const Case *c, const RunOptions *options, Diag *diag, PetscReal *measures,
                        RunResult *result)
 {
+  const Case *first = case_stage(c, 0);
   Run run = {.comm = comm,
-             .c = c,
-             .states = {.every = c->output.every},
-             .rows = {.every = c->output.history},
+             .whole = c,
+             .c = first,
+             .states = {.every = first->output.every},
+             .rows = {.every = first->output.history},
              .state_step = -1,
              .row_step = -1,
              .checkpoint_step = -1,
@@ -307,10 +347,9 @@ PetscErrorCode RunCase(MPI_Comm comm, const Case *c, const RunOptions *options, 
 
   PetscFunctionBeginUser;
   *result = RUN_BAD_INPUT;
-  PetscCall(ModelCreate(comm, c, diag, &run.model));
+  PetscCall(ModelsCreate(&run, options, diag));
   if (!run.model) PetscFunctionReturn(0);
-  if (options->body_force) PetscCall(ModelSetBodyForce(run.model, options->body_force, options->body_force_context));
-  PetscCall(UntilCreate(c, &run.until));
+  PetscCall(UntilCreate(first, &run.until));
   PetscCall(PetscCalloc1(c->n_measures, &run.events));
   if (options->warnings) PetscCall(DiagFlush(diag, options->warnings));
   signals_watch();
@@ -319,6 +358,8 @@ PetscErrorCode RunCase(MPI_Comm comm, const Case *c, const RunOptions *options, 
   signals_forget();
   PetscCall(StrengthRunDestroy(&run.strength));
   PetscCall(PetscFree(run.values));
+  PetscCall(PetscFree(run.row));
+  PetscCall(PetscFree(run.starts));
   PetscCall(PetscFree(run.events));
   PetscCall(UntilDestroy(&run.until));
   PetscCall(OutputDestroy(&run.output));

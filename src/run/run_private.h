@@ -1,5 +1,6 @@
 /* What the files that make a run share. */
 #pragma once
+#include "model/stage/stage.h"
 #include "run/output.h"
 #include "run/run.h"
 #include "run/strength/strength.h"
@@ -25,13 +26,17 @@ typedef struct {
 
 typedef struct {
   MPI_Comm comm;
-  const Case *c;
+  const Case *whole; /* with all of its stages */
+  const Case *c;     /* of the present stage */
+  PetscInt stage;
+  PetscReal *starts; /* of all stages so far, s */
   Model *model;
   RunDir *dir;
   Output *output;
   Schedule states, rows;
   PetscInt state_step, row_step; /* step of the newest state and row, -1 if none */
   PetscReal *values;
+  PetscReal *row;   /* of the history: the stage, where there are any, and the values */
   PetscInt *events; /* per measure: how many of its events the run has told of */
   Until until;
   StrengthRun strength; /* of an analysis for a factor of safety */
@@ -40,6 +45,7 @@ typedef struct {
   void *watcher_context;
   RunSummary summary;
   double start;           /* of this process, on MPI's clock */
+  Imbalance imbalance;    /* of the state of another run that it started from */
   HistoryMark history;    /* of the run that this one resumes; no lines: not known */
   PetscReal before;       /* seconds spent by the runs that this one resumes */
   double last_checkpoint; /* on MPI's clock */
@@ -59,6 +65,20 @@ PetscErrorCode RunOpen(Run *r, const RunOptions *options, Diag *diag);
 /* Collective. The same for a run that goes on from its newest checkpoint that is whole. *complete:
  * there is nothing to do. */
 PetscErrorCode RunResume(Run *r, const RunOptions *options, Diag *diag, PetscBool *complete);
+
+/* stages/stages.c. Collective. Stage k begins: its times are those of the run from now on. */
+void run_begin_stage(Run *r, PetscInt k);
+/* Collective. The stage is over: a row, a state, a checkpoint to start from; then the next one from its state. */
+PetscErrorCode RunEndStage(Run *r);
+PetscErrorCode RunNextStage(Run *r, Diag *diag);
+/* Collective. A run that is resumed: the model of stage k, which its state is to fill. */
+PetscErrorCode RunEnterStage(Run *r, PetscInt k, const PetscReal *starts);
+/* Collective. Models of all stages are made once, so that mistakes are told before anything runs. */
+PetscErrorCode RunCheckStages(MPI_Comm comm, const Case *whole, Diag *diag);
+/* Collective. Where and how much is out of balance. */
+PetscErrorCode RunTellImbalance(const Run *r, const Imbalance *imbalance);
+/* Collective. Into another file than that of the newest state; a refusal is a warning in the log. */
+PetscErrorCode CheckpointSaveAs(Run *r, const char *path);
 
 /* Ends of a run that is resumed, s: that of the case kept in its directory, and the one that is
  * asked for. */

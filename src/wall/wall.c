@@ -56,7 +56,7 @@ static PetscBool is_later(PetscReal t, PetscReal than) { return t > than * (1 + 
 PetscBool wall_stands(const Walls *walls, PetscInt k, PetscReal t)
 {
   const WallSpec *w = walls->c->walls + k;
-  if (!walls->wall[k].form) return PETSC_FALSE;
+  if (!walls->wall[k].form || w->absent) return PETSC_FALSE;
   if (w->from > 0 && !is_later(t, w->from)) return PETSC_FALSE;
   return !w->has_until || !is_later(t, w->until);
 }
@@ -64,13 +64,14 @@ PetscBool wall_stands(const Walls *walls, PetscInt k, PetscReal t)
 PetscBool wall_comes(const Walls *walls, PetscInt k, PetscReal t)
 {
   const WallSpec *w = walls->c->walls + k;
-  return walls->wall[k].form && !is_later(w->from, t) && (!w->has_until || is_later(w->until, t));
+  return walls->wall[k].form && !w->absent && !is_later(w->from, t) && (!w->has_until || is_later(w->until, t));
 }
 
 PetscReal walls_until_change(const Walls *walls, PetscReal t)
 {
   PetscReal next = PETSC_MAX_REAL;
   for (const WallSpec *w = walls->c->walls; w < walls->c->walls + walls->c->n_walls; ++w) {
+    if (w->absent) continue;
     if (is_later(w->from, t)) next = PetscMin(next, w->from - t);
     if (w->has_until && is_later(w->until, t)) next = PetscMin(next, w->until - t);
   }

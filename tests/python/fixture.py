@@ -1,4 +1,4 @@
-"""What the tests share: a folder for each test class, the block of the C library's tests, a run and a sweep of it by the program."""
+"""What the tests share: a folder for each class of tests, the block of the C library's tests, the program."""
 
 import os
 import subprocess

@@ -19,7 +19,7 @@ from fixture import talus as program
 class Docstrings(InFolder):
     def test_examples(self):
         program("run", BLOCK, "--out", "runs/block", "--quiet")
-        program("sweep", BLOCK, "--over", "materials.rubber.young=1e6,2e6", "--measure", "top", "--out", "runs/sweep")
+        talus.sweep(BLOCK, {"materials.rubber.young": [1e6, 2e6]}, measures=["top"], out="runs/sweep")
         names = dict(talus=talus, np=np, run="runs/block", sweep="runs/sweep", block=str(BLOCK))
         attempted = 0
         for module in pkgutil.iter_modules(talus.__path__, "talus."):

@@ -2,6 +2,7 @@
 
 import os
 import re
+import signal
 import subprocess
 import sys
 import unittest
@@ -153,6 +154,23 @@ class Running(InFolder):
             talus.run(case, "bad")
         self.assertEqual(caught.exception.mistakes[0].key, "materials.rubber.poison")
 
+    def test_interrupted(self):
+        """Ctrl-C, in this process and while the program runs: a checkpoint is written, and the run goes on from it."""
+        endless = block(**{"analysis.end": 1e3})
+        with self.assertRaisesRegex(KeyboardInterrupt, "by a signal, after step 3"):
+            endless.run("endless", progress=lambda step, time, end: step == 3 and os.kill(os.getpid(), signal.SIGINT))
+        self.assertEqual(talus.open("endless").outcome, "interrupted")
+
+        def interrupt(step, time):
+            raise KeyboardInterrupt
+
+        for _ in range(2):  # the second time there is the log of the first
+            with self.assertRaises(KeyboardInterrupt):
+                talus.run(endless, "endless-program", force=True, progress=interrupt)
+            run = talus.open("endless-program")
+            self.assertEqual(run.outcome, "interrupted")
+            self.assertTrue(list(run.path.glob("checkpoint_*.h5")))
+
     def test_a_run_that_gives_up(self):
         case = block(**{"newton.max_iterations": 1, "newton.residual": 1e-14, "analysis.smallest": 1e-3})
         with self.assertRaisesRegex(talus.RunError, "gave up") as caught:
@@ -185,6 +203,20 @@ class Running(InFolder):
         np.testing.assert_allclose(by_force["top"], heavy["top"], rtol=1e-9)
         with self.assertRaisesRegex(talus.TalusError, "a function of this process"):
             talus.run(light, "force-program")
+
+    def test_body_force_goes_through_stages(self):
+        """Gravity as a function, in two stages, cut off in the second and resumed."""
+        stages = [{"name": "falls"}, {"name": "stiffens", "materials": {"hard": {
+            "law": "neo-hookean", "density": 1000, "young": 2e6, "poisson": 0.3}}, "bodies": [{"name": "block", "material": "hard"}]}]
+        heavy = block(stages=stages)
+        whole = heavy.run("stages").history
+        self.assertEqual((whole["stage"][-1], whole.time[-1]), (2, 0.02))
+        light = block(**{"loads.gravity": [0, 0], "stages": stages})
+        light.body_force = lambda X, x, t: [0, -9.81, 0]
+        light.run("stages-force", progress=lambda step, time, end: step == 7)
+        again = talus.Case("stages-force", body_force=light.body_force)
+        found = again.run("stages-force", resume=True).history
+        np.testing.assert_allclose(found["top"], whole["top"], rtol=1e-9)
 
     def test_trust(self):
         Path("square.geo").write_text('Point(1) = {0, 0, 0, 0.5}; l() = Extrude {1, 0, 0} { Point{1}; };\n'

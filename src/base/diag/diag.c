@@ -121,6 +121,32 @@ static char *diag_format(const char *format, va_list arguments)
   return vasprintf(&text, format, arguments) < 0 ? NULL : cut_long(text);
 }
 
+void diag_of_stage(Diag *diag, PetscInt k, const char *name)
+{
+  diag->stage = k;
+  diag->stage_name[0] = '\0';
+  if (k >= 0 && name) snprintf(diag->stage_name, sizeof diag->stage_name, "%s", name);
+}
+
+/* What an earlier stage was warned of. */
+static PetscBool is_said(const Diag *diag, const DiagMessage *message)
+{
+  if (!diag->stage_name[0] || message->severity == DIAG_ERROR || !message->message) return PETSC_FALSE;
+  for (const DiagMessage *m = diag->messages; m < diag->messages + diag->n; ++m)
+    if (m->message && !strcmp(m->message, message->message) && m->line == message->line) return PETSC_TRUE;
+  return PETSC_FALSE;
+}
+
+/* Whoever reads of a mistake in a stage must know in which. */
+static void name_stage(const Diag *diag, DiagMessage *message)
+{
+  char *longer = NULL;
+  if (!diag->stage_name[0] || message->severity != DIAG_ERROR || !message->message) return;
+  if (asprintf(&longer, "%s (stage '%s')", message->message, diag->stage_name) < 0) return;
+  free(message->message);
+  message->message = longer;
+}
+
 static void record(Diag *diag, DiagSeverity severity, const DiagPlace *place, const char *format, va_list arguments)
 {
   if (diag_full(diag, severity)) {
@@ -131,13 +157,22 @@ static void record(Diag *diag, DiagSeverity severity, const DiagPlace *place, co
   message.file = place->file ? strdup(place->file) : NULL;
   message.text = place->text ? strdup(place->text) : NULL;
   message.message = diag_format(format, arguments);
+  if (is_said(diag, &message)) {
+    diag_message_clear(&message);
+    diag->stale_hint = PETSC_TRUE;
+    return;
+  }
+  name_stage(diag, &message);
   diag_append(diag, &message);
 }
 
 static void record_at_path(Diag *diag, DiagSeverity severity, const char *path, const char *format, va_list arguments)
 {
   DiagPlace place = {.width = 1};
-  if (diag->resolver && !diag_full(diag, severity)) diag->resolver(diag->context, path, &place);
+  char *staged = NULL;
+  if (path && diag->stage_name[0] && asprintf(&staged, "@%d:%s", (int)diag->stage, path) < 0) staged = NULL;
+  if (diag->resolver && !diag_full(diag, severity)) diag->resolver(diag->context, staged ? staged : path, &place);
+  free(staged);
   record(diag, severity, &place, format, arguments);
 }
 

@@ -27,6 +27,10 @@ PetscErrorCode DiagSetResolver(Diag *diag, DiagResolver resolver, void *context)
 /* Hand the resolver's context over: DiagDestroy (or the next resolver) calls `destroy` on it. */
 PetscErrorCode DiagOwnContext(Diag *diag, void (*destroy)(void *));
 
+/* From now on paths, and what is said, are those of stage k of the case (-1: of the case), by its name. What
+ * was said in the same words of an earlier one is not said again. */
+void diag_of_stage(Diag *diag, PetscInt k, const char *name);
+
 /* Record a message about the value at `path` (NULL: about the case as a whole). */
 void diag_error(Diag *diag, const char *path, const char *format, ...) PETSC_ATTRIBUTE_FORMAT(3, 4);
 void diag_warning(Diag *diag, const char *path, const char *format, ...) PETSC_ATTRIBUTE_FORMAT(3, 4);

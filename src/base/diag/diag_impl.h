@@ -19,6 +19,8 @@ struct Diag {
   /* does this rank print? 1, 0; -1 until DiagReduce: the first of all ranks does */
   int printer;
   PetscBool stale_hint; /* the newest message was lost: its hint goes too */
+  PetscInt stage;       /* if it has a name */
+  char stage_name[64];
   DiagResolver resolver;
   void *context;
   void (*context_destroy)(void *);

@@ -40,6 +40,8 @@ typedef enum {
   TYPE_FIELDS,     /* char ** and their number: words of output_fields */
   TYPE_NUMBERS,    /* NamedValue * and their number: any key: a number */
   TYPE_OPTIONS,    /* char ** and their number: options of PETSc */
+  TYPE_FLAGS,      /* a list of `words`: PetscBool at offset + sizeof(PetscBool) times the word's value */
+  TYPE_PART,       /* part of a case, as it stands under the same key at the top: read with it, see stages.h */
   TYPE_TABLE,      /* a nested mapping */
   TYPE_LIST,       /* a list of mappings: array of structs and its number */
   TYPE_NAMED,      /* a mapping of name: mapping; the struct begins with its name */
@@ -69,6 +71,7 @@ struct SchemaEntry {
   PetscBool endless;    /* a number beyond what its unit can mean has a meaning: none */
   PetscBool always;     /* a mapping that is read even if absent: its keys have defaults */
   PetscBool input_only; /* resolved to another key, never written */
+  PetscBool staged;     /* a PetscBool that is written only where it is true or the case has stages */
   const SchemaWord *words;
   /* instead of words: structs that begin with their word and its help, ended by NULL */
   const void *const *registry;
@@ -183,7 +186,7 @@ extern SchemaReadType SchemaReadInterval, SchemaReadAmplitude, SchemaReadPolygon
   SchemaReadFields, SchemaReadNumbers, SchemaReadOptions, SchemaReadVector, SchemaReadSpin, SchemaReadAxis,
   SchemaReadAxes, SchemaReadSize, SchemaReadCounts, SchemaReadNumber, SchemaReadInteger, SchemaReadBoolean,
   SchemaReadWord, SchemaReadMember, SchemaReadWordText, SchemaReadText, SchemaReadName, SchemaReadValues,
-  SchemaReadFile, SchemaReadReference, SchemaReadBoundary;
+  SchemaReadFile, SchemaReadReference, SchemaReadBoundary, SchemaReadFlags, SchemaReadPart;
 /* Is the name fit for a path and a column of a table? Complains at the node (its key if `key`). */
 PetscBool schema_check_name(SchemaReader *r, const YamlNode *node, const char *name, PetscBool key);
 

@@ -42,6 +42,9 @@ static const SchemaEntry motion_entries[] = {
       "that its surface cuts. Else the place stays, and material flows away from it. With fem the nodes chosen at the "
       "start move in any case",
       .fallback = "false", AT(MotionSpec, moves)),
+  KEY("absent", BOOLEAN, NULL,
+      "of a case with stages: it is not there, until one of them says that it is; and from one on that says it is not",
+      .fallback = "false", AT(MotionSpec, absent), STAGED),
   {.key = NULL},
 };
 const SchemaTable schema_motion = {.name = "boundary",

@@ -120,6 +120,9 @@ static const SchemaEntry body_entries[] = {
   KEY("surface", NUMBER, "m",
       "height, against gravity, where the material above the body ends: a warning if it ends elsewhere", .with = "k0",
       AT(BodySpec, surface), GIVEN(BodySpec, has_surface)),
+  KEY("absent", BOOLEAN, NULL,
+      "of a case with stages: it is not there, until one of them says that it is; and from one on that says it is not",
+      .fallback = "false", AT(BodySpec, absent), STAGED),
   {.key = NULL},
 };
 static const SchemaGroup body_groups[] = {{GROUP_AT_LEAST_ONE, {"shape", "region", "mesh", NULL}},

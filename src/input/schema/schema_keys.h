@@ -26,10 +26,12 @@
 #define ONLY_3D .only_3d = PETSC_TRUE
 #define TURNS .turns = PETSC_TRUE
 #define INPUT_ONLY .input_only = PETSC_TRUE
+#define STAGED .staged = PETSC_TRUE
 
 /* Tables that others name. */
 extern const SchemaTable schema_shape, schema_wall_shape, schema_selector, schema_grid, schema_body, schema_motion,
-  schema_components, schema_rotation, schema_wall, schema_interface, schema_loads, schema_basis, schema_measure;
+  schema_components, schema_rotation, schema_wall, schema_interface, schema_loads, schema_basis, schema_measure,
+  schema_stage, schema_strength, schema_initial;
 /* From support/bases.inc (registry.c), and the tables that it names. */
 extern const SchemaEntry schema_bases[];
 extern const SchemaGroup schema_basis_groups[];

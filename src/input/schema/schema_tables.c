@@ -251,10 +251,22 @@ static const SchemaEntry case_entries[] = {
   KEY("output", TABLE, NULL, "what is written", .table = &output, ALWAYS, AT(Case, output)),
   KEY("checkpoint", TABLE, NULL, "state to resume from", .table = &checkpoint, ALWAYS, AT(Case, checkpoint)),
   KEY("parallel", TABLE, NULL, "load balance", .table = &parallel, ALWAYS, AT(Case, parallel)),
+  KEY("strength", TABLE, NULL, "strength divided by a factor", .table = &schema_strength, AT(Case, strength)),
+  KEY("initial", TABLE, NULL, "the state that the case starts from", .table = &schema_initial, AT(Case, initial)),
+  KEY("stages", LIST, NULL, "one after another, each from the state of the one before", .table = &schema_stage,
+      AT(Case, stages), .count = offsetof(Case, n_stages)),
   KEY("petsc", OPTIONS, NULL,
       "options of PETSc that choose solvers, set tolerances or print on the terminal: {snes_monitor: true, ksp_type: "
       "cg}; all others go on the command line",
       AT(Case, petsc), .count = offsetof(Case, n_petsc)),
   {.key = NULL},
 };
-const SchemaTable schema_case = {.name = "case", .help = "The keys at the top of the file.", .entries = case_entries};
+/* Tables that are there only if somebody asks for them; of a stage another run is not where it starts. */
+static PetscBool hide_in_case(const SchemaEntry *e, const void *source)
+{
+  const Case *c = source;
+  if (!strcmp(e->key, "strength")) return c->strength.factor == 0 && c->strength.beyond_failure == 0;
+  return !strcmp(e->key, "initial") && !c->initial.run;
+}
+const SchemaTable schema_case = {
+  .name = "case", .help = "The keys at the top of the file.", .entries = case_entries, .hide = hide_in_case};

@@ -68,6 +68,8 @@ const SchemaTypeInfo schema_types[TYPE_COUNT] = {
     {"a mapping {option: value, ...}", "{option: value, ...}",
      "{\"type\": \"object\", \"additionalProperties\": {\"type\": [\"string\", \"number\", \"boolean\", \"null\"]}}",
      SchemaReadOptions},
+  [TYPE_FLAGS] = {"a list of", "list of words", NULL, SchemaReadFlags},
+  [TYPE_PART] = {"a part of a case", "as at the top", "{}", SchemaReadPart},
   [TYPE_TABLE] = {"a mapping {key: value, ...}", "mapping"},
   [TYPE_LIST] = {"a list of mappings", "list"},
   [TYPE_NAMED] = {"a mapping {name: {...}, ...}", "name: mapping"},

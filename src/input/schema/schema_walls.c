@@ -57,6 +57,9 @@ static const SchemaEntry wall_entries[] = {
   KEY("bodies", REFERENCES, NULL, "names of the bodies that meet it", .note = "all", .target = "bodies",
       AT(WallSpec, bodies), .count = offsetof(WallSpec, n_bodies)),
   CONTACT_KEYS(WallSpec, contact_words),
+  KEY("absent", BOOLEAN, NULL,
+      "of a case with stages: it is not there, until one of them says that it is; and from one on that says it is not",
+      .fallback = "false", AT(WallSpec, absent), STAGED),
   {.key = NULL},
 };
 static const SchemaGroup wall_groups[] = {{GROUP_AT_MOST_ONE, {"friction", "friction_angle", NULL}},

@@ -107,24 +107,31 @@ static PetscReal points_work(const Model *m)
 
 #define STRAIN_OF_ROUND_OFF 1e-11
 
-PetscErrorCode EnergyStart(Model *m)
+void energy_stress(Model *m, PetscInt p)
 {
   static const PetscReal identity[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
-  PetscReal state[LAW_MAX_STATE], tau[6], local[2] = {0, 0}, sum[2];
+  const Material *material = &m->materials[m->points->material[p]];
+  const PetscReal *old = point_real(m->points, POINT_STATE, p);
+  PetscReal state[LAW_MAX_STATE], tau[6];
+  PressureStress s;
+  if (m->formulation->pressure) {
+    pressure_update(material, material->law->update, 1, identity, m->points->real[POINT_PRESSURE] + p, old, state,
+                    PETSC_FALSE, &s);
+    point_set_tau(m->points, p, s.tau);
+  } else {
+    material->law->update(material->parameters, 1, identity, old, state, tau, NULL);
+    point_set_tau(m->points, p, tau);
+  }
+}
+
+PetscErrorCode EnergyStart(Model *m)
+{
+  PetscReal local[2] = {0, 0}, sum[2];
 
   PetscFunctionBeginUser;
   for (PetscInt p = 0; p < m->points->n; ++p) {
     const Material *material = &m->materials[m->points->material[p]];
-    const PetscReal *old = point_real(m->points, POINT_STATE, p);
-    if (m->formulation->pressure) {
-      PressureStress s;
-      pressure_update(material, material->law->update, 1, identity, m->points->real[POINT_PRESSURE] + p, old, state,
-                      PETSC_FALSE, &s);
-      point_set_tau(m->points, p, s.tau);
-    } else {
-      material->law->update(material->parameters, 1, identity, old, state, tau, NULL);
-      point_set_tau(m->points, p, tau);
-    }
+    energy_stress(m, p);
     m->points->real[POINT_WORK][p] = m->points->real[POINT_VOLUME][p] * model_point_energy(m, p);
     local[1] += PetscSqr(STRAIN_OF_ROUND_OFF) * m->points->real[POINT_VOLUME][p] * material->elastic.shear;
   }

@@ -57,7 +57,7 @@ static PetscBool stress_incompressible(Points *points, PetscInt p, const Materia
   return material->law->initial_stress(material->deviatoric, sigma, point_real(points, POINT_STATE, p));
 }
 
-static PetscBool stress_point(Points *points, PetscInt p, const Material *material, PetscReal sigma[6])
+PetscBool point_carry_stress(Points *points, PetscInt p, const Material *material, PetscReal sigma[6])
 {
   if (!material->law->initial_stress) return PETSC_FALSE;
   if (points->components[POINT_PRESSURE] && material->compliance == 0)
@@ -125,7 +125,7 @@ static PetscErrorCode StressPoints(Model *m, const Upwards *u, Overburden *overb
     PetscCall(OverburdenAt(overburden, b, point_real(m->points, POINT_X, p), &above, &top));
     highest[b] = PetscMax(highest[b], top);
     geostatic(u, m->c->bodies[b].k0, above, sigma);
-    if (!stress_point(m->points, p, &m->materials[m->points->material[p]], sigma)) *failed = b;
+    if (!point_carry_stress(m->points, p, &m->materials[m->points->material[p]], sigma)) *failed = b;
   }
   PetscFunctionReturn(0);
 }

@@ -94,7 +94,7 @@ PetscErrorCode CheckHeld(const Model *m, Diag *diag)
   spread(n, dim, joined, held);
   for (PetscInt b = 0; b < n; ++b) {
     name_directions(dim, held + b * dim, directions);
-    if (!directions[0]) continue;
+    if (!directions[0] || m->c->bodies[b].absent) continue;
     snprintf(path, sizeof path, "bodies[%d]", (int)b);
     diag_error(diag, path, "nothing holds '%s' in %s: a static analysis has no answer", m->c->bodies[b].name,
                directions);

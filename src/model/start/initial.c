@@ -15,10 +15,10 @@ PetscErrorCode InitialAcceleration(Model *m)
   PetscReal g[3];
 
   PetscFunctionBeginUser;
-  gravity_at(m->c, 0, g);
+  gravity_at(m->c, m->time, g);
   PetscCall(PetscArrayzero(n->du, dofs));
   for (PetscInt i = 0; i < dofs; ++i) n->history[i] = m->c->analysis.damping * n->v[i] - g[i % dim];
-  const NodalScene scene = nodal_scene(m, 0, n->du);
+  const NodalScene scene = nodal_scene(m, m->time, n->du);
   PetscCall(NodalForcesExternal(&m->forces, &scene, PETSC_TRUE, n->external));
   PetscCall(PetscArrayzero(n->force, dofs));
   pressure_guess(m);

@@ -105,7 +105,7 @@ static PetscErrorCode StrengthToTables(const Model *m, Tables *tables)
   Table *table;
 
   PetscFunctionBeginUser;
-  if (m->c->analysis.type != ANALYSIS_FACTOR) PetscFunctionReturn(0);
+  if (m->c->analysis.type != ANALYSIS_FACTOR && m->strength.factor == 1) PetscFunctionReturn(0);
   PetscCall(TablesAdd(tables, "strength", PETSC_TRUE, 1, &table));
   PetscCall(TableAdd(table, "factor", NULL, COLUMN_REAL, 1, (void *)&m->strength.factor, NULL));
   PetscFunctionReturn(0);
@@ -114,7 +114,8 @@ static PetscErrorCode StrengthToTables(const Model *m, Tables *tables)
 static void strength_from_table(Model *m, const Table *table, char reason[256])
 {
   const PetscReal *kept = table && !reason[0] ? table_data(table, "factor", COLUMN_REAL, 1, reason) : NULL;
-  if (!kept || m->c->analysis.type != ANALYSIS_FACTOR) return;
+  const StrengthSpec *given = &m->c->strength;
+  if (!kept || (m->c->analysis.type != ANALYSIS_FACTOR && given->factor == 0 && given->beyond_failure == 0)) return;
   if (table->rows != 1 || !(*kept >= 0 && *kept <= PETSC_MAX_REAL)) snprintf(reason, 256, "strength makes no sense");
   else strength_set(m, *kept);
 }
@@ -365,4 +366,39 @@ PetscErrorCode ModelFromTables(Model *m, Tables *tables, char reason[256])
   m->space->present = PETSC_FALSE;
   if (!reason[0]) PetscCall(ModelInitialise(m));
   PetscFunctionReturn(0);
+}
+
+/* Steps are chosen anew in every stage. */
+static PetscBool is_of_control(size_t offset)
+{
+  return offset >= offsetof(Model, control) && offset < offsetof(Model, control) + sizeof(StepControl);
+}
+
+PetscErrorCode StateGoOn(Model *m, const Tables *tables, char reason[256])
+{
+  const Table *table = tables_find(tables, "model"), *measures = tables_find(tables, "measures");
+
+  PetscFunctionBeginUser;
+  if (measures->rows != m->c->n_measures) snprintf(reason, 256, "the measures are others");
+  for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(reals) && !reason[0]; ++i)
+    if (!is_of_control(reals[i].offset))
+      *(PetscReal *)((char *)m + reals[i].offset) = real_of(table, reals[i].name, reason);
+  for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(counts) && !reason[0]; ++i)
+    if (!is_of_control(counts[i].offset))
+      *(PetscInt *)((char *)m + counts[i].offset) = count_of(table, counts[i].name, reason);
+  if (reason[0]) PetscFunctionReturn(0);
+  const PetscReal *kept = table_data(measures, "kept", COLUMN_REAL, MEASURE_KEPT, reason);
+  for (PetscInt k = 0; kept && k < m->c->n_measures * MEASURE_KEPT; ++k)
+    m->memory[k / MEASURE_KEPT].kept[k % MEASURE_KEPT] = kept[k];
+  tries_from_table(m, tables_find(tables, "tries"), reason);
+  state_lost_from_tables(m, tables, reason);
+  PetscCall(StateListsFromTables(m, tables, reason));
+  PetscFunctionReturn(0);
+}
+
+void state_check_grid(const Model *m, const Tables *tables, char reason[256])
+{
+  const Table *table = tables_find(tables, "model");
+  if (table) check_grid(m, table, reason);
+  else snprintf(reason, 256, "model is missing");
 }

@@ -15,3 +15,8 @@ PetscErrorCode ModelToTables(Model *model, Tables *tables);
  * reason (256 characters) says why on every rank and the model is fit for nothing but ModelDestroy;
  * else it is left empty. Tables of a cloud may be sent to other ranks on the way. */
 PetscErrorCode ModelFromTables(Model *model, Tables *tables, char reason[256]);
+/* Collective. Of such tables what goes on from one stage to the next: time, counts, the account of energies,
+ * what measures keep. */
+PetscErrorCode StateGoOn(Model *model, const Tables *tables, char reason[256]);
+/* Is the grid that of the model? */
+void state_check_grid(const Model *model, const Tables *tables, char reason[256]);

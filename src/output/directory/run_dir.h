@@ -87,6 +87,10 @@ const char *run_dir_reason(const RunDir *dir);
 /* Where the checkpoint after so many steps stands. */
 #define CHECKPOINT_PATH (PETSC_MAX_PATH_LEN + 64)
 void run_dir_checkpoint_path(const RunDir *dir, PetscInt step, char path[CHECKPOINT_PATH]);
+/* Where that of the end of a stage (its number, from 0) stands. */
+void run_dir_stage_path(const char *folder, PetscInt stage, char path[CHECKPOINT_PATH]);
+/* Collective. The newest checkpoint of any run directory; empty if it has none. */
+PetscErrorCode RunDirNewest(MPI_Comm comm, const char *folder, char path[CHECKPOINT_PATH]);
 /* Collective. Steps of the checkpoints that are there, newest first; free with PetscFree. */
 PetscErrorCode RunDirCheckpoints(RunDir *dir, PetscInt *n, PetscInt **steps);
 /* Collective. Remove all but the newest. */

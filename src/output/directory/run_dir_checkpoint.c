@@ -7,9 +7,19 @@
 #include "output/directory/run_dir_files.h"
 #include "output/directory/run_dir_impl.h"
 
+static void checkpoint_path(const char *folder, PetscInt step, char path[CHECKPOINT_PATH])
+{
+  snprintf(path, CHECKPOINT_PATH, "%s/checkpoint_%09" PetscInt_FMT ".h5", folder, step);
+}
+
 void run_dir_checkpoint_path(const RunDir *dir, PetscInt step, char path[CHECKPOINT_PATH])
 {
-  snprintf(path, CHECKPOINT_PATH, "%s/checkpoint_%09" PetscInt_FMT ".h5", dir->path, step);
+  checkpoint_path(dir->path, step, path);
+}
+
+void run_dir_stage_path(const char *folder, PetscInt stage, char path[CHECKPOINT_PATH])
+{
+  snprintf(path, CHECKPOINT_PATH, "%s/stage_%02" PetscInt_FMT ".h5", folder, stage + 1);
 }
 
 /* The number in PREFIX_number.SUFFIX, -1 if the name is another. */
@@ -31,14 +41,14 @@ static int newest_first(const void *a, const void *b)
 }
 
 /* Rank 0. */
-static PetscErrorCode ListSteps(const RunDir *dir, PetscInt *n, PetscInt **steps)
+static PetscErrorCode ListSteps(const char *folder, PetscInt *n, PetscInt **steps)
 {
   PetscInt capacity = 0;
 
   PetscFunctionBeginUser;
   *n = 0;
   *steps = NULL;
-  DIR *listing = opendir(dir->path);
+  DIR *listing = opendir(folder);
   for (struct dirent *entry = listing ? readdir(listing) : NULL; entry; entry = readdir(listing)) {
     const PetscInt step = checkpoint_step(entry->d_name);
     if (step < 0) continue;
@@ -53,12 +63,28 @@ static PetscErrorCode ListSteps(const RunDir *dir, PetscInt *n, PetscInt **steps
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode RunDirNewest(MPI_Comm comm, const char *folder, char path[CHECKPOINT_PATH])
+{
+  PetscInt n = 0, *steps = NULL, newest = -1;
+  PetscMPIInt rank;
+
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_rank(comm, &rank));
+  if (rank == 0) PetscCall(ListSteps(folder, &n, &steps));
+  if (n) newest = steps[0];
+  PetscCall(PetscFree(steps));
+  PetscCallMPI(MPI_Bcast(&newest, 1, MPIU_INT, 0, comm));
+  path[0] = '\0';
+  if (newest >= 0) checkpoint_path(folder, newest, path);
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode RunDirCheckpoints(RunDir *dir, PetscInt *n, PetscInt **steps)
 {
   PetscFunctionBeginUser;
   *n = 0;
   *steps = NULL;
-  if (dir->rank == 0) PetscCall(ListSteps(dir, n, steps));
+  if (dir->rank == 0) PetscCall(ListSteps(dir->path, n, steps));
   PetscCallMPI(MPI_Bcast(n, 1, MPIU_INT, 0, dir->comm));
   if (dir->rank) PetscCall(PetscMalloc1(*n, steps));
   PetscCallMPI(MPI_Bcast(*steps, (PetscMPIInt)*n, MPIU_INT, 0, dir->comm));
@@ -72,7 +98,7 @@ PetscErrorCode RunDirKeepCheckpoints(RunDir *dir, PetscInt keep)
 
   PetscFunctionBeginUser;
   if (dir->rank) PetscFunctionReturn(0);
-  PetscCall(ListSteps(dir, &n, &steps));
+  PetscCall(ListSteps(dir->path, &n, &steps));
   for (PetscInt i = keep; steps && i < n; ++i) {
     run_dir_checkpoint_path(dir, steps[i], path);
     unlink(path); /* one that stays takes place, and does no harm */

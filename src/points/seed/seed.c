@@ -387,7 +387,7 @@ PetscErrorCode PointsSeedOutlined(Points *points, const Grid *grid, const Case *
                  .domains = points->components[POINT_DOMAIN] > 0,
                  .equal = equal,
                  .outline = outline};
-    PetscCall(SeedBody(&s, points, taken, per_material, &next));
+    if (!s.body->absent) PetscCall(SeedBody(&s, points, taken, per_material, &next));
     if (s.body->mesh) own_mesh = PETSC_TRUE;
   }
   PetscCall(PetscFree(taken));

@@ -1,0 +1,28 @@
+/* Stages of a case, and the time at which each begins. */
+#include "case/case.h"
+
+PetscInt case_stages(const Case *c) { return PetscMax(1, c->n_stages); }
+
+const Case *case_stage(const Case *c, PetscInt k) { return c->n_stages ? c->stage_case[k] : c; }
+
+PetscBool case_goes_on(const Case *c) { return c->stage > 0 || c->initial.run ? PETSC_TRUE : PETSC_FALSE; }
+
+static void shift_motion(MotionSpec *m, const PetscReal *start) { m->amplitude.origin = start[m->amplitude.since]; }
+
+static void shift_wall(WallSpec *w, const PetscReal *start)
+{
+  for (PetscInt k = 0; k < w->n_motions; ++k) shift_motion(&w->motions[k], start);
+  if (w->from > 0) w->from += start[w->since];
+  w->until += start[w->since];
+}
+
+void case_begin(Case *c, const PetscReal *start)
+{
+  c->start = start[c->stage];
+  c->analysis.end += c->start;
+  for (PetscInt k = 0; k < c->analysis.n_until; ++k) c->analysis.until[k].after += c->start;
+  for (PetscInt k = 0; k < c->n_boundary; ++k) shift_motion(&c->boundary[k], start);
+  for (PetscInt k = 0; k < c->n_walls; ++k) shift_wall(&c->walls[k], start);
+  for (PetscInt k = 0; k < c->n_loads; ++k) c->loads[k].amplitude.origin = start[c->loads[k].amplitude.since];
+  c->gravity_amplitude.origin = start[c->gravity_amplitude.since];
+}

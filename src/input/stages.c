@@ -1,0 +1,263 @@
+#include "input/stages.h"
+#include <string.h>
+#include "base/text.h"
+#include "input/case_file.h"
+#include "input/schema/schema_keys.h"
+
+/* Lays the words of one stage. */
+typedef struct {
+  YamlDocument *document;
+  PetscInt stage;
+  Diag *diag;
+} Layer;
+
+static const char *const not_laid[] = {"name", "reset", "release", NULL};
+
+static PetscBool is_one_of(const char *key, const char *const *list)
+{
+  for (; *list; ++list)
+    if (!strcmp(key, *list)) return PETSC_TRUE;
+  return PETSC_FALSE;
+}
+
+/* A copy; stage -1: every node keeps its own. */
+static PetscErrorCode Clone(const Layer *l, const YamlNode *node, PetscInt stage, YamlNode **copy)
+{
+  YamlNode *child;
+
+  PetscFunctionBeginUser;
+  PetscCall(YamlNodeCreate(l->document, node->kind, copy));
+  (*copy)->plain = node->plain;
+  (*copy)->place = node->place;
+  (*copy)->key_place = node->key_place;
+  (*copy)->argument = node->argument;
+  (*copy)->stage = stage < 0 ? node->stage : stage;
+  if (node->text) PetscCall(PetscStrallocpy(node->text, &(*copy)->text));
+  if (node->key) PetscCall(PetscStrallocpy(node->key, &(*copy)->key));
+  for (PetscInt i = 0; i < node->n; ++i) {
+    PetscCall(Clone(l, node->child[i], stage, &child));
+    PetscCall(YamlNodeAppend(*copy, child));
+  }
+  PetscFunctionReturn(0);
+}
+
+static void set_stage(YamlNode *node, PetscInt stage)
+{
+  node->stage = stage;
+  for (PetscInt i = 0; i < node->n; ++i) set_stage(node->child[i], stage);
+}
+
+/* Entries of a list that stood in the one before are as old as they were there. */
+static void keep_age(const YamlNode *before, YamlNode *list)
+{
+  for (PetscInt i = 0; i < list->n && before->kind == YAML_SEQUENCE; ++i)
+    for (PetscInt k = 0; k < before->n; ++k)
+      if (yaml_equal(before->child[k], list->child[i])) set_stage(list->child[i], before->child[k]->stage);
+}
+
+static PetscErrorCode Replace(const Layer *l, YamlNode *node, const YamlNode *by)
+{
+  YamlNode *copy, *parent = node->parent;
+  const PetscInt index = node->index;
+
+  PetscFunctionBeginUser;
+  PetscCall(Clone(l, by, l->stage, &copy));
+  if (copy->kind == YAML_SEQUENCE) keep_age(node, copy);
+  copy->parent = parent;
+  copy->index = index;
+  parent->child[index] = copy;
+  PetscCall(YamlNodeDestroy(&node));
+  PetscFunctionReturn(0);
+}
+
+static const char *name_of(const YamlNode *entry)
+{
+  const YamlNode *name = yaml_find(entry, "name");
+  return name && name->kind == YAML_SCALAR ? name->text : NULL;
+}
+
+/* A list of things, not of numbers. */
+static PetscBool has_names(const YamlNode *list)
+{
+  for (PetscInt i = 0; i < list->n && list->kind == YAML_SEQUENCE; ++i)
+    if (name_of(list->child[i])) return PETSC_TRUE;
+  return PETSC_FALSE;
+}
+
+/* {name: gate, absent: true} */
+static PetscBool says_presence_only(const YamlNode *entry)
+{
+  return entry->n == 2 && yaml_find(entry, "name") && yaml_find(entry, "absent");
+}
+
+/* An entry that can only change one that is there: of a body without its place, of a law without its name. */
+static PetscBool only_changes(const YamlNode *list, const YamlNode *entry)
+{
+  static const char *const places[] = {"shape", "region", "mesh", NULL};
+  const char *key = list->key ? list->key : "";
+  if (!strcmp(key, "materials")) return !yaml_find(entry, "law");
+  if (says_presence_only(entry)) return PETSC_TRUE;
+  for (PetscInt i = 0; i < entry->n && !strcmp(key, "bodies"); ++i)
+    if (is_one_of(entry->child[i]->key, places)) return PETSC_FALSE;
+  return !strcmp(key, "bodies");
+}
+
+static PetscErrorCode TellMissing(const Layer *l, const YamlNode *list, const YamlNode *entry, const char *name)
+{
+  const char **names;
+  char path[512];
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(list->n + 1, &names));
+  for (PetscInt i = 0, n = 0; i < list->n; ++i) {
+    const char *other = list->kind == YAML_MAPPING ? list->child[i]->key : name_of(list->child[i]);
+    if (other) names[n++] = other;
+  }
+  yaml_error(l->document, l->diag, entry, PETSC_TRUE, "there is no '%s' in %s that the stage could change", name,
+             yaml_path(list, path, sizeof path));
+  diag_hint_names(l->diag, name, names);
+  PetscCall(PetscFree(names));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode Lay(const Layer *l, YamlNode *under, const YamlNode *over);
+
+static PetscErrorCode LayKeys(const Layer *l, YamlNode *under, const YamlNode *over, const char *const *without)
+{
+  YamlNode *copy;
+
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < over->n; ++i) {
+    const YamlNode *child = over->child[i];
+    YamlNode *was = yaml_find(under, child->key);
+    if (without && is_one_of(child->key, without)) continue;
+    if (was) PetscCall(Lay(l, was, child));
+    else if (l->diag && child->kind == YAML_MAPPING && under->key && !strcmp(under->key, "materials") &&
+             only_changes(under, child))
+      PetscCall(TellMissing(l, under, child, child->key));
+    else {
+      PetscCall(Clone(l, child, l->stage, &copy));
+      PetscCall(YamlNodeAppend(under, copy));
+    }
+  }
+  PetscFunctionReturn(0);
+}
+
+/* The entry of a list that the other one changes: of its name, or the same; NULL: it is a new one. */
+static YamlNode *find_entry(const YamlNode *list, const YamlNode *entry)
+{
+  const char *name = name_of(entry);
+  for (PetscInt i = 0; i < list->n; ++i) {
+    const char *other = name_of(list->child[i]);
+    if (name ? other && !strcmp(name, other) : yaml_equal(list->child[i], entry)) return list->child[i];
+  }
+  return NULL;
+}
+
+static PetscErrorCode LayEntries(const Layer *l, YamlNode *list, const YamlNode *over)
+{
+  const PetscBool by_keys = list->key && !strcmp(list->key, "bodies");
+  YamlNode *copy;
+
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < over->n; ++i) {
+    const YamlNode *entry = over->child[i];
+    YamlNode *was = find_entry(list, entry);
+    if (!was && name_of(entry) && only_changes(list, entry)) PetscCall(TellMissing(l, list, entry, name_of(entry)));
+    else if (!was) {
+      PetscCall(Clone(l, entry, l->stage, &copy));
+      PetscCall(YamlNodeAppend(list, copy));
+    } else if (yaml_equal(was, entry)) continue;
+    else if (by_keys || says_presence_only(entry)) PetscCall(LayKeys(l, was, entry, NULL));
+    else PetscCall(Replace(l, was, entry));
+  }
+  PetscFunctionReturn(0);
+}
+
+/* What says by itself what it is. */
+static PetscBool stands_alone(const YamlNode *over)
+{
+  return yaml_find(over, "law") || yaml_find(over, "type") || (over->key && !strcmp(over->key, "strength"));
+}
+
+static PetscErrorCode Lay(const Layer *l, YamlNode *under, const YamlNode *over)
+{
+  const PetscBool mappings = under->kind == YAML_MAPPING && over->kind == YAML_MAPPING;
+
+  PetscFunctionBeginUser;
+  if (yaml_equal(under, over)) PetscFunctionReturn(0);
+  if (mappings && !stands_alone(over)) PetscCall(LayKeys(l, under, over, NULL));
+  else if (under->kind == YAML_SEQUENCE && has_names(over)) PetscCall(LayEntries(l, under, over));
+  else PetscCall(Replace(l, under, over));
+  PetscFunctionReturn(0);
+}
+
+/* The file without its list of stages. */
+static PetscErrorCode Bare(const Layer *l, const YamlNode *root, YamlNode **bare)
+{
+  static const char *const left_out[] = {"stages", NULL};
+  const YamlNode empty = {.kind = YAML_MAPPING, .plain = root->plain, .place = root->place};
+
+  PetscFunctionBeginUser;
+  PetscCall(Clone(l, &empty, 0, bare));
+  PetscCall(LayKeys(&(Layer){.document = l->document}, *bare, root, left_out));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode StagesLay(YamlDocument *document, Diag *diag)
+{
+  const YamlNode *stages = yaml_find(document->root, "stages");
+  Layer l = {.document = document, .diag = diag};
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(stages->n, &document->stage));
+  for (; l.stage < stages->n; ++l.stage) {
+    YamlNode **tree = document->stage + l.stage;
+    if (l.stage == 0) PetscCall(Bare(&l, document->root, tree));
+    else PetscCall(Clone(&l, document->stage[l.stage - 1], -1, tree));
+    document->n_stages = l.stage + 1;
+    PetscCall(LayKeys(&l, *tree, stages->child[l.stage], not_laid));
+    if (document->n_nodes > YAML_MAX_NODES) {
+      yaml_error(document, diag, stages->child[l.stage], PETSC_FALSE,
+                 "so many stages of a file as large as this are too much");
+      break;
+    }
+  }
+  PetscFunctionReturn(0);
+}
+
+/* The lines of a key at the top of a resolved case; *length 0: it is not there. */
+static const char *find_section(const char *text, const char *key, size_t *length)
+{
+  const size_t n = strlen(key);
+  const char *begin = NULL, *line = text;
+  *length = 0;
+  for (; *line; line += strcspn(line, "\n"), line += *line == '\n') {
+    if (*line == ' ') continue;
+    if (begin) break;
+    if (!strncmp(line, key, n) && line[n] == ':') begin = line;
+  }
+  if (begin) *length = (size_t)(line - begin);
+  return begin;
+}
+
+PetscErrorCode StageText(const Case *before, const Case *stage, char **text)
+{
+  TextStream stream;
+  char *was, *is;
+
+  PetscFunctionBeginUser;
+  PetscCall(CaseToYaml(before, &was));
+  PetscCall(CaseToYaml(stage, &is));
+  PetscCall(TextOpen(&stream));
+  for (const SchemaEntry *e = schema_stage.entries; e->key; ++e) {
+    size_t n, m;
+    if (e->type != TYPE_PART) continue;
+    const char *now = find_section(is, e->key, &n), *then = find_section(was, e->key, &m);
+    if (n && (n != m || strncmp(now, then, n))) fwrite(now, 1, n, stream.out);
+  }
+  PetscCall(TextClose(&stream, text));
+  PetscCall(PetscFree(was));
+  PetscCall(PetscFree(is));
+  PetscFunctionReturn(0);
+}

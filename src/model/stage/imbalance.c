@@ -1,0 +1,118 @@
+/* The balance at the start of a stage: what of it is held, and how accelerations begin. */
+#include "model/stage/stage_private.h"
+#include "solve/forces/release.h"
+
+/* Residual of the state as it is, in the frames of the boundary, zero where nodes are held: what is missing to
+ * balance, N. */
+static PetscErrorCode Residual(Model *m, PetscReal *residual)
+{
+  NodalFields *n = m->nodes;
+  const PetscInt dim = m->dim, dofs = m->grid->n_nodes * dim;
+  PetscReal g[3];
+
+  PetscFunctionBeginUser;
+  gravity_at(m->c, m->time, g);
+  PetscCall(PetscArrayzero(n->du, dofs));
+  for (PetscInt i = 0; i < dofs; ++i) n->history[i] = -g[i % dim];
+  const NodalScene scene = nodal_scene(m, m->time, n->du);
+  PetscCall(NodalForcesExternal(&m->forces, &scene, PETSC_TRUE, n->external));
+  PetscCall(PetscArrayzero(residual, dofs));
+  pressure_guess(m);
+  WeakFormInput in = weak_form_of(m, 0);
+  WeakFormOutput out = {.force = residual};
+  PetscCall(m->formulation->assemble(&in, &out));
+  PetscCall(GridSumToOwners(m->grid, dim, residual));
+  for (PetscInt i = 0; i < m->grid->n_owned * dim; ++i) residual[i] -= n->external[i];
+  PetscFunctionReturn(0);
+}
+
+/* Walls go on pressing as they did. */
+static PetscErrorCode AddWalls(const Model *m, PetscReal *residual)
+{
+  const Support *w = m->space->support;
+  const PetscInt dim = m->dim;
+  PetscReal *walls, force[3];
+
+  PetscFunctionBeginUser;
+  if (!m->points->components[POINT_CONTACT]) PetscFunctionReturn(0);
+  PetscCall(PetscCalloc1(m->grid->n_nodes * dim, &walls));
+  for (PetscInt g = 0; g < w->n_groups; ++g)
+    for (PetscInt p = w->point_start[g]; p < w->point_start[g + 1]; ++p) {
+      contact_force_on(m, p, force);
+      for (PetscInt k = 0; k < support_nodes(w, g) * dim; ++k)
+        walls[w->node[w->node_start[g] + k / dim] * dim + k % dim] += support_N(w, g, p)[k / dim] * force[k % dim];
+    }
+  PetscCall(GridSumToOwners(m->grid, dim, walls));
+  for (PetscInt i = 0; i < m->grid->n_owned * dim; ++i) residual[i] -= walls[i];
+  PetscCall(PetscFree(walls));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode Report(const Model *m, const PetscReal *residual, Imbalance *imbalance)
+{
+  PetscReal local[2] = {0, 0}, where[3] = {0, 0, 0}, most;
+  PetscMPIInt rank, mine, first;
+
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_rank(m->comm, &rank));
+  for (PetscInt node = 0; node < m->grid->n_owned; ++node) {
+    PetscReal square = 0;
+    for (PetscInt d = 0; d < m->dim; ++d) square += PetscSqr(residual[node * m->dim + d]);
+    local[0] += PetscSqrtReal(square);
+    if (PetscSqrtReal(square) <= local[1]) continue;
+    local[1] = PetscSqrtReal(square);
+    for (PetscInt d = 0; d < m->dim; ++d) where[d] = m->grid->x[node * m->dim + d];
+  }
+  PetscCall(MPIU_Allreduce(local, &imbalance->all, 1, MPIU_REAL, MPI_SUM, m->comm));
+  PetscCall(MPIU_Allreduce(local + 1, &most, 1, MPIU_REAL, MPIU_MAX, m->comm));
+  mine = local[1] == most ? rank : PETSC_MPI_INT_MAX;
+  PetscCallMPI(MPI_Allreduce(&mine, &first, 1, MPI_INT, MPI_MIN, m->comm));
+  PetscCallMPI(MPI_Bcast(where, 3, MPIU_REAL, first, m->comm));
+  imbalance->most = most;
+  PetscCall(PetscArraycpy(imbalance->where, where, 3));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode HoldImbalance(Model *m, Imbalance *imbalance)
+{
+  const PetscInt dofs = m->grid->n_nodes * m->dim;
+  PetscReal *residual, *held = release_forces(&m->forces);
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(dofs, &residual));
+  if (held) PetscCall(PetscArrayzero(held, dofs)); /* that of the stage before is over */
+  mark_fixed(m);
+  PetscCall(Residual(m, residual));
+  PetscCall(AddWalls(m, residual));
+  frames_turn(&m->boundary->frames, m->dim, residual);
+  for (PetscInt i = 0; i < dofs; ++i)
+    if (i >= m->grid->n_owned * m->dim || m->boundary->fixed[i] || m->nodes->fixed[i]) residual[i] = 0;
+  frames_turn(&m->boundary->frames, m->dim, residual);
+  PetscCall(Report(m, residual, imbalance));
+  if (held) PetscCall(PetscArraycpy(held, residual, dofs));
+  PetscCall(PetscFree(residual));
+  PetscFunctionReturn(0);
+}
+
+/* Where the state before had no inertia, accelerations are those of the balance. */
+PetscErrorCode ResetMotion(Model *m, const Case *from, PetscBool next)
+{
+  const ResetSpec *reset = next ? &m->c->spec->reset : &m->c->initial.reset;
+  const PetscBool stands = !m->scheme->inertia || reset->velocity;
+  NodalFields *n = m->nodes;
+  const PetscInt dofs = m->grid->n_nodes * m->dim, numbers = m->points->n * m->dim;
+
+  PetscFunctionBeginUser;
+  if (reset->displacement) PetscCall(PetscArrayzero(m->points->real[POINT_U], numbers));
+  if (reset->displacement) PetscCall(PetscArrayzero(m->tracers->real[POINT_U], m->tracers->n * m->dim));
+  if (stands && !m->method->restores_grid) PetscCall(PetscArrayzero(n->v, dofs));
+  if (stands) PetscCall(PetscArrayzero(m->points->real[POINT_V], numbers));
+  if (!stands && !case_is_static(&from->analysis)) PetscFunctionReturn(0);
+  if (m->points->components[POINT_SLOPE])
+    PetscCall(PetscArrayzero(m->points->real[POINT_SLOPE], m->points->n * m->points->components[POINT_SLOPE]));
+  PetscCall(PetscArrayzero(m->points->real[POINT_A], numbers));
+  PetscCall(PetscArrayzero(n->a, dofs));
+  PetscCall(PetscArrayzero(n->echo, dofs));
+  PetscCall(PetscArrayzero(n->rate, dofs));
+  PetscFunctionReturn(0);
+}

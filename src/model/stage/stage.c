@@ -1,0 +1,197 @@
+#include "model/stage/stage_private.h"
+#include "grid/search/directory.h"
+#include "model/state/state.h"
+
+/* What no state can be made of, by its name. */
+static void check_cases(const Model *m, const Case *from, Diag *diag)
+{
+  const Case *c = m->c;
+  if (m->method->clouds)
+    diag_error(diag, "method", "method %s cannot go on from another state: mpm and fem can", m->method->name);
+  if (strcmp(c->method, from->method))
+    diag_error(diag, "method", "the state is one of method %s, and cannot go on with %s", from->method, c->method);
+  if (c->kinematics != from->kinematics)
+    diag_error(diag, "kinematics", "the state is one of `kinematics: %s`", from->kinematics->name);
+  if (!m->method->restores_grid && case_is_mixed(c) != case_is_mixed(from))
+    diag_error(diag, "formulation", "nodes of fem carry their pressures or have none: the state is one of `%s`",
+               from->formulation);
+  if (c->n_walls != from->n_walls || c->n_interfaces != from->n_interfaces) {
+    diag_error(diag, c->n_walls != from->n_walls ? "walls" : "interfaces",
+               "the state is one of %d walls and %d interfaces, here are %d and %d", (int)from->n_walls,
+               (int)from->n_interfaces, (int)c->n_walls, (int)c->n_interfaces);
+    if (c->n_walls != from->n_walls)
+      diag_hint(diag, "name a wall that comes later at the top of the file, with absent: true");
+  }
+}
+
+/* A load that bodies carry needs a place in the undeformed body. */
+static PetscBool is_carried(const LoadSpec *load)
+{
+  return load->kind != LOAD_TRACTION || load->on.body ? PETSC_TRUE : PETSC_FALSE;
+}
+
+static PetscErrorCode TakeCarriers(Model *m, const Tables *tables, const Case *from, PetscBool next, Diag *diag,
+                                   char reason[256])
+{
+  const Case *c = m->c;
+  PetscBool any = PETSC_FALSE, same = next && c->n_loads == from->n_loads;
+  char path[64];
+
+  PetscFunctionBeginUser;
+  for (PetscInt k = 0; k < c->n_loads; ++k) {
+    any |= is_carried(&c->loads[k]);
+    same &= c->loads[k].amplitude.since < c->stage;
+  }
+  if (same && any)
+    PetscCall(PointsFromTable(m->loads->carriers, m->grid, tables_find(tables, "carriers"), c->n_loads, c->n_materials,
+                              reason));
+  for (PetscInt k = 0; k < c->n_loads && !same; ++k) {
+    if (!is_carried(&c->loads[k])) continue;
+    diag_error(diag, case_load_path(c, k, path),
+               "a load that the material carries can begin only with the undeformed body, in the first stage");
+    diag_hint(diag, "give all of them there, with amplitudes that are 0 until they come");
+  }
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode TakeTracers(Model *m, const Tables *tables, char reason[256])
+{
+  PetscFunctionBeginUser;
+  PetscCall(
+    PointsFromTable(m->tracers, m->grid, tables_find(tables, "tracers"), m->c->n_measures, PETSC_MAX_INT, reason));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode TakeNodes(Model *m, const Tables *tables, PetscBool next, char reason[256])
+{
+  PetscFunctionBeginUser;
+  if (!m->method->restores_grid || next)
+    PetscCall(NodalFieldsFromTables(m->nodes, !m->method->restores_grid, tables, reason));
+  m->guess = (Guess){0};
+  if (next && !reason[0]) PetscCall(ForcesFromTables(m, tables, reason));
+  PetscFunctionReturn(0);
+}
+
+/* Kinetic and stored energy of the points, on this rank. */
+static PetscReal stored(const Model *m)
+{
+  PetscReal sum = 0;
+  for (PetscInt p = 0; p < m->points->n; ++p) {
+    const PetscReal *v = point_real(m->points, POINT_V, p);
+    sum += m->points->real[POINT_WORK][p];
+    for (PetscInt d = 0; d < m->dim; ++d) sum += 0.5 * m->points->real[POINT_MASS][p] * v[d] * v[d];
+  }
+  return sum;
+}
+
+/* What the tables' points hold, on this rank. */
+static PetscReal stored_before(const Tables *tables, PetscInt dim, char reason[256])
+{
+  const Table *table = tables_find(tables, "points");
+  const PetscReal *work = table_data(table, "stress_work", COLUMN_REAL, 1, reason);
+  const PetscReal *v = table_data(table, "velocity", COLUMN_REAL, dim, reason);
+  const PetscReal *mass = table_data(table, "mass", COLUMN_REAL, 1, reason);
+  PetscReal sum = 0;
+  for (PetscInt r = 0; r < table->rows && !reason[0]; ++r) {
+    sum += work[r];
+    for (PetscInt d = 0; d < dim; ++d) sum += 0.5 * mass[r] * v[r * dim + d] * v[r * dim + d];
+  }
+  return sum;
+}
+
+/* What comes and goes with bodies, and with motion that ends, is none of the work of the run. */
+static PetscErrorCode KeepAccount(Model *m, PetscReal before, PetscBool next)
+{
+  PetscReal local[2] = {before, stored(m)}, sum[2];
+
+  PetscFunctionBeginUser;
+  PetscCall(MPIU_Allreduce(local, sum, 2, MPIU_REAL, MPI_SUM, m->comm));
+  if (next) m->start_energy += sum[1] - sum[0];
+  else m->start_energy = sum[1];
+  m->most_energy = PetscMax(next ? m->most_energy : 0, m->start_energy + m->external_work + m->boundary_work);
+  PetscFunctionReturn(0);
+}
+
+/* All that the tables give; reason where they make no sense. */
+static PetscErrorCode Take(Model *m, const Tables *tables, const Case *from, PetscBool next, Diag *diag,
+                           char reason[256])
+{
+  const PetscReal before = stored_before(tables, m->dim, reason);
+  const PetscInt errors = diag_errors(diag);
+
+  PetscFunctionBeginUser;
+  PetscCall(ReasonShare(m->comm, reason));
+  if (!reason[0] && next) PetscCall(StateGoOn(m, tables, reason));
+  if (!reason[0]) PetscCall(TakePoints(m, tables, from, diag, reason));
+  if (!reason[0] && next) PetscCall(TakeTracers(m, tables, reason));
+  if (!reason[0]) PetscCall(TakeCarriers(m, tables, from, next, diag, reason));
+  if (!reason[0]) PetscCall(TakeNodes(m, tables, next, reason));
+  PetscCall(ReasonShare(m->comm, reason));
+  if (reason[0] || diag_errors(diag) > errors) PetscFunctionReturn(0);
+  PetscCall(ResetMotion(m, from, next));
+  PetscCall(KeepAccount(m, before, next));
+  PetscFunctionReturn(0);
+}
+
+/* Stresses are those of the laws now: strengths may be others, and pressures of fem are those of its nodes. */
+static void settle_stress(Model *m)
+{
+  const Support *w = m->space->support;
+  const PetscReal *pressure = m->method->restores_grid ? NULL : m->nodes->pressure;
+  for (PetscInt g = 0; g < w->n_groups && pressure; ++g)
+    for (PetscInt p = w->point_start[g]; p < w->point_start[g + 1]; ++p) {
+      m->points->real[POINT_PRESSURE][p] = 0;
+      for (PetscInt k = 0; k < support_nodes(w, g); ++k)
+        m->points->real[POINT_PRESSURE][p] += support_N(w, g, p)[k] * pressure[w->node[w->node_start[g] + k]];
+    }
+  for (PetscInt p = 0; p < m->points->n; ++p) energy_stress(m, p);
+}
+
+PetscErrorCode ModelTake(Model *m, Tables *tables, const Case *from, PetscBool next, Diag *diag, Imbalance *imbalance)
+{
+  char reason[256] = "";
+  PetscInt errors;
+
+  PetscFunctionBeginUser;
+  const PetscInt before = diag_errors(diag);
+  check_cases(m, from, diag);
+  state_check_grid(m, tables, reason);
+  if (!reason[0] && diag_errors(diag) == before) PetscCall(Take(m, tables, from, next, diag, reason));
+  if (reason[0]) diag_error(diag, next ? NULL : "initial.run", "the state cannot be taken over: %s", reason);
+  PetscCall(DiagReduce(m->comm, diag, &errors));
+  if (errors) PetscFunctionReturn(0);
+  m->space->present = PETSC_FALSE;
+  PetscCall(ModelInitialise(m));
+  settle_stress(m);
+  PetscCall(HoldImbalance(m, imbalance));
+  if (m->scheme->inertia && case_is_static(&from->analysis)) PetscCall(InitialAcceleration(m));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ModelSucceed(const Case *stage, Diag *diag, Model **model, Imbalance *imbalance)
+{
+  Model *before = *model, *m;
+  Tables *tables;
+  Diag *unheard;
+  PetscInt errors;
+
+  PetscFunctionBeginUser;
+  PetscCall(TablesCreate(&tables));
+  PetscCall(ModelToTables(before, tables));
+  PetscCall(OptionsForget(before)); /* the next model has the same */
+  PetscCall(DiagCreate(&unheard));  /* all has been said when the run began */
+  PetscCall(ModelCreate(before->comm, stage, unheard, &m));
+  PetscCall(DiagDestroy(&unheard));
+  if (!m) diag_error(diag, NULL, "its model cannot be made");
+  if (m && before->body_force) PetscCall(ModelSetBodyForce(m, before->body_force, before->body_force_context));
+  if (m) strength_go_on(m, before, diag);
+  if (m) PetscCall(ModelTake(m, tables, before->c, PETSC_TRUE, diag, imbalance));
+  PetscCall(TablesDestroy(&tables));
+  PetscCall(DiagReduce(before->comm, diag, &errors));
+  if (errors && m) PetscCall(ModelDestroy(&m));
+  if (!m) PetscFunctionReturn(0);
+  m->asked = before->asked;
+  PetscCall(ModelDestroy(model));
+  *model = m;
+  PetscFunctionReturn(0);
+}

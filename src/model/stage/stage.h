@@ -1,0 +1,24 @@
+/* One state goes on as that of another case: of the next stage, or of a case that names another run.
+ *
+ * Points keep what they know; bodies that are gone lose theirs, new ones bring what they are seeded with. A body
+ * of another law, or of other elastic constants, keeps its stress, and of its history what the new law calls by
+ * the same names; its F and undeformed volume become those of the new elastic strain, and its mass goes with the
+ * density. Nodes of fem keep their places. */
+#pragma once
+#include "base/table/table.h"
+#include "model/model.h"
+
+/* What is out of balance at the start. */
+typedef struct {
+  PetscReal all, most; /* the sum of the forces of nodes, and the largest, N */
+  PetscReal where[3];  /* of the largest, m */
+} Imbalance;
+
+/* Collective. Take the state of `from`, as tables, into a model that was just created. next: it goes on in
+ * time, with its account of energies, measures and carried loads; else everything begins now. What
+ * does not fit goes to diag. */
+PetscErrorCode ModelTake(Model *model, Tables *tables, const Case *from, PetscBool next, Diag *diag,
+                         Imbalance *imbalance);
+/* Collective. The model of the next stage, from the state of *model, which it replaces; on a mistake (in diag)
+ * *model stays as it is, but can take no more steps. */
+PetscErrorCode ModelSucceed(const Case *stage, Diag *diag, Model **model, Imbalance *imbalance);

@@ -1,0 +1,12 @@
+/* What the files of this folder share. */
+#pragma once
+#include "model/model_private.h"
+#include "model/stage/stage.h"
+
+/* Collective. Points of the tables in place of those of bodies that were there, swapped where their material has
+ * changed. */
+PetscErrorCode TakePoints(Model *model, const Tables *tables, const Case *from, Diag *diag, char reason[256]);
+/* Collective. Velocities end where the case says so, or where they mean nothing: in statics. */
+PetscErrorCode ResetMotion(Model *model, const Case *from, PetscBool next);
+/* Collective. What is out of balance now; where the case releases it over time, it is held. */
+PetscErrorCode HoldImbalance(Model *model, Imbalance *imbalance);

@@ -1,0 +1,173 @@
+/* Points of one case as those of another. */
+#include "material/pressure.h"
+#include "model/stage/stage_private.h"
+
+/* The body of this case that one of the other is: of its name, if it is there in both; or -1. */
+static PetscInt body_here(const Case *c, const BodySpec *other)
+{
+  for (PetscInt b = 0; b < c->n_bodies; ++b)
+    if (!strcmp(c->bodies[b].name, other->name)) return c->bodies[b].absent || other->absent ? -1 : b;
+  return -1;
+}
+
+static PetscInt material_of(const Case *c, PetscInt body)
+{
+  PetscInt i = 0;
+  while (strcmp(c->materials[i].name, c->bodies[body].material)) ++i;
+  return i;
+}
+
+static PetscBool same_elasticity(const Material *a, const Material *b)
+{
+  return a->law == b->law && a->elastic.bulk == b->elastic.bulk && a->elastic.shear == b->elastic.shear;
+}
+
+/* Numbers of history that both laws know by the same name. */
+static void keep_history(const Law *was, const PetscReal *before, const Law *is, PetscReal *state)
+{
+  for (const LawField *f = is->fields; f->name; state += f++->components) {
+    const PetscReal *old = before;
+    for (const LawField *g = was->fields; g->name; old += g++->components)
+      if (f->components == 1 && g->components == 1 && !strcmp(f->name, g->name)) *state = *old;
+  }
+}
+
+/* Its stress stays, in the state of another law or of other constants. */
+static PetscBool swap(Points *points, PetscInt p, const Material *was, const Material *is)
+{
+  PetscReal *J = points->real[POINT_J] + p, *volume = points->real[POINT_VOLUME] + p;
+  PetscReal before[LAW_MAX_STATE], F[9], tau[6], sigma[6];
+  const PetscReal J_was = *J;
+  PetscReal *state = point_real(points, POINT_STATE, p);
+  point_tau(points, p, tau);
+  for (PetscInt i = 0; i < points->components[POINT_F]; ++i) F[i] = point_real(points, POINT_F, p)[i];
+  for (int k = 0; k < 6; ++k) sigma[k] = tau[k] / J_was;
+  for (PetscInt i = 0; i < LAW_MAX_STATE; ++i) before[i] = i < was->law->n_state ? state[i] : 0;
+  *volume *= J_was;
+  *J = 1;
+  law_initial_state(is->law, state);
+  if (!point_carry_stress(points, p, is, sigma)) return PETSC_FALSE;
+  keep_history(was->law, before, is->law, state);
+  const PetscReal stretch = PetscPowReal(*J / J_was, 1.0 / 3.0);
+  for (PetscInt i = 0; i < points->components[POINT_F]; ++i) point_real(points, POINT_F, p)[i] = stretch * F[i];
+  for (PetscInt d = 0; d < points->components[POINT_DOMAIN]; ++d) point_real(points, POINT_DOMAIN, p)[d] /= stretch;
+  return PETSC_TRUE;
+}
+
+static PetscErrorCode TellStress(const Model *m, PetscInt failed, Diag *diag)
+{
+  PetscInt any;
+  char path[64];
+
+  PetscFunctionBeginUser;
+  PetscCall(MPIU_Allreduce(&failed, &any, 1, MPIU_INT, MPI_MAX, m->comm));
+  if (any < 0) PetscFunctionReturn(0);
+  PetscCall(PetscSNPrintf(path, sizeof path, "bodies[%d].material", (int)any));
+  diag_error(diag, path, "the law of '%s' has no state that carries the stress that '%s' has: it cannot take over",
+             m->c->bodies[any].material, m->c->bodies[any].name);
+  diag_hint(diag, "where it is beyond a strength: change the strength alone first, and the stiffness in a later stage");
+  PetscFunctionReturn(0);
+}
+
+/* Materials of the points become those of their bodies. */
+static PetscErrorCode SwapMaterials(Model *m, const Case *from, Diag *diag)
+{
+  Diag *unheard;
+  Material *was;
+  PetscInt failed = -1;
+
+  PetscFunctionBeginUser;
+  PetscCall(DiagCreate(&unheard));
+  PetscCall(PetscCalloc1(from->n_materials, &was));
+  for (PetscInt i = 0; i < from->n_materials; ++i) PetscCall(MaterialResolve(from, i, unheard, &was[i]));
+  PetscCall(DiagDestroy(&unheard));
+  for (PetscInt p = 0; p < m->points->n; ++p) {
+    const PetscInt body = m->points->body[p], i = material_of(m->c, body);
+    const Material *before = &was[m->points->material[p]], *now = &m->materials[i];
+    m->points->material[p] = i;
+    if (!before->law) continue;
+    m->points->real[POINT_MASS][p] *= now->density / before->density;
+    if (!same_elasticity(before, now) && !swap(m->points, p, before, now)) failed = body;
+  }
+  PetscCall(PetscFree(was));
+  PetscCall(TellStress(m, failed, diag));
+  PetscFunctionReturn(0);
+}
+
+/* Points of a law that has none yet: pressures as unknowns. */
+static void find_pressures(Model *m, const Table *table)
+{
+  PetscReal tau[6];
+  for (PetscInt k = 0; k < table->n; ++k)
+    if (!strcmp(table->column[k].name, "pressure")) return;
+  for (PetscInt p = 0; p < m->points->n && m->points->components[POINT_PRESSURE]; ++p) {
+    const Material *material = &m->materials[m->points->material[p]];
+    point_tau(m->points, p, tau);
+    m->points->real[POINT_PRESSURE][p] = pressure_of_state(material, point_real(m->points, POINT_STATE, p), tau);
+  }
+}
+
+/* Points of bodies that were not there before, as they were seeded; *placed gets the fields of m's points. */
+static PetscErrorCode SetAside(const Model *m, const Case *from, Points **placed)
+{
+  const Points *points = m->points;
+  PetscBool *take;
+
+  PetscFunctionBeginUser;
+  PetscCall(PointsCreate(m->dim, 0, 0, placed));
+  PetscCall(PetscArraycpy((*placed)->components, points->components, POINT_N_REAL));
+  PetscCall(PetscMalloc1(points->n, &take));
+  for (PetscInt p = 0; p < points->n; ++p) {
+    take[p] = PETSC_TRUE;
+    for (PetscInt b = 0; b < from->n_bodies; ++b)
+      if (body_here(m->c, from->bodies + b) == points->body[p]) take[p] = PETSC_FALSE;
+  }
+  PetscCall(PointsCopy(points, take, *placed));
+  PetscCall(PetscFree(take));
+  PetscFunctionReturn(0);
+}
+
+/* Ids are for life: behind those that are there. */
+static PetscErrorCode Place(Model *m, Points *placed)
+{
+  PetscInt64 last = -1, all;
+  PetscBool *take;
+
+  PetscFunctionBeginUser;
+  for (PetscInt p = 0; p < m->points->n; ++p) last = PetscMax(last, m->points->id[p]);
+  PetscCallMPI(MPI_Allreduce(&last, &all, 1, MPIU_INT64, MPI_MAX, m->comm));
+  PetscCall(PetscMalloc1(placed->n, &take));
+  for (PetscInt p = 0; p < placed->n; ++p) {
+    take[p] = PETSC_TRUE;
+    placed->id[p] += all + 1;
+  }
+  PetscCall(PointsCopy(placed, take, m->points));
+  PetscCall(PetscFree(take));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode TakePoints(Model *m, const Tables *tables, const Case *from, Diag *diag, char reason[256])
+{
+  const Table *table = tables_find(tables, "points");
+  PetscInt *body;
+  Points *placed;
+
+  PetscFunctionBeginUser;
+  if (!table) snprintf(reason, 256, "points is missing");
+  if (reason[0]) PetscFunctionReturn(0);
+  PetscCall(PetscMalloc1(from->n_bodies, &body));
+  for (PetscInt b = 0; b < from->n_bodies; ++b) body[b] = body_here(m->c, from->bodies + b);
+  const PointsChange change = {.n_bodies = from->n_bodies, .n_materials = from->n_materials, .body = body};
+  PetscCall(SetAside(m, from, &placed));
+  m->points->n = 0;
+  PetscCall(PointsSetState(m->points, LAW_MAX_STATE));
+  PetscCall(PointsTake(m->points, m->grid, table, &change, reason));
+  if (!reason[0]) PetscCall(SwapMaterials(m, from, diag));
+  PetscCall(PointsSetState(m->points, m->n_state));
+  if (!reason[0]) find_pressures(m, table);
+  if (!reason[0]) PetscCall(Place(m, placed));
+  PetscCall(PointsSort(m->points));
+  PetscCall(PointsDestroy(&placed));
+  PetscCall(PetscFree(body));
+  PetscFunctionReturn(0);
+}
