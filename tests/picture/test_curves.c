@@ -96,7 +96,8 @@ static void test_keys(void **state)
   WriteRun(folder, "a", 4, 1, 5e6), WriteRun(folder, "b", 8, 1.5, 7e6), WriteRun(folder, "c", 8, 1.5, 7e6);
   snprintf(a, sizeof a, "%s/a", folder), snprintf(b, sizeof b, "%s/b", folder), snprintf(c, sizeof c, "%s/c", folder);
   WriteFile(c, "case.yaml",
-            "materials: {rubber: {law: neo-hookean, young: 7e6}}\nloads: {gravity: [0, -1]}\nbodies: [{name: a}]\n");
+            "materials: {rubber: {law: neo-hookean, young: 7e6}}\nloads: {gravity: [0, -1]}\nbodies: [{name: a}]\n"
+            "basis: {cell: {}}\n");
   assert_int_equal(KeysDiffer(2, runs, &keys), 0);
   assert_int_equal(keys.n, 1);
   assert_string_equal(keys.key[0], "materials.rubber.young");
@@ -105,10 +106,11 @@ static void test_keys(void **state)
   assert_string_equal(legend, "young = 7e+06 Pa");
   assert_int_equal(DifferingKeysFree(&keys), 0);
   assert_int_equal(KeysDiffer(3, runs, &keys), 0);
-  assert_int_equal(keys.n, 4); /* the text 7e6 is another than 7e+06; gravity; two lists of the box */
+  assert_int_equal(keys.n, 5); /* the text 7e6 is another than 7e+06; gravity; two lists of the box; basis */
   assert_string_equal(keys.key[1], "loads.gravity");
   assert_string_equal(keys.value[3 + 2], "[0, -1]");
   assert_true(!strcmp(keys.key[2], "bodies[0].shape.box.min") && !keys.value[6 + 2]);
+  assert_true(!strcmp(keys.key[4], "basis.cell") && !keys.value[12] && !strcmp(keys.value[12 + 2], "{}"));
   assert_int_equal(DifferingKeysFree(&keys), 0);
   TestRemove(folder);
 }

@@ -120,10 +120,47 @@ static void test_shape_of_a_square(void **state)
   }
 }
 
+/* Of two parts, one on the other, the corner between them stays empty, which as one body is filled. */
+static void test_parts(void **state)
+{
+  enum { N = 8, W = 300, MOST = 3 * 4 * N * N };
+  static PetscReal x[3 * MOST], radius[MOST], value[MOST];
+  static unsigned char rgba[4 * W * W], part[MOST];
+  const PetscReal g = 0.5 / sqrt(3.), corner[3][2] = {{0, 0}, {1, 0}, {0, 1}};
+  PetscInt n = 0;
+  (void)state;
+  for (int square = 0; square < 3; ++square)
+    for (int c = 0; c < N * N; ++c)
+      for (int q = 0; q < 4; ++q, ++n) {
+        x[3 * n] = corner[square][0] + (c % N + 0.5 + (q & 1 ? g : -g)) / N;
+        x[3 * n + 1] = corner[square][1] + (c / N + 0.5 + (q & 2 ? g : -g)) / N;
+        part[n] = square == 2;
+      }
+  assert_int_equal(PlotSpacing(2, n, x, radius), 0);
+  RasterScene scene = {.n = n,
+                       .x = x,
+                       .radius = radius,
+                       .value = value,
+                       .gap = 2 * radius[n / 2],
+                       .part = part,
+                       .min = {-0.5, -0.5},
+                       .max = {2.5, 2.5},
+                       .width = W,
+                       .height = W};
+  for (int parts = 0; parts <= 2; parts += 2) {
+    PetscReal area = 0;
+    scene.n_parts = parts;
+    assert_int_equal(RasterDraw(&scene, rgba), 0);
+    for (int i = 0; i < W * W; ++i) area += rgba[4 * i + 3] / 255. * 1e-4;
+    assert_int_equal(rgba[4 * (153 * W + 153) + 3], parts ? 0 : 255);
+    assert_true(fabs(area - 3) < (parts ? 0.03 : 0.06));
+  }
+}
+
 static int Tests(void)
 {
   const struct CMUnitTest tests[] = {cmocka_unit_test(test_points_in_cells), cmocka_unit_test(test_triangle),
-                                     cmocka_unit_test(test_shape_of_a_square)};
+                                     cmocka_unit_test(test_shape_of_a_square), cmocka_unit_test(test_parts)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
 

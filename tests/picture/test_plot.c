@@ -8,6 +8,7 @@
 #include "picture/scene/field.h"
 #include "picture/raster/raster.h"
 #include "picture/raster/spacing.h"
+#include "picture/scene/scene.h"
 #include "output/directory/run_dir.h"
 #include "output/vtk/vtk.h"
 
@@ -538,10 +539,36 @@ static void test_animation(void **state)
   TestRemove(folder);
 }
 
+/* Colours of the cells of fem: of their points, and of the nodes where the mesh has the field. */
+static void check_cells(const char *folder)
+{
+  VtkState at = {.time = 0};
+  snprintf(at.file, sizeof at.file, "points_000000.hdf");
+  for (int k = 0; k < 2; ++k) {
+    const PlotOptions options = {.run = folder, .field = k ? "displacement" : "heat", .component = k ? "x" : NULL};
+    PlotScene scene = {0};
+    PlotSubject subject;
+    Diag *diag;
+    assert_int_equal(DiagCreate(&diag), 0);
+    assert_int_equal(PlotSceneFill(&options, 1, &at, &subject, diag, &scene), 0);
+    assert_int_equal(diag_errors(diag), 0);
+    const PlotFrame *f = &scene.frames[0];
+    assert_true(f->n == 0 && f->n_triangles == 4);
+    for (PetscInt i = 0; i < 12; ++i) {
+      const PetscReal expected = k ? 0.25 * f->corner[3 * i] : f->corner[9 * (i / 3)] < 0.5 ? 3 : 7;
+      assert_true(fabs(f->corner_value[i] - expected) < 1e-14);
+      assert_true(fabs(f->first_corner[3 * i] - 0.75 * f->corner[3 * i]) < 1e-14);
+    }
+    assert_true(fabs(scene.low - (k ? 0 : 3)) < 1e-14 && fabs(scene.high - (k ? 0.5 : 7)) < 1e-14);
+    assert_int_equal(PlotSceneFree(&scene), 0);
+    assert_int_equal(DiagDestroy(&diag), 0);
+  }
+}
+
 /* Bodies have their names in the legend, and a mesh of fem is drawn by its cells. */
 static void test_names_and_cells(void **state)
 {
-  const PetscReal x[] = {0.25, 0.25, 0, 1.25, 0.25, 0}, body[] = {0, 1}, u[6] = {0},
+  const PetscReal x[] = {0.25, 0.25, 0, 1.25, 0.25, 0}, body[] = {0, 1}, heat[] = {3, 7}, u[6] = {0},
                   node[] = {0, 0, 0, 1, 0, 0, 2, 0, 0, 0, 1, 0, 1, 1, 0, 2, 1, 0};
   const PetscInt cells[] = {0, 1, 4, 3, 1, 2, 5, 4};
   char folder[64], path[128], picture[PETSC_MAX_PATH_LEN], reason[256];
@@ -557,15 +584,25 @@ static void test_names_and_cells(void **state)
     "materials: {m: {law: neo-hookean, density: 1, young: 1, poisson: 0}}\n",
     out);
   assert_int_equal(fclose(out), 0);
-  const VtkField fields[] = {{"body", "", 1, body}, {"displacement", "m", 3, u}};
-  const VtkData points = {.n_points = 2, .x = x, .n_point_fields = 2, .point_fields = fields},
-                grid = {
-                  .n_points = 6, .x = node, .n_cells = 2, .connectivity = cells, .nodes_per_cell = 4, .vtk_type = 9};
+  PetscReal way[18];
+  for (int i = 0; i < 18; ++i) way[i] = i % 3 ? 0 : 0.25 * node[i];
+  const VtkField fields[] = {{"body", "", 1, body}, {"displacement", "m", 3, u}, {"heat", "", 1, heat}},
+                 of_nodes = {"displacement", "m", 3, way};
+  const VtkData points = {.n_points = 2, .x = x, .n_point_fields = 3, .point_fields = fields},
+                grid = {.n_points = 6,
+                        .x = node,
+                        .n_cells = 2,
+                        .connectivity = cells,
+                        .nodes_per_cell = 4,
+                        .vtk_type = 9,
+                        .n_point_fields = 1,
+                        .point_fields = &of_nodes};
   snprintf(path, sizeof path, "%s/points_000000.hdf", folder);
   assert_int_equal(VtkWrite(PETSC_COMM_WORLD, path, &points, reason), 0);
   assert_int_equal(VtkSeriesAppend(PETSC_COMM_WORLD, folder, "points", "points_000000.hdf", 0, reason), 0);
   snprintf(path, sizeof path, "%s/grid_000000.hdf", folder);
   assert_int_equal(VtkWrite(PETSC_COMM_WORLD, path, &grid, reason), 0);
+  check_cells(folder);
   for (int k = 0; k < 2; ++k) {
     const PlotOptions options = {.run = folder, .field = "body", .up = -1, .format = "svg", .grid = k};
     char *text = Plot(&options, picture);

@@ -9,7 +9,7 @@
 #define LEAST_WAY 4
 /* A picture grows by so much of its size for the outline, and else shows a part of it. */
 #define MOST_GROWTH 0.3
-enum { GREY = 60 };
+enum { GREY = 60, MOST_PARTS = 16 };
 
 PetscErrorCode PlotReadDisplacement(VtkFile *file, PetscReal **u, char reason[256])
 {
@@ -23,6 +23,47 @@ PetscErrorCode PlotReadDisplacement(VtkFile *file, PetscReal **u, char reason[25
     if (VtkReadField(file, &fields[i], u, reason)) *u = NULL;
     break;
   }
+  PetscFunctionReturn(0);
+}
+
+/* Sizes of points among those of their own part. */
+static PetscErrorCode SpacingOfParts(const PlotFrame *f, const PetscReal *x, PetscReal *radius)
+{
+  PetscReal *own, *size;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc2(3 * f->n, &own, f->n, &size));
+  for (PetscInt part = 0; part < f->n_parts; ++part) {
+    PetscInt n = 0;
+    for (PetscInt i = 0; i < f->n; ++i)
+      if (f->part[i] == part) memcpy(own + 3 * n++, x + 3 * i, 3 * sizeof *x);
+    PetscCall(PlotSpacing(2, n, own, size));
+    for (PetscInt i = f->n; i-- > 0;)
+      if (f->part[i] == part) radius[i] = size[--n];
+  }
+  PetscCall(PetscFree2(own, size));
+  PetscFunctionReturn(0);
+}
+
+/* Of bodies between which there are interfaces: the first whose shape held the place where a point began. Bodies that
+ * are regions of a mesh have no shape to tell. */
+static PetscErrorCode FindParts(const Case *c, PlotFrame *f)
+{
+  PetscFunctionBeginUser;
+  if (!c->n_interfaces || c->n_bodies > MOST_PARTS || f->n != f->n_first) PetscFunctionReturn(0);
+  for (PetscInt b = 0; b < c->n_bodies; ++b)
+    if (!c->bodies[b].has_shape) PetscFunctionReturn(0);
+  f->n_parts = c->n_bodies;
+  PetscCall(PetscMalloc1(f->n, &f->part));
+  for (PetscInt i = 0; i < f->n; ++i) {
+    const PetscReal at[3] = {fabs(f->first[3 * i]), f->first[3 * i + 1], 0};
+    const PetscReal *x = c->kinematics->hoop ? at : f->first + 3 * i;
+    PetscInt b = 0;
+    while (b + 1 < c->n_bodies && !shape_contains(&c->bodies[b].shape, 2, x, 0)) ++b;
+    f->part[i] = (unsigned char)b;
+  }
+  PetscCall(SpacingOfParts(f, f->x, f->radius));
+  PetscCall(SpacingOfParts(f, f->first, f->first_radius));
   PetscFunctionReturn(0);
 }
 
@@ -40,6 +81,7 @@ PetscErrorCode PlotFirstShape(PlotScene *scene)
   for (PetscInt k = 0; k < scene->n_frames; ++k) {
     PlotFrame *f = &scene->frames[k];
     if (f->first && !f->first_corner) PetscCall(PlotSpacing(2, f->n_first, f->first, f->first_radius));
+    if (f->first && !f->first_corner) PetscCall(FindParts(scene->walled, f));
     if (f->first && !f->first_corner) include(f->first, f->n_first, min, max);
     if (f->first_corner) include(f->first_corner, 3 * f->n_triangles, min, max);
   }
@@ -86,6 +128,7 @@ PetscErrorCode PlotFirstDraw(const PlotScene *scene, const PlotFrame *f, const P
   RasterScene raster = {
     .min = {page->min[0], page->min[1]}, .max = {page->max[0], page->max[1]}, .width = page->w, .height = page->h};
   raster.gap = scene->gap;
+  raster.n_parts = f->n_parts, raster.part = f->part;
   if (cells) raster.n_triangles = f->n_triangles, raster.corner = f->first_corner, raster.corner_value = zero;
   else raster.n = f->n_first, raster.x = f->first, raster.radius = f->first_radius, raster.value = zero;
   PetscCall(RasterDraw(&raster, first));

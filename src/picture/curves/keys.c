@@ -41,6 +41,7 @@ static PetscBool plain_values(const YamlNode *node)
   return node->kind == YAML_SEQUENCE;
 }
 
+/* A mapping is a value if it is empty: `basis: {cell: {}}`. */
 static void write_value(FILE *out, const YamlNode *node)
 {
   if (node->kind == YAML_SCALAR) fputs(node->text, out);
@@ -48,7 +49,7 @@ static void write_value(FILE *out, const YamlNode *node)
     fputc('[', out);
     for (PetscInt i = 0; i < node->n; ++i) fprintf(out, "%s%s", i ? ", " : "", node->child[i]->text);
     fputc(']', out);
-  }
+  } else fputs("{}", out);
 }
 
 /* Depth of YamlNodes is bounded by YAML_MAX_DEPTH. */
@@ -59,7 +60,7 @@ static PetscErrorCode Walk(const YamlNode *node, PetscInt run, Table *t)
   TextStream stream;
 
   PetscFunctionBeginUser;
-  if (node->kind != YAML_SCALAR && !plain_values(node)) {
+  if (node->kind != YAML_SCALAR && node->n > 0 && !plain_values(node)) {
     for (PetscInt i = 0; i < node->n; ++i) PetscCall(Walk(node->child[i], run, t));
     PetscFunctionReturn(0);
   }

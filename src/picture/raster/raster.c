@@ -103,14 +103,46 @@ static void raster_pixel(const RasterScene *scene, const Canvas *canvas, int col
   rgba[3] = (unsigned char)(covered * 255 / (SAMPLES * SAMPLES));
 }
 
+/* All balls, or those of one part. */
+static void draw_balls(const RasterScene *scene, Canvas *canvas, PetscInt part)
+{
+  for (PetscInt p = 0; p < scene->n; ++p)
+    if (part < 0 || scene->part[p] == part) draw_ball(scene, canvas, p);
+}
+
+/* Bodies that are apart are drawn apart, each with its own outline: the corner between two of them is no gap. */
+static PetscErrorCode DrawParts(const RasterScene *scene, Canvas *canvas)
+{
+  const size_t n = (size_t)canvas->width * (size_t)canvas->height;
+  PetscInt *all;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(n, &all));
+  for (size_t i = 0; i < n; ++i) all[i] = -1;
+  for (PetscInt part = 0; part < scene->n_parts; ++part) {
+    for (size_t i = 0; i < n; ++i) canvas->point[i] = -1;
+    draw_balls(scene, canvas, part);
+    PetscCall(CanvasShape(scene, canvas));
+    for (size_t i = 0; i < n; ++i)
+      if (all[i] < 0) all[i] = canvas->point[i];
+  }
+  PetscCall(PetscArraycpy(canvas->point, all, n));
+  PetscCall(PetscFree(all));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode RasterDraw(const RasterScene *scene, unsigned char *rgba)
 {
   Canvas canvas;
 
   PetscFunctionBeginUser;
   PetscCall(CanvasCreate(scene, &canvas));
-  for (PetscInt p = 0; p < scene->n; ++p) draw_ball(scene, &canvas, p);
-  if (scene->gap > 0 && !scene->shaded) PetscCall(CanvasShape(scene, &canvas));
+  const PetscBool shaped = scene->gap > 0 && !scene->shaded;
+  if (shaped && scene->n_parts > 1) PetscCall(DrawParts(scene, &canvas));
+  else {
+    draw_balls(scene, &canvas, -1);
+    if (shaped) PetscCall(CanvasShape(scene, &canvas));
+  }
   canvas_triangles(scene, &canvas);
   canvas_lines(scene, &canvas);
   for (int row = 0; row < scene->height; ++row)

@@ -13,9 +13,11 @@ extern const unsigned char palette_names[PALETTE_NAMES][3];
 
 typedef struct {
   PetscInt n;
-  const PetscReal *x;      /* n x 3: right, up, towards the eye, m */
-  const PetscReal *radius; /* n, m */
-  const PetscReal *value;  /* n, in [0, 1]; NaN is grey */
+  const PetscReal *x;        /* n x 3: right, up, towards the eye, m */
+  const PetscReal *radius;   /* n, m */
+  const PetscReal *value;    /* n, in [0, 1]; NaN is grey */
+  PetscInt n_parts;          /* bodies with an outline of their own; 0: one */
+  const unsigned char *part; /* n, of n_parts: whose a point is */
   PetscInt n_triangles;
   const PetscReal *corner;       /* n_triangles x 3 x 3, as x */
   const PetscReal *corner_value; /* n_triangles x 3, as value; linear between corners */

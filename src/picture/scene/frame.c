@@ -204,6 +204,7 @@ PetscErrorCode PlotFramesFree(PlotScene *scene)
     PetscCall(PetscFree3(f->corner, f->corner_value, f->side));
     PetscCall(PetscFree2(f->first, f->first_radius));
     PetscCall(PetscFree(f->first_corner));
+    PetscCall(PetscFree(f->part));
     PetscCall(PetscFree(f->line));
     PetscCall(PetscFree(f->edges));
   }

@@ -29,6 +29,7 @@ static PetscErrorCode Balls(const PlotScene *scene, const PlotFrame *f, RasterSc
   raster->x = f->x, raster->radius = f->radius, raster->value = colour;
   raster->n_triangles = f->n_triangles;
   raster->corner = f->corner, raster->corner_value = corner, raster->side = scene->grid ? f->side : NULL;
+  raster->n_parts = f->n_parts, raster->part = f->part;
   raster->n_lines = f->n_lines, raster->line = f->line;
   raster->named = scene->named;
   raster->gap = f->gap;

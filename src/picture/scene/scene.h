@@ -26,7 +26,9 @@ typedef struct {
   PetscInt n_first;
   PetscReal *first, *first_radius; /* n_first x 3: where the points began, in the plane; NULL: not drawn */
   PetscReal *first_corner;         /* n_triangles x 3 x 3: where cells began */
-  PetscReal gap;                   /* of the balls: RasterScene */
+  PetscInt n_parts;
+  unsigned char *part; /* n: RasterScene; NULL: one */
+  PetscReal gap;       /* of the balls: RasterScene */
 } PlotFrame;
 
 typedef struct {
