@@ -34,6 +34,10 @@ PetscErrorCode ModelEnable(Model *model);
 /* Collective. Geostatic stress of bodies that ask for it, as their law's state: of the material
  * inside the outline that is above them. */
 PetscErrorCode InitialStress(Model *model, const Outline *outline, Diag *diag);
+/* Tell the laws that have a length the sizes of the cells in which their points start (start/laws.c). */
+void sizes_start(const Model *model);
+/* Complain of bodies whose law needs a stress and has none (start/laws.c). */
+void stresses_check(const Model *model, Diag *diag);
 /* Acceleration at t = 0 from the balance of momentum with lumped mass, so that a body in free fall
  * falls from the first step on. */
 PetscErrorCode InitialAcceleration(Model *model);
