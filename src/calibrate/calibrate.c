@@ -5,6 +5,7 @@
 #include <string.h>
 #include <unistd.h>
 #include "calibrate/calibrate_private.h"
+#include "input/case_file.h"
 #include "output/directory/run_dir_files.h"
 
 /* runs/calibrate/<name of the file> */
@@ -30,7 +31,7 @@ static PetscErrorCode FindCases(CalibrateRun *r)
     const Instrument *instrument = &r->c->instruments[i];
     if (instrument->folder[0] == '/') PetscCall(PetscSNPrintf(path, sizeof path, "%s", instrument->folder));
     else PetscCall(PetscSNPrintf(path, sizeof path, "%s/%s", r->folder, instrument->folder));
-    members_case_file(path, r->cases[i]);
+    case_file_path(path, r->cases[i]);
     PetscCall(PetscSNPrintf(path, sizeof path, "%s/%s", r->out, instrument->name));
     const int error = r->options->dry ? 0 : file_make_folders(path);
     if (error) diag_error(r->diag, NULL, "cannot make '%s': %s", path, strerror(error));

@@ -17,6 +17,7 @@ PetscErrorCode CliSchema(int argc, char **argv, int *exit_code);
 PetscErrorCode CliVerify(int argc, char **argv, int *exit_code);
 PetscErrorCode CliSweep(int argc, char **argv, int *exit_code);
 PetscErrorCode CliCalibrate(int argc, char **argv, int *exit_code);
+PetscErrorCode CliElement(int argc, char **argv, int *exit_code);
 PetscErrorCode CliPlot(int argc, char **argv, int *exit_code);
 PetscErrorCode CliVersion(int argc, char **argv, int *exit_code);
 

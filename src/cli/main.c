@@ -22,6 +22,7 @@ static const struct Command {
   {"verify", "run a verification case and compare with its reference", CliVerify},
   {"sweep", "run a case over values of its keys: a table and pictures", CliSweep},
   {"calibrate", "which parameters give what was measured: a region", CliCalibrate},
+  {"element", "one material point on a path: triaxial, oedometer, shear", CliElement},
   {"plot", "pictures of a run", CliPlot},
   {"version", "versions of talus and of its libraries (also --version)", CliVersion},
   {NULL, NULL, NULL},
@@ -121,8 +122,8 @@ static void split(int argc, char **argv, int *n_own, char **own, int *n_petsc, c
 /* `-out runs/a` would vanish in PETSc's option table without a word. */
 static const char *single_dash_mistake(int n, char **petsc)
 {
-  static const char *const ours[] = {"set",  "out",  "quiet",    "force", "resume", "log",  "trust",
-                                     "full", "json", "markdown", "over",  "name",   "jobs", NULL};
+  static const char *const ours[] = {"set",  "out",      "quiet", "force", "resume", "log",  "trust", "full",
+                                     "json", "markdown", "over",  "name",  "jobs",   "test", "to",    NULL};
   for (int i = 1; i < n; ++i)
     for (int k = 0; ours[k]; ++k)
       if (petsc[i][0] == '-' && !strcmp(petsc[i] + 1, ours[k])) return ours[k];

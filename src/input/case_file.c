@@ -14,6 +14,13 @@ static void destroy_document(void *document)
   PetscCallAbort(PETSC_COMM_SELF, YamlDestroy(&d));
 }
 
+void case_file_path(const char *given, char file[PETSC_MAX_PATH_LEN])
+{
+  struct stat info;
+  const PetscBool folder = !stat(given, &info) && S_ISDIR(info.st_mode);
+  PetscSNPrintf(file, PETSC_MAX_PATH_LEN, folder ? "%s/case.yaml" : "%s", given);
+}
+
 /* Why a file cannot be read, in words; NULL if it can. */
 static const char *unreadable(const char *file, size_t *size)
 {

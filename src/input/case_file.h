@@ -9,6 +9,9 @@
  * says what is wrong (its resolver is installed and lives until DiagDestroy). */
 PetscErrorCode CaseRead(MPI_Comm comm, const char *file, PetscInt n_set, const char *const *set, Diag *diag, Case **c);
 
+/* The case file, that may be named by its folder. */
+void case_file_path(const char *given, char file[PETSC_MAX_PATH_LEN]);
+
 /* Collective. Rank 0 reads a file of text; every rank gets its bytes (PetscFree), or the reason why
  * there are none. */
 PetscErrorCode FileReadEverywhere(MPI_Comm comm, const char *file, size_t *size, char **bytes, char reason[256]);

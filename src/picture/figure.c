@@ -1,6 +1,6 @@
 #include "picture/figure.h"
 #include <string.h>
-#include "picture/plot_gnuplot.h"
+#include "picture/gnuplot.h"
 
 /* Colours that stay apart in print and for the colour-blind, and marks of different shape: the
  * first is filled, the others are hollow and larger, so that curves that coincide can be told
@@ -261,6 +261,28 @@ PetscErrorCode FigureWrite(const Figure *figure, const char *png, Diag *diag, Pe
   }
   PetscCall(GnuplotBegin(&script, png, figure->width ? figure->width : 900, figure->height ? figure->height : 600));
   write_figure(script.out, figure, min, max);
+  PetscCall(GnuplotEnd(&script, png, diag, done));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode FigureSheet(const char *title, PetscInt n, const Figure *figures, PetscInt columns, const char *png,
+                           Diag *diag, PetscBool *done)
+{
+  const int rows = (int)((n + columns - 1) / columns);
+  GnuplotScript script;
+
+  PetscFunctionBeginUser;
+  PetscCall(GnuplotBegin(&script, png, 640 * (int)columns, 460 * rows));
+  fprintf(script.out, "set multiplot layout %d,%d", rows, (int)columns);
+  if (title && title[0]) fputs(" title ", script.out), gnuplot_quote(script.out, title);
+  fputc('\n', script.out);
+  for (PetscInt k = 0; k < n; ++k) {
+    PetscReal min[2] = {0, 0}, max[2] = {0, 0};
+    fputs("reset\n", script.out);
+    if (bounds(&figures[k], min, max)) write_figure(script.out, &figures[k], min, max);
+    else fputs("set multiplot next\n", script.out);
+  }
+  fputs("unset multiplot\n", script.out);
   PetscCall(GnuplotEnd(&script, png, diag, done));
   PetscFunctionReturn(0);
 }

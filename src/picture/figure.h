@@ -33,6 +33,11 @@ typedef struct {
  * cannot show (not finite, or not positive on a logarithmic one) are left out. Not collective. */
 PetscErrorCode FigureWrite(const Figure *figure, const char *png, Diag *diag, PetscBool *done);
 
+/* n figures side by side in rows of `columns`, in one picture below a title (NULL or "": none); one
+ * with nothing to draw stays empty. */
+PetscErrorCode FigureSheet(const char *title, PetscInt n, const Figure *figures, PetscInt columns, const char *png,
+                           Diag *diag, PetscBool *done);
+
 /* An SI prefix that makes numbers of this size readable, for units that take one: 2.5e7 Pa -> 25
  * MPa. Returns the factor by which numbers are multiplied and writes the new unit. */
 PetscReal figure_unit(const char *unit, PetscReal largest, char prefixed[64]);

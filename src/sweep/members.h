@@ -67,9 +67,7 @@ PetscErrorCode MembersRun(Members *members);
 /* How many are in this state. */
 PetscInt members_count(const Members *members, MemberState state);
 
-/* members_folder.c: the case file, that may be named by its folder. */
-void members_case_file(const char *given, char file[PETSC_MAX_PATH_LEN]);
-/* Make a directory ours to write into (a file `table` in one that talus has not signed is somebody's)
+/* members_folder.c. Make a directory ours to write into (a file `table` in one that talus has not signed is somebody's)
  * and nobody else's at this time: *lock >= 0 is to be closed. */
 void members_prepare_folder(const char *path, const char *table, Diag *diag, int *lock);
 /* So many at a time; as many as there are cores if `asked` is 0. */

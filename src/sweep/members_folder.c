@@ -4,18 +4,10 @@
 #include <sched.h>
 #include <string.h>
 #include <sys/file.h>
-#include <sys/stat.h>
 #include <unistd.h>
 #include "output/directory/run_dir_files.h"
 #include "output/directory/run_dir_mark.h"
 #include "sweep/members.h"
-
-void members_case_file(const char *given, char file[PETSC_MAX_PATH_LEN])
-{
-  struct stat info;
-  const PetscBool folder = !stat(given, &info) && S_ISDIR(info.st_mode);
-  PetscSNPrintf(file, PETSC_MAX_PATH_LEN, folder ? "%s/case.yaml" : "%s", given);
-}
 
 void members_prepare_folder(const char *path, const char *table, Diag *diag, int *lock)
 {

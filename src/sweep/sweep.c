@@ -3,11 +3,12 @@
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
+#include "input/case_file.h"
 #include "sweep/sweep_private.h"
 
 static void find_case(SweepRun *s)
 {
-  members_case_file(s->options->file, s->file);
+  case_file_path(s->options->file, s->file);
   const char *slash = strrchr(s->file, '/');
   PetscSNPrintf(s->folder, sizeof s->folder, "%.*s", slash ? (int)PetscMax(slash - s->file, 1) : 1,
                 slash ? s->file : ".");

@@ -18,7 +18,8 @@ static void name_case(Verification *v)
   const char *slash = real ? strrchr(real, '/') : NULL;
   PetscStrncpy(v->name, slash && slash[1] ? slash + 1 : "case", sizeof v->name);
   free(real);
-  PetscSNPrintf(v->file, sizeof v->file, "%s/case.yaml", o->folder);
+  v->element = file_exists(o->folder, "element.yaml") && !file_exists(o->folder, "case.yaml");
+  PetscSNPrintf(v->file, sizeof v->file, "%s/%s.yaml", o->folder, v->element ? "element" : "case");
   if (o->out) PetscStrncpy(v->out, o->out, sizeof v->out);
   else PetscSNPrintf(v->out, sizeof v->out, "runs/verify/%s", v->name);
 }
@@ -128,7 +129,7 @@ static PetscErrorCode RunRows(Verification *v, FILE *out, Diag *diag, PetscInt *
     if (v->rank == 0 && r->study != v->rows[first].study) first = *n;
     if (v->rank == 0 && *n == first) verify_table_head(out, v, first);
     PetscCall(Reuse(v, r, &reused));
-    if (!reused) PetscCall(Run(v, r, diag));
+    if (!reused) PetscCall((v->element ? VerifyElementRun : Run)(v, r, diag));
     if (r->result == RUN_BAD_INPUT) break;
     PetscCall(VerifyValue(v, r, diag));
     verify_judge(v->rows, *n);

@@ -118,8 +118,11 @@ PetscErrorCode VerifyPlan(Verification *v, Diag *diag)
   PetscCall(VerifyPlanAll(v, diag));
   if (v->n == 0 && !diag_errors(diag)) diag_error(diag, NULL, "there is nothing to run without --full");
   for (PetscInt k = 0; k < v->n && !diag_errors(diag); ++k) {
-    PetscCall(VerifyPlanRow(v, &v->rows[k], diag, &c));
-    PetscCall(CaseDestroy(&c));
+    if (v->element) PetscCall(VerifyElementPlan(v, &v->rows[k], diag));
+    else {
+      PetscCall(VerifyPlanRow(v, &v->rows[k], diag, &c));
+      PetscCall(CaseDestroy(&c));
+    }
   }
   PetscFunctionReturn(0);
 }

@@ -37,7 +37,8 @@ typedef struct {
   PetscMPIInt rank, size;
   const VerifyOptions *options;
   char name[256];                /* of the case */
-  char file[PETSC_MAX_PATH_LEN]; /* case.yaml */
+  char file[PETSC_MAX_PATH_LEN]; /* case.yaml... */
+  PetscBool element;             /* ...or element.yaml, of one material point */
   char out[PETSC_MAX_PATH_LEN];
   Reference *reference;
   PetscInt n;
@@ -52,6 +53,10 @@ PetscErrorCode VerifyPlanAll(Verification *v, Diag *diag);
 PetscErrorCode VerifyPlanRow(Verification *v, VerifyRow *r, Diag *diag, Case **read);
 PetscErrorCode VerifyPlanClear(Verification *v);
 PetscErrorCode VerifyRowClear(VerifyRow *r);
+
+/* verify_element.c: the same of a path of one material point, and its run. */
+PetscErrorCode VerifyElementPlan(Verification *v, VerifyRow *r, Diag *diag);
+PetscErrorCode VerifyElementRun(Verification *v, VerifyRow *r, Diag *diag);
 
 /* verify_value.c: Collective. The value of a row that has run: the measure at the end, or the
  * distance of its history from a course, or the measure at a moment. */

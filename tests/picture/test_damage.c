@@ -7,7 +7,7 @@
 #include "../conformance/random.h"
 #include "output/history.h"
 #include "picture/plot.h"
-#include "picture/plot_scene.h"
+#include "picture/scene/scene.h"
 #include "output/vtk/vtk.h"
 #include "output/vtk/vtk_read.h"
 #include "output/vtk/vtk_series.h"

@@ -5,9 +5,9 @@
 #include <sys/stat.h>
 #include "picture/figure.h"
 #include "picture/plot.h"
-#include "picture/plot_field.h"
-#include "picture/plot_raster.h"
-#include "picture/plot_spacing.h"
+#include "picture/scene/field.h"
+#include "picture/raster/raster.h"
+#include "picture/raster/spacing.h"
 #include "output/directory/run_dir.h"
 #include "output/vtk/vtk.h"
 

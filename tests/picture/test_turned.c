@@ -4,7 +4,7 @@
 #include <math.h>
 #include <stdlib.h>
 #include "output/vtk/vtk.h"
-#include "picture/plot_scene.h"
+#include "picture/scene/scene.h"
 #include "picture/revolution/revolution.h"
 
 enum { W = 37, H = 23 };

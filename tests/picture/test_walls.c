@@ -6,7 +6,7 @@
 #include <stdint.h>
 #include <string.h>
 #include <cmocka.h>
-#include "picture/plot_walls.h"
+#include "picture/scene/walls.h"
 
 enum { W = 200, H = 100 };
 

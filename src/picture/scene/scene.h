@@ -3,7 +3,7 @@
 #include <petscsys.h>
 #include <stdio.h>
 #include "picture/plot.h"
-#include "picture/plot_field.h"
+#include "picture/scene/field.h"
 #include "output/vtk/vtk_read.h"
 #include "wall/wall.h"
 
@@ -62,7 +62,7 @@ PetscErrorCode PlotImage(const PlotScene *scene, const PlotFrame *frame, const P
 /* Draw to a PNG. */
 PetscErrorCode PlotDraw(PlotScene *scene, int width, int height, const char *png, Diag *diag, PetscBool *done);
 
-/* plot_frame.c: read a state into the next frame of the scene, as it is in its file, with the field
+/* frame.c: read a state into the next frame of the scene, as it is in its file, with the field
  * reduced to a number. Points without a place are left out. A damaged file adds no frame; the
  * reason tells. */
 PetscErrorCode PlotFrameRead(VtkFile *file, const VtkFieldInfo *field, const PlotScalar *scalar, PlotScene *scene,

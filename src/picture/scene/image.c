@@ -1,8 +1,8 @@
 /* From the balls of a frame to an image of colours. */
 #include <math.h>
-#include "picture/plot_raster.h"
-#include "picture/plot_scene.h"
-#include "picture/plot_walls.h"
+#include "picture/raster/raster.h"
+#include "picture/scene/scene.h"
+#include "picture/scene/walls.h"
 #include "picture/revolution/revolution.h"
 
 /* Pixels along a section that is turned: more are of no use. */

@@ -1,7 +1,7 @@
 #include <math.h>
-#include "picture/plot_gnuplot.h"
-#include "picture/plot_raster.h"
-#include "picture/plot_scene.h"
+#include "picture/gnuplot.h"
+#include "picture/raster/raster.h"
+#include "picture/scene/scene.h"
 
 static void write_palette(FILE *out, const PlotScene *scene)
 {

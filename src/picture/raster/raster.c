@@ -1,4 +1,4 @@
-#include "picture/plot_raster.h"
+#include "picture/raster/raster.h"
 #include <math.h>
 
 /* The viridis colour map (public domain, CC0) at ten places. */

@@ -1,4 +1,4 @@
-#include "picture/plot_gnuplot.h"
+#include "picture/gnuplot.h"
 #include <errno.h>
 #include <spawn.h>
 #include <stdlib.h>

@@ -1,6 +1,6 @@
 /* Rigid walls in pictures of the plane: grey where they are, over the body, with an outline. */
 #pragma once
-#include "picture/plot_scene.h"
+#include "picture/scene/scene.h"
 
 /* The walls of the run's case into the scene; none, where it has none or they cannot be had (which
  * is told). */

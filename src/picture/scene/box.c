@@ -2,7 +2,7 @@
  * c upwards: so the edges that meet at (+a, -b, +c) stand in front of the body and are not drawn,
  * and the outline below and at the left carries the ticks. */
 #include <math.h>
-#include "picture/plot_scene.h"
+#include "picture/scene/scene.h"
 
 /* A corner of the box from its sides along a, b, c. */
 static void box_corner(const PlotScene *scene, int a, int b, int c, PetscReal x[3])

@@ -1,4 +1,4 @@
-#include "picture/plot_field.h"
+#include "picture/scene/field.h"
 #include <stdlib.h>
 #include <string.h>
 

@@ -5,8 +5,8 @@
 #include <sys/stat.h>
 #include "picture/figure.h"
 #include "picture/plot.h"
-#include "picture/plot_scene.h"
-#include "picture/plot_walls.h"
+#include "picture/scene/scene.h"
+#include "picture/scene/walls.h"
 #include "picture/revolution/revolution.h"
 #include "output/directory/run_dir_files.h"
 #include "output/vtk/vtk_series.h"

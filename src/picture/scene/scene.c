@@ -1,4 +1,4 @@
-#include "picture/plot_scene.h"
+#include "picture/scene/scene.h"
 #include <math.h>
 
 /* The eye looks down from the front right: azimuth -55 degrees, elevation 22 degrees. */

@@ -1,4 +1,4 @@
-#include "picture/plot_spacing.h"
+#include "picture/raster/spacing.h"
 #include <math.h>
 #include "grid/search/neighbours.h"
 

@@ -1,4 +1,4 @@
-#include "picture/plot_walls.h"
+#include "picture/scene/walls.h"
 #include <math.h>
 #include "input/case_file.h"
 #include "output/directory/run_dir_files.h"

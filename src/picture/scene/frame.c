@@ -1,8 +1,8 @@
 /* The states of a picture: from their files to balls on the page. */
 #include <math.h>
 #include <string.h>
-#include "picture/plot_scene.h"
-#include "picture/plot_spacing.h"
+#include "picture/scene/scene.h"
+#include "picture/raster/spacing.h"
 
 static PetscBool has_place(const PetscReal *x) { return fabs(x[0]) < 1e30 && fabs(x[1]) < 1e30 && fabs(x[2]) < 1e30; }
 

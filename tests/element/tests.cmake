@@ -1,0 +1,5 @@
+talus_test(element/test_drive)
+if(COMMAND talus_cli)
+  talus_cli(element_help 0 "usage: talus element FILE" element --help)
+  talus_cli(verify_element 0 "12 of 12 rows pass" verify ${PROJECT_SOURCE_DIR}/cases/laboratory --out ${PROJECT_BINARY_DIR}/tests/element)
+endif()
