@@ -1,19 +1,20 @@
-/* Modified Cam Clay in large strains (Borja and Tamagnini 1998; docs/theory.md, "Laws"), in the invariants of
- * logarithmic elastic strains and Kirchhoff stresses, here with pressure positive:
+/* Modified Cam Clay in large strains (Borja and Tamagnini 1998; docs/theory.md, "Laws"), in the
+ * invariants of logarithmic elastic strains and Kirchhoff stresses, here with pressure positive:
  *
  *   x = -tr eps^e, y = sqrt(2/3) |dev eps^e|,  psi = kappa p + 3/2 mu y^2
  *   p = p_r exp(x / kappa),  q = 3 mu y
  *   f = q^2 / M^2 + p (p - p_c) <= 0, associated,  d ln p_c = d v / (lambda - kappa), v plastic volume lost
  *
- * The return keeps the direction of the deviator. With v = x_tr - x and a = 2 p - p_c the flow rule and the
- * yield condition are two equations in x and y,
+ * The return keeps the direction of the deviator. With v = x_tr - x and a = 2 p - p_c the flow
+ * rule and the yield condition are two equations in x and y,
  *
  *   (y_tr - y) a = v 2 q / M^2,   f(x, y) = 0.
  *
- * The first gives y(x), and f then changes its sign between the trial state and the x at which a = 0: the
- * critical state bounds the root, which cannot be missed. Newton's method in both unknowns begins there. A
- * shear modulus that goes with the pressure would have to move the pressure with shear, too, to be elastic,
- * and could then bear no more than q / p = 1.2 sqrt(G / K). State: b^e, p_c, plastic shear strain. */
+ * The first gives y(x), and f then changes its sign between the trial state and the x at which a
+ * = 0: the critical state bounds the root, which cannot be missed. Newton's method in both
+ * unknowns begins there. A shear modulus that goes with the pressure would have to move the
+ * pressure with shear, too, to be elastic, and could then bear no more than q / p = 1.2 sqrt(G /
+ * K). State: b^e, p_c, plastic shear strain. */
 #include "material/hencky.h"
 
 enum { STRESS_RATIO, LAMBDA, KAPPA, SPECIFIC_VOLUME, SHEAR, PRECONSOLIDATION, OCR, PRESSURE };
@@ -70,8 +71,8 @@ static inline PetscReal clay_shear(const PetscReal *m, PetscReal x, const Clay *
   return y;
 }
 
-/* Where Newton in both begins: Newton in x between the trial state and the x at which the flow is critical, halves
- * of the way where it leaves them. */
+/* Where Newton in both begins: Newton in x between the trial state and the x at which the flow is
+ * critical, halves of the way where it leaves them. */
 static inline void clay_start(const PetscReal *m, const Clay *s, PetscReal *x, PetscReal *y)
 {
   const PetscReal kappa = m[CC_KAPPA], rest = m[CC_LAMBDA] - kappa;
@@ -215,8 +216,8 @@ static PetscReal energy(const PetscReal *m, const PetscReal *state)
   return m[CC_KAPPA] * pressure(m, -trace) + m[CC_MU] * norm2;
 }
 
-/* The body is as large as it is: tau = sigma, J = 1. p_c by ocr that of the ellipse through the stress, times it.
- * PETSC_FALSE without pressure, or outside the yield surface. */
+/* The body is as large as it is: tau = sigma, J = 1. p_c by ocr that of the ellipse through the
+ * stress, times it. PETSC_FALSE without pressure, or outside the yield surface. */
 static PetscBool initial_stress(const PetscReal *m, const PetscReal sigma[6], PetscReal *state)
 {
   const PetscReal p = -(sigma[0] + sigma[1] + sigma[2]) / 3.0;
@@ -236,7 +237,8 @@ static PetscBool initial_stress(const PetscReal *m, const PetscReal sigma[6], Pe
   return state[6 + PC] >= through * (1.0 - 64.0 * PETSC_MACHINE_EPSILON);
 }
 
-/* Slopes of ln v over ln p, of Cauchy stresses, to those over Kirchhoff's, whose pressure has the factor v too. */
+/* Slopes of ln v over ln p, of Cauchy stresses, to those over Kirchhoff's, whose pressure has the
+ * factor v too. */
 static PetscReal kirchhoff(PetscReal slope) { return slope / (1.0 - slope); }
 
 static void prepare(const Elasticity *elastic, const PetscReal *given, PetscReal *m)

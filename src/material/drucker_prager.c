@@ -1,6 +1,6 @@
-/* Drucker-Prager material in large strains (docs/theory.md, "Laws"): Hencky's energy, a circular cone in the
- * space of Kirchhoff stresses that meets Mohr-Coulomb's pyramid where `match` says, a non-associated flow,
- * and a largest mean tension.
+/* Drucker-Prager material in large strains (docs/theory.md, "Laws"): Hencky's energy, a circular
+ * cone in the space of Kirchhoff stresses that meets Mohr-Coulomb's pyramid where `match` says, a
+ * non-associated flow, and a largest mean tension.
  *
  *   p = tr tau / 3,  R = sqrt(s : s / 2),  f = R + eta p - xi c <= 0,  p <= T <= xi c / eta
  *   d eps^p = gamma (s / 2R + etabar I / 3)                on the cone
@@ -9,8 +9,9 @@
  *   CAP     p = T, the shear stress as it is
  *   CORNER  p = T, R = xi c - eta T: with T = xi c / eta the apex, where R = 0
  *
- * All three keep the direction of s. At the corner the flow is one of both surfaces; with etabar = 0 no flow
- * of the cone leads to the apex, which is then the return by definition, as of Mohr-Coulomb. */
+ * All three keep the direction of s. At the corner the flow is one of both surfaces; with etabar
+ * = 0 no flow of the cone leads to the apex, which is then the return by definition, as of
+ * Mohr-Coulomb. */
 #include "material/hencky.h"
 #include "material/strength.h"
 
@@ -107,22 +108,22 @@ static PetscBool initial_stress(const PetscReal *q, const PetscReal sigma[6], Pe
   return R + q[DP_ETA] * p - q[DP_XI_C] <= noise && p - q[DP_CAP] <= noise;
 }
 
-/* Without friction, dilatancy and cut-off (von Mises) the flow neither feels the pressure nor changes the
- * volume. */
+/* Without friction, dilatancy and cut-off (von Mises) the flow neither feels the pressure nor
+ * changes the volume. */
 static VolumeLaw volume_law(const PetscReal *q)
 {
   return q[DP_ETA] == 0.0 && q[DP_ETABAR] == 0.0 && q[DP_CAP] == INFINITY ? VOLUME_LOG : VOLUME_COUPLED;
 }
 
-/* Slope of the cone through the edges of Mohr-Coulomb's pyramid in compression (-1) or extension (1); times
- * cot phi: its xi. */
+/* Slope of the cone through the edges of Mohr-Coulomb's pyramid in compression (-1) or extension
+ * (1); times cot phi: its xi. */
 static PetscReal edge_slope(PetscReal angle, PetscReal side)
 {
   return 6.0 * sin(angle) / (sqrt(3.0) * (3.0 + side * sin(angle)));
 }
 
-/* The cones of phi and psi. In plane strain flow goes on with s_zz = -2/3 etabar R, and there the cone is to
- * have Mohr-Coulomb's limit and its dilatancy. */
+/* The cones of phi and psi. In plane strain flow goes on with s_zz = -2/3 etabar R, and there the
+ * cone is to have Mohr-Coulomb's limit and its dilatancy. */
 static void cones(const PetscReal *given, PetscReal *eta, PetscReal *etabar, PetscReal *xi)
 {
   const PetscReal s = sin(given[FRICTION]), d = sin(given[DILATANCY]), c = cos(given[FRICTION]);

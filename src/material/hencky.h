@@ -101,8 +101,8 @@ LANES_INLINE void hencky_state(const HenckyTrial *t, const HenckyReturn *r, Lane
   for (int k = 0; k < 6; ++k) lanes_select(&r->plastic, &flown[k], &b[k], &b[k]);
 }
 
-/* The update of eight points by a law whose state has `scalars` numbers beside b^e; to be inlined with a
- * law known to the compiler. */
+/* The update of eight points by a law whose state has `scalars` numbers beside b^e; to be inlined
+ * with a law known to the compiler. */
 LANES_INLINE LawStatus hencky_update(HenckyLaw law, int scalars, const PetscReal *p, PetscInt n, const PetscReal *dF,
                                      const PetscReal *old, PetscReal *state, PetscReal *tau, PetscReal *c)
 {
@@ -155,7 +155,8 @@ static inline PetscReal hencky_energy(PetscReal lambda, PetscReal mu, const Pets
   return 0.5 * lambda * trace * trace + mu * norm2;
 }
 
-/* Principal tau = J sigma with ln J = tr tau / 3K (NAN if there is none), and b^e that carries it. */
+/* Principal tau = J sigma with ln J = tr tau / 3K (NAN if there is none), and b^e that carries
+ * it. */
 static inline void hencky_stress(PetscReal lambda, PetscReal mu, const PetscReal sigma[6], PetscReal tau[3],
                                  PetscReal b[6])
 {

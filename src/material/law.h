@@ -76,11 +76,11 @@ typedef struct Law {
   /* State that carries the Cauchy stress sigma (6) with no shear history; PETSC_FALSE if there is
    * none. */
   PetscBool (*initial_stress)(const PetscReal *parameters, const PetscReal sigma[6], PetscReal *state);
-  /* Bulk and shear modulus that stand for it, of a law whose own parameters say how stiff it is: it takes none of
-   * the elastic constants. NULL: two of them belong to it. */
+  /* Bulk and shear modulus that stand for it, of a law whose own parameters say how stiff it is:
+   * it takes none of the elastic constants. NULL: two of them belong to it. */
   void (*elastic)(const PetscReal *given, PetscReal bulk_and_shear[2]);
-  /* Tell a state that initial_stress gave, or the natural one, the size of the cell in which its point
-   * starts, m. NULL: the law has no length. */
+  /* Tell a state that initial_stress gave, or the natural one, the size of the cell in which its
+   * point starts, m. NULL: the law has no length. */
   void (*size)(const PetscReal *parameters, PetscReal h, PetscReal *state);
   /* Turn the user's constants into the packed parameters; complain through diag at `path`. */
   void (*prepare)(const Elasticity *elastic, const PetscReal *given, PetscReal *packed);

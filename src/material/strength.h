@@ -1,5 +1,5 @@
-/* Strength by friction and cohesion: the parameters that such laws begin with, and their division by a
- * factor of safety. */
+/* Strength by friction and cohesion: the parameters that such laws begin with, and their division
+ * by a factor of safety. */
 #pragma once
 #include "material/law.h"
 #include <math.h>

@@ -23,8 +23,9 @@ typedef struct {
   PetscBool hyperelastic;                    /* tau derives from the energy on every path */
   PetscReal tangent;                         /* relative tolerance against differences; 0: 1e-6 */
   PetscBool not_mixed;                       /* these parameters have no mixed form */
-  /* share of the columns of c that may be at a corner; 0: 1/1000. Strength that changes with the size of the
-   * shear strain has one where nothing shears: at an apex of cohesion under uniform expansion. */
+  /* share of the columns of c that may be at a corner; 0: 1/1000. Strength that changes with the
+   * size of the shear strain has one where nothing shears: at an apex of cohesion under uniform
+   * expansion. */
   PetscReal corners;
   PetscReal pressure;   /* of a law that needs a stress: the one it begins with, Pa */
   PetscBool may_refuse; /* may it say that it does not converge within stretches of 0.1 to 10? */

@@ -1,5 +1,6 @@
-/* The laws for soils against golden numbers (the rate equations integrated by tests/golden/soils.py) and
- * against closed forms of triaxial tests, led by Newton's method with the laws' own tangent. */
+/* The laws for soils against golden numbers (the rate equations integrated by
+ * tests/golden/soils.py) and against closed forms of triaxial tests, led by Newton's method with
+ * the laws' own tangent. */
 #include "../conformance/golden.h"
 #include "base/math/tensor.h"
 #include "material/law.h"
@@ -61,8 +62,8 @@ static void advance(Point *p, const PetscReal e[3])
   p->J *= exp(e[0] + e[1] + e[2]);
 }
 
-/* e[2] given, e[0] and e[1] such that both lateral Kirchhoff stresses are those wanted (e[1] only if `both`). The
- * tangent is exact, so that Newton's last step falls quadratically. */
+/* e[2] given, e[0] and e[1] such that both lateral Kirchhoff stresses are those wanted (e[1] only
+ * if `both`). The tangent is exact, so that Newton's last step falls quadratically. */
 static void lead(Point *p, PetscReal axial, PetscReal lateral, PetscBool both)
 {
   PetscReal e[3] = {0, 0, axial}, state[LAW_MAX_STATE], miss[2], before = INFINITY;
@@ -152,8 +153,8 @@ static PetscReal mohr_coulomb(PetscReal phi, PetscReal c, PetscReal a, PetscReal
   return 0.5 * fabs(a - b) - c * cosine + 0.5 * (a + b) * s;
 }
 
-/* Each cone has Mohr-Coulomb's strength where it says so: in triaxial compression and extension at once, in plane
- * strain once the flow goes on. */
+/* Each cone has Mohr-Coulomb's strength where it says so: in triaxial compression and extension
+ * at once, in plane strain once the flow goes on. */
 static void test_matches(void **unused)
 {
   (void)unused;
@@ -219,7 +220,8 @@ static Material clay(PetscReal ocr)
   return soil("modified-cam-clay", 6, value);
 }
 
-/* Isotropic compression and swelling: ln v falls with ln p (of Cauchy) by lambda / v0 and kappa / v0. */
+/* Isotropic compression and swelling: ln v falls with ln p (of Cauchy) by lambda / v0 and kappa /
+ * v0. */
 static void test_lines(void **unused)
 {
   Point p = {.m = clay(2)};

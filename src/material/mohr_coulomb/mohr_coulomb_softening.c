@@ -1,9 +1,11 @@
-/* Mohr-Coulomb material whose friction, dilatancy and cohesion harden and soften with the plastic shear strain
- * (docs/theory.md, "Laws"): mohr_coulomb.c with the strength of mohr_coulomb_softening.h, implicit in it.
+/* Mohr-Coulomb material whose friction, dilatancy and cohesion harden and soften with the plastic
+ * shear strain (docs/theory.md, "Laws"): mohr_coulomb.c with the strength of
+ * mohr_coulomb_softening.h, implicit in it.
  *
- * A body that softens fails in a band as wide as a cell, whatever its size: the strains of the table are
- * those of a cell of `reference_size`, and a point in a cell of another size h runs through it h / reference_size
- * times as fast, so that the work of failure per area of the band stays the same. */
+ * A body that softens fails in a band as wide as a cell, whatever its size: the strains of the
+ * table are those of a cell of `reference_size`, and a point in a cell of another size h runs
+ * through it h / reference_size times as fast, so that the work of failure per area of the band
+ * stays the same. */
 #include "material/hencky.h"
 #include "material/mohr_coulomb/mohr_coulomb_lanes.h"
 #include "material/mohr_coulomb/mohr_coulomb_softening.h"
@@ -89,7 +91,8 @@ static void size(const PetscReal *q, PetscReal h, PetscReal *state)
   state[6 + SCALE] = q[SOFT_SIZE] > 0.0 ? h / q[SOFT_SIZE] : 1.0;
 }
 
-/* Its strength changes: never apart from the pressure, but without friction, dilatancy and cut-off. */
+/* Its strength changes: never apart from the pressure, but without friction, dilatancy and
+ * cut-off. */
 static VolumeLaw volume_law(const PetscReal *q)
 {
   for (int k = 0; k < 6; ++k)

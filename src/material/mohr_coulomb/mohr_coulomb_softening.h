@@ -1,10 +1,11 @@
-/* A strength that changes with the plastic strain: phi, psi and c by straight lines from the initial values
- * over those of the peak to the residual ones, and the return of one point that finds its own strain.
+/* A strength that changes with the plastic strain: phi, psi and c by straight lines from the
+ * initial values over those of the peak to the residual ones, and the return of one point that
+ * finds its own strain.
  *
  *   kappa = kappa_n + sqrt(2/3) |dev(eps_tr - D^-1 tau(eps_tr, s kappa))|
  *
- * is one equation in kappa, which the return at the old strength brackets from below. s is the size of the
- * point's cell over the size for which the strains of the table hold. */
+ * is one equation in kappa, which the return at the old strength brackets from below. s is the
+ * size of the point's cell over the size for which the strains of the table hold. */
 #pragma once
 #include "material/mohr_coulomb/mohr_coulomb_return.h"
 
@@ -142,8 +143,8 @@ static inline void soft_try(const PetscReal *q, PetscReal kappa, PetscReal scale
 
 #define SOFT_MOST 100
 
-/* The new kappa, or NAN. Newton's method between bounds; where it leaves them, their middle. A return that
- * would be elastic at the new strength flows less than nothing: the root lies below. */
+/* The new kappa, or NAN. Newton's method between bounds; where it leaves them, their middle. A
+ * return that would be elastic at the new strength flows less than nothing: the root lies below. */
 static inline PetscReal soft_return(const PetscReal *q, PetscReal old, PetscReal scale, const PetscReal e[3],
                                     SoftStrength *at, SoftTry *t)
 {

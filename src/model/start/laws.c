@@ -1,11 +1,11 @@
-/* What laws ask of the start (docs/theory.md, "Laws"): those that soften are told the size of the cell in which
- * each of their points starts, and those that need a stress must have one. */
+/* What laws ask of the start (docs/theory.md, "Laws"): those that soften are told the size of the
+ * cell in which each of their points starts, and those that need a stress must have one. */
 #include <math.h>
 #include "basis/cell.h"
 #include "model/model_private.h"
 
-/* That of the square or cube of the same measure; of a simplex, of which two fill a square and six a cube, that
- * of the square or cube that it is a part of. */
+/* That of the square or cube of the same measure; of a simplex, of which two fill a square and
+ * six a cube, that of the square or cube that it is a part of. */
 static PetscReal cell_size(const Grid *grid, PetscInt cell)
 {
   const CellType type = grid_cell_type(grid, cell);
