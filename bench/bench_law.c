@@ -13,11 +13,17 @@
 
 typedef struct {
   const char *law, *what;
-  PetscReal given[5]; /* angles in rad */
-  PetscReal strain;   /* size of the increments */
+  PetscReal given[14]; /* angles in rad */
+  PetscReal strain;    /* size of the increments */
   const Kinematics *kinematics;
   int steps; /* steps towards the state that is measured: with 0 from rest */
 } BenchCase;
+
+/* From c at once down to `residual` within a strain of 0.1. */
+#define SOFTENING(c, residual)                                       \
+  {                                                                  \
+    0.54, 0.02, c, 1e300, 0.4, 0, residual, NAN, NAN, NAN, 0, 0.1, 0 \
+  }
 
 static const BenchCase cases[] = {
   {"neo-hookean", "3d", {0}, 1e-3, &kinematics_3d, 0},
@@ -35,6 +41,12 @@ static const BenchCase cases[] = {
   {"mohr-coulomb", "elastic, 3d", {0.54, 0.02, 1, 1e300}, 1e-3, &kinematics_3d, 0},
   {"mohr-coulomb", "plastic, 3d", {0.54, 0.02, 1e-3, 1e300}, 1e-3, &kinematics_3d, 5},
   {"mohr-coulomb", "cut off, 3d", {0.54, 0.02, 1e-3, 5e-4}, 1e-3, &kinematics_3d, 5},
+  {"mohr-coulomb-softening", "elastic, 3d", SOFTENING(1, 1), 1e-3, &kinematics_3d, 0},
+  {"mohr-coulomb-softening", "softening, 3d", SOFTENING(1e-3, 5e-4), 1e-3, &kinematics_3d, 5},
+  {"drucker-prager", "elastic, 3d", {0.54, 0.02, 1, 1e300, 2}, 1e-3, &kinematics_3d, 0},
+  {"drucker-prager", "plastic, 3d", {0.54, 0.02, 1e-3, 1e300, 2}, 1e-3, &kinematics_3d, 5},
+  {"modified-cam-clay", "elastic, 3d", {1, 0.1, 0.02, 1, 4e6, NAN, 8, 1e5}, 1e-4, &kinematics_3d, 0},
+  {"modified-cam-clay", "plastic, 3d", {1, 0.1, 0.02, 1, 4e6, NAN, 1, 1e5}, 1e-3, &kinematics_3d, 5},
 };
 
 static double now(void)
@@ -68,7 +80,10 @@ static double speed(const BenchCase *b, int n, int tangent)
   const LawUpdate update = law_update_in(law, b->kinematics);
   law->prepare(&elastic, b->given, packed);
   set_up(b, n, dF);
-  for (int p = 0; p < n; ++p) law_initial_state(law, old + p * law->n_state);
+  for (int p = 0; p < n; ++p) {
+    law_initial_state(law, old + p * law->n_state);
+    if (law->needs_stress) law->initial_stress(packed, (PetscReal[6]){-1e5, -1e5, -1e5}, old + p * law->n_state);
+  }
   for (int s = 0; s < b->steps; ++s) {
     if (law->update(packed, n, dF, old, state, tau, c) != LAW_OK) return NAN;
     for (int k = 0; k < n * law->n_state; ++k) old[k] = state[k];

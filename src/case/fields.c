@@ -21,6 +21,7 @@ const OutputField output_fields[] = {
   {"equivalent_plastic_strain", "", "accumulated plastic strain, 0 for elastic laws", 1, PG},
   {"plastic_increment", "", "what the last step added to it: where a body slides, at a factor of safety", 1, P},
   {"opening", "", "ln of the volume by which grains are apart, where the law remembers it (opening_memory)", 1, P},
+  {"preconsolidation", "Pa", "largest isotropic pressure so far, of modified-cam-clay", 1, P},
   {"mass", "kg", "mass of a point; on the grid the mass gathered at a node", 1, PG},
   {"density", "kg/m3", "current density", 1, P},
   {"volume", "m3", "current volume (for unit thickness in plane strain, all round in axisymmetry)", 1, P},

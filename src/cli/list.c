@@ -24,7 +24,10 @@ static void print_parameter(const SchemaEntry *e, PetscReal fallback)
   schema_range(e, range, sizeof(range));
   printf("    %-28s %s", text_with_unit(e->key, e->unit, left), e->help);
   if (range[0]) printf("; %s", range);
-  if (!PetscIsNanReal(fallback)) printf("; default %g", (double)fallback);
+  for (int k = 0; schema_word(e, k).word; ++k) printf("%s%s", k ? ", " : ": ", schema_word(e, k).word);
+  if (e->type == TYPE_WORD) printf("; default %s", schema_word(e, (int)fallback).word);
+  else if (!PetscIsNanReal(fallback)) printf("; default %g", (double)fallback);
+  else if (e->note) printf("; default: %s", e->note);
   putchar('\n');
 }
 
@@ -37,7 +40,7 @@ static void list_laws(void)
       print_parameter(&entry, p->fallback);
     }
   }
-  printf("\nEvery law takes density [kg/m3] and two elastic constants:\n");
+  printf("\nEvery law takes density [kg/m3] and two elastic constants (modified-cam-clay has its own):\n");
   SchemaEntry e;
   for (PetscInt i = 0; (e = schema_elastic(i)).key; ++i) print_parameter(&e, NAN);
 }

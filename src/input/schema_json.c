@@ -164,11 +164,11 @@ static void one_law(FILE *out, const Law *law)
   fputs("{\"if\": {\"properties\": {\"law\": {\"const\": ", out);
   json_string(out, law->name);
   fputs("}}, \"required\": [\"law\"]}, \"then\": {\"propertyNames\": {\"enum\": [\"law\", \"density\"", out);
-  for (PetscInt i = 0; (entry = schema_elastic(i)).key; ++i) fprintf(out, ", \"%s\"", entry.key);
+  for (PetscInt i = 0; !law->elastic && (entry = schema_elastic(i)).key; ++i) fprintf(out, ", \"%s\"", entry.key);
   for (const LawParameter *p = law->parameters; p && p->name; ++p) fprintf(out, ", \"%s\"", p->name);
   fputs("]}, \"required\": [", out);
   for (const LawParameter *p = law->parameters; p && p->name; ++p)
-    if (PetscIsNanReal(p->fallback)) fprintf(out, "%s\"%s\"", n++ ? ", " : "", p->name);
+    if (schema_law_entry(p).required) fprintf(out, "%s\"%s\"", n++ ? ", " : "", p->name);
   fputs("], \"properties\": {", out);
   for (const LawParameter *p = law->parameters; p && p->name; ++p) {
     entry = schema_law_entry(p);
@@ -195,7 +195,7 @@ static void material_properties(FILE *out)
       if (twice) continue;
       fputs(",\n    ", out);
       json_string(out, p->name);
-      fputs(": {\"type\": \"number\"}", out);
+      fputs(p->words ? ": {\"type\": \"string\"}" : ": {\"type\": \"number\"}", out);
     }
 }
 

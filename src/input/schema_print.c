@@ -95,8 +95,9 @@ static void text_table(FILE *out, const SchemaTable *table)
 static SchemaEntry law_entry(const LawParameter *p, char *note, size_t size)
 {
   SchemaEntry entry = schema_law_entry(p);
-  if (!entry.required) {
-    snprintf(note, size, "%g", (double)p->fallback);
+  if (!entry.required && !p->absent) {
+    if (p->words) snprintf(note, size, "%s", p->words[(int)p->fallback]->word);
+    else snprintf(note, size, "%g", (double)p->fallback);
     entry.note = note;
   }
   return entry;
@@ -106,7 +107,9 @@ static void text_laws(FILE *out)
 {
   SchemaEntry e;
   char note[40];
-  fprintf(out, "elastic constants\n  Any two of these belong to every material.\n\n");
+  fprintf(
+    out,
+    "elastic constants\n  Any two of these belong to every material, unless its law has an elasticity of its own.\n\n");
   for (PetscInt i = 0; (e = schema_elastic(i)).key; ++i) text_entry(out, &e);
   for (const Law *const *law = laws; *law; ++law) {
     fprintf(out, "\nlaw %s\n  %s\n\n", (*law)->name, (*law)->help);
@@ -173,7 +176,10 @@ static void markdown_laws(FILE *out)
 {
   SchemaEntry e;
   char note[40];
-  fputs("\n## elastic constants\n\nExactly two of these belong to every material.\n\n", out);
+  fputs(
+    "\n## elastic constants\n\nExactly two of these belong to every material, unless its law has an elasticity of its "
+    "own (modified-cam-clay).\n\n",
+    out);
   markdown_head(out);
   for (PetscInt i = 0; (e = schema_elastic(i)).key; ++i) markdown_entry(out, &e);
   for (const Law *const *law = laws; *law; ++law) {

@@ -14,12 +14,18 @@
 typedef enum { LAW_OK = 0, LAW_INVERTED, LAW_NOT_CONVERGED, LAW_NOT_FINITE } LawStatus;
 
 typedef struct {
+  const char *word, *help;
+} LawWord;
+
+typedef struct {
   /* key in the case file; unit "" if none, "deg" is converted to rad */
   const char *name, *unit, *help;
   PetscReal min, max;           /* closed range */
   PetscBool min_open, max_open; /* the bound itself is excluded */
-  PetscReal fallback;           /* default; NAN: must be given */
+  PetscReal fallback;           /* default; NAN: must be given, unless it may be absent */
   PetscBool not_mixed;          /* in the mixed formulation only the default will do */
+  const char *absent;           /* what counts where it is not given, and the law gets NAN; or NULL */
+  const LawWord *const *words;  /* the number is that of one of these, ended by NULL; else NULL */
 } LawParameter;
 
 typedef struct {
@@ -59,6 +65,7 @@ typedef struct Law {
   PetscInt n_state;       /* sum of the fields' components */
   PetscBool symmetric;    /* is the tangent symmetric? */
   PetscBool yields;       /* can it lose its stiffness? */
+  PetscBool needs_stress; /* has it no natural state, so that every point begins with an initial stress? */
   PetscBool spares_state; /* may `state` be NULL where only stress and tangent are wanted? */
   LawUpdate update;
   /* The same where dF leaves z alone, or NULL: of c only the components 11, 22, 12 of rows and
@@ -69,6 +76,12 @@ typedef struct Law {
   /* State that carries the Cauchy stress sigma (6) with no shear history; PETSC_FALSE if there is
    * none. */
   PetscBool (*initial_stress)(const PetscReal *parameters, const PetscReal sigma[6], PetscReal *state);
+  /* Bulk and shear modulus that stand for it, of a law whose own parameters say how stiff it is:
+   * it takes none of the elastic constants. NULL: two of them belong to it. */
+  void (*elastic)(const PetscReal *given, PetscReal bulk_and_shear[2]);
+  /* Tell a state that initial_stress gave, or the natural one, the size of the cell in which its
+   * point starts, m. NULL: the law has no length. */
+  void (*size)(const PetscReal *parameters, PetscReal h, PetscReal *state);
   /* Turn the user's constants into the packed parameters; complain through diag at `path`. */
   void (*prepare)(const Elasticity *elastic, const PetscReal *given, PetscReal *packed);
   /* What the mixed formulation needs; NULL: the law has no mixed form. Elastic volume ratio of n

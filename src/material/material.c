@@ -53,11 +53,11 @@ static void refuse_unknown(const Resolver *r, const Law *law)
   const char *names[ELASTIC_CONSTANTS + LAW_MAX_PARAMETERS + 1] = {NULL};
   char path[MAX_PATH];
   int n = 0;
-  for (int i = 0; i < ELASTIC_CONSTANTS; ++i) names[n++] = elastic_constants[i].name;
+  for (int i = 0; !law->elastic && i < ELASTIC_CONSTANTS; ++i) names[n++] = elastic_constants[i].name;
   for (int i = 0; law->parameters[i].name; ++i) names[n++] = law->parameters[i].name;
   for (PetscInt i = 0; i < r->spec->n_parameters; ++i) {
     const char *key = r->spec->parameters[i].name;
-    if (elastic_index(key) >= 0 || law_parameter_index(law, key) >= 0) continue;
+    if ((!law->elastic && elastic_index(key) >= 0) || law_parameter_index(law, key) >= 0) continue;
     diag_error(r->diag, path_of(r, key, path), "the law %s has no parameter '%s'", law->name, key);
     const char *nearest = diag_nearest(key, names);
     if (nearest) diag_hint(r->diag, "did you mean '%s'?", nearest);
@@ -129,6 +129,7 @@ static void resolve_parameter(const Resolver *r, const Law *law, const LawParame
   const NamedValue *given = find_value(r->spec, p->name);
   char path[MAX_PATH];
   *value = given ? given->value : p->fallback;
+  if (!given && p->absent) return;
   if (!given && isnan(p->fallback)) {
     diag_error(r->diag, path_of(r, NULL, path), "the law %s needs '%s': %s (%s)", law->name, p->name, p->help,
                unit_of(p->unit));
@@ -145,6 +146,16 @@ static void resolve_parameter(const Resolver *r, const Law *law, const LawParame
       "take `formulation: displacement` or `mean-dilatation`: pressures at nodes would spread it over the neighbours");
   }
   if (p->unit && !strcmp(p->unit, "deg")) *value *= PETSC_PI / 180.0;
+}
+
+/* Of a law that is stiff by its own parameters. */
+static void own_elastic(const Law *law, const PetscReal *given, Elasticity *elastic)
+{
+  PetscReal value[ELASTIC_CONSTANTS] = {0}, two[2];
+  law->elastic(given, two);
+  value[elastic_index("bulk")] = two[0];
+  value[elastic_index("shear")] = two[1];
+  (void)elasticity_from_two(1u << elastic_index("bulk") | 1u << elastic_index("shear"), value, elastic);
 }
 
 static void check_together(const Resolver *r, const Law *law, const PetscReal *given)
@@ -218,13 +229,15 @@ PetscErrorCode MaterialResolve(const Case *c, PetscInt index, Diag *diag, Materi
   material->mixed = r.mixed;
   check_density(&r);
   material->law = find_law(&r);
-  const PetscBool elastic = resolve_elastic(&r, &material->elastic);
+  const PetscBool own = material->law && material->law->elastic;
+  const PetscBool elastic = own || resolve_elastic(&r, &material->elastic);
   if (!material->law) PetscFunctionReturn(0);
   refuse_unknown(&r, material->law);
   for (int i = 0; material->law->parameters[i].name; ++i)
     resolve_parameter(&r, material->law, &material->law->parameters[i], &given[i]);
   if (diag_errors(diag) == before) check_together(&r, material->law, given);
   if (!elastic || diag_errors(diag) > before) PetscFunctionReturn(0);
+  if (own) own_elastic(material->law, given, &material->elastic);
   material->wave_modulus = wave_modulus(&material->elastic, r.mixed);
   material->law->prepare(&material->elastic, given, material->parameters);
   if (r.mixed) prepare_mixed(&r, given, material);

@@ -307,6 +307,9 @@ static PetscErrorCode CreateBodies(Model *m, Diag *diag)
   PetscCall(CreatePoints(m, case_has_k0(m->c) ? &outline : NULL, diag));
   PetscCall(DiagReduce(m->comm, diag, &errors));
   if (!errors) PetscCall(InitialStress(m, &outline, diag));
+  if (!errors) sizes_start(m);
+  PetscCall(DiagReduce(m->comm, diag, &errors));
+  if (!errors) stresses_check(m, diag);
   PetscCall(OutlineClear(&outline));
   PetscFunctionReturn(0);
 }

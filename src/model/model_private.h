@@ -37,6 +37,10 @@ PetscErrorCode InitialStress(Model *model, const Outline *outline, Diag *diag);
 /* A point whose POINT_VOLUME is what it fills now, with J = 1: its state carries the Cauchy stress, F, J and
  * volume become those of this state. PETSC_FALSE: the law has no such state. */
 PetscBool point_carry_stress(Points *points, PetscInt p, const Material *material, PetscReal sigma[6]);
+/* Tell the laws that have a length the sizes of the cells in which their points start (start/laws.c). */
+void sizes_start(const Model *model);
+/* Complain of bodies whose law needs a stress and has none (start/laws.c). */
+void stresses_check(const Model *model, Diag *diag);
 /* Acceleration now from the balance of momentum with lumped mass, so that a body in free fall
  * falls from the first step on. */
 PetscErrorCode InitialAcceleration(Model *model);

@@ -23,6 +23,12 @@ typedef struct {
   PetscBool hyperelastic;                    /* tau derives from the energy on every path */
   PetscReal tangent;                         /* relative tolerance against differences; 0: 1e-6 */
   PetscBool not_mixed;                       /* these parameters have no mixed form */
+  /* share of the columns of c that may be at a corner; 0: 1/1000. Strength that changes with the
+   * size of the shear strain has one where nothing shears: at an apex of cohesion under uniform
+   * expansion. */
+  PetscReal corners;
+  PetscReal pressure;   /* of a law that needs a stress: the one it begins with, Pa */
+  PetscBool may_refuse; /* may it say that it does not converge within stretches of 0.1 to 10? */
 } LawUnderTest;
 
 typedef struct {
@@ -105,6 +111,16 @@ static inline void law_suite_update(const LawSuite *suite, LawPoint *p)
   p->status = suite->law->update(suite->material.parameters, 1, p->dF, p->old, p->state, p->tau, p->c);
 }
 
+/* The natural state, or the one that a law which has none begins with. */
+static inline void law_suite_start(const LawSuite *suite, PetscReal *state)
+{
+  const PetscReal p = suite->test->pressure, sigma[6] = {-p, -p, -p, 0, 0, 0};
+  law_initial_state(suite->law, state);
+  if (!suite->law->needs_stress) return;
+  if (!suite->law->initial_stress(suite->material.parameters, sigma, state))
+    fail_msg("%s: no state with a pressure of %g Pa", suite->law->name, p);
+}
+
 /* General, or (one in four) of plane strain. */
 static inline void law_suite_random_increment(LawSuite *suite, PetscReal dF[9])
 {
@@ -141,7 +157,7 @@ static inline void law_suite_random_law_point(LawSuite *suite, LawPoint *p)
     const PetscBool coaxial = random_real(&suite->random, 0, 4) < 1;
     const int wanted = coaxial ? 1 : 3;
     int steps = 0;
-    law_initial_state(suite->law, p->old);
+    law_suite_start(suite, p->old);
     for (; steps < wanted; ++steps) {
       if (steps) memcpy(p->old, p->state, sizeof p->old);
       if (coaxial) law_suite_coaxial_increment(suite, p->dF);
@@ -259,7 +275,8 @@ static inline void law_suite_tangent(LawSuite *suite)
   if (getenv("TALUS_TEST_PRINT"))
     print_message("%-22s columns: %d smooth, %d at a kink, %d at a corner\n", suite->law->name, (int)count[0],
                   (int)count[1], (int)count[2]);
-  if (count[LAW_SUITE_KINK] > 6 * LAW_SUITE_STATES / 100 || count[LAW_SUITE_CORNER] > 6 * LAW_SUITE_STATES / 1000)
+  if (count[LAW_SUITE_KINK] > 6 * LAW_SUITE_STATES / 100 ||
+      count[LAW_SUITE_CORNER] > 6 * LAW_SUITE_STATES * fmax(suite->test->corners, 1e-3))
     fail_msg("%s: %d columns at a kink, %d at a corner", suite->law->name, (int)count[LAW_SUITE_KINK],
              (int)count[LAW_SUITE_CORNER]);
   if (suite->test->hyperelastic && count[LAW_SUITE_SMOOTH] != 6 * LAW_SUITE_STATES)
@@ -334,6 +351,7 @@ static inline void law_suite_natural_state(LawSuite *suite)
 {
   LawPoint p = {.dF = {1, 0, 0, 0, 1, 0, 0, 0, 1}};
   const PetscReal zero[6] = {0}, modulus = suite->material.wave_modulus;
+  if (suite->law->needs_stress) return;
   law_initial_state(suite->law, p.old);
   law_suite_update(suite, &p);
   assert_int_equal(p.status, LAW_OK);
@@ -370,7 +388,7 @@ static inline void law_suite_extremes(LawSuite *suite)
   for (int s = 0; s < LAW_SUITE_STATES; ++s) {
     LawPoint p = {0};
     PetscReal q[9], r[9], scaled[9], reach = random_real(&suite->random, 0, 8);
-    law_initial_state(suite->law, p.old);
+    law_suite_start(suite, p.old);
     random_rotation(&suite->random, q);
     random_rotation(&suite->random, r);
     for (int j = 0; j < 3; ++j) {
@@ -380,7 +398,8 @@ static inline void law_suite_extremes(LawSuite *suite)
     tensor_multiply(scaled, r, p.dF);
     law_suite_update(suite, &p);
     if (p.status != LAW_OK) {
-      if (reach < 1) fail_msg("%s: status %d within stretches 0.1 to 10", suite->law->name, (int)p.status);
+      if (reach < 1 && !suite->test->may_refuse)
+        fail_msg("%s: status %d within stretches 0.1 to 10", suite->law->name, (int)p.status);
       continue;
     }
     const PetscReal all[] = {law_suite_largest(6, p.tau), law_suite_largest(36, p.c),
@@ -412,7 +431,7 @@ static inline void law_suite_bad_increments(LawSuite *suite)
     for (PetscInt n = 1; n <= LAW_BATCH; n += 31)
       for (PetscInt at = 0; at < n; at += 5) {
         for (PetscInt p = 0; p < n; ++p) {
-          law_initial_state(law, old + p * law->n_state);
+          law_suite_start(suite, old + p * law->n_state);
           law_suite_random_increment(suite, dF + 9 * p);
         }
         memcpy(dF + 9 * at, bad[b].dF, sizeof bad[b].dF);
@@ -480,7 +499,7 @@ static inline void law_suite_in_plane(LawSuite *suite, LawUpdate update, PetscBo
   int others = 0;
   for (int s = 0; update && s < LAW_SUITE_STATES / 10; ++s) {
     LawPoint p = {0}, own;
-    law_initial_state(law, p.old);
+    law_suite_start(suite, p.old);
     for (int step = 0; step < 3; ++step) {
       const PetscReal modulus = suite->material.wave_modulus;
       PetscReal error = 0;
@@ -536,9 +555,10 @@ static inline void law_suite_pressure_in_plane(LawSuite *suite)
   }
 }
 
-/* J of a state: from the elastic strain or the volume ratio, whichever the law stores. */
+/* J of a state of rest: from the elastic strain or the volume ratio, whichever the law stores. */
 static inline PetscReal law_suite_volume(const Law *law, const PetscReal *state, PetscReal fallback)
 {
+  if (law->needs_stress) return 1; /* the body is as large as it is */
   for (const LawField *field = law->fields; field->name; state += field->components, ++field) {
     if (!strcmp(field->name, "elastic_strain")) return sqrt(sym_det(state));
     if (!strcmp(field->name, "volume_ratio")) return *state;

@@ -68,6 +68,15 @@ static const Bad bads[] = {
    {"F:9:16: error: key 'spin' of measures.a has no meaning", "F:9:30: error: key 'angular_momentum' of measures.b",
     "F:9:66: error: measures.c.momentum: x: round the full circle it is zero", "hint: along the axis it means"}},
   /* keys */
+  {"a word of a law",
+   WITH_MATERIAL("law: drucker-prager, density: 1, young: 1, poisson: 0, friction_angle: 30, cohesion: 1, match: "
+                 "plain-strain"),
+   {"materials.rubber.match must be one of compression, extension or plane-strain, not 'plain-strain'",
+    "hint: did you mean 'plane-strain'?"}},
+  {"elastic constants of a law that has its own",
+   WITH_MATERIAL("law: modified-cam-clay, density: 1, young: 1, critical_stress_ratio: 1, lambda: 0.1, kappa: 0.02, "
+                 "shear_modulus: 1"),
+   {"error: key 'young' of materials.rubber is not known"}},
   {"unknown key",
    WITH_MATERIAL("law: neo-hookean, density: 1, yung: 1, young: 1, poisson: 0"),
    {"F:7:52: error: key 'yung' of materials.rubber is not known\n", "  hint: did you mean 'young'?", "^~~~"}},

@@ -42,6 +42,40 @@
     }                                                                                                                 \
   }
 
+#define DRUCKER_PRAGER(E, nu, phi, psi, c, T, match)                                                                  \
+  7,                                                                                                                  \
+  {                                                                                                                   \
+    {(char *)"young", E}, {(char *)"poisson", nu}, {(char *)"friction_angle", phi}, {(char *)"dilatancy_angle", psi}, \
+      {(char *)"cohesion", c}, {(char *)"tension_cutoff", T},                                                         \
+    {                                                                                                                 \
+      (char *)"match", match                                                                                          \
+    }                                                                                                                 \
+  }
+
+/* From (phi, psi, c) over those of the peak to a share of it, at the strains peak and residual. */
+#define SOFTENING(E, nu, phi, psi, c, T, share, peak, residual)                                                       \
+  13,                                                                                                                 \
+  {                                                                                                                   \
+    {(char *)"young", E}, {(char *)"poisson", nu}, {(char *)"friction_angle", phi}, {(char *)"dilatancy_angle", psi}, \
+      {(char *)"cohesion", c}, {(char *)"tension_cutoff", T}, {(char *)"residual_friction_angle", (share) * (phi)},   \
+      {(char *)"residual_dilatancy_angle", 0.5 * (share) * (psi)}, {(char *)"residual_cohesion", (share) * (c)},      \
+      {(char *)"initial_friction_angle", 0.9 * (phi)}, {(char *)"initial_dilatancy_angle", 0.5 * (psi)},              \
+      {(char *)"peak_strain", peak},                                                                                  \
+    {                                                                                                                 \
+      (char *)"residual_strain", residual                                                                             \
+    }                                                                                                                 \
+  }
+
+#define CAM_CLAY(M, lambda, kappa, v, G, ocr)                                                   \
+  6,                                                                                            \
+  {                                                                                             \
+    {(char *)"critical_stress_ratio", M}, {(char *)"lambda", lambda}, {(char *)"kappa", kappa}, \
+      {(char *)"specific_volume", v}, {(char *)"shear_modulus", G},                             \
+    {                                                                                           \
+      (char *)"ocr", ocr                                                                        \
+    }                                                                                           \
+  }
+
 static const LawUnderTest list[] = {
   {"neo-hookean", ELASTIC(90e6, 0.0), .strain = 0.3, .hyperelastic = PETSC_TRUE},
   {"neo-hookean", ELASTIC(70.0, 0.4999), .strain = 0.3, .hyperelastic = PETSC_TRUE},
@@ -65,6 +99,22 @@ static const LawUnderTest list[] = {
   {"mohr-coulomb", CUT_OFF(1e4, 0.4, 0, 0, 100, 0), .strain = 0.1},
   {"mohr-coulomb", REMEMBERS(0.84e6, 0.3, 31, 1, 0, 1), .strain = 0.3, .not_mixed = PETSC_TRUE},
   {"mohr-coulomb", REMEMBERS(1e6, 0.3, 39, 0, 16, 0.5), .strain = 0.05, .not_mixed = PETSC_TRUE},
+  {"mohr-coulomb-softening", SOFTENING(1.8e6, 0.3, 25, 0, 5e3, 1e300, 0.5, 0.02, 0.1), .strain = 0.02, .corners = 0.04},
+  {"mohr-coulomb-softening", SOFTENING(0.84e6, 0.3, 40, 10, 0, 1e300, 0.75, 0.1, 0.5), .strain = 0.2},
+  {"mohr-coulomb-softening", SOFTENING(1e4, 0.45, 0, 0, 100, 1e300, 0.4, 0, 0.5), .strain = 0.2},
+  {"mohr-coulomb-softening", SOFTENING(2e6, 0.2, 35, 12, 4e4, 2e4, 0.6, 0.05, 0.3), .strain = 0.1},
+  {"drucker-prager", DRUCKER_PRAGER(1.8e6, 0.3, 25, 0, 5e3, 1e300, 2), .strain = 0.01},
+  {"drucker-prager", DRUCKER_PRAGER(0.84e6, 0.3, 31, 1, 0, 1e300, 0), .strain = 0.3},
+  {"drucker-prager", DRUCKER_PRAGER(5e7, 0.25, 30, 30, 2e4, 1e300, 1), .strain = 0.3},
+  {"drucker-prager", DRUCKER_PRAGER(1e4, 0.495, 0, 0, 100, 1e300, 0), .strain = 0.3},
+  {"drucker-prager", DRUCKER_PRAGER(2e6, 0.2, 35, 12, 4e4, 2e4, 2), .strain = 0.1},
+  {"drucker-prager", DRUCKER_PRAGER(1e4, 0.4, 0, 0, 100, 20, 0), .strain = 0.1},
+  {"modified-cam-clay", CAM_CLAY(1.0, 0.2, 0.05, 2.0, 3e6, 1.0), .strain = 0.02, .pressure = 1e5,
+   .not_mixed = PETSC_TRUE, .may_refuse = PETSC_TRUE},
+  {"modified-cam-clay", CAM_CLAY(1.2, 0.1, 0.02, 1, 2e6, 2.0), .strain = 0.01, .pressure = 5e4, .not_mixed = PETSC_TRUE,
+   .may_refuse = PETSC_TRUE},
+  {"modified-cam-clay", CAM_CLAY(0.9, 0.25, 0.05, 2.2, 1e6, 8.0), .strain = 0.03, .pressure = 2e4,
+   .not_mixed = PETSC_TRUE, .may_refuse = PETSC_TRUE},
 };
 
 static void test_suite(void **state)

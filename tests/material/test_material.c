@@ -9,6 +9,7 @@
 #include <string.h>
 #include <cmocka.h>
 #include "material/elasticity.h"
+#include "material/mohr_coulomb/mohr_coulomb_softening.h"
 
 static const char *const names[ELASTIC_CONSTANTS] = {"young", "poisson", "bulk", "shear", "lame"};
 
@@ -204,28 +205,61 @@ static void test_reduced(void **state)
   }
   const NamedValue soil[] = SOIL(45, 40, 100 * f, 10 * f), weaker[] = SOIL(30, 30, 100, 10);
   const NamedValue little[] = SOIL(45, 5, 100 * f, 10 * f), as_little[] = SOIL(30, 5, 100, 10);
+#define SOFT(phi, psi, c, residual)                                                                             \
+  {                                                                                                             \
+    P("young", 1e6), P("poisson", 0.25), P("friction_angle", phi), P("dilatancy_angle", psi), P("cohesion", c), \
+      P("residual_friction_angle", phi), P("residual_dilatancy_angle", psi), P("residual_cohesion", residual),  \
+      P("residual_strain", 0.1)                                                                                 \
+  }
+  const NamedValue soft[] = SOFT(45, 40, 100 * f, 50 * f), as_soft[] = SOFT(30, 30, 100, 50);
   const NamedValue steel[] = {P("young", 2e11), P("poisson", 0.3), P("yield_stress", 2e8), P("hardening", 4e9)};
   const NamedValue softer[] = {P("young", 2e11), P("poisson", 0.3), P("yield_stress", 1e8), P("hardening", 2e9)};
   check_reduced("mohr-coulomb", f, 6, soil, weaker);
   check_reduced("mohr-coulomb", f, 6, little, as_little);
   check_reduced("mohr-coulomb", 1, 6, soil, soil);
   check_reduced("j2", 2, 4, steel, softer);
+  check_reduced("drucker-prager", f, 6, soil, weaker);
+  check_reduced("drucker-prager", f, 6, little, as_little);
+  check_reduced("mohr-coulomb-softening", f, 9, soft, as_soft);
+  check_reduced("mohr-coulomb-softening", 1, 9, soft, soft);
 }
 
 /* With factor 0 nothing yields: stress is Hooke's in the logarithmic strain. */
-static void test_endless(void **state)
+static void check_endless(const char *law, PetscInt n, const NamedValue *clay)
 {
-  const NamedValue clay[] = {P("young", 1e6), P("poisson", 0.25), P("friction_angle", 20), P("cohesion", 1)};
   const PetscReal stretch = 1.01, dF[9] = {1 / stretch, 0, 0, 0, stretch, 0, 0, 0, 1};
   PetscReal old[LAW_MAX_STATE], now[LAW_MAX_STATE], tau[6];
   Outcome out;
-  (void)state;
-  resolve("mohr-coulomb", 1000, 4, clay, &out);
+  resolve(law, 1000, n, clay, &out);
   material_reduce(&out.material, 0);
   law_initial_state(out.material.law, old);
   assert_int_equal(out.material.law->update(out.material.parameters, 1, dF, old, now, tau, NULL), LAW_OK);
   assert_true(fabs(tau[1] - 8e5 * log(stretch)) < 1e-6); /* 2 mu = 8e5 */
   finish(&out, 0, NULL, NULL);
+}
+
+static void test_endless(void **state)
+{
+  const NamedValue clay[] = {P("young", 1e6), P("poisson", 0.25), P("friction_angle", 20), P("cohesion", 1),
+                             P("residual_strain", 0.1)};
+  (void)state;
+  check_endless("mohr-coulomb", 4, clay);
+  check_endless("drucker-prager", 4, clay);
+  check_endless("mohr-coulomb-softening", 5, clay);
+}
+
+/* Keys that may be left out count as those of the peak; what contradicts itself is refused. */
+static void test_left_out(void **state)
+{
+  const NamedValue soil[] = {P("young", 1e6),   P("poisson", 0.25),        P("friction_angle", 20),
+                             P("cohesion", 10), P("residual_strain", 0.1), P("peak_strain", 0.2)};
+  Outcome out;
+  (void)state;
+  resolve("mohr-coulomb-softening", 1000, 5, soil, &out);
+  assert_true(isnan(out.material.given[6]) && out.material.parameters[SOFT_COHESION + 2] == 10);
+  finish(&out, 0, NULL, NULL);
+  resolve("mohr-coulomb-softening", 1000, 6, soil, &out);
+  finish(&out, 1, "materials.rubber", "residual_strain must be larger than peak_strain");
 }
 
 int main(int argc, char **argv)
@@ -240,6 +274,7 @@ int main(int argc, char **argv)
     cmocka_unit_test(test_all_mistakes_together),
     cmocka_unit_test(test_reduced),
     cmocka_unit_test(test_endless),
+    cmocka_unit_test(test_left_out),
   };
   if (PetscInitialize(&argc, &argv, NULL, NULL)) return 1;
   for (int i = 0; i < ELASTIC_CONSTANTS; ++i)

@@ -14,19 +14,20 @@
 #define CALL(call) assert_int_equal((call), 0)
 #define ASSERT_NEAR(a, b, tolerance) assert_true(PetscAbsReal((a) - (b)) <= (tolerance))
 
-static NamedValue constants[] = {
-  {(char *)"young", 1e6}, {(char *)"poisson", 0.45}, {(char *)"", 0}, {(char *)"", 0}, {(char *)"", 0}};
+static NamedValue constants[] = {{(char *)"young", 1e6}, {(char *)"poisson", 0.45}, {(char *)"", 0},
+                                 {(char *)"", 0},        {(char *)"", 0},           {(char *)"", 0}};
 
 /* A material of the law, far from yielding. */
 static Material mixed_material(const Law *law)
 {
   static MaterialSpec spec;
-  static const char *const more[] = {"yield_stress", "cohesion", "friction_angle", "dilatancy_angle"};
-  static const PetscReal value[] = {1e6, 1e6, 20, 5};
+  static const char *const more[] = {"yield_stress", "cohesion", "friction_angle", "dilatancy_angle",
+                                     "residual_strain"};
+  static const PetscReal value[] = {1e6, 1e6, 20, 5, 1};
   PetscInt n = 2;
   Material m;
   Diag *diag;
-  for (int k = 0; k < 4; ++k)
+  for (int k = 0; k < 5; ++k)
     for (const LawParameter *p = law->parameters; p->name; ++p)
       if (!strcmp(p->name, more[k])) constants[n++] = (NamedValue){(char *)more[k], value[k]};
   spec = (MaterialSpec){

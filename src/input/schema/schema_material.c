@@ -9,6 +9,8 @@ SchemaEntry schema_law_entry(const void *law_parameter)
 {
   const LawParameter *p = law_parameter;
   const PetscBool bounded = p->min > -PETSC_MAX_REAL || p->max < PETSC_MAX_REAL;
+  if (p->words)
+    return (SchemaEntry){.key = p->name, .type = TYPE_WORD, .help = p->help, .registry = (const void *const *)p->words};
   return (SchemaEntry){.key = p->name,
                        .type = TYPE_NUMBER,
                        .unit = p->unit,
@@ -20,7 +22,8 @@ SchemaEntry schema_law_entry(const void *law_parameter)
                        .max_open = p->max_open,
                        .endless = p->fallback >= 1e300,
                        .offset = offsetof(NamedValue, value),
-                       .required = PetscIsNanReal(p->fallback)};
+                       .note = p->absent,
+                       .required = PetscIsNanReal(p->fallback) && !p->absent};
 }
 
 static const LawParameter *find_parameter(const Law *law, const char *key)
@@ -44,6 +47,20 @@ SchemaEntry schema_elastic(PetscInt i)
                        .bounded = isfinite(c->min),
                        .min_open = PETSC_TRUE,
                        .offset = offsetof(NamedValue, value)};
+}
+
+/* The number of a constant, or of its word: NAN after a mistake. */
+static PetscErrorCode ReadConstant(SchemaReader *r, const SchemaEntry *entry, const YamlNode *node, PetscReal *value)
+{
+  int word = -1;
+
+  PetscFunctionBeginUser;
+  *value = NAN;
+  if (entry->type == TYPE_WORD) {
+    PetscCall(SchemaReadWord(r, entry, node, &word));
+    if (word >= 0) *value = word;
+  } else if (!schema_number(r, entry, node, value)) *value = NAN;
+  PetscFunctionReturn(0);
 }
 
 /* `bulk: inf`: the one number that may be infinite. */
@@ -77,7 +94,7 @@ static void unknown_key(SchemaReader *r, const Law *law, const YamlNode *mapping
   const char *words[LAW_MAX_PARAMETERS + ELASTIC_CONSTANTS + 8] = {"law", "density"};
   char path[512];
   PetscInt n = 2;
-  for (int k = 0; k < ELASTIC_CONSTANTS; ++k) words[n++] = elastic_constants[k].name;
+  for (int k = 0; !(law && law->elastic) && k < ELASTIC_CONSTANTS; ++k) words[n++] = elastic_constants[k].name;
   for (const LawParameter *p = law ? law->parameters : NULL;
        p && p->name && n < LAW_MAX_PARAMETERS + ELASTIC_CONSTANTS + 7; ++p)
     words[n++] = p->name;
@@ -94,10 +111,13 @@ static PetscErrorCode ReadConstants(SchemaReader *r, const Law *law, const YamlN
     const int elastic = elastic_index(node->key);
     PetscReal value;
     if (!strcmp(node->key, "law") || !strcmp(node->key, "density")) continue;
-    if (p || elastic >= 0) {
+    if (p || (elastic >= 0 && !(law && law->elastic))) {
       const SchemaEntry entry = p ? schema_law_entry(p) : schema_elastic(elastic);
       if (is_infinite(node)) PetscCall(Add(material, node->key, INFINITY));
-      else if (schema_number(r, &entry, node, &value)) PetscCall(Add(material, node->key, value));
+      else {
+        PetscCall(ReadConstant(r, &entry, node, &value));
+        if (!PetscIsNanReal(value)) PetscCall(Add(material, node->key, value));
+      }
       /* without a law nobody knows which keys it has */
     } else if (law) unknown_key(r, law, mapping, node);
   }
@@ -112,6 +132,7 @@ static PetscErrorCode FillParameters(SchemaReader *r, const Law *law, const Yaml
   for (const LawParameter *p = law->parameters; p && p->name; ++p) {
     const SchemaEntry entry = schema_law_entry(p);
     if (yaml_find(mapping, p->name)) continue;
+    if (p->absent) continue;
     if (!entry.required) PetscCall(Add(material, p->name, p->fallback));
     else {
       SchemaKeyError(r, mapping, "key '%s' of %s is missing; the law %s needs it", p->name,
@@ -181,7 +202,7 @@ PetscErrorCode SchemaOpenMaterial(SchemaReader *r, const YamlNode *mapping, void
   PetscCall(ReadConstants(r, law, mapping, material));
   if (!law) PetscFunctionReturn(0);
   PetscCall(FillParameters(r, law, mapping, material));
-  PetscCall(CheckElastic(r, mapping));
+  if (!law->elastic) PetscCall(CheckElastic(r, mapping));
   PetscFunctionReturn(0);
 }
 
@@ -198,7 +219,8 @@ PetscErrorCode SchemaWriteMaterial(FILE *out, int indent, const Case *c, const v
     const int elastic = elastic_index(value->name);
     const char *unit = p ? p->unit : elastic >= 0 ? elastic_constants[elastic].unit : NULL;
     fprintf(out, "%*s%s: ", indent, "", value->name);
-    schema_write_real(out, value->value);
+    if (p && p->words) fputs(p->words[(int)value->value]->word, out);
+    else schema_write_real(out, value->value);
     fprintf(out, unit && unit[0] ? "  # %s\n" : "\n", unit);
   }
   PetscFunctionReturn(0);

@@ -17,62 +17,34 @@
  *
  * Cohesion holds on to what opens: with c > 0 the tension of the apex stays until omega is zero
  * again. Its work on the way out comes back on the way in, and counts as stored. */
+#include "material/hencky.h"
 #include "material/mohr_coulomb/mohr_coulomb_plane.h"
-#include "material/principal.h"
-#include "material/shape.h"
+#include "material/strength.h"
 
-enum { FRICTION, DILATANCY, COHESION, CUTOFF, MEMORY };
+enum { MEMORY = STRENGTH_N };
 
 #define N_STATE MC_STATE
-#define NO_CUTOFF 1e300
-#define ENDLESS 1e30 /* Pa: what never yields */
 
-/* What the spectral decomposition of eight points gave. */
-typedef struct {
-  Lanes b[6], stretch2[3], strain[3], basis[36];
-  Lanes det, flow, opening; /* of the increment; equivalent plastic strain and opening before it */
-  LaneBits finite;          /* is b of use? */
-} Trial;
-
-LANES_INLINE void trial_lanes(PetscInt n, const PetscReal *dF, const PetscReal *old, Trial *t)
+LANES_INLINE void trial_lanes(PetscInt n, const PetscReal *dF, const Lanes before[N_STATE], HenckyTrial *t)
 {
-  const Lanes one = (Lanes){0} + 1.0, none = {0};
-  Lanes f[9], before[N_STATE], v[9], size, sum = none;
-  lanes_load(9, n, dF, f);
-  lanes_load(N_STATE, n, old, before);
-  t->flow = before[6];
-  t->opening = before[7];
-  lanes_det(f, &t->det);
-  lanes_push_forward(f, before, t->b);
+  hencky_push(n, dF, before, t);
   mc_with_opening(&before[7], 6, t->b);
-  for (int k = 0; k < 6; ++k) {
-    lanes_abs(&t->b[k], &size);
-    sum += size;
-  }
-  t->finite = (sum * sum <= PETSC_MAX_REAL) & (t->det <= PETSC_MAX_REAL) & (t->det > 0.0);
-  for (int k = 0; k < 6; ++k) lanes_select(&t->finite, &t->b[k], k < 3 ? &one : &none, &t->b[k]);
-  lanes_sym_eigen(t->b, t->stretch2, v);
-  t->finite &= t->stretch2[2] > 0.0; /* lost to rounding: stretches 1e8 apart */
-  for (int a = 0; a < 3; ++a) {
-    lanes_log(&t->stretch2[a], &t->strain[a]);
-    t->strain[a] *= 0.5;
-  }
-  lanes_principal_basis(v, t->basis);
+  hencky_spectrum(t);
 }
 
 /* b^e of the returned stress, equivalent plastic strain and opening. An elastic point keeps its
  * trial b to the last bit. */
-LANES_INLINE void state_lanes(const PetscReal *p, const Trial *t, const Lanes tau[3], const LaneBits *regions,
-                              Lanes state[N_STATE])
+LANES_INLINE void state_lanes(const PetscReal *p, const HenckyTrial *t, const Lanes before[N_STATE], const Lanes tau[3],
+                              const LaneBits *regions, Lanes state[N_STATE])
 {
   const Lanes share = p[MC_LAMBDA] / (3.0 * p[MC_LAMBDA] + 2.0 * p[MC_MU]) * (tau[0] + tau[1] + tau[2]), none = {0};
   const LaneBits plastic = *regions != MC_ELASTIC;
   Lanes stretch2[3], b[6], norm2 = none, flow;
   for (int k = 0; k < 6; ++k) state[k] = t->b[k];
-  state[6] = t->flow;
+  state[6] = before[6];
   state[7] = none;
   if (!lanes_any(&plastic)) return;
-  mc_opening(p, regions, t->strain, tau, &t->opening, &state[7]);
+  mc_opening(p, regions, t->strain, tau, &before[7], &state[7]);
   for (int a = 0; a < 3; ++a) {
     const Lanes elastic = (tau[a] - share) / (2.0 * p[MC_MU]), twice = 2.0 * elastic;
     const Lanes plastic_strain = t->strain[a] - elastic - state[7] / 3.0;
@@ -87,52 +59,39 @@ LANES_INLINE void state_lanes(const PetscReal *p, const Trial *t, const Lanes ta
   for (int k = 0; k < 6; ++k) lanes_select(&plastic, &b[k], &state[k], &state[k]);
 }
 
-LANES_INLINE void tangent_lanes(const PetscReal *p, const Trial *t, const LaneBits *regions, const Lanes tau[3],
+LANES_INLINE void tangent_lanes(const PetscReal *p, const HenckyTrial *t, const LaneBits *regions, const Lanes tau[3],
                                 PetscInt n, PetscReal *c)
 {
-  Lanes D[9], shear[3], all[36], r, coth;
+  Lanes D[9], r[3];
   mc_moduli_lanes(p, regions, D);
   for (int k = 0; k < 3; ++k) {
     const int a = k == 2 ? 0 : k, b = k == 2 ? 2 : k + 1; /* 12, 23, 31 as 13 */
-    const Lanes x = t->strain[a] - t->strain[b];
+    const Lanes x = t->strain[a] - t->strain[b], rise = tau[a] - tau[b];
     LaneBits elastic = *regions == MC_ELASTIC;
     if (a == 1) elastic |= *regions == MC_CUT_PLANE;
-    const Lanes rise = tau[a] - tau[b];
-    mc_difference_lanes(p, &elastic, &x, &rise, &r);
-    lanes_principal_coth(&x, &t->stretch2[a], &t->stretch2[b], &coth);
-    shear[k] = 0.5 * (r * coth - tau[a] - tau[b]);
+    mc_difference_lanes(p, &elastic, &x, &rise, &r[k]);
   }
-  lanes_principal_tangent(D, tau, shear, t->basis, all);
-  lanes_store(36, n, all, c);
+  hencky_tangent(t, D, r, tau, n, c);
 }
 
-/* Points that failed keep their state and carry no stress. */
 static LawStatus give_up(const LaneBits *finite, const Lanes *det, PetscInt n, const PetscReal *old, PetscReal *state,
                          PetscReal *tau, PetscReal *c)
 {
-  LawStatus worst = LAW_OK;
-  for (PetscInt l = 0; l < PetscMin(n, LANES); ++l) {
-    if ((*finite)[l]) continue;
-    const LawStatus status = (*det)[l] <= 0.0 ? LAW_INVERTED : LAW_NOT_FINITE;
-    worst = PetscMax(worst, status);
-    for (int k = 0; state && k < N_STATE; ++k) state[l * N_STATE + k] = old[l * N_STATE + k];
-    for (int k = 0; k < 6; ++k) tau[l * 6 + k] = 0.0;
-    for (int k = 0; c && k < 36; ++k) c[l * 36 + k] = 0.0;
-  }
-  return worst;
+  return hencky_give_up(N_STATE, finite, finite, det, n, old, state, tau, c);
 }
 
 LANES_INLINE LawStatus update_lanes(const PetscReal *p, PetscInt n, const PetscReal *dF, const PetscReal *old,
                                     PetscReal *state, PetscReal *tau, PetscReal *c)
 {
-  Lanes principal[3], now[N_STATE], stress[6];
+  Lanes before[N_STATE], principal[3], now[N_STATE], stress[6];
   LaneBits regions;
-  Trial t;
-  trial_lanes(n, dF, old, &t);
+  HenckyTrial t;
+  lanes_load(N_STATE, n, old, before);
+  trial_lanes(n, dF, before, &t);
   mc_return_lanes(p, t.strain, principal, &regions);
   lanes_principal_tensor(principal, t.basis, stress);
   if (state) {
-    state_lanes(p, &t, principal, &regions, now);
+    state_lanes(p, &t, before, principal, &regions, now);
     lanes_store(N_STATE, n, now, state);
   }
   lanes_store(6, n, stress, tau);
@@ -205,33 +164,17 @@ static PetscReal apex(const PetscReal *p) { return p[MC_CUT] < INFINITY ? p[MC_C
 
 static PetscReal energy(const PetscReal *p, const PetscReal *state)
 {
-  PetscReal stretch2[3], v[9], trace = 0.0, norm2 = 0.0;
-  sym_eigen(state, stretch2, v);
-  for (int a = 0; a < 3; ++a) {
-    const PetscReal e = 0.5 * log(stretch2[a]);
-    trace += e;
-    norm2 += e * e;
-  }
-  const PetscReal held = state[7] > 0.0 ? apex(p) * state[7] : 0.0;
-  return 0.5 * p[MC_LAMBDA] * trace * trace + p[MC_MU] * norm2 + held;
+  return hencky_energy(p[MC_LAMBDA], p[MC_MU], state) + (state[7] > 0.0 ? apex(p) * state[7] : 0.0);
 }
 
-/* tau = J sigma with ln J = tr tau / 3K; PETSC_FALSE outside the yield surface. */
+/* PETSC_FALSE outside the yield surface. */
 static PetscBool initial_stress(const PetscReal *p, const PetscReal sigma[6], PetscReal *state)
 {
-  const PetscReal bulk = p[MC_LAMBDA] + 2.0 / 3.0 * p[MC_MU];
-  const PetscReal J = volume_from_pressure(VOLUME_LOG, bulk, (sigma[0] + sigma[1] + sigma[2]) / 3.0);
-  PetscReal tau[3], e[3], v[9], basis[36];
-  sym_eigen(sigma, tau, v);
-  for (int a = 0; a < 3; ++a) tau[a] *= J;
-  const PetscReal noise = mc_noise(p, tau);
-  if (!(mc_yield(p, tau) <= noise && tau[0] - p[MC_CUT] <= noise)) return PETSC_FALSE;
-  principal_basis(v, basis);
-  mc_compliance(p, tau, e);
-  for (int a = 0; a < 3; ++a) e[a] = exp(2.0 * e[a]);
-  principal_tensor(e, basis, state);
+  PetscReal tau[3];
+  hencky_stress(p[MC_LAMBDA], p[MC_MU], sigma, tau, state);
   state[6] = state[7] = 0.0;
-  return PETSC_TRUE;
+  const PetscReal noise = mc_noise(p, tau);
+  return mc_yield(p, tau) <= noise && tau[0] - p[MC_CUT] <= noise;
 }
 
 static void volume(PetscInt n, const PetscReal *state, PetscReal *J) { volume_of_b(n, N_STATE, state, J); }
@@ -262,28 +205,13 @@ static void prepare(const Elasticity *elastic, const PetscReal *given, PetscReal
   p[MC_NOISE] = 4.0 * PETSC_MACHINE_EPSILON * (k + 1.0) * (lambda + 2.0 * mu);
 }
 
-/* More dilatancy than friction would gain energy by shearing. */
-static const char *check(const PetscReal *given)
-{
-  return given[DILATANCY] > given[FRICTION] ? "the dilatancy angle must not be larger than the friction angle" : NULL;
-}
-
-/* c, tan phi and the cut-off over the factor; psi as it is, up to the phi that is left. */
 static void reduce(const PetscReal *given, PetscReal factor, PetscReal *reduced)
 {
-  memcpy(reduced, given, (MEMORY + 1) * sizeof *reduced);
-  if (factor == 1.0) return;
-  reduced[CUTOFF] = factor > 0.0 && given[CUTOFF] < NO_CUTOFF ? given[CUTOFF] / factor : NO_CUTOFF;
-  reduced[COHESION] = factor > 0.0 ? given[COHESION] / factor : ENDLESS;
-  if (factor > 0.0) reduced[FRICTION] = atan(tan(given[FRICTION]) / factor);
-  reduced[DILATANCY] = PetscMin(given[DILATANCY], reduced[FRICTION]);
+  strength_reduce(MEMORY + 1, given, factor, reduced);
 }
 
 static const LawParameter parameters[] = {
-  {"friction_angle", "deg", "angle of internal friction", 0, 90, .max_open = PETSC_TRUE, .fallback = NAN},
-  {"dilatancy_angle", "deg", "dilatancy angle, at most the friction angle", 0, 90, .max_open = PETSC_TRUE,
-   .fallback = 0},
-  {"cohesion", "Pa", "cohesion", 0, PETSC_MAX_REAL, .fallback = NAN},
+  STRENGTH_PARAMETERS,
   {"tension_cutoff", "Pa", "largest principal tension; 1e300: none but the apex", 0, PETSC_MAX_REAL,
    .fallback = NO_CUTOFF},
   {"opening_memory", "", "share of an opening that must close before anything bears; 1: grains keep their density", 0,
@@ -317,5 +245,5 @@ const Law law_mohr_coulomb = {
   .scale = scale,
   .prepare = prepare,
   .reduce = reduce,
-  .check = check,
+  .check = strength_check,
 };

@@ -130,6 +130,15 @@ static PetscErrorCode StressPoints(Model *m, const Upwards *u, Overburden *overb
   PetscFunctionReturn(0);
 }
 
+/* What most likely is wrong where a law has no state without stress. */
+static void hint_pressure(const Model *m, PetscInt b, Diag *diag)
+{
+  for (PetscInt i = 0; i < m->c->n_materials; ++i)
+    if (!strcmp(m->c->materials[i].name, m->c->bodies[b].material) && m->materials[i].law->needs_stress)
+      diag_hint(diag, "the law %s needs a pressure at every point, within the yield surface of its preconsolidation",
+                m->materials[i].law->name);
+}
+
 PetscErrorCode InitialStress(Model *m, const Outline *outline, Diag *diag)
 {
   const Upwards u = upwards(m->c);
@@ -150,6 +159,7 @@ PetscErrorCode InitialStress(Model *m, const Outline *outline, Diag *diag)
   if (failed >= 0) {
     PetscCall(PetscSNPrintf(path, sizeof path, "bodies[%d].k0", (int)failed));
     diag_error(diag, path, "the material's law cannot carry this initial stress");
+    hint_pressure(m, failed, diag);
   }
   PetscFunctionReturn(0);
 }

@@ -1,0 +1,200 @@
+/* Drucker-Prager material in large strains (docs/theory.md, "Laws"): Hencky's energy, a circular
+ * cone in the space of Kirchhoff stresses that meets Mohr-Coulomb's pyramid where `match` says, a
+ * non-associated flow, and a largest mean tension.
+ *
+ *   p = tr tau / 3,  R = sqrt(s : s / 2),  f = R + eta p - xi c <= 0,  p <= T <= xi c / eta
+ *   d eps^p = gamma (s / 2R + etabar I / 3)                on the cone
+ *
+ *   CONE    p = p_tr - K etabar gamma, R = R_tr - mu gamma, gamma = f_tr / (mu + K eta etabar)
+ *   CAP     p = T, the shear stress as it is
+ *   CORNER  p = T, R = xi c - eta T: with T = xi c / eta the apex, where R = 0
+ *
+ * All three keep the direction of s. At the corner the flow is one of both surfaces; with etabar
+ * = 0 no flow of the cone leads to the apex, which is then the return by definition, as of
+ * Mohr-Coulomb. */
+#include "material/hencky.h"
+#include "material/strength.h"
+
+enum { MATCH = STRENGTH_N, GIVEN };
+
+/* Packed. */
+enum { DP_BULK, DP_MU, DP_ETA, DP_ETABAR, DP_XI_C, DP_CAP, DP_CORNER, DP_NOISE };
+
+enum { MATCH_COMPRESSION, MATCH_EXTENSION, MATCH_PLANE_STRAIN };
+
+/* What of the trial (mean stress, R_tr) is left after the return, with derivatives by both. */
+typedef struct {
+  Lanes p, ratio, p_p, p_R, R_p, R_R; /* ratio: R over R_tr */
+} Meridian;
+
+/* An option of the return where mask. */
+LANES_INLINE void meridian_take(const LaneBits *mask, const Meridian *yes, Meridian *to)
+{
+  const Lanes *from = &yes->p;
+  Lanes *at = &to->p;
+  for (size_t k = 0; k < sizeof *to / sizeof(Lanes); ++k) lanes_select(mask, &from[k], &at[k], &at[k]);
+}
+
+LANES_INLINE void meridian_return(const PetscReal *q, const Lanes *p, const Lanes *R, Meridian *m, LaneBits *plastic)
+{
+  const Lanes none = {0}, one = none + 1.0, T = none + q[DP_CAP];
+  const PetscReal K = q[DP_BULK], mu = q[DP_MU], a = 1.0 / (mu + K * q[DP_ETA] * q[DP_ETABAR]);
+  const Lanes f = *R + q[DP_ETA] * *p - q[DP_XI_C];
+  Lanes size;
+  lanes_abs(p, &size);
+  const Lanes noise = q[DP_NOISE] + 8.0 * PETSC_MACHINE_EPSILON * (*R + size + q[DP_XI_C]);
+  const LaneBits shears = f > noise, opens = *p - T > noise;
+  *plastic = shears | opens;
+  *m = (Meridian){*p, one, one, none, none, one};
+  if (!lanes_any(plastic)) return;
+  const Lanes safe = *R + 1e-300, p_cone = *p - K * q[DP_ETABAR] * a * f;
+  const Meridian cone = {p_cone,
+                         (*R - mu * a * f) / safe,
+                         none + (1.0 - K * q[DP_ETA] * q[DP_ETABAR] * a),
+                         none - K * q[DP_ETABAR] * a,
+                         none - mu * q[DP_ETA] * a,
+                         none + (1.0 - mu * a)};
+  const Meridian cap = {T, one, none, none, none, one}, corner = {T, q[DP_CORNER] / safe, none, none, none, none};
+  const LaneBits beyond = (opens & ~shears) | (shears & (p_cone > T)), capped = beyond & (*R < q[DP_CORNER]);
+  meridian_take(&shears, &cone, m);
+  meridian_take(&beyond, &corner, m);
+  meridian_take(&capped, &cap, m);
+}
+
+LANES_INLINE void drucker_prager(const PetscReal *q, PetscBool moduli, const Lanes e[3], const Lanes *before,
+                                 Lanes *after, HenckyReturn *r)
+{
+  const PetscReal K = q[DP_BULK], mu = q[DP_MU];
+  const Lanes mean = (e[0] + e[1] + e[2]) / 3.0, p = 3.0 * K * mean, none = {0};
+  const Lanes d[3] = {e[0] - mean, e[1] - mean, e[2] - mean};
+  const Lanes norm2 = 2.0 * (d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
+  Lanes R, n[3];
+  Meridian m;
+  lanes_sqrt(&norm2, &R);
+  R *= mu;
+  meridian_return(q, &p, &R, &m, &r->plastic);
+  r->good = m.p == m.p;
+  for (int k = 0; k < 3; ++k) {
+    r->tau[k] = m.p + 2.0 * mu * m.ratio * d[k];
+    r->elastic[k] = m.p / (3.0 * K) + m.ratio * d[k];
+    n[k] = 2.0 * mu * d[k] / (R + 1e-300); /* s / R */
+    r->r[k] = 2.0 * mu * m.ratio;
+  }
+  after[0] = before[0] + (R - m.ratio * R) / (sqrt(3.0) * mu);
+  lanes_select(&r->plastic, &after[0], &before[0], &after[0]);
+  if (!moduli) return;
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j)
+      r->D[3 * i + j] = K * m.p_p + mu * m.p_R * n[j] + K * m.R_p * n[i] + mu * (m.R_R - m.ratio) * n[i] * n[j] +
+                        2.0 * mu * m.ratio * ((i == j ? 1.0 : 0.0) - 1.0 / 3.0) + none;
+}
+
+HENCKY_UPDATE(drucker_prager, 1)
+HENCKY_MIXED(1)
+
+static PetscReal lame(const PetscReal *q) { return q[DP_BULK] - 2.0 / 3.0 * q[DP_MU]; }
+
+static PetscReal energy(const PetscReal *q, const PetscReal *state) { return hencky_energy(lame(q), q[DP_MU], state); }
+
+/* PETSC_FALSE outside the yield surface. */
+static PetscBool initial_stress(const PetscReal *q, const PetscReal sigma[6], PetscReal *state)
+{
+  PetscReal tau[3], norm2 = 0.0;
+  hencky_stress(lame(q), q[DP_MU], sigma, tau, state);
+  state[6] = 0.0;
+  const PetscReal p = (tau[0] + tau[1] + tau[2]) / 3.0;
+  for (int a = 0; a < 3; ++a) norm2 += 0.5 * PetscSqr(tau[a] - p);
+  const PetscReal R = sqrt(norm2), noise = q[DP_NOISE] + 8.0 * PETSC_MACHINE_EPSILON * (R + fabs(p) + q[DP_XI_C]);
+  return R + q[DP_ETA] * p - q[DP_XI_C] <= noise && p - q[DP_CAP] <= noise;
+}
+
+/* Without friction, dilatancy and cut-off (von Mises) the flow neither feels the pressure nor
+ * changes the volume. */
+static VolumeLaw volume_law(const PetscReal *q)
+{
+  return q[DP_ETA] == 0.0 && q[DP_ETABAR] == 0.0 && q[DP_CAP] == INFINITY ? VOLUME_LOG : VOLUME_COUPLED;
+}
+
+/* Slope of the cone through the edges of Mohr-Coulomb's pyramid in compression (-1) or extension
+ * (1); times cot phi: its xi. */
+static PetscReal edge_slope(PetscReal angle, PetscReal side)
+{
+  return 6.0 * sin(angle) / (sqrt(3.0) * (3.0 + side * sin(angle)));
+}
+
+/* The cones of phi and psi. In plane strain flow goes on with s_zz = -2/3 etabar R, and there the
+ * cone is to have Mohr-Coulomb's limit and its dilatancy. */
+static void cones(const PetscReal *given, PetscReal *eta, PetscReal *etabar, PetscReal *xi)
+{
+  const PetscReal s = sin(given[FRICTION]), d = sin(given[DILATANCY]), c = cos(given[FRICTION]);
+  const PetscReal side = given[MATCH] == MATCH_EXTENSION ? 1.0 : -1.0;
+  if (given[MATCH] == MATCH_PLANE_STRAIN) {
+    *etabar = d / sqrt(1.0 + d * d / 3.0);
+    const PetscReal both = sqrt(1.0 - *etabar * *etabar / 3.0) + s * *etabar / 3.0;
+    *eta = s / both;
+    *xi = c / both;
+  } else {
+    *etabar = edge_slope(given[DILATANCY], side);
+    *eta = edge_slope(given[FRICTION], side);
+    *xi = 6.0 * c / (sqrt(3.0) * (3.0 + side * s));
+  }
+}
+
+static void prepare(const Elasticity *elastic, const PetscReal *given, PetscReal *q)
+{
+  PetscReal xi;
+  q[DP_BULK] = elastic->bulk;
+  q[DP_MU] = elastic->shear;
+  cones(given, &q[DP_ETA], &q[DP_ETABAR], &xi);
+  q[DP_XI_C] = xi * given[COHESION];
+  const PetscReal apex = q[DP_ETA] > 0.0 ? q[DP_XI_C] / q[DP_ETA] : INFINITY;
+  const PetscBool cut = given[CUTOFF] < NO_CUTOFF && given[CUTOFF] < apex ? PETSC_TRUE : PETSC_FALSE;
+  q[DP_CAP] = cut ? given[CUTOFF] : apex;
+  q[DP_CORNER] = cut ? q[DP_XI_C] - q[DP_ETA] * given[CUTOFF] : 0.0;
+  q[DP_NOISE] = 8.0 * PETSC_MACHINE_EPSILON * (1.0 + q[DP_ETA]) * (elastic->lame + 2.0 * elastic->shear);
+}
+
+static void reduce(const PetscReal *given, PetscReal factor, PetscReal *reduced)
+{
+  strength_reduce(GIVEN, given, factor, reduced);
+}
+
+static const LawWord compression = {"compression", "triaxial compression: the outer edges of the pyramid"};
+static const LawWord extension = {"extension", "triaxial extension: its inner edges"};
+static const LawWord plane_strain = {"plane-strain",
+                                     "the limit of plane strain, with the dilatancy angle that is given"};
+static const LawWord *const matches[] = {&compression, &extension, &plane_strain, NULL};
+
+static const LawParameter parameters[] = {
+  STRENGTH_PARAMETERS,
+  {"tension_cutoff", "Pa", "largest mean tension; 1e300: none but the apex", 0, PETSC_MAX_REAL, .fallback = NO_CUTOFF},
+  {"match", "", "where the cone has the strength of Mohr-Coulomb", 0, 2, .fallback = MATCH_COMPRESSION,
+   .words = matches},
+  {.name = NULL},
+};
+
+static const LawField fields[] = {
+  {"elastic_strain", "", "elastic left Cauchy-Green tensor b", 6, {1, 1, 1, 0, 0, 0}},
+  {"equivalent_plastic_strain", "", "accumulated sqrt(2/3) |dev d eps^p|", 1, {0}},
+  {.name = NULL},
+};
+
+const Law law_drucker_prager = {
+  .name = "drucker-prager",
+  .help = "Hencky solid with Drucker-Prager plasticity, non-associated, a cone that meets Mohr-Coulomb's pyramid",
+  .parameters = parameters,
+  .fields = fields,
+  .n_state = 7,
+  .symmetric = PETSC_FALSE,
+  .yields = PETSC_TRUE,
+  .spares_state = PETSC_TRUE,
+  .update = update,
+  .energy = energy,
+  .initial_stress = initial_stress,
+  .volume = volume,
+  .volume_law = volume_law,
+  .scale = scale,
+  .prepare = prepare,
+  .reduce = reduce,
+  .check = strength_check,
+};

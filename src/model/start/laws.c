@@ -1,0 +1,52 @@
+/* What laws ask of the start (docs/theory.md, "Laws"): those that soften are told the size of the
+ * cell in which each of their points starts, and those that need a stress must have one. */
+#include <math.h>
+#include "basis/cell.h"
+#include "model/model_private.h"
+
+/* That of the square or cube of the same measure; of a simplex, of which two fill a square and
+ * six a cube, that of the square or cube that it is a part of. */
+static PetscReal cell_size(const Grid *grid, PetscInt cell)
+{
+  const CellType type = grid_cell_type(grid, cell);
+  PetscReal x[CELL_MAX_NODES * 3];
+  grid_cell_x(grid, cell, x);
+  const PetscReal parts = cells[type].nodes == grid->dim + 1 ? (grid->dim == 2 ? 2.0 : 6.0) : 1.0;
+  return pow(parts * cell_volume(type, x), 1.0 / (PetscReal)grid->dim);
+}
+
+void sizes_start(const Model *m)
+{
+  for (PetscInt p = 0; p < m->points->n; ++p) {
+    const Material *material = &m->materials[m->points->material[p]];
+    if (!material->law->size) continue;
+    material->law->size(material->parameters, cell_size(m->grid, m->points->cell[p]),
+                        point_real(m->points, POINT_STATE, p));
+  }
+}
+
+/* Does the state of a point bear no update, not even one at rest? */
+static PetscBool has_no_stress(const Model *m, PetscInt p)
+{
+  static const PetscReal identity[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
+  const Material *material = &m->materials[m->points->material[p]];
+  PetscReal state[LAW_MAX_STATE], tau[6];
+  if (!material->law->needs_stress) return PETSC_FALSE;
+  return material->law->update(material->parameters, 1, identity, point_real(m->points, POINT_STATE, p), state, tau,
+                               NULL) != LAW_OK;
+}
+
+void stresses_check(const Model *m, Diag *diag)
+{
+  char path[64];
+  for (PetscInt b = 0; b < m->c->n_bodies; ++b)
+    for (PetscInt p = 0; p < m->points->n; ++p) {
+      if (m->points->body[p] != b || !has_no_stress(m, p)) continue;
+      const Material *material = &m->materials[m->points->material[p]];
+      PetscSNPrintf(path, sizeof path, "bodies[%d].material", (int)b);
+      diag_error(diag, path, "'%s' is of %s, which has no state without stress: it must begin under a pressure",
+                 m->c->bodies[b].name, material->law->name);
+      diag_hint(diag, "`k0` gives the body the stress of its weight, for example k0: 0.5");
+      break;
+    }
+}
