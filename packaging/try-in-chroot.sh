@@ -10,7 +10,7 @@ chroot=${2:-$(mktemp -d)/debian}
 
 leave() {
   umount "$chroot/proc" "$chroot/sys" "$chroot/dev/shm" 2>/dev/null || :
-  [ -n "${KEEP:-}" ] || rm -rf "$chroot"
+  [ -n "${KEEP:-}" ] || { rm -rf --one-file-system "$chroot" && rmdir "$(dirname "$chroot")"; }
 }
 KEEP=${2:-}
 trap 'leave' EXIT
