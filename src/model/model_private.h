@@ -34,6 +34,12 @@ PetscErrorCode ModelEnable(Model *model);
 /* Collective. Geostatic stress of bodies that ask for it, as their law's state: of the material
  * inside the outline that is above them. */
 PetscErrorCode InitialStress(Model *model, const Outline *outline, Diag *diag);
+/* equilibrium.c. Mistakes of a case that asks for one. */
+void equilibrium_check(const Model *model, Diag *diag);
+/* Does everything stay where it is, and only stresses change? */
+PetscBool equilibrium_stays(const Model *model);
+/* Collective. While it is sought: how much is lacking, and forces that hold what is to be taken away later. */
+PetscErrorCode EquilibriumPrepare(Model *model, StepProblem *problem);
 /* Acceleration at t = 0 from the balance of momentum with lumped mass, so that a body in free fall
  * falls from the first step on. */
 PetscErrorCode InitialAcceleration(Model *model);
@@ -71,6 +77,8 @@ PetscErrorCode OutsideWarn(const Model *model, Diag *diag);
 void strength_start(Model *model, Diag *diag);
 /* Materials, and the factor in force, as they are when the strength is divided by it. */
 void strength_set(Model *model, PetscReal factor);
+/* Collective. The largest increment of a node in the last step, or its last try, m. */
+PetscErrorCode LargestIncrement(const Model *model, PetscReal *largest);
 /* Collective. Forces balance: but is it a body that stands, or one that has slid? */
 PetscErrorCode StrengthJudge(Model *model, StepReport *report);
 

@@ -71,8 +71,7 @@ void strength_start(Model *m, Diag *diag)
   if (diag_errors(diag) == before) strength_set(m, 0);
 }
 
-/* The largest increment of a node. */
-static PetscErrorCode Largest(const Model *m, PetscReal *largest)
+PetscErrorCode LargestIncrement(const Model *m, PetscReal *largest)
 {
   PetscReal local = 0;
 
@@ -94,7 +93,7 @@ PetscErrorCode StrengthJudge(Model *m, StepReport *report)
 
   PetscFunctionBeginUser;
   if (!m->strength.trying) PetscFunctionReturn(0);
-  PetscCall(Largest(m, &moved));
+  PetscCall(LargestIncrement(m, &moved));
   if (moved <= m->strength.reach) PetscFunctionReturn(0);
   snprintf(report->leap, sizeof report->leap, "it slides: %.3g m, for %.3g m that what stands moves at most",
            (double)moved, (double)m->strength.reach);
@@ -117,7 +116,7 @@ PetscErrorCode ModelTryFactor(Model *m, PetscReal factor, StepReport *report, Pe
   m->strength.trying = PETSC_FALSE;
   m->control = control;
   m->cuts = cuts;
-  PetscCall(Largest(m, moved));
+  PetscCall(LargestIncrement(m, moved));
   if (report->outcome != STEP_ACCEPTED) strength_set(m, stable);
   PetscFunctionReturn(0);
 }

@@ -53,6 +53,8 @@ PetscErrorCode RunOpen(Run *r, const RunOptions *options, Diag *diag)
   if (r->failed) PetscFunctionReturn(0);
   if (!r->output) PetscCall(OutputCreate(r->model, run_dir_path(r->dir), &r->output));
   PetscCall(SummaryBegin(r->model, r->dir));
+  PetscCall(RunEquilibrate(r));
+  if (r->failed) PetscFunctionReturn(0);
   PetscCall(UntilLook(&r->until, r->model));
   PetscCall(RunWritten(r, EventsWatch(r->model, r->dir, PETSC_TRUE, r->events)));
   PetscCall(RunWriteRow(r));
