@@ -95,8 +95,7 @@ void strength_go_on(Model *m, const Model *before, Diag *diag)
                (double)before->c->analysis.reduction.most);
 }
 
-/* The largest increment of a node. */
-static PetscErrorCode Largest(const Model *m, PetscReal *largest)
+PetscErrorCode LargestIncrement(const Model *m, PetscReal *largest)
 {
   PetscReal local = 0;
 
@@ -118,7 +117,7 @@ PetscErrorCode StrengthJudge(Model *m, StepReport *report)
 
   PetscFunctionBeginUser;
   if (!m->strength.trying) PetscFunctionReturn(0);
-  PetscCall(Largest(m, &moved));
+  PetscCall(LargestIncrement(m, &moved));
   if (moved <= m->strength.reach) PetscFunctionReturn(0);
   snprintf(report->leap, sizeof report->leap, "it slides: %.3g m, for %.3g m that what stands moves at most",
            (double)moved, (double)m->strength.reach);
@@ -141,7 +140,7 @@ PetscErrorCode ModelTryFactor(Model *m, PetscReal factor, StepReport *report, Pe
   m->strength.trying = PETSC_FALSE;
   m->control = control;
   m->cuts = cuts;
-  PetscCall(Largest(m, moved));
+  PetscCall(LargestIncrement(m, moved));
   if (report->outcome != STEP_ACCEPTED) strength_set(m, stable);
   PetscFunctionReturn(0);
 }

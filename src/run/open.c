@@ -61,6 +61,8 @@ PetscErrorCode RunOpen(Run *r, const RunOptions *options, Diag *diag)
     PetscCall(RunDirLog(r->dir, "stage = 1 of %d (%s)", (int)r->whole->n_stages, r->c->spec->name));
   if (r->c->initial.run) PetscCall(RunDirLog(r->dir, "initial = %s", r->c->initial.run));
   if (r->c->initial.run) PetscCall(RunTellImbalance(r, &r->imbalance));
+  else PetscCall(RunEquilibrate(r));
+  if (r->failed) PetscFunctionReturn(0);
   PetscCall(UntilLook(&r->until, r->model));
   PetscCall(RunWritten(r, EventsWatch(r->model, r->dir, PETSC_TRUE, r->events)));
   PetscCall(RunWriteRow(r));

@@ -58,6 +58,8 @@ PetscErrorCode RunWritten(Run *r, PetscErrorCode code);
 PetscErrorCode RunWriteRow(Run *r);
 PetscErrorCode RunWriteState(Run *r);
 
+/* equilibrium.c. Collective. The state before the first step, where the case asks for an equilibrium. */
+PetscErrorCode RunEquilibrate(Run *r);
 /* Collective. Directory, history, output and first row of a run from its start. */
 PetscErrorCode RunOpen(Run *r, const RunOptions *options, Diag *diag);
 /* Collective. The same for a run that goes on from its newest checkpoint that is whole. *complete:

@@ -111,6 +111,24 @@ static PetscErrorCode StrengthToTables(const Model *m, Tables *tables)
   PetscFunctionReturn(0);
 }
 
+static PetscErrorCode InitialToTables(const Model *m, Tables *tables)
+{
+  Table *table;
+
+  PetscFunctionBeginUser;
+  if (m->c->initial.equilibrium <= EQUILIBRIUM_NONE) PetscFunctionReturn(0);
+  PetscCall(TablesAdd(tables, "initial", PETSC_TRUE, 1, &table));
+  PetscCall(TableAdd(table, "kept", NULL, COLUMN_REAL, INITIAL_KEPT, (void *)&m->initial, NULL));
+  PetscFunctionReturn(0);
+}
+
+static void initial_from_table(Model *m, const Table *table, char reason[256])
+{
+  if (!table || reason[0]) return;
+  const PetscReal *kept = table_data(table, "kept", COLUMN_REAL, INITIAL_KEPT, reason);
+  for (int k = 0; kept && k < INITIAL_KEPT; ++k) ((PetscReal *)&m->initial)[k] = kept[k];
+}
+
 static void strength_from_table(Model *m, const Table *table, char reason[256])
 {
   const PetscReal *kept = table && !reason[0] ? table_data(table, "factor", COLUMN_REAL, 1, reason) : NULL;
@@ -149,6 +167,7 @@ PetscErrorCode ModelToTables(Model *m, Tables *tables)
   PetscCall(TriesToTables(m, tables));
   PetscCall(SofteningToTables(m, tables));
   PetscCall(StrengthToTables(m, tables));
+  PetscCall(InitialToTables(m, tables));
   PetscCall(StateLostToTables(m, tables));
   PetscCall(StateListsToTables(m, tables));
   PetscCall(PointsToTable(m->points, m->grid, "points", tables));
@@ -349,6 +368,7 @@ PetscErrorCode ModelFromTables(Model *m, Tables *tables, char reason[256])
   tries_from_table(m, tables_find(tables, "tries"), reason);
   softening_from_table(m, tables_find(tables, "softening"), reason);
   strength_from_table(m, tables_find(tables, "strength"), reason);
+  initial_from_table(m, tables_find(tables, "initial"), reason);
   state_lost_from_tables(m, tables, reason);
   PetscCall(StateListsFromTables(m, tables, reason));
   PetscCall(ReasonShare(m->comm, reason));
