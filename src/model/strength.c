@@ -86,6 +86,11 @@ void strength_start(Model *m, Diag *diag)
 void strength_go_on(Model *m, const Model *before, Diag *diag)
 {
   const PetscReal beyond = m->c->strength.beyond_failure;
+  if (m->c->analysis.type != ANALYSIS_FACTOR) { /* what was found stays known */
+    m->strength.lower = before->strength.lower;
+    m->strength.upper = before->strength.upper;
+    m->strength.value = before->strength.value;
+  }
   if (beyond == 0) return;
   if (before->c->analysis.type != ANALYSIS_FACTOR) strength_set(m, before->strength.factor);
   else if (before->strength.upper > 0) strength_set(m, beyond * before->strength.upper);

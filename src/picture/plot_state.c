@@ -6,6 +6,7 @@
 #include "picture/figure.h"
 #include "picture/plot.h"
 #include "picture/plot_scene.h"
+#include "picture/plot_stage.h"
 #include "picture/plot_walls.h"
 #include "picture/revolution/revolution.h"
 #include "output/directory/run_dir_files.h"
@@ -224,7 +225,9 @@ static PetscErrorCode FindKind(const PlotOptions *options, Diag *diag, PlotScene
 /* When it was; where strength is divided the factor, which goes on from the time of the loads, 1. */
 static void say_when(const PlotOptions *options, PetscReal time, char text[64])
 {
-  if (time > 1 && file_exists(options->run, "factor.csv")) snprintf(text, 64, "F = %.5g", (double)(time - 1));
+  char stage[64];
+  if (plot_stage_at(options->run, time, stage)) snprintf(text, 64, "%.40s, t = %.6g s", stage, (double)time);
+  else if (time > 1 && file_exists(options->run, "factor.csv")) snprintf(text, 64, "F = %.5g", (double)(time - 1));
   else snprintf(text, 64, "t = %.6g s", (double)time);
 }
 

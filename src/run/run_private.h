@@ -75,6 +75,8 @@ PetscErrorCode RunNextStage(Run *r, Diag *diag);
 PetscErrorCode RunEnterStage(Run *r, PetscInt k, const PetscReal *starts);
 /* Collective. Models of all stages are made once, so that mistakes are told before anything runs. */
 PetscErrorCode RunCheckStages(MPI_Comm comm, const Case *whole, Diag *diag);
+/* Collective. stages.csv: the stages so far, and when each began. */
+PetscErrorCode RunWriteStages(Run *r);
 /* Collective. Where and how much is out of balance. */
 PetscErrorCode RunTellImbalance(const Run *r, const Imbalance *imbalance);
 /* Collective. Into another file than that of the newest state; a refusal is a warning in the log. */
