@@ -41,6 +41,16 @@ int TalusModelDestroy(TalusModel **model)
   return talus_is_running() ? talus_code(Destroy(model)) : TALUS_ERROR_STATE;
 }
 
+static PetscErrorCode Equilibrate(TalusCase *c, TalusModel *made)
+{
+  PetscFunctionBeginUser;
+  PetscCall(ModelEquilibrate(made->model, &made->report));
+  if (made->report.outcome == STEP_ACCEPTED) PetscFunctionReturn(0);
+  diag_error(c->diag, "initial.equilibrium", "there is no equilibrium to begin with: %s", made->report.reason);
+  PetscCall(ModelDestroy(&made->model));
+  PetscFunctionReturn(0);
+}
+
 static PetscErrorCode Create(TalusCase *c, TalusModel **model, char **messages)
 {
   TalusModel *made;
@@ -52,6 +62,7 @@ static PetscErrorCode Create(TalusCase *c, TalusModel **model, char **messages)
   else if (c->c->n_stages || c->c->initial.run)
     diag_error(c->diag, c->c->n_stages ? "stages" : "initial", "stages, and states of other runs, are for whole runs");
   else PetscCall(ModelCreate(c->comm, c->c, c->diag, &made->model));
+  if (made->model) PetscCall(Equilibrate(c, made));
   PetscCall(TalusTell(c->comm, c->diag, messages));
   if (made->model && c->force.force) PetscCall(SetForce(made, c->force.force, c->force.context));
   if (made->model) *model = made;

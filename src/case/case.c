@@ -56,6 +56,7 @@ static PetscErrorCode BodiesClear(Case *c)
     PetscCall(PetscFree(body->material));
     PetscCall(PetscFree(body->region));
     PetscCall(PetscFree(body->mesh));
+    for (int k = 0; k < 6; ++k) PetscCall(PetscFree(body->stress[k]));
     PetscCall(ShapeClear(&body->shape));
   }
   PetscCall(PetscFree(c->bodies));
@@ -190,11 +191,18 @@ PetscBool case_writes(const Case *c, const char *field)
   return PETSC_FALSE;
 }
 
-PetscBool case_has_k0(const Case *c)
+PetscBool body_has_stress(const BodySpec *body) { return body->has_k0 || body->has_stress; }
+
+PetscBool case_has_stress(const Case *c)
 {
   for (PetscInt b = 0; b < c->n_bodies; ++b)
-    if (c->bodies[b].has_k0 && !c->bodies[b].absent) return PETSC_TRUE;
+    if (body_has_stress(&c->bodies[b]) && !c->bodies[b].absent) return PETSC_TRUE;
   return PETSC_FALSE;
+}
+
+PetscBool case_starts_with_gravity(const Case *c)
+{
+  return case_has_stress(c) || c->initial.equilibrium > EQUILIBRIUM_NONE || (c->initial.run && c->stage == 0);
 }
 
 const char *case_load_path(const Case *c, PetscInt k, char path[64])

@@ -105,6 +105,9 @@ typedef struct {
   /* geostatic: sigma_v of the material above, sigma_h = k0 sigma_v */
   PetscBool has_k0;
   PetscReal k0;
+  /* or given: formulas of x y z, depth and weight for xx yy zz xy yz zx; those not given are NULL: 0 */
+  PetscBool has_stress;
+  char *stress[6];
   PetscBool has_surface;
   /* height against gravity at which the user believes the material to end, m: only compared */
   PetscReal surface;
@@ -240,6 +243,20 @@ typedef struct {
   PetscReal after;    /* s before which it does not matter */
 } UntilSpec;
 
+/* How bodies come to rest before the first step: not at all, with their laws, or first as if nothing
+ * yielded. AUTO until the case is read. */
+typedef enum { EQUILIBRIUM_AUTO, EQUILIBRIUM_NONE, EQUILIBRIUM_DIRECT, EQUILIBRIUM_ELASTIC_FIRST } EquilibriumKind;
+
+/* What the state before the first step is made of, besides the initial stress of bodies. */
+typedef struct {
+  EquilibriumKind equilibrium;
+  PetscBool reset; /* bodies keep the shape that they are given, and only stresses change */
+  char *run;       /* or the state of another run, in this directory; NULL: of none */
+  char *stage;     /* the end of this stage of it; NULL: its newest state */
+  PetscBool has_release;
+  PetscReal release; /* s, see Case.release */
+} InitialSpec;
+
 /* By what the strength may be divided before a body fails. */
 typedef struct {
   PetscReal from;      /* the first factor that is tried once the loads are on */
@@ -263,15 +280,6 @@ typedef struct {
 typedef struct {
   PetscBool displacement, velocity;
 } ResetSpec;
-
-/* Where a case starts from. */
-typedef struct {
-  char *run;   /* directory of another run; NULL: from the undeformed bodies */
-  char *stage; /* of that run: its end; NULL: the newest state */
-  ResetSpec reset;
-  PetscBool has_release;
-  PetscReal release; /* s, see Case.release */
-} InitialSpec;
 
 /* A stage, besides what it changes of the case. */
 typedef struct {
@@ -373,6 +381,7 @@ typedef struct Case {
   char *formulation; /* "displacement", "mixed" */
   MixedSpec mixed;
   AnalysisSpec analysis;
+  InitialSpec initial;
   GridSpec grid;
   PetscInt n_bodies;
   BodySpec *bodies;
@@ -400,7 +409,6 @@ typedef struct Case {
   PetscInt n_petsc; /* options of the petsc: block, in order: "-name value" */
   char **petsc;
   StrengthSpec strength;
-  InitialSpec initial;
   PetscInt n_stages; /* 0: the case is what is run */
   StageSpec *stages;
   struct Case **stage_case; /* of each: the case with the words of the stages so far */
@@ -431,8 +439,11 @@ PetscBool case_is_mixed(const Case *c);
 PetscBool case_is_static(const AnalysisSpec *analysis);
 /* Is that one of the fields of states? */
 PetscBool case_writes(const Case *c, const char *field);
-/* Does any body start with the stress of its weight? */
-PetscBool case_has_k0(const Case *c);
+/* Does the body start with a stress? Does any? */
+PetscBool body_has_stress(const BodySpec *body);
+PetscBool case_has_stress(const Case *c);
+/* Does gravity act from the start: is there a stress that carries weight, or an equilibrium with it? */
+PetscBool case_starts_with_gravity(const Case *c);
 
 /* Do the two bodies meet at an interface? Its index, or -1; *first: is body a its first one? */
 PetscInt case_interface(const Case *c, PetscInt a, PetscInt b, PetscBool *first);

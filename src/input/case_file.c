@@ -150,6 +150,17 @@ static PetscErrorCode ResolveFormulation(const YamlNode *root, Case *c)
   PetscFunctionReturn(0);
 }
 
+/* Statics begin in equilibrium: what the initial stress lacks of it is no part of the first step. */
+static void resolve_equilibrium(const YamlNode *given, Case *c)
+{
+  const Method *method = c->method ? method_find(c->method) : NULL;
+  if (!yaml_find(given, "reset_displacement")) c->initial.reset = case_has_stress(c);
+  if (c->initial.equilibrium != EQUILIBRIUM_AUTO) return;
+  const PetscBool due =
+    case_is_static(&c->analysis) && case_has_stress(c) && !c->initial.run && method && !method->clouds;
+  c->initial.equilibrium = due ? EQUILIBRIUM_DIRECT : EQUILIBRIUM_NONE;
+}
+
 /* Stress that carries the weight means that the weight is there: without a word of the user gravity
  * does not grow. */
 static PetscErrorCode ResolveGravity(Case *c)
@@ -157,8 +168,7 @@ static PetscErrorCode ResolveGravity(Case *c)
   Amplitude *a = &c->gravity_amplitude;
 
   PetscFunctionBeginUser;
-  if (a->n || !case_is_static(&c->analysis) || !(case_has_k0(c) || (c->initial.run && c->stage == 0)))
-    PetscFunctionReturn(0);
+  if (a->n || !case_is_static(&c->analysis) || !case_starts_with_gravity(c)) PetscFunctionReturn(0);
   a->n = 1;
   PetscCall(PetscCalloc1(1, &a->time));
   PetscCall(PetscMalloc1(1, &a->value));
@@ -204,6 +214,7 @@ static PetscErrorCode ReadDocument(const char *file, YamlDocument *document, Dia
   resolve_stabilisation(yaml_find(document->root, "stabilisation"), *c);
   PetscCall(ResolveFormulation(document->root, *c));
   PetscCall(ResolveScheme(*c));
+  resolve_equilibrium(yaml_find(document->root, "initial"), *c);
   PetscCall(ResolveGravity(*c));
   resolve_release(*c, (*c)->spec);
   PetscFunctionReturn(0);

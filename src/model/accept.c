@@ -109,8 +109,9 @@ PetscErrorCode ConvectStep(Model *m, PetscReal dt, EnergyStep *energy, StepRepor
 
   PetscFunctionBeginUser;
   PetscCall(PetscTime(&clock));
-  PetscCall(m->method->convect(m->space));
-  m->space->present = PETSC_FALSE;
+  const PetscBool stays = equilibrium_stays(m);
+  if (!stays) PetscCall(m->method->convect(m->space));
+  if (!stays || !m->formulation->pressure) m->space->present = PETSC_FALSE; /* pressures are those of the nodes now */
   PetscCall(PhaseEnd(m->seconds, PHASE_MOVE, &clock));
   m->time += dt;
   ++m->step;

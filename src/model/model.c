@@ -304,7 +304,7 @@ static PetscErrorCode CreateBodies(Model *m, Diag *diag)
   PetscInt errors;
 
   PetscFunctionBeginUser;
-  PetscCall(CreatePoints(m, case_has_k0(m->c) ? &outline : NULL, diag));
+  PetscCall(CreatePoints(m, case_has_stress(m->c) ? &outline : NULL, diag));
   PetscCall(DiagReduce(m->comm, diag, &errors));
   if (!errors) PetscCall(InitialStress(m, &outline, diag));
   if (!errors) sizes_start(m);
@@ -329,6 +329,7 @@ static PetscErrorCode Build(Model *m, Diag *diag)
   PetscCall(DiagReduce(m->comm, diag, &errors));
   if (errors) PetscFunctionReturn(0);
   strength_start(m, diag);
+  equilibrium_check(m, diag);
   PetscCall(GridCreate(m->comm, m->c, cell_weight, (void *)m->c, diag, &m->grid));
   if (!m->grid) PetscFunctionReturn(0);
   PetscCall(GridWiden(&m->grid, basis_find(m->c->basis.kind)->halo + (m->c->n_interfaces ? CONTACT_HALO : 0)));

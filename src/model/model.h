@@ -95,6 +95,19 @@ typedef struct {
   PetscReal reach;  /* no node of a body that stands moves farther in such a step, m */
 } Strength;
 
+/* What the state before the first step was like (start/). All of it is real, counts too. */
+typedef struct {
+  PetscReal beyond;               /* points whose given stress was more than their strength allows */
+  PetscReal lacked;               /* norm of forces out of balance over that of the weight, as given */
+  PetscReal left;                 /* the same in the equilibrium */
+  PetscReal moved;                /* largest displacement on the way there, m */
+  PetscReal parts, elastic_parts; /* in which it was taken away; of these before anything could yield */
+  PetscReal iterations;
+  PetscReal share;   /* of what is lacking that the present step takes away */
+  PetscBool seeking; /* equilibrium: time stands still */
+} InitialState;
+#define INITIAL_KEPT 7
+
 typedef struct Model {
   MPI_Comm comm;
   const Case *c;
@@ -145,6 +158,7 @@ typedef struct Model {
   Tries tries; /* since the start */
   Softening limit;
   Strength strength;
+  InitialState initial;
   PetscReal seconds[PHASE_N]; /* see model_times */
 } Model;
 
@@ -172,6 +186,10 @@ typedef struct {
 PetscErrorCode ModelCreate(MPI_Comm comm, const Case *c, Diag *diag, Model **model);
 PetscErrorCode ModelDestroy(Model **model);
 
+/* Collective. Of a model that was just created: the equilibrium that the case asks for before the first
+ * step. If it is not found report->outcome is no acceptance, and the model is fit for nothing but
+ * ModelDestroy. */
+PetscErrorCode ModelEquilibrate(Model *model, StepReport *report);
 /* Collective. Body force besides gravity, NULL for none. Before the first step it also enters the
  * initial acceleration. */
 PetscErrorCode ModelSetBodyForce(Model *model, BodyForce force, void *context);

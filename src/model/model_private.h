@@ -34,13 +34,16 @@ PetscErrorCode ModelEnable(Model *model);
 /* Collective. Geostatic stress of bodies that ask for it, as their law's state: of the material
  * inside the outline that is above them. */
 PetscErrorCode InitialStress(Model *model, const Outline *outline, Diag *diag);
-/* A point whose POINT_VOLUME is what it fills now, with J = 1: its state carries the Cauchy stress, F, J and
- * volume become those of this state. PETSC_FALSE: the law has no such state. */
-PetscBool point_carry_stress(Points *points, PetscInt p, const Material *material, PetscReal sigma[6]);
 /* Tell the laws that have a length the sizes of the cells in which their points start (start/laws.c). */
 void sizes_start(const Model *model);
 /* Complain of bodies whose law needs a stress and has none (start/laws.c). */
 void stresses_check(const Model *model, Diag *diag);
+/* equilibrium.c. Mistakes of a case that asks for one. */
+void equilibrium_check(const Model *model, Diag *diag);
+/* Does everything stay where it is, and only stresses change? */
+PetscBool equilibrium_stays(const Model *model);
+/* Collective. While it is sought: how much is lacking, and forces that hold what is to be taken away later. */
+PetscErrorCode EquilibriumPrepare(Model *model, StepProblem *problem);
 /* Acceleration now from the balance of momentum with lumped mass, so that a body in free fall
  * falls from the first step on. */
 PetscErrorCode InitialAcceleration(Model *model);
@@ -82,6 +85,8 @@ void strength_start(Model *model, Diag *diag);
 void strength_go_on(Model *model, const Model *before, Diag *diag);
 /* Materials, and the factor in force, as they are when the strength is divided by it. */
 void strength_set(Model *model, PetscReal factor);
+/* Collective. The largest increment of a node in the last step, or its last try, m. */
+PetscErrorCode LargestIncrement(const Model *model, PetscReal *largest);
 /* Collective. Forces balance: but is it a body that stands, or one that has slid? */
 PetscErrorCode StrengthJudge(Model *model, StepReport *report);
 

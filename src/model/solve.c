@@ -104,7 +104,7 @@ PetscErrorCode SolveStep(Model *m, PetscReal *dt, StepReport *report)
     if (report->newton.converged || report->newton.interrupted) PetscFunctionReturn(0);
     ++m->cuts;
     ++report->cuts;
-    if (m->strength.trying || *dt / 2 < smallest) break;
+    if (m->strength.trying || m->initial.seeking || *dt / 2 < smallest) break;
   }
   report->outcome = STEP_TOO_SMALL;
   report->dt = *dt;

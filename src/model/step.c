@@ -23,7 +23,7 @@ PetscErrorCode ModelStep(Model *m, PetscReal limit, StepReport *report)
     PetscCall(ConvectStep(m, dt, &energy, report)); /* (c) points move, and nodes or not */
     PetscCall(ChooseNextStep(m, shortened && !report->cuts, report));
     outside_judge(m, report);
-    PetscCall(MeasuresRemember(m, report->dt));
+    if (!m->initial.seeking) PetscCall(MeasuresRemember(m, report->dt));
   } else PetscCall(StepStartRestore(m, &start, report));
   PetscFunctionReturn(0);
 }

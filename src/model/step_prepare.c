@@ -176,14 +176,15 @@ PetscErrorCode PrepareStep(Model *m, PetscReal dt, StepProblem *p)
 {
   const PetscInt dofs = m->grid->n_nodes * m->dim;
   const TimeWeights weights = m->scheme->weights(&m->c->analysis, dt);
-  const PetscReal solved = time_solved(m->scheme), t = m->time + solved * dt;
+  const PetscReal passes = m->initial.seeking ? 0 : dt;
+  const PetscReal solved = time_solved(m->scheme), t = m->time + solved * passes;
   const PetscReal inertia = time_inertia(&weights, solved, m->c->analysis.damping);
   PetscReal g[3];
 
   PetscFunctionBeginUser;
   gravity_at(m->c, t, g);
   PetscCall(PetscArrayzero(m->nodes->prescribed, dofs));
-  boundary_increments(m->boundary, m->grid, m->time, m->time + dt, m->nodes->prescribed);
+  boundary_increments(m->boundary, m->grid, m->time, m->time + passes, m->nodes->prescribed);
   if (m->scheme->inertia) set_boundary_kinematics(m, dt);
   if (m->scheme->inertia) PetscCall(HoldConstraints(m, dt));
   if (m->scheme->inertia && m->method->hold) PetscCall(m->method->hold(m->space));
@@ -215,5 +216,6 @@ PetscErrorCode PrepareStep(Model *m, PetscReal dt, StepProblem *p)
   p->round_off = round_off_of(m, inertia);
   m->space->constraints->scale = node_stiffness(m, inertia);
   PetscCall(ForceScales(m, g, dt, p));
+  PetscCall(EquilibriumPrepare(m, p));
   PetscFunctionReturn(0);
 }

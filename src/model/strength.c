@@ -86,6 +86,11 @@ void strength_start(Model *m, Diag *diag)
 void strength_go_on(Model *m, const Model *before, Diag *diag)
 {
   const PetscReal beyond = m->c->strength.beyond_failure;
+  if (m->c->analysis.type != ANALYSIS_FACTOR) { /* what was found stays known */
+    m->strength.lower = before->strength.lower;
+    m->strength.upper = before->strength.upper;
+    m->strength.value = before->strength.value;
+  }
   if (beyond == 0) return;
   if (before->c->analysis.type != ANALYSIS_FACTOR) strength_set(m, before->strength.factor);
   else if (before->strength.upper > 0) strength_set(m, beyond * before->strength.upper);
@@ -95,8 +100,7 @@ void strength_go_on(Model *m, const Model *before, Diag *diag)
                (double)before->c->analysis.reduction.most);
 }
 
-/* The largest increment of a node. */
-static PetscErrorCode Largest(const Model *m, PetscReal *largest)
+PetscErrorCode LargestIncrement(const Model *m, PetscReal *largest)
 {
   PetscReal local = 0;
 
@@ -118,7 +122,7 @@ PetscErrorCode StrengthJudge(Model *m, StepReport *report)
 
   PetscFunctionBeginUser;
   if (!m->strength.trying) PetscFunctionReturn(0);
-  PetscCall(Largest(m, &moved));
+  PetscCall(LargestIncrement(m, &moved));
   if (moved <= m->strength.reach) PetscFunctionReturn(0);
   snprintf(report->leap, sizeof report->leap, "it slides: %.3g m, for %.3g m that what stands moves at most",
            (double)moved, (double)m->strength.reach);
@@ -141,7 +145,7 @@ PetscErrorCode ModelTryFactor(Model *m, PetscReal factor, StepReport *report, Pe
   m->strength.trying = PETSC_FALSE;
   m->control = control;
   m->cuts = cuts;
-  PetscCall(Largest(m, moved));
+  PetscCall(LargestIncrement(m, moved));
   if (report->outcome != STEP_ACCEPTED) strength_set(m, stable);
   PetscFunctionReturn(0);
 }

@@ -59,8 +59,11 @@ PetscErrorCode RunOpen(Run *r, const RunOptions *options, Diag *diag)
   PetscCall(SummaryBegin(r->model, r->dir));
   if (r->whole->n_stages)
     PetscCall(RunDirLog(r->dir, "stage = 1 of %d (%s)", (int)r->whole->n_stages, r->c->spec->name));
+  PetscCall(RunWriteStages(r));
   if (r->c->initial.run) PetscCall(RunDirLog(r->dir, "initial = %s", r->c->initial.run));
   if (r->c->initial.run) PetscCall(RunTellImbalance(r, &r->imbalance));
+  else PetscCall(RunEquilibrate(r));
+  if (r->failed) PetscFunctionReturn(0);
   PetscCall(UntilLook(&r->until, r->model));
   PetscCall(RunWritten(r, EventsWatch(r->model, r->dir, PETSC_TRUE, r->events)));
   PetscCall(RunWriteRow(r));
@@ -103,6 +106,7 @@ static PetscErrorCode Rewind(Run *r, PetscInt step, Diag *diag)
   if (errors || r->failed) PetscFunctionReturn(0);
   PetscCall(RunWritten(r, RunDirRewind(r->dir, states, step)));
   if (!r->failed) PetscCall(WriteCase(r));
+  if (!r->failed) PetscCall(RunWriteStages(r));
   if (!r->failed) PetscCall(RunWritten(r, EventsWatch(r->model, r->dir, PETSC_TRUE, r->events)));
   PetscFunctionReturn(0);
 }

@@ -60,6 +60,8 @@ PetscErrorCode RunWritten(Run *r, PetscErrorCode code);
 PetscErrorCode RunWriteRow(Run *r);
 PetscErrorCode RunWriteState(Run *r);
 
+/* equilibrium.c. Collective. The state before the first step, where the case asks for an equilibrium. */
+PetscErrorCode RunEquilibrate(Run *r);
 /* Collective. Directory, history, output and first row of a run from its start. */
 PetscErrorCode RunOpen(Run *r, const RunOptions *options, Diag *diag);
 /* Collective. The same for a run that goes on from its newest checkpoint that is whole. *complete:
@@ -75,6 +77,8 @@ PetscErrorCode RunNextStage(Run *r, Diag *diag);
 PetscErrorCode RunEnterStage(Run *r, PetscInt k, const PetscReal *starts);
 /* Collective. Models of all stages are made once, so that mistakes are told before anything runs. */
 PetscErrorCode RunCheckStages(MPI_Comm comm, const Case *whole, Diag *diag);
+/* Collective. stages.csv: the stages so far, and when each began. */
+PetscErrorCode RunWriteStages(Run *r);
 /* Collective. Where and how much is out of balance. */
 PetscErrorCode RunTellImbalance(const Run *r, const Imbalance *imbalance);
 /* Collective. Into another file than that of the newest state; a refusal is a warning in the log. */

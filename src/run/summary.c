@@ -32,7 +32,7 @@ PetscErrorCode SummaryBegin(Model *m, RunDir *dir)
   PetscCall(ModelCountPoints(m, &points));
   PetscCallMPI(MPI_Comm_size(m->comm, &size));
   if (m->c->title) PetscCall(RunDirLog(dir, "title = %s", m->c->title));
-  if (case_has_k0(m->c)) PetscCall(RunDirLog(dir, "gravity = from the start, whose stress k0 gives"));
+  if (case_starts_with_gravity(m->c)) PetscCall(RunDirLog(dir, "gravity = from the start"));
   if (m->c->kinematics->hoop)
     PetscCall(RunDirLog(dir, "kinematics = axisymmetric: volumes, masses, forces and energies of the full circle"));
   PetscCall(RunDirLog(dir, "method = %s", m->method->name));

@@ -24,7 +24,7 @@ static PetscErrorCode ReadFinished(const Verification *v, const char *folder, Ve
   if (HistoryRead(path, &history, reason)) PetscFunctionReturn(0);
   const PetscReal *last = history.n_rows ? history.values + (history.n_rows - 1) * history.n_columns : NULL;
   summary_read(folder, &r->summary);
-  *finished = last && (r->summary.ended[0] || last[0] >= c->analysis.end * (1 - 1e-9));
+  *finished = last && (r->summary.ended[0] || c->n_stages || last[0] >= c->analysis.end * (1 - 1e-9));
   for (PetscInt k = 0; k < r->n_measures && *finished; ++k) {
     const PetscInt column = history_column(&history, c->measures[k].name);
     r->measures[k] = column < 0 ? NAN : last[column];

@@ -101,7 +101,7 @@ says err.txt "a static run cannot go on to another end than its own, 1 s" "talus
 expect "more steps in statics" 2 "$talus" run --resume beam --quiet --set analysis.steps=2
 says err.txt "a resumed run cannot change analysis.steps" "for all else start a new run"
 expect "nothing to do in statics" 0 "$talus" run --resume beam --quiet
-says err.txt "there is nothing to resume"
+says err.txt "there is nothing left to do"
 
 # What makes no sense is said, and nothing is touched
 rm -r cut && cp -r whole cut

@@ -93,6 +93,23 @@ const SchemaTable schema_grid = {.name = "grid",
                                  .hide = hide_in_grid};
 
 /* --- bodies --- */
+static const SchemaEntry stress_entries[] = {
+  KEY("xx", TEXT, NULL, "along x; radial in axisymmetry", .note = "0", AT(BodySpec, stress[0])),
+  KEY("yy", TEXT, NULL, "along y", .note = "0", AT(BodySpec, stress[1])),
+  KEY("zz", TEXT, NULL, "along z: out of the plane, round the circle in axisymmetry", .note = "0",
+      AT(BodySpec, stress[2])),
+  KEY("xy", TEXT, NULL, "shear stress", .note = "0", AT(BodySpec, stress[3])),
+  KEY("yz", TEXT, NULL, "shear stress", ONLY_3D, .note = "0", AT(BodySpec, stress[4])),
+  KEY("zx", TEXT, NULL, "shear stress", ONLY_3D, .note = "0", AT(BodySpec, stress[5])),
+  {.key = NULL},
+};
+static const SchemaTable body_stress = {
+  .name = "body.stress",
+  .help =
+    "Initial Cauchy stress in Pa, tension positive: formulas of x, y, z (m, where a point is), depth (m, below the "
+    "surface of the highest material above it, against gravity) and weight (N/m2, of all that is above it): "
+    "numbers, + - * / ^, brackets, pi, sqrt exp log sin cos tan atan abs.",
+  .entries = stress_entries};
 static const SchemaEntry body_entries[] = {
   KEY("name", NAME, NULL, "how measures, loads and pictures call it", REQUIRED, AT(BodySpec, name)),
   KEY("shape", TABLE, NULL, "where the material is at the start", .table = &schema_shape, AT(BodySpec, shape),
@@ -117,6 +134,8 @@ static const SchemaEntry body_entries[] = {
     "initial stress: horizontal over vertical stress, the vertical one from the weight of the material that is above, "
     "of all bodies; gravity acts from the start then",
     AT_LEAST(0), AT(BodySpec, k0), GIVEN(BodySpec, has_k0)),
+  KEY("stress", TABLE, NULL, "initial stress by formulas, in place of k0", .table = &body_stress,
+      GIVEN(BodySpec, has_stress)),
   KEY("surface", NUMBER, "m",
       "height, against gravity, where the material above the body ends: a warning if it ends elsewhere", .with = "k0",
       AT(BodySpec, surface), GIVEN(BodySpec, has_surface)),
@@ -126,6 +145,7 @@ static const SchemaEntry body_entries[] = {
   {.key = NULL},
 };
 static const SchemaGroup body_groups[] = {{GROUP_AT_LEAST_ONE, {"shape", "region", "mesh", NULL}},
+                                          {GROUP_AT_MOST_ONE, {"k0", "stress", NULL}},
                                           {GROUP_NONE, {NULL}}};
 static PetscBool hide_in_body(const SchemaEntry *e, const void *source)
 {

@@ -27,11 +27,18 @@
 #define TURNS .turns = PETSC_TRUE
 #define INPUT_ONLY .input_only = PETSC_TRUE
 #define STAGED .staged = PETSC_TRUE
+/* Of a stage, and of a case that starts from another run. */
+#define RELEASE(type, ...)                                                                                         \
+  KEY("release", NUMBER, "s",                                                                                      \
+      "what is out of balance when it begins (a body is gone, a strength has fallen) is held by forces on nodes, " \
+      "which fade in proportion to time over so long; 0: at once",                                                 \
+      .note = "statics: all of it; dynamics: 0", AT_LEAST(0), AT(type, release), GIVEN(type, has_release),         \
+      __VA_ARGS__)
 
 /* Tables that others name. */
 extern const SchemaTable schema_shape, schema_wall_shape, schema_selector, schema_grid, schema_body, schema_motion,
   schema_components, schema_rotation, schema_wall, schema_interface, schema_loads, schema_basis, schema_measure,
-  schema_stage, schema_strength, schema_initial;
+  schema_stage, schema_strength;
 /* From support/bases.inc (registry.c), and the tables that it names. */
 extern const SchemaEntry schema_bases[];
 extern const SchemaGroup schema_basis_groups[];

@@ -1,4 +1,4 @@
-/* Keys of stages, and of where a case starts from. */
+/* Keys of stages, and of strength that is divided. */
 #include "input/schema/schema_keys.h"
 
 static const SchemaWord reset_words[] = {
@@ -10,17 +10,12 @@ static const SchemaWord reset_words[] = {
 #define RESET(type)                                                                                                \
   KEY("reset", FLAGS, NULL, "what begins anew: [displacement, velocity]", .note = "nothing", .words = reset_words, \
       AT(type, reset))
-#define RELEASE(type)                                                                                              \
-  KEY("release", NUMBER, "s",                                                                                      \
-      "what is out of balance when it begins (a body is gone, a strength has fallen) is held by forces on nodes, " \
-      "which fade in proportion to time over so long; 0: at once",                                                 \
-      .note = "statics: all of it; dynamics: 0", AT_LEAST(0), AT(type, release), GIVEN(type, has_release))
 #define PART_OF(name, text) KEY(name, PART, NULL, text, INPUT_ONLY)
 
 static const SchemaEntry stage_entries[] = {
   KEY("name", NAME, NULL, "how messages and `initial` of other cases call it", REQUIRED, AT(StageSpec, name)),
   RESET(StageSpec),
-  RELEASE(StageSpec),
+  RELEASE(StageSpec, .with = NULL),
   PART_OF("analysis",
           "with `type` it stands for itself, without it changes single keys; `end` counts from the start "
           "of the stage"),
@@ -61,17 +56,6 @@ const SchemaTable schema_stage = {
   .entries = stage_entries,
   .size = sizeof(StageSpec),
   .write_open = WriteChanges};
-
-static const SchemaEntry initial_entries[] = {
-  KEY("run", FILE, NULL, "directory of a finished run of the same grid and bodies: its stresses and positions",
-      REQUIRED, AT(InitialSpec, run)),
-  KEY("stage", TEXT, NULL, "of that run: the end of this stage", .note = "the last state", AT(InitialSpec, stage)),
-  RESET(InitialSpec),
-  RELEASE(InitialSpec),
-  {.key = NULL},
-};
-const SchemaTable schema_initial = {
-  .name = "initial", .help = "The state that the case starts from.", .entries = initial_entries};
 
 static const SchemaEntry strength_entries[] = {
   KEY("factor", NUMBER, NULL, "c, tan phi and their like are divided by it, as in a search for the factor of safety",

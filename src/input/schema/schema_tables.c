@@ -218,6 +218,37 @@ static const SchemaEntry parallel_entries[] = {
 static const SchemaTable parallel = {
   .name = "parallel", .help = "How several ranks share the work.", .entries = parallel_entries};
 
+/* --- what is there before the first step --- */
+static const SchemaWord equilibrium_words[] = {
+  {"none", EQUILIBRIUM_NONE, "the first step finds what it may"},
+  {"direct", EQUILIBRIUM_DIRECT, "with the laws as they are"},
+  {"elastic-plastic", EQUILIBRIUM_ELASTIC_FIRST, "first as if nothing yielded, then with the strength that there is"},
+  {NULL, 0, NULL},
+};
+static const SchemaEntry initial_entries[] = {
+  KEY(
+    "equilibrium", WORD, NULL,
+    "before the first step forces come to balance under gravity and loads as they are at t = 0, without inertia: from "
+    "the initial stress of the bodies (k0, stress), or from none, which is gravity loading. What was lacking is told",
+    .words = equilibrium_words, .note = "statics with an initial stress: direct, else none",
+    AT(InitialSpec, equilibrium)),
+  KEY("reset_displacement", BOOLEAN, NULL,
+      "what moves on the way to this equilibrium is forgotten: bodies keep the shape that they are given, and only "
+      "their stresses change",
+      .note = "true with an initial stress", AT(InitialSpec, reset)),
+  KEY("run", FILE, NULL,
+      "or the stresses and places of another run, of the same grid and bodies, in this directory: time, displacements "
+      "and accounts begin anew",
+      AT(InitialSpec, run)),
+  KEY("stage", TEXT, NULL, "of that run: the end of this stage", .note = "the last state", .with = "run",
+      AT(InitialSpec, stage)),
+  RELEASE(InitialSpec, .with = "run"),
+  {.key = NULL},
+};
+static const SchemaTable initial = {.name = "initial",
+                                    .help = "The state before the first step, besides `k0` and `stress` of the bodies.",
+                                    .entries = initial_entries};
+
 /* --- the whole file --- */
 static const SchemaEntry case_entries[] = {
   KEY("title", TEXT, NULL, "a line for people", .fallback = "", AT(Case, title)),
@@ -229,6 +260,7 @@ static const SchemaEntry case_entries[] = {
       .fallback = "displacement", AT(Case, formulation)),
   KEY("mixed", TABLE, NULL, "numbers of the mixed formulation", .table = &mixed, ALWAYS, AT(Case, mixed)),
   KEY("analysis", TABLE, NULL, "statics or dynamics, steps", .table = &analysis, REQUIRED, AT(Case, analysis)),
+  KEY("initial", TABLE, NULL, "equilibrium before the first step", .table = &initial, ALWAYS, AT(Case, initial)),
   KEY("grid", TABLE, NULL, "background grid or mesh", .table = &schema_grid, REQUIRED, AT(Case, grid)),
   KEY("bodies", LIST, NULL, "pieces of material", .table = &schema_body, REQUIRED, AT(Case, bodies),
       .count = offsetof(Case, n_bodies)),
@@ -252,7 +284,6 @@ static const SchemaEntry case_entries[] = {
   KEY("checkpoint", TABLE, NULL, "state to resume from", .table = &checkpoint, ALWAYS, AT(Case, checkpoint)),
   KEY("parallel", TABLE, NULL, "load balance", .table = &parallel, ALWAYS, AT(Case, parallel)),
   KEY("strength", TABLE, NULL, "strength divided by a factor", .table = &schema_strength, AT(Case, strength)),
-  KEY("initial", TABLE, NULL, "the state that the case starts from", .table = &schema_initial, AT(Case, initial)),
   KEY("stages", LIST, NULL, "one after another, each from the state of the one before", .table = &schema_stage,
       AT(Case, stages), .count = offsetof(Case, n_stages)),
   KEY("petsc", OPTIONS, NULL,
@@ -261,12 +292,11 @@ static const SchemaEntry case_entries[] = {
       AT(Case, petsc), .count = offsetof(Case, n_petsc)),
   {.key = NULL},
 };
-/* Tables that are there only if somebody asks for them; of a stage another run is not where it starts. */
+/* Nothing divides the strength unless somebody asks for it. */
 static PetscBool hide_in_case(const SchemaEntry *e, const void *source)
 {
   const Case *c = source;
-  if (!strcmp(e->key, "strength")) return c->strength.factor == 0 && c->strength.beyond_failure == 0;
-  return !strcmp(e->key, "initial") && !c->initial.run;
+  return !strcmp(e->key, "strength") && c->strength.factor == 0 && c->strength.beyond_failure == 0;
 }
 const SchemaTable schema_case = {
   .name = "case", .help = "The keys at the top of the file.", .entries = case_entries, .hide = hide_in_case};

@@ -97,14 +97,14 @@ PetscErrorCode HoldImbalance(Model *m, Imbalance *imbalance)
 /* Where the state before had no inertia, accelerations are those of the balance. */
 PetscErrorCode ResetMotion(Model *m, const Case *from, PetscBool next)
 {
-  const ResetSpec *reset = next ? &m->c->spec->reset : &m->c->initial.reset;
-  const PetscBool stands = !m->scheme->inertia || reset->velocity;
+  const ResetSpec reset = m->c->spec ? m->c->spec->reset : (ResetSpec){0};
+  const PetscBool stands = !m->scheme->inertia || reset.velocity, anew = reset.displacement || !next;
   NodalFields *n = m->nodes;
   const PetscInt dofs = m->grid->n_nodes * m->dim, numbers = m->points->n * m->dim;
 
   PetscFunctionBeginUser;
-  if (reset->displacement) PetscCall(PetscArrayzero(m->points->real[POINT_U], numbers));
-  if (reset->displacement) PetscCall(PetscArrayzero(m->tracers->real[POINT_U], m->tracers->n * m->dim));
+  if (anew) PetscCall(PetscArrayzero(m->points->real[POINT_U], numbers));
+  if (anew) PetscCall(PetscArrayzero(m->tracers->real[POINT_U], m->tracers->n * m->dim));
   if (stands && !m->method->restores_grid) PetscCall(PetscArrayzero(n->v, dofs));
   if (stands) PetscCall(PetscArrayzero(m->points->real[POINT_V], numbers));
   if (!stands && !case_is_static(&from->analysis)) PetscFunctionReturn(0);

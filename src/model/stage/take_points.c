@@ -1,6 +1,7 @@
 /* Points of one case as those of another. */
 #include "material/pressure.h"
 #include "model/stage/stage_private.h"
+#include "model/start/initial_stress.h"
 
 /* The body of this case that one of the other is: of its name, if it is there in both; or -1. */
 static PetscInt body_here(const Case *c, const BodySpec *other)
@@ -46,7 +47,7 @@ static PetscBool swap(Points *points, PetscInt p, const Material *was, const Mat
   *volume *= J_was;
   *J = 1;
   law_initial_state(is->law, state);
-  if (!point_carry_stress(points, p, is, sigma)) return PETSC_FALSE;
+  if (stress_point(points, p, is, sigma) == STRESS_REFUSED) return PETSC_FALSE;
   keep_history(was->law, before, is->law, state);
   const PetscReal stretch = PetscPowReal(*J / J_was, 1.0 / 3.0);
   for (PetscInt i = 0; i < points->components[POINT_F]; ++i) point_real(points, POINT_F, p)[i] = stretch * F[i];
@@ -65,7 +66,6 @@ static PetscErrorCode TellStress(const Model *m, PetscInt failed, Diag *diag)
   PetscCall(PetscSNPrintf(path, sizeof path, "bodies[%d].material", (int)any));
   diag_error(diag, path, "the law of '%s' has no state that carries the stress that '%s' has: it cannot take over",
              m->c->bodies[any].material, m->c->bodies[any].name);
-  diag_hint(diag, "where it is beyond a strength: change the strength alone first, and the stiffness in a later stage");
   PetscFunctionReturn(0);
 }
 

@@ -1,7 +1,8 @@
-/* Geostatic stress at t = 0: that of the material really above each point, under the gravity of t =
- * 0. */
-#include "material/pressure.h"
+/* Stress at t = 0: that of the weight of the material really above each point, under the gravity of
+ * t = 0, or one that formulas give. */
+#include "base/formula.h"
 #include "model/model_private.h"
+#include "model/start/initial_stress.h"
 
 /* Gravity at the start: its size, and the direction against it. */
 typedef struct {
@@ -15,6 +16,7 @@ static Upwards upwards(const Case *c)
   gravity_at(c, 0, g);
   u.g = PetscSqrtReal(g[0] * g[0] + g[1] * g[1] + g[2] * g[2]);
   for (int d = 0; d < 3 && u.g > 0; ++d) u.up[d] = -g[d] / u.g;
+  if (u.g == 0) u.up[1] = 1;
   return u;
 }
 
@@ -28,44 +30,62 @@ static void geostatic(const Upwards *u, PetscReal k0, PetscReal above, PetscReal
   }
 }
 
-/* The state's stress is tau = J sigma, with the J of its own compression: the point's F and
- * undeformed volume take the same J, so that it keeps the volume that it was seeded with. */
-static void compress(Points *points, PetscInt p, const Material *material, const PetscReal sigma[6])
+/* What the formulas of a stress may name. */
+typedef struct {
+  PetscInt dim;
+  const PetscReal *x;
+  PetscReal depth, weight;
+} Place;
+
+static PetscErrorCode PlaceValue(void *context, const char *name, PetscBool *known, PetscReal *value)
 {
-  static const PetscReal identity[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
-  PetscReal *old = point_real(points, POINT_STATE, p), state[LAW_MAX_STATE], tau[6], F[9], work = 0, norm2 = 0;
-  material->law->update(material->parameters, 1, identity, old, state, tau, NULL);
+  const Place *place = context;
+
+  PetscFunctionBeginUser;
+  *known = PETSC_TRUE;
+  if (!strcmp(name, "depth")) *value = place->depth;
+  else if (!strcmp(name, "weight")) *value = place->weight;
+  else if (name[0] >= 'x' && name[0] < 'x' + place->dim && !name[1]) *value = place->x[name[0] - 'x'];
+  else *known = PETSC_FALSE;
+  PetscFunctionReturn(0);
+}
+
+/* Cauchy stress of the formulas of a body. */
+static PetscErrorCode StressOfFormulas(const BodySpec *body, Place *place, PetscReal sigma[6])
+{
+  PetscFunctionBeginUser;
   for (int k = 0; k < 6; ++k) {
-    work += tau[k] * sigma[k];
-    norm2 += sigma[k] * sigma[k];
+    Formula formula = {.value = PlaceValue, .context = place, .at = body->stress[k]};
+    sigma[k] = 0;
+    if (body->stress[k]) PetscCall(FormulaValue(&formula, &sigma[k]));
   }
-  if (norm2 == 0) return;
-  if (points->components[POINT_PRESSURE]) points->real[POINT_PRESSURE][p] = pressure_of_state(material, old, tau);
-  const PetscReal J = work / norm2, stretch = PetscPowReal(J, 1.0 / 3.0);
-  for (int i = 0; i < 9; ++i) F[i] = stretch * identity[i];
-  point_set_F(points, p, F);
-  points->real[POINT_J][p] = J;
-  points->real[POINT_VOLUME][p] /= J;
+  PetscFunctionReturn(0);
 }
 
-/* Shape alone carries the deviator, the pressure the mean: nothing is compressed. */
-static PetscBool stress_incompressible(Points *points, PetscInt p, const Material *material, PetscReal sigma[6])
+/* Is each of them a formula, of names that are known? */
+static PetscErrorCode CheckFormulas(const Case *c, PetscInt b, Diag *diag)
 {
-  const PetscReal mean = (sigma[0] + sigma[1] + sigma[2]) / 3;
-  for (int k = 0; k < 3; ++k) sigma[k] -= mean;
-  points->real[POINT_PRESSURE][p] = mean;
-  return material->law->initial_stress(material->deviatoric, sigma, point_real(points, POINT_STATE, p));
-}
+  static const char *const names[] = {"depth", "weight", "x", "y", "z", NULL};
+  static const char *const component[] = {"xx", "yy", "zz", "xy", "yz", "zx"};
+  const PetscReal origin[3] = {0, 0, 0};
+  Place place = {.dim = kinematics_dim(c->kinematics), .x = origin};
+  PetscReal value;
+  char path[64];
 
-PetscBool point_carry_stress(Points *points, PetscInt p, const Material *material, PetscReal sigma[6])
-{
-  if (!material->law->initial_stress) return PETSC_FALSE;
-  if (points->components[POINT_PRESSURE] && material->compliance == 0)
-    return stress_incompressible(points, p, material, sigma);
-  if (!material->law->initial_stress(material->parameters, sigma, point_real(points, POINT_STATE, p)))
-    return PETSC_FALSE;
-  compress(points, p, material, sigma);
-  return PETSC_TRUE;
+  PetscFunctionBeginUser;
+  for (int k = 0; k < 6; ++k) {
+    Formula formula = {.value = PlaceValue, .context = &place, .at = c->bodies[b].stress[k]};
+    if (!formula.at) continue;
+    PetscCall(FormulaValue(&formula, &value));
+    if (!formula.wrong) continue;
+    PetscCall(PetscSNPrintf(path, sizeof path, "bodies[%d].stress.%s", (int)b, component[k]));
+    if (formula.name[0]) {
+      diag_error(diag, path, "there is no '%s' of a place; depth, weight and coordinates are", formula.name);
+      diag_hint_names(diag, formula.name, names);
+    } else if (formula.wrong[0]) diag_error(diag, path, "'%s' makes no sense here", formula.wrong);
+    else diag_error(diag, path, "something is missing at the end of '%s'", c->bodies[b].stress[k]);
+  }
+  PetscFunctionReturn(0);
 }
 
 /* A stress of weight needs weight, from the start on. */
@@ -74,8 +94,8 @@ static PetscBool check_gravity(const Case *c, const Upwards *u, Diag *diag)
   const PetscBool any = c->gravity[0] != 0 || c->gravity[1] != 0 || c->gravity[2] != 0;
   char path[64];
   PetscInt b = 0;
-  if (u->g > 0) return PETSC_TRUE;
-  while (!c->bodies[b].has_k0) ++b;
+  while (b < c->n_bodies && !c->bodies[b].has_k0) ++b;
+  if (u->g > 0 || b == c->n_bodies) return PETSC_TRUE;
   PetscSNPrintf(path, sizeof path, "bodies[%d].k0", (int)b);
   diag_error(diag, any ? "loads.gravity_amplitude" : path,
              any ? "gravity is 0 at the start, but k0 of '%s' gives the stress that carries it: the body would heave"
@@ -112,7 +132,7 @@ static PetscErrorCode CheckSurface(const Model *m, const PetscReal *highest, Dia
   PetscFunctionReturn(0);
 }
 
-/* All points of bodies with k0; *failed: a body whose law cannot carry it. */
+/* All points of bodies that have one; *failed: a body whose law cannot carry it. */
 static PetscErrorCode StressPoints(Model *m, const Upwards *u, Overburden *overburden, PetscReal *highest,
                                    PetscInt *failed)
 {
@@ -121,12 +141,34 @@ static PetscErrorCode StressPoints(Model *m, const Upwards *u, Overburden *overb
   PetscFunctionBeginUser;
   for (PetscInt p = 0; p < m->points->n; ++p) {
     const PetscInt b = m->points->body[p];
-    if (!m->c->bodies[b].has_k0) continue;
-    PetscCall(OverburdenAt(overburden, b, point_real(m->points, POINT_X, p), &above, &top));
+    const BodySpec *body = &m->c->bodies[b];
+    const PetscReal *x = point_real(m->points, POINT_X, p);
+    if (!body_has_stress(body)) continue;
+    PetscCall(OverburdenAt(overburden, b, x, &above, &top));
     highest[b] = PetscMax(highest[b], top);
-    geostatic(u, m->c->bodies[b].k0, above, sigma);
-    if (!point_carry_stress(m->points, p, &m->materials[m->points->material[p]], sigma)) *failed = b;
+    Place place = {.dim = m->dim, .x = x, .depth = top, .weight = u->g * above};
+    for (PetscInt d = 0; d < m->dim; ++d) place.depth -= u->up[d] * x[d];
+    if (body->has_k0) geostatic(u, body->k0, above, sigma);
+    else PetscCall(StressOfFormulas(body, &place, sigma));
+    switch (stress_point(m->points, p, &m->materials[m->points->material[p]], sigma)) {
+    case STRESS_CARRIED: break;
+    case STRESS_BEYOND: m->initial.beyond += 1; break;
+    case STRESS_REFUSED: *failed = b;
+    }
   }
+  PetscCall(MPIU_Allreduce(MPI_IN_PLACE, &m->initial.beyond, 1, MPIU_REAL, MPI_SUM, m->comm));
+  PetscCall(MPIU_Allreduce(MPI_IN_PLACE, failed, 1, MPIU_INT, MPI_MAX, m->comm));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode CheckStress(const Case *c, const Upwards *u, Diag *diag, PetscBool *fine)
+{
+  const PetscInt before = diag_errors(diag);
+
+  PetscFunctionBeginUser;
+  for (PetscInt b = 0; b < c->n_bodies; ++b) PetscCall(CheckFormulas(c, b, diag));
+  const PetscBool carried = check_gravity(c, u, diag);
+  *fine = carried && diag_errors(diag) == before;
   PetscFunctionReturn(0);
 }
 
@@ -145,10 +187,13 @@ PetscErrorCode InitialStress(Model *m, const Outline *outline, Diag *diag)
   Overburden *overburden;
   PetscReal *highest;
   PetscInt failed = -1;
+  PetscBool fine = PETSC_FALSE;
   char path[64];
 
   PetscFunctionBeginUser;
-  if (!case_has_k0(m->c) || !check_gravity(m->c, &u, diag)) PetscFunctionReturn(0);
+  if (!case_has_stress(m->c)) PetscFunctionReturn(0);
+  PetscCall(CheckStress(m->c, &u, diag, &fine));
+  if (!fine) PetscFunctionReturn(0);
   PetscCall(OverburdenCreate(m->comm, m->dim, u.up, 0.5 * m->grid->smallest, m->c->n_bodies, outline, &overburden));
   PetscCall(PetscMalloc1(m->c->n_bodies, &highest));
   for (PetscInt b = 0; b < m->c->n_bodies; ++b) highest[b] = -PETSC_MAX_REAL;
@@ -157,7 +202,8 @@ PetscErrorCode InitialStress(Model *m, const Outline *outline, Diag *diag)
   PetscCall(PetscFree(highest));
   PetscCall(OverburdenDestroy(&overburden));
   if (failed >= 0) {
-    PetscCall(PetscSNPrintf(path, sizeof path, "bodies[%d].k0", (int)failed));
+    PetscCall(
+      PetscSNPrintf(path, sizeof path, "bodies[%d].%s", (int)failed, m->c->bodies[failed].has_k0 ? "k0" : "stress"));
     diag_error(diag, path, "the material's law cannot carry this initial stress");
     hint_pressure(m, failed, diag);
   }

@@ -87,7 +87,7 @@ PetscErrorCode CheckHeld(const Model *m, Diag *diag)
 
   PetscFunctionBeginUser;
   PetscCall(ModelCountPoints(m, &points));
-  if (m->scheme->inertia || !points) PetscFunctionReturn(0);
+  if ((m->scheme->inertia && m->c->initial.equilibrium <= EQUILIBRIUM_NONE) || !points) PetscFunctionReturn(0);
   PetscCall(PetscCalloc2(n * n, &joined, n * dim, &held));
   PetscCall(Touches(m, joined, held));
   for (PetscInt b = 0; b < n && m->c->kinematics->hoop; ++b) held[b * dim] = 1; /* a ring by its hoop */

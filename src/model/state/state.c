@@ -99,25 +99,52 @@ static PetscErrorCode SofteningToTables(Model *m, Tables *tables)
   PetscFunctionReturn(0);
 }
 
-/* The bracket is known to whoever seeks the factor. */
+/* The bracket is known to whoever seeks the factor; later stages keep it. */
 static PetscErrorCode StrengthToTables(const Model *m, Tables *tables)
+{
+  const PetscBool seeks = m->c->analysis.type == ANALYSIS_FACTOR;
+  const PetscBool found = !seeks && m->strength.lower > 0;
+  Table *table;
+
+  PetscFunctionBeginUser;
+  if (!seeks && !found && m->strength.factor == 1) PetscFunctionReturn(0);
+  PetscCall(TablesAdd(tables, "strength", PETSC_TRUE, 1, &table));
+  PetscCall(TableAdd(table, "factor", NULL, COLUMN_REAL, 1, (void *)&m->strength.factor, NULL));
+  if (found) PetscCall(TableAdd(table, "lower_upper_value", NULL, COLUMN_REAL, 3, (void *)&m->strength.lower, NULL));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode InitialToTables(const Model *m, Tables *tables)
 {
   Table *table;
 
   PetscFunctionBeginUser;
-  if (m->c->analysis.type != ANALYSIS_FACTOR && m->strength.factor == 1) PetscFunctionReturn(0);
-  PetscCall(TablesAdd(tables, "strength", PETSC_TRUE, 1, &table));
-  PetscCall(TableAdd(table, "factor", NULL, COLUMN_REAL, 1, (void *)&m->strength.factor, NULL));
+  if (m->c->initial.equilibrium <= EQUILIBRIUM_NONE) PetscFunctionReturn(0);
+  PetscCall(TablesAdd(tables, "initial", PETSC_TRUE, 1, &table));
+  PetscCall(TableAdd(table, "kept", NULL, COLUMN_REAL, INITIAL_KEPT, (void *)&m->initial, NULL));
   PetscFunctionReturn(0);
+}
+
+static void initial_from_table(Model *m, const Table *table, char reason[256])
+{
+  if (!table || reason[0]) return;
+  const PetscReal *kept = table_data(table, "kept", COLUMN_REAL, INITIAL_KEPT, reason);
+  for (int k = 0; kept && k < INITIAL_KEPT; ++k) ((PetscReal *)&m->initial)[k] = kept[k];
 }
 
 static void strength_from_table(Model *m, const Table *table, char reason[256])
 {
   const PetscReal *kept = table && !reason[0] ? table_data(table, "factor", COLUMN_REAL, 1, reason) : NULL;
-  const StrengthSpec *given = &m->c->strength;
-  if (!kept || (m->c->analysis.type != ANALYSIS_FACTOR && given->factor == 0 && given->beyond_failure == 0)) return;
+  const PetscBool divides = m->c->strength.factor > 0 || m->c->strength.beyond_failure > 0;
+  char absent[256] = "";
+  if (!kept) return;
   if (table->rows != 1 || !(*kept >= 0 && *kept <= PETSC_MAX_REAL)) snprintf(reason, 256, "strength makes no sense");
-  else strength_set(m, *kept);
+  else if (divides || m->c->analysis.type == ANALYSIS_FACTOR) strength_set(m, *kept);
+  const PetscReal *found = reason[0] ? NULL : table_data(table, "lower_upper_value", COLUMN_REAL, 3, absent);
+  if (!found || m->c->analysis.type == ANALYSIS_FACTOR) return;
+  m->strength.lower = found[0];
+  m->strength.upper = found[1];
+  m->strength.value = found[2];
 }
 
 /* Which partition there is and how it came about; several ranks alone have one. */
@@ -149,6 +176,7 @@ PetscErrorCode ModelToTables(Model *m, Tables *tables)
   PetscCall(TriesToTables(m, tables));
   PetscCall(SofteningToTables(m, tables));
   PetscCall(StrengthToTables(m, tables));
+  PetscCall(InitialToTables(m, tables));
   PetscCall(StateLostToTables(m, tables));
   PetscCall(StateListsToTables(m, tables));
   PetscCall(PointsToTable(m->points, m->grid, "points", tables));
@@ -349,6 +377,7 @@ PetscErrorCode ModelFromTables(Model *m, Tables *tables, char reason[256])
   tries_from_table(m, tables_find(tables, "tries"), reason);
   softening_from_table(m, tables_find(tables, "softening"), reason);
   strength_from_table(m, tables_find(tables, "strength"), reason);
+  initial_from_table(m, tables_find(tables, "initial"), reason);
   state_lost_from_tables(m, tables, reason);
   PetscCall(StateListsFromTables(m, tables, reason));
   PetscCall(ReasonShare(m->comm, reason));

@@ -5,6 +5,7 @@
 #include <sys/stat.h>
 #include "picture/plot.h"
 #include "picture/scene/scene.h"
+#include "picture/scene/stage.h"
 #include "picture/walls/walls.h"
 #include "picture/revolution/revolution.h"
 #include "output/directory/run_dir_files.h"
@@ -243,7 +244,9 @@ static PetscErrorCode FindKind(const PlotOptions *options, Diag *diag, PlotScene
 /* When it was; where strength is divided the factor, which goes on from the time of the loads, 1. */
 static void say_when(const PlotOptions *options, PetscReal time, char text[64])
 {
-  if (time > 1 && file_exists(options->run, "factor.csv")) snprintf(text, 64, "F = %.5g", (double)(time - 1));
+  char stage[64];
+  if (plot_stage_at(options->run, time, stage)) snprintf(text, 64, "%.40s, t = %.6g s", stage, (double)time);
+  else if (time > 1 && file_exists(options->run, "factor.csv")) snprintf(text, 64, "F = %.5g", (double)(time - 1));
   else snprintf(text, 64, "t = %.6g s", (double)time);
 }
 

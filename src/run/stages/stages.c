@@ -1,4 +1,6 @@
 /* From one stage of a run to the next. */
+#include "base/text.h"
+#include "output/directory/run_dir_files.h"
 #include "run/run_private.h"
 
 void run_begin_stage(Run *r, PetscInt k)
@@ -48,6 +50,25 @@ PetscErrorCode RunEnterStage(Run *r, PetscInt k, const PetscReal *starts)
   r->model->asked = asked;
   if (force) PetscCall(ModelSetBodyForce(r->model, force, force_context));
   PetscCall(Attend(r));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode RunWriteStages(Run *r)
+{
+  TextStream stream;
+  char *text, number[32];
+
+  PetscFunctionBeginUser;
+  if (!r->whole->n_stages) PetscFunctionReturn(0);
+  PetscCall(TextOpen(&stream));
+  fputs("stage,begins [s],name\n", stream.out);
+  for (PetscInt k = 0; k <= r->stage; ++k) {
+    file_format_real(r->starts[k], number);
+    fprintf(stream.out, "%d,%s,%s\n", (int)k + 1, number, r->whole->stages[k].name);
+  }
+  PetscCall(TextClose(&stream, &text));
+  PetscCall(RunWritten(r, RunDirWriteText(r->dir, "stages.csv", text)));
+  PetscCall(PetscFree(text));
   PetscFunctionReturn(0);
 }
 
@@ -103,6 +124,7 @@ PetscErrorCode RunNextStage(Run *r, Diag *diag)
   PetscCall(RunDirLog(r->dir, "stage = %d of %d (%s) from t = %.9g s", (int)k + 1, (int)r->whole->n_stages, stage->name,
                       (double)r->starts[k]));
   PetscCall(RunTellImbalance(r, &imbalance));
+  PetscCall(RunWriteStages(r));
   PetscCall(UntilLook(&r->until, r->model));
   PetscFunctionReturn(0);
 }

@@ -1,0 +1,17 @@
+/* What the state before the first step was like. */
+#include "model/measure/measure.h"
+
+static const MeasureNumber *const words[] = {
+  WORD("lacked", "norm of the forces out of balance as given, over that of the weight", "", OF_MODEL,
+       .kept = offsetof(Model, initial.lacked)),
+  WORD("left", "the same in the equilibrium", "", OF_MODEL, .kept = offsetof(Model, initial.left)),
+  WORD("moved", "largest displacement on the way there", "m", OF_MODEL, .kept = offsetof(Model, initial.moved)),
+  WORD("beyond", "points whose given stress was beyond their strength", "", OF_MODEL,
+       .kept = offsetof(Model, initial.beyond)),
+  NULL,
+};
+
+const Measure measure_initial = {.key = "initial",
+                                 .takes = MEASURE_WORD,
+                                 .number = {.help = "the state before the first step (initial: {equilibrium: ...})"},
+                                 .words = words};

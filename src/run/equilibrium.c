@@ -1,0 +1,49 @@
+/* How a run begins with forces that balance, and what it says of those that did not. */
+#include "output/directory/run_dir_files.h"
+#include "run/run_private.h"
+
+/* of the weight: what increments too small to count may leave */
+#define ROUND_OFF 1e-6
+
+static PetscErrorCode TellStress(const Model *m, RunDir *dir)
+{
+  PetscInt points;
+
+  PetscFunctionBeginUser;
+  PetscCall(ModelCountPoints(m, &points));
+  if (m->initial.beyond > 0)
+    PetscCall(RunDirLog(dir, "initial stress = beyond the strength at %d of %d points, and brought back to it there",
+                        (int)m->initial.beyond, (int)points));
+  else PetscCall(RunDirLog(dir, "initial stress = within the strength everywhere"));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode RunEquilibrate(Run *r)
+{
+  Model *m = r->model;
+  const InitialState *s = &m->initial;
+  StepReport report;
+  char text[1024];
+
+  PetscFunctionBeginUser;
+  if (case_has_stress(r->c)) PetscCall(TellStress(m, r->dir));
+  if (r->c->initial.equilibrium <= EQUILIBRIUM_NONE) PetscFunctionReturn(0);
+  PetscCall(ModelEquilibrate(m, &report));
+  if (report.outcome == STEP_ACCEPTED) {
+    PetscCall(RunDirLog(r->dir,
+                        "initial equilibrium = lacked %.3g of the weight, left %.2g; moved %.3g m at most; parts = %d "
+                        "iterations = %d",
+                        (double)s->lacked, (double)s->left, (double)s->moved, (int)s->parts, (int)s->iterations));
+    if (s->left > ROUND_OFF)
+      PetscCall(
+        RunDirLog(r->dir, "warning = points that move still bring %.2g of the weight out of balance", (double)s->left));
+    PetscFunctionReturn(0);
+  }
+  snprintf(text, sizeof text,
+           "there is no equilibrium to begin with: %.3g of the weight was out of balance, %.3g still is (%s)",
+           (double)s->lacked, (double)s->left,
+           report.outcome == STEP_TOO_SMALL ? report.newton.reason : "points left the grid");
+  PetscCall(RunDirLog(r->dir, "gave up = %s", text));
+  run_stop(r, text);
+  PetscFunctionReturn(0);
+}
