@@ -42,8 +42,9 @@ static PetscErrorCode Create(TalusCase *c, TalusModel **model, char **messages)
 
   PetscFunctionBeginUser;
   PetscCall(PetscNew(&made));
-  if (c->c->analysis.type == ANALYSIS_FACTOR)
-    diag_error(c->diag, "analysis.type", "a factor of safety is sought by a whole run, not step by step");
+  if (case_seeks(&c->c->analysis))
+    diag_error(c->diag, "analysis.type", "%s is sought by a whole run, not step by step",
+               c->c->analysis.type == ANALYSIS_FACTOR ? "a factor of safety" : "a limit load");
   else PetscCall(ModelCreate(c->comm, c->c, c->diag, &made->model));
   if (made->model) PetscCall(Equilibrate(c, made));
   PetscCall(TalusTell(c->comm, c->diag, messages));

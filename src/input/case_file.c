@@ -129,13 +129,13 @@ static PetscErrorCode ResolveScheme(Case *c)
 }
 
 /* What yields without a change of volume locks with displacements alone, and nothing fails: who asks
- * for a factor of safety and names no formulation gets one that does not. */
+ * for a factor of safety or a limit load and names no formulation gets one that does not. */
 static PetscErrorCode ResolveFormulation(const YamlNode *given, Case *c)
 {
   const Method *method = c->method ? method_find(c->method) : NULL;
 
   PetscFunctionBeginUser;
-  if (given || c->analysis.type != ANALYSIS_FACTOR || !method || !method->takes_pressure) PetscFunctionReturn(0);
+  if (given || !case_seeks(&c->analysis) || !method || !method->takes_pressure) PetscFunctionReturn(0);
   PetscCall(PetscFree(c->formulation));
   PetscCall(PetscStrallocpy("mixed", &c->formulation));
   PetscFunctionReturn(0);
@@ -166,6 +166,43 @@ static PetscErrorCode ResolveGravity(Case *c)
   PetscFunctionReturn(0);
 }
 
+/* Which of the loads, or of the boundary, bears the name? */
+static void find_raised(Case *c)
+{
+  LimitSpec *limit = &c->analysis.limit;
+  if (!strcmp(limit->raise, "gravity")) limit->kind = RAISE_GRAVITY;
+  for (PetscInt k = 0; k < c->n_loads && !limit->kind; ++k)
+    if (c->loads[k].name && !strcmp(c->loads[k].name, limit->raise)) limit->kind = RAISE_LOAD, limit->index = k;
+  for (PetscInt k = 0; k < c->n_boundary && !limit->kind; ++k)
+    if (c->boundary[k].name && !strcmp(c->boundary[k].name, limit->raise))
+      limit->kind = RAISE_BOUNDARY, limit->index = k;
+}
+
+static PetscErrorCode ResolveRaised(const YamlNode *given, Diag *diag, Case *c)
+{
+  LimitSpec *limit = &c->analysis.limit;
+  const char **names;
+  PetscInt n = 0;
+
+  PetscFunctionBeginUser;
+  if (c->analysis.type != ANALYSIS_LIMIT || !limit->raise) PetscFunctionReturn(0);
+  find_raised(c);
+  if (!yaml_find(given, "most")) limit->most = limit->kind == RAISE_BOUNDARY ? 1 : 1000;
+  if (limit->kind == RAISE_BOUNDARY && c->boundary[limit->index].kind != MOTION_DISPLACEMENT)
+    diag_error(diag, "analysis.limit.raise", "'%s' has no `displacement` that could be raised", limit->raise);
+  if (limit->kind) PetscFunctionReturn(0);
+  PetscCall(PetscCalloc1(c->n_loads + c->n_boundary + 2, &names));
+  names[n++] = "gravity";
+  for (PetscInt k = 0; k < c->n_loads; ++k)
+    if (c->loads[k].name) names[n++] = c->loads[k].name;
+  for (PetscInt k = 0; k < c->n_boundary; ++k)
+    if (c->boundary[k].name) names[n++] = c->boundary[k].name;
+  diag_error(diag, "analysis.limit.raise", "there is no load and no entry of the boundary '%s'", limit->raise);
+  diag_hint_names(diag, limit->raise, names);
+  PetscCall(PetscFree(names));
+  PetscFunctionReturn(0);
+}
+
 static PetscErrorCode ReadDocument(const char *file, YamlDocument *document, Diag *diag, Case **c)
 {
   SchemaReader reader = {.document = document, .diag = diag};
@@ -181,6 +218,8 @@ static PetscErrorCode ReadDocument(const char *file, YamlDocument *document, Dia
   PetscCall(ResolveFormulation(yaml_find(document->root, "formulation"), *c));
   PetscCall(ResolveScheme(*c));
   resolve_equilibrium(yaml_find(document->root, "initial"), *c);
+  const YamlNode *analysis = yaml_find(document->root, "analysis");
+  PetscCall(ResolveRaised(analysis ? yaml_find(analysis, "limit") : NULL, diag, *c));
   PetscCall(ResolveGravity(*c));
   PetscFunctionReturn(0);
 }

@@ -2,6 +2,7 @@
 #pragma once
 #include "run/output.h"
 #include "run/run.h"
+#include "run/strength/limit.h"
 #include "run/strength/strength.h"
 #include "run/watch/until.h"
 
@@ -35,6 +36,7 @@ typedef struct {
   PetscInt *events; /* per measure: how many of its events the run has told of */
   Until until;
   StrengthRun strength; /* of an analysis for a factor of safety */
+  LimitRun limit;       /* of one for a limit load */
   PetscBool failed;     /* gave up */
   RunSummary summary;
   double start;           /* of this process, on MPI's clock */
