@@ -267,7 +267,7 @@ typedef struct {
 
 typedef struct {
   AnalysisType type;
-  LimitSpec limit; /* of a limit load */
+  LimitSpec limit;             /* of a limit load */
   ReductionSpec reduction;     /* of a factor of safety */
   PetscReal end;               /* s; statics: pseudo-time, 1 */
   PetscReal step;              /* s, the first and (without growth) largest step */

@@ -18,12 +18,15 @@ void raised_start(Model *m, Diag *diag)
   if (limit->kind == RAISE_LOAD && c->loads[limit->index].kind == LOAD_PRESSURE)
     diag_error(diag, "analysis.limit.raise", "a pressure that follows the surface cannot be raised: give a traction");
   if (limit->kind == RAISE_GRAVITY && case_has_stress(c))
-    diag_error(diag, "analysis.limit.raise", "gravity is raised from zero, but bodies start with the stress of a weight");
-  if (m->formulation->pressure || m->formulation->cells) return;
+    diag_error(diag, "analysis.limit.raise",
+               "gravity is raised from zero, but bodies start with the stress of a weight");
+  const PetscBool crossed =
+    c->grid.kind == GRID_BOX && c->grid.cell == CELL_TRIANGLE && c->grid.diagonal == DIAGONAL_CROSSED;
+  if (crossed || m->formulation->pressure || m->formulation->cells) return; /* these do not lock */
   diag_warning(diag, "formulation",
                "with displacements as the only unknowns what yields without a change of volume locks: the limit load "
                "comes out too large, or there is none");
-  diag_hint(diag, "`formulation: mixed` and `mean-dilatation` do not lock");
+  diag_hint(diag, "`formulation: mixed` and `mean-dilatation` do not lock, nor do triangles with `diagonal: crossed`");
 }
 
 PetscReal raised_time(const Model *m, PetscReal t)

@@ -22,7 +22,8 @@ static void read_line(const char *line, LimitCurve *curve)
   if (end == line || *end != ',' || curve->n == MOST_STEPS) return;
   curve->load[curve->n] = (PetscReal)strtod(end + 1, &end);
   curve->displacement[curve->n] = *end == ',' ? (PetscReal)strtod(end + 1, NULL) : 0;
-  curve->most = PetscMax(curve->most, curve->load[curve->n++]);
+  curve->most = PetscMax(curve->most, curve->load[curve->n]);
+  ++curve->n;
 }
 
 PetscErrorCode PlotLimit(const PlotOptions *options, Diag *diag, void (*said)(const char *path))

@@ -54,8 +54,7 @@ void extension_from_checkpoint(const Run *r, const Extension *e, Diag *diag)
   const PetscReal time = r->model->time;
   char reason[256];
   until_reason(&r->until, r->c, reason);
-  if (case_seeks(&r->c->analysis) && time > e->now)
-    return; /* the search goes on beyond the end of loading */
+  if (case_seeks(&r->c->analysis) && time > e->now) return; /* the search goes on beyond the end of loading */
   if (time > e->now * (1 + 1e-12)) {
     diag_error(diag, "analysis.end", "the run in '%s' has come to t = %g s already, later than analysis.end = %g s",
                run_dir_path(r->dir), (double)time, (double)e->now);

@@ -197,8 +197,7 @@ static PetscErrorCode SeekOn(Run *r, StepReport *report)
 
 static PetscBool seeks_on(const Run *r)
 {
-  if (r->c->analysis.type == ANALYSIS_FACTOR)
-    return search_next(&r->strength.search, &r->c->analysis.reduction) > 0;
+  if (r->c->analysis.type == ANALYSIS_FACTOR) return search_next(&r->strength.search, &r->c->analysis.reduction) > 0;
   return limit_goes_on(&r->limit);
 }
 

@@ -66,10 +66,11 @@ static const SchemaTable reduction = {.name = "reduction",
                                       .check = SchemaCheckReduction};
 
 static const SchemaEntry limit_entries[] = {
-  KEY("raise", TEXT, NULL,
-      "what is raised from zero when all other loads are on: `gravity`, the name of a traction or a point load, or of an "
-      "entry of boundary with a `displacement`, whose reaction is the load then",
-      REQUIRED, AT(LimitSpec, raise)),
+  KEY(
+    "raise", TEXT, NULL,
+    "what is raised from zero when all other loads are on: `gravity`, the name of a traction or a point load, or of an "
+    "entry of boundary with a `displacement`, whose reaction is the load then",
+    REQUIRED, AT(LimitSpec, raise)),
   KEY("step", NUMBER, NULL, "the first increment: of the load's factor while it is small, or of the displacement's",
       .fallback = "0.02", ABOVE(0), AT(LimitSpec, step)),
   KEY("tolerance", NUMBER, NULL,
@@ -89,8 +90,8 @@ static const SchemaEntry analysis_entries[] = {
   KEY("reduction", TABLE, NULL, "factor-of-safety: the factors that are tried", .table = &reduction, ALWAYS,
       AT(AnalysisSpec, reduction)),
   KEY("limit", TABLE, NULL, "limit-load: what is raised", .table = &limit, AT(AnalysisSpec, limit)),
-  KEY("end", NUMBER, "s", "time at the end of the run; factor-of-safety, limit-load: when all loads are on", .note = "static: 1",
-      ABOVE(0), AT(AnalysisSpec, end)),
+  KEY("end", NUMBER, "s", "time at the end of the run; factor-of-safety, limit-load: when all loads are on",
+      .note = "static: 1", ABOVE(0), AT(AnalysisSpec, end)),
   KEY("until", LIST, NULL, "any of these ends the run earlier", .table = &until, AT(AnalysisSpec, until),
       .count = offsetof(AnalysisSpec, n_until)),
   KEY("steps", INTEGER, NULL, "number of equal steps up to the end", .note = "static: 1, if `step` is not given",

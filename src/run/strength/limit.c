@@ -105,8 +105,8 @@ PetscErrorCode LimitStep(LimitRun *s, Model *m, RunDir *dir, StepReport *report)
   if (report->outcome == STEP_INTERRUPTED || report->outcome == STEP_POINTS_LOST) PetscFunctionReturn(0);
   if (report->outcome != STEP_ACCEPTED) {
     s->outcome = LIMIT_LOST;
-    PetscCall(RunDirLog(dir, "lost = no equilibrium with a step of %.3g (%s)", (double)report->dt,
-                        report->newton.reason));
+    PetscCall(
+      RunDirLog(dir, "lost = no equilibrium with a step of %.3g (%s)", (double)report->dt, report->newton.reason));
     PetscFunctionReturn(0);
   }
   PetscCall(Look(s, m, report));
@@ -164,8 +164,8 @@ PetscErrorCode LimitEnd(const LimitRun *s, Model *m, RunDir *dir)
   if (outcome == LIMIT_MOST || outcome == LIMIT_LOST)
     PetscCall(RunDirLog(dir, "warning = no limit was found: the load is the largest that was reached"));
   if (spec->kind == RAISE_BOUNDARY)
-    PetscCall(RunDirLog(dir, "limit load = %.6g N along the displacement of '%s'", (double)m->raised.value,
-                        spec->raise));
+    PetscCall(
+      RunDirLog(dir, "limit load = %.6g N along the displacement of '%s'", (double)m->raised.value, spec->raise));
   else PetscCall(RunDirLog(dir, "limit load = %.6g times '%s'", (double)m->raised.value, spec->raise));
   PetscFunctionReturn(0);
 }

@@ -46,7 +46,7 @@ typedef struct {
   PetscReal *pressure;
   PetscReal *volume;         /* mixed: n_nodes, residual of the pressure equation, N */
   const unsigned char *idle; /* mixed: n_nodes, no material touches the node: no pressure there */
-  LoadBorder *border; /* NULL: all loads are known */
+  LoadBorder *border;        /* NULL: all loads are known */
   /* does somebody want the run to end? asked on every rank; NULL: nobody ever does */
   PetscBool (*asked)(void);
   /* what the last digit of a coordinate makes of the force at a node, N */
