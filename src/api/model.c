@@ -57,14 +57,15 @@ static PetscErrorCode Create(TalusCase *c, TalusModel **model, char **messages)
 
   PetscFunctionBeginUser;
   PetscCall(PetscNew(&made));
-  if (c->c->analysis.type == ANALYSIS_FACTOR)
-    diag_error(c->diag, "analysis.type", "a factor of safety is sought by a whole run, not step by step");
+  if (case_seeks(&c->c->analysis))
+    diag_error(c->diag, "analysis.type", "%s is sought by a whole run, not step by step",
+               c->c->analysis.type == ANALYSIS_FACTOR ? "a factor of safety" : "a limit load");
   else if (c->c->n_stages || c->c->initial.run)
     diag_error(c->diag, c->c->n_stages ? "stages" : "initial", "stages, and states of other runs, are for whole runs");
   else PetscCall(ModelCreate(c->comm, c->c, c->diag, &made->model));
+  if (made->model && c->force.force) PetscCall(SetForce(made, c->force.force, c->force.context));
   if (made->model) PetscCall(Equilibrate(c, made));
   PetscCall(TalusTell(c->comm, c->diag, messages));
-  if (made->model && c->force.force) PetscCall(SetForce(made, c->force.force, c->force.context));
   if (made->model) *model = made;
   else PetscCall(Destroy(&made));
   PetscFunctionReturn(0);

@@ -16,12 +16,25 @@ PetscReal amplitude_value(const Amplitude *a, PetscReal t, PetscReal fallback)
   return (1 - s) * a->value[low] + s * a->value[high];
 }
 
+PetscBool case_raises(const Case *c, const Amplitude *amplitude)
+{
+  const LimitSpec *limit = &c->analysis.limit;
+  switch (limit->kind) {
+  case RAISE_GRAVITY: return amplitude == &c->gravity_amplitude;
+  case RAISE_LOAD: return amplitude == &c->loads[limit->index].amplitude;
+  case RAISE_BOUNDARY: return amplitude == &c->boundary[limit->index].amplitude;
+  case RAISE_NOTHING: break;
+  }
+  return PETSC_FALSE;
+}
+
 PetscReal case_factor(const Case *c, const Amplitude *amplitude, PetscReal t)
 {
   /* what an earlier stage has brought is there */
   const PetscBool grows = case_is_static(&c->analysis) && amplitude->since == c->stage;
-  /* a factor of safety is sought when all loads are on: time goes on then, and they stay */
-  if (c->analysis.type == ANALYSIS_FACTOR) t = PetscMin(t, c->analysis.end);
+  /* what is sought when all loads are on: time goes on then, and they stay but for what is raised */
+  if (case_raises(c, amplitude)) return PetscMax(0, t - c->analysis.end);
+  if (case_seeks(&c->analysis)) t = PetscMin(t, c->analysis.end);
   return amplitude_value(amplitude, t, grows ? (t - c->start) / (c->analysis.end - c->start) : 1);
 }
 

@@ -85,6 +85,7 @@ static PetscErrorCode BoundaryAndLoadsClear(Case *c)
   }
   PetscCall(PetscFree(c->boundary));
   for (PetscInt i = 0; i < c->n_loads; ++i) {
+    PetscCall(PetscFree(c->loads[i].name));
     PetscCall(SelectorClear(&c->loads[i].on));
     PetscCall(AmplitudeClear(&c->loads[i].amplitude));
   }
@@ -165,6 +166,7 @@ PetscErrorCode CaseDestroy(Case **c)
   PetscCall(PetscFree((*c)->analysis.transfer));
   for (PetscInt i = 0; i < (*c)->analysis.n_until; ++i) PetscCall(PetscFree((*c)->analysis.until[i].measure));
   PetscCall(PetscFree((*c)->analysis.until));
+  PetscCall(PetscFree((*c)->analysis.limit.raise));
   PetscCall(StringsClear((*c)->analysis.reduction.n_bodies, &(*c)->analysis.reduction.bodies));
   PetscCall(PetscFree((*c)->grid.mesh));
   PetscCall(NamedValuesClear((*c)->grid.n_parameters, &(*c)->grid.parameters));
@@ -183,6 +185,11 @@ PetscErrorCode CaseDestroy(Case **c)
 PetscBool case_is_mixed(const Case *c) { return c->formulation && !strcmp(c->formulation, "mixed"); }
 
 PetscBool case_is_static(const AnalysisSpec *analysis) { return analysis->type != ANALYSIS_DYNAMIC; }
+
+PetscBool case_seeks(const AnalysisSpec *analysis)
+{
+  return analysis->type == ANALYSIS_FACTOR || analysis->type == ANALYSIS_LIMIT;
+}
 
 PetscBool case_writes(const Case *c, const char *field)
 {

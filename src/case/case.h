@@ -6,7 +6,7 @@
 #pragma once
 #include "case/kinematics/kinematics.h"
 
-typedef enum { ANALYSIS_STATIC, ANALYSIS_DYNAMIC, ANALYSIS_FACTOR } AnalysisType;
+typedef enum { ANALYSIS_STATIC, ANALYSIS_DYNAMIC, ANALYSIS_FACTOR, ANALYSIS_LIMIT } AnalysisType;
 typedef enum { MASS_CONSISTENT, MASS_LUMPED } MassMatrix;
 typedef enum { CELL_TRIANGLE, CELL_QUADRILATERAL, CELL_TETRAHEDRON, CELL_HEXAHEDRON } CellType;
 typedef enum { DIAGONAL_RIGHT, DIAGONAL_LEFT, DIAGONAL_ALTERNATING, DIAGONAL_CROSSED } Diagonal;
@@ -178,6 +178,7 @@ typedef struct {
 typedef enum { LOAD_TRACTION, LOAD_POINT, LOAD_PRESSURE, LOAD_KINDS } LoadKind;
 
 typedef struct {
+  char *name; /* NULL if it has none */
   LoadKind kind;
   Selector on;        /* traction, pressure: boundary faces of the grid, or of a body (carried by it) */
   PetscReal at[3];    /* point load: the material position at the start */
@@ -290,8 +291,21 @@ typedef struct {
   char *text;        /* what it changes, resolved: keys of a case */
 } StageSpec;
 
+typedef enum { RAISE_NOTHING, RAISE_GRAVITY, RAISE_LOAD, RAISE_BOUNDARY } RaiseKind;
+
+/* What is raised until nothing more holds. */
+typedef struct {
+  char *raise; /* "gravity", or the name of a load or of an entry of the boundary */
+  RaiseKind kind;
+  PetscInt index;      /* into loads[] or boundary[] */
+  PetscReal step;      /* the first: factor of the load while it is small, of the prescribed displacement */
+  PetscReal tolerance; /* by which the load may have grown while the displacement doubled */
+  PetscReal most;      /* factor beyond which nobody looks */
+} LimitSpec;
+
 typedef struct {
   AnalysisType type;
+  LimitSpec limit;             /* of a limit load */
   ReductionSpec reduction;     /* of a factor of safety */
   PetscReal end;               /* s; statics: pseudo-time, 1 */
   PetscReal step;              /* s, the first and (without growth) largest step */
@@ -413,11 +427,11 @@ typedef struct Case {
   StageSpec *stages;
   struct Case **stage_case; /* of each: the case with the words of the stages so far */
   /* of a stage: */
-  PetscInt stage;         /* its number, 0 for the first; 0 of a case without stages */
-  const StageSpec *spec;  /* NULL: the case is no stage */
-  PetscBool seeks_factor; /* does any stage seek a factor of safety? */
-  PetscReal start;        /* when it began, s */
-  PetscReal release;      /* s over which what is out of balance at the start fades; 0: at once */
+  PetscInt stage;        /* its number, 0 for the first; 0 of a case without stages */
+  const StageSpec *spec; /* NULL: the case is no stage */
+  PetscBool seeks;       /* does any stage seek a factor of safety or a limit load? */
+  PetscReal start;       /* when it began, s */
+  PetscReal release;     /* s over which what is out of balance at the start fades; 0: at once */
 } Case;
 
 /* The case of stage k; of a case without stages the case itself. */
@@ -437,8 +451,12 @@ PetscBool case_load_follows(const Case *c);
 PetscBool case_is_mixed(const Case *c);
 /* Equilibrium at every step, no inertia: a factor of safety is found so, too. */
 PetscBool case_is_static(const AnalysisSpec *analysis);
+/* Is something sought after `end`, when all loads are on: a factor of safety, a limit load? */
+PetscBool case_seeks(const AnalysisSpec *analysis);
 /* Is that one of the fields of states? */
 PetscBool case_writes(const Case *c, const char *field);
+/* Is that the amplitude of what is raised to its limit? */
+PetscBool case_raises(const Case *c, const Amplitude *amplitude);
 /* Does the body start with a stress? Does any? */
 PetscBool body_has_stress(const BodySpec *body);
 PetscBool case_has_stress(const Case *c);

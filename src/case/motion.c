@@ -8,6 +8,12 @@ static PetscReal displacement_at(const Case *c, const MotionSpec *m, PetscInt d,
   return m->value[d] * case_factor(c, &m->amplitude, t);
 }
 
+/* Integral of the amplitude up to time t; what moves in another way than it is sought stands still then. */
+static PetscReal span_until(const Case *c, const MotionSpec *m, PetscReal t)
+{
+  return amplitude_integral(&m->amplitude, case_seeks(&c->analysis) ? PetscMin(t, c->analysis.end) : t, 1);
+}
+
 /* Turn x about the axis through centre by the angle; returns the displacement of component d. */
 static PetscReal rotation(const MotionSpec *m, PetscInt dim, const PetscReal *x, PetscReal angle, PetscInt d)
 {
@@ -30,7 +36,7 @@ PetscReal motion_increment(const Case *c, const MotionSpec *m, const PetscReal *
                            PetscReal t1)
 {
   const PetscInt dim = kinematics_dim(c->kinematics);
-  const PetscReal span = amplitude_integral(&m->amplitude, t1, 1) - amplitude_integral(&m->amplitude, t0, 1);
+  const PetscReal span = span_until(c, m, t1) - span_until(c, m, t0);
   switch (m->kind) {
   case MOTION_DISPLACEMENT: return displacement_at(c, m, d, t1) - displacement_at(c, m, d, t0);
   case MOTION_VELOCITY: return m->value[d] * span;
@@ -43,7 +49,7 @@ PetscReal motion_increment(const Case *c, const MotionSpec *m, const PetscReal *
 void motion_origin(const Case *c, const MotionSpec *m, const PetscReal *x, PetscReal t, PetscReal *X)
 {
   const PetscInt dim = kinematics_dim(c->kinematics);
-  const PetscReal span = amplitude_integral(&m->amplitude, t, 1);
+  const PetscReal span = span_until(c, m, t);
   for (PetscInt d = 0; d < dim; ++d) {
     PetscReal moved = 0;
     if (m->kind == MOTION_DISPLACEMENT && m->component[d]) moved = displacement_at(c, m, d, t);

@@ -254,6 +254,7 @@ static PetscErrorCode Draw(const PlotOptions *options, int *exit_code)
     PetscCall(DrawCourse(options, diag));
     PetscCall(PlotHistories(options, diag, say));
     PetscCall(PlotFactor(options, diag, say));
+    PetscCall(PlotLimit(options, diag, say));
   }
   *exit_code = diag_errors(diag) ? CLI_BAD_INPUT : CLI_DONE;
   PetscCall(DiagFlush(diag, stderr));

@@ -137,11 +137,11 @@ static PetscErrorCode ResolveScheme(Case *c)
 }
 
 /* What yields without a change of volume locks with displacements alone, and nothing fails: who asks
- * for a factor of safety and names no formulation gets one that does not. */
+ * for a factor of safety or a limit load and names no formulation gets one that does not. */
 static PetscErrorCode ResolveFormulation(const YamlNode *root, Case *c)
 {
   const Method *method = c->method ? method_find(c->method) : NULL;
-  const PetscBool seeks = c->analysis.type == ANALYSIS_FACTOR || c->seeks_factor;
+  const PetscBool seeks = case_seeks(&c->analysis) || c->seeks;
 
   PetscFunctionBeginUser;
   if (yaml_find(root, "formulation") || !seeks || !method || !method->takes_pressure) PetscFunctionReturn(0);
@@ -176,12 +176,14 @@ static PetscErrorCode ResolveGravity(Case *c)
   PetscFunctionReturn(0);
 }
 
-/* Does any of the stages seek a factor? Formulations are of all of them. */
-static PetscBool seeks_factor(const YamlNode *stages)
+/* Does any of the stages seek something? Formulations are of all of them. */
+static PetscBool stages_seek(const YamlNode *stages)
 {
   for (PetscInt k = 0; stages && stages->kind == YAML_SEQUENCE && k < stages->n; ++k) {
     const YamlNode *type = yaml_find(yaml_find(stages->child[k], "analysis"), "type");
-    if (type && type->kind == YAML_SCALAR && !strcmp(type->text, "factor-of-safety")) return PETSC_TRUE;
+    if (type && type->kind == YAML_SCALAR &&
+        (!strcmp(type->text, "factor-of-safety") || !strcmp(type->text, "limit-load")))
+      return PETSC_TRUE;
   }
   return PETSC_FALSE;
 }
@@ -195,6 +197,43 @@ static void resolve_release(Case *c, const StageSpec *stage)
   else c->release = c->initial.has_release ? c->initial.release : usual;
 }
 
+/* Which of the loads, or of the boundary, bears the name? */
+static void find_raised(Case *c)
+{
+  LimitSpec *limit = &c->analysis.limit;
+  if (!strcmp(limit->raise, "gravity")) limit->kind = RAISE_GRAVITY;
+  for (PetscInt k = 0; k < c->n_loads && !limit->kind; ++k)
+    if (c->loads[k].name && !strcmp(c->loads[k].name, limit->raise)) limit->kind = RAISE_LOAD, limit->index = k;
+  for (PetscInt k = 0; k < c->n_boundary && !limit->kind; ++k)
+    if (c->boundary[k].name && !strcmp(c->boundary[k].name, limit->raise))
+      limit->kind = RAISE_BOUNDARY, limit->index = k;
+}
+
+static PetscErrorCode ResolveRaised(const YamlNode *given, Diag *diag, Case *c)
+{
+  LimitSpec *limit = &c->analysis.limit;
+  const char **names;
+  PetscInt n = 0;
+
+  PetscFunctionBeginUser;
+  if (c->analysis.type != ANALYSIS_LIMIT || !limit->raise) PetscFunctionReturn(0);
+  find_raised(c);
+  if (!yaml_find(given, "most")) limit->most = limit->kind == RAISE_BOUNDARY ? 1 : 1000;
+  if (limit->kind == RAISE_BOUNDARY && c->boundary[limit->index].kind != MOTION_DISPLACEMENT)
+    diag_error(diag, "analysis.limit.raise", "'%s' has no `displacement` that could be raised", limit->raise);
+  if (limit->kind) PetscFunctionReturn(0);
+  PetscCall(PetscCalloc1(c->n_loads + c->n_boundary + 2, &names));
+  names[n++] = "gravity";
+  for (PetscInt k = 0; k < c->n_loads; ++k)
+    if (c->loads[k].name) names[n++] = c->loads[k].name;
+  for (PetscInt k = 0; k < c->n_boundary; ++k)
+    if (c->boundary[k].name) names[n++] = c->boundary[k].name;
+  diag_error(diag, "analysis.limit.raise", "there is no load and no entry of the boundary '%s'", limit->raise);
+  diag_hint_names(diag, limit->raise, names);
+  PetscCall(PetscFree(names));
+  PetscFunctionReturn(0);
+}
+
 /* whole: NULL, or the case of which it is stage k. */
 static PetscErrorCode ReadDocument(const char *file, YamlDocument *document, Diag *diag, const Case *whole, PetscInt k,
                                    Case **c)
@@ -205,7 +244,7 @@ static PetscErrorCode ReadDocument(const char *file, YamlDocument *document, Dia
   PetscCall(PetscNew(c));
   (*c)->stage = k;
   (*c)->spec = whole ? whole->stages + k : NULL;
-  (*c)->seeks_factor = whole ? whole->seeks_factor : seeks_factor(yaml_find(document->root, "stages"));
+  (*c)->seeks = whole ? whole->seeks : stages_seek(yaml_find(document->root, "stages"));
   PetscCall(PetscStrallocpy(file, &(*c)->file));
   PetscCall(FolderOf(file, &(*c)->folder));
   reader.c = *c;
@@ -215,6 +254,8 @@ static PetscErrorCode ReadDocument(const char *file, YamlDocument *document, Dia
   PetscCall(ResolveFormulation(document->root, *c));
   PetscCall(ResolveScheme(*c));
   resolve_equilibrium(yaml_find(document->root, "initial"), *c);
+  const YamlNode *analysis = yaml_find(document->root, "analysis");
+  PetscCall(ResolveRaised(analysis ? yaml_find(analysis, "limit") : NULL, diag, *c));
   PetscCall(ResolveGravity(*c));
   resolve_release(*c, (*c)->spec);
   PetscFunctionReturn(0);

@@ -94,7 +94,7 @@ PetscErrorCode LimitDescribe(const Model *m, StepReport *report)
   PetscReal tried;
 
   PetscFunctionBeginUser;
-  if (m->scheme->inertia || !loads_grow(m->c, m->time, report->dt)) PetscFunctionReturn(0);
+  if (m->scheme->inertia || m->raised.rising || !loads_grow(m->c, m->time, report->dt)) PetscFunctionReturn(0);
   PetscCall(Rate(m, report->dt, &tried));
   if (!looks_like_limit(m, report, tried)) PetscFunctionReturn(0);
   factors_text(m->c, m->time, factors, sizeof factors);

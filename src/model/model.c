@@ -330,6 +330,7 @@ static PetscErrorCode Build(Model *m, Diag *diag)
   if (errors) PetscFunctionReturn(0);
   strength_start(m, diag);
   equilibrium_check(m, diag);
+  raised_start(m, diag);
   PetscCall(GridCreate(m->comm, m->c, cell_weight, (void *)m->c, diag, &m->grid));
   if (!m->grid) PetscFunctionReturn(0);
   PetscCall(GridWiden(&m->grid, basis_find(m->c->basis.kind)->halo + (m->c->n_interfaces ? CONTACT_HALO : 0)));
@@ -400,6 +401,7 @@ PetscErrorCode ModelDestroy(Model **model)
   if (m->tracers) PetscCall(PointsDestroy(&m->tracers));
   if (m->points) PetscCall(PointsDestroy(&m->points));
   if (m->grid) PetscCall(GridDestroy(&m->grid));
+  PetscCall(PetscFree(m->raised.nodal));
   PetscCall(PetscFree(m->materials));
   PetscCall(MeasuresEnd(m));
   PetscCall(PetscFree(m->load_memory));

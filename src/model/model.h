@@ -95,6 +95,20 @@ typedef struct {
   PetscReal reach;  /* no node of a body that stands moves farther in such a step, m */
 } Strength;
 
+/* A load that is raised to its limit (limit_load.c). */
+typedef struct {
+  PetscReal factor;       /* of a load that is given */
+  PetscReal load;         /* that factor, or of a prescribed displacement the force along it, N */
+  PetscReal displacement; /* of the boundary; of a load the one that it works on: work over force, m */
+  PetscReal unit;         /* work of a load for a factor of 1 at the first stiffness, J; 0: not known yet */
+  PetscReal value;        /* the largest load, when the search is over; nan until then */
+  PetscReal resultant;    /* of the load's nodal forces for a factor of 1, N */
+  PetscReal *nodal;       /* these, n_nodes x dim */
+  LoadBorder border;
+  PetscBool rising; /* after `end` */
+} Raised;
+#define RAISED_KEPT 5
+
 /* What the state before the first step was like (start/). All of it is real, counts too. */
 typedef struct {
   PetscReal beyond;               /* points whose given stress was more than their strength allows */
@@ -159,6 +173,7 @@ typedef struct Model {
   Softening limit;
   Strength strength;
   InitialState initial;
+  Raised raised;
   PetscReal seconds[PHASE_N]; /* see model_times */
 } Model;
 
@@ -208,6 +223,9 @@ PetscErrorCode ModelActivate(Model *model);
 /* Collective. One step of at most `limit` s; halves it until Newton converges. */
 PetscErrorCode ModelStep(Model *model, PetscReal limit, StepReport *report);
 
+/* Collective. After all loads are on: one step in which the load is raised, by control * (a factor of its
+ * displacement, or of its work at the first stiffness), or by less if Newton's method asks for it. */
+PetscErrorCode ModelRaise(Model *model, PetscReal control, StepReport *report);
 /* Collective. After all loads are on: one step to the equilibrium with a larger factor. It stands if
  * Newton finds one in which no node has moved farther than strength.reach; if not, the model is as it
  * was, and report->leap says how far it slid, if that was why. *moved: the largest increment of a node,

@@ -79,6 +79,13 @@ PetscErrorCode OutsideAdd(Model *model, StepReport *report);
 /* Collective. A warning for each body that fills the grid to an edge where nothing holds it. */
 PetscErrorCode OutsideWarn(const Model *model, Diag *diag);
 
+/* limit_load.c. What cannot be raised is a mistake. */
+void raised_start(Model *model, Diag *diag);
+/* Time at which loads have the size that they have at time t: at most `end`, and behind it by the factor of
+ * a load that is raised, at the step's start and, later, where Newton's method has come to. */
+PetscReal raised_time(const Model *model, PetscReal t);
+/* Collective. Where a load is raised: its border of the step. dt: as in ModelRaise. */
+PetscErrorCode RaisedPrepare(Model *model, PetscReal dt, StepProblem *problem);
 /* strength.c. Which materials are reduced; what cannot be is a mistake. */
 void strength_start(Model *model, Diag *diag);
 /* The factor that only the stage before knows. */

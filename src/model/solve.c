@@ -95,7 +95,7 @@ static LinearProblem linear_problem(const Model *m, PetscReal dt)
 
 PetscErrorCode SolveStep(Model *m, PetscReal *dt, StepReport *report)
 {
-  const PetscReal smallest = m->c->analysis.smallest;
+  const PetscReal smallest = m->raised.rising ? m->c->analysis.limit.step / 1024 : m->c->analysis.smallest;
 
   PetscFunctionBeginUser;
   for (;; *dt = step_control_cut(&m->control, *dt)) {

@@ -182,7 +182,8 @@ PetscErrorCode PrepareStep(Model *m, PetscReal dt, StepProblem *p)
   PetscReal g[3];
 
   PetscFunctionBeginUser;
-  gravity_at(m->c, t, g);
+  m->raised.border.factor = m->raised.factor; /* a try that failed has left another one */
+  gravity_at(m->c, raised_time(m, t), g);
   PetscCall(PetscArrayzero(m->nodes->prescribed, dofs));
   boundary_increments(m->boundary, m->grid, m->time, m->time + passes, m->nodes->prescribed);
   if (m->scheme->inertia) set_boundary_kinematics(m, dt);
@@ -217,5 +218,6 @@ PetscErrorCode PrepareStep(Model *m, PetscReal dt, StepProblem *p)
   m->space->constraints->scale = node_stiffness(m, inertia);
   PetscCall(ForceScales(m, g, dt, p));
   PetscCall(EquilibriumPrepare(m, p));
+  PetscCall(RaisedPrepare(m, dt, p));
   PetscFunctionReturn(0);
 }

@@ -64,6 +64,8 @@ PetscErrorCode PlotXY(const PlotXYOptions *options, Diag *diag, void (*said)(con
 
 /* RUN/pictures/factor.png of a run that has a factor.csv: displacement over the factor of its strength. */
 PetscErrorCode PlotFactor(const PlotOptions *options, Diag *diag, void (*said)(const char *path));
+/* RUN/pictures/limit.png of a run that has a limit.csv: load over displacement. */
+PetscErrorCode PlotLimit(const PlotOptions *options, Diag *diag, void (*said)(const char *path));
 
 /* RUN/pictures/profile_WALL.png (or `out`) and .csv: normal and shear tractions of the state nearest to the
  * first time, along the coordinate in which what touches the wall reaches farthest. */

@@ -157,6 +157,7 @@ static PetscErrorCode Write(Run *r, const char *path, char reason[256], PetscErr
   PetscCall(MemoryToTables(r, tables));
   PetscCall(UntilToTables(&r->until, r->c, tables));
   PetscCall(StrengthToTables(&r->strength, tables));
+  PetscCall(LimitToTables(&r->limit, tables));
   PetscCall(OutputToTables(r->output, tables));
   *code = CheckpointWrite(r->comm, path, tables, reason);
   PetscCall(TablesDestroy(&tables));
@@ -252,6 +253,7 @@ PetscErrorCode CheckpointLoad(Run *r, Diag *diag, PetscInt *step, PetscBool *fit
   if (!reason[0]) PetscCall(ModelFromTables(r->model, tables, reason));
   until_from_tables(&r->until, r->c, tables, reason);
   PetscCall(StrengthFromTables(&r->strength, tables, reason));
+  PetscCall(LimitFromTables(&r->limit, tables, reason));
   PetscCall(TablesDestroy(&tables));
   if (!reason[0]) {
     remember(r, &memory);

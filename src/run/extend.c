@@ -62,8 +62,7 @@ void extension_from_checkpoint(const Run *r, const Extension *e, Diag *diag)
     return;
   }
   until_reason(&r->until, r->c, reason);
-  if (r->c->analysis.type == ANALYSIS_FACTOR && time > e->now)
-    return; /* the search goes on beyond the end of loading */
+  if (case_seeks(&r->c->analysis) && time > e->now) return; /* the search goes on beyond the end of loading */
   if (time > e->now * (1 + 1e-12)) {
     diag_error(diag, "analysis.end", "the run in '%s' has come to t = %g s already, later than analysis.end = %g s",
                run_dir_path(r->dir), (double)time, (double)e->now);

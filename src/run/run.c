@@ -111,7 +111,7 @@ static PetscErrorCode AfterStep(Run *r, const StepReport *report, PetscInt point
                         (double)report->dt));
   PetscCall(LossesLogStep(r->model, r->dir, report));
   PetscCall(RunWritten(r, EventsWatch(r->model, r->dir, PETSC_FALSE, r->events)));
-  if (!r->strength.n) PetscCall(RunDirProgress(r->dir, &progress)); /* each factor tells of itself */
+  if (!r->strength.n && !r->limit.n) PetscCall(RunDirProgress(r->dir, &progress)); /* each factor tells of itself */
   if (is_due(&r->rows, r->model->time, r->model->step)) PetscCall(RunWriteRow(r));
   if (is_due(&r->states, r->model->time, r->model->step)) PetscCall(RunWriteState(r));
   PetscFunctionReturn(0);
@@ -202,19 +202,38 @@ static PetscErrorCode Advance(Run *r)
   PetscFunctionReturn(0);
 }
 
-/* All loads are on: larger and larger factors, until none is left to try. */
-static PetscErrorCode SearchFactor(Run *r)
+/* What is sought when all loads are on, a step or a try at a time. */
+static PetscErrorCode SeekOn(Run *r, StepReport *report)
 {
-  const ReductionSpec *spec = &r->c->analysis.reduction;
-  StrengthRun *s = &r->strength;
+  const PetscBool factor = r->c->analysis.type == ANALYSIS_FACTOR;
+
+  PetscFunctionBeginUser;
+  if (factor) PetscCall(StrengthTry(&r->strength, r->model, r->dir, report));
+  else PetscCall(LimitStep(&r->limit, r->model, r->dir, report));
+  if (report->outcome == STEP_INTERRUPTED || report->outcome == STEP_POINTS_LOST) PetscFunctionReturn(0);
+  PetscCall(RunWritten(r, factor ? StrengthWrite(&r->strength, r->dir) : LimitWrite(&r->limit, r->model, r->dir)));
+  PetscFunctionReturn(0);
+}
+
+static PetscBool seeks_on(const Run *r)
+{
+  if (r->c->analysis.type == ANALYSIS_FACTOR) return search_next(&r->strength.search, &r->c->analysis.reduction) > 0;
+  return limit_goes_on(&r->limit);
+}
+
+/* All loads are on: larger and larger factors, until none is left to try. */
+static PetscErrorCode Seek(Run *r)
+{
+  const PetscBool factor = r->c->analysis.type == ANALYSIS_FACTOR;
   StepReport report;
   const char *asked = NULL;
   PetscInt points;
 
   PetscFunctionBeginUser;
-  if (!s->n) PetscCall(StrengthBegin(s, r->model));
-  while (!r->failed && !r->until.ended && search_next(&s->search, spec) > 0) {
-    PetscCall(StrengthTry(s, r->model, r->dir, &report));
+  if (factor && !r->strength.n) PetscCall(StrengthBegin(&r->strength, r->model));
+  if (!factor && !r->limit.n) PetscCall(LimitBegin(&r->limit, r->model));
+  while (!r->failed && !r->until.ended && seeks_on(r)) {
+    PetscCall(SeekOn(r, &report));
     if (report.outcome == STEP_INTERRUPTED) {
       PetscCall(Interrupted(r, "a signal"));
       break;
@@ -223,14 +242,15 @@ static PetscErrorCode SearchFactor(Run *r)
       PetscCall(GiveUp(r, "gave up", "the run gave up:", report.reason));
       break;
     }
-    PetscCall(RunWritten(r, StrengthWrite(s, r->dir)));
     if (report.outcome != STEP_ACCEPTED) continue;
     PetscCall(ModelCountPoints(r->model, &points));
     PetscCall(AfterStep(r, &report, points));
     PetscCall(Pause(r, &asked));
     if (asked) PetscCall(Interrupted(r, asked));
   }
-  if (!r->failed) PetscCall(StrengthEnd(s, r->model, r->dir));
+  if (r->failed) PetscFunctionReturn(0);
+  if (factor) PetscCall(StrengthEnd(&r->strength, r->model, r->dir));
+  else PetscCall(LimitEnd(&r->limit, r->model, r->dir));
   PetscFunctionReturn(0);
 }
 
@@ -248,7 +268,7 @@ static PetscErrorCode RunStages(Run *r, Diag *diag)
   PetscFunctionBeginUser;
   for (;;) {
     PetscCall(Advance(r));
-    if (r->c->analysis.type == ANALYSIS_FACTOR && !r->failed) PetscCall(SearchFactor(r));
+    if (case_seeks(&r->c->analysis) && !r->failed) PetscCall(Seek(r));
     if (r->failed || r->stage + 1 == case_stages(r->whole)) PetscFunctionReturn(0);
     PetscCall(RunEndStage(r));
     if (!r->failed) PetscCall(RunNextStage(r, diag));
@@ -264,7 +284,7 @@ static PetscErrorCode Close(Run *r, PetscReal *measures)
   if (!r->failed && (r->n_written || may_go_on(r))) PetscCall(CheckpointSave(r));
   /* a resumed run may have nothing left to do */
   if (r->row_step == r->model->step) PetscCall(Measure(r));
-  if (r->strength.n) r->row_step = -1; /* the last row once more, with the answer */
+  if (r->strength.n || r->limit.n) r->row_step = -1; /* the last row once more, with the answer */
   PetscCall(RunWriteRow(r));
   PetscCall(RunWriteState(r));
   seconds = r->before + (MPI_Wtime() - r->start);
@@ -357,6 +377,7 @@ PetscErrorCode RunCase(MPI_Comm comm, const Case *c, const RunOptions *options, 
   PetscCall(RunModel(&run, options, diag, measures, result));
   signals_forget();
   PetscCall(StrengthRunDestroy(&run.strength));
+  PetscCall(LimitRunDestroy(&run.limit));
   PetscCall(PetscFree(run.values));
   PetscCall(PetscFree(run.row));
   PetscCall(PetscFree(run.starts));

@@ -3,6 +3,7 @@
 #include "model/stage/stage.h"
 #include "run/output.h"
 #include "run/run.h"
+#include "run/strength/limit.h"
 #include "run/strength/strength.h"
 #include "run/watch/until.h"
 
@@ -40,6 +41,7 @@ typedef struct {
   PetscInt *events; /* per measure: how many of its events the run has told of */
   Until until;
   StrengthRun strength; /* of an analysis for a factor of safety */
+  LimitRun limit;       /* of one for a limit load */
   PetscBool failed;     /* gave up */
   RunWatcher watcher;   /* NULL: nobody watches */
   void *watcher_context;

@@ -9,8 +9,8 @@
 #define ASSERT_NEAR(a, b, tolerance) assert_true(PetscAbsReal((a) - (b)) <= (tolerance))
 
 static PetscReal times[] = {1, 2, 4}, values[] = {0, 3, -1};
-static const Amplitude table = {3, times, values};
-static const Amplitude none = {0, NULL, NULL};
+static const Amplitude table = {.n = 3, .time = times, .value = values};
+static const Amplitude none = {.n = 0};
 
 static void Value(void **state)
 {
@@ -39,7 +39,7 @@ static void Integral(void **state)
 static void IntegralFromZero(void **state)
 {
   PetscReal t[] = {-1, 1}, v[] = {0, 2}, late[] = {2, 3}, held[] = {5, 5};
-  const Amplitude early = {2, t, v}, later = {2, late, held};
+  const Amplitude early = {.n = 2, .time = t, .value = v}, later = {.n = 2, .time = late, .value = held};
   (void)state;
   ASSERT_NEAR(amplitude_value(&later, 1, 9), 5, 0);
   ASSERT_NEAR(amplitude_value(&later, -3, 9), 5, 0);

@@ -57,6 +57,7 @@ const SchemaTable schema_motion = {.name = "boundary",
 
 /* --- loads --- */
 static const SchemaEntry traction_entries[] = {
+  KEY("name", NAME, NULL, "how `analysis.limit` may call it", AT(LoadSpec, name)),
   KEY("on", TABLE, NULL, "a boundary of the grid, or of a body (then the load moves with it)",
       .table = &schema_selector, REQUIRED, AT(LoadSpec, on)),
   KEY("value", VECTOR, "N/m2", "force per undeformed boundary; it goes all round in axisymmetry", REQUIRED,
@@ -87,6 +88,7 @@ static const SchemaTable pressure = {.name = "pressure",
                                      .size = sizeof(LoadSpec),
                                      .tag_offset = offsetof(LoadSpec, kind)};
 static const SchemaEntry point_load_entries[] = {
+  KEY("name", NAME, NULL, "how `analysis.limit` may call it", AT(LoadSpec, name)),
   KEY("at", VECTOR, "m", "the piece of material that carries it, by its position at the start", REQUIRED,
       AT(LoadSpec, at)),
   KEY("force", VECTOR, "N", "the force; in axisymmetry that of the whole circle", REQUIRED, AT(LoadSpec, value)),

@@ -65,11 +65,14 @@ PetscErrorCode SchemaCheckReduction(SchemaReader *r, const YamlNode *mapping, vo
 PetscErrorCode SchemaCheckAnalysis(SchemaReader *r, const YamlNode *mapping, void *target)
 {
   const AnalysisSpec *a = target;
-  const YamlNode *reduction = yaml_find(mapping, "reduction");
+  const YamlNode *reduction = yaml_find(mapping, "reduction"), *limit = yaml_find(mapping, "limit");
 
   PetscFunctionBeginUser;
   if (reduction && a->type != ANALYSIS_FACTOR)
     SchemaKeyError(r, reduction, "analysis.reduction belongs to `type: factor-of-safety`");
+  if (limit && a->type != ANALYSIS_LIMIT) SchemaKeyError(r, limit, "analysis.limit belongs to `type: limit-load`");
+  if (!limit && a->type == ANALYSIS_LIMIT)
+    SchemaKeyError(r, mapping, "key 'limit' of analysis is missing: what is to be raised? limit: {raise: ...}");
   resolve_steps(r, mapping, target);
   resolve_bounds(r, mapping, target);
   resolve_newmark(r, mapping, target);

@@ -10,6 +10,7 @@ static const SchemaWord analysis_words[] = {
   {"static", ANALYSIS_STATIC, "equilibrium at every step, no inertia"},
   {"dynamic", ANALYSIS_DYNAMIC, "Newmark in time, with inertia"},
   {"factor-of-safety", ANALYSIS_FACTOR, "static; all loads on, strength is divided until nothing balances any more"},
+  {"limit-load", ANALYSIS_LIMIT, "static; all loads on, one of them is raised until nothing more holds"},
   {NULL, 0, NULL},
 };
 static const SchemaWord mass_words[] = {
@@ -64,13 +65,33 @@ static const SchemaTable reduction = {.name = "reduction",
                                       .entries = reduction_entries,
                                       .check = SchemaCheckReduction};
 
+static const SchemaEntry limit_entries[] = {
+  KEY(
+    "raise", TEXT, NULL,
+    "what is raised from zero when all other loads are on: `gravity`, the name of a traction or a point load, or of an "
+    "entry of boundary with a `displacement`, whose reaction is the load then",
+    REQUIRED, AT(LimitSpec, raise)),
+  KEY("step", NUMBER, NULL, "the first increment: of the load's factor while it is small, or of the displacement's",
+      .fallback = "0.02", ABOVE(0), AT(LimitSpec, step)),
+  KEY("tolerance", NUMBER, NULL,
+      "the load is the limit if it has grown by no more than this, over itself, while the displacement doubled",
+      .fallback = "0.005", .bounded = PETSC_TRUE, .min = 0, .min_open = PETSC_TRUE, .max = 0.5,
+      AT(LimitSpec, tolerance)),
+  KEY("most", NUMBER, NULL, "factor of the load, or of the displacement, beyond which nobody looks",
+      .note = "1 of a displacement, 1000 of a load", ABOVE(0), AT(LimitSpec, most)),
+  {.key = NULL},
+};
+static const SchemaTable limit = {
+  .name = "limit", .help = "Of a limit load: what is raised, and when it is enough.", .entries = limit_entries};
+
 static const SchemaEntry analysis_entries[] = {
-  KEY("type", WORD, NULL, "static, dynamic or factor-of-safety", .words = analysis_words, REQUIRED,
+  KEY("type", WORD, NULL, "static, dynamic, or what is sought", .words = analysis_words, REQUIRED,
       AT(AnalysisSpec, type)),
   KEY("reduction", TABLE, NULL, "factor-of-safety: the factors that are tried", .table = &reduction, ALWAYS,
       AT(AnalysisSpec, reduction)),
-  KEY("end", NUMBER, "s", "time at the end of the run; factor-of-safety: when all loads are on", .note = "static: 1",
-      ABOVE(0), AT(AnalysisSpec, end)),
+  KEY("limit", TABLE, NULL, "limit-load: what is raised", .table = &limit, AT(AnalysisSpec, limit)),
+  KEY("end", NUMBER, "s", "time at the end of the run; factor-of-safety, limit-load: when all loads are on",
+      .note = "static: 1", ABOVE(0), AT(AnalysisSpec, end)),
   KEY("until", LIST, NULL, "any of these ends the run earlier", .table = &until, AT(AnalysisSpec, until),
       .count = offsetof(AnalysisSpec, n_until)),
   KEY("steps", INTEGER, NULL, "number of equal steps up to the end", .note = "static: 1, if `step` is not given",
@@ -108,7 +129,9 @@ static const SchemaEntry analysis_entries[] = {
 static const SchemaGroup analysis_groups[] = {{GROUP_AT_MOST_ONE, {"steps", "step", NULL}}, {GROUP_NONE, {NULL}}};
 static PetscBool hide_in_analysis(const SchemaEntry *e, const void *source)
 {
-  return !strcmp(e->key, "reduction") && ((const AnalysisSpec *)source)->type != ANALYSIS_FACTOR;
+  const AnalysisType type = ((const AnalysisSpec *)source)->type;
+  if (!strcmp(e->key, "limit")) return type != ANALYSIS_LIMIT;
+  return !strcmp(e->key, "reduction") && type != ANALYSIS_FACTOR;
 }
 
 static const SchemaTable analysis = {.name = "analysis",

@@ -284,8 +284,8 @@ PetscErrorCode EnergyOfNodes(Model *m, PetscReal dt, EnergyStep *e)
   PetscFunctionBeginUser;
   *e = (EnergyStep){0};
   PetscCall(ForcesAtEnds(m, dt, &before, &after));
-  gravity_at(m->c, m->time + (m->scheme->middle ? 0.5 : 0) * dt, g0);
-  gravity_at(m->c, m->time + time_solved(m->scheme) * dt, g1);
+  gravity_at(m->c, raised_time(m, m->time + (m->scheme->middle ? 0.5 : 0) * dt), g0);
+  gravity_at(m->c, raised_time(m, m->time + time_solved(m->scheme) * dt), g1);
   for (PetscInt i = 0; i < m->grid->n_owned * m->dim; ++i) {
     const PetscInt d = i % m->dim;
     e->external += 0.5 * (n->mass[i / m->dim] * (g0[d] + g1[d]) + before[i] + after[i]) * n->du[i];

@@ -114,6 +114,25 @@ static PetscErrorCode StrengthToTables(const Model *m, Tables *tables)
   PetscFunctionReturn(0);
 }
 
+static PetscErrorCode RaisedToTables(const Model *m, Tables *tables)
+{
+  Table *table;
+
+  PetscFunctionBeginUser;
+  if (!m->raised.rising) PetscFunctionReturn(0);
+  PetscCall(TablesAdd(tables, "raised", PETSC_TRUE, 1, &table));
+  PetscCall(TableAdd(table, "kept", NULL, COLUMN_REAL, RAISED_KEPT, (void *)&m->raised, NULL));
+  PetscFunctionReturn(0);
+}
+
+static void raised_from_table(Model *m, const Table *table, char reason[256])
+{
+  if (!table || reason[0]) return;
+  const PetscReal *kept = table_data(table, "kept", COLUMN_REAL, RAISED_KEPT, reason);
+  for (int k = 0; kept && k < RAISED_KEPT; ++k) ((PetscReal *)&m->raised)[k] = kept[k];
+  m->raised.rising = kept != NULL;
+}
+
 static PetscErrorCode InitialToTables(const Model *m, Tables *tables)
 {
   Table *table;
@@ -177,6 +196,7 @@ PetscErrorCode ModelToTables(Model *m, Tables *tables)
   PetscCall(SofteningToTables(m, tables));
   PetscCall(StrengthToTables(m, tables));
   PetscCall(InitialToTables(m, tables));
+  PetscCall(RaisedToTables(m, tables));
   PetscCall(StateLostToTables(m, tables));
   PetscCall(StateListsToTables(m, tables));
   PetscCall(PointsToTable(m->points, m->grid, "points", tables));
@@ -377,6 +397,7 @@ PetscErrorCode ModelFromTables(Model *m, Tables *tables, char reason[256])
   tries_from_table(m, tables_find(tables, "tries"), reason);
   softening_from_table(m, tables_find(tables, "softening"), reason);
   strength_from_table(m, tables_find(tables, "strength"), reason);
+  raised_from_table(m, tables_find(tables, "raised"), reason);
   initial_from_table(m, tables_find(tables, "initial"), reason);
   state_lost_from_tables(m, tables, reason);
   PetscCall(StateListsFromTables(m, tables, reason));

@@ -28,6 +28,8 @@ static PetscErrorCode Attend(Run *r)
   PetscCall(UntilCreate(r->c, &r->until));
   PetscCall(StrengthRunDestroy(&r->strength));
   r->strength = (StrengthRun){0};
+  PetscCall(LimitRunDestroy(&r->limit));
+  r->limit = (LimitRun){0};
   PetscFunctionReturn(0);
 }
 

@@ -27,7 +27,7 @@ static PetscErrorCode Append(StrengthRun *s, const Try *try)
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode LargestDisplacement(const Model *m, PetscReal *largest)
+PetscErrorCode LargestDisplacement(const Model *m, PetscReal *largest)
 {
   PetscReal local = 0;
 

@@ -24,6 +24,8 @@ typedef struct {
   Try *tries;
 } StrengthRun;
 
+/* Collective. Of a point since the start, m. */
+PetscErrorCode LargestDisplacement(const Model *model, PetscReal *largest);
 PetscErrorCode StrengthRunDestroy(StrengthRun *run);
 /* Collective. The row of the state before the first try. */
 PetscErrorCode StrengthBegin(StrengthRun *run, Model *model);

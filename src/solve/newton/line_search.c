@@ -45,6 +45,7 @@ static PetscErrorCode EvaluateAt(void *context, PetscReal lambda, PetscReal *nor
 
   PetscFunctionBeginUser;
   PetscCall(VecWAXPY(s->w, -lambda, s->y, s->x));
+  if (s->memory->place) s->memory->place(s->memory->context, lambda);
   if (s->memory->settle) PetscCall(s->memory->settle(s->memory->context, s->w));
   PetscCall(SNESComputeFunction(s->snes, s->w, s->f));
   PetscCall(VecNorm(s->f, NORM_2, norm));
@@ -107,6 +108,7 @@ PetscErrorCode LineSearchDescend(SNESLineSearch search, void *memory)
   PetscCall(SNESLineSearchGetSNES(search, &s.snes));
   PetscCall(SNESLineSearchGetVecs(search, &s.x, &s.f, &s.y, &s.w, &unused));
   PetscCall(SNESGetIterationNumber(s.snes, &iteration));
+  if (s.memory->begin) PetscCall(s.memory->begin(s.memory->context, s.x, s.y));
   PetscCall(WorkAlong(&s, s.f, &slope0));
   PetscCall(VecNorm(s.f, NORM_2, &norm0));
   if (s.memory->choose) PetscCall(s.memory->choose(s.memory->context, iteration, s.f, norm0));
@@ -116,6 +118,7 @@ PetscErrorCode LineSearchDescend(SNESLineSearch search, void *memory)
     PetscCall(SNESLineSearchSetReason(search, SNES_LINESEARCH_FAILED_NANORINF));
     PetscFunctionReturn(0);
   }
+  if (s.memory->end) s.memory->end(s.memory->context, line.lambda);
   PetscCall(VecCopy(s.w, s.x));
   PetscCall(VecNorm(s.x, NORM_2, &xnorm));
   PetscCall(VecNorm(s.y, NORM_2, &ynorm));

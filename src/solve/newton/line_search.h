@@ -24,6 +24,11 @@ typedef struct {
    * done to every place along it before the residual there is taken. */
   PetscErrorCode (*choose)(void *context, PetscInt iteration, Vec f, PetscReal norm);
   PetscErrorCode (*settle)(void *context, Vec x);
+  /* Another unknown beside x: NULL, or all three. Collective: the direction y from x may be changed; then
+   * each place along it is told, and at last the length that is taken. */
+  PetscErrorCode (*begin)(void *context, Vec x, Vec y);
+  void (*place)(void *context, PetscReal length);
+  void (*end)(void *context, PetscReal length);
   void *context;
 } LineSearchMemory;
 

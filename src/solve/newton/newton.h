@@ -12,6 +12,19 @@
 
 #define NEWTON_HISTORY 64
 
+/* A load whose factor is one more unknown, and the work that it must do in the step: increments by which it
+ * is raised follow from displacements, so that the load may stand still or fall (newton_border.c). */
+typedef struct {
+  const PetscReal *load; /* n_nodes x dim, N per unit of its factor, in the frames of the nodes; owners count */
+  PetscReal start;       /* factor of it that stands in `external` */
+  PetscReal factor;      /* in: first guess; out: solution */
+  PetscReal work;        /* load . du that the step must bring, J */
+  /* load . du for a factor of 1 at the first tangent, J: work is a share of it if unit is 0 */
+  PetscReal unit;
+  PetscReal lacks; /* share of the work that is still lacking */
+  PetscReal from, along;
+} LoadBorder;
+
 /* The step to be solved; arrays are n_nodes x dim over local nodes. */
 typedef struct {
   const Grid *grid;
@@ -33,6 +46,7 @@ typedef struct {
   PetscReal *pressure;
   PetscReal *volume;         /* mixed: n_nodes, residual of the pressure equation, N */
   const unsigned char *idle; /* mixed: n_nodes, no material touches the node: no pressure there */
+  LoadBorder *border;        /* NULL: all loads are known */
   /* does somebody want the run to end? asked on every rank; NULL: nobody ever does */
   PetscBool (*asked)(void);
   /* what the last digit of a coordinate makes of the force at a node, N */

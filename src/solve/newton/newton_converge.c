@@ -118,7 +118,10 @@ PetscErrorCode NewtonConverged(SNES snes, PetscInt it, PetscReal xnorm, PetscRea
   const PetscBool still = it > 0 && small && near;
   const PetscBool floored = it > 1 && fnorm > 0.25 * n->last && at_floor(n, xnorm, snorm);
   if (k < NEWTON_HISTORY) r->residual[k] = relative;
+  const PetscBool met = newton_border_met(n);
   if (PetscIsInfOrNanReal(fnorm)) *reason = SNES_DIVERGED_FNORM_NAN;
+  else if (!met && n->asked) *reason = SNES_DIVERGED_FUNCTION_COUNT;
+  else if (!met && relative <= 1) *reason = SNES_CONVERGED_ITERATING; /* the load has still to do its work */
   else if (relative <= spec->residual || fnorm <= spec->residual_absolute) *reason = SNES_CONVERGED_FNORM_RELATIVE;
   else if (still || (floored && (near || is_round_off(n, fnorm)))) *reason = SNES_CONVERGED_SNORM_RELATIVE;
   else if (n->asked) *reason = SNES_DIVERGED_FUNCTION_COUNT; /* no more than it wants to evaluate */

@@ -75,6 +75,14 @@ PetscBool newton_eliminates(const StepProblem *p, const LinearProblem *linear);
 PetscErrorCode NewtonChoose(void *context, PetscInt iteration, Vec f, PetscReal norm);
 PetscErrorCode NewtonSettle(void *context, Vec x);
 
+/* newton_border.c. What the line search does where a load is unknown: to a direction that begins at x; to a
+ * place along it, and to the one that is taken. */
+PetscErrorCode NewtonBorderBegin(void *context, Vec x, Vec y);
+void newton_border_place(void *context, PetscReal length);
+void newton_border_end(void *context, PetscReal length);
+/* Does the load do the work that it must do in this step? */
+PetscBool newton_border_met(const Newton *n);
+
 /* newton_converge.c. The norm below which a residual has converged, N. */
 PetscReal newton_tolerance(const Newton *n);
 /* Will this residual be the last? If it falls by the same factor once more it is

@@ -11,14 +11,16 @@ static PetscErrorCode Balance(Newton *n)
 {
   const StepProblem *p = n->problem;
   const PetscInt dim = p->grid->dim;
+  const LoadBorder *b = p->border;
   PetscReal local[3] = {contact_square(p->scene.contact), 0, p->asked && p->asked() ? 1 : 0}, sum[3];
 
   PetscFunctionBeginUser;
   for (PetscInt k = 0; k < p->system->n_active; ++k)
     for (PetscInt d = 0, i = p->system->active[k] * dim; d < dim; ++d, ++i) {
-      p->force[i] -= p->external[i];
+      const PetscReal external = p->external[i] + (b ? (b->factor - b->start) * b->load[i] : 0);
+      p->force[i] -= external;
       if (p->fixed[i]) local[0] += p->force[i] * p->force[i];
-      else local[1] += p->external[i] * p->external[i];
+      else local[1] += external * external;
     }
   PetscCall(MPIU_Allreduce(local, sum, 3, MPIU_REAL, MPI_SUM, n->comm));
   n->asked = sum[2] > 0;

@@ -78,6 +78,9 @@ PetscErrorCode NewtonSetUp(Newton *n, StepProblem *p, const LinearProblem *linea
   if (eliminates) PetscCall(EliminationSetUp(&n->elimination, p));
   n->search.choose = eliminates ? NewtonChoose : NULL;
   n->search.settle = eliminates ? NewtonSettle : NULL;
+  n->search.begin = NewtonBorderBegin;
+  n->search.place = newton_border_place;
+  n->search.end = newton_border_end;
   n->search.context = n;
   n->search.block = p->pressure ? p->system->block : 0;
   PetscCall(SystemCreateVec(p->system, &n->x));

@@ -1,0 +1,118 @@
+/* A load that is raised until nothing more holds (docs/theory.md, "Limit loads"): a prescribed displacement
+ * in steps of its own, or forces, whose factor follows from the work that they do. */
+#include "model/model_private.h"
+
+static PetscBool is_forces(const Case *c)
+{
+  return c->analysis.limit.kind == RAISE_GRAVITY || c->analysis.limit.kind == RAISE_LOAD;
+}
+
+void raised_start(Model *m, Diag *diag)
+{
+  const Case *c = m->c;
+  const LimitSpec *limit = &c->analysis.limit;
+  m->raised = (Raised){.value = NAN};
+  if (c->analysis.type != ANALYSIS_LIMIT) return;
+  if (m->method->clouds)
+    diag_error(diag, "analysis.type", "method %s does not raise a load to its limit: mpm and fem do", m->method->name);
+  if (limit->kind == RAISE_LOAD && c->loads[limit->index].kind == LOAD_PRESSURE)
+    diag_error(diag, "analysis.limit.raise", "a pressure that follows the surface cannot be raised: give a traction");
+  if (limit->kind == RAISE_GRAVITY && case_has_stress(c))
+    diag_error(diag, "analysis.limit.raise",
+               "gravity is raised from zero, but bodies start with the stress of a weight");
+  const PetscBool crossed =
+    c->grid.kind == GRID_BOX && c->grid.cell == CELL_TRIANGLE && c->grid.diagonal == DIAGONAL_CROSSED;
+  if (crossed || m->formulation->pressure || m->formulation->cells) return; /* these do not lock */
+  diag_warning(diag, "formulation",
+               "with displacements as the only unknowns what yields without a change of volume locks: the limit load "
+               "comes out too large, or there is none");
+  diag_hint(diag, "`formulation: mixed` and `mean-dilatation` do not lock, nor do triangles with `diagonal: crossed`");
+}
+
+PetscReal raised_time(const Model *m, PetscReal t)
+{
+  const PetscReal end = m->c->analysis.end;
+  if (!m->raised.rising || !is_forces(m->c)) return t;
+  return end + (t > m->time ? m->raised.border.factor : m->raised.factor);
+}
+
+/* Nodal forces of the load for a factor of 1, in the frames of the nodes. */
+static PetscErrorCode NodalLoad(Model *m, PetscReal *load)
+{
+  const PetscReal end = m->c->analysis.end;
+  const PetscInt dofs = m->grid->n_nodes * m->dim;
+  NodalScene scene = nodal_scene(m, m->time, m->nodes->du);
+  PetscReal g[3], *none, local[3] = {0, 0, 0}, sum[3];
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(dofs, &none));
+  scene.t = end;
+  PetscCall(NodalForcesExternal(&m->forces, &scene, PETSC_FALSE, none));
+  scene.t = end + 1;
+  PetscCall(NodalForcesExternal(&m->forces, &scene, PETSC_FALSE, load));
+  gravity_at(m->c, end + 1, g);
+  for (PetscInt i = 0; i < dofs; ++i) {
+    const PetscBool weighs = m->c->analysis.limit.kind == RAISE_GRAVITY && m->nodes->touched[i / m->dim];
+    load[i] += (weighs ? m->nodes->mass[i / m->dim] * g[i % m->dim] : 0) - none[i];
+    if (i < m->grid->n_owned * m->dim) local[i % m->dim] += load[i];
+  }
+  PetscCall(PetscFree(none));
+  PetscCall(MPIU_Allreduce(local, sum, 3, MPIU_REAL, MPI_SUM, m->comm));
+  m->raised.resultant = PetscSqrtReal(PetscSqr(sum[0]) + PetscSqr(sum[1]) + PetscSqr(sum[2]));
+  frames_turn(&m->boundary->frames, m->dim, load);
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode RaisedPrepare(Model *m, PetscReal dt, StepProblem *p)
+{
+  Raised *r = &m->raised;
+
+  PetscFunctionBeginUser;
+  if (!r->rising || !is_forces(m->c)) PetscFunctionReturn(0);
+  PetscCall(PetscFree(r->nodal));
+  PetscCall(PetscCalloc1(m->grid->n_nodes * m->dim, &r->nodal));
+  PetscCall(NodalLoad(m, r->nodal));
+  r->border = (LoadBorder){.load = r->nodal,
+                           .start = r->factor,
+                           .factor = r->factor,
+                           .work = r->unit > 0 ? r->unit * dt : dt,
+                           .unit = r->unit,
+                           .lacks = 1};
+  p->border = &r->border;
+  PetscFunctionReturn(0);
+}
+
+/* Force of the boundary on the material along its prescribed displacement, and how far that has come. */
+static PetscErrorCode LookAtBoundary(Model *m)
+{
+  const PetscInt k = m->c->analysis.limit.index;
+  const MotionSpec *motion = &m->c->boundary[k];
+  PetscReal sum[3], square = 0;
+
+  PetscFunctionBeginUser;
+  PetscCall(BoundarySum(m->boundary, m->grid, k, m->nodes->reaction, sum));
+  for (PetscInt d = 0; d < m->dim; ++d) square += PetscSqr(motion->value[d]);
+  m->raised.load = 0;
+  for (PetscInt d = 0; d < m->dim && square > 0; ++d)
+    m->raised.load += sum[d] * motion->value[d] / PetscSqrtReal(square);
+  m->raised.displacement = PetscSqrtReal(square) * (m->time - m->c->analysis.end);
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ModelRaise(Model *m, PetscReal control, StepReport *report)
+{
+  Raised *r = &m->raised;
+
+  PetscFunctionBeginUser;
+  r->rising = PETSC_TRUE;
+  m->control.next = control;
+  PetscCall(ModelStep(m, control, report));
+  PetscCall(PetscFree(r->nodal));
+  if (report->outcome != STEP_ACCEPTED && report->outcome != STEP_POINTS_LOST) PetscFunctionReturn(0);
+  if (is_forces(m->c)) {
+    r->load = r->factor = r->border.factor;
+    r->unit = r->border.unit;
+    if (r->resultant > 0) r->displacement += r->border.work / r->resultant;
+  } else PetscCall(LookAtBoundary(m));
+  PetscFunctionReturn(0);
+}

@@ -1,0 +1,203 @@
+#include "run/strength/limit.h"
+#include "base/text.h"
+#include "output/directory/run_dir_files.h"
+#include "run/strength/strength.h"
+
+#define GROWTH 1.5 /* of a step that was taken as it was */
+/* of the way that lies behind: the largest step, so that the second half of it has some */
+#define SHARE 0.15
+/* a load that has fallen so many tolerances below its largest does not come back */
+#define FALLEN 4
+
+PetscErrorCode LimitRunDestroy(LimitRun *s)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscFree(s->rows));
+  PetscFunctionReturn(0);
+}
+
+PetscBool limit_goes_on(const LimitRun *s) { return s->outcome == LIMIT_RISES; }
+
+static PetscErrorCode Append(LimitRun *s, const LimitRow *row)
+{
+  PetscFunctionBeginUser;
+  if (s->n == s->capacity) {
+    s->capacity = PetscMax(64, 2 * s->capacity);
+    PetscCall(PetscRealloc((size_t)s->capacity * sizeof *s->rows, &s->rows));
+  }
+  s->rows[s->n++] = *row;
+  PetscFunctionReturn(0);
+}
+
+/* What the model tells of itself where it stands. */
+static PetscErrorCode Look(LimitRun *s, Model *m, const StepReport *report)
+{
+  LimitRow row = {.control = m->time - m->c->analysis.end,
+                  .load = m->raised.load,
+                  .displacement = m->raised.displacement,
+                  .iterations = (PetscReal)report->newton.iterations};
+  Energies energies;
+
+  PetscFunctionBeginUser;
+  PetscCall(LargestDisplacement(m, &row.largest));
+  PetscCall(ModelEnergies(m, &energies));
+  row.stored = energies.elastic;
+  row.dissipated = energies.dissipated;
+  if (s->n) {
+    const LimitRow *before = &s->rows[s->n - 1];
+    const PetscReal force = m->c->analysis.limit.kind == RAISE_BOUNDARY ? 1 : m->raised.resultant;
+    row.work = before->work + 0.5 * force * (before->load + row.load) * (row.displacement - before->displacement);
+  }
+  PetscCall(Append(s, &row));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LimitBegin(LimitRun *s, Model *m)
+{
+  const StepReport none = {0};
+
+  PetscFunctionBeginUser;
+  s->step = m->c->analysis.limit.step;
+  PetscCall(Look(s, m, &none));
+  PetscFunctionReturn(0);
+}
+
+static PetscReal largest_load(const LimitRun *s)
+{
+  PetscReal most = 0;
+  for (PetscInt i = 1; i < s->n; ++i) most = PetscMax(most, s->rows[i].load);
+  return most;
+}
+
+/* By how much the load grew while the displacement doubled, over the largest; 1 as long as there is no half. */
+static PetscReal growth(const LimitRun *s)
+{
+  const PetscReal most = largest_load(s), half = 0.5 * s->rows[s->n - 1].displacement;
+  PetscInt i = s->n - 1;
+  while (i > 0 && s->rows[i].displacement > half) --i;
+  return i > 0 && most > 0 ? (most - s->rows[i].load) / most : 1;
+}
+
+static LimitOutcome judge(const LimitRun *s, const LimitSpec *spec, PetscBool forces)
+{
+  const LimitRow *last = &s->rows[s->n - 1];
+  const PetscReal most = largest_load(s);
+  if (growth(s) <= spec->tolerance) return LIMIT_HOLDS;
+  if (last->load < (1 - FALLEN * spec->tolerance) * most) return LIMIT_FALLS;
+  return (forces ? most : last->control * (1 + 1e-9)) >= spec->most ? LIMIT_MOST : LIMIT_RISES;
+}
+
+static void choose_step(LimitRun *s, const LimitSpec *spec, const StepReport *report)
+{
+  const PetscReal came = s->rows[s->n - 1].control;
+  s->step = PetscMin((report->cuts ? 1 : GROWTH) * report->dt, PetscMax(spec->step, SHARE * came));
+}
+
+PetscErrorCode LimitStep(LimitRun *s, Model *m, RunDir *dir, StepReport *report)
+{
+  const LimitSpec *spec = &m->c->analysis.limit;
+  const PetscBool forces = spec->kind != RAISE_BOUNDARY;
+  PetscReal step = s->step;
+
+  PetscFunctionBeginUser;
+  if (!forces) step = PetscMin(step, spec->most - s->rows[s->n - 1].control);
+  PetscCall(ModelRaise(m, step, report));
+  if (report->outcome == STEP_INTERRUPTED || report->outcome == STEP_POINTS_LOST) PetscFunctionReturn(0);
+  if (report->outcome != STEP_ACCEPTED) {
+    s->outcome = LIMIT_LOST;
+    PetscCall(
+      RunDirLog(dir, "lost = no equilibrium with a step of %.3g (%s)", (double)report->dt, report->newton.reason));
+    PetscFunctionReturn(0);
+  }
+  PetscCall(Look(s, m, report));
+  choose_step(s, spec, report);
+  s->outcome = (PetscReal)judge(s, spec, forces);
+  PetscCall(RunDirLog(dir, "load = %.6g displacement = %.4g m iterations = %d", (double)m->raised.load,
+                      (double)m->raised.displacement, (int)report->newton.iterations));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LimitWrite(const LimitRun *s, const Model *m, RunDir *dir)
+{
+  TextStream stream;
+  char *text, number[32];
+
+  PetscFunctionBeginUser;
+  PetscCall(TextOpen(&stream));
+  fprintf(stream.out, "control,load [%s],displacement [m],iterations,largest [m],stored [J],dissipated [J],work [J]\n",
+          m->c->analysis.limit.kind == RAISE_BOUNDARY ? "N" : "");
+  for (PetscInt i = 0; i < s->n; ++i)
+    for (int k = 0; k < LIMIT_NUMBERS; ++k) {
+      file_format_real(((const PetscReal *)&s->rows[i])[k], number);
+      fprintf(stream.out, "%s%s", number, k + 1 < LIMIT_NUMBERS ? "," : "\n");
+    }
+  PetscCall(TextClose(&stream, &text));
+  const PetscErrorCode status = RunDirWriteText(dir, "limit.csv", text);
+  PetscCall(PetscFree(text));
+  PetscFunctionReturn(status);
+}
+
+/* Share of the load's work in the last step that was stored: nothing where a mechanism has formed. */
+static PetscReal share_stored(const LimitRun *s)
+{
+  const LimitRow *a = &s->rows[PetscMax(0, s->n - 2)], *b = &s->rows[s->n - 1];
+  return b->work > a->work ? (b->stored - a->stored) / (b->work - a->work) : 0;
+}
+
+PetscErrorCode LimitEnd(const LimitRun *s, Model *m, RunDir *dir)
+{
+  static const char *const why[LIMIT_N] = {
+    [LIMIT_RISES] = "it still rises",
+    [LIMIT_HOLDS] = "it holds",
+    [LIMIT_FALLS] = "it falls",
+    [LIMIT_MOST] = "it still rises where the search was to end (analysis.limit.most)",
+    [LIMIT_LOST] = "Newton's method lost its way",
+  };
+  const LimitSpec *spec = &m->c->analysis.limit;
+  const LimitOutcome outcome = (LimitOutcome)s->outcome;
+
+  PetscFunctionBeginUser;
+  m->raised.value = largest_load(s);
+  PetscCall(RunDirLog(dir, "by load = %s: it grew by %.2g %% while the displacement doubled", why[outcome],
+                      100 * (double)growth(s)));
+  PetscCall(RunDirLog(dir, "by energy = %.1f %% of the load's last work was stored", 100 * (double)share_stored(s)));
+  if (outcome == LIMIT_MOST || outcome == LIMIT_LOST)
+    PetscCall(RunDirLog(dir, "warning = no limit was found: the load is the largest that was reached"));
+  if (spec->kind == RAISE_BOUNDARY)
+    PetscCall(
+      RunDirLog(dir, "limit load = %.6g N along the displacement of '%s'", (double)m->raised.value, spec->raise));
+  else PetscCall(RunDirLog(dir, "limit load = %.6g times '%s'", (double)m->raised.value, spec->raise));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LimitToTables(const LimitRun *s, Tables *tables)
+{
+  Table *table;
+
+  PetscFunctionBeginUser;
+  if (!s->n) PetscFunctionReturn(0);
+  PetscCall(TablesAdd(tables, "limit", PETSC_TRUE, 1, &table));
+  PetscCall(TableAdd(table, "search", NULL, COLUMN_REAL, 2, (void *)&s->step, NULL));
+  PetscCall(TablesAdd(tables, "limit_rows", PETSC_TRUE, s->n, &table));
+  PetscCall(TableAdd(table, "numbers", NULL, COLUMN_REAL, LIMIT_NUMBERS, (void *)s->rows, NULL));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LimitFromTables(LimitRun *s, const Tables *tables, char reason[256])
+{
+  const Table *whole = tables_find(tables, "limit"), *rows = tables_find(tables, "limit_rows");
+
+  PetscFunctionBeginUser;
+  if (!whole || !rows || reason[0]) PetscFunctionReturn(0);
+  const PetscReal *search = table_data(whole, "search", COLUMN_REAL, 2, reason);
+  const PetscReal *numbers = table_data(rows, "numbers", COLUMN_REAL, LIMIT_NUMBERS, reason);
+  if (reason[0]) PetscFunctionReturn(0);
+  if (whole->rows != 1 || rows->rows < 1 || !(search[0] > 0) || !(search[1] >= 0 && search[1] < LIMIT_N)) {
+    snprintf(reason, 256, "limit makes no sense");
+    PetscFunctionReturn(0);
+  }
+  s->step = search[0];
+  s->outcome = search[1];
+  for (PetscInt i = 0; i < rows->rows; ++i) PetscCall(Append(s, (const LimitRow *)numbers + i));
+  PetscFunctionReturn(0);
+}

@@ -1,0 +1,59 @@
+#!/bin/sh
+# A limit load: blocks whose bearing is known in closed form, by a load that is given and by a prescribed displacement, one to
+# three ranks, going on from a checkpoint, and what is refused.
+. "$(dirname "$0")/library.sh"
+
+# A block between a smooth floor and a traction of 1 kPa that is raised, free at its sides, in plane strain; it bears
+# 2 c (tan phi + sqrt(1 + tan^2 phi)) = 188.36 kPa.
+cat >block.yaml <<'END'
+kinematics: plane-strain
+method: fem
+analysis: {type: limit-load, limit: {raise: press, step: 20, tolerance: 1e-3}}
+grid: {box: {min: [0, 0], max: [1, 1]}, size: 0.5}
+bodies:
+  - {name: block, shape: {box: {min: [0, 0], max: [1, 1]}}, points_per_cell: 4, material: soil}
+materials:
+  soil: {law: mohr-coulomb, density: 2000, young: 1e9, poisson: 0.3, friction_angle: 25, cohesion: 60e3}
+boundary:
+  - {on: {boundary: bottom}, fix: [y]}
+  - {on: {x: 0.5, y: 0}, fix: [x]}
+loads: {tractions: [{name: press, on: {boundary: top}, value: [0, -1e3]}]}
+measures:
+  limit: {limit_load: value}
+  load: {limit_load: load}
+END
+bears=188.3625
+near() {
+  awk -F, -v f="$1" 'END { if (!($3 > f * 0.999 && $3 < f * 1.001)) { print $0; exit 1 } }' run/history.csv || fail "$name: not $1"
+}
+for ranks in 1 2 3; do
+  expect "a traction on $ranks" 0 on_ranks $ranks "$talus" run block.yaml --out run --force
+  near "$bears"
+done
+says out.txt "by load = it holds" "by energy = " "limit load = 188." "times 'press'"
+says run/limit.csv "control,load [],displacement [m],iterations,largest [m],stored [J],dissipated [J],work [J]"
+expect "mean dilatation, mpm" 0 "$talus" run block.yaml --out run --force --set formulation=mean-dilatation --set method=mpm
+near "$bears"
+sed 's/^loads:.*//; s/^  - {on: {boundary: bottom}, fix: \[y\]}/&\n  - {name: plate, on: {boundary: top}, displacement: {y: -0.002}}/' block.yaml >plate.yaml
+expect "a displacement" 0 "$talus" run plate.yaml --out run --force --set analysis.limit='{raise: plate, step: 0.02, tolerance: 1e-3}'
+awk -F, 'END { exit !($3 > 188.3e3 && $3 < 188.6e3) }' run/history.csv || fail "$name: $(tail -1 run/history.csv)"
+says out.txt "N along the displacement of 'plate'"
+expect "not far enough" 0 "$talus" run plate.yaml --out run --force --set analysis.limit='{raise: plate, most: 0.01}'
+says out.txt "warning = no limit was found"
+
+# Resumed anywhere: the same bits
+expect "whole" 0 "$talus" run block.yaml --out whole --quiet --set checkpoint.steps=3 --set checkpoint.keep=99
+cp -r whole cut
+ls cut/checkpoint_*.h5 | sed -n '2,$p' | xargs rm
+rm cut/timings.txt
+expect "resumed" 0 "$talus" run --resume cut --quiet
+for file in limit.csv history.csv; do cmp -s whole/$file cut/$file || fail "$name: $file differs"; done
+
+# What cannot be
+expect "no such load" 2 "$talus" check block.yaml --set analysis.limit.raise=pres
+says err.txt "there is no load and no entry of the boundary 'pres'" "did you mean 'press'"
+expect "gmm" 2 "$talus" check block.yaml --set method=gmm --set formulation=displacement
+says err.txt "method gmm does not raise a load"
+expect "limit of statics" 2 "$talus" check block.yaml --set analysis.type=static
+says err.txt "analysis.limit belongs to"
+finish
