@@ -104,7 +104,7 @@ static const SchemaEntry stress_entries[] = {
   {.key = NULL},
 };
 static const SchemaTable body_stress = {
-  .name = "body.stress",
+  .name = "stress of a body",
   .help =
     "Initial Cauchy stress in Pa, tension positive: formulas of x, y, z (m, where a point is), depth (m, below the "
     "surface of the highest material above it, against gravity) and weight (N/m2, of all that is above it): "

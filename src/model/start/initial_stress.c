@@ -4,6 +4,8 @@
 
 /* of the stress: what a law makes of it beyond round-off was beyond its strength */
 #define SAME 1e-9
+/* of the stiffness: stresses below are none */
+#define NOTHING 1e-13
 
 static const PetscReal identity[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
 
@@ -28,15 +30,24 @@ static PetscReal volume_of(const Law *law, const PetscReal *state, const PetscRe
   return J;
 }
 
-/* Is this a state of sigma that the law leaves as it is? */
-static PetscBool is_carried(const Law *law, const PetscReal *parameters, const PetscReal sigma[6], Carried *c)
+/* The parameters of all of the law, or of the shape alone, where pressure is an unknown. */
+static const PetscReal *parameters_of(const Material *m, PetscBool shape)
 {
+  return shape ? m->deviatoric : m->parameters;
+}
+
+/* Is this a state of sigma that the law leaves as it is? */
+static PetscBool is_carried(const Material *material, PetscBool shape, const PetscReal sigma[6], Carried *c)
+{
+  const Law *law = material->law;
+  const PetscReal *parameters = parameters_of(material, shape);
+  const PetscReal nothing = NOTHING * (shape ? material->wave_modulus : material_confined(material));
   PetscReal after[LAW_MAX_STATE], lack[6];
   if (!law->initial_stress(parameters, sigma, c->state)) return PETSC_FALSE;
   if (law->update(parameters, 1, identity, c->state, after, c->tau, NULL) != LAW_OK) return PETSC_FALSE;
   c->J = volume_of(law, c->state, sigma, c->tau);
   for (int k = 0; k < 6; ++k) lack[k] = c->tau[k] - c->J * sigma[k];
-  return product(lack, lack) <= SAME * SAME * product(c->tau, c->tau);
+  return product(lack, lack) <= SAME * SAME * product(c->tau, c->tau) + nothing * nothing;
 }
 
 /* What the strength leaves of sigma: the elastic state of it, returned; then a state of that stress, which
@@ -44,17 +55,17 @@ static PetscBool is_carried(const Law *law, const PetscReal *parameters, const P
 static StressOutcome project(const Material *material, PetscBool shape, const PetscReal sigma[6], Carried *c)
 {
   const Law *law = material->law;
-  const PetscReal *parameters = shape ? material->deviatoric : material->parameters;
   PetscReal trial[LAW_MAX_STATE], allowed[6];
   Material elastic = *material;
   if (!law->reduce) return STRESS_REFUSED;
   material_reduce(&elastic, 0);
-  if (!law->initial_stress(shape ? elastic.deviatoric : elastic.parameters, sigma, trial)) return STRESS_REFUSED;
-  if (law->update(parameters, 1, identity, trial, c->state, c->tau, NULL) != LAW_OK) return STRESS_REFUSED;
+  if (!law->initial_stress(parameters_of(&elastic, shape), sigma, trial)) return STRESS_REFUSED;
+  if (law->update(parameters_of(material, shape), 1, identity, trial, c->state, c->tau, NULL) != LAW_OK)
+    return STRESS_REFUSED;
   c->J = volume_of(law, c->state, sigma, c->tau);
   for (int k = 0; k < 6; ++k) allowed[k] = c->tau[k] / c->J;
   memcpy(trial, c->state, sizeof(PetscReal) * (size_t)law->n_state);
-  if (is_carried(law, parameters, allowed, c)) return STRESS_BEYOND;
+  if (is_carried(material, shape, allowed, c)) return STRESS_BEYOND;
   for (int k = 0; k < 6; ++k) c->tau[k] = allowed[k] * c->J;
   memcpy(c->state, trial, sizeof(PetscReal) * (size_t)law->n_state);
   return STRESS_BEYOND;
@@ -62,8 +73,7 @@ static StressOutcome project(const Material *material, PetscBool shape, const Pe
 
 static StressOutcome carry(const Material *material, PetscBool shape, const PetscReal sigma[6], Carried *c)
 {
-  const PetscReal *parameters = shape ? material->deviatoric : material->parameters;
-  return is_carried(material->law, parameters, sigma, c) ? STRESS_CARRIED : project(material, shape, sigma, c);
+  return is_carried(material, shape, sigma, c) ? STRESS_CARRIED : project(material, shape, sigma, c);
 }
 
 void point_compress(Points *points, PetscInt p, PetscReal before, PetscReal J)
