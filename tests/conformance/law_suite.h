@@ -12,7 +12,7 @@
 #include "material/pressure.h"
 #include "random.h"
 
-#define LAW_SUITE_STATES 10000
+#define LAW_SUITE_STATES 4000
 #define LAW_SUITE_STEP 1e-6 /* of central differences */
 
 typedef struct {

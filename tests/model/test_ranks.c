@@ -2,11 +2,12 @@
  * and together with the others, and compares all its points by id, and the measures. */
 #include "case_builder.h"
 
+/* what is thrown flies with 3 m/s */
 static const struct {
   PointReal field;
   const char *name;
   PetscReal scale;
-} fields[] = {{POINT_X, "x", 1}, {POINT_U, "u", 1}, {POINT_V, "v", 1}, {POINT_F, "F", 1}, {POINT_STATE, "state", 1}};
+} fields[] = {{POINT_X, "x", 1}, {POINT_U, "u", 1}, {POINT_V, "v", 3}, {POINT_F, "F", 1}, {POINT_STATE, "state", 1}};
 
 static void compare(const Model *together, const Model *alone)
 {
