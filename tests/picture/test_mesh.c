@@ -16,9 +16,8 @@ static void Cells(PetscInt dim, PetscInt n, PetscReal *x, VtkCells *cells)
         PetscReal *at = x + 3 * (i + m * (j + m * k));
         at[1] = (PetscReal)j / n, at[2] = (PetscReal)k / n, at[0] = (PetscReal)i / n + 0.7 * at[1] - 0.2 * at[2];
       }
-  PetscCallAbort(PETSC_COMM_SELF, PetscMalloc1(n * n * n + 1, &cells->start));
-  PetscCallAbort(PETSC_COMM_SELF, PetscMalloc1(8 * n * n * n, &cells->node));
-  PetscCallAbort(PETSC_COMM_SELF, PetscMalloc1(n * n * n, &cells->type));
+  PetscCallAbort(PETSC_COMM_SELF,
+                 PetscMalloc3(n * n * n + 1, &cells->start, 8 * n * n * n, &cells->node, n * n * n, &cells->type));
   cells->start[0] = 0;
   for (PetscInt k = 0; k < (dim == 3 ? n : 1); ++k)
     for (PetscInt j = 0; j < n; ++j)
