@@ -103,7 +103,8 @@ static void test_impulse(void **state)
   (void)state;
   CALL(MPI_Comm_size(PETSC_COMM_WORLD, &size));
   for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(falls); ++k)
-    if (size == 1 || falls[k].step >= 2e-3) impact(&falls[k]); /* of ranks a shorter step tells nothing */
+    if (size == 1 || (falls[k].step >= 2e-3 && falls[k].bossak == 0))
+      impact(&falls[k]); /* of ranks a shorter step and damping tell nothing */
 }
 
 /* A block that hangs from its upper side and is let go at t = 0: the trapezoidal rule takes the

@@ -40,7 +40,7 @@ interrupted INT job
 interrupted TERM job
 # Of these mpiexec passes on what batch systems send; the others come to the ranks themselves.
 if [ "$ranks" -gt 1 ]; then
-  for signal in TERM HUP QUIT XCPU USR1; do interrupted $signal rank; done
+  for signal in TERM XCPU USR1; do interrupted $signal rank; done
   interrupted USR1 job
   interrupted USR2 job
 else
