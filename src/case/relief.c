@@ -40,8 +40,9 @@ void relief_bounds(const Relief *r, PetscReal min[3], PetscReal max[3])
   for (int d = 0; d < 3; ++d) min[d] = PETSC_MAX_REAL, max[d] = -PETSC_MAX_REAL;
   for (PetscInt i = 0; i < r->n[0] * r->n[1]; ++i) {
     if (isnan(r->height[i])) continue;
-    const PetscReal x[3] = {r->low[0] + (PetscReal)(i % r->n[0]) * r->step,
-                            r->low[1] + (PetscReal)(i / r->n[0]) * r->step, r->height[i]};
+    const PetscInt row = i / r->n[0], column = i % r->n[0];
+    const PetscReal x[3] = {r->low[0] + (PetscReal)column * r->step, r->low[1] + (PetscReal)row * r->step,
+                            r->height[i]};
     for (int d = 0; d < 3; ++d) min[d] = PetscMin(min[d], x[d]), max[d] = PetscMax(max[d], x[d]);
   }
   min[2] = r->bottom;

@@ -73,7 +73,7 @@ LANES_INLINE void drucker_prager(const PetscReal *q, PetscBool moduli, const Lan
   lanes_sqrt(&norm2, &R);
   R *= mu;
   meridian_return(q, &p, &R, &m, &r->plastic);
-  r->good = m.p == m.p;
+  r->good = m.p == m.p; /* NOLINT(misc-redundant-expression): not where it is no number */
   for (int k = 0; k < 3; ++k) {
     r->tau[k] = m.p + 2.0 * mu * m.ratio * d[k];
     r->elastic[k] = m.p / (3.0 * K) + m.ratio * d[k];

@@ -75,7 +75,7 @@ static PetscErrorCode StageFromTables(Run *r, const Tables *tables, char reason[
   if (stage && (*stage < 0 || *stage >= n)) snprintf(reason, 256, "run/stage makes no sense");
   for (PetscInt k = 0; starts && k < n; ++k)
     if (!(starts[k] >= 0 && starts[k] <= PETSC_MAX_REAL)) snprintf(reason, 256, "run/stages_begin makes no sense");
-  if (!reason[0]) PetscCall(RunEnterStage(r, (PetscInt)*stage, starts));
+  if (!reason[0] && stage && starts) PetscCall(RunEnterStage(r, (PetscInt)*stage, starts));
   PetscFunctionReturn(0);
 }
 

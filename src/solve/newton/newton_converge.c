@@ -120,8 +120,8 @@ PetscErrorCode NewtonConverged(SNES snes, PetscInt it, PetscReal xnorm, PetscRea
   if (k < NEWTON_HISTORY) r->residual[k] = relative;
   const PetscBool met = newton_border_met(n);
   if (PetscIsInfOrNanReal(fnorm)) *reason = SNES_DIVERGED_FNORM_NAN;
-  else if (!met && n->asked) *reason = SNES_DIVERGED_FUNCTION_COUNT;
-  else if (!met && relative <= 1) *reason = SNES_CONVERGED_ITERATING; /* the load has still to do its work */
+  else if (!met && (n->asked || relative <= 1)) /* the load has still to do its work */
+    *reason = n->asked ? SNES_DIVERGED_FUNCTION_COUNT : SNES_CONVERGED_ITERATING;
   else if (relative <= spec->residual || fnorm <= spec->residual_absolute) *reason = SNES_CONVERGED_FNORM_RELATIVE;
   else if (still || (floored && (near || is_round_off(n, fnorm)))) *reason = SNES_CONVERGED_SNORM_RELATIVE;
   else if (n->asked) *reason = SNES_DIVERGED_FUNCTION_COUNT; /* no more than it wants to evaluate */
