@@ -147,6 +147,10 @@ static const SchemaEntry material_entries[] = {
       REQUIRED, AT(MaterialSpec, law)),
   KEY("density", NUMBER, "kg/m3", "mass per volume of the undeformed body", REQUIRED, ABOVE(0),
       AT(MaterialSpec, density)),
+  KEY("amplitude", AMPLITUDES, NULL,
+      "factors on parameters over time: {cohesion: [[0, 1], [10, 0.5]]}, linear between, density and elastic constants "
+      "too; of a stage: times count from its start. Stresses stay when elastic constants change",
+      AT(MaterialSpec, amplitudes), .count = offsetof(MaterialSpec, n_amplitudes)),
   {.key = NULL},
 };
 static const SchemaTable material = {

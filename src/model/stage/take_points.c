@@ -1,7 +1,6 @@
 /* Points of one case as those of another. */
 #include "material/pressure.h"
 #include "model/stage/stage_private.h"
-#include "model/start/initial_stress.h"
 
 /* The body of this case that one of the other is: of its name, if it is there in both; or -1. */
 static PetscInt body_here(const Case *c, const BodySpec *other)
@@ -16,43 +15,6 @@ static PetscInt material_of(const Case *c, PetscInt body)
   PetscInt i = 0;
   while (strcmp(c->materials[i].name, c->bodies[body].material)) ++i;
   return i;
-}
-
-static PetscBool same_elasticity(const Material *a, const Material *b)
-{
-  return a->law == b->law && a->elastic.bulk == b->elastic.bulk && a->elastic.shear == b->elastic.shear;
-}
-
-/* Numbers of history that both laws know by the same name. */
-static void keep_history(const Law *was, const PetscReal *before, const Law *is, PetscReal *state)
-{
-  for (const LawField *f = is->fields; f->name; state += f++->components) {
-    const PetscReal *old = before;
-    for (const LawField *g = was->fields; g->name; old += g++->components)
-      if (f->components == 1 && g->components == 1 && !strcmp(f->name, g->name)) *state = *old;
-  }
-}
-
-/* Its stress stays, in the state of another law or of other constants. */
-static PetscBool swap(Points *points, PetscInt p, const Material *was, const Material *is)
-{
-  PetscReal *J = points->real[POINT_J] + p, *volume = points->real[POINT_VOLUME] + p;
-  PetscReal before[LAW_MAX_STATE], F[9], tau[6], sigma[6];
-  const PetscReal J_was = *J;
-  PetscReal *state = point_real(points, POINT_STATE, p);
-  point_tau(points, p, tau);
-  for (PetscInt i = 0; i < points->components[POINT_F]; ++i) F[i] = point_real(points, POINT_F, p)[i];
-  for (int k = 0; k < 6; ++k) sigma[k] = tau[k] / J_was;
-  for (PetscInt i = 0; i < LAW_MAX_STATE; ++i) before[i] = i < was->law->n_state ? state[i] : 0;
-  *volume *= J_was;
-  *J = 1;
-  law_initial_state(is->law, state);
-  if (stress_point(points, p, is, sigma) == STRESS_REFUSED) return PETSC_FALSE;
-  keep_history(was->law, before, is->law, state);
-  const PetscReal stretch = PetscPowReal(*J / J_was, 1.0 / 3.0);
-  for (PetscInt i = 0; i < points->components[POINT_F]; ++i) point_real(points, POINT_F, p)[i] = stretch * F[i];
-  for (PetscInt d = 0; d < points->components[POINT_DOMAIN]; ++d) point_real(points, POINT_DOMAIN, p)[d] /= stretch;
-  return PETSC_TRUE;
 }
 
 static PetscErrorCode TellStress(const Model *m, PetscInt failed, Diag *diag)
@@ -79,7 +41,7 @@ static PetscErrorCode SwapMaterials(Model *m, const Case *from, Diag *diag)
   PetscFunctionBeginUser;
   PetscCall(DiagCreate(&unheard));
   PetscCall(PetscCalloc1(from->n_materials, &was));
-  for (PetscInt i = 0; i < from->n_materials; ++i) PetscCall(MaterialResolve(from, i, unheard, &was[i]));
+  for (PetscInt i = 0; i < from->n_materials; ++i) PetscCall(MaterialAt(from, i, m->time, unheard, &was[i]));
   PetscCall(DiagDestroy(&unheard));
   for (PetscInt p = 0; p < m->points->n; ++p) {
     const PetscInt body = m->points->body[p], i = material_of(m->c, body);
@@ -87,7 +49,7 @@ static PetscErrorCode SwapMaterials(Model *m, const Case *from, Diag *diag)
     m->points->material[p] = i;
     if (!before->law) continue;
     m->points->real[POINT_MASS][p] *= now->density / before->density;
-    if (!same_elasticity(before, now) && !swap(m->points, p, before, now)) failed = body;
+    if (!material_as_stiff(before, now) && !point_swap(m->points, p, before, now)) failed = body;
   }
   PetscCall(PetscFree(was));
   PetscCall(TellStress(m, failed, diag));
