@@ -109,6 +109,16 @@ rm -rf cut && cp -r later1 cut && forget cut 1
 expect "resumed" 0 "$talus" run --resume cut --quiet
 same_bits "$name" later1 cut
 
+# Onto another grid: points of mpm go, whatever the cells and the ranks; the weight is there, and nothing moves by more than 1 % of what it had settled
+sed '/^stages:/,$d; /^  F:/d; s/^analysis.*/&\ninitial: {run: mpm2, stage: dig}/; s/name: top/name: top, absent: true/; s/name: prop/name: prop, absent: true/' column.yaml >onto.yaml
+for grid in .size=1 '={box: {min: [-0.4, 0], max: [4, 3.2]}, size: 0.4}' .size=0.25; do
+  expect "onto grid$grid" 0 "$talus" run onto.yaml --out onto1 --set "grid$grid" --set 'loads.gravity_amplitude=[[0, 1]]' --force
+  awk -F, -v s="$(last 1 5 mpm1)" 'NR == 1 { for (k = 1; k <= NF; ++k) { sub(" .*", "", $k); c[$k] = k } next } { w = $c["weight"]; u = $c["settle"] }
+    END { if (w > 39240.1 || w < 39239.9 || u * u > 1e-4 * s * s) { print w, u, s; exit 1 } }' onto1/history.csv >bad.txt || fail "$name: $(cat bad.txt)"
+done
+expect "onto grid$grid on 3" 0 on_ranks 3 "$talus" run onto.yaml --out onto3 --set "grid$grid" --set 'loads.gravity_amplitude=[[0, 1]]'
+same_answer "$name" onto1 onto3
+
 # Constants that change with time: a block yields between floor and plate while its strength falls, what stands beside it becomes heavier and softer
 cat >ageing.yaml <<'END'
 kinematics: plane-strain
@@ -182,11 +192,13 @@ says err.txt "did you mean 'cohesion'?"
 refused "a constant out of its range" "the dilatancy angle must not be larger than the friction angle" ageing.yaml --set 'stages[1].materials.soil.amplitude.friction_angle=[[0, 1], [1, 0.4]]'
 says err.txt "so it is at t = 2 s, with its amplitudes"
 refused "no weight left" "density must be positive" ageing.yaml --set 'stages[1].materials.fill.amplitude.density=[[0, 1], [1, 0]]'
-refused "another mesh" "the grid of the case is not the one of the run" later.yaml --set initial.run=mpm1 --set grid.size=0.25
+refused "another mesh" "the grid of the case is not the one of the run, whose nodes carry the state of fem" later.yaml --set initial.run=fem1 --set method=fem --set grid.size=0.25
+says err.txt "later.yaml:" "or let both be runs of mpm, whose points go onto any grid"
+refused "cells too small" "farther than the cells are wide (0.125 m)" onto.yaml --set grid.size=0.125
 refused "another method" "the state is one of method mpm, and cannot go on with fem" later.yaml --set initial.run=mpm1 --set method=fem
 refused "no such stage" "has no stage 'did'" later.yaml --set initial.run=mpm1 --set initial.stage=did
 says err.txt "did you mean 'dig'?"
 refused "no run" "there is no run in" later.yaml --set initial.run=nowhere
-expect "clouds" 1 "$talus" run column.yaml --out clouds --set method=gmm --set 'basis={mls: {}}' --set 'stages[4].analysis={type: static}' --set 'stages[5].strength={factor: 1.5}'
-says err.txt "method gmm cannot go on from another state"
+refused "clouds" "method gmm cannot go on from another state, as a stage does" column.yaml --set method=gmm --set 'basis={mls: {}}' --set 'stages[4].analysis={type: static}' --set 'stages[5].strength={factor: 1.5}'
+says err.txt "method=gmm: error:"
 finish

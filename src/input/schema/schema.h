@@ -183,11 +183,11 @@ typedef struct {
 } SchemaTypeInfo;
 extern const SchemaTypeInfo schema_types[TYPE_COUNT];
 
-extern SchemaReadType SchemaReadInterval, SchemaReadAmplitude, SchemaReadAmplitudes, SchemaReadPolygon, SchemaReadReferences, SchemaReadEvery,
-  SchemaReadFields, SchemaReadNumbers, SchemaReadOptions, SchemaReadVector, SchemaReadSpin, SchemaReadAxis,
-  SchemaReadAxes, SchemaReadSize, SchemaReadCounts, SchemaReadNumber, SchemaReadInteger, SchemaReadBoolean,
-  SchemaReadWord, SchemaReadMember, SchemaReadWordText, SchemaReadText, SchemaReadName, SchemaReadValues,
-  SchemaReadFile, SchemaReadReference, SchemaReadBoundary, SchemaReadFlags, SchemaReadPart;
+extern SchemaReadType SchemaReadInterval, SchemaReadAmplitude, SchemaReadAmplitudes, SchemaReadPolygon,
+  SchemaReadReferences, SchemaReadEvery, SchemaReadFields, SchemaReadNumbers, SchemaReadOptions, SchemaReadVector,
+  SchemaReadSpin, SchemaReadAxis, SchemaReadAxes, SchemaReadSize, SchemaReadCounts, SchemaReadNumber, SchemaReadInteger,
+  SchemaReadBoolean, SchemaReadWord, SchemaReadMember, SchemaReadWordText, SchemaReadText, SchemaReadName,
+  SchemaReadValues, SchemaReadFile, SchemaReadReference, SchemaReadBoundary, SchemaReadFlags, SchemaReadPart;
 /* Is the name fit for a path and a column of a table? Complains at the node (its key if `key`). */
 PetscBool schema_check_name(SchemaReader *r, const YamlNode *node, const char *name, PetscBool key);
 

@@ -263,10 +263,12 @@ static const SchemaEntry initial_entries[] = {
       "what moves on the way to this equilibrium is forgotten: bodies keep the shape that they are given, and only "
       "their stresses change",
       .note = "true with an initial stress", AT(InitialSpec, reset)),
-  KEY("run", FILE, NULL,
-      "or the stresses and places of another run, of the same grid and bodies, in this directory: time, displacements "
-      "and accounts begin anew",
-      AT(InitialSpec, run)),
+  KEY(
+    "run", FILE, NULL,
+    "or the stresses and places of another run in this directory, of the same bodies by their names: time, "
+    "displacements and accounts begin anew. Points of mpm go onto any grid, walls and interfaces apart; fem needs the "
+    "same one",
+    AT(InitialSpec, run)),
   KEY("stage", TEXT, NULL, "of that run: the end of this stage", .note = "the last state", .with = "run",
       AT(InitialSpec, stage)),
   RELEASE(InitialSpec, .with = "run"),

@@ -4,8 +4,9 @@
 #include "model/stage/stage.h"
 
 /* Collective. Points of the tables in place of those of bodies that were there, swapped where their material has
- * changed. */
-PetscErrorCode TakePoints(Model *model, const Tables *tables, const Case *from, Diag *diag, char reason[256]);
+ * changed. onto: they come from another grid. */
+PetscErrorCode TakePoints(Model *model, const Tables *tables, const Case *from, PetscBool onto, Diag *diag,
+                          char reason[256]);
 /* Have both the same law and elastic constants, so that states of one are states of the other? */
 PetscBool material_as_stiff(const Material *a, const Material *b);
 /* The stress of point p stays, in the state of another law or of other constants, and so do its place and its

@@ -1,6 +1,7 @@
 /* Points of one case as those of another. */
 #include "material/pressure.h"
 #include "model/stage/stage_private.h"
+#include "points/onto.h"
 
 /* The body of this case that one of the other is: of its name, if it is there in both; or -1. */
 static PetscInt body_here(const Case *c, const BodySpec *other)
@@ -108,7 +109,37 @@ static PetscErrorCode Place(Model *m, Points *placed)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode TakePoints(Model *m, const Tables *tables, const Case *from, Diag *diag, char reason[256])
+/* Points of a coarser grid, whose domains (of gimp) are no wider than a cell: where they stand farther apart than
+ * cells are wide, the material would have gaps. */
+static PetscErrorCode FitPoints(Model *m, Diag *diag)
+{
+  const PetscReal h = m->grid->smallest;
+  PetscReal local = 0, apart;
+
+  PetscFunctionBeginUser;
+  for (PetscInt p = 0; p < m->points->n; ++p) {
+    const PetscReal volume = m->points->real[POINT_VOLUME][p] * m->points->real[POINT_J][p];
+    const PetscReal weight = kinematics_weight(m->c->kinematics, point_real(m->points, POINT_X, p)[0]);
+    local = PetscMax(local, PetscPowReal(volume / weight, 1.0 / (PetscReal)m->dim));
+  }
+  PetscCall(MPIU_Allreduce(&local, &apart, 1, MPIU_REAL, MPIU_MAX, m->comm));
+  if (apart > 1.05 * h) {
+    diag_error(diag, "grid",
+               "points of the run stand up to %.3g m apart, farther than the cells are wide (%.3g m): "
+               "the material would have gaps",
+               (double)apart, (double)h);
+    diag_hint(diag, "take larger cells, or begin with more points_per_cell");
+  }
+  for (PetscInt p = 0; p < m->points->n; ++p)
+    for (PetscInt d = 0; d < m->points->components[POINT_DOMAIN]; ++d) {
+      PetscReal *half = point_real(m->points, POINT_DOMAIN, p) + d;
+      *half = PetscMin(*half, 0.5 * h);
+    }
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode TakePoints(Model *m, const Tables *tables, const Case *from, PetscBool onto, Diag *diag,
+                          char reason[256])
 {
   const Table *table = tables_find(tables, "points");
   PetscInt *body;
@@ -123,7 +154,8 @@ PetscErrorCode TakePoints(Model *m, const Tables *tables, const Case *from, Diag
   PetscCall(SetAside(m, from, &placed));
   m->points->n = 0;
   PetscCall(PointsSetState(m->points, LAW_MAX_STATE));
-  PetscCall(PointsTake(m->points, m->grid, table, &change, reason));
+  PetscCall((onto ? PointsTakeOnto : PointsTake)(m->points, m->grid, table, &change, reason));
+  if (onto && !reason[0]) PetscCall(FitPoints(m, diag));
   if (!reason[0]) PetscCall(SwapMaterials(m, from, diag));
   PetscCall(PointsSetState(m->points, m->n_state));
   if (!reason[0]) find_pressures(m, table);
