@@ -1,3 +1,4 @@
+#include <string.h>
 #include "case/case.h"
 
 PetscReal amplitude_value(const Amplitude *a, PetscReal t, PetscReal fallback)
@@ -36,6 +37,15 @@ PetscReal case_factor(const Case *c, const Amplitude *amplitude, PetscReal t)
   if (case_raises(c, amplitude)) return PetscMax(0, t - c->analysis.end);
   if (case_seeks(&c->analysis)) t = PetscMin(t, c->analysis.end);
   return amplitude_value(amplitude, t, grows ? (t - c->start) / (c->analysis.end - c->start) : 1);
+}
+
+PetscReal case_material_factor(const Case *c, PetscInt i, const char *parameter, PetscReal t)
+{
+  const MaterialSpec *m = &c->materials[i];
+  if (case_seeks(&c->analysis)) t = PetscMin(t, c->analysis.end);
+  for (PetscInt k = 0; k < m->n_amplitudes; ++k)
+    if (!strcmp(m->amplitudes[k].name, parameter)) return amplitude_value(&m->amplitudes[k].amplitude, t, 1);
+  return 1;
 }
 
 /* Integral from the first entry's time to t, for any t; both count from the amplitude's origin. */

@@ -39,6 +39,18 @@ static PetscErrorCode NamedValuesClear(PetscInt n, NamedValue **values)
   PetscFunctionReturn(0);
 }
 
+static PetscErrorCode AmplitudesClear(PetscInt n, NamedAmplitude **amplitudes)
+{
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < n; ++i) {
+    PetscCall(PetscFree((*amplitudes)[i].name));
+    PetscCall(PetscFree((*amplitudes)[i].amplitude.time));
+    PetscCall(PetscFree((*amplitudes)[i].amplitude.value));
+  }
+  PetscCall(PetscFree(*amplitudes));
+  PetscFunctionReturn(0);
+}
+
 static PetscErrorCode StringsClear(PetscInt n, char ***strings)
 {
   PetscFunctionBeginUser;
@@ -70,6 +82,7 @@ static PetscErrorCode MaterialsClear(Case *c)
     PetscCall(PetscFree(c->materials[i].name));
     PetscCall(PetscFree(c->materials[i].law));
     PetscCall(NamedValuesClear(c->materials[i].n_parameters, &c->materials[i].parameters));
+    PetscCall(AmplitudesClear(c->materials[i].n_amplitudes, &c->materials[i].amplitudes));
   }
   PetscCall(PetscFree(c->materials));
   PetscFunctionReturn(0);

@@ -85,10 +85,17 @@ typedef struct {
 
 typedef struct {
   char *name;
+  Amplitude amplitude;
+} NamedAmplitude;
+
+typedef struct {
+  char *name;
   char *law;
   PetscReal density;     /* kg/m3, of the undeformed body */
   PetscInt n_parameters; /* as the file gives them; the law resolves them */
   NamedValue *parameters;
+  PetscInt n_amplitudes; /* factors on parameters, or on the density, over time */
+  NamedAmplitude *amplitudes;
 } MaterialSpec;
 
 typedef struct {
@@ -460,6 +467,9 @@ PetscBool case_raises(const Case *c, const Amplitude *amplitude);
 /* Does the body start with a stress? Does any? */
 PetscBool body_has_stress(const BodySpec *body);
 PetscBool case_has_stress(const Case *c);
+/* The factor at time t on a parameter of material i, or on its "density": 1 without an amplitude. When
+ * something is sought (case_seeks), time ends for materials with `end`. */
+PetscReal case_material_factor(const Case *c, PetscInt i, const char *parameter, PetscReal t);
 /* Does gravity act from the start: is there a stress that carries weight, or an equilibrium with it? */
 PetscBool case_starts_with_gravity(const Case *c);
 

@@ -16,6 +16,12 @@ static void shift_wall(WallSpec *w, const PetscReal *start)
   w->until += start[w->since];
 }
 
+static void shift_material(MaterialSpec *m, const PetscReal *start)
+{
+  for (PetscInt k = 0; k < m->n_amplitudes; ++k)
+    m->amplitudes[k].amplitude.origin = start[m->amplitudes[k].amplitude.since];
+}
+
 void case_begin(Case *c, const PetscReal *start)
 {
   c->start = start[c->stage];
@@ -23,6 +29,7 @@ void case_begin(Case *c, const PetscReal *start)
   for (PetscInt k = 0; k < c->analysis.n_until; ++k) c->analysis.until[k].after += c->start;
   for (PetscInt k = 0; k < c->n_boundary; ++k) shift_motion(&c->boundary[k], start);
   for (PetscInt k = 0; k < c->n_walls; ++k) shift_wall(&c->walls[k], start);
+  for (PetscInt k = 0; k < c->n_materials; ++k) shift_material(&c->materials[k], start);
   for (PetscInt k = 0; k < c->n_loads; ++k) c->loads[k].amplitude.origin = start[c->loads[k].amplitude.since];
   c->gravity_amplitude.origin = start[c->gravity_amplitude.since];
 }

@@ -21,10 +21,20 @@ static PetscErrorCode ClearMaterial(void *target)
   PetscFunctionReturn(0);
 }
 
+static PetscErrorCode OpenMaterial(SchemaReader *r, const YamlNode *mapping, void *target)
+{
+  const YamlNode *amplitude = yaml_find(mapping, "amplitude");
+
+  PetscFunctionBeginUser;
+  if (amplitude) SchemaKeyError(r, amplitude, "a path has no time, with which constants could change");
+  PetscCall(SchemaOpenMaterial(r, mapping, target));
+  PetscFunctionReturn(0);
+}
+
 static const SchemaTable material_table = {.name = "material",
                                            .help = "A law with its constants.",
                                            .entries = material_entries,
-                                           .open = SchemaOpenMaterial,
+                                           .open = OpenMaterial,
                                            .clear = ClearMaterial};
 
 #define COMPONENT(name, unit, k) \

@@ -194,6 +194,24 @@ PetscErrorCode SchemaReadAmplitude(SchemaReader *r, const SchemaEntry *e, const 
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode SchemaReadAmplitudes(SchemaReader *r, const SchemaEntry *e, const YamlNode *node, void *target)
+{
+  NamedAmplitude **amplitudes = (NamedAmplitude **)((char *)target + e->offset);
+
+  PetscFunctionBeginUser;
+  if (!schema_is(r, e, node, YAML_MAPPING, 1)) PetscFunctionReturn(0);
+  PetscCall(PetscCalloc1(node->n, amplitudes));
+  *(PetscInt *)((char *)target + e->count) = node->n;
+  for (PetscInt i = 0; i < node->n; ++i) {
+    const YamlNode *child = node->child[i];
+    const SchemaEntry one = {.key = child->key, .type = TYPE_AMPLITUDE, .help = ""};
+    PetscCall(PetscStrallocpy(child->key, &(*amplitudes)[i].name));
+    PetscCall(SchemaReadAmplitude(r, &one, child, &(*amplitudes)[i].amplitude));
+    (*amplitudes)[i].amplitude.since = child->stage;
+  }
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode SchemaReadPolygon(SchemaReader *r, const SchemaEntry *e, const YamlNode *node, void *target)
 {
   PetscReal **vertices = (PetscReal **)((char *)target + e->offset);

@@ -43,7 +43,8 @@ static PetscBool written(const Case *c, const SchemaTable *table, const SchemaEn
   /* a list that a stage has emptied */
   if (c->spec && e->items_tagged && count_items(e, source) == 0) return PETSC_TRUE;
   if (e->type == TYPE_LIST || e->type == TYPE_NAMED) return count_items(e, source) > 0;
-  if (e->type == TYPE_OPTIONS || e->type == TYPE_REFERENCES) return *(const PetscInt *)at(source, e->count) > 0;
+  if (e->type == TYPE_OPTIONS || e->type == TYPE_REFERENCES || e->type == TYPE_AMPLITUDES)
+    return *(const PetscInt *)at(source, e->count) > 0;
   return PETSC_TRUE;
 }
 

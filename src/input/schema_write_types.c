@@ -185,6 +185,20 @@ static void write_numbers(const SchemaWriting *w)
   fputc('}', w->out);
 }
 
+static void write_amplitudes(const SchemaWriting *w)
+{
+  const PetscInt n = FIELD_AT(PetscInt, count);
+  fputc('{', w->out);
+  for (PetscInt i = 0; i < n; ++i) {
+    const NamedAmplitude *one = FIELD(NamedAmplitude *) + i;
+    fputs(i ? ", " : "", w->out);
+    schema_write_text(w->out, one->name);
+    fputs(": ", w->out);
+    write_pairs(w->out, one->amplitude.n, one->amplitude.time, one->amplitude.value, 1);
+  }
+  fputc('}', w->out);
+}
+
 static void write_options(const SchemaWriting *w)
 {
   const PetscInt n = FIELD_AT(PetscInt, count);
@@ -215,14 +229,33 @@ void schema_write_flow(FILE *out, const YamlNode *node)
 }
 
 const SchemaWriteType schema_writers[TYPE_COUNT] = {
-  [TYPE_NUMBER] = write_number,       [TYPE_INTEGER] = write_integer,   [TYPE_BOOLEAN] = write_boolean,
-  [TYPE_WORD] = write_word,           [TYPE_WORD_TEXT] = write_string,  [TYPE_TEXT] = write_string,
-  [TYPE_NAME] = write_string,         [TYPE_VALUES] = write_string,     [TYPE_FILE] = write_string,
-  [TYPE_REFERENCE] = write_string,    [TYPE_BOUNDARY] = write_boundary, [TYPE_VECTOR] = write_vector,
-  [TYPE_SPIN] = write_spin,           [TYPE_AXIS] = write_axis,         [TYPE_SPIN_AXIS] = write_axis,
-  [TYPE_AXES] = write_axes,           [TYPE_INTERVAL] = write_interval, [TYPE_COUNTS] = write_counts,
-  [TYPE_AMPLITUDE] = write_amplitude, [TYPE_POLYGON] = write_polygon,   [TYPE_EVERY] = write_every,
-  [TYPE_MEMBER] = write_member,       [TYPE_FIELDS] = write_texts,      [TYPE_NUMBERS] = write_numbers,
-  [TYPE_FLAGS] = write_flags,         [TYPE_OPTIONS] = write_options,   [TYPE_REFERENCES] = write_texts,
+  [TYPE_NUMBER] = write_number,
+  [TYPE_INTEGER] = write_integer,
+  [TYPE_BOOLEAN] = write_boolean,
+  [TYPE_WORD] = write_word,
+  [TYPE_WORD_TEXT] = write_string,
+  [TYPE_TEXT] = write_string,
+  [TYPE_NAME] = write_string,
+  [TYPE_VALUES] = write_string,
+  [TYPE_FILE] = write_string,
+  [TYPE_REFERENCE] = write_string,
+  [TYPE_BOUNDARY] = write_boundary,
+  [TYPE_VECTOR] = write_vector,
+  [TYPE_SPIN] = write_spin,
+  [TYPE_AXIS] = write_axis,
+  [TYPE_SPIN_AXIS] = write_axis,
+  [TYPE_AXES] = write_axes,
+  [TYPE_INTERVAL] = write_interval,
+  [TYPE_COUNTS] = write_counts,
+  [TYPE_AMPLITUDE] = write_amplitude,
+  [TYPE_POLYGON] = write_polygon,
+  [TYPE_EVERY] = write_every,
+  [TYPE_MEMBER] = write_member,
+  [TYPE_FIELDS] = write_texts,
+  [TYPE_NUMBERS] = write_numbers,
+  [TYPE_FLAGS] = write_flags,
+  [TYPE_OPTIONS] = write_options,
+  [TYPE_REFERENCES] = write_texts,
   [TYPE_LINE] = write_polygon,
+  [TYPE_AMPLITUDES] = write_amplitudes,
 };

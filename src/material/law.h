@@ -127,6 +127,12 @@ const Law *law_find(const char *name);
 
 /* Resolve materials[index] of the case; mistakes go to diag with their paths. */
 PetscErrorCode MaterialResolve(const Case *c, PetscInt index, Diag *diag, Material *material);
+/* The same with the factors that its amplitudes have at time t; what is wrong with them MaterialResolve has
+ * said before. */
+PetscErrorCode MaterialAt(const Case *c, PetscInt index, PetscReal t, Diag *diag, Material *material);
+/* All of its constants but elastic ones and the density become those of the same material at another time; of
+ * a law that says itself how stiff it is, none. */
+void material_take_strength(Material *material, const Material *other);
 /* Divide the strength of a material by factor (0: it does not yield); that of the case is factor 1. */
 void material_reduce(Material *material, PetscReal factor);
 /* lambda + 2 mu, Pa, of a mixed formulation, too: infinite where incompressible. */

@@ -214,15 +214,13 @@ static PetscReal wave_modulus(const Elasticity *elastic, PetscBool mixed)
 
 PetscReal material_confined(const Material *m) { return m->elastic.bulk + 4.0 / 3.0 * m->elastic.shear; }
 
-PetscErrorCode MaterialResolve(const Case *c, PetscInt index, Diag *diag, Material *material)
+static PetscErrorCode Resolve(const MaterialSpec *spec, PetscBool mixed, Diag *diag, Material *material)
 {
-  const Resolver r = {&c->materials[index], diag, case_is_mixed(c)};
+  const Resolver r = {spec, diag, mixed};
   PetscReal *given = material->given;
   const PetscInt before = diag_errors(diag);
 
   PetscFunctionBeginUser;
-  PetscCheck(index >= 0 && index < c->n_materials, PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE,
-             "no material %" PetscInt_FMT, index);
   PetscCall(PetscMemzero(material, sizeof *material));
   material->name = r.spec->name;
   material->density = r.spec->density;
@@ -244,13 +242,85 @@ PetscErrorCode MaterialResolve(const Case *c, PetscInt index, Diag *diag, Materi
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode MaterialAt(const Case *c, PetscInt index, PetscReal t, Diag *diag, Material *material)
+{
+  MaterialSpec spec = c->materials[index];
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(spec.n_parameters, &spec.parameters));
+  PetscCall(PetscArraycpy(spec.parameters, c->materials[index].parameters, spec.n_parameters));
+  for (PetscInt k = 0; k < spec.n_parameters; ++k)
+    spec.parameters[k].value *= case_material_factor(c, index, spec.parameters[k].name, t);
+  spec.density *= case_material_factor(c, index, "density", t);
+  PetscCall(Resolve(&spec, case_is_mixed(c), diag, material));
+  PetscCall(PetscFree(spec.parameters));
+  PetscFunctionReturn(0);
+}
+
+/* Amplitudes are of numbers that are there. */
+static void check_amplitudes(const Case *c, PetscInt index, const Material *material, Diag *diag)
+{
+  const MaterialSpec *spec = &c->materials[index];
+  const char *names[ELASTIC_CONSTANTS + LAW_MAX_PARAMETERS + 2] = {"density"};
+  const Resolver r = {spec, diag, PETSC_FALSE};
+  char key[96], path[MAX_PATH];
+  for (PetscInt k = 0, n = 1; k < spec->n_parameters && n < ELASTIC_CONSTANTS + LAW_MAX_PARAMETERS + 1; ++k)
+    names[n++] = spec->parameters[k].name;
+  for (PetscInt k = 0; k < spec->n_amplitudes; ++k) {
+    const char *name = spec->amplitudes[k].name;
+    const int parameter = law_parameter_index(material->law, name);
+    snprintf(key, sizeof key, "amplitude.%s", name);
+    path_of(&r, key, path);
+    if (parameter >= 0 && material->law->parameters[parameter].words)
+      diag_error(diag, path, "%s of the law %s is a word, and no number that could change", name, material->law->name);
+    else if (strcmp(name, "density") && !find_value(spec, name)) {
+      diag_error(diag, path, "the material '%s' has no '%s' that could change with time", spec->name, name);
+      diag_hint_names(diag, name, names);
+    }
+  }
+}
+
+PetscErrorCode MaterialResolve(const Case *c, PetscInt index, Diag *diag, Material *material)
+{
+  const PetscInt before = diag_errors(diag);
+
+  PetscFunctionBeginUser;
+  PetscCheck(index >= 0 && index < c->n_materials, PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE,
+             "no material %" PetscInt_FMT, index);
+  const MaterialSpec *spec = &c->materials[index];
+  PetscCall(Resolve(spec, case_is_mixed(c), diag, material));
+  if (material->law) check_amplitudes(c, index, material, diag);
+  for (PetscInt k = 0; k < spec->n_amplitudes; ++k) { /* between these times numbers are between those of them */
+    const Amplitude *a = &spec->amplitudes[k].amplitude;
+    for (PetscInt i = 0; i < a->n && diag_errors(diag) == before; ++i) {
+      PetscCall(MaterialAt(c, index, a->origin + a->time[i], diag, material));
+      if (diag_errors(diag) > before) diag_hint(diag, "so it is at t = %g s, with its amplitudes", (double)a->time[i]);
+    }
+  }
+  if (spec->n_amplitudes && diag_errors(diag) == before) PetscCall(MaterialAt(c, index, c->start, diag, material));
+  PetscFunctionReturn(0);
+}
+
+/* The constants that the law works with, of other ones that the user could have given. */
+static void prepare_again(Material *m, const PetscReal *given)
+{
+  m->law->prepare(&m->elastic, given, m->parameters);
+  if (!m->mixed) return;
+  prepare_deviatoric(given, m);
+  if (isfinite(m->elastic.bulk)) return;
+  memcpy(m->parameters, m->deviatoric, sizeof m->parameters);
+}
+
 void material_reduce(Material *m, PetscReal factor)
 {
   PetscReal reduced[LAW_MAX_PARAMETERS];
   m->law->reduce(m->given, factor, reduced);
-  m->law->prepare(&m->elastic, reduced, m->parameters);
-  if (!m->mixed) return;
-  prepare_deviatoric(reduced, m);
-  if (isfinite(m->elastic.bulk)) return;
-  memcpy(m->parameters, m->deviatoric, sizeof m->parameters);
+  prepare_again(m, reduced);
+}
+
+void material_take_strength(Material *m, const Material *other)
+{
+  if (m->law->elastic) return; /* its stiffness and its strength are the same constants */
+  memcpy(m->given, other->given, sizeof m->given);
+  prepare_again(m, m->given);
 }

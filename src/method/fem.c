@@ -1,6 +1,7 @@
 /* Updated Lagrangian finite elements: the mesh moves with the material, points are the Gauss points
  * of their cell. */
 #include "method/method.h"
+#include "solve/forces/weight.h"
 
 static PetscErrorCode FemStart(Discretisation *s)
 {
@@ -26,6 +27,7 @@ static PetscErrorCode FemInitialise(Discretisation *s)
   if (!s->started) PetscCall(PointsSort(s->points));
   PetscCall(s->basis->support(&basis, s->points, s->support)); /* gradients on the moved mesh */
   if (!s->started) PetscCall(FemStart(s));
+  else if (weight_changes(s->c)) PetscCall(DiscretisationMass(s));
   s->started = PETSC_TRUE;
   PetscCall(PetscArraycpy(n->v_points, n->v, s->grid->n_nodes * s->grid->dim));
   PetscCall(PetscArraycpy(n->a_points, n->a, s->grid->n_nodes * s->grid->dim));

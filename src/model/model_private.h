@@ -86,6 +86,13 @@ void raised_start(Model *model, Diag *diag);
 PetscReal raised_time(const Model *model, PetscReal t);
 /* Collective. Where a load is raised: its border of the step. dt: as in ModelRaise. */
 PetscErrorCode RaisedPrepare(Model *model, PetscReal dt, StepProblem *problem);
+/* stage/ageing.c. Materials are as strong as at time t, the end of a step, and as stiff and heavy as at its
+ * start. */
+PetscErrorCode MaterialsAt(Model *model, PetscReal t);
+/* They are what they are now: of a model that goes on from a checkpoint, or whose step has failed. */
+PetscErrorCode MaterialsBack(Model *model);
+/* Collective. A step is accepted: they become as stiff and heavy as they are now; stresses stay. */
+PetscErrorCode MaterialsSettle(Model *model, StepReport *report);
 /* strength.c. Which materials are reduced; what cannot be is a mistake. */
 void strength_start(Model *model, Diag *diag);
 /* The factor that only the stage before knows. */

@@ -21,6 +21,7 @@ PetscErrorCode ModelStep(Model *m, PetscReal limit, StepReport *report)
     /*     stress and history of the points, reactions */
     PetscCall(CommitStep(m, dt, &energy));
     PetscCall(ConvectStep(m, dt, &energy, report)); /* (c) points move, and nodes or not */
+    PetscCall(MaterialsSettle(m, report));
     PetscCall(ChooseNextStep(m, shortened && !report->cuts, report));
     outside_judge(m, report);
     if (!m->initial.seeking) PetscCall(MeasuresRemember(m, report->dt));

@@ -184,6 +184,7 @@ PetscErrorCode PrepareStep(Model *m, PetscReal dt, StepProblem *p)
   PetscFunctionBeginUser;
   m->raised.border.factor = m->raised.factor; /* a try that failed has left another one */
   gravity_at(m->c, raised_time(m, t), g);
+  PetscCall(MaterialsAt(m, m->time + passes));
   PetscCall(PetscArrayzero(m->nodes->prescribed, dofs));
   boundary_increments(m->boundary, m->grid, m->time, m->time + passes, m->nodes->prescribed);
   if (m->scheme->inertia) set_boundary_kinematics(m, dt);

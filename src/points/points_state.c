@@ -5,6 +5,7 @@
 #include "grid/search/directory.h"
 #include "points/fields.h"
 #include "points/migrate.h"
+#include "points/onto.h"
 
 static const struct {
   const char *name, *unit;
@@ -207,6 +208,25 @@ PetscErrorCode PointsTake(Points *points, const Grid *grid, const Table *table, 
   PetscCall(TakeChanged(points, table, grid->n_cells_global, change, reason));
   PetscCall(ReasonShare(grid->comm, reason));
   if (!reason[0]) PetscCall(SendHome(points, grid, table->name, reason));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode PointsTakeOnto(Points *points, const Grid *grid, const Table *table, const PointsChange *change,
+                              char reason[256])
+{
+  LostPoint *lost = NULL;
+  PetscInt n = 0;
+
+  PetscFunctionBeginUser;
+  PetscCall(TakeChanged(points, table, PETSC_MAX_INT, change, reason));
+  PetscCall(ReasonShare(grid->comm, reason));
+  if (reason[0]) PetscFunctionReturn(0);
+  for (PetscInt p = 0; p < points->n; ++p) points->cell[p] = -1;
+  PetscCall(PointsRelocate(points, grid, OUTSIDE_STOP, &n, &lost));
+  if (n)
+    snprintf(reason, 256, "%d of its points are outside of the grid, as is the one at (%g, %g, %g) m", (int)n,
+             (double)lost->x[0], (double)lost->x[1], (double)lost->x[2]);
+  PetscCall(PetscFree(lost));
   PetscFunctionReturn(0);
 }
 

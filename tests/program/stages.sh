@@ -109,6 +109,69 @@ rm -rf cut && cp -r later1 cut && forget cut 1
 expect "resumed" 0 "$talus" run --resume cut --quiet
 same_bits "$name" later1 cut
 
+# Onto another grid: points of mpm go, whatever the cells and the ranks; the weight is there, and nothing moves by more than 1 % of what it had settled
+sed '/^stages:/,$d; /^  F:/d; s/^analysis.*/&\ninitial: {run: mpm2, stage: dig}/; s/name: top/name: top, absent: true/; s/name: prop/name: prop, absent: true/' column.yaml >onto.yaml
+for grid in .size=1 '={box: {min: [-0.4, 0], max: [4, 3.2]}, size: 0.4}' .size=0.25; do
+  expect "onto grid$grid" 0 "$talus" run onto.yaml --out onto1 --set "grid$grid" --set 'loads.gravity_amplitude=[[0, 1]]' --force
+  awk -F, -v s="$(last 1 5 mpm1)" 'NR == 1 { for (k = 1; k <= NF; ++k) { sub(" .*", "", $k); c[$k] = k } next } { w = $c["weight"]; u = $c["settle"] }
+    END { if (w > 39240.1 || w < 39239.9 || u * u > 1e-4 * s * s) { print w, u, s; exit 1 } }' onto1/history.csv >bad.txt || fail "$name: $(cat bad.txt)"
+done
+expect "onto grid$grid on 3" 0 on_ranks 3 "$talus" run onto.yaml --out onto3 --set "grid$grid" --set 'loads.gravity_amplitude=[[0, 1]]'
+same_answer "$name" onto1 onto3
+
+# Constants that change with time: a block yields between floor and plate while its strength falls, what stands beside it becomes heavier and softer
+cat >ageing.yaml <<'END'
+kinematics: plane-strain
+method: mpm
+analysis: {type: static, end: 2, steps: 2}
+grid: {box: {min: [0, 0], max: [4, 3]}, size: 0.5}
+bodies:
+  - {name: block, shape: {box: {min: [0, 0], max: [1, 1]}}, material: soil}
+  - {name: column, shape: {box: {min: [2, 0], max: [3, 2]}}, material: fill}
+materials:
+  soil: {law: mohr-coulomb, density: 1e-3, young: 1e9, poisson: 0.3, friction_angle: 30, cohesion: 1e4, dilatancy_angle: 15}
+  fill: {law: neo-hookean, density: 1600, young: 1e8, poisson: 0.3}
+boundary:
+  - {name: under, on: {x: [0, 1], y: 0}, fix: [y]}
+  - {name: left, on: {x: 0}, fix: [x]}
+  - {name: plate, on: {x: [0, 1], y: 1}, displacement: {y: -1e-4}}
+  - {name: floor, on: {x: [2, 3], y: 0}, fix: [x, y]}
+  - {name: sides, on: {x: 2}, fix: [x]}
+  - {name: far, on: {x: 3}, fix: [x]}
+loads: {gravity: [0, -10]}
+measures:
+  strength: {reaction: y, of: {boundary: under}}
+  weight: {reaction: y, of: {boundary: floor}}
+  settle: {displacement: y, of: {tracer: [2.5, 1.9]}}
+  balance: {energy: balance}
+output: {fields: [displacement, stress]}
+checkpoint: {steps: 1, keep: 99}
+stages:
+  - name: press
+  - name: change
+    analysis: {end: 4, steps: 8}
+    materials:
+      soil: {amplitude: {cohesion: [[0, 1], [2, 0.25]], friction_angle: [[2, 1], [4, 0.5]]}}
+      fill: {amplitude: {density: [[0, 1], [2, 1.25]], young: [[2, 1], [4, 0.5]]}}
+  - {name: rest, analysis: {end: 1, steps: 1}}
+END
+for method in mpm fem; do
+  for ranks in 1 2 3; do
+    [ $method$ranks != fem3 ] || continue
+    expect "constants change, $method on $ranks" 0 on_ranks $ranks "$talus" run ageing.yaml --out ageing_$method$ranks --set method=$method
+    same_answer "$name" ageing_${method}1 ageing_$method$ranks
+  done
+  rm -rf cut && cp -r ageing_${method}1 cut && forget cut 5
+  expect "constants change, $method resumed" 0 "$talus" run --resume cut --quiet
+  same_bits "$name" ageing_${method}1 cut
+  name="constants change, $method: 2 c (tan phi + sqrt(1 + tan^2 phi)), the weight, and what it had settled stays"
+  awk -F, 'function bears(c, phi) { return 2 * c * (1 + sin(phi)) / cos(phi) } function off(x, y) { return x > y * (1 + 2e-4) || x < y * (1 - 2e-4) }
+    BEGIN { d = atan2(0, -1) / 180 }
+    NR > 3 { t = $1 - 2; fall = t < 0 ? 0 : t > 2 ? 2 : t; turn = t < 2 ? 0 : t > 4 ? 2 : t - 2 }
+    NR > 3 && (off($4, bears(1e4 * (1 - 0.375 * fall), d * 30 * (1 - 0.25 * turn))) || off($5, 32000 * (1 + 0.125 * fall)) || $7 * $7 > 1e-20) { print; bad = 1 }
+    $1 == 4 { settled = $6 } $1 > 4 && off(-$6, -settled) { print; bad = 1 } END { exit bad }' ageing_${method}1/history.csv >bad.txt || { fail "$name"; head -n 3 bad.txt; }
+done
+
 # What is refused: refused NAME TEXT OPTION...
 refused() {
   title=$1 text=$2
@@ -124,11 +187,18 @@ refused "a mistake in a stage" "(stage 'fill')" column.yaml --set 'stages[2].mat
 refused "a load on what is gone" "the load acts on 'top', which is not there (stage 'dig')" column.yaml --set 'loads.tractions=[{on: {body: top}, value: [0, -1]}]'
 refused "failure without a search" "no search for a factor of safety comes before" column.yaml --set 'stages[1].strength={beyond_failure: 1}'
 refused "no strength to divide" "has no strength that could be divided" column.yaml --set 'stages[3].bodies=[{name: column, material: gravel}]'
-refused "another mesh" "the grid of the case is not the one of the run" later.yaml --set initial.run=mpm1 --set grid.size=0.25
+refused "a constant that is none" "the material 'soil' has no 'cohesoin' that could change with time (stage 'change')" ageing.yaml --set 'stages[1].materials.soil.amplitude={cohesoin: [[0, 1]]}'
+says err.txt "did you mean 'cohesion'?"
+refused "a constant out of its range" "the dilatancy angle must not be larger than the friction angle" ageing.yaml --set 'stages[1].materials.soil.amplitude.friction_angle=[[0, 1], [1, 0.4]]'
+says err.txt "so it is at t = 2 s, with its amplitudes"
+refused "no weight left" "density must be positive" ageing.yaml --set 'stages[1].materials.fill.amplitude.density=[[0, 1], [1, 0]]'
+refused "another mesh" "the grid of the case is not the one of the run, whose nodes carry the state of fem" later.yaml --set initial.run=fem1 --set method=fem --set grid.size=0.25
+says err.txt "later.yaml:" "or let both be runs of mpm, whose points go onto any grid"
+refused "cells too small" "farther than the cells are wide (0.125 m)" onto.yaml --set grid.size=0.125
 refused "another method" "the state is one of method mpm, and cannot go on with fem" later.yaml --set initial.run=mpm1 --set method=fem
 refused "no such stage" "has no stage 'did'" later.yaml --set initial.run=mpm1 --set initial.stage=did
 says err.txt "did you mean 'dig'?"
 refused "no run" "there is no run in" later.yaml --set initial.run=nowhere
-expect "clouds" 1 "$talus" run column.yaml --out clouds --set method=gmm --set 'basis={mls: {}}' --set 'stages[4].analysis={type: static}' --set 'stages[5].strength={factor: 1.5}'
-says err.txt "method gmm cannot go on from another state"
+refused "clouds" "method gmm cannot go on from another state, as a stage does" column.yaml --set method=gmm --set 'basis={mls: {}}' --set 'stages[4].analysis={type: static}' --set 'stages[5].strength={factor: 1.5}'
+says err.txt "method=gmm: error:"
 finish

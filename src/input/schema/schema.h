@@ -39,6 +39,7 @@ typedef enum {
   TYPE_EVERY,      /* PetscReal: end = 0, s > 0, {steps: n} = -n */
   TYPE_FIELDS,     /* char ** and their number: words of output_fields */
   TYPE_NUMBERS,    /* NamedValue * and their number: any key: a number */
+  TYPE_AMPLITUDES, /* NamedAmplitude * and their number: any key: [[time, factor], ...] */
   TYPE_OPTIONS,    /* char ** and their number: options of PETSc */
   TYPE_FLAGS,      /* a list of `words`: PetscBool at offset + sizeof(PetscBool) times the word's value */
   TYPE_PART,       /* part of a case, as it stands under the same key at the top: read with it, see stages.h */
@@ -182,11 +183,11 @@ typedef struct {
 } SchemaTypeInfo;
 extern const SchemaTypeInfo schema_types[TYPE_COUNT];
 
-extern SchemaReadType SchemaReadInterval, SchemaReadAmplitude, SchemaReadPolygon, SchemaReadReferences, SchemaReadEvery,
-  SchemaReadFields, SchemaReadNumbers, SchemaReadOptions, SchemaReadVector, SchemaReadSpin, SchemaReadAxis,
-  SchemaReadAxes, SchemaReadSize, SchemaReadCounts, SchemaReadNumber, SchemaReadInteger, SchemaReadBoolean,
-  SchemaReadWord, SchemaReadMember, SchemaReadWordText, SchemaReadText, SchemaReadName, SchemaReadValues,
-  SchemaReadFile, SchemaReadReference, SchemaReadBoundary, SchemaReadFlags, SchemaReadPart;
+extern SchemaReadType SchemaReadInterval, SchemaReadAmplitude, SchemaReadAmplitudes, SchemaReadPolygon,
+  SchemaReadReferences, SchemaReadEvery, SchemaReadFields, SchemaReadNumbers, SchemaReadOptions, SchemaReadVector,
+  SchemaReadSpin, SchemaReadAxis, SchemaReadAxes, SchemaReadSize, SchemaReadCounts, SchemaReadNumber, SchemaReadInteger,
+  SchemaReadBoolean, SchemaReadWord, SchemaReadMember, SchemaReadWordText, SchemaReadText, SchemaReadName,
+  SchemaReadValues, SchemaReadFile, SchemaReadReference, SchemaReadBoundary, SchemaReadFlags, SchemaReadPart;
 /* Is the name fit for a path and a column of a table? Complains at the node (its key if `key`). */
 PetscBool schema_check_name(SchemaReader *r, const YamlNode *node, const char *name, PetscBool key);
 

@@ -91,9 +91,9 @@ static PetscErrorCode Add(MaterialSpec *material, const char *name, PetscReal va
 
 static void unknown_key(SchemaReader *r, const Law *law, const YamlNode *mapping, const YamlNode *node)
 {
-  const char *words[LAW_MAX_PARAMETERS + ELASTIC_CONSTANTS + 8] = {"law", "density"};
+  const char *words[LAW_MAX_PARAMETERS + ELASTIC_CONSTANTS + 8] = {"law", "density", "amplitude"};
   char path[512];
-  PetscInt n = 2;
+  PetscInt n = 3;
   for (int k = 0; !(law && law->elastic) && k < ELASTIC_CONSTANTS; ++k) words[n++] = elastic_constants[k].name;
   for (const LawParameter *p = law ? law->parameters : NULL;
        p && p->name && n < LAW_MAX_PARAMETERS + ELASTIC_CONSTANTS + 7; ++p)
@@ -110,7 +110,7 @@ static PetscErrorCode ReadConstants(SchemaReader *r, const Law *law, const YamlN
     const LawParameter *p = law ? find_parameter(law, node->key) : NULL;
     const int elastic = elastic_index(node->key);
     PetscReal value;
-    if (!strcmp(node->key, "law") || !strcmp(node->key, "density")) continue;
+    if (!strcmp(node->key, "law") || !strcmp(node->key, "density") || !strcmp(node->key, "amplitude")) continue;
     if (p || (elastic >= 0 && !(law && law->elastic))) {
       const SchemaEntry entry = p ? schema_law_entry(p) : schema_elastic(elastic);
       if (is_infinite(node)) PetscCall(Add(material, node->key, INFINITY));

@@ -147,6 +147,10 @@ static const SchemaEntry material_entries[] = {
       REQUIRED, AT(MaterialSpec, law)),
   KEY("density", NUMBER, "kg/m3", "mass per volume of the undeformed body", REQUIRED, ABOVE(0),
       AT(MaterialSpec, density)),
+  KEY("amplitude", AMPLITUDES, NULL,
+      "factors on parameters over time: {cohesion: [[0, 1], [10, 0.5]]}, linear between, density and elastic constants "
+      "too; of a stage: times count from its start. Stresses stay when elastic constants change",
+      AT(MaterialSpec, amplitudes), .count = offsetof(MaterialSpec, n_amplitudes)),
   {.key = NULL},
 };
 static const SchemaTable material = {
@@ -259,10 +263,12 @@ static const SchemaEntry initial_entries[] = {
       "what moves on the way to this equilibrium is forgotten: bodies keep the shape that they are given, and only "
       "their stresses change",
       .note = "true with an initial stress", AT(InitialSpec, reset)),
-  KEY("run", FILE, NULL,
-      "or the stresses and places of another run, of the same grid and bodies, in this directory: time, displacements "
-      "and accounts begin anew",
-      AT(InitialSpec, run)),
+  KEY(
+    "run", FILE, NULL,
+    "or the stresses and places of another run in this directory, of the same bodies by their names: time, "
+    "displacements and accounts begin anew. Points of mpm go onto any grid, walls and interfaces apart; fem needs the "
+    "same one",
+    AT(InitialSpec, run)),
   KEY("stage", TEXT, NULL, "of that run: the end of this stage", .note = "the last state", .with = "run",
       AT(InitialSpec, stage)),
   RELEASE(InitialSpec, .with = "run"),

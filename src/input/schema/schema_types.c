@@ -64,6 +64,8 @@ const SchemaTypeInfo schema_types[TYPE_COUNT] = {
   [TYPE_FIELDS] = {"a list of fields", "list of fields", NULL, SchemaReadFields},
   [TYPE_NUMBERS] = {"a mapping {name: number, ...}", "{name: number, ...}",
                     "{\"type\": \"object\", \"additionalProperties\": {\"type\": \"number\"}}", SchemaReadNumbers},
+  [TYPE_AMPLITUDES] = {"a mapping {parameter: [[time, factor], ...], ...}", "{name: [[time, factor], ...], ...}",
+                       "{\"type\": \"object\", \"additionalProperties\": " JSON_PAIRS "1}}", SchemaReadAmplitudes},
   [TYPE_OPTIONS] =
     {"a mapping {option: value, ...}", "{option: value, ...}",
      "{\"type\": \"object\", \"additionalProperties\": {\"type\": [\"string\", \"number\", \"boolean\", \"null\"]}}",

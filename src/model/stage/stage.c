@@ -6,8 +6,6 @@
 static void check_cases(const Model *m, const Case *from, Diag *diag)
 {
   const Case *c = m->c;
-  if (m->method->clouds)
-    diag_error(diag, "method", "method %s cannot go on from another state: mpm and fem can", m->method->name);
   if (strcmp(c->method, from->method))
     diag_error(diag, "method", "the state is one of method %s, and cannot go on with %s", from->method, c->method);
   if (c->kinematics != from->kinematics)
@@ -113,7 +111,7 @@ static PetscErrorCode KeepAccount(Model *m, PetscReal before, PetscBool next)
 }
 
 /* All that the tables give; reason where they make no sense. */
-static PetscErrorCode Take(Model *m, const Tables *tables, const Case *from, PetscBool next, Diag *diag,
+static PetscErrorCode Take(Model *m, const Tables *tables, const Case *from, PetscBool next, PetscBool onto, Diag *diag,
                            char reason[256])
 {
   const PetscReal before = stored_before(tables, m->dim, reason);
@@ -122,7 +120,7 @@ static PetscErrorCode Take(Model *m, const Tables *tables, const Case *from, Pet
   PetscFunctionBeginUser;
   PetscCall(ReasonShare(m->comm, reason));
   if (!reason[0] && next) PetscCall(StateGoOn(m, tables, reason));
-  if (!reason[0]) PetscCall(TakePoints(m, tables, from, diag, reason));
+  if (!reason[0]) PetscCall(TakePoints(m, tables, from, onto, diag, reason));
   if (!reason[0] && next) PetscCall(TakeTracers(m, tables, reason));
   if (!reason[0]) PetscCall(TakeCarriers(m, tables, from, next, diag, reason));
   if (!reason[0]) PetscCall(TakeNodes(m, tables, next, reason));
@@ -147,16 +145,34 @@ static void settle_stress(Model *m)
   for (PetscInt p = 0; p < m->points->n; ++p) energy_stress(m, p);
 }
 
+/* Points go onto any grid; what nodes or contact know does not. */
+static PetscBool takes_another_grid(const Model *m, PetscBool next, Diag *diag)
+{
+  const Case *c = m->c;
+  const PetscBool takes = !next && m->method->restores_grid && !m->method->clouds && !c->n_walls && !c->n_interfaces;
+  if (takes) return PETSC_TRUE;
+  diag_error(diag, next ? NULL : "grid", "the grid of the case is not the one of the run%s",
+             next                        ? ""
+             : !m->method->restores_grid ? ", whose nodes carry the state of fem"
+                                         : ", and with walls or interfaces the state needs the same one");
+  diag_hint(diag, "%s",
+            m->method->restores_grid
+              ? "give the grid of that run; without walls and interfaces mpm takes points onto another one"
+              : "give the grid of that run, or let both be runs of mpm, whose points go onto any grid");
+  return PETSC_FALSE;
+}
+
 PetscErrorCode ModelTake(Model *m, Tables *tables, const Case *from, PetscBool next, Diag *diag, Imbalance *imbalance)
 {
-  char reason[256] = "";
+  char reason[256] = "", other[256] = "";
   PetscInt errors;
 
   PetscFunctionBeginUser;
   const PetscInt before = diag_errors(diag);
   check_cases(m, from, diag);
-  state_check_grid(m, tables, reason);
-  if (!reason[0] && diag_errors(diag) == before) PetscCall(Take(m, tables, from, next, diag, reason));
+  state_check_grid(m, tables, other);
+  const PetscBool onto = other[0] && diag_errors(diag) == before && takes_another_grid(m, next, diag);
+  if (diag_errors(diag) == before) PetscCall(Take(m, tables, from, next, onto, diag, reason));
   if (reason[0]) diag_error(diag, next ? NULL : "initial.run", "the state cannot be taken over: %s", reason);
   PetscCall(DiagReduce(m->comm, diag, &errors));
   if (errors) PetscFunctionReturn(0);

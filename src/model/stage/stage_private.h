@@ -4,8 +4,14 @@
 #include "model/stage/stage.h"
 
 /* Collective. Points of the tables in place of those of bodies that were there, swapped where their material has
- * changed. */
-PetscErrorCode TakePoints(Model *model, const Tables *tables, const Case *from, Diag *diag, char reason[256]);
+ * changed. onto: they come from another grid. */
+PetscErrorCode TakePoints(Model *model, const Tables *tables, const Case *from, PetscBool onto, Diag *diag,
+                          char reason[256]);
+/* Have both the same law and elastic constants, so that states of one are states of the other? */
+PetscBool material_as_stiff(const Material *a, const Material *b);
+/* The stress of point p stays, in the state of another law or of other constants, and so do its place and its
+ * shape; PETSC_FALSE: there is no such state. */
+PetscBool point_swap(Points *points, PetscInt p, const Material *was, const Material *is);
 /* Collective. Velocities end where the case says so, or where they mean nothing: in statics. */
 PetscErrorCode ResetMotion(Model *model, const Case *from, PetscBool next);
 /* Collective. What is out of balance now; where the case releases it over time, it is held. */

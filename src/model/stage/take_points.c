@@ -1,7 +1,7 @@
 /* Points of one case as those of another. */
 #include "material/pressure.h"
 #include "model/stage/stage_private.h"
-#include "model/start/initial_stress.h"
+#include "points/onto.h"
 
 /* The body of this case that one of the other is: of its name, if it is there in both; or -1. */
 static PetscInt body_here(const Case *c, const BodySpec *other)
@@ -16,43 +16,6 @@ static PetscInt material_of(const Case *c, PetscInt body)
   PetscInt i = 0;
   while (strcmp(c->materials[i].name, c->bodies[body].material)) ++i;
   return i;
-}
-
-static PetscBool same_elasticity(const Material *a, const Material *b)
-{
-  return a->law == b->law && a->elastic.bulk == b->elastic.bulk && a->elastic.shear == b->elastic.shear;
-}
-
-/* Numbers of history that both laws know by the same name. */
-static void keep_history(const Law *was, const PetscReal *before, const Law *is, PetscReal *state)
-{
-  for (const LawField *f = is->fields; f->name; state += f++->components) {
-    const PetscReal *old = before;
-    for (const LawField *g = was->fields; g->name; old += g++->components)
-      if (f->components == 1 && g->components == 1 && !strcmp(f->name, g->name)) *state = *old;
-  }
-}
-
-/* Its stress stays, in the state of another law or of other constants. */
-static PetscBool swap(Points *points, PetscInt p, const Material *was, const Material *is)
-{
-  PetscReal *J = points->real[POINT_J] + p, *volume = points->real[POINT_VOLUME] + p;
-  PetscReal before[LAW_MAX_STATE], F[9], tau[6], sigma[6];
-  const PetscReal J_was = *J;
-  PetscReal *state = point_real(points, POINT_STATE, p);
-  point_tau(points, p, tau);
-  for (PetscInt i = 0; i < points->components[POINT_F]; ++i) F[i] = point_real(points, POINT_F, p)[i];
-  for (int k = 0; k < 6; ++k) sigma[k] = tau[k] / J_was;
-  for (PetscInt i = 0; i < LAW_MAX_STATE; ++i) before[i] = i < was->law->n_state ? state[i] : 0;
-  *volume *= J_was;
-  *J = 1;
-  law_initial_state(is->law, state);
-  if (stress_point(points, p, is, sigma) == STRESS_REFUSED) return PETSC_FALSE;
-  keep_history(was->law, before, is->law, state);
-  const PetscReal stretch = PetscPowReal(*J / J_was, 1.0 / 3.0);
-  for (PetscInt i = 0; i < points->components[POINT_F]; ++i) point_real(points, POINT_F, p)[i] = stretch * F[i];
-  for (PetscInt d = 0; d < points->components[POINT_DOMAIN]; ++d) point_real(points, POINT_DOMAIN, p)[d] /= stretch;
-  return PETSC_TRUE;
 }
 
 static PetscErrorCode TellStress(const Model *m, PetscInt failed, Diag *diag)
@@ -79,7 +42,7 @@ static PetscErrorCode SwapMaterials(Model *m, const Case *from, Diag *diag)
   PetscFunctionBeginUser;
   PetscCall(DiagCreate(&unheard));
   PetscCall(PetscCalloc1(from->n_materials, &was));
-  for (PetscInt i = 0; i < from->n_materials; ++i) PetscCall(MaterialResolve(from, i, unheard, &was[i]));
+  for (PetscInt i = 0; i < from->n_materials; ++i) PetscCall(MaterialAt(from, i, m->time, unheard, &was[i]));
   PetscCall(DiagDestroy(&unheard));
   for (PetscInt p = 0; p < m->points->n; ++p) {
     const PetscInt body = m->points->body[p], i = material_of(m->c, body);
@@ -87,7 +50,7 @@ static PetscErrorCode SwapMaterials(Model *m, const Case *from, Diag *diag)
     m->points->material[p] = i;
     if (!before->law) continue;
     m->points->real[POINT_MASS][p] *= now->density / before->density;
-    if (!same_elasticity(before, now) && !swap(m->points, p, before, now)) failed = body;
+    if (!material_as_stiff(before, now) && !point_swap(m->points, p, before, now)) failed = body;
   }
   PetscCall(PetscFree(was));
   PetscCall(TellStress(m, failed, diag));
@@ -146,7 +109,37 @@ static PetscErrorCode Place(Model *m, Points *placed)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode TakePoints(Model *m, const Tables *tables, const Case *from, Diag *diag, char reason[256])
+/* Points of a coarser grid, whose domains (of gimp) are no wider than a cell: where they stand farther apart than
+ * cells are wide, the material would have gaps. */
+static PetscErrorCode FitPoints(Model *m, Diag *diag)
+{
+  const PetscReal h = m->grid->smallest;
+  PetscReal local = 0, apart;
+
+  PetscFunctionBeginUser;
+  for (PetscInt p = 0; p < m->points->n; ++p) {
+    const PetscReal volume = m->points->real[POINT_VOLUME][p] * m->points->real[POINT_J][p];
+    const PetscReal weight = kinematics_weight(m->c->kinematics, point_real(m->points, POINT_X, p)[0]);
+    local = PetscMax(local, PetscPowReal(volume / weight, 1.0 / (PetscReal)m->dim));
+  }
+  PetscCall(MPIU_Allreduce(&local, &apart, 1, MPIU_REAL, MPIU_MAX, m->comm));
+  if (apart > 1.05 * h) {
+    diag_error(diag, "grid",
+               "points of the run stand up to %.3g m apart, farther than the cells are wide (%.3g m): "
+               "the material would have gaps",
+               (double)apart, (double)h);
+    diag_hint(diag, "take larger cells, or begin with more points_per_cell");
+  }
+  for (PetscInt p = 0; p < m->points->n; ++p)
+    for (PetscInt d = 0; d < m->points->components[POINT_DOMAIN]; ++d) {
+      PetscReal *half = point_real(m->points, POINT_DOMAIN, p) + d;
+      *half = PetscMin(*half, 0.5 * h);
+    }
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode TakePoints(Model *m, const Tables *tables, const Case *from, PetscBool onto, Diag *diag,
+                          char reason[256])
 {
   const Table *table = tables_find(tables, "points");
   PetscInt *body;
@@ -161,7 +154,8 @@ PetscErrorCode TakePoints(Model *m, const Tables *tables, const Case *from, Diag
   PetscCall(SetAside(m, from, &placed));
   m->points->n = 0;
   PetscCall(PointsSetState(m->points, LAW_MAX_STATE));
-  PetscCall(PointsTake(m->points, m->grid, table, &change, reason));
+  PetscCall((onto ? PointsTakeOnto : PointsTake)(m->points, m->grid, table, &change, reason));
+  if (onto && !reason[0]) PetscCall(FitPoints(m, diag));
   if (!reason[0]) PetscCall(SwapMaterials(m, from, diag));
   PetscCall(PointsSetState(m->points, m->n_state));
   if (!reason[0]) find_pressures(m, table);

@@ -397,6 +397,7 @@ PetscErrorCode ModelFromTables(Model *m, Tables *tables, char reason[256])
   tries_from_table(m, tables_find(tables, "tries"), reason);
   softening_from_table(m, tables_find(tables, "softening"), reason);
   strength_from_table(m, tables_find(tables, "strength"), reason);
+  PetscCall(MaterialsBack(m));
   raised_from_table(m, tables_find(tables, "raised"), reason);
   initial_from_table(m, tables_find(tables, "initial"), reason);
   state_lost_from_tables(m, tables, reason);
