@@ -296,12 +296,15 @@ static inline void law_suite_symmetry(LawSuite *suite)
 }
 
 /* Turn every tensor of the state, leave the scalars. */
+/* Tensors of the present space turn, the deformation gradient of a umat on its left side. */
 static inline void law_suite_rotate_state(const Law *law, const PetscReal q[9], const PetscReal *state,
                                           PetscReal *turned)
 {
   for (const LawField *field = law->fields; field->name; ++field) {
     if (field->components == 6) sym_push_forward(q, state, turned);
     else memcpy(turned, state, (size_t)field->components * sizeof *state);
+    if (!strcmp(field->name, "umat_f_xx")) tensor_multiply(q, state, turned);
+    if (!strcmp(field->name, "umat_f_xx")) state += 8, turned += 8, field += 8;
     state += field->components, turned += field->components;
   }
 }
