@@ -83,6 +83,11 @@ typedef struct Law {
   /* Tell a state that initial_stress gave, or the natural one, the size of the cell in which its
    * point starts, m. NULL: the law has no length. */
   void (*size)(const PetscReal *parameters, PetscReal h, PetscReal *state);
+  /* Radius, m, within which number `averaged` of the states is averaged over the points of a material before each
+   * step, and what is done with the mean; reach is 0, or NULL, of a law whose points are alone. */
+  PetscReal (*reach)(const PetscReal *parameters);
+  PetscInt averaged;
+  void (*hear)(const PetscReal *parameters, PetscReal mean, PetscReal *state);
   /* Turn the user's constants into the packed parameters; complain through diag at `path`. */
   void (*prepare)(const Elasticity *elastic, const PetscReal *given, PetscReal *packed);
   /* What the mixed formulation needs; NULL: the law has no mixed form. Elastic volume ratio of n

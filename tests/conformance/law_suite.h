@@ -28,6 +28,7 @@ typedef struct {
    * expansion. */
   PetscReal corners;
   PetscReal pressure;   /* of a law that needs a stress: the one it begins with, Pa */
+  PetscReal heard;      /* of a nonlocal law: the mean of the strains around, if there is one */
   PetscBool may_refuse; /* may it say that it does not converge within stretches of 0.1 to 10? */
 } LawUnderTest;
 
@@ -116,6 +117,7 @@ static inline void law_suite_start(const LawSuite *suite, PetscReal *state)
 {
   const PetscReal p = suite->test->pressure, sigma[6] = {-p, -p, -p, 0, 0, 0};
   law_initial_state(suite->law, state);
+  if (suite->test->heard > 0) suite->law->hear(suite->material.parameters, suite->test->heard, state);
   if (!suite->law->needs_stress) return;
   if (!suite->law->initial_stress(suite->material.parameters, sigma, state))
     fail_msg("%s: no state with a pressure of %g Pa", suite->law->name, p);
