@@ -120,6 +120,7 @@ PetscErrorCode CliParse(const CliUsage *usage, int argc, char **argv, CliArgumen
     if (!ok) PetscFunctionReturn(0);
   }
   PetscCall(CheckWords(usage, arguments, go_on, exit_code));
+  if (*go_on) PetscCall(CliLoadLaws(arguments, go_on, exit_code));
   PetscFunctionReturn(0);
 }
 

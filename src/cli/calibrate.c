@@ -11,6 +11,7 @@ static const CliOption options_known[] = {
   {"force", NULL, "run all again, also what is done"},
   {"keep", NULL, "keep the states (.hdf) of runs that are done"},
   {"dry", NULL, "only read all cases, and say how many runs there would be at first"},
+  CLI_LAW_OPTIONS,
   {"trust", NULL,
    "let the .geo of a case run programs and write files (Gmsh's SystemCall, Save, ...): only if you know it"},
   {NULL, NULL, NULL},

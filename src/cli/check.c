@@ -5,6 +5,7 @@
 
 static const CliOption options[] = {
   {"set", "PATH=VALUE", "change a value of the case file: --set materials.sand.young=1e6"},
+  CLI_LAW_OPTIONS,
   {"trust", NULL,
    "let the .geo of the case run programs and write files (Gmsh's SystemCall, Save, ...): only if you know it"},
   {NULL, NULL, NULL},

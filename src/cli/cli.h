@@ -71,6 +71,16 @@ typedef struct {
 PetscErrorCode CliParse(const CliUsage *usage, int argc, char **argv, CliArguments *arguments, PetscBool *go_on,
                         int *exit_code);
 
+/* In the options of a command that reads cases. */
+#define CLI_LAW_OPTIONS                                                                                          \
+  {"law", "NAME=FILE.so",                                                                                        \
+   "a law of your own, by the name that the case calls it: docs/plugin.md; may be given often"},                 \
+  {                                                                                                              \
+    "umat", "NAME=FILE.so,NPROPS,NSTATV", "the same of a subroutine UMAT; its constants are prop_1, prop_2, ..." \
+  }
+/* Collective. Load what --law and --umat name; *ok is false after a complaint. */
+PetscErrorCode CliLoadLaws(const CliArguments *arguments, PetscBool *ok, int *exit_code);
+
 /* Value of the last --name, NULL if it was not given. */
 const char *cli_value(const CliArguments *arguments, const char *name);
 PetscBool cli_flag(const CliArguments *arguments, const char *name);

@@ -10,6 +10,7 @@ static const CliOption options_known[] = {
   {"undrained", NULL, "the volume stays, and a pore pressure takes what that asks for"},
   {"material", "NAME", "which of the materials of the case"},
   {"steps", "N", "increments on each way (default: 100)"},
+  CLI_LAW_OPTIONS,
   {"set", "PATH=VALUE", "change a value of the file; may be given often"},
   {"out", "DIR", "where the table and the picture go; default: runs/element/<name of the file>"},
   {NULL, NULL, NULL},

@@ -14,6 +14,7 @@ static const CliOption options_known[] = {
   {"resume", "RUN_DIR", "go on with the run in DIR from its newest checkpoint, on any number of ranks; no CASE then"},
   {"quiet", NULL, "nothing on the terminal but errors"},
   {"log", "FILE", "write the log there instead of to DIR/log.txt"},
+  CLI_LAW_OPTIONS,
   {"trust", NULL,
    "let the .geo of the case run programs and write files (Gmsh's SystemCall, Save, ...): only if you know it"},
   {NULL, NULL, NULL},

@@ -17,6 +17,7 @@ static const CliOption options_known[] = {
   {"force", NULL, "run all members again, also those that are done"},
   {"keep", NULL, "keep the states (.hdf) of members that are done"},
   {"dry", NULL, "only say which members there would be"},
+  CLI_LAW_OPTIONS,
   {"trust", NULL,
    "let the .geo of the case run programs and write files (Gmsh's SystemCall, Save, ...): only if you know it"},
   {NULL, NULL, NULL},

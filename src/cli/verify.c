@@ -10,6 +10,7 @@ static const CliOption options_known[] = {
   {"keep", NULL, "keep the states (.hdf) of all runs, not only logs and histories"},
   {"resume", NULL, "take over the runs that an earlier call has finished; the tables name the program they are from"},
   {"record", NULL, "write the tables into docs/verification.md of the source tree, too"},
+  CLI_LAW_OPTIONS,
   {"trust", NULL,
    "let the .geo of the case run programs and write files (Gmsh's SystemCall, Save, ...): only if you know it"},
   {NULL, NULL, NULL},

@@ -9,7 +9,7 @@
 #include "material/principal_lanes.h"
 #include "material/shape.h"
 
-#define HENCKY_SCALARS 2 /* most numbers of a state beside b^e */
+#define HENCKY_SCALARS 3 /* most numbers of a state beside b^e */
 
 /* b^e before the flow, and what the spectral decomposition gave. */
 typedef struct {

@@ -7,9 +7,10 @@
 #include "base/diag/diag.h"
 #include "case/case.h"
 
-#define LAW_MAX_PARAMETERS 16
-#define LAW_MAX_STATE 24
+#define LAW_MAX_PARAMETERS 32
+#define LAW_MAX_STATE 48
 #define LAW_BATCH 32 /* most points of one update call */
+#define LAW_MAX_LOADED 8
 
 typedef enum { LAW_OK = 0, LAW_INVERTED, LAW_NOT_CONVERGED, LAW_NOT_FINITE } LawStatus;
 
@@ -71,7 +72,7 @@ typedef struct Law {
   /* The same where dF leaves z alone, or NULL: of c only the components 11, 22, 12 of rows and
    * columns mean something; and where z strains by itself (dF_33 alone), with 33 as well. */
   LawUpdate update_plane, update_hoop;
-  /* Stored elastic energy per undeformed volume, J/m3. */
+  /* Stored elastic energy per undeformed volume, J/m3. NULL: not known, of a law from a library. */
   PetscReal (*energy)(const PetscReal *parameters, const PetscReal *state);
   /* State that carries the Cauchy stress sigma (6) with no shear history; PETSC_FALSE if there is
    * none. */
@@ -82,6 +83,11 @@ typedef struct Law {
   /* Tell a state that initial_stress gave, or the natural one, the size of the cell in which its
    * point starts, m. NULL: the law has no length. */
   void (*size)(const PetscReal *parameters, PetscReal h, PetscReal *state);
+  /* Radius, m, within which number `averaged` of the states is averaged over the points of a material before each
+   * step, and what is done with the mean; reach is 0, or NULL, of a law whose points are alone. */
+  PetscReal (*reach)(const PetscReal *parameters);
+  PetscInt averaged;
+  void (*hear)(const PetscReal *parameters, PetscReal mean, PetscReal *state);
   /* Turn the user's constants into the packed parameters; complain through diag at `path`. */
   void (*prepare)(const Elasticity *elastic, const PetscReal *given, PetscReal *packed);
   /* What the mixed formulation needs; NULL: the law has no mixed form. Elastic volume ratio of n
@@ -95,6 +101,9 @@ typedef struct Law {
   void (*reduce)(const PetscReal *given, PetscReal factor, PetscReal *reduced);
   /* What is wrong with parameters that are each in their range, or NULL. May itself be NULL. */
   const char *(*check)(const PetscReal *given);
+  /* Tell packed parameters the time at the start of a step and its length, s; dt = 0 stands for no step, in
+   * which nothing may flow. NULL: the law does not know of time. */
+  void (*step)(PetscReal time, PetscReal dt, PetscReal *packed);
 } Law;
 
 /* What strains in these kinematics decides which update is the quickest. */
@@ -121,9 +130,11 @@ typedef struct {
   PetscReal deviatoric[LAW_MAX_PARAMETERS];
 } Material;
 
-/* All laws, ended by NULL. */
-extern const Law *const laws[];
+/* All laws, ended by NULL: the house's, and those that the command line loads (plugin/plugin.h). */
+extern const Law *laws[];
 const Law *law_find(const char *name);
+/* One more, which stays ours; there is room for LAW_MAX_LOADED. */
+void law_register(const Law *law);
 
 /* Resolve materials[index] of the case; mistakes go to diag with their paths. */
 PetscErrorCode MaterialResolve(const Case *c, PetscInt index, Diag *diag, Material *material);
@@ -135,6 +146,8 @@ PetscErrorCode MaterialAt(const Case *c, PetscInt index, PetscReal t, Diag *diag
 void material_take_strength(Material *material, const Material *other);
 /* Divide the strength of a material by factor (0: it does not yield); that of the case is factor 1. */
 void material_reduce(Material *material, PetscReal factor);
+/* Tell all of them of the step that is tried; dt = 0: there is none. */
+void materials_step(PetscInt n, Material *materials, PetscReal time, PetscReal dt);
 /* lambda + 2 mu, Pa, of a mixed formulation, too: infinite where incompressible. */
 PetscReal material_confined(const Material *material);
 /* Write the initial state of one point, n_state numbers. */

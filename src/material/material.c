@@ -36,7 +36,9 @@ static const Law *find_law(const Resolver *r)
   diag_error(r->diag, path_of(r, "law", path), "there is no law '%s'", r->spec->law ? r->spec->law : "");
   nearest = r->spec->law ? diag_nearest(r->spec->law, names) : NULL;
   if (nearest) diag_hint(r->diag, "did you mean '%s'?", nearest);
-  else diag_hint(r->diag, "`talus list laws` shows all laws");
+  else
+    diag_hint(r->diag, "`talus list laws` shows all laws; one of your own is loaded by --law %s=FILE.so",
+              r->spec->law ? r->spec->law : "NAME");
   return NULL;
 }
 
@@ -309,6 +311,16 @@ static void prepare_again(Material *m, const PetscReal *given)
   prepare_deviatoric(given, m);
   if (isfinite(m->elastic.bulk)) return;
   memcpy(m->parameters, m->deviatoric, sizeof m->parameters);
+}
+
+void materials_step(PetscInt n, Material *materials, PetscReal time, PetscReal dt)
+{
+  for (PetscInt i = 0; i < n; ++i) {
+    Material *m = &materials[i];
+    if (!m->law->step) continue;
+    m->law->step(time, dt, m->parameters);
+    if (m->mixed) m->law->step(time, dt, m->deviatoric);
+  }
 }
 
 void material_reduce(Material *m, PetscReal factor)

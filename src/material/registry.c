@@ -6,18 +6,31 @@
 #include "material/laws.inc"
 #undef LAW
 
-const Law *const laws[] = {
+#define LAW(x) +1
+enum {
+  HOUSE = 0
+#include "material/laws.inc"
+};
+#undef LAW
+
+const Law *laws[HOUSE + LAW_MAX_LOADED + 1] = {
 #define LAW(x) &law_##x,
 #include "material/laws.inc"
 #undef LAW
-  NULL,
 };
 
 const Law *law_find(const char *name)
 {
-  for (const Law *const *law = laws; *law; ++law)
+  for (const Law **law = laws; *law; ++law)
     if (name && !strcmp((*law)->name, name)) return *law;
   return NULL;
+}
+
+void law_register(const Law *law)
+{
+  int n = 0;
+  while (laws[n]) ++n;
+  if (n < HOUSE + LAW_MAX_LOADED) laws[n] = law;
 }
 
 void law_initial_state(const Law *law, PetscReal *state)

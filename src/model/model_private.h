@@ -34,6 +34,8 @@ PetscErrorCode ModelEnable(Model *model);
 /* Collective. Geostatic stress of bodies that ask for it, as their law's state: of the material
  * inside the outline that is above them. */
 PetscErrorCode InitialStress(Model *model, const Outline *outline, Diag *diag);
+/* Collective. Tell points whose law is nonlocal the mean of what is around them (nonlocal.c). */
+PetscErrorCode NonlocalStep(Model *model);
 /* Tell the laws that have a length the sizes of the cells in which their points start (start/laws.c). */
 void sizes_start(const Model *model);
 /* Complain of bodies whose law needs a stress and has none (start/laws.c). */

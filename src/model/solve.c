@@ -27,7 +27,7 @@ static void scale(PetscInt n, PetscReal factor, PetscReal *x)
 
 /* From the middle of the step, if forces balance there, on to its end: there must be stress,
  * too. */
-static PetscErrorCode GoOn(Model *m, StepReport *report)
+static PetscErrorCode GoOn(Model *m, PetscReal dt, StepReport *report)
 {
   const PetscInt dofs = m->grid->n_nodes * m->dim;
   WeakFormInput in = weak_form_of(m, 0);
@@ -37,6 +37,7 @@ static PetscErrorCode GoOn(Model *m, StepReport *report)
   PetscFunctionBeginUser;
   if (!m->scheme->middle) PetscFunctionReturn(0);
   scale(dofs, 1 / time_solved(m->scheme), m->nodes->du);
+  materials_step(m->c->n_materials, m->materials, m->time, dt);
   PetscCall(PetscCalloc1(dofs, &out.force));
   PetscCall(m->formulation->assemble(&in, &out));
   PetscCall(PetscFree(out.force));
@@ -66,8 +67,9 @@ static PetscErrorCode SolveFromGuesses(Model *m, PetscReal dt, const LinearProbl
     scale(m->grid->n_nodes * m->dim, time_solved(m->scheme), m->nodes->du);
     pressure_guess(m);
     PetscCall(PhaseEnd(m->seconds, PHASE_PREPARE, &clock));
+    materials_step(m->c->n_materials, m->materials, m->time, dt * time_solved(m->scheme));
     PetscCall(NewtonSolve(m->newton, &problem, linear, &report->newton));
-    if (report->newton.converged) PetscCall(GoOn(m, report));
+    if (report->newton.converged) PetscCall(GoOn(m, dt, report));
     if (report->newton.converged) PetscCall(JudgeStep(m, report));
     if (report->newton.converged) PetscCall(StrengthJudge(m, report));
     PetscCall(PetscTime(&clock));

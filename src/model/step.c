@@ -14,6 +14,7 @@ PetscErrorCode ModelStep(Model *m, PetscReal limit, StepReport *report)
   PetscCall(PetscMemzero(report, sizeof *report));
   PetscCall(ModelInitialise(m)); /* (a) nodes learn from where points are */
   /*     which of them have unknowns, and which are held */
+  PetscCall(NonlocalStep(m)); /*     and points of what is around them */
   PetscCall(PrepareUnknowns(m, &start, report));
   /* (b) their increments, in a shorter step if need be */
   PetscCall(SolveStep(m, &dt, report));
@@ -26,6 +27,7 @@ PetscErrorCode ModelStep(Model *m, PetscReal limit, StepReport *report)
     outside_judge(m, report);
     if (!m->initial.seeking) PetscCall(MeasuresRemember(m, report->dt));
   } else PetscCall(StepStartRestore(m, &start, report));
+  materials_step(m->c->n_materials, m->materials, m->time, 0);
   PetscFunctionReturn(0);
 }
 

@@ -1,3 +1,4 @@
+#include "material/plugin/plugin.h"
 #include "run/summary.h"
 #include "output/directory/run_dir_files.h"
 #include <stdlib.h>
@@ -38,6 +39,7 @@ PetscErrorCode SummaryBegin(Model *m, RunDir *dir)
   PetscCall(RunDirLog(dir, "method = %s", m->method->name));
   method_tell_basis(m->method, m->c, sizeof told, told);
   PetscCall(RunDirLog(dir, "basis = %s", told));
+  for (const char *const *law = plugin_words(); *law; ++law) PetscCall(RunDirLog(dir, "law = %s", *law));
   PetscCall(RunDirLog(dir, "cells = %d nodes = %d points = %d ranks = %d", (int)m->grid->n_cells_global,
                       (int)m->grid->n_nodes_global, (int)points, (int)size));
   PetscFunctionReturn(0);

@@ -12,6 +12,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 #include "base/process/environment.h"
+#include "material/plugin/plugin.h"
 #include "output/directory/run_dir_files.h"
 #include "run/summary.h"
 #include "sweep/members.h"
@@ -23,12 +24,13 @@ static PetscErrorCode Arguments(const Members *members, const Member *m, char **
   char **a;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(2 * m->set.n + 10, out));
+  PetscCall(PetscMalloc1(2 * m->set.n + 10 + PLUGIN_MOST, out));
   a = *out;
   a[n++] = (char *)"talus";
   a[n++] = (char *)"run";
   a[n++] = (char *)"--quiet";
   if (members->trust) a[n++] = (char *)"--trust";
+  for (const char *const *law = plugin_words(); *law; ++law) a[n++] = (char *)*law;
   if (m->resume) a[n++] = (char *)"--resume", a[n++] = (char *)m->folder;
   else {
     a[n++] = (char *)m->file;

@@ -28,6 +28,7 @@ typedef struct {
    * expansion. */
   PetscReal corners;
   PetscReal pressure;   /* of a law that needs a stress: the one it begins with, Pa */
+  PetscReal heard;      /* of a nonlocal law: the mean of the strains around, if there is one */
   PetscBool may_refuse; /* may it say that it does not converge within stretches of 0.1 to 10? */
 } LawUnderTest;
 
@@ -116,6 +117,7 @@ static inline void law_suite_start(const LawSuite *suite, PetscReal *state)
 {
   const PetscReal p = suite->test->pressure, sigma[6] = {-p, -p, -p, 0, 0, 0};
   law_initial_state(suite->law, state);
+  if (suite->test->heard > 0) suite->law->hear(suite->material.parameters, suite->test->heard, state);
   if (!suite->law->needs_stress) return;
   if (!suite->law->initial_stress(suite->material.parameters, sigma, state))
     fail_msg("%s: no state with a pressure of %g Pa", suite->law->name, p);
@@ -296,12 +298,15 @@ static inline void law_suite_symmetry(LawSuite *suite)
 }
 
 /* Turn every tensor of the state, leave the scalars. */
+/* Tensors of the present space turn, the deformation gradient of a umat on its left side. */
 static inline void law_suite_rotate_state(const Law *law, const PetscReal q[9], const PetscReal *state,
                                           PetscReal *turned)
 {
   for (const LawField *field = law->fields; field->name; ++field) {
     if (field->components == 6) sym_push_forward(q, state, turned);
     else memcpy(turned, state, (size_t)field->components * sizeof *state);
+    if (!strcmp(field->name, "umat_f_xx")) tensor_multiply(q, state, turned);
+    if (!strcmp(field->name, "umat_f_xx")) state += 8, turned += 8, field += 8;
     state += field->components, turned += field->components;
   }
 }

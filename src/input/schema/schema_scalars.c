@@ -5,6 +5,7 @@
 #include <unistd.h>
 #include "base/text.h"
 #include "input/schema/schema.h"
+#include "material/law.h"
 
 /* [+-] digits [. digits] [e [+-] digits], at least one digit before the exponent: no hexadecimal,
  * no inf, no nan. */
@@ -155,6 +156,8 @@ static SchemaWord find_word(SchemaReader *r, const SchemaEntry *e, const YamlNod
   }
   schema_mismatch(r, e, node);
   if (text && diag_nearest(text, words)) schema_hint_words(r, text, n, words);
+  else if (text && e->registry == (const void *const *)laws)
+    diag_hint(r->diag, "a law of your own is loaded by --law %.48s=FILE.so: docs/plugin.md", text);
   return schema_word(e, n);
 }
 

@@ -21,20 +21,26 @@ enum {
   PEAK_STRAIN,
   RESIDUAL_STRAIN,
   REFERENCE_SIZE,
+  NONLOCAL_LENGTH,
+  NONLOCAL_WEIGHT,
   GIVEN
 };
 
 /* Scalars of the state. */
-enum { KAPPA, SCALE, SCALARS };
+enum { KAPPA, SCALE, OFFSET, SCALARS };
+
+#define ALONE (-1.0) /* offset of a point that has heard of no others: its strain is its own */
 
 /* One point: what the lanes need of it. */
 LANES_INLINE int soften_point(const PetscReal *q, PetscBool moduli, int l, const Lanes e[3], const Lanes *before,
                               Lanes *after, SoftStrength *at, HenckyReturn *r)
 {
   const PetscReal strain[3] = {e[0][l], e[1][l], e[2][l]};
+  const PetscReal heard = before[OFFSET][l];
+  const SoftScale scale = {heard < 0.0 ? before[SCALE][l] : 1.0 - q[SOFT_WEIGHT], PetscMax(heard, 0.0)};
   PetscReal elastic[3], D[9];
   SoftTry t;
-  const PetscReal kappa = soft_return(q, before[KAPPA][l], before[SCALE][l], strain, at, &t);
+  const PetscReal kappa = soft_return(q, before[KAPPA][l], scale, strain, at, &t);
   mc_compliance(at->p, t.tau, elastic);
   after[KAPPA][l] = kappa;
   r->good[l] = isfinite(kappa) ? -1 : 0;
@@ -54,6 +60,7 @@ LANES_INLINE void soften(const PetscReal *q, PetscBool moduli, const Lanes e[3],
   SoftStrength at = {.x = NAN};
   LaneBits regions;
   after[SCALE] = before[SCALE];
+  after[OFFSET] = before[OFFSET];
   for (int l = 0; l < LANES; ++l) regions[l] = soften_point(q, moduli, l, e, before, after, &at, r);
   r->plastic = regions != MC_ELASTIC;
   for (int k = 0; moduli && k < 3; ++k) {
@@ -81,6 +88,7 @@ static PetscBool initial_stress(const PetscReal *q, const PetscReal sigma[6], Pe
   hencky_stress(q[SOFT_LAMBDA], q[SOFT_MU], sigma, tau, state);
   state[6 + KAPPA] = 0.0;
   state[6 + SCALE] = 1.0;
+  state[6 + OFFSET] = ALONE;
   soft_strength(q, 0.0, &at);
   const PetscReal noise = mc_noise(at.p, tau);
   return mc_yield(at.p, tau) <= noise && tau[0] - at.p[MC_CUT] <= noise;
@@ -90,6 +98,10 @@ static void size(const PetscReal *q, PetscReal h, PetscReal *state)
 {
   state[6 + SCALE] = q[SOFT_SIZE] > 0.0 ? h / q[SOFT_SIZE] : 1.0;
 }
+
+static PetscReal reach(const PetscReal *q) { return q[SOFT_LENGTH]; }
+
+static void hear(const PetscReal *q, PetscReal mean, PetscReal *state) { state[6 + OFFSET] = q[SOFT_WEIGHT] * mean; }
 
 /* Its strength changes: never apart from the pressure, but without friction, dilatancy and
  * cut-off. */
@@ -120,6 +132,8 @@ static void prepare(const Elasticity *elastic, const PetscReal *given, PetscReal
   q[SOFT_RESIDUAL] = given[RESIDUAL_STRAIN];
   q[SOFT_CUT] = given[CUTOFF] < NO_CUTOFF ? given[CUTOFF] : INFINITY;
   q[SOFT_SIZE] = given[REFERENCE_SIZE];
+  q[SOFT_LENGTH] = given[NONLOCAL_LENGTH];
+  q[SOFT_WEIGHT] = given[NONLOCAL_WEIGHT];
 }
 
 static const char *check(const PetscReal *given)
@@ -129,6 +143,8 @@ static const char *check(const PetscReal *given)
   for (int k = 0; k < 3; ++k)
     if (q[SOFT_PSI + k] > q[SOFT_PHI + k])
       return "the dilatancy angle must not be larger than the friction angle: initially, at the peak and at the end";
+  if (given[NONLOCAL_LENGTH] > 0.0 && given[REFERENCE_SIZE] > 0.0)
+    return "nonlocal_length and reference_size are two ways to the same end: give one of them";
   return given[RESIDUAL_STRAIN] <= given[PEAK_STRAIN] ? "residual_strain must be larger than peak_strain" : NULL;
 }
 
@@ -164,6 +180,11 @@ static const LawParameter parameters[] = {
    .min_open = PETSC_TRUE, .fallback = NAN},
   {"reference_size", "m", "size of the cells for which both strains hold; 0: they hold in all, and depend on the mesh",
    0, PETSC_MAX_REAL, .fallback = 0},
+  {"nonlocal_length", "m",
+   "radius around a point over which its plastic strain is averaged, on any mesh; 0: none. At least two cells", 0,
+   PETSC_MAX_REAL, .fallback = 0},
+  {"nonlocal_weight", "", "share m of the mean in the strain that softens, 1 - m being that of the point itself", 1, 10,
+   .fallback = 2},
   {.name = NULL},
 };
 
@@ -171,6 +192,11 @@ static const LawField fields[] = {
   {"elastic_strain", "", "elastic left Cauchy-Green tensor b", 6, {1, 1, 1, 0, 0, 0}},
   {"equivalent_plastic_strain", "", "accumulated sqrt(2/3) |dev d eps^p|", 1, {0}},
   {"softening_scale", "", "size of the point's cell over reference_size", 1, {1}},
+  {"softening_offset",
+   "",
+   "nonlocal_weight times the mean plastic strain around the point; -1: it is alone",
+   1,
+   {ALONE}},
   {.name = NULL},
 };
 
@@ -187,6 +213,9 @@ const Law law_mohr_coulomb_softening = {
   .energy = energy,
   .initial_stress = initial_stress,
   .size = size,
+  .reach = reach,
+  .averaged = 6 + KAPPA,
+  .hear = hear,
   .volume = volume,
   .volume_law = volume_law,
   .scale = scale,

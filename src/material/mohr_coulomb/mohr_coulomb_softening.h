@@ -5,7 +5,9 @@
  *   kappa = kappa_n + sqrt(2/3) |dev(eps_tr - D^-1 tau(eps_tr, s kappa))|
  *
  * is one equation in kappa, which the return at the old strength brackets from below. s is the
- * size of the point's cell over the size for which the strains of the table hold. */
+ * size of the point's cell over the size for which the strains of the table hold. Of a nonlocal
+ * strain the table is entered with o + s kappa: o = m times the mean around the point when the step
+ * began, s = 1 - m (docs/theory.md). */
 #pragma once
 #include "material/mohr_coulomb/mohr_coulomb_return.h"
 
@@ -20,6 +22,8 @@ enum {
   SOFT_RESIDUAL,
   SOFT_CUT,
   SOFT_SIZE,
+  SOFT_LENGTH,
+  SOFT_WEIGHT,
   SOFT_N
 };
 
@@ -112,17 +116,22 @@ static inline void soft_slope(const SoftStrength *at, McRegion region, const Pet
   slope[1] = slope[2] * (region == MC_CUT_EDGE ? nu : (region == MC_CUT_CORNER2 ? 1.0 : 0.0));
 }
 
+/* Where the table is entered: offset + scale kappa. */
+typedef struct {
+  PetscReal scale, offset;
+} SoftScale;
+
 /* A return at one strength: how far it flows, in which direction n, and d tau / d kappa. */
 typedef struct {
   McRegion region;
   PetscReal tau[3], slope[3], flow, n[3], rate; /* rate: d (kappa - kappa_n - flow) / d kappa */
 } SoftTry;
 
-static inline void soft_try(const PetscReal *q, PetscReal kappa, PetscReal scale, const PetscReal e[3],
+static inline void soft_try(const PetscReal *q, PetscReal kappa, SoftScale scale, const PetscReal e[3],
                             SoftStrength *at, SoftTry *t)
 {
   PetscReal elastic[3], norm = 0.0, along = 0.0;
-  soft_strength(q, scale * kappa, at);
+  soft_strength(q, PetscMax(scale.offset + scale.scale * kappa, 0.0), at);
   t->region = mc_return(at->p, e, t->tau);
   mc_compliance(at->p, t->tau, elastic);
   const PetscReal mean = (e[0] + e[1] + e[2] - elastic[0] - elastic[1] - elastic[2]) / 3.0;
@@ -135,7 +144,7 @@ static inline void soft_try(const PetscReal *q, PetscReal kappa, PetscReal scale
   soft_slope(at, t->region, e, t->tau, t->slope);
   for (int i = 0; i < 3; ++i) {
     t->n[i] = norm > 0.0 ? sqrt(2.0 / 3.0) * t->n[i] / norm : 0.0;
-    t->slope[i] *= scale;
+    t->slope[i] *= scale.scale;
     along += t->n[i] * t->slope[i];
   }
   t->rate = 1.0 + 0.5 * along / q[SOFT_MU];
@@ -145,7 +154,7 @@ static inline void soft_try(const PetscReal *q, PetscReal kappa, PetscReal scale
 
 /* The new kappa, or NAN. Newton's method between bounds; where it leaves them, their middle. A
  * return that would be elastic at the new strength flows less than nothing: the root lies below. */
-static inline PetscReal soft_return(const PetscReal *q, PetscReal old, PetscReal scale, const PetscReal e[3],
+static inline PetscReal soft_return(const PetscReal *q, PetscReal old, SoftScale scale, const PetscReal e[3],
                                     SoftStrength *at, SoftTry *t)
 {
   PetscReal low = old, high = INFINITY, kappa = old;

@@ -94,6 +94,7 @@ PetscReal model_point_energy(const Model *m, PetscInt p)
 {
   const Material *material = &m->materials[m->points->material[p]];
   const PetscReal *state = point_real(m->points, POINT_STATE, p);
+  if (!material->law->energy) return NAN;
   if (m->formulation->pressure) return pressure_energy(material, state, m->points->real[POINT_PRESSURE][p]);
   return material->law->energy(material->parameters, state);
 }
@@ -132,7 +133,8 @@ PetscErrorCode EnergyStart(Model *m)
   for (PetscInt p = 0; p < m->points->n; ++p) {
     const Material *material = &m->materials[m->points->material[p]];
     energy_stress(m, p);
-    m->points->real[POINT_WORK][p] = m->points->real[POINT_VOLUME][p] * model_point_energy(m, p);
+    m->points->real[POINT_WORK][p] =
+      material->law->energy ? m->points->real[POINT_VOLUME][p] * model_point_energy(m, p) : 0;
     local[1] += PetscSqr(STRAIN_OF_ROUND_OFF) * m->points->real[POINT_VOLUME][p] * material->elastic.shear;
   }
   local[0] = points_kinetic(m) + points_work(m);
