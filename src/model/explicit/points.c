@@ -1,7 +1,7 @@
 /* The three walks over the points of a substep, with sizes known to the compiler where points find their nodes
  * by arithmetic. */
+#include <string.h>
 #include "base/math/tensor.h"
-#include "formulation/walk.h"
 #include "model/explicit/explicit.h"
 
 #define KERNEL static inline __attribute__((always_inline))
@@ -145,9 +145,38 @@ static LawStatus stress(const Model *m, PetscInt first, PetscInt n, Strained *b)
   }
   const LawUpdate update = law_update_in(material->law, m->c->kinematics);
   const LawStatus status = update(material->parameters, n, b->dF, old, b->state, b->tau, NULL);
-  for (PetscInt k = 0; k < n; ++k)
-    for (PetscInt i = 0; i < n_state; ++i) state[k * stride + i] = b->state[k * n_state + i];
+  if (stride == n_state) memcpy(state, b->state, (size_t)(n * n_state) * sizeof *state);
+  else
+    for (PetscInt k = 0; k < n * n_state; ++k) state[k / n_state * stride + k % n_state] = b->state[k];
   return status;
+}
+
+/* F, J, stress and its work, with A = dF - 1 and A - A^2 for 1 - dF^-1 in the trapezoidal rule of stress_work
+ * (formulation/walk.h): a substep is so short that A^3 is beyond the digits of the work. */
+KERNEL void keep(const int dim, Points *points, PetscInt p, const PetscReal *dF, const PetscReal *tau)
+{
+  const int n = dim == 2 ? 4 : 6;
+  PetscReal *F = point_real(points, POINT_F, p), *old = point_real(points, POINT_TAU, p), A[9], new_F[9], work = 0;
+  for (int i = 0; i < 9; ++i) A[i] = dF[i] - (i % 4 == 0);
+  for (int i = 0; i < dim; ++i)
+    for (int j = 0; j < dim; ++j) {
+      PetscReal square = 0, sum = F[dim * i + j];
+      for (int k = 0; k < dim; ++k) {
+        square += A[3 * i + k] * A[3 * k + j];
+        sum += A[3 * i + k] * F[dim * k + j];
+      }
+      const int voigt = voigt_of[i][j];
+      work += old[voigt] * A[3 * i + j] + tau[voigt] * (A[3 * i + j] - square);
+      new_F[dim * i + j] = sum;
+    }
+  if (dim == 2) {
+    work += old[2] * A[8] + tau[2] * (A[8] - A[8] * A[8]);
+    new_F[4] = F[4] + A[8] * F[4];
+    points->real[POINT_J][p] *= (dF[0] * dF[4] - dF[1] * dF[3]) * dF[8];
+  } else points->real[POINT_J][p] *= tensor_det(dF);
+  for (int i = 0; i < (dim == 2 ? 5 : 9); ++i) F[i] = new_F[i];
+  for (int k = 0; k < n; ++k) old[k] = tau[k];
+  points->real[POINT_WORK][p] += 0.5 * points->real[POINT_VOLUME][p] * work;
 }
 
 KERNEL void strain(const int dim, const PetscBool hoop, const PetscBool box, const Model *m, Explicit *e)
@@ -165,7 +194,7 @@ KERNEL void strain(const int dim, const PetscBool hoop, const PetscBool box, con
     const LawStatus status = stress(m, first, n, &b);
     e->status = PetscMax(e->status, status);
     for (PetscInt k = 0, p = first; k < n; ++k, ++p) {
-      commit_point(points, p, b.dF + 9 * k, b.tau + 6 * k);
+      keep(dim, points, p, b.dF + 9 * k, b.tau + 6 * k);
       for (int d = 0; d < dim; ++d) {
         point_real(points, POINT_X, p)[d] += b.move[3 * k + d];
         point_real(points, POINT_U, p)[d] += b.move[3 * k + d];
