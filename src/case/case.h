@@ -6,13 +6,7 @@
 #pragma once
 #include "case/kinematics/kinematics.h"
 
-typedef enum {
-  ANALYSIS_STATIC,
-  ANALYSIS_DYNAMIC,
-  ANALYSIS_FACTOR,
-  ANALYSIS_LIMIT,
-  ANALYSIS_EXPLICIT
-} AnalysisType;
+typedef enum { ANALYSIS_STATIC, ANALYSIS_DYNAMIC, ANALYSIS_FACTOR, ANALYSIS_LIMIT, ANALYSIS_EXPLICIT } AnalysisType;
 /* Which velocity of the nodes strains the points of explicit dynamics: that which the points have given them anew
  * at the end of a step, or that of the balance of momentum. */
 typedef enum { EXPLICIT_MUSL, EXPLICIT_USL } ExplicitUpdate;

@@ -5,6 +5,7 @@
  * listed, only between laps. In a box of squares or cubes points find their nodes by arithmetic, wherever
  * in it they are; other grids and bases have laps of one substep, and a support in each. */
 #pragma once
+#include "model/explicit/critical.h"
 #include "model/model_private.h"
 
 /* Nodes of a box with lines at equal distances, as this rank knows it. */
@@ -48,10 +49,6 @@ typedef struct Explicit {
   PetscReal external, boundary, damped; /* energies of the run's step, this rank's share, J */
   PetscReal outside;                    /* Model.outside.energy at its start, J */
 } Explicit;
-
-/* courant.c. Collective. The longest substep in which no wave crosses a cell, s, and the speed of the fastest
- * point, m/s: with moduli and stress of the points as they are now. */
-PetscErrorCode ExplicitCritical(const Model *model, PetscReal *critical, PetscReal *fastest);
 
 /* lap.c. Collective. Arrays for the grid as it is. */
 PetscErrorCode ExplicitCreate(const Model *model, Explicit **explicit);

@@ -136,7 +136,7 @@ static PetscErrorCode See(Model *m, const Explicit *e)
 
 static void choose_substeps(const Model *m, PetscReal left, Explicit *e)
 {
-  const PetscReal courant = m->c->analysis.courant > 0 ? m->c->analysis.courant : 0.5;
+  const PetscReal courant = explicit_courant(m->c);
   const PetscReal all = PetscCeilReal(left / (courant * e->critical) * (1 - 1e-9));
   e->dt = left / PetscMax(all, 1);
   const PetscReal travel = LAP_TRAVEL * m->grid->smallest;

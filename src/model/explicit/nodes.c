@@ -36,15 +36,13 @@ PetscErrorCode NodesMove(Model *m, Explicit *e)
   for (PetscInt k = 0; k < e->n_active; ++k) {
     const PetscInt node = e->active[k];
     const PetscReal *s = e->sum + node * e->width, mass = s[0], inverse = mass > 1e-300 ? 1 / mass : 0;
-    PetscReal *v = e->motion + node * 2 * dim, work = 0;
+    PetscReal *v = e->motion + node * 2 * dim;
     for (PetscInt d = 0; d < dim; ++d) {
       const PetscReal load = mass * e->g[d] + (m->forces.n ? m->nodes->external[node * dim + d] : 0);
       const PetscReal gain = e->dt * inverse * (s[1 + dim + d] + load), kept = (1 - e->fade) * inverse * s[1 + d];
       v[d] = kept + gain;
       v[dim + d] = gain;
-      work += load * (kept + 0.5 * gain);
     }
-    if (node < m->grid->n_owned) e->external += e->dt * work;
   }
   PetscFunctionReturn(0);
 }
@@ -93,6 +91,16 @@ void nodes_hold(Model *m, Explicit *e)
   }
 }
 
+/* Of gravity and loads, along the way that points go. */
+static PetscReal work_of_loads(const Model *m, const Explicit *e, PetscInt node)
+{
+  const PetscReal mass = e->sum[node * e->width], *v = e->motion + node * 2 * m->dim;
+  PetscReal work = 0;
+  for (PetscInt d = 0; d < m->dim; ++d)
+    work += (mass * e->g[d] + (m->forces.n ? m->nodes->external[node * m->dim + d] : 0)) * v[d];
+  return e->dt * work;
+}
+
 void nodes_strain(const Model *m, Explicit *e)
 {
   const PetscInt dim = m->dim;
@@ -101,6 +109,7 @@ void nodes_strain(const Model *m, Explicit *e)
     const PetscInt node = e->active[k];
     const PetscReal mass = e->sum[node * e->width], inverse = mass > 1e-300 ? 1 / mass : 0;
     PetscReal *v = e->straining + node * dim;
+    if (node < m->grid->n_owned) e->external += work_of_loads(m, e, node);
     for (PetscInt d = 0; d < dim; ++d) v[d] = again ? v[d] * inverse : e->motion[node * 2 * dim + d];
   }
   PetscReal change[3];
