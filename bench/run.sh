@@ -22,6 +22,8 @@ title "the three reference loads: statics, the dry column, a 3D collapse"
 
 title "a collapsing column: aspect ratio 1.2, mesh 2, 0.5 s"
 "$bench/bench_column"
+title "explicit dynamics: the same column, blocks that slide"
+"$bench/bench_explicit"
 title "powder in a tube: rings of triangles"
 "$bench/bench_tube"
 title "meshfree bases"

@@ -197,7 +197,10 @@ PetscErrorCode CaseDestroy(Case **c)
 
 PetscBool case_is_mixed(const Case *c) { return c->formulation && !strcmp(c->formulation, "mixed"); }
 
-PetscBool case_is_static(const AnalysisSpec *analysis) { return analysis->type != ANALYSIS_DYNAMIC; }
+PetscBool case_is_static(const AnalysisSpec *analysis)
+{
+  return analysis->type != ANALYSIS_DYNAMIC && analysis->type != ANALYSIS_EXPLICIT;
+}
 
 PetscBool case_seeks(const AnalysisSpec *analysis)
 {

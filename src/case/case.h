@@ -6,7 +6,10 @@
 #pragma once
 #include "case/kinematics/kinematics.h"
 
-typedef enum { ANALYSIS_STATIC, ANALYSIS_DYNAMIC, ANALYSIS_FACTOR, ANALYSIS_LIMIT } AnalysisType;
+typedef enum { ANALYSIS_STATIC, ANALYSIS_DYNAMIC, ANALYSIS_FACTOR, ANALYSIS_LIMIT, ANALYSIS_EXPLICIT } AnalysisType;
+/* Which velocity of the nodes strains the points of explicit dynamics: that which the points have given them anew
+ * at the end of a step, or that of the balance of momentum. */
+typedef enum { EXPLICIT_MUSL, EXPLICIT_USL } ExplicitUpdate;
 typedef enum { MASS_CONSISTENT, MASS_LUMPED } MassMatrix;
 typedef enum { CELL_TRIANGLE, CELL_QUADRILATERAL, CELL_TETRAHEDRON, CELL_HEXAHEDRON } CellType;
 typedef enum { DIAGONAL_RIGHT, DIAGONAL_LEFT, DIAGONAL_ALTERNATING, DIAGONAL_CROSSED } Diagonal;
@@ -319,6 +322,8 @@ typedef struct {
   PetscReal smallest, largest; /* s, bounds of step control */
   /* most cells that a point may cross in a step that has grown; 0: any */
   PetscReal travel;
+  PetscReal courant;     /* explicit: share of the critical step that is taken */
+  ExplicitUpdate update; /* explicit */
   char *scheme;          /* of dynamics, by its name; NULL: Newmark's, with bossak Bossak's */
   PetscReal beta, gamma; /* Newmark */
   PetscReal bossak;      /* alpha_B in [-1/3, 0] */
@@ -456,7 +461,7 @@ const char *case_load_path(const Case *c, PetscInt k, char path[64]);
 PetscBool case_load_follows(const Case *c);
 /* Is the pressure an unknown beside the displacements? */
 PetscBool case_is_mixed(const Case *c);
-/* Equilibrium at every step, no inertia: a factor of safety is found so, too. */
+/* Equilibrium at every step, no inertia: a factor of safety is found so, too. Else there is inertia. */
 PetscBool case_is_static(const AnalysisSpec *analysis);
 /* Is something sought after `end`, when all loads are on: a factor of safety, a limit load? */
 PetscBool case_seeks(const AnalysisSpec *analysis);

@@ -1,7 +1,7 @@
 /* material/principal.h for eight points side by side; the formulas stand there. */
 #pragma once
-#include "base/math/eigen_lanes.h"
 #include "material/lanes.h"
+#include "base/math/eigen_lanes.h"
 
 LANES_INLINE void lanes_principal_basis(const Lanes v[9], Lanes basis[36])
 {

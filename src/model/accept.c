@@ -63,8 +63,7 @@ const PetscReal *model_state_field(const Model *m, PetscInt p, const char *name)
   return NULL;
 }
 
-/* Before the new state is there (sign -1) and after: what it has more of plastic strain. */
-static void note_flow(Model *m, PetscReal sign)
+void note_flow(Model *m, PetscReal sign)
 {
   for (PetscInt p = 0; m->points->components[POINT_FLOW] && p < m->points->n; ++p) {
     const PetscReal *strain = model_state_field(m, p, "equivalent_plastic_strain");

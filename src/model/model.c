@@ -134,6 +134,7 @@ static void check_supported(const Model *m, Diag *diag)
   check_formulation(m, diag);
   check_basis(m, diag);
   check_scheme(c, m->scheme, m->method, diag);
+  explicit_check(m, diag);
   if (m->method) check_transfer(c, m->method, diag);
   if (m->method && m->method->clouds && case_goes_on(c))
     diag_error(diag, "method", "method %s cannot go on from another state%s: mpm and fem can", m->method->name,
@@ -295,6 +296,7 @@ PetscErrorCode ModelDestroyFields(Model *m)
 {
   PetscFunctionBeginUser;
   if (m->space && m->method->destroy) PetscCall(m->method->destroy(m->space));
+  PetscCall(ExplicitDestroy(&m->explicit));
   PetscCall(DiscretisationDestroy(&m->space));
   PetscCall(PetscFree(m->enabled));
   PetscFunctionReturn(0);
@@ -321,6 +323,7 @@ static PetscErrorCode CreateBodies(Model *m, Diag *diag)
  * meaningless. */
 static PetscErrorCode Build(Model *m, Diag *diag)
 {
+  const Case *c = m->c;
   PetscInt errors;
 
   PetscFunctionBeginUser;
@@ -336,7 +339,8 @@ static PetscErrorCode Build(Model *m, Diag *diag)
   raised_start(m, diag);
   PetscCall(GridCreate(m->comm, m->c, cell_weight, (void *)m->c, diag, &m->grid));
   if (!m->grid) PetscFunctionReturn(0);
-  PetscCall(GridWiden(&m->grid, basis_find(m->c->basis.kind)->halo + (m->c->n_interfaces ? CONTACT_HALO : 0)));
+  const PetscInt lap = c->analysis.type == ANALYSIS_EXPLICIT; /* points cross cells before they change ranks */
+  PetscCall(GridWiden(&m->grid, basis_find(c->basis.kind)->halo + lap + (c->n_interfaces ? CONTACT_HALO : 0)));
   PetscCall(CreateBodies(m, diag));
   PetscCall(DiagReduce(m->comm, diag, &errors));
   if (errors) PetscFunctionReturn(0);

@@ -143,10 +143,11 @@ typedef struct Model {
   const TimeScheme *scheme;
   System *system;
   Newton *newton;
-  unsigned char *enabled;   /* n_cells: cells whose nodes carry unknowns */
-  PetscInt n_constraints;   /* on nodes of a cloud, over all ranks */
-  PetscInt layouts;         /* of the cloud, that the system fits */
-  PetscReal pressure_scale; /* mixed: Pa/m */
+  struct Explicit *explicit; /* what explicit dynamics works with; NULL before its first step */
+  unsigned char *enabled;    /* n_cells: cells whose nodes carry unknowns */
+  PetscInt n_constraints;    /* on nodes of a cloud, over all ranks */
+  PetscInt layouts;          /* of the cloud, that the system fits */
+  PetscReal pressure_scale;  /* mixed: Pa/m */
   Guess guess;
   BodyForce body_force; /* NULL: gravity alone */
   void *body_force_context;

@@ -128,6 +128,18 @@ PetscErrorCode PrepareUnknowns(Model *model, StepStart *start, StepReport *repor
 /* solve.c. Collective. The increments of a step of dt, or of halves of it: until Newton converges,
  * somebody interrupts it, or the step is too small. */
 PetscErrorCode SolveStep(Model *model, PetscReal *dt, StepReport *report);
+/* explicit/step.c. Collective. The whole step of explicit dynamics, of `limit` s at most. A step that fails
+ * leaves the model where it failed. */
+PetscErrorCode ExplicitStep(Model *model, PetscReal limit, StepReport *report);
+PetscErrorCode ExplicitDestroy(struct Explicit **work);
+/* What it cannot do is a mistake of the case. */
+void explicit_check(const Model *model, Diag *diag);
+/* Collective. As ModelBalance. */
+PetscErrorCode ExplicitBalance(Model *model, StepReport *report);
+/* Kinetic energy of this rank's points, and work of their stress, J. */
+void energy_of_points(const Model *model, PetscReal energy[2]);
+/* accept.c. Before the new state is there (sign -1) and after: what it has more of plastic strain. */
+void note_flow(Model *model, PetscReal sign);
 /* accept.c. Collective. Points take over stress and history, and the boundary its forces. */
 PetscErrorCode CommitStep(Model *model, PetscReal dt, EnergyStep *energy);
 /* Collective. Points and nodes go where the solution leads them. */

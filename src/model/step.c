@@ -11,6 +11,10 @@ PetscErrorCode ModelStep(Model *m, PetscReal limit, StepReport *report)
   EnergyStep energy;
 
   PetscFunctionBeginUser;
+  if (m->scheme == &time_scheme_explicit) {
+    PetscCall(ExplicitStep(m, limit, report));
+    PetscFunctionReturn(0);
+  }
   PetscCall(PetscMemzero(report, sizeof *report));
   PetscCall(ModelInitialise(m)); /* (a) nodes learn from where points are */
   /*     which of them have unknowns, and which are held */

@@ -1,3 +1,4 @@
+#include "model/explicit/critical.h"
 #include "run/check_private.h"
 #include "run/stages/initial.h"
 #include <stdarg.h>
@@ -138,6 +139,25 @@ static PetscErrorCode ReportClouds(const Model *m, FILE *out)
   PetscFunctionReturn(0);
 }
 
+/* Substeps that cost as much as an implicit step of the same model (docs/decisions.md [163]). */
+#define SUBSTEPS_OF_A_STEP 10
+
+/* What explicit dynamics takes, or would, and whether that is cheaper. */
+static PetscErrorCode ReportSubsteps(const Model *m, FILE *out)
+{
+  const PetscBool explicit = m->c->analysis.type == ANALYSIS_EXPLICIT;
+  PetscReal critical, fastest;
+
+  PetscFunctionBeginUser;
+  if (!m->scheme->inertia || !m->method->restores_grid || m->formulation->pressure) PetscFunctionReturn(0);
+  PetscCall(ExplicitCritical(m, &critical, &fastest));
+  const PetscReal substep = explicit_courant(m->c) * critical, n = PetscCeilReal(m->control.next / substep);
+  say(m, out, "#   explicit: %.3g s a substep, %.0f %s in a step of %g s: %s than an implicit step\n", (double)substep,
+      (double)n, explicit ? "of them" : "with `type: explicit`", (double)m->control.next,
+      n <= SUBSTEPS_OF_A_STEP ? "cheaper" : "dearer");
+  PetscFunctionReturn(0);
+}
+
 static PetscErrorCode ReportSizes(Model *m, FILE *out)
 {
   PetscInt points, pairs, all_pairs;
@@ -161,6 +181,7 @@ static PetscErrorCode ReportSizes(Model *m, FILE *out)
   if (m->scheme->inertia)
     say(m, out, "#   waves: %g m/s, %.3g cells in a step of %g s\n", (double)m->courant_speed,
         (double)(m->courant_speed * m->control.next / m->grid->smallest), (double)m->control.next);
+  PetscCall(ReportSubsteps(m, out));
   PetscFunctionReturn(0);
 }
 

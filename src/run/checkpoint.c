@@ -32,7 +32,7 @@ static PetscErrorCode Fingerprint(const Case *c, PetscInt64 *value)
   copy.grid.outside = OUTSIDE_STOP;
   copy.analysis.n_until = 0;
   copy.analysis.smallest = copy.analysis.largest = copy.analysis.step;
-  if (c->analysis.type == ANALYSIS_DYNAMIC) copy.analysis.end = 1;
+  if (!case_is_static(&c->analysis)) copy.analysis.end = 1;
   PetscCall(CaseToYaml(&copy, &yaml));
   *value = (PetscInt64)hash_text(yaml);
   PetscCall(PetscFree(yaml));

@@ -74,6 +74,6 @@ void extension_from_checkpoint(const Run *r, const Extension *e, Diag *diag)
   } else if (time >= e->now * (1 - 1e-12)) {
     diag_warning(diag, NULL, "the run in '%s' is complete at t = %g s: there is nothing left to do",
                  run_dir_path(r->dir), (double)time);
-    if (r->c->analysis.type == ANALYSIS_DYNAMIC) diag_hint(diag, "a later end lets it go on: --set analysis.end=...");
+    if (!case_is_static(&r->c->analysis)) diag_hint(diag, "a later end lets it go on: --set analysis.end=...");
   }
 }

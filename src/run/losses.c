@@ -125,7 +125,7 @@ static PetscErrorCode WarnOfGain(Model *m, Diag *diag)
   PetscFunctionBeginUser;
   PetscCall(ModelEnergies(m, &e));
   const PetscReal share = m->most_energy > m->least_energy ? -e.dissipated / m->most_energy : 0;
-  if (m->c->analysis.type != ANALYSIS_DYNAMIC || !(share > TRANSFER_ALLOWED)) PetscFunctionReturn(0);
+  if (case_is_static(&m->c->analysis) || !(share > TRANSFER_ALLOWED)) PetscFunctionReturn(0);
   diag_warning(diag, NULL, "stresses gave %.4g J more than had been put into them, %.2g %% of the %.4g J that came in",
                (double)-e.dissipated, (double)(100 * share), (double)m->most_energy);
   diag_hint(diag,

@@ -1,4 +1,4 @@
-/* Eight numbers side by side, and what of the mathematical library they need. GCC and Clang know
+/* Eight (or four) numbers side by side, and what of the mathematical library they need. GCC and Clang know
  * vector_size and map it on registers of any width; lanes are passed by pointer, because the
  * calling convention for vectors wider than the machine's is not settled.
  *
@@ -9,7 +9,10 @@
 #include <petscsys.h>
 #include <stdint.h>
 
+/* Who defines it as 4 before gets four: material/lanes.h */
+#ifndef LANES
 #define LANES 8
+#endif
 #define LANES_INLINE static inline __attribute__((always_inline))
 
 typedef PetscReal Lanes __attribute__((vector_size(LANES * sizeof(PetscReal))));
@@ -26,13 +29,27 @@ LANES_INLINE void lanes_select(const LaneBits *mask, const Lanes *yes, const Lan
 
 LANES_INLINE int lanes_any(const LaneBits *mask)
 {
+#if LANES == 4
+  return ((*mask)[0] | (*mask)[1] | (*mask)[2] | (*mask)[3]) != 0;
+#else
   const LaneBits half = *mask | __builtin_shufflevector(*mask, *mask, 4, 5, 6, 7, 0, 1, 2, 3);
   return (half[0] | half[1] | half[2] | half[3]) != 0;
+#endif
 }
 
 /* Rows to columns: r[i][j] becomes r[j][i]. */
-LANES_INLINE void lanes_transpose(Lanes r[8])
+LANES_INLINE void lanes_transpose(Lanes r[LANES])
 {
+#if LANES == 4
+  const Lanes a0 = __builtin_shufflevector(r[0], r[1], 0, 4, 2, 6),
+              a1 = __builtin_shufflevector(r[0], r[1], 1, 5, 3, 7);
+  const Lanes a2 = __builtin_shufflevector(r[2], r[3], 0, 4, 2, 6),
+              a3 = __builtin_shufflevector(r[2], r[3], 1, 5, 3, 7);
+  r[0] = __builtin_shufflevector(a0, a2, 0, 1, 4, 5);
+  r[1] = __builtin_shufflevector(a1, a3, 0, 1, 4, 5);
+  r[2] = __builtin_shufflevector(a0, a2, 2, 3, 6, 7);
+  r[3] = __builtin_shufflevector(a1, a3, 2, 3, 6, 7);
+#else
   Lanes a[8], b[8];
   for (int i = 0; i < 8; i += 2) {
     a[i] = __builtin_shufflevector(r[i], r[i + 1], 0, 8, 2, 10, 4, 12, 6, 14);
@@ -47,6 +64,7 @@ LANES_INLINE void lanes_transpose(Lanes r[8])
     r[j] = __builtin_shufflevector(b[j], b[j + 4], 0, 1, 2, 3, 8, 9, 10, 11);
     r[j + 4] = __builtin_shufflevector(b[j], b[j + 4], 4, 5, 6, 7, 12, 13, 14, 15);
   }
+#endif
 }
 
 LANES_INLINE void lanes_abs(const Lanes *x, Lanes *y) { *y = (Lanes)((LaneBits)*x & INT64_MAX); }

@@ -9,6 +9,8 @@
 static const SchemaWord analysis_words[] = {
   {"static", ANALYSIS_STATIC, "equilibrium at every step, no inertia"},
   {"dynamic", ANALYSIS_DYNAMIC, "Newmark in time, with inertia"},
+  {"explicit", ANALYSIS_EXPLICIT,
+   "dynamic without equations to solve: steps shorter than waves need to cross a cell, for mpm"},
   {"factor-of-safety", ANALYSIS_FACTOR, "static; all loads on, strength is divided until nothing balances any more"},
   {"limit-load", ANALYSIS_LIMIT, "static; all loads on, one of them is raised until nothing more holds"},
   {NULL, 0, NULL},
@@ -16,6 +18,12 @@ static const SchemaWord analysis_words[] = {
 static const SchemaWord mass_words[] = {
   {"consistent", MASS_CONSISTENT, "of the shape functions; lumped in cells that are not full, see stabilisation.mass"},
   {"lumped", MASS_LUMPED, "all of it at the nodes: more Newton steps converge where grains flow, rotations lose more"},
+  {NULL, 0, NULL},
+};
+static const SchemaWord update_words[] = {
+  {"musl", EXPLICIT_MUSL,
+   "by the velocities that the points give the nodes after the step: quiet where points leave cells"},
+  {"usl", EXPLICIT_USL, "by the velocities of the balance of momentum: a third faster, noisy at nodes of little mass"},
   {NULL, 0, NULL},
 };
 static const SchemaWord linear_words[] = {
@@ -105,6 +113,13 @@ static const SchemaEntry analysis_entries[] = {
   KEY("travel", NUMBER, NULL,
       "steps larger than `step` carry no point farther than this share of the smallest cell; 0: as far as it goes",
       .fallback = "0.3", AT_LEAST(0), AT(AnalysisSpec, travel)),
+  KEY(
+    "courant", NUMBER, NULL,
+    "explicit: share of the critical step that is taken; within `step`, which the history and measures see, there are "
+    "as many as that needs",
+    .fallback = "0.6", .bounded = PETSC_TRUE, .min = 0, .min_open = PETSC_TRUE, .max = 1, AT(AnalysisSpec, courant)),
+  KEY("update", WORD, NULL, "explicit: what strains the points", .words = update_words, .fallback = "musl",
+      AT(AnalysisSpec, update)),
   KEY("scheme", TEXT, NULL, "time scheme of dynamics",
       .note = "newmark; with bossak: bossak; with basis gimp and transfer consistent: midpoint",
       AT(AnalysisSpec, scheme)),
@@ -131,6 +146,7 @@ static PetscBool hide_in_analysis(const SchemaEntry *e, const void *source)
 {
   const AnalysisType type = ((const AnalysisSpec *)source)->type;
   if (!strcmp(e->key, "limit")) return type != ANALYSIS_LIMIT;
+  if (!strcmp(e->key, "courant") || !strcmp(e->key, "update")) return type != ANALYSIS_EXPLICIT;
   return !strcmp(e->key, "reduction") && type != ANALYSIS_FACTOR;
 }
 

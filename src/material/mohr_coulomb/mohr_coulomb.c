@@ -109,11 +109,10 @@ static LawStatus update(const PetscReal *parameters, PetscInt n, const PetscReal
 /* Moduli of 11, 22, 33 and 12 where 36 components stand for each point; no row of 33 in the plane. */
 LANES_INLINE void store_plane(const PetscBool hoop, PetscInt n, Lanes moduli[16], PetscReal *c)
 {
-  lanes_transpose(moduli);
-  lanes_transpose(moduli + 8);
+  for (int first = 0; first < 16; first += LANES) lanes_transpose(moduli + first);
   for (int l = 0; l < PetscMin(n, LANES); ++l)
     for (int i = 0; i < 4; ++i) {
-      const PetscReal *row = (const PetscReal *)&moduli[8 * (i / 2) + l] + 4 * (i % 2);
+      const PetscReal *row = (const PetscReal *)&moduli[4 * i / LANES * LANES + l] + 4 * i % LANES;
       if (hoop || i != 2) __builtin_memcpy(c + 36 * l + 6 * i, row, 4 * sizeof *c);
     }
 }

@@ -13,6 +13,7 @@ const TimeScheme *const time_schemes[] = {
 
 const TimeScheme *time_scheme_of(const AnalysisSpec *a)
 {
+  if (a->type == ANALYSIS_EXPLICIT) return &time_scheme_explicit;
   const char *usual = a->bossak != 0 ? "bossak" : "newmark";
   const char *name = case_is_static(a) ? "static" : a->scheme ? a->scheme : usual;
   for (PetscInt i = 0; time_schemes[i]; ++i)

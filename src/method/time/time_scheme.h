@@ -26,6 +26,8 @@ typedef struct TimeScheme {
 } TimeScheme;
 
 extern const TimeScheme *const time_schemes[]; /* ended by NULL */
+/* Of `type: explicit`, in no list. */
+extern const TimeScheme time_scheme_explicit;
 /* The scheme that a case asks for; NULL if there is none of that name. */
 const TimeScheme *time_scheme_of(const AnalysisSpec *analysis);
 

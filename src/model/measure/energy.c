@@ -339,6 +339,12 @@ PetscErrorCode EnergyClose(Model *m, EnergyStep *e)
   PetscFunctionReturn(0);
 }
 
+void energy_of_points(const Model *m, PetscReal energy[2])
+{
+  energy[0] = points_kinetic(m);
+  energy[1] = points_work(m);
+}
+
 PetscErrorCode ModelEnergies(Model *m, Energies *e)
 {
   PetscReal local[3] = {points_kinetic(m), 0, points_work(m)}, sum[3];

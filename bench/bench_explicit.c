@@ -1,0 +1,113 @@
+/* What a substep of explicit dynamics costs: 0.5 s of collapse of the column of cases/granular-collapse with a
+ * row every 10 ms, and blocks of Mohr-Coulomb material that fall, of about 100,000 points in the plane and in
+ * space.
+ *
+ *   build/bench/bench_explicit [-case cases/granular-collapse/case.yaml] [-bound PROGRAM]
+ *
+ * PROGRAM: of somebody else, to be run between the two halves with arguments "1e-4 0.5 20 1 1 1.5"; it prints
+ * its own time. Seconds are those in which a core worked for this process. */
+#include "bench.h"
+#include "input/case_file.h"
+
+typedef struct {
+  PetscReal seconds, front;
+  PetscInt substeps, points;
+} Outcome;
+
+static PetscErrorCode Advance(Model *m, PetscReal end, Outcome *o)
+{
+  StepReport report = {0};
+
+  PetscFunctionBeginUser;
+  PetscCall(ModelCountPoints(m, &o->points));
+  const PetscReal start = processor_now();
+  while (m->time < end * (1 - 1e-12) && report.outcome == STEP_ACCEPTED)
+    PetscCall(ModelStep(m, end - m->time, &report));
+  o->seconds = processor_now() - start;
+  o->substeps = m->total_iterations;
+  for (PetscInt p = 0; p < m->points->n; ++p) o->front = PetscMax(o->front, *point_real(m->points, POINT_X, p));
+  if (report.outcome != STEP_ACCEPTED) PetscCall(PetscPrintf(m->comm, "gave up: %s\n", report.reason));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode Collapse(const char *file)
+{
+  const char *const set[] = {"analysis.type=explicit", "analysis.step=0.01", "analysis.end=0.5"};
+  Outcome o = {0};
+  Diag *diag;
+  Case *c;
+  Model *m = NULL;
+
+  PetscFunctionBeginUser;
+  PetscCall(DiagCreate(&diag));
+  PetscCall(CaseRead(PETSC_COMM_WORLD, file, 3, set, diag, &c));
+  if (c) PetscCall(ModelCreate(PETSC_COMM_WORLD, c, diag, &m));
+  PetscCall(DiagFlush(diag, stderr));
+  PetscCall(DiagDestroy(&diag));
+  if (m) PetscCall(Advance(m, 0.5, &o));
+  PetscCall(PetscPrintf(PETSC_COMM_WORLD,
+                        "column: %d points, %d substeps in %.3f s, %.1f ns a point and substep; front %.4f m\n",
+                        (int)o.points, (int)o.substeps, (double)o.seconds,
+                        1e9 * (double)o.seconds / ((double)o.points * (double)o.substeps), (double)o.front));
+  if (m) PetscCall(ModelDestroy(&m));
+  if (c) PetscCall(CaseDestroy(&c));
+  PetscFunctionReturn(0);
+}
+
+/* A block that slides over the floor of its grid under gravity. */
+static PetscErrorCode Slide(PetscInt dim, PetscInt cells_of_side, PetscInt steps)
+{
+  static NamedValue grains[] = {
+    {"young", 1e6}, {"poisson", 0.3}, {"friction_angle", 31}, {"dilatancy_angle", 1}, {"cohesion", 0}};
+  const PetscReal h = 1. / (PetscReal)cells_of_side;
+  Outcome o = {0};
+  BenchCase b;
+  Diag *diag;
+  Model *m = NULL;
+
+  PetscFunctionBeginUser;
+  bench_case(&b, dim, 1e6, 0.3);
+  b.material =
+    (MaterialSpec){.name = "rubber", .law = "mohr-coulomb", .density = 2000, .n_parameters = 5, .parameters = grains};
+  for (PetscInt d = 0; d < dim; ++d) {
+    b.c.grid.max[d] = d == 0 ? 1.5 : 1 + 2 * h;
+    b.c.grid.counts[d] = (PetscInt)(b.c.grid.max[d] / h + 0.5);
+    b.c.grid.grading[d] = 1;
+    b.body.shape.max[d] = 1;
+  }
+  b.c.analysis = (AnalysisSpec){.type = ANALYSIS_EXPLICIT, .end = 1, .step = 10 * 0.5 * h / 30};
+  b.c.analysis.largest = b.c.analysis.step;
+  b.c.basis.kind = "cell";
+  b.motion.on.has[1] = PETSC_TRUE;
+  b.c.gravity[dim - 1] = 0;
+  b.c.gravity[1] = -9.81;
+  PetscCall(DiagCreate(&diag));
+  PetscCall(ModelCreate(PETSC_COMM_WORLD, &b.c, diag, &m));
+  PetscCall(DiagFlush(diag, stderr));
+  PetscCall(DiagDestroy(&diag));
+  if (!m) PetscFunctionReturn(0);
+  PetscCall(Advance(m, (PetscReal)steps * b.c.analysis.step, &o));
+  PetscCall(
+    PetscPrintf(PETSC_COMM_WORLD, "%dD: %d points, %d substeps, %.1f ns a point and substep, %d bytes a point\n",
+                (int)dim, (int)o.points, (int)o.substeps,
+                1e9 * (double)o.seconds / ((double)o.points * (double)o.substeps), (int)points_bytes(m->points)));
+  PetscCall(ModelDestroy(&m));
+  PetscFunctionReturn(0);
+}
+
+int main(int argc, char **argv)
+{
+  char file[PETSC_MAX_PATH_LEN] = "cases/granular-collapse/case.yaml", bound[PETSC_MAX_PATH_LEN - 32] = "";
+  char command[PETSC_MAX_PATH_LEN];
+
+  PetscCall(PetscInitialize(&argc, &argv, NULL, NULL));
+  PetscCall(PetscOptionsGetString(NULL, NULL, "-case", file, sizeof file, NULL));
+  PetscCall(PetscOptionsGetString(NULL, NULL, "-bound", bound, sizeof bound, NULL));
+  PetscCall(Collapse(file));
+  snprintf(command, sizeof command, "%s 1e-4 0.5 20 1 1 1.5", bound);
+  if (bound[0] && system(command)) PetscCall(PetscPrintf(PETSC_COMM_WORLD, "%s failed\n", bound));
+  PetscCall(Collapse(file));
+  PetscCall(Slide(2, 160, 4));
+  PetscCall(Slide(3, 24, 4));
+  return PetscFinalize();
+}

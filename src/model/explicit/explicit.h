@@ -1,0 +1,76 @@
+/* Explicit dynamics (`type: explicit`): what its files share. step.c is the algorithm.
+ *
+ * A step of the run (analysis.step) is divided into substeps, none of which a wave crosses a cell in.
+ * Some of them make a lap: points are sorted and find their cells, and the nodes that they can reach are
+ * listed, only between laps. In a box of squares or cubes points find their nodes by arithmetic, wherever
+ * in it they are; other grids and bases have laps of one substep, and a support in each. */
+#pragma once
+#include "model/explicit/critical.h"
+#include "model/model_private.h"
+
+/* Nodes of a box with lines at equal distances, as this rank knows it. */
+typedef struct {
+  PetscReal origin[3], per_length[3], size[3]; /* m, 1/m, m */
+  PetscInt most[3], stride[3];                 /* last cell and distance of nodes along each axis, from `origin` */
+  PetscInt corner[8];                          /* lattice number of a cell's nodes from its first */
+  const PetscInt *number;                      /* local node of each */
+} Lattice;
+
+/* A prescribed dof, in the frame of its node. */
+typedef struct {
+  PetscInt node, axis;
+  PetscReal velocity; /* of the substep, m/s */
+} Held;
+
+/* Nodal arrays are 0 where no point reaches. */
+typedef struct Explicit {
+  PetscBool box; /* do points find their nodes by arithmetic? */
+  Lattice lattice;
+  PetscInt width;             /* 1 + 2 dim */
+  PetscReal *sum;             /* n_nodes x width: mass, kg, momentum, kg m/s, and force, N */
+  PetscReal *motion;          /* n_nodes x 2 dim: velocity at the end of the substep, and what points gain, m/s */
+  PetscReal *straining;       /* n_nodes x dim: the velocity that strains the points, m/s */
+  PetscReal *mark;            /* n_nodes: > 0 where points of some rank can come in the lap */
+  PetscInt n_active, *active; /* these */
+  PetscInt n_held;
+  Held *held;
+  PetscBool moved;   /* do prescribed velocities change? */
+  PetscReal time;    /* at the start of the substep, s */
+  PetscReal step;    /* of the run's, s */
+  PetscReal dt;      /* of a substep, s */
+  PetscReal fade;    /* of velocities by damping in a substep */
+  PetscReal g[3];    /* gravity, m/s2 */
+  PetscInt substeps; /* in the lap; and all */
+  PetscInt taken;
+  PetscReal critical; /* substep, s, when it was last asked for, */
+  PetscInt since;     /* so many substeps ago */
+  PetscReal fastest;  /* of the points, m/s */
+  LawStatus status;
+  PetscReal external, boundary, damped; /* energies of the run's step, this rank's share, J */
+  PetscReal outside;                    /* Model.outside.energy at its start, J */
+} Explicit;
+
+/* lap.c. Collective. Arrays for the grid as it is. */
+PetscErrorCode ExplicitCreate(const Model *model, Explicit **explicit);
+/* Collective. Who reaches whom, who is held, and how many substeps of which length follow; left: of the run's step, s. */
+PetscErrorCode LapBegin(Model *model, Explicit *e, PetscReal left);
+/* Collective. Points find their cells and ranks. */
+PetscErrorCode LapEnd(Model *model, Explicit *e, StepReport *report);
+
+/* nodes.c. Velocities from momentum, and at the end of the substep from forces. Collective if loads act. */
+PetscErrorCode NodesMove(Model *model, Explicit *e);
+/* Prescribed dofs move as prescribed; the impulse goes to the reactions. */
+void nodes_hold(Model *model, Explicit *e);
+/* Collective. Copies on other ranks. */
+PetscErrorCode NodesShare(const Model *model, PetscInt components, PetscReal *values);
+/* Momentum in `straining` becomes velocity, held where that is prescribed. */
+void nodes_strain(const Model *model, Explicit *e);
+/* Tracers and carriers of loads go with the nodes. Collective. */
+PetscErrorCode NodesCarry(Model *model, Explicit *e);
+
+/* points.c. Nodes get mass, momentum and forces. */
+void points_gather(const Model *model, Explicit *e);
+/* Points gain velocity, and give their momentum to `straining` where that is asked for. */
+void points_gain(const Model *model, Explicit *e);
+/* Points are strained, stressed and moved. */
+void points_strain(const Model *model, Explicit *e);

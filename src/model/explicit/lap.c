@@ -1,0 +1,192 @@
+/* What happens only between laps: points find their cells and ranks, nodes within their reach are listed, and
+ * the next substeps get their length. */
+#include "grid/box/box.h"
+#include "model/explicit/explicit.h"
+
+/* The fastest point may cross this part of a cell in a lap: the others ranks' nodes that it could then see are known. */
+#define LAP_TRAVEL 0.4
+/* substeps after which the critical one is asked for again */
+#define LAP_MOST 50
+
+/* Only boxes with lines at equal distances, whose functions are linear, and where nothing must be found anew
+ * in every substep. */
+static PetscBool finds_by_arithmetic(const Model *m)
+{
+  const GridBox *box = m->grid->box;
+  if (!box || m->space->basis->nodes != BASIS_OF_CELLS || m->forces.n) return PETSC_FALSE;
+  if (m->grid->nodes_per_cell != (m->dim == 2 ? 4 : 8)) return PETSC_FALSE;
+  for (PetscInt d = 0; d < m->dim; ++d)
+    if (!(box->per_length[d] > 0)) return PETSC_FALSE;
+  for (PetscInt k = 0; k < m->c->n_boundary; ++k)
+    if (m->c->boundary[k].moves) return PETSC_FALSE;
+  return PETSC_TRUE;
+}
+
+static void lattice_of(const Model *m, Lattice *l)
+{
+  const GridBox *box = m->grid->box;
+  PetscInt stride = 1;
+  for (PetscInt d = 0; d < m->dim; ++d) {
+    const PetscInt nodes = box->nodes.hi[d] - box->nodes.lo[d];
+    l->origin[d] = box->line[d][box->nodes.lo[d]];
+    l->per_length[d] = box->per_length[d];
+    l->size[d] = 1 / box->per_length[d];
+    l->most[d] = nodes - 2;
+    l->stride[d] = stride;
+    stride *= nodes;
+  }
+  for (int k = 0; k < 8; ++k) {
+    l->corner[k] = 0;
+    for (PetscInt d = 0; d < m->dim; ++d) l->corner[k] += (k >> d & 1) * l->stride[d];
+  }
+  l->number = box->lattice;
+}
+
+PetscErrorCode ExplicitCreate(const Model *m, Explicit **explicit)
+{
+  const PetscInt n = m->grid->n_nodes, dim = m->dim;
+  Explicit *e;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscNew(explicit));
+  e = *explicit;
+  e->width = 1 + 2 * dim;
+  e->box = finds_by_arithmetic(m);
+  if (e->box) lattice_of(m, &e->lattice);
+  PetscCall(PetscCalloc1(n * e->width, &e->sum));
+  PetscCall(PetscCalloc1(n * 2 * dim, &e->motion));
+  PetscCall(PetscCalloc1(n * dim, &e->straining));
+  PetscCall(PetscCalloc1(n, &e->mark));
+  PetscCall(PetscMalloc1(n, &e->active));
+  PetscCall(PetscMalloc1(n * dim, &e->held));
+  for (PetscInt k = 0; k < m->c->n_boundary; ++k) e->moved = e->moved || m->c->boundary[k].kind != MOTION_FIXED;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ExplicitDestroy(Explicit **explicit)
+{
+  Explicit *e = *explicit;
+
+  PetscFunctionBeginUser;
+  if (!e) PetscFunctionReturn(0);
+  PetscCall(PetscFree(e->sum));
+  PetscCall(PetscFree(e->motion));
+  PetscCall(PetscFree(e->straining));
+  PetscCall(PetscFree(e->mark));
+  PetscCall(PetscFree(e->active));
+  PetscCall(PetscFree(e->held));
+  PetscCall(PetscFree(*explicit));
+  PetscFunctionReturn(0);
+}
+
+/* The nodes of a cell and those around them, as far as this rank knows them. */
+static void mark_around(const Model *m, PetscInt cell, PetscReal *mark)
+{
+  const GridBox *box = m->grid->box;
+  PetscInt ijk[3], lo[3] = {0, 0, 0}, hi[3] = {1, 1, 1};
+  box_voxel_of(m->grid, cell, ijk);
+  for (PetscInt d = 0; d < m->dim; ++d) {
+    lo[d] = PetscMax(ijk[d] - 1, box->nodes.lo[d]);
+    hi[d] = PetscMin(ijk[d] + 3, box->nodes.hi[d]);
+  }
+  for (ijk[2] = lo[2]; ijk[2] < hi[2]; ++ijk[2])
+    for (ijk[1] = lo[1]; ijk[1] < hi[1]; ++ijk[1])
+      for (ijk[0] = lo[0]; ijk[0] < hi[0]; ++ijk[0]) mark[box_node(box, ijk)] = 1;
+}
+
+static PetscErrorCode ListActive(Model *m, Explicit *e)
+{
+  const PetscInt n = m->grid->n_nodes;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscArrayzero(e->mark, n));
+  for (PetscInt p = 0, last = -1; e->box && p < m->points->n; ++p) {
+    if (m->points->cell[p] >= 0 && m->points->cell[p] != last) mark_around(m, m->points->cell[p], e->mark);
+    last = m->points->cell[p];
+  }
+  for (PetscInt i = 0; i < n && !e->box; ++i) e->mark[i] = m->nodes->touched[i];
+  PetscCall(NodesShare(m, 1, e->mark));
+  e->n_active = 0;
+  for (PetscInt i = 0; i < n; ++i)
+    if (e->mark[i] > 0) e->active[e->n_active++] = i;
+  PetscFunctionReturn(0);
+}
+
+static void list_held(const Model *m, Explicit *e)
+{
+  e->n_held = 0;
+  for (PetscInt k = 0; k < e->n_active; ++k)
+    for (PetscInt d = 0; d < m->dim; ++d)
+      if (m->boundary->fixed[e->active[k] * m->dim + d]) e->held[e->n_held++] = (Held){.node = e->active[k], .axis = d};
+}
+
+/* Supports of the points where they stand. */
+static PetscErrorCode See(Model *m, const Explicit *e)
+{
+  const BasisInput basis = {.spec = &m->c->basis, .grid = m->grid, .hoop = m->c->kinematics->hoop};
+
+  PetscFunctionBeginUser;
+  PetscCall(PointsSort(m->points));
+  if (e->box) PetscFunctionReturn(0);
+  PetscCall(BoundaryMove(m->boundary, m->grid, e->time));
+  PetscCall(m->space->basis->support(&basis, m->points, m->space->support));
+  PetscCall(DiscretisationTouch(m->space));
+  PetscFunctionReturn(0);
+}
+
+static void choose_substeps(const Model *m, PetscReal left, Explicit *e)
+{
+  const PetscReal courant = explicit_courant(m->c);
+  const PetscReal all = PetscCeilReal(left / (courant * e->critical) * (1 - 1e-9));
+  e->dt = left / PetscMax(all, 1);
+  const PetscReal travel = LAP_TRAVEL * m->grid->smallest;
+  PetscReal most = PetscMin(all, LAP_MOST);
+  if (e->fastest * e->dt * most > travel) most = PetscFloorReal(travel / (e->fastest * e->dt));
+  e->substeps = e->box ? PetscMax((PetscInt)most, 1) : 1;
+  e->fade = 1 - PetscExpReal(-m->c->analysis.damping * e->dt);
+}
+
+PetscErrorCode LapBegin(Model *m, Explicit *e, PetscReal left)
+{
+  PetscLogDouble clock;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscTime(&clock));
+  PetscCall(See(m, e));
+  if (e->critical == 0 || e->since >= LAP_MOST) {
+    PetscCall(ExplicitCritical(m, &e->critical, &e->fastest));
+    e->since = 0;
+  }
+  choose_substeps(m, left, e);
+  PetscCall(ListActive(m, e));
+  list_held(m, e);
+  PetscCall(PhaseEnd(m->seconds, PHASE_PREPARE, &clock));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode Relocate(Model *m, StepReport *report)
+{
+  const StepReport so_far = *report;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscFree(m->space->lost));
+  PetscCall(PointsRelocate(m->points, m->grid, m->c->grid.outside, &m->space->n_lost, &m->space->lost));
+  PetscCall(OutsideAdd(m, report));
+  report->removed += so_far.removed;
+  report->held += so_far.held;
+  if (so_far.removed + so_far.held) report->first_outside = so_far.first_outside;
+  outside_judge(m, report);
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LapEnd(Model *m, Explicit *e, StepReport *report)
+{
+  PetscLogDouble clock;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscTime(&clock));
+  PetscCall(Relocate(m, report));
+  PetscCall(PhaseEnd(m->seconds, PHASE_MOVE, &clock));
+  (void)e;
+  PetscFunctionReturn(0);
+}

@@ -1,0 +1,156 @@
+/* What nodes do in a substep: balance of momentum with lumped mass, and prescribed motion. */
+#include "model/explicit/explicit.h"
+#include "model/measure/measure.h"
+
+PetscErrorCode NodesShare(const Model *m, PetscInt components, PetscReal *values)
+{
+  PetscFunctionBeginUser;
+  PetscCall(GridSumToOwners(m->grid, components, values));
+  PetscCall(GridToGhosts(m->grid, components, values));
+  PetscFunctionReturn(0);
+}
+
+/* Forces of loads, summed over the ranks, go to those that the points gave. */
+static PetscErrorCode AddLoads(Model *m, Explicit *e)
+{
+  const PetscInt dim = m->dim, dofs = m->grid->n_nodes * dim;
+  NodalFields *n = m->nodes;
+
+  PetscFunctionBeginUser;
+  if (!m->forces.n) PetscFunctionReturn(0);
+  PetscCall(PetscArrayzero(n->du, dofs));
+  const NodalScene scene = nodal_scene(m, e->time, n->du);
+  PetscCall(NodalForcesBegin(&m->forces, &scene));
+  PetscCall(NodalForcesExternal(&m->forces, &scene, PETSC_TRUE, n->external));
+  PetscCall(GridToGhosts(m->grid, dim, n->external));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode NodesMove(Model *m, Explicit *e)
+{
+  const PetscInt dim = m->dim;
+
+  PetscFunctionBeginUser;
+  gravity_at(m->c, e->time, e->g);
+  PetscCall(AddLoads(m, e));
+  for (PetscInt k = 0; k < e->n_active; ++k) {
+    const PetscInt node = e->active[k];
+    const PetscReal *s = e->sum + node * e->width, mass = s[0], inverse = mass > 1e-300 ? 1 / mass : 0;
+    PetscReal *v = e->motion + node * 2 * dim;
+    for (PetscInt d = 0; d < dim; ++d) {
+      const PetscReal load = mass * e->g[d] + (m->forces.n ? m->nodes->external[node * dim + d] : 0);
+      const PetscReal gain = e->dt * inverse * (s[1 + dim + d] + load), kept = (1 - e->fade) * inverse * s[1 + d];
+      v[d] = kept + gain;
+      v[dim + d] = gain;
+    }
+  }
+  PetscFunctionReturn(0);
+}
+
+/* Velocities of what is prescribed in this substep. */
+static void prescribe(Model *m, Explicit *e)
+{
+  PetscReal *increment = m->nodes->prescribed;
+  if (!e->moved && !m->boundary->field) return;
+  for (PetscInt k = 0; k < e->n_held; ++k) increment[e->held[k].node * m->dim + e->held[k].axis] = 0;
+  boundary_increments(m->boundary, m->grid, e->time, e->time + e->dt, increment);
+  for (PetscInt k = 0; k < e->n_held; ++k)
+    e->held[k].velocity = increment[e->held[k].node * m->dim + e->held[k].axis] / e->dt;
+}
+
+/* The component of v in the frame of the node becomes what is prescribed; returns by how much. */
+static PetscReal hold(const Model *m, const Held *h, PetscReal *v, PetscReal change[3])
+{
+  const PetscReal *w = frame_of(&m->boundary->frames, h->node);
+  for (int d = 0; d < 3; ++d) change[d] = 0;
+  if (!w) {
+    change[h->axis] = h->velocity - v[h->axis];
+    v[h->axis] = h->velocity;
+    return change[h->axis];
+  }
+  frame_turn(m->dim, w, v);
+  change[h->axis] = h->velocity - v[h->axis];
+  v[h->axis] = h->velocity;
+  const PetscReal by = change[h->axis];
+  frame_turn(m->dim, w, v);
+  frame_turn(m->dim, w, change);
+  return by;
+}
+
+void nodes_hold(Model *m, Explicit *e)
+{
+  const PetscInt dim = m->dim;
+  prescribe(m, e);
+  for (const Held *h = e->held; h < e->held + e->n_held; ++h) {
+    PetscReal *v = e->motion + h->node * 2 * dim, change[3];
+    const PetscReal mass = e->sum[h->node * e->width], impulse = mass * hold(m, h, v, change);
+    for (PetscInt d = 0; d < dim; ++d) v[dim + d] += change[d];
+    if (h->node >= m->grid->n_owned) continue;
+    for (PetscInt d = 0; d < dim; ++d) m->nodes->reaction[h->node * dim + d] += mass * change[d] / e->step;
+    e->boundary += impulse * h->velocity;
+  }
+}
+
+/* Of gravity and loads, along the way that points go. */
+static PetscReal work_of_loads(const Model *m, const Explicit *e, PetscInt node)
+{
+  const PetscReal mass = e->sum[node * e->width], *v = e->motion + node * 2 * m->dim;
+  PetscReal work = 0;
+  for (PetscInt d = 0; d < m->dim; ++d)
+    work += (mass * e->g[d] + (m->forces.n ? m->nodes->external[node * m->dim + d] : 0)) * v[d];
+  return e->dt * work;
+}
+
+void nodes_strain(const Model *m, Explicit *e)
+{
+  const PetscInt dim = m->dim;
+  const PetscBool again = m->c->analysis.update == EXPLICIT_MUSL;
+  for (PetscInt k = 0; k < e->n_active; ++k) {
+    const PetscInt node = e->active[k];
+    const PetscReal mass = e->sum[node * e->width], inverse = mass > 1e-300 ? 1 / mass : 0;
+    PetscReal *v = e->straining + node * dim;
+    if (node < m->grid->n_owned) e->external += work_of_loads(m, e, node);
+    for (PetscInt d = 0; d < dim; ++d) v[d] = again ? v[d] * inverse : e->motion[node * 2 * dim + d];
+  }
+  PetscReal change[3];
+  for (const Held *h = e->held; again && h < e->held + e->n_held; ++h)
+    (void)hold(m, h, e->straining + h->node * dim, change);
+}
+
+static PetscErrorCode Follow(Model *m, Points *followers)
+{
+  LostPoint *ignored;
+  PetscInt n_ignored;
+
+  PetscFunctionBeginUser;
+  PetscCall(DiscretisationMoveCarried(m->space, followers));
+  PetscCall(PointsRelocate(followers, m->grid, OUTSIDE_KEEP, &n_ignored, &ignored));
+  PetscCall(PetscFree(ignored));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode NodesCarry(Model *m, Explicit *e)
+{
+  const PetscInt dim = m->dim;
+  NodalFields *n = m->nodes;
+  PetscBool tracers = PETSC_FALSE;
+
+  PetscFunctionBeginUser;
+  for (PetscInt k = 0; k < m->c->n_measures; ++k) tracers = tracers || measure_has_tracer(&m->c->measures[k]);
+  for (PetscInt k = 0; (tracers || m->c->n_loads) && k < e->n_active; ++k) {
+    const PetscInt node = e->active[k];
+    n->touched[node] = e->sum[node * e->width] > 0;
+    for (PetscInt d = 0, i = node * dim; d < dim; ++d, ++i) {
+      n->v1[i] = e->motion[node * 2 * dim + d];
+      n->a1[i] = e->motion[node * 2 * dim + dim + d] / e->dt;
+      n->du[i] = e->dt * n->v1[i];
+    }
+  }
+  if (tracers) PetscCall(Follow(m, m->tracers));
+  if (m->c->n_loads) PetscCall(Follow(m, m->loads->carriers));
+  for (PetscInt k = 0; k < e->n_active; ++k) {
+    PetscCall(PetscArrayzero(e->sum + e->active[k] * e->width, e->width));
+    PetscCall(PetscArrayzero(e->straining + e->active[k] * dim, dim));
+  }
+  PetscFunctionReturn(0);
+}

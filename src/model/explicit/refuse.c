@@ -1,0 +1,38 @@
+/* What explicit dynamics does not do, by name; and how it shares the grid among the ranks. */
+#include "model/explicit/explicit.h"
+
+static void refuse(PetscBool asked, const char *path, const char *what, Diag *diag)
+{
+  if (!asked) return;
+  diag_error(diag, path, "`type: explicit` does not take %s", what);
+  diag_hint(diag, "`type: dynamic` does");
+}
+
+void explicit_check(const Model *m, Diag *diag)
+{
+  const Case *c = m->c;
+  if (c->analysis.type != ANALYSIS_EXPLICIT) return;
+  refuse(!m->method || !m->method->restores_grid, "method", "methods other than mpm", diag);
+  refuse(case_is_mixed(c), "formulation", "the mixed formulation", diag);
+  refuse(m->formulation && m->formulation->cells, "formulation", "the mean dilatation of cells", diag);
+  refuse(c->analysis.transfer && strcmp(c->analysis.transfer, "thesis") != 0, "analysis.transfer",
+         "transfers other than thesis", diag);
+  refuse(c->analysis.keep_velocity, "analysis.keep_velocity", "this", diag);
+  refuse(c->n_walls > 0, "walls", "walls", diag);
+  refuse(c->n_interfaces > 0, "interfaces", "interfaces", diag);
+  if (c->analysis.scheme || c->analysis.bossak != 0)
+    diag_warning(diag, c->analysis.scheme ? "analysis.scheme" : "analysis.bossak",
+                 "is of implicit dynamics, and means nothing to `type: explicit`");
+}
+
+PetscErrorCode ExplicitBalance(Model *m, StepReport *report)
+{
+  PetscMPIInt size;
+
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_size(m->comm, &size));
+  if (size == 1) PetscFunctionReturn(0);
+  PetscCall(ModelInitialise(m));
+  PetscCall(ModelBalance(m, report));
+  PetscFunctionReturn(0);
+}

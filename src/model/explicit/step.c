@@ -1,0 +1,114 @@
+/* A step of explicit dynamics: the material point method as it was first written, with the stress updated
+ * last (docs/theory.md, "Explicit dynamics").
+ *
+ * Who knows the method reads Substep; the rest divides the run's step and keeps its accounts. */
+#include "model/explicit/explicit.h"
+
+static PetscErrorCode Substep(Model *m, Explicit *e)
+{
+  PetscFunctionBeginUser;
+  points_gather(m, e); /* mass, momentum and forces of the nodes */
+  PetscCall(NodesShare(m, e->width, e->sum));
+  PetscCall(NodesMove(m, e)); /* their velocities now and at the end */
+  nodes_hold(m, e);           /* the boundary's are given */
+  points_gain(m, e);          /* points take the change, and give nodes their momentum anew */
+  if (m->c->analysis.update == EXPLICIT_MUSL) PetscCall(NodesShare(m, m->dim, e->straining));
+  nodes_strain(m, e);
+  points_strain(m, e); /* strain, stress; points move */
+  PetscCall(NodesCarry(m, e));
+  e->time += e->dt;
+  ++e->taken;
+  ++e->since;
+  PetscFunctionReturn(0);
+}
+
+/* Did all laws find a stress? */
+static PetscErrorCode Judge(Model *m, const Explicit *e, StepReport *report)
+{
+  PetscInt status = (PetscInt)e->status;
+
+  PetscFunctionBeginUser;
+  PetscCall(MPIU_Allreduce(MPI_IN_PLACE, &status, 1, MPIU_INT, MPI_MAX, m->comm));
+  if (status == (PetscInt)LAW_OK) PetscFunctionReturn(0);
+  report->outcome = STEP_POINTS_LOST;
+  snprintf(report->reason, sizeof report->reason,
+           "a point was turned inside out, or its stress is no number, near t = %g s in a substep of %g s: make "
+           "analysis.courant smaller than %g",
+           (double)e->time, (double)e->dt, (double)m->c->analysis.courant);
+  PetscFunctionReturn(0);
+}
+
+/* Accounts: what came in and is neither kinetic nor work of the stress was lost between points and grid, or by
+ * the substeps. `before`: kinetic energy and work of the stress. */
+static PetscErrorCode Account(Model *m, const Explicit *e, const PetscReal before[2])
+{
+  PetscReal now[2], sum[4];
+
+  PetscFunctionBeginUser;
+  energy_of_points(m, now);
+  PetscReal local[4] = {e->external, e->boundary, e->damped, 0};
+  local[3] = e->external + e->boundary - e->damped - (now[0] - before[0]) - (now[1] - before[1]);
+  PetscCall(MPIU_Allreduce(local, sum, 4, MPIU_REAL, MPI_SUM, m->comm));
+  m->external_work += sum[0];
+  m->boundary_work += sum[1];
+  m->damped_energy += sum[2];
+  m->transfer_energy += sum[3];
+  m->most_energy = PetscMax(m->most_energy, m->start_energy + m->external_work + m->boundary_work);
+  PetscFunctionReturn(0);
+}
+
+/* What the run's step has become for all others. */
+static PetscErrorCode Accept(Model *m, const Explicit *e, const PetscReal before[2], StepReport *report)
+{
+  PetscFunctionBeginUser;
+  PetscCall(Account(m, e, before));
+  m->transfer_energy -= m->outside.energy - e->outside;
+  note_flow(m, 1);
+  m->space->present = PETSC_FALSE;
+  m->time += e->step;
+  ++m->step;
+  m->total_iterations += e->taken;
+  report->newton.iterations = e->taken;
+  report->newton.converged = PETSC_TRUE;
+  report->dt = e->step;
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode Begin(Model *m, PetscReal step, Explicit *e, PetscReal before[2], StepReport *report)
+{
+  PetscFunctionBeginUser;
+  e->time = m->time;
+  e->step = step;
+  e->taken = 0;
+  e->critical = 0;
+  e->outside = m->outside.energy;
+  e->status = LAW_OK;
+  e->external = e->boundary = e->damped = 0;
+  PetscCall(PetscArrayzero(m->nodes->reaction, m->grid->n_nodes * m->dim));
+  energy_of_points(m, before);
+  note_flow(m, -1);
+  report->outcome = STEP_ACCEPTED;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ExplicitStep(Model *m, PetscReal limit, StepReport *report)
+{
+  const PetscReal step = PetscMin(limit, m->control.next), end = m->time + step;
+  PetscReal before[2];
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMemzero(report, sizeof *report));
+  PetscCall(ExplicitBalance(m, report));
+  if (!m->explicit) PetscCall(ExplicitCreate(m, &m->explicit));
+  Explicit *e = m->explicit;
+  PetscCall(Begin(m, step, e, before, report));
+  while (report->outcome == STEP_ACCEPTED && end - e->time > 1e-9 * step) {
+    PetscCall(LapBegin(m, e, end - e->time));
+    for (PetscInt k = 0; k < e->substeps; ++k) PetscCall(Substep(m, e));
+    PetscCall(Judge(m, e, report));
+    if (report->outcome == STEP_ACCEPTED) PetscCall(LapEnd(m, e, report));
+  }
+  PetscCall(Accept(m, e, before, report));
+  if (report->outcome == STEP_ACCEPTED) PetscCall(MeasuresRemember(m, report->dt));
+  PetscFunctionReturn(0);
+}

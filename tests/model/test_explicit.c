@@ -1,0 +1,228 @@
+/* Explicit dynamics: what it keeps to round-off, a bar against the exact solution of the wave equation, the same
+ * answers on any number of ranks and after a resumed run, and what it refuses. */
+#include "case_builder.h"
+#include "model/state/state.h"
+
+static void explicit_case(Bench *b, PetscReal end, PetscReal step)
+{
+  bench_dynamic(b, end, step);
+  b->c.analysis.type = ANALYSIS_EXPLICIT;
+  b->c.analysis.courant = 0.5;
+  b->c.basis.kind = "cell";
+}
+
+/* A block that flies and spins, off the grid's lines: nothing acts on it. */
+static void flying(Bench *b, CellType cell, const char *basis, const Kinematics *kinematics)
+{
+  const PetscReal h = cell == CELL_HEXAHEDRON ? 0.25 : 0.125;
+  bench_init(b, "mpm", cell, 0);
+  b->c.kinematics = kinematics;
+  bench_grid(b, (PetscReal[]){kinematics->hoop ? 0 : -1.03, -1.01, -1.02}, (PetscReal[]){1.97, 1.99, 1.98}, h);
+  for (int d = 0; d < kinematics_dim(kinematics); ++d)
+    b->c.grid.counts[d] = (PetscInt)((b->c.grid.max[d] - b->c.grid.min[d]) / h + 0.5);
+  bench_box(b, 0, (PetscReal[]){kinematics->hoop ? 0.3 : 0, 0, 0}, (PetscReal[]){1, 1, 1});
+  explicit_case(b, 0.05, 5e-3);
+  b->c.basis.kind = basis;
+  b->body[0].velocity[1] = 3;
+  if (kinematics->hoop) return;
+  b->body[0].velocity[0] = -2;
+  b->body[0].spin[2] = 4;
+  b->body[0].spin_centre[0] = b->body[0].spin_centre[1] = 0.5;
+}
+
+static const struct {
+  CellType cell;
+  const char *basis;
+  const Kinematics *kinematics;
+} flights[] = {{CELL_QUADRILATERAL, "cell", &kinematics_plane_strain},
+               {CELL_QUADRILATERAL, "gimp", &kinematics_plane_strain},
+               {CELL_TRIANGLE, "cell", &kinematics_plane_strain},
+               {CELL_QUADRILATERAL, "cell", &kinematics_axisymmetric},
+               {CELL_QUADRILATERAL, "gimp", &kinematics_axisymmetric},
+               {CELL_HEXAHEDRON, "cell", &kinematics_3d},
+               {CELL_HEXAHEDRON, "gimp", &kinematics_3d}};
+
+/* Mass and momentum to round-off, and the balance of energies closes with a small loss in the transfer. */
+static void test_flight(void **state)
+{
+  (void)state;
+  for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(flights); ++k) {
+    Bench b;
+    Energies e;
+    PetscReal before[3], off = 0;
+    flying(&b, flights[k].cell, flights[k].basis, flights[k].kinematics);
+    Model *m = bench_model(&b, PETSC_COMM_WORLD);
+    const PetscReal mass = model_sum(m, "mass: total", 0);
+    for (int d = 0; d < m->dim; ++d) before[d] = model_sum(m, "momentum", d);
+    for (int s = 0; s < 6; ++s) model_step(m, PETSC_MAX_REAL);
+    for (int d = b.c.kinematics->hoop; d < m->dim; ++d)
+      off = PetscMax(off, PetscAbsReal(model_sum(m, "momentum", d) - before[d]));
+    CALL(ModelEnergies(m, &e));
+    PetscPrintf(PETSC_COMM_WORLD, "%s %s: momentum off by %.2g, transfer %.3g of %.3g J, %d substeps\n",
+                b.c.kinematics->name, flights[k].basis, (double)(off / mass), (double)e.transfer, (double)e.start,
+                (int)m->total_iterations);
+    CHECK(off <= 1e-11 * mass, "momentum is off by %g", (double)off);
+    CHECK_CLOSE(model_sum(m, "mass: total", 0), mass, 1e-12 * mass);
+    CHECK_CLOSE(e.kinetic + e.elastic + e.dissipated + e.transfer, e.start, 1e-9 * e.start);
+    CHECK(e.transfer > -0.01 * e.start && e.transfer < 0.2 * e.start, "%g of %g J were lost", (double)e.transfer,
+          (double)e.start);
+    CALL(ModelDestroy(&m));
+  }
+}
+
+/* An elastic bar of length 1 m between smooth walls runs into its floor: it stays there for 2 L / c, which
+ * presses with rho c v, and leaves with -v. The grid's lines are not the bar's. */
+typedef struct {
+  PetscReal stress, impulse, velocity, transfer;
+} Bounce;
+
+static Bounce bounce(PetscInt n, ExplicitUpdate update, const char *basis)
+{
+  const PetscReal c = PetscSqrtReal(1e6 * 0.7 / (1.3 * 0.4) / 1000), v = 1e-3 * c, h = 1. / (PetscReal)n;
+  const MeasureSpec reaction = {.kind = "reaction", .component = 1};
+  Bench b;
+  Energies e;
+  Bounce r = {0};
+  PetscReal force;
+  bench_init(&b, "mpm", CELL_QUADRILATERAL, 0);
+  bench_grid(&b, (PetscReal[]){0, 0, 0}, (PetscReal[]){2 * h, 1.5, 0}, h);
+  bench_box(&b, 0, (PetscReal[]){0, 0, 0}, (PetscReal[]){2 * h, 1, 0});
+  explicit_case(&b, 3 / c, 0.05 / c);
+  b.c.basis.kind = basis;
+  b.c.analysis.update = update;
+  b.body[0].velocity[1] = -v;
+  bench_motion(&b, 1, 0, MOTION_FIXED, 2);
+  bench_motion(&b, 0, 0, MOTION_FIXED, 1);
+  bench_motion(&b, 0, 2 * h, MOTION_FIXED, 1);
+  Model *m = bench_model(&b, PETSC_COMM_WORLD);
+  for (int s = 0; s < 40; ++s) {
+    model_step(m, PETSC_MAX_REAL);
+    CALL(ModelMeasure(m, &reaction, 0, &force));
+    r.impulse += 0.05 / c * force / (2 * h);
+    if (s >= 10 && s < 30) r.stress += force / (20 * 2 * h);
+  }
+  r.stress /= 1000 * c * v;
+  r.impulse /= 2 * 1000 * v;
+  r.velocity = model_sum(m, "momentum", 1) / (1000 * 2 * h * v);
+  CALL(ModelEnergies(m, &e));
+  r.transfer = e.transfer / e.start;
+  CALL(ModelDestroy(&m));
+  return r;
+}
+
+static void test_bounce(void **state)
+{
+  (void)state;
+  for (int k = 0; k < 4; ++k) {
+    const PetscInt n = k % 2 ? 40 : 20;
+    const char *basis = k < 2 ? "cell" : "gimp";
+    const Bounce r = bounce(n, EXPLICIT_MUSL, basis);
+    PetscPrintf(PETSC_COMM_WORLD,
+                "%s, %d cells: stress %.4f, impulse until 2 L / c %.4f, velocity %.4f, transfer %.3g\n", basis, (int)n,
+                (double)r.stress, (double)r.impulse, (double)r.velocity, (double)r.transfer);
+    CHECK_CLOSE(r.stress, 1, 0.02);
+    CHECK_CLOSE(r.impulse, 1, 0.06);
+    CHECK_CLOSE(r.velocity, 1, 0.2);
+  }
+  const Bounce usl = bounce(20, EXPLICIT_USL, "cell");
+  CHECK_CLOSE(usl.stress, 1, 0.02);
+}
+
+/* A block that falls on its floor, with a tracer, a traction and a floor that moves. */
+static void falling(Bench *b, CellType cell, PetscBool loaded)
+{
+  const PetscReal h = cell == CELL_HEXAHEDRON ? 0.25 : 0.125;
+  bench_init(b, "mpm", cell, 0);
+  bench_grid(b, (PetscReal[]){-0.5, 0, -0.5}, (PetscReal[]){1.5, 2, 1.5}, h);
+  bench_box(b, 0, (PetscReal[]){0, 0.25, 0}, (PetscReal[]){1, 1.25, 1});
+  explicit_case(b, 1, 5e-3);
+  b->c.gravity[1] = -9.81;
+  b->c.analysis.damping = 0.5;
+  b->body[0].velocity[0] = 4;
+  b->body[0].velocity[1] = -5;
+  bench_motion(b, 1, 0, MOTION_VELOCITY, 7)->value[0] = 0.5;
+  bench_tracer(b, "displacement", 1, 0.9, 1.2, 0.5);
+  if (loaded) bench_traction(b, 1, 1.25, "body", 300, -1000, 0);
+}
+
+static void test_ranks(void **state)
+{
+  static const PointReal fields[] = {POINT_X, POINT_V, POINT_F, POINT_TAU, POINT_STATE};
+  (void)state;
+  for (int k = 0; k < 3; ++k) {
+    Bench b;
+    PetscReal v[2];
+    falling(&b, k == 2 ? CELL_HEXAHEDRON : CELL_QUADRILATERAL, k == 1);
+    Model *together = bench_model(&b, PETSC_COMM_WORLD), *alone = bench_model(&b, PETSC_COMM_SELF);
+    for (int s = 0; s < 12; ++s) {
+      model_step(together, PETSC_MAX_REAL);
+      model_step(alone, PETSC_MAX_REAL);
+    }
+    for (size_t f = 0; f < PETSC_STATIC_ARRAY_LENGTH(fields); ++f) {
+      const PetscReal off = points_difference(together, alone, fields[f]);
+      CHECK(off <= (fields[f] == POINT_TAU ? 1e-2 : 1e-8), "field %d is off by %g", (int)fields[f], (double)off);
+    }
+    CALL(ModelMeasure(together, &b.measure[0], 0, &v[0]));
+    CALL(ModelMeasure(alone, &b.measure[0], 0, &v[1]));
+    CHECK_CLOSE(v[0], v[1], 1e-9);
+    CHECK(v[0] < -0.2, "the tracer moved by %g", (double)v[0]);
+    CALL(ModelDestroy(&together));
+    CALL(ModelDestroy(&alone));
+  }
+}
+
+/* Put away and taken up again: the same bits. */
+static void test_resumed(void **state)
+{
+  char reason[256] = "";
+  Tables *tables;
+  Bench b;
+  (void)state;
+  falling(&b, CELL_QUADRILATERAL, PETSC_FALSE);
+  Model *m = bench_model(&b, PETSC_COMM_WORLD), *again = bench_model(&b, PETSC_COMM_WORLD);
+  for (int s = 0; s < 4; ++s) model_step(m, PETSC_MAX_REAL);
+  CALL(TablesCreate(&tables));
+  CALL(ModelToTables(m, tables));
+  CALL(ModelFromTables(again, tables, reason));
+  CHECK(!reason[0], "%s", reason);
+  CALL(TablesDestroy(&tables));
+  for (int s = 0; s < 4; ++s) {
+    model_step(m, PETSC_MAX_REAL);
+    model_step(again, PETSC_MAX_REAL);
+  }
+  CHECK(m->points->n == again->points->n, "points differ");
+  for (int f = 0; f < POINT_N_REAL; ++f)
+    for (PetscInt i = 0; i < m->points->n * m->points->components[f]; ++i)
+      CHECK(m->points->real[f][i] == again->points->real[f][i], "field %d is off by %g", f,
+            (double)(m->points->real[f][i] - again->points->real[f][i]));
+  CHECK(m->transfer_energy == again->transfer_energy, "accounts differ");
+  CALL(ModelDestroy(&m));
+  CALL(ModelDestroy(&again));
+}
+
+static void test_refused(void **state)
+{
+  Bench b;
+  (void)state;
+  bench_init(&b, "fem", CELL_QUADRILATERAL, 4);
+  explicit_case(&b, 1, 0.1);
+  bench_refused(&b, PETSC_COMM_WORLD, "method", "does not take methods other than mpm");
+  bench_init(&b, "mpm", CELL_QUADRILATERAL, 4);
+  explicit_case(&b, 1, 0.1);
+  b.c.formulation = (char *)"mixed";
+  bench_refused(&b, PETSC_COMM_WORLD, "formulation", "the mixed formulation");
+  bench_init(&b, "mpm", CELL_QUADRILATERAL, 4);
+  explicit_case(&b, 1, 0.1);
+  b.c.analysis.transfer = (char *)"consistent";
+  bench_refused(&b, PETSC_COMM_WORLD, "analysis.transfer", "other than thesis");
+}
+
+int main(int argc, char **argv)
+{
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_flight), cmocka_unit_test(test_bounce),
+                                     cmocka_unit_test(test_ranks), cmocka_unit_test(test_resumed),
+                                     cmocka_unit_test(test_refused)};
+  if (PetscInitialize(&argc, &argv, NULL, NULL)) return 1;
+  const int failed = cmocka_run_group_tests(tests, NULL, NULL);
+  return PetscFinalize() || failed;
+}
