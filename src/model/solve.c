@@ -50,21 +50,49 @@ static PetscErrorCode GoOn(Model *m, PetscReal dt, StepReport *report)
   PetscFunctionReturn(0);
 }
 
+static PetscErrorCode MakeGuess(Model *m, FirstGuess guess, PetscReal dt)
+{
+  PetscFunctionBeginUser;
+  guess_make(m, guess, dt, m->nodes->du);
+  scale(m->grid->n_nodes * m->dim, time_solved(m->scheme), m->nodes->du);
+  PetscFunctionReturn(0);
+}
+
+/* The first guesses that the next step has. In stiff matter displacements that are near may have any residual: of
+ * both motions the one that leaves less goes first. */
+static PetscErrorCode OrderGuesses(Model *m, PetscReal dt, StepProblem *p, FirstGuess guess[GUESS_N], PetscInt *n)
+{
+  PetscReal miss[2];
+
+  PetscFunctionBeginUser;
+  *n = guess_order(m, guess);
+  if (!p->stiff || *n < GUESS_N) PetscFunctionReturn(0);
+  for (PetscInt k = 0; k < 2; ++k) {
+    PetscCall(MakeGuess(m, guess[k], dt));
+    PetscCall(NewtonMiss(m->newton, p, &miss[k]));
+  }
+  if (miss[0] <= miss[1]) PetscFunctionReturn(0);
+  const FirstGuess first = guess[0];
+  guess[0] = guess[1];
+  guess[1] = first;
+  PetscFunctionReturn(0);
+}
+
 /* Newton from the nearest first guess, and where it fails from the others: a step is halved only
  * if none of them leads to its solution. */
 static PetscErrorCode SolveFromGuesses(Model *m, PetscReal dt, const LinearProblem *linear, StepReport *report)
 {
   FirstGuess guess[GUESS_N];
   StepProblem problem;
+  PetscInt guesses;
   PetscLogDouble clock;
 
   PetscFunctionBeginUser;
   PetscCall(PetscTime(&clock));
   PetscCall(PrepareStep(m, dt, &problem));
-  const PetscInt guesses = guess_order(m, guess);
+  PetscCall(OrderGuesses(m, dt, &problem, guess, &guesses));
   for (PetscInt k = 0; k < guesses; ++k) {
-    guess_make(m, guess[k], dt, m->nodes->du);
-    scale(m->grid->n_nodes * m->dim, time_solved(m->scheme), m->nodes->du);
+    PetscCall(MakeGuess(m, guess[k], dt));
     pressure_guess(m);
     PetscCall(PhaseEnd(m->seconds, PHASE_PREPARE, &clock));
     materials_step(m->c->n_materials, m->materials, m->time, dt * time_solved(m->scheme));

@@ -1,6 +1,9 @@
 /* What a step starts with: who is held, what is prescribed and loaded, and history. */
 #include "model/model_private.h"
 
+/* cells that a wave crosses in a step of stiff matter: below it costs more than it saves */
+#define STIFF_WAVES 10
+
 WeakFormInput weak_form_of(const Model *m, PetscReal inertia)
 {
   return (WeakFormInput){
@@ -172,6 +175,15 @@ static void set_history(Model *m, PetscReal dt, const PetscReal *g)
   }
 }
 
+/* Does stiffness decide how Newton's method goes (StepProblem.stiff)? */
+static PetscBool is_stiff(const Model *m, PetscReal dt)
+{
+  PetscBool yields = PETSC_FALSE;
+  for (PetscInt i = 0; i < m->c->n_materials; ++i) yields |= m->materials[i].law->yields;
+  const PetscBool flows = m->scheme->inertia && m->method->restores_grid && m->dim == 2;
+  return yields && flows && m->courant_speed * dt > STIFF_WAVES * m->grid->smallest;
+}
+
 PetscErrorCode PrepareStep(Model *m, PetscReal dt, StepProblem *p)
 {
   const PetscInt dofs = m->grid->n_nodes * m->dim;
@@ -213,6 +225,7 @@ PetscErrorCode PrepareStep(Model *m, PetscReal dt, StepProblem *p)
     .volume = m->nodes->volume,
     .idle = m->nodes->idle,
     .asked = m->asked,
+    .stiff = is_stiff(m, dt),
   };
   p->in.half = m->symmetric && !m->space->support->n_runs;
   p->round_off = round_off_of(m, inertia);

@@ -1,39 +1,51 @@
-/* Small dense systems without symmetry. */
+/* Small systems without symmetry whose entries stand in a band. */
 #pragma once
 #include <petscsys.h>
 
-static inline void lu_swap_rows(PetscInt n, PetscInt a, PetscInt b, PetscReal *A)
+/* Numbers of a row: columns i - band .. i + 2 band of row i, the last `band` for rows that change places. */
+static inline PetscInt lu_width(PetscInt band) { return 3 * band + 1; }
+
+/* Where column j of row i stands. */
+static inline PetscInt lu_at(PetscInt band, PetscInt i, PetscInt j) { return i * lu_width(band) + j - i + band; }
+
+/* Rows k and `pivot` change places, from column k to `end`. */
+static inline void lu_swap(PetscInt band, PetscInt k, PetscInt pivot, PetscInt end, PetscReal *A, PetscReal *b)
 {
-  for (PetscInt j = 0; a != b && j < n; ++j) {
-    const PetscReal kept = A[a * n + j];
-    A[a * n + j] = A[b * n + j];
-    A[b * n + j] = kept;
+  for (PetscInt j = k; pivot != k && j < end; ++j) {
+    const PetscReal kept = A[lu_at(band, k, j)];
+    A[lu_at(band, k, j)] = A[lu_at(band, pivot, j)];
+    A[lu_at(band, pivot, j)] = kept;
   }
+  const PetscReal first = b[pivot];
+  b[pivot] = b[k];
+  b[k] = first;
 }
 
-/* b = A^-1 b by elimination with the largest pivot of each column; A (n x n, row by row) is lost.
- * PETSC_FALSE if it is singular or holds something that is no number. */
-static inline PetscBool lu_solve(PetscInt n, PetscReal *restrict A, PetscReal *restrict b)
+/* b = A^-1 b by elimination with the largest pivot of each column. A (n rows of lu_width, zero beyond the band and
+ * n; band < n for a full matrix) is lost. PETSC_FALSE if it is singular or holds something that is no number. */
+static inline PetscBool lu_solve(PetscInt n, PetscInt band, PetscReal *restrict A, PetscReal *restrict b)
 {
+  PetscInt end = 0; /* of the rows above, at the most */
   for (PetscInt k = 0; k < n; ++k) {
+    const PetscInt rows = PetscMin(n, k + band + 1);
     PetscInt pivot = k;
-    for (PetscInt i = k + 1; i < n; ++i)
-      if (PetscAbsReal(A[i * n + k]) > PetscAbsReal(A[pivot * n + k])) pivot = i;
-    if (!(PetscAbsReal(A[pivot * n + k]) > 0)) return PETSC_FALSE;
-    lu_swap_rows(n, k, pivot, A);
-    const PetscReal first = b[pivot];
-    b[pivot] = b[k];
-    b[k] = first;
-    for (PetscInt i = k + 1; i < n; ++i) {
-      const PetscReal factor = A[i * n + k] / A[k * n + k];
+    for (PetscInt i = k + 1; i < rows; ++i)
+      if (PetscAbsReal(A[lu_at(band, i, k)]) > PetscAbsReal(A[lu_at(band, pivot, k)])) pivot = i;
+    if (!(PetscAbsReal(A[lu_at(band, pivot, k)]) > 0)) return PETSC_FALSE;
+    end = PetscMax(end, PetscMin(n, pivot + band + 1));
+    lu_swap(band, k, pivot, end, A, b);
+    const PetscReal *top = A + lu_at(band, k, k);
+    for (PetscInt i = k + 1; i < rows; ++i) {
+      PetscReal *row = A + lu_at(band, i, k);
+      const PetscReal factor = row[0] / top[0];
       if (factor == 0) continue; /* most of a sparse matrix's */
-      for (PetscInt j = k + 1; j < n; ++j) A[i * n + j] -= factor * A[k * n + j];
-      b[i] -= factor * first;
+      for (PetscInt j = 1; j < end - k; ++j) row[j] -= factor * top[j];
+      b[i] -= factor * b[k];
     }
   }
   for (PetscInt i = n; i-- > 0;) {
-    for (PetscInt j = i + 1; j < n; ++j) b[i] -= A[i * n + j] * b[j];
-    b[i] /= A[i * n + i];
+    for (PetscInt j = i + 1; j < PetscMin(n, i + 2 * band + 1); ++j) b[i] -= A[lu_at(band, i, j)] * b[j];
+    b[i] /= A[lu_at(band, i, i)];
   }
   return PETSC_TRUE;
 }

@@ -1,9 +1,13 @@
 #include "solve/newton/eliminate.h"
 
-#define STANDS_OUT 0.02 /* of the residual's norm */
-#define MOST_CHOSEN 64  /* nodes that stand out, on a rank, */
-#define FEW 0.02        /* and of all nodes with unknowns */
-#define MOST_NODES 128  /* of a patch: its matrix is dense */
+/* What stands out; the second number is for stiff matter that yields, where points all over a body open and close
+ * (StepProblem.stiff): there all nodes may be chosen. */
+static const PetscReal stands_out[] = {0.02, 0.01}; /* of the residual's norm */
+static const PetscInt most_chosen[] = {64, 4096};   /* nodes that stand out, on a rank, */
+static const PetscReal few[] = {0.02, 1};           /* and of all nodes with unknowns */
+static const PetscInt most_nodes[] = {128, 4096};   /* of a patch */
+
+#define SKEW 1e-3 /* of the other directions in the order of a patch's nodes */
 
 PetscErrorCode EliminationReset(Elimination *e)
 {
@@ -51,8 +55,8 @@ static void take(Elimination *e, PetscInt node, PetscInt *n)
 /* Nodes that stand out; more than MOST_CHOSEN if there are too many. */
 static PetscInt take_outstanding(Elimination *e, const StepProblem *p, const PetscReal *f, PetscReal norm)
 {
-  const PetscReal least = PetscSqr(STANDS_OUT * norm);
-  const PetscInt most = (PetscInt)PetscMin(MOST_CHOSEN, FEW * (PetscReal)p->system->n_active_global);
+  const PetscReal least = PetscSqr(stands_out[p->stiff] * norm);
+  const PetscInt most = (PetscInt)PetscMin(most_chosen[p->stiff], few[p->stiff] * (PetscReal)p->system->n_active_global);
   PetscInt n = 0;
   for (PetscInt k = 0; k < p->system->n_active && n <= most; ++k) {
     PetscReal square = 0;
@@ -119,9 +123,38 @@ static PetscErrorCode SortBy(const PetscInt *key, PetscInt n_keys, PetscInt n, P
   PetscFunctionReturn(0);
 }
 
-/* The n chosen nodes and their groups, patch by patch. */
-static PetscErrorCode Divide(Elimination *e, const Support *s, PetscInt n)
+/* Nodes of a patch along its longer side, so that those which couple stand close to each other. */
+static PetscErrorCode SortAlong(const Elimination *e, const StepProblem *p, PetscInt n, PetscInt *node)
 {
+  const PetscReal *x = p->grid->x;
+  PetscReal low[3], high[3], *key;
+  PetscInt longest = 0;
+
+  PetscFunctionBeginUser;
+  for (PetscInt d = 0; d < e->dim; ++d) {
+    low[d] = PETSC_MAX_REAL;
+    high[d] = -PETSC_MAX_REAL;
+    for (PetscInt k = 0; k < n; ++k) {
+      low[d] = PetscMin(low[d], x[node[k] * e->dim + d]);
+      high[d] = PetscMax(high[d], x[node[k] * e->dim + d]);
+    }
+    if (high[d] - low[d] > high[longest] - low[longest]) longest = d;
+  }
+  PetscCall(PetscSortInt(n, node)); /* whatever came first: ties, if there are any, stand in one order */
+  PetscCall(PetscMalloc1(n, &key));
+  for (PetscInt k = 0; k < n; ++k) {
+    key[k] = 0;
+    for (PetscInt d = 0; d < e->dim; ++d) key[k] += (d == longest ? 1 : SKEW) * x[node[k] * e->dim + d];
+  }
+  PetscCall(PetscSortRealWithArrayInt(n, key, node));
+  PetscCall(PetscFree(key));
+  PetscFunctionReturn(0);
+}
+
+/* The n chosen nodes and their groups, patch by patch. */
+static PetscErrorCode Divide(Elimination *e, const StepProblem *p, PetscInt n)
+{
+  const Support *s = p->in.support;
   PetscInt *up, *patch, *key;
 
   PetscFunctionBeginUser;
@@ -136,6 +169,8 @@ static PetscErrorCode Divide(Elimination *e, const Support *s, PetscInt n)
   for (PetscInt k = 0; k < n_groups; ++k) key[k] = patch[first_of(e, s, e->group[k])];
   for (PetscInt k = 0; k < n; ++k) e->place[e->node[k]] = -1;
   PetscCall(SortBy(patch, e->n_patches, n, e->node, e->node_start));
+  for (PetscInt k = 0; k < e->n_patches; ++k)
+    PetscCall(SortAlong(e, p, e->node_start[k + 1] - e->node_start[k], e->node + e->node_start[k]));
   PetscCall(SortBy(key, e->n_patches, n_groups, e->group, e->group_start));
   PetscCall(PetscFree2(up, patch));
   PetscCall(PetscFree(key));
@@ -147,7 +182,7 @@ PetscErrorCode EliminationChoose(Elimination *e, const StepProblem *p, const Pet
   PetscFunctionBeginUser;
   e->n_patches = 0;
   const PetscInt n = take_outstanding(e, p, f, norm);
-  if (n > 0) PetscCall(Divide(e, p->in.support, take_neighbours(e, p, n)));
+  if (n > 0) PetscCall(Divide(e, p, take_neighbours(e, p, n)));
   for (PetscInt k = 0; k < -n; ++k) e->place[e->node[k]] = -1;
   const PetscBool some = e->n_patches > 0;
   PetscCall(MPIU_Allreduce(&some, &e->any, 1, MPIU_BOOL, MPI_LOR, p->grid->comm));
@@ -162,7 +197,7 @@ PetscErrorCode EliminationApply(Elimination *e, const StepProblem *p, PetscReal 
                          .node = e->node + e->node_start[k],
                          .n_groups = e->group_start[k + 1] - e->group_start[k],
                          .group = e->group + e->group_start[k]};
-    if (patch.n <= MOST_NODES) PetscCall(PatchSolve(p, &patch, enough, e->place, e->force));
+    if (patch.n <= most_nodes[p->stiff]) PetscCall(PatchSolve(p, &patch, enough, e->place, e->force));
   }
   PetscFunctionReturn(0);
 }

@@ -1,9 +1,8 @@
 #include "solve/newton/line_search.h"
 
 #define MAX_TRIES 6
-#define GOOD_ENOUGH 0.8 /* share of the slope at the start that may remain */
-#define EXPLODED 1000   /* growth of the residual that no good step shows after the first */
-#define STALE 3         /* iterations without progress that mean a cycle */
+#define EXPLODED 1000 /* growth of the residual that no good step shows after the first */
+#define STALE 3       /* iterations without progress that mean a cycle */
 
 /* A search of SNES. */
 typedef struct {
@@ -65,7 +64,7 @@ PetscErrorCode LineTry(Line *line, PetscReal lambda)
 /* Is there too much left along the direction, or did the residual across it explode? */
 static PetscBool is_too_far(const Line *line, PetscReal slope0, PetscReal norm0)
 {
-  return PetscAbsReal(line->slope) > GOOD_ENOUGH * PetscAbsReal(slope0) || line->norm > EXPLODED * norm0;
+  return PetscAbsReal(line->slope) > line->enough * PetscAbsReal(slope0) || line->norm > EXPLODED * norm0;
 }
 
 /* Find where the slope vanishes between low (slope of the sign of slope0) and high (the other sign,
@@ -99,7 +98,7 @@ static PetscReal first_length(LineSearchMemory *memory, PetscInt iteration, Pets
 PetscErrorCode LineSearchDescend(SNESLineSearch search, void *memory)
 {
   Search s = {.memory = memory};
-  Line line = {.evaluate = EvaluateAt, .context = &s};
+  Line line = {.evaluate = EvaluateAt, .context = &s, .enough = s.memory->enough};
   Vec unused;
   PetscInt iteration;
   PetscReal xnorm, ynorm, norm0, slope0;

@@ -2,11 +2,16 @@
 #pragma once
 #include <petscsnes.h>
 
+/* Line.enough: what most steps take, and what those of stiff matter that yields (StepProblem.stiff) */
+#define ENOUGH 0.8
+#define ENOUGH_STIFF 0.5
+
 /* The way from a place along a direction: x - lambda y. */
 typedef struct {
   /* |F| there, infinite or NaN where a law fails, and y . F: the work that is left along y */
   PetscErrorCode (*evaluate)(void *context, PetscReal lambda, PetscReal *norm, PetscReal *slope);
   void *context;
+  PetscReal enough;              /* share of the work along the direction that may be left */
   PetscReal lambda, norm, slope; /* the last place tried; norm and slope infinite where the law fails */
 } Line;
 
@@ -17,7 +22,8 @@ PetscErrorCode LineShorten(Line *line, PetscReal slope0, PetscReal norm0);
 
 /* What a search remembers from one iteration of a step to the next. */
 typedef struct {
-  PetscReal best; /* smallest residual of this step */
+  PetscReal enough; /* Line.enough */
+  PetscReal best;   /* smallest residual of this step */
   PetscInt stale; /* iterations since it was met */
   PetscInt block; /* unknowns per node of which the last is a pressure; 0: none is */
   /* Collective; NULL: nothing. From the residual where a direction starts, and its norm; and what is

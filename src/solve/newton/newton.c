@@ -149,6 +149,25 @@ static PetscErrorCode UpdateSaddle(Newton *n)
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode NewtonMiss(Newton *n, StepProblem *p, PetscReal *norm)
+{
+  const PetscInt dim = p->grid->dim;
+  NewtonReport report = {.bad_point = -1};
+  PetscReal square = 0, sum;
+
+  PetscFunctionBeginUser;
+  n->problem = p;
+  n->report = &report;
+  newton_rest_without_unknowns(p);
+  PetscCall(NewtonAssemble(n, PETSC_FALSE));
+  for (PetscInt k = 0; k < p->system->n_active; ++k)
+    for (PetscInt d = 0, i = p->system->active[k] * dim; d < dim; ++d, ++i)
+      if (!p->fixed[i]) square += PetscSqr(p->force[i]);
+  PetscCall(MPIU_Allreduce(&square, &sum, 1, MPIU_REAL, MPI_SUM, n->comm));
+  *norm = report.status == LAW_OK ? PetscSqrtReal(sum) : PETSC_MAX_REAL;
+  PetscFunctionReturn(0);
+}
+
 static PetscErrorCode NewtonTry(Newton *n, NewtonReport *report)
 {
   const StepProblem *p = n->problem;
@@ -163,6 +182,7 @@ static PetscErrorCode NewtonTry(Newton *n, NewtonReport *report)
   PetscCall(PetscTime(&start));
   newton_rest_without_unknowns(p);
   n->before = 0;
+  n->search.enough = p->stiff ? ENOUGH_STIFF : ENOUGH;
   n->changes = n->changed = 0;
   PetscCall(UpdateSaddle(n));
   PetscCall(UpdateProjection(n));

@@ -49,6 +49,9 @@ typedef struct {
   LoadBorder *border;        /* NULL: all loads are known */
   /* does somebody want the run to end? asked on every rank; NULL: nobody ever does */
   PetscBool (*asked)(void);
+  /* Matter that yields, and waves that cross many cells in the step: points all over it open and close between
+   * two iterations, and none shortens the step of all (docs/theory.md, "Stiff matter that yields"). */
+  PetscBool stiff;
   /* what the last digit of a coordinate makes of the force at a node, N */
   PetscReal round_off;
   /* Norms of nodal gravity, of the inertia that would stop the motion and of the present one, N:
@@ -76,6 +79,8 @@ PetscErrorCode NewtonCreate(MPI_Comm comm, const NewtonSpec *spec, Newton **newt
 PetscErrorCode NewtonDestroy(Newton **newton);
 /* Collective. Solve; du and force hold the solution only if report->converged. */
 PetscErrorCode NewtonSolve(Newton *newton, StepProblem *problem, const LinearProblem *linear, NewtonReport *report);
+/* Collective. |R| over all unknowns at problem->du, N; PETSC_MAX_REAL where a law fails. */
+PetscErrorCode NewtonMiss(Newton *newton, StepProblem *problem, PetscReal *norm);
 /* What Newton's method remembers from step to step: which linear solver it chose when the pattern
  * was made, and how often the iterative one failed. */
 typedef struct {

@@ -2,10 +2,11 @@
 #include "solve/newton/newton_private.h"
 #include <petsctime.h>
 
-#define ELIMINATE_AFTER 2 /* iterations: what converges by itself has by then all but done so */
-/* residual of a patch over the tolerance of all, and over the last residual of all */
+#define ELIMINATE_AFTER 2 /* iterations: what converges by itself has by then all but done so; stiff matter has not */
+/* residual of a patch over the tolerance of all, and over the last residual of all; of stiff matter */
 #define SETTLED 0.1
 #define SETTLED_SO_FAR 0.01
+#define SETTLED_STIFF 0.05
 
 PetscBool newton_eliminates(const StepProblem *p, const LinearProblem *linear)
 {
@@ -19,7 +20,7 @@ PetscErrorCode NewtonChoose(void *context, PetscInt iteration, Vec f, PetscReal 
 
   PetscFunctionBeginUser;
   n->elimination.any = PETSC_FALSE;
-  if (iteration < ELIMINATE_AFTER) PetscFunctionReturn(0);
+  if (iteration < ELIMINATE_AFTER && !n->problem->stiff) PetscFunctionReturn(0);
   PetscCall(VecGetArrayRead(f, &values));
   PetscCall(EliminationChoose(&n->elimination, n->problem, values, norm));
   PetscCall(VecRestoreArrayRead(f, &values));
@@ -29,7 +30,8 @@ PetscErrorCode NewtonChoose(void *context, PetscInt iteration, Vec f, PetscReal 
 PetscErrorCode NewtonSettle(void *context, Vec x)
 {
   Newton *n = context;
-  const PetscReal enough = PetscMax(SETTLED * newton_tolerance(n), SETTLED_SO_FAR * n->last);
+  const PetscReal share = n->problem->stiff ? SETTLED_STIFF : SETTLED_SO_FAR;
+  const PetscReal enough = PetscMax(SETTLED * newton_tolerance(n), share * n->last);
   double start, end;
 
   PetscFunctionBeginUser;

@@ -2,7 +2,9 @@
 #include "base/math/lu.h"
 #include "solve/newton/line_search.h"
 
+/* of a patch; of one in stiff matter that yields */
 #define MOST_ITERATIONS 10
+#define MOST_ITERATIONS_STIFF 25
 
 /* A patch at work; its m unknowns stand node by node. */
 typedef struct {
@@ -10,9 +12,10 @@ typedef struct {
   const Patch *patch;
   PetscInt dim, m;
   PetscBool tangent; /* is it wanted with the residual? */
+  PetscInt reach;    /* nodes of a group are at most so many numbers apart */
   PetscInt *slot;    /* nn x nn of each group: pairs of the patch, or the one behind all others */
-  PetscReal *blocks; /* dim x dim of each pair */
-  PetscReal *matrix; /* m x m */
+  PetscReal *blocks; /* dim x dim of each pair: n x width_of */
+  PetscReal *matrix; /* m x lu_width */
   PetscReal *f, *y;  /* residual, direction */
   PetscReal *from;   /* increments where the direction starts */
   PetscReal *force;  /* n_nodes x dim */
@@ -20,6 +23,11 @@ typedef struct {
 
 /* Unknown i of the patch among those of all nodes. */
 static inline PetscInt place_of(const Work *w, PetscInt i) { return w->patch->node[i / w->dim] * w->dim + i % w->dim; }
+
+/* Nodes that can couple with one, and unknowns beside the diagonal. */
+static inline PetscInt width_of(const Work *w) { return 2 * w->reach + 1; }
+static inline PetscInt band_of(const Work *w) { return (w->reach + 1) * w->dim - 1; }
+static inline PetscInt size_of_blocks(const Work *w) { return (w->patch->n * width_of(w) + 1) * w->dim * w->dim; }
 
 static void get_increments(const Work *w, PetscReal *x)
 {
@@ -53,7 +61,7 @@ static PetscErrorCode AssembleGroups(Work *w, LawStatus *worst)
 
   PetscFunctionBeginUser;
   zero_forces(w);
-  if (w->tangent) PetscCall(PetscArrayzero(w->blocks, (patch->n * patch->n + 1) * w->dim * w->dim));
+  if (w->tangent) PetscCall(PetscArrayzero(w->blocks, size_of_blocks(w)));
   in.support = &part;
   in.du = w->p->du;
   part.n_runs = 1;
@@ -90,24 +98,29 @@ static PetscErrorCode EvaluateAt(void *context, PetscReal lambda, PetscReal *nor
 }
 
 /* Blocks -> matrix, with nothing but a diagonal where something is prescribed. */
-static void fill_matrix(Work *w)
+static PetscErrorCode FillMatrix(Work *w)
 {
-  const PetscInt dim = w->dim, n = w->patch->n;
+  const PetscInt dim = w->dim, n = w->patch->n, band = band_of(w);
   const unsigned char *fixed = w->p->fixed;
-  for (PetscInt i = 0; i < w->m; ++i)
-    for (PetscInt j = 0; j < w->m; ++j) {
-      const PetscReal value = w->blocks[((i / dim * n + j / dim) * dim + i % dim) * dim + j % dim];
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscArrayzero(w->matrix, w->m * lu_width(band)));
+  for (PetscInt i = 0; i < w->m; ++i) {
+    const PetscInt node = i / dim, end = PetscMin(n, node + w->reach + 1);
+    for (PetscInt j = PetscMax(0, node - w->reach) * dim; j < end * dim; ++j) {
+      const PetscInt block = node * width_of(w) + j / dim - node + w->reach;
       const PetscBool cut = fixed[place_of(w, i)] || fixed[place_of(w, j)];
-      w->matrix[i * w->m + j] = cut ? (PetscReal)(i == j) : value;
+      w->matrix[lu_at(band, i, j)] = cut ? (PetscReal)(i == j) : w->blocks[(block * dim + i % dim) * dim + j % dim];
     }
+  }
+  PetscFunctionReturn(0);
 }
 
 /* y = K^-1 F and y . F; PETSC_FALSE if there is none. */
 static PetscBool find_direction(Work *w, PetscReal *slope)
 {
-  fill_matrix(w);
   for (PetscInt i = 0; i < w->m; ++i) w->y[i] = w->f[i];
-  if (!lu_solve(w->m, w->matrix, w->y)) return PETSC_FALSE;
+  if (!lu_solve(w->m, band_of(w), w->matrix, w->y)) return PETSC_FALSE;
   *slope = 0;
   for (PetscInt i = 0; i < w->m; ++i) *slope += w->y[i] * w->f[i];
   return PETSC_TRUE;
@@ -116,7 +129,8 @@ static PetscBool find_direction(Work *w, PetscReal *slope)
 /* best: the increments where |F| is least. */
 static PetscErrorCode Iterate(Work *w, PetscReal enough, PetscReal *best)
 {
-  Line line = {.evaluate = EvaluateAt, .context = w};
+  Line line = {.evaluate = EvaluateAt, .context = w, .enough = w->p->stiff ? ENOUGH_STIFF : ENOUGH};
+  const PetscInt most = w->p->stiff ? MOST_ITERATIONS_STIFF : MOST_ITERATIONS;
   PetscReal least, slope, norm;
 
   PetscFunctionBeginUser;
@@ -127,7 +141,8 @@ static PetscErrorCode Iterate(Work *w, PetscReal enough, PetscReal *best)
   w->tangent = PETSC_TRUE; /* most patches need none */
   if (line.norm > enough) PetscCall(LineTry(&line, 0));
   least = line.norm;
-  for (PetscInt it = 0; it < MOST_ITERATIONS && line.norm > enough && line.norm < PETSC_INFINITY; ++it) {
+  for (PetscInt it = 0; it < most && line.norm > enough && line.norm < PETSC_INFINITY; ++it) {
+    PetscCall(FillMatrix(w));
     if (!find_direction(w, &slope)) break;
     norm = line.norm;
     get_increments(w, w->from);
@@ -141,6 +156,23 @@ static PetscErrorCode Iterate(Work *w, PetscReal enough, PetscReal *best)
   PetscFunctionReturn(0);
 }
 
+/* How far apart numbers of the patch (place) stand in a group. */
+static PetscInt reach_of(const Work *w, const PetscInt *place)
+{
+  const Support *s = w->p->in.support;
+  PetscInt reach = 0;
+  for (PetscInt k = 0; k < w->patch->n_groups; ++k) {
+    PetscInt least = w->patch->n, most = -1;
+    for (PetscInt i = s->node_start[w->patch->group[k]]; i < s->node_start[w->patch->group[k] + 1]; ++i) {
+      if (place[s->node[i]] < 0) continue;
+      least = PetscMin(least, place[s->node[i]]);
+      most = PetscMax(most, place[s->node[i]]);
+    }
+    reach = PetscMax(reach, most - least);
+  }
+  return reach;
+}
+
 static PetscErrorCode FindSlots(Work *w, PetscInt *place)
 {
   const Patch *patch = w->patch;
@@ -151,11 +183,12 @@ static PetscErrorCode FindSlots(Work *w, PetscInt *place)
   for (PetscInt k = 0; k < patch->n_groups; ++k) size += PetscSqr(support_nodes(s, patch->group[k]));
   PetscCall(PetscMalloc1(size, &w->slot));
   for (PetscInt k = 0; k < patch->n; ++k) place[patch->node[k]] = k;
+  w->reach = reach_of(w, place);
   for (PetscInt k = 0, *slot = w->slot; k < patch->n_groups; ++k) {
     const PetscInt nn = support_nodes(s, patch->group[k]), *node = s->node + s->node_start[patch->group[k]];
     for (PetscInt i = 0; i < nn * nn; ++i) {
-      const PetscInt row = place[node[i / nn]], column = place[node[i % nn]];
-      *slot++ = row < 0 || column < 0 ? patch->n * patch->n : row * patch->n + column;
+      const PetscInt row = place[node[i / nn]], column = place[node[i % nn]], width = width_of(w);
+      *slot++ = row < 0 || column < 0 ? patch->n * width : row * width + column - row + w->reach;
     }
   }
   for (PetscInt k = 0; k < patch->n; ++k) place[patch->node[k]] = -1;
@@ -172,7 +205,8 @@ PetscErrorCode PatchSolve(const StepProblem *problem, const Patch *patch, PetscR
   PetscFunctionBeginUser;
   w.force = force;
   PetscCall(FindSlots(&w, place));
-  PetscCall(PetscMalloc6(m * m + dim * dim, &w.blocks, m * m, &w.matrix, m, &w.f, m, &w.y, m, &w.from, m, &best));
+  const PetscInt blocks = size_of_blocks(&w), matrix = m * lu_width(band_of(&w));
+  PetscCall(PetscMalloc6(blocks, &w.blocks, matrix, &w.matrix, m, &w.f, m, &w.y, m, &w.from, m, &best));
   PetscCall(Iterate(&w, enough, best));
   PetscCall(PetscFree6(w.blocks, w.matrix, w.f, w.y, w.from, best));
   PetscCall(PetscFree(w.slot));
