@@ -134,6 +134,7 @@ PetscErrorCode StepStartRestore(Model *m, const StepStart *start, StepReport *re
   const PetscInt dofs = m->grid->n_nodes * m->dim;
 
   PetscFunctionBeginUser;
+  rigid_back(m);
   if (m->method->restores_grid) m->space->present = PETSC_FALSE; /* points tell the nodes again */
   else {
     PetscCall(PetscArraycpy(m->nodes->v, m->nodes->v_start, dofs));
