@@ -85,7 +85,6 @@ static PetscBool touch_of(const Contact *s, ContactPoint *c, const RigidWall *b,
 static void add_columns(const Contact *s, const RigidWall *b, const Touch *t, PetscInt dofs, PetscReal *B, PetscReal *D)
 {
   const PetscInt n = RIGID * s->n_rigid, first = RIGID * (b - s->rigid);
-  const PetscReal part = b->dt > 0 ? 0.5 : 1;
   for (int j = 0; j < RIGID; ++j) {
     if (!rigid_has(b, j)) continue;
     for (PetscInt e = t->c->first; e < t->c->first + t->c->n; ++e)
@@ -94,7 +93,7 @@ static void add_columns(const Contact *s, const RigidWall *b, const Touch *t, Pe
     for (int i = 0; i < RIGID; ++i) {
       PetscReal more[3] = {0, 0, 0}; /* the lever is shorter by what the centre has moved */
       if (j < 3 && i > 2) cross_axis(j, t->f, more);
-      D[(first + i) * n + first + j] += b->share * (dot(t->arm[i], t->change[j]) - part * (i > 2 ? more[i - 3] : 0));
+      D[(first + i) * n + first + j] += b->share * (dot(t->arm[i], t->change[j]) - b->part * (i > 2 ? more[i - 3] : 0));
     }
   }
 }
@@ -103,14 +102,13 @@ static void add_columns(const Contact *s, const RigidWall *b, const Touch *t, Pe
 static void add_rows(const Contact *s, const RigidWall *b, const Touch *t, PetscReal whole, PetscInt dofs, PetscReal *C)
 {
   const PetscInt first = RIGID * (b - s->rigid);
-  const PetscReal part = b->dt > 0 ? 0.5 : 1;
   for (int i = 0; i < RIGID; ++i)
     for (PetscInt d = 0; d < s->dim; ++d) {
       const PetscReal column[3] = {t->K[d], t->K[3 + d], t->K[6 + d]};
       PetscReal longer[3] = {0, 0, 0};
       if (!rigid_has(b, i)) continue;
       if (i > 2) cross_axis((int)d, t->f, longer);
-      const PetscReal rate = b->share * whole * (part * (i > 2 ? longer[i - 3] : 0) - dot(t->arm[i], column));
+      const PetscReal rate = b->share * whole * (b->part * (i > 2 ? longer[i - 3] : 0) - dot(t->arm[i], column));
       for (PetscInt e = t->c->first; e < t->c->first + t->c->n; ++e)
         C[(first + i) * dofs + s->node[e] * s->dim + d] += s->N[e] * rate;
     }

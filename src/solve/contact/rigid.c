@@ -96,17 +96,15 @@ void rigid_arm(const RigidWall *b, PetscBool start, const PetscReal x[3], PetscR
 
 void rigid_lever(const RigidWall *b, const PetscReal x0[3], const PetscReal x1[3], PetscReal lever[3])
 {
-  const PetscReal part = b->dt > 0 ? 0.5 : 1;
   PetscReal x[3];
-  for (int d = 0; d < 3; ++d) x[d] = x0[d] + part * (x1[d] - x0[d]);
-  own_lever(b, part, x, lever);
+  for (int d = 0; d < 3; ++d) x[d] = x0[d] + b->part * (x1[d] - x0[d]);
+  own_lever(b, b->part, x, lever);
 }
 
 void rigid_sweep(const RigidWall *b, const PetscReal x0[3], const PetscReal x1[3], PetscReal swept[3])
 {
-  PetscReal middle[3], lever[3];
-  for (int d = 0; d < 3; ++d) middle[d] = (x0[d] + x1[d]) / 2;
-  own_lever(b, 0.5, middle, lever);
+  PetscReal lever[3];
+  rigid_lever(b, x0, x1, lever);
   cross(b->q + 3, lever, swept);
   for (int d = 0; d < 3; ++d) swept[d] += b->q[d];
 }
@@ -160,6 +158,7 @@ void rigid_begin(RigidWall *b, Walls *walls, const Case *c, PetscReal t, PetscRe
 {
   b->dt = case_is_static(&c->analysis) ? 0 : dt;
   b->share = share;
+  b->part = middle ? 0.5 : 1;
   b->now.step = dt;
   b->stands = wall_stands(walls, b->wall, t + dt);
   load_at(b, c, middle ? t + dt / 2 : t, b->load[0]);

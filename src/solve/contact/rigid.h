@@ -5,8 +5,8 @@
  *
  *   M (v1 - v) = dt F,  d = dt (v + v1) / 2;   R1 J W1 - R J W = dt T,  R1 = R cay(dt (W + W1) / 2),
  *
- * the torque T about the centre in the middle of the step: momentum, its moment and energy are exact for any
- * dt (Simo and Wong 1991). In statics forces and torques balance at the end. All ranks have the same numbers. */
+ * the torque T about the centre where forces act, at the step's end or in its middle: momentum and energy are exact
+ * for any dt, its moment with the midpoint rule (Simo and Wong 1991). In statics forces and torques balance at the end. All ranks have the same numbers. */
 #pragma once
 #include "wall/wall.h"
 
@@ -31,6 +31,7 @@ typedef struct {
   RigidState now, start; /* in the step, and as it began */
   PetscBool stands;      /* in this step */
   PetscReal dt, share;   /* dt 0: statics; share: the mean of contact over what the balance asks for */
+  PetscReal part;        /* of the step at which forces act: 1, in the midpoint rule 1/2 */
   PetscReal load[2][RIGID]; /* weight, force and torque at the step's start and end */
   PetscReal q[RIGID];       /* increments: translation d, and theta of cay(theta), m, rad */
   /* of contact on the material at the last assembly, over all ranks: forces and torques, and the sums of their
@@ -60,8 +61,8 @@ void rigid_place(const RigidWall *b, Walls *walls);
 /* Unknowns that it has: those free, while it stands. */
 static inline PetscBool rigid_has(const RigidWall *b, int i) { return b->stands && b->free[i]; }
 
-/* Of a contact point that goes from x0 to x1: lever about the centre in the middle of the step (statics: at its
- * end), and what the wall's matter there moves by. */
+/* Of a contact point that goes from x0 to x1: lever about the centre where forces act, and what the wall's matter
+ * moves by there: the work of contact is that of forces on d and of torques on theta. */
 void rigid_lever(const RigidWall *b, const PetscReal x0[3], const PetscReal x1[3], PetscReal lever[3]);
 void rigid_sweep(const RigidWall *b, const PetscReal x0[3], const PetscReal x1[3], PetscReal swept[3]);
 /* Position against the centre at the start, or at the end of the step, and velocity there. */
