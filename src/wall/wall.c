@@ -71,13 +71,6 @@ static void frame_of(const Walls *walls, PetscInt k, PetscReal t, Frame *frame)
   else frame_at(walls->c, walls->wall[k].spec, t, frame);
 }
 
-void wall_put(Walls *walls, PetscInt k, const PetscReal R[9], const PetscReal T[3])
-{
-  Frame *frame = &walls->wall[k].frame;
-  for (int i = 0; i < 9; ++i) frame->R[i] = R[i];
-  for (int d = 0; d < 3; ++d) frame->T[d] = T[d];
-}
-
 /* x in the frame of the wall at time t. */
 static void to_origin(const Walls *walls, Wall *wall, PetscReal t, const PetscReal *x, PetscReal X[3])
 {

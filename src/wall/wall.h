@@ -42,6 +42,11 @@ void wall_motion(const Walls *walls, PetscInt k, PetscReal t0, PetscReal t1, con
 /* Wall k, which has mass, is where x = R X + T of what stood at X at the start, whatever time is asked for. */
 void wall_put(Walls *walls, PetscInt k, const PetscReal R[9], const PetscReal T[3]);
 
+/* Where all walls are that have mass, as wall_put has it: R and T, 12 numbers each, in their order. */
+PetscInt walls_with_mass(const Case *c);
+void walls_get_frames(const Walls *walls, PetscReal *frames);
+void walls_put_frames(Walls *walls, const PetscReal *frames);
+
 /* What a rigid body is to its motion. */
 typedef struct {
   PetscReal mass;       /* kg */
