@@ -116,6 +116,7 @@ static PetscErrorCode WallsClear(Case *c)
     PetscCall(ShapeClear(&wall->shape));
     for (PetscInt k = 0; k < wall->n_motions; ++k) PetscCall(AmplitudeClear(&wall->motions[k].amplitude));
     PetscCall(PetscFree(wall->motions));
+    PetscCall(AmplitudeClear(&wall->mass.amplitude));
     PetscCall(StringsClear(wall->n_bodies, &wall->bodies));
   }
   PetscCall(PetscFree(c->walls));

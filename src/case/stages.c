@@ -12,6 +12,7 @@ static void shift_motion(MotionSpec *m, const PetscReal *start) { m->amplitude.o
 static void shift_wall(WallSpec *w, const PetscReal *start)
 {
   for (PetscInt k = 0; k < w->n_motions; ++k) shift_motion(&w->motions[k], start);
+  w->mass.amplitude.origin = start[w->mass.amplitude.since];
   if (w->from > 0) w->from += start[w->since];
   w->until += start[w->since];
 }

@@ -272,7 +272,7 @@ static void tell_ages(const YamlNode *root, Case *c)
   if (gravity) c->gravity_amplitude.since = gravity->stage;
   for (PetscInt i = 0; i < c->n_boundary; ++i) c->boundary[i].amplitude.since = boundary->child[i]->stage;
   for (PetscInt i = 0; i < c->n_walls; ++i) {
-    c->walls[i].since = walls->child[i]->stage;
+    c->walls[i].since = c->walls[i].mass.amplitude.since = walls->child[i]->stage;
     for (PetscInt k = 0; k < c->walls[i].n_motions; ++k) c->walls[i].motions[k].amplitude.since = c->walls[i].since;
   }
   for (PetscInt l = 0, n = 0; l < 3; ++l) {

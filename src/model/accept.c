@@ -142,6 +142,7 @@ PetscErrorCode ChooseNextStep(Model *m, PetscBool shortened, const StepReport *r
     for (PetscInt d = 0; d < m->dim; ++d) square += v[d] * v[d];
     fastest = PetscMax(fastest, square);
   }
+  fastest = PetscMax(fastest, PetscSqr(rigid_fastest(m)));
   PetscCall(MPIU_Allreduce(&fastest, &speed, 1, MPIU_REAL, MPIU_MAX, m->comm));
   const StepTaken taken = {.dt = report->dt,
                            .iterations = report->newton.iterations,

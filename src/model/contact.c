@@ -43,7 +43,8 @@ PetscErrorCode WallsStart(Model *m, Diag *diag)
   PetscFunctionBeginUser;
   if (!m->c->n_walls && !m->c->n_interfaces) PetscFunctionReturn(0);
   PetscCall(WallsCreate(m->c, diag, &m->walls));
-  PetscCall(ContactCreate(m->c, m->walls, &m->contact));
+  PetscCall(ContactCreate(m->c, m->walls, diag, &m->contact));
+  rigid_check(m, diag);
   PetscCall(InterfacesStart(m, diag));
   for (PetscInt k = 0; k < m->c->n_walls; ++k) {
     struct {
@@ -73,6 +74,7 @@ static ContactMotion motion_of(const Model *m, PetscReal *motion, PetscReal dt, 
                          .mass = m->nodes->mass,
                          .fixed = m->nodes->fixed,
                          .motion = motion,
+                         .du = m->nodes->du,
                          .rate = 1 / dt,
                          .pulls = !start,
                          .start = start};
@@ -107,6 +109,8 @@ PetscErrorCode ContactHold(Model *m, PetscReal dt, PetscReal inertia)
   PetscFunctionBeginUser;
   if (!m->contact) PetscFunctionReturn(0);
   contact_prepare(m->contact, m->time, dt, inertia, share_of_force(m));
+  for (RigidWall *b = m->contact->rigid; b < m->contact->rigid + m->contact->n_rigid; ++b)
+    rigid_begin(b, m->walls, m->c, m->time, dt, share_of_force(m), m->scheme->middle);
   if (!holds(m)) PetscFunctionReturn(0);
   const ContactMotion a = motion_of(m, m->nodes->a, dt, PETSC_TRUE), v = motion_of(m, m->nodes->v, dt, PETSC_TRUE);
   const PetscReal lag = m->scheme->weights(&m->c->analysis, dt).lag;
@@ -123,6 +127,7 @@ PetscErrorCode ContactEnd(Model *m, PetscReal dt, EnergyStep *energy)
   Contact *s = m->contact;
 
   PetscFunctionBeginUser;
+  for (PetscInt k = 0; s && k < s->n_rigid; ++k) rigid_end(s->rigid + k);
   if (!s || !holds(m)) PetscFunctionReturn(0);
   const ContactMotion end = motion_of(m, m->nodes->v1, dt, PETSC_FALSE);
   PetscCall(ContactProject(s, &end, s->impulse));
@@ -162,6 +167,7 @@ ContactWork contact_work(const Model *m)
   ContactWork sum = {0};
   for (PetscInt k = 0; s && k < s->n; ++k) {
     const ContactWork work = point_work(m, s->point + k);
+    if (contact_rigid(s, s->point + k)) sum.rigid += work.moving;
     sum.start += work.start;
     sum.moving += work.moving;
     sum.sliding += work.sliding;
@@ -252,6 +258,17 @@ static PetscErrorCode Release(Model *m, PetscReal dt)
   PetscFunctionReturn(0);
 }
 
+/* A wall with mass has lost what the material got, to the last bit: also where that got it by the force of
+ * the last step on what has gone away since. */
+static void settle(Model *m, PetscReal dt)
+{
+  for (RigidWall *b = m->contact->rigid; b < m->contact->rigid + m->contact->n_rigid; ++b) {
+    PetscReal p[RIGID] = {0, 0, 0, 0, 0, 0};
+    for (int d = 0; d < 3; ++d) p[d] = b->given[d] - dt * m->contact->wall[b->wall].mean.force[d];
+    if (m->scheme->inertia) rigid_push(b, p);
+  }
+}
+
 /* As reactions of the boundary (accept.c): over the step the scheme weighs the forces of both ends,
  * and impulses count besides. */
 PetscErrorCode ContactForces(Model *m, PetscReal dt)
@@ -286,6 +303,7 @@ PetscErrorCode ContactForces(Model *m, PetscReal dt)
     } else add(&wall->mean, 1, now + k);
   }
   PetscCall(PetscFree(now));
+  settle(m, dt);
   PetscCall(Survey(m));
   PetscCall(Release(m, dt));
   PetscFunctionReturn(0);

@@ -53,6 +53,8 @@ void guess_make(const Model *m, FirstGuess guess, PetscReal dt, PetscReal *du)
 {
   const NodalFields *n = m->nodes;
   const PetscInt dofs = m->grid->n_nodes * m->dim;
+  for (PetscInt k = 0; m->contact && k < m->contact->n_rigid; ++k)
+    rigid_guess(m->contact->rigid + k, m->walls, guess == GUESS_PREVIOUS);
   if (guess == GUESS_REST) {
     for (PetscInt i = 0; i < dofs; ++i) du[i] = 0;
     return;

@@ -152,6 +152,17 @@ PetscErrorCode WallsStart(Model *model, Diag *diag);
 /* start/interfaces.c. Collective. What no interfaces can be made of, and bodies that go through each
  * other at the start. */
 PetscErrorCode InterfacesStart(Model *model, Diag *diag);
+/* rigid.c. What walls with mass cannot do; energies of theirs, J, the same on all ranks: of motion, and work of
+ * weight and loads since the start. */
+void rigid_check(const Model *model, Diag *diag);
+PetscReal rigid_motion(const Model *model);
+PetscReal rigid_work(const Model *model);
+/* What impulses took from them in the last step, J. */
+PetscReal rigid_lost(const Model *model);
+/* Back to the step's start. */
+void rigid_back(Model *model);
+/* Fastest of their centres, m/s. */
+PetscReal rigid_fastest(const Model *model);
 /* Does a wall or an interface of the case rub? Then tangents are not symmetric. */
 PetscBool contact_rubs(const Case *c);
 /* Collective, in PrepareStep: what is in contact starts the step with the motion of its wall. */
@@ -163,6 +174,7 @@ PetscErrorCode ContactEnd(Model *model, PetscReal dt, struct EnergyStep *energy)
  * trapezoidal rule with no force at the start gives. */
 typedef struct {
   PetscReal moving, sliding, closing, start, more;
+  PetscReal rigid; /* what of `moving` is that of walls with mass */
 } ContactWork;
 
 /* On this rank. */

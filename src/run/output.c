@@ -157,11 +157,14 @@ PetscErrorCode OutputState(Output *o, MPI_Comm comm, const char *name, const Vtk
 
 static PetscErrorCode WritePoints(Output *o, Model *m, PetscBool *ok, char reason[256])
 {
+  const PetscInt n_frames = walls_with_mass(m->c);
   VtkField fields[MAX_FIELDS];
-  PetscReal *data[MAX_FIELDS], *x;
+  PetscReal *data[MAX_FIELDS], *x, *frames;
   PetscInt n = 0;
 
   PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(12 * n_frames, &frames));
+  if (n_frames) walls_get_frames(m->walls, frames);
   PetscCall(PetscMalloc1(count_numbers(m->points->n, 3), &x));
   widen(m->points->n, m->dim, m->points->real[POINT_X], x);
   for (const OutputField *f = output_fields; f->name && n < MAX_FIELDS; ++f) {
@@ -179,10 +182,13 @@ static PetscErrorCode WritePoints(Output *o, Model *m, PetscBool *ok, char reaso
                        .n_point_fields = n,
                        .point_fields = fields,
                        .point_id = m->points->id,
-                       .time = m->time};
+                       .time = m->time,
+                       .n_frames = n_frames,
+                       .frames = frames};
   PetscCall(OutputState(o, m->comm, "points", &vtk, &o->seals[o->count].points, ok, reason));
   for (PetscInt f = 0; f < n; ++f) PetscCall(PetscFree(data[f]));
   PetscCall(PetscFree(x));
+  PetscCall(PetscFree(frames));
   PetscFunctionReturn(0);
 }
 

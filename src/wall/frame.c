@@ -1,4 +1,4 @@
-#include "wall/frame.h"
+#include "wall/wall_private.h"
 #include "base/math/tensor.h"
 #include "case/motion.h"
 
@@ -86,4 +86,35 @@ void frame_increment(const Case *c, const WallSpec *wall, PetscReal t0, PetscRea
                      PetscReal increment[3])
 {
   increment_of(c, wall, wall->n_motions, t0, t1, x, increment);
+}
+
+PetscInt walls_with_mass(const Case *c)
+{
+  PetscInt n = 0;
+  for (PetscInt k = 0; k < c->n_walls; ++k) n += c->walls[k].has_mass;
+  return n;
+}
+
+void wall_put(Walls *walls, PetscInt k, const PetscReal R[9], const PetscReal T[3])
+{
+  Frame *frame = &walls->wall[k].frame;
+  for (int i = 0; i < 9; ++i) frame->R[i] = R[i];
+  for (int d = 0; d < 3; ++d) frame->T[d] = T[d];
+}
+
+void walls_get_frames(const Walls *walls, PetscReal *frames)
+{
+  for (PetscInt k = 0; k < walls->c->n_walls; ++k) {
+    if (!walls->wall[k].spec->has_mass) continue;
+    for (int i = 0; i < 12; ++i) *frames++ = i < 9 ? walls->wall[k].frame.R[i] : walls->wall[k].frame.T[i - 9];
+  }
+}
+
+void walls_put_frames(Walls *walls, const PetscReal *frames)
+{
+  for (PetscInt k = 0; k < walls->c->n_walls; ++k) {
+    if (!walls->wall[k].spec->has_mass) continue;
+    wall_put(walls, k, frames, frames + 9);
+    frames += 12;
+  }
 }

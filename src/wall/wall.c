@@ -1,23 +1,7 @@
-#include "wall/wall.h"
+#include "wall/wall_private.h"
 #include <math.h>
 #include "wall/check.h"
-#include "wall/form.h"
-#include "wall/frame.h"
 #include "wall/mesh.h"
-
-typedef struct {
-  const WallSpec *spec;
-  Form *form;
-  /* where it was when somebody asked last: most questions are of one time */
-  PetscReal asked;
-  Frame frame;
-} Wall;
-
-struct Walls {
-  const Case *c;
-  PetscInt dim;
-  Wall *wall;
-};
 
 PetscErrorCode WallsCreate(const Case *c, Diag *diag, Walls **walls)
 {
@@ -35,6 +19,7 @@ PetscErrorCode WallsCreate(const Case *c, Diag *diag, Walls **walls)
     PetscCall(FormCreate(&wall->spec->shape, (*walls)->dim, c->kinematics->hoop, path, diag, &wall->form));
     if (wall->form) wall_check(c, wall->spec, wall->form, path, diag);
     wall->asked = NAN;
+    wall->frame = (Frame){.R = {1, 0, 0, 0, 1, 0, 0, 0, 1}};
   }
   PetscFunctionReturn(0);
 }
@@ -78,15 +63,23 @@ PetscReal walls_until_change(const Walls *walls, PetscReal t)
   return next;
 }
 
+static PetscBool moves(const Wall *wall) { return wall->spec->n_motions > 0 || wall->spec->has_mass; }
+
+static void frame_of(const Walls *walls, PetscInt k, PetscReal t, Frame *frame)
+{
+  if (walls->wall[k].spec->has_mass) *frame = walls->wall[k].frame;
+  else frame_at(walls->c, walls->wall[k].spec, t, frame);
+}
+
 /* x in the frame of the wall at time t. */
 static void to_origin(const Walls *walls, Wall *wall, PetscReal t, const PetscReal *x, PetscReal X[3])
 {
   PetscReal at[3] = {x[0], x[1], walls->dim == 3 ? x[2] : 0};
-  if (!wall->spec->n_motions) {
+  if (!moves(wall)) {
     for (int d = 0; d < 3; ++d) X[d] = at[d];
     return;
   }
-  if (t != wall->asked) frame_at(walls->c, wall->spec, t, &wall->frame);
+  if (t != wall->asked && !wall->spec->has_mass) frame_at(walls->c, wall->spec, t, &wall->frame);
   wall->asked = t;
   frame_origin(&wall->frame, at, X);
 }
@@ -94,7 +87,7 @@ static void to_origin(const Walls *walls, Wall *wall, PetscReal t, const PetscRe
 static void from_origin(const Wall *wall, WallPlace *place)
 {
   const WallPlace own = *place;
-  if (!wall->spec->n_motions) return;
+  if (!moves(wall)) return;
   frame_turn(&wall->frame, own.normal, place->normal);
   frame_turn_tensor(&wall->frame, own.curvature, place->curvature);
 }
@@ -151,7 +144,7 @@ void wall_bounds(const Walls *walls, PetscInt k, PetscReal t, PetscReal min[3], 
                   half = form && form->thin ? walls->c->walls[k].thickness / 2 : 0;
   PetscBool endless = PETSC_FALSE;
   Frame frame;
-  frame_at(walls->c, walls->c->walls + k, t, &frame);
+  frame_of(walls, k, t, &frame);
   for (int d = 0; d < 3; ++d) {
     endless |= own[d] <= -PETSC_MAX_REAL || own[d + 3] >= PETSC_MAX_REAL;
     min[d] = PETSC_MAX_REAL, max[d] = -PETSC_MAX_REAL;
@@ -166,16 +159,14 @@ void wall_bounds(const Walls *walls, PetscInt k, PetscReal t, PetscReal min[3], 
     }
   }
   for (int d = 0; d < 3 && endless; ++d) {
-    const PetscBool moves = walls->c->walls[k].n_motions > 0;
-    min[d] = moves ? -PETSC_MAX_REAL : own[d];
-    max[d] = moves ? PETSC_MAX_REAL : own[d + 3];
+    min[d] = moves(walls->wall + k) ? -PETSC_MAX_REAL : own[d];
+    max[d] = moves(walls->wall + k) ? PETSC_MAX_REAL : own[d + 3];
   }
 }
 
 /* Of a wall that moves all is looked at that may come into view. */
 PetscErrorCode WallMeshAdd(const Walls *walls, PetscInt k, PetscReal t, const WallView *view, WallMesh *mesh)
 {
-  const WallSpec *spec = walls->c->walls + k;
   const PetscInt first = mesh->n;
   PetscReal min[3], max[3], centre[3] = {0, 0, 0}, reach = 0;
   WallView own = *view;
@@ -183,14 +174,14 @@ PetscErrorCode WallMeshAdd(const Walls *walls, PetscInt k, PetscReal t, const Wa
 
   PetscFunctionBeginUser;
   if (!walls->wall[k].form) PetscFunctionReturn(0);
-  frame_at(walls->c, spec, t, &frame);
+  frame_of(walls, k, t, &frame);
   for (PetscInt d = 0; d < walls->dim; ++d) {
     centre[d] = (view->min[d] + view->max[d]) / 2;
     reach += (view->max[d] - view->min[d]) / 2;
   }
   frame_origin(&frame, centre, centre);
   for (int d = 0; d < 3; ++d) min[d] = centre[d] - reach, max[d] = centre[d] + reach;
-  if (spec->n_motions) own.min = min, own.max = max;
+  if (moves(walls->wall + k)) own.min = min, own.max = max;
   PetscCall(FormMesh(walls->wall[k].form, &own, mesh));
   for (PetscInt i = first; i < mesh->n; ++i) {
     mesh->wall[i] = (PetscReal)k;

@@ -39,5 +39,25 @@ int wall_side(const Walls *walls, PetscInt k, PetscReal t, const PetscReal *x);
 /* What the wall's matter that is at x at t0 moves by until t1, m. */
 void wall_motion(const Walls *walls, PetscInt k, PetscReal t0, PetscReal t1, const PetscReal *x,
                  PetscReal increment[3]);
+/* Wall k, which has mass, is where x = R X + T of what stood at X at the start, whatever time is asked for. */
+void wall_put(Walls *walls, PetscInt k, const PetscReal R[9], const PetscReal T[3]);
+
+/* Where all walls are that have mass, as wall_put has it: R and T, 12 numbers each, in their order. */
+PetscInt walls_with_mass(const Case *c);
+void walls_get_frames(const Walls *walls, PetscReal *frames);
+void walls_put_frames(Walls *walls, const PetscReal *frames);
+
+/* What a rigid body is to its motion. */
+typedef struct {
+  PetscReal mass;       /* kg */
+  PetscReal centre[3];  /* of mass, at the start, m */
+  PetscReal inertia[9]; /* about it, kg m2, 3 x 3; in the plane [8] counts */
+} WallInertia;
+
+/* Of the shape of wall k filled with matter of density 1 (inertia.c). PETSC_FALSE: it has no such volume, or one
+ * that is not known here. */
+PetscBool wall_volume(const Walls *walls, PetscInt k, WallInertia *inertia);
+/* Of wall k as its case asks for it; what is missing is a mistake. */
+void wall_inertia(const Walls *walls, PetscInt k, Diag *diag, WallInertia *inertia);
 /* The box around wall k at time t; PETSC_MAX_REAL, with a sign, where it has no end. */
 void wall_bounds(const Walls *walls, PetscInt k, PetscReal t, PetscReal min[3], PetscReal max[3]);

@@ -211,7 +211,7 @@ typedef PetscErrorCode SchemaCheck(SchemaReader *r, const YamlNode *mapping, voi
 extern SchemaCheck SchemaCheckAnalysis, SchemaCheckReduction, SchemaCheckUntil, SchemaCheckBox, SchemaCheckGrid,
   SchemaCheckShapeBox, SchemaCheckShape, SchemaCheckHalfSpace, SchemaCheckCylinder, SchemaCheckCone, SchemaCheckDisk,
   SchemaCheckTerrain, SchemaCheckArc, SchemaCheckBody, SchemaCheckSelector, SchemaCheckMotion, SchemaCheckWall,
-  SchemaCheckWallMotion, SchemaCheckInterface, SchemaCheckLoads;
+  SchemaCheckWallMotion, SchemaCheckWallMass, SchemaCheckInterface, SchemaCheckLoads;
 /* Materials take the parameters of their law (schema_material.c). */
 PetscErrorCode SchemaOpenMaterial(SchemaReader *r, const YamlNode *mapping, void *target);
 PetscErrorCode SchemaWriteMaterial(FILE *out, int indent, const Case *c, const void *source);

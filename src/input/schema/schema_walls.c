@@ -39,6 +39,38 @@ static const SchemaTable wall_motion = {.name = "motion of a wall",
                                         .tag_offset = offsetof(MotionSpec, kind),
                                         .check = SchemaCheckWallMotion};
 
+static const SchemaWord free_words[] = {
+  {"x", 0, "along x"}, {"y", 1, "along y"}, {"z", 2, "along z"}, {"rotation", 3, "about its centre"}, {NULL, 0, NULL},
+};
+
+static const SchemaEntry mass_entries[] = {
+  KEY("density", NUMBER, "kg/m3", "of the shape, filled", ABOVE(0), AT(WallMassSpec, density),
+      GIVEN(WallMassSpec, has_density)),
+  KEY("mass", NUMBER, "kg", "the mass instead; in plane strain of a metre of depth, in axisymmetry of the whole ring",
+      ABOVE(0), AT(WallMassSpec, total), GIVEN(WallMassSpec, has_total)),
+  KEY("centre", VECTOR, "m", "centre of mass at the start", .note = "that of the shape", AT(WallMassSpec, centre),
+      GIVEN(WallMassSpec, has_centre)),
+  KEY("inertia", SPIN, "kg m2", "moments of inertia about the centre: one in the plane, of the three axes in space",
+      .note = "those of the shape", TURNS, AT(WallMassSpec, inertia), GIVEN(WallMassSpec, has_inertia)),
+  KEY("gravity", BOOLEAN, NULL, "does `loads: gravity` act on it?", .fallback = "true", AT(WallMassSpec, gravity)),
+  KEY("velocity", VECTOR, "m/s", "of the centre at the start", .note = "0", AT(WallMassSpec, velocity)),
+  KEY("spin", SPIN, "rad/s", "at the start", .note = "0", TURNS, AT(WallMassSpec, spin)),
+  KEY("free", FLAGS, NULL, "how it may move", .note = "all: [x, y, z, rotation], in axisymmetry [y]",
+      .words = free_words, AT(WallMassSpec, free)),
+  KEY("force", VECTOR, "N", "at its centre, besides gravity", .note = "0", AT(WallMassSpec, force)),
+  KEY("torque", SPIN, "N m", "besides", .note = "0", TURNS, AT(WallMassSpec, torque)),
+  KEY("amplitude", AMPLITUDE, NULL, "of force and torque, a factor over time",
+      .note = "time / end in statics, 1 in dynamics", AT(WallMassSpec, amplitude)),
+  {.key = NULL},
+};
+static const SchemaGroup mass_groups[] = {{GROUP_ONE, {"density", "mass", NULL}}, {GROUP_NONE, {NULL}}};
+static const SchemaTable wall_mass = {.name = "mass of a wall",
+                                      .help = "A wall that moves by what acts on it: contact, weight, a load.",
+                                      .entries = mass_entries,
+                                      .groups = mass_groups,
+                                      .size = sizeof(WallMassSpec),
+                                      .check = SchemaCheckWallMass};
+
 static const SchemaEntry wall_entries[] = {
   KEY("name", NAME, NULL, "how `measures` and messages call it", REQUIRED, AT(WallSpec, name)),
   KEY("shape", TABLE, NULL, "where the wall is", .table = &schema_wall_shape, REQUIRED, AT(WallSpec, shape)),
@@ -50,6 +82,8 @@ static const SchemaEntry wall_entries[] = {
       "how it moves; each entry moves what those before it have made: [rotation about its own "
       "centre, then velocity] rolls",
       .table = &wall_motion, AT(WallSpec, motions), .count = offsetof(WallSpec, n_motions)),
+  KEY("mass", TABLE, NULL, "the wall moves by what acts on it, in place of `motion`", .table = &wall_mass,
+      AT(WallSpec, mass), GIVEN(WallSpec, has_mass)),
   KEY("from", NUMBER, "s", "it stands only after this time, if it is not 0; a step ends there", .fallback = "0",
       AT_LEAST(0), AT(WallSpec, from)),
   KEY("until", NUMBER, "s", "and up to this one, where a step ends, too: a gate that vanishes", .note = "for ever",
@@ -96,6 +130,33 @@ static void check_contact(SchemaReader *r, const YamlNode *mapping, ContactKind 
                 "%s: friction and adhesion mean something with `contact: friction` alone", path);
 }
 
+/* Not given: all that there is. */
+PetscErrorCode SchemaCheckWallMass(SchemaReader *r, const YamlNode *mapping, void *target)
+{
+  WallMassSpec *m = target;
+  const YamlNode *given = yaml_find(mapping, "free");
+  const PetscBool can[] = {!r->hoop, PETSC_TRUE, r->dim == 3, !r->hoop};
+  char path[512];
+
+  PetscFunctionBeginUser;
+  for (int k = 0; k < 4 && r->dim; ++k) {
+    if (given && m->free[k] && !can[k])
+      SchemaError(r, given, "%s: '%s' is no motion that a rigid wall has in these kinematics",
+                  yaml_path(given, path, sizeof path), free_words[k].word);
+    if (!given) m->free[k] = can[k];
+    const PetscReal start = k < 3 ? m->velocity[k] : fabs(m->spin[0]) + fabs(m->spin[1]) + fabs(m->spin[2]);
+    const YamlNode *moves = yaml_find(mapping, k < 3 ? "velocity" : "spin");
+    if (!m->free[k] && start != 0)
+      SchemaError(r, moves, "%s: it moves at the start as it is not free to (`free`: %s)",
+                  yaml_path(moves, path, sizeof path), free_words[k].word);
+  }
+  const YamlNode *inertia = yaml_find(mapping, "inertia");
+  for (int d = r->dim == 2 ? 2 : 0; d < 3 && inertia; ++d)
+    if (m->inertia[d] <= 0)
+      SchemaError(r, inertia, "%s must be > 0", yaml_path(inertia, path, sizeof path));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode SchemaCheckWall(SchemaReader *r, const YamlNode *mapping, void *target)
 {
   WallSpec *w = target;
@@ -111,6 +172,9 @@ PetscErrorCode SchemaCheckWall(SchemaReader *r, const YamlNode *mapping, void *t
   if (w->thickness > 0 && solid)
     SchemaError(r, yaml_find(mapping, "thickness"), "%s.thickness: a shape that has an inside is as thick as it is",
                 path);
+  if (w->has_mass && w->n_motions)
+    SchemaError(r, yaml_find(mapping, "motion"),
+                "%s.motion: a wall with `mass` moves by what acts on it, and by nothing else", path);
   if (w->has_until && w->until <= w->from)
     SchemaError(r, yaml_find(mapping, "until"), "%s.until must be later than `from`, %g s", path, (double)w->from);
   check_contact(r, mapping, &w->contact, &w->friction, w->adhesion, path);

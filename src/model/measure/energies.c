@@ -41,9 +41,12 @@ static PetscReal dissipated(const Model *m, const MeasureSpec *s, PetscInt body)
 
 static PetscErrorCode External(Model *m, const MeasureSpec *s, PetscInt index, PetscReal *value)
 {
+  Energies e;
+
   (void)s, (void)index;
   PetscFunctionBeginUser;
-  *value = m->external_work + m->boundary_work;
+  PetscCall(ModelEnergies(m, &e));
+  *value = e.external + e.boundary;
   PetscFunctionReturn(0);
 }
 

@@ -139,6 +139,7 @@ PetscErrorCode EnergyStart(Model *m)
   }
   local[0] = points_kinetic(m) + points_work(m);
   PetscCall(MPIU_Allreduce(local, sum, 2, MPIU_REAL, MPI_SUM, m->comm));
+  sum[0] += rigid_motion(m);
   m->start_energy = m->most_energy = sum[0];
   m->least_energy = sum[1];
   PetscFunctionReturn(0);
@@ -305,7 +306,7 @@ PetscErrorCode EnergyOfNodes(Model *m, PetscReal dt, EnergyStep *e)
   }
   e->friction = contact.sliding;
   held += contact.moving;
-  e->boundary = held + impulse;
+  e->boundary = held + impulse - contact.rigid;
   e->transfer = impulse - unbalanced + transfer_of_nodes(m, dt, e, held);
   e->transfer -= m->method->restores_grid ? contact.more : contact.closing;
   e->numerical = numerical_damping(m, dt) + contact.more;
@@ -332,10 +333,10 @@ PetscErrorCode EnergyClose(Model *m, EnergyStep *e)
   m->external_work += sum[0];
   m->boundary_work += sum[1];
   m->damped_energy += sum[2];
-  m->transfer_energy += sum[3];
+  m->transfer_energy += sum[3] + rigid_lost(m);
   m->friction_energy += sum[4];
   m->numerical_energy += sum[5];
-  m->most_energy = PetscMax(m->most_energy, m->start_energy + m->external_work + m->boundary_work);
+  m->most_energy = PetscMax(m->most_energy, m->start_energy + m->external_work + m->boundary_work + rigid_work(m));
   PetscFunctionReturn(0);
 }
 
@@ -352,10 +353,10 @@ PetscErrorCode ModelEnergies(Model *m, Energies *e)
   PetscFunctionBeginUser;
   for (PetscInt p = 0; p < m->points->n; ++p) local[1] += m->points->real[POINT_VOLUME][p] * model_point_energy(m, p);
   PetscCall(MPIU_Allreduce(local, sum, 3, MPIU_REAL, MPI_SUM, m->comm));
-  *e = (Energies){.kinetic = sum[0],
+  *e = (Energies){.kinetic = sum[0] + rigid_motion(m),
                   .elastic = sum[1],
                   .dissipated = sum[2] - sum[1],
-                  .external = m->external_work,
+                  .external = m->external_work + rigid_work(m),
                   .boundary = m->boundary_work,
                   .damped = m->damped_energy,
                   .transfer = m->transfer_energy,

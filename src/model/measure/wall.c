@@ -1,4 +1,5 @@
 /* What walls do to the material, and bodies to each other. */
+#include <math.h>
 #include <string.h>
 #include "model/measure/measure.h"
 
@@ -30,6 +31,60 @@ static PetscErrorCode Torque(Model *m, const MeasureSpec *s, PetscInt index, Pet
   PetscFunctionBeginUser;
   *value = mean->torque[k];
   if (s->has_about) *value -= s->about[i] * mean->force[j] - s->about[j] * mean->force[i];
+  PetscFunctionReturn(0);
+}
+
+/* Of a wall with mass; one without any has no such motion: nan. */
+static const RigidWall *rigid_of_measure(const Model *m, const MeasureSpec *s)
+{
+  return rigid_of(m->contact->rigid, m->contact->n_rigid, (PetscInt)(wall_of(m, s) - m->contact->wall));
+}
+
+static PetscErrorCode Position(Model *m, const MeasureSpec *s, PetscInt index, PetscReal *value)
+{
+  const RigidWall *b = rigid_of_measure(m, s);
+
+  (void)index;
+  PetscFunctionBeginUser;
+  *value = b ? b->body.centre[s->component] + b->now.moved[s->component] : NAN;
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode Velocity(Model *m, const MeasureSpec *s, PetscInt index, PetscReal *value)
+{
+  const RigidWall *b = rigid_of_measure(m, s);
+
+  (void)index;
+  PetscFunctionBeginUser;
+  *value = b ? b->now.v[s->component] : NAN;
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode Angle(Model *m, const MeasureSpec *s, PetscInt index, PetscReal *value)
+{
+  const RigidWall *b = rigid_of_measure(m, s);
+
+  (void)index;
+  PetscFunctionBeginUser;
+  *value = b ? b->now.turned[m->dim == 2 ? 2 : s->component] : NAN;
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode Spin(Model *m, const MeasureSpec *s, PetscInt index, PetscReal *value)
+{
+  static const PetscReal nowhere[3] = {0, 0, 0};
+  const RigidWall *b = rigid_of_measure(m, s);
+  const PetscInt k = m->dim == 2 ? 2 : s->component;
+  PetscReal arm[3] = {0, 0, 0}, v[3], still[3];
+
+  (void)index;
+  PetscFunctionBeginUser;
+  *value = NAN;
+  if (!b) PetscFunctionReturn(0);
+  arm[(k + 1) % 3] = 1; /* which goes along the axis behind it by the spin about k */
+  rigid_velocity(b, arm, v);
+  rigid_velocity(b, nowhere, still);
+  *value = v[(k + 2) % 3] - still[(k + 2) % 3];
   PetscFunctionReturn(0);
 }
 
@@ -153,3 +208,20 @@ const Measure measure_contact = {.key = "contact",
                                  .number = {.help = "contact with a wall"},
                                  .words = words,
                                  .remember = RememberTraction};
+const Measure measure_wall_position = {
+  .key = "wall_position",
+  .number = {.unit = "m", .help = "centre of mass of a wall that has `mass`", .of = OF_WALL, .value = Position}};
+const Measure measure_wall_velocity = {
+  .key = "wall_velocity",
+  .number = {.unit = "m/s", .help = "velocity of the centre of a wall that has `mass`", .of = OF_WALL, .value = Velocity}};
+const Measure measure_wall_angle = {
+  .key = "wall_angle",
+  .takes = MEASURE_SPIN_AXIS,
+  .number = {.unit = "rad",
+             .help = "by which a wall that has `mass` has turned since the start: in space the sum of its steps",
+             .of = OF_WALL,
+             .value = Angle}};
+const Measure measure_wall_spin = {
+  .key = "wall_spin",
+  .takes = MEASURE_SPIN_AXIS,
+  .number = {.unit = "rad/s", .help = "angular velocity of a wall that has `mass`", .of = OF_WALL, .value = Spin}};

@@ -26,6 +26,9 @@ typedef struct {
   const VtkField *point_fields, *cell_fields;
   const PetscInt64 *point_id; /* field "id", or NULL */
   PetscReal time;             /* s, kept as an attribute too */
+  /* n_frames x 12, of rank 0: where walls with mass are, R (3 x 3) and T of x = R X + T: FieldData/WallFrames */
+  PetscInt n_frames;
+  const PetscReal *frames;
 } VtkData;
 
 /* Collective. Errors of the file system (full disk, no permission) come back as

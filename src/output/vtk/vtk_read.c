@@ -293,3 +293,17 @@ PetscErrorCode VtkCellsFree(VtkCells *cells)
   cells->n = 0;
   PetscFunctionReturn(0);
 }
+
+PetscBool vtk_read_frames(const VtkFile *file, PetscInt n, PetscReal *frames)
+{
+  PetscInt numbers = 0;
+  PetscBool ok = PETSC_FALSE;
+  H5E_BEGIN_TRY
+  {
+    if (dataset_rows(file->root, "FieldData/WallFrames", file->bytes, &numbers) == n && numbers == 12)
+      ok = dataset_read(file->root, "FieldData/WallFrames", H5T_NATIVE_DOUBLE, 12 * n, frames);
+  }
+  H5E_END_TRY
+  for (PetscInt i = 0; i < 12 * n && ok; ++i) ok = PetscAbsReal(frames[i]) < 1e30;
+  return ok;
+}

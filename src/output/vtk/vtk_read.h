@@ -24,6 +24,9 @@ PetscErrorCode VtkReadCoordinates(VtkFile *file, PetscReal **x, char reason[256]
 /* points x components of one of vtk_read_fields */
 PetscErrorCode VtkReadField(VtkFile *file, const VtkFieldInfo *field, PetscReal **data, char reason[256]);
 
+/* The n frames of walls (12 numbers each) that were written with it; PETSC_FALSE if there are not so many. */
+PetscBool vtk_read_frames(const VtkFile *file, PetscInt n, PetscReal *frames);
+
 /* Cells: node numbers are those of the joined points. */
 typedef struct {
   PetscInt n, *start, *node; /* start: n + 1 entries */

@@ -70,6 +70,18 @@ static void mirror_points(PlotFrame *f)
   }
 }
 
+/* Where walls are that move by what acts on them. */
+static PetscErrorCode TakeWalls(const VtkFile *file, const PlotScene *scene, PlotFrame *f)
+{
+  const PetscInt n = scene->walled && scene->walls ? walls_with_mass(scene->walled) : 0;
+
+  PetscFunctionBeginUser;
+  if (!n) PetscFunctionReturn(0);
+  PetscCall(PetscMalloc1(12 * n, &f->walls));
+  if (!vtk_read_frames(file, n, f->walls)) PetscCall(PetscFree(f->walls));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode PlotFrameRead(VtkFile *file, const VtkFieldInfo *field, const PlotScalar *scalar, PlotScene *scene,
                              char reason[256])
 {
@@ -84,6 +96,7 @@ PetscErrorCode PlotFrameRead(VtkFile *file, const VtkFieldInfo *field, const Plo
     take_points(scene, f, n, x, scalar, field->components, data);
     if (scene->mirrored) mirror_points(f);
     PetscCall(TakeFirst(file, scene, n, x, f));
+    PetscCall(TakeWalls(file, scene, f));
     ++scene->n_frames;
     PetscCall(PetscFree(data));
   }
@@ -203,6 +216,7 @@ PetscErrorCode PlotFramesFree(PlotScene *scene)
     PetscCall(PetscFree3(f->x, f->value, f->radius));
     PetscCall(PetscFree3(f->corner, f->corner_value, f->side));
     PetscCall(PetscFree2(f->first, f->first_radius));
+    PetscCall(PetscFree(f->walls));
     PetscCall(PetscFree(f->first_corner));
     PetscCall(PetscFree(f->part));
     PetscCall(PetscFree(f->line));

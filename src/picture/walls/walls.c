@@ -46,13 +46,15 @@ static void extend(PlotScene *scene, int d, PetscReal low, PetscReal high)
 void plot_walls_extend(PlotScene *scene)
 {
   if (!scene->walls || scene->turned) return;
-  for (PetscInt f = 0; f < scene->n_frames; ++f)
+  for (PetscInt f = 0; f < scene->n_frames; ++f) {
+    if (scene->frames[f].walls) walls_put_frames(scene->walls, scene->frames[f].walls);
     for (PetscInt k = 0; k < scene->walled->n_walls; ++k) {
       PetscReal min[3], max[3];
       if (!wall_stands(scene->walls, k, scene->frames[f].time)) continue;
       wall_bounds(scene->walls, k, scene->frames[f].time, min, max);
       for (int d = 0; d < scene->dim; ++d) extend(scene, d, min[d], max[d]);
     }
+  }
   if (scene->mirrored) scene->box_min[0] = -scene->box_max[0];
 }
 
@@ -75,6 +77,7 @@ void plot_walls_draw(const PlotScene *scene, const PlotFrame *frame, const PlotP
 {
   const PetscReal pixel = (page->max[0] - page->min[0]) / page->w;
   if (!scene->walls || scene->dim != 2) return;
+  if (frame->walls) walls_put_frames(scene->walls, frame->walls);
   for (int row = 0; row < page->h; ++row)
     for (int column = 0; column < page->w; ++column, rgba += 4) {
       PetscReal x[2] = {page->min[0] + (column + 0.5) * pixel, page->min[1] + (row + 0.5) * pixel}, fill, line;

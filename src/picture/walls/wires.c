@@ -108,6 +108,7 @@ PetscErrorCode PlotWallsLines(PlotScene *scene)
   for (PetscInt k = 0; k < scene->n_frames; ++k) {
     PlotFrame *f = &scene->frames[k];
     WallMesh mesh = {.dim = 3};
+    if (f->walls) walls_put_frames(scene->walls, f->walls);
     for (PetscInt w = 0; w < scene->walled->n_walls; ++w)
       if (wall_stands(scene->walls, w, f->time)) PetscCall(WallMeshAdd(scene->walls, w, f->time, &view, &mesh));
     PetscCall(TakeLines(scene, &mesh, view.size / FINENESS, f));

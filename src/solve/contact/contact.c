@@ -1,4 +1,5 @@
 #include "solve/contact/contact.h"
+#include <string.h>
 
 /* Penalty of a contact point, over the stiffness and inertia that a cell opposes to it. Gaps fall by
  * about this factor with every change of the multipliers. With 100 the sides of the law hand Newton's
@@ -6,6 +7,7 @@
 #define STIFFER 5
 
 #define WALL_NUMBERS ((PetscInt)(sizeof(WallState) / sizeof(PetscReal)))
+#define RIGID_NUMBERS ((PetscInt)(sizeof(RigidState) / sizeof(PetscReal)))
 
 #define LEANS 0.1 /* a normal with such a share of an axis holds along it */
 
@@ -20,7 +22,7 @@
  * by about so much, up to what volume opposes. */
 #define FALLS 10
 
-PetscErrorCode ContactCreate(const Case *c, const Walls *walls, Contact **contact)
+PetscErrorCode ContactCreate(const Case *c, Walls *walls, Diag *diag, Contact **contact)
 {
   PetscFunctionBeginUser;
   PetscCall(PetscNew(contact));
@@ -28,6 +30,7 @@ PetscErrorCode ContactCreate(const Case *c, const Walls *walls, Contact **contac
   (*contact)->dim = c->kinematics->dim;
   (*contact)->n_walls = c->n_walls;
   (*contact)->n_partners = c->n_walls + c->n_interfaces;
+  PetscCall(RigidCreate(c, walls, diag, &(*contact)->n_rigid, &(*contact)->rigid));
   PetscCall(PetscCalloc1((*contact)->n_partners, &(*contact)->wall));
   PetscCall(PetscCalloc1(2 * (*contact)->n_partners, &(*contact)->impulse));
   PetscFunctionReturn(0);
@@ -45,6 +48,7 @@ PetscErrorCode ContactDestroy(Contact **contact)
   PetscCall(PetscFree(s->lead));
   PetscCall(PetscFree(s->slot));
   PetscCall(PetscFree(s->wall));
+  PetscCall(PetscFree(s->rigid));
   PetscCall(PetscFree(s->impulse));
   PetscCall(PetscFree(*contact));
   PetscFunctionReturn(0);
@@ -77,7 +81,7 @@ void contact_prepare(Contact *s, PetscReal t, PetscReal dt, PetscReal inertia, P
     c->stiffest = c->stiffer * c->law.penalty;
     c->left = 0;
     c->law.bond = c->bond / share;
-    if (c->wall < s->n_walls) wall_motion(s->walls, c->wall, t, t + dt, c->x, c->swept);
+    if (c->wall < s->n_walls && !contact_rigid(s, c)) wall_motion(s->walls, c->wall, t, t + dt, c->x, c->swept);
     first_multiplier(s, c);
   }
 }
@@ -101,12 +105,13 @@ static PetscBool place_of(const Contact *s, const ContactPoint *c, PetscReal t, 
   return PETSC_TRUE;
 }
 
-/* The law at the present increments; PETSC_FALSE where there is no contact. */
-static PetscBool meets(const Contact *s, ContactPoint *c, const NodalScene *scene, PetscReal *K)
+PetscBool contact_meets(const Contact *s, ContactPoint *c, const NodalScene *scene, PetscReal *K)
 {
+  const RigidWall *rigid = contact_rigid(s, c);
   PetscReal x[3];
   WallPlace place;
   contact_place(s, c, scene->du, scene->whole, x);
+  if (rigid) rigid_sweep(rigid, c->x, x, c->swept);
   c->state = CONTACT_OPEN;
   c->now = (ContactForce){0};
   c->gap = PETSC_MAX_REAL;
@@ -155,12 +160,13 @@ static PetscErrorCode Assemble(void *data, const NodalScene *scene, const NodalO
 
   PetscFunctionBeginUser;
   for (ContactPoint *c = s->point; c < s->point + s->n; ++c) {
-    if (!meets(s, c, scene, out->system ? K : NULL)) continue;
+    if (!contact_meets(s, c, scene, out->system ? K : NULL)) continue;
     contact_force(c, f);
     for (PetscInt I = 0; I < c->n; ++I)
       for (PetscInt d = 0; d < s->dim; ++d) out->force[s->node[c->first + I] * s->dim + d] -= s->N[c->first + I] * f[d];
     if (out->system) add_tangent(s, c, scene, K, out);
   }
+  PetscCall(RigidSums(data, scene));
   PetscFunctionReturn(0);
 }
 
@@ -217,8 +223,16 @@ static PetscErrorCode Augment(void *data, const NodalScene *scene, PetscInt chan
 
 static PetscErrorCode Begin(void *data, const NodalScene *scene)
 {
+  Contact *s = data;
+
   PetscFunctionBeginUser;
-  PetscCall(ContactFind(data, scene));
+  for (RigidWall *b = s->rigid; b < s->rigid + s->n_rigid; ++b) {
+    b->start = b->now;
+    b->lost = 0;
+    for (int d = 0; d < 3; ++d) b->given[d] = 0;
+    rigid_restore(b, s->walls);
+  }
+  PetscCall(ContactFind(s, scene));
   PetscFunctionReturn(0);
 }
 
@@ -228,7 +242,7 @@ static void hold(const void *data, const NodalScene *scene, unsigned char *held)
   const Contact *s = data;
   (void)scene;
   for (const ContactPoint *c = s->point; c < s->point + s->n; ++c)
-    for (PetscInt e = c->first; e < c->first + c->n && c->touches; ++e)
+    for (PetscInt e = c->first; e < c->first + c->n && c->touches && !contact_rigid(s, c); ++e)
       for (PetscInt d = 0; d < s->dim; ++d)
         if (c->law.kind != CONTACT_FRICTIONLESS || PetscAbsReal(c->normal[d]) > LEANS)
           held[s->node[e] * s->dim + d] = 1;
@@ -304,7 +318,28 @@ static PetscErrorCode ToTables(const void *data, const NodalScene *scene, Tables
   PetscCall(TablesAdd(tables, "walls", PETSC_TRUE, s->n_partners, &table));
   PetscCall(TableAdd(table, "state", NULL, COLUMN_REAL, WALL_NUMBERS, NULL, &column));
   PetscCall(PetscMemcpy(column->data, s->wall, (size_t)s->n_partners * sizeof *s->wall));
+  if (!s->n_rigid) PetscFunctionReturn(0);
+  PetscCall(TablesAdd(tables, "rigid_walls", PETSC_TRUE, s->n_rigid, &table));
+  PetscCall(TableAdd(table, "state", NULL, COLUMN_REAL, RIGID_NUMBERS, NULL, &column));
+  for (PetscInt k = 0; k < s->n_rigid; ++k)
+    PetscCall(PetscMemcpy((PetscReal *)column->data + k * RIGID_NUMBERS, &s->rigid[k].now, sizeof s->rigid->now));
   PetscFunctionReturn(0);
+}
+
+/* Walls with mass, and where they are. */
+static void rigid_from_tables(Contact *s, const Tables *tables, char reason[256])
+{
+  const Table *table = tables_find(tables, "rigid_walls");
+  const PetscReal *state = table ? table_data(table, "state", COLUMN_REAL, RIGID_NUMBERS, reason) : NULL;
+  if (reason[0]) return;
+  if ((table ? table->rows : 0) != s->n_rigid) {
+    snprintf(reason, 256, "walls with mass are others");
+    return;
+  }
+  for (PetscInt k = 0; k < s->n_rigid; ++k) {
+    (void)memcpy(&s->rigid[k].start, state + k * RIGID_NUMBERS, sizeof s->rigid->start);
+    rigid_restore(s->rigid + k, s->walls);
+  }
 }
 
 static PetscErrorCode FromTables(void *data, const NodalScene *scene, const Tables *tables, char reason[256])
@@ -321,6 +356,7 @@ static PetscErrorCode FromTables(void *data, const NodalScene *scene, const Tabl
   const PetscReal *state = table_data(table, "state", COLUMN_REAL, WALL_NUMBERS, reason);
   if (state && table->rows != s->n_partners) snprintf(reason, 256, "walls are others");
   if (state && !reason[0]) PetscCall(PetscMemcpy(s->wall, state, (size_t)s->n_partners * sizeof *s->wall));
+  if (state && !reason[0]) rigid_from_tables(s, tables, reason);
   PetscFunctionReturn(0);
 }
 

@@ -11,6 +11,7 @@
  * for walls and interfaces. */
 #pragma once
 #include "solve/contact/contact_law.h"
+#include "solve/contact/rigid.h"
 #include "solve/forces/nodal_force.h"
 
 typedef struct {
@@ -59,7 +60,9 @@ typedef struct {
 } WallState;
 
 typedef struct Contact {
-  const Walls *walls;
+  Walls *walls;
+  PetscInt n_rigid;
+  RigidWall *rigid; /* walls with mass */
   PetscInt dim, n_walls;
   PetscInt n_partners; /* walls and interfaces */
   PetscInt n, capacity;
@@ -90,7 +93,8 @@ typedef struct Contact {
  * body's points in reach. */
 #define CONTACT_HALO 2
 
-PetscErrorCode ContactCreate(const Case *c, const Walls *walls, Contact **contact);
+/* Walls with mass whose mass is not known are mistakes. */
+PetscErrorCode ContactCreate(const Case *c, Walls *walls, Diag *diag, Contact **contact);
 PetscErrorCode ContactDestroy(Contact **contact);
 /* Forget the contact points and find those of this step. The scene stands at its start. */
 PetscErrorCode ContactFind(Contact *contact, const NodalScene *scene);
@@ -131,6 +135,7 @@ typedef struct {
   const PetscReal *mass;      /* n_nodes, kg */
   const unsigned char *fixed; /* n_nodes x dim: dofs that do not take part */
   PetscReal *motion;          /* n_nodes x dim: velocity or acceleration, changed */
+  const PetscReal *du;        /* increments of the step */
   PetscReal rate;             /* times `swept` it is the velocity of the wall */
   PetscBool pulls;            /* may the wall pull? Else only what moves into it is stopped */
   PetscBool start;            /* of those in contact before the step, or of those in contact after it? */
@@ -142,6 +147,20 @@ typedef struct {
 PetscErrorCode ContactProject(Contact *contact, const ContactMotion *motion, ContactSum *sum);
 /* Collective. Take the forces of the last step, times `share`, out of the acceleration that nodes remember. */
 PetscErrorCode ContactRelease(Contact *contact, const ContactMotion *motion, PetscReal share, ContactSum *sum);
+/* contact_rigid.c. Collective. What contact does to walls with mass, in the terms of `rigid`. */
+PetscErrorCode RigidSums(Contact *contact, const NodalScene *scene);
+/* Collective. At the increments of the last assembly, for n = RIGID n_rigid unknowns of walls: of this rank the
+ * derivatives of the nodes' residual by them, B, and of theirs by du, C (n x n_nodes x dim each, zero on entry); D:
+ * of theirs by themselves, n x n, of all ranks. Those that a wall does not have are 1 on the diagonal. */
+PetscErrorCode RigidTangent(Contact *contact, const NodalScene *scene, PetscReal *B, PetscReal *C, PetscReal *D);
+/* The law at the present increments; K: minus its derivative by the motion of the contact point, or NULL.
+ * PETSC_FALSE where there is no contact. */
+PetscBool contact_meets(const Contact *contact, ContactPoint *c, const NodalScene *scene, PetscReal *K);
+/* The wall with mass that it meets, or NULL. */
+static inline RigidWall *contact_rigid(const Contact *contact, const ContactPoint *c)
+{
+  return rigid_of(contact->rigid, contact->n_rigid, c->wall);
+}
 void contact_force(const ContactPoint *c, PetscReal f[3]); /* of the last assembly */
 /* Of all forces of this rank at the last assembly, N2; contact may be NULL. */
 PetscReal contact_square(const Contact *contact);

@@ -21,6 +21,8 @@ typedef struct {
   PetscReal *p, *r, *q, *z; /* 3 per contact point */
   PetscReal *own;           /* 1 per contact point: what a unit impulse moves itself */
   unsigned char *held;      /* 0: not at all, 1: along the normal, 3: in all directions */
+  PetscReal *arm;           /* 3 per contact point: against the centre of a wall with mass */
+  PetscReal *push, *answer; /* RIGID per wall with mass: momentum, and what it changes */
   PetscReal *nodes;         /* n_nodes x dim, zero but for these: */
   PetscInt n_moved, *moved; /* local nodes that impulses move, on any rank */
 } Projection;
@@ -36,6 +38,51 @@ static void hold(const Projection *w, PetscInt k, PetscReal *a)
 static PetscReal inverse_mass(const ContactMotion *m, PetscInt dim, PetscInt node, PetscInt d)
 {
   return m->fixed[node * dim + d] || m->mass[node] < 1e-300 ? 0 : 1 / m->mass[node];
+}
+
+/* Walls with mass get what nodes do not: push = -B^T p, answer = M^-1 push. */
+static PetscErrorCode SpreadToWalls(Projection *w, const PetscReal *p)
+{
+  const Contact *s = w->s;
+
+  PetscFunctionBeginUser;
+  if (!s->n_rigid) PetscFunctionReturn(0);
+  PetscCall(PetscArrayzero(w->push, RIGID * s->n_rigid));
+  for (PetscInt k = 0; k < s->n; ++k) {
+    const RigidWall *b = contact_rigid(s, s->point + k);
+    const PetscReal *r = w->arm + 3 * k, *f = p + 3 * k;
+    if (!b || !w->held[k]) continue;
+    PetscReal *push = w->push + RIGID * (b - s->rigid);
+    for (int d = 0; d < 3; ++d) {
+      push[d] -= f[d];
+      push[3 + d] -= r[(d + 1) % 3] * f[(d + 2) % 3] - r[(d + 2) % 3] * f[(d + 1) % 3];
+    }
+  }
+  PetscCall(MPIU_Allreduce(MPI_IN_PLACE, w->push, (PetscMPIInt)(RIGID * s->n_rigid), MPIU_REAL, MPI_SUM,
+                           w->m->grid->comm));
+  for (PetscInt k = 0; k < s->n_rigid; ++k) rigid_respond(s->rigid + k, w->push + RIGID * k, w->answer + RIGID * k);
+  PetscFunctionReturn(0);
+}
+
+/* Of a wall that changes its motion so, at contact point k. */
+static void answer_at(const Projection *w, PetscInt k, PetscReal v[3])
+{
+  const RigidWall *b = contact_rigid(w->s, w->s->point + k);
+  const PetscReal *r = w->arm + 3 * k;
+  v[0] = v[1] = v[2] = 0;
+  if (!b) return;
+  const PetscReal *a = w->answer + RIGID * (b - w->s->rigid), *o = a + 3;
+  for (int d = 0; d < 3; ++d) v[d] = a[d] + o[(d + 1) % 3] * r[(d + 2) % 3] - o[(d + 2) % 3] * r[(d + 1) % 3];
+}
+
+/* Velocity of the wall there, now. */
+static void wall_velocity(const Projection *w, PetscInt k, PetscReal v[3])
+{
+  const ContactPoint *c = w->s->point + k;
+  const RigidWall *b = contact_rigid(w->s, c);
+  if (b) rigid_velocity(b, w->arm + 3 * k, v);
+  else
+    for (int d = 0; d < 3; ++d) v[d] = w->m->rate * c->swept[d];
 }
 
 /* nodes = M^-1 A^T p, on all copies. */
@@ -58,6 +105,7 @@ static PetscErrorCode Spread(Projection *w, const PetscReal *p)
     if (node < grid->n_owned) w->nodes[node * dim + i % dim] *= inverse_mass(w->m, dim, node, i % dim);
   }
   PetscCall(GridToGhosts(grid, dim, w->nodes));
+  PetscCall(SpreadToWalls(w, p));
   PetscFunctionReturn(0);
 }
 
@@ -85,7 +133,11 @@ static PetscErrorCode Apply(Projection *w, const PetscReal *z, PetscReal *q)
   PetscFunctionBeginUser;
   PetscCall(Spread(w, z));
   for (PetscInt k = 0; k < w->s->n; ++k) {
+    PetscReal answer[3];
     gather(w, w->nodes, k, q + 3 * k);
+    answer_at(w, k, answer);
+    hold(w, k, answer);
+    for (int d = 0; d < 3; ++d) q[3 * k + d] -= answer[d];
     for (int d = 0; d < 3; ++d) q[3 * k + d] += SOFTENED * w->own[k] * z[3 * k + d];
   }
   PetscFunctionReturn(0);
@@ -105,7 +157,7 @@ static PetscErrorCode Solve(Projection *w)
     PetscReal *r = w->r + 3 * k;
     gather(w, w->m->motion, k, r);
     PetscReal target[3];
-    for (int d = 0; d < 3; ++d) target[d] = w->m->rate * s->point[k].swept[d];
+    wall_velocity(w, k, target);
     hold(w, k, target);
     for (int d = 0; d < 3; ++d) r[d] = target[d] - r[d];
   }
@@ -159,11 +211,12 @@ static unsigned char held_of(const ContactPoint *c, const ContactMotion *m)
 static void slip_of(const Projection *w, PetscInt k, PetscReal v[3])
 {
   const ContactPoint *c = w->s->point + k;
-  PetscReal along = 0;
+  PetscReal along = 0, own[3];
+  wall_velocity(w, k, own);
   v[0] = v[1] = v[2] = 0;
   for (PetscInt e = c->first; e < c->first + c->n; ++e)
     for (PetscInt d = 0; d < w->s->dim; ++d) v[d] += w->s->N[e] * w->m->motion[w->s->node[e] * w->s->dim + d];
-  for (int d = 0; d < 3; ++d) v[d] -= w->m->rate * c->swept[d], along += v[d] * c->normal[d];
+  for (int d = 0; d < 3; ++d) v[d] -= own[d], along += v[d] * c->normal[d];
   for (int d = 0; d < 3; ++d) v[d] -= along * c->normal[d];
 }
 
@@ -231,8 +284,15 @@ static PetscErrorCode Create(const Contact *s, const ContactMotion *m, Projectio
   *w = (Projection){.s = s, .m = m};
   PetscCall(
     PetscCalloc6(3 * s->n, &w->p, 3 * s->n, &w->r, 3 * s->n, &w->q, 3 * s->n, &w->z, s->n, &w->own, s->n, &w->held));
+  PetscCall(PetscCalloc3(s->n_rigid ? 3 * s->n : 0, &w->arm, RIGID * s->n_rigid, &w->push, RIGID * s->n_rigid,
+                         &w->answer));
   for (PetscInt k = 0; k < s->n; ++k) {
     const ContactPoint *c = s->point + k;
+    const RigidWall *b = contact_rigid(s, c);
+    PetscReal x[3];
+    contact_place(s, c, m->du, m->start ? 0 : 1, x);
+    if (b) rigid_arm(b, m->start, x, w->arm + 3 * k);
+    if (b) w->own[k] += 1 / b->body.mass;
     w->held[k] = held_of(c, m);
     here = here || w->held[k];
     for (PetscInt e = c->first; e < c->first + c->n; ++e)
@@ -247,6 +307,7 @@ static PetscErrorCode Destroy(Projection *w)
 {
   PetscFunctionBeginUser;
   PetscCall(PetscFree6(w->p, w->r, w->q, w->z, w->own, w->held));
+  PetscCall(PetscFree3(w->arm, w->push, w->answer));
   PetscCall(PetscFree(w->nodes));
   PetscCall(PetscFree(w->moved));
   PetscFunctionReturn(0);
@@ -274,6 +335,7 @@ PetscErrorCode ContactProject(Contact *s, const ContactMotion *m, ContactSum *su
     const PetscInt dof = w.moved[i / s->dim] * s->dim + i % s->dim;
     m->motion[dof] += w.nodes[dof];
   }
+  for (PetscInt k = 0; k < s->n_rigid; ++k) rigid_push(s->rigid + k, w.push + RIGID * k);
   lose(&w, sum);
   for (PetscInt k = 0; k < s->n; ++k) contact_add(s->point + k, s->dim, w.p + 3 * k, sum + s->point[k].wall);
   PetscCall(Destroy(&w));

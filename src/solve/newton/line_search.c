@@ -11,6 +11,8 @@ typedef struct {
   Vec x, f, y, w; /* start, residual, direction (x - lambda y is the new place), work */
 } Search;
 
+static PetscReal beside(const Search *s) { return s->memory->beside ? s->memory->beside(s->memory->context) : 0; }
+
 /* Work of F along y. A saddle point has no minimum: with the sign of the pressure equations turned
  * the tangent is positive semi-definite where that of the displacements is, and the work left over
  * falls with the length as it does without pressures. */
@@ -25,7 +27,7 @@ static PetscErrorCode WorkAlong(const Search *s, Vec f, PetscReal *work)
   const PetscInt block = s->memory->block;
   if (!block) {
     PetscCall(VecDot(s->y, f, &dot));
-    *work = PetscRealPart(dot);
+    *work = PetscRealPart(dot) + beside(s);
     PetscFunctionReturn(0);
   }
   PetscCall(VecGetLocalSize(f, &n));
@@ -35,6 +37,7 @@ static PetscErrorCode WorkAlong(const Search *s, Vec f, PetscReal *work)
   PetscCall(VecRestoreArrayRead(s->y, &yv));
   PetscCall(VecRestoreArrayRead(f, &fv));
   PetscCall(MPIU_Allreduce(&local, work, 1, MPIU_REAL, MPI_SUM, PetscObjectComm((PetscObject)f)));
+  *work += beside(s);
   PetscFunctionReturn(0);
 }
 

@@ -35,6 +35,8 @@ typedef struct {
   PetscErrorCode (*begin)(void *context, Vec x, Vec y);
   void (*place)(void *context, PetscReal length);
   void (*end)(void *context, PetscReal length);
+  /* work along the direction that is not in its vectors; NULL: none */
+  PetscReal (*beside)(void *context);
   void *context;
 } LineSearchMemory;
 

@@ -1,5 +1,6 @@
 /* One step's nonlinear solve, and what Newton's method remembers from step to step. */
 #include "solve/blocks/blocks.h"
+#include "solve/contact/contact.h"
 #include "solve/newton/newton_private.h"
 #include <petsctime.h>
 
@@ -23,6 +24,7 @@ PetscErrorCode NewtonDestroy(Newton **newton)
   PetscFunctionBeginUser;
   if (!*newton) PetscFunctionReturn(0);
   PetscCall(NewtonReset(*newton));
+  PetscCall(PetscFree((*newton)->rigid));
   PetscCall(PetscFree(*newton));
   PetscFunctionReturn(0);
 }
@@ -212,12 +214,15 @@ static PetscErrorCode NewtonTry(Newton *n, NewtonReport *report)
 PetscErrorCode NewtonSolve(Newton *n, StepProblem *p, const LinearProblem *linear, NewtonReport *report)
 {
   const PetscInt nodes = p->grid->n_nodes, dofs = nodes * p->grid->dim;
-  PetscReal *guess, *pressure;
+  const Contact *contact = p->scene.contact;
+  PetscReal *guess, *pressure, *walls;
 
   PetscFunctionBeginUser;
   n->problem = p;
   n->report = report;
-  PetscCall(PetscMalloc2(dofs, &guess, p->pressure ? nodes : 0, &pressure));
+  PetscCall(PetscMalloc3(dofs, &guess, p->pressure ? nodes : 0, &pressure, contact ? RIGID * contact->n_rigid : 0,
+                         &walls));
+  newton_rigid_get(n, walls);
   PetscCall(PetscArraycpy(guess, p->du, dofs));
   if (p->pressure) PetscCall(PetscArraycpy(pressure, p->pressure, nodes));
   PetscCall(NewtonSetUp(n, p, linear));
@@ -225,6 +230,7 @@ PetscErrorCode NewtonSolve(Newton *n, StepProblem *p, const LinearProblem *linea
   if (n->retry) { /* once more, with the direct solver */
     const PetscInt lost = report->iterations;
     PetscCall(PetscArraycpy(p->du, guess, dofs));
+    newton_rigid_set(n, walls);
     if (p->pressure) PetscCall(PetscArraycpy(p->pressure, pressure, nodes));
     PetscCall(NewtonSetUp(n, p, linear));
     PetscCall(NewtonTry(n, report));
@@ -235,6 +241,6 @@ PetscErrorCode NewtonSolve(Newton *n, StepProblem *p, const LinearProblem *linea
     if (n->failures >= NEWTON_FAILURES) n->built = -1;
     n->failures = n->since = 0;
   }
-  PetscCall(PetscFree2(guess, pressure));
+  PetscCall(PetscFree3(guess, pressure, walls));
   PetscFunctionReturn(0);
 }

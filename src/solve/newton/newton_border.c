@@ -39,6 +39,7 @@ PetscErrorCode NewtonBorderBegin(void *context, Vec x, Vec y)
   KSP ksp;
 
   PetscFunctionBeginUser;
+  PetscCall(NewtonRigidBegin(n, y));
   if (!b) PetscFunctionReturn(0);
   PetscCall(LoadVec(n, &q));
   PetscCall(VecDuplicate(q, &z));
@@ -64,6 +65,7 @@ PetscErrorCode NewtonBorderBegin(void *context, Vec x, Vec y)
 void newton_border_place(void *context, PetscReal length)
 {
   LoadBorder *b = ((Newton *)context)->problem->border;
+  newton_rigid_place(context, length);
   if (b) b->factor = b->from + length * b->along;
 }
 

@@ -118,9 +118,9 @@ PetscErrorCode NewtonConverged(SNES snes, PetscInt it, PetscReal xnorm, PetscRea
   const PetscBool still = it > 0 && small && near;
   const PetscBool floored = it > 1 && fnorm > 0.25 * n->last && at_floor(n, xnorm, snorm);
   if (k < NEWTON_HISTORY) r->residual[k] = relative;
-  const PetscBool met = newton_border_met(n);
+  const PetscBool met = newton_border_met(n) && newton_rigid_met(n);
   if (PetscIsInfOrNanReal(fnorm)) *reason = SNES_DIVERGED_FNORM_NAN;
-  else if (!met && (n->asked || relative <= 1)) /* the load has still to do its work */
+  else if (!met && (n->asked || relative <= 1)) /* the load has still to do its work, or a wall moves on */
     *reason = n->asked ? SNES_DIVERGED_FUNCTION_COUNT : SNES_CONVERGED_ITERATING;
   else if (relative <= spec->residual || fnorm <= spec->residual_absolute) *reason = SNES_CONVERGED_FNORM_RELATIVE;
   else if (still || (floored && (near || is_round_off(n, fnorm)))) *reason = SNES_CONVERGED_SNORM_RELATIVE;

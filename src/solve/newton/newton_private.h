@@ -41,6 +41,7 @@ struct Newton {
   PetscReal last, before;
   /* of multipliers in this solve (NodalForce.augment), and the iteration of the last one */
   PetscInt changes, changed;
+  PetscReal *rigid;  /* of walls with mass: where the direction begins, and it: pairs */
   PetscBool tangent; /* do the system's values belong to du? */
   double t_points, t_matrix, t_linear, t_newton;
   double solving; /* when the linear solve that is going on began */
@@ -82,6 +83,15 @@ void newton_border_place(void *context, PetscReal length);
 void newton_border_end(void *context, PetscReal length);
 /* Does the load do the work that it must do in this step? */
 PetscBool newton_border_met(const Newton *n);
+
+/* newton_rigid.c. The same of walls with mass; what a try begins with; do they balance? */
+PetscErrorCode NewtonRigidBegin(Newton *n, Vec y);
+void newton_rigid_place(const Newton *n, PetscReal length);
+void newton_rigid_get(const Newton *n, PetscReal *q);
+void newton_rigid_set(const Newton *n, const PetscReal *q);
+/* Work that their residual still does along the direction, with the sign of that of the nodes; context: the Newton. */
+PetscReal newton_rigid_work(void *context);
+PetscBool newton_rigid_met(const Newton *n);
 
 /* newton_converge.c. The norm below which a residual has converged, N. */
 PetscReal newton_tolerance(const Newton *n);

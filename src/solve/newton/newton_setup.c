@@ -81,6 +81,7 @@ PetscErrorCode NewtonSetUp(Newton *n, StepProblem *p, const LinearProblem *linea
   n->search.begin = NewtonBorderBegin;
   n->search.place = newton_border_place;
   n->search.end = newton_border_end;
+  n->search.beside = newton_rigid_work;
   n->search.context = n;
   n->search.block = p->pressure ? p->system->block : 0;
   PetscCall(SystemCreateVec(p->system, &n->x));

@@ -1,0 +1,143 @@
+/* Contact as walls with mass feel it: forces and torques, and the borders of the tangent. */
+#include "solve/contact/contact.h"
+
+#define SUMS (RIGID + 3)
+
+static void cross_axis(int axis, const PetscReal r[3], PetscReal c[3])
+{
+  const int j = (axis + 1) % 3, k = (axis + 2) % 3;
+  c[axis] = 0, c[j] = -r[k], c[k] = r[j];
+}
+
+/* What a unit of unknown i moves at the end of an arm. */
+static void motion_of(int i, const PetscReal arm[3], PetscReal motion[3])
+{
+  motion[0] = motion[1] = motion[2] = 0;
+  if (i < 3) motion[i] = 1;
+  else cross_axis(i - 3, arm, motion);
+}
+
+static PetscReal dot(const PetscReal a[3], const PetscReal b[3]) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+
+PetscErrorCode RigidSums(Contact *s, const NodalScene *scene)
+{
+  PetscReal *sum;
+
+  PetscFunctionBeginUser;
+  if (!s->n_rigid) PetscFunctionReturn(0);
+  PetscCall(PetscCalloc1(SUMS * s->n_rigid, &sum));
+  for (const ContactPoint *c = s->point; c < s->point + s->n; ++c) {
+    const RigidWall *b = contact_rigid(s, c);
+    PetscReal f[3], x[3], lever[3], motion[3], force = 0, torque = 0;
+    if (!b) continue;
+    PetscReal *own = sum + SUMS * (b - s->rigid);
+    contact_force(c, f);
+    contact_place(s, c, scene->du, scene->whole, x);
+    rigid_lever(b, c->x, x, lever);
+    own[RIGID + 2] += c->law.penalty;
+    for (int i = 0; i < RIGID; ++i) {
+      motion_of(i, lever, motion);
+      const PetscReal along = dot(motion, f);
+      own[i] += along;
+      if (i < 3) force += along * along;
+      else torque += along * along;
+    }
+    own[RIGID] += PetscSqrtReal(force);
+    own[RIGID + 1] += PetscSqrtReal(torque);
+  }
+  PetscCall(MPIU_Allreduce(MPI_IN_PLACE, sum, (PetscMPIInt)(SUMS * s->n_rigid), MPIU_REAL, MPI_SUM, scene->grid->comm));
+  for (PetscInt k = 0; k < s->n_rigid; ++k) {
+    RigidWall *b = s->rigid + k;
+    for (int i = 0; i < RIGID; ++i) b->contact[i] = sum[SUMS * k + i];
+    for (int i = 0; i < 2; ++i) b->size[i] = sum[SUMS * k + RIGID + i];
+    b->stiff = sum[SUMS * k + RIGID + 2];
+  }
+  PetscCall(PetscFree(sum));
+  PetscFunctionReturn(0);
+}
+
+/* One contact point: its force f, K, and levers. */
+typedef struct {
+  const ContactPoint *c;
+  PetscReal f[3], K[9], motion[RIGID][3], arm[RIGID][3], change[RIGID][3]; /* arm: by the lever of torques */
+} Touch;
+
+static PetscBool touch_of(const Contact *s, ContactPoint *c, const RigidWall *b, const NodalScene *scene, Touch *t)
+{
+  PetscReal x[3], at[3], lever[3];
+  if (!contact_meets(s, c, scene, t->K)) return PETSC_FALSE;
+  t->c = c;
+  contact_force(c, t->f);
+  contact_place(s, c, scene->du, scene->whole, x);
+  rigid_arm(b, PETSC_FALSE, x, at);
+  rigid_lever(b, c->x, x, lever);
+  for (int i = 0; i < RIGID; ++i) {
+    motion_of(i, at, t->motion[i]);
+    motion_of(i, lever, t->arm[i]);
+    if (i < 3) t->change[i][0] = t->change[i][1] = t->change[i][2] = 0;
+    else cross_axis(i - 3, t->f, t->change[i]); /* the force turns with its wall */
+    for (int d = 0; d < 3; ++d) t->change[i][d] += dot(t->K + 3 * d, t->motion[i]);
+  }
+  return PETSC_TRUE;
+}
+
+/* By the wall's unknowns j: forces on nodes, and its own residual. */
+static void add_columns(const Contact *s, const RigidWall *b, const Touch *t, PetscInt dofs, PetscReal *B, PetscReal *D)
+{
+  const PetscInt n = RIGID * s->n_rigid, first = RIGID * (b - s->rigid);
+  for (int j = 0; j < RIGID; ++j) {
+    if (!rigid_has(b, j)) continue;
+    for (PetscInt e = t->c->first; e < t->c->first + t->c->n; ++e)
+      for (PetscInt d = 0; d < s->dim; ++d)
+        B[(first + j) * dofs + s->node[e] * s->dim + d] -= s->N[e] * t->change[j][d];
+    for (int i = 0; i < RIGID; ++i) {
+      PetscReal more[3] = {0, 0, 0}; /* the lever is shorter by what the centre has moved */
+      if (j < 3 && i > 2) cross_axis(j, t->f, more);
+      D[(first + i) * n + first + j] += b->share * (dot(t->arm[i], t->change[j]) - b->part * (i > 2 ? more[i - 3] : 0));
+    }
+  }
+}
+
+/* Of the wall's residual i: by the increments of nodes. */
+static void add_rows(const Contact *s, const RigidWall *b, const Touch *t, PetscReal whole, PetscInt dofs, PetscReal *C)
+{
+  const PetscInt first = RIGID * (b - s->rigid);
+  for (int i = 0; i < RIGID; ++i)
+    for (PetscInt d = 0; d < s->dim; ++d) {
+      const PetscReal column[3] = {t->K[d], t->K[3 + d], t->K[6 + d]};
+      PetscReal longer[3] = {0, 0, 0};
+      if (!rigid_has(b, i)) continue;
+      if (i > 2) cross_axis((int)d, t->f, longer);
+      const PetscReal rate = b->share * whole * (b->part * (i > 2 ? longer[i - 3] : 0) - dot(t->arm[i], column));
+      for (PetscInt e = t->c->first; e < t->c->first + t->c->n; ++e)
+        C[(first + i) * dofs + s->node[e] * s->dim + d] += s->N[e] * rate;
+    }
+}
+
+PetscErrorCode RigidTangent(Contact *s, const NodalScene *scene, PetscReal *B, PetscReal *C, PetscReal *D)
+{
+  const PetscInt n = RIGID * s->n_rigid, dofs = scene->grid->n_nodes * s->dim;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscArrayzero(D, n * n));
+  for (ContactPoint *c = s->point; c < s->point + s->n; ++c) {
+    const RigidWall *b = contact_rigid(s, c);
+    Touch t;
+    if (!b || !touch_of(s, c, b, scene, &t)) continue;
+    add_columns(s, b, &t, dofs, B, D);
+    add_rows(s, b, &t, scene->whole, dofs, C);
+  }
+  PetscCall(MPIU_Allreduce(MPI_IN_PLACE, D, (PetscMPIInt)(n * n), MPIU_REAL, MPI_SUM, scene->grid->comm));
+  for (PetscInt k = 0; k < s->n_rigid; ++k) {
+    const RigidWall *b = s->rigid + k;
+    PetscReal own[RIGID * RIGID];
+    rigid_inertia(b, own);
+    for (int i = 0; i < RIGID; ++i)
+      for (int j = 0; j < RIGID; ++j) {
+        PetscReal *entry = D + (RIGID * k + i) * n + RIGID * k + j;
+        if (rigid_has(b, i) && rigid_has(b, j)) *entry += own[RIGID * i + j];
+        else *entry = i == j;
+      }
+  }
+  PetscFunctionReturn(0);
+}

@@ -1,0 +1,301 @@
+#include "solve/contact/rigid.h"
+#include "base/math/tensor.h"
+#include <math.h>
+
+static void cross(const PetscReal a[3], const PetscReal b[3], PetscReal c[3])
+{
+  const PetscReal r[3] = {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+  for (int d = 0; d < 3; ++d) c[d] = r[d];
+}
+
+static void turn(const PetscReal R[9], const PetscReal V[3], PetscReal v[3])
+{
+  const PetscReal r[3] = {R[0] * V[0] + R[1] * V[1] + R[2] * V[2], R[3] * V[0] + R[4] * V[1] + R[5] * V[2],
+                          R[6] * V[0] + R[7] * V[1] + R[8] * V[2]};
+  for (int d = 0; d < 3; ++d) v[d] = r[d];
+}
+
+static void turn_back(const PetscReal R[9], const PetscReal v[3], PetscReal V[3])
+{
+  const PetscReal r[3] = {R[0] * v[0] + R[3] * v[1] + R[6] * v[2], R[1] * v[0] + R[4] * v[1] + R[7] * v[2],
+                          R[2] * v[0] + R[5] * v[1] + R[8] * v[2]};
+  for (int d = 0; d < 3; ++d) V[d] = r[d];
+}
+
+/* (1 - t/2)^-1 (1 + t/2), t the matrix of the cross product by theta: a rotation by 2 atan(|theta| / 2), with
+ * cay(theta) r - r = theta x (r + cay(theta) r) / 2. */
+static void cayley(const PetscReal theta[3], const PetscReal r[3], PetscReal turned[3])
+{
+  PetscReal once[3], twice[3];
+  const PetscReal square = theta[0] * theta[0] + theta[1] * theta[1] + theta[2] * theta[2];
+  cross(theta, r, once);
+  cross(theta, once, twice);
+  for (int d = 0; d < 3; ++d) turned[d] = r[d] + (once[d] + twice[d] / 2) / (1 + square / 4);
+}
+
+static void turn_matrix(const PetscReal theta[3], const PetscReal R[9], PetscReal turned[9])
+{
+  for (int j = 0; j < 3; ++j) {
+    PetscReal column[3] = {R[j], R[3 + j], R[6 + j]};
+    cayley(theta, column, column);
+    for (int i = 0; i < 3; ++i) turned[3 * i + j] = column[i];
+  }
+}
+
+/* --- in space --- */
+static PetscBool rotates(const RigidWall *b) { return b->free[5]; } /* all axes that the kinematics have, or none */
+
+/* Spin of a moment of momentum, with the wall turned by R: only about axes that are free. */
+static void spin_of(const RigidWall *b, const PetscReal R[9], const PetscReal L[3], PetscReal omega[3])
+{
+  PetscReal inverse[9], body[3];
+  omega[0] = omega[1] = omega[2] = 0;
+  if (!rotates(b)) return;
+  if (!b->free[3]) {
+    omega[2] = L[2] / b->body.inertia[8];
+    return;
+  }
+  tensor_inverse(b->body.inertia, inverse);
+  turn_back(R, L, body);
+  turn(inverse, body, body);
+  turn(R, body, omega);
+}
+
+static void moment_of(const RigidWall *b, const PetscReal R[9], const PetscReal omega[3], PetscReal L[3])
+{
+  PetscReal body[3];
+  L[0] = L[1] = L[2] = 0;
+  if (!rotates(b)) return;
+  if (!b->free[3]) {
+    L[2] = b->body.inertia[8] * omega[2];
+    return;
+  }
+  turn_back(R, omega, body);
+  turn(b->body.inertia, body, body);
+  turn(R, body, L);
+}
+
+void rigid_place(const RigidWall *b, Walls *walls)
+{
+  PetscReal R[9], T[3];
+  turn_matrix(b->q + 3, b->now.R, R);
+  turn(R, b->body.centre, T);
+  for (int d = 0; d < 3; ++d) T[d] = b->body.centre[d] + b->now.moved[d] + b->q[d] - T[d];
+  wall_put(walls, b->wall, R, T);
+}
+
+static void own_lever(const RigidWall *b, PetscReal part, const PetscReal x[3], PetscReal lever[3])
+{
+  for (int d = 0; d < 3; ++d) lever[d] = x[d] - b->body.centre[d] - b->now.moved[d] - part * b->q[d];
+}
+
+void rigid_arm(const RigidWall *b, PetscBool start, const PetscReal x[3], PetscReal arm[3])
+{
+  own_lever(b, start ? 0 : 1, x, arm);
+}
+
+void rigid_lever(const RigidWall *b, const PetscReal x0[3], const PetscReal x1[3], PetscReal lever[3])
+{
+  PetscReal x[3];
+  for (int d = 0; d < 3; ++d) x[d] = x0[d] + b->part * (x1[d] - x0[d]);
+  own_lever(b, b->part, x, lever);
+}
+
+void rigid_sweep(const RigidWall *b, const PetscReal x0[3], const PetscReal x1[3], PetscReal swept[3])
+{
+  PetscReal lever[3];
+  rigid_lever(b, x0, x1, lever);
+  cross(b->q + 3, lever, swept);
+  for (int d = 0; d < 3; ++d) swept[d] += b->q[d];
+}
+
+void rigid_velocity(const RigidWall *b, const PetscReal arm[3], PetscReal v[3])
+{
+  PetscReal omega[3];
+  spin_of(b, b->now.R, b->now.L, omega);
+  cross(omega, arm, v);
+  for (int d = 0; d < 3; ++d) v[d] += b->now.v[d];
+}
+
+void rigid_respond(const RigidWall *b, const PetscReal p[RIGID], PetscReal change[RIGID])
+{
+  for (int d = 0; d < 3; ++d) change[d] = rigid_has(b, d) ? p[d] / b->body.mass : 0;
+  spin_of(b, b->now.R, p + 3, change + 3);
+  for (int d = 3; d < RIGID; ++d) change[d] *= rigid_has(b, d);
+}
+
+PetscReal rigid_kinetic(const RigidWall *b)
+{
+  PetscReal omega[3], sum = 0;
+  spin_of(b, b->now.R, b->now.L, omega);
+  for (int d = 0; d < 3; ++d) sum += 0.5 * (b->body.mass * b->now.v[d] * b->now.v[d] + omega[d] * b->now.L[d]);
+  return sum;
+}
+
+void rigid_push(RigidWall *b, const PetscReal p[RIGID])
+{
+  const PetscReal before = rigid_kinetic(b);
+  for (int d = 0; d < 3; ++d) {
+    if (rigid_has(b, d)) b->now.v[d] += p[d] / b->body.mass;
+    if (rigid_has(b, d + 3)) b->now.L[d] += p[d + 3];
+    b->given[d] -= p[d];
+  }
+  b->lost += before - rigid_kinetic(b);
+}
+
+/* --- a step --- */
+static void load_at(const RigidWall *b, const Case *c, PetscReal t, PetscReal load[RIGID])
+{
+  const WallMassSpec *m = &c->walls[b->wall].mass;
+  const PetscReal factor = case_factor(c, &m->amplitude, t), weight = case_factor(c, &c->gravity_amplitude, t);
+  for (int d = 0; d < 3; ++d) {
+    load[d] = factor * m->force[d] + (m->gravity ? b->body.mass * weight * c->gravity[d] : 0);
+    load[d + 3] = factor * m->torque[d];
+  }
+}
+
+void rigid_begin(RigidWall *b, Walls *walls, const Case *c, PetscReal t, PetscReal dt, PetscReal share, PetscBool middle)
+{
+  b->dt = case_is_static(&c->analysis) ? 0 : dt;
+  b->share = share;
+  b->part = middle ? 0.5 : 1;
+  b->now.step = dt;
+  b->stands = wall_stands(walls, b->wall, t + dt);
+  load_at(b, c, middle ? t + dt / 2 : t, b->load[0]);
+  load_at(b, c, middle ? t + dt / 2 : t + dt, b->load[1]);
+  rigid_guess(b, walls, PETSC_FALSE);
+}
+
+/* Mean of the loads over the step; in statics those of its end. */
+static PetscReal load_of(const RigidWall *b, int i)
+{
+  return b->dt > 0 ? (b->load[0][i] + b->load[1][i]) / 2 : b->load[1][i];
+}
+
+void rigid_guess(RigidWall *b, Walls *walls, PetscBool previous)
+{
+  PetscReal p[RIGID], change[RIGID], omega[3];
+  for (int i = 0; i < RIGID; ++i) p[i] = b->dt * load_of(b, i);
+  rigid_respond(b, p, change);
+  spin_of(b, b->now.R, b->now.L, omega);
+  for (int i = 0; i < RIGID; ++i) {
+    const PetscReal rate = (i < 3 ? b->now.v[i] : omega[i - 3]) + change[i] / 2;
+    b->q[i] = b->dt > 0 ? b->dt * rate : previous && b->start.step > 0 ? b->now.step / b->start.step * b->now.last[i] : 0;
+    if (!rigid_has(b, i)) b->q[i] = 0;
+  }
+  rigid_place(b, walls);
+}
+
+/* R1 J W1 - R J W over dt, of theta = dt (w + w1) / 2. */
+static void moment_change(const RigidWall *b, PetscReal rate[3])
+{
+  PetscReal R1[9], w[3], w1[3], L1[3];
+  turn_matrix(b->q + 3, b->now.R, R1);
+  spin_of(b, b->now.R, b->now.L, w);
+  /* what turns with the wall: W1 = 2 theta / dt - W, and theta is the same before and after */
+  cayley(b->q + 3, w, w1);
+  for (int d = 0; d < 3; ++d) w1[d] = 2 * b->q[3 + d] / b->dt - w1[d];
+  moment_of(b, R1, w1, L1);
+  for (int d = 0; d < 3; ++d) rate[d] = (L1[d] - b->now.L[d]) / b->dt;
+}
+
+void rigid_residual(const RigidWall *b, PetscReal r[RIGID])
+{
+  PetscReal rate[3] = {0, 0, 0};
+  if (b->dt > 0) moment_change(b, rate);
+  for (int i = 0; i < RIGID; ++i) {
+    const PetscReal own =
+      b->dt > 0 ? (i < 3 ? b->body.mass * 2 * (b->q[i] / b->dt - b->now.v[i]) / b->dt : rate[i - 3]) : 0;
+    r[i] = rigid_has(b, i) ? own - load_of(b, i) + b->share * b->contact[i] : 0;
+  }
+}
+
+void rigid_inertia(const RigidWall *b, PetscReal D[RIGID * RIGID])
+{
+  for (int i = 0; i < RIGID * RIGID; ++i) D[i] = 0;
+  if (b->dt == 0) return;
+  const PetscReal factor = 2 / (b->dt * b->dt);
+  for (int d = 0; d < 3; ++d) D[(RIGID + 1) * d] = factor * b->body.mass;
+  for (int j = 0; j < 3; ++j) {
+    PetscReal unit[3] = {j == 0, j == 1, j == 2}, L[3];
+    moment_of(b, b->now.R, unit, L);
+    for (int i = 0; i < 3; ++i) D[RIGID * (3 + i) + 3 + j] = factor * L[i];
+  }
+}
+
+PetscBool rigid_balances(const RigidWall *b, PetscReal tolerance)
+{
+  PetscReal r[RIGID], lack[2] = {0, 0}, scale[2] = {b->share * b->size[0], b->share * b->size[1]}, inertia[RIGID * RIGID];
+  rigid_residual(b, r);
+  rigid_inertia(b, inertia);
+  for (int i = 0; i < RIGID; ++i) {
+    lack[i / 3] += r[i] * r[i];
+    scale[i / 3] += PetscAbsReal(load_of(b, i));
+    /* as far as digits of motion go, whatever acts */
+    scale[i / 3] += 1e-12 / tolerance * PetscAbsReal(inertia[(RIGID + 1) * i] * b->q[i]);
+  }
+  scale[1] += scale[0] * (b->body.mass > 0 ? PetscSqrtReal(b->body.inertia[8] / b->body.mass) : 0);
+  return PetscSqrtReal(lack[0]) <= tolerance * scale[0] && PetscSqrtReal(lack[1]) <= tolerance * scale[1];
+}
+
+void rigid_end(RigidWall *b)
+{
+  const PetscReal *theta = b->q + 3,
+                  size = PetscSqrtReal(theta[0] * theta[0] + theta[1] * theta[1] + theta[2] * theta[2]);
+  const PetscReal angle = size > 0 ? 2 * atan(size / 2) / size : 1;
+  PetscReal push[RIGID], R[9];
+  for (int i = 0; i < RIGID; ++i) {
+    const PetscReal load = b->dt > 0 ? load_of(b, i) : (b->load[0][i] + b->load[1][i]) / 2;
+    push[i] = b->dt * (load_of(b, i) - b->share * b->contact[i]);
+    if (rigid_has(b, i)) b->now.work += load * b->q[i];
+    b->now.last[i] = b->q[i];
+  }
+  turn_matrix(theta, b->now.R, R);
+  for (int i = 0; i < 9; ++i) b->now.R[i] = R[i];
+  for (int d = 0; d < 3; ++d) {
+    b->now.moved[d] += b->q[d];
+    b->now.turned[d] += angle * theta[d];
+    if (rigid_has(b, d) && b->dt > 0) b->now.v[d] += push[d] / b->body.mass;
+    if (rigid_has(b, d + 3)) b->now.L[d] += push[d + 3];
+    b->given[d] += b->dt * b->share * b->contact[d];
+  }
+  for (int i = 0; i < RIGID; ++i) b->q[i] = 0;
+}
+
+void rigid_restore(RigidWall *b, Walls *walls)
+{
+  b->now = b->start;
+  for (int i = 0; i < RIGID; ++i) b->q[i] = 0;
+  rigid_place(b, walls);
+}
+
+/* --- making --- */
+static void start(RigidWall *b, const Case *c, Walls *walls, Diag *diag)
+{
+  const WallMassSpec *m = &c->walls[b->wall].mass;
+  const PetscBool space = c->kinematics->dim == 3;
+  wall_inertia(walls, b->wall, diag, &b->body);
+  for (int d = 0; d < 3; ++d) {
+    b->free[d] = m->free[d];
+    b->free[3 + d] = m->free[3] && (space || d == 2);
+    b->now.v[d] = m->velocity[d];
+    b->now.R[4 * d] = 1;
+  }
+  moment_of(b, b->now.R, m->spin, b->now.L);
+  b->start = b->now;
+}
+
+PetscErrorCode RigidCreate(const Case *c, Walls *walls, Diag *diag, PetscInt *n, RigidWall **rigid)
+{
+  PetscFunctionBeginUser;
+  *n = 0;
+  for (PetscInt k = 0; k < c->n_walls; ++k) *n += c->walls[k].has_mass;
+  PetscCall(PetscCalloc1(*n, rigid));
+  *n = 0;
+  for (PetscInt k = 0; k < c->n_walls; ++k) {
+    if (!c->walls[k].has_mass) continue;
+    (*rigid)[*n].wall = k;
+    start(*rigid + (*n)++, c, walls, diag);
+  }
+  PetscFunctionReturn(0);
+}

@@ -1,0 +1,84 @@
+/* Walls that move by what acts on them: rigid bodies whose increments in a step are unknowns of Newton's method,
+ * beside those of the nodes (newton_rigid.c).
+ *
+ * With impulses dt F of all forces, where contact counts with its mean over the step,
+ *
+ *   M (v1 - v) = dt F,  d = dt (v + v1) / 2;   R1 J W1 - R J W = dt T,  R1 = R cay(dt (W + W1) / 2),
+ *
+ * the torque T about the centre where forces act, at the step's end or in its middle: momentum and energy are exact
+ * for any dt, its moment with the midpoint rule (Simo and Wong 1991). In statics forces and torques balance at the end. All ranks have the same numbers. */
+#pragma once
+#include "wall/wall.h"
+
+#define RIGID 6 /* unknowns: translation, rotation */
+
+/* What outlives a step: numbers alone, a row of a checkpoint. */
+typedef struct {
+  PetscReal moved[3]; /* of the centre since the start, m */
+  PetscReal R[9];     /* x = centre + moved + R (X - centre) */
+  PetscReal v[3];     /* m/s */
+  PetscReal L[3];     /* moment of momentum about the centre, kg m2/s */
+  PetscReal turned[3]; /* sum of its rotations, rad */
+  PetscReal last[RIGID]; /* its increments in the last step, */
+  PetscReal step;        /* which was so long, s */
+  PetscReal work;        /* of weight and load since the start, J */
+} RigidState;
+
+typedef struct {
+  PetscInt wall;
+  WallInertia body;
+  PetscBool free[RIGID];
+  RigidState now, start; /* in the step, and as it began */
+  PetscBool stands;      /* in this step */
+  PetscReal dt, share;   /* dt 0: statics; share: the mean of contact over what the balance asks for */
+  PetscReal part;        /* of the step at which forces act: 1, in the midpoint rule 1/2 */
+  PetscReal load[2][RIGID]; /* weight, force and torque at the step's start and end */
+  PetscReal q[RIGID];       /* increments: translation d, and theta of cay(theta), m, rad */
+  /* of contact on the material at the last assembly, over all ranks: forces and torques, and the sums of their
+   * sizes; penalties of what is near, N/m */
+  PetscReal contact[RIGID], size[2], stiff;
+  PetscReal given[3]; /* momentum that contact took from it in this step, kg m/s */
+  PetscReal lost;     /* energy of motion that impulses took, J */
+} RigidWall;
+
+/* The rigid wall of a wall of the case, or NULL. */
+static inline RigidWall *rigid_of(RigidWall *rigid, PetscInt n, PetscInt wall)
+{
+  for (PetscInt k = 0; k < n; ++k)
+    if (rigid[k].wall == wall) return rigid + k;
+  return NULL;
+}
+
+/* Of those walls that have mass, at the start; what is missing is a mistake. */
+PetscErrorCode RigidCreate(const Case *c, Walls *walls, Diag *diag, PetscInt *n, RigidWall **rigid);
+/* A step, or a try of it, begins at t. middle: forces balance there. */
+void rigid_begin(RigidWall *b, Walls *walls, const Case *c, PetscReal t, PetscReal dt, PetscReal share,
+                 PetscBool middle);
+/* First guess: by inertia, or (statics) as in the last step. */
+void rigid_guess(RigidWall *b, Walls *walls, PetscBool previous);
+/* The wall where its increments put it. */
+void rigid_place(const RigidWall *b, Walls *walls);
+/* Unknowns that it has: those free, while it stands. */
+static inline PetscBool rigid_has(const RigidWall *b, int i) { return b->stands && b->free[i]; }
+
+/* Of a contact point that goes from x0 to x1: lever about the centre where forces act, and what the wall's matter
+ * moves by there: the work of contact is that of forces on d and of torques on theta. */
+void rigid_lever(const RigidWall *b, const PetscReal x0[3], const PetscReal x1[3], PetscReal lever[3]);
+void rigid_sweep(const RigidWall *b, const PetscReal x0[3], const PetscReal x1[3], PetscReal swept[3]);
+/* Position against the centre at the start, or at the end of the step, and velocity there. */
+void rigid_arm(const RigidWall *b, PetscBool start, const PetscReal x[3], PetscReal arm[3]);
+void rigid_velocity(const RigidWall *b, const PetscReal arm[3], PetscReal v[3]);
+/* Change of velocity and spin by momentum p and its moment (6 numbers). */
+void rigid_respond(const RigidWall *b, const PetscReal p[RIGID], PetscReal change[RIGID]);
+void rigid_push(RigidWall *b, const PetscReal p[RIGID]);
+
+/* What the balance of the wall lacks, N and N m, and the derivative of its inertia, 6 x 6. */
+void rigid_residual(const RigidWall *b, PetscReal r[RIGID]);
+void rigid_inertia(const RigidWall *b, PetscReal D[RIGID * RIGID]);
+/* Does it balance, up to `tolerance` of what acts on it? */
+PetscBool rigid_balances(const RigidWall *b, PetscReal tolerance);
+/* The step is accepted: momentum at its end. */
+void rigid_end(RigidWall *b);
+PetscReal rigid_kinetic(const RigidWall *b);
+/* As the step began. */
+void rigid_restore(RigidWall *b, Walls *walls);

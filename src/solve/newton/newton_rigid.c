@@ -1,0 +1,180 @@
+/* Walls with mass: a few unknowns more, q, and as many equations.
+ *
+ *   R(u, q) = 0,   r(u, q) = inertia(q) - loads + contact = 0
+ *
+ * Each direction of Newton's method takes them along, with K y = R and K Z = B = dR/dq:
+ *
+ *   (D - C Z) dq = -r + C y,   du = -(y + Z dq),   C = dr/du, D = dr/dq,
+ *
+ * a solve more for each unknown of a wall that something touches, with the factors that are there. */
+#include "solve/contact/contact.h"
+#include "solve/newton/newton_private.h"
+#include <petsctime.h>
+
+typedef struct {
+  PetscInt n;
+  PetscReal *B, *C, *D; /* n x dofs twice, n x n */
+  PetscReal *r;
+  PetscBool *touched;   /* n: does the unknown move any node? */
+  Vec *Z, c;
+} Border;
+
+static PetscInt unknowns(const Newton *n)
+{
+  const Contact *s = n->problem->scene.contact;
+  return s ? RIGID * s->n_rigid : 0;
+}
+
+/* Nodal vectors of all ranks as one of unknowns. */
+static PetscErrorCode ToVec(const Newton *n, PetscReal *nodes, Vec v)
+{
+  const StepProblem *p = n->problem;
+  const PetscInt dim = p->grid->dim, block = p->system->block;
+  PetscReal *to;
+
+  PetscFunctionBeginUser;
+  PetscCall(GridSumToOwners(p->grid, dim, nodes));
+  newton_turn(p, nodes);
+  PetscCall(VecSet(v, 0));
+  PetscCall(VecGetArray(v, &to));
+  for (PetscInt k = 0; k < p->system->n_active; ++k)
+    for (PetscInt d = 0, i = p->system->active[k] * dim; d < dim; ++d, ++i) to[k * block + d] = p->fixed[i] ? 0 : nodes[i];
+  PetscCall(VecRestoreArray(v, &to));
+  PetscFunctionReturn(0);
+}
+
+/* D - C Z, and -r + C y. */
+static PetscErrorCode Condense(Newton *n, Border *b, Vec y)
+{
+  const PetscInt dofs = n->problem->grid->n_nodes * n->problem->grid->dim;
+  PetscReal value;
+  KSP ksp;
+
+  PetscFunctionBeginUser;
+  PetscCall(SNESGetKSP(n->snes, &ksp));
+  for (PetscInt j = 0; j < b->n; ++j) {
+    PetscCall(ToVec(n, b->B + j * dofs, b->c));
+    PetscCall(VecNorm(b->c, NORM_INFINITY, &value));
+    b->touched[j] = value > 0;
+    if (!b->touched[j]) continue;
+    PetscCall(VecDuplicate(b->c, &b->Z[j]));
+    PetscCall(PetscTime(&n->solving));
+    PetscCall(KSPSolve(ksp, b->c, b->Z[j]));
+  }
+  for (PetscInt i = 0; i < b->n; ++i) {
+    PetscCall(ToVec(n, b->C + i * dofs, b->c));
+    PetscCall(VecDot(b->c, y, &value));
+    b->r[i] = value - b->r[i];
+    for (PetscInt j = 0; j < b->n; ++j) {
+      if (!b->touched[j]) continue;
+      PetscCall(VecDot(b->c, b->Z[j], &value));
+      b->D[i * b->n + j] -= value;
+    }
+  }
+  PetscFunctionReturn(0);
+}
+
+/* Gauss with pivots: r := D^-1 r. What nothing holds stays where it is. */
+static void solve_dense(PetscInt n, PetscReal *D, PetscReal *r)
+{
+  for (PetscInt k = 0; k < n; ++k) {
+    PetscInt pivot = k;
+    for (PetscInt i = k + 1; i < n; ++i)
+      if (PetscAbsReal(D[i * n + k]) > PetscAbsReal(D[pivot * n + k])) pivot = i;
+    for (PetscInt j = 0; j < n; ++j) {
+      const PetscReal swap = D[k * n + j];
+      D[k * n + j] = D[pivot * n + j], D[pivot * n + j] = swap;
+    }
+    const PetscReal swap = r[k];
+    r[k] = r[pivot], r[pivot] = swap;
+    for (PetscInt i = k + 1; i < n && D[k * n + k] != 0; ++i) {
+      const PetscReal factor = D[i * n + k] / D[k * n + k];
+      for (PetscInt j = k; j < n; ++j) D[i * n + j] -= factor * D[k * n + j];
+      r[i] -= factor * r[k];
+    }
+  }
+  for (PetscInt k = n - 1; k >= 0; --k) {
+    for (PetscInt j = k + 1; j < n; ++j) r[k] -= D[k * n + j] * r[j];
+    r[k] = D[k * n + k] != 0 ? r[k] / D[k * n + k] : 0;
+  }
+}
+
+/* In statics a wall that has just lost its contact is led back by the penalty of what is near. */
+static void hold_loose(const Contact *s, Border *b)
+{
+  for (PetscInt i = 0; i < b->n; ++i) {
+    const RigidWall *wall = s->rigid + i / RIGID;
+    if (wall->dt == 0 && rigid_has(wall, (int)(i % RIGID)) && b->D[i * b->n + i] == 0) b->D[i * b->n + i] = wall->stiff;
+  }
+}
+
+PetscErrorCode NewtonRigidBegin(Newton *n, Vec y)
+{
+  StepProblem *p = n->problem;
+  const PetscInt all = unknowns(n), dofs = p->grid->n_nodes * p->grid->dim;
+  Contact *s = p->scene.contact;
+  Border b = {.n = all};
+
+  PetscFunctionBeginUser;
+  if (!all) PetscFunctionReturn(0);
+  PetscCall(PetscCalloc6(all * dofs, &b.B, all * dofs, &b.C, all * all, &b.D, all, &b.r, all, &b.touched, all, &b.Z));
+  PetscCall(VecDuplicate(n->x, &b.c));
+  for (PetscInt k = 0; k < s->n_rigid; ++k) rigid_residual(s->rigid + k, b.r + RIGID * k);
+  PetscCall(RigidTangent(s, &p->scene, b.B, b.C, b.D));
+  hold_loose(s, &b);
+  PetscCall(Condense(n, &b, y));
+  solve_dense(all, b.D, b.r);
+  PetscCall(PetscRealloc((size_t)(2 * all) * sizeof *n->rigid, &n->rigid));
+  for (PetscInt j = 0; j < all; ++j) {
+    n->rigid[2 * j] = s->rigid[j / RIGID].q[j % RIGID];
+    n->rigid[2 * j + 1] = b.r[j];
+    if (!b.touched[j]) continue;
+    PetscCall(VecAXPY(y, b.r[j], b.Z[j]));
+    PetscCall(VecDestroy(&b.Z[j]));
+  }
+  PetscCall(VecDestroy(&b.c));
+  PetscCall(PetscFree6(b.B, b.C, b.D, b.r, b.touched, b.Z));
+  PetscFunctionReturn(0);
+}
+
+void newton_rigid_place(const Newton *n, PetscReal length)
+{
+  const PetscInt all = unknowns(n);
+  for (PetscInt j = 0; j < all; ++j)
+    n->problem->scene.contact->rigid[j / RIGID].q[j % RIGID] = n->rigid[2 * j] + length * n->rigid[2 * j + 1];
+  newton_rigid_set(n, NULL);
+}
+
+void newton_rigid_get(const Newton *n, PetscReal *q)
+{
+  const PetscInt all = unknowns(n);
+  for (PetscInt j = 0; j < all; ++j) q[j] = n->problem->scene.contact->rigid[j / RIGID].q[j % RIGID];
+}
+
+void newton_rigid_set(const Newton *n, const PetscReal *q)
+{
+  Contact *s = n->problem->scene.contact;
+  const PetscInt all = unknowns(n);
+  for (PetscInt j = 0; q && j < all; ++j) s->rigid[j / RIGID].q[j % RIGID] = q[j];
+  for (PetscInt k = 0; k < all / RIGID; ++k) rigid_place(s->rigid + k, s->walls);
+}
+
+PetscReal newton_rigid_work(void *context)
+{
+  const Newton *n = context;
+  const Contact *s = n->problem->scene.contact;
+  PetscReal sum = 0, r[RIGID];
+  for (PetscInt k = 0; s && k < s->n_rigid; ++k) {
+    rigid_residual(s->rigid + k, r);
+    for (int i = 0; i < RIGID; ++i) sum -= n->rigid[2 * (RIGID * k + i) + 1] * r[i] / s->rigid[k].share;
+  }
+  return sum;
+}
+
+PetscBool newton_rigid_met(const Newton *n)
+{
+  const Contact *s = n->problem->scene.contact;
+  for (PetscInt k = 0; s && k < s->n_rigid; ++k)
+    if (!rigid_balances(s->rigid + k, n->spec.residual)) return PETSC_FALSE;
+  return PETSC_TRUE;
+}

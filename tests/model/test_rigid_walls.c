@@ -1,0 +1,199 @@
+/* Walls that move by what acts on them, against mechanics of rigid bodies: free flight, momentum and energy of
+ * collisions in every method, equilibrium under load. */
+#include "case_builder.h"
+
+typedef struct {
+  const char *method, *basis, *scheme;
+  CellType cell;
+  PetscReal friction;
+  PetscBool lumped;
+} Hit;
+
+static PetscReal of_ball(Model *m, const char *kind, PetscInt component)
+{
+  return model_wall(m, "ball", kind, NULL, component);
+}
+
+/* A block of rubber, 1 x 0.5 (x 0.5) m, and a ball above its top. */
+static void below_ball(Bench *b, const Hit *h, PetscBool dynamic, WallSpec *wall)
+{
+  const PetscBool space = h->cell == CELL_HEXAHEDRON;
+  const int up = space ? 2 : 1;
+  bench_init(b, h->method, h->cell, 0);
+  bench_grid(b, (PetscReal[]){-1, space ? -0.5 : -1, -0.5}, (PetscReal[]){3, 2, 1},
+             strcmp(h->method, "mpm") ? 0.125 : 0.25);
+  bench_box(b, 0, (PetscReal[]){0.5, 0, 0}, (PetscReal[]){1.5, 0.5, 0.5});
+  if (dynamic) bench_dynamic(b, 1, 5e-3);
+  b->c.analysis.scheme = (char *)h->scheme;
+  if (h->scheme && !strcmp(h->scheme, "bossak")) {
+    b->c.analysis.bossak = -0.3;
+    b->c.analysis.beta = 1.3 * 1.3 / 4;
+    b->c.analysis.gamma = 0.8;
+  }
+  if (h->lumped) b->c.analysis.mass = MASS_LUMPED;
+  b->c.basis = (BasisSpec){
+    .kind = h->basis, .gamma = 1.8, .effective_radius = 1, .radius = 2, .max_radius = 3.5, .condition = 50, .gap = 2};
+  b->c.linear = LINEAR_AUTO;
+  b->c.newton = (NewtonSpec){.residual = 1e-11, .increment = 1e-12, .max_iterations = 25, .ease = 6};
+  b->c.stabilisation.curvature = 0.1;
+  *wall = (WallSpec){.name = (char *)"ball",
+                     .shape = {.kind = SHAPE_BALL, .radius = 0.3, .centre = {0.93, space ? 0.27 : 0, 0}},
+                     .contact = h->friction > 0 ? CONTACT_FRICTION : CONTACT_FRICTIONLESS,
+                     .friction = h->friction,
+                     .has_mass = PETSC_TRUE};
+  wall->shape.centre[up] = 0.81;
+  wall->mass = (WallMassSpec){.has_density = PETSC_TRUE,
+                              .density = 2000,
+                              .gravity = PETSC_TRUE,
+                              .free = {PETSC_TRUE, PETSC_TRUE, space, PETSC_TRUE},
+                              .velocity = {0.5, 0, 0},
+                              .spin = {0, 0, space ? 0 : 2}};
+  wall->mass.velocity[up] = -2;
+  b->c.n_walls = 1;
+  b->c.walls = wall;
+}
+
+/* What the ball loses the block gets, in steps of changing length, and no energy is unaccounted for. */
+static void hit(const Hit *h)
+{
+  const PetscBool space = h->cell == CELL_HEXAHEDRON;
+  const int up = space ? 2 : 1;
+  const PetscReal mass = 2000 * (space ? 4. / 3 * PETSC_PI * 0.027 : PETSC_PI * 0.09);
+  Bench b;
+  WallSpec wall;
+  below_ball(&b, h, PETSC_TRUE, &wall);
+  Model *m = bench_model(&b, PETSC_COMM_WORLD);
+  PetscReal off = 0;
+  Energies e;
+  for (PetscInt k = 0; m->time < 0.1; ++k) {
+    model_step(m, k % 3 == 1 ? 2e-3 : 5e-3);
+    for (PetscInt d = 0; d < m->dim; ++d) {
+      const PetscReal before = mass * wall.mass.velocity[d];
+      off = PetscMax(off, PetscAbsReal(mass * of_ball(m, "wall_velocity", d) + model_sum(m, "momentum", d) - before));
+    }
+  }
+  CALL(ModelEnergies(m, &e));
+  const PetscReal balance = model_sum(m, "energy: balance", 0), given = -model_sum(m, "momentum", up);
+  PetscPrintf(PETSC_COMM_WORLD, "%s %s %s cell %d mu %g: momentum off %.2g of %.6g, balance %.2g, transfer + numerical "
+              "%.4g, friction %.4g of %.6g J, spin %.4g\n",
+              h->method, h->basis, h->scheme ? h->scheme : "", (int)h->cell, (double)h->friction, (double)off,
+              (double)given, (double)balance, (double)(e.transfer + e.numerical), (double)e.friction, (double)e.start,
+              (double)of_ball(m, "wall_spin", 1));
+  CHECK(off <= 1e-9 * given && given > 100, "momentum off by %g of %g", (double)off, (double)given);
+  CHECK(PetscAbsReal(balance) < 1e-6, "open: %g", (double)balance);
+  CHECK(e.transfer + e.numerical + e.friction > 0, "%g J were made", (double)-(e.transfer + e.numerical + e.friction));
+  if (h->friction == 0) CHECK_CLOSE(of_ball(m, "wall_spin", 0), 2, 1e-9);
+  else CHECK(PetscAbsReal(of_ball(m, "wall_spin", space ? 1 : 0)) > 0.1, "friction does not turn it");
+  CHECK(model_wall(m, "ball", "contact", "penetration", 0) <= 1e-4 * 0.25, "deep in the wall");
+  CALL(ModelDestroy(&m));
+}
+
+static void test_hits(void **state)
+{
+  static const Hit hits[] = {
+    {"mpm", "cell", NULL, CELL_QUADRILATERAL, 0, PETSC_FALSE},
+    {"mpm", "gimp", NULL, CELL_QUADRILATERAL, 0.3, PETSC_FALSE},
+    {"mpm", "gimp", NULL, CELL_QUADRILATERAL, 0.3, PETSC_TRUE},
+    {"mpm", "gimp", "midpoint", CELL_QUADRILATERAL, 0.3, PETSC_FALSE},
+    {"mpm", "gimp", "bossak", CELL_QUADRILATERAL, 0.3, PETSC_FALSE},
+    {"mpm", "cell", NULL, CELL_HEXAHEDRON, 0.3, PETSC_FALSE},
+    {"fem", "cell", NULL, CELL_QUADRILATERAL, 0.3, PETSC_FALSE},
+    {"fem", "cell", "bossak", CELL_QUADRILATERAL, 0.3, PETSC_FALSE},
+    {"gmm", "lme", NULL, CELL_QUADRILATERAL, 0.3, PETSC_FALSE},
+  };
+  (void)state;
+  for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(hits); ++k) hit(&hits[k]);
+}
+
+/* A brick that tumbles in free fall keeps its moment of momentum and energy, and falls as a point does. */
+static void test_flies(void **state)
+{
+  static const Hit far = {"mpm", "cell", NULL, CELL_HEXAHEDRON, 0, PETSC_FALSE};
+  const PetscReal spin[3] = {1, 5, 0.3}, side[3] = {0.2, 0.4, 0.7}, mass = 2000 * 0.2 * 0.4 * 0.7;
+  PetscReal energy = 0, L[3], found[3], v[3];
+  Bench b;
+  WallSpec wall;
+  (void)state;
+  below_ball(&b, &far, PETSC_TRUE, &wall);
+  wall.shape = (Shape){.kind = SHAPE_BOX};
+  for (int d = 0; d < 3; ++d) {
+    wall.shape.min[d] = 2 - side[d] / 2 + (d == 2), wall.shape.max[d] = 2 + side[d] / 2 + (d == 2);
+    wall.mass.spin[d] = spin[d];
+    L[d] = mass / 12 * spin[d] * (PetscSqr(side[(d + 1) % 3]) + PetscSqr(side[(d + 2) % 3]));
+    energy += 0.5 * (L[d] * spin[d] + mass * PetscSqr(wall.mass.velocity[d]));
+  }
+  b.c.gravity[2] = -9.81;
+  Model *m = bench_model(&b, PETSC_COMM_WORLD);
+  for (PetscInt k = 0; m->time < 0.28; ++k) model_step(m, k % 3 == 1 ? 0.02 : 0.05);
+  const RigidWall *ball = m->contact->rigid;
+  const PetscReal t = m->time, fallen = -2 * t - 9.81 / 2 * t * t, turned = ball->now.turned[1];
+  CHECK_CLOSE(of_ball(m, "wall_position", 2), 3 + fallen, 1e-12);
+  CHECK_CLOSE(of_ball(m, "wall_position", 0), 2 + 0.5 * t, 1e-12);
+  CHECK_CLOSE(of_ball(m, "wall_velocity", 2), -2 - 9.81 * t, 1e-12);
+  for (int d = 0; d < 3; ++d) CHECK_CLOSE(ball->now.L[d], L[d], 1e-12 * L[1]);
+  for (int d = 0; d < 3; ++d) found[d] = of_ball(m, "wall_spin", d), v[d] = of_ball(m, "wall_velocity", d);
+  PetscReal now = 0;
+  for (int d = 0; d < 3; ++d) now += 0.5 * (found[d] * ball->now.L[d] + mass * v[d] * v[d]);
+  PetscPrintf(PETSC_COMM_WORLD, "it has turned by %.4g, energy off by %.2g of %.6g J\n", (double)turned,
+              (double)(now - energy + mass * 9.81 * fallen), (double)energy);
+  CHECK_CLOSE(now, energy - mass * 9.81 * fallen, 1e-10 * energy);
+  CHECK(PetscAbsReal(found[0] - 1) > 0.1, "it does not tumble");
+  CALL(ModelDestroy(&m));
+}
+
+/* In statics a footing, with an inclined load at its centre, stands on the block: forces in balance, and their
+ * moment. */
+static void test_stands(void **state)
+{
+  static const Hit ways[] = {{"mpm", "gimp", NULL, CELL_QUADRILATERAL, 0.5, PETSC_FALSE},
+                             {"fem", "cell", NULL, CELL_QUADRILATERAL, 0.5, PETSC_FALSE},
+                             {"gmm", "lme", NULL, CELL_QUADRILATERAL, 0.5, PETSC_FALSE}};
+  (void)state;
+  for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(ways); ++k) {
+    Bench b;
+    WallSpec wall;
+    below_ball(&b, &ways[k], PETSC_FALSE, &wall);
+    wall.shape = (Shape){.kind = SHAPE_BOX, .min = {0.73, 0.5}, .max = {1.23, 0.8}};
+    for (int d = 0; d < 3; ++d) wall.mass.velocity[d] = wall.mass.spin[d] = 0;
+    wall.mass.force[0] = 600, wall.mass.force[1] = -9000;
+    b.c.gravity[1] = -9.81;
+    bench_motion(&b, 1, 0, MOTION_FIXED, 3);
+    Model *m = bench_model(&b, PETSC_COMM_WORLD);
+    while (m->time < 1 - 1e-9) model_step(m, 0.25);
+    const PetscReal weight = 9000 + 9.81 * 2000 * 0.15, x = of_ball(m, "wall_position", 0),
+                    y = of_ball(m, "wall_position", 1);
+    PetscPrintf(PETSC_COMM_WORLD, "%s: %.10g and %.10g N, settled %.4g m, turned %.4g, %d iterations, %d cuts\n",
+                ways[k].method, (double)of_ball(m, "wall_force", 0), (double)of_ball(m, "wall_force", 1),
+                (double)(0.65 - y), (double)of_ball(m, "wall_angle", 2), (int)m->total_iterations, (int)m->cuts);
+    CHECK_CLOSE(of_ball(m, "wall_force", 1), -weight, 1e-8 * weight);
+    CHECK_CLOSE(of_ball(m, "wall_force", 0), 600, 1e-8 * weight);
+    CHECK(y < 0.65 && x > 0.98, "it has not moved: %g, %g", (double)x, (double)y);
+    const PetscReal torque = m->contact->rigid->contact[5]; /* about its centre */
+    CHECK(PetscAbsReal(torque) < 1e-8 * weight, "a torque of %g N m is left", (double)torque);
+    CHECK(m->cuts == 0, "%d steps were halved", (int)m->cuts);
+    CALL(ModelDestroy(&m));
+  }
+}
+
+/* Nobody knows the mass of half of space. */
+static void test_endless(void **state)
+{
+  static const Hit any = {"mpm", "cell", NULL, CELL_QUADRILATERAL, 0, PETSC_FALSE};
+  Bench b;
+  WallSpec wall;
+  (void)state;
+  below_ball(&b, &any, PETSC_TRUE, &wall);
+  wall.shape = (Shape){.kind = SHAPE_HALF_SPACE, .point = {0, -1}, .normal = {0, 1}};
+  bench_refused(&b, PETSC_COMM_WORLD, "walls[0].mass", "cannot be computed from its shape");
+}
+
+int main(int argc, char **argv)
+{
+  const struct CMUnitTest tests[] = {
+    cmocka_unit_test(test_hits),
+    cmocka_unit_test(test_flies),
+    cmocka_unit_test(test_stands),
+    cmocka_unit_test(test_endless),
+  };
+  return run_model_group(argc, argv, tests, PETSC_STATIC_ARRAY_LENGTH(tests));
+}
