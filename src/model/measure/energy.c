@@ -297,7 +297,9 @@ PetscErrorCode EnergyOfNodes(Model *m, PetscReal dt, EnergyStep *e)
     impulse += impulse_work(m, i, dt);
   }
   const PetscBool jumps = m->method->begin || (m->contact && !m->method->restores_grid);
+  if (jumps) PetscCall(MaterialsAt(m, m->time)); /* as strong as they were at the start */
   if (jumps) PetscCall(OutOfBalance(m, g0, before, &unbalanced));
+  if (jumps) PetscCall(MaterialsAt(m, m->time + dt));
   if (jumps) unbalanced -= contact.start;
   PetscCall(PetscFree2(before, after));
   if (damping > 0) {
