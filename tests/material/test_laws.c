@@ -67,15 +67,15 @@
   }
 
 /* Mean strains around the points, and the weights 2 and 1 of them. */
-#define NONLOCAL(phi, c, share, residual, weight)                                                                   \
-  9,                                                                                                                \
-  {                                                                                                                 \
-    {(char *)"young", 2e6}, {(char *)"poisson", 0.3}, {(char *)"friction_angle", phi}, {(char *)"cohesion", c},     \
-      {(char *)"residual_friction_angle", (share) * (phi)}, {(char *)"residual_cohesion", (share) * (c)},           \
-      {(char *)"residual_strain", residual}, {(char *)"nonlocal_length", 1},                                        \
-    {                                                                                                               \
-      (char *)"nonlocal_weight", weight                                                                             \
-    }                                                                                                               \
+#define NONLOCAL(phi, c, share, residual, weight)                                                               \
+  9,                                                                                                            \
+  {                                                                                                             \
+    {(char *)"young", 2e6}, {(char *)"poisson", 0.3}, {(char *)"friction_angle", phi}, {(char *)"cohesion", c}, \
+      {(char *)"residual_friction_angle", (share) * (phi)}, {(char *)"residual_cohesion", (share) * (c)},       \
+      {(char *)"residual_strain", residual}, {(char *)"nonlocal_length", 1},                                    \
+    {                                                                                                           \
+      (char *)"nonlocal_weight", weight                                                                         \
+    }                                                                                                           \
   }
 
 #define CAM_CLAY(M, lambda, kappa, v, G, ocr)                                                   \
