@@ -181,7 +181,7 @@ static const LawParameter parameters[] = {
   {"reference_size", "m", "size of the cells for which both strains hold; 0: they hold in all, and depend on the mesh",
    0, PETSC_MAX_REAL, .fallback = 0},
   {"nonlocal_length", "m",
-   "radius around a point over which its plastic strain is averaged, on any mesh; 0: none. At least two cells", 0,
+   "radius around a point over which its plastic strain is averaged, on any mesh; 0: none. Four cells or more", 0,
    PETSC_MAX_REAL, .fallback = 0},
   {"nonlocal_weight", "", "share m of the mean in the strain that softens, 1 - m being that of the point itself", 1, 10,
    .fallback = 2},
