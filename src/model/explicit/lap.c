@@ -152,6 +152,7 @@ PetscErrorCode LapBegin(Model *m, Explicit *e, PetscReal left)
 
   PetscFunctionBeginUser;
   PetscCall(PetscTime(&clock));
+  e->box = e->box && !m->forces.n; /* a body force may have come since */
   PetscCall(See(m, e));
   if (e->critical == 0 || e->since >= LAP_MOST) {
     PetscCall(ExplicitCritical(m, &e->critical, &e->fastest));

@@ -89,6 +89,7 @@ KERNEL void gain(const int dim, const PetscBool box, const Model *m, Explicit *e
 {
   const Points *points = m->points;
   const PetscBool again = m->c->analysis.update == EXPLICIT_MUSL;
+  const PetscReal per_second = 1 / e->dt;
   PetscReal damped = 0;
   Sight s = {0};
   Near near;
@@ -101,7 +102,7 @@ KERNEL void gain(const int dim, const PetscBool box, const Model *m, Explicit *e
     for (int d = 0; d < dim; ++d) {
       damped += 0.5 * mass * v[d] * v[d] * e->fade * (2 - e->fade);
       v[d] += gained[d] - e->fade * v[d];
-      a[d] = gained[d] / e->dt;
+      a[d] = gained[d] * per_second;
     }
     for (PetscInt k = 0; again && k < (box ? 1 << dim : s.nn); ++k)
       for (int d = 0; d < dim; ++d) e->straining[s.node[k] * dim + d] += mass * s.N[k] * v[d];

@@ -65,7 +65,7 @@ static PetscErrorCode Accept(Model *m, const Explicit *e, const PetscReal before
   m->transfer_energy -= m->outside.energy - e->outside;
   note_flow(m, 1);
   m->space->present = PETSC_FALSE;
-  m->time += e->step;
+  m->time = report->outcome == STEP_ACCEPTED ? m->time + e->step : e->time;
   ++m->step;
   m->total_iterations += e->taken;
   report->newton.iterations = e->taken;
