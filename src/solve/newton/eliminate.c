@@ -56,7 +56,8 @@ static void take(Elimination *e, PetscInt node, PetscInt *n)
 static PetscInt take_outstanding(Elimination *e, const StepProblem *p, const PetscReal *f, PetscReal norm)
 {
   const PetscReal least = PetscSqr(stands_out[p->stiff] * norm);
-  const PetscInt most = (PetscInt)PetscMin(most_chosen[p->stiff], few[p->stiff] * (PetscReal)p->system->n_active_global);
+  const PetscInt most =
+    (PetscInt)PetscMin(most_chosen[p->stiff], few[p->stiff] * (PetscReal)p->system->n_active_global);
   PetscInt n = 0;
   for (PetscInt k = 0; k < p->system->n_active && n <= most; ++k) {
     PetscReal square = 0;
