@@ -1,8 +1,10 @@
 /* What a step starts with: who is held, what is prescribed and loaded, and history. */
 #include "model/model_private.h"
 
-/* cells that a wave crosses in a step of stiff matter: below it costs more than it saves */
+/* cells that a wave crosses in a step of stiff matter: with fewer all converges by itself, with more the nodes that
+ * are settled by themselves cost more time than shorter steps */
 #define STIFF_WAVES 10
+#define TOO_STIFF_WAVES 60
 
 WeakFormInput weak_form_of(const Model *m, PetscReal inertia)
 {
@@ -181,7 +183,8 @@ static PetscBool is_stiff(const Model *m, PetscReal dt)
   PetscBool yields = PETSC_FALSE;
   for (PetscInt i = 0; i < m->c->n_materials; ++i) yields |= m->materials[i].law->yields;
   const PetscBool flows = m->scheme->inertia && m->method->restores_grid && m->dim == 2;
-  return yields && flows && m->courant_speed * dt > STIFF_WAVES * m->grid->smallest;
+  const PetscReal waves = m->courant_speed * dt / m->grid->smallest;
+  return yields && flows && waves > STIFF_WAVES && waves < TOO_STIFF_WAVES;
 }
 
 PetscErrorCode PrepareStep(Model *m, PetscReal dt, StepProblem *p)

@@ -110,7 +110,7 @@ static void test_settled(void **state)
 }
 
 /* Two nodes that are far apart make two patches, each with its neighbours and with all groups that hold one of its
- * nodes; a residual that stands everywhere makes none. */
+ * nodes; a residual that stands everywhere makes none, but in stiff matter that yields. */
 static void test_chosen(void **state)
 {
   (void)state;
@@ -141,6 +141,11 @@ static void test_chosen(void **state)
   for (PetscInt i = 0; i < p.system->n_active * 2; ++i) f[i] = 1;
   CALL(EliminationChoose(&e, &p, f, 1));
   CHECK(e.n_patches == 0 && !e.any, "all nodes were chosen");
+  p.stiff = PETSC_TRUE;
+  CALL(EliminationChoose(&e, &p, f, 1));
+  CHECK(e.any && (ranks > 1 || e.n_patches == 1), "%d patches of stiff matter", (int)e.n_patches);
+  p.stiff = PETSC_FALSE;
+  CALL(EliminationChoose(&e, &p, f, 1));
   for (PetscInt i = 0; i < p.grid->n_nodes; ++i) CHECK(e.place[i] == -1, "a mark was left");
   CALL(PetscFree(f));
   CALL(EliminationReset(&e));

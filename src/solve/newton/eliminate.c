@@ -5,7 +5,7 @@
 static const PetscReal stands_out[] = {0.02, 0.01}; /* of the residual's norm */
 static const PetscInt most_chosen[] = {64, 4096};   /* nodes that stand out, on a rank, */
 static const PetscReal few[] = {0.02, 1};           /* and of all nodes with unknowns */
-static const PetscInt most_nodes[] = {128, 4096};   /* of a patch */
+static const PetscInt most_nodes[] = {128, 1024};   /* of a patch */
 
 #define SKEW 1e-3 /* of the other directions in the order of a patch's nodes */
 
@@ -56,7 +56,8 @@ static void take(Elimination *e, PetscInt node, PetscInt *n)
 static PetscInt take_outstanding(Elimination *e, const StepProblem *p, const PetscReal *f, PetscReal norm)
 {
   const PetscReal least = PetscSqr(stands_out[p->stiff] * norm);
-  const PetscInt most = (PetscInt)PetscMin(most_chosen[p->stiff], few[p->stiff] * (PetscReal)p->system->n_active_global);
+  const PetscInt most =
+    (PetscInt)PetscMin(most_chosen[p->stiff], few[p->stiff] * (PetscReal)p->system->n_active_global);
   PetscInt n = 0;
   for (PetscInt k = 0; k < p->system->n_active && n <= most; ++k) {
     PetscReal square = 0;

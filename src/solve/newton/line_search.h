@@ -24,8 +24,8 @@ PetscErrorCode LineShorten(Line *line, PetscReal slope0, PetscReal norm0);
 typedef struct {
   PetscReal enough; /* Line.enough */
   PetscReal best;   /* smallest residual of this step */
-  PetscInt stale; /* iterations since it was met */
-  PetscInt block; /* unknowns per node of which the last is a pressure; 0: none is */
+  PetscInt stale;   /* iterations since it was met */
+  PetscInt block;   /* unknowns per node of which the last is a pressure; 0: none is */
   /* Collective; NULL: nothing. From the residual where a direction starts, and its norm; and what is
    * done to every place along it before the residual there is taken. */
   PetscErrorCode (*choose)(void *context, PetscInt iteration, Vec f, PetscReal norm);

@@ -2,9 +2,7 @@
 #include "base/math/lu.h"
 #include "solve/newton/line_search.h"
 
-/* of a patch; of one in stiff matter that yields */
 #define MOST_ITERATIONS 10
-#define MOST_ITERATIONS_STIFF 25
 
 /* A patch at work; its m unknowns stand node by node. */
 typedef struct {
@@ -130,7 +128,6 @@ static PetscBool find_direction(Work *w, PetscReal *slope)
 static PetscErrorCode Iterate(Work *w, PetscReal enough, PetscReal *best)
 {
   Line line = {.evaluate = EvaluateAt, .context = w, .enough = w->p->stiff ? ENOUGH_STIFF : ENOUGH};
-  const PetscInt most = w->p->stiff ? MOST_ITERATIONS_STIFF : MOST_ITERATIONS;
   PetscReal least, slope, norm;
 
   PetscFunctionBeginUser;
@@ -141,7 +138,7 @@ static PetscErrorCode Iterate(Work *w, PetscReal enough, PetscReal *best)
   w->tangent = PETSC_TRUE; /* most patches need none */
   if (line.norm > enough) PetscCall(LineTry(&line, 0));
   least = line.norm;
-  for (PetscInt it = 0; it < most && line.norm > enough && line.norm < PETSC_INFINITY; ++it) {
+  for (PetscInt it = 0; it < MOST_ITERATIONS && line.norm > enough && line.norm < PETSC_INFINITY; ++it) {
     PetscCall(FillMatrix(w));
     if (!find_direction(w, &slope)) break;
     norm = line.norm;
