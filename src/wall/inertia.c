@@ -50,7 +50,8 @@ static void of_facets(const Facets *f, Moments *m)
  * the circle are those of r^2, r^2 z, r^2 z^2 and r^4 along the section's edges, for which three places suffice. */
 static void of_section(const Form *f, Moments *m)
 {
-  static const PetscReal place[] = {0.1127016653792583, 0.5, 0.8872983346207417}, weight[] = {5. / 18, 8. / 18, 5. / 18};
+  static const PetscReal place[] = {0.1127016653792583, 0.5, 0.8872983346207417},
+                         weight[] = {5. / 18, 8. / 18, 5. / 18};
   PetscReal along[3] = {0, 0, 0}, across = 0;
   for (PetscInt i = 0; i < f->facets->n; ++i) {
     const PetscReal(*x)[3] = (const PetscReal(*)[3])f->facets->corner[i];
@@ -93,8 +94,8 @@ static void of_ball(const Form *f, Moments *m)
   for (int d = 0; d < f->dim; ++d) m->first[d] = m->volume * c[d];
   for (int i = 0; i < 9; ++i) {
     const PetscBool own = i % 4 == 0 && i / 4 < f->dim;
-    m->second[i] = m->volume * ((i / 3 < f->dim && i % 3 < f->dim ? c[i / 3] * c[i % 3] : 0) +
-                                (own ? r * r / (f->dim + 2) : 0));
+    m->second[i] =
+      m->volume * ((i / 3 < f->dim && i % 3 < f->dim ? c[i / 3] * c[i % 3] : 0) + (own ? r * r / (f->dim + 2) : 0));
   }
 }
 
