@@ -50,7 +50,8 @@ static void of_facets(const Facets *f, Moments *m)
  * the circle are those of r^2, r^2 z, r^2 z^2 and r^4 along the section's edges, for which three places suffice. */
 static void of_section(const Form *f, Moments *m)
 {
-  static const PetscReal place[] = {0.1127016653792583, 0.5, 0.8872983346207417}, weight[] = {5. / 18, 8. / 18, 5. / 18};
+  static const PetscReal place[] = {0.1127016653792583, 0.5, 0.8872983346207417},
+                         weight[] = {5. / 18, 8. / 18, 5. / 18};
   PetscReal along[3] = {0, 0, 0}, across = 0;
   for (PetscInt i = 0; i < f->facets->n; ++i) {
     const PetscReal(*x)[3] = (const PetscReal(*)[3])f->facets->corner[i];
@@ -93,25 +94,28 @@ static void of_ball(const Form *f, Moments *m)
   for (int d = 0; d < f->dim; ++d) m->first[d] = m->volume * c[d];
   for (int i = 0; i < 9; ++i) {
     const PetscBool own = i % 4 == 0 && i / 4 < f->dim;
-    m->second[i] = m->volume * ((i / 3 < f->dim && i % 3 < f->dim ? c[i / 3] * c[i % 3] : 0) +
-                                (own ? r * r / (f->dim + 2) : 0));
+    m->second[i] =
+      m->volume * ((i / 3 < f->dim && i % 3 < f->dim ? c[i / 3] * c[i % 3] : 0) + (own ? r * r / (f->dim + 2) : 0));
   }
 }
 
-/* In axisymmetry: the whole ring; where along the axis its centre is nobody asks. */
-static PetscReal ring_volume(const Form *f)
+/* In axisymmetry: the whole ring, and its centre on the axis. */
+static void of_ring(const Form *f, Moments *m)
 {
   const Shape *s = f->shape;
-  const PetscReal r = s->radius;
-  PetscReal sum = 0;
-  if (s->kind == SHAPE_BOX) return PETSC_PI * (s->max[0] * s->max[0] - s->min[0] * s->min[0]) * (s->max[1] - s->min[1]);
-  if (s->kind == SHAPE_BALL)
-    return fabs(s->centre[0]) < 1e-9 * r ? 4. / 3 * PETSC_PI * r * r * r : 2 * PETSC_PI * PETSC_PI * s->centre[0] * r * r;
-  for (PetscInt i = 0, j = s->n_vertices - 1; i < s->n_vertices; j = i++) {
-    const PetscReal *a = s->vertices + 2 * j, *b = s->vertices + 2 * i;
-    sum += PETSC_PI / 3 * (a[0] * a[0] + a[0] * b[0] + b[0] * b[0]) * (b[1] - a[1]);
+  const PetscReal r = s->radius, *a = s->min, *b = s->max;
+  if (s->kind == SHAPE_BALL) {
+    const PetscBool whole = fabs(s->centre[0]) < 1e-9 * r;
+    m->volume = whole ? 4. / 3 * PETSC_PI * r * r * r : 2 * PETSC_PI * PETSC_PI * s->centre[0] * r * r;
+    m->first[1] = m->volume * s->centre[1];
+  } else if (s->kind == SHAPE_BOX) {
+    m->volume = PETSC_PI * (b[0] * b[0] - a[0] * a[0]) * (b[1] - a[1]);
+    m->first[1] = m->volume * (a[1] + b[1]) / 2;
+  } else {
+    Form section = *f;
+    section.direction[1] = 1;
+    of_section(&section, m);
   }
-  return fabs(sum);
 }
 
 static PetscBool moments_of(const Form *f, Moments *m)
@@ -119,7 +123,7 @@ static PetscBool moments_of(const Form *f, Moments *m)
   const ShapeKind kind = f->shape->kind;
   *m = (Moments){0};
   if (f->thin || f->n || kind == SHAPE_HALF_SPACE || kind == SHAPE_TERRAIN) return PETSC_FALSE;
-  if (f->axis) m->volume = ring_volume(f);
+  if (f->axis) of_ring(f, m);
   else if (kind == SHAPE_BOX) of_box(f, m);
   else if (kind == SHAPE_BALL) of_ball(f, m);
   else if (form_is_flat(f)) of_facets(f->facets, m);

@@ -74,7 +74,8 @@ static void hit(const Hit *h)
   }
   CALL(ModelEnergies(m, &e));
   const PetscReal balance = model_sum(m, "energy: balance", 0), given = -model_sum(m, "momentum", up);
-  PetscPrintf(PETSC_COMM_WORLD, "%s %s %s cell %d mu %g: momentum off %.2g of %.6g, balance %.2g, transfer + numerical "
+  PetscPrintf(PETSC_COMM_WORLD,
+              "%s %s %s cell %d mu %g: momentum off %.2g of %.6g, balance %.2g, transfer + numerical "
               "%.4g, friction %.4g of %.6g J, spin %.4g\n",
               h->method, h->basis, h->scheme ? h->scheme : "", (int)h->cell, (double)h->friction, (double)off,
               (double)given, (double)balance, (double)(e.transfer + e.numerical), (double)e.friction, (double)e.start,

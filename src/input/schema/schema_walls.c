@@ -152,8 +152,7 @@ PetscErrorCode SchemaCheckWallMass(SchemaReader *r, const YamlNode *mapping, voi
   }
   const YamlNode *inertia = yaml_find(mapping, "inertia");
   for (int d = r->dim == 2 ? 2 : 0; d < 3 && inertia; ++d)
-    if (m->inertia[d] <= 0)
-      SchemaError(r, inertia, "%s must be > 0", yaml_path(inertia, path, sizeof path));
+    if (m->inertia[d] <= 0) SchemaError(r, inertia, "%s must be > 0", yaml_path(inertia, path, sizeof path));
   PetscFunctionReturn(0);
 }
 

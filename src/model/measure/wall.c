@@ -213,7 +213,8 @@ const Measure measure_wall_position = {
   .number = {.unit = "m", .help = "centre of mass of a wall that has `mass`", .of = OF_WALL, .value = Position}};
 const Measure measure_wall_velocity = {
   .key = "wall_velocity",
-  .number = {.unit = "m/s", .help = "velocity of the centre of a wall that has `mass`", .of = OF_WALL, .value = Velocity}};
+  .number = {
+    .unit = "m/s", .help = "velocity of the centre of a wall that has `mass`", .of = OF_WALL, .value = Velocity}};
 const Measure measure_wall_angle = {
   .key = "wall_angle",
   .takes = MEASURE_SPIN_AXIS,

@@ -22,7 +22,7 @@ typedef struct {
   PetscReal *corner, *corner_value; /* n_triangles x 3 x 3 and x 3: cells of fem, as RasterScene has them */
   unsigned char *side;
   PetscInt n_lines;
-  PetscReal *line; /* n_lines x 2 x 3: walls in space */
+  PetscReal *line;  /* n_lines x 2 x 3: walls in space */
   PetscReal *walls; /* 12 numbers of each wall with mass: walls_put_frames; NULL: they are where they began */
   PetscInt n_first;
   PetscReal *first, *first_radius; /* n_first x 3: where the points began, in the plane; NULL: not drawn */

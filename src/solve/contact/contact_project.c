@@ -58,8 +58,8 @@ static PetscErrorCode SpreadToWalls(Projection *w, const PetscReal *p)
       push[3 + d] -= r[(d + 1) % 3] * f[(d + 2) % 3] - r[(d + 2) % 3] * f[(d + 1) % 3];
     }
   }
-  PetscCall(MPIU_Allreduce(MPI_IN_PLACE, w->push, (PetscMPIInt)(RIGID * s->n_rigid), MPIU_REAL, MPI_SUM,
-                           w->m->grid->comm));
+  PetscCall(
+    MPIU_Allreduce(MPI_IN_PLACE, w->push, (PetscMPIInt)(RIGID * s->n_rigid), MPIU_REAL, MPI_SUM, w->m->grid->comm));
   for (PetscInt k = 0; k < s->n_rigid; ++k) rigid_respond(s->rigid + k, w->push + RIGID * k, w->answer + RIGID * k);
   PetscFunctionReturn(0);
 }
@@ -284,8 +284,8 @@ static PetscErrorCode Create(const Contact *s, const ContactMotion *m, Projectio
   *w = (Projection){.s = s, .m = m};
   PetscCall(
     PetscCalloc6(3 * s->n, &w->p, 3 * s->n, &w->r, 3 * s->n, &w->q, 3 * s->n, &w->z, s->n, &w->own, s->n, &w->held));
-  PetscCall(PetscCalloc3(s->n_rigid ? 3 * s->n : 0, &w->arm, RIGID * s->n_rigid, &w->push, RIGID * s->n_rigid,
-                         &w->answer));
+  PetscCall(
+    PetscCalloc3(s->n_rigid ? 3 * s->n : 0, &w->arm, RIGID * s->n_rigid, &w->push, RIGID * s->n_rigid, &w->answer));
   for (PetscInt k = 0; k < s->n; ++k) {
     const ContactPoint *c = s->point + k;
     const RigidWall *b = contact_rigid(s, c);

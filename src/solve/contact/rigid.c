@@ -154,7 +154,8 @@ static void load_at(const RigidWall *b, const Case *c, PetscReal t, PetscReal lo
   }
 }
 
-void rigid_begin(RigidWall *b, Walls *walls, const Case *c, PetscReal t, PetscReal dt, PetscReal share, PetscBool middle)
+void rigid_begin(RigidWall *b, Walls *walls, const Case *c, PetscReal t, PetscReal dt, PetscReal share,
+                 PetscBool middle)
 {
   b->dt = case_is_static(&c->analysis) ? 0 : dt;
   b->share = share;
@@ -180,7 +181,9 @@ void rigid_guess(RigidWall *b, Walls *walls, PetscBool previous)
   spin_of(b, b->now.R, b->now.L, omega);
   for (int i = 0; i < RIGID; ++i) {
     const PetscReal rate = (i < 3 ? b->now.v[i] : omega[i - 3]) + change[i] / 2;
-    b->q[i] = b->dt > 0 ? b->dt * rate : previous && b->start.step > 0 ? b->now.step / b->start.step * b->now.last[i] : 0;
+    b->q[i] = b->dt > 0                       ? b->dt * rate
+              : previous && b->start.step > 0 ? b->now.step / b->start.step * b->now.last[i]
+                                              : 0;
     if (!rigid_has(b, i)) b->q[i] = 0;
   }
   rigid_place(b, walls);
@@ -223,9 +226,10 @@ void rigid_inertia(const RigidWall *b, PetscReal D[RIGID * RIGID])
   }
 }
 
-PetscBool rigid_balances(const RigidWall *b, PetscReal tolerance)
+PetscBool rigid_balances(const RigidWall *b, PetscReal tolerance, PetscReal digit)
 {
-  PetscReal r[RIGID], lack[2] = {0, 0}, scale[2] = {b->share * b->size[0], b->share * b->size[1]}, inertia[RIGID * RIGID];
+  PetscReal r[RIGID], lack[2] = {0, 0}, scale[2] = {b->share * b->size[0], b->share * b->size[1]},
+                      inertia[RIGID * RIGID];
   rigid_residual(b, r);
   rigid_inertia(b, inertia);
   for (int i = 0; i < RIGID; ++i) {
@@ -234,6 +238,7 @@ PetscBool rigid_balances(const RigidWall *b, PetscReal tolerance)
     /* as far as digits of motion go, whatever acts */
     scale[i / 3] += 1e-12 / tolerance * PetscAbsReal(inertia[(RIGID + 1) * i] * b->q[i]);
   }
+  scale[0] += b->share * b->stiff * digit / tolerance;
   scale[1] += scale[0] * (b->body.mass > 0 ? PetscSqrtReal(b->body.inertia[8] / b->body.mass) : 0);
   return PetscSqrtReal(lack[0]) <= tolerance * scale[0] && PetscSqrtReal(lack[1]) <= tolerance * scale[1];
 }

@@ -14,11 +14,11 @@
 
 /* What outlives a step: numbers alone, a row of a checkpoint. */
 typedef struct {
-  PetscReal moved[3]; /* of the centre since the start, m */
-  PetscReal R[9];     /* x = centre + moved + R (X - centre) */
-  PetscReal v[3];     /* m/s */
-  PetscReal L[3];     /* moment of momentum about the centre, kg m2/s */
-  PetscReal turned[3]; /* sum of its rotations, rad */
+  PetscReal moved[3];    /* of the centre since the start, m */
+  PetscReal R[9];        /* x = centre + moved + R (X - centre) */
+  PetscReal v[3];        /* m/s */
+  PetscReal L[3];        /* moment of momentum about the centre, kg m2/s */
+  PetscReal turned[3];   /* sum of its rotations, rad */
   PetscReal last[RIGID]; /* its increments in the last step, */
   PetscReal step;        /* which was so long, s */
   PetscReal work;        /* of weight and load since the start, J */
@@ -28,10 +28,10 @@ typedef struct {
   PetscInt wall;
   WallInertia body;
   PetscBool free[RIGID];
-  RigidState now, start; /* in the step, and as it began */
-  PetscBool stands;      /* in this step */
-  PetscReal dt, share;   /* dt 0: statics; share: the mean of contact over what the balance asks for */
-  PetscReal part;        /* of the step at which forces act: 1, in the midpoint rule 1/2 */
+  RigidState now, start;    /* in the step, and as it began */
+  PetscBool stands;         /* in this step */
+  PetscReal dt, share;      /* dt 0: statics; share: the mean of contact over what the balance asks for */
+  PetscReal part;           /* of the step at which forces act: 1, in the midpoint rule 1/2 */
   PetscReal load[2][RIGID]; /* weight, force and torque at the step's start and end */
   PetscReal q[RIGID];       /* increments: translation d, and theta of cay(theta), m, rad */
   /* of contact on the material at the last assembly, over all ranks: forces and torques, and the sums of their
@@ -75,8 +75,8 @@ void rigid_push(RigidWall *b, const PetscReal p[RIGID]);
 /* What the balance of the wall lacks, N and N m, and the derivative of its inertia, 6 x 6. */
 void rigid_residual(const RigidWall *b, PetscReal r[RIGID]);
 void rigid_inertia(const RigidWall *b, PetscReal D[RIGID * RIGID]);
-/* Does it balance, up to `tolerance` of what acts on it? */
-PetscBool rigid_balances(const RigidWall *b, PetscReal tolerance);
+/* Does it balance, up to `tolerance` of what acts on it, or what a length `digit` makes of contact? */
+PetscBool rigid_balances(const RigidWall *b, PetscReal tolerance, PetscReal digit);
 /* The step is accepted: momentum at its end. */
 void rigid_end(RigidWall *b);
 PetscReal rigid_kinetic(const RigidWall *b);

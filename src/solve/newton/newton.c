@@ -220,8 +220,8 @@ PetscErrorCode NewtonSolve(Newton *n, StepProblem *p, const LinearProblem *linea
   PetscFunctionBeginUser;
   n->problem = p;
   n->report = report;
-  PetscCall(PetscMalloc3(dofs, &guess, p->pressure ? nodes : 0, &pressure, contact ? RIGID * contact->n_rigid : 0,
-                         &walls));
+  PetscCall(
+    PetscMalloc3(dofs, &guess, p->pressure ? nodes : 0, &pressure, contact ? RIGID * contact->n_rigid : 0, &walls));
   newton_rigid_get(n, walls);
   PetscCall(PetscArraycpy(guess, p->du, dofs));
   if (p->pressure) PetscCall(PetscArraycpy(pressure, p->pressure, nodes));

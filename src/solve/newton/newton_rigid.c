@@ -15,7 +15,7 @@ typedef struct {
   PetscInt n;
   PetscReal *B, *C, *D; /* n x dofs twice, n x n */
   PetscReal *r;
-  PetscBool *touched;   /* n: does the unknown move any node? */
+  PetscBool *touched; /* n: does the unknown move any node? */
   Vec *Z, c;
 } Border;
 
@@ -38,7 +38,8 @@ static PetscErrorCode ToVec(const Newton *n, PetscReal *nodes, Vec v)
   PetscCall(VecSet(v, 0));
   PetscCall(VecGetArray(v, &to));
   for (PetscInt k = 0; k < p->system->n_active; ++k)
-    for (PetscInt d = 0, i = p->system->active[k] * dim; d < dim; ++d, ++i) to[k * block + d] = p->fixed[i] ? 0 : nodes[i];
+    for (PetscInt d = 0, i = p->system->active[k] * dim; d < dim; ++d, ++i)
+      to[k * block + d] = p->fixed[i] ? 0 : nodes[i];
   PetscCall(VecRestoreArray(v, &to));
   PetscFunctionReturn(0);
 }
@@ -174,7 +175,11 @@ PetscReal newton_rigid_work(void *context)
 PetscBool newton_rigid_met(const Newton *n)
 {
   const Contact *s = n->problem->scene.contact;
+  const Grid *grid = n->problem->grid;
+  PetscReal size = 0;
+  for (PetscInt d = 0; d < grid->dim; ++d)
+    size = PetscMax(size, PetscMax(PetscAbsReal(grid->min[d]), PetscAbsReal(grid->max[d])));
   for (PetscInt k = 0; s && k < s->n_rigid; ++k)
-    if (!rigid_balances(s->rigid + k, n->spec.residual)) return PETSC_FALSE;
+    if (!rigid_balances(s->rigid + k, n->spec.residual, PETSC_MACHINE_EPSILON * size)) return PETSC_FALSE;
   return PETSC_TRUE;
 }
