@@ -61,6 +61,11 @@ PetscBool boundary_slides_on_axis(const Boundary *boundary, PetscInt node);
  * entries have come to overlap, the first of them prescribes. */
 PetscErrorCode BoundaryMove(Boundary *boundary, const Grid *grid, PetscReal t);
 
+/* Where on a grid of a box what is held ends: rim (n_nodes), bit d for nodes of an entry, whose place stays
+ * where it is, beside which along axis d stands a node that is not of it; ghosts too, but for those at the edge
+ * of what this rank knows. */
+PetscErrorCode BoundaryRims(const Boundary *boundary, const Grid *grid, unsigned char *rim);
+
 /* Increments over [t0, t1] of all prescribed dofs (others untouched), n_nodes x dim, m. */
 void boundary_increments(const Boundary *boundary, const Grid *grid, PetscReal t0, PetscReal t1, PetscReal *increment);
 

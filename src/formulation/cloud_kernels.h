@@ -101,10 +101,10 @@ KERNEL void cloud_products(const int dim, const PetscBool hoop, const PetscReal 
         *(Row4 *)T = sum;
         continue;
       }
-      for (int e = 0; e < dim * dim; ++e) {
-        T[e] = 0;
-        for (int l = 0; l < rows; ++l) T[e] += modulus[l][e] * w->g[J * rows + l];
-      }
+      const PetscReal *g = w->g + J * rows;
+      *(Row8 *)T =
+        g[0] * *(const Row8 *)modulus[0] + g[1] * *(const Row8 *)modulus[1] + g[2] * *(const Row8 *)modulus[2];
+      T[8] = g[0] * modulus[0][8] + g[1] * modulus[1][8] + g[2] * modulus[2][8];
     }
   }
 }

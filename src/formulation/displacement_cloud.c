@@ -6,18 +6,6 @@
 #include "formulation/displacement_cloud.h"
 #include "formulation/cloud_kernels.h"
 
-KERNEL void cloud_block(const int dim, const CloudWork *w, PetscInt I, PetscInt J, PetscReal *restrict block)
-{
-  const PetscReal *T = w->T + J * dim * dim;
-  PetscReal mass = w->inertia * (1 - w->lumping) * w->N[I] * w->N[J];
-  if (I == J) mass += w->inertia * w->lumping * w->N[I];
-  for (int e = 0; e < dim * dim; ++e) {
-    PetscReal k = e % (dim + 1) == 0 ? mass : 0;
-    for (int j = 0; j < dim; ++j) k += w->g[I * dim + j] * T[j * w->nn * dim * dim + e];
-    block[e] += k;
-  }
-}
-
 /* In the plane a block is g_x[I] T_x[J] + g_y[I] T_y[J] + mass, four numbers at a time. */
 KERNEL void cloud_matrix_2d(const PetscBool hoop, const PetscBool half, const PetscInt *slot, const CloudWork *w,
                             PetscReal *values)
@@ -38,16 +26,28 @@ KERNEL void cloud_matrix_2d(const PetscBool hoop, const PetscBool half, const Pe
   }
 }
 
+/* In space a block has nine numbers: eight in a register, and the last. mass: of the diagonal. */
+KERNEL void cloud_matrix_3d(const PetscBool half, const PetscInt *slot, const CloudWork *w, PetscReal *values)
+{
+  const PetscReal share = w->inertia * (1 - w->lumping);
+  const Row8 diagonal = {1, 0, 0, 0, 1, 0, 0, 0};
+  for (PetscInt I = 0; I < w->nn; ++I) {
+    const PetscReal *g = w->g + 3 * I;
+    for (PetscInt J = half ? I : 0; J < w->nn; ++J) {
+      const PetscReal *x = w->T + J * 9, *y = x + w->nn * 9, *z = y + w->nn * 9;
+      const PetscReal mass = share * w->N[I] * w->N[J] + (I == J ? w->inertia * w->lumping * w->N[I] : 0);
+      PetscReal *block = values + (size_t)slot[I * w->nn + J] * 9;
+      *(Row8 *)block += g[0] * *(const Row8 *)x + g[1] * *(const Row8 *)y + g[2] * *(const Row8 *)z + mass * diagonal;
+      block[8] += g[0] * x[8] + g[1] * y[8] + g[2] * z[8] + mass;
+    }
+  }
+}
+
 KERNEL void cloud_matrix(const int dim, const PetscBool hoop, const PetscBool half, const PetscInt *slot,
                          const CloudWork *w, PetscReal *values)
 {
-  if (dim == 2) {
-    cloud_matrix_2d(hoop, half, slot, w, values);
-    return;
-  }
-  for (PetscInt I = 0; I < w->nn; ++I)
-    for (PetscInt J = half ? I : 0; J < w->nn; ++J)
-      cloud_block(dim, w, I, J, values + (size_t)slot[I * w->nn + J] * dim * dim);
+  if (dim == 2) cloud_matrix_2d(hoop, half, slot, w, values);
+  else cloud_matrix_3d(half, slot, w, values);
 }
 
 KERNEL void cloud_point(const int dim, const PetscBool hoop, const WeakFormInput *in, const Batch *b, PetscInt k,

@@ -86,13 +86,28 @@ static PetscErrorCode Stabilise(Discretisation *s)
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode MpmInitialise(Discretisation *s)
+/* Nodes, N and dN of the points. */
+static PetscErrorCode See(Discretisation *s)
 {
-  const BasisInput basis = {.spec = &s->c->basis, .grid = s->grid, .hoop = s->c->kinematics->hoop};
+  BasisInput basis = {.spec = &s->c->basis, .grid = s->grid, .hoop = s->c->kinematics->hoop};
+  unsigned char *rim = NULL;
 
   PetscFunctionBeginUser;
-  PetscCall(PointsSort(s->points));
+  if (s->basis->ends_at_held) {
+    PetscCall(PetscMalloc1(s->grid->n_nodes, &rim));
+    PetscCall(BoundaryRims(s->boundary, s->grid, rim));
+    basis.rim = rim;
+  }
   PetscCall(s->basis->support(&basis, s->points, s->support));
+  PetscCall(PetscFree(rim));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode MpmInitialise(Discretisation *s)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PointsSort(s->points));
+  PetscCall(See(s));
   PetscCall(DiscretisationTouch(s));
   PetscCall(DiscretisationMass(s));
   PetscCall(Stabilise(s));

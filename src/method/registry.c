@@ -46,7 +46,7 @@ static const char *misfit(const Case *c, const Basis *basis)
     return "takes another transfer, or displacements alone and scheme midpoint";
   const char *grid = basis->misfit ? basis->misfit(&c->grid) : NULL;
   if (grid || !basis->domains || !c->kinematics || kinematics_dim(c->kinematics) < 3) return grid;
-  return "takes 7 to 13 times as long in space";
+  return "takes 5 to 6 times as long in space";
 }
 
 const char *method_basis(const Method *method, const Case *c)

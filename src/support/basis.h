@@ -23,6 +23,9 @@ typedef struct {
   const Neighbours *nodes; /* of clouds: the nodes by their places */
   /* do the points stand on the hull of all nodes, as nodes themselves and carriers of loads do? */
   PetscBool on_hull;
+  /* of a box, for a basis that ends at held nodes: per node, bit d where along axis d what the boundary holds
+   * ends; NULL: nowhere */
+  const unsigned char *rim;
 } BasisInput;
 
 /* Where points of the steps to come may be. */
@@ -35,8 +38,9 @@ typedef struct {
 
 typedef struct {
   BasisNodes nodes;
-  PetscInt halo;     /* of a grid: layers of nodes beyond those of the cells that points may see */
-  PetscBool domains; /* do points have domains (POINT_DOMAIN)? */
+  PetscInt halo;          /* of a grid: layers of nodes beyond those of the cells that points may see */
+  PetscBool domains;      /* do points have domains (POINT_DOMAIN)? */
+  PetscBool ends_at_held; /* does it want to know where what the boundary holds ends? */
   /* do functions of inner nodes vanish on the hull, so that what is prescribed at its nodes holds
    * on it? */
   PetscBool holds_boundary;

@@ -47,7 +47,7 @@ static const Bad bads[] = {
    {"F:9:9: error: method mpm does not take the basis 'lme'", "hint: it takes 'cell'"}},
   {"unknown basis",
    PLAIN "basis: {splines: {}}\n",
-   {"F:9:9: error: key 'splines' of basis is not known", "cell, gimp, mls, lme"}},
+   {"F:9:9: error: key 'splines' of basis is not known", "did you mean 'bspline'?"}},
   {"two bases", PLAIN "basis: {mls: {}, lme: {}}\n", {"F:9:18: error: basis has both 'mls' and 'lme'"}},
   {"basis without numbers",
    PLAIN "basis: {cell: {gamma: 2}}\n",

@@ -24,7 +24,7 @@ static const struct {
   {PLAIN, "gimp", "gimp, the default of mpm; basis: {cell: {}} is the thesis's"},
   {PLAIN "basis:\n", "gimp", "gimp, the default of mpm;"},
   {PLAIN "formulation: mixed\n", "gimp", "gimp, the default of mpm;"},
-  {SPACE(""), "cell", "cell, since gimp, the default of mpm, takes 7 to 13 times"},
+  {SPACE(""), "cell", "cell, since gimp, the default of mpm, takes 5 to 6 times"},
   {RINGS, "gimp", "gimp, the default of mpm;"},
   {PLAIN "basis: {cell: {}}\n", "cell", "cell"},
   {PLAIN "basis: {gimp: {}}\n", "gimp", "gimp"},

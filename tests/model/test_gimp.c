@@ -1,5 +1,6 @@
-/* The material point method with functions averaged over the points' domains (basis gimp), from the
- * case to the stress: uniform strain, a free end anywhere, rings, a column under its weight. */
+/* The material point method with functions averaged over the points' domains (basis gimp) and with quadratic
+ * splines (bspline), from the case to the stress: uniform strain, a free end anywhere, rings, a line of held nodes
+ * inside, a column under its weight. */
 #include "smooth.h"
 
 static const char *const forms[] = {"displacement", "mixed"};
@@ -23,7 +24,8 @@ static void affine_motion(void *context, const PetscReal *x, PetscReal t0, Petsc
 
 /* A body fills the grid, whose sides take the linear field: nodes inside are free. In the first step
  * domains cover the body once, so that a uniform stress is balanced to the last digit. */
-static void filled(const char *formulation, CellType cell, PetscReal size, PetscReal grading, PetscInt points_per_cell)
+static void filled(const char *basis, const char *formulation, CellType cell, PetscReal size, PetscReal grading,
+                   PetscInt points_per_cell)
 {
   Bench b;
   PetscReal F[9];
@@ -32,7 +34,7 @@ static void filled(const char *formulation, CellType cell, PetscReal size, Petsc
   bench_grid(&b, (PetscReal[]){0, 0, 0}, (PetscReal[]){1, 1, 1}, size);
   b.c.grid.grading[0] = grading;
   b.body[0].points_per_cell = points_per_cell;
-  b.c.basis.kind = "gimp";
+  b.c.basis.kind = basis;
   b.c.formulation = (char *)formulation;
   bench_motion(&b, -1, 0, MOTION_FIXED, 7);
   Model *m = bench_model(&b, PETSC_COMM_WORLD);
@@ -49,9 +51,12 @@ static void test_filled(void **state)
 {
   (void)state;
   for (int k = 0; k < 2; ++k) {
-    filled(forms[k], CELL_QUADRILATERAL, 0.125, 1, 4);
-    filled(forms[k], CELL_QUADRILATERAL, 0.125, 3, 9);
-    filled(forms[k], CELL_HEXAHEDRON, 0.25, 1, 8);
+    filled("gimp", forms[k], CELL_QUADRILATERAL, 0.125, 1, 4);
+    filled("gimp", forms[k], CELL_QUADRILATERAL, 0.125, 3, 9);
+    filled("gimp", forms[k], CELL_HEXAHEDRON, 0.25, 1, 8);
+    filled("bspline", forms[k], CELL_QUADRILATERAL, 0.125, 1, 4);
+    filled("bspline", forms[k], CELL_QUADRILATERAL, 0.125, 1, 9);
+    filled("bspline", forms[k], CELL_HEXAHEDRON, 0.25, 1, 8);
   }
 }
 
@@ -59,6 +64,7 @@ static void test_pressed(void **state)
 {
   (void)state;
   for (int k = 0; k < 2; ++k) pressed_body(forms[k], "gimp", 4, 17, 1e-12);
+  for (int k = 0; k < 2; ++k) pressed_body(forms[k], "bspline", 4, 17, 1e-12);
 }
 
 /* A cylinder pressed from all sides: rings weigh their domains by the radius, so that the nodes inside
@@ -70,12 +76,12 @@ static void squeeze(void *context, const PetscReal *x, PetscReal t0, PetscReal t
   increment[1] = -0.2 * (t1 - t0) * x[1];
 }
 
-static void rings(const char *formulation)
+static void rings(const char *basis, const char *formulation)
 {
   const PetscReal F[9] = {0.9, 0, 0, 0, 0.8, 0, 0, 0, 0.9};
   Bench b;
   tube(&b, "mpm", CELL_QUADRILATERAL, 0, 1, 1, 6);
-  b.c.basis.kind = "gimp";
+  b.c.basis.kind = basis;
   b.c.formulation = (char *)formulation;
   bench_motion(&b, -1, 0, MOTION_FIXED, 3);
   Model *m = bench_model(&b, PETSC_COMM_WORLD);
@@ -89,7 +95,7 @@ static void rings(const char *formulation)
 static void test_rings(void **state)
 {
   (void)state;
-  for (int k = 0; k < 2; ++k) rings(forms[k]);
+  for (int k = 0; k < 2; ++k) rings("gimp", forms[k]), rings("bspline", forms[k]);
 }
 
 /* An independent program in one dimension has 4.7e-3, 5.7e-4, 2.7e-4, and with linear functions 7 to
@@ -133,15 +139,14 @@ static void test_middle(void **state)
 }
 
 /* A body that flies crosses cells and ranks without changing its velocity, and bears no stress. */
-static void test_flight(void **state)
+static void flight(const char *basis)
 {
   PetscReal sigma[6];
   Bench b;
-  (void)state;
   bench_init(&b, "mpm", CELL_QUADRILATERAL, 12);
   bench_box(&b, 0, (PetscReal[3]){0.25, 0.25, 0}, (PetscReal[3]){0.5, 0.5, 0});
   bench_dynamic(&b, 0.1, 0.01);
-  b.c.basis.kind = "gimp";
+  b.c.basis.kind = basis;
   b.body[0].velocity[0] = 3, b.body[0].velocity[1] = 2;
   Model *m = bench_model(&b, PETSC_COMM_WORLD);
   while (m->time < 0.1 - 1e-9) model_step(m, 0.1 - m->time);
@@ -155,6 +160,13 @@ static void test_flight(void **state)
   bench_end(&b);
 }
 
+static void test_flight(void **state)
+{
+  (void)state;
+  flight("gimp");
+  flight("bspline");
+}
+
 static void test_refused(void **state)
 {
   Bench b;
@@ -166,6 +178,10 @@ static void test_refused(void **state)
   b.c.basis.kind = "gimp";
   b.c.grid.grading[1] = 9;
   bench_refused(&b, PETSC_COMM_WORLD, "basis.gimp", "graded too steeply");
+  bench_init(&b, "mpm", CELL_QUADRILATERAL, 3);
+  b.c.basis.kind = "bspline";
+  b.c.grid.grading[1] = 1.1;
+  bench_refused(&b, PETSC_COMM_WORLD, "basis.bspline", "a box without grading");
   bench_init(&b, "mpm", CELL_QUADRILATERAL, 3);
   b.c.basis.kind = "gimp";
   b.c.analysis.transfer = (char *)"consistent";

@@ -265,6 +265,7 @@ static void test_tangent(void **state)
     check_tangent("mpm", "gimp", CELL_QUADRILATERAL, PETSC_FALSE, &solids[k], k % 3 == 0);
     check_tangent("mpm", "gimp", CELL_QUADRILATERAL, PETSC_TRUE, &solids[k], k % 3 == 1);
     check_tangent("mpm", "gimp", CELL_HEXAHEDRON, PETSC_FALSE, &solids[k], k % 3 == 2);
+    check_tangent("mpm", "bspline", CELL_QUADRILATERAL, k % 2 == 0, &solids[k], k % 3 == 1);
   }
 }
 

@@ -363,14 +363,13 @@ static void test_given_up(void **state)
 }
 
 /* Domains of points travel, and the ranks' parts have a halo. */
-static void test_gimp(void **state)
+static void travels(const char *basis)
 {
   Bench b;
-  (void)state;
   bench_init(&b, "mpm", CELL_QUADRILATERAL, 0);
   bench_grid(&b, (PetscReal[]){0, 0, 0}, (PetscReal[]){2, 1.5, 1}, 0.125);
   bench_box(&b, 0, (PetscReal[]){0.25, 0.25, 0.25}, (PetscReal[]){0.75, 0.75, 0.75});
-  b.c.basis.kind = "gimp";
+  b.c.basis.kind = basis;
   bench_dynamic(&b, 1, 4e-3);
   b.c.linear = LINEAR_ITERATIVE;
   b.body[0].velocity[0] = 1.5;
@@ -381,6 +380,13 @@ static void test_gimp(void **state)
   bench_traction(&b, 0, 0.75, "body", 100, 0, 0);
   bench_tracer(&b, "position", 0, 0.5, 0.5, 0.5);
   for (PetscInt before = 1; before <= 13; before += 6) check_only(&b, before, 6, PETSC_TRUE);
+}
+
+static void test_gimp(void **state)
+{
+  (void)state;
+  travels("gimp");
+  travels("bspline");
 }
 
 /* Statics in steps with factorisations, whose bits depend on the arrival of messages where there

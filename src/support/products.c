@@ -1,0 +1,111 @@
+#include "support/products.h"
+#include <petscbt.h>
+#include "base/math/tensor.h"
+
+ProductPlace product_place(const Grid *grid, PetscInt cell)
+{
+  const GridBox *box = grid->box;
+  ProductPlace place = {.size = {0}};
+  box_voxel_of(grid, cell, place.ijk);
+  for (PetscInt d = 0; d < box->dim; ++d) place.size[d] = box->line[d][place.ijk[d] + 1] - box->line[d][place.ijk[d]];
+  return place;
+}
+
+void product_domain(const Points *points, PetscInt p, const PetscReal *size, PetscReal *l)
+{
+  const PetscInt dim = points->dim;
+  const PetscReal *start = point_real(points, POINT_DOMAIN, p);
+  PetscReal F[9];
+  point_F(points, p, F);
+  for (PetscInt d = 0; d < dim; ++d) {
+    PetscReal square = 0;
+    for (PetscInt k = 0; k < dim; ++k) square += PetscSqr(F[3 * d + k] * start[k]);
+    const PetscReal length = PetscSqrtReal(square);
+    l[d] = length < 0.5 * size[d] ? length : 0.5 * size[d];
+  }
+}
+
+/* The nodes of a rank do not count as they stand in space: they are put in order by insertion, as
+ * groups of single points want them. */
+PetscInt product_functions(const GridBox *box, const ProductPlace *place, PetscReal radius, LineFunctions *f,
+                           PetscInt *node, PetscReal *N, PetscReal *dN)
+{
+  const PetscInt dim = box->dim;
+  PetscInt n = 1;
+  for (PetscInt i = 0; radius > 0 && i < f[0].n; ++i) f[0].dN[i] += f[0].moment[i] / radius;
+  for (PetscInt d = 0; d < dim; ++d) n *= f[d].n;
+  for (PetscInt q = 0; q < n; ++q) {
+    PetscInt at[3], ijk[3] = {0, 0, dim == 2 ? place->ijk[2] : 0}, k = q;
+    PetscReal product = 1, gradient[3];
+    for (PetscInt d = 0, rest = q; d < dim; rest /= f[d++].n) {
+      at[d] = rest % f[d].n;
+      ijk[d] = f[d].first + at[d];
+      product *= f[d].N[at[d]];
+    }
+    for (PetscInt d = 0; d < dim; ++d) {
+      gradient[d] = f[d].dN[at[d]];
+      for (PetscInt e = 0; e < dim; ++e) gradient[d] *= e == d ? 1 : f[e].N[at[e]];
+    }
+    const PetscInt here = box_node(box, ijk);
+    for (; k > 0 && node[k - 1] > here; --k) {
+      node[k] = node[k - 1];
+      N[k] = N[k - 1];
+      for (PetscInt d = 0; d < dim; ++d) dN[k * dim + d] = dN[(k - 1) * dim + d];
+    }
+    node[k] = here;
+    N[k] = product;
+    for (PetscInt d = 0; d < dim; ++d) dN[k * dim + d] = gradient[d];
+  }
+  return n;
+}
+
+PetscErrorCode ProductsReserve(const Points *points, PetscInt dim, Support *support)
+{
+  const PetscInt most = dim == 2 ? 9 : PRODUCT_MOST_NODES;
+  PetscFunctionBeginUser;
+  PetscCheck(points->components[POINT_DOMAIN] == dim, PETSC_COMM_SELF, PETSC_ERR_ARG_WRONG, "points without domains");
+  PetscCall(SupportReserve(support, points->n, most * points->n, most * points->n, dim));
+  PetscFunctionReturn(0);
+}
+
+void products_end(Support *s, PetscInt n_groups, PetscInt n)
+{
+  product_group(s, n_groups, n);
+  s->n_groups = n_groups;
+  s->n_runs = 0;
+}
+
+/* The nodes around one, itself among them; of the sides of the box there are fewer. */
+static PetscInt nodes_around(const GridBox *box, const PetscInt at[3], PetscInt *node)
+{
+  PetscInt n = 0, lo[3] = {at[0], at[1], at[2]}, hi[3] = {at[0], at[1], at[2]}, ijk[3];
+  for (PetscInt d = 0; d < box->dim; ++d) {
+    lo[d] = PetscMax(at[d] - 1, 0);
+    hi[d] = PetscMin(at[d] + 1, box->counts[d]);
+  }
+  for (ijk[2] = lo[2]; ijk[2] <= hi[2]; ++ijk[2])
+    for (ijk[1] = lo[1]; ijk[1] <= hi[1]; ++ijk[1])
+      for (ijk[0] = lo[0]; ijk[0] <= hi[0]; ++ijk[0]) node[n++] = box_node(box, ijk);
+  return n;
+}
+
+PetscErrorCode ProductsCouplings(const BasisInput *in, const BasisSites *sites, NodeGroups *groups)
+{
+  const GridBox *box = in->grid->box;
+  PetscInt node[PRODUCT_MOST_NODES], at[3], cell[3];
+  PetscBT done;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscBTCreate(in->grid->n_nodes, &done));
+  for (PetscInt c = 0; c < in->grid->n_cells; ++c) {
+    if (!sites->cell[c]) continue;
+    box_voxel_of(in->grid, c, cell);
+    for (PetscInt corner = 0; corner < 1 << box->dim; ++corner) {
+      for (PetscInt d = 0; d < 3; ++d) at[d] = cell[d] + (d < box->dim ? corner >> d & 1 : 0);
+      if (!PetscBTLookupSet(done, box_node(box, at)))
+        PetscCall(NodeGroupsAdd(groups, nodes_around(box, at, node), node));
+    }
+  }
+  PetscCall(PetscBTDestroy(&done));
+  PetscFunctionReturn(0);
+}

@@ -1,0 +1,54 @@
+/* Shape functions of a box that are products of functions along its axes, where a point sees the node
+ * next to it and one on each side: what gimp and bspline have in common. */
+#pragma once
+#include "grid/box/box.h"
+#include "support/basis.h"
+
+#define PRODUCT_MOST_NODES 27
+
+/* Nodes first .. first + n - 1 along an axis. moment: what rings add to dN, times the radius. */
+typedef struct {
+  PetscInt first, n;
+  PetscReal N[3], dN[3], moment[3];
+} LineFunctions;
+
+/* Where a point is: the voxel of its cell (in the plane ijk[2] is its field), and the cell's lengths. */
+typedef struct {
+  PetscInt ijk[3];
+  PetscReal size[3];
+} ProductPlace;
+
+/* Of the cell i alone, at x. */
+static inline LineFunctions linear_functions(const PetscReal *line, PetscInt i, PetscReal x)
+{
+  const PetscReal h = line[i + 1] - line[i], t = (x - line[i]) / h;
+  return (LineFunctions){.first = i, .n = 2, .N = {1 - t, t}, .dN = {-1 / h, 1 / h}};
+}
+
+/* The node of the cell i next to x. */
+static inline PetscInt nearest_line(const PetscReal *line, PetscInt i, PetscReal x)
+{
+  return x - line[i] < line[i + 1] - x ? i : i + 1;
+}
+
+ProductPlace product_place(const Grid *grid, PetscInt cell);
+/* Half lengths (dim) of the box with the second moments of the point's domain, that F has made a
+ * parallelogram of the one at the start: l_d^2 = sum_k F_dk^2 L_k^2. No more than half a cell. */
+void product_domain(const Points *points, PetscInt p, const PetscReal *size, PetscReal *l);
+/* The nodes of a point, ascending, with N and dN, nn x dim; returns how many. A ring weighs what lies
+ * farther out more: at radius > 0, dN = dN + moment / radius along x. */
+PetscInt product_functions(const GridBox *box, const ProductPlace *place, PetscReal radius, LineFunctions *f,
+                           PetscInt *node, PetscReal *N, PetscReal *dN);
+/* Room for groups of single points, which then come one after the other. */
+PetscErrorCode ProductsReserve(const Points *points, PetscInt dim, Support *support);
+/* Point p, whose functions stand behind the n numbers that there are, has nn of them. */
+static inline void product_group(Support *s, PetscInt p, PetscInt n)
+{
+  s->point_start[p] = p;
+  s->node_start[p] = s->value_start[p] = n;
+}
+/* No more points: n_groups of them have n numbers. */
+void products_end(Support *support, PetscInt n_groups, PetscInt n);
+/* Basis.couplings: a point sees the nodes around the corner of its cell next to it, never farther apart
+ * than two cells. */
+PetscErrorCode ProductsCouplings(const BasisInput *in, const BasisSites *sites, NodeGroups *groups);
