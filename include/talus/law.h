@@ -1,13 +1,13 @@
 /**
  * @file law.h
- * @brief A material law of one's own, in a shared library that `talus run --law NAME=FILE.so` loads.
+ * @brief A material law of one's own, from a shared library: `talus run --law NAME=FILE.so`.
  *
- * The library has one function that talus looks for, talus_law(), which returns a #TalusLaw: what the law is
- * called in help, its parameters, its state, and a function that turns an increment of deformation
- * into stress. docs/plugin.md has the tour, docs/example/law a law that works.
+ * The library has one function that talus looks for, talus_law(), which returns a #TalusLaw: what
+ * the law is called in help, its parameters, its state, and a function that turns an increment of
+ * deformation into stress. docs/plugin.md has the tour, docs/example/law a law that works.
  *
- * - **Units** are SI, angles radians. Stress is positive in tension. Symmetric tensors are stored in
- *   the order xx yy zz xy yz zx, tensors row by row.
+ * - **Units** are SI, angles radians. Stress is positive in tension. Symmetric tensors are stored
+ *   in the order xx yy zz xy yz zx, tensors row by row.
  * - **What is a function of what.** The same arguments must give the same numbers: a step is tried
  *   several times, in any order, on any rank. Nothing may be kept between calls but in the state.
  * - **Where.** Laws are three-dimensional; plane strain and bodies of revolution embed theirs.
@@ -37,8 +37,8 @@ typedef enum TalusLawStatus {
 
 /** What is true of a law, in TalusLaw::flags. */
 enum {
-  /** Two of the case file's elastic constants belong to it; bulk and shear modulus (Pa) come first among the
-   *  numbers that it gets, before its own parameters. */
+  /** Two of the case file's elastic constants belong to it; bulk and shear modulus (Pa) come first
+   *  among the numbers that it gets, before its own parameters. */
   TALUS_LAW_ELASTIC = 1,
   TALUS_LAW_TANGENT = 2,   /**< It gives the tangent; otherwise talus takes central differences. */
   TALUS_LAW_SYMMETRIC = 4, /**< The tangent is symmetric. */
@@ -58,7 +58,7 @@ typedef struct TalusLawParameter {
   unsigned open;    /**< Which bounds are excluded. */
 } TalusLawParameter;
 
-/** A number, or a symmetric tensor, that a point keeps from step to step; also a field of the output. */
+/** A number, or a symmetric tensor, that a point keeps; also a field of the output. */
 typedef struct TalusLawState {
   const char *name, *unit, *help; /**< As of a parameter. */
   int components;                 /**< 1, or 6: a symmetric tensor (TalusLaw::update alone). */
@@ -95,32 +95,33 @@ typedef struct TalusLaw {
                 double *state, double tau[6], double *c);
 
   /**
-   * Stress from the trial elastic strain: talus keeps the elastic left Cauchy-Green tensor and brings it to
-   * the end of the step, as if nothing flowed. For laws that are isotropic in it; their own state has scalars
-   * alone. Such a law has initial stresses and, if #TALUS_LAW_ELASTIC, the mixed formulation.
+   * Stress from the trial elastic strain: talus keeps the elastic left Cauchy-Green tensor and
+   * brings it to the end of the step, as if nothing flowed. For laws that are isotropic in it;
+   * their own state has scalars alone. Such a law has initial stresses and, if #TALUS_LAW_ELASTIC,
+   * the mixed formulation.
    *
    * @param strain   ln of the trial elastic left stretch: tensor components (6)
    * @param tau      to be written: Kirchhoff stress, Pa (6)
    * @param elastic  elastic strain after the flow (6); holds `strain` when called
-   * @param D        to be written unless NULL: 6 x 6, d tau / d strain, engineering shear strains; Pa
+   * @param D        to be written unless NULL: 6 x 6, d tau / d strain, engineering shear; Pa
    */
   int (*update_strain)(const double *parameters, const TalusLawStep *step, const double strain[6], const double *old,
                        double *state, double tau[6], double elastic[6], double *D);
 
-  /** Elastic energy of a state by undeformed volume, J/m3; for a law of strains `strain` is the elastic strain,
-   *  otherwise NULL. Without it energies are nan. */
+  /** Elastic energy of a state by undeformed volume, J/m3; for a law of strains `strain` is the
+   *  elastic strain, otherwise NULL. Without it energies are nan. */
   double (*energy)(const double *parameters, const double strain[6], const double *state);
-  /** Bulk and shear modulus that stand for it (speeds of waves, stiffness of contacts) where the case file gives no
-   *  elastic constants. Without it they are read from its tangent at rest. */
+  /** Bulk and shear modulus that stand for it (speeds of waves, stiffness of contacts) where the
+   *  case file gives no elastic constants. Without it they are read from its tangent at rest. */
   void (*moduli)(const double *parameters, double bulk_and_shear[2]);
-  /** What is wrong with parameters that are each in their range, a sentence, or NULL. Angles in radians,
-   *  without bulk and shear. */
+  /** What is wrong with parameters that are each in their range, a sentence, or NULL. Angles in
+   *  radians, without bulk and shear. */
   const char *(*check)(const double *given);
-  /** Only with `update`: a state that carries the Cauchy stress sigma; 0 if there is none. `state` holds the natural
-   *  one. Without it bodies of the law cannot begin under a stress. */
+  /** Only with `update`: a state that carries the Cauchy stress sigma; 0 if there is none. `state`
+   *  holds the natural one. Without it bodies of the law cannot begin under a stress. */
   int (*initial_stress)(const double *parameters, const double sigma[6], double *state);
-  /** The parameters (without bulk and shear) with the strength over a factor > 0; 0: endless strength. Without it
-   *  there is no factor of safety. */
+  /** The parameters (without bulk and shear) with the strength over a factor > 0; 0: endless
+   *  strength. Without it there is no factor of safety. */
   void (*reduce)(const double *given, double factor, double *reduced);
 } TalusLaw;
 

@@ -1,4 +1,5 @@
-/* --law and --umat: laws from the user's own libraries, loaded as soon as the command line is read. */
+/* --law and --umat: laws from the user's own libraries, loaded as soon as the command line is
+ * read. */
 #include <stdio.h>
 #include <string.h>
 #include "cli/cli.h"

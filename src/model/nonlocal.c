@@ -1,8 +1,9 @@
-/* Means over what is around a point (docs/theory.md, "Softening over a length"): before each step, of the plastic
- * strain at its start, with the weight (1 - r^2 / R^2)^2 of a distance r and the volumes of the points.
+/* Means over what is around a point (docs/theory.md, "Softening over a length"): before each step,
+ * of the plastic strain at its start, with the weight (1 - r^2 / R^2)^2 of a distance r and the
+ * volumes of the points.
  *
- * Points are gathered into bins of R / 4, each of which acts from its centre of volume: the work for a
- * point does not depend on how many there are. Every rank has the bins of all. */
+ * Points are gathered into bins of R / 4, each of which acts from its centre of volume: the work
+ * for a point does not depend on how many there are. Every rank has the bins of all. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -40,7 +41,8 @@ static PetscInt first_of(PetscInt n, const Bin *bin, const PetscReal at[3])
   return low;
 }
 
-/* Add up what falls into one bin; equal ones in the order in which they came, so that sums have the same bits. */
+/* Add up what falls into one bin; equal ones in the order in which they came, so that sums have
+ * the same bits. */
 static PetscErrorCode Merge(PetscInt *n, Bin *bin)
 {
   PetscInt kept = 0, *place;

@@ -155,9 +155,11 @@ static SchemaWord find_word(SchemaReader *r, const SchemaEntry *e, const YamlNod
     if (text && !strcmp(text, words[n])) return schema_word(e, n);
   }
   schema_mismatch(r, e, node);
-  if (text && diag_nearest(text, words)) schema_hint_words(r, text, n, words);
-  else if (text && e->registry == (const void *const *)laws)
-    diag_hint(r->diag, "a law of your own is loaded by --law %.48s=FILE.so: docs/plugin.md", text);
+  const char *nearest = text ? diag_nearest(text, words) : NULL;
+  if (text && e->registry == (const void *const *)laws)
+    diag_hint(r->diag, "%s%s%sa law of your own is loaded by --law %.48s=FILE.so: docs/plugin.md",
+              nearest ? "did you mean '" : "", nearest ? nearest : "", nearest ? "'? Or " : "", text);
+  else if (nearest) schema_hint_words(r, text, n, words);
   return schema_word(e, n);
 }
 

@@ -21,7 +21,7 @@ typedef struct Plugin {
   char words[TALUS_LAW_MAX_PARAMETERS + TALUS_LAW_MAX_STATE][16]; /* names that a umat has none for */
 } Plugin;
 
-/* One point. parameters: packed; c NULL: not wanted. old and state are numbers of the whole state. */
+/* One point. parameters: packed; c NULL: not wanted; old, state: the whole state. */
 LawStatus plugin_gradient_point(const Plugin *plugin, const PetscReal *parameters, const PetscReal dF[9],
                                 const PetscReal *old, PetscReal *state, PetscReal tau[6], PetscReal *c);
 LawStatus plugin_strain_point(const Plugin *plugin, const PetscReal *parameters, const PetscReal dF[9],
@@ -36,8 +36,9 @@ void plugin_strain_of(const PetscReal b[6], PetscReal strain[6]);
 void plugin_fill(PetscInt slot);
 extern Plugin plugins[PLUGIN_MOST];
 
-/* Not collective. Load NAME=FILE.so (`umat`: NAME=FILE.so,NPROPS,NSTATV); what is wrong goes to diag. From
- * then on the law is one of `laws`. */
+/* Not collective. Load NAME=FILE.so (`umat`: NAME=FILE.so,NPROPS,NSTATV); what is wrong goes to
+ * diag. From then on the law is one of `laws`. */
 PetscErrorCode PluginLoad(const char *spec, PetscBool umat, Diag *diag);
-/* The words that load them again, in another process: "--law=...", NULL behind the last; *words stays ours. */
+/* The words that load them again, in another process: "--law=...", NULL behind the last; *words
+ * stays ours. */
 const char *const *plugin_words(void);

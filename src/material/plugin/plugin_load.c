@@ -1,5 +1,5 @@
-/* From NAME=FILE.so of the command line to a law: the library is opened, asked for its one symbol, and what it
- * says of itself is checked. */
+/* From NAME=FILE.so of the command line to a law: the library is opened, asked for its one symbol,
+ * and what it says of itself is checked. */
 #include <ctype.h>
 #include <dlfcn.h>
 #include <errno.h>

@@ -1,8 +1,8 @@
 /* A point of a law from a library: what talus does before and behind the library's own function
  * (docs/theory.md, "Laws of one's own").
  *
- * A law of strains gets eps = ln b^tr / 2 and gives tau and D = d tau / d eps. With n_A the directions
- * of b^tr and x = eps_A - eps_B a rate of deformation d strains it by
+ * A law of strains gets eps = ln b^tr / 2 and gives tau and D = d tau / d eps. With n_A the
+ * directions of b^tr and x = eps_A - eps_B a rate of deformation d strains it by
  *
  *   eps' = M : d,  M_AAAA = 1,  M_ABAB = x coth x,   c : d = D : M : d - d tau - tau d. */
 #include "base/math/svd.h"
@@ -18,7 +18,7 @@ static PetscBool all_finite(PetscInt n, const PetscReal *v)
   return PETSC_TRUE;
 }
 
-/* c := rate - d tau - tau d, where rate is d tau by the strain rates of Voigt (engineering shear). */
+/* c := rate - d tau - tau d, where rate is d tau by strain rates of Voigt (engineering shear). */
 static void subtract_turns(const PetscReal tau[6], PetscReal *c)
 {
   PetscReal t[9];

@@ -44,7 +44,7 @@ static PetscReal energy(const Plugin *g, const PetscReal *q, const PetscReal *st
   return g->user.energy(q + PLUGIN_STEP, strain, state + g->kept);
 }
 
-/* A subroutine that has the stress and no strain gives it back, unless it is beyond its strength. */
+/* A subroutine that has the stress and no strain gives it back, if it is within its strength. */
 static PetscBool umat_stress(const Plugin *g, const PetscReal *q, const PetscReal sigma[6], PetscReal *state)
 {
   static const PetscReal identity[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};

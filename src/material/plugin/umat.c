@@ -1,12 +1,13 @@
-/* A step of a UMAT (docs/theory.md, "Laws of one's own"). With dF = dR dU, dU = sum lambda_A N_A N_A and
- * n_A = dR N_A:
+/* A step of a UMAT (docs/theory.md, "Laws of one's own"). With dF = dR dU, dU = sum lambda_A N_A
+ * N_A and n_A = dR N_A:
  *
  *   sigma_0 = dR sigma dR^T,  d eps = sum ln lambda_A n_A n_A,  sigma_1, D = UMAT(sigma_0, d eps)
  *
- * An isotropic subroutine so gives dR g(sigma, ln dU) dR^T, objective for any step, and with x = ln lambda_A -
- * ln lambda_B the rate by d is
+ * An isotropic subroutine so gives dR g(sigma, ln dU) dR^T, objective for any step, and with x =
+ * ln lambda_A - ln lambda_B the rate by d is
  *
- *   sigma' - w sigma + sigma w = k sigma - sigma k + D : e,  k_AB = -tanh(x / 2) d_AB,  e_AB = d_AB x / sinh x
+ *   sigma' - w sigma + sigma w = k sigma - sigma k + D : e,
+ *   k_AB = -tanh(x / 2) d_AB,  e_AB = d_AB x / sinh x
  *
  * and c : d = tr d tau + J (...) - d tau - tau d. */
 #include "material/plugin/umat.h"

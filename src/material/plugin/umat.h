@@ -1,7 +1,7 @@
 /* Subroutines that follow the calling convention UMAT, which many laws of soils are written for
  * (docs/theory.md, "Laws of one's own").
  *
- * State: Cauchy stress and logarithmic strain, which turn along with the material, F, then STATEV. */
+ * State: Cauchy stress and logarithmic strain, which turn along with the material, F, STATEV. */
 #pragma once
 #include <stddef.h>
 #include "material/law.h"
