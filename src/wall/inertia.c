@@ -139,6 +139,7 @@ PetscBool wall_volume(const Walls *walls, PetscInt k, WallInertia *inertia)
   if (!f || walls->wall[k].spec->inside || !moments_of(f, &m)) return PETSC_FALSE;
   inertia->mass = m.volume;
   for (int d = 0; d < 3; ++d) inertia->centre[d] = m.first[d] / m.volume;
+  if (f->axis) return PETSC_TRUE; /* which does not turn */
   for (int i = 0; i < 9; ++i) m.second[i] -= m.volume * inertia->centre[i / 3] * inertia->centre[i % 3];
   const PetscReal trace = m.second[0] + m.second[4] + m.second[8];
   for (int i = 0; i < 9; ++i) inertia->inertia[i] = (i % 4 ? 0 : trace) - m.second[i];
