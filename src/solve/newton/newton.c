@@ -5,6 +5,9 @@
 #include <petsctime.h>
 
 #define ISOLATED_AFTER 10 /* steps after which a failure of the iterative solver counts no more */
+/* percent: LinearProblem.room */
+#define FIRST_ROOM 100
+#define MOST_ROOM 1000
 /* where failures followed each other: steps of the direct solver before the next chance */
 #define FORGIVEN_AFTER 50
 
@@ -170,6 +173,22 @@ PetscErrorCode NewtonMiss(Newton *n, StepProblem *p, PetscReal *norm)
   PetscFunctionReturn(0);
 }
 
+/* Spread over ranks, factors outgrow the estimate of their size now and then: they get more room. */
+static PetscErrorCode LeaveMoreRoom(Newton *n, PetscBool *more)
+{
+  KSP ksp;
+  PC pc;
+  PCFailedReason why;
+
+  PetscFunctionBeginUser;
+  PetscCall(SNESGetKSP(n->snes, &ksp));
+  PetscCall(KSPGetPC(ksp, &pc));
+  PetscCall(PCGetFailedReason(pc, &why));
+  *more = n->direct && why == PC_FACTOR_OUTMEMORY && n->room < MOST_ROOM;
+  if (*more) n->room = n->room ? 3 * n->room : FIRST_ROOM;
+  PetscFunctionReturn(0);
+}
+
 static PetscErrorCode NewtonTry(Newton *n, NewtonReport *report)
 {
   const StepProblem *p = n->problem;
@@ -208,6 +227,7 @@ static PetscErrorCode NewtonTry(Newton *n, NewtonReport *report)
   const PetscBool useless = reason == SNES_DIVERGED_LINEAR_SOLVE || reason == SNES_DIVERGED_INNER;
   n->retry = useless && !n->direct;
   n->failures += n->retry;
+  if (reason == SNES_DIVERGED_LINEAR_SOLVE && n->direct) PetscCall(LeaveMoreRoom(n, &n->retry));
   PetscFunctionReturn(0);
 }
 
@@ -227,14 +247,17 @@ PetscErrorCode NewtonSolve(Newton *n, StepProblem *p, const LinearProblem *linea
   if (p->pressure) PetscCall(PetscArraycpy(pressure, p->pressure, nodes));
   PetscCall(NewtonSetUp(n, p, linear));
   PetscCall(NewtonTry(n, report));
-  if (n->retry) { /* once more, with the direct solver */
-    const PetscInt lost = report->iterations;
+  const PetscBool again = n->retry;
+  while (n->retry) { /* once more, with the direct solver */
+    const PetscInt lost = report->lost + report->iterations;
     PetscCall(PetscArraycpy(p->du, guess, dofs));
     newton_rigid_set(n, walls);
     if (p->pressure) PetscCall(PetscArraycpy(p->pressure, pressure, nodes));
     PetscCall(NewtonSetUp(n, p, linear));
     PetscCall(NewtonTry(n, report));
     report->lost = lost;
+  }
+  if (again) {
     n->built = n->failures < NEWTON_FAILURES ? -1 : n->built;
     n->since = 0;
   } else if (n->failures && ++n->since >= (n->failures < NEWTON_FAILURES ? ISOLATED_AFTER : FORGIVEN_AFTER)) {

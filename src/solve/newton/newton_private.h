@@ -30,6 +30,7 @@ struct Newton {
   PetscInt failures; /* of the iterative solver, not yet forgiven */
   PetscInt since;    /* steps since the last of them */
   PetscBool retry;   /* this try takes the direct solver */
+  PetscInt room;     /* what LinearProblem calls so */
   const char *linear;
   StepProblem *problem;
   /* n_nodes x dim, what prescribed dofs have still to go at this assembly; NULL: nothing */

@@ -70,6 +70,7 @@ PetscErrorCode NewtonSetUp(Newton *n, StepProblem *p, const LinearProblem *linea
   n->courant = chosen.courant;
   n->remembered = -1;
   if (n->retry || n->failures >= NEWTON_FAILURES) chosen.choice = LINEAR_DIRECT;
+  chosen.room = n->room;
   PetscCall(LinearForm(&chosen, &form));
   n->projects = chosen.multipliers && form == SYSTEM_BLOCKS;
   PetscCall(SystemUse(p->system, form, linear->symmetric));

@@ -27,7 +27,9 @@ static PetscErrorCode UseDirect(KSP ksp, PetscBool symmetric, const char **what)
 
 /* Rows of multipliers have no diagonal, so their pivots come late, and the factor outgrows the
  * estimate of the analysis. */
-static PetscErrorCode LeaveRoomForPivots(KSP ksp)
+#define ROOM_FOR_PIVOTS 300 /* percent */
+
+static PetscErrorCode LeaveRoom(KSP ksp, PetscInt percent)
 {
   PC pc;
   Mat factor;
@@ -35,7 +37,7 @@ static PetscErrorCode LeaveRoomForPivots(KSP ksp)
   PetscCall(KSPGetPC(ksp, &pc));
   PetscCall(PCFactorSetUpMatSolverType(pc));
   PetscCall(PCFactorGetMatrix(pc, &factor));
-  PetscCall(MatMumpsSetIcntl(factor, 14, 300)); /* percent */
+  PetscCall(MatMumpsSetIcntl(factor, 14, percent));
   PetscFunctionReturn(0);
 }
 
@@ -186,7 +188,8 @@ PetscErrorCode LinearConfigure(KSP ksp, const LinearProblem *p, PetscBool *direc
   *direct = prefers_direct(p) || (p->multipliers && form != SYSTEM_BLOCKS);
   if (*direct) PetscCall(UseDirect(ksp, p->symmetric, what));
   if (*direct && p->mixed) PetscCall(PrepareSaddlePoint(ksp, p->undetermined));
-  if (*direct && p->multipliers) PetscCall(LeaveRoomForPivots(ksp));
+  const PetscInt room = PetscMax(p->room, p->multipliers ? ROOM_FOR_PIVOTS : 0);
+  if (*direct && room) PetscCall(LeaveRoom(ksp, room));
   if (*direct) PetscFunctionReturn(0);
   if (p->mixed) { /* saddle.c does the rest */
     *what = "GMRES, Schur complement, algebraic multigrid";
