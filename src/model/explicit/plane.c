@@ -11,12 +11,10 @@ typedef PetscReal Four __attribute__((vector_size(4 * sizeof(PetscReal))));
 
 static const Four slope[2] = {{-1, 1, -1, 1}, {-1, -1, 1, 1}}, begin[2] = {{1, 0, 1, 0}, {1, 1, 0, 0}};
 
-KERNEL Four four(const PetscReal *from)
-{
-  Four to;
-  memcpy(&to, from, sizeof to);
-  return to;
-}
+/* the same anywhere in memory */
+typedef Four FourAnywhere __attribute__((aligned(sizeof(PetscReal)), may_alias));
+
+KERNEL Four four(const PetscReal *from) { return *(const FourAnywhere *)from; }
 
 KERNEL PetscReal total(const Four a) { return (a[0] + a[1]) + (a[2] + a[3]); }
 
@@ -157,10 +155,10 @@ KERNEL void keep(Points *points, PetscInt p, const Four A, PetscReal ring, const
   const PetscReal across = A[1] * A[2], shear = A[1] + A[2];
   const Four sum = {A[0], A[3], ring, shear};
   const Four square = {A[0] * A[0] + across, A[3] * A[3] + across, ring * ring, (A[0] + A[3]) * shear};
-  memcpy(F, &new_F, sizeof new_F);
+  *(FourAnywhere *)F = new_F;
   F[4] += ring * F[4];
   points->real[POINT_J][p] *= ((1 + A[0]) * (1 + A[3]) - across) * (1 + ring);
-  memcpy(stress, &tau, sizeof tau);
+  *(FourAnywhere *)stress = tau;
   points->real[POINT_WORK][p] += 0.5 * points->real[POINT_VOLUME][p] * total(old * sum + tau * (sum - square));
 }
 
