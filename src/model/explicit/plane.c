@@ -14,9 +14,9 @@ static const Four slope[2] = {{-1, 1, -1, 1}, {-1, -1, 1, 1}}, begin[2] = {{1, 0
 /* the same anywhere in memory */
 typedef Four FourAnywhere __attribute__((aligned(sizeof(PetscReal)), may_alias));
 
-KERNEL Four four(const PetscReal *from) { return *(const FourAnywhere *)from; }
+#define FOUR(at) (*(FourAnywhere *)(at))
 
-KERNEL PetscReal total(const Four a) { return (a[0] + a[1]) + (a[2] + a[3]); }
+KERNEL PetscReal total(const Four *a) { return ((*a)[0] + (*a)[1]) + ((*a)[2] + (*a)[3]); }
 
 /* The cell that x stands in and where, from its first node, both in [0, 1]; beyond the box, its last cell. */
 KERNEL PetscInt cell_of(const Lattice *l, const PetscReal *x, PetscReal at[2])
@@ -58,7 +58,7 @@ KERNEL void gather(const PetscBool hoop, const Points *points, Explicit *e)
   for (PetscInt p = 0; p < points->n; ++p) {
     const PetscReal *x = point_real(points, POINT_X, p), *v = point_real(points, POINT_V, p);
     const PetscReal mass = points->real[POINT_MASS][p];
-    const Four tau = -points->real[POINT_VOLUME][p] * four(point_real(points, POINT_TAU, p));
+    const Four tau = -points->real[POINT_VOLUME][p] * FOUR(point_real(points, POINT_TAU, p));
     const PetscInt now = cell_of(&l, x, at);
     if (now != cell) bring(5, &l, cell, sum, e->sum);
     cell = now;
@@ -77,12 +77,12 @@ KERNEL void gather(const PetscBool hoop, const Points *points, Explicit *e)
 /* Of the cell's nodes: velocity and gain, row by row. */
 KERNEL void fetch_motion(const Explicit *e, const Lattice *l, PetscInt cell, Four motion[4])
 {
-  for (int k = 0; k < 4; ++k) motion[k] = four(e->motion + l->number[cell + l->corner[k]] * 4);
+  for (int k = 0; k < 4; ++k) motion[k] = FOUR(e->motion + l->number[cell + l->corner[k]] * 4);
 }
 
-KERNEL Four mean(const Four N, const Four motion[4])
+KERNEL void mean(const Four *N, const Four motion[4], Four *to)
 {
-  return (N[0] * motion[0] + N[1] * motion[1]) + (N[2] * motion[2] + N[3] * motion[3]);
+  *to = ((*N)[0] * motion[0] + (*N)[1] * motion[1]) + ((*N)[2] * motion[2] + (*N)[3] * motion[3]);
 }
 
 void plane_gather(const Model *m, Explicit *e)
@@ -110,7 +110,9 @@ void plane_gain(const Model *m, Explicit *e)
     }
     cell = now;
     along(at, N);
-    const Four weight = N[0] * N[1], gained = mean(weight, motion);
+    const Four weight = N[0] * N[1];
+    Four gained;
+    mean(&weight, motion, &gained);
     damped += lost * mass * (v[0] * v[0] + v[1] * v[1]);
     for (int d = 0; d < 2; ++d) {
       v[d] = kept * v[d] + gained[2 + d];
@@ -144,22 +146,23 @@ KERNEL void fetch_flow(const Explicit *e, const Lattice *l, PetscInt cell, Flow 
   f->first = (Four){v[0][0], v[1][0], v[2][0], v[3][0]};
 }
 
-/* F, J, stress and its work, as `keep` of points.c has them; A: dF - 1 of xx yx xy yy, ring: of zz. */
-KERNEL void keep(Points *points, PetscInt p, const Four A, PetscReal ring, const PetscReal *new_tau)
+/* F, J, stress and its work, as `keep` of points.c has them; strain: dF - 1 of xx yx xy yy, ring: of zz. */
+KERNEL void keep(Points *points, PetscInt p, const Four *strain, PetscReal ring, const PetscReal *new_tau)
 {
   PetscReal *F = point_real(points, POINT_F, p), *stress = point_real(points, POINT_TAU, p);
-  const Four f = four(F), old = four(stress), tau = four(new_tau);
+  const Four A = *strain, f = FOUR(F), old = FOUR(stress), tau = FOUR(new_tau);
   const Four left = {A[0], A[0], A[1], A[1]}, right = {A[2], A[2], A[3], A[3]};
   const Four upper = {f[0], f[1], f[0], f[1]}, lower = {f[2], f[3], f[2], f[3]};
   const Four new_F = f + left * upper + right * lower;
   const PetscReal across = A[1] * A[2], shear = A[1] + A[2];
   const Four sum = {A[0], A[3], ring, shear};
   const Four square = {A[0] * A[0] + across, A[3] * A[3] + across, ring * ring, (A[0] + A[3]) * shear};
-  *(FourAnywhere *)F = new_F;
+  FOUR(F) = new_F;
   F[4] += ring * F[4];
   points->real[POINT_J][p] *= ((1 + A[0]) * (1 + A[3]) - across) * (1 + ring);
-  *(FourAnywhere *)stress = tau;
-  points->real[POINT_WORK][p] += 0.5 * points->real[POINT_VOLUME][p] * total(old * sum + tau * (sum - square));
+  FOUR(stress) = tau;
+  const Four work = old * sum + tau * (sum - square);
+  points->real[POINT_WORK][p] += 0.5 * points->real[POINT_VOLUME][p] * total(&work);
 }
 
 KERNEL void strain(const PetscBool hoop, const Model *m, Explicit *e)
@@ -180,10 +183,12 @@ KERNEL void strain(const PetscBool hoop, const Model *m, Explicit *e)
       cell = now;
       along(at, N);
       A[n] = flow.constant + flow.bilinear * (Four){at[1], at[1], at[0], at[0]};
-      if (hoop) ring[n] = e->dt * total(N[0] * N[1] * flow.first) / x[0];
+      const Four weight = N[0] * N[1], share = weight * flow.first;
+      if (hoop) ring[n] = e->dt * total(&share) / x[0];
       const PetscReal dF[9] = {1 + A[n][0], A[n][2], 0, A[n][1], 1 + A[n][3], 0, 0, 0, 1 + ring[n]};
       memcpy(b.dF + 9 * n, dF, sizeof dF);
-      move = e->dt * mean(N[0] * N[1], flow.motion);
+      mean(&weight, flow.motion, &move);
+      move *= e->dt;
       for (int d = 0; d < 2; ++d) {
         x[d] += move[d];
         u[d] += move[d];
@@ -191,7 +196,7 @@ KERNEL void strain(const PetscBool hoop, const Model *m, Explicit *e)
     }
     const LawStatus status = points_stress(m, first, n, &b);
     e->status = PetscMax(e->status, status);
-    for (PetscInt k = 0; k < n; ++k) keep(points, first + k, A[k], ring[k], b.tau + 6 * k);
+    for (PetscInt k = 0; k < n; ++k) keep(points, first + k, &A[k], ring[k], b.tau + 6 * k);
   }
 }
 
