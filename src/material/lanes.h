@@ -20,11 +20,14 @@ LANES_INLINE void lanes_load(int components, PetscInt n, const PetscReal *from, 
   const int whole = components / LANES * LANES;
   for (int l = 0; l < LANES; ++l) point[l] = from + (n >= LANES || l < n ? l : n - 1) * components;
   for (int first = 0; first < whole; first += LANES) {
-    for (int l = 0; l < LANES; ++l) __builtin_memcpy(to + first + l, point[l] + first, sizeof *to);
+    for (int l = 0; l < LANES; ++l) to[first + l] = *(const LanesAnywhere *)(point[l] + first);
     lanes_transpose(to + first);
   }
-  for (int k = whole; k < components; ++k)
-    for (int l = 0; l < LANES; ++l) to[k][l] = point[l][k];
+  for (int k = whole; k < components; ++k) {
+    Lanes one = {0};
+    for (int l = 0; l < LANES; ++l) one[l] = point[l][k];
+    to[k] = one;
+  }
 }
 
 /* Components first .. first + LANES - 1, turned: one Lanes a point. */
@@ -44,7 +47,7 @@ LANES_INLINE void lanes_store_all(int components, const Lanes *from, PetscReal *
   int first = 0;
   for (; first + LANES <= components; first += LANES) {
     lanes_points(components, first, from, point);
-    for (int l = 0; l < LANES; ++l) __builtin_memcpy(to + l * components + first, &point[l], sizeof point[l]);
+    for (int l = 0; l < LANES; ++l) *(LanesAnywhere *)(to + l * components + first) = point[l];
   }
   const int rest = components - first;
   if (!rest) return;

@@ -16,6 +16,8 @@
 #define LANES_INLINE static inline __attribute__((always_inline))
 
 typedef PetscReal Lanes __attribute__((vector_size(LANES * sizeof(PetscReal))));
+/* the same anywhere in memory: GCC makes two halves of a memcpy, and waits for both to be read as one */
+typedef Lanes LanesAnywhere __attribute__((aligned(sizeof(PetscReal)), may_alias));
 /* of a comparison: -1 where true */
 typedef int64_t LaneBits __attribute__((vector_size(LANES * sizeof(int64_t))));
 /* bits that are counted with */

@@ -124,19 +124,20 @@ LANES_INLINE void mc_plane_state(const PetscReal *p, const PlaneTrial *t, const 
   const Lanes share = p[MC_LAMBDA] / (3.0 * p[MC_LAMBDA] + 2.0 * p[MC_MU]) * (tau[0] + tau[1] + tau[2]), none = {0};
   const LaneBits plastic = *regions != MC_ELASTIC;
   const Lanes before = state[7];
+  const PetscReal per_twice_mu = 0.5 / p[MC_MU];
   Lanes stretch2[3], b[4], norm2 = none, flow;
   for (int k = 0; k < 4; ++k) state[k] = t->b[k];
   state[4] = state[5] = state[7] = none;
   if (!lanes_any(&plastic)) return;
   mc_opening(p, regions, t->strain, tau, &before, &state[7]);
   for (int a = 0; a < 3; ++a) {
-    const Lanes elastic = (tau[a] - share) / (2.0 * p[MC_MU]), twice = 2.0 * elastic;
-    const Lanes plastic_strain = t->strain[a] - elastic - state[7] / 3.0;
+    const Lanes elastic = (tau[a] - share) * per_twice_mu, twice = 2.0 * elastic;
+    const Lanes plastic_strain = t->strain[a] - elastic - (1.0 / 3.0) * state[7];
     norm2 += plastic_strain * plastic_strain;
     lanes_exp(&twice, &stretch2[a]);
   }
   mc_plane_tensor(t, stretch2, b);
-  norm2 /= 1.0 + p[MC_M] * p[MC_M];
+  norm2 *= 1.0 / (1.0 + p[MC_M] * p[MC_M]);
   lanes_sqrt(&norm2, &norm2);
   lanes_select(&plastic, &norm2, &none, &flow);
   state[6] += flow;

@@ -74,3 +74,17 @@ void points_gather(const Model *model, Explicit *e);
 void points_gain(const Model *model, Explicit *e);
 /* Points are strained, stressed and moved. */
 void points_strain(const Model *model, Explicit *e);
+
+/* One call of the law's. */
+typedef struct {
+  PetscReal dF[9 * LAW_BATCH], move[3 * LAW_BATCH];
+  PetscReal old[LAW_MAX_STATE * LAW_BATCH], state[LAW_MAX_STATE * LAW_BATCH], tau[6 * LAW_BATCH];
+} Strained;
+
+/* tau, Pa, and the states of n points of one material from `first` after b->dF; n <= LAW_BATCH. */
+LawStatus points_stress(const Model *model, PetscInt first, PetscInt n, Strained *b);
+
+/* plane.c. The same three walks in the plane where e->box. */
+void plane_gather(const Model *model, Explicit *e);
+void plane_gain(const Model *model, Explicit *e);
+void plane_strain(const Model *model, Explicit *e);

@@ -1,5 +1,5 @@
 /* The three walks over the points of a substep, with sizes known to the compiler where points find their nodes
- * by arithmetic. */
+ * by arithmetic; in the plane those have walks of their own (plane.c). */
 #include <string.h>
 #include "base/math/tensor.h"
 #include "model/explicit/explicit.h"
@@ -110,12 +110,6 @@ KERNEL void gain(const int dim, const PetscBool box, const Model *m, Explicit *e
   e->damped += damped;
 }
 
-/* One call of the law's. */
-typedef struct {
-  PetscReal dF[9 * LAW_BATCH], move[3 * LAW_BATCH];
-  PetscReal old[LAW_MAX_STATE * LAW_BATCH], state[LAW_MAX_STATE * LAW_BATCH], tau[6 * LAW_BATCH];
-} Strained;
-
 KERNEL void strain_point(const int dim, const PetscBool hoop, const PetscBool box, const Model *m, const Explicit *e,
                          const Sight *s, PetscInt p, PetscReal *dF, PetscReal *move)
 {
@@ -134,7 +128,7 @@ KERNEL void strain_point(const int dim, const PetscBool hoop, const PetscBool bo
   for (int d = 0; d < dim; ++d) move[d] *= e->dt;
 }
 
-static LawStatus stress(const Model *m, PetscInt first, PetscInt n, Strained *b)
+LawStatus points_stress(const Model *m, PetscInt first, PetscInt n, Strained *b)
 {
   const Material *material = &m->materials[m->points->material[first]];
   const PetscInt n_state = material->law->n_state, stride = m->points->components[POINT_STATE];
@@ -192,7 +186,7 @@ KERNEL void strain(const int dim, const PetscBool hoop, const PetscBool box, con
       look(dim, box, m, &e->lattice, first + n, &near, &s);
       strain_point(dim, hoop, box, m, e, &s, first + n, b.dF + 9 * n, b.move + 3 * n);
     }
-    const LawStatus status = stress(m, first, n, &b);
+    const LawStatus status = points_stress(m, first, n, &b);
     e->status = PetscMax(e->status, status);
     for (PetscInt k = 0, p = first; k < n; ++k, ++p) {
       keep(dim, points, p, b.dF + 9 * k, b.tau + 6 * k);
@@ -209,9 +203,8 @@ void points_gather(const Model *m, Explicit *e)
   const PetscBool hoop = m->c->kinematics->hoop;
   if (m->dim == 3 && e->box) gather(3, PETSC_FALSE, PETSC_TRUE, m, e);
   else if (m->dim == 3) gather(3, PETSC_FALSE, PETSC_FALSE, m, e);
-  else if (hoop && e->box) gather(2, PETSC_TRUE, PETSC_TRUE, m, e);
+  else if (e->box) plane_gather(m, e);
   else if (hoop) gather(2, PETSC_TRUE, PETSC_FALSE, m, e);
-  else if (e->box) gather(2, PETSC_FALSE, PETSC_TRUE, m, e);
   else gather(2, PETSC_FALSE, PETSC_FALSE, m, e);
 }
 
@@ -219,7 +212,7 @@ void points_gain(const Model *m, Explicit *e)
 {
   if (m->dim == 3 && e->box) gain(3, PETSC_TRUE, m, e);
   else if (m->dim == 3) gain(3, PETSC_FALSE, m, e);
-  else if (e->box) gain(2, PETSC_TRUE, m, e);
+  else if (e->box) plane_gain(m, e);
   else gain(2, PETSC_FALSE, m, e);
 }
 
@@ -228,8 +221,7 @@ void points_strain(const Model *m, Explicit *e)
   const PetscBool hoop = m->c->kinematics->hoop;
   if (m->dim == 3 && e->box) strain(3, PETSC_FALSE, PETSC_TRUE, m, e);
   else if (m->dim == 3) strain(3, PETSC_FALSE, PETSC_FALSE, m, e);
-  else if (hoop && e->box) strain(2, PETSC_TRUE, PETSC_TRUE, m, e);
+  else if (e->box) plane_strain(m, e);
   else if (hoop) strain(2, PETSC_TRUE, PETSC_FALSE, m, e);
-  else if (e->box) strain(2, PETSC_FALSE, PETSC_TRUE, m, e);
   else strain(2, PETSC_FALSE, PETSC_FALSE, m, e);
 }
