@@ -62,6 +62,27 @@ static void test_slope(void **state)
     }
 }
 
+/* Domains are as they were seeded, whatever J the stress brings: one that grew by it would reach nodes
+ * above the surface, whose forces no motion of theirs brings to rest. */
+static void test_domains(void **state)
+{
+  StepReport report;
+  Bench b;
+  (void)state;
+  slope(&b, "mpm", "displacement", CELL_QUADRILATERAL, 2);
+  b.c.basis = (BasisSpec){.kind = "gimp"};
+  b.c.stabilisation.stiffness = 0;
+  Model *m = equilibrium(&b, &report);
+  CHECK(report.outcome == STEP_ACCEPTED, "it stands");
+  CHECK(m->initial.left <= 1e-9, "left %g", (double)m->initial.left);
+  CHECK(m->initial.parts <= 6, "%g rounds", (double)m->initial.parts);
+  for (PetscInt p = 0; p < m->points->n; ++p) {
+    const PetscReal stretch = PetscPowReal(m->points->real[POINT_J][p], 1.0 / 3.0);
+    for (int d = 0; d < 2; ++d) CHECK_CLOSE(stretch * point_real(m->points, POINT_DOMAIN, p)[d], 0.5, 1e-12);
+  }
+  CALL(ModelDestroy(&m));
+}
+
 /* From no stress at all, in dynamics: all of the weight is lacking, the body settles, and then rests. */
 static void test_gravity_loading(void **state)
 {
@@ -158,8 +179,8 @@ static void test_refused(void **state)
 int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {
-    cmocka_unit_test(test_slope),  cmocka_unit_test(test_gravity_loading), cmocka_unit_test(test_formulas),
-    cmocka_unit_test(test_beyond), cmocka_unit_test(test_refused),
+    cmocka_unit_test(test_slope),    cmocka_unit_test(test_domains), cmocka_unit_test(test_gravity_loading),
+    cmocka_unit_test(test_formulas), cmocka_unit_test(test_beyond),  cmocka_unit_test(test_refused),
   };
   return run_model_tests(argc, argv, tests);
 }

@@ -176,6 +176,26 @@ static void test_stands(void **state)
   }
 }
 
+/* The same footing a cell above the block: no increment balances its weight, and the report says why. */
+static void test_floats(void **state)
+{
+  static const Hit any = {"fem", "cell", NULL, CELL_QUADRILATERAL, 0.5, PETSC_FALSE};
+  Bench b;
+  WallSpec wall;
+  StepReport report;
+  (void)state;
+  below_ball(&b, &any, PETSC_FALSE, &wall);
+  wall.shape = (Shape){.kind = SHAPE_BOX, .min = {0.73, 0.8}, .max = {1.23, 1.1}};
+  for (int d = 0; d < 3; ++d) wall.mass.velocity[d] = wall.mass.spin[d] = 0;
+  b.c.gravity[1] = -9.81;
+  bench_motion(&b, 1, 0, MOTION_FIXED, 3);
+  Model *m = bench_model(&b, PETSC_COMM_WORLD);
+  CALL(ModelStep(m, 0.25, &report));
+  CHECK(report.outcome != STEP_ACCEPTED, "it hangs in the air");
+  CHECK(strstr(report.newton.reason, "a wall with mass touches nothing"), "%s", report.newton.reason);
+  CALL(ModelDestroy(&m));
+}
+
 /* Nobody knows the mass of half of space. */
 static void test_endless(void **state)
 {
@@ -191,10 +211,8 @@ static void test_endless(void **state)
 int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {
-    cmocka_unit_test(test_hits),
-    cmocka_unit_test(test_flies),
-    cmocka_unit_test(test_stands),
-    cmocka_unit_test(test_endless),
+    cmocka_unit_test(test_hits),   cmocka_unit_test(test_flies),   cmocka_unit_test(test_stands),
+    cmocka_unit_test(test_floats), cmocka_unit_test(test_endless),
   };
   return run_model_group(argc, argv, tests, PETSC_STATIC_ARRAY_LENGTH(tests));
 }

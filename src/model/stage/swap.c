@@ -34,6 +34,8 @@ PetscBool point_swap(Points *points, PetscInt p, const Material *was, const Mate
   keep_history(was->law, before, is->law, state);
   const PetscReal stretch = PetscPowReal(*J / J_was, 1.0 / 3.0);
   for (PetscInt i = 0; i < points->components[POINT_F]; ++i) point_real(points, POINT_F, p)[i] = stretch * F[i];
-  for (PetscInt d = 0; d < points->components[POINT_DOMAIN]; ++d) point_real(points, POINT_DOMAIN, p)[d] /= stretch;
+  /* the new stress has taken its own J out of the domain */
+  for (PetscInt d = 0; d < points->components[POINT_DOMAIN]; ++d)
+    point_real(points, POINT_DOMAIN, p)[d] *= PetscPowReal(J_was, 1.0 / 3.0);
   return PETSC_TRUE;
 }

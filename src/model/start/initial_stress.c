@@ -82,6 +82,8 @@ void point_compress(Points *points, PetscInt p, PetscReal before, PetscReal J)
   point_set_F(points, p, F);
   points->real[POINT_J][p] = J;
   points->real[POINT_VOLUME][p] *= before / J;
+  for (PetscInt d = 0; d < points->components[POINT_DOMAIN]; ++d)
+    point_real(points, POINT_DOMAIN, p)[d] *= PetscPowReal(before / J, 1.0 / 3.0);
 }
 
 /* Shape alone carries the deviator, the pressure the mean: nothing is compressed. */

@@ -226,6 +226,13 @@ void rigid_inertia(const RigidWall *b, PetscReal D[RIGID * RIGID])
   }
 }
 
+PetscBool rigid_floats(const RigidWall *b)
+{
+  PetscReal acts = 0;
+  for (int i = 0; i < RIGID; ++i) acts += rigid_has(b, i) ? PetscAbsReal(load_of(b, i)) : 0;
+  return b->dt == 0 && acts > 0 && b->size[0] == 0 && b->stiff == 0;
+}
+
 PetscBool rigid_balances(const RigidWall *b, PetscReal tolerance, PetscReal digit)
 {
   PetscReal r[RIGID], lack[2] = {0, 0}, scale[2] = {b->share * b->size[0], b->share * b->size[1]},

@@ -219,7 +219,8 @@ static PetscErrorCode NewtonTry(Newton *n, NewtonReport *report)
   report->iterations += its;
   report->converged = reason > 0;
   report->interrupted = reason == SNES_DIVERGED_FUNCTION_COUNT;
-  report->reason = newton_reason(reason, report->status);
+  const char *loose = report->converged || report->interrupted ? NULL : newton_rigid_reason(n);
+  report->reason = loose ? loose : newton_reason(reason, report->status);
   PetscCall(PetscTime(&end));
   n->t_newton += (end - start) - (n->t_points + n->t_matrix + n->t_linear - parts);
   /* PETSc would not factorise again after a zero pivot */

@@ -93,6 +93,8 @@ void newton_rigid_set(const Newton *n, const PetscReal *q);
 /* Work that their residual still does along the direction, with the sign of that of the nodes; context: the Newton. */
 PetscReal newton_rigid_work(void *context);
 PetscBool newton_rigid_met(const Newton *n);
+/* Why no solution was found, if it is that a wall with mass touches nothing in statics; else NULL. */
+const char *newton_rigid_reason(const Newton *n);
 
 /* newton_converge.c. The norm below which a residual has converged, N. */
 PetscReal newton_tolerance(const Newton *n);

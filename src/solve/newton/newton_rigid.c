@@ -183,3 +183,11 @@ PetscBool newton_rigid_met(const Newton *n)
     if (!rigid_balances(s->rigid + k, n->spec.residual, PETSC_MACHINE_EPSILON * size)) return PETSC_FALSE;
   return PETSC_TRUE;
 }
+
+const char *newton_rigid_reason(const Newton *n)
+{
+  const Contact *s = n->problem->scene.contact;
+  for (PetscInt k = 0; s && k < s->n_rigid; ++k)
+    if (rigid_floats(s->rigid + k)) return "a wall with mass touches nothing, and in statics nothing else holds it";
+  return NULL;
+}
