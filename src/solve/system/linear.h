@@ -17,7 +17,7 @@ typedef struct {
   PetscBool idle_ranks;   /* does a rank hold no unknowns? */
   PetscBool multipliers;  /* are there constraints? then the matrix is not definite */
   PetscReal courant;      /* wave speed * dt / h */
-  PetscInt room;          /* percent that factors may outgrow the estimate of their size by; 0: as MUMPS has it */
+  PetscInt room;          /* for factors beyond their estimate, percent; 0: as MUMPS has it */
 } LinearProblem;
 
 /* What that solver works on: blocks where our own conjugate gradients or BiCGStab run, unless
