@@ -6,11 +6,16 @@
 typedef float Eight __attribute__((vector_size(32), aligned(4), may_alias));
 typedef double EightDoubles __attribute__((vector_size(64)));
 
-KERNEL double eight_sum(EightDoubles v) { return ((v[0] + v[1]) + (v[2] + v[3])) + ((v[4] + v[5]) + (v[6] + v[7])); }
+/* by pointer: machines without such registers have no settled way to hand them over */
+KERNEL double eight_sum(const EightDoubles *sum)
+{
+  const EightDoubles v = *sum;
+  return ((v[0] + v[1]) + (v[2] + v[3])) + ((v[4] + v[5]) + (v[6] + v[7]));
+}
 
 KERNEL Eight eight(const float *x) { return *(const Eight *)x; }
 KERNEL void eight_store(Eight v, float *x) { *(Eight *)x = v; }
-KERNEL EightDoubles eight_wide(Eight v) { return __builtin_convertvector(v, EightDoubles); }
+KERNEL void eight_add(Eight v, EightDoubles *sum) { *sum += __builtin_convertvector(v, EightDoubles); }
 
 /* x += alpha p, r -= alpha (t + y); r . r */
 static inline double vectors_step(PetscInt n, float alpha, const float *p, const float *t, const float *y, float *x,
@@ -23,14 +28,14 @@ static inline double vectors_step(PetscInt n, float alpha, const float *p, const
     const Eight left = eight(r + i) - alpha * (eight(t + i) + eight(y + i));
     eight_store(eight(x + i) + alpha * eight(p + i), x + i);
     eight_store(left, r + i);
-    sum += eight_wide(left * left);
+    eight_add(left * left, &sum);
   }
   for (; i < n; ++i) {
     x[i] += alpha * p[i];
     r[i] -= alpha * (t[i] + y[i]);
     rest += (double)(r[i] * r[i]);
   }
-  return eight_sum(sum) + rest;
+  return eight_sum(&sum) + rest;
 }
 
 /* v = t + y, r -= alpha v */
@@ -56,10 +61,10 @@ static inline double vectors_norm2(PetscInt n, const float *t, const float *y)
   PetscInt i = 0;
   for (; i + 8 <= n; i += 8) {
     const Eight v = eight(t + i) + eight(y + i);
-    sum += eight_wide(v * v);
+    eight_add(v * v, &sum);
   }
   for (; i < n; ++i) rest += (double)((t[i] + y[i]) * (t[i] + y[i]));
-  return eight_sum(sum) + rest;
+  return eight_sum(&sum) + rest;
 }
 
 /* x += alpha p + omega r, r -= omega (t + y), p -= omega v; sums = r . r, shadow . r */
@@ -73,11 +78,11 @@ static inline void vectors_full_step(PetscInt n, float alpha, float omega, const
     eight_store(eight(x + i) + alpha * eight(p + i) + omega * old, x + i);
     eight_store(eight(p + i) - omega * eight(v + i), p + i);
     eight_store(left, r + i);
-    norm2 += eight_wide(left * left);
-    dot += eight_wide(left * eight(shadow + i));
+    eight_add(left * left, &norm2);
+    eight_add(left * eight(shadow + i), &dot);
   }
-  sums[0] = eight_sum(norm2);
-  sums[1] = eight_sum(dot);
+  sums[0] = eight_sum(&norm2);
+  sums[1] = eight_sum(&dot);
   for (; i < n; ++i) {
     x[i] += alpha * p[i] + omega * r[i];
     r[i] -= omega * (t[i] + y[i]);
