@@ -31,7 +31,8 @@ typedef struct {
   int width, height; /* pixels; 0: 900 x 600 */
 } Figure;
 
-/* A PNG, or what the ending of the file says (picture/gnuplot.h). What goes wrong (no gnuplot, nothing to draw, no permission) is told to diag. Points that an axis
+/* A PNG, or what the ending of the file says (picture/gnuplot.h). What goes wrong (no gnuplot,
+ * nothing to draw, no permission) is told to diag. Points that an axis
  * cannot show (not finite, or not positive on a logarithmic one) are left out. Not collective. */
 PetscErrorCode FigureWrite(const Figure *figure, const char *png, Diag *diag, PetscBool *done);
 

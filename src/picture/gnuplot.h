@@ -11,7 +11,8 @@ typedef struct {
 } GnuplotScript;
 
 /* Starts a picture of so many pixels that becomes the file `path`: a PNG, or by its ending .svg or
- * .pdf (96 pixels an inch), or .gif or .mp4, which show one plot after the other, 0.1 s each; ffmpeg makes the latter. Text is taken as it is (no
+ * .pdf (96 pixels an inch), or .gif or .mp4, which show one plot after the other, 0.1 s each;
+ * ffmpeg makes the latter. Text is taken as it is (no
  * sub- and superscripts). */
 PetscErrorCode GnuplotBegin(GnuplotScript *script, const char *path, int width, int height);
 /* Let gnuplot run the script and give the picture its name. What goes wrong is told to diag; *done

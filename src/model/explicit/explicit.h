@@ -52,10 +52,11 @@ typedef struct Explicit {
 
 /* lap.c. Collective. Arrays for the grid as it is. */
 PetscErrorCode ExplicitCreate(const Model *model, Explicit **explicit);
-/* Collective. Who reaches whom, who is held, and how many substeps of which length follow; left: of the run's step, s. */
+/* Collective. Who reaches whom, who is held, and how many substeps of which length follow; left:
+ * of the run's step, s. */
 PetscErrorCode LapBegin(Model *model, Explicit *e, PetscReal left);
 /* Collective. Points find their cells and ranks. */
-PetscErrorCode LapEnd(Model *model, Explicit *e, StepReport *report);
+PetscErrorCode LapEnd(Model *model, StepReport *report);
 
 /* nodes.c. Velocities from momentum, and at the end of the substep from forces. Collective if loads act. */
 PetscErrorCode NodesMove(Model *model, Explicit *e);

@@ -3,7 +3,8 @@
 #include "grid/box/box.h"
 #include "model/explicit/explicit.h"
 
-/* The fastest point may cross this part of a cell in a lap: the others ranks' nodes that it could then see are known. */
+/* The fastest point may cross this part of a cell in a lap: the others ranks' nodes that it
+ * could then see are known. */
 #define LAP_TRAVEL 0.4
 /* substeps after which the critical one is asked for again */
 #define LAP_MOST 50
@@ -180,7 +181,7 @@ static PetscErrorCode Relocate(Model *m, StepReport *report)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode LapEnd(Model *m, Explicit *e, StepReport *report)
+PetscErrorCode LapEnd(Model *m, StepReport *report)
 {
   PetscLogDouble clock;
 
@@ -188,6 +189,5 @@ PetscErrorCode LapEnd(Model *m, Explicit *e, StepReport *report)
   PetscCall(PetscTime(&clock));
   PetscCall(Relocate(m, report));
   PetscCall(PhaseEnd(m->seconds, PHASE_MOVE, &clock));
-  (void)e;
   PetscFunctionReturn(0);
 }

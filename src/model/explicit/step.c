@@ -106,7 +106,7 @@ PetscErrorCode ExplicitStep(Model *m, PetscReal limit, StepReport *report)
     PetscCall(LapBegin(m, e, end - e->time));
     for (PetscInt k = 0; k < e->substeps; ++k) PetscCall(Substep(m, e));
     PetscCall(Judge(m, e, report));
-    if (report->outcome == STEP_ACCEPTED) PetscCall(LapEnd(m, e, report));
+    if (report->outcome == STEP_ACCEPTED) PetscCall(LapEnd(m, report));
   }
   PetscCall(Accept(m, e, before, report));
   if (report->outcome == STEP_ACCEPTED) PetscCall(MeasuresRemember(m, report->dt));

@@ -112,7 +112,8 @@ PetscErrorCode PlotFrameMesh(VtkFile *file, PetscInt dim, const VtkFieldInfo *fi
                              PlotScene *scene, PlotFrame *frame, char reason[256]);
 /* colours.c: colours from the smallest to the largest value, or as asked for, in a unit that suits. */
 void plot_choose_colours(PlotScene *scene, const PlotOptions *options, const char *unit, const char *what);
-/* Is the field one of those whose values are numbers of bodies or materials? Their names, and which are in the picture. */
+/* Is the field one of those whose values are numbers of bodies or materials? Their names, and
+ * which are in the picture. */
 #define PLOT_MAX_NAMES 64
 PetscBool plot_has_names(const char *field);
 const char *plot_name(const PlotScene *scene, PetscInt value, char buffer[64]);
