@@ -3,7 +3,10 @@
  * A step of the run (analysis.step) is divided into substeps, none of which a wave crosses a cell in.
  * Some of them make a lap: points are sorted and find their cells, and the nodes that they can reach are
  * listed, only between laps. In a box of squares or cubes points find their nodes by arithmetic, wherever
- * in it they are; other grids and bases have laps of one substep, and a support in each. */
+ * in it they are; other grids and bases have laps of one substep, and a support in each.
+ *
+ * Between substeps velocities are those of the middle of the last one; at the ends of the run's steps they are
+ * those of that time. */
 #pragma once
 #include "model/explicit/critical.h"
 #include "model/model_private.h"
@@ -37,8 +40,10 @@ typedef struct Explicit {
   PetscBool moved;   /* do prescribed velocities change? */
   PetscReal time;    /* at the start of the substep, s */
   PetscReal step;    /* of the run's, s */
-  PetscReal dt;      /* of a substep, s */
-  PetscReal fade;    /* of velocities by damping in a substep */
+  PetscReal dt;      /* of a substep, s: how long points move in it; 0: velocities alone are brought to `time` */
+  PetscReal before;  /* of the last one, s; 0: velocities are those of `time` */
+  PetscReal kick;    /* how long forces act in it, s: from the middle of the last one to that of this one */
+  PetscReal fade;    /* of velocities by damping meanwhile */
   PetscReal g[3];    /* gravity, m/s2 */
   PetscInt substeps; /* in the lap; and all */
   PetscInt taken;

@@ -144,7 +144,6 @@ static void choose_substeps(const Model *m, PetscReal left, Explicit *e)
   PetscReal most = PetscMin(all, LAP_MOST);
   if (e->fastest * e->dt * most > travel) most = PetscFloorReal(travel / (e->fastest * e->dt));
   e->substeps = e->box ? PetscMax((PetscInt)most, 1) : 1;
-  e->fade = 1 - PetscExpReal(-m->c->analysis.damping * e->dt);
 }
 
 PetscErrorCode LapBegin(Model *m, Explicit *e, PetscReal left)

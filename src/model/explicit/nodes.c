@@ -39,7 +39,7 @@ PetscErrorCode NodesMove(Model *m, Explicit *e)
     PetscReal *v = e->motion + node * 2 * dim;
     for (PetscInt d = 0; d < dim; ++d) {
       const PetscReal load = mass * e->g[d] + (m->forces.n ? m->nodes->external[node * dim + d] : 0);
-      const PetscReal gain = e->dt * inverse * (s[1 + dim + d] + load), kept = (1 - e->fade) * inverse * s[1 + d];
+      const PetscReal gain = e->kick * inverse * (s[1 + dim + d] + load), kept = (1 - e->fade) * inverse * s[1 + d];
       v[d] = kept + gain;
       v[dim + d] = gain;
     }
@@ -47,15 +47,16 @@ PetscErrorCode NodesMove(Model *m, Explicit *e)
   PetscFunctionReturn(0);
 }
 
-/* Velocities of what is prescribed in this substep. */
+/* Velocities of what is prescribed in this substep; where points do not move, those of the last one. */
 static void prescribe(Model *m, Explicit *e)
 {
+  const PetscReal dt = e->dt > 0 ? e->dt : -e->before;
   PetscReal *increment = m->nodes->prescribed;
   if (!e->moved && !m->boundary->field) return;
   for (PetscInt k = 0; k < e->n_held; ++k) increment[e->held[k].node * m->dim + e->held[k].axis] = 0;
-  boundary_increments(m->boundary, m->grid, e->time, e->time + e->dt, increment);
+  boundary_increments(m->boundary, m->grid, e->time, e->time + dt, increment);
   for (PetscInt k = 0; k < e->n_held; ++k)
-    e->held[k].velocity = increment[e->held[k].node * m->dim + e->held[k].axis] / e->dt;
+    e->held[k].velocity = increment[e->held[k].node * m->dim + e->held[k].axis] / dt;
 }
 
 /* The component of v in the frame of the node becomes what is prescribed; returns by how much. */
@@ -142,7 +143,7 @@ PetscErrorCode NodesCarry(Model *m, Explicit *e)
     n->touched[node] = e->sum[node * e->width] > 0;
     for (PetscInt d = 0, i = node * dim; d < dim; ++d, ++i) {
       n->v1[i] = e->motion[node * 2 * dim + d];
-      n->a1[i] = e->motion[node * 2 * dim + dim + d] / e->dt;
+      n->a1[i] = e->motion[node * 2 * dim + dim + d] / e->kick;
       n->du[i] = e->dt * n->v1[i];
     }
   }

@@ -96,7 +96,7 @@ void plane_gain(const Model *m, Explicit *e)
   const Points *points = m->points;
   const Lattice l = e->lattice;
   const PetscBool again = m->c->analysis.update == EXPLICIT_MUSL;
-  const PetscReal per_second = 1 / e->dt, kept = 1 - e->fade, lost = 0.5 * e->fade * (2 - e->fade);
+  const PetscReal per_second = 1 / e->kick, kept = 1 - e->fade, lost = 0.5 * e->fade * (2 - e->fade);
   Four sum[2] = {{0}}, motion[4] = {{0}}, N[2];
   PetscReal at[2], damped = 0;
   PetscInt cell = -1;

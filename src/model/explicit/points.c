@@ -89,7 +89,7 @@ KERNEL void gain(const int dim, const PetscBool box, const Model *m, Explicit *e
 {
   const Points *points = m->points;
   const PetscBool again = m->c->analysis.update == EXPLICIT_MUSL;
-  const PetscReal per_second = 1 / e->dt;
+  const PetscReal per_second = 1 / e->kick;
   PetscReal damped = 0;
   Sight s = {0};
   Near near;

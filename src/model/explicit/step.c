@@ -4,21 +4,42 @@
  * Who knows the method reads Substep; the rest divides the run's step and keeps its accounts. */
 #include "model/explicit/explicit.h"
 
+/* Forces of where points are now act from the middle of the last substep to that of this one. */
+static PetscErrorCode Kick(Model *m, Explicit *e)
+{
+  PetscFunctionBeginUser;
+  e->kick = (e->before + e->dt) / 2;
+  e->fade = 1 - PetscExpReal(-m->c->analysis.damping * e->kick);
+  points_gather(m, e); /* mass, momentum and forces of the nodes */
+  PetscCall(NodesShare(m, e->width, e->sum));
+  PetscCall(NodesMove(m, e)); /* their velocities before and after */
+  nodes_hold(m, e);           /* the boundary's are given */
+  points_gain(m, e);          /* points take the change, and give nodes their momentum anew */
+  PetscFunctionReturn(0);
+}
+
 static PetscErrorCode Substep(Model *m, Explicit *e)
 {
   PetscFunctionBeginUser;
-  points_gather(m, e); /* mass, momentum and forces of the nodes */
-  PetscCall(NodesShare(m, e->width, e->sum));
-  PetscCall(NodesMove(m, e)); /* their velocities now and at the end */
-  nodes_hold(m, e);           /* the boundary's are given */
-  points_gain(m, e);          /* points take the change, and give nodes their momentum anew */
+  PetscCall(Kick(m, e));
   if (m->c->analysis.update == EXPLICIT_MUSL) PetscCall(NodesShare(m, m->dim, e->straining));
   nodes_strain(m, e);
   points_strain(m, e); /* strain, stress; points move */
   PetscCall(NodesCarry(m, e));
+  e->before = e->dt;
   e->time += e->dt;
   ++e->taken;
   ++e->since;
+  PetscFunctionReturn(0);
+}
+
+/* The half of a kick that is missing at the end of the run's step. */
+static PetscErrorCode Close(Model *m, Explicit *e)
+{
+  PetscFunctionBeginUser;
+  PetscCall(LapBegin(m, e, 0));
+  PetscCall(Kick(m, e));
+  PetscCall(NodesCarry(m, e));
   PetscFunctionReturn(0);
 }
 
@@ -81,6 +102,7 @@ static PetscErrorCode Begin(Model *m, PetscReal step, Explicit *e, PetscReal bef
   e->step = step;
   e->taken = 0;
   e->critical = 0;
+  e->before = 0;
   e->outside = m->outside.energy;
   e->status = LAW_OK;
   e->external = e->boundary = e->damped = 0;
@@ -108,6 +130,7 @@ PetscErrorCode ExplicitStep(Model *m, PetscReal limit, StepReport *report)
     PetscCall(Judge(m, e, report));
     if (report->outcome == STEP_ACCEPTED) PetscCall(LapEnd(m, report));
   }
+  if (report->outcome == STEP_ACCEPTED) PetscCall(Close(m, e));
   PetscCall(Accept(m, e, before, report));
   if (report->outcome == STEP_ACCEPTED) PetscCall(MeasuresRemember(m, report->dt));
   PetscFunctionReturn(0);
