@@ -53,6 +53,10 @@ typedef struct Explicit {
   LawStatus status;
   PetscReal external, boundary, damped; /* energies of the run's step, this rank's share, J */
   PetscReal outside;                    /* Model.outside.energy at its start, J */
+  /* of each wall in the run's step, on this rank: mean force on the material and its torque; work of sliding, J */
+  struct ContactSum *pushed;
+  PetscReal *rubbed, friction; /* friction: of all walls */
+  PetscBool first;             /* has nothing moved yet since this was made? */
 } Explicit;
 
 /* lap.c. Collective. Arrays for the grid as it is. */
@@ -63,7 +67,16 @@ PetscErrorCode LapBegin(Model *model, Explicit *e, PetscReal left);
 /* Collective. Points find their cells and ranks. */
 PetscErrorCode LapEnd(Model *model, StepReport *report);
 
-/* nodes.c. Velocities from momentum, and at the end of the substep from forces. Collective if loads act. */
+/* walls.c. Forces of walls go to the nodes. */
+PetscErrorCode WallsPush(Model *model, Explicit *e);
+/* Material moves along walls: before the points do. */
+void walls_follow(Model *model, Explicit *e);
+/* Collective. What acted over the run's step. */
+PetscErrorCode WallsAccount(Model *model, Explicit *e);
+
+/* nodes.c. Collective. Forces that know where points are. */
+PetscErrorCode ForcesBegin(Model *model, Explicit *e);
+/* Velocities from momentum, and at the end of the substep from forces. Collective if loads act. */
 PetscErrorCode NodesMove(Model *model, Explicit *e);
 /* Prescribed dofs move as prescribed; the impulse goes to the reactions. */
 void nodes_hold(Model *model, Explicit *e);

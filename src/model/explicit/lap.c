@@ -2,6 +2,7 @@
  * the next substeps get their length. */
 #include "grid/box/box.h"
 #include "model/explicit/explicit.h"
+#include "solve/contact/contact.h"
 
 /* The fastest point may cross this part of a cell in a lap: the others ranks' nodes that it
  * could then see are known. */
@@ -59,6 +60,8 @@ PetscErrorCode ExplicitCreate(const Model *m, Explicit **explicit)
   PetscCall(PetscCalloc1(n * dim, &e->straining));
   PetscCall(PetscCalloc1(n, &e->mark));
   PetscCall(PetscMalloc1(n, &e->active));
+  e->first = PETSC_TRUE;
+  if (m->contact) PetscCall(PetscCalloc2(m->contact->n_partners, &e->pushed, m->contact->n_partners, &e->rubbed));
   PetscCall(PetscMalloc1(n * dim, &e->held));
   for (PetscInt k = 0; k < m->c->n_boundary; ++k) e->moved = e->moved || m->c->boundary[k].kind != MOTION_FIXED;
   PetscFunctionReturn(0);
@@ -76,6 +79,7 @@ PetscErrorCode ExplicitDestroy(Explicit **explicit)
   PetscCall(PetscFree(e->mark));
   PetscCall(PetscFree(e->active));
   PetscCall(PetscFree(e->held));
+  PetscCall(PetscFree2(e->pushed, e->rubbed));
   PetscCall(PetscFree(*explicit));
   PetscFunctionReturn(0);
 }

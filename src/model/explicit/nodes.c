@@ -10,19 +10,27 @@ PetscErrorCode NodesShare(const Model *m, PetscInt components, PetscReal *values
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode ForcesBegin(Model *m, Explicit *e)
+{
+  PetscFunctionBeginUser;
+  if (!m->forces.n) PetscFunctionReturn(0);
+  PetscCall(PetscArrayzero(m->nodes->du, m->grid->n_nodes * m->dim));
+  const NodalScene scene = nodal_scene(m, e->time, m->nodes->du);
+  PetscCall(NodalForcesBegin(&m->forces, &scene));
+  PetscCall(WallsPush(m, e));
+  PetscFunctionReturn(0);
+}
+
 /* Forces of loads, summed over the ranks, go to those that the points gave. */
 static PetscErrorCode AddLoads(Model *m, Explicit *e)
 {
-  const PetscInt dim = m->dim, dofs = m->grid->n_nodes * dim;
   NodalFields *n = m->nodes;
 
   PetscFunctionBeginUser;
   if (!m->forces.n) PetscFunctionReturn(0);
-  PetscCall(PetscArrayzero(n->du, dofs));
   const NodalScene scene = nodal_scene(m, e->time, n->du);
-  PetscCall(NodalForcesBegin(&m->forces, &scene));
   PetscCall(NodalForcesExternal(&m->forces, &scene, PETSC_TRUE, n->external));
-  PetscCall(GridToGhosts(m->grid, dim, n->external));
+  PetscCall(GridToGhosts(m->grid, m->dim, n->external));
   PetscFunctionReturn(0);
 }
 

@@ -18,7 +18,7 @@ void explicit_check(const Model *m, Diag *diag)
   refuse(c->analysis.transfer && strcmp(c->analysis.transfer, "thesis") != 0, "analysis.transfer",
          "transfers other than thesis", diag);
   refuse(c->analysis.keep_velocity, "analysis.keep_velocity", "this", diag);
-  refuse(c->n_walls > 0, "walls", "walls", diag);
+  refuse(walls_with_mass(c) > 0, "walls", "walls with mass", diag);
   refuse(c->n_interfaces > 0, "interfaces", "interfaces", diag);
   if (c->analysis.scheme || c->analysis.bossak != 0)
     diag_warning(diag, c->analysis.scheme ? "analysis.scheme" : "analysis.bossak",

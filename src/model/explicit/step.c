@@ -3,6 +3,7 @@
  *
  * Who knows the method reads Substep; the rest divides the run's step and keeps its accounts. */
 #include "model/explicit/explicit.h"
+#include "solve/contact/contact.h"
 
 /* Forces of where points are now act from the middle of the last substep to that of this one. */
 static PetscErrorCode Kick(Model *m, Explicit *e)
@@ -11,6 +12,7 @@ static PetscErrorCode Kick(Model *m, Explicit *e)
   e->kick = (e->before + e->dt) / 2;
   e->fade = 1 - PetscExpReal(-m->c->analysis.damping * e->kick);
   points_gather(m, e); /* mass, momentum and forces of the nodes */
+  PetscCall(ForcesBegin(m, e));
   PetscCall(NodesShare(m, e->width, e->sum));
   PetscCall(NodesMove(m, e)); /* their velocities before and after */
   nodes_hold(m, e);           /* the boundary's are given */
@@ -24,6 +26,7 @@ static PetscErrorCode Substep(Model *m, Explicit *e)
   PetscCall(Kick(m, e));
   if (m->c->analysis.update == EXPLICIT_MUSL) PetscCall(NodesShare(m, m->dim, e->straining));
   nodes_strain(m, e);
+  walls_follow(m, e);
   points_strain(m, e); /* strain, stress; points move */
   PetscCall(NodesCarry(m, e));
   e->before = e->dt;
@@ -39,6 +42,7 @@ static PetscErrorCode Close(Model *m, Explicit *e)
   PetscFunctionBeginUser;
   PetscCall(LapBegin(m, e, 0));
   PetscCall(Kick(m, e));
+  walls_follow(m, e);
   PetscCall(NodesCarry(m, e));
   PetscFunctionReturn(0);
 }
@@ -63,25 +67,27 @@ static PetscErrorCode Judge(Model *m, const Explicit *e, StepReport *report)
  * the substeps. `before`: kinetic energy and work of the stress. */
 static PetscErrorCode Account(Model *m, const Explicit *e, const PetscReal before[2])
 {
-  PetscReal now[2], sum[4];
+  PetscReal now[2], sum[5];
 
   PetscFunctionBeginUser;
   energy_of_points(m, now);
-  PetscReal local[4] = {e->external, e->boundary, e->damped, 0};
-  local[3] = e->external + e->boundary - e->damped - (now[0] - before[0]) - (now[1] - before[1]);
-  PetscCall(MPIU_Allreduce(local, sum, 4, MPIU_REAL, MPI_SUM, m->comm));
+  PetscReal local[5] = {e->external, e->boundary, e->damped, 0, e->friction};
+  local[3] = e->external + e->boundary - e->damped - e->friction - (now[0] - before[0]) - (now[1] - before[1]);
+  PetscCall(MPIU_Allreduce(local, sum, 5, MPIU_REAL, MPI_SUM, m->comm));
   m->external_work += sum[0];
   m->boundary_work += sum[1];
   m->damped_energy += sum[2];
   m->transfer_energy += sum[3];
+  m->friction_energy += sum[4];
   m->most_energy = PetscMax(m->most_energy, m->start_energy + m->external_work + m->boundary_work);
   PetscFunctionReturn(0);
 }
 
 /* What the run's step has become for all others. */
-static PetscErrorCode Accept(Model *m, const Explicit *e, const PetscReal before[2], StepReport *report)
+static PetscErrorCode Accept(Model *m, Explicit *e, const PetscReal before[2], StepReport *report)
 {
   PetscFunctionBeginUser;
+  PetscCall(WallsAccount(m, e));
   PetscCall(Account(m, e, before));
   m->transfer_energy -= m->outside.energy - e->outside;
   note_flow(m, 1);
@@ -106,6 +112,8 @@ static PetscErrorCode Begin(Model *m, PetscReal step, Explicit *e, PetscReal bef
   e->outside = m->outside.energy;
   e->status = LAW_OK;
   e->external = e->boundary = e->damped = 0;
+  if (m->contact) PetscCall(PetscArrayzero(e->pushed, m->contact->n_partners));
+  if (m->contact) PetscCall(PetscArrayzero(e->rubbed, m->contact->n_partners));
   PetscCall(PetscArrayzero(m->nodes->reaction, m->grid->n_nodes * m->dim));
   energy_of_points(m, before);
   note_flow(m, -1);
