@@ -323,5 +323,6 @@ void contact_force_on(const Model *m, PetscInt p, PetscReal force[3])
   const PetscReal *kept = point_real(m->points, POINT_CONTACT, p);
   force[0] = force[1] = force[2] = 0;
   for (PetscInt k = 0; k < m->c->n_walls + m->c->n_interfaces; ++k, kept += CONTACT_KEPT(m->dim))
-    for (PetscInt d = 0; d < m->dim; ++d) force[d] += share_of_force(m) * kept[2 + d];
+    for (PetscInt d = 0; d < m->dim && (int)(kept[0] + 0.5) != CONTACT_OPEN; ++d)
+      force[d] += share_of_force(m) * kept[2 + d];
 }

@@ -56,7 +56,6 @@ typedef struct Explicit {
   /* of each wall in the run's step, on this rank: mean force on the material and its torque; work of sliding, J */
   struct ContactSum *pushed;
   PetscReal *rubbed, friction; /* friction: of all walls */
-  PetscBool first;             /* has nothing moved yet since this was made? */
 } Explicit;
 
 /* lap.c. Collective. Arrays for the grid as it is. */

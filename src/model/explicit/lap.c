@@ -60,7 +60,6 @@ PetscErrorCode ExplicitCreate(const Model *m, Explicit **explicit)
   PetscCall(PetscCalloc1(n * dim, &e->straining));
   PetscCall(PetscCalloc1(n, &e->mark));
   PetscCall(PetscMalloc1(n, &e->active));
-  e->first = PETSC_TRUE;
   if (m->contact) PetscCall(PetscCalloc2(m->contact->n_partners, &e->pushed, m->contact->n_partners, &e->rubbed));
   PetscCall(PetscMalloc1(n * dim, &e->held));
   for (PetscInt k = 0; k < m->c->n_boundary; ++k) e->moved = e->moved || m->c->boundary[k].kind != MOTION_FIXED;

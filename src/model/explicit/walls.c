@@ -3,34 +3,57 @@
  * Contact points are those of implicit dynamics (solve/contact), and so is the law; but nothing is
  * solved for. What has gone into a wall is pushed by
  *
- *   p = - r g,    t = t of the substep before - r s, at most friction p + bond,    r = A M / h,
+ *   p = - r g - d dg/dt >= 0,    t = t of the substep before - r s, at most friction p + bond,
+ *   r = A M / h,    d = A sqrt(rho M) / 2,
  *
  * g < 0 the gap, s the slip since then, A the surface that the point stands for. So a wall is as stiff as a
  * cell of the material before it: the critical substep stays as it is, material sinks in by a cell's
- * strain, and nothing drifts that sticks. */
+ * strain, and nothing drifts that sticks. Of waves that the grid resolves the dashpot takes a share
+ * of (omega h / c)^2; without it the springs and second mapping (`musl`) shake a block that rests. */
 #include "model/explicit/explicit.h"
 #include "solve/contact/contact.h"
 
-#define FITS 1e-6 /* of a force: what it may differ by from that of its spring */
+#define DASHPOT 0.5 /* of the impedance of the material */
+#define SPRING 0.25 /* is added to the state that is kept, to tell that it is one of a spring */
 
 static PetscReal dot(const PetscReal a[3], const PetscReal b[3]) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+
+static PetscReal *kept_of(const Model *m, const ContactPoint *c)
+{
+  return point_real(m->points, POINT_CONTACT, c->owner) + c->wall * CONTACT_KEPT(m->dim);
+}
+
+static PetscBool is_of_spring(const Model *m, const ContactPoint *c)
+{
+  const PetscReal state = *kept_of(m, c);
+  return state - PetscFloorReal(state) > SPRING / 2;
+}
 
 /* Another scheme has left a force and no gap: the surface is where the spring has that force. */
 static void take_over(ContactPoint *c)
 {
   const PetscReal pressure = dot(c->last, c->normal), off = pressure / c->law.penalty + c->open;
-  if (c->before == CONTACT_OPEN || pressure <= 0 || off * c->law.penalty <= FITS * pressure) return;
+  if (c->before == CONTACT_OPEN || pressure <= 0) return;
   c->reach += off;
   c->open -= off;
 }
 
-/* Force of one wall on one point. */
+/* Pressure beside that of the spring: what the dashpot bears; at the start of the run's step the force goes on as
+ * it was at the end of the last one. */
+static PetscReal beside_spring(const Explicit *e, const ContactPoint *c)
+{
+  const PetscReal kept = dot(c->last, c->normal);
+  if (e->before > 0) return kept;
+  return c->before == CONTACT_OPEN ? 0 : kept + c->law.penalty * c->open;
+}
+
+/* Force of one wall on one point. Between substeps it keeps what its law starts from. */
 static void push(const Model *m, const Explicit *e, ContactPoint *c)
 {
   const WallPlace place = {.gap = c->open, .normal = {c->normal[0], c->normal[1], c->normal[2]}};
   static const PetscReal nowhere[3] = {0, 0, 0};
   const PetscReal pressure = dot(c->last, c->normal);
-  ContactForce before = {0};
+  ContactForce before = {.pressure = beside_spring(e, c)};
   for (int d = 0; d < 3; ++d) before.shear[d] = c->last[d] - pressure * c->normal[d];
   c->law.bond = c->bond;
   c->state = CONTACT_OPEN;
@@ -51,7 +74,7 @@ PetscErrorCode WallsPush(Model *m, Explicit *e)
   if (!s) PetscFunctionReturn(0);
   for (ContactPoint *c = s->point; c < s->point + s->n; ++c) {
     c->law.penalty = c->section * c->modulus[0] / s->length;
-    if (e->first) take_over(c);
+    if (!is_of_spring(m, c)) take_over(c);
     push(m, e, c);
     if (c->state == CONTACT_OPEN) continue;
     contact_force(c, f);
@@ -60,7 +83,6 @@ PetscErrorCode WallsPush(Model *m, Explicit *e)
     for (int d = 0; d < 3; ++d) f[d] *= e->kick / e->step;
     contact_add(c, dim, f, e->pushed + c->wall);
   }
-  e->first = PETSC_FALSE;
   PetscFunctionReturn(0);
 }
 
@@ -78,29 +100,38 @@ static void move_of(const Model *m, const Explicit *e, const ContactPoint *c, Pe
     }
 }
 
+/* What its law starts from in the next substep; after the last one of the run's step, the force itself. move: of
+ * its place on the surface against the wall. */
+static void keep(const Model *m, Explicit *e, const ContactPoint *c, const PetscReal move[3], PetscReal *kept)
+{
+  const PetscReal closing = dot(move, c->normal), rubs = c->law.kind != CONTACT_FRICTIONLESS;
+  const PetscReal dashpot = DASHPOT * c->section * PetscSqrtReal(c->modulus[0] * c->density[0]);
+  const PetscReal along = e->dt > 0 ? -dashpot * closing / e->dt : c->now.pressure;
+  for (PetscInt d = 0; d < m->dim; ++d) {
+    const PetscReal slip = move[d] - closing * c->normal[d];
+    kept[d] = along * c->normal[d] + rubs * (c->now.shear[d] - c->law.penalty * slip);
+    e->rubbed[c->wall] -= c->now.shear[d] * slip;
+    e->boundary += (c->now.pressure * c->normal[d] + c->now.shear[d]) * c->swept[d];
+  }
+}
+
+/* What is open keeps its slip, too: when it closes it has been sliding. */
 void walls_follow(Model *m, Explicit *e)
 {
-  const PetscInt dim = m->dim;
   const Contact *s = m->contact;
   if (!s) return;
-  for (PetscInt i = 0; i < m->points->n * m->points->components[POINT_CONTACT]; ++i)
+  for (PetscInt i = 0; e->dt > 0 && i < m->points->n * m->points->components[POINT_CONTACT]; ++i)
     m->points->real[POINT_CONTACT][i] = 0;
   for (const ContactPoint *c = s->point; c < s->point + s->n; ++c) {
-    PetscReal *kept = point_real(m->points, POINT_CONTACT, c->owner) + c->wall * CONTACT_KEPT(dim);
+    PetscReal *kept = kept_of(m, c);
     const PetscReal first = m->points->real[POINT_REACH][c->owner];
-    PetscReal move[3], lead, f[3];
+    PetscReal move[3], lead;
+    if (c->state == CONTACT_OPEN && !(e->dt > 0)) continue;
     move_of(m, e, c, move, &lead);
-    contact_force(c, f);
-    kept[0] = (PetscReal)c->state;
-    kept[1] = PetscMax(THINNEST * first, PetscMin(THICKEST * first, c->reach - lead));
     for (int d = 0; d < 3; ++d) move[d] -= c->swept[d];
-    const PetscReal closing = dot(move, c->normal), pressure = dot(f, c->normal);
-    for (PetscInt d = 0; d < dim && c->state != CONTACT_OPEN; ++d) {
-      const PetscReal slip = move[d] - closing * c->normal[d], shear = f[d] - pressure * c->normal[d];
-      kept[2 + d] = f[d] - (c->law.kind == CONTACT_FRICTIONLESS ? 0 : c->law.penalty * slip);
-      e->rubbed[c->wall] -= shear * slip;
-      e->boundary += f[d] * c->swept[d];
-    }
+    kept[0] = (PetscReal)c->state + SPRING;
+    kept[1] = PetscMax(THINNEST * first, PetscMin(THICKEST * first, c->reach - lead));
+    keep(m, e, c, move, kept + 2);
   }
 }
 
@@ -122,8 +153,8 @@ PetscErrorCode WallsAccount(Model *m, Explicit *e)
   PetscCall(MPIU_Allreduce(MPI_IN_PLACE, area, (PetscMPIInt)s->n_partners, MPIU_REAL, MPI_SUM, m->comm));
   PetscCall(MPIU_Allreduce(MPI_IN_PLACE, deepest, (PetscMPIInt)s->n_partners, MPIU_REAL, MPI_MAX, m->comm));
   PetscCall(MPIU_Allreduce(MPI_IN_PLACE, e->rubbed, (PetscMPIInt)s->n_partners, MPIU_REAL, MPI_SUM, m->comm));
-  PetscCall(MPIU_Allreduce(MPI_IN_PLACE, e->pushed, (PetscMPIInt)(s->n_partners * (PetscInt)(sizeof(ContactSum) / sizeof(PetscReal))),
-                           MPIU_REAL, MPI_SUM, m->comm));
+  const size_t numbers = (size_t)s->n_partners * sizeof *e->pushed / sizeof(PetscReal);
+  PetscCall(MPIU_Allreduce(MPI_IN_PLACE, e->pushed, (PetscMPIInt)numbers, MPIU_REAL, MPI_SUM, m->comm));
   for (PetscInt k = 0; k < s->n_partners; ++k) {
     s->wall[k].mean = e->pushed[k];
     s->wall[k].friction += e->rubbed[k];
