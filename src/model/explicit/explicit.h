@@ -10,6 +10,7 @@
 #pragma once
 #include "model/explicit/critical.h"
 #include "model/model_private.h"
+#include "solve/contact/contact.h"
 
 /* Nodes of a box with lines at equal distances, as this rank knows it. */
 typedef struct {
@@ -54,7 +55,7 @@ typedef struct Explicit {
   PetscReal external, boundary, damped; /* energies of the run's step, this rank's share, J */
   PetscReal outside;                    /* Model.outside.energy at its start, J */
   /* of each wall in the run's step, on this rank: mean force on the material and its torque; work of sliding, J */
-  struct ContactSum *pushed;
+  ContactSum *pushed;
   PetscReal *rubbed, friction; /* friction: of all walls */
 } Explicit;
 

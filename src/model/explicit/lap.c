@@ -2,7 +2,6 @@
  * the next substeps get their length. */
 #include "grid/box/box.h"
 #include "model/explicit/explicit.h"
-#include "solve/contact/contact.h"
 
 /* The fastest point may cross this part of a cell in a lap: the others ranks' nodes that it
  * could then see are known. */

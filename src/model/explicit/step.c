@@ -3,7 +3,6 @@
  *
  * Who knows the method reads Substep; the rest divides the run's step and keeps its accounts. */
 #include "model/explicit/explicit.h"
-#include "solve/contact/contact.h"
 
 /* Forces of where points are now act from the middle of the last substep to that of this one. */
 static PetscErrorCode Kick(Model *m, Explicit *e)

@@ -11,22 +11,15 @@
  * strain, and nothing drifts that sticks. Of waves that the grid resolves the dashpot takes a share
  * of (omega h / c)^2; without it the springs and second mapping (`musl`) shake a block that rests. */
 #include "model/explicit/explicit.h"
-#include "solve/contact/contact.h"
+#include "solve/contact/spring.h"
 
 #define DASHPOT 0.5 /* of the impedance of the material */
-#define SPRING 0.25 /* is added to the state that is kept, to tell that it is one of a spring */
 
 static PetscReal dot(const PetscReal a[3], const PetscReal b[3]) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
 static PetscReal *kept_of(const Model *m, const ContactPoint *c)
 {
   return point_real(m->points, POINT_CONTACT, c->owner) + c->wall * CONTACT_KEPT(m->dim);
-}
-
-static PetscBool is_of_spring(const Model *m, const ContactPoint *c)
-{
-  const PetscReal state = *kept_of(m, c);
-  return state - PetscFloorReal(state) > SPRING / 2;
 }
 
 /* Another scheme has left a force and no gap: the surface is where the spring has that force. */
@@ -74,7 +67,7 @@ PetscErrorCode WallsPush(Model *m, Explicit *e)
   if (!s) PetscFunctionReturn(0);
   for (ContactPoint *c = s->point; c < s->point + s->n; ++c) {
     c->law.penalty = c->section * c->modulus[0] / s->length;
-    if (!is_of_spring(m, c)) take_over(c);
+    if (!contact_is_sprung(*kept_of(m, c))) take_over(c);
     push(m, e, c);
     if (c->state == CONTACT_OPEN) continue;
     contact_force(c, f);
@@ -86,8 +79,8 @@ PetscErrorCode WallsPush(Model *m, Explicit *e)
   PetscFunctionReturn(0);
 }
 
-/* What its place on the surface moves by: with its point, and beyond that with what strains it. lead: along the normal, of
- * that alone. */
+/* What its place on the surface moves by: with its point, and beyond that with what strains it. lead: along
+ * the normal, of that alone. */
 static void move_of(const Model *m, const Explicit *e, const ContactPoint *c, PetscReal move[3], PetscReal *lead)
 {
   const Contact *s = m->contact;
@@ -129,7 +122,7 @@ void walls_follow(Model *m, Explicit *e)
     if (c->state == CONTACT_OPEN && !(e->dt > 0)) continue;
     move_of(m, e, c, move, &lead);
     for (int d = 0; d < 3; ++d) move[d] -= c->swept[d];
-    kept[0] = (PetscReal)c->state + SPRING;
+    kept[0] = (PetscReal)c->state + CONTACT_SPRING;
     kept[1] = PetscMax(THINNEST * first, PetscMin(THICKEST * first, c->reach - lead));
     keep(m, e, c, move, kept + 2);
   }

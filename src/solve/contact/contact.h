@@ -45,7 +45,7 @@ typedef struct {
 } ContactPoint;
 
 /* Resultants of one wall on the material: force, N, and torque about the origin, N m. */
-typedef struct ContactSum {
+typedef struct {
   PetscReal force[3], torque[3];
   PetscReal sliding; /* of impulses: work lost in sliding, J */
 } ContactSum;

@@ -1,6 +1,6 @@
 /* Which material may meet a wall in this step, and the nodes that carry it there. */
 #include "material/law.h"
-#include "solve/contact/contact.h"
+#include "solve/contact/spring.h"
 
 /* Friction of a wall along which nothing slides: a force that did not vanish with the pressure would
  * leave no solution where contact opens. */
@@ -84,6 +84,17 @@ static PetscBool meets_body(const Case *c, PetscInt k, PetscInt body)
   return !w->n_bodies;
 }
 
+/* How far the surface is from the point, at a distance `gap` from the wall, as the last step has left it: a spring that
+ * held it is gone, and it stands where it stood. */
+static PetscReal present_reach(const NodalScene *scene, PetscInt p, const PetscReal *kept, const WallPlace *place)
+{
+  const PetscBool sprung = contact_is_sprung(kept[0]) && scene->c->analysis.type != ANALYSIS_EXPLICIT;
+  PetscReal F[9];
+  if (kept[1] > 0) return sprung ? PetscMin(kept[1], place->gap) : kept[1];
+  point_F(scene->points, p, F);
+  return contact_reach(F, place->normal, scene->points->real[POINT_REACH][p]);
+}
+
 /* The surface of point p, of group g, before wall k. */
 static PetscErrorCode MeetPoint(Contact *s, const NodalScene *scene, PetscInt g, PetscInt p, PetscInt k)
 {
@@ -93,16 +104,13 @@ static PetscErrorCode MeetPoint(Contact *s, const NodalScene *scene, PetscInt g,
   const int side = wall_side(s->walls, k, scene->t, x);
   const Material *material = scene->materials + points->material[p];
   WallPlace place;
-  PetscReal F[9];
   ContactPoint *c = NULL;
 
   PetscFunctionBeginUser;
   if (!meets_body(scene->c, k, points->body[p])) PetscFunctionReturn(0);
   if (!wall_near(s->walls, k, scene->t, x, s->near + THICKEST * points->real[POINT_REACH][p], side, &place))
     PetscFunctionReturn(0);
-  const PetscReal before = kept[k * CONTACT_KEPT(dim) + 1];
-  point_F(points, p, F);
-  const PetscReal reach = before > 0 ? before : contact_reach(F, place.normal, points->real[POINT_REACH][p]);
+  const PetscReal reach = present_reach(scene, p, kept + k * CONTACT_KEPT(dim), &place);
   const PetscInt nn = support_nodes(scene->support, g), *node = scene->support->node + scene->support->node_start[g];
   const PetscReal *N = support_N(scene->support, g, p), *dN = support_dN(scene->support, g, p, dim);
   PetscCall(ContactAdd(s, &c));

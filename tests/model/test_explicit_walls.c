@@ -1,0 +1,219 @@
+/* Rigid walls in explicit dynamics, against what mechanics says of rigid bodies: momentum that they give, how a
+ * block slides, that it rests, what it weighs; on any number of ranks, after a resumed run, and after statics. */
+#include "case_builder.h"
+#include "model/state/state.h"
+
+typedef struct {
+  const char *basis;
+  CellType cell;
+  const Kinematics *kinematics;
+  PetscReal friction;
+} Block;
+
+#define SLOPE (PETSC_PI / 6)
+
+/* A block of 1 x 0.5 (x 0.5) m stands on a wall, half a cell above a line of the grid. */
+static void standing(Bench *b, const Block *r, PetscReal slope, WallSpec *wall)
+{
+  const int up = r->cell == CELL_HEXAHEDRON ? 2 : 1;
+  const PetscReal left = r->kinematics->hoop ? 0 : 0.125, x = r->kinematics->hoop ? 0 : 0.625;
+  bench_init(b, "mpm", r->cell, 0);
+  b->c.kinematics = r->kinematics;
+  bench_grid(b, (PetscReal[]){left, 0.25, 0}, (PetscReal[]){3 + left, 1.5, 1}, 0.25);
+  bench_box(b, 0, (PetscReal[]){x, 0.5, 0.25}, (PetscReal[]){x + 1, 1, 0.75});
+  bench_dynamic(b, 1, 5e-3);
+  b->c.analysis.type = ANALYSIS_EXPLICIT;
+  b->c.analysis.courant = 0.6;
+  b->c.basis.kind = r->basis;
+  b->c.gravity[0] = 9.81 * PetscSinReal(slope);
+  b->c.gravity[up] = -9.81 * PetscCosReal(slope);
+  *wall = (WallSpec){.name = (char *)"floor",
+                     .shape = {.kind = SHAPE_HALF_SPACE},
+                     .contact = r->friction > 0 ? CONTACT_FRICTION : CONTACT_FRICTIONLESS,
+                     .friction = r->friction};
+  wall->shape.point[up] = up == 2 ? 0.25 : 0.5;
+  wall->shape.normal[up] = 1;
+  b->c.n_walls = 1;
+  b->c.walls = wall;
+  if (r->kinematics->hoop) bench_motion(b, 0, 0, MOTION_FIXED, 1);
+}
+
+static PetscReal measure(Model *m, const char *kind, const char *word, PetscInt component)
+{
+  return model_wall(m, "floor", kind, word, component);
+}
+
+static const Block blocks[] = {{"cell", CELL_QUADRILATERAL, &kinematics_plane_strain, 0.2},
+                               {"cell", CELL_TRIANGLE, &kinematics_plane_strain, 0.2},
+                               {"gimp", CELL_QUADRILATERAL, &kinematics_plane_strain, 0.2},
+                               {"cell", CELL_HEXAHEDRON, &kinematics_3d, 0.2},
+                               {"cell", CELL_QUADRILATERAL, &kinematics_plane_strain, 0}};
+
+/* Impulses of the wall are the change of momentum to round-off; it never pulls; their ratio is the friction, and
+ * its work the way times the force; the block is as fast as a rigid one; all energy is accounted for. */
+static void test_slides(void **state)
+{
+  (void)state;
+  for (const Block *r = blocks; r < blocks + PETSC_STATIC_ARRAY_LENGTH(blocks); ++r) {
+    Bench b;
+    WallSpec wall;
+    Energies e;
+    const int up = r->cell == CELL_HEXAHEDRON ? 2 : 1;
+    const PetscReal mass = up == 2 ? 250 : 500;
+    PetscReal given[3] = {0, 0, 0}, off = 0, least = 0, deepest = 0;
+    standing(&b, r, SLOPE, &wall);
+    Model *m = bench_model(&b, PETSC_COMM_WORLD);
+    for (PetscInt k = 0; m->time < 0.3; ++k) {
+      const PetscReal before = m->time;
+      model_step(m, k % 3 == 1 ? 2e-3 : 5e-3);
+      for (PetscInt d = 0; d < m->dim; ++d) {
+        given[d] += (m->time - before) * measure(m, "wall_force", NULL, d);
+        off = PetscMax(off, PetscAbsReal(given[d] + mass * b.c.gravity[d] * m->time - model_sum(m, "momentum", d)));
+      }
+      least = PetscMin(least, measure(m, "wall_force", NULL, up));
+      deepest = PetscMax(deepest, measure(m, "contact", "penetration", 0));
+    }
+    CALL(ModelEnergies(m, &e));
+    const PetscReal speed = 9.81 * (PetscSinReal(SLOPE) - r->friction * PetscCosReal(SLOPE)) * m->time;
+    const PetscReal found = model_sum(m, "momentum", 0) / mass, ratio = -given[0] / given[up];
+    PetscPrintf(PETSC_COMM_WORLD,
+                "%s cell %d mu %g: impulse off %.2g, ratio %.6g, speed %.6g of %.6g, %.2g m deep, friction %.4g, "
+                "transfer %.3g of %.6g J\n",
+                r->basis, (int)r->cell, (double)r->friction, (double)(off / given[up]), (double)ratio, (double)found,
+                (double)speed, (double)deepest, (double)e.friction, (double)e.transfer, (double)e.external);
+    CHECK(off <= 1e-11 * given[up] && given[up] > 500, "impulse off by %g of %g", (double)off, (double)given[up]);
+    CHECK(least >= 0, "the wall pulls with %g N", (double)-least);
+    CHECK(ratio <= r->friction + 1e-12 && ratio >= 0.98 * r->friction, "ratio %g", (double)ratio);
+    CHECK(PetscAbsReal(found - speed) < 0.01 * speed, "speed %g, not %g", (double)found, (double)speed);
+    /* weight that comes at once, and strains a cell twice as much as weight at rest */
+    CHECK(deepest <= 2.5 * 1000 * 9.81 * 0.5 * 0.25 / m->materials[0].wave_modulus, "it is %g m deep in the wall",
+          (double)deepest);
+    CHECK(PetscAbsReal(model_sum(m, "energy: balance", 0)) < 1e-12, "open");
+    CALL(ModelDestroy(&m));
+  }
+}
+
+/* A block that is put down gently rests, where mu > tan t, and the wall bears it. */
+static void test_rests(void **state)
+{
+  static const Block rest[] = {{"cell", CELL_QUADRILATERAL, &kinematics_plane_strain, 0.7},
+                               {"gimp", CELL_QUADRILATERAL, &kinematics_plane_strain, 0.7},
+                               {"cell", CELL_QUADRILATERAL, &kinematics_axisymmetric, 0.7}};
+  (void)state;
+  for (const Block *r = rest; r < rest + PETSC_STATIC_ARRAY_LENGTH(rest); ++r) {
+    Bench b;
+    WallSpec wall;
+    const PetscReal slope = r->kinematics->hoop ? 0 : SLOPE, mass = r->kinematics->hoop ? 500 * PETSC_PI : 500;
+    standing(&b, r, slope, &wall);
+    b.c.analysis.damping = 40;
+    Model *m = bench_model(&b, PETSC_COMM_WORLD);
+    while (m->time < 0.7) model_step(m, PETSC_MAX_REAL);
+    const PetscReal across = measure(m, "wall_force", NULL, 0), up = measure(m, "wall_force", NULL, 1);
+    /* what second mappings shake is 1e-5 of the weight */
+    CHECK_CLOSE(up, mass * 9.81 * PetscCosReal(slope), 2e-4 * mass);
+    if (!r->kinematics->hoop) CHECK_CLOSE(across, -mass * 9.81 * PetscSinReal(slope), 2e-4 * mass);
+    /* its foot is strained by less than rho g H / M */
+    CHECK_CLOSE(measure(m, "contact", "area", 0), r->kinematics->hoop ? PETSC_PI : 1,
+                mass / 500 * 1000 * 9.81 * 0.5 / m->materials[0].wave_modulus);
+    CALL(ModelDestroy(&m));
+  }
+}
+
+/* A wall that lifts the block: what it does is work of the boundary. */
+static void test_lifts(void **state)
+{
+  Bench b;
+  WallSpec wall;
+  Energies e;
+  MotionSpec lift = {.kind = MOTION_VELOCITY, .component = {1, 1, 1}, .value = {0, 0.5, 0}};
+  (void)state;
+  standing(&b, blocks, 0, &wall);
+  wall.n_motions = 1;
+  wall.motions = &lift;
+  Model *m = bench_model(&b, PETSC_COMM_WORLD);
+  PetscReal work = 0;
+  while (m->time < 0.4) {
+    model_step(m, PETSC_MAX_REAL);
+    work += 5e-3 * 0.5 * measure(m, "wall_force", NULL, 1);
+  }
+  CALL(ModelEnergies(m, &e));
+  PetscPrintf(PETSC_COMM_WORLD, "lifted: work %.6g J of %.6g, momentum %.6g\n", (double)e.boundary, (double)work,
+              (double)model_sum(m, "momentum", 1));
+  CHECK_CLOSE(e.boundary, work, 0.01 * work);
+  CHECK(PetscAbsReal(model_sum(m, "energy: balance", 0)) < 1e-12, "open");
+  CALL(ModelDestroy(&m));
+}
+
+static void test_ranks(void **state)
+{
+  static const PointReal fields[] = {POINT_X, POINT_V, POINT_F, POINT_CONTACT};
+  (void)state;
+  for (const Block *r = blocks; r < blocks + 4; ++r) {
+    Bench b;
+    WallSpec wall;
+    standing(&b, r, SLOPE, &wall);
+    Model *together = bench_model(&b, PETSC_COMM_WORLD), *alone = bench_model(&b, PETSC_COMM_SELF);
+    for (int s = 0; s < 6; ++s) {
+      model_step(together, PETSC_MAX_REAL);
+      model_step(alone, PETSC_MAX_REAL);
+    }
+    for (size_t f = 0; f < PETSC_STATIC_ARRAY_LENGTH(fields); ++f) {
+      const PetscReal off = points_difference(together, alone, fields[f]);
+      CHECK(off <= (fields[f] == POINT_CONTACT ? 1e-4 : 1e-8), "field %d is off by %g", (int)fields[f], (double)off);
+    }
+    CHECK_CLOSE(measure(together, "wall_force", NULL, 1), measure(alone, "wall_force", NULL, 1), 1e-5);
+    CHECK_CLOSE(measure(together, "wall_torque", NULL, 2), measure(alone, "wall_torque", NULL, 2), 1e-5);
+    CALL(ModelDestroy(&together));
+    CALL(ModelDestroy(&alone));
+  }
+}
+
+/* Put away and taken up again: the same bits. */
+static void test_resumed(void **state)
+{
+  char reason[256] = "";
+  Tables *tables;
+  WallSpec wall;
+  Bench b;
+  (void)state;
+  standing(&b, blocks, SLOPE, &wall);
+  Model *m = bench_model(&b, PETSC_COMM_WORLD), *again = bench_model(&b, PETSC_COMM_WORLD);
+  for (int s = 0; s < 9; ++s) model_step(m, PETSC_MAX_REAL);
+  CALL(TablesCreate(&tables));
+  CALL(ModelToTables(m, tables));
+  CALL(ModelFromTables(again, tables, reason));
+  CHECK(!reason[0], "%s", reason);
+  CALL(TablesDestroy(&tables));
+  for (int s = 0; s < 4; ++s) {
+    model_step(m, PETSC_MAX_REAL);
+    model_step(again, PETSC_MAX_REAL);
+  }
+  for (int f = 0; f < POINT_N_REAL; ++f)
+    for (PetscInt i = 0; i < m->points->n * m->points->components[f]; ++i)
+      CHECK(m->points->real[f][i] == again->points->real[f][i], "field %d is off by %g", f,
+            (double)(m->points->real[f][i] - again->points->real[f][i]));
+  CHECK(measure(m, "wall_force", NULL, 1) == measure(again, "wall_force", NULL, 1), "forces differ");
+  CHECK(m->transfer_energy == again->transfer_energy, "accounts differ");
+  CALL(ModelDestroy(&m));
+  CALL(ModelDestroy(&again));
+}
+
+static void test_refused(void **state)
+{
+  Bench b;
+  WallSpec wall;
+  (void)state;
+  standing(&b, blocks, 0, &wall);
+  wall.has_mass = PETSC_TRUE;
+  bench_refused(&b, PETSC_COMM_WORLD, "walls", "walls with mass");
+}
+
+int main(int argc, char **argv)
+{
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_slides),  cmocka_unit_test(test_rests),
+                                     cmocka_unit_test(test_lifts),   cmocka_unit_test(test_ranks),
+                                     cmocka_unit_test(test_resumed), cmocka_unit_test(test_refused)};
+  if (PetscInitialize(&argc, &argv, NULL, NULL)) return 1;
+  const int failed = cmocka_run_group_tests(tests, NULL, NULL);
+  return PetscFinalize() || failed;
+}
