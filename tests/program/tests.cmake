@@ -51,9 +51,10 @@ if(TARGET talus)
   talus_program_test(until)
   talus_program_test(factor)
   talus_program_test(stages)
+  talus_program_test(stages_explicit)
   talus_program_test(limit)
   # two ranks in most of it
-  foreach(name manners import ranks same_command vanish lost walls until factor stages limit resume resume_bad resume_disk axisymmetric
+  foreach(name manners import ranks same_command vanish lost walls until factor stages stages_explicit limit resume resume_bad resume_disk axisymmetric
       kill_2_2 signals_2 sweep calibrate)
     set_tests_properties(program/${name} PROPERTIES PROCESSORS 2)
   endforeach()

@@ -1,0 +1,41 @@
+#!/bin/sh
+# Statics, explicit dynamics and statics again, a block on a wall that rubs: who stands goes on standing, on one to three ranks.
+. "$(dirname "$0")/library.sh"
+
+cat >block.yaml <<'END'
+kinematics: plane-strain
+method: mpm
+basis: {cell: {}}
+analysis: {type: static, steps: 1}
+grid: {box: {min: [0, 0], max: [2.5, 2.5]}, size: 0.25}
+bodies:
+  - {name: block, shape: {box: {min: [0.5, 0.5], max: [1.5, 1.5]}}, points_per_cell: 4, material: rubber}
+materials:
+  rubber: {law: neo-hookean, density: 1000, young: 1e6, poisson: 0.3}
+walls:
+  - {name: floor, shape: {half-space: {point: [0, 0.5], normal: [0, 1]}}, contact: friction, friction: 0.5}
+loads: {gravity: [0, -9.81]}
+measures:
+  top: {displacement: y, of: {tracer: [1.1, 1.4]}}
+  push: {wall_force: y, of: {wall: floor}}
+  kinetic: {energy: kinetic}
+  balance: {energy: balance}
+output: {fields: [displacement], history: {steps: 1}}
+stages:
+  - name: weight
+  - {name: stands, analysis: {type: explicit, end: 0.2, step: 0.02}}
+  - {name: again, analysis: {type: static, steps: 1}}
+END
+
+for ranks in 1 2 3; do
+  expect "on $ranks" 0 on_ranks $ranks "$talus" run block.yaml --out on$ranks
+done
+# The floor goes on bearing the weight, 9810 N, within 1 %; the top stays within 2 % of its way of 4.2 mm.
+awk -F, 'NR == 3 { top = $4 } NR > 3 && ($5 < 9710 || $5 > 9910 || $6 > 0.003 || $4 / top < 0.98 || $4 / top > 1.02) { bad = 1; print }
+  END { exit bad || NR != 14 }' on1/history.csv >out.txt || fail "does not stand"
+for ranks in 2 3; do
+  awk -F, '{ print $1, $4, $5 }' on1/history.csv >one.txt
+  awk -F, '{ print $1, $4, $5 }' on$ranks/history.csv | paste -d ' ' one.txt - |
+    awk 'NR > 1 { d = $2 - $5; f = $3 - $6; if (d * d > 1e-16 || f * f > 1e-2) exit 1 }' || fail "on $ranks ranks otherwise"
+done
+finish
