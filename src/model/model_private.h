@@ -147,6 +147,9 @@ PetscErrorCode ConvectStep(Model *model, PetscReal dt, EnergyStep *energy, StepR
 /* Collective. shortened: was it the caller who made the accepted step that short? */
 PetscErrorCode ChooseNextStep(Model *model, PetscBool shortened, const StepReport *report);
 
+/* contact.c. Forces of contact that points keep from the stage before are those that its scheme asked for: to
+ * explicit dynamics they are what acted. */
+void contact_take(Model *model, const Case *from);
 /* contact.c. Collective. Walls of the case, and what of the material touches them at the start. */
 PetscErrorCode WallsStart(Model *model, Diag *diag);
 /* start/interfaces.c. Collective. What no interfaces can be made of, and bodies that go through each

@@ -1,5 +1,5 @@
 #!/bin/sh
-# Statics, explicit dynamics and statics again, a block on a wall that rubs: who stands goes on standing, on one to three ranks.
+# Statics, explicit dynamics and statics again: a block on a wall that rubs: who stands goes on standing, on one to three ranks.
 . "$(dirname "$0")/library.sh"
 
 cat >block.yaml <<'END'

@@ -91,6 +91,16 @@ static PetscReal share_of_force(const Model *m)
   return holds(m) ? w.mean / (1 - w.lag) : 1;
 }
 
+void contact_take(Model *m, const Case *from)
+{
+  const TimeScheme *before = time_scheme_of(&from->analysis);
+  const PetscInt n = CONTACT_KEPT(m->dim);
+  if (!m->contact || m->c->analysis.type != ANALYSIS_EXPLICIT || !before->inertia || before->middle) return;
+  const TimeWeights w = before->weights(&from->analysis, 1);
+  for (PetscInt i = 0; i < m->points->n * m->points->components[POINT_CONTACT]; ++i)
+    if (i % n >= 2) m->points->real[POINT_CONTACT][i] *= w.mean / (1 - w.lag);
+}
+
 /* Do points carry an acceleration to other nodes that walls' forces can be taken out of where they acted?
  * With a consistent mass single forces are accelerations of both signs of nodes hardly reached. */
 static PetscBool releases(const Model *m)
