@@ -12,13 +12,13 @@
 #include "base/math/tensor.h"
 #include "material/law.h"
 
-/* to[k] = component k of the n points at `from`, `components` numbers each; as many of them as fill a
+/* to[k] = component k of the n points at `from`, `stride` numbers from point to point; as many of them as fill a
  * register are loaded at once, and turned. */
-LANES_INLINE void lanes_load(int components, PetscInt n, const PetscReal *from, Lanes *to)
+LANES_INLINE void lanes_load_apart(int components, PetscInt stride, PetscInt n, const PetscReal *from, Lanes *to)
 {
   const PetscReal *point[LANES];
   const int whole = components / LANES * LANES;
-  for (int l = 0; l < LANES; ++l) point[l] = from + (n >= LANES || l < n ? l : n - 1) * components;
+  for (int l = 0; l < LANES; ++l) point[l] = from + (n >= LANES || l < n ? l : n - 1) * stride;
   for (int first = 0; first < whole; first += LANES) {
     for (int l = 0; l < LANES; ++l) to[first + l] = *(const LanesAnywhere *)(point[l] + first);
     lanes_transpose(to + first);
@@ -28,6 +28,11 @@ LANES_INLINE void lanes_load(int components, PetscInt n, const PetscReal *from, 
     for (int l = 0; l < LANES; ++l) one[l] = point[l][k];
     to[k] = one;
   }
+}
+
+LANES_INLINE void lanes_load(int components, PetscInt n, const PetscReal *from, Lanes *to)
+{
+  lanes_load_apart(components, components, n, from, to);
 }
 
 /* Components first .. first + LANES - 1, turned: one Lanes a point. */
@@ -68,6 +73,30 @@ LANES_INLINE void lanes_store(int components, PetscInt n, const Lanes *from, Pet
     for (int k = 0; k < components; ++k) to[l * components + k] = from[k][l];
 }
 
+/* The same, `stride` numbers from point to point; not a number more is written. */
+LANES_INLINE void lanes_store_apart(int components, PetscInt stride, PetscInt n, const Lanes *from, PetscReal *to)
+{
+  const int whole = n >= LANES ? components / LANES * LANES : 0;
+  Lanes point[LANES];
+  for (int first = 0; first < whole; first += LANES) {
+    lanes_points(components, first, from, point);
+    for (int l = 0; l < LANES; ++l) *(LanesAnywhere *)(to + l * stride + first) = point[l];
+  }
+  for (int l = 0; l < PetscMin(n, LANES); ++l)
+    for (int k = whole; k < components; ++k) to[l * stride + k] = from[k][l];
+}
+
+/* Rows of LAW_BATCH numbers. */
+LANES_INLINE void lanes_load_rows(int rows, const PetscReal *from, Lanes *to)
+{
+  for (int k = 0; k < rows; ++k) to[k] = *(const LanesAnywhere *)(from + k * LAW_BATCH);
+}
+
+LANES_INLINE void lanes_store_rows(int rows, const Lanes *from, PetscReal *to)
+{
+  for (int k = 0; k < rows; ++k) *(LanesAnywhere *)(to + k * LAW_BATCH) = from[k];
+}
+
 LANES_INLINE void lanes_det(const Lanes a[9], Lanes *det)
 {
   *det = a[0] * (a[4] * a[8] - a[5] * a[7]) - a[1] * (a[3] * a[8] - a[5] * a[6]) + a[2] * (a[3] * a[7] - a[4] * a[6]);
@@ -104,6 +133,18 @@ LANES_INLINE LawStatus lanes_update(LawUpdate eight, int n_state, const PetscRea
   for (PetscInt p = 0; p < n; p += LANES) {
     const LawStatus status = eight(parameters, n - p, dF + 9 * p, old + n_state * p, state ? state + n_state * p : NULL,
                                    tau + 6 * p, c ? c + 36 * p : NULL);
+    worst = PetscMax(worst, status);
+  }
+  return worst;
+}
+
+/* The march of n points by one of (up to) eight. */
+LANES_INLINE LawStatus lanes_march(LawMarching eight, const PetscReal *parameters, PetscInt n, const LawMarch *march)
+{
+  LawStatus worst = LAW_OK;
+  for (PetscInt p = 0; p < n; p += LANES) {
+    const LawMarch here = {march->dF + p, march->tau + p, march->state + p * march->stride, march->stride};
+    const LawStatus status = eight(parameters, n - p, &here);
     worst = PetscMax(worst, status);
   }
   return worst;

@@ -18,23 +18,20 @@ typedef struct {
   LaneBits z_first, z_last; /* where z stands among the falling strains, with A before B */
 } PlaneTrial;
 
-/* b = f b f^T; PETSC_FALSE if a point has shear strains out of the plane. */
-LANES_INLINE PetscBool mc_plane_push(const PetscBool hoop, PetscInt n, const PetscReal *dF, const Lanes old[MC_STATE],
-                                     PlaneTrial *t)
+/* b = f b f^T, f: xx xy yx yy zz; PETSC_FALSE if a point has shear strains out of the plane. */
+LANES_INLINE PetscBool mc_plane_push(const PetscBool hoop, const Lanes f[5], const Lanes old[MC_STATE], PlaneTrial *t)
 {
   const LaneBits out = (old[4] != 0.0) | (old[5] != 0.0);
-  Lanes f[9];
   if (lanes_any(&out)) return PETSC_FALSE;
-  lanes_load(9, n, dF, f);
   const Lanes x0 = f[0] * old[0] + f[1] * old[3], x1 = f[0] * old[3] + f[1] * old[1];
-  const Lanes y0 = f[3] * old[0] + f[4] * old[3], y1 = f[3] * old[3] + f[4] * old[1];
+  const Lanes y0 = f[2] * old[0] + f[3] * old[3], y1 = f[2] * old[3] + f[3] * old[1];
   t->b[0] = x0 * f[0] + x1 * f[1];
-  t->b[1] = y0 * f[3] + y1 * f[4];
-  t->b[2] = hoop ? f[8] * f[8] * old[2] : old[2];
-  t->b[3] = x0 * f[3] + x1 * f[4];
+  t->b[1] = y0 * f[2] + y1 * f[3];
+  t->b[2] = hoop ? f[4] * f[4] * old[2] : old[2];
+  t->b[3] = x0 * f[2] + x1 * f[3];
   mc_with_opening(&old[7], 4, t->b);
-  t->det = f[0] * f[4] - f[1] * f[3];
-  if (hoop) t->det *= f[8];
+  t->det = f[0] * f[3] - f[1] * f[2];
+  if (hoop) t->det *= f[4];
   return PETSC_TRUE;
 }
 
@@ -60,12 +57,11 @@ LANES_INLINE void mc_plane_axes(PlaneTrial *t)
   t->stretch2[MC_Z] = t->b[2];
 }
 
-LANES_INLINE PetscBool mc_plane_trial(const PetscBool hoop, PetscInt n, const PetscReal *dF, const Lanes old[MC_STATE],
-                                      PlaneTrial *t)
+LANES_INLINE PetscBool mc_plane_trial(const PetscBool hoop, const Lanes f[5], const Lanes old[MC_STATE], PlaneTrial *t)
 {
   const Lanes one = (Lanes){0} + 1.0, none = {0};
   Lanes size, sum = none;
-  if (!mc_plane_push(hoop, n, dF, old, t)) return PETSC_FALSE;
+  if (!mc_plane_push(hoop, f, old, t)) return PETSC_FALSE;
   for (int k = 0; k < 4; ++k) {
     lanes_abs(&t->b[k], &size);
     sum += size;

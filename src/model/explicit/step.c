@@ -7,15 +7,16 @@
 static PetscErrorCode Substep(Model *m, Explicit *e)
 {
   PetscFunctionBeginUser;
-  points_gather(m, e); /* mass, momentum and forces of the nodes */
+  if (e->begins || !e->box) points_gather(m, e); /* mass, momentum and forces of the nodes */
   PetscCall(NodesShare(m, e->width, e->sum));
   PetscCall(NodesMove(m, e)); /* their velocities now and at the end */
   nodes_hold(m, e);           /* the boundary's are given */
   points_gain(m, e);          /* points take the change, and give nodes their momentum anew */
   if (m->c->analysis.update == EXPLICIT_MUSL) PetscCall(NodesShare(m, m->dim, e->straining));
   nodes_strain(m, e);
-  points_strain(m, e); /* strain, stress; points move */
   PetscCall(NodesCarry(m, e));
+  points_strain(m, e); /* strain, stress; points move, and give what comes first in the next substep */
+  nodes_forget(m, e);
   e->time += e->dt;
   ++e->taken;
   ++e->since;
@@ -104,7 +105,12 @@ PetscErrorCode ExplicitStep(Model *m, PetscReal limit, StepReport *report)
   PetscCall(Begin(m, step, e, before, report));
   while (report->outcome == STEP_ACCEPTED && end - e->time > 1e-9 * step) {
     PetscCall(LapBegin(m, e, end - e->time));
-    for (PetscInt k = 0; k < e->substeps; ++k) PetscCall(Substep(m, e));
+    for (PetscInt k = 0; k < e->substeps; ++k) {
+      e->begins = k == 0;
+      e->ends = k == e->substeps - 1;
+      PetscCall(Substep(m, e));
+    }
+    lap_displace(m, e, 1);
     PetscCall(Judge(m, e, report));
     if (report->outcome == STEP_ACCEPTED) PetscCall(LapEnd(m, report));
   }
