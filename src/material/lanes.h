@@ -150,6 +150,60 @@ LANES_INLINE LawStatus lanes_march(LawMarching eight, const PetscReal *parameter
   return worst;
 }
 
+/* dF of a march as 3 x 3, and stresses given back. */
+LANES_INLINE void lanes_march_dF(const PetscBool plane, const LawMarch *march, Lanes f[9])
+{
+  const Lanes none = {0};
+  for (int k = 0; k < 9; ++k) f[k] = none;
+  if (!plane) {
+    lanes_load_rows(9, march->dF, f);
+    return;
+  }
+  lanes_load_rows(2, march->dF, f);
+  lanes_load_rows(2, march->dF + 2 * LAW_BATCH, f + 3);
+  lanes_load_rows(1, march->dF + 4 * LAW_BATCH, f + 8);
+}
+
+LANES_INLINE void lanes_march_tau(const PetscBool plane, const Lanes tau[6], const LawMarch *march)
+{
+  lanes_store_rows(plane ? 4 : 6, tau, march->tau);
+}
+
+/* Points that failed get their state of before again and carry no stress; `good`: those that did not. */
+static inline LawStatus lanes_halt(int n_state, int components, const LaneBits *good, const LaneBits *finite,
+                                   const Lanes *det, PetscInt n, const Lanes *before, const LawMarch *march)
+{
+  LawStatus worst = LAW_OK;
+  for (PetscInt l = 0; l < PetscMin(n, LANES); ++l) {
+    if ((*good)[l]) continue;
+    const LawStatus bad = (*det)[l] <= 0.0 ? LAW_INVERTED : LAW_NOT_FINITE,
+                    status = (*finite)[l] ? LAW_NOT_CONVERGED : bad;
+    worst = PetscMax(worst, status);
+    for (int k = 0; k < n_state; ++k) march->state[l * march->stride + k] = before[k][l];
+    for (int k = 0; k < components; ++k) march->tau[k * LAW_BATCH + l] = 0.0;
+  }
+  return worst;
+}
+
+/* Both marches of a law whose `name##_march` does them for (up to) eight points. */
+#define LANES_MARCHES(name)                                                                        \
+  LANES_INLINE LawStatus name##_plane_eight(const PetscReal *p, PetscInt n, const LawMarch *march) \
+  {                                                                                                \
+    return name##_march(PETSC_TRUE, p, n, march);                                                  \
+  }                                                                                                \
+  LANES_INLINE LawStatus name##_space_eight(const PetscReal *p, PetscInt n, const LawMarch *march) \
+  {                                                                                                \
+    return name##_march(PETSC_FALSE, p, n, march);                                                 \
+  }                                                                                                \
+  static LawStatus name##_march_plane(const PetscReal *p, PetscInt n, const LawMarch *march)       \
+  {                                                                                                \
+    return lanes_march(name##_plane_eight, p, n, march);                                           \
+  }                                                                                                \
+  static LawStatus name##_march_space(const PetscReal *p, PetscInt n, const LawMarch *march)       \
+  {                                                                                                \
+    return lanes_march(name##_space_eight, p, n, march);                                           \
+  }
+
 /* Worst status of points with increments f (whose determinants are det_f) and n results. */
 LANES_INLINE LawStatus lanes_status(const Lanes *det_f, int n, const Lanes *result)
 {

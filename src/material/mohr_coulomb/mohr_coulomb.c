@@ -160,21 +160,6 @@ LANES_INLINE LawStatus update_in_plane(const PetscBool hoop, const PetscReal *p,
 PLANE_UPDATE(update_plane, PETSC_FALSE)
 PLANE_UPDATE(update_hoop, PETSC_TRUE)
 
-/* Points that failed keep their state and carry no stress. */
-static LawStatus halt(const LaneBits *finite, const Lanes *det, PetscInt n, int components, const Lanes *before,
-                      const LawMarch *march)
-{
-  LawStatus worst = LAW_OK;
-  for (PetscInt l = 0; l < PetscMin(n, LANES); ++l) {
-    if ((*finite)[l]) continue;
-    const LawStatus status = (*det)[l] <= 0.0 ? LAW_INVERTED : LAW_NOT_FINITE;
-    worst = PetscMax(worst, status);
-    for (int k = 0; k < N_STATE; ++k) march->state[l * march->stride + k] = before[k][l];
-    for (int k = 0; k < components; ++k) march->tau[k * LAW_BATCH + l] = 0.0;
-  }
-  return worst;
-}
-
 LANES_INLINE LawStatus march_plane_lanes(const PetscReal *p, PetscInt n, const LawMarch *march)
 {
   Lanes f[5], before[N_STATE], now[N_STATE], principal[3], stress[4];
@@ -192,12 +177,36 @@ LANES_INLINE LawStatus march_plane_lanes(const PetscReal *p, PetscInt n, const L
   mc_plane_state(p, &t, principal, &regions, now);
   lanes_store_apart(N_STATE, march->stride, n, now, march->state);
   const LaneBits bad = ~t.finite;
-  return lanes_any(&bad) ? halt(&t.finite, &t.det, n, 4, before, march) : LAW_OK;
+  return lanes_any(&bad) ? lanes_halt(N_STATE, 4, &t.finite, &t.finite, &t.det, n, before, march) : LAW_OK;
 }
 
 static LawStatus march_plane(const PetscReal *parameters, PetscInt n, const LawMarch *march)
 {
   return lanes_march(march_plane_lanes, parameters, n, march);
+}
+
+LANES_INLINE LawStatus march_space_lanes(const PetscReal *p, PetscInt n, const LawMarch *march)
+{
+  Lanes f[9], before[N_STATE], now[N_STATE], principal[3], stress[6];
+  LaneBits regions;
+  HenckyTrial t;
+  lanes_march_dF(PETSC_FALSE, march, f);
+  lanes_load_apart(N_STATE, march->stride, n, march->state, before);
+  hencky_push_by(f, before, &t);
+  mc_with_opening(&before[7], 6, t.b);
+  hencky_spectrum(&t);
+  mc_return_lanes(p, t.strain, principal, &regions);
+  lanes_principal_tensor(principal, t.basis, stress);
+  lanes_march_tau(PETSC_FALSE, stress, march);
+  state_lanes(p, &t, before, principal, &regions, now);
+  lanes_store_apart(N_STATE, march->stride, n, now, march->state);
+  const LaneBits bad = ~t.finite;
+  return lanes_any(&bad) ? lanes_halt(N_STATE, 6, &t.finite, &t.finite, &t.det, n, before, march) : LAW_OK;
+}
+
+static LawStatus march_space(const PetscReal *parameters, PetscInt n, const LawMarch *march)
+{
+  return lanes_march(march_space_lanes, parameters, n, march);
 }
 
 /* Tension of the apex, Pa. */
@@ -281,6 +290,7 @@ const Law law_mohr_coulomb = {
   .update_plane = update_plane,
   .update_hoop = update_hoop,
   .march_plane = march_plane,
+  .march_space = march_space,
   .energy = energy,
   .initial_stress = initial_stress,
   .volume = volume,

@@ -21,11 +21,6 @@ KERNEL void pick(const PetscReal *from, int stride, PetscInt n, Four *to)
     for (int k = 0; k < n; ++k) (*to)[k] = from[k * stride];
 }
 
-KERNEL void drop(const Four *from, int stride, PetscInt n, PetscReal *to)
-{
-  for (int k = 0; k < 4 && k < n; ++k) to[k * stride] = (*from)[k];
-}
-
 /* Where n points stand, x: n x 3. */
 KERNEL void locate(const Lattice *l, PetscInt n, const PetscReal *x, Shapes *s)
 {
@@ -232,39 +227,75 @@ KERNEL void increments(const Strain *s, PetscInt k, Batch *b)
   }
 }
 
-/* Four points from p on: F after dF = 1 + A. */
+/* Four points from p on: F after dF = 1 + A. Eight of its components are turned. */
 KERNEL void deform(Points *points, PetscInt p, PetscInt n, const Four A[9])
 {
   PetscReal *F = point_real(points, POINT_F, p);
-  for (int j = 0; j < 3; ++j) {
-    Four f[3];
-    for (int i = 0; i < 3; ++i) pick(F + 3 * i + j, 9, n, &f[i]);
-    for (int i = 0; i < 3; ++i) {
-      const Four now = f[i] + (A[3 * i] * f[0] + A[3 * i + 1] * f[1] + A[3 * i + 2] * f[2]);
-      drop(&now, 9, n, F + 3 * i + j);
-    }
+  Four f[9], now[9];
+  for (int half = 0; half < 8; half += 4) {
+    for (int l = 0; l < 4; ++l) take(F + 9 * l + half, n > l ? 4 : 0, &f[half + l]);
+    turn(f + half);
   }
+  pick(F + 8, 9, n, &f[8]);
+#pragma GCC unroll 3
+  for (int i = 0; i < 9; i += 3)
+#pragma GCC unroll 3
+    for (int j = 0; j < 3; ++j) now[i + j] = f[i + j] + (A[i] * f[j] + A[i + 1] * f[3 + j] + A[i + 2] * f[6 + j]);
+  turn(now);
+  turn(now + 4);
+  for (int l = 0; l < 4 && l < n; ++l) {
+    FOUR(F + 9 * l) = now[l];
+    FOUR(F + 9 * l + 4) = now[4 + l];
+    F[9 * l + 8] = now[8][l];
+  }
+}
+
+/* The stress of four points, n of which are the batch's, for that of the batch. */
+KERNEL void trade(PetscReal *stress, PetscInt n, const Batch *b, PetscInt k, Four old[6], Four tau[6])
+{
+  Four low[4], high[4];
+  for (int i = 0; i < 6; ++i) tau[i] = FOUR_OF(b->tau[i] + k);
+  for (int l = 0; l < 4; ++l) {
+    take(stress + 6 * l, n > l ? 4 : 0, &low[l]);
+    take(stress + 6 * l + 2, n > l ? 4 : 0, &high[l]);
+  }
+  turn(low);
+  turn(high);
+  for (int i = 0; i < 4; ++i) old[i] = low[i];
+  old[4] = high[2];
+  old[5] = high[3];
+  for (int i = 0; i < 4; ++i) low[i] = tau[i];
+  for (int i = 0; i < 4; ++i) high[i] = tau[i + 2];
+  turn(low);
+  turn(high);
+  for (int l = 0; l < 4 && l < n; ++l) {
+    FOUR(stress + 6 * l) = low[l];
+    FOUR(stress + 6 * l + 2) = high[l];
+  }
+}
+
+/* A and B of the trapezoidal rule's old : A + tau : B, component by component. */
+KERNEL void pairs(const Four A[9], int i, Four *sum, Four *rest)
+{
+  const int r = voigt_row[i], c = voigt_column[i];
+  *sum = i < 3 ? A[4 * r] : A[3 * r + c] + A[3 * c + r];
+  *rest = *sum - (A[3 * r] * A[c] + A[3 * r + 1] * A[3 + c] + A[3 * r + 2] * A[6 + c]);
+  if (i > 2) *rest -= A[3 * c] * A[r] + A[3 * c + 1] * A[3 + r] + A[3 * c + 2] * A[6 + r];
 }
 
 /* Stress and its work, as `keep` of points.c has them; F and J. */
 KERNEL void keep(Points *points, PetscInt p, PetscInt n, const Lattice *l, const Batch *b, PetscInt k, Given *g)
 {
   PetscReal *stress = point_real(points, POINT_TAU, p);
-  Four A[9], tau[6], volume, work, J, density = {0};
+  Four A[9], old[6], tau[6], volume, work, J, density = {0};
   for (int i = 0; i < 9; ++i) A[i] = FOUR_OF(b->dF[i] + k) - (i % 4 == 0);
   deform(points, p, n, A);
+  trade(stress, n, b, k, old, tau);
+#pragma GCC unroll 6
   for (int i = 0; i < 6; ++i) {
-    const int r = voigt_row[i], c = voigt_column[i];
-    Four old, sum = A[4 * r], square = A[3 * r] * A[r] + A[3 * r + 1] * A[3 + r] + A[3 * r + 2] * A[6 + r];
-    if (i > 2) {
-      sum = A[3 * r + c] + A[3 * c + r];
-      square = A[3 * r] * A[c] + A[3 * r + 1] * A[3 + c] + A[3 * r + 2] * A[6 + c];
-      square += A[3 * c] * A[r] + A[3 * c + 1] * A[3 + r] + A[3 * c + 2] * A[6 + r];
-    }
-    pick(stress + i, 6, n, &old);
-    tau[i] = FOUR_OF(b->tau[i] + k);
-    drop(&tau[i], 6, n, stress + i);
-    density += old * sum + tau[i] * (sum - square);
+    Four sum, rest;
+    pairs(A, i, &sum, &rest);
+    density += old[i] * sum + tau[i] * rest;
   }
   take(points->real[POINT_VOLUME] + p, n, &volume);
   take(points->real[POINT_WORK] + p, n, &work);
@@ -292,8 +323,10 @@ void space_strain(const Model *m, Explicit *e)
     for (PetscInt k = n; k < LAW_BATCH; ++k)
       for (int d = 0; d < 3; ++d) strain.column[d][k] = (Four){0};
     for (PetscInt k = 0; k < LAW_BATCH; k += 4) increments(&strain, k, &b);
-    for (PetscInt k = 0; k < n; ++k)
-      for (int d = 0; d < 3; ++d) x[3 * k + d] += e->dt * strain.move[k][d];
+    for (PetscInt k = 0; k < n; ++k) {
+      const Four move = e->dt * strain.move[k];
+      for (int d = 0; d < 3; ++d) x[3 * k + d] += move[d];
+    }
     const LawStatus status = batch_stress(m, first, n, &b);
     e->status = PetscMax(e->status, status);
     for (PetscInt k = 0; k < n; k += 4) keep(points, first + k, n - k, &e->lattice, &b, k, &g);
