@@ -126,13 +126,14 @@ LANES_INLINE LawStatus update_in_plane(const PetscBool hoop, const PetscReal *p,
   lanes_load(N_STATE, n, old, before);
   lanes_load(9, n, dF, f);
   const Lanes in_plane[5] = {f[0], f[1], f[3], f[4], f[8]};
-  if (!mc_plane_trial(hoop, in_plane, before, &t)) return update(p, PetscMin(n, LANES), dF, old, state, tau, c);
+  if (!mc_plane_trial(hoop, PETSC_FALSE, in_plane, before, &t))
+    return update(p, PetscMin(n, LANES), dF, old, state, tau, c);
   mc_plane_return(p, &t, principal, &regions);
   mc_plane_tensor(&t, principal, stress);
   if (state) {
     now[6] = before[6];
     now[7] = before[7];
-    mc_plane_state(p, &t, principal, &regions, now);
+    mc_plane_state(PETSC_FALSE, p, &t, principal, &regions, now);
     lanes_store(N_STATE, n, now, state);
   }
   lanes_store(6, n, stress, tau);
@@ -167,14 +168,14 @@ LANES_INLINE LawStatus march_plane_lanes(const PetscReal *p, PetscInt n, const L
   PlaneTrial t;
   lanes_load_rows(5, march->dF, f);
   lanes_load_apart(N_STATE, march->stride, n, march->state, before);
-  if (!mc_plane_trial(PETSC_TRUE, f, before, &t))
+  if (!mc_plane_trial(PETSC_TRUE, PETSC_TRUE, f, before, &t))
     return march_by_update(update, N_STATE, PETSC_TRUE, p, PetscMin(n, LANES), march);
   mc_plane_return(p, &t, principal, &regions);
   mc_plane_tensor(&t, principal, stress);
   lanes_store_rows(4, stress, march->tau);
   now[6] = before[6];
   now[7] = before[7];
-  mc_plane_state(p, &t, principal, &regions, now);
+  mc_plane_state(PETSC_TRUE, p, &t, principal, &regions, now);
   lanes_store_apart(N_STATE, march->stride, n, now, march->state);
   const LaneBits bad = ~t.finite;
   return lanes_any(&bad) ? lanes_halt(N_STATE, 4, &t.finite, &t.finite, &t.det, n, before, march) : LAW_OK;
