@@ -1,8 +1,8 @@
 /* What a substep of explicit dynamics costs: 0.5 s of collapse of the column of cases/granular-collapse with a
  * row every 10 ms, and blocks of Mohr-Coulomb material that slide, in the plane and in space.
  *
- *   build/bench/bench_explicit [-only column|plane|space] [-cells N] [-steps N] [-case cases/granular-collapse/case.yaml]
- *                              [-bound PROGRAM]
+ *   build/bench/bench_explicit [-only column|plane|space] [-cells N] [-steps N]
+ *                              [-case cases/granular-collapse/case.yaml] [-bound PROGRAM]
  *
  * Blocks of about 100,000 points, or of N cells along each side (500 in the plane and 50 in space: a million
  * points), for so many steps of the run. PROGRAM: of somebody else, to be run between two columns with

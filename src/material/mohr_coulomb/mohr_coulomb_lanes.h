@@ -1,7 +1,7 @@
 /* Return and moduli of the Mohr-Coulomb law in principal axes, eight points side by side. */
 #pragma once
 #include "material/mohr_coulomb/mohr_coulomb_return.h"
-#include "material/principal_lanes.h"
+#include "material/algebra/principal_lanes.h"
 
 /* mc_return_shear of those that the plane t does not take: edges and the apex; what the cut-off takes from them
  * is left to mc_return. `others` are those that still need a return. */
