@@ -1,11 +1,13 @@
 /* What a substep of explicit dynamics costs: 0.5 s of collapse of the column of cases/granular-collapse with a
- * row every 10 ms, and blocks of Mohr-Coulomb material that fall, of about 100,000 points in the plane and in
- * space.
+ * row every 10 ms, and blocks of Mohr-Coulomb material that slide, in the plane and in space.
  *
- *   build/bench/bench_explicit [-case cases/granular-collapse/case.yaml] [-bound PROGRAM]
+ *   build/bench/bench_explicit [-only column|plane|space] [-cells N] [-steps N]
+ *                              [-case cases/granular-collapse/case.yaml] [-bound PROGRAM]
  *
- * PROGRAM: of somebody else, to be run between the two halves with arguments "1e-4 0.5 20 1 1 1.5"; it prints
- * its own time. Seconds are those in which a core worked for this process. */
+ * Blocks of about 100,000 points, or of N cells along each side (500 in the plane and 50 in space: a million
+ * points), for so many steps of the run. PROGRAM: of somebody else, to be run between two columns with
+ * arguments "1e-4 0.5 20 1 1 1.5"; it prints its own time. Seconds are those in which a core worked for this
+ * process, of the slowest rank. */
 #include "bench.h"
 #include "input/case_file.h"
 
@@ -24,6 +26,7 @@ static PetscErrorCode Advance(Model *m, PetscReal end, Outcome *o)
   while (m->time < end * (1 - 1e-12) && report.outcome == STEP_ACCEPTED)
     PetscCall(ModelStep(m, end - m->time, &report));
   o->seconds = processor_now() - start;
+  PetscCall(MPIU_Allreduce(MPI_IN_PLACE, &o->seconds, 1, MPIU_REAL, MPI_MAX, m->comm));
   o->substeps = m->total_iterations;
   for (PetscInt p = 0; p < m->points->n; ++p) o->front = PetscMax(o->front, *point_real(m->points, POINT_X, p));
   if (report.outcome != STEP_ACCEPTED) PetscCall(PetscPrintf(m->comm, "gave up: %s\n", report.reason));
@@ -52,6 +55,14 @@ static PetscErrorCode Collapse(const char *file)
   if (m) PetscCall(ModelDestroy(&m));
   if (c) PetscCall(CaseDestroy(&c));
   PetscFunctionReturn(0);
+}
+
+/* Nanoseconds of a core for a point and substep. */
+static double nanoseconds(const Model *m, const Outcome *o)
+{
+  PetscMPIInt ranks;
+  if (MPI_Comm_size(m->comm, &ranks)) ranks = 1;
+  return 1e9 * (double)ranks * (double)o->seconds / ((double)o->points * (double)o->substeps);
 }
 
 /* A block that slides over the floor of its grid under gravity. */
@@ -87,27 +98,40 @@ static PetscErrorCode Slide(PetscInt dim, PetscInt cells_of_side, PetscInt steps
   PetscCall(DiagDestroy(&diag));
   if (!m) PetscFunctionReturn(0);
   PetscCall(Advance(m, (PetscReal)steps * b.c.analysis.step, &o));
-  PetscCall(
-    PetscPrintf(PETSC_COMM_WORLD, "%dD: %d points, %d substeps, %.1f ns a point and substep, %d bytes a point\n",
-                (int)dim, (int)o.points, (int)o.substeps,
-                1e9 * (double)o.seconds / ((double)o.points * (double)o.substeps), (int)points_bytes(m->points)));
+  PetscCall(PetscPrintf(PETSC_COMM_WORLD,
+                        "%dD: %d points, %d substeps, %.1f ns a point and substep, %d bytes a point\n", (int)dim,
+                        (int)o.points, (int)o.substeps, nanoseconds(m, &o), (int)points_bytes(m->points)));
   PetscCall(ModelDestroy(&m));
+  PetscFunctionReturn(0);
+}
+
+/* Column, bound, column. */
+static PetscErrorCode Columns(const char *file, const char *bound)
+{
+  char command[PETSC_MAX_PATH_LEN];
+
+  PetscFunctionBeginUser;
+  PetscCall(Collapse(file));
+  snprintf(command, sizeof command, "%s 1e-4 0.5 20 1 1 1.5", bound);
+  if (bound[0] && system(command)) PetscCall(PetscPrintf(PETSC_COMM_WORLD, "%s failed\n", bound));
+  PetscCall(Collapse(file));
   PetscFunctionReturn(0);
 }
 
 int main(int argc, char **argv)
 {
   char file[PETSC_MAX_PATH_LEN] = "cases/granular-collapse/case.yaml", bound[PETSC_MAX_PATH_LEN - 32] = "";
-  char command[PETSC_MAX_PATH_LEN];
+  char only[16] = "";
+  PetscInt side = 0, steps = 4;
 
   PetscCall(PetscInitialize(&argc, &argv, NULL, NULL));
   PetscCall(PetscOptionsGetString(NULL, NULL, "-case", file, sizeof file, NULL));
   PetscCall(PetscOptionsGetString(NULL, NULL, "-bound", bound, sizeof bound, NULL));
-  PetscCall(Collapse(file));
-  snprintf(command, sizeof command, "%s 1e-4 0.5 20 1 1 1.5", bound);
-  if (bound[0] && system(command)) PetscCall(PetscPrintf(PETSC_COMM_WORLD, "%s failed\n", bound));
-  PetscCall(Collapse(file));
-  PetscCall(Slide(2, 160, 4));
-  PetscCall(Slide(3, 24, 4));
+  PetscCall(PetscOptionsGetString(NULL, NULL, "-only", only, sizeof only, NULL));
+  PetscCall(PetscOptionsGetInt(NULL, NULL, "-cells", &side, NULL));
+  PetscCall(PetscOptionsGetInt(NULL, NULL, "-steps", &steps, NULL));
+  if (!only[0] || !strcmp(only, "column")) PetscCall(Columns(file, bound));
+  if (!only[0] || !strcmp(only, "plane")) PetscCall(Slide(2, side ? side : 160, steps));
+  if (!only[0] || !strcmp(only, "space")) PetscCall(Slide(3, side ? side : 24, steps));
   return PetscFinalize();
 }

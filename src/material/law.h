@@ -58,6 +58,18 @@ typedef union {
 typedef LawStatus (*LawUpdate)(const PetscReal *parameters, PetscInt n, const PetscReal *dF, const PetscReal *old,
                                PetscReal *state, PetscReal *tau, PetscReal *c);
 
+/* Points of one material in explicit dynamics, which wants no tangent: component by component in rows of
+ * LAW_BATCH numbers, with whole lanes of increments (those behind the last point change nothing). */
+typedef struct {
+  const PetscReal *dF; /* rows: of the plane xx xy yx yy zz, of space 3 x 3 */
+  PetscReal *tau;      /* rows: of the plane xx yy zz xy, of space 6 */
+  PetscReal *state;    /* n x stride, of which n_state are the law's; updated in place */
+  PetscInt stride;
+} LawMarch;
+
+/* The worst status; a point that failed keeps its state and carries no stress. n <= LAW_BATCH. */
+typedef LawStatus (*LawMarching)(const PetscReal *parameters, PetscInt n, const LawMarch *march);
+
 typedef struct Law {
   const char *name, *help;
   /* ended by name = NULL; elastic constants and density stand apart */
@@ -72,6 +84,8 @@ typedef struct Law {
   /* The same where dF leaves z alone, or NULL: of c only the components 11, 22, 12 of rows and
    * columns mean something; and where z strains by itself (dF_33 alone), with 33 as well. */
   LawUpdate update_plane, update_hoop;
+  /* What `update` does without a tangent, in the plane (zz strains or not) and in space; or NULL: by `update`. */
+  LawMarching march_plane, march_space;
   /* Stored elastic energy per undeformed volume, J/m3. NULL: not known, of a law from a library. */
   PetscReal (*energy)(const PetscReal *parameters, const PetscReal *state);
   /* State that carries the Cauchy stress sigma (6) with no shear history; PETSC_FALSE if there is
@@ -112,6 +126,12 @@ static inline LawUpdate law_update_in(const Law *law, const Kinematics *kinemati
   if (kinematics->hoop && law->update_hoop) return law->update_hoop;
   return kinematics_is_plane(kinematics) && law->update_plane ? law->update_plane : law->update;
 }
+
+/* By the quickest way that the law has. plane: do rows mean the plane's components? */
+LawStatus law_march(const Law *law, PetscBool plane, const PetscReal *parameters, PetscInt n, const LawMarch *march);
+/* By `update` of a law with n_state numbers, point by point in memory. */
+LawStatus march_by_update(LawUpdate update, PetscInt n_state, PetscBool plane, const PetscReal *parameters, PetscInt n,
+                          const LawMarch *march);
 
 /* A material of a case: a law with its packed parameters. */
 typedef struct {

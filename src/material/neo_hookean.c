@@ -23,31 +23,53 @@ LANES_INLINE void tangent_point(PetscReal lambda, PetscReal g, PetscReal *c)
   }
 }
 
+/* b after dF = f, the Kirchhoff stress, det f and ln J. */
+LANES_INLINE void stretch(const PetscReal *parameters, const Lanes f[9], const Lanes old[6], Lanes b[6], Lanes t[6],
+                          Lanes *det_f, Lanes *log_J)
+{
+  const PetscReal lambda = parameters[LAMBDA], mu = parameters[MU];
+  Lanes det_b;
+  lanes_push_forward(f, old, b);
+  lanes_det(f, det_f);
+  lanes_sym_det(b, &det_b);
+  lanes_log(&det_b, log_J);
+  *log_J *= 0.5;
+  for (int k = 0; k < 3; ++k) {
+    t[k] = lambda * *log_J + mu * (b[k] - 1.0);
+    t[k + 3] = mu * b[k + 3];
+  }
+}
+
 LANES_INLINE LawStatus update_lanes(const PetscReal *parameters, PetscInt n, const PetscReal *dF, const PetscReal *old,
                                     PetscReal *state, PetscReal *tau, PetscReal *c)
 {
-  const PetscReal lambda = parameters[LAMBDA], mu = parameters[MU];
-  Lanes f[9], b_old[6], b[6], t[6], det_f, det_b, log_J;
+  Lanes f[9], b_old[6], b[6], t[6], det_f, log_J;
   lanes_load(9, n, dF, f);
   lanes_load(6, n, old, b_old);
-  lanes_push_forward(f, b_old, b);
-  lanes_det(f, &det_f);
-  lanes_sym_det(b, &det_b);
-  lanes_log(&det_b, &log_J);
-  log_J *= 0.5;
-  for (int k = 0; k < 3; ++k) {
-    t[k] = lambda * log_J + mu * (b[k] - 1.0);
-    t[k + 3] = mu * b[k + 3];
-  }
+  stretch(parameters, f, b_old, b, t, &det_f, &log_J);
   lanes_store(6, n, b, state);
   lanes_store(6, n, t, tau);
   if (c) {
-    const Lanes g = mu - lambda * log_J;
+    const Lanes g = parameters[MU] - parameters[LAMBDA] * log_J;
     const PetscInt m = n < LANES ? n : LANES;
-    for (PetscInt l = 0; l < m; ++l) tangent_point(lambda, g[l], c + 36 * l);
+    for (PetscInt l = 0; l < m; ++l) tangent_point(parameters[LAMBDA], g[l], c + 36 * l);
   }
   return lanes_status(&det_f, 6, t);
 }
+
+LANES_INLINE LawStatus neo_hookean_march(const PetscBool plane, const PetscReal *parameters, PetscInt n,
+                                         const LawMarch *march)
+{
+  Lanes f[9], old[6], b[6], t[6], det_f, log_J;
+  lanes_march_dF(plane, march, f);
+  lanes_load_apart(6, march->stride, n, march->state, old);
+  stretch(parameters, f, old, b, t, &det_f, &log_J);
+  lanes_store_apart(6, march->stride, n, b, march->state);
+  lanes_march_tau(plane, t, march);
+  return lanes_status(&det_f, 6, t);
+}
+
+LANES_MARCHES(neo_hookean)
 
 static LawStatus update(const PetscReal *parameters, PetscInt n, const PetscReal *dF, const PetscReal *old,
                         PetscReal *state, PetscReal *tau, PetscReal *c)
@@ -137,6 +159,8 @@ const Law law_neo_hookean = {
   .n_state = 6,
   .symmetric = PETSC_TRUE,
   .update = update,
+  .march_plane = neo_hookean_march_plane,
+  .march_space = neo_hookean_march_space,
   .energy = energy,
   .initial_stress = initial_stress,
   .volume = volume,

@@ -532,6 +532,58 @@ static inline void law_suite_in_plane(LawSuite *suite, LawUpdate update, PetscBo
   if (others > 3 * LAW_SUITE_STATES / 10 / 500) fail_msg("%s: %d moduli of the plane differ", law->name, others);
 }
 
+/* A point whose last increment is of the plane, where z strains by itself. */
+static inline void law_suite_plane_point(LawSuite *suite, LawPoint *p)
+{
+  for (int tries = 0; tries < 100; ++tries) {
+    law_suite_start(suite, p->old);
+    for (int step = 0; step < 3; ++step) {
+      if (step) memcpy(p->old, p->state, sizeof p->old);
+      for (int k = 0; k < 9; ++k) {
+        const PetscBool moves = k < 2 || k == 3 || k == 4 || k == 8;
+        p->dF[k] = (k % 4 == 0) + (moves ? suite->test->strain * random_real(&suite->random, -1, 1) : 0);
+      }
+      law_suite_update(suite, p);
+      if (p->status != LAW_OK) break;
+    }
+    if (p->status == LAW_OK) return;
+  }
+  fail_msg("%s: no valid state in 100 tries", suite->law->name);
+}
+
+/* Points as explicit dynamics has them: the law without its tangent, whatever the number of points, and nothing
+ * else is written to. */
+static inline void law_suite_march(LawSuite *suite, PetscBool plane)
+{
+  static const int place[2][9] = {{0, 1, 2, 3, 4, 5, 6, 7, 8}, {0, 1, 3, 4, 8}};
+  const Law *law = suite->law;
+  const PetscInt ns = law->n_state, stride = ns + 1;
+  for (PetscInt n = 1; n <= LAW_BATCH; ++n) {
+    PetscReal dF[9][LAW_BATCH], tau[6][LAW_BATCH], state[(LAW_MAX_STATE + 1) * LAW_BATCH];
+    const LawMarch march = {dF[0], tau[0], state, stride};
+    LawPoint point[LAW_BATCH] = {{{0}}};
+    for (int k = 0; k < 9; ++k)
+      for (PetscInt p = 0; p < LAW_BATCH; ++p) dF[k][p] = plane ? k == 0 || k > 2 : k % 4 == 0;
+    for (PetscInt p = 0; p < n; ++p) {
+      if (plane) law_suite_plane_point(suite, &point[p]);
+      else law_suite_random_point(suite, &point[p]);
+      for (int k = 0; k < (plane ? 5 : 9); ++k) dF[k][p] = point[p].dF[place[plane][k]];
+      memcpy(state + p * stride, point[p].old, (size_t)ns * sizeof *state);
+      state[p * stride + ns] = 4711.0;
+    }
+    assert_int_equal(law_march(law, plane, suite->material.parameters, n, &march), LAW_OK);
+    for (PetscInt p = 0; p < n; ++p) {
+      PetscReal stress[6];
+      for (int k = 0; k < 6; ++k) stress[k] = !plane || k < 4 ? tau[k][p] : point[p].tau[k];
+      law_suite_near(suite, "stress without tangent", 6, stress, point[p].tau,
+                     1e-12 * law_suite_modulus(suite, &point[p]));
+      law_suite_near(suite, "state without tangent", law->n_state, state + p * stride, point[p].state,
+                     1e-12 * (1 + law_suite_largest(law->n_state, point[p].state)));
+      assert_true(state[p * stride + ns] == 4711.0);
+    }
+  }
+}
+
 /* The mixed form by the kernel with a hoop is that by the law. */
 static inline void law_suite_pressure_in_plane(LawSuite *suite)
 {
@@ -684,6 +736,8 @@ static inline void law_suite_run(const LawUnderTest *test)
   law_suite_batches(&suite);
   law_suite_in_plane(&suite, suite.law->update_plane, PETSC_FALSE);
   law_suite_in_plane(&suite, suite.law->update_hoop, PETSC_TRUE);
+  law_suite_march(&suite, PETSC_TRUE);
+  law_suite_march(&suite, PETSC_FALSE);
   law_suite_initial_stress(&suite);
   if (!test->not_mixed) law_suite_pressure(&suite);
 }

@@ -1,6 +1,7 @@
 /* Explicit dynamics: what it keeps to round-off, a bar against the exact solution of the wave equation, the same
  * answers on any number of ranks and after a resumed run, and what it refuses. */
 #include "case_builder.h"
+#include "model/explicit/explicit.h"
 #include "model/state/state.h"
 
 static void explicit_case(Bench *b, PetscReal end, PetscReal step)
@@ -173,6 +174,90 @@ static void test_ranks(void **state)
   }
 }
 
+/* Largest difference of points that have changed ranks alike. */
+static PetscReal points_apart(const Model *a, const Model *b, PointReal field)
+{
+  PetscReal most = 0;
+  CHECK(a->points->n == b->points->n, "points differ");
+  for (PetscInt p = 0; p < a->points->n; ++p) {
+    CHECK(a->points->id[p] == b->points->id[p], "points stand in another order");
+    for (PetscInt i = 0; i < a->points->components[field]; ++i)
+      most = PetscMax(most, PetscAbsReal(point_real(a->points, field, p)[i] - point_real(b->points, field, p)[i]));
+  }
+  return model_max(a, most);
+}
+
+/* Walks by cells against those over any grid, in which every substep finds its functions anew: grains under rubber
+ * that fall on their floor; points in numbers that no register divides. */
+typedef struct {
+  CellType cell;
+  const Kinematics *kinematics;
+  ExplicitUpdate update;
+} Walk;
+
+static void layers(Bench *b, MaterialSpec materials[2], const Walk *walk)
+{
+  static NamedValue grains[] = {
+    {"young", 1e6}, {"poisson", 0.3}, {"friction_angle", 30}, {"dilatancy_angle", 5}, {"cohesion", 0}};
+  const PetscBool space = walk->cell == CELL_HEXAHEDRON, hoop = walk->kinematics->hoop;
+  const PetscReal h = space ? 0.25 : 0.125, start = hoop ? 2 * h : 0, end = start + (space ? 3 : 5) * h;
+  falling(b, walk->cell, PETSC_FALSE);
+  b->c.n_measures = 0;
+  b->motion[0].component[0] = !hoop;
+  b->c.kinematics = walk->kinematics;
+  b->c.analysis.update = walk->update;
+  b->c.grid.min[0] = hoop ? 0 : -2 * h;
+  b->c.grid.counts[0] = (PetscInt)((b->c.grid.max[0] - b->c.grid.min[0]) / h + 0.5);
+  materials[0] = b->material;
+  materials[1] =
+    (MaterialSpec){.name = "grains", .law = "mohr-coulomb", .density = 2000, .n_parameters = 5, .parameters = grains};
+  b->c.materials = materials;
+  b->c.n_materials = b->c.n_bodies = 2;
+  b->body[0].points_per_cell = space ? 27 : 9;
+  b->body[1] = b->body[0];
+  b->body[1].name = "below";
+  b->body[1].material = "grains";
+  bench_box(b, 0, (PetscReal[]){start, 4 * h, 0}, (PetscReal[]){end, 5 * h, 3 * h});
+  bench_box(b, 1, (PetscReal[]){start, 0, 0}, (PetscReal[]){end, 4 * h, 3 * h});
+}
+
+static void test_walks(void **state)
+{
+  static const Walk walks[] = {{CELL_QUADRILATERAL, &kinematics_plane_strain, EXPLICIT_MUSL},
+                               {CELL_QUADRILATERAL, &kinematics_plane_strain, EXPLICIT_USL},
+                               {CELL_QUADRILATERAL, &kinematics_axisymmetric, EXPLICIT_MUSL},
+                               {CELL_HEXAHEDRON, &kinematics_3d, EXPLICIT_MUSL}};
+  static const struct {
+    PointReal field;
+    PetscReal noise;
+  } fields[] = {{POINT_X, 1e-14}, {POINT_U, 1e-14},  {POINT_V, 1e-12},    {POINT_A, 1e-9},     {POINT_F, 1e-13},
+                {POINT_J, 1e-13}, {POINT_TAU, 1e-7}, {POINT_WORK, 1e-11}, {POINT_STATE, 1e-13}};
+  (void)state;
+  for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(walks); ++k) {
+    MaterialSpec materials[2];
+    Bench b;
+    layers(&b, materials, &walks[k]);
+    Model *fast = bench_model(&b, PETSC_COMM_WORLD), *plain = bench_model(&b, PETSC_COMM_WORLD);
+    CALL(ExplicitCreate(plain, &plain->explicit));
+    plain->explicit->box = PETSC_FALSE;
+    for (int s = 0; s < 10; ++s) {
+      model_step(fast, PETSC_MAX_REAL);
+      model_step(plain, PETSC_MAX_REAL);
+    }
+    CHECK(fast->explicit->box && fast->total_iterations == plain->total_iterations, "other substeps");
+    PetscPrintf(PETSC_COMM_WORLD, "%s, %d substeps:", b.c.kinematics->name, (int)fast->total_iterations);
+    for (size_t f = 0; f < PETSC_STATIC_ARRAY_LENGTH(fields); ++f) {
+      const PetscReal off = points_apart(fast, plain, fields[f].field);
+      PetscPrintf(PETSC_COMM_WORLD, " %.2g", (double)off);
+      CHECK(off <= fields[f].noise, "field %d is off by %g", (int)fields[f].field, (double)off);
+    }
+    PetscPrintf(PETSC_COMM_WORLD, "\n");
+    CHECK_CLOSE(fast->transfer_energy, plain->transfer_energy, 1e-10);
+    CALL(ModelDestroy(&fast));
+    CALL(ModelDestroy(&plain));
+  }
+}
+
 /* Put away and taken up again: the same bits. */
 static void test_resumed(void **state)
 {
@@ -221,9 +306,9 @@ static void test_refused(void **state)
 
 int main(int argc, char **argv)
 {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_flight), cmocka_unit_test(test_bounce),
-                                     cmocka_unit_test(test_ranks), cmocka_unit_test(test_resumed),
-                                     cmocka_unit_test(test_refused)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_flight),  cmocka_unit_test(test_bounce),
+                                     cmocka_unit_test(test_ranks),   cmocka_unit_test(test_walks),
+                                     cmocka_unit_test(test_resumed), cmocka_unit_test(test_refused)};
   if (PetscInitialize(&argc, &argv, NULL, NULL)) return 1;
   const int failed = cmocka_run_group_tests(tests, NULL, NULL);
   return PetscFinalize() || failed;

@@ -31,7 +31,10 @@ LANES_INLINE void lanes_select(const LaneBits *mask, const Lanes *yes, const Lan
 
 LANES_INLINE int lanes_any(const LaneBits *mask)
 {
-#if LANES == 4
+#if LANES == 4 && defined(__AVX__) && defined(__GNUC__)
+  typedef long long Bits __attribute__((vector_size(32)));
+  return !__builtin_ia32_ptestz256((Bits)*mask, (Bits)*mask);
+#elif LANES == 4
   return ((*mask)[0] | (*mask)[1] | (*mask)[2] | (*mask)[3]) != 0;
 #else
   const LaneBits half = *mask | __builtin_shufflevector(*mask, *mask, 4, 5, 6, 7, 0, 1, 2, 3);
@@ -121,4 +124,35 @@ LANES_INLINE void lanes_exp(const Lanes *x, Lanes *y)
   sum = 1.0 + (r + r * r * sum);
   const LaneWords power = ((LaneWords)shifted << 52) + (LaneWords)(zero + 1.0);
   *y = sum * (Lanes)power;
+}
+
+/* The same for numbers near 1 and near 0, by their series to 1 ulp; a lane that is not near takes the long way, and
+ * what it gets does not depend on its neighbours. */
+LANES_INLINE void lanes_log_near(const Lanes *x, Lanes *y)
+{
+  const Lanes f = *x - 1.0, f2 = f * f, f4 = f2 * f2;
+  const Lanes low = (-1.0 / 2 + f * (1.0 / 3)) + f2 * (-1.0 / 4 + f * (1.0 / 5));
+  const Lanes high = (-1.0 / 6 + f * (1.0 / 7)) + f2 * (-1.0 / 8 + f * (1.0 / 9));
+  const Lanes top = (-1.0 / 10 + f * (1.0 / 11)) - f2 * (1.0 / 12);
+  Lanes size, whole;
+  lanes_abs(&f, &size);
+  const LaneBits far = ~(size < 0x1p-5);
+  *y = f + f2 * (low + f4 * (high + f4 * top));
+  if (!lanes_any(&far)) return;
+  lanes_log(x, &whole);
+  lanes_select(&far, &whole, y, y);
+}
+
+LANES_INLINE void lanes_exp_near(const Lanes *x, Lanes *y)
+{
+  const Lanes v = *x, v2 = v * v, v4 = v2 * v2;
+  const Lanes low = (1.0 / 2 + v * (1.0 / 6)) + v2 * (1.0 / 24 + v * (1.0 / 120));
+  const Lanes high = (1.0 / 720 + v * (1.0 / 5040)) + v2 * (1.0 / 40320 + v * (1.0 / 362880));
+  Lanes size, whole;
+  lanes_abs(&v, &size);
+  const LaneBits far = ~(size < 0x1p-4);
+  *y = 1.0 + (v + v2 * (low + v4 * (high + v4 * (1.0 / 3628800))));
+  if (!lanes_any(&far)) return;
+  lanes_exp(x, &whole);
+  lanes_select(&far, &whole, y, y);
 }

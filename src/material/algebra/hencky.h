@@ -17,12 +17,17 @@ typedef struct {
   LaneBits finite; /* is b of use? */
 } HenckyTrial;
 
+LANES_INLINE void hencky_push_by(const Lanes f[9], const Lanes old[6], HenckyTrial *t)
+{
+  lanes_det(f, &t->det);
+  lanes_push_forward(f, old, t->b);
+}
+
 LANES_INLINE void hencky_push(PetscInt n, const PetscReal *dF, const Lanes old[6], HenckyTrial *t)
 {
   Lanes f[9];
   lanes_load(9, n, dF, f);
-  lanes_det(f, &t->det);
-  lanes_push_forward(f, old, t->b);
+  hencky_push_by(f, old, t);
 }
 
 LANES_INLINE void hencky_spectrum(HenckyTrial *t)
@@ -124,18 +129,44 @@ LANES_INLINE LawStatus hencky_update(HenckyLaw law, int scalars, const PetscReal
   return lanes_any(&bad) ? hencky_give_up(6 + scalars, &good, &t.finite, &t.det, n, old, state, tau, c) : LAW_OK;
 }
 
-/* The functions of a law made of it: update_lanes for eight points, update for n. */
-#define HENCKY_UPDATE(law, scalars)                                                                              \
-  LANES_INLINE LawStatus update_lanes(const PetscReal *p, PetscInt n, const PetscReal *dF, const PetscReal *old, \
-                                      PetscReal *state, PetscReal *tau, PetscReal *c)                            \
-  {                                                                                                              \
-    return hencky_update(law, scalars, p, n, dF, old, state, tau, c);                                            \
-  }                                                                                                              \
-  static LawStatus update(const PetscReal *parameters, PetscInt n, const PetscReal *dF, const PetscReal *old,    \
-                          PetscReal *state, PetscReal *tau, PetscReal *c)                                        \
-  {                                                                                                              \
-    return lanes_update(update_lanes, 6 + (scalars), parameters, n, dF, old, state, tau, c);                     \
-  }
+/* The same in place and without moduli (material/law.h). */
+LANES_INLINE LawStatus hencky_march(HenckyLaw law, int scalars, const PetscBool plane, const PetscReal *p, PetscInt n,
+                                    const LawMarch *march)
+{
+  Lanes f[9], before[6 + HENCKY_SCALARS], now[6 + HENCKY_SCALARS], stress[6];
+  HenckyTrial t;
+  HenckyReturn r;
+  lanes_march_dF(plane, march, f);
+  lanes_load_apart(6 + scalars, march->stride, n, march->state, before);
+  hencky_push_by(f, before, &t);
+  hencky_spectrum(&t);
+  law(p, PETSC_FALSE, t.strain, before + 6, now + 6, &r);
+  lanes_principal_tensor(r.tau, t.basis, stress);
+  hencky_state(&t, &r, now);
+  lanes_store_apart(6 + scalars, march->stride, n, now, march->state);
+  lanes_march_tau(plane, stress, march);
+  const LaneBits good = t.finite & r.good, bad = ~good;
+  if (!lanes_any(&bad)) return LAW_OK;
+  return lanes_halt(6 + scalars, plane ? 4 : 6, &good, &t.finite, &t.det, n, before, march);
+}
+
+/* The functions of a law made of it: update_lanes for eight points, update for n; and its marches. */
+#define HENCKY_UPDATE(law, scalars)                                                                                \
+  LANES_INLINE LawStatus update_lanes(const PetscReal *p, PetscInt n, const PetscReal *dF, const PetscReal *old,   \
+                                      PetscReal *state, PetscReal *tau, PetscReal *c)                              \
+  {                                                                                                                \
+    return hencky_update(law, scalars, p, n, dF, old, state, tau, c);                                              \
+  }                                                                                                                \
+  static LawStatus update(const PetscReal *parameters, PetscInt n, const PetscReal *dF, const PetscReal *old,      \
+                          PetscReal *state, PetscReal *tau, PetscReal *c)                                          \
+  {                                                                                                                \
+    return lanes_update(update_lanes, 6 + (scalars), parameters, n, dF, old, state, tau, c);                       \
+  }                                                                                                                \
+  LANES_INLINE LawStatus law##_march(const PetscBool plane, const PetscReal *p, PetscInt n, const LawMarch *march) \
+  {                                                                                                                \
+    return hencky_march(law, scalars, plane, p, n, march);                                                         \
+  }                                                                                                                \
+  LANES_MARCHES(law)
 
 /* What the mixed formulation asks of it, where the bulk modulus is a constant. */
 #define HENCKY_MIXED(scalars)                                                                                       \

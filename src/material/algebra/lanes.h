@@ -12,13 +12,13 @@
 #include "base/math/tensor.h"
 #include "material/law.h"
 
-/* to[k] = component k of the n points at `from`, `components` numbers each; as many of them as fill a
+/* to[k] = component k of the n points at `from`, `stride` numbers from point to point; as many of them as fill a
  * register are loaded at once, and turned. */
-LANES_INLINE void lanes_load(int components, PetscInt n, const PetscReal *from, Lanes *to)
+LANES_INLINE void lanes_load_apart(int components, PetscInt stride, PetscInt n, const PetscReal *from, Lanes *to)
 {
   const PetscReal *point[LANES];
   const int whole = components / LANES * LANES;
-  for (int l = 0; l < LANES; ++l) point[l] = from + (n >= LANES || l < n ? l : n - 1) * components;
+  for (int l = 0; l < LANES; ++l) point[l] = from + (n >= LANES || l < n ? l : n - 1) * stride;
   for (int first = 0; first < whole; first += LANES) {
     for (int l = 0; l < LANES; ++l) to[first + l] = *(const LanesAnywhere *)(point[l] + first);
     lanes_transpose(to + first);
@@ -28,6 +28,11 @@ LANES_INLINE void lanes_load(int components, PetscInt n, const PetscReal *from, 
     for (int l = 0; l < LANES; ++l) one[l] = point[l][k];
     to[k] = one;
   }
+}
+
+LANES_INLINE void lanes_load(int components, PetscInt n, const PetscReal *from, Lanes *to)
+{
+  lanes_load_apart(components, components, n, from, to);
 }
 
 /* Components first .. first + LANES - 1, turned: one Lanes a point. */
@@ -66,6 +71,30 @@ LANES_INLINE void lanes_store(int components, PetscInt n, const Lanes *from, Pet
   }
   for (int l = 0; l < n; ++l)
     for (int k = 0; k < components; ++k) to[l * components + k] = from[k][l];
+}
+
+/* The same, `stride` numbers from point to point; not a number more is written. */
+LANES_INLINE void lanes_store_apart(int components, PetscInt stride, PetscInt n, const Lanes *from, PetscReal *to)
+{
+  const int whole = n >= LANES ? components / LANES * LANES : 0;
+  Lanes point[LANES];
+  for (int first = 0; first < whole; first += LANES) {
+    lanes_points(components, first, from, point);
+    for (int l = 0; l < LANES; ++l) *(LanesAnywhere *)(to + l * stride + first) = point[l];
+  }
+  for (int l = 0; l < PetscMin(n, LANES); ++l)
+    for (int k = whole; k < components; ++k) to[l * stride + k] = from[k][l];
+}
+
+/* Rows of LAW_BATCH numbers. */
+LANES_INLINE void lanes_load_rows(int rows, const PetscReal *from, Lanes *to)
+{
+  for (int k = 0; k < rows; ++k) to[k] = *(const LanesAnywhere *)(from + k * LAW_BATCH);
+}
+
+LANES_INLINE void lanes_store_rows(int rows, const Lanes *from, PetscReal *to)
+{
+  for (int k = 0; k < rows; ++k) *(LanesAnywhere *)(to + k * LAW_BATCH) = from[k];
 }
 
 LANES_INLINE void lanes_det(const Lanes a[9], Lanes *det)
@@ -108,6 +137,72 @@ LANES_INLINE LawStatus lanes_update(LawUpdate eight, int n_state, const PetscRea
   }
   return worst;
 }
+
+/* The march of n points by one of (up to) eight. */
+LANES_INLINE LawStatus lanes_march(LawMarching eight, const PetscReal *parameters, PetscInt n, const LawMarch *march)
+{
+  LawStatus worst = LAW_OK;
+  for (PetscInt p = 0; p < n; p += LANES) {
+    const LawMarch here = {march->dF + p, march->tau + p, march->state + p * march->stride, march->stride};
+    const LawStatus status = eight(parameters, n - p, &here);
+    worst = PetscMax(worst, status);
+  }
+  return worst;
+}
+
+/* dF of a march as 3 x 3, and stresses given back. */
+LANES_INLINE void lanes_march_dF(const PetscBool plane, const LawMarch *march, Lanes f[9])
+{
+  const Lanes none = {0};
+  for (int k = 0; k < 9; ++k) f[k] = none;
+  if (!plane) {
+    lanes_load_rows(9, march->dF, f);
+    return;
+  }
+  lanes_load_rows(2, march->dF, f);
+  lanes_load_rows(2, march->dF + 2 * LAW_BATCH, f + 3);
+  lanes_load_rows(1, march->dF + 4 * LAW_BATCH, f + 8);
+}
+
+LANES_INLINE void lanes_march_tau(const PetscBool plane, const Lanes tau[6], const LawMarch *march)
+{
+  lanes_store_rows(plane ? 4 : 6, tau, march->tau);
+}
+
+/* Points that failed get their state of before again and carry no stress; `good`: those that did not. */
+static inline LawStatus lanes_halt(int n_state, int components, const LaneBits *good, const LaneBits *finite,
+                                   const Lanes *det, PetscInt n, const Lanes *before, const LawMarch *march)
+{
+  LawStatus worst = LAW_OK;
+  for (PetscInt l = 0; l < PetscMin(n, LANES); ++l) {
+    if ((*good)[l]) continue;
+    const LawStatus bad = (*det)[l] <= 0.0 ? LAW_INVERTED : LAW_NOT_FINITE,
+                    status = (*finite)[l] ? LAW_NOT_CONVERGED : bad;
+    worst = PetscMax(worst, status);
+    for (int k = 0; k < n_state; ++k) march->state[l * march->stride + k] = before[k][l];
+    for (int k = 0; k < components; ++k) march->tau[k * LAW_BATCH + l] = 0.0;
+  }
+  return worst;
+}
+
+/* Both marches of a law whose `name##_march` does them for (up to) eight points. */
+#define LANES_MARCHES(name)                                                                        \
+  LANES_INLINE LawStatus name##_plane_eight(const PetscReal *p, PetscInt n, const LawMarch *march) \
+  {                                                                                                \
+    return name##_march(PETSC_TRUE, p, n, march);                                                  \
+  }                                                                                                \
+  LANES_INLINE LawStatus name##_space_eight(const PetscReal *p, PetscInt n, const LawMarch *march) \
+  {                                                                                                \
+    return name##_march(PETSC_FALSE, p, n, march);                                                 \
+  }                                                                                                \
+  static LawStatus name##_march_plane(const PetscReal *p, PetscInt n, const LawMarch *march)       \
+  {                                                                                                \
+    return lanes_march(name##_plane_eight, p, n, march);                                           \
+  }                                                                                                \
+  static LawStatus name##_march_space(const PetscReal *p, PetscInt n, const LawMarch *march)       \
+  {                                                                                                \
+    return lanes_march(name##_space_eight, p, n, march);                                           \
+  }
 
 /* Worst status of points with increments f (whose determinants are det_f) and n results. */
 LANES_INLINE LawStatus lanes_status(const Lanes *det_f, int n, const Lanes *result)

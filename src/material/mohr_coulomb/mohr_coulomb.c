@@ -120,17 +120,20 @@ LANES_INLINE void store_plane(const PetscBool hoop, PetscInt n, Lanes moduli[16]
 LANES_INLINE LawStatus update_in_plane(const PetscBool hoop, const PetscReal *p, PetscInt n, const PetscReal *dF,
                                        const PetscReal *old, PetscReal *state, PetscReal *tau, PetscReal *c)
 {
-  Lanes before[N_STATE], now[N_STATE], principal[3], stress[6] = {{0}}, moduli[16];
+  Lanes f[9], before[N_STATE], now[N_STATE], principal[3], stress[6] = {{0}}, moduli[16];
   LaneBits regions;
   PlaneTrial t;
   lanes_load(N_STATE, n, old, before);
-  if (!mc_plane_trial(hoop, n, dF, before, &t)) return update(p, PetscMin(n, LANES), dF, old, state, tau, c);
+  lanes_load(9, n, dF, f);
+  const Lanes in_plane[5] = {f[0], f[1], f[3], f[4], f[8]};
+  if (!mc_plane_trial(hoop, PETSC_FALSE, in_plane, before, &t))
+    return update(p, PetscMin(n, LANES), dF, old, state, tau, c);
   mc_plane_return(p, &t, principal, &regions);
   mc_plane_tensor(&t, principal, stress);
   if (state) {
     now[6] = before[6];
     now[7] = before[7];
-    mc_plane_state(p, &t, principal, &regions, now);
+    mc_plane_state(PETSC_FALSE, p, &t, principal, &regions, now);
     lanes_store(N_STATE, n, now, state);
   }
   lanes_store(6, n, stress, tau);
@@ -157,6 +160,55 @@ LANES_INLINE LawStatus update_in_plane(const PetscBool hoop, const PetscReal *p,
 
 PLANE_UPDATE(update_plane, PETSC_FALSE)
 PLANE_UPDATE(update_hoop, PETSC_TRUE)
+
+LANES_INLINE LawStatus march_plane_lanes(const PetscReal *p, PetscInt n, const LawMarch *march)
+{
+  Lanes f[5], before[N_STATE], now[N_STATE], principal[3], stress[4];
+  LaneBits regions;
+  PlaneTrial t;
+  lanes_load_rows(5, march->dF, f);
+  lanes_load_apart(N_STATE, march->stride, n, march->state, before);
+  if (!mc_plane_trial(PETSC_TRUE, PETSC_TRUE, f, before, &t))
+    return march_by_update(update, N_STATE, PETSC_TRUE, p, PetscMin(n, LANES), march);
+  mc_plane_return(p, &t, principal, &regions);
+  mc_plane_tensor(&t, principal, stress);
+  lanes_store_rows(4, stress, march->tau);
+  now[6] = before[6];
+  now[7] = before[7];
+  mc_plane_state(PETSC_TRUE, p, &t, principal, &regions, now);
+  lanes_store_apart(N_STATE, march->stride, n, now, march->state);
+  const LaneBits bad = ~t.finite;
+  return lanes_any(&bad) ? lanes_halt(N_STATE, 4, &t.finite, &t.finite, &t.det, n, before, march) : LAW_OK;
+}
+
+static LawStatus march_plane(const PetscReal *parameters, PetscInt n, const LawMarch *march)
+{
+  return lanes_march(march_plane_lanes, parameters, n, march);
+}
+
+LANES_INLINE LawStatus march_space_lanes(const PetscReal *p, PetscInt n, const LawMarch *march)
+{
+  Lanes f[9], before[N_STATE], now[N_STATE], principal[3], stress[6];
+  LaneBits regions;
+  HenckyTrial t;
+  lanes_march_dF(PETSC_FALSE, march, f);
+  lanes_load_apart(N_STATE, march->stride, n, march->state, before);
+  hencky_push_by(f, before, &t);
+  mc_with_opening(&before[7], 6, t.b);
+  hencky_spectrum(&t);
+  mc_return_lanes(p, t.strain, principal, &regions);
+  lanes_principal_tensor(principal, t.basis, stress);
+  lanes_march_tau(PETSC_FALSE, stress, march);
+  state_lanes(p, &t, before, principal, &regions, now);
+  lanes_store_apart(N_STATE, march->stride, n, now, march->state);
+  const LaneBits bad = ~t.finite;
+  return lanes_any(&bad) ? lanes_halt(N_STATE, 6, &t.finite, &t.finite, &t.det, n, before, march) : LAW_OK;
+}
+
+static LawStatus march_space(const PetscReal *parameters, PetscInt n, const LawMarch *march)
+{
+  return lanes_march(march_space_lanes, parameters, n, march);
+}
 
 /* Tension of the apex, Pa. */
 static PetscReal apex(const PetscReal *p) { return p[MC_CUT] < INFINITY ? p[MC_CUT] : p[MC_Q] / (p[MC_K] - 1.0); }
@@ -201,6 +253,7 @@ static void prepare(const Elasticity *elastic, const PetscReal *given, PetscReal
   p[MC_CUT] = given[CUTOFF] < NO_CUTOFF && (k - 1.0) * given[CUTOFF] < p[MC_Q] ? given[CUTOFF] : INFINITY;
   for (int i = 0; i < 3; ++i) p[MC_R0 + i] = r[i] / (k * r[0] - r[2]);
   p[MC_MEMORY] = given[MEMORY];
+  mc_prepare_lines(p);
   p[MC_NOISE] = 4.0 * PETSC_MACHINE_EPSILON * (k + 1.0) * (lambda + 2.0 * mu);
 }
 
@@ -237,6 +290,8 @@ const Law law_mohr_coulomb = {
   .update = update,
   .update_plane = update_plane,
   .update_hoop = update_hoop,
+  .march_plane = march_plane,
+  .march_space = march_space,
   .energy = energy,
   .initial_stress = initial_stress,
   .volume = volume,

@@ -3,8 +3,32 @@
 #include "material/mohr_coulomb/mohr_coulomb_return.h"
 #include "material/algebra/principal_lanes.h"
 
-/* Stresses on the surface or inside. Most points that flow are on the shear plane: that return is
- * made here, others point by point. */
+/* mc_return_shear of those that the plane t does not take: edges and the apex; what the cut-off takes from them
+ * is left to mc_return. `others` are those that still need a return. */
+LANES_INLINE void mc_return_edges(const PetscReal *p, const Lanes e[3], const Lanes t[3], Lanes tau[3],
+                                  LaneBits *regions, LaneBits *others)
+{
+  const PetscReal k = p[MC_K], m = p[MC_M], q = p[MC_Q];
+  const Lanes first = p[MC_ONTO1] * (e[0] + e[1] + m * e[2]) + p[MC_FROM1];
+  const Lanes second = p[MC_ONTO2] * (e[0] + m * (e[1] + e[2])) + p[MC_FROM2];
+  const LaneBits on_first = (t[1] > t[0]) & ((k - 1.0) * first <= q);
+  const LaneBits on_second = ~on_first & (t[2] > t[1]) & ((k - 1.0) * second <= q);
+  const Lanes apex = (Lanes){0} + q / (k - 1.0), low1 = k * first - q, low2 = k * second - q;
+  Lanes s[3];
+  lanes_select(&on_second, &second, &apex, &s[0]);
+  lanes_select(&on_second, &low2, &apex, &s[1]);
+  s[2] = s[1];
+  lanes_select(&on_first, &first, &s[0], &s[0]);
+  lanes_select(&on_first, &first, &s[1], &s[1]);
+  lanes_select(&on_first, &low1, &s[2], &s[2]);
+  const LaneBits done = *others & (s[0] <= p[MC_CUT]);
+  const LaneBits region = (on_first & MC_LINE1) | (on_second & MC_LINE2) | (~(on_first | on_second) & MC_APEX);
+  for (int i = 0; i < 3; ++i) lanes_select(&done, &s[i], &tau[i], &tau[i]);
+  *regions |= done & region;
+  *others &= ~done;
+}
+
+/* Stresses on the surface or inside; the cut-off's are found point by point. */
 LANES_INLINE void mc_return_lanes(const PetscReal *p, const Lanes e[3], Lanes tau[3], LaneBits *regions)
 {
   const Lanes volume = p[MC_LAMBDA] * (e[0] + e[1] + e[2]);
@@ -18,9 +42,15 @@ LANES_INLINE void mc_return_lanes(const PetscReal *p, const Lanes e[3], Lanes ta
   *regions = beyond & 0;
   if (!lanes_any(&beyond)) return;
   for (int k = 0; k < 3; ++k) t[k] = tau[k] - f * p[MC_R0 + k];
-  const LaneBits plane = shear & (t[0] >= t[1]) & (t[1] >= t[2]) & (t[0] <= p[MC_CUT]), others = beyond & ~plane;
+  const LaneBits plane = shear & (t[0] >= t[1]) & (t[1] >= t[2]) & (t[0] <= p[MC_CUT]),
+                 ordered = (t[0] >= t[1]) & (t[1] >= t[2]);
+  LaneBits edges = shear & ~ordered, others = beyond & ~plane;
   for (int k = 0; k < 3; ++k) lanes_select(&plane, &t[k], &tau[k], &tau[k]);
   *regions = plane & MC_PLANE;
+  if (!lanes_any(&others)) return;
+  others &= ~edges;
+  mc_return_edges(p, e, t, tau, regions, &edges);
+  others |= edges;
   if (!lanes_any(&others)) return;
   for (int l = 0; l < LANES; ++l) {
     if (!others[l]) continue;

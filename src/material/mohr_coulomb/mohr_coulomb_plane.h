@@ -18,23 +18,20 @@ typedef struct {
   LaneBits z_first, z_last; /* where z stands among the falling strains, with A before B */
 } PlaneTrial;
 
-/* b = f b f^T; PETSC_FALSE if a point has shear strains out of the plane. */
-LANES_INLINE PetscBool mc_plane_push(const PetscBool hoop, PetscInt n, const PetscReal *dF, const Lanes old[MC_STATE],
-                                     PlaneTrial *t)
+/* b = f b f^T, f: xx xy yx yy zz; PETSC_FALSE if a point has shear strains out of the plane. */
+LANES_INLINE PetscBool mc_plane_push(const PetscBool hoop, const Lanes f[5], const Lanes old[MC_STATE], PlaneTrial *t)
 {
   const LaneBits out = (old[4] != 0.0) | (old[5] != 0.0);
-  Lanes f[9];
   if (lanes_any(&out)) return PETSC_FALSE;
-  lanes_load(9, n, dF, f);
   const Lanes x0 = f[0] * old[0] + f[1] * old[3], x1 = f[0] * old[3] + f[1] * old[1];
-  const Lanes y0 = f[3] * old[0] + f[4] * old[3], y1 = f[3] * old[3] + f[4] * old[1];
+  const Lanes y0 = f[2] * old[0] + f[3] * old[3], y1 = f[2] * old[3] + f[3] * old[1];
   t->b[0] = x0 * f[0] + x1 * f[1];
-  t->b[1] = y0 * f[3] + y1 * f[4];
-  t->b[2] = hoop ? f[8] * f[8] * old[2] : old[2];
-  t->b[3] = x0 * f[3] + x1 * f[4];
+  t->b[1] = y0 * f[2] + y1 * f[3];
+  t->b[2] = hoop ? f[4] * f[4] * old[2] : old[2];
+  t->b[3] = x0 * f[2] + x1 * f[3];
   mc_with_opening(&old[7], 4, t->b);
-  t->det = f[0] * f[4] - f[1] * f[3];
-  if (hoop) t->det *= f[8];
+  t->det = f[0] * f[3] - f[1] * f[2];
+  if (hoop) t->det *= f[4];
   return PETSC_TRUE;
 }
 
@@ -60,12 +57,13 @@ LANES_INLINE void mc_plane_axes(PlaneTrial *t)
   t->stretch2[MC_Z] = t->b[2];
 }
 
-LANES_INLINE PetscBool mc_plane_trial(const PetscBool hoop, PetscInt n, const PetscReal *dF, const Lanes old[MC_STATE],
-                                      PlaneTrial *t)
+/* near: are strains small as a rule? */
+LANES_INLINE PetscBool mc_plane_trial(const PetscBool hoop, const PetscBool near, const Lanes f[5],
+                                      const Lanes old[MC_STATE], PlaneTrial *t)
 {
   const Lanes one = (Lanes){0} + 1.0, none = {0};
   Lanes size, sum = none;
-  if (!mc_plane_push(hoop, n, dF, old, t)) return PETSC_FALSE;
+  if (!mc_plane_push(hoop, f, old, t)) return PETSC_FALSE;
   for (int k = 0; k < 4; ++k) {
     lanes_abs(&t->b[k], &size);
     sum += size;
@@ -75,7 +73,8 @@ LANES_INLINE PetscBool mc_plane_trial(const PetscBool hoop, PetscInt n, const Pe
   mc_plane_axes(t);
   t->finite &= (t->stretch2[MC_B] > 0.0) & (t->b[2] > 0.0);
   for (int a = 0; a < 3; ++a) {
-    lanes_log(&t->stretch2[a], &t->strain[a]);
+    if (near) lanes_log_near(&t->stretch2[a], &t->strain[a]);
+    else lanes_log(&t->stretch2[a], &t->strain[a]);
     t->strain[a] *= 0.5;
   }
   t->z_first = t->strain[MC_A] < t->strain[MC_Z];
@@ -118,8 +117,8 @@ LANES_INLINE void mc_plane_tensor(const PlaneTrial *t, const Lanes value[3], Lan
 
 /* b^e, the equivalent plastic strain and the opening, which `state` brings from before; an elastic
  * point keeps its trial b. */
-LANES_INLINE void mc_plane_state(const PetscReal *p, const PlaneTrial *t, const Lanes tau[3], const LaneBits *regions,
-                                 Lanes state[MC_STATE])
+LANES_INLINE void mc_plane_state(const PetscBool near, const PetscReal *p, const PlaneTrial *t, const Lanes tau[3],
+                                 const LaneBits *regions, Lanes state[MC_STATE])
 {
   const Lanes share = p[MC_LAMBDA] / (3.0 * p[MC_LAMBDA] + 2.0 * p[MC_MU]) * (tau[0] + tau[1] + tau[2]), none = {0};
   const LaneBits plastic = *regions != MC_ELASTIC;
@@ -134,7 +133,8 @@ LANES_INLINE void mc_plane_state(const PetscReal *p, const PlaneTrial *t, const 
     const Lanes elastic = (tau[a] - share) * per_twice_mu, twice = 2.0 * elastic;
     const Lanes plastic_strain = t->strain[a] - elastic - (1.0 / 3.0) * state[7];
     norm2 += plastic_strain * plastic_strain;
-    lanes_exp(&twice, &stretch2[a]);
+    if (near) lanes_exp_near(&twice, &stretch2[a]);
+    else lanes_exp(&twice, &stretch2[a]);
   }
   mc_plane_tensor(t, stretch2, b);
   norm2 *= 1.0 / (1.0 + p[MC_M] * p[MC_M]);

@@ -38,6 +38,10 @@ enum {
   MC_R2,
   MC_NOISE,  /* rounding of f at small strains, Pa */
   MC_MEMORY, /* share of an opening that is remembered */
+  MC_ONTO1,  /* tau_1 on LINE1 is MC_ONTO1 g . e + MC_FROM1 */
+  MC_FROM1,
+  MC_ONTO2, /* ... on LINE2 */
+  MC_FROM2,
   MC_N_PARAMETERS
 };
 
@@ -112,6 +116,20 @@ static inline PetscReal mc_on_line(const PetscReal *p, McRegion region, const Pe
   mc_compliance(p, edge.r, c_r);
   for (int k = 0; k < 3; ++k) c_base[k] = e[k] - c_base[k];
   return mc_dot(edge.g, c_base) / mc_dot(edge.g, c_r);
+}
+
+/* The same as two numbers for LINE1 and LINE2 each, in packed parameters that have all others. */
+static inline void mc_prepare_lines(PetscReal *p)
+{
+  for (int line = 0; line < 2; ++line) {
+    const McEdge edge = mc_edge(p, line ? MC_LINE2 : MC_LINE1);
+    const PetscReal base[3] = {0, line ? -p[MC_Q] : 0, -p[MC_Q]};
+    PetscReal c_base[3], c_r[3];
+    mc_compliance(p, base, c_base);
+    mc_compliance(p, edge.r, c_r);
+    p[MC_ONTO1 + 2 * line] = 1.0 / mc_dot(edge.g, c_r);
+    p[MC_FROM1 + 2 * line] = -mc_dot(edge.g, c_base) / mc_dot(edge.g, c_r);
+  }
 }
 
 /* Shear planes alone, the trial stress being outside. */

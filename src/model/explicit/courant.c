@@ -28,14 +28,6 @@ static PetscReal fastest_wave(const Model *m, PetscInt first, PetscInt n)
   return most / material->density;
 }
 
-/* Points from `first` on that one call of their law takes. */
-static PetscInt same_material(const Points *points, PetscInt first)
-{
-  PetscInt n = 1;
-  while (n < LAW_BATCH && first + n < points->n && points->material[first + n] == points->material[first]) ++n;
-  return n;
-}
-
 /* Of cells cut into triangles or graded: their smallest height. */
 static PetscReal cell_length(const Model *m)
 {
@@ -58,7 +50,7 @@ PetscErrorCode ExplicitCritical(const Model *m, PetscReal *critical, PetscReal *
 
   PetscFunctionBeginUser;
   for (PetscInt p = 0, n; p < m->points->n; p += n) {
-    n = same_material(m->points, p);
+    n = batch_points(m->points, p);
     const PetscReal wave = PetscSqrtReal(fastest_wave(m, p, n));
     PetscReal most = 0;
     for (PetscInt k = p; k < p + n; ++k) {

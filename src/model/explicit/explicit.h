@@ -48,9 +48,10 @@ typedef struct Explicit {
   PetscReal g[3];    /* gravity, m/s2 */
   PetscInt substeps; /* in the lap; and all */
   PetscInt taken;
-  PetscReal critical; /* substep, s, when it was last asked for, */
-  PetscInt since;     /* so many substeps ago */
-  PetscReal fastest;  /* of the points, m/s */
+  PetscBool begins, ends; /* is the substep the lap's first, its last? */
+  PetscReal critical;     /* substep, s, when it was last asked for, */
+  PetscInt since;         /* so many substeps ago */
+  PetscReal fastest;      /* of the points, m/s */
   LawStatus status;
   PetscReal external, boundary, damped; /* energies of the run's step, this rank's share, J */
   PetscReal outside;                    /* Model.outside.energy at its start, J */
@@ -64,6 +65,9 @@ PetscErrorCode ExplicitCreate(const Model *model, Explicit **explicit);
 /* Collective. Who reaches whom, who is held, and how many substeps of which length follow; left:
  * of the run's step, s. */
 PetscErrorCode LapBegin(Model *model, Explicit *e, PetscReal left);
+/* Walks by cells leave displacements to the lap: at its start (sign = -1) points lose their place from them, at
+ * its end (1) they get the new one. */
+void lap_displace(const Model *model, const Explicit *e, int sign);
 /* Collective. Points find their cells and ranks. */
 PetscErrorCode LapEnd(Model *model, StepReport *report);
 
@@ -84,26 +88,49 @@ void nodes_hold(Model *model, Explicit *e);
 PetscErrorCode NodesShare(const Model *model, PetscInt components, PetscReal *values);
 /* Momentum in `straining` becomes velocity, held where that is prescribed. */
 void nodes_strain(const Model *model, Explicit *e);
-/* Tracers and carriers of loads go with the nodes. Collective. */
+/* Tracers and carriers of loads go with the nodes, whose sums start anew. Collective. */
 PetscErrorCode NodesCarry(Model *model, Explicit *e);
+/* `straining` starts anew. */
+void nodes_forget(const Model *model, Explicit *e);
 
 /* points.c. Nodes get mass, momentum and forces. */
 void points_gather(const Model *model, Explicit *e);
 /* Points gain velocity, and give their momentum to `straining` where that is asked for. */
 void points_gain(const Model *model, Explicit *e);
-/* Points are strained, stressed and moved. */
+/* Points are strained, stressed and moved; walks by cells then give the nodes what they get in the next
+ * substep of the lap. */
 void points_strain(const Model *model, Explicit *e);
 
-/* One call of the law's. */
+/* Points of one material that are worked off together, component by component. Numbers behind the last point are
+ * an increment that changes nothing. */
 typedef struct {
-  PetscReal dF[9 * LAW_BATCH], move[3 * LAW_BATCH];
-  PetscReal old[LAW_MAX_STATE * LAW_BATCH], state[LAW_MAX_STATE * LAW_BATCH], tau[6 * LAW_BATCH];
-} Strained;
+  PetscReal dF[9][LAW_BATCH];  /* row by row; in the plane xx xy yx yy zz */
+  PetscReal tau[6][LAW_BATCH]; /* as POINT_TAU has them, Pa */
+} Batch;
 
-/* tau, Pa, and the states of n points of one material from `first` after b->dF; n <= LAW_BATCH. */
-LawStatus points_stress(const Model *model, PetscInt first, PetscInt n, Strained *b);
+/* tau and the states of n points of one material from `first` after b->dF; n <= LAW_BATCH. */
+static inline LawStatus batch_stress(const Model *m, PetscInt first, PetscInt n, Batch *b)
+{
+  const Material *material = &m->materials[m->points->material[first]];
+  const LawMarch march = {.dF = b->dF[0],
+                          .tau = b->tau[0],
+                          .state = point_real(m->points, POINT_STATE, first),
+                          .stride = m->points->components[POINT_STATE]};
+  return law_march(material->law, m->dim == 2, material->parameters, n, &march);
+}
+/* Points from `first` on that one call of their law takes. */
+static inline PetscInt batch_points(const Points *points, PetscInt first)
+{
+  PetscInt n = 1;
+  while (n < LAW_BATCH && first + n < points->n && points->material[first + n] == points->material[first]) ++n;
+  return n;
+}
 
 /* plane.c. The same three walks in the plane where e->box. */
 void plane_gather(const Model *model, Explicit *e);
 void plane_gain(const Model *model, Explicit *e);
 void plane_strain(const Model *model, Explicit *e);
+/* space.c. And in space. */
+void space_gather(const Model *model, Explicit *e);
+void space_gain(const Model *model, Explicit *e);
+void space_strain(const Model *model, Explicit *e);

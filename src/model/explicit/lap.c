@@ -54,9 +54,10 @@ PetscErrorCode ExplicitCreate(const Model *m, Explicit **explicit)
   e->width = 1 + 2 * dim;
   e->box = finds_by_arithmetic(m);
   if (e->box) lattice_of(m, &e->lattice);
-  PetscCall(PetscCalloc1(n * e->width, &e->sum));
-  PetscCall(PetscCalloc1(n * 2 * dim, &e->motion));
-  PetscCall(PetscCalloc1(n * dim, &e->straining));
+  /* whole registers are read from the last node on */
+  PetscCall(PetscCalloc1(n * e->width + 4, &e->sum));
+  PetscCall(PetscCalloc1(n * 2 * dim + 4, &e->motion));
+  PetscCall(PetscCalloc1(n * dim + 4, &e->straining));
   PetscCall(PetscCalloc1(n, &e->mark));
   PetscCall(PetscMalloc1(n, &e->active));
   if (m->contact) PetscCall(PetscCalloc2(m->contact->n_partners, &e->pushed, m->contact->n_partners, &e->rubbed));
@@ -148,6 +149,13 @@ static void choose_substeps(const Model *m, PetscReal left, Explicit *e)
   e->substeps = e->box ? PetscMax((PetscInt)most, 1) : 1;
 }
 
+void lap_displace(const Model *m, const Explicit *e, int sign)
+{
+  const PetscReal *x = m->points->real[POINT_X];
+  PetscReal *u = m->points->real[POINT_U];
+  for (PetscInt i = 0; e->box && i < m->points->n * m->dim; ++i) u[i] += sign * x[i];
+}
+
 PetscErrorCode LapBegin(Model *m, Explicit *e, PetscReal left)
 {
   PetscLogDouble clock;
@@ -163,6 +171,7 @@ PetscErrorCode LapBegin(Model *m, Explicit *e, PetscReal left)
   choose_substeps(m, left, e);
   PetscCall(ListActive(m, e));
   list_held(m, e);
+  lap_displace(m, e, -1);
   PetscCall(PhaseEnd(m->seconds, PHASE_PREPARE, &clock));
   PetscFunctionReturn(0);
 }

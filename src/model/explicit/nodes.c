@@ -157,9 +157,13 @@ PetscErrorCode NodesCarry(Model *m, Explicit *e)
   }
   if (tracers) PetscCall(Follow(m, m->tracers));
   if (m->c->n_loads) PetscCall(Follow(m, m->loads->carriers));
-  for (PetscInt k = 0; k < e->n_active; ++k) {
-    PetscCall(PetscArrayzero(e->sum + e->active[k] * e->width, e->width));
-    PetscCall(PetscArrayzero(e->straining + e->active[k] * dim, dim));
-  }
+  for (PetscInt k = 0; k < e->n_active; ++k)
+    for (PetscInt i = 0; i < e->width; ++i) e->sum[e->active[k] * e->width + i] = 0;
   PetscFunctionReturn(0);
+}
+
+void nodes_forget(const Model *m, Explicit *e)
+{
+  for (PetscInt k = 0; k < e->n_active; ++k)
+    for (PetscInt d = 0; d < m->dim; ++d) e->straining[e->active[k] * m->dim + d] = 0;
 }

@@ -1,88 +1,118 @@
-/* The walks of points.c in the plane, over boxes whose points find their nodes by arithmetic. The four nodes of
- * a cell stand side by side in a register, and points of a cell follow each other between laps: a cell's nodes are
- * fetched once for all of them, and what they give to the nodes is summed before it is brought there. */
-#include <string.h>
-#include "model/explicit/explicit.h"
-
-#define KERNEL static inline __attribute__((always_inline))
-
-/* A number of each node of a cell, or four of a point. */
-typedef PetscReal Four __attribute__((vector_size(4 * sizeof(PetscReal))));
+/* The walks of points.c in the plane, over boxes whose points find their nodes by arithmetic. What each point does
+ * alone is done for four points at a time; what is between points and nodes, for the four nodes of a cell: points
+ * of a cell follow each other between laps, so that its nodes are fetched once for all of them, and what they give
+ * to the nodes is summed before it is brought there. */
+#include "model/explicit/four.h"
 
 static const Four slope[2] = {{-1, 1, -1, 1}, {-1, -1, 1, 1}}, begin[2] = {{1, 0, 1, 0}, {1, 1, 0, 0}};
 
-/* the same anywhere in memory */
-typedef Four FourAnywhere __attribute__((aligned(sizeof(PetscReal)), may_alias));
-
-#define FOUR(at) (*(FourAnywhere *)(at))
-
-KERNEL PetscReal total(const Four *a) { return ((*a)[0] + (*a)[1]) + ((*a)[2] + (*a)[3]); }
-
-/* The cell that x stands in and where, from its first node, both in [0, 1]; beyond the box, its last cell. */
-KERNEL PetscInt cell_of(const Lattice *l, const PetscReal *x, PetscReal at[2])
+/* x and y of four points from two registers in which they follow each other. */
+KERNEL void part(const Four pair[2], Four xy[2])
 {
-  PetscInt first = 0;
-  for (int d = 0; d < 2; ++d) {
-    const PetscReal s = (x[d] - l->origin[d]) * l->per_length[d];
-    const PetscInt i = PetscMin((PetscInt)(s > 0 ? s : 0), l->most[d]);
-    at[d] = s - (PetscReal)i;
-    first += i * l->stride[d];
+  xy[0] = __builtin_shufflevector(pair[0], pair[1], 0, 2, 4, 6);
+  xy[1] = __builtin_shufflevector(pair[0], pair[1], 1, 3, 5, 7);
+}
+
+/* Where n points stand, x: n x 2. */
+KERNEL void locate(const Lattice *l, PetscInt n, const PetscReal *x, Place *place)
+{
+  for (PetscInt k = 0; k < n; k += 4) {
+    Four pair[2], xy[2];
+    FourCells first = {0};
+    take(x + 2 * k, 2 * (n - k), &pair[0]);
+    take(x + 2 * k + 4, 2 * (n - k) - 4, &pair[1]);
+    part(pair, xy);
+    for (int d = 0; d < 2; ++d) locate_along(l, d, &xy[d], &first, place->at[d] + k);
+    memcpy(place->cell + k, &first, sizeof first);
   }
-  return first;
 }
 
-/* Shape functions along each axis. */
-KERNEL void along(const PetscReal at[2], Four N[2])
+/* N of four points at each of their nodes. */
+KERNEL void shapes(const Place *place, PetscInt k, Four N[4])
 {
-  for (int d = 0; d < 2; ++d) N[d] = begin[d] + at[d] * slope[d];
+  const Four x = FOUR_OF(place->at[0] + k), y = FOUR_OF(place->at[1] + k);
+  for (int i = 0; i < 4; ++i) N[i] = (i & 1 ? x : 1 - x) * (i & 2 ? y : 1 - y);
 }
 
-/* n numbers of each node of the cell go to the nodes; the sums start anew. */
-KERNEL void bring(const int n, const Lattice *l, PetscInt cell, Four *sum, PetscReal *nodes)
+/* Functions along each axis of one point at the four nodes. */
+KERNEL void along(const Place *place, PetscInt k, Four N[2])
 {
+  for (int d = 0; d < 2; ++d) N[d] = begin[d] + place->at[d][k] * slope[d];
+}
+
+/* n numbers of each node of the cell go to the nodes; the sums start anew. The first four are turned, to be added
+ * at once. */
+KERNEL void bring(const int n, const Lattice *l, int32_t cell, Four *sum, PetscReal *nodes)
+{
+  Four row[4];
+  for (int i = 0; i < 4; ++i) row[i] = i < n ? sum[i] : (Four){0};
+  if (n > 2) turn(row);
   for (int k = 0; k < 4 && cell >= 0; ++k) {
     PetscReal *to = nodes + l->number[cell + l->corner[k]] * n;
-    for (int i = 0; i < n; ++i) to[i] += sum[i][k];
+    if (n > 2) FOUR(to) += row[k];
+    for (int i = n > 2 ? 4 : 0; i < n; ++i) to[i] += sum[i][k];
   }
   for (int i = 0; i < n; ++i) sum[i] = (Four){0};
 }
 
-/* f_I = - V_0 tau grad N_I, with gradients where the point is now. */
-KERNEL void gather(const PetscBool hoop, const Points *points, Explicit *e)
-{
-  const Lattice l = e->lattice;
-  const Four rise[2] = {slope[0] * l.per_length[0], slope[1] * l.per_length[1]};
-  Four sum[5] = {{0}}, N[2];
-  PetscReal at[2];
-  PetscInt cell = -1;
-  for (PetscInt p = 0; p < points->n; ++p) {
-    const PetscReal *x = point_real(points, POINT_X, p), *v = point_real(points, POINT_V, p);
-    const PetscReal mass = points->real[POINT_MASS][p];
-    const Four tau = -points->real[POINT_VOLUME][p] * FOUR(point_real(points, POINT_TAU, p));
-    const PetscInt now = cell_of(&l, x, at);
-    if (now != cell) bring(5, &l, cell, sum, e->sum);
-    cell = now;
-    along(at, N);
-    const Four weight = N[0] * N[1], dx = rise[0] * N[1], dy = rise[1] * N[0];
-    sum[0] += mass * weight;
-    sum[1] += mass * v[0] * weight;
-    sum[2] += mass * v[1] * weight;
-    sum[3] += tau[0] * dx + tau[3] * dy;
-    sum[4] += tau[3] * dx + tau[1] * dy;
-    if (hoop) sum[3] += tau[2] / x[0] * weight;
-  }
-  bring(5, &l, cell, sum, e->sum);
-}
-
 /* Of the cell's nodes: velocity and gain, row by row. */
-KERNEL void fetch_motion(const Explicit *e, const Lattice *l, PetscInt cell, Four motion[4])
+KERNEL void fetch_motion(const Explicit *e, const Lattice *l, int32_t cell, Four motion[4])
 {
   for (int k = 0; k < 4; ++k) motion[k] = FOUR(e->motion + l->number[cell + l->corner[k]] * 4);
 }
 
-KERNEL void mean(const Four *N, const Four motion[4], Four *to)
+/* Mass, momentum and force of n points of a batch from `first`; tau: -V_0 times the stress. */
+typedef struct {
+  Place place;
+  PetscReal mass[LAW_BATCH], momentum[2 * LAW_BATCH], tau[4][LAW_BATCH];
+} Given;
+
+KERNEL void weigh(const Points *points, PetscInt first, PetscInt n, Given *g)
 {
-  *to = ((*N)[0] * motion[0] + (*N)[1] * motion[1]) + ((*N)[2] * motion[2] + (*N)[3] * motion[3]);
+  const PetscReal *v = point_real(points, POINT_V, first), *mass = points->real[POINT_MASS] + first;
+  for (PetscInt k = 0; k < n; ++k) {
+    g->mass[k] = mass[k];
+    g->momentum[2 * k] = mass[k] * v[2 * k];
+    g->momentum[2 * k + 1] = mass[k] * v[2 * k + 1];
+  }
+}
+
+/* f_I = - V_0 tau grad N_I, with gradients where the point is now. cell: that of the sums so far. */
+KERNEL void give(const PetscBool hoop, const Points *points, PetscInt first, PetscInt n, const Given *g, int32_t *cell,
+                 Four sum[5], Explicit *e)
+{
+  const Lattice *l = &e->lattice;
+  const Four rise[2] = {slope[0] * l->per_length[0], slope[1] * l->per_length[1]};
+  Four N[2];
+  for (PetscInt k = 0; k < n; ++k) {
+    if (g->place.cell[k] != *cell) bring(5, l, *cell, sum, e->sum);
+    *cell = g->place.cell[k];
+    along(&g->place, k, N);
+    const Four weight = N[0] * N[1], dx = rise[0] * N[1], dy = rise[1] * N[0];
+    sum[0] += g->mass[k] * weight;
+    sum[1] += g->momentum[2 * k] * weight;
+    sum[2] += g->momentum[2 * k + 1] * weight;
+    sum[3] += g->tau[0][k] * dx + g->tau[3][k] * dy;
+    sum[4] += g->tau[3][k] * dx + g->tau[1][k] * dy;
+    if (hoop) sum[3] += g->tau[2][k] / *point_real(points, POINT_X, first + k) * weight;
+  }
+}
+
+KERNEL void gather(const PetscBool hoop, const Points *points, Explicit *e)
+{
+  Four sum[5] = {{0}};
+  int32_t cell = -1;
+  Given g;
+  for (PetscInt first = 0; first < points->n; first += LAW_BATCH) {
+    const PetscInt n = PetscMin(LAW_BATCH, points->n - first);
+    const PetscReal *tau = point_real(points, POINT_TAU, first), *volume = points->real[POINT_VOLUME] + first;
+    locate(&e->lattice, n, point_real(points, POINT_X, first), &g.place);
+    weigh(points, first, n, &g);
+    for (PetscInt k = 0; k < n; ++k)
+      for (int i = 0; i < 4; ++i) g.tau[i][k] = -volume[k] * tau[4 * k + i];
+    give(hoop, points, first, n, &g, &cell, sum, e);
+  }
+  bring(5, &e->lattice, cell, sum, e->sum);
 }
 
 void plane_gather(const Model *m, Explicit *e)
@@ -91,45 +121,86 @@ void plane_gather(const Model *m, Explicit *e)
   else gather(PETSC_FALSE, m->points, e);
 }
 
+/* Velocity and gain of the nodes where the points of a batch are. */
+KERNEL void feel(const Explicit *e, const Place *place, PetscInt n, Four *felt)
+{
+  PetscReal N[4][LAW_BATCH];
+  Four motion[4] = {{0}}, shape[4];
+  int32_t cell = -1;
+  for (PetscInt k = 0; k < n; k += 4) {
+    shapes(place, k, shape);
+    for (int i = 0; i < 4; ++i) FOUR(N[i] + k) = shape[i];
+  }
+  for (PetscInt k = 0; k < n; ++k) {
+    if (place->cell[k] != cell) fetch_motion(e, &e->lattice, cell = place->cell[k], motion);
+    felt[k] = (N[0][k] * motion[0] + N[1][k] * motion[1]) + (N[2][k] * motion[2] + N[3][k] * motion[3]);
+  }
+}
+
+/* Points k and k + 1 of a batch gain velocity: `left` numbers from v on are the batch's. */
+KERNEL void speed_up(const Explicit *e, const Four *felt, const Four *mass, PetscInt left, PetscReal *v, PetscReal *a,
+                     PetscReal *momentum, Four *damped)
+{
+  const PetscReal kept = 1 - e->fade;
+  const Four gained = __builtin_shufflevector(felt[0], felt[1], 2, 3, 6, 7);
+  Four old;
+  take(v, left, &old);
+  const Four now = kept * old + gained;
+  *damped += *mass * (old * old);
+  put(&now, left, v);
+  FOUR(momentum) = *mass * now;
+  if (!e->ends) return;
+  const Four acceleration = gained * (1 / e->kick);
+  put(&acceleration, left, a);
+}
+
+/* ... and all of them. */
+KERNEL void speed_up_all(const Points *points, PetscInt first, PetscInt n, const Explicit *e, const Four *felt,
+                         PetscReal *momentum, Four *damped)
+{
+  PetscReal *v = point_real(points, POINT_V, first), *a = point_real(points, POINT_A, first);
+  for (PetscInt k = 0; k < n; k += 4) {
+    Four mass;
+    take(points->real[POINT_MASS] + first + k, n - k, &mass);
+    const Four low = __builtin_shufflevector(mass, mass, 0, 0, 1, 1),
+               high = __builtin_shufflevector(mass, mass, 2, 2, 3, 3);
+    speed_up(e, felt + k, &low, 2 * (n - k), v + 2 * k, a + 2 * k, momentum + 2 * k, damped);
+    speed_up(e, felt + k + 2, &high, 2 * (n - k) - 4, v + 2 * k + 4, a + 2 * k + 4, momentum + 2 * k + 4, damped);
+  }
+}
+
 void plane_gain(const Model *m, Explicit *e)
 {
   const Points *points = m->points;
-  const Lattice l = e->lattice;
   const PetscBool again = m->c->analysis.update == EXPLICIT_MUSL;
-  const PetscReal per_second = 1 / e->kick, kept = 1 - e->fade, lost = 0.5 * e->fade * (2 - e->fade);
-  Four sum[2] = {{0}}, motion[4] = {{0}}, N[2];
-  PetscReal at[2], damped = 0;
-  PetscInt cell = -1;
-  for (PetscInt p = 0; p < points->n; ++p) {
-    PetscReal *v = point_real(points, POINT_V, p), *a = point_real(points, POINT_A, p);
-    const PetscReal mass = points->real[POINT_MASS][p];
-    const PetscInt now = cell_of(&l, point_real(points, POINT_X, p), at);
-    if (now != cell) {
-      if (again) bring(2, &l, cell, sum, e->straining);
-      fetch_motion(e, &l, now, motion);
-    }
-    cell = now;
-    along(at, N);
-    const Four weight = N[0] * N[1];
-    Four gained;
-    mean(&weight, motion, &gained);
-    damped += lost * mass * (v[0] * v[0] + v[1] * v[1]);
-    for (int d = 0; d < 2; ++d) {
-      v[d] = kept * v[d] + gained[2 + d];
-      a[d] = gained[2 + d] * per_second;
-      sum[d] += mass * v[d] * weight;
+  PetscReal momentum[2 * LAW_BATCH];
+  Four sum[2] = {{0}}, damped = {0}, felt[LAW_BATCH] = {{0}}, N[2];
+  int32_t cell = -1;
+  Place place;
+  for (PetscInt first = 0; first < points->n; first += LAW_BATCH) {
+    const PetscInt n = PetscMin(LAW_BATCH, points->n - first);
+    locate(&e->lattice, n, point_real(points, POINT_X, first), &place);
+    feel(e, &place, n, felt);
+    speed_up_all(points, first, n, e, felt, momentum, &damped);
+    for (PetscInt k = 0; again && k < n; ++k) {
+      if (place.cell[k] != cell) bring(2, &e->lattice, cell, sum, e->straining);
+      cell = place.cell[k];
+      along(&place, k, N);
+      const Four weight = N[0] * N[1];
+      for (int d = 0; d < 2; ++d) sum[d] += momentum[2 * k + d] * weight;
     }
   }
-  if (again) bring(2, &l, cell, sum, e->straining);
-  e->damped += damped;
+  if (again) bring(2, &e->lattice, cell, sum, e->straining);
+  e->damped += 0.5 * e->fade * (2 - e->fade) * ((damped[0] + damped[1]) + (damped[2] + damped[3]));
 }
 
 /* What strains the points of a cell: gradient = constant + bilinear {y, y, x, x}, of rows xx yx xy yy. */
 typedef struct {
-  Four motion[4], constant, bilinear, first; /* first: component x of the nodes' velocities */
+  Four motion[4], constant, bilinear;
+  PetscReal first[4]; /* component x of the nodes' velocities */
 } Flow;
 
-KERNEL void fetch_flow(const Explicit *e, const Lattice *l, PetscInt cell, Flow *f)
+KERNEL void fetch_flow(const Explicit *e, const Lattice *l, int32_t cell, Flow *f)
 {
   const Four per_length = {l->per_length[0], l->per_length[0], l->per_length[1], l->per_length[1]};
   const PetscReal *v[4];
@@ -143,61 +214,128 @@ KERNEL void fetch_flow(const Explicit *e, const Lattice *l, PetscInt cell, Flow 
   }
   f->constant *= e->dt * per_length;
   f->bilinear *= e->dt * per_length;
-  f->first = (Four){v[0][0], v[1][0], v[2][0], v[3][0]};
+  for (int k = 0; k < 4; ++k) f->first[k] = v[k][0];
 }
 
-/* F, J, stress and its work, as `keep` of points.c has them; strain: dF - 1 of xx yx xy yy, ring: of zz. */
-KERNEL void keep(Points *points, PetscInt p, const Four *strain, PetscReal ring, const PetscReal *new_tau)
+/* Strain increments dF - 1 of a batch: rows xx yx xy yy a point, and zz where that is a ring; and by how much the
+ * points move. */
+typedef struct {
+  Four A[LAW_BATCH], move[LAW_BATCH];
+  PetscReal ring[LAW_BATCH];
+} Strain;
+
+KERNEL void flow_past(const PetscBool hoop, const Points *points, PetscInt first, PetscInt n, const Explicit *e,
+                      const Place *place, Strain *s)
 {
-  PetscReal *F = point_real(points, POINT_F, p), *stress = point_real(points, POINT_TAU, p);
-  const Four A = *strain, f = FOUR(F), old = FOUR(stress), tau = FOUR(new_tau);
-  const Four left = {A[0], A[0], A[1], A[1]}, right = {A[2], A[2], A[3], A[3]};
-  const Four upper = {f[0], f[1], f[0], f[1]}, lower = {f[2], f[3], f[2], f[3]};
-  const Four new_F = f + left * upper + right * lower;
-  const PetscReal across = A[1] * A[2], shear = A[1] + A[2];
-  const Four sum = {A[0], A[3], ring, shear};
-  const Four square = {A[0] * A[0] + across, A[3] * A[3] + across, ring * ring, (A[0] + A[3]) * shear};
-  FOUR(F) = new_F;
-  F[4] += ring * F[4];
-  points->real[POINT_J][p] *= ((1 + A[0]) * (1 + A[3]) - across) * (1 + ring);
-  FOUR(stress) = tau;
-  const Four work = old * sum + tau * (sum - square);
-  points->real[POINT_WORK][p] += 0.5 * points->real[POINT_VOLUME][p] * total(&work);
+  PetscReal N[4][LAW_BATCH];
+  Four shape[4];
+  Flow f = {0};
+  int32_t cell = -1;
+  for (PetscInt k = 0; k < n; k += 4) {
+    shapes(place, k, shape);
+    for (int i = 0; i < 4; ++i) FOUR(N[i] + k) = shape[i];
+  }
+  for (PetscInt k = 0; k < n; ++k) {
+    const PetscReal x = place->at[0][k], y = place->at[1][k];
+    if (place->cell[k] != cell) fetch_flow(e, &e->lattice, cell = place->cell[k], &f);
+    s->A[k] = f.constant + f.bilinear * (Four){y, y, x, x};
+    s->move[k] = (N[0][k] * f.motion[0] + N[1][k] * f.motion[1]) + (N[2][k] * f.motion[2] + N[3][k] * f.motion[3]);
+    if (hoop) {
+      const PetscReal v = N[0][k] * f.first[0] + N[1][k] * f.first[1] + N[2][k] * f.first[2] + N[3][k] * f.first[3];
+      s->ring[k] = e->dt * v / *point_real(points, POINT_X, first + k);
+    }
+  }
+  for (PetscInt k = n; k < LAW_BATCH; ++k) {
+    s->A[k] = (Four){0};
+    s->ring[k] = 0;
+  }
+}
+
+/* F of one point after dF. */
+KERNEL void deform(const Four *A, PetscReal *F)
+{
+  const Four f = FOUR(F), left = __builtin_shufflevector(*A, *A, 0, 0, 1, 1),
+             right = __builtin_shufflevector(*A, *A, 2, 2, 3, 3);
+  const Four upper = __builtin_shufflevector(f, f, 0, 1, 0, 1), lower = __builtin_shufflevector(f, f, 2, 3, 2, 3);
+  FOUR(F) = f + left * upper + right * lower;
+}
+
+/* Four points from p on move; F, J and the law's dF. n: as many of them are the batch's. */
+KERNEL void move_on(const PetscBool hoop, Points *points, PetscInt p, PetscInt n, const Explicit *e, Strain *s,
+                    PetscInt k, Batch *b)
+{
+  PetscReal *x = point_real(points, POINT_X, p), *F = point_real(points, POINT_F, p);
+  Four A[4], pair, J, ring = {0};
+  for (int i = 0; i < 2; ++i) {
+    take(x + 4 * i, 2 * n - 4 * i, &pair);
+    pair += e->dt * __builtin_shufflevector(s->move[k + 2 * i], s->move[k + 2 * i + 1], 0, 1, 4, 5);
+    put(&pair, 2 * n - 4 * i, x + 4 * i);
+  }
+  for (PetscInt i = 0; i < PetscMin(n, 4); ++i) {
+    deform(&s->A[k + i], F + 5 * i);
+    if (hoop) F[5 * i + 4] += s->ring[k + i] * F[5 * i + 4];
+  }
+  if (hoop) ring = FOUR(s->ring + k);
+  for (int i = 0; i < 4; ++i) A[i] = s->A[k + i];
+  turn(A);
+  take(points->real[POINT_J] + p, n, &J);
+  J *= ((1 + A[0]) * (1 + A[3]) - A[1] * A[2]) * (1 + ring);
+  put(&J, n, points->real[POINT_J] + p);
+  FOUR(b->dF[0] + k) = 1 + A[0];
+  FOUR(b->dF[1] + k) = A[2];
+  FOUR(b->dF[2] + k) = A[1];
+  FOUR(b->dF[3] + k) = 1 + A[3];
+  FOUR(b->dF[4] + k) = 1 + ring;
+}
+
+/* Stress of four points from p on, and its work, as `keep` of points.c has them. */
+KERNEL void keep(const PetscBool hoop, Points *points, PetscInt p, PetscInt n, const Batch *b, PetscInt k, Given *g)
+{
+  PetscReal *stress = point_real(points, POINT_TAU, p);
+  Four old[4], tau[4], volume, work, part_of = {0};
+  for (int i = 0; i < 4; ++i) take(stress + 4 * i, n > i ? 4 : 0, &old[i]);
+  turn(old);
+  for (int i = 0; i < 4; ++i) tau[i] = FOUR_OF(b->tau[i] + k);
+  const Four xx = FOUR_OF(b->dF[0] + k) - 1, xy = FOUR_OF(b->dF[1] + k), yx = FOUR_OF(b->dF[2] + k);
+  const Four yy = FOUR_OF(b->dF[3] + k) - 1, across = xy * yx, shear = xy + yx;
+  if (hoop) {
+    const Four ring = FOUR_OF(b->dF[4] + k) - 1;
+    part_of = old[2] * ring + tau[2] * (ring - ring * ring);
+  }
+  part_of += old[0] * xx + old[1] * yy + old[3] * shear + tau[0] * (xx - xx * xx - across) +
+             tau[1] * (yy - yy * yy - across) + tau[3] * (shear - (xx + yy) * shear);
+  take(points->real[POINT_VOLUME] + p, n, &volume);
+  take(points->real[POINT_WORK] + p, n, &work);
+  work += 0.5 * volume * part_of;
+  put(&work, n, points->real[POINT_WORK] + p);
+  for (int i = 0; i < 4; ++i) FOUR(g->tau[i] + k) = -volume * tau[i];
+  turn(tau);
+  for (int i = 0; i < 4 && i < n; ++i) FOUR(stress + 4 * i) = tau[i];
 }
 
 KERNEL void strain(const PetscBool hoop, const Model *m, Explicit *e)
 {
   Points *points = m->points;
-  const Lattice l = e->lattice;
-  Flow flow = {0};
-  Strained b;
-  Four A[LAW_BATCH], N[2], move;
-  PetscReal at[2], ring[LAW_BATCH] = {0};
-  PetscInt cell = -1;
+  Four sum[5] = {{0}};
+  int32_t cell = -1;
+  Strain s;
+  Batch b = {{{0}}};
+  Given g;
+  for (int k = 0; k < LAW_BATCH; ++k) b.dF[0][k] = b.dF[3][k] = b.dF[4][k] = 1; /* lanes behind the last point */
   for (PetscInt first = 0, n; first < points->n; first += n) {
-    for (n = 0; n < LAW_BATCH && first + n < points->n; ++n) {
-      if (points->material[first + n] != points->material[first]) break;
-      PetscReal *x = point_real(points, POINT_X, first + n), *u = point_real(points, POINT_U, first + n);
-      const PetscInt now = cell_of(&l, x, at);
-      if (now != cell) fetch_flow(e, &l, now, &flow);
-      cell = now;
-      along(at, N);
-      A[n] = flow.constant + flow.bilinear * (Four){at[1], at[1], at[0], at[0]};
-      const Four weight = N[0] * N[1], share = weight * flow.first;
-      if (hoop) ring[n] = e->dt * total(&share) / x[0];
-      const PetscReal dF[9] = {1 + A[n][0], A[n][2], 0, A[n][1], 1 + A[n][3], 0, 0, 0, 1 + ring[n]};
-      memcpy(b.dF + 9 * n, dF, sizeof dF);
-      mean(&weight, flow.motion, &move);
-      move *= e->dt;
-      for (int d = 0; d < 2; ++d) {
-        x[d] += move[d];
-        u[d] += move[d];
-      }
-    }
-    const LawStatus status = points_stress(m, first, n, &b);
+    n = batch_points(points, first);
+    locate(&e->lattice, n, point_real(points, POINT_X, first), &g.place);
+    flow_past(hoop, points, first, n, e, &g.place, &s);
+    for (PetscInt k = 0; k < n; k += 4) move_on(hoop, points, first + k, n - k, e, &s, k, &b);
+    const LawStatus status = batch_stress(m, first, n, &b);
     e->status = PetscMax(e->status, status);
-    for (PetscInt k = 0; k < n; ++k) keep(points, first + k, &A[k], ring[k], b.tau + 6 * k);
+    for (PetscInt k = 0; k < n; k += 4) keep(hoop, points, first + k, n - k, &b, k, &g);
+    if (e->ends) continue;
+    weigh(points, first, n, &g);
+    locate(&e->lattice, n, point_real(points, POINT_X, first), &g.place);
+    give(hoop, points, first, n, &g, &cell, sum, e);
   }
+  bring(5, &e->lattice, cell, sum, e->sum);
 }
 
 void plane_strain(const Model *m, Explicit *e)

@@ -1,55 +1,20 @@
-/* The three walks over the points of a substep, with sizes known to the compiler where points find their nodes
- * by arithmetic; in the plane those have walks of their own (plane.c). */
+/* The three walks over the points of a substep, for any grid and basis. Boxes where points find their nodes by
+ * arithmetic have walks of their own, in the plane (plane.c) and in space (space.c). */
 #include <string.h>
 #include "base/math/tensor.h"
 #include "model/explicit/explicit.h"
 
 #define KERNEL static inline __attribute__((always_inline))
 
-/* Nodes that a point sees, N and dN there. `own` is room for those that are found by arithmetic. */
+/* Nodes that a point sees, N and dN there. */
 typedef struct {
   PetscInt nn, group;
   const PetscInt *node;
   const PetscReal *N, *dN;
 } Sight;
 
-typedef struct {
-  PetscInt node[8];
-  PetscReal N[8], dN[24];
-} Near;
-
-/* Linear functions of the box's cell that x stands in; beyond the box, those of the last one. */
-KERNEL void lattice_near(const int dim, const Lattice *l, const PetscReal *x, Near *near)
+KERNEL void look(const int dim, const Support *w, PetscInt p, Sight *s)
 {
-  PetscReal N[3][2];
-  PetscInt first = 0;
-  for (int d = 0; d < dim; ++d) {
-    const PetscReal s = (x[d] - l->origin[d]) * l->per_length[d];
-    const PetscInt i = PetscMin((PetscInt)(s > 0 ? s : 0), l->most[d]);
-    N[d][1] = s - (PetscReal)i;
-    N[d][0] = 1 - N[d][1];
-    first += i * l->stride[d];
-  }
-#pragma GCC unroll 8
-  for (int k = 0; k < 1 << dim; ++k) {
-    const int a = k & 1, b = k >> 1 & 1, c = k >> 2;
-    const PetscReal z = dim == 3 ? N[2][c] : 1;
-    near->node[k] = l->number[first + l->corner[k]];
-    near->N[k] = N[0][a] * N[1][b] * z;
-    near->dN[k * dim] = (a ? 1 : -1) * l->per_length[0] * N[1][b] * z;
-    near->dN[k * dim + 1] = (b ? 1 : -1) * l->per_length[1] * N[0][a] * z;
-    if (dim == 3) near->dN[k * dim + 2] = (c ? 1 : -1) * l->per_length[2] * N[0][a] * N[1][b];
-  }
-}
-
-KERNEL void look(const int dim, const PetscBool box, const Model *m, const Lattice *l, PetscInt p, Near *near, Sight *s)
-{
-  const Support *w = m->space->support;
-  if (box) {
-    lattice_near(dim, l, point_real(m->points, POINT_X, p), near);
-    *s = (Sight){.nn = 1 << dim, .node = near->node, .N = near->N, .dN = near->dN};
-    return;
-  }
   while (p >= w->point_start[s->group + 1]) ++s->group;
   s->nn = support_nodes(w, s->group);
   s->node = w->node + w->node_start[s->group];
@@ -58,20 +23,19 @@ KERNEL void look(const int dim, const PetscBool box, const Model *m, const Latti
 }
 
 /* f_I = - V_0 tau grad N_I, with gradients where the point is now. */
-KERNEL void gather(const int dim, const PetscBool hoop, const PetscBool box, const Model *m, Explicit *e)
+KERNEL void gather(const int dim, const PetscBool hoop, const Model *m, Explicit *e)
 {
   const Points *points = m->points;
   const PetscInt width = 1 + 2 * dim;
   Sight s = {0};
-  Near near;
   for (PetscInt p = 0; p < points->n; ++p) {
     const PetscReal *v = point_real(points, POINT_V, p), mass = points->real[POINT_MASS][p];
     const PetscReal volume = points->real[POINT_VOLUME][p], *stress = point_real(points, POINT_TAU, p);
     PetscReal tau[6];
     for (int k = 0; k < 6; ++k) tau[k] = k < (dim == 2 ? 4 : 6) ? -volume * stress[k] : 0;
-    look(dim, box, m, &e->lattice, p, &near, &s);
+    look(dim, m->space->support, p, &s);
     const PetscReal ring = hoop ? tau[2] / *point_real(points, POINT_X, p) : 0;
-    for (PetscInt k = 0; k < (box ? 1 << dim : s.nn); ++k) {
+    for (PetscInt k = 0; k < s.nn; ++k) {
       PetscReal *sum = e->sum + s.node[k] * width;
       const PetscReal share = mass * s.N[k];
       sum[0] += share;
@@ -85,37 +49,36 @@ KERNEL void gather(const int dim, const PetscBool hoop, const PetscBool box, con
   }
 }
 
-KERNEL void gain(const int dim, const PetscBool box, const Model *m, Explicit *e)
+KERNEL void gain(const int dim, const Model *m, Explicit *e)
 {
   const Points *points = m->points;
   const PetscBool again = m->c->analysis.update == EXPLICIT_MUSL;
   const PetscReal per_second = 1 / e->kick;
   PetscReal damped = 0;
   Sight s = {0};
-  Near near;
   for (PetscInt p = 0; p < points->n; ++p) {
     PetscReal *v = point_real(points, POINT_V, p), *a = point_real(points, POINT_A, p), gained[3] = {0};
     const PetscReal mass = points->real[POINT_MASS][p];
-    look(dim, box, m, &e->lattice, p, &near, &s);
-    for (PetscInt k = 0; k < (box ? 1 << dim : s.nn); ++k)
+    look(dim, m->space->support, p, &s);
+    for (PetscInt k = 0; k < s.nn; ++k)
       for (int d = 0; d < dim; ++d) gained[d] += s.N[k] * e->motion[s.node[k] * 2 * dim + dim + d];
     for (int d = 0; d < dim; ++d) {
       damped += 0.5 * mass * v[d] * v[d] * e->fade * (2 - e->fade);
       v[d] += gained[d] - e->fade * v[d];
       a[d] = gained[d] * per_second;
     }
-    for (PetscInt k = 0; again && k < (box ? 1 << dim : s.nn); ++k)
+    for (PetscInt k = 0; again && k < s.nn; ++k)
       for (int d = 0; d < dim; ++d) e->straining[s.node[k] * dim + d] += mass * s.N[k] * v[d];
   }
   e->damped += damped;
 }
 
-KERNEL void strain_point(const int dim, const PetscBool hoop, const PetscBool box, const Model *m, const Explicit *e,
-                         const Sight *s, PetscInt p, PetscReal *dF, PetscReal *move)
+KERNEL void strain_point(const int dim, const PetscBool hoop, const Model *m, const Explicit *e, const Sight *s,
+                         PetscInt p, PetscReal *dF, PetscReal *move)
 {
   PetscReal L[9] = {0}, ring = 0;
   for (int d = 0; d < dim; ++d) move[d] = 0;
-  for (PetscInt k = 0; k < (box ? 1 << dim : s->nn); ++k) {
+  for (PetscInt k = 0; k < s->nn; ++k) {
     const PetscReal *v = e->straining + s->node[k] * dim, *now = e->motion + s->node[k] * 2 * dim;
     for (int d = 0; d < dim; ++d) {
       for (int j = 0; j < dim; ++j) L[3 * d + j] += v[d] * s->dN[k * dim + j];
@@ -128,7 +91,13 @@ KERNEL void strain_point(const int dim, const PetscBool hoop, const PetscBool bo
   for (int d = 0; d < dim; ++d) move[d] *= e->dt;
 }
 
-LawStatus points_stress(const Model *m, PetscInt first, PetscInt n, Strained *b)
+/* One call of the law's. */
+typedef struct {
+  PetscReal dF[9 * LAW_BATCH], move[3 * LAW_BATCH];
+  PetscReal old[LAW_MAX_STATE * LAW_BATCH], state[LAW_MAX_STATE * LAW_BATCH], tau[6 * LAW_BATCH];
+} Strained;
+
+static LawStatus points_stress(const Model *m, PetscInt first, PetscInt n, Strained *b)
 {
   const Material *material = &m->materials[m->points->material[first]];
   const PetscInt n_state = material->law->n_state, stride = m->points->components[POINT_STATE];
@@ -174,17 +143,16 @@ KERNEL void keep(const int dim, Points *points, PetscInt p, const PetscReal *dF,
   points->real[POINT_WORK][p] += 0.5 * points->real[POINT_VOLUME][p] * work;
 }
 
-KERNEL void strain(const int dim, const PetscBool hoop, const PetscBool box, const Model *m, Explicit *e)
+KERNEL void strain(const int dim, const PetscBool hoop, const Model *m, Explicit *e)
 {
   Points *points = m->points;
   Sight s = {0};
-  Near near;
   Strained b;
   for (PetscInt first = 0, n; first < points->n; first += n) {
     for (n = 0; n < LAW_BATCH && first + n < points->n; ++n) {
       if (points->material[first + n] != points->material[first]) break;
-      look(dim, box, m, &e->lattice, first + n, &near, &s);
-      strain_point(dim, hoop, box, m, e, &s, first + n, b.dF + 9 * n, b.move + 3 * n);
+      look(dim, m->space->support, first + n, &s);
+      strain_point(dim, hoop, m, e, &s, first + n, b.dF + 9 * n, b.move + 3 * n);
     }
     const LawStatus status = points_stress(m, first, n, &b);
     e->status = PetscMax(e->status, status);
@@ -200,28 +168,26 @@ KERNEL void strain(const int dim, const PetscBool hoop, const PetscBool box, con
 
 void points_gather(const Model *m, Explicit *e)
 {
-  const PetscBool hoop = m->c->kinematics->hoop;
-  if (m->dim == 3 && e->box) gather(3, PETSC_FALSE, PETSC_TRUE, m, e);
-  else if (m->dim == 3) gather(3, PETSC_FALSE, PETSC_FALSE, m, e);
+  if (e->box && m->dim == 3) space_gather(m, e);
   else if (e->box) plane_gather(m, e);
-  else if (hoop) gather(2, PETSC_TRUE, PETSC_FALSE, m, e);
-  else gather(2, PETSC_FALSE, PETSC_FALSE, m, e);
+  else if (m->dim == 3) gather(3, PETSC_FALSE, m, e);
+  else if (m->c->kinematics->hoop) gather(2, PETSC_TRUE, m, e);
+  else gather(2, PETSC_FALSE, m, e);
 }
 
 void points_gain(const Model *m, Explicit *e)
 {
-  if (m->dim == 3 && e->box) gain(3, PETSC_TRUE, m, e);
-  else if (m->dim == 3) gain(3, PETSC_FALSE, m, e);
+  if (e->box && m->dim == 3) space_gain(m, e);
   else if (e->box) plane_gain(m, e);
-  else gain(2, PETSC_FALSE, m, e);
+  else if (m->dim == 3) gain(3, m, e);
+  else gain(2, m, e);
 }
 
 void points_strain(const Model *m, Explicit *e)
 {
-  const PetscBool hoop = m->c->kinematics->hoop;
-  if (m->dim == 3 && e->box) strain(3, PETSC_FALSE, PETSC_TRUE, m, e);
-  else if (m->dim == 3) strain(3, PETSC_FALSE, PETSC_FALSE, m, e);
+  if (e->box && m->dim == 3) space_strain(m, e);
   else if (e->box) plane_strain(m, e);
-  else if (hoop) strain(2, PETSC_TRUE, PETSC_FALSE, m, e);
-  else strain(2, PETSC_FALSE, PETSC_FALSE, m, e);
+  else if (m->dim == 3) strain(3, PETSC_FALSE, m, e);
+  else if (m->c->kinematics->hoop) strain(2, PETSC_TRUE, m, e);
+  else strain(2, PETSC_FALSE, m, e);
 }

@@ -10,7 +10,7 @@ static PetscErrorCode Kick(Model *m, Explicit *e)
   PetscFunctionBeginUser;
   e->kick = (e->before + e->dt) / 2;
   e->fade = 1 - PetscExpReal(-m->c->analysis.damping * e->kick);
-  points_gather(m, e); /* mass, momentum and forces of the nodes */
+  if (e->begins || !e->box) points_gather(m, e); /* mass, momentum and forces of the nodes */
   PetscCall(ForcesBegin(m, e));
   PetscCall(NodesShare(m, e->width, e->sum));
   PetscCall(NodesMove(m, e)); /* their velocities before and after */
@@ -26,8 +26,9 @@ static PetscErrorCode Substep(Model *m, Explicit *e)
   if (m->c->analysis.update == EXPLICIT_MUSL) PetscCall(NodesShare(m, m->dim, e->straining));
   nodes_strain(m, e);
   walls_follow(m, e);
-  points_strain(m, e); /* strain, stress; points move */
   PetscCall(NodesCarry(m, e));
+  points_strain(m, e); /* strain, stress; points move, and give what comes first in the next substep */
+  nodes_forget(m, e);
   e->before = e->dt;
   e->time += e->dt;
   ++e->taken;
@@ -40,9 +41,12 @@ static PetscErrorCode Close(Model *m, Explicit *e)
 {
   PetscFunctionBeginUser;
   PetscCall(LapBegin(m, e, 0));
+  e->begins = e->ends = PETSC_TRUE;
   PetscCall(Kick(m, e));
   walls_follow(m, e);
   PetscCall(NodesCarry(m, e));
+  nodes_forget(m, e);
+  lap_displace(m, e, 1);
   PetscFunctionReturn(0);
 }
 
@@ -133,7 +137,12 @@ PetscErrorCode ExplicitStep(Model *m, PetscReal limit, StepReport *report)
   PetscCall(Begin(m, step, e, before, report));
   while (report->outcome == STEP_ACCEPTED && end - e->time > 1e-9 * step) {
     PetscCall(LapBegin(m, e, end - e->time));
-    for (PetscInt k = 0; k < e->substeps; ++k) PetscCall(Substep(m, e));
+    for (PetscInt k = 0; k < e->substeps; ++k) {
+      e->begins = k == 0;
+      e->ends = k == e->substeps - 1;
+      PetscCall(Substep(m, e));
+    }
+    lap_displace(m, e, 1);
     PetscCall(Judge(m, e, report));
     if (report->outcome == STEP_ACCEPTED) PetscCall(LapEnd(m, report));
   }
