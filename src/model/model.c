@@ -342,6 +342,7 @@ static PetscErrorCode Build(Model *m, Diag *diag)
   const PetscInt lap = c->analysis.type == ANALYSIS_EXPLICIT; /* points cross cells before they change ranks */
   PetscCall(GridWiden(&m->grid, basis_find(c->basis.kind)->halo + lap + (c->n_interfaces ? CONTACT_HALO : 0)));
   PetscCall(CreateBodies(m, diag));
+  raised_advise(m, diag);
   PetscCall(DiagReduce(m->comm, diag, &errors));
   if (errors) PetscFunctionReturn(0);
   PetscCall(WallsStart(m, diag));

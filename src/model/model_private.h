@@ -83,6 +83,8 @@ PetscErrorCode OutsideWarn(const Model *model, Diag *diag);
 
 /* limit_load.c. What cannot be raised is a mistake. */
 void raised_start(Model *model, Diag *diag);
+/* A warning where cells lock, once there is a grid. */
+void raised_advise(const Model *model, Diag *diag);
 /* Time at which loads have the size that they have at time t: at most `end`, and behind it by the factor of
  * a load that is raised, at the step's start and, later, where Newton's method has come to. */
 PetscReal raised_time(const Model *model, PetscReal t);

@@ -41,6 +41,33 @@ says out.txt "N along the displacement of 'plate'"
 expect "not far enough" 0 "$talus" run plate.yaml --out run --force --set analysis.limit='{raise: plate, most: 0.01}'
 says out.txt "warning = no limit was found"
 
+# A smooth footing on sand, whose free surface bears nothing: cells at its edge open and close, and are settled in patches.
+# Exact is N_gamma = 7.85 (cases/footing-on-sand/bearing.py); squares of B/8 bear a sixth more, on any number of ranks.
+cat >sand.yaml <<'END'
+kinematics: plane-strain
+method: fem
+formulation: displacement
+analysis: {type: limit-load, limit: {raise: footing}}
+grid: {box: {min: [0, -0.75], max: [2, 0]}, size: 0.125}
+bodies:
+  - {name: ground, shape: {box: {min: [0, -0.75], max: [2, 0]}}, points_per_cell: 1, material: sand, k0: 1}
+materials:
+  sand: {law: mohr-coulomb, density: 2000, young: 1e11, poisson: 0.3, friction_angle: 30, dilatancy_angle: 30, cohesion: 20}
+boundary:
+  - {on: {y: -0.75}, fix: [x, y]}
+  - {on: {x: 0}, fix: [x]}
+  - {on: {x: 2}, fix: [x]}
+  - {name: footing, on: {x: [0, 0.5], y: 0}, displacement: {y: -1e-4}}
+loads: {gravity: [0, -10]}
+measures:
+  limit: {limit_load: value}
+END
+for ranks in 1 2 3; do
+  expect "sand on $ranks" 0 on_ranks $ranks "$talus" run sand.yaml --out run --force
+  says out.txt "by load = it holds"
+  awk -F, 'END { N = $3 / 5000; exit !(N > 9.13 && N < 9.17) }' run/history.csv || fail "$name: $(tail -1 run/history.csv)"
+done
+
 # Resumed anywhere: the same bits
 expect "whole" 0 "$talus" run block.yaml --out whole --quiet --set checkpoint.steps=3 --set checkpoint.keep=99
 cp -r whole cut

@@ -20,13 +20,28 @@ void raised_start(Model *m, Diag *diag)
   if (limit->kind == RAISE_GRAVITY && case_has_stress(c))
     diag_error(diag, "analysis.limit.raise",
                "gravity is raised from zero, but bodies start with the stress of a weight");
-  const PetscBool crossed =
-    c->grid.kind == GRID_BOX && c->grid.cell == CELL_TRIANGLE && c->grid.diagonal == DIAGONAL_CROSSED;
-  if (crossed || m->formulation->pressure || m->formulation->cells) return; /* these do not lock */
+}
+
+/* Quadrilaterals that ask what yields in their middle alone. */
+static PetscBool is_reduced(const Model *m)
+{
+  PetscBool reduced = m->grid->type == CELL_QUADRILATERAL && !grid_is_mixed(m->grid);
+  for (PetscInt i = 0; i < m->c->n_bodies; ++i) reduced &= m->c->bodies[i].points_per_cell == 1;
+  return reduced;
+}
+
+void raised_advise(const Model *m, Diag *diag)
+{
+  const GridSpec *grid = &m->c->grid;
+  if (m->c->analysis.type != ANALYSIS_LIMIT || m->formulation->pressure || m->formulation->cells) return;
+  const PetscBool crossed = grid->kind == GRID_BOX && grid->cell == CELL_TRIANGLE && grid->diagonal == DIAGONAL_CROSSED;
+  if (crossed || is_reduced(m)) return; /* these do not lock */
   diag_warning(diag, "formulation",
                "with displacements as the only unknowns what yields without a change of volume locks: the limit load "
                "comes out too large, or there is none");
-  diag_hint(diag, "`formulation: mixed` and `mean-dilatation` do not lock, nor do triangles with `diagonal: crossed`");
+  diag_hint(diag,
+            "`formulation: mixed` and `mean-dilatation` do not lock, nor do triangles with `diagonal: crossed`, "
+            "nor quadrilaterals with `points_per_cell: 1`");
 }
 
 PetscReal raised_time(const Model *m, PetscReal t)

@@ -50,7 +50,8 @@ typedef struct {
   /* does somebody want the run to end? asked on every rank; NULL: nobody ever does */
   PetscBool (*asked)(void);
   /* Matter that yields, and waves that cross many cells in the step: points all over it open and close between
-   * two iterations, and none shortens the step of all (docs/theory.md, "Stiff matter that yields"). */
+   * two iterations, and none shortens the step of all (docs/theory.md, "Stiff matter that yields"). So is what is
+   * pressed to its limit. */
   PetscBool stiff;
   /* what the last digit of a coordinate makes of the force at a node, N */
   PetscReal round_off;

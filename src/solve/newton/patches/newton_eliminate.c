@@ -10,7 +10,8 @@
 
 PetscBool newton_eliminates(const StepProblem *p, const LinearProblem *linear)
 {
-  return linear->dynamic && !p->pressure && p->in.support->n_runs > 0 && nodal_forces_are_dead(p->forces);
+  const PetscBool wanted = linear->dynamic || p->stiff;
+  return wanted && !p->pressure && p->in.support->n_runs > 0 && nodal_forces_are_dead(p->forces);
 }
 
 PetscErrorCode NewtonChoose(void *context, PetscInt iteration, Vec f, PetscReal norm)
