@@ -561,7 +561,7 @@ static inline void law_suite_march(LawSuite *suite, PetscBool plane)
   for (PetscInt n = 1; n <= LAW_BATCH; ++n) {
     PetscReal dF[9][LAW_BATCH], tau[6][LAW_BATCH], state[(LAW_MAX_STATE + 1) * LAW_BATCH];
     const LawMarch march = {dF[0], tau[0], state, stride};
-    LawPoint point[LAW_BATCH] = {{{0}}};
+    LawPoint point[LAW_BATCH] = {{.dF = {0}}};
     for (int k = 0; k < 9; ++k)
       for (PetscInt p = 0; p < LAW_BATCH; ++p) dF[k][p] = plane ? k == 0 || k > 2 : k % 4 == 0;
     for (PetscInt p = 0; p < n; ++p) {

@@ -319,7 +319,7 @@ KERNEL void strain(const PetscBool hoop, const Model *m, Explicit *e)
   Four sum[5] = {{0}};
   int32_t cell = -1;
   Strain s;
-  Batch b = {{{0}}};
+  Batch b = {.dF = {{0}}};
   Given g;
   for (int k = 0; k < LAW_BATCH; ++k) b.dF[0][k] = b.dF[3][k] = b.dF[4][k] = 1; /* lanes behind the last point */
   for (PetscInt first = 0, n; first < points->n; first += n) {
