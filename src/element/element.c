@@ -91,7 +91,8 @@ static PetscErrorCode Follow(Element *e, PetscInt stage, PetscBool *done)
   *done = PETSC_TRUE;
   element_stage(s, &e->point, &control, first, last);
   control.seconds = s->seconds / (PetscReal)s->steps;
-  if (s->seconds == 0) materials_step(1, e->point.material, e->point.time, 0, PETSC_FALSE);
+  if (s->seconds == 0 && e->point.material->law->rate)
+    materials_step(1, e->point.material, e->point.time, 1, PETSC_FALSE);
   memcpy(from, first, sizeof from);
   for (PetscInt i = 0; i < s->steps && *done; ++i, ++e->summary.increments) {
     const PetscReal share = (PetscReal)(i + 1) / (PetscReal)s->steps;
