@@ -141,7 +141,8 @@ static void prepare(const Elasticity *elastic, const PetscReal *given, PetscReal
   q[MU_MORE] = given[LIMIT] - given[STATIC];
   q[MU_NUMBER] = given[NUMBER];
   q[MU_LENGTH] = given[SIZE] * sqrt(given[GRAINS]);
-  q[MU_RATE] = q[MU_STILL] = 0.0;
+  q[MU_RATE] = 0.0;
+  q[MU_STILL] = 1.0; /* until it is told of a step */
   q[MU_NOISE] = 8.0 * PETSC_MACHINE_EPSILON * (1.0 + given[STATIC]) * (elastic->lame + 2.0 * elastic->shear);
 }
 
