@@ -105,15 +105,15 @@ int TalusCaseSetProgress(TalusCase *c, TalusProgress progress, void *context)
 int TalusCaseCountMeasures(const TalusCase *c, int *n)
 {
   if (!c || !n) return TALUS_ERROR_ARGUMENT;
-  *n = (int)c->c->n_measures;
+  *n = (int)case_columns(c->c);
   return TALUS_OK;
 }
 
 int TalusCaseMeasureName(const TalusCase *c, int i, const char **name, const char **unit)
 {
-  if (!c || i < 0 || i >= c->c->n_measures) return TALUS_ERROR_ARGUMENT;
-  if (name) *name = c->c->measures[i].name;
-  if (unit) *unit = measure_unit(&c->c->measures[i]);
+  if (!c || i < 0 || i >= case_columns(c->c)) return TALUS_ERROR_ARGUMENT;
+  if (name) *name = case_column(c->c, i)->name;
+  if (unit) *unit = measure_unit(case_column(c->c, i));
   return TALUS_OK;
 }
 

@@ -28,12 +28,13 @@ static TalusRun *create_run(const Case *c)
 {
   TalusRun *run = calloc(1, sizeof(*run));
   if (!run) return NULL;
-  const size_t n = (size_t)c->n_measures;
-  run->n = c->n_measures;
+  const size_t n = (size_t)case_columns(c);
+  run->n = case_columns(c);
   run->names = calloc(n + 1, sizeof(char *));
   run->values = calloc(n + 1, sizeof(double));
   PetscBool complete = run->names && run->values;
-  for (size_t i = 0; complete && i < n; ++i) complete = (run->names[i] = strdup(c->measures[i].name)) != NULL;
+  for (size_t i = 0; complete && i < n; ++i)
+    complete = (run->names[i] = strdup(case_column(c, (PetscInt)i)->name)) != NULL;
   if (!complete) TalusRunDestroy(&run);
   return run;
 }

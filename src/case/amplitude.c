@@ -24,9 +24,21 @@ PetscBool case_raises(const Case *c, const Amplitude *amplitude)
   case RAISE_GRAVITY: return amplitude == &c->gravity_amplitude;
   case RAISE_LOAD: return amplitude == &c->loads[limit->index].amplitude;
   case RAISE_BOUNDARY: return amplitude == &c->boundary[limit->index].amplitude;
+  case RAISE_WALL: return amplitude == &case_raised_motion(c)->amplitude;
   case RAISE_NOTHING: break;
   }
   return PETSC_FALSE;
+}
+
+PetscBool case_raises_displacement(const Case *c)
+{
+  return c->analysis.limit.kind == RAISE_BOUNDARY || c->analysis.limit.kind == RAISE_WALL;
+}
+
+const MotionSpec *case_raised_motion(const Case *c)
+{
+  const LimitSpec *limit = &c->analysis.limit;
+  return limit->kind == RAISE_WALL ? c->walls[limit->index].motions : &c->boundary[limit->index];
 }
 
 PetscReal case_factor(const Case *c, const Amplitude *amplitude, PetscReal t)

@@ -163,6 +163,7 @@ static PetscErrorCode StagesClear(Case *c)
   }
   PetscCall(PetscFree(c->stages));
   PetscCall(PetscFree(c->stage_case));
+  PetscCall(PetscFree(c->columns));
   PetscFunctionReturn(0);
 }
 

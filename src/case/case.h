@@ -256,6 +256,7 @@ typedef struct {
   PetscBool has_rate, has_mean;
   PetscReal window[2];
   AvalancheSpec avalanche;
+  PetscInt since; /* stage whose words brought it: it begins there */
 } MeasureSpec;
 
 typedef enum { UNTIL_BELOW, UNTIL_ABOVE, UNTIL_COUNT } UntilKind;
@@ -317,13 +318,13 @@ typedef struct {
   char *text;        /* what it changes, resolved: keys of a case */
 } StageSpec;
 
-typedef enum { RAISE_NOTHING, RAISE_GRAVITY, RAISE_LOAD, RAISE_BOUNDARY } RaiseKind;
+typedef enum { RAISE_NOTHING, RAISE_GRAVITY, RAISE_LOAD, RAISE_BOUNDARY, RAISE_WALL } RaiseKind;
 
 /* What is raised until nothing more holds. */
 typedef struct {
-  char *raise; /* "gravity", or the name of a load or of an entry of the boundary */
+  char *raise; /* "gravity", or the name of a load, of an entry of the boundary or of a wall */
   RaiseKind kind;
-  PetscInt index;      /* into loads[] or boundary[] */
+  PetscInt index;      /* into loads[], boundary[] or walls[] */
   PetscReal step;      /* the first: factor of the load while it is small, of the prescribed displacement */
   PetscReal tolerance; /* by which the load may have grown while the displacement doubled */
   PetscReal most;      /* factor beyond which nobody looks */
@@ -454,6 +455,8 @@ typedef struct Case {
   PetscInt n_stages; /* 0: the case is what is run */
   StageSpec *stages;
   struct Case **stage_case; /* of each: the case with the words of the stages so far */
+  PetscInt n_columns;       /* of a case with stages: measures of all of them, each name once */
+  const MeasureSpec **columns;
   /* of a stage: */
   PetscInt stage;        /* its number, 0 for the first; 0 of a case without stages */
   const StageSpec *spec; /* NULL: the case is no stage */
@@ -465,6 +468,14 @@ typedef struct Case {
 /* The case of stage k; of a case without stages the case itself. */
 const Case *case_stage(const Case *c, PetscInt k);
 PetscInt case_stages(const Case *c); /* 1 without stages */
+/* Measures of the whole run, as the columns of its history have them: those of all stages, each name once, in
+ * the order in which they come (columns.c). */
+PetscInt case_columns(const Case *c);
+const MeasureSpec *case_column(const Case *c, PetscInt k);
+PetscInt case_column_of(const Case *c, const char *name);  /* its index, -1: there is none */
+PetscInt case_measure_of(const Case *c, const char *name); /* likewise, among the measures of c itself */
+/* When all stages are read; case_columns are those of c alone before. */
+PetscErrorCode CaseCollectColumns(Case *c);
 /* Does it start from a state that is there? Not the first stage of a case that names no run. */
 PetscBool case_goes_on(const Case *c);
 /* The stage is about to begin, at start[c->stage]; start: of all stages so far, s. From now on all its
@@ -483,6 +494,10 @@ PetscBool case_is_static(const AnalysisSpec *analysis);
 PetscBool case_seeks(const AnalysisSpec *analysis);
 /* Is that one of the fields of states? */
 PetscBool case_writes(const Case *c, const char *field);
+/* Is what is raised a prescribed displacement, of a boundary or of a wall, and no force? */
+PetscBool case_raises_displacement(const Case *c);
+/* That displacement. */
+const MotionSpec *case_raised_motion(const Case *c);
 /* Is that the amplitude of what is raised to its limit? */
 PetscBool case_raises(const Case *c, const Amplitude *amplitude);
 /* Does the body start with a stress? Does any? */

@@ -20,6 +20,8 @@ const OutputField output_fields[] = {
   {"deformation_gradient", "", "deformation gradient, row by row", 9, P},
   {"equivalent_plastic_strain", "", "accumulated plastic strain, 0 for elastic laws", 1, PG},
   {"plastic_increment", "", "what the last step added to it: where a body slides, at a factor of safety", 1, P},
+  {"mechanism", "m/s",
+   "displacement in the last step per time; at a limit load or a factor of safety per factor: how it fails", 3, PG},
   {"opening", "", "ln of the volume by which grains are apart, where the law remembers it (opening_memory)", 1, P},
   {"preconsolidation", "Pa", "largest isotropic pressure so far, of modified-cam-clay", 1, P},
   {"mass", "kg", "mass of a point; on the grid the mass gathered at a node", 1, PG},

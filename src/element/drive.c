@@ -52,7 +52,7 @@ static LawStatus update(const DrivePoint *old, DrivePoint *point, PetscReal tau[
   return status;
 }
 
-PetscBool drive_start(DrivePoint *p, const Material *material, const PetscReal stress[6], PetscReal pore)
+PetscBool drive_start(DrivePoint *p, Material *material, const PetscReal stress[6], PetscReal pore)
 {
   PetscReal tau[6], c[36], norm2 = 0, work = 0;
   DrivePoint start = {.material = material, .pore = pore, .J = 1};
@@ -184,10 +184,13 @@ PetscBool drive_advance(DrivePoint *point, const DriveControl *control, const Pe
   report->reached = 0;
   while (report->reached < 1) {
     const PetscReal next = PetscMin(report->reached + part, 1);
+    const PetscReal passes = (next - report->reached) * control->seconds;
+    if (passes > 0) materials_step(1, point->material, point->time, passes, PETSC_TRUE);
     for (int k = 0; k < 6; ++k) aim.target[k] = next == 1 ? to[k] : from[k] + next * (to[k] - from[k]);
     if (newton(point, &aim, report)) {
       ++report->substeps;
       report->reached = next;
+      point->time += passes;
       part *= 2;
     } else if ((part *= 0.5) < ldexp(1, -MOST_HALVINGS)) return PETSC_FALSE;
   }

@@ -12,10 +12,12 @@
 typedef struct {
   PetscBool stress[6];
   PetscBool undrained; /* the volume stays, and a pore pressure takes what that asks for */
+  PetscReal seconds;   /* that the way from `from` to `to` takes; 0: time does not count */
 } DriveControl;
 
 typedef struct {
-  const Material *material;
+  Material *material; /* is told of time */
+  PetscReal time;     /* s */
   PetscReal state[LAW_MAX_STATE];
   PetscReal strain[6]; /* e */
   PetscReal stress[6]; /* effective Cauchy stress, Pa, tension positive */
@@ -36,7 +38,7 @@ typedef struct {
 
 /* Start with this stress (six components) and pore pressure, undeformed; no stress at all is the law's own initial
  * state. PETSC_FALSE if the law cannot carry it. */
-PetscBool drive_start(DrivePoint *point, const Material *material, const PetscReal stress[6], PetscReal pore);
+PetscBool drive_start(DrivePoint *point, Material *material, const PetscReal stress[6], PetscReal pore);
 
 /* F of the point, row by row. */
 void drive_gradient(const PetscReal strain[6], PetscReal F[9]);

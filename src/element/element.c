@@ -47,7 +47,7 @@ static PetscBool prepare_folder(const char *path, Diag *diag)
 static PetscBool start(Element *e)
 {
   const ElementSpec *spec = e->spec;
-  const Material *m = &spec->material;
+  Material *m = &e->spec->material;
   if (drive_start(&e->point, m, spec->start.value, spec->pore)) return PETSC_TRUE;
   diag_error(e->diag, NULL, "the material %s (%s) cannot begin with this stress", m->name, m->law->name);
   diag_hint(e->diag, "%s", spec->document ? "`start:` names another one" : "--confining P gives another pressure");
@@ -90,6 +90,9 @@ static PetscErrorCode Follow(Element *e, PetscInt stage, PetscBool *done)
   PetscFunctionBeginUser;
   *done = PETSC_TRUE;
   element_stage(s, &e->point, &control, first, last);
+  control.seconds = s->seconds / (PetscReal)s->steps;
+  if (s->seconds == 0 && e->point.material->law->rate)
+    materials_step(1, e->point.material, e->point.time, 1, PETSC_FALSE);
   memcpy(from, first, sizeof from);
   for (PetscInt i = 0; i < s->steps && *done; ++i, ++e->summary.increments) {
     const PetscReal share = (PetscReal)(i + 1) / (PetscReal)s->steps;

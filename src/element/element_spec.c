@@ -115,6 +115,8 @@ static const SchemaEntry stage_entries[] = {
       AT(ElementStage, undrained)),
   KEY("steps", INTEGER, NULL, "increments, each a row of the table", .fallback = "100", BETWEEN(1, 1e6),
       AT(ElementStage, steps)),
+  KEY("seconds", NUMBER, "s", "time that this part takes, for laws that know of rates",
+      .note = "endless, without rates", ABOVE(0), AT(ElementStage, seconds)),
   {.key = NULL},
 };
 static const SchemaGroup stage_groups[] = {{GROUP_AT_LEAST_ONE, {"test", "strain", "stress", NULL}},

@@ -29,6 +29,7 @@ typedef struct {
   PetscBool relative; /* `to` and stresses count from where the stage begins, too */
   PetscBool undrained;
   PetscInt steps;
+  PetscReal seconds; /* that it takes; 0: time does not count */
 } ElementStage;
 
 typedef struct {

@@ -8,6 +8,7 @@
 #include "material/law.h"
 #include "method/method.h"
 #include "method/transfer/transfer.h"
+#include "model/model.h"
 
 static void destroy_document(void *document)
 {
@@ -207,6 +208,23 @@ static void find_raised(Case *c)
   for (PetscInt k = 0; k < c->n_boundary && !limit->kind; ++k)
     if (c->boundary[k].name && !strcmp(c->boundary[k].name, limit->raise))
       limit->kind = RAISE_BOUNDARY, limit->index = k;
+  for (PetscInt k = 0; k < c->n_walls && !limit->kind; ++k)
+    if (!strcmp(c->walls[k].name, limit->raise)) limit->kind = RAISE_WALL, limit->index = k;
+}
+
+/* A displacement that is raised must be one, alone. */
+static void check_raised(const Case *c, Diag *diag)
+{
+  const LimitSpec *limit = &c->analysis.limit;
+  const WallSpec *wall = limit->kind == RAISE_WALL ? &c->walls[limit->index] : NULL;
+  if (!case_raises_displacement(c)) return;
+  if (wall && wall->absent) diag_error(diag, "analysis.limit.raise", "the wall '%s' is not there", limit->raise);
+  else if (wall && (wall->n_motions != 1 || wall->motions[0].kind != MOTION_DISPLACEMENT)) {
+    diag_error(diag, "analysis.limit.raise", "the motion of wall '%s' is not one `displacement` that could be raised",
+               limit->raise);
+    diag_hint(diag, "motion: [{displacement: {x: 0, y: -0.01}}]");
+  } else if (!wall && c->boundary[limit->index].kind != MOTION_DISPLACEMENT)
+    diag_error(diag, "analysis.limit.raise", "'%s' has no `displacement` that could be raised", limit->raise);
 }
 
 static PetscErrorCode ResolveRaised(const YamlNode *given, Diag *diag, Case *c)
@@ -218,17 +236,17 @@ static PetscErrorCode ResolveRaised(const YamlNode *given, Diag *diag, Case *c)
   PetscFunctionBeginUser;
   if (c->analysis.type != ANALYSIS_LIMIT || !limit->raise) PetscFunctionReturn(0);
   find_raised(c);
-  if (!yaml_find(given, "most")) limit->most = limit->kind == RAISE_BOUNDARY ? 1 : 1000;
-  if (limit->kind == RAISE_BOUNDARY && c->boundary[limit->index].kind != MOTION_DISPLACEMENT)
-    diag_error(diag, "analysis.limit.raise", "'%s' has no `displacement` that could be raised", limit->raise);
+  if (!yaml_find(given, "most")) limit->most = case_raises_displacement(c) ? 1 : 1000;
+  check_raised(c, diag);
   if (limit->kind) PetscFunctionReturn(0);
-  PetscCall(PetscCalloc1(c->n_loads + c->n_boundary + 2, &names));
+  PetscCall(PetscCalloc1(c->n_loads + c->n_boundary + c->n_walls + 2, &names));
   names[n++] = "gravity";
   for (PetscInt k = 0; k < c->n_loads; ++k)
     if (c->loads[k].name) names[n++] = c->loads[k].name;
   for (PetscInt k = 0; k < c->n_boundary; ++k)
     if (c->boundary[k].name) names[n++] = c->boundary[k].name;
-  diag_error(diag, "analysis.limit.raise", "there is no load and no entry of the boundary '%s'", limit->raise);
+  for (PetscInt k = 0; k < c->n_walls; ++k) names[n++] = c->walls[k].name;
+  diag_error(diag, "analysis.limit.raise", "there is no load, no entry of the boundary and no wall '%s'", limit->raise);
   diag_hint_names(diag, limit->raise, names);
   PetscCall(PetscFree(names));
   PetscFunctionReturn(0);
@@ -267,10 +285,12 @@ static void tell_ages(const YamlNode *root, Case *c)
   static const char *const lists[] = {"tractions", "pressures", "points"};
   const YamlNode *boundary = yaml_find(root, "boundary"), *walls = yaml_find(root, "walls"),
                  *loads = yaml_find(root, "loads");
+  const YamlNode *measures = yaml_find(root, "measures");
   const YamlNode *gravity = yaml_find(loads, "gravity_amplitude");
   if (!gravity) gravity = yaml_find(loads, "gravity");
   if (gravity) c->gravity_amplitude.since = gravity->stage;
   for (PetscInt i = 0; i < c->n_boundary; ++i) c->boundary[i].amplitude.since = boundary->child[i]->stage;
+  for (PetscInt i = 0; i < c->n_measures; ++i) c->measures[i].since = measures->child[i]->stage;
   for (PetscInt i = 0; i < c->n_walls; ++i) {
     c->walls[i].since = c->walls[i].mass.amplitude.since = walls->child[i]->stage;
     for (PetscInt k = 0; k < c->walls[i].n_motions; ++k) c->walls[i].motions[k].amplitude.since = c->walls[i].since;
@@ -300,6 +320,24 @@ static void check_beyond(const Case *before, const Case *c, Diag *diag)
   diag_error(diag, "strength.beyond_failure", "no search for a factor of safety comes before: there is no failure yet");
 }
 
+/* A column of the history has one unit. */
+static void check_units(const Case *whole, PetscInt k, Diag *diag)
+{
+  const Case *c = whole->stage_case[k];
+  char path[512];
+  diag_of_stage(diag, k, whole->stages[k].name);
+  for (PetscInt i = 0; i < c->n_measures; ++i) {
+    const MeasureSpec *now = &c->measures[i], *column = case_column(whole, case_column_of(whole, now->name));
+    if (!strcmp(measure_unit(now), measure_unit(column))) continue;
+    snprintf(path, sizeof path, "measures.%s", now->name);
+    diag_error(diag, path,
+               "'%s' was a number in '%s' in the stages before, and would be one in '%s' in the same column", now->name,
+               measure_unit(column), measure_unit(now));
+    diag_hint(diag, "give it another name");
+  }
+  diag_of_stage(diag, -1, NULL);
+}
+
 static PetscErrorCode ReadStages(const char *file, YamlDocument *document, Diag *diag, Case *whole)
 {
   YamlNode *root = document->root;
@@ -320,6 +358,9 @@ static PetscErrorCode ReadStages(const char *file, YamlDocument *document, Diag 
   }
   document->root = root;
   diag_of_stage(diag, -1, NULL);
+  if (diag_errors(diag) > before) PetscFunctionReturn(0);
+  PetscCall(CaseCollectColumns(whole));
+  for (PetscInt k = 0; k < whole->n_stages; ++k) check_units(whole, k, diag);
   PetscFunctionReturn(0);
 }
 

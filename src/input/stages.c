@@ -120,6 +120,13 @@ static PetscErrorCode TellMissing(const Layer *l, const YamlNode *list, const Ya
   PetscFunctionReturn(0);
 }
 
+/* tip: {absent: true} */
+static PetscBool drops(const YamlNode *list, const YamlNode *entry)
+{
+  const YamlNode *absent = entry->n == 1 ? yaml_find(entry, "absent") : NULL;
+  return list->key && !strcmp(list->key, "measures") && absent && absent->text && !strcmp(absent->text, "true");
+}
+
 static PetscErrorCode Lay(const Layer *l, YamlNode *under, const YamlNode *over);
 
 static PetscErrorCode LayKeys(const Layer *l, YamlNode *under, const YamlNode *over, const char *const *without)
@@ -131,7 +138,10 @@ static PetscErrorCode LayKeys(const Layer *l, YamlNode *under, const YamlNode *o
     const YamlNode *child = over->child[i];
     YamlNode *was = yaml_find(under, child->key);
     if (without && is_one_of(child->key, without)) continue;
-    if (was) PetscCall(Lay(l, was, child));
+    if (l->diag && drops(under, child)) {
+      if (was) PetscCall(YamlNodeRemove(under, was->index));
+      else PetscCall(TellMissing(l, under, child, child->key));
+    } else if (was) PetscCall(Lay(l, was, child));
     else if (l->diag && child->kind == YAML_MAPPING && under->key && !strcmp(under->key, "materials") &&
              only_changes(under, child))
       PetscCall(TellMissing(l, under, child, child->key));
@@ -177,7 +187,9 @@ static PetscErrorCode LayEntries(const Layer *l, YamlNode *list, const YamlNode 
 /* What says by itself what it is. */
 static PetscBool stands_alone(const YamlNode *over)
 {
-  return yaml_find(over, "law") || yaml_find(over, "type") || (over->key && !strcmp(over->key, "strength"));
+  const char *in = over->parent && over->parent->key ? over->parent->key : "";
+  return yaml_find(over, "law") || yaml_find(over, "type") || (over->key && !strcmp(over->key, "strength")) ||
+         !strcmp(in, "measures");
 }
 
 static PetscErrorCode Lay(const Layer *l, YamlNode *under, const YamlNode *over)
@@ -241,6 +253,19 @@ static const char *find_section(const char *text, const char *key, size_t *lengt
   return begin;
 }
 
+/* Measures that the stage before had, and this one has not. */
+static void write_dropped(FILE *out, const Case *before, const Case *stage, PetscBool *head)
+{
+  for (PetscInt k = 0; k < before->n_measures; ++k) {
+    if (case_measure_of(stage, before->measures[k].name) >= 0) continue;
+    fputs(*head ? "" : "measures:\n", out);
+    *head = PETSC_TRUE;
+    fputs("  ", out);
+    schema_write_text(out, before->measures[k].name);
+    fputs(": {absent: true}\n", out);
+  }
+}
+
 PetscErrorCode StageText(const Case *before, const Case *stage, char **text)
 {
   TextStream stream;
@@ -254,7 +279,9 @@ PetscErrorCode StageText(const Case *before, const Case *stage, char **text)
     size_t n, m;
     if (e->type != TYPE_PART) continue;
     const char *now = find_section(is, e->key, &n), *then = find_section(was, e->key, &m);
-    if (n && (n != m || strncmp(now, then, n))) fwrite(now, 1, n, stream.out);
+    PetscBool head = n && (n != m || strncmp(now, then, n));
+    if (head) fwrite(now, 1, n, stream.out);
+    if (!strcmp(e->key, "measures")) write_dropped(stream.out, before, stage, &head);
   }
   PetscCall(TextClose(&stream, text));
   PetscCall(PetscFree(was));

@@ -118,6 +118,8 @@ typedef struct Law {
   /* Tell packed parameters the time at the start of a step and its length, s; dt = 0 stands for no step, in
    * which nothing may flow. NULL: the law does not know of time. */
   void (*step)(PetscReal time, PetscReal dt, PetscReal *packed);
+  /* Does stress depend on the rate of strain? Statics have no rate: a step is endless there, dt = PETSC_INFINITY. */
+  PetscBool rate;
 } Law;
 
 /* What strains in these kinematics decides which update is the quickest. */
@@ -166,8 +168,9 @@ PetscErrorCode MaterialAt(const Case *c, PetscInt index, PetscReal t, Diag *diag
 void material_take_strength(Material *material, const Material *other);
 /* Divide the strength of a material by factor (0: it does not yield); that of the case is factor 1. */
 void material_reduce(Material *material, PetscReal factor);
-/* Tell all of them of the step that is tried; dt = 0: there is none. */
-void materials_step(PetscInt n, Material *materials, PetscReal time, PetscReal dt);
+/* Tell all of them of the step that is tried; dt = 0: there is none. inertia: is time what clocks show, or, as in
+ * statics, a load's? */
+void materials_step(PetscInt n, Material *materials, PetscReal time, PetscReal dt, PetscBool inertia);
 /* lambda + 2 mu, Pa, of a mixed formulation, too: infinite where incompressible. */
 PetscReal material_confined(const Material *material);
 /* Write the initial state of one point, n_state numbers. */

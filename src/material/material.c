@@ -313,13 +313,14 @@ static void prepare_again(Material *m, const PetscReal *given)
   memcpy(m->parameters, m->deviatoric, sizeof m->parameters);
 }
 
-void materials_step(PetscInt n, Material *materials, PetscReal time, PetscReal dt)
+void materials_step(PetscInt n, Material *materials, PetscReal time, PetscReal dt, PetscBool inertia)
 {
   for (PetscInt i = 0; i < n; ++i) {
     Material *m = &materials[i];
     if (!m->law->step) continue;
-    m->law->step(time, dt, m->parameters);
-    if (m->mixed) m->law->step(time, dt, m->deviatoric);
+    const PetscReal passes = m->law->rate && !inertia && dt > 0 ? PETSC_INFINITY : dt;
+    m->law->step(time, passes, m->parameters);
+    if (m->mixed) m->law->step(time, passes, m->deviatoric);
   }
 }
 

@@ -102,6 +102,17 @@ PetscErrorCode CommitStep(Model *m, PetscReal dt, EnergyStep *energy)
   PetscFunctionReturn(0);
 }
 
+/* Before points move (sign -1) and after it: what they moved by, over dt. Those that have changed their rank, or
+ * their place in the list, have taken it with them. */
+static void note_mechanism(Model *m, PetscReal sign, PetscReal dt)
+{
+  for (PetscInt p = 0; m->points->components[POINT_MECHANISM] && p < m->points->n; ++p)
+    for (PetscInt d = 0; d < m->dim; ++d) {
+      PetscReal *moved = point_real(m->points, POINT_MECHANISM, p) + d;
+      *moved = (sign * point_real(m->points, POINT_U, p)[d] + (sign > 0 ? *moved : 0)) / (sign > 0 ? dt : 1);
+    }
+}
+
 PetscErrorCode ConvectStep(Model *m, PetscReal dt, EnergyStep *energy, StepReport *report)
 {
   PetscLogDouble clock;
@@ -109,7 +120,9 @@ PetscErrorCode ConvectStep(Model *m, PetscReal dt, EnergyStep *energy, StepRepor
   PetscFunctionBeginUser;
   PetscCall(PetscTime(&clock));
   const PetscBool stays = equilibrium_stays(m);
+  note_mechanism(m, -1, dt);
   if (!stays) PetscCall(m->method->convect(m->space));
+  note_mechanism(m, 1, dt);
   if (!stays || !m->formulation->pressure) m->space->present = PETSC_FALSE; /* pressures are those of the nodes now */
   PetscCall(PhaseEnd(m->seconds, PHASE_MOVE, &clock));
   m->time += dt;

@@ -228,6 +228,7 @@ static PetscErrorCode CreatePoints(Model *m, Outline *outline, Diag *diag)
   m->points->components[POINT_CONTACT] = (c->n_walls + c->n_interfaces) * CONTACT_KEPT(m->dim);
   if (m->grid->n_fields > 1) m->points->components[POINT_FIELD] = 1;
   m->points->components[POINT_FLOW] = case_writes(c, "plastic_increment");
+  m->points->components[POINT_MECHANISM] = case_writes(c, "mechanism") ? m->dim : 0;
   for (PetscInt k = 0; k < c->n_measures; ++k)
     m->points->components[POINT_CARRIED] += measure_find(c->measures[k].kind)->events != NULL;
   PetscCall(PointsSeedOutlined(m->points, m->grid, c, seed, m->method->restores_grid, outline, diag));

@@ -68,6 +68,8 @@ PetscErrorCode MeasuresStart(Model *model);
 PetscErrorCode MeasuresEnd(Model *model);
 /* Collective. After every accepted step of dt, whether or not a row of the history is written. */
 PetscErrorCode MeasuresRemember(Model *model, PetscReal dt);
+/* Collective. Measure k begins now, and knows nothing of what was before. */
+PetscErrorCode MeasureBegin(Model *model, PetscInt k);
 
 /* followers.c. Collective. Once the model stands: nothing may follow a place that no material
  * carries. */
@@ -154,6 +156,8 @@ PetscErrorCode ChooseNextStep(Model *model, PetscBool shortened, const StepRepor
 void contact_take(Model *model, const Case *from);
 /* contact.c. Collective. Walls of the case, and what of the material touches them at the start. */
 PetscErrorCode WallsStart(Model *model, Diag *diag);
+/* Collective. Walls that a stage brings, or puts elsewhere, stand where no material is. */
+PetscErrorCode WallsCome(Model *model, const Case *from, Diag *diag);
 /* start/interfaces.c. Collective. What no interfaces can be made of, and bodies that go through each
  * other at the start. */
 PetscErrorCode InterfacesStart(Model *model, Diag *diag);

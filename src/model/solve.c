@@ -37,7 +37,7 @@ static PetscErrorCode GoOn(Model *m, PetscReal dt, StepReport *report)
   PetscFunctionBeginUser;
   if (!m->scheme->middle) PetscFunctionReturn(0);
   scale(dofs, 1 / time_solved(m->scheme), m->nodes->du);
-  materials_step(m->c->n_materials, m->materials, m->time, dt);
+  materials_step(m->c->n_materials, m->materials, m->time, dt, m->scheme->inertia);
   PetscCall(PetscCalloc1(dofs, &out.force));
   PetscCall(m->formulation->assemble(&in, &out));
   PetscCall(PetscFree(out.force));
@@ -95,7 +95,7 @@ static PetscErrorCode SolveFromGuesses(Model *m, PetscReal dt, const LinearProbl
     PetscCall(MakeGuess(m, guess[k], dt));
     pressure_guess(m);
     PetscCall(PhaseEnd(m->seconds, PHASE_PREPARE, &clock));
-    materials_step(m->c->n_materials, m->materials, m->time, dt * time_solved(m->scheme));
+    materials_step(m->c->n_materials, m->materials, m->time, dt * time_solved(m->scheme), m->scheme->inertia);
     PetscCall(NewtonSolve(m->newton, &problem, linear, &report->newton));
     if (report->newton.converged) PetscCall(GoOn(m, dt, report));
     if (report->newton.converged) PetscCall(JudgeStep(m, report));

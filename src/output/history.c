@@ -208,20 +208,22 @@ PetscErrorCode HistoryGetMark(const RunDir *dir, HistoryMark *mark)
   PetscFunctionReturn(0);
 }
 
-static void write_row(FILE *out, PetscReal time, PetscInt step, PetscInt n, const PetscReal *values)
+static void write_row(FILE *out, PetscReal time, PetscInt step, PetscInt n, const PetscReal *values,
+                      const PetscBool *there)
 {
   char number[32];
   file_format_real(time, number);
   fprintf(out, "%s,%" PetscInt_FMT, number, step);
   for (PetscInt i = 0; i < n; ++i) {
     file_format_real(values[i], number);
-    fprintf(out, ",%s", number);
+    fprintf(out, ",%s", !there || there[i] ? number : "");
   }
   fputc('\n', out);
 }
 
 /* Rank 0: a row, as far as the system. */
-static PetscErrorCode AddRow(RunDir *dir, PetscReal time, PetscInt step, const PetscReal *values, int *error)
+static PetscErrorCode AddRow(RunDir *dir, PetscReal time, PetscInt step, const PetscReal *values,
+                             const PetscBool *there, int *error)
 {
   const off_t before = ftello(dir->history);
   TextStream stream;
@@ -229,7 +231,7 @@ static PetscErrorCode AddRow(RunDir *dir, PetscReal time, PetscInt step, const P
 
   PetscFunctionBeginUser;
   PetscCall(TextOpen(&stream));
-  write_row(stream.out, time, step, dir->n_measures, values);
+  write_row(stream.out, time, step, dir->n_measures, values, there);
   PetscCall(TextClose(&stream, &row));
   fputs(row, dir->history);
   *error = flush(dir->history, before);
@@ -238,14 +240,14 @@ static PetscErrorCode AddRow(RunDir *dir, PetscReal time, PetscInt step, const P
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode HistoryWrite(RunDir *dir, PetscReal time, PetscInt step, const PetscReal *values)
+PetscErrorCode HistoryWrite(RunDir *dir, PetscReal time, PetscInt step, const PetscReal *values, const PetscBool *there)
 {
   int error = 0;
 
   PetscFunctionBeginUser;
   if (dir->rank == 0) {
     error = dir->history ? run_dir_present(dir) : EBADF;
-    if (!error) PetscCall(AddRow(dir, time, step, values, &error));
+    if (!error) PetscCall(AddRow(dir, time, step, values, there, &error));
   }
   const PetscErrorCode status = RunDirAgree(dir, "history.csv", error);
   PetscFunctionReturn(status);

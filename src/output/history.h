@@ -16,3 +16,6 @@ PetscErrorCode HistoryRead(const char *path, History *history, char reason[256])
 PetscErrorCode HistoryFree(History *history);
 /* Column of that name, -1 if there is none. */
 PetscInt history_column(const History *history, const char *name);
+/* The last number of a column that is one: cells are empty in stages that do not have the measure. nan: there is
+ * none, or no such column (< 0). */
+PetscReal history_last(const History *history, PetscInt column);

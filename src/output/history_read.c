@@ -47,12 +47,20 @@ static PetscErrorCode ReadHeader(char *line, History *history)
   PetscFunctionReturn(0);
 }
 
+/* An empty cell is of a measure that the stage does not have: nan. */
+static PetscReal parse_cell(const char *text, char **end)
+{
+  const PetscReal value = (PetscReal)strtod(text, end);
+  if (*end != text || (*text != ',' && *text != '\n')) return value;
+  return NAN;
+}
+
 static PetscBool parse_row(const char *line, PetscInt n, PetscReal *row)
 {
   char *end;
   for (PetscInt i = 0; i < n; ++i) {
-    row[i] = (PetscReal)strtod(line, &end);
-    if (end == line || *end != (i + 1 < n ? ',' : '\n')) return PETSC_FALSE;
+    row[i] = parse_cell(line, &end);
+    if (*end != (i + 1 < n ? ',' : '\n')) return PETSC_FALSE;
     line = end + 1;
   }
   return PETSC_TRUE;
@@ -140,4 +148,13 @@ PetscInt history_column(const History *history, const char *name)
   for (PetscInt i = 0; i < history->n_columns; ++i)
     if (!strcmp(history->names[i], name)) return i;
   return -1;
+}
+
+PetscReal history_last(const History *history, PetscInt column)
+{
+  for (PetscInt row = history->n_rows - 1; row >= 0 && column >= 0; --row) {
+    const PetscReal value = history->values[(size_t)row * (size_t)history->n_columns + (size_t)column];
+    if (!PetscIsNanReal(value)) return value;
+  }
+  return NAN;
 }

@@ -56,6 +56,7 @@ PetscErrorCode PointsCreate(PetscInt dim, PetscInt n_state, PetscInt n_force, Po
   new->components[POINT_FIELD] = 0;
   new->components[POINT_CARRIED] = 0;
   new->components[POINT_FLOW] = 0;
+  new->components[POINT_MECHANISM] = 0;
   *points = new;
   PetscFunctionReturn(0);
 }

@@ -50,6 +50,9 @@ typedef enum {
   /* equivalent plastic strain that the last step added: 1 where it is to be written, otherwise 0
    * components */
   POINT_FLOW,
+  /* displacement in the last step per time, or per factor of what is sought, m/s, m: dim where it is to be
+   * written, otherwise 0 components */
+  POINT_MECHANISM,
   POINT_N_REAL
 } PointReal;
 

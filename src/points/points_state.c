@@ -32,6 +32,7 @@ static const struct {
   [POINT_FIELD] = {"velocity_field", NULL},
   [POINT_CARRIED] = {"carried", "m"},
   [POINT_FLOW] = {"flow", ""},
+  [POINT_MECHANISM] = {"mechanism", "m/s"},
 };
 
 /* Points of a cloud remember the cell of their birth by this number already. */

@@ -12,16 +12,14 @@
 static PetscErrorCode OpenHistory(Run *r, Diag *diag)
 {
   const char **names, **units;
-  const PetscInt first = r->whole->n_stages ? 1 : 0, n = first + r->c->n_measures;
+  const PetscInt first = r->whole->n_stages ? 1 : 0, n = first + case_columns(r->whole);
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc2(n + 1, &names, n + 1, &units));
-  PetscCall(PetscCalloc1(n, &r->values));
-  PetscCall(PetscCalloc1(n, &r->row));
   names[0] = "stage", units[0] = "";
-  for (PetscInt k = 0; k < r->c->n_measures; ++k) {
-    names[first + k] = r->c->measures[k].name;
-    units[first + k] = measure_unit(&r->c->measures[k]);
+  for (PetscInt k = 0; k < case_columns(r->whole); ++k) {
+    names[first + k] = case_column(r->whole, k)->name;
+    units[first + k] = measure_unit(case_column(r->whole, k));
   }
   PetscCall(RunWritten(
     r, diag ? HistoryOpenFrom(r->dir, n, names, units, r->row_step, r->history.lines ? &r->history : NULL, diag)
@@ -71,13 +69,14 @@ PetscErrorCode RunOpen(Run *r, const RunOptions *options, Diag *diag)
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode KeepSeries(Run *r, const char *name, PetscInt n, Diag *diag)
+/* Of the states before number n; all: every one of them has a file in it. */
+static PetscErrorCode KeepSeries(Run *r, const char *name, PetscInt n, PetscBool all, Diag *diag)
 {
   char reason[256];
   PetscMPIInt rank;
 
   PetscFunctionBeginUser;
-  const PetscErrorCode code = VtkSeriesKeep(r->comm, run_dir_path(r->dir), name, n, reason);
+  const PetscErrorCode code = VtkSeriesKeep(r->comm, run_dir_path(r->dir), name, n, all, reason);
   if (code && code != PETSC_ERR_FILE_WRITE) PetscCall(code);
   PetscCallMPI(MPI_Comm_rank(r->comm, &rank));
   if (code && !rank)
@@ -88,6 +87,7 @@ static PetscErrorCode KeepSeries(Run *r, const char *name, PetscInt n, Diag *dia
 /* Files as they were when the checkpoint was written. */
 static PetscErrorCode Rewind(Run *r, PetscInt step, Diag *diag)
 {
+  static const char *const others[] = {"grid", "walls", "contact"};
   const PetscInt states = output_count(r->output);
   PetscInt errors;
 
@@ -96,11 +96,11 @@ static PetscErrorCode Rewind(Run *r, PetscInt step, Diag *diag)
   PetscCall(DiagReduce(r->comm, diag, &errors));
   if (errors) PetscFunctionReturn(0); /* before anything is touched */
   PetscCall(OpenHistory(r, diag));
-  PetscCall(KeepSeries(r, "points", states, diag));
-  if (r->c->output.grid) PetscCall(KeepSeries(r, "grid", states, diag));
-  if (r->c->output.walls && r->c->n_walls) {
-    PetscCall(KeepSeries(r, "walls", states, diag));
-    PetscCall(KeepSeries(r, "contact", states, diag));
+  if (r->stage > 0) PetscCall(RunRecallColumns(r));
+  PetscCall(KeepSeries(r, "points", states, PETSC_TRUE, diag));
+  for (int k = 0; k < 3; ++k) { /* stages differ in what they write */
+    const PetscBool written = k ? r->c->output.walls && r->c->n_walls : r->c->output.grid;
+    if (written || r->whole->n_stages) PetscCall(KeepSeries(r, others[k], states, !r->whole->n_stages, diag));
   }
   PetscCall(DiagReduce(r->comm, diag, &errors));
   if (errors || r->failed) PetscFunctionReturn(0);

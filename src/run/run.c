@@ -49,10 +49,8 @@ PetscErrorCode RunWriteRow(Run *r)
   if (r->row_step == r->model->step) PetscFunctionReturn(0);
   PetscCall(Measure(r));
   r->row_step = r->model->step;
-  PetscInt n = 0;
-  if (r->whole->n_stages) r->row[n++] = (PetscReal)(r->stage + 1);
-  for (PetscInt k = 0; k < r->c->n_measures; ++k) r->row[n++] = r->values[k];
-  PetscCall(RunWritten(r, HistoryWrite(r->dir, r->model->time, r->model->step, r->row)));
+  run_fill_row(r);
+  PetscCall(RunWritten(r, HistoryWrite(r->dir, r->model->time, r->model->step, r->row, r->there)));
   PetscFunctionReturn(0);
 }
 
@@ -288,7 +286,7 @@ static PetscErrorCode Close(Run *r, PetscReal *measures)
   PetscCall(RunWriteRow(r));
   PetscCall(RunWriteState(r));
   seconds = r->before + (MPI_Wtime() - r->start);
-  if (measures) PetscCall(PetscArraycpy(measures, r->values, r->c->n_measures));
+  if (measures) run_give_columns(r, measures);
   r->summary.steps = r->model->step;
   r->summary.halvings = r->model->cuts;
   r->summary.iterations = r->model->total_iterations;
@@ -311,7 +309,7 @@ static PetscErrorCode RunModel(Run *r, const RunOptions *options, Diag *diag, Pe
   else PetscCall(RunOpen(r, options, diag));
   if (!r->dir) PetscFunctionReturn(0);
   if (complete) {
-    for (PetscInt k = 0; measures && k < r->c->n_measures; ++k) measures[k] = NAN;
+    for (PetscInt k = 0; measures && k < case_columns(r->whole); ++k) measures[k] = NAN;
     *result = RUN_DONE;
     /* before the first step: nothing is left behind by a run that was not there before */
   } else if (r->failed) {
@@ -370,7 +368,7 @@ PetscErrorCode RunCase(MPI_Comm comm, const Case *c, const RunOptions *options, 
   PetscCall(ModelsCreate(&run, options, diag));
   if (!run.model) PetscFunctionReturn(0);
   PetscCall(UntilCreate(first, &run.until));
-  PetscCall(PetscCalloc1(c->n_measures, &run.events));
+  PetscCall(RunMeasuresBegin(&run));
   if (options->warnings) PetscCall(DiagFlush(diag, options->warnings));
   signals_watch();
   run.model->asked = signals_came;
@@ -378,10 +376,8 @@ PetscErrorCode RunCase(MPI_Comm comm, const Case *c, const RunOptions *options, 
   signals_forget();
   PetscCall(StrengthRunDestroy(&run.strength));
   PetscCall(LimitRunDestroy(&run.limit));
-  PetscCall(PetscFree(run.values));
-  PetscCall(PetscFree(run.row));
+  PetscCall(RunMeasuresEnd(&run));
   PetscCall(PetscFree(run.starts));
-  PetscCall(PetscFree(run.events));
   PetscCall(UntilDestroy(&run.until));
   PetscCall(OutputDestroy(&run.output));
   PetscCall(RunDirDestroy(&run.dir));

@@ -38,7 +38,7 @@ typedef enum { RUN_DONE = 0, RUN_GAVE_UP = 1, RUN_BAD_INPUT = 2 } RunResult;
  * written then. A run that gives up or is interrupted (by a signal of run/signals.h: a step that
  * has not converged is given up) writes a checkpoint and its state and says why. A resumed run goes
  * on as if it had never been cut off: on the same number of ranks it ends with the same bits.
- * `measures` (n_measures numbers, or NULL) gets the final values; NaN where a run is resumed that
+ * `measures` (case_columns numbers, or NULL) gets the last values; NaN where a run is resumed that
  * was complete and has left no checkpoint. */
 PetscErrorCode RunCase(MPI_Comm comm, const Case *c, const RunOptions *options, Diag *diag, PetscReal *measures,
                        RunResult *result);

@@ -36,9 +36,10 @@ typedef struct {
   Output *output;
   Schedule states, rows;
   PetscInt state_step, row_step; /* step of the newest state and row, -1 if none */
-  PetscReal *values;
-  PetscReal *row;   /* of the history: the stage, where there are any, and the values */
-  PetscInt *events; /* per measure: how many of its events the run has told of */
+  PetscReal *values;             /* of the measures of the present stage */
+  PetscReal *row;                /* of the history: the stage, where there are any, and case_columns of the whole run */
+  PetscBool *there;              /* which of these the present stage has */
+  PetscInt *events;              /* per measure of the stage: how many of its events the run has told of */
   Until until;
   StrengthRun strength; /* of an analysis for a factor of safety */
   LimitRun limit;       /* of one for a limit load */
@@ -70,6 +71,15 @@ PetscErrorCode RunOpen(Run *r, const RunOptions *options, Diag *diag);
  * there is nothing to do. */
 PetscErrorCode RunResume(Run *r, const RunOptions *options, Diag *diag, PetscBool *complete);
 
+/* stages/columns.c. Room for the measures of the present stage, and which columns they are. */
+PetscErrorCode RunMeasuresBegin(Run *r);
+PetscErrorCode RunMeasuresEnd(Run *r);
+/* Values of the present stage into its columns; others keep what they had last. */
+void run_fill_row(Run *r);
+/* Values of all columns, as they were last, for who has called the run. */
+void run_give_columns(const Run *r, PetscReal *columns);
+/* Collective. What the columns had last, from the history of the run that is resumed. */
+PetscErrorCode RunRecallColumns(Run *r);
 /* stages/stages.c. Collective. Stage k begins: its times are those of the run from now on. */
 void run_begin_stage(Run *r, PetscInt k);
 /* Collective. The stage is over: a row, a state, a checkpoint to start from; then the next one from its state. */

@@ -112,13 +112,13 @@ static PetscErrorCode TakeAll(SweepRun *s, PetscInt n_set, char **set)
   PetscFunctionBeginUser;
   PetscCall(CaseRead(PETSC_COMM_SELF, s->file, n_set, (const char *const *)set, s->diag, &c));
   if (!c) PetscFunctionReturn(0);
-  PetscCall(PetscCalloc1(c->n_measures, &s->sweep->measures));
-  for (; s->sweep->n_measures < c->n_measures; ++s->sweep->n_measures) {
+  PetscCall(PetscCalloc1(case_columns(c), &s->sweep->measures));
+  for (; s->sweep->n_measures < case_columns(c); ++s->sweep->n_measures) {
     Taken *taken = &s->sweep->measures[s->sweep->n_measures].taken;
     taken->times = 1;
-    PetscCall(PetscStrallocpy(c->measures[s->sweep->n_measures].name, &taken->measure));
+    PetscCall(PetscStrallocpy(case_column(c, s->sweep->n_measures)->name, &taken->measure));
   }
-  if (!c->n_measures)
+  if (!case_columns(c))
     diag_error(s->diag, NULL, "'%s' has no measures: there is nothing that a sweep could show", s->file);
   PetscCall(CaseDestroy(&c));
   PetscFunctionReturn(0);

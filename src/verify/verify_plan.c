@@ -57,7 +57,7 @@ static void unknown_measure(const Verification *v, const VerifyRow *r, const Cas
 {
   const YamlNode *node = yaml_find(r->study->node, "measure");
   const char *words[64] = {NULL}, *nearest;
-  for (PetscInt k = 0; k < PetscMin(c->n_measures, 63); ++k) words[k] = c->measures[k].name;
+  for (PetscInt k = 0; k < PetscMin(case_columns(c), 63); ++k) words[k] = case_column(c, k)->name;
   yaml_error(v->reference->document, diag, node, PETSC_FALSE, "%s has no measure '%s'", v->file, r->study->measure);
   nearest = diag_nearest(r->study->measure, words);
   if (nearest) diag_hint(diag, "did you mean '%s'?", nearest);
@@ -74,12 +74,12 @@ PetscErrorCode VerifyPlanRow(Verification *v, VerifyRow *r, Diag *diag, Case **r
                r->study->sweep.symbol, r->row->at);
     PetscFunctionReturn(0);
   }
-  r->n_measures = c->n_measures;
-  for (r->measure = 0; r->measure < c->n_measures && strcmp(c->measures[r->measure].name, r->study->measure);)
+  r->n_measures = case_columns(c);
+  for (r->measure = 0; r->measure < case_columns(c) && strcmp(case_column(c, r->measure)->name, r->study->measure);)
     ++r->measure;
-  if (r->measure == c->n_measures) unknown_measure(v, r, c, diag);
+  if (r->measure == case_columns(c)) unknown_measure(v, r, c, diag);
   else {
-    PetscCall(PetscStrncpy(r->unit, measure_unit(&c->measures[r->measure]), sizeof r->unit));
+    PetscCall(PetscStrncpy(r->unit, measure_unit(case_column(c, r->measure)), sizeof r->unit));
     PetscCall(PetscCalloc1(r->n_measures, &r->measures));
   }
   PetscFunctionReturn(0);

@@ -29,6 +29,7 @@ typedef struct {
   PetscReal corners;
   PetscReal pressure;   /* of a law that needs a stress: the one it begins with, Pa */
   PetscReal heard;      /* of a nonlocal law: the mean of the strains around, if there is one */
+  PetscReal dt;         /* of a law that knows of rates: of each update, s; 0: it is told of no time */
   PetscBool may_refuse; /* may it say that it does not converge within stretches of 0.1 to 10? */
 } LawUnderTest;
 
@@ -63,6 +64,7 @@ static inline void law_suite_open(LawSuite *suite, const LawUnderTest *test)
     fail_msg("%s: bad parameters", test->law);
   }
   if (DiagDestroy(&diag)) fail();
+  if (suite->material.law->rate) materials_step(1, &suite->material, 0, test->dt > 0 ? test->dt : 1, test->dt > 0);
   suite->law = suite->material.law;
   suite->material.wave_modulus = suite->material.elastic.lame + 2 * suite->material.elastic.shear;
 }
@@ -336,14 +338,22 @@ static inline void law_suite_objectivity(LawSuite *suite)
   }
 }
 
-/* A step in which nothing moves changes nothing. */
+/* Of a law that knows of rates. */
+static inline void law_suite_tell_time(LawSuite *suite, PetscReal dt)
+{
+  if (suite->test->dt > 0) materials_step(1, &suite->material, 0, dt, PETSC_TRUE);
+}
+
+/* A step in which nothing moves, and no time passes, changes nothing. */
 static inline void law_suite_idempotence(LawSuite *suite)
 {
   LawPoint p = {0}, again = {.dF = {1, 0, 0, 0, 1, 0, 0, 0, 1}};
   for (int s = 0; s < 1000; ++s) {
     law_suite_random_point(suite, &p);
     memcpy(again.old, p.state, sizeof again.old);
+    law_suite_tell_time(suite, 0);
     law_suite_update(suite, &again);
+    law_suite_tell_time(suite, suite->test->dt);
     assert_int_equal(again.status, LAW_OK);
     law_suite_near(suite, "state at rest", suite->law->n_state, again.state, p.state,
                    1e-12 * (1 + law_suite_largest(suite->law->n_state, p.state)));

@@ -109,6 +109,35 @@ class CamClay:
         return np.append(ds - gamma * D @ n, gamma * hardening)
 
 
+class MuI:
+    """Flows at a rate that follows from its stress: R / P = mu(I) solved for I. Each path takes `seconds`."""
+    def __init__(self, g):
+        self.g = g
+        young, nu = g["young"], g["poisson"]
+        self.bulk = young / 3 / (1 - 2 * nu)
+        self.D, self.dt = hooke(self.bulk, young / 2 / (1 + nu)), g["seconds"] / STEPS
+
+    def start(self):
+        tau = -self.g["pressure"]
+        for _ in range(50):  # tau = J sigma, K ln J = tau
+            tau = -self.g["pressure"] * np.exp(tau / self.bulk)
+        return np.array([tau, tau, tau, 0])
+
+    def rate(self, y, de, plastic):
+        g, P = self.g, -y[:3].mean()
+        dev = y[:3] + P
+        R = np.sqrt(dev @ dev / 2)
+        excess = R / P - g["static_friction"]
+        if excess <= 0:
+            return np.append(self.D @ de, 0)
+        number = g["inertial_number"] * excess / (g["limit_friction"] - R / P)
+        gamma = number * np.sqrt(P / g["grain_density"]) / g["grain_size"] * self.dt
+        return np.append(self.D @ (de - gamma * dev / 2 / R), gamma / np.sqrt(3))
+
+    def step(self, y, de):
+        return runge_kutta(self, y, de, True)
+
+
 def runge_kutta(law, y, de, plastic):
     a = law.rate(y, de, plastic)
     b = law.rate(y + a / 2, de, plastic)
@@ -118,6 +147,8 @@ def runge_kutta(law, y, de, plastic):
 
 def step(law, y, de):
     """Elastic up to the yield surface, which is found by bisection, and plastic from there on."""
+    if hasattr(law, "step"):
+        return law.step(y, de)
     if law.f(y) < -1e-9 * np.abs(y[:3]).max():
         to = runge_kutta(law, y, de, False)
         if law.f(to) <= 0:
@@ -138,11 +169,14 @@ DENSE = dict(SOIL, initial_friction_angle=22, initial_dilatancy_angle=0, initial
              residual_dilatancy_angle=0, residual_cohesion=1e3, peak_strain=3e-3, residual_strain=2e-2)
 CLAY = {"critical_stress_ratio": 1.1, "lambda": 0.2, "kappa": 0.04, "specific_volume": 2.1, "shear_modulus": 4e6, "ocr": 1.0,
         "pressure": 1e5}
+GRAINS = {"young": 2e7, "poisson": 0.3, "static_friction": 0.38, "limit_friction": 0.64, "inertial_number": 0.3,
+          "grain_size": 0.01, "grain_density": 2500, "pressure": 1e5, "seconds": 2e-4}
 CASES = [("drucker-prager", DruckerPrager, dict(SOIL, match=k), [PRESS, SHEAR, BACK, SHEAR]) for k in range(3)] + [
     ("mohr-coulomb-softening", Softening, DENSE, [PRESS, SHEAR, BACK, [1e-2, 1e-3, -1.5e-2]]),
     ("mohr-coulomb-softening", Softening, dict(DENSE, peak_strain=5e-2, residual_strain=0.1), [PRESS, SHEAR, [0.03, 0, -0.05]]),
     ("modified-cam-clay", CamClay, CLAY, [[-0.02, -0.02, -0.02], [0.01, 0.005, -0.04], [0.002, 0.001, 0.01], [0.03, 0.03, -0.06]]),
-    ("modified-cam-clay", CamClay, dict(CLAY, ocr=6.0), [[0.02, 0.01, -0.03], [0.03, 0.01, -0.06]])]
+    ("modified-cam-clay", CamClay, dict(CLAY, ocr=6.0), [[0.02, 0.01, -0.03], [0.03, 0.01, -0.06]]),
+    ("mu-i", MuI, GRAINS, [PRESS, SHEAR, BACK, [4e-3, 4e-3, -1e-2]])]
 
 if __name__ == "__main__":
     out = []

@@ -88,6 +88,16 @@
     }                                                                                           \
   }
 
+#define MU_I(E, nu, slow, fast, number, size)                                                              \
+  7,                                                                                                       \
+  {                                                                                                        \
+    {(char *)"young", E}, {(char *)"poisson", nu}, {(char *)"static_friction", slow},                      \
+      {(char *)"limit_friction", fast}, {(char *)"inertial_number", number}, {(char *)"grain_size", size}, \
+    {                                                                                                      \
+      (char *)"grain_density", 2500                                                                        \
+    }                                                                                                      \
+  }
+
 static const LawUnderTest list[] = {
   {"neo-hookean", ELASTIC(90e6, 0.0), .strain = 0.3, .hyperelastic = PETSC_TRUE},
   {"neo-hookean", ELASTIC(70.0, 0.4999), .strain = 0.3, .hyperelastic = PETSC_TRUE},
@@ -128,6 +138,9 @@ static const LawUnderTest list[] = {
    .may_refuse = PETSC_TRUE},
   {"modified-cam-clay", CAM_CLAY(0.9, 0.25, 0.05, 2.2, 1e6, 8.0), .strain = 0.03, .pressure = 2e4,
    .not_mixed = PETSC_TRUE, .may_refuse = PETSC_TRUE},
+  {"mu-i", MU_I(2e6, 0.3, 0.38, 0.64, 0.3, 1e-3), .strain = 0.1},
+  {"mu-i", MU_I(2e6, 0.3, 0.38, 0.64, 0.3, 1e-2), .strain = 0.01, .dt = 1e-3},
+  {"mu-i", MU_I(1e5, 0.45, 0.2, 2.0, 0.05, 0.1), .strain = 0.3, .dt = 1e-2},
 };
 
 static void test_suite(void **state)

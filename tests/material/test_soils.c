@@ -102,12 +102,13 @@ static void check_golden(struct fy_node *item)
 {
   struct fy_node *given = fy_node_mapping_lookup_by_string(item, "given", FY_NT), *path, *ends;
   NamedValue value[MOST];
-  PetscReal pressure = 0, strain[MOST], golden[MOST * 2], coarse[MOST * 2], fine[MOST * 2];
+  PetscReal pressure = 0, seconds = 0, strain[MOST], golden[MOST * 2], coarse[MOST * 2], fine[MOST * 2];
   PetscInt n = 0;
   void *at = NULL;
   for (struct fy_node_pair *pair; (pair = fy_node_mapping_iterate(given, &at));) {
     const PetscReal number = strtod(fy_node_get_scalar0(fy_node_pair_value(pair)), NULL);
     if (!strcmp(fy_node_get_scalar0(fy_node_pair_key(pair)), "pressure")) pressure = number;
+    else if (!strcmp(fy_node_get_scalar0(fy_node_pair_key(pair)), "seconds")) seconds = number;
     else value[n++] = (NamedValue){(char *)fy_node_get_scalar0(fy_node_pair_key(pair)), number};
   }
   path = fy_node_mapping_lookup_by_string(item, "path", FY_NT);
@@ -116,8 +117,10 @@ static void check_golden(struct fy_node *item)
   assert_int_equal(golden_flatten(ends, 2 * MOST, golden), 4 * segments);
   Point p = {.m = soil(golden_text(item, "law"), n, value)};
   start(&p, pressure);
+  materials_step(1, &p.m, 0, seconds / 400, PETSC_TRUE);
   follow(&p, segments, strain, 400, coarse);
   start(&p, pressure);
+  materials_step(1, &p.m, 0, seconds / 800, PETSC_TRUE);
   follow(&p, segments, strain, 800, fine);
   for (PetscInt k = 0; k < 4 * segments; ++k) { /* a return is of first order: extrapolated */
     const PetscReal scale = fabs(golden[k]) + (k % 4 == 3 ? 1e-3 : 1e3);
@@ -134,7 +137,7 @@ static void test_golden(void **unused)
   int n = 0;
   (void)unused;
   for (struct fy_node *item; (item = fy_node_sequence_iterate(cases, &at)); ++n) check_golden(item);
-  assert_int_equal(n, 7);
+  assert_int_equal(n, 8);
   fy_document_destroy(document);
 }
 

@@ -30,7 +30,7 @@ static void WriteRows(RunDir *dir, PetscInt from, PetscInt to)
 {
   for (PetscInt step = from; step < to; ++step) {
     const PetscReal row[3] = {value(step, 0), value(step, 1), value(step, 2)};
-    assert_int_equal(HistoryWrite(dir, 0.1 * step, step, row), 0);
+    assert_int_equal(HistoryWrite(dir, 0.1 * step, step, row, NULL), 0);
   }
 }
 

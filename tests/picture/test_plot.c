@@ -403,7 +403,7 @@ static void test_histories(void **state)
   assert_int_equal(RunDirCreate(PETSC_COMM_WORLD, folder, PETSC_FALSE, PETSC_TRUE, NULL, diag, &dir), 0);
   assert_int_equal(HistoryOpen(dir, 3, names, units), 0);
   for (PetscInt i = 0; i <= 50; ++i)
-    assert_int_equal(HistoryWrite(dir, 0.1 * i, i, (PetscReal[]){sin(0.1 * i), 8000, NAN}), 0);
+    assert_int_equal(HistoryWrite(dir, 0.1 * i, i, (PetscReal[]){sin(0.1 * i), 8000, NAN}, NULL), 0);
   assert_int_equal(RunDirDestroy(&dir), 0);
   assert_int_equal(DiagDestroy(&diag), 0);
   WriteState(folder, 2, 0, 0);

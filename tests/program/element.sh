@@ -57,6 +57,16 @@ says err.txt "needs --test"
 expect "a case without a test" 2 "$talus" element case.yaml
 says err.txt "this is a case" "--test triaxial"
 
+# Grains sheared at 100 / s, at 10 / s and without any rate: arcsin mu(I)
+cat >grains.yaml <<'END'
+material: {law: mu-i, young: 1e8, poisson: 0.2, static_friction: 0.38, limit_friction: 0.64, grain_size: 1e-3, grain_density: 2500}
+start: {pressure: 1e4}
+path: [{strain: {xy: 0.2}, seconds: 2e-3, steps: 200}, {strain: {xy: 0.2}, seconds: 2e-2, steps: 200}, {strain: {xy: 0.2}, steps: 200}]
+END
+expect "rates" 0 "$talus" element grains.yaml --out f
+awk -F, 'function off(x) { return $20 > x * (1 + 1e-4) || $20 < x * (1 - 1e-4) } $1 == 1 { n = NR } NR == 202 && off(24.80389) { exit 1 } NR == 402 && off(22.61751) { exit 1 }
+  END { exit off(22.33368) }' f/element.csv || fail "$name: $(sed -n '202p;402p;602p' f/element.csv | cut -d, -f20)"
+
 sed 's/yy: -150e3/yy: -500e3/' sand.yaml >strong.yaml
 expect "beyond its strength" 1 "$talus" element strong.yaml --out c
 says err.txt "strong.yaml:7:5: error: strain zz, stress yy ends after" "prescribe its strain"

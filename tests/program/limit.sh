@@ -68,6 +68,33 @@ for ranks in 1 2 3; do
   awk -F, 'END { N = $3 / 5000; exit !(N > 9.13 && N < 9.17) }' run/history.csv || fail "$name: $(tail -1 run/history.csv)"
 done
 
+# The same plate as a rigid wall: its force; a mechanism is drawn
+sed 's/^loads:.*/walls: [{name: plate, shape: {box: {min: [-1, 1], max: [2, 1.5]}}, motion: [{displacement: {x: 0, y: -0.002}}]}]/' block.yaml >wall.yaml
+for ranks in 1 2 3; do
+  expect "a wall on $ranks" 0 on_ranks $ranks "$talus" run wall.yaml --out run --force --set analysis.limit='{raise: plate, step: 0.02, tolerance: 1e-3}' --set 'output.fields=[mechanism]'
+  awk -F, 'END { exit !($3 > 188.3e3 && $3 < 188.6e3) }' run/history.csv || fail "$name: $(tail -1 run/history.csv)"
+done
+expect "a mechanism" 0 "$talus" plot run --field mechanism --component y --arrows --out mechanism.png
+[ -s mechanism.png ] || fail "$name: no picture"
+
+# A ring of soil without friction yields as a whole under a pressure from inside of 2 c ln(b / a), 13862.94
+cat >ring.yaml <<'END'
+kinematics: axisymmetric
+method: fem
+formulation: mean-dilatation
+analysis: {type: limit-load, limit: {raise: inside, step: 2}}
+grid: {box: {min: [1, 0], max: [2, 0.125]}, counts: [16, 1]}
+bodies: [{name: ring, shape: {box: {min: [1, 0], max: [2, 0.125]}}, material: clay}]
+materials: {clay: {law: mohr-coulomb, density: 2000, young: 1e9, poisson: 0.49, friction_angle: 0, cohesion: 1e4}}
+boundary: [{on: {boundary: bottom}, fix: [y]}, {on: {boundary: top}, fix: [y]}]
+loads: {pressures: [{name: inside, on: {boundary: left}, value: 1e3}]}
+measures: {limit: {limit_load: value}}
+END
+for ranks in 1 2 3; do
+  expect "a pressure on $ranks" 0 on_ranks $ranks "$talus" run ring.yaml --out run --force
+  awk -F, 'END { exit !($3 > 13.862 && $3 < 13.883) }' run/history.csv || fail "$name: $(tail -1 run/history.csv)"
+done
+
 # Resumed anywhere: the same bits
 expect "whole" 0 "$talus" run block.yaml --out whole --quiet --set checkpoint.steps=3 --set checkpoint.keep=99
 cp -r whole cut
@@ -78,7 +105,9 @@ for file in limit.csv history.csv; do cmp -s whole/$file cut/$file || fail "$nam
 
 # What cannot be
 expect "no such load" 2 "$talus" check block.yaml --set analysis.limit.raise=pres
-says err.txt "there is no load and no entry of the boundary 'pres'" "did you mean 'press'"
+says err.txt "there is no load, no entry of the boundary and no wall 'pres'" "did you mean 'press'"
+expect "a wall that does not move so" 2 "$talus" check wall.yaml --set 'walls[0].motion=[{velocity: {x: 0, y: -1}}]' --set analysis.limit.raise=plate
+says err.txt "the motion of wall 'plate' is not one \`displacement\` that could be raised"
 expect "gmm" 2 "$talus" check block.yaml --set method=gmm --set formulation=displacement
 says err.txt "method gmm does not raise a load"
 expect "limit of statics" 2 "$talus" check block.yaml --set analysis.type=static

@@ -172,6 +172,97 @@ for method in mpm fem; do
     $1 == 4 { settled = $6 } $1 > 4 && off(-$6, -settled) { print; bad = 1 } END { exit bad }' ageing_${method}1/history.csv >bad.txt || { fail "$name"; head -n 3 bad.txt; }
 done
 
+# Measures, walls and output that come and go: one history, cells empty where a measure is not there
+cat >measures.yaml <<'END'
+kinematics: plane-strain
+method: mpm
+analysis: {type: static, steps: 2}
+grid: {box: {min: [0, 0], max: [2, 3]}, size: 0.5}
+bodies:
+  - {name: column, shape: {box: {min: [0, 0], max: [1, 2]}}, material: soil}
+  - {name: top, shape: {box: {min: [0, 2], max: [1, 2.5]}}, material: soil}
+materials:
+  soil: {law: mohr-coulomb, density: 2000, young: 5e6, poisson: 0.3, friction_angle: 30, cohesion: 3e4, dilatancy_angle: 1}
+boundary:
+  - {name: floor, on: {y: 0}, fix: [x, y]}
+  - {name: left, on: {x: 0}, fix: [x]}
+walls:
+  - {name: prop, shape: {box: {min: [1, 0], max: [1.5, 3]}}}
+loads: {gravity: [0, -9.81]}
+measures:
+  settle: {displacement: y, of: {tracer: [0.6, 1.9]}}
+  always: {displacement: y, of: {tracer: [0.4, 1.1]}}
+  prop: {wall_force: x, of: {wall: prop}}
+output: {fields: [displacement, stress], every: {steps: 1}, history: {steps: 1}, grid: false}
+checkpoint: {steps: 1, keep: 99}
+stages:
+  - name: weight
+  - name: dig
+    bodies: [{name: top, absent: true}]
+    measures:
+      settle: {absent: true}
+      weight: {reaction: y, of: {boundary: floor}}
+      rises: {displacement: y, of: {tracer: [0.4, 1.1]}}
+      rate: {displacement: y, of: {tracer: [0.6, 1.9]}, rate: {window: 0.5}}
+    output: {grid: true}
+  - name: free
+    walls: [{name: prop, absent: true}, {name: hood, shape: {box: {min: [0, 2.2], max: [1, 2.6]}}}]
+    output: {grid: false, fields: [displacement]}
+    measures:
+      settle: {displacement: y, of: {tracer: [0.6, 1.9]}}
+      prop: {absent: true}
+      hood: {wall_force: y, of: {wall: hood}}
+END
+for method in mpm fem; do
+  for ranks in 1 2 3; do
+    [ $method$ranks != fem3 ] || continue
+    expect "measures change, $method on $ranks" 0 on_ranks $ranks "$talus" run measures.yaml --out measures_$method$ranks --set method=$method
+    same_answer "$name" measures_${method}1 measures_$method$ranks
+  done
+  for step in 3 4 5; do
+    rm -rf cut && cp -r measures_${method}1 cut && forget cut $step
+    expect "measures change, $method resumed at $step" 0 "$talus" run --resume cut --quiet
+    same_bits "$name" measures_${method}1 cut
+  done
+  name="measures change, $method: what begins counts from there, what ends leaves cells empty"
+  awk -F, -v off=$([ $method = fem ] && echo 1e-9 || echo 5e-3) 'NR == 1 { for (k = 1; k <= NF; ++k) { sub(" .*", "", $k); c[$k] = k } next }
+    { stage = $c["stage"]; if (stage == 1) before = $c["always"]; moved = $c["always"] - before - $c["rises"] }
+    stage == 1 && ($c["rises"] != "" || $c["settle"] == "" || $c["hood"] != "") { print; bad = 1 }
+    stage == 2 && ($c["settle"] != "" || $c["rises"] == "" || moved * moved > off * off * before * before) { print; bad = 1 }
+    stage == 3 && ($c["prop"] != "" || $c["settle"] == "" || $c["hood"] == "" || moved * moved > off * off * before * before) { print; bad = 1 }
+    END { exit bad }' measures_${method}1/history.csv >bad.txt || { fail "$name"; head -n 3 bad.txt; }
+  name="measures change, $method: the grid is written in one stage alone"
+  [ "$(ls measures_${method}1/grid_*.hdf | wc -l)" -lt "$(ls measures_${method}1/points_*.hdf | wc -l)" ] || fail "$name"
+done
+expect "a history with empty cells is drawn" 0 "$talus" plot measures_mpm1 --y rises --x always
+
+# A block that is bonded to another one slides off when a stage lets it: g (sin a - mu cos a)
+cat >slide.yaml <<'END'
+kinematics: plane-strain
+method: mpm
+analysis: {type: dynamic, end: 0.1, step: 0.01}
+grid: {box: {min: [0, 0], max: [4, 1.5]}, size: 0.25}
+bodies:
+  - {name: base, shape: {box: {min: [0, 0], max: [4, 0.5]}}, material: rubber}
+  - {name: block, shape: {box: {min: [1, 0.5], max: [2, 1]}}, material: rubber}
+materials: {rubber: {law: neo-hookean, density: 1000, young: 1e8, poisson: 0.3}}
+interfaces: [{name: joint, between: [block, base], contact: bonded}]
+boundary: [{name: floor, on: {y: 0}, fix: [x, y]}]
+loads: {gravity: [3.355217, -9.218385], gravity_amplitude: [[0, 0], [0.1, 1]]} # tilted by 20 degrees
+measures: {pull: {interface_force: x, of: {interface: joint}}, speed: {velocity: x, of: {tracer: [1.5, 0.75]}}}
+checkpoint: {steps: 1, keep: 99}
+stages:
+  - name: bonded
+  - {name: slides, interfaces: [{name: joint, between: [block, base], contact: friction, friction: 0.2}], analysis: {end: 0.2}}
+END
+for ranks in 1 2 3; do
+  expect "an interface changes, on $ranks" 0 on_ranks $ranks "$talus" run slide.yaml --out slide$ranks
+  same_answer "$name" slide1 slide$ranks
+done
+rm -rf cut && cp -r slide1 cut && forget cut 13
+expect "an interface changes, resumed" 0 "$talus" run --resume cut --quiet
+same_bits "$name" slide1 cut
+
 # What is refused: refused NAME TEXT OPTION...
 refused() {
   title=$1 text=$2
@@ -181,7 +272,13 @@ refused() {
 }
 refused "a body that is not there" "there is no 'tpo' in bodies" column.yaml --set 'stages[1].bodies[0].name=tpo'
 says err.txt "did you mean 'top'?"
-refused "a key that stages do not know" "key 'measures' of stages[1] is not known" column.yaml --set 'stages[1].measures={}'
+refused "a key that stages do not know" "key 'grid' of stages[1] is not known" column.yaml --set 'stages[1].grid={}'
+refused "a measure that is not there" "there is no 'setle' in measures that the stage could change" measures.yaml --set 'stages[1].measures={setle: {absent: true}}'
+says err.txt "did you mean 'settle'?"
+refused "another unit in one column" "'settle' was a number in 'm' in the stages before, and would be one in 'N'" measures.yaml --set 'stages[2].measures.settle={reaction: y, of: {boundary: floor}}'
+refused "a condition on what is gone" "there is no 'settle' in measures (stage 'dig')" measures.yaml --set 'stages[1].analysis={until: [{measure: settle, below: -1}]}'
+refused "an interface that is gone" "the interface 'joint' between 'block' and 'base' is gone" slide.yaml --set 'stages[1].interfaces=[]' --set 'measures={}'
+says err.txt "\`contact: bonded\` holds bodies together"
 refused "two stages of one name" "the name 'weight' is taken by stages[0]" column.yaml --set 'stages[1].name=weight'
 refused "a mistake in a stage" "(stage 'fill')" column.yaml --set 'stages[2].materials.loose.young=-1'
 refused "a load on what is gone" "the load acts on 'top', which is not there (stage 'dig')" column.yaml --set 'loads.tractions=[{on: {body: top}, value: [0, -1]}]'

@@ -72,6 +72,7 @@ static const SchemaTable traction = {.name = "traction",
                                      .size = sizeof(LoadSpec),
                                      .tag_offset = offsetof(LoadSpec, kind)};
 static const SchemaEntry pressure_entries[] = {
+  KEY("name", NAME, NULL, "how `analysis.limit` may call it", AT(LoadSpec, name)),
   KEY("on", TABLE, NULL,
       "a boundary of the grid, or of a body, as the material fills it at the start; it moves with it",
       .table = &schema_selector, REQUIRED, AT(LoadSpec, on)),

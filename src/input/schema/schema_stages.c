@@ -25,7 +25,11 @@ static const SchemaEntry stage_entries[] = {
           "entries take the place of those of their name, or come behind them; {name: ..., absent: true} "
           "takes one away"),
   PART_OF("walls", "likewise; walls that come later are `absent` at the top"),
+  PART_OF("interfaces", "likewise, of another law; which bodies meet stays"),
   PART_OF("loads", "single keys; a list takes the place of the one before"),
+  PART_OF("measures",
+          "entries take the place of those of their name, or come behind them; NAME: {absent: true} drops one. Cells "
+          "of history.csv are empty where a measure is not there"),
   PART_OF("strength", "divided by a factor"),
   PART_OF("newton", "single keys"),
   PART_OF("linear", "linear solver"),

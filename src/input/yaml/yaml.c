@@ -66,6 +66,21 @@ PetscErrorCode YamlNodeAppend(YamlNode *parent, YamlNode *child)
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode YamlNodeRemove(YamlNode *parent, PetscInt index)
+{
+  PetscFunctionBeginUser;
+  PetscCall(YamlNodeDestroy(&parent->child[index]));
+  for (PetscInt i = index; i + 1 < parent->n; ++i) {
+    parent->child[i] = parent->child[i + 1];
+    parent->child[i]->index = i;
+  }
+  --parent->n;
+  if (parent->keys) PetscCall(NamesFree(parent->keys));
+  PetscCall(PetscFree(parent->keys));
+  PetscCall(IndexLast(parent)); /* anew */
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode YamlCreate(const char *file, const char *text, size_t size, Diag *diag, YamlDocument **document)
 {
   PetscFunctionBeginUser;

@@ -59,6 +59,8 @@ PetscErrorCode YamlParseInto(YamlDocument *document, const char *text, size_t si
 PetscErrorCode YamlNodeCreate(YamlDocument *document, YamlKind kind, YamlNode **node);
 PetscErrorCode YamlNodeDestroy(YamlNode **node);
 PetscErrorCode YamlNodeAppend(YamlNode *parent, YamlNode *child);
+/* Destroy a child; those behind it move up. */
+PetscErrorCode YamlNodeRemove(YamlNode *parent, PetscInt index);
 
 /* The same value: numbers by what they are, keys in any order. */
 PetscBool yaml_equal(const YamlNode *a, const YamlNode *b);

@@ -7,6 +7,13 @@ static PetscBool is_forces(const Case *c)
   return c->analysis.limit.kind == RAISE_GRAVITY || c->analysis.limit.kind == RAISE_LOAD;
 }
 
+/* Does the load turn with the surface that it acts on? */
+static PetscBool follows(const Case *c)
+{
+  const LimitSpec *limit = &c->analysis.limit;
+  return limit->kind == RAISE_LOAD && c->loads[limit->index].kind == LOAD_PRESSURE;
+}
+
 void raised_start(Model *m, Diag *diag)
 {
   const Case *c = m->c;
@@ -15,8 +22,6 @@ void raised_start(Model *m, Diag *diag)
   if (c->analysis.type != ANALYSIS_LIMIT) return;
   if (m->method->clouds)
     diag_error(diag, "analysis.type", "method %s does not raise a load to its limit: mpm and fem do", m->method->name);
-  if (limit->kind == RAISE_LOAD && c->loads[limit->index].kind == LOAD_PRESSURE)
-    diag_error(diag, "analysis.limit.raise", "a pressure that follows the surface cannot be raised: give a traction");
   if (limit->kind == RAISE_GRAVITY && case_has_stress(c))
     diag_error(diag, "analysis.limit.raise",
                "gravity is raised from zero, but bodies start with the stress of a weight");
@@ -62,9 +67,9 @@ static PetscErrorCode NodalLoad(Model *m, PetscReal *load)
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc1(dofs, &none));
   scene.t = end;
-  PetscCall(NodalForcesExternal(&m->forces, &scene, PETSC_FALSE, none));
+  PetscCall(NodalForcesExternal(&m->forces, &scene, follows(m->c), none));
   scene.t = end + 1;
-  PetscCall(NodalForcesExternal(&m->forces, &scene, PETSC_FALSE, load));
+  PetscCall(NodalForcesExternal(&m->forces, &scene, follows(m->c), load));
   gravity_at(m->c, end + 1, g);
   for (PetscInt i = 0; i < dofs; ++i) {
     const PetscBool weighs = m->c->analysis.limit.kind == RAISE_GRAVITY && m->nodes->touched[i / m->dim];
@@ -92,20 +97,24 @@ PetscErrorCode RaisedPrepare(Model *m, PetscReal dt, StepProblem *p)
                            .factor = r->factor,
                            .work = r->unit > 0 ? r->unit * dt : dt,
                            .unit = r->unit,
-                           .lacks = 1};
+                           .lacks = 1,
+                           .follows = follows(m->c),
+                           .time = m->c->analysis.end};
   p->border = &r->border;
   PetscFunctionReturn(0);
 }
 
-/* Force of the boundary on the material along its prescribed displacement, and how far that has come. */
-static PetscErrorCode LookAtBoundary(Model *m)
+/* Force of the boundary, or of the wall, on the material along its prescribed displacement, and how far that has
+ * come. */
+static PetscErrorCode LookAtMotion(Model *m)
 {
-  const PetscInt k = m->c->analysis.limit.index;
-  const MotionSpec *motion = &m->c->boundary[k];
+  const LimitSpec *limit = &m->c->analysis.limit;
+  const MotionSpec *motion = case_raised_motion(m->c);
   PetscReal sum[3], square = 0;
 
   PetscFunctionBeginUser;
-  PetscCall(BoundarySum(m->boundary, m->grid, k, m->nodes->reaction, sum));
+  if (limit->kind == RAISE_WALL) PetscCall(PetscArraycpy(sum, m->contact->wall[limit->index].mean.force, 3));
+  else PetscCall(BoundarySum(m->boundary, m->grid, limit->index, m->nodes->reaction, sum));
   for (PetscInt d = 0; d < m->dim; ++d) square += PetscSqr(motion->value[d]);
   m->raised.load = 0;
   for (PetscInt d = 0; d < m->dim && square > 0; ++d)
@@ -128,6 +137,6 @@ PetscErrorCode ModelRaise(Model *m, PetscReal control, StepReport *report)
     r->load = r->factor = r->border.factor;
     r->unit = r->border.unit;
     if (r->resultant > 0) r->displacement += r->border.work / r->resultant;
-  } else PetscCall(LookAtBoundary(m));
+  } else PetscCall(LookAtMotion(m));
   PetscFunctionReturn(0);
 }

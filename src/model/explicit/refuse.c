@@ -20,6 +20,10 @@ void explicit_check(const Model *m, Diag *diag)
   refuse(c->analysis.keep_velocity, "analysis.keep_velocity", "this", diag);
   refuse(walls_with_mass(c) > 0, "walls", "walls with mass", diag);
   refuse(c->n_interfaces > 0, "interfaces", "interfaces", diag);
+  for (PetscInt i = 0; i < c->n_materials; ++i) {
+    const Law *law = law_find(c->materials[i].law);
+    refuse(law && law->rate, "materials", "laws whose stress depends on the rate of strain", diag);
+  }
   if (c->analysis.scheme || c->analysis.bossak != 0)
     diag_warning(diag, c->analysis.scheme ? "analysis.scheme" : "analysis.bossak",
                  "is of implicit dynamics, and means nothing to `type: explicit`");

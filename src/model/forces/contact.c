@@ -1,5 +1,6 @@
 /* Walls and interfaces over the life of a model: what touches them, and what they do to motion,
  * momentum and energy. */
+#include <string.h>
 #include "method/transfer/mass.h"
 #include "model/model_private.h"
 
@@ -23,19 +24,40 @@ PetscBool contact_rubs(const Case *c)
 
 /* What stands nearer to a wall than its cell's side does touches it: the body was made to fit. A point
  * inside the wall is a mistake. *deepest: gap of the worst. */
-static void fit_to_wall(Model *m, PetscInt k, PetscReal *deepest, PetscReal worst[3])
+static void look_at_wall(Model *m, PetscInt k, PetscBool fits, PetscReal *deepest, PetscReal worst[3])
 {
   WallPlace place;
   for (PetscInt p = 0; p < m->points->n; ++p) {
     const PetscReal *x = point_real(m->points, POINT_X, p);
     PetscReal *reach = point_real(m->points, POINT_REACH, p);
-    const int side = wall_side(m->walls, k, 0, x);
-    if (!wall_near(m->walls, k, 0, x, *reach, side, &place)) continue;
-    if (place.gap > THROUGH * m->grid->smallest) *reach = PetscMin(*reach, place.gap);
+    const int side = wall_side(m->walls, k, m->time, x);
+    if (!wall_near(m->walls, k, m->time, x, *reach, side, &place)) continue;
+    if (fits && place.gap > THROUGH * m->grid->smallest) *reach = PetscMin(*reach, place.gap);
     if (place.gap >= *deepest) continue;
     *deepest = place.gap;
     for (PetscInt d = 0; d < m->dim; ++d) worst[d] = x[d];
   }
+}
+
+static PetscErrorCode TellThrough(const Model *m, PetscInt k, PetscReal deepest, PetscReal x[3], Diag *diag)
+{
+  struct {
+    double gap;
+    int rank;
+  } local, all;
+  PetscMPIInt rank;
+  char path[64];
+
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_rank(m->comm, &rank));
+  local.gap = (double)deepest, local.rank = rank;
+  PetscCallMPI(MPI_Allreduce(&local, &all, 1, MPI_DOUBLE_INT, MPI_MINLOC, m->comm));
+  if (all.gap >= 0) PetscFunctionReturn(0);
+  PetscCallMPI(MPI_Bcast(x, 3, MPIU_REAL, all.rank, m->comm));
+  PetscCall(PetscSNPrintf(path, sizeof path, "walls[%d]", (int)k));
+  diag_error(diag, path, "wall '%s' goes through a body at the start: the point at (%g, %g, %g) m is %.3g m inside it",
+             m->c->walls[k].name, (double)x[0], (double)x[1], (double)x[2], -all.gap);
+  PetscFunctionReturn(0);
 }
 
 PetscErrorCode WallsStart(Model *m, Diag *diag)
@@ -47,23 +69,29 @@ PetscErrorCode WallsStart(Model *m, Diag *diag)
   rigid_check(m, diag);
   PetscCall(InterfacesStart(m, diag));
   for (PetscInt k = 0; k < m->c->n_walls; ++k) {
-    struct {
-      double gap;
-      int rank;
-    } local, all;
     PetscReal deepest = 0, x[3] = {0, 0, 0};
-    PetscMPIInt rank;
-    char path[64];
-    fit_to_wall(m, k, &deepest, x);
-    PetscCallMPI(MPI_Comm_rank(m->comm, &rank));
-    local.gap = (double)deepest, local.rank = rank;
-    PetscCallMPI(MPI_Allreduce(&local, &all, 1, MPI_DOUBLE_INT, MPI_MINLOC, m->comm));
-    if (all.gap >= 0) continue;
-    PetscCallMPI(MPI_Bcast(x, 3, MPIU_REAL, all.rank, m->comm));
-    PetscCall(PetscSNPrintf(path, sizeof path, "walls[%d]", (int)k));
-    diag_error(diag, path,
-               "wall '%s' goes through a body at the start: the point at (%g, %g, %g) m is %.3g m inside it",
-               m->c->walls[k].name, (double)x[0], (double)x[1], (double)x[2], -all.gap);
+    look_at_wall(m, k, PETSC_TRUE, &deepest, x);
+    if (m->c->stage == 0) PetscCall(TellThrough(m, k, deepest, x, diag)); /* others begin with bodies elsewhere */
+  }
+  PetscFunctionReturn(0);
+}
+
+/* Was the wall there before, as it is now? */
+static PetscBool stood(const WallSpec *wall, const Case *c, const Case *from)
+{
+  for (const WallSpec *w = from->walls; w < from->walls + from->n_walls; ++w)
+    if (!strcmp(w->name, wall->name)) return !w->absent && wall->since < c->stage;
+  return PETSC_FALSE;
+}
+
+PetscErrorCode WallsCome(Model *m, const Case *from, Diag *diag)
+{
+  PetscFunctionBeginUser;
+  for (PetscInt k = 0; k < m->c->n_walls; ++k) {
+    PetscReal deepest = 0, x[3] = {0, 0, 0};
+    if (m->c->walls[k].absent || stood(&m->c->walls[k], m->c, from)) continue;
+    look_at_wall(m, k, PETSC_FALSE, &deepest, x);
+    PetscCall(TellThrough(m, k, deepest, x, diag));
   }
   PetscFunctionReturn(0);
 }

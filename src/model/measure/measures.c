@@ -102,19 +102,33 @@ PetscErrorCode MeasuresStart(Model *m)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode MeasuresRemember(Model *m, PetscReal dt)
+static PetscErrorCode Remember(Model *m, PetscInt k, PetscReal dt)
 {
+  const MeasureSpec *s = &m->c->measures[k];
+  const Measure *measure = measure_find(s->kind);
   PetscReal value;
 
   PetscFunctionBeginUser;
-  for (PetscInt k = 0; k < m->c->n_measures; ++k) {
-    const MeasureSpec *s = &m->c->measures[k];
-    const Measure *measure = measure_find(s->kind);
-    if (measure->remember) PetscCall(measure->remember(m, s, dt, m->memory[k].kept));
-    if (!measure_has_window(s)) continue;
-    PetscCall(Value(m, s, k, &value));
-    PetscCall(WindowRemember(m, s, &m->memory[k], value));
-  }
+  if (measure->remember) PetscCall(measure->remember(m, s, dt, m->memory[k].kept));
+  if (!measure_has_window(s)) PetscFunctionReturn(0);
+  PetscCall(Value(m, s, k, &value));
+  PetscCall(WindowRemember(m, s, &m->memory[k], value));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode MeasuresRemember(Model *m, PetscReal dt)
+{
+  PetscFunctionBeginUser;
+  for (PetscInt k = 0; k < m->c->n_measures; ++k) PetscCall(Remember(m, k, dt));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode MeasureBegin(Model *m, PetscInt k)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscFree(m->memory[k].list));
+  m->memory[k] = (MeasureMemory){0};
+  PetscCall(Remember(m, k, 0));
   PetscFunctionReturn(0);
 }
 

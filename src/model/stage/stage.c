@@ -3,7 +3,7 @@
 #include "model/state/state.h"
 
 /* What no state can be made of, by its name. */
-static void check_cases(const Model *m, const Case *from, Diag *diag)
+static void check_cases(const Model *m, const Case *from, PetscBool next, Diag *diag)
 {
   const Case *c = m->c;
   if (strcmp(c->method, from->method))
@@ -13,13 +13,7 @@ static void check_cases(const Model *m, const Case *from, Diag *diag)
   if (!m->method->restores_grid && case_is_mixed(c) != case_is_mixed(from))
     diag_error(diag, "formulation", "nodes of fem carry their pressures or have none: the state is one of `%s`",
                from->formulation);
-  if (c->n_walls != from->n_walls || c->n_interfaces != from->n_interfaces) {
-    diag_error(diag, c->n_walls != from->n_walls ? "walls" : "interfaces",
-               "the state is one of %d walls and %d interfaces, here are %d and %d", (int)from->n_walls,
-               (int)from->n_interfaces, (int)c->n_walls, (int)c->n_interfaces);
-    if (c->n_walls != from->n_walls)
-      diag_hint(diag, "name a wall that comes later at the top of the file, with absent: true");
-  }
+  rename_check(c, from, next, diag);
 }
 
 /* A load that bodies carry needs a place in the undeformed body. */
@@ -49,14 +43,6 @@ static PetscErrorCode TakeCarriers(Model *m, const Tables *tables, const Case *f
                "a load that the material carries can begin only with the undeformed body, in the first stage");
     diag_hint(diag, "give all of them there, with amplitudes that are 0 until they come");
   }
-  PetscFunctionReturn(0);
-}
-
-static PetscErrorCode TakeTracers(Model *m, const Tables *tables, char reason[256])
-{
-  PetscFunctionBeginUser;
-  PetscCall(
-    PointsFromTable(m->tracers, m->grid, tables_find(tables, "tracers"), m->c->n_measures, PETSC_MAX_INT, reason));
   PetscFunctionReturn(0);
 }
 
@@ -119,9 +105,10 @@ static PetscErrorCode Take(Model *m, const Tables *tables, const Case *from, Pet
 
   PetscFunctionBeginUser;
   PetscCall(ReasonShare(m->comm, reason));
+  if (!reason[0] && next) PetscCall(RenameTables(m, from, tables));
   if (!reason[0] && next) PetscCall(StateGoOn(m, tables, reason));
   if (!reason[0]) PetscCall(TakePoints(m, tables, from, onto, diag, reason));
-  if (!reason[0] && next) PetscCall(TakeTracers(m, tables, reason));
+  if (!reason[0] && next) PetscCall(TakeTracers(m, tables, from, reason));
   if (!reason[0]) PetscCall(TakeCarriers(m, tables, from, next, diag, reason));
   if (!reason[0]) PetscCall(TakeNodes(m, tables, next, reason));
   PetscCall(ReasonShare(m->comm, reason));
@@ -170,7 +157,7 @@ PetscErrorCode ModelTake(Model *m, Tables *tables, const Case *from, PetscBool n
 
   PetscFunctionBeginUser;
   const PetscInt before = diag_errors(diag);
-  check_cases(m, from, diag);
+  check_cases(m, from, next, diag);
   state_check_grid(m, tables, other);
   const PetscBool onto = other[0] && diag_errors(diag) == before && takes_another_grid(m, next, diag);
   if (diag_errors(diag) == before) PetscCall(Take(m, tables, from, next, onto, diag, reason));
@@ -180,6 +167,10 @@ PetscErrorCode ModelTake(Model *m, Tables *tables, const Case *from, PetscBool n
   m->space->present = PETSC_FALSE;
   PetscCall(ModelInitialise(m));
   settle_stress(m);
+  if (next) PetscCall(WallsCome(m, from, diag));
+  if (next) PetscCall(BeginMeasures(m, from, diag));
+  PetscCall(DiagReduce(m->comm, diag, &errors));
+  if (errors) PetscFunctionReturn(0);
   PetscCall(HoldImbalance(m, imbalance));
   if (m->scheme->inertia && case_is_static(&from->analysis)) PetscCall(InitialAcceleration(m));
   PetscFunctionReturn(0);

@@ -7,6 +7,14 @@
  * changed. onto: they come from another grid. */
 PetscErrorCode TakePoints(Model *model, const Tables *tables, const Case *from, PetscBool onto, Diag *diag,
                           char reason[256]);
+/* rename.c. Which measure of the case before measure k of c goes on as; -1: none, it begins anew. */
+PetscInt measure_before(const Case *c, PetscInt k, const Case *from);
+/* Tables of a state of `from` under the names of the model's case. */
+PetscErrorCode RenameTables(const Model *model, const Case *from, const Tables *tables);
+/* begin.c. Collective. Followers of measures in the tables, and those of measures that begin with the stage. */
+PetscErrorCode TakeTracers(Model *model, const Tables *tables, const Case *from, char reason[256]);
+/* Collective. Measures that begin with the stage begin where the model now stands. */
+PetscErrorCode BeginMeasures(Model *model, const Case *from, Diag *diag);
 /* Have both the same law and elastic constants, so that states of one are states of the other? */
 PetscBool material_as_stiff(const Material *a, const Material *b);
 /* The stress of point p stays, in the state of another law or of other constants, and so do its place and its

@@ -71,7 +71,9 @@ PetscErrorCode HistoryOpenFrom(RunDir *dir, PetscInt n, const char *const *names
                                PetscInt step, const HistoryMark *was, Diag *diag);
 /* Rows on the disk, not only with the system: what a checkpoint counts on. */
 PetscErrorCode HistorySync(RunDir *dir);
-PetscErrorCode HistoryWrite(RunDir *dir, PetscReal time, PetscInt step, const PetscReal *values);
+/* there: which of the values there are, the cells of others stay empty; NULL: all. */
+PetscErrorCode HistoryWrite(RunDir *dir, PetscReal time, PetscInt step, const PetscReal *values,
+                            const PetscBool *there);
 
 /* A text file written atomically (case.yaml, version.txt, timings.txt). Rank 0 writes. Collective.
  * Errors as for the history. */

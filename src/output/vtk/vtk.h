@@ -35,9 +35,11 @@ typedef struct {
  * PETSC_ERR_FILE_WRITE on every rank, with the unfinished file removed; the caller reports and goes
  * on or stops. `reason` (256 characters) says why. */
 PetscErrorCode VtkWrite(MPI_Comm comm, const char *path, const VtkData *data, char reason[256]);
-/* Resume: keep the first n entries of DIR/NAME.hdf.series, and forget the others; atomic.
+/* Resume: keep the entries of DIR/NAME.hdf.series of states before number n, and forget the others; atomic. all:
+ * there must be n of them.
  * Collective. No file is fine if n = 0. */
-PetscErrorCode VtkSeriesKeep(MPI_Comm comm, const char *folder, const char *name, PetscInt n, char reason[256]);
+PetscErrorCode VtkSeriesKeep(MPI_Comm comm, const char *folder, const char *name, PetscInt n, PetscBool all,
+                             char reason[256]);
 /* Append (or replace from this time on) an entry of DIR/NAME.hdf.series; atomic. Rank 0 writes.
  * Collective. file NULL: only forget the entries from this time on. */
 PetscErrorCode VtkSeriesAppend(MPI_Comm comm, const char *folder, const char *name, const char *file, PetscReal time,

@@ -28,8 +28,15 @@ static void write_entry(FILE *out, PetscBool first, const char *file, PetscReal 
   fprintf(out, "%s    {\"name\": \"%s\", \"time\": %s}", first ? "" : ",\n", file, number);
 }
 
-/* Entries before `time` (but for the last bits of a sum of steps) and at most `most` of them, then
- * the new one. */
+/* The number in grid_000012.hdf; 0 where there is none. */
+static long state_number(const char *file)
+{
+  const char *number = strrchr(file, '_');
+  return number ? strtol(number + 1, NULL, 10) : 0;
+}
+
+/* Entries before `time` (but for the last bits of a sum of steps) of states before number `most`, then the new
+ * one. */
 static PetscInt rewrite(FILE *old, FILE *out, const char *file, PetscReal time, PetscInt most)
 {
   const PetscReal before = time - 1e-12 * PetscAbsReal(time);
@@ -38,7 +45,7 @@ static PetscInt rewrite(FILE *old, FILE *out, const char *file, PetscReal time, 
   PetscReal t;
   fputs("{\n  \"file-series-version\": \"1.0\",\n  \"files\": [\n", out);
   while (old && kept < most && fgets(line, sizeof line, old)) {
-    if (!parse_entry(line, name, &t) || !(t < before)) continue;
+    if (!parse_entry(line, name, &t) || !(t < before) || state_number(name) >= most) continue;
     write_entry(out, kept == 0, name, t);
     ++kept;
   }
@@ -94,10 +101,11 @@ PetscErrorCode VtkSeriesAppend(MPI_Comm comm, const char *folder, const char *na
   PetscFunctionReturn(code);
 }
 
-PetscErrorCode VtkSeriesKeep(MPI_Comm comm, const char *folder, const char *name, PetscInt n, char reason[256])
+PetscErrorCode VtkSeriesKeep(MPI_Comm comm, const char *folder, const char *name, PetscInt n, PetscBool all,
+                             char reason[256])
 {
   PetscFunctionBeginUser;
-  const PetscErrorCode code = Edit(comm, folder, name, NULL, PETSC_MAX_REAL, n, n, reason);
+  const PetscErrorCode code = Edit(comm, folder, name, NULL, PETSC_MAX_REAL, all ? n : 0, n, reason);
   PetscFunctionReturn(code);
 }
 

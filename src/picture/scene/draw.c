@@ -134,6 +134,16 @@ static void write_edges(FILE *out, const PlotFrame *f)
   fputs("EOD\n", out);
 }
 
+static void write_arrows(FILE *out, const PlotFrame *f)
+{
+  fputs("$arrows << EOD\n", out);
+  for (PetscInt i = 0; i < f->n_arrows; ++i) {
+    const PetscReal *a = f->arrow + 4 * i;
+    fprintf(out, "%.7g %.7g %.7g %.7g\n", (double)a[0], (double)a[1], (double)a[2], (double)a[3]);
+  }
+  fputs("EOD\n", out);
+}
+
 /* The image is made to lie on the pixels of the field; the invisible point brings the colour
  * bar. */
 static void write_plot(FILE *out, const PlotScene *scene, const PlotFrame *f, const PlotPage *page,
@@ -142,12 +152,15 @@ static void write_plot(FILE *out, const PlotScene *scene, const PlotFrame *f, co
   const double dx = (double)(page->max[0] - page->min[0]) / page->w,
                dy = (double)(page->max[1] - page->min[1]) / page->h;
   if (f->n_edges) write_edges(out, f);
+  if (f->n_arrows) write_arrows(out, f);
   fputs("plot ", out);
   if (f->n_edges) fputs("$grid with lines lw 0.7 lc rgb '#b8b8b8' notitle, ", out);
   fprintf(out,
           "'-' binary array=(%d,%d) origin=(%.15g,%.15g) dx=%.15g dy=%.15g format='%%uchar' using 1:2:3:4 with "
           "rgbalpha notitle",
           page->w, page->h, (double)page->min[0] + 0.5 * dx, (double)page->min[1] + 0.5 * dy, dx, dy);
+  if (f->n_arrows)
+    fputs(", $arrows using 1:2:3:4 with vectors head filled size screen 0.006,20 lw 0.8 lc rgb '#202020' notitle", out);
   if (!scene->named) fputs(", '+' using (NaN):(NaN):(0) with points palette notitle", out);
   else if (f == scene->frames) write_entries(out, scene);
   fputc('\n', out);

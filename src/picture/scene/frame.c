@@ -94,6 +94,8 @@ PetscErrorCode PlotFrameRead(VtkFile *file, const VtkFieldInfo *field, const Plo
   if (VtkReadField(file, field, &data, reason) == 0) {
     PetscCall(PetscMalloc3(3 * (size_t)most, &f->x, most, &f->value, most, &f->radius));
     take_points(scene, f, n, x, scalar, field->components, data);
+    if (scene->arrows && field->components == 3 && scene->walled && scene->walled->kinematics->dim == 2)
+      PetscCall(PlotFrameArrows(n, x, field->components, data, f));
     if (scene->mirrored) mirror_points(f);
     PetscCall(TakeFirst(file, scene, n, x, f));
     PetscCall(TakeWalls(file, scene, f));
@@ -221,6 +223,7 @@ PetscErrorCode PlotFramesFree(PlotScene *scene)
     PetscCall(PetscFree(f->part));
     PetscCall(PetscFree(f->line));
     PetscCall(PetscFree(f->edges));
+    PetscCall(PetscFree(f->arrow));
   }
   PetscFunctionReturn(0);
 }

@@ -21,6 +21,8 @@ typedef struct {
   PetscInt n_triangles;
   PetscReal *corner, *corner_value; /* n_triangles x 3 x 3 and x 3: cells of fem, as RasterScene has them */
   unsigned char *side;
+  PetscInt n_arrows;
+  PetscReal *arrow; /* n_arrows x 4: where they begin, and how far they go, m */
   PetscInt n_lines;
   PetscReal *line;  /* n_lines x 2 x 3: walls in space */
   PetscReal *walls; /* 12 numbers of each wall with mass: walls_put_frames; NULL: they are where they began */
@@ -41,6 +43,7 @@ typedef struct {
   PetscReal factor;
   PetscBool named;      /* values are numbers of bodies or materials: they have names instead */
   PetscBool grid;       /* lines of the cells */
+  PetscBool arrows;     /* of a vector field in the plane */
   PetscBool bare;       /* without the first outline, and where the grid is held */
   PetscReal gap;        /* how far apart points stand in the first frame, m */
   PetscInt up;          /* axis that points up, in space */
@@ -131,3 +134,7 @@ PetscErrorCode PlotFirstDraw(const PlotScene *scene, const PlotFrame *frame, con
 /* image.c: a grey of this share over a pixel. */
 void plot_blend(unsigned char *rgba, PetscReal grey, PetscReal alpha);
 PetscErrorCode PlotFramesFree(PlotScene *scene);
+
+/* arrows.c. Arrows of n points (x: n x 3) with vectors v (n x components). */
+PetscErrorCode PlotFrameArrows(PetscInt n, const PetscReal *x, PetscInt components, const PetscReal *v,
+                               PlotFrame *frame);

@@ -265,6 +265,7 @@ PetscErrorCode PlotSceneFill(const PlotOptions *options, PetscInt n, const VtkSt
   PetscCall(PlotWallsOpen(options->run, diag, scene));
   PetscCall(FindKind(options, diag, scene));
   scene->grid = options->grid;
+  scene->arrows = options->arrows;
   scene->bare = options->bare;
   scene->columns = options->columns;
   for (PetscInt k = 0; k < n && !diag_errors(diag); ++k) {

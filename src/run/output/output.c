@@ -7,6 +7,7 @@
 #include "output/directory/run_dir_files.h"
 
 #define MAX_FIELDS 32
+#define NOT_WRITTEN (-2) /* bytes of a file that a state does not have: another stage of the run has it */
 
 /* Files of one state: of its points and, if the case asks, of its grid. */
 typedef struct {
@@ -112,6 +113,8 @@ PetscErrorCode OutputPointField(const Model *m, const OutputField *field, PetscR
   PetscFunctionBeginUser;
   if (!strcmp(field->name, "displacement")) widen(n, m->dim, m->points->real[POINT_U], data);
   else if (!strcmp(field->name, "velocity")) widen(n, m->dim, m->points->real[POINT_V], data);
+  else if (!strcmp(field->name, "mechanism") && m->points->components[POINT_MECHANISM])
+    widen(n, m->dim, m->points->real[POINT_MECHANISM], data);
   else if (!strcmp(field->name, "acceleration")) widen(n, m->dim, m->points->real[POINT_A], data);
   else
     for (PetscInt p = 0; p < n; ++p) PetscCall(PointValue(m, p, field->name, data + count_numbers(p, k)));
@@ -316,6 +319,7 @@ PetscErrorCode OutputWrite(Output *o, Model *m, PetscBool *ok, char reason[256])
   *ok = PETSC_TRUE;
   PetscCall(ModelInitialise(m));
   PetscCall(ReserveSeals(o, o->count + 1));
+  o->seals[o->count] = (StateSeals){.grid = {.bytes = NOT_WRITTEN}};
   PetscCall(WritePoints(o, m, ok, reason));
   if (*ok && m->c->output.grid) PetscCall(WriteGrid(o, m, ok, reason));
   if (*ok && m->walls && m->c->output.walls) PetscCall(OutputWalls(o, m, ok, reason));
@@ -383,7 +387,8 @@ PetscErrorCode OutputCheck(const Output *o, MPI_Comm comm, Diag *diag)
   PetscCallMPI(MPI_Comm_rank(comm, &rank));
   for (PetscInt k = 0; !rank && k < o->count; ++k) {
     wrong += check_file(o, "points", k, &o->seals[k].points, wrong, diag);
-    if (o->grid) wrong += check_file(o, "grid", k, &o->seals[k].grid, wrong, diag);
+    if (o->grid && o->seals[k].grid.bytes != NOT_WRITTEN)
+      wrong += check_file(o, "grid", k, &o->seals[k].grid, wrong, diag);
   }
   if (wrong > 3) diag_error(diag, NULL, "%d files of states are missing or damaged in all", (int)wrong);
   if (wrong)

@@ -2,6 +2,7 @@
 #include "base/text.h"
 #include "output/directory/run_dir_files.h"
 #include "run/run_private.h"
+#include "run/watch/events.h"
 
 void run_begin_stage(Run *r, PetscInt k)
 {
@@ -24,6 +25,7 @@ static PetscErrorCode Attend(Run *r)
   r->rows = (Schedule){.every = output->history};
   if (output->every > 0) r->states.count = (PetscInt)(time / output->every * (1 + 1e-9));
   if (output->history > 0) r->rows.count = (PetscInt)(time / output->history * (1 + 1e-9));
+  PetscCall(RunMeasuresBegin(r));
   PetscCall(UntilDestroy(&r->until));
   PetscCall(UntilCreate(r->c, &r->until));
   PetscCall(StrengthRunDestroy(&r->strength));
@@ -127,6 +129,7 @@ PetscErrorCode RunNextStage(Run *r, Diag *diag)
                       (double)r->starts[k]));
   PetscCall(RunTellImbalance(r, &imbalance));
   PetscCall(RunWriteStages(r));
+  PetscCall(RunWritten(r, EventsWatch(r->model, r->dir, PETSC_TRUE, r->events)));
   PetscCall(UntilLook(&r->until, r->model));
   PetscFunctionReturn(0);
 }
@@ -140,6 +143,7 @@ PetscErrorCode RunCheckStages(MPI_Comm comm, const Case *whole, Diag *diag)
   for (PetscInt k = 1; k < whole->n_stages && !errors; ++k) {
     whole->stage_case[k]->grid.trusted = whole->grid.trusted;
     diag_of_stage(diag, k, whole->stages[k].name);
+    rename_check(whole->stage_case[k], whole->stage_case[k - 1], PETSC_TRUE, diag);
     PetscCall(ModelCreate(comm, whole->stage_case[k], diag, &m));
     PetscCall(ModelDestroy(&m));
     PetscCall(DiagReduce(comm, diag, &errors));

@@ -45,7 +45,7 @@ static PetscErrorCode Look(LimitRun *s, Model *m, const StepReport *report)
   row.dissipated = energies.dissipated;
   if (s->n) {
     const LimitRow *before = &s->rows[s->n - 1];
-    const PetscReal force = m->c->analysis.limit.kind == RAISE_BOUNDARY ? 1 : m->raised.resultant;
+    const PetscReal force = case_raises_displacement(m->c) ? 1 : m->raised.resultant;
     row.work = before->work + 0.5 * force * (before->load + row.load) * (row.displacement - before->displacement);
   }
   PetscCall(Append(s, &row));
@@ -96,7 +96,7 @@ static void choose_step(LimitRun *s, const LimitSpec *spec, const StepReport *re
 PetscErrorCode LimitStep(LimitRun *s, Model *m, RunDir *dir, StepReport *report)
 {
   const LimitSpec *spec = &m->c->analysis.limit;
-  const PetscBool forces = spec->kind != RAISE_BOUNDARY;
+  const PetscBool forces = !case_raises_displacement(m->c);
   PetscReal step = s->step;
 
   PetscFunctionBeginUser;
@@ -125,7 +125,7 @@ PetscErrorCode LimitWrite(const LimitRun *s, const Model *m, RunDir *dir)
   PetscFunctionBeginUser;
   PetscCall(TextOpen(&stream));
   fprintf(stream.out, "control,load [%s],displacement [m],iterations,largest [m],stored [J],dissipated [J],work [J]\n",
-          m->c->analysis.limit.kind == RAISE_BOUNDARY ? "N" : "");
+          case_raises_displacement(m->c) ? "N" : "");
   for (PetscInt i = 0; i < s->n; ++i)
     for (int k = 0; k < LIMIT_NUMBERS; ++k) {
       file_format_real(((const PetscReal *)&s->rows[i])[k], number);
@@ -163,7 +163,7 @@ PetscErrorCode LimitEnd(const LimitRun *s, Model *m, RunDir *dir)
   PetscCall(RunDirLog(dir, "by energy = %.1f %% of the load's last work was stored", 100 * (double)share_stored(s)));
   if (outcome == LIMIT_MOST || outcome == LIMIT_LOST)
     PetscCall(RunDirLog(dir, "warning = no limit was found: the load is the largest that was reached"));
-  if (spec->kind == RAISE_BOUNDARY)
+  if (case_raises_displacement(m->c))
     PetscCall(
       RunDirLog(dir, "limit load = %.6g N along the displacement of '%s'", (double)m->raised.value, spec->raise));
   else PetscCall(RunDirLog(dir, "limit load = %.6g times '%s'", (double)m->raised.value, spec->raise));

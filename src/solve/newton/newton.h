@@ -23,6 +23,10 @@ typedef struct {
   PetscReal unit;
   PetscReal lacks; /* share of the work that is still lacking */
   PetscReal from, along;
+  /* of a load that follows the surface: its forces are assembled with the others, for the time `time` + factor;
+   * `load` are those of the step's start */
+  PetscBool follows;
+  PetscReal time;
 } LoadBorder;
 
 /* The step to be solved; arrays are n_nodes x dim over local nodes. */

@@ -17,7 +17,7 @@ static PetscErrorCode Balance(Newton *n)
   PetscFunctionBeginUser;
   for (PetscInt k = 0; k < p->system->n_active; ++k)
     for (PetscInt d = 0, i = p->system->active[k] * dim; d < dim; ++d, ++i) {
-      const PetscReal external = p->external[i] + (b ? (b->factor - b->start) * b->load[i] : 0);
+      const PetscReal external = p->external[i] + (b && !b->follows ? (b->factor - b->start) * b->load[i] : 0);
       p->force[i] -= external;
       if (p->fixed[i]) local[0] += p->force[i] * p->force[i];
       else local[1] += external * external;
@@ -50,6 +50,7 @@ PetscErrorCode NewtonAssemble(Newton *n, PetscBool tangent)
   p->in.pressure = p->pressure;
   PetscCall(p->formulation->assemble(&p->in, &out));
   if (tangent && p->in.half) PetscCall(SystemMirror(p->system));
+  if (p->border && p->border->follows) p->scene.t = p->border->time + p->border->factor;
   const NodalOutput acting = {.force = p->force, .system = tangent ? p->system : NULL};
   PetscCall(NodalForcesAssemble(p->forces, &p->scene, &acting));
   if (tangent) system_turn(p->system);

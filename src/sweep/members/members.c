@@ -86,11 +86,10 @@ static PetscErrorCode LookForRun(const Members *members, Member *m, const Case *
 static void check_measures(Member *m, const Case *c, Diag *diag)
 {
   const char *words[64] = {NULL};
-  for (PetscInt k = 0; k < PetscMin(c->n_measures, 63); ++k) words[k] = c->measures[k].name;
+  for (PetscInt k = 0; k < PetscMin(case_columns(c), 63); ++k) words[k] = case_column(c, k)->name;
   for (PetscInt k = 0; k < m->n_taken; ++k) {
-    PetscInt i = 0;
-    while (i < c->n_measures && strcmp(c->measures[i].name, m->taken[k].measure)) ++i;
-    if (i < c->n_measures) taken_unit(&m->taken[k], measure_unit(&c->measures[i]), m->units[k]);
+    const PetscInt i = case_column_of(c, m->taken[k].measure);
+    if (i >= 0) taken_unit(&m->taken[k], measure_unit(case_column(c, i)), m->units[k]);
     else {
       diag_error(diag, NULL, "%s has no measure '%s'", m->file, m->taken[k].measure);
       diag_hint_names(diag, m->taken[k].measure, words);

@@ -26,8 +26,10 @@ static PetscErrorCode ReadFinished(const Verification *v, const char *folder, Ve
   summary_read(folder, &r->summary);
   *finished = last && (r->summary.ended[0] || c->n_stages || last[0] >= c->analysis.end * (1 - 1e-9));
   for (PetscInt k = 0; k < r->n_measures && *finished; ++k) {
-    const PetscInt column = history_column(&history, c->measures[k].name);
-    r->measures[k] = column < 0 ? NAN : last[column];
+    const char *name = case_column(c, k)->name;
+    const PetscInt column = history_column(&history, name);
+    const PetscBool stays = case_measure_of(case_stage(c, case_stages(c) - 1), name) >= 0;
+    r->measures[k] = column >= 0 && stays ? last[column] : history_last(&history, column);
   }
   PetscCall(HistoryFree(&history));
   PetscFunctionReturn(0);
