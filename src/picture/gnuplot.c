@@ -94,6 +94,17 @@ static void first_complaint(FILE *complaints, char text[256])
       snprintf(text, 256, "%.*s", (int)strcspn(line, "\n"), line + strspn(line, " \t"));
 }
 
+/* "what it said first, it was killed by signal 9 (Killed)" */
+static void tell_failure(const char *program, const char *complaint, int status, Diag *diag)
+{
+  char end[128] = "";
+  if (WIFSIGNALED(status))
+    snprintf(end, sizeof end, "it was killed by signal %d (%s)", WTERMSIG(status), strsignal(WTERMSIG(status)));
+  else if (!complaint[0]) snprintf(end, sizeof end, "it ended with code %d", WEXITSTATUS(status));
+  diag_error(diag, NULL, "%s could not draw the picture: %s%s%s", program, complaint,
+             complaint[0] && end[0] ? ", " : "", end);
+}
+
 /* Let a program do its part of the picture. */
 static PetscBool run_program(char *const *arguments, FILE *input, Diag *diag)
 {
@@ -111,7 +122,7 @@ static PetscBool run_program(char *const *arguments, FILE *input, Diag *diag)
   while (waitpid(pid, &status, 0) < 0 && errno == EINTR) continue;
   const PetscBool ran = WIFEXITED(status) && WEXITSTATUS(status) == 0;
   first_complaint(complaints, text);
-  if (!ran) diag_error(diag, NULL, "%s could not draw the picture: %s", arguments[0], text);
+  if (!ran) tell_failure(arguments[0], text, status, diag);
   fclose(complaints);
   return ran;
 }
