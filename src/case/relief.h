@@ -10,7 +10,7 @@ typedef struct Relief {
   PetscReal bottom;       /* where the solid ends below, m: deeper than any use of it */
 } Relief;
 
-/* An ESRI ASCII grid (.asc): x = scale X + offset for all of its coordinates and heights. If it cannot be
+/* An ESRI ASCII grid (.asc), or a GeoTIFF by GDAL's gdal_translate: x = scale X + offset for all of its coordinates and heights. If it cannot be
  * read, *relief is NULL and `message` says the reason, with the line. Not collective. */
 PetscErrorCode ReliefRead(const char *path, PetscReal scale, const PetscReal offset[3], Relief **relief, size_t size,
                           char *message);
