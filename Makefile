@@ -95,8 +95,8 @@ docs: ## Build the site of the documentation, in build/docs/html
 	@cmake --build $(BUILD) --parallel $(JOBS) --target talus
 	@cmake --build $(BUILD) --target docs
 
-gallery: build ## Measure the seconds that the gallery says of the cases (half an hour)
-	@python3 docs/site/measure.py $(TALUS)
+gallery: build ## Measure the seconds that the gallery says of the cases (half an hour): CASES="slope cook" of some
+	@python3 docs/site/measure.py $(TALUS) 60 $(CASES)
 
 format: ## Format all sources in place
 	@cmake/debian-packages.sh format

@@ -46,7 +46,7 @@ static PetscErrorCode Ask(const Loads *l, PetscInt load, PetscReal t, PetscReal 
   l->asked[load].ask(l->asked[load].context, n, X, x, t, one);
   n = 0;
   for (PetscInt p = 0; p < carriers->n; ++p)
-    if (carriers->body[p] == load) PetscCall(PetscArraycpy(f + 3 * p, one + 3 * n++, 3));
+    for (int d = 0; carriers->body[p] == load && d < 3; ++d) f[3 * p + d] = one[n++];
   PetscCall(PetscFree2(X, x));
   PetscCall(PetscFree(one));
   PetscFunctionReturn(0);

@@ -1,6 +1,6 @@
-/* gdal_translate writes the head of a GeoTIFF as a VRT, a text, and then its heights as an ESRI ASCII
- * grid. Only GDAL's driver for TIFF may open the file: what others do with a stranger's file (some follow
- * links into the network) is not asked. */
+/* gdal_translate writes the head of a GeoTIFF as a VRT, a text, and then its heights as an ESRI
+ * ASCII grid. Only GDAL's driver for TIFF may open the file: what others do with a stranger's
+ * file (some follow links into the network) is not asked. */
 #include "case/terrain/geotiff.h"
 #include <ctype.h>
 #include <errno.h>
@@ -99,11 +99,13 @@ static const char *element(const char *head, const char *name, size_t *length)
 /* North up and square. */
 static PetscBool check_cells(const char *head, const char *path, size_t size, char *message)
 {
-  double g[6];
+  double g[6] = {0, 0, 0, 0, 0, 0}; /* x = g0 + g1 column + g2 row, y = g3 + g4 column + g5 row */
   size_t length;
-  const char *text = element(head, "GeoTransform", &length);
-  if (!text || sscanf(text, "%lf ,%lf ,%lf ,%lf ,%lf ,%lf", g, g + 1, g + 2, g + 3, g + 4, g + 5) != 6)
-    (void)snprintf(message, size, "%s: the TIFF does not say where its cells are: it is no GeoTIFF", path);
+  int n = 0;
+  char *end;
+  for (const char *at = element(head, "GeoTransform", &length); at && n < 6; at = *end == ',' ? end + 1 : NULL)
+    g[n++] = strtod(at, &end);
+  if (n < 6) (void)snprintf(message, size, "%s: the TIFF does not say where its cells are: it is no GeoTIFF", path);
   else if (g[2] != 0 || g[4] != 0 || !(g[1] > 0) || !(g[5] < 0))
     (void)snprintf(message, size, "%s: its rows do not go from north to south: gdalwarp %s straight.tif turns it", path,
                    path);
@@ -120,14 +122,16 @@ static double last_unit(const char *text, size_t length, char name[64])
 {
   double metres = 0;
   for (const char *at = text; (at = strstr(at, "UNIT[")) && at < text + length; ++at) {
-    char word[64];
-    double value;
+    const char *word = at + strlen("UNIT[");
     /* quotes are written as they are, or as XML wants them */
-    if (sscanf(at, "UNIT[\"%63[^\"]\",%lf", word, &value) != 2 &&
-        sscanf(at, "UNIT[&quot;%63[^&]&quot;,%lf", word, &value) != 2)
-      continue;
-    metres = value;
-    (void)strcpy(name, word);
+    const char *quote = *word == '"' ? "\"" : "&quot;";
+    if (strncmp(word, quote, strlen(quote))) continue;
+    word += strlen(quote);
+    const char *end = strstr(word, quote);
+    if (!end) break;
+    (void)snprintf(name, 64, "%.*s", (int)PetscMin(end - word, 60), word);
+    end += strlen(quote);
+    metres = strtod(end + strspn(end, ", "), NULL);
   }
   return metres;
 }
@@ -165,7 +169,8 @@ static const char *part(const char *text, size_t length, const char *name, const
   return at && at < text + length ? at : NULL;
 }
 
-/* x, y and heights in metres, or in one other unit that the user knows of. Without a system: metres. */
+/* x, y and heights in metres, or in one other unit that the user knows of. Without a system:
+ * metres. */
 static PetscBool check_units(const char *head, PetscReal scale, const char *path, size_t size, char *message)
 {
   char name[64] = "an unknown unit", high[64] = "an unknown unit";

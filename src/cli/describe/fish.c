@@ -19,8 +19,8 @@ static void fish_value(FILE *out, const char *name, const char *exclusive)
   fputc('\'', out);
 }
 
-/* The words of a command: those that are alike stand anywhere, others in their place (options have no
- * words behind them there: "--out DIR" would count as one). */
+/* The words of a command: those that are alike stand anywhere, others in their place (options
+ * have no words behind them there: "--out DIR" would count as one). */
 static void fish_words(FILE *out, const CliCommand *command)
 {
   char first[128], name[128];
