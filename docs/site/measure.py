@@ -19,12 +19,20 @@ def processor():
     return os.uname().machine
 
 
+def words_of(case):
+    """What computes the case: `run` of its case.yaml, or what its page says, on a file of its folder; None where neither is there."""
+    command = case.command[0].split()
+    if (case.folder / "case.yaml").exists():
+        return ["run", str(case.folder / "case.yaml")]
+    return [command[1], str(ROOT / command[2])] if command[1] == "element" else None
+
+
 def seconds_of(talus, case, limit):
     """Processor time of the case's command, or None where it needs more than limit. A run that fails ends the measurement."""
     with tempfile.TemporaryDirectory() as folder:
         before = resource.getrusage(resource.RUSAGE_CHILDREN)
         status = subprocess.run(
-            [talus, "run", str(case.folder / "case.yaml"), "--out", folder + "/run", "--quiet"], cwd=folder,
+            [talus, *words_of(case), "--out", folder + "/run"], cwd=folder,
             stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, env={**os.environ, "OPENBLAS_NUM_THREADS": "1"},
             preexec_fn=lambda: (os.nice(10), resource.setrlimit(resource.RLIMIT_CPU, (limit, limit + 5)))).returncode
         after = resource.getrusage(resource.RUSAGE_CHILDREN)
@@ -44,7 +52,7 @@ def main():
     when = f"{version}, {processor()}, one rank, {datetime.date.today()}"
     head.insert(0 if not named else 1, f"# {when}" + (f": {', '.join(named)}" if named else ""))
     for case in all_cases():
-        if not (case.folder / "case.yaml").exists() or case.is_long or (named and case.name not in named):
+        if not words_of(case) or case.is_long or (named and case.name not in named):
             continue
         seconds = seconds_of(talus, case, limit)
         print(f"{case.name}: {'more than the limit, or failed' if seconds is None else f'{seconds:.1f} s'}", flush=True)
