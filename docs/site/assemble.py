@@ -18,7 +18,7 @@ FENCE = re.compile(r"^(\s*)(```+|~~~+)")
 
 def sources():
     """All Markdown of the repository that is no build output: paths without .md, by name."""
-    skip = re.compile(r"(^|/)(build[^/]*|runs|results|\.[^/]*|node_modules)(/|$)")
+    skip = re.compile(r"(^|/)(build[^/]*|obj-[^/]*|runs|results|\.[^/]*|node_modules)(/|$)")
     paths = [p.relative_to(ROOT) for pattern in ("*.md", "[a-z]*/**/*.md") for p in ROOT.glob(pattern)]
     return sorted({str(p)[:-3] for p in paths if not skip.search(str(p))})
 
