@@ -82,9 +82,9 @@ verify: build ## Verify every case that has reference values, and all of the tut
 install: build ## Install program, library, manual, completions and cases under PREFIX=/usr/local; `make docs` before: these, too
 	@cmake --install $(BUILD) --prefix $(abspath $(PREFIX))
 
-package: ## Build Debian packages for any x86-64 or arm64 machine, in build/package: program, library, Python, documentation
+package: ## Build Debian packages for any x86-64 or arm64 machine, in build/package: MAINTAINER="Name <address>" (git's name for you)
 	@cmake/debian-packages.sh build docs package
-	@sh packaging/build.sh $(BUILD)/package
+	@TALUS_MAINTAINER="$${TALUS_MAINTAINER:-$(MAINTAINER)}" sh packaging/build.sh $(BUILD)/package
 
 release-check: ## Before a tag: do all files tell the same version, and is nothing left open? VERSION=0.2.0
 	@sh packaging/release-check.sh $(VERSION)
@@ -95,8 +95,8 @@ docs: ## Build the site of the documentation, in build/docs/html
 	@cmake --build $(BUILD) --parallel $(JOBS) --target talus
 	@cmake --build $(BUILD) --target docs
 
-gallery: build ## Measure the seconds that the gallery says of the cases (half an hour)
-	@python3 docs/site/measure.py $(TALUS)
+gallery: build ## Measure the seconds that the gallery says of the cases (half an hour): CASES="slope cook" of some
+	@python3 docs/site/measure.py $(TALUS) 60 $(CASES)
 
 format: ## Format all sources in place
 	@cmake/debian-packages.sh format

@@ -104,6 +104,18 @@ typedef void (*TalusBodyForce)(void *context, const double X[3], double t, doubl
 typedef void (*TalusBodyForces)(void *context, int n, const double *X, const double *x, double t, double *b);
 
 /**
+ * @brief A load that varies from place to place: factors for all places of this rank that bear it.
+ * @param context  what was handed over with the function
+ * @param n        number of places; 0 on a rank that has none
+ * @param X        undeformed positions, m, n x 3; the third is 0 in plane strain
+ * @param x        positions at the start of the step, m, n x 3 (of a traction on the grid itself: X)
+ * @param t        time, s
+ * @param f        result, n x 3, ones on entry: factors of the three components of the load's
+ *   `value`; a pressure has one number, and takes f[0] of each place
+ */
+typedef void (*TalusLoadFactors)(void *context, int n, const double *X, const double *x, double t, double *f);
+
+/**
  * @brief Told of every step of a run, on every rank.
  * @param context  what was handed to TalusCaseSetProgress()
  * @param step     number of steps so far
@@ -219,6 +231,22 @@ int TalusCaseText(const TalusCase *c, char **text);
 int TalusCaseSetBodyForces(TalusCase *c, TalusBodyForces force, void *context);
 
 /**
+ * @brief Let a traction, a pressure or a point force of the case vary from place to place, in the
+ * runs and models made from now on. Not collective, but the same on every rank.
+ *
+ * What the function returns multiplies `value` and `amplitude` of the case file: with a value of 1
+ * it is the load itself, in N/m2 of undeformed surface (tractions), in Pa of the present one
+ * (pressures), or in N (points). When it is asked, TalusModelSetBodyForce() tells. A run that is
+ * resumed needs it again; a case with stages is refused by TalusRunCase().
+ * @param c        the case
+ * @param load     "tractions[0]", "pressures[1]", "points[0]": the load's place in `loads`
+ * @param factors  the function, or NULL for none
+ * @param context  handed to it
+ * @return #TALUS_OK, or #TALUS_ERROR_UNKNOWN if the case has no such load
+ */
+int TalusCaseSetLoadFactors(TalusCase *c, const char *load, TalusLoadFactors factors, void *context);
+
+/**
  * @brief Be told of the steps of TalusRunCase(). Not collective, but the same on every rank.
  * @param c         the case
  * @param progress  the function, or NULL for none
@@ -328,6 +356,9 @@ int TalusModelSetBodyForce(TalusModel *model, TalusBodyForce force, void *contex
 
 /** @brief The same with a function for all points at once. Collective. */
 int TalusModelSetBodyForces(TalusModel *model, TalusBodyForces force, void *context);
+
+/** @brief As TalusCaseSetLoadFactors(), of a model, from its next step on. Collective. */
+int TalusModelSetLoadFactors(TalusModel *model, const char *load, TalusLoadFactors factors, void *context);
 
 /**
  * @brief Advance by one step, halved until Newton's method converges. Collective.

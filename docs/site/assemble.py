@@ -18,7 +18,7 @@ FENCE = re.compile(r"^(\s*)(```+|~~~+)")
 
 def sources():
     """All Markdown of the repository that is no build output: paths without .md, by name."""
-    skip = re.compile(r"(^|/)(build[^/]*|runs|results|\.[^/]*|node_modules)(/|$)")
+    skip = re.compile(r"(^|/)(build[^/]*|obj-[^/]*|runs|results|\.[^/]*|node_modules)(/|$)")
     paths = [p.relative_to(ROOT) for pattern in ("*.md", "[a-z]*/**/*.md") for p in ROOT.glob(pattern)]
     return sorted({str(p)[:-3] for p in paths if not skip.search(str(p))})
 
@@ -163,7 +163,7 @@ class Site:
         text = ["---", "hide-toc: true", "---", "# Gallery", "", "Every case of `cases/`: what it is, the command that computes it, and the time it takes.",
                 "A case is a text file and a page that says what came out; the picture leads there.", "",
                 "Times: processor time of the command, measured by `make gallery`"
-                + (f" ({notes[0]})" if notes else "") + "; in words where the case's page states it.", "",
+                + (f" ({'; '.join(notes[:-1])})" if notes else "") + "; in words where the case's page states it.", "",
                 ""]
         everything = cases.all_cases()
         for group in cases.GROUPS:

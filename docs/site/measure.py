@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
-"""measure.py TALUS [LIMIT]: runs every case of the gallery that takes less than LIMIT (60) seconds of processor time, one at a
-time on one rank, and writes docs/site/times.tsv. Those whose README states minutes are not tried."""
+"""measure.py TALUS [LIMIT [CASE...]]: runs every case of the gallery that takes less than LIMIT (60) seconds of processor time, one at
+a time on one rank, and writes docs/site/times.tsv. Those whose README states minutes are not tried. With names, those cases alone: the
+rows of all others stay as they were measured."""
 import datetime
 import os
 import resource
@@ -18,12 +19,20 @@ def processor():
     return os.uname().machine
 
 
+def words_of(case):
+    """What computes the case: `run` of its case.yaml, or what its page says, on a file of its folder; None where neither is there."""
+    command = case.command[0].split()
+    if (case.folder / "case.yaml").exists():
+        return ["run", str(case.folder / "case.yaml")]
+    return [command[1], str(ROOT / command[2])] if command[1] == "element" else None
+
+
 def seconds_of(talus, case, limit):
     """Processor time of the case's command, or None where it needs more than limit. A run that fails ends the measurement."""
     with tempfile.TemporaryDirectory() as folder:
         before = resource.getrusage(resource.RUSAGE_CHILDREN)
         status = subprocess.run(
-            [talus, "run", str(case.folder / "case.yaml"), "--out", folder + "/run", "--quiet"], cwd=folder,
+            [talus, *words_of(case), "--out", folder + "/run"], cwd=folder,
             stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, env={**os.environ, "OPENBLAS_NUM_THREADS": "1"},
             preexec_fn=lambda: (os.nice(10), resource.setrlimit(resource.RLIMIT_CPU, (limit, limit + 5)))).returncode
         after = resource.getrusage(resource.RUSAGE_CHILDREN)
@@ -35,20 +44,23 @@ def seconds_of(talus, case, limit):
 
 def main():
     talus, limit = os.path.abspath(sys.argv[1]), int(sys.argv[2]) if len(sys.argv) > 2 else 60
+    named = sys.argv[3:]
     version = subprocess.run([talus, "version"], capture_output=True, text=True).stdout.split("\n")[0]
-    head = [f"# {version}, {processor()}, one rank, {datetime.date.today()}", "# case\tseconds of processor time"]
-    rows = []
+    lines = TIMES.read_text().splitlines() if named else []
+    head = [line for line in lines if line.startswith("#")] or ["# case\tseconds of processor time"]
+    rows = dict(line.split("\t") for line in lines if not line.startswith("#"))
+    when = f"{version}, {processor()}, one rank, {datetime.date.today()}"
+    head.insert(0 if not named else 1, f"# {when}" + (f": {', '.join(named)}" if named else ""))
     for case in all_cases():
-        if not (case.folder / "case.yaml").exists() or case.is_long:
+        if not words_of(case) or case.is_long or (named and case.name not in named):
             continue
         seconds = seconds_of(talus, case, limit)
         print(f"{case.name}: {'more than the limit, or failed' if seconds is None else f'{seconds:.1f} s'}", flush=True)
         if seconds is None:
-            text = f"more than {limit} s"
+            rows[case.name] = f"more than {limit} s"
         else:
-            text = f"{seconds:.1f}" if seconds < 9.95 else f"{seconds:.0f}"
-        rows.append(f"{case.name}\t{text}")
-        TIMES.write_text("\n".join(head + rows) + "\n")
+            rows[case.name] = f"{seconds:.1f}" if seconds < 9.95 else f"{seconds:.0f}"
+        TIMES.write_text("\n".join(head + [f"{name}\t{text}" for name, text in sorted(rows.items())]) + "\n")
 
 
 main()

@@ -42,6 +42,21 @@ class Callbacks:
 
         return self._types["TalusBodyForces"](ask)
 
+    def load_factors(self, function):
+        """A TalusLoadFactors of function(X, x, t); NULL of None. Numbers for each place fill its three components."""
+        if function is None:
+            return self._types["TalusLoadFactors"]()
+
+        def ask(_, n, X, x, t, f):
+            with self._kept():
+                wanted = _view(f, n)
+                factor = np.asarray(function(_view(X, n), _view(x, n), t), dtype=float)
+                if factor.ndim == 1 and factor.shape == (n,):
+                    factor = factor[:, None]  # a number for each place, not for each component
+                wanted[:, :factor.shape[-1] if factor.ndim and factor.shape[-1] > 1 else 3] = factor
+
+        return self._types["TalusLoadFactors"](ask)
+
     def progress(self, function):
         """A TalusProgress of function(step, time, end), or one that only stops after another's exception."""
         def tell(_, step, time, end):

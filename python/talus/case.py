@@ -38,7 +38,8 @@ class Case:
     0: "bodies[0].shape". A dict may hold arrays and numbers of NumPy; files that it names (meshes) are looked
     for in `folder`. `comm` is a communicator of mpi4py, without one all ranks of MPI_COMM_WORLD; all ranks
     must then do the same with the case. `body_force` is a function of (X, x, t) or None: see
-    :attr:`talus.Model.body_force`; it acts in runs, too.
+    :attr:`talus.Model.body_force`; it acts in runs, too. `loads` are functions that let loads of the case vary from
+    place to place, by their places in it: see :attr:`talus.Model.loads`.
 
     >>> case = talus.Case(block)
     >>> case["materials.rubber.young"]
@@ -48,8 +49,8 @@ class Case:
     True
     """
 
-    def __init__(self, source, folder=None, comm=None, body_force=None):
-        self.comm, self.body_force = comm, body_force
+    def __init__(self, source, folder=None, comm=None, body_force=None, loads=None):
+        self.comm, self.body_force, self.loads = comm, body_force, dict(loads or {})
         self.trusted = False
         self.document = None
         self.changes = {}
@@ -211,6 +212,7 @@ class Case:
         with self.opened() as handle:
             hooks = callbacks.body_force(self.body_force), callbacks.progress(watch)
             lib.call("TalusCaseSetBodyForces", handle, hooks[0], None)
+            hooks += tuple(self.vary(lib, callbacks, handle))
             lib.call("TalusCaseSetProgress", handle, hooks[1], None)
             code = lib.code("TalusRunCase", handle, str(out).encode(), flags, ctypes.byref(ended),
                             ctypes.byref(messages))
@@ -229,6 +231,18 @@ class Case:
         else:
             self.tell(lib, code, messages)
         return Run(out)
+
+    def vary(self, lib, callbacks, handle):
+        """Hand the functions of `loads` to a TalusCase; the hooks, to be kept as long as it may ask them."""
+        hooks = []
+        for place, function in self.loads.items():
+            hooks.append(callbacks.load_factors(function))
+            code = lib.code("TalusCaseSetLoadFactors", handle, place.encode(), hooks[-1], None)
+            if code == lib.constants["TALUS_ERROR_UNKNOWN"]:
+                raise KeyError(f"the case has no load '{place}'; they are called tractions[0], pressures[0], points[0], ...")
+            if code:
+                raise TalusError(lib.text("talus_error_string", code))
+        return hooks
 
     def model(self):
         """The case at its start time, to be stepped: a :class:`talus.Model`, to be used in a `with`. Collective.

@@ -131,8 +131,10 @@ class Model:
         self._stack = contextlib.ExitStack()
         opened = self._stack.enter_context(case.opened())
         try:
+            self._loads, self._load_hooks = dict(case.loads), case.vary(lib, self._callbacks, opened)
             code = lib.code("TalusModelCreate", opened, ctypes.byref(self.handle), ctypes.byref(messages))
             case.tell(lib, code, messages)
+            self._callbacks.raise_kept()
         except BaseException:
             self.close()
             raise
@@ -174,6 +176,40 @@ class Model:
         hook = self._callbacks.body_force(function)
         library().call("TalusModelSetBodyForces", self.handle, hook, None)
         self._body_force, self._hook = function, hook  # the library keeps what it points to
+        self._callbacks.raise_kept()
+
+    @property
+    def loads(self):
+        """Functions that let loads vary from place to place: {"tractions[0]": f, "pressures[1]": g}. Not to be
+        changed in place; `vary` sets one of them."""
+        return dict(self._loads)
+
+    def vary(self, load, function):
+        """Let a load of the case, "tractions[0]", "pressures[0]" or "points[0]", vary from place to place and with
+        time: a function of (X, x, t), or None. Collective.
+
+        X and x are places on the loaded surface, of this rank, as undeformed and as the step begins, m, both (n, 3),
+        with zeros as the third column in the plane; t is the end of the step, s. What it returns multiplies the
+        load's `value` and `amplitude`: a number for each place, (n,), or factors of its components, (n, 3) or
+        (n, 2). With a value of 1 it is the load itself: N/m2 of undeformed surface for tractions, Pa of the
+        present one, along its normal, for pressures.
+
+        >>> case = talus.Case(block)
+        >>> case["loads.pressures"] = [{"on": {"body": "block", "y": 1}, "value": 1000.0}]
+        >>> with case.model() as model:
+        ...     model.vary("pressures[0]", lambda X, x, t: X[:, 0] ** 2)  # none at the left, 1 kPa at the right
+        ...     model.step()
+        True
+        """
+        hook = self._callbacks.load_factors(function)
+        lib = library()
+        code = lib.code("TalusModelSetLoadFactors", self.handle, load.encode(), hook, None)
+        if code == lib.constants["TALUS_ERROR_UNKNOWN"]:
+            raise KeyError(f"the case has no load '{load}'; they are called tractions[0], pressures[0], points[0], ...")
+        if code:
+            raise TalusError(lib.text("talus_error_string", code))
+        self._loads[load] = function
+        self._load_hooks.append(hook)  # the library may still hold one before
         self._callbacks.raise_kept()
 
     def step(self, limit=0.0):

@@ -17,11 +17,21 @@ typedef struct {
 } TalusForce;
 void talus_ask_forces(void *force, PetscInt n, const PetscReal *X, const PetscReal *x, PetscReal t, PetscReal *b);
 
+/* Likewise factors of a load; talus_ask_factors with a TalusFactors as its context. */
+typedef struct {
+  TalusLoadFactors factors;
+  void *context;
+} TalusFactors;
+void talus_ask_factors(void *factors, PetscInt n, const PetscReal *X, const PetscReal *x, PetscReal t, PetscReal *f);
+/* Index of a load by its place, "tractions[0]"; -1 if there is none. */
+PetscInt talus_load_index(const Case *c, const char *load);
+
 struct TalusCase {
   MPI_Comm comm; /* PETSc's copy of the user's, for no other messages than talus's */
   Case *c;
   Diag *diag;             /* knows where in the file each value stands */
   TalusForce force;       /* of runs and models made from now on; force NULL: none */
+  TalusFactors *factors;  /* likewise, of each load */
   TalusProgress progress; /* NULL: nobody is told */
   void *progress_context;
 };

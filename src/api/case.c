@@ -5,6 +5,7 @@
 static PetscErrorCode Close(TalusCase **c)
 {
   PetscFunctionBeginUser;
+  PetscCall(PetscFree((*c)->factors));
   PetscCall(CaseDestroy(&(*c)->c));
   PetscCall(DiagDestroy(&(*c)->diag));
   PetscCall(PetscCommDestroy(&(*c)->comm));
@@ -25,6 +26,7 @@ static PetscErrorCode Open(MPI_Comm comm, const char *file, const char *text, Pe
   if (text) PetscCall(CaseReadText(file, strlen(text), text, n_set, set, opened->diag, &opened->c));
   else PetscCall(CaseRead(opened->comm, file, n_set, set, opened->diag, &opened->c));
   PetscCall(TalusTell(opened->comm, opened->diag, messages));
+  if (opened->c) PetscCall(PetscCalloc1(opened->c->n_loads, &opened->factors));
   if (opened->c) *c = opened;
   else PetscCall(Close(&opened));
   PetscFunctionReturn(0);
@@ -91,6 +93,23 @@ int TalusCaseSetBodyForces(TalusCase *c, TalusBodyForces force, void *context)
 {
   if (!c) return TALUS_ERROR_ARGUMENT;
   c->force = (TalusForce){force, context};
+  return TALUS_OK;
+}
+
+PetscInt talus_load_index(const Case *c, const char *load)
+{
+  char path[64];
+  for (PetscInt k = 0; k < c->n_loads; ++k)
+    if (!strcmp(case_load_path(c, k, path) + strlen("loads."), load)) return k;
+  return -1;
+}
+
+int TalusCaseSetLoadFactors(TalusCase *c, const char *load, TalusLoadFactors factors, void *context)
+{
+  if (!c || !load) return TALUS_ERROR_ARGUMENT;
+  const PetscInt k = talus_load_index(c->c, load);
+  if (k < 0) return TALUS_ERROR_UNKNOWN;
+  c->factors[k] = (TalusFactors){factors, context};
   return TALUS_OK;
 }
 

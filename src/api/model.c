@@ -9,6 +9,7 @@ struct TalusModel {
   Model *model;
   StepReport report;
   TalusForce force;
+  TalusFactors *factors; /* of each load */
   TalusBodyForce single; /* asked for one point at a time */
   void *single_context;
 };
@@ -27,9 +28,24 @@ static PetscErrorCode SetForce(TalusModel *m, TalusBodyForces force, void *conte
   PetscFunctionReturn(0);
 }
 
+void talus_ask_factors(void *factors, PetscInt n, const PetscReal *X, const PetscReal *x, PetscReal t, PetscReal *f)
+{
+  const TalusFactors *asked = factors;
+  asked->factors(asked->context, (int)n, X, x, t, f);
+}
+
+static PetscErrorCode SetFactors(TalusModel *m, PetscInt load, TalusFactors factors)
+{
+  PetscFunctionBeginUser;
+  m->factors[load] = factors;
+  PetscCall(ModelSetLoadFactors(m->model, load, factors.factors ? talus_ask_factors : NULL, &m->factors[load]));
+  PetscFunctionReturn(0);
+}
+
 static PetscErrorCode Destroy(TalusModel **model)
 {
   PetscFunctionBeginUser;
+  PetscCall(PetscFree((*model)->factors));
   PetscCall(ModelDestroy(&(*model)->model));
   PetscCall(PetscFree(*model));
   PetscFunctionReturn(0);
@@ -64,6 +80,9 @@ static PetscErrorCode Create(TalusCase *c, TalusModel **model, char **messages)
     diag_error(c->diag, c->c->n_stages ? "stages" : "initial", "stages, and states of other runs, are for whole runs");
   else PetscCall(ModelCreate(c->comm, c->c, c->diag, &made->model));
   if (made->model && c->force.force) PetscCall(SetForce(made, c->force.force, c->force.context));
+  PetscCall(PetscCalloc1(c->c->n_loads, &made->factors));
+  for (PetscInt k = 0; made->model && k < c->c->n_loads; ++k)
+    if (c->factors[k].factors) PetscCall(SetFactors(made, k, c->factors[k]));
   if (made->model) PetscCall(Equilibrate(c, made));
   PetscCall(TalusTell(c->comm, c->diag, messages));
   if (made->model) *model = made;
@@ -102,6 +121,13 @@ int TalusModelSetBodyForces(TalusModel *model, TalusBodyForces force, void *cont
 {
   if (!model) return TALUS_ERROR_ARGUMENT;
   return talus_code(SetForce(model, force, context));
+}
+
+int TalusModelSetLoadFactors(TalusModel *model, const char *load, TalusLoadFactors factors, void *context)
+{
+  if (!model || !load) return TALUS_ERROR_ARGUMENT;
+  const PetscInt k = talus_load_index(model->model->c, load);
+  return k < 0 ? TALUS_ERROR_UNKNOWN : talus_code(SetFactors(model, k, (TalusFactors){factors, context}));
 }
 
 static TalusStep step_of(StepOutcome outcome)

@@ -45,10 +45,32 @@ static PetscBool watch(void *context, PetscInt step, PetscReal time, PetscReal e
   return (PetscBool)(c->progress(c->progress_context, (int)step, time, end) != 0);
 }
 
+/* Those of the caller as the run asks for them, to be freed; NULL: there are none, or stages. */
+static PetscErrorCode LoadFactorsOf(TalusCase *c, LoadAsked **asked)
+{
+  const PetscInt n = c->c->n_loads;
+  PetscInt given = -1;
+
+  PetscFunctionBeginUser;
+  *asked = NULL;
+  for (PetscInt k = 0; k < n; ++k)
+    if (c->factors[k].factors) given = k;
+  if (given < 0) PetscFunctionReturn(0);
+  if (c->c->n_stages) {
+    diag_error(c->diag, "stages", "a load that a function of the caller gives is not for cases with stages");
+    PetscFunctionReturn(0);
+  }
+  PetscCall(PetscCalloc1(n, asked));
+  for (PetscInt k = 0; k < n; ++k)
+    if (c->factors[k].factors) (*asked)[k] = (LoadAsked){talus_ask_factors, &c->factors[k]};
+  PetscFunctionReturn(0);
+}
+
 static PetscErrorCode Run(TalusCase *c, const RunOptions *options, TalusRun *run, RunResult *result, char **messages)
 {
   RunSummary summary = {0};
   RunOptions asked = *options;
+  LoadAsked *factors;
 
   PetscFunctionBeginUser;
   asked.summary = &summary;
@@ -56,7 +78,10 @@ static PetscErrorCode Run(TalusCase *c, const RunOptions *options, TalusRun *run
   asked.watcher_context = c;
   asked.body_force = c->force.force ? talus_ask_forces : NULL;
   asked.body_force_context = &c->force;
-  PetscCall(RunCase(c->comm, c->c, &asked, c->diag, run->values, result));
+  PetscCall(LoadFactorsOf(c, &factors));
+  asked.load_factors = factors;
+  if (!diag_errors(c->diag)) PetscCall(RunCase(c->comm, c->c, &asked, c->diag, run->values, result));
+  PetscCall(PetscFree(factors));
   if (summary.reason[0]) diag_error(c->diag, NULL, "%s", summary.reason);
   PetscCall(TalusTell(c->comm, c->diag, messages));
   PetscFunctionReturn(0);

@@ -97,25 +97,47 @@ static PetscErrorCode PointLoad(Loads *loads, const Grid *grid, const Points *po
   PetscFunctionReturn(0);
 }
 
+static PetscErrorCode FacesFree(LoadFaces *faces)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscFree(faces->cell));
+  PetscCall(PetscFree(faces->N));
+  PetscCall(PetscFree(faces->x));
+  faces->n = 0;
+  PetscFunctionReturn(0);
+}
+
+/* The quadrature points of a face; there is room for them. */
+static void add_face(LoadFaces *faces, const Grid *grid, PetscInt cell, PetscInt n, const FacePoint *q)
+{
+  const PetscInt nn = grid->nodes_per_cell;
+  PetscReal N[CELL_MAX_NODES];
+  for (PetscInt k = 0; k < n; ++k) {
+    const PetscInt i = faces->n++;
+    faces->cell[i] = cell;
+    grid_shape(grid, cell, q[k].xi, N);
+    for (PetscInt I = 0; I < nn; ++I) faces->N[i * nn + I] = N[I] * q[k].area;
+    for (PetscInt d = 0; d < grid->dim; ++d) faces->x[3 * i + d] = q[k].x[d];
+  }
+}
+
 static PetscErrorCode GridTraction(Loads *loads, const Grid *grid, PetscInt load, PetscInt *n_faces)
 {
   LoadFaces *faces = &loads->faces[load];
-  const PetscInt nn = grid->nodes_per_cell;
-  PetscInt *side;
+  PetscInt n, *cell, *side;
   FacePoint q[FACE_MAX_POINTS];
-  PetscReal N[CELL_MAX_NODES];
 
   PetscFunctionBeginUser;
-  PetscCall(GridSelectFaces(grid, &loads->c->loads[load].on, &faces->n, &faces->cell, &side));
-  PetscCall(PetscCalloc1(faces->n * nn, &faces->N));
-  for (PetscInt f = 0; f < faces->n; ++f) {
-    const PetscInt nq = face_quadrature(loads->c->kinematics, grid, faces->cell[f], side[f], q);
-    for (PetscInt k = 0; k < nq; ++k) {
-      grid_shape(grid, faces->cell[f], q[k].xi, N);
-      for (PetscInt I = 0; I < nn; ++I) faces->N[f * nn + I] += N[I] * q[k].area;
-    }
-  }
-  PetscCall(MPIU_Allreduce(&faces->n, n_faces, 1, MPIU_INT, MPI_SUM, grid->comm));
+  PetscCall(FacesFree(faces));
+  PetscCall(GridSelectFaces(grid, &loads->c->loads[load].on, &n, &cell, &side));
+  PetscCall(PetscMalloc1(n * FACE_MAX_POINTS, &faces->cell));
+  PetscCall(PetscCalloc1(n * FACE_MAX_POINTS * grid->nodes_per_cell, &faces->N));
+  PetscCall(PetscCalloc1(n * FACE_MAX_POINTS * 3, &faces->x));
+  faces->used = PETSC_TRUE;
+  for (PetscInt f = 0; f < n; ++f)
+    add_face(faces, grid, cell[f], face_quadrature(loads->c->kinematics, grid, cell[f], side[f], q), q);
+  PetscCall(MPIU_Allreduce(&n, n_faces, 1, MPIU_INT, MPI_SUM, grid->comm));
+  PetscCall(PetscFree(cell));
   PetscCall(PetscFree(side));
   PetscFunctionReturn(0);
 }
@@ -210,6 +232,7 @@ PetscErrorCode LoadsCreate(const Grid *grid, const Case *c, const Points *points
   l->dim = grid->dim;
   l->n_nodes = grid->n_nodes;
   PetscCall(PetscCalloc1(c->n_loads, &l->faces));
+  PetscCall(PetscCalloc1(c->n_loads, &l->asked));
   PetscCall(FollowersCreate(l->dim, l->dim, &l->carriers));
   l->carriers->components[POINT_FIELD] = points->components[POINT_FIELD];
   for (PetscInt k = 0; k < c->n_loads; ++k) {
@@ -236,7 +259,8 @@ PetscErrorCode LoadsLeaveCells(Loads *l, const Grid *grid, const Points *points)
   PetscFunctionBeginUser;
   for (PetscInt k = 0; k < l->c->n_loads; ++k) {
     const LoadSpec *load = l->c->loads + k;
-    l->faces[k].n = 0;
+    PetscCall(FacesFree(&l->faces[k]));
+    l->faces[k].used = PETSC_FALSE;
     if (load->kind == LOAD_TRACTION && !load->on.body) PetscCall(CarryBoundary(l, grid, points, k, &faces));
   }
   PetscCall(PointsSort(l->carriers));
@@ -250,8 +274,6 @@ PetscErrorCode LoadsRegrid(Loads *l, const Grid *old, const Grid *grid)
   PetscFunctionBeginUser;
   for (PetscInt k = 0; k < l->c->n_loads; ++k) {
     if (l->c->loads[k].kind != LOAD_TRACTION || l->c->loads[k].on.body) continue;
-    PetscCall(PetscFree(l->faces[k].cell));
-    PetscCall(PetscFree(l->faces[k].N));
     PetscCall(GridTraction(l, grid, k, &faces));
   }
   PetscCall(PointsRepartition(l->carriers, old, grid, &moved));
@@ -263,30 +285,32 @@ PetscErrorCode LoadsDestroy(Loads **loads)
 {
   PetscFunctionBeginUser;
   if (!*loads) PetscFunctionReturn(0);
-  for (PetscInt k = 0; k < (*loads)->c->n_loads; ++k) {
-    PetscCall(PetscFree((*loads)->faces[k].cell));
-    PetscCall(PetscFree((*loads)->faces[k].N));
-  }
+  for (PetscInt k = 0; k < (*loads)->c->n_loads; ++k) PetscCall(FacesFree(&(*loads)->faces[k]));
   PetscCall(PetscFree((*loads)->faces));
+  PetscCall(PetscFree((*loads)->asked));
   PetscCall(PointsDestroy(&(*loads)->carriers));
   PetscCall(PetscFree(*loads));
   PetscFunctionReturn(0);
 }
 
+/* factors: n x 3, or NULL */
 static void push_faces(const LoadFaces *faces, const Grid *grid, const PetscReal *value, PetscReal factor,
-                       const unsigned char *filled, PetscReal *residual)
+                       const PetscReal *factors, const unsigned char *filled, PetscReal *residual)
 {
   const PetscInt nn = grid->nodes_per_cell, dim = grid->dim;
   for (PetscInt f = 0; f < faces->n; ++f) {
     const PetscInt *node = grid->cell_node + faces->cell[f] * nn;
+    PetscReal traction[3];
     if (!filled[faces->cell[f]]) continue;
+    for (PetscInt d = 0; d < dim; ++d) traction[d] = factor * value[d] * (factors ? factors[3 * f + d] : 1);
     for (PetscInt I = 0; I < nn; ++I)
-      for (PetscInt d = 0; d < dim; ++d) residual[node[I] * dim + d] -= factor * faces->N[f * nn + I] * value[d];
+      for (PetscInt d = 0; d < dim; ++d) residual[node[I] * dim + d] -= faces->N[f * nn + I] * traction[d];
   }
 }
 
-static void push_carrier(const Loads *l, const Grid *grid, PetscInt p, PetscReal factor, const unsigned char *touched,
-                         PetscReal *residual)
+/* factors: three, or NULL */
+static void push_carrier(const Loads *l, const Grid *grid, PetscInt p, PetscReal factor, const PetscReal *factors,
+                         const unsigned char *touched, PetscReal *residual)
 {
   const PetscInt dim = l->dim, cell = l->carriers->cell[p], *node;
   PetscInt nn = grid->nodes_per_cell;
@@ -301,18 +325,29 @@ static void push_carrier(const Loads *l, const Grid *grid, PetscInt p, PetscReal
   }
   for (PetscInt I = 0; I < nn; ++I)
     for (PetscInt d = 0; d < dim; ++d)
-      residual[node[I] * dim + d] -= factor * N[I] * point_real(l->carriers, POINT_FORCE, p)[d];
+      residual[node[I] * dim + d] -=
+        factor * N[I] * point_real(l->carriers, POINT_FORCE, p)[d] * (factors ? factors[d] : 1);
 }
 
-void loads_push(const Loads *l, const Grid *grid, PetscReal t, const unsigned char *filled,
-                const unsigned char *touched, PetscReal *residual)
+PetscErrorCode LoadsPush(const Loads *l, const Grid *grid, PetscReal t, const unsigned char *filled,
+                         const unsigned char *touched, PetscReal *residual)
 {
-  for (PetscInt k = 0; k < l->c->n_loads; ++k)
-    push_faces(&l->faces[k], grid, l->c->loads[k].value, case_factor(l->c, &l->c->loads[k].amplitude, t), filled,
-               residual);
+  PetscReal *factors;
+
+  PetscFunctionBeginUser;
+  for (PetscInt k = 0; k < l->c->n_loads; ++k) {
+    PetscCall(LoadFactorsOfFaces(l, k, t, &factors));
+    push_faces(&l->faces[k], grid, l->c->loads[k].value, case_factor(l->c, &l->c->loads[k].amplitude, t), factors,
+               filled, residual);
+    PetscCall(PetscFree(factors));
+  }
+  PetscCall(LoadFactorsOfCarriers(l, PETSC_FALSE, t, &factors));
   for (PetscInt p = 0; p < l->carriers->n; ++p) {
     const LoadSpec *load = l->c->loads + l->carriers->body[p];
     if (load->kind != LOAD_PRESSURE)
-      push_carrier(l, grid, p, case_factor(l->c, &load->amplitude, t), touched, residual);
+      push_carrier(l, grid, p, case_factor(l->c, &load->amplitude, t), factors ? factors + 3 * p : NULL, touched,
+                   residual);
   }
+  PetscCall(PetscFree(factors));
+  PetscFunctionReturn(0);
 }

@@ -5,19 +5,22 @@
  * nodes of its cell that hold material. All are dead but pressures, whose force turns and grows with
  * the surface (solve/forces/pressures.c). */
 #pragma once
+#include "boundary/load_factors.h"
 #include "support/support.h"
 
-/* Faces of the grid under one load: their cells, and the integral of each of the cell's shape
- * functions over the face. */
+/* Quadrature points of the faces of the grid under one load. */
 typedef struct {
+  PetscBool used; /* does the load act on faces, on any rank? else it has carriers */
   PetscInt n, *cell;
-  PetscReal *N; /* n x nodes_per_cell, m2 */
+  PetscReal *N; /* n x nodes_per_cell: the cell's shape functions times the point's area, m2 */
+  PetscReal *x; /* n x 3, undeformed, m */
 } LoadFaces;
 
 typedef struct Loads {
   const Case *c;
   PetscInt dim, n_nodes;
   LoadFaces *faces; /* one per load */
+  LoadAsked *asked; /* likewise: factors that a caller gives */
   /* POINT_FORCE at amplitude 1, of a pressure on the surface as it is when the step begins; body = index
    * of the load */
   Points *carriers;
@@ -34,11 +37,11 @@ PetscErrorCode LoadsDestroy(Loads **loads);
  * way. */
 PetscErrorCode LoadsRegrid(Loads *loads, const Grid *old, const Grid *grid);
 
-/* Subtract the nodal forces of dead loads at time t from residual (n_nodes x dim; sums over ranks come later).
- * Faces of the grid are loaded where their cell is filled[cell] by material: beside a body there is
+/* Not collective, but on every rank: callers are asked for factors. Subtract the nodal forces of
+ * dead loads at time t from residual (n_nodes x dim; sums over ranks come later). Faces of the grid are loaded where their cell is filled[cell] by material: beside a body there is
  * nothing to push. Carried forces go to nodes with touched[node] != 0. */
-void loads_push(const Loads *loads, const Grid *grid, PetscReal t, const unsigned char *filled,
-                const unsigned char *touched, PetscReal *residual);
+PetscErrorCode LoadsPush(const Loads *loads, const Grid *grid, PetscReal t, const unsigned char *filled,
+                         const unsigned char *touched, PetscReal *residual);
 
 /* Nodes of a carrier, and its shape functions among those that are touched, scaled to sum to one, with
  * their gradients (room for CLOUD_MAX_NODES); 0 if there is none. */

@@ -6,6 +6,7 @@
 #include <strings.h>
 #include "base/file.h"
 #include "case/relief.h"
+#include "case/terrain/geotiff.h"
 
 #define MOST_POSTS 50000000
 
@@ -39,7 +40,7 @@ static PetscBool take_number(AscText *s, const char *of, PetscReal *value)
   char *end;
   const size_t n = next_word(s);
   *value = strtod(s->at, &end);
-  if (n && end == s->at + n && isfinite(*value)) {
+  if (n && end == s->at + n && !isinf(*value)) {
     s->at = end;
     return PETSC_TRUE;
   }
@@ -64,6 +65,10 @@ static PetscBool take_head(AscText *s)
     }
     s->at += n;
     if (!take_number(s, keys[k], &s->head[k])) return PETSC_FALSE;
+    if (isnan(s->head[k]) && k != KEY_NONE) {
+      (void)snprintf(s->message, s->size, "%s:%d: %s is a number, not nan", s->path, line_of(s), keys[k]);
+      return PETSC_FALSE;
+    }
     s->has[k] = PETSC_TRUE;
   }
   return PETSC_TRUE;
@@ -102,7 +107,7 @@ static PetscBool take_heights(AscText *s, PetscReal scale, const PetscReal offse
     for (PetscInt i = 0; i < r->n[0]; ++i) {
       PetscReal z, *height = r->height + j * r->n[0] + i;
       if (!take_number(s, "a height", &z)) return PETSC_FALSE;
-      *height = s->has[KEY_NONE] && z == s->head[KEY_NONE] ? (PetscReal)NAN : scale * z + offset[2];
+      *height = s->has[KEY_NONE] && z == s->head[KEY_NONE] ? (PetscReal)NAN : scale * z + offset[2]; /* nan: none */
       if (*height < lowest) lowest = *height;
     }
   if (next_word(s)) {
@@ -151,11 +156,13 @@ PetscErrorCode ReliefRead(const char *path, PetscReal scale, const PetscReal off
   message[0] = '\0';
   PetscCall(FileLoad(path, &data, &length, &why));
   if (!data) (void)snprintf(message, size, "%s: %s", path, why);
-  else if (strlen(data) != length || !strncmp(data, "II*", 3) || !strncmp(data, "MM", 2))
-    (void)snprintf(message, size,
-                   "%s: not a text; of a GeoTIFF make one first: gdal_translate -of AAIGrid %s terrain.asc", path,
-                   path);
-  else {
+  if (data && geotiff_begins(data, length)) {
+    PetscCall(PetscFree(data));
+    PetscCall(GeotiffText(path, scale, &data, &length, size, message));
+  }
+  if (data && strlen(data) != length)
+    (void)snprintf(message, size, "%s: not a text: terrain is an ESRI ASCII grid or a GeoTIFF", path);
+  else if (data) {
     s.at = s.data = data;
     s.length = length;
     if (take_head(&s) && check_head(&s)) PetscCall(Make(&s, scale, offset, relief));

@@ -209,6 +209,8 @@ PetscErrorCode ModelEquilibrate(Model *model, StepReport *report);
 /* Collective. Body force besides gravity, NULL for none. Before the first step it also enters the
  * initial acceleration. */
 PetscErrorCode ModelSetBodyForce(Model *model, BodyForce force, void *context);
+/* Collective. Factors of a load of the case that vary from place to place, NULL for none; likewise. */
+PetscErrorCode ModelSetLoadFactors(Model *model, PetscInt load, LoadFactors ask, void *context);
 
 /* Collective. Somebody has changed velocities, accelerations or states of points between steps:
  * nodes learn of it where points carry the motion. Before the first step accelerations are found

@@ -1,11 +1,11 @@
 #include "picture/gnuplot.h"
 #include <errno.h>
-#include <spawn.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
 #include <sys/wait.h>
 #include <unistd.h>
+#include "base/process/child.h"
 #include "output/directory/run_dir_files.h"
 
 /* Terminals by the ending of the file; fonts have the size that they have in a PNG. */
@@ -70,19 +70,6 @@ PetscBool gnuplot_has_program(const char *name)
   return PETSC_FALSE;
 }
 
-/* Start a program with these files as its input and its complaints; returns 0 or an errno. */
-static int spawn_program(char *const *arguments, FILE *input, FILE *complaints, pid_t *pid)
-{
-  posix_spawn_file_actions_t actions;
-  posix_spawn_file_actions_init(&actions);
-  posix_spawn_file_actions_adddup2(&actions, fileno(input), STDIN_FILENO);
-  posix_spawn_file_actions_adddup2(&actions, fileno(complaints), STDOUT_FILENO);
-  posix_spawn_file_actions_adddup2(&actions, fileno(complaints), STDERR_FILENO);
-  const int error = posix_spawnp(pid, arguments[0], &actions, NULL, arguments, environ);
-  posix_spawn_file_actions_destroy(&actions);
-  return error;
-}
-
 /* What gnuplot says first that is neither blank nor the echo of its input. */
 static void first_complaint(FILE *complaints, char text[256])
 {
@@ -94,24 +81,32 @@ static void first_complaint(FILE *complaints, char text[256])
       snprintf(text, 256, "%.*s", (int)strcspn(line, "\n"), line + strspn(line, " \t"));
 }
 
+/* "no such codec, it was killed by signal 9 (Killed)" */
+static void tell_failure(const char *program, const char *complaint, int status, Diag *diag)
+{
+  char end[128];
+  child_end(status, sizeof end, end);
+  const PetscBool both = complaint[0] && WIFSIGNALED(status);
+  diag_error(diag, NULL, "%s could not draw the picture: %s%s%s", program, complaint, both ? ", " : "",
+             both || !complaint[0] ? end : "");
+}
+
 /* Let a program do its part of the picture. */
 static PetscBool run_program(char *const *arguments, FILE *input, Diag *diag)
 {
   char text[256];
-  pid_t pid = 0;
   int status = 0;
   FILE *complaints = tmpfile();
-  const int error = complaints ? spawn_program(arguments, input, complaints, &pid) : EMFILE;
+  const int error = complaints ? child_run(arguments, environ, input, complaints, complaints, &status) : EMFILE;
   if (error) {
     diag_error(diag, NULL, "cannot start %s, which draws the pictures: %s", arguments[0], strerror(error));
     diag_hint(diag, "install it: apt install %s", strcmp(arguments[0], "gnuplot") ? arguments[0] : "gnuplot-nox");
     if (complaints) fclose(complaints);
     return PETSC_FALSE;
   }
-  while (waitpid(pid, &status, 0) < 0 && errno == EINTR) continue;
   const PetscBool ran = WIFEXITED(status) && WEXITSTATUS(status) == 0;
   first_complaint(complaints, text);
-  if (!ran) diag_error(diag, NULL, "%s could not draw the picture: %s", arguments[0], text);
+  if (!ran) tell_failure(arguments[0], text, status, diag);
   fclose(complaints);
   return ran;
 }

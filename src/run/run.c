@@ -337,6 +337,9 @@ static PetscErrorCode ModelsCreate(Run *r, const RunOptions *options, Diag *diag
   PetscCall(ModelCreate(r->comm, r->c, diag, &r->model));
   if (r->model && options->body_force)
     PetscCall(ModelSetBodyForce(r->model, options->body_force, options->body_force_context));
+  for (PetscInt k = 0; r->model && options->load_factors && k < r->c->n_loads; ++k)
+    if (options->load_factors[k].ask)
+      PetscCall(ModelSetLoadFactors(r->model, k, options->load_factors[k].ask, options->load_factors[k].context));
   if (r->model) PetscCall(RunCheckStages(r->comm, r->whole, diag));
   if (r->model && r->c->initial.run) PetscCall(OutputCreate(r->model, NULL, &r->output)); /* nodes as undeformed */
   if (r->model && r->c->initial.run && !options->resume) PetscCall(InitialTake(r->model, diag, &r->imbalance));

@@ -30,6 +30,7 @@ typedef struct {
   void *watcher_context;
   BodyForce body_force; /* NULL: gravity alone */
   void *body_force_context;
+  const LoadAsked *load_factors; /* of each load of the case, which has no stages then; NULL: ones */
 } RunOptions;
 
 typedef enum { RUN_DONE = 0, RUN_GAVE_UP = 1, RUN_BAD_INPUT = 2 } RunResult;

@@ -137,6 +137,8 @@ static void test_null(void **state)
   CHECK_ERROR(TalusModelMeasure(NULL, "top", &value), TALUS_ERROR_ARGUMENT);
   CHECK_ERROR(TalusModelPoints(NULL, "mass", &n, NULL, NULL, 0), TALUS_ERROR_ARGUMENT);
   CHECK_ERROR(TalusModelSetBodyForce(NULL, NULL, NULL), TALUS_ERROR_ARGUMENT);
+  CHECK_ERROR(TalusModelSetLoadFactors(NULL, "points[0]", NULL, NULL), TALUS_ERROR_ARGUMENT);
+  CHECK_ERROR(TalusCaseSetLoadFactors(NULL, "points[0]", NULL, NULL), TALUS_ERROR_ARGUMENT);
   CHECK(TalusModelReason(NULL)[0] == '\0');
   CALL(TalusModelDestroy(&model)); /* destroying nothing is fine */
   CALL(TalusRunDestroy(&run));

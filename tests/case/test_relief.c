@@ -90,6 +90,22 @@ static void Plane(void **state)
   assert_int_equal(ReliefDestroy(&r), 0);
 }
 
+/* nan is no height, whatever the head says of it. */
+static void NotANumber(void **state)
+{
+  static const char *const heads[] = {"", "nodata_value nan\n", "nodata_value -9\n"};
+  const PetscReal zero[3] = {0, 0, 0};
+  (void)state;
+  for (int k = 0; k < 3; ++k) {
+    char text[256];
+    snprintf(text, sizeof text, "ncols 3\nnrows 2\nxllcenter 0\nyllcenter 0\ncellsize 1\n%s1 2 3\n4 5 nan\n", heads[k]);
+    Relief *r = read_text(text, 1, zero);
+    assert_non_null(r);
+    assert_true(isnan(relief_post(r, 2, 0)) && relief_post(r, 1, 0) == 5);
+    assert_int_equal(ReliefDestroy(&r), 0);
+  }
+}
+
 /* Two triangles a square: along the diagonal from the lower left the mean of its ends. */
 static void Fold(void **state)
 {
@@ -157,7 +173,7 @@ static void Mistakes(void **state)
     {"ncols 2000\nnrows 2000\nxllcorner 0\nyllcorner 0\ncellsize 1\n1 2\n", "too short for 2000 columns"},
     {"ncols 1\nnrows 2\nxllcorner 0\nyllcorner 0\ncellsize 1\n1 2\n", "1 columns"},
     {"ncols 2\nnrows 2\nxllcorner 0\nyllcorner 0\ncellsize 1\nNODATA_value 1\n1 1 1 1\n", "no post has a height"},
-    {"II*", "gdal_translate -of AAIGrid"},
+    {"ncols nan\n", ":1: ncols is a number, not nan"},
     {"", "'ncols' is missing"},
   };
   const PetscReal zero[3] = {0, 0, 0};
@@ -173,7 +189,8 @@ static void Mistakes(void **state)
 
 int main(void)
 {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(Reads),    cmocka_unit_test(Plane),   cmocka_unit_test(Fold),
-                                     cmocka_unit_test(NoHeight), cmocka_unit_test(Between), cmocka_unit_test(Mistakes)};
+  const struct CMUnitTest tests[] = {
+    cmocka_unit_test(Reads),      cmocka_unit_test(Plane),   cmocka_unit_test(Fold),    cmocka_unit_test(NoHeight),
+    cmocka_unit_test(NotANumber), cmocka_unit_test(Between), cmocka_unit_test(Mistakes)};
   return cmocka_run_group_tests(tests, open_file, remove_file);
 }

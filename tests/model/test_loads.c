@@ -8,7 +8,8 @@ static void gather(Model *m, PetscReal t, PetscReal *force)
 {
   CALL(ModelInitialise(m));
   const NodalScene scene = nodal_scene(m, t, m->nodes->du);
-  CALL(NodalForcesExternal(&m->forces, &scene, PETSC_FALSE, force));
+  CALL(NodalForcesBegin(&m->forces, &scene));
+  CALL(NodalForcesExternal(&m->forces, &scene, PETSC_TRUE, force));
 }
 
 /* Sum over owned nodes of the loads at time t, and of their moments about the origin in x and y: f,
@@ -174,10 +175,89 @@ static void test_body_force(void **state)
     }
 }
 
+/* (1 + t y, y^2, 2) of where the surface was: Gauss points of its faces are exact for it. */
+static void of_height(void *context, PetscInt n, const PetscReal *X, const PetscReal *x, PetscReal t, PetscReal *f)
+{
+  *(PetscInt *)context += n;
+  for (PetscInt i = 0; i < n; ++i) {
+    assert_true(f[3 * i] == 1 && f[3 * i + 1] == 1 && f[3 * i + 2] == 1);
+    assert_true(fabs(x[3 * i] - X[3 * i]) < 1e-12);
+    f[3 * i] = 1 + t * X[3 * i + 1];
+    f[3 * i + 1] = PetscSqr(X[3 * i + 1]);
+    f[3 * i + 2] = 2;
+  }
+}
+
+/* The left side of a block from y = 1/4 to 1 under a traction of (30, -20, 7) or a pressure of 30 that varies so: carried
+ * by the body's surface, or on faces of the grid. */
+static void check_factors(const char *method, CellType cell, LoadKind kind, PetscBool on_body)
+{
+  const PetscReal t = 0.3, deep = is_space(cell) ? 0.5 : 1;
+  const PetscReal x = 30 * deep * (0.75 + t * (1 - 0.0625) / 2), y = -20 * deep * (1 - 0.015625) / 3,
+                  z = 7 * 2 * deep * 0.75;
+  const PetscBool pushes = (PetscBool)(kind == LOAD_PRESSURE);
+  PetscInt asked = 0, all;
+  PetscReal sum[5], plain[5];
+  Bench b;
+  bench_init(&b, method, cell, 4);
+  if (!strcmp(method, "gmm"))
+    b.c.basis = (BasisSpec){.kind = "lme", .gamma = 1.8, .radius = 2, .max_radius = 3.5, .condition = 50, .gap = 2};
+  bench_box(&b, 0, (PetscReal[]){0, 0.25, 0.25}, (PetscReal[]){0.75, 1, 0.75});
+  bench_dynamic(&b, 1, 0.01);
+  bench_traction(&b, 0, 0, on_body ? "body" : NULL, 30, -20, is_space(cell) ? 7 : 0)->kind = kind;
+  Model *m = bench_model(&b, PETSC_COMM_WORLD);
+  sum_loads(m, t, plain);
+  CHECK_CLOSE(plain[0], 30 * deep * 0.75, 1e-10);
+  CALL(ModelSetLoadFactors(m, 0, of_height, &asked));
+  sum_loads(m, t, sum);
+  CALL(MPI_Allreduce(&asked, &all, 1, MPIU_INT, MPI_SUM, m->comm));
+  assert_true(all > 0);
+  CHECK_CLOSE(sum[0], x, 1e-10);
+  CHECK_CLOSE(sum[1], pushes ? 0 : y, 1e-10);
+  if (is_space(cell)) CHECK_CLOSE(sum[2], pushes ? 0 : z, 1e-10);
+  if (pushes) CHECK_CLOSE(sum[4], 0, 1e-10);
+  else CHECK_CLOSE(sum[3], 0, 1e-10); /* at x = 0 */
+  CALL(ModelSetLoadFactors(m, 0, NULL, NULL));
+  sum_loads(m, t, sum);
+  for (int i = 0; i < 5; ++i) assert_true(sum[i] == plain[i] || i == 2);
+  CALL(ModelDestroy(&m));
+}
+
+static void test_factors(void **state)
+{
+  static const char *const methods_[] = {"mpm", "fem", "gmm"};
+  (void)state;
+  for (int k = 0; k < 3; ++k)
+    for (CellType cell = CELL_TRIANGLE; cell <= CELL_HEXAHEDRON; ++cell)
+      for (int on_body = 0; on_body < 2; ++on_body)
+        for (int pressure = 0; pressure < 2; ++pressure)
+          check_factors(methods_[k], cell, pressure ? LOAD_PRESSURE : LOAD_TRACTION, (PetscBool)on_body);
+}
+
+/* A point force by its own factor. */
+static void test_factor_of_a_point(void **state)
+{
+  Bench b;
+  PetscInt asked = 0;
+  PetscReal sum[5];
+  (void)state;
+  bench_init(&b, "mpm", CELL_QUADRILATERAL, 4);
+  bench_box(&b, 0, (PetscReal[]){0, 0, 0}, (PetscReal[]){1, 0.5, 1});
+  bench_dynamic(&b, 1, 0.01);
+  b.load[b.c.n_loads++] = (LoadSpec){.kind = LOAD_POINT, .at = {0.3, 0.2, 0}, .value = {5, -1, 0}};
+  Model *m = bench_model(&b, PETSC_COMM_WORLD);
+  CALL(ModelSetLoadFactors(m, 0, of_height, &asked));
+  sum_loads(m, 0.5, sum);
+  CHECK_CLOSE(sum[0], 5 * (1 + 0.5 * 0.2), 1e-12);
+  CHECK_CLOSE(sum[1], -0.04, 1e-12);
+  CALL(ModelDestroy(&m));
+}
+
 int main(int argc, char **argv)
 {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_whole_surface), cmocka_unit_test(test_between_bodies),
-                                     cmocka_unit_test(test_amplitudes), cmocka_unit_test(test_boundary_sum),
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_whole_surface),     cmocka_unit_test(test_between_bodies),
+                                     cmocka_unit_test(test_amplitudes),        cmocka_unit_test(test_factors),
+                                     cmocka_unit_test(test_factor_of_a_point), cmocka_unit_test(test_boundary_sum),
                                      cmocka_unit_test(test_body_force)};
   return run_model_tests(argc, argv, tests);
 }

@@ -59,6 +59,15 @@ class Ranks(unittest.TestCase):
         self.same(final(case), final(talus.Case(BLOCK)))
         self.assertEqual(MPI.COMM_WORLD.allreduce(asked[-1]), 64)
 
+    def test_loads_are_asked_on_every_rank(self):
+        case = talus.Case(BLOCK, loads={"tractions[0]": lambda X, x, t: np.stack([X[:, 0], -np.ones(len(X))], axis=1)})
+        case["loads.tractions"] = [{"on": {"body": "block", "y": 1}, "value": [100, 100]}]
+        alone = talus.Case(BLOCK, comm=MPI.COMM_SELF, loads=case.loads)
+        alone["loads.tractions"] = case["loads.tractions"]
+        shared = final(case)
+        self.same(shared, final(alone))
+        self.assertGreater(abs(shared - final(talus.Case(BLOCK))).max(), 0.1)
+
     def test_mistakes_are_told_to_all(self):
         case = talus.Case(BLOCK)
         case["materials.rubber.yung"] = 1

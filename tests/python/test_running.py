@@ -38,7 +38,7 @@ class Interface(unittest.TestCase):
         self.assertLessEqual(set(header.functions), exported)
         for name, (_, arguments) in header.functions.items():
             self.assertNotIn(None, arguments, name)
-        self.assertEqual(set(header.callbacks), {"TalusBodyForce", "TalusBodyForces", "TalusProgress"})
+        self.assertEqual(set(header.callbacks), {"TalusBodyForce", "TalusBodyForces", "TalusLoadFactors", "TalusProgress"})
 
     def test_a_declaration_that_is_not_understood_is_told(self):
         with self.assertRaises(KeyError):
@@ -305,6 +305,52 @@ class Stepping(InFolder):
             found = (model.points["mass"][:, None] * model.points["velocity"]).sum(axis=0)
             np.testing.assert_allclose(found, momentum, rtol=2e-3)
             self.assertGreater(abs(found[1]), 30)
+
+    def test_momentum_follows_a_traction_of_place_and_time(self):
+        """A free block whose top bears (t x, -x^2) and whose left side a pressure of 2 y: its momentum is the integral."""
+        asked, end = [], 0.02
+
+        def traction(X, x, t):
+            asked.append(len(X))
+            return np.stack([t * X[:, 0], -X[:, 0] ** 2], axis=1)
+
+        case = block(**{"loads": {"tractions": [{"on": {"body": "block", "y": 1}, "value": [1, 1]}],
+                                  "pressures": [{"on": {"body": "block", "x": 0.25}, "value": 1}]},
+                        "analysis.end": end, "boundary": []})
+        case.loads = {"tractions[0]": traction, "pressures[0]": lambda X, x, t: 2 * X[:, 1]}
+        mean, square = (1.25**2 - 0.25**2) / 2, (1.25**3 - 0.25**3) / 3  # of x over the top
+        wanted = [mean * end**2 / 2 + 1 * end, -square * end]
+        with case.model() as model:
+            while model.step():
+                pass
+            found = (model.points["mass"][:, None] * model.points["velocity"]).sum(axis=0)
+            np.testing.assert_allclose(found, wanted, rtol=1e-6)  # the pressure follows: the side stretches by 1e-7
+            self.assertEqual(set(asked), {8})
+            model.vary("tractions[0]", None)
+            model.vary("pressures[0]", lambda X, x, t: 0)  # one number for all places
+            model.step(0.002), model.step(0.002)
+            before = (model.points["mass"][:, None] * model.points["velocity"]).sum(axis=0)
+            with self.assertRaisesRegex(KeyError, r"no load 'pressures\[1\]'"):
+                model.vary("pressures[1]", None)
+            model.vary("tractions[0]", lambda X, x, t: [1, 2, 3, 4])
+            with self.assertRaisesRegex(ValueError, "broadcast"):
+                model.step(0.002)
+        # Its value again, 1 N/m2 upward: half of the first step is still the function's.
+        self.assertAlmostEqual(before[1] - found[1], 0.001 * (1 - square) + 0.002, delta=1e-6 * 0.002)
+
+    def test_loads_act_in_runs(self):
+        case = block(**{"loads": {"gravity": [0, 0], "tractions": [{"on": {"body": "block", "y": 1}, "value": [0, -500]}]}})
+        plain = case.run("runs/plain").history["top"]
+        case["loads.tractions"] = [{"on": {"body": "block", "y": 1}, "value": [0, 1]}]
+        case.loads["tractions[0]"] = lambda X, x, t: np.full(len(X), -500.0)
+        np.testing.assert_allclose(case.run("runs/asked").history["top"], plain, rtol=1e-12)
+        case.loads["points[0]"] = case.loads["tractions[0]"]
+        with self.assertRaisesRegex(KeyError, r"no load 'points\[0\]'"):
+            case.run("runs/none")
+        del case.loads["points[0]"]
+        case["stages"] = [{"name": "one"}, {"name": "two", "analysis": {"end": 0.02}}]
+        with self.assertRaisesRegex(talus.CaseError, "not for cases with stages"):
+            case.run("runs/stages")
 
     def test_closing(self):
         model = block().model()

@@ -31,7 +31,7 @@ static const CliOption options_known[] = {
   {"legend", "names|keys",
    "of several runs: by their names, or by the keys in which their cases differ (default: keys, where there are two "
    "at most)"},
-  {"format", "png|svg|pdf", "of the pictures (default: png); gif or mp4 of an animation (default: gif)"},
+  {"format", "png|svg|pdf|gif|mp4", "of the pictures (default: png); gif or mp4 of an animation (default: gif)"},
   {"out", "FILE", "the picture (default: RUN_DIR/pictures/...); its ending is the format"},
   {NULL, NULL, NULL},
 };

@@ -51,7 +51,9 @@ static const SchemaTable cone = {.name = "cone",
                                  .check = SchemaCheckCone};
 
 static const SchemaEntry terrain_entries[] = {
-  KEY("file", FILE, NULL, "heights as an ESRI ASCII grid (.asc); gdal_translate -of AAIGrid makes one of a GeoTIFF",
+  KEY("file", FILE, NULL,
+      "heights: an ESRI ASCII grid (.asc), or a GeoTIFF in metres, which GDAL's gdal_translate reads (apt install "
+      "gdal-bin)",
       REQUIRED, AT(Shape, file)),
   KEY("scale", NUMBER, NULL, "m for one unit of the file, of its coordinates and heights", .fallback = "1", ABOVE(0),
       AT(Shape, scale)),

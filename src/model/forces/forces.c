@@ -73,14 +73,13 @@ PetscErrorCode ModelPointsChanged(Model *m)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode ModelSetBodyForce(Model *m, BodyForce force, void *context)
+/* What acts on the nodes has changed: the list is made anew, and what it remembers stays. */
+static PetscErrorCode Renew(Model *m)
 {
   Tables *kept;
   char reason[256] = "";
 
   PetscFunctionBeginUser;
-  m->body_force = force;
-  m->body_force_context = context;
   PetscCall(TablesCreate(&kept));
   PetscCall(ForcesToTables(m, kept));
   PetscCall(ForcesCreate(m, NULL));
@@ -88,5 +87,22 @@ PetscErrorCode ModelSetBodyForce(Model *m, BodyForce force, void *context)
   PetscCall(TablesDestroy(&kept));
   PetscCheck(!reason[0], m->comm, PETSC_ERR_PLIB, "%s", reason);
   PetscCall(StartAgain(m));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ModelSetBodyForce(Model *m, BodyForce force, void *context)
+{
+  PetscFunctionBeginUser;
+  m->body_force = force;
+  m->body_force_context = context;
+  PetscCall(Renew(m));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ModelSetLoadFactors(Model *m, PetscInt load, LoadFactors ask, void *context)
+{
+  PetscFunctionBeginUser;
+  m->loads->asked[load] = (LoadAsked){ask, context};
+  PetscCall(Renew(m));
   PetscFunctionReturn(0);
 }

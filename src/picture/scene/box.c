@@ -31,6 +31,8 @@ static void box_ticks(FILE *out, const PlotScene *scene, PetscInt k, const Petsc
   static const char *const names[] = {"x [m]", "y [m]", "z [m]"};
   static const PetscReal away[3][2] = {{-0.3, -1}, {0.5, -1}, {-1, 0}};
   static const char *const sides[] = {"right", "left", "right"};
+  /* in characters: numbers of a and b at their common corner stay apart */
+  static const char *const offsets[] = {"-0.5,-0.5", "0.5,-0.5", "-0.4,0"};
   const PetscInt d = (scene->up + 1 + k) % 3;
   const PetscReal length = scene->box_max[d] - scene->box_min[d];
   PetscReal x[3] = {from[0], from[1], from[2]}, p[3], end[3];
@@ -48,7 +50,7 @@ static void box_ticks(FILE *out, const PlotScene *scene, PetscInt k, const Petsc
     fprintf(out, "set arrow from %.9g,%.9g to %.9g,%.9g nohead front lw 1 lc rgb '#444444'\n", (double)p[0],
             (double)p[1], a, b);
     fprintf(out, "set label '%.6g' at %.9g,%.9g %s front offset %s\n",
-            (double)(fabs(t * step) < 1e-9 * step ? 0 : t * step), a, b, sides[k], k == 2 ? "-0.4,0" : "0,-0.5");
+            (double)(fabs(t * step) < 1e-9 * step ? 0 : t * step), a, b, sides[k], offsets[k]);
   }
   x[d] = 0.5 * (scene->box_min[d] + scene->box_max[d]);
   plot_project(scene, x, p);

@@ -13,7 +13,7 @@ static PetscErrorCode CreateLoads(const NodalScene *scene, Diag *diag, void **da
 static PetscErrorCode AssembleLoads(void *data, const NodalScene *scene, const NodalOutput *out)
 {
   PetscFunctionBeginUser;
-  loads_push(data, scene->grid, scene->t, scene->filled, scene->touched, out->force);
+  PetscCall(LoadsPush(data, scene->grid, scene->t, scene->filled, scene->touched, out->force));
   PetscFunctionReturn(0);
 }
 

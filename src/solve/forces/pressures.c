@@ -23,6 +23,9 @@ typedef struct {
   Pushed *pushed;
   PetscInt *node, *slot;
   PetscReal *N, *dN; /* n_nodes, n_nodes x 3 */
+  PetscBool asked;   /* for factors in this step */
+  PetscReal t;       /* when, s */
+  PetscReal *factor; /* those that a caller gives, a carrier 3, the first counts; NULL: none */
 } Pressures;
 
 static PetscErrorCode Reserve(Pressures *s, PetscInt nodes)
@@ -72,6 +75,7 @@ static PetscErrorCode Begin(void *data, const NodalScene *scene)
 
   PetscFunctionBeginUser;
   s->n = s->n_nodes = s->n_slots = 0;
+  s->asked = PETSC_FALSE;
   for (PetscInt p = 0; p < carriers->n; ++p)
     if (scene->c->loads[carriers->body[p]].kind == LOAD_PRESSURE) PetscCall(Add(s, scene, p));
   PetscFunctionReturn(0);
@@ -103,6 +107,7 @@ static PetscErrorCode Destroy(void **data)
   PetscCall(PetscFree(s->slot));
   PetscCall(PetscFree(s->N));
   PetscCall(PetscFree(s->dN));
+  PetscCall(PetscFree(s->factor));
   PetscCall(PetscFree(*data));
   PetscFunctionReturn(0);
 }
@@ -169,16 +174,30 @@ static void add_tangent(const Pressures *s, const Pushed *c, const PetscReal f[3
   }
 }
 
+/* Carriers stay where they are until the step is committed: once for each time is enough. */
+static PetscErrorCode AskFactors(Pressures *s, PetscReal t)
+{
+  PetscFunctionBeginUser;
+  if (s->asked && s->t == t) PetscFunctionReturn(0);
+  PetscCall(PetscFree(s->factor));
+  PetscCall(LoadFactorsOfCarriers(s->loads, PETSC_TRUE, t, &s->factor));
+  s->asked = PETSC_TRUE;
+  s->t = t;
+  PetscFunctionReturn(0);
+}
+
 static PetscErrorCode Assemble(void *data, const NodalScene *scene, const NodalOutput *out)
 {
-  const Pressures *s = data;
+  Pressures *s = data;
   const PetscInt dim = s->loads->dim;
   PetscReal f[3], inverse[9], radius;
 
   PetscFunctionBeginUser;
+  PetscCall(AskFactors(s, scene->t));
   for (const Pushed *c = s->pushed; c < s->pushed + s->n; ++c) {
     const LoadSpec *load = scene->c->loads + s->loads->carriers->body[c->carrier];
-    const PetscReal factor = case_factor(scene->c, &load->amplitude, scene->t);
+    const PetscReal factor =
+      case_factor(scene->c, &load->amplitude, scene->t) * (s->factor ? s->factor[3 * c->carrier] : 1);
     follow(s, c, scene->du, f, inverse, &radius);
     for (int d = 0; d < 3; ++d) f[d] *= factor;
     for (PetscInt e = c->first; e < c->first + c->n; ++e)

@@ -1,0 +1,27 @@
+#!/bin/sh
+# try-sources-in-chroot.sh [CHROOT [TARGET...]]: a clone of this repository in a bare Debian 12 that has git and make and nothing else, and
+# there `make run docs`, or other targets, one after the other, as its root would. Says the seconds and packages that each takes.
+# A CHROOT that is there is used as it is, and kept. MIRROR: where packages come from.
+set -eu
+source=$(cd "$(dirname "$0")/.." && pwd)
+made=
+[ -n "${1:-}" ] || made=$(mktemp -d)
+chroot=${1:-$made/debian}
+[ $# -eq 0 ] || shift
+logs=$(mktemp -d)
+. "$source/packaging/bare-debian.sh"
+
+inside apt-get install -q -y --no-install-recommends git make ca-certificates >>"$logs/apt.log" 2>&1 || { tail "$logs/apt.log"; exit 1; }
+rm -rf "$chroot/root/talus" "$chroot/root/talus.bundle"
+git -C "$source" bundle create -q "$chroot/root/talus.bundle" HEAD
+inside git clone -q /root/talus.bundle /root/talus
+echo "$(inside git -C /root/talus log -1 --format='%h %s'); with git and make: $(inside dpkg-query -W | wc -l) packages"
+for target in "${@:-run docs}"; do
+  for one in $target; do
+    began=$(date +%s)
+    inside make -C /root/talus "$one" >"$logs/$one.log" 2>&1 || { tail -n 40 "$logs/$one.log"; echo "FAILED: make $one"; exit 1; }
+    tail -n 3 "$logs/$one.log" | sed 's/^/  /'
+    echo "make $one: $(($(date +%s) - began)) s, $(inside dpkg-query -W | wc -l) packages"
+  done
+done
+rm -rf "$logs" ${made:+"$made"}

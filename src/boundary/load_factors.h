@@ -1,0 +1,25 @@
+/* Loads that vary from place to place: a caller of the library gives functions, as amplitudes of
+ * a case file give factors that vary with time. */
+#pragma once
+#include <petscsys.h>
+
+struct Loads;
+
+/* Factors of a load at n places of this rank at time t, s: f (n x 3, ones on entry) multiplies
+ * the components of its traction or force; a pressure, which has a direction of its own, takes
+ * the first. X, x: places of the material as undeformed and when the step begins, m, n x 3, in
+ * the plane too. */
+typedef void (*LoadFactors)(void *context, PetscInt n, const PetscReal *X, const PetscReal *x, PetscReal t,
+                            PetscReal *f);
+
+typedef struct {
+  LoadFactors ask; /* NULL: ones */
+  void *context;
+} LoadAsked;
+
+/* Not collective, but functions are asked on every rank. Factors of a load on faces of the grid,
+ * at their quadrature points, at time t; *f is NULL if nobody gives any, else to be freed. */
+PetscErrorCode LoadFactorsOfFaces(const struct Loads *loads, PetscInt load, PetscReal t, PetscReal **f);
+/* Likewise of all carriers (n x 3), of pressures or of all other loads that are carried; ones
+ * for those without a function. */
+PetscErrorCode LoadFactorsOfCarriers(const struct Loads *loads, PetscBool pressures, PetscReal t, PetscReal **f);
