@@ -156,6 +156,8 @@ typedef struct {
   PetscInt n_state;
   const PetscReal *initial; /* n_state numbers */
 } PointSeed;
+/* Does the body fill its shape, or whole cells? `equal` as below: whether nodes are free of the body's cells. */
+PetscBool body_fills_shape(const BodySpec *body, PetscBool equal);
 /* Initial velocity of a body at x: translation and rotation. */
 void body_velocity(const BodySpec *body, PetscInt dim, const PetscReal *x, PetscReal *v);
 PetscErrorCode PointsSeed(Points *points, const Grid *grid, const Case *c, const PointSeed *per_material,
