@@ -22,7 +22,8 @@ typedef struct {
   const SeedRule *rule;
   CellType type;
   PetscInt dim;
-  const PetscReal *x;                                                   /* nodes of the cell */
+  const PetscReal *x; /* nodes of the cell */
+  PetscReal slack;    /* m: corners on the surface shall be inside, whatever round-off says */
   Sum whole[SEED_MAX_RULE], fine[SEED_MAX_RULE], coarse[SEED_MAX_RULE]; /* per part; coarse: edges twice as long */
 } Measure;
 
@@ -127,7 +128,7 @@ static PetscBool is_inside(const Measure *m, const PetscReal *xi)
 {
   PetscReal position[3];
   (void)map(m->type, m->x, xi, position);
-  return shape_contains(m->shape, m->dim, position, 0);
+  return shape_contains(m->shape, m->dim, position, m->slack);
 }
 
 static void centre_of(PetscInt dim, PetscReal corner[4][3], PetscReal *centre)
@@ -290,6 +291,7 @@ SeedFill seed_parts(const Seeding *s, PetscInt cell, const SeedRule *rule, SeedP
   const PetscInt dim = s->source->dim;
   Measure m = {.shape = &s->body->shape, .rule = rule, .type = grid_cell_type(s->source, cell), .dim = dim, .x = x};
   grid_cell_x(s->source, cell, x);
+  m.slack = 1e-10 * PetscPowReal(cell_volume(m.type, x), 1 / (PetscReal)dim);
   measure_cell(&m);
   const PetscReal factor = growth(&m);
   for (PetscInt q = 0; q < rule->n; ++q) whole += m.whole[q].volume;
