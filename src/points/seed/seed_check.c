@@ -64,12 +64,18 @@ static void compare_volume(const Seeding *s, PetscReal seeded)
   char path[128];
   if (wanted <= 0 || PetscAbsReal(seeded - wanted) <= 0.01 * wanted) return;
   seed_path(s->b, "shape", sizeof path, path);
-  diag_warning(s->diag, path, "%s body '%s': they hold %.6g %s, its shape %.6g %s (%+.2g %%)",
-               fills ? "the grid has not all of" : "whole cells represent", s->body->name, (double)seeded, unit,
-               (double)wanted, unit, (double)(100 * (seeded / wanted - 1)));
-  diag_hint(s->diag, fills ? "its points stand where the mesh has cells"
-                           : "cells whose centre lies in the shape belong to it: let cell faces follow it, use smaller "
-                             "cells, or `fill: shape` with mpm");
+  const double got = (double)seeded, meant = (double)wanted, off = (double)(100 * (seeded / wanted - 1));
+  if (fills) {
+    diag_warning(s->diag, path, "cells hold not all of body '%s': %.6g %s, its shape has %.6g %s (%+.2g %%)",
+                 s->body->name, got, unit, meant, unit, off);
+    diag_hint(s->diag, "does the grid have cells wherever the body is? Is the body thinner than a quarter of a cell?");
+    return;
+  }
+  diag_warning(s->diag, path, "whole cells represent body '%s': they hold %.6g %s, its shape %.6g %s (%+.2g %%)",
+               s->body->name, got, unit, meant, unit, off);
+  diag_hint(s->diag,
+            "cells whose centre lies in the shape belong to it: let cell faces follow it, use smaller cells, or "
+            "`fill: shape` with mpm");
 }
 
 /* Material that the grid does not reach would be lost without a word. A shape cut by a region or a
