@@ -5,7 +5,7 @@
  *
  * Nodes are a disordered lattice (15 % of the spacing); every figure is the best of seven passes
  * over 500 points. */
-#include "basis/cloud_support.h"
+#include "basis/cloud/cloud_support.h"
 #include <stdio.h>
 #include <stdlib.h>
 #include <time.h>

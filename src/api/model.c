@@ -3,7 +3,7 @@
 #include <string.h>
 #include "api/api.h"
 #include "case/fields.h"
-#include "run/output.h"
+#include "run/output/output.h"
 
 struct TalusModel {
   Model *model;

@@ -2,7 +2,7 @@
 #pragma once
 #include "calibrate/calibrate.h"
 #include "calibrate/region.h"
-#include "sweep/members.h"
+#include "sweep/members/members.h"
 
 typedef struct {
   const CalibrateOptions *options;

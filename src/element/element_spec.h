@@ -2,7 +2,7 @@
 #pragma once
 #include "element/drive.h"
 #include "element/element.h"
-#include "input/yaml.h"
+#include "input/yaml/yaml.h"
 
 /* A test of the laboratory: which components it prescribes. The y axis is the axis of the sample. */
 typedef struct {

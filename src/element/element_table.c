@@ -1,7 +1,7 @@
 #include "element/element_table.h"
 #include <string.h>
 #include "base/text.h"
-#include "material/invariants.h"
+#include "material/algebra/invariants.h"
 #include "output/directory/run_dir_files.h"
 
 static const char *const components[] = {"xx", "yy", "zz", "xy", "yz", "zx"};

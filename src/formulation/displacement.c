@@ -3,9 +3,9 @@
  * Points run in batches of one material: first the increments of the deformation gradient of the
  * whole batch, then one call of the law, then forces and stiffness. What a group (a cell)
  * gathers is scattered once. */
-#include "formulation/cells.h"
+#include "formulation/kernels/cells.h"
 #include "formulation/displacement_cloud.h"
-#include "formulation/simplex_kernels.h"
+#include "formulation/kernels/simplex_kernels.h"
 
 /* What one cell gathers: its own kind of sum where gradients are the same everywhere in it. */
 typedef struct {

@@ -4,7 +4,7 @@
  * innermost unit is one block of a pair of nodes: with T_j[J] = sum_l modulus_jl g_l[J], a block
  * is sum_j g_j[I] T_j[J] plus the mass, and in the plane it fills one register. */
 #include "formulation/displacement_cloud.h"
-#include "formulation/cloud_kernels.h"
+#include "formulation/kernels/cloud_kernels.h"
 
 /* In the plane a block is g_x[I] T_x[J] + g_y[I] T_y[J] + mass, four numbers at a time. */
 KERNEL void cloud_matrix_2d(const PetscBool hoop, const PetscBool half, const PetscInt *slot, const CloudWork *w,

@@ -11,8 +11,8 @@
  *
  * theta is needed before the law: batches end where cells end, unless one has more points than a
  * batch, or several materials. */
-#include "formulation/cells.h"
-#include "formulation/mean_dilatation_kernels.h"
+#include "formulation/kernels/cells.h"
+#include "formulation/kernels/mean_dilatation_kernels.h"
 #include "formulation/sizes.h"
 
 /* A batch, and the cell that was asked last. */

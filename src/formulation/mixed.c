@@ -7,9 +7,9 @@
  * The unknown is p over a scale of Pa/m, and the second equation is multiplied by it: then all
  * unknowns are m and all equations N, and the tangent is symmetric where the law's is. Points
  * run in batches of one material as in displacement.c. */
-#include "formulation/cells.h"
+#include "formulation/kernels/cells.h"
 #include "formulation/mixed_cloud.h"
-#include "formulation/mixed_kernels.h"
+#include "formulation/kernels/mixed_kernels.h"
 #include "formulation/sizes.h"
 
 /* What one cell gathers before it is scattered; rows as in mixed_kernels.h. */

@@ -5,8 +5,8 @@
  * linear functions it sees every pressure that varies, wherever points stand. Pressures of nodes
  * that hardly any material reaches are held to the linear part of what a point sees. */
 #include "formulation/mixed_cloud.h"
-#include "formulation/cloud_kernels.h"
-#include "formulation/mixed_kernels.h"
+#include "formulation/kernels/cloud_kernels.h"
+#include "formulation/kernels/mixed_kernels.h"
 
 /* What one point adds beside what it adds without a pressure. */
 typedef struct {

@@ -1,7 +1,7 @@
 /* A case with stages: the file as each of them changes it. */
 #pragma once
 #include "case/case.h"
-#include "input/yaml.h"
+#include "input/yaml/yaml.h"
 
 /* The tree of stage k, for k up to n, in document->stage: that of the stage before (of the first: the file's)
  * with its words laid over it, without the list of stages. Every node keeps its place in the file.

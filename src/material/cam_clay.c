@@ -15,7 +15,7 @@
  * unknowns begins there. A shear modulus that goes with the pressure would have to move the
  * pressure with shear, too, to be elastic, and could then bear no more than q / p = 1.2 sqrt(G /
  * K). State: b^e, p_c, plastic shear strain. */
-#include "material/hencky.h"
+#include "material/algebra/hencky.h"
 
 enum { STRESS_RATIO, LAMBDA, KAPPA, SPECIFIC_VOLUME, SHEAR, PRECONSOLIDATION, OCR, PRESSURE };
 

@@ -12,7 +12,7 @@
  * All three keep the direction of s. At the corner the flow is one of both surfaces; with etabar
  * = 0 no flow of the cone leads to the apex, which is then the return by definition, as of
  * Mohr-Coulomb. */
-#include "material/hencky.h"
+#include "material/algebra/hencky.h"
 #include "material/strength.h"
 
 enum { MATCH = STRENGTH_N, GIVEN };

@@ -11,7 +11,7 @@
  * determinant, so J is stored apart; the elastic energy of shape is mu/2 (tr bbar - 3 (det
  * bbar)^(1/3)), whose second term grows with the dissipation. Volumetric laws as in
  * neo_hookean_split.c: j2 with p = K (J - 1), j2-log with p = K ln J / J. */
-#include "material/volume.h"
+#include "material/algebra/volume.h"
 
 enum { YIELD = SPLIT_N, HARDENING };
 

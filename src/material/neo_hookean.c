@@ -7,8 +7,8 @@
  * State: the elastic left Cauchy-Green tensor b; J comes from its determinant. Use this file as the
  * starting point for a law of your own: the kernel for eight points at once is `update_lanes`, the
  * rest is what every law has. */
-#include "material/lanes.h"
-#include "material/shape.h"
+#include "material/algebra/lanes.h"
+#include "material/algebra/shape.h"
 
 enum { LAMBDA, MU };
 

@@ -10,7 +10,7 @@
  *
  *   neo-hookean-split       U = (J - 1)^2 / 2    p = K (J - 1)
  *   neo-hookean-split-log   U = (ln J)^2 / 2     p = K ln J / J */
-#include "material/volume.h"
+#include "material/algebra/volume.h"
 
 /* c = a I x I + 2 g I_sym - 2/3 (s x I + I x s) of one point. */
 LANES_INLINE void tangent_point(PetscReal a, PetscReal g, const PetscReal s[6], PetscReal *c)

@@ -1,5 +1,5 @@
 #include "material/pressure.h"
-#include "material/shape.h"
+#include "material/algebra/shape.h"
 
 /* J^e before the flow of this increment, from the old state. */
 static LawStatus trial_volumes(const Law *law, PetscInt n, const PetscReal *dF, const PetscReal *old, PetscReal *J)

@@ -5,7 +5,7 @@
 #include "output/vtk/vtk.h"
 #include "run/run_private.h"
 #include "run/stages/initial.h"
-#include "run/summary.h"
+#include "run/report/summary.h"
 #include "run/watch/events.h"
 
 /* Open the history: a new one, or (diag given) that of the run that is resumed. */

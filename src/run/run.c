@@ -1,8 +1,8 @@
-#include "run/losses.h"
+#include "run/report/losses.h"
 #include "run/run_private.h"
 #include "run/signals.h"
 #include "run/stages/initial.h"
-#include "run/summary.h"
+#include "run/report/summary.h"
 #include "run/watch/events.h"
 
 /* Time until the schedule next wants the run to stop exactly. */

@@ -1,7 +1,7 @@
 /* What the files that make a run share. */
 #pragma once
 #include "model/stage/stage.h"
-#include "run/output.h"
+#include "run/output/output.h"
 #include "run/run.h"
 #include "run/strength/limit.h"
 #include "run/strength/strength.h"

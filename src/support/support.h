@@ -4,7 +4,7 @@
  * nodes may stand together in groups (a cell's points), so that the work for a group is scattered
  * once; where supports differ from point to point each is a group of its own. */
 #pragma once
-#include "basis/cloud_support.h"
+#include "basis/cloud/cloud_support.h"
 #include "points/points.h"
 
 /* Groups of local nodes: those of group g are node[start[g]] .. node[start[g + 1] - 1]. */

@@ -1,6 +1,6 @@
 /* What the files of a sweep share. */
 #pragma once
-#include "sweep/members.h"
+#include "sweep/members/members.h"
 #include "sweep/sweep_spec.h"
 
 typedef struct {

@@ -5,8 +5,8 @@
 #include "input/case_file.h"
 #include "output/history.h"
 #include "output/directory/run_dir_files.h"
-#include "run/summary.h"
-#include "run/found.h"
+#include "run/report/summary.h"
+#include "run/report/found.h"
 #include "verify/verify_private.h"
 
 /* The case of the run. NULL and a message if there is none. */

@@ -1,6 +1,6 @@
 /* The shape of a wall in its own frame, ready to be asked. */
 #pragma once
-#include "wall/facets.h"
+#include "wall/facets/facets.h"
 
 typedef struct Form Form;
 struct Form {

@@ -1,7 +1,7 @@
 #include "wall/wall_private.h"
 #include <math.h>
 #include "wall/check.h"
-#include "wall/mesh.h"
+#include "wall/facets/mesh.h"
 
 PetscErrorCode WallsCreate(const Case *c, Diag *diag, Walls **walls)
 {

@@ -1,6 +1,6 @@
 /* Clouds of nodes for the tests of this room. */
 #pragma once
-#include "basis/cloud.h"
+#include "basis/cloud/cloud.h"
 #include "../conformance/basis_suite.h"
 #include "../conformance/random.h"
 

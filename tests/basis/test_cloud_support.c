@@ -1,6 +1,6 @@
 /* Clouds under stretch, shear and separation: always a basis, no link through a gap, no jumps. */
 #include "clouds.h"
-#include "basis/cloud_support.h"
+#include "basis/cloud/cloud_support.h"
 
 #define SIDE 13
 #define NODES (SIDE * SIDE)

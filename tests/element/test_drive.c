@@ -8,7 +8,7 @@
 /* cmocka wants those before it */
 #include <cmocka.h>
 #include "element/element_spec.h"
-#include "material/invariants.h"
+#include "material/algebra/invariants.h"
 
 #define RAD (PETSC_PI / 180)
 

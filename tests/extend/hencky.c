@@ -5,12 +5,12 @@
  *
  * one point at a time. Its file, and a line in more_laws.inc, are all that a law is. */
 #include "material/law.h"
-#include "material/principal.h"
-#include "material/shape.h"
+#include "material/algebra/principal.h"
+#include "material/algebra/shape.h"
 
 enum { BULK, SHEAR };
 
-/* c_AABB = K - 2 mu / 3 + 2 (mu - tau_A) delta_AB, and the shears of material/principal.h with r =
+/* c_AABB = K - 2 mu / 3 + 2 (mu - tau_A) delta_AB, and the shears of material/algebra/principal.h with r =
  * 2 mu. */
 static void tangent(const PetscReal *parameters, const PetscReal strain[3], const PetscReal tau[3],
                     const PetscReal basis[36], PetscReal *c)

@@ -7,7 +7,7 @@
 #include <stdint.h>
 #include <cmocka.h>
 #include "basis/cell.h"
-#include "formulation/mixed_kernels.h"
+#include "formulation/kernels/mixed_kernels.h"
 
 /* P of a cell by its points: mean of (N_I - mean)(N_J - mean) in the ring's volume. */
 static void by_points(CellType type, PetscInt n_points, const PetscReal *x, PetscReal *P)

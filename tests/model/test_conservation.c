@@ -80,7 +80,8 @@ static Sums sums_of(Model *m)
 }
 
 /* method "consistent" is mpm with this transfer, "gimp" the same with that basis. A block that
- * flies, spins and swings (the spin suddenly loads it by centrifugal forces) for 0.1 s. Returns
+ * flies, spins and swings (the spin suddenly loads it by centrifugal forces) for 0.1 s, on several
+ * ranks for 0.03 s but for gimp, whose energy swings. Returns
  * the final drift of angular momentum and energy, relative to the start. */
 static void fly(const char *method, CellType cell, PetscReal size, PetscReal bossak, PetscReal dt, PetscReal inertia,
                 PetscReal *angular, PetscReal *energy)
@@ -108,7 +109,7 @@ static void fly(const char *method, CellType cell, PetscReal size, PetscReal bos
   const Sums start = sums_of(m);
   Sums last = start;
   const PetscReal scale = start.mass * 3;
-  while (m->time < 0.1 - 1e-9) {
+  while (m->time < (steps_tried(2) == 1 && !domains ? 0.03 : 0.1) - 1e-9) {
     CHECK(model_step(m, dt).cuts == 0, "a step was halved");
     const Sums now = sums_of(m);
     CHECK_CLOSE(now.mass, start.mass, 1e-14 * start.mass);

@@ -2,7 +2,7 @@
  * stay, and that a flow solved with it is in balance everywhere. */
 #include "case_builder.h"
 #include "model/model_private.h"
-#include "solve/newton/eliminate.h"
+#include "solve/newton/patches/eliminate.h"
 
 static NamedValue grains[] = {
   {"young", 1e6}, {"poisson", 0.3}, {"friction_angle", 35}, {"dilatancy_angle", 1}, {"cohesion", 0}};

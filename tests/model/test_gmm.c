@@ -2,7 +2,7 @@
  * that hold where shape functions do not interpolate, reactions, free flight, turning, contact, and
  * the same answers on one rank and on many, also when nodes and points change their ranks. */
 #include "case_builder.h"
-#include "method/gmm.h"
+#include "method/gmm/gmm.h"
 
 static const BasisSpec usual_lme = {
   .kind = "lme", .gamma = 1.8, .radius = 2, .max_radius = 3.5, .condition = 50, .gap = 2};

@@ -81,6 +81,13 @@ static void impact(const Fall *f)
   CALL(ModelDestroy(&m));
 }
 
+/* Of ranks a shorter step and damping tell nothing, and space is told by one. */
+static PetscBool tells_of_ranks(const Fall *f)
+{
+  const PetscBool flat = f->cell != CELL_HEXAHEDRON || (!strcmp(f->basis, "cell") && !strcmp(f->method, "mpm"));
+  return flat && f->step >= 2e-3 && f->bossak == 0;
+}
+
 static void test_impulse(void **state)
 {
   static const Fall falls[] = {
@@ -103,8 +110,7 @@ static void test_impulse(void **state)
   (void)state;
   CALL(MPI_Comm_size(PETSC_COMM_WORLD, &size));
   for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(falls); ++k)
-    if (size == 1 || (falls[k].step >= 2e-3 && falls[k].bossak == 0))
-      impact(&falls[k]); /* of ranks a shorter step and damping tell nothing */
+    if (size == 1 || tells_of_ranks(&falls[k])) impact(&falls[k]);
 }
 
 /* A block that hangs from its upper side and is let go at t = 0: the trapezoidal rule takes the

@@ -3,7 +3,7 @@
  * functions are written down again here, and nodes are known by their places, so that sums over
  * ranks can be checked against sums over all points. */
 #include "case_builder.h"
-#include "method/gmm.h"
+#include "method/gmm/gmm.h"
 
 enum { CELLS = 6, SIDE = CELLS + 1 };
 

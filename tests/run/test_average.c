@@ -1,7 +1,7 @@
 /* Fields of points at the nodes: uniform ones stay, linear ones are met where points lie evenly around
  * a node, and nothing is lost on the way. */
 #include "../model/case_builder.h"
-#include "run/output_private.h"
+#include "run/output/output_private.h"
 
 static PetscReal linear(const PetscReal *x, PetscInt dim)
 {

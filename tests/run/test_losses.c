@@ -1,6 +1,6 @@
 /* Runs say when points have come together: their volumes are more than their cells hold. */
 #include "../model/case_builder.h"
-#include "run/losses.h"
+#include "run/report/losses.h"
 
 /* Warnings of a block whose points count as so much larger than they are. */
 static PetscInt warnings(PetscReal larger)

@@ -1,7 +1,7 @@
 /* Fields of the files in numbers, from states made by hand. */
 #include "../model/case_builder.h"
 #include "case/fields.h"
-#include "run/output.h"
+#include "run/output/output.h"
 
 static PetscReal *field_of(const Model *m, const char *name, PetscInt components)
 {

@@ -1,7 +1,7 @@
 /* Walls as lines and triangles: every middle of a piece lies on its wall, where that is by then, and pieces have the
  * length or the surface that the shape has in view. */
 #include "walls.h"
-#include "wall/mesh.h"
+#include "wall/facets/mesh.h"
 
 #define SIZE 0.02
 

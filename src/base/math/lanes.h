@@ -9,7 +9,7 @@
 #include <petscsys.h>
 #include <stdint.h>
 
-/* Who defines it as 4 before gets four: material/lanes.h */
+/* Who defines it as 4 before gets four: material/algebra/lanes.h */
 #ifndef LANES
 #define LANES 8
 #endif

@@ -1,7 +1,7 @@
 /* A project of Kratos's material point method as far as talus can compute it. */
 #pragma once
 #include "import/kratos/mdpa.h"
-#include "input/yaml.h"
+#include "input/yaml/yaml.h"
 
 #define KRATOS_NAME 256
 

@@ -8,7 +8,7 @@
 #include <stddef.h>
 #include <stdio.h>
 #include "case/case.h"
-#include "input/yaml.h"
+#include "input/yaml/yaml.h"
 
 typedef enum {
   TYPE_NUMBER,     /* PetscReal */

@@ -17,7 +17,7 @@
  *
  * Cohesion holds on to what opens: with c > 0 the tension of the apex stays until omega is zero
  * again. Its work on the way out comes back on the way in, and counts as stored. */
-#include "material/hencky.h"
+#include "material/algebra/hencky.h"
 #include "material/mohr_coulomb/mohr_coulomb_plane.h"
 #include "material/strength.h"
 

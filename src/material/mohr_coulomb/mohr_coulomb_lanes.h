@@ -1,7 +1,7 @@
 /* Return and moduli of the Mohr-Coulomb law in principal axes, eight points side by side. */
 #pragma once
 #include "material/mohr_coulomb/mohr_coulomb_return.h"
-#include "material/principal_lanes.h"
+#include "material/algebra/principal_lanes.h"
 
 /* Stresses on the surface or inside. Most points that flow are on the shear plane: that return is
  * made here, others point by point. */

@@ -6,7 +6,7 @@
  * table are those of a cell of `reference_size`, and a point in a cell of another size h runs
  * through it h / reference_size times as fast, so that the work of failure per area of the band
  * stays the same. */
-#include "material/hencky.h"
+#include "material/algebra/hencky.h"
 #include "material/mohr_coulomb/mohr_coulomb_lanes.h"
 #include "material/mohr_coulomb/mohr_coulomb_softening.h"
 #include "material/strength.h"

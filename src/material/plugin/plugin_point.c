@@ -7,7 +7,7 @@
  *   eps' = M : d,  M_AAAA = 1,  M_ABAB = x coth x,   c : d = D : M : d - d tau - tau d. */
 #include "base/math/svd.h"
 #include "material/plugin/plugin.h"
-#include "material/principal.h"
+#include "material/algebra/principal.h"
 
 #define DIFFERENCE 1e-6 /* strain, to both sides */
 

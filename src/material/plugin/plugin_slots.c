@@ -3,7 +3,7 @@
 #include "material/plugin/plugin.h"
 #include <math.h>
 #include <string.h>
-#include "material/shape.h"
+#include "material/algebra/shape.h"
 
 Plugin plugins[PLUGIN_MOST];
 

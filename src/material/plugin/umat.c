@@ -13,7 +13,7 @@
 #include "material/plugin/umat.h"
 #include <math.h>
 #include <string.h>
-#include "material/principal.h"
+#include "material/algebra/principal.h"
 
 enum { STRESS = 0, STRAIN = 6, GRADIENT = 12 };
 

@@ -3,7 +3,7 @@
 #include "base/names.h"
 #include "base/text.h"
 #include "input/case_file.h"
-#include "input/yaml.h"
+#include "input/yaml/yaml.h"
 #include "output/directory/run_dir_files.h"
 
 /* All keys of all cases in the order in which they were met, with their values. */

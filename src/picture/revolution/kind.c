@@ -1,7 +1,7 @@
 #include <string.h>
 #include "case/kinematics/kinematics.h"
 #include "input/case_file.h"
-#include "input/yaml.h"
+#include "input/yaml/yaml.h"
 #include "output/directory/run_dir_files.h"
 #include "picture/revolution/revolution.h"
 

@@ -3,7 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include "picture/walls/walls.h"
-#include "wall/mesh.h"
+#include "wall/facets/mesh.h"
 
 /* Pieces of what is curved are at most so much of the longest side of the box. */
 #define FINENESS (1. / 24)

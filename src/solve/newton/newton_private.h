@@ -1,6 +1,6 @@
 /* Newton's own state, and what its parts ask of each other: for the files of newton*.c alone. */
 #pragma once
-#include "solve/newton/eliminate.h"
+#include "solve/newton/patches/eliminate.h"
 #include "solve/newton/line_search.h"
 #include "solve/newton/newton.h"
 #include "solve/blocks/projection.h"

@@ -1,5 +1,5 @@
 /* The logarithmic strain of a body, of what lies in a shape, or at a place of the material. */
-#include "material/invariants.h"
+#include "material/algebra/invariants.h"
 #include "model/measure/tensor/tensor.h"
 
 static void strain(const Model *m, PetscInt p, PetscReal share, PetscReal sum[6], PetscReal *volume)

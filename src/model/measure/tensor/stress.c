@@ -1,5 +1,5 @@
 /* The stress of a body, of what lies in a shape, or at a place of the material. */
-#include "material/invariants.h"
+#include "material/algebra/invariants.h"
 #include "model/measure/tensor/tensor.h"
 
 /* tau V0 = sigma V */

@@ -1,0 +1,168 @@
+/* Point kernels of points with a cloud of nodes each, as many as the basis chose: what the
+ * displacement and the mixed formulation share.
+ *
+ * Nothing is gathered per group, so a point's blocks go straight into the matrix values. With
+ * T_j[J] = sum_l modulus_jl g_l[J], a block is sum_j g_j[I] T_j[J] plus the mass. */
+#pragma once
+#include "formulation/kernels/displacement_kernels.h"
+
+/* What one point needs of its cloud. */
+typedef struct {
+  PetscInt nn;
+  const PetscInt *node;
+  const PetscReal *N;
+  PetscReal mass, inertia, lumping, soft; /* inertia: mass times c0 */
+  /* gradients at x_(n+1), as many rows as they have beside each other */
+  PetscReal g[3 * CLOUD_MAX_NODES];
+  PetscReal T[3 * 9 * CLOUD_MAX_NODES]; /* blocks of each row and node */
+} CloudWork;
+
+KERNEL void cloud_increment(const int dim, const PetscBool hoop, const WeakFormInput *in, PetscInt p, PetscReal dF[9])
+{
+  const Support *s = in->support;
+  const PetscInt first = s->node_start[p], nn = s->node_start[p + 1] - first, *node = s->node + first;
+  const PetscReal *dN = s->dN + s->value_start[p] * dim;
+  const PetscReal *N = s->N + s->value_start[p];
+  PetscReal H[9] = {0}, outward = 0;
+  for (PetscInt I = 0; I < nn; ++I) {
+    const PetscReal *du = in->du + node[I] * dim;
+    if (hoop) outward += N[I] * du[0];
+    for (int i = 0; i < dim; ++i)
+      for (int j = 0; j < dim; ++j) H[i * dim + j] += du[i] * dN[I * dim + j];
+  }
+  for (int i = 0; i < 9; ++i) dF[i] = i % 4 == 0;
+  for (int i = 0; i < dim; ++i)
+    for (int j = 0; j < dim; ++j) dF[3 * i + j] += H[i * dim + j];
+  if (hoop) dF[8] += outward / *point_real(in->points, POINT_X, p);
+}
+
+KERNEL void cloud_gradients(const int dim, const PetscBool hoop, const PetscReal *restrict dN, PetscReal radius,
+                            const PetscReal *dF, CloudWork *w)
+{
+  const int rows = gradient_rows(dim, hoop);
+  PetscReal inverse[9];
+  tensor_inverse(dF, inverse);
+  for (PetscInt I = 0; I < w->nn; ++I) {
+    for (int j = 0; j < dim; ++j) {
+      PetscReal g = 0;
+      for (int i = 0; i < dim; ++i) g += inverse[3 * i + j] * dN[I * dim + i];
+      w->g[I * rows + j] = g;
+    }
+    if (hoop) w->g[I * rows + dim] = inverse[8] / radius * w->N[I];
+  }
+}
+
+/* f_I += V0 tau g_I + m N_I ((1 - lumping) a_h + lumping a_I) */
+KERNEL void cloud_force(const int dim, const PetscBool hoop, const WeakFormInput *in, const PetscReal *tau,
+                        PetscReal volume, const CloudWork *w, PetscReal *force)
+{
+  const int rows = gradient_rows(dim, hoop);
+  PetscReal mean_a[3] = {0, 0, 0};
+  for (PetscInt I = 0; I < w->nn; ++I)
+    for (int d = 0; d < dim; ++d) {
+      const PetscInt k = w->node[I] * dim + d;
+      mean_a[d] += w->N[I] * (in->inertia * in->du[k] + in->history[k]);
+    }
+  for (PetscInt I = 0; I < w->nn; ++I)
+    for (int d = 0; d < dim; ++d) {
+      const PetscInt k = w->node[I] * dim + d;
+      const PetscReal a = in->inertia * in->du[k] + in->history[k];
+      PetscReal f = w->mass * w->N[I] * ((1 - w->lumping) * mean_a[d] + w->lumping * a);
+      for (int j = 0; j < rows; ++j)
+        if (is_felt(dim, d, j)) f += volume * tau[strain_of(dim, d, j)] * w->g[I * rows + j];
+      force[k] += f;
+    }
+}
+
+/* V0 (c_ajbl + delta_ab tau_jl) of one j: a block of dim x dim for each row l of the gradients. */
+KERNEL void cloud_moduli(const int dim, const int rows, const int j, const PetscReal *tau, const PetscReal *c,
+                         PetscReal volume, PetscReal modulus[3][9])
+{
+  for (int l = 0; l < rows; ++l)
+    for (int a = 0; a < dim; ++a)
+      for (int b = 0; b < dim; ++b)
+        modulus[l][a * dim + b] =
+          is_felt(dim, a, j) && is_felt(dim, b, l) ? volume * modulus_of(dim, a, j, b, l, tau, c) : 0;
+}
+
+/* T_j[J] = sum_l of these times g_l[J], a block of dim x dim. */
+KERNEL void cloud_products(const int dim, const PetscBool hoop, const PetscReal *tau, const PetscReal *c,
+                           PetscReal volume, CloudWork *w)
+{
+  const int rows = gradient_rows(dim, hoop);
+  for (int j = 0; j < rows; ++j) {
+    PetscReal modulus[3][9];
+    cloud_moduli(dim, rows, j, tau, c, volume, modulus);
+    for (PetscInt J = 0; J < w->nn; ++J) {
+      PetscReal *T = w->T + (j * w->nn + J) * dim * dim;
+      if (dim == 2) {
+        Row4 sum = *(const Row4 *)modulus[0] * w->g[J * rows];
+        for (int l = 1; l < rows; ++l) sum += *(const Row4 *)modulus[l] * w->g[J * rows + l];
+        *(Row4 *)T = sum;
+        continue;
+      }
+      const PetscReal *g = w->g + J * rows;
+      *(Row8 *)T =
+        g[0] * *(const Row8 *)modulus[0] + g[1] * *(const Row8 *)modulus[1] + g[2] * *(const Row8 *)modulus[2];
+      T[8] = g[0] * modulus[0][8] + g[1] * modulus[1][8] + g[2] * modulus[2][8];
+    }
+  }
+}
+
+/* What is known of point p before its stress. */
+KERNEL void cloud_load(const WeakFormInput *in, PetscInt p, CloudWork *w)
+{
+  const Support *s = in->support;
+  w->nn = s->node_start[p + 1] - s->node_start[p];
+  w->node = s->node + s->node_start[p];
+  w->N = s->N + s->value_start[p];
+  w->mass = in->points->real[POINT_MASS][p];
+  w->inertia = w->mass * in->inertia;
+  w->lumping = in->lumping ? in->lumping[p] : 0;
+  w->soft = in->soft ? in->soft[p] : 0;
+}
+
+/* Motions that nothing holds, as unit vectors over the nodes, across each other: constant, and on a
+ * lattice linear along each axis. Returns how many. */
+static inline int free_parts(PetscInt axes, PetscInt dim, const CloudWork *w, const PetscReal *x,
+                             PetscReal part[4][CLOUD_MAX_NODES])
+{
+  int n = 0;
+  for (PetscInt k = 0; k <= axes; ++k) {
+    PetscReal mean = 0, square = 0;
+    for (PetscInt I = 0; k && I < w->nn; ++I) mean += x[w->node[I] * dim + k - 1] / (PetscReal)w->nn;
+    for (PetscInt I = 0; I < w->nn; ++I) {
+      part[n][I] = k ? x[w->node[I] * dim + k - 1] - mean : 1;
+      square += PetscSqr(part[n][I]);
+    }
+    if (square == 0) continue;
+    for (PetscInt I = 0; I < w->nn; ++I) part[n][I] /= PetscSqrtReal(square);
+    ++n;
+  }
+  return n;
+}
+
+/* What is left in I of the motion of J without these n parts. */
+static inline PetscReal held_part(int n, PetscReal part[4][CLOUD_MAX_NODES], PetscInt I, PetscInt J)
+{
+  PetscReal s = I == J;
+  for (int k = 0; k < n; ++k) s -= part[k][I] * part[k][J];
+  return s;
+}
+
+/* Holds a point's nodes to these parts of their motion: f_I += soft (du_I - sum_k b_kI b_k . du).
+ * size: rows of a block, of which displacements are the first. */
+static inline void cloud_hold(PetscInt dim, PetscInt size, const WeakFormInput *in, const PetscInt *slot,
+                              const CloudWork *w, WeakFormOutput *out)
+{
+  PetscReal part[4][CLOUD_MAX_NODES];
+  const int n = free_parts(in->lattice ? dim : 0, dim, w, in->x, part);
+  for (PetscInt I = 0; I < w->nn; ++I)
+    for (PetscInt J = 0; J < w->nn; ++J) {
+      const PetscReal s = w->soft * held_part(n, part, I, J);
+      for (PetscInt d = 0; d < dim; ++d) out->force[w->node[I] * dim + d] += s * in->du[w->node[J] * dim + d];
+      if (!out->values || (in->half && J < I)) continue;
+      PetscReal *block = out->values + (size_t)slot[I * w->nn + J] * (size_t)(size * size);
+      for (PetscInt d = 0; d < dim; ++d) block[d * (size + 1)] += s;
+    }
+}

@@ -1,0 +1,172 @@
+/* Laws whose stress depends on principal logarithmic elastic strains: what they share, eight points
+ * side by side (docs/theory.md, "Laws").
+ *
+ *   b^e trial = f b^e f^T,  eps_A = ln lambda_A,  tau_A(eps),  c from d tau_A / d eps_B (principal.h)
+ *
+ * A law gives the return in these strains alone; state: b^e first, then scalars of its own. */
+#pragma once
+#include "material/algebra/principal.h"
+#include "material/algebra/principal_lanes.h"
+#include "material/algebra/shape.h"
+
+#define HENCKY_SCALARS 3 /* most numbers of a state beside b^e */
+
+/* b^e before the flow, and what the spectral decomposition gave. */
+typedef struct {
+  Lanes b[6], stretch2[3], strain[3], basis[36], det;
+  LaneBits finite; /* is b of use? */
+} HenckyTrial;
+
+LANES_INLINE void hencky_push(PetscInt n, const PetscReal *dF, const Lanes old[6], HenckyTrial *t)
+{
+  Lanes f[9];
+  lanes_load(9, n, dF, f);
+  lanes_det(f, &t->det);
+  lanes_push_forward(f, old, t->b);
+}
+
+LANES_INLINE void hencky_spectrum(HenckyTrial *t)
+{
+  const Lanes one = (Lanes){0} + 1.0, none = {0};
+  Lanes v[9], size, sum = none;
+  for (int k = 0; k < 6; ++k) {
+    lanes_abs(&t->b[k], &size);
+    sum += size;
+  }
+  t->finite = (sum * sum <= PETSC_MAX_REAL) & (t->det <= PETSC_MAX_REAL) & (t->det > 0.0);
+  for (int k = 0; k < 6; ++k) lanes_select(&t->finite, &t->b[k], k < 3 ? &one : &none, &t->b[k]);
+  lanes_sym_eigen(t->b, t->stretch2, v);
+  t->finite &= t->stretch2[2] > 0.0; /* lost to rounding: stretches 1e8 apart */
+  for (int a = 0; a < 3; ++a) {
+    lanes_log(&t->stretch2[a], &t->strain[a]);
+    t->strain[a] *= 0.5;
+  }
+  lanes_principal_basis(v, t->basis);
+}
+
+/* c of n points from D_AB = d tau_A / d eps_B and the divided differences r of 12, 23, 13. */
+LANES_INLINE void hencky_tangent(const HenckyTrial *t, const Lanes D[9], const Lanes r[3], const Lanes tau[3],
+                                 PetscInt n, PetscReal *c)
+{
+  Lanes shear[3], all[36], coth;
+  for (int k = 0; k < 3; ++k) {
+    const int a = k == 2 ? 0 : k, b = k == 2 ? 2 : k + 1; /* 12, 23, 31 as 13 */
+    const Lanes x = t->strain[a] - t->strain[b];
+    lanes_principal_coth(&x, &t->stretch2[a], &t->stretch2[b], &coth);
+    shear[k] = 0.5 * (r[k] * coth - tau[a] - tau[b]);
+  }
+  lanes_principal_tangent(D, tau, shear, t->basis, all);
+  lanes_store(36, n, all, c);
+}
+
+/* Points that failed keep their state and carry no stress. `good`: those that did not. */
+static inline LawStatus hencky_give_up(int n_state, const LaneBits *good, const LaneBits *finite, const Lanes *det,
+                                       PetscInt n, const PetscReal *old, PetscReal *state, PetscReal *tau, PetscReal *c)
+{
+  LawStatus worst = LAW_OK;
+  for (PetscInt l = 0; l < PetscMin(n, LANES); ++l) {
+    if ((*good)[l]) continue;
+    const LawStatus bad = (*det)[l] <= 0.0 ? LAW_INVERTED : LAW_NOT_FINITE,
+                    status = (*finite)[l] ? LAW_NOT_CONVERGED : bad;
+    worst = PetscMax(worst, status);
+    for (int k = 0; state && k < n_state; ++k) state[l * n_state + k] = old[l * n_state + k];
+    for (int k = 0; k < 6; ++k) tau[l * 6 + k] = 0.0;
+    for (int k = 0; c && k < 36; ++k) c[l * 36 + k] = 0.0;
+  }
+  return worst;
+}
+
+/* What a return gives, in principal axes. */
+typedef struct {
+  Lanes tau[3], elastic[3]; /* Kirchhoff stresses, elastic strains after it */
+  Lanes D[9], r[3];         /* only if moduli are wanted */
+  LaneBits plastic, good;
+} HenckyReturn;
+
+/* Strains (falling) and the state's scalars before and after. */
+typedef void (*HenckyLaw)(const PetscReal *parameters, PetscBool moduli, const Lanes strain[3], const Lanes *before,
+                          Lanes *after, HenckyReturn *r);
+
+/* An elastic point keeps its trial b to the last bit. */
+LANES_INLINE void hencky_state(const HenckyTrial *t, const HenckyReturn *r, Lanes b[6])
+{
+  Lanes stretch2[3], flown[6];
+  for (int k = 0; k < 6; ++k) b[k] = t->b[k];
+  if (!lanes_any(&r->plastic)) return;
+  for (int a = 0; a < 3; ++a) {
+    const Lanes twice = 2.0 * r->elastic[a];
+    lanes_exp(&twice, &stretch2[a]);
+  }
+  lanes_principal_tensor(stretch2, t->basis, flown);
+  for (int k = 0; k < 6; ++k) lanes_select(&r->plastic, &flown[k], &b[k], &b[k]);
+}
+
+/* The update of eight points by a law whose state has `scalars` numbers beside b^e; to be inlined
+ * with a law known to the compiler. */
+LANES_INLINE LawStatus hencky_update(HenckyLaw law, int scalars, const PetscReal *p, PetscInt n, const PetscReal *dF,
+                                     const PetscReal *old, PetscReal *state, PetscReal *tau, PetscReal *c)
+{
+  Lanes before[6 + HENCKY_SCALARS], now[6 + HENCKY_SCALARS], stress[6];
+  HenckyTrial t;
+  HenckyReturn r;
+  lanes_load(6 + scalars, n, old, before);
+  hencky_push(n, dF, before, &t);
+  hencky_spectrum(&t);
+  law(p, c != NULL, t.strain, before + 6, now + 6, &r);
+  lanes_principal_tensor(r.tau, t.basis, stress);
+  if (state) {
+    hencky_state(&t, &r, now);
+    lanes_store(6 + scalars, n, now, state);
+  }
+  lanes_store(6, n, stress, tau);
+  if (c) hencky_tangent(&t, r.D, r.r, r.tau, n, c);
+  const LaneBits good = t.finite & r.good, bad = ~good;
+  return lanes_any(&bad) ? hencky_give_up(6 + scalars, &good, &t.finite, &t.det, n, old, state, tau, c) : LAW_OK;
+}
+
+/* The functions of a law made of it: update_lanes for eight points, update for n. */
+#define HENCKY_UPDATE(law, scalars)                                                                              \
+  LANES_INLINE LawStatus update_lanes(const PetscReal *p, PetscInt n, const PetscReal *dF, const PetscReal *old, \
+                                      PetscReal *state, PetscReal *tau, PetscReal *c)                            \
+  {                                                                                                              \
+    return hencky_update(law, scalars, p, n, dF, old, state, tau, c);                                            \
+  }                                                                                                              \
+  static LawStatus update(const PetscReal *parameters, PetscInt n, const PetscReal *dF, const PetscReal *old,    \
+                          PetscReal *state, PetscReal *tau, PetscReal *c)                                        \
+  {                                                                                                              \
+    return lanes_update(update_lanes, 6 + (scalars), parameters, n, dF, old, state, tau, c);                     \
+  }
+
+/* What the mixed formulation asks of it, where the bulk modulus is a constant. */
+#define HENCKY_MIXED(scalars)                                                                                       \
+  static void volume(PetscInt n, const PetscReal *state, PetscReal *J) { volume_of_b(n, 6 + (scalars), state, J); } \
+  static void scale(PetscInt n, const PetscReal *factor, PetscReal *state) { scale_b(n, 6 + (scalars), factor, state); }
+
+/* Hooke's law between these strains and stresses: stored energy, J/m3. */
+static inline PetscReal hencky_energy(PetscReal lambda, PetscReal mu, const PetscReal b[6])
+{
+  PetscReal stretch2[3], v[9], trace = 0.0, norm2 = 0.0;
+  sym_eigen(b, stretch2, v);
+  for (int a = 0; a < 3; ++a) {
+    const PetscReal e = 0.5 * log(stretch2[a]);
+    trace += e;
+    norm2 += e * e;
+  }
+  return 0.5 * lambda * trace * trace + mu * norm2;
+}
+
+/* Principal tau = J sigma with ln J = tr tau / 3K (NAN if there is none), and b^e that carries
+ * it. */
+static inline void hencky_stress(PetscReal lambda, PetscReal mu, const PetscReal sigma[6], PetscReal tau[3],
+                                 PetscReal b[6])
+{
+  const PetscReal bulk = lambda + 2.0 / 3.0 * mu, mean = (sigma[0] + sigma[1] + sigma[2]) / 3.0;
+  const PetscReal J = volume_from_pressure(VOLUME_LOG, bulk, mean);
+  PetscReal stretch2[3], v[9], basis[36];
+  sym_eigen(sigma, tau, v);
+  for (int a = 0; a < 3; ++a) tau[a] *= J;
+  principal_basis(v, basis);
+  const PetscReal share = lambda / (3.0 * bulk) * (tau[0] + tau[1] + tau[2]);
+  for (int a = 0; a < 3; ++a) stretch2[a] = exp((tau[a] - share) / mu);
+  principal_tensor(stretch2, basis, b);
+}

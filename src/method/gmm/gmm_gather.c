@@ -1,0 +1,294 @@
+/* Phase a of gmm: which nodes each point has now, over all ranks. */
+#include "method/gmm/gmm.h"
+
+#define SHARE 0.1 /* of a constrained node in the field at its place, at least */
+/* ghosts and couplings are kept for clouds so much wider, so that they serve several steps */
+#define SKIN 1.15
+/* couplings of multipliers: they are few, and material comes upon them at full speed */
+#define SKIN_HELD 1.4
+
+/* Nodes as this rank sees them while it searches: owned ones by their numbers, remote of other
+ * ranks behind. */
+typedef struct {
+  RemoteNodes remote;
+  Neighbours nodes;
+  PetscInt *ghost; /* per candidate: local number, -1 if it is no ghost yet */
+  PetscBool *use;  /* per candidate: does a cloud need it? */
+} Search;
+
+/* The radius aimed at, m. */
+static PetscReal radius_of(const Discretisation *s) { return s->c->basis.radius * s->grid->cloud->spacing; }
+
+static void widen_box(PetscInt dim, PetscInt n, const PetscReal *x, PetscReal reach, PetscReal box[6])
+{
+  for (PetscInt i = 0; i < n; ++i)
+    for (PetscInt d = 0; d < dim; ++d) {
+      box[d] = PetscMin(box[d], x[i * dim + d] - reach);
+      box[3 + d] = PetscMax(box[3 + d], x[i * dim + d] + reach);
+    }
+}
+
+/* The box in which this rank's points and nodes look for nodes. */
+static void search_box(const Discretisation *s, PetscReal box[6])
+{
+  const PetscInt dim = s->grid->dim;
+  const PetscReal reach = SKIN * PetscMax(radius_of(s), s->c->basis.max_radius * s->grid->cloud->spacing);
+  for (int d = 0; d < 3; ++d) box[d] = PETSC_MAX_REAL, box[3 + d] = -PETSC_MAX_REAL;
+  widen_box(dim, s->points->n, s->points->real[POINT_X], reach, box);
+  widen_box(dim, s->tracers->n, s->tracers->real[POINT_X], reach, box);
+  widen_box(dim, s->loads->carriers->n, s->loads->carriers->real[POINT_X], reach, box);
+  widen_box(dim, s->grid->n_owned, s->grid->x, reach, box);
+}
+
+static PetscErrorCode SearchBegin(const Discretisation *s, Search *search)
+{
+  const Grid *grid = s->grid;
+  PetscReal box[6];
+  unsigned char *twin;
+
+  PetscFunctionBeginUser;
+  search_box(s, box);
+  PetscCall(GridCloudRemote(grid, box, &search->remote));
+  const PetscInt n = search->remote.n;
+  PetscCall(PetscMalloc1(grid->n_owned, &twin));
+  for (PetscInt i = 0; i < grid->n_owned; ++i) twin[i] = cloud_is_twin(grid, i);
+  PetscCall(
+    NeighboursCreate(grid->dim, grid->n_owned, grid->x, n, search->remote.x, twin, radius_of(s), &search->nodes));
+  PetscCall(PetscFree(twin));
+  PetscCall(PetscMalloc1(n, &search->ghost));
+  PetscCall(PetscCalloc1(n, &search->use));
+  cloud_find_ghosts(grid, &search->remote, search->ghost);
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode SearchEnd(Search *search)
+{
+  PetscFunctionBeginUser;
+  PetscCall(NeighboursDestroy(&search->nodes));
+  PetscCall(GridCloudRemoteDestroy(&search->remote));
+  PetscCall(PetscFree(search->ghost));
+  PetscCall(PetscFree(search->use));
+  PetscFunctionReturn(0);
+}
+
+static void mark_used(const Discretisation *s, Search *search, PetscInt n, const PetscInt *node)
+{
+  for (PetscInt i = 0; i < n; ++i)
+    if (node[i] >= s->grid->n_owned) search->use[node[i] - s->grid->n_owned] = PETSC_TRUE;
+}
+
+static void rename_nodes(const Discretisation *s, const Search *search, PetscInt n, PetscInt *node)
+{
+  for (PetscInt i = 0; i < n; ++i)
+    if (node[i] >= s->grid->n_owned) node[i] = search->ghost[node[i] - s->grid->n_owned];
+}
+
+/* All lists of nodes found by this search. */
+typedef struct {
+  PetscInt n[5], *node[5];
+} Lists;
+
+static Lists lists_of(const Discretisation *s)
+{
+  const Support *w[4] = {s->support, gmm_of(s)->tracers, gmm_of(s)->carriers, gmm_of(s)->nodes};
+  Lists l;
+  for (int k = 0; k < 4; ++k) {
+    l.n[k] = w[k]->node_start[w[k]->n_groups];
+    l.node[k] = w[k]->node;
+  }
+  l.n[4] = s->constraints->start[s->constraints->n];
+  l.node[4] = s->constraints->node;
+  return l;
+}
+
+/* New ghosts: remote in use, and those that will be soon. */
+static PetscErrorCode Relayout(Discretisation *s, Search *search)
+{
+  const PetscInt dim = s->grid->dim, n_owned = s->grid->n_owned;
+  const PetscReal radius = SKIN * radius_of(s);
+  PetscInt near[CLOUD_MAX_NODES];
+  PetscReal distance2[CLOUD_MAX_NODES];
+
+  PetscFunctionBeginUser;
+  for (PetscInt p = 0; p < s->points->n; ++p) {
+    const PetscInt n =
+      neighbours_within(&search->nodes, s->points->real[POINT_X] + p * dim, radius, CLOUD_MAX_NODES, near, distance2);
+    mark_used(s, search, n, near);
+  }
+  PetscCall(GridCloudSetGhosts(s->grid, &search->remote, search->use));
+  for (PetscInt k = 0, g = n_owned; k < search->remote.n; ++k) search->ghost[k] = search->use[k] ? g++ : -1;
+  PetscFunctionReturn(0);
+}
+
+/* After ghosts or owners changed: arrays that do not follow by themselves. */
+static PetscErrorCode Follow(Discretisation *s)
+{
+  const Grid *grid = s->grid;
+  Gmm *g = gmm_of(s);
+  PetscInt *id;
+  PetscInt *order;
+
+  PetscFunctionBeginUser;
+  if (g->layouts == grid->cloud->layouts) PetscFunctionReturn(0);
+  g->layouts = grid->cloud->layouts;
+  PetscCall(NodalFlagsFollow(s->nodes));
+  PetscCall(BoundaryFollow(s->boundary, grid));
+  PetscCall(PetscFree(g->twin));
+  PetscCall(PetscMalloc1(grid->n_owned, &g->twin));
+  PetscCall(PetscMalloc2(grid->n_owned, &id, grid->n_owned, &order));
+  for (PetscInt i = 0; i < grid->n_owned; ++i) {
+    id[i] = grid->cloud->id[i];
+    order[i] = i;
+    g->twin[i] = -1;
+  }
+  PetscCall(PetscSortIntWithArray(grid->n_owned, id, order));
+  /* twins stand last, in the order of their nodes */
+  for (PetscInt i = 0, k = 0; i < grid->n_owned; ++i) {
+    if (id[i] < grid->cloud->first_twin) continue;
+    while (id[k] < id[i] - grid->cloud->first_twin) ++k;
+    g->twin[order[k]] = order[i];
+  }
+  PetscCall(PetscFree2(id, order));
+  PetscFunctionReturn(0);
+}
+
+/* The field at the places of nodes: it moves those near prescribed ones, and is held where a node
+ * has a twin. */
+static PetscErrorCode GatherNodes(Discretisation *s, const Search *search)
+{
+  const Grid *grid = s->grid;
+  const Support *w = gmm_of(s)->nodes;
+  const BasisInput basis = {.spec = &s->c->basis, .grid = grid, .nodes = &search->nodes, .on_hull = PETSC_TRUE};
+  Points places = {.dim = grid->dim};
+  PetscReal *x;
+  PetscInt n = 0;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(grid->n_owned * grid->dim, &x));
+  for (PetscInt i = 0; i < grid->n_owned; ++i)
+    if (!cloud_is_twin(grid, i)) {
+      for (PetscInt d = 0; d < grid->dim; ++d) x[n * grid->dim + d] = grid->x[i * grid->dim + d];
+      ++n;
+    }
+  places.n = n;
+  places.real[POINT_X] = x;
+  PetscCall(s->basis->support(&basis, &places, gmm_of(s)->nodes));
+  PetscCall(PetscFree(x));
+  constraints_clear(s->constraints);
+  for (PetscInt i = 0, k = -1; i < grid->n_owned; ++i) {
+    if (cloud_is_twin(grid, i)) continue;
+    ++k;
+    if (gmm_of(s)->twin[i] >= 0)
+      PetscCall(ConstraintsAdd(s->constraints, i, gmm_of(s)->twin[i], support_nodes(w, k), w->node + w->node_start[k],
+                               w->N + w->value_start[k]));
+  }
+  PetscFunctionReturn(0);
+}
+
+/* Share of the node in the field at its own place. */
+static PetscReal own_share(const Constraints *c, PetscInt k)
+{
+  for (PetscInt i = c->start[k]; i < c->start[k + 1]; ++i)
+    if (c->node[i] == c->at[k]) return c->N[i];
+  return 0;
+}
+
+/* Constraints act where material reaches the node; elsewhere it moves as prescribed by itself. So
+ * it does where other nodes crowd it: its coefficient, with a small share in the field, would have
+ * to be huge. */
+static PetscErrorCode Release(Discretisation *s)
+{
+  const PetscInt dim = s->grid->dim;
+  const Constraints *c = s->constraints;
+  PetscReal *state;
+
+  PetscFunctionBeginUser;
+  if (!gmm_of(s)->constraints) PetscFunctionReturn(0);
+  PetscCall(PetscCalloc1(s->grid->n_nodes * dim, &state));
+  for (PetscInt k = 0; k < c->n; ++k) {
+    const PetscBool active = s->nodes->touched[c->at[k]] && own_share(c, k) > SHARE;
+    s->nodes->touched[c->twin[k]] = active;
+    for (PetscInt d = 0; d < dim; ++d) {
+      const PetscBool held = s->boundary->fixed[c->at[k] * dim + d] != 0;
+      state[c->at[k] * dim + d] = active && held ? DOF_RELEASED : DOF_USUAL;
+      state[c->twin[k] * dim + d] = held ? DOF_USUAL : DOF_UNUSED;
+    }
+  }
+  PetscCall(GridToGhosts(s->grid, dim, state));
+  for (PetscInt i = 0; i < s->grid->n_nodes * dim; ++i) s->nodes->dof[i] = (unsigned char)state[i];
+  PetscCall(PetscFree(state));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode GmmGather(Discretisation *s)
+{
+  Gmm *g = gmm_of(s);
+  Search search;
+  BasisInput basis = {.spec = &s->c->basis, .grid = s->grid, .nodes = &search.nodes};
+  PetscBool missing = PETSC_FALSE, any;
+
+  PetscFunctionBeginUser;
+  PetscCall(Follow(s));
+  PetscCall(SearchBegin(s, &search));
+  PetscCall(s->basis->support(&basis, s->points, s->support));
+  PetscCall(s->basis->support(&basis, s->tracers, g->tracers));
+  basis.on_hull = PETSC_TRUE;
+  PetscCall(s->basis->support(&basis, s->loads->carriers, g->carriers));
+  PetscCall(GatherNodes(s, &search));
+  const Lists lists = lists_of(s);
+  for (int k = 0; k < 5; ++k) mark_used(s, &search, lists.n[k], lists.node[k]);
+  for (PetscInt k = 0; k < search.remote.n; ++k)
+    if (search.use[k] && search.ghost[k] < 0) missing = PETSC_TRUE;
+  PetscCallMPI(MPI_Allreduce(&missing, &any, 1, MPIU_BOOL, MPI_LOR, s->grid->comm));
+  if (any) PetscCall(Relayout(s, &search));
+  for (int k = 0; k < 5; ++k) rename_nodes(s, &search, lists.n[k], lists.node[k]);
+  PetscCall(SearchEnd(&search));
+  PetscCall(Follow(s));
+  PetscCall(DiscretisationTouch(s));
+  PetscCall(Release(s));
+  PetscFunctionReturn(0);
+}
+
+/* The constraints as a support: places of their nodes, and the nodes that hold these, the twin
+ * among them. */
+static PetscErrorCode CoupleConstraints(const Discretisation *s, const BasisInput *basis, NodeGroups *groups)
+{
+  const PetscInt dim = s->grid->dim;
+  const Constraints *c = s->constraints;
+  Points places = {.dim = dim, .n = c->n, .components[POINT_X] = dim};
+  Support now = {.n_groups = c->n};
+  const BasisSites sites = {.points = &places, .now = &now, .skin = SKIN_HELD};
+
+  PetscFunctionBeginUser;
+  PetscCall(
+    PetscMalloc3(c->n * dim, &places.real[POINT_X], c->n + 1, &now.node_start, c->start[c->n] + c->n, &now.node));
+  now.node_start[0] = 0;
+  for (PetscInt k = 0, n = 0; k < c->n; ++k) {
+    PetscCall(PetscArraycpy(places.real[POINT_X] + k * dim, s->grid->x + c->at[k] * dim, dim));
+    for (PetscInt i = c->start[k]; i < c->start[k + 1]; ++i) now.node[n++] = c->node[i];
+    now.node[n++] = c->twin[k];
+    now.node_start[k + 1] = n;
+  }
+  PetscCall(s->basis->couplings(basis, &sites, groups));
+  PetscCall(PetscFree3(places.real[POINT_X], now.node_start, now.node));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode GmmCouplings(const Discretisation *s, NodeGroups *groups)
+{
+  const Grid *grid = s->grid;
+  const BasisSites sites = {.points = s->points, .now = s->support, .skin = SKIN};
+  unsigned char *twin;
+  Neighbours nodes;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(grid->n_nodes, &twin));
+  for (PetscInt i = 0; i < grid->n_nodes; ++i) twin[i] = cloud_is_twin(grid, i);
+  PetscCall(NeighboursCreate(grid->dim, grid->n_nodes, grid->x, 0, NULL, twin, SKIN * radius_of(s), &nodes));
+  PetscCall(PetscFree(twin));
+  const BasisInput basis = {.spec = &s->c->basis, .grid = grid, .nodes = &nodes};
+  PetscCall(s->basis->couplings(&basis, &sites, groups));
+  PetscCall(CoupleConstraints(s, &basis, groups));
+  PetscCall(NeighboursDestroy(&nodes));
+  PetscFunctionReturn(0);
+}

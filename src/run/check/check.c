@@ -1,0 +1,313 @@
+#include "case/shape_volume.h"
+#include "model/explicit/critical.h"
+#include "run/check/check_private.h"
+#include "run/stages/initial.h"
+#include <stdarg.h>
+
+/* What is known of each body over all ranks. */
+typedef struct {
+  PetscReal mass, volume;
+  PetscInt points, on_faces, cells;
+} BodyCount;
+
+static PETSC_ATTRIBUTE_FORMAT(3, 4) void say(const Model *m, FILE *out, const char *format, ...)
+{
+  PetscMPIInt rank;
+  va_list arguments;
+  MPI_Comm_rank(m->comm, &rank);
+  if (rank) return;
+  va_start(arguments, format);
+  vfprintf(out, format, arguments);
+  va_end(arguments);
+}
+
+/* A point on a face belongs to two cells: which one it feels is a matter of round-off. */
+static PetscBool is_on_face(const Model *m, PetscInt p)
+{
+  const CellType type = grid_cell_type(m->grid, m->points->cell[p]);
+  return PetscAbsReal(cell_outside(type, point_real(m->points, POINT_XI, p))) < 1e-9;
+}
+
+static PetscErrorCode CountBodies(const Model *m, BodyCount *count)
+{
+  const PetscInt n = m->c->n_bodies;
+  PetscReal *sum;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(5 * n, &sum));
+  for (PetscInt p = 0; p < m->points->n; ++p) {
+    PetscReal *s = sum + 5 * m->points->body[p];
+    s[0] += m->points->real[POINT_MASS][p];
+    s[1] += m->points->real[POINT_VOLUME][p];
+    s[2] += 1;
+    s[3] += is_on_face(m, p);
+    s[4] += p == 0 || m->points->cell[p] != m->points->cell[p - 1];
+  }
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sum, (PetscMPIInt)(5 * n), MPIU_REAL, MPI_SUM, m->comm));
+  for (PetscInt b = 0; b < n; ++b)
+    count[b] = (BodyCount){.mass = sum[5 * b],
+                           .volume = sum[5 * b + 1],
+                           .points = (PetscInt)sum[5 * b + 2],
+                           .on_faces = (PetscInt)sum[5 * b + 3],
+                           .cells = (PetscInt)sum[5 * b + 4]};
+  PetscCall(PetscFree(sum));
+  PetscFunctionReturn(0);
+}
+
+/* Cells whose centre lies in the body's shape and that hold no point: gaps that the grid would see
+ * as cracks. */
+static PetscErrorCode CountGaps(const Model *m, PetscInt body, PetscInt *gaps)
+{
+  const BodySpec *spec = &m->c->bodies[body];
+  const PetscInt field = m->grid->n_fields > 1 ? case_field(m->c, body) : 0;
+  PetscInt local = 0;
+  PetscReal centre[3];
+  PetscBool *filled;
+
+  PetscFunctionBeginUser;
+  *gaps = 0;
+  if (m->grid->cloud) PetscFunctionReturn(0); /* no cells, no gaps */
+  PetscCall(PetscCalloc1(m->grid->n_cells, &filled));
+  for (PetscInt p = 0; p < m->points->n; ++p) filled[m->points->cell[p]] = PETSC_TRUE;
+  for (PetscInt c = 0; spec->has_shape && c < m->grid->n_cells; ++c) {
+    if (grid_field_of(m->grid, c) != field) continue;
+    grid_cell_centre(m->grid, c, centre);
+    local += !filled[c] && shape_contains(&spec->shape, m->dim, centre, 0);
+  }
+  PetscCall(MPIU_Allreduce(&local, gaps, 1, MPIU_INT, MPI_SUM, m->comm));
+  PetscCall(PetscFree(filled));
+  PetscFunctionReturn(0);
+}
+
+/* Of the body as it is seeded: initial stress has changed the volume of its points since. */
+static PetscReal body_density(const Model *m, PetscInt body)
+{
+  for (PetscInt i = 0; i < m->c->n_materials; ++i)
+    if (!strcmp(m->c->materials[i].name, m->c->bodies[body].material)) return m->c->materials[i].density;
+  return 1;
+}
+
+/* What stands for a body's shape, and what that measures. */
+static PetscErrorCode ReportFill(const Model *m, PetscInt body, PetscReal mass, FILE *out)
+{
+  const BodySpec *spec = &m->c->bodies[body];
+  const PetscBool fills = body_fills_shape(spec, m->method->restores_grid);
+  const PetscReal volume = mass / body_density(m, body),
+                  shape = spec->has_shape && !spec->region
+                            ? shape_volume(&spec->shape, m->c->kinematics, m->grid->min, m->grid->max)
+                            : 0;
+
+  PetscFunctionBeginUser;
+  if (shape > 0)
+    say(m, out, "#     %s: %.6g m3 for %.6g m3 of its shape (%+.2f %%)\n",
+        fills ? "fill: shape" : "fill: cells, whole ones", (double)volume, (double)shape,
+        (double)(100 * (volume / shape - 1)));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode ReportBodies(const Model *m, Diag *diag, FILE *out)
+{
+  BodyCount *count;
+  PetscInt gaps;
+  char path[64];
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(m->c->n_bodies, &count));
+  PetscCall(CountBodies(m, count));
+  for (PetscInt b = 0; b < m->c->n_bodies; ++b) {
+    if (m->c->bodies[b].absent) continue;
+    const char *name = m->c->bodies[b].name;
+    say(m, out, "#   body %s: %d points in %d cells, volume %g m3, mass %g kg\n", name, (int)count[b].points,
+        (int)count[b].cells, (double)count[b].volume, (double)count[b].mass);
+    PetscCall(ReportFill(m, b, count[b].mass, out));
+    PetscCall(CountGaps(m, b, &gaps));
+    PetscCall(PetscSNPrintf(path, sizeof path, "bodies[%d]", (int)b));
+    PetscMPIInt rank;
+    PetscCallMPI(MPI_Comm_rank(m->comm, &rank));
+    if (rank) continue;
+    if (count[b].on_faces)
+      diag_warning(diag, path, "%d material points of '%s' lie on faces between cells", (int)count[b].on_faces, name);
+    if (gaps) {
+      diag_warning(diag, path, "%d cells inside '%s' hold no material point: the grid will see gaps there", (int)gaps,
+                   name);
+      diag_hint(diag, "use more points_per_cell, a finer mesh of the body, or a coarser grid");
+    }
+  }
+  PetscCall(PetscFree(count));
+  PetscFunctionReturn(0);
+}
+
+/* Bytes per rank, roughly: points, support, matrix, and the factor of a direct solver by nested
+ * dissection's growth. */
+static PetscReal estimated_memory(const Model *m, PetscInt points, PetscInt unknowns, PetscInt pairs)
+{
+  const PetscInt most = m->space->basis->domains ? m->dim == 2 ? 9 : 27 : m->grid->nodes_per_cell;
+  const PetscReal dim = (PetscReal)m->dim, nn = m->grid->cloud ? 14 : (PetscReal)most,
+                  n = (PetscReal)PetscMax(unknowns, 2), block = (PetscReal)m->system->block;
+  PetscReal per_point = 24 + 8 * nn * (1 + dim);
+  for (PetscInt f = 0; f < POINT_N_REAL; ++f) per_point += 8 * (PetscReal)m->points->components[f];
+  const PetscReal value = m->scheme->inertia && !m->formulation->pressure
+                            ? 8 + 4
+                            : 8 + 8 + 4 + 8 + 8; /* blocks in single precision, or PETSc's */
+  const PetscReal matrix = (PetscReal)pairs * (block * block * value + 8);
+  const PetscReal factor = m->dim == 2 ? 8 * 5 * n * PetscLog2Real(n) : 8 * 6 * PetscPowReal(n, 4.0 / 3.0);
+  const PetscReal direct = m->c->linear != LINEAR_ITERATIVE && !m->scheme->inertia ? factor : 0;
+  return (PetscReal)points * per_point + matrix + direct + 120 * (PetscReal)m->grid->n_nodes_global;
+}
+
+/* How large clouds are, and how many are not what the rule aims at. */
+static PetscErrorCode ReportClouds(const Model *m, FILE *out)
+{
+  const Support *w = m->space->support;
+  PetscInt local[2] = {w->n_groups, w->n_groups ? w->node_start[w->n_groups] : 0}, all[2];
+
+  PetscFunctionBeginUser;
+  PetscCall(MPIU_Allreduce(local, all, 2, MPIU_INT, MPI_SUM, m->comm));
+  say(m, out, "# the cloud\n#   %.1f nodes carry a point on average\n", (double)all[1] / (double)PetscMax(all[0], 1));
+  PetscFunctionReturn(0);
+}
+
+/* Substeps that cost as much as an implicit step of the same model (docs/decisions.md [163]). */
+#define SUBSTEPS_OF_A_STEP 10
+
+/* What explicit dynamics takes, or would, and whether that is cheaper. */
+static PetscErrorCode ReportSubsteps(const Model *m, FILE *out)
+{
+  const PetscBool explicit = m->c->analysis.type == ANALYSIS_EXPLICIT;
+  PetscReal critical, fastest;
+
+  PetscFunctionBeginUser;
+  if (!m->scheme->inertia || !m->method->restores_grid || m->formulation->pressure) PetscFunctionReturn(0);
+  PetscCall(ExplicitCritical(m, &critical, &fastest));
+  const PetscReal substep = explicit_courant(m->c) * critical, n = PetscCeilReal(m->control.next / substep);
+  say(m, out, "#   explicit: %.3g s a substep, %.0f %s in a step of %g s: %s than an implicit step\n", (double)substep,
+      (double)n, explicit ? "of them" : "with `type: explicit`", (double)m->control.next,
+      n <= SUBSTEPS_OF_A_STEP ? "cheaper" : "dearer");
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode ReportSizes(Model *m, FILE *out)
+{
+  PetscInt points, pairs, all_pairs;
+  char from[80], to[80], told[256];
+
+  PetscFunctionBeginUser;
+  PetscCall(ModelActivate(m));
+  PetscCall(ModelCountPoints(m, &points));
+  pairs = m->system->row_start[m->system->n_rows];
+  PetscCall(MPIU_Allreduce(&pairs, &all_pairs, 1, MPIU_INT, MPI_SUM, m->comm));
+  const PetscInt unknowns = m->system->n_active_global * m->system->block;
+  if (m->grid->cloud) PetscCall(ReportClouds(m, out));
+  say(m, out, "# the model\n#   grid: %d cells (%s%s%s), %d nodes, from %s to %s m\n", (int)m->grid->n_cells_global,
+      cells[m->grid->type].name, grid_is_mixed(m->grid) ? ", " : "",
+      grid_is_mixed(m->grid) ? cells[m->grid->first_type].name : "", (int)m->grid->n_nodes_global,
+      text_position(m->dim, m->grid->min, from), text_position(m->dim, m->grid->max, to));
+  method_tell_basis(m->method, m->c, sizeof told, told);
+  say(m, out, "#   basis: %s\n", told);
+  say(m, out, "#   points: %d; unknowns at the start: %d\n", (int)points, (int)unknowns);
+  say(m, out, "#   memory: about %.3g MB\n", (double)estimated_memory(m, points, unknowns, all_pairs) / 1e6);
+  if (m->scheme->inertia)
+    say(m, out, "#   waves: %g m/s, %.3g cells in a step of %g s\n", (double)m->courant_speed,
+        (double)(m->courant_speed * m->control.next / m->grid->smallest), (double)m->control.next);
+  PetscCall(ReportSubsteps(m, out));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode CountHeld(const Model *m, PetscInt motion, PetscInt *all)
+{
+  const MotionNodes *nodes = &m->boundary->motion[motion];
+  PetscInt local = 0;
+
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < nodes->n; ++i) local += nodes->node[i] < m->grid->n_owned;
+  PetscCall(MPIU_Allreduce(&local, all, 1, MPIU_INT, MPI_SUM, m->comm));
+  PetscFunctionReturn(0);
+}
+
+/* What nobody wrote into the case file. */
+static PetscErrorCode ReportAxis(const Model *m, FILE *out)
+{
+  PetscInt all;
+
+  PetscFunctionBeginUser;
+  if (boundary_axis(m->boundary) < 0) PetscFunctionReturn(0);
+  PetscCall(CountHeld(m, boundary_axis(m->boundary), &all));
+  say(m, out, "#   full circle: volumes, masses, forces and energies are those of the whole body of revolution\n");
+  say(m, out, "#   axis: %d nodes at x = 0 are held along x, whatever `boundary` says\n", (int)all);
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode ReportSets(const Model *m, FILE *out)
+{
+  PetscFunctionBeginUser;
+  for (PetscInt s = 0; s < m->grid->n_sets; ++s) {
+    const GridSet *set = &m->grid->sets[s];
+    PetscInt local[3] = {0, set->n_faces, set->n_cells}, all[3];
+    for (PetscInt k = 0; k < set->n_nodes; ++k) local[0] += set->nodes[k] < m->grid->n_owned;
+    PetscCall(MPIU_Allreduce(local, all, 3, MPIU_INT, MPI_SUM, m->comm));
+    if (all[2]) say(m, out, "#   region %s: %d cells\n", set->name, (int)all[2]);
+    else say(m, out, "#   boundary %s: %d nodes, %d faces\n", set->name, (int)all[0], (int)all[1]);
+  }
+  for (PetscInt k = 0; k < m->c->n_boundary; ++k) {
+    PetscInt all;
+    PetscCall(CountHeld(m, k, &all));
+    say(m, out, "#   boundary[%d]: moves %d nodes\n", (int)k, (int)all);
+  }
+  PetscCall(ReportAxis(m, out));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode ReportInterfaces(const Model *m, FILE *out)
+{
+  PetscFunctionBeginUser;
+  if (m->grid->n_fields > 1)
+    say(m, out, "#   velocity fields: %d, each with its share of these cells and nodes\n", (int)m->grid->n_fields);
+  for (PetscInt k = 0; k < m->c->n_interfaces; ++k) {
+    PetscInt local[2] = {0, 0}, all[2];
+    for (const ContactPoint *c = m->contact->point; c < m->contact->point + m->contact->n; ++c) {
+      if (c->wall != m->c->n_walls + k) continue;
+      ++local[0];
+      local[1] += c->touches;
+    }
+    PetscCall(MPIU_Allreduce(local, all, 2, MPIU_INT, MPI_SUM, m->comm));
+    say(m, out, "#   interface %s: %d points of '%s' touch '%s', %d more are near it\n", m->c->interfaces[k].name,
+        (int)all[1], m->c->interfaces[k].between[0], m->c->interfaces[k].between[1], (int)(all[0] - all[1]));
+  }
+  PetscFunctionReturn(0);
+}
+
+/* One model: of a case, or of a stage, from what is seeded. */
+static PetscErrorCode CheckOne(MPI_Comm comm, const Case *c, Diag *diag, FILE *out)
+{
+  Imbalance unsaid;
+  Model *m;
+
+  PetscFunctionBeginUser;
+  PetscCall(ModelCreate(comm, c, diag, &m));
+  if (!m) PetscFunctionReturn(0);
+  if (c->spec) say(m, out, "# stage %d: %s\n", (int)c->stage + 1, c->spec->name);
+  PetscCall(ReportSizes(m, out));
+  PetscCall(ReportSets(m, out));
+  PetscCall(ReportBodies(m, diag, out));
+  PetscCall(ReportInterfaces(m, out));
+  PetscCall(CheckOpenings(m, diag));
+  if (c->initial.run && c->stage == 0) PetscCall(InitialTake(m, diag, &unsaid));
+  PetscCall(ModelDestroy(&m));
+  fflush(out);
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode CheckModel(MPI_Comm comm, const Case *c, Diag *diag, FILE *out)
+{
+  PetscInt errors = 0;
+
+  PetscFunctionBeginUser;
+  for (PetscInt k = 0; k < case_stages(c) && !errors; ++k) {
+    if (c->n_stages) c->stage_case[k]->grid.trusted = c->grid.trusted;
+    if (c->n_stages) diag_of_stage(diag, k, c->stages[k].name);
+    PetscCall(CheckOne(comm, case_stage(c, k), diag, out));
+    PetscCall(DiagReduce(comm, diag, &errors));
+  }
+  diag_of_stage(diag, -1, NULL);
+  PetscFunctionReturn(0);
+}

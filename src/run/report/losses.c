@@ -1,0 +1,224 @@
+/* What a run has lost on the way is said: in the log when it happens, in the summary, and as
+ * warnings at the end. */
+#include "run/report/losses.h"
+#include "base/text.h"
+#include "model/measure/measure.h"
+
+/* share of the energy that came in: about what granular flows lose on usual grids */
+#define TRANSFER_ALLOWED 0.05
+/* share of the volume: unevenness of points that have moved through many cells is 0.1 to 0.2 */
+#define CROWD_ALLOWED 0.3
+
+/* Has a count that grew by `more` at least doubled, or passed a power of two? So a thousand points
+ * take ten lines, not a thousand. */
+static PetscBool is_worth_a_line(PetscReal count, PetscReal more)
+{
+  PetscReal power = 1;
+  while (2 * power <= count) power *= 2;
+  return more > 0 && count - more < power;
+}
+
+static PetscErrorCode LogOutside(const Model *m, RunDir *dir, const StepReport *report)
+{
+  const Outside *o = &m->outside;
+  const LostPoint *first = &report->first_outside;
+  char at[80];
+
+  PetscFunctionBeginUser;
+  if (is_worth_a_line(o->removed, (PetscReal)report->removed))
+    PetscCall(
+      RunDirLog(dir,
+                "outside = step %d time = %.9g removed = %d since the start = %.0f mass = %.6g kg, the first of the "
+                "step is point %lld at %s m",
+                (int)m->step, (double)m->time, (int)report->removed, (double)o->removed, (double)o->mass,
+                (long long)first->id, text_position(m->dim, first->x, at)));
+  if (is_worth_a_line(o->held, (PetscReal)report->held))
+    PetscCall(
+      RunDirLog(dir,
+                "outside = step %d time = %.9g kept on the boundary = %d times since the start = %.0f, the first of "
+                "the step is point %lld at %s m",
+                (int)m->step, (double)m->time, (int)report->held, (double)o->held, (long long)first->id,
+                text_position(m->dim, first->x, at)));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LossesLogStep(Model *m, RunDir *dir, const StepReport *report)
+{
+  char at[80];
+
+  PetscFunctionBeginUser;
+  if (m->c->n_measures + m->c->n_loads) PetscCall(ModelInitialise(m)); /* which finds what ended */
+  for (PetscInt k = 0; k < m->c->n_measures; ++k)
+    if (m->memory[k].ended > 0 && m->memory[k].ended == m->time)
+      PetscCall(RunDirLog(
+        dir,
+        "ended = %s step %d time = %.9g: no node of the grid carries its tracer any more, last at %s m; nan from "
+        "now on",
+        m->c->measures[k].name, (int)m->step, (double)m->time, text_position(m->dim, m->memory[k].where, at)));
+  for (PetscInt k = 0; k < m->c->n_loads; ++k) {
+    const LoadMemory *l = &m->load_memory[k];
+    if (l->ended > 0 && l->ended == m->time)
+      PetscCall(
+        RunDirLog(dir,
+                  "ended = load %d step %d time = %.9g: the material has left %.0f of its carriers behind, about %s m; "
+                  "their force so far is (%.6g, %.6g, %.6g) N at amplitude 1",
+                  (int)k, (int)m->step, (double)m->time, (double)l->carriers, text_position(m->dim, l->where, at),
+                  (double)l->force[0], (double)l->force[1], (double)l->force[2]));
+  }
+  PetscCall(LogOutside(m, dir, report));
+  PetscFunctionReturn(0);
+}
+
+static PetscReal transfer_share(const Model *m)
+{
+  return m->most_energy > m->least_energy ? m->transfer_energy / m->most_energy : 0;
+}
+
+PetscErrorCode LossesLogEnd(const Model *m, RunDir *dir)
+{
+  const Outside *o = &m->outside;
+
+  PetscFunctionBeginUser;
+  if (o->removed > 0)
+    PetscCall(
+      RunDirLog(dir,
+                "outside: %.0f points of %.6g kg left the grid and were removed between t = %.9g and %.9g s, with %.6g "
+                "J and momentum (%.6g, %.6g, %.6g) kg m/s",
+                (double)o->removed, (double)o->mass, (double)o->first, (double)o->last, (double)o->energy,
+                (double)o->momentum[0], (double)o->momentum[1], (double)o->momentum[2]));
+  if (o->held > 0)
+    PetscCall(
+      RunDirLog(dir,
+                "outside: points were kept on the boundary of the grid %.0f times between t = %.9g and %.9g s, at most "
+                "%.0f of %.6g kg in a step; that took %.6g J and momentum (%.6g, %.6g, %.6g) kg m/s",
+                (double)o->held, (double)o->first, (double)o->last, (double)o->held_most, (double)o->held_most_mass,
+                (double)o->energy, (double)o->momentum[0], (double)o->momentum[1], (double)o->momentum[2]));
+  if (m->most_energy > m->least_energy)
+    PetscCall(
+      RunDirLog(dir,
+                "transfer = %.6g J between points and grid, %.2g %% of the %.6g J that came in (start, loads, gravity, "
+                "prescribed motion)",
+                (double)m->transfer_energy, (double)(100 * transfer_share(m)), (double)m->most_energy));
+  PetscFunctionReturn(0);
+}
+
+static void warn_of_transfer(const Model *m, Diag *diag)
+{
+  const PetscReal share = transfer_share(m);
+  if (PetscAbsReal(share) <= TRANSFER_ALLOWED) return;
+  diag_warning(diag, NULL,
+               "the transfer between points and grid %s %.2g %% of the energy that came in (%.4g of %.4g J): an energy "
+               "balance near 0 does not show it",
+               share > 0 ? "took" : "gave", (double)(100 * PetscAbsReal(share)),
+               (double)PetscAbsReal(m->transfer_energy), (double)m->most_energy);
+  diag_hint(diag,
+            "smaller cells where bodies meet and smaller steps lessen it; measure {energy: transfer} shows when "
+            "(docs/theory.md, Energy)");
+}
+
+/* Stress that acts at the end of a step and not at its start, or the other way round, has half its
+ * work over the whole step: on what comes apart within a step, more than had been stored. */
+static PetscErrorCode WarnOfGain(Model *m, Diag *diag)
+{
+  Energies e;
+
+  PetscFunctionBeginUser;
+  PetscCall(ModelEnergies(m, &e));
+  const PetscReal share = m->most_energy > m->least_energy ? -e.dissipated / m->most_energy : 0;
+  if (case_is_static(&m->c->analysis) || !(share > TRANSFER_ALLOWED)) PetscFunctionReturn(0);
+  diag_warning(diag, NULL, "stresses gave %.4g J more than had been put into them, %.2g %% of the %.4g J that came in",
+               (double)-e.dissipated, (double)(100 * share), (double)m->most_energy);
+  diag_hint(diag,
+            "steps must see an impact: no longer than a wave takes through a cell, size / sqrt((lambda + 2 mu) / "
+            "density), or with `analysis: {bossak: -0.3}` (docs/theory.md, Energy)");
+  PetscFunctionReturn(0);
+}
+
+/* Volume of this rank's points, and what of it is more than their cells hold, m3. */
+static PetscErrorCode AddCrowd(const Model *m, PetscReal sum[2])
+{
+  const Grid *grid = m->grid;
+  PetscReal x[CELL_MAX_NODES * 3], *filled;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(grid->n_cells, &filled));
+  for (PetscInt p = 0; p < m->points->n; ++p) /* what has just left the grid is in none */
+    if (m->points->cell[p] >= 0)
+      filled[m->points->cell[p]] += m->points->real[POINT_J][p] * m->points->real[POINT_VOLUME][p];
+  for (PetscInt cell = 0; cell < grid->n_cells; ++cell) {
+    if (filled[cell] <= 0) continue;
+    grid_cell_x(grid, cell, x);
+    sum[0] += filled[cell];
+    sum[1] += PetscMax(0, filled[cell] - cell_volume_in(m->c->kinematics, grid_cell_type(grid, cell), x));
+  }
+  PetscCall(PetscFree(filled));
+  PetscFunctionReturn(0);
+}
+
+/* Points have no size of their own: where flow brings them together the material fills less room than its
+ * laws believe, and nothing else tells. */
+static PetscErrorCode WarnOfCrowd(const Model *m, Diag *diag)
+{
+  PetscReal local[2] = {0, 0}, sum[2];
+
+  PetscFunctionBeginUser;
+  if (!m->method->restores_grid) PetscFunctionReturn(0);
+  PetscCall(AddCrowd(m, local));
+  PetscCall(MPIU_Allreduce(local, sum, 2, MPIU_REAL, MPI_SUM, m->comm));
+  if (!(sum[1] > CROWD_ALLOWED * sum[0])) PetscFunctionReturn(0);
+  diag_warning(diag, NULL, "points have come together: %.2g %% of the material's volume is more than its cells hold",
+               (double)(100 * sum[1] / sum[0]));
+  diag_hint(diag,
+            "heights and densities are no longer those of the material; finer cells, or more points a cell, lessen it");
+  PetscFunctionReturn(0);
+}
+
+static void warn_of_followers(const Model *m, Diag *diag)
+{
+  char path[256], at[80];
+  for (PetscInt k = 0; k < m->c->n_measures; ++k) {
+    const MeasureMemory *memory = &m->memory[k];
+    if (memory->ended <= 0) continue;
+    snprintf(path, sizeof path, "measures.%s.of.tracer", m->c->measures[k].name);
+    diag_warning(diag, path,
+                 "'%s' is empty (nan) from t = %g s on: no node of the grid carries its tracer, last at %s m",
+                 m->c->measures[k].name, (double)memory->ended, text_position(m->dim, memory->where, at));
+    diag_hint(diag, "a tracer ends where the material around it has gone, or a cell beyond the edge of the grid");
+  }
+  for (PetscInt k = 0; k < m->c->n_loads; ++k)
+    if (m->load_memory[k].ended > 0)
+      diag_warning(
+        diag, "loads",
+        "the material has left %.0f carriers of load %d behind, the last at t = %g s about %s m: their force is gone",
+        (double)m->load_memory[k].carriers, (int)k, (double)m->load_memory[k].ended,
+        text_position(m->dim, m->load_memory[k].where, at));
+}
+
+PetscErrorCode LossesWarn(Model *m, const PetscReal *values, Diag *diag)
+{
+  char path[256];
+  const Outside *o = &m->outside;
+
+  PetscFunctionBeginUser;
+  warn_of_followers(m, diag);
+  for (PetscInt k = 0; k < m->c->n_measures; ++k) {
+    if (!PetscIsNanReal(values[k]) || m->memory[k].ended > 0) continue;
+    if (!strcmp(m->c->measures[k].kind, "factor_of_safety")) continue; /* the log says why it has none */
+    snprintf(path, sizeof path, "measures.%s", m->c->measures[k].name);
+    diag_warning(diag, path, "'%s' is empty (nan) at the end: %s", m->c->measures[k].name,
+                 measure_has_window(m->c->measures + k)         ? "fewer than two steps with a value lie in its window"
+                 : measure_find(m->c->measures[k].kind)->events ? "none of what it counts is over"
+                                                                : "no point is left of what it measures");
+  }
+  if (o->removed > 0)
+    diag_warning(diag, "grid.outside", "%.0f points of %.4g kg left the grid and were removed", (double)o->removed,
+                 (double)o->mass);
+  if (o->held > 0)
+    diag_warning(diag, "grid.outside",
+                 "points that left the grid were kept on its boundary %.0f times, at most %.0f of %.4g kg in a step",
+                 (double)o->held, (double)o->held_most, (double)o->held_most_mass);
+  warn_of_transfer(m, diag);
+  PetscCall(WarnOfGain(m, diag));
+  PetscCall(WarnOfCrowd(m, diag));
+  PetscFunctionReturn(0);
+}

@@ -1,0 +1,186 @@
+#include "sweep/members/members.h"
+#include <dirent.h>
+#include <fnmatch.h>
+#include <math.h>
+#include <string.h>
+#include <time.h>
+#include "input/case_file.h"
+#include "output/directory/run_dir_files.h"
+#include "output/directory/run_dir_mark.h"
+#include "run/report/found.h"
+#include "run/signals.h"
+#include "run/report/summary.h"
+
+const char *const member_states[] = {"not run", "running",   "done",    "interrupted",
+                                     "gave up", "bad input", "crashed", NULL};
+
+PetscErrorCode MembersAdd(Members *members, const char *folder, const char *name, const char *file, PetscInt n_taken,
+                          const Taken *taken, Member **member)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscRealloc((size_t)(members->n + 1) * sizeof(Member), &members->member));
+  Member *m = *member = &members->member[members->n++];
+  *m = (Member){.file = file, .n_taken = n_taken, .taken = taken};
+  PetscCall(PetscStrncpy(m->name, name, sizeof m->name));
+  PetscCall(PetscSNPrintf(m->folder, sizeof m->folder, "%s/%s", folder, m->name));
+  PetscCall(PetscCalloc2(n_taken, &m->values, n_taken, &m->units));
+  for (PetscInt k = 0; k < n_taken; ++k) m->values[k] = NAN;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode MembersClear(Members *members)
+{
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < members->n; ++i) {
+    PetscCall(SettingListClear(&members->member[i].set));
+    PetscCall(PetscFree2(members->member[i].values, members->member[i].units));
+  }
+  PetscCall(PetscFree(members->member));
+  members->n = 0;
+  PetscFunctionReturn(0);
+}
+
+PetscInt members_count(const Members *members, MemberState state)
+{
+  PetscInt n = 0;
+  for (PetscInt i = 0; i < members->n; ++i) n += members->member[i].state == state;
+  return n;
+}
+
+static PetscBool has_checkpoint(const char *folder)
+{
+  PetscBool has = PETSC_FALSE;
+  DIR *listing = opendir(folder);
+  for (struct dirent *e = NULL; listing && !has && (e = readdir(listing));)
+    has = !fnmatch("checkpoint_[0-9]*.h5", e->d_name, 0);
+  if (listing) closedir(listing);
+  return has;
+}
+
+/* What is there already? */
+static PetscErrorCode LookForRun(const Members *members, Member *m, const Case *c, Diag *diag)
+{
+  char *text, reason[256], outcome[64];
+  PetscBool same = PETSC_FALSE;
+
+  PetscFunctionBeginUser;
+  PetscCall(FoundCase(PETSC_COMM_SELF, m->folder, &text, reason));
+  if (text) PetscCall(FoundIsCase(c, text, &same));
+  m->replace = members->force || (file_exists(m->folder, "case.yaml") && (!text || same));
+  if (same && !members->force) {
+    found_word(m->folder, "timings.txt", "outcome", outcome);
+    m->kept = !strcmp(outcome, "done");
+    m->resume = !m->kept && has_checkpoint(m->folder);
+  } else if (text && !members->force) {
+    diag_error(diag, NULL, "'%s' holds a run of another case: something has changed since then", m->folder);
+    diag_hint(diag, "--force runs all members again, --out DIR leaves these alone");
+  }
+  PetscCall(PetscFree(text));
+  if (m->kept) {
+    summary_read(m->folder, &m->summary);
+    PetscCall(MemberRead(members, m));
+  }
+  PetscFunctionReturn(0);
+}
+
+static void check_measures(Member *m, const Case *c, Diag *diag)
+{
+  const char *words[64] = {NULL};
+  for (PetscInt k = 0; k < PetscMin(c->n_measures, 63); ++k) words[k] = c->measures[k].name;
+  for (PetscInt k = 0; k < m->n_taken; ++k) {
+    PetscInt i = 0;
+    while (i < c->n_measures && strcmp(c->measures[i].name, m->taken[k].measure)) ++i;
+    if (i < c->n_measures) taken_unit(&m->taken[k], measure_unit(&c->measures[i]), m->units[k]);
+    else {
+      diag_error(diag, NULL, "%s has no measure '%s'", m->file, m->taken[k].measure);
+      diag_hint_names(diag, m->taken[k].measure, words);
+    }
+  }
+}
+
+PetscErrorCode MemberPlan(const Members *members, Member *m, Diag *diag)
+{
+  const PetscInt before = diag_errors(diag);
+  Case *c;
+
+  PetscFunctionBeginUser;
+  PetscCall(CaseRead(PETSC_COMM_SELF, m->file, m->set.n, (const char *const *)m->set.text, diag, &c));
+  PetscCall(DiagSetResolver(diag, NULL, NULL)); /* what follows is about no line of a case */
+  if (c) check_measures(m, c, diag);
+  if (c) m->end = c->analysis.end;
+  if (c && diag_errors(diag) == before) PetscCall(LookForRun(members, m, c, diag));
+  PetscCall(CaseDestroy(&c));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode MemberRead(const Members *members, Member *m)
+{
+  char path[PETSC_MAX_PATH_LEN], reason[256];
+  History history;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscSNPrintf(path, sizeof path, "%s/history.csv", m->folder));
+  if (HistoryRead(path, &history, reason)) {
+    m->state = MEMBER_CRASHED;
+    PetscCall(PetscSNPrintf(m->why, sizeof m->why, "its history.csv cannot be read: %s", reason));
+    PetscFunctionReturn(0);
+  }
+  for (PetscInt k = 0; k < m->n_taken; ++k) m->values[k] = taken_value(&m->taken[k], &history);
+  PetscCall(HistoryFree(&history));
+  m->state = MEMBER_DONE;
+  if (!members->keep) run_dir_remove_states(m->folder);
+  PetscFunctionReturn(0);
+}
+
+/* Members in the order of their numbers, as many at a time as there may be. */
+static PetscErrorCode StartMore(Members *members, PetscInt *next)
+{
+  PetscFunctionBeginUser;
+  while (*next < members->n && members_count(members, MEMBER_RUNNING) < members->jobs) {
+    Member *m = &members->member[(*next)++];
+    if (m->state == MEMBER_WAITING) PetscCall(MemberStart(members, m));
+  }
+  PetscFunctionReturn(0);
+}
+
+/* Look at all that run. */
+static PetscErrorCode LookAtAll(Members *members, double start)
+{
+  PetscBool ended;
+
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < members->n; ++i) {
+    Member *m = &members->member[i];
+    if (m->state != MEMBER_RUNNING) continue;
+    PetscCall(MemberLook(members, m, &ended));
+    if (!ended) continue;
+    members_tell_end(members, m, MPI_Wtime() - start);
+    if (members->Ended) PetscCall((*members->Ended)(members->context));
+  }
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode MembersRun(Members *members)
+{
+  const struct timespec pause = {0, 50000000};
+  const double start = MPI_Wtime();
+  double shown = start;
+  PetscInt next = 0;
+
+  PetscFunctionBeginUser;
+  signals_watch();
+  while (!members->stopped || members_count(members, MEMBER_RUNNING)) {
+    if (!members->stopped && signals_came()) {
+      members->stopped = PETSC_TRUE;
+      members_stop(members);
+    }
+    if (!members->stopped) PetscCall(StartMore(members, &next));
+    PetscCall(LookAtAll(members, start));
+    if (next == members->n && !members_count(members, MEMBER_RUNNING)) break;
+    if (MPI_Wtime() - shown > 0.5) members_show(members, MPI_Wtime() - start), shown = MPI_Wtime();
+    nanosleep(&pause, NULL);
+  }
+  members_wipe(members);
+  signals_forget();
+  PetscFunctionReturn(0);
+}
