@@ -116,7 +116,8 @@ static PetscReal below_cut(const PetscReal *x, PetscInt body)
   return body ? 2500 * (cover - x[1]) : 2500 * (cover - surface) + 1000 * (surface - x[1]);
 }
 
-/* A surface that cuts cells, and another body that begins in the same cells and ends within others. */
+/* A surface that cuts cells, and another body that begins in the same cells and ends within
+ * others. */
 static void test_cut(void **state)
 {
   static PetscReal below[] = {0, 0, 1.875, 0, 1.875, 1.31, 0, 0.41}, above[] = {0, 0.41, 1.875, 1.31, 0, 1.31};

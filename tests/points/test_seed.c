@@ -363,8 +363,8 @@ static void too_many_points_are_told(void **state)
   free_all(t, grid, NULL);
 }
 
-/* A body that fills its shape has the volume and the middle of a ball that cuts its cells, and all points
- * are inside; the rest of the grid has what is left. */
+/* A body that fills its shape has the volume and the middle of a ball that cuts its cells, and
+ * all points are inside; the rest of the grid has what is left. */
 static void shape_is_filled(void **state)
 {
   const Shape ball = {.kind = SHAPE_BALL, .centre = {1.37, 0.96, 1.04}, .radius = 0.83};
@@ -397,8 +397,8 @@ static void shape_is_filled(void **state)
   }
 }
 
-/* A plane that cuts the cells askew leaves every cell its exact part, and no point a sliver: trapezoid of
- * the section, and what it is as a ring. */
+/* A plane that cuts the cells askew leaves every cell its exact part, and no point a sliver:
+ * trapezoid of the section, and what it is as a ring. */
 static void planes_are_exact(void **state)
 {
   static const Kinematics rings = {.name = "rings", .dim = 2, .hoop = PETSC_TRUE};

@@ -217,7 +217,8 @@ static PetscBool holds(const Line *line, const Shape *shape, PetscReal height)
     x[d] = o->axis[2][d] * height;
     for (PetscInt a = 0; a < o->dim - 1; ++a) x[d] += o->axis[a][d] * line->at[a];
   }
-  return shape_contains(shape, o->dim, x, 1e-10 * o->gap); /* a surface along faces of cells is there to the bit */
+  /* a surface along faces of cells is there to the bit */
+  return shape_contains(shape, o->dim, x, 1e-10 * o->gap);
 }
 
 /* Where the line goes through the surface of the shape between two heights, one inside, one out. */
@@ -232,7 +233,8 @@ static PetscReal through(const Line *line, const Shape *shape, PetscReal low, Pe
   return 0.5 * (low + high);
 }
 
-/* Material of a body from here to there, if it lies on what is below; *reach: how high what counts has come. */
+/* Material of a body from here to there, if it lies on what is below; *reach: how high what
+ * counts has come. */
 static void pile(Overburden *o, PetscInt b, PetscReal from, PetscReal to, PetscReal below, PetscReal *mass,
                  PetscReal *reach)
 {
@@ -242,8 +244,8 @@ static void pile(Overburden *o, PetscInt b, PetscReal from, PetscReal to, PetscR
   *reach = PetscMax(*reach, to);
 }
 
-/* The same where the cells are filled by a shape, which the line may leave and enter: looked for every quarter of a
- * cell. */
+/* The same where the cells are filled by a shape, which the line may leave and enter: looked for
+ * every quarter of a cell. */
 static void pile_shape(const Line *line, PetscInt b, PetscReal from, PetscReal to, PetscReal *mass, PetscReal *reach)
 {
   Overburden *o = line->overburden;

@@ -1,15 +1,16 @@
-/* Cells that a body's surface cuts: each point stands for the part of its cell that is nearest to it, as far
- * as that lies in the shape. Cells are cut in halves until their simplices lie on one side of the surface or are
- * small; what that leaves of these is cut off by a plane. */
+/* Cells that a body's surface cuts: each point stands for the part of its cell that is nearest
+ * to it, as far as that lies in the shape. Cells are cut in halves until their simplices lie on
+ * one side of the surface or are small; what that leaves of these is cut off by a plane. */
 #include "points/seed/seed.h"
 
-enum { LOOK = 5, LOOK_TETRAHEDRON = 8 }; /* samples along an axis, to see whether the surface cuts a cell */
-#define WITHIN 1e-3  /* the outer ones that look are so far inside: a surface along a side cuts nothing */
-#define NOTHING 1e-6 /* of a cell */
-#define SLIVER 0.1   /* a part that is less of what its point would have in a whole cell joins its neighbour */
+enum { LOOK = 5, LOOK_TETRAHEDRON = 8 }; /* samples along an axis: is the cell cut? */
+#define WITHIN 1e-3                      /* of the cell: so far inside its sides a surface along them cuts nothing */
+#define NOTHING 1e-6                     /* of a cell */
+#define SLIVER 0.1                       /* of what a point has in a whole cell: less joins its neighbour */
 
-/* Halvings of a cell's simplices: so many before they are believed to lie on one side, the sides of a square or cube
- * then being eighths or quarters, and so many at most; halvings of an edge that the surface crosses. */
+/* Halvings of a cell's simplices: so many before they are believed to lie on one side, the sides
+ * of a square or cube then being eighths or quarters, and so many at most; halvings of an edge
+ * that the surface crosses. */
 static const PetscInt trusted[4] = {0, 0, 6, 6}, most[4] = {0, 0, 10, 9};
 #define CROSSINGS 40
 
@@ -24,7 +25,7 @@ typedef struct {
   PetscInt dim;
   const PetscReal *x; /* nodes of the cell */
   PetscReal slack;    /* m: corners on the surface shall be inside, whatever round-off says */
-  Sum whole[SEED_MAX_RULE], fine[SEED_MAX_RULE], coarse[SEED_MAX_RULE]; /* per part; coarse: edges twice as long */
+  Sum whole[SEED_MAX_RULE], fine[SEED_MAX_RULE], coarse[SEED_MAX_RULE]; /* coarse: edges twice as long */
 } Measure;
 
 typedef struct {
@@ -256,7 +257,8 @@ static void measure(Measure *m, Simplex *s, PetscInt depth)
   for (int k = 0; k < 2; ++k) measure(m, half + k, depth + 1);
 }
 
-/* Simplices of a cell: itself, or one for each order in which a way along the axes goes from corner to corner. */
+/* Simplices of a cell: itself, or one for each order in which a way along the axes goes from
+ * corner to corner. */
 static void measure_cell(Measure *m)
 {
   static const int order[6][3] = {{0, 1, 2}, {1, 0, 2}, {0, 2, 1}, {1, 2, 0}, {2, 0, 1}, {2, 1, 0}};
@@ -273,8 +275,9 @@ static void measure_cell(Measure *m)
   }
 }
 
-/* What planes leave out goes with the square of their size: by how much the parts that are cut grow in the limit
- * (Richardson). Where parts meet coarse ones are not those of fine ones, but their sums are. */
+/* What planes leave out goes with the square of their size: by how much the parts that are cut
+ * grow in the limit (Richardson). Where parts meet coarse ones are not those of fine ones, but
+ * their sums are. */
 static PetscReal growth(const Measure *m)
 {
   PetscReal cut = 0, more = 0;

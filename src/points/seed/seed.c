@@ -252,8 +252,8 @@ static PetscReal reach_of(const Seeding *s, PetscInt k, const PetscReal *x, Pets
   return seed_reach(type, x, position, section, seed_rule(s, s->cells[k]), q, s->outer + k * CELL_MOST_SIDES);
 }
 
-/* The q-th point of the k-th cell, with nodes at x. share: its part of the section, or of the volume in
- * space; < 0: that of the Gauss rule. part: what of it lies in the body. */
+/* The q-th point of the k-th cell, with nodes at x. share: its part of the section, or of the
+ * volume in space; < 0: that of the Gauss rule. part: what of it lies in the body. */
 static PetscErrorCode SeedPoint(const Seeding *s, Points *points, PetscInt k, const PetscReal *x, PetscReal share,
                                 PetscInt q, const SeedPart *part, const PointSeed *seed)
 {

@@ -11,7 +11,8 @@ typedef struct {
   PetscReal xi[3 * SEED_MAX_RULE], weight[SEED_MAX_RULE];
 } SeedRule;
 
-/* What of a point's part of its cell lies in the body: its share of the cell, and where the middle of that is. */
+/* What of a point's part of its cell lies in the body: its share of the cell, and where the
+ * middle of that is. */
 typedef struct {
   PetscReal share, xi[3];
   PetscBool whole; /* all of the part does */
@@ -46,8 +47,8 @@ PetscReal seed_cell_volume(const Seeding *s, PetscInt cell);
 
 /* --- parts.c, of bodies that fill their shape --- */
 SeedFill seed_fill(const Seeding *s, PetscInt cell);
-/* Parts of a cell, one for each point of the rule; those without a share have no point. Once measured, the cell
- * may turn out to be whole, or empty. */
+/* Parts of a cell, one for each point of the rule; those without a share have no point. Once
+ * measured, the cell may turn out to be whole, or empty. */
 SeedFill seed_parts(const Seeding *s, PetscInt cell, const SeedRule *rule, SeedPart *part);
 
 /* Half lengths l of the domain of a point at xi, in a cell with nodes at x whose lattice has `side`
@@ -55,10 +56,10 @@ SeedFill seed_parts(const Seeding *s, PetscInt cell, const SeedRule *rule, SeedP
 void seed_domain(CellType type, const PetscReal *x, const PetscReal *xi, PetscInt side, PetscReal section,
                  PetscReal *l);
 
-/* Distance of the q-th point of the rule, at `position` in a cell with nodes at x, from the body's
- * surface: of points next to sides that are `outer` (faces of the cell) the nearest of these. Of others
- * that from the nearest side, at most half the side of a square or cube of its part of the section, or of
- * the volume in space. */
+/* Distance of the q-th point of the rule, at `position` in a cell with nodes at x, from the
+ * body's surface: of points next to sides that are `outer` (faces of the cell) the nearest of
+ * these. Of others that from the nearest side, at most half the side of a square or cube of its
+ * part of the section, or of the volume in space. */
 PetscReal seed_reach(CellType type, const PetscReal *x, const PetscReal *position, PetscReal section,
                      const SeedRule *rule, PetscInt q, const unsigned char *outer);
 
