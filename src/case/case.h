@@ -16,7 +16,7 @@ typedef enum { DIAGONAL_RIGHT, DIAGONAL_LEFT, DIAGONAL_ALTERNATING, DIAGONAL_CRO
 typedef enum { OUTSIDE_STOP, OUTSIDE_REMOVE, OUTSIDE_KEEP } OutsidePolicy;
 typedef enum { LINEAR_AUTO, LINEAR_DIRECT, LINEAR_ITERATIVE } LinearChoice;
 typedef enum { WEIGHTS_AUTO, WEIGHTS_EQUAL, WEIGHTS_GAUSS } PointWeights;
-typedef enum { FILL_CELLS, FILL_SHAPE } BodyFill;
+typedef enum { FILL_AUTO, FILL_CELLS, FILL_SHAPE } BodyFill;
 
 /* A function of time, linear between its entries and constant outside them. n = 0: not given. */
 typedef struct {
@@ -531,5 +531,7 @@ PetscBool shape_is_solid(const Shape *shape);
 /* Is x (2 or 3 coordinates) in the shape? Its surface belongs to it, within `tolerance` m. Not for
  * shapes of walls alone. */
 PetscBool shape_contains(const Shape *shape, PetscInt dim, const PetscReal *x, PetscReal tolerance);
+/* How deep below the surface x lies, m, `most` at most; 0: it lies outside. */
+PetscReal shape_depth(const Shape *shape, PetscInt dim, const PetscReal *x, PetscReal most);
 /* Smallest box around the shape; unbounded sides are +-PETSC_MAX_REAL. */
 void shape_bounds(const Shape *shape, PetscInt dim, PetscReal min[3], PetscReal max[3]);

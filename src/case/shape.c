@@ -104,6 +104,19 @@ PetscBool shape_is_solid(const Shape *s)
   return s->kind != SHAPE_LINE && s->kind != SHAPE_ARC && s->kind != SHAPE_DISK && !s->open;
 }
 
+PetscReal shape_depth(const Shape *s, PetscInt dim, const PetscReal *x, PetscReal most)
+{
+  PetscReal low = 0, high = most;
+  if (!shape_contains(s, dim, x, 0)) return 0;
+  if (shape_contains(s, dim, x, -most)) return most;
+  for (int k = 0; k < 40; ++k) {
+    const PetscReal middle = 0.5 * (low + high);
+    if (shape_contains(s, dim, x, -middle)) low = middle;
+    else high = middle;
+  }
+  return low;
+}
+
 static void half_space_bounds(const Shape *s, PetscInt dim, PetscReal min[3], PetscReal max[3])
 {
   for (PetscInt d = 0; d < dim; ++d) {

@@ -31,19 +31,20 @@ typedef enum {
   /* of followers: from their position, the nearest in the grid, to where they really are, m: dim
    * (others: 0 components) */
   POINT_OVERHANG,
-  /* half lengths along the axes, at the start, of the domain over which shape functions are averaged,
-   * m: dim where the basis has such domains, otherwise 0 components */
+  /* half lengths along the axes, at the start, of the domain over which shape functions are
+   * averaged, m: dim where the basis has such domains, otherwise 0 components */
   POINT_DOMAIN,
-  /* gradients of velocity, 1/s, and acceleration, 1/s2, row by row: dim x dim each where the transfer
-   * asks for them, otherwise 0 components */
+  /* gradients of velocity, 1/s, and acceleration, 1/s2, row by row: dim x dim each where the
+   * transfer asks for them, otherwise 0 components */
   POINT_SLOPE,
-  /* distance from the nearest side of the cell that it was seeded in, at the start, m: 1 where there are
-   * walls, otherwise 0 components */
+  /* distance from the nearest side of the cell that it was seeded in, at the start, m: 1 where
+   * there are walls, otherwise 0 components */
   POINT_REACH,
   /* of each wall, what it did to the point in the last step: state and forces (solve/contact), N; 0
    * components where there are none */
   POINT_CONTACT,
-  /* which velocity field of the grid carries it: 1 where bodies meet at interfaces, otherwise 0 components */
+  /* which velocity field of the grid carries it: 1 where bodies meet at interfaces, otherwise 0
+   * components */
   POINT_FIELD,
   /* how far it was carried in the present event of each measure that counts some, m: one each */
   POINT_CARRIED,
@@ -159,6 +160,9 @@ typedef struct {
   PetscInt n_state;
   const PetscReal *initial; /* n_state numbers */
 } PointSeed;
+/* Does the body fill its shape, or whole cells? `equal` as below: whether nodes are free of the
+ * body's cells. */
+PetscBool body_fills_shape(const BodySpec *body, PetscBool equal);
 /* Initial velocity of a body at x: translation and rotation. */
 void body_velocity(const BodySpec *body, PetscInt dim, const PetscReal *x, PetscReal *v);
 PetscErrorCode PointsSeed(Points *points, const Grid *grid, const Case *c, const PointSeed *per_material,
@@ -201,17 +205,18 @@ static inline void point_place(const Points *points, PetscInt p, PetscReal *x)
            (points->components[POINT_OVERHANG] ? point_real(points, POINT_OVERHANG, p)[d] : 0);
 }
 
-/* Points of another case: what its bodies are here, -1 if they are gone. Materials stay those of the other
- * case. */
+/* Points of another case: what its bodies are here, -1 if they are gone. Materials stay those of
+ * the other case. */
 typedef struct {
   PetscInt n_bodies, n_materials; /* of the other case */
   const PetscInt *body;
 } PointsChange;
-/* Collective. As PointsFromTable; fields that are not in the table become 0, those of another width are cut, or
- * filled up with 0. */
+/* Collective. As PointsFromTable; fields that are not in the table become 0, those of another
+ * width are cut, or filled up with 0. */
 PetscErrorCode PointsTake(Points *points, const Grid *grid, const Table *table, const PointsChange *change,
                           char reason[256]);
-/* Another number of components of POINT_STATE: numbers behind the new ones are lost, new ones are 0. */
+/* Another number of components of POINT_STATE: numbers behind the new ones are lost, new ones
+ * are 0. */
 PetscErrorCode PointsSetState(Points *points, PetscInt n_state);
 /* The points p with take[p], appended to `to`, which has the same fields. */
 PetscErrorCode PointsCopy(const Points *points, const PetscBool *take, Points *to);

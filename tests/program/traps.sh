@@ -24,7 +24,7 @@ method: mpm
 analysis: {type: static, steps: 1}
 grid: {box: {min: [0, 0], max: [40, 22]}, size: 1}
 bodies:
-  - {name: soil, shape: {polygon: [[0, 0], [40, 0], [40, 10], [25, 10], [15, 20], [0, 20]]}, material: soil, k0: 0.5}
+  - {name: soil, shape: {polygon: [[0, 0], [40, 0], [40, 10], [25, 10], [15, 20], [0, 20]]}, fill: cells, material: soil, k0: 0.5}
 materials:
   soil: {law: mohr-coulomb, density: 2000, young: 1e8, poisson: 0.3, friction_angle: 35, cohesion: 20e3}
 boundary:

@@ -96,7 +96,7 @@ class Cases(InFolder):
         self.assertFalse(Path("nowhere").exists())
 
     def test_warnings_are_of_the_line_that_led_there(self):
-        case = block(**{"grid.counts": [16, 16], "bodies[0].shape.box.max": [1.2, 1]})
+        case = block(**{"grid.counts": [16, 16], "bodies[0].shape.box.max": [1.2, 1], "bodies[0].fill": "cells"})
         for act in (lambda: case.model().close(), lambda: case.run("coarse"), lambda: talus.run(case, "coarse-too")):
             with warnings.catch_warnings(record=True) as caught:
                 warnings.simplefilter("always")

@@ -312,8 +312,8 @@ PetscErrorCode SchemaCheckBody(SchemaReader *r, const YamlNode *mapping, void *t
   if (b->region && !b->mesh && r->c->grid.kind == GRID_BOX && yaml_find(yaml_find(r->document->root, "grid"), "box"))
     SchemaError(r, yaml_find(mapping, "region"),
                 "%s.region: a box grid has no regions; give a shape, or a mesh with physical groups", path);
-  if (b->fill == FILL_SHAPE && (!b->has_shape || b->has_k0))
-    SchemaError(r, yaml_find(mapping, "fill"), "%s.fill: shape needs a `shape`, and goes with no `k0`", path);
+  if (b->fill == FILL_SHAPE && !b->has_shape)
+    SchemaError(r, yaml_find(mapping, "fill"), "%s.fill: shape needs a `shape`", path);
   PetscFunctionReturn(0);
 }
 

@@ -29,9 +29,10 @@ static const SchemaWord weights_words[] = {
 };
 
 static const SchemaWord fill_words[] = {
+  {"auto", FILL_AUTO, "shape for mpm, cells for fem and gmm, whose nodes belong to whole cells"},
   {"cells", FILL_CELLS, "whole cells, those whose middle lies in the shape"},
   {"shape", FILL_SHAPE,
-   "what of each cell lies in the shape: points have the volume and the middle of their parts (mpm, without k0)"},
+   "what of each cell lies in the shape: points have the volume and the middle of their parts (mpm)"},
   {NULL, 0, NULL},
 };
 
@@ -122,7 +123,7 @@ static const SchemaEntry body_entries[] = {
       AT_LEAST(1), AT(BodySpec, points_per_cell)),
   KEY("weights", WORD, NULL, "how the points of a cell share its mass", .words = weights_words, .fallback = "auto",
       AT(BodySpec, weights)),
-  KEY("fill", WORD, NULL, "what stands for a shape whose surface cuts cells", .words = fill_words, .fallback = "cells",
+  KEY("fill", WORD, NULL, "what stands for a shape whose surface cuts cells", .words = fill_words, .fallback = "auto",
       AT(BodySpec, fill)),
   KEY("velocity", VECTOR, "m/s", "at the start", .note = "0", AT(BodySpec, velocity)),
   KEY("spin", SPIN, "rad/s", "at the start, about `spin_centre`: a number in 2D, a vector in 3D", .note = "0", TURNS,

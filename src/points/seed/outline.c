@@ -15,7 +15,17 @@ PetscErrorCode OutlineClear(Outline *outline)
 {
   PetscFunctionBeginUser;
   PetscCall(PetscFree(outline->face));
+  PetscCall(PetscFree(outline->shape));
   *outline = (Outline){0};
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode OutlineShape(Outline *outline, PetscInt n_bodies, PetscInt body, const Shape *shape)
+{
+  PetscFunctionBeginUser;
+  if (!outline->shape) PetscCall(PetscCalloc1(n_bodies, &outline->shape));
+  outline->n_bodies = n_bodies;
+  outline->shape[body] = shape;
   PetscFunctionReturn(0);
 }
 

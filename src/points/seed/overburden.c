@@ -20,6 +20,7 @@ typedef struct {
 struct Overburden {
   PetscInt dim, n_bodies;
   PetscReal axis[3][3], gap; /* two axes across (one in 2D), and the one upwards */
+  const Outline *outline;
   PetscInt n;
   Slab *slab;
   BoxTree *tree; /* of the slabs as they lie across `up` */
@@ -110,6 +111,7 @@ PetscErrorCode OverburdenCreate(MPI_Comm comm, PetscInt dim, const PetscReal up[
   PetscCall(PetscNew(&o));
   o->dim = dim;
   o->gap = gap;
+  o->outline = outline;
   o->n_bodies = n_bodies;
   make_axes(dim, up, o->axis);
   PetscCall(Gather(comm, outline, &o->n, &all));
@@ -207,16 +209,72 @@ static void cross(Line *line)
   if (o->n_crossings) qsort(o->crossing, (size_t)o->n_crossings, sizeof *o->crossing, compare_crossings);
 }
 
-/* The bodies between two crossings; *reach: how high what counts has come so far. */
-static void climb(Overburden *o, PetscReal from, const Crossing *to, PetscReal *mass, PetscReal *reach)
+static PetscBool holds(const Line *line, const Shape *shape, PetscReal height)
 {
+  const Overburden *o = line->overburden;
+  PetscReal x[3] = {0, 0, 0};
+  for (PetscInt d = 0; d < o->dim; ++d) {
+    x[d] = o->axis[2][d] * height;
+    for (PetscInt a = 0; a < o->dim - 1; ++a) x[d] += o->axis[a][d] * line->at[a];
+  }
+  /* a surface along faces of cells is there to the bit */
+  return shape_contains(shape, o->dim, x, 1e-10 * o->gap);
+}
+
+/* Where the line goes through the surface of the shape between two heights, one inside, one out. */
+static PetscReal through(const Line *line, const Shape *shape, PetscReal low, PetscReal high)
+{
+  const PetscBool inside = holds(line, shape, low);
+  for (int k = 0; k < 50; ++k) {
+    const PetscReal middle = 0.5 * (low + high);
+    if (holds(line, shape, middle) == inside) low = middle;
+    else high = middle;
+  }
+  return 0.5 * (low + high);
+}
+
+/* Material of a body from here to there, if it lies on what is below; *reach: how high what
+ * counts has come. */
+static void pile(Overburden *o, PetscInt b, PetscReal from, PetscReal to, PetscReal below, PetscReal *mass,
+                 PetscReal *reach)
+{
+  if (from <= below + o->gap) o->counts[b] = PETSC_TRUE;
+  if (!o->counts[b]) return;
+  *mass += o->density[b] * (to - from);
+  *reach = PetscMax(*reach, to);
+}
+
+/* The same where the cells are filled by a shape, which the line may leave and enter: looked for
+ * every quarter of a cell. */
+static void pile_shape(const Line *line, PetscInt b, PetscReal from, PetscReal to, PetscReal *mass, PetscReal *reach)
+{
+  Overburden *o = line->overburden;
+  const Shape *shape = o->outline->shape[b];
+  const PetscInt n = 1 + (PetscInt)PetscMin(1e6, (to - from) / (0.5 * o->gap));
+  PetscReal start = from, last = from;
+  PetscBool inside = holds(line, shape, from);
+  for (PetscInt k = 1; k <= n; ++k) {
+    const PetscReal next = from + (to - from) * (PetscReal)k / (PetscReal)n;
+    if (holds(line, shape, next) != inside) {
+      const PetscReal at = through(line, shape, last, next);
+      if (inside) pile(o, b, start, at, *reach, mass, reach);
+      start = at;
+      inside = (PetscBool)!inside;
+    }
+    last = next;
+  }
+  if (inside) pile(o, b, start, to, *reach, mass, reach);
+}
+
+/* The bodies between two crossings; *reach: how high what counts has come so far. */
+static void climb(const Line *line, PetscReal from, const Crossing *to, PetscReal *mass, PetscReal *reach)
+{
+  Overburden *o = line->overburden;
   const PetscReal below = *reach;
   for (PetscInt b = 0; b < o->n_bodies; ++b) {
     if (o->depth[b] <= 0 || to->height <= from) continue;
-    if (from <= below + o->gap) o->counts[b] = PETSC_TRUE;
-    if (!o->counts[b]) continue;
-    *mass += o->density[b] * (to->height - from);
-    *reach = to->height;
+    if (o->outline->shape && o->outline->shape[b]) pile_shape(line, b, from, to->height, mass, reach);
+    else pile(o, b, from, to->height, below, mass, reach);
   }
 }
 
@@ -233,7 +291,7 @@ PetscErrorCode OverburdenAt(Overburden *o, PetscInt body, const PetscReal *x, Pe
   *mass = 0;
   *top = height;
   for (PetscInt k = 0; k < o->n_crossings; ++k) {
-    climb(o, k ? o->crossing[k - 1].height : height, &o->crossing[k], mass, top);
+    climb(&line, k ? o->crossing[k - 1].height : height, &o->crossing[k], mass, top);
     o->depth[o->crossing[k].slab->body] -= o->crossing[k].leaves;
   }
   PetscFunctionReturn(0);

@@ -1,64 +1,69 @@
-/* Cells that a body's surface cuts: each point stands for the part of its cell that is nearest to it, as far
- * as that lies in the shape. Parts are measured by samples that no plane meets in rows: a lattice would take
- * faces along the axes for up to half a row off. */
-#include <math.h>
+/* Cells that a body's surface cuts: each point stands for the part of its cell that is nearest
+ * to it, as far as that lies in the shape. Cells are cut in halves until their simplices lie on
+ * one side of the surface or are small; what that leaves of these is cut off by a plane. */
 #include "points/seed/seed.h"
 
-/* samples: along an axis, to see whether the surface cuts a cell, and in all, to measure what it leaves */
-enum { LOOK = 5, MEASURE = 4096 };
-#define WITHIN 1e-3 /* the outer ones that look are so far inside: a surface along a side cuts nothing */
+enum { LOOK = 5, LOOK_TETRAHEDRON = 8 }; /* samples along an axis: is the cell cut? */
+#define WITHIN 1e-3                      /* of the cell: so far inside its sides a surface along them cuts nothing */
+#define NOTHING 1e-6                     /* of a cell */
+#define SLIVER 0.1                       /* of what a point has in a whole cell: less joins its neighbour */
+
+/* Halvings of a cell's simplices: so many before they are believed to lie on one side, the sides
+ * of a square or cube then being eighths or quarters, and so many at most; halvings of an edge
+ * that the surface crosses. */
+static const PetscInt trusted[4] = {0, 0, 6, 6}, most[4] = {0, 0, 10, 9};
+#define CROSSINGS 40
 
 typedef struct {
+  PetscReal volume, moment[3]; /* of the reference cell, times det dx/dxi */
+} Sum;
+
+typedef struct {
+  const Shape *shape;
+  const SeedRule *rule;
   CellType type;
+  PetscInt dim;
   const PetscReal *x; /* nodes of the cell */
-  PetscInt n;         /* samples */
-  PetscInt first;     /* where they begin in the sequence: errors of equal cells shall not add up */
-  PetscInt along;     /* of them on a lattice from side to side; 0: a sequence that fills the cell evenly */
-} Lattice;
+  PetscReal slack;    /* m: corners on the surface shall be inside, whatever round-off says */
+  Sum whole[SEED_MAX_RULE], fine[SEED_MAX_RULE], coarse[SEED_MAX_RULE]; /* coarse: edges twice as long */
+} Measure;
 
-/* Sample k in [0, 1]: of a lattice, or of the additive sequence of the plane or of space (multiples of powers of
- * the root of g^(dim + 1) = g + 1; Roberts 2018). */
-static PetscReal along_axis(const Lattice *l, PetscInt dim, PetscInt d, PetscInt k)
-{
-  const PetscReal g = dim == 2 ? 1.32471795724474602596 : 1.22074408460575947536;
-  for (PetscInt e = 0; e < d && l->along; ++e) k /= l->along;
-  if (l->along) return WITHIN + (1 - 2 * WITHIN) * (PetscReal)(k % l->along) / (PetscReal)(l->along - 1);
-  const PetscReal u = 0.5 + (PetscReal)(l->first + k) * PetscPowReal(g, -(PetscReal)(d + 1));
-  return u - floor(u);
-}
+typedef struct {
+  PetscReal xi[4][3];
+  PetscBool inside[4];
+} Simplex;
 
-/* Where sample k is, and the volume that it stands for, but for a factor. Simplices are squares or cubes whose
- * one side is drawn together. */
-static PetscReal sample(const Lattice *l, PetscInt k, PetscReal xi[3], PetscReal position[3])
+static PetscReal map(CellType type, const PetscReal *x, const PetscReal *xi, PetscReal *position)
 {
-  const Cell *cell = cells + l->type;
-  const PetscBool simplex = cell->nodes == cell->dim + 1;
-  PetscReal N[CELL_MAX_NODES], dN[CELL_MAX_NODES * 3], left = 1, weight = 1;
-  for (PetscInt d = 0; d < cell->dim; ++d) {
-    const PetscReal u = along_axis(l, cell->dim, d, k);
-    xi[d] = simplex ? u * left : 2 * u - 1;
-    if (!simplex) continue;
-    weight *= PetscPowReal(1 - u, (PetscReal)(cell->dim - 1 - d));
-    left *= 1 - u;
-  }
-  weight *= PetscAbsReal(cell_gradients(l->type, l->x, xi, N, dN));
-  for (PetscInt d = 0; d < cell->dim; ++d) {
+  PetscReal N[CELL_MAX_NODES], dN[CELL_MAX_NODES * 3];
+  const PetscInt dim = cells[type].dim;
+  const PetscReal det = cell_gradients(type, x, xi, N, dN);
+  for (PetscInt d = 0; d < dim; ++d) {
     position[d] = 0;
-    for (PetscInt i = 0; i < cell->nodes; ++i) position[d] += N[i] * l->x[i * cell->dim + d];
+    for (PetscInt i = 0; i < cells[type].nodes; ++i) position[d] += N[i] * x[i * dim + d];
   }
-  return weight;
+  return PetscAbsReal(det);
 }
+
+static PetscBool is_simplex(CellType type) { return cells[type].nodes == cells[type].dim + 1; }
 
 SeedFill seed_fill(const Seeding *s, PetscInt cell)
 {
+  const CellType type = grid_cell_type(s->source, cell);
+  const PetscInt dim = s->source->dim, look = type == CELL_TETRAHEDRON ? LOOK_TETRAHEDRON : LOOK;
+  const PetscInt n = dim == 2 ? look * look : look * look * look;
   PetscReal x[CELL_MAX_NODES * 3], xi[3], position[3];
-  const PetscInt n = s->source->dim == 2 ? LOOK * LOOK : LOOK * LOOK * LOOK;
-  const Lattice l = {grid_cell_type(s->source, cell), x, n, 0, LOOK};
   PetscInt inside = 0;
   grid_cell_x(s->source, cell, x);
   for (PetscInt k = 0; k < n; ++k) {
-    (void)sample(&l, k, xi, position);
-    inside += shape_contains(&s->body->shape, s->source->dim, position, 0) ? 1 : 0;
+    PetscReal left = 1;
+    for (PetscInt d = 0, rest = k; d < dim; ++d, rest /= look) {
+      const PetscReal u = WITHIN + (1 - 2 * WITHIN) * (PetscReal)(rest % look) / (PetscReal)(look - 1);
+      xi[d] = is_simplex(type) ? u * left : 2 * u - 1;
+      left *= 1 - u;
+    }
+    (void)map(type, x, xi, position);
+    inside += shape_contains(&s->body->shape, dim, position, 0) ? 1 : 0;
   }
   return inside == n ? SEED_WHOLE : inside ? SEED_CUT : SEED_NONE;
 }
@@ -75,26 +80,231 @@ static PetscInt nearest_of(const SeedRule *rule, PetscInt dim, const PetscReal *
   return nearest;
 }
 
-void seed_parts(const Seeding *s, PetscInt cell, const SeedRule *rule, SeedPart *part)
+/* Which of the other parts has its middle next to that of this one; -1: there is none. */
+static PetscInt neighbour_of(const SeedPart *part, PetscInt n, PetscInt dim, PetscInt of)
 {
-  PetscReal x[CELL_MAX_NODES * 3], xi[3], position[3], whole[SEED_MAX_RULE] = {0};
+  PetscInt nearest = -1;
+  PetscReal least = PETSC_MAX_REAL;
+  for (PetscInt q = 0; q < n; ++q) {
+    PetscReal square = 0;
+    if (q == of || part[q].share <= 0) continue;
+    for (PetscInt d = 0; d < dim; ++d) square += PetscSqr(part[q].xi[d] - part[of].xi[d]);
+    if (square < least) least = square, nearest = q;
+  }
+  return nearest;
+}
+
+/* The smallest part that is a sliver; -1: none is. */
+static PetscInt sliver_of(const SeedPart *part, PetscInt n)
+{
+  PetscInt smallest = -1;
+  for (PetscInt q = 0; q < n; ++q)
+    if (part[q].share > 0 && part[q].share < SLIVER / (PetscReal)n &&
+        (smallest < 0 || part[q].share < part[smallest].share))
+      smallest = q;
+  return smallest;
+}
+
+/* A point that is next to nothing goes to the one beside it, with its volume and its moment. */
+static void join_slivers(SeedPart *part, PetscInt n, PetscInt dim)
+{
+  for (PetscInt q = sliver_of(part, n); q >= 0; q = sliver_of(part, n)) {
+    const PetscInt to = neighbour_of(part, n, dim, q);
+    if (to < 0) return;
+    const PetscReal sum = part[to].share + part[q].share;
+    for (PetscInt d = 0; d < dim; ++d)
+      part[to].xi[d] = (part[to].share * part[to].xi[d] + part[q].share * part[q].xi[d]) / sum;
+    part[to].share = sum;
+    part[to].whole = PETSC_FALSE;
+    part[q].share = 0;
+  }
+}
+
+static PetscBool is_whole(const Measure *m, PetscInt q)
+{
+  return (PetscBool)(m->fine[q].volume >= (1 - NOTHING) * m->whole[q].volume);
+}
+
+static PetscBool is_inside(const Measure *m, const PetscReal *xi)
+{
+  PetscReal position[3];
+  (void)map(m->type, m->x, xi, position);
+  return shape_contains(m->shape, m->dim, position, m->slack);
+}
+
+static void centre_of(PetscInt dim, PetscReal corner[4][3], PetscReal *centre)
+{
+  for (PetscInt d = 0; d < dim; ++d) {
+    centre[d] = 0;
+    for (PetscInt i = 0; i <= dim; ++i) centre[d] += corner[i][d] / (PetscReal)(dim + 1);
+  }
+}
+
+/* Adds a simplex, or takes it away: sign. */
+static void add(const Measure *m, PetscReal corner[4][3], PetscReal sign, Sum *sum)
+{
+  PetscReal e[3][3] = {{0}, {0}, {0, 0, 1}}, centre[3] = {0, 0, 0}, position[3];
+  for (PetscInt k = 0; k < m->dim; ++k)
+    for (PetscInt d = 0; d < m->dim; ++d) e[k][d] = corner[k + 1][d] - corner[0][d];
+  const PetscReal det = e[0][0] * (e[1][1] * e[2][2] - e[1][2] * e[2][1]) -
+                        e[0][1] * (e[1][0] * e[2][2] - e[1][2] * e[2][0]) +
+                        e[0][2] * (e[1][0] * e[2][1] - e[1][1] * e[2][0]);
+  centre_of(m->dim, corner, centre);
+  const PetscReal volume = sign * PetscAbsReal(det) / (m->dim == 2 ? 2 : 6) * map(m->type, m->x, centre, position);
+  sum->volume += volume;
+  for (PetscInt d = 0; d < m->dim; ++d) sum->moment[d] += volume * centre[d];
+}
+
+/* Where the surface crosses an edge from inside to outside. */
+static void cross(const Measure *m, const PetscReal *inside, const PetscReal *outside, PetscReal *at)
+{
+  PetscReal low = 0, high = 1;
+  for (int k = 0; k < CROSSINGS; ++k) {
+    const PetscReal middle = 0.5 * (low + high);
+    for (PetscInt d = 0; d < m->dim; ++d) at[d] = (1 - middle) * inside[d] + middle * outside[d];
+    if (is_inside(m, at)) low = middle;
+    else high = middle;
+  }
+}
+
+/* The corner `at` of a simplex up to the surface: a simplex, too. */
+static void corner_at(const Measure *m, const Simplex *s, PetscInt at, PetscReal corner[4][3])
+{
+  PetscInt n = 1;
+  for (PetscInt d = 0; d < 3; ++d) corner[0][d] = s->xi[at][d];
+  for (PetscInt i = 0; i <= m->dim; ++i) {
+    if (i == at) continue;
+    if (s->inside[at]) cross(m, s->xi[at], s->xi[i], corner[n++]);
+    else cross(m, s->xi[i], s->xi[at], corner[n++]);
+  }
+}
+
+/* Two corners a, b of a tetrahedron inside, c, d outside: a prism, three tetrahedra. */
+static void add_prism(const Measure *m, const Simplex *s, Sum *sum)
+{
+  PetscReal corner[6][3] = {{0}}, piece[4][3]; /* a, ac, ad, b, bc, bd */
+  static const int pieces[3][4] = {{0, 1, 2, 5}, {0, 1, 4, 5}, {0, 3, 4, 5}};
+  PetscInt n = 0;
+  for (PetscInt i = 0; i < 4; ++i) {
+    if (!s->inside[i]) continue;
+    for (int d = 0; d < 3; ++d) corner[n][d] = s->xi[i][d];
+    ++n;
+    for (PetscInt j = 0; j < 4; ++j)
+      if (!s->inside[j]) cross(m, s->xi[i], s->xi[j], corner[n++]);
+  }
+  for (int k = 0; k < 3; ++k) {
+    for (int i = 0; i < 4; ++i)
+      for (int d = 0; d < 3; ++d) piece[i][d] = corner[pieces[k][i]][d];
+    add(m, piece, 1, sum);
+  }
+}
+
+/* What of a simplex lies inside, its surface there taken as plane. */
+static void add_inside(const Measure *m, Simplex *s, PetscInt n_inside, Sum *sum)
+{
+  PetscReal corner[4][3] = {{0}};
+  if (n_inside == 2 && m->dim == 3) {
+    add_prism(m, s, sum);
+    return;
+  }
+  if (n_inside > 1) add(m, s->xi, 1, sum);
+  if (n_inside > m->dim) return;
+  const PetscBool one = (PetscBool)(n_inside == 1);
+  PetscInt at = 0;
+  while (s->inside[at] != one) ++at;
+  corner_at(m, s, at, corner);
+  add(m, corner, one ? 1 : -1, sum);
+}
+
+/* Halves a simplex at its longest edge. */
+static void halve(const Measure *m, const Simplex *s, Simplex half[2])
+{
+  PetscReal longest = 0, middle[3] = {0, 0, 0};
+  PetscInt edge[2] = {0, 1};
+  for (PetscInt i = 0; i <= m->dim; ++i)
+    for (PetscInt j = i + 1; j <= m->dim; ++j) {
+      PetscReal square = 0;
+      for (PetscInt d = 0; d < m->dim; ++d) square += PetscSqr(s->xi[i][d] - s->xi[j][d]);
+      if (square > longest * (1 + 1e-9)) longest = square, edge[0] = i, edge[1] = j;
+    }
+  for (PetscInt d = 0; d < m->dim; ++d) middle[d] = 0.5 * (s->xi[edge[0]][d] + s->xi[edge[1]][d]);
+  const PetscBool inside = is_inside(m, middle);
+  for (int k = 0; k < 2; ++k) {
+    half[k] = *s;
+    for (int d = 0; d < 3; ++d) half[k].xi[edge[k]][d] = middle[d];
+    half[k].inside[edge[k]] = inside;
+  }
+}
+
+static void measure(Measure *m, Simplex *s, PetscInt depth)
+{
+  PetscInt n_inside = 0;
+  PetscReal centre[3];
+  Simplex half[2];
+  for (PetscInt i = 0; i <= m->dim; ++i) n_inside += s->inside[i] ? 1 : 0;
+  const PetscBool mixed = n_inside > 0 && n_inside <= m->dim;
+  const PetscBool ends = depth == most[m->dim] || (depth >= trusted[m->dim] && !mixed);
+  centre_of(m->dim, s->xi, centre);
+  const PetscInt q = nearest_of(m->rule, m->dim, centre);
+  if (n_inside && (ends ? depth <= most[m->dim] - m->dim : depth == most[m->dim] - m->dim))
+    add_inside(m, s, n_inside, m->coarse + q);
+  if (ends) {
+    add(m, s->xi, 1, m->whole + q);
+    if (n_inside) add_inside(m, s, n_inside, m->fine + q);
+    return;
+  }
+  halve(m, s, half);
+  for (int k = 0; k < 2; ++k) measure(m, half + k, depth + 1);
+}
+
+/* Simplices of a cell: itself, or one for each order in which a way along the axes goes from
+ * corner to corner. */
+static void measure_cell(Measure *m)
+{
+  static const int order[6][3] = {{0, 1, 2}, {1, 0, 2}, {0, 2, 1}, {1, 2, 0}, {2, 0, 1}, {2, 1, 0}};
+  const PetscInt n = is_simplex(m->type) ? 1 : m->dim == 2 ? 2 : 6;
+  for (PetscInt k = 0; k < n; ++k) {
+    Simplex s = {.xi = {{0}}};
+    for (PetscInt i = 0; i <= m->dim; ++i) {
+      for (PetscInt d = 0; d < m->dim; ++d) s.xi[i][d] = is_simplex(m->type) ? 0 : -1;
+      if (is_simplex(m->type) && i) s.xi[i][i - 1] = 1;
+      for (PetscInt j = 0; j < i && !is_simplex(m->type); ++j) s.xi[i][order[k][j]] = 1;
+      s.inside[i] = is_inside(m, s.xi[i]);
+    }
+    measure(m, &s, 0);
+  }
+}
+
+/* What planes leave out goes with the square of their size: by how much the parts that are cut
+ * grow in the limit (Richardson). Where parts meet coarse ones are not those of fine ones, but
+ * their sums are. */
+static PetscReal growth(const Measure *m)
+{
+  PetscReal cut = 0, more = 0;
+  for (PetscInt q = 0; q < m->rule->n; ++q) {
+    more += (m->fine[q].volume - m->coarse[q].volume) / 3;
+    if (!is_whole(m, q)) cut += m->fine[q].volume;
+  }
+  return PetscAbsReal(more) < 0.1 * cut ? 1 + more / cut : 1;
+}
+
+SeedFill seed_parts(const Seeding *s, PetscInt cell, const SeedRule *rule, SeedPart *part)
+{
+  PetscReal x[CELL_MAX_NODES * 3], whole = 0, inside = 0;
   const PetscInt dim = s->source->dim;
-  const Lattice l = {grid_cell_type(s->source, cell), x, MEASURE, s->source->global_cell[cell] % 1000 * MEASURE, 0};
+  Measure m = {.shape = &s->body->shape, .rule = rule, .type = grid_cell_type(s->source, cell), .dim = dim, .x = x};
   grid_cell_x(s->source, cell, x);
-  for (PetscInt q = 0; q < rule->n; ++q) part[q] = (SeedPart){0};
-  for (PetscInt k = 0; k < l.n; ++k) {
-    const PetscReal weight = sample(&l, k, xi, position);
-    const PetscInt q = nearest_of(rule, dim, xi);
-    whole[q] += weight;
-    if (!shape_contains(&s->body->shape, dim, position, 0)) continue;
-    part[q].share += weight;
-    for (PetscInt d = 0; d < dim; ++d) part[q].xi[d] += weight * xi[d];
-  }
+  m.slack = 1e-10 * PetscPowReal(cell_volume(m.type, x), 1 / (PetscReal)dim);
+  measure_cell(&m);
+  const PetscReal factor = growth(&m);
+  for (PetscInt q = 0; q < rule->n; ++q) whole += m.whole[q].volume;
   for (PetscInt q = 0; q < rule->n; ++q) {
-    const PetscReal *at = rule->xi + q * dim;
-    const PetscBool is_whole = part[q].share >= (1 - 1e-12) * whole[q];
-    for (PetscInt d = 0; d < dim && part[q].share > 0; ++d)
-      part[q].xi[d] = is_whole ? at[d] : part[q].xi[d] / part[q].share;
-    part[q].share = is_whole ? 1 : part[q].share / whole[q];
+    const Sum *sum = m.fine + q;
+    part[q] = (SeedPart){.share = (is_whole(&m, q) ? 1 : factor) * sum->volume / whole, .whole = is_whole(&m, q)};
+    if (part[q].share < NOTHING) part[q].share = 0;
+    inside += part[q].share;
+    for (PetscInt d = 0; d < dim && part[q].share > 0; ++d) part[q].xi[d] = sum->moment[d] / sum->volume;
   }
+  join_slivers(part, rule->n, dim);
+  return inside <= 0 ? SEED_NONE : inside >= 1 - NOTHING ? SEED_WHOLE : SEED_CUT;
 }

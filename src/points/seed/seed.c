@@ -91,7 +91,7 @@ static PetscBool choose_rule(Seeding *s)
   return PETSC_FALSE;
 }
 
-static const SeedRule *rule_of(const Seeding *s, PetscInt cell)
+const SeedRule *seed_rule(const Seeding *s, PetscInt cell)
 {
   return cell < s->source->n_first ? &s->first_rule : &s->rule;
 }
@@ -126,7 +126,12 @@ static PetscBool centre_in_shape(const Seeding *s, PetscInt cell)
   return shape_contains(&s->body->shape, s->source->dim, centre, 0);
 }
 
-static PetscBool fills_shape(const Seeding *s) { return s->body->fill == FILL_SHAPE; }
+PetscBool body_fills_shape(const BodySpec *body, PetscBool equal)
+{
+  return body->fill == FILL_AUTO ? body->has_shape && equal : body->fill == FILL_SHAPE;
+}
+
+static PetscBool fills_shape(const Seeding *s) { return body_fills_shape(s->body, s->equal); }
 
 typedef struct {
   PetscReal min[3], max[3];
@@ -147,6 +152,33 @@ static PetscBool near_shape(const Seeding *s, PetscInt cell, const ShapeBox *b)
     if (low > b->max[d] || high < b->min[d]) return PETSC_FALSE;
   }
   return PETSC_TRUE;
+}
+
+/* Room for the parts of one more cell. */
+static PetscErrorCode MakeRoom(Seeding *s)
+{
+  PetscFunctionBeginUser;
+  if (s->n_parts + SEED_MAX_RULE <= s->capacity) PetscFunctionReturn(0);
+  s->capacity = PetscMax(64 * SEED_MAX_RULE, 2 * s->capacity);
+  PetscCall(PetscRealloc((size_t)s->capacity * sizeof *s->part, &s->part));
+  PetscFunctionReturn(0);
+}
+
+/* Is there anything of the body in the cell? If its surface cuts it the parts are measured. */
+static PetscErrorCode LookInto(Seeding *s, PetscInt cell, const ShapeBox *b)
+{
+  SeedFill fill = centre_in_shape(s, cell) ? SEED_WHOLE : SEED_NONE;
+  PetscFunctionBeginUser;
+  if (fills_shape(s)) fill = near_shape(s, cell, b) ? seed_fill(s, cell) : SEED_NONE;
+  if (fill == SEED_CUT) {
+    PetscCall(MakeRoom(s));
+    fill = seed_parts(s, cell, seed_rule(s, cell), s->part + s->n_parts);
+  }
+  if (fill == SEED_NONE) PetscFunctionReturn(0);
+  if (s->cut) s->cut[s->n_cells] = fill == SEED_CUT ? s->n_parts : -1;
+  if (fill == SEED_CUT) s->n_parts += seed_rule(s, cell)->n;
+  s->cells[s->n_cells++] = cell;
+  PetscFunctionReturn(0);
 }
 
 /* The cells in the region (if one is named) and in the shape (if there is one). *found is false
@@ -170,12 +202,7 @@ static PetscErrorCode ChooseCells(Seeding *s, PetscBool *found)
   for (PetscInt k = 0; k < n; ++k) {
     const PetscInt cell = set ? set->cells[k] : k;
     if (s->source == s->grid && grid_field_of(s->grid, cell) != s->field) continue;
-    const SeedFill fill = !fills_shape(s)           ? (centre_in_shape(s, cell) ? SEED_WHOLE : SEED_NONE)
-                          : near_shape(s, cell, &b) ? seed_fill(s, cell)
-                                                    : SEED_NONE;
-    if (fill == SEED_NONE) continue;
-    if (s->cut) s->cut[s->n_cells] = fill == SEED_CUT;
-    s->cells[s->n_cells++] = cell;
+    PetscCall(LookInto(s, cell, &b));
   }
   *found = PETSC_TRUE;
   PetscFunctionReturn(0);
@@ -214,31 +241,40 @@ static PetscBool shares_equally(const Seeding *s, CellType type)
   return s->equal && (!s->c->kinematics->hoop || type == CELL_TRIANGLE);
 }
 
-/* The q-th point of the k-th cell, with nodes at x. share: its part of the section, or of the volume in
- * space; < 0: that of the Gauss rule. part: what of it lies in the body. */
+/* Distance from the body's surface; where that cuts the cell, what the shape says of it. */
+static PetscReal reach_of(const Seeding *s, PetscInt k, const PetscReal *x, PetscInt q, const PetscReal *position,
+                          PetscReal section, PetscReal whole)
+{
+  const CellType type = grid_cell_type(s->source, s->cells[k]);
+  if (s->cut && s->cut[k] >= 0)
+    return shape_depth(&s->body->shape, s->source->dim, position,
+                       0.5 * PetscPowReal(whole, 1 / (PetscReal)s->source->dim));
+  return seed_reach(type, x, position, section, seed_rule(s, s->cells[k]), q, s->outer + k * CELL_MOST_SIDES);
+}
+
+/* The q-th point of the k-th cell, with nodes at x. share: its part of the section, or of the
+ * volume in space; < 0: that of the Gauss rule. part: what of it lies in the body. */
 static PetscErrorCode SeedPoint(const Seeding *s, Points *points, PetscInt k, const PetscReal *x, PetscReal share,
                                 PetscInt q, const SeedPart *part, const PointSeed *seed)
 {
   const PetscInt dim = points->dim, cell = s->cells[k];
-  const SeedRule *rule = rule_of(s, cell);
+  const SeedRule *rule = seed_rule(s, cell);
   const PetscReal *xi = part ? part->xi : rule->xi + q * dim;
   PetscInt p;
   PetscFunctionBeginUser;
   PetscCall(PointsAppend(points, &p));
   PetscReal *position = point_real(points, POINT_X, p);
   const PetscReal det = map_point(grid_cell_type(s->source, cell), x, xi, position);
-  const PetscReal whole = share < 0 ? rule->weight[q] * det : share, section = part ? part->share * whole : whole;
+  const PetscReal whole = share < 0 ? rule->weight[q] * det : share;
+  const PetscReal section = part ? part->share * cell_volume(grid_cell_type(s->source, cell), x) : whole;
   const PetscReal volume = section * kinematics_weight(s->c->kinematics, position[0]);
   *point_real(points, POINT_VOLUME, p) = volume;
   *point_real(points, POINT_MASS, p) = seed->density * volume;
   body_velocity(s->body, dim, position, point_real(points, POINT_V, p));
   if (s->domains)
-    seed_domain(grid_cell_type(s->source, cell), x, xi, part && part->share < 1 ? 0 : rule->side, section,
+    seed_domain(grid_cell_type(s->source, cell), x, xi, part && !part->whole ? 0 : rule->side, section,
                 point_real(points, POINT_DOMAIN, p));
-  if (s->outer) /* the surface that cuts a part is no farther than the sides of all of it */
-    *point_real(points, POINT_REACH, p) =
-      part ? 0.5 * PetscPowReal(whole, 1 / (PetscReal)dim)
-           : seed_reach(grid_cell_type(s->source, cell), x, position, section, rule, q, s->outer + k * CELL_MOST_SIDES);
+  if (s->outer) *point_real(points, POINT_REACH, p) = reach_of(s, k, x, q, position, section, whole);
   if (points->components[POINT_SLOPE]) seed_slope(s->body, dim, point_real(points, POINT_SLOPE, p));
   if (seed->n_state) PetscCall(PetscArraycpy(point_real(points, POINT_STATE, p), seed->initial, seed->n_state));
   points->id[p] = s->first_id + (PetscInt64)s->source->global_cell[cell] * s->rule.n + q;
@@ -261,15 +297,13 @@ static PetscErrorCode SeedCells(const Seeding *s, Points *points, const PointSee
              points->components[POINT_STATE]);
   PetscCall(PointsReserveMore(points, s->n_cells * s->rule.n));
   for (PetscInt k = 0; k < s->n_cells; ++k) {
-    const PetscInt n = rule_of(s, s->cells[k])->n;
+    const PetscInt n = seed_rule(s, s->cells[k])->n;
     const CellType type = grid_cell_type(s->source, s->cells[k]);
     grid_cell_x(s->source, s->cells[k], x);
     const PetscReal share = shares_equally(s, type) ? cell_volume(type, x) / (PetscReal)n : -1;
-    SeedPart part[SEED_MAX_RULE];
-    const PetscBool cut = s->cut && s->cut[k];
-    if (cut) seed_parts(s, s->cells[k], rule_of(s, s->cells[k]), part);
+    const SeedPart *part = s->cut && s->cut[k] >= 0 ? s->part + s->cut[k] : NULL;
     for (PetscInt q = 0; q < n; ++q)
-      if (!cut || part[q].share > 0) PetscCall(SeedPoint(s, points, k, x, share, q, cut ? part + q : NULL, seed));
+      if (!part || part[q].share > 0) PetscCall(SeedPoint(s, points, k, x, share, q, part ? part + q : NULL, seed));
   }
   PetscFunctionReturn(0);
 }
@@ -317,23 +351,17 @@ static PetscErrorCode SeedSource(Seeding *s, Points *points, PetscInt *taken, co
   if (!found) PetscFunctionReturn(0);
   PetscCall(SeedCheckVolume(s));
   PetscCall(SeedCheckRoom(s, points, &found));
-  if (!found) {
-    PetscCall(PetscFree(s->cells));
-    PetscCall(PetscFree(s->cut));
-    PetscFunctionReturn(0);
-  }
+  if (!found) PetscFunctionReturn(0);
   if (s->source == s->grid) PetscCall(SeedClaimCells(s, taken));
   if (points->components[POINT_REACH]) {
     PetscCall(PetscMalloc1(s->n_cells * CELL_MOST_SIDES, &s->outer));
     PetscCall(OutlineSidesOfAll(s->source, s->n_cells, s->cells, s->outer));
   }
   PetscCall(SeedCells(s, points, per_material + s->material));
-  PetscCall(PetscFree(s->outer));
-  PetscCall(PetscFree(s->cut));
   if (s->outline)
     PetscCall(OutlineAdd(s->outline, s->source, s->n_cells, s->cells, s->b, per_material[s->material].density));
+  if (s->outline && fills_shape(s)) PetscCall(OutlineShape(s->outline, s->c->n_bodies, s->b, &s->body->shape));
   PetscCall(AdvanceIds(s, next));
-  PetscCall(PetscFree(s->cells));
   PetscFunctionReturn(0);
 }
 
@@ -351,6 +379,10 @@ static PetscErrorCode SeedBody(Seeding *s, Points *points, PetscInt *taken, cons
     s->source = own;
   }
   PetscCall(SeedSource(s, points, taken, per_material, next));
+  PetscCall(PetscFree(s->cells));
+  PetscCall(PetscFree(s->cut));
+  PetscCall(PetscFree(s->part));
+  PetscCall(PetscFree(s->outer));
   PetscCall(GridDestroy(&own));
   PetscFunctionReturn(0);
 }

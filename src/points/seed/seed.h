@@ -11,9 +11,11 @@ typedef struct {
   PetscReal xi[3 * SEED_MAX_RULE], weight[SEED_MAX_RULE];
 } SeedRule;
 
-/* What of a point's part of its cell lies in the body: its share, and where the middle of that is. */
+/* What of a point's part of its cell lies in the body: its share of the cell, and where the
+ * middle of that is. */
 typedef struct {
   PetscReal share, xi[3];
+  PetscBool whole; /* all of the part does */
 } SeedPart;
 
 typedef enum { SEED_NONE, SEED_CUT, SEED_WHOLE } SeedFill;
@@ -25,9 +27,11 @@ typedef struct {
   PetscInt b, field; /* the body, and its velocity field */
   const BodySpec *body;
   PetscInt material;
-  const Grid *source;        /* whose cells give the points: the grid, or the body's own mesh */
-  PetscInt n_cells, *cells;  /* local cells of the source that belong to the body */
-  unsigned char *cut;        /* n_cells: is it cut by the surface of the body? NULL: cells are whole */
+  const Grid *source;       /* whose cells give the points: the grid, or the body's own mesh */
+  PetscInt n_cells, *cells; /* local cells of the source that belong to the body */
+  PetscInt *cut;            /* n_cells: of one that the body's surface cuts, where its parts begin; else -1 */
+  PetscInt n_parts, capacity;
+  SeedPart *part;            /* n_parts */
   unsigned char *outer;      /* n_cells x CELL_MOST_SIDES: is it the body's surface? NULL: nobody asks */
   SeedRule rule, first_rule; /* for cells of the source's type, and of its first_type */
   PetscBool domains;         /* do the points have some? */
@@ -36,23 +40,26 @@ typedef struct {
   Outline *outline; /* gets the surface of these cells; NULL: nobody wants it */
 } Seeding;
 
+/* Where the points of this cell of the source stand. */
+const SeedRule *seed_rule(const Seeding *s, PetscInt cell);
 /* Volume that a cell stands for: area times unit thickness, or the full circle. */
 PetscReal seed_cell_volume(const Seeding *s, PetscInt cell);
 
 /* --- parts.c, of bodies that fill their shape --- */
 SeedFill seed_fill(const Seeding *s, PetscInt cell);
-/* Parts of a cell, one for each point of the rule; those without a share have no point. */
-void seed_parts(const Seeding *s, PetscInt cell, const SeedRule *rule, SeedPart *part);
+/* Parts of a cell, one for each point of the rule; those without a share have no point. Once
+ * measured, the cell may turn out to be whole, or empty. */
+SeedFill seed_parts(const Seeding *s, PetscInt cell, const SeedRule *rule, SeedPart *part);
 
 /* Half lengths l of the domain of a point at xi, in a cell with nodes at x whose lattice has `side`
  * points a direction; 0: it stands for this part of the section, or of the volume in space. */
 void seed_domain(CellType type, const PetscReal *x, const PetscReal *xi, PetscInt side, PetscReal section,
                  PetscReal *l);
 
-/* Distance of the q-th point of the rule, at `position` in a cell with nodes at x, from the body's
- * surface: of points next to sides that are `outer` (faces of the cell) the nearest of these. Of others
- * that from the nearest side, at most half the side of a square or cube of its part of the section, or of
- * the volume in space. */
+/* Distance of the q-th point of the rule, at `position` in a cell with nodes at x, from the
+ * body's surface: of points next to sides that are `outer` (faces of the cell) the nearest of
+ * these. Of others that from the nearest side, at most half the side of a square or cube of its
+ * part of the section, or of the volume in space. */
 PetscReal seed_reach(CellType type, const PetscReal *x, const PetscReal *position, PetscReal section,
                      const SeedRule *rule, PetscInt q, const unsigned char *outer);
 

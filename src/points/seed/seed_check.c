@@ -3,6 +3,7 @@
 #include "points/fields.h"
 #include "points/seed/seed.h"
 #include "base/count.h"
+#include "case/shape_volume.h"
 
 /* "[0, 1] x [-inf, 2] m" */
 static void print_bounds(PetscInt dim, const PetscReal *min, const PetscReal *max, size_t size, char *text)
@@ -54,72 +55,27 @@ static void tell_empty(const Seeding *s)
     diag_hint(s->diag, "is the body thinner than a cell? The smallest cell measures %g m", (double)s->source->smallest);
 }
 
-/* Area and first moment about x = 0 of a polygon. */
-static PetscReal polygon_area(const Shape *shape, PetscReal *moment)
-{
-  PetscReal area = 0;
-  *moment = 0;
-  for (PetscInt i = 0; i < shape->n_vertices; ++i) {
-    const PetscReal *a = shape->vertices + 2 * i, *b = shape->vertices + 2 * ((i + 1) % shape->n_vertices);
-    const PetscReal cross = a[0] * b[1] - b[0] * a[1];
-    area += 0.5 * cross;
-    *moment += cross * (a[0] + b[0]) / 6;
-  }
-  *moment = area < 0 ? -*moment : *moment;
-  return PetscAbsReal(area);
-}
-
-static PetscReal box_volume(const Shape *shape, PetscInt dim)
-{
-  PetscReal volume = 1;
-  for (PetscInt d = 0; d < dim; ++d) volume *= shape->max[d] - shape->min[d];
-  return volume;
-}
-
-/* Volume of a shape where it is easily known, else -1. */
-static PetscReal shape_volume(const Shape *shape, PetscInt dim)
-{
-  PetscReal moment;
-  switch (shape->kind) {
-  case SHAPE_BOX: return box_volume(shape, dim);
-  case SHAPE_BALL: return PETSC_PI * PetscSqr(shape->radius) * (dim == 3 ? 4.0 / 3.0 * shape->radius : 1);
-  case SHAPE_POLYGON: return polygon_area(shape, &moment);
-  default: return -1;
-  }
-}
-
-/* The same of what turns about x = 0: by Pappus's rule 2 pi times the first moment. A shape that
- * crosses the axis counts for its part with x > 0. */
-static PetscReal ring_volume(const Shape *shape)
-{
-  const PetscReal in = PetscMax(0, shape->min[0]), out = shape->max[0];
-  const PetscReal centre = shape->centre[0], radius = shape->radius;
-  PetscReal moment, min[3], max[3];
-  shape_bounds(shape, 2, min, max);
-  switch (shape->kind) {
-  case SHAPE_BOX: return PETSC_PI * (out * out - in * in) * (max[1] - min[1]);
-  case SHAPE_BALL:
-    if (centre == 0) return 4.0 / 3.0 * PETSC_PI * radius * radius * radius;
-    return centre >= radius ? 2 * PETSC_PI * centre * PETSC_PI * radius * radius : -1;
-  case SHAPE_POLYGON: (void)polygon_area(shape, &moment); return min[0] >= 0 ? 2 * PETSC_PI * moment : -1;
-  default: return -1;
-  }
-}
-
 static void compare_volume(const Seeding *s, PetscReal seeded)
 {
   const Shape *shape = s->body->has_shape && !s->body->region ? &s->body->shape : NULL;
-  const PetscReal wanted = !shape                   ? -1
-                           : s->c->kinematics->hoop ? ring_volume(shape)
-                                                    : shape_volume(shape, s->source->dim);
+  const PetscReal wanted = shape ? shape_volume(shape, s->c->kinematics, s->source->min, s->source->max) : -1;
+  const PetscBool fills = body_fills_shape(s->body, s->equal);
   const char *unit = kinematics_is_plane(s->c->kinematics) ? "m2" : "m3";
   char path[128];
   if (wanted <= 0 || PetscAbsReal(seeded - wanted) <= 0.01 * wanted) return;
   seed_path(s->b, "shape", sizeof path, path);
+  const double got = (double)seeded, meant = (double)wanted, off = (double)(100 * (seeded / wanted - 1));
+  if (fills) {
+    diag_warning(s->diag, path, "cells hold not all of body '%s': %.6g %s, its shape has %.6g %s (%+.2g %%)",
+                 s->body->name, got, unit, meant, unit, off);
+    diag_hint(s->diag, "does the grid have cells wherever the body is? Is the body thinner than a quarter of a cell?");
+    return;
+  }
   diag_warning(s->diag, path, "whole cells represent body '%s': they hold %.6g %s, its shape %.6g %s (%+.2g %%)",
-               s->body->name, (double)seeded, unit, (double)wanted, unit, (double)(100 * (seeded / wanted - 1)));
+               s->body->name, got, unit, meant, unit, off);
   diag_hint(s->diag,
-            "cells whose centre lies in the shape belong to it: let cell faces follow it, or use smaller cells");
+            "cells whose centre lies in the shape belong to it: let cell faces follow it, use smaller cells, or "
+            "`fill: shape` with mpm");
 }
 
 /* Material that the grid does not reach would be lost without a word. A shape cut by a region or a
@@ -183,13 +139,10 @@ PetscErrorCode SeedCheckRoom(const Seeding *s, const Points *points, PetscBool *
 static PetscReal volume_in(const Seeding *s, PetscInt k)
 {
   const PetscReal whole = seed_cell_volume(s, s->cells[k]);
-  const PetscBool first = s->cells[k] < s->source->n_first;
-  const SeedRule *rule = first ? &s->first_rule : &s->rule;
-  SeedPart part[SEED_MAX_RULE];
+  const SeedRule *rule = seed_rule(s, s->cells[k]);
   PetscReal share = 0;
-  if (!s->cut || !s->cut[k]) return whole;
-  seed_parts(s, s->cells[k], rule, part);
-  for (PetscInt q = 0; q < rule->n; ++q) share += part[q].share / (PetscReal)rule->n;
+  if (!s->cut || s->cut[k] < 0) return whole;
+  for (PetscInt q = 0; q < rule->n; ++q) share += s->part[s->cut[k] + q].share;
   return share * whole;
 }
 
@@ -216,7 +169,7 @@ PetscErrorCode SeedClaimCells(const Seeding *s, PetscInt *taken)
   PetscFunctionBeginUser;
   for (PetscInt k = 0; k < s->n_cells; ++k) {
     PetscInt *body = taken + s->cells[k];
-    if (s->cut && s->cut[k]) continue; /* what others leave of it, for all that is known */
+    if (s->cut && s->cut[k] >= 0) continue; /* what others leave of it, for all that is known */
     if (*body >= 0) ++shared, other = PetscMax(other, *body);
     *body = s->b;
   }

@@ -1,3 +1,4 @@
+#include "case/shape_volume.h"
 #include "model/explicit/critical.h"
 #include "run/check/check_private.h"
 #include "run/stages/initial.h"
@@ -78,6 +79,32 @@ static PetscErrorCode CountGaps(const Model *m, PetscInt body, PetscInt *gaps)
   PetscFunctionReturn(0);
 }
 
+/* Of the body as it is seeded: initial stress has changed the volume of its points since. */
+static PetscReal body_density(const Model *m, PetscInt body)
+{
+  for (PetscInt i = 0; i < m->c->n_materials; ++i)
+    if (!strcmp(m->c->materials[i].name, m->c->bodies[body].material)) return m->c->materials[i].density;
+  return 1;
+}
+
+/* What stands for a body's shape, and what that measures. */
+static PetscErrorCode ReportFill(const Model *m, PetscInt body, PetscReal mass, FILE *out)
+{
+  const BodySpec *spec = &m->c->bodies[body];
+  const PetscBool fills = body_fills_shape(spec, m->method->restores_grid);
+  const PetscReal volume = mass / body_density(m, body),
+                  shape = spec->has_shape && !spec->region
+                            ? shape_volume(&spec->shape, m->c->kinematics, m->grid->min, m->grid->max)
+                            : 0;
+
+  PetscFunctionBeginUser;
+  if (shape > 0)
+    say(m, out, "#     %s: %.6g m3 for %.6g m3 of its shape (%+.2f %%)\n",
+        fills ? "fill: shape" : "fill: cells, whole ones", (double)volume, (double)shape,
+        (double)(100 * (volume / shape - 1)));
+  PetscFunctionReturn(0);
+}
+
 static PetscErrorCode ReportBodies(const Model *m, Diag *diag, FILE *out)
 {
   BodyCount *count;
@@ -92,6 +119,7 @@ static PetscErrorCode ReportBodies(const Model *m, Diag *diag, FILE *out)
     const char *name = m->c->bodies[b].name;
     say(m, out, "#   body %s: %d points in %d cells, volume %g m3, mass %g kg\n", name, (int)count[b].points,
         (int)count[b].cells, (double)count[b].volume, (double)count[b].mass);
+    PetscCall(ReportFill(m, b, count[b].mass, out));
     PetscCall(CountGaps(m, b, &gaps));
     PetscCall(PetscSNPrintf(path, sizeof path, "bodies[%d]", (int)b));
     PetscMPIInt rank;
