@@ -46,7 +46,7 @@ static void sand(PetscReal young, PetscReal phi, PetscReal psi, PetscReal cohesi
            VALUE("opening_memory", 0));
 }
 
-static DrivePoint begin(const Material *m, PetscReal pressure)
+static DrivePoint begin(Material *m, PetscReal pressure)
 {
   const PetscReal stress[6] = {-pressure, -pressure, -pressure};
   DrivePoint point;
@@ -79,7 +79,7 @@ static void lead(DrivePoint *point, const ElementStage *stage, DriveReport *repo
   }
 }
 
-static DrivePoint tested(const Material *m, PetscReal pressure, const char *test, PetscReal to, PetscBool undrained,
+static DrivePoint tested(Material *m, PetscReal pressure, const char *test, PetscReal to, PetscBool undrained,
                          PetscInt steps)
 {
   const ElementStage stage = {.test = test_of(test), .to = to, .undrained = undrained, .steps = steps};
