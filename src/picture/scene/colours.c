@@ -51,8 +51,8 @@ void plot_choose_colours(PlotScene *scene, const PlotOptions *options, const cha
   scene->factor = factor;
   for (PetscReal *v; (v = next_value(scene, &frame, &i));) *v *= factor;
   scene->low *= factor, scene->high *= factor;
-  const PetscReal middle = 0.5 * (scene->low + scene->high), least = middle != 0 ? 1e-6 * fabs(middle) : 1e-12;
-  if (scene->high - scene->low < least) scene->low = middle - least, scene->high = middle + least;
+  const PetscReal middle = 0.5 * (scene->low + scene->high), least = middle != 0 ? 1e-2 * fabs(middle) : 1e-12;
+  if (scene->high - scene->low < 1e-4 * least) scene->low = middle - least, scene->high = middle + least;
   if (prefixed[0]) snprintf(scene->label, sizeof scene->label, "%.60s [%s]", what, prefixed);
 }
 

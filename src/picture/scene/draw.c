@@ -4,14 +4,21 @@
 #include "picture/scene/scene.h"
 #include "picture/walls/walls.h"
 
+/* Digits that tell neighbouring numbers of the bar apart. */
+static int bar_digits(PetscReal low, PetscReal high)
+{
+  const PetscReal most = PetscMax(fabs(low), fabs(high)), across = high - low;
+  return most > across && across > 0 ? PetscMin(PetscMax(4, 2 + (int)ceil(log10(most / across))), 6) : 4;
+}
+
 static void write_palette(FILE *out, const PlotScene *scene)
 {
   fputs("set palette defined (", out);
   for (int i = 0; i < PALETTE_STOPS; ++i)
     fprintf(out, "%s%d '#%02x%02x%02x'", i ? ", " : "", i, palette_stops[i][0], palette_stops[i][1],
             palette_stops[i][2]);
-  fprintf(out, ") maxcolors 0\nset cbrange [%.15g:%.15g]\nset format cb '%%.4g'\nset cblabel ", (double)scene->low,
-          (double)scene->high);
+  fprintf(out, ") maxcolors 0\nset cbrange [%.15g:%.15g]\nset format cb '%%.%dg'\nset cblabel ", (double)scene->low,
+          (double)scene->high, bar_digits(scene->low, scene->high));
   gnuplot_quote(out, scene->label);
 }
 

@@ -52,7 +52,7 @@ static void margins(const PlotPage *page, PetscBool space, int margin[4])
 {
   const PetscBool several = page->columns * page->rows > 1;
   margin[0] = space ? 45 : several ? 90 : 120;                 /* left */
-  margin[1] = page->bar_below ? 40 : 150;                      /* right */
+  margin[1] = page->bar_below ? 40 : 165;                      /* right */
   margin[2] = (space ? 15 : 80) + (page->bar_below ? 105 : 0); /* bottom */
   margin[3] = several ? 45 : 55;                               /* top */
 }
