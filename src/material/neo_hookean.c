@@ -47,7 +47,7 @@ LANES_INLINE LawStatus update_lanes(const PetscReal *parameters, PetscInt n, con
   lanes_load(9, n, dF, f);
   lanes_load(6, n, old, b_old);
   stretch(parameters, f, b_old, b, t, &det_f, &log_J);
-  lanes_store(6, n, b, state);
+  if (state) lanes_store(6, n, b, state);
   lanes_store(6, n, t, tau);
   if (c) {
     const Lanes g = parameters[MU] - parameters[LAMBDA] * log_J;
@@ -158,6 +158,7 @@ const Law law_neo_hookean = {
                                {.name = NULL}},
   .n_state = 6,
   .symmetric = PETSC_TRUE,
+  .spares_state = PETSC_TRUE,
   .update = update,
   .march_plane = neo_hookean_march_plane,
   .march_space = neo_hookean_march_space,
