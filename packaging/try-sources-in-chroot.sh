@@ -12,14 +12,14 @@ logs=$(mktemp -d)
 . "$source/packaging/bare-debian.sh"
 
 inside apt-get install -q -y --no-install-recommends git make ca-certificates >>"$logs/apt.log" 2>&1 || { tail "$logs/apt.log"; exit 1; }
-rm -rf "$chroot/root/talus" "$chroot/root/talus.bundle"
-git -C "$source" bundle create -q "$chroot/root/talus.bundle" HEAD
-inside git clone -q /root/talus.bundle /root/talus
-echo "$(inside git -C /root/talus log -1 --format='%h %s'); with git and make: $(inside dpkg-query -W | wc -l) packages"
+rm -rf "$chroot/srv/talus" "$chroot/srv/talus.bundle"
+git -C "$source" bundle create -q "$chroot/srv/talus.bundle" HEAD
+inside git clone -q /srv/talus.bundle /srv/talus
+echo "$(inside git -C /srv/talus log -1 --format='%h %s'); with git and make: $(inside dpkg-query -W | wc -l) packages"
 for target in "${@:-run docs}"; do
   for one in $target; do
     began=$(date +%s)
-    inside make -C /root/talus "$one" >"$logs/$one.log" 2>&1 || { tail -n 40 "$logs/$one.log"; echo "FAILED: make $one"; exit 1; }
+    inside make -C /srv/talus "$one" >"$logs/$one.log" 2>&1 || { tail -n 40 "$logs/$one.log"; echo "FAILED: make $one"; exit 1; }
     tail -n 3 "$logs/$one.log" | sed 's/^/  /'
     echo "make $one: $(($(date +%s) - began)) s, $(inside dpkg-query -W | wc -l) packages"
   done

@@ -38,8 +38,9 @@ PetscErrorCode LoadsDestroy(Loads **loads);
 PetscErrorCode LoadsRegrid(Loads *loads, const Grid *old, const Grid *grid);
 
 /* Not collective, but on every rank: callers are asked for factors. Subtract the nodal forces of
- * dead loads at time t from residual (n_nodes x dim; sums over ranks come later). Faces of the grid are loaded where their cell is filled[cell] by material: beside a body there is
- * nothing to push. Carried forces go to nodes with touched[node] != 0. */
+ * dead loads at time t from residual (n_nodes x dim; sums over ranks come later). Faces of the grid
+ * are loaded where their cell is filled[cell] by material: beside a body there is nothing to push.
+ * Carried forces go to nodes with touched[node] != 0. */
 PetscErrorCode LoadsPush(const Loads *loads, const Grid *grid, PetscReal t, const unsigned char *filled,
                          const unsigned char *touched, PetscReal *residual);
 

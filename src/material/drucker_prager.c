@@ -174,8 +174,7 @@ static const LawParameter parameters[] = {
 };
 
 static const LawField fields[] = {
-  {"elastic_strain", "", "elastic left Cauchy-Green tensor b", 6, {1, 1, 1, 0, 0, 0}},
-  {"equivalent_plastic_strain", "", "accumulated sqrt(2/3) |dev d eps^p|", 1, {0}},
+  HENCKY_FIELDS,
   {.name = NULL},
 };
 

@@ -42,18 +42,24 @@ LANES_INLINE int lanes_any(const LaneBits *mask)
 #endif
 }
 
-/* Rows to columns: r[i][j] becomes r[j][i]. */
+/* Rows of four numbers, whatever their alignment, to columns: r[i][j] becomes r[j][i]. */
+#define TRANSPOSE_FOUR(Row, r)                                          \
+  do {                                                                  \
+    const Row a0 = __builtin_shufflevector((r)[0], (r)[1], 0, 4, 2, 6); \
+    const Row a1 = __builtin_shufflevector((r)[0], (r)[1], 1, 5, 3, 7); \
+    const Row a2 = __builtin_shufflevector((r)[2], (r)[3], 0, 4, 2, 6); \
+    const Row a3 = __builtin_shufflevector((r)[2], (r)[3], 1, 5, 3, 7); \
+    (r)[0] = __builtin_shufflevector(a0, a2, 0, 1, 4, 5);               \
+    (r)[1] = __builtin_shufflevector(a1, a3, 0, 1, 4, 5);               \
+    (r)[2] = __builtin_shufflevector(a0, a2, 2, 3, 6, 7);               \
+    (r)[3] = __builtin_shufflevector(a1, a3, 2, 3, 6, 7);               \
+  } while (0)
+
+/* The same with all lanes. */
 LANES_INLINE void lanes_transpose(Lanes r[LANES])
 {
 #if LANES == 4
-  const Lanes a0 = __builtin_shufflevector(r[0], r[1], 0, 4, 2, 6),
-              a1 = __builtin_shufflevector(r[0], r[1], 1, 5, 3, 7);
-  const Lanes a2 = __builtin_shufflevector(r[2], r[3], 0, 4, 2, 6),
-              a3 = __builtin_shufflevector(r[2], r[3], 1, 5, 3, 7);
-  r[0] = __builtin_shufflevector(a0, a2, 0, 1, 4, 5);
-  r[1] = __builtin_shufflevector(a1, a3, 0, 1, 4, 5);
-  r[2] = __builtin_shufflevector(a0, a2, 2, 3, 6, 7);
-  r[3] = __builtin_shufflevector(a1, a3, 2, 3, 6, 7);
+  TRANSPOSE_FOUR(Lanes, r);
 #else
   Lanes a[8], b[8];
   for (int i = 0; i < 8; i += 2) {

@@ -46,16 +46,7 @@ KERNEL void row_copy(const int nn, const PetscReal *x, PetscReal *row)
   else *(Row8 *)row = *(const Row8 *)x;
 }
 
-/* Rows to columns, as lanes_transpose does with eight. */
-KERNEL void rows_transpose4(Row4 r[4])
-{
-  const Row4 a0 = __builtin_shufflevector(r[0], r[1], 0, 4, 2, 6), a1 = __builtin_shufflevector(r[0], r[1], 1, 5, 3, 7);
-  const Row4 a2 = __builtin_shufflevector(r[2], r[3], 0, 4, 2, 6), a3 = __builtin_shufflevector(r[2], r[3], 1, 5, 3, 7);
-  r[0] = __builtin_shufflevector(a0, a2, 0, 1, 4, 5);
-  r[1] = __builtin_shufflevector(a1, a3, 0, 1, 4, 5);
-  r[2] = __builtin_shufflevector(a0, a2, 2, 3, 6, 7);
-  r[3] = __builtin_shufflevector(a1, a3, 2, 3, 6, 7);
-}
+KERNEL void rows_transpose4(Row4 r[4]) { TRANSPOSE_FOUR(Row4, r); }
 
 /* row += s x */
 KERNEL void row_add(const int nn, PetscReal s, const PetscReal *x, PetscReal *row)

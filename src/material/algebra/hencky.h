@@ -168,6 +168,13 @@ LANES_INLINE LawStatus hencky_march(HenckyLaw law, int scalars, const PetscBool 
   }                                                                                                                \
   LANES_MARCHES(law)
 
+/* The first of its stored fields. */
+#define HENCKY_FIELDS                                                                  \
+  {"elastic_strain", "", "elastic left Cauchy-Green tensor b", 6, {1, 1, 1, 0, 0, 0}}, \
+  {                                                                                    \
+    "equivalent_plastic_strain", "", "accumulated sqrt(2/3) |dev d eps^p|", 1, { 0 }   \
+  }
+
 /* What the mixed formulation asks of it, where the bulk modulus is a constant. */
 #define HENCKY_MIXED(scalars)                                                                                       \
   static void volume(PetscInt n, const PetscReal *state, PetscReal *J) { volume_of_b(n, 6 + (scalars), state, J); } \

@@ -189,8 +189,7 @@ static const LawParameter parameters[] = {
 };
 
 static const LawField fields[] = {
-  {"elastic_strain", "", "elastic left Cauchy-Green tensor b", 6, {1, 1, 1, 0, 0, 0}},
-  {"equivalent_plastic_strain", "", "accumulated sqrt(2/3) |dev d eps^p|", 1, {0}},
+  HENCKY_FIELDS,
   {"softening_scale", "", "size of the point's cell over reference_size", 1, {1}},
   {"softening_offset",
    "",

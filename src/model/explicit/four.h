@@ -3,6 +3,7 @@
 #pragma once
 #include <stdint.h>
 #include <string.h>
+#include "base/math/lanes.h"
 #include "base/math/tensor.h"
 #include "model/explicit/explicit.h"
 
@@ -39,16 +40,7 @@ KERNEL void put(const Four *from, PetscInt n, PetscReal *to)
     for (int k = 0; k < n; ++k) to[k] = (*from)[k];
 }
 
-/* Rows to columns. */
-KERNEL void turn(Four r[4])
-{
-  const Four a0 = __builtin_shufflevector(r[0], r[1], 0, 4, 2, 6), a1 = __builtin_shufflevector(r[0], r[1], 1, 5, 3, 7);
-  const Four a2 = __builtin_shufflevector(r[2], r[3], 0, 4, 2, 6), a3 = __builtin_shufflevector(r[2], r[3], 1, 5, 3, 7);
-  r[0] = __builtin_shufflevector(a0, a2, 0, 1, 4, 5);
-  r[1] = __builtin_shufflevector(a1, a3, 0, 1, 4, 5);
-  r[2] = __builtin_shufflevector(a0, a2, 2, 3, 6, 7);
-  r[3] = __builtin_shufflevector(a1, a3, 2, 3, 6, 7);
-}
+KERNEL void turn(Four r[4]) { TRANSPOSE_FOUR(Four, r); }
 
 /* Cells of four points along one axis, and where in them; beyond the box, its last ones. */
 KERNEL void locate_along(const Lattice *l, const int d, const Four *x, FourCells *first, PetscReal *at)
