@@ -11,6 +11,11 @@ static const struct {
 } functions[] = {{"sqrt", sqrt}, {"exp", exp}, {"log", log},   {"sin", sin},
                  {"cos", cos},   {"tan", tan}, {"atan", atan}, {"abs", fabs}};
 
+static const struct {
+  const char *name;
+  double (*function)(double, double);
+} functions_of_two[] = {{"min", fmin}, {"max", fmax}};
+
 static PetscErrorCode Sum(Formula *f, PetscReal *value);
 
 static void skip(Formula *f) { f->at += strspn(f->at, " \t"); }
@@ -37,6 +42,31 @@ static PetscErrorCode Bracket(Formula *f, PetscReal *value)
   PetscFunctionReturn(0);
 }
 
+/* A function and its brackets; *known = PETSC_FALSE if the name is none, or no bracket opens. */
+static PetscErrorCode Function(Formula *f, const char *name, PetscBool *known, PetscReal *value)
+{
+  PetscReal first;
+
+  PetscFunctionBeginUser;
+  *known = PETSC_TRUE;
+  for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(functions); ++k)
+    if (!strcmp(name, functions[k].name) && takes(f, '(')) {
+      PetscCall(Bracket(f, value));
+      *value = functions[k].function(*value);
+      PetscFunctionReturn(0);
+    }
+  for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(functions_of_two); ++k)
+    if (!strcmp(name, functions_of_two[k].name) && takes(f, '(')) {
+      PetscCall(Sum(f, &first));
+      if (!takes(f, ',')) fail(f, f->at);
+      PetscCall(Bracket(f, value));
+      *value = functions_of_two[k].function(first, *value);
+      PetscFunctionReturn(0);
+    }
+  *known = PETSC_FALSE;
+  PetscFunctionReturn(0);
+}
+
 static PetscErrorCode Name(Formula *f, PetscReal *value)
 {
   static const char letters[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ_0123456789";
@@ -53,12 +83,8 @@ static PetscErrorCode Name(Formula *f, PetscReal *value)
       *value = PETSC_PI;
       PetscFunctionReturn(0);
     }
-    for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(functions); ++k)
-      if (!strcmp(name, functions[k].name) && takes(f, '(')) {
-        PetscCall(Bracket(f, value));
-        *value = functions[k].function(*value);
-        PetscFunctionReturn(0);
-      }
+    PetscCall(Function(f, name, &known, value));
+    if (known) PetscFunctionReturn(0);
     PetscCall(f->value(f->context, name, &known, value));
     if (!known) strcpy(f->name, name);
   }

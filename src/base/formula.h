@@ -1,7 +1,10 @@
 /* Arithmetic on a line of text: numbers, names, + - * / ^, brackets, pi and functions of one number
- * (sqrt exp log sin cos tan atan abs; angles in rad). */
+ * (sqrt exp log sin cos tan atan abs; angles in rad) or of two (min max). */
 #pragma once
 #include <petscsys.h>
+
+#define FORMULA_SIGNS \
+  "numbers, + - * / ^, brackets, pi, sqrt exp log sin cos tan atan abs, min max of two" /* in helps */
 
 #define FORMULA_NAME 64 /* bytes of a name at most */
 

@@ -1,4 +1,7 @@
 #include "boundary/load_factors.h"
+#include <math.h>
+#include "base/formula.h"
+#include "base/diag/diag.h"
 #include "boundary/loads.h"
 
 static PetscErrorCode Ones(PetscInt n, PetscReal **f)
@@ -9,16 +12,37 @@ static PetscErrorCode Ones(PetscInt n, PetscReal **f)
   PetscFunctionReturn(0);
 }
 
+/* Does anything vary from place to place? */
+static PetscBool varies(const Loads *l, PetscInt load) { return l->asked[load].ask || l->c->loads[load].factor; }
+
+/* What a caller gives, times the formula of the case. */
+static PetscErrorCode Evaluate(const Loads *l, PetscInt load, PetscInt n, const PetscReal *X, const PetscReal *x,
+                               PetscReal t, PetscReal *f)
+{
+  LoadPlace place = {.dim = l->dim, .t = t};
+  PetscReal factor;
+
+  PetscFunctionBeginUser;
+  if (l->asked[load].ask) l->asked[load].ask(l->asked[load].context, n, X, x, t, f);
+  for (PetscInt i = 0; i < n && l->c->loads[load].factor; ++i) {
+    Formula formula = {.value = LoadPlaceValue, .context = &place, .at = l->c->loads[load].factor};
+    place.X = X + 3 * i;
+    place.x = x + 3 * i;
+    PetscCall(FormulaValue(&formula, &factor));
+    for (int d = 0; d < 3; ++d) f[3 * i + d] *= factor;
+  }
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode LoadFactorsOfFaces(const Loads *l, PetscInt load, PetscReal t, PetscReal **f)
 {
   const LoadFaces *faces = &l->faces[load];
-  const LoadAsked *asked = &l->asked[load];
 
   PetscFunctionBeginUser;
   *f = NULL;
-  if (!asked->ask || !faces->used) PetscFunctionReturn(0);
+  if (!varies(l, load) || !faces->used) PetscFunctionReturn(0);
   PetscCall(Ones(faces->n, f));
-  asked->ask(asked->context, faces->n, faces->x, faces->x, t, *f);
+  PetscCall(Evaluate(l, load, faces->n, faces->x, faces->x, t, *f));
   PetscFunctionReturn(0);
 }
 
@@ -43,7 +67,7 @@ static PetscErrorCode Ask(const Loads *l, PetscInt load, PetscReal t, PetscReal 
     }
     ++n;
   }
-  l->asked[load].ask(l->asked[load].context, n, X, x, t, one);
+  PetscCall(Evaluate(l, load, n, X, x, t, one));
   n = 0;
   for (PetscInt p = 0; p < carriers->n; ++p)
     for (int d = 0; carriers->body[p] == load && d < 3; ++d) f[3 * p + d] = one[n++];
@@ -57,9 +81,58 @@ PetscErrorCode LoadFactorsOfCarriers(const Loads *l, PetscBool pressures, PetscR
   PetscFunctionBeginUser;
   *f = NULL;
   for (PetscInt k = 0; k < l->c->n_loads; ++k) {
-    if (!l->asked[k].ask || l->faces[k].used || (l->c->loads[k].kind == LOAD_PRESSURE) != pressures) continue;
+    if (!varies(l, k) || l->faces[k].used || (l->c->loads[k].kind == LOAD_PRESSURE) != pressures) continue;
     if (!*f) PetscCall(Ones(l->carriers->n, f));
     PetscCall(Ask(l, k, t, *f));
+  }
+  PetscFunctionReturn(0);
+}
+
+/* The first place of this rank where the factor of a load is no number. */
+static PetscErrorCode FindUndefined(const Loads *l, PetscInt load, PetscBool *found, PetscReal x[3])
+{
+  const LoadFaces *faces = &l->faces[load];
+  const Points *carriers = l->carriers;
+  PetscReal *f;
+
+  PetscFunctionBeginUser;
+  *found = PETSC_FALSE;
+  PetscCall(LoadFactorsOfFaces(l, load, l->c->start, &f));
+  for (PetscInt i = 0; f && i < faces->n && !*found; ++i)
+    if (!isfinite(f[3 * i])) {
+      *found = PETSC_TRUE;
+      PetscCall(PetscArraycpy(x, faces->x + 3 * i, 3));
+    }
+  PetscCall(PetscFree(f));
+  PetscCall(LoadFactorsOfCarriers(l, l->c->loads[load].kind == LOAD_PRESSURE, l->c->start, &f));
+  for (PetscInt p = 0; f && p < carriers->n && !*found; ++p)
+    if (carriers->body[p] == load && !isfinite(f[3 * p])) {
+      *found = PETSC_TRUE;
+      PetscCall(PetscArraycpy(x, point_real(carriers, POINT_X, p), l->dim));
+    }
+  PetscCall(PetscFree(f));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode LoadFactorsCheck(const Loads *l, MPI_Comm comm, Diag *diag)
+{
+  char path[64], key[96];
+
+  PetscFunctionBeginUser;
+  for (PetscInt k = 0; k < l->c->n_loads; ++k) {
+    PetscReal x[3] = {0, 0, 0};
+    PetscMPIInt rank, size, first;
+    PetscBool found;
+    if (!l->c->loads[k].factor) continue;
+    PetscCall(FindUndefined(l, k, &found, x));
+    PetscCallMPI(MPI_Comm_rank(comm, &rank));
+    PetscCallMPI(MPI_Comm_size(comm, &size));
+    first = found ? rank : size;
+    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &first, 1, MPI_INT, MPI_MIN, comm));
+    if (first == size) continue;
+    PetscCallMPI(MPI_Bcast(x, 3, MPIU_REAL, first, comm));
+    snprintf(key, sizeof key, "%s.factor", case_load_path(l->c, k, path));
+    diag_error(diag, key, "is no number at (%g, %g, %g) m", (double)x[0], (double)x[1], (double)x[2]);
   }
   PetscFunctionReturn(0);
 }

@@ -1,8 +1,9 @@
-/* Loads that vary from place to place: a caller of the library gives functions, as amplitudes of
- * a case file give factors that vary with time. */
+/* Loads that vary from place to place: by formulas of the case file, and by functions that a caller
+ * of the library gives, as amplitudes give factors that vary with time. */
 #pragma once
 #include <petscsys.h>
 
+struct Diag;
 struct Loads;
 
 /* Factors of a load at n places of this rank at time t, s: f (n x 3, ones on entry) multiplies
@@ -18,8 +19,10 @@ typedef struct {
 } LoadAsked;
 
 /* Not collective, but functions are asked on every rank. Factors of a load on faces of the grid,
- * at their quadrature points, at time t; *f is NULL if nobody gives any, else to be freed. */
+ * at their quadrature points, at time t; *f is NULL if there are none, else to be freed. */
 PetscErrorCode LoadFactorsOfFaces(const struct Loads *loads, PetscInt load, PetscReal t, PetscReal **f);
 /* Likewise of all carriers (n x 3), of pressures or of all other loads that are carried; ones
  * for those without a function. */
 PetscErrorCode LoadFactorsOfCarriers(const struct Loads *loads, PetscBool pressures, PetscReal t, PetscReal **f);
+/* Collective. Is a formula of the case no number somewhere when the case begins? */
+PetscErrorCode LoadFactorsCheck(const struct Loads *loads, MPI_Comm comm, struct Diag *diag);

@@ -248,6 +248,7 @@ PetscErrorCode LoadsCreate(const Grid *grid, const Case *c, const Points *points
     if (!faces) PetscCall(TellNoFace(grid, &c->loads[k].on, path, diag));
   }
   PetscCall(PointsSort(l->carriers));
+  PetscCall(LoadFactorsCheck(l, grid->comm, diag));
   *loads = l;
   PetscFunctionReturn(0);
 }

@@ -51,6 +51,20 @@ PetscReal case_factor(const Case *c, const Amplitude *amplitude, PetscReal t)
   return amplitude_value(amplitude, t, grows ? (t - c->start) / (c->analysis.end - c->start) : 1);
 }
 
+PetscErrorCode LoadPlaceValue(void *context, const char *name, PetscBool *known, PetscReal *value)
+{
+  const LoadPlace *place = context;
+  const char axis = name[1] ? 0 : name[0];
+
+  PetscFunctionBeginUser;
+  *known = PETSC_TRUE;
+  if (axis >= 'x' && axis < 'x' + place->dim) *value = place->x[axis - 'x'];
+  else if (axis >= 'X' && axis < 'X' + place->dim) *value = place->X[axis - 'X'];
+  else if (axis == 't') *value = place->t;
+  else *known = PETSC_FALSE;
+  PetscFunctionReturn(0);
+}
+
 PetscReal case_material_factor(const Case *c, PetscInt i, const char *parameter, PetscReal t)
 {
   const MaterialSpec *m = &c->materials[i];

@@ -99,6 +99,7 @@ static PetscErrorCode BoundaryAndLoadsClear(Case *c)
   PetscCall(PetscFree(c->boundary));
   for (PetscInt i = 0; i < c->n_loads; ++i) {
     PetscCall(PetscFree(c->loads[i].name));
+    PetscCall(PetscFree(c->loads[i].factor));
     PetscCall(SelectorClear(&c->loads[i].on));
     PetscCall(AmplitudeClear(&c->loads[i].amplitude));
   }

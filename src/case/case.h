@@ -210,7 +210,19 @@ typedef struct {
   PetscReal at[3];    /* point load: the material position at the start */
   PetscReal value[3]; /* N/m2 of undeformed boundary, or N; pressure: value[0], N/m2 of the present one */
   Amplitude amplitude;
+  char *factor; /* a formula of LoadPlace that multiplies the value; NULL: 1 */
 } LoadSpec;
+
+/* What the formula of a load may name: x y z, where the material is when the step begins, X Y Z, where
+ * it was undeformed (m), and t, s. */
+typedef struct {
+  PetscInt dim;
+  const PetscReal *X, *x;
+  PetscReal t;
+} LoadPlace;
+
+/* Of a Formula whose context is a LoadPlace. */
+PetscErrorCode LoadPlaceValue(void *place, const char *name, PetscBool *known, PetscReal *value);
 
 typedef enum { FRONT_POINTS, FRONT_SURFACE } FrontKind;
 

@@ -35,6 +35,7 @@ static void test_values(void **state)
     {"a*left_2 - -a", 1.5},
     {"sqrt(16)+exp(log(a))-abs(left_2)", 4 + 3 - 0.5},
     {"4*atan(1) - pi + sin(pi/6) + cos(pi/3) + tan(pi/4)", 2},
+    {"max(0, a - 5) + 2*min(left_2, max(1, a))", -1},
   };
   (void)state;
   for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(cases); ++k) {
@@ -56,6 +57,8 @@ static void test_mistakes(void **state)
     {"1 + ", "", ""},
     {"1 2", "2", ""},
     {"(1", "", ""},
+    {"max(1", "", ""},
+    {"min(1 2)", "2)", ""},
     {"1)", ")", ""},
     {"a + b", "b", "b"},
     {"sqrt 4", "sqrt 4", "sqrt"},

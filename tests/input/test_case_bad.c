@@ -338,6 +338,12 @@ static const Bad bads[] = {
   {"unknown body",
    PLAIN "loads: {tractions: [{on: {body: bem}, value: [0, 1]}]}\n",
    {"loads.tractions[0].on.body: there is no 'bem' in bodies", "did you mean 'beam'?"}},
+  {"factor of a load",
+   PLAIN
+   "loads: {tractions: [{on: {boundary: top}, value: [0, 1], factor: \"2*z\"}, {on: {boundary: top}, value: [0, 1], "
+   "factor: \"max(0, 5 y)\"}], points: [{at: [1, 1], force: [1, 0], factor: \"1 +\"}]}\n",
+   {"loads.tractions[0].factor: there is no 'z' here", "loads.tractions[1].factor makes no sense from 'y)' on",
+    "loads.points[0].factor: something is missing at the end of '1 +'"}},
   {"reversed interval", PLAIN "boundary: [{on: {x: [2, 1]}, fix: [x]}]\n", {"the first number must not be larger"}},
   {"amplitude backwards",
    PLAIN "loads: {gravity: [0, -1], gravity_amplitude: [[1, 0], [0, 1]]}\n",

@@ -1,5 +1,6 @@
 /* Pressures that follow the surface: a body pressed from all sides shrinks as its law says and takes p dV, the
- * tangent is the derivative of the force, and a free body stays where it is however far it has turned. */
+ * tangent is the derivative of the force, and a free body stays where it is however far it has turned. Loads that vary
+ * from place to place are the integrals of their formulas. */
 #include "case_builder.h"
 #include "model/model_private.h"
 
@@ -178,6 +179,88 @@ static void test_turns(void **state)
   spin("gmm", "lme");
 }
 
+static PetscReal reaction(Model *m, PetscInt component)
+{
+  const MeasureSpec measure = {.kind = "reaction", .component = component, .boundary = 0};
+  PetscReal value;
+  CALL(ModelMeasure(m, &measure, 0, &value));
+  return value;
+}
+
+/* A stiff block held at x = 0 (in rings at their inner side), 1 m below the surface of a lake: its wall bears the
+ * thrust of the water, and its buoyancy. */
+static void sink(const Block *r)
+{
+  const PetscInt dim = r->kinematics->dim;
+  const PetscReal weight = 9810, volume = r->kinematics->hoop ? PETSC_PI : 1;
+  Bench b;
+  bench_init(&b, r->method, r->cell, 4);
+  b.c.kinematics = r->kinematics;
+  b.c.basis = (BasisSpec){.kind = r->basis, .gamma = 1.8, .radius = 2, .max_radius = 3.5, .condition = 50, .gap = 2};
+  b.constants[0].value = 1e13;
+  bench_motion(&b, 0, 0, MOTION_FIXED, 7);
+  for (int k = 1; k < 2 * dim; ++k) {
+    LoadSpec *load = bench_pressure(&b, k / 2, k % 2, r->on_body ? "body" : NULL, weight);
+    load->amplitude = (Amplitude){.n = 1, .time = one_time, .value = one_value};
+    load->factor = (char *)"max(0, 2 - y)";
+  }
+  Model *m = bench_model(&b, PETSC_COMM_WORLD);
+  model_step(m, 1);
+  const PetscReal thrust = reaction(m, 0), lift = reaction(m, 1);
+  PetscPrintf(PETSC_COMM_WORLD, "%s %s %s: thrust %.9g of %g N, buoyancy %.9g of %.9g N\n", r->method, r->basis,
+              r->kinematics->name, (double)thrust, 1.5 * weight, (double)-lift, (double)(weight * volume));
+  if (!r->kinematics->hoop) CHECK_CLOSE(thrust, 1.5 * weight, 1e-7 * weight);
+  CHECK_CLOSE(lift, -weight * volume, 1e-7 * weight);
+  CALL(ModelDestroy(&m));
+}
+
+static void test_sinks(void **state)
+{
+  const Block blocks[] = {{"fem", "cell", CELL_QUADRILATERAL, &kinematics_plane_strain, PETSC_FALSE},
+                          {"mpm", "gimp", CELL_QUADRILATERAL, &kinematics_plane_strain, PETSC_TRUE},
+                          {"mpm", "cell", CELL_HEXAHEDRON, &kinematics_3d, PETSC_TRUE},
+                          {"mpm", "cell", CELL_TRIANGLE, &kinematics_axisymmetric, PETSC_FALSE},
+                          {"gmm", "lme", CELL_QUADRILATERAL, &kinematics_plane_strain, PETSC_TRUE}};
+  (void)state;
+  for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(blocks); ++k) sink(&blocks[k]);
+}
+
+/* Tractions and forces know where the material was, and the time. */
+static void test_varies(void **state)
+{
+  Bench b;
+  (void)state;
+  bench_init(&b, "mpm", CELL_QUADRILATERAL, 4);
+  bench_motion(&b, 1, 0, MOTION_FIXED, 3);
+  for (int k = 0; k < 2; ++k) {
+    LoadSpec *load = bench_traction(&b, 1, 1, k ? "body" : NULL, 300, 0, 0);
+    load->amplitude = (Amplitude){.n = 1, .time = one_time, .value = one_value};
+    load->factor = (char *)"X^2*t";
+  }
+  LoadSpec *point = &b.load[b.c.n_loads++];
+  *point = (LoadSpec){.kind = LOAD_POINT, .at = {0.5, 0.75}, .value = {7, 0}, .factor = (char *)"X + 2*Y - 3*t"};
+  point->amplitude = (Amplitude){.n = 1, .time = one_time, .value = one_value};
+  Model *m = bench_model(&b, PETSC_COMM_WORLD);
+  for (int k = 1; k <= 2; ++k) {
+    model_step(m, 0.5);
+    /* two of 300 t/3 N, and the point's */
+    const PetscReal forces = 200 * 0.5 * k + 7 * (2 - 1.5 * k);
+    PetscPrintf(PETSC_COMM_WORLD, "t = %g: %.12g of %g N\n", (double)m->time, (double)-reaction(m, 0), (double)forces);
+    CHECK_CLOSE(reaction(m, 0), -forces, 1e-8 * forces);
+  }
+  CALL(ModelDestroy(&m));
+}
+
+static void test_no_number(void **state)
+{
+  Bench b;
+  (void)state;
+  bench_init(&b, "fem", CELL_QUADRILATERAL, 2);
+  bench_motion(&b, 0, 0, MOTION_FIXED, 3);
+  bench_pressure(&b, 0, 1, NULL, 1)->factor = (char *)"sqrt(y - 0.5)";
+  bench_refused(&b, PETSC_COMM_WORLD, "loads.pressures[0].factor", "is no number at (1, 0.");
+}
+
 static void test_nowhere(void **state)
 {
   Bench b;
@@ -192,9 +275,8 @@ static void test_nowhere(void **state)
 int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {
-    cmocka_unit_test(test_shrinks),
-    cmocka_unit_test(test_tangent),
-    cmocka_unit_test(test_turns),
+    cmocka_unit_test(test_shrinks), cmocka_unit_test(test_tangent), cmocka_unit_test(test_turns),
+    cmocka_unit_test(test_sinks),   cmocka_unit_test(test_varies),  cmocka_unit_test(test_no_number),
     cmocka_unit_test(test_nowhere),
   };
   return run_model_group(argc, argv, tests, PETSC_STATIC_ARRAY_LENGTH(tests));

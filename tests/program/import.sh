@@ -133,6 +133,15 @@ says out.txt "4 of 4 within what is allowed"
 expect "again" 2 "$talus" import kratos pulled --out bar
 says err.txt "the folder 'bar' cannot be made: File exists"
 
+# The load as a formula of places: x^2 - 3 is 1 where it acts.
+cp -r pulled formula
+sed -i 's/"modulus": 1.0/"modulus": "x**2 - 3"/' formula/ProjectParameters.json
+materials LinearElasticPlaneStrain2DLaw >formula/ParticleMaterials.json
+expect "a load by a formula" 0 "$talus" import kratos formula --out varying
+says varying/case.yaml 'value: [1, 0], amplitude: [[0, 1], [3, 1]], factor: "x^2 - 3"'
+expect "it pulls as much" 0 "$talus" run varying/case.yaml
+says out.txt "4 of 4 within what is allowed"
+
 # A file by another name; what falls freely: g t^2 / 2 and g t, exact for steps of Newmark's; angles in radians.
 cp -r pulled falling
 { settings Dynamic 0.01 0.05
@@ -170,6 +179,11 @@ says err.txt "talus is implicit: explicit integration is not read" "talus has no
   "a load by FACE_PRESSURE is not read" "a direction of three numbers, not all 0" "talus has no law like 'JohnsonCookThermalPlastic2DPlaneStrainLaw'" \
   "odd/ProjectParameters.json:4:" "odd/ParticleMaterials.json:2:" "solver_settings.contact_settings is left out"
 [ ! -e none ] || fail "$name: a folder is left"
+
+materials LinearElasticIsotropicPlaneStress2DLaw >formula/ParticleMaterials.json
+sed -i 's/x\*\*2 - 3/x if t < 1 else 0/' formula/ProjectParameters.json
+expect "what talus lacks in laws and formulas" 2 "$talus" import kratos formula --out none
+says err.txt "talus has plane strain, and no plane stress" "the formula 'x if t < 1 else 0' is not read from 'if t < 1 else 0' on"
 
 # Meshes that are none
 wrong() { # TEXT-OF-SED MESSAGE

@@ -20,9 +20,13 @@ static const struct {
   const char *begin, *law, *said;
   PetscBool plain;
 } laws_known[] = {
-  {"LinearElasticIsotropic", "neo-hookean", "the same to first order in the strain", PETSC_TRUE},
+  {"LinearElastic", "neo-hookean", "the same to first order in the strain", PETSC_TRUE},
   {"HyperElasticNeoHookeanUP", "neo-hookean-split", NULL, PETSC_TRUE},
   {"HyperElasticNeoHookean", "neo-hookean", NULL, PETSC_TRUE},
+  {"HyperElasticUP", "neo-hookean-split", NULL, PETSC_TRUE}, /* names until 2019 */
+  {"HyperElastic3D", "neo-hookean", NULL, PETSC_TRUE},
+  {"HyperElasticPlaneStrain", "neo-hookean", NULL, PETSC_TRUE},
+  {"HyperElasticAxisym", "neo-hookean", NULL, PETSC_TRUE},
   {"HenckyMCPlasticUP", "mohr-coulomb", NULL, PETSC_FALSE},
   {"HenckyMCPlastic", "mohr-coulomb", NULL, PETSC_FALSE},
   {NULL, NULL, NULL, PETSC_TRUE},
@@ -32,6 +36,10 @@ static void read_law(const KratosFile *f, const YamlNode *law, KratosBody *body,
 {
   const char *name = kratos_text(law, "name");
   int i = 0;
+  if (strstr(name, "PlaneStress")) {
+    kratos_refuse(f, law, "'%s': talus has plane strain, and no plane stress", name);
+    return;
+  }
   while (laws_known[i].begin && strncmp(name, laws_known[i].begin, strlen(laws_known[i].begin))) ++i;
   if (!laws_known[i].begin) {
     kratos_refuse(f, law ? law : body->node, "talus has no law like '%s'", name[0] ? name : "none");

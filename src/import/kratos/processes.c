@@ -2,6 +2,8 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include "base/formula.h"
+#include "case/case.h"
 #include "import/kratos/project.h"
 
 typedef PetscErrorCode ReadProcess(KratosProject *p, const YamlNode *process, const YamlNode *parameters);
@@ -58,10 +60,36 @@ static PetscErrorCode ReadHeld(KratosProject *p, const YamlNode *process, const 
   PetscFunctionReturn(0);
 }
 
-/* A modulus and a direction, as a vector. */
-static void read_directed(KratosProject *p, const YamlNode *parameters, PetscReal value[3])
+/* A modulus that is a formula, as one of talus: a power is ^ for **. Does nothing with a number. */
+static PetscErrorCode ReadFormula(KratosProject *p, const YamlNode *modulus, char factor[KRATOS_NAME])
 {
-  const PetscReal modulus = kratos_number(&p->parameters, parameters, "modulus", 0);
+  const PetscReal origin[3] = {0, 0, 0};
+  LoadPlace place = {.dim = p->dim, .X = origin, .x = origin};
+  Formula formula = {.value = LoadPlaceValue, .context = &place, .at = factor};
+  PetscReal value;
+  char *end;
+  size_t n = 0;
+
+  PetscFunctionBeginUser;
+  factor[0] = '\0';
+  if (!modulus || modulus->kind != YAML_SCALAR || (strtod(modulus->text, &end), !*end)) PetscFunctionReturn(0);
+  for (const char *c = modulus->text; *c && n + 1 < KRATOS_NAME; ++c) {
+    const PetscBool power = c[0] == '*' && c[1] == '*';
+    factor[n++] = power ? '^' : *c;
+    c += power;
+  }
+  factor[n] = '\0';
+  PetscCall(FormulaValue(&formula, &value));
+  if (!formula.wrong) PetscFunctionReturn(0);
+  kratos_refuse(&p->parameters, modulus, "the formula '%s' is not read from '%s' on", modulus->text, formula.wrong);
+  strcpy(factor, "1"); /* told */
+  PetscFunctionReturn(0);
+}
+
+/* A modulus and a direction, as a vector. With a formula for its modulus it is the direction alone. */
+static void read_directed(KratosProject *p, const YamlNode *parameters, const char *factor, PetscReal value[3])
+{
+  const PetscReal modulus = factor[0] ? 1 : kratos_number(&p->parameters, parameters, "modulus", 0);
   (void)kratos_vector(&p->parameters, parameters, "direction", value);
   const PetscReal length = sqrt(value[0] * value[0] + value[1] * value[1] + value[2] * value[2]);
   if (!(length > 0)) kratos_refuse(&p->parameters, parameters, "a direction of three numbers, not all 0, is expected");
@@ -82,7 +110,8 @@ static PetscErrorCode ReadLoad(KratosProject *p, const YamlNode *process, const 
   }
   check_interval(p, parameters);
   PetscCall(Add(p, point ? KRATOS_POINT_LOAD : KRATOS_LINE_LOAD, parameters, &a));
-  read_directed(p, parameters, a->value);
+  PetscCall(ReadFormula(p, yaml_find(parameters, "modulus"), a->factor));
+  read_directed(p, parameters, a->factor, a->value);
   PetscFunctionReturn(0);
 }
 
@@ -103,7 +132,7 @@ static PetscErrorCode ReadGravity(KratosProject *p, const YamlNode *process, con
 {
   PetscFunctionBeginUser;
   (void)process;
-  read_directed(p, parameters, p->gravity);
+  read_directed(p, parameters, "", p->gravity);
   PetscFunctionReturn(0);
 }
 
@@ -114,7 +143,7 @@ static PetscErrorCode ReadVelocity(KratosProject *p, const YamlNode *process, co
   PetscBool found = PETSC_FALSE;
 
   PetscFunctionBeginUser;
-  read_directed(p, parameters, velocity);
+  read_directed(p, parameters, "", velocity);
   for (PetscInt b = 0; b < p->n_bodies; ++b) {
     if (strcmp(p->bodies[b].part, part) && strcmp(part, "MPM_Material")) continue;
     for (int d = 0; d < 3; ++d) p->bodies[b].velocity[d] = velocity[d];

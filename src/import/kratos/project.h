@@ -29,8 +29,9 @@ typedef enum { KRATOS_HELD, KRATOS_SLIP, KRATOS_LINE_LOAD, KRATOS_POINT_LOAD } K
 typedef struct {
   KratosKind kind;
   char part[KRATOS_NAME], name[KRATOS_NAME];
-  PetscBool set[3];   /* which components */
-  PetscReal value[3]; /* m in each step, N/m2, N */
+  PetscBool set[3];         /* which components */
+  PetscReal value[3];       /* m in each step, N/m2, N */
+  char factor[KRATOS_NAME]; /* a formula of places and time; "": 1 */
 } KratosAction;
 
 typedef struct {

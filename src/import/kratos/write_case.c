@@ -98,6 +98,11 @@ static void write_amplitude(const KratosProject *p, const char *key, FILE *out)
   fputs(", 1]]", out);
 }
 
+static void write_factor(const KratosAction *a, FILE *out)
+{
+  if (a->factor[0]) fprintf(out, ", factor: \"%s\"", a->factor);
+}
+
 /* A force at each node of a part. */
 static void write_points(const KratosProject *p, const KratosAction *a, FILE *out)
 {
@@ -110,6 +115,7 @@ static void write_points(const KratosProject *p, const KratosAction *a, FILE *ou
     fputs(", force: ", out);
     write_vector(out, a->value, p->dim);
     write_amplitude(p, "amplitude", out);
+    write_factor(a, out);
     fputs("}\n", out);
   }
 }
@@ -127,6 +133,7 @@ static void write_loads_of(const KratosProject *p, KratosKind kind, const char *
       fprintf(out, "    - {on: {boundary: %s}, value: ", a->name);
       write_vector(out, a->value, p->dim);
       write_amplitude(p, "amplitude", out);
+      write_factor(a, out);
       fputs("}\n", out);
     }
   }

@@ -210,8 +210,8 @@ extern const SchemaWriteType schema_writers[TYPE_COUNT];
 typedef PetscErrorCode SchemaCheck(SchemaReader *r, const YamlNode *mapping, void *target);
 extern SchemaCheck SchemaCheckAnalysis, SchemaCheckReduction, SchemaCheckUntil, SchemaCheckBox, SchemaCheckGrid,
   SchemaCheckShapeBox, SchemaCheckShape, SchemaCheckHalfSpace, SchemaCheckCylinder, SchemaCheckCone, SchemaCheckDisk,
-  SchemaCheckTerrain, SchemaCheckArc, SchemaCheckBody, SchemaCheckSelector, SchemaCheckMotion, SchemaCheckWall,
-  SchemaCheckWallMotion, SchemaCheckWallMass, SchemaCheckInterface, SchemaCheckLoads;
+  SchemaCheckTerrain, SchemaCheckArc, SchemaCheckBody, SchemaCheckSelector, SchemaCheckMotion, SchemaCheckLoad,
+  SchemaCheckWall, SchemaCheckWallMotion, SchemaCheckWallMass, SchemaCheckInterface, SchemaCheckLoads;
 /* Materials take the parameters of their law (schema_material.c). */
 PetscErrorCode SchemaOpenMaterial(SchemaReader *r, const YamlNode *mapping, void *target);
 PetscErrorCode SchemaWriteMaterial(FILE *out, int indent, const Case *c, const void *source);

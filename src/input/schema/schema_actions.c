@@ -1,4 +1,5 @@
 /* Keys of what acts on the material: prescribed motion and loads. */
+#include "base/formula.h"
 #include "input/schema/schema_keys.h"
 
 /* --- prescribed motion --- */
@@ -56,6 +57,11 @@ const SchemaTable schema_motion = {.name = "boundary",
                                    .check = SchemaCheckMotion};
 
 /* --- loads --- */
+#define FACTOR_HELP                                                                                                  \
+  "factor over places and time: a formula of x, y, z (m, where the material is when a step begins), X, Y, Z (where " \
+  "it "                                                                                                              \
+  "was undeformed) and t (s): " FORMULA_SIGNS ", such as max(0, 5 - y)"
+
 static const SchemaEntry traction_entries[] = {
   KEY("name", NAME, NULL, "how `analysis.limit` may call it", AT(LoadSpec, name)),
   KEY("on", TABLE, NULL, "a boundary of the grid, or of a body (then the load moves with it)",
@@ -64,13 +70,15 @@ static const SchemaEntry traction_entries[] = {
       AT(LoadSpec, value)),
   KEY("amplitude", AMPLITUDE, NULL, "factor over time", .note = "time / end in statics, 1 in dynamics",
       AT(LoadSpec, amplitude)),
+  KEY("factor", TEXT, NULL, FACTOR_HELP, .note = "1", AT(LoadSpec, factor)),
   {.key = NULL},
 };
 static const SchemaTable traction = {.name = "traction",
                                      .help = "A load spread over a boundary.",
                                      .entries = traction_entries,
                                      .size = sizeof(LoadSpec),
-                                     .tag_offset = offsetof(LoadSpec, kind)};
+                                     .tag_offset = offsetof(LoadSpec, kind),
+                                     .check = SchemaCheckLoad};
 static const SchemaEntry pressure_entries[] = {
   KEY("name", NAME, NULL, "how `analysis.limit` may call it", AT(LoadSpec, name)),
   KEY("on", TABLE, NULL,
@@ -81,13 +89,15 @@ static const SchemaEntry pressure_entries[] = {
       AT(LoadSpec, value[0])),
   KEY("amplitude", AMPLITUDE, NULL, "factor over time", .note = "time / end in statics, 1 in dynamics",
       AT(LoadSpec, amplitude)),
+  KEY("factor", TEXT, NULL, FACTOR_HELP, .note = "1", AT(LoadSpec, factor)),
   {.key = NULL},
 };
 static const SchemaTable pressure = {.name = "pressure",
                                      .help = "A pressure that turns and grows with the surface that it acts on.",
                                      .entries = pressure_entries,
                                      .size = sizeof(LoadSpec),
-                                     .tag_offset = offsetof(LoadSpec, kind)};
+                                     .tag_offset = offsetof(LoadSpec, kind),
+                                     .check = SchemaCheckLoad};
 static const SchemaEntry point_load_entries[] = {
   KEY("name", NAME, NULL, "how `analysis.limit` may call it", AT(LoadSpec, name)),
   KEY("at", VECTOR, "m", "the piece of material that carries it, by its position at the start", REQUIRED,
@@ -95,13 +105,15 @@ static const SchemaEntry point_load_entries[] = {
   KEY("force", VECTOR, "N", "the force; in axisymmetry that of the whole circle", REQUIRED, AT(LoadSpec, value)),
   KEY("amplitude", AMPLITUDE, NULL, "factor over time", .note = "time / end in statics, 1 in dynamics",
       AT(LoadSpec, amplitude)),
+  KEY("factor", TEXT, NULL, FACTOR_HELP, .note = "1", AT(LoadSpec, factor)),
   {.key = NULL},
 };
 static const SchemaTable point_load = {.name = "point load",
                                        .help = "A force on a piece of material.",
                                        .entries = point_load_entries,
                                        .size = sizeof(LoadSpec),
-                                       .tag_offset = offsetof(LoadSpec, kind)};
+                                       .tag_offset = offsetof(LoadSpec, kind),
+                                       .check = SchemaCheckLoad};
 static const SchemaEntry loads_entries[] = {
   KEY("gravity", VECTOR, "m/s2", "acceleration of gravity", .note = "0", AT(Case, gravity)),
   KEY("gravity_amplitude", AMPLITUDE, NULL, "factor over time", .note = "time / end in statics without k0, else 1",

@@ -4,6 +4,7 @@
 #include <string.h>
 #include "basis/cell.h"
 #include "case/relief.h"
+#include "base/formula.h"
 #include "input/schema/schema.h"
 
 /* --- analysis --- */
@@ -378,6 +379,30 @@ PetscErrorCode SchemaCheckMotion(SchemaReader *r, const YamlNode *mapping, void 
 }
 
 /* --- loads --- */
+PetscErrorCode SchemaCheckLoad(SchemaReader *r, const YamlNode *mapping, void *target)
+{
+  static const char *const names[] = {"x", "y", "z", "X", "Y", "Z", "t", NULL};
+  const LoadSpec *load = target;
+  const PetscReal origin[3] = {0, 0, 0};
+  LoadPlace place = {.dim = r->dim ? r->dim : 3, .X = origin, .x = origin};
+  Formula formula = {.value = LoadPlaceValue, .context = &place, .at = load->factor};
+  PetscReal value;
+  char path[512];
+
+  PetscFunctionBeginUser;
+  if (!load->factor) PetscFunctionReturn(0);
+  PetscCall(FormulaValue(&formula, &value));
+  if (!formula.wrong) PetscFunctionReturn(0);
+  const YamlNode *text = yaml_find(mapping, "factor");
+  yaml_path(mapping, path, sizeof path);
+  if (formula.name[0]) {
+    SchemaError(r, text, "%s.factor: there is no '%s' here; coordinates and t are", path, formula.name);
+    diag_hint_names(r->diag, formula.name, names);
+  } else if (formula.wrong[0]) SchemaError(r, text, "%s.factor makes no sense from '%s' on", path, formula.wrong);
+  else SchemaError(r, text, "%s.factor: something is missing at the end of '%s'", path, load->factor);
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode SchemaCheckLoads(SchemaReader *r, const YamlNode *mapping, void *target)
 {
   const Case *c = target;

@@ -1,4 +1,5 @@
 /* Keys of the grid and of the bodies in it. */
+#include "base/formula.h"
 #include "input/schema/schema_keys.h"
 
 static const SchemaWord cell_words[] = {
@@ -108,8 +109,8 @@ static const SchemaTable body_stress = {
   .name = "stress of a body",
   .help =
     "Initial Cauchy stress in Pa, tension positive: formulas of x, y, z (m, where a point is), depth (m, below the "
-    "surface of the highest material above it, against gravity) and weight (N/m2, of all that is above it): "
-    "numbers, + - * / ^, brackets, pi, sqrt exp log sin cos tan atan abs.",
+    "surface of the highest material above it, against gravity) and weight (N/m2, of all that is above "
+    "it): " FORMULA_SIGNS ".",
   .entries = stress_entries};
 static const SchemaEntry body_entries[] = {
   KEY("name", NAME, NULL, "how measures, loads and pictures call it", REQUIRED, AT(BodySpec, name)),

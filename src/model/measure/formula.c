@@ -37,8 +37,7 @@ const Measure measure_formula = {
   .key = "formula",
   .takes = MEASURE_TEXT,
   .number = {.unit = "",
-             .help =
-               "of measures above it by their names, in their units: numbers, + - * / ^, brackets, pi, sqrt exp log "
-               "sin cos tan atan abs (angles in rad), such as left + right + floor",
+             .help = "of measures above it by their names, in their units: " FORMULA_SIGNS
+                     " (angles in rad), such as left + right + floor",
              .of = OF_MODEL,
              .value = Value}};
