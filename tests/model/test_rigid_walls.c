@@ -200,7 +200,7 @@ static void test_floats(void **state)
   Model *m = bench_model(&b, PETSC_COMM_WORLD);
   CALL(ModelStep(m, 0.25, &report));
   CHECK(report.outcome != STEP_ACCEPTED, "it hangs in the air");
-  CHECK(strstr(report.newton.reason, "a wall with mass touches nothing"), "%s", report.newton.reason);
+  CHECK(strstr(report.newton.reason, "the wall with mass 'ball' touches nothing"), "%s", report.newton.reason);
   CALL(ModelDestroy(&m));
 }
 
