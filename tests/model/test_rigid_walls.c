@@ -114,6 +114,55 @@ static void test_hits(void **state)
   for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(hits); ++k) hit(&hits[k]);
 }
 
+/* A ball from above, a box whose corners go into the block from below, and a union whose inertia is given: what they
+ * lose the block gets, and no energy is made. */
+static void test_several(void **state)
+{
+  static const Hit ways[] = {{"fem", "cell", NULL, CELL_QUADRILATERAL, 0.3, PETSC_FALSE, 0.125, 2e-3},
+                             {"mpm", "gimp", NULL, CELL_QUADRILATERAL, 0.3, PETSC_FALSE, 0.125, 5e-3}};
+  (void)state;
+  for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(ways); ++k) {
+    const PetscReal mass[3] = {2000 * PETSC_PI * 0.09, 2000 * 0.04, 200};
+    PetscReal off = 0, before[2] = {0, 0};
+    Bench b;
+    WallSpec wall[3];
+    Energies e;
+    below_ball(&b, &ways[k], PETSC_TRUE, wall);
+    wall[1] = wall[2] = wall[0];
+    wall[1].name = (char *)"box", wall[1].mass.velocity[1] = 3;
+    wall[1].shape = (Shape){.kind = SHAPE_BOX, .min = {0.83, -0.21}, .max = {1.03, -0.01}};
+    Shape parts[2] = {wall[0].shape, wall[0].shape};
+    parts[0].centre[0] = 1.3, parts[1].centre[0] = 1.45;
+    for (int i = 0; i < 2; ++i) parts[i].radius = 0.1, parts[i].centre[1] = -0.11;
+    wall[2].name = (char *)"two", wall[2].shape = (Shape){.kind = SHAPE_UNION, .n_children = 2, .children = parts};
+    wall[2].mass.has_density = PETSC_FALSE, wall[2].mass.has_total = PETSC_TRUE, wall[2].mass.total = mass[2],
+    wall[2].mass.velocity[1] = 1;
+    wall[2].mass.has_centre = wall[2].mass.has_inertia = PETSC_TRUE;
+    wall[2].mass.centre[0] = 1.375, wall[2].mass.centre[1] = -0.11, wall[2].mass.inertia[2] = 2;
+    b.c.n_walls = 3, b.c.walls = wall;
+    for (int i = 0; i < 3; ++i)
+      for (int d = 0; d < 2; ++d) before[d] += mass[i] * wall[i].mass.velocity[d];
+    Model *m = bench_model(&b, PETSC_COMM_WORLD);
+    while (m->time < 0.05) {
+      PetscReal now[2] = {model_sum(m, "momentum", 0), model_sum(m, "momentum", 1)};
+      for (int i = 0; i < 3; ++i)
+        for (int d = 0; d < 2; ++d) now[d] += mass[i] * model_wall(m, wall[i].name, "wall_velocity", NULL, d);
+      for (int d = 0; d < 2; ++d) off = PetscMax(off, PetscAbsReal(now[d] - before[d]));
+      model_step(m, ways[k].step);
+    }
+    CALL(ModelEnergies(m, &e));
+    PetscPrintf(PETSC_COMM_WORLD, "%s, three walls: momentum off %.2g, transfer %.4g, friction %.4g of %.6g J\n",
+                ways[k].method, (double)off, (double)e.transfer, (double)e.friction, (double)e.start);
+    CHECK(off < 1e-8, "momentum off by %g", (double)off);
+    CHECK(PetscAbsReal(model_sum(m, "energy: balance", 0)) < 1e-6, "energy is lost");
+    CHECK(e.transfer > 0, "%g J were made", (double)-e.transfer);
+    for (int i = 0; i < 3; ++i)
+      CHECK(PetscAbsReal(model_wall(m, wall[i].name, "wall_velocity", NULL, 1) - wall[i].mass.velocity[1]) > 0.01, "%s",
+            wall[i].name);
+    CALL(ModelDestroy(&m));
+  }
+}
+
 /* A brick that tumbles in free fall keeps its moment of momentum and energy, and falls as a point does. */
 static void test_flies(void **state)
 {
@@ -219,8 +268,8 @@ static void test_endless(void **state)
 int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {
-    cmocka_unit_test(test_hits),   cmocka_unit_test(test_flies),   cmocka_unit_test(test_stands),
-    cmocka_unit_test(test_floats), cmocka_unit_test(test_endless),
+    cmocka_unit_test(test_hits),   cmocka_unit_test(test_several), cmocka_unit_test(test_flies),
+    cmocka_unit_test(test_stands), cmocka_unit_test(test_floats),  cmocka_unit_test(test_endless),
   };
   return run_model_group(argc, argv, tests, PETSC_STATIC_ARRAY_LENGTH(tests));
 }

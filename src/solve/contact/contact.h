@@ -40,6 +40,7 @@ typedef struct {
   PetscBool touches;   /* is there no gap at the start of the step? */
   PetscReal gap;       /* at the last assembly, m */
   PetscReal normal[3]; /* at the last assembly */
+  PetscReal facing[3]; /* at the start of the step, as the owner sees it */
   PetscReal slip[3];   /* likewise: motion against the wall, m */
   PetscReal last[3];   /* force at the end of the last step, N */
   PetscReal start[3];  /* of it, what nodes remember as acceleration, N */
