@@ -122,7 +122,7 @@ static void test_several(void **state)
                              {"mpm", "gimp", NULL, CELL_QUADRILATERAL, 0.3, PETSC_FALSE, 0.125, 5e-3}};
   (void)state;
   for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(ways); ++k) {
-    const PetscReal mass[3] = {2000 * PETSC_PI * 0.09, 2000 * 0.04, 200};
+    const PetscReal mass[3] = {2000 * PETSC_PI * 0.09, 2000 * 0.05, 200};
     PetscReal off = 0, before[2] = {0, 0};
     Bench b;
     WallSpec wall[3];
@@ -130,7 +130,7 @@ static void test_several(void **state)
     below_ball(&b, &ways[k], PETSC_TRUE, wall);
     wall[1] = wall[2] = wall[0];
     wall[1].name = (char *)"box", wall[1].mass.velocity[1] = 3;
-    wall[1].shape = (Shape){.kind = SHAPE_BOX, .min = {0.83, -0.21}, .max = {1.03, -0.01}};
+    wall[1].shape = (Shape){.kind = SHAPE_BOX, .min = {0.8481, -0.21}, .max = {1.0981, -0.01}};
     Shape parts[2] = {wall[0].shape, wall[0].shape};
     parts[0].centre[0] = 1.3, parts[1].centre[0] = 1.45;
     for (int i = 0; i < 2; ++i) parts[i].radius = 0.1, parts[i].centre[1] = -0.11;
