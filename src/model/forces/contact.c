@@ -96,10 +96,13 @@ PetscErrorCode WallsCome(Model *m, const Case *from, Diag *diag)
   PetscFunctionReturn(0);
 }
 
-static ContactMotion motion_of(const Model *m, PetscReal *motion, PetscReal dt, PetscBool start)
+static ContactMotion motion_of(const Model *m, const ContactMass *whole, PetscReal *motion, PetscReal dt,
+                               PetscBool start)
 {
   return (ContactMotion){.grid = m->grid,
                          .mass = m->nodes->mass,
+                         .whole = whole && whole->multiply ? whole : NULL,
+                         .frames = &m->boundary->frames,
                          .fixed = m->nodes->fixed,
                          .motion = motion,
                          .du = m->nodes->du,
@@ -129,11 +132,39 @@ void contact_take(Model *m, const Case *from)
     if (i % n >= 2) m->points->real[POINT_CONTACT][i] *= w.mean / (1 - w.lag);
 }
 
-/* Do points carry an acceleration to other nodes that walls' forces can be taken out of where they acted?
- * With a consistent mass single forces are accelerations of both signs of nodes hardly reached. */
+/* Can walls' forces be taken out of the acceleration where they acted, at the end of the step? Where points carry
+ * it to others and the mass is consistent, single forces are accelerations of both signs of nodes hardly reached. */
 static PetscBool releases(const Model *m)
 {
-  return holds(m) && m->method->restores_grid && m->c->analysis.mass == MASS_LUMPED;
+  return holds(m) && (!m->method->restores_grid || m->c->analysis.mass == MASS_LUMPED);
+}
+
+/* Collective. Does anything touch, or has anything touched at the start of the step? */
+static PetscErrorCode Touches(const Contact *s, MPI_Comm comm, PetscBool *any)
+{
+  PetscBool here = PETSC_FALSE;
+
+  PetscFunctionBeginUser;
+  for (const ContactPoint *c = s->point; c < s->point + s->n; ++c)
+    here |= c->touches || c->before != CONTACT_OPEN || c->state != CONTACT_OPEN;
+  PetscCallMPI(MPI_Allreduce(&here, any, 1, MPIU_BOOL, MPI_LOR, comm));
+  PetscFunctionReturn(0);
+}
+
+/* Sets the velocity of what is in contact to its wall's. */
+static PetscErrorCode Project(const Model *m, PetscReal *v, PetscReal dt, PetscBool start)
+{
+  ContactMass whole;
+  PetscBool any;
+
+  PetscFunctionBeginUser;
+  PetscCall(Touches(m->contact, m->comm, &any));
+  if (!any) PetscFunctionReturn(0);
+  PetscCall(ContactMassCreate(m, &whole));
+  const ContactMotion motion = motion_of(m, &whole, v, dt, start);
+  PetscCall(ContactProject(m->contact, &motion, m->contact->impulse));
+  PetscCall(ContactMassDestroy(&whole));
+  PetscFunctionReturn(0);
 }
 
 /* The forces of the last step are taken out of what Newmark's formulas remember, or they would push what
@@ -141,22 +172,17 @@ static PetscBool releases(const Model *m)
  * carry the acceleration the first has been done (release). */
 PetscErrorCode ContactHold(Model *m, PetscReal dt, PetscReal inertia)
 {
-  const PetscInt dofs = m->grid->n_nodes * m->dim;
-  NodalFields *n = m->nodes;
-
   PetscFunctionBeginUser;
   if (!m->contact) PetscFunctionReturn(0);
   contact_prepare(m->contact, m->time, dt, inertia, share_of_force(m));
   for (RigidWall *b = m->contact->rigid; b < m->contact->rigid + m->contact->n_rigid; ++b)
     rigid_begin(b, m->walls, m->c, m->time, dt, share_of_force(m), m->scheme->middle);
   if (!holds(m)) PetscFunctionReturn(0);
-  const ContactMotion a = motion_of(m, m->nodes->a, dt, PETSC_TRUE), v = motion_of(m, m->nodes->v, dt, PETSC_TRUE);
+  const ContactMotion a = motion_of(m, NULL, m->nodes->a, dt, PETSC_TRUE);
   const PetscReal lag = m->scheme->weights(&m->c->analysis, dt).lag;
-  for (PetscInt i = 0; i < dofs; ++i) n->echo[i] -= lag * n->a[i];
   if (!releases(m))
     PetscCall(ContactRelease(m->contact, &a, 1 / (1 - lag), m->contact->impulse + m->contact->n_partners));
-  for (PetscInt i = 0; i < dofs; ++i) n->echo[i] += lag * n->a[i]; /* of what is left */
-  PetscCall(ContactProject(m->contact, &v, m->contact->impulse));
+  PetscCall(Project(m, m->nodes->v, dt, PETSC_TRUE));
   PetscFunctionReturn(0);
 }
 
@@ -167,8 +193,7 @@ PetscErrorCode ContactEnd(Model *m, PetscReal dt, EnergyStep *energy)
   PetscFunctionBeginUser;
   for (PetscInt k = 0; s && k < s->n_rigid; ++k) rigid_end(s->rigid + k);
   if (!s || !holds(m)) PetscFunctionReturn(0);
-  const ContactMotion end = motion_of(m, m->nodes->v1, dt, PETSC_FALSE);
-  PetscCall(ContactProject(s, &end, s->impulse));
+  PetscCall(Project(m, m->nodes->v1, dt, PETSC_FALSE));
   for (PetscInt k = 0; k < s->n_partners; ++k) {
     energy->friction += s->impulse[k].sliding;
     energy->transfer -= s->impulse[k].sliding;
@@ -206,7 +231,7 @@ ContactWork contact_work(const Model *m)
   for (PetscInt k = 0; s && k < s->n; ++k) {
     const ContactWork work = point_work(m, s->point + k);
     if (contact_rigid(s, s->point + k)) sum.rigid += work.moving;
-    sum.start += work.start;
+    if (!releases(m)) sum.start += work.start;
     sum.moving += work.moving;
     sum.sliding += work.sliding;
     sum.closing += work.closing;
@@ -277,10 +302,14 @@ static PetscErrorCode Release(Model *m, PetscReal dt)
 {
   const PetscReal lag = m->scheme->weights(&m->c->analysis, dt).lag;
   PetscReal enough[MOTIONS];
+  PetscBool any;
   MassSolve c;
 
   PetscFunctionBeginUser;
   if (!releases(m)) PetscFunctionReturn(0);
+  for (PetscInt k = 0; k < m->contact->n_partners; ++k) m->contact->wall[k].rate = (ContactSum){0};
+  PetscCall(Touches(m->contact, m->comm, &any));
+  if (!any) PetscFunctionReturn(0);
   PetscCall(MassSolveCreate(m->space, &c));
   c.framed = PETSC_TRUE;
   PetscCall(SumForces(m, 1 / (1 - lag), &c));
@@ -289,9 +318,11 @@ static PetscErrorCode Release(Model *m, PetscReal dt)
   PetscCall(MassSolveRun(&c, enough, MOST_SWEEPS));
   PetscCall(MassSolveClose(&c));
   mass_turn(&c, c.x);
-  for (PetscInt i = 0; i < m->grid->n_nodes * m->dim; ++i)
-    m->nodes->a1[i] -= c.x[i / m->dim * c.width + ACCELERATION * m->dim + i % m->dim];
-  for (PetscInt k = 0; k < m->contact->n_partners; ++k) m->contact->wall[k].rate = (ContactSum){0};
+  for (PetscInt i = 0; i < m->grid->n_nodes * m->dim; ++i) {
+    const PetscReal by_walls = c.x[i / m->dim * c.width + ACCELERATION * m->dim + i % m->dim];
+    m->nodes->a1[i] -= by_walls;
+    m->nodes->echo[i] -= lag * by_walls;
+  }
   PetscCall(MassSolveDestroy(&c));
   PetscFunctionReturn(0);
 }

@@ -9,6 +9,8 @@
 #define WALL_NUMBERS ((PetscInt)(sizeof(WallState) / sizeof(PetscReal)))
 #define RIGID_NUMBERS ((PetscInt)(sizeof(RigidState) / sizeof(PetscReal)))
 
+#define ROUND_CORNER 0.9 /* cosine: a normal that has turned by more in a step belongs to another face */
+
 #define LEANS 0.1 /* a normal with such a share of an axis holds along it */
 
 #define CLOSED 1e-5 /* of a cell: gaps and slips that remain of contact */
@@ -93,10 +95,24 @@ void contact_place(const Contact *s, const ContactPoint *c, const PetscReal *du,
     for (PetscInt d = 0; d < s->dim; ++d) x[d] += whole * s->N[c->first + I] * du[s->node[c->first + I] * s->dim + d];
 }
 
+/* A place in the wall, beside a corner, may be nearer to another face than that which the material came to: it would be
+ * pushed out there, in every step anew. Then the owner, which stands outside, sees the wall for it. */
+static PetscBool see_wall(const Contact *s, const ContactPoint *c, PetscReal t, const PetscReal x[3], WallPlace *place)
+{
+  PetscReal along = 0, owner[3];
+  if (!wall_near(s->walls, c->wall, t, x, 2 * s->near, c->side, place)) return PETSC_FALSE;
+  for (int d = 0; d < 3; ++d) along += place->normal[d] * c->facing[d];
+  if (along > ROUND_CORNER) return PETSC_TRUE;
+  for (int d = 0; d < 3; ++d) owner[d] = x[d] + c->reach * c->facing[d];
+  if (!wall_near(s->walls, c->wall, t, owner, 2 * s->near + c->reach, c->side, place)) return PETSC_FALSE;
+  place->gap -= c->reach;
+  return PETSC_TRUE;
+}
+
 /* The wall as the contact point sees it at x, or the other body: a plane that goes with it. */
 static PetscBool place_of(const Contact *s, const ContactPoint *c, PetscReal t, const PetscReal x[3], WallPlace *place)
 {
-  if (c->wall < s->n_walls) return wall_near(s->walls, c->wall, t, x, 2 * s->near, c->side, place);
+  if (c->wall < s->n_walls) return see_wall(s, c, t, x, place);
   *place = (WallPlace){.gap = c->open};
   for (int d = 0; d < 3; ++d) {
     place->normal[d] = c->normal[d];

@@ -10,6 +10,7 @@
  * of both fields, those of the second with -N: so forces come in pairs, and all that follows is the same
  * for walls and interfaces. */
 #pragma once
+#include "boundary/frames.h"
 #include "solve/contact/contact_law.h"
 #include "solve/contact/rigid.h"
 #include "solve/forces/nodal_force.h"
@@ -39,6 +40,7 @@ typedef struct {
   PetscBool touches;   /* is there no gap at the start of the step? */
   PetscReal gap;       /* at the last assembly, m */
   PetscReal normal[3]; /* at the last assembly */
+  PetscReal facing[3]; /* at the start of the step, as the owner sees it */
   PetscReal slip[3];   /* likewise: motion against the wall, m */
   PetscReal last[3];   /* force at the end of the last step, N */
   PetscReal start[3];  /* of it, what nodes remember as acceleration, N */
@@ -129,16 +131,26 @@ typedef struct {
 PetscErrorCode ContactTractions(const Contact *contact, const Grid *grid, PetscInt wall, const PetscReal *du,
                                 PetscReal share, PetscInt *n, ContactTraction **tractions);
 
+/* A mass matrix that is not diagonal. */
+typedef struct {
+  /* Collective. product = M x, n_nodes x dim, on owners; x is right on all copies. */
+  PetscErrorCode (*multiply)(void *context, const PetscReal *x, PetscReal *product);
+  void *context;
+  const PetscReal *diagonal; /* n_nodes, on owners, kg */
+} ContactMass;
+
 /* What a projection works with; arrays go over local nodes. */
 typedef struct {
   const Grid *grid;
   const PetscReal *mass;      /* n_nodes, kg */
-  const unsigned char *fixed; /* n_nodes x dim: dofs that do not take part */
-  PetscReal *motion;          /* n_nodes x dim: velocity or acceleration, changed */
-  const PetscReal *du;        /* increments of the step */
-  PetscReal rate;             /* times `swept` it is the velocity of the wall */
-  PetscBool pulls;            /* may the wall pull? Else only what moves into it is stopped */
-  PetscBool start;            /* of those in contact before the step, or of those in contact after it? */
+  const ContactMass *whole;   /* of which that is the lumped one; NULL: that is all */
+  const unsigned char *fixed; /* n_nodes x dim: dofs that do not take part, in the frames of nodes that slide */
+  const Frames *frames;
+  PetscReal *motion;   /* n_nodes x dim: velocity or acceleration, changed */
+  const PetscReal *du; /* increments of the step */
+  PetscReal rate;      /* times `swept` it is the velocity of the wall */
+  PetscBool pulls;     /* may the wall pull? Else only what moves into it is stopped */
+  PetscBool start;     /* of those in contact before the step, or of those in contact after it? */
 } ContactMotion;
 
 /* Collective. The least change, by mass, of nodal motion that lets points in contact go with their

@@ -55,7 +55,7 @@ void contact_remember(ContactPoint *c, PetscInt dim, const PetscReal *kept, cons
   c->before = (ContactState)(int)(kept[0] + 0.5);
   for (PetscInt d = 0; d < dim; ++d) c->last[d] = c->start[d] = kept[2 + d];
   c->state = c->before;
-  for (int d = 0; d < 3; ++d) c->normal[d] = normal[d];
+  for (int d = 0; d < 3; ++d) c->normal[d] = c->facing[d] = normal[d];
 }
 
 ContactLaw contact_law_of(ContactKind kind, PetscReal friction)

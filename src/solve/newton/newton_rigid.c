@@ -184,10 +184,14 @@ PetscBool newton_rigid_met(const Newton *n)
   return PETSC_TRUE;
 }
 
-const char *newton_rigid_reason(const Newton *n)
+const char *newton_rigid_reason(Newton *n)
 {
   const Contact *s = n->problem->scene.contact;
-  for (PetscInt k = 0; s && k < s->n_rigid; ++k)
-    if (rigid_floats(s->rigid + k)) return "a wall with mass touches nothing, and in statics nothing else holds it";
+  for (PetscInt k = 0; s && k < s->n_rigid; ++k) {
+    if (!rigid_floats(s->rigid + k)) continue;
+    snprintf(n->loose, sizeof n->loose, "the wall with mass '%s' touches nothing, and in statics nothing else holds it",
+             n->problem->scene.c->walls[s->rigid[k].wall].name);
+    return n->loose;
+  }
   return NULL;
 }

@@ -1,0 +1,219 @@
+/* The motion of nodes that lets points in contact go with their walls: the change of least kinetic
+ * energy, by impulses at these points,
+ *
+ *   v := v + M^-1 A^T p,    A v = wall,
+ *
+ * with the mass M and A v, the motion of the contact points in the directions that are held.
+ * Where more points are in contact than nodes can follow, p is not unique: some of it counts as
+ * motion, so that it stays small. What slides is rubbed by the impulses, too: friction p against the
+ * way that it goes. */
+#include "solve/contact/impulse/impulse.h"
+
+#define MOST_LET_GO 8 /* times that points are let go that would pull */
+
+/* Velocity of the wall there, now. */
+static void wall_velocity(const Projection *w, PetscInt k, PetscReal v[3])
+{
+  const ContactPoint *c = w->s->point + k;
+  const RigidWall *b = contact_rigid(w->s, c);
+  if (b) rigid_velocity(b, w->arm + 3 * k, v);
+  else
+    for (int d = 0; d < 3; ++d) v[d] = w->m->rate * c->swept[d];
+}
+
+/* Walls that do not pull let go what would have to be held back. */
+static PetscErrorCode LetGo(Projection *w, PetscBool *any)
+{
+  PetscBool here = PETSC_FALSE;
+
+  PetscFunctionBeginUser;
+  for (PetscInt k = 0; k < w->s->n && !w->m->pulls; ++k) {
+    const ContactPoint *c = w->s->point + k;
+    if (!w->held[k] || c->law.kind == CONTACT_BONDED || impulse_dot(3, c->normal, w->p + 3 * k) >= 0) continue;
+    w->held[k] = 0;
+    for (int d = 0; d < 3; ++d) w->p[3 * k + d] = 0;
+    here = PETSC_TRUE;
+  }
+  PetscCallMPI(MPI_Allreduce(&here, any, 1, MPIU_BOOL, MPI_LOR, w->m->grid->comm));
+  PetscFunctionReturn(0);
+}
+
+/* What has just met a wall that lets nothing slide does not slide there either. */
+static unsigned char held_of(const ContactPoint *c, const ContactMotion *m)
+{
+  const ContactState state = m->start ? c->before : c->state;
+  const PetscBool meets = state != CONTACT_OPEN || (m->start && c->touches);
+  if (m->start && c->gone) return 0;
+  return state == CONTACT_STICKS || (meets && c->law.kind == CONTACT_STICK) ? 3 : meets;
+}
+
+/* Motion of a contact point along its wall, 3 numbers. */
+static void slip_of(const Projection *w, PetscInt k, PetscReal v[3])
+{
+  const ContactPoint *c = w->s->point + k;
+  PetscReal along = 0, own[3];
+  wall_velocity(w, k, own);
+  v[0] = v[1] = v[2] = 0;
+  for (PetscInt e = c->first; e < c->first + c->n; ++e)
+    for (PetscInt d = 0; d < w->s->dim; ++d) v[d] += w->s->N[e] * w->m->motion[w->s->node[e] * w->s->dim + d];
+  for (int d = 0; d < 3; ++d) v[d] -= own[d], along += v[d] * c->normal[d];
+  for (int d = 0; d < 3; ++d) v[d] -= along * c->normal[d];
+}
+
+/* Of a wall that rubs: what slides is rubbed against its way by the impulse along the normal, or gets
+ * back what the solve has taken too much; what sticks is held by no more than friction can. */
+static void rub(const Projection *w, PetscInt k, PetscReal *p)
+{
+  const ContactPoint *c = w->s->point + k;
+  PetscReal v[3], shear[3];
+  if (!w->held[k] || c->law.friction == 0 || c->law.kind == CONTACT_BONDED) return;
+  const PetscReal normal = impulse_dot(3, p, c->normal), friction = c->law.friction;
+  const PetscReal pressing = (1 / w->m->rate) * (w->m->start ? impulse_dot(3, c->last, c->normal) : c->now.pressure);
+  for (int d = 0; d < 3; ++d) shear[d] = p[d] - normal * c->normal[d];
+  if (w->held[k] == 3) {
+    const PetscReal size = PetscSqrtReal(impulse_dot(3, shear, shear)),
+                    most = friction * (PetscAbsReal(normal) + pressing);
+    for (int d = 0; d < 3 && size > most; ++d) p[d] -= (1 - most / size) * shear[d];
+    return;
+  }
+  slip_of(w, k, v);
+  const PetscReal speed = PetscSqrtReal(impulse_dot(3, v, v));
+  for (int d = 0; d < 3 && speed > 0; ++d) p[d] -= friction * normal * v[d] / speed;
+}
+
+/* Half of the work that impulses take from sliding: by the motion before them, or after. */
+static void lose(const Projection *w, ContactSum *sum)
+{
+  PetscReal v[3];
+  for (PetscInt k = 0; k < w->s->n; ++k) {
+    slip_of(w, k, v);
+    sum[w->s->point[k].wall].sliding -= 0.5 * impulse_dot(3, v, w->p + 3 * k);
+  }
+}
+
+void contact_add(const ContactPoint *c, PetscInt dim, const PetscReal f[3], ContactSum *sum)
+{
+  for (PetscInt d = 0; d < dim; ++d) sum->force[d] += f[d];
+  for (int d = 0; d < 3; ++d) sum->torque[d] += c->x[(d + 1) % 3] * f[(d + 2) % 3] - c->x[(d + 2) % 3] * f[(d + 1) % 3];
+}
+
+/* What contact point k lacks of the motion of its wall. */
+static void lack_of(const Projection *w, PetscInt k, PetscReal lack[3])
+{
+  PetscReal v[3];
+  impulse_gather(w, w->m->motion, k, v);
+  wall_velocity(w, k, lack);
+  impulse_hold(w, k, lack);
+  for (int d = 0; d < 3; ++d) lack[d] -= v[d];
+}
+
+static PetscErrorCode ListMoved(Projection *w)
+{
+  const Contact *s = w->s;
+  const Grid *grid = w->m->grid;
+  PetscReal *used;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(grid->n_nodes, &used));
+  for (PetscInt k = 0; k < s->n; ++k)
+    for (PetscInt e = s->point[k].first; e < s->point[k].first + s->point[k].n && w->held[k]; ++e) used[s->node[e]] = 1;
+  PetscCall(GridSumToOwners(grid, 1, used));
+  PetscCall(GridToGhosts(grid, 1, used));
+  PetscCall(PetscMalloc1(grid->n_nodes, &w->moved));
+  for (PetscInt i = 0; i < grid->n_nodes; ++i)
+    if (used[i] > 0 || w->m->whole) w->moved[w->n_moved++] = i;
+  PetscCall(PetscFree(used));
+  PetscCall(PetscCalloc1(grid->n_nodes * s->dim, &w->nodes));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode Create(const Contact *s, const ContactMotion *m, Projection *w, PetscBool *any)
+{
+  PetscBool here = PETSC_FALSE;
+
+  PetscFunctionBeginUser;
+  *w = (Projection){.s = s, .m = m};
+  PetscCall(PetscCalloc4(3 * s->n, &w->p, 3 * s->n, &w->lack, s->n, &w->own, s->n, &w->held));
+  PetscCall(
+    PetscCalloc3(s->n_rigid ? 3 * s->n : 0, &w->arm, RIGID * s->n_rigid, &w->push, RIGID * s->n_rigid, &w->answer));
+  for (PetscInt k = 0; k < s->n; ++k) {
+    const ContactPoint *c = s->point + k;
+    const RigidWall *b = contact_rigid(s, c);
+    PetscReal x[3];
+    contact_place(s, c, m->du, m->start ? 0 : 1, x);
+    if (b) rigid_arm(b, m->start, x, w->arm + 3 * k);
+    if (b) w->own[k] += 1 / b->body.mass;
+    w->held[k] = held_of(c, m);
+    lack_of(w, k, w->lack + 3 * k);
+    here = here || w->held[k];
+    for (PetscInt e = c->first; e < c->first + c->n; ++e)
+      w->own[k] += m->mass[s->node[e]] > 1e-300 ? s->N[e] * s->N[e] / m->mass[s->node[e]] : 0;
+  }
+  PetscCallMPI(MPI_Allreduce(&here, any, 1, MPIU_BOOL, MPI_LOR, m->grid->comm));
+  if (*any) PetscCall(ListMoved(w));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode Destroy(Projection *w)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscFree4(w->p, w->lack, w->own, w->held));
+  PetscCall(PetscFree3(w->arm, w->push, w->answer));
+  PetscCall(PetscFree(w->nodes));
+  PetscCall(PetscFree(w->moved));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ContactProject(Contact *s, const ContactMotion *m, ContactSum *sum)
+{
+  Projection w;
+  PetscBool any;
+
+  PetscFunctionBeginUser;
+  PetscCall(Create(s, m, &w, &any));
+  if (!any) {
+    PetscCall(Destroy(&w));
+    PetscFunctionReturn(0);
+  }
+  for (int k = 0; k < MOST_LET_GO && any; ++k) {
+    PetscCall(m->whole ? ImpulsesWhole(&w) : ImpulsesLumped(&w));
+    PetscCall(LetGo(&w, &any));
+  }
+  for (PetscInt k = 0; k < s->n; ++k) rub(&w, k, w.p + 3 * k);
+  lose(&w, sum);
+  PetscCall(m->whole ? ImpulsesWholeSpread(&w, w.p) : ImpulsesLumpedSpread(&w, w.p));
+  for (PetscInt i = 0; i < w.n_moved * s->dim; ++i) {
+    const PetscInt dof = w.moved[i / s->dim] * s->dim + i % s->dim;
+    m->motion[dof] += w.nodes[dof];
+  }
+  for (PetscInt k = 0; k < s->n_rigid; ++k) rigid_push(s->rigid + k, w.push + RIGID * k);
+  lose(&w, sum);
+  for (PetscInt k = 0; k < s->n; ++k) contact_add(s->point + k, s->dim, w.p + 3 * k, sum + s->point[k].wall);
+  PetscCall(Destroy(&w));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ContactRelease(Contact *s, const ContactMotion *m, PetscReal share, ContactSum *sum)
+{
+  const PetscInt dim = s->dim;
+  PetscReal *nodes;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(m->grid->n_nodes * dim, &nodes));
+  for (ContactPoint *c = s->point; c < s->point + s->n; ++c) {
+    PetscReal f[3];
+    for (int d = 0; d < 3; ++d) f[d] = -share * c->start[d];
+    for (PetscInt e = c->first; e < c->first + c->n; ++e)
+      for (PetscInt d = 0; d < dim; ++d) nodes[s->node[e] * dim + d] += s->N[e] * f[d];
+    contact_add(c, dim, f, sum + c->wall);
+    for (int d = 0; d < 3; ++d) c->start[d] = 0;
+  }
+  PetscCall(GridSumToOwners(m->grid, dim, nodes));
+  impulse_free(m, dim, nodes);
+  for (PetscInt i = 0; i < m->grid->n_owned * dim; ++i)
+    nodes[i] = m->mass[i / dim] < 1e-300 ? 0 : nodes[i] / m->mass[i / dim];
+  PetscCall(GridToGhosts(m->grid, dim, nodes));
+  for (PetscInt i = 0; i < m->grid->n_nodes * dim; ++i) m->motion[i] += nodes[i];
+  PetscCall(PetscFree(nodes));
+  PetscFunctionReturn(0);
+}
