@@ -75,7 +75,7 @@ static PetscErrorCode PrintCost(const Model *m, const Cost *c)
   PetscCall(PeakMemory(&peak));
   PetscCall(
     PetscPrintf(PETSC_COMM_WORLD,
-                "  %s: %d steps, %d Newton, %.1f linear iterations each; processor %.2f s, %.2f each (clock %.2f: "
+                "  %s: %d steps, %d Newton, %.1f linear iterations each; processor %.3f s, %.3f each (clock %.2f: "
                 "points %.2f matrix %.2f linear %.2f pattern %.2f newton %.2f); most memory %.2f GB\n",
                 newton_linear_name(m->newton), (int)c->steps, (int)c->newton, (double)c->linear / (double)its,
                 (double)c->worked, (double)(c->worked / its), (double)c->clock, (double)c->phase[PHASE_POINTS],

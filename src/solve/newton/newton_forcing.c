@@ -8,7 +8,7 @@
 #define LOOSEST 1e-4
 #define TIGHTEST 1e-8
 /* share of Newton's tolerance that the last solve may leave */
-#define UNSEEN 0.01
+#define UNSEEN 1e-3
 /* linear iterations that a set-up of multigrid costs */
 #define SETUP_COSTS 20
 
