@@ -38,6 +38,9 @@ title "a rolling disk: gmm beside mpm, cells of 0.04 m and steps of 4 ms, then 0
 title "statics"
 "$bench/bench_static"
 
+title "large statics: a beam, soil, a nearly incompressible block, the plane cantilever"
+"$bench/bench_statics"
+
 title "mixed formulation in 3D"
 "$bench/bench_mixed"
 title "the same, 62,500 unknowns, on one and two ranks"

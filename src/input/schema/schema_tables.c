@@ -27,7 +27,7 @@ static const SchemaWord update_words[] = {
   {NULL, 0, NULL},
 };
 static const SchemaWord linear_words[] = {
-  {"auto", LINEAR_AUTO, "chosen from the problem"},
+  {"auto", LINEAR_AUTO, "chosen from the problem: its size, dimension, law and step"},
   {"direct", LINEAR_DIRECT, "factorisation"},
   {"iterative", LINEAR_ITERATIVE, "Krylov method with a preconditioner"},
   {NULL, 0, NULL},

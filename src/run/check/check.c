@@ -137,22 +137,35 @@ static PetscErrorCode ReportBodies(const Model *m, Diag *diag, FILE *out)
   PetscFunctionReturn(0);
 }
 
-/* Bytes per rank, roughly: points, support, matrix, and the factor of a direct solver by nested
- * dissection's growth. */
+/* What the solver needs beside its matrix: a factor, by nested dissection's growth, or the levels of multigrid. */
+#define MULTIGRID 0.7 /* of the matrix, measured */
+
+static PetscReal solver_memory(const Model *m, PetscInt unknowns, PetscReal matrix)
+{
+  const LinearProblem problem = {.choice = m->c->linear,
+                                 .dim = m->dim,
+                                 .unknowns = unknowns,
+                                 .symmetric = m->symmetric,
+                                 .mixed = m->formulation->pressure};
+  const PetscReal n = (PetscReal)PetscMax(unknowns, 2);
+  if (m->scheme->inertia) return 0;
+  if (!linear_factorises(&problem)) return MULTIGRID * matrix;
+  return m->dim == 2 ? 8 * 5 * n * PetscLog2Real(n) : 8 * 6 * PetscPowReal(n, 4.0 / 3.0);
+}
+
+/* Bytes per rank, roughly: points, support, matrix, and its solver. */
 static PetscReal estimated_memory(const Model *m, PetscInt points, PetscInt unknowns, PetscInt pairs)
 {
   const PetscInt most = m->space->basis->domains ? m->dim == 2 ? 9 : 27 : m->grid->nodes_per_cell;
   const PetscReal dim = (PetscReal)m->dim, nn = m->grid->cloud ? 14 : (PetscReal)most,
-                  n = (PetscReal)PetscMax(unknowns, 2), block = (PetscReal)m->system->block;
+                  block = (PetscReal)m->system->block;
   PetscReal per_point = 24 + 8 * nn * (1 + dim);
   for (PetscInt f = 0; f < POINT_N_REAL; ++f) per_point += 8 * (PetscReal)m->points->components[f];
-  const PetscReal value = m->scheme->inertia && !m->formulation->pressure
-                            ? 8 + 4
-                            : 8 + 8 + 4 + 8 + 8; /* blocks in single precision, or PETSc's */
-  const PetscReal matrix = (PetscReal)pairs * (block * block * value + 8);
-  const PetscReal factor = m->dim == 2 ? 8 * 5 * n * PetscLog2Real(n) : 8 * 6 * PetscPowReal(n, 4.0 / 3.0);
-  const PetscReal direct = m->c->linear != LINEAR_ITERATIVE && !m->scheme->inertia ? factor : 0;
-  return (PetscReal)points * per_point + matrix + direct + 120 * (PetscReal)m->grid->n_nodes_global;
+  const PetscReal value =
+    m->scheme->inertia && !m->formulation->pressure ? 8 + 4 : 8 + 8 + 4; /* blocks in single precision, or PETSc's */
+  const PetscReal matrix = (PetscReal)pairs * (block * block * value + 12);
+  return (PetscReal)points * per_point + matrix + solver_memory(m, unknowns, matrix) +
+         120 * (PetscReal)m->grid->n_nodes_global;
 }
 
 /* How large clouds are, and how many are not what the rule aims at. */

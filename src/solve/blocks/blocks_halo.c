@@ -1,83 +1,6 @@
-/* Rows that several ranks assemble, and columns that other ranks own.
- *
- * A rank's cells fill rows of nodes that another rank owns; their blocks go to the owner. There
- * they may meet columns which the owner's own cells do not couple, or nodes that its part of the
- * grid does not even hold. */
+/* Rows that several ranks assemble, and columns that other ranks own. */
 #include "solve/blocks/blocks.h"
-
-/* Ghost rows stand behind the owned ones: row n + g. Which node is theirs, as a global number? */
-static PetscErrorCode GhostNumbers(const System *s, PetscInt **number)
-{
-  PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(s->n_rows - s->n_active, number));
-  for (PetscInt i = 0; i < s->n_nodes; ++i)
-    if (s->row[i] >= s->n_active) (*number)[s->row[i] - s->n_active] = s->number[i];
-  PetscFunctionReturn(0);
-}
-
-/* Which incoming blocks belong to each owned row (in_start), and where this rank's ghost rows begin
- * at their owner. */
-static PetscErrorCode Offsets(const System *s, PetscSF rows, PetscInt **in_start, PetscInt *remote)
-{
-  const PetscInt n = s->n_active, ghosts = s->n_rows - n, *degree;
-  PetscInt *count, *arriving, *start, copies = 0, total = 0;
-
-  PetscFunctionBeginUser;
-  PetscCall(PetscSFComputeDegreeBegin(rows, &degree));
-  PetscCall(PetscSFComputeDegreeEnd(rows, &degree));
-  for (PetscInt r = 0; r < n; ++r) copies += degree[r];
-  PetscCall(PetscMalloc2(ghosts, &count, copies, &arriving));
-  PetscCall(PetscMalloc1(n + 1, &start));
-  for (PetscInt g = 0; g < ghosts; ++g) count[g] = s->row_start[n + g + 1] - s->row_start[n + g];
-  PetscCall(PetscSFGatherBegin(rows, MPIU_INT, count, arriving));
-  PetscCall(PetscSFGatherEnd(rows, MPIU_INT, count, arriving));
-  for (PetscInt r = 0, k = 0; r < n; ++r) {
-    start[r] = total;
-    for (PetscInt c = 0; c < degree[r]; ++c, ++k) {
-      const PetscInt pairs = arriving[k];
-      arriving[k] = total;
-      total += pairs;
-    }
-  }
-  start[n] = total;
-  PetscCall(PetscSFScatterBegin(rows, MPIU_INT, arriving, remote));
-  PetscCall(PetscSFScatterEnd(rows, MPIU_INT, arriving, remote));
-  PetscCall(PetscFree2(count, arriving));
-  *in_start = start;
-  PetscFunctionReturn(0);
-}
-
-static PetscErrorCode PairForest(const System *s, const PetscInt *owner, const PetscInt *remote, PetscInt n_incoming,
-                                 PetscSF *sf)
-{
-  const PetscInt n = s->n_active, first = s->row_start[n], pairs = s->row_start[s->n_rows] - first;
-  PetscSFNode *root;
-
-  PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(pairs, &root));
-  for (PetscInt g = 0; g < s->n_rows - n; ++g)
-    for (PetscInt k = s->row_start[n + g], j = 0; k < s->row_start[n + g + 1]; ++k, ++j)
-      root[k - first] = (PetscSFNode){.rank = owner[g], .index = remote[g] + j};
-  PetscCall(PetscSFCreate(s->comm, sf));
-  PetscCall(PetscSFSetGraph(*sf, n_incoming, pairs, NULL, PETSC_OWN_POINTER, root, PETSC_OWN_POINTER));
-  PetscFunctionReturn(0);
-}
-
-/* Global numbers of the incoming blocks' columns. */
-static PetscErrorCode IncomingNumbers(const System *s, PetscSF pairs, PetscInt n_incoming, PetscInt **number)
-{
-  const PetscInt first = s->row_start[s->n_active], n = s->row_start[s->n_rows] - first;
-  PetscInt *mine;
-
-  PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(n, &mine));
-  PetscCall(PetscMalloc1(n_incoming, number));
-  for (PetscInt k = 0; k < n; ++k) mine[k] = s->number[s->column[first + k]];
-  PetscCall(PetscSFReduceBegin(pairs, MPIU_INT, mine, *number, MPI_REPLACE));
-  PetscCall(PetscSFReduceEnd(pairs, MPIU_INT, mine, *number, MPI_REPLACE));
-  PetscCall(PetscFree(mine));
-  PetscFunctionReturn(0);
-}
+#include "solve/system/shared_rows.h"
 
 /* Global numbers -> columns: owned rows, then ghost rows, then nodes that no cell of this rank
  * holds. The numbers of all columns of others are returned in their order. */
@@ -170,10 +93,10 @@ static PetscErrorCode DataTypes(PetscInt dim, BlocksHalo *h)
 
 PetscErrorCode BlocksHaloCreate(const System *s, PetscInt *n_columns, BlocksHalo **halo)
 {
-  const PetscInt n = s->n_active, ghosts = s->n_rows - n;
-  PetscInt first, n_outer = 0, *ghost, *owner, *remote, *in_start = NULL, *in_column, *outer;
+  const PetscInt n = s->n_active;
+  PetscInt first, n_outer = 0, *ghost, *outer;
   PetscLayout layout;
-  PetscSF rows;
+  SharedRows shared;
   BlocksHalo *h;
 
   PetscFunctionBeginUser;
@@ -181,33 +104,20 @@ PetscErrorCode BlocksHaloCreate(const System *s, PetscInt *n_columns, BlocksHalo
   PetscCall(DataTypes(s->dim, h));
   PetscCall(PetscLayoutCreateFromSizes(s->comm, n, PETSC_DETERMINE, 1, &layout));
   PetscCall(PetscLayoutGetRange(layout, &first, NULL));
-  PetscCall(GhostNumbers(s, &ghost));
-  PetscCall(PetscSFCreate(s->comm, &rows));
-  PetscCall(PetscSFSetRankOrder(rows, PETSC_TRUE)); /* the same sums in every run */
-  PetscCall(PetscSFSetGraphLayout(rows, layout, ghosts, NULL, PETSC_COPY_VALUES, ghost));
-  PetscCall(PetscMalloc2(ghosts, &owner, ghosts, &remote));
-  for (PetscInt g = 0; g < ghosts; ++g) {
-    PetscMPIInt rank;
-    PetscCall(PetscLayoutFindOwner(layout, ghost[g], &rank));
-    owner[g] = rank;
-  }
-  PetscCall(Offsets(s, rows, &in_start, remote));
-  h->n_incoming = in_start[n];
-  PetscCall(PairForest(s, owner, remote, h->n_incoming, &h->pairs));
-  PetscCall(IncomingNumbers(s, h->pairs, h->n_incoming, &in_column));
-  PetscCall(LocalColumns(s, first, ghost, h->n_incoming, in_column, &n_outer, &outer));
+  PetscCall(SharedRowsCreate(s, &shared, &ghost));
+  h->n_incoming = shared.n_incoming;
+  h->pairs = shared.pairs;
+  PetscCall(PetscObjectReference((PetscObject)h->pairs));
+  PetscCall(LocalColumns(s, first, ghost, h->n_incoming, shared.number, &n_outer, &outer));
   PetscCall(PetscSFCreate(s->comm, &h->columns));
   PetscCall(PetscSFSetGraphLayout(h->columns, layout, n_outer, NULL, PETSC_COPY_VALUES, outer));
-  PetscCall(MergeRows(s, in_start, in_column, h));
+  PetscCall(MergeRows(s, shared.start, shared.number, h));
   *n_columns = n + n_outer;
   *halo = h;
-  PetscCall(PetscSFDestroy(&rows));
+  PetscCall(SharedRowsDestroy(&shared));
   PetscCall(PetscLayoutDestroy(&layout));
-  PetscCall(PetscFree2(owner, remote));
   PetscCall(PetscFree(ghost));
   PetscCall(PetscFree(outer));
-  PetscCall(PetscFree(in_start));
-  PetscCall(PetscFree(in_column));
   PetscFunctionReturn(0);
 }
 

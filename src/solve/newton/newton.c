@@ -107,6 +107,7 @@ static PetscErrorCode LiftPrescribed(Newton *n)
   if (n->report->status == LAW_OK) {
     PetscCall(PetscTime(&start));
     PetscCall(NewtonFillMatrix(n));
+    PetscCall(NewtonForcing(n));
     PetscCall(PetscTime(&n->solving));
     n->t_matrix += n->solving - start;
     PetscCall(SNESGetKSP(n->snes, &ksp));
@@ -202,7 +203,7 @@ static PetscErrorCode NewtonTry(Newton *n, NewtonReport *report)
   report->bad_point = -1;
   PetscCall(PetscTime(&start));
   newton_rest_without_unknowns(p);
-  n->before = 0;
+  n->before = n->last = 0;
   n->search.enough = p->stiff ? ENOUGH_STIFF : ENOUGH;
   n->changes = n->changed = 0;
   PetscCall(UpdateSaddle(n));
@@ -227,7 +228,9 @@ static PetscErrorCode NewtonTry(Newton *n, NewtonReport *report)
   if (reason == SNES_DIVERGED_LINEAR_SOLVE) n->built = -1;
   const PetscBool useless = reason == SNES_DIVERGED_LINEAR_SOLVE || reason == SNES_DIVERGED_INNER;
   n->retry = useless && !n->direct;
-  n->failures += n->retry;
+  n->anew = n->retry && n->stale;
+  if (n->anew) n->built = -1;
+  n->failures += n->retry && !n->anew;
   if (reason == SNES_DIVERGED_LINEAR_SOLVE && n->direct) PetscCall(LeaveMoreRoom(n, &n->retry));
   PetscFunctionReturn(0);
 }
@@ -246,10 +249,11 @@ PetscErrorCode NewtonSolve(Newton *n, StepProblem *p, const LinearProblem *linea
   newton_rigid_get(n, walls);
   PetscCall(PetscArraycpy(guess, p->du, dofs));
   if (p->pressure) PetscCall(PetscArraycpy(pressure, p->pressure, nodes));
+  n->anew = PETSC_FALSE;
   PetscCall(NewtonSetUp(n, p, linear));
   PetscCall(NewtonTry(n, report));
   const PetscBool again = n->retry;
-  while (n->retry) { /* once more, with the direct solver */
+  while (n->retry) { /* once more, with set-ups of their own, or with the direct solver */
     const PetscInt lost = report->lost + report->iterations;
     PetscCall(PetscArraycpy(p->du, guess, dofs));
     newton_rigid_set(n, walls);

@@ -18,6 +18,14 @@ struct Newton {
   PetscReal courant; /* of the step that it was set up in */
   /* the preconditioner keeps something of earlier matrices: it is made anew for every solve */
   PetscBool learns;
+  /* newton_forcing.c: does a preconditioner stay for several solves of this step? Solves since its set-up; is the
+   * next one with it not the first? Iterations a digit of the first; the tolerance, and did the user set it? */
+  PetscBool keeps;
+  PetscInt solves;
+  PetscBool stale;
+  PetscReal rate, forcing;
+  PetscBool asked_tolerance;
+  PetscBool anew; /* one that stayed has failed in this step: all of it with set-ups of their own */
   /* system->builds whose solver was chosen with this courant before a checkpoint; -1: none */
   PetscInt remembered;
   LineSearchMemory search;
@@ -53,6 +61,10 @@ struct Newton {
  * already. Times count as `matrix`. Collective. */
 PetscErrorCode NewtonSetUp(Newton *n, StepProblem *p, const LinearProblem *linear);
 PetscErrorCode NewtonReset(Newton *n);
+
+/* newton_forcing.c. After a set-up; before every linear solve: its tolerance, and whether the preconditioner stays. */
+PetscErrorCode NewtonForcingSetUp(Newton *n);
+PetscErrorCode NewtonForcing(Newton *n);
 
 /* newton_residual.c. Residual (and tangent values) at problem->du. A point that fails makes the
  * status of all ranks bad. Collective. */

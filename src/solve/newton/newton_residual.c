@@ -168,6 +168,7 @@ PetscErrorCode NewtonJacobian(SNES snes, Vec x, Mat matrix, Mat preconditioner, 
   if (!n->tangent) PetscCall(NewtonAssemble(n, PETSC_TRUE));
   PetscCall(PetscTime(&start));
   PetscCall(NewtonFillMatrix(n));
+  PetscCall(NewtonForcing(n));
   PetscCall(PetscTime(&end));
   n->t_matrix += end - start;
   n->solving = end; /* what SNES does next */

@@ -69,7 +69,7 @@ PetscErrorCode NewtonSetUp(Newton *n, StepProblem *p, const LinearProblem *linea
   if (n->remembered == p->system->builds) chosen.courant = n->courant;
   n->courant = chosen.courant;
   n->remembered = -1;
-  if (n->retry || n->failures >= NEWTON_FAILURES) chosen.choice = LINEAR_DIRECT;
+  if ((n->retry && !n->anew) || n->failures >= NEWTON_FAILURES) chosen.choice = LINEAR_DIRECT;
   chosen.room = n->room;
   PetscCall(LinearForm(&chosen, &form));
   n->projects = chosen.multipliers && form == SYSTEM_BLOCKS;
@@ -105,6 +105,7 @@ PetscErrorCode NewtonSetUp(Newton *n, StepProblem *p, const LinearProblem *linea
   PetscCall(SNESSetFromOptions(n->snes));
   PetscCall(LinearRefine(ksp, p->system->matrix, &chosen));
   PetscCall(Learns(ksp, &n->learns));
+  PetscCall(NewtonForcingSetUp(n));
   n->built = p->system->builds;
   PetscCall(PetscTime(&end));
   n->t_matrix += end - start;

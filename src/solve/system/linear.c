@@ -150,17 +150,30 @@ static PetscReal iterate_below(const LinearProblem *p)
   return p->symmetric ? ITERATE_BELOW_2D : ITERATE_BELOW_SOIL;
 }
 
-/* Fill-in makes a factorisation of a 3D matrix costly much earlier than of a 2D one. Tangents of soil
- * that is about to fail are unsymmetric, and multigrid may not find their solution. */
-static PetscBool direct_pays(const LinearProblem *p)
+/* Unknowns below which a factorisation is cheaper than multigrid, in statics. Fill-in makes it costly much earlier
+ * in space than in the plane, where the tangents of soil are left to it: near failure multigrid may not find their
+ * solution (docs/experiments/linear-solvers.md). */
+#define FACTORISE_BELOW_3D 5000
+#define FACTORISE_BELOW_3D_SOIL 10000
+#define FACTORISE_BELOW_2D 150000
+#define FACTORISE_BELOW_2D_SOIL 1000000
+#define FACTORISE_BELOW_3D_MIXED 20000
+#define FACTORISE_BELOW_2D_MIXED 500000
+
+static PetscInt factorise_below(const LinearProblem *p)
 {
-  if (p->mixed) return p->unknowns < (p->dim == 2 ? 500000 : 20000);
-  if (p->dynamic && p->courant < iterate_below(p)) return PETSC_FALSE;
-  if (p->dim == 2) return p->unknowns < 1000000;
-  return p->unknowns < (p->symmetric ? 25000 : 100000);
+  if (p->mixed) return p->dim == 2 ? FACTORISE_BELOW_2D_MIXED : FACTORISE_BELOW_3D_MIXED;
+  if (p->dim == 2) return p->symmetric ? FACTORISE_BELOW_2D : FACTORISE_BELOW_2D_SOIL;
+  return p->symmetric ? FACTORISE_BELOW_3D : FACTORISE_BELOW_3D_SOIL;
 }
 
-static PetscBool prefers_direct(const LinearProblem *p)
+static PetscBool direct_pays(const LinearProblem *p)
+{
+  if (p->dynamic && !p->mixed && p->courant < iterate_below(p)) return PETSC_FALSE;
+  return p->unknowns < factorise_below(p);
+}
+
+PetscBool linear_factorises(const LinearProblem *p)
 {
   return p->choice == LINEAR_DIRECT || (p->choice == LINEAR_AUTO && direct_pays(p));
 }
@@ -173,8 +186,8 @@ PetscErrorCode LinearForm(const LinearProblem *p, SystemForm *form)
   PetscCall(PetscOptionsHasName(NULL, NULL, "-ksp_type", &method));
   PetscCall(PetscOptionsHasName(NULL, NULL, "-pc_type", &preconditioner));
   const PetscBool usable = !p->multipliers || p->symmetric || p->courant < PROJECT_BELOW;
-  *form = p->dynamic && usable && !p->mixed && !prefers_direct(p) && !method && !preconditioner ? SYSTEM_BLOCKS
-                                                                                                : SYSTEM_ASSEMBLED;
+  *form = p->dynamic && usable && !p->mixed && !linear_factorises(p) && !method && !preconditioner ? SYSTEM_BLOCKS
+                                                                                                   : SYSTEM_ASSEMBLED;
   PetscFunctionReturn(0);
 }
 
@@ -185,7 +198,7 @@ PetscErrorCode LinearConfigure(KSP ksp, const LinearProblem *p, PetscBool *direc
   PetscFunctionBeginUser;
   PetscCall(LinearForm(p, &form));
   /* multipliers in a matrix make it indefinite */
-  *direct = prefers_direct(p) || (p->multipliers && form != SYSTEM_BLOCKS);
+  *direct = linear_factorises(p) || (p->multipliers && form != SYSTEM_BLOCKS);
   if (*direct) PetscCall(UseDirect(ksp, p->symmetric, what));
   if (*direct && p->mixed) PetscCall(PrepareSaddlePoint(ksp, p->undetermined));
   const PetscInt room = PetscMax(p->room, p->multipliers ? ROOM_FOR_PIVOTS : 0);

@@ -1,8 +1,8 @@
 /* Which linear solver suits the problem: `linear: auto`.
  *
- * Measured (docs/experiments/linear-solvers.md): statics in 2D wants a direct solver up to about a
- * million unknowns; dynamics whose step is short beside the time a wave takes through a cell has a
- * matrix ruled by the mass, and conjugate gradients win. */
+ * Measured (docs/experiments/linear-solvers.md): statics wants a direct solver as long as it is
+ * small, in space much less long than in the plane; dynamics whose step is short beside the time a
+ * wave takes through a cell has a matrix ruled by the mass, and conjugate gradients win. */
 #pragma once
 #include <petscksp.h>
 #include "case/case.h"
@@ -20,6 +20,8 @@ typedef struct {
   PetscInt room;          /* for factors beyond their estimate, percent; 0: as MUMPS has it */
 } LinearProblem;
 
+/* Is that a factorisation? */
+PetscBool linear_factorises(const LinearProblem *problem);
 /* What that solver works on: blocks where our own conjugate gradients or BiCGStab run, unless
  * options ask PETSc for a solver of its own. */
 PetscErrorCode LinearForm(const LinearProblem *problem, SystemForm *form);

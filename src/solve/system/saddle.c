@@ -1,4 +1,5 @@
 #include "solve/system/saddle.h"
+#include "solve/system/assembled.h"
 #include "solve/system/rigid_motions.h"
 
 /* Global numbers of components first .. first + n - 1 of every active node. */
@@ -91,7 +92,7 @@ PetscErrorCode SaddleConfigure(Saddle *saddle, KSP ksp, const System *s, const G
     PetscCall(PCFieldSplitSetSchurPre(pc, PC_FIELDSPLIT_SCHUR_PRE_USER, saddle->schur));
   }
   /* a matrix without numbers cannot be split */
-  PetscCall(MatSetValuesCOO(s->matrix, s->values, INSERT_VALUES));
+  PetscCall(AssembledFill(s->assembled, s, s->matrix));
   PetscCall(InnerSolvers(pc, dynamic));
   PetscFunctionReturn(0);
 }

@@ -1,5 +1,6 @@
 #include "solve/blocks/blocks.h"
 #include "solve/blocks/projection.h"
+#include "solve/system/assembled.h"
 
 PetscErrorCode SystemCreate(MPI_Comm comm, PetscInt dim, PetscInt block, System **system)
 {
@@ -26,6 +27,7 @@ static PetscErrorCode SystemFreePattern(System *s)
   s->n_cuts = 0;
   PetscCall(MatDestroy(&s->matrix));
   PetscCall(BlocksDestroy(&s->blocks));
+  PetscCall(AssembledDestroy(&s->assembled));
   PetscFunctionReturn(0);
 }
 
@@ -149,33 +151,6 @@ static PetscErrorCode SystemPattern(System *s, const NodeGroups *groups)
 
 static PetscInt system_numbers(const System *s) { return s->row_start[s->n_rows] * s->block * s->block; }
 
-/* One COO entry for each number in `values`: the matrix is filled by one call, ghost rows travel
- * inside it. */
-static PetscErrorCode AssembledMatrix(System *s)
-{
-  const PetscInt size = s->block, n = s->n_active * size, pairs = s->row_start[s->n_rows];
-  PetscInt *i, *j, *rows;
-
-  PetscFunctionBeginUser;
-  PetscCall(PetscMalloc3(pairs * size * size, &i, pairs * size * size, &j, s->n_rows, &rows));
-  for (PetscInt node = 0; node < s->n_nodes; ++node)
-    if (s->row[node] >= 0) rows[s->row[node]] = node;
-  for (PetscInt r = 0, e = 0; r < s->n_rows; ++r)
-    for (PetscInt k = s->row_start[r]; k < s->row_start[r + 1]; ++k)
-      for (PetscInt a = 0; a < size; ++a)
-        for (PetscInt b = 0; b < size; ++b, ++e) {
-          i[e] = s->number[rows[r]] * size + a;
-          j[e] = s->number[s->column[k]] * size + b;
-        }
-  PetscCall(MatCreate(s->comm, &s->matrix));
-  PetscCall(MatSetSizes(s->matrix, n, n, PETSC_DETERMINE, PETSC_DETERMINE));
-  PetscCall(MatSetBlockSize(s->matrix, size));
-  PetscCall(MatSetType(s->matrix, MATAIJ));
-  PetscCall(MatSetPreallocationCOO(s->matrix, pairs * size * size, i, j));
-  PetscCall(PetscFree3(i, j, rows));
-  PetscFunctionReturn(0);
-}
-
 static PetscErrorCode MultiplyBlocks(Mat matrix, Vec x, Vec y)
 {
   Blocks *blocks;
@@ -203,9 +178,10 @@ PetscErrorCode SystemUse(System *s, SystemForm form, PetscBool symmetric)
   if (!s->matrix || s->form != form || (s->blocks && s->blocks->symmetric != symmetric)) {
     PetscCall(MatDestroy(&s->matrix));
     PetscCall(BlocksDestroy(&s->blocks));
+    PetscCall(AssembledDestroy(&s->assembled));
     s->form = form;
     if (form == SYSTEM_BLOCKS) PetscCall(BlockMatrix(s, symmetric));
-    else PetscCall(AssembledMatrix(s));
+    else PetscCall(AssembledCreate(s, &s->assembled, &s->matrix));
     PetscCall(SystemGather(s, PETSC_FALSE));
   }
   if (symmetric) PetscCall(MatSetOption(s->matrix, MAT_SYMMETRIC, PETSC_TRUE));
@@ -293,7 +269,7 @@ PetscErrorCode SystemToMatrix(System *s)
   }
   PetscCall(SystemCloseCuts(s));
   if (s->blocks) PetscCall(BlocksFill(s->blocks, s));
-  else PetscCall(MatSetValuesCOO(s->matrix, s->values, INSERT_VALUES));
+  else PetscCall(AssembledFill(s->assembled, s, s->matrix));
   PetscFunctionReturn(0);
 }
 

@@ -64,8 +64,9 @@ typedef struct System {
   SystemForm form;
   /* what the linear solver gets: assembled, or a shell over blocks; made by SystemUse */
   Mat matrix;
-  struct Blocks *blocks; /* of that shell */
-  PetscInt builds;       /* how often the pattern was made */
+  struct Blocks *blocks;       /* of that shell */
+  struct Assembled *assembled; /* where pairs go in the other */
+  PetscInt builds;             /* how often the pattern was made */
 } System;
 
 PetscErrorCode SystemCreate(MPI_Comm comm, PetscInt dim, PetscInt block, System **system);
