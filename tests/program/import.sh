@@ -156,6 +156,16 @@ sed 's/"scheme_type": "newmark"/"echo_level": 0/' falling/fall.json >falling/bos
 expect "Bossak" 0 "$talus" import kratos falling/bossak.json --out bossak
 says bossak/case.yaml "bossak: -0.3"
 
+# Plane stress has plane strain's constants; ten steps of 0.1 s, added up, are less than 1 s, and Kratos takes an eleventh.
+materials LinearElasticIsotropicPlaneStress2DLaw | sed 's/"POISSON_RATIO": 0/"POISSON_RATIO": 0.25/' >falling/ParticleMaterials.json
+sed 's/"end_time": 0.05/"end_time": 1.0/; s/"time_step": 0.01/"time_step": 0.1/' falling/bossak.json >falling/stress.json
+expect "plane stress" 0 "$talus" import kratos falling/stress.json --out stress
+says err.txt "plane stress is taken as plane strain with"
+says stress/case.yaml "young: 960000, poisson: 0.2}" "end: 1.1, step: 0.1"
+materials HyperElasticNeoHookeanPlaneStress2DLaw >falling/ParticleMaterials.json
+expect "plane stress of rubber" 2 "$talus" import kratos falling/stress.json --out none
+says err.txt "plane stress only of the linear elastic law"
+
 # All that is refused, at once, with its place; nothing is written.
 cp -r pulled odd
 materials JohnsonCookThermalPlastic2DPlaneStrainLaw >odd/ParticleMaterials.json
