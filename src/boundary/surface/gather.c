@@ -4,7 +4,7 @@
 
 /* Of a cell: so far a surface is drawn in, so that one along a side belongs to the cell that holds the material; and so
  * far beside a surface the shape is asked. Both more than positions in the grid are rounded by. */
-#define SLACK 1e-13
+#define SLACK 1e-14
 #define STEP 1e-8
 #define ROUNDED 4e-16 /* of a coordinate */
 #define NOTHING 1e-14 /* of a cell's side */
@@ -48,7 +48,8 @@ static PetscErrorCode Emit(Gather *g, PetscInt cell, PetscReal size, const Piece
   PetscReal mid[3], axis[3][3], deviation[3], turn[2][3] = {{0}}, x[CELL_MAX_NODES * 3];
 
   PetscFunctionBeginUser;
-  if (!(sum->area > NOTHING * PetscPowReal(size, (PetscReal)along))) PetscFunctionReturn(0);
+  /* no wider than what surfaces are drawn in by: of one that ends at this cell */
+  if (!(sum->area > 10 * g->body->slack * PetscPowReal(size, (PetscReal)along - 1))) PetscFunctionReturn(0);
   PetscCall(Reserve(g));
   spread_of(sum, mid, axis, deviation);
   for (PetscInt k = 0; k < along; ++k)
