@@ -48,8 +48,8 @@ static PetscErrorCode Emit(Gather *g, PetscInt cell, PetscReal size, const Piece
   PetscReal mid[3], axis[3][3], deviation[3], turn[2][3] = {{0}}, x[CELL_MAX_NODES * 3];
 
   PetscFunctionBeginUser;
-  /* no wider than what surfaces are drawn in by: of one that ends at this cell */
-  if (!(sum->area > 10 * g->body->slack * PetscPowReal(size, (PetscReal)along - 1))) PetscFunctionReturn(0);
+  /* the end of a surface of the next cell, as wide as round-off or the selector's tolerance */
+  if (!(sum->area > STEP * PetscPowReal(size, (PetscReal)along))) PetscFunctionReturn(0);
   PetscCall(Reserve(g));
   spread_of(sum, mid, axis, deviation);
   for (PetscInt k = 0; k < along; ++k)
