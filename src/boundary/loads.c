@@ -1,5 +1,6 @@
 #include "boundary/loads.h"
 #include "boundary/faces.h"
+#include "boundary/surface/surface.h"
 
 PetscBool touched_shape(const Grid *grid, PetscInt cell, const PetscReal *xi, const unsigned char *touched,
                         PetscReal *N)
@@ -166,14 +167,39 @@ static PetscErrorCode CarryFaces(Loads *loads, const Grid *grid, PetscInt load, 
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode BodyTraction(Loads *loads, const Grid *grid, const Points *points, PetscInt load,
+/* On the surface of a shape that cells do not follow. */
+static PetscErrorCode CarrySurface(Loads *loads, const Grid *grid, PetscInt load, PetscInt body, PetscInt *n)
+{
+  const LoadSpec *spec = &loads->c->loads[load];
+  FacePoint *q;
+  PetscInt *cell;
+  PetscReal force[3];
+
+  PetscFunctionBeginUser;
+  PetscCall(BodySurfacePoints(grid, loads->c, body, &spec->on, n, &cell, &q));
+  for (PetscInt k = 0; k < *n; ++k) {
+    force_on(spec, &q[k], force);
+    PetscCall(AddCarrier(loads, grid, load, cell[k], q[k].x, q[k].xi, force));
+  }
+  PetscCall(PetscFree(cell));
+  PetscCall(PetscFree(q));
+  PetscFunctionReturn(0);
+}
+
+/* Carriers on the boundary of a body. */
+static PetscErrorCode BodyTraction(Loads *loads, const Grid *grid, const Points *points, PetscInt load, PetscBool fills,
                                    PetscInt *n_faces)
 {
   const LoadSpec *spec = &loads->c->loads[load];
-  PetscInt n, *cell, *side, body = 0;
+  const PetscInt body = case_body(loads->c, spec->on.body);
+  PetscInt n, *cell, *side;
 
   PetscFunctionBeginUser;
-  while (body < loads->c->n_bodies && strcmp(loads->c->bodies[body].name, spec->on.body)) ++body;
+  if (body >= 0 && body_fills_shape(&loads->c->bodies[body], fills) && !loads->c->bodies[body].mesh) {
+    PetscCall(CarrySurface(loads, grid, load, body, &n));
+    PetscCall(MPIU_Allreduce(&n, n_faces, 1, MPIU_INT, MPI_SUM, grid->comm));
+    PetscFunctionReturn(0);
+  }
   PetscCall(BodyFaces(grid, points, body, &spec->on, &n, &cell, &side));
   PetscCall(CarryFaces(loads, grid, load, n, cell, side));
   PetscCall(MPIU_Allreduce(&n, n_faces, 1, MPIU_INT, MPI_SUM, grid->comm));
@@ -220,7 +246,8 @@ static PetscErrorCode TellNoFace(const Grid *grid, const Selector *on, const cha
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode LoadsCreate(const Grid *grid, const Case *c, const Points *points, Diag *diag, Loads **loads)
+PetscErrorCode LoadsCreate(const Grid *grid, const Case *c, const Points *points, PetscBool fills, Diag *diag,
+                           Loads **loads)
 {
   Loads *l;
   PetscInt faces;
@@ -242,7 +269,7 @@ PetscErrorCode LoadsCreate(const Grid *grid, const Case *c, const Points *points
       PetscCall(PointLoad(l, grid, points, k, path, diag));
       continue;
     }
-    if (c->loads[k].on.body) PetscCall(BodyTraction(l, grid, points, k, &faces));
+    if (c->loads[k].on.body) PetscCall(BodyTraction(l, grid, points, k, fills, &faces));
     else if (kind == LOAD_PRESSURE) PetscCall(CarryBoundary(l, grid, points, k, &faces));
     else PetscCall(GridTraction(l, grid, k, &faces));
     if (!faces) PetscCall(TellNoFace(grid, &c->loads[k].on, path, diag));

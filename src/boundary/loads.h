@@ -27,8 +27,10 @@ typedef struct Loads {
   const Support *support; /* nodes that carriers push; NULL: those of their cells */
 } Loads;
 
-/* Collective. `points` tells which cells each body fills. */
-PetscErrorCode LoadsCreate(const Grid *grid, const Case *c, const Points *points, Diag *diag, Loads **loads);
+/* Collective. `points` tells which cells each body fills, at the start; fills: do bodies fill their shapes, if they
+ * leave that to the method? Loads on these act on the surface of the shape, on others on that of their cells. */
+PetscErrorCode LoadsCreate(const Grid *grid, const Case *c, const Points *points, PetscBool fills, Diag *diag,
+                           Loads **loads);
 /* Collective. Let carriers bear the tractions on faces of the grid too, where its cells hold
  * points: for methods that leave the cells. */
 PetscErrorCode LoadsLeaveCells(Loads *loads, const Grid *grid, const Points *points);

@@ -35,6 +35,42 @@ PetscBool relief_contains(const Relief *r, const PetscReal x[3], PetscReal toler
   return x[2] <= height + tolerance * PetscSqrtReal(1 + slope * slope) && x[2] >= r->bottom - tolerance;
 }
 
+/* Slopes along x and y of the triangle of square s that is on this side of its diagonal. */
+static void slopes(const Relief *r, const PetscInt s[2], PetscBool below, PetscReal slope[2])
+{
+  const PetscReal a = relief_post(r, s[0], s[1]), c = relief_post(r, s[0] + 1, s[1] + 1);
+  const PetscReal b = below ? relief_post(r, s[0] + 1, s[1]) : relief_post(r, s[0], s[1] + 1);
+  slope[below ? 0 : 1] = (b - a) / r->step;
+  slope[below ? 1 : 0] = (c - b) / r->step;
+}
+
+PetscReal relief_distance(const Relief *r, const PetscReal x[3], PetscReal gradient[3])
+{
+  PetscInt s[2];
+  PetscReal u[2], slope[2];
+  gradient[0] = gradient[1] = 0, gradient[2] = 1;
+  if (!find(r, x, 0, s, u)) return PETSC_MAX_REAL;
+  slopes(r, s, (PetscBool)(u[0] >= u[1]), slope);
+  const PetscReal height = relief_post(r, s[0], s[1]) + r->step * (u[0] * slope[0] + u[1] * slope[1]);
+  const PetscReal scale = 1 / PetscSqrtReal(1 + slope[0] * slope[0] + slope[1] * slope[1]);
+  if (isnan(height)) return PETSC_MAX_REAL;
+  gradient[0] = -scale * slope[0], gradient[1] = -scale * slope[1], gradient[2] = scale;
+  return scale * (x[2] - height);
+}
+
+PetscReal relief_steepness(const Relief *r)
+{
+  PetscReal steepest = 0, slope[2];
+  for (PetscInt j = 0; j + 1 < r->n[1]; ++j)
+    for (PetscInt i = 0; i + 1 < r->n[0]; ++i)
+      for (int below = 0; below < 2; ++below) {
+        slopes(r, (PetscInt[]){i, j}, (PetscBool)below, slope);
+        const PetscReal square = slope[0] * slope[0] + slope[1] * slope[1];
+        if (!isnan(square)) steepest = PetscMax(steepest, square);
+      }
+  return PetscSqrtReal(1 + steepest);
+}
+
 void relief_bounds(const Relief *r, PetscReal min[3], PetscReal max[3])
 {
   for (int d = 0; d < 3; ++d) min[d] = PETSC_MAX_REAL, max[d] = -PETSC_MAX_REAL;

@@ -19,6 +19,11 @@ PetscErrorCode ReliefRead(const char *path, PetscReal scale, const PetscReal off
 PetscErrorCode ReliefDestroy(Relief **relief);
 /* Is x in the solid, or within a tolerance (m) of it? Where posts have no height there is none. */
 PetscBool relief_contains(const Relief *relief, const PetscReal x[3], PetscReal tolerance);
+/* Distance above the surface, m, across the triangle that is over or under x; gradient: that triangle's unit normal.
+ * Far above where there is no height. */
+PetscReal relief_distance(const Relief *relief, const PetscReal x[3], PetscReal gradient[3]);
+/* By how much that distance may change a metre, since triangles are steep in different ways. */
+PetscReal relief_steepness(const Relief *relief);
 /* The box around the solid where posts have heights, m. */
 void relief_bounds(const Relief *relief, PetscReal min[3], PetscReal max[3]);
 /* No surface is lower in a rectangle; the bottom where that has posts without a height, or none. */

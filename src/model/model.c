@@ -348,7 +348,7 @@ static PetscErrorCode Build(Model *m, Diag *diag)
   if (errors) PetscFunctionReturn(0);
   PetscCall(WallsStart(m, diag));
   PetscCall(BoundaryCreate(m->grid, m->c, diag, &m->boundary));
-  PetscCall(LoadsCreate(m->grid, m->c, m->points, diag, &m->loads));
+  PetscCall(LoadsCreate(m->grid, m->c, m->points, m->method->restores_grid, diag, &m->loads));
   PetscCall(CreateTracers(m, diag));
   measures_check(m, diag);
   model_advise(m, diag);

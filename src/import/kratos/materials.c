@@ -36,10 +36,6 @@ static void read_law(const KratosFile *f, const YamlNode *law, KratosBody *body,
 {
   const char *name = kratos_text(law, "name");
   int i = 0;
-  if (strstr(name, "PlaneStress")) {
-    kratos_refuse(f, law, "'%s': talus has plane strain, and no plane stress", name);
-    return;
-  }
   while (laws_known[i].begin && strncmp(name, laws_known[i].begin, strlen(laws_known[i].begin))) ++i;
   if (!laws_known[i].begin) {
     kratos_refuse(f, law ? law : body->node, "talus has no law like '%s'", name[0] ? name : "none");
@@ -52,19 +48,36 @@ static void read_law(const KratosFile *f, const YamlNode *law, KratosBody *body,
     diag_warning(f->diag, NULL, "%s is taken as %s: %s", name, laws_known[i].law, laws_known[i].said);
 }
 
-/* Kratos counts points of hexahedra by those of one of their faces; of tetrahedra 3 stands for 4. */
-static PetscInt points_of(PetscInt n, PetscInt nodes, PetscInt dim)
-{
-  if (dim == 3 && nodes == 8) return n == 4 ? 8 : n == 9 ? 27 : n == 16 ? 64 : n;
-  return dim == 3 && n == 3 ? 4 : n;
-}
-
 /* A value of Kratos's as it would be written by hand: 30 degrees, not 30.000000000000004. */
 static PetscReal rounded(PetscReal value)
 {
   char text[40];
   snprintf(text, sizeof text, "%.12g", (double)value);
   return strtod(text, NULL);
+}
+
+/* A sheet under plane stress strains in its plane as a slice under plane strain does that has these constants. */
+static void take_plane_stress(const KratosFile *f, const char *law, KratosBody *body)
+{
+  enum { YOUNG = 1, POISSON = 2 };
+  const PetscReal nu = body->constant[POISSON];
+  if (!strstr(law, "PlaneStress")) return;
+  if (strncmp(law, "LinearElastic", 13)) {
+    kratos_refuse(f, body->node, "talus knows plane stress only of the linear elastic law");
+    return;
+  }
+  body->constant[YOUNG] = rounded(body->constant[YOUNG] * (1 + 2 * nu) / ((1 + nu) * (1 + nu)));
+  body->constant[POISSON] = rounded(nu / (1 + nu));
+  diag_warning(f->diag, NULL,
+               "plane stress is taken as plane strain with E (1 + 2 nu) / (1 + nu)^2 and nu / (1 + nu): "
+               "the same in the plane, stresses across it are not");
+}
+
+/* Kratos counts points of hexahedra by those of one of their faces; of tetrahedra 3 stands for 4. */
+static PetscInt points_of(PetscInt n, PetscInt nodes, PetscInt dim)
+{
+  if (dim == 3 && nodes == 8) return n == 4 ? 8 : n == 9 ? 27 : n == 16 ? 64 : n;
+  return dim == 3 && n == 3 ? 4 : n;
 }
 
 static PetscInt nodes_of_part(const Mdpa *model, const MdpaPart *part)
@@ -97,6 +110,7 @@ static void read_body(KratosProject *p, const YamlNode *item, KratosBody *body)
     body->constant[i] = rounded(constants[i].factor * kratos_number(f, variables, constants[i].variable, 0));
     body->n_constants = i + 1;
   }
+  take_plane_stress(f, kratos_text(yaml_find(material, "constitutive_law"), "name"), body);
   body->thickness = kratos_number(f, variables, "THICKNESS", 1);
   const PetscReal older = kratos_number(f, variables, "PARTICLES_PER_ELEMENT", 1),
                   points = kratos_number(f, variables, "MATERIAL_POINTS_PER_ELEMENT", older);

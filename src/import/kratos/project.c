@@ -59,6 +59,15 @@ static void read_scheme(KratosProject *p, const YamlNode *settings)
                   scheme);
 }
 
+/* Kratos adds steps up as long as the end is not reached: the last may go beyond it, and where the sum of ten steps of
+ * 0.1 s is less than 1 s there is an eleventh. */
+static PetscInt steps_until(PetscReal start, PetscReal end, PetscReal step)
+{
+  PetscInt n = 0;
+  for (PetscReal t = start; t < end; t += step) ++n;
+  return n;
+}
+
 static void read_times(KratosProject *p, const YamlNode *problem, const YamlNode *settings)
 {
   const PetscReal start = kratos_number(&p->parameters, problem, "start_time", 0);
@@ -69,8 +78,7 @@ static void read_times(KratosProject *p, const YamlNode *problem, const YamlNode
     kratos_refuse(&p->parameters, settings, "a time_step > 0 and an end_time behind the start_time are expected");
     p->step = p->end = 1;
   }
-  /* Kratos takes steps as long as the end is not reached: the last may go beyond it. */
-  p->n_steps = (PetscInt)ceil(p->end / p->step - 1e-9);
+  p->n_steps = steps_until(start, start + p->end, p->step);
   p->end = p->step * (PetscReal)p->n_steps;
 }
 

@@ -64,7 +64,8 @@ const SchemaTable schema_motion = {.name = "boundary",
 
 static const SchemaEntry traction_entries[] = {
   KEY("name", NAME, NULL, "how `analysis.limit` may call it", AT(LoadSpec, name)),
-  KEY("on", TABLE, NULL, "a boundary of the grid, or of a body (then the load moves with it)",
+  KEY("on", TABLE, NULL,
+      "a boundary of the grid, or of a body: of its shape where that is filled (then the load moves with it)",
       .table = &schema_selector, REQUIRED, AT(LoadSpec, on)),
   KEY("value", VECTOR, "N/m2", "force per undeformed boundary; it goes all round in axisymmetry", REQUIRED,
       AT(LoadSpec, value)),
@@ -82,7 +83,7 @@ static const SchemaTable traction = {.name = "traction",
 static const SchemaEntry pressure_entries[] = {
   KEY("name", NAME, NULL, "how `analysis.limit` may call it", AT(LoadSpec, name)),
   KEY("on", TABLE, NULL,
-      "a boundary of the grid, or of a body, as the material fills it at the start; it moves with it",
+      "a boundary of the grid, or of a body, at the start that of its shape where that is filled; it moves with it",
       .table = &schema_selector, REQUIRED, AT(LoadSpec, on)),
   KEY("value", NUMBER, "N/m2",
       "force per present boundary, along its present normal: pushes into the material if positive", REQUIRED,

@@ -82,6 +82,8 @@ PetscErrorCode PlotFirstShape(PlotScene *scene)
     PlotFrame *f = &scene->frames[k];
     if (f->first && !f->first_corner) PetscCall(PlotSpacing(2, f->n_first, f->first, f->first_radius));
     if (f->first && !f->first_corner) PetscCall(FindParts(scene->walled, f));
+    if (f->first && !f->first_corner) PetscCall(PlotShapes(scene->walled, f));
+    if (scene->bare || scene->turned) continue;
     if (f->first && !f->first_corner) include(f->first, f->n_first, min, max);
     if (f->first_corner) include(f->first_corner, 3 * f->n_triangles, min, max);
   }
@@ -122,13 +124,15 @@ PetscErrorCode PlotFirstDraw(const PlotScene *scene, const PlotFrame *f, const P
   unsigned char *first;
 
   PetscFunctionBeginUser;
-  if ((!f->first && !cells) || longest_way(f) < LEAST_WAY * pixel) PetscFunctionReturn(0);
+  if (scene->bare || (!f->first && !cells) || longest_way(f) < LEAST_WAY * pixel) PetscFunctionReturn(0);
   PetscCall(PetscCalloc1(PetscMax(f->n_first, 3 * f->n_triangles), &zero));
   PetscCall(PetscMalloc1((size_t)page->w * (size_t)page->h * 4, &first));
   RasterScene raster = {
     .min = {page->min[0], page->min[1]}, .max = {page->max[0], page->max[1]}, .width = page->w, .height = page->h};
   raster.gap = scene->gap;
   raster.n_parts = f->n_parts, raster.part = f->part;
+  const PlotOutline outline = {.c = scene->walled, .frame = f, .first = PETSC_TRUE};
+  raster.knows = f->shape, raster.holds = plot_shape_holds, raster.of = &outline;
   if (cells) raster.n_triangles = f->n_triangles, raster.corner = f->first_corner, raster.corner_value = zero;
   else raster.n = f->n_first, raster.x = f->first, raster.radius = f->first_radius, raster.value = zero;
   PetscCall(RasterDraw(&raster, first));

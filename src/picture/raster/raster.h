@@ -29,6 +29,11 @@ typedef struct {
   /* m; gaps between balls up to twice this wide are filled (flat images only), and the outline of what they fill is
    * drawn back by half their radius, to where the material ends; 0: neither */
   PetscReal gap;
+  /* with a gap, n: which points know the outline next to them, and does the body hold a place next to such a point? Of
+   * what balls cover there, or what is drawn back, this part is shown; NULL: none knows */
+  const unsigned char *knows;
+  PetscBool (*holds)(const void *of, PetscInt p, const PetscReal *x);
+  const void *of;
   PetscReal min[2], max[2]; /* what the image shows, m */
   int width, height;        /* pixels */
 } RasterScene;

@@ -50,6 +50,13 @@ static PetscErrorCode Grow(PetscReal gap, Room *room)
   PetscFunctionReturn(0);
 }
 
+/* Where points know the outline. */
+static PetscBool holds(const RasterScene *scene, const Canvas *canvas, PetscInt p, int i, int j)
+{
+  const PetscReal x[2] = {(i + 0.5) / canvas->scale + scene->min[0], (j + 0.5) / canvas->scale + scene->min[1]};
+  return scene->holds(scene->of, p, x);
+}
+
 PetscErrorCode CanvasShape(const RasterScene *scene, Canvas *canvas)
 {
   const PetscReal gap = PetscMin(scene->gap * canvas->scale, 30 * SAMPLES);
@@ -66,7 +73,11 @@ PetscErrorCode CanvasShape(const RasterScene *scene, Canvas *canvas)
       const size_t at = (size_t)(j + room.margin) * (size_t)room.width + (size_t)(i + room.margin);
       const PetscInt p = room.owner[at] - 1;
       const PetscReal back = p < 0 ? 0 : gap + (1 - WITHIN) * canvas_radius(scene, canvas, p);
-      canvas->point[canvas_at(canvas, i, j)] = p >= 0 && room.distance[at] > back ? p : -1;
+      PetscBool in = (PetscBool)(p >= 0 && room.distance[at] > back);
+      const PetscReal deep = p < 0 ? 0 : back + canvas_radius(scene, canvas, p); /* surfaces that met are no more */
+      if (p >= 0 && scene->knows && scene->knows[p] && room.distance[at] <= deep)
+        in = (PetscBool)((in || canvas->point[canvas_at(canvas, i, j)] >= 0) && holds(scene, canvas, p, i, j));
+      canvas->point[canvas_at(canvas, i, j)] = in ? p : -1;
     }
   PetscCall(PetscFree3(room.in, room.distance, room.nearest));
   PetscCall(PetscFree(room.owner));

@@ -30,6 +30,8 @@ static void box_ticks(FILE *out, const PlotScene *scene, PetscInt k, const Petsc
 {
   static const char *const names[] = {"x [m]", "y [m]", "z [m]"};
   static const PetscReal away[3][2] = {{-0.3, -1}, {0.5, -1}, {-1, 0}};
+  /* pixels: where the name stands, beyond the ticks' numbers wherever those are */
+  static const PetscReal beyond[3][2] = {{-14, -44}, {42, -42}, {-68, 0}};
   static const char *const sides[] = {"right", "left", "right"};
   /* in characters: numbers of a and b at their common corner stay apart */
   static const char *const offsets[] = {"-0.5,-0.5", "0.5,-0.5", "-0.4,0"};
@@ -54,9 +56,8 @@ static void box_ticks(FILE *out, const PlotScene *scene, PetscInt k, const Petsc
   }
   x[d] = 0.5 * (scene->box_min[d] + scene->box_max[d]);
   plot_project(scene, x, p);
-  const PetscReal far = (k == 2 ? 68 : 42) * pixel;
-  fprintf(out, "set label '%s' at %.9g,%.9g %s%s front\n", names[d], (double)(p[0] + far * away[k][0]),
-          (double)(p[1] + far * away[k][1]), k == 2 ? "center" : sides[k], k == 2 ? " rotate by 90" : "");
+  fprintf(out, "set label '%s' at %.9g,%.9g %s%s front\n", names[d], (double)(p[0] + pixel * beyond[k][0]),
+          (double)(p[1] + pixel * beyond[k][1]), k == 2 ? "center" : sides[k], k == 2 ? " rotate by 90" : "");
 }
 
 void plot_draw_box(FILE *out, const PlotScene *scene, const PlotPage *page)

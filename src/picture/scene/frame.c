@@ -44,8 +44,9 @@ static PetscErrorCode TakeFirst(VtkFile *file, const PlotScene *scene, PetscInt 
   PetscReal *u;
 
   PetscFunctionBeginUser;
-  if (scene->bare || !scene->walled || scene->walled->kinematics->dim != 2) PetscFunctionReturn(0);
+  if (!scene->walled || scene->walled->kinematics->dim != 2) PetscFunctionReturn(0);
   PetscCall(PlotReadDisplacement(file, &u, reason));
+  if (!u) PetscCall(PlotOriginDisplacement(&scene->origin, file, x, &u));
   if (!u) PetscFunctionReturn(0);
   PetscCall(PetscMalloc2(3 * (size_t)(sides * n), &f->first, sides * n, &f->first_radius));
   for (PetscInt side = 0; side < sides; ++side)
@@ -153,7 +154,7 @@ PetscErrorCode PlotFramesShape(PlotScene *scene)
   }
   scene->gap *= 2; /* from point to point */
   for (int d = 0; d < scene->dim; ++d) scene->box_min[d] -= 0.9 * largest, scene->box_max[d] += 0.9 * largest;
-  if (scene->dim == 2 && !scene->turned) PetscCall(PlotFirstShape(scene));
+  if (scene->dim == 2) PetscCall(PlotFirstShape(scene));
   if (scene->turned) scene->dim = 3;
   turn_box(scene);
   PetscFunctionReturn(0);
@@ -221,6 +222,7 @@ PetscErrorCode PlotFramesFree(PlotScene *scene)
     PetscCall(PetscFree(f->walls));
     PetscCall(PetscFree(f->first_corner));
     PetscCall(PetscFree(f->part));
+    PetscCall(PetscFree3(f->shape, f->knows, f->back));
     PetscCall(PetscFree(f->line));
     PetscCall(PetscFree(f->edges));
     PetscCall(PetscFree(f->arrow));

@@ -32,7 +32,24 @@ typedef struct {
   PetscInt n_parts;
   unsigned char *part; /* n: RasterScene; NULL: one */
   PetscReal gap;       /* of the balls: RasterScene */
+  /* n: of points that began next to the surface of a shape that their body fills, the body's number from 1; is it known
+   * where places around them began, and where (n x 6: body/shapes.c). NULL: of none */
+  unsigned char *shape, *knows;
+  PetscReal *back;
 } PlotFrame;
+
+/* Whose outline is drawn: of a frame, as it is or as it was at first. */
+typedef struct {
+  const Case *c;
+  const PlotFrame *frame;
+  PetscBool first;
+} PlotOutline;
+
+/* Where points were at time 0: their numbers, rising, and the place of each among x (n x 3). */
+typedef struct {
+  PetscInt n, *place;
+  PetscReal *id, *x;
+} PlotOrigin;
 
 typedef struct {
   PetscInt dim, n_frames;
@@ -52,6 +69,7 @@ typedef struct {
   PetscBool turned;     /* in space, of points that lie in the plane, on both sides */
   Case *walled;         /* the run's case, with walls and names; NULL: it cannot be read */
   Walls *walls;
+  PlotOrigin origin;                /* of runs that do not write displacements */
   PetscReal box_min[3], box_max[3]; /* of all points (and the grid), before the projection */
 } PlotScene;
 
@@ -133,6 +151,15 @@ PetscErrorCode PlotFirstShape(PlotScene *scene);
 PetscErrorCode PlotFirstDraw(const PlotScene *scene, const PlotFrame *frame, const PlotPage *page, unsigned char *rgba);
 /* image.c: a grey of this share over a pixel. */
 void plot_blend(unsigned char *rgba, PetscReal grey, PetscReal alpha);
+/* body/origin.c: the state at time 0, nothing if there is none; displacements of a file's points (x: n x 3) since then,
+ * NULL if one of them was not there. */
+PetscErrorCode PlotOriginRead(const char *run, PlotOrigin *origin);
+PetscErrorCode PlotOriginFree(PlotOrigin *origin);
+PetscErrorCode PlotOriginDisplacement(const PlotOrigin *origin, VtkFile *file, const PetscReal *x, PetscReal **u);
+/* body/shapes.c: find points next to the surface of shapes, and how the material there moved. */
+PetscErrorCode PlotShapes(const Case *c, PlotFrame *frame);
+/* RasterScene's `holds`, of a PlotOutline. */
+PetscBool plot_shape_holds(const void *of, PetscInt p, const PetscReal *x);
 PetscErrorCode PlotFramesFree(PlotScene *scene);
 
 /* arrows.c. Arrows of n points (x: n x 3) with vectors v (n x components). */

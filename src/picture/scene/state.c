@@ -254,6 +254,7 @@ PetscErrorCode PlotSceneFree(PlotScene *scene)
 {
   PetscFunctionBeginUser;
   PetscCall(PlotWallsClose(scene));
+  PetscCall(PlotOriginFree(&scene->origin));
   PetscCall(PlotFramesFree(scene));
   PetscFunctionReturn(0);
 }
@@ -264,6 +265,8 @@ PetscErrorCode PlotSceneFill(const PlotOptions *options, PetscInt n, const VtkSt
   PetscFunctionBeginUser;
   PetscCall(PlotWallsOpen(options->run, diag, scene));
   PetscCall(FindKind(options, diag, scene));
+  if (scene->walled && !case_writes(scene->walled, "displacement"))
+    PetscCall(PlotOriginRead(options->run, &scene->origin));
   scene->grid = options->grid;
   scene->arrows = options->arrows;
   scene->bare = options->bare;

@@ -1,0 +1,212 @@
+/* Points that carry what a body's surface bears. */
+#include "base/math/eigen.h"
+#include "boundary/surface/surface.h"
+
+/* Of a cell: so far a surface is drawn in, so that one along a side belongs to the cell that holds the material; and so
+ * far beside a surface the shape is asked. Both more than positions in the grid are rounded by. */
+#define SLACK 1e-14
+#define STEP 1e-8
+#define ROUNDED 4e-16 /* of a coordinate */
+#define NOTHING 1e-14 /* of a cell's side */
+
+typedef struct {
+  const BodySurface *body;
+  PetscInt n, capacity, *cell;
+  FacePoint *point;
+} Gather;
+
+static PetscErrorCode Reserve(Gather *g)
+{
+  PetscFunctionBeginUser;
+  if (g->n + FACE_MAX_POINTS <= g->capacity) PetscFunctionReturn(0);
+  g->capacity = PetscMax(256, 2 * g->capacity);
+  PetscCall(PetscRealloc((size_t)g->capacity * sizeof *g->cell, &g->cell));
+  PetscCall(PetscRealloc((size_t)g->capacity * sizeof *g->point, &g->point));
+  PetscFunctionReturn(0);
+}
+
+/* The middle of the piece, and how far it spreads along its axes: falling. */
+static void spread_of(const PieceSum *sum, PetscReal mid[3], PetscReal axis[3][3], PetscReal deviation[3])
+{
+  PetscReal C[6], value[3], v[9];
+  for (int d = 0; d < 3; ++d) mid[d] = sum->first[d] / sum->area;
+  for (int i = 0; i < 3; ++i)
+    for (int j = i; j < 3; ++j) C[voigt_of[i][j]] = sum->second[i][j] / sum->area - mid[i] * mid[j];
+  sym_eigen(C, value, v);
+  for (int k = 0; k < 3; ++k) {
+    deviation[k] = PetscSqrtReal(PetscMax(0, value[k]));
+    for (int d = 0; d < 3; ++d) axis[k][d] = v[3 * d + k];
+  }
+}
+
+/* The sum as points: equal areas, a deviation to both sides of the middle; vectors differ as much as their moments
+ * along the piece say. */
+static PetscErrorCode Emit(Gather *g, PetscInt cell, PetscReal size, const PieceSum *sum)
+{
+  const Grid *grid = g->body->grid;
+  const PetscInt along = grid->dim - 1, n = along == 1 ? 2 : 4;
+  PetscReal mid[3], axis[3][3], deviation[3], turn[2][3] = {{0}}, x[CELL_MAX_NODES * 3];
+
+  PetscFunctionBeginUser;
+  /* the end of a surface of the next cell, as wide as round-off or the selector's tolerance */
+  if (!(sum->area > STEP * PetscPowReal(size, (PetscReal)along))) PetscFunctionReturn(0);
+  PetscCall(Reserve(g));
+  spread_of(sum, mid, axis, deviation);
+  for (PetscInt k = 0; k < along; ++k)
+    for (int j = 0; j < 3 && deviation[k] > NOTHING * size; ++j) {
+      for (int i = 0; i < 3; ++i) turn[k][j] += axis[k][i] * (sum->turn[i][j] - mid[i] * sum->vector[j]);
+      turn[k][j] /= deviation[k];
+    }
+  grid_cell_x(grid, cell, x);
+  for (PetscInt q = 0; q < n; ++q) {
+    const PetscReal side[2] = {q % 2 ? 1 : -1, q / 2 ? 1 : -1};
+    FacePoint *p = g->point + g->n;
+    *p = (FacePoint){.area = sum->area / (PetscReal)n};
+    for (PetscInt d = 0; d < grid->dim; ++d) {
+      p->x[d] = sum->origin[d] + mid[d];
+      p->vector[d] = sum->vector[d] / (PetscReal)n;
+      for (PetscInt k = 0; k < along; ++k) {
+        p->x[d] += side[k] * deviation[k] * axis[k][d];
+        p->vector[d] += side[k] * turn[k][d] / (PetscReal)n;
+      }
+    }
+    (void)cell_inverse_map(grid_cell_type(grid, cell), x, p->x, p->xi);
+    g->cell[g->n++] = cell;
+  }
+  PetscFunctionReturn(0);
+}
+
+typedef struct {
+  PetscReal x[CELL_MAX_NODES * 3], centre[3], size; /* nodes; half its diagonal */
+} CellBox;
+
+static void look_at(const Grid *grid, PetscInt cell, CellBox *box)
+{
+  grid_cell_x(grid, cell, box->x);
+  grid_cell_centre(grid, cell, box->centre);
+  box->size = 0;
+  for (PetscInt i = 0; i < grid_cell(grid, cell)->nodes; ++i) {
+    PetscReal square = 0;
+    for (PetscInt d = 0; d < grid->dim; ++d) square += PetscSqr(box->x[i * grid->dim + d] - box->centre[d]);
+    box->size = PetscMax(box->size, PetscSqrtReal(square));
+  }
+}
+
+/* Can a surface be in this cell? */
+static PetscBool reaches(const Surface *s, PetscInt dim, const CellBox *box)
+{
+  PetscReal gradient[3];
+  for (PetscInt d = 0; d < dim; ++d)
+    if (box->centre[d] + 1.001 * box->size < s->min[d] || box->centre[d] - 1.001 * box->size > s->max[d])
+      return PETSC_FALSE;
+  return (PetscBool)(PetscAbsReal(surface_distance(s, dim, box->centre, gradient)) <= 1.001 * box->size * s->steepness);
+}
+
+static void set_steps(BodySurface *body, PetscReal size)
+{
+  PetscReal largest = 0;
+  for (PetscInt d = 0; d < body->grid->dim; ++d)
+    largest = PetscMax(largest, PetscMax(PetscAbsReal(body->grid->min[d]), PetscAbsReal(body->grid->max[d])));
+  body->slack = SLACK * size + ROUNDED * largest;
+  body->step = STEP * size + 100 * ROUNDED * largest;
+}
+
+static PetscErrorCode AddCell(Gather *g, BodySurface *body, PetscInt cell)
+{
+  CellBox box;
+
+  PetscFunctionBeginUser;
+  look_at(body->grid, cell, &box);
+  set_steps(body, box.size);
+  for (PetscInt k = 0; k < body->n_surfaces; ++k) {
+    const Trim trim = {.body = body, .k = k};
+    PieceSum sum = {.origin = {box.centre[0], box.centre[1], body->grid->dim == 3 ? box.centre[2] : 0}};
+    if (!reaches(body->surfaces + k, body->grid->dim, &box)) continue;
+    surface_march(&trim, grid_cell_type(body->grid, cell), box.x, &sum);
+    PetscCall(Emit(g, cell, box.size, &sum));
+  }
+  PetscFunctionReturn(0);
+}
+
+/* A side at which the grid ends, or the region that the body keeps to: the shape may go on there. */
+static PetscErrorCode AddSide(Gather *g, BodySurface *body, PetscInt cell, PetscInt side)
+{
+  const Cell *type = grid_cell(body->grid, cell);
+  const PetscInt dim = body->grid->dim;
+  Trim trim = {.body = body, .k = -1};
+  PieceSum sum = {.area = 0};
+  FacePoint q[FACE_MAX_POINTS];
+  CellBox box;
+
+  PetscFunctionBeginUser;
+  look_at(body->grid, cell, &box);
+  set_steps(body, box.size);
+  (void)face_quadrature(&kinematics_3d, body->grid, cell, side, q);
+  for (int d = 0; d < 3; ++d) {
+    sum.origin[d] = d < dim ? box.centre[d] : 0;
+    trim.outward[d] = q[0].vector[d] / q[0].area;
+  }
+  for (PetscInt k = 0; k + dim <= type->face_nodes; ++k) {
+    const PetscInt corner[3] = {0, k + 1, k + 2};
+    Facet facet = {{0}};
+    for (PetscInt i = 0; i < dim; ++i)
+      for (PetscInt d = 0; d < dim; ++d) facet[i][d] = box.x[type->face[side][corner[i]] * dim + d];
+    surface_trim(&trim, facet, trim.outward, &sum);
+  }
+  PetscCall(Emit(g, cell, box.size, &sum));
+  PetscFunctionReturn(0);
+}
+
+/* Does the cell reach into the box around the shape? */
+static PetscBool is_near(const Grid *grid, PetscInt cell, const PetscReal min[3], const PetscReal max[3])
+{
+  CellBox box;
+  look_at(grid, cell, &box);
+  for (PetscInt d = 0; d < grid->dim; ++d)
+    if (box.centre[d] + 1.001 * box.size < min[d] || box.centre[d] - 1.001 * box.size > max[d]) return PETSC_FALSE;
+  return PETSC_TRUE;
+}
+
+/* Cells of this rank that the body may be in. */
+static PetscErrorCode CellsNear(const Grid *grid, const BodySpec *body, PetscInt field, PetscInt *n, PetscInt **list)
+{
+  const GridSet *set = body->region ? grid_find_set(grid, body->region) : NULL;
+  PetscReal min[3], max[3];
+
+  PetscFunctionBeginUser;
+  shape_bounds(&body->shape, grid->dim, min, max);
+  *n = 0;
+  PetscCall(PetscMalloc1(set ? set->n_cells : grid->n_cells, list));
+  for (PetscInt k = 0; k < (set ? set->n_cells : grid->n_cells); ++k) {
+    const PetscInt cell = set ? set->cells[k] : k;
+    if (grid_field_of(grid, cell) == field && is_near(grid, cell, min, max)) (*list)[(*n)++] = cell;
+  }
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode BodySurfacePoints(const Grid *grid, const Case *c, PetscInt body, const Selector *on, PetscInt *n,
+                                 PetscInt **cell, FacePoint **point)
+{
+  BodySurface surface = {.grid = grid, .kinematics = c->kinematics, .shape = &c->bodies[body].shape, .on = on};
+  Gather gather = {.body = &surface};
+  PetscInt n_cells, *list;
+  unsigned char *outer;
+
+  PetscFunctionBeginUser;
+  PetscCall(SurfacesCreate(surface.shape, grid->dim, &surface.n_surfaces, &surface.surfaces));
+  PetscCall(CellsNear(grid, c->bodies + body, grid->n_fields > 1 ? case_field(c, body) : 0, &n_cells, &list));
+  PetscCall(PetscMalloc1(n_cells * CELL_MOST_SIDES, &outer));
+  PetscCall(OutlineSidesOfAll(grid, n_cells, list, outer));
+  for (PetscInt k = 0; k < n_cells; ++k) {
+    PetscCall(AddCell(&gather, &surface, list[k]));
+    for (PetscInt side = 0; side < grid_cell(grid, list[k])->faces; ++side)
+      if (outer[k * CELL_MOST_SIDES + side]) PetscCall(AddSide(&gather, &surface, list[k], side));
+  }
+  PetscCall(PetscFree(outer));
+  PetscCall(PetscFree(list));
+  PetscCall(PetscFree(surface.surfaces));
+  *n = gather.n;
+  *cell = gather.cell;
+  *point = gather.point;
+  PetscFunctionReturn(0);
+}

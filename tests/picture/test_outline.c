@@ -1,0 +1,211 @@
+/* Outlines: a body whose shape the case tells is drawn with it, smooth and as large as it is, at the start and after
+ * it has been turned, stretched and bent; corners stay corners. */
+#include "../output/test_output.h"
+#include <math.h>
+#include "picture/raster/raster.h"
+#include "picture/raster/spacing.h"
+#include "picture/scene/scene.h"
+
+enum { W = 400, MOST = 4000 };
+#define H 0.1 /* cells */
+
+typedef struct {
+  Case c;
+  BodySpec body;
+  PlotFrame f;
+  PetscReal zero[MOST];
+} Drawing;
+
+/* Where material goes: turned by 40 degrees, stretched, and bent by so much. */
+static void move(PetscReal bend, const PetscReal *X, PetscReal *x)
+{
+  const PetscReal c = cos(40 * PETSC_PI / 180), s = sin(40 * PETSC_PI / 180), a = 1.25 * X[0],
+                  b = 0.8 * X[1] + bend * X[0] * X[0];
+  x[0] = c * a - s * b, x[1] = s * a + c * b, x[2] = 0;
+}
+
+static void move_back(PetscReal bend, const PetscReal *x, PetscReal *X)
+{
+  const PetscReal c = cos(40 * PETSC_PI / 180), s = sin(40 * PETSC_PI / 180);
+  X[0] = (c * x[0] + s * x[1]) / 1.25;
+  X[1] = (-s * x[0] + c * x[1] - bend * X[0] * X[0]) / 0.8;
+}
+
+/* Points as cut cells have them: in the middle of what of a quarter of a cell lies in the shape. */
+static void seed(Drawing *d)
+{
+  enum { FINE = 16 };
+  const Shape *shape = &d->body.shape;
+  for (int j = -20; j < 20; ++j)
+    for (int i = -20; i < 20; ++i) {
+      PetscReal sum[2] = {0, 0};
+      int n = 0;
+      for (int k = 0; k < FINE * FINE; ++k) {
+        const PetscReal x[3] = {H / 2 * (i + (k % FINE + 0.5) / FINE), H / 2 * (j + (k / FINE + 0.5) / FINE), 0};
+        if (!shape_contains(shape, 2, x, 0)) continue;
+        sum[0] += x[0], sum[1] += x[1], ++n;
+      }
+      if (n < FINE * FINE / 10) continue;
+      PetscReal *first = d->f.first + 3 * d->f.n++;
+      first[0] = sum[0] / n, first[1] = sum[1] / n, first[2] = 0;
+    }
+  d->f.n_first = d->f.n;
+}
+
+static Drawing *create(Shape shape)
+{
+  Drawing *d;
+  assert_int_equal(PetscNew(&d), 0);
+  d->body = (BodySpec){.name = "body", .has_shape = PETSC_TRUE, .shape = shape};
+  d->c = (Case){.kinematics = &kinematics_plane_strain, .method = "mpm", .n_bodies = 1, .bodies = &d->body};
+  assert_int_equal(PetscMalloc3(3 * MOST, &d->f.x, MOST, &d->f.value, MOST, &d->f.radius), 0);
+  assert_int_equal(PetscMalloc2(3 * MOST, &d->f.first, MOST, &d->f.first_radius), 0);
+  seed(d);
+  return d;
+}
+
+static void destroy(Drawing *d)
+{
+  assert_int_equal(PetscFree3(d->f.x, d->f.value, d->f.radius), 0);
+  assert_int_equal(PetscFree2(d->f.first, d->f.first_radius), 0);
+  assert_int_equal(PetscFree3(d->f.shape, d->f.knows, d->f.back), 0);
+  assert_int_equal(PetscFree(d), 0);
+}
+
+/* The image of the moved body; how much of a square of 2 m a side it covers, m2. */
+static PetscReal draw(Drawing *d, PetscReal bend, PetscBool moved, PetscBool known, unsigned char *rgba)
+{
+  PlotFrame *f = &d->f;
+  PetscReal gap, area = 0;
+  for (PetscInt i = 0; i < f->n; ++i) {
+    if (moved) move(bend, f->first + 3 * i, f->x + 3 * i);
+    else memcpy(f->x + 3 * i, f->first + 3 * i, 3 * sizeof *f->x);
+  }
+  assert_int_equal(PlotSpacing(2, f->n, f->x, f->radius), 0);
+  assert_int_equal(PlotSpacing(2, f->n, f->first, f->first_radius), 0);
+  assert_int_equal(PlotQuantile(f->n, f->radius, 0.5, &gap), 0);
+  if (known && !f->shape) assert_int_equal(PlotShapes(&d->c, f), 0);
+  const PlotOutline outline = {.c = &d->c, .frame = f};
+  const RasterScene scene = {.n = f->n,
+                             .x = f->x,
+                             .radius = f->radius,
+                             .value = d->zero,
+                             .gap = gap,
+                             .knows = known ? f->knows : NULL,
+                             .holds = plot_shape_holds,
+                             .of = &outline,
+                             .min = {-1, -1},
+                             .max = {1, 1},
+                             .width = W,
+                             .height = W};
+  assert_int_equal(RasterDraw(&scene, rgba), 0);
+  for (int k = 0; k < W * W; ++k) area += rgba[4 * k + 3] / 255. * 4 / (W * W);
+  return area;
+}
+
+/* Along a ray from the origin in direction (ex, ey): how far the body is drawn, m. */
+static PetscReal reach(const unsigned char *rgba, PetscReal ex, PetscReal ey)
+{
+  PetscReal sum = 0;
+  const PetscReal step = 0.1 * 2. / W;
+  for (PetscReal r = 0; r < 1; r += step) {
+    const int i = (int)((r * ex + 1) / 2 * W), j = (int)((r * ey + 1) / 2 * W);
+    if (i >= 0 && j >= 0 && i < W && j < W) sum += rgba[4 * (j * W + i) + 3] / 255. * step;
+  }
+  return sum;
+}
+
+static const Shape disk = {.kind = SHAPE_BALL, .centre = {0.013, -0.021, 0}, .radius = 0.62};
+
+/* The radius at which the outline of the disk began, by the angle: its mean, and the largest distance from the disk's. */
+static PetscReal uneven(Drawing *d, PetscReal bend, PetscBool moved, const unsigned char *rgba)
+{
+  PetscReal worst = 0;
+  (void)d;
+  for (int k = 0; k < 360; ++k) {
+    const PetscReal e[2] = {cos(k * PETSC_PI / 180), sin(k * PETSC_PI / 180)}, r = reach(rgba, e[0], e[1]);
+    const PetscReal x[2] = {r * e[0], r * e[1]};
+    PetscReal X[2] = {x[0], x[1]};
+    if (moved) move_back(bend, x, X);
+    const PetscReal radius = hypot(X[0] - disk.centre[0], X[1] - disk.centre[1]);
+    worst = PetscMax(worst, PetscAbsReal(radius - disk.radius));
+  }
+  return worst;
+}
+
+static void test_disk(void **state)
+{
+  static unsigned char rgba[4 * W * W];
+  const PetscReal area = PETSC_PI * disk.radius * disk.radius, pixel = 2. / W;
+  (void)state;
+  for (int k = 0; k < 3; ++k) {
+    const PetscBool moved = (PetscBool)(k > 0);
+    const PetscReal bend = k == 2 ? 0.25 : 0;
+    Drawing *d = create(disk);
+    const PetscReal balls = draw(d, bend, moved, PETSC_FALSE, rgba), scallops = uneven(d, bend, moved, rgba);
+    const PetscReal drawn = draw(d, bend, moved, PETSC_TRUE, rgba), off = uneven(d, bend, moved, rgba);
+    printf("disk %d: area off %.2g (balls %.2g), radius %.2g (%.2g) of a cell\n", k, (double)(drawn / area - 1),
+           (double)(balls / area - 1), (double)(off / H), (double)(scallops / H));
+    assert_true(fabs(drawn / area - 1) < 2e-3); /* motion keeps areas */
+    assert_true(off < 0.6 * pixel + (k == 2 ? 0.02 * H : 0));
+    assert_true(scallops > 0.1 * H); /* what it was */
+    destroy(d);
+  }
+}
+
+/* Corners off the grid's lines are those of the box. */
+static void test_corners(void **state)
+{
+  static unsigned char rgba[4 * W * W];
+  const Shape box = {.kind = SHAPE_BOX, .min = {-0.53, -0.41, 0}, .max = {0.47, 0.33, 0}};
+  (void)state;
+  for (int moved = 0; moved < 2; ++moved) {
+    Drawing *d = create(box);
+    const PetscReal area = draw(d, 0, (PetscBool)moved, PETSC_TRUE, rgba), pixel = 2. / W;
+    printf("box: area off %.2g\n", (double)(area / 0.74 - 1));
+    assert_true(fabs(area / 0.74 - 1) < 2e-3);
+    for (int k = 0; k < 4; ++k)
+      for (int out = 0; out < 2; ++out) { /* two pixels inside a corner there is body, two outside there is none */
+        PetscReal X[3] = {k & 1 ? 0.47 : -0.53, k & 2 ? 0.33 : -0.41, 0}, x[3];
+        X[0] += (k & 1 ? 1 : -1) * (out ? 2 : -2) * pixel, X[1] += (k & 2 ? 1 : -1) * (out ? 2 : -2) * pixel;
+        memcpy(x, X, sizeof x);
+        if (moved) move(0, X, x);
+        const int i = (int)((x[0] + 1) / 2 * W), j = (int)((x[1] + 1) / 2 * W);
+        assert_int_equal(rgba[4 * (j * W + i) + 3], out ? 0 : 255);
+      }
+    destroy(d);
+  }
+}
+
+/* Bodies of whole cells are drawn as these, and points that have been torn apart know nothing of an outline. */
+static void test_unknown(void **state)
+{
+  static unsigned char rgba[4 * W * W];
+  PetscInt knowing = 0;
+  (void)state;
+  Drawing *d = create(disk);
+  d->body.fill = FILL_CELLS;
+  (void)draw(d, 0, PETSC_FALSE, PETSC_TRUE, rgba);
+  assert_null(d->f.shape);
+  destroy(d);
+  d = create(disk);
+  for (PetscInt i = 0; i < d->f.n; ++i) /* each goes another way */
+    for (int k = 0; k < 3; ++k)
+      d->f.x[3 * i + k] = d->f.first[3 * i + k] + (k == 2 ? 0 : H * ((i * (k ? 7 : 11)) % 13 - 6) / 6);
+  assert_int_equal(PlotSpacing(2, d->f.n, d->f.x, d->f.radius), 0);
+  assert_int_equal(PlotSpacing(2, d->f.n, d->f.first, d->f.first_radius), 0);
+  assert_int_equal(PlotShapes(&d->c, &d->f), 0);
+  for (PetscInt i = 0; i < d->f.n; ++i) knowing += d->f.knows[i];
+  printf("torn: %d of %d points know\n", (int)knowing, (int)d->f.n);
+  assert_true(knowing < d->f.n / 20);
+  destroy(d);
+}
+
+static int Tests(void)
+{
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_disk), cmocka_unit_test(test_corners),
+                                     cmocka_unit_test(test_unknown)};
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
+
+int main(int argc, char **argv) { return TestMain(argc, argv, Tests); }
