@@ -16,7 +16,7 @@ set(manners ${PROJECT_BINARY_DIR}/manners)
 file(MAKE_DIRECTORY ${manners})
 function(talus_says file)
   add_custom_command(OUTPUT ${manners}/${file} DEPENDS talus VERBATIM COMMENT "talus ${ARGN}"
-    COMMAND ${CMAKE_COMMAND} -E env OMPI_MCA_ess_singleton_isolated=1 OMPI_MCA_pml=ob1 $<TARGET_FILE:talus> ${ARGN} > ${manners}/${file})
+    COMMAND $<TARGET_FILE:talus> ${ARGN} > ${manners}/${file})
   set_property(DIRECTORY APPEND PROPERTY TALUS_MANNERS ${manners}/${file})
 endfunction()
 talus_says(talus.1 help --man)

@@ -119,4 +119,11 @@ says err.txt "left the grid: point" "with velocity" "outside: remove"
 name="a pipe that closes"
 [ ! -s err.txt ] || fail "$name: it complains"
 
+# A process that no launcher started begins no daemon and keeps no folder of MPI's.
+name="alone"
+mkdir for_mpi
+env -u OMPI_MCA_ess_singleton_isolated -u OMPI_MCA_pml -u OMPI_MCA_btl OMPI_MCA_orte_tmpdir_base="$PWD/for_mpi" \
+  "$talus" run case.yaml --out alone --quiet 2>err.txt >out.txt || fail "$name: it does not run"
+[ -z "$(ls for_mpi)" ] || fail "$name: a folder of MPI's is left"
+
 finish

@@ -5,9 +5,7 @@ work=$(mktemp -d "${TMPDIR:-/tmp}/talus-test.XXXXXX") || exit 1
 trap 'rm -rf "$work"' EXIT
 cd "$work" || exit 1
 ulimit -c 0
-# No daemon behind a single rank, and no search for networks, which takes longer than a run.
-export OMPI_MCA_ess_singleton_isolated=1 OMPI_MCA_pml=ob1
-# Single ranks of different tests would otherwise share a folder, and the first to end would take it away from the others.
+# Ranks of different tests would otherwise share a folder, and the first to end would take it away from the others.
 mkdir "$work/.mpi"
 export OMPI_MCA_orte_tmpdir_base="$work/.mpi"
 failures=0

@@ -54,9 +54,9 @@ if(TARGET talus)
   talus_program_test(stages)
   talus_program_test(stages_explicit)
   talus_program_test(limit)
-  # two ranks in most of it
+  # two ranks in most of it; those that are killed wait more than they work
   foreach(name manners import ranks same_command vanish lost walls until factor stages stages_explicit limit resume resume_bad resume_disk axisymmetric
-      kill_2_2 signals_2 sweep calibrate)
+      sweep calibrate)
     set_tests_properties(program/${name} PROPERTIES PROCESSORS 2)
   endforeach()
 endif()

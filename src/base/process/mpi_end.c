@@ -3,11 +3,15 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <unistd.h>
+#include "base/process/mpi_alone.h"
 
 int mpi_begin(int *argc, char ***argv)
 {
-  int provided;
-  return MPI_Init_thread(argc, argv, MPI_THREAD_FUNNELED, &provided) == MPI_SUCCESS ? 0 : 1;
+  int provided, code;
+  mpi_alone_begin();
+  code = MPI_Init_thread(argc, argv, MPI_THREAD_FUNNELED, &provided);
+  mpi_alone_end();
+  return code == MPI_SUCCESS ? 0 : 1;
 }
 
 /* Sanitizers look for leaks after main, and their findings are not to be hidden. */

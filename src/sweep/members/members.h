@@ -29,15 +29,14 @@ typedef struct {
   PetscReal *values; /* what they are: NaN until it is done */
   char (*units)[64]; /* and in which unit */
   MemberState state;
-  PetscBool kept;       /* done before */
-  PetscBool resume;     /* goes on from a checkpoint */
-  PetscBool replace;    /* what is there goes */
-  PetscInt pid;         /* of its process */
-  char mpi_folder[256]; /* which its MPI has to itself; "": none */
-  PetscReal end;        /* of the run, s */
-  PetscReal begun;      /* the share of it that was done when the process began */
-  RunSummary summary;   /* from its timings.txt, of all sessions */
-  char why[512];        /* if it did not come to its end */
+  PetscBool kept;     /* done before */
+  PetscBool resume;   /* goes on from a checkpoint */
+  PetscBool replace;  /* what is there goes */
+  PetscInt pid;       /* of its process */
+  PetscReal end;      /* of the run, s */
+  PetscReal begun;    /* the share of it that was done when the process began */
+  RunSummary summary; /* from its timings.txt, of all sessions */
+  char why[512];      /* if it did not come to its end */
 } Member;
 
 typedef struct {

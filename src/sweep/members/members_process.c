@@ -3,7 +3,6 @@
  * system. */
 #include <errno.h>
 #include <fcntl.h>
-#include <ftw.h>
 #include <signal.h>
 #include <stdlib.h>
 #include <string.h>
@@ -52,44 +51,20 @@ static void set_variable(char **environment, char *variable)
   environment[n] = variable;
 }
 
-/* Ours, with the options of PETSc from our own command line, and a folder for MPI: of processes of
- * one rank that share one, the first to end would take it away from those that begin. *own: to be
- * freed after use. */
-static PetscErrorCode Environment(const Member *m, char ***out, char *own[2])
+/* Ours, with the options of PETSc from our own command line. *own: to be freed after use. */
+static PetscErrorCode Environment(char ***out, char **own)
 {
   char *options;
 
   PetscFunctionBeginUser;
-  PetscCall(EnvironmentForChild(2, out));
+  PetscCall(EnvironmentForChild(1, out));
   PetscCall(PetscOptionsGetAll(NULL, &options));
-  const size_t size[2] = {strlen(options) + 32, strlen(m->mpi_folder) + 32};
-  PetscCall(PetscMalloc1(size[0], &own[0]));
-  PetscCall(PetscMalloc1(size[1], &own[1]));
-  PetscCall(PetscSNPrintf(own[0], size[0], "PETSC_OPTIONS=%s", options));
-  PetscCall(PetscSNPrintf(own[1], size[1], "OMPI_MCA_orte_tmpdir_base=%s", m->mpi_folder));
+  const size_t size = strlen(options) + 32;
+  PetscCall(PetscMalloc1(size, own));
+  PetscCall(PetscSNPrintf(*own, size, "PETSC_OPTIONS=%s", options));
   PetscCall(PetscFree(options));
-  set_variable(*out, own[0]);
-  if (m->mpi_folder[0]) set_variable(*out, own[1]);
+  set_variable(*out, *own);
   PetscFunctionReturn(0);
-}
-
-static void make_mpi_folder(Member *m)
-{
-  const char *folder = getenv("TMPDIR");
-  snprintf(m->mpi_folder, sizeof m->mpi_folder, "%s/talus-mpi-XXXXXX", folder && *folder ? folder : "/tmp");
-  if (!mkdtemp(m->mpi_folder)) m->mpi_folder[0] = '\0';
-}
-
-static int remove_entry(const char *path, const struct stat *info, int type, struct FTW *walk)
-{
-  (void)info, (void)type, (void)walk;
-  return remove(path);
-}
-
-static void remove_mpi_folder(Member *m)
-{
-  if (m->mpi_folder[0]) nftw(m->mpi_folder, remove_entry, 8, FTW_DEPTH | FTW_PHYS);
-  m->mpi_folder[0] = '\0';
 }
 
 static void said_file(const Member *m, char path[FILE_PATH]) { snprintf(path, FILE_PATH, "%s.txt", m->folder); }
@@ -110,12 +85,11 @@ static void become(const char *said, char *const *arguments, char *const *enviro
 
 PetscErrorCode MemberStart(const Members *members, Member *m)
 {
-  char **arguments, **environment, *own[2], said[FILE_PATH];
+  char **arguments, **environment, *own, said[FILE_PATH];
 
   PetscFunctionBeginUser;
   PetscCall(Arguments(members, m, &arguments));
-  make_mpi_folder(m);
-  PetscCall(Environment(m, &environment, own));
+  PetscCall(Environment(&environment, &own));
   said_file(m, said);
   m->begun = m->resume ? member_share(m) : 0;
   fflush(NULL);
@@ -124,7 +98,7 @@ PetscErrorCode MemberStart(const Members *members, Member *m)
   m->pid = (PetscInt)pid;
   m->state = pid < 0 ? MEMBER_CRASHED : MEMBER_RUNNING;
   if (pid < 0) PetscCall(PetscSNPrintf(m->why, sizeof m->why, "no process could be started: %s", strerror(errno)));
-  for (int k = 0; k < 2; ++k) PetscCall(PetscFree(own[k]));
+  PetscCall(PetscFree(own));
   PetscCall(PetscFree(environment));
   PetscCall(PetscFree(arguments));
   PetscFunctionReturn(0);
@@ -173,7 +147,6 @@ PetscErrorCode MemberLook(const Members *members, Member *m, PetscBool *ended)
   PetscFunctionBeginUser;
   *ended = waitpid((pid_t)m->pid, &status, WNOHANG) == (pid_t)m->pid;
   if (!*ended) PetscFunctionReturn(0);
-  remove_mpi_folder(m);
   read_end(m, status);
   summary_read(m->folder, &m->summary);
   if (WIFEXITED(status) && WEXITSTATUS(status) == 0) {
