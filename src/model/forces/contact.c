@@ -6,7 +6,7 @@
 
 #define SUM_NUMBERS ((PetscInt)(sizeof(ContactSum) / sizeof(PetscReal)))
 
-#define RELEASED 1e-6 /* of the acceleration by walls may stay */
+#define RELEASED 1e-3 /* of what walls have given too much may stay; at rest that is nothing */
 #define MOST_SWEEPS 100
 
 #define THROUGH 1e-9 /* of a cell: material that reaches deeper into a wall at the start is a mistake */
