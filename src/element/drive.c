@@ -58,6 +58,7 @@ PetscBool drive_start(DrivePoint *p, Material *material, const PetscReal stress[
   DrivePoint start = {.material = material, .pore = pore, .J = 1};
   for (int k = 0; k < 6; ++k) norm2 += stress[k] * stress[k];
   law_initial_state(material->law, start.state);
+  if (material->law->place) material->law->place((PetscReal[]){0, 0, 0}, start.state);
   if (norm2 > 0 && !material->law->initial_stress(material->parameters, stress, start.state)) return PETSC_FALSE;
   *p = start;
   if (update(&start, p, tau, c) != LAW_OK) return PETSC_FALSE;

@@ -94,6 +94,9 @@ typedef struct Law {
   /* Bulk and shear modulus that stand for it, of a law whose own parameters say how stiff it is:
    * it takes none of the elastic constants. NULL: two of them belong to it. */
   void (*elastic)(const PetscReal *given, PetscReal bulk_and_shear[2]);
+  /* Tell the natural state where its point starts, m, before any initial stress, which keeps what this has set; NULL:
+   * it is the same everywhere. */
+  void (*place)(const PetscReal x[3], PetscReal *state);
   /* Tell a state that initial_stress gave, or the natural one, the size of the cell in which its
    * point starts, m. NULL: the law has no length. */
   void (*size)(const PetscReal *parameters, PetscReal h, PetscReal *state);

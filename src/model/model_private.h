@@ -38,6 +38,8 @@ PetscErrorCode InitialStress(Model *model, const Outline *outline, Diag *diag);
 PetscErrorCode NonlocalStep(Model *model);
 /* Tell the laws that have a length the sizes of the cells in which their points start (start/laws.c). */
 void sizes_start(const Model *model);
+/* Tell the laws that ask for it where their points start. */
+void places_start(const Model *model);
 /* Complain of bodies whose law needs a stress and has none (start/laws.c). */
 void stresses_check(const Model *model, Diag *diag);
 /* equilibrium.c. Mistakes of a case that asks for one. */
@@ -154,9 +156,6 @@ PetscErrorCode ConvectStep(Model *model, PetscReal dt, EnergyStep *energy, StepR
 /* Collective. shortened: was it the caller who made the accepted step that short? */
 PetscErrorCode ChooseNextStep(Model *model, PetscBool shortened, const StepReport *report);
 
-/* contact.c. Forces of contact that points keep from the stage before are those that its scheme asked for: to
- * explicit dynamics they are what acted. */
-void contact_take(Model *model, const Case *from);
 /* contact.c. Collective. Walls of the case, and what of the material touches them at the start. */
 PetscErrorCode WallsStart(Model *model, Diag *diag);
 /* Collective. Walls that a stage brings, or puts elsewhere, stand where no material is. */
@@ -175,6 +174,9 @@ PetscReal rigid_lost(const Model *model);
 void rigid_back(Model *model);
 /* Fastest of their centres, m/s. */
 PetscReal rigid_fastest(const Model *model);
+/* Collective. external += the forces of contact that material remembers, on owners: walls go on pressing as they did,
+ * but for those that are gone. */
+PetscErrorCode ContactGoOn(Model *model, PetscReal *external);
 /* Does a wall or an interface of the case rub? Then tangents are not symmetric. */
 PetscBool contact_rubs(const Case *c);
 /* Collective, in PrepareStep: what is in contact starts the step with the motion of its wall. */
@@ -183,7 +185,7 @@ PetscErrorCode ContactHold(Model *model, PetscReal dt, PetscReal inertia);
 PetscErrorCode ContactEnd(Model *model, PetscReal dt, struct EnergyStep *energy);
 /* Work of walls on the material in a step, J: of their motion; lost in sliding along them; of closing the
  * gap to them; half of that of the forces at the step's start; what of all this is more than the
- * trapezoidal rule with no force at the start gives. */
+ * trapezoidal rule gives. */
 typedef struct {
   PetscReal moving, sliding, closing, start, more;
   PetscReal rigid; /* what of `moving` is that of walls with mass */

@@ -60,4 +60,25 @@ expect "how many" 2 "$talus" element sand.yaml --umat soil=elastic.so
 says err.txt "behind the file stand NPROPS" "--umat clay=./clay.so,6,3"
 expect "no umat" 2 "$talus" element sand.yaml --umat soil=voce.so,2,1
 says err.txt "has no subroutine UMAT (symbol umat_)" "is loaded by --law soil="
+
+# One in Fortran: on its curve of hardening, Cauchy = k(alpha), strain = Cauchy / E + alpha; and SDVINI, by which strength is
+# that at y = 0 times 1 + y / 2: a slab 1 m high that flows everywhere takes 1.25 of 2 / sqrt(3) times its yield stress
+command -v gfortran >/dev/null || { echo "no gfortran: the subroutine in Fortran is not tried"; finish; }
+gfortran -shared -fPIC -O2 -o hard.so "$source/tests/material/plugins/umat_j2.f" || fail "umat_j2.f is not compiled"
+cat >metal.yaml <<'END'
+title: Metal
+material: {law: metal, prop_1: 200e9, prop_2: 0.3, prop_3: 200e6, prop_4: 400e6, prop_5: 8, prop_6: 1e8}
+path: [{test: triaxial, to: 0.05, steps: 20}]
+END
+expect "fortran" 0 "$talus" element metal.yaml --umat metal=./hard.so,6,2 --out hard
+awk -F, 'NR > 1 {a = $(NF - 1); k = 4e8 - 2e8 * exp(-8 * a) + 1e8 * a; e = k / 2e11 + a}
+  END {exit !(a > 0.04 && -$12 > k * (1 - 1e-9) && -$12 < k * (1 + 1e-9) && e > 0.05 - 1e-11 && e < 0.05 + 1e-11 && $NF == 1)}' \
+  hard/element.csv || fail "$name: not on the curve of hardening"
+for ranks in 1 2 3; do
+  expect "SDVINI, $ranks ranks" 0 on_ranks $ranks "$talus" run bar.yaml --umat metal=hard.so,6,2 --out sdvini$ranks --quiet --set analysis.end=1 \
+    --set analysis.steps=10 --set 'boundary[2].displacement.x=0.08' --set newton.residual=1e-11 --set formulation=mean-dilatation --set 'output.fields=[displacement]' \
+    --set 'materials.metal={law: metal, density: 7800, prop_1: 200e9, prop_2: 0.3, prop_3: 200e6, prop_4: 200e6, prop_5: 0, prop_6: 0}'
+  awk -F, 'END {f = $NF / (1.25 * 2 / sqrt(3) * 2e8 * exp(-0.02)); exit !(f > 0.998 && f < 1.002)}' sdvini$ranks/history.csv || fail "$name: other strength"
+  awk -f "$compare" sdvini1/history.csv sdvini$ranks/history.csv >out.txt || fail "$name: another history"
+done
 finish

@@ -263,6 +263,36 @@ rm -rf cut && cp -r slide1 cut && forget cut 13
 expect "an interface changes, resumed" 0 "$talus" run --resume cut --quiet
 same_bits "$name" slide1 cut
 
+# What has come to rest on a wall by statics stays at rest in dynamics, whatever the step: to 1e-6 of its settlement
+cat >rests.yaml <<'END'
+title: A block that rests on a wall
+kinematics: plane-strain
+method: fem
+analysis: {type: static, steps: 4}
+grid: {box: {min: [0, 0.25], max: [1, 1.25]}, size: 0.25}
+bodies: [{name: block, shape: {box: {min: [0, 0.25], max: [1, 1.25]}}, material: soil}]
+materials:
+  soil: {law: mohr-coulomb, density: 2000, young: 1e6, poisson: 0.3, friction_angle: 30, dilatancy_angle: 0, cohesion: 5e3}
+boundary: [{name: left, on: {boundary: left}, fix: [x]}]
+walls: [{name: floor, shape: {half-space: {point: [0, 0.25], normal: [0, 1]}}, contact: stick}]
+loads: {gravity: [0, -9.81], gravity_amplitude: [[0, 0], [0.5, 1]]}
+measures:
+  top: {displacement: y, of: {tracer: [0.8, 1.2]}}
+  force: {wall_force: y, of: {wall: floor}}
+output: {fields: [displacement], every: end}
+stages:
+  - {name: stands}
+  - {name: waits, analysis: {type: dynamic, end: 0.1, step: 0.02}}
+END
+for way in "fem 0.02" "fem 0.002" "mpm 0.02" "mpm 0.002"; do
+  set -- $way
+  expect "rest on a wall, $way" 0 "$talus" run rests.yaml --out rests --force --quiet --set method=$1 --set stages[1].analysis.step=$2 \
+    --set 'grid.box={min: [0, 0], max: [2, 1.5]}' --set 'basis={cell: {}}' --set analysis.steps=8
+  awk -F, 'NR > 1 && $3 == 1 {top = $4; force = $5}
+    NR > 1 && $3 == 2 {n += 1; d = ($4 - top) / top; f = ($5 - force) / force; if (d * d > 1e-12 || f * f > 1e-12) bad = 1}
+    END {exit !(n > 4 && !bad && force > 19619 && force < 19621)}' rests/history.csv || fail "$name: it jerks"
+done
+
 # What is refused: refused NAME TEXT OPTION...
 refused() {
   title=$1 text=$2

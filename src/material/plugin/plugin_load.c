@@ -182,6 +182,7 @@ static PetscBool open_umat(Plugin *g, Diag *diag)
     diag_hint(diag, "a law of talus/law.h is loaded by --law %s=%s", g->name, g->file);
     return PETSC_FALSE;
   }
+  if (!find(library, "sdvini_", &g->umat.begin)) g->umat.begin = NULL;
   memset(g->umat.name, ' ', sizeof g->umat.name);
   for (size_t k = 0; g->name[k] && k < sizeof g->umat.name; ++k)
     g->umat.name[k] = (char)toupper((unsigned char)g->name[k]);

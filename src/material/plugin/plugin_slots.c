@@ -58,9 +58,14 @@ static PetscBool umat_stress(const Plugin *g, const PetscReal *q, const PetscRea
   return off <= 1e-10 * size ? PETSC_TRUE : PETSC_FALSE;
 }
 
+/* What SDVINI has made of STATEV stays. */
 static PetscBool initial_stress(const Plugin *g, const PetscReal *q, const PetscReal sigma[6], PetscReal *state)
 {
+  PetscReal begun[LAW_MAX_STATE];
+  const size_t own = g->umat.begin ? (size_t)g->own * sizeof *state : 0;
+  memcpy(begun, state + g->kept, own);
   law_initial_state(&g->law, state);
+  memcpy(state + g->kept, begun, own);
   if (g->user.update_strain) return plugin_strain_stress(g, q, sigma, state);
   if (g->umat.call) return umat_stress(g, q, sigma, state);
   return g->user.initial_stress(q + PLUGIN_STEP, sigma, state) ? PETSC_TRUE : PETSC_FALSE;
@@ -89,6 +94,7 @@ static void elastic(const Plugin *g, const PetscReal *given, PetscReal bulk_and_
   }
   prepare(g, NULL, given, q);
   law_initial_state(&g->law, old);
+  if (g->umat.begin) umat_begin(&g->umat, (PetscReal[]){0.0, 0.0, 0.0}, old);
   if (update(g, q, 1, identity, old, state, tau, c) != LAW_OK) return;
   bulk_and_shear[1] = c[6 * 3 + 3];
   bulk_and_shear[0] = c[0] - 4.0 / 3.0 * c[6 * 3 + 3];
@@ -152,6 +158,7 @@ static void step(PetscReal time, PetscReal dt, PetscReal *q)
   {                                                                                                                 \
     reduce(&plugins[k], given, f, less);                                                                            \
   }                                                                                                                 \
+  static void place_##k(const PetscReal x[3], PetscReal *state) { umat_begin(&plugins[k].umat, x, state); }         \
   static const char *check_##k(const PetscReal *given) { return check(&plugins[k], given); }
 
 SLOT(0)
@@ -167,7 +174,7 @@ SLOT(7)
   {                                                                                                         \
     .yields = PETSC_TRUE, .update = update_##k, .energy = energy_##k, .initial_stress = initial_stress_##k, \
     .elastic = elastic_##k, .prepare = prepare_##k, .volume = volume_##k, .volume_law = volume_law,         \
-    .scale = scale_##k, .reduce = reduce_##k, .check = check_##k, .step = step                              \
+    .scale = scale_##k, .reduce = reduce_##k, .check = check_##k, .place = place_##k, .step = step          \
   }
 
 static const Law tables[PLUGIN_MOST] = {TABLE(0), TABLE(1), TABLE(2), TABLE(3), TABLE(4), TABLE(5), TABLE(6), TABLE(7)};
@@ -188,5 +195,6 @@ void plugin_fill(PetscInt slot)
   if (own || !strains) g->law.volume = NULL;
   if (!strains && !g->umat.call && !g->user.initial_stress) g->law.initial_stress = NULL;
   if (!g->user.energy) g->law.energy = NULL;
+  if (!g->umat.begin) g->law.place = NULL;
   if (!g->user.reduce) g->law.reduce = NULL;
 }

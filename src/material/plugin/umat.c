@@ -152,6 +152,13 @@ static void tell(const Polar *p, PetscReal time, PetscReal dt, const PetscReal *
   call->pnewdt = 1.0;
 }
 
+void umat_begin(const Umat *u, const PetscReal x[3], PetscReal *state)
+{
+  const int three = 3, one = 1;
+  memset(state + UMAT_KEPT, 0, (size_t)u->n_statev * sizeof *state);
+  u->begin(state + UMAT_KEPT, x, &u->n_statev, &three, &one, &one, &one, &one);
+}
+
 LawStatus umat_point(const Umat *u, const PetscReal *props, PetscReal time, PetscReal dt, const PetscReal dF[9],
                      const PetscReal *old, PetscReal *state, PetscReal tau[6], PetscReal *c)
 {

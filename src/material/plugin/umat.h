@@ -20,12 +20,18 @@ typedef void (*UmatCall)(double *stress, double *statev, double *ddsdde, double 
                          const int *npt, const int *layer, const int *kspt, const int *kstep, const int *kinc,
                          size_t cmname_length);
 
+typedef void (*SdviniCall)(double *statev, const double *coords, const int *nstatv, const int *ncrds, const int *noel,
+                           const int *npt, const int *layer, const int *kspt);
+
 typedef struct {
   UmatCall call;
+  SdviniCall begin; /* NULL: STATEV begins with 0 */
   int n_props, n_statev;
   char name[80]; /* CMNAME, blanks behind */
 } Umat;
 
+/* What SDVINI makes of STATEV at the place x (m) where a point starts, from 0. */
+void umat_begin(const Umat *umat, const PetscReal x[3], PetscReal *state);
 /* One point. props: those of the case; time, dt: of the step; c NULL: not wanted. */
 LawStatus umat_point(const Umat *umat, const PetscReal *props, PetscReal time, PetscReal dt, const PetscReal dF[9],
                      const PetscReal *old, PetscReal *state, PetscReal tau[6], PetscReal *c);

@@ -1,6 +1,10 @@
 #include "method/transfer/mass.h"
 #include "method/transfer/loops.h"
 
+/* Meshes of fem have cells that are full. */
+static PetscReal lumping_of(const Discretisation *s, PetscInt g) { return s->lumping ? s->lumping[g] : 0; }
+static PetscReal tie_of(const Discretisation *s, PetscInt g) { return s->tie ? s->tie[g] : 0; }
+
 /* out += N m (1 - l) N x of a point; weight += N m l. */
 UNROLLED void multiply_point(const PetscInt nn, const PetscInt width, PetscReal m, PetscReal lumped, const PetscReal *N,
                              const PetscReal *in, PetscReal *weight, PetscReal *out)
@@ -23,7 +27,7 @@ UNROLLED void multiply(const PetscInt dim, const PetscInt fixed_nn, const Suppor
   const PetscInt width = 2 * dim;
   for (PetscInt g = run->first; g < run->end; ++g) {
     const PetscInt nn = fixed_nn ? fixed_nn : support_nodes(w, g), *node = w->node + w->node_start[g];
-    const PetscReal tie = s->tie ? s->tie[g] : 0, lumped = s->lumping ? s->lumping[g] : 0;
+    const PetscReal tie = tie_of(s, g), lumping = lumping_of(s, g);
     PetscReal in[6 * CLOUD_MAX_NODES], out[6 * CLOUD_MAX_NODES], weight[CLOUD_MAX_NODES];
     PetscReal mean[6] = {0, 0, 0, 0, 0, 0};
     for (PetscInt I = 0; I < nn; ++I) {
@@ -35,7 +39,7 @@ UNROLLED void multiply(const PetscInt dim, const PetscInt fixed_nn, const Suppor
     }
     for (PetscInt i = 0; i < nn * width; ++i) out[i] = mean[i % width];
     for (PetscInt p = w->point_start[g]; p < w->point_start[g + 1]; ++p)
-      multiply_point(nn, width, s->points->real[POINT_MASS][p], lumped,
+      multiply_point(nn, width, s->points->real[POINT_MASS][p], lumping,
                      w->N + w->value_start[g] + (p - w->point_start[g]) * nn, in, weight, out);
     for (PetscInt i = 0; i < nn * width; ++i)
       sum[node[i / width] * width + i % width] += out[i] + weight[i / width] * in[i];
@@ -50,12 +54,12 @@ UNROLLED void add_diagonal(const PetscInt dim, const PetscInt fixed_nn, const Su
   (void)dim;
   for (PetscInt g = run->first; g < run->end; ++g) {
     const PetscInt nn = fixed_nn ? fixed_nn : support_nodes(w, g), *node = w->node + w->node_start[g];
-    const PetscReal tie = s->tie ? s->tie[g] : 0, lumped = s->lumping ? s->lumping[g] : 0;
+    const PetscReal tie = tie_of(s, g), lumping = lumping_of(s, g);
     for (PetscInt I = 0; I < nn; ++I) sum[node[I]] += tie * (1 - 1 / (PetscReal)nn);
     for (PetscInt p = w->point_start[g]; p < w->point_start[g + 1]; ++p) {
       const PetscReal *N = w->N + w->value_start[g] + (p - w->point_start[g]) * nn;
       const PetscReal m = s->points->real[POINT_MASS][p];
-      for (PetscInt I = 0; I < nn; ++I) sum[node[I]] += m * N[I] * ((1 - lumped) * N[I] + lumped);
+      for (PetscInt I = 0; I < nn; ++I) sum[node[I]] += m * N[I] * ((1 - lumping) * N[I] + lumping);
     }
   }
 }

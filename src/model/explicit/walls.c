@@ -125,6 +125,7 @@ void walls_follow(Model *m, Explicit *e)
     kept[0] = (PetscReal)c->state + CONTACT_SPRING;
     kept[1] = PetscMax(THINNEST * first, PetscMin(THICKEST * first, c->reach - lead));
     keep(m, e, c, move, kept + 2);
+    kept[2 + m->dim] = 1;
   }
 }
 

@@ -6,7 +6,7 @@
 
 #define SUM_NUMBERS ((PetscInt)(sizeof(ContactSum) / sizeof(PetscReal)))
 
-#define RELEASED 1e-6 /* of the acceleration by walls may stay */
+#define RELEASED 1e-3 /* of what walls have given too much may stay; at rest that is nothing */
 #define MOST_SWEEPS 100
 
 #define THROUGH 1e-9 /* of a cell: material that reaches deeper into a wall at the start is a mistake */
@@ -101,7 +101,7 @@ static ContactMotion motion_of(const Model *m, const ContactMass *whole, PetscRe
 {
   return (ContactMotion){.grid = m->grid,
                          .mass = m->nodes->mass,
-                         .whole = whole && whole->multiply ? whole : NULL,
+                         .whole = whole->multiply ? whole : NULL,
                          .frames = &m->boundary->frames,
                          .fixed = m->nodes->fixed,
                          .motion = motion,
@@ -114,29 +114,45 @@ static ContactMotion motion_of(const Model *m, const ContactMass *whole, PetscRe
 /* A scheme that balances forces in the middle of the step remembers none, and lets nothing ring. */
 static PetscBool holds(const Model *m) { return m->scheme->inertia && !m->scheme->middle; }
 
-/* What a wall's force is of what the balance at the end of a step asks for: with inertia it acts over the
- * whole step, and Newmark's formulas would weigh it as that of one end (docs/theory.md 18). */
-static PetscReal share_of_force(const Model *m)
+/* With inertia a wall's force acts over the whole step, and Newmark's formulas would weigh it as that of one end:
+ * so it is asked for as much larger, and what they remember of the last step's is taken back, or it would push what
+ * leaves. What rests asks for just the force that is remembered (docs/theory.md 18). */
+static ContactShare share_of_force(const Model *m)
 {
   const TimeWeights w = m->scheme->weights(&m->c->analysis, 1);
-  return holds(m) ? w.mean / (1 - w.lag) : 1;
+  if (!holds(m)) return (ContactShare){.mean = 1};
+  return (ContactShare){.inertia = PETSC_TRUE,
+                        .mean = w.mean / (1 - w.lag),
+                        .back = (1 - w.lag) * (1 - w.mean) / w.mean - w.lag,
+                        .lag = w.lag};
 }
 
-void contact_take(Model *m, const Case *from)
+static void forget(Model *m, const ContactPoint *c)
 {
-  const TimeScheme *before = time_scheme_of(&from->analysis);
-  const PetscInt n = CONTACT_KEPT(m->dim);
-  if (!m->contact || m->c->analysis.type != ANALYSIS_EXPLICIT || !before->inertia || before->middle) return;
-  const TimeWeights w = before->weights(&from->analysis, 1);
-  for (PetscInt i = 0; i < m->points->n * m->points->components[POINT_CONTACT]; ++i)
-    if (i % n >= 2) m->points->real[POINT_CONTACT][i] *= w.mean / (1 - w.lag);
+  PetscReal *kept = point_real(m->points, POINT_CONTACT, c->owner) + c->wall * CONTACT_KEPT(m->dim);
+  for (PetscInt d = 0; d < m->dim; ++d) kept[2 + d] = 0;
 }
 
-/* Can walls' forces be taken out of the acceleration where they acted, at the end of the step? Where points carry
- * it to others and the mass is consistent, single forces are accelerations of both signs of nodes hardly reached. */
-static PetscBool releases(const Model *m)
+PetscErrorCode ContactGoOn(Model *m, PetscReal *external)
 {
-  return holds(m) && (!m->method->restores_grid || m->c->analysis.mass == MASS_LUMPED);
+  const PetscInt dim = m->dim;
+  Contact *s = m->contact;
+  PetscReal *force;
+
+  PetscFunctionBeginUser;
+  if (!s) PetscFunctionReturn(0);
+  const NodalScene scene = nodal_scene(m, m->time, m->nodes->du);
+  PetscCall(ContactFind(s, &scene));
+  PetscCall(PetscCalloc1(m->grid->n_nodes * dim, &force));
+  for (const ContactPoint *c = s->point; c < s->point + s->n; ++c) {
+    for (PetscInt e = c->first; e < c->first + c->n && c->before != CONTACT_OPEN && !c->gone; ++e)
+      for (PetscInt d = 0; d < dim; ++d) force[s->node[e] * dim + d] += s->N[e] * c->last[d];
+    if (c->gone) forget(m, c);
+  }
+  PetscCall(GridSumToOwners(m->grid, dim, force));
+  for (PetscInt i = 0; i < m->grid->n_owned * dim; ++i) external[i] += force[i];
+  PetscCall(PetscFree(force));
+  PetscFunctionReturn(0);
 }
 
 /* Collective. Does anything touch, or has anything touched at the start of the step? */
@@ -167,21 +183,15 @@ static PetscErrorCode Project(const Model *m, PetscReal *v, PetscReal dt, PetscB
   PetscFunctionReturn(0);
 }
 
-/* The forces of the last step are taken out of what Newmark's formulas remember, or they would push what
- * leaves; and what was in contact starts with its wall's velocity, as a prescribed node does. Where points
- * carry the acceleration the first has been done (release). */
+/* What was in contact starts with its wall's velocity, as a prescribed node does. */
 PetscErrorCode ContactHold(Model *m, PetscReal dt, PetscReal inertia)
 {
   PetscFunctionBeginUser;
   if (!m->contact) PetscFunctionReturn(0);
   contact_prepare(m->contact, m->time, dt, inertia, share_of_force(m));
   for (RigidWall *b = m->contact->rigid; b < m->contact->rigid + m->contact->n_rigid; ++b)
-    rigid_begin(b, m->walls, m->c, m->time, dt, share_of_force(m), m->scheme->middle);
+    rigid_begin(b, m->walls, m->c, m->time, dt, share_of_force(m).mean, m->scheme->middle);
   if (!holds(m)) PetscFunctionReturn(0);
-  const ContactMotion a = motion_of(m, NULL, m->nodes->a, dt, PETSC_TRUE);
-  const PetscReal lag = m->scheme->weights(&m->c->analysis, dt).lag;
-  if (!releases(m))
-    PetscCall(ContactRelease(m->contact, &a, 1 / (1 - lag), m->contact->impulse + m->contact->n_partners));
   PetscCall(Project(m, m->nodes->v, dt, PETSC_TRUE));
   PetscFunctionReturn(0);
 }
@@ -204,23 +214,27 @@ PetscErrorCode ContactEnd(Model *m, PetscReal dt, EnergyStep *energy)
 /* Of the mean force in the step. */
 static ContactWork point_work(const Model *m, const ContactPoint *c)
 {
-  const PetscReal end = m->scheme->inertia ? share_of_force(m) : 0.5, first = m->scheme->inertia ? 0 : 0.5;
-  PetscReal f[3], x[3], pressure = 0, closing = 0;
+  const PetscReal end = m->scheme->inertia ? share_of_force(m).mean : 0.5, first = m->scheme->inertia ? 0 : 0.5;
+  PetscReal f[3], balance[3], x[3], pressure = 0, closing = 0;
   ContactWork work = {0};
   contact_force(c, f);
+  contact_balance(m->contact, c, balance);
   contact_place(m->contact, c, m->nodes->du, 1, x);
   for (int d = 0; d < 3; ++d) {
-    f[d] = first * c->start[d] + end * f[d];
+    f[d] = first * c->last[d] + end * f[d];
     pressure += f[d] * c->normal[d];
     closing += (x[d] - c->x[d] - c->swept[d]) * c->normal[d];
   }
   for (int d = 0; d < 3; ++d) {
-    work.start += 0.5 * c->start[d] * (x[d] - c->x[d]);
+    const PetscReal start = c->stays * c->last[d];
+    work.start += 0.5 * start * (x[d] - c->x[d]);
+    work.more += (f[d] - 0.5 * (start + balance[d])) * (x[d] - c->x[d]);
     work.moving += f[d] * c->swept[d];
     work.sliding -= (f[d] - pressure * c->normal[d]) * (x[d] - c->x[d] - c->swept[d]);
   }
   work.closing = pressure * closing;
-  if (m->scheme->inertia) work.more = (1 - 0.5 / end) * (work.closing + work.moving - work.sliding);
+  if (!m->scheme->inertia) work.more = 0;
+  else if (m->scheme->middle) work.more = 0.5 * (work.closing + work.moving - work.sliding);
   return work;
 }
 
@@ -231,7 +245,7 @@ ContactWork contact_work(const Model *m)
   for (PetscInt k = 0; s && k < s->n; ++k) {
     const ContactWork work = point_work(m, s->point + k);
     if (contact_rigid(s, s->point + k)) sum.rigid += work.moving;
-    if (!releases(m)) sum.start += work.start;
+    sum.start += work.start;
     sum.moving += work.moving;
     sum.sliding += work.sliding;
     sum.closing += work.closing;
@@ -275,8 +289,9 @@ static void add(ContactSum *sum, PetscReal factor, const ContactSum *x)
   }
 }
 
-/* lack = forces of walls at the end of the step, as rates of momentum of free dofs. */
-static PetscErrorCode SumForces(const Model *m, PetscReal share, MassSolve *c)
+/* lack = what of walls' forces the acceleration at the end of the step has more than their mean, in rates of
+ * momentum of free dofs. */
+static PetscErrorCode SumExcess(const Model *m, MassSolve *c)
 {
   const Contact *s = m->contact;
   const PetscInt dim = m->dim;
@@ -284,10 +299,9 @@ static PetscErrorCode SumForces(const Model *m, PetscReal share, MassSolve *c)
   PetscFunctionBeginUser;
   for (const ContactPoint *p = s->point; p < s->point + s->n; ++p) {
     PetscReal f[3];
-    contact_force(p, f);
+    contact_excess(s, p, f);
     for (PetscInt e = p->first; e < p->first + p->n; ++e)
-      for (PetscInt d = 0; d < dim; ++d)
-        c->lack[s->node[e] * c->width + ACCELERATION * dim + d] += share * s->N[e] * f[d];
+      for (PetscInt d = 0; d < dim; ++d) c->lack[s->node[e] * c->width + ACCELERATION * dim + d] += s->N[e] * f[d];
   }
   PetscCall(GridSumToOwners(m->grid, c->width, c->lack));
   mass_turn(c, c->lack);
@@ -296,8 +310,8 @@ static PetscErrorCode SumForces(const Model *m, PetscReal share, MassSolve *c)
   PetscFunctionReturn(0);
 }
 
-/* Points that carry acceleration to other nodes do so without what walls made of it, taken out at the
- * nodes that felt their forces: to others, of which some have hardly any mass, they would be leaps. */
+/* What is remembered as acceleration is of walls' forces what stays: of what rests all that there is. The rest is
+ * taken out at the nodes that felt it, by the mass matrix of the balance. */
 static PetscErrorCode Release(Model *m, PetscReal dt)
 {
   const PetscReal lag = m->scheme->weights(&m->c->analysis, dt).lag;
@@ -306,22 +320,21 @@ static PetscErrorCode Release(Model *m, PetscReal dt)
   MassSolve c;
 
   PetscFunctionBeginUser;
-  if (!releases(m)) PetscFunctionReturn(0);
-  for (PetscInt k = 0; k < m->contact->n_partners; ++k) m->contact->wall[k].rate = (ContactSum){0};
+  if (!holds(m)) PetscFunctionReturn(0);
   PetscCall(Touches(m->contact, m->comm, &any));
   if (!any) PetscFunctionReturn(0);
   PetscCall(MassSolveCreate(m->space, &c));
   c.framed = PETSC_TRUE;
-  PetscCall(SumForces(m, 1 / (1 - lag), &c));
+  PetscCall(SumExcess(m, &c));
   PetscCall(MassLack(&c, enough));
   enough[ACCELERATION] *= PetscSqr(RELEASED);
   PetscCall(MassSolveRun(&c, enough, MOST_SWEEPS));
   PetscCall(MassSolveClose(&c));
   mass_turn(&c, c.x);
   for (PetscInt i = 0; i < m->grid->n_nodes * m->dim; ++i) {
-    const PetscReal by_walls = c.x[i / m->dim * c.width + ACCELERATION * m->dim + i % m->dim];
-    m->nodes->a1[i] -= by_walls;
-    m->nodes->echo[i] -= lag * by_walls;
+    const PetscReal excess = c.x[i / m->dim * c.width + ACCELERATION * m->dim + i % m->dim];
+    m->nodes->a1[i] -= excess;
+    m->nodes->echo[i] -= lag * excess;
   }
   PetscCall(MassSolveDestroy(&c));
   PetscFunctionReturn(0);
@@ -349,19 +362,21 @@ PetscErrorCode ContactForces(Model *m, PetscReal dt)
 
   PetscFunctionBeginUser;
   if (!s) PetscFunctionReturn(0);
-  PetscCall(PetscCalloc1(3 * n, &now)); /* forces at the end, impulses, forces lost at the start */
+  PetscCall(PetscCalloc1(3 * n, &now)); /* forces at the end, impulses, what is taken out of the first */
   for (PetscInt k = 0; k < s->n; ++k) {
+    ContactPoint *c = s->point + k;
     PetscReal f[3];
-    contact_force(s->point + k, f);
-    contact_add(s->point + k, m->dim, f, now + s->point[k].wall);
+    contact_balance(s, c, f);
+    contact_add(c, m->dim, f, now + c->wall);
+    contact_excess(s, c, f);
+    contact_add(c, m->dim, f, now + 2 * n + c->wall);
   }
-  PetscCall(PetscArraycpy(now + n, s->impulse, 2 * n));
+  PetscCall(PetscArraycpy(now + n, s->impulse, n));
   PetscCall(MPIU_Allreduce(MPI_IN_PLACE, now, (PetscMPIInt)(3 * n * SUM_NUMBERS), MPIU_REAL, MPI_SUM, m->comm));
   for (PetscInt k = 0; k < n; ++k) {
     WallState *wall = s->wall + k;
-    ContactSum before = wall->rate;
+    const ContactSum before = wall->rate;
     wall->mean = wall->rate = (ContactSum){0};
-    add(&before, 1, now + 2 * n + k);
     add(&wall->rate, 1 / (1 - w.lag), now + k);
     add(&wall->rate, -w.lag / (1 - w.lag), &before);
     wall->friction += now[n + k].sliding;
@@ -370,6 +385,7 @@ PetscErrorCode ContactForces(Model *m, PetscReal dt)
       add(&wall->mean, w.mean, &wall->rate);
       add(&wall->mean, 1 / dt, now + n + k);
     } else add(&wall->mean, 1, now + k);
+    add(&wall->rate, -1, now + 2 * n + k);
   }
   PetscCall(PetscFree(now));
   settle(m, dt);
@@ -383,7 +399,7 @@ PetscErrorCode ModelTractions(const Model *m, PetscInt wall, PetscInt *n, Contac
   PetscFunctionBeginUser;
   *n = 0, *tractions = NULL;
   if (!m->contact) PetscFunctionReturn(0);
-  PetscCall(ContactTractions(m->contact, m->grid, wall, m->nodes->du, share_of_force(m), n, tractions));
+  PetscCall(ContactTractions(m->contact, m->grid, wall, m->nodes->du, share_of_force(m).mean, n, tractions));
   PetscFunctionReturn(0);
 }
 
@@ -392,6 +408,5 @@ void contact_force_on(const Model *m, PetscInt p, PetscReal force[3])
   const PetscReal *kept = point_real(m->points, POINT_CONTACT, p);
   force[0] = force[1] = force[2] = 0;
   for (PetscInt k = 0; k < m->c->n_walls + m->c->n_interfaces; ++k, kept += CONTACT_KEPT(m->dim))
-    for (PetscInt d = 0; d < m->dim && (int)(kept[0] + 0.5) != CONTACT_OPEN; ++d)
-      force[d] += share_of_force(m) * kept[2 + d];
+    for (PetscInt d = 0; d < m->dim && (int)(kept[0] + 0.5) != CONTACT_OPEN; ++d) force[d] += kept[2 + d];
 }

@@ -16,6 +16,7 @@ static PetscErrorCode Residual(Model *m, PetscReal *residual)
   for (PetscInt i = 0; i < dofs; ++i) n->history[i] = -g[i % dim];
   const NodalScene scene = nodal_scene(m, m->time, n->du);
   PetscCall(NodalForcesExternal(&m->forces, &scene, PETSC_TRUE, n->external));
+  PetscCall(ContactGoOn(m, n->external));
   PetscCall(PetscArrayzero(residual, dofs));
   pressure_guess(m);
   WeakFormInput in = weak_form_of(m, 0);
@@ -23,28 +24,6 @@ static PetscErrorCode Residual(Model *m, PetscReal *residual)
   PetscCall(m->formulation->assemble(&in, &out));
   PetscCall(GridSumToOwners(m->grid, dim, residual));
   for (PetscInt i = 0; i < m->grid->n_owned * dim; ++i) residual[i] -= n->external[i];
-  PetscFunctionReturn(0);
-}
-
-/* Walls go on pressing as they did. */
-static PetscErrorCode AddWalls(const Model *m, PetscReal *residual)
-{
-  const Support *w = m->space->support;
-  const PetscInt dim = m->dim;
-  PetscReal *walls, force[3];
-
-  PetscFunctionBeginUser;
-  if (!m->points->components[POINT_CONTACT]) PetscFunctionReturn(0);
-  PetscCall(PetscCalloc1(m->grid->n_nodes * dim, &walls));
-  for (PetscInt g = 0; g < w->n_groups; ++g)
-    for (PetscInt p = w->point_start[g]; p < w->point_start[g + 1]; ++p) {
-      contact_force_on(m, p, force);
-      for (PetscInt k = 0; k < support_nodes(w, g) * dim; ++k)
-        walls[w->node[w->node_start[g] + k / dim] * dim + k % dim] += support_N(w, g, p)[k / dim] * force[k % dim];
-    }
-  PetscCall(GridSumToOwners(m->grid, dim, walls));
-  for (PetscInt i = 0; i < m->grid->n_owned * dim; ++i) residual[i] -= walls[i];
-  PetscCall(PetscFree(walls));
   PetscFunctionReturn(0);
 }
 
@@ -83,7 +62,6 @@ PetscErrorCode HoldImbalance(Model *m, Imbalance *imbalance)
   if (held) PetscCall(PetscArrayzero(held, dofs)); /* that of the stage before is over */
   mark_fixed(m);
   PetscCall(Residual(m, residual));
-  PetscCall(AddWalls(m, residual));
   frames_turn(&m->boundary->frames, m->dim, residual);
   for (PetscInt i = 0; i < dofs; ++i)
     if (i >= m->grid->n_owned * m->dim || m->boundary->fixed[i] || m->nodes->fixed[i]) residual[i] = 0;

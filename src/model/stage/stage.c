@@ -113,7 +113,6 @@ static PetscErrorCode Take(Model *m, const Tables *tables, const Case *from, Pet
   if (!reason[0]) PetscCall(TakeNodes(m, tables, next, reason));
   PetscCall(ReasonShare(m->comm, reason));
   if (reason[0] || diag_errors(diag) > errors) PetscFunctionReturn(0);
-  contact_take(m, from);
   PetscCall(ResetMotion(m, from, next));
   PetscCall(KeepAccount(m, before, next));
   PetscFunctionReturn(0);

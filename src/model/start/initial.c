@@ -20,6 +20,7 @@ PetscErrorCode InitialAcceleration(Model *m)
   for (PetscInt i = 0; i < dofs; ++i) n->history[i] = m->c->analysis.damping * n->v[i] - g[i % dim];
   const NodalScene scene = nodal_scene(m, m->time, n->du);
   PetscCall(NodalForcesExternal(&m->forces, &scene, PETSC_TRUE, n->external));
+  PetscCall(ContactGoOn(m, n->external));
   PetscCall(PetscArrayzero(n->force, dofs));
   pressure_guess(m);
   WeakFormInput in = weak_form_of(m, 0);

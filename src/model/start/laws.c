@@ -15,6 +15,16 @@ static PetscReal cell_size(const Grid *grid, PetscInt cell)
   return pow(parts * cell_volume(type, x), 1.0 / (PetscReal)grid->dim);
 }
 
+void places_start(const Model *m)
+{
+  for (PetscInt p = 0; p < m->points->n; ++p) {
+    const Law *law = m->materials[m->points->material[p]].law;
+    PetscReal x[3] = {0, 0, 0};
+    for (PetscInt d = 0; d < m->dim; ++d) x[d] = point_real(m->points, POINT_X, p)[d];
+    if (law->place) law->place(x, point_real(m->points, POINT_STATE, p));
+  }
+}
+
 void sizes_start(const Model *m)
 {
   for (PetscInt p = 0; p < m->points->n; ++p) {

@@ -34,7 +34,8 @@ PetscErrorCode ContactCreate(const Case *c, Walls *walls, Diag *diag, Contact **
   (*contact)->n_partners = c->n_walls + c->n_interfaces;
   PetscCall(RigidCreate(c, walls, diag, &(*contact)->n_rigid, &(*contact)->rigid));
   PetscCall(PetscCalloc1((*contact)->n_partners, &(*contact)->wall));
-  PetscCall(PetscCalloc1(2 * (*contact)->n_partners, &(*contact)->impulse));
+  PetscCall(PetscCalloc1((*contact)->n_partners, &(*contact)->impulse));
+  (*contact)->share = (ContactShare){.mean = 1};
   PetscFunctionReturn(0);
 }
 
@@ -56,15 +57,16 @@ PetscErrorCode ContactDestroy(Contact **contact)
   PetscFunctionReturn(0);
 }
 
-/* Those of the last step, and as much more as the gap that it left takes away: of a stiff body that is no
- * little force, and if it let go everywhere at once nothing would hold it. What had none and touches the
+/* Those of the last step, and as much more or less as the gap that it left takes away: of a stiff body that is no
+ * little force, and if it let go everywhere at once nothing would hold it; and what rests is to stay where it is. What had none and touches the
  * wall gets one so small that it counts for nothing: it is in contact from the first iteration on. */
 static void first_multiplier(const Contact *s, ContactPoint *c)
 {
+  const PetscReal whole = 1 / s->share.mean;
   c->multiplier = (ContactForce){0};
-  for (int d = 0; d < 3; ++d) c->multiplier.pressure += c->last[d] * c->normal[d];
-  for (int d = 0; d < 3; ++d) c->multiplier.shear[d] = c->last[d] - c->multiplier.pressure * c->normal[d];
-  if (c->before != CONTACT_OPEN && c->open > 0) c->multiplier.pressure += c->law.penalty * c->open;
+  for (int d = 0; d < 3; ++d) c->multiplier.pressure += whole * c->last[d] * c->normal[d];
+  for (int d = 0; d < 3; ++d) c->multiplier.shear[d] = whole * c->last[d] - c->multiplier.pressure * c->normal[d];
+  if (c->before != CONTACT_OPEN && c->open > -CLOSED * s->length) c->multiplier.pressure += c->law.penalty * c->open;
   if (c->touches && c->before == CONTACT_OPEN) c->multiplier.pressure = 0.1 * CLOSED * s->length * c->law.penalty;
 }
 
@@ -76,13 +78,15 @@ static PetscReal stiffness_of(const ContactPoint *c, PetscReal h, PetscReal iner
   return other > 0 ? k * other / (k + other) : k;
 }
 
-void contact_prepare(Contact *s, PetscReal t, PetscReal dt, PetscReal inertia, PetscReal share)
+void contact_prepare(Contact *s, PetscReal t, PetscReal dt, PetscReal inertia, ContactShare share)
 {
+  s->share = share;
   for (ContactPoint *c = s->point; c < s->point + s->n; ++c) {
     c->law.penalty = STIFFER * c->section * stiffness_of(c, s->length, inertia);
     c->stiffest = c->stiffer * c->law.penalty;
     c->left = 0;
-    c->law.bond = c->bond / share;
+    for (int d = 0; d < 3 && c->before == CONTACT_OPEN; ++d) c->last[d] = 0; /* explicit dynamics keeps slips there */
+    c->law.bond = c->bond / share.mean;
     if (c->wall < s->n_walls && !contact_rigid(s, c)) wall_motion(s->walls, c->wall, t, t + dt, c->x, c->swept);
     first_multiplier(s, c);
   }
@@ -143,6 +147,30 @@ void contact_force(const ContactPoint *c, PetscReal f[3])
   for (int d = 0; d < 3; ++d) f[d] = c->now.pressure * c->normal[d] + c->now.shear[d];
 }
 
+void contact_balance(const Contact *s, const ContactPoint *c, PetscReal f[3])
+{
+  contact_force(c, f);
+  for (int d = 0; d < 3; ++d) f[d] -= s->share.back * c->stays * c->last[d];
+}
+
+PetscReal contact_stays(const Contact *s, const ContactPoint *c)
+{
+  const PetscReal now = s->share.mean * c->now.pressure;
+  PetscReal before = 0;
+  for (int d = 0; d < 3; ++d) before += c->last[d] * c->normal[d];
+  if (!s->share.inertia) return 1;
+  return now == 0 ? 0 : PetscMax(0, PetscMin(1, before / now));
+}
+
+void contact_excess(const Contact *s, const ContactPoint *c, PetscReal f[3])
+{
+  const PetscReal stays = s->share.mean * contact_stays(s, c), lag = s->share.lag;
+  PetscReal balance[3];
+  contact_force(c, f);
+  contact_balance(s, c, balance);
+  for (int d = 0; d < 3; ++d) f[d] = (balance[d] - lag * c->stays * c->last[d]) / (1 - lag) - stays * f[d];
+}
+
 PetscReal contact_square(const Contact *s)
 {
   PetscReal sum = 0;
@@ -176,11 +204,11 @@ static PetscErrorCode Assemble(void *data, const NodalScene *scene, const NodalO
 
   PetscFunctionBeginUser;
   for (ContactPoint *c = s->point; c < s->point + s->n; ++c) {
-    if (!contact_meets(s, c, scene, out->system ? K : NULL)) continue;
-    contact_force(c, f);
+    const PetscBool meets = contact_meets(s, c, scene, out->system ? K : NULL);
+    contact_balance(s, c, f);
     for (PetscInt I = 0; I < c->n; ++I)
       for (PetscInt d = 0; d < s->dim; ++d) out->force[s->node[c->first + I] * s->dim + d] -= s->N[c->first + I] * f[d];
-    if (out->system) add_tangent(s, c, scene, K, out);
+    if (out->system && meets) add_tangent(s, c, scene, K, out);
   }
   PetscCall(RigidSums(data, scene));
   PetscFunctionReturn(0);
@@ -318,7 +346,8 @@ static PetscErrorCode Commit(void *data, const NodalScene *scene)
     kept[0] = (PetscReal)c->state;
     kept[1] = reach_at_end(s, c, scene);
     contact_force(c, f);
-    for (PetscInt d = 0; d < dim && c->state != CONTACT_OPEN; ++d) kept[2 + d] = f[d];
+    for (PetscInt d = 0; d < dim && c->state != CONTACT_OPEN; ++d) kept[2 + d] = s->share.mean * f[d];
+    kept[2 + dim] = contact_stays(s, c);
   }
   PetscFunctionReturn(0);
 }

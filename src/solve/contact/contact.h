@@ -42,8 +42,8 @@ typedef struct {
   PetscReal normal[3]; /* at the last assembly */
   PetscReal facing[3]; /* at the start of the step, as the owner sees it */
   PetscReal slip[3];   /* likewise: motion against the wall, m */
-  PetscReal last[3];   /* force at the end of the last step, N */
-  PetscReal start[3];  /* of it, what nodes remember as acceleration, N */
+  PetscReal last[3];   /* force of the last step, its mean if matter has inertia, N */
+  PetscReal stays;     /* share of it that nodes remember as acceleration */
 } ContactPoint;
 
 /* Resultants of one wall on the material: force, N, and torque about the origin, N m. */
@@ -61,6 +61,14 @@ typedef struct {
   PetscReal deepest;  /* largest penetration after the last step, m */
 } WallState;
 
+/* How the force of a step stands in the balance at its end (docs/theory.md, "Impact"): its mean over the step is
+ * `mean` of it; what nodes remember as acceleration of that of the last step is taken back by `back`, and counts there
+ * by `lag`. */
+typedef struct {
+  PetscBool inertia;
+  PetscReal mean, back, lag;
+} ContactShare;
+
 typedef struct Contact {
   Walls *walls;
   PetscInt n_rigid;
@@ -76,9 +84,9 @@ typedef struct Contact {
   PetscReal worst;  /* gap or slip when multipliers were last looked at, m */
   PetscReal near;   /* m: what is farther away cannot be reached in a step */
   PetscReal length; /* of a cell, m: scale of gaps */
+  ContactShare share;
   WallState *wall;
-  /* of this rank and step, of each wall: momentum that setting what is in contact to its velocity took,
-   * and behind it the force taken out of acceleration at the start */
+  /* of this rank and step, of each wall: momentum that setting what is in contact to its velocity took */
   ContactSum *impulse;
 } Contact;
 
@@ -88,8 +96,8 @@ typedef struct Contact {
 #define THICKEST 2
 
 /* Numbers that a carrier of contact keeps for each partner from step to step: state, reach, and the
- * force `last`. */
-#define CONTACT_KEPT(dim) (2 + (dim))
+ * force `last`, of which it remembers how much stays. */
+#define CONTACT_KEPT(dim) (3 + (dim))
 
 /* Layers of nodes that a rank knows beyond those of its basis where bodies meet others: of the other
  * body's points in reach. */
@@ -100,9 +108,8 @@ PetscErrorCode ContactCreate(const Case *c, Walls *walls, Diag *diag, Contact **
 PetscErrorCode ContactDestroy(Contact **contact);
 /* Forget the contact points and find those of this step. The scene stands at its start. */
 PetscErrorCode ContactFind(Contact *contact, const NodalScene *scene);
-/* Before the solve of a step of dt: penalties, and how walls move. inertia: see WeakFormInput; share: the
- * walls' forces over those of the balance. */
-void contact_prepare(Contact *contact, PetscReal t, PetscReal dt, PetscReal inertia, PetscReal share);
+/* Before the solve of a step of dt: penalties, and how walls move. inertia: see WeakFormInput. */
+void contact_prepare(Contact *contact, PetscReal t, PetscReal dt, PetscReal inertia, ContactShare share);
 /* What else the room finds: contact points with nodes, and the surface of a part of a body. */
 PetscErrorCode ContactAdd(Contact *contact, ContactPoint **c);
 PetscErrorCode ContactAddNodes(Contact *contact, ContactPoint *c, PetscInt n);
@@ -157,8 +164,6 @@ typedef struct {
  * wall: in the direction of the normal, and across it where they stick. sum: momentum (or force) that
  * it takes from each wall (n_walls of them, on this rank). */
 PetscErrorCode ContactProject(Contact *contact, const ContactMotion *motion, ContactSum *sum);
-/* Collective. Take the forces of the last step, times `share`, out of the acceleration that nodes remember. */
-PetscErrorCode ContactRelease(Contact *contact, const ContactMotion *motion, PetscReal share, ContactSum *sum);
 /* contact_rigid.c. Collective. What contact does to walls with mass, in the terms of `rigid`. */
 PetscErrorCode RigidSums(Contact *contact, const NodalScene *scene);
 /* Collective. At the increments of the last assembly, for n = RIGID n_rigid unknowns of walls: of this rank the
@@ -174,6 +179,12 @@ static inline RigidWall *contact_rigid(const Contact *contact, const ContactPoin
   return rigid_of(contact->rigid, contact->n_rigid, c->wall);
 }
 void contact_force(const ContactPoint *c, PetscReal f[3]); /* of the last assembly */
+/* Likewise, what of it stands in the balance at the end of the step. */
+void contact_balance(const Contact *contact, const ContactPoint *c, PetscReal f[3]);
+/* Share of the force that nodes are to remember: what of it pressed in the last step, too. */
+PetscReal contact_stays(const Contact *contact, const ContactPoint *c);
+/* What the acceleration at the end of the step has of it more than that, as rate of momentum, N. */
+void contact_excess(const Contact *contact, const ContactPoint *c, PetscReal f[3]);
 /* Of all forces of this rank at the last assembly, N2; contact may be NULL. */
 PetscReal contact_square(const Contact *contact);
 void contact_add(const ContactPoint *c, PetscInt dim, const PetscReal force[3], ContactSum *sum);

@@ -53,7 +53,8 @@ PetscErrorCode ContactAddNodes(Contact *s, ContactPoint *c, PetscInt n)
 void contact_remember(ContactPoint *c, PetscInt dim, const PetscReal *kept, const PetscReal normal[3])
 {
   c->before = (ContactState)(int)(kept[0] + 0.5);
-  for (PetscInt d = 0; d < dim; ++d) c->last[d] = c->start[d] = kept[2 + d];
+  for (PetscInt d = 0; d < dim; ++d) c->last[d] = kept[2 + d];
+  c->stays = kept[2 + dim];
   c->state = c->before;
   for (int d = 0; d < 3; ++d) c->normal[d] = c->facing[d] = normal[d];
 }
@@ -148,7 +149,7 @@ PetscErrorCode ContactFind(Contact *s, const NodalScene *scene)
 
   PetscFunctionBeginUser;
   s->n = s->n_nodes = s->n_slots = 0;
-  PetscCall(PetscArrayzero(s->impulse, 2 * s->n_partners));
+  PetscCall(PetscArrayzero(s->impulse, s->n_partners));
   s->length = s->near = scene->grid->smallest;
   for (PetscInt g = 0; g < w->n_groups; ++g)
     for (PetscInt p = w->point_start[g]; p < w->point_start[g + 1]; ++p)

@@ -68,7 +68,8 @@ static void rub(const Projection *w, PetscInt k, PetscReal *p)
   PetscReal v[3], shear[3];
   if (!w->held[k] || c->law.friction == 0 || c->law.kind == CONTACT_BONDED) return;
   const PetscReal normal = impulse_dot(3, p, c->normal), friction = c->law.friction;
-  const PetscReal pressing = (1 / w->m->rate) * (w->m->start ? impulse_dot(3, c->last, c->normal) : c->now.pressure);
+  const PetscReal pressing =
+    (1 / w->m->rate) * (w->m->start ? impulse_dot(3, c->last, c->normal) / w->s->share.mean : c->now.pressure);
   for (int d = 0; d < 3; ++d) shear[d] = p[d] - normal * c->normal[d];
   if (w->held[k] == 3) {
     const PetscReal size = PetscSqrtReal(impulse_dot(3, shear, shear)),
@@ -190,30 +191,5 @@ PetscErrorCode ContactProject(Contact *s, const ContactMotion *m, ContactSum *su
   lose(&w, sum);
   for (PetscInt k = 0; k < s->n; ++k) contact_add(s->point + k, s->dim, w.p + 3 * k, sum + s->point[k].wall);
   PetscCall(Destroy(&w));
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode ContactRelease(Contact *s, const ContactMotion *m, PetscReal share, ContactSum *sum)
-{
-  const PetscInt dim = s->dim;
-  PetscReal *nodes;
-
-  PetscFunctionBeginUser;
-  PetscCall(PetscCalloc1(m->grid->n_nodes * dim, &nodes));
-  for (ContactPoint *c = s->point; c < s->point + s->n; ++c) {
-    PetscReal f[3];
-    for (int d = 0; d < 3; ++d) f[d] = -share * c->start[d];
-    for (PetscInt e = c->first; e < c->first + c->n; ++e)
-      for (PetscInt d = 0; d < dim; ++d) nodes[s->node[e] * dim + d] += s->N[e] * f[d];
-    contact_add(c, dim, f, sum + c->wall);
-    for (int d = 0; d < 3; ++d) c->start[d] = 0;
-  }
-  PetscCall(GridSumToOwners(m->grid, dim, nodes));
-  impulse_free(m, dim, nodes);
-  for (PetscInt i = 0; i < m->grid->n_owned * dim; ++i)
-    nodes[i] = m->mass[i / dim] < 1e-300 ? 0 : nodes[i] / m->mass[i / dim];
-  PetscCall(GridToGhosts(m->grid, dim, nodes));
-  for (PetscInt i = 0; i < m->grid->n_nodes * dim; ++i) m->motion[i] += nodes[i];
-  PetscCall(PetscFree(nodes));
   PetscFunctionReturn(0);
 }

@@ -1,0 +1,103 @@
+C     A subroutine UMAT as such are written: von Mises with isotropic hardening
+C     (Voce and linear), radial return with Newton's method, consistent tangent.
+C     PROPS: E, nu, yield stress, saturation, rate, linear modulus.
+C     STATEV(1): plastic strain. STATEV(2): share of the yield stress with which
+C     the point begins, which SDVINI grades with depth.
+      SUBROUTINE UMAT(STRESS,STATEV,DDSDDE,SSE,SPD,SCD,
+     1 RPL,DDSDDT,DRPLDE,DRPLDT,
+     2 STRAN,DSTRAN,TIME,DTIME,TEMP,DTEMP,PREDEF,DPRED,CMNAME,
+     3 NDI,NSHR,NTENS,NSTATV,PROPS,NPROPS,COORDS,DROT,PNEWDT,
+     4 CELENT,DFGRD0,DFGRD1,NOEL,NPT,LAYER,KSPT,KSTEP,KINC)
+      IMPLICIT REAL*8 (A-H,O-Z)
+      CHARACTER*80 CMNAME
+      DIMENSION STRESS(NTENS),STATEV(NSTATV),DDSDDE(NTENS,NTENS),
+     1 DDSDDT(NTENS),DRPLDE(NTENS),STRAN(NTENS),DSTRAN(NTENS),
+     2 TIME(2),PREDEF(1),DPRED(1),PROPS(NPROPS),COORDS(3),
+     3 DROT(3,3),DFGRD0(3,3),DFGRD1(3,3)
+      DIMENSION FLOW(6)
+      PARAMETER (ZERO=0.D0,ONE=1.D0,TWO=2.D0,THREE=3.D0,TINY=1.D-14)
+C
+      SHEAR = PROPS(1)/(TWO*(ONE+PROPS(2)))
+      BULK = PROPS(1)/(THREE*(ONE-TWO*PROPS(2)))
+      ALAME = BULK-TWO*SHEAR/THREE
+C     elastic trial
+      TRACE = DSTRAN(1)+DSTRAN(2)+DSTRAN(3)
+      DO I = 1,NDI
+        STRESS(I) = STRESS(I)+TWO*SHEAR*DSTRAN(I)+ALAME*TRACE
+      END DO
+      DO I = NDI+1,NTENS
+        STRESS(I) = STRESS(I)+SHEAR*DSTRAN(I)
+      END DO
+      SMEAN = (STRESS(1)+STRESS(2)+STRESS(3))/THREE
+      SQUARE = ZERO
+      DO I = 1,NDI
+        FLOW(I) = STRESS(I)-SMEAN
+        SQUARE = SQUARE+FLOW(I)**2
+      END DO
+      DO I = NDI+1,NTENS
+        FLOW(I) = STRESS(I)
+        SQUARE = SQUARE+TWO*FLOW(I)**2
+      END DO
+      QTRIAL = SQRT(1.5D0*SQUARE)
+      SIZE = SQRT(SQUARE)
+      DEQPL = ZERO
+      KEPT = 0
+      CALL STRONG(STATEV(1),STATEV(2),PROPS,YIELD,HARD)
+C     radial return
+      IF (QTRIAL.GT.YIELD*(ONE+TINY)) THEN
+        KEPT = 1
+        DO K = 1,50
+          CALL STRONG(STATEV(1)+DEQPL,STATEV(2),PROPS,YIELD,HARD)
+          OVER = QTRIAL-THREE*SHEAR*DEQPL-YIELD
+          IF (ABS(OVER).LE.TINY*QTRIAL) GOTO 10
+          DEQPL = DEQPL+OVER/(THREE*SHEAR+HARD)
+        END DO
+        PNEWDT = 0.25D0
+   10   CONTINUE
+      END IF
+      FACTOR = ONE
+      TURN = ZERO
+      IF (KEPT.EQ.1) THEN
+        FACTOR = ONE-THREE*SHEAR*DEQPL/QTRIAL
+        TURN = TWO*SHEAR*(ONE-FACTOR-THREE*SHEAR/(THREE*SHEAR+HARD))
+        DO I = 1,NDI
+          STRESS(I) = SMEAN+FACTOR*FLOW(I)
+        END DO
+        DO I = NDI+1,NTENS
+          STRESS(I) = FACTOR*FLOW(I)
+        END DO
+        STATEV(1) = STATEV(1)+DEQPL
+      END IF
+C     consistent tangent
+      DO J = 1,NTENS
+        DO I = 1,NTENS
+          DDSDDE(I,J) = ZERO
+          IF (KEPT.EQ.1) DDSDDE(I,J) = TURN*FLOW(I)*FLOW(J)/SIZE**2
+        END DO
+        DDSDDE(J,J) = DDSDDE(J,J)+SHEAR*FACTOR
+        IF (J.LE.NDI) THEN
+          DDSDDE(J,J) = DDSDDE(J,J)+SHEAR*FACTOR
+          DO I = 1,NDI
+            DDSDDE(I,J) = DDSDDE(I,J)+BULK-TWO*SHEAR*FACTOR/THREE
+          END DO
+        END IF
+      END DO
+      RETURN
+      END
+C
+      SUBROUTINE STRONG(EQPLAS,SHARE,PROPS,YIELD,HARD)
+      IMPLICIT REAL*8 (A-H,O-Z)
+      DIMENSION PROPS(*)
+      FADES = (PROPS(4)-PROPS(3))*EXP(-PROPS(5)*EQPLAS)
+      YIELD = SHARE*(PROPS(4)-FADES+PROPS(6)*EQPLAS)
+      HARD = SHARE*(PROPS(5)*FADES+PROPS(6))
+      RETURN
+      END
+C
+      SUBROUTINE SDVINI(STATEV,COORDS,NSTATV,NCRDS,NOEL,NPT,LAYER,KSPT)
+      IMPLICIT REAL*8 (A-H,O-Z)
+      DIMENSION STATEV(NSTATV),COORDS(NCRDS)
+      STATEV(1) = 0.D0
+      STATEV(2) = 1.D0+0.5D0*COORDS(2)
+      RETURN
+      END
