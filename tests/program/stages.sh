@@ -292,6 +292,16 @@ for way in "fem 0.02" "fem 0.002" "mpm 0.02" "mpm 0.002"; do
     NR > 1 && $3 == 2 {n += 1; d = ($4 - top) / top; f = ($5 - force) / force; if (d * d > 1e-12 || f * f > 1e-12) bad = 1}
     END {exit !(n > 4 && !bad && force > 19619 && force < 19621)}' rests/history.csv || fail "$name: it jerks"
 done
+# And a footing of 600 kg upon it, a wall with mass.
+sed 's/contact: stick}\]/contact: stick}, {name: footing, shape: {box: {min: [0.2, 1.25], max: [0.8, 1.5]}}, friction: 0.5, mass: {mass: 600, free: [y]}}]/
+  s/^output/  speed: {wall_velocity: y, of: {wall: footing}}\n&/' rests.yaml >footing.yaml
+for way in "fem 0.02" "mpm 0.002"; do
+  set -- $way
+  expect "a footing that rests, $way" 0 "$talus" run footing.yaml --out footing --force --quiet --set method=$1 --set stages[1].analysis.step=$2 \
+    --set 'grid.box={min: [0, 0], max: [2, 2]}' --set 'basis={cell: {}}' --set analysis.steps=8
+  awk -F, 'NR > 1 && $3 == 1 {force = $5} NR > 1 && $3 == 2 {n += 1; if ($6 * $6 > 1e-14) bad = 1}
+    END {exit !(n > 4 && !bad && force > 25505 && force < 25507)}' footing/history.csv || fail "$name: it jerks"
+done
 
 # What is refused: refused NAME TEXT OPTION...
 refused() {
