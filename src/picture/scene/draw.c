@@ -4,6 +4,8 @@
 #include "picture/scene/scene.h"
 #include "picture/walls/walls.h"
 
+#define NARROW 450 /* pixels */
+
 /* Digits that tell neighbouring numbers of the bar apart. */
 static int bar_digits(PetscReal low, PetscReal high)
 {
@@ -110,6 +112,9 @@ static void write_axes(FILE *out, const PlotScene *scene, const PlotPage *page, 
   else if (page->h < 160)
     fprintf(out, "set ytics %.3g\n",
             pow(10, floor(log10((double)(page->max[1] - page->min[1])))) * (page->h < 80 ? 1 : 0.5));
+  /* gnuplot's own are for a page, and would run into one another below a slender body */
+  if (scene->n_frames == 1 && page->w < NARROW)
+    fprintf(out, "set xtics %.6g\n", plot_tick_step(page->max[0] - page->min[0], page->w, 60));
   if (scene->mirrored)
     write_radii(out, page, plot_tick_step(page->max[0] - page->min[0], page->w, scene->n_frames > 1 ? 45 : 70), last);
 }
