@@ -72,7 +72,7 @@ static void File(const uint8_t *data, size_t n)
 /* The list of a file of 1 MB, with its last line made right. */
 static void List(const uint8_t *data, size_t n)
 {
-  static const char head[] = "talus checkpoint\nversion 2\nbytes 1000000\n";
+  static const char head[] = "talus checkpoint\nversion " PetscStringize(CHECKPOINT_VERSION) "\nbytes 1000000\n";
   char reason[256];
   Contents c;
   const size_t size = strlen(head) + n + 32;
