@@ -43,6 +43,8 @@ def seconds_of(talus, case, limit):
 
 
 def main():
+    if len(sys.argv) < 2 or sys.argv[1] in ("-h", "--help"):
+        sys.exit(__doc__)
     talus, limit = os.path.abspath(sys.argv[1]), int(sys.argv[2]) if len(sys.argv) > 2 else 60
     named = sys.argv[3:]
     version = subprocess.run([talus, "version"], capture_output=True, text=True).stdout.split("\n")[0]
