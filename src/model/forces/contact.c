@@ -8,6 +8,7 @@
 
 #define RELEASED 1e-3 /* of what walls have given too much may stay; at rest that is nothing */
 #define MOST_SWEEPS 100
+#define LUMPED_SHARE 0.1 /* between the mass matrix and the lumped one */
 
 #define THROUGH 1e-9 /* of a cell: material that reaches deeper into a wall at the start is a mistake */
 
@@ -310,12 +311,29 @@ static PetscErrorCode SumExcess(const Model *m, MassSolve *c)
   PetscFunctionReturn(0);
 }
 
+/* The mass matrix of the balance; where points carry accelerations to other nodes somewhat lumped, since
+ * single forces would be accelerations of both signs of nodes that are hardly reached. */
+static PetscErrorCode MassOfExcess(const Model *m, Discretisation *space, PetscReal **lumping)
+{
+  const PetscInt n = m->space->support->n_groups;
+
+  PetscFunctionBeginUser;
+  *space = *m->space;
+  *lumping = NULL;
+  if (!m->method->restores_grid || !space->lumping) PetscFunctionReturn(0);
+  PetscCall(PetscMalloc1(n, lumping));
+  for (PetscInt g = 0; g < n; ++g) (*lumping)[g] = space->lumping[g] + LUMPED_SHARE * (1 - space->lumping[g]);
+  space->lumping = *lumping;
+  PetscFunctionReturn(0);
+}
+
 /* What is remembered as acceleration is of walls' forces what stays: of what rests all that there is. The rest is
- * taken out at the nodes that felt it, by the mass matrix of the balance. */
+ * taken out at the nodes that felt it. */
 static PetscErrorCode Release(Model *m, PetscReal dt)
 {
   const PetscReal lag = m->scheme->weights(&m->c->analysis, dt).lag;
-  PetscReal enough[MOTIONS];
+  PetscReal enough[MOTIONS], *lumping;
+  Discretisation space;
   PetscBool any;
   MassSolve c;
 
@@ -323,7 +341,8 @@ static PetscErrorCode Release(Model *m, PetscReal dt)
   if (!holds(m)) PetscFunctionReturn(0);
   PetscCall(Touches(m->contact, m->comm, &any));
   if (!any) PetscFunctionReturn(0);
-  PetscCall(MassSolveCreate(m->space, &c));
+  PetscCall(MassOfExcess(m, &space, &lumping));
+  PetscCall(MassSolveCreate(&space, &c));
   c.framed = PETSC_TRUE;
   PetscCall(SumExcess(m, &c));
   PetscCall(MassLack(&c, enough));
@@ -337,6 +356,7 @@ static PetscErrorCode Release(Model *m, PetscReal dt)
     m->nodes->echo[i] -= lag * excess;
   }
   PetscCall(MassSolveDestroy(&c));
+  PetscCall(PetscFree(lumping));
   PetscFunctionReturn(0);
 }
 
