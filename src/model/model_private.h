@@ -51,7 +51,8 @@ PetscErrorCode EquilibriumPrepare(Model *model, StepProblem *problem);
 /* Acceleration now from the balance of momentum with lumped mass, so that a body in free fall
  * falls from the first step on. */
 PetscErrorCode InitialAcceleration(Model *model);
-/* forces/mass.c. Collective. The mass matrix that motion changes by in contact; nothing where that is the lumped one. */
+/* forces/mass.c. Collective. The mass matrix that motion changes by in contact; nothing where that is the
+ * lumped one. */
 PetscErrorCode ContactMassCreate(const Model *model, ContactMass *mass);
 PetscErrorCode ContactMassDestroy(ContactMass *mass);
 /* forces.c. The body as nodal forces see it at time t, with increments du. */

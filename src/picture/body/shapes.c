@@ -28,8 +28,8 @@ static PetscInt body_near(const Case *c, const unsigned char *fills, const Petsc
   return -1;
 }
 
-/* Where places around point p began: X = back[0..1] + B (x - x_p), B = back[2..5], from its neighbours by least squares.
- * PETSC_FALSE where they moved in other ways. */
+/* Where places around point p began: X = back[0..1] + B (x - x_p), B = back[2..5], from its neighbours
+ * by least squares. PETSC_FALSE where they moved in other ways. */
 static PetscBool fit(const PlotFrame *f, PetscInt p, PetscInt n, const PetscInt *item, const PetscReal *square,
                      PetscReal most, PetscReal *back)
 {

@@ -57,9 +57,10 @@ PetscErrorCode ContactDestroy(Contact **contact)
   PetscFunctionReturn(0);
 }
 
-/* Those of the last step, and as much more or less as the gap that it left takes away: of a stiff body that is no
- * little force, and if it let go everywhere at once nothing would hold it; and what rests is to stay where it is. What had none and touches the
- * wall gets one so small that it counts for nothing: it is in contact from the first iteration on. */
+/* Those of the last step, and as much more or less as the gap that it left takes away: of a stiff body that
+ * is no little force, and if it let go everywhere at once nothing would hold it; and what rests is to stay
+ * where it is. What had none and touches the wall gets one so small that it counts for nothing: it is in
+ * contact from the first iteration on. */
 static void first_multiplier(const Contact *s, ContactPoint *c)
 {
   const PetscReal whole = 1 / s->share.mean;
