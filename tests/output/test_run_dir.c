@@ -3,14 +3,17 @@
 #include <sys/stat.h>
 #include "output/directory/run_dir.h"
 #include "output/directory/run_dir_files.h"
+#include "output/directory/run_dir_mark.h"
 
-static void Touch(const char *folder, const char *name)
+static void Write(const char *folder, const char *name, const char *text)
 {
   char path[512];
   snprintf(path, sizeof path, "%s/%s", folder, name);
-  if (test_rank() == 0) assert_int_equal(file_write_text(path, "old\n"), 0);
+  if (test_rank() == 0) assert_int_equal(file_write_text(path, text), 0);
   MPI_Barrier(PETSC_COMM_WORLD);
 }
+
+static void Touch(const char *folder, const char *name) { Write(folder, name, "old\n"); }
 
 static void MakeFolder(const char *folder, const char *name)
 {
@@ -105,6 +108,29 @@ static void test_users_case_is_safe(void **state)
   TestRemove(folder);
 }
 
+/* A run that was killed while it signed its directory leaves a beginning of the signature: no
+ * stranger's file. */
+static void test_killed_while_it_signed(void **state)
+{
+  static const char *const begun[] = {"", "directory of tal"}, *const foreign[] = {"mine\n", "directory of tables\n"};
+  const char *name = RUN_DIR_SIGNATURE FILE_UNFINISHED;
+  char folder[64];
+  (void)state;
+  for (int i = 0; i < 4; ++i) {
+    TestFolder(folder);
+    Write(folder, name, begun[i % 2]);
+    Try(folder, i > 1, NULL);
+    assert_true(TestExists(folder, RUN_DIR_SIGNATURE));
+    assert_false(TestExists(folder, name));
+    TestRemove(folder);
+    TestFolder(folder);
+    Write(folder, name, foreign[i % 2]);
+    Try(folder, i > 1, "would be overwritten");
+    assert_true(TestExists(folder, name));
+    TestRemove(folder);
+  }
+}
+
 static void test_cannot_be_written(void **state)
 {
   char folder[64], path[128];
@@ -181,8 +207,9 @@ static int Tests(void)
 {
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(test_create_and_refuse),  cmocka_unit_test(test_force_removes_the_run_only),
-    cmocka_unit_test(test_users_case_is_safe), cmocka_unit_test(test_cannot_be_written),
-    cmocka_unit_test(test_log_and_texts),      cmocka_unit_test(test_resume_needs_a_run)};
+    cmocka_unit_test(test_users_case_is_safe), cmocka_unit_test(test_killed_while_it_signed),
+    cmocka_unit_test(test_cannot_be_written),  cmocka_unit_test(test_log_and_texts),
+    cmocka_unit_test(test_resume_needs_a_run)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
 

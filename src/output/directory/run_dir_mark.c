@@ -57,6 +57,19 @@ int run_dir_sign(const char *path)
   return file_write_text(file, signature);
 }
 
+/* Is it the signature of a run that was killed while it signed: a beginning of it, or nothing yet? */
+static PetscBool is_begun_signature(const char *path, const char *name)
+{
+  char text[sizeof signature];
+  struct stat info;
+  if (strcmp(name, RUN_DIR_SIGNATURE FILE_UNFINISHED)) return PETSC_FALSE;
+  const int fd = open(path, O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
+  if (fd < 0) return PETSC_FALSE;
+  const ssize_t n = !fstat(fd, &info) && S_ISREG(info.st_mode) ? read(fd, text, sizeof text) : -1;
+  close(fd);
+  return n >= 0 && n < (ssize_t)sizeof text && !memcmp(text, signature, (size_t)n);
+}
+
 static PetscBool matches_any(const char *name, const char *const *patterns)
 {
   for (int i = 0; patterns[i]; ++i)
@@ -82,8 +95,11 @@ PetscInt run_dir_in_the_way(const char *folder, size_t size, char *names)
   size_t used = 0;
   DIR *listing = opendir(folder);
   names[0] = '\0';
-  for (const char *name; (name = next_file(listing, folder, run_files, path)); ++n)
+  for (const char *name; (name = next_file(listing, folder, run_files, path));) {
+    if (is_begun_signature(path, name)) continue;
     if (n < 2 && used < size) used += (size_t)snprintf(names + used, size - used, "%s%s", n ? ", " : "", name);
+    ++n;
+  }
   if (n > 2 && used < size) snprintf(names + used, size - used, " and %" PetscInt_FMT " more", n - 2);
   if (listing) closedir(listing);
   return n;
