@@ -72,6 +72,9 @@ expect "a factorisation that was asked for" 0 env $no_room --set linear=direct -
 says small/log.txt "linear = direct"
 expect "iterates without room" 0 env TALUS_MEMORY=1e-6 "$talus" run case.yaml --out small --quiet --force
 says small/log.txt "linear = conjugate gradients, algebraic multigrid"
+block >block.yaml
+expect "an iteration that gets nowhere gives way to a factorisation" 0 timeout 60 "$talus" run block.yaml --set petsc.ksp_atol=1e300 --set analysis.end=0.01 --out block --quiet
+says block/log.txt "halvings = 0"
 expect "check of a mistake" 2 "$talus" check case.yaml --set materials.rubber.yung=1
 says err.txt "--set materials.rubber.yung=1: error: key 'yung' of materials.rubber is not known"
 [ ! -e runs ] || fail "check wrote something"

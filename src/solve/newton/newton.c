@@ -233,7 +233,7 @@ static PetscErrorCode NewtonTry(Newton *n, const LinearProblem *linear, NewtonRe
   n->retry = useless && !n->direct;
   n->anew = n->retry && n->stale;
   if (n->retry && !n->anew && !linear_factor_fits(linear)) n->retry = PETSC_FALSE, report->reason = no_room;
-  if (n->anew) n->built = -1;
+  if (n->retry) n->built = -1; /* with other set-ups, or another solver */
   n->failures += n->retry && !n->anew;
   if (reason == SNES_DIVERGED_LINEAR_SOLVE && n->direct) PetscCall(LeaveMoreRoom(n, &n->retry));
   PetscFunctionReturn(0);
