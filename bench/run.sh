@@ -35,6 +35,9 @@ title "a rolling disk: gmm beside mpm, cells of 0.04 m and steps of 4 ms, then 0
 "$bench/bench_gmm" -size 0.04 -step 4e-3 -steps 100 -repeat 3
 "$bench/bench_gmm" -size 0.02 -step 2e-3 -steps 100 -repeat 1
 
+title "bases in space: a ball, a beam"
+"$bench/bench_bases" -repeat 2
+
 title "statics"
 "$bench/bench_static"
 

@@ -56,7 +56,7 @@ typedef struct {
   /* is there an unknown pressure at the nodes, behind the displacements in each block? */
   PetscBool pressure;
   PetscBool cells;   /* do points of one cell need each other, so that their nodes must be those of cells? */
-  PetscBool singles; /* can it add its blocks in single precision, where groups are cells? */
+  PetscBool singles; /* can it add its blocks in single precision? */
   PetscErrorCode (*assemble)(const WeakFormInput *in, WeakFormOutput *out);
   /* Accept the step: new state, F, J, stress and work of every point. `state` of the points is
    * overwritten. */

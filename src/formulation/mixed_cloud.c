@@ -11,9 +11,22 @@
 /* What one point adds beside what it adds without a pressure. */
 typedef struct {
   CloudWork u;
+  PetscReal T[3 * 9 * CLOUD_MAX_NODES];    /* T_j[J] = sum_l modulus_jl g_l[J]: blocks of each row and node */
   PetscReal force[3 * CLOUD_MAX_NODES];    /* nn x dim: d force / d p at the point, m2, times Pa/m */
   PetscReal dilation[3 * CLOUD_MAX_NODES]; /* nn x dim: d theta / d u, 1/m, times V0 Pa/m */
 } MixedPoint;
+
+KERNEL void point_products(const int dim, const PetscBool hoop, MixedPoint *w)
+{
+  const int rows = gradient_rows(dim, hoop), size = dim * dim;
+  for (int j = 0; j < rows; ++j)
+    for (PetscInt J = 0; J < w->u.nn; ++J)
+      for (int e = 0; e < size; ++e) {
+        PetscReal sum = 0;
+        for (int l = 0; l < rows; ++l) sum += w->u.modulus[j][l][e] * w->u.g[J * rows + l];
+        w->T[(j * w->u.nn + J) * size + e] = sum;
+      }
+}
 
 /* V0 s t_aj g_j and V0 s theta' div of each node and component. */
 KERNEL void point_couplings(const int dim, const PetscBool hoop, const PetscReal *t, PetscReal rate, PetscReal scaled,
@@ -33,16 +46,17 @@ KERNEL void point_couplings(const int dim, const PetscBool hoop, const PetscReal
 }
 
 /* Block of the nodes I and J; pp: what N_I N_J is multiplied by between pressures. */
-KERNEL void mixed_block(const int dim, const PetscBool hoop, const MixedPoint *w, PetscInt I, PetscInt J, PetscReal pp,
+KERNEL void mixed_block(const int dim, const PetscBool hoop, MixedPoint *w, PetscInt I, PetscInt J, PetscReal pp,
                         PetscReal *restrict block)
 {
   const int size = dim + 1, rows = gradient_rows(dim, hoop);
-  const CloudWork *u = &w->u;
-  const PetscReal *T = u->T + J * dim * dim;
+  CloudWork *u = &w->u;
+  const PetscReal *T = w->T + J * dim * dim;
+  const PetscReal held = u->soft > 0 ? u->soft * held_part(u->n_free, u->free, I, J) : 0;
   const PetscReal mass = u->inertia * ((1 - u->lumping) * u->N[I] * u->N[J] + (I == J ? u->lumping * u->N[I] : 0));
   for (int a = 0; a < dim; ++a) {
     for (int b = 0; b < dim; ++b) {
-      PetscReal k = a == b ? mass : 0;
+      PetscReal k = a == b ? mass + held : 0;
       for (int j = 0; j < rows; ++j) k += u->g[I * rows + j] * T[j * u->nn * dim * dim + a * dim + b];
       block[a * size + b] += k;
     }
@@ -105,12 +119,14 @@ KERNEL void mixed_point(const int dim, const PetscBool hoop, const WeakFormInput
   cloud_force(dim, hoop, in, b->s.tau + 6 * k, volume, u, out->force);
   for (PetscInt I = 0; out->volume && I < u->nn; ++I)
     out->volume[u->node[I]] += scaled * (b->s.theta[k] - b->p[k] * material->compliance) * u->N[I];
-  if (u->soft > 0) cloud_hold(dim, dim + 1, in, out->slot + slot, u, out);
+  if (u->soft > 0) cloud_hold(dim, in, u, out->force);
   point_project(dim, hoop, in, in->points->cell[p], in->alpha / material->elastic.shear * volume * scale * scale,
                 out->slot + slot, u, out);
   if (tie > 0) hold_cut(dim, in, tie * scale * scale, out->slot + slot, u, out);
   if (!out->values) return;
-  cloud_products(dim, hoop, b->s.tau + 6 * k, b->s.c + 36 * k, volume, u);
+  for (int j = 0; j < gradient_rows(dim, hoop); ++j)
+    cloud_moduli(dim, gradient_rows(dim, hoop), j, b->s.tau + 6 * k, b->s.c + 36 * k, volume, u->modulus[j]);
+  point_products(dim, hoop, w);
   point_couplings(dim, hoop, b->s.coupling + 6 * k, b->s.rate[k], scaled, w);
   for (PetscInt I = 0; I < u->nn; ++I)
     for (PetscInt J = 0; J < u->nn; ++J)

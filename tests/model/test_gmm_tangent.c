@@ -50,11 +50,12 @@ static void assemble(Model *m, const PetscReal *lift, PetscBool half, PetscReal 
   WeakFormInput in = weak_form_of(m, 4 / PetscSqr(0.002));
   WeakFormOutput out = {.force = m->nodes->force, .values = m->system->values, .slot = m->system->slot};
   in.half = half;
+  CALL(SystemGather(m->system, PETSC_FALSE));
   CALL(PetscArrayzero(m->nodes->force, dofs));
   CALL(SystemZero(m->system));
   CALL(m->formulation->assemble(&in, &out));
   CHECK(out.status == LAW_OK, "no stress");
-  if (half) CALL(SystemMirror(m->system));
+  if (half) CALL(SystemMirror(m->system, 0));
   CALL(SystemPrescribe(m->system, m->nodes->fixed, NULL));
   system_lift(m->system, m->nodes->fixed, lift, m->nodes->force, NULL);
   CALL(PetscArraycpy(force, m->nodes->force, dofs));

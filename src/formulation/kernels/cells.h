@@ -71,8 +71,6 @@ KERNEL void cell_give_force(const int dim, const int nn, const PetscInt *node, c
     for (int d = 0; d < dim; ++d) force[node[I] * dim + d] += w->f[d * row_width(nn) + I];
 }
 
-KERNEL PetscBool wants_tangent(const WeakFormOutput *out) { return out->values || out->singles; }
-
 KERNEL void cell_prefetch(const int dim, const int nn, const PetscInt *slot, const WeakFormOutput *out)
 {
   if (out->singles) prefetch_blocks(dim, nn, slot, out->singles, sizeof(float));

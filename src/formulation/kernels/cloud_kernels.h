@@ -14,7 +14,9 @@ typedef struct {
   PetscReal mass, inertia, lumping, soft; /* inertia: mass times c0 */
   /* gradients at x_(n+1), as many rows as they have beside each other */
   PetscReal g[3 * CLOUD_MAX_NODES];
-  PetscReal T[3 * 9 * CLOUD_MAX_NODES]; /* blocks of each row and node */
+  PetscReal modulus[3][3][9];         /* of two rows: V0 (c_ajbl + delta_ab tau_jl) */
+  int n_free;                         /* of points that are held (soft): motions that nothing holds, */
+  PetscReal free[4][CLOUD_MAX_NODES]; /* as unit vectors over the nodes */
 } CloudWork;
 
 KERNEL void cloud_increment(const int dim, const PetscBool hoop, const WeakFormInput *in, PetscInt p, PetscReal dF[9])
@@ -85,30 +87,6 @@ KERNEL void cloud_moduli(const int dim, const int rows, const int j, const Petsc
           is_felt(dim, a, j) && is_felt(dim, b, l) ? volume * modulus_of(dim, a, j, b, l, tau, c) : 0;
 }
 
-/* T_j[J] = sum_l of these times g_l[J], a block of dim x dim. */
-KERNEL void cloud_products(const int dim, const PetscBool hoop, const PetscReal *tau, const PetscReal *c,
-                           PetscReal volume, CloudWork *w)
-{
-  const int rows = gradient_rows(dim, hoop);
-  for (int j = 0; j < rows; ++j) {
-    PetscReal modulus[3][9];
-    cloud_moduli(dim, rows, j, tau, c, volume, modulus);
-    for (PetscInt J = 0; J < w->nn; ++J) {
-      PetscReal *T = w->T + (j * w->nn + J) * dim * dim;
-      if (dim == 2) {
-        Row4 sum = *(const Row4 *)modulus[0] * w->g[J * rows];
-        for (int l = 1; l < rows; ++l) sum += *(const Row4 *)modulus[l] * w->g[J * rows + l];
-        *(Row4 *)T = sum;
-        continue;
-      }
-      const PetscReal *g = w->g + J * rows;
-      *(Row8 *)T =
-        g[0] * *(const Row8 *)modulus[0] + g[1] * *(const Row8 *)modulus[1] + g[2] * *(const Row8 *)modulus[2];
-      T[8] = g[0] * modulus[0][8] + g[1] * modulus[1][8] + g[2] * modulus[2][8];
-    }
-  }
-}
-
 /* What is known of point p before its stress. */
 KERNEL void cloud_load(const WeakFormInput *in, PetscInt p, CloudWork *w)
 {
@@ -150,19 +128,19 @@ static inline PetscReal held_part(int n, PetscReal part[4][CLOUD_MAX_NODES], Pet
   return s;
 }
 
-/* Holds a point's nodes to these parts of their motion: f_I += soft (du_I - sum_k b_kI b_k . du).
- * size: rows of a block, of which displacements are the first. */
-static inline void cloud_hold(PetscInt dim, PetscInt size, const WeakFormInput *in, const PetscInt *slot,
-                              const CloudWork *w, WeakFormOutput *out)
+/* Holds a point's nodes to the free parts of their motion: f_I += soft (du_I - sum_k b_kI b_k . du). What
+ * that adds to the tangent stands on the diagonals of the blocks: soft (delta_IJ - sum_k b_kI b_kJ). */
+KERNEL void cloud_hold(const int dim, const WeakFormInput *in, CloudWork *w, PetscReal *force)
 {
-  PetscReal part[4][CLOUD_MAX_NODES];
-  const int n = free_parts(in->lattice ? dim : 0, dim, w, in->x, part);
+  PetscReal along[4][3] = {{0}};
+  w->n_free = free_parts(in->lattice ? dim : 0, dim, w, in->x, w->free);
+  for (int k = 0; k < w->n_free; ++k)
+    for (PetscInt I = 0; I < w->nn; ++I)
+      for (int d = 0; d < dim; ++d) along[k][d] += w->free[k][I] * in->du[w->node[I] * dim + d];
   for (PetscInt I = 0; I < w->nn; ++I)
-    for (PetscInt J = 0; J < w->nn; ++J) {
-      const PetscReal s = w->soft * held_part(n, part, I, J);
-      for (PetscInt d = 0; d < dim; ++d) out->force[w->node[I] * dim + d] += s * in->du[w->node[J] * dim + d];
-      if (!out->values || (in->half && J < I)) continue;
-      PetscReal *block = out->values + (size_t)slot[I * w->nn + J] * (size_t)(size * size);
-      for (PetscInt d = 0; d < dim; ++d) block[d * (size + 1)] += s;
+    for (int d = 0; d < dim; ++d) {
+      PetscReal held = in->du[w->node[I] * dim + d];
+      for (int k = 0; k < w->n_free; ++k) held -= w->free[k][I] * along[k][d];
+      force[w->node[I] * dim + d] += w->soft * held;
     }
 }

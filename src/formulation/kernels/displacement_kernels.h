@@ -21,6 +21,8 @@ typedef PetscReal Row8 __attribute__((vector_size(8 * sizeof(PetscReal)), aligne
 typedef float Single4 __attribute__((vector_size(4 * sizeof(float)), aligned(sizeof(float)), may_alias));
 typedef float Single8 __attribute__((vector_size(8 * sizeof(float)), aligned(sizeof(float)), may_alias));
 
+KERNEL PetscBool wants_tangent(const WeakFormOutput *out) { return out->values || out->singles; }
+
 KERNEL int row_width(const int nn) { return nn <= 4 ? 4 : 8; }
 
 /* row = every `stride`-th number, zero beyond nn. */

@@ -13,6 +13,7 @@ NodalScene nodal_scene(const Model *m, PetscReal t, const PetscReal *du)
     .fixed = m->nodes->fixed,
     .prescribed = m->nodes->prescribed,
     .du = du,
+    .soft = m->space->soft,
     .t = raised_time(m, t),
     .whole = 1 / time_solved(m->scheme),
     .end = m->time + (t - m->time) / time_solved(m->scheme),

@@ -1,3 +1,5 @@
+#include <stdint.h>
+#include <string.h>
 #include "base/math/tensor.h"
 #include "solve/blocks/blocks.h"
 
@@ -46,7 +48,19 @@ static PetscErrorCode RowsReserve(BlockRows *rows, PetscInt n, PetscInt blocks, 
   PetscFunctionReturn(0);
 }
 
-/* Columns in ascending order: before the diagonal, behind it, and of other ranks. */
+/* What of a row stands where: columns ascend, first those before the diagonal, last those of other ranks. */
+static RowParts row_parts(const Row *row, PetscInt r, PetscInt n)
+{
+  RowParts parts = {0, 0};
+  for (PetscInt k = 0; k < row->n; ++k) {
+    const PetscInt c = row_column(row, k);
+    parts.before += c < r;
+    parts.own += c < n;
+  }
+  return parts;
+}
+
+/* Room for all columns; which of them count is found with their values. */
 static PetscErrorCode BlocksPattern(Blocks *m, const System *s)
 {
   const PetscInt size = m->dim * m->dim;
@@ -54,38 +68,27 @@ static PetscErrorCode BlocksPattern(Blocks *m, const System *s)
 
   PetscFunctionBeginUser;
   Row row = {.s = s, .halo = m->halo};
+  PetscCall(PetscMalloc2(m->n, &m->parts, m->n, &m->next));
   for (PetscInt r = 0; r < m->n; ++r) {
-    PetscInt outer = 0;
     row_take(&row, r);
-    for (PetscInt k = 0; k < row.n; ++k) {
-      const PetscInt c = row_column(&row, k);
-      n_lower += c < r;
-      n_upper += c > r && c < m->n;
-      outer += c >= m->n;
-    }
-    n_outer += outer;
-    m->n_outer += outer > 0;
+    m->parts[r] = row_parts(&row, r, m->n);
+    n_lower += m->parts[r].before;
+    n_upper += m->parts[r].own - m->parts[r].before - 1;
+    n_outer += row.n - m->parts[r].own;
+    m->n_outer += row.n > m->parts[r].own;
   }
-  PetscCall(RowsReserve(&m->lower, m->n, n_lower, size));
+  PetscCall(RowsReserve(&m->lower, m->n, PetscMax(n_lower, m->symmetric ? n_upper : 0), size));
   PetscCall(RowsReserve(&m->upper, m->n, n_upper, size));
   PetscCall(RowsReserve(&m->outer, m->n_outer, n_outer, size));
   PetscCall(PetscMalloc1(m->n_outer, &m->outer_row));
-  n_lower = n_upper = n_outer = m->n_outer = 0;
+  m->n_outer = 0;
   row.next = 0;
-  for (PetscInt r = 0; r < m->n; ++r) {
-    const PetscInt before = n_outer;
+  for (PetscInt r = 0, end = 0; r < m->n; ++r) {
     row_take(&row, r);
-    for (PetscInt k = 0; k < row.n; ++k) {
-      const PetscInt c = row_column(&row, k);
-      if (c < r) m->lower.column[n_lower++] = c;
-      else if (c >= m->n) m->outer.column[n_outer++] = c;
-      else if (c > r) m->upper.column[n_upper++] = c;
-    }
-    m->lower.start[r + 1] = n_lower;
-    m->upper.start[r + 1] = n_upper;
-    if (n_outer == before) continue;
+    if (row.n == m->parts[r].own) continue;
+    for (PetscInt k = m->parts[r].own; k < row.n; ++k) m->outer.column[end++] = row_column(&row, k);
     m->outer_row[m->n_outer++] = r;
-    m->outer.start[m->n_outer] = n_outer;
+    m->outer.start[m->n_outer] = end;
   }
   PetscFunctionReturn(0);
 }
@@ -125,6 +128,7 @@ PetscErrorCode BlocksDestroy(Blocks **blocks)
   PetscCall(RowsFree(&m->upper));
   PetscCall(RowsFree(&m->outer));
   PetscCall(PetscFree(m->outer_row));
+  PetscCall(PetscFree2(m->parts, m->next));
   PetscCall(PetscFree(m->scale));
   PetscCall(BlocksHaloDestroy(&m->halo));
   for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(m->work); ++k) PetscCall(PetscFree(m->work[k]));
@@ -194,8 +198,7 @@ KERNEL PetscBool find_scales(const int dim, Blocks *m, const System *s)
   for (PetscInt r = 0; r < m->n; ++r) {
     PetscReal D[9];
     row_take(&row, r);
-    const PetscInt diagonal = m->lower.start[r + 1] - m->lower.start[r];
-    for (int i = 0; i < dim * dim; ++i) D[i] = (PetscReal)row.values[diagonal * dim * dim + i];
+    for (int i = 0; i < dim * dim; ++i) D[i] = (PetscReal)row.values[m->parts[r].before * dim * dim + i];
     float *S = m->scale + r * dim * dim;
     if (m->symmetric ? scale_symmetric(dim, D, S) : scale_unsymmetric(dim, D, S)) continue;
     regular = PETSC_FALSE;
@@ -238,23 +241,79 @@ static inline void scale_block_3d(const float *values, const Lanes column[3], co
   }
 }
 
-/* block = S_row values T_column, in the order of the kernels: 2 x 2 row by row, 3 x 3 column by
- * column. */
-KERNEL const float *scale_blocks(const int dim, const Blocks *m, PetscInt r, const BlockRows *rows, PetscInt k,
-                                 const float *values, PetscBool symmetric)
+/* S of a row, as the kernels of its blocks want it. */
+typedef struct {
+  const float *S;
+  Lanes column[3];
+} RowScale;
+
+KERNEL RowScale row_scale(const int dim, const Blocks *m, PetscInt r)
 {
-  const float *S = m->scale + r * dim * dim;
-  Lanes column[3] = {{0}};
+  RowScale scale = {.S = m->scale + r * dim * dim};
   if (dim == 3)
-    for (int i = 0; i < 3; ++i) column[i] = (Lanes){S[i], S[3 + i], S[6 + i], 0};
-  for (PetscInt e = rows->start[k]; e < rows->start[k + 1]; ++e, values += dim * dim) {
-    const float *other = m->scale + rows->column[e] * dim * dim;
-    float *block = rows->block + e * dim * dim;
-    if (dim == 3) scale_block_3d(values, column, other, symmetric, block);
-    else if (symmetric) scale_symmetric_2d(*(const Lanes *)values, *(const Lanes *)S, *(const Lanes *)other, block);
-    else scale_unsymmetric_2d(*(const Lanes *)values, *(const Lanes *)S, block);
+    for (int i = 0; i < 3; ++i) scale.column[i] = (Lanes){scale.S[i], scale.S[3 + i], scale.S[6 + i], 0};
+  return scale;
+}
+
+/* block = S_row values T_column, in the order of the kernels: 2 x 2 row by row, 3 x 3 column by
+ * column. other: S of the column. */
+KERNEL void scale_block(const int dim, const RowScale *row, const float *other, const float *values,
+                        PetscBool symmetric, float *block)
+{
+  if (dim == 3) scale_block_3d(values, row->column, other, symmetric, block);
+  else if (symmetric) scale_symmetric_2d(*(const Lanes *)values, *(const Lanes *)row->S, *(const Lanes *)other, block);
+  else scale_unsymmetric_2d(*(const Lanes *)values, *(const Lanes *)row->S, block);
+}
+
+/* Not for numbers: bits. */
+KERNEL PetscBool is_zero(const int dim, const float *values)
+{
+  uint64_t pair[4], any = 0;
+  uint32_t last = 0;
+  memcpy(pair, values, (size_t)(dim * dim / 2) * sizeof *pair);
+  if (dim == 3) memcpy(&last, values + 8, sizeof last);
+  for (int k = 0; k < dim * dim / 2; ++k) any |= pair[k];
+  return !(any | last);
+}
+
+/* Numbers first .. last - 1 of row r of the matrix behind what there is of rows; blocks of zeros, of nodes that no
+ * point couples and of prescribed ones, stay away. */
+KERNEL void take_blocks(const int dim, const Blocks *m, const Row *row, PetscInt r, PetscInt first, PetscInt last,
+                        PetscBool symmetric, BlockRows *rows)
+{
+  const RowScale scale = row_scale(dim, m, r);
+  PetscInt e = rows->start[r];
+  for (PetscInt k = first; k < last; ++k) {
+    const float *values = row->values + k * dim * dim;
+    if (is_zero(dim, values)) continue;
+    const PetscInt c = row_column(row, k);
+    scale_block(dim, &scale, m->scale + c * dim * dim, values, symmetric, rows->block + e * dim * dim);
+    rows->column[e++] = c;
   }
-  return values;
+  rows->start[r + 1] = e;
+}
+
+/* Where A is symmetric L = U^T, scaled too. */
+KERNEL void transpose_upper(const int dim, Blocks *m)
+{
+  const BlockRows upper = m->upper, lower = m->lower;
+  const PetscInt n = m->n, size = dim * dim;
+  PetscInt *next = m->next;
+  for (PetscInt r = 0; r < n; ++r) next[r] = 0;
+  for (PetscInt e = 0; e < upper.start[n]; ++e) ++next[upper.column[e]];
+  for (PetscInt r = 0; r < n; ++r) {
+    lower.start[r + 1] = lower.start[r] + next[r];
+    next[r] = lower.start[r];
+  }
+  for (PetscInt r = 0; r < n; ++r)
+    for (PetscInt e = upper.start[r]; e < upper.start[r + 1]; ++e) {
+      const PetscInt to = next[upper.column[e]]++;
+      const float *from = upper.block + e * size;
+      float *block = lower.block + to * size;
+      for (int a = 0; a < dim; ++a)
+        for (int b = 0; b < dim; ++b) block[a * dim + b] = from[b * dim + a];
+      lower.column[to] = r;
+    }
 }
 
 KERNEL void fill_rows(const int dim, Blocks *m, const System *s, PetscBool symmetric)
@@ -263,10 +322,19 @@ KERNEL void fill_rows(const int dim, Blocks *m, const System *s, PetscBool symme
   PetscInt outer = 0;
   for (PetscInt r = 0; r < m->n; ++r) {
     row_take(&row, r);
-    const float *v = scale_blocks(dim, m, r, &m->lower, r, row.values, symmetric);
-    v = scale_blocks(dim, m, r, &m->upper, r, v + dim * dim, symmetric);
-    if (outer < m->n_outer && m->outer_row[outer] == r) (void)scale_blocks(dim, m, r, &m->outer, outer++, v, symmetric);
+    const RowParts parts = m->parts[r];
+    if (!symmetric) take_blocks(dim, m, &row, r, 0, parts.before, symmetric, &m->lower);
+    take_blocks(dim, m, &row, r, parts.before + 1, parts.own, symmetric, &m->upper);
+    if (row.n == parts.own) continue;
+    const RowScale scale = row_scale(dim, m, r);
+    const PetscInt first = m->outer.start[outer++];
+    for (PetscInt k = parts.own; k < row.n; ++k) {
+      const PetscInt e = first + k - parts.own;
+      scale_block(dim, &scale, m->scale + m->outer.column[e] * dim * dim, row.values + k * dim * dim, symmetric,
+                  m->outer.block + e * dim * dim);
+    }
   }
+  if (symmetric) transpose_upper(dim, m);
 }
 
 static void fill_2d(Blocks *m, const System *s)

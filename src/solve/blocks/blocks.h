@@ -15,6 +15,12 @@
 typedef struct BlocksHalo BlocksHalo;
 struct Projection;
 
+/* Of the columns of a row in the system, ascending: how many stand before the diagonal, and how many in
+ * all are this rank's; the rest is others'. */
+typedef struct {
+  PetscInt before, own;
+} RowParts;
+
 typedef struct Blocks {
   MPI_Comm comm;
   PetscInt dim, n;     /* size of a block; rows, one for each node with unknowns */
@@ -22,8 +28,10 @@ typedef struct Blocks {
   PetscBool symmetric; /* T = S^T */
   /* a block of the diagonal has no inverse (or is not positive definite) on some rank */
   PetscBool singular;
-  float *scale; /* S of each column, dim x dim row by row */
-  BlockRows lower, upper;
+  float *scale;                 /* S of each column, dim x dim row by row */
+  RowParts *parts;              /* of each row */
+  BlockRows lower, upper;       /* without blocks of zeros: which columns a row has is known once it is filled */
+  PetscInt *next;               /* n, for whoever needs it a moment */
   PetscInt n_outer, *outer_row; /* rows that have columns of other ranks, ascending */
   BlockRows outer;              /* their blocks: row k is outer_row[k] */
   BlocksHalo *halo;

@@ -25,7 +25,8 @@ typedef struct {
   const PetscReal *prescribed;
   /* n_nodes x dim: increments since the start of the step, m */
   const PetscReal *du;
-  PetscReal t; /* with these increments, s */
+  const PetscReal *soft; /* per group, see WeakFormInput */
+  PetscReal t;           /* with these increments, s */
   /* increments of the whole step over du, and its end, s: of schemes that balance in the middle */
   PetscReal whole, end;
   PetscBool first; /* is it the first step of all? */

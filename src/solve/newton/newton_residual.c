@@ -29,6 +29,13 @@ static PetscErrorCode Balance(Newton *n)
   PetscFunctionReturn(0);
 }
 
+/* The first row of a symmetric tangent that somebody reads in full. */
+static PetscInt whole_from(const Newton *n)
+{
+  const System *s = n->problem->system;
+  return !n->lift && s->single ? s->n_active : 0;
+}
+
 PetscErrorCode NewtonAssemble(Newton *n, PetscBool tangent)
 {
   StepProblem *p = n->problem;
@@ -49,7 +56,7 @@ PetscErrorCode NewtonAssemble(Newton *n, PetscBool tangent)
   p->in.du = p->du;
   p->in.pressure = p->pressure;
   PetscCall(p->formulation->assemble(&p->in, &out));
-  if (tangent && p->in.half) PetscCall(SystemMirror(p->system));
+  if (tangent && p->in.half) PetscCall(SystemMirror(p->system, whole_from(n)));
   if (p->border && p->border->follows) p->scene.t = p->border->time + p->border->factor;
   const NodalOutput acting = {.force = p->force, .system = tangent ? p->system : NULL};
   PetscCall(NodalForcesAssemble(p->forces, &p->scene, &acting));

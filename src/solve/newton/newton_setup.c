@@ -74,7 +74,8 @@ PetscErrorCode NewtonSetUp(Newton *n, StepProblem *p, const LinearProblem *linea
   PetscCall(LinearForm(&chosen, &form));
   n->projects = chosen.multipliers && form == SYSTEM_BLOCKS;
   PetscCall(SystemUse(p->system, form, linear->symmetric));
-  PetscCall(SystemGather(p->system, p->formulation->singles && p->in.support->n_runs));
+  /* projections take products with whole numbers */
+  PetscCall(SystemGather(p->system, p->formulation->singles && !n->projects));
   const PetscBool eliminates = newton_eliminates(p, linear);
   if (eliminates) PetscCall(EliminationSetUp(&n->elimination, p));
   n->search.choose = eliminates ? NewtonChoose : NULL;

@@ -131,23 +131,45 @@ PetscInt system_pair(const System *s, PetscInt I, PetscInt J)
   return k < 0 ? -1 : s->row_start[row] + k;
 }
 
+/* Behind the diagonals of all rows: the first columns that are rows from `first` on. */
+static void find_columns(const System *s, PetscInt first, PetscInt *next)
+{
+  for (PetscInt r = 0; r < s->n_rows; ++r) {
+    next[r] = s->diagonal[r] + 1;
+    while (next[r] < s->row_start[r + 1] && s->row[s->column[next[r]]] < first) ++next[r];
+  }
+}
+
 /* Rows come in the order of their nodes, so that those that have a node as a column before their
  * diagonal come in the order of the columns behind the diagonal of that node's own row. */
-PetscErrorCode SystemMirror(System *s)
+static inline __attribute__((always_inline)) void mirror(const System *s, const int size, const PetscBool single,
+                                                         PetscInt first, PetscInt *next)
 {
-  const PetscInt size = s->block;
+  for (PetscInt r = first; r < s->n_rows; ++r)
+    for (PetscInt k = s->row_start[r]; k < s->diagonal[r]; ++k) {
+      const size_t from = (size_t)next[s->row[s->column[k]]]++ * (size_t)(size * size);
+      const size_t to = (size_t)k * (size_t)(size * size);
+      for (int a = 0; a < size; ++a)
+        for (int b = 0; b < size; ++b) {
+          if (single) s->singles[to + (size_t)(a * size + b)] = s->singles[from + (size_t)(b * size + a)];
+          else s->values[to + (size_t)(a * size + b)] = s->values[from + (size_t)(b * size + a)];
+        }
+    }
+}
+
+PetscErrorCode SystemMirror(System *s, PetscInt first)
+{
   PetscInt *next;
 
   PetscFunctionBeginUser;
+  if (first == s->n_rows) PetscFunctionReturn(0);
   PetscCall(PetscMalloc1(s->n_rows, &next));
-  for (PetscInt r = 0; r < s->n_rows; ++r) next[r] = s->diagonal[r] + 1;
-  for (PetscInt r = 0; r < s->n_rows; ++r)
-    for (PetscInt k = s->row_start[r]; k < s->diagonal[r]; ++k) {
-      const PetscReal *from = s->values + (size_t)next[s->row[s->column[k]]]++ * (size_t)(size * size);
-      PetscReal *to = s->values + (size_t)k * (size_t)(size * size);
-      for (PetscInt a = 0; a < size; ++a)
-        for (PetscInt b = 0; b < size; ++b) to[a * size + b] = from[b * size + a];
-    }
+  find_columns(s, first, next);
+  if (s->single && s->block == 2) mirror(s, 2, PETSC_TRUE, first, next);
+  else if (s->single) mirror(s, 3, PETSC_TRUE, first, next);
+  else if (s->block == 2) mirror(s, 2, PETSC_FALSE, first, next);
+  else if (s->block == 3) mirror(s, 3, PETSC_FALSE, first, next);
+  else mirror(s, 4, PETSC_FALSE, first, next);
   PetscCall(PetscFree(next));
   PetscFunctionReturn(0);
 }

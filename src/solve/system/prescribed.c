@@ -21,22 +21,38 @@ static unsigned cut_bits(PetscInt block, unsigned row, unsigned column)
   return bits;
 }
 
-/* held: of each node. A row is looked through only beside a node that holds anything: there are
- * few. */
-static PetscErrorCode FindCuts(System *s, const unsigned char *held, const unsigned char *beside)
+/* What is prescribed, node by node. */
+typedef struct {
+  unsigned char *held;       /* a bit for each prescribed unknown */
+  unsigned char *beside;     /* is the node coupled with one that holds anything? */
+  const unsigned char *idle; /* no material touches it, so that its pairs are zeros as they are; NULL: not told */
+} Held;
+
+static PetscErrorCode ReserveCuts(System *s, PetscInt more)
+{
+  PetscFunctionBeginUser;
+  if (s->n_cuts + more <= s->capacity_cuts) PetscFunctionReturn(0);
+  s->capacity_cuts += s->capacity_cuts / 2 + more + 256;
+  PetscCall(PetscRealloc((size_t)s->capacity_cuts * sizeof *s->cut, &s->cut));
+  PetscFunctionReturn(0);
+}
+
+/* A row is looked through only beside a node that holds anything: there are few. */
+static PetscErrorCode FindCuts(System *s, const Held *h)
 {
   PetscFunctionBeginUser;
   s->n_cuts = 0;
   for (PetscInt r = 0; r < s->n_rows; ++r) {
     const PetscInt node = s->column[s->diagonal[r]], pairs = s->row_start[r + 1] - s->row_start[r];
-    if (!beside[node]) continue;
-    if (s->n_cuts + pairs > s->capacity_cuts) {
-      s->capacity_cuts += s->capacity_cuts / 2 + pairs + 256;
-      PetscCall(PetscRealloc((size_t)s->capacity_cuts * sizeof *s->cut, &s->cut));
-    }
-    for (PetscInt k = s->row_start[r]; k < s->row_start[r + 1]; ++k) {
-      s->cut[s->n_cuts] = (SystemCut){k, node, cut_bits(s->block, held[node], held[s->column[k]])};
-      s->n_cuts += held[node] || held[s->column[k]];
+    const PetscBool alone = h->idle && h->idle[node];
+    if (!alone && !h->beside[node]) continue;
+    PetscCall(ReserveCuts(s, pairs));
+    if (alone)
+      s->cut[s->n_cuts++] = (SystemCut){s->diagonal[r], node, cut_bits(s->block, h->held[node], h->held[node])};
+    for (PetscInt k = s->row_start[r]; !alone && k < s->row_start[r + 1]; ++k) {
+      const PetscInt column = s->column[k];
+      s->cut[s->n_cuts] = (SystemCut){k, node, cut_bits(s->block, h->held[node], h->held[column])};
+      s->n_cuts += (h->held[node] || h->held[column]) && !(h->idle && h->idle[column]);
     }
   }
   PetscFunctionReturn(0);
@@ -44,18 +60,19 @@ static PetscErrorCode FindCuts(System *s, const unsigned char *held, const unsig
 
 PetscErrorCode SystemPrescribe(System *s, const unsigned char *fixed, const unsigned char *idle)
 {
-  unsigned char *held, *beside;
+  Held h = {.idle = s->block == s->dim ? idle : NULL};
 
   PetscFunctionBeginUser;
-  PetscCall(PetscCalloc2(s->n_nodes, &held, s->n_nodes, &beside));
+  PetscCall(PetscCalloc2(s->n_nodes, &h.held, s->n_nodes, &h.beside));
   for (PetscInt r = 0; r < s->n_rows; ++r) {
     const PetscInt node = s->column[s->diagonal[r]];
-    held[node] = held_bits(s, fixed, idle, node);
-    for (PetscInt k = s->row_start[r]; held[node] && k < s->row_start[r + 1]; ++k) beside[s->column[k]] = 1;
+    h.held[node] = held_bits(s, fixed, idle, node);
+    if (!h.held[node] || (h.idle && idle[node])) continue;
+    for (PetscInt k = s->row_start[r]; k < s->row_start[r + 1]; ++k) h.beside[s->column[k]] = 1;
   }
-  PetscCall(FindCuts(s, held, beside));
+  PetscCall(FindCuts(s, &h));
   PetscCall(SystemFindTurned(s));
-  PetscCall(PetscFree2(held, beside));
+  PetscCall(PetscFree2(h.held, h.beside));
   PetscFunctionReturn(0);
 }
 

@@ -84,8 +84,9 @@ PetscInt system_pair(const System *system, PetscInt I, PetscInt J);
 PetscErrorCode SystemReserveSlots(System *system, PetscInt n);
 PetscErrorCode SystemCloudSlots(System *system, const Support *support, PetscBool *complete);
 PetscErrorCode SystemFreeSlots(System *system);
-/* Fill the blocks before the diagonals with the transposes of those behind them. */
-PetscErrorCode SystemMirror(System *system);
+/* Fill the blocks before the diagonals of the rows from `first` on with the transposes of those behind
+ * diagonals. Symmetric blocks (solve/blocks) need no more than the rows that other ranks own. */
+PetscErrorCode SystemMirror(System *system, PetscInt first);
 /* Zero values or singles, whichever are in use. */
 PetscErrorCode SystemZero(System *system);
 /* Zero an array of n_nodes x dim where nodes have unknowns, ghosts too. */
