@@ -3,16 +3,6 @@
 #include "solve/newton/newton_private.h"
 #include <petsctime.h>
 
-/* force += what has multipliers, as it is now, and the tangent likewise; away: -=. */
-static PetscErrorCode Gather(const StepProblem *p, PetscBool away, PetscReal *force)
-{
-  const NodalOutput out = {.force = force, .system = p->system, .away = away};
-
-  PetscFunctionBeginUser;
-  PetscCall(NodalForcesAssembleAugmented(p->forces, &p->scene, &out));
-  PetscFunctionReturn(0);
-}
-
 /* The tangent must be that of this du, and as it was put in: not turned into frames. */
 PetscErrorCode NewtonAugment(Newton *n, PetscBool *again)
 {
@@ -30,9 +20,11 @@ PetscErrorCode NewtonAugment(Newton *n, PetscBool *again)
   }
   PetscCall(PetscTime(&start));
   PetscCall(PetscCalloc1(p->grid->n_nodes * dim, &change));
-  PetscCall(Gather(p, PETSC_TRUE, change));
+  NodalOutput out = {.force = change, .system = p->system, .away = PETSC_TRUE};
+  PetscCall(NodalForcesAssembleAugmented(p->forces, &p->scene, &out));
   PetscCall(NodalForcesAugment(p->forces, &p->scene, n->changes, again));
-  PetscCall(Gather(p, PETSC_FALSE, change));
+  out.away = PETSC_FALSE;
+  PetscCall(NodalForcesAssembleAugmented(p->forces, &p->scene, &out));
   PetscCall(GridSumToOwners(p->grid, dim, change));
   for (PetscInt k = 0; k < p->system->n_active; ++k)
     for (PetscInt i = p->system->active[k] * dim; i < (p->system->active[k] + 1) * dim; ++i) p->force[i] += change[i];
