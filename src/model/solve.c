@@ -58,15 +58,23 @@ static PetscErrorCode MakeGuess(Model *m, FirstGuess guess, PetscReal dt)
   PetscFunctionReturn(0);
 }
 
-/* The first guesses that the next step has. In stiff matter displacements that are near may have any residual: of
- * both motions the one that leaves less goes first. */
+/* In stiff matter, and where what yields rubs along walls, displacements that are near may have any residual. */
+static PetscBool nearness_misleads(const Model *m, const StepProblem *p)
+{
+  PetscBool yields = PETSC_FALSE;
+  for (PetscInt i = 0; i < m->c->n_materials; ++i) yields |= m->materials[i].law->yields;
+  return p->stiff || (m->contact && contact_rubs(m->c) && yields);
+}
+
+/* The first guesses that the next step has: where the nearer one is not sure to be the better one, that of both motions
+ * goes first which leaves less. */
 static PetscErrorCode OrderGuesses(Model *m, PetscReal dt, StepProblem *p, FirstGuess guess[GUESS_N], PetscInt *n)
 {
   PetscReal miss[2];
 
   PetscFunctionBeginUser;
   *n = guess_order(m, guess);
-  if (!p->stiff || *n < GUESS_N) PetscFunctionReturn(0);
+  if (!nearness_misleads(m, p) || *n < GUESS_N) PetscFunctionReturn(0);
   for (PetscInt k = 0; k < 2; ++k) {
     PetscCall(MakeGuess(m, guess[k], dt));
     PetscCall(NewtonMiss(m->newton, p, &miss[k]));

@@ -17,7 +17,7 @@
 static PetscReal tolerance_of(const Discretisation *s) { return s->points->components[POINT_SLOPE] ? 1e-6 : 1e-10; }
 
 /* A scheme that looks back on no acceleration may have any. */
-static PetscErrorCode WhatMayLack(const MassSolve *c, PetscReal enough[MOTIONS])
+static PetscErrorCode WhatMayLack(MassSolve *c, PetscReal enough[MOTIONS])
 {
   PetscFunctionBeginUser;
   PetscCall(MassLack(c, enough));

@@ -24,7 +24,8 @@ struct MassSolve {
   PetscReal *lack;    /* right-hand side - M x, on owners, kg m/s, N */
   PetscReal *inverse; /* of M's diagonal, 0 where x is given or nothing has mass, on owners, 1/kg */
   PetscReal *direction, *product;
-  PetscBool framed; /* are components those in the frames of nodes that slide? */
+  PetscInt n_reached, n_reached_owned, *reached; /* local nodes that sweeps go over, owned ones first */
+  PetscBool framed;                              /* are components those in the frames of nodes that slide? */
 };
 
 /* All arrays 0, `inverse` too: for another matrix than this one. */
@@ -35,7 +36,7 @@ PetscErrorCode MassSolveDestroy(MassSolve *solve);
 /* Collective. lack -= M x; x is right on all copies. */
 PetscErrorCode MassSubtract(MassSolve *solve);
 /* Collective. |lack|^2 of each motion, in the norm of the inverse diagonal. */
-PetscErrorCode MassLack(const MassSolve *solve, PetscReal square[MOTIONS]);
+PetscErrorCode MassLack(MassSolve *solve, PetscReal square[MOTIONS]);
 /* Collective. Conjugate gradients from x and its lack until that is `enough`, as MassLack gives
  * it, or after so many sweeps. */
 PetscErrorCode MassSolveRun(MassSolve *solve, const PetscReal enough[MOTIONS], int sweeps);

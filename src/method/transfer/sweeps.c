@@ -15,6 +15,25 @@ PetscErrorCode MassSolveDestroy(MassSolve *c)
 {
   PetscFunctionBeginUser;
   PetscCall(PetscFree5(c->x, c->lack, c->inverse, c->direction, c->product));
+  PetscCall(PetscFree(c->reached));
+  PetscFunctionReturn(0);
+}
+
+/* Most of a grid is often empty: nodes that have mass or an equation, and all that other ranks own. */
+static PetscErrorCode FindReached(MassSolve *c)
+{
+  const Grid *grid = c->s->grid;
+  const PetscReal *mass = c->s->nodes->mass;
+
+  PetscFunctionBeginUser;
+  if (!c->reached) PetscCall(PetscMalloc1(grid->n_nodes, &c->reached));
+  c->n_reached = 0;
+  for (PetscInt node = 0; node < grid->n_nodes; ++node) {
+    PetscBool reached = node >= grid->n_owned || mass[node] > 0;
+    for (PetscInt i = node * c->width; i < (node + 1) * c->width; ++i) reached = reached || c->inverse[i] > 0;
+    if (reached) c->reached[c->n_reached++] = node;
+    if (node < grid->n_owned) c->n_reached_owned = c->n_reached;
+  }
   PetscFunctionReturn(0);
 }
 
@@ -25,15 +44,17 @@ static PetscErrorCode Products(const MassSolve *c, const PetscReal *x, const Pet
   PetscReal local[MOTIONS] = {0, 0};
 
   PetscFunctionBeginUser;
-  for (PetscInt i = 0; i < c->s->grid->n_owned * c->width; i += c->dim)
-    for (PetscInt d = 0; d < c->dim; ++d) local[(i / c->dim) % MOTIONS] += x[i + d] * y[i + d] * (z ? z[i + d] : 1);
+  for (PetscInt k = 0; k < c->n_reached_owned; ++k)
+    for (PetscInt f = 0, i = c->reached[k] * c->width; f < MOTIONS; ++f)
+      for (PetscInt d = 0; d < c->dim; ++d, ++i) local[f] += x[i] * y[i] * (z ? z[i] : 1);
   PetscCall(MPIU_Allreduce(local, sum, MOTIONS, MPIU_REAL, MPI_SUM, c->s->grid->comm));
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode MassLack(const MassSolve *c, PetscReal square[MOTIONS])
+PetscErrorCode MassLack(MassSolve *c, PetscReal square[MOTIONS])
 {
   PetscFunctionBeginUser;
+  PetscCall(FindReached(c));
   PetscCall(Products(c, c->lack, c->lack, c->inverse, square));
   PetscFunctionReturn(0);
 }
@@ -42,24 +63,25 @@ PetscErrorCode MassLack(const MassSolve *c, PetscReal square[MOTIONS])
 static PetscErrorCode Sweep(MassSolve *c, const PetscBool done[MOTIONS], PetscReal now[MOTIONS],
                             PetscReal grow[MOTIONS])
 {
-  const PetscInt owned = c->s->grid->n_owned * c->width;
   PetscReal curvature[MOTIONS], length[MOTIONS], before[MOTIONS];
 
   PetscFunctionBeginUser;
-  for (PetscInt i = 0; i < owned; i += c->dim)
-    for (PetscInt d = 0; d < c->dim; ++d)
-      c->direction[i + d] = c->inverse[i + d] * c->lack[i + d] + grow[(i / c->dim) % MOTIONS] * c->direction[i + d];
+  for (PetscInt k = 0; k < c->n_reached_owned; ++k)
+    for (PetscInt f = 0, i = c->reached[k] * c->width; f < MOTIONS; ++f)
+      for (PetscInt d = 0; d < c->dim; ++d, ++i)
+        c->direction[i] = c->inverse[i] * c->lack[i] + grow[f] * c->direction[i];
   PetscCall(GridToGhosts(c->s->grid, c->width, c->direction));
   PetscCall(c->multiply(c, c->direction));
   PetscCall(Products(c, c->direction, c->product, NULL, curvature));
   for (int f = 0; f < MOTIONS; ++f) length[f] = !done[f] && curvature[f] > 0 ? now[f] / curvature[f] : 0;
-  for (PetscInt i = 0; i < c->size; i += c->dim)
-    for (PetscInt d = 0; d < c->dim; ++d) {
-      c->x[i + d] += length[(i / c->dim) % MOTIONS] * c->direction[i + d];
-      c->lack[i + d] -= length[(i / c->dim) % MOTIONS] * c->product[i + d];
-    }
+  for (PetscInt k = 0; k < c->n_reached; ++k)
+    for (PetscInt f = 0, i = c->reached[k] * c->width; f < MOTIONS; ++f)
+      for (PetscInt d = 0; d < c->dim; ++d, ++i) {
+        c->x[i] += length[f] * c->direction[i];
+        c->lack[i] -= length[f] * c->product[i];
+      }
   PetscCall(PetscArraycpy(before, now, MOTIONS));
-  PetscCall(MassLack(c, now));
+  PetscCall(Products(c, c->lack, c->lack, c->inverse, now));
   for (int f = 0; f < MOTIONS; ++f) grow[f] = before[f] > 0 ? now[f] / before[f] : 0;
   PetscFunctionReturn(0);
 }

@@ -201,6 +201,7 @@ static void add_tangent(const Contact *s, const ContactPoint *c, const NodalScen
 static PetscErrorCode Assemble(void *data, const NodalScene *scene, const NodalOutput *out)
 {
   const Contact *s = data;
+  const PetscReal sign = out->away ? -1 : 1;
   PetscReal K[9], f[3];
 
   PetscFunctionBeginUser;
@@ -208,7 +209,8 @@ static PetscErrorCode Assemble(void *data, const NodalScene *scene, const NodalO
     const PetscBool meets = contact_meets(s, c, scene, out->system ? K : NULL);
     contact_balance(s, c, f);
     for (PetscInt I = 0; I < c->n; ++I)
-      for (PetscInt d = 0; d < s->dim; ++d) out->force[s->node[c->first + I] * s->dim + d] -= s->N[c->first + I] * f[d];
+      for (PetscInt d = 0; d < s->dim; ++d)
+        out->force[s->node[c->first + I] * s->dim + d] -= sign * s->N[c->first + I] * f[d];
     if (out->system && meets) add_tangent(s, c, scene, K, out);
   }
   PetscCall(RigidSums(data, scene));

@@ -43,6 +43,7 @@ typedef struct {
 typedef struct {
   PetscReal *force; /* residual, n_nodes x dim, N: what pushes a node is subtracted */
   System *system;   /* gets the tangent; NULL: forces alone */
+  PetscBool away;   /* both are taken out again, not put in: of what has multipliers */
 } NodalOutput;
 
 /* One kind of such forces; functions may be NULL but for create and assemble. */
@@ -101,6 +102,7 @@ static inline void nodal_add_tangent(const NodalOutput *out, PetscInt dim, Petsc
 {
   if (!out->system) return;
   const PetscInt block = out->system->block, place = (slot * block + row % dim) * block + column % dim;
+  if (out->away) value = -value;
   if (out->system->single) out->system->singles[place] += (float)value;
   else out->system->values[place] += value;
 }
@@ -129,6 +131,8 @@ PetscBool nodal_forces_are_dead(const NodalForces *forces);
 /* Collective. All that are not dead, in every iteration. */
 PetscErrorCode NodalForcesAssemble(const NodalForces *forces, const NodalScene *scene, const NodalOutput *out);
 PetscErrorCode NodalForcesBegin(const NodalForces *forces, const NodalScene *scene);
+/* Collective. Those alone that NodalForcesAugment changes. */
+PetscErrorCode NodalForcesAssembleAugmented(const NodalForces *forces, const NodalScene *scene, const NodalOutput *out);
 /* Collective. *again: does any of them want Newton's method to go on? */
 PetscErrorCode NodalForcesAugment(const NodalForces *forces, const NodalScene *scene, PetscInt change,
                                   PetscBool *again);

@@ -102,6 +102,14 @@ PetscErrorCode NodalForcesBegin(const NodalForces *forces, const NodalScene *sce
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode NodalForcesAssembleAugmented(const NodalForces *forces, const NodalScene *scene, const NodalOutput *out)
+{
+  PetscFunctionBeginUser;
+  for (PetscInt k = 0; k < forces->n; ++k)
+    if (forces->one[k].kind->augment) PetscCall(forces->one[k].kind->assemble(forces->one[k].data, scene, out));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode NodalForcesAugment(const NodalForces *forces, const NodalScene *scene, PetscInt change, PetscBool *again)
 {
   PetscFunctionBeginUser;

@@ -85,11 +85,10 @@ static PetscErrorCode AugmentForces(Newton *n, PetscInt iteration, SNESConverged
   Vec f;
 
   PetscFunctionBeginUser;
-  PetscCall(NodalForcesAugment(n->problem->forces, &n->problem->scene, n->changes, &again));
+  PetscCall(NewtonAugment(n, &again));
   if (!again) PetscFunctionReturn(0);
   ++n->changes;
   *reason = SNES_CONVERGED_ITERATING;
-  PetscCall(NewtonAssemble(n, PETSC_TRUE));
   PetscCall(SNESGetFunction(n->snes, &f, NULL, NULL));
   PetscCall(NewtonGetResidual(n, f));
   PetscCall(VecNorm(f, NORM_2, &n->last));

@@ -4,21 +4,32 @@
 #include "solve/newton/newton_private.h"
 #include <petsctime.h>
 
-/* Internal and inertia forces -> residual, and the norms of reactions, those of walls too, and of
- * external forces, over owned dofs. Nodes without unknowns have no forces: they are often most of a grid, and are left
- * alone. */
-static PetscErrorCode Balance(Newton *n)
+/* On dof i. */
+static PetscReal external_force(const StepProblem *p, PetscInt i)
+{
+  const LoadBorder *b = p->border;
+  return p->external[i] + (b && !b->follows ? (b->factor - b->start) * b->load[i] : 0);
+}
+
+/* Internal and inertia forces -> residual. Nodes without unknowns have no forces: they are often most of a grid, and are
+ * left alone. */
+static void balance(const StepProblem *p)
+{
+  const PetscInt dim = p->grid->dim;
+  for (PetscInt k = 0; k < p->system->n_active; ++k)
+    for (PetscInt d = 0, i = p->system->active[k] * dim; d < dim; ++d, ++i) p->force[i] -= external_force(p, i);
+}
+
+PetscErrorCode NewtonWeigh(Newton *n)
 {
   const StepProblem *p = n->problem;
   const PetscInt dim = p->grid->dim;
-  const LoadBorder *b = p->border;
   PetscReal local[3] = {contact_square(p->scene.contact), 0, p->asked && p->asked() ? 1 : 0}, sum[3];
 
   PetscFunctionBeginUser;
   for (PetscInt k = 0; k < p->system->n_active; ++k)
     for (PetscInt d = 0, i = p->system->active[k] * dim; d < dim; ++d, ++i) {
-      const PetscReal external = p->external[i] + (b && !b->follows ? (b->factor - b->start) * b->load[i] : 0);
-      p->force[i] -= external;
+      const PetscReal external = external_force(p, i);
       if (p->fixed[i]) local[0] += p->force[i] * p->force[i];
       else local[1] += external * external;
     }
@@ -69,7 +80,8 @@ PetscErrorCode NewtonAssemble(Newton *n, PetscBool tangent)
   n->report->bad_point = out.bad_point;
   PetscCall(GridSumToOwners(p->grid, dim, p->force));
   if (p->volume) PetscCall(GridSumToOwners(p->grid, 1, p->volume));
-  PetscCall(Balance(n));
+  balance(p);
+  PetscCall(NewtonWeigh(n));
   PetscCall(PetscTime(&end));
   n->t_points += end - start;
   PetscFunctionReturn(0);

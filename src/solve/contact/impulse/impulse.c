@@ -13,6 +13,7 @@ void impulse_gather(const Projection *w, const PetscReal *nodes, PetscInt k, Pet
   const Contact *s = w->s;
   const ContactPoint *c = s->point + k;
   a[0] = a[1] = a[2] = 0;
+  if (!w->held[k]) return;
   for (PetscInt e = c->first; e < c->first + c->n; ++e)
     for (PetscInt d = 0; d < s->dim; ++d) a[d] += s->N[e] * nodes[s->node[e] * s->dim + d];
   impulse_hold(w, k, a);

@@ -1,4 +1,4 @@
-/* Impulses by the lumped mass: conjugate gradients over them, since all nodes that they move are those of the
+/* Impulses by the lumped mass: preconditioned conjugate gradients over them, since all nodes that they move are those of the
  * contact points. */
 #include "solve/contact/impulse/impulse.h"
 
@@ -50,29 +50,45 @@ static PetscErrorCode Apply(Projection *w, const PetscReal *z, PetscReal *q)
   PetscFunctionReturn(0);
 }
 
-/* p, q, r, z: impulses, their product, what is lacking, the direction. */
-static PetscErrorCode Sweeps(Projection *w, PetscReal *q, PetscReal *r, PetscReal *z)
+/* Over what an impulse moves itself: of nodes that are hardly reached that is a hundred times that of others. */
+static void precondition(const Projection *w, const PetscReal *r, PetscReal *s)
 {
-  const PetscInt n = 3 * w->s->n;
-  MPI_Comm comm = w->m->grid->comm;
-  PetscReal local = impulse_dot(n, r, r), rr, start, zq;
+  for (PetscInt k = 0; k < w->s->n; ++k)
+    for (int d = 0; d < 3; ++d) s[3 * k + d] = w->own[k] > 0 ? r[3 * k + d] / w->own[k] : 0;
+}
+
+/* Collective. r s, and r r. */
+static PetscErrorCode Norms(const Projection *w, const PetscReal *r, const PetscReal *s, PetscReal norms[2])
+{
+  const PetscReal local[2] = {impulse_dot(3 * w->s->n, r, s), impulse_dot(3 * w->s->n, r, r)};
 
   PetscFunctionBeginUser;
-  PetscCall(MPIU_Allreduce(&local, &rr, 1, MPIU_REAL, MPI_SUM, comm));
-  start = rr;
-  for (int sweep = 0; sweep < MOST_SWEEPS && rr > ENOUGH * ENOUGH * start; ++sweep) {
+  PetscCall(MPIU_Allreduce(local, norms, 2, MPIU_REAL, MPI_SUM, w->m->grid->comm));
+  PetscFunctionReturn(0);
+}
+
+/* p, q, r, s, z: impulses, their product, what is lacking, the same preconditioned, the direction. */
+static PetscErrorCode Sweeps(Projection *w, PetscReal *q, PetscReal *r, PetscReal *s, PetscReal *z)
+{
+  const PetscInt n = 3 * w->s->n;
+  PetscReal local, zq, rs[2], before, enough;
+
+  PetscFunctionBeginUser;
+  PetscCall(Norms(w, r, s, rs));
+  enough = ENOUGH * ENOUGH * rs[1];
+  for (int sweep = 0; sweep < MOST_SWEEPS && rs[1] > enough; ++sweep) {
     PetscCall(Apply(w, z, q));
     local = impulse_dot(n, z, q);
-    PetscCall(MPIU_Allreduce(&local, &zq, 1, MPIU_REAL, MPI_SUM, comm));
+    PetscCall(MPIU_Allreduce(&local, &zq, 1, MPIU_REAL, MPI_SUM, w->m->grid->comm));
     if (zq <= 0) break;
     for (PetscInt i = 0; i < n; ++i) {
-      w->p[i] += rr / zq * z[i];
-      r[i] -= rr / zq * q[i];
+      w->p[i] += rs[0] / zq * z[i];
+      r[i] -= rs[0] / zq * q[i];
     }
-    const PetscReal before = rr;
-    local = impulse_dot(n, r, r);
-    PetscCall(MPIU_Allreduce(&local, &rr, 1, MPIU_REAL, MPI_SUM, comm));
-    for (PetscInt i = 0; i < n; ++i) z[i] = r[i] + rr / before * z[i];
+    precondition(w, r, s);
+    before = rs[0];
+    PetscCall(Norms(w, r, s, rs));
+    for (PetscInt i = 0; i < n; ++i) z[i] = s[i] + rs[0] / before * z[i];
   }
   PetscFunctionReturn(0);
 }
@@ -80,15 +96,16 @@ static PetscErrorCode Sweeps(Projection *w, PetscReal *q, PetscReal *r, PetscRea
 PetscErrorCode ImpulsesLumped(Projection *w)
 {
   const PetscInt n = 3 * w->s->n;
-  PetscReal *q, *r, *z;
+  PetscReal *q, *r, *s, *z;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc3(n, &q, n, &r, n, &z));
+  PetscCall(PetscMalloc4(n, &q, n, &r, n, &s, n, &z));
   PetscCall(PetscArrayzero(w->p, n));
   PetscCall(PetscArraycpy(r, w->lack, n));
   for (PetscInt k = 0; k < w->s->n; ++k) impulse_hold(w, k, r + 3 * k);
-  PetscCall(PetscArraycpy(z, r, n));
-  PetscCall(Sweeps(w, q, r, z));
-  PetscCall(PetscFree3(q, r, z));
+  precondition(w, r, s);
+  PetscCall(PetscArraycpy(z, s, n));
+  PetscCall(Sweeps(w, q, r, s, z));
+  PetscCall(PetscFree4(q, r, s, z));
   PetscFunctionReturn(0);
 }

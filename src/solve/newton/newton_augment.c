@@ -1,0 +1,36 @@
+/* What new multipliers change where nothing has moved: forces and tangent of what has them, and nothing of the
+ * material points, which take most of the time of an assembly. */
+#include "solve/newton/newton_private.h"
+#include <petsctime.h>
+
+/* The tangent must be that of this du, and as it was put in: not turned into frames. */
+PetscErrorCode NewtonAugment(Newton *n, PetscBool *again)
+{
+  const StepProblem *p = n->problem;
+  const PetscInt dim = p->grid->dim;
+  const PetscBool stays = n->tangent && p->scene.contact && !p->system->n_turned && n->report->status == LAW_OK;
+  PetscReal *change;
+  double start, end;
+
+  PetscFunctionBeginUser;
+  if (!stays) {
+    PetscCall(NodalForcesAugment(p->forces, &p->scene, n->changes, again));
+    if (*again) PetscCall(NewtonAssemble(n, PETSC_TRUE));
+    PetscFunctionReturn(0);
+  }
+  PetscCall(PetscTime(&start));
+  PetscCall(PetscCalloc1(p->grid->n_nodes * dim, &change));
+  NodalOutput out = {.force = change, .system = p->system, .away = PETSC_TRUE};
+  PetscCall(NodalForcesAssembleAugmented(p->forces, &p->scene, &out));
+  PetscCall(NodalForcesAugment(p->forces, &p->scene, n->changes, again));
+  out.away = PETSC_FALSE;
+  PetscCall(NodalForcesAssembleAugmented(p->forces, &p->scene, &out));
+  PetscCall(GridSumToOwners(p->grid, dim, change));
+  for (PetscInt k = 0; k < p->system->n_active; ++k)
+    for (PetscInt i = p->system->active[k] * dim; i < (p->system->active[k] + 1) * dim; ++i) p->force[i] += change[i];
+  PetscCall(PetscFree(change));
+  PetscCall(NewtonWeigh(n));
+  PetscCall(PetscTime(&end));
+  n->t_points += end - start;
+  PetscFunctionReturn(0);
+}
