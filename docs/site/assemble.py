@@ -163,7 +163,7 @@ class Site:
         text = ["---", "hide-toc: true", "---", "# Gallery", "", "Every case of `cases/`: what it is, the command that computes it, and the time it takes.",
                 "A case is a text file and a page that says what came out; the picture leads there.", "",
                 "Times: processor time of the command, measured by `make gallery`"
-                + (f" ({'; '.join(notes[:-1])})" if notes else "") + "; in words where the case's page states it.", "",
+                + (f" ({'; '.join(notes)})" if notes else "") + "; in words where the case's page states it.", "",
                 ""]
         everything = cases.all_cases()
         for group in cases.GROUPS:

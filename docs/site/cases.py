@@ -22,15 +22,15 @@ def first_sentence(paragraph):
 
 
 def times():
-    """{case: processor time in words} as measured, and the lines on machine and date."""
-    rows, notes = {}, []
+    """{case: processor time in words} as measured, and with what it was measured from when to when."""
+    rows, days = {}, {}
     for line in TIMES.read_text().splitlines() if TIMES.exists() else []:
         if line.startswith("#"):
-            notes.append(line[1:].strip())
-        elif "\t" in line:
-            name, seconds = line.split("\t")[:2]
-            rows[name] = seconds + " s" if seconds[0].isdigit() else seconds
-    return rows, notes
+            continue
+        name, seconds, machine, day = line.split("\t")
+        rows[name] = seconds + " s" if seconds[0].isdigit() else seconds
+        days.setdefault(machine, set()).add(day)
+    return rows, [f"{machine}, {min(d)}" + (f" to {max(d)}" if len(d) > 1 else "") for machine, d in sorted(days.items())]
 
 
 GROUPS = ["Solids", "Contact", "Soil", "Grains and powders", "Other commands"]

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """measure.py TALUS [LIMIT [CASE...]]: runs every case of the gallery that takes less than LIMIT (60) seconds of processor time, one at
-a time on one rank, and writes docs/site/times.tsv. Those whose README states minutes are not tried. With names, those cases alone: the
-rows of all others stay as they were measured."""
+a time on one rank, and writes docs/site/times.tsv. Those whose README states minutes are not tried. With names, those cases alone, and
+whatever their README states: the rows of all others stay as they were measured."""
 import datetime
 import os
 import resource
@@ -48,21 +48,20 @@ def main():
     talus, limit = os.path.abspath(sys.argv[1]), int(sys.argv[2]) if len(sys.argv) > 2 else 60
     named = sys.argv[3:]
     version = subprocess.run([talus, "version"], capture_output=True, text=True).stdout.split("\n")[0]
-    lines = TIMES.read_text().splitlines() if named else []
-    head = [line for line in lines if line.startswith("#")] or ["# case\tseconds of processor time"]
-    rows = dict(line.split("\t") for line in lines if not line.startswith("#"))
-    when = f"{version}, {processor()}, one rank, {datetime.date.today()}"
-    head.insert(0 if not named else 1, f"# {when}" + (f": {', '.join(named)}" if named else ""))
+    head = "# case\tseconds of processor time\tmeasured with\ton"
+    rows = dict(line.split("\t", 1) for line in TIMES.read_text().splitlines() if line[0] != "#") if named else {}
+    when = f"{version}, {processor()}, one rank\t{datetime.date.today()}"
     for case in all_cases():
-        if not words_of(case) or case.is_long or (named and case.name not in named):
+        if not words_of(case) or (case.name not in named if named else case.is_long):
             continue
         seconds = seconds_of(talus, case, limit)
         print(f"{case.name}: {'more than the limit, or failed' if seconds is None else f'{seconds:.1f} s'}", flush=True)
         if seconds is None:
-            rows[case.name] = f"more than {limit} s"
+            text = f"more than {limit} s"
         else:
-            rows[case.name] = f"{seconds:.1f}" if seconds < 9.95 else f"{seconds:.0f}"
-        TIMES.write_text("\n".join(head + [f"{name}\t{text}" for name, text in sorted(rows.items())]) + "\n")
+            text = f"{seconds:.1f}" if seconds < 9.95 else f"{seconds:.0f}"
+        rows[case.name] = f"{text}\t{when}"
+        TIMES.write_text("\n".join([head] + [f"{name}\t{row}" for name, row in sorted(rows.items())]) + "\n")
 
 
 main()

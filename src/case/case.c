@@ -212,6 +212,7 @@ PetscBool case_seeks(const AnalysisSpec *analysis)
 
 PetscBool case_writes(const Case *c, const char *field)
 {
+  if (c->n_interfaces && !strcmp(field, "body")) return PETSC_TRUE; /* pictures keep them apart */
   for (PetscInt f = 0; f < c->output.n_fields; ++f)
     if (!strcmp(c->output.fields[f], field)) return PETSC_TRUE;
   return PETSC_FALSE;

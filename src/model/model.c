@@ -2,6 +2,7 @@
 #include "model/measure/measure.h"
 #include "method/transfer/transfer.h"
 #include "model/model_private.h"
+#include "base/process/memory.h"
 
 /* Work of a cell with this centre, in points: balances the partition. */
 static PetscReal cell_weight(void *context, const PetscReal *centre)
@@ -385,6 +386,7 @@ PetscErrorCode ModelCreate(MPI_Comm comm, const Case *c, Diag *diag, Model **mod
   m->c = c;
   m->dim = kinematics_dim(c->kinematics);
   PetscCall(OptionsApply(m));
+  PetscCall(MemoryHeld(comm, &m->machine_memory));
   PetscCall(OptionsCheck(m, diag));
   PetscCall(Build(m, diag));
   PetscCall(DiagReduce(comm, diag, &errors));

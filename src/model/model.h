@@ -155,9 +155,10 @@ typedef struct Model {
   PetscReal time;           /* s */
   StepControl control;
   PetscInt step;
-  PetscBool *option_set;   /* which of the case's PETSc options the model put into the database */
-  PetscBool symmetric;     /* are all tangents symmetric? */
-  PetscReal courant_speed; /* largest sqrt(M / density), m/s */
+  PetscBool *option_set;    /* which of the case's PETSc options the model put into the database */
+  PetscBool symmetric;      /* are all tangents symmetric? */
+  PetscReal machine_memory; /* bytes: MemoryHeld */
+  PetscReal courant_speed;  /* largest sqrt(M / density), m/s */
   /* see Energies */
   PetscReal external_work, boundary_work, damped_energy, transfer_energy, friction_energy, numerical_energy;
   PetscReal start_energy;

@@ -120,6 +120,7 @@ static LinearProblem linear_problem(const Model *m, PetscReal dt)
     .idle_ranks = !m->system->n_active_least,
     .dynamic = m->scheme->inertia,
     .courant = m->courant_speed * dt / m->grid->smallest,
+    .memory = m->machine_memory,
   };
 }
 

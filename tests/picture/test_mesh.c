@@ -119,7 +119,8 @@ static void test_shape_of_a_square(void **state)
   }
 }
 
-/* Of two parts, one on the other, the corner between them stays empty, which as one body is filled. */
+/* Of two parts, one on the other, the corner between them stays empty, which as one body is filled, and there is a line
+ * where they meet. */
 static void test_parts(void **state)
 {
   enum { N = 8, W = 300, MOST = 3 * 4 * N * N };
@@ -153,6 +154,9 @@ static void test_parts(void **state)
     for (int i = 0; i < W * W; ++i) area += rgba[4 * i + 3] / 255. * 1e-4;
     assert_int_equal(rgba[4 * (153 * W + 153) + 3], parts ? 0 : 255);
     assert_true(fabs(area - 3) < (parts ? 0.03 : 0.06));
+    PetscInt line = 0; /* where they meet: y = 1 is between rows 149 and 150 */
+    for (int row = 145; row < 155; ++row) line += rgba[4 * (row * W + 100) + 1] > 20;
+    assert_int_equal(line > 0, parts > 0);
   }
 }
 

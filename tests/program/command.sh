@@ -63,6 +63,18 @@ says out.txt "#   basis: gimp, the default of mpm; basis: {cell: {}} is the thes
 expect "a run without a basis" 0 "$talus" run case.yaml --set 'basis={}' --set grid.cell=triangle --set 'bodies[0].points_per_cell=3' --quiet --out without
 says without/log.txt "basis = cell, since gimp, the default of mpm, needs a box of quadrilaterals or hexahedra"
 says without/case.yaml "  cell: {}"
+expect "check of what has no room" 0 env TALUS_MEMORY=0.04 "$talus" check case.yaml
+says err.txt "the run will need about 0.0" "GB of memory, and there are 0.04 GB"
+no_room="TALUS_MEMORY=1e-6 $talus run case.yaml --set petsc.ksp_max_it=1 --set analysis.steps=1 --out small --quiet"
+expect "no factorisation without room" 1 env $no_room --set linear=iterative
+says err.txt "the linear iteration failed, and a factorisation needs more memory than there is"
+expect "a factorisation that was asked for" 0 env $no_room --set linear=direct --force
+says small/log.txt "linear = direct"
+expect "iterates without room" 0 env TALUS_MEMORY=1e-6 "$talus" run case.yaml --out small --quiet --force
+says small/log.txt "linear = conjugate gradients, algebraic multigrid"
+block >block.yaml
+expect "an iteration that gets nowhere gives way to a factorisation" 0 timeout 60 "$talus" run block.yaml --set petsc.ksp_atol=1e300 --set analysis.end=0.01 --out block --quiet
+says block/log.txt "halvings = 0"
 expect "check of a mistake" 2 "$talus" check case.yaml --set materials.rubber.yung=1
 says err.txt "--set materials.rubber.yung=1: error: key 'yung' of materials.rubber is not known"
 [ ! -e runs ] || fail "check wrote something"

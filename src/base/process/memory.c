@@ -1,6 +1,8 @@
 #include "base/process/memory.h"
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 static PetscErrorCode Refuse(size_t bytes, int line, const char *function, const char *file)
 {
@@ -44,4 +46,40 @@ PetscErrorCode MemoryInstall(int argc, char **argv)
   for (int i = 1; i < argc; ++i)
     if (!strncmp(argv[i], "-malloc", 7)) debug = PETSC_TRUE;
   return debug ? 0 : PetscMallocSet(Allocate, Free, Reallocate);
+}
+
+/* A control group's bytes; 0: it allows all that there is. */
+static PetscReal control_group(void)
+{
+  char line[64] = "";
+  FILE *file = fopen("/sys/fs/cgroup/memory.max", "r");
+  if (!file) return 0;
+  if (!fgets(line, sizeof line, file)) line[0] = 0;
+  fclose(file);
+  return (PetscReal)strtod(line, NULL); /* of "max": 0 */
+}
+
+static PetscReal of_this_machine(void)
+{
+  const PetscReal group = control_group(), all = (PetscReal)sysconf(_SC_PHYS_PAGES) * (PetscReal)sysconf(_SC_PAGESIZE);
+  if (!(all > 0)) return group;
+  return group > 0 ? PetscMin(group, all) : all;
+}
+
+PetscErrorCode MemoryHeld(MPI_Comm comm, PetscReal *bytes)
+{
+  const char *told = getenv("TALUS_MEMORY");
+  const PetscReal limit = told ? (PetscReal)strtod(told, NULL) * 1e9 : 0;
+  PetscReal here = 0;
+  PetscMPIInt rank;
+  MPI_Comm machine;
+
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_split_type(comm, MPI_COMM_TYPE_SHARED, 0, MPI_INFO_NULL, &machine));
+  PetscCallMPI(MPI_Comm_rank(machine, &rank));
+  PetscCallMPI(MPI_Comm_free(&machine));
+  if (rank == 0) here = of_this_machine();
+  PetscCall(MPIU_Allreduce(&here, bytes, 1, MPIU_REAL, MPI_SUM, comm));
+  if (limit > 0) *bytes = limit;
+  PetscFunctionReturn(0);
 }

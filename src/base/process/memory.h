@@ -6,3 +6,6 @@
 /* Before PetscInitialize, with the words that go to it (or 0, NULL). Nothing happens where PETSc is
  * to debug memory by itself. */
 PetscErrorCode MemoryInstall(int argc, char **argv);
+/* Collective. What the machines of the communicator hold together, or control groups let them use, bytes; the
+ * environment's TALUS_MEMORY, in GB, instead where it is set. 0 where nothing tells. The same at every call. */
+PetscErrorCode MemoryHeld(MPI_Comm comm, PetscReal *bytes);

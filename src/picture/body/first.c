@@ -5,11 +5,11 @@
 #include "picture/raster/spacing.h"
 #include "picture/scene/scene.h"
 
-/* Bodies that moved less, in pixels, cover their outline. */
+/* Pixels. */
 #define LEAST_WAY 4
 /* A picture grows by so much of its size for the outline, and else shows a part of it. */
 #define MOST_GROWTH 0.3
-enum { GREY = 60, MOST_PARTS = 16 };
+enum { GREY = 60 };
 
 PetscErrorCode PlotReadDisplacement(VtkFile *file, PetscReal **u, char reason[256])
 {
@@ -45,25 +45,13 @@ static PetscErrorCode SpacingOfParts(const PlotFrame *f, const PetscReal *x, Pet
   PetscFunctionReturn(0);
 }
 
-/* Of bodies between which there are interfaces: the first whose shape held the place where a point began. Bodies that
- * are regions of a mesh have no shape to tell. */
-static PetscErrorCode FindParts(const Case *c, PlotFrame *f)
+/* Bodies that are apart have outlines of their own, and sizes of points among their own. */
+static PetscErrorCode SizeParts(PlotFrame *f)
 {
   PetscFunctionBeginUser;
-  if (!c->n_interfaces || c->n_bodies > MOST_PARTS || f->n != f->n_first) PetscFunctionReturn(0);
-  for (PetscInt b = 0; b < c->n_bodies; ++b)
-    if (!c->bodies[b].has_shape) PetscFunctionReturn(0);
-  f->n_parts = c->n_bodies;
-  PetscCall(PetscMalloc1(f->n, &f->part));
-  for (PetscInt i = 0; i < f->n; ++i) {
-    const PetscReal at[3] = {fabs(f->first[3 * i]), f->first[3 * i + 1], 0};
-    const PetscReal *x = c->kinematics->hoop ? at : f->first + 3 * i;
-    PetscInt b = 0;
-    while (b + 1 < c->n_bodies && !shape_contains(&c->bodies[b].shape, 2, x, 0)) ++b;
-    f->part[i] = (unsigned char)b;
-  }
+  if (f->n_parts < 2) PetscFunctionReturn(0);
   PetscCall(SpacingOfParts(f, f->x, f->radius));
-  PetscCall(SpacingOfParts(f, f->first, f->first_radius));
+  if (f->n_first == f->n) PetscCall(SpacingOfParts(f, f->first, f->first_radius));
   PetscFunctionReturn(0);
 }
 
@@ -81,7 +69,7 @@ PetscErrorCode PlotFirstShape(PlotScene *scene)
   for (PetscInt k = 0; k < scene->n_frames; ++k) {
     PlotFrame *f = &scene->frames[k];
     if (f->first && !f->first_corner) PetscCall(PlotSpacing(2, f->n_first, f->first, f->first_radius));
-    if (f->first && !f->first_corner) PetscCall(FindParts(scene->walled, f));
+    if (!f->first_corner) PetscCall(SizeParts(f));
     if (f->first && !f->first_corner) PetscCall(PlotShapes(scene->walled, f));
     if (scene->bare || scene->turned) continue;
     if (f->first && !f->first_corner) include(f->first, f->n_first, min, max);
@@ -95,15 +83,18 @@ PetscErrorCode PlotFirstShape(PlotScene *scene)
   PetscFunctionReturn(0);
 }
 
-/* The longest way on the page, m. */
-static PetscReal longest_way(const PlotFrame *f)
+/* Bodies that hardly moved cover their outline, and of one that began beside the page a piece would tell nothing. */
+static PetscBool shows_first(const PlotFrame *f, const PlotPage *page)
 {
   const PetscBool cells = f->first_corner != NULL;
   const PetscReal *from = cells ? f->first_corner : f->first, *to = cells ? f->corner : f->x;
-  PetscReal way = 0;
-  for (PetscInt i = 0; i < (cells ? 3 * f->n_triangles : f->n_first); ++i)
-    way = PetscMax(way, hypot(to[3 * i] - from[3 * i], to[3 * i + 1] - from[3 * i + 1]));
-  return way;
+  const PetscInt n = cells ? 3 * f->n_triangles : f->n_first;
+  PetscReal way = 0, min[2] = {PETSC_MAX_REAL, PETSC_MAX_REAL}, max[2] = {-PETSC_MAX_REAL, -PETSC_MAX_REAL};
+  for (PetscInt i = 0; i < n; ++i) way = PetscMax(way, hypot(to[3 * i] - from[3 * i], to[3 * i + 1] - from[3 * i + 1]));
+  include(from, n, min, max);
+  for (int d = 0; d < 2; ++d)
+    if (min[d] + max[d] < 2 * page->min[d] || min[d] + max[d] > 2 * page->max[d]) return PETSC_FALSE;
+  return (PetscBool)(way >= LEAST_WAY * (page->max[0] - page->min[0]) / page->w);
 }
 
 /* A line where the image goes over from full to empty: how steep it is there, of both neighbours along each axis. */
@@ -116,31 +107,44 @@ static PetscReal edge_at(const unsigned char *rgba, int w, int h, int column, in
   return PetscMin(hypot(across, up) / 255., 1) * 0.6;
 }
 
+/* The body as it was at first, on the page and around it: what the page cuts has no outline along the cut. */
+static PetscErrorCode DrawFirst(const PlotScene *scene, const PlotFrame *f, const PlotPage *page, int around,
+                                unsigned char *rgba)
+{
+  const PetscReal pixel = (page->max[0] - page->min[0]) / page->w;
+  const PlotOutline outline = {.c = scene->walled, .frame = f, .first = PETSC_TRUE};
+  RasterScene raster = {.width = page->w + 2 * around, .height = page->h + 2 * around};
+  PetscReal *zero;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(PetscMax(f->n_first, 3 * f->n_triangles), &zero));
+  for (int d = 0; d < 2; ++d)
+    raster.min[d] = page->min[d] - around * pixel, raster.max[d] = page->max[d] + around * pixel;
+  raster.gap = scene->gap;
+  raster.n_parts = f->n_parts, raster.part = f->part;
+  raster.knows = f->shape, raster.holds = plot_shape_holds, raster.of = &outline;
+  if (f->first_corner) raster.n_triangles = f->n_triangles, raster.corner = f->first_corner, raster.corner_value = zero;
+  else raster.n = f->n_first, raster.x = f->first, raster.radius = f->first_radius, raster.value = zero;
+  PetscCall(RasterDraw(&raster, rgba));
+  PetscCall(PetscFree(zero));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode PlotFirstDraw(const PlotScene *scene, const PlotFrame *f, const PlotPage *page, unsigned char *rgba)
 {
   const PetscReal pixel = (page->max[0] - page->min[0]) / page->w;
-  const PetscBool cells = f->first_corner != NULL;
-  PetscReal *zero;
+  const int around = 2 + (int)PetscMin(2 * scene->gap / pixel, page->w);
+  const int w = page->w + 2 * around, h = page->h + 2 * around;
   unsigned char *first;
 
   PetscFunctionBeginUser;
-  if (scene->bare || (!f->first && !cells) || longest_way(f) < LEAST_WAY * pixel) PetscFunctionReturn(0);
-  PetscCall(PetscCalloc1(PetscMax(f->n_first, 3 * f->n_triangles), &zero));
-  PetscCall(PetscMalloc1((size_t)page->w * (size_t)page->h * 4, &first));
-  RasterScene raster = {
-    .min = {page->min[0], page->min[1]}, .max = {page->max[0], page->max[1]}, .width = page->w, .height = page->h};
-  raster.gap = scene->gap;
-  raster.n_parts = f->n_parts, raster.part = f->part;
-  const PlotOutline outline = {.c = scene->walled, .frame = f, .first = PETSC_TRUE};
-  raster.knows = f->shape, raster.holds = plot_shape_holds, raster.of = &outline;
-  if (cells) raster.n_triangles = f->n_triangles, raster.corner = f->first_corner, raster.corner_value = zero;
-  else raster.n = f->n_first, raster.x = f->first, raster.radius = f->first_radius, raster.value = zero;
-  PetscCall(RasterDraw(&raster, first));
+  if (scene->bare || (!f->first && !f->first_corner) || !shows_first(f, page)) PetscFunctionReturn(0);
+  PetscCall(PetscMalloc1((size_t)w * (size_t)h * 4, &first));
+  PetscCall(DrawFirst(scene, f, page, around, first));
   for (int row = 0; row < page->h; ++row)
     for (int column = 0; column < page->w; ++column)
       plot_blend(rgba + 4 * ((size_t)row * (size_t)page->w + (size_t)column), GREY,
-                 edge_at(first, page->w, page->h, column, row));
+                 edge_at(first, w, h, column + around, row + around));
   PetscCall(PetscFree(first));
-  PetscCall(PetscFree(zero));
   PetscFunctionReturn(0);
 }

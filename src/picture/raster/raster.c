@@ -110,6 +110,24 @@ static void draw_balls(const RasterScene *scene, Canvas *canvas, PetscInt part)
     if (part < 0 || scene->part[p] == part) draw_ball(scene, canvas, p);
 }
 
+static PetscBool meets_other(const RasterScene *scene, PetscInt p, PetscInt q)
+{
+  return (PetscBool)(p >= 0 && q >= 0 && scene->part[p] != scene->part[q]);
+}
+
+/* A line of one pixel or so where a body meets another one. */
+static void line_between_parts(const RasterScene *scene, const PetscInt *of, Canvas *canvas)
+{
+  for (int j = 0; j + 2 < canvas->height; ++j)
+    for (int i = 0; i + 2 < canvas->width; ++i) {
+      const PetscInt p = of[canvas_at(canvas, i, j)];
+      for (int k = 1; k <= 2; ++k)
+        if (meets_other(scene, p, of[canvas_at(canvas, i + k, j)]) ||
+            meets_other(scene, p, of[canvas_at(canvas, i, j + k)]))
+          canvas->point[canvas_at(canvas, i, j)] = CANVAS_LINE;
+    }
+}
+
 /* Bodies that are apart are drawn apart, each with its own outline: the corner between two of them is no gap. */
 static PetscErrorCode DrawParts(const RasterScene *scene, Canvas *canvas)
 {
@@ -127,6 +145,7 @@ static PetscErrorCode DrawParts(const RasterScene *scene, Canvas *canvas)
       if (all[i] < 0) all[i] = canvas->point[i];
   }
   PetscCall(PetscArraycpy(canvas->point, all, n));
+  line_between_parts(scene, all, canvas);
   PetscCall(PetscFree(all));
   PetscFunctionReturn(0);
 }

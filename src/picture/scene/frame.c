@@ -4,6 +4,9 @@
 #include "picture/scene/scene.h"
 #include "picture/raster/spacing.h"
 
+/* Bodies with an outline of their own; more are drawn as one. */
+enum { MOST_PARTS = 16 };
+
 static PetscBool has_place(const PetscReal *x) { return fabs(x[0]) < 1e30 && fabs(x[1]) < 1e30 && fabs(x[2]) < 1e30; }
 
 /* Copy the points that have a place; a run that broke may hold others. */
@@ -71,6 +74,29 @@ static void mirror_points(PlotFrame *f)
   }
 }
 
+/* Whose points are, of bodies between which there are interfaces: on both sides of the axis, if so. */
+static PetscErrorCode TakeParts(VtkFile *file, const PlotScene *scene, PetscInt n, const PetscReal *x, PlotFrame *f)
+{
+  const VtkFieldInfo *fields;
+  const PetscInt n_fields = vtk_read_fields(file, &fields);
+  const Case *c = scene->walled;
+  PetscReal *body = NULL;
+  char reason[256];
+
+  PetscFunctionBeginUser;
+  if (!c || !c->n_interfaces || c->n_bodies > MOST_PARTS) PetscFunctionReturn(0);
+  for (PetscInt i = 0; i < n_fields && !body; ++i)
+    if (!strcmp(fields[i].name, "body") && VtkReadField(file, &fields[i], &body, reason)) body = NULL;
+  if (!body) PetscFunctionReturn(0);
+  PetscCall(PetscMalloc1(f->n, &f->part));
+  for (PetscInt k = 0; k < f->n;)
+    for (PetscInt i = 0; i < n; ++i)
+      if (has_place(x + 3 * i)) f->part[k++] = (unsigned char)PetscMax(0, PetscMin(body[i], c->n_bodies - 1));
+  f->n_parts = c->n_bodies;
+  PetscCall(PetscFree(body));
+  PetscFunctionReturn(0);
+}
+
 /* Where walls are that move by what acts on them. */
 static PetscErrorCode TakeWalls(const VtkFile *file, const PlotScene *scene, PlotFrame *f)
 {
@@ -99,6 +125,7 @@ PetscErrorCode PlotFrameRead(VtkFile *file, const VtkFieldInfo *field, const Plo
       PetscCall(PlotFrameArrows(n, x, field->components, data, f));
     if (scene->mirrored) mirror_points(f);
     PetscCall(TakeFirst(file, scene, n, x, f));
+    PetscCall(TakeParts(file, scene, n, x, f));
     PetscCall(TakeWalls(file, scene, f));
     ++scene->n_frames;
     PetscCall(PetscFree(data));

@@ -137,8 +137,10 @@ static PetscErrorCode ReportBodies(const Model *m, Diag *diag, FILE *out)
   PetscFunctionReturn(0);
 }
 
-/* What the solver needs beside its matrix: a factor, by nested dissection's growth, or the levels of multigrid. */
+/* What the solver needs beside its matrix: a factor, or the levels of multigrid. */
 #define MULTIGRID 0.7 /* of the matrix, measured */
+/* Program and libraries, a rank. */
+#define PROGRAM 45e6
 
 static PetscReal solver_memory(const Model *m, PetscInt unknowns, PetscReal matrix)
 {
@@ -146,14 +148,14 @@ static PetscReal solver_memory(const Model *m, PetscInt unknowns, PetscReal matr
                                  .dim = m->dim,
                                  .unknowns = unknowns,
                                  .symmetric = m->symmetric,
-                                 .mixed = m->formulation->pressure};
-  const PetscReal n = (PetscReal)PetscMax(unknowns, 2);
+                                 .mixed = m->formulation->pressure,
+                                 .memory = m->machine_memory};
   if (m->scheme->inertia) return 0;
   if (!linear_factorises(&problem)) return MULTIGRID * matrix;
-  return m->dim == 2 ? 8 * 5 * n * PetscLog2Real(n) : 8 * 6 * PetscPowReal(n, 4.0 / 3.0);
+  return linear_factor_bytes(&problem);
 }
 
-/* Bytes per rank, roughly: points, support, matrix, and its solver. */
+/* Bytes, roughly: points, support, matrix, and its solver. */
 static PetscReal estimated_memory(const Model *m, PetscInt points, PetscInt unknowns, PetscInt pairs)
 {
   const PetscInt most = m->space->basis->domains ? m->dim == 2 ? 9 : 27 : m->grid->nodes_per_cell;
@@ -164,8 +166,21 @@ static PetscReal estimated_memory(const Model *m, PetscInt points, PetscInt unkn
   const PetscReal value =
     m->scheme->inertia && !m->formulation->pressure ? 8 + 4 : 8 + 8 + 4; /* blocks in single precision, or PETSc's */
   const PetscReal matrix = (PetscReal)pairs * (block * block * value + 12);
-  return (PetscReal)points * per_point + matrix + solver_memory(m, unknowns, matrix) +
+  PetscMPIInt ranks;
+  MPI_Comm_size(m->comm, &ranks);
+  return PROGRAM * ranks + (PetscReal)points * per_point + matrix + solver_memory(m, unknowns, matrix) +
          120 * (PetscReal)m->grid->n_nodes_global;
+}
+
+static void report_memory(const Model *m, PetscReal needed, Diag *diag, FILE *out)
+{
+  PetscMPIInt rank;
+  MPI_Comm_rank(m->comm, &rank);
+  say(m, out, "#   memory: about %.3g MB\n", (double)needed / 1e6);
+  if (rank || m->machine_memory <= 0 || needed < m->machine_memory) return;
+  diag_warning(diag, NULL, "the run will need about %.3g GB of memory, and there are %.3g GB", (double)needed / 1e9,
+               (double)m->machine_memory / 1e9);
+  if (m->c->linear == LINEAR_DIRECT) diag_hint(diag, "`linear: auto` iterates where a factorisation has no room");
 }
 
 /* How large clouds are, and how many are not what the rule aims at. */
@@ -199,7 +214,7 @@ static PetscErrorCode ReportSubsteps(const Model *m, FILE *out)
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode ReportSizes(Model *m, FILE *out)
+static PetscErrorCode ReportSizes(Model *m, Diag *diag, FILE *out)
 {
   PetscInt points, pairs, all_pairs;
   char from[80], to[80], told[256];
@@ -218,7 +233,7 @@ static PetscErrorCode ReportSizes(Model *m, FILE *out)
   method_tell_basis(m->method, m->c, sizeof told, told);
   say(m, out, "#   basis: %s\n", told);
   say(m, out, "#   points: %d; unknowns at the start: %d\n", (int)points, (int)unknowns);
-  say(m, out, "#   memory: about %.3g MB\n", (double)estimated_memory(m, points, unknowns, all_pairs) / 1e6);
+  report_memory(m, estimated_memory(m, points, unknowns, all_pairs), diag, out);
   if (m->scheme->inertia)
     say(m, out, "#   waves: %g m/s, %.3g cells in a step of %g s\n", (double)m->courant_speed,
         (double)(m->courant_speed * m->control.next / m->grid->smallest), (double)m->control.next);
@@ -299,7 +314,7 @@ static PetscErrorCode CheckOne(MPI_Comm comm, const Case *c, Diag *diag, FILE *o
   PetscCall(ModelCreate(comm, c, diag, &m));
   if (!m) PetscFunctionReturn(0);
   if (c->spec) say(m, out, "# stage %d: %s\n", (int)c->stage + 1, c->spec->name);
-  PetscCall(ReportSizes(m, out));
+  PetscCall(ReportSizes(m, diag, out));
   PetscCall(ReportSets(m, out));
   PetscCall(ReportBodies(m, diag, out));
   PetscCall(ReportInterfaces(m, out));

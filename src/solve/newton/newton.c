@@ -190,7 +190,10 @@ static PetscErrorCode LeaveMoreRoom(Newton *n, PetscBool *more)
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode NewtonTry(Newton *n, NewtonReport *report)
+/* A factorisation for which the machines have no room would end the run without a word. */
+static const char no_room[] = "the linear iteration failed, and a factorisation needs more memory than there is";
+
+static PetscErrorCode NewtonTry(Newton *n, const LinearProblem *linear, NewtonReport *report)
 {
   const StepProblem *p = n->problem;
   SNESConvergedReason reason;
@@ -229,7 +232,8 @@ static PetscErrorCode NewtonTry(Newton *n, NewtonReport *report)
   const PetscBool useless = reason == SNES_DIVERGED_LINEAR_SOLVE || reason == SNES_DIVERGED_INNER;
   n->retry = useless && !n->direct;
   n->anew = n->retry && n->stale;
-  if (n->anew) n->built = -1;
+  if (n->retry && !n->anew && !linear_factor_fits(linear)) n->retry = PETSC_FALSE, report->reason = no_room;
+  if (n->retry) n->built = -1; /* with other set-ups, or another solver */
   n->failures += n->retry && !n->anew;
   if (reason == SNES_DIVERGED_LINEAR_SOLVE && n->direct) PetscCall(LeaveMoreRoom(n, &n->retry));
   PetscFunctionReturn(0);
@@ -251,7 +255,7 @@ PetscErrorCode NewtonSolve(Newton *n, StepProblem *p, const LinearProblem *linea
   if (p->pressure) PetscCall(PetscArraycpy(pressure, p->pressure, nodes));
   n->anew = PETSC_FALSE;
   PetscCall(NewtonSetUp(n, p, linear));
-  PetscCall(NewtonTry(n, report));
+  PetscCall(NewtonTry(n, linear, report));
   const PetscBool again = n->retry;
   while (n->retry) { /* once more, with set-ups of their own, or with the direct solver */
     const PetscInt lost = report->lost + report->iterations;
@@ -259,7 +263,7 @@ PetscErrorCode NewtonSolve(Newton *n, StepProblem *p, const LinearProblem *linea
     newton_rigid_set(n, walls);
     if (p->pressure) PetscCall(PetscArraycpy(p->pressure, pressure, nodes));
     PetscCall(NewtonSetUp(n, p, linear));
-    PetscCall(NewtonTry(n, report));
+    PetscCall(NewtonTry(n, linear, report));
     report->lost = lost;
   }
   if (again) {

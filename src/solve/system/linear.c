@@ -167,10 +167,24 @@ static PetscInt factorise_below(const LinearProblem *p)
   return p->symmetric ? FACTORISE_BELOW_3D : FACTORISE_BELOW_3D_SOIL;
 }
 
+/* Fill-in of nested dissection grows as n log n in the plane and as n^(4/3) in space. Numbers of MUMPS and PETSc's
+ * copies together; pressures, and both triangles of unsymmetric tangents, take more. */
+PetscReal linear_factor_bytes(const LinearProblem *p)
+{
+  const PetscReal n = (PetscReal)PetscMax(p->unknowns, 2);
+  if (p->dim == 3) return (p->mixed || !p->symmetric ? 530 : 280) * PetscPowReal(n, 4.0 / 3.0);
+  return (p->mixed ? 175 : p->symmetric ? 90 : 132) * n * PetscLog2Real(n);
+}
+
+PetscBool linear_factor_fits(const LinearProblem *p)
+{
+  return (PetscBool)(p->memory <= 0 || linear_factor_bytes(p) < p->memory);
+}
+
 static PetscBool direct_pays(const LinearProblem *p)
 {
   if (p->dynamic && !p->mixed && p->courant < iterate_below(p)) return PETSC_FALSE;
-  return p->unknowns < factorise_below(p);
+  return (PetscBool)(p->unknowns < factorise_below(p) && linear_factor_fits(p));
 }
 
 PetscBool linear_factorises(const LinearProblem *p)

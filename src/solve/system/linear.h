@@ -17,9 +17,14 @@ typedef struct {
   PetscBool idle_ranks;   /* does a rank hold no unknowns? */
   PetscBool multipliers;  /* are there constraints? then the matrix is not definite */
   PetscReal courant;      /* wave speed * dt / h */
+  PetscReal memory;       /* of the machines, bytes; 0: not known */
   PetscInt room;          /* for factors beyond their estimate, percent; 0: as MUMPS has it */
 } LinearProblem;
 
+/* Bytes of a factorisation with all that goes with it, within about a tenth (docs/experiments/linear-solvers.md). */
+PetscReal linear_factor_bytes(const LinearProblem *problem);
+/* Is there room for it? */
+PetscBool linear_factor_fits(const LinearProblem *problem);
 /* Is that a factorisation? */
 PetscBool linear_factorises(const LinearProblem *problem);
 /* What that solver works on: blocks where our own conjugate gradients or BiCGStab run, unless
