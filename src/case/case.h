@@ -249,6 +249,7 @@ typedef struct {
   PetscInt component; /* 0 1 2 */
   PetscBool maximum;  /* extent, run-out time: max, else min */
   PetscReal beyond;   /* extent: share of the mass that is left out */
+  PetscBool advance;  /* extent: from where it was at the start, outwards */
   PetscBool has_tracer;
   PetscReal tracer[3]; /* material position of the tracer at the start */
   char *body;          /* NULL: all */

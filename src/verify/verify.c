@@ -142,6 +142,25 @@ static PetscErrorCode RunRows(Verification *v, FILE *out, Diag *diag, PetscInt *
   PetscFunctionReturn(0);
 }
 
+/* Into docs/verification.md, by rank 0. */
+static PetscErrorCode Record(const Verification *v, FILE *out, Diag *diag)
+{
+  char file[PETSC_MAX_PATH_LEN], *all, *alone;
+  int error;
+
+  PetscFunctionBeginUser;
+  verify_record_file(v->options->folder, file);
+  PetscCall(VerifyMarkdown(v, VERIFY_SECTION, &all));
+  PetscCall(VerifyMarkdown(v, VERIFY_STUDY_ALONE, &alone));
+  const VerifySection section = {.all = all, .study = v->options->only, .alone = alone};
+  PetscCall(VerifyRecord(file, v->name, &section, &error));
+  PetscCall(PetscFree(all));
+  PetscCall(PetscFree(alone));
+  if (error) diag_error(diag, NULL, "cannot record in '%s': %s", file, strerror(error));
+  else fprintf(out, "recorded: %s\n", file);
+  PetscFunctionReturn(0);
+}
+
 /* Tables into files, by rank 0. */
 static PetscErrorCode Write(const Verification *v, FILE *out, Diag *diag)
 {
@@ -150,18 +169,12 @@ static PetscErrorCode Write(const Verification *v, FILE *out, Diag *diag)
 
   PetscFunctionBeginUser;
   PetscCall(PetscSNPrintf(file, sizeof file, "%s/verification.md", v->out));
-  PetscCall(VerifyMarkdown(v, PETSC_TRUE, &text));
+  PetscCall(VerifyMarkdown(v, VERIFY_WITH_FIGURES, &text));
   error = file_write_text(file, text);
   PetscCall(PetscFree(text));
   if (error) diag_error(diag, NULL, "cannot write '%s': %s", file, strerror(error));
   else fprintf(out, "table: %s\n", file);
-  if (!v->options->record) PetscFunctionReturn(0);
-  verify_record_file(v->options->folder, file);
-  PetscCall(VerifyMarkdown(v, PETSC_FALSE, &text));
-  PetscCall(VerifyRecord(file, v->name, text, &error));
-  PetscCall(PetscFree(text));
-  if (error) diag_error(diag, NULL, "cannot record in '%s': %s", file, strerror(error));
-  else fprintf(out, "recorded: %s\n", file);
+  if (v->options->record) PetscCall(Record(v, out, diag));
   PetscFunctionReturn(0);
 }
 
@@ -170,11 +183,7 @@ static void check_options(const Verification *v, Diag *diag)
   char file[PETSC_MAX_PATH_LEN];
   if (!v->options->record) return;
   verify_record_file(v->options->folder, file);
-  if (v->options->only) {
-    diag_error(diag, NULL, "--record replaces the whole section of a case, so it does not go with --only");
-    diag_hint(diag, "run the study, then --record --resume takes it over and runs what is missing");
-  } else if (v->rank == 0 && access(file, W_OK))
-    diag_error(diag, NULL, "cannot record in '%s': %s", file, strerror(errno));
+  if (v->rank == 0 && access(file, W_OK)) diag_error(diag, NULL, "cannot record in '%s': %s", file, strerror(errno));
 }
 
 static VerifyOutcome outcome_of(const Verification *v, PetscInt n)

@@ -100,8 +100,7 @@ static void write_exact(FILE *out, const StudySpec *study)
 static void write_study(FILE *out, const Verification *v, PetscInt first, PetscInt last, PetscBool figures)
 {
   const StudySpec *study = v->rows[first].study;
-  fprintf(out, "\n### %s: %s\n\nMeasure `%s` over %s %s.\n\n", study->name, study->title, study->measure,
-          study->sweep.name, study->sweep.symbol);
+  fprintf(out, "Measure `%s` over %s %s.\n\n", study->measure, study->sweep.name, study->sweep.symbol);
   write_head(out, &v->rows[first]);
   for (PetscInt k = first; k < last; ++k) write_row(out, &v->rows[k]);
   fputc('\n', out);
@@ -138,7 +137,8 @@ static void write_origins(FILE *out, const Verification *v)
   }
 }
 
-static void write_text(FILE *out, const Verification *v, PetscBool figures)
+/* When, and by which program. */
+static void write_stamp(FILE *out, const Verification *v)
 {
   const char *sources = TALUS_GIT_DESCRIBE;
   char date[32];
@@ -146,12 +146,26 @@ static void write_text(FILE *out, const Verification *v, PetscBool figures)
   struct tm utc;
   gmtime_r(&now, &utc);
   strftime(date, sizeof date, "%Y-%m-%d", &utc);
-  fprintf(out, "## %s: %s\n\nRecorded %s with talus %s%s%s%s on %d rank%s, %s rows.\n", v->name, v->reference->title,
-          date, TALUS_VERSION, sources[0] ? " (" : "", sources, sources[0] ? ")" : "", (int)v->size,
-          v->size > 1 ? "s" : "", v->options->full ? "all" : "the quick");
+  fprintf(out, "Recorded %s with talus %s%s%s%s on %d rank%s, %s rows.\n", date, TALUS_VERSION, sources[0] ? " (" : "",
+          sources, sources[0] ? ")" : "", (int)v->size, v->size > 1 ? "s" : "", v->options->full ? "all" : "the quick");
   write_origins(out, v);
+}
+
+static void write_text(FILE *out, const Verification *v, VerifyMarkdownPart part)
+{
+  const PetscBool figures = part == VERIFY_WITH_FIGURES, alone = part == VERIFY_STUDY_ALONE;
+  if (!alone) {
+    fprintf(out, "## %s: %s\n\n", v->name, v->reference->title);
+    write_stamp(out, v);
+  }
   for (PetscInt first = 0, last; first < v->n; first = last) {
-    for (last = first; last < v->n && v->rows[last].study == v->rows[first].study;) ++last;
+    const StudySpec *study = v->rows[first].study;
+    for (last = first; last < v->n && v->rows[last].study == study;) ++last;
+    fprintf(out, "\n### %s: %s\n\n", study->name, study->title);
+    if (alone) {
+      write_stamp(out, v);
+      fputc('\n', out);
+    }
     write_study(out, v, first, last, figures);
   }
 }
@@ -167,13 +181,13 @@ PetscBool verify_is_table(const char *folder)
   return !strncmp(head, "## ", 3) && strstr(head, "\nRecorded ") && strstr(head, " with talus ");
 }
 
-PetscErrorCode VerifyMarkdown(const Verification *v, PetscBool figures, char **text)
+PetscErrorCode VerifyMarkdown(const Verification *v, VerifyMarkdownPart part, char **text)
 {
   TextStream stream;
 
   PetscFunctionBeginUser;
   PetscCall(TextOpen(&stream));
-  write_text(stream.out, v, figures);
+  write_text(stream.out, v, part);
   PetscCall(TextClose(&stream, text));
   PetscFunctionReturn(0);
 }

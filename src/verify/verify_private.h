@@ -89,8 +89,13 @@ void verify_table_foot(FILE *out, const Verification *v, PetscInt first, PetscIn
 /* All rows, of one run. */
 void verify_table_run(FILE *out, const Verification *v);
 
-/* verify_markdown.c: all studies; with the names of the figures if `figures`. */
-PetscErrorCode VerifyMarkdown(const Verification *v, PetscBool figures, char **text);
+/* verify_markdown.c: all studies that were run, in one of three ways. */
+typedef enum {
+  VERIFY_WITH_FIGURES, /* with the names of the figures beside it */
+  VERIFY_SECTION,      /* without */
+  VERIFY_STUDY_ALONE   /* without the section's heading; the study says when it was recorded */
+} VerifyMarkdownPart;
+PetscErrorCode VerifyMarkdown(const Verification *v, VerifyMarkdownPart part, char **text);
 /* Is the verification.md in the folder such tables? For folders of versions that did not sign
  * them. */
 PetscBool verify_is_table(const char *folder);
@@ -102,8 +107,15 @@ PetscErrorCode VerifyHistoryDraw(const Verification *v, PetscInt first, PetscInt
 /* verify_figure.c: DIR/<study>.png, if the study asks for one. Of one rank. */
 PetscErrorCode VerifyFigureDraw(const Verification *v, PetscInt first, PetscInt last, Diag *diag, PetscBool *done);
 
-/* verify_record.c: put `section` into the file in place of the section of that name, or at its end.
- * 0 or an errno. */
-PetscErrorCode VerifyRecord(const char *file, const char *name, const char *section, int *error);
+/* What is recorded of a case. */
+typedef struct {
+  const char *all;   /* all that was run, with its heading */
+  const char *study; /* run alone, NULL: the whole section is new */
+  const char *alone; /* the study's part, which says itself when it was recorded */
+} VerifySection;
+
+/* verify_record.c: put the section of that name into the file in place of the one there, or at its end; of a study
+ * run alone no more than its part, so that the others stay. 0 or an errno. */
+PetscErrorCode VerifyRecord(const char *file, const char *name, const VerifySection *section, int *error);
 /* docs/verification.md of the tree that holds the case. */
 void verify_record_file(const char *folder, char file[PETSC_MAX_PATH_LEN]);

@@ -1,4 +1,5 @@
-/* docs/verification.md: one section a case, between two comments, replaced as a whole. */
+/* docs/verification.md: one section a case, between two comments, replaced as a whole or study by
+ * study. */
 #include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -28,28 +29,52 @@ static char *read_text(const char *file)
   return error ? NULL : strdup("");
 }
 
-/* `text` with `section` where the marks stand; without marks, at the end. */
-static void write_merged(FILE *out, const char *text, const char *begin, const char *end, const char *section)
+/* The part of the text that gives way. */
+typedef struct {
+  const char *from, *to;
+} Part;
+
+/* Of a section its study's part: from its heading to the next, or to the end; empty there, if it has
+ * none. */
+static Part part_of_study(Part section, const char *study)
 {
-  const char *from = strstr(text, begin), *to = from ? strstr(from, end) : NULL;
-  if (from && to) fwrite(text, 1, (size_t)(from - text), out);
-  else fprintf(out, "%s%s", text, text[0] && text[strlen(text) - 1] != '\n' ? "\n\n" : "\n");
-  fprintf(out, "%s\n%s%s", begin, section, end);
-  fputs(from && to ? to + strlen(end) : "\n", out);
+  char heading[300];
+  PetscSNPrintf(heading, sizeof heading, "\n### %s:", study);
+  const char *from = strstr(section.from, heading);
+  if (!from || from > section.to) return (Part){section.to, section.to};
+  const char *next = strstr(from + 1, "\n### ");
+  return (Part){from, next && next < section.to ? next : section.to};
 }
 
-PetscErrorCode VerifyRecord(const char *file, const char *name, const char *section, int *error)
+/* `text` with the section where its marks stand, without marks at the end. Of a study run alone its
+ * part takes the place of the one there. */
+static void write_merged(FILE *out, const char *text, const char *name, const VerifySection *section)
 {
-  char begin[300], end[300], *merged, *text = read_text(file);
+  char begin[300], end[300];
+  PetscSNPrintf(begin, sizeof begin, "<!-- begin %s -->\n", name);
+  PetscSNPrintf(end, sizeof end, "<!-- end %s -->", name);
+  const char *from = strstr(text, begin), *to = from ? strstr(from, end) : NULL;
+  if (!from || !to) {
+    fprintf(out, "%s%s%s%s%s\n", text, text[0] && text[strlen(text) - 1] != '\n' ? "\n\n" : "\n", begin, section->all,
+            end);
+    return;
+  }
+  Part part = {from + strlen(begin), to};
+  if (section->study) part = part_of_study(part, section->study);
+  fwrite(text, 1, (size_t)(part.from - text), out);
+  fprintf(out, "%s%s", section->study ? section->alone : section->all, part.to);
+}
+
+PetscErrorCode VerifyRecord(const char *file, const char *name, const VerifySection *section, int *error)
+{
+  char *merged, *text = read_text(file);
   TextStream stream;
 
   PetscFunctionBeginUser;
   *error = text ? 0 : errno;
   if (!text) PetscFunctionReturn(0);
-  PetscCall(PetscSNPrintf(begin, sizeof begin, "<!-- begin %s -->", name));
-  PetscCall(PetscSNPrintf(end, sizeof end, "<!-- end %s -->", name));
   PetscCall(TextOpen(&stream));
-  write_merged(stream.out, text, begin, end, section);
+  write_merged(stream.out, text, name, section);
   PetscCall(TextClose(&stream, &merged));
   *error = file_write_text(file, merged);
   PetscCall(PetscFree(merged));

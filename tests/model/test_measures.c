@@ -84,6 +84,33 @@ static void test_inner_extent(void **state)
   CALL(ModelDestroy(&m));
 }
 
+/* The same square, stretched by hand: outermost points advance by what they move, inner ones by less. */
+static void test_advance(void **state)
+{
+  Bench b;
+  (void)state;
+  bench_init(&b, "mpm", CELL_QUADRILATERAL, 4);
+  b.body[0].points_per_cell = 4;
+  bench_motion(&b, 1, 0, MOTION_FIXED, 7);
+  Model *m = bench_model(&b, PETSC_COMM_WORLD);
+  const PetscReal edge = 0.125 * (1 - 1 / PetscSqrtReal(3)); /* from a side to the outermost points */
+  for (PetscInt p = 0; p < m->points->n; ++p) {
+    PetscReal *x = point_real(m->points, POINT_X, p), *u = point_real(m->points, POINT_U, p);
+    u[0] = 0.1 * x[0] - 0.02;
+    x[0] += u[0];
+  }
+  for (int k = 0; k < 2; ++k) {
+    const PetscReal beyond = k ? 0.125 : 0, place = k ? 0.25 - edge : edge;
+    MeasureSpec s = {.kind = "extent", .maximum = PETSC_TRUE, .advance = PETSC_TRUE, .beyond = beyond};
+    CHECK_CLOSE(measure(m, &s, 0), 0.1 * (1 - place) - 0.02, 1e-9);
+    s.maximum = PETSC_FALSE;
+    CHECK_CLOSE(measure(m, &s, 0), 0.02 - 0.1 * place, 1e-9);
+    s.component = 1;
+    CHECK_CLOSE(measure(m, &s, 0), 0, 1e-9);
+  }
+  CALL(ModelDestroy(&m));
+}
+
 /* A disc of radius 1 and thickness 1, 4 x 4 cells with 4 points each, all round: the mass of a
  * column of points goes with its radius. Within which one all but a share of it lie is told by
  * adding up from outside. */
@@ -466,6 +493,7 @@ int main(int argc, char **argv)
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(test_surface_of_a_triangle),
     cmocka_unit_test(test_inner_extent),
+    cmocka_unit_test(test_advance),
     cmocka_unit_test(test_inner_extent_of_rings),
     cmocka_unit_test(test_run_out_time),
     cmocka_unit_test(test_volume_ratio),

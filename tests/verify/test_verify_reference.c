@@ -465,7 +465,7 @@ static void judges_pace(void **state)
   assert_true(fabs(r.pace - 1.5) < 1e-14);
 }
 
-static char *record(const char *before, const char *name, const char *section)
+static char *record_section(const char *before, const char *name, const VerifySection *section)
 {
   static char text[1024];
   char file[] = "/tmp/talus-record-XXXXXX";
@@ -482,6 +482,36 @@ static char *record(const char *before, const char *name, const char *section)
   return text;
 }
 
+static char *record(const char *before, const char *name, const char *all)
+{
+  return record_section(before, name, &(VerifySection){.all = all});
+}
+
+/* A study run alone leaves the others of its case, and other cases, as they were. */
+static void record_replaces_one_study(void **state)
+{
+  const char *const before =
+    "<!-- begin a -->\n## a: A\n\n### x: X\n\n1\n\n### xy: Y\n\n2\n<!-- end a -->\n\n"
+    "<!-- begin b -->\n## b: B\n\n### z: Z\n\n3\n<!-- end b -->\n";
+  const char *const rest = "<!-- begin b -->\n## b: B\n\n### z: Z\n\n3\n<!-- end b -->\n";
+  char expected[1024];
+  (void)state;
+
+  VerifySection section = {.all = "all\n", .study = "x", .alone = "\n### x: X\n\nnew\n"};
+  sprintf(expected, "<!-- begin a -->\n## a: A\n\n### x: X\n\nnew\n\n### xy: Y\n\n2\n<!-- end a -->\n\n%s", rest);
+  assert_string_equal(record_section(before, "a", &section), expected);
+  section = (VerifySection){.all = "all\n", .study = "xy", .alone = "\n### xy: Y\n\nnew\n"};
+  sprintf(expected, "<!-- begin a -->\n## a: A\n\n### x: X\n\n1\n\n### xy: Y\n\nnew\n<!-- end a -->\n\n%s", rest);
+  assert_string_equal(record_section(before, "a", &section), expected);
+  section = (VerifySection){.all = "all\n", .study = "z", .alone = "\n### z: Z\n\nnew\n"};
+  sprintf(expected,
+          "<!-- begin a -->\n## a: A\n\n### x: X\n\n1\n\n### xy: Y\n\n2\n\n### z: Z\n\nnew\n<!-- end a -->\n\n%s",
+          rest);
+  assert_string_equal(record_section(before, "a", &section), expected);
+  sprintf(expected, "%s\n<!-- begin c -->\nall\n<!-- end c -->\n", rest);
+  assert_string_equal(record_section(rest, "c", &section), expected);
+}
+
 static void record_replaces_one_section(void **state)
 {
   (void)state;
@@ -494,7 +524,7 @@ static void record_replaces_one_section(void **state)
                       "# Header\n\n<!-- begin a -->\none\n<!-- end a -->\n\n<!-- begin b -->\ntwo\n<!-- end b -->\n");
   assert_string_equal(record(first, "a", "three\n"),
                       "# Header\n\n<!-- begin a -->\nthree\n<!-- end a -->\n\n<!-- begin b -->\ntwo\n<!-- end b -->\n");
-  OK(VerifyRecord("/nowhere/verification.md", "a", "", &error));
+  OK(VerifyRecord("/nowhere/verification.md", "a", &(VerifySection){.all = ""}, &error));
   assert_int_not_equal(error, 0);
 }
 
@@ -515,6 +545,7 @@ int main(int argc, char **argv)
     cmocka_unit_test(judges_powers),
     cmocka_unit_test(judges_pace),
     cmocka_unit_test(record_replaces_one_section),
+    cmocka_unit_test(record_replaces_one_study),
   };
   if (PetscInitialize(&argc, &argv, NULL, NULL)) return 1;
   const int failed = cmocka_run_group_tests(tests, NULL, NULL);

@@ -47,6 +47,10 @@ static const SchemaTable of = {
 static const SchemaEntry extent_entries[] = {
   SIDES(""),
   BEYOND("share of the mass that may lie beyond: 0 is the farthest point, 0.01 the place within which 99 % are"),
+  KEY("advance", BOOLEAN, NULL,
+      "how far that is beyond where it was at the start, outwards: the run-out of a front, whatever the size of the "
+      "cells in which the outermost points begin",
+      .fallback = "false", AT(MeasureSpec, advance)),
   {.key = NULL},
 };
 static const SchemaTable extent = {.name = "extent",

@@ -3,9 +3,16 @@
 
 #define EXTENT_PARTS 64
 
-/* Mass of the body in equal parts of [low, high] along an axis (sign -1: turned round); what is
- * less than `low` counts to the first, what is more than `high` to none. */
-static PetscErrorCode MassAlong(const Model *m, const MeasureSpec *s, PetscReal sign, PetscReal low, PetscReal high,
+/* Where point p is along the axis, or was at the start, counted outwards, m. */
+static PetscReal place_of(const Model *m, const MeasureSpec *s, PetscBool start, PetscInt p)
+{
+  const PetscReal way = start ? point_real(m->points, POINT_U, p)[s->component] : 0;
+  return (s->maximum ? 1 : -1) * (point_real(m->points, POINT_X, p)[s->component] - way);
+}
+
+/* Mass of the body in equal parts of [low, high] outwards along an axis; what is less than
+ * `low` counts to the first, what is more than `high` to none. */
+static PetscErrorCode MassAlong(const Model *m, const MeasureSpec *s, PetscBool start, PetscReal low, PetscReal high,
                                 PetscReal mass[EXTENT_PARTS])
 {
   const PetscInt body = measure_body(m, s);
@@ -13,7 +20,7 @@ static PetscErrorCode MassAlong(const Model *m, const MeasureSpec *s, PetscReal 
 
   PetscFunctionBeginUser;
   for (PetscInt p = 0; p < m->points->n; ++p) {
-    const PetscReal at = (sign * point_real(m->points, POINT_X, p)[s->component] - low) / (high - low) * EXTENT_PARTS;
+    const PetscReal at = (place_of(m, s, start, p) - low) / (high - low) * EXTENT_PARTS;
     if (!measure_takes_point(m, body, p) || at > EXTENT_PARTS) continue;
     local[PetscMin(EXTENT_PARTS - 1, (int)PetscMax(0, at))] += m->points->real[POINT_MASS][p];
   }
@@ -23,16 +30,18 @@ static PetscErrorCode MassAlong(const Model *m, const MeasureSpec *s, PetscReal 
 
 /* The place within which all but a share of the mass lies: as good as the farthest point for a
  * front, without its chance. Each round finds the part that holds it. */
-static PetscErrorCode InnerExtent(const Model *m, const MeasureSpec *s, PetscReal sign, PetscReal *farthest)
+static PetscErrorCode InnerExtent(const Model *m, const MeasureSpec *s, PetscBool start, PetscReal *farthest)
 {
-  PetscReal low = sign > 0 ? m->grid->min[s->component] : -m->grid->max[s->component], high = *farthest;
+  const PetscReal *min = m->grid->min, *max = m->grid->max;
+  PetscReal low = s->maximum ? min[s->component] : -max[s->component], high = *farthest;
   PetscReal mass[EXTENT_PARTS], total = 0, outside = 0;
 
   PetscFunctionBeginUser;
+  if (start) low -= max[s->component] - min[s->component]; /* a mesh has gone on since */
   for (int round = 0; round < 6 && high > low; ++round) {
     const PetscReal part = (high - low) / EXTENT_PARTS;
     int k = EXTENT_PARTS - 1;
-    PetscCall(MassAlong(m, s, sign, low, high, mass));
+    PetscCall(MassAlong(m, s, start, low, high, mass));
     for (int i = 0; i < EXTENT_PARTS && !round; ++i) total += mass[i];
     while (k > 0 && outside + mass[k] <= s->beyond * total * (1 + 1e-12)) outside += mass[k--];
     high = low + (PetscReal)(k + 1) * part;
@@ -42,21 +51,30 @@ static PetscErrorCode InnerExtent(const Model *m, const MeasureSpec *s, PetscRea
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode MeasureExtent(Model *m, const MeasureSpec *s, PetscInt index, PetscReal *value)
+/* The farthest place of the body now, or at the start, counted outwards; nan without a point. */
+static PetscErrorCode Farthest(const Model *m, const MeasureSpec *s, PetscBool start, PetscReal *farthest)
 {
   const PetscInt body = measure_body(m, s);
-  const PetscReal sign = s->maximum ? 1 : -1;
-  PetscReal local = -PETSC_MAX_REAL, largest;
+  PetscReal local = -PETSC_MAX_REAL;
+
+  PetscFunctionBeginUser;
+  for (PetscInt p = 0; p < m->points->n; ++p)
+    if (measure_takes_point(m, body, p)) local = PetscMax(local, place_of(m, s, start, p));
+  PetscCall(MPIU_Allreduce(&local, farthest, 1, MPIU_REAL, MPIU_MAX, m->comm));
+  if (*farthest == -PETSC_MAX_REAL) *farthest = NAN;
+  else if (s->beyond > 0) PetscCall(InnerExtent(m, s, start, farthest));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode MeasureExtent(Model *m, const MeasureSpec *s, PetscInt index, PetscReal *value)
+{
+  PetscReal now, start = 0;
 
   (void)index;
   PetscFunctionBeginUser;
-  for (PetscInt p = 0; p < m->points->n; ++p) {
-    if (!measure_takes_point(m, body, p)) continue;
-    local = PetscMax(local, sign * point_real(m->points, POINT_X, p)[s->component]);
-  }
-  PetscCall(MPIU_Allreduce(&local, &largest, 1, MPIU_REAL, MPIU_MAX, m->comm));
-  if (s->beyond > 0 && largest > -PETSC_MAX_REAL) PetscCall(InnerExtent(m, s, sign, &largest));
-  *value = largest > -PETSC_MAX_REAL ? sign * largest : NAN; /* no point, no place */
+  PetscCall(Farthest(m, s, PETSC_FALSE, &now));
+  if (s->advance) PetscCall(Farthest(m, s, PETSC_TRUE, &start));
+  *value = s->advance ? now - start : s->maximum ? now : -now;
   PetscFunctionReturn(0);
 }
 
