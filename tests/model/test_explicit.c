@@ -199,6 +199,25 @@ static void test_ranks(void **state)
   }
 }
 
+/* Mass that doubles weighs twice as much in the end, and all energy is told. */
+static void test_ages(void **state)
+{
+  PetscReal time[] = {0, 0.05}, value[] = {1, 2};
+  NamedAmplitude amplitude = {.name = (char *)"density", .amplitude = {.n = 2, .time = time, .value = value}};
+  Bench b;
+  (void)state;
+  flying(&b, CELL_QUADRILATERAL, "cell", &kinematics_plane_strain);
+  b.material.n_amplitudes = 1;
+  b.material.amplitudes = &amplitude;
+  Model *m = bench_model(&b, PETSC_COMM_WORLD);
+  const PetscReal mass = model_sum(m, "mass: total", 0), momentum = model_sum(m, "momentum", 1);
+  for (int s = 0; s < 12; ++s) model_step(m, PETSC_MAX_REAL);
+  CHECK_CLOSE(model_sum(m, "mass: total", 0), 2 * mass, 1e-9 * mass);
+  CHECK_CLOSE(model_sum(m, "momentum", 1), 2 * momentum, 1e-9 * momentum);
+  CHECK(PetscAbsReal(model_sum(m, "energy: balance", 0)) < 1e-12, "open");
+  CALL(ModelDestroy(&m));
+}
+
 /* Largest difference of points that have changed ranks alike. */
 static PetscReal points_apart(const Model *a, const Model *b, PointReal field)
 {
@@ -340,7 +359,7 @@ int main(int argc, char **argv)
   const struct CMUnitTest tests[] = {cmocka_unit_test(test_flight), cmocka_unit_test(test_turns),
                                      cmocka_unit_test(test_bounce), cmocka_unit_test(test_ranks),
                                      cmocka_unit_test(test_walks),  cmocka_unit_test(test_resumed),
-                                     cmocka_unit_test(test_refused)};
+                                     cmocka_unit_test(test_ages),   cmocka_unit_test(test_refused)};
   if (PetscInitialize(&argc, &argv, NULL, NULL)) return 1;
   const int failed = cmocka_run_group_tests(tests, NULL, NULL);
   return PetscFinalize() || failed;
