@@ -102,14 +102,17 @@ static PetscErrorCode AugmentForces(Newton *n, PetscInt iteration, SNESConverged
 }
 
 /* May multipliers be renewed at this residual, over the reference? */
-static PetscErrorCode IsNearly(const Newton *n, PetscReal relative, PetscBool *nearly)
+static PetscErrorCode MayAugment(const Newton *n, PetscInt it, PetscReal relative, SNESConvergedReason reason,
+                                 PetscBool *may)
 {
   const Contact *contact = n->problem->scene.contact;
 
   PetscFunctionBeginUser;
-  *nearly = relative <= NEARLY;
-  if (!*nearly && relative <= NEARLY_FLOWS && contact && contact->share.flows)
-    PetscCall(ContactMoves(contact, n->comm, nearly));
+  *may = reason > 0;
+  if (reason != SNES_CONVERGED_ITERATING || it == 0) PetscFunctionReturn(0);
+  *may = relative <= NEARLY;
+  if (!*may && relative <= NEARLY_FLOWS && contact && contact->share.flows)
+    PetscCall(ContactMoves(contact, n->comm, may));
   PetscFunctionReturn(0);
 }
 
@@ -119,7 +122,7 @@ PetscErrorCode NewtonConverged(SNES snes, PetscInt it, PetscReal xnorm, PetscRea
   Newton *n = context;
   NewtonReport *r = n->report;
   const NewtonSpec *spec = &n->spec;
-  PetscBool soon = PETSC_FALSE;
+  PetscBool may;
 
   (void)snes;
   PetscFunctionBeginUser;
@@ -145,8 +148,8 @@ PetscErrorCode NewtonConverged(SNES snes, PetscInt it, PetscReal xnorm, PetscRea
   else if (is_stuck(r->residual, n->changed, k)) *reason = SNES_DIVERGED_LOCAL_MIN;
   n->before = it > 0 ? n->last : 0;
   n->last = fnorm;
-  if (*reason == SNES_CONVERGED_ITERATING && it > 0) PetscCall(IsNearly(n, relative, &soon));
-  if (*reason > 0 || soon) PetscCall(AugmentForces(n, k, reason));
+  PetscCall(MayAugment(n, it, relative, *reason, &may));
+  if (may) PetscCall(AugmentForces(n, k, reason));
   PetscFunctionReturn(0);
 }
 
