@@ -28,6 +28,8 @@ title "powder in a tube: rings of triangles"
 "$bench/bench_tube"
 title "meshfree bases"
 "$bench/bench_cloud"
+title "a floor of nodes, and a wall"
+"$bench/bench_walls"
 title "rigid walls of triangles"
 "$bench/bench_wall"
 

@@ -178,5 +178,7 @@ void material_reduce(Material *material, PetscReal factor);
 void materials_step(PetscInt n, Material *materials, PetscReal time, PetscReal dt, PetscBool inertia);
 /* lambda + 2 mu, Pa, of a mixed formulation, too: infinite where incompressible. */
 PetscReal material_confined(const Material *material);
+/* Can any of them lose its stiffness? */
+PetscBool materials_yield(PetscInt n, const Material *materials);
 /* Write the initial state of one point, n_state numbers. */
 void law_initial_state(const Law *law, PetscReal *state);

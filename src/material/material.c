@@ -216,6 +216,13 @@ static PetscReal wave_modulus(const Elasticity *elastic, PetscBool mixed)
 
 PetscReal material_confined(const Material *m) { return m->elastic.bulk + 4.0 / 3.0 * m->elastic.shear; }
 
+PetscBool materials_yield(PetscInt n, const Material *materials)
+{
+  for (PetscInt i = 0; i < n; ++i)
+    if (materials[i].law->yields) return PETSC_TRUE;
+  return PETSC_FALSE;
+}
+
 static PetscErrorCode Resolve(const MaterialSpec *spec, PetscBool mixed, Diag *diag, Material *material)
 {
   const Resolver r = {spec, diag, mixed};

@@ -61,9 +61,7 @@ static PetscErrorCode MakeGuess(Model *m, FirstGuess guess, PetscReal dt)
 /* In stiff matter, and where what yields rubs along walls, displacements that are near may have any residual. */
 static PetscBool nearness_misleads(const Model *m, const StepProblem *p)
 {
-  PetscBool yields = PETSC_FALSE;
-  for (PetscInt i = 0; i < m->c->n_materials; ++i) yields |= m->materials[i].law->yields;
-  return p->stiff || (m->contact && contact_rubs(m->c) && yields);
+  return p->stiff || (m->contact && contact_rubs(m->c) && materials_yield(m->c->n_materials, m->materials));
 }
 
 /* The first guesses that the next step has: where the nearer one is not sure to be the better one, that of both motions

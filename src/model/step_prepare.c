@@ -188,9 +188,7 @@ static PetscBool is_pressed(const Model *m)
 /* Does stiffness decide how Newton's method goes (StepProblem.stiff)? */
 static PetscBool is_stiff(const Model *m, PetscReal dt)
 {
-  PetscBool yields = PETSC_FALSE;
-  for (PetscInt i = 0; i < m->c->n_materials; ++i) yields |= m->materials[i].law->yields;
-  if (m->dim != 2 || !yields) return PETSC_FALSE;
+  if (m->dim != 2 || !materials_yield(m->c->n_materials, m->materials)) return PETSC_FALSE;
   const PetscReal waves = m->courant_speed * dt / m->grid->smallest;
   const PetscBool crossed = waves > STIFF_WAVES && waves < TOO_STIFF_WAVES;
   return is_pressed(m) || (m->scheme->inertia && m->method->restores_grid && crossed);

@@ -47,13 +47,6 @@ PetscErrorCode LimitWatch(Model *m, PetscReal dt)
   PetscFunctionReturn(0);
 }
 
-static PetscBool anything_yields(const Model *m)
-{
-  for (PetscInt i = 0; i < m->c->n_materials; ++i)
-    if (m->materials[i].law->yields) return PETSC_TRUE;
-  return PETSC_FALSE;
-}
-
 /* "at load factor 0.98", or the factor of each load if they differ. */
 static void factors_text(const Case *c, PetscReal t, char *text, size_t size)
 {
@@ -83,8 +76,8 @@ static PetscBool looks_like_limit(const Model *m, const StepReport *report, Pets
   const PetscBool small = report->dt <= m->c->analysis.step / 128;
   if (limit->before == 0) return PETSC_FALSE; /* fewer than two steps */
   if (limit->last >= SOFTENED * limit->least && limit->last >= limit->before) return PETSC_TRUE;
-  return small && anything_yields(m) && report->newton.status == LAW_OK && tried >= RAN_AWAY * limit->least &&
-         tried <= PETSC_MAX_REAL;
+  return small && materials_yield(m->c->n_materials, m->materials) && report->newton.status == LAW_OK &&
+         tried >= RAN_AWAY * limit->least && tried <= PETSC_MAX_REAL;
 }
 
 PetscErrorCode LimitDescribe(const Model *m, StepReport *report)

@@ -123,6 +123,7 @@ static ContactShare share_of_force(const Model *m)
   const TimeWeights w = m->scheme->weights(&m->c->analysis, 1);
   if (!holds(m)) return (ContactShare){.mean = 1};
   return (ContactShare){.inertia = PETSC_TRUE,
+                        .flows = materials_yield(m->c->n_materials, m->materials),
                         .mean = w.mean / (1 - w.lag),
                         .back = (1 - w.lag) * (1 - w.mean) / w.mean - w.lag,
                         .lag = w.lag};

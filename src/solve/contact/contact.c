@@ -14,6 +14,10 @@
 #define LEANS 0.1 /* a normal with such a share of an axis holds along it */
 
 #define CLOSED 1e-5 /* of a cell: gaps and slips that remain of contact */
+/* Where grains flow, that share of what the surface moves in the step, up to so much of a cell. */
+#define MOVED 3e-3
+#define FLOWING 5e-4
+#define RESTS 1e-3 /* of a cell: what moves by no more along its wall in a step may be at rest */
 #define MOST_CHANGES 40
 /* Where more points touch than nodes can follow, gaps of some stay, and their multipliers would grow
  * against each other for ever: a gap that falls no faster may stay, up to so much of a cell. */
@@ -154,6 +158,23 @@ void contact_balance(const Contact *s, const ContactPoint *c, PetscReal f[3])
   for (int d = 0; d < 3; ++d) f[d] -= s->share.back * c->stays * c->last[d];
 }
 
+/* Motion of what is in contact against its wall. */
+static PetscReal motion_of(const ContactPoint *c)
+{
+  if (c->state == CONTACT_OPEN) return 0;
+  return PetscSqrtReal(PetscSqr(c->slip[0]) + PetscSqr(c->slip[1]) + PetscSqr(c->slip[2]));
+}
+
+PetscErrorCode ContactMoves(const Contact *s, MPI_Comm comm, PetscBool *moves)
+{
+  PetscBool here = PETSC_FALSE;
+
+  PetscFunctionBeginUser;
+  for (const ContactPoint *c = s->point; c < s->point + s->n; ++c) here |= motion_of(c) > RESTS * s->length;
+  PetscCallMPI(MPI_Allreduce(&here, moves, 1, MPIU_BOOL, MPI_LOR, comm));
+  PetscFunctionReturn(0);
+}
+
 PetscReal contact_stays(const Contact *s, const ContactPoint *c)
 {
   const PetscReal now = s->share.mean * c->now.pressure;
@@ -240,23 +261,32 @@ static void stiffen(ContactPoint *c, PetscReal left)
   c->law.penalty = PetscMin(c->stiffest, c->law.penalty * (FALLS - 1) * rate / (1 - rate));
 }
 
+/* Gap or slip that may stay. */
+static PetscReal allowed(const Contact *s, PetscReal moved)
+{
+  const PetscReal closed = CLOSED * s->length;
+  if (!s->share.flows) return closed;
+  return PetscMax(closed, PetscMin(MOVED * moved, FLOWING * s->length));
+}
+
 /* Multipliers become the forces that there are, and the balance is sought again, unless gaps and
  * slips of what is in contact have all but vanished. */
 static PetscErrorCode Augment(void *data, const NodalScene *scene, PetscInt change, PetscBool *again)
 {
   Contact *s = data;
-  PetscReal worst[2] = {0, 0}, of_all[2]; /* of all points, of those that may be stiffened */
+  PetscReal worst[3] = {0, 0, 0}, of_all[3]; /* left of all points, of those that may be stiffened; motion */
 
   PetscFunctionBeginUser;
   for (const ContactPoint *c = s->point; c < s->point + s->n; ++c) {
     const PetscReal left = left_of(c);
     worst[0] = PetscMax(worst[0], left);
     if (is_soft(c, left)) worst[1] = PetscMax(worst[1], left);
+    worst[2] = PetscMax(worst[2], motion_of(c));
   }
-  PetscCall(MPIU_Allreduce(worst, of_all, 2, MPIU_REAL, MPIU_MAX, scene->grid->comm));
+  PetscCall(MPIU_Allreduce(worst, of_all, 3, MPIU_REAL, MPIU_MAX, scene->grid->comm));
   const PetscBool slow = change > 0 && of_all[0] > STALLS * s->worst, soft = of_all[1] > CLOSED * s->length;
   const PetscBool stalls = slow && !soft && of_all[0] <= ALLOWED * s->length;
-  *again = of_all[0] > CLOSED * s->length && change < MOST_CHANGES && !stalls;
+  *again = of_all[0] > allowed(s, of_all[2]) && change < MOST_CHANGES && !stalls;
   s->worst = of_all[0];
   if (!*again) PetscFunctionReturn(0);
   for (ContactPoint *c = s->point; c < s->point + s->n; ++c) {
@@ -333,6 +363,12 @@ static PetscReal reach_at_end(const Contact *s, const ContactPoint *c, const Nod
   for (PetscInt e = c->first; e < c->first + c->n; ++e)
     for (PetscInt d = 0; d < s->dim; ++d) reach -= c->normal[d] * s->lead[e] * scene->du[s->node[e] * s->dim + d];
   return PetscMax(THINNEST * first, PetscMin(THICKEST * first, reach));
+}
+
+static void mark(const void *data, unsigned char *node)
+{
+  const Contact *s = data;
+  for (PetscInt e = 0; e < s->n_nodes; ++e) node[s->node[e]] = 1;
 }
 
 /* Carriers keep what acted on them. */
@@ -419,6 +455,7 @@ const NodalForce nodal_force_contact = {
   .find_slots = find_slots,
   .assemble = Assemble,
   .augment = Augment,
+  .mark = mark,
   .commit = Commit,
   .to_tables = ToTables,
   .from_tables = FromTables,

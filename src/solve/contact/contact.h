@@ -66,6 +66,7 @@ typedef struct {
  * by `lag`. */
 typedef struct {
   PetscBool inertia;
+  PetscBool flows; /* may matter with inertia yield? Then gaps are measured by what it moves */
   PetscReal mean, back, lag;
 } ContactShare;
 
@@ -185,6 +186,8 @@ void contact_balance(const Contact *contact, const ContactPoint *c, PetscReal f[
 PetscReal contact_stays(const Contact *contact, const ContactPoint *c);
 /* What the acceleration at the end of the step has of it more than that, as rate of momentum, N. */
 void contact_excess(const Contact *contact, const ContactPoint *c, PetscReal f[3]);
+/* Collective. Does anything in contact move along its wall by more than what rests may, at the last assembly? */
+PetscErrorCode ContactMoves(const Contact *contact, MPI_Comm comm, PetscBool *moves);
 /* Of all forces of this rank at the last assembly, N2; contact may be NULL. */
 PetscReal contact_square(const Contact *contact);
 void contact_add(const ContactPoint *c, PetscInt dim, const PetscReal force[3], ContactSum *sum);

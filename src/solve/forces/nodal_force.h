@@ -71,6 +71,9 @@ typedef struct {
   /* Collective. Newton's method has converged, for the change-th time: forces that are found by
    * multipliers bring them nearer to what they shall be, and say whether it must go on. */
   PetscErrorCode (*augment)(void *data, const NodalScene *scene, PetscInt change, PetscBool *again);
+  /* Mark the nodes (n_nodes) that it may act on in this step: others may be settled without it. A force that lives and
+   * does not say is taken to act everywhere. */
+  void (*mark)(const void *data, unsigned char *node);
   /* Collective. The step is accepted: friction remembers; points have not moved yet. */
   PetscErrorCode (*commit)(void *data, const NodalScene *scene);
   /* Collective. What outlives a step, in tables of its own for checkpoints and new partitions, and
@@ -127,7 +130,10 @@ void nodal_forces_hold(const NodalForces *forces, const NodalScene *scene, unsig
 PetscBool nodal_forces_find_slots(const NodalForces *forces, const System *system);
 /* NULL: there are none. */
 const Constraints *nodal_forces_constraints(const NodalForces *forces);
-PetscBool nodal_forces_are_dead(const NodalForces *forces);
+/* Is it known of all that are not dead where they act? */
+PetscBool nodal_forces_are_local(const NodalForces *forces);
+/* node: n_nodes, zero on entry; 1 where one of them may act. */
+void nodal_forces_mark(const NodalForces *forces, unsigned char *node);
 /* Collective. All that are not dead, in every iteration. */
 PetscErrorCode NodalForcesAssemble(const NodalForces *forces, const NodalScene *scene, const NodalOutput *out);
 PetscErrorCode NodalForcesBegin(const NodalForces *forces, const NodalScene *scene);

@@ -58,11 +58,17 @@ const Constraints *nodal_forces_constraints(const NodalForces *forces)
   return NULL;
 }
 
-PetscBool nodal_forces_are_dead(const NodalForces *forces)
+PetscBool nodal_forces_are_local(const NodalForces *forces)
 {
   for (PetscInt k = 0; k < forces->n; ++k)
-    if (!forces->one[k].kind->dead) return PETSC_FALSE;
+    if (!forces->one[k].kind->dead && !forces->one[k].kind->mark) return PETSC_FALSE;
   return PETSC_TRUE;
+}
+
+void nodal_forces_mark(const NodalForces *forces, unsigned char *node)
+{
+  for (PetscInt k = 0; k < forces->n; ++k)
+    if (forces->one[k].kind->mark) forces->one[k].kind->mark(forces->one[k].data, node);
 }
 
 PetscErrorCode NodalForcesAssemble(const NodalForces *forces, const NodalScene *scene, const NodalOutput *out)

@@ -209,6 +209,7 @@ static PetscErrorCode NewtonTry(Newton *n, const LinearProblem *linear, NewtonRe
   n->before = n->last = 0;
   n->search.enough = p->stiff ? ENOUGH_STIFF : ENOUGH;
   n->changes = n->changed = 0;
+  PetscCall(EliminationBegin(&n->elimination, p));
   PetscCall(UpdateSaddle(n));
   PetscCall(UpdateProjection(n));
   PetscCall(SystemPrescribe(p->system, n->projects ? n->projection->held : p->fixed, p->idle));

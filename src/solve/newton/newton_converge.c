@@ -1,4 +1,5 @@
 /* When Newton's method has converged, is about to, or will not. */
+#include "solve/contact/contact.h"
 #include "solve/newton/newton_private.h"
 
 #define STUCK_AFTER 10   /* iterations before an iteration can count as stuck */
@@ -8,6 +9,7 @@
 
 /* residual over the reference at which multipliers may be renewed before all has converged */
 #define NEARLY 1e-3
+#define NEARLY_FLOWS 1e-2 /* where grains flow along walls (ContactShare) */
 
 #define EXCUSED 10 /* a first guess is excused so many times all forces that act */
 
@@ -99,12 +101,28 @@ static PetscErrorCode AugmentForces(Newton *n, PetscInt iteration, SNESConverged
   PetscFunctionReturn(0);
 }
 
+/* May multipliers be renewed at this residual, over the reference? */
+static PetscErrorCode MayAugment(const Newton *n, PetscInt it, PetscReal relative, SNESConvergedReason reason,
+                                 PetscBool *may)
+{
+  const Contact *contact = n->problem->scene.contact;
+
+  PetscFunctionBeginUser;
+  *may = reason > 0;
+  if (reason != SNES_CONVERGED_ITERATING || it == 0) PetscFunctionReturn(0);
+  *may = relative <= NEARLY;
+  if (!*may && relative <= NEARLY_FLOWS && contact && contact->share.flows)
+    PetscCall(ContactMoves(contact, n->comm, may));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode NewtonConverged(SNES snes, PetscInt it, PetscReal xnorm, PetscReal snorm, PetscReal fnorm,
                                SNESConvergedReason *reason, void *context)
 {
   Newton *n = context;
   NewtonReport *r = n->report;
   const NewtonSpec *spec = &n->spec;
+  PetscBool may;
 
   (void)snes;
   PetscFunctionBeginUser;
@@ -130,8 +148,8 @@ PetscErrorCode NewtonConverged(SNES snes, PetscInt it, PetscReal xnorm, PetscRea
   else if (is_stuck(r->residual, n->changed, k)) *reason = SNES_DIVERGED_LOCAL_MIN;
   n->before = it > 0 ? n->last : 0;
   n->last = fnorm;
-  const PetscBool soon = *reason == SNES_CONVERGED_ITERATING && it > 0 && relative <= NEARLY;
-  if (*reason > 0 || soon) PetscCall(AugmentForces(n, k, reason));
+  PetscCall(MayAugment(n, it, relative, *reason, &may));
+  if (may) PetscCall(AugmentForces(n, k, reason));
   PetscFunctionReturn(0);
 }
 

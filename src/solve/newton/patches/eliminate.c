@@ -12,7 +12,7 @@ static const PetscInt most_nodes[] = {128, 1024};   /* of a patch */
 PetscErrorCode EliminationReset(Elimination *e)
 {
   PetscFunctionBeginUser;
-  PetscCall(PetscFree3(e->own, e->place, e->force));
+  PetscCall(PetscFree4(e->own, e->live, e->place, e->force));
   PetscCall(PetscFree4(e->node, e->node_start, e->group, e->group_start));
   *e = (Elimination){0};
   PetscFunctionReturn(0);
@@ -26,7 +26,7 @@ PetscErrorCode EliminationSetUp(Elimination *e, const StepProblem *p)
   PetscFunctionBeginUser;
   PetscCall(EliminationReset(e));
   e->dim = dim;
-  PetscCall(PetscMalloc3(n, &e->own, n, &e->place, n * dim, &e->force));
+  PetscCall(PetscMalloc4(n, &e->own, n, &e->live, n, &e->place, n * dim, &e->force));
   PetscCall(PetscMalloc4(n, &e->node, n + 1, &e->node_start, grid->n_cells, &e->group, n + 1, &e->group_start));
   PetscCall(PetscSFComputeDegreeBegin(grid->node_sf, &degree));
   PetscCall(PetscSFComputeDegreeEnd(grid->node_sf, &degree));
@@ -37,13 +37,23 @@ PetscErrorCode EliminationSetUp(Elimination *e, const StepProblem *p)
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode EliminationBegin(Elimination *e, const StepProblem *p)
+{
+  PetscFunctionBeginUser;
+  if (!e->live) PetscFunctionReturn(0);
+  PetscCall(PetscArrayzero(e->live, p->grid->n_nodes));
+  nodal_forces_mark(p->forces, e->live);
+  PetscFunctionReturn(0);
+}
+
 /* Does it have unknowns that this rank may settle, and is it not chosen yet? */
 static PetscBool is_free(const Elimination *e, const StepProblem *p, PetscInt node)
 {
   const unsigned char *fixed = p->fixed + node * e->dim;
   PetscBool held = PETSC_TRUE;
   for (PetscInt d = 0; d < e->dim; ++d) held &= fixed[d] != 0;
-  return e->own[node] && !held && e->place[node] < 0 && !(p->system->frames && frame_of(p->system->frames, node));
+  return e->own[node] && !e->live[node] && !held && e->place[node] < 0 &&
+         !(p->system->frames && frame_of(p->system->frames, node));
 }
 
 static void take(Elimination *e, PetscInt node, PetscInt *n)

@@ -10,6 +10,7 @@
 typedef struct {
   PetscInt dim;
   unsigned char *own;          /* n_nodes: are all its groups on this rank? */
+  unsigned char *live;         /* n_nodes: may something act there besides stress that follows the increments? */
   PetscInt *place;             /* n_nodes: -1 but while something is at work */
   PetscReal *force;            /* n_nodes x dim, scratch */
   PetscInt n_patches;          /* of this rank */
@@ -20,6 +21,8 @@ typedef struct {
 
 /* Collective. Arrays for the system's pattern as it is now; nothing is chosen yet. */
 PetscErrorCode EliminationSetUp(Elimination *elimination, const StepProblem *problem);
+/* Before a solve: forces that act on nodes in this step. */
+PetscErrorCode EliminationBegin(Elimination *elimination, const StepProblem *problem);
 PetscErrorCode EliminationReset(Elimination *elimination);
 /* Collective. Choose the nodes at which the residual f (of active nodes, dim each; its norm over all
  * ranks) stands out, with their neighbours; none if they are not few. */
