@@ -127,6 +127,18 @@ static void resolve_stabilisation(const YamlNode *given, Case *c)
   if (!yaml_find(given, "curvature")) c->stabilisation.curvature = exact ? 0.1 : 0.01;
 }
 
+/* Explicit steps lose half of an elastic disk's spin in a revolution without the gradients that points carry, and
+ * what flows goes too far with them (docs/theory.md, "Gradients that points carry"). */
+static PetscErrorCode ResolveTransfer(Case *c)
+{
+  const AnalysisSpec *a = &c->analysis;
+  const PetscBool turns = a->type == ANALYSIS_EXPLICIT && a->update == EXPLICIT_MUSL && !anything_yields(c);
+
+  PetscFunctionBeginUser;
+  if (!a->transfer) PetscCall(PetscStrallocpy(turns ? "consistent" : "thesis", &c->analysis.transfer));
+  PetscFunctionReturn(0);
+}
+
 /* An acceleration that points carry is out of balance on the next grid (docs/theory.md, "The
  * midpoint rule"). */
 static PetscErrorCode ResolveScheme(Case *c)
@@ -268,6 +280,7 @@ static PetscErrorCode ReadDocument(const char *file, YamlDocument *document, Dia
   reader.c = *c;
   peek_kinematics(document->root, &reader);
   PetscCall(SchemaReadTable(&reader, &schema_case, document->root, *c));
+  PetscCall(ResolveTransfer(*c));
   resolve_stabilisation(yaml_find(document->root, "stabilisation"), *c);
   PetscCall(ResolveFormulation(document->root, *c));
   PetscCall(ResolveScheme(*c));

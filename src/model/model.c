@@ -224,8 +224,9 @@ static PetscErrorCode CreatePoints(Model *m, Outline *outline, Diag *diag)
   /* nothing is stored yet */
   if (m->formulation->pressure) m->points->components[POINT_PRESSURE] = 1;
   if (basis_find(c->basis.kind)->domains) m->points->components[POINT_DOMAIN] = m->dim;
-  if (transfer_find(c->analysis.transfer)->slopes && !basis_find(c->basis.kind)->domains)
-    m->points->components[POINT_SLOPE] = 2 * m->dim * m->dim;
+  /* what lumped mass does not see of a rotation: nothing is lumped where points have domains, but in explicit steps */
+  const PetscBool lumps = !basis_find(c->basis.kind)->domains || c->analysis.type == ANALYSIS_EXPLICIT;
+  if (transfer_find(c->analysis.transfer)->slopes && lumps) m->points->components[POINT_SLOPE] = 2 * m->dim * m->dim;
   if (c->n_walls + c->n_interfaces) m->points->components[POINT_REACH] = 1;
   m->points->components[POINT_CONTACT] = (c->n_walls + c->n_interfaces) * CONTACT_KEPT(m->dim);
   if (m->grid->n_fields > 1) m->points->components[POINT_FIELD] = 1;

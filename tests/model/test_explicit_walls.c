@@ -24,6 +24,7 @@ static void standing(Bench *b, const Block *r, PetscReal slope, WallSpec *wall)
   bench_dynamic(b, 1, 5e-3);
   b->c.analysis.type = ANALYSIS_EXPLICIT;
   b->c.analysis.courant = 0.6;
+  b->c.analysis.transfer = (char *)(r->cell == CELL_TRIANGLE ? "thesis" : "consistent");
   b->c.basis.kind = r->basis;
   b->c.gravity[0] = 9.81 * PetscSinReal(slope);
   b->c.gravity[up] = -9.81 * PetscCosReal(slope);
@@ -107,7 +108,7 @@ static void test_rests(void **state)
     standing(&b, r, slope, &wall);
     b.c.analysis.damping = 40;
     Model *m = bench_model(&b, PETSC_COMM_WORLD);
-    while (m->time < 0.7) model_step(m, PETSC_MAX_REAL);
+    while (m->time < 2.0) model_step(m, PETSC_MAX_REAL);
     const PetscReal across = measure(m, "wall_force", NULL, 0), up = measure(m, "wall_force", NULL, 1);
     /* what second mappings shake is 1e-5 of the weight */
     CHECK_CLOSE(up, mass * 9.81 * PetscCosReal(slope), 2e-4 * mass);
@@ -142,6 +143,49 @@ static void test_lifts(void **state)
   CHECK_CLOSE(e.boundary, work, 0.01 * work);
   CHECK(PetscAbsReal(model_sum(m, "energy: balance", 0)) < 1e-12, "open");
   CALL(ModelDestroy(&m));
+}
+
+/* A wall that is there until 0.1 s: what it gave stays, and then there is free fall. */
+static void test_vanishes(void **state)
+{
+  Bench b;
+  WallSpec wall;
+  PetscReal given = 0;
+  (void)state;
+  standing(&b, blocks, 0, &wall);
+  wall.has_until = PETSC_TRUE;
+  wall.until = 0.1;
+  Model *m = bench_model(&b, PETSC_COMM_WORLD);
+  for (PetscReal before = 0; m->time < 0.25; before = m->time) {
+    model_step(m, 7e-3);
+    given += (m->time - before) * measure(m, "wall_force", NULL, 1);
+    CHECK(m->time < 0.1 + 1e-12 || measure(m, "wall_force", NULL, 1) == 0, "it pushes at %g s", (double)m->time);
+    CHECK(before > 0.1 - 1e-12 || m->time < 0.1 + 1e-12, "a step goes from %g to %g s", (double)before,
+          (double)m->time);
+  }
+  CHECK(given > 0.5 * 500 * 9.81 * 0.1, "it has given %g N s", (double)given);
+  CHECK_CLOSE(model_sum(m, "momentum", 1), given - 500 * 9.81 * m->time, 1e-8);
+  CALL(ModelDestroy(&m));
+}
+
+/* A bonded wall carries what hangs on it. */
+static void test_hangs(void **state)
+{
+  Bench b;
+  WallSpec wall;
+  (void)state;
+  for (const Block *r = blocks; r < blocks + 4; ++r) {
+    const int up = r->cell == CELL_HEXAHEDRON ? 2 : 1;
+    const PetscReal mass = up == 2 ? 250 : 500;
+    standing(&b, r, PETSC_PI - SLOPE, &wall);
+    wall.contact = CONTACT_BONDED;
+    b.c.analysis.damping = 40;
+    Model *m = bench_model(&b, PETSC_COMM_WORLD);
+    while (m->time < 0.6) model_step(m, PETSC_MAX_REAL);
+    CHECK_CLOSE(measure(m, "wall_force", NULL, up), -mass * 9.81 * PetscCosReal(SLOPE), 1e-3 * mass * 9.81);
+    CHECK_CLOSE(measure(m, "wall_force", NULL, 0), -mass * 9.81 * PetscSinReal(SLOPE), 1e-3 * mass * 9.81);
+    CALL(ModelDestroy(&m));
+  }
 }
 
 static void test_ranks(void **state)
@@ -211,7 +255,8 @@ static void test_refused(void **state)
 int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {cmocka_unit_test(test_slides),  cmocka_unit_test(test_rests),
-                                     cmocka_unit_test(test_lifts),   cmocka_unit_test(test_ranks),
+                                     cmocka_unit_test(test_lifts),   cmocka_unit_test(test_vanishes),
+                                     cmocka_unit_test(test_hangs),   cmocka_unit_test(test_ranks),
                                      cmocka_unit_test(test_resumed), cmocka_unit_test(test_refused)};
   if (PetscInitialize(&argc, &argv, NULL, NULL)) return 1;
   const int failed = cmocka_run_group_tests(tests, NULL, NULL);

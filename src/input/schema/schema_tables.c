@@ -132,7 +132,8 @@ static const SchemaEntry analysis_entries[] = {
       AT(AnalysisSpec, damping)),
   KEY("mass", WORD, NULL, "mass matrix", .words = mass_words, .fallback = "consistent", AT(AnalysisSpec, mass)),
   KEY("transfer", WORD_TEXT, NULL, "mpm: what nodes take of the points' motion, see `talus list transfers`",
-      .registry = (const void *const *)transfers, .fallback = "thesis", AT(AnalysisSpec, transfer)),
+      .registry = (const void *const *)transfers, .note = "thesis; explicit, where no law yields: consistent",
+      AT(AnalysisSpec, transfer)),
   KEY(
     "keep_velocity", BOOLEAN, NULL,
     "mpm: points beside prescribed nodes keep the velocity that they bring, as thesis (2.16) is printed, so that what "

@@ -45,6 +45,9 @@ typedef struct Explicit {
   PetscReal before;  /* of the last one, s; 0: velocities are those of `time` */
   PetscReal kick;    /* how long forces act in it, s: from the middle of the last one to that of this one */
   PetscReal fade;    /* of velocities by damping meanwhile */
+  PetscBool slopes;  /* do points carry the gradient of their motion (transfer consistent)? */
+  PetscReal unseen;  /* share that they lose meanwhile of what nodes do not see of their motion, */
+  PetscReal follow;  /* and by which their gradient goes after that of the nodes */
   PetscReal g[3];    /* gravity, m/s2 */
   PetscInt substeps; /* in the lap; and all */
   PetscInt taken;
@@ -100,6 +103,18 @@ void points_gain(const Model *model, Explicit *e);
 /* Points are strained, stressed and moved; walks by cells then give the nodes what they get in the next
  * substep of the lap. */
 void points_strain(const Model *model, Explicit *e);
+
+/* G goes after the gradient A (1 - A / 2) / dt, A = dF - 1, of the middle between the motion that has brought the point
+ * here and that which goes on: it serves both. */
+static inline void slope_follow(const int dim, const Explicit *e, const PetscReal A[3][3], PetscReal *G)
+{
+  for (int i = 0; i < dim; ++i)
+    for (int j = 0; j < dim; ++j) {
+      PetscReal square = 0;
+      for (int k = 0; k < dim; ++k) square += A[i][k] * A[k][j];
+      G[i * dim + j] += e->follow * ((A[i][j] - 0.5 * square) / e->dt - G[i * dim + j]);
+    }
+}
 
 /* Points of one material that are worked off together, component by component. Numbers behind the last point are
  * an increment that changes nothing. */

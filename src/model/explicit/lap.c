@@ -53,6 +53,7 @@ PetscErrorCode ExplicitCreate(const Model *m, Explicit **explicit)
   e = *explicit;
   e->width = 1 + 2 * dim;
   e->box = finds_by_arithmetic(m);
+  e->slopes = m->points->components[POINT_SLOPE] > 0;
   if (e->box) lattice_of(m, &e->lattice);
   /* whole registers are read from the last node on */
   PetscCall(PetscCalloc1(n * e->width + 4, &e->sum));
@@ -165,6 +166,7 @@ PetscErrorCode LapBegin(Model *m, Explicit *e, PetscReal left)
   e->box = e->box && !m->forces.n; /* a body force may have come since */
   PetscCall(See(m, e));
   if (e->critical == 0 || e->since >= LAP_MOST) {
+    PetscCall(NonlocalStep(m));
     PetscCall(ExplicitCritical(m, &e->critical, &e->fastest));
     e->since = 0;
   }

@@ -77,6 +77,17 @@ KERNEL void weigh(const Points *points, PetscInt first, PetscInt n, Given *g)
   }
 }
 
+/* What the gradient that point p, the k-th, carries adds to the momentum of the nodes: m N G (x_I - x_p). */
+KERNEL void lean(const Lattice *l, const Points *points, PetscInt p, const Place *place, PetscInt k, const Four *weight,
+                 Four momentum[2])
+{
+  const PetscReal *G = point_real(points, POINT_SLOPE, p), mass = points->real[POINT_MASS][p];
+  const Four x = mass * l->size[0] * *weight * (1 - begin[0] - place->at[0][k]),
+             y = mass * l->size[1] * *weight * (1 - begin[1] - place->at[1][k]);
+  momentum[0] += G[0] * x + G[1] * y;
+  momentum[1] += G[2] * x + G[3] * y;
+}
+
 /* f_I = - V_0 tau grad N_I, with gradients where the point is now. cell: that of the sums so far. */
 KERNEL void give(const PetscBool hoop, const Points *points, PetscInt first, PetscInt n, const Given *g, int32_t *cell,
                  Four sum[5], Explicit *e)
@@ -92,6 +103,7 @@ KERNEL void give(const PetscBool hoop, const Points *points, PetscInt first, Pet
     sum[0] += g->mass[k] * weight;
     sum[1] += g->momentum[2 * k] * weight;
     sum[2] += g->momentum[2 * k + 1] * weight;
+    if (e->slopes) lean(l, points, first + k, &g->place, k, &weight, sum + 1);
     sum[3] += g->tau[0][k] * dx + g->tau[3][k] * dy;
     sum[4] += g->tau[3][k] * dx + g->tau[1][k] * dy;
     if (hoop) sum[3] += g->tau[2][k] / *point_real(points, POINT_X, first + k) * weight;
@@ -142,10 +154,12 @@ KERNEL void speed_up(const Explicit *e, const Four *felt, const Four *mass, Pets
                      PetscReal *momentum, Four *damped)
 {
   const PetscReal kept = 1 - e->fade;
-  const Four gained = __builtin_shufflevector(felt[0], felt[1], 2, 3, 6, 7);
+  const Four gained = __builtin_shufflevector(felt[0], felt[1], 2, 3, 6, 7),
+             seen = __builtin_shufflevector(felt[0], felt[1], 0, 1, 4, 5);
   Four old;
   take(v, left, &old);
-  const Four now = kept * old + gained;
+  Four now = kept * old + gained;
+  if (e->slopes) now += e->unseen * (seen - now);
   *damped += *mass * (old * old);
   put(&now, left, v);
   FOUR(momentum) = *mass * now;
@@ -188,6 +202,7 @@ void plane_gain(const Model *m, Explicit *e)
       along(&place, k, N);
       const Four weight = N[0] * N[1];
       for (int d = 0; d < 2; ++d) sum[d] += momentum[2 * k + d] * weight;
+      if (e->slopes) lean(&e->lattice, points, first + k, &place, k, &weight, sum);
     }
   }
   if (again) bring(2, &e->lattice, cell, sum, e->straining);
@@ -330,6 +345,10 @@ KERNEL void strain(const PetscBool hoop, const Model *m, Explicit *e)
     const LawStatus status = batch_stress(m, first, n, &b);
     e->status = PetscMax(e->status, status);
     for (PetscInt k = 0; k < n; k += 4) keep(hoop, points, first + k, n - k, &b, k, &g);
+    for (PetscInt k = 0; e->slopes && k < n; ++k) {
+      const PetscReal A[3][3] = {{s.A[k][0], s.A[k][2]}, {s.A[k][1], s.A[k][3]}};
+      slope_follow(2, e, A, point_real(points, POINT_SLOPE, first + k));
+    }
     if (e->ends) continue;
     weigh(points, first, n, &g);
     locate(&e->lattice, n, point_real(points, POINT_X, first), &g.place);

@@ -22,6 +22,14 @@ KERNEL void look(const int dim, const Support *w, PetscInt p, Sight *s)
   s->dN = w->dN + (s->N - w->N) * dim;
 }
 
+/* What the gradient that a point carries adds to the momentum of a node: m N G (x_I - x_p). */
+KERNEL void lean(const int dim, const Model *m, PetscInt p, PetscInt node, PetscReal share, PetscReal *momentum)
+{
+  const PetscReal *G = point_real(m->points, POINT_SLOPE, p), *x = point_real(m->points, POINT_X, p);
+  for (int i = 0; i < dim; ++i)
+    for (int j = 0; j < dim; ++j) momentum[i] += share * G[i * dim + j] * (m->grid->x[node * dim + j] - x[j]);
+}
+
 /* f_I = - V_0 tau grad N_I, with gradients where the point is now. */
 KERNEL void gather(const int dim, const PetscBool hoop, const Model *m, Explicit *e)
 {
@@ -39,6 +47,7 @@ KERNEL void gather(const int dim, const PetscBool hoop, const Model *m, Explicit
       PetscReal *sum = e->sum + s.node[k] * width;
       const PetscReal share = mass * s.N[k];
       sum[0] += share;
+      if (e->slopes) lean(dim, m, p, s.node[k], share, sum + 1);
       for (int d = 0; d < dim; ++d) {
         PetscReal force = hoop && d == 0 ? ring * s.N[k] : 0;
         for (int j = 0; j < dim; ++j) force += tau[voigt_of[d][j]] * s.dN[k * dim + j];
@@ -57,18 +66,22 @@ KERNEL void gain(const int dim, const Model *m, Explicit *e)
   PetscReal damped = 0;
   Sight s = {0};
   for (PetscInt p = 0; p < points->n; ++p) {
-    PetscReal *v = point_real(points, POINT_V, p), *a = point_real(points, POINT_A, p), gained[3] = {0};
-    const PetscReal mass = points->real[POINT_MASS][p];
+    PetscReal *v = point_real(points, POINT_V, p), *a = point_real(points, POINT_A, p), felt[6] = {0};
+    const PetscReal mass = points->real[POINT_MASS][p], *gained = felt + dim;
     look(dim, m->space->support, p, &s);
     for (PetscInt k = 0; k < s.nn; ++k)
-      for (int d = 0; d < dim; ++d) gained[d] += s.N[k] * e->motion[s.node[k] * 2 * dim + dim + d];
+      for (int d = 0; d < 2 * dim; ++d) felt[d] += s.N[k] * e->motion[s.node[k] * 2 * dim + d];
     for (int d = 0; d < dim; ++d) {
       damped += 0.5 * mass * v[d] * v[d] * e->fade * (2 - e->fade);
       v[d] += gained[d] - e->fade * v[d];
+      v[d] += e->unseen * (felt[d] - v[d]);
       a[d] = gained[d] * per_second;
     }
-    for (PetscInt k = 0; again && k < s.nn; ++k)
-      for (int d = 0; d < dim; ++d) e->straining[s.node[k] * dim + d] += mass * s.N[k] * v[d];
+    for (PetscInt k = 0; again && k < s.nn; ++k) {
+      PetscReal *momentum = e->straining + s.node[k] * dim;
+      for (int d = 0; d < dim; ++d) momentum[d] += mass * s.N[k] * v[d];
+      if (e->slopes) lean(dim, m, p, s.node[k], mass * s.N[k], momentum);
+    }
   }
   e->damped += damped;
 }
@@ -143,6 +156,13 @@ KERNEL void keep(const int dim, Points *points, PetscInt p, const PetscReal *dF,
   points->real[POINT_WORK][p] += 0.5 * points->real[POINT_VOLUME][p] * work;
 }
 
+KERNEL void follow(const int dim, const Explicit *e, Points *points, PetscInt p, const PetscReal dF[9])
+{
+  PetscReal A[3][3];
+  for (int i = 0; i < 9; ++i) A[i / 3][i % 3] = dF[i] - (i % 4 == 0);
+  slope_follow(dim, e, A, point_real(points, POINT_SLOPE, p));
+}
+
 KERNEL void strain(const int dim, const PetscBool hoop, const Model *m, Explicit *e)
 {
   Points *points = m->points;
@@ -162,6 +182,7 @@ KERNEL void strain(const int dim, const PetscBool hoop, const Model *m, Explicit
         point_real(points, POINT_X, p)[d] += b.move[3 * k + d];
         point_real(points, POINT_U, p)[d] += b.move[3 * k + d];
       }
+      if (e->slopes) follow(dim, e, points, p, b.dF + 9 * k);
     }
   }
 }

@@ -1,4 +1,5 @@
 /* What explicit dynamics does not do, by name; and how it shares the grid among the ranks. */
+#include "method/transfer/transfer.h"
 #include "model/explicit/explicit.h"
 
 static void refuse(PetscBool asked, const char *path, const char *what, Diag *diag)
@@ -15,8 +16,11 @@ void explicit_check(const Model *m, Diag *diag)
   refuse(!m->method || !m->method->restores_grid, "method", "methods other than mpm", diag);
   refuse(case_is_mixed(c), "formulation", "the mixed formulation", diag);
   refuse(m->formulation && m->formulation->cells, "formulation", "the mean dilatation of cells", diag);
-  refuse(c->analysis.transfer && strcmp(c->analysis.transfer, "thesis") != 0, "analysis.transfer",
-         "transfers other than thesis", diag);
+  const Transfer *transfer = transfer_find(c->analysis.transfer);
+  refuse(transfer && transfer != transfers[0] && !transfer->slopes, "analysis.transfer",
+         "transfers other than thesis and consistent", diag);
+  if (transfer && transfer->slopes && c->analysis.update == EXPLICIT_USL)
+    diag_error(diag, "analysis.update", "`usl` does not take transfer consistent: `musl` does");
   refuse(c->analysis.keep_velocity, "analysis.keep_velocity", "this", diag);
   refuse(c->stabilisation.room, "stabilisation.room", "this", diag);
   refuse(walls_with_mass(c) > 0, "walls", "walls with mass", diag);

@@ -87,6 +87,40 @@ KERNEL void share(const Lattice *l, const Shapes *s, PetscInt k, PetscInt end, c
   bring(l, cell, width, sum, nodes);
 }
 
+/* Momentum of a point with the gradient that it carries: m (v + G (x_I - x_p)) at the cell's first node, and what a
+ * side along each axis adds. at: the first component of momentum in `value`. */
+KERNEL void lean(const Lattice *l, const Shapes *s, const Points *points, PetscInt p, PetscInt k, int at,
+                 const Four *value, Four corner[8])
+{
+  const PetscReal *G = point_real(points, POINT_SLOPE, p), mass = points->real[POINT_MASS][p];
+  Four rise[3], start = *value;
+  for (int d = 0; d < 3; ++d) {
+    rise[d] = (Four){0};
+    for (int i = 0; i < 3; ++i) rise[d][at + i] = mass * l->size[d] * G[3 * i + d];
+    start -= s->place.at[d][k] * rise[d];
+  }
+#pragma GCC unroll 8
+  for (int i = 0; i < 8; ++i) {
+    corner[i] = start;
+    for (int d = 0; d < 3; ++d)
+      if (i >> d & 1) corner[i] += rise[d];
+  }
+}
+
+/* As `share`, of points that carry gradients; p: the one that is the batch's first. */
+KERNEL void share_leaning(const Lattice *l, const Shapes *s, const Points *points, PetscInt p, PetscInt k, PetscInt end,
+                          int at, const Four *value, int width, PetscReal *nodes)
+{
+  Four sum[8] = {{0}}, corner[8];
+  const int32_t cell = s->place.cell[k];
+  for (; k < end; ++k) {
+    lean(l, s, points, p + k, k, at, &value[k], corner);
+#pragma GCC unroll 8
+    for (int i = 0; i < 8; ++i) sum[i] += s->N[i][k] * corner[i];
+  }
+  bring(l, cell, width, sum, nodes);
+}
+
 /* Mass and momentum of the points of a batch, and -V_0 tau over the cell's length along x, y, z: columns. */
 typedef struct {
   Four inertia[LAW_BATCH], pull[3][LAW_BATCH];
@@ -120,7 +154,8 @@ KERNEL void give(const Points *points, PetscInt first, PetscInt n, Shapes *s, Gi
   for (PetscInt k = 0; k < n; ++k) g->inertia[k] = mass[k] * (Four){1, v[3 * k], v[3 * k + 1], v[3 * k + 2]};
   for (PetscInt k = 0, end; k < n; k = end) {
     end = run_of(&s->place, k, n);
-    share(&e->lattice, s, k, end, g->inertia, 7, e->sum);
+    if (e->slopes) share_leaning(&e->lattice, s, points, first, k, end, 1, g->inertia, 7, e->sum);
+    else share(&e->lattice, s, k, end, g->inertia, 7, e->sum);
     push(&e->lattice, s, k, end, g, e->sum + 4);
   }
 }
@@ -155,13 +190,15 @@ void space_gather(const Model *m, Explicit *e)
 }
 
 /* One point gains velocity; its momentum, and twice its kinetic energy before. */
-KERNEL PetscReal speed_up(const Points *points, PetscInt p, const Explicit *e, const Four *gained, Four *momentum)
+KERNEL PetscReal speed_up(const Points *points, PetscInt p, const Explicit *e, const Four *gained, const Four *seen,
+                          Four *momentum)
 {
   PetscReal *v = point_real(points, POINT_V, p), before = 0;
   const PetscReal mass = points->real[POINT_MASS][p], kept = 1 - e->fade;
   for (int d = 0; d < 3; ++d) {
     before += v[d] * v[d];
     v[d] = kept * v[d] + (*gained)[d];
+    if (e->slopes) v[d] += e->unseen * ((*seen)[d] - v[d]);
     if (e->ends) point_real(points, POINT_A, p)[d] = (*gained)[d] * (1 / e->kick);
   }
   *momentum = mass * (Four){v[0], v[1], v[2], 0};
@@ -172,7 +209,7 @@ void space_gain(const Model *m, Explicit *e)
 {
   const Points *points = m->points;
   const PetscBool again = m->c->analysis.update == EXPLICIT_MUSL;
-  Four motion[8], gained, momentum[LAW_BATCH];
+  Four motion[8], flow[8] = {{0}}, gained, seen, momentum[LAW_BATCH];
   PetscReal damped = 0;
   Shapes s;
   for (PetscInt first = 0; first < points->n; first += LAW_BATCH) {
@@ -181,11 +218,14 @@ void space_gain(const Model *m, Explicit *e)
     for (PetscInt k = 0, end; k < n; k = end) {
       end = run_of(&s.place, k, n);
       fetch(&e->lattice, s.place.cell[k], 6, e->motion + 3, motion);
+      if (e->slopes) fetch(&e->lattice, s.place.cell[k], 6, e->motion, flow);
       for (PetscInt i = k; i < end; ++i) {
         mean(&s, i, motion, &gained);
-        damped += speed_up(points, first + i, e, &gained, &momentum[i]);
+        mean(&s, i, flow, &seen);
+        damped += speed_up(points, first + i, e, &gained, &seen, &momentum[i]);
       }
-      if (again) share(&e->lattice, &s, k, end, momentum, 3, e->straining);
+      if (again && e->slopes) share_leaning(&e->lattice, &s, points, first, k, end, 0, momentum, 3, e->straining);
+      else if (again) share(&e->lattice, &s, k, end, momentum, 3, e->straining);
     }
   }
   e->damped += 0.5 * e->fade * (2 - e->fade) * damped;
@@ -330,6 +370,11 @@ void space_strain(const Model *m, Explicit *e)
     const LawStatus status = batch_stress(m, first, n, &b);
     e->status = PetscMax(e->status, status);
     for (PetscInt k = 0; k < n; k += 4) keep(points, first + k, n - k, &e->lattice, &b, k, &g);
+    for (PetscInt k = 0; e->slopes && k < n; ++k) {
+      PetscReal A[3][3];
+      for (int i = 0; i < 9; ++i) A[i / 3][i % 3] = strain.column[i % 3][k][i / 3];
+      slope_follow(3, e, A, point_real(points, POINT_SLOPE, first + k));
+    }
     if (!e->ends) give(points, first, n, &s, &g, e);
   }
 }

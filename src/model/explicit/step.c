@@ -4,12 +4,19 @@
  * Who knows the method reads Substep; the rest divides the run's step and keeps its accounts. */
 #include "model/explicit/explicit.h"
 
+/* Of a critical substep (docs/theory.md, "Gradients that points carry"): who follows faster than the unseen fades
+ * becomes unstable where a node is hardly reached. */
+#define UNSEEN 0.02
+#define FOLLOW 0.01
+
 /* Forces of where points are now act from the middle of the last substep to that of this one. */
 static PetscErrorCode Kick(Model *m, Explicit *e)
 {
   PetscFunctionBeginUser;
   e->kick = (e->before + e->dt) / 2;
   e->fade = 1 - PetscExpReal(-m->c->analysis.damping * e->kick);
+  e->unseen = e->slopes ? 1 - PetscExpReal(-UNSEEN * e->kick / e->critical) : 0;
+  e->follow = 1 - PetscExpReal(-FOLLOW * e->dt / e->critical);
   if (e->begins || !e->box) points_gather(m, e); /* mass, momentum and forces of the nodes */
   PetscCall(ForcesBegin(m, e));
   PetscCall(NodesShare(m, e->width, e->sum));
@@ -27,6 +34,7 @@ static PetscErrorCode Substep(Model *m, Explicit *e)
   nodes_strain(m, e);
   walls_follow(m, e);
   PetscCall(NodesCarry(m, e));
+  materials_step(m->c->n_materials, m->materials, e->time, e->dt, PETSC_TRUE);
   points_strain(m, e); /* strain, stress; points move, and give what comes first in the next substep */
   nodes_forget(m, e);
   e->before = e->dt;
@@ -135,6 +143,7 @@ PetscErrorCode ExplicitStep(Model *m, PetscReal limit, StepReport *report)
   if (!m->explicit) PetscCall(ExplicitCreate(m, &m->explicit));
   Explicit *e = m->explicit;
   PetscCall(Begin(m, step, e, before, report));
+  PetscCall(MaterialsAt(m, end));
   while (report->outcome == STEP_ACCEPTED && end - e->time > 1e-9 * step) {
     PetscCall(LapBegin(m, e, end - e->time));
     for (PetscInt k = 0; k < e->substeps; ++k) {
@@ -148,6 +157,8 @@ PetscErrorCode ExplicitStep(Model *m, PetscReal limit, StepReport *report)
   }
   if (report->outcome == STEP_ACCEPTED) PetscCall(Close(m, e));
   PetscCall(Accept(m, e, before, report));
+  PetscCall(MaterialsSettle(m, report));
+  materials_step(m->c->n_materials, m->materials, m->time, 0, PETSC_TRUE);
   if (report->outcome == STEP_ACCEPTED) PetscCall(MeasuresRemember(m, report->dt));
   PetscFunctionReturn(0);
 }
