@@ -116,3 +116,18 @@ PetscReal cell_volume_in(const Kinematics *kinematics, CellType type, const Pets
   }
   return volume;
 }
+
+void cell_shares_in(const Kinematics *kinematics, CellType type, const PetscReal *x, PetscReal *share)
+{
+  const PetscInt nn = cells[type].nodes, n = type == CELL_TRIANGLE ? 3 : 4;
+  PetscReal xi[4 * 2], weight[4], N[CELL_MAX_NODES], dNdx[CELL_MAX_NODES * 3];
+  for (PetscInt i = 0; i < nn; ++i) share[i] = kinematics->hoop ? 0 : cell_volume(type, x) / (PetscReal)nn;
+  if (!kinematics->hoop) return;
+  cell_quadrature(type, n, xi, weight);
+  for (PetscInt p = 0; p < n; ++p) {
+    const PetscReal area = weight[p] * cell_gradients(type, x, xi + 2 * p, N, dNdx);
+    PetscReal radius = 0;
+    for (PetscInt i = 0; i < nn; ++i) radius += N[i] * x[2 * i];
+    for (PetscInt i = 0; i < nn; ++i) share[i] += N[i] * area * kinematics_weight(kinematics, radius);
+  }
+}

@@ -38,6 +38,9 @@ PetscReal cell_volume(CellType type, const PetscReal *x);
 /* The volume that a cell stands for, m3: its area times the unit thickness, or all round the
  * circle. */
 PetscReal cell_volume_in(const Kinematics *kinematics, CellType type, const PetscReal *x);
+/* What of it belongs to each node (as many as the cell has), m3: the integral of N; of a cell that is not a ring the
+ * same part to each, which is that of a simplex or parallelogram. */
+void cell_shares_in(const Kinematics *kinematics, CellType type, const PetscReal *x, PetscReal *share);
 
 /* Gauss rule with n points (triangle 1 3 6 12, quadrilateral 1 4 9 16, tetrahedron 1 4 14 24,
  * hexahedron 1 8 27 64): xi is n x dim, weights sum to the reference volume. PETSC_FALSE if there

@@ -400,6 +400,7 @@ typedef struct {
 typedef struct {
   PetscReal stiffness, mass, inertia; /* see docs/theory.md, cells that are not full */
   PetscReal curvature;                /* see docs/theory.md, smooth shape functions */
+  PetscBool room;                     /* see docs/theory.md, the room that points have */
 } StabilisationSpec;
 
 typedef struct {

@@ -105,6 +105,8 @@ typedef struct Law {
   PetscReal (*reach)(const PetscReal *parameters);
   PetscInt averaged;
   void (*hear)(const PetscReal *parameters, PetscReal mean, PetscReal *state);
+  /* Tell a state that no more than `most`, ln of a volume ratio, can be open. NULL: the law remembers no opening. */
+  void (*room)(const PetscReal *parameters, PetscReal most, PetscReal *state);
   /* Turn the user's constants into the packed parameters; complain through diag at `path`. */
   void (*prepare)(const Elasticity *elastic, const PetscReal *given, PetscReal *packed);
   /* What the mixed formulation needs; NULL: the law has no mixed form. Elastic volume ratio of n

@@ -2,28 +2,29 @@
  * their functions as it likes (docs/theory.md, "Smooth shape functions"). */
 #include "method/discretisation.h"
 
-/* Of each node: the volume of the material around it, and that of its share of the cells. */
-static PetscErrorCode NodalVolumes(const Discretisation *s, PetscReal *volume, PetscReal *whole)
+PetscErrorCode DiscretisationVolumes(const Discretisation *s, PetscBool now, PetscReal *volume, PetscReal *whole)
 {
   const Support *w = s->support;
   const Grid *grid = s->grid;
-  const PetscInt nn = grid->nodes_per_cell;
-  PetscReal x[3 * CELL_MAX_NODES];
+  PetscReal x[3 * CELL_MAX_NODES], share[CELL_MAX_NODES];
 
   PetscFunctionBeginUser;
+  PetscCall(PetscArrayzero(volume, grid->n_nodes));
+  PetscCall(PetscArrayzero(whole, grid->n_nodes));
   for (PetscInt g = 0; g < w->n_groups; ++g)
-    for (PetscInt p = w->point_start[g]; p < w->point_start[g + 1]; ++p)
+    for (PetscInt p = w->point_start[g]; p < w->point_start[g + 1]; ++p) {
+      const PetscReal V = (now ? s->points->real[POINT_J][p] : 1) * s->points->real[POINT_VOLUME][p];
       for (PetscInt I = 0; I < support_nodes(w, g); ++I)
-        volume[w->node[w->node_start[g] + I]] +=
-          support_N(w, g, p)[I] * s->points->real[POINT_J][p] * s->points->real[POINT_VOLUME][p];
+        volume[w->node[w->node_start[g] + I]] += support_N(w, g, p)[I] * V;
+    }
   for (PetscInt c = 0; c < grid->n_cells; ++c) {
-    const PetscInt *node = grid->cell_node + c * nn;
+    const PetscInt nn = grid_cell(grid, c)->nodes, *node = grid->cell_node + c * grid->nodes_per_cell;
     PetscBool near = PETSC_FALSE;
     for (PetscInt I = 0; I < nn; ++I) near |= s->nodes->touched[node[I]];
     if (!near) continue;
     grid_cell_x(grid, c, x);
-    const PetscReal share = cell_volume_in(s->c->kinematics, grid->type, x) / (PetscReal)nn;
-    for (PetscInt I = 0; I < nn; ++I) whole[node[I]] += share;
+    cell_shares_in(s->c->kinematics, grid_cell_type(grid, c), x, share);
+    for (PetscInt I = 0; I < nn; ++I) whole[node[I]] += share[I];
   }
   PetscCall(GridSumToOwners(grid, 1, volume));
   PetscCall(GridSumToOwners(grid, 1, whole));
@@ -38,8 +39,8 @@ PetscErrorCode DiscretisationCuts(Discretisation *s)
   PetscReal *volume, *whole;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscCalloc2(s->grid->n_nodes, &volume, s->grid->n_nodes, &whole));
-  PetscCall(NodalVolumes(s, volume, whole));
+  PetscCall(PetscMalloc2(s->grid->n_nodes, &volume, s->grid->n_nodes, &whole));
+  PetscCall(DiscretisationVolumes(s, PETSC_TRUE, volume, whole));
   for (PetscInt g = 0; g < w->n_groups; ++g) {
     const PetscInt p = w->point_start[g], nn = support_nodes(w, g), *node = w->node + w->node_start[g];
     PetscReal filled = 1, square = 0;

@@ -46,6 +46,12 @@ PetscErrorCode DiscretisationPressure(Discretisation *space);
 /* Of a basis whose points are groups of their own in a grid: soft and pressure_tie where a node gets
  * less than half of its volume; after DiscretisationTouch. */
 PetscErrorCode DiscretisationCuts(Discretisation *space);
+/* Of each node, on all copies: the volume of the material around it (as it is now, else as it was at the start), and
+ * that of its share of the cells, both of n_nodes. */
+PetscErrorCode DiscretisationVolumes(const Discretisation *space, PetscBool now, PetscReal *volume, PetscReal *whole);
+/* Of a method that restores its grid: no point remembers more of an opening, and has a larger J, than its surroundings
+ * have room for (docs/theory.md, "The room that points have"); between initialise and the solve. */
+PetscErrorCode DiscretisationRoom(Discretisation *space);
 /* Nodes that keep their history take the velocity of their body where they stand; m and touched
  * must be known. */
 PetscErrorCode DiscretisationBodyVelocity(Discretisation *space);

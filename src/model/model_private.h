@@ -44,6 +44,8 @@ PetscErrorCode NonlocalStep(Model *model);
 void sizes_start(const Model *model);
 /* Tell the laws that ask for it where their points start. */
 void places_start(const Model *model);
+/* Complain where `stabilisation.room` means nothing (start/laws.c). */
+void room_check(const Model *model, Diag *diag);
 /* Complain of bodies whose law needs a stress and has none (start/laws.c). */
 void stresses_check(const Model *model, Diag *diag);
 /* equilibrium.c. Mistakes of a case that asks for one. */

@@ -1,6 +1,7 @@
 talus_test(model/test_patch RANKS 1 2 3)
 talus_test(model/test_axisymmetric RANKS 1 2 3)
 talus_test(model/test_nonlocal RANKS 1 2 3)
+talus_test(model/test_room RANKS 1 2 3)
 talus_test(model/test_rings RANKS 1 3)
 talus_test(model/test_cavity RANKS 1 2)
 talus_test(model/test_first_step RANKS 1 2 3)

@@ -278,6 +278,12 @@ static const LawField fields[] = {
   {.name = NULL},
 };
 
+static void room(const PetscReal *p, PetscReal most, PetscReal *state)
+{
+  (void)p;
+  state[7] = PetscMin(state[7], most);
+}
+
 const Law law_mohr_coulomb = {
   .name = "mohr-coulomb",
   .help = "Hencky solid with Mohr-Coulomb plasticity, non-associated, with tension cut-off if wished",
@@ -287,6 +293,7 @@ const Law law_mohr_coulomb = {
   .symmetric = PETSC_FALSE,
   .yields = PETSC_TRUE,
   .spares_state = PETSC_TRUE,
+  .room = room,
   .update = update,
   .update_plane = update_plane,
   .update_hoop = update_hoop,

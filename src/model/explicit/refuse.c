@@ -18,6 +18,7 @@ void explicit_check(const Model *m, Diag *diag)
   refuse(c->analysis.transfer && strcmp(c->analysis.transfer, "thesis") != 0, "analysis.transfer",
          "transfers other than thesis", diag);
   refuse(c->analysis.keep_velocity, "analysis.keep_velocity", "this", diag);
+  refuse(c->stabilisation.room, "stabilisation.room", "this", diag);
   refuse(walls_with_mass(c) > 0, "walls", "walls with mass", diag);
   refuse(c->n_interfaces > 0, "interfaces", "interfaces", diag);
   for (PetscInt i = 0; i < c->n_materials; ++i) {

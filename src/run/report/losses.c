@@ -169,7 +169,8 @@ static PetscErrorCode WarnOfCrowd(const Model *m, Diag *diag)
   diag_warning(diag, NULL, "points have come together: %.2g %% of the material's volume is more than its cells hold",
                (double)(100 * sum[1] / sum[0]));
   diag_hint(diag,
-            "heights and densities are no longer those of the material; finer cells, or more points a cell, lessen it");
+            "heights and densities are no longer those of the material; finer cells, or more points a cell, lessen it; "
+            "grains with `opening_memory`: `stabilisation: {room: true}`");
   PetscFunctionReturn(0);
 }
 
