@@ -1,9 +1,9 @@
 // A slope of clay with a thin weak layer: lines of the mesh along the layer.
-DefineConstant[h = 1];
-Point(1) = {0, 0, 0, h}; Point(2) = {60, 0, 0, h}; Point(3) = {60, 10, 0, h}; Point(4) = {52.8, 10, 0, h};
-Point(5) = {50, 10, 0, h}; Point(6) = {40, 10, 0, h}; Point(7) = {20, 20, 0, h}; Point(8) = {14, 20, 0, h};
-Point(9) = {10, 20, 0, h}; Point(10) = {0, 20, 0, h};
-Point(11) = {42, 6, 0, h}; Point(12) = {46, 6, 0, h}; Point(13) = {42, 4, 0, h}; Point(14) = {46.8, 4, 0, h};
+DefineConstant[h = 1]; l = h / 3; // of the layer: six cells across
+Point(1) = {0, 0, 0, h}; Point(2) = {60, 0, 0, h}; Point(3) = {60, 10, 0, h}; Point(4) = {52.8, 10, 0, l};
+Point(5) = {50, 10, 0, l}; Point(6) = {40, 10, 0, h}; Point(7) = {20, 20, 0, h}; Point(8) = {14, 20, 0, l};
+Point(9) = {10, 20, 0, l}; Point(10) = {0, 20, 0, h};
+Point(11) = {42, 6, 0, l}; Point(12) = {46, 6, 0, l}; Point(13) = {42, 4, 0, l}; Point(14) = {46.8, 4, 0, l};
 Line(1) = {1, 2}; Line(2) = {2, 3}; Line(3) = {3, 4}; Line(4) = {4, 5}; Line(5) = {5, 6}; Line(6) = {6, 7};
 Line(7) = {7, 8}; Line(8) = {8, 9}; Line(9) = {9, 10}; Line(10) = {10, 1};
 Line(11) = {8, 11}; Line(12) = {11, 12}; Line(13) = {12, 5};

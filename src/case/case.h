@@ -184,7 +184,7 @@ typedef struct {
   char **bodies;     /* that meet it */
   ContactKind contact;
   PetscReal friction; /* tangent of the angle of friction */
-  PetscReal adhesion; /* N/m2: tangential stress that contact bears without pressure */
+  PetscReal adhesion; /* N/m2: tangential stress beside friction */
   PetscBool has_mass; /* does it move by what acts on it? */
   WallMassSpec mass;
   PetscInt since; /* stage whose words brought it: from and until count from its start */
@@ -198,7 +198,7 @@ typedef struct {
   char **between; /* two bodies */
   ContactKind contact;
   PetscReal friction; /* tangent of the angle of friction */
-  PetscReal adhesion; /* N/m2: tangential stress that contact bears without pressure */
+  PetscReal adhesion; /* N/m2: tangential stress beside friction */
 } InterfaceSpec;
 
 typedef enum { LOAD_TRACTION, LOAD_POINT, LOAD_PRESSURE, LOAD_KINDS } LoadKind;

@@ -148,24 +148,26 @@ static PetscErrorCode ToTable(NodalFields *nodes, Kept kept, const unsigned char
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode NodalFieldsToTables(NodalFields *nodes, PetscBool move, const unsigned char *prescribed, Tables *tables)
+PetscErrorCode NodalFieldsToTables(NodalFields *nodes, PetscBool move, PetscBool increments,
+                                   const unsigned char *prescribed, Tables *tables)
 {
   PetscFunctionBeginUser;
-  PetscCall(ToTable(nodes, move ? KEPT_MOTION : KEPT_INCREMENTS, NULL, tables));
+  if (move) PetscCall(ToTable(nodes, KEPT_MOTION, NULL, tables));
+  if (increments) PetscCall(ToTable(nodes, KEPT_INCREMENTS, NULL, tables));
   PetscCall(ToTable(nodes, KEPT_BOUNDARY, prescribed, tables));
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode NodalFieldsFromTables(NodalFields *nodes, PetscBool move, const Tables *tables, char reason[256])
 {
-  const Kept order[] = {move ? KEPT_MOTION : KEPT_INCREMENTS, KEPT_BOUNDARY};
+  const Kept order[] = {KEPT_MOTION, KEPT_INCREMENTS, KEPT_BOUNDARY};
   NodalField list[KINDS];
 
   PetscFunctionBeginUser;
-  for (int k = 0; k < 2 && !reason[0]; ++k) {
+  for (int k = !move; k < 3 && !reason[0]; ++k) {
     const PetscInt n = list_fields(nodes, order[k], list);
     const Table *table = tables_find(tables, table_names[order[k]]);
-    /* of older programs: the next step starts from inertia */
+    /* nobody asked for them, or older programs: the next step starts from inertia or rest */
     if (!table && order[k] == KEPT_INCREMENTS) continue;
     PetscCall(NodesFromTable(nodes->grid, order[k] == KEPT_MOTION, n, list, table, reason));
   }

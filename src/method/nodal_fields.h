@@ -57,7 +57,8 @@ PetscErrorCode NodalFieldsDestroy(NodalFields **nodes);
 PetscErrorCode NodalFlagsFollow(NodalFields *nodes);
 
 /* Collective, on grids of cells (clouds put away what follows them). What outlives a step: the
- * motion of nodes that move, and without that the last increments; forces of the boundary, at
+ * motion of nodes that move; increments: those of the last step; forces of the boundary, at
  * dofs that it prescribes. */
-PetscErrorCode NodalFieldsToTables(NodalFields *nodes, PetscBool move, const unsigned char *prescribed, Tables *tables);
+PetscErrorCode NodalFieldsToTables(NodalFields *nodes, PetscBool move, PetscBool increments,
+                                   const unsigned char *prescribed, Tables *tables);
 PetscErrorCode NodalFieldsFromTables(NodalFields *nodes, PetscBool move, const Tables *tables, char reason[256]);

@@ -4,17 +4,30 @@
  * Where a flow comes to rest the second is nearer: velocities that points give to the nodes of a
  * restored grid are not those that the last solution had there. Where motion only begins the first
  * is. Whichever would have been nearer to the last solution is tried first; if Newton fails from
- * it, the other one, and then rest. */
+ * it, the other one, and then rest.
+ *
+ * What is pressed down until the ground gives way goes on as it came: points yield on the sides
+ * that they yielded on. From rest all of them would begin elastic again. */
 #include "grid/cloud/cloud.h"
 #include "model/model_private.h"
 
 /* Only nodes that stay where they are have increments that mean something one step later; those of
  * a mesh know their own velocity. */
-static PetscBool guess_follows(const Model *m) { return m->scheme->inertia && m->method->restores_grid; }
+PetscBool guess_follows(const Model *m)
+{
+  return (m->scheme->inertia && m->method->restores_grid) || model_is_pressed(m);
+}
+
+/* Has it been pressed already? */
+static PetscBool goes_on(const Model *m)
+{
+  return model_is_pressed(m) && m->guess.step > 0 && m->time > m->c->analysis.end;
+}
 
 PetscInt guess_order(const Model *m, FirstGuess order[GUESS_N])
 {
   PetscInt n = 0;
+  if (goes_on(m)) order[n++] = GUESS_PREVIOUS;
   if (m->scheme->inertia) {
     const PetscBool known = guess_follows(m) && m->guess.step > 0;
     if (known && m->guess.previous) order[n++] = GUESS_PREVIOUS;
@@ -49,6 +62,15 @@ static PetscBool has_increment(const Model *m, PetscInt i)
   return frame_of(&m->boundary->frames, i / m->dim) && !m->nodes->idle[i / m->dim];
 }
 
+/* What presses moves as it is told from the first guess on. */
+static void put_prescribed(const Model *m, PetscReal *du)
+{
+  frames_turn(&m->boundary->frames, m->dim, du);
+  for (PetscInt i = 0; i < m->grid->n_nodes * m->dim; ++i)
+    if (m->nodes->fixed[i]) du[i] = m->nodes->prescribed[i];
+  frames_turn(&m->boundary->frames, m->dim, du);
+}
+
 void guess_make(const Model *m, FirstGuess guess, PetscReal dt, PetscReal *du)
 {
   const NodalFields *n = m->nodes;
@@ -62,6 +84,7 @@ void guess_make(const Model *m, FirstGuess guess, PetscReal dt, PetscReal *du)
   guess_inertia(m, dt, du); /* nodes that the last step did not move know no other */
   for (PetscInt i = 0; guess == GUESS_PREVIOUS && i < dofs; ++i)
     if (n->previous[i] != 0 && has_increment(m, i)) du[i] = dt / m->guess.step * n->previous[i];
+  if (guess == GUESS_PREVIOUS && model_is_pressed(m)) put_prescribed(m, du);
 }
 
 PetscErrorCode GuessLearn(Model *m, PetscReal dt)

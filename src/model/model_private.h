@@ -17,10 +17,14 @@ PetscErrorCode ModelBalance(Model *model, StepReport *report);
  * becomes its own; the next ModelInitialise is the first of the space. *moved: points of this rank
  * that left it. */
 PetscErrorCode ModelRegrid(Model *model, Grid *grid, PetscInt *moved);
+/* Is it a case of what a prescribed displacement presses down until the ground gives way? */
+PetscBool model_is_pressed(const Model *model);
 /* guess.c. From where Newton may start: as inertia alone would bring, like the step before, from
  * rest. */
 typedef enum { GUESS_INERTIA, GUESS_PREVIOUS, GUESS_REST, GUESS_N } FirstGuess;
 
+/* Does it know the increments of the step before? */
+PetscBool guess_follows(const Model *model);
 /* The first guesses that the next step has, the nearest first. */
 PetscInt guess_order(const Model *model, FirstGuess order[GUESS_N]);
 /* One of them for a step of dt. */

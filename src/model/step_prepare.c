@@ -177,21 +177,20 @@ static void set_history(Model *m, PetscReal dt, const PetscReal *g)
   }
 }
 
-/* What is pressed down until it gives way: points at the edge of a footing, which bear next to nothing, open and
- * close as those of stiff matter do, and nothing has inertia. */
-static PetscBool is_pressed(const Model *m)
+PetscBool model_is_pressed(const Model *m)
 {
   const AnalysisSpec *analysis = &m->c->analysis;
   return analysis->type == ANALYSIS_LIMIT && analysis->limit.kind == RAISE_BOUNDARY;
 }
 
-/* Does stiffness decide how Newton's method goes (StepProblem.stiff)? */
+/* Does stiffness decide how Newton's method goes (StepProblem.stiff)? Points at the edge of what is pressed, which bear
+ * next to nothing, open and close as those of stiff matter do, and nothing has inertia. */
 static PetscBool is_stiff(const Model *m, PetscReal dt)
 {
   if (m->dim != 2 || !materials_yield(m->c->n_materials, m->materials)) return PETSC_FALSE;
   const PetscReal waves = m->courant_speed * dt / m->grid->smallest;
   const PetscBool crossed = waves > STIFF_WAVES && waves < TOO_STIFF_WAVES;
-  return is_pressed(m) || (m->scheme->inertia && m->method->restores_grid && crossed);
+  return model_is_pressed(m) || (m->scheme->inertia && m->method->restores_grid && crossed);
 }
 
 PetscErrorCode PrepareStep(Model *m, PetscReal dt, StepProblem *p)

@@ -73,7 +73,8 @@ static void compare(const ContactLaw *law, const Wall *w, const ContactForce *mu
   ++seen[state];
 }
 
-/* Curved walls only without friction: across them the tangent leaves out how the plane of the shear turns. */
+/* Curved walls only without friction: across them the tangent leaves out how the plane of the shear turns. Every fifth
+ * contact is about to open: there adhesion goes with the pressure. */
 static void test_tangent(void **state)
 {
   PetscInt seen[3] = {0, 0, 0};
@@ -81,13 +82,15 @@ static void test_tangent(void **state)
   (void)state;
   for (int k = 0; k < 2000; ++k) {
     Wall w = {.sphere = k % 3 == 0};
+    const PetscReal size = k % 5 ? 1 : 0.005;
     unit(&seed, w.n);
     const ContactLaw law = {.kind = w.sphere ? CONTACT_FRICTIONLESS : CONTACT_FRICTION,
                             .friction = w.sphere ? 0 : 0.4,
                             .bond = k % 2 ? 0 : 3,
                             .penalty = 100};
-    const ContactForce multiplier = {.pressure = 20 * (1 + number(&seed)), .shear = {number(&seed), number(&seed), 2}};
-    const PetscReal x[3] = {0.2 * number(&seed), 0.2 * number(&seed), 0.2 * number(&seed)};
+    const ContactForce multiplier = {.pressure = 20 * size * (1 + number(&seed)),
+                                     .shear = {number(&seed), number(&seed), 2}};
+    const PetscReal far = 0.2 * size, x[3] = {far * number(&seed), far * number(&seed), far * number(&seed)};
     compare(&law, &w, &multiplier, x, seen);
   }
   assert_true(seen[CONTACT_OPEN] > 50 && seen[CONTACT_SLIDES] > 300 && seen[CONTACT_STICKS] > 100);
@@ -114,8 +117,23 @@ static void test_cone(void **state)
       work += now.shear[d] * x[d];
     }
     assert_true((is == CONTACT_OPEN) == (5 - 50 * place.gap <= 0) && now.pressure >= 0);
-    assert_true(PetscSqrtReal(shear) <= 0.3 * now.pressure + (is == CONTACT_OPEN ? 0 : 1) + 1e-12);
+    assert_true(PetscSqrtReal(shear) <= 0.3 * now.pressure + PetscMin(1, 20 * now.pressure) + 1e-12);
     assert_true(PetscAbsReal(out) < 1e-12 && work <= 1e-12);
+  }
+}
+
+/* Adhesion is there in full from a twentieth of it on, and vanishes with the pressure. */
+static void test_adhesion(void **state)
+{
+  const Wall w = {.n = {0, 1, 0}};
+  const ContactLaw law = {.kind = CONTACT_FRICTION, .friction = 0.5, .bond = 8, .penalty = 10};
+  const PetscReal at[5] = {100, 1, 0.4, 0.1, 1e-9}, shear[5] = {58, 8.5, 8.2, 2.05, 20.5e-9}, x[3] = {-50, 0, 0};
+  PetscReal f[3];
+  (void)state;
+  for (int k = 0; k < 5; ++k) {
+    const ContactForce m = {.pressure = at[k]};
+    assert_int_equal(force_at(&law, &w, &m, x, f, NULL), CONTACT_SLIDES);
+    assert_true(PetscAbsReal(f[0] - shear[k]) <= 1e-14 * shear[k] && PetscAbsReal(f[1] - at[k]) <= 1e-14 * at[k]);
   }
 }
 
@@ -149,10 +167,8 @@ static void test_bonded(void **state)
 int main(void)
 {
   const struct CMUnitTest tests[] = {
-    cmocka_unit_test(test_tangent),
-    cmocka_unit_test(test_cone),
-    cmocka_unit_test(test_turned),
-    cmocka_unit_test(test_bonded),
+    cmocka_unit_test(test_tangent), cmocka_unit_test(test_cone),   cmocka_unit_test(test_adhesion),
+    cmocka_unit_test(test_turned),  cmocka_unit_test(test_bonded),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

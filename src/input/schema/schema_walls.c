@@ -10,7 +10,8 @@
         AT(spec, friction)),                                                                                     \
     KEY("friction_angle", NUMBER, "deg", "the angle instead", .bounded = PETSC_TRUE, .min = 0, .max = 90,        \
         .max_open = PETSC_TRUE, INPUT_ONLY, AT(spec, friction)),                                                 \
-    KEY("adhesion", NUMBER, "N/m2", "tangential stress that contact bears without pressure", .fallback = "0",    \
+    KEY("adhesion", NUMBER, "N/m2",                                                                              \
+        "tangential stress that contact bears beside friction; at most 20 times the pressure", .fallback = "0",  \
         AT_LEAST(0), AT(spec, adhesion))
 
 static const SchemaWord contact_words[] = {

@@ -3,7 +3,7 @@
  * Contact points are those of implicit dynamics (solve/contact), and so is the law; but nothing is
  * solved for. What has gone into a wall is pushed by
  *
- *   p = - r g - d dg/dt >= 0,    t = t of the substep before - r s, at most friction p + bond,
+ *   p = - r g - d dg/dt >= 0,    t = t of the substep before - r s, at most friction p + min(bond, 20 p),
  *   r = A M / h,    d = A sqrt(rho M) / 2,
  *
  * g < 0 the gap, s the slip since then, A the surface that the point stands for. So a wall is as stiff as a

@@ -207,7 +207,8 @@ PetscErrorCode ModelToTables(Model *m, Tables *tables)
     PetscCall(StateCloudToTables(m, tables));
     PetscFunctionReturn(0);
   }
-  PetscCall(NodalFieldsToTables(m->nodes, !m->method->restores_grid, m->boundary->fixed, tables));
+  const PetscBool increments = m->method->restores_grid || guess_follows(m);
+  PetscCall(NodalFieldsToTables(m->nodes, !m->method->restores_grid, increments, m->boundary->fixed, tables));
   PetscCall(GuessToTables(m, tables));
   PetscCall(BalanceToTables(m, tables));
   PetscCall(CellsToTable(m->grid, m->enabled, "pattern", tables));

@@ -87,10 +87,12 @@ static LimitOutcome judge(const LimitRun *s, const LimitSpec *spec, PetscBool fo
   return (forces ? most : last->control * (1 + 1e-9)) >= spec->most ? LIMIT_MOST : LIMIT_RISES;
 }
 
-static void choose_step(LimitRun *s, const LimitSpec *spec, const StepReport *report)
+/* A size that Newton's method failed with is left alone for a while, as in other runs (step_control.h). */
+static void choose_step(LimitRun *s, const LimitSpec *spec, const StepControl *control, const StepReport *report)
 {
   const PetscReal came = s->rows[s->n - 1].control;
   s->step = PetscMin((report->cuts ? 1 : GROWTH) * report->dt, PetscMax(spec->step, SHARE * came));
+  if (control->failed < PETSC_MAX_REAL) s->step = PetscMin(s->step, PetscMax(0.75 * control->failed, report->dt));
 }
 
 PetscErrorCode LimitStep(LimitRun *s, Model *m, RunDir *dir, StepReport *report)
@@ -110,7 +112,7 @@ PetscErrorCode LimitStep(LimitRun *s, Model *m, RunDir *dir, StepReport *report)
     PetscFunctionReturn(0);
   }
   PetscCall(Look(s, m, report));
-  choose_step(s, spec, report);
+  choose_step(s, spec, &m->control, report);
   s->outcome = (PetscReal)judge(s, spec, forces);
   PetscCall(RunDirLog(dir, "load = %.6g displacement = %.4g m iterations = %d", (double)m->raised.load,
                       (double)m->raised.displacement, (int)report->newton.iterations));

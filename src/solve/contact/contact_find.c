@@ -2,10 +2,6 @@
 #include "material/law.h"
 #include "solve/contact/spring.h"
 
-/* Friction of a wall along which nothing slides: a force that did not vanish with the pressure would
- * leave no solution where contact opens. */
-#define STICKING 20
-
 /* Share of a cell within which what had no force at the start of the step counts as touching. */
 #define TOUCHES 1e-6
 
@@ -61,7 +57,7 @@ void contact_remember(ContactPoint *c, PetscInt dim, const PetscReal *kept, cons
 
 ContactLaw contact_law_of(ContactKind kind, PetscReal friction)
 {
-  return (ContactLaw){.kind = kind, .friction = kind == CONTACT_STICK ? STICKING : friction};
+  return (ContactLaw){.kind = kind, .friction = kind == CONTACT_STICK ? CONTACT_STICKING : friction};
 }
 
 /* A bonded interface holds what touches at the start, and nothing that comes later. */

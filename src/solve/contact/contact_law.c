@@ -24,21 +24,31 @@ static void stick(const ContactLaw *law, const PetscReal n[3], PetscReal *K)
     for (int j = 0; j < 3; ++j) K[3 * i + j] += law->penalty * ((i == j) - n[i] * n[j]);
 }
 
+/* The largest tangential force, and its derivative by the pressure. Adhesion is no more than so many times the
+ * pressure: what did not vanish with it would leave no solution where contact opens. */
+static PetscReal bound_of(const ContactLaw *law, PetscReal pressure, PetscReal *slope)
+{
+  const PetscBool adheres = law->bond <= CONTACT_STICKING * pressure;
+  if (law->kind == CONTACT_BONDED) return PETSC_MAX_REAL;
+  *slope = law->friction + (adheres ? 0 : CONTACT_STICKING);
+  return law->friction * pressure + (adheres ? law->bond : CONTACT_STICKING * pressure);
+}
+
 /* Where it slides along `way`, with a force `bound` that was to be `size`. */
-static void slide(const ContactLaw *law, const PetscReal n[3], const PetscReal way[3], PetscReal bound, PetscReal size,
-                  PetscReal *K)
+static void slide(const ContactLaw *law, const PetscReal n[3], const PetscReal way[3], PetscReal bound, PetscReal slope,
+                  PetscReal size, PetscReal *K)
 {
   for (int i = 0; i < 3; ++i)
     for (int j = 0; j < 3; ++j)
       K[3 * i + j] +=
-        law->penalty * (law->friction * way[i] * n[j] + bound / size * ((i == j) - n[i] * n[j] - way[i] * way[j]));
+        law->penalty * (slope * way[i] * n[j] + bound / size * ((i == j) - n[i] * n[j] - way[i] * way[j]));
 }
 
 ContactState contact_law(const ContactLaw *law, const WallPlace *place, const PetscReal slip[3],
                          const ContactForce *multiplier, ContactForce *now, PetscReal *K)
 {
   const PetscReal *n = place->normal;
-  PetscReal trial[3];
+  PetscReal trial[3], slope = 0;
   *now = (ContactForce){.pressure = multiplier->pressure - law->penalty * place->gap};
   if (now->pressure <= 0 && law->kind != CONTACT_BONDED) {
     now->pressure = 0;
@@ -50,13 +60,13 @@ ContactState contact_law(const ContactLaw *law, const WallPlace *place, const Pe
   for (int i = 0; i < 3; ++i) trial[i] = multiplier->shear[i] - law->penalty * slip[i];
   across(n, trial, now->shear);
   const PetscReal size = PetscSqrtReal(dot(now->shear, now->shear));
-  const PetscReal bound = law->kind == CONTACT_BONDED ? PETSC_MAX_REAL : law->friction * now->pressure + law->bond;
+  const PetscReal bound = bound_of(law, now->pressure, &slope);
   if (size <= bound) {
     if (K) stick(law, n, K);
     return CONTACT_STICKS;
   }
   for (int i = 0; i < 3; ++i) trial[i] = now->shear[i] / size;
-  if (K) slide(law, n, trial, bound, size, K);
+  if (K) slide(law, n, trial, bound, slope, size, K);
   for (int i = 0; i < 3; ++i) now->shear[i] = bound * trial[i];
   return CONTACT_SLIDES;
 }

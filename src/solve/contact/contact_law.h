@@ -3,7 +3,7 @@
  * With the gap g along the normal n and the slip s, the motion against the wall since the start of
  * the step, forces are those of an augmented Lagrangian (Alart and Curnier 1991):
  *
- *   p = max(0, p_k - r g),    t = t_k - r s, but no longer than friction p + bond,    f = p n + t.
+ *   p = max(0, p_k - r g),    t = t_k - r s, but no longer than friction p + min(bond, 20 p),    f = p n + t.
  *
  * p_k, t_k are multipliers that Newton's method keeps while it iterates, and which become p, t when
  * it is about to converge (contact.c): with them g and s of what is in contact and does not slide go to
@@ -11,12 +11,16 @@
 #pragma once
 #include "wall/wall.h"
 
+/* Tangential force over the pressure of what does not slide, or adheres: one that did not vanish with the
+ * pressure would leave no solution where contact opens. */
+#define CONTACT_STICKING 20
+
 typedef enum { CONTACT_OPEN, CONTACT_SLIDES, CONTACT_STICKS } ContactState;
 
 typedef struct {
   ContactKind kind;
   PetscReal friction; /* tangent of the angle */
-  PetscReal bond;     /* tangential force without pressure, N */
+  PetscReal bond;     /* tangential force beside friction, N */
   PetscReal penalty;  /* r, N/m */
 } ContactLaw;
 

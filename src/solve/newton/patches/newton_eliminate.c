@@ -10,8 +10,7 @@
 
 PetscBool newton_eliminates(const StepProblem *p, const LinearProblem *linear)
 {
-  const PetscBool wanted = linear->dynamic || p->stiff;
-  return wanted && !p->pressure && p->in.support->n_runs > 0 && nodal_forces_are_local(p->forces);
+  return linear->dynamic && !p->pressure && p->in.support->n_runs > 0 && nodal_forces_are_local(p->forces);
 }
 
 PetscErrorCode NewtonChoose(void *context, PetscInt iteration, Vec f, PetscReal norm)
