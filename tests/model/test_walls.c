@@ -106,24 +106,24 @@ static void slide(const Block *r)
 static void test_slides(void **state)
 {
   static const Block blocks[] = {
-    {"mpm", "cell", CELL_QUADRILATERAL, 0, NULL, "thesis", PETSC_FALSE, PETSC_FALSE},
-    {"mpm", "cell", CELL_QUADRILATERAL, 0.2, NULL, "thesis", PETSC_FALSE, PETSC_FALSE},
-    {"mpm", "cell", CELL_QUADRILATERAL, 0.2, NULL, "thesis", PETSC_TRUE, PETSC_FALSE},
-    {"mpm", "cell", CELL_TRIANGLE, 0.2, NULL, "thesis", PETSC_FALSE, PETSC_FALSE},
-    {"mpm", "cell", CELL_QUADRILATERAL, 0.2, NULL, "consistent", PETSC_FALSE, PETSC_FALSE},
-    {"mpm", "cell", CELL_QUADRILATERAL, 0.2, "midpoint", "thesis", PETSC_FALSE, PETSC_FALSE},
-    {"mpm", "cell", CELL_QUADRILATERAL, 0.2, "bossak", "thesis", PETSC_FALSE, PETSC_FALSE},
-    {"mpm", "gimp", CELL_QUADRILATERAL, 0.2, NULL, "thesis", PETSC_FALSE, PETSC_FALSE},
-    {"mpm", "gimp", CELL_QUADRILATERAL, 0.2, NULL, "thesis", PETSC_TRUE, PETSC_FALSE},
-    {"mpm", "gimp", CELL_QUADRILATERAL, 0.2, "midpoint", "consistent", PETSC_FALSE, PETSC_FALSE},
+    {"mpm", "cell", CELL_QUADRILATERAL, 0, NULL, "thesis", PETSC_FALSE, PETSC_FALSE, 0},
+    {"mpm", "cell", CELL_QUADRILATERAL, 0.2, NULL, "thesis", PETSC_FALSE, PETSC_FALSE, 0},
+    {"mpm", "cell", CELL_QUADRILATERAL, 0.2, NULL, "thesis", PETSC_TRUE, PETSC_FALSE, 0},
+    {"mpm", "cell", CELL_TRIANGLE, 0.2, NULL, "thesis", PETSC_FALSE, PETSC_FALSE, 0},
+    {"mpm", "cell", CELL_QUADRILATERAL, 0.2, NULL, "consistent", PETSC_FALSE, PETSC_FALSE, 0},
+    {"mpm", "cell", CELL_QUADRILATERAL, 0.2, "midpoint", "thesis", PETSC_FALSE, PETSC_FALSE, 0},
+    {"mpm", "cell", CELL_QUADRILATERAL, 0.2, "bossak", "thesis", PETSC_FALSE, PETSC_FALSE, 0},
+    {"mpm", "gimp", CELL_QUADRILATERAL, 0.2, NULL, "thesis", PETSC_FALSE, PETSC_FALSE, 0},
+    {"mpm", "gimp", CELL_QUADRILATERAL, 0.2, NULL, "thesis", PETSC_TRUE, PETSC_FALSE, 0},
+    {"mpm", "gimp", CELL_QUADRILATERAL, 0.2, "midpoint", "consistent", PETSC_FALSE, PETSC_FALSE, 0},
     {"mpm", "cell", CELL_QUADRILATERAL, 0.2, NULL, "thesis", PETSC_FALSE, PETSC_FALSE, 500},
     {"fem", "cell", CELL_QUADRILATERAL, 0, NULL, "thesis", PETSC_FALSE, PETSC_FALSE, 1000},
-    {"mpm", "cell", CELL_HEXAHEDRON, 0.2, NULL, "thesis", PETSC_FALSE, PETSC_FALSE},
-    {"fem", "cell", CELL_QUADRILATERAL, 0, NULL, "thesis", PETSC_FALSE, PETSC_FALSE},
-    {"fem", "cell", CELL_QUADRILATERAL, 0.2, NULL, "thesis", PETSC_FALSE, PETSC_FALSE},
-    {"fem", "cell", CELL_QUADRILATERAL, 0.2, "bossak", "thesis", PETSC_FALSE, PETSC_FALSE},
-    {"gmm", "lme", CELL_QUADRILATERAL, 0.2, NULL, "thesis", PETSC_FALSE, PETSC_FALSE},
-    {"gmm", "lme", CELL_QUADRILATERAL, 0.2, "bossak", "thesis", PETSC_FALSE, PETSC_FALSE},
+    {"mpm", "cell", CELL_HEXAHEDRON, 0.2, NULL, "thesis", PETSC_FALSE, PETSC_FALSE, 0},
+    {"fem", "cell", CELL_QUADRILATERAL, 0, NULL, "thesis", PETSC_FALSE, PETSC_FALSE, 0},
+    {"fem", "cell", CELL_QUADRILATERAL, 0.2, NULL, "thesis", PETSC_FALSE, PETSC_FALSE, 0},
+    {"fem", "cell", CELL_QUADRILATERAL, 0.2, "bossak", "thesis", PETSC_FALSE, PETSC_FALSE, 0},
+    {"gmm", "lme", CELL_QUADRILATERAL, 0.2, NULL, "thesis", PETSC_FALSE, PETSC_FALSE, 0},
+    {"gmm", "lme", CELL_QUADRILATERAL, 0.2, "bossak", "thesis", PETSC_FALSE, PETSC_FALSE, 0},
   };
   (void)state;
   for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(blocks); ++k) slide(&blocks[k]);
@@ -151,11 +151,11 @@ static void rest(const Block *r)
 static void test_rests(void **state)
 {
   static const Block blocks[] = {
-    {"mpm", "cell", CELL_QUADRILATERAL, 0.8, NULL, "thesis", PETSC_FALSE, PETSC_FALSE},
-    {"mpm", "gimp", CELL_QUADRILATERAL, 0.8, NULL, "thesis", PETSC_FALSE, PETSC_FALSE},
-    {"mpm", "cell", CELL_HEXAHEDRON, 0.8, NULL, "thesis", PETSC_FALSE, PETSC_FALSE},
-    {"fem", "cell", CELL_QUADRILATERAL, 0.8, NULL, "thesis", PETSC_FALSE, PETSC_FALSE},
-    {"gmm", "lme", CELL_QUADRILATERAL, 0.8, NULL, "thesis", PETSC_FALSE, PETSC_FALSE},
+    {"mpm", "cell", CELL_QUADRILATERAL, 0.8, NULL, "thesis", PETSC_FALSE, PETSC_FALSE, 0},
+    {"mpm", "gimp", CELL_QUADRILATERAL, 0.8, NULL, "thesis", PETSC_FALSE, PETSC_FALSE, 0},
+    {"mpm", "cell", CELL_HEXAHEDRON, 0.8, NULL, "thesis", PETSC_FALSE, PETSC_FALSE, 0},
+    {"fem", "cell", CELL_QUADRILATERAL, 0.8, NULL, "thesis", PETSC_FALSE, PETSC_FALSE, 0},
+    {"gmm", "lme", CELL_QUADRILATERAL, 0.8, NULL, "thesis", PETSC_FALSE, PETSC_FALSE, 0},
   };
   (void)state;
   for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(blocks); ++k) rest(&blocks[k]);
@@ -166,9 +166,9 @@ static void test_rests(void **state)
 static void test_flows(void **state)
 {
   static const Block heaps[] = {
-    {"mpm", "cell", CELL_QUADRILATERAL, 0, NULL, "thesis", PETSC_TRUE, PETSC_TRUE},
-    {"mpm", "cell", CELL_QUADRILATERAL, 0.6, NULL, "thesis", PETSC_TRUE, PETSC_TRUE},
-    {"mpm", "gimp", CELL_QUADRILATERAL, 0.6, "newmark", "thesis", PETSC_TRUE, PETSC_TRUE},
+    {"mpm", "cell", CELL_QUADRILATERAL, 0, NULL, "thesis", PETSC_TRUE, PETSC_TRUE, 0},
+    {"mpm", "cell", CELL_QUADRILATERAL, 0.6, NULL, "thesis", PETSC_TRUE, PETSC_TRUE, 0},
+    {"mpm", "gimp", CELL_QUADRILATERAL, 0.6, "newmark", "thesis", PETSC_TRUE, PETSC_TRUE, 0},
   };
   (void)state;
   for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(heaps); ++k) {
@@ -194,7 +194,7 @@ static void test_flows(void **state)
 /* A wall through the middle of the block. */
 static void test_through(void **state)
 {
-  static const Block block = {"mpm", "cell", CELL_QUADRILATERAL, 0.8, NULL, "thesis", PETSC_FALSE, PETSC_FALSE};
+  static const Block block = {"mpm", "cell", CELL_QUADRILATERAL, 0.8, NULL, "thesis", PETSC_FALSE, PETSC_FALSE, 0};
   Bench b;
   WallSpec wall;
   (void)state;
