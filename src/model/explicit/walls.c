@@ -40,8 +40,8 @@ static PetscReal beside_spring(const Explicit *e, const ContactPoint *c)
   return c->before == CONTACT_OPEN ? 0 : kept + c->law.penalty * c->open;
 }
 
-/* Over that of a cell: what is bonded bends where it is held, and its spring is as stiff as the substep lets it be: half
- * a layer of cells, rho A h / 2, between it and the next cell has omega^2 = 2 (1 + stiffness) c^2 / h^2. */
+/* Over that of a cell: what is bonded bends where it is held, and its spring is as stiff as the substep lets it be:
+ * half a layer of cells, rho A h / 2, between it and the next cell has omega^2 = 2 (1 + stiffness) c^2 / h^2. */
 static PetscReal stiffness(const Model *m, const ContactLaw *law)
 {
   if (law->kind != CONTACT_BONDED) return 1;

@@ -69,8 +69,8 @@ PetscErrorCode NewtonForcing(Newton *n);
 /* newton_residual.c. Residual (and tangent values) at problem->du. A point that fails makes the
  * status of all ranks bad. Collective. */
 PetscErrorCode NewtonAssemble(Newton *n, PetscBool tangent);
-/* newton_augment.c. Multipliers nearer to what they shall be, and residual and tangent with them, at the du that there is;
- * *again: must the iteration go on? Collective. */
+/* newton_augment.c. Multipliers nearer to what they shall be, and residual and tangent with them, at the du that
+ * there is; *again: must the iteration go on? Collective. */
 PetscErrorCode NewtonAugment(Newton *n, PetscBool *again);
 /* Norms of reactions, those of walls too, and of external forces, over owned dofs. Collective. */
 PetscErrorCode NewtonWeigh(Newton *n);

@@ -11,8 +11,8 @@ static PetscReal external_force(const StepProblem *p, PetscInt i)
   return p->external[i] + (b && !b->follows ? (b->factor - b->start) * b->load[i] : 0);
 }
 
-/* Internal and inertia forces -> residual. Nodes without unknowns have no forces: they are often most of a grid, and are
- * left alone. */
+/* Internal and inertia forces -> residual. Nodes without unknowns have no forces: they are often most of a grid, and
+ * are left alone. */
 static void balance(const StepProblem *p)
 {
   const PetscInt dim = p->grid->dim;

@@ -1,5 +1,5 @@
-/* Impulses by the lumped mass: preconditioned conjugate gradients over them, since all nodes that they move are those of the
- * contact points. */
+/* Impulses by the lumped mass: preconditioned conjugate gradients over them, since all nodes that they move are those
+ * of the contact points. */
 #include "solve/contact/impulse/impulse.h"
 
 #define MOST_SWEEPS 60
