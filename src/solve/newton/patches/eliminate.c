@@ -32,6 +32,7 @@ PetscErrorCode EliminationSetUp(Elimination *e, const StepProblem *p)
   PetscCall(PetscSFComputeDegreeEnd(grid->node_sf, &degree));
   for (PetscInt i = 0; i < n; ++i) {
     e->own[i] = i < grid->n_owned && degree[i] == 0;
+    e->live[i] = 0;
     e->place[i] = -1;
   }
   PetscFunctionReturn(0);
