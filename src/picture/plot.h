@@ -35,6 +35,8 @@ typedef struct {
   PetscBool turned;   /* the whole body in space, with a quarter cut out */
   const char *out;    /* its ending is the format; NULL: RUN/pictures/state_... */
   const char *format; /* png svg pdf: of pictures whose name is chosen; NULL: png */
+  /* what bounds bodies of meshes, for many pictures of a run; NULL: read for each */
+  struct PlotContours *contours;
 } PlotOptions;
 
 typedef struct {

@@ -12,6 +12,7 @@ enum { W = 400, MOST = 4000 };
 typedef struct {
   Case c;
   BodySpec body;
+  PlotContours *contours;
   PlotFrame f;
   PetscReal zero[MOST];
 } Drawing;
@@ -29,6 +30,32 @@ static void move_back(PetscReal bend, const PetscReal *x, PetscReal *X)
   const PetscReal c = cos(40 * PETSC_PI / 180), s = sin(40 * PETSC_PI / 180);
   X[0] = (c * x[0] + s * x[1]) / 1.25;
   X[1] = (-s * x[0] + c * x[1] - bend * X[0] * X[0]) / 0.8;
+}
+
+/* Edges of a ring, both of whose circles are polygons of n corners. */
+enum { CORNERS = 40 };
+static const PetscReal ring_middle[2] = {0.013, -0.021}, ring_radius[2] = {0.62, 0.27};
+
+static void ring_corner(int circle, int k, PetscReal *x)
+{
+  const PetscReal angle = 2 * PETSC_PI * k / CORNERS;
+  x[0] = ring_middle[0] + ring_radius[circle] * cos(angle), x[1] = ring_middle[1] + ring_radius[circle] * sin(angle);
+}
+
+static PlotContours *create_ring(void)
+{
+  PlotContours *ring;
+  PetscReal(*edge)[4];
+  assert_int_equal(PetscNew(&ring), 0);
+  assert_int_equal(PetscCalloc1(1, &ring->body), 0);
+  assert_int_equal(PetscMalloc1(2 * CORNERS, &edge), 0);
+  ring->n = 1;
+  for (int k = 0; k < 2 * CORNERS; ++k) {
+    ring_corner(k / CORNERS, k, edge[k]);
+    ring_corner(k / CORNERS, k + 1, edge[k] + 2);
+  }
+  assert_int_equal(ContourCreate(2 * CORNERS, edge, ring->body), 0);
+  return ring;
 }
 
 /* Points as cut cells have them: in the middle of what of a quarter of a cell lies in the shape. */
@@ -69,6 +96,7 @@ static void destroy(Drawing *d)
   assert_int_equal(PetscFree3(d->f.x, d->f.value, d->f.radius), 0);
   assert_int_equal(PetscFree2(d->f.first, d->f.first_radius), 0);
   assert_int_equal(PetscFree3(d->f.shape, d->f.knows, d->f.back), 0);
+  assert_int_equal(PetscFree(d->f.there), 0);
   assert_int_equal(PetscFree(d), 0);
 }
 
@@ -84,8 +112,8 @@ static PetscReal draw(Drawing *d, PetscReal bend, PetscBool moved, PetscBool kno
   assert_int_equal(PlotSpacing(2, f->n, f->x, f->radius), 0);
   assert_int_equal(PlotSpacing(2, f->n, f->first, f->first_radius), 0);
   assert_int_equal(PlotQuantile(f->n, f->radius, 0.5, &gap), 0);
-  if (known && !f->shape) assert_int_equal(PlotShapes(&d->c, f), 0);
-  const PlotOutline outline = {.c = &d->c, .frame = f};
+  if (known && !f->shape) assert_int_equal(PlotShapes(&d->c, d->contours, f), 0);
+  const PlotOutline outline = {.c = &d->c, .contours = d->contours, .frame = f};
   const RasterScene scene = {.n = f->n,
                              .x = f->x,
                              .radius = f->radius,
@@ -103,12 +131,12 @@ static PetscReal draw(Drawing *d, PetscReal bend, PetscBool moved, PetscBool kno
   return area;
 }
 
-/* Along a ray from the origin in direction (ex, ey): how far the body is drawn, m. */
-static PetscReal reach(const unsigned char *rgba, PetscReal ex, PetscReal ey)
+/* Along a ray from the origin in direction (ex, ey), from a place in the body on: how far that is drawn, m. */
+static PetscReal reach(const unsigned char *rgba, PetscReal from, PetscReal ex, PetscReal ey)
 {
-  PetscReal sum = 0;
+  PetscReal sum = from;
   const PetscReal step = 0.1 * 2. / W;
-  for (PetscReal r = 0; r < 1; r += step) {
+  for (PetscReal r = from; r < 1; r += step) {
     const int i = (int)((r * ex + 1) / 2 * W), j = (int)((r * ey + 1) / 2 * W);
     if (i >= 0 && j >= 0 && i < W && j < W) sum += rgba[4 * (j * W + i) + 3] / 255. * step;
   }
@@ -117,18 +145,25 @@ static PetscReal reach(const unsigned char *rgba, PetscReal ex, PetscReal ey)
 
 static const Shape disk = {.kind = SHAPE_BALL, .centre = {0.013, -0.021, 0}, .radius = 0.62};
 
-/* The radius at which the outline of the disk began, by the angle: its mean, and the largest distance from the disk's. */
-static PetscReal uneven(Drawing *d, PetscReal bend, PetscBool moved, const unsigned char *rgba)
+/* How far a place is out of the disk, or of a polygon with its corners on it, m. */
+static PetscReal outside(const PetscReal *X, PetscInt corners)
+{
+  const PetscReal r[2] = {X[0] - disk.centre[0], X[1] - disk.centre[1]},
+                  sector = 2 * PETSC_PI / (corners ? corners : 1);
+  const PetscReal angle = atan2(r[1], r[0]), off = angle - (floor(angle / sector) + 0.5) * sector;
+  return corners ? hypot(r[0], r[1]) * cos(off) - disk.radius * cos(sector / 2) : hypot(r[0], r[1]) - disk.radius;
+}
+
+/* The outline at 360 angles, moved back: the largest distance from that of the body. */
+static PetscReal uneven(PetscInt corners, PetscReal bend, PetscBool moved, const unsigned char *rgba)
 {
   PetscReal worst = 0;
-  (void)d;
   for (int k = 0; k < 360; ++k) {
-    const PetscReal e[2] = {cos(k * PETSC_PI / 180), sin(k * PETSC_PI / 180)}, r = reach(rgba, e[0], e[1]);
-    const PetscReal x[2] = {r * e[0], r * e[1]};
+    const PetscReal e[2] = {cos(k * PETSC_PI / 180), sin(k * PETSC_PI / 180)};
+    const PetscReal r = reach(rgba, corners ? 0.45 : 0, e[0], e[1]), x[2] = {r * e[0], r * e[1]};
     PetscReal X[2] = {x[0], x[1]};
     if (moved) move_back(bend, x, X);
-    const PetscReal radius = hypot(X[0] - disk.centre[0], X[1] - disk.centre[1]);
-    worst = PetscMax(worst, PetscAbsReal(radius - disk.radius));
+    worst = PetscMax(worst, PetscAbsReal(outside(X, corners)));
   }
   return worst;
 }
@@ -142,8 +177,8 @@ static void test_disk(void **state)
     const PetscBool moved = (PetscBool)(k > 0);
     const PetscReal bend = k == 2 ? 0.25 : 0;
     Drawing *d = create(disk);
-    const PetscReal balls = draw(d, bend, moved, PETSC_FALSE, rgba), scallops = uneven(d, bend, moved, rgba);
-    const PetscReal drawn = draw(d, bend, moved, PETSC_TRUE, rgba), off = uneven(d, bend, moved, rgba);
+    const PetscReal balls = draw(d, bend, moved, PETSC_FALSE, rgba), scallops = uneven(0, bend, moved, rgba);
+    const PetscReal drawn = draw(d, bend, moved, PETSC_TRUE, rgba), off = uneven(0, bend, moved, rgba);
     printf("disk %d: area off %.2g (balls %.2g), radius %.2g (%.2g) of a cell\n", k, (double)(drawn / area - 1),
            (double)(balls / area - 1), (double)(off / H), (double)(scallops / H));
     assert_true(fabs(drawn / area - 1) < 2e-3); /* motion keeps areas */
@@ -194,16 +229,101 @@ static void test_unknown(void **state)
       d->f.x[3 * i + k] = d->f.first[3 * i + k] + (k == 2 ? 0 : H * ((i * (k ? 7 : 11)) % 13 - 6) / 6);
   assert_int_equal(PlotSpacing(2, d->f.n, d->f.x, d->f.radius), 0);
   assert_int_equal(PlotSpacing(2, d->f.n, d->f.first, d->f.first_radius), 0);
-  assert_int_equal(PlotShapes(&d->c, &d->f), 0);
+  assert_int_equal(PlotShapes(&d->c, NULL, &d->f), 0);
   for (PetscInt i = 0; i < d->f.n; ++i) knowing += d->f.knows[i];
   printf("torn: %d of %d points know\n", (int)knowing, (int)d->f.n);
   assert_true(knowing < d->f.n / 20);
   destroy(d);
 }
 
+/* Points of a mesh between two circles: four in each cell, as Gauss's rule has them. */
+static void seed_ring(Drawing *d)
+{
+  enum { LAYERS = 4 };
+  const PetscReal gauss[2] = {0.5 - sqrt(3) / 6, 0.5 + sqrt(3) / 6};
+  PetscReal a[2], b[2], in[2], out[2];
+  d->f.n = 0;
+  for (int k = 0; k < CORNERS * 2; ++k)
+    for (int l = 0; l < LAYERS * 2; ++l) {
+      const PetscReal t = gauss[k % 2], s = (l / 2 + gauss[l % 2]) / LAYERS;
+      PetscReal *first = d->f.first + 3 * d->f.n++;
+      for (int circle = 0; circle < 2; ++circle) {
+        ring_corner(circle, k / 2, a), ring_corner(circle, k / 2 + 1, b);
+        for (int i = 0; i < 2; ++i) (circle ? in : out)[i] = (1 - t) * a[i] + t * b[i];
+      }
+      for (int i = 0; i < 2; ++i) first[i] = (1 - s) * out[i] + s * in[i];
+      first[2] = 0;
+    }
+  d->f.n_first = d->f.n;
+}
+
+/* A body of its own mesh has the outline of that, inside and outside. */
+static void test_mesh(void **state)
+{
+  static unsigned char rgba[4 * W * W];
+  const PetscReal size = 0.5 * CORNERS * sin(2 * PETSC_PI / CORNERS), inner = ring_radius[1] * ring_radius[1],
+                  area = size * (ring_radius[0] * ring_radius[0] - inner), cell = 2 * PETSC_PI * 0.62 / CORNERS;
+  (void)state;
+  for (int k = 0; k < 3; ++k) {
+    const PetscBool moved = (PetscBool)(k > 0);
+    const PetscReal bend = k == 2 ? 0.25 : 0;
+    Drawing *d = create((Shape){.kind = SHAPE_BALL, .centre = {9, 9, 0}, .radius = 0.1});
+    d->body.has_shape = PETSC_FALSE, d->body.mesh = (char *)(uintptr_t) "ring.msh";
+    seed_ring(d);
+    const PetscReal balls = draw(d, bend, moved, PETSC_FALSE, rgba), scallops = uneven(CORNERS, bend, moved, rgba);
+    d->contours = create_ring();
+    const PetscReal drawn = draw(d, bend, moved, PETSC_TRUE, rgba), off = uneven(CORNERS, bend, moved, rgba);
+    printf("ring %d: area off %.2g (balls %.2g), radius %.2g (%.2g) of a cell\n", k, (double)(drawn / area - 1),
+           (double)(balls / area - 1), (double)(off / cell), (double)(scallops / cell));
+    assert_true(fabs(drawn / area - 1) < 2e-3);
+    assert_true(off < 0.6 * 2. / W + (k == 2 ? 0.03 * cell : 0));
+    assert_int_equal(PlotContoursDestroy(&d->contours), 0);
+    destroy(d);
+  }
+}
+
+/* Whole cells of a box bound a body as stairs, and neither the grid's other cells nor borders within it do. */
+static void test_cells(void **state)
+{
+  BodySpec body = {.name = "disk", .has_shape = PETSC_TRUE, .shape = disk, .fill = FILL_CELLS};
+  const Case c = {.kinematics = &kinematics_plane_strain,
+                  .method = (char *)(uintptr_t) "mpm",
+                  .n_bodies = 1,
+                  .bodies = &body,
+                  .grid = {.kind = GRID_BOX,
+                           .cell = CELL_QUADRILATERAL,
+                           .min = {-1, -1},
+                           .max = {1, 1},
+                           .counts = {20, 20},
+                           .grading = {1, 1, 1}}};
+  PlotContours *contours;
+  PetscReal length = 0, stairs = 0;
+  (void)state;
+  assert_int_equal(PlotContoursCreate(&c, &contours), 0);
+  const Contour *contour = &contours->body[0];
+  for (PetscInt i = 0; i < contour->n; ++i) {
+    const PetscReal *e = contour->edge[i];
+    length += hypot(e[2] - e[0], e[3] - e[1]);
+  }
+  for (int k = 0; k < 400; ++k) { /* middles of cells are held as the shape holds them */
+    const PetscReal x[3] = {-1 + H * (k % 20 + 0.5), -1 + H * (k / 20 + 0.5), 0};
+    const PetscBool in = shape_contains(&disk, 2, x, 0);
+    assert_int_equal(contour_holds(contour, x), in);
+    assert_false(contour_near(contour, x, 0.49 * H));
+    for (int side = 0; side < 2; ++side) {
+      PetscReal next[3] = {x[0], x[1], 0};
+      next[side] += H;
+      stairs += in != shape_contains(&disk, 2, next, 0) ? H : 0;
+    }
+  }
+  assert_true(fabs(length - stairs) < 1e-12);
+  assert_int_equal(PlotContoursDestroy(&contours), 0);
+}
+
 static int Tests(void)
 {
   const struct CMUnitTest tests[] = {cmocka_unit_test(test_disk), cmocka_unit_test(test_corners),
+                                     cmocka_unit_test(test_mesh), cmocka_unit_test(test_cells),
                                      cmocka_unit_test(test_unknown)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

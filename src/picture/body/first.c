@@ -70,7 +70,7 @@ PetscErrorCode PlotFirstShape(PlotScene *scene)
     PlotFrame *f = &scene->frames[k];
     if (f->first && !f->first_corner) PetscCall(PlotSpacing(2, f->n_first, f->first, f->first_radius));
     if (!f->first_corner) PetscCall(SizeParts(f));
-    if (f->first && !f->first_corner) PetscCall(PlotShapes(scene->walled, f));
+    if (f->first && !f->first_corner) PetscCall(PlotShapes(scene->walled, scene->contours, f));
     if (scene->bare || scene->turned) continue;
     if (f->first && !f->first_corner) include(f->first, f->n_first, min, max);
     if (f->first_corner) include(f->first_corner, 3 * f->n_triangles, min, max);
@@ -112,7 +112,7 @@ static PetscErrorCode DrawFirst(const PlotScene *scene, const PlotFrame *f, cons
                                 unsigned char *rgba)
 {
   const PetscReal pixel = (page->max[0] - page->min[0]) / page->w;
-  const PlotOutline outline = {.c = scene->walled, .frame = f, .first = PETSC_TRUE};
+  const PlotOutline outline = {.c = scene->walled, .contours = scene->contours, .frame = f, .first = PETSC_TRUE};
   RasterScene raster = {.width = page->w + 2 * around, .height = page->h + 2 * around};
   PetscReal *zero;
 

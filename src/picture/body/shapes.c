@@ -1,30 +1,58 @@
-/* The outline of bodies whose shapes the case tells: a place on the page belongs to one if the place where its material
- * began lies in the shape. Points next to the surface know where that is from those around them. */
+/* The outline of bodies whose shapes or meshes the case tells: a place on the page belongs to one if the place where its
+ * material began lies in the shape, or in the mesh. Points next to the surface know where that is from those around
+ * them. */
 #include <math.h>
 #include "grid/search/neighbours.h"
 #include "method/method.h"
 #include "picture/scene/scene.h"
 
 enum { MOST_AROUND = 24, LEAST_AROUND = 4, MOST_BODIES = 250 };
-/* Of a ball's radius: how far around it neighbours say how it moved, and how deep points next to the surface began. */
+enum { INNER = 1, OUTER = 2 }; /* of `knows` */
+/* Of a ball's radius: how far around it neighbours say how it moved, how deep points next to the surface began, and the
+ * outermost of them. */
 #define AROUND 2.5
 #define DEEP 2.2
+#define OUTERMOST 1.3
+/* Of the neighbours of a point that knows, so many do, too. */
+#define OUTER_SHARE 0.5
+#define INNER_SHARE 0.25
 /* Of the distances at the start: what neighbours may have moved otherwise than evenly. */
 #define UNEVEN 0.15
 #define MOST_STRETCH 4.
 
-/* Where a place of the section was: on the other side of the axis it is as on this one. */
-static PetscBool shape_holds(const Case *c, PetscInt body, const PetscReal *x, PetscReal tolerance)
+static PetscBool fills_shape(const Case *c, PetscInt body)
 {
-  const PetscReal at[3] = {c->kinematics->hoop ? fabs(x[0]) : x[0], x[1], 0};
-  return shape_contains(&c->bodies[body].shape, 2, at, tolerance);
+  return body_fills_shape(&c->bodies[body], method_find(c->method)->restores_grid);
 }
 
-/* The body that a point began in, if it fills a shape whose surface is near; -1. */
-static PetscInt body_near(const Case *c, const unsigned char *fills, const PetscReal *first, PetscReal deep)
+static const Contour *contour_of(const PlotContours *contours, PetscInt body)
+{
+  return contours && contours->body[body].n ? &contours->body[body] : NULL;
+}
+
+/* Does the body fill its shape, as far as its mesh or the region goes, if one bounds it? Else that alone bounds it. */
+static PetscBool is_known(const Case *c, const PlotContours *contours, PetscInt body)
+{
+  const BodySpec *spec = &c->bodies[body];
+  return (PetscBool)(contour_of(contours, body) || (fills_shape(c, body) && !spec->region && !spec->mesh));
+}
+
+/* Was a place of the section in the body, so deep or deeper? On the other side of the axis it is as on this one, and
+ * where that cuts the section there is no surface. */
+static PetscBool body_holds(const Case *c, const PlotContours *contours, PetscInt body, const PetscReal *x,
+                            PetscReal deep)
+{
+  const PetscReal at[3] = {c->kinematics->hoop ? PetscMax(fabs(x[0]), 1.001 * deep) : x[0], x[1], 0};
+  const Contour *contour = contour_of(contours, body);
+  if (fills_shape(c, body) && !shape_contains(&c->bodies[body].shape, 2, at, -deep)) return PETSC_FALSE;
+  return (PetscBool)(!contour || (contour_holds(contour, at) && !(deep > 0 && contour_near(contour, at, deep))));
+}
+
+/* The body that a point began in, if its outline is known; -1. */
+static PetscInt body_of(const Case *c, const PlotContours *contours, const unsigned char *known, const PetscReal *first)
 {
   for (PetscInt b = 0; b < c->n_bodies; ++b)
-    if (fills[b] && shape_holds(c, b, first, 0)) return shape_holds(c, b, first, -deep) ? -1 : b;
+    if (known[b] && body_holds(c, contours, b, first, 0)) return b;
   return -1;
 }
 
@@ -58,26 +86,69 @@ static PetscBool fit(const PlotFrame *f, PetscInt p, PetscInt n, const PetscInt 
                      B[0] * B[3] - B[1] * B[2] > 1 / MOST_STRETCH);
 }
 
-/* Points of one body next to its surface. */
-static PetscErrorCode FitAll(const Neighbours *points, PlotFrame *f)
+/* What is asked of the points of a frame. */
+typedef struct {
+  const Case *c;
+  const PlotContours *contours;
+  const Neighbours *points;
+  const unsigned char *body; /* of each point, from 1 */
+  PlotFrame *f;
+} Fit;
+
+/* Points around p of its own body, and their squared distances. */
+static PetscInt around(const Fit *of, PetscInt p, PetscInt *item, PetscReal *square)
 {
+  PetscInt kept = 0;
+  const PetscInt n =
+    neighbours_within(of->points, of->f->x + 3 * p, AROUND * of->f->radius[p], MOST_AROUND, item, square);
+  for (PetscInt k = 0; k < n; ++k)
+    if (of->body[item[k]] == of->body[p]) item[kept] = item[k], square[kept++] = square[k];
+  return kept;
+}
+
+/* Those that began next to the surface, and whose neighbours moved alike. */
+static void fit_all(const Fit *of)
+{
+  PlotFrame *f = of->f;
+  PetscInt item[MOST_AROUND];
+  PetscReal square[MOST_AROUND];
+  for (PetscInt p = 0; p < f->n; ++p) {
+    const PetscReal radius = AROUND * f->radius[p], *first = f->first + 3 * p;
+    const PetscInt body = f->shape[p] - 1;
+    f->knows[p] = 0;
+    if (body < 0) continue;
+    const PetscInt n = around(of, p, item, square);
+    if (n < LEAST_AROUND || !fit(f, p, n, item, square, radius * radius, f->back + 6 * p)) continue;
+    f->knows[p] = body_holds(of->c, of->contours, body, first, OUTERMOST * f->first_radius[p]) ? INNER : OUTER;
+  }
+}
+
+/* A surface that flow has made has few points of the first one, each for itself: they know nothing more of it. */
+static PetscErrorCode DropLonely(const Fit *of)
+{
+  PlotFrame *f = of->f;
+  unsigned char *before;
   PetscInt item[MOST_AROUND];
   PetscReal square[MOST_AROUND];
 
   PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(f->n, &before));
+  PetscCall(PetscArraycpy(before, f->knows, f->n));
   for (PetscInt p = 0; p < f->n; ++p) {
-    const PetscReal radius = AROUND * f->radius[p];
-    f->knows[p] = 0;
-    if (!f->shape[p]) continue;
-    const PetscInt n = neighbours_within(points, f->x + 3 * p, radius, MOST_AROUND, item, square);
-    f->knows[p] = n >= LEAST_AROUND && fit(f, p, n, item, square, radius * radius, f->back + 6 * p);
+    PetscInt alike = 0;
+    if (!before[p]) continue;
+    const PetscInt n = around(of, p, item, square);
+    for (PetscInt k = 0; k < n; ++k) alike += before[item[k]] != 0;
+    if (alike < (before[p] == OUTER ? OUTER_SHARE : INNER_SHARE) * n) f->knows[p] = 0;
   }
+  PetscCall(PetscFree(before));
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode PlotShapes(const Case *c, PlotFrame *f)
+PetscErrorCode PlotShapes(const Case *c, const PlotContours *contours, PlotFrame *f)
 {
-  unsigned char fills[MOST_BODIES] = {0};
+  unsigned char known[MOST_BODIES] = {0};
+  unsigned char *body;
   PetscReal *x, far = 0;
   PetscBool any = PETSC_FALSE;
   Neighbours points;
@@ -85,31 +156,49 @@ PetscErrorCode PlotShapes(const Case *c, PlotFrame *f)
   PetscFunctionBeginUser;
   if (!c || c->n_bodies > MOST_BODIES || f->n != f->n_first || !f->n) PetscFunctionReturn(0);
   for (PetscInt b = 0; b < c->n_bodies; ++b) {
-    const BodySpec *body = c->bodies + b;
-    fills[b] = body_fills_shape(body, method_find(c->method)->restores_grid) && !body->region && !body->mesh;
-    any = (PetscBool)(any || fills[b]);
+    known[b] = is_known(c, contours, b);
+    any = (PetscBool)(any || known[b]);
   }
   if (!any) PetscFunctionReturn(0);
   PetscCall(PetscMalloc3(f->n, &f->shape, f->n, &f->knows, 6 * f->n, &f->back));
-  PetscCall(PetscMalloc1(2 * f->n, &x));
+  PetscCall(PetscCalloc1(c->n_bodies, &f->there));
+  PetscCall(PetscMalloc2(2 * f->n, &x, f->n, &body));
   for (PetscInt p = 0; p < f->n; ++p) {
-    f->shape[p] = (unsigned char)(1 + body_near(c, fills, f->first + 3 * p, DEEP * f->first_radius[p]));
+    const PetscInt of = body_of(c, contours, known, f->first + 3 * p);
+    body[p] = (unsigned char)(1 + of);
+    if (of >= 0) f->there[of] = 1;
+    f->shape[p] = of >= 0 && body_holds(c, contours, of, f->first + 3 * p, DEEP * f->first_radius[p]) ? 0 : body[p];
     far = PetscMax(far, f->radius[p]);
     for (int d = 0; d < 2; ++d) x[2 * p + d] = f->x[3 * p + d];
   }
   PetscCall(NeighboursCreate(2, f->n, x, 0, NULL, NULL, far, &points));
-  PetscCall(FitAll(&points, f));
+  const Fit all = {.c = c, .contours = contours, .points = &points, .body = body, .f = f};
+  fit_all(&all);
+  PetscCall(DropLonely(&all));
   PetscCall(NeighboursDestroy(&points));
-  PetscCall(PetscFree(x));
+  PetscCall(PetscFree2(x, body));
   PetscFunctionReturn(0);
 }
 
-PetscBool plot_shape_holds(const void *of, PetscInt p, const PetscReal *x)
+/* Does another body hold the place that sticks to this one, since no interface is between them? */
+static PetscBool neighbour_holds(const PlotOutline *o, PetscInt body, const PetscReal *x)
+{
+  for (PetscInt b = 0; b < o->c->n_bodies; ++b)
+    if (b != body && o->frame->there[b] && case_field(o->c, b) == case_field(o->c, body) &&
+        body_holds(o->c, o->contours, b, x, 0))
+      return PETSC_TRUE;
+  return PETSC_FALSE;
+}
+
+RasterHeld plot_shape_holds(const void *of, PetscInt p, const PetscReal *x)
 {
   const PlotOutline *o = of;
   const PlotFrame *f = o->frame;
   const PetscReal *back = f->back + 6 * p, *B = back + 2;
   const PetscReal r[2] = {x[0] - f->x[3 * p], x[1] - f->x[3 * p + 1]};
   const PetscReal began[2] = {back[0] + B[0] * r[0] + B[1] * r[1], back[1] + B[2] * r[0] + B[3] * r[1]};
-  return shape_holds(o->c, f->shape[p] - 1, o->first ? x : began, 0);
+  const PetscReal *at = o->first ? x : began;
+  const PetscInt body = f->shape[p] - 1;
+  if (!body_holds(o->c, o->contours, body, at, 0)) return neighbour_holds(o, body, at) ? RASTER_NEAR : RASTER_OUTSIDE;
+  return o->first || f->knows[p] == OUTER ? RASTER_NEAR : RASTER_DEEP;
 }

@@ -11,6 +11,10 @@ void palette_colour(PetscReal value, PetscReal rgb[3]);
 #define PALETTE_NAMES 10
 extern const unsigned char palette_names[PALETTE_NAMES][3];
 
+/* Where a place is: outside of the body next to whose surface its point began, inside with a point of the outermost, or
+ * with one of those behind them. */
+typedef enum { RASTER_OUTSIDE, RASTER_NEAR, RASTER_DEEP } RasterHeld;
+
 typedef struct {
   PetscInt n;
   const PetscReal *x;        /* n x 3: right, up, towards the eye, m */
@@ -30,9 +34,9 @@ typedef struct {
    * drawn back by half their radius, to where the material ends; 0: neither */
   PetscReal gap;
   /* with a gap, n: which points know the outline next to them, and does the body hold a place next to such a point? Of
-   * what balls cover there, or what is drawn back, this part is shown; NULL: none knows */
+   * the outermost all that balls cover is shown there, of others what is drawn back; NULL: none knows */
   const unsigned char *knows;
-  PetscBool (*holds)(const void *of, PetscInt p, const PetscReal *x);
+  RasterHeld (*holds)(const void *of, PetscInt p, const PetscReal *x);
   const void *of;
   PetscReal min[2], max[2]; /* what the image shows, m */
   int width, height;        /* pixels */

@@ -50,11 +50,14 @@ static PetscErrorCode Grow(PetscReal gap, Room *room)
   PetscFunctionReturn(0);
 }
 
-/* Where points know the outline. */
-static PetscBool holds(const RasterScene *scene, const Canvas *canvas, PetscInt p, int i, int j)
+/* Where points know the outline: is a sample shown that is drawn back, `in`, or not? Where others than the outermost have
+ * come to a surface, flow has made it. */
+static PetscBool shows(const RasterScene *scene, const Canvas *canvas, PetscInt p, int i, int j, PetscBool in)
 {
   const PetscReal x[2] = {(i + 0.5) / canvas->scale + scene->min[0], (j + 0.5) / canvas->scale + scene->min[1]};
-  return scene->holds(scene->of, p, x);
+  const RasterHeld held = scene->holds(scene->of, p, x);
+  const PetscBool covered = (PetscBool)(in || canvas->point[canvas_at(canvas, i, j)] >= 0);
+  return held == RASTER_NEAR ? covered : held == RASTER_DEEP ? in : PETSC_FALSE;
 }
 
 PetscErrorCode CanvasShape(const RasterScene *scene, Canvas *canvas)
@@ -76,7 +79,7 @@ PetscErrorCode CanvasShape(const RasterScene *scene, Canvas *canvas)
       PetscBool in = (PetscBool)(p >= 0 && room.distance[at] > back);
       const PetscReal deep = p < 0 ? 0 : back + canvas_radius(scene, canvas, p); /* surfaces that met are no more */
       if (p >= 0 && scene->knows && scene->knows[p] && room.distance[at] <= deep)
-        in = (PetscBool)((in || canvas->point[canvas_at(canvas, i, j)] >= 0) && holds(scene, canvas, p, i, j));
+        in = shows(scene, canvas, p, i, j, in);
       canvas->point[canvas_at(canvas, i, j)] = in ? p : -1;
     }
   PetscCall(PetscFree3(room.in, room.distance, room.nearest));

@@ -1,5 +1,4 @@
-/* All states one after the other, in one set of colours and on one page. Each is read twice, so
- * that no more than one is
+/* All states one after the other, in one set of colours and on one page. Each is read twice, so that no more than one is
  * in memory: first for the range of its values and the room that it takes, then to be drawn. */
 #include <string.h>
 #include "output/directory/run_dir_files.h"
@@ -26,6 +25,7 @@ static PetscErrorCode Widen(Film *film, const VtkState *state, Diag *diag, PlotS
   PlotOptions options = film->options;
   options.has_range = given;
   PetscCall(PlotSceneFill(&options, 1, state, subject, diag, &scene));
+  if (!film->options.contours) film->options.contours = scene.contours, scene.contours = NULL;
   if (!diag_errors(diag)) {
     for (int d = 0; d < 3; ++d) {
       film->min[d] = film->any ? PetscMin(film->min[d], scene.box_min[d]) : scene.box_min[d];
@@ -117,6 +117,7 @@ PetscErrorCode PlotAnimate(const PlotOptions *options, Diag *diag, void (*said)(
     diag_hint(diag, "output: {every: ...} says when states are written");
   } else if (options->out || plot_folder(options->run, diag))
     PetscCall(DrawAll(&film, series.n, series.states, diag, said));
+  PetscCall(PlotContoursDestroy(&film.options.contours));
   PetscCall(VtkSeriesFree(&series));
   PetscFunctionReturn(0);
 }

@@ -250,6 +250,7 @@ PetscErrorCode PlotFramesFree(PlotScene *scene)
     PetscCall(PetscFree(f->first_corner));
     PetscCall(PetscFree(f->part));
     PetscCall(PetscFree3(f->shape, f->knows, f->back));
+    PetscCall(PetscFree(f->there));
     PetscCall(PetscFree(f->line));
     PetscCall(PetscFree(f->edges));
     PetscCall(PetscFree(f->arrow));

@@ -33,7 +33,7 @@ static PetscErrorCode Balls(const PlotScene *scene, const PlotFrame *f, RasterSc
   raster->n_lines = f->n_lines, raster->line = f->line;
   raster->named = scene->named;
   raster->gap = f->gap;
-  const PlotOutline outline = {.c = scene->walled, .frame = f};
+  const PlotOutline outline = {.c = scene->walled, .contours = scene->contours, .frame = f};
   raster->knows = f->knows, raster->holds = plot_shape_holds, raster->of = &outline;
   PetscCall(RasterDraw(raster, rgba));
   PetscCall(PetscFree2(colour, corner));

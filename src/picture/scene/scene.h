@@ -2,7 +2,9 @@
 #pragma once
 #include <petscsys.h>
 #include <stdio.h>
+#include "picture/body/contours.h"
 #include "picture/plot.h"
+#include "picture/raster/raster.h"
 #include "picture/scene/field.h"
 #include "output/vtk/vtk_read.h"
 #include "output/vtk/vtk_series.h"
@@ -36,11 +38,13 @@ typedef struct {
    * where places around them began, and where (n x 6: body/shapes.c). NULL: of none */
   unsigned char *shape, *knows;
   PetscReal *back;
+  unsigned char *there; /* of each body whose outline is known: has it points? */
 } PlotFrame;
 
 /* Whose outline is drawn: of a frame, as it is or as it was at first. */
 typedef struct {
   const Case *c;
+  const PlotContours *contours; /* NULL: none */
   const PlotFrame *frame;
   PetscBool first;
 } PlotOutline;
@@ -69,6 +73,8 @@ typedef struct {
   PetscBool turned;     /* in space, of points that lie in the plane, on both sides */
   Case *walled;         /* the run's case, with walls and names; NULL: it cannot be read */
   Walls *walls;
+  PlotContours *contours;           /* of bodies of meshes, in the plane; NULL */
+  PetscBool borrowed;               /* are they those of the options? */
   PlotOrigin origin;                /* of runs that do not write displacements */
   PetscReal box_min[3], box_max[3]; /* of all points (and the grid), before the projection */
 } PlotScene;
@@ -156,10 +162,10 @@ void plot_blend(unsigned char *rgba, PetscReal grey, PetscReal alpha);
 PetscErrorCode PlotOriginRead(const char *run, PlotOrigin *origin);
 PetscErrorCode PlotOriginFree(PlotOrigin *origin);
 PetscErrorCode PlotOriginDisplacement(const PlotOrigin *origin, VtkFile *file, const PetscReal *x, PetscReal **u);
-/* body/shapes.c: find points next to the surface of shapes, and how the material there moved. */
-PetscErrorCode PlotShapes(const Case *c, PlotFrame *frame);
+/* body/shapes.c: find points next to the surface of shapes and meshes, and how the material there moved. */
+PetscErrorCode PlotShapes(const Case *c, const PlotContours *contours, PlotFrame *frame);
 /* RasterScene's `holds`, of a PlotOutline. */
-PetscBool plot_shape_holds(const void *of, PetscInt p, const PetscReal *x);
+RasterHeld plot_shape_holds(const void *of, PetscInt p, const PetscReal *x);
 PetscErrorCode PlotFramesFree(PlotScene *scene);
 
 /* arrows.c. Arrows of n points (x: n x 3) with vectors v (n x components). */

@@ -253,9 +253,23 @@ static void say_when(const PlotOptions *options, PetscReal time, char text[64])
 PetscErrorCode PlotSceneFree(PlotScene *scene)
 {
   PetscFunctionBeginUser;
+  if (!scene->borrowed) PetscCall(PlotContoursDestroy(&scene->contours));
   PetscCall(PlotWallsClose(scene));
   PetscCall(PlotOriginFree(&scene->origin));
   PetscCall(PlotFramesFree(scene));
+  PetscFunctionReturn(0);
+}
+
+/* Of bodies that are drawn by their points, and have a beginning. */
+static PetscErrorCode TakeContours(const PlotOptions *options, PlotScene *scene)
+{
+  PetscBool wanted = PETSC_FALSE;
+
+  PetscFunctionBeginUser;
+  for (PetscInt k = 0; k < scene->n_frames; ++k)
+    if (scene->frames[k].n && scene->frames[k].n_first) wanted = PETSC_TRUE;
+  scene->contours = options->contours, scene->borrowed = (PetscBool)(options->contours != NULL);
+  if (wanted && !scene->borrowed) PetscCall(PlotContoursCreate(scene->walled, &scene->contours));
   PetscFunctionReturn(0);
 }
 
@@ -281,6 +295,7 @@ PetscErrorCode PlotSceneFill(const PlotOptions *options, PetscInt n, const VtkSt
   }
   if (diag_errors(diag)) PetscFunctionReturn(0);
   plot_choose_colours(scene, options, subject->field.unit, subject->words);
+  PetscCall(TakeContours(options, scene));
   PetscCall(PlotFramesShape(scene));
   plot_walls_extend(scene);
   PetscCall(PlotWallsLines(scene));
