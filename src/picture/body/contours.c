@@ -120,7 +120,8 @@ static PetscErrorCode TakeContour(const Case *c, PetscInt b, const Grid *grid, C
   for (PetscInt i = 0; i < outline.n; ++i) {
     const PetscReal *x = outline.face[i].x;
     if (c->kinematics->hoop && PetscMax(x[0], x[2]) <= AXIS * grid->smallest) continue;
-    PetscCall(PetscArraycpy(edge[kept++], x, 4));
+    PetscCall(PetscArraycpy(edge[kept], x, 4));
+    ++kept;
   }
   PetscCall(ContourCreate(kept, edge, contour));
   PetscCall(OutlineClear(&outline));

@@ -108,7 +108,7 @@ static void write_axes(FILE *out, const PlotScene *scene, const PlotPage *page, 
           left ? "y [m]" : "", last ? "%g" : "", left ? "%g" : "");
   if (scene->n_frames > 1)
     fprintf(out, "set xtics %.6g\nset ytics %.6g\n", plot_tick_step(page->max[0] - page->min[0], page->w, 45),
-            plot_tick_step(page->max[1] - page->min[1], page->h, 30));
+            plot_tick_step(page->max[1] - page->min[1], page->h, LEAST_TICK_Y));
   else if (page->h < 160)
     fprintf(out, "set ytics %.3g\n",
             pow(10, floor(log10((double)(page->max[1] - page->min[1])))) * (page->h < 80 ? 1 : 0.5));

@@ -93,6 +93,17 @@ static void place_fields(PlotPage *page, const int margin[4], int gap)
   page->max[1] = page->min[1] + page->h / scale;
 }
 
+/* Pixels by which the longest number along y is wider than four figures. */
+static int wide_numbers(const PlotScene *scene, const PlotPage *page)
+{
+  const double step = plot_tick_step(page->max[1] - page->min[1], page->h, LEAST_TICK_Y);
+  int most = 4;
+  if (scene->dim == 3 || scene->n_frames == 1) return 0;
+  for (double k = ceil((double)page->min[1] / step); k * step <= (double)page->max[1]; ++k)
+    most = PetscMax(most, snprintf(NULL, 0, "%g", k * step));
+  return 10 * (most - 4);
+}
+
 void plot_lay_out(const PlotScene *scene, int width, int height, PlotPage *page)
 {
   int margin[4];
@@ -114,5 +125,7 @@ void plot_lay_out(const PlotScene *scene, int width, int height, PlotPage *page)
     page->height = PetscMin(PetscMax((int)lround(high), 60), (int)most) + beside_h;
     if (!width && high > most) page->width = PetscMax((int)lround(most * aspect), 300) + beside_w;
   }
+  place_fields(page, margin, gap_x(scene));
+  margin[0] += wide_numbers(scene, page);
   place_fields(page, margin, gap_x(scene));
 }

@@ -97,6 +97,7 @@ void plot_project(const PlotScene *scene, const PetscReal *x, PetscReal shown[3]
 /* 1, 2 or 5 times a power of ten: the smallest that leaves so many pixels between ticks of a range
  * that takes `all` pixels. */
 double plot_tick_step(PetscReal range, double all, double pixels);
+#define LEAST_TICK_Y 30 /* such pixels, of several fields */
 
 /* Fit the scene into a page of the size asked for (0: chosen). */
 void plot_lay_out(const PlotScene *scene, int width, int height, PlotPage *page);
