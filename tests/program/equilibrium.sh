@@ -16,3 +16,23 @@ cantilever >case.yaml
 expect "useless solver" 1 "$talus" run case.yaml --out useless -ksp_type gmres -pc_type jacobi -ksp_rtol 1
 says err.txt "increments vanished and the residual did not" "the linear solver does nothing"
 [ "$(wc -l <useless/history.csv)" -eq 2 ] || fail "useless solver: steps were accepted"
+
+# Loose grains that are pulled apart: after the first step no point resists anything. It ended in a trace of PETSc.
+cat >case.yaml <<'END'
+kinematics: plane-strain
+method: mpm
+analysis: {type: static, steps: 4}
+grid: {box: {min: [0, 0], max: [1, 1]}, size: 0.25}
+bodies:
+  - {name: heap, shape: {box: {min: [0, 0], max: [1, 1]}}, points_per_cell: 4, material: sand}
+materials:
+  sand: {law: mohr-coulomb, density: 1500, young: 1e6, poisson: 0.3, cohesion: 0, friction_angle: 30, opening_memory: 1}
+boundary:
+  - {on: {y: 0}, fix: [x, y]}
+  - {on: {y: 1}, displacement: {x: 0, y: 0.1}}
+END
+for ranks in 1 2 3; do
+  expect "grains that are apart on $ranks" 1 on_ranks $ranks "$talus" run case.yaml --out apart$ranks --quiet
+  says err.txt "the run gave up: Newton did not converge" "nothing resists at 15 of 25 nodes" "m in 'heap'" "type: dynamic"
+  lacks err.txt "PETSC ERROR"
+done

@@ -83,9 +83,11 @@ static void lack_of_guess(const StepProblem *p, PetscReal *lift, PetscReal large
 
 /* One linear step that carries the prescribed increments into the interior: what is left of them at
  * du is moved to the right-hand side through the columns of the tangent. Skipped if the first guess
- * has them already. */
-static PetscErrorCode LiftPrescribed(Newton *n)
+ * has them already. *solved: PETSC_FALSE where a factorisation has
+ * failed, whose result is infinite. */
+static PetscErrorCode LiftPrescribed(Newton *n, PetscBool *solved)
 {
+  KSPConvergedReason reason;
   StepProblem *p = n->problem;
   PetscReal *lift, local[2] = {0, 0}, all[2];
   KSP ksp;
@@ -93,6 +95,7 @@ static PetscErrorCode LiftPrescribed(Newton *n)
   double start;
 
   PetscFunctionBeginUser;
+  *solved = PETSC_TRUE;
   PetscCall(PetscCalloc1(p->grid->n_nodes * p->grid->dim, &lift));
   lack_of_guess(p, lift, local);
   PetscCall(MPIU_Allreduce(local, all, 2, MPIU_REAL, MPIU_MAX, n->comm));
@@ -114,8 +117,10 @@ static PetscErrorCode LiftPrescribed(Newton *n)
     PetscCall(KSPSetOperators(ksp, p->system->matrix, p->system->matrix));
     PetscCall(VecDuplicate(n->x, &y));
     PetscCall(KSPSolve(ksp, n->f, y));
+    PetscCall(KSPGetConvergedReason(ksp, &reason));
+    *solved = (PetscBool)(reason != KSP_DIVERGED_PC_FAILED);
     PetscCall(NewtonGetUnknowns(n, n->x));
-    PetscCall(VecAXPY(n->x, -1, y));
+    if (*solved) PetscCall(VecAXPY(n->x, -1, y));
     PetscCall(VecDestroy(&y));
     PetscCall(NewtonSetIncrements(n, n->x));
     n->report->residual[0] = 1;
@@ -193,11 +198,48 @@ static PetscErrorCode LeaveMoreRoom(Newton *n, PetscBool *more)
 /* A factorisation for which the machines have no room would end the run without a word. */
 static const char no_room[] = "the linear iteration failed, and a factorisation needs more memory than there is";
 
+/* From the first guess on; without a lift there is nowhere to begin. */
+static PetscErrorCode Iterate(Newton *n, NewtonReport *report, SNESConvergedReason *reason)
+{
+  PetscInt its;
+  PetscBool solved;
+
+  PetscFunctionBeginUser;
+  *reason = SNES_DIVERGED_LINEAR_SOLVE;
+  PetscCall(LiftPrescribed(n, &solved));
+  if (solved) {
+    PetscCall(NewtonGetUnknowns(n, n->x));
+    PetscCall(SNESSetTolerances(n->snes, 0, 0, 0, n->spec.max_iterations - report->iterations, PETSC_MAX_INT));
+    PetscCall(SNESSolve(n->snes, NULL, n->x));
+    PetscCall(SNESGetConvergedReason(n->snes, reason));
+    PetscCall(SNESGetIterationNumber(n->snes, &its));
+    PetscCall(SNESGetLinearSolveIterations(n->snes, &report->linear_iterations));
+    report->iterations += its;
+  }
+  newton_turn(n->problem, n->problem->force);
+  report->converged = *reason > 0;
+  report->interrupted = *reason == SNES_DIVERGED_FUNCTION_COUNT;
+  PetscFunctionReturn(0);
+}
+
+/* Why the iteration ended, in words: what stands behind it, if that is known. */
+static PetscErrorCode Explain(Newton *n, SNESConvergedReason reason, NewtonReport *report)
+{
+  const PetscBool gone = !report->converged && !report->interrupted;
+  const PetscBool singular =
+    reason == SNES_DIVERGED_LINEAR_SOLVE || reason == SNES_DIVERGED_INNER || reason == SNES_DIVERGED_FUNCTION_DOMAIN;
+  const char *loose = gone ? newton_rigid_reason(n) : NULL;
+
+  PetscFunctionBeginUser;
+  if (!loose && gone && singular) PetscCall(NewtonLooseReason(n, &loose));
+  report->reason = loose ? loose : newton_reason(reason, report->status);
+  PetscFunctionReturn(0);
+}
+
 static PetscErrorCode NewtonTry(Newton *n, const LinearProblem *linear, NewtonReport *report)
 {
   const StepProblem *p = n->problem;
   SNESConvergedReason reason;
-  PetscInt its;
   double start, end;
   const double parts = n->t_points + n->t_matrix + n->t_linear;
 
@@ -213,19 +255,8 @@ static PetscErrorCode NewtonTry(Newton *n, const LinearProblem *linear, NewtonRe
   PetscCall(UpdateSaddle(n));
   PetscCall(UpdateProjection(n));
   PetscCall(SystemPrescribe(p->system, n->projects ? n->projection->held : p->fixed, p->idle));
-  PetscCall(LiftPrescribed(n));
-  PetscCall(NewtonGetUnknowns(n, n->x));
-  PetscCall(SNESSetTolerances(n->snes, 0, 0, 0, n->spec.max_iterations - report->iterations, PETSC_MAX_INT));
-  PetscCall(SNESSolve(n->snes, NULL, n->x));
-  newton_turn(p, p->force);
-  PetscCall(SNESGetConvergedReason(n->snes, &reason));
-  PetscCall(SNESGetIterationNumber(n->snes, &its));
-  PetscCall(SNESGetLinearSolveIterations(n->snes, &report->linear_iterations));
-  report->iterations += its;
-  report->converged = reason > 0;
-  report->interrupted = reason == SNES_DIVERGED_FUNCTION_COUNT;
-  const char *loose = report->converged || report->interrupted ? NULL : newton_rigid_reason(n);
-  report->reason = loose ? loose : newton_reason(reason, report->status);
+  PetscCall(Iterate(n, report, &reason));
+  PetscCall(Explain(n, reason, report));
   PetscCall(PetscTime(&end));
   n->t_newton += (end - start) - (n->t_points + n->t_matrix + n->t_linear - parts);
   /* PETSc would not factorise again after a zero pivot */

@@ -51,7 +51,7 @@ struct Newton {
   /* of multipliers in this solve (NodalForce.augment), and the iteration of the last one */
   PetscInt changes, changed;
   PetscReal *rigid;  /* of walls with mass: where the direction begins, and it: pairs */
-  char loose[256];   /* what is told of one that nothing holds */
+  char loose[384];   /* what is told of one that nothing holds, or of nodes that nothing resists at */
   PetscBool tangent; /* do the system's values belong to du? */
   double t_points, t_matrix, t_linear, t_newton;
   double solving; /* when the linear solve that is going on began */
@@ -113,6 +113,9 @@ PetscReal newton_rigid_work(void *context);
 PetscBool newton_rigid_met(const Newton *n);
 /* Why no solution was found, if it is that a wall with mass touches nothing in statics; else NULL. */
 const char *newton_rigid_reason(Newton *n);
+
+/* newton_loose.c. The same, if it is that nothing resists at some nodes in statics. Collective. */
+PetscErrorCode NewtonLooseReason(Newton *n, const char **reason);
 
 /* newton_converge.c. The norm below which a residual has converged, N. */
 PetscReal newton_tolerance(const Newton *n);

@@ -1,0 +1,96 @@
+/* What nothing resists: unknowns whose diagonal in the tangent of statics is empty, as where every point around carries
+ * grains that are apart. A factorisation says no more than that it failed. */
+#include "solve/newton/newton_private.h"
+#include <limits.h>
+
+/* Of the largest diagonal: less is none. */
+#define NO_STIFFNESS 1e-14
+
+/* Diagonals of the tangent at local nodes (n_nodes x dim), and the largest of those that are free. */
+static PetscErrorCode Diagonals(const Newton *n, PetscReal *diagonal, PetscReal *largest)
+{
+  const StepProblem *p = n->problem;
+  PetscReal most = 0;
+  Vec v;
+
+  PetscFunctionBeginUser;
+  PetscCall(VecDuplicate(n->x, &v));
+  PetscCall(MatGetDiagonal(p->system->matrix, v));
+  PetscCall(SystemToNodes(p->system, p->grid, v, 0, p->grid->dim, diagonal));
+  PetscCall(VecDestroy(&v));
+  for (PetscInt k = 0; k < p->system->n_active; ++k)
+    for (PetscInt d = 0, i = p->system->active[k] * p->grid->dim; d < p->grid->dim; ++d, ++i)
+      if (!p->fixed[i]) most = PetscMax(most, PetscAbsReal(diagonal[i]));
+  PetscCall(MPIU_Allreduce(&most, largest, 1, MPIU_REAL, MPIU_MAX, n->comm));
+  PetscFunctionReturn(0);
+}
+
+static PetscBool is_loose(const StepProblem *p, PetscInt node, const PetscReal *diagonal, PetscReal least)
+{
+  if (p->system->number[node] < 0) return PETSC_FALSE;
+  for (PetscInt d = 0, i = node * p->grid->dim; d < p->grid->dim; ++d, ++i)
+    if (!p->fixed[i] && PetscAbsReal(diagonal[i]) <= least) return PETSC_TRUE;
+  return PETSC_FALSE;
+}
+
+/* The point of the lowest id that moves a loose node, over all ranks: its body and place. PETSC_FALSE: none does. */
+static PetscErrorCode FindPoint(const Newton *n, const unsigned char *loose, PetscInt *body, PetscReal x[3],
+                                PetscBool *found)
+{
+  const StepProblem *p = n->problem;
+  const Support *s = p->in.support;
+  const Points *points = p->in.points;
+  PetscInt64 id = LLONG_MAX, least;
+  PetscReal place[4] = {0, 0, 0, 0}, all[4];
+
+  PetscFunctionBeginUser;
+  for (PetscInt g = 0; g < s->n_groups; ++g)
+    for (PetscInt q = s->point_start[g]; q < s->point_start[g + 1]; ++q) {
+      const PetscReal *N = support_N(s, g, q), *at = point_real(points, POINT_X, q);
+      PetscBool moves = PETSC_FALSE;
+      for (PetscInt i = 0; i < support_nodes(s, g); ++i)
+        if (N[i] > 0 && loose[s->node[s->node_start[g] + i]]) moves = PETSC_TRUE;
+      if (!moves || points->id[q] >= id) continue;
+      id = points->id[q];
+      for (PetscInt d = 0; d < points->dim; ++d) place[d] = at[d];
+      place[3] = (PetscReal)points->body[q];
+    }
+  PetscCall(MPIU_Allreduce(&id, &least, 1, MPIU_INT64, MPI_MIN, n->comm));
+  if (id != least)
+    for (int k = 0; k < 4; ++k) place[k] = -PETSC_MAX_REAL;
+  PetscCall(MPIU_Allreduce(place, all, 4, MPIU_REAL, MPIU_MAX, n->comm));
+  *found = (PetscBool)(least < LLONG_MAX);
+  *body = *found ? (PetscInt)all[3] : -1;
+  for (int d = 0; d < 3; ++d) x[d] = all[d];
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode NewtonLooseReason(Newton *n, const char **reason)
+{
+  const StepProblem *p = n->problem;
+  PetscReal *diagonal, largest, x[3];
+  PetscInt counts[2] = {0, p->system->n_active}, all[2], body;
+  unsigned char *loose;
+  PetscBool found = PETSC_FALSE;
+  char place[96];
+
+  PetscFunctionBeginUser;
+  *reason = NULL;
+  if (p->in.inertia > 0 || p->system->form != SYSTEM_ASSEMBLED) PetscFunctionReturn(0);
+  PetscCall(PetscCalloc2(p->grid->n_nodes * p->grid->dim, &diagonal, p->grid->n_nodes, &loose));
+  PetscCall(Diagonals(n, diagonal, &largest));
+  for (PetscInt i = 0; i < p->grid->n_nodes; ++i) loose[i] = is_loose(p, i, diagonal, NO_STIFFNESS * largest);
+  for (PetscInt k = 0; k < p->system->n_active; ++k) counts[0] += loose[p->system->active[k]];
+  PetscCall(MPIU_Allreduce(counts, all, 2, MPIU_INT, MPI_SUM, n->comm));
+  if (all[0]) PetscCall(FindPoint(n, loose, &body, x, &found));
+  PetscCall(PetscFree2(diagonal, loose));
+  if (!found) PetscFunctionReturn(0);
+  snprintf(place, sizeof place, p->grid->dim == 2 ? "(%.4g, %.4g)" : "(%.4g, %.4g, %.4g)", (double)x[0], (double)x[1],
+           (double)x[2]);
+  snprintf(n->loose, sizeof n->loose,
+           "nothing resists at %d of %d nodes, as around %s m in '%s': it has no stiffness there, as grains that are "
+           "apart; hold it together, give it some cohesion, or let it move (type: dynamic)",
+           (int)all[0], (int)all[1], place, p->scene.c->bodies[body].name);
+  *reason = n->loose;
+  PetscFunctionReturn(0);
+}
