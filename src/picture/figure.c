@@ -74,12 +74,12 @@ static PetscReal share(PetscBool logarithmic, PetscReal min, PetscReal max, Pets
   return logarithmic ? PetscLogReal(value / min) / PetscLogReal(max / min) : (value - min) / (max - min);
 }
 
-/* A place in shares of the picture: is it in one of the corners that the legend could take, left or
- * right (x), bottom or top (y)? */
-static void count_in_corner(const PetscReal at[2], PetscReal height, PetscInt count[2][2])
+/* A place in shares of the picture: in which of the corners that a legend of this size could take is it, left or right
+ * (x), bottom or top (y)? In the middle in both, if the legend is wide. */
+static void count_in_corner(const PetscReal at[2], const PetscReal size[2], PetscInt count[2][2])
 {
-  if (at[1] > height && at[1] < 1 - height) return;
-  if (at[0] < 0.32 || at[0] > 0.68) ++count[at[0] > 0.5][at[1] > 0.5];
+  for (int x = 0; x < 2; ++x)
+    for (int y = 0; y < 2; ++y) count[x][y] += (x ? 1 - at[0] : at[0]) < size[0] && (y ? 1 - at[1] : at[1]) < size[1];
 }
 
 /* A sample of a curve in shares of the picture. */
@@ -92,7 +92,7 @@ static void place_of(const Figure *figure, const FigureSeries *s, PetscInt i, co
 }
 
 /* Samples of curves in the corners. */
-static void count_in_corners(const Figure *figure, const PetscReal *min, const PetscReal *max, PetscReal height,
+static void count_in_corners(const Figure *figure, const PetscReal *min, const PetscReal *max, const PetscReal size[2],
                              PetscInt count[2][2])
 {
   for (PetscInt k = 0; k < figure->n_series; ++k) {
@@ -104,24 +104,41 @@ static void count_in_corners(const Figure *figure, const PetscReal *min, const P
       place_of(figure, s, i + 1, min, max, b);
       for (int part = 0; part <= 8; ++part) {
         const PetscReal t = part / 8.0, at[2] = {a[0] + t * (b[0] - a[0]), a[1] + t * (b[1] - a[1])};
-        count_in_corner(at, height, count);
+        count_in_corner(at, size, count);
       }
     }
   }
 }
 
-/* The legend goes where the fewest curves are; where several corners are as good, to the top and to
- * the left. */
+/* Of the legend, in shares of the picture, and a little air. */
+static void key_size(const Figure *figure, PetscReal size[2])
+{
+  PetscInt named = figure->n_bands + (figure->slope != 0);
+  size_t longest = 8;
+  for (PetscInt k = 0; k < figure->n_series; ++k) {
+    if (!figure->series[k].name) continue;
+    ++named;
+    longest = PetscMax(longest, strlen(figure->series[k].name));
+  }
+  for (PetscInt k = 0; k < figure->n_bands; ++k) longest = PetscMax(longest, strlen(figure->bands[k].name));
+  size[0] = PetscMin(0.1 + 0.0115 * (PetscReal)longest, 0.95);
+  size[1] = PetscMin(0.05 + 0.05 * (PetscReal)named, 0.95);
+}
+
+/* The legend goes where no curves are; where several corners are as good, to the top and to the left, and below where
+ * none is free. */
 static void write_key(FILE *out, const Figure *figure, const PetscReal *min, const PetscReal *max)
 {
-  PetscInt count[2][2] = {{0, 0}, {0, 0}}, named = figure->n_bands;
+  PetscInt count[2][2] = {{0, 0}, {0, 0}};
+  PetscReal size[2];
   int right = figure->slope < 0, top = 1; /* where falling curves leave room */
-  for (PetscInt k = 0; k < figure->n_series; ++k) named += figure->series[k].name ? 1 : 0;
-  count_in_corners(figure, min, max, PetscMin(0.45, 0.05 + 0.05 * (PetscReal)named), count);
+  key_size(figure, size);
+  count_in_corners(figure, min, max, size, count);
   for (int y = 1; y >= 0; --y)
     for (int x = 0; x < 2; ++x)
       if (count[x][y] < count[right][top]) right = x, top = y;
-  fprintf(out, "set key %s %s\n", top ? "top" : "bottom", right ? "right" : "left");
+  if (count[right][top]) fputs("set key below noopaque nobox height 0.3\n", out);
+  else fprintf(out, "set key %s %s\n", top ? "top" : "bottom", right ? "right" : "left");
 }
 
 /* Has the figure a right axis? Where it has, ticks of the left one end at the left. */

@@ -6,6 +6,7 @@
 #include "picture/compare/compare.h"
 #include "picture/compare/difference.h"
 #include "picture/curves/keys.h"
+#include "picture/figure.h"
 #include "picture/plot.h"
 
 /* What lies on the straight line between entries, by looking at all of them. */
@@ -171,6 +172,43 @@ static void test_formats(void **state)
   TestRemove(folder);
 }
 
+/* How far down a word of an SVG stands, in its own unit. */
+static double Height(const char *svg, const char *word)
+{
+  const char *at = strstr(svg, word), *place = NULL;
+  double down = 0;
+  assert_non_null(at);
+  for (const char *k = svg; (k = strstr(k, "translate(")) && k < at; ++k) place = k;
+  assert_non_null(place);
+  assert_int_equal(sscanf(place, "translate(%*f,%lf)", &down), 1);
+  return down;
+}
+
+/* A legend covers no curve: where one is free it stands in a corner, and else below the axis. */
+static void test_legend(void **state)
+{
+  const PetscReal x[2] = {0, 1}, up[2] = {0, 1}, down[2] = {1, 0};
+  char folder[64], path[128];
+  (void)state;
+  TestFolder(folder);
+  for (int crossed = 0; crossed < 2; ++crossed) {
+    const FigureSeries series[2] = {{.name = "first of both", .n = 2, .x = x, .y = up},
+                                    {.name = "second", .n = 2, .x = x, .y = crossed ? down : up}};
+    const Figure figure = {.x_label = "along", .n_series = 2, .series = series};
+    PetscBool done;
+    Diag *diag;
+    assert_int_equal(DiagCreate(&diag), 0);
+    snprintf(path, sizeof path, "%s/legend.svg", folder);
+    assert_int_equal(FigureWrite(&figure, path, diag, &done), 0);
+    assert_true(done);
+    char *svg = TestRead(folder, "legend.svg");
+    assert_int_equal(Height(svg, ">second<") > Height(svg, ">along<"), crossed);
+    free(svg);
+    assert_int_equal(DiagDestroy(&diag), 0);
+  }
+  TestRemove(folder);
+}
+
 static void Refused(const PlotXYOptions *options, const char *word)
 {
   char *text = Draw(options);
@@ -263,6 +301,7 @@ static int Tests(void)
                                      cmocka_unit_test(test_difference_by_hand),
                                      cmocka_unit_test(test_keys),
                                      cmocka_unit_test(test_formats),
+                                     cmocka_unit_test(test_legend),
                                      cmocka_unit_test(test_mistakes),
                                      cmocka_unit_test(test_compare)};
   return cmocka_run_group_tests(tests, NULL, NULL);
