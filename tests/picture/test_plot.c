@@ -104,6 +104,44 @@ static void test_raster_depth(void **state)
   assert_int_equal(rgba[4 * 12], 253);
 }
 
+/* Balls of a lattice in planes that are turned to the eye make planes, without bumps: one light everywhere, that of the
+ * plane, and a straight edge. */
+static void test_raster_planes(void **state)
+{
+  enum { W = 200, H = 200, N = 24 };
+  static unsigned char rgba[4 * W * H];
+  static PetscReal x[3 * N * N], radius[N * N], value[N * N];
+  const PetscReal slope[2][2] = {{0.6, -0.3}, {-0.8, 0.5}};
+  (void)state;
+  for (int k = 0; k < 2; ++k) {
+    const PetscReal *s = slope[k], length = sqrt(1 + s[0] * s[0] + s[1] * s[1]);
+    const PetscReal light = 0.72 + 0.28 * PetscMax((0.35 * s[0] - 0.50 * s[1] + 0.79) / length, 0);
+    for (int i = 0; i < N * N; ++i) {
+      PetscReal *at = x + 3 * i;
+      at[0] = 0.05 * (i % N) - 0.575, at[1] = 0.05 * (i / N) - 0.575, at[2] = s[0] * at[0] + s[1] * at[1];
+      radius[i] = 0.05, value[i] = 1;
+    }
+    const RasterScene scene = {.n = N * N,
+                               .x = x,
+                               .radius = radius,
+                               .value = value,
+                               .shaded = PETSC_TRUE,
+                               .gap = 0.05,
+                               .min = {-1, -1},
+                               .max = {1, 1},
+                               .width = W,
+                               .height = H};
+    assert_int_equal(RasterDraw(&scene, rgba), 0);
+    for (int row = 60; row < 140; ++row)
+      for (int column = 60; column < 140; ++column) assert_true(fabs(rgba[4 * (row * W + column)] - 253 * light) < 4);
+    for (int row = 60; row < 140; ++row) { /* half a radius beyond the last balls */
+      PetscReal wide = 0;
+      for (int column = 0; column < W; ++column) wide += rgba[4 * (row * W + column) + 3] / 255. * 2 / W;
+      assert_true(fabs(wide - 1.2) < 0.012);
+    }
+  }
+}
+
 /* Two columns of balls, 0.1 in radius, with 0.4 between them: the gap is filled from both sides, and the outline is
  * drawn back by half a radius, with sharp corners. */
 static void test_raster_gap(void **state)
@@ -661,15 +699,25 @@ static void test_convergence(void **state)
 
 static int Tests(void)
 {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_spacing),         cmocka_unit_test(test_quantile),
-                                     cmocka_unit_test(test_raster),          cmocka_unit_test(test_raster_depth),
-                                     cmocka_unit_test(test_raster_gap),      cmocka_unit_test(test_several_states),
-                                     cmocka_unit_test(test_scalars),         cmocka_unit_test(test_units),
-                                     cmocka_unit_test(test_tick_names),      cmocka_unit_test(test_state_in_the_plane),
-                                     cmocka_unit_test(test_state_in_space),  cmocka_unit_test(test_body_of_revolution),
-                                     cmocka_unit_test(test_histories),       cmocka_unit_test(test_mistakes),
-                                     cmocka_unit_test(test_no_gnuplot),      cmocka_unit_test(test_animation),
-                                     cmocka_unit_test(test_names_and_cells), cmocka_unit_test(test_convergence)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_spacing),
+                                     cmocka_unit_test(test_quantile),
+                                     cmocka_unit_test(test_raster),
+                                     cmocka_unit_test(test_raster_depth),
+                                     cmocka_unit_test(test_raster_planes),
+                                     cmocka_unit_test(test_raster_gap),
+                                     cmocka_unit_test(test_several_states),
+                                     cmocka_unit_test(test_scalars),
+                                     cmocka_unit_test(test_units),
+                                     cmocka_unit_test(test_tick_names),
+                                     cmocka_unit_test(test_state_in_the_plane),
+                                     cmocka_unit_test(test_state_in_space),
+                                     cmocka_unit_test(test_body_of_revolution),
+                                     cmocka_unit_test(test_histories),
+                                     cmocka_unit_test(test_mistakes),
+                                     cmocka_unit_test(test_no_gnuplot),
+                                     cmocka_unit_test(test_animation),
+                                     cmocka_unit_test(test_names_and_cells),
+                                     cmocka_unit_test(test_convergence)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
 

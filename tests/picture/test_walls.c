@@ -137,12 +137,17 @@ static void LinesInSpace(void **state)
 {
   static Picture p;
   const Shape box = {.kind = SHAPE_BOX, .min = {-1, -0.5, 0}, .max = {1, 0.5, 0.5}},
+              deep = {.kind = SHAPE_BOX, .min = {-1, -0.5, -90}, .max = {1, 0.5, 0.5}},
               ball = {.kind = SHAPE_BALL, .centre = {0.3, 0, 0}, .radius = 0.5},
               plane = {.kind = SHAPE_HALF_SPACE, .normal = {0, 0, 1}};
   PetscReal middle[3];
   (void)state;
   wires_of(&p, &box);
   assert_true(fabs(length_of_all(&p.scene.frames[0]) - 4 * (2 + 1 + 0.5)) < 1e-9);
+  assert_int_equal(PlotFramesFree(&p.scene), 0);
+  close_picture(&p);
+  wires_of(&p, &deep); /* four sides end at the ground, a hundredth below the box */
+  assert_true(fabs(length_of_all(&p.scene.frames[0]) - 2 * (2 + 1) - 4 * (2 + 0.02 * 4 + 0.5)) < 1e-9);
   assert_int_equal(PlotFramesFree(&p.scene), 0);
   close_picture(&p);
   wires_of(&p, &plane); /* a hundredth of the picture beyond its box, on each side */

@@ -51,17 +51,6 @@ static void draw_ball(const RasterScene *scene, Canvas *canvas, PetscInt p)
     }
 }
 
-/* Light from the upper left, in front. */
-static PetscReal ball_light(const RasterScene *scene, const Canvas *canvas, PetscInt p, int i, int j)
-{
-  PetscReal c[3];
-  if (!scene->shaded) return 1;
-  canvas_place(scene, canvas, scene->x + 3 * p, c);
-  const PetscReal radius = canvas_radius(scene, canvas, p), a = (i - c[0]) / radius, b = (j - c[1]) / radius,
-                  h = sqrt(PetscMax(1 - a * a - b * b, 0));
-  return 0.72 + 0.28 * PetscMax(-0.35 * a + 0.50 * b + 0.79 * h, 0);
-}
-
 static void value_colour(const RasterScene *scene, PetscReal value, PetscReal rgb[3])
 {
   if (!scene->named || !(value >= 0)) {
@@ -81,7 +70,9 @@ static void sample_colour(const RasterScene *scene, const Canvas *canvas, int i,
     rgb[0] = rgb[1] = rgb[2] = 70;
     return;
   }
-  if (t < 0) value_colour(scene, scene->value[p], rgb), light = ball_light(scene, canvas, p, i, j);
+  if (t < 0)
+    value_colour(scene, scene->value[p], rgb),
+      light = canvas->light ? canvas->light[j / SAMPLES * scene->width + i / SAMPLES] : 1;
   else value_colour(scene, triangle_value(scene, canvas, t, i, j, &line), rgb), light = triangle_light(scene, t);
   if (line) light *= 0.55;
   for (int c = 0; c < 3; ++c) rgb[c] *= light;
@@ -152,15 +143,19 @@ static PetscErrorCode DrawParts(const RasterScene *scene, Canvas *canvas)
 
 PetscErrorCode RasterDraw(const RasterScene *scene, unsigned char *rgba)
 {
-  Canvas canvas;
+  Canvas canvas = {0};
 
   PetscFunctionBeginUser;
   PetscCall(CanvasCreate(scene, &canvas));
-  const PetscBool shaped = scene->gap > 0 && !scene->shaded;
-  if (shaped && scene->n_parts > 1) PetscCall(DrawParts(scene, &canvas));
+  const PetscBool shaped = scene->gap > 0;
+  if (shaped && !scene->shaded && scene->n_parts > 1) PetscCall(DrawParts(scene, &canvas));
   else {
     draw_balls(scene, &canvas, -1);
     if (shaped) PetscCall(CanvasShape(scene, &canvas));
+  }
+  if (scene->shaded && scene->n) {
+    PetscCall(PetscMalloc1(scene->width * scene->height, &canvas.light));
+    PetscCall(CanvasRelief(scene, &canvas, canvas.light));
   }
   canvas_triangles(scene, &canvas);
   canvas_lines(scene, &canvas);
@@ -168,5 +163,6 @@ PetscErrorCode RasterDraw(const RasterScene *scene, unsigned char *rgba)
     for (int column = 0; column < scene->width; ++column)
       raster_pixel(scene, &canvas, column, row, rgba + 4 * ((size_t)row * (size_t)scene->width + (size_t)column));
   PetscCall(PetscFree2(canvas.front, canvas.point));
+  PetscCall(PetscFree(canvas.light));
   PetscFunctionReturn(0);
 }

@@ -30,8 +30,8 @@ typedef struct {
   const PetscReal *line; /* n_lines x 2 x 3, as x: dark, where nothing hides them */
   PetscBool named;       /* values are numbers of names, 0, 1, ... */
   PetscBool shaded;      /* as bodies in space; otherwise flat */
-  /* m; gaps between balls up to twice this wide are filled (flat images only), and the outline of what they fill is
-   * drawn back by half their radius, to where the material ends; 0: neither */
+  /* m; gaps between balls up to twice this wide are filled, in space before what is empty, and the outline of what
+   * they fill is drawn back by half their radius, to where the material ends; 0: neither */
   PetscReal gap;
   /* with a gap, n: which points know the outline next to them, and does the body hold a place next to such a point? Of
    * the outermost all that balls cover is shown there, of others what is drawn back; NULL: none knows */

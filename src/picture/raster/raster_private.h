@@ -13,6 +13,7 @@ typedef struct {
   PetscReal scale;   /* samples a metre */
   float *front;      /* what is nearest to the eye, in samples */
   PetscInt *point;
+  float *light; /* of each pixel, on what balls in space make together; NULL: flat */
 } Canvas;
 
 /* A position in samples: right, up, towards the eye. */
@@ -34,6 +35,14 @@ static inline size_t canvas_at(const Canvas *canvas, int i, int j)
   return (size_t)j * (size_t)canvas->width + (size_t)i;
 }
 
+/* On a surface with this normal, of any length: from the upper left, in front. */
+static inline PetscReal canvas_light(PetscReal a, PetscReal b, PetscReal c)
+{
+  return 0.72 + 0.28 * PetscMax((-0.35 * a + 0.50 * b + 0.79 * c) / PetscSqrtReal(a * a + b * b + c * c), 0);
+}
+
+/* relief.c: the light on each pixel of what balls in space show. */
+PetscErrorCode CanvasRelief(const RasterScene *scene, const Canvas *canvas, float *light);
 /* shape.c: from balls to the body that they fill. */
 PetscErrorCode CanvasShape(const RasterScene *scene, Canvas *canvas);
 /* triangles.c */

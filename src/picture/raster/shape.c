@@ -60,6 +60,18 @@ static PetscBool shows(const RasterScene *scene, const Canvas *canvas, PetscInt 
   return held == RASTER_NEAR ? covered : held == RASTER_DEEP ? in : PETSC_FALSE;
 }
 
+/* Between balls the body is as far in front as their middles. */
+static void show(const RasterScene *scene, Canvas *canvas, int i, int j, PetscInt p)
+{
+  const size_t at = canvas_at(canvas, i, j);
+  PetscReal middle[3];
+  if (p >= 0 && canvas->point[at] < 0) {
+    canvas_place(scene, canvas, scene->x + 3 * p, middle);
+    canvas->front[at] = (float)middle[2];
+  }
+  canvas->point[at] = p;
+}
+
 PetscErrorCode CanvasShape(const RasterScene *scene, Canvas *canvas)
 {
   const PetscReal gap = PetscMin(scene->gap * canvas->scale, 30 * SAMPLES);
@@ -80,7 +92,7 @@ PetscErrorCode CanvasShape(const RasterScene *scene, Canvas *canvas)
       const PetscReal deep = p < 0 ? 0 : back + canvas_radius(scene, canvas, p); /* surfaces that met are no more */
       if (p >= 0 && scene->knows && scene->knows[p] && room.distance[at] <= deep)
         in = shows(scene, canvas, p, i, j, in);
-      canvas->point[canvas_at(canvas, i, j)] = in ? p : -1;
+      show(scene, canvas, i, j, in ? p : -1);
     }
   PetscCall(PetscFree3(room.in, room.distance, room.nearest));
   PetscCall(PetscFree(room.owner));

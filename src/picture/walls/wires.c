@@ -71,8 +71,22 @@ static void view_of(const PlotScene *scene, PetscReal min[3], PetscReal max[3], 
   *view = (WallView){.min = min, .max = max, .size = FINENESS * longest};
 }
 
-static PetscErrorCode TakeLines(const PlotScene *scene, const WallMesh *mesh, PetscReal size, PlotFrame *f)
+/* The part of a line from end to end + 3 that lies above the ground of what is seen: sides of terrain go far down.
+ * PETSC_FALSE: none does. */
+static PetscBool clip(PetscInt up, PetscReal ground, PetscReal end[6])
 {
+  const PetscBool below[2] = {(PetscBool)(end[up] < ground), (PetscBool)(end[3 + up] < ground)};
+  if (below[0] && below[1]) return PETSC_FALSE;
+  if (!below[0] && !below[1]) return PETSC_TRUE;
+  PetscReal *low = below[0] ? end : end + 3, *high = below[0] ? end + 3 : end;
+  const PetscReal share = (ground - high[up]) / (low[up] - high[up]);
+  for (int d = 0; d < 3; ++d) low[d] = high[d] + share * (low[d] - high[d]);
+  return PETSC_TRUE;
+}
+
+static PetscErrorCode TakeLines(const PlotScene *scene, const WallMesh *mesh, const WallView *view, PlotFrame *f)
+{
+  const PetscReal size = view->size / FINENESS;
   Side *sides;
   PetscInt n = 0;
 
@@ -88,7 +102,7 @@ static PetscErrorCode TakeLines(const PlotScene *scene, const WallMesh *mesh, Pe
   PetscCall(PetscMalloc1(18 * (size_t)mesh->n, &f->line));
   for (PetscInt i = 0, next; i < n; i = next) {
     for (next = i + 1; next < n && !compare_keys(&sides[next], &sides[i]);) ++next;
-    if (!is_drawn(sides + i, next - i)) continue;
+    if (!is_drawn(sides + i, next - i) || !clip(scene->up, view->min[scene->up], sides[i].end)) continue;
     plot_project(scene, sides[i].end, f->line + 6 * f->n_lines);
     plot_project(scene, sides[i].end + 3, f->line + 6 * f->n_lines + 3);
     ++f->n_lines;
@@ -111,7 +125,7 @@ PetscErrorCode PlotWallsLines(PlotScene *scene)
     if (f->walls) walls_put_frames(scene->walls, f->walls);
     for (PetscInt w = 0; w < scene->walled->n_walls; ++w)
       if (wall_stands(scene->walls, w, f->time)) PetscCall(WallMeshAdd(scene->walls, w, f->time, &view, &mesh));
-    PetscCall(TakeLines(scene, &mesh, view.size / FINENESS, f));
+    PetscCall(TakeLines(scene, &mesh, &view, f));
     PetscCall(WallMeshFree(&mesh));
   }
   PetscFunctionReturn(0);
