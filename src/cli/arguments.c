@@ -86,7 +86,7 @@ static const char *missing_word(const char *usage, int n, char word[64])
 
 static PetscErrorCode CheckWords(const CliUsage *usage, const CliArguments *a, PetscBool *ok, int *exit_code)
 {
-  char hint[200], word[64];
+  char hint[200], word[64], before[64];
 
   PetscFunctionBeginUser;
   snprintf(hint, sizeof(hint), "usage: %.180s", usage->usage);
@@ -94,7 +94,9 @@ static PetscErrorCode CheckWords(const CliUsage *usage, const CliArguments *a, P
   if (a->n_words < usage->min_words) {
     snprintf(hint, sizeof(hint), "usage: %.100s (options of PETSc go to the end: they take the word behind them)",
              usage->usage);
-    PetscCall(CliUsageError(exit_code, hint, "there is no %s on the command line",
+    const PetscBool another = a->n_words && !strcmp(missing_word(usage->usage, a->n_words, word),
+                                                    missing_word(usage->usage, a->n_words - 1, before));
+    PetscCall(CliUsageError(exit_code, hint, "there is no %s%s on the command line", another ? "second " : "",
                             missing_word(usage->usage, a->n_words, word)));
   } else if (!*ok) PetscCall(CliUsageError(exit_code, hint, "'%s' is one word too many", a->words[usage->max_words]));
   PetscFunctionReturn(0);

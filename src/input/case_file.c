@@ -28,7 +28,7 @@ static const char *unreadable(const char *file, size_t *size)
 {
   struct stat info;
   if (stat(file, &info)) return errno == ENOENT ? "there is no such file" : strerror(errno);
-  if (S_ISDIR(info.st_mode)) return "this is a directory, not a case file";
+  if (S_ISDIR(info.st_mode)) return "this is a directory; the case is a file in it, case.yaml as a rule";
   if (!S_ISREG(info.st_mode)) return "this is no plain file";
   if (info.st_size > YAML_MAX_BYTES) return "this file is too large for a case (more than 256 MiB)";
   *size = (size_t)info.st_size;

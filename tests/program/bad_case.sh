@@ -28,7 +28,7 @@ changed() {
 : >case.yaml
 refused "empty file" "case.yaml: error: the file is empty"
 rm case.yaml && mkdir case.yaml
-refused "directory" "case.yaml: error: this is a directory, not a case file"
+refused "directory" "case.yaml: error: this is a directory; the case is a file in it"
 rmdir case.yaml
 refused "no file" "case.yaml: error: there is no such file"
 head -c 4000 "$talus" >case.yaml

@@ -101,6 +101,8 @@ says here.txt "tip = -0.5996591864 m"
 [ ! -e quiet/log.txt ] || fail "--log: log.txt is there too"
 expect "set" 0 "$talus" run case.yaml --out set --quiet --set materials.rubber.young=180e6 --set 'measures.tip.of.tracer=[8, 1]'
 says set/case.yaml "young: 1.8e+08"
+expect "one run alone" 2 "$talus" compare set
+says err.txt "there is no second RUN_DIR on the command line"
 expect "set nothing" 2 "$talus" run case.yaml --set grid.size
 says err.txt "there is no '='"
 expect "options of PETSc" 0 "$talus" run case.yaml --out monitor --quiet -snes_monitor
