@@ -9,6 +9,8 @@
 #define FINENESS (1. / 24)
 /* Cosine of the angle between pieces that makes an edge: 32 degrees. */
 #define EDGE 0.85
+/* Of the longest side of the box: lines end so far beside it. */
+#define BESIDE 0.3
 
 /* A side of a piece: its ends in the order of their coordinates, rounded so that those of neighbours are the same, and
  * the normal of the piece on the page. */
@@ -71,17 +73,22 @@ static void view_of(const PlotScene *scene, PetscReal min[3], PetscReal max[3], 
   *view = (WallView){.min = min, .max = max, .size = FINENESS * longest};
 }
 
-/* The part of a line from end to end + 3 that lies above the ground of what is seen: sides of terrain go far down.
- * PETSC_FALSE: none does. */
-static PetscBool clip(PetscInt up, PetscReal ground, PetscReal end[6])
+/* The part of a line from end to end + 3 that is seen: between ground and top of the view, since sides of terrain go far
+ * down, and a little beside it. PETSC_FALSE: none is. */
+static PetscBool clip(const WallView *view, PetscInt up, PetscReal end[6])
 {
-  const PetscBool below[2] = {(PetscBool)(end[up] < ground), (PetscBool)(end[3 + up] < ground)};
-  if (below[0] && below[1]) return PETSC_FALSE;
-  if (!below[0] && !below[1]) return PETSC_TRUE;
-  PetscReal *low = below[0] ? end : end + 3, *high = below[0] ? end + 3 : end;
-  const PetscReal share = (ground - high[up]) / (low[up] - high[up]);
-  for (int d = 0; d < 3; ++d) low[d] = high[d] + share * (low[d] - high[d]);
-  return PETSC_TRUE;
+  PetscReal from = 0, to = 1, way[3];
+  for (int d = 0; d < 3; ++d) {
+    const PetscReal beside = d == up ? 0 : BESIDE * view->size / FINENESS;
+    const PetscReal low = view->min[d] - beside - end[d], high = view->max[d] + beside - end[d];
+    way[d] = end[3 + d] - end[d];
+    if (way[d] == 0 && (low > 0 || high < 0)) return PETSC_FALSE;
+    if (way[d] == 0) continue;
+    from = PetscMax(from, PetscMin(low / way[d], high / way[d]));
+    to = PetscMin(to, PetscMax(low / way[d], high / way[d]));
+  }
+  for (int d = 0; d < 3; ++d) end[3 + d] = end[d] + to * way[d], end[d] += from * way[d];
+  return (PetscBool)(from < to);
 }
 
 static PetscErrorCode TakeLines(const PlotScene *scene, const WallMesh *mesh, const WallView *view, PlotFrame *f)
@@ -102,7 +109,7 @@ static PetscErrorCode TakeLines(const PlotScene *scene, const WallMesh *mesh, co
   PetscCall(PetscMalloc1(18 * (size_t)mesh->n, &f->line));
   for (PetscInt i = 0, next; i < n; i = next) {
     for (next = i + 1; next < n && !compare_keys(&sides[next], &sides[i]);) ++next;
-    if (!is_drawn(sides + i, next - i) || !clip(scene->up, view->min[scene->up], sides[i].end)) continue;
+    if (!is_drawn(sides + i, next - i) || !clip(view, scene->up, sides[i].end)) continue;
     plot_project(scene, sides[i].end, f->line + 6 * f->n_lines);
     plot_project(scene, sides[i].end + 3, f->line + 6 * f->n_lines + 3);
     ++f->n_lines;
