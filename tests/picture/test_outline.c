@@ -6,7 +6,7 @@
 #include "picture/raster/spacing.h"
 #include "picture/scene/scene.h"
 
-enum { W = 400, MOST = 4000 };
+enum { W = 400, MOST = 5000 };
 #define H 0.1 /* cells */
 
 typedef struct {
@@ -212,6 +212,74 @@ static void test_corners(void **state)
   }
 }
 
+/* Points of a box in space: in the middle of what of the eighths of cells lies in it; returns how many. */
+static PetscInt seed_box(const Shape *box, PetscReal *x)
+{
+  PetscReal at[3][32];
+  PetscInt count[3] = {0, 0, 0}, n = 0;
+  for (int d = 0; d < 3; ++d)
+    for (int k = -12; k < 12; ++k) {
+      const PetscReal low = PetscMax(H / 2 * k, box->min[d]), high = PetscMin(H / 2 * (k + 1), box->max[d]);
+      if (high - low > 0.1 * H / 2) at[d][count[d]++] = (low + high) / 2;
+    }
+  for (PetscInt k = 0; k < count[2]; ++k)
+    for (PetscInt j = 0; j < count[1]; ++j)
+      for (PetscInt i = 0; i < count[0]; ++i, ++n)
+        x[3 * n] = at[0][i], x[3 * n + 1] = at[1][j], x[3 * n + 2] = at[2][k];
+  return n;
+}
+
+/* A box off the grid's lines, stretched and turned to the eye: its silhouette has the area of the sum of its faces'
+ * shadows, and there is the light of three planes on it. */
+static void test_space(void **state)
+{
+  static unsigned char rgba[4 * W * W];
+  const Shape box = {.kind = SHAPE_BOX, .min = {-0.37, -0.33, -0.29}, .max = {0.41, 0.27, 0.23}};
+  const PetscReal stretch[3] = {1.15, 0.9, 1.05}, a = 0.6, b = -0.4;
+  const PetscReal R[3][3] = {
+    {cos(a), sin(a), 0}, {-sin(b) * sin(a), sin(b) * cos(a), cos(b)}, {cos(b) * sin(a), -cos(b) * cos(a), sin(b)}};
+  PetscReal length[3], area[2], exact = 0;
+  (void)state;
+  Drawing *d = create(disk);
+  PlotFrame *f = &d->f;
+  d->c.kinematics = &kinematics_3d;
+  d->body.shape = box;
+  f->n = f->n_first = seed_box(&box, f->first);
+  assert_true(f->n < MOST);
+  for (PetscInt p = 0; p < f->n; ++p)
+    for (int i = 0; i < 3; ++i) {
+      f->x[3 * p + i] = 0;
+      for (int j = 0; j < 3; ++j) f->x[3 * p + i] += R[i][j] * stretch[j] * f->first[3 * p + j];
+    }
+  assert_int_equal(PlotSpacing(3, f->n, f->x, f->radius), 0);
+  assert_int_equal(PlotSpacing(3, f->n, f->first, f->first_radius), 0);
+  assert_int_equal(PlotShapes(&d->c, NULL, f), 0);
+  for (int known = 0; known < 2; ++known) {
+    const PlotOutline outline = {.c = &d->c, .frame = f};
+    const RasterScene scene = {.n = f->n,
+                               .x = f->x,
+                               .radius = f->radius,
+                               .value = d->zero,
+                               .gap = f->radius[0],
+                               .knows = known ? f->knows : NULL,
+                               .holds = plot_shape_holds,
+                               .of = &outline,
+                               .shaded = PETSC_TRUE,
+                               .min = {-1, -1},
+                               .max = {1, 1},
+                               .width = W,
+                               .height = W};
+    assert_int_equal(RasterDraw(&scene, rgba), 0);
+    area[known] = 0;
+    for (int k = 0; k < W * W; ++k) area[known] += rgba[4 * k + 3] / 255. * 4 / (W * W);
+  }
+  for (int i = 0; i < 3; ++i) length[i] = stretch[i] * (box.max[i] - box.min[i]);
+  for (int i = 0; i < 3; ++i) exact += PetscAbsReal(R[2][i]) * length[(i + 1) % 3] * length[(i + 2) % 3];
+  printf("box in space: area off %.2g (balls %.2g)\n", (double)(area[1] / exact - 1), (double)(area[0] / exact - 1));
+  assert_true(fabs(area[1] / exact - 1) < 5e-3);
+  destroy(d);
+}
+
 /* Bodies of whole cells are drawn as these, and points that have been torn apart know nothing of an outline. */
 static void test_unknown(void **state)
 {
@@ -322,9 +390,9 @@ static void test_cells(void **state)
 
 static int Tests(void)
 {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_disk), cmocka_unit_test(test_corners),
-                                     cmocka_unit_test(test_mesh), cmocka_unit_test(test_cells),
-                                     cmocka_unit_test(test_unknown)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_disk),  cmocka_unit_test(test_corners),
+                                     cmocka_unit_test(test_mesh),  cmocka_unit_test(test_cells),
+                                     cmocka_unit_test(test_space), cmocka_unit_test(test_unknown)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
 

@@ -2,6 +2,7 @@
  * material began lies in the shape, or in the mesh. Points next to the surface know where that is from those around
  * them. */
 #include <math.h>
+#include "base/math/tensor.h"
 #include "grid/search/neighbours.h"
 #include "method/method.h"
 #include "picture/scene/scene.h"
@@ -42,9 +43,10 @@ static PetscBool is_known(const Case *c, const PlotContours *contours, PetscInt 
 static PetscBool body_holds(const Case *c, const PlotContours *contours, PetscInt body, const PetscReal *x,
                             PetscReal deep)
 {
-  const PetscReal at[3] = {c->kinematics->hoop ? PetscMax(fabs(x[0]), 1.001 * deep) : x[0], x[1], 0};
+  const PetscInt dim = c->kinematics->dim;
+  const PetscReal at[3] = {c->kinematics->hoop ? PetscMax(fabs(x[0]), 1.001 * deep) : x[0], x[1], dim == 3 ? x[2] : 0};
   const Contour *contour = contour_of(contours, body);
-  if (fills_shape(c, body) && !shape_contains(&c->bodies[body].shape, 2, at, -deep)) return PETSC_FALSE;
+  if (fills_shape(c, body) && !shape_contains(&c->bodies[body].shape, dim, at, -deep)) return PETSC_FALSE;
   return (PetscBool)(!contour || (contour_holds(contour, at) && !(deep > 0 && contour_near(contour, at, deep))));
 }
 
@@ -56,34 +58,32 @@ static PetscInt body_of(const Case *c, const PlotContours *contours, const unsig
   return -1;
 }
 
-/* Where places around point p began: X = back[0..1] + B (x - x_p), B = back[2..5], from its neighbours
- * by least squares. PETSC_FALSE where they moved in other ways. */
-static PetscBool fit(const PlotFrame *f, PetscInt p, PetscInt n, const PetscInt *item, const PetscReal *square,
-                     PetscReal most, PetscReal *back)
+/* Where places around point p began: X = X_p + B (x - x_p), from its neighbours by least squares. In the plane all third
+ * coordinates are 0. PETSC_FALSE where they moved in other ways. */
+static PetscBool fit(const PlotFrame *f, PetscInt dim, PetscInt p, PetscInt n, const PetscInt *item,
+                     const PetscReal *square, PetscReal most, PetscReal *B)
 {
-  PetscReal M[3] = {0, 0, 0}, C[4] = {0, 0, 0, 0}, all = 0, off = 0;
+  PetscReal M[9] = {0}, C[9] = {0}, inverse[9], all = 0, stretch = 0;
   for (PetscInt k = 0; k < n; ++k) {
-    const PetscReal w = PetscSqr(1 - square[k] / most), *x = f->x + 3 * item[k], *X = f->first + 3 * item[k];
-    const PetscReal r[2] = {x[0] - f->x[3 * p], x[1] - f->x[3 * p + 1]};
-    const PetscReal R[2] = {X[0] - f->first[3 * p], X[1] - f->first[3 * p + 1]};
-    M[0] += w * r[0] * r[0], M[1] += w * r[0] * r[1], M[2] += w * r[1] * r[1];
-    for (int i = 0; i < 4; ++i) C[i] += w * R[i / 2] * r[i % 2];
-    all += w * (R[0] * R[0] + R[1] * R[1]);
+    const PetscReal w = PetscSqr(1 - square[k] / most);
+    PetscReal r[3], R[3];
+    for (int d = 0; d < 3; ++d) {
+      r[d] = f->x[3 * item[k] + d] - f->x[3 * p + d];
+      R[d] = f->first[3 * item[k] + d] - f->first[3 * p + d];
+      all += w * R[d] * R[d];
+    }
+    for (int i = 0; i < 9; ++i) M[i] += w * r[i / 3] * r[i % 3], C[i] += w * R[i / 3] * r[i % 3];
   }
-  const PetscReal det = M[0] * M[2] - M[1] * M[1];
-  if (!(det > 1e-3 * PetscSqr(M[0] + M[2]))) return PETSC_FALSE;
-  PetscReal *B = back + 2;
-  for (int i = 0; i < 2; ++i) {
-    back[i] = f->first[3 * p + i];
-    B[2 * i] = (C[2 * i] * M[2] - C[2 * i + 1] * M[1]) / det;
-    B[2 * i + 1] = (C[2 * i + 1] * M[0] - C[2 * i] * M[1]) / det;
-  }
+  const PetscReal mean = (M[0] + M[4] + M[8]) / (PetscReal)dim;
+  if (dim == 2) M[8] = mean;
+  if (!(tensor_inverse(M, inverse) > 4e-3 * mean * mean * mean)) return PETSC_FALSE;
+  tensor_multiply(C, inverse, B);
   /* sum w |R - B r|^2 = sum w |R|^2 - C : B, B being the best */
-  off = all;
-  for (int i = 0; i < 4; ++i) off -= C[i] * B[i];
-  const PetscReal stretch = B[0] * B[0] + B[1] * B[1] + B[2] * B[2] + B[3] * B[3];
+  PetscReal off = all;
+  for (int i = 0; i < 9; ++i) off -= C[i] * B[i], stretch += B[i] * B[i];
+  if (dim == 2) B[8] = 1;
   return (PetscBool)(off <= PetscSqr(UNEVEN) * all && stretch <= PetscSqr(MOST_STRETCH) &&
-                     B[0] * B[3] - B[1] * B[2] > 1 / MOST_STRETCH);
+                     tensor_det(B) > 1 / MOST_STRETCH);
 }
 
 /* What is asked of the points of a frame. */
@@ -118,7 +118,8 @@ static void fit_all(const Fit *of)
     f->knows[p] = 0;
     if (body < 0) continue;
     const PetscInt n = around(of, p, item, square);
-    if (n < LEAST_AROUND || !fit(f, p, n, item, square, radius * radius, f->back + 6 * p)) continue;
+    if (n < LEAST_AROUND || !fit(f, of->c->kinematics->dim, p, n, item, square, radius * radius, f->back + 9 * p))
+      continue;
     f->knows[p] = body_holds(of->c, of->contours, body, first, OUTERMOST * f->first_radius[p]) ? INNER : OUTER;
   }
 }
@@ -155,23 +156,24 @@ PetscErrorCode PlotShapes(const Case *c, const PlotContours *contours, PlotFrame
 
   PetscFunctionBeginUser;
   if (!c || c->n_bodies > MOST_BODIES || f->n != f->n_first || !f->n) PetscFunctionReturn(0);
+  const PetscInt dim = c->kinematics->dim;
   for (PetscInt b = 0; b < c->n_bodies; ++b) {
     known[b] = is_known(c, contours, b);
     any = (PetscBool)(any || known[b]);
   }
   if (!any) PetscFunctionReturn(0);
-  PetscCall(PetscMalloc3(f->n, &f->shape, f->n, &f->knows, 6 * f->n, &f->back));
+  PetscCall(PetscMalloc3(f->n, &f->shape, f->n, &f->knows, 9 * f->n, &f->back));
   PetscCall(PetscCalloc1(c->n_bodies, &f->there));
-  PetscCall(PetscMalloc2(2 * f->n, &x, f->n, &body));
+  PetscCall(PetscMalloc2(dim * f->n, &x, f->n, &body));
   for (PetscInt p = 0; p < f->n; ++p) {
     const PetscInt of = body_of(c, contours, known, f->first + 3 * p);
     body[p] = (unsigned char)(1 + of);
     if (of >= 0) f->there[of] = 1;
     f->shape[p] = of >= 0 && body_holds(c, contours, of, f->first + 3 * p, DEEP * f->first_radius[p]) ? 0 : body[p];
     far = PetscMax(far, f->radius[p]);
-    for (int d = 0; d < 2; ++d) x[2 * p + d] = f->x[3 * p + d];
+    for (PetscInt d = 0; d < dim; ++d) x[dim * p + d] = f->x[3 * p + d];
   }
-  PetscCall(NeighboursCreate(2, f->n, x, 0, NULL, NULL, far, &points));
+  PetscCall(NeighboursCreate(dim, f->n, x, 0, NULL, NULL, far, &points));
   const Fit all = {.c = c, .contours = contours, .points = &points, .body = body, .f = f};
   fit_all(&all);
   PetscCall(DropLonely(&all));
@@ -194,9 +196,9 @@ RasterHeld plot_shape_holds(const void *of, PetscInt p, const PetscReal *x)
 {
   const PlotOutline *o = of;
   const PlotFrame *f = o->frame;
-  const PetscReal *back = f->back + 6 * p, *B = back + 2;
-  const PetscReal r[2] = {x[0] - f->x[3 * p], x[1] - f->x[3 * p + 1]};
-  const PetscReal began[2] = {back[0] + B[0] * r[0] + B[1] * r[1], back[1] + B[2] * r[0] + B[3] * r[1]};
+  const PetscReal *B = f->back + 9 * p, *X = f->first + 3 * p;
+  PetscReal began[3] = {X[0], X[1], X[2]};
+  for (int i = 0; i < 9; ++i) began[i / 3] += B[i] * (x[i % 3] - f->x[3 * p + i % 3]);
   const PetscReal *at = o->first ? x : began;
   const PetscInt body = f->shape[p] - 1;
   if (!body_holds(o->c, o->contours, body, at, 0)) return neighbour_holds(o, body, at) ? RASTER_NEAR : RASTER_OUTSIDE;

@@ -19,6 +19,10 @@ void palette_colour(PetscReal value, PetscReal rgb[3])
   if (PetscIsNanReal(value)) rgb[0] = rgb[1] = rgb[2] = 160;
 }
 
+/* Steps through a ball to its first place in the body, and halvings of the last one. */
+enum { MARCH = 16, BISECT = 8 };
+#define SAME 0.3 /* of a ball's radius: places of one surface are no farther apart along a ray */
+
 static PetscErrorCode CanvasCreate(const RasterScene *scene, Canvas *canvas)
 {
   PetscFunctionBeginUser;
@@ -31,8 +35,50 @@ static PetscErrorCode CanvasCreate(const RasterScene *scene, Canvas *canvas)
   PetscFunctionReturn(0);
 }
 
+/* Where the body begins along the ray of a sample, from the front of a ball that knows it to its back, in samples;
+ * PETSC_FALSE: nowhere. */
+static PetscBool find_surface(const RasterScene *scene, const Canvas *canvas, PetscInt p, int i, int j, PetscReal half,
+                              float *front)
+{
+  PetscReal x[3] = {(i + 0.5) / canvas->scale + scene->min[0], (j + 0.5) / canvas->scale + scene->min[1]}, out, in;
+  int step = 0;
+  for (; step <= MARCH; ++step) {
+    x[2] = scene->x[3 * p + 2] + half * (1 - 2. * step / MARCH);
+    if (scene->holds(scene->of, p, x) != RASTER_OUTSIDE) break;
+  }
+  if (step > MARCH) return PETSC_FALSE;
+  in = x[2], out = step ? in + half * 2. / MARCH : in;
+  for (int k = 0; k < BISECT && step; ++k) {
+    x[2] = (in + out) / 2;
+    if (scene->holds(scene->of, p, x) != RASTER_OUTSIDE) in = x[2];
+    else out = x[2];
+  }
+  *front = (float)(in * canvas->scale);
+  return PETSC_TRUE;
+}
+
+static PetscReal square_distance(const RasterScene *scene, const Canvas *canvas, PetscInt p, int i, int j, float front)
+{
+  PetscReal c[3];
+  canvas_place(scene, canvas, scene->x + 3 * p, c);
+  return PetscSqr(i - c[0]) + PetscSqr(j - c[1]) + PetscSqr((PetscReal)front - c[2]);
+}
+
+/* Does another ball know the same surface there, nearer to its middle? Whose colour it has is not left to round-off. */
+static PetscBool is_others(const RasterScene *scene, const Canvas *canvas, PetscInt p, int i, int j, float front)
+{
+  const size_t at = canvas_at(canvas, i, j);
+  const PetscInt q = canvas->point[at];
+  if (q < 0) return PETSC_FALSE;
+  if (!scene->knows[q] || fabsf(front - canvas->front[at]) > SAME * canvas_radius(scene, canvas, p))
+    return (PetscBool)(canvas->front[at] >= front);
+  return (PetscBool)(square_distance(scene, canvas, p, i, j, front) >=
+                     square_distance(scene, canvas, q, i, j, canvas->front[at]));
+}
+
 static void draw_ball(const RasterScene *scene, Canvas *canvas, PetscInt p)
 {
+  const PetscBool cut = (PetscBool)(scene->shaded && scene->knows && scene->knows[p]);
   PetscReal c[3];
   canvas_place(scene, canvas, scene->x + 3 * p, c);
   if (!(fabs(c[0]) < 1e8 && fabs(c[1]) < 1e8)) return;
@@ -44,8 +90,11 @@ static void draw_ball(const RasterScene *scene, Canvas *canvas, PetscInt p)
       const PetscReal h2 = radius * radius - (i - c[0]) * (i - c[0]) - (j - c[1]) * (j - c[1]);
       const size_t at = canvas_at(canvas, i, j);
       if (h2 < 0) continue;
-      const float front = (float)(c[2] + sqrt(h2));
+      float front = (float)(c[2] + sqrt(h2));
       if (canvas->point[at] >= 0 && canvas->front[at] >= front) continue;
+      if (cut && (!find_surface(scene, canvas, p, i, j, sqrt(h2) / canvas->scale, &front) ||
+                  is_others(scene, canvas, p, i, j, front)))
+        continue;
       canvas->front[at] = front;
       canvas->point[at] = p;
     }

@@ -34,7 +34,8 @@ typedef struct {
    * they fill is drawn back by half their radius, to where the material ends; 0: neither */
   PetscReal gap;
   /* with a gap, n: which points know the outline next to them, and does the body hold a place next to such a point? Of
-   * the outermost all that balls cover is shown there, of others what is drawn back; NULL: none knows */
+   * the outermost all that balls cover is shown there, of others what is drawn back; in space balls that know are
+   * cut by it. NULL: none knows */
   const unsigned char *knows;
   RasterHeld (*holds)(const void *of, PetscInt p, const PetscReal *x);
   const void *of;

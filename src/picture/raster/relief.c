@@ -7,11 +7,12 @@
 /* Of a ball's radius: how far around a place the surface is smoothed, and how far behind it another one begins. */
 #define WIDE 1.1
 #define BEHIND 2.0
-enum { PASSES = 2, MOST_WIDE = 24 };
+enum { PASSES = 2, MOST_WIDE = 24, EXACT_WIDE = 2 }; /* pixels; of surfaces that points know */
 
 typedef struct {
   int w, h, wide;
   float behind, *depth, *next; /* pixels; -INFINITY where there is no ball */
+  unsigned char *exact;        /* does the ball know the surface? */
   float weight[MOST_WIDE + 1];
 } Relief;
 
@@ -26,12 +27,16 @@ static PetscErrorCode ReliefCreate(const RasterScene *scene, const Canvas *canva
   r->wide = (int)PetscMin(PetscMax(ceil(WIDE * pixels), 1), MOST_WIDE);
   for (int k = 0; k <= r->wide; ++k) r->weight[k] = expf(-2.f * (float)(k * k) / (float)(r->wide * r->wide));
   PetscCall(PetscMalloc2(r->w * r->h, &r->depth, r->w * r->h, &r->next));
+  PetscCall(PetscCalloc1(r->w * r->h, &r->exact));
   for (int at = 0; at < r->w * r->h; ++at) r->depth[at] = -INFINITY;
   for (int j = 0; j < canvas->height; ++j)
     for (int i = 0; i < canvas->width; ++i) {
       const size_t sample = canvas_at(canvas, i, j);
-      float *depth = &r->depth[j / SAMPLES * r->w + i / SAMPLES];
-      if (canvas->point[sample] >= 0) *depth = PetscMax(*depth, canvas->front[sample] / SAMPLES);
+      const PetscInt p = canvas->point[sample];
+      const int at = j / SAMPLES * r->w + i / SAMPLES;
+      if (p < 0 || canvas->front[sample] / SAMPLES <= r->depth[at]) continue;
+      r->depth[at] = canvas->front[sample] / SAMPLES;
+      r->exact[at] = scene->knows && scene->knows[p];
     }
   PetscFunctionReturn(0);
 }
@@ -40,8 +45,9 @@ static PetscErrorCode ReliefCreate(const RasterScene *scene, const Canvas *canva
 static float smooth_at(const Relief *r, int column, int row, int across)
 {
   const float here = r->depth[row * r->w + column];
+  const int wide = r->exact[row * r->w + column] ? PetscMin(r->wide, EXACT_WIDE) : r->wide;
   float sum = 0, all = 0;
-  for (int k = -r->wide; k <= r->wide; ++k) {
+  for (int k = -wide; k <= wide; ++k) {
     const int i = column + (across ? k : 0), j = row + (across ? 0 : k);
     if (i < 0 || j < 0 || i >= r->w || j >= r->h) continue;
     const float depth = r->depth[j * r->w + i], weight = r->weight[abs(k)];
@@ -85,5 +91,6 @@ PetscErrorCode CanvasRelief(const RasterScene *scene, const Canvas *canvas, floa
       light[at] = (float)canvas_light(a, b, 1);
     }
   PetscCall(PetscFree2(r.depth, r.next));
+  PetscCall(PetscFree(r.exact));
   PetscFunctionReturn(0);
 }

@@ -54,7 +54,8 @@ static PetscErrorCode Grow(PetscReal gap, Room *room)
  * come to a surface, flow has made it. */
 static PetscBool shows(const RasterScene *scene, const Canvas *canvas, PetscInt p, int i, int j, PetscBool in)
 {
-  const PetscReal x[2] = {(i + 0.5) / canvas->scale + scene->min[0], (j + 0.5) / canvas->scale + scene->min[1]};
+  const PetscReal x[3] = {(i + 0.5) / canvas->scale + scene->min[0], (j + 0.5) / canvas->scale + scene->min[1], 0};
+  if (scene->shaded) return (PetscBool)(canvas->point[canvas_at(canvas, i, j)] >= 0); /* balls are cut */
   const RasterHeld held = scene->holds(scene->of, p, x);
   const PetscBool covered = (PetscBool)(in || canvas->point[canvas_at(canvas, i, j)] >= 0);
   return held == RASTER_NEAR ? covered : held == RASTER_DEEP ? in : PETSC_FALSE;

@@ -39,7 +39,8 @@ static void turn_box(PlotScene *scene)
   }
 }
 
-/* In the plane: where the points of the frame began. Points without a place have none there either. */
+/* In the plane, and of mpm in space: where the points of the frame began. Points without a place have none there
+ * either. */
 static PetscErrorCode TakeFirst(VtkFile *file, const PlotScene *scene, PetscInt n, const PetscReal *x, PlotFrame *f)
 {
   const PetscInt sides = scene->mirrored ? 2 : 1;
@@ -47,7 +48,8 @@ static PetscErrorCode TakeFirst(VtkFile *file, const PlotScene *scene, PetscInt 
   PetscReal *u;
 
   PetscFunctionBeginUser;
-  if (!scene->walled || scene->walled->kinematics->dim != 2) PetscFunctionReturn(0);
+  if (!scene->walled || (scene->walled->kinematics->dim != 2 && strcmp(scene->walled->method, "mpm") != 0))
+    PetscFunctionReturn(0);
   PetscCall(PlotReadDisplacement(file, &u, reason));
   if (!u) PetscCall(PlotOriginDisplacement(&scene->origin, file, x, &u));
   if (!u) PetscFunctionReturn(0);
@@ -178,6 +180,12 @@ PetscErrorCode PlotFramesShape(PlotScene *scene)
       plot_project(scene, f->corner + 3 * i, shown);
       memcpy(f->corner + 3 * i, shown, sizeof shown);
     }
+  }
+  for (PetscInt k = 0; k < scene->n_frames && scene->dim == 3; ++k) {
+    PlotFrame *f = &scene->frames[k];
+    if (!f->n || !f->first) continue;
+    PetscCall(PlotSpacing(3, f->n_first, f->first, f->first_radius));
+    PetscCall(PlotShapes(scene->walled, scene->contours, f));
   }
   scene->gap *= 2; /* from point to point */
   for (int d = 0; d < scene->dim; ++d) scene->box_min[d] -= 0.9 * largest, scene->box_max[d] += 0.9 * largest;

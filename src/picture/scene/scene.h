@@ -35,7 +35,7 @@ typedef struct {
   unsigned char *part; /* n: RasterScene; NULL: one */
   PetscReal gap;       /* of the balls: RasterScene */
   /* n: of points that began next to the surface of a shape that their body fills, the body's number from 1; is it known
-   * where places around them began, and where (n x 6: body/shapes.c). NULL: of none */
+   * where places around them began, and how (n x 9: body/shapes.c). NULL: of none */
   unsigned char *shape, *knows;
   PetscReal *back;
   unsigned char *there; /* of each body whose outline is known: has it points? */
