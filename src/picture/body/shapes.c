@@ -15,8 +15,8 @@ enum { INNER = 1, OUTER = 2 }; /* of `knows` */
 #define DEEP 2.2
 #define OUTERMOST 1.3
 /* Of the neighbours of a point that knows, so many do, too. */
-#define OUTER_SHARE 0.5
-#define INNER_SHARE 0.25
+#define OUTER_SHARE 0.35
+#define INNER_SHARE 0.2
 /* Of the distances at the start: what neighbours may have moved otherwise than evenly. */
 #define UNEVEN 0.15
 #define MOST_STRETCH 4.
@@ -86,6 +86,14 @@ static PetscBool fit(const PlotFrame *f, PetscInt dim, PetscInt p, PetscInt n, c
                      tensor_det(B) > 1 / MOST_STRETCH);
 }
 
+/* Where a place next to a point that knows began. */
+static void place_began(const PlotFrame *f, PetscInt p, const PetscReal *x, PetscReal began[3])
+{
+  const PetscReal *B = f->back + 9 * p, *X = f->first + 3 * p, *at = f->x + 3 * p;
+  const PetscReal r[3] = {x[0] - at[0], x[1] - at[1], x[2] - at[2]};
+  for (int i = 0; i < 3; ++i) began[i] = X[i] + B[3 * i] * r[0] + B[3 * i + 1] * r[1] + B[3 * i + 2] * r[2];
+}
+
 /* What is asked of the points of a frame. */
 typedef struct {
   const Case *c;
@@ -106,6 +114,24 @@ static PetscInt around(const Fit *of, PetscInt p, PetscInt *item, PetscReal *squ
   return kept;
 }
 
+/* Is the surface as near to a point as it is to the outermost ones, now? */
+static PetscBool is_outermost(const Fit *of, PetscInt p)
+{
+  static const PetscReal half = 0.70710678118654752;
+  const PlotFrame *f = of->f;
+  const PetscInt dim = of->c->kinematics->dim, body = f->shape[p] - 1;
+  const PetscReal way[14][3] = {
+    {1, 0, 0},         {-1, 0, 0}, {0, 1, 0},  {0, -1, 0},      {half, half, 0},   {half, -half, 0}, {-half, half, 0},
+    {-half, -half, 0}, {0, 0, 1},  {0, 0, -1}, {half, 0, half}, {-half, 0, -half}, {0, half, half},  {0, -half, -half}};
+  for (int k = 0; k < (dim == 2 ? 8 : 14); ++k) {
+    PetscReal x[3], began[3];
+    for (int d = 0; d < 3; ++d) x[d] = f->x[3 * p + d] + OUTERMOST * f->radius[p] * way[k][d];
+    place_began(f, p, x, began);
+    if (!body_holds(of->c, of->contours, body, began, 0)) return PETSC_TRUE;
+  }
+  return PETSC_FALSE;
+}
+
 /* Those that began next to the surface, and whose neighbours moved alike. */
 static void fit_all(const Fit *of)
 {
@@ -113,14 +139,14 @@ static void fit_all(const Fit *of)
   PetscInt item[MOST_AROUND];
   PetscReal square[MOST_AROUND];
   for (PetscInt p = 0; p < f->n; ++p) {
-    const PetscReal radius = AROUND * f->radius[p], *first = f->first + 3 * p;
+    const PetscReal radius = AROUND * f->radius[p];
     const PetscInt body = f->shape[p] - 1;
     f->knows[p] = 0;
     if (body < 0) continue;
     const PetscInt n = around(of, p, item, square);
     if (n < LEAST_AROUND || !fit(f, of->c->kinematics->dim, p, n, item, square, radius * radius, f->back + 9 * p))
       continue;
-    f->knows[p] = body_holds(of->c, of->contours, body, first, OUTERMOST * f->first_radius[p]) ? INNER : OUTER;
+    f->knows[p] = is_outermost(of, p) ? OUTER : INNER;
   }
 }
 
@@ -196,9 +222,8 @@ RasterHeld plot_shape_holds(const void *of, PetscInt p, const PetscReal *x)
 {
   const PlotOutline *o = of;
   const PlotFrame *f = o->frame;
-  const PetscReal *B = f->back + 9 * p, *X = f->first + 3 * p;
-  PetscReal began[3] = {X[0], X[1], X[2]};
-  for (int i = 0; i < 9; ++i) began[i / 3] += B[i] * (x[i % 3] - f->x[3 * p + i % 3]);
+  PetscReal began[3];
+  place_began(f, p, x, began);
   const PetscReal *at = o->first ? x : began;
   const PetscInt body = f->shape[p] - 1;
   if (!body_holds(o->c, o->contours, body, at, 0)) return neighbour_holds(o, body, at) ? RASTER_NEAR : RASTER_OUTSIDE;
