@@ -345,6 +345,11 @@ static void test_mesh(void **state)
            (double)(balls / area - 1), (double)(off / cell), (double)(scallops / cell));
     assert_true(fabs(drawn / area - 1) < 2e-3);
     assert_true(off < 0.6 * 2. / W + (k == 2 ? 0.03 * cell : 0));
+    const PlotOutline all = {.c = &d->c, .contours = d->contours, .frame = &d->f, .first = PETSC_TRUE};
+    assert_false(plot_bodies_hold(&all, (PetscReal[]){ring_middle[0], ring_middle[1], 0})); /* the hole */
+    assert_true(plot_bodies_hold(&all, (PetscReal[]){ring_middle[0] + 0.45, ring_middle[1], 0}));
+    d->f.there[0] = 0; /* nothing of it is left */
+    assert_false(plot_bodies_hold(&all, (PetscReal[]){ring_middle[0] + 0.45, ring_middle[1], 0}));
     assert_int_equal(PlotContoursDestroy(&d->contours), 0);
     destroy(d);
   }

@@ -107,6 +107,25 @@ static PetscReal edge_at(const unsigned char *rgba, int w, int h, int column, in
   return PetscMin(hypot(across, up) / 255., 1) * 0.6;
 }
 
+/* Where points have left the grid, those that are there began in a part of their body: the whole of it, in an image with
+ * samples as the rasters' are. */
+static void fill_whole(const PlotOutline *outline, const RasterScene *raster, unsigned char *rgba)
+{
+  enum { FINE = 3 };
+  const PetscReal step = (raster->max[0] - raster->min[0]) / raster->width / FINE;
+  for (int row = 0; row < raster->height; ++row)
+    for (int column = 0; column < raster->width; ++column) {
+      int held = 0;
+      for (int k = 0; k < FINE * FINE; ++k) {
+        const PetscReal x[3] = {raster->min[0] + (column * FINE + k % FINE + 0.5) * step,
+                                raster->min[1] + (row * FINE + k / FINE + 0.5) * step, 0};
+        held += plot_bodies_hold(outline, x);
+      }
+      unsigned char *alpha = rgba + 4 * ((size_t)row * (size_t)raster->width + (size_t)column) + 3;
+      *alpha = (unsigned char)PetscMax(*alpha, 255 * held / (FINE * FINE));
+    }
+}
+
 /* The body as it was at first, on the page and around it: what the page cuts has no outline along the cut. */
 static PetscErrorCode DrawFirst(const PlotScene *scene, const PlotFrame *f, const PlotPage *page, int around,
                                 unsigned char *rgba)
@@ -126,6 +145,7 @@ static PetscErrorCode DrawFirst(const PlotScene *scene, const PlotFrame *f, cons
   if (f->first_corner) raster.n_triangles = f->n_triangles, raster.corner = f->first_corner, raster.corner_value = zero;
   else raster.n = f->n_first, raster.x = f->first, raster.radius = f->first_radius, raster.value = zero;
   PetscCall(RasterDraw(&raster, rgba));
+  if (scene->walled->grid.outside == OUTSIDE_REMOVE && f->n) fill_whole(&outline, &raster, rgba);
   PetscCall(PetscFree(zero));
   PetscFunctionReturn(0);
 }

@@ -229,3 +229,10 @@ RasterHeld plot_shape_holds(const void *of, PetscInt p, const PetscReal *x)
   if (!body_holds(o->c, o->contours, body, at, 0)) return neighbour_holds(o, body, at) ? RASTER_NEAR : RASTER_OUTSIDE;
   return o->first || f->knows[p] == OUTER ? RASTER_NEAR : RASTER_DEEP;
 }
+
+PetscBool plot_bodies_hold(const PlotOutline *o, const PetscReal *x)
+{
+  for (PetscInt b = 0; o->frame->there && b < o->c->n_bodies; ++b)
+    if (o->frame->there[b] && body_holds(o->c, o->contours, b, x, 0)) return PETSC_TRUE;
+  return PETSC_FALSE;
+}

@@ -167,6 +167,8 @@ PetscErrorCode PlotOriginDisplacement(const PlotOrigin *origin, VtkFile *file, c
 PetscErrorCode PlotShapes(const Case *c, const PlotContours *contours, PlotFrame *frame);
 /* RasterScene's `holds`, of a PlotOutline. */
 RasterHeld plot_shape_holds(const void *of, PetscInt p, const PetscReal *x);
+/* Does a body whose outline is known, and of which there still are points, hold a place at the start? */
+PetscBool plot_bodies_hold(const PlotOutline *outline, const PetscReal *x);
 PetscErrorCode PlotFramesFree(PlotScene *scene);
 
 /* arrows.c. Arrows of n points (x: n x 3) with vectors v (n x components). */
