@@ -14,12 +14,14 @@ enum { INNER = 1, OUTER = 2 }; /* of `knows` */
 #define AROUND 2.5
 #define DEEP 2.2
 #define OUTERMOST 1.3
+/* And of the radius at first: what began so near to one of these is its own. */
+#define OWN 1.3
 /* Of the neighbours of a point that knows, so many do, too. */
 #define OUTER_SHARE 0.35
 #define INNER_SHARE 0.2
 /* Of the distances at the start: what neighbours may have moved otherwise than evenly. */
 #define UNEVEN 0.15
-#define MOST_STRETCH 4.
+#define MOST_STRETCH 10.
 
 static PetscBool fills_shape(const Case *c, PetscInt body)
 {
@@ -103,12 +105,11 @@ typedef struct {
   PlotFrame *f;
 } Fit;
 
-/* Points around p of its own body, and their squared distances. */
-static PetscInt around(const Fit *of, PetscInt p, PetscInt *item, PetscReal *square)
+/* Points of its own body so far around p, and their squared distances. */
+static PetscInt around(const Fit *of, PetscInt p, PetscReal radius, PetscInt *item, PetscReal *square)
 {
   PetscInt kept = 0;
-  const PetscInt n =
-    neighbours_within(of->points, of->f->x + 3 * p, AROUND * of->f->radius[p], MOST_AROUND, item, square);
+  const PetscInt n = neighbours_within(of->points, of->f->x + 3 * p, radius, MOST_AROUND, item, square);
   for (PetscInt k = 0; k < n; ++k)
     if (of->body[item[k]] == of->body[p]) item[kept] = item[k], square[kept++] = square[k];
   return kept;
@@ -132,21 +133,28 @@ static PetscBool is_outermost(const Fit *of, PetscInt p)
   return PETSC_FALSE;
 }
 
+/* Where neighbours that have come together along one axis say nothing about the others, those farther off do. */
+static PetscBool fit_around(const Fit *of, PetscInt p)
+{
+  PetscInt item[MOST_AROUND];
+  PetscReal square[MOST_AROUND];
+  for (int wide = 1; wide <= 2; ++wide) {
+    const PetscReal radius = wide * AROUND * of->f->radius[p];
+    const PetscInt n = around(of, p, radius, item, square);
+    if (n >= LEAST_AROUND &&
+        fit(of->f, of->c->kinematics->dim, p, n, item, square, radius * radius, of->f->back + 9 * p))
+      return PETSC_TRUE;
+  }
+  return PETSC_FALSE;
+}
+
 /* Those that began next to the surface, and whose neighbours moved alike. */
 static void fit_all(const Fit *of)
 {
   PlotFrame *f = of->f;
-  PetscInt item[MOST_AROUND];
-  PetscReal square[MOST_AROUND];
   for (PetscInt p = 0; p < f->n; ++p) {
-    const PetscReal radius = AROUND * f->radius[p];
-    const PetscInt body = f->shape[p] - 1;
     f->knows[p] = 0;
-    if (body < 0) continue;
-    const PetscInt n = around(of, p, item, square);
-    if (n < LEAST_AROUND || !fit(f, of->c->kinematics->dim, p, n, item, square, radius * radius, f->back + 9 * p))
-      continue;
-    f->knows[p] = is_outermost(of, p) ? OUTER : INNER;
+    if (f->shape[p] && fit_around(of, p)) f->knows[p] = is_outermost(of, p) ? OUTER : INNER;
   }
 }
 
@@ -164,7 +172,7 @@ static PetscErrorCode DropLonely(const Fit *of)
   for (PetscInt p = 0; p < f->n; ++p) {
     PetscInt alike = 0;
     if (!before[p]) continue;
-    const PetscInt n = around(of, p, item, square);
+    const PetscInt n = around(of, p, AROUND * f->radius[p], item, square);
     for (PetscInt k = 0; k < n; ++k) alike += before[item[k]] != 0;
     if (alike < (before[p] == OUTER ? OUTER_SHARE : INNER_SHARE) * n) f->knows[p] = 0;
   }
@@ -227,7 +235,10 @@ RasterHeld plot_shape_holds(const void *of, PetscInt p, const PetscReal *x)
   const PetscReal *at = o->first ? x : began;
   const PetscInt body = f->shape[p] - 1;
   if (!body_holds(o->c, o->contours, body, at, 0)) return neighbour_holds(o, body, at) ? RASTER_NEAR : RASTER_OUTSIDE;
-  return o->first || f->knows[p] == OUTER ? RASTER_NEAR : RASTER_DEEP;
+  if (!o->first && f->knows[p] != OUTER) return RASTER_DEEP;
+  const PetscReal *X = f->first + 3 * p, away[3] = {at[0] - X[0], at[1] - X[1], at[2] - X[2]};
+  const PetscReal square = away[0] * away[0] + away[1] * away[1] + away[2] * away[2];
+  return square <= PetscSqr(OWN * f->first_radius[p]) ? RASTER_OWN : RASTER_NEAR;
 }
 
 PetscBool plot_bodies_hold(const PlotOutline *o, const PetscReal *x)

@@ -11,9 +11,9 @@ void palette_colour(PetscReal value, PetscReal rgb[3]);
 #define PALETTE_NAMES 10
 extern const unsigned char palette_names[PALETTE_NAMES][3];
 
-/* Where a place is: outside of the body next to whose surface its point began, inside with a point of the outermost, or
- * with one of those behind them. */
-typedef enum { RASTER_OUTSIDE, RASTER_NEAR, RASTER_DEEP } RasterHeld;
+/* Where a place is: outside of the body next to whose surface its point began, inside with a point of the outermost,
+ * whose own it is or may be, or with one of those behind them. */
+typedef enum { RASTER_OUTSIDE, RASTER_OWN, RASTER_NEAR, RASTER_DEEP } RasterHeld;
 
 typedef struct {
   PetscInt n;
@@ -34,7 +34,7 @@ typedef struct {
    * they fill is drawn back by half their radius, to where the material ends; 0: neither */
   PetscReal gap;
   /* with a gap, n: which points know the outline next to them, and does the body hold a place next to such a point? Of
-   * the outermost all that balls cover is shown there, of others what is drawn back; in space balls that know are
+   * the outermost their own and all that balls cover is shown there, of others what is drawn back; in space balls that know are
    * cut by it. NULL: none knows */
   const unsigned char *knows;
   RasterHeld (*holds)(const void *of, PetscInt p, const PetscReal *x);

@@ -58,7 +58,7 @@ static PetscBool shows(const RasterScene *scene, const Canvas *canvas, PetscInt 
   if (scene->shaded) return (PetscBool)(canvas->point[canvas_at(canvas, i, j)] >= 0); /* balls are cut */
   const RasterHeld held = scene->holds(scene->of, p, x);
   const PetscBool covered = (PetscBool)(in || canvas->point[canvas_at(canvas, i, j)] >= 0);
-  return held == RASTER_NEAR ? covered : held == RASTER_DEEP ? in : PETSC_FALSE;
+  return held == RASTER_OWN ? PETSC_TRUE : held == RASTER_NEAR ? covered : held == RASTER_DEEP ? in : PETSC_FALSE;
 }
 
 /* Between balls the body is as far in front as their middles. */
