@@ -17,9 +17,16 @@ typedef struct {
   PetscReal zero[MOST];
 } Drawing;
 
+/* A bend that stands for another motion: pressed down to a quarter of the height. */
+#define PRESSED (-9)
+
 /* Where material goes: turned by 40 degrees, stretched, and bent by so much. */
 static void move(PetscReal bend, const PetscReal *X, PetscReal *x)
 {
+  if (bend == PRESSED) {
+    x[0] = X[0], x[1] = X[1] / 4, x[2] = 0;
+    return;
+  }
   const PetscReal c = cos(40 * PETSC_PI / 180), s = sin(40 * PETSC_PI / 180), a = 1.25 * X[0],
                   b = 0.8 * X[1] + bend * X[0] * X[0];
   x[0] = c * a - s * b, x[1] = s * a + c * b, x[2] = 0;
@@ -325,6 +332,21 @@ static void seed_ring(Drawing *d)
   d->f.n_first = d->f.n;
 }
 
+/* What has come together along one axis keeps its sides along the other. */
+static void test_pressed(void **state)
+{
+  static unsigned char rgba[4 * W * W];
+  const Shape box = {.kind = SHAPE_BOX, .min = {-0.53, -0.41, 0}, .max = {0.47, 0.33, 0}};
+  (void)state;
+  Drawing *d = create(box);
+  const PetscReal balls = draw(d, PRESSED, PETSC_TRUE, PETSC_FALSE, rgba),
+                  area = draw(d, PRESSED, PETSC_TRUE, PETSC_TRUE, rgba);
+  printf("pressed: area off %.2g (balls %.2g)\n", (double)(area / (0.74 / 4) - 1), (double)(balls / (0.74 / 4) - 1));
+  /* corners are beyond what balls reach together */
+  assert_true(fabs(area / (0.74 / 4) - 1) < 0.01 && fabs(balls / (0.74 / 4) - 1) > 0.03);
+  destroy(d);
+}
+
 /* A body of its own mesh has the outline of that, inside and outside. */
 static void test_mesh(void **state)
 {
@@ -395,9 +417,10 @@ static void test_cells(void **state)
 
 static int Tests(void)
 {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_disk),  cmocka_unit_test(test_corners),
-                                     cmocka_unit_test(test_mesh),  cmocka_unit_test(test_cells),
-                                     cmocka_unit_test(test_space), cmocka_unit_test(test_unknown)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_disk),    cmocka_unit_test(test_corners),
+                                     cmocka_unit_test(test_pressed), cmocka_unit_test(test_mesh),
+                                     cmocka_unit_test(test_cells),   cmocka_unit_test(test_space),
+                                     cmocka_unit_test(test_unknown)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
 

@@ -115,7 +115,7 @@ static PetscInt around(const Fit *of, PetscInt p, PetscReal radius, PetscInt *it
   return kept;
 }
 
-/* Is the surface as near to a point as it is to the outermost ones, now? */
+/* Was the surface as near to a point as it is to the outermost ones, or is it now? */
 static PetscBool is_outermost(const Fit *of, PetscInt p)
 {
   static const PetscReal half = 0.70710678118654752;
@@ -124,6 +124,7 @@ static PetscBool is_outermost(const Fit *of, PetscInt p)
   const PetscReal way[14][3] = {
     {1, 0, 0},         {-1, 0, 0}, {0, 1, 0},  {0, -1, 0},      {half, half, 0},   {half, -half, 0}, {-half, half, 0},
     {-half, -half, 0}, {0, 0, 1},  {0, 0, -1}, {half, 0, half}, {-half, 0, -half}, {0, half, half},  {0, -half, -half}};
+  if (!body_holds(of->c, of->contours, body, f->first + 3 * p, OUTERMOST * f->first_radius[p])) return PETSC_TRUE;
   for (int k = 0; k < (dim == 2 ? 8 : 14); ++k) {
     PetscReal x[3], began[3];
     for (int d = 0; d < 3; ++d) x[d] = f->x[3 * p + d] + OUTERMOST * f->radius[p] * way[k][d];
