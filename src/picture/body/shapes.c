@@ -22,6 +22,7 @@ enum { INNER = 1, OUTER = 2 }; /* of `knows` */
 /* Of the distances at the start: what neighbours may have moved otherwise than evenly. */
 #define UNEVEN 0.15
 #define MOST_STRETCH 10.
+#define MOST_OPENING 4. /* of the volume */
 
 static PetscBool fills_shape(const Case *c, PetscInt body)
 {
@@ -85,7 +86,7 @@ static PetscBool fit(const PlotFrame *f, PetscInt dim, PetscInt p, PetscInt n, c
   for (int i = 0; i < 9; ++i) off -= C[i] * B[i], stretch += B[i] * B[i];
   if (dim == 2) B[8] = 1;
   return (PetscBool)(off <= PetscSqr(UNEVEN) * all && stretch <= PetscSqr(MOST_STRETCH) &&
-                     tensor_det(B) > 1 / MOST_STRETCH);
+                     tensor_det(B) > 1 / MOST_OPENING);
 }
 
 /* Where a place next to a point that knows began. */
