@@ -117,8 +117,8 @@ static void fill_whole(const PlotOutline *outline, const RasterScene *raster, un
     for (int column = 0; column < raster->width; ++column) {
       int held = 0;
       for (int k = 0; k < FINE * FINE; ++k) {
-        const PetscReal x[3] = {raster->min[0] + (column * FINE + k % FINE + 0.5) * step,
-                                raster->min[1] + (row * FINE + k / FINE + 0.5) * step, 0};
+        const int across = column * FINE + k % FINE, up = row * FINE + k / FINE;
+        const PetscReal x[3] = {raster->min[0] + (across + 0.5) * step, raster->min[1] + (up + 0.5) * step, 0};
         held += plot_bodies_hold(outline, x);
       }
       unsigned char *alpha = rgba + 4 * ((size_t)row * (size_t)raster->width + (size_t)column) + 3;
