@@ -223,6 +223,7 @@ static PetscErrorCode NewtonTry(Newton *n, const LinearProblem *linear, NewtonRe
   PetscCall(SNESGetLinearSolveIterations(n->snes, &report->linear_iterations));
   report->iterations += its;
   report->converged = reason > 0;
+  n->idle = report->converged && report->iterations == 0;
   report->interrupted = reason == SNES_DIVERGED_FUNCTION_COUNT;
   const char *loose = report->converged || report->interrupted ? NULL : newton_rigid_reason(n);
   report->reason = loose ? loose : newton_reason(reason, report->status);
