@@ -22,6 +22,7 @@ typedef struct Discretisation {
   PetscBool started;               /* has phase a run before? */
   PetscBool present;               /* do support and nodal fields belong to where points are now? */
   unsigned char *filled;           /* n_cells: does the cell hold points? */
+  PetscReal *volume;               /* n_cells, of grids that are restored: 0 where nobody has asked for it, m3 */
   /* of a point's velocity beyond the nodes': what damping takes in the step */
   PetscReal fade;
   PetscInt group_capacity;

@@ -65,20 +65,36 @@ void newton_forget(Newton *n, const System *system, const NewtonMemory *memory)
   n->built = memory->courant >= 0 ? system->builds : -1;
 }
 
-/* What the first guess lacks of the prescribed increments, and the largest of that and of the
- * increments on this rank. */
-static void lack_of_guess(const StepProblem *p, PetscReal *lift, PetscReal largest[2])
+/* The largest of what the first guess lacks of the prescribed increments, and of these, on this rank; du in the frames
+ * of the nodes. */
+static void largest_lack(const StepProblem *p, PetscReal largest[2])
 {
-  newton_turn(p, p->du);
-  for (PetscInt i = 0; i < p->grid->n_nodes * p->grid->dim; ++i)
-    if (p->fixed[i]) lift[i] = p->prescribed[i] - p->du[i];
-  newton_turn(p, p->du);
   for (PetscInt k = 0; k < p->system->n_active; ++k)
     for (PetscInt d = 0, i = p->system->active[k] * p->grid->dim; d < p->grid->dim; ++d, ++i) {
       if (!p->fixed[i]) continue;
-      largest[0] = PetscMax(largest[0], PetscAbsReal(lift[i]));
+      largest[0] = PetscMax(largest[0], PetscAbsReal(p->prescribed[i] - p->du[i]));
       largest[1] = PetscMax(largest[1], PetscAbsReal(p->prescribed[i]));
     }
+}
+
+/* What the first guess lacks of the prescribed increments, freed by PetscFree; NULL if it has them. */
+static PetscErrorCode LackOfGuess(const Newton *n, PetscReal **lift)
+{
+  const StepProblem *p = n->problem;
+  const PetscInt dofs = p->grid->n_nodes * p->grid->dim;
+  PetscReal local[2] = {0, 0}, all[2];
+
+  PetscFunctionBeginUser;
+  *lift = NULL;
+  newton_turn(p, p->du);
+  largest_lack(p, local);
+  PetscCall(MPIU_Allreduce(local, all, 2, MPIU_REAL, MPIU_MAX, n->comm));
+  const PetscBool lacks = all[0] > 1e-12 * all[1] && all[1] != 0;
+  if (lacks) PetscCall(PetscCalloc1(dofs, lift));
+  for (PetscInt i = 0; lacks && i < dofs; ++i)
+    if (p->fixed[i]) (*lift)[i] = p->prescribed[i] - p->du[i];
+  newton_turn(p, p->du);
+  PetscFunctionReturn(0);
 }
 
 /* One linear step that carries the prescribed increments into the interior: what is left of them at
@@ -87,19 +103,14 @@ static void lack_of_guess(const StepProblem *p, PetscReal *lift, PetscReal large
 static PetscErrorCode LiftPrescribed(Newton *n)
 {
   StepProblem *p = n->problem;
-  PetscReal *lift, local[2] = {0, 0}, all[2];
+  PetscReal *lift;
   KSP ksp;
   Vec y;
   double start;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscCalloc1(p->grid->n_nodes * p->grid->dim, &lift));
-  lack_of_guess(p, lift, local);
-  PetscCall(MPIU_Allreduce(local, all, 2, MPIU_REAL, MPIU_MAX, n->comm));
-  if (all[0] <= 1e-12 * all[1] || all[1] == 0) {
-    PetscCall(PetscFree(lift));
-    PetscFunctionReturn(0);
-  }
+  PetscCall(LackOfGuess(n, &lift));
+  if (!lift) PetscFunctionReturn(0);
   n->lift = lift;
   PetscCall(NewtonAssemble(n, PETSC_TRUE));
   n->lift = NULL;
