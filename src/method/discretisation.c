@@ -28,6 +28,7 @@ PetscErrorCode DiscretisationDestroy(Discretisation **space)
   PetscCall(ConstraintsDestroy(&s->constraints));
   PetscCall(PetscFree(s->filled));
   PetscCall(PetscFree(s->volume));
+  PetscCall(PetscFree(s->whole));
   PetscCall(PetscFree(s->lumping));
   PetscCall(PetscFree(s->soft));
   PetscCall(PetscFree(s->tie));

@@ -38,7 +38,6 @@ static void begin(Subject *t, CellType type, PetscBool pressure)
   CALL(SystemBuild(t->made.system, grid,
                    &(NodeGroups){.n = some->n_groups, .start = some->node_start, .node = some->node}));
   CALL(SystemSlots(t->made.system, some, NULL));
-  CALL(SystemWantSlots(t->made.system));
   add_numbers(t);
   CALL(PetscCalloc5(grid->n_nodes * dim, &t->none, grid->n_nodes, &t->idle, grid->n_nodes * dim, &t->lift,
                     grid->n_nodes * dim, &t->force, grid->n_nodes, &t->volume));

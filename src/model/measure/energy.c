@@ -49,13 +49,12 @@ UNROLLED PetscReal product_sized(const PetscInt dim, const PetscInt fixed_nn, co
     for (PetscInt p = support->point_start[g]; p < support->point_start[g + 1]; ++p) {
       const PetscReal *N = support->N + support->value_start[g] + (p - support->point_start[g]) * nn;
       PetscReal uh[3] = {0, 0, 0}, wh[3] = {0, 0, 0}, nodes = 0;
-      for (PetscInt I = 0; I < nn; ++I) {
-        nodes += N[I] * at_node[I];
+      for (PetscInt I = 0; lumped > 0 && I < nn; ++I) nodes += N[I] * at_node[I];
+      for (PetscInt I = 0; I < nn; ++I)
         for (PetscInt d = 0; d < dim; ++d) {
           uh[d] += N[I] * un[I * dim + d];
           wh[d] += N[I] * wn[I * dim + d];
         }
-      }
       sum += m->points->real[POINT_MASS][p] *
              ((1 - lumped) * (uh[0] * wh[0] + uh[1] * wh[1] + uh[2] * wh[2]) + lumped * nodes);
     }
@@ -70,7 +69,8 @@ static PetscReal mass_product(const Model *m, NodalField u, NodalField w)
   const Support *support = m->space->support;
   const SupportRun all = {.first = 0, .end = support->n_groups};
   PetscReal sum = 0;
-  if (!support->n_runs) return product_sized(m->dim, 0, &all, m, &u, &w);
+  if (!support->n_runs && m->dim == 2) return product_sized(2, 0, &all, m, &u, &w);
+  if (!support->n_runs) return product_sized(3, 0, &all, m, &u, &w);
   for (const SupportRun *run = support->run; run < support->run + support->n_runs; ++run) {
     if (m->dim == 2 && run->nodes == 3) sum += product_sized(2, 3, run, m, &u, &w);
     else if (m->dim == 2 && run->nodes == 4) sum += product_sized(2, 4, run, m, &u, &w);

@@ -220,21 +220,14 @@ static inline PetscInt pair_slot(const System *s, PetscInt I, PetscInt J)
 
 PetscErrorCode SystemSlots(System *s, const Support *support, PetscBool *complete)
 {
-  PetscFunctionBeginUser;
-  s->later = support->n_runs ? support : NULL;
-  if (!s->later) PetscCall(SystemCloudSlots(s, support, complete));
-  else if (complete) *complete = PETSC_TRUE;
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode SystemWantSlots(System *s)
-{
-  const Support *support = s->later;
   PetscInt size = 0;
 
   PetscFunctionBeginUser;
-  if (!support) PetscFunctionReturn(0);
   s->later = NULL;
+  if (!support->n_runs) {
+    PetscCall(SystemCloudSlots(s, support, complete));
+    PetscFunctionReturn(0);
+  }
   for (const SupportRun *r = support->run; r < support->run + support->n_runs; ++r)
     size += (r->end - r->first) * r->nodes * r->nodes;
   PetscCall(SystemReserveSlots(s, size));
@@ -245,6 +238,20 @@ PetscErrorCode SystemWantSlots(System *s)
       for (PetscInt I = 0; I < nn; ++I)
         for (PetscInt J = 0; J < nn; ++J) slot[I * nn + J] = pair_slot(s, node[I], node[J]);
     }
+  if (complete) *complete = PETSC_TRUE;
+  PetscFunctionReturn(0);
+}
+
+void system_slots_later(System *s, const Support *support) { s->later = support; }
+
+PetscErrorCode SystemWantSlots(System *s)
+{
+  PetscBool complete;
+
+  PetscFunctionBeginUser;
+  if (!s->later) PetscFunctionReturn(0);
+  PetscCall(SystemSlots(s, s->later, &complete));
+  PetscCheck(complete, PETSC_COMM_SELF, PETSC_ERR_PLIB, "points couple nodes that their basis did not announce");
   PetscFunctionReturn(0);
 }
 

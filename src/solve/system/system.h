@@ -55,7 +55,7 @@ typedef struct System {
   /* is the tangent gathered in singles, or else in values? */
   PetscBool single;
   PetscInt n_slots, *slot;        /* SystemSlots: nn x nn pairs of each group */
-  const Support *later;           /* cells whose slots nobody has asked for yet; NULL: all are there */
+  const Support *later;           /* whose slots nobody has wanted yet; NULL: they are there */
   PetscInt n_cuts, capacity_cuts; /* SystemPrescribe */
   SystemCut *cut;
   const Frames *frames;               /* of the nodes: the unknowns are components in them; NULL: along the axes */
@@ -77,9 +77,11 @@ PetscErrorCode SystemDestroy(System **system);
 PetscErrorCode SystemBuild(System *system, const Grid *grid, const NodeGroups *groups);
 /* Look up the slots of every group of the support, one group behind the other. Cells' nodes must
  * all carry unknowns; clouds have ascending nodes, and `complete` tells whether the pattern has
- * all their pairs on this rank. Cells always have them, and are looked up
- * by SystemWantSlots, before a tangent, which a step without iterations never has. */
+ * all their pairs on this rank. */
 PetscErrorCode SystemSlots(System *system, const Support *support, PetscBool *complete);
+/* The same of a support whose pairs the pattern has for sure, when a tangent wants them: a step without
+ * iterations never does. */
+void system_slots_later(System *system, const Support *support);
 PetscErrorCode SystemWantSlots(System *system);
 /* The slot of one pair of nodes; -1 if the pattern lacks it. */
 PetscInt system_pair(const System *system, PetscInt I, PetscInt J);
