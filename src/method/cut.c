@@ -10,7 +10,7 @@ static PetscErrorCode WholeVolumes(Discretisation *s)
 
   PetscFunctionBeginUser;
   if (s->whole) PetscFunctionReturn(0);
-  PetscCall(PetscCalloc1(grid->n_nodes, &s->whole));
+  PetscCall(PetscCalloc1(grid->n_nodes + 1, &s->whole)); /* not NULL without nodes either: all ranks come here once */
   for (PetscInt c = 0; c < grid->n_cells; ++c) {
     const PetscInt nn = grid_cell(grid, c)->nodes, *node = grid->cell_node + c * grid->nodes_per_cell;
     grid_cell_x(grid, c, x);

@@ -77,8 +77,8 @@ static void largest_lack(const StepProblem *p, PetscReal largest[2])
     }
 }
 
-/* What the first guess lacks of the prescribed increments, freed by PetscFree; NULL if it has them. */
-static PetscErrorCode LackOfGuess(const Newton *n, PetscReal **lift)
+/* Does the first guess lack some of the prescribed increments, on any rank? What it lacks is freed by PetscFree. */
+static PetscErrorCode LackOfGuess(const Newton *n, PetscBool *lacks, PetscReal **lift)
 {
   const StepProblem *p = n->problem;
   const PetscInt dofs = p->grid->n_nodes * p->grid->dim;
@@ -89,9 +89,9 @@ static PetscErrorCode LackOfGuess(const Newton *n, PetscReal **lift)
   newton_turn(p, p->du);
   largest_lack(p, local);
   PetscCall(MPIU_Allreduce(local, all, 2, MPIU_REAL, MPIU_MAX, n->comm));
-  const PetscBool lacks = all[0] > 1e-12 * all[1] && all[1] != 0;
-  if (lacks) PetscCall(PetscCalloc1(dofs, lift));
-  for (PetscInt i = 0; lacks && i < dofs; ++i)
+  *lacks = all[0] > 1e-12 * all[1] && all[1] != 0;
+  if (*lacks) PetscCall(PetscCalloc1(dofs, lift));
+  for (PetscInt i = 0; *lacks && i < dofs; ++i)
     if (p->fixed[i]) (*lift)[i] = p->prescribed[i] - p->du[i];
   newton_turn(p, p->du);
   PetscFunctionReturn(0);
@@ -104,13 +104,14 @@ static PetscErrorCode LiftPrescribed(Newton *n)
 {
   StepProblem *p = n->problem;
   PetscReal *lift;
+  PetscBool lacks;
   KSP ksp;
   Vec y;
   double start;
 
   PetscFunctionBeginUser;
-  PetscCall(LackOfGuess(n, &lift));
-  if (!lift) PetscFunctionReturn(0);
+  PetscCall(LackOfGuess(n, &lacks, &lift));
+  if (!lacks) PetscFunctionReturn(0);
   n->lift = lift;
   PetscCall(NewtonAssemble(n, PETSC_TRUE));
   n->lift = NULL;
