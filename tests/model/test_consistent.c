@@ -16,9 +16,11 @@ static PetscReal sum_over(const Model *m, PetscReal part)
   return part;
 }
 
-static Model *block(Bench *b, CellType cell, PetscBool held)
+static Model *block(Bench *b, CellType cell, PetscBool held, PetscBool yields)
 {
+  static NamedValue grains[4] = {{"young", 1e5}, {"poisson", 0.3}, {"friction_angle", 30}, {"cohesion", 0}};
   bench_init(b, "mpm", cell, CELLS);
+  if (yields) b->material.law = "mohr-coulomb", b->material.parameters = grains, b->material.n_parameters = 4;
   bench_box(b, 0, (PetscReal[]){1. / 3, 0, 1. / 6}, (PetscReal[]){5. / 6, 5. / 6, 2. / 3});
   bench_dynamic(b, 1, 1e-3);
   b->c.analysis.transfer = (char *)"consistent";
@@ -61,7 +63,7 @@ static void test_linear(void **state)
   (void)state;
   for (CellType cell = CELL_TRIANGLE; cell <= CELL_HEXAHEDRON; ++cell) {
     Bench b;
-    Model *m = block(&b, cell, PETSC_FALSE);
+    Model *m = block(&b, cell, PETSC_FALSE, PETSC_FALSE);
     set_linear(m);
     CALL(m->method->initialise(m->space));
     for (PetscInt i = 0; i < m->grid->n_nodes * m->dim; ++i) {
@@ -74,12 +76,36 @@ static void test_linear(void **state)
   }
 }
 
+/* Where a law yields, nodes hear of gradients of the velocity alone: those of points that do not accelerate give
+ * nobody an acceleration. */
+static void test_yields(void **state)
+{
+  (void)state;
+  for (PetscBool yields = PETSC_FALSE; yields <= PETSC_TRUE; ++yields) {
+    Bench b;
+    Model *m = block(&b, CELL_QUADRILATERAL, PETSC_FALSE, yields);
+    PetscReal velocity = 0, acceleration = 0;
+    set_linear(m);
+    for (PetscInt p = 0; p < m->points->n; ++p)
+      for (PetscInt d = 0; d < 2; ++d) point_real(m->points, POINT_V, p)[d] = point_real(m->points, POINT_A, p)[d] = 0;
+    CALL(m->method->initialise(m->space));
+    for (PetscInt i = 0; i < m->grid->n_nodes * m->dim; ++i) {
+      velocity += PetscAbsReal(m->nodes->v[i]);
+      acceleration += PetscAbsReal(m->nodes->a[i]);
+    }
+    assert_true(sum_over(m, velocity) > 1);
+    if (yields) assert_true(sum_over(m, acceleration) == 0);
+    else assert_true(sum_over(m, acceleration) > 1);
+    CALL(ModelDestroy(&m));
+  }
+}
+
 /* sum_p N_I m (sum_J N_J v_J) of full cells, against sum_p N_I m v_p; and its sum over all nodes. */
 static void test_momentum(void **state)
 {
   Bench b;
   (void)state;
-  Model *m = block(&b, CELL_QUADRILATERAL, PETSC_FALSE);
+  Model *m = block(&b, CELL_QUADRILATERAL, PETSC_FALSE, PETSC_FALSE);
   PetscReal sum[2] = {0, 0}, points[2] = {0, 0}, mass = 0;
   for (PetscInt p = 0; p < m->points->n; ++p)
     for (PetscInt d = 0; d < 2; ++d) {
@@ -137,7 +163,7 @@ static void test_refused(void **state)
 
 int main(int argc, char **argv)
 {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_linear), cmocka_unit_test(test_momentum),
-                                     cmocka_unit_test(test_refused)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_linear), cmocka_unit_test(test_yields),
+                                     cmocka_unit_test(test_momentum), cmocka_unit_test(test_refused)};
   return run_model_tests(argc, argv, tests);
 }

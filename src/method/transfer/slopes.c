@@ -1,16 +1,24 @@
 #include "method/transfer/slopes.h"
 #include "base/math/tensor.h"
 #include "method/transfer/loops.h"
+#include "method/transfer/mass.h"
 
-/* sum += factor G x, of both motions. */
-UNROLLED void add_linear(const PetscInt dim, PetscReal factor, const PetscReal *G, const PetscReal *x, PetscReal *sum)
+/* Rows of a point's gradients: of its velocity, and of its acceleration where no law yields. */
+static PetscInt rows_of(const Discretisation *s, PetscInt dim)
 {
-  for (PetscInt k = 0; k < 2 * dim; ++k)
+  return materials_yield(s->c->n_materials, s->materials) ? dim : MOTIONS * dim;
+}
+
+/* sum += factor G x */
+UNROLLED void add_linear(const PetscInt dim, PetscInt rows, PetscReal factor, const PetscReal *G, const PetscReal *x,
+                         PetscReal *sum)
+{
+  for (PetscInt k = 0; k < rows; ++k)
     for (PetscInt d = 0; d < dim; ++d) sum[k] += factor * G[k * dim + d] * x[d];
 }
 
 /* The tie of a group, which holds its nodes to their mean: G is the mean of its points. */
-UNROLLED void add_tied(const PetscInt dim, const PetscInt nn, const Discretisation *s, PetscReal tie,
+UNROLLED void add_tied(const PetscInt dim, const PetscInt nn, PetscInt rows, const Discretisation *s, PetscReal tie,
                        const PetscInt *node, const PetscReal *G, PetscReal *sum)
 {
   PetscReal mean[3] = {0, 0, 0}, from[3];
@@ -18,7 +26,7 @@ UNROLLED void add_tied(const PetscInt dim, const PetscInt nn, const Discretisati
     for (PetscInt d = 0; d < dim; ++d) mean[d] += s->grid->x[node[I] * dim + d] / (PetscReal)nn;
   for (PetscInt I = 0; I < nn; ++I) {
     for (PetscInt d = 0; d < dim; ++d) from[d] = s->grid->x[node[I] * dim + d] - mean[d];
-    add_linear(dim, tie, G, from, sum + node[I] * 2 * dim);
+    add_linear(dim, rows, tie, G, from, sum + node[I] * 2 * dim);
   }
 }
 
@@ -26,6 +34,7 @@ UNROLLED void gather_slopes(const PetscInt dim, const PetscInt fixed_nn, const S
                             PetscReal *sum)
 {
   const Support *w = s->support;
+  const PetscInt rows = rows_of(s, dim);
   for (PetscInt g = run->first; g < run->end; ++g) {
     const PetscInt nn = fixed_nn ? fixed_nn : support_nodes(w, g), *node = w->node + w->node_start[g];
     PetscReal mean[18] = {0}, mass = 0, from[3];
@@ -37,10 +46,10 @@ UNROLLED void gather_slopes(const PetscInt dim, const PetscInt fixed_nn, const S
       for (PetscInt k = 0; k < 2 * dim * dim; ++k) mean[k] += m * G[k];
       for (PetscInt I = 0; I < nn; ++I) {
         for (PetscInt d = 0; d < dim; ++d) from[d] = s->grid->x[node[I] * dim + d] - x[d];
-        add_linear(dim, s->lumping[g] * m * N[I], G, from, sum + node[I] * 2 * dim);
+        add_linear(dim, rows, s->lumping[g] * m * N[I], G, from, sum + node[I] * 2 * dim);
       }
     }
-    if (s->tie[g] > 0) add_tied(dim, nn, s, s->tie[g] / mass, node, mean, sum);
+    if (s->tie[g] > 0) add_tied(dim, nn, rows, s, s->tie[g] / mass, node, mean, sum);
   }
 }
 
