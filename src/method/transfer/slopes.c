@@ -55,28 +55,40 @@ UNROLLED void gather_slopes(const PetscInt dim, const PetscInt fixed_nn, const S
 
 void slopes_gather(const Discretisation *s, PetscReal *sum) { WITH_SIZES(gather_slopes, s, s, sum); }
 
-/* The gradients at the step's start are those with respect to places that dF moves on. */
+/* rows x dim: of the motion x of nodes, sum += factor x_I dN_I */
+UNROLLED void add_gradient(const PetscInt dim, PetscReal factor, const PetscReal *x, const PetscReal *dN,
+                           PetscReal *sum)
+{
+  for (PetscInt i = 0; i < dim; ++i)
+    for (PetscInt j = 0; j < dim; ++j) sum[i * dim + j] += factor * x[i] * dN[j];
+}
+
+/* The gradients at the step's start are those with respect to places that dF moves on. Of the velocity's what no node
+ * has seen stays, as a point's own velocity does, to the share in which it has energy. */
 UNROLLED void give_slopes(const PetscInt dim, const PetscInt fixed_nn, const SupportRun *run, Discretisation *s)
 {
   const Support *w = s->support;
   const NodalFields *n = s->nodes;
+  const PetscInt square = dim * dim;
   for (PetscInt g = run->first; g < run->end; ++g) {
     const PetscInt nn = fixed_nn ? fixed_nn : support_nodes(w, g), *node = w->node + w->node_start[g];
+    const PetscReal lumped = s->lumping[g];
     for (PetscInt p = w->point_start[g]; p < w->point_start[g + 1]; ++p) {
       const PetscReal *dN = w->dN + dim * (w->value_start[g] + (p - w->point_start[g]) * nn);
-      PetscReal dF[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1}, inverse[9], before[18] = {0};
+      PetscReal moved[9] = {0}, dF[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1}, inverse[9], end[18] = {0};
       PetscReal *G = point_real(s->points, POINT_SLOPE, p);
-      for (PetscInt I = 0; I < nn; ++I)
-        for (PetscInt i = 0; i < dim; ++i)
-          for (PetscInt j = 0; j < dim; ++j) {
-            dF[3 * i + j] += n->du[node[I] * dim + i] * dN[I * dim + j];
-            before[i * dim + j] += n->v1[node[I] * dim + i] * dN[I * dim + j];
-            before[(dim + i) * dim + j] += n->a1[node[I] * dim + i] * dN[I * dim + j];
-          }
+      for (PetscInt k = 0; k < 2 * square; ++k) G[k] *= k < square ? lumped : 0;
+      for (PetscInt I = 0; I < nn; ++I) {
+        const PetscInt at = node[I] * dim;
+        add_gradient(dim, 1, n->du + at, dN + I * dim, moved);
+        add_gradient(dim, 1, n->v1 + at, dN + I * dim, end);
+        add_gradient(dim, 1, n->a1 + at, dN + I * dim, end + square);
+        add_gradient(dim, -lumped, n->v_points + at, dN + I * dim, G);
+      }
+      for (PetscInt k = 0; k < square; ++k) dF[3 * (k / dim) + k % dim] += moved[k];
       tensor_inverse(dF, inverse);
-      for (PetscInt k = 0; k < 2 * dim * dim; ++k) G[k] = 0;
-      for (PetscInt k = 0; k < 2 * dim * dim; ++k)
-        for (PetscInt j = 0; j < dim; ++j) G[k / dim * dim + j] += before[k] * inverse[3 * (k % dim) + j];
+      for (PetscInt k = 0; k < 2 * square; ++k)
+        for (PetscInt j = 0; j < dim; ++j) G[k / dim * dim + j] += end[k] * inverse[3 * (k % dim) + j];
     }
   }
 }

@@ -8,5 +8,9 @@
  *
  *   sum_p l_g m N_I G_p (x_I - x_p) + t_g G_g (x_I - mean_g x) */
 void slopes_gather(const Discretisation *space, PetscReal *sum);
-/* Those of the nodes' motion v1, a1 at the end of the step, where its du has brought the points. */
+/* Those of the nodes' motion v1, a1 at the end of the step, where its du has brought the points:
+ *
+ *   G_p := l_g (G_p - grad v~) + grad v1 dF^-1, of the acceleration grad a1 dF^-1
+ *
+ * v~: as the nodes gathered it. */
 void slopes_give(Discretisation *space);
