@@ -2,55 +2,63 @@
  * their functions as it likes (docs/theory.md, "Smooth shape functions"). */
 #include "method/discretisation.h"
 
-PetscErrorCode DiscretisationVolumes(const Discretisation *s, PetscBool now, PetscReal *volume, PetscReal *whole)
+/* A node's share of the cells, all of which stand still: once for all steps. */
+static PetscErrorCode WholeVolumes(Discretisation *s)
 {
-  const Support *w = s->support;
   const Grid *grid = s->grid;
   PetscReal x[3 * CELL_MAX_NODES], share[CELL_MAX_NODES];
 
   PetscFunctionBeginUser;
-  PetscCall(PetscArrayzero(volume, grid->n_nodes));
-  PetscCall(PetscArrayzero(whole, grid->n_nodes));
+  if (s->whole) PetscFunctionReturn(0);
+  PetscCall(PetscCalloc1(grid->n_nodes + 1, &s->whole)); /* not NULL without nodes either: all ranks come here once */
+  for (PetscInt c = 0; c < grid->n_cells; ++c) {
+    const PetscInt nn = grid_cell(grid, c)->nodes, *node = grid->cell_node + c * grid->nodes_per_cell;
+    grid_cell_x(grid, c, x);
+    cell_shares_in(s->c->kinematics, grid_cell_type(grid, c), x, share);
+    for (PetscInt I = 0; I < nn; ++I) s->whole[node[I]] += share[I];
+  }
+  PetscCall(GridSumToOwners(grid, 1, s->whole));
+  PetscCall(GridToGhosts(grid, 1, s->whole));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode DiscretisationVolumes(Discretisation *s, PetscBool now, PetscReal *volume)
+{
+  const Support *w = s->support;
+
+  PetscFunctionBeginUser;
+  PetscCall(WholeVolumes(s));
+  PetscCall(PetscArrayzero(volume, s->grid->n_nodes));
   for (PetscInt g = 0; g < w->n_groups; ++g)
     for (PetscInt p = w->point_start[g]; p < w->point_start[g + 1]; ++p) {
       const PetscReal V = (now ? s->points->real[POINT_J][p] : 1) * s->points->real[POINT_VOLUME][p];
       for (PetscInt I = 0; I < support_nodes(w, g); ++I)
         volume[w->node[w->node_start[g] + I]] += support_N(w, g, p)[I] * V;
     }
-  for (PetscInt c = 0; c < grid->n_cells; ++c) {
-    const PetscInt nn = grid_cell(grid, c)->nodes, *node = grid->cell_node + c * grid->nodes_per_cell;
-    PetscBool near = PETSC_FALSE;
-    for (PetscInt I = 0; I < nn; ++I) near |= s->nodes->touched[node[I]];
-    if (!near) continue;
-    grid_cell_x(grid, c, x);
-    cell_shares_in(s->c->kinematics, grid_cell_type(grid, c), x, share);
-    for (PetscInt I = 0; I < nn; ++I) whole[node[I]] += share[I];
-  }
-  PetscCall(GridSumToOwners(grid, 1, volume));
-  PetscCall(GridSumToOwners(grid, 1, whole));
-  PetscCall(GridToGhosts(grid, 1, volume));
-  PetscCall(GridToGhosts(grid, 1, whole));
+  PetscCall(GridSumToOwners(s->grid, 1, volume));
+  PetscCall(GridToGhosts(s->grid, 1, volume));
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode DiscretisationCuts(Discretisation *s)
 {
   const Support *w = s->support;
-  PetscReal *volume, *whole;
+  PetscReal *fill;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc2(s->grid->n_nodes, &volume, s->grid->n_nodes, &whole));
-  PetscCall(DiscretisationVolumes(s, PETSC_TRUE, volume, whole));
+  PetscCall(PetscMalloc1(s->grid->n_nodes, &fill));
+  PetscCall(DiscretisationVolumes(s, PETSC_TRUE, fill));
+  for (PetscInt i = 0; i < s->grid->n_nodes; ++i) fill[i] = s->nodes->touched[i] ? 2 * fill[i] / s->whole[i] : 0;
   for (PetscInt g = 0; g < w->n_groups; ++g) {
     const PetscInt p = w->point_start[g], nn = support_nodes(w, g), *node = w->node + w->node_start[g];
     PetscReal filled = 1, square = 0;
-    for (PetscInt I = 0; I < nn; ++I) filled = PetscMin(filled, 2 * volume[node[I]] / whole[node[I]]);
+    for (PetscInt I = 0; I < nn; ++I) filled = PetscMin(filled, fill[node[I]]);
     for (PetscInt i = 0; i < nn * s->grid->dim; ++i) square += PetscSqr((w->dN + w->value_start[g] * s->grid->dim)[i]);
     const Material *material = &s->materials[s->points->material[p]];
     const PetscReal share = s->c->stabilisation.curvature * (1 - filled) * s->points->real[POINT_VOLUME][p];
     s->soft[g] = share * material->wave_modulus * square / (PetscReal)nn;
     if (s->pressure_tie) s->pressure_tie[g] = share / material->elastic.shear;
   }
-  PetscCall(PetscFree2(volume, whole));
+  PetscCall(PetscFree(fill));
   PetscFunctionReturn(0);
 }

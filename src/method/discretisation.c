@@ -27,6 +27,8 @@ PetscErrorCode DiscretisationDestroy(Discretisation **space)
   PetscCall(SupportDestroy(&s->support));
   PetscCall(ConstraintsDestroy(&s->constraints));
   PetscCall(PetscFree(s->filled));
+  PetscCall(PetscFree(s->volume));
+  PetscCall(PetscFree(s->whole));
   PetscCall(PetscFree(s->lumping));
   PetscCall(PetscFree(s->soft));
   PetscCall(PetscFree(s->tie));
@@ -126,10 +128,12 @@ PetscErrorCode DiscretisationBodyVelocity(Discretisation *s)
 void discretisation_impulses(Discretisation *s)
 {
   NodalFields *n = s->nodes;
-  for (PetscInt i = 0; i < s->grid->n_owned * s->grid->dim; ++i) {
-    n->impulse[i] = n->mass[i / s->grid->dim] * (n->v[i] - n->v_points[i]);
-    n->lost_force[i] = n->mass[i / s->grid->dim] * (n->a[i] - n->a_points[i]);
-  }
+  const PetscInt dim = s->grid->dim;
+  for (PetscInt node = 0, i = 0; node < s->grid->n_owned; ++node)
+    for (PetscInt d = 0; d < dim; ++d, ++i) {
+      n->impulse[i] = n->mass[node] * (n->v[i] - n->v_points[i]);
+      n->lost_force[i] = n->mass[node] * (n->a[i] - n->a_points[i]);
+    }
 }
 
 /* One carried point with its shape functions: position and displacement add up, velocity and

@@ -22,6 +22,8 @@ typedef struct Discretisation {
   PetscBool started;               /* has phase a run before? */
   PetscBool present;               /* do support and nodal fields belong to where points are now? */
   unsigned char *filled;           /* n_cells: does the cell hold points? */
+  PetscReal *volume;               /* n_cells, of grids that are restored: 0 where nobody has asked for it, m3 */
+  PetscReal *whole;                /* n_nodes, of such a grid: the node's share of the cells, m3; NULL: not asked for */
   /* of a point's velocity beyond the nodes': what damping takes in the step */
   PetscReal fade;
   PetscInt group_capacity;
@@ -46,9 +48,9 @@ PetscErrorCode DiscretisationPressure(Discretisation *space);
 /* Of a basis whose points are groups of their own in a grid: soft and pressure_tie where a node gets
  * less than half of its volume; after DiscretisationTouch. */
 PetscErrorCode DiscretisationCuts(Discretisation *space);
-/* Of each node, on all copies: the volume of the material around it (as it is now, else as it was at the start), and
- * that of its share of the cells, both of n_nodes. */
-PetscErrorCode DiscretisationVolumes(const Discretisation *space, PetscBool now, PetscReal *volume, PetscReal *whole);
+/* Of each node, on all copies: the volume of the material around it (as it is now, else as it was at the start; n_nodes),
+ * and in `whole` that of its share of the cells. */
+PetscErrorCode DiscretisationVolumes(Discretisation *space, PetscBool now, PetscReal *volume);
 /* Of a method that restores its grid: no point remembers more of an opening, and has a larger J, than its surroundings
  * have room for (docs/theory.md, "The room that points have"); between initialise and the solve. */
 PetscErrorCode DiscretisationRoom(Discretisation *space);

@@ -19,9 +19,9 @@ static PetscErrorCode Project(Discretisation *s)
 /* The least mass of a corner of the cell, beside what it would get if points were spread evenly.
  * Two regular points a direction give each corner a quarter of that in the plane and an eighth in
  * space, wherever they stand: that counts as 1. */
-static PetscReal emptiest_corner(const Support *w, PetscInt g, const PetscReal *point_mass, PetscReal mass)
+UNROLLED PetscReal emptiest_of(const PetscInt nn, const Support *w, PetscInt g, const PetscReal *point_mass,
+                               PetscReal mass)
 {
-  const PetscInt nn = support_nodes(w, g);
   PetscReal corner[CELL_MAX_NODES] = {0}, least = mass;
   for (PetscInt p = w->point_start[g]; p < w->point_start[g + 1]; ++p)
     for (PetscInt I = 0; I < nn; ++I) corner[I] += support_N(w, g, p)[I] * point_mass[p];
@@ -29,9 +29,32 @@ static PetscReal emptiest_corner(const Support *w, PetscInt g, const PetscReal *
   return (PetscReal)(nn * nn) * least / mass;
 }
 
+static PetscReal emptiest_corner(const Support *w, PetscInt g, const PetscReal *point_mass, PetscReal mass)
+{
+  return support_nodes(w, g) == 4 ? emptiest_of(4, w, g, point_mass, mass) : emptiest_of(8, w, g, point_mass, mass);
+}
+
+/* Of a cell, whose nodes stand where they stood in the last step. */
+static PetscReal volume_of(Discretisation *s, PetscInt cell)
+{
+  PetscReal x[3 * CELL_MAX_NODES];
+  if (s->volume[cell] > 0) return s->volume[cell];
+  grid_cell_x(s->grid, cell, x);
+  return s->volume[cell] = cell_volume_in(s->c->kinematics, grid_cell_type(s->grid, cell), x);
+}
+
+static PetscReal length_of(Discretisation *s, PetscInt cell)
+{
+  PetscReal x[3 * CELL_MAX_NODES];
+  if (s->grid->dim == 3) return cbrt(volume_of(s, cell));
+  grid_cell_x(s->grid, cell, x);
+  return PetscSqrtReal(cell_volume(grid_cell_type(s->grid, cell), x));
+}
+
 static PetscErrorCode ReserveStabilisation(Discretisation *s)
 {
   PetscFunctionBeginUser;
+  if (!s->volume) PetscCall(PetscCalloc1(s->grid->n_cells, &s->volume));
   if (s->support->n_groups <= s->group_capacity) PetscFunctionReturn(0);
   PetscCall(PetscFree(s->lumping));
   PetscCall(PetscFree(s->soft));
@@ -55,7 +78,6 @@ static PetscErrorCode Stabilise(Discretisation *s)
   const Support *w = s->support;
   const PetscInt dim = s->grid->dim;
   const PetscBool whole = w->n_runs > 0;
-  PetscReal x[3 * CELL_MAX_NODES];
 
   PetscFunctionBeginUser;
   PetscCall(ReserveStabilisation(s));
@@ -69,13 +91,11 @@ static PetscErrorCode Stabilise(Discretisation *s)
         modulus = PetscMax(modulus, s->materials[s->points->material[p]].wave_modulus);
         shear = PetscMax(shear, s->materials[s->points->material[p]].elastic.shear);
       }
-    grid_cell_x(s->grid, cell, x);
-    const CellType type = grid_cell_type(s->grid, cell);
-    const PetscReal volume = cell_volume_in(s->c->kinematics, type, x), share = 1 / (PetscReal)(end - g);
+    const PetscReal volume = volume_of(s, cell), share = 1 / (PetscReal)(end - g);
     const PetscBool hourglass = whole && grid_cell(s->grid, cell)->nodes > dim + 1;
     const PetscReal corner = hourglass ? emptiest_corner(w, g, s->points->real[POINT_MASS], mass) : 1;
     const PetscReal lack = PetscMax(0, 1 - PetscMin(filled / volume, corner));
-    const PetscReal size = dim == 2 ? PetscSqrtReal(cell_volume(type, x)) : cbrt(volume);
+    const PetscReal size = lack > 0 ? length_of(s, cell) : 1;
     for (PetscInt k = g; k < end; ++k) {
       s->lumping[k] = s->c->analysis.mass == MASS_LUMPED ? 1 : s->c->stabilisation.mass * lack;
       s->tie[k] = whole ? s->c->stabilisation.inertia * lack * mass : 0;

@@ -34,18 +34,18 @@ static PetscErrorCode ToNodes(const Discretisation *s, const PetscReal *at, cons
 
 /* Volume at the start over the room of now, at each point. Averaged once more over the points around, since four of
  * them in a cell are spread unevenly as soon as they have moved. */
-static PetscErrorCode Densities(const Discretisation *s, PetscReal *density)
+static PetscErrorCode Densities(Discretisation *s, PetscReal *density)
 {
-  PetscReal *volume, *whole;
+  PetscReal *volume, *filled;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc2(s->grid->n_nodes, &volume, s->grid->n_nodes, &whole));
-  PetscCall(DiscretisationVolumes(s, PETSC_FALSE, volume, whole));
-  for (PetscInt i = 0; i < s->grid->n_nodes; ++i) whole[i] = whole[i] > 0 ? volume[i] / whole[i] : 0;
-  to_points(s, whole, density);
-  PetscCall(ToNodes(s, density, volume, whole));
-  to_points(s, whole, density);
-  PetscCall(PetscFree2(volume, whole));
+  PetscCall(PetscMalloc2(s->grid->n_nodes, &volume, s->grid->n_nodes, &filled));
+  PetscCall(DiscretisationVolumes(s, PETSC_FALSE, volume));
+  for (PetscInt i = 0; i < s->grid->n_nodes; ++i) filled[i] = s->whole[i] > 0 ? volume[i] / s->whole[i] : 0;
+  to_points(s, filled, density);
+  PetscCall(ToNodes(s, density, volume, filled));
+  to_points(s, filled, density);
+  PetscCall(PetscFree2(volume, filled));
   PetscFunctionReturn(0);
 }
 

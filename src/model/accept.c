@@ -50,6 +50,7 @@ static void keep_echo(const Model *m, PetscReal dt)
 {
   const PetscReal lag = m->scheme->weights(&m->c->analysis, dt).lag;
   NodalFields *n = m->nodes;
+  if (lag == 0 && m->method->restores_grid) return; /* it is 0 */
   for (PetscInt i = 0; i < m->grid->n_nodes * m->dim; ++i) n->echo[i] = lag * (n->a1[i] - n->a[i]);
 }
 
@@ -79,7 +80,8 @@ PetscErrorCode CommitStep(Model *m, PetscReal dt, EnergyStep *energy)
 
   PetscFunctionBeginUser;
   PetscCall(PetscTime(&clock));
-  for (PetscInt i = 0; i < m->grid->n_nodes * m->dim; ++i) m->nodes->prescribed[i] /= time_solved(m->scheme);
+  const PetscReal solved = time_solved(m->scheme);
+  for (PetscInt i = 0; solved != 1 && i < m->grid->n_nodes * m->dim; ++i) m->nodes->prescribed[i] /= solved;
   end_motion(m, dt);
   set_multipliers(m);
   PetscCall(EnergyOfNodes(m, dt, energy));

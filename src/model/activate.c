@@ -85,13 +85,14 @@ PetscErrorCode ModelEnable(Model *m)
 }
 
 /* Slots of all groups and nodal forces; `complete` is false if the system lacks a pair of them on
- * any rank. */
+ * any rank. Enabled cells couple all that their points can, clouds what they did when they were asked. */
 static PetscErrorCode FindSlots(Model *m, PetscBool *complete)
 {
-  PetscBool here;
+  PetscBool here = PETSC_TRUE;
 
   PetscFunctionBeginUser;
-  PetscCall(SystemSlots(m->system, m->space->support, &here));
+  if (m->method->clouds) PetscCall(SystemSlots(m->system, m->space->support, &here));
+  else system_slots_later(m->system, m->space->support);
   here = here && nodal_forces_find_slots(&m->forces, m->system);
   PetscCallMPI(MPI_Allreduce(&here, complete, 1, MPIU_BOOL, MPI_LAND, m->comm));
   PetscFunctionReturn(0);
@@ -144,6 +145,6 @@ PetscErrorCode ModelActivate(Model *m)
   if (complete) PetscFunctionReturn(0);
   PetscCall(ModelEnable(m)); /* nodal forces have met other nodes */
   PetscCall(FindSlots(m, &complete));
-  PetscCheck(complete, m->comm, PETSC_ERR_PLIB, "points couple nodes that their basis did not announce");
+  PetscCheck(complete, m->comm, PETSC_ERR_PLIB, "nodal forces couple nodes that they did not announce");
   PetscFunctionReturn(0);
 }

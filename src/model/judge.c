@@ -32,6 +32,23 @@ static PetscReal stretch_of(const Model *m, PetscInt g, PetscInt p)
   return PetscSqrtReal(PetscMax(1, PetscMax(square_norm(dF), square_norm(inverse)) - 2));
 }
 
+/* Do its nodes move together? Where the step carries all alike nothing is stretched either. */
+static PetscBool moves_as_one(const Model *m, PetscInt g)
+{
+  const Support *w = m->space->support;
+  const PetscInt *node = w->node + w->node_start[g];
+  PetscReal least[3], most[3], widest = 0;
+  for (PetscInt d = 0; d < m->dim; ++d) least[d] = most[d] = m->nodes->du[node[0] * m->dim + d];
+  for (PetscInt I = 1; I < support_nodes(w, g); ++I)
+    for (PetscInt d = 0; d < m->dim; ++d) {
+      const PetscReal du = m->nodes->du[node[I] * m->dim + d];
+      least[d] = PetscMin(least[d], du);
+      most[d] = PetscMax(most[d], du);
+    }
+  for (PetscInt d = 0; d < m->dim; ++d) widest = PetscMax(widest, most[d] - least[d]);
+  return !m->method->clouds && widest < 2 * HARDLY_MOVED * m->grid->smallest;
+}
+
 static PetscBool hardly_moved(const Model *m)
 {
   PetscReal largest = 0;
@@ -57,6 +74,7 @@ PetscErrorCode JudgeStep(const Model *m, StepReport *report)
   local.rank = rank;
   const PetscInt groups = hardly_moved(m) ? 0 : w->n_groups;
   for (PetscInt g = 0; g < groups; ++g) {
+    if (moves_as_one(m, g)) continue;
     const PetscBool alike = support_nodes(w, g) == m->dim + 1 && w->n_runs; /* triangles, tetrahedra */
     const PetscInt first = w->point_start[g], end = alike ? first + 1 : w->point_start[g + 1];
     for (PetscInt p = first; p < end; ++p) {

@@ -43,9 +43,8 @@ void mark_fixed(Model *m)
   for (PetscInt node = 0, i = 0; node < m->grid->n_nodes; ++node) {
     n->idle[node] = !n->touched[node];
     for (PetscInt d = 0; d < m->dim; ++d, ++i) {
-      n->fixed[i] = m->boundary->fixed[i] || n->idle[node];
-      if (n->dof[i] == DOF_RELEASED) n->fixed[i] = 0;
-      if (n->dof[i] == DOF_UNUSED) n->fixed[i] = 1;
+      const PetscBool held = (m->boundary->fixed[i] | n->idle[node]) != 0;
+      n->fixed[i] = (held && n->dof[i] != DOF_RELEASED) || n->dof[i] == DOF_UNUSED;
     }
   }
 }
@@ -214,7 +213,7 @@ PetscErrorCode PrepareStep(Model *m, PetscReal dt, StepProblem *p)
   else discretisation_impulses(m->space);
   PetscCall(ContactHold(m, dt, inertia));
   set_history(m, dt, g);
-  for (PetscInt i = 0; i < dofs; ++i) m->nodes->prescribed[i] *= solved;
+  for (PetscInt i = 0; solved != 1 && i < dofs; ++i) m->nodes->prescribed[i] *= solved;
   const NodalScene scene = nodal_scene(m, t, m->nodes->du);
   PetscCall(NodalForcesExternal(&m->forces, &scene, PETSC_FALSE, m->nodes->external));
   frames_turn(&m->boundary->frames, m->dim, m->nodes->external);

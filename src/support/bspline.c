@@ -49,13 +49,14 @@ static void axis_functions(const BasisInput *in, const Points *points, PetscInt 
 static PetscErrorCode BsplineSupport(const BasisInput *in, const Points *points, Support *s)
 {
   const GridBox *box = in->grid->box;
+  ProductPlace place = {.size = {0}};
   LineFunctions f[3];
   PetscInt n = 0, p = 0;
 
   PetscFunctionBeginUser;
   PetscCall(ProductsReserve(points, box->dim, s));
   for (; p < points->n && points->cell[p] >= 0; ++p) {
-    const ProductPlace place = product_place(in->grid, points->cell[p]);
+    if (!p || points->cell[p] != points->cell[p - 1]) place = product_place(in->grid, points->cell[p]);
     const PetscReal radius = in->hoop ? point_real(points, POINT_X, p)[0] : 0;
     axis_functions(in, points, p, &place, f);
     product_group(s, p, n);

@@ -38,13 +38,14 @@ static PetscErrorCode GimpSupport(const BasisInput *in, const Points *points, Su
 {
   const GridBox *box = in->grid->box;
   const PetscInt dim = box->dim;
+  ProductPlace place = {.size = {0}};
   LineFunctions f[3];
   PetscInt n = 0, p = 0;
 
   PetscFunctionBeginUser;
   PetscCall(ProductsReserve(points, dim, s));
   for (; p < points->n && points->cell[p] >= 0; ++p) {
-    const ProductPlace place = product_place(in->grid, points->cell[p]);
+    if (!p || points->cell[p] != points->cell[p - 1]) place = product_place(in->grid, points->cell[p]);
     const PetscReal *x = point_real(points, POINT_X, p);
     PetscReal l[3] = {0};
     product_domain(points, p, place.size, l);

@@ -2,6 +2,8 @@
 #include <petscbt.h>
 #include "base/math/tensor.h"
 
+#define UNROLLED static inline __attribute__((always_inline))
+
 ProductPlace product_place(const Grid *grid, PetscInt cell)
 {
   const GridBox *box = grid->box;
@@ -27,18 +29,16 @@ void product_domain(const Points *points, PetscInt p, const PetscReal *size, Pet
 
 /* The nodes of a rank do not count as they stand in space: they are put in order by insertion, as
  * groups of single points want them. */
-PetscInt product_functions(const GridBox *box, const ProductPlace *place, PetscReal radius, LineFunctions *f,
-                           PetscInt *node, PetscReal *N, PetscReal *dN)
+UNROLLED PetscInt functions_of(const PetscInt dim, const GridBox *box, const ProductPlace *place, PetscReal radius,
+                               LineFunctions *f, PetscInt *node, PetscReal *N, PetscReal *dN)
 {
-  const PetscInt dim = box->dim;
-  PetscInt n = 1;
+  PetscInt n = 1, at[3] = {0, 0, 0};
   for (PetscInt i = 0; radius > 0 && i < f[0].n; ++i) f[0].dN[i] += f[0].moment[i] / radius;
   for (PetscInt d = 0; d < dim; ++d) n *= f[d].n;
   for (PetscInt q = 0; q < n; ++q) {
-    PetscInt at[3], ijk[3] = {0, 0, dim == 2 ? place->ijk[2] : 0}, k = q;
+    PetscInt ijk[3] = {0, 0, dim == 2 ? place->ijk[2] : 0}, k = q;
     PetscReal product = 1, gradient[3];
-    for (PetscInt d = 0, rest = q; d < dim; rest /= f[d++].n) {
-      at[d] = rest % f[d].n;
+    for (PetscInt d = 0; d < dim; ++d) {
       ijk[d] = f[d].first + at[d];
       product *= f[d].N[at[d]];
     }
@@ -55,8 +55,16 @@ PetscInt product_functions(const GridBox *box, const ProductPlace *place, PetscR
     node[k] = here;
     N[k] = product;
     for (PetscInt d = 0; d < dim; ++d) dN[k * dim + d] = gradient[d];
+    for (PetscInt d = 0; d < dim && ++at[d] == f[d].n; ++d) at[d] = 0;
   }
   return n;
+}
+
+PetscInt product_functions(const GridBox *box, const ProductPlace *place, PetscReal radius, LineFunctions *f,
+                           PetscInt *node, PetscReal *N, PetscReal *dN)
+{
+  if (box->dim == 2) return functions_of(2, box, place, radius, f, node, N, dN);
+  return functions_of(3, box, place, radius, f, node, N, dN);
 }
 
 PetscErrorCode ProductsReserve(const Points *points, PetscInt dim, Support *support)

@@ -250,6 +250,54 @@ static void test_second_try(void **state)
   CALL(ModelDestroy(&n));
 }
 
+/* A block in free flight, whose first guess is its solution. */
+static Model *flying_block(Bench *b, const char *basis)
+{
+  bench_init(b, "mpm", CELL_QUADRILATERAL, 8);
+  b->c.basis.kind = (char *)basis;
+  bench_box(b, 0, (PetscReal[]){0.25, 0.5, 0}, (PetscReal[]){0.625, 0.875, 0});
+  bench_dynamic(b, 1, 0.01);
+  b->c.gravity[1] = -9.81;
+  b->c.newton.residual = 1e-9;
+  return bench_model(b, PETSC_COMM_WORLD);
+}
+
+/* Another solver in its place, as after a checkpoint: it knows nothing of the steps before. */
+static void forget_flight(Model *m)
+{
+  CALL(NewtonDestroy(&m->newton));
+  CALL(NewtonCreate(m->comm, &m->c->newton, &m->newton));
+}
+
+/* Nobody asks for a tangent in flight; and when a blow asks for one after all, the step is the same, to the last bit, as
+ * that of a solver which begins with one. */
+static void test_no_iteration(void **state)
+{
+  static const char *const bases[] = {"cell", "gimp"};
+  (void)state;
+  for (int k = 0; k < 2; ++k) {
+    Bench b, c;
+    Model *m = flying_block(&b, bases[k]), *n = flying_block(&c, bases[k]);
+    for (int step = 0; step < 3; ++step) {
+      const StepReport r = model_step(m, 1);
+      model_step(n, 1);
+      CHECK(r.newton.iterations == 0, "%d iterations in flight", (int)r.newton.iterations);
+    }
+    CHECK(m->system->later == m->space->support, "a tangent was asked for");
+    forget_flight(n);
+    blow(m);
+    blow(n);
+    const StepReport r = model_step(m, 1);
+    model_step(n, 1);
+    CHECK(r.newton.iterations > 0 && !m->system->later, "the blow was not felt");
+    CHECK(m->points->n == n->points->n, "%d points, not %d", (int)m->points->n, (int)n->points->n);
+    for (PetscInt i = 0; i < m->points->n * m->dim; ++i)
+      CHECK(m->points->real[POINT_V][i] == n->points->real[POINT_V][i], "another velocity");
+    CALL(ModelDestroy(&m));
+    CALL(ModelDestroy(&n));
+  }
+}
+
 int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {
@@ -257,6 +305,7 @@ int main(int argc, char **argv)
     cmocka_unit_test(test_gives_up),      cmocka_unit_test(test_halved_is_small),
     cmocka_unit_test(test_growth),        cmocka_unit_test(test_grows_again),
     cmocka_unit_test(test_large_stretch), cmocka_unit_test(test_second_try),
+    cmocka_unit_test(test_no_iteration),
   };
   return run_model_tests(argc, argv, tests);
 }

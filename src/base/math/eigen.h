@@ -19,8 +19,8 @@ EIGEN_INLINE int eigen_negligible(PetscReal pp, PetscReal qq, PetscReal pq)
   return pq * pq <= 1e-36 * fabs(pp * qq) || pq == 0.0;
 }
 
-/* Rotate rows and columns p, q of a (Voigt) so that a_pq vanishes; columns p, q of v turn along. */
-EIGEN_INLINE int eigen_rotate(int p, int q, PetscReal a[6], PetscReal v[9])
+/* Rotate rows and columns p, q of a (Voigt) so that a_pq vanishes; columns p, q of v turn along, if there is one. */
+EIGEN_INLINE int eigen_rotate(int p, int q, PetscReal a[6], PetscReal *v)
 {
   const int r = 3 - p - q, pq = voigt_of[p][q], pr = voigt_of[p][r], qr = voigt_of[q][r];
   if (eigen_negligible(a[p], a[q], a[pq])) return 0;
@@ -32,7 +32,7 @@ EIGEN_INLINE int eigen_rotate(int p, int q, PetscReal a[6], PetscReal v[9])
   a[pq] = 0.0;
   a[pr] = c * apr - s * aqr;
   a[qr] = s * apr + c * aqr;
-  for (int i = 0; i < 9; i += 3) {
+  for (int i = 0; v && i < 9; i += 3) {
     const PetscReal vp = v[i + p], vq = v[i + q];
     v[i + p] = c * vp - s * vq;
     v[i + q] = s * vp + c * vq;
@@ -40,23 +40,22 @@ EIGEN_INLINE int eigen_rotate(int p, int q, PetscReal a[6], PetscReal v[9])
   return 1;
 }
 
-EIGEN_INLINE void eigen_swap(int p, int q, PetscReal value[3], PetscReal v[9])
+EIGEN_INLINE void eigen_swap(int p, int q, PetscReal value[3], PetscReal *v)
 {
   if (!(value[p] < value[q])) return;
   const PetscReal kept = value[p];
   value[p] = value[q], value[q] = kept;
-  for (int i = 0; i < 9; i += 3) {
+  for (int i = 0; v && i < 9; i += 3) {
     const PetscReal vp = v[i + p];
     v[i + p] = v[i + q], v[i + q] = vp;
   }
 }
 
-/* s = sum value[A] n_A n_A, value falling, n_A = column A of v. */
-static inline void sym_eigen(const PetscReal s[6], PetscReal value[3], PetscReal v[9])
+EIGEN_INLINE void eigen_solve(const PetscReal s[6], PetscReal value[3], PetscReal *v)
 {
   PetscReal a[6];
   for (int k = 0; k < 6; ++k) a[k] = s[k];
-  for (int k = 0; k < 9; ++k) v[k] = k % 4 == 0;
+  for (int k = 0; v && k < 9; ++k) v[k] = k % 4 == 0;
   for (int sweep = 0, turned = 1; turned && sweep < EIGEN_SWEEPS; ++sweep) {
     turned = eigen_rotate(0, 1, a, v);
     turned += eigen_rotate(0, 2, a, v);
@@ -67,3 +66,9 @@ static inline void sym_eigen(const PetscReal s[6], PetscReal value[3], PetscReal
   eigen_swap(1, 2, value, v);
   eigen_swap(0, 1, value, v);
 }
+
+/* s = sum value[A] n_A n_A, value falling, n_A = column A of v. */
+static inline void sym_eigen(const PetscReal s[6], PetscReal value[3], PetscReal v[9]) { eigen_solve(s, value, v); }
+
+/* The same values alone. */
+static inline void sym_eigenvalues(const PetscReal s[6], PetscReal value[3]) { eigen_solve(s, value, NULL); }

@@ -2,13 +2,16 @@
  * voxel. */
 #include "grid/box/box.h"
 
+/* The dimension is a constant where all points of a step are located. */
+#define UNROLLED static inline __attribute__((always_inline))
+
 PetscMPIInt box_owner(const GridBox *box, const PetscInt ijk[3])
 {
   return voxel_owner(box->size, box->cut_axis, box->cut, ijk);
 }
 
 /* The interval with line[i] <= x < line[i + 1]; the ends take what lies beyond them. */
-static PetscInt interval_of(const GridBox *box, PetscInt axis, PetscReal x)
+UNROLLED PetscInt interval_of(const GridBox *box, PetscInt axis, PetscReal x)
 {
   const PetscReal *line = box->line[axis];
   const PetscInt n = box->counts[axis];
@@ -30,10 +33,10 @@ static PetscInt interval_of(const GridBox *box, PetscInt axis, PetscReal x)
 }
 
 /* The voxel that holds x; PETSC_FALSE outside the grid. */
-static PetscBool box_voxel(const GridBox *box, const PetscReal *x, PetscInt ijk[3])
+UNROLLED PetscBool box_voxel(const PetscInt dim, const GridBox *box, const PetscReal *x, PetscInt ijk[3])
 {
   ijk[2] = 0;
-  for (PetscInt d = 0; d < box->dim; ++d) {
+  for (PetscInt d = 0; d < dim; ++d) {
     const PetscReal *line = box->line[d];
     /* Written so that NaN is outside. */
     if (!(x[d] >= line[0] - box->tolerance && x[d] <= line[box->counts[d]] + box->tolerance)) return PETSC_FALSE;
@@ -80,16 +83,14 @@ static PetscInt pick_simplex(const VoxelPattern *pattern, PetscInt dim, const Pe
   return best;
 }
 
-PetscInt box_locate(const Grid *grid, const PetscReal *x, PetscInt guess, PetscReal *xi)
+UNROLLED PetscInt locate(const PetscInt dim, const Grid *grid, const PetscReal *x, PetscReal *xi)
 {
   const GridBox *box = grid->box;
   const VoxelBlock *block = box->block + box->rank;
-  const PetscInt dim = box->dim;
   PetscInt ijk[3];
   PetscReal s[3] = {0, 0, 0}; /* position in the unit voxel */
-  (void)guess;
 
-  if (!box_voxel(box, x, ijk) || !block_has(block, ijk)) return -1;
+  if (!box_voxel(dim, box, x, ijk) || !block_has(block, ijk)) return -1;
   for (PetscInt d = 0; d < dim; ++d) {
     const PetscReal *line = box->line[d] + ijk[d];
     s[d] = (x[d] - line[0]) / (line[1] - line[0]);
@@ -99,6 +100,12 @@ PetscInt box_locate(const Grid *grid, const PetscReal *x, PetscInt guess, PetscR
   if (grid->nodes_per_cell == dim + 1) return first + pick_simplex(pattern, dim, s, xi);
   for (PetscInt d = 0; d < dim; ++d) xi[d] = 2.0 * s[d] - 1.0;
   return first;
+}
+
+PetscInt box_locate(const Grid *grid, const PetscReal *x, PetscInt guess, PetscReal *xi)
+{
+  (void)guess;
+  return grid->dim == 2 ? locate(2, grid, x, xi) : locate(3, grid, x, xi);
 }
 
 /* The first and last voxel along an axis that touch x. */
@@ -127,7 +134,7 @@ PetscInt box_candidates(const Grid *grid, const PetscReal *x, PetscInt max, Pets
 {
   const GridBox *box = grid->box;
   PetscInt ijk[3], range[3][2] = {{0, 0}, {0, 0}, {0, 0}}, v[3], n = 0;
-  if (!box_voxel(box, x, ijk)) return 0;
+  if (!box_voxel(box->dim, box, x, ijk)) return 0;
   /* grid_locate takes the position on its owner, which therefore comes first. */
   const PetscMPIInt owner = box_owner(box, ijk);
   if (owner != box->rank) n = add_rank(owner, n, max, ranks);

@@ -183,8 +183,8 @@ LANES_INLINE LawStatus hencky_march(HenckyLaw law, int scalars, const PetscBool 
 /* Hooke's law between these strains and stresses: stored energy, J/m3. */
 static inline PetscReal hencky_energy(PetscReal lambda, PetscReal mu, const PetscReal b[6])
 {
-  PetscReal stretch2[3], v[9], trace = 0.0, norm2 = 0.0;
-  sym_eigen(b, stretch2, v);
+  PetscReal stretch2[3], trace = 0.0, norm2 = 0.0;
+  sym_eigenvalues(b, stretch2);
   for (int a = 0; a < 3; ++a) {
     const PetscReal e = 0.5 * log(stretch2[a]);
     trace += e;

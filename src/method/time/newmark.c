@@ -9,9 +9,11 @@ TimeWeights newmark_weights(const AnalysisSpec *s, PetscReal dt)
 void newmark_end(const AnalysisSpec *s, PetscReal dt, PetscInt n, const PetscReal *du, const PetscReal *v,
                  const PetscReal *a, PetscReal *v1, PetscReal *a1)
 {
+  const PetscReal weight = s->beta * dt * dt, old = 0.5 / s->beta - 1, gamma = s->gamma;
   for (PetscInt i = 0; i < n; ++i) {
-    a1[i] = (du[i] - dt * v[i]) / (s->beta * dt * dt) - (0.5 / s->beta - 1) * a[i];
-    v1[i] = v[i] + dt * ((1 - s->gamma) * a[i] + s->gamma * a1[i]);
+    const PetscReal end = (du[i] - dt * v[i]) / weight - old * a[i];
+    v1[i] = v[i] + dt * ((1 - gamma) * a[i] + gamma * end);
+    a1[i] = end;
   }
 }
 

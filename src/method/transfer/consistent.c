@@ -67,6 +67,40 @@ static void changes_of_prescribed(MassSolve *c)
   }
 }
 
+/* Has prescribed motion changed any node, on any rank? In flight it has not. */
+static PetscErrorCode IsHeld(const Discretisation *s, PetscBool *held)
+{
+  const NodalFields *n = s->nodes;
+  const PetscInt dim = s->grid->dim;
+  PetscBool here = PETSC_FALSE;
+
+  PetscFunctionBeginUser;
+  for (PetscInt node = 0; node < s->grid->n_nodes && !here; ++node) {
+    PetscBool fixed = PETSC_FALSE, other = PETSC_FALSE;
+    for (PetscInt i = node * dim; i < (node + 1) * dim; ++i) {
+      fixed |= s->boundary->fixed[i] != 0;
+      other |= n->v[i] != n->v_points[i] || n->a[i] != n->a_points[i];
+    }
+    here = fixed && other;
+  }
+  PetscCallMPI(MPI_Allreduce(&here, held, 1, MPIU_BOOL, MPI_LOR, s->grid->comm));
+  PetscFunctionReturn(0);
+}
+
+/* Nodes keep what their points gave them. */
+static PetscErrorCode LetGo(Discretisation *s)
+{
+  NodalFields *n = s->nodes;
+  const PetscInt dofs = s->grid->n_nodes * s->grid->dim;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscArraycpy(n->v, n->v_points, dofs));
+  PetscCall(PetscArraycpy(n->a, n->a_points, dofs));
+  PetscCall(PetscArrayzero(n->impulse, dofs));
+  PetscCall(PetscArrayzero(n->lost_force, dofs));
+  PetscFunctionReturn(0);
+}
+
 /* No impulse acts on free nodes when prescribed ones are set to their motion. What the rows of the
  * others lack is the boundary's. */
 static PetscErrorCode ConsistentHold(Discretisation *s)
@@ -74,8 +108,14 @@ static PetscErrorCode ConsistentHold(Discretisation *s)
   NodalFields *n = s->nodes;
   PetscReal enough[MOTIONS];
   MassSolve c;
+  PetscBool held;
 
   PetscFunctionBeginUser;
+  PetscCall(IsHeld(s, &held));
+  if (!held) {
+    PetscCall(LetGo(s));
+    PetscFunctionReturn(0);
+  }
   PetscCall(MassSolveCreate(s, &c));
   c.framed = PETSC_TRUE;
   changes_of_prescribed(&c);

@@ -72,20 +72,26 @@ UNROLLED void give_change(const PetscInt dim, const PetscInt fixed_nn, const Sup
 {
   const Support *w = s->support;
   const NodalFields *n = s->nodes;
+  const PetscBool fades = s->fade != 0;
   for (PetscInt g = run->first; g < run->end; ++g) {
     const PetscInt nn = fixed_nn ? fixed_nn : support_nodes(w, g), *node = w->node + w->node_start[g];
+    PetscReal change[3 * CLOUD_MAX_NODES], a1[3 * CLOUD_MAX_NODES];
+    for (PetscInt I = 0; I < nn; ++I)
+      for (PetscInt d = 0, k = I * dim, i = node[I] * dim; d < dim; ++d, ++k, ++i) {
+        change[k] = n->v1[i] - n->v_points[i];
+        a1[k] = n->a1[i];
+      }
     for (PetscInt p = w->point_start[g]; p < w->point_start[g + 1]; ++p) {
       const PetscReal *N = w->N + w->value_start[g] + (p - w->point_start[g]) * nn;
       PetscReal *v = point_real(s->points, POINT_V, p), *a = point_real(s->points, POINT_A, p);
       for (PetscInt d = 0; d < dim; ++d) {
         PetscReal gain = 0, acceleration = 0, seen = 0;
         for (PetscInt I = 0; I < nn; ++I) {
-          const PetscInt i = node[I] * dim + d;
-          gain += N[I] * (n->v1[i] - n->v_points[i]);
-          acceleration += N[I] * n->a1[i];
-          seen += N[I] * n->v_points[i];
+          gain += N[I] * change[I * dim + d];
+          acceleration += N[I] * a1[I * dim + d];
+          if (fades) seen += N[I] * n->v_points[node[I] * dim + d];
         }
-        v[d] += gain - s->fade * (v[d] - seen);
+        v[d] += fades ? gain - s->fade * (v[d] - seen) : gain;
         a[d] = acceleration;
       }
     }

@@ -49,13 +49,12 @@ UNROLLED PetscReal product_sized(const PetscInt dim, const PetscInt fixed_nn, co
     for (PetscInt p = support->point_start[g]; p < support->point_start[g + 1]; ++p) {
       const PetscReal *N = support->N + support->value_start[g] + (p - support->point_start[g]) * nn;
       PetscReal uh[3] = {0, 0, 0}, wh[3] = {0, 0, 0}, nodes = 0;
-      for (PetscInt I = 0; I < nn; ++I) {
-        nodes += N[I] * at_node[I];
+      for (PetscInt I = 0; lumped > 0 && I < nn; ++I) nodes += N[I] * at_node[I];
+      for (PetscInt I = 0; I < nn; ++I)
         for (PetscInt d = 0; d < dim; ++d) {
           uh[d] += N[I] * un[I * dim + d];
           wh[d] += N[I] * wn[I * dim + d];
         }
-      }
       sum += m->points->real[POINT_MASS][p] *
              ((1 - lumped) * (uh[0] * wh[0] + uh[1] * wh[1] + uh[2] * wh[2]) + lumped * nodes);
     }
@@ -70,7 +69,8 @@ static PetscReal mass_product(const Model *m, NodalField u, NodalField w)
   const Support *support = m->space->support;
   const SupportRun all = {.first = 0, .end = support->n_groups};
   PetscReal sum = 0;
-  if (!support->n_runs) return product_sized(m->dim, 0, &all, m, &u, &w);
+  if (!support->n_runs && m->dim == 2) return product_sized(2, 0, &all, m, &u, &w);
+  if (!support->n_runs) return product_sized(3, 0, &all, m, &u, &w);
   for (const SupportRun *run = support->run; run < support->run + support->n_runs; ++run) {
     if (m->dim == 2 && run->nodes == 3) sum += product_sized(2, 3, run, m, &u, &w);
     else if (m->dim == 2 && run->nodes == 4) sum += product_sized(2, 4, run, m, &u, &w);
@@ -149,7 +149,7 @@ PetscErrorCode EnergyStart(Model *m)
 static PetscReal share_of_end(const Model *m) { return m->scheme->middle ? 1 : 0.5; }
 
 /* What nodal forces add to gravity at both ends of the step, or twice in its middle; freed by
- * PetscFree2. */
+ * PetscFree2. NULL where there are none. */
 static PetscErrorCode ForcesAtEnds(const Model *m, PetscReal dt, PetscReal **before, PetscReal **after)
 {
   const PetscInt dofs = m->grid->n_nodes * m->dim;
@@ -157,8 +157,9 @@ static PetscErrorCode ForcesAtEnds(const Model *m, PetscReal dt, PetscReal **bef
   PetscReal *u0, *u1;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscCalloc2(dofs, before, dofs, after));
+  *before = *after = NULL;
   if (!m->forces.n) PetscFunctionReturn(0);
+  PetscCall(PetscCalloc2(dofs, before, dofs, after));
   PetscCall(PetscMalloc2(dofs, &u0, dofs, &u1));
   for (PetscInt i = 0; i < dofs; ++i) {
     u0[i] = first * m->nodes->du[i];
@@ -216,7 +217,7 @@ static PetscErrorCode OutOfBalance(const Model *m, const PetscReal *g, const Pet
   PetscCall(GridSumToOwners(m->grid, m->dim, force));
   *work = 0;
   for (PetscInt i = 0; i < m->grid->n_owned * m->dim; ++i) {
-    if (!is_twin(m, i / m->dim)) *work += 0.5 * m->nodes->du[i] * (force[i] - external[i]);
+    if (!is_twin(m, i / m->dim)) *work += 0.5 * m->nodes->du[i] * (force[i] - (external ? external[i] : 0));
     if (m->boundary->fixed[i]) *work -= 0.5 * m->nodes->prescribed[i] * m->nodes->held[i];
   }
   PetscCall(PetscFree3(zero, force, history));
@@ -289,13 +290,14 @@ PetscErrorCode EnergyOfNodes(Model *m, PetscReal dt, EnergyStep *e)
   PetscCall(ForcesAtEnds(m, dt, &before, &after));
   gravity_at(m->c, raised_time(m, m->time + (m->scheme->middle ? 0.5 : 0) * dt), g0);
   gravity_at(m->c, raised_time(m, m->time + time_solved(m->scheme) * dt), g1);
-  for (PetscInt i = 0; i < m->grid->n_owned * m->dim; ++i) {
-    const PetscInt d = i % m->dim;
-    e->external += 0.5 * (n->mass[i / m->dim] * (g0[d] + g1[d]) + before[i] + after[i]) * n->du[i];
-    if (!m->boundary->fixed[i]) continue;
-    held += ((1 - end) * n->held[i] + end * n->force[i]) * n->prescribed[i];
-    impulse += impulse_work(m, i, dt);
-  }
+  for (PetscInt node = 0, i = 0; node < m->grid->n_owned; ++node)
+    for (PetscInt d = 0; d < m->dim; ++d, ++i) {
+      const PetscReal more = before ? before[i] + after[i] : 0;
+      e->external += 0.5 * (n->mass[node] * (g0[d] + g1[d]) + more) * n->du[i];
+      if (!m->boundary->fixed[i]) continue;
+      held += ((1 - end) * n->held[i] + end * n->force[i]) * n->prescribed[i];
+      impulse += impulse_work(m, i, dt);
+    }
   const PetscBool jumps = m->method->begin || (m->contact && !m->method->restores_grid);
   if (jumps) PetscCall(MaterialsAt(m, m->time)); /* as strong as they were at the start */
   if (jumps) PetscCall(OutOfBalance(m, g0, before, &unbalanced));

@@ -65,20 +65,36 @@ void newton_forget(Newton *n, const System *system, const NewtonMemory *memory)
   n->built = memory->courant >= 0 ? system->builds : -1;
 }
 
-/* What the first guess lacks of the prescribed increments, and the largest of that and of the
- * increments on this rank. */
-static void lack_of_guess(const StepProblem *p, PetscReal *lift, PetscReal largest[2])
+/* The largest of what the first guess lacks of the prescribed increments, and of these, on this rank; du in the frames
+ * of the nodes. */
+static void largest_lack(const StepProblem *p, PetscReal largest[2])
 {
-  newton_turn(p, p->du);
-  for (PetscInt i = 0; i < p->grid->n_nodes * p->grid->dim; ++i)
-    if (p->fixed[i]) lift[i] = p->prescribed[i] - p->du[i];
-  newton_turn(p, p->du);
   for (PetscInt k = 0; k < p->system->n_active; ++k)
     for (PetscInt d = 0, i = p->system->active[k] * p->grid->dim; d < p->grid->dim; ++d, ++i) {
       if (!p->fixed[i]) continue;
-      largest[0] = PetscMax(largest[0], PetscAbsReal(lift[i]));
+      largest[0] = PetscMax(largest[0], PetscAbsReal(p->prescribed[i] - p->du[i]));
       largest[1] = PetscMax(largest[1], PetscAbsReal(p->prescribed[i]));
     }
+}
+
+/* Does the first guess lack some of the prescribed increments, on any rank? What it lacks is freed by PetscFree. */
+static PetscErrorCode LackOfGuess(const Newton *n, PetscBool *lacks, PetscReal **lift)
+{
+  const StepProblem *p = n->problem;
+  const PetscInt dofs = p->grid->n_nodes * p->grid->dim;
+  PetscReal local[2] = {0, 0}, all[2];
+
+  PetscFunctionBeginUser;
+  *lift = NULL;
+  newton_turn(p, p->du);
+  largest_lack(p, local);
+  PetscCall(MPIU_Allreduce(local, all, 2, MPIU_REAL, MPIU_MAX, n->comm));
+  *lacks = all[0] > 1e-12 * all[1] && all[1] != 0;
+  if (*lacks) PetscCall(PetscCalloc1(dofs, lift));
+  for (PetscInt i = 0; *lacks && i < dofs; ++i)
+    if (p->fixed[i]) (*lift)[i] = p->prescribed[i] - p->du[i];
+  newton_turn(p, p->du);
+  PetscFunctionReturn(0);
 }
 
 /* One linear step that carries the prescribed increments into the interior: what is left of them at
@@ -89,20 +105,16 @@ static PetscErrorCode LiftPrescribed(Newton *n, PetscBool *solved)
 {
   KSPConvergedReason reason;
   StepProblem *p = n->problem;
-  PetscReal *lift, local[2] = {0, 0}, all[2];
+  PetscReal *lift;
+  PetscBool lacks;
   KSP ksp;
   Vec y;
   double start;
 
   PetscFunctionBeginUser;
   *solved = PETSC_TRUE;
-  PetscCall(PetscCalloc1(p->grid->n_nodes * p->grid->dim, &lift));
-  lack_of_guess(p, lift, local);
-  PetscCall(MPIU_Allreduce(local, all, 2, MPIU_REAL, MPIU_MAX, n->comm));
-  if (all[0] <= 1e-12 * all[1] || all[1] == 0) {
-    PetscCall(PetscFree(lift));
-    PetscFunctionReturn(0);
-  }
+  PetscCall(LackOfGuess(n, &lacks, &lift));
+  if (!lacks) PetscFunctionReturn(0);
   n->lift = lift;
   PetscCall(NewtonAssemble(n, PETSC_TRUE));
   n->lift = NULL;
@@ -218,6 +230,7 @@ static PetscErrorCode Iterate(Newton *n, NewtonReport *report, SNESConvergedReas
   }
   newton_turn(n->problem, n->problem->force);
   report->converged = *reason > 0;
+  n->idle = report->converged && report->iterations == 0;
   report->interrupted = *reason == SNES_DIVERGED_FUNCTION_COUNT;
   PetscFunctionReturn(0);
 }

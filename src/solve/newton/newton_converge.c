@@ -36,6 +36,7 @@ PetscReal newton_tolerance(const Newton *n) { return n->spec.residual * referenc
 
 PetscBool newton_is_last(const Newton *n)
 {
+  if (n->last == 0 && n->before == 0) return n->idle;
   return n->before > 0 && n->last * n->last < 0.1 * newton_tolerance(n) * n->before;
 }
 

@@ -38,6 +38,7 @@ struct Newton {
   PetscInt failures; /* of the iterative solver, not yet forgiven */
   PetscInt since;    /* steps since the last of them */
   PetscBool retry;   /* this try takes the direct solver */
+  PetscBool idle;    /* was the last first guess the solution? */
   PetscInt room;     /* what LinearProblem calls so */
   const char *linear;
   StepProblem *problem;
@@ -120,7 +121,8 @@ PetscErrorCode NewtonLooseReason(Newton *n, const char **reason);
 /* newton_converge.c. The norm below which a residual has converged, N. */
 PetscReal newton_tolerance(const Newton *n);
 /* Will this residual be the last? If it falls by the same factor once more it is
- * far below the tolerance: no tangent will be asked for. */
+ * far below the tolerance: no tangent will be asked for. The first one is if the step before took no
+ * iteration. */
 PetscBool newton_is_last(const Newton *n);
 /* The convergence test of SNES; context: the Newton. Writes the report's residuals and its
  * reference. */

@@ -223,6 +223,7 @@ PetscErrorCode SystemSlots(System *s, const Support *support, PetscBool *complet
   PetscInt size = 0;
 
   PetscFunctionBeginUser;
+  s->later = NULL;
   if (!support->n_runs) {
     PetscCall(SystemCloudSlots(s, support, complete));
     PetscFunctionReturn(0);
@@ -238,6 +239,19 @@ PetscErrorCode SystemSlots(System *s, const Support *support, PetscBool *complet
         for (PetscInt J = 0; J < nn; ++J) slot[I * nn + J] = pair_slot(s, node[I], node[J]);
     }
   if (complete) *complete = PETSC_TRUE;
+  PetscFunctionReturn(0);
+}
+
+void system_slots_later(System *s, const Support *support) { s->later = support; }
+
+PetscErrorCode SystemWantSlots(System *s)
+{
+  PetscBool complete;
+
+  PetscFunctionBeginUser;
+  if (!s->later) PetscFunctionReturn(0);
+  PetscCall(SystemSlots(s, s->later, &complete));
+  PetscCheck(complete, PETSC_COMM_SELF, PETSC_ERR_PLIB, "points couple nodes that their basis did not announce");
   PetscFunctionReturn(0);
 }
 

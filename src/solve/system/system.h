@@ -55,6 +55,7 @@ typedef struct System {
   /* is the tangent gathered in singles, or else in values? */
   PetscBool single;
   PetscInt n_slots, *slot;        /* SystemSlots: nn x nn pairs of each group */
+  const Support *later;           /* whose slots nobody has wanted yet; NULL: they are there */
   PetscInt n_cuts, capacity_cuts; /* SystemPrescribe */
   SystemCut *cut;
   const Frames *frames;               /* of the nodes: the unknowns are components in them; NULL: along the axes */
@@ -78,6 +79,10 @@ PetscErrorCode SystemBuild(System *system, const Grid *grid, const NodeGroups *g
  * all carry unknowns; clouds have ascending nodes, and `complete` tells whether the pattern has
  * all their pairs on this rank. */
 PetscErrorCode SystemSlots(System *system, const Support *support, PetscBool *complete);
+/* The same of a support whose pairs the pattern has for sure, when a tangent wants them: a step without
+ * iterations never does. */
+void system_slots_later(System *system, const Support *support);
+PetscErrorCode SystemWantSlots(System *system);
 /* The slot of one pair of nodes; -1 if the pattern lacks it. */
 PetscInt system_pair(const System *system, PetscInt I, PetscInt J);
 /* What SystemSlots consists of (cloud_slots.c). */
