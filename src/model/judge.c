@@ -6,8 +6,10 @@
 #include "base/math/tensor.h"
 #include "model/model_private.h"
 
-/* in one step, or to that part: a soft column under its weight may be pressed to an eighth */
+/* in one step, or to that part: a soft column under its weight may be pressed to an eighth; flows
+ * stay below 1.5 */
 #define MOST_STRETCH 10
+#define MOST_STRETCH_OF_FLOWS 3
 #define HARDLY_MOVED 0.2 /* of a cell: nothing can be stretched that much */
 
 static PetscReal square_norm(const PetscReal a[9])
@@ -58,6 +60,12 @@ static PetscBool hardly_moved(const Model *m)
   return !m->method->clouds && largest < HARDLY_MOVED * m->grid->smallest;
 }
 
+static PetscReal most_stretch(const Model *m)
+{
+  const PetscBool flows = m->scheme->inertia && materials_yield(m->c->n_materials, m->materials);
+  return flows ? MOST_STRETCH_OF_FLOWS : MOST_STRETCH;
+}
+
 PetscErrorCode JudgeStep(const Model *m, StepReport *report)
 {
   const Support *w = m->space->support;
@@ -85,7 +93,7 @@ PetscErrorCode JudgeStep(const Model *m, StepReport *report)
     }
   }
   PetscCallMPI(MPI_Allreduce(&local, &worst, 1, MPI_DOUBLE_INT, MPI_MAXLOC, m->comm));
-  if (worst.stretch <= MOST_STRETCH) PetscFunctionReturn(0);
+  if (worst.stretch <= most_stretch(m)) PetscFunctionReturn(0);
   for (PetscInt d = 0; d < m->dim && rank == worst.rank; ++d) x[d] = point_real(m->points, POINT_X, at)[d];
   PetscCallMPI(MPI_Bcast(x, 3, MPIU_REAL, worst.rank, m->comm));
   snprintf(report->leap, sizeof report->leap,

@@ -3,6 +3,7 @@
  * equilibria that a body would have to leap to. */
 #include <string.h>
 #include "case_builder.h"
+#include "model/model_private.h"
 
 static const char *const names[] = {"fem", "mpm", "gmm"};
 static const BasisSpec lme = {.kind = "lme", .gamma = 1.8, .radius = 2, .max_radius = 3.5, .condition = 50, .gap = 2};
@@ -155,9 +156,35 @@ static void test_leap(void **state)
   }
 }
 
+/* A step in which the block is drawn out to four times its length is one of rubber, and of sand in statics, but none of
+ * sand that moves. */
+static void test_flows(void **state)
+{
+  static NamedValue grains[4] = {{"young", 1e5}, {"poisson", 0.3}, {"friction_angle", 30}, {"cohesion", 1e3}};
+  (void)state;
+  for (int k = 0; k < 4; ++k) {
+    const PetscBool yields = k % 2 > 0, moves = k / 2 > 0;
+    StepReport report = {.newton.converged = PETSC_TRUE};
+    Bench b;
+    bench_init(&b, "mpm", CELL_QUADRILATERAL, 4);
+    if (yields) b.material.law = "mohr-coulomb", b.material.parameters = grains, b.material.n_parameters = 4;
+    if (moves) bench_dynamic(&b, 1, 0.01);
+    bench_motion(&b, 1, 0, MOTION_FIXED, 3);
+    Model *m = bench_model(&b, PETSC_COMM_WORLD);
+    CALL(ModelStep(m, moves ? 0.01 : 1, &report));
+    CALL(ModelInitialise(m));
+    for (PetscInt i = 0; i < m->grid->n_nodes * 2; ++i) m->nodes->du[i] = i % 2 ? 3 * m->grid->x[i] : 0;
+    CALL(JudgeStep(m, &report));
+    CHECK(report.newton.converged == !(yields && moves), "law %d, dynamics %d", yields, moves);
+    if (yields && moves) assert_non_null(strstr(report.newton.reason, "stretched 4 times in one step"));
+    CALL(ModelDestroy(&m));
+  }
+}
+
 int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {cmocka_unit_test(test_held), cmocka_unit_test(test_hinge),
-                                     cmocka_unit_test(test_useless_solver), cmocka_unit_test(test_leap)};
+                                     cmocka_unit_test(test_useless_solver), cmocka_unit_test(test_leap),
+                                     cmocka_unit_test(test_flows)};
   return run_model_tests(argc, argv, tests);
 }
