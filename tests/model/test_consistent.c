@@ -100,6 +100,38 @@ static void test_yields(void **state)
   }
 }
 
+/* What nodes do not change stays with the points, be it seen or not: with all of the mass lumped their gradients are
+ * what they were, although nodes see but means of them. */
+static void test_unseen(void **state)
+{
+  (void)state;
+  Bench b;
+  Model *m = block(&b, CELL_QUADRILATERAL, PETSC_FALSE, PETSC_FALSE);
+  PetscReal *before, seen = 0;
+  StepReport report;
+  CALL(ModelDestroy(&m));
+  b.c.analysis.mass = MASS_LUMPED;
+  b.c.analysis.step = b.c.analysis.largest = 1e-9;
+  m = bench_model(&b, PETSC_COMM_WORLD);
+  const PetscInt n = m->points->n;
+  CALL(PetscMalloc1(4 * n, &before));
+  for (PetscInt p = 0; p < n; ++p) {
+    Random random = {(uint64_t)m->points->id[p] + 5};
+    for (PetscInt k = 0; k < 4; ++k) point_real(m->points, POINT_SLOPE, p)[k] = random_real(&random, -1, 1);
+    CALL(PetscArraycpy(before + 4 * p, point_real(m->points, POINT_SLOPE, p), 4));
+  }
+  m->space->present = PETSC_FALSE; /* nodes are told again */
+  CALL(ModelStep(m, 1e-9, &report));
+  assert_int_equal(report.outcome, STEP_ACCEPTED);
+  for (PetscInt i = 0; i < m->grid->n_nodes * 2; ++i) seen += PetscAbsReal(m->nodes->v[i]);
+  assert_true(sum_over(m, seen) > 1e-2);
+  assert_int_equal(m->points->n, n);
+  for (PetscInt p = 0; p < n; ++p)
+    for (PetscInt k = 0; k < 4; ++k) CHECK_CLOSE(point_real(m->points, POINT_SLOPE, p)[k], before[4 * p + k], 1e-5);
+  CALL(PetscFree(before));
+  CALL(ModelDestroy(&m));
+}
+
 /* sum_p N_I m (sum_J N_J v_J) of full cells, against sum_p N_I m v_p; and its sum over all nodes. */
 static void test_momentum(void **state)
 {
@@ -164,6 +196,7 @@ static void test_refused(void **state)
 int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {cmocka_unit_test(test_linear), cmocka_unit_test(test_yields),
-                                     cmocka_unit_test(test_momentum), cmocka_unit_test(test_refused)};
+                                     cmocka_unit_test(test_unseen), cmocka_unit_test(test_momentum),
+                                     cmocka_unit_test(test_refused)};
   return run_model_tests(argc, argv, tests);
 }
