@@ -24,4 +24,5 @@ for target in "${@:-run docs}"; do
     echo "make $one: $(($(date +%s) - began)) s, $(inside dpkg-query -W | wc -l) packages"
   done
 done
-rm -rf "$logs" ${made:+"$made"}
+leave_chroot # before its folder goes: /proc and /sys are still in it
+rm -rf --one-file-system "$logs" ${made:+"$made"}
