@@ -10,7 +10,19 @@
  * stay below 1.5 */
 #define MOST_STRETCH 10
 #define MOST_STRETCH_OF_FLOWS 3
-#define HARDLY_MOVED 0.2 /* of a cell: nothing can be stretched that much */
+/* of a cell: nothing can be stretched that much */
+#define HARDLY_MOVED 0.2
+#define HARDLY_MOVED_OF_FLOWS 0.1
+
+static PetscBool flows(const Model *m)
+{
+  return m->scheme->inertia && materials_yield(m->c->n_materials, m->materials);
+}
+
+static PetscReal least_motion(const Model *m)
+{
+  return (flows(m) ? HARDLY_MOVED_OF_FLOWS : HARDLY_MOVED) * m->grid->smallest;
+}
 
 static PetscReal square_norm(const PetscReal a[9])
 {
@@ -48,7 +60,7 @@ static PetscBool moves_as_one(const Model *m, PetscInt g)
       most[d] = PetscMax(most[d], du);
     }
   for (PetscInt d = 0; d < m->dim; ++d) widest = PetscMax(widest, most[d] - least[d]);
-  return !m->method->clouds && widest < 2 * HARDLY_MOVED * m->grid->smallest;
+  return !m->method->clouds && widest < 2 * least_motion(m);
 }
 
 static PetscBool hardly_moved(const Model *m)
@@ -57,13 +69,7 @@ static PetscBool hardly_moved(const Model *m)
   for (PetscInt k = 0; k < m->system->n_active; ++k)
     for (PetscInt d = 0, i = m->system->active[k] * m->dim; d < m->dim; ++d, ++i)
       largest = PetscMax(largest, PetscAbsReal(m->nodes->du[i]));
-  return !m->method->clouds && largest < HARDLY_MOVED * m->grid->smallest;
-}
-
-static PetscReal most_stretch(const Model *m)
-{
-  const PetscBool flows = m->scheme->inertia && materials_yield(m->c->n_materials, m->materials);
-  return flows ? MOST_STRETCH_OF_FLOWS : MOST_STRETCH;
+  return !m->method->clouds && largest < least_motion(m);
 }
 
 PetscErrorCode JudgeStep(const Model *m, StepReport *report)
@@ -93,7 +99,7 @@ PetscErrorCode JudgeStep(const Model *m, StepReport *report)
     }
   }
   PetscCallMPI(MPI_Allreduce(&local, &worst, 1, MPI_DOUBLE_INT, MPI_MAXLOC, m->comm));
-  if (worst.stretch <= most_stretch(m)) PetscFunctionReturn(0);
+  if (worst.stretch <= (flows(m) ? MOST_STRETCH_OF_FLOWS : MOST_STRETCH)) PetscFunctionReturn(0);
   for (PetscInt d = 0; d < m->dim && rank == worst.rank; ++d) x[d] = point_real(m->points, POINT_X, at)[d];
   PetscCallMPI(MPI_Bcast(x, 3, MPIU_REAL, worst.rank, m->comm));
   snprintf(report->leap, sizeof report->leap,
