@@ -96,7 +96,8 @@ PetscErrorCode NodalFieldsCreate(Grid *grid, PetscBool pressure, NodalFields **n
     if (k->mixed && !pressure) continue;
     PetscCall(PetscCalloc1(grid->n_nodes * components, values));
     if (!grid->cloud) continue;
-    PetscCall(GridCloudFollow(grid, values, components, follows(k->kept) ? k->name : NULL, k->unit));
+    const char *name = follows(k->kept) ? k->name : NULL;
+    PetscCall(GridCloudFollow(grid, (CloudField){values, components, name, k->unit, PETSC_FALSE}));
   }
   PetscFunctionReturn(0);
 }
