@@ -72,9 +72,14 @@ static void list_cells(void)
 static void list_measures(void)
 {
   for (const Measure *const *m = measures; *m; ++m) {
-    printf("%-18s [%s] %s", (*m)->key, (*m)->number.unit, (*m)->number.help);
-    for (const MeasureNumber *const *w = (*m)->words; w && *w; ++w)
+    const char *unit = (*m)->number.unit;
+    printf("%-18s ", (*m)->key);
+    if (unit) printf("[%s] ", unit);
+    printf("%s", (*m)->number.help);
+    for (const MeasureNumber *const *w = (*m)->words; w && *w; ++w) {
       printf("%s%s", w == (*m)->words ? ": " : ", ", (*w)->word);
+      if (!unit && (*w)->unit[0]) printf(" [%s]", (*w)->unit);
+    }
     putchar('\n');
   }
 }

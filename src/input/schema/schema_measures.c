@@ -267,7 +267,9 @@ static void check_subject(SchemaReader *r, const YamlNode *mapping, const Measur
   if (measure_number(m)->may_trace && m->has_tracer) return;
   if (!of_node) SchemaKeyError(r, mapping, "key 'of' of %s is missing", path);
   else SchemaKeyError(r, of_node, "%s.of must name a %s", path, subjects[wanted].key);
-  diag_hint(r->diag, "%s", subjects[wanted].hint);
+  if (of_node && !strcmp(m->kind, "reaction") && yaml_find(of_node, "wall"))
+    diag_hint(r->diag, "the force of a wall is the measure `wall_force`");
+  else diag_hint(r->diag, "%s", subjects[wanted].hint);
 }
 
 /* Names of a formula: those of the measures above it. */
