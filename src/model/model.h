@@ -175,6 +175,9 @@ typedef struct Model {
   Softening limit;
   Strength strength;
   InitialState initial;
+  struct {
+    PetscInt n, *dof; /* on owners */
+  } unheld;           /* directions of nodes that hold what nothing else does, in the step */
   Raised raised;
   PetscReal seconds[PHASE_N]; /* see model_times */
 } Model;
