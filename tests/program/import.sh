@@ -159,6 +159,10 @@ for n in 1 2 3; do
   says out.txt "2 of 2 within what is allowed"
   says err.txt "nothing holds 'Bar' in y: held in 1 direction(s) of nodes, which bear nothing"
 done
+none=$(echo $gravity | sed 's/"modulus": 10, "direction": .*\]/"modulus": 0.0, "direction": [0.0, 0.0, 0.0]/; s/[\/&]/\\&/g')
+sed "s/\"a\": \[/&$none, /" pushed/ProjectParameters.json >pushed/floats.json
+expect "gravity of 0, without a direction" 0 "$talus" import kratos pushed/floats.json --out floats
+says floats/case.yaml "gravity: [0, 0]"
 sed -i "s/\"a\": \[/&$(echo $gravity | sed 's/[\/&]/\\&/g'), /" pushed/ProjectParameters.json
 expect "and has weight" 0 "$talus" import kratos pushed --out weight
 expect "which nothing bears" 2 "$talus" check weight/case.yaml
