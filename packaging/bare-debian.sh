@@ -19,6 +19,8 @@ mkdir -p "$chroot/dev/shm"
 mount -t proc proc "$chroot/proc"
 mount -t sysfs -o ro sysfs "$chroot/sys" # MPI asks it for cores
 mount -t tmpfs tmpfs "$chroot/dev/shm"
+# every machine has it, a minimal debootstrap has not: MPI would ask the network who localhost is, 5 s at each start
+[ -e "$chroot/etc/hosts" ] || echo "127.0.0.1 localhost" >"$chroot/etc/hosts"
 cp /etc/resolv.conf "$chroot/etc/" 2>/dev/null || :
 
 inside() {
