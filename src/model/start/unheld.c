@@ -24,9 +24,10 @@ typedef struct {
   PetscReal free[RIGID][RIGID]; /* orthonormal, as many along the axes and about the centre times 1 / size */
 } Group;
 
-/* A direction of a node; strength 0: there is none. The first three, numbers over one another, come from its owner. */
+/* A direction of a node; strength 0: there is none. */
 typedef struct {
-  PetscReal row[RIGID], axis, at; /* at: its coordinate along that axis, m */
+  PetscInt axis;
+  PetscReal row[RIGID], at[3]; /* at: where the node stands, m */
   PetscReal number, strength;
 } Hold;
 
@@ -103,44 +104,64 @@ static PetscReal worth_of(const Model *m, const Group *g, PetscInt node, PetscIn
   return 1 / (1 + 100 * PetscAbsReal(m->grid->x[node * m->dim + axis] - g->plane[axis]) / g->size);
 }
 
-/* Of those, the one that the free motions move farthest; of equals the first by its number. */
+/* Of those the farthest on this rank: of the strength in pass 0; in pass 1, of equals of `farthest`, the first by its
+ * number. */
+static void look_for(const Model *m, const Group *g, PetscBool before, const PetscReal *farthest, Hold *hold)
+{
+  PetscReal row[RIGID], along[RIGID];
+  for (PetscInt i = 0; i < m->grid->n_owned * m->dim; ++i) {
+    const PetscInt node = i / m->dim, axis = i % m->dim;
+    if (!may_be(m, g, before, node, axis)) continue;
+    row_of(m, g, node, axis, frame_of(&m->boundary->frames, node), row);
+    const PetscReal far = strength_of(g, row, along) * (before ? 1 : worth_of(m, g, node, axis));
+    const PetscReal number = number_of(m, g, node, axis);
+    if (!farthest) hold->strength = PetscMax(hold->strength, far);
+    if (!farthest || far < (1 - 1e-6) * *farthest || number >= hold->number) continue;
+    hold->number = number;
+    hold->axis = axis;
+    for (PetscInt d = 0; d < m->dim; ++d) hold->at[d] = m->grid->x[node * m->dim + d];
+    for (PetscInt k = 0; k < g->n; ++k) hold->row[k] = row[k];
+  }
+}
+
+/* The one of all ranks. */
 static PetscErrorCode Strongest(const Model *m, const Group *g, PetscBool before, Hold *hold)
 {
-  PetscReal mine = 0, farthest = 0, least = PETSC_MAX_REAL, row[RIGID], along[RIGID];
+  PetscReal farthest, least, all[RIGID + 4] = {0}, along[RIGID];
 
   PetscFunctionBeginUser;
-  *hold = (Hold){0};
-  for (int pass = 0; pass < 2; ++pass) {
-    for (PetscInt i = 0; i < m->grid->n_owned * m->dim; ++i) {
-      const PetscInt node = i / m->dim, axis = i % m->dim;
-      if (!may_be(m, g, before, node, axis)) continue;
-      row_of(m, g, node, axis, frame_of(&m->boundary->frames, node), row);
-      const PetscReal far = strength_of(g, row, along) * (before ? 1 : worth_of(m, g, node, axis));
-      const PetscReal number = number_of(m, g, node, axis);
-      if (!pass) mine = PetscMax(mine, far);
-      else if (far >= (1 - 1e-6) * farthest && number < least) {
-        least = number;
-        hold->axis = (PetscReal)axis;
-        hold->at = m->grid->x[i];
-        PetscCall(PetscArraycpy(hold->row, row, g->n));
-      }
-    }
-    if (!pass) PetscCall(MPIU_Allreduce(&mine, &farthest, 1, MPIU_REAL, MPIU_MAX, m->comm));
+  *hold = (Hold){.number = PETSC_MAX_REAL};
+  look_for(m, g, before, NULL, hold);
+  PetscCall(MPIU_Allreduce(&hold->strength, &farthest, 1, MPIU_REAL, MPIU_MAX, m->comm));
+  look_for(m, g, before, &farthest, hold);
+  PetscCall(MPIU_Allreduce(&hold->number, &least, 1, MPIU_REAL, MPIU_MIN, m->comm));
+  if (least == hold->number) { /* its owner tells the others */
+    PetscCall(PetscArraycpy(all, hold->row, RIGID));
+    PetscCall(PetscArraycpy(all + RIGID, hold->at, 3));
+    all[RIGID + 3] = (PetscReal)hold->axis;
   }
-  PetscCall(MPIU_Allreduce(&least, &hold->number, 1, MPIU_REAL, MPIU_MIN, m->comm));
-  if (least != hold->number) hold->axis = hold->at = 0;
-  for (PetscInt k = 0; k < g->n && least != hold->number; ++k) hold->row[k] = 0;
-  PetscCall(MPIU_Allreduce(MPI_IN_PLACE, hold->row, RIGID + 2, MPIU_REAL, MPIU_SUM, m->comm));
+  PetscCall(MPIU_Allreduce(MPI_IN_PLACE, all, RIGID + 4, MPIU_REAL, MPIU_SUM, m->comm));
+  PetscCall(PetscArraycpy(hold->row, all, RIGID));
+  PetscCall(PetscArraycpy(hold->at, all + RIGID, 3));
+  hold->axis = (PetscInt)(all[RIGID + 3] + 0.5);
   hold->strength = strength_of(g, hold->row, along);
   PetscFunctionReturn(0);
+}
+
+/* Is it this one, on a rank that may not own it? */
+static PetscBool is_hold(const Model *m, const Group *g, const Hold *hold, PetscInt node, PetscInt axis)
+{
+  PetscReal apart = 0;
+  for (PetscInt d = 0; d < m->dim; ++d)
+    apart = PetscMax(apart, PetscAbsReal(m->grid->x[node * m->dim + d] - hold->at[d]) / g->size);
+  return is_of(g, node) && axis == hold->axis && apart < 1e-9;
 }
 
 /* It holds. */
 static void count_in(Group *g, const Hold *hold)
 {
-  const PetscInt axis = (PetscInt)(hold->axis + 0.5);
-  if (!g->has_plane[axis]) g->plane[axis] = hold->at;
-  g->has_plane[axis] = PETSC_TRUE;
+  if (!g->has_plane[hold->axis]) g->plane[hold->axis] = hold->at[hold->axis];
+  g->has_plane[hold->axis] = PETSC_TRUE;
   take_away(g, hold->row);
 }
 
@@ -188,10 +209,9 @@ static PetscErrorCode HoldOne(Model *m, Group *g)
   PetscCall(Strongest(m, g, PETSC_FALSE, &hold));
   PetscCheck(hold.strength > LEVER, m->comm, PETSC_ERR_PLIB, "no node could hold body %d", (int)g->body);
   for (PetscInt i = 0; i < m->grid->n_nodes * m->dim; ++i) {
-    const PetscInt node = i / m->dim;
-    if (!is_of(g, node) || PetscAbsReal(number_of(m, g, node, i % m->dim) - hold.number) > 1e-9) continue;
+    if (!is_hold(m, g, &hold, i / m->dim, i % m->dim)) continue;
     m->nodes->fixed[i] = 1;
-    if (node < m->grid->n_owned) m->unheld.dof[m->unheld.n++] = i;
+    if (i < m->grid->n_owned * m->dim) m->unheld.dof[m->unheld.n++] = i;
   }
   count_in(g, &hold);
   PetscFunctionReturn(0);
