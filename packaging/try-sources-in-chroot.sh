@@ -3,7 +3,7 @@
 # there `make run docs`, or other targets, one after the other, as its root would. Says the seconds and packages that each takes.
 # With `test` as a target all tests, too: try-sources-in-chroot.sh "" run docs test.
 # A CHROOT that is there is used as it is, and kept. MIRROR: where packages come from. PACKAGES: what else is installed there beforehand, so
-# that no test is skipped: PACKAGES="paraview xvfb ffmpeg gnuplot".
+# that no test is skipped: PACKAGES="paraview python3-paraview xvfb xauth ffmpeg".
 set -eu
 source=$(cd "$(dirname "$0")/.." && pwd)
 made=
