@@ -1,8 +1,9 @@
-// A slope of clay with a thin weak layer: lines of the mesh along the layer.
-DefineConstant[h = 1]; l = h / 3; // of the layer: six cells across
-Point(1) = {0, 0, 0, h}; Point(2) = {60, 0, 0, h}; Point(3) = {60, 10, 0, h}; Point(4) = {52.8, 10, 0, l};
-Point(5) = {50, 10, 0, l}; Point(6) = {40, 10, 0, h}; Point(7) = {20, 20, 0, h}; Point(8) = {14, 20, 0, l};
-Point(9) = {10, 20, 0, l}; Point(10) = {0, 20, 0, h};
+// A slope of clay with a thin weak layer: the layer in rows of quadrilaterals, six across in cells of 1 m, the clay halved into
+// quadrilaterals (a triangle among them would lock).
+DefineConstant[h = 1]; l = 2 * h / 3; H = 2 * h; // halved below
+Point(1) = {0, 0, 0, H}; Point(2) = {60, 0, 0, H}; Point(3) = {60, 10, 0, H}; Point(4) = {52.8, 10, 0, l};
+Point(5) = {50, 10, 0, l}; Point(6) = {40, 10, 0, H}; Point(7) = {20, 20, 0, H}; Point(8) = {14, 20, 0, l};
+Point(9) = {10, 20, 0, l}; Point(10) = {0, 20, 0, H};
 Point(11) = {42, 6, 0, l}; Point(12) = {46, 6, 0, l}; Point(13) = {42, 4, 0, l}; Point(14) = {46.8, 4, 0, l};
 Line(1) = {1, 2}; Line(2) = {2, 3}; Line(3) = {3, 4}; Line(4) = {4, 5}; Line(5) = {5, 6}; Line(6) = {6, 7};
 Line(7) = {7, 8}; Line(8) = {8, 9}; Line(9) = {9, 10}; Line(10) = {10, 1};
@@ -11,6 +12,6 @@ Line(14) = {9, 13}; Line(15) = {13, 14}; Line(16) = {14, 4};
 Curve Loop(1) = {5, 6, 7, 11, 12, 13}; Plane Surface(1) = {1};
 Curve Loop(2) = {4, -13, -12, -11, 8, 14, 15, 16}; Plane Surface(2) = {2};
 Curve Loop(3) = {1, 2, 3, -16, -15, -14, 9, 10}; Plane Surface(3) = {3};
-Mesh.Algorithm = 6; Mesh.RecombineAll = 1; Mesh.RecombinationAlgorithm = 1; Mesh.Smoothing = 5;
+Mesh.Algorithm = 6; Mesh.RecombineAll = 1; Mesh.RecombinationAlgorithm = 1; Mesh.SubdivisionAlgorithm = 1; Mesh.Smoothing = 5;
 Physical Curve("base") = {1}; Physical Curve("sides") = {2, 10};
 Physical Surface("clay") = {1, 3}; Physical Surface("weak") = {2};

@@ -355,7 +355,7 @@ static PetscErrorCode Build(Model *m, Diag *diag)
   PetscCall(LoadsCreate(m->grid, m->c, m->points, m->method->restores_grid, diag, &m->loads));
   PetscCall(CreateTracers(m, diag));
   measures_check(m, diag);
-  model_advise(m, diag);
+  PetscCall(ModelAdvise(m, diag));
   PetscCall(AdviseOpenDrum(m, diag));
   PetscCall(DiagReduce(m->comm, diag, &errors));
   if (errors) PetscFunctionReturn(0);

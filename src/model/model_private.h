@@ -237,8 +237,8 @@ PetscErrorCode LimitWatch(Model *model, PetscReal dt);
 /* Collective. Add to the reason of a static run that gives up that it may be at a limit load, if it
  * looks like one. */
 PetscErrorCode LimitDescribe(const Model *model, StepReport *report);
-/* Warnings of what a case asks for and its user hardly means: start/advice.c. */
-void model_advise(const Model *model, Diag *diag);
+/* Collective. Warnings of what a case asks for and its user hardly means: start/advice.c. */
+PetscErrorCode ModelAdvise(const Model *model, Diag *diag);
 /* Collective. The same of a drum that is not closed: start/drum.c. */
 PetscErrorCode AdviseOpenDrum(const Model *model, Diag *diag);
 /* Rayleigh damping, where there is inertia, 1/s. */

@@ -87,6 +87,31 @@ warned "mixed" -- --set formulation=mixed
 warned "a shared volume" -- --set formulation=mean-dilatation
 warned "a shared volume of triangles" "formulation 'mean-dilatation' does nothing for linear triangles" "take quadrilaterals" -- \
   --set formulation=mean-dilatation --set grid.cell=triangle --set 'bodies[0].points_per_cell=3'
+cat >some.msh <<'END'
+$MeshFormat
+2.2 0 8
+$EndMeshFormat
+$PhysicalNames
+1
+2 1 "block"
+$EndPhysicalNames
+$Nodes
+5
+1 0 -3 0
+2 2.5 -3 0
+3 5 -3 0
+4 2.5 0 0
+5 0 0 0
+$EndNodes
+$Elements
+2
+1 3 2 1 1 1 2 4 5
+2 2 2 1 1 2 3 4
+$EndElements
+END
+warned "a shared volume of some triangles" "does nothing for 1 of 2 cells, which are linear triangles" "SubdivisionAlgorithm = 1" -- \
+  --set formulation=mean-dilatation --set 'grid={mesh: some.msh}' --set 'loads={gravity: [0, -10]}' \
+  --set 'bodies=[{name: soil, region: block, material: clay, points_per_cell: 4}]' --set 'boundary=[{on: {y: -3}, fix: [x, y]}]'
 expect "a shared volume by gmm" 2 "$talus" check case.yaml --set formulation=mean-dilatation --set method=gmm
 says err.txt "formulation 'mean-dilatation' shares the volume of a cell among its points, and method gmm has no cells"
 expect "a shared volume by gimp" 2 "$talus" check case.yaml --set formulation=mean-dilatation --set method=mpm --set 'basis={gimp: {}}'
