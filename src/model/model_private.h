@@ -227,8 +227,9 @@ PetscErrorCode JoinedBodies(const Model *model, PetscReal *of);
 PetscErrorCode UnheldCheck(Model *model, Diag *diag);
 /* Collective. After mark_fixed, in each step: as few directions of nodes as hold it. */
 PetscErrorCode UnheldHold(Model *model);
-/* Collective. Newton converged: not if those directions bear anything (N, beyond round_off). */
-PetscErrorCode UnheldJudge(const Model *model, PetscReal round_off, StepReport *report);
+/* Collective. Newton converged: goes on without those that keep the body from turning if they bear anything, and has
+ * not converged if the others do. */
+PetscErrorCode UnheldJudge(Model *model, StepProblem *problem, const LinearProblem *linear, StepReport *report);
 /* Collective. After the first step's clouds are known: tell which bodies hang on an obstacle from
  * the start. */
 PetscErrorCode ModelWarnOfObstacles(const Model *model, Diag *diag);

@@ -6,10 +6,10 @@
 #define RIGID 6
 /* times the size of the body: the lever of a node that keeps it from turning, at least */
 #define LEVER 1e-6
-/* of the forces that there are: loads out of balance on the body as it lies; and when it has turned, under loads that
- * do not turn with it */
+/* of the forces that there are: loads out of balance; more than Newton's method leaves */
 #define OUT_OF_BALANCE 1e-6
-#define TURNED_OUT_OF_BALANCE 1e-4
+/* rad: how far a step may turn a body that is let go; beyond, it may have fallen over to another balance */
+#define TURN 0.05
 /* of the largest mass of a node: what has less, than a corner in space, is a poor hold */
 #define ENOUGH_MASS 0.1
 
@@ -87,14 +87,16 @@ static PetscReal number_of(const Model *m, const Group *g, PetscInt node, PetscI
   return sum;
 }
 
-/* Directions of nodes that are held (before), or that could be. */
-static PetscBool may_be(const Model *m, const Group *g, PetscBool before, PetscInt node, PetscInt axis)
+/* Directions of nodes: those that are held already, all that could be, those along an axis that could be. */
+typedef enum { ALONG_X, ALONG_Y, ALONG_Z, ANY, BEFORE } Which;
+
+static PetscBool may_be(const Model *m, const Group *g, Which which, PetscInt node, PetscInt axis)
 {
   const PetscInt i = node * m->dim + axis;
   if (!is_of(g, node)) return PETSC_FALSE;
-  if (before) return m->boundary->fixed[i] != 0;
-  return !m->nodes->fixed[i] && m->nodes->dof[i] == DOF_USUAL && !frame_of(&m->boundary->frames, node) &&
-         m->nodes->mass[node] >= ENOUGH_MASS * g->mass;
+  if (which == BEFORE) return m->boundary->fixed[i] != 0;
+  return (which == ANY || which == (Which)axis) && !m->nodes->fixed[i] && m->nodes->dof[i] == DOF_USUAL &&
+         !frame_of(&m->boundary->frames, node) && m->nodes->mass[node] >= ENOUGH_MASS * g->mass;
 }
 
 /* How much the node is worth, of 1. What strains along the axes then turns no body. */
@@ -106,14 +108,14 @@ static PetscReal worth_of(const Model *m, const Group *g, PetscInt node, PetscIn
 
 /* Of those the farthest on this rank: of the strength in pass 0; in pass 1, of equals of `farthest`, the first by its
  * number. */
-static void look_for(const Model *m, const Group *g, PetscBool before, const PetscReal *farthest, Hold *hold)
+static void look_for(const Model *m, const Group *g, Which which, const PetscReal *farthest, Hold *hold)
 {
   PetscReal row[RIGID], along[RIGID];
   for (PetscInt i = 0; i < m->grid->n_owned * m->dim; ++i) {
     const PetscInt node = i / m->dim, axis = i % m->dim;
-    if (!may_be(m, g, before, node, axis)) continue;
+    if (!may_be(m, g, which, node, axis)) continue;
     row_of(m, g, node, axis, frame_of(&m->boundary->frames, node), row);
-    const PetscReal far = strength_of(g, row, along) * (before ? 1 : worth_of(m, g, node, axis));
+    const PetscReal far = strength_of(g, row, along) * (which == BEFORE ? 1 : worth_of(m, g, node, axis));
     const PetscReal number = number_of(m, g, node, axis);
     if (!farthest) hold->strength = PetscMax(hold->strength, far);
     if (!farthest || far < (1 - 1e-6) * *farthest || number >= hold->number) continue;
@@ -125,15 +127,15 @@ static void look_for(const Model *m, const Group *g, PetscBool before, const Pet
 }
 
 /* The one of all ranks. */
-static PetscErrorCode Strongest(const Model *m, const Group *g, PetscBool before, Hold *hold)
+static PetscErrorCode Strongest(const Model *m, const Group *g, Which which, Hold *hold)
 {
   PetscReal farthest, least, all[RIGID + 4] = {0}, along[RIGID];
 
   PetscFunctionBeginUser;
   *hold = (Hold){.number = PETSC_MAX_REAL};
-  look_for(m, g, before, NULL, hold);
+  look_for(m, g, which, NULL, hold);
   PetscCall(MPIU_Allreduce(&hold->strength, &farthest, 1, MPIU_REAL, MPIU_MAX, m->comm));
-  look_for(m, g, before, &farthest, hold);
+  look_for(m, g, which, &farthest, hold);
   PetscCall(MPIU_Allreduce(&hold->number, &least, 1, MPIU_REAL, MPIU_MIN, m->comm));
   if (least == hold->number) { /* its owner tells the others */
     PetscCall(PetscArraycpy(all, hold->row, RIGID));
@@ -193,7 +195,7 @@ static PetscErrorCode GroupLook(const Model *m, Group *g, PetscBool *any)
   g->n = g->n_free = motions_of(m);
   for (PetscInt k = 0; k < g->n; ++k) g->free[k][k] = 1;
   while (g->n_free) {
-    PetscCall(Strongest(m, g, PETSC_TRUE, &hold));
+    PetscCall(Strongest(m, g, BEFORE, &hold));
     if (hold.strength < LEVER) break;
     count_in(g, &hold);
   }
@@ -201,18 +203,20 @@ static PetscErrorCode GroupLook(const Model *m, Group *g, PetscBool *any)
 }
 
 /* Hold one more direction of a node, on every rank that knows it. */
-static PetscErrorCode HoldOne(Model *m, Group *g)
+static PetscErrorCode HoldOne(Model *m, Group *g, Which which)
 {
   Hold hold;
 
   PetscFunctionBeginUser;
-  PetscCall(Strongest(m, g, PETSC_FALSE, &hold));
+  PetscCall(Strongest(m, g, which, &hold));
   PetscCheck(hold.strength > LEVER, m->comm, PETSC_ERR_PLIB, "no node could hold body %d", (int)g->body);
   for (PetscInt i = 0; i < m->grid->n_nodes * m->dim; ++i) {
     if (!is_hold(m, g, &hold, i / m->dim, i % m->dim)) continue;
     m->nodes->fixed[i] = 1;
-    if (i < m->grid->n_owned * m->dim) m->unheld.dof[m->unheld.n++] = i;
+    m->unheld.turns[m->unheld.n] = which == ANY;
+    m->unheld.dof[m->unheld.n++] = i;
   }
+  m->unheld.turning += which == ANY;
   count_in(g, &hold);
   PetscFunctionReturn(0);
 }
@@ -295,49 +299,107 @@ PetscErrorCode UnheldCheck(Model *m, Diag *diag)
   PetscFunctionBeginUser;
   if (a->unheld != UNHELD_HOLD) PetscFunctionReturn(0);
   if (a->type != ANALYSIS_STATIC || m->method->clouds || m->walls || m->c->n_interfaces)
-    diag_error(diag, "analysis.unheld", "hold is for type static, methods mpm and fem, without walls and interfaces");
+    diag_error(diag, "analysis.unheld",
+               "unheld: hold is for type static, methods mpm and fem, without walls and interfaces");
   PetscCall(DiagReduce(m->comm, diag, &errors));
   if (errors) PetscFunctionReturn(0);
-  PetscCall(PetscMalloc1((size_t)(RIGID * m->c->n_bodies), &m->unheld.dof));
+  PetscCall(PetscMalloc2(RIGID * m->c->n_bodies, &m->unheld.dof, RIGID * m->c->n_bodies, &m->unheld.turns));
   PetscCall(NodalForcesBegin(&m->forces, &scene));
   PetscCall(NodalForcesExternal(&m->forces, &scene, PETSC_TRUE, m->nodes->external));
   PetscCall(EachGroup(m, diag, CheckGroup));
   PetscFunctionReturn(0);
 }
 
+/* Where it is, and then how it is turned: the latter can be let go. */
 static PetscErrorCode HoldGroup(Model *m, Group *g, Diag *diag)
 {
+  PetscReal along[RIGID];
+
   PetscFunctionBeginUser;
   (void)diag;
-  while (g->n_free) PetscCall(HoldOne(m, g));
+  for (PetscInt k = 0; k < PetscMin(g->n, m->dim); ++k) {
+    PetscReal row[RIGID] = {0};
+    row[k] = 1;
+    if (strength_of(g, row, along) > 1 - 1e-6) PetscCall(HoldOne(m, g, g->n == 1 ? ALONG_Y : (Which)k));
+  }
+  while (g->n_free) PetscCall(HoldOne(m, g, ANY));
+  m->unheld.size = PetscMax(m->unheld.size, g->size);
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode UnheldHold(Model *m)
 {
   PetscFunctionBeginUser;
-  m->unheld.n = 0;
+  m->unheld.n = m->unheld.turning = 0;
+  m->unheld.size = 0;
   if (m->c->analysis.unheld == UNHELD_HOLD) PetscCall(EachGroup(m, NULL, HoldGroup));
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode UnheldJudge(const Model *m, PetscReal round_off, StepReport *report)
+static void let_turn(Model *m, PetscBool free)
+{
+  for (PetscInt k = 0; k < m->unheld.n; ++k)
+    if (m->unheld.turns[k]) m->nodes->fixed[m->unheld.dof[k]] = !free;
+}
+
+/* What the directions bear that are held, N, and is it too much? */
+static PetscErrorCode Borne(const Model *m, PetscReal round_off, PetscReal *borne, PetscBool *much)
 {
   const NodalFields *n = m->nodes;
+  const PetscInt owned = m->grid->n_owned * m->dim;
   PetscReal pull[3], sums[2] = {0, 0};
 
   PetscFunctionBeginUser;
-  if (m->c->analysis.unheld != UNHELD_HOLD) PetscFunctionReturn(0);
   gravity_at(m->c, raised_time(m, m->time + m->c->analysis.step), pull);
-  for (PetscInt i = 0; i < m->grid->n_owned * m->dim; ++i)
+  for (PetscInt i = 0; i < owned; ++i)
     if (n->touched[i / m->dim])
       sums[1] +=
         PetscAbsReal(n->force[i]) + PetscAbsReal(n->external[i]) + n->mass[i / m->dim] * PetscAbsReal(pull[i % m->dim]);
-  for (PetscInt k = 0; k < m->unheld.n; ++k) sums[0] += PetscAbsReal(n->force[m->unheld.dof[k]]);
+  for (PetscInt k = 0; k < m->unheld.n; ++k)
+    if (m->unheld.dof[k] < owned && n->fixed[m->unheld.dof[k]]) sums[0] += PetscAbsReal(n->force[m->unheld.dof[k]]);
   PetscCall(MPIU_Allreduce(MPI_IN_PLACE, sums, 2, MPIU_REAL, MPIU_SUM, m->comm));
-  if (sums[0] <= TURNED_OUT_OF_BALANCE * sums[1] + round_off) PetscFunctionReturn(0);
+  *borne = sums[0];
+  *much = sums[0] > OUT_OF_BALANCE * sums[1] + round_off;
+  PetscFunctionReturn(0);
+}
+
+/* Where loads that keep their direction have a moment about the body as it has come to lie, they turn it: it is let go
+ * from there, since stress now resists its turning. *much stays where that leads nowhere, or too far. */
+static PetscErrorCode LetTurn(Model *m, StepProblem *p, const LinearProblem *linear, StepReport *report,
+                              PetscReal *borne, PetscBool *much)
+{
+  const NewtonReport first = report->newton;
+  const PetscInt dofs = m->grid->n_nodes * m->dim;
+  PetscReal *du, moved = 0;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(dofs, &du));
+  PetscCall(PetscArraycpy(du, m->nodes->du, dofs));
+  let_turn(m, PETSC_TRUE);
+  PetscCall(NewtonSolve(m->newton, p, linear, &report->newton));
+  for (PetscInt i = 0; i < dofs; ++i) moved = PetscMax(moved, PetscAbsReal(m->nodes->du[i] - du[i]));
+  PetscCall(MPIU_Allreduce(MPI_IN_PLACE, &moved, 1, MPIU_REAL, MPIU_MAX, m->comm));
+  PetscCall(PetscFree(du));
+  report->newton.iterations += first.iterations;
+  report->newton.linear_iterations += first.linear_iterations;
+  if (!report->newton.converged || moved > TURN * m->unheld.size) PetscFunctionReturn(0);
+  PetscCall(Borne(m, p->round_off, borne, much));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode UnheldJudge(Model *m, StepProblem *p, const LinearProblem *linear, StepReport *report)
+{
+  PetscReal borne;
+  PetscBool much;
+
+  PetscFunctionBeginUser;
+  if (m->c->analysis.unheld != UNHELD_HOLD) PetscFunctionReturn(0);
+  PetscCall(Borne(m, p->round_off, &borne, &much));
+  if (much && m->unheld.turning) PetscCall(LetTurn(m, p, linear, report, &borne, &much));
+  if (!much || report->newton.interrupted) PetscFunctionReturn(0);
+  let_turn(m, PETSC_FALSE);
   snprintf(report->leap, sizeof report->leap,
-           "%.3g N are out of balance along motions that nothing holds (analysis.unheld)", (double)sums[0]);
+           "%.3g N are out of balance along motions that nothing holds (analysis.unheld)", (double)borne);
   report->newton.converged = PETSC_FALSE;
   report->newton.reason = report->leap;
   PetscFunctionReturn(0);
