@@ -27,7 +27,7 @@ static void write_analysis(const KratosProject *p, FILE *out)
       fputs(", beta: ", out);
       schema_write_real(out, p->beta);
     }
-    if (!p->consistent) fputs(", mass: lumped", out); /* Kratos's default, and until 2020 all that it had */
+    if (!p->consistent) fputs(", mass: lumped", out); /* Kratos's default, in 2019 all that it had */
   } else fprintf(out, ", steps: %" PetscInt_FMT, p->n_steps);
   if (p->dynamic || kratos_is_held(p)) {
     fputs("}\n", out);
