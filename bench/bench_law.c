@@ -45,6 +45,8 @@ static const BenchCase cases[] = {
   {"mohr-coulomb-softening", "softening, 3d", SOFTENING(1e-3, 5e-4), 1e-3, &kinematics_3d, 5},
   {"drucker-prager", "elastic, 3d", {0.54, 0.02, 1, 1e300, 2}, 1e-3, &kinematics_3d, 0},
   {"drucker-prager", "plastic, 3d", {0.54, 0.02, 1e-3, 1e300, 2}, 1e-3, &kinematics_3d, 5},
+  {"mu-i", "at rest, 3d", {5, 6, 0.279, 1e-3, 2500}, 1e-4, &kinematics_3d, 0},
+  {"mu-i", "flowing, 3d", {0.38, 0.64, 0.279, 1e-3, 2500}, 1e-3, &kinematics_3d, 5},
   {"modified-cam-clay", "elastic, 3d", {1, 0.1, 0.02, 1, 4e6, NAN, 8, 1e5}, 1e-4, &kinematics_3d, 0},
   {"modified-cam-clay", "plastic, 3d", {1, 0.1, 0.02, 1, 4e6, NAN, 1, 1e5}, 1e-3, &kinematics_3d, 5},
 };
@@ -79,6 +81,7 @@ static double speed(const BenchCase *b, int n, int tangent)
   double best = 0.0;
   const LawUpdate update = law_update_in(law, b->kinematics);
   law->prepare(&elastic, b->given, packed);
+  if (law->rate && law->step) law->step(0, 1, packed);
   set_up(b, n, dF);
   for (int p = 0; p < n; ++p) {
     law_initial_state(law, old + p * law->n_state);

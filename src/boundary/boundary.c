@@ -187,7 +187,7 @@ PetscErrorCode BoundaryToCloud(const Boundary *of_mesh, const Grid *mesh, const 
       if (node < mesh->n_owned && local[node] >= 0) b->member[local[node] * n_entries + k] = 1;
     }
   PetscCall(PetscFree(local));
-  PetscCall(GridCloudFollow(cloud, &b->member, n_entries, "member", NULL));
+  PetscCall(GridCloudFollow(cloud, (CloudField){&b->member, n_entries, "member", NULL, PETSC_FALSE}));
   PetscCall(BoundaryFollow(b, cloud));
   *boundary = b;
   PetscFunctionReturn(0);

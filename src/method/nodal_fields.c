@@ -97,7 +97,8 @@ PetscErrorCode NodalFieldsCreate(Grid *grid, PetscBool pressure, NodalFields **n
     /* of a rank without nodes, too: NULL is what is no unknown, and no rank may take it for that */
     PetscCall(PetscCalloc1(PetscMax(1, grid->n_nodes * components), values));
     if (!grid->cloud) continue;
-    PetscCall(GridCloudFollow(grid, values, components, follows(k->kept) ? k->name : NULL, k->unit));
+    const char *name = follows(k->kept) ? k->name : NULL;
+    PetscCall(GridCloudFollow(grid, (CloudField){values, components, name, k->unit, PETSC_FALSE}));
   }
   PetscFunctionReturn(0);
 }

@@ -138,9 +138,6 @@ static void check_supported(const Model *m, Diag *diag)
   explicit_check(m, diag);
   if (m->method) check_transfer(c, m->method, diag);
   if (m->method) room_check(m, diag);
-  if (m->method && m->method->clouds && case_goes_on(c))
-    diag_error(diag, "method", "method %s cannot go on from another state%s: mpm and fem can", m->method->name,
-               c->stage ? ", as a stage does" : "");
   if (!m->method || m->method->restores_grid) return;
   check_slip(c, m->method, diag);
   if (c->analysis.keep_velocity)

@@ -191,12 +191,14 @@ static PetscErrorCode SendHome(Points *points, const Grid *grid, const char *nam
   PetscFunctionReturn(0);
 }
 
+/* Points of a cloud know the cells that it left, and which rank they are on is told by its parts. */
+static PetscInt cells_of(const Grid *grid) { return grid->cloud ? grid->cloud->n_cells_left : grid->n_cells_global; }
+
 PetscErrorCode PointsFromTable(Points *points, const Grid *grid, const Table *table, PetscInt n_bodies,
                                PetscInt n_materials, char reason[256])
 {
   PetscFunctionBeginUser;
-  const PetscInt n_cells = grid->cloud ? grid->cloud->n_cells_left : grid->n_cells_global;
-  PetscCall(TakeRows(points, table, n_cells, n_bodies, n_materials, reason));
+  PetscCall(TakeRows(points, table, cells_of(grid), n_bodies, n_materials, reason));
   PetscCall(ReasonShare(grid->comm, reason));
   if (!reason[0] && !grid->cloud) PetscCall(SendHome(points, grid, table->name, reason));
   PetscFunctionReturn(0);
@@ -206,9 +208,9 @@ PetscErrorCode PointsTake(Points *points, const Grid *grid, const Table *table, 
                           char reason[256])
 {
   PetscFunctionBeginUser;
-  PetscCall(TakeChanged(points, table, grid->n_cells_global, change, reason));
+  PetscCall(TakeChanged(points, table, cells_of(grid), change, reason));
   PetscCall(ReasonShare(grid->comm, reason));
-  if (!reason[0]) PetscCall(SendHome(points, grid, table->name, reason));
+  if (!reason[0] && !grid->cloud) PetscCall(SendHome(points, grid, table->name, reason));
   PetscFunctionReturn(0);
 }
 

@@ -97,6 +97,59 @@ for method in mpm fem; do
   awk -v s="$(last 2 5 ${method}1)" 'BEGIN { exit !(s > 0) }' || fail "$name: $(last 2 5 ${method}1)"
 done
 
+# Clouds keep their nodes and take other materials, loads, motions and analyses
+cat >cloud.yaml <<'END'
+kinematics: plane-strain
+method: gmm
+analysis: {type: static, steps: 2, end: 2}
+grid: {box: {min: [0, 0], max: [2, 3]}, size: 0.25}
+bodies:
+  - {name: column, shape: {box: {min: [0, 0], max: [1, 2]}}, material: soil}
+  - {name: top, shape: {box: {min: [0, 2], max: [1, 2.5]}}, material: soil}
+materials:
+  soil: {law: neo-hookean, density: 2000, young: 5e6, poisson: 0.3}
+boundary:
+  - {name: floor, on: {y: 0}, fix: [x, y]}
+  - {name: left, on: {x: 0}, fix: [x]}
+loads: {gravity: [0, -9.81]}
+measures:
+  settle: {displacement: y, of: {tracer: [0.6, 1.9]}}
+  balance: {energy: balance}
+  weight: {reaction: y, of: {boundary: floor}}
+output: {fields: [displacement, stress], history: {steps: 1}}
+checkpoint: {steps: 1, keep: 99}
+stages:
+  - name: weight
+  - name: same
+  - {name: stiffer, materials: {soil: {young: 1e7}}}
+  - {name: heavier, loads: {gravity: [0, -12]}, reset: [displacement]}
+  - {name: sheared, boundary: [{name: floor, on: {y: 0}, displacement: {x: 0.01, y: 0}}, {name: left, on: {x: 0}, displacement: {x: 0.01}}]}
+  - {name: shaken, analysis: {type: dynamic, end: 0.1, step: 0.01}, loads: {gravity: [1, -12]}}
+END
+for basis in lme mls; do
+  for ranks in 1 2 3; do
+    [ $basis$ranks != lme2 ] && [ $basis$ranks != mls3 ] || continue
+    expect "$basis on $ranks" 0 on_ranks $ranks "$talus" run cloud.yaml --out $basis$ranks --set "basis={$basis: {}}"
+    says $basis$ranks/log.txt "stage = 6 of 6 (shaken)" "out of balance = " "released over = 2 s"
+    same_answer "$name" ${basis}1 $basis$ranks
+  done
+  rm -rf cut && cp -r ${basis}1 cut && forget cut 7
+  expect "$basis resumed" 0 "$talus" run --resume cut --quiet
+  same_bits "$name" ${basis}1 cut
+  name="$basis, the floor bears what is there, and energies close"
+  awk -F, 'function off(x, y) { return x > y * (1 + 1e-6) || x < y * (1 - 1e-6) }
+    NR > 1 { w[$3] = $6; b[$3] = $5 } $3 == 4 && $4 * $4 > 4e-6 { exit 1 }
+    END { if (off(w[1], 49050) || off(w[2], 49050) || off(w[3], 49050) || off(w[4], 60000) || off(w[5], 60000)) exit 1
+      for (s in b) if (b[s] * b[s] > 1e-16) exit 1 }' ${basis}1/history.csv || fail "$name"
+done
+rm -rf cut && cp -r lme3 cut && forget cut 7
+expect "clouds from three ranks to two" 0 on_ranks 2 "$talus" run --resume cut --quiet
+same_answer "$name" lme1 cut
+sed '/^stages:/,$d; /^  settle:/d' cloud.yaml >clouds-later.yaml
+expect "clouds from another run" 0 on_ranks 2 "$talus" run clouds-later.yaml --out later-cloud --set initial.run=lme3 --set initial.stage=same
+says later-cloud/log.txt "initial = " "/lme3"
+awk '/out of balance/ { if ($5 > 0.02 * 49050) exit 1 }' later-cloud/log.txt || fail "$name: $(grep balance later-cloud/log.txt)"
+
 # From a stage of another run: with fem, whose nodes keep their places, nothing is out of balance where nothing has changed
 sed '/^stages:/,$d' column.yaml | sed 's/name: top/name: top, absent: true/; s/name: prop/name: prop, absent: true/; /^  F:/d; s/^method: mpm/&\nformulation: mixed/' >later.yaml
 for ranks in 1 3; do
@@ -348,6 +401,9 @@ refused "another method" "the state is one of method mpm, and cannot go on with 
 refused "no such stage" "has no stage 'did'" later.yaml --set initial.run=mpm1 --set initial.stage=did
 says err.txt "did you mean 'dig'?"
 refused "no run" "there is no run in" later.yaml --set initial.run=nowhere
-refused "clouds" "method gmm cannot go on from another state, as a stage does" column.yaml --set method=gmm --set 'basis={mls: {}}' --set 'stages[4].analysis={type: static}' --set 'stages[5].strength={factor: 1.5}'
-says err.txt "method=gmm: error:"
+refused "bodies of clouds" "'top' is gone: bodies of method gmm neither come nor go" cloud.yaml --set 'stages[1].bodies=[{name: top, absent: true}]'
+refused "nodes of clouds" "nodes of method gmm are held or free for good" cloud.yaml --set 'stages[1].boundary=[{name: left, absent: true}]'
+refused "tracers of clouds" "tracers of method gmm begin where the body does" cloud.yaml --set 'stages[1].measures={later: {displacement: y, of: {tracer: [0.6, 1.9]}}}'
+expect "other nodes of clouds" 1 "$talus" run cloud.yaml --out bad --quiet --set 'stages[1].boundary=[{name: left, on: {x: 0, y: [0, 1]}, fix: [x]}]'
+says err.txt "nodes of method gmm are held or free for good, and these are others than before"
 finish

@@ -2,13 +2,13 @@
 #include "base/exchange.h"
 #include "grid/grid_ops.h"
 
-PetscErrorCode GridCloudFollow(Grid *grid, PetscReal **data, PetscInt components, const char *name, const char *unit)
+PetscErrorCode GridCloudFollow(const Grid *grid, CloudField field)
 {
   GridCloud *c = grid->cloud;
 
   PetscFunctionBeginUser;
   PetscCheck(c->n_fields < CLOUD_MAX_FIELDS, PETSC_COMM_SELF, PETSC_ERR_PLIB, "too many arrays follow the nodes");
-  c->field[c->n_fields++] = (CloudField){.data = data, .components = components, .name = name, .unit = unit};
+  c->field[c->n_fields++] = field;
   PetscFunctionReturn(0);
 }
 
@@ -129,9 +129,9 @@ PetscErrorCode GridCreateCloud(const Grid *mesh, PetscReal spacing, const unsign
   PetscCall(Populate(mesh, marked, twin, g));
   PetscCall(CountOwned(g));
   PetscCall(Connect(g));
-  PetscCall(GridCloudFollow(g, &g->x, g->dim, "position", "m"));
-  PetscCall(GridCloudFollow(g, &g->cloud->x0, g->dim, "position_at_start", "m"));
-  PetscCall(GridCloudFollow(g, &g->cloud->obstacle, 1, "obstacle", NULL));
+  PetscCall(GridCloudFollow(g, (CloudField){&g->x, g->dim, "position", "m", PETSC_FALSE}));
+  PetscCall(GridCloudFollow(g, (CloudField){&g->cloud->x0, g->dim, "position_at_start", "m", PETSC_FALSE}));
+  PetscCall(GridCloudFollow(g, (CloudField){&g->cloud->obstacle, 1, "obstacle", NULL, PETSC_FALSE}));
   *cloud = g;
   PetscFunctionReturn(0);
 }

@@ -17,6 +17,7 @@ typedef struct {
   PetscReal **data;
   PetscInt components;
   const char *name, *unit; /* of what is kept: in checkpoints, too; NULL: only the size follows */
+  PetscBool new;           /* zero where the state of a stage before knows nothing of it */
 } CloudField;
 
 typedef struct GridCloud {
@@ -58,9 +59,9 @@ static inline PetscBool cloud_is_twin(const Grid *grid, PetscInt node)
   return grid->cloud->id[node] >= grid->cloud->first_twin;
 }
 
-/* Let *data (n_nodes x components, from PetscMalloc1) follow the nodes; without a name its contents
+/* Let *field.data (n_nodes x components, from PetscMalloc1) follow the nodes; without a name its contents
  * are lost when they change. */
-PetscErrorCode GridCloudFollow(Grid *grid, PetscReal **data, PetscInt components, const char *name, const char *unit);
+PetscErrorCode GridCloudFollow(const Grid *grid, CloudField field);
 
 /* Collective. Nodes of others between box[0..2] and box[3..5]; twins left out. */
 PetscErrorCode GridCloudRemote(const Grid *grid, const PetscReal box[6], RemoteNodes *remote);

@@ -193,6 +193,8 @@ static void check_events(const Case *c, const Case *from, Diag *diag)
 
 void rename_check(const Case *c, const Case *from, PetscBool next, Diag *diag)
 {
+  const Method *method = method_find(c->method);
+  if (method && method->clouds) clouds_check(c, from, diag);
   if (next) check_walls(c, from, diag);
   if (next) check_interfaces(c, from, diag);
   if (next) check_events(c, from, diag);

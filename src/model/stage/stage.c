@@ -1,6 +1,7 @@
 #include "model/stage/stage_private.h"
 #include "grid/search/directory.h"
 #include "model/state/state.h"
+#include "model/state/state_private.h"
 
 /* What no state can be made of, by its name. */
 static void check_cases(const Model *m, const Case *from, PetscBool next, Diag *diag)
@@ -46,10 +47,12 @@ static PetscErrorCode TakeCarriers(Model *m, const Tables *tables, const Case *f
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode TakeNodes(Model *m, const Tables *tables, PetscBool next, char reason[256])
+/* Nodes of a cloud came with its parts; home: to the ranks that had them. */
+static PetscErrorCode TakeNodes(Model *m, const Tables *tables, PetscBool next, PetscBool home, char reason[256])
 {
   PetscFunctionBeginUser;
-  if (!m->method->restores_grid || next)
+  if (m->method->clouds) PetscCall(StateCloudSettle(m, tables, home, reason));
+  else if (!m->method->restores_grid || next)
     PetscCall(NodalFieldsFromTables(m->nodes, !m->method->restores_grid, tables, reason));
   m->guess = (Guess){0};
   if (next && !reason[0]) PetscCall(ForcesFromTables(m, tables, reason));
@@ -97,20 +100,22 @@ static PetscErrorCode KeepAccount(Model *m, PetscReal before, PetscBool next)
 }
 
 /* All that the tables give; reason where they make no sense. */
-static PetscErrorCode Take(Model *m, const Tables *tables, const Case *from, PetscBool next, PetscBool onto, Diag *diag,
+static PetscErrorCode Take(Model *m, Tables *tables, const Case *from, PetscBool next, PetscBool onto, Diag *diag,
                            char reason[256])
 {
   const PetscReal before = stored_before(tables, m->dim, reason);
   const PetscInt errors = diag_errors(diag);
+  PetscBool home = PETSC_TRUE; /* a cloud on other ranks is cut anew */
 
   PetscFunctionBeginUser;
   PetscCall(ReasonShare(m->comm, reason));
+  if (!reason[0] && m->method->clouds) PetscCall(StateCloudNodes(m, tables, &home, reason));
   if (!reason[0] && next) PetscCall(RenameTables(m, from, tables));
   if (!reason[0] && next) PetscCall(StateGoOn(m, tables, reason));
   if (!reason[0]) PetscCall(TakePoints(m, tables, from, onto, diag, reason));
   if (!reason[0] && next) PetscCall(TakeTracers(m, tables, from, reason));
   if (!reason[0]) PetscCall(TakeCarriers(m, tables, from, next, diag, reason));
-  if (!reason[0]) PetscCall(TakeNodes(m, tables, next, reason));
+  if (!reason[0]) PetscCall(TakeNodes(m, tables, next, home, reason));
   PetscCall(ReasonShare(m->comm, reason));
   if (reason[0] || diag_errors(diag) > errors) PetscFunctionReturn(0);
   PetscCall(ResetMotion(m, from, next));
@@ -157,13 +162,14 @@ PetscErrorCode ModelTake(Model *m, Tables *tables, const Case *from, PetscBool n
   PetscFunctionBeginUser;
   const PetscInt before = diag_errors(diag);
   check_cases(m, from, next, diag);
+  if (m->method->clouds && diag_errors(diag) == before) PetscCall(CheckCloud(m, tables, diag, reason));
   state_check_grid(m, tables, other);
   const PetscBool onto = other[0] && diag_errors(diag) == before && takes_another_grid(m, next, diag);
   if (diag_errors(diag) == before) PetscCall(Take(m, tables, from, next, onto, diag, reason));
   if (reason[0]) diag_error(diag, next ? NULL : "initial.run", "the state cannot be taken over: %s", reason);
   PetscCall(DiagReduce(m->comm, diag, &errors));
   if (errors) PetscFunctionReturn(0);
-  m->space->present = PETSC_FALSE;
+  if (!m->method->clouds) m->space->present = PETSC_FALSE;
   PetscCall(ModelInitialise(m));
   settle_stress(m);
   if (next) PetscCall(WallsCome(m, from, diag));

@@ -7,6 +7,11 @@
  * changed. onto: they come from another grid. */
 PetscErrorCode TakePoints(Model *model, const Tables *tables, const Case *from, PetscBool onto, Diag *diag,
                           char reason[256]);
+/* clouds.c. Bodies, tracers and prescribed nodes that a cloud would have to take in or let go: as far as cases
+ * tell. */
+void clouds_check(const Case *c, const Case *from, Diag *diag);
+/* Collective. Are the prescribed nodes those of the tables? */
+PetscErrorCode CheckCloud(const Model *model, const Tables *tables, Diag *diag, char reason[256]);
 /* rename.c. Which measure of the case before measure k of c goes on as; -1: none, it begins anew. */
 PetscInt measure_before(const Case *c, PetscInt k, const Case *from);
 /* Tables of a state of `from` under the names of the model's case. */

@@ -160,7 +160,7 @@ PetscErrorCode TakePoints(Model *m, const Tables *tables, const Case *from, Pets
   PetscCall(PointsSetState(m->points, m->n_state));
   if (!reason[0]) find_pressures(m, table);
   if (!reason[0]) PetscCall(Place(m, placed));
-  PetscCall(PointsSort(m->points));
+  if (!m->method->clouds) PetscCall(PointsSort(m->points));
   PetscCall(PointsDestroy(&placed));
   PetscCall(PetscFree(body));
   PetscFunctionReturn(0);

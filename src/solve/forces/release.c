@@ -1,4 +1,5 @@
 #include "solve/forces/release.h"
+#include "grid/cloud/cloud.h"
 #include "grid/search/directory.h"
 
 typedef struct {
@@ -16,9 +17,12 @@ static PetscErrorCode Create(const NodalScene *scene, Diag *diag, void **data)
 
   (void)diag;
   PetscFunctionBeginUser;
-  if (!case_goes_on(scene->c) || scene->c->release <= 0 || scene->grid->cloud) PetscFunctionReturn(0);
+  if (!case_goes_on(scene->c) || scene->c->release <= 0) PetscFunctionReturn(0);
+  const PetscInt dim = scene->grid->dim;
   PetscCall(PetscNew(&r));
-  PetscCall(PetscCalloc1(scene->grid->n_nodes * scene->grid->dim, &r->force));
+  PetscCall(PetscCalloc1(scene->grid->n_nodes * dim, &r->force));
+  if (scene->grid->cloud)
+    PetscCall(GridCloudFollow(scene->grid, (CloudField){&r->force, dim, "release", "N", PETSC_TRUE}));
   *data = r;
   PetscFunctionReturn(0);
 }
@@ -54,6 +58,7 @@ static PetscErrorCode ToTables(const void *data, const NodalScene *scene, Tables
   unsigned char *take;
 
   PetscFunctionBeginUser;
+  if (scene->grid->cloud) PetscFunctionReturn(0); /* they follow its nodes */
   PetscCall(PetscCalloc1(scene->grid->n_nodes, &take));
   for (PetscInt i = 0; i < scene->grid->n_nodes * dim; ++i) take[i / dim] |= r->force[i] != 0;
   PetscCall(NodesToTable(scene->grid, take, 1, &field, "release", tables));
@@ -68,7 +73,7 @@ static PetscErrorCode FromTables(void *data, const NodalScene *scene, const Tabl
   const Table *table = tables_find(tables, "release");
 
   PetscFunctionBeginUser;
-  if (table) PetscCall(NodesFromTable(scene->grid, PETSC_FALSE, 1, &field, table, reason));
+  if (table && !scene->grid->cloud) PetscCall(NodesFromTable(scene->grid, PETSC_FALSE, 1, &field, table, reason));
   PetscFunctionReturn(0);
 }
 
