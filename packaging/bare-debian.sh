@@ -4,7 +4,7 @@
 [ "$(id -u)" -eq 0 ] || { echo "$0: needs root, for debootstrap and chroot" >&2; exit 2; }
 
 leave_chroot() {
-  umount "$chroot/proc" "$chroot/sys" "$chroot/dev/shm" 2>/dev/null || :
+  umount "$chroot/proc" "$chroot/sys" "$chroot/dev/shm" "$chroot/dev/pts" 2>/dev/null || :
   [ -n "${KEEP:-}" ] || rm -rf --one-file-system "$chroot"
 }
 trap leave_chroot EXIT
@@ -15,10 +15,13 @@ else
   echo "a bare Debian in $chroot"
   debootstrap --variant=minbase bookworm "$chroot" ${MIRROR:-} >"$logs/debootstrap.log" || { tail "$logs/debootstrap.log"; exit 1; }
 fi
-mkdir -p "$chroot/dev/shm"
+mkdir -p "$chroot/dev/shm" "$chroot/dev/pts"
 mount -t proc proc "$chroot/proc"
 mount -t sysfs -o ro sysfs "$chroot/sys" # MPI asks it for cores
 mount -t tmpfs tmpfs "$chroot/dev/shm"
+mount -t devpts -o ptmxmode=0666 devpts "$chroot/dev/pts"
+# every machine has it, a minimal debootstrap has not: MPI would ask the network who localhost is, 5 s at each start
+[ -e "$chroot/etc/hosts" ] || echo "127.0.0.1 localhost" >"$chroot/etc/hosts"
 cp /etc/resolv.conf "$chroot/etc/" 2>/dev/null || :
 
 inside() {

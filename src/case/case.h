@@ -11,6 +11,7 @@ typedef enum { ANALYSIS_STATIC, ANALYSIS_DYNAMIC, ANALYSIS_FACTOR, ANALYSIS_LIMI
  * at the end of a step, or that of the balance of momentum. */
 typedef enum { EXPLICIT_MUSL, EXPLICIT_USL } ExplicitUpdate;
 typedef enum { MASS_CONSISTENT, MASS_LUMPED } MassMatrix;
+typedef enum { UNHELD_REFUSE, UNHELD_HOLD } UnheldKind;
 typedef enum { CELL_TRIANGLE, CELL_QUADRILATERAL, CELL_TETRAHEDRON, CELL_HEXAHEDRON } CellType;
 typedef enum { DIAGONAL_RIGHT, DIAGONAL_LEFT, DIAGONAL_ALTERNATING, DIAGONAL_CROSSED } Diagonal;
 typedef enum { OUTSIDE_STOP, OUTSIDE_REMOVE, OUTSIDE_KEEP } OutsidePolicy;
@@ -362,6 +363,7 @@ typedef struct {
   char *transfer; /* mpm: between points and nodes, by its name; NULL: the thesis's */
   /* mpm: prescribed nodes do not take from points what velocity they bring */
   PetscBool keep_velocity;
+  UnheldKind unheld; /* static: rigid motions of bodies that nothing holds */
   PetscInt n_until;
   UntilSpec *until; /* any of them ends the run; `end` is the latest time */
 } AnalysisSpec;

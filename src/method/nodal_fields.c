@@ -94,7 +94,8 @@ PetscErrorCode NodalFieldsCreate(Grid *grid, PetscBool pressure, NodalFields **n
     PetscReal **values = values_of(*nodes, k);
     const PetscInt components = components_of(*nodes, k);
     if (k->mixed && !pressure) continue;
-    PetscCall(PetscCalloc1(grid->n_nodes * components, values));
+    /* of a rank without nodes, too: NULL is what is no unknown, and no rank may take it for that */
+    PetscCall(PetscCalloc1(PetscMax(1, grid->n_nodes * components), values));
     if (!grid->cloud) continue;
     const char *name = follows(k->kept) ? k->name : NULL;
     PetscCall(GridCloudFollow(grid, (CloudField){values, components, name, k->unit, PETSC_FALSE}));

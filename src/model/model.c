@@ -413,6 +413,7 @@ PetscErrorCode ModelDestroy(Model **model)
   if (m->points) PetscCall(PointsDestroy(&m->points));
   if (m->grid) PetscCall(GridDestroy(&m->grid));
   PetscCall(PetscFree(m->raised.nodal));
+  PetscCall(PetscFree2(m->unheld.dof, m->unheld.turns));
   PetscCall(PetscFree(m->materials));
   PetscCall(MeasuresEnd(m));
   PetscCall(PetscFree(m->load_memory));

@@ -175,6 +175,12 @@ typedef struct Model {
   Softening limit;
   Strength strength;
   InitialState initial;
+  struct {
+    PetscInt n, *dof; /* of local nodes, ghosts too */
+    PetscBool *turns; /* does it hold the body from turning? else where it is */
+    PetscInt turning; /* how many do, over all ranks */
+    PetscReal size;   /* of the largest body that is held so, m */
+  } unheld;           /* directions of nodes that hold what nothing else does, in the step */
   Raised raised;
   PetscReal seconds[PHASE_N]; /* see model_times */
 } Model;

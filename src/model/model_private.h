@@ -218,7 +218,18 @@ PetscErrorCode ModelToCloud(Model *model);
 PetscErrorCode JudgeStep(const Model *model, StepReport *report);
 /* Collective. In statics each body must be held in all directions, by itself or by others that it
  * touches. */
-PetscErrorCode CheckHeld(const Model *model, Diag *diag);
+PetscErrorCode CheckHeld(Model *model, Diag *diag);
+/* Collective. of (n_nodes, 0 on entry): of the bodies that share nodes, directly or through others, the first one's
+ * number from 1 on, where they touch the node. */
+PetscErrorCode JoinedBodies(const Model *model, PetscReal *of);
+/* start/unheld.c. Collective. analysis.unheld: hold: what nothing holds is told, and a mistake where the loads of the
+ * first step push it. */
+PetscErrorCode UnheldCheck(Model *model, Diag *diag);
+/* Collective. After mark_fixed, in each step: as few directions of nodes as hold it. */
+PetscErrorCode UnheldHold(Model *model);
+/* Collective. Newton converged: goes on without those that keep the body from turning if they bear anything, and has
+ * not converged if the others do. */
+PetscErrorCode UnheldJudge(Model *model, StepProblem *problem, const LinearProblem *linear, StepReport *report);
 /* Collective. After the first step's clouds are known: tell which bodies hang on an obstacle from
  * the start. */
 PetscErrorCode ModelWarnOfObstacles(const Model *model, Diag *diag);

@@ -104,6 +104,7 @@ static PetscErrorCode SolveFromGuesses(Model *m, PetscReal dt, const LinearProbl
     materials_step(m->c->n_materials, m->materials, m->time, dt * time_solved(m->scheme), m->scheme->inertia);
     PetscCall(NewtonSolve(m->newton, &problem, linear, &report->newton));
     if (report->newton.converged) PetscCall(GoOn(m, dt, report));
+    if (report->newton.converged) PetscCall(UnheldJudge(m, &problem, linear, report));
     if (report->newton.converged) PetscCall(JudgeStep(m, report));
     if (report->newton.converged) PetscCall(StrengthJudge(m, report));
     PetscCall(PetscTime(&clock));

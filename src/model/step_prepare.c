@@ -61,6 +61,7 @@ PetscErrorCode PrepareUnknowns(Model *m, StepStart *start, StepReport *report)
   if (m->method->restores_grid) PetscCall(BoundaryMove(m->boundary, m->grid, m->time));
   m->system->frames = &m->boundary->frames;
   mark_fixed(m);
+  PetscCall(UnheldHold(m));
   PetscCall(StepStartKeep(m, start));
   if (m->method->begin && m->scheme->inertia) PetscCall(m->method->begin(m->space));
   PetscCall(PhaseEnd(m->seconds, PHASE_PATTERN, &clock));

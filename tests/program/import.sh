@@ -142,6 +142,32 @@ says varying/case.yaml 'value: [1, 0], amplitude: [[0, 1], [3, 1]], factor: "x^2
 expect "it pulls as much" 0 "$talus" run varying/case.yaml
 says out.txt "4 of 4 within what is allowed"
 
+# Pushed by 2 mm over 2 m along x, and nothing holds it along y: E times the strain; and gravity would take it away.
+cp -r pulled pushed
+along() { # PART VALUE
+  echo "$held" | sed "s/Wall/$1/; s/\[true, true, true\]/[true, false, false]/; s/\[0.0, 0.0, 0.0\]/[$2, 0.0, 0.0]/"
+}
+checked=$(checks particle_from_json_check_result_process '"MP_CAUCHY_STRESS_VECTOR"')
+both="$(along Wall 0.0), $(along Right-hand.End -0.001)"
+{ settings Static 1.5 2.0 && echo "\"processes\": {\"a\": [$both], \"b\": [$checked]}}"; } >pushed/ProjectParameters.json
+echo '{"TIME": [1.5, 3.0], "PARTICLE_14": {"MP_CAUCHY_STRESS_VECTOR": [[-500, 0, 0], [-1000, 0, 0]]}}' >pushed/results.json
+expect "a bar that nothing holds along y" 0 "$talus" import kratos pushed --out push
+says err.txt "no part of the grid holds the material in all directions and from turning"
+says push/case.yaml "steps: 2, unheld: hold}" "single nodes are held, which bear nothing"
+for n in 1 2 3; do
+  expect "it has its stress on $n ranks" 0 on_ranks $n "$talus" run push/case.yaml --force
+  says out.txt "2 of 2 within what is allowed"
+  says err.txt "nothing holds 'Bar' in y: held in 1 direction(s) of nodes, which bear nothing"
+done
+none=$(echo $gravity | sed 's/"modulus": 10, "direction": .*\]/"modulus": 0.0, "direction": [0.0, 0.0, 0.0]/; s/[\/&]/\\&/g')
+sed "s/\"a\": \[/&$none, /" pushed/ProjectParameters.json >pushed/floats.json
+expect "gravity of 0, without a direction" 0 "$talus" import kratos pushed/floats.json --out floats
+says floats/case.yaml "gravity: [0, 0]"
+sed -i "s/\"a\": \[/&$(echo $gravity | sed 's/[\/&]/\\&/g'), /" pushed/ProjectParameters.json
+expect "and has weight" 0 "$talus" import kratos pushed --out weight
+expect "which nothing bears" 2 "$talus" check weight/case.yaml
+says err.txt "nothing holds 'Bar' in y, and loads push it that way: 2e+04 of 2e+04 N are out of balance"
+
 # A file by another name; what falls freely: g t^2 / 2 and g t, exact for steps of Newmark's; angles in radians.
 cp -r pulled falling
 { settings Dynamic 0.01 0.05
@@ -156,14 +182,17 @@ expect "the name of the problem is there" 2 "$talus" import kratos falling/fall.
 says err.txt "the folder 'bar' cannot be made" "MP_SPIN is not compared: talus has no measure for it"
 says bar/case.yaml "neo-hookean"
 expect "a bar that falls" 0 "$talus" import kratos falling/fall.json --out fall
-says fall/case.yaml "type: dynamic, end: 0.05, step: 0.01" "law: mohr-coulomb" "friction_angle: 30" "gravity: [0, -10]"
+says fall/case.yaml "type: dynamic, end: 0.05, step: 0.01, mass: lumped}" "law: mohr-coulomb" "friction_angle: 30" "gravity: [0, -10]"
 expect "it falls" 0 "$talus" run fall/case.yaml
 says out.txt "4 of 4 within what is allowed"
 
 # Kratos's default in dynamics is Bossak's scheme.
 sed 's/"scheme_type": "newmark"/"echo_level": 0/' falling/fall.json >falling/bossak.json
 expect "Bossak" 0 "$talus" import kratos falling/bossak.json --out bossak
-says bossak/case.yaml "bossak: -0.3"
+says bossak/case.yaml "bossak: -0.3, mass: lumped}"
+sed -i 's/"echo_level": 0,$/"echo_level": 0, "consistent_mass_matrix": true,/' falling/bossak.json
+expect "consistent mass" 0 "$talus" import kratos falling/bossak.json --out mass
+lacks mass/case.yaml "mass: lumped"
 
 # Plane stress has plane strain's constants; ten steps of 0.1 s, added up, are less than 1 s, and Kratos takes an eleventh.
 materials LinearElasticIsotropicPlaneStress2DLaw | sed 's/"POISSON_RATIO": 0/"POISSON_RATIO": 0.25/' >falling/ParticleMaterials.json

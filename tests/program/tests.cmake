@@ -39,6 +39,7 @@ if(TARGET talus)
   talus_program_test(no_terminal)
   talus_program_test(damage)
   talus_program_test(film)
+  talus_program_test(paraview)
   if(NOT TALUS_SANITIZE) # which wants to be loaded first itself
     add_library(crash_at_end MODULE program/crash_at_end.c)
     target_link_libraries(crash_at_end PRIVATE pthread)

@@ -92,7 +92,8 @@ static void read_directed(KratosProject *p, const YamlNode *parameters, const ch
   const PetscReal modulus = factor[0] ? 1 : kratos_number(&p->parameters, parameters, "modulus", 0);
   (void)kratos_vector(&p->parameters, parameters, "direction", value);
   const PetscReal length = sqrt(value[0] * value[0] + value[1] * value[1] + value[2] * value[2]);
-  if (!(length > 0)) kratos_refuse(&p->parameters, parameters, "a direction of three numbers, not all 0, is expected");
+  if (!(length > 0) && modulus != 0)
+    kratos_refuse(&p->parameters, parameters, "a direction of three numbers, not all 0, is expected");
   for (int d = 0; d < 3 && length > 0; ++d) value[d] *= modulus / length;
 }
 

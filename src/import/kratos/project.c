@@ -35,6 +35,7 @@ static const char *const settings_known[] = {
   "line_search",
   "move_mesh_flag",
   "newmark_beta",
+  "consistent_mass_matrix",
   "damp_factor_m",
   NULL,
 };
@@ -128,6 +129,7 @@ static PetscErrorCode ReadSettings(KratosProject *p, const YamlNode *settings)
     kratos_refuse(&p->parameters, yaml_find(settings, "domain_size"), "domain_size is 2 or 3");
   p->axisymmetric = kratos_flag(settings, "axis_symmetric_flag");
   p->mixed = kratos_flag(settings, "pressure_dofs");
+  p->consistent = kratos_flag(settings, "consistent_mass_matrix");
   read_scheme(p, settings);
   PetscCall(ReadMesh(p, settings, "grid_model_import_settings", &p->grid));
   PetscCall(ReadMesh(p, settings, "model_import_settings", &p->body));

@@ -48,6 +48,7 @@ typedef struct {
   PetscInt dim, n_steps;
   PetscReal step, end;
   PetscBool dynamic, axisymmetric, mixed;
+  PetscBool consistent; /* mass; else all of it at the nodes */
   PetscReal beta, gamma, bossak;
   PetscReal gravity[3];
   PetscInt n_bodies;
@@ -79,6 +80,9 @@ PetscErrorCode KratosRead(const char *path, Diag *diag, KratosProject *project);
 PetscErrorCode KratosClear(KratosProject *project);
 PetscErrorCode KratosReadProcesses(KratosProject *project);
 PetscErrorCode KratosReadMaterials(KratosProject *project);
+
+/* Does one part of the grid hold the material by itself, from turning, too? If not, several may do so together. */
+PetscBool kratos_is_held(const KratosProject *project);
 
 /* Writers. */
 PetscErrorCode KratosWriteGrid(const KratosProject *project, const char *file);

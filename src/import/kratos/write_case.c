@@ -27,8 +27,20 @@ static void write_analysis(const KratosProject *p, FILE *out)
       fputs(", beta: ", out);
       schema_write_real(out, p->beta);
     }
+    if (!p->consistent) fputs(", mass: lumped", out); /* Kratos's default, in 2019 all that it had */
   } else fprintf(out, ", steps: %" PetscInt_FMT, p->n_steps);
-  fputs("}\n", out);
+  if (p->dynamic || kratos_is_held(p)) {
+    fputs("}\n", out);
+    return;
+  }
+  fputs(
+    ", unheld: hold}\n"
+    "# No part holds everything. Kratos solves such systems as they are; what rigid motion it finds along what\n"
+    "# nothing holds depends on its solver, stresses do not. Here single nodes are held, which bear nothing.\n",
+    out);
+  diag_warning(p->diag, NULL,
+               "no part of the grid holds the material in all directions and from turning: what is left free is held "
+               "by single nodes that bear nothing (analysis: {unheld: hold})");
 }
 
 static void write_bodies(const KratosProject *p, FILE *out)

@@ -20,6 +20,12 @@ static const SchemaWord mass_words[] = {
   {"lumped", MASS_LUMPED, "all of it at the nodes: more Newton steps converge where grains flow, rotations lose more"},
   {NULL, 0, NULL},
 };
+static const SchemaWord unheld_words[] = {
+  {"refuse", UNHELD_REFUSE, "a mistake: the body could be anywhere"},
+  {"hold", UNHELD_HOLD,
+   "held in as few directions of nodes as make the answer the only one, which bear nothing: loads must be in balance"},
+  {NULL, 0, NULL},
+};
 static const SchemaWord update_words[] = {
   {"musl", EXPLICIT_MUSL,
    "by the velocities that the points give the nodes after the step: quiet where points leave cells"},
@@ -139,12 +145,15 @@ static const SchemaEntry analysis_entries[] = {
     "mpm: points beside prescribed nodes keep the velocity that they bring, as thesis (2.16) is printed, so that what "
     "slides over a floor slides on; otherwise they take over the motion of these nodes",
     .fallback = "false", AT(AnalysisSpec, keep_velocity)),
+  KEY("unheld", WORD, NULL, "static: bodies that nothing holds in some direction, or from turning",
+      .words = unheld_words, .fallback = "refuse", AT(AnalysisSpec, unheld)),
   {.key = NULL},
 };
 static const SchemaGroup analysis_groups[] = {{GROUP_AT_MOST_ONE, {"steps", "step", NULL}}, {GROUP_NONE, {NULL}}};
 static PetscBool hide_in_analysis(const SchemaEntry *e, const void *source)
 {
   const AnalysisType type = ((const AnalysisSpec *)source)->type;
+  if (!strcmp(e->key, "unheld")) return type != ANALYSIS_STATIC;
   if (!strcmp(e->key, "limit")) return type != ANALYSIS_LIMIT;
   if (!strcmp(e->key, "courant") || !strcmp(e->key, "update")) return type != ANALYSIS_EXPLICIT;
   return !strcmp(e->key, "reduction") && type != ANALYSIS_FACTOR;

@@ -68,6 +68,28 @@ static void spread(PetscInt n, PetscInt dim, const PetscInt *joined, PetscInt *h
   }
 }
 
+PetscErrorCode JoinedBodies(const Model *m, PetscReal *of)
+{
+  const PetscInt n = m->c->n_bodies, nodes = m->grid->n_nodes;
+  PetscInt *joined, *held, *first;
+  PetscReal *touched;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc4(n * n, &joined, n * m->dim, &held, n, &first, nodes, &touched));
+  PetscCall(Touches(m, joined, held));
+  for (PetscInt b = 0; b < n; ++b) first[b] = b;
+  for (PetscInt pass = 0; pass < n; ++pass)
+    for (PetscInt k = 0; k < n * n; ++k)
+      if (joined[k]) first[k / n] = PetscMin(first[k / n], first[k % n]);
+  for (PetscInt b = 0; b < n; ++b) {
+    PetscCall(TouchedBy(m, b, touched));
+    for (PetscInt node = 0; node < nodes; ++node)
+      if (touched[node] != 0) of[node] = (PetscReal)(first[b] + 1);
+  }
+  PetscCall(PetscFree4(joined, held, first, touched));
+  PetscFunctionReturn(0);
+}
+
 static void name_directions(PetscInt dim, const PetscInt *held, char text[32])
 {
   PetscInt missing = 0;
@@ -79,13 +101,17 @@ static void name_directions(PetscInt dim, const PetscInt *held, char text[32])
   }
 }
 
-PetscErrorCode CheckHeld(const Model *m, Diag *diag)
+PetscErrorCode CheckHeld(Model *m, Diag *diag)
 {
   const PetscInt n = m->c->n_bodies, dim = m->dim;
   PetscInt *joined, *held, points;
   char path[64], directions[32];
 
   PetscFunctionBeginUser;
+  if (m->c->analysis.unheld == UNHELD_HOLD) {
+    PetscCall(UnheldCheck(m, diag));
+    PetscFunctionReturn(0);
+  }
   PetscCall(ModelCountPoints(m, &points));
   if ((m->scheme->inertia && m->c->initial.equilibrium <= EQUILIBRIUM_NONE) || !points) PetscFunctionReturn(0);
   PetscCall(PetscCalloc2(n * n, &joined, n * dim, &held));
@@ -98,7 +124,9 @@ PetscErrorCode CheckHeld(const Model *m, Diag *diag)
     snprintf(path, sizeof path, "bodies[%d]", (int)b);
     diag_error(diag, path, "nothing holds '%s' in %s: a static analysis has no answer", m->c->bodies[b].name,
                directions);
-    diag_hint(diag, "fix a boundary that the body touches in %s, or let it move: analysis: {type: dynamic}",
+    diag_hint(diag,
+              "fix a boundary that the body touches in %s, or let it move: analysis: {type: dynamic}; if its loads are "
+              "in balance: analysis: {unheld: hold}",
               directions);
   }
   PetscCall(PetscFree2(joined, held));

@@ -1,0 +1,406 @@
+/* analysis: {unheld: hold}. Statics of bodies that something pushes but nothing holds, in some direction or from
+ * turning: the answer is known but for a rigid motion, if loads are in balance along it. Nodes are held in as few
+ * directions as make it the only one, which bear nothing then (docs/theory.md, section K1). */
+#include "model/model_private.h"
+
+#define RIGID 6
+/* times the size of the body: the lever of a node that keeps it from turning, at least */
+#define LEVER 1e-6
+/* of the forces that there are: loads out of balance; more than Newton's method leaves */
+#define OUT_OF_BALANCE 1e-6
+/* rad: how far a step may turn a body that is let go; beyond, it may have fallen over to another balance */
+#define TURN 0.05
+/* of the largest mass of a node: what has less, than a corner in space, is a poor hold */
+#define ENOUGH_MASS 0.1
+
+/* Bodies that move as one, since they touch the same nodes, and the rigid motions that are left to them. */
+typedef struct {
+  PetscInt body;                   /* the first of them */
+  const PetscReal *of;             /* n_nodes: body + 1 where they touch the node */
+  PetscReal centre[3], size, mass; /* m; half of their diagonal; the largest of a node, kg */
+  PetscReal plane[3];              /* nodes held along axis d stand at x_d = plane, if they can, m */
+  PetscBool has_plane[3];
+  PetscInt n, n_free;           /* rigid motions of these kinematics, and how many are free: */
+  PetscReal free[RIGID][RIGID]; /* orthonormal, as many along the axes and about the centre times 1 / size */
+} Group;
+
+/* A direction of a node; strength 0: there is none. */
+typedef struct {
+  PetscInt axis;
+  PetscReal row[RIGID], at[3]; /* at: where the node stands, m */
+  PetscReal number, strength;
+} Hold;
+
+static PetscInt motions_of(const Model *m) { return m->c->kinematics->hoop ? 1 : m->dim == 3 ? 6 : 3; }
+
+static PetscBool is_of(const Group *g, PetscInt node) { return g->of[node] == (PetscReal)(g->body + 1); }
+
+/* What each rigid motion moves the node by along an axis: of the frame w, NULL: of space. */
+static void row_of(const Model *m, const Group *g, PetscInt node, PetscInt axis, const PetscReal *w,
+                   PetscReal row[RIGID])
+{
+  const PetscReal *x = m->grid->x + node * m->dim;
+  PetscReal e[3] = {0, 0, 0}, r[3] = {0, 0, 0};
+  e[axis] = 1;
+  if (w) frame_turn(m->dim, w, e);
+  for (PetscInt d = 0; d < m->dim; ++d) r[d] = (x[d] - g->centre[d]) / g->size;
+  const PetscReal turns[3] = {r[1] * e[2] - r[2] * e[1], r[2] * e[0] - r[0] * e[2], r[0] * e[1] - r[1] * e[0]};
+  for (PetscInt d = 0; d < g->n && d < m->dim; ++d) row[d] = g->n == 1 ? e[1] : e[d];
+  for (PetscInt k = m->dim; k < g->n; ++k) row[k] = m->dim == 3 ? turns[k - 3] : turns[2];
+}
+
+/* Of the motions that are free: how far do they move it? */
+static PetscReal strength_of(const Group *g, const PetscReal row[RIGID], PetscReal along[RIGID])
+{
+  PetscReal sum = 0;
+  for (PetscInt f = 0; f < g->n_free; ++f) {
+    along[f] = 0;
+    for (PetscInt k = 0; k < g->n; ++k) along[f] += g->free[f][k] * row[k];
+    sum += along[f] * along[f];
+  }
+  return PetscSqrtReal(sum);
+}
+
+/* What moves along `row` is free no more: a reflection of the free motions makes it the first of them. */
+static void take_away(Group *g, const PetscReal row[RIGID])
+{
+  PetscReal along[RIGID] = {0}, square = 0;
+  const PetscReal strength = strength_of(g, row, along);
+  along[0] += along[0] < 0 ? -strength : strength;
+  for (PetscInt f = 0; f < g->n_free; ++f) square += along[f] * along[f];
+  for (PetscInt k = 0; k < g->n; ++k) {
+    PetscReal sum = 0;
+    for (PetscInt f = 0; f < g->n_free; ++f) sum += along[f] * g->free[f][k];
+    for (PetscInt f = 0; f < g->n_free; ++f) g->free[f][k] -= 2 / square * along[f] * sum;
+  }
+  --g->n_free;
+  for (PetscInt f = 0; f < g->n_free; ++f)
+    for (PetscInt k = 0; k < g->n; ++k) g->free[f][k] = g->free[f + 1][k];
+}
+
+/* A number that no other direction of no other node has, the same on every rank and for any number of them. */
+static PetscReal number_of(const Model *m, const Group *g, PetscInt node, PetscInt axis)
+{
+  const PetscReal weight[3] = {1, 0.6180339887, 0.4142135624};
+  PetscReal sum = 0.1234567 * (PetscReal)axis;
+  for (PetscInt d = 0; d < m->dim; ++d) sum += weight[d] * (m->grid->x[node * m->dim + d] - g->centre[d]) / g->size;
+  return sum;
+}
+
+/* Directions of nodes: those that are held already, all that could be, those along an axis that could be. */
+typedef enum { ALONG_X, ALONG_Y, ALONG_Z, ANY, BEFORE } Which;
+
+static PetscBool may_be(const Model *m, const Group *g, Which which, PetscInt node, PetscInt axis)
+{
+  const PetscInt i = node * m->dim + axis;
+  if (!is_of(g, node)) return PETSC_FALSE;
+  if (which == BEFORE) return m->boundary->fixed[i] != 0;
+  return (which == ANY || which == (Which)axis) && !m->nodes->fixed[i] && m->nodes->dof[i] == DOF_USUAL &&
+         !frame_of(&m->boundary->frames, node) && m->nodes->mass[node] >= ENOUGH_MASS * g->mass;
+}
+
+/* How much the node is worth, of 1. What strains along the axes then turns no body. */
+static PetscReal worth_of(const Model *m, const Group *g, PetscInt node, PetscInt axis)
+{
+  if (!g->has_plane[axis]) return 1;
+  return 1 / (1 + 100 * PetscAbsReal(m->grid->x[node * m->dim + axis] - g->plane[axis]) / g->size);
+}
+
+/* Of those the farthest on this rank: of the strength in pass 0; in pass 1, of equals of `farthest`, the first by its
+ * number. */
+static void look_for(const Model *m, const Group *g, Which which, const PetscReal *farthest, Hold *hold)
+{
+  PetscReal row[RIGID], along[RIGID];
+  for (PetscInt i = 0; i < m->grid->n_owned * m->dim; ++i) {
+    const PetscInt node = i / m->dim, axis = i % m->dim;
+    if (!may_be(m, g, which, node, axis)) continue;
+    row_of(m, g, node, axis, frame_of(&m->boundary->frames, node), row);
+    const PetscReal far = strength_of(g, row, along) * (which == BEFORE ? 1 : worth_of(m, g, node, axis));
+    const PetscReal number = number_of(m, g, node, axis);
+    if (!farthest) hold->strength = PetscMax(hold->strength, far);
+    if (!farthest || far < (1 - 1e-6) * *farthest || number >= hold->number) continue;
+    hold->number = number;
+    hold->axis = axis;
+    for (PetscInt d = 0; d < m->dim; ++d) hold->at[d] = m->grid->x[node * m->dim + d];
+    for (PetscInt k = 0; k < g->n; ++k) hold->row[k] = row[k];
+  }
+}
+
+/* The one of all ranks. */
+static PetscErrorCode Strongest(const Model *m, const Group *g, Which which, Hold *hold)
+{
+  PetscReal farthest, least, all[RIGID + 4] = {0}, along[RIGID];
+
+  PetscFunctionBeginUser;
+  *hold = (Hold){.number = PETSC_MAX_REAL};
+  look_for(m, g, which, NULL, hold);
+  PetscCall(MPIU_Allreduce(&hold->strength, &farthest, 1, MPIU_REAL, MPIU_MAX, m->comm));
+  look_for(m, g, which, &farthest, hold);
+  PetscCall(MPIU_Allreduce(&hold->number, &least, 1, MPIU_REAL, MPIU_MIN, m->comm));
+  if (least == hold->number) { /* its owner tells the others */
+    PetscCall(PetscArraycpy(all, hold->row, RIGID));
+    PetscCall(PetscArraycpy(all + RIGID, hold->at, 3));
+    all[RIGID + 3] = (PetscReal)hold->axis;
+  }
+  PetscCall(MPIU_Allreduce(MPI_IN_PLACE, all, RIGID + 4, MPIU_REAL, MPIU_SUM, m->comm));
+  PetscCall(PetscArraycpy(hold->row, all, RIGID));
+  PetscCall(PetscArraycpy(hold->at, all + RIGID, 3));
+  hold->axis = (PetscInt)(all[RIGID + 3] + 0.5);
+  hold->strength = strength_of(g, hold->row, along);
+  PetscFunctionReturn(0);
+}
+
+/* Is it this one, on a rank that may not own it? */
+static PetscBool is_hold(const Model *m, const Group *g, const Hold *hold, PetscInt node, PetscInt axis)
+{
+  PetscReal apart = 0;
+  for (PetscInt d = 0; d < m->dim; ++d)
+    apart = PetscMax(apart, PetscAbsReal(m->grid->x[node * m->dim + d] - hold->at[d]) / g->size);
+  return is_of(g, node) && axis == hold->axis && apart < 1e-9;
+}
+
+/* It holds. */
+static void count_in(Group *g, const Hold *hold)
+{
+  if (!g->has_plane[hold->axis]) g->plane[hold->axis] = hold->at[hold->axis];
+  g->has_plane[hold->axis] = PETSC_TRUE;
+  take_away(g, hold->row);
+}
+
+/* Where the group is, and which motions are left to it by what is prescribed. *any: does it touch a node? */
+static PetscErrorCode GroupLook(const Model *m, Group *g, PetscBool *any)
+{
+  PetscReal bounds[7], square = 0;
+  Hold hold;
+
+  PetscFunctionBeginUser;
+  for (int k = 0; k < 7; ++k) bounds[k] = k < 6 ? PETSC_MIN_REAL : 0;
+  for (PetscInt node = 0; node < m->grid->n_owned; ++node) {
+    if (!is_of(g, node)) continue;
+    for (PetscInt d = 0; d < m->dim; ++d) {
+      bounds[d] = PetscMax(bounds[d], m->grid->x[node * m->dim + d]);
+      bounds[3 + d] = PetscMax(bounds[3 + d], -m->grid->x[node * m->dim + d]);
+    }
+    bounds[6] = PetscMax(bounds[6], m->nodes->mass[node]);
+  }
+  PetscCall(MPIU_Allreduce(MPI_IN_PLACE, bounds, 7, MPIU_REAL, MPIU_MAX, m->comm));
+  *any = bounds[6] > 0;
+  if (!*any) PetscFunctionReturn(0);
+  for (PetscInt d = 0; d < m->dim; ++d) {
+    g->centre[d] = (bounds[d] - bounds[3 + d]) / 2;
+    square += (bounds[d] + bounds[3 + d]) * (bounds[d] + bounds[3 + d]) / 4;
+  }
+  g->size = PetscSqrtReal(square);
+  g->mass = bounds[6];
+  g->n = g->n_free = motions_of(m);
+  for (PetscInt k = 0; k < g->n; ++k) g->free[k][k] = 1;
+  while (g->n_free) {
+    PetscCall(Strongest(m, g, BEFORE, &hold));
+    if (hold.strength < LEVER) break;
+    count_in(g, &hold);
+  }
+  PetscFunctionReturn(0);
+}
+
+/* Hold one more direction of a node, on every rank that knows it. */
+static PetscErrorCode HoldOne(Model *m, Group *g, Which which)
+{
+  Hold hold;
+
+  PetscFunctionBeginUser;
+  PetscCall(Strongest(m, g, which, &hold));
+  PetscCheck(hold.strength > LEVER, m->comm, PETSC_ERR_PLIB, "no node could hold body %d", (int)g->body);
+  for (PetscInt i = 0; i < m->grid->n_nodes * m->dim; ++i) {
+    if (!is_hold(m, g, &hold, i / m->dim, i % m->dim)) continue;
+    m->nodes->fixed[i] = 1;
+    m->unheld.turns[m->unheld.n] = which == ANY;
+    m->unheld.dof[m->unheld.n++] = i;
+  }
+  m->unheld.turning += which == ANY;
+  count_in(g, &hold);
+  PetscFunctionReturn(0);
+}
+
+/* Calls back for each group, in the order of their bodies. */
+static PetscErrorCode EachGroup(Model *m, Diag *diag, PetscErrorCode (*visit)(Model *m, Group *g, Diag *diag))
+{
+  PetscReal *of;
+  PetscBool any = PETSC_FALSE;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(m->grid->n_nodes, &of));
+  PetscCall(JoinedBodies(m, of));
+  for (PetscInt b = 0; b < m->c->n_bodies; ++b) {
+    Group g = {.body = b, .of = of};
+    PetscCall(GroupLook(m, &g, &any));
+    if (any && g.n_free) PetscCall((*visit)(m, &g, diag));
+  }
+  PetscCall(PetscFree(of));
+  PetscFunctionReturn(0);
+}
+
+/* "in x and y, and from turning" */
+static void name_free(const Model *m, const Group *g, char text[64])
+{
+  const PetscInt lines = PetscMin(m->dim, g->n);
+  PetscReal along[RIGID];
+  PetscInt n = 0;
+  text[0] = 0;
+  for (PetscInt k = 0; k < g->n; ++k) {
+    PetscReal row[RIGID] = {0};
+    row[k] = 1;
+    if (strength_of(g, row, along) < (k < lines ? 0.99 : 0.1)) continue;
+    const size_t length = strlen(text);
+    if (k < lines) snprintf(text + length, 64 - length, "%s%c", n ? " and " : "in ", g->n == 1 ? 'y' : "xyz"[k]);
+    else {
+      snprintf(text + length, 64 - length, "%sfrom turning", n ? " and " : "");
+      break;
+    }
+    ++n;
+  }
+}
+
+/* Work of the loads of the first step along its free motions. */
+static PetscErrorCode CheckGroup(Model *m, Group *g, Diag *diag)
+{
+  PetscReal sums[RIGID + 1] = {0}, row[RIGID], pull[3], most = 0;
+  char text[64], path[64];
+
+  PetscFunctionBeginUser;
+  gravity_at(m->c, raised_time(m, m->time + m->c->analysis.step), pull);
+  for (PetscInt i = 0; i < m->grid->n_owned * m->dim; ++i) {
+    if (!is_of(g, i / m->dim)) continue;
+    const PetscReal force = m->nodes->external[i] + m->nodes->mass[i / m->dim] * pull[i % m->dim];
+    row_of(m, g, i / m->dim, i % m->dim, NULL, row);
+    for (PetscInt f = 0; f < g->n_free; ++f)
+      for (PetscInt k = 0; k < g->n; ++k) sums[f] += g->free[f][k] * row[k] * force;
+    sums[RIGID] += PetscAbsReal(force);
+  }
+  PetscCall(MPIU_Allreduce(MPI_IN_PLACE, sums, RIGID + 1, MPIU_REAL, MPIU_SUM, m->comm));
+  for (PetscInt f = 0; f < g->n_free; ++f) most = PetscMax(most, PetscAbsReal(sums[f]));
+  snprintf(path, sizeof path, "bodies[%d]", (int)g->body);
+  name_free(m, g, text);
+  if (most > OUT_OF_BALANCE * sums[RIGID]) {
+    diag_error(diag, path, "nothing holds '%s' %s, and loads push it that way: %.3g of %.3g N are out of balance",
+               m->c->bodies[g->body].name, text, (double)most, (double)sums[RIGID]);
+    diag_hint(diag, "analysis.unheld: hold is for loads in balance; fix a boundary, or analysis: {type: dynamic}");
+  } else
+    diag_warning(diag, path, "nothing holds '%s' %s: held in %d direction(s) of nodes, which bear nothing",
+                 m->c->bodies[g->body].name, text, (int)g->n_free);
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode UnheldCheck(Model *m, Diag *diag)
+{
+  const AnalysisSpec *a = &m->c->analysis;
+  const NodalScene scene = nodal_scene(m, m->time + a->step, m->nodes->du);
+  PetscInt errors;
+
+  PetscFunctionBeginUser;
+  if (a->unheld != UNHELD_HOLD) PetscFunctionReturn(0);
+  if (a->type != ANALYSIS_STATIC || m->method->clouds || m->walls || m->c->n_interfaces)
+    diag_error(diag, "analysis.unheld",
+               "unheld: hold is for type static, methods mpm and fem, without walls and interfaces");
+  PetscCall(DiagReduce(m->comm, diag, &errors));
+  if (errors) PetscFunctionReturn(0);
+  PetscCall(PetscMalloc2(RIGID * m->c->n_bodies, &m->unheld.dof, RIGID * m->c->n_bodies, &m->unheld.turns));
+  PetscCall(NodalForcesBegin(&m->forces, &scene));
+  PetscCall(NodalForcesExternal(&m->forces, &scene, PETSC_TRUE, m->nodes->external));
+  PetscCall(EachGroup(m, diag, CheckGroup));
+  PetscFunctionReturn(0);
+}
+
+/* Where it is, and then how it is turned: the latter can be let go. */
+static PetscErrorCode HoldGroup(Model *m, Group *g, Diag *diag)
+{
+  PetscReal along[RIGID];
+
+  PetscFunctionBeginUser;
+  (void)diag;
+  for (PetscInt k = 0; k < PetscMin(g->n, m->dim); ++k) {
+    PetscReal row[RIGID] = {0};
+    row[k] = 1;
+    if (strength_of(g, row, along) > 1 - 1e-6) PetscCall(HoldOne(m, g, g->n == 1 ? ALONG_Y : (Which)k));
+  }
+  while (g->n_free) PetscCall(HoldOne(m, g, ANY));
+  m->unheld.size = PetscMax(m->unheld.size, g->size);
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode UnheldHold(Model *m)
+{
+  PetscFunctionBeginUser;
+  m->unheld.n = m->unheld.turning = 0;
+  m->unheld.size = 0;
+  if (m->c->analysis.unheld == UNHELD_HOLD) PetscCall(EachGroup(m, NULL, HoldGroup));
+  PetscFunctionReturn(0);
+}
+
+static void let_turn(Model *m, PetscBool free)
+{
+  for (PetscInt k = 0; k < m->unheld.n; ++k)
+    if (m->unheld.turns[k]) m->nodes->fixed[m->unheld.dof[k]] = !free;
+}
+
+/* What the directions bear that are held, N, and is it too much? */
+static PetscErrorCode Borne(const Model *m, PetscReal round_off, PetscReal *borne, PetscBool *much)
+{
+  const NodalFields *n = m->nodes;
+  const PetscInt owned = m->grid->n_owned * m->dim;
+  PetscReal pull[3], sums[2] = {0, 0};
+
+  PetscFunctionBeginUser;
+  gravity_at(m->c, raised_time(m, m->time + m->c->analysis.step), pull);
+  for (PetscInt i = 0; i < owned; ++i)
+    if (n->touched[i / m->dim])
+      sums[1] +=
+        PetscAbsReal(n->force[i]) + PetscAbsReal(n->external[i]) + n->mass[i / m->dim] * PetscAbsReal(pull[i % m->dim]);
+  for (PetscInt k = 0; k < m->unheld.n; ++k)
+    if (m->unheld.dof[k] < owned && n->fixed[m->unheld.dof[k]]) sums[0] += PetscAbsReal(n->force[m->unheld.dof[k]]);
+  PetscCall(MPIU_Allreduce(MPI_IN_PLACE, sums, 2, MPIU_REAL, MPIU_SUM, m->comm));
+  *borne = sums[0];
+  *much = sums[0] > OUT_OF_BALANCE * sums[1] + round_off;
+  PetscFunctionReturn(0);
+}
+
+/* Where loads that keep their direction have a moment about the body as it has come to lie, they turn it: it is let go
+ * from there, since stress now resists its turning. *much stays where that leads nowhere, or too far. */
+static PetscErrorCode LetTurn(Model *m, StepProblem *p, const LinearProblem *linear, StepReport *report,
+                              PetscReal *borne, PetscBool *much)
+{
+  const NewtonReport first = report->newton;
+  const PetscInt dofs = m->grid->n_nodes * m->dim;
+  PetscReal *du, moved = 0;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(dofs, &du));
+  PetscCall(PetscArraycpy(du, m->nodes->du, dofs));
+  let_turn(m, PETSC_TRUE);
+  PetscCall(NewtonSolve(m->newton, p, linear, &report->newton));
+  for (PetscInt i = 0; i < dofs; ++i) moved = PetscMax(moved, PetscAbsReal(m->nodes->du[i] - du[i]));
+  PetscCall(MPIU_Allreduce(MPI_IN_PLACE, &moved, 1, MPIU_REAL, MPIU_MAX, m->comm));
+  PetscCall(PetscFree(du));
+  report->newton.iterations += first.iterations;
+  report->newton.linear_iterations += first.linear_iterations;
+  if (!report->newton.converged || moved > TURN * m->unheld.size) PetscFunctionReturn(0);
+  PetscCall(Borne(m, p->round_off, borne, much));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode UnheldJudge(Model *m, StepProblem *p, const LinearProblem *linear, StepReport *report)
+{
+  PetscReal borne;
+  PetscBool much;
+
+  PetscFunctionBeginUser;
+  if (m->c->analysis.unheld != UNHELD_HOLD) PetscFunctionReturn(0);
+  PetscCall(Borne(m, p->round_off, &borne, &much));
+  if (much && m->unheld.turning) PetscCall(LetTurn(m, p, linear, report, &borne, &much));
+  if (!much || report->newton.interrupted) PetscFunctionReturn(0);
+  let_turn(m, PETSC_FALSE);
+  snprintf(report->leap, sizeof report->leap,
+           "%.3g N are out of balance along motions that nothing holds (analysis.unheld)", (double)borne);
+  report->newton.converged = PETSC_FALSE;
+  report->newton.reason = report->leap;
+  PetscFunctionReturn(0);
+}
