@@ -1,6 +1,6 @@
 /* analysis: {unheld: hold}. Statics of bodies that something pushes but nothing holds, in some direction or from
  * turning: the answer is known but for a rigid motion, if loads are in balance along it. Nodes are held in as few
- * directions as make it the only one, which bear nothing then (docs/theory.md, section K1). */
+ * directions as make it the only one, which bear nothing then (docs/theory.md, section 60). */
 #include "model/model_private.h"
 
 #define RIGID 6
