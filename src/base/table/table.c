@@ -65,6 +65,13 @@ PetscErrorCode TableAdd(Table *table, const char *name, const char *unit, Column
   PetscFunctionReturn(0);
 }
 
+PetscBool table_has(const Table *table, const char *name)
+{
+  for (PetscInt k = 0; k < table->n; ++k)
+    if (!strcmp(table->column[k].name, name)) return PETSC_TRUE;
+  return PETSC_FALSE;
+}
+
 void *table_data(const Table *table, const char *name, ColumnType type, PetscInt components, char reason[256])
 {
   for (PetscInt k = 0; k < table->n; ++k) {

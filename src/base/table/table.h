@@ -49,6 +49,8 @@ Table *tables_find(const Tables *tables, const char *name);
  * *out may be NULL. */
 PetscErrorCode TableAdd(Table *table, const char *name, const char *unit, ColumnType type, PetscInt components,
                         void *data, Column **out);
+/* Has it a column of this name, of whatever type? */
+PetscBool table_has(const Table *table, const char *name);
 /* Data of the column of this name, type and width; NULL, with a reason, if there is none like
  * it. */
 void *table_data(const Table *table, const char *name, ColumnType type, PetscInt components, char reason[256]);

@@ -49,13 +49,6 @@ static PetscErrorCode Identify(Grid *grid, const Table *table, char reason[256])
   PetscFunctionReturn(0);
 }
 
-static PetscBool is_there(const Table *table, const char *name)
-{
-  for (PetscInt k = 0; k < table->n; ++k)
-    if (!strcmp(table->column[k].name, name)) return PETSC_TRUE;
-  return PETSC_FALSE;
-}
-
 /* Numbers that are not finite would put a node nowhere. */
 static void fill_fields(Grid *grid, const Table *table, char reason[256])
 {
@@ -63,7 +56,7 @@ static void fill_fields(Grid *grid, const Table *table, char reason[256])
   for (PetscInt f = 0; f < c->n_fields; ++f) {
     const PetscInt n = grid->n_owned * c->field[f].components;
     if (!c->field[f].name || !c->field[f].components) continue;
-    if (c->field[f].new && !is_there(table, c->field[f].name)) continue;
+    if (c->field[f].new && !table_has(table, c->field[f].name)) continue;
     const PetscReal *data = table_data(table, c->field[f].name, COLUMN_REAL, c->field[f].components, reason);
     for (PetscInt i = 0; i < n && data; ++i) {
       if (PetscIsInfOrNanReal(data[i])) snprintf(reason, 256, "nodes/%s is not finite", c->field[f].name);

@@ -61,8 +61,7 @@ static PetscErrorCode SwapMaterials(Model *m, const Case *from, Diag *diag)
 static void find_pressures(Model *m, const Table *table)
 {
   PetscReal tau[6];
-  for (PetscInt k = 0; k < table->n; ++k)
-    if (!strcmp(table->column[k].name, "pressure")) return;
+  if (table_has(table, "pressure")) return;
   for (PetscInt p = 0; p < m->points->n && m->points->components[POINT_PRESSURE]; ++p) {
     const Material *material = &m->materials[m->points->material[p]];
     point_tau(m->points, p, tau);
