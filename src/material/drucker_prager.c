@@ -115,6 +115,8 @@ static VolumeLaw volume_law(const PetscReal *q)
   return q[DP_ETA] == 0.0 && q[DP_ETABAR] == 0.0 && q[DP_CAP] == INFINITY ? VOLUME_LOG : VOLUME_COUPLED;
 }
 
+static PetscBool associated(const PetscReal *q) { return q[DP_ETA] == q[DP_ETABAR]; }
+
 /* Slope of the cone through the edges of Mohr-Coulomb's pyramid in compression (-1) or extension
  * (1); times cot phi: its xi. */
 static PetscReal edge_slope(PetscReal angle, PetscReal side)
@@ -184,7 +186,7 @@ const Law law_drucker_prager = {
   .parameters = parameters,
   .fields = fields,
   .n_state = 7,
-  .symmetric = PETSC_FALSE,
+  .associated = associated,
   .yields = PETSC_TRUE,
   .spares_state = PETSC_TRUE,
   .update = update,

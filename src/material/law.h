@@ -76,7 +76,9 @@ typedef struct Law {
   const LawParameter *parameters;
   const LawField *fields; /* stored state, ended by name = NULL */
   PetscInt n_state;       /* sum of the fields' components */
-  PetscBool symmetric;    /* is the tangent symmetric? */
+  PetscBool symmetric;    /* is the tangent symmetric, whatever the parameters? */
+  /* Is it with these, since plastic flow follows the normal of the yield surface? NULL: as above. */
+  PetscBool (*associated)(const PetscReal *parameters);
   PetscBool yields;       /* can it lose its stiffness? */
   PetscBool needs_stress; /* has it no natural state, so that every point begins with an initial stress? */
   PetscBool spares_state; /* may `state` be NULL where only stress and tangent are wanted? */
@@ -171,6 +173,8 @@ PetscErrorCode MaterialAt(const Case *c, PetscInt index, PetscReal t, Diag *diag
 /* All of its constants but elastic ones and the density become those of the same material at another time; of
  * a law that says itself how stiff it is, none. */
 void material_take_strength(Material *material, const Material *other);
+/* Is the tangent symmetric? strength_varies: also with c and tan phi over any factor, where psi may stay behind phi. */
+PetscBool material_symmetric(const Material *material, PetscBool strength_varies);
 /* Divide the strength of a material by factor (0: it does not yield); that of the case is factor 1. */
 void material_reduce(Material *material, PetscReal factor);
 /* Tell all of them of the step that is tried; dt = 0: there is none. inertia: is time what clocks show, or, as in

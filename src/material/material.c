@@ -216,6 +216,13 @@ static PetscReal wave_modulus(const Elasticity *elastic, PetscBool mixed)
 
 PetscReal material_confined(const Material *m) { return m->elastic.bulk + 4.0 / 3.0 * m->elastic.shear; }
 
+PetscBool material_symmetric(const Material *m, PetscBool strength_varies)
+{
+  const Law *law = m->law;
+  if (law->symmetric || !law->associated) return law->symmetric;
+  return law->associated(m->parameters) && (!strength_varies || law->volume_law(m->parameters) == VOLUME_LOG);
+}
+
 PetscBool materials_yield(PetscInt n, const Material *materials)
 {
   for (PetscInt i = 0; i < n; ++i)

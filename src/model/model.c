@@ -181,6 +181,15 @@ static void check_waves(const Material *material, Diag *diag)
   diag_hint(diag, "a body that may count as rigid needs no more than waves much faster than its motion");
 }
 
+/* Will the tangents of material i stay symmetric throughout? */
+static PetscBool stays_symmetric(const Case *c, PetscInt i, const Material *material)
+{
+  const PetscBool varies =
+    c->analysis.type == ANALYSIS_FACTOR || c->strength.factor > 0 || c->materials[i].n_amplitudes > 0;
+  if (case_is_mixed(c) && material->volume == VOLUME_COUPLED) return PETSC_FALSE;
+  return material_symmetric(material, varies);
+}
+
 static PetscErrorCode CreateMaterials(Model *m, Diag *diag)
 {
   const Case *c = m->c;
@@ -195,8 +204,7 @@ static PetscErrorCode CreateMaterials(Model *m, Diag *diag)
     if (m->scheme->inertia) check_ringing(m, material, diag);
     if (m->scheme->inertia) check_waves(material, diag);
     m->n_state = PetscMax(m->n_state, material->law->n_state);
-    if (!material->law->symmetric || (case_is_mixed(c) && material->volume == VOLUME_COUPLED))
-      m->symmetric = PETSC_FALSE;
+    if (!stays_symmetric(c, i, material)) m->symmetric = PETSC_FALSE;
     m->courant_speed = PetscMax(m->courant_speed, PetscSqrtReal(material->wave_modulus / material->density));
   }
   PetscFunctionReturn(0);

@@ -291,7 +291,7 @@ static inline void law_suite_symmetry(LawSuite *suite)
 {
   LawPoint p = {0};
   PetscReal transposed[36];
-  if (!suite->law->symmetric) return;
+  if (!material_symmetric(&suite->material, PETSC_FALSE)) return;
   for (int s = 0; s < 1000; ++s) {
     law_suite_random_point(suite, &p);
     for (int k = 0; k < 36; ++k) transposed[k] = p.c[6 * (k % 6) + k / 6];

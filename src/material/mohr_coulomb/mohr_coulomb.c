@@ -239,6 +239,9 @@ static VolumeLaw volume_law(const PetscReal *p)
   return p[MC_K] == 1.0 && p[MC_M] == 1.0 && p[MC_CUT] == INFINITY ? VOLUME_LOG : VOLUME_COUPLED;
 }
 
+/* What opens and is remembered follows no potential. */
+static PetscBool associated(const PetscReal *p) { return p[MC_K] == p[MC_M] && p[MC_MEMORY] == 0.0; }
+
 static void prepare(const Elasticity *elastic, const PetscReal *given, PetscReal *p)
 {
   const PetscReal lambda = elastic->lame, mu = elastic->shear;
@@ -290,7 +293,7 @@ const Law law_mohr_coulomb = {
   .parameters = parameters,
   .fields = fields,
   .n_state = N_STATE,
-  .symmetric = PETSC_FALSE,
+  .associated = associated,
   .yields = PETSC_TRUE,
   .spares_state = PETSC_TRUE,
   .room = room,
