@@ -240,6 +240,8 @@ PetscErrorCode LimitWatch(Model *model, PetscReal dt);
 PetscErrorCode LimitDescribe(const Model *model, StepReport *report);
 /* Collective. Warnings of what a case asks for and its user hardly means: start/advice.c. */
 PetscErrorCode ModelAdvise(const Model *model, Diag *diag);
+/* Collective. The same of layers that share their cells, where strength is sought: start/thin.c. */
+PetscErrorCode AdviseThin(const Model *model, Diag *diag);
 /* Collective. The same of a drum that is not closed: start/drum.c. */
 PetscErrorCode AdviseOpenDrum(const Model *model, Diag *diag);
 /* Rayleigh damping, where there is inertia, 1/s. */

@@ -148,6 +148,31 @@ says err.txt "This may be a limit load, at load factor 0.4999"
 expect "a bar that is pulled by its end" 0 "$talus" run case.yaml --out run --force --quiet --set loads={} \
   --set 'boundary[2]={on: {y: 2}, displacement: {y: 0.1}}'
 
+# --- a soft layer that shares its cells with what is around it ---
+cat >case.yaml <<'END'
+kinematics: plane-strain
+method: mpm
+formulation: mixed
+analysis: {type: factor-of-safety}
+grid: {box: {min: [-1, 0], max: [9, 6]}, size: 1}
+bodies:
+  - {name: clay, shape: {difference: [{box: {min: [0, 0], max: [8, 5]}}, {box: {min: [0, 2.5], max: [8, 3.5]}}]}, material: stiff}
+  - {name: layer, shape: {box: {min: [0, 2.5], max: [8, 3.5]}}, material: weak}
+materials:
+  stiff: {law: mohr-coulomb, density: 2000, young: 1e8, poisson: 0.4, friction_angle: 0, cohesion: 50e3}
+  weak: {law: mohr-coulomb, density: 2000, young: 1e8, poisson: 0.4, friction_angle: 0, cohesion: 10e3}
+boundary: [{on: {boundary: bottom}, fix: [x, y]}]
+loads: {gravity: [0, -10]}
+END
+shared="case.yaml:11:3: warning: 100 % of the points of 'weak' share their cells with other materials"
+warned "a layer in cells that it shares" "$shared" "six across it or more" --
+for ranks in 2 3; do
+  expect "the same on $ranks" 0 on_ranks $ranks "$talus" check case.yaml
+  says err.txt "$shared"
+done
+warned "a layer of cells of its own" -- --set 'grid.size=0.5'
+warned "no strength is sought" -- --set 'analysis={type: static}'
+
 # --- which way is down ---
 cat >case.yaml <<'END'
 kinematics: 3d

@@ -183,6 +183,7 @@ PetscErrorCode ModelAdvise(const Model *m, Diag *diag)
     for (PetscInt i = 0; i < m->c->n_materials; ++i)
       if (!strcmp(m->c->bodies[b].material, m->c->materials[i].name)) advise_locking(m, &m->c->bodies[b], i, diag);
   PetscCall(AdviseSharing(m, diag));
+  PetscCall(AdviseThin(m, diag));
   advise_floor(m, diag);
   PetscFunctionReturn(0);
 }
