@@ -2,6 +2,7 @@
  * references. */
 #include <math.h>
 #include <string.h>
+#include "base/text.h"
 #include "picture/figure.h"
 #include "verify/verify_private.h"
 
@@ -68,7 +69,7 @@ static PetscErrorCode Draw(const Verification *v, PetscInt first, const Curves *
   const SweepSpec *sweep = &study->sweep;
   const char *unit = sweep->unit ? sweep->unit : "";
   const PetscBool errors = verify_draws_errors(study), cost = study->figure == VERIFY_FIGURE_COST;
-  char png[PETSC_MAX_PATH_LEN], x_label[200], y_label[200];
+  char png[PETSC_MAX_PATH_LEN], x_label[200], y_label[TEXT_LABEL];
 
   PetscFunctionBeginUser;
   PetscCall(PetscSNPrintf(png, sizeof png, "%s/%s.png", v->out, study->name));
@@ -76,9 +77,10 @@ static PetscErrorCode Draw(const Verification *v, PetscInt first, const Curves *
   else
     PetscCall(PetscSNPrintf(x_label, sizeof x_label, inverse ? "1/%s%s%s%s" : "%s%s%s%s", sweep->symbol,
                             unit[0] ? inverse ? " [1/" : " [" : "", unit, unit[0] ? "]" : ""));
-  PetscCall(PetscSNPrintf(y_label, sizeof y_label,
-                          errors ? study->exact.value == 0 ? "error: %s" : "relative error of %s" : "%s [%s]",
-                          study->measure, v->rows[first].unit));
+  if (errors)
+    PetscCall(PetscSNPrintf(y_label, sizeof y_label, study->exact.value == 0 ? "error: %s" : "relative error of %s",
+                            study->measure));
+  else text_with_unit(study->measure, v->rows[first].unit, y_label);
   const Figure figure = {.title = study->title,
                          .x_label = x_label,
                          .y_label = y_label,

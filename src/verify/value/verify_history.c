@@ -1,6 +1,7 @@
 /* A picture of histories: the measure of a study over time, a curve for each of its rows. Where the
  * rows are moments of one run, a curve for each series, with marks where its references are. */
 #include <string.h>
+#include "base/text.h"
 #include "picture/figure.h"
 #include "output/history.h"
 #include "verify/verify_private.h"
@@ -45,15 +46,15 @@ static PetscErrorCode Draw(const Verification *v, const VerifyRow *r, PetscInt n
 {
   const PetscBool normal = r->study->figure == VERIFY_FIGURE_NORMAL_HISTORY;
   const SweepSpec *sweep = &r->study->sweep;
-  char png[PETSC_MAX_PATH_LEN], x_label[200] = "time [s]", y_label[200];
+  char png[PETSC_MAX_PATH_LEN], x_label[200] = "time [s]", y_label[TEXT_LABEL];
   PetscBool scaled = PETSC_FALSE;
 
   PetscFunctionBeginUser;
   for (PetscInt s = 0; s < r->study->n_series; ++s)
     if (r->study->series[s].time_scale != 1) scaled = PETSC_TRUE;
   PetscCall(PetscSNPrintf(png, sizeof png, "%s/%s.png", v->out, r->study->name));
-  PetscCall(
-    PetscSNPrintf(y_label, sizeof y_label, normal ? "%s over its last value" : "%s [%s]", r->study->measure, r->unit));
+  if (normal) PetscCall(PetscSNPrintf(y_label, sizeof y_label, "%s over its last value", r->study->measure));
+  else text_with_unit(r->study->measure, r->unit, y_label);
   if (scaled) PetscCall(PetscSNPrintf(x_label, sizeof x_label, "time over its scale"));
   else if (r->study->moments)
     PetscCall(PetscSNPrintf(x_label, sizeof x_label, "%s [%s]", sweep->symbol,
