@@ -119,6 +119,7 @@ static const LawUnderTest list[] = {
   {"mohr-coulomb", MOHR_COULOMB(1e6, -0.3, 45, 10, 1e5), .strain = 0.3},
   {"mohr-coulomb", CUT_OFF(2e6, 0.2, 35, 12, 4e4, 2e4), .strain = 0.1},
   {"mohr-coulomb", CUT_OFF(1e4, 0.4, 0, 0, 100, 0), .strain = 0.1},
+  {"mohr-coulomb", CUT_OFF(5e7, 0.25, 30, 30, 2e4, 1e4), .strain = 0.3},
   {"mohr-coulomb", REMEMBERS(0.84e6, 0.3, 31, 1, 0, 1), .strain = 0.3, .not_mixed = PETSC_TRUE},
   {"mohr-coulomb", REMEMBERS(1e6, 0.3, 39, 0, 16, 0.5), .strain = 0.05, .not_mixed = PETSC_TRUE},
   {"mohr-coulomb-softening", SOFTENING(1.8e6, 0.3, 25, 0, 5e3, 1e300, 0.5, 0.02, 0.1), .strain = 0.02, .corners = 0.04},
