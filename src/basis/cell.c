@@ -67,6 +67,42 @@ PetscReal cell_gradients(CellType type, const PetscReal *x, const PetscReal *xi,
   return 0.0;
 }
 
+/* The kernel computes all, and the compiler leaves out what nobody asks for. */
+CELL_INLINE PetscReal map(CellType type, const PetscReal *x, const PetscReal *xi, PetscReal *position)
+{
+  const int dim = cell_kernel_dim(type), nodes = cell_kernel_nodes(type);
+  PetscReal N[CELL_MAX_NODES], dN[CELL_MAX_NODES * 3], jacobian[9], inverse[9];
+  cell_kernel_shape(type, xi, N, dN);
+  for (int d = 0; d < dim; ++d) {
+    PetscReal sum = 0.0;
+    for (int i = 0; i < nodes; ++i) sum += N[i] * x[i * dim + d];
+    position[d] = sum;
+  }
+  cell_kernel_jacobian(type, x, dN, jacobian);
+  return cell_kernel_invert(dim, jacobian, inverse);
+}
+
+PetscReal cell_map(CellType type, const PetscReal *x, const PetscReal *xi, PetscReal *position)
+{
+  switch (type) {
+  case CELL_TRIANGLE: return map(CELL_TRIANGLE, x, xi, position);
+  case CELL_QUADRILATERAL: return map(CELL_QUADRILATERAL, x, xi, position);
+  case CELL_TETRAHEDRON: return map(CELL_TETRAHEDRON, x, xi, position);
+  case CELL_HEXAHEDRON: return map(CELL_HEXAHEDRON, x, xi, position);
+  }
+  return 0.0;
+}
+
+void cell_position(CellType type, const PetscReal *x, const PetscReal *xi, PetscReal *position)
+{
+  switch (type) {
+  case CELL_TRIANGLE: (void)map(CELL_TRIANGLE, x, xi, position); break;
+  case CELL_QUADRILATERAL: (void)map(CELL_QUADRILATERAL, x, xi, position); break;
+  case CELL_TETRAHEDRON: (void)map(CELL_TETRAHEDRON, x, xi, position); break;
+  case CELL_HEXAHEDRON: (void)map(CELL_HEXAHEDRON, x, xi, position); break;
+  }
+}
+
 static PetscReal simplex_outside(PetscInt dim, const PetscReal *xi)
 {
   PetscReal sum = -1.0, outside = -PETSC_MAX_REAL;

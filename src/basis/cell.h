@@ -27,6 +27,10 @@ void cell_shape(CellType type, const PetscReal *xi, PetscReal *N, PetscReal *dN)
  * dx/dxi. */
 PetscReal cell_gradients(CellType type, const PetscReal *x, const PetscReal *xi, PetscReal *N, PetscReal *dNdx);
 
+/* Position (dim) of the reference position xi, with node positions x; and the same with det of dx/dxi. */
+void cell_position(CellType type, const PetscReal *x, const PetscReal *xi, PetscReal *position);
+PetscReal cell_map(CellType type, const PetscReal *x, const PetscReal *xi, PetscReal *position);
+
 /* Reference position of `point`; PETSC_FALSE if the map could not be inverted. Affine cells
  * exactly, others by Newton. */
 PetscBool cell_inverse_map(CellType type, const PetscReal *x, const PetscReal *point, PetscReal *xi);

@@ -29,7 +29,7 @@ static inline void random_inside(Random *random, CellType type, PetscReal *xi)
 }
 
 /* x at xi. */
-static inline void cell_position(CellType type, const PetscReal *x, const PetscReal *xi, PetscReal *point)
+static inline void sample_position(CellType type, const PetscReal *x, const PetscReal *xi, PetscReal *point)
 {
   const PetscInt dim = cells[type].dim;
   PetscReal N[CELL_MAX_NODES], dN[CELL_MAX_NODES * 3];

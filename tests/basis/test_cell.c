@@ -28,7 +28,7 @@ static void run_suite(Random *random, CellType type)
   distorted_cell(random, type, distortion, 3.0, x);
   for (PetscInt s = 0; s < N_SAMPLES; ++s) {
     random_inside(random, type, xi);
-    cell_position(type, x, xi, samples + s * dim);
+    sample_position(type, x, xi, samples + s * dim);
   }
   const BasisUnderTest basis = {.name = cells[type].name,
                                 .dim = dim,
@@ -62,7 +62,7 @@ static void test_inverse_map_round_trip(void **state)
       PetscReal x[CELL_MAX_NODES * 3], xi[3], point[3], found[3];
       distorted_cell(&random, (CellType)type, 0.2, 0.0, x);
       random_inside(&random, (CellType)type, xi);
-      cell_position((CellType)type, x, xi, point);
+      sample_position((CellType)type, x, xi, point);
       assert_true(cell_inverse_map((CellType)type, x, point, found));
       for (PetscInt d = 0; d < cells[type].dim; ++d) assert_true(fabs(found[d] - xi[d]) < 1e-12);
     }
@@ -78,7 +78,7 @@ static void test_inverse_map_outside(void **state)
       PetscReal x[CELL_MAX_NODES * 3], xi[3], point[3], found[3];
       distorted_cell(&random, (CellType)type, 0.0, 0.0, x);
       for (PetscInt d = 0; d < 3; ++d) xi[d] = random_real(&random, -100, 100);
-      cell_position((CellType)type, x, xi, point);
+      sample_position((CellType)type, x, xi, point);
       assert_true(cell_inverse_map((CellType)type, x, point, found));
       for (PetscInt d = 0; d < cells[type].dim; ++d) assert_true(fabs(found[d] - xi[d]) < 1e-8);
     }
@@ -123,7 +123,7 @@ static void test_inverse_map_beyond_fold(void **state)
         assert_true(point[1] > 1.9);
         continue;
       }
-      cell_position(CELL_QUADRILATERAL, x, xi, back);
+      sample_position(CELL_QUADRILATERAL, x, xi, back);
       assert_true(fabs(back[0] - point[0]) < 1e-8 && fabs(back[1] - point[1]) < 1e-8);
     }
 }

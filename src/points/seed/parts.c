@@ -33,18 +33,6 @@ typedef struct {
   PetscBool inside[4];
 } Simplex;
 
-static PetscReal map(CellType type, const PetscReal *x, const PetscReal *xi, PetscReal *position)
-{
-  PetscReal N[CELL_MAX_NODES], dN[CELL_MAX_NODES * 3];
-  const PetscInt dim = cells[type].dim;
-  const PetscReal det = cell_gradients(type, x, xi, N, dN);
-  for (PetscInt d = 0; d < dim; ++d) {
-    position[d] = 0;
-    for (PetscInt i = 0; i < cells[type].nodes; ++i) position[d] += N[i] * x[i * dim + d];
-  }
-  return PetscAbsReal(det);
-}
-
 static PetscBool is_simplex(CellType type) { return cells[type].nodes == cells[type].dim + 1; }
 
 SeedFill seed_fill(const Seeding *s, PetscInt cell)
@@ -62,7 +50,7 @@ SeedFill seed_fill(const Seeding *s, PetscInt cell)
       xi[d] = is_simplex(type) ? u * left : 2 * u - 1;
       left *= 1 - u;
     }
-    (void)map(type, x, xi, position);
+    cell_position(type, x, xi, position);
     inside += shape_contains(&s->body->shape, dim, position, 0) ? 1 : 0;
   }
   return inside == n ? SEED_WHOLE : inside ? SEED_CUT : SEED_NONE;
@@ -128,7 +116,7 @@ static PetscBool is_whole(const Measure *m, PetscInt q)
 static PetscBool is_inside(const Measure *m, const PetscReal *xi)
 {
   PetscReal position[3];
-  (void)map(m->type, m->x, xi, position);
+  cell_position(m->type, m->x, xi, position);
   return shape_contains(m->shape, m->dim, position, m->slack);
 }
 
@@ -150,7 +138,8 @@ static void add(const Measure *m, PetscReal corner[4][3], PetscReal sign, Sum *s
                         e[0][1] * (e[1][0] * e[2][2] - e[1][2] * e[2][0]) +
                         e[0][2] * (e[1][0] * e[2][1] - e[1][1] * e[2][0]);
   centre_of(m->dim, corner, centre);
-  const PetscReal volume = sign * PetscAbsReal(det) / (m->dim == 2 ? 2 : 6) * map(m->type, m->x, centre, position);
+  const PetscReal stretch = PetscAbsReal(cell_map(m->type, m->x, centre, position));
+  const PetscReal volume = sign * PetscAbsReal(det) / (m->dim == 2 ? 2 : 6) * stretch;
   sum->volume += volume;
   for (PetscInt d = 0; d < m->dim; ++d) sum->moment[d] += volume * centre[d];
 }

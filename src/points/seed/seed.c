@@ -14,19 +14,6 @@ PetscBool seed_tells(const Grid *grid)
   return rank == 0;
 }
 
-/* Position of a reference position, and det of dx/dxi. */
-static PetscReal map_point(CellType type, const PetscReal *x, const PetscReal *xi, PetscReal *position)
-{
-  PetscReal N[CELL_MAX_NODES], dN[CELL_MAX_NODES * 3];
-  const PetscInt dim = cells[type].dim;
-  const PetscReal det = cell_gradients(type, x, xi, N, dN);
-  for (PetscInt d = 0; d < dim; ++d) {
-    position[d] = 0;
-    for (PetscInt i = 0; i < cells[type].nodes; ++i) position[d] += N[i] * x[i * dim + d];
-  }
-  return det;
-}
-
 PetscReal seed_cell_volume(const Seeding *s, PetscInt cell)
 {
   PetscReal x[CELL_MAX_NODES * 3];
@@ -264,7 +251,7 @@ static PetscErrorCode SeedPoint(const Seeding *s, Points *points, PetscInt k, co
   PetscFunctionBeginUser;
   PetscCall(PointsAppend(points, &p));
   PetscReal *position = point_real(points, POINT_X, p);
-  const PetscReal det = map_point(grid_cell_type(s->source, cell), x, xi, position);
+  const PetscReal det = cell_map(grid_cell_type(s->source, cell), x, xi, position);
   const PetscReal whole = share < 0 ? rule->weight[q] * det : share;
   const PetscReal section = part ? part->share * cell_volume(grid_cell_type(s->source, cell), x) : whole;
   const PetscReal volume = section * kinematics_weight(s->c->kinematics, position[0]);
