@@ -1,6 +1,6 @@
-// A slope of clay with a thin weak layer: the layer in rows of quadrilaterals, six across in cells of 1 m, and the clay around it,
+// A slope of clay with a thin weak layer: the layer in rows of quadrilaterals, eight across in cells of 1 m, and the clay around it,
 // both halved into quadrilaterals (a triangle among them would lock).
-DefineConstant[h = 1]; l = 2 * h / 3; H = 2 * h; // halved below
+DefineConstant[h = 1]; l = h / 2; H = 2 * h; // halved below
 Point(1) = {0, 0, 0}; Point(2) = {60, 0, 0}; Point(3) = {60, 10, 0}; Point(4) = {52.8, 10, 0};
 Point(5) = {50, 10, 0}; Point(6) = {40, 10, 0}; Point(7) = {20, 20, 0}; Point(8) = {14, 20, 0};
 Point(9) = {10, 20, 0}; Point(10) = {0, 20, 0};
