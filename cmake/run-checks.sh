@@ -25,7 +25,7 @@ done
 
 now=$(date +%s)
 spent=$((now - ${CHECK_STARTED:-$now}))
-if [ "$spent" -gt 600 ]; then # .ci/run has 900 s, of which these take 300
+if [ "$spent" -gt 500 ]; then # .ci/run has 900 s, of which these take 300 to 400
   echo "make test-sanitize FAST=1: left out, $spent s are spent"
 else
   SECONDS=0
