@@ -58,21 +58,15 @@ static PetscErrorCode MakeGuess(Model *m, FirstGuess guess, PetscReal dt)
   PetscFunctionReturn(0);
 }
 
-/* In stiff matter, and where what yields rubs along walls, displacements that are near may have any residual. */
-static PetscBool nearness_misleads(const Model *m, const StepProblem *p)
-{
-  return p->stiff || (m->contact && contact_rubs(m->c) && materials_yield(m->c->n_materials, m->materials));
-}
-
-/* The first guesses that the next step has: where the nearer one is not sure to be the better one, that of both motions
- * goes first which leaves less. */
+/* The first guesses that the next step has. In stiff matter displacements that are near may have any residual: that of
+ * both motions goes first which leaves less. */
 static PetscErrorCode OrderGuesses(Model *m, PetscReal dt, StepProblem *p, FirstGuess guess[GUESS_N], PetscInt *n)
 {
   PetscReal miss[2];
 
   PetscFunctionBeginUser;
   *n = guess_order(m, guess);
-  if (!nearness_misleads(m, p) || *n < GUESS_N) PetscFunctionReturn(0);
+  if (!p->stiff || *n < GUESS_N) PetscFunctionReturn(0);
   for (PetscInt k = 0; k < 2; ++k) {
     PetscCall(MakeGuess(m, guess[k], dt));
     PetscCall(NewtonMiss(m->newton, p, &miss[k]));

@@ -30,13 +30,16 @@ UNROLLED void multiply(const PetscInt dim, const PetscInt fixed_nn, const Suppor
     const PetscReal tie = tie_of(s, g), lumping = lumping_of(s, g);
     PetscReal in[6 * CLOUD_MAX_NODES], out[6 * CLOUD_MAX_NODES], weight[CLOUD_MAX_NODES];
     PetscReal mean[6] = {0, 0, 0, 0, 0, 0};
+    PetscReal any = 0;
     for (PetscInt I = 0; I < nn; ++I) {
       weight[I] = tie;
       for (PetscInt k = 0; k < width; ++k) {
         in[I * width + k] = x[node[I] * width + k];
         mean[k] -= tie / (PetscReal)nn * in[I * width + k];
+        any += PetscAbsReal(in[I * width + k]);
       }
     }
+    if (any == 0) continue; /* what walls gave too much is lacking near them alone */
     for (PetscInt i = 0; i < nn * width; ++i) out[i] = mean[i % width];
     for (PetscInt p = w->point_start[g]; p < w->point_start[g + 1]; ++p)
       multiply_point(nn, width, s->points->real[POINT_MASS][p], lumping,

@@ -19,18 +19,19 @@ PetscErrorCode MassSolveDestroy(MassSolve *c)
   PetscFunctionReturn(0);
 }
 
-/* Most of a grid is often empty: nodes that have mass or an equation, and all that other ranks own. */
+/* Most of a grid is often empty: nodes that have mass or an equation, and all that other ranks own. Found once:
+ * equations only vanish later. */
 static PetscErrorCode FindReached(MassSolve *c)
 {
   const Grid *grid = c->s->grid;
   const PetscReal *mass = c->s->nodes->mass;
 
   PetscFunctionBeginUser;
-  if (!c->reached) PetscCall(PetscMalloc1(grid->n_nodes, &c->reached));
-  c->n_reached = 0;
+  if (c->reached) PetscFunctionReturn(0);
+  PetscCall(PetscMalloc1(grid->n_nodes, &c->reached));
   for (PetscInt node = 0; node < grid->n_nodes; ++node) {
     PetscBool reached = node >= grid->n_owned || mass[node] > 0;
-    for (PetscInt i = node * c->width; i < (node + 1) * c->width; ++i) reached = reached || c->inverse[i] > 0;
+    for (PetscInt i = node * c->width; i < (node + 1) * c->width && !reached; ++i) reached = c->inverse[i] > 0;
     if (reached) c->reached[c->n_reached++] = node;
     if (node < grid->n_owned) c->n_reached_owned = c->n_reached;
   }

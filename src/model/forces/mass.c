@@ -4,9 +4,12 @@
 #include "method/transfer/mass.h"
 #include "model/model_private.h"
 
+typedef PetscReal Column4 __attribute__((vector_size(4 * sizeof(PetscReal)), aligned(sizeof(PetscReal)), may_alias));
+typedef PetscReal Column8 __attribute__((vector_size(8 * sizeof(PetscReal)), aligned(sizeof(PetscReal)), may_alias));
+
 typedef struct {
   MassSolve solve;
-  PetscReal *value[SUPPORT_MAX_RUNS]; /* of each run, nodes x nodes a group; none where points are groups */
+  PetscReal *value[SUPPORT_MAX_RUNS]; /* of each run, nodes x nodes a group, by columns; none where points are groups */
   PetscReal *diagonal;
 } Matrix;
 
@@ -20,12 +23,31 @@ UNROLLED void group_matrix(const PetscInt nn, const Discretisation *s, PetscInt 
     const PetscReal *N = support_N(s->support, g, p), m = s->points->real[POINT_MASS][p];
     for (PetscInt I = 0; I < nn; ++I) {
       M[I * nn + I] += m * lumped * N[I];
-      for (PetscInt J = 0; J < nn; ++J) M[I * nn + J] += m * (1 - lumped) * N[I] * N[J];
+      for (PetscInt J = 0; J < nn; ++J) M[J * nn + I] += m * (1 - lumped) * N[I] * N[J];
     }
   }
 }
 
-/* product += M x of a run. */
+/* out = M in, of a cell, M by columns. A column is a vector of the compiler's, which would make sums of what it is left. */
+UNROLLED void cell_product(const PetscInt nn, const PetscReal *M, const PetscReal *in, PetscReal *out)
+{
+  if (nn == 8) {
+    Column8 sum = {0};
+    for (PetscInt J = 0; J < nn; ++J) sum += *(const Column8 *)(M + J * nn) * in[J];
+    *(Column8 *)out = sum;
+  } else if (nn == 4) {
+    Column4 sum = {0};
+    for (PetscInt J = 0; J < nn; ++J) sum += *(const Column4 *)(M + J * nn) * in[J];
+    *(Column4 *)out = sum;
+  } else
+    for (PetscInt I = 0; I < nn; ++I) {
+      out[I] = 0;
+      for (PetscInt J = 0; J < nn; ++J) out[I] += M[J * nn + I] * in[J];
+    }
+}
+
+/* product += M x of a run. Impulses act at few nodes, and sweeps carry them on by a layer each: most cells have
+ * nothing to do. */
 UNROLLED void multiply(const PetscInt dim, const PetscInt nn, const SupportRun *run, const Matrix *matrix,
                        const PetscReal *x, PetscReal *product)
 {
@@ -33,12 +55,17 @@ UNROLLED void multiply(const PetscInt dim, const PetscInt nn, const SupportRun *
   const PetscReal *M = matrix->value[run - w->run];
   for (PetscInt g = run->first; g < run->end; ++g, M += nn * nn) {
     const PetscInt *node = w->node + w->node_start[g];
-    for (PetscInt I = 0; I < nn; ++I) {
-      PetscReal sum[3] = {0, 0, 0};
-      for (PetscInt J = 0; J < nn; ++J)
-        for (PetscInt d = 0; d < dim; ++d) sum[d] += M[I * nn + J] * x[node[J] * dim + d];
-      for (PetscInt d = 0; d < dim; ++d) product[node[I] * dim + d] += sum[d];
-    }
+    PetscReal in[3][CLOUD_MAX_NODES], out[3][CLOUD_MAX_NODES];
+    PetscReal any = 0;
+    for (PetscInt I = 0; I < nn; ++I)
+      for (PetscInt d = 0; d < dim; ++d) {
+        in[d][I] = x[node[I] * dim + d];
+        any += PetscAbsReal(in[d][I]);
+      }
+    if (any == 0) continue;
+    for (PetscInt d = 0; d < dim; ++d) cell_product(nn, M, in[d], out[d]);
+    for (PetscInt I = 0; I < nn; ++I)
+      for (PetscInt d = 0; d < dim; ++d) product[node[I] * dim + d] += out[d][I];
   }
 }
 

@@ -1,5 +1,12 @@
 #include "solve/contact/impulse/impulse.h"
 
+void impulse_list(Projection *w)
+{
+  w->n_held = 0;
+  for (PetscInt k = 0; k < w->s->n; ++k)
+    if (w->held[k]) w->list[w->n_held++] = k;
+}
+
 void impulse_hold(const Projection *w, PetscInt k, PetscReal *a)
 {
   const PetscReal *n = w->s->point[k].normal;
@@ -26,10 +33,11 @@ PetscErrorCode ImpulsesToWalls(Projection *w, const PetscReal *p)
   PetscFunctionBeginUser;
   if (!s->n_rigid) PetscFunctionReturn(0);
   PetscCall(PetscArrayzero(w->push, RIGID * s->n_rigid));
-  for (PetscInt k = 0; k < s->n; ++k) {
+  for (PetscInt j = 0; j < w->n_held; ++j) {
+    const PetscInt k = w->list[j];
     const RigidWall *b = contact_rigid(s, s->point + k);
     const PetscReal *r = w->arm + 3 * k, *f = p + 3 * k;
-    if (!b || !w->held[k]) continue;
+    if (!b) continue;
     PetscReal *push = w->push + RIGID * (b - s->rigid);
     for (int d = 0; d < 3; ++d) {
       push[d] -= f[d];

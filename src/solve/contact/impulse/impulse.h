@@ -12,6 +12,7 @@ typedef struct {
   PetscReal *lack;          /* likewise: what the points lacked of their walls' motion at the beginning, m/s */
   PetscReal *own;           /* 1 per contact point: what a unit impulse moves itself */
   unsigned char *held;      /* 0: not at all, 1: along the normal, 3: in all directions */
+  PetscInt n_held, *list;   /* contact points that are held: often a third of those that are near */
   PetscReal *arm;           /* 3 per contact point: against the centre of a wall with mass */
   PetscReal *push, *answer; /* RIGID per wall with mass: momentum, and what it changes */
   PetscReal *nodes;         /* n_nodes x dim: changes of motion; zero but for these: */
@@ -25,6 +26,8 @@ static inline PetscReal impulse_dot(PetscInt n, const PetscReal *a, const PetscR
   return sum;
 }
 
+/* List what is held, after that has changed. */
+void impulse_list(Projection *w);
 /* Of a vector at contact point k what is held there. */
 void impulse_hold(const Projection *w, PetscInt k, PetscReal *a);
 /* a = A nodes at contact point k: what is held of the motion of nodes there. */

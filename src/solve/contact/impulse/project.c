@@ -34,6 +34,7 @@ static PetscErrorCode LetGo(Projection *w, PetscBool *any)
     for (int d = 0; d < 3; ++d) w->p[3 * k + d] = 0;
     here = PETSC_TRUE;
   }
+  if (here) impulse_list(w);
   PetscCallMPI(MPI_Allreduce(&here, any, 1, MPIU_BOOL, MPI_LOR, w->m->grid->comm));
   PetscFunctionReturn(0);
 }
@@ -66,7 +67,7 @@ static void rub(const Projection *w, PetscInt k, PetscReal *p)
 {
   const ContactPoint *c = w->s->point + k;
   PetscReal v[3], shear[3];
-  if (!w->held[k] || c->law.friction == 0 || c->law.kind == CONTACT_BONDED) return;
+  if (c->law.friction == 0 || c->law.kind == CONTACT_BONDED) return;
   const PetscReal normal = impulse_dot(3, p, c->normal), friction = c->law.friction;
   const PetscReal pressing =
     (1 / w->m->rate) * (w->m->start ? impulse_dot(3, c->last, c->normal) / w->s->share.mean : c->now.pressure);
@@ -86,7 +87,8 @@ static void rub(const Projection *w, PetscInt k, PetscReal *p)
 static void lose(const Projection *w, ContactSum *sum)
 {
   PetscReal v[3];
-  for (PetscInt k = 0; k < w->s->n; ++k) {
+  for (PetscInt j = 0; j < w->n_held; ++j) {
+    const PetscInt k = w->list[j];
     slip_of(w, k, v);
     sum[w->s->point[k].wall].sliding -= 0.5 * impulse_dot(3, v, w->p + 3 * k);
   }
@@ -134,7 +136,7 @@ static PetscErrorCode Create(const Contact *s, const ContactMotion *m, Projectio
 
   PetscFunctionBeginUser;
   *w = (Projection){.s = s, .m = m};
-  PetscCall(PetscCalloc4(3 * s->n, &w->p, 3 * s->n, &w->lack, s->n, &w->own, s->n, &w->held));
+  PetscCall(PetscCalloc5(3 * s->n, &w->p, 3 * s->n, &w->lack, s->n, &w->own, s->n, &w->held, s->n, &w->list));
   PetscCall(
     PetscCalloc3(s->n_rigid ? 3 * s->n : 0, &w->arm, RIGID * s->n_rigid, &w->push, RIGID * s->n_rigid, &w->answer));
   for (PetscInt k = 0; k < s->n; ++k) {
@@ -150,6 +152,7 @@ static PetscErrorCode Create(const Contact *s, const ContactMotion *m, Projectio
     for (PetscInt e = c->first; e < c->first + c->n; ++e)
       w->own[k] += m->mass[s->node[e]] > 1e-300 ? s->N[e] * s->N[e] / m->mass[s->node[e]] : 0;
   }
+  impulse_list(w);
   PetscCallMPI(MPI_Allreduce(&here, any, 1, MPIU_BOOL, MPI_LOR, m->grid->comm));
   if (*any) PetscCall(ListMoved(w));
   PetscFunctionReturn(0);
@@ -158,7 +161,7 @@ static PetscErrorCode Create(const Contact *s, const ContactMotion *m, Projectio
 static PetscErrorCode Destroy(Projection *w)
 {
   PetscFunctionBeginUser;
-  PetscCall(PetscFree4(w->p, w->lack, w->own, w->held));
+  PetscCall(PetscFree5(w->p, w->lack, w->own, w->held, w->list));
   PetscCall(PetscFree3(w->arm, w->push, w->answer));
   PetscCall(PetscFree(w->nodes));
   PetscCall(PetscFree(w->moved));
@@ -180,7 +183,7 @@ PetscErrorCode ContactProject(Contact *s, const ContactMotion *m, ContactSum *su
     PetscCall(m->whole ? ImpulsesWhole(&w) : ImpulsesLumped(&w));
     PetscCall(LetGo(&w, &any));
   }
-  for (PetscInt k = 0; k < s->n; ++k) rub(&w, k, w.p + 3 * k);
+  for (PetscInt j = 0; j < w.n_held; ++j) rub(&w, w.list[j], w.p + 3 * w.list[j]);
   lose(&w, sum);
   PetscCall(m->whole ? ImpulsesWholeSpread(&w, w.p) : ImpulsesLumpedSpread(&w, w.p));
   for (PetscInt i = 0; i < w.n_moved * s->dim; ++i) {
@@ -189,7 +192,8 @@ PetscErrorCode ContactProject(Contact *s, const ContactMotion *m, ContactSum *su
   }
   for (PetscInt k = 0; k < s->n_rigid; ++k) rigid_push(s->rigid + k, w.push + RIGID * k);
   lose(&w, sum);
-  for (PetscInt k = 0; k < s->n; ++k) contact_add(s->point + k, s->dim, w.p + 3 * k, sum + s->point[k].wall);
+  for (PetscInt j = 0; j < w.n_held; ++j)
+    contact_add(s->point + w.list[j], s->dim, w.p + 3 * w.list[j], sum + s->point[w.list[j]].wall);
   PetscCall(Destroy(&w));
   PetscFunctionReturn(0);
 }
