@@ -23,6 +23,7 @@ typedef struct {
   PetscInt columns;    /* of several states; 0: chosen */
   PetscBool grid;      /* draw the grid too */
   PetscBool arrows;    /* of a vector field in the plane: arrows, too */
+  PetscBool smooth;    /* means of the points around instead of what each carries */
   PetscBool bare;      /* without the outline that the body had at first, and where the grid is held */
   PetscBool animate;   /* PlotAnimate */
   const char *profile; /* of PlotProfile: a wall, by its name */

@@ -110,15 +110,21 @@ static void ContainerOnBothSides(void **state)
   close_picture(&p);
 }
 
-/* Lines of a wall in space, in a box of 4 m about the origin; to be freed by PlotFramesFree. */
-static void wires_of(Picture *p, const Shape *shape)
+/* Lines and faces of a wall in space, in a box of 4 m about the origin; to be closed by close_wires. */
+static void wires_of(Picture *p, const Shape *shape, PetscBool inside)
 {
-  p->walls[0] = (WallSpec){.shape = *shape};
+  p->walls[0] = (WallSpec){.shape = *shape, .inside = inside};
   open_picture(p, &kinematics_3d, 1);
   p->scene.dim = 3, p->scene.up = 2;
   for (int d = 0; d < 3; ++d) p->scene.box_min[d] = -2, p->scene.box_max[d] = 2;
   p->scene.frames[0] = (PlotFrame){0};
   assert_int_equal(PlotWallsLines(&p->scene), 0);
+}
+
+static void close_wires(Picture *p)
+{
+  assert_int_equal(PlotFramesFree(&p->scene), 0);
+  close_picture(p);
 }
 
 static PetscReal length_of_all(const PlotFrame *f)
@@ -142,27 +148,110 @@ static void LinesInSpace(void **state)
               plane = {.kind = SHAPE_HALF_SPACE, .normal = {0, 0, 1}};
   PetscReal middle[3];
   (void)state;
-  wires_of(&p, &box);
+  wires_of(&p, &box, PETSC_FALSE);
   assert_true(fabs(length_of_all(&p.scene.frames[0]) - 4 * (2 + 1 + 0.5)) < 1e-9);
-  assert_int_equal(PlotFramesFree(&p.scene), 0);
-  close_picture(&p);
-  wires_of(&p, &deep); /* four sides end at the ground, a hundredth below the box */
+  close_wires(&p);
+  wires_of(&p, &deep, PETSC_FALSE); /* four sides end at the ground, a hundredth below the box */
   assert_true(fabs(length_of_all(&p.scene.frames[0]) - 2 * (2 + 1) - 4 * (2 + 0.02 * 4 + 0.5)) < 1e-9);
-  assert_int_equal(PlotFramesFree(&p.scene), 0);
-  close_picture(&p);
-  wires_of(&p, &plane); /* a hundredth of the picture beyond its box, on each side */
+  close_wires(&p);
+  wires_of(&p, &plane, PETSC_FALSE); /* a hundredth of the picture beyond its box, on each side */
   assert_true(fabs(length_of_all(&p.scene.frames[0]) - 4 * 4 * 1.04) < 1e-9);
-  assert_int_equal(PlotFramesFree(&p.scene), 0);
-  close_picture(&p);
-  wires_of(&p, &ball);
+  close_wires(&p);
+  wires_of(&p, &ball, PETSC_FALSE);
   plot_project(&p.scene, ball.centre, middle);
   assert_true(p.scene.frames[0].n_lines > 10);
   for (PetscInt k = 0; k < 2 * p.scene.frames[0].n_lines; ++k) {
     const PetscReal *at = p.scene.frames[0].line + 3 * k;
     assert_true(fabs(hypot(at[0] - middle[0], at[1] - middle[1]) - 0.5) < 0.03);
   }
-  assert_int_equal(PlotFramesFree(&p.scene), 0);
-  close_picture(&p);
+  close_wires(&p);
+}
+
+/* Area of the faces on the page. */
+static PetscReal area_of_all(const PlotFrame *f)
+{
+  PetscReal sum = 0;
+  for (PetscInt k = 0; k < f->n_faces; ++k) {
+    const PetscReal *a = f->face + 9 * k, *b = a + 3, *c = a + 6;
+    sum += 0.5 * fabs((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]));
+  }
+  return sum;
+}
+
+/* Of an area with normal n, as the eye sees it; nothing if that turns away. */
+static PetscReal seen_area(const Picture *p, PetscReal x, PetscReal y, PetscReal z, PetscReal area)
+{
+  const PetscReal n[3] = {x, y, z};
+  PetscReal towards[3];
+  plot_project(&p->scene, n, towards);
+  return PetscMax(towards[2], 0) * area;
+}
+
+/* Of a box from ground to 0.5 m, 2 m x 1 m, sign -1: of a container, from within. */
+static PetscReal seen_box(const Picture *p, PetscReal sign, PetscReal height)
+{
+  return seen_area(p, sign, 0, 0, height) + seen_area(p, -sign, 0, 0, height) + seen_area(p, 0, sign, 0, 2 * height) +
+         seen_area(p, 0, -sign, 0, 2 * height) + seen_area(p, 0, 0, sign, 2);
+}
+
+/* What turns to the eye, as far as the picture goes: of a container what is behind its matter, of a thin wall nothing. */
+static void FacesInSpace(void **state)
+{
+  static Picture p;
+  const Shape deep = {.kind = SHAPE_BOX, .min = {-1, -0.5, -90}, .max = {1, 0.5, 0.5}},
+              up = {.kind = SHAPE_HALF_SPACE, .normal = {0, 0, 1}},
+              down = {.kind = SHAPE_HALF_SPACE, .normal = {0, 0, -1}},
+              wide = {.kind = SHAPE_BOX, .min = {-90, -90, -90}, .max = {90, 90, 0.5}};
+  (void)state;
+  wires_of(&p, &deep, PETSC_FALSE); /* to the ground, a hundredth below the box */
+  assert_true(fabs(area_of_all(&p.scene.frames[0]) - seen_box(&p, 1, 2.08 + 0.5)) < 1e-9);
+  close_wires(&p);
+  wires_of(&p, &deep, PETSC_TRUE); /* its top is within, and turns away: the ground is farther down than is seen */
+  assert_true(fabs(area_of_all(&p.scene.frames[0]) - seen_box(&p, -1, 2.08 + 0.5)) < 1e-9);
+  close_wires(&p);
+  wires_of(&p, &up, PETSC_FALSE);
+  assert_true(fabs(area_of_all(&p.scene.frames[0]) - seen_area(&p, 0, 0, 1, 4.16 * 4.16)) < 1e-9);
+  close_wires(&p);
+  wires_of(&p, &down, PETSC_FALSE);
+  assert_int_equal(p.scene.frames[0].n_faces, 0);
+  close_wires(&p);
+  wires_of(&p, &wide, PETSC_FALSE); /* it ends far away: no farther than the view */
+  assert_true(fabs(area_of_all(&p.scene.frames[0]) - seen_area(&p, 0, 0, 1, 4.16 * 4.16)) < 1e-9);
+  close_wires(&p);
+}
+
+/* A face 1 m before or behind two balls side by side, from x = left on. */
+static void draw_face(PetscReal left, PetscReal depth, unsigned char *rgba)
+{
+  const PetscReal x[] = {-0.5, 0, 0, 0.5, 0, 0}, radius[] = {0.3, 0.3}, value[] = {0, 0};
+  const PetscReal face[] = {left, -1, depth, 1, -1, depth, 1, 1, depth, left, -1, depth, 1, 1, depth, left, 1, depth};
+  const PetscInt face_of[] = {0, 0};
+  const RasterScene scene = {.n = 2,
+                             .x = x,
+                             .radius = radius,
+                             .value = value,
+                             .n_faces = 2,
+                             .face = face,
+                             .face_of = face_of,
+                             .min = {-1, -1},
+                             .max = {1, 1},
+                             .width = 8,
+                             .height = 8};
+  assert_int_equal(RasterDraw(&scene, rgba), 0);
+}
+
+/* A face hides what is behind it, but for one that hides most of all there is. */
+static void FacesHide(void **state)
+{
+  enum { LEFT = 4 * (4 * 8 + 2), RIGHT = 4 * (4 * 8 + 5), CORNER = 4 * 7 };
+  unsigned char rgba[4 * 64];
+  (void)state;
+  draw_face(-1, -1, rgba);
+  assert_true(rgba[LEFT] == 68 && rgba[RIGHT] == 68 && rgba[CORNER] == 235);
+  draw_face(0.1, 1, rgba);
+  assert_true(rgba[LEFT] == 68 && rgba[RIGHT] == 235 && rgba[CORNER] == 235);
+  draw_face(-1, 1, rgba);
+  assert_true(rgba[LEFT] == 68 && rgba[RIGHT] == 68 && rgba[CORNER] == 235);
 }
 
 /* Lines where nodes do not move across them, no farther than the grid goes. */
@@ -196,6 +285,7 @@ static void FloorOfAGrid(void **state)
 int main(void)
 {
   const struct CMUnitTest tests[] = {cmocka_unit_test(CircleThatMoves), cmocka_unit_test(ContainerOnBothSides),
-                                     cmocka_unit_test(LinesInSpace), cmocka_unit_test(FloorOfAGrid)};
+                                     cmocka_unit_test(LinesInSpace),    cmocka_unit_test(FacesInSpace),
+                                     cmocka_unit_test(FacesHide),       cmocka_unit_test(FloorOfAGrid)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -19,6 +19,7 @@ static const CliOption options_known[] = {
   {"bare", NULL, "without the outline that bodies had at first, and without lines where the grid is held"},
   {"profile", "WALL", "instead: the pressure and the shear of a wall, as a picture and a table (profile_WALL.csv)"},
   {"arrows", NULL, "of a vector field in the plane: arrows, too"},
+  {"smooth", NULL, "means of the points around each, over about a cell: without what scatters from point to point"},
   {"range", "A:B", "values of the first and the last colour"},
   {"size", "WxH", "pixels, for example 1200x800 (default: to suit the body)"},
   {"up", "x|y|z", "the axis that points up in a picture in space (default: that of gravity)"},
@@ -119,6 +120,7 @@ static PetscErrorCode Understand(const CliArguments *arguments, PlotOptions *opt
   options->grid = cli_flag(arguments, "grid");
   options->bare = cli_flag(arguments, "bare");
   options->arrows = cli_flag(arguments, "arrows");
+  options->smooth = cli_flag(arguments, "smooth");
   options->animate = cli_flag(arguments, "animate");
   options->profile = cli_value(arguments, "profile");
   options->half = cli_flag(arguments, "half");
@@ -177,8 +179,9 @@ static PetscErrorCode UnderstandOutput(const CliArguments *arguments, PetscBool 
 /* What pictures of histories take no notice of, and what those of states do not. */
 static PetscErrorCode UnderstandCurves(const CliArguments *arguments, PetscBool curves, PetscBool *ok, int *exit_code)
 {
-  static const char *const of_states[] = {"field", "component", "time", "columns", "grid",    "bare",   "profile",
-                                          "range", "up",        "half", "turned",  "animate", "arrows", NULL};
+  static const char *const of_states[] = {"field",  "component", "time",   "columns", "grid",
+                                          "bare",   "profile",   "range",  "up",      "half",
+                                          "turned", "animate",   "arrows", "smooth",  NULL};
   static const char *const of_curves[] = {"x", "legend", NULL};
 
   PetscFunctionBeginUser;

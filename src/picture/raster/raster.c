@@ -21,7 +21,8 @@ void palette_colour(PetscReal value, PetscReal rgb[3])
 
 /* Steps through a ball to its first place in the body, and halvings of the last one. */
 enum { MARCH = 16, BISECT = 8 };
-#define SAME 0.3 /* of a ball's radius: places of one surface are no farther apart along a ray */
+#define FACE_GREY 235 /* in full light */
+#define SAME 0.3      /* of a ball's radius: places of one surface are no farther apart along a ray */
 
 static PetscErrorCode CanvasCreate(const RasterScene *scene, Canvas *canvas)
 {
@@ -119,10 +120,18 @@ static void sample_colour(const RasterScene *scene, const Canvas *canvas, int i,
     rgb[0] = rgb[1] = rgb[2] = 70;
     return;
   }
-  if (t < 0)
-    value_colour(scene, scene->value[p], rgb),
-      light = canvas->light ? canvas->light[j / SAMPLES * scene->width + i / SAMPLES] : 1;
-  else value_colour(scene, triangle_value(scene, canvas, t, i, j, &line), rgb), light = triangle_light(scene, t);
+  if (t < 0) {
+    const int pixel = j / SAMPLES * scene->width + i / SAMPLES;
+    const PetscBool own = (PetscBool)(!canvas->value || PetscIsNanReal(scene->value[p]));
+    value_colour(scene, own ? scene->value[p] : (PetscReal)canvas->value[pixel], rgb);
+    light = canvas->light ? canvas->light[pixel] : 1;
+  } else if (t >= scene->n_triangles) {
+    rgb[0] = rgb[1] = rgb[2] = FACE_GREY;
+    light = triangle_light(scene, scene->face + 9 * (t - scene->n_triangles));
+  } else {
+    value_colour(scene, triangle_value(scene, canvas, t, i, j, &line), rgb);
+    light = triangle_light(scene, scene->corner + 9 * t);
+  }
   if (line) light *= 0.55;
   for (int c = 0; c < 3; ++c) rgb[c] *= light;
 }
@@ -206,12 +215,18 @@ PetscErrorCode RasterDraw(const RasterScene *scene, unsigned char *rgba)
     PetscCall(PetscMalloc1(scene->width * scene->height, &canvas.light));
     PetscCall(CanvasRelief(scene, &canvas, canvas.light));
   }
+  if (scene->blur > 0 && !scene->shaded && !scene->named) {
+    PetscCall(PetscMalloc1(scene->width * scene->height, &canvas.value));
+    PetscCall(CanvasBlur(scene, &canvas, canvas.value));
+  }
   canvas_triangles(scene, &canvas);
+  canvas_faces(scene, &canvas);
   canvas_lines(scene, &canvas);
   for (int row = 0; row < scene->height; ++row)
     for (int column = 0; column < scene->width; ++column)
       raster_pixel(scene, &canvas, column, row, rgba + 4 * ((size_t)row * (size_t)scene->width + (size_t)column));
   PetscCall(PetscFree2(canvas.front, canvas.point));
   PetscCall(PetscFree(canvas.light));
+  PetscCall(PetscFree(canvas.value));
   PetscFunctionReturn(0);
 }

@@ -26,8 +26,13 @@ typedef struct {
   const PetscReal *corner;       /* n_triangles x 3 x 3, as x */
   const PetscReal *corner_value; /* n_triangles x 3, as value; linear between corners */
   const unsigned char *side;     /* n_triangles: bit k: from corner k to the next a line is drawn; NULL: none */
+  PetscInt n_faces;
+  const PetscReal *face; /* n_faces x 3 x 3, as corner: of walls, grey */
+  const PetscInt
+    *face_of; /* n_faces, those of a wall behind each other: which; where bodies are in it, it hides none */
   PetscInt n_lines;
   const PetscReal *line; /* n_lines x 2 x 3, as x: dark, where nothing hides them */
+  PetscReal blur;        /* m, over which values of balls in the plane go over into each other; 0: each has its own */
   PetscBool named;       /* values are numbers of names, 0, 1, ... */
   PetscBool shaded;      /* as bodies in space; otherwise flat */
   /* m; gaps between balls up to twice this wide are filled, in space before what is empty, and the outline of what

@@ -17,9 +17,9 @@ static PetscBool shares(PetscReal at[3][3], PetscReal x, PetscReal y, PetscReal 
   return PETSC_TRUE;
 }
 
-static void corners(const RasterScene *scene, const Canvas *canvas, PetscInt t, PetscReal at[3][3])
+static void corners(const RasterScene *scene, const Canvas *canvas, const PetscReal *corner, PetscReal at[3][3])
 {
-  for (int k = 0; k < 3; ++k) canvas_place(scene, canvas, scene->corner + 9 * t + 3 * k, at[k]);
+  for (int k = 0; k < 3; ++k) canvas_place(scene, canvas, corner + 3 * k, at[k]);
 }
 
 /* Samples from the least to the largest of three coordinates. */
@@ -29,23 +29,39 @@ static void span(PetscReal a, PetscReal b, PetscReal c, int last, int range[2])
   range[1] = (int)PetscMin(floor(PetscMax(PetscMax(a, b), c) + 1e-6), last);
 }
 
+void canvas_each(const RasterScene *scene, const Canvas *canvas, const PetscReal *corner,
+                 void (*visit)(void *context, int i, int j, float front), void *context)
+{
+  PetscReal at[3][3], share[3];
+  int i[2], j[2];
+  corners(scene, canvas, corner, at);
+  span(at[0][0], at[1][0], at[2][0], canvas->width - 1, i);
+  span(at[0][1], at[1][1], at[2][1], canvas->height - 1, j);
+  for (int b = j[0]; b <= j[1]; ++b)
+    for (int a = i[0]; a <= i[1]; ++a)
+      if (shares(at, a, b, share) && share[0] >= -1e-9 && share[1] >= -1e-9 && share[2] >= -1e-9)
+        visit(context, a, b, (float)(share[0] * at[0][2] + share[1] * at[1][2] + share[2] * at[2][2]));
+}
+
+typedef struct {
+  Canvas *canvas;
+  PetscInt index;
+} Triangle;
+
+static void draw(void *context, int i, int j, float front)
+{
+  const Triangle *t = context;
+  const size_t k = canvas_at(t->canvas, i, j);
+  if (t->canvas->point[k] != -1 && t->canvas->front[k] >= front) return;
+  t->canvas->front[k] = front;
+  t->canvas->point[k] = t->index;
+}
+
 void canvas_triangles(const RasterScene *scene, Canvas *canvas)
 {
   for (PetscInt t = 0; t < scene->n_triangles; ++t) {
-    PetscReal at[3][3], share[3];
-    int i[2], j[2];
-    corners(scene, canvas, t, at);
-    span(at[0][0], at[1][0], at[2][0], canvas->width - 1, i);
-    span(at[0][1], at[1][1], at[2][1], canvas->height - 1, j);
-    for (int b = j[0]; b <= j[1]; ++b)
-      for (int a = i[0]; a <= i[1]; ++a) {
-        const size_t k = canvas_at(canvas, a, b);
-        if (!shares(at, a, b, share) || share[0] < -1e-9 || share[1] < -1e-9 || share[2] < -1e-9) continue;
-        const float front = (float)(share[0] * at[0][2] + share[1] * at[1][2] + share[2] * at[2][2]);
-        if (canvas->point[k] != -1 && canvas->front[k] >= front) continue;
-        canvas->front[k] = front;
-        canvas->point[k] = scene->n + t;
-      }
+    Triangle triangle = {.canvas = canvas, .index = scene->n + t};
+    canvas_each(scene, canvas, scene->corner + 9 * t, draw, &triangle);
   }
 }
 
@@ -53,7 +69,7 @@ PetscReal triangle_value(const RasterScene *scene, const Canvas *canvas, PetscIn
 {
   const PetscReal *value = scene->corner_value + 3 * t;
   PetscReal at[3][3], share[3];
-  corners(scene, canvas, t, at);
+  corners(scene, canvas, scene->corner + 9 * t, at);
   *line = PETSC_FALSE;
   if (!shares(at, i, j, share)) return value[0];
   const PetscReal area =
@@ -67,10 +83,9 @@ PetscReal triangle_value(const RasterScene *scene, const Canvas *canvas, PetscIn
   return scene->named ? value[0] : share[0] * value[0] + share[1] * value[1] + share[2] * value[2];
 }
 
-PetscReal triangle_light(const RasterScene *scene, PetscInt t)
+PetscReal triangle_light(const RasterScene *scene, const PetscReal *c)
 {
   static const PetscReal towards[3] = {-0.35, 0.50, 0.79};
-  const PetscReal *c = scene->corner + 9 * t;
   PetscReal a[3], b[3];
   if (!scene->shaded) return 1;
   for (int d = 0; d < 3; ++d) a[d] = c[3 + d] - c[d], b[d] = c[6 + d] - c[d];

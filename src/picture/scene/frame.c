@@ -7,8 +7,6 @@
 /* Bodies with an outline of their own; more are drawn as one. */
 enum { MOST_PARTS = 16 };
 
-static PetscBool has_place(const PetscReal *x) { return fabs(x[0]) < 1e30 && fabs(x[1]) < 1e30 && fabs(x[2]) < 1e30; }
-
 /* Copy the points that have a place; a run that broke may hold others. */
 static void take_points(PlotScene *scene, PlotFrame *f, PetscInt n, const PetscReal *x, const PlotScalar *scalar,
                         PetscInt components, const PetscReal *data)
@@ -18,7 +16,7 @@ static void take_points(PlotScene *scene, PlotFrame *f, PetscInt n, const PetscR
     if (scene->frames[k].n > 0) first = PETSC_FALSE;
   for (PetscInt i = 0; i < n; ++i) {
     const PetscReal *p = x + 3 * i;
-    if (!has_place(p)) continue;
+    if (!plot_has_place(p)) continue;
     for (int d = 0; d < 3; ++d) {
       scene->box_min[d] = first ? p[d] : PetscMin(scene->box_min[d], p[d]);
       scene->box_max[d] = first ? p[d] : PetscMax(scene->box_max[d], p[d]);
@@ -56,7 +54,7 @@ static PetscErrorCode TakeFirst(VtkFile *file, const PlotScene *scene, PetscInt 
   PetscCall(PetscMalloc2(3 * (size_t)(sides * n), &f->first, sides * n, &f->first_radius));
   for (PetscInt side = 0; side < sides; ++side)
     for (PetscInt i = 0; i < n; ++i) {
-      if (!has_place(x + 3 * i)) continue;
+      if (!plot_has_place(x + 3 * i)) continue;
       PetscReal *at = f->first + 3 * f->n_first++;
       for (int d = 0; d < 3; ++d) at[d] = x[3 * i + d] - u[3 * i + d];
       if (side) at[0] = -at[0];
@@ -76,25 +74,47 @@ static void mirror_points(PlotFrame *f)
   }
 }
 
-/* Whose points are, of bodies between which there are interfaces: on both sides of the axis, if so. */
-static PetscErrorCode TakeParts(VtkFile *file, const PlotScene *scene, PetscInt n, const PetscReal *x, PlotFrame *f)
+/* Whose points are; NULL, if nobody wrote it. */
+static PetscErrorCode ReadBodies(VtkFile *file, PetscReal **body)
 {
   const VtkFieldInfo *fields;
-  const PetscInt n_fields = vtk_read_fields(file, &fields);
-  const Case *c = scene->walled;
-  PetscReal *body = NULL;
+  const PetscInt n = vtk_read_fields(file, &fields);
   char reason[256];
 
   PetscFunctionBeginUser;
+  *body = NULL;
+  for (PetscInt i = 0; i < n && !*body; ++i)
+    if (!strcmp(fields[i].name, "body") && VtkReadField(file, &fields[i], body, reason)) *body = NULL;
+  PetscFunctionReturn(0);
+}
+
+/* Of bodies between which there are interfaces: on both sides of the axis, if so. */
+static PetscErrorCode TakeParts(VtkFile *file, const PlotScene *scene, PetscInt n, const PetscReal *x, PlotFrame *f)
+{
+  const Case *c = scene->walled;
+  PetscReal *body;
+
+  PetscFunctionBeginUser;
   if (!c || !c->n_interfaces || c->n_bodies > MOST_PARTS) PetscFunctionReturn(0);
-  for (PetscInt i = 0; i < n_fields && !body; ++i)
-    if (!strcmp(fields[i].name, "body") && VtkReadField(file, &fields[i], &body, reason)) body = NULL;
+  PetscCall(ReadBodies(file, &body));
   if (!body) PetscFunctionReturn(0);
   PetscCall(PetscMalloc1(f->n, &f->part));
   for (PetscInt k = 0; k < f->n;)
     for (PetscInt i = 0; i < n; ++i)
-      if (has_place(x + 3 * i)) f->part[k++] = (unsigned char)PetscMax(0, PetscMin(body[i], c->n_bodies - 1));
+      if (plot_has_place(x + 3 * i)) f->part[k++] = (unsigned char)PetscMax(0, PetscMin(body[i], c->n_bodies - 1));
   f->n_parts = c->n_bodies;
+  PetscCall(PetscFree(body));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode Smooth(VtkFile *file, const PlotScene *scene, PetscInt n, const PetscReal *x, PetscInt components,
+                             PetscReal *data)
+{
+  PetscReal *body;
+
+  PetscFunctionBeginUser;
+  PetscCall(ReadBodies(file, &body));
+  PetscCall(PlotSmooth(scene->walled ? scene->walled->kinematics->dim : 3, n, x, body, components, data));
   PetscCall(PetscFree(body));
   PetscFunctionReturn(0);
 }
@@ -122,6 +142,7 @@ PetscErrorCode PlotFrameRead(VtkFile *file, const VtkFieldInfo *field, const Plo
   if (VtkReadCoordinates(file, &x, reason)) PetscFunctionReturn(0);
   if (VtkReadField(file, field, &data, reason) == 0) {
     PetscCall(PetscMalloc3(3 * (size_t)most, &f->x, most, &f->value, most, &f->radius));
+    if (scene->smooth && !scene->named) PetscCall(Smooth(file, scene, n, x, field->components, data));
     take_points(scene, f, n, x, scalar, field->components, data);
     if (scene->arrows && field->components == 3 && scene->walled && scene->walled->kinematics->dim == 2)
       PetscCall(PlotFrameArrows(n, x, field->components, data, f));
@@ -215,7 +236,7 @@ static PetscErrorCode TakeLines(const VtkCells *cells, const PetscReal *x, Petsc
       const PetscInt *node = cells->node + cells->start[c];
       const PetscReal *a = x + 3 * node[pairs[2 * k]], *b = x + 3 * node[pairs[2 * k + 1]];
       PetscReal *edge = f->edges + 4 * (size_t)f->n_edges;
-      if (!has_place(a) || !has_place(b)) continue;
+      if (!plot_has_place(a) || !plot_has_place(b)) continue;
       edge[0] = a[0], edge[1] = a[1], edge[2] = b[0], edge[3] = b[1];
       ++f->n_edges;
     }
@@ -234,7 +255,7 @@ PetscErrorCode PlotFrameGrid(VtkFile *file, PlotScene *scene, PlotFrame *f, char
   if (VtkReadCoordinates(file, &x, reason)) PetscFunctionReturn(0);
   if (VtkReadTopology(file, &cells, reason) == 0) {
     for (PetscInt i = 0; i < points; ++i)
-      for (int d = 0; d < scene->dim && has_place(x + 3 * i); ++d) {
+      for (int d = 0; d < scene->dim && plot_has_place(x + 3 * i); ++d) {
         scene->box_min[d] = PetscMin(scene->box_min[d], x[3 * i + d]);
         scene->box_max[d] = PetscMax(scene->box_max[d], x[3 * i + d]);
       }
@@ -260,6 +281,7 @@ PetscErrorCode PlotFramesFree(PlotScene *scene)
     PetscCall(PetscFree3(f->shape, f->knows, f->back));
     PetscCall(PetscFree(f->there));
     PetscCall(PetscFree(f->line));
+    PetscCall(PetscFree2(f->face, f->face_of));
     PetscCall(PetscFree(f->edges));
     PetscCall(PetscFree(f->arrow));
   }

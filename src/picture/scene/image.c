@@ -7,6 +7,7 @@
 
 /* Pixels along a section that is turned: more are of no use. */
 #define SECTION_PIXELS 2000
+#define BLUR 0.8 /* of the distance from point to point, where fields are smoothed */
 
 void plot_blend(unsigned char *rgba, PetscReal grey, PetscReal alpha)
 {
@@ -30,9 +31,11 @@ static PetscErrorCode Balls(const PlotScene *scene, const PlotFrame *f, RasterSc
   raster->n_triangles = f->n_triangles;
   raster->corner = f->corner, raster->corner_value = corner, raster->side = scene->grid ? f->side : NULL;
   raster->n_parts = f->n_parts, raster->part = f->part;
+  raster->n_faces = f->n_faces, raster->face = f->face, raster->face_of = f->face_of;
   raster->n_lines = f->n_lines, raster->line = f->line;
   raster->named = scene->named;
   raster->gap = f->gap;
+  raster->blur = scene->smooth ? BLUR * scene->gap : 0;
   const PlotOutline outline = {.c = scene->walled, .contours = scene->contours, .frame = f};
   raster->knows = f->knows, raster->holds = plot_shape_holds, raster->of = &outline;
   PetscCall(RasterDraw(raster, rgba));

@@ -1,5 +1,6 @@
 /* What a picture of states shows, and how it is laid out on the page. */
 #pragma once
+#include <math.h>
 #include <petscsys.h>
 #include <stdio.h>
 #include "picture/body/contours.h"
@@ -26,7 +27,10 @@ typedef struct {
   PetscInt n_arrows;
   PetscReal *arrow; /* n_arrows x 4: where they begin, and how far they go, m */
   PetscInt n_lines;
-  PetscReal *line;  /* n_lines x 2 x 3: walls in space */
+  PetscReal *line; /* n_lines x 2 x 3: walls in space */
+  PetscInt n_faces;
+  PetscReal *face; /* n_faces x 3 x 3, and n_faces: what of walls in space turns to the eye (RasterScene) */
+  PetscInt *face_of;
   PetscReal *walls; /* 12 numbers of each wall with mass: walls_put_frames; NULL: they are where they began */
   PetscInt n_first;
   PetscReal *first, *first_radius; /* n_first x 3: where the points began, in the plane; NULL: not drawn */
@@ -65,6 +69,7 @@ typedef struct {
   PetscBool named;      /* values are numbers of bodies or materials: they have names instead */
   PetscBool grid;       /* lines of the cells */
   PetscBool arrows;     /* of a vector field in the plane */
+  PetscBool smooth;     /* fields are means of the points around */
   PetscBool bare;       /* without the first outline, and where the grid is held */
   PetscReal gap;        /* how far apart points stand in the first frame, m */
   PetscInt up;          /* axis that points up, in space */
@@ -135,6 +140,15 @@ PetscErrorCode PlotDraw(PlotScene *scene, int width, int height, const char *png
  * reason tells. */
 PetscErrorCode PlotFrameRead(VtkFile *file, const VtkFieldInfo *field, const PlotScalar *scalar, PlotScene *scene,
                              char reason[256]);
+/* A run that broke may hold points without one. */
+static inline PetscBool plot_has_place(const PetscReal *x)
+{
+  return (PetscBool)(fabs(x[0]) < 1e30 && fabs(x[1]) < 1e30 && fabs(x[2]) < 1e30);
+}
+/* smooth.c: data (n x components) of points at x (n x 3) become means of what is around in the same body (n; NULL: there
+ * is one), in about a cell. */
+PetscErrorCode PlotSmooth(PetscInt dim, PetscInt n, const PetscReal *x, const PetscReal *body, PetscInt components,
+                          PetscReal *data);
 /* body/mesh.c: let the cells of a mesh, which moves with its body, stand for the points of the frame. */
 PetscErrorCode PlotFrameMesh(VtkFile *file, PetscInt dim, const VtkFieldInfo *field, const PlotScalar *scalar,
                              PlotScene *scene, PlotFrame *frame, char reason[256]);

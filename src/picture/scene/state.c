@@ -160,7 +160,7 @@ static PetscErrorCode AddGrid(PlotScene *scene, PlotFrame *frame, const char *ru
   PetscFunctionReturn(0);
 }
 
-static void name_subject(PlotSubject *s)
+static void name_subject(PlotSubject *s, PetscBool smooth)
 {
   const PlotScalar *scalar = &s->scalar;
   if (scalar->reduction == PLOT_MISES || scalar->reduction == PLOT_MEAN)
@@ -168,6 +168,8 @@ static void name_subject(PlotSubject *s)
   else snprintf(s->words, sizeof s->words, "%s%s%s", s->field.name, scalar->name[0] ? " " : "", scalar->name);
   for (char *c = s->words; *c; ++c)
     if (*c == '_') *c = ' ';
+  if (smooth && !plot_has_names(s->field.name))
+    snprintf(s->words + strlen(s->words), sizeof s->words - strlen(s->words), ", smoothed");
 }
 
 /* The cells of fem, which are the body itself; points, where there is no file of them. */
@@ -206,7 +208,7 @@ static PetscErrorCode AddFrame(const PlotOptions *options, const VtkState *state
   PetscCall(FindField(file, options->field, diag, &field));
   if (field && plot_scalar_choose(field->name, field->components, options->component, diag, &subject->scalar)) {
     subject->field = *field;
-    name_subject(subject);
+    name_subject(subject, options->smooth);
     scene->named = plot_has_names(field->name);
     PetscCall(PlotFrameRead(file, field, &subject->scalar, scene, reason));
     if (reason[0]) cannot_read(diag, path, reason);
@@ -283,6 +285,7 @@ PetscErrorCode PlotSceneFill(const PlotOptions *options, PetscInt n, const VtkSt
     PetscCall(PlotOriginRead(options->run, &scene->origin));
   scene->grid = options->grid;
   scene->arrows = options->arrows;
+  scene->smooth = options->smooth;
   scene->bare = options->bare;
   scene->columns = options->columns;
   for (PetscInt k = 0; k < n && !diag_errors(diag); ++k) {

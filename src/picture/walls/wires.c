@@ -1,4 +1,4 @@
-/* Walls in space as lines: where their surface ends, has an edge, or turns away from the eye. */
+/* Walls in space: lines where their surface ends, has an edge, or turns away from the eye; faces between them. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -9,8 +9,6 @@
 #define FINENESS (1. / 24)
 /* Cosine of the angle between pieces that makes an edge: 32 degrees. */
 #define EDGE 0.85
-/* Of the longest side of the box: lines end so far beside it. */
-#define BESIDE 0.3
 
 /* A side of a piece: its ends in the order of their coordinates, rounded so that those of neighbours are the same, and
  * the normal of the piece on the page. */
@@ -73,13 +71,17 @@ static void view_of(const PlotScene *scene, PetscReal min[3], PetscReal max[3], 
   *view = (WallView){.min = min, .max = max, .size = FINENESS * longest};
 }
 
-/* The part of a line from end to end + 3 that is seen: between ground and top of the view, since sides of terrain go far
- * down, and a little beside it. PETSC_FALSE: none is. */
-static PetscBool clip(const WallView *view, PetscInt up, PetscReal end[6])
+PetscReal walls_beside(const PlotScene *scene, const WallView *view, int d)
+{
+  return d == scene->up ? 0 : 0.3 / FINENESS * view->size;
+}
+
+/* The part of a line from end to end + 3 that is in view. PETSC_FALSE: none is. */
+static PetscBool clip(const PlotScene *scene, const WallView *view, PetscReal end[6])
 {
   PetscReal from = 0, to = 1, way[3];
   for (int d = 0; d < 3; ++d) {
-    const PetscReal beside = d == up ? 0 : BESIDE * view->size / FINENESS;
+    const PetscReal beside = walls_beside(scene, view, d);
     const PetscReal low = view->min[d] - beside - end[d], high = view->max[d] + beside - end[d];
     way[d] = end[3 + d] - end[d];
     if (way[d] == 0 && (low > 0 || high < 0)) return PETSC_FALSE;
@@ -109,7 +111,7 @@ static PetscErrorCode TakeLines(const PlotScene *scene, const WallMesh *mesh, co
   PetscCall(PetscMalloc1(18 * (size_t)mesh->n, &f->line));
   for (PetscInt i = 0, next; i < n; i = next) {
     for (next = i + 1; next < n && !compare_keys(&sides[next], &sides[i]);) ++next;
-    if (!is_drawn(sides + i, next - i) || !clip(view, scene->up, sides[i].end)) continue;
+    if (!is_drawn(sides + i, next - i) || !clip(scene, view, sides[i].end)) continue;
     plot_project(scene, sides[i].end, f->line + 6 * f->n_lines);
     plot_project(scene, sides[i].end + 3, f->line + 6 * f->n_lines + 3);
     ++f->n_lines;
@@ -133,6 +135,7 @@ PetscErrorCode PlotWallsLines(PlotScene *scene)
     for (PetscInt w = 0; w < scene->walled->n_walls; ++w)
       if (wall_stands(scene->walls, w, f->time)) PetscCall(WallMeshAdd(scene->walls, w, f->time, &view, &mesh));
     PetscCall(TakeLines(scene, &mesh, &view, f));
+    PetscCall(PlotWallsFaces(scene, &mesh, &view, f));
     PetscCall(WallMeshFree(&mesh));
   }
   PetscFunctionReturn(0);

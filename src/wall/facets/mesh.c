@@ -166,8 +166,7 @@ static PetscErrorCode AddSphere(const Making *m, const Shape *s)
   PetscFunctionReturn(0);
 }
 
-/* Keep what of a line or a convex face is on the side of the box: sign x_d <= sign limit. */
-static PetscInt cut(PetscInt n, PetscBool closed, PetscReal (*x)[3], int d, int sign, PetscReal limit)
+PetscInt wall_mesh_cut(PetscInt n, PetscBool closed, PetscReal (*x)[3], int d, int sign, PetscReal limit)
 {
   PetscReal kept[16][3];
   PetscInt count = 0;
@@ -209,8 +208,8 @@ static PetscErrorCode AddPlane(const Making *m, const Form *f)
       x[i][d] = centre[d] - away * n[d] + 2 * reach * ((i == 0 || i == 3) ? -e[d] : e[d]) +
                 (dim == 2 ? 0 : 2 * reach * (i < 2 ? -g[d] : g[d]));
   for (int d = 0; d < dim && count > 0; ++d) {
-    count = cut(count, dim == 3, x, d, 1, m->view->max[d]);
-    count = cut(count, dim == 3, x, d, -1, m->view->min[d]);
+    count = wall_mesh_cut(count, dim == 3, x, d, 1, m->view->max[d]);
+    count = wall_mesh_cut(count, dim == 3, x, d, -1, m->view->min[d]);
   }
   if (dim == 2 && count == 2) PetscCall(Add(m, (const PetscReal(*)[3])x));
   if (dim == 3) PetscCall(AddFan(m, count, x));

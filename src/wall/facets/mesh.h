@@ -20,6 +20,9 @@ typedef struct {
 /* Not collective. Pieces of wall k where it is at time t. */
 PetscErrorCode WallMeshAdd(const Walls *walls, PetscInt k, PetscReal t, const WallView *view, WallMesh *mesh);
 PetscErrorCode WallMeshFree(WallMesh *mesh);
+/* Keep what of a line or a convex face (n corners; closed: from the last back to the first) is on the side of a box:
+ * sign x_d <= sign limit. Returns how many corners it has then, at most one more. */
+PetscInt wall_mesh_cut(PetscInt n, PetscBool closed, PetscReal (*x)[3], int d, int sign, PetscReal limit);
 
 /* --- for wall.c --- */
 struct Form;
