@@ -204,13 +204,49 @@ static void test_through(void **state)
   bench_refused(&b, PETSC_COMM_WORLD, "walls[0]", "goes through a body");
 }
 
+/* Does the program say that the wall cuts into the body, if that is so by this share of a cell? */
+static PetscBool tells_dent(const Block *block, PetscReal share)
+{
+  Bench b;
+  WallSpec wall;
+  Diag *diag;
+  Model *m = standing(&b, block, 0, PETSC_FALSE, &wall);
+  char *text = NULL;
+  size_t size;
+  FILE *out = open_memstream(&text, &size);
+  CALL(ModelDestroy(&m));
+  wall.shape.point[1] += share * 0.25;
+  CALL(DiagCreate(&diag));
+  CALL(DiagSetResolver(diag, show_path, NULL));
+  CALL(ModelCreate(PETSC_COMM_WORLD, &b.c, diag, &m));
+  CHECK(m, "the case was refused");
+  CALL(DiagFlush(diag, out));
+  fclose(out);
+  int told = strstr(text, "walls[0]") && strstr(text, "cuts into a body at the start");
+  MPI_Bcast(&told, 1, MPI_INT, 0, PETSC_COMM_WORLD);
+  free(text);
+  CALL(DiagDestroy(&diag));
+  CALL(ModelDestroy(&m));
+  return (PetscBool)told;
+}
+
+/* A mesh that a wall cuts is taken to be made to fit it: by a hundredth of a cell or more that is said. Points of mpm
+ * do not know better. */
+static void test_dent(void **state)
+{
+  static const Block fem = {"fem", "cell", CELL_QUADRILATERAL, 0.8, NULL, "thesis", PETSC_FALSE, PETSC_FALSE, 0},
+                     mpm = {"mpm", "cell", CELL_QUADRILATERAL, 0.8, NULL, "thesis", PETSC_FALSE, PETSC_FALSE, 0};
+  (void)state;
+  CHECK(!tells_dent(&fem, 0) && !tells_dent(&fem, 0.005), "there is no dent worth a word");
+  CHECK(tells_dent(&fem, 0.02), "a dent of 0.02 of a cell is not told");
+  CHECK(!tells_dent(&mpm, 0.02), "mpm has no such dents");
+}
+
 int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {
-    cmocka_unit_test(test_slides),
-    cmocka_unit_test(test_rests),
-    cmocka_unit_test(test_flows),
-    cmocka_unit_test(test_through),
+    cmocka_unit_test(test_slides),  cmocka_unit_test(test_rests), cmocka_unit_test(test_flows),
+    cmocka_unit_test(test_through), cmocka_unit_test(test_dent),
   };
   return run_model_group(argc, argv, tests, PETSC_STATIC_ARRAY_LENGTH(tests));
 }

@@ -11,6 +11,7 @@
 #define LUMPED_SHARE 0.1 /* between the mass matrix and the lumped one */
 
 #define THROUGH 1e-9 /* of a cell: material that reaches deeper into a wall at the start is a mistake */
+#define DENT 0.01    /* of a cell: a surface that is taken back by more to fit a wall may be one, too */
 
 static PetscBool rubs(ContactKind kind) { return kind == CONTACT_FRICTION || kind == CONTACT_STICK; }
 
@@ -23,9 +24,39 @@ PetscBool contact_rubs(const Case *c)
   return PETSC_FALSE;
 }
 
-/* What stands nearer to a wall than its cell's side does touches it: the body was made to fit. A point
- * inside the wall is a mistake. *deepest: gap of the worst. */
-static void look_at_wall(Model *m, PetscInt k, PetscBool fits, PetscReal *deepest, PetscReal worst[3])
+/* The worst of something over points: how much, 0 if there is none, and where. */
+typedef struct {
+  PetscReal depth, x[3];
+} Worst;
+
+static void take_worse(const Model *m, PetscReal depth, const PetscReal *x, Worst *worst)
+{
+  if (depth <= worst->depth) return;
+  worst->depth = depth;
+  for (PetscInt d = 0; d < m->dim; ++d) worst->x[d] = x[d];
+}
+
+/* Collective. Of all ranks. */
+static PetscErrorCode FindWorst(const Model *m, Worst *worst)
+{
+  struct {
+    double depth;
+    int rank;
+  } local, all;
+  PetscMPIInt rank;
+
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_rank(m->comm, &rank));
+  local.depth = (double)worst->depth, local.rank = rank;
+  PetscCallMPI(MPI_Allreduce(&local, &all, 1, MPI_DOUBLE_INT, MPI_MAXLOC, m->comm));
+  worst->depth = (PetscReal)all.depth;
+  PetscCallMPI(MPI_Bcast(worst->x, 3, MPIU_REAL, all.rank, m->comm));
+  PetscFunctionReturn(0);
+}
+
+/* What stands nearer to a wall than its cell's side does touches it: the body was made to fit, and its surface is taken
+ * back (dent) to the wall. A point inside the wall is a mistake (inside). */
+static void look_at_wall(Model *m, PetscInt k, PetscBool fits, Worst *inside, Worst *dent)
 {
   WallPlace place;
   for (PetscInt p = 0; p < m->points->n; ++p) {
@@ -33,31 +64,57 @@ static void look_at_wall(Model *m, PetscInt k, PetscBool fits, PetscReal *deepes
     PetscReal *reach = point_real(m->points, POINT_REACH, p);
     const int side = wall_side(m->walls, k, m->time, x);
     if (!wall_near(m->walls, k, m->time, x, *reach, side, &place)) continue;
-    if (fits && place.gap > THROUGH * m->grid->smallest) *reach = PetscMin(*reach, place.gap);
-    if (place.gap >= *deepest) continue;
-    *deepest = place.gap;
-    for (PetscInt d = 0; d < m->dim; ++d) worst[d] = x[d];
+    take_worse(m, -place.gap, x, inside);
+    if (!fits || place.gap <= THROUGH * m->grid->smallest || place.gap >= *reach) continue;
+    take_worse(m, *reach - place.gap, x, dent);
+    *reach = place.gap;
   }
 }
 
-static PetscErrorCode TellThrough(const Model *m, PetscInt k, PetscReal deepest, PetscReal x[3], Diag *diag)
+static PetscErrorCode TellThrough(const Model *m, PetscInt k, Worst *inside, Diag *diag)
 {
-  struct {
-    double gap;
-    int rank;
-  } local, all;
-  PetscMPIInt rank;
   char path[64];
 
   PetscFunctionBeginUser;
-  PetscCallMPI(MPI_Comm_rank(m->comm, &rank));
-  local.gap = (double)deepest, local.rank = rank;
-  PetscCallMPI(MPI_Allreduce(&local, &all, 1, MPI_DOUBLE_INT, MPI_MINLOC, m->comm));
-  if (all.gap >= 0) PetscFunctionReturn(0);
-  PetscCallMPI(MPI_Bcast(x, 3, MPIU_REAL, all.rank, m->comm));
+  PetscCall(FindWorst(m, inside));
+  if (inside->depth <= 0) PetscFunctionReturn(0);
   PetscCall(PetscSNPrintf(path, sizeof path, "walls[%d]", (int)k));
   diag_error(diag, path, "wall '%s' goes through a body at the start: the point at (%g, %g, %g) m is %.3g m inside it",
-             m->c->walls[k].name, (double)x[0], (double)x[1], (double)x[2], -all.gap);
+             m->c->walls[k].name, (double)inside->x[0], (double)inside->x[1], (double)inside->x[2],
+             (double)inside->depth);
+  PetscFunctionReturn(0);
+}
+
+/* How deep nodes of bodies are in the wall. */
+static void look_at_nodes(const Model *m, PetscInt k, Worst *inside)
+{
+  WallPlace place;
+  for (PetscInt node = 0; node < m->grid->n_owned; ++node) {
+    const PetscReal *x = m->grid->x + node * m->dim;
+    if (wall_near(m->walls, k, m->time, x, 0, 0, &place)) take_worse(m, -place.gap, x, inside);
+  }
+}
+
+/* Meshes that move with their body know where that ends. (In a corner one side of a point's cell is nearer to it than
+ * the other: only where nodes are in the wall, too, is there a dent.) */
+static PetscErrorCode TellDent(const Model *m, PetscInt k, Worst *dent, Diag *diag)
+{
+  Worst inside = {0};
+  char path[64];
+
+  PetscFunctionBeginUser;
+  if (m->method->restores_grid) PetscFunctionReturn(0);
+  look_at_nodes(m, k, &inside);
+  PetscCall(FindWorst(m, dent));
+  PetscCall(FindWorst(m, &inside));
+  if (PetscMin(dent->depth, inside.depth) <= DENT * m->grid->smallest) PetscFunctionReturn(0);
+  PetscCall(PetscSNPrintf(path, sizeof path, "walls[%d]", (int)k));
+  diag_warning(
+    diag, path,
+    "wall '%s' cuts into a body at the start, by %.3g m near (%g, %g, %g) m, %.2g of a cell: its surface there "
+    "is taken to be made to fit, with a dent of that depth",
+    m->c->walls[k].name, (double)dent->depth, (double)dent->x[0], (double)dent->x[1], (double)dent->x[2],
+    (double)(dent->depth / m->grid->smallest));
   PetscFunctionReturn(0);
 }
 
@@ -70,9 +127,11 @@ PetscErrorCode WallsStart(Model *m, Diag *diag)
   rigid_check(m, diag);
   PetscCall(InterfacesStart(m, diag));
   for (PetscInt k = 0; k < m->c->n_walls; ++k) {
-    PetscReal deepest = 0, x[3] = {0, 0, 0};
-    look_at_wall(m, k, PETSC_TRUE, &deepest, x);
-    if (m->c->stage == 0) PetscCall(TellThrough(m, k, deepest, x, diag)); /* others begin with bodies elsewhere */
+    Worst inside = {0}, dent = {0};
+    look_at_wall(m, k, PETSC_TRUE, &inside, &dent);
+    if (m->c->stage) continue; /* bodies are elsewhere */
+    PetscCall(TellThrough(m, k, &inside, diag));
+    PetscCall(TellDent(m, k, &dent, diag));
   }
   PetscFunctionReturn(0);
 }
@@ -89,10 +148,10 @@ PetscErrorCode WallsCome(Model *m, const Case *from, Diag *diag)
 {
   PetscFunctionBeginUser;
   for (PetscInt k = 0; k < m->c->n_walls; ++k) {
-    PetscReal deepest = 0, x[3] = {0, 0, 0};
+    Worst inside = {0}, dent = {0};
     if (m->c->walls[k].absent || stood(&m->c->walls[k], m->c, from)) continue;
-    look_at_wall(m, k, PETSC_FALSE, &deepest, x);
-    PetscCall(TellThrough(m, k, deepest, x, diag));
+    look_at_wall(m, k, PETSC_FALSE, &inside, &dent);
+    PetscCall(TellThrough(m, k, &inside, diag));
   }
   PetscFunctionReturn(0);
 }
