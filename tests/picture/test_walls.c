@@ -254,6 +254,49 @@ static void FacesHide(void **state)
   assert_true(rgba[LEFT] == 68 && rgba[RIGHT] == 68 && rgba[CORNER] == 235);
 }
 
+/* Empty pixels between a square of points (its side 1 m, its lower one at 0) and a wall whose surface is so far below it,
+ * in columns well within. */
+static PetscInt empty_above(PetscReal below, PetscBool told)
+{
+  enum { N = 16, PIXELS = 240 };
+  static PetscReal x[3 * N * N], radius[N * N], value[N * N];
+  static unsigned char rgba[4 * PIXELS * PIXELS], solid[PIXELS * PIXELS];
+  const PetscReal size = 1.5, low = -0.25;
+  PetscInt empty = 0;
+  for (PetscInt k = 0; k < N * N; ++k) {
+    x[3 * k] = (k % N + 0.5) / N;
+    x[3 * k + 1] = (k / N + 0.5) / N;
+    radius[k] = 0.75 / N;
+  }
+  for (int i = 0; i < PIXELS * PIXELS; ++i) solid[i] = low + (i / PIXELS + 0.5) * size / PIXELS < -below;
+  const RasterScene scene = {.n = N * N,
+                             .x = x,
+                             .radius = radius,
+                             .value = value,
+                             .gap = 1. / N,
+                             .solid = told ? solid : NULL,
+                             .min = {low, low},
+                             .max = {low + size, low + size},
+                             .width = PIXELS,
+                             .height = PIXELS};
+  assert_int_equal(RasterDraw(&scene, rgba), 0);
+  for (int column = 60; column < 180; ++column)
+    for (int row = 0; row < PIXELS / 2; ++row)
+      empty += !solid[row * PIXELS + column] && rgba[4 * (row * PIXELS + column) + 3] < 128;
+  return empty;
+}
+
+/* Points that stand a little off a wall leave no white between; what is apart by the distance from point to point is
+ * drawn apart. */
+static void BodiesReachWalls(void **state)
+{
+  (void)state;
+  assert_true(empty_above(0.2 / 16, PETSC_FALSE) >= 120);
+  assert_int_equal(empty_above(0.2 / 16, PETSC_TRUE), 0);
+  assert_int_equal(empty_above(0, PETSC_TRUE), 0);
+  assert_int_equal(empty_above(1. / 16, PETSC_TRUE), empty_above(1. / 16, PETSC_FALSE));
+}
+
 /* Lines where nodes do not move across them, no farther than the grid goes. */
 static void FloorOfAGrid(void **state)
 {
@@ -286,6 +329,7 @@ int main(void)
 {
   const struct CMUnitTest tests[] = {cmocka_unit_test(CircleThatMoves), cmocka_unit_test(ContainerOnBothSides),
                                      cmocka_unit_test(LinesInSpace),    cmocka_unit_test(FacesInSpace),
-                                     cmocka_unit_test(FacesHide),       cmocka_unit_test(FloorOfAGrid)};
+                                     cmocka_unit_test(FacesHide),       cmocka_unit_test(BodiesReachWalls),
+                                     cmocka_unit_test(FloorOfAGrid)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -38,6 +38,9 @@ typedef struct {
   /* m; gaps between balls up to twice this wide are filled, in space before what is empty, and the outline of what
    * they fill is drawn back by half their radius, to where the material ends; 0: neither */
   PetscReal gap;
+  const unsigned char
+    *solid; /* in the plane, width x height: is a wall there? What touches it is not drawn back from it;
+                               * NULL: there is none */
   /* with a gap, n: which points know the outline next to them, and does the body hold a place next to such a point? Of
    * the outermost their own and all that balls cover is shown there, of others what is drawn back; in space balls that know are
    * cut by it. NULL: none knows */

@@ -8,13 +8,15 @@
 /* Points of cells stand half a ball's radius from the border: 0.49 of it with 2 x 2 Gauss points, 0.39 with 3 x 3,
  * 0.67 in a lattice of points that each are in the middle of what is theirs. */
 #define WITHIN 0.5
+/* Of a ball's radius: it touches a wall that is no farther from it. */
+#define TOUCHES 0.6
 
 /* Samples with a margin into which the body may grow. */
 typedef struct {
   int width, height, margin;
-  unsigned char *in;
-  float *distance;
-  int *nearest, *owner; /* owner: the ball, counted from 1 where the sample is of the body; 0 */
+  unsigned char *in, *touches; /* touches: between a ball and a wall that do */
+  float *distance, *lean;      /* from what is empty; as if walls were of the body */
+  int *nearest, *owner;        /* owner: the ball, counted from 1 where the sample is of the body; 0 */
 } Room;
 
 static PetscErrorCode RoomCreate(const Canvas *canvas, PetscReal gap, Room *room)
@@ -24,8 +26,8 @@ static PetscErrorCode RoomCreate(const Canvas *canvas, PetscReal gap, Room *room
   room->width = canvas->width + 2 * room->margin;
   room->height = canvas->height + 2 * room->margin;
   const size_t n = (size_t)room->width * (size_t)room->height;
-  PetscCall(PetscMalloc3(n, &room->in, n, &room->distance, n, &room->nearest));
-  PetscCall(PetscCalloc1(n, &room->owner));
+  PetscCall(PetscMalloc4(n, &room->in, n, &room->touches, n, &room->distance, n, &room->nearest));
+  PetscCall(PetscCalloc2(n, &room->owner, n, &room->lean));
   for (int j = 0; j < canvas->height; ++j)
     for (int i = 0; i < canvas->width; ++i) {
       const PetscInt p = canvas->point[canvas_at(canvas, i, j)];
@@ -73,6 +75,48 @@ static void show(const RasterScene *scene, Canvas *canvas, int i, int j, PetscIn
   canvas->point[at] = p;
 }
 
+/* How far each place of the grown body is from what is empty. */
+static PetscErrorCode Empty(Room *room)
+{
+  const size_t n = (size_t)room->width * (size_t)room->height;
+
+  PetscFunctionBeginUser;
+  for (size_t i = 0; i < n; ++i) room->in[i] = room->owner[i] == 0;
+  PetscCall(DistanceTo(room->width, room->height, room->in, room->distance, room->nearest));
+  PetscFunctionReturn(0);
+}
+
+static PetscBool is_solid(const RasterScene *scene, int i, int j)
+{
+  return (PetscBool)(scene->solid &&
+                     scene->solid[(size_t)(j / SAMPLES) * (size_t)scene->width + (size_t)(i / SAMPLES)]);
+}
+
+/* What touches a wall reaches to it. After Grow, which leaves how far balls are. */
+static PetscErrorCode Lean(const RasterScene *scene, const Canvas *canvas, Room *room)
+{
+  const size_t n = (size_t)room->width * (size_t)room->height;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscArrayzero(room->touches, n));
+  if (!scene->solid) PetscFunctionReturn(0);
+  for (int j = 0; j < room->height; ++j)
+    for (int i = 0; i < room->width; ++i) {
+      const int a = PetscMin(PetscMax(i - room->margin, 0), canvas->width - 1),
+                b = PetscMin(PetscMax(j - room->margin, 0), canvas->height - 1);
+      room->in[(size_t)j * (size_t)room->width + (size_t)i] = is_solid(scene, a, b);
+    }
+  PetscCall(DistanceTo(room->width, room->height, room->in, room->lean, room->nearest));
+  for (size_t at = 0; at < n; ++at) {
+    const PetscInt p = room->owner[at] - 1;
+    const PetscReal apart = room->distance[at] + room->lean[at];
+    room->touches[at] = p >= 0 && apart <= TOUCHES * canvas_radius(scene, canvas, p);
+    room->in[at] = room->owner[at] == 0 && !room->in[at];
+  }
+  PetscCall(DistanceTo(room->width, room->height, room->in, room->lean, room->nearest));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode CanvasShape(const RasterScene *scene, Canvas *canvas)
 {
   const PetscReal gap = PetscMin(scene->gap * canvas->scale, 30 * SAMPLES);
@@ -81,21 +125,20 @@ PetscErrorCode CanvasShape(const RasterScene *scene, Canvas *canvas)
   PetscFunctionBeginUser;
   PetscCall(RoomCreate(canvas, gap, &room));
   PetscCall(Grow(gap, &room));
-  const size_t n = (size_t)room.width * (size_t)room.height;
-  for (size_t i = 0; i < n; ++i) room.in[i] = room.owner[i] == 0;
-  PetscCall(DistanceTo(room.width, room.height, room.in, room.distance, room.nearest));
+  PetscCall(Lean(scene, canvas, &room));
+  PetscCall(Empty(&room));
   for (int j = 0; j < canvas->height; ++j)
     for (int i = 0; i < canvas->width; ++i) {
       const size_t at = (size_t)(j + room.margin) * (size_t)room.width + (size_t)(i + room.margin);
       const PetscInt p = room.owner[at] - 1;
       const PetscReal back = p < 0 ? 0 : gap + (1 - WITHIN) * canvas_radius(scene, canvas, p);
-      PetscBool in = (PetscBool)(p >= 0 && room.distance[at] > back);
+      PetscBool in = (PetscBool)(p >= 0 && (room.distance[at] > back || (room.touches[at] && room.lean[at] > back)));
       const PetscReal deep = p < 0 ? 0 : back + canvas_radius(scene, canvas, p); /* surfaces that met are no more */
       if (p >= 0 && scene->knows && scene->knows[p] && room.distance[at] <= deep)
         in = shows(scene, canvas, p, i, j, in);
       show(scene, canvas, i, j, in ? p : -1);
     }
-  PetscCall(PetscFree3(room.in, room.distance, room.nearest));
-  PetscCall(PetscFree(room.owner));
+  PetscCall(PetscFree4(room.in, room.touches, room.distance, room.nearest));
+  PetscCall(PetscFree2(room.owner, room.lean));
   PetscFunctionReturn(0);
 }

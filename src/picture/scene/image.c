@@ -83,11 +83,15 @@ PetscErrorCode PlotImage(const PlotScene *scene, const PlotFrame *f, const PlotP
                         .max = {page->max[0], page->max[1]},
                         .width = page->w,
                         .height = page->h};
+  unsigned char *solid = NULL;
 
   PetscFunctionBeginUser;
+  if (!scene->turned) PetscCall(PlotWallsMask(scene, f, page, &solid));
+  raster.solid = solid;
   if (scene->turned) PetscCall(Turned(scene, f, page, rgba));
   else PetscCall(Balls(scene, f, &raster, rgba));
   if (scene->dim == 2) PetscCall(PlotFirstDraw(scene, f, page, rgba));
   plot_walls_draw(scene, f, page, rgba);
+  PetscCall(PetscFree(solid));
   PetscFunctionReturn(0);
 }

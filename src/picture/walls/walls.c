@@ -73,6 +73,25 @@ static void cover(const PlotScene *scene, PetscReal t, const PetscReal x[2], Pet
   }
 }
 
+PetscErrorCode PlotWallsMask(const PlotScene *scene, const PlotFrame *frame, const PlotPage *page, unsigned char **mask)
+{
+  const PetscReal pixel = (page->max[0] - page->min[0]) / page->w;
+  PetscReal line, fill;
+
+  PetscFunctionBeginUser;
+  *mask = NULL;
+  if (!scene->walls || scene->dim != 2) PetscFunctionReturn(0);
+  if (frame->walls) walls_put_frames(scene->walls, frame->walls);
+  PetscCall(PetscMalloc1(page->w * page->h, mask));
+  for (int i = 0; i < page->w * page->h; ++i) {
+    PetscReal x[2] = {page->min[0] + (i % page->w + 0.5) * pixel, page->min[1] + (i / page->w + 0.5) * pixel};
+    if (scene->mirrored) x[0] = fabs(x[0]);
+    cover(scene, frame->time, x, pixel, &fill, &line);
+    (*mask)[i] = fill > 0.5;
+  }
+  PetscFunctionReturn(0);
+}
+
 void plot_walls_draw(const PlotScene *scene, const PlotFrame *frame, const PlotPage *page, unsigned char *rgba)
 {
   const PetscReal pixel = (page->max[0] - page->min[0]) / page->w;

@@ -17,5 +17,8 @@ PetscReal walls_beside(const PlotScene *scene, const WallView *view, int d);
 PetscErrorCode PlotWallsFaces(const PlotScene *scene, const WallMesh *mesh, const WallView *view, PlotFrame *frame);
 /* Lines where the grid is held, in the plane. */
 void plot_floor_draw(FILE *out, const PlotScene *scene, const PlotPage *page);
+/* In the plane: is a wall in each pixel of a frame? To be freed; NULL: there are none. */
+PetscErrorCode PlotWallsMask(const PlotScene *scene, const PlotFrame *frame, const PlotPage *page,
+                             unsigned char **mask);
 /* Draw them into the image of a frame: behind what is there, their outline before it. */
 void plot_walls_draw(const PlotScene *scene, const PlotFrame *frame, const PlotPage *page, unsigned char *rgba);
