@@ -53,6 +53,8 @@ static void write_row(FILE *out, const VerifyRow *r)
   else write_number(out, "%.2f", r->seconds);
   if (r->study->pace) write_number(out, "%.2f", r->pace);
   if (r->pass) fputs(" pass |\n", out);
+  else if (r->result != RUN_DONE && !r->summary.interrupted)
+    fputs(" **FAIL**: the run gave up |\n", out); /* no folder of this machine */
   else fprintf(out, " **FAIL**: %s |\n", r->why);
 }
 
