@@ -84,7 +84,8 @@ PetscErrorCode PlotWallsMask(const PlotScene *scene, const PlotFrame *frame, con
   if (frame->walls) walls_put_frames(scene->walls, frame->walls);
   PetscCall(PetscMalloc1(page->w * page->h, mask));
   for (int i = 0; i < page->w * page->h; ++i) {
-    PetscReal x[2] = {page->min[0] + (i % page->w + 0.5) * pixel, page->min[1] + (i / page->w + 0.5) * pixel};
+    const int column = i % page->w, row = i / page->w;
+    PetscReal x[2] = {page->min[0] + (column + 0.5) * pixel, page->min[1] + (row + 0.5) * pixel};
     if (scene->mirrored) x[0] = fabs(x[0]);
     cover(scene, frame->time, x, pixel, &fill, &line);
     (*mask)[i] = fill > 0.5;
