@@ -4,9 +4,9 @@
 
 void model_times(const Model *m, PetscReal seconds[PHASE_N])
 {
-  for (int k = 0; k < PHASE_N; ++k) seconds[k] = m->seconds[k];
-  newton_times(m->newton, &seconds[PHASE_POINTS], &seconds[PHASE_MATRIX], &seconds[PHASE_LINEAR],
-               &seconds[PHASE_NEWTON]);
+  PetscReal newton[PHASE_N] = {0};
+  newton_times(m->newton, &newton[PHASE_POINTS], &newton[PHASE_MATRIX], &newton[PHASE_LINEAR], &newton[PHASE_NEWTON]);
+  for (int k = 0; k < PHASE_N; ++k) seconds[k] = m->seconds[k] + newton[k];
 }
 
 static void count_try(Model *m, PetscBool again, StepReport *report)

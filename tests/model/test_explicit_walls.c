@@ -242,6 +242,51 @@ static void test_resumed(void **state)
   CALL(ModelDestroy(&again));
 }
 
+/* A force that is none: what loads act on is looked at anew in every substep. */
+static void nothing(void *context, PetscInt n, const PetscReal *X, const PetscReal *x, PetscReal t, PetscReal *b)
+{
+  (void)context, (void)n, (void)X, (void)x, (void)t, (void)b;
+}
+
+/* Walls are looked for once for many substeps: a floor that comes from four cells below meanwhile, and stops under the
+ * block for it to fall on, is found, and all is as if it were looked for in each of them. */
+static void test_laps(void **state)
+{
+  static const PointReal fields[] = {POINT_X, POINT_V, POINT_TAU, POINT_CONTACT};
+  static PetscReal time[] = {0, 0.03}, way[] = {0, 1};
+  (void)state;
+  for (const Block *r = blocks; r < blocks + 4; ++r) {
+    Bench b;
+    WallSpec wall;
+    const int up = r->cell == CELL_HEXAHEDRON ? 2 : 1;
+    MotionSpec come = {
+      .kind = MOTION_DISPLACEMENT, .component = {1, 1, 1}, .amplitude = {.n = 2, .time = time, .value = way}};
+    standing(&b, r, 0, &wall);
+    come.value[up] = 1;
+    b.c.analysis.step = b.c.analysis.largest = 0.05;
+    wall.shape.point[up] -= 1.01;
+    wall.n_motions = 1;
+    wall.motions = &come;
+    Model *laps = bench_model(&b, PETSC_COMM_WORLD), *alone = bench_model(&b, PETSC_COMM_SELF);
+    CALL(ModelSetBodyForce(alone, nothing, NULL));
+    PetscReal bears[2] = {0, 0};
+    for (int s = 0; s < 2; ++s) {
+      model_step(laps, 0.05);
+      model_step(alone, 0.05);
+      bears[0] += measure(laps, "wall_force", NULL, up);
+      bears[1] += measure(alone, "wall_force", NULL, up);
+    }
+    CHECK(bears[1] > 1000, "the floor bears %g N", (double)bears[1]);
+    for (size_t f = 0; f < PETSC_STATIC_ARRAY_LENGTH(fields); ++f) {
+      const PetscReal off = points_difference(laps, alone, fields[f]), most = (PetscReal[]){1e-10, 1e-8, 1e-3, 1e-4}[f];
+      CHECK(off <= most, "%s cell %d: field %d is off by %g", r->basis, (int)r->cell, (int)fields[f], (double)off);
+    }
+    CHECK_CLOSE(bears[0], bears[1], 1e-8 * bears[1]);
+    CALL(ModelDestroy(&laps));
+    CALL(ModelDestroy(&alone));
+  }
+}
+
 static void test_refused(void **state)
 {
   Bench b;
@@ -254,10 +299,10 @@ static void test_refused(void **state)
 
 int main(int argc, char **argv)
 {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_slides),  cmocka_unit_test(test_rests),
-                                     cmocka_unit_test(test_lifts),   cmocka_unit_test(test_vanishes),
-                                     cmocka_unit_test(test_hangs),   cmocka_unit_test(test_ranks),
-                                     cmocka_unit_test(test_resumed), cmocka_unit_test(test_refused)};
+  const struct CMUnitTest tests[] = {
+    cmocka_unit_test(test_slides),   cmocka_unit_test(test_rests), cmocka_unit_test(test_lifts),
+    cmocka_unit_test(test_vanishes), cmocka_unit_test(test_hangs), cmocka_unit_test(test_ranks),
+    cmocka_unit_test(test_resumed),  cmocka_unit_test(test_laps),  cmocka_unit_test(test_refused)};
   if (PetscInitialize(&argc, &argv, NULL, NULL)) return 1;
   const int failed = cmocka_run_group_tests(tests, NULL, NULL);
   return PetscFinalize() || failed;

@@ -26,9 +26,17 @@ typedef struct {
   PetscReal velocity; /* of the substep, m/s */
 } Held;
 
+/* Points that walls may meet in the lap, where points find their nodes by arithmetic, and the nodes that these see in
+ * the substep, a group each. */
+typedef struct {
+  PetscInt n, capacity, *point;
+  Support *support;
+} NearWalls;
+
 /* Nodal arrays are 0 where no point reaches. */
 typedef struct Explicit {
-  PetscBool box; /* do points find their nodes by arithmetic? */
+  PetscBool box;    /* do points find their nodes by arithmetic? */
+  PetscBool loaded; /* does anything act on nodes but stress, weight and walls? */
   Lattice lattice;
   PetscInt width;             /* 1 + 2 dim */
   PetscReal *sum;             /* n_nodes x width: mass, kg, momentum, kg m/s, and force, N */
@@ -58,6 +66,7 @@ typedef struct Explicit {
   LawStatus status;
   PetscReal external, boundary, damped; /* energies of the run's step, this rank's share, J */
   PetscReal outside;                    /* Model.outside.energy at its start, J */
+  NearWalls near;
   /* of each wall in the run's step, on this rank: mean force on the material and its torque; work of sliding, J */
   ContactSum *pushed;
   PetscReal *rubbed, friction; /* friction: of all walls */
@@ -73,6 +82,13 @@ PetscErrorCode LapBegin(Model *model, Explicit *e, PetscReal left);
 void lap_displace(const Model *model, const Explicit *e, int sign);
 /* Collective. Points find their cells and ranks. */
 PetscErrorCode LapEnd(Model *model, StepReport *report);
+
+/* near.c. Lists the points that walls may meet in the lap, and the others forget walls. */
+PetscErrorCode NearFind(Model *model, Explicit *e);
+/* What was kept of contact goes: of them where there is a list, else of all points. */
+void near_forget(const Model *model, const Explicit *e);
+/* Their functions where they are now. */
+PetscErrorCode NearSee(const Model *model, Explicit *e);
 
 /* walls.c. Forces of walls go to the nodes. */
 PetscErrorCode WallsPush(Model *model, Explicit *e);

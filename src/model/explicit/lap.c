@@ -9,12 +9,19 @@
 /* substeps after which the critical one is asked for again */
 #define LAP_MOST 50
 
-/* Only boxes with lines at equal distances, whose functions are linear, and where nothing must be found anew
+/* Only boxes with lines at equal distances, whose functions are linear, and where nothing but walls must be found anew
  * in every substep. */
+static PetscBool is_loaded(const Model *m)
+{
+  for (PetscInt i = 0; i < m->forces.n; ++i)
+    if (m->forces.one[i].data != m->contact) return PETSC_TRUE;
+  return PETSC_FALSE;
+}
+
 static PetscBool finds_by_arithmetic(const Model *m)
 {
   const GridBox *box = m->grid->box;
-  if (!box || m->space->basis->nodes != BASIS_OF_CELLS || m->forces.n) return PETSC_FALSE;
+  if (!box || m->space->basis->nodes != BASIS_OF_CELLS || is_loaded(m)) return PETSC_FALSE;
   if (m->grid->nodes_per_cell != (m->dim == 2 ? 4 : 8)) return PETSC_FALSE;
   for (PetscInt d = 0; d < m->dim; ++d)
     if (!(box->per_length[d] > 0)) return PETSC_FALSE;
@@ -53,6 +60,7 @@ PetscErrorCode ExplicitCreate(const Model *m, Explicit **explicit)
   e = *explicit;
   e->width = 1 + 2 * dim;
   e->box = finds_by_arithmetic(m);
+  PetscCall(SupportCreate(&e->near.support));
   e->slopes = m->points->components[POINT_SLOPE] > 0;
   if (e->box) lattice_of(m, &e->lattice);
   /* whole registers are read from the last node on */
@@ -79,6 +87,8 @@ PetscErrorCode ExplicitDestroy(Explicit **explicit)
   PetscCall(PetscFree(e->mark));
   PetscCall(PetscFree(e->active));
   PetscCall(PetscFree(e->held));
+  PetscCall(PetscFree(e->near.point));
+  PetscCall(SupportDestroy(&e->near.support));
   PetscCall(PetscFree2(e->pushed, e->rubbed));
   PetscCall(PetscFree(*explicit));
   PetscFunctionReturn(0);
@@ -163,7 +173,8 @@ PetscErrorCode LapBegin(Model *m, Explicit *e, PetscReal left)
 
   PetscFunctionBeginUser;
   PetscCall(PetscTime(&clock));
-  e->box = e->box && !m->forces.n; /* a body force may have come since */
+  e->loaded = is_loaded(m);
+  e->box = e->box && !e->loaded; /* a body force may have come since */
   PetscCall(See(m, e));
   if (e->critical == 0 || e->since >= LAP_MOST) {
     PetscCall(NonlocalStep(m));
@@ -171,6 +182,7 @@ PetscErrorCode LapBegin(Model *m, Explicit *e, PetscReal left)
     e->since = 0;
   }
   choose_substeps(m, left, e);
+  PetscCall(NearFind(m, e));
   PetscCall(ListActive(m, e));
   list_held(m, e);
   lap_displace(m, e, -1);

@@ -15,7 +15,12 @@ PetscErrorCode ForcesBegin(Model *m, Explicit *e)
   PetscFunctionBeginUser;
   if (!m->forces.n) PetscFunctionReturn(0);
   PetscCall(PetscArrayzero(m->nodes->du, m->grid->n_nodes * m->dim));
-  const NodalScene scene = nodal_scene(m, e->time, m->nodes->du);
+  NodalScene scene = nodal_scene(m, e->time, m->nodes->du);
+  if (e->box) {
+    PetscCall(NearSee(m, e));
+    scene.support = e->near.support;
+    scene.seen = e->near.point;
+  }
   PetscCall(NodalForcesBegin(&m->forces, &scene));
   PetscCall(WallsPush(m, e));
   PetscFunctionReturn(0);
@@ -27,7 +32,7 @@ static PetscErrorCode AddLoads(Model *m, Explicit *e)
   NodalFields *n = m->nodes;
 
   PetscFunctionBeginUser;
-  if (!m->forces.n) PetscFunctionReturn(0);
+  if (!e->loaded) PetscFunctionReturn(0);
   const NodalScene scene = nodal_scene(m, e->time, n->du);
   PetscCall(NodalForcesExternal(&m->forces, &scene, PETSC_TRUE, n->external));
   PetscCall(GridToGhosts(m->grid, m->dim, n->external));
@@ -46,7 +51,7 @@ PetscErrorCode NodesMove(Model *m, Explicit *e)
     const PetscReal *s = e->sum + node * e->width, mass = s[0], inverse = mass > 1e-300 ? 1 / mass : 0;
     PetscReal *v = e->motion + node * 2 * dim;
     for (PetscInt d = 0; d < dim; ++d) {
-      const PetscReal load = mass * e->g[d] + (m->forces.n ? m->nodes->external[node * dim + d] : 0);
+      const PetscReal load = mass * e->g[d] + (e->loaded ? m->nodes->external[node * dim + d] : 0);
       const PetscReal gain = e->kick * inverse * (s[1 + dim + d] + load), kept = (1 - e->fade) * inverse * s[1 + d];
       v[d] = kept + gain;
       v[dim + d] = gain;
@@ -106,7 +111,7 @@ static PetscReal work_of_loads(const Model *m, const Explicit *e, PetscInt node)
   const PetscReal mass = e->sum[node * e->width], *v = e->motion + node * 2 * m->dim;
   PetscReal work = 0;
   for (PetscInt d = 0; d < m->dim; ++d)
-    work += (mass * e->g[d] + (m->forces.n ? m->nodes->external[node * m->dim + d] : 0)) * v[d];
+    work += (mass * e->g[d] + (e->loaded ? m->nodes->external[node * m->dim + d] : 0)) * v[d];
   return e->dt * work;
 }
 

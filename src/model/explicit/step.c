@@ -44,6 +44,23 @@ static PetscErrorCode Substep(Model *m, Explicit *e)
   PetscFunctionReturn(0);
 }
 
+static PetscErrorCode Lap(Model *m, Explicit *e, PetscReal left)
+{
+  PetscLogDouble clock;
+
+  PetscFunctionBeginUser;
+  PetscCall(LapBegin(m, e, left));
+  PetscCall(PetscTime(&clock));
+  for (PetscInt k = 0; k < e->substeps; ++k) {
+    e->begins = k == 0;
+    e->ends = k == e->substeps - 1;
+    PetscCall(Substep(m, e));
+  }
+  lap_displace(m, e, 1);
+  PetscCall(PhaseEnd(m->seconds, PHASE_POINTS, &clock));
+  PetscFunctionReturn(0);
+}
+
 /* The half of a kick that is missing at the end of the run's step. */
 static PetscErrorCode Close(Model *m, Explicit *e)
 {
@@ -145,13 +162,7 @@ PetscErrorCode ExplicitStep(Model *m, PetscReal limit, StepReport *report)
   PetscCall(Begin(m, step, e, before, report));
   PetscCall(MaterialsAt(m, end));
   while (report->outcome == STEP_ACCEPTED && end - e->time > 1e-9 * step) {
-    PetscCall(LapBegin(m, e, end - e->time));
-    for (PetscInt k = 0; k < e->substeps; ++k) {
-      e->begins = k == 0;
-      e->ends = k == e->substeps - 1;
-      PetscCall(Substep(m, e));
-    }
-    lap_displace(m, e, 1);
+    PetscCall(Lap(m, e, end - e->time));
     PetscCall(Judge(m, e, report));
     if (report->outcome == STEP_ACCEPTED) PetscCall(LapEnd(m, report));
   }

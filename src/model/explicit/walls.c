@@ -121,8 +121,7 @@ void walls_follow(Model *m, Explicit *e)
 {
   const Contact *s = m->contact;
   if (!s) return;
-  for (PetscInt i = 0; e->dt > 0 && i < m->points->n * m->points->components[POINT_CONTACT]; ++i)
-    m->points->real[POINT_CONTACT][i] = 0;
+  if (e->dt > 0) near_forget(m, e);
   for (const ContactPoint *c = s->point; c < s->point + s->n; ++c) {
     PetscReal *kept = kept_of(m, c);
     const PetscReal first = m->points->real[POINT_REACH][c->owner];

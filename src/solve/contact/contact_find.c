@@ -92,10 +92,10 @@ static PetscReal present_reach(const NodalScene *scene, PetscInt p, const PetscR
   return contact_reach(F, place->normal, scene->points->real[POINT_REACH][p]);
 }
 
-/* The surface of point p, of group g, before wall k. */
-static PetscErrorCode MeetPoint(Contact *s, const NodalScene *scene, PetscInt g, PetscInt p, PetscInt k)
+/* The surface of a point, `at` in group g of the support, before wall k. */
+static PetscErrorCode MeetPoint(Contact *s, const NodalScene *scene, PetscInt g, PetscInt at, PetscInt k)
 {
-  const PetscInt dim = s->dim;
+  const PetscInt dim = s->dim, p = scene->seen ? scene->seen[g] : at;
   const Points *points = scene->points;
   const PetscReal *x = point_real(points, POINT_X, p), *kept = point_real(points, POINT_CONTACT, p);
   const int side = wall_side(s->walls, k, scene->t, x);
@@ -109,7 +109,7 @@ static PetscErrorCode MeetPoint(Contact *s, const NodalScene *scene, PetscInt g,
     PetscFunctionReturn(0);
   const PetscReal reach = present_reach(scene, p, kept + k * CONTACT_KEPT(dim), &place);
   const PetscInt nn = support_nodes(scene->support, g), *node = scene->support->node + scene->support->node_start[g];
-  const PetscReal *N = support_N(scene->support, g, p), *dN = support_dN(scene->support, g, p, dim);
+  const PetscReal *N = support_N(scene->support, g, at), *dN = support_dN(scene->support, g, at, dim);
   PetscCall(ContactAdd(s, &c));
   c->owner = p, c->wall = k, c->side = side;
   c->reach = reach;

@@ -17,6 +17,7 @@ typedef struct {
   const Grid *grid;
   const Points *points;
   const Support *support;
+  const PetscInt *seen; /* the point of each of its groups, where it has some points alone; NULL: all */
   /* n_cells, n_nodes: does material fill the cell, and reach the node? */
   const unsigned char *filled, *touched;
   /* n_nodes x dim: prescribed, or on a node that no material touches */

@@ -1,0 +1,109 @@
+/* Which points walls may meet in a lap: only these are looked at in its substeps. */
+#include "grid/box/box.h"
+#include "model/explicit/explicit.h"
+
+/* Cells that a point may come nearer by in a lap; nodes are listed as far (lap.c). */
+#define APPROACH 1
+
+/* The most that matter of wall k within the box moves by until any substep of the lap, m. Motions are rigid: its corners
+ * go farthest. */
+static PetscReal travel_of_wall(const Model *m, const Explicit *e, PetscInt k)
+{
+  const GridBox *box = m->grid->box;
+  PetscReal most = 0;
+  for (PetscInt s = 1; s <= e->substeps && e->dt > 0; ++s)
+    for (int corner = 0; corner < 1 << m->dim; ++corner) {
+      PetscReal x[3] = {0, 0, 0}, way[3] = {0, 0, 0};
+      for (PetscInt d = 0; d < m->dim; ++d) x[d] = box->line[d][corner >> d & 1 ? box->counts[d] : 0];
+      wall_motion(m->walls, k, e->time, e->time + (PetscReal)s * e->dt, x, way);
+      most = PetscMax(most, PetscSqrtReal(way[0] * way[0] + way[1] * way[1] + way[2] * way[2]));
+    }
+  return most;
+}
+
+static PetscBool comes_near(const Model *m, const Explicit *e, PetscInt p, const PetscReal *travel)
+{
+  const PetscReal *x = point_real(m->points, POINT_X, p), cell = m->grid->smallest;
+  const PetscReal within = cell + THICKEST * m->points->real[POINT_REACH][p] + APPROACH * cell;
+  WallPlace place;
+  for (PetscInt k = 0; k < m->c->n_walls; ++k)
+    if (wall_near(m->walls, k, e->time, x, within + travel[k], wall_side(m->walls, k, e->time, x), &place))
+      return PETSC_TRUE;
+  return PETSC_FALSE;
+}
+
+static void forget(const Model *m, PetscInt p)
+{
+  PetscReal *kept = point_real(m->points, POINT_CONTACT, p);
+  for (PetscInt i = 0; i < m->points->components[POINT_CONTACT]; ++i) kept[i] = 0;
+}
+
+PetscErrorCode NearFind(Model *m, Explicit *e)
+{
+  NearWalls *near = &e->near;
+  PetscReal *travel;
+
+  PetscFunctionBeginUser;
+  near->n = 0;
+  if (!m->contact || !e->box) PetscFunctionReturn(0);
+  if (m->points->n > near->capacity) {
+    near->capacity = m->points->n + m->points->n / 4;
+    PetscCall(PetscFree(near->point));
+    PetscCall(PetscMalloc1(near->capacity, &near->point));
+  }
+  PetscCall(PetscMalloc1(m->c->n_walls, &travel));
+  for (PetscInt k = 0; k < m->c->n_walls; ++k) travel[k] = travel_of_wall(m, e, k);
+  for (PetscInt p = 0; p < m->points->n; ++p) {
+    if (m->points->cell[p] >= 0 && comes_near(m, e, p, travel)) near->point[near->n++] = p;
+    else forget(m, p);
+  }
+  PetscCall(PetscFree(travel));
+  PetscFunctionReturn(0);
+}
+
+void near_forget(const Model *m, const Explicit *e)
+{
+  for (PetscInt i = 0; i < (e->box ? e->near.n : m->points->n); ++i) forget(m, e->box ? e->near.point[i] : i);
+}
+
+/* The nodes of the cell in which x is, and their functions: products of linear ones. */
+static void look(const int dim, const Lattice *l, const PetscReal *x, PetscInt *node, PetscReal *N, PetscReal *dN)
+{
+  PetscReal at[3] = {0, 0, 0};
+  PetscInt first = 0;
+  for (int d = 0; d < dim; ++d) {
+    const PetscReal s = (x[d] - l->origin[d]) * l->per_length[d];
+    const PetscInt i = PetscMin(PetscMax((PetscInt)PetscFloorReal(s), 0), l->most[d]);
+    first += i * l->stride[d];
+    at[d] = s - (PetscReal)i;
+  }
+  for (int k = 0; k < 1 << dim; ++k) {
+    node[k] = l->number[first + l->corner[k]];
+    N[k] = 1;
+    for (int d = 0; d < dim; ++d) {
+      N[k] *= k >> d & 1 ? at[d] : 1 - at[d];
+      dN[k * dim + d] = (k >> d & 1 ? 1 : -1) * l->per_length[d];
+      for (int j = 0; j < dim; ++j)
+        if (j != d) dN[k * dim + d] *= k >> j & 1 ? at[j] : 1 - at[j];
+    }
+  }
+}
+
+PetscErrorCode NearSee(const Model *m, Explicit *e)
+{
+  const PetscInt nn = m->grid->nodes_per_cell, dim = m->dim, n = e->near.n;
+  Support *s = e->near.support;
+
+  PetscFunctionBeginUser;
+  PetscCall(SupportReserve(s, n, n * nn, n * nn, dim));
+  for (PetscInt i = 0; i <= n; ++i) {
+    s->point_start[i] = i;
+    s->node_start[i] = s->value_start[i] = i * nn;
+  }
+  s->n_groups = n;
+  s->n_runs = 0;
+  for (PetscInt i = 0; i < n; ++i)
+    look((int)dim, &e->lattice, point_real(m->points, POINT_X, e->near.point[i]), s->node + i * nn, s->N + i * nn,
+         s->dN + i * nn * dim);
+  PetscFunctionReturn(0);
+}
