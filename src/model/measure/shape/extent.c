@@ -3,34 +3,56 @@
 
 #define EXTENT_PARTS 64
 
-/* Where point p is along the axis, or was at the start, counted outwards, m. */
-static PetscReal place_of(const Model *m, const MeasureSpec *s, PetscBool start, PetscInt p)
-{
-  const PetscReal way = start ? point_real(m->points, POINT_U, p)[s->component] : 0;
-  return (s->maximum ? 1 : -1) * (point_real(m->points, POINT_X, p)[s->component] - way);
-}
+/* Points of a body: where they are along an axis, counted outwards, m, and their mass. */
+typedef struct {
+  PetscInt n;
+  PetscReal *at, *mass;
+} Places;
 
-/* Mass of the body in equal parts of [low, high] outwards along an axis; what is less than
- * `low` counts to the first, what is more than `high` to none. */
-static PetscErrorCode MassAlong(const Model *m, const MeasureSpec *s, PetscBool start, PetscReal low, PetscReal high,
-                                PetscReal mass[EXTENT_PARTS])
+/* Now, or at the start. To be freed with PetscFree2. */
+static PetscErrorCode FindPlaces(const Model *m, const MeasureSpec *s, PetscBool start, Places *places)
 {
-  const PetscInt body = measure_body(m, s);
-  PetscReal local[EXTENT_PARTS] = {0};
+  const PetscInt body = measure_body(m, s), n = m->points->n;
+  const PetscReal sign = s->maximum ? 1 : -1;
 
   PetscFunctionBeginUser;
-  for (PetscInt p = 0; p < m->points->n; ++p) {
-    const PetscReal at = (place_of(m, s, start, p) - low) / (high - low) * EXTENT_PARTS;
-    if (!measure_takes_point(m, body, p) || at > EXTENT_PARTS) continue;
-    local[PetscMin(EXTENT_PARTS - 1, (int)PetscMax(0, at))] += m->points->real[POINT_MASS][p];
+  places->n = 0;
+  PetscCall(PetscMalloc2(n, &places->at, n, &places->mass));
+  for (PetscInt p = 0; p < n; ++p) {
+    if (!measure_takes_point(m, body, p)) continue;
+    const PetscReal way = start ? point_real(m->points, POINT_U, p)[s->component] : 0;
+    places->at[places->n] = sign * (point_real(m->points, POINT_X, p)[s->component] - way);
+    places->mass[places->n++] = m->points->real[POINT_MASS][p];
   }
-  PetscCall(MPIU_Allreduce(local, mass, EXTENT_PARTS, MPIU_REAL, MPIU_SUM, m->comm));
+  PetscFunctionReturn(0);
+}
+
+/* Mass in equal parts of [low, high]. What is less than `low` counts to the first, what is more than `high` to none:
+ * they are in no later round, whose part lies within this one and whose first part is not asked for. */
+static PetscErrorCode MassAlong(MPI_Comm comm, PetscReal low, PetscReal high, Places *places,
+                                PetscReal mass[EXTENT_PARTS])
+{
+  PetscReal local[EXTENT_PARTS] = {0};
+  PetscInt kept = 0;
+
+  PetscFunctionBeginUser;
+  for (PetscInt p = 0; p < places->n; ++p) {
+    const PetscReal at = (places->at[p] - low) / (high - low) * EXTENT_PARTS;
+    if (at > EXTENT_PARTS) continue;
+    local[PetscMin(EXTENT_PARTS - 1, (int)PetscMax(0, at))] += places->mass[p];
+    if (at < 0) continue;
+    places->at[kept] = places->at[p];
+    places->mass[kept++] = places->mass[p];
+  }
+  places->n = kept;
+  PetscCall(MPIU_Allreduce(local, mass, EXTENT_PARTS, MPIU_REAL, MPIU_SUM, comm));
   PetscFunctionReturn(0);
 }
 
 /* The place within which all but a share of the mass lies: as good as the farthest point for a
  * front, without its chance. Each round finds the part that holds it. */
-static PetscErrorCode InnerExtent(const Model *m, const MeasureSpec *s, PetscBool start, PetscReal *farthest)
+static PetscErrorCode InnerExtent(const Model *m, const MeasureSpec *s, PetscBool start, Places *places,
+                                  PetscReal *farthest)
 {
   const PetscReal *min = m->grid->min, *max = m->grid->max;
   PetscReal low = s->maximum ? min[s->component] : -max[s->component], high = *farthest;
@@ -41,7 +63,7 @@ static PetscErrorCode InnerExtent(const Model *m, const MeasureSpec *s, PetscBoo
   for (int round = 0; round < 6 && high > low; ++round) {
     const PetscReal part = (high - low) / EXTENT_PARTS;
     int k = EXTENT_PARTS - 1;
-    PetscCall(MassAlong(m, s, start, low, high, mass));
+    PetscCall(MassAlong(m->comm, low, high, places, mass));
     for (int i = 0; i < EXTENT_PARTS && !round; ++i) total += mass[i];
     while (k > 0 && outside + mass[k] <= s->beyond * total * (1 + 1e-12)) outside += mass[k--];
     high = low + (PetscReal)(k + 1) * part;
@@ -54,15 +76,16 @@ static PetscErrorCode InnerExtent(const Model *m, const MeasureSpec *s, PetscBoo
 /* The farthest place of the body now, or at the start, counted outwards; nan without a point. */
 static PetscErrorCode Farthest(const Model *m, const MeasureSpec *s, PetscBool start, PetscReal *farthest)
 {
-  const PetscInt body = measure_body(m, s);
   PetscReal local = -PETSC_MAX_REAL;
+  Places places;
 
   PetscFunctionBeginUser;
-  for (PetscInt p = 0; p < m->points->n; ++p)
-    if (measure_takes_point(m, body, p)) local = PetscMax(local, place_of(m, s, start, p));
+  PetscCall(FindPlaces(m, s, start, &places));
+  for (PetscInt p = 0; p < places.n; ++p) local = PetscMax(local, places.at[p]);
   PetscCall(MPIU_Allreduce(&local, farthest, 1, MPIU_REAL, MPIU_MAX, m->comm));
   if (*farthest == -PETSC_MAX_REAL) *farthest = NAN;
-  else if (s->beyond > 0) PetscCall(InnerExtent(m, s, start, farthest));
+  else if (s->beyond > 0) PetscCall(InnerExtent(m, s, start, &places, farthest));
+  PetscCall(PetscFree2(places.at, places.mass));
   PetscFunctionReturn(0);
 }
 
