@@ -1,15 +1,17 @@
 /* What a substep of explicit dynamics costs: 0.5 s of collapse of the column of cases/granular-collapse with a
  * row every 10 ms, and blocks of Mohr-Coulomb material that slide, in the plane and in space.
  *
- *   build/bench/bench_explicit [-only column|plane|space] [-cells N] [-steps N]
+ *   build/bench/bench_explicit [-only column|plane|space|gimp|walls] [-cells N] [-steps N] [-anew]
  *                              [-case cases/granular-collapse/case.yaml] [-bound PROGRAM]
  *
  * Blocks of about 100,000 points, or of N cells along each side (500 in the plane and 50 in space: a million
- * points), for so many steps of the run. PROGRAM: of somebody else, to be run between two columns with
+ * points), for so many steps of the run; over nodes that are held or over a wall with friction. -anew: points find
+ * their functions anew in every substep, as they do where there is no faster way. PROGRAM: of somebody else, to be run between two columns with
  * arguments "1e-4 0.5 20 1 1 1.5"; it prints its own time. Seconds are those in which a core worked for this
  * process, of the slowest rank. */
 #include "bench.h"
 #include "input/case_file.h"
+#include "model/explicit/explicit.h"
 
 typedef struct {
   PetscReal seconds, front;
@@ -65,42 +67,69 @@ static double nanoseconds(const Model *m, const Outcome *o)
   return 1e9 * (double)ranks * (double)o->seconds / ((double)o->points * (double)o->substeps);
 }
 
-/* A block that slides over the floor of its grid under gravity. */
-static PetscErrorCode Slide(PetscInt dim, PetscInt cells_of_side, PetscInt steps)
+/* A block that slides over a floor under gravity. */
+typedef struct {
+  const char *word, *basis;
+  PetscInt dim;
+  PetscBool wall;
+} Block;
+
+static const Block blocks[] = {{"plane", "cell", 2, PETSC_FALSE}, {"gimp", "gimp", 2, PETSC_FALSE},
+                               {"space", "cell", 3, PETSC_FALSE}, {"walls", "cell", 2, PETSC_TRUE},
+                               {"walls", "gimp", 2, PETSC_TRUE},  {"walls", "cell", 3, PETSC_TRUE}};
+
+static void block_case(const Block *block, PetscInt cells_of_side, BenchCase *b, WallSpec *wall)
 {
   static NamedValue grains[] = {
     {"young", 1e6}, {"poisson", 0.3}, {"friction_angle", 31}, {"dilatancy_angle", 1}, {"cohesion", 0}};
   const PetscReal h = 1. / (PetscReal)cells_of_side;
+  bench_case(b, block->dim, 1e6, 0.3);
+  b->material =
+    (MaterialSpec){.name = "rubber", .law = "mohr-coulomb", .density = 2000, .n_parameters = 5, .parameters = grains};
+  for (PetscInt d = 0; d < block->dim; ++d) {
+    b->c.grid.max[d] = d == 0 ? 1.5 : 1 + 2 * h;
+    b->c.grid.counts[d] = (PetscInt)(b->c.grid.max[d] / h + 0.5);
+    b->c.grid.grading[d] = 1;
+    b->body.shape.max[d] = 1;
+  }
+  b->c.analysis = (AnalysisSpec){.type = ANALYSIS_EXPLICIT, .end = 1, .step = 10 * 0.5 * h / 30};
+  b->c.analysis.largest = b->c.analysis.step;
+  b->c.basis.kind = block->basis;
+  b->motion.on.has[1] = PETSC_TRUE;
+  b->c.gravity[block->dim - 1] = 0;
+  b->c.gravity[1] = -9.81;
+  if (!block->wall) return;
+  *wall = (WallSpec){
+    .name = (char *)"floor", .shape = {.kind = SHAPE_HALF_SPACE}, .contact = CONTACT_FRICTION, .friction = 0.3};
+  wall->shape.normal[1] = 1;
+  b->c.n_walls = 1;
+  b->c.walls = wall;
+  b->c.n_boundary = 0;
+}
+
+static PetscErrorCode Slide(const Block *block, PetscInt cells_of_side, PetscInt steps, PetscBool anew)
+{
   Outcome o = {0};
   BenchCase b;
+  WallSpec wall;
   Diag *diag;
   Model *m = NULL;
 
   PetscFunctionBeginUser;
-  bench_case(&b, dim, 1e6, 0.3);
-  b.material =
-    (MaterialSpec){.name = "rubber", .law = "mohr-coulomb", .density = 2000, .n_parameters = 5, .parameters = grains};
-  for (PetscInt d = 0; d < dim; ++d) {
-    b.c.grid.max[d] = d == 0 ? 1.5 : 1 + 2 * h;
-    b.c.grid.counts[d] = (PetscInt)(b.c.grid.max[d] / h + 0.5);
-    b.c.grid.grading[d] = 1;
-    b.body.shape.max[d] = 1;
-  }
-  b.c.analysis = (AnalysisSpec){.type = ANALYSIS_EXPLICIT, .end = 1, .step = 10 * 0.5 * h / 30};
-  b.c.analysis.largest = b.c.analysis.step;
-  b.c.basis.kind = "cell";
-  b.motion.on.has[1] = PETSC_TRUE;
-  b.c.gravity[dim - 1] = 0;
-  b.c.gravity[1] = -9.81;
+  block_case(block, cells_of_side, &b, &wall);
   PetscCall(DiagCreate(&diag));
   PetscCall(ModelCreate(PETSC_COMM_WORLD, &b.c, diag, &m));
   PetscCall(DiagFlush(diag, stderr));
   PetscCall(DiagDestroy(&diag));
   if (!m) PetscFunctionReturn(0);
+  PetscCall(ExplicitCreate(m, &m->explicit));
+  m->explicit->box = m->explicit->box && !anew;
   PetscCall(Advance(m, (PetscReal)steps * b.c.analysis.step, &o));
   PetscCall(PetscPrintf(PETSC_COMM_WORLD,
-                        "%dD: %d points, %d substeps, %.1f ns a point and substep, %d bytes a point\n", (int)dim,
-                        (int)o.points, (int)o.substeps, nanoseconds(m, &o), (int)points_bytes(m->points)));
+                        "%dD, %s, %s: %d points, %d substeps, %.1f ns a point and substep, %d bytes a point\n",
+                        (int)block->dim, strcmp(block->basis, "cell") ? block->basis : "linear",
+                        block->wall ? "over a wall" : "over held nodes", (int)o.points, (int)o.substeps,
+                        nanoseconds(m, &o), (int)points_bytes(m->points)));
   PetscCall(ModelDestroy(&m));
   PetscFunctionReturn(0);
 }
@@ -123,6 +152,7 @@ int main(int argc, char **argv)
   char file[PETSC_MAX_PATH_LEN] = "cases/granular-collapse/case.yaml", bound[PETSC_MAX_PATH_LEN - 32] = "";
   char only[16] = "";
   PetscInt side = 0, steps = 4;
+  PetscBool anew = PETSC_FALSE;
 
   PetscCall(PetscInitialize(&argc, &argv, NULL, NULL));
   PetscCall(PetscOptionsGetString(NULL, NULL, "-case", file, sizeof file, NULL));
@@ -130,8 +160,10 @@ int main(int argc, char **argv)
   PetscCall(PetscOptionsGetString(NULL, NULL, "-only", only, sizeof only, NULL));
   PetscCall(PetscOptionsGetInt(NULL, NULL, "-cells", &side, NULL));
   PetscCall(PetscOptionsGetInt(NULL, NULL, "-steps", &steps, NULL));
+  PetscCall(PetscOptionsHasName(NULL, NULL, "-anew", &anew));
   if (!only[0] || !strcmp(only, "column")) PetscCall(Columns(file, bound));
-  if (!only[0] || !strcmp(only, "plane")) PetscCall(Slide(2, side ? side : 160, steps));
-  if (!only[0] || !strcmp(only, "space")) PetscCall(Slide(3, side ? side : 24, steps));
+  for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(blocks); ++k)
+    if (!only[0] || !strcmp(only, blocks[k].word))
+      PetscCall(Slide(&blocks[k], side ? side : blocks[k].dim == 2 ? 160 : 24, steps, anew));
   return PetscFinalize();
 }

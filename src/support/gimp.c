@@ -34,24 +34,31 @@ static LineFunctions line_functions(const PetscReal *line, PetscInt i, PetscInt 
                          .moment = {moment / below, -moment / below - moment / above, moment / above}};
 }
 
+PetscInt gimp_functions(const GridBox *box, PetscBool hoop, const Points *points, PetscInt p, const ProductPlace *place,
+                        PetscInt *node, PetscReal *N, PetscReal *dN)
+{
+  const PetscReal *x = point_real(points, POINT_X, p);
+  PetscReal l[3] = {0};
+  LineFunctions f[3];
+  product_domain(points, p, place->size, l);
+  for (PetscInt d = 0; d < box->dim; ++d)
+    f[d] = line_functions(box->line[d], place->ijk[d], box->counts[d], x[d], l[d]);
+  return product_functions(box, place, hoop ? x[0] : 0, f, node, N, dN);
+}
+
 static PetscErrorCode GimpSupport(const BasisInput *in, const Points *points, Support *s)
 {
   const GridBox *box = in->grid->box;
   const PetscInt dim = box->dim;
   ProductPlace place = {.size = {0}};
-  LineFunctions f[3];
   PetscInt n = 0, p = 0;
 
   PetscFunctionBeginUser;
   PetscCall(ProductsReserve(points, dim, s));
   for (; p < points->n && points->cell[p] >= 0; ++p) {
     if (!p || points->cell[p] != points->cell[p - 1]) place = product_place(in->grid, points->cell[p]);
-    const PetscReal *x = point_real(points, POINT_X, p);
-    PetscReal l[3] = {0};
-    product_domain(points, p, place.size, l);
-    for (PetscInt d = 0; d < dim; ++d) f[d] = line_functions(box->line[d], place.ijk[d], box->counts[d], x[d], l[d]);
     product_group(s, p, n);
-    n += product_functions(box, &place, in->hoop ? x[0] : 0, f, s->node + n, s->N + n, s->dN + n * dim);
+    n += gimp_functions(box, in->hoop, points, p, &place, s->node + n, s->N + n, s->dN + n * dim);
   }
   products_end(s, p, n);
   PetscFunctionReturn(0);

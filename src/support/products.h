@@ -39,6 +39,9 @@ void product_domain(const Points *points, PetscInt p, const PetscReal *size, Pet
  * farther out more: at radius > 0, dN = dN + moment / radius along x. */
 PetscInt product_functions(const GridBox *box, const ProductPlace *place, PetscReal radius, LineFunctions *f,
                            PetscInt *node, PetscReal *N, PetscReal *dN);
+/* gimp.c. Those of point p, wherever its cell has been left. */
+PetscInt gimp_functions(const GridBox *box, PetscBool hoop, const Points *points, PetscInt p, const ProductPlace *place,
+                        PetscInt *node, PetscReal *N, PetscReal *dN);
 /* Room for groups of single points, which then come one after the other. */
 PetscErrorCode ProductsReserve(const Points *points, PetscInt dim, Support *support);
 /* Point p, whose functions stand behind the n numbers that there are, has nn of them. */

@@ -237,7 +237,7 @@ typedef struct {
   CellType cell;
   const Kinematics *kinematics;
   ExplicitUpdate update;
-  const char *transfer;
+  const char *transfer, *basis;
 } Walk;
 
 static void layers(Bench *b, MaterialSpec materials[2], const Walk *walk)
@@ -252,6 +252,7 @@ static void layers(Bench *b, MaterialSpec materials[2], const Walk *walk)
   b->c.kinematics = walk->kinematics;
   b->c.analysis.update = walk->update;
   b->c.analysis.transfer = (char *)walk->transfer;
+  b->c.basis.kind = walk->basis;
   b->c.grid.min[0] = hoop ? 0 : -2 * h;
   b->c.grid.counts[0] = (PetscInt)((b->c.grid.max[0] - b->c.grid.min[0]) / h + 0.5);
   materials[0] = b->material;
@@ -269,13 +270,18 @@ static void layers(Bench *b, MaterialSpec materials[2], const Walk *walk)
 
 static void test_walks(void **state)
 {
-  static const Walk walks[] = {{CELL_QUADRILATERAL, &kinematics_plane_strain, EXPLICIT_MUSL, NULL},
-                               {CELL_QUADRILATERAL, &kinematics_plane_strain, EXPLICIT_USL, NULL},
-                               {CELL_QUADRILATERAL, &kinematics_axisymmetric, EXPLICIT_MUSL, NULL},
-                               {CELL_HEXAHEDRON, &kinematics_3d, EXPLICIT_MUSL, NULL},
-                               {CELL_QUADRILATERAL, &kinematics_plane_strain, EXPLICIT_MUSL, "consistent"},
-                               {CELL_QUADRILATERAL, &kinematics_axisymmetric, EXPLICIT_MUSL, "consistent"},
-                               {CELL_HEXAHEDRON, &kinematics_3d, EXPLICIT_MUSL, "consistent"}};
+  static const Walk walks[] = {{CELL_QUADRILATERAL, &kinematics_plane_strain, EXPLICIT_MUSL, NULL, "cell"},
+                               {CELL_QUADRILATERAL, &kinematics_plane_strain, EXPLICIT_USL, NULL, "cell"},
+                               {CELL_QUADRILATERAL, &kinematics_axisymmetric, EXPLICIT_MUSL, NULL, "cell"},
+                               {CELL_HEXAHEDRON, &kinematics_3d, EXPLICIT_MUSL, NULL, "cell"},
+                               {CELL_QUADRILATERAL, &kinematics_plane_strain, EXPLICIT_MUSL, "consistent", "cell"},
+                               {CELL_QUADRILATERAL, &kinematics_axisymmetric, EXPLICIT_MUSL, "consistent", "cell"},
+                               {CELL_HEXAHEDRON, &kinematics_3d, EXPLICIT_MUSL, "consistent", "cell"},
+                               {CELL_QUADRILATERAL, &kinematics_plane_strain, EXPLICIT_MUSL, NULL, "gimp"},
+                               {CELL_QUADRILATERAL, &kinematics_plane_strain, EXPLICIT_USL, NULL, "gimp"},
+                               {CELL_QUADRILATERAL, &kinematics_plane_strain, EXPLICIT_MUSL, "consistent", "gimp"},
+                               {CELL_QUADRILATERAL, &kinematics_axisymmetric, EXPLICIT_USL, NULL, "gimp"},
+                               {CELL_QUADRILATERAL, &kinematics_axisymmetric, EXPLICIT_MUSL, "consistent", "gimp"}};
   static const struct {
     PointReal field;
     PetscReal noise;
@@ -294,7 +300,8 @@ static void test_walks(void **state)
       model_step(plain, PETSC_MAX_REAL);
     }
     CHECK(fast->explicit->box && fast->total_iterations == plain->total_iterations, "other substeps");
-    PetscPrintf(PETSC_COMM_WORLD, "%s, %d substeps:", b.c.kinematics->name, (int)fast->total_iterations);
+    PetscPrintf(PETSC_COMM_WORLD, "%s %s, %d substeps:", walks[k].basis, b.c.kinematics->name,
+                (int)fast->total_iterations);
     for (size_t f = 0; f < PETSC_STATIC_ARRAY_LENGTH(fields); ++f) {
       const PetscReal off = points_apart(fast, plain, fields[f].field);
       PetscPrintf(PETSC_COMM_WORLD, " %.2g", (double)off);

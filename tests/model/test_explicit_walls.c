@@ -1,6 +1,7 @@
 /* Rigid walls in explicit dynamics, against what mechanics says of rigid bodies: momentum that they give, how a
  * block slides, that it rests, what it weighs; on any number of ranks, after a resumed run, and after statics. */
 #include "case_builder.h"
+#include "model/explicit/explicit.h"
 #include "model/state/state.h"
 
 typedef struct {
@@ -99,7 +100,8 @@ static void test_rests(void **state)
 {
   static const Block rest[] = {{"cell", CELL_QUADRILATERAL, &kinematics_plane_strain, 0.7},
                                {"gimp", CELL_QUADRILATERAL, &kinematics_plane_strain, 0.7},
-                               {"cell", CELL_QUADRILATERAL, &kinematics_axisymmetric, 0.7}};
+                               {"cell", CELL_QUADRILATERAL, &kinematics_axisymmetric, 0.7},
+                               {"gimp", CELL_QUADRILATERAL, &kinematics_axisymmetric, 0.7}};
   (void)state;
   for (const Block *r = rest; r < rest + PETSC_STATIC_ARRAY_LENGTH(rest); ++r) {
     Bench b;
@@ -254,8 +256,13 @@ static void test_laps(void **state)
 {
   static const PointReal fields[] = {POINT_X, POINT_V, POINT_TAU, POINT_CONTACT};
   static PetscReal time[] = {0, 0.03}, way[] = {0, 1};
+  static const Block met[] = {{"cell", CELL_QUADRILATERAL, &kinematics_plane_strain, 0.2},
+                              {"gimp", CELL_QUADRILATERAL, &kinematics_plane_strain, 0.2},
+                              {"gimp", CELL_QUADRILATERAL, &kinematics_axisymmetric, 0.2},
+                              {"cell", CELL_TRIANGLE, &kinematics_plane_strain, 0.2},
+                              {"cell", CELL_HEXAHEDRON, &kinematics_3d, 0.2}};
   (void)state;
-  for (const Block *r = blocks; r < blocks + 4; ++r) {
+  for (const Block *r = met; r < met + PETSC_STATIC_ARRAY_LENGTH(met); ++r) {
     Bench b;
     WallSpec wall;
     const int up = r->cell == CELL_HEXAHEDRON ? 2 : 1;
@@ -277,6 +284,7 @@ static void test_laps(void **state)
       bears[1] += measure(alone, "wall_force", NULL, up);
     }
     CHECK(bears[1] > 1000, "the floor bears %g N", (double)bears[1]);
+    CHECK(laps->explicit->box == (r->cell != CELL_TRIANGLE) && !alone->explicit->box, "both walk alike");
     for (size_t f = 0; f < PETSC_STATIC_ARRAY_LENGTH(fields); ++f) {
       const PetscReal off = points_difference(laps, alone, fields[f]), most = (PetscReal[]){1e-10, 1e-8, 1e-3, 1e-4}[f];
       CHECK(off <= most, "%s cell %d: field %d is off by %g", r->basis, (int)r->cell, (int)fields[f], (double)off);

@@ -1,4 +1,4 @@
-/* How short the substeps of explicit dynamics must be. */
+/* How short the substeps of explicit dynamics must be, and whether they are quick. */
 #pragma once
 #include "model/model.h"
 
@@ -7,3 +7,5 @@
 PetscErrorCode ExplicitCritical(const Model *model, PetscReal *critical, PetscReal *fastest);
 /* Share of it that the case takes. */
 static inline PetscReal explicit_courant(const Case *c) { return c->analysis.courant > 0 ? c->analysis.courant : 0.6; }
+/* Do points find their functions by arithmetic, and are sorted once for many substeps? A substep costs a third then. */
+PetscBool explicit_by_arithmetic(const Model *model);

@@ -17,6 +17,7 @@ typedef struct {
   PetscReal origin[3], per_length[3], size[3]; /* m, 1/m, m */
   PetscInt most[3], stride[3];                 /* last cell and distance of nodes along each axis, from `origin` */
   PetscInt corner[8];                          /* lattice number of a cell's nodes from its first */
+  PetscReal end[3][2];                         /* where the box ends along each axis, from `origin` in cells */
   const PetscInt *number;                      /* local node of each */
 } Lattice;
 
@@ -36,6 +37,7 @@ typedef struct {
 /* Nodal arrays are 0 where no point reaches. */
 typedef struct Explicit {
   PetscBool box;    /* do points find their nodes by arithmetic? */
+  PetscBool smooth; /* and are their functions those of gimp? */
   PetscBool loaded; /* does anything act on nodes but stress, weight and walls? */
   Lattice lattice;
   PetscInt width;             /* 1 + 2 dim */
@@ -161,6 +163,10 @@ static inline PetscInt batch_points(const Points *points, PetscInt first)
 void plane_gather(const Model *model, Explicit *e);
 void plane_gain(const Model *model, Explicit *e);
 void plane_strain(const Model *model, Explicit *e);
+/* smooth.c. And with gimp. */
+void smooth_gather(const Model *model, Explicit *e);
+void smooth_gain(const Model *model, Explicit *e);
+void smooth_strain(const Model *model, Explicit *e);
 /* space.c. And in space. */
 void space_gather(const Model *model, Explicit *e);
 void space_gain(const Model *model, Explicit *e);

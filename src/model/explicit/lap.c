@@ -9,8 +9,10 @@
 /* substeps after which the critical one is asked for again */
 #define LAP_MOST 50
 
-/* Only boxes with lines at equal distances, whose functions are linear, and where nothing but walls must be found anew
- * in every substep. */
+/* Are there walks for gimp? In space sixty-four nodes around a cell would be no gain. */
+static PetscBool is_smooth(const Model *m) { return m->dim == 2 && m->space->basis == basis_find("gimp"); }
+
+/* Does anything but walls have to be found anew in every substep? */
 static PetscBool is_loaded(const Model *m)
 {
   for (PetscInt i = 0; i < m->forces.n; ++i)
@@ -18,10 +20,12 @@ static PetscBool is_loaded(const Model *m)
   return PETSC_FALSE;
 }
 
-static PetscBool finds_by_arithmetic(const Model *m)
+/* Only boxes with lines at equal distances, whose functions are linear or those of gimp. */
+PetscBool explicit_by_arithmetic(const Model *m)
 {
   const GridBox *box = m->grid->box;
-  if (!box || m->space->basis->nodes != BASIS_OF_CELLS || is_loaded(m)) return PETSC_FALSE;
+  if (!box || is_loaded(m)) return PETSC_FALSE;
+  if (m->space->basis->nodes != BASIS_OF_CELLS && !is_smooth(m)) return PETSC_FALSE;
   if (m->grid->nodes_per_cell != (m->dim == 2 ? 4 : 8)) return PETSC_FALSE;
   for (PetscInt d = 0; d < m->dim; ++d)
     if (!(box->per_length[d] > 0)) return PETSC_FALSE;
@@ -42,6 +46,8 @@ static void lattice_of(const Model *m, Lattice *l)
     l->most[d] = nodes - 2;
     l->stride[d] = stride;
     stride *= nodes;
+    l->end[d][0] = (PetscReal)-box->nodes.lo[d];
+    l->end[d][1] = (PetscReal)(box->counts[d] - box->nodes.lo[d]);
   }
   for (int k = 0; k < 8; ++k) {
     l->corner[k] = 0;
@@ -59,7 +65,8 @@ PetscErrorCode ExplicitCreate(const Model *m, Explicit **explicit)
   PetscCall(PetscNew(explicit));
   e = *explicit;
   e->width = 1 + 2 * dim;
-  e->box = finds_by_arithmetic(m);
+  e->box = explicit_by_arithmetic(m);
+  e->smooth = is_smooth(m);
   PetscCall(SupportCreate(&e->near.support));
   e->slopes = m->points->components[POINT_SLOPE] > 0;
   if (e->box) lattice_of(m, &e->lattice);
@@ -94,15 +101,16 @@ PetscErrorCode ExplicitDestroy(Explicit **explicit)
   PetscFunctionReturn(0);
 }
 
-/* The nodes of a cell and those around them, as far as this rank knows them. */
+/* The nodes that points of a cell see and those around them, as far as this rank knows them. */
 static void mark_around(const Model *m, PetscInt cell, PetscReal *mark)
 {
   const GridBox *box = m->grid->box;
+  const PetscInt around = 1 + m->space->basis->halo;
   PetscInt ijk[3], lo[3] = {0, 0, 0}, hi[3] = {1, 1, 1};
   box_voxel_of(m->grid, cell, ijk);
   for (PetscInt d = 0; d < m->dim; ++d) {
-    lo[d] = PetscMax(ijk[d] - 1, box->nodes.lo[d]);
-    hi[d] = PetscMin(ijk[d] + 3, box->nodes.hi[d]);
+    lo[d] = PetscMax(ijk[d] - around, box->nodes.lo[d]);
+    hi[d] = PetscMin(ijk[d] + 2 + around, box->nodes.hi[d]);
   }
   for (ijk[2] = lo[2]; ijk[2] < hi[2]; ++ijk[2])
     for (ijk[1] = lo[1]; ijk[1] < hi[1]; ++ijk[1])

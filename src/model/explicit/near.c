@@ -1,6 +1,7 @@
 /* Which points walls may meet in a lap: only these are looked at in its substeps. */
 #include "grid/box/box.h"
 #include "model/explicit/explicit.h"
+#include "support/products.h"
 
 /* Cells that a point may come nearer by in a lap; nodes are listed as far (lap.c). */
 #define APPROACH 1
@@ -66,44 +67,68 @@ void near_forget(const Model *m, const Explicit *e)
   for (PetscInt i = 0; i < (e->box ? e->near.n : m->points->n); ++i) forget(m, e->box ? e->near.point[i] : i);
 }
 
-/* The nodes of the cell in which x is, and their functions: products of linear ones. */
-static void look(const int dim, const Lattice *l, const PetscReal *x, PetscInt *node, PetscReal *N, PetscReal *dN)
+/* The cell of the lattice in which x is, and where in it, 0 to 1. */
+static void locate(PetscInt dim, const Lattice *l, const PetscReal *x, PetscInt cell[3], PetscReal at[3])
 {
-  PetscReal at[3] = {0, 0, 0};
-  PetscInt first = 0;
-  for (int d = 0; d < dim; ++d) {
+  for (PetscInt d = 0; d < dim; ++d) {
     const PetscReal s = (x[d] - l->origin[d]) * l->per_length[d];
-    const PetscInt i = PetscMin(PetscMax((PetscInt)PetscFloorReal(s), 0), l->most[d]);
-    first += i * l->stride[d];
-    at[d] = s - (PetscReal)i;
+    cell[d] = PetscMin(PetscMax((PetscInt)PetscFloorReal(s), 0), l->most[d]);
+    at[d] = s - (PetscReal)cell[d];
   }
-  for (int k = 0; k < 1 << dim; ++k) {
+}
+
+/* Nodes and functions of point p: products of linear ones. Returns how many. */
+static PetscInt look(const Model *m, const Lattice *l, PetscInt p, PetscInt *node, PetscReal *N, PetscReal *dN)
+{
+  const PetscInt dim = m->dim;
+  PetscInt cell[3], first = 0;
+  PetscReal at[3];
+  locate(dim, l, point_real(m->points, POINT_X, p), cell, at);
+  for (PetscInt d = 0; d < dim; ++d) first += cell[d] * l->stride[d];
+  for (PetscInt k = 0; k < 1 << dim; ++k) {
     node[k] = l->number[first + l->corner[k]];
     N[k] = 1;
-    for (int d = 0; d < dim; ++d) {
+    for (PetscInt d = 0; d < dim; ++d) {
       N[k] *= k >> d & 1 ? at[d] : 1 - at[d];
       dN[k * dim + d] = (k >> d & 1 ? 1 : -1) * l->per_length[d];
-      for (int j = 0; j < dim; ++j)
+      for (PetscInt j = 0; j < dim; ++j)
         if (j != d) dN[k * dim + d] *= k >> j & 1 ? at[j] : 1 - at[j];
     }
   }
+  return 1 << dim;
+}
+
+static PetscInt look_smoothly(const Model *m, const Lattice *l, PetscInt p, PetscInt *node, PetscReal *N, PetscReal *dN)
+{
+  const GridBox *box = m->grid->box;
+  ProductPlace place = {.ijk = {0}};
+  PetscReal at[3];
+  locate(m->dim, l, point_real(m->points, POINT_X, p), place.ijk, at);
+  for (PetscInt d = 0; d < m->dim; ++d) {
+    place.ijk[d] += box->nodes.lo[d];
+    place.size[d] = l->size[d];
+  }
+  return gimp_functions(box, m->c->kinematics->hoop, m->points, p, &place, node, N, dN);
 }
 
 PetscErrorCode NearSee(const Model *m, Explicit *e)
 {
-  const PetscInt nn = m->grid->nodes_per_cell, dim = m->dim, n = e->near.n;
+  const PetscInt dim = m->dim, n = e->near.n, most = e->smooth ? PRODUCT_MOST_NODES : 1 << dim;
   Support *s = e->near.support;
 
   PetscFunctionBeginUser;
-  PetscCall(SupportReserve(s, n, n * nn, n * nn, dim));
-  for (PetscInt i = 0; i <= n; ++i) {
-    s->point_start[i] = i;
-    s->node_start[i] = s->value_start[i] = i * nn;
-  }
+  PetscCall(SupportReserve(s, n, n * most, n * most, dim));
   s->n_groups = n;
   s->n_runs = 0;
-  for (PetscInt i = 0; i < n; ++i)
-    look((int)dim, &e->lattice, point_real(m->points, POINT_X, e->near.point[i]), s->node + i * nn, s->N + i * nn,
-         s->dN + i * nn * dim);
+  s->point_start[0] = s->node_start[0] = s->value_start[0] = 0;
+  for (PetscInt i = 0; i < n; ++i) {
+    const PetscInt first = s->node_start[i], p = e->near.point[i];
+    PetscInt *node = s->node + first;
+    PetscReal *N = s->N + first, *dN = s->dN + first * dim;
+    const PetscInt nn =
+      e->smooth ? look_smoothly(m, &e->lattice, p, node, N, dN) : look(m, &e->lattice, p, node, N, dN);
+    s->point_start[i + 1] = i + 1;
+    s->node_start[i + 1] = s->value_start[i + 1] = first + nn;
+  }
   PetscFunctionReturn(0);
 }

@@ -190,6 +190,7 @@ KERNEL void strain(const int dim, const PetscBool hoop, const Model *m, Explicit
 void points_gather(const Model *m, Explicit *e)
 {
   if (e->box && m->dim == 3) space_gather(m, e);
+  else if (e->box && e->smooth) smooth_gather(m, e);
   else if (e->box) plane_gather(m, e);
   else if (m->dim == 3) gather(3, PETSC_FALSE, m, e);
   else if (m->c->kinematics->hoop) gather(2, PETSC_TRUE, m, e);
@@ -199,6 +200,7 @@ void points_gather(const Model *m, Explicit *e)
 void points_gain(const Model *m, Explicit *e)
 {
   if (e->box && m->dim == 3) space_gain(m, e);
+  else if (e->box && e->smooth) smooth_gain(m, e);
   else if (e->box) plane_gain(m, e);
   else if (m->dim == 3) gain(3, m, e);
   else gain(2, m, e);
@@ -207,6 +209,7 @@ void points_gain(const Model *m, Explicit *e)
 void points_strain(const Model *m, Explicit *e)
 {
   if (e->box && m->dim == 3) space_strain(m, e);
+  else if (e->box && e->smooth) smooth_strain(m, e);
   else if (e->box) plane_strain(m, e);
   else if (m->dim == 3) strain(3, PETSC_FALSE, m, e);
   else if (m->c->kinematics->hoop) strain(2, PETSC_TRUE, m, e);

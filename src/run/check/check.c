@@ -195,8 +195,8 @@ static PetscErrorCode ReportClouds(const Model *m, FILE *out)
   PetscFunctionReturn(0);
 }
 
-/* Substeps that cost as much as an implicit step of the same model (docs/decisions.md [163]). */
-#define SUBSTEPS_OF_A_STEP 10
+/* Substeps that cost as much as an implicit step of the same model (docs/decisions.md [249]). */
+static PetscInt substeps_of_a_step(const Model *m) { return explicit_by_arithmetic(m) ? 15 : 5; }
 
 /* What explicit dynamics takes, or would, and whether that is cheaper. */
 static PetscErrorCode ReportSubsteps(const Model *m, FILE *out)
@@ -210,7 +210,7 @@ static PetscErrorCode ReportSubsteps(const Model *m, FILE *out)
   const PetscReal substep = explicit_courant(m->c) * critical, n = PetscCeilReal(m->control.next / substep);
   say(m, out, "#   explicit: %.3g s a substep, %.0f %s in a step of %g s: %s than an implicit step\n", (double)substep,
       (double)n, explicit ? "of them" : "with `type: explicit`", (double)m->control.next,
-      n <= SUBSTEPS_OF_A_STEP ? "cheaper" : "dearer");
+      n <= (PetscReal)substeps_of_a_step(m) ? "cheaper" : "dearer");
   PetscFunctionReturn(0);
 }
 
