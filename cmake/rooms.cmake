@@ -136,8 +136,11 @@ function(talus_test path)
     endif()
     set(environment "${TALUS_TEST_ENVIRONMENT}")
     # A failed assertion ends the rank that it fails on, and so all others: they would wait for it until the time is up.
+    # Processes by themselves would share a session directory, which the first that ends takes from one that starts.
     if(ranks GREATER 1)
       list(APPEND environment CMOCKA_TEST_ABORT=1)
+    else()
+      list(APPEND environment OMPI_MCA_orte_create_session_dirs=0)
     endif()
     set_tests_properties(${test_name} PROPERTIES TIMEOUT ${arg_TIMEOUT} ENVIRONMENT "${environment}")
     if(ranks EQUAL 1 AND NOT path IN_LIST TALUS_SLOW_TESTS)
