@@ -2,8 +2,8 @@
  *
  * A step of the run (analysis.step) is divided into substeps, none of which a wave crosses a cell in.
  * Some of them make a lap: points are sorted and find their cells, and the nodes that they can reach are
- * listed, only between laps. In a box of squares or cubes points find their nodes by arithmetic, wherever
- * in it they are; other grids and bases have laps of one substep, and a support in each.
+ * listed, only between laps. In a box of lines at equal distances points find their nodes by arithmetic, wherever
+ * in it they are, with linear functions and in the plane with gimp; else laps have one substep, and a support in each.
  *
  * Between substeps velocities are those of the middle of the last one; at the ends of the run's steps they are
  * those of that time. */
