@@ -6,8 +6,8 @@
 /* Cells that a point may come nearer by in a lap; nodes are listed as far (lap.c). */
 #define APPROACH 1
 
-/* The most that matter of wall k within the box moves by until any substep of the lap, m. Motions are rigid: its corners
- * go farthest. */
+/* The most that matter of wall k within the box moves by until any substep of the lap, m. Motions are rigid: corners of
+ * the box go farthest. */
 static PetscReal travel_of_wall(const Model *m, const Explicit *e, PetscInt k)
 {
   const GridBox *box = m->grid->box;
