@@ -396,6 +396,7 @@ typedef struct {
   BasisOrder order;           /* mls */
   BasisWeight weight;         /* mls */
   PetscReal gamma;            /* lme: locality, beta = gamma / h^2 */
+  PetscReal split;            /* gimp: points whose neighbours stand farther away are split, cells; 0: never */
   EssentialKind essential;
 } BasisSpec;
 

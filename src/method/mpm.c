@@ -2,6 +2,7 @@
 #include "method/method.h"
 #include "method/transfer/loops.h"
 #include "method/transfer/transfer.h"
+#include "points/split.h"
 
 /* q_I = sum N m v, f_I = sum N m a (eqs. 2.6-2.9), and what the transfer makes of them. */
 static PetscErrorCode Project(Discretisation *s)
@@ -162,6 +163,22 @@ static PetscErrorCode MpmHold(Discretisation *s)
   PetscFunctionReturn(0);
 }
 
+/* What is stretched gets more points, before they are located. */
+static PetscErrorCode Split(Discretisation *s)
+{
+  PetscBool *opens;
+  PetscInt n;
+
+  PetscFunctionBeginUser;
+  if (s->c->basis.split == 0) PetscFunctionReturn(0);
+  PetscCall(PetscMalloc1(s->c->n_materials, &opens));
+  for (PetscInt i = 0; i < s->c->n_materials; ++i) opens[i] = s->materials[i].law->yields;
+  const SplitRule rule = {.cells = s->c->basis.split, .hoop = s->c->kinematics->hoop, .opens = opens};
+  PetscCall(PointsSplit(s->points, s->grid, &rule, &n));
+  PetscCall(PetscFree(opens));
+  PetscFunctionReturn(0);
+}
+
 static PetscErrorCode MpmConvect(Discretisation *s)
 {
   LostPoint *ignored;
@@ -173,6 +190,7 @@ static PetscErrorCode MpmConvect(Discretisation *s)
   PetscCall(DiscretisationMoveCarried(s, s->tracers));
   PetscCall(DiscretisationMoveCarried(s, s->loads->carriers));
   PetscCall(PetscFree(s->lost));
+  PetscCall(Split(s));
   PetscCall(PointsRelocate(s->points, s->grid, s->c->grid.outside, &s->n_lost, &s->lost));
   PetscCall(PointsRelocate(s->tracers, s->grid, OUTSIDE_KEEP, &n_ignored, &ignored));
   PetscCall(PetscFree(ignored));

@@ -319,6 +319,7 @@ static PetscErrorCode CreateBodies(Model *m, Diag *diag)
 
   PetscFunctionBeginUser;
   PetscCall(CreatePoints(m, case_has_stress(m->c) ? &outline : NULL, diag));
+  PetscCall(SplitCheck(m, diag));
   PetscCall(DiagReduce(m->comm, diag, &errors));
   if (!errors) places_start(m);
   if (!errors) PetscCall(InitialStress(m, &outline, diag));

@@ -46,6 +46,8 @@ void sizes_start(const Model *model);
 void places_start(const Model *model);
 /* Complain where `stabilisation.room` means nothing (start/laws.c). */
 void room_check(const Model *model, Diag *diag);
+/* Collective. Complain of a value of `basis: {gimp: {split: ...}}` that means nothing, or too much (start/split.c). */
+PetscErrorCode SplitCheck(const Model *model, Diag *diag);
 /* Complain of bodies whose law needs a stress and has none (start/laws.c). */
 void stresses_check(const Model *model, Diag *diag);
 /* equilibrium.c. Mistakes of a case that asks for one. */

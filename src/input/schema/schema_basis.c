@@ -68,6 +68,19 @@ static const SchemaEntry lme_entries[] = {
 const SchemaTable schema_keys_lme = {
   .name = "lme", .help = "Local maximum entropy.", .entries = lme_entries, .size = sizeof(BasisSpec)};
 
+static const SchemaEntry gimp_entries[] = {
+  KEY("split", NUMBER, NULL,
+      "a point is split in two where material is stretched so that its neighbours stand farther than so many cells "
+      "away: 0.55 with nine points a cell, 0.75 with four; 0: never. Else no domain is longer than a cell, and what is "
+      "stretched beyond has gaps",
+      .fallback = "0", BETWEEN(0, 1), AT(BasisSpec, split)),
+  {.key = NULL},
+};
+const SchemaTable schema_keys_gimp = {.name = "gimp",
+                                      .help = "Linear functions, averaged over the points' domains.",
+                                      .entries = gimp_entries,
+                                      .size = sizeof(BasisSpec)};
+
 static const SchemaEntry no_entries[] = {{.key = NULL}};
 const SchemaTable schema_keys_none = {
   .name = "no keys", .help = "For a basis without numbers of its own.", .entries = no_entries};

@@ -42,4 +42,4 @@ extern const SchemaTable schema_shape, schema_wall_shape, schema_selector, schem
 /* From support/bases.inc (registry.c), and the tables that it names. */
 extern const SchemaEntry schema_bases[];
 extern const SchemaGroup schema_basis_groups[];
-extern const SchemaTable schema_keys_none, schema_keys_mls, schema_keys_lme;
+extern const SchemaTable schema_keys_none, schema_keys_gimp, schema_keys_mls, schema_keys_lme;

@@ -2,6 +2,7 @@
 #include "material/pressure.h"
 #include "model/stage/stage_private.h"
 #include "points/onto.h"
+#include "points/split.h"
 
 /* The body of this case that one of the other is: of its name, if it is there in both; or -1. */
 static PetscInt body_here(const Case *c, const BodySpec *other)
@@ -96,7 +97,7 @@ static PetscErrorCode Place(Model *m, Points *placed)
   PetscBool *take;
 
   PetscFunctionBeginUser;
-  for (PetscInt p = 0; p < m->points->n; ++p) last = PetscMax(last, m->points->id[p]);
+  for (PetscInt p = 0; p < m->points->n; ++p) last = PetscMax(last, point_seed_id(m->points->id[p]));
   PetscCallMPI(MPI_Allreduce(&last, &all, 1, MPIU_INT64, MPI_MAX, m->comm));
   PetscCall(PetscMalloc1(placed->n, &take));
   for (PetscInt p = 0; p < placed->n; ++p) {

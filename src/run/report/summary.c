@@ -45,6 +45,18 @@ PetscErrorCode SummaryBegin(Model *m, RunDir *dir)
   PetscFunctionReturn(0);
 }
 
+/* Their number, where it is not that of the start. */
+static PetscErrorCode LogPoints(const Model *m, RunDir *dir)
+{
+  PetscInt points;
+
+  PetscFunctionBeginUser;
+  if (m->c->basis.split == 0) PetscFunctionReturn(0);
+  PetscCall(ModelCountPoints(m, &points));
+  PetscCall(RunDirLog(dir, "points = %d at the end, halves of those that were split among them", (int)points));
+  PetscFunctionReturn(0);
+}
+
 /* How evenly several ranks shared the work, and what keeping it so has cost. */
 static PetscErrorCode LogBalance(const Model *m, RunDir *dir, PetscReal seconds)
 {
@@ -105,6 +117,7 @@ PetscErrorCode SummaryEnd(Model *m, RunDir *dir, const RunSummary *summary, cons
   if (summary->ended[0]) PetscCall(RunDirLog(dir, "ended = %s, at t = %g s", summary->ended, (double)m->time));
   PetscCall(RunDirLog(dir, "steps = %d iterations = %d halvings = %d seconds = %.3g", (int)summary->steps,
                       (int)summary->iterations, (int)summary->halvings, (double)seconds));
+  PetscCall(LogPoints(m, dir));
   if (m->tries.again || m->cuts)
     PetscCall(RunDirLog(dir, "tried again = %d lost iterations = %d", (int)m->tries.again, (int)m->tries.lost));
   PetscCall(LogBalance(m, dir, phase[PHASE_REPARTITION]));
