@@ -6,7 +6,7 @@
 static PetscErrorCode ExtensionCreate(const Discretisation *s, Extension **extension)
 {
   const GridBox *box = s->grid->box;
-  const PetscInt n = s->grid->n_nodes, known = block_size(&box->nodes);
+  const PetscInt n = s->grid->n_nodes, known = box ? block_size(&box->nodes) : 0;
   Extension *e;
 
   PetscFunctionBeginUser;
@@ -33,7 +33,7 @@ PetscErrorCode ExtensionDestroy(Extension **extension)
 PetscBool extension_works(const Discretisation *s)
 {
   const PetscBool implicit = s->c->analysis.type != ANALYSIS_EXPLICIT;
-  return implicit && !s->nodes->pressure && s->c->stabilisation.follow > 0 ? PETSC_TRUE : PETSC_FALSE;
+  return implicit && s->grid->box && !s->nodes->pressure && s->c->stabilisation.follow > 0 ? PETSC_TRUE : PETSC_FALSE;
 }
 
 static void place_of(const GridBox *box, const Extension *e, PetscInt node, PetscInt at[3])

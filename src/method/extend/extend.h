@@ -13,7 +13,7 @@ typedef struct Extension {
 } Extension;
 
 PetscErrorCode ExtensionDestroy(Extension **extension);
-/* Is there anything that could follow: not in the mixed formulation and in explicit dynamics. */
+/* May nodes follow? Not in the mixed formulation and in explicit dynamics. */
 PetscBool extension_works(const Discretisation *space);
 /* Collective. Of a support that the basis has just filled: what each node has; those with less than
  * stabilisation.follow follow others, if these stand near enough, and vanish from it. */
