@@ -1,19 +1,19 @@
 /* A block of points with domains that ends by a share of a cell beyond a line of the grid: the
- * condition number of its stiffness as that goes to zero, with and without what holds nodes that are
- * hardly reached. All eigenvalues, dense.
+ * condition number of its stiffness as that goes to zero, where nodes that are hardly reached follow
+ * others, where they are held, and without. All eigenvalues, dense.
  *
  *   build/bench/bench_cut [-picture cut.png] */
 #include "bench.h"
 #include "picture/figure.h"
 
 #define CUTS 25
-#define WAYS 2
+#define WAYS 3
 
-static const PetscReal curvature[] = {0.01, 0}; /* stabilisation.curvature */
-static const char *const name[] = {"curvature: 0.01", "curvature: 0"};
+static const StabilisationSpec ways[] = {{.curvature = 0.01, .follow = 0.02}, {.curvature = 0.01}, {.stiffness = 0}};
+static const char *const name[] = {"follow: 0.02", "curvature: 0.01", "neither"};
 
 /* Eight cells a side on the floor of a grid that is larger. */
-static void block(BenchCase *b, PetscReal held)
+static void block(BenchCase *b, StabilisationSpec way)
 {
   bench_block(b, 2, 8, 4);
   b->body.shape.min[1] = 0;
@@ -22,7 +22,8 @@ static void block(BenchCase *b, PetscReal held)
     .type = ANALYSIS_STATIC, .end = 1, .step = 1, .smallest = 1.0 / 1024, .largest = 1, .beta = 0.25, .gamma = 0.5};
   b->c.linear = LINEAR_DIRECT;
   b->c.basis.kind = "gimp";
-  b->c.stabilisation.curvature = held;
+  b->c.stabilisation.follow = way.follow;
+  b->c.stabilisation.curvature = way.curvature;
 }
 
 /* Unknowns that are not prescribed: the rows of others have their diagonal alone. */
@@ -79,7 +80,7 @@ static PetscErrorCode Condition(Mat A, PetscReal *condition)
 
 /* The block carried upwards, so that the domains of its uppermost points reach into the next row by
  * `cut` of a cell; its foot stays in the cells of the floor. */
-static PetscErrorCode Cut(PetscReal held, PetscReal cut, PetscReal *condition)
+static PetscErrorCode Cut(StabilisationSpec way, PetscReal cut, PetscReal *condition)
 {
   LostPoint *lost;
   PetscInt n_lost;
@@ -88,7 +89,7 @@ static PetscErrorCode Cut(PetscReal held, PetscReal cut, PetscReal *condition)
   Pass pass;
 
   PetscFunctionBeginUser;
-  block(&b, held);
+  block(&b, way);
   PetscCall(SubjectCreate(&b.c, &s));
   Points *points = s.model->points;
   for (PetscInt p = 0; p < points->n; ++p) point_real(points, POINT_X, p)[1] += cut * s.model->grid->smallest;
@@ -137,7 +138,7 @@ static PetscErrorCode Run(void)
     cuts[i] = 0.25 * PetscPowReal(10, -(PetscReal)i / 4); /* from a quarter of a cell down */
     printf("%12.3g", (double)cuts[i]);
     for (int k = 0; k < WAYS; ++k) {
-      PetscCall(Cut(curvature[k], cuts[i], &condition[k][i]));
+      PetscCall(Cut(ways[k], cuts[i], &condition[k][i]));
       printf("%24.3g", (double)condition[k][i]);
     }
     printf("\n");

@@ -403,6 +403,7 @@ typedef struct {
 typedef struct {
   PetscReal stiffness, mass, inertia; /* see docs/theory.md, cells that are not full */
   PetscReal curvature;                /* see docs/theory.md, smooth shape functions */
+  PetscReal follow;                   /* see docs/theory.md, nodes that follow */
   PetscBool room;                     /* see docs/theory.md, the room that points have */
 } StabilisationSpec;
 

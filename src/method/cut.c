@@ -1,6 +1,9 @@
 /* Nodes that domains of points hardly reach: a body that ends anywhere in a cell cuts off as little of
  * their functions as it likes (docs/theory.md, "Smooth shape functions"). */
-#include "method/discretisation.h"
+#include "method/extend/extend.h"
+
+/* Of half its share of the cells, what such a node has at most. */
+#define HARDLY_REACHED 0.02
 
 /* A node's share of the cells, all of which stand still: once for all steps. */
 static PetscErrorCode WholeVolumes(Discretisation *s)
@@ -40,25 +43,31 @@ PetscErrorCode DiscretisationVolumes(Discretisation *s, PetscBool now, PetscReal
   PetscFunctionReturn(0);
 }
 
+/* Nodes that are less than half full are held; where some follow, those alone that hardly any material reaches and no
+ * others lead. What swings or yields wants the rest held, too: Newton's method takes up to a third more iterations
+ * without. */
+static PetscReal held_below(const Discretisation *s)
+{
+  if (!extension_works(s) || s->c->analysis.type == ANALYSIS_DYNAMIC) return 1;
+  if (materials_yield(s->c->n_materials, s->materials)) return 1;
+  return PetscMin(HARDLY_REACHED, s->c->stabilisation.follow);
+}
+
 PetscErrorCode DiscretisationCuts(Discretisation *s)
 {
   const Support *w = s->support;
-  PetscReal *fill;
+  const PetscReal *fill = s->extension->fill, enough = held_below(s);
 
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(s->grid->n_nodes, &fill));
-  PetscCall(DiscretisationVolumes(s, PETSC_TRUE, fill));
-  for (PetscInt i = 0; i < s->grid->n_nodes; ++i) fill[i] = s->nodes->touched[i] ? 2 * fill[i] / s->whole[i] : 0;
   for (PetscInt g = 0; g < w->n_groups; ++g) {
     const PetscInt p = w->point_start[g], nn = support_nodes(w, g), *node = w->node + w->node_start[g];
     PetscReal filled = 1, square = 0;
-    for (PetscInt I = 0; I < nn; ++I) filled = PetscMin(filled, fill[node[I]]);
+    for (PetscInt I = 0; I < nn; ++I) filled = PetscMin(filled, fill[node[I]] / enough);
     for (PetscInt i = 0; i < nn * s->grid->dim; ++i) square += PetscSqr((w->dN + w->value_start[g] * s->grid->dim)[i]);
     const Material *material = &s->materials[s->points->material[p]];
     const PetscReal share = s->c->stabilisation.curvature * (1 - filled) * s->points->real[POINT_VOLUME][p];
     s->soft[g] = share * material->wave_modulus * square / (PetscReal)nn;
     if (s->pressure_tie) s->pressure_tie[g] = share / material->elastic.shear;
   }
-  PetscCall(PetscFree(fill));
   PetscFunctionReturn(0);
 }

@@ -1,3 +1,4 @@
+#include "method/extend/extend.h"
 #include "method/transfer/transfer.h"
 
 PetscErrorCode DiscretisationCreate(const Discretisation *parts, Discretisation **space)
@@ -29,6 +30,8 @@ PetscErrorCode DiscretisationDestroy(Discretisation **space)
   PetscCall(PetscFree(s->filled));
   PetscCall(PetscFree(s->volume));
   PetscCall(PetscFree(s->whole));
+  PetscCall(PetscFree(s->reached));
+  PetscCall(ExtensionDestroy(&s->extension));
   PetscCall(PetscFree(s->lumping));
   PetscCall(PetscFree(s->soft));
   PetscCall(PetscFree(s->tie));
@@ -37,6 +40,21 @@ PetscErrorCode DiscretisationDestroy(Discretisation **space)
   PetscCall(PetscFree(*space));
   PetscFunctionReturn(0);
 }
+
+/* Of nodes that carry others than points. */
+static PetscErrorCode Reach(Discretisation *s)
+{
+  const PetscInt n = s->grid->n_nodes;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscFree(s->reached));
+  if (!s->extension || !s->extension->any) PetscFunctionReturn(0);
+  PetscCall(PetscMalloc1(n, &s->reached));
+  for (PetscInt i = 0; i < n; ++i) s->reached[i] = s->nodes->touched[i] || s->extension->ways[i] > 0;
+  PetscFunctionReturn(0);
+}
+
+const unsigned char *reached_nodes(const Discretisation *s) { return s->reached ? s->reached : s->nodes->touched; }
 
 PetscErrorCode DiscretisationTouch(Discretisation *s)
 {
@@ -54,6 +72,7 @@ PetscErrorCode DiscretisationTouch(Discretisation *s)
   for (PetscInt g = 0; !s->grid->cloud && g < s->support->n_groups; ++g)
     s->filled[s->points->cell[s->support->point_start[g]]] = 1;
   PetscCall(PetscFree(count));
+  PetscCall(Reach(s));
   PetscFunctionReturn(0);
 }
 
@@ -177,7 +196,7 @@ PetscErrorCode DiscretisationMoveCarried(Discretisation *s, Points *carried)
   PetscFunctionBeginUser;
   for (PetscInt p = 0; p < carried->n; ++p) {
     const PetscInt cell = carried->cell[p];
-    if (cell >= 0 && touched_shape(grid, cell, point_real(carried, POINT_XI, p), s->nodes->touched, N))
+    if (cell >= 0 && touched_shape(grid, cell, point_real(carried, POINT_XI, p), reached_nodes(s), N))
       move_carried(s, carried, p, nn, grid->cell_node + cell * nn, N);
   }
   PetscFunctionReturn(0);

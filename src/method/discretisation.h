@@ -24,6 +24,8 @@ typedef struct Discretisation {
   unsigned char *filled;           /* n_cells: does the cell hold points? */
   PetscReal *volume;               /* n_cells, of grids that are restored: 0 where nobody has asked for it, m3 */
   PetscReal *whole;                /* n_nodes, of such a grid: the node's share of the cells, m3; NULL: not asked for */
+  struct Extension *extension;     /* which nodes follow others, of points with domains; see extend/extend.h */
+  unsigned char *reached;          /* n_nodes: touched, or follows; NULL: none follows */
   /* of a point's velocity beyond the nodes': what damping takes in the step */
   PetscReal fade;
   PetscInt group_capacity;
@@ -41,12 +43,14 @@ PetscErrorCode DiscretisationDestroy(Discretisation **space);
 /* Steps that methods share. */
 /* touched, and in grids of cells filled, from the support. */
 PetscErrorCode DiscretisationTouch(Discretisation *space);
+/* n_nodes: those that carry tracers and loads, because material touches them or they follow such nodes. */
+const unsigned char *reached_nodes(const Discretisation *space);
 /* m_I = sum N m_p, on all copies. */
 PetscErrorCode DiscretisationMass(Discretisation *space);
 /* p_I = sum N m_p p / m_I (thesis eq. 5.20), on all copies; after DiscretisationMass. */
 PetscErrorCode DiscretisationPressure(Discretisation *space);
-/* Of a basis whose points are groups of their own in a grid: soft and pressure_tie where a node gets
- * less than half of its volume; after DiscretisationTouch. */
+/* Of a basis whose points are groups of their own in a grid: soft and pressure_tie of points with a node that is hardly
+ * reached and follows no others, or, where none can, is less than half full; after DiscretisationExtend. */
 PetscErrorCode DiscretisationCuts(Discretisation *space);
 /* Of each node, on all copies: the volume of the material around it (as it is now, else as it was at the start; n_nodes),
  * and in `whole` that of its share of the cells. */

@@ -23,5 +23,5 @@ PetscBool cell_carries(const Discretisation *s, const Points *followers, PetscIn
 {
   PetscReal N[CELL_MAX_NODES];
   if (followers->cell[p] < 0 || !within_reach(s, followers, p)) return PETSC_FALSE;
-  return touched_shape(s->grid, followers->cell[p], point_real(followers, POINT_XI, p), s->nodes->touched, N);
+  return touched_shape(s->grid, followers->cell[p], point_real(followers, POINT_XI, p), reached_nodes(s), N);
 }

@@ -1,4 +1,5 @@
 /* Implicit material point method (thesis algorithm 1): a fixed grid, restored after every step. */
+#include "method/extend/extend.h"
 #include "method/method.h"
 #include "method/transfer/loops.h"
 #include "method/transfer/transfer.h"
@@ -129,6 +130,7 @@ static PetscErrorCode MpmInitialise(Discretisation *s)
   PetscFunctionBeginUser;
   PetscCall(PointsSort(s->points));
   PetscCall(See(s));
+  if (s->basis->domains) PetscCall(DiscretisationExtend(s));
   PetscCall(DiscretisationTouch(s));
   PetscCall(DiscretisationMass(s));
   PetscCall(Stabilise(s));

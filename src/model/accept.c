@@ -1,4 +1,5 @@
 /* A solved step becomes the state: phase (c) of the thesis, and what is told of the step. */
+#include "method/extend/extend.h"
 #include "model/model_private.h"
 
 /* Where a constraint holds a node, its multiplier is the force there. */
@@ -83,6 +84,7 @@ PetscErrorCode CommitStep(Model *m, PetscReal dt, EnergyStep *energy)
   const PetscReal solved = time_solved(m->scheme);
   for (PetscInt i = 0; solved != 1 && i < m->grid->n_nodes * m->dim; ++i) m->nodes->prescribed[i] /= solved;
   end_motion(m, dt);
+  PetscCall(DiscretisationFollow(m->space));
   set_multipliers(m);
   PetscCall(EnergyOfNodes(m, dt, energy));
   keep_echo(m, dt);

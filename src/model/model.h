@@ -17,6 +17,7 @@ typedef struct {
   /* lost by damping, and between points and grid, since the start, J (docs/theory.md) */
   PetscReal damped, transfer;
   PetscReal friction;  /* taken by sliding along walls, since the start, J */
+  PetscReal held;      /* of transfer: by what holds nodes that points hardly reach, since the start, J */
   PetscReal numerical; /* taken by the damping of the time scheme, since the start, J */
   /* gone with points that left the grid, and in holding others at its boundary, since the start,
    * J */
@@ -161,6 +162,7 @@ typedef struct Model {
   PetscReal courant_speed;  /* largest sqrt(M / density), m/s */
   /* see Energies */
   PetscReal external_work, boundary_work, damped_energy, transfer_energy, friction_energy, numerical_energy;
+  PetscReal held_energy;
   PetscReal start_energy;
   /* that had come in, by the start, loads, gravity and prescribed motion, at any time, J */
   PetscReal most_energy;

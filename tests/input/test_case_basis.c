@@ -104,9 +104,26 @@ static void Midpoint(void **state)
   assert_int_equal(CaseDestroy(&c), 0);
 }
 
+/* Nodes follow others in statics, and in all stages of a case, that they belong to the same nodes. */
+static void Followers(void **state)
+{
+  Case *c = read_good(PLAIN);
+  (void)state;
+  ASSERT_NEAR(c->stabilisation.follow, 0.02, 0);
+  assert_int_equal(CaseDestroy(&c), 0);
+  c = read_good(MOVING("mpm", ""));
+  ASSERT_NEAR(c->stabilisation.follow, 0, 0);
+  assert_int_equal(CaseDestroy(&c), 0);
+  c = read_good(PLAIN "stages:\n  - {name: stands}\n  - {name: swings, analysis: {type: dynamic, step: 1, end: 2}}\n");
+  assert_int_equal(c->n_stages, 2);
+  for (PetscInt k = 0; k < 2; ++k) ASSERT_NEAR(c->stage_case[k]->stabilisation.follow, 0.02, 0);
+  assert_int_equal(CaseDestroy(&c), 0);
+}
+
 int main(int argc, char **argv)
 {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(Chosen), cmocka_unit_test(Written), cmocka_unit_test(Midpoint)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(Chosen), cmocka_unit_test(Written), cmocka_unit_test(Midpoint),
+                                     cmocka_unit_test(Followers)};
   if (PetscInitialize(&argc, &argv, NULL, NULL)) return 1;
   const int failed = cmocka_run_group_tests(tests, NULL, NULL);
   return PetscFinalize() || failed;

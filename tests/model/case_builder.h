@@ -78,7 +78,7 @@ static inline void bench_init(Bench *b, const char *method, CellType cell, Petsc
     .measures = b->measure,
     .newton = {.residual = 1e-12, .increment = 1e-12, .max_iterations = 25, .ease = 6},
     .linear = LINEAR_DIRECT,
-    .stabilisation = {.stiffness = 1e-6, .mass = 0.1, .curvature = 0.01},
+    .stabilisation = {.stiffness = 1e-6, .mass = 0.1, .curvature = 0.01, .follow = 0.02},
   };
   for (int d = 0; d < (is_3d ? 3 : 2); ++d) b->c.grid.counts[d] = cells_per_side;
 }

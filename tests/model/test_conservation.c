@@ -94,7 +94,7 @@ static void fly(const char *method, CellType cell, PetscReal size, PetscReal bos
   if (domains) {
     b.c.basis.kind = "gimp";
     b.c.analysis.scheme = (char *)"midpoint";
-    b.c.stabilisation = (StabilisationSpec){.curvature = 0.1};
+    b.c.stabilisation = (StabilisationSpec){.curvature = 0.1, .follow = 0.02};
   }
   b.body[0].velocity[0] = 2;
   b.body[0].velocity[1] = -1;

@@ -29,7 +29,7 @@ static Model *falling(Bench *b, const Fall *f)
   b->c.analysis.transfer = (char *)f->transfer;
   if (!strcmp(f->basis, "gimp")) {
     b->c.analysis.scheme = (char *)"midpoint";
-    b->c.stabilisation = (StabilisationSpec){.curvature = 0.1};
+    b->c.stabilisation = (StabilisationSpec){.curvature = 0.1, .follow = 0.02};
   }
   b->c.linear = LINEAR_AUTO;
   b->c.newton = (NewtonSpec){.residual = 1e-11, .increment = 1e-12, .max_iterations = 25, .ease = 6};

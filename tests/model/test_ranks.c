@@ -115,7 +115,7 @@ static void thrown_block(const char *basis, const char *transfer, CellType cell,
   b.c.analysis.transfer = (char *)transfer;
   if (strcmp(basis, "cell") != 0 && !strcmp(transfer, "consistent")) {
     b.c.analysis.scheme = (char *)"midpoint";
-    b.c.stabilisation = (StabilisationSpec){.curvature = 0.1};
+    b.c.stabilisation = (StabilisationSpec){.curvature = 0.1, .follow = 0.02};
   }
   bench_dynamic(&b, 1, 0.005);
   bench_motion(&b, 1, 0, MOTION_FIXED, 2);

@@ -100,7 +100,7 @@ filled 2500k 2
 same whole2 left
 # Room for all but the checkpoints: the run tells of it and goes on
 cat >tight.sh <<'END'
-mount -t tmpfs -o size=850k tmpfs disk && "$@" && cp -r disk/run tight
+mount -t tmpfs -o size=860k tmpfs disk && "$@" && cp -r disk/run tight
 END
 expect "no room for checkpoints" 0 unshare -m sh tight.sh "$talus" run block.yaml --out disk/run --quiet --set checkpoint.steps=10 \
   --set output.grid=false --set output.every=end --set 'checkpoint.keep=9' --set 'output.history={steps: 10}'

@@ -357,6 +357,12 @@ done
 rm -rf cut && cp -r rests cut && forget cut 7
 expect "rest with gimp, resumed" 0 "$talus" run --resume cut --quiet
 same_bits "$name" rests cut
+# With sides by a twentieth of a cell beyond the lines of the grid, whose nodes follow others (method/extend).
+expect "rest with nodes that follow" 0 "$talus" run rests.yaml --out rests --force --quiet --set method=mpm \
+  --set 'grid={box: {min: [0, 0], max: [2, 1.6]}, size: 0.2}' --set 'basis={gimp: {}}' --set analysis.steps=8 --set 'bodies[0].shape.box.max=[1.01, 1.22]'
+awk -F, 'NR > 1 && $3 == 1 {top = $4; force = $5}
+  NR > 1 && $3 == 2 {n += 1; d = ($4 - top) / top; f = ($5 - force) / force; if (d * d > 1e-16 || f * f > 1e-14) bad = 1}
+  END {exit !(n > 4 && !bad && force > 19221 && force < 19222)}' rests/history.csv || fail "$name: it jerks"
 # And a footing of 600 kg upon it, a wall with mass.
 sed 's/contact: stick}\]/contact: stick}, {name: footing, shape: {box: {min: [0.2, 1.25], max: [0.8, 1.5]}}, friction: 0.5, mass: {mass: 600, free: [y]}}]/
   s/^output/  speed: {wall_velocity: y, of: {wall: footing}}\n&/' rests.yaml >footing.yaml

@@ -100,6 +100,21 @@ KERNEL void cloud_load(const WeakFormInput *in, PetscInt p, CloudWork *w)
   w->soft = in->soft ? in->soft[p] : 0;
 }
 
+#define SAME 1e-12 /* share of a motion's square that is none */
+
+/* Takes from part n what it has in common with those before it; returns the square of what is left. */
+static inline PetscReal without_others(int n, PetscInt nn, PetscReal part[4][CLOUD_MAX_NODES])
+{
+  PetscReal square = 0;
+  for (int k = 0; k < n; ++k) {
+    PetscReal common = 0;
+    for (PetscInt I = 0; I < nn; ++I) common += part[k][I] * part[n][I];
+    for (PetscInt I = 0; I < nn; ++I) part[n][I] -= common * part[k][I];
+  }
+  for (PetscInt I = 0; I < nn; ++I) square += PetscSqr(part[n][I]);
+  return square;
+}
+
 /* Motions that nothing holds, as unit vectors over the nodes, across each other: constant, and on a
  * lattice linear along each axis. Returns how many. */
 static inline int free_parts(PetscInt axes, PetscInt dim, const CloudWork *w, const PetscReal *x,
@@ -113,7 +128,9 @@ static inline int free_parts(PetscInt axes, PetscInt dim, const CloudWork *w, co
       part[n][I] = k ? x[w->node[I] * dim + k - 1] - mean : 1;
       square += PetscSqr(part[n][I]);
     }
-    if (square == 0) continue;
+    const PetscReal left = without_others(n, w->nn, part);
+    if (left <= SAME * square) continue;
+    square = left;
     for (PetscInt I = 0; I < w->nn; ++I) part[n][I] /= PetscSqrtReal(square);
     ++n;
   }

@@ -78,6 +78,8 @@ static const MeasureNumber *const words[] = {
   WORD("damped", "taken by Rayleigh damping", .of = OF_MODEL, .kept = offsetof(Model, damped_energy)),
   WORD("transfer", "lost between points and grid, and at nodes that stop material", .of = OF_MODEL,
        .kept = offsetof(Model, transfer_energy)),
+  WORD("held", "of transfer: taken by what holds nodes that domains of points hardly reach", .of = OF_MODEL,
+       .kept = offsetof(Model, held_energy)),
   WORD("friction", "taken by sliding along walls and other bodies", .of = OF_MODEL,
        .kept = offsetof(Model, friction_energy)),
   WORD("numerical", "taken by the damping of the time scheme (bossak, beta, gamma)", .of = OF_MODEL,

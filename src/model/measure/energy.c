@@ -3,6 +3,7 @@
  *
  * All work is taken by the trapezoidal rule between the step's start and end; where forces balance in
  * the middle of the step, that of loads and reactions is theirs there. */
+#include "formulation/holding.h"
 #include "material/pressure.h"
 #include "model/model_private.h"
 
@@ -277,6 +278,23 @@ static PetscReal faded(const Model *m)
   return sum;
 }
 
+/* Work against what holds nodes that points hardly reach, which grows with the increments of the step. */
+static PetscErrorCode HoldingWork(const Model *m, PetscReal *work)
+{
+  const WeakFormInput in = weak_form_of(m, 0);
+  const PetscInt dofs = m->grid->n_nodes * m->dim;
+  PetscReal *force;
+
+  PetscFunctionBeginUser;
+  *work = 0;
+  if (!m->space->basis->domains) PetscFunctionReturn(0);
+  PetscCall(PetscCalloc1(dofs, &force));
+  PetscCall(HoldingForces(&in, m->dim, force));
+  for (PetscInt i = 0; i < dofs; ++i) *work += 0.5 * force[i] * m->nodes->du[i];
+  PetscCall(PetscFree(force));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode EnergyOfNodes(Model *m, PetscReal dt, EnergyStep *e)
 {
   const PetscReal damping = model_damping(m);
@@ -308,6 +326,7 @@ PetscErrorCode EnergyOfNodes(Model *m, PetscReal dt, EnergyStep *e)
     const NodalField du = {{n->du, n->du}, {1, 0}}, mean = {{n->v, n->v1}, {0.5, 0.5}};
     e->damped = damping * mass_product(m, du, mean);
   }
+  PetscCall(HoldingWork(m, &e->held));
   e->friction = contact.sliding;
   held += contact.moving;
   e->boundary = held + impulse - contact.rigid;
@@ -325,21 +344,22 @@ PetscErrorCode EnergyOfNodes(Model *m, PetscReal dt, EnergyStep *e)
 PetscErrorCode EnergyClose(Model *m, EnergyStep *e)
 {
   const OutsideTally *gone = &m->points->outside;
-  PetscReal local[6], sum[6];
+  PetscReal local[7], sum[7];
 
   PetscFunctionBeginUser;
   if (m->scheme->inertia) e->transfer -= points_kinetic(m) + gone->kinetic;
   /* of the step: what is gone counts apart */
   if (m->method->restores_grid) e->transfer -= points_work(m) + gone->work;
   local[0] = e->external, local[1] = e->boundary, local[2] = e->damped, local[3] = e->transfer;
-  local[4] = e->friction, local[5] = e->numerical;
-  PetscCall(MPIU_Allreduce(local, sum, 6, MPIU_REAL, MPI_SUM, m->comm));
+  local[4] = e->friction, local[5] = e->numerical, local[6] = e->held;
+  PetscCall(MPIU_Allreduce(local, sum, 7, MPIU_REAL, MPI_SUM, m->comm));
   m->external_work += sum[0];
   m->boundary_work += sum[1];
   m->damped_energy += sum[2];
   m->transfer_energy += sum[3] + rigid_lost(m);
   m->friction_energy += sum[4];
   m->numerical_energy += sum[5];
+  m->held_energy += sum[6];
   m->most_energy = PetscMax(m->most_energy, m->start_energy + m->external_work + m->boundary_work + rigid_work(m));
   PetscFunctionReturn(0);
 }
@@ -366,6 +386,7 @@ PetscErrorCode ModelEnergies(Model *m, Energies *e)
                   .transfer = m->transfer_energy,
                   .friction = m->friction_energy,
                   .numerical = m->numerical_energy,
+                  .held = m->held_energy,
                   .outside = m->outside.energy,
                   .start = m->start_energy};
   PetscFunctionReturn(0);

@@ -16,6 +16,7 @@ static const struct {
   {"damped_energy", "J", offsetof(Model, damped_energy)},
   {"friction_energy", "J", offsetof(Model, friction_energy)},
   {"numerical_energy", "J", offsetof(Model, numerical_energy)},
+  {"held_energy", "J", offsetof(Model, held_energy)},
   {"transfer_energy", "J", offsetof(Model, transfer_energy)},
   {"start_energy", "J", offsetof(Model, start_energy)},
 };

@@ -1,8 +1,8 @@
-/* What holds nodes that points hardly reach (formulation/kernels/cloud_kernels.h) acts against the increments of one
+/* What holds nodes that points hardly reach (formulation/holding.h) acts against the increments of one
  * step and is forgotten with it, so that a body in balance would be out of balance in the next step. While
  * everything rests these forces are remembered on the nodes: they balance themselves, in sum and in torque, as
  * long as all of them stay where they were (docs/theory.md, "What rests stays at rest with smooth functions"). */
-#include "formulation/kernels/cloud_kernels.h"
+#include "formulation/holding.h"
 #include "grid/search/directory.h"
 #include "solve/forces/nodal_force.h"
 #include "support/basis.h"
@@ -83,21 +83,11 @@ static PetscReal motion_of(const NodalScene *scene, PetscInt p)
 /* The forces of this step's increments. */
 static PetscErrorCode Hold(const NodalScene *scene, PetscReal *force)
 {
-  const WeakFormInput in = {.du = scene->du, .x = scene->grid->x, .lattice = PETSC_TRUE};
-  const Support *w = scene->support;
-  CloudWork *work;
+  const WeakFormInput in = {
+    .support = scene->support, .soft = scene->soft, .du = scene->du, .x = scene->grid->x, .lattice = PETSC_TRUE};
 
   PetscFunctionBeginUser;
-  PetscCall(PetscNew(&work));
-  for (PetscInt p = 0; p < w->n_groups; ++p) {
-    if (!(scene->soft[p] > 0)) continue;
-    work->nn = support_nodes(w, p);
-    work->node = w->node + w->node_start[p];
-    work->soft = scene->soft[p];
-    if (scene->grid->dim == 2) cloud_hold(2, &in, work, force);
-    else cloud_hold(3, &in, work, force);
-  }
-  PetscCall(PetscFree(work));
+  PetscCall(HoldingForces(&in, scene->grid->dim, force));
   PetscCall(GridSumToOwners(scene->grid, scene->grid->dim, force));
   PetscFunctionReturn(0);
 }

@@ -1,0 +1,104 @@
+/* A node follows along as few axes as need be: one step on such a way stands a node that leads, and one more step along
+ * each of its axes another one. Who leads with whom is found by the owner of the first of them, who knows the nodes
+ * around it; the owner of the follower asks no further than one step, too. */
+#include "method/extend/choose.h"
+#include "method/extend/row.h"
+
+/* Of half its share of the cells: what a node has at least that leads. */
+#define LEADS 0.1
+
+/* Is what holds the first held in the same way in the second, too, so that the first can follow it? */
+static PetscBool is_held_as(const Boundary *b, PetscInt one, PetscInt other)
+{
+  for (PetscInt d = 0; d < b->dim; ++d) {
+    const PetscInt i = one * b->dim + d, j = other * b->dim + d;
+    if (!b->fixed[i]) continue;
+    if (!b->fixed[j] || b->entry[i] != b->entry[j]) return PETSC_FALSE;
+    if (frame_of(&b->frames, one) || frame_of(&b->frames, other)) return PETSC_FALSE;
+  }
+  return PETSC_TRUE;
+}
+
+static PetscBool is_held(const Boundary *b, PetscInt node)
+{
+  for (PetscInt d = 0; d < b->dim; ++d)
+    if (b->fixed[node * b->dim + d]) return PETSC_TRUE;
+  return PETSC_FALSE;
+}
+
+/* A node leads along axis d, with the one above it or below: all nodes, and those that are held as it is. */
+static PetscInt leads_bit(PetscInt d, PetscBool above, PetscBool held)
+{
+  return 1 << (4 * d + (above ? 2 : 0) + (held ? 1 : 0));
+}
+
+static PetscReal find_leads(const Discretisation *s, const Extension *e, PetscInt node, const PetscInt at[3])
+{
+  const PetscReal enough = PetscMax(LEADS, s->c->stabilisation.follow);
+  PetscInt bits = 0;
+  for (PetscInt k = 0; k < 2 * s->grid->dim && e->fill[node] >= enough; ++k) {
+    PetscInt step[3] = {0, 0, 0};
+    const PetscBool above = k % 2 ? PETSC_TRUE : PETSC_FALSE;
+    step[k / 2] = above ? 1 : -1;
+    const PetscInt behind = node_beside(s->grid->box, at, step);
+    if (behind < 0 || e->fill[behind] < enough) continue;
+    bits |= leads_bit(k / 2, above, PETSC_FALSE);
+    if (is_held_as(s->boundary, node, behind)) bits |= leads_bit(k / 2, above, PETSC_TRUE);
+  }
+  return (PetscReal)bits;
+}
+
+static PetscBool is_led(const Discretisation *s, const Extension *e, PetscInt node, const PetscInt at[3],
+                        const PetscInt step[3])
+{
+  const PetscInt next = node_beside(s->grid->box, at, step);
+  if (next < 0 || !is_held_as(s->boundary, node, next)) return PETSC_FALSE;
+  const PetscInt bits = (PetscInt)e->leads[next];
+  const PetscBool held = is_held(s->boundary, node);
+  for (PetscInt d = 0; d < s->grid->dim; ++d)
+    if (step[d] && !(bits & leads_bit(d, step[d] > 0 ? PETSC_TRUE : PETSC_FALSE, held))) return PETSC_FALSE;
+  return PETSC_TRUE;
+}
+
+static PetscReal find_ways(const Discretisation *s, const Extension *e, PetscInt node, const PetscInt at[3])
+{
+  const PetscInt dim = s->grid->dim;
+  PetscInt bits = 0, step[3];
+  if (!(e->fill[node] > 0 && e->fill[node] < s->c->stabilisation.follow)) return 0;
+  for (PetscInt axes = 1; axes <= dim && !bits; ++axes)
+    for (PetscInt way = 0; way < WAYS; ++way) {
+      way_of(way, step);
+      const PetscInt of_way = PetscAbsInt(step[0]) + PetscAbsInt(step[1]) + PetscAbsInt(step[2]);
+      if ((dim == 3 || !step[2]) && of_way == axes && is_led(s, e, node, at, step)) bits |= 1 << way;
+    }
+  return (PetscReal)bits;
+}
+
+/* What `find` says of each node that this rank owns; others are told. */
+static PetscErrorCode Find(const Discretisation *s, const Extension *e,
+                           PetscReal (*find)(const Discretisation *s, const Extension *e, PetscInt node,
+                                             const PetscInt at[3]),
+                           PetscReal *value)
+{
+  const GridBox *box = s->grid->box;
+  const VoxelBlock *all = &box->nodes;
+  PetscInt at[3];
+
+  PetscFunctionBeginUser;
+  for (at[2] = all->lo[2]; at[2] < all->hi[2]; ++at[2])
+    for (at[1] = all->lo[1]; at[1] < all->hi[1]; ++at[1])
+      for (at[0] = all->lo[0]; at[0] < all->hi[0]; ++at[0]) {
+        const PetscInt node = box_node(box, at);
+        if (node < s->grid->n_owned) value[node] = find(s, e, node, at);
+      }
+  PetscCall(GridToGhosts(s->grid, 1, value));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ChooseWays(const Discretisation *s, Extension *e)
+{
+  PetscFunctionBeginUser;
+  PetscCall(Find(s, e, find_leads, e->leads));
+  PetscCall(Find(s, e, find_ways, e->ways));
+  PetscFunctionReturn(0);
+}

@@ -1,0 +1,241 @@
+#include "method/extend/extend.h"
+#include "method/extend/choose.h"
+#include "method/extend/row.h"
+#include "support/products.h"
+
+static PetscErrorCode ExtensionCreate(const Discretisation *s, Extension **extension)
+{
+  const GridBox *box = s->grid->box;
+  const PetscInt n = s->grid->n_nodes, known = box ? block_size(&box->nodes) : 0;
+  Extension *e;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscNew(extension));
+  e = *extension;
+  PetscCall(PetscCalloc4(n, &e->fill, n, &e->leads, n, &e->ways, n, &e->place));
+  for (PetscInt k = 0; k < known; ++k) e->place[box->lattice[k]] = k;
+  PetscCall(SupportCreate(&e->spare));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ExtensionDestroy(Extension **extension)
+{
+  Extension *e = *extension;
+
+  PetscFunctionBeginUser;
+  if (!e) PetscFunctionReturn(0);
+  PetscCall(PetscFree4(e->fill, e->leads, e->ways, e->place));
+  PetscCall(SupportDestroy(&e->spare));
+  PetscCall(PetscFree(*extension));
+  PetscFunctionReturn(0);
+}
+
+PetscBool extension_works(const Discretisation *s)
+{
+  const PetscBool implicit = s->c->analysis.type != ANALYSIS_EXPLICIT;
+  return implicit && s->grid->box && !s->nodes->pressure && s->c->stabilisation.follow > 0 ? PETSC_TRUE : PETSC_FALSE;
+}
+
+static void place_of(const GridBox *box, const Extension *e, PetscInt node, PetscInt at[3])
+{
+  const VoxelBlock *all = &box->nodes;
+  const PetscInt k = e->place[node], nx = all->hi[0] - all->lo[0], ny = all->hi[1] - all->lo[1];
+  at[0] = all->lo[0] + k % nx;
+  at[1] = all->lo[1] + k / nx % ny;
+  at[2] = all->lo[2] + k / (nx * ny);
+}
+
+/* Do all of these nodes stand around one corner of the cell, as the system's pattern has it? */
+static PetscBool stand_around(const Discretisation *s, const PetscInt cell[3], const Row *row)
+{
+  PetscInt at[3];
+  for (PetscInt d = 0; d < s->grid->dim; ++d) {
+    PetscInt low = cell[d] + 2, high = cell[d] - 1;
+    for (PetscInt I = 0; I < row->n; ++I) {
+      place_of(s->grid->box, s->extension, row->node[I], at);
+      low = PetscMin(low, at[d]);
+      high = PetscMax(high, at[d]);
+    }
+    if (low < cell[d] - 1 || high > cell[d] + 2 || high - low > 2) return PETSC_FALSE;
+  }
+  return PETSC_TRUE;
+}
+
+static PetscBool sees_follower(const Discretisation *s, PetscInt p)
+{
+  const Support *w = s->support;
+  for (PetscInt I = w->node_start[p]; I < w->node_start[p + 1]; ++I)
+    if (s->extension->ways[w->node[I]] > 0) return PETSC_TRUE;
+  return PETSC_FALSE;
+}
+
+/* What point p sees once followers are gone; PETSC_FALSE if these nodes are farther apart than those of a point may be,
+ * or not all known to this rank. */
+static PetscBool find_row(const Discretisation *s, PetscInt p, Row *row)
+{
+  const Support *w = s->support;
+  const PetscInt dim = s->grid->dim, *node = w->node + w->node_start[p];
+  const PetscReal *N = w->N + w->value_start[p], *dN = w->dN + w->value_start[p] * dim;
+  PetscInt at[3];
+  row->n = 0;
+  for (PetscInt I = 0; I < support_nodes(w, p); ++I) {
+    const PetscInt ways = (PetscInt)s->extension->ways[node[I]];
+    place_of(s->grid->box, s->extension, node[I], at);
+    if (!ways) row_add(row, dim, node[I], 1, N[I], dN + I * dim);
+    else if (!row_add_follower(row, s->grid->box, at, ways, N[I], dN + I * dim)) return PETSC_FALSE;
+  }
+  box_voxel_of(s->grid, s->points->cell[p], at);
+  return stand_around(s, at, row);
+}
+
+/* Marks nodes that must stay: those of points that would see others too far away, and those that loads act on. */
+static void mark_needed(const Discretisation *s, PetscReal *needed)
+{
+  const Support *w = s->support;
+  const Points *carriers = s->loads->carriers;
+  const PetscInt nn = s->grid->nodes_per_cell;
+  Row row;
+  for (PetscInt p = 0; p < w->n_groups; ++p) {
+    if (!sees_follower(s, p) || find_row(s, p, &row)) continue;
+    for (PetscInt I = w->node_start[p]; I < w->node_start[p + 1]; ++I) needed[w->node[I]] = 1;
+  }
+  for (PetscInt p = 0; p < carriers->n; ++p)
+    for (PetscInt I = 0; carriers->cell[p] >= 0 && I < nn; ++I)
+      needed[s->grid->cell_node[carriers->cell[p] * nn + I]] = 1;
+}
+
+/* *again: have any that were to follow been kept, so that points see others than was thought? */
+static PetscErrorCode KeepNeeded(const Discretisation *s, PetscBool *again)
+{
+  const Grid *grid = s->grid;
+  PetscReal *needed;
+  PetscBool here = PETSC_FALSE;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(grid->n_nodes, &needed));
+  mark_needed(s, needed);
+  PetscCall(GridSumToOwners(grid, 1, needed));
+  PetscCall(GridToGhosts(grid, 1, needed));
+  for (PetscInt i = 0; i < grid->n_nodes; ++i) {
+    if (!(needed[i] > 0) || s->extension->ways[i] == 0) continue;
+    s->extension->ways[i] = 0;
+    here = PETSC_TRUE;
+  }
+  PetscCall(PetscFree(needed));
+  PetscCallMPI(MPI_Allreduce(&here, again, 1, MPIU_BOOL, MPI_LOR, grid->comm));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode Fill(Discretisation *s)
+{
+  PetscReal *fill = s->extension->fill;
+
+  PetscFunctionBeginUser;
+  PetscCall(DiscretisationVolumes(s, PETSC_TRUE, fill));
+  for (PetscInt i = 0; i < s->grid->n_nodes; ++i) fill[i] = fill[i] > 0 ? 2 * fill[i] / s->whole[i] : 0;
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode CopyRow(Support *out, PetscInt dim, PetscInt n, PetscInt first, const PetscInt *node,
+                              const PetscReal *N, const PetscReal *dN)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscArraycpy(out->node + first, node, n));
+  PetscCall(PetscArraycpy(out->N + first, N, n));
+  PetscCall(PetscArraycpy(out->dN + first * dim, dN, n * dim));
+  PetscFunctionReturn(0);
+}
+
+/* The support without the nodes that follow takes the place of the other. */
+static PetscErrorCode Rewrite(Discretisation *s)
+{
+  const PetscInt dim = s->grid->dim;
+  Support *old = s->support, *out = s->extension->spare, kept;
+  PetscInt room = old->node_start[old->n_groups], n = 0;
+  Row row;
+
+  PetscFunctionBeginUser;
+  for (PetscInt p = 0; p < old->n_groups; ++p) room += sees_follower(s, p) ? WAYS : 0;
+  PetscCall(SupportReserve(out, old->n_groups, room, room, dim));
+  for (PetscInt p = 0; p < old->n_groups; ++p) {
+    const PetscInt from = old->node_start[p], nn = support_nodes(old, p);
+    const PetscBool changes = sees_follower(s, p);
+    product_group(out, p, n);
+    if (changes) (void)find_row(s, p, &row);
+    if (changes) PetscCall(CopyRow(out, dim, row.n, n, row.node, row.N, row.dN));
+    else PetscCall(CopyRow(out, dim, nn, n, old->node + from, old->N + from, old->dN + from * dim));
+    n += changes ? row.n : nn;
+  }
+  products_end(out, old->n_groups, n);
+  kept = *old;
+  *old = *out;
+  *out = kept;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode DiscretisationExtend(Discretisation *s)
+{
+  PetscBool again = PETSC_TRUE, here = PETSC_FALSE;
+
+  PetscFunctionBeginUser;
+  if (!s->extension) PetscCall(ExtensionCreate(s, &s->extension));
+  Extension *e = s->extension;
+  PetscCall(Fill(s));
+  PetscCall(PetscArrayzero(e->ways, s->grid->n_nodes));
+  e->any = PETSC_FALSE;
+  if (!extension_works(s)) PetscFunctionReturn(0);
+  PetscCall(ChooseWays(s, e));
+  while (again) PetscCall(KeepNeeded(s, &again));
+  for (PetscInt i = 0; i < s->grid->n_nodes; ++i) here = here || e->ways[i] > 0;
+  PetscCallMPI(MPI_Allreduce(&here, &e->any, 1, MPIU_BOOL, MPI_LOR, s->grid->comm));
+  if (here) PetscCall(Rewrite(s));
+  PetscFunctionReturn(0);
+}
+
+/* Followers of this rank with all that they follow: their part of the field, and that it is known. */
+static void follow(const Discretisation *s, const PetscReal *field, PetscReal *sum, PetscReal *known)
+{
+  const PetscReal none[3] = {0, 0, 0};
+  const PetscInt dim = s->grid->dim;
+  PetscInt at[3];
+  Row row;
+  for (PetscInt node = 0; node < s->grid->n_nodes; ++node) {
+    const PetscInt ways = (PetscInt)s->extension->ways[node];
+    if (!ways) continue;
+    row.n = 0;
+    place_of(s->grid->box, s->extension, node, at);
+    if (!row_add_follower(&row, s->grid->box, at, ways, 1, none)) continue;
+    known[node] = 1;
+    for (PetscInt I = 0; I < row.n; ++I)
+      for (PetscInt d = 0; d < dim; ++d) sum[node * dim + d] += row.N[I] * field[row.node[I] * dim + d];
+  }
+}
+
+/* Who knows all nodes that one follows tells the others: the ranks of points near it do. */
+static PetscErrorCode FollowField(const Discretisation *s, PetscReal *field)
+{
+  const PetscInt dim = s->grid->dim, n = s->grid->n_nodes;
+  PetscReal *sum, *known;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc2(n * dim, &sum, n, &known));
+  follow(s, field, sum, known);
+  PetscCall(GridSumToOwners(s->grid, dim, sum));
+  PetscCall(GridSumToOwners(s->grid, 1, known));
+  PetscCall(GridToGhosts(s->grid, dim, sum));
+  PetscCall(GridToGhosts(s->grid, 1, known));
+  for (PetscInt i = 0; i < n * dim; ++i)
+    if (s->extension->ways[i / dim] > 0) field[i] = sum[i] / known[i / dim];
+  PetscCall(PetscFree2(sum, known));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode DiscretisationFollow(Discretisation *s)
+{
+  PetscFunctionBeginUser;
+  if (!s->extension || !s->extension->any) PetscFunctionReturn(0);
+  PetscCall(FollowField(s, s->nodes->du));
+  PetscCall(FollowField(s, s->nodes->v1));
+  PetscCall(FollowField(s, s->nodes->a1));
+  PetscFunctionReturn(0);
+}
