@@ -108,13 +108,15 @@ static inline int free_parts(PetscInt axes, PetscInt dim, const CloudWork *w, co
   int n = 0;
   for (PetscInt k = 0; k <= axes; ++k) {
     PetscReal mean = 0, square = 0;
-    for (PetscInt I = 0; k && I < w->nn; ++I) mean += x[w->node[I] * dim + k - 1] / (PetscReal)w->nn;
+    for (PetscInt I = 0; k && I < w->nn; ++I) mean += x[w->node[I] * dim + k - 1];
+    mean /= (PetscReal)w->nn;
     for (PetscInt I = 0; I < w->nn; ++I) {
       part[n][I] = k ? x[w->node[I] * dim + k - 1] - mean : 1;
       square += PetscSqr(part[n][I]);
     }
     if (square == 0) continue;
-    for (PetscInt I = 0; I < w->nn; ++I) part[n][I] /= PetscSqrtReal(square);
+    const PetscReal scale = 1 / PetscSqrtReal(square);
+    for (PetscInt I = 0; I < w->nn; ++I) part[n][I] *= scale;
     ++n;
   }
   return n;

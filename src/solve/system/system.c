@@ -194,7 +194,7 @@ PetscErrorCode SystemGather(System *s, PetscBool single)
   s->single = single && s->blocks;
   if (s->single) PetscCall(PetscFree(s->values));
   else if (!s->values) PetscCall(PetscCalloc1(system_numbers(s), &s->values));
-  if (s->blocks && !s->singles) PetscCall(PetscMalloc1(system_numbers(s), &s->singles));
+  if (s->blocks && !s->singles) PetscCall(PetscCalloc1(system_numbers(s), &s->singles));
   PetscFunctionReturn(0);
 }
 
@@ -225,7 +225,7 @@ PetscErrorCode SystemSlots(System *s, const Support *support, PetscBool *complet
   PetscFunctionBeginUser;
   s->later = NULL;
   if (!support->n_runs) {
-    PetscCall(SystemCloudSlots(s, support, complete));
+    PetscCall(SystemCloudSlots(s, support, PETSC_FALSE, complete));
     PetscFunctionReturn(0);
   }
   for (const SupportRun *r = support->run; r < support->run + support->n_runs; ++r)
@@ -244,13 +244,15 @@ PetscErrorCode SystemSlots(System *s, const Support *support, PetscBool *complet
 
 void system_slots_later(System *s, const Support *support) { s->later = support; }
 
-PetscErrorCode SystemWantSlots(System *s)
+PetscErrorCode SystemWantSlots(System *s, PetscBool half)
 {
   PetscBool complete;
 
   PetscFunctionBeginUser;
   if (!s->later) PetscFunctionReturn(0);
-  PetscCall(SystemSlots(s, s->later, &complete));
+  if (half && !s->later->n_runs) PetscCall(SystemCloudSlots(s, s->later, PETSC_TRUE, &complete));
+  else PetscCall(SystemSlots(s, s->later, &complete));
+  s->later = NULL;
   PetscCheck(complete, PETSC_COMM_SELF, PETSC_ERR_PLIB, "points couple nodes that their basis did not announce");
   PetscFunctionReturn(0);
 }
@@ -260,6 +262,20 @@ PetscErrorCode SystemZero(System *s)
   PetscFunctionBeginUser;
   if (s->single) PetscCall(PetscArrayzero(s->singles, system_numbers(s)));
   else PetscCall(PetscArrayzero(s->values, system_numbers(s)));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode SystemZeroHalf(System *s)
+{
+  const PetscInt size = s->block * s->block;
+
+  PetscFunctionBeginUser;
+  for (PetscInt r = 0; r < s->n_rows; ++r) {
+    const size_t first = (size_t)s->diagonal[r] * (size_t)size;
+    const PetscInt n = (s->row_start[r + 1] - s->diagonal[r]) * size;
+    if (s->single) PetscCall(PetscArrayzero(s->singles + first, n));
+    else PetscCall(PetscArrayzero(s->values + first, n));
+  }
   PetscFunctionReturn(0);
 }
 

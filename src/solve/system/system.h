@@ -16,6 +16,7 @@ typedef enum { SYSTEM_ASSEMBLED, SYSTEM_BLOCKS } SystemForm;
 /* The clouds that the slots were last looked up for: most are the same in the next step. */
 typedef struct {
   PetscInt builds;           /* of the pattern then; 0: not all pairs were there */
+  PetscBool half;            /* pairs before the diagonals were left out */
   PetscInt n, *start, *node; /* groups and their nodes */
   PetscInt capacity, capacity_entries;
   PetscInt n_spare, *spare; /* slots on their way to another place */
@@ -80,20 +81,22 @@ PetscErrorCode SystemBuild(System *system, const Grid *grid, const NodeGroups *g
  * all their pairs on this rank. */
 PetscErrorCode SystemSlots(System *system, const Support *support, PetscBool *complete);
 /* The same of a support whose pairs the pattern has for sure, when a tangent wants them: a step without
- * iterations never does. */
+ * iterations never does. half: of clouds only pairs from the diagonals on. */
 void system_slots_later(System *system, const Support *support);
-PetscErrorCode SystemWantSlots(System *system);
+PetscErrorCode SystemWantSlots(System *system, PetscBool half);
 /* The slot of one pair of nodes; -1 if the pattern lacks it. */
 PetscInt system_pair(const System *system, PetscInt I, PetscInt J);
 /* What SystemSlots consists of (cloud_slots.c). */
 PetscErrorCode SystemReserveSlots(System *system, PetscInt n);
-PetscErrorCode SystemCloudSlots(System *system, const Support *support, PetscBool *complete);
+PetscErrorCode SystemCloudSlots(System *system, const Support *support, PetscBool half, PetscBool *complete);
 PetscErrorCode SystemFreeSlots(System *system);
 /* Fill the blocks before the diagonals of the rows from `first` on with the transposes of those behind
  * diagonals. Symmetric blocks (solve/blocks) need no more than the rows that other ranks own. */
 PetscErrorCode SystemMirror(System *system, PetscInt first);
 /* Zero values or singles, whichever are in use. */
 PetscErrorCode SystemZero(System *system);
+/* The same from the diagonals on, before SystemMirror, or where nobody reads the rest. */
+PetscErrorCode SystemZeroHalf(System *system);
 /* Zero an array of n_nodes x dim where nodes have unknowns, ghosts too. */
 PetscErrorCode SystemZeroNodes(const System *system, PetscReal *nodes);
 
