@@ -21,6 +21,7 @@ static PetscErrorCode SystemFreePattern(System *s)
   PetscCall(PetscFree(s->row_start));
   PetscCall(PetscFree(s->column));
   PetscCall(PetscFree(s->diagonal));
+  PetscCall(PetscFree(s->matter));
   PetscCall(PetscFree(s->values));
   PetscCall(PetscFree(s->singles));
   s->single = PETSC_FALSE;
@@ -191,6 +192,7 @@ PetscErrorCode SystemUse(System *s, SystemForm form, PetscBool symmetric)
 PetscErrorCode SystemGather(System *s, PetscBool single)
 {
   PetscFunctionBeginUser;
+  for (PetscInt r = 0; s->matter && r < s->n_rows; ++r) s->matter[r] = PetscMin(s->matter[r], ROW_LEFT);
   s->single = single && s->blocks;
   if (s->single) PetscCall(PetscFree(s->values));
   else if (!s->values) PetscCall(PetscCalloc1(system_numbers(s), &s->values));
@@ -271,8 +273,10 @@ PetscErrorCode SystemZeroHalf(System *s)
 
   PetscFunctionBeginUser;
   for (PetscInt r = 0; r < s->n_rows; ++r) {
+    const PetscBool empty = s->matter && s->matter[r] == ROW_EMPTY; /* but for its diagonal */
     const size_t first = (size_t)s->diagonal[r] * (size_t)size;
-    const PetscInt n = (s->row_start[r + 1] - s->diagonal[r]) * size;
+    const PetscInt n = empty ? size : (s->row_start[r + 1] - s->diagonal[r]) * size;
+    if (s->matter && s->matter[r] == ROW_LEFT) s->matter[r] = ROW_EMPTY;
     if (s->single) PetscCall(PetscArrayzero(s->singles + first, n));
     else PetscCall(PetscArrayzero(s->values + first, n));
   }

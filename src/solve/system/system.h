@@ -33,6 +33,9 @@ typedef struct {
   PetscInt pair, row; /* of the pattern; the row's node */
 } SystemPair;
 
+/* What a row of the tangent gets: something; nothing any more; nothing, and it is zero already. */
+typedef enum { ROW_FILLED, ROW_LEFT, ROW_EMPTY } RowMatter;
+
 typedef struct System {
   MPI_Comm comm;
   /* displacements, and all unknowns, per node: dim, or dim + 1 with a pressure */
@@ -55,8 +58,10 @@ typedef struct System {
   float *singles;
   /* is the tangent gathered in singles, or else in values? */
   PetscBool single;
-  PetscInt n_slots, *slot;        /* SystemSlots: nn x nn pairs of each group */
-  const Support *later;           /* whose slots nobody has wanted yet; NULL: they are there */
+  PetscInt n_slots, *slot; /* SystemSlots: nn x nn pairs of each group */
+  const Support *later;    /* whose slots nobody has wanted yet; NULL: they are there */
+  /* SystemPrescribe, per row: of a node that no material touches, so that all its pairs are zeros; NULL: not told */
+  RowMatter *matter;
   PetscInt n_cuts, capacity_cuts; /* SystemPrescribe */
   SystemCut *cut;
   const Frames *frames;               /* of the nodes: the unknowns are components in them; NULL: along the axes */
