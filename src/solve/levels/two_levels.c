@@ -1,6 +1,5 @@
 #include "solve/levels/two_levels.h"
 #include "base/math/tensor.h"
-#include "base/process/denormals.h"
 #include "solve/blocks/blocks.h"
 #include "solve/system/linear.h"
 
@@ -83,6 +82,7 @@ static PetscErrorCode CloseCoarse(Mat coarse)
 /* Factorised while that is cheap, else one cycle of algebraic multigrid. */
 static PetscErrorCode CreateSolver(TwoLevels *t, PC outer)
 {
+  PCFailedReason failed;
   const char *prefix;
   PetscInt unknowns;
   PC pc;
@@ -103,6 +103,8 @@ static PetscErrorCode CreateSolver(TwoLevels *t, PC outer)
   }
   PetscCall(KSPSetFromOptions(t->solver));
   PetscCall(KSPSetUp(t->solver));
+  PetscCall(PCGetFailedReason(pc, &failed));
+  if (failed) PetscCall(PCSetFailedReason(outer, PC_SUBPC_ERROR)); /* a factorisation of all takes over */
   PetscFunctionReturn(0);
 }
 
