@@ -163,7 +163,7 @@ static inline PetscErrorCode PassMeasure(Model *m, PetscReal inertia, PetscInt r
 
   PetscFunctionBeginUser;
   PetscCall(ModelActivate(m));
-  PetscCall(SystemWantSlots(m->system));
+  PetscCall(SystemWantSlots(m->system, PETSC_FALSE));
   for (PetscInt i = 0; i < dofs; ++i) m->nodes->fixed[i] = m->boundary->fixed[i] || !m->nodes->touched[i / m->dim];
   PetscCall(PetscArrayzero(m->nodes->du, dofs));
   PetscCall(SystemPrescribe(m->system, m->nodes->fixed, m->nodes->idle));

@@ -115,6 +115,7 @@ static LinearProblem linear_problem(const Model *m, PetscReal dt)
     .dim = m->dim,
     .unknowns = m->system->n_active_global * m->system->block,
     .symmetric = m->symmetric,
+    .wide = m->space->basis->halo > 0,
     .mixed = m->formulation->pressure,
     .undetermined = m->c->mixed.stabilisation == 0,
     .multipliers = m->n_constraints > 0,

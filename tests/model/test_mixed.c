@@ -160,7 +160,7 @@ static void residual(const Subject *s, PetscReal h, PetscInt seed, PetscBool tan
   }
   CALL(PetscArrayzero(m->nodes->force, n * dim));
   CALL(PetscArrayzero(m->nodes->volume, n));
-  CALL(SystemWantSlots(m->system));
+  CALL(SystemWantSlots(m->system, PETSC_FALSE));
   CALL(SystemZero(m->system));
   WeakFormInput in = weak_form_of(m, m->c->analysis.type == ANALYSIS_DYNAMIC ? 40 : 0);
   WeakFormOutput o = {.force = m->nodes->force,

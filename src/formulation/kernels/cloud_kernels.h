@@ -123,15 +123,16 @@ static inline int free_parts(PetscInt axes, PetscInt dim, const CloudWork *w, co
   int n = 0;
   for (PetscInt k = 0; k <= axes; ++k) {
     PetscReal mean = 0, square = 0;
-    for (PetscInt I = 0; k && I < w->nn; ++I) mean += x[w->node[I] * dim + k - 1] / (PetscReal)w->nn;
+    for (PetscInt I = 0; k && I < w->nn; ++I) mean += x[w->node[I] * dim + k - 1];
+    mean /= (PetscReal)w->nn;
     for (PetscInt I = 0; I < w->nn; ++I) {
       part[n][I] = k ? x[w->node[I] * dim + k - 1] - mean : 1;
       square += PetscSqr(part[n][I]);
     }
     const PetscReal left = without_others(n, w->nn, part);
     if (left <= SAME * square) continue;
-    square = left;
-    for (PetscInt I = 0; I < w->nn; ++I) part[n][I] /= PetscSqrtReal(square);
+    const PetscReal scale = 1 / PetscSqrtReal(left);
+    for (PetscInt I = 0; I < w->nn; ++I) part[n][I] *= scale;
     ++n;
   }
   return n;

@@ -148,6 +148,7 @@ static PetscReal solver_memory(const Model *m, PetscInt unknowns, PetscReal matr
                                  .dim = m->dim,
                                  .unknowns = unknowns,
                                  .symmetric = m->symmetric,
+                                 .wide = m->space->basis->halo > 0,
                                  .mixed = m->formulation->pressure,
                                  .memory = m->machine_memory};
   if (m->scheme->inertia) return 0;

@@ -323,6 +323,11 @@ KERNEL void fill_rows(const int dim, Blocks *m, const System *s, PetscBool symme
   for (PetscInt r = 0; r < m->n; ++r) {
     row_take(&row, r);
     const RowParts parts = m->parts[r];
+    if (s->matter && s->matter[r] != ROW_FILLED && row.n == parts.own) {
+      m->lower.start[r + 1] = m->lower.start[r];
+      m->upper.start[r + 1] = m->upper.start[r];
+      continue;
+    }
     if (!symmetric) take_blocks(dim, m, &row, r, 0, parts.before, symmetric, &m->lower);
     take_blocks(dim, m, &row, r, parts.before + 1, parts.own, symmetric, &m->upper);
     if (row.n == parts.own) continue;

@@ -57,8 +57,9 @@ PetscErrorCode NewtonAssemble(Newton *n, PetscBool tangent)
   PetscCall(PetscTime(&start));
   PetscCall(SystemZeroNodes(p->system, p->force));
   if (p->volume) PetscCall(PetscArrayzero(p->volume, p->grid->n_nodes));
-  if (tangent) PetscCall(SystemWantSlots(p->system));
-  if (tangent) PetscCall(SystemZero(p->system));
+  if (tangent) PetscCall(SystemWantSlots(p->system, p->in.half && !p->pressure));
+  if (tangent && p->in.half) PetscCall(SystemZeroHalf(p->system));
+  else if (tangent) PetscCall(SystemZero(p->system));
   n->tangent = tangent;
   WeakFormOutput out = {.force = p->force,
                         .volume = p->volume,

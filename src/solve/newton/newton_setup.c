@@ -1,5 +1,6 @@
 /* SNES, its line search and the linear solver below it, made for one pattern of the system. */
 #include "solve/newton/newton_private.h"
+#include "solve/levels/two_levels.h"
 #include "solve/system/rigid_motions.h"
 #include <petsctime.h>
 
@@ -54,6 +55,20 @@ static PetscErrorCode TellRigidMotions(const StepProblem *p)
   PetscFunctionReturn(0);
 }
 
+/* Statics: two levels of the box where functions reach beyond their cells, else algebraic multigrid. */
+static PetscErrorCode UseLevels(StepProblem *p, const LinearProblem *linear, KSP ksp, const char **what)
+{
+  PC pc;
+
+  PetscFunctionBeginUser;
+  PetscCall(TellRigidMotions(p));
+  if (!linear->wide || !coarse_box_fits(p->grid)) PetscFunctionReturn(0);
+  PetscCall(KSPGetPC(ksp, &pc));
+  PetscCall(TwoLevelsConfigure(pc, p->system, p->grid, p->fixed, linear->symmetric));
+  *what = linear->symmetric ? "conjugate gradients, two levels of the box" : "GMRES, two levels of the box";
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode NewtonSetUp(Newton *n, StepProblem *p, const LinearProblem *linear)
 {
   KSP ksp;
@@ -102,7 +117,7 @@ PetscErrorCode NewtonSetUp(Newton *n, StepProblem *p, const LinearProblem *linea
   PetscCall(KSPSetPostSolve(ksp, LinearSolved, n));
   PetscCall(LinearConfigure(ksp, &chosen, &n->direct, &n->linear));
   if (chosen.mixed && !n->direct) PetscCall(SaddleConfigure(&n->saddle, ksp, p->system, p->grid, chosen.dynamic));
-  else if (!n->direct && !chosen.mixed && !chosen.dynamic) PetscCall(TellRigidMotions(p));
+  else if (!n->direct && !chosen.mixed && !chosen.dynamic) PetscCall(UseLevels(p, &chosen, ksp, &n->linear));
   PetscCall(SNESSetFromOptions(n->snes));
   PetscCall(LinearRefine(ksp, p->system->matrix, &chosen));
   PetscCall(Learns(ksp, &n->learns));

@@ -21,16 +21,17 @@ PetscErrorCode SystemFreeSlots(System *s)
   PetscFunctionReturn(0);
 }
 
-/* Slots of a group whose nodes ascend, by walking along each row once; a pair that the pattern
- * lacks gets -1. Returns how many. */
+/* Slots of a group whose nodes ascend, by walking along each row once, from its diagonal on if no more is
+ * wanted; a pair that the pattern lacks gets -1. Returns how many. */
 static PetscInt merge_slots(const System *s, PetscInt nn, const PetscInt *node, PetscInt *slot)
 {
+  const PetscBool half = s->before.half;
   PetscInt missing = 0;
   for (PetscInt I = 0; I < nn; ++I) {
     const PetscInt row = s->row[node[I]];
-    PetscInt k = row < 0 ? 0 : s->row_start[row];
+    PetscInt k = row < 0 ? 0 : half ? s->diagonal[row] : s->row_start[row];
     const PetscInt end = row < 0 ? 0 : s->row_start[row + 1];
-    for (PetscInt J = 0; J < nn; ++J) {
+    for (PetscInt J = half ? I : 0; J < nn; ++J) {
       while (k < end && s->column[k] < node[J]) ++k;
       const PetscBool found = k < end && s->column[k] == node[J];
       slot[I * nn + J] = found ? k : -1;
@@ -110,12 +111,13 @@ static PetscErrorCode RememberClouds(System *s, const Support *w, PetscInt missi
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode SystemCloudSlots(System *s, const Support *support, PetscBool *complete)
+PetscErrorCode SystemCloudSlots(System *s, const Support *support, PetscBool half, PetscBool *complete)
 {
   PetscInt missing = 0, place = 0;
 
   PetscFunctionBeginUser;
-  if (s->before.builds != s->builds) s->before.n = 0;
+  if (s->before.builds != s->builds || s->before.half != half) s->before.n = 0;
+  s->before.half = half;
   const PetscInt first = renew_in_place(s, support, &place, &missing);
   if (first < support->n_groups) PetscCall(RenewRest(s, support, first, place, &missing));
   PetscCall(RememberClouds(s, support, missing));

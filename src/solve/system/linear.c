@@ -155,6 +155,7 @@ static PetscReal iterate_below(const LinearProblem *p)
  * solution (docs/experiments/linear-solvers.md). */
 #define FACTORISE_BELOW_3D 5000
 #define FACTORISE_BELOW_3D_SOIL 10000
+#define FACTORISE_BELOW_3D_WIDE 1000
 #define FACTORISE_BELOW_2D 150000
 #define FACTORISE_BELOW_2D_SOIL 1000000
 #define FACTORISE_BELOW_3D_MIXED 20000
@@ -164,6 +165,7 @@ static PetscInt factorise_below(const LinearProblem *p)
 {
   if (p->mixed) return p->dim == 2 ? FACTORISE_BELOW_2D_MIXED : FACTORISE_BELOW_3D_MIXED;
   if (p->dim == 2) return p->symmetric ? FACTORISE_BELOW_2D : FACTORISE_BELOW_2D_SOIL;
+  if (p->wide && p->symmetric) return FACTORISE_BELOW_3D_WIDE;
   return p->symmetric ? FACTORISE_BELOW_3D : FACTORISE_BELOW_3D_SOIL;
 }
 

@@ -58,6 +58,20 @@ static PetscErrorCode FindCuts(System *s, const Held *h)
   PetscFunctionReturn(0);
 }
 
+/* Which rows get nothing. Where clouds choose their nodes constraints couple some that no material touches. */
+static PetscErrorCode FindEmpty(System *s, const Held *h)
+{
+  PetscFunctionBeginUser;
+  const PetscBool told = h->idle && s->before.half;
+  if (!s->matter) PetscCall(PetscCalloc1(s->n_rows, &s->matter));
+  for (PetscInt r = 0; r < s->n_rows; ++r) {
+    const PetscInt node = s->column[s->diagonal[r]];
+    const PetscBool empty = told && h->idle[node] && h->held[node] == (1u << s->dim) - 1;
+    s->matter[r] = empty ? PetscMax(s->matter[r], ROW_LEFT) : ROW_FILLED;
+  }
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode SystemPrescribe(System *s, const unsigned char *fixed, const unsigned char *idle)
 {
   Held h = {.idle = s->block == s->dim ? idle : NULL};
@@ -71,6 +85,7 @@ PetscErrorCode SystemPrescribe(System *s, const unsigned char *fixed, const unsi
     for (PetscInt k = s->row_start[r]; k < s->row_start[r + 1]; ++k) h.beside[s->column[k]] = 1;
   }
   PetscCall(FindCuts(s, &h));
+  PetscCall(FindEmpty(s, &h));
   PetscCall(SystemFindTurned(s));
   PetscCall(PetscFree2(h.held, h.beside));
   PetscFunctionReturn(0);

@@ -21,6 +21,7 @@ static PetscErrorCode SystemFreePattern(System *s)
   PetscCall(PetscFree(s->row_start));
   PetscCall(PetscFree(s->column));
   PetscCall(PetscFree(s->diagonal));
+  PetscCall(PetscFree(s->matter));
   PetscCall(PetscFree(s->values));
   PetscCall(PetscFree(s->singles));
   s->single = PETSC_FALSE;
@@ -191,10 +192,11 @@ PetscErrorCode SystemUse(System *s, SystemForm form, PetscBool symmetric)
 PetscErrorCode SystemGather(System *s, PetscBool single)
 {
   PetscFunctionBeginUser;
+  for (PetscInt r = 0; s->matter && r < s->n_rows; ++r) s->matter[r] = PetscMin(s->matter[r], ROW_LEFT);
   s->single = single && s->blocks;
   if (s->single) PetscCall(PetscFree(s->values));
   else if (!s->values) PetscCall(PetscCalloc1(system_numbers(s), &s->values));
-  if (s->blocks && !s->singles) PetscCall(PetscMalloc1(system_numbers(s), &s->singles));
+  if (s->blocks && !s->singles) PetscCall(PetscCalloc1(system_numbers(s), &s->singles));
   PetscFunctionReturn(0);
 }
 
@@ -225,7 +227,7 @@ PetscErrorCode SystemSlots(System *s, const Support *support, PetscBool *complet
   PetscFunctionBeginUser;
   s->later = NULL;
   if (!support->n_runs) {
-    PetscCall(SystemCloudSlots(s, support, complete));
+    PetscCall(SystemCloudSlots(s, support, PETSC_FALSE, complete));
     PetscFunctionReturn(0);
   }
   for (const SupportRun *r = support->run; r < support->run + support->n_runs; ++r)
@@ -244,13 +246,15 @@ PetscErrorCode SystemSlots(System *s, const Support *support, PetscBool *complet
 
 void system_slots_later(System *s, const Support *support) { s->later = support; }
 
-PetscErrorCode SystemWantSlots(System *s)
+PetscErrorCode SystemWantSlots(System *s, PetscBool half)
 {
   PetscBool complete;
 
   PetscFunctionBeginUser;
   if (!s->later) PetscFunctionReturn(0);
-  PetscCall(SystemSlots(s, s->later, &complete));
+  if (half && !s->later->n_runs) PetscCall(SystemCloudSlots(s, s->later, PETSC_TRUE, &complete));
+  else PetscCall(SystemSlots(s, s->later, &complete));
+  s->later = NULL;
   PetscCheck(complete, PETSC_COMM_SELF, PETSC_ERR_PLIB, "points couple nodes that their basis did not announce");
   PetscFunctionReturn(0);
 }
@@ -260,6 +264,22 @@ PetscErrorCode SystemZero(System *s)
   PetscFunctionBeginUser;
   if (s->single) PetscCall(PetscArrayzero(s->singles, system_numbers(s)));
   else PetscCall(PetscArrayzero(s->values, system_numbers(s)));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode SystemZeroHalf(System *s)
+{
+  const PetscInt size = s->block * s->block;
+
+  PetscFunctionBeginUser;
+  for (PetscInt r = 0; r < s->n_rows; ++r) {
+    const PetscBool empty = s->matter && s->matter[r] == ROW_EMPTY; /* but for its diagonal */
+    const size_t first = (size_t)s->diagonal[r] * (size_t)size;
+    const PetscInt n = empty ? size : (s->row_start[r + 1] - s->diagonal[r]) * size;
+    if (s->matter && s->matter[r] == ROW_LEFT) s->matter[r] = ROW_EMPTY;
+    if (s->single) PetscCall(PetscArrayzero(s->singles + first, n));
+    else PetscCall(PetscArrayzero(s->values + first, n));
+  }
   PetscFunctionReturn(0);
 }
 

@@ -16,6 +16,7 @@ typedef enum { SYSTEM_ASSEMBLED, SYSTEM_BLOCKS } SystemForm;
 /* The clouds that the slots were last looked up for: most are the same in the next step. */
 typedef struct {
   PetscInt builds;           /* of the pattern then; 0: not all pairs were there */
+  PetscBool half;            /* pairs before the diagonals were left out */
   PetscInt n, *start, *node; /* groups and their nodes */
   PetscInt capacity, capacity_entries;
   PetscInt n_spare, *spare; /* slots on their way to another place */
@@ -31,6 +32,9 @@ typedef struct {
 typedef struct {
   PetscInt pair, row; /* of the pattern; the row's node */
 } SystemPair;
+
+/* What a row of the tangent gets: something; nothing any more; nothing, and it is zero already. */
+typedef enum { ROW_FILLED, ROW_LEFT, ROW_EMPTY } RowMatter;
 
 typedef struct System {
   MPI_Comm comm;
@@ -54,8 +58,10 @@ typedef struct System {
   float *singles;
   /* is the tangent gathered in singles, or else in values? */
   PetscBool single;
-  PetscInt n_slots, *slot;        /* SystemSlots: nn x nn pairs of each group */
-  const Support *later;           /* whose slots nobody has wanted yet; NULL: they are there */
+  PetscInt n_slots, *slot; /* SystemSlots: nn x nn pairs of each group */
+  const Support *later;    /* whose slots nobody has wanted yet; NULL: they are there */
+  /* SystemPrescribe, per row: of a node that no material touches, so that all its pairs are zeros; NULL: not told */
+  RowMatter *matter;
   PetscInt n_cuts, capacity_cuts; /* SystemPrescribe */
   SystemCut *cut;
   const Frames *frames;               /* of the nodes: the unknowns are components in them; NULL: along the axes */
@@ -80,20 +86,22 @@ PetscErrorCode SystemBuild(System *system, const Grid *grid, const NodeGroups *g
  * all their pairs on this rank. */
 PetscErrorCode SystemSlots(System *system, const Support *support, PetscBool *complete);
 /* The same of a support whose pairs the pattern has for sure, when a tangent wants them: a step without
- * iterations never does. */
+ * iterations never does. half: of clouds only pairs from the diagonals on. */
 void system_slots_later(System *system, const Support *support);
-PetscErrorCode SystemWantSlots(System *system);
+PetscErrorCode SystemWantSlots(System *system, PetscBool half);
 /* The slot of one pair of nodes; -1 if the pattern lacks it. */
 PetscInt system_pair(const System *system, PetscInt I, PetscInt J);
 /* What SystemSlots consists of (cloud_slots.c). */
 PetscErrorCode SystemReserveSlots(System *system, PetscInt n);
-PetscErrorCode SystemCloudSlots(System *system, const Support *support, PetscBool *complete);
+PetscErrorCode SystemCloudSlots(System *system, const Support *support, PetscBool half, PetscBool *complete);
 PetscErrorCode SystemFreeSlots(System *system);
 /* Fill the blocks before the diagonals of the rows from `first` on with the transposes of those behind
  * diagonals. Symmetric blocks (solve/blocks) need no more than the rows that other ranks own. */
 PetscErrorCode SystemMirror(System *system, PetscInt first);
 /* Zero values or singles, whichever are in use. */
 PetscErrorCode SystemZero(System *system);
+/* The same from the diagonals on, before SystemMirror, or where nobody reads the rest. */
+PetscErrorCode SystemZeroHalf(System *system);
 /* Zero an array of n_nodes x dim where nodes have unknowns, ghosts too. */
 PetscErrorCode SystemZeroNodes(const System *system, PetscReal *nodes);
 

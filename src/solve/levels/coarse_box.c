@@ -1,0 +1,130 @@
+#include "solve/levels/coarse_box.h"
+#include "grid/box/box.h"
+
+/* Along an axis: the coarse lines beside a line, and their weights. */
+typedef struct {
+  PetscInt n, at[2];
+  PetscReal weight[2];
+} Beside;
+
+static Beside lines_beside(const GridBox *box, PetscInt axis, PetscInt i)
+{
+  const PetscReal *line = box->line[axis];
+  if (i % 2 == 0 || i == box->counts[axis]) return (Beside){1, {i, i}, {1, 0}};
+  const PetscReal upper = (line[i] - line[i - 1]) / (line[i + 1] - line[i - 1]);
+  return (Beside){2, {i - 1, i + 1}, {1 - upper, upper}};
+}
+
+/* An owned node's coarse nodes, as local nodes. */
+typedef struct {
+  PetscInt n, node[8];
+  PetscReal weight[8];
+} Parents;
+
+static Parents parents_of(const GridBox *box, PetscInt node)
+{
+  const VoxelBlock owned = box_owned_nodes(box, box->block + box->rank);
+  const PetscInt nx = owned.hi[0] - owned.lo[0], ny = owned.hi[1] - owned.lo[1];
+  const Beside x = lines_beside(box, 0, owned.lo[0] + node % nx),
+               y = lines_beside(box, 1, owned.lo[1] + node / nx % ny),
+               z = lines_beside(box, 2, owned.lo[2] + node / nx / ny);
+  Parents p = {.n = 0};
+  for (PetscInt k = 0; k < z.n; ++k)
+    for (PetscInt j = 0; j < y.n; ++j)
+      for (PetscInt i = 0; i < x.n; ++i, ++p.n) {
+        p.node[p.n] = box_node(box, (PetscInt[]){x.at[i], y.at[j], z.at[k]});
+        p.weight[p.n] = x.weight[i] * y.weight[j] * z.weight[k];
+      }
+  return p;
+}
+
+PetscBool coarse_box_fits(const Grid *grid)
+{
+  const GridBox *box = grid->box;
+  return box && grid->dim == 3 && grid->n_fields == 1 && !box_has_centres(box) && (box->size == 1 || box->halo > 0);
+}
+
+/* Global numbers of the coarse nodes (n_nodes), -1: not needed; how many this rank owns. */
+static PetscErrorCode NumberCoarse(const System *s, const Grid *grid, const unsigned char *fixed, PetscReal *number,
+                                   PetscInt *n)
+{
+  PetscInt first = 0, k = 0;
+
+  PetscFunctionBeginUser;
+  for (PetscInt a = 0; a < s->n_active; ++a) {
+    const unsigned char *held = fixed + s->active[a] * 3;
+    const Parents p = parents_of(grid->box, s->active[a]);
+    for (PetscInt i = 0; i < p.n && !(held[0] && held[1] && held[2]); ++i) number[p.node[i]] = 1;
+  }
+  PetscCall(GridSumToOwners(grid, 1, number));
+  for (PetscInt i = 0; i < grid->n_owned; ++i) k += number[i] > 0;
+  *n = k;
+  PetscCallMPI(MPI_Exscan(n, &first, 1, MPIU_INT, MPI_SUM, s->comm));
+  for (PetscInt i = 0; i < grid->n_owned; ++i) number[i] = number[i] > 0 ? (PetscReal)first++ : -1;
+  PetscCall(GridToGhosts(grid, 1, number));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode CoarseMotions(MPI_Comm comm, const Grid *grid, const PetscReal *number, PetscInt n,
+                                    MatNullSpace *motions)
+{
+  Vec places;
+  PetscReal *v;
+
+  PetscFunctionBeginUser;
+  PetscCall(VecCreateMPI(comm, 3 * n, PETSC_DETERMINE, &places));
+  PetscCall(VecSetBlockSize(places, 3));
+  PetscCall(VecGetArrayWrite(places, &v));
+  for (PetscInt i = 0; i < grid->n_owned; ++i)
+    for (PetscInt d = 0; d < 3 && number[i] >= 0; ++d) *v++ = grid->x[i * 3 + d];
+  v -= 3 * n;
+  PetscCall(VecRestoreArrayWrite(places, &v));
+  PetscCall(MatNullSpaceCreateRigidBody(places, motions));
+  PetscCall(VecDestroy(&places));
+  PetscFunctionReturn(0);
+}
+
+/* Rows of one node: a coarse displacement's components in the frame of the node. What is prescribed gets
+ * zeros, which keep the pattern. */
+static PetscErrorCode FillRows(const System *s, PetscInt a, const Parents *p, const unsigned char *held,
+                               const PetscReal *number, PetscInt first, Mat matrix)
+{
+  const PetscReal *w = s->frames ? frame_of(s->frames, s->active[a]) : NULL;
+
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < p->n; ++i) {
+    if (number[p->node[i]] < 0) continue;
+    for (PetscInt b = 0; b < 3; ++b) {
+      PetscReal v[3] = {0, 0, 0};
+      const PetscInt column = 3 * (PetscInt)number[p->node[i]] + b;
+      v[b] = p->weight[i];
+      if (w) frame_turn(3, w, v);
+      for (PetscInt d = 0; d < 3; ++d)
+        if (d == b || w) PetscCall(MatSetValue(matrix, first + 3 * a + d, column, held[d] ? 0 : v[d], INSERT_VALUES));
+    }
+  }
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode CoarseBoxInterpolation(const System *s, const Grid *grid, const unsigned char *fixed, Mat *interpolation,
+                                      MatNullSpace *motions)
+{
+  PetscReal *number;
+  PetscInt n, first;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(grid->n_nodes, &number));
+  PetscCall(NumberCoarse(s, grid, fixed, number, &n));
+  PetscCall(
+    MatCreateAIJ(s->comm, 3 * s->n_active, 3 * n, PETSC_DETERMINE, PETSC_DETERMINE, 24, NULL, 24, NULL, interpolation));
+  PetscCall(MatGetOwnershipRange(*interpolation, &first, NULL));
+  for (PetscInt a = 0; a < s->n_active; ++a) {
+    const Parents p = parents_of(grid->box, s->active[a]);
+    PetscCall(FillRows(s, a, &p, fixed + 3 * s->active[a], number, first, *interpolation));
+  }
+  PetscCall(MatAssemblyBegin(*interpolation, MAT_FINAL_ASSEMBLY));
+  PetscCall(MatAssemblyEnd(*interpolation, MAT_FINAL_ASSEMBLY));
+  PetscCall(CoarseMotions(s->comm, grid, number, n, motions));
+  PetscCall(PetscFree(number));
+  PetscFunctionReturn(0);
+}
