@@ -60,7 +60,7 @@ static PetscErrorCode PassInFlow(Model *m, PetscInt repeats, PetscReal best[2])
   PetscReal *others;
 
   PetscFunctionBeginUser;
-  PetscCall(SystemWantSlots(m->system));
+  PetscCall(SystemWantSlots(m->system, PETSC_FALSE));
   PetscCall(PetscCalloc1(n, &others));
   PetscCall(PetscArraycpy(m->nodes->du, m->nodes->previous, dofs));
   best[0] = best[1] = PETSC_MAX_REAL;

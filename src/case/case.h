@@ -479,6 +479,7 @@ typedef struct Case {
   PetscInt stage;        /* its number, 0 for the first; 0 of a case without stages */
   const StageSpec *spec; /* NULL: the case is no stage */
   PetscBool seeks;       /* does any stage seek a factor of safety or a limit load? */
+  PetscBool staged;      /* has it stages, or is it one? */
   PetscReal start;       /* when it began, s */
   PetscReal release;     /* s over which what is out of balance at the start fades; 0: at once */
 } Case;

@@ -279,6 +279,7 @@ static PetscErrorCode ReadDocument(const char *file, YamlDocument *document, Dia
   (*c)->stage = k;
   (*c)->spec = whole ? whole->stages + k : NULL;
   (*c)->seeks = whole ? whole->seeks : stages_seek(yaml_find(document->root, "stages"));
+  (*c)->staged = whole || yaml_find(document->root, "stages") ? PETSC_TRUE : PETSC_FALSE;
   PetscCall(PetscStrallocpy(file, &(*c)->file));
   PetscCall(FolderOf(file, &(*c)->folder));
   reader.c = *c;

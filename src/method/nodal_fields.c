@@ -134,29 +134,28 @@ static PetscInt list_fields(NodalFields *nodes, Kept kept, NodalField list[KINDS
   return n;
 }
 
-/* take: flags of dofs or, without them, dofs where the only field is not 0, count for their
- * nodes; motion is that of all nodes. */
-static PetscErrorCode ToTable(NodalFields *nodes, Kept kept, const unsigned char *dofs, Tables *tables)
+/* Of nodes where one of them is not 0; motion is that of all nodes. */
+static PetscErrorCode ToTable(NodalFields *nodes, Kept kept, Tables *tables)
 {
   NodalField list[KINDS];
-  const PetscInt n = list_fields(nodes, kept, list), dim = nodes->grid->dim;
+  const PetscInt n = list_fields(nodes, kept, list), n_nodes = nodes->grid->n_nodes;
   unsigned char *take;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscCalloc1(nodes->grid->n_nodes, &take));
-  for (PetscInt i = 0; i < nodes->grid->n_nodes * dim; ++i) take[i / dim] |= dofs ? dofs[i] : list[0].values[i] != 0;
+  PetscCall(PetscCalloc1(n_nodes, &take));
+  for (PetscInt f = 0; f < n; ++f)
+    for (PetscInt i = 0; i < n_nodes * list[f].components; ++i) take[i / list[f].components] |= list[f].values[i] != 0;
   PetscCall(NodesToTable(nodes->grid, kept == KEPT_MOTION ? NULL : take, n, list, table_names[kept], tables));
   PetscCall(PetscFree(take));
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode NodalFieldsToTables(NodalFields *nodes, PetscBool move, PetscBool increments,
-                                   const unsigned char *prescribed, Tables *tables)
+PetscErrorCode NodalFieldsToTables(NodalFields *nodes, PetscBool move, PetscBool increments, Tables *tables)
 {
   PetscFunctionBeginUser;
-  if (move) PetscCall(ToTable(nodes, KEPT_MOTION, NULL, tables));
-  if (increments) PetscCall(ToTable(nodes, KEPT_INCREMENTS, NULL, tables));
-  PetscCall(ToTable(nodes, KEPT_BOUNDARY, prescribed, tables));
+  if (move) PetscCall(ToTable(nodes, KEPT_MOTION, tables));
+  if (increments) PetscCall(ToTable(nodes, KEPT_INCREMENTS, tables));
+  PetscCall(ToTable(nodes, KEPT_BOUNDARY, tables));
   PetscFunctionReturn(0);
 }
 

@@ -57,8 +57,7 @@ PetscErrorCode NodalFieldsDestroy(NodalFields **nodes);
 PetscErrorCode NodalFlagsFollow(NodalFields *nodes);
 
 /* Collective, on grids of cells (clouds put away what follows them). What outlives a step: the
- * motion of nodes that move; increments: those of the last step; forces of the boundary, at
- * dofs that it prescribes. */
-PetscErrorCode NodalFieldsToTables(NodalFields *nodes, PetscBool move, PetscBool increments,
-                                   const unsigned char *prescribed, Tables *tables);
+ * motion of nodes that move; increments: those of the last step; forces of the boundary, of nodes
+ * that feel some. */
+PetscErrorCode NodalFieldsToTables(NodalFields *nodes, PetscBool move, PetscBool increments, Tables *tables);
 PetscErrorCode NodalFieldsFromTables(NodalFields *nodes, PetscBool move, const Tables *tables, char reason[256]);

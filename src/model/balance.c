@@ -81,7 +81,7 @@ PetscErrorCode ModelRegrid(Model *m, Grid *grid, PetscInt *moved)
 
   PetscFunctionBeginUser;
   PetscCall(TablesCreate(&kept));
-  PetscCall(NodalFieldsToTables(m->nodes, PETSC_FALSE, PETSC_TRUE, m->boundary->fixed, kept));
+  PetscCall(NodalFieldsToTables(m->nodes, PETSC_FALSE, PETSC_TRUE, kept));
   PetscCall(ForcesToTables(m, kept));
   *moved = 0;
   PetscCall(PointsRepartition(m->points, m->grid, grid, moved));

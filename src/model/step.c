@@ -43,6 +43,8 @@ PetscErrorCode ModelInitialise(Model *m)
   PetscFunctionBeginUser;
   if (m->space->present) PetscFunctionReturn(0);
   PetscCall(PetscTime(&clock));
+  /* who follows whom hangs on who is held now */
+  if (m->method->restores_grid) PetscCall(BoundaryMove(m->boundary, m->grid, m->time));
   PetscCall(m->method->initialise(m->space));
   m->space->present = PETSC_TRUE;
   if (m->step > 0) PetscCall(FollowersEnd(m));

@@ -58,7 +58,6 @@ PetscErrorCode PrepareUnknowns(Model *m, StepStart *start, StepReport *report)
   PetscCall(ModelBalance(m, report));
   PetscCall(PhaseEnd(m->seconds, PHASE_REPARTITION, &clock));
   PetscCall(ModelActivate(m));
-  if (m->method->restores_grid) PetscCall(BoundaryMove(m->boundary, m->grid, m->time));
   m->system->frames = &m->boundary->frames;
   mark_fixed(m);
   PetscCall(UnheldHold(m));

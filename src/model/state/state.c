@@ -209,7 +209,7 @@ PetscErrorCode ModelToTables(Model *m, Tables *tables)
     PetscFunctionReturn(0);
   }
   const PetscBool increments = m->method->restores_grid || guess_follows(m);
-  PetscCall(NodalFieldsToTables(m->nodes, !m->method->restores_grid, increments, m->boundary->fixed, tables));
+  PetscCall(NodalFieldsToTables(m->nodes, !m->method->restores_grid, increments, tables));
   PetscCall(GuessToTables(m, tables));
   PetscCall(BalanceToTables(m, tables));
   PetscCall(CellsToTable(m->grid, m->enabled, "pattern", tables));
