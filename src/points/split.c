@@ -111,7 +111,7 @@ static void cell_size(const Grid *grid, PetscInt cell, PetscReal *size)
 {
   PetscInt ijk[3];
   box_voxel_of(grid, cell, ijk);
-  for (PetscInt d = 0; d < grid->dim; ++d) size[d] = grid->box->line[d][ijk[d] + 1] - grid->box->line[d][ijk[d]];
+  box_voxel_size(grid->box, ijk, size);
 }
 
 /* The edge along which the point is to be split; -1: it stays whole. */

@@ -9,7 +9,7 @@ ProductPlace product_place(const Grid *grid, PetscInt cell)
   const GridBox *box = grid->box;
   ProductPlace place = {.size = {0}};
   box_voxel_of(grid, cell, place.ijk);
-  for (PetscInt d = 0; d < box->dim; ++d) place.size[d] = box->line[d][place.ijk[d] + 1] - box->line[d][place.ijk[d]];
+  box_voxel_size(box, place.ijk, place.size);
   return place;
 }
 

@@ -72,6 +72,11 @@ static inline PetscInt box_node(const GridBox *box, const PetscInt ijk[3])
 {
   return box->lattice[block_index(&box->nodes, ijk)];
 }
+/* The sides of a voxel, m. */
+static inline void box_voxel_size(const GridBox *box, const PetscInt ijk[3], PetscReal *size)
+{
+  for (PetscInt d = 0; d < box->dim; ++d) size[d] = box->line[d][ijk[d] + 1] - box->line[d][ijk[d]];
+}
 
 /* box_build.c. Collective. The grid of a box whose blocks are known; takes the box. */
 PetscErrorCode BoxBuild(MPI_Comm comm, const GridOps *ops, CellType type, GridBox *box, Grid **grid);
