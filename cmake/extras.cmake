@@ -1,6 +1,6 @@
-# Targets that nobody builds by default: `bench` (bench/*.c, each a program) and `docs` (the site).
+# Targets that nobody builds by default: `bench` (bench/bench_*.c, each a program, and the bound) and `docs` (the site).
 add_custom_target(bench)
-file(GLOB bench_sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/bench/*.c)
+file(GLOB bench_sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/bench/bench_*.c)
 if(TARGET talus_library)
   foreach(source ${bench_sources})
     get_filename_component(name ${source} NAME_WE)
@@ -12,6 +12,17 @@ if(TARGET talus_library)
     add_dependencies(bench ${target})
   endforeach()
 endif()
+
+# The bound of explicit dynamics, which takes nothing from talus, in both precisions.
+foreach(real float double)
+  string(REPLACE "_float" "" target explicit_bound_${real})
+  add_executable(${target} EXCLUDE_FROM_ALL ${PROJECT_SOURCE_DIR}/bench/explicit_bound.c)
+  target_compile_definitions(${target} PRIVATE REAL=${real} _GNU_SOURCE)
+  target_compile_options(${target} PRIVATE -Wall -Wextra -Wshadow -O3 -ffast-math $<$<NOT:$<BOOL:${TALUS_PORTABLE}>>:-march=native>)
+  target_link_libraries(${target} PRIVATE m)
+  set_target_properties(${target} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/bench)
+  add_dependencies(bench ${target})
+endforeach()
 
 # Fuzzers: tests/fuzz/fuzz_*.c, with a library of their own flags (make fuzz).
 if(TALUS_FUZZ)
