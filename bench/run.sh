@@ -14,6 +14,9 @@ best_step() {
     awk '/per step/ {for (i = 1; i < NF; ++i) if ($i == "all") print $(i + 1), substr($(i + 2), 2)}'
 }
 
+title "one table: talus, the bound of explicit dynamics, other programs (medians of three rounds)"
+"$bench/bench_table"
+
 title "laws"
 "$bench/bench_law"
 
