@@ -3,10 +3,10 @@
  * docs/scaling.md has the table and what it means for 1,000 ranks.
  *
  *   mpiexec --oversubscribe -n 4 build/bench/bench_messages [-dim 2] [-points 10000] [-per_rank
- *   2500] [-steps 5] [-mesh]
+ *   2500] [-steps 5] [-mesh] [-explicit]
  *
  * -points: of the whole body; -per_rank instead: of each rank. -mesh: the grid comes from a
- * file. */
+ * file. -explicit: explicit dynamics, in whose run a step is eight implicit ones, and counts are those of a substep. */
 #include "messages.h"
 
 #include "box_mesh.h"
@@ -15,12 +15,14 @@ static Model *model; /* whose clocks tell the phases */
 
 static void clock_of_model(double seconds[MESSAGE_PHASES]) { model_times(model, seconds); }
 
+static PetscBool is_explicit(void) { return model->c->analysis.type == ANALYSIS_EXPLICIT ? PETSC_TRUE : PETSC_FALSE; }
+
 /* Times that Newton takes apart begin and end inside a solve. */
 static int takes_all(int phase) { return phase != PHASE_POINTS && phase != PHASE_MATRIX && phase != PHASE_LINEAR; }
 
 typedef struct {
   PetscInt steps, newton, linear;
-  PetscReal count[PHASE_N + 1][4]; /* largest of the ranks, per step */
+  PetscReal count[PHASE_N + 1][4]; /* largest of the ranks, per step or substep */
   PetscReal partners, points, bytes;
 } Result;
 
@@ -40,11 +42,12 @@ static PetscErrorCode Count(PetscInt steps, Result *r)
     r->linear += report.newton.linear_iterations;
   }
   message_end();
-  r->newton = model->total_iterations - before;
+  r->newton = model->total_iterations - before; /* explicit: substeps */
+  const PetscReal times = (PetscReal)(is_explicit() ? r->newton : steps);
   for (int k = 0; k <= PHASE_N; ++k) {
     const MessageCount *c = &messages.phase[k];
     const PetscReal mine[4] = {c->messages, c->bytes, c->collectives, c->shared_bytes};
-    for (int i = 0; i < 4; ++i) r->count[k][i] = mine[i] / (PetscReal)steps;
+    for (int i = 0; i < 4; ++i) r->count[k][i] = mine[i] / times;
   }
   for (int k = 0; k < MESSAGE_RANKS; ++k) partners += messages.partner[k];
   r->partners = partners;
@@ -63,12 +66,15 @@ static PetscErrorCode Print(const Result *r)
   PetscFunctionBeginUser;
   PetscCallMPI(MPI_Comm_size(PETSC_COMM_WORLD, &ranks));
   PetscCall(ModelCountPoints(model, &points));
-  PetscCall(PetscPrintf(
-    PETSC_COMM_WORLD,
-    "\n%d ranks, %d points, at most %.0f on a rank, which talks to %.0f others; a step has %.1f Newton and %.1f "
-    "linear iterations\n  per step and rank   messages     bytes  collectives     bytes\n",
-    (int)ranks, (int)points, (double)r->points, (double)r->partners, (double)r->newton / (double)r->steps,
-    (double)r->linear / (double)r->steps));
+  const double inner = (double)r->newton / (double)r->steps, linear = (double)r->linear / (double)r->steps;
+  PetscCall(PetscPrintf(PETSC_COMM_WORLD,
+                        "\n%d ranks, %d points, at most %.0f on a rank, which talks to %.0f others; a step has ",
+                        (int)ranks, (int)points, (double)r->points, (double)r->partners));
+  if (is_explicit()) PetscCall(PetscPrintf(PETSC_COMM_WORLD, "%.1f substeps\n  per substep      ", inner));
+  else
+    PetscCall(
+      PetscPrintf(PETSC_COMM_WORLD, "%.1f Newton and %.1f linear iterations\n  per step         ", inner, linear));
+  PetscCall(PetscPrintf(PETSC_COMM_WORLD, "   messages     bytes  collectives     bytes\n"));
   for (int k = 0; k <= PHASE_N; ++k) {
     PetscCall(PetscPrintf(PETSC_COMM_WORLD, "  %-18s %9.1f %9.0f %12.1f %9.0f\n", k < PHASE_N ? phase_names[k] : "rest",
                           (double)r->count[k][0], (double)r->count[k][1], (double)r->count[k][2],
@@ -123,10 +129,17 @@ static PetscErrorCode Repartition(void)
   PetscFunctionReturn(0);
 }
 
+static void make_explicit(Case *c)
+{
+  c->analysis.type = ANALYSIS_EXPLICIT;
+  c->analysis.step = c->analysis.largest = 8 * c->analysis.step;
+  c->basis.kind = "cell";
+}
+
 int main(int argc, char **argv)
 {
   PetscInt points = 10000, per_rank = 0, dim = 2, steps = 5;
-  PetscBool mesh = PETSC_FALSE;
+  PetscBool mesh = PETSC_FALSE, explicitly = PETSC_FALSE;
   PetscMPIInt ranks;
   char path[64];
   BenchCase b;
@@ -140,16 +153,18 @@ int main(int argc, char **argv)
   PetscCall(PetscOptionsGetInt(NULL, NULL, "-dim", &dim, NULL));
   PetscCall(PetscOptionsGetInt(NULL, NULL, "-steps", &steps, NULL));
   PetscCall(PetscOptionsGetBool(NULL, NULL, "-mesh", &mesh, NULL));
+  PetscCall(PetscOptionsGetBool(NULL, NULL, "-explicit", &explicitly, NULL));
   if (per_rank) points = per_rank * ranks;
   const PetscReal n = PetscPowReal((PetscReal)points / (dim == 2 ? 4 : 8), 1.0 / (PetscReal)dim);
   bench_landing_block(&b, dim, (PetscInt)(n + 0.5), (PetscInt)(n + 0.5) / 4, 2);
+  if (explicitly) make_explicit(&b.c);
   if (mesh) PetscCall(BoxToMesh(&b, sizeof path, path));
   PetscCall(SubjectCreate(&b.c, &s));
   if (mesh) (void)unlink(path); /* by whoever is first */
   model = s.model;
   PetscCall(Count(steps, &r));
   PetscCall(Print(&r));
-  PetscCall(Repartition());
+  if (!explicitly) PetscCall(Repartition());
   PetscCall(SubjectDestroy(&s));
   PetscCall(PetscFinalize());
   return 0;
