@@ -86,6 +86,8 @@ static void hit(const Hit *h)
   CHECK(off <= 1e-9 * given && given > 100, "momentum off by %g of %g", (double)off, (double)given);
   CHECK(PetscAbsReal(balance) < 1e-6, "open: %g", (double)balance);
   CHECK(e.transfer + e.numerical + e.friction > 0, "%g J were made", (double)-(e.transfer + e.numerical + e.friction));
+  if (h->scheme && !strcmp(h->scheme, "midpoint"))
+    CHECK(e.numerical == 0, "%g J by a scheme without damping", (double)e.numerical);
   if (h->size > 0) CHECK(e.transfer + e.numerical > 0.01 * e.start, "%g J were made", (double)-e.transfer);
   if (h->friction == 0) CHECK_CLOSE(of_ball(m, "wall_spin", 0), 2, 1e-9);
   else CHECK(PetscAbsReal(of_ball(m, "wall_spin", space ? 1 : 0) - (space ? 0 : 2)) > 0.1, "friction does not turn it");

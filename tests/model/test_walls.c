@@ -129,6 +129,48 @@ static void test_slides(void **state)
   for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(blocks); ++k) slide(&blocks[k]);
 }
 
+/* A floor that lifts the block at once with half a metre a second, and rubs it on its slope: its work is its velocity
+ * times what it bears, impulses too; of a scheme without damping nothing is numerical; nothing is made. */
+static void test_lifts(void **state)
+{
+  static const Block blocks[] = {
+    {"mpm", "cell", CELL_QUADRILATERAL, 0.2, NULL, "thesis", PETSC_FALSE, PETSC_FALSE, 0},
+    {"mpm", "gimp", CELL_QUADRILATERAL, 0.2, "midpoint", "consistent", PETSC_FALSE, PETSC_FALSE, 0},
+    {"mpm", "gimp", CELL_QUADRILATERAL, 0.2, "bossak", "thesis", PETSC_FALSE, PETSC_FALSE, 0},
+    {"mpm", "cell", CELL_HEXAHEDRON, 0.2, NULL, "thesis", PETSC_FALSE, PETSC_FALSE, 0},
+    {"fem", "cell", CELL_QUADRILATERAL, 0.2, NULL, "thesis", PETSC_FALSE, PETSC_FALSE, 0},
+  };
+  (void)state;
+  for (const Block *r = blocks; r < blocks + PETSC_STATIC_ARRAY_LENGTH(blocks); ++r) {
+    Bench b;
+    WallSpec wall;
+    Energies e;
+    const int up = up_of(r);
+    MotionSpec lift = {.kind = MOTION_VELOCITY, .component = {1, 1, 1}};
+    lift.value[up] = 0.5;
+    CALL(ModelDestroy((Model *[]){standing(&b, r, SLOPE, PETSC_TRUE, &wall)}));
+    wall.n_motions = 1;
+    wall.motions = &lift;
+    Model *m = bench_model(&b, PETSC_COMM_WORLD);
+    PetscReal work = 0;
+    for (PetscReal before = 0; m->time < 0.2; before = m->time) {
+      model_step(m, 2e-3);
+      work += (m->time - before) * 0.5 * measure(m, "wall_force", NULL, up);
+    }
+    CALL(ModelEnergies(m, &e));
+    const PetscReal lost = e.transfer + e.numerical;
+    PetscPrintf(PETSC_COMM_WORLD, "%s %s %s lifted: work %.6g J of %.6g, lost %.4g, of it numerical %.4g\n", r->method,
+                r->basis, r->scheme ? r->scheme : "", (double)e.boundary, (double)work, (double)lost,
+                (double)e.numerical);
+    CHECK_CLOSE(e.boundary, work, 0.02 * work);
+    CHECK(lost > -0.01 * work && lost < 0.15 * work, "%g J are lost of %g", (double)lost, (double)work);
+    if (!r->scheme || strcmp(r->scheme, "bossak"))
+      CHECK(PetscAbsReal(e.numerical) < 1e-9 * work, "numerical: %g J", (double)e.numerical);
+    CHECK(PetscAbsReal(model_sum(m, "energy: balance", 0)) < 1e-6, "open");
+    CALL(ModelDestroy(&m));
+  }
+}
+
 /* Steeper friction than the slope: the block stays where it is, in statics. The floor bears its weight. */
 static void rest(const Block *r)
 {
@@ -245,8 +287,8 @@ static void test_dent(void **state)
 int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {
-    cmocka_unit_test(test_slides),  cmocka_unit_test(test_rests), cmocka_unit_test(test_flows),
-    cmocka_unit_test(test_through), cmocka_unit_test(test_dent),
+    cmocka_unit_test(test_slides), cmocka_unit_test(test_lifts),   cmocka_unit_test(test_rests),
+    cmocka_unit_test(test_flows),  cmocka_unit_test(test_through), cmocka_unit_test(test_dent),
   };
   return run_model_group(argc, argv, tests, PETSC_STATIC_ARRAY_LENGTH(tests));
 }

@@ -269,6 +269,8 @@ PetscErrorCode ContactEnd(Model *m, PetscReal dt, EnergyStep *energy)
     energy->friction += s->impulse[k].sliding;
     energy->transfer -= s->impulse[k].sliding;
   }
+  energy->boundary += s->driven;
+  energy->transfer += s->driven;
   PetscFunctionReturn(0);
 }
 
@@ -294,8 +296,7 @@ static ContactWork point_work(const Model *m, const ContactPoint *c)
     work.sliding -= (f[d] - pressure * c->normal[d]) * (x[d] - c->x[d] - c->swept[d]);
   }
   work.closing = pressure * closing;
-  if (!m->scheme->inertia) work.more = 0;
-  else if (m->scheme->middle) work.more = 0.5 * (work.closing + work.moving - work.sliding);
+  if (!m->scheme->inertia || m->scheme->middle) work.more = 0; /* the balance has all of it */
   return work;
 }
 

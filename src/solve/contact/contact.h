@@ -89,6 +89,7 @@ typedef struct Contact {
   WallState *wall;
   /* of this rank and step, of each wall: momentum that setting what is in contact to its velocity took */
   ContactSum *impulse;
+  PetscReal driven; /* work of these where walls move as they are told, J */
 } Contact;
 
 /* Shortest and longest that a point's part of the surface layer counts as, over its reach at the start:

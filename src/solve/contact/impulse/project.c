@@ -94,6 +94,19 @@ static void lose(const Projection *w, ContactSum *sum)
   }
 }
 
+/* Work of walls that move as they are told: impulses times their velocity, as of prescribed nodes. */
+static PetscReal driven(const Projection *w)
+{
+  PetscReal v[3], sum = 0;
+  for (PetscInt j = 0; j < w->n_held; ++j) {
+    const ContactPoint *c = w->s->point + w->list[j];
+    if (c->wall >= w->s->n_walls || contact_rigid(w->s, c)) continue;
+    wall_velocity(w, w->list[j], v);
+    sum += impulse_dot(3, v, w->p + 3 * w->list[j]);
+  }
+  return sum;
+}
+
 void contact_add(const ContactPoint *c, PetscInt dim, const PetscReal f[3], ContactSum *sum)
 {
   for (PetscInt d = 0; d < dim; ++d) sum->force[d] += f[d];
@@ -192,6 +205,7 @@ PetscErrorCode ContactProject(Contact *s, const ContactMotion *m, ContactSum *su
   }
   for (PetscInt k = 0; k < s->n_rigid; ++k) rigid_push(s->rigid + k, w.push + RIGID * k);
   lose(&w, sum);
+  s->driven += driven(&w);
   for (PetscInt j = 0; j < w.n_held; ++j)
     contact_add(s->point + w.list[j], s->dim, w.p + 3 * w.list[j], sum + s->point[w.list[j]].wall);
   PetscCall(Destroy(&w));
