@@ -295,22 +295,12 @@ static void test_laps(void **state)
   }
 }
 
-static void test_refused(void **state)
-{
-  Bench b;
-  WallSpec wall;
-  (void)state;
-  standing(&b, blocks, 0, &wall);
-  wall.has_mass = PETSC_TRUE;
-  bench_refused(&b, PETSC_COMM_WORLD, "walls", "walls with mass");
-}
-
 int main(int argc, char **argv)
 {
-  const struct CMUnitTest tests[] = {
-    cmocka_unit_test(test_slides),   cmocka_unit_test(test_rests), cmocka_unit_test(test_lifts),
-    cmocka_unit_test(test_vanishes), cmocka_unit_test(test_hangs), cmocka_unit_test(test_ranks),
-    cmocka_unit_test(test_resumed),  cmocka_unit_test(test_laps),  cmocka_unit_test(test_refused)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_slides),  cmocka_unit_test(test_rests),
+                                     cmocka_unit_test(test_lifts),   cmocka_unit_test(test_vanishes),
+                                     cmocka_unit_test(test_hangs),   cmocka_unit_test(test_ranks),
+                                     cmocka_unit_test(test_resumed), cmocka_unit_test(test_laps)};
   if (PetscInitialize(&argc, &argv, NULL, NULL)) return 1;
   const int failed = cmocka_run_group_tests(tests, NULL, NULL);
   return PetscFinalize() || failed;

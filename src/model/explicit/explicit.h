@@ -72,6 +72,10 @@ typedef struct Explicit {
   /* of each wall in the run's step, on this rank: mean force on the material and its torque; work of sliding, J */
   ContactSum *pushed;
   PetscReal *rubbed, friction; /* friction: of all walls */
+  /* walls with mass (heavy.c): bound of the square of the frequencies that they bring, 1/s2; how fast the fastest moves
+   * anywhere, m/s; of each, by what its springs are multiplied to keep that bound; work on them without energy of
+   * motion when the run's step began, J */
+  PetscReal swing, rush, *ease, driven;
 } Explicit;
 
 /* lap.c. Collective. Arrays for the grid as it is. */
@@ -96,6 +100,13 @@ PetscErrorCode NearSee(const Model *model, Explicit *e);
 PetscErrorCode WallsPush(Model *model, Explicit *e);
 /* Material moves along walls: before the points do. */
 void walls_follow(Model *model, Explicit *e);
+/* heavy.c. When a lap begins: what walls with mass ask of a substep; and the critical one with that. */
+void heavy_limit(const Model *model, Explicit *e);
+PetscReal heavy_substep(const Explicit *e);
+/* Collective. They gain velocity by what acts on them, and choose their way; then they go it. */
+PetscErrorCode HeavyMove(Model *model, Explicit *e);
+void heavy_go(Model *model);
+
 /* Collective. What acted over the run's step. */
 PetscErrorCode WallsAccount(Model *model, Explicit *e);
 

@@ -77,6 +77,7 @@ PetscErrorCode ExplicitCreate(const Model *m, Explicit **explicit)
   PetscCall(PetscCalloc1(n, &e->mark));
   PetscCall(PetscMalloc1(n, &e->active));
   if (m->contact) PetscCall(PetscCalloc2(m->contact->n_partners, &e->pushed, m->contact->n_partners, &e->rubbed));
+  if (m->contact) PetscCall(PetscMalloc1(m->contact->n_rigid, &e->ease));
   PetscCall(PetscMalloc1(n * dim, &e->held));
   for (PetscInt k = 0; k < m->c->n_boundary; ++k) e->moved = e->moved || m->c->boundary[k].kind != MOTION_FIXED;
   PetscFunctionReturn(0);
@@ -97,6 +98,7 @@ PetscErrorCode ExplicitDestroy(Explicit **explicit)
   PetscCall(PetscFree(e->near.point));
   PetscCall(SupportDestroy(&e->near.support));
   PetscCall(PetscFree2(e->pushed, e->rubbed));
+  PetscCall(PetscFree(e->ease));
   PetscCall(PetscFree(*explicit));
   PetscFunctionReturn(0);
 }
@@ -160,11 +162,12 @@ static PetscErrorCode See(Model *m, const Explicit *e)
 static void choose_substeps(const Model *m, PetscReal left, Explicit *e)
 {
   const PetscReal courant = explicit_courant(m->c);
-  const PetscReal all = PetscCeilReal(left / (courant * e->critical) * (1 - 1e-9));
+  const PetscReal all = PetscCeilReal(left / (courant * heavy_substep(e)) * (1 - 1e-9));
   e->dt = left / PetscMax(all, 1);
   const PetscReal travel = LAP_TRAVEL * m->grid->smallest;
   PetscReal most = PetscMin(all, LAP_MOST);
-  if (e->fastest * e->dt * most > travel) most = PetscFloorReal(travel / (e->fastest * e->dt));
+  const PetscReal fastest = PetscMax(e->fastest, e->rush);
+  if (fastest * e->dt * most > travel) most = PetscFloorReal(travel / (fastest * e->dt));
   e->substeps = e->box ? PetscMax((PetscInt)most, 1) : 1;
 }
 
@@ -189,6 +192,7 @@ PetscErrorCode LapBegin(Model *m, Explicit *e, PetscReal left)
     PetscCall(ExplicitCritical(m, &e->critical, &e->fastest));
     e->since = 0;
   }
+  heavy_limit(m, e);
   choose_substeps(m, left, e);
   PetscCall(NearFind(m, e));
   PetscCall(ListActive(m, e));

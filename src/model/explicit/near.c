@@ -12,6 +12,7 @@ static PetscReal travel_of_wall(const Model *m, const Explicit *e, PetscInt k)
 {
   const GridBox *box = m->grid->box;
   PetscReal most = 0;
+  if (m->c->walls[k].has_mass) return e->rush * (PetscReal)e->substeps * e->dt;
   for (PetscInt s = 1; s <= e->substeps && e->dt > 0; ++s)
     for (int corner = 0; corner < 1 << m->dim; ++corner) {
       PetscReal x[3] = {0, 0, 0}, way[3] = {0, 0, 0};

@@ -24,7 +24,6 @@ void explicit_check(const Model *m, Diag *diag)
   refuse(c->analysis.keep_velocity, "analysis.keep_velocity", "this", diag);
   refuse(c->stabilisation.room, "stabilisation.room", "this", diag);
   refuse(c->basis.split > 0, "basis.gimp.split", "points that are split", diag);
-  refuse(walls_with_mass(c) > 0, "walls", "walls with mass", diag);
   refuse(c->n_interfaces > 0, "interfaces", "interfaces", diag);
   for (PetscInt i = 0; i < c->n_materials; ++i) {
     const Law *law = law_find(c->materials[i].law);

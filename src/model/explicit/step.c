@@ -105,9 +105,9 @@ static PetscErrorCode Account(Model *m, const Explicit *e, const PetscReal befor
   m->external_work += sum[0];
   m->boundary_work += sum[1];
   m->damped_energy += sum[2];
-  m->transfer_energy += sum[3];
+  m->transfer_energy += sum[3] + rigid_work(m) - rigid_motion(m) - e->driven;
   m->friction_energy += sum[4];
-  m->most_energy = PetscMax(m->most_energy, m->start_energy + m->external_work + m->boundary_work);
+  m->most_energy = PetscMax(m->most_energy, m->start_energy + m->external_work + m->boundary_work + rigid_work(m));
   PetscFunctionReturn(0);
 }
 
@@ -140,6 +140,8 @@ static PetscErrorCode Begin(Model *m, PetscReal step, Explicit *e, PetscReal bef
   e->outside = m->outside.energy;
   e->status = LAW_OK;
   e->external = e->boundary = e->damped = 0;
+  e->driven = rigid_work(m) - rigid_motion(m);
+  for (PetscInt k = 0; m->contact && k < m->contact->n_rigid; ++k) e->ease[k] = 1;
   if (m->contact) PetscCall(PetscArrayzero(e->pushed, m->contact->n_partners));
   if (m->contact) PetscCall(PetscArrayzero(e->rubbed, m->contact->n_partners));
   PetscCall(PetscArrayzero(m->nodes->reaction, m->grid->n_nodes * m->dim));

@@ -74,7 +74,9 @@ PetscErrorCode WallsPush(Model *m, Explicit *e)
   PetscFunctionBeginUser;
   if (!s) PetscFunctionReturn(0);
   for (ContactPoint *c = s->point; c < s->point + s->n; ++c) {
+    const RigidWall *heavy = contact_rigid(s, c);
     c->law.penalty = stiffness(m, &c->law) * c->section * c->modulus[0] / s->length;
+    if (heavy) c->law.penalty *= e->ease[heavy - s->rigid];
     if (!contact_is_sprung(*kept_of(m, c))) take_over(c);
     push(m, e, c);
     if (c->state == CONTACT_OPEN) continue;
@@ -84,6 +86,7 @@ PetscErrorCode WallsPush(Model *m, Explicit *e)
     for (int d = 0; d < 3; ++d) f[d] *= e->kick / e->step;
     contact_add(c, dim, f, e->pushed + c->wall);
   }
+  PetscCall(HeavyMove(m, e));
   PetscFunctionReturn(0);
 }
 
@@ -106,13 +109,15 @@ static void move_of(const Model *m, const Explicit *e, const ContactPoint *c, Pe
 static void keep(const Model *m, Explicit *e, const ContactPoint *c, const PetscReal move[3], PetscReal *kept)
 {
   const PetscReal closing = dot(move, c->normal), rubs = c->law.kind != CONTACT_FRICTIONLESS;
-  const PetscReal dashpot = DASHPOT * c->section * PetscSqrtReal(c->modulus[0] * c->density[0]);
+  const PetscBool heavy = contact_rigid(m->contact, c) != NULL;
+  const PetscReal dashpot =
+    DASHPOT * c->section * PetscSqrtReal(c->modulus[0] * c->density[0]) * (heavy ? heavy_substep(e) / e->critical : 1);
   const PetscReal along = e->dt > 0 ? -dashpot * closing / e->dt : c->now.pressure;
   for (PetscInt d = 0; d < m->dim; ++d) {
     const PetscReal slip = move[d] - closing * c->normal[d];
     kept[d] = along * c->normal[d] + rubs * (c->now.shear[d] - c->law.penalty * slip);
     e->rubbed[c->wall] -= c->now.shear[d] * slip;
-    e->boundary += (c->now.pressure * c->normal[d] + c->now.shear[d]) * c->swept[d];
+    if (!heavy) e->boundary += (c->now.pressure * c->normal[d] + c->now.shear[d]) * c->swept[d];
   }
 }
 
@@ -134,6 +139,7 @@ void walls_follow(Model *m, Explicit *e)
     keep(m, e, c, move, kept + 2);
     kept[2 + m->dim] = 1;
   }
+  heavy_go(m);
 }
 
 /* What measures ask of each wall after a step of the run. */

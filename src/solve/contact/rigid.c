@@ -250,34 +250,95 @@ PetscBool rigid_balances(const RigidWall *b, PetscReal tolerance, PetscReal digi
   return PetscSqrtReal(lack[0]) <= tolerance * scale[0] && PetscSqrtReal(lack[1]) <= tolerance * scale[1];
 }
 
-void rigid_end(RigidWall *b)
+/* Its increments become part of where it is. */
+static void go(RigidWall *b)
 {
   const PetscReal *theta = b->q + 3,
                   size = PetscSqrtReal(theta[0] * theta[0] + theta[1] * theta[1] + theta[2] * theta[2]);
   const PetscReal angle = size > 0 ? 2 * atan(size / 2) / size : 1;
-  PetscReal push[RIGID], R[9];
-  for (int i = 0; i < RIGID; ++i) {
-    const PetscReal load = b->dt > 0 ? load_of(b, i) : (b->load[0][i] + b->load[1][i]) / 2;
-    push[i] = b->dt * (load_of(b, i) - b->share * b->contact[i]);
-    if (rigid_has(b, i)) b->now.work += load * b->q[i];
-    b->now.last[i] = b->q[i];
-  }
+  PetscReal R[9];
   turn_matrix(theta, b->now.R, R);
   for (int i = 0; i < 9; ++i) b->now.R[i] = R[i];
   for (int d = 0; d < 3; ++d) {
     b->now.moved[d] += b->q[d];
     b->now.turned[d] += angle * theta[d];
+  }
+  for (int i = 0; i < RIGID; ++i) {
+    b->now.last[i] = b->q[i];
+    b->q[i] = 0;
+  }
+}
+
+void rigid_end(RigidWall *b)
+{
+  PetscReal push[RIGID];
+  for (int i = 0; i < RIGID; ++i) {
+    const PetscReal load = b->dt > 0 ? load_of(b, i) : (b->load[0][i] + b->load[1][i]) / 2;
+    push[i] = b->dt * (load_of(b, i) - b->share * b->contact[i]);
+    if (rigid_has(b, i)) b->now.work += load * b->q[i];
+  }
+  for (int d = 0; d < 3; ++d) {
     if (rigid_has(b, d) && b->dt > 0) b->now.v[d] += push[d] / b->body.mass;
     if (rigid_has(b, d + 3)) b->now.L[d] += push[d + 3];
     b->given[d] += b->dt * b->share * b->contact[d];
   }
-  for (int i = 0; i < RIGID; ++i) b->q[i] = 0;
+  go(b);
 }
 
 void rigid_restore(RigidWall *b, Walls *walls)
 {
   b->now = b->start;
   for (int i = 0; i < RIGID; ++i) b->q[i] = 0;
+  rigid_place(b, walls);
+}
+
+/* --- without equations --- */
+void rigid_spin(const RigidWall *b, PetscReal omega[3]) { spin_of(b, b->now.R, b->now.L, omega); }
+
+PetscReal rigid_softness(const RigidWall *b, PetscReal lever)
+{
+  PetscReal inverse[9], square = 0;
+  if (!rotates(b)) return 1 / b->body.mass;
+  if (!b->free[3]) return 1 / b->body.mass + PetscSqr(lever) / b->body.inertia[8];
+  tensor_inverse(b->body.inertia, inverse);
+  for (int i = 0; i < 9; ++i) square += PetscSqr(inverse[i]);
+  return 1 / b->body.mass + PetscSqr(lever) * PetscSqrtReal(square);
+}
+
+void rigid_kick(RigidWall *b, const Case *c, PetscReal t, PetscReal kick)
+{
+  PetscReal load[RIGID], before[3], after[3];
+  load_at(b, c, t, load);
+  rigid_spin(b, before);
+  for (int d = 0; d < 3; ++d) {
+    const PetscReal push = kick * (load[d] - b->contact[d]), v = b->now.v[d];
+    if (rigid_has(b, d)) b->now.v[d] += push / b->body.mass;
+    if (rigid_has(b, d)) b->now.work += kick * load[d] * (v + b->now.v[d]) / 2;
+    if (rigid_has(b, d + 3)) b->now.L[d] += kick * (load[d + 3] - b->contact[d + 3]);
+  }
+  rigid_spin(b, after);
+  for (int d = 0; d < 3; ++d)
+    if (rigid_has(b, d + 3)) b->now.work += kick * load[d + 3] * (before[d] + after[d]) / 2;
+}
+
+void rigid_drift(RigidWall *b, PetscReal dt)
+{
+  PetscReal omega[3], half[3], R[9];
+  b->dt = dt;
+  b->part = 0;
+  rigid_spin(b, omega);
+  for (int d = 0; d < 3; ++d) half[d] = dt / 2 * omega[d];
+  turn_matrix(half, b->now.R, R);
+  spin_of(b, R, b->now.L, omega);
+  for (int d = 0; d < 3; ++d) {
+    b->q[d] = rigid_has(b, d) ? dt * b->now.v[d] : 0;
+    b->q[3 + d] = rigid_has(b, d + 3) ? dt * omega[d] : 0;
+  }
+}
+
+void rigid_go(RigidWall *b, Walls *walls)
+{
+  go(b);
   rigid_place(b, walls);
 }
 
