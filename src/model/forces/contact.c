@@ -292,10 +292,11 @@ static ContactWork point_work(const Model *m, const ContactPoint *c)
     const PetscReal start = c->stays * c->last[d];
     work.start += 0.5 * start * (x[d] - c->x[d]);
     work.more += (f[d] - 0.5 * (start + balance[d])) * (x[d] - c->x[d]);
-    work.moving += f[d] * c->swept[d];
+    work.moving += f[d] * c->passes[d];
+    work.closing += f[d] * (c->swept[d] - c->passes[d]);
     work.sliding -= (f[d] - pressure * c->normal[d]) * (x[d] - c->x[d] - c->swept[d]);
   }
-  work.closing = pressure * closing;
+  work.closing += pressure * closing;
   if (!m->scheme->inertia || m->scheme->middle) work.more = 0; /* the balance has all of it */
   return work;
 }

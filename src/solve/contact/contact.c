@@ -83,6 +83,15 @@ static PetscReal stiffness_of(const ContactPoint *c, PetscReal h, PetscReal iner
   return other > 0 ? k * other / (k + other) : k;
 }
 
+/* A chord of what turns leads inwards, where forces would do work that no torque does. */
+static void sweep(const Contact *s, ContactPoint *c, PetscReal t, PetscReal dt)
+{
+  PetscReal x[3];
+  wall_motion(s->walls, c->wall, t, t + dt, c->x, c->swept);
+  for (int d = 0; d < 3; ++d) x[d] = c->x[d] - c->swept[d] / 2;
+  wall_motion(s->walls, c->wall, t, t + dt, x, c->passes);
+}
+
 void contact_prepare(Contact *s, PetscReal t, PetscReal dt, PetscReal inertia, ContactShare share)
 {
   s->share = share;
@@ -92,7 +101,7 @@ void contact_prepare(Contact *s, PetscReal t, PetscReal dt, PetscReal inertia, C
     c->left = 0;
     for (int d = 0; d < 3 && c->before == CONTACT_OPEN; ++d) c->last[d] = 0; /* explicit dynamics keeps slips there */
     c->law.bond = c->bond / share.mean;
-    if (c->wall < s->n_walls && !contact_rigid(s, c)) wall_motion(s->walls, c->wall, t, t + dt, c->x, c->swept);
+    if (c->wall < s->n_walls && !contact_rigid(s, c)) sweep(s, c, t, dt);
     first_multiplier(s, c);
   }
 }
@@ -137,6 +146,7 @@ PetscBool contact_meets(const Contact *s, ContactPoint *c, const NodalScene *sce
   WallPlace place;
   contact_place(s, c, scene->du, scene->whole, x);
   if (rigid) rigid_sweep(rigid, c->x, x, c->swept);
+  for (int d = 0; d < 3 && rigid; ++d) c->passes[d] = c->swept[d];
   c->state = CONTACT_OPEN;
   c->now = (ContactForce){0};
   c->gap = PETSC_MAX_REAL;

@@ -19,12 +19,13 @@ typedef struct {
   PetscInt owner; /* the material point, or the node */
   PetscInt wall;  /* or the number of walls + the interface */
   int side;
-  PetscInt first, n;  /* nodes that carry it: node[first] .. of Contact, */
-  PetscInt slot;      /* and the first of their n x n pairs */
-  PetscReal reach;    /* from the material point to its surface, at the start of the step, m */
-  PetscReal x[3];     /* at the start of the step, m */
-  PetscReal swept[3]; /* what the wall's matter there moves by in the step, m */
-  PetscReal section;  /* of the surface that it stands for, m2 */
+  PetscInt first, n;   /* nodes that carry it: node[first] .. of Contact, */
+  PetscInt slot;       /* and the first of their n x n pairs */
+  PetscReal reach;     /* from the material point to its surface, at the start of the step, m */
+  PetscReal x[3];      /* at the start of the step, m */
+  PetscReal swept[3];  /* what the wall's matter there moves by in the step, m; */
+  PetscReal passes[3]; /* and that which is there in its middle: forces times it are work, torques times angles alike */
+  PetscReal section;   /* of the surface that it stands for, m2 */
   /* of its material, and of that of the other body (0: a wall), Pa, kg/m3 */
   PetscReal modulus[2], density[2];
   PetscReal stiffer; /* by so much does it oppose a change of volume more than `modulus` says */
@@ -157,7 +158,7 @@ typedef struct {
   const Frames *frames;
   PetscReal *motion;   /* n_nodes x dim: velocity or acceleration, changed */
   const PetscReal *du; /* increments of the step */
-  PetscReal rate;      /* times `swept` it is the velocity of the wall */
+  PetscReal rate;      /* times `swept` (work: `passes`) it is the velocity of the wall */
   PetscBool pulls;     /* may the wall pull? Else only what moves into it is stopped */
   PetscBool start;     /* of those in contact before the step, or of those in contact after it? */
 } ContactMotion;

@@ -97,12 +97,11 @@ static void lose(const Projection *w, ContactSum *sum)
 /* Work of walls that move as they are told: impulses times their velocity, as of prescribed nodes. */
 static PetscReal driven(const Projection *w)
 {
-  PetscReal v[3], sum = 0;
+  PetscReal sum = 0;
   for (PetscInt j = 0; j < w->n_held; ++j) {
     const ContactPoint *c = w->s->point + w->list[j];
     if (c->wall >= w->s->n_walls || contact_rigid(w->s, c)) continue;
-    wall_velocity(w, w->list[j], v);
-    sum += impulse_dot(3, v, w->p + 3 * w->list[j]);
+    sum += w->m->rate * impulse_dot(3, c->passes, w->p + 3 * w->list[j]);
   }
   return sum;
 }
