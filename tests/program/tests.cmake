@@ -58,9 +58,8 @@ if(TARGET talus)
   talus_program_test(stages)
   talus_program_test(stages_explicit)
   talus_program_test(limit)
-  # two ranks in most of it; those that are killed wait more than they work
-  foreach(name manners import ranks same_command vanish lost walls until factor stages stages_explicit limit resume resume_bad resume_disk axisymmetric
-      sweep calibrate)
+  # several ranks in most of it; those that are killed wait more than they work
+  foreach(name ranks same_command vanish lost walls until factor stages stages_explicit limit resume resume_disk axisymmetric sweep calibrate split)
     set_tests_properties(program/${name} PROPERTIES PROCESSORS 2)
   endforeach()
 endif()
