@@ -53,7 +53,7 @@ static void hull(void **state)
     for (int trial = 0; trial < 50; ++trial) {
       const int side = dim == 2 ? 5 : 4;
       const CloudBasis basis = {.kind = CLOUD_LME, .gamma = random_real(&random, 0.6, 4)};
-      PetscReal X[CLOUD_MAX_NODES * 3], N[CLOUD_MAX_NODES], dN[CLOUD_MAX_NODES * 3], condition, x[3];
+      PetscReal X[CLOUD_MAX_NODES * 3] = {0}, N[CLOUD_MAX_NODES], dN[CLOUD_MAX_NODES * 3], condition, x[3];
       const int n = lattice_cloud(&random, dim, side, 1.0, 0.0, X);
       const PetscReal edge = X[0];
       for (int k = 0; k < dim; ++k) x[k] = trial ? random_real(&random, -1, 1) : edge;

@@ -29,6 +29,13 @@ typedef struct {
   char mesh[PETSC_MAX_PATH_LEN];
 } Bench;
 
+static inline PetscMPIInt ranks_of_world(void)
+{
+  PetscMPIInt ranks = 1;
+  (void)MPI_Comm_size(PETSC_COMM_WORLD, &ranks);
+  return ranks;
+}
+
 /* A failed check on one rank ends all: the others would wait for it in a collective call for
  * ever. */
 #define CHECK(condition, ...)                                         \

@@ -106,7 +106,8 @@ static void test_column(void **state)
   const PetscReal independent[] = {4.7e-3, 5.7e-4, 2.7e-4}, digit[] = {1e-4, 1e-5, 5e-6};
   (void)state;
   CHECK(settled_column(forms[0], "cell", 16, 0) > 0.05, "linear functions have learnt something");
-  for (int k = 0; k < 3; ++k) {
+  const int finest = ranks_of_world() > 1 ? 2 : 3; /* how the error falls is told by one rank */
+  for (int k = 0; k < finest; ++k) {
     CHECK_CLOSE(settled_column(forms[0], "gimp", n[k], 0), independent[k], digit[k]);
     for (int form = 0; form < (k < 2 ? 2 : 1); ++form)
       CHECK(settled_column(forms[form], "gimp", n[k], 0.01) < independent[k] + digit[k], "off in the %s form",

@@ -68,7 +68,8 @@ static void hit(const Hit *h)
   Model *m = bench_model(&b, PETSC_COMM_WORLD);
   PetscReal off = 0;
   Energies e;
-  for (PetscInt k = 0; m->time < 0.1; ++k) {
+  const PetscReal end = ranks_of_world() > 1 ? 0.06 : 0.1; /* what ranks spoil they spoil in any step */
+  for (PetscInt k = 0; m->time < end; ++k) {
     model_step(m, (k % 3 == 1 ? 0.4 : 1) * (h->step > 0 ? h->step : 5e-3));
     for (PetscInt d = 0; d < m->dim; ++d) {
       const PetscReal before = mass * wall.mass.velocity[d];

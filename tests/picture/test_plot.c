@@ -461,7 +461,7 @@ static void test_mistakes(void **state)
 {
   char folder[64], picture[PETSC_MAX_PATH_LEN], damaged[128];
   struct stat status;
-  PlotOptions options = {.run = folder, .up = 2};
+  PlotOptions options = {.run = folder, .width = 320, .height = 240, .up = 2};
   (void)state;
   TestFolder(folder);
   Refused(&options, "there is no state of a run");
@@ -497,7 +497,7 @@ static void test_mistakes(void **state)
 static void test_no_gnuplot(void **state)
 {
   char folder[64], *path = strdup(getenv("PATH"));
-  const PlotOptions options = {.run = folder, .up = 2};
+  const PlotOptions options = {.run = folder, .width = 320, .height = 240, .up = 2};
   (void)state;
   TestFolder(folder);
   WriteState(folder, 2, 0, 0);

@@ -4,7 +4,7 @@
 command -v gnuplot >/dev/null || { echo "skipped: there is no gnuplot"; exit 77; }
 block | sed '/^  \(low\|momentum\|turn\|kinetic\|elastic\|external\|floor\):/d; s/end: 0.4/end: 0.02/; s/^output:.*/output: {every: 0.01, grid: true}/' >block.yaml
 expect "run" 0 "$talus" run block.yaml --out good --quiet
-expect "good" 0 "$talus" plot good --grid --time last
+expect "good" 0 "$talus" plot good --grid --time last --size 320x240
 
 # damaged NAME FILE TEXT...: after the change that stands in `change` (of $1, the file) the answer has these texts.
 damaged() {
@@ -13,7 +13,7 @@ damaged() {
   rm -rf run && cp -r good run
   rm -rf run/pictures
   change "run/$file"
-  expect "$name" 2 "$talus" plot run --grid --time last
+  expect "$name" 2 "$talus" plot run --grid --time last --size 320x240
   says err.txt "$@"
   lacks err.txt "HDF5-DIAG" "infinite loop"
 }

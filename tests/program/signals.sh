@@ -65,5 +65,5 @@ else
   wait "$job"
   [ $? -eq 1 ] || fail "$name: exit code"
 fi
-expect "plot of what is there" 0 "$talus" plot run
+expect "plot of what is there" 0 "$talus" plot run --size 320x240
 finish

@@ -312,7 +312,7 @@ for ranks in 1 2 3; do
   expect "an interface changes, on $ranks" 0 on_ranks $ranks "$talus" run slide.yaml --out slide$ranks
   same_answer "$name" slide1 slide$ranks
 done
-expect "bodies of an interface by their names" 0 "$talus" plot slide3 --field body # each point tells its body without being asked
+expect "bodies of an interface by their names" 0 "$talus" plot slide3 --field body --time last --size 320x240 # each point tells its body without being asked
 rm -rf cut && cp -r slide1 cut && forget cut 13
 expect "an interface changes, resumed" 0 "$talus" run --resume cut --quiet
 same_bits "$name" slide1 cut
