@@ -9,7 +9,7 @@ python=/usr/bin/python3
 TALUS_VERSION=$("$talus" version | sed -n '1s/^talus //p')
 export TALUS_VERSION
 $python "$here/assemble.py" "$talus" "$source"
-$python -m sphinx -a -q -W --keep-going -j auto -b html -c "$here" -D html_extra_path="$source/_extra" \
+$python -m sphinx -a -q -W --keep-going -j 3 -b html -c "$here" -D html_extra_path="$source/_extra" \
   -d "$build/docs/doctrees" "$source" "$html"
 doxygen "$build/Doxyfile"
 $python "$here/links.py" "$html"
