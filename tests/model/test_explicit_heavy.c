@@ -1,8 +1,7 @@
 /* Walls with mass in explicit dynamics, against mechanics of rigid bodies: free flight, momentum and energy of
  * collisions, what implicit dynamics gives, rest under their own weight; on any number of ranks, after a resumed run. */
-#include "case_builder.h"
 #include "model/explicit/explicit.h"
-#include "model/state/state.h"
+#include "resumed.h"
 
 typedef struct {
   const char *basis, *transfer;
@@ -238,8 +237,6 @@ static void test_ranks(void **state)
 /* Put away in the middle of the impact and taken up again: the same bits. */
 static void test_resumed(void **state)
 {
-  char reason[256] = "";
-  Tables *tables;
   WallSpec wall;
   Bench b;
   (void)state;
@@ -247,28 +244,34 @@ static void test_resumed(void **state)
   Model *m = bench_model(&b, PETSC_COMM_WORLD), *again = bench_model(&b, PETSC_COMM_WORLD);
   for (int s = 0; s < 6; ++s) model_step(m, PETSC_MAX_REAL);
   CHECK(of_ball(m, "wall_force", 1) < 0, "there is no contact");
-  CALL(TablesCreate(&tables));
-  CALL(ModelToTables(m, tables));
-  CALL(ModelFromTables(again, tables, reason));
-  CHECK(!reason[0], "%s", reason);
-  CALL(TablesDestroy(&tables));
-  for (int s = 0; s < 4; ++s) {
-    model_step(m, PETSC_MAX_REAL);
-    model_step(again, PETSC_MAX_REAL);
-  }
-  for (int f = 0; f < POINT_N_REAL; ++f)
-    for (PetscInt i = 0; i < m->points->n * m->points->components[f]; ++i)
-      CHECK(m->points->real[f][i] == again->points->real[f][i], "field %d is off by %g", f,
-            (double)(m->points->real[f][i] - again->points->real[f][i]));
+  model_take_up(m, again);
+  models_go_on(m, again, 4);
   CHECK(!memcmp(&m->contact->rigid->now, &again->contact->rigid->now, sizeof m->contact->rigid->now), "balls differ");
   CALL(ModelDestroy(&m));
   CALL(ModelDestroy(&again));
+}
+
+/* A block that leaves the grid: nothing is left that would tell a substep, and the ball falls on. */
+static void test_left(void **state)
+{
+  Bench b;
+  WallSpec wall;
+  (void)state;
+  below_ball(&b, &hits[0], 0.125, &wall);
+  b.c.grid.outside = OUTSIDE_REMOVE;
+  b.body[0].velocity[1] = -300;
+  Model *m = bench_model(&b, PETSC_COMM_WORLD);
+  for (int s = 0; s < 4; ++s) model_step(m, PETSC_MAX_REAL);
+  CHECK(model_sum(m, "mass: total", 0) == 0, "some is left");
+  CHECK_CLOSE(of_ball(m, "wall_position", 1), 0.81 - 2 * m->time, 1e-12);
+  CALL(ModelDestroy(&m));
 }
 
 int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {cmocka_unit_test(test_hits),  cmocka_unit_test(test_as_implicit),
                                      cmocka_unit_test(test_flies), cmocka_unit_test(test_rests),
-                                     cmocka_unit_test(test_ranks), cmocka_unit_test(test_resumed)};
+                                     cmocka_unit_test(test_ranks), cmocka_unit_test(test_resumed),
+                                     cmocka_unit_test(test_left)};
   return run_model_group(argc, argv, tests, PETSC_STATIC_ARRAY_LENGTH(tests));
 }

@@ -52,7 +52,8 @@ void heavy_limit(const Model *m, Explicit *e)
 
 PetscReal heavy_substep(const Explicit *e)
 {
-  return e->critical / PetscSqrtReal(1 + 0.25 * e->swing * PetscSqr(e->critical));
+  if (e->swing == 0) return e->critical; /* without points it has no end */
+  return 1 / PetscSqrtReal(1 / PetscSqr(e->critical) + 0.25 * e->swing);
 }
 
 /* Forces and torques on each, and what their springs come to. */
