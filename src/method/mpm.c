@@ -5,9 +5,8 @@
 #include "method/transfer/transfer.h"
 #include "points/split.h"
 
-/* q_I = sum N m v, f_I = sum N m a (eqs. 2.6-2.9), and what the transfer makes of them. */
-/* Explicit dynamics gathers in its substeps: what nodes get here is only looked at, and solving for it took more time
- * than the substeps. */
+/* q_I = sum N m v, f_I = sum N m a (eqs. 2.6-2.9), and what the transfer makes of them. Explicit dynamics gathers
+ * in its substeps: what nodes get here is only looked at, and solving for it took more time than the substeps. */
 static PetscErrorCode Project(Discretisation *s)
 {
   const Transfer *transfer = s->c->analysis.type == ANALYSIS_EXPLICIT ? transfers[0] : s->transfer;

@@ -100,15 +100,15 @@ PetscErrorCode NearSee(const Model *model, Explicit *e);
 PetscErrorCode WallsPush(Model *model, Explicit *e);
 /* Material moves along walls: before the points do. */
 void walls_follow(Model *model, Explicit *e);
+/* Collective. What acted over the run's step. */
+PetscErrorCode WallsAccount(Model *model, Explicit *e);
+
 /* heavy.c. When a lap begins: what walls with mass ask of a substep; and the critical one with that. */
 void heavy_limit(const Model *model, Explicit *e);
 PetscReal heavy_substep(const Explicit *e);
 /* Collective. They gain velocity by what acts on them, and choose their way; then they go it. */
 PetscErrorCode HeavyMove(Model *model, Explicit *e);
 void heavy_go(Model *model);
-
-/* Collective. What acted over the run's step. */
-PetscErrorCode WallsAccount(Model *model, Explicit *e);
 
 /* nodes.c. Collective. Forces that know where points are. */
 PetscErrorCode ForcesBegin(Model *model, Explicit *e);

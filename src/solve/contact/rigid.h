@@ -83,8 +83,8 @@ PetscBool rigid_balances(const RigidWall *b, PetscReal tolerance, PetscReal digi
 /* The step is accepted: momentum at its end. */
 void rigid_end(RigidWall *b);
 PetscReal rigid_kinetic(const RigidWall *b);
-/* Without equations (explicit dynamics): its spin; by how much more a unit of momentum at the end of a lever (m) makes its
- * matter move there, at most, 1/kg. */
+/* Without equations (explicit dynamics): its spin; how fast a unit of momentum at the end of a lever (m) makes its
+ * matter there at most, 1/kg. */
 void rigid_spin(const RigidWall *b, PetscReal omega[3]);
 PetscReal rigid_softness(const RigidWall *b, PetscReal lever);
 /* What acts at t, `contact` too, acts so long; then it moves on by inertia; and is where that has brought it. */
