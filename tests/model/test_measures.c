@@ -51,6 +51,10 @@ static void test_surface_of_a_triangle(void **state)
       const MeasureSpec height = {.kind = "surface", .word = "height", .has_at = PETSC_TRUE, .at = x};
       CHECK_CLOSE(measure(m, &height, 0), heights[k] * (1 - x), heights[k] == 1 ? 5e-3 : 0.05);
     }
+    for (PetscReal high = 0.1; high < 0.45; high += 0.05) {
+      const MeasureSpec reach = {.kind = "surface", .word = "reach", .has_at = PETSC_TRUE, .at = high};
+      CHECK_CLOSE(measure(m, &reach, 0), 1 - high / heights[k], heights[k] == 1 ? 5e-3 : 0.1);
+    }
     CHECK_CLOSE(measure(m, &slope, 0), PetscAtanReal(heights[k]) * 180 / PETSC_PI, heights[k] == 1 ? 0.3 : 3);
     CALL(ModelDestroy(&m));
   }

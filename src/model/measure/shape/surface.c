@@ -59,10 +59,9 @@ static PetscReal height_at(const Profile *s, PetscReal x)
   return (1 - share) * s->height[i] + share * s->height[i + 1];
 }
 
-/* The farthest x at which the surface is still half a station spacing high. */
-static PetscReal front_of(const Profile *s)
+/* The farthest x at which the surface is still as high as the threshold. */
+static PetscReal reach_of(const Profile *s, PetscReal threshold)
 {
-  const PetscReal threshold = 0.5 * s->dx;
   for (PetscInt i = s->n - 1; i >= 0; --i) {
     if (s->height[i] < threshold) continue;
     if (i == s->n - 1) return s->x0 + (PetscReal)i * s->dx;
@@ -70,6 +69,8 @@ static PetscReal front_of(const Profile *s)
   }
   return s->x0;
 }
+
+static PetscReal front_of(const Profile *s) { return reach_of(s, 0.5 * s->dx); }
 
 /* Angle (deg, positive if it falls towards +x) of the line fitted by least squares to the surface
  * between 20 % and 80 % of the way from its highest station to the front. */
@@ -96,7 +97,7 @@ static PetscBool is_flat(const Profile *profile)
   return PETSC_TRUE;
 }
 
-enum { FRONT, HEIGHT, SLOPE };
+enum { FRONT, REACH, HEIGHT, SLOPE };
 
 /* nan where there is no body. */
 PetscErrorCode MeasureSurface(Model *m, const MeasureSpec *s, PetscInt index, PetscReal *value)
@@ -109,6 +110,7 @@ PetscErrorCode MeasureSurface(Model *m, const MeasureSpec *s, PetscInt index, Pe
   PetscCall(ProfileCreate(m, s, &profile));
   if (is_flat(&profile)) *value = NAN;
   else if (which == HEIGHT) *value = height_at(&profile, s->at);
+  else if (which == REACH) *value = reach_of(&profile, s->at);
   else *value = which == SLOPE ? slope_of(&profile) : front_of(&profile);
   PetscCall(PetscFree(profile.height));
   PetscFunctionReturn(0);
@@ -117,6 +119,8 @@ PetscErrorCode MeasureSurface(Model *m, const MeasureSpec *s, PetscInt index, Pe
 static const MeasureNumber *const words[] = {
   WORD("front", "farthest x at which the surface is still half a cell high, m", "m", .in = PETSC_TRUE,
        .value = MeasureSurface),
+  WORD("reach", "farthest x at which the surface is still `at` high, m: on every mesh the same question", "m",
+       .at = PETSC_TRUE, .in = PETSC_TRUE, .value = MeasureSurface, .which = REACH),
   WORD("height", "height of the material above x = `at`, m", "m", .at = PETSC_TRUE, .in = PETSC_TRUE,
        .value = MeasureSurface, .which = HEIGHT),
   WORD("slope",
