@@ -1,21 +1,39 @@
 #include "formulation/holding.h"
 #include "formulation/kernels/cloud_kernels.h"
 
-PetscErrorCode HoldingForces(const WeakFormInput *in, PetscInt dim, PetscReal *force)
+static inline PetscBool load(const WeakFormInput *in, PetscInt p, CloudWork *work)
 {
   const Support *w = in->support;
-  CloudWork *work;
-
-  PetscFunctionBeginUser;
-  PetscCall(PetscNew(&work));
-  for (PetscInt p = 0; p < w->n_groups; ++p) {
-    if (!(in->soft[p] > 0)) continue;
-    work->nn = support_nodes(w, p);
-    work->node = w->node + w->node_start[p];
-    work->soft = in->soft[p];
-    if (dim == 2) cloud_hold(2, in, work, force);
-    else cloud_hold(3, in, work, force);
-  }
-  PetscCall(PetscFree(work));
-  PetscFunctionReturn(0);
+  work->nn = support_nodes(w, p);
+  work->node = w->node + w->node_start[p];
+  work->soft = in->soft[p];
+  return work->soft > 0;
 }
+
+KERNEL void add_forces(const int dim, const WeakFormInput *in, PetscReal *force)
+{
+  CloudWork work;
+  for (PetscInt p = 0; p < in->support->n_groups; ++p)
+    if (load(in, p, &work)) cloud_hold(dim, in, &work, force);
+}
+
+void holding_forces(const WeakFormInput *in, PetscInt dim, PetscReal *force)
+{
+  if (dim == 2) add_forces(2, in, force);
+  else add_forces(3, in, force);
+}
+
+KERNEL PetscReal sum_work(const int dim, const WeakFormInput *in)
+{
+  CloudWork work;
+  CloudRow held[3];
+  PetscReal sum = 0;
+  for (PetscInt p = 0; p < in->support->n_groups; ++p) {
+    if (!load(in, p, &work)) continue;
+    cloud_held(dim, in, &work, held);
+    for (int d = 0; d < dim; ++d) sum += 0.5 * work.soft * hold_product(work.nn, held[d], held[d]);
+  }
+  return sum;
+}
+
+PetscReal holding_work(const WeakFormInput *in, PetscInt dim) { return dim == 2 ? sum_work(2, in) : sum_work(3, in); }

@@ -99,7 +99,7 @@ KERNEL void point_project(const int dim, const PetscBool hoop, const WeakFormInp
 static void hold_cut(const int dim, const WeakFormInput *in, PetscReal hold, const PetscInt *slot, const CloudWork *w,
                      WeakFormOutput *out)
 {
-  PetscReal part[4][CLOUD_MAX_NODES];
+  CloudRow part[4];
   const int n = free_parts(dim, dim, w, in->x, part);
   for (PetscInt I = 0; I < w->nn; ++I)
     for (PetscInt J = 0; J < w->nn; ++J) hold_pressure(dim, in, slot, w, I, J, hold * held_part(n, part, I, J), out);

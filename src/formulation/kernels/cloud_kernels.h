@@ -6,6 +6,9 @@
 #pragma once
 #include "formulation/kernels/displacement_kernels.h"
 
+/* A number for each node, with room for the rest of a register behind the last. */
+typedef PetscReal CloudRow[CLOUD_MAX_NODES + 4];
+
 /* What one point needs of its cloud. */
 typedef struct {
   PetscInt nn;
@@ -15,8 +18,8 @@ typedef struct {
   /* gradients at x_(n+1), as many rows as they have beside each other */
   PetscReal g[3 * CLOUD_MAX_NODES];
   PetscReal modulus[3][3][9];         /* of two rows: V0 (c_ajbl + delta_ab tau_jl) */
-  int n_free;                         /* of points that are held (soft): motions that nothing holds, */
-  PetscReal free[4][CLOUD_MAX_NODES]; /* as unit vectors over the nodes */
+  int n_free;       /* of points that are held (soft): motions that nothing holds, */
+  CloudRow free[4]; /* as unit vectors over the nodes */
 } CloudWork;
 
 KERNEL void cloud_increment(const int dim, const PetscBool hoop, const WeakFormInput *in, PetscInt p, PetscReal dF[9])
@@ -102,63 +105,77 @@ KERNEL void cloud_load(const WeakFormInput *in, PetscInt p, CloudWork *w)
 
 #define SAME 1e-12 /* share of a motion's square that is none */
 
-/* Takes from part n what it has in common with those before it; returns the square of what is left. */
-static inline PetscReal without_others(int n, PetscInt nn, PetscReal part[4][CLOUD_MAX_NODES])
+/* Sums over nodes go by registers: rows end with zeros. */
+KERNEL PetscReal hold_product(PetscInt nn, const PetscReal *a, const PetscReal *b)
 {
-  PetscReal square = 0;
-  for (int k = 0; k < n; ++k) {
-    PetscReal common = 0;
-    for (PetscInt I = 0; I < nn; ++I) common += part[k][I] * part[n][I];
-    for (PetscInt I = 0; I < nn; ++I) part[n][I] -= common * part[k][I];
-  }
-  for (PetscInt I = 0; I < nn; ++I) square += PetscSqr(part[n][I]);
-  return square;
+  Row4 sum = {0, 0, 0, 0};
+  for (PetscInt I = 0; I < nn; I += 4) sum += *(const Row4 *)(a + I) * *(const Row4 *)(b + I);
+  return (sum[0] + sum[1]) + (sum[2] + sum[3]);
+}
+
+/* a += s b */
+KERNEL void hold_add(PetscInt nn, PetscReal s, const PetscReal *b, PetscReal *a)
+{
+  for (PetscInt I = 0; I < nn; I += 4) *(Row4 *)(a + I) += s * *(const Row4 *)(b + I);
+}
+
+/* One component of what nodes have, or of where they are; returns the sum. */
+KERNEL PetscReal hold_gather(const int dim, int d, const CloudWork *w, const PetscReal *x, PetscReal *row)
+{
+  PetscReal sum = 0;
+  *(Row4 *)(row + w->nn) = (Row4){0, 0, 0, 0};
+  for (PetscInt I = 0; I < w->nn; ++I) sum += row[I] = x[w->node[I] * dim + d];
+  return sum;
 }
 
 /* Motions that nothing holds, as unit vectors over the nodes, across each other: constant, and on a
  * lattice linear along each axis. Returns how many. */
-static inline int free_parts(PetscInt axes, PetscInt dim, const CloudWork *w, const PetscReal *x,
-                             PetscReal part[4][CLOUD_MAX_NODES])
+KERNEL int free_parts(const int axes, const int dim, const CloudWork *w, const PetscReal *x, CloudRow *part)
 {
-  int n = 0;
-  for (PetscInt k = 0; k <= axes; ++k) {
-    PetscReal mean = 0, square = 0;
-    for (PetscInt I = 0; k && I < w->nn; ++I) mean += x[w->node[I] * dim + k - 1];
-    mean /= (PetscReal)w->nn;
-    for (PetscInt I = 0; I < w->nn; ++I) {
-      part[n][I] = k ? x[w->node[I] * dim + k - 1] - mean : 1;
-      square += PetscSqr(part[n][I]);
-    }
-    const PetscReal left = without_others(n, w->nn, part);
+  const PetscReal one = 1 / PetscSqrtReal((PetscReal)w->nn);
+  int n = 1;
+  *(Row4 *)(part[0] + w->nn) = (Row4){0, 0, 0, 0};
+  for (PetscInt I = 0; I < w->nn; ++I) part[0][I] = one;
+  for (int k = 0; k < axes; ++k) {
+    PetscReal *row = part[n];
+    const PetscReal mean = hold_gather(dim, k, w, x, row) * one;
+    hold_add(w->nn, -mean, part[0], row);
+    const PetscReal square = hold_product(w->nn, row, row);
+    for (int other = 1; other < n; ++other) hold_add(w->nn, -hold_product(w->nn, part[other], row), part[other], row);
+    const PetscReal left = hold_product(w->nn, row, row);
     if (left <= SAME * square) continue;
-    const PetscReal scale = 1 / PetscSqrtReal(left);
-    for (PetscInt I = 0; I < w->nn; ++I) part[n][I] *= scale;
+    const PetscReal scale = 1 / PetscSqrtReal(left) - 1;
+    hold_add(w->nn, scale, row, row);
     ++n;
   }
   return n;
 }
 
 /* What is left in I of the motion of J without these n parts. */
-static inline PetscReal held_part(int n, PetscReal part[4][CLOUD_MAX_NODES], PetscInt I, PetscInt J)
+static inline PetscReal held_part(int n, const CloudRow *part, PetscInt I, PetscInt J)
 {
   PetscReal s = I == J;
   for (int k = 0; k < n; ++k) s -= part[k][I] * part[k][J];
   return s;
 }
 
+/* What a point's nodes do beside the free parts of their motion, component by component: du_I - sum_k b_kI b_k . du. */
+KERNEL void cloud_held(const int dim, const WeakFormInput *in, CloudWork *w, CloudRow *held)
+{
+  w->n_free = free_parts(in->lattice ? dim : 0, dim, w, in->x, w->free);
+  for (int d = 0; d < dim; ++d) {
+    (void)hold_gather(dim, d, w, in->du, held[d]);
+    for (int k = 0; k < w->n_free; ++k)
+      hold_add(w->nn, -hold_product(w->nn, w->free[k], held[d]), w->free[k], held[d]);
+  }
+}
+
 /* Holds a point's nodes to the free parts of their motion: f_I += soft (du_I - sum_k b_kI b_k . du). What
  * that adds to the tangent stands on the diagonals of the blocks: soft (delta_IJ - sum_k b_kI b_kJ). */
 KERNEL void cloud_hold(const int dim, const WeakFormInput *in, CloudWork *w, PetscReal *force)
 {
-  PetscReal along[4][3] = {{0}};
-  w->n_free = free_parts(in->lattice ? dim : 0, dim, w, in->x, w->free);
-  for (int k = 0; k < w->n_free; ++k)
-    for (PetscInt I = 0; I < w->nn; ++I)
-      for (int d = 0; d < dim; ++d) along[k][d] += w->free[k][I] * in->du[w->node[I] * dim + d];
+  CloudRow held[3];
+  cloud_held(dim, in, w, held);
   for (PetscInt I = 0; I < w->nn; ++I)
-    for (int d = 0; d < dim; ++d) {
-      PetscReal held = in->du[w->node[I] * dim + d];
-      for (int k = 0; k < w->n_free; ++k) held -= w->free[k][I] * along[k][d];
-      force[w->node[I] * dim + d] += w->soft * held;
-    }
+    for (int d = 0; d < dim; ++d) force[w->node[I] * dim + d] += w->soft * held[d][I];
 }

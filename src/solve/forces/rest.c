@@ -87,7 +87,7 @@ static PetscErrorCode Hold(const NodalScene *scene, PetscReal *force)
     .support = scene->support, .soft = scene->soft, .du = scene->du, .x = scene->grid->x, .lattice = PETSC_TRUE};
 
   PetscFunctionBeginUser;
-  PetscCall(HoldingForces(&in, scene->grid->dim, force));
+  holding_forces(&in, scene->grid->dim, force);
   PetscCall(GridSumToOwners(scene->grid, scene->grid->dim, force));
   PetscFunctionReturn(0);
 }

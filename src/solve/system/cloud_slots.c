@@ -72,28 +72,29 @@ static PetscInt renew_in_place(System *s, const Support *w, PetscInt *place, Pet
   return g;
 }
 
-/* The groups behind them, whose slots move. */
+/* The groups behind them, whose slots move: all slots change over to the other array. */
 static PetscErrorCode RenewRest(System *s, const Support *w, PetscInt first, PetscInt place, PetscInt *missing)
 {
   CloudsBefore *b = &s->before;
-  PetscInt rest = 0, size = place;
+  PetscInt size = place;
 
   PetscFunctionBeginUser;
-  for (PetscInt g = first; g < b->n; ++g) rest += PetscSqr(b->start[g + 1] - b->start[g]);
   for (PetscInt g = first; g < w->n_groups; ++g) size += PetscSqr(support_nodes(w, g));
-  PetscCall(Reserve(rest, &b->n_spare, &b->spare));
-  PetscCall(PetscArraycpy(b->spare, s->slot + place, rest));
-  PetscCall(SystemReserveSlots(s, size));
-  const PetscInt *old = b->spare;
+  PetscCall(Reserve(size, &b->n_spare, &b->spare));
+  PetscCall(PetscArraycpy(b->spare, s->slot, place));
+  const PetscInt *old = s->slot + place;
   for (PetscInt g = first; g < w->n_groups; ++g) {
     const PetscInt nn = support_nodes(w, g), *node = w->node + w->node_start[g];
     const PetscInt before = g < b->n ? b->start[g + 1] - b->start[g] : -1;
     if (before == nn && same_nodes(nn, node, b->node + b->start[g]))
-      PetscCall(PetscArraycpy(s->slot + place, old, nn * nn));
-    else *missing += merge_slots(s, nn, node, s->slot + place);
+      PetscCall(PetscArraycpy(b->spare + place, old, nn * nn));
+    else *missing += merge_slots(s, nn, node, b->spare + place);
     place += nn * nn;
     old += before > 0 ? before * before : 0;
   }
+  PetscInt *slot = s->slot, n = s->n_slots;
+  s->slot = b->spare, s->n_slots = b->n_spare;
+  b->spare = slot, b->n_spare = n;
   PetscFunctionReturn(0);
 }
 
