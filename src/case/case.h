@@ -353,7 +353,7 @@ typedef struct {
   PetscReal smallest, largest; /* s, bounds of step control */
   /* most cells that a point may cross in a step that has grown; 0: any */
   PetscReal travel;
-  PetscReal courant;     /* explicit: share of the critical step that is taken */
+  PetscReal courant;     /* explicit: share of the critical step that is taken; 0: as much as `update` bears */
   ExplicitUpdate update; /* explicit */
   char *scheme;          /* of dynamics, by its name; NULL: Newmark's, with bossak Bossak's */
   PetscReal beta, gamma; /* Newmark */

@@ -122,7 +122,8 @@ static const SchemaEntry analysis_entries[] = {
     "courant", NUMBER, NULL,
     "explicit: share of the critical step that is taken; within `step`, which the history and measures see, there are "
     "as many as that needs",
-    .fallback = "0.6", .bounded = PETSC_TRUE, .min = 0, .min_open = PETSC_TRUE, .max = 1, AT(AnalysisSpec, courant)),
+    .note = "0.8; with `update: usl` 0.6", .bounded = PETSC_TRUE, .min = 0, .min_open = PETSC_TRUE, .max = 1,
+    AT(AnalysisSpec, courant)),
   KEY("update", WORD, NULL, "explicit: what strains the points", .words = update_words, .fallback = "musl",
       AT(AnalysisSpec, update)),
   KEY("scheme", TEXT, NULL, "time scheme of dynamics",
