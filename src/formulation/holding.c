@@ -31,7 +31,11 @@ KERNEL PetscReal sum_work(const int dim, const WeakFormInput *in)
   for (PetscInt p = 0; p < in->support->n_groups; ++p) {
     if (!load(in, p, &work)) continue;
     cloud_held(dim, in, &work, held);
-    for (int d = 0; d < dim; ++d) sum += 0.5 * work.soft * hold_product(work.nn, held[d], held[d]);
+    for (int d = 0; d < dim; ++d) {
+      PetscReal square;
+      hold_products(1, work.nn, held[d], held + d, &square);
+      sum += 0.5 * work.soft * square;
+    }
   }
   return sum;
 }

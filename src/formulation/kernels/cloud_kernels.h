@@ -17,9 +17,9 @@ typedef struct {
   PetscReal mass, inertia, lumping, soft; /* inertia: mass times c0 */
   /* gradients at x_(n+1), as many rows as they have beside each other */
   PetscReal g[3 * CLOUD_MAX_NODES];
-  PetscReal modulus[3][3][9];         /* of two rows: V0 (c_ajbl + delta_ab tau_jl) */
-  int n_free;       /* of points that are held (soft): motions that nothing holds, */
-  CloudRow free[4]; /* as unit vectors over the nodes */
+  PetscReal modulus[3][3][9]; /* of two rows: V0 (c_ajbl + delta_ab tau_jl) */
+  int n_free;                 /* of points that are held (soft): motions that nothing holds, */
+  CloudRow free[4];           /* as unit vectors over the nodes */
 } CloudWork;
 
 KERNEL void cloud_increment(const int dim, const PetscBool hoop, const WeakFormInput *in, PetscInt p, PetscReal dF[9])
@@ -105,48 +105,53 @@ KERNEL void cloud_load(const WeakFormInput *in, PetscInt p, CloudWork *w)
 
 #define SAME 1e-12 /* share of a motion's square that is none */
 
-/* Sums over nodes go by registers: rows end with zeros. */
-KERNEL PetscReal hold_product(PetscInt nn, const PetscReal *a, const PetscReal *b)
+/* One component of what nodes have, less `from`, in a row that ends with zeros. */
+KERNEL void hold_gather(const int dim, int d, const CloudWork *w, const PetscReal *x, PetscReal from, PetscReal *row)
 {
-  Row4 sum = {0, 0, 0, 0};
-  for (PetscInt I = 0; I < nn; I += 4) sum += *(const Row4 *)(a + I) * *(const Row4 *)(b + I);
-  return (sum[0] + sum[1]) + (sum[2] + sum[3]);
-}
-
-/* a += s b */
-KERNEL void hold_add(PetscInt nn, PetscReal s, const PetscReal *b, PetscReal *a)
-{
-  for (PetscInt I = 0; I < nn; I += 4) *(Row4 *)(a + I) += s * *(const Row4 *)(b + I);
-}
-
-/* One component of what nodes have, or of where they are; returns the sum. */
-KERNEL PetscReal hold_gather(const int dim, int d, const CloudWork *w, const PetscReal *x, PetscReal *row)
-{
-  PetscReal sum = 0;
   *(Row4 *)(row + w->nn) = (Row4){0, 0, 0, 0};
-  for (PetscInt I = 0; I < w->nn; ++I) sum += row[I] = x[w->node[I] * dim + d];
-  return sum;
+  for (PetscInt I = 0; I < w->nn; ++I) row[I] = x[w->node[I] * dim + d] - from;
+}
+
+/* Products of a row with n parts, by registers and all at once, so that no sum waits for another. */
+KERNEL void hold_products(const int n, PetscInt nn, const PetscReal *row, const CloudRow *part, PetscReal *product)
+{
+  Row4 sum[4] = {{0, 0, 0, 0}, {0, 0, 0, 0}, {0, 0, 0, 0}, {0, 0, 0, 0}};
+  for (PetscInt I = 0; I < nn; I += 4)
+    for (int k = 0; k < n; ++k) sum[k] += *(const Row4 *)(row + I) * *(const Row4 *)(part[k] + I);
+  for (int k = 0; k < n; ++k) product[k] = (sum[k][0] + sum[k][1]) + (sum[k][2] + sum[k][3]);
+}
+
+/* row = scale (row - what n parts have of it) */
+KERNEL void hold_without(const int n, PetscInt nn, PetscReal scale, const PetscReal *product, const CloudRow *part,
+                         PetscReal *row)
+{
+  for (PetscInt I = 0; I < nn; I += 4) {
+    Row4 left = *(const Row4 *)(row + I);
+    for (int k = 0; k < n; ++k) left -= product[k] * *(const Row4 *)(part[k] + I);
+    *(Row4 *)(row + I) = scale * left;
+  }
 }
 
 /* Motions that nothing holds, as unit vectors over the nodes, across each other: constant, and on a
- * lattice linear along each axis. Returns how many. */
+ * lattice linear along each axis. Returns how many; the other rows are zero. */
 KERNEL int free_parts(const int axes, const int dim, const CloudWork *w, const PetscReal *x, CloudRow *part)
 {
   const PetscReal one = 1 / PetscSqrtReal((PetscReal)w->nn);
   int n = 1;
-  *(Row4 *)(part[0] + w->nn) = (Row4){0, 0, 0, 0};
+  for (PetscInt I = 0; I <= w->nn; I += 4)
+    for (int k = 0; k <= axes; ++k) *(Row4 *)(part[k] + I) = (Row4){0, 0, 0, 0};
   for (PetscInt I = 0; I < w->nn; ++I) part[0][I] = one;
   for (int k = 0; k < axes; ++k) {
-    PetscReal *row = part[n];
-    const PetscReal mean = hold_gather(dim, k, w, x, row) * one;
-    hold_add(w->nn, -mean, part[0], row);
-    const PetscReal square = hold_product(w->nn, row, row);
-    for (int other = 1; other < n; ++other) hold_add(w->nn, -hold_product(w->nn, part[other], row), part[other], row);
-    const PetscReal left = hold_product(w->nn, row, row);
-    if (left <= SAME * square) continue;
-    const PetscReal scale = 1 / PetscSqrtReal(left) - 1;
-    hold_add(w->nn, scale, row, row);
-    ++n;
+    PetscReal *row = part[n], product[4];
+    hold_gather(dim, k, w, x, x[w->node[0] * dim + k], row);
+    hold_products(axes + 1, w->nn, row, part, product); /* that with itself, too */
+    const PetscReal square = product[n] - PetscSqr(product[0]);
+    PetscReal left = square;
+    for (int other = 1; other < n; ++other) left -= PetscSqr(product[other]);
+    const PetscBool is_new = left > SAME * square;
+    for (int other = n; other <= axes; ++other) product[other] = 0;
+    hold_without(axes + 1, w->nn, is_new ? 1 / PetscSqrtReal(left) : 0, product, part, row);
+    n += is_new;
   }
   return n;
 }
@@ -159,15 +164,22 @@ static inline PetscReal held_part(int n, const CloudRow *part, PetscInt I, Petsc
   return s;
 }
 
+KERNEL void held_beside(const int axes, const int dim, const WeakFormInput *in, CloudWork *w, CloudRow *held)
+{
+  w->n_free = free_parts(axes, dim, w, in->x, w->free);
+  for (int d = 0; d < dim; ++d) {
+    PetscReal product[4];
+    hold_gather(dim, d, w, in->du, 0, held[d]);
+    hold_products(axes + 1, w->nn, held[d], w->free, product);
+    hold_without(axes + 1, w->nn, 1, product, w->free, held[d]);
+  }
+}
+
 /* What a point's nodes do beside the free parts of their motion, component by component: du_I - sum_k b_kI b_k . du. */
 KERNEL void cloud_held(const int dim, const WeakFormInput *in, CloudWork *w, CloudRow *held)
 {
-  w->n_free = free_parts(in->lattice ? dim : 0, dim, w, in->x, w->free);
-  for (int d = 0; d < dim; ++d) {
-    (void)hold_gather(dim, d, w, in->du, held[d]);
-    for (int k = 0; k < w->n_free; ++k)
-      hold_add(w->nn, -hold_product(w->nn, w->free[k], held[d]), w->free[k], held[d]);
-  }
+  if (in->lattice) held_beside(dim, dim, in, w, held);
+  else held_beside(0, dim, in, w, held);
 }
 
 /* Holds a point's nodes to the free parts of their motion: f_I += soft (du_I - sum_k b_kI b_k . du). What
