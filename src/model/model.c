@@ -330,11 +330,20 @@ static PetscErrorCode CreateBodies(Model *m, Diag *diag)
   PetscFunctionReturn(0);
 }
 
+/* Layers of cells beyond a rank's own whose nodes it must know. */
+static PetscInt layers_beyond(const Model *m)
+{
+  const Case *c = m->c;
+  const PetscInt lap = c->analysis.type == ANALYSIS_EXPLICIT; /* points cross cells before they change ranks */
+  /* coarse nodes beside a node (solve/levels) */
+  const PetscInt levels = case_is_static(&c->analysis) && !m->method->clouds && !m->formulation->pressure;
+  return PetscMax(basis_find(c->basis.kind)->halo, levels) + lap + (c->n_interfaces ? CONTACT_HALO : 0);
+}
+
 /* Everything after the parts that stand alone; each may find mistakes that make the next
  * meaningless. */
 static PetscErrorCode Build(Model *m, Diag *diag)
 {
-  const Case *c = m->c;
   PetscInt errors;
 
   PetscFunctionBeginUser;
@@ -350,8 +359,7 @@ static PetscErrorCode Build(Model *m, Diag *diag)
   raised_start(m, diag);
   PetscCall(GridCreate(m->comm, m->c, cell_weight, (void *)m->c, diag, &m->grid));
   if (!m->grid) PetscFunctionReturn(0);
-  const PetscInt lap = c->analysis.type == ANALYSIS_EXPLICIT; /* points cross cells before they change ranks */
-  PetscCall(GridWiden(&m->grid, basis_find(c->basis.kind)->halo + lap + (c->n_interfaces ? CONTACT_HALO : 0)));
+  PetscCall(GridWiden(&m->grid, layers_beyond(m)));
   PetscCall(CreateBodies(m, diag));
   raised_advise(m, diag);
   PetscCall(DiagReduce(m->comm, diag, &errors));

@@ -1,6 +1,7 @@
 /* Phase (b), the solve of a step: Newton from one first guess after another, on shorter and
  * shorter steps; and everything as it was where that does not help. */
 #include "model/model_private.h"
+#include "solve/levels/coarse_box.h"
 
 void model_times(const Model *m, PetscReal seconds[PHASE_N])
 {
@@ -115,7 +116,7 @@ static LinearProblem linear_problem(const Model *m, PetscReal dt)
     .dim = m->dim,
     .unknowns = m->system->n_active_global * m->system->block,
     .symmetric = m->symmetric,
-    .wide = m->space->basis->halo > 0,
+    .levels = coarse_box_fits(m->grid),
     .mixed = m->formulation->pressure,
     .undetermined = m->c->mixed.stabilisation == 0,
     .multipliers = m->n_constraints > 0,

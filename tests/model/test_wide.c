@@ -1,5 +1,5 @@
-/* What is done for functions that reach beyond their cell (gimp, bspline): two levels of the box in statics; half of
- * a symmetric tangent, whose rows of empty nodes are left alone. */
+/* Two levels of the box in statics; and what is done for functions that reach beyond their cell (gimp, bspline): half
+ * of a symmetric tangent, whose rows of empty nodes are left alone. */
 #include "case_builder.h"
 #include "model/model_private.h"
 #include "solve/levels/two_levels.h"
@@ -7,24 +7,24 @@
 #include "solve/system/rigid_motions.h"
 
 /* A beam that its weight bends, by less than makes its tangent indefinite on the way. */
-static Model *beam(Bench *b, const char *basis, PetscReal size, PetscReal grading, PetscReal follow,
+static Model *beam(Bench *b, int dim, const char *basis, PetscReal size, PetscReal grading, PetscReal follow,
                    LinearChoice linear)
 {
-  bench_init(b, "mpm", CELL_HEXAHEDRON, 0);
+  bench_init(b, "mpm", dim == 2 ? CELL_QUADRILATERAL : CELL_HEXAHEDRON, 0);
   bench_grid(b, (PetscReal[]){0, -2, -size}, (PetscReal[]){4 + size, 1 + size, 1 + 2 * size}, size);
   bench_box(b, 0, (PetscReal[]){0, 0, 0}, (PetscReal[]){4, 1, 1});
   b->c.grid.grading[0] = grading;
-  b->body[0].points_per_cell = 8;
+  b->body[0].points_per_cell = dim == 2 ? 4 : 8;
   b->c.basis.kind = basis;
   b->c.linear = linear;
   b->c.stabilisation.follow = follow;
   b->c.gravity[1] = -0.3;
-  bench_motion(b, 0, 0, MOTION_FIXED, 7);
+  bench_motion(b, 0, 0, MOTION_FIXED, dim == 2 ? 3 : 7);
   return bench_model(b, PETSC_COMM_WORLD);
 }
 
 /* Rigid motions of the coarse nodes become those of all nodes: odd and even numbers of cells, graded ones. */
-static void rigid(PetscReal size, PetscReal grading)
+static void rigid(int dim, const char *basis, PetscReal size, PetscReal grading)
 {
   MatNullSpace coarse, fine;
   const Vec *motion;
@@ -33,14 +33,14 @@ static void rigid(PetscReal size, PetscReal grading)
   Mat P;
   Vec v;
   Bench b;
-  Model *m = beam(&b, "gimp", size, grading, 0.02, LINEAR_ITERATIVE);
-  model_step(m, 1);
-  CALL(PetscCalloc1(m->grid->n_nodes * 3, &none));
+  Model *m = beam(&b, dim, basis, size, grading, 0.02, LINEAR_ITERATIVE);
   CHECK(coarse_box_fits(m->grid), "no coarse nodes");
+  model_step(m, 1);
+  CALL(PetscCalloc1(m->grid->n_nodes * dim, &none));
   CALL(CoarseBoxInterpolation(m->system, m->grid, none, &P, &coarse));
   CALL(RigidMotions(m->system, m->grid, &fine));
   CALL(MatNullSpaceGetVecs(coarse, NULL, &n, &motion));
-  assert_int_equal(n, 6);
+  assert_int_equal(n, dim == 2 ? 3 : 6);
   CALL(MatCreateVecs(P, NULL, &v));
   for (PetscInt k = 0; k < n; ++k) {
     PetscReal all, rest;
@@ -62,9 +62,12 @@ static void rigid(PetscReal size, PetscReal grading)
 static void test_rigid(void **state)
 {
   (void)state;
-  rigid(0.25, 1);
-  rigid(0.2, 1);
-  rigid(0.25, 1.5);
+  for (int dim = 2; dim <= 3; ++dim) {
+    rigid(dim, "gimp", 0.25, 1);
+    rigid(dim, "gimp", 0.2, 1);
+    rigid(dim, "cell", 0.25, 1.5);
+  }
+  rigid(3, "gimp", 0.25, 1.5);
 }
 
 /* The preconditioner of the last solve is symmetric and positive, which conjugate gradients want; numbers of its
@@ -98,19 +101,19 @@ static void check_symmetric(Model *m)
 
 /* Two levels give the answer of a factorisation with as many iterations of Newton's method, and with few of their
  * own, however fine the cells. */
-static void levels(const char *basis, PetscReal size, PetscReal follow, PetscInt most)
+static void levels(int dim, const char *basis, PetscReal size, PetscReal follow, PetscInt most)
 {
   PetscReal own[2] = {0, 0}, all[2];
   StepReport r[2];
   Model *m[2];
   Bench b[2];
   for (int k = 0; k < 2; ++k) {
-    m[k] = beam(&b[k], basis, size, 1, follow, k ? LINEAR_ITERATIVE : LINEAR_DIRECT);
+    m[k] = beam(&b[k], dim, basis, size, 1, follow, k ? LINEAR_ITERATIVE : LINEAR_DIRECT);
     r[k] = model_step(m[k], 1);
     CHECK(r[k].cuts == 0, "the step was halved");
   }
   CHECK(strstr(newton_linear_name(m[1]->newton), "two levels"), "%s", newton_linear_name(m[1]->newton));
-  for (PetscInt p = 0; p < m[0]->points->n * 3; ++p) {
+  for (PetscInt p = 0; p < m[0]->points->n * dim; ++p) {
     own[0] = PetscMax(own[0], PetscAbsReal(m[0]->points->real[POINT_U][p] - m[1]->points->real[POINT_U][p]));
     own[1] = PetscMax(own[1], PetscAbsReal(m[0]->points->real[POINT_U][p]));
   }
@@ -131,10 +134,14 @@ static void levels(const char *basis, PetscReal size, PetscReal follow, PetscInt
 static void test_levels(void **state)
 {
   (void)state;
-  levels("gimp", 0.25, 0.02, 14);
-  levels("gimp", 0.2, 0.02, 14);
-  levels("bspline", 0.25, 0, 18);
-  levels("bspline", 0.25, 0.02, 25); /* outer nodes follow those inside along lines that no coarse node knows */
+  levels(3, "gimp", 0.25, 0.02, 14);
+  levels(3, "gimp", 0.2, 0.02, 14);
+  levels(3, "cell", 0.25, 0.02, 14);
+  levels(2, "cell", 0.0625, 0.02, 14);
+  levels(2, "cell", 0.05, 0.02, 14);
+  levels(2, "gimp", 0.0625, 0.02, 14);
+  levels(3, "bspline", 0.25, 0, 18);
+  levels(3, "bspline", 0.25, 0.02, 25); /* outer nodes follow those inside along lines that no coarse node knows */
 }
 
 /* Numbers from the diagonals on, of the step to come at rest; half: as Newton's method has them gathered. */

@@ -71,7 +71,7 @@ says err.txt "the linear iteration failed, and a factorisation needs more memory
 expect "a factorisation that was asked for" 0 env $no_room --set linear=direct --force
 says small/log.txt "linear = direct"
 expect "iterates without room" 0 env TALUS_MEMORY=1e-6 "$talus" run case.yaml --out small --quiet --force
-says small/log.txt "linear = conjugate gradients, algebraic multigrid"
+says small/log.txt "linear = conjugate gradients, two levels of the box"
 block >block.yaml
 expect "an iteration that gets nowhere gives way to a factorisation" 0 timeout 60 "$talus" run block.yaml --set petsc.ksp_atol=1e300 --set analysis.end=0.01 --out block --quiet
 says block/log.txt "halvings = 0"

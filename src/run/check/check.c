@@ -2,6 +2,7 @@
 #include "model/explicit/critical.h"
 #include "run/check/check_private.h"
 #include "run/stages/initial.h"
+#include "solve/levels/coarse_box.h"
 #include <stdarg.h>
 
 /* What is known of each body over all ranks. */
@@ -148,7 +149,7 @@ static PetscReal solver_memory(const Model *m, PetscInt unknowns, PetscReal matr
                                  .dim = m->dim,
                                  .unknowns = unknowns,
                                  .symmetric = m->symmetric,
-                                 .wide = m->space->basis->halo > 0,
+                                 .levels = coarse_box_fits(m->grid),
                                  .mixed = m->formulation->pressure,
                                  .memory = m->machine_memory};
   if (m->scheme->inertia) return 0;

@@ -27,7 +27,7 @@ static Parents parents_of(const GridBox *box, PetscInt node)
   const PetscInt nx = owned.hi[0] - owned.lo[0], ny = owned.hi[1] - owned.lo[1];
   const Beside x = lines_beside(box, 0, owned.lo[0] + node % nx),
                y = lines_beside(box, 1, owned.lo[1] + node / nx % ny),
-               z = lines_beside(box, 2, owned.lo[2] + node / nx / ny);
+               z = lines_beside(box, 2, box->dim == 3 ? owned.lo[2] + node / nx / ny : 0);
   Parents p = {.n = 0};
   for (PetscInt k = 0; k < z.n; ++k)
     for (PetscInt j = 0; j < y.n; ++j)
@@ -41,7 +41,14 @@ static Parents parents_of(const GridBox *box, PetscInt node)
 PetscBool coarse_box_fits(const Grid *grid)
 {
   const GridBox *box = grid->box;
-  return box && grid->dim == 3 && grid->n_fields == 1 && !box_has_centres(box) && (box->size == 1 || box->halo > 0);
+  return box && grid->n_fields == 1 && !box_has_centres(box) && (box->size == 1 || box->halo > 0);
+}
+
+static PetscBool all_held(PetscInt dim, const unsigned char *held)
+{
+  for (PetscInt d = 0; d < dim; ++d)
+    if (!held[d]) return PETSC_FALSE;
+  return PETSC_TRUE;
 }
 
 /* Global numbers of the coarse nodes (n_nodes), -1: not needed; how many this rank owns. */
@@ -52,9 +59,9 @@ static PetscErrorCode NumberCoarse(const System *s, const Grid *grid, const unsi
 
   PetscFunctionBeginUser;
   for (PetscInt a = 0; a < s->n_active; ++a) {
-    const unsigned char *held = fixed + s->active[a] * 3;
     const Parents p = parents_of(grid->box, s->active[a]);
-    for (PetscInt i = 0; i < p.n && !(held[0] && held[1] && held[2]); ++i) number[p.node[i]] = 1;
+    const PetscBool still = all_held(s->dim, fixed + s->active[a] * s->dim);
+    for (PetscInt i = 0; i < p.n && !still; ++i) number[p.node[i]] = 1;
   }
   PetscCall(GridSumToOwners(grid, 1, number));
   for (PetscInt i = 0; i < grid->n_owned; ++i) k += number[i] > 0;
@@ -68,16 +75,17 @@ static PetscErrorCode NumberCoarse(const System *s, const Grid *grid, const unsi
 static PetscErrorCode CoarseMotions(MPI_Comm comm, const Grid *grid, const PetscReal *number, PetscInt n,
                                     MatNullSpace *motions)
 {
+  const PetscInt dim = grid->dim;
   Vec places;
   PetscReal *v;
 
   PetscFunctionBeginUser;
-  PetscCall(VecCreateMPI(comm, 3 * n, PETSC_DETERMINE, &places));
-  PetscCall(VecSetBlockSize(places, 3));
+  PetscCall(VecCreateMPI(comm, dim * n, PETSC_DETERMINE, &places));
+  PetscCall(VecSetBlockSize(places, dim));
   PetscCall(VecGetArrayWrite(places, &v));
   for (PetscInt i = 0; i < grid->n_owned; ++i)
-    for (PetscInt d = 0; d < 3 && number[i] >= 0; ++d) *v++ = grid->x[i * 3 + d];
-  v -= 3 * n;
+    for (PetscInt d = 0; d < dim && number[i] >= 0; ++d) *v++ = grid->x[i * dim + d];
+  v -= dim * n;
   PetscCall(VecRestoreArrayWrite(places, &v));
   PetscCall(MatNullSpaceCreateRigidBody(places, motions));
   PetscCall(VecDestroy(&places));
@@ -90,17 +98,18 @@ static PetscErrorCode FillRows(const System *s, PetscInt a, const Parents *p, co
                                const PetscReal *number, PetscInt first, Mat matrix)
 {
   const PetscReal *w = s->frames ? frame_of(s->frames, s->active[a]) : NULL;
+  const PetscInt dim = s->dim;
 
   PetscFunctionBeginUser;
   for (PetscInt i = 0; i < p->n; ++i) {
     if (number[p->node[i]] < 0) continue;
-    for (PetscInt b = 0; b < 3; ++b) {
+    for (PetscInt b = 0; b < dim; ++b) {
       PetscReal v[3] = {0, 0, 0};
-      const PetscInt column = 3 * (PetscInt)number[p->node[i]] + b;
+      const PetscInt column = dim * (PetscInt)number[p->node[i]] + b;
       v[b] = p->weight[i];
-      if (w) frame_turn(3, w, v);
-      for (PetscInt d = 0; d < 3; ++d)
-        if (d == b || w) PetscCall(MatSetValue(matrix, first + 3 * a + d, column, held[d] ? 0 : v[d], INSERT_VALUES));
+      if (w) frame_turn(dim, w, v);
+      for (PetscInt d = 0; d < dim; ++d)
+        if (d == b || w) PetscCall(MatSetValue(matrix, first + dim * a + d, column, held[d] ? 0 : v[d], INSERT_VALUES));
     }
   }
   PetscFunctionReturn(0);
@@ -109,18 +118,19 @@ static PetscErrorCode FillRows(const System *s, PetscInt a, const Parents *p, co
 PetscErrorCode CoarseBoxInterpolation(const System *s, const Grid *grid, const unsigned char *fixed, Mat *interpolation,
                                       MatNullSpace *motions)
 {
+  const PetscInt dim = s->dim, most = dim * (1 << dim); /* entries of a row, where a frame turns */
   PetscReal *number;
   PetscInt n, first;
 
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc1(grid->n_nodes, &number));
   PetscCall(NumberCoarse(s, grid, fixed, number, &n));
-  PetscCall(
-    MatCreateAIJ(s->comm, 3 * s->n_active, 3 * n, PETSC_DETERMINE, PETSC_DETERMINE, 24, NULL, 24, NULL, interpolation));
+  PetscCall(MatCreateAIJ(s->comm, dim * s->n_active, dim * n, PETSC_DETERMINE, PETSC_DETERMINE, most, NULL, most, NULL,
+                         interpolation));
   PetscCall(MatGetOwnershipRange(*interpolation, &first, NULL));
   for (PetscInt a = 0; a < s->n_active; ++a) {
     const Parents p = parents_of(grid->box, s->active[a]);
-    PetscCall(FillRows(s, a, &p, fixed + 3 * s->active[a], number, first, *interpolation));
+    PetscCall(FillRows(s, a, &p, fixed + dim * s->active[a], number, first, *interpolation));
   }
   PetscCall(MatAssemblyBegin(*interpolation, MAT_FINAL_ASSEMBLY));
   PetscCall(MatAssemblyEnd(*interpolation, MAT_FINAL_ASSEMBLY));

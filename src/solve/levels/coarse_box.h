@@ -4,7 +4,7 @@
 #include "solve/system/system.h"
 
 /* Collective. Interpolation from displacements of the coarse nodes, along the axes, to the unknowns of a
- * system in space: linear along each axis, and nothing where something is prescribed (fixed, n_nodes x
+ * system: linear along each axis, and nothing where something is prescribed (fixed, n_nodes x
  * dim). Coarse nodes that no unknown needs are left out. motions: rigid ones of the coarse nodes. */
 PetscErrorCode CoarseBoxInterpolation(const System *system, const Grid *grid, const unsigned char *fixed,
                                       Mat *interpolation, MatNullSpace *motions);

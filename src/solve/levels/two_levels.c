@@ -15,32 +15,54 @@ typedef struct {
   PetscBool symmetric;
   Blocks *blocks;
   float *singles;
-  PetscReal *inverse; /* of each row's scale */
+  PetscReal *inverse;  /* of each row's scale */
+  unsigned char *held; /* fixed as it was when the interpolation was made */
   Mat interpolation, coarse;
+  MatNullSpace motions;
   KSP solver;
   Vec fine, rest, correction; /* of the unknowns; of the coarse ones */
 } TwoLevels;
 
-static PetscErrorCode Clear(TwoLevels *t)
+/* What stands as long as the same unknowns are prescribed. */
+static PetscErrorCode ClearCoarse(TwoLevels *t)
 {
   PetscFunctionBeginUser;
-  PetscCall(BlocksDestroy(&t->blocks));
-  PetscCall(PetscFree(t->singles));
-  PetscCall(PetscFree(t->inverse));
+  PetscCall(PetscFree(t->held));
   PetscCall(MatDestroy(&t->interpolation));
+  PetscCall(MatNullSpaceDestroy(&t->motions));
   PetscCall(MatDestroy(&t->coarse));
-  PetscCall(KSPDestroy(&t->solver));
   PetscCall(VecDestroy(&t->fine));
   PetscCall(VecDestroy(&t->rest));
   PetscCall(VecDestroy(&t->correction));
   PetscFunctionReturn(0);
 }
 
+/* What belongs to one tangent. */
+static PetscErrorCode ClearFine(TwoLevels *t)
+{
+  PetscFunctionBeginUser;
+  PetscCall(BlocksDestroy(&t->blocks));
+  PetscCall(PetscFree(t->singles));
+  PetscCall(PetscFree(t->inverse));
+  PetscCall(KSPDestroy(&t->solver));
+  PetscFunctionReturn(0);
+}
+
+static void invert(PetscInt dim, const float *S, PetscReal *inverse)
+{
+  PetscReal full[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1}, all[9];
+  for (PetscInt i = 0; i < dim; ++i)
+    for (PetscInt j = 0; j < dim; ++j) full[3 * i + j] = (PetscReal)S[i * dim + j];
+  (void)tensor_inverse(full, all);
+  for (PetscInt i = 0; i < dim; ++i)
+    for (PetscInt j = 0; j < dim; ++j) inverse[i * dim + j] = all[3 * i + j];
+}
+
 /* The tangent as it is now, cut and closed, in blocks. */
 static PetscErrorCode FillBlocks(TwoLevels *t)
 {
   System s = *t->system;
-  const PetscInt n = s.row_start[s.n_rows] * 9;
+  const PetscInt dim = s.dim, size = dim * dim, n = s.row_start[s.n_rows] * size;
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(n, &t->singles));
@@ -49,12 +71,9 @@ static PetscErrorCode FillBlocks(TwoLevels *t)
   PetscCall(BlocksCreate(&s, t->symmetric, &t->blocks));
   PetscCall(BlocksFill(t->blocks, &s));
   PetscCall(PetscFree(t->singles));
-  PetscCall(PetscMalloc1(9 * t->blocks->n, &t->inverse));
-  for (PetscInt r = 0; r < t->blocks->n && !t->blocks->singular; ++r) {
-    PetscReal S[9];
-    for (int i = 0; i < 9; ++i) S[i] = (PetscReal)t->blocks->scale[9 * r + i];
-    (void)tensor_inverse(S, t->inverse + 9 * r);
-  }
+  PetscCall(PetscMalloc1(size * t->blocks->n, &t->inverse));
+  for (PetscInt r = 0; r < t->blocks->n && !t->blocks->singular; ++r)
+    invert(dim, t->blocks->scale + size * r, t->inverse + size * r);
   PetscFunctionReturn(0);
 }
 
@@ -108,72 +127,96 @@ static PetscErrorCode CreateSolver(TwoLevels *t, PC outer)
   PetscFunctionReturn(0);
 }
 
+/* Is what is prescribed the same as before, and are the axes of its nodes (frames)? Collective. */
+static PetscErrorCode StillHolds(const TwoLevels *t, PetscBool *holds)
+{
+  const PetscInt n = t->grid->n_nodes * t->system->dim;
+  PetscBool own = (PetscBool)(t->interpolation && !t->system->frames);
+
+  PetscFunctionBeginUser;
+  if (own && n) PetscCall(PetscMemcmp(t->held, t->fixed, (size_t)n, &own));
+  PetscCall(MPIU_Allreduce(&own, holds, 1, MPIU_BOOL, MPI_LAND, t->system->comm));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode CreateCoarse(TwoLevels *t)
+{
+  const PetscInt n = t->grid->n_nodes * t->system->dim;
+
+  PetscFunctionBeginUser;
+  PetscCall(ClearCoarse(t));
+  PetscCall(PetscMalloc1(n, &t->held));
+  PetscCall(PetscArraycpy(t->held, t->fixed, n));
+  PetscCall(CoarseBoxInterpolation(t->system, t->grid, t->fixed, &t->interpolation, &t->motions));
+  PetscCall(MatCreateVecs(t->interpolation, &t->rest, &t->fine));
+  PetscCall(VecDuplicate(t->rest, &t->correction));
+  PetscFunctionReturn(0);
+}
+
 static PetscErrorCode SetUp(PC pc)
 {
-  MatNullSpace motions;
+  PetscBool holds;
   TwoLevels *t;
   Mat A;
 
   PetscFunctionBeginUser;
   PetscCall(PCShellGetContext(pc, &t));
   PetscCall(PCGetOperators(pc, NULL, &A));
-  PetscCall(Clear(t));
+  PetscCall(ClearFine(t));
   PetscCall(FillBlocks(t));
   if (t->blocks->singular) PetscCall(PCSetFailedReason(pc, PC_SUBPC_ERROR));
   if (t->blocks->singular) PetscFunctionReturn(0);
-  PetscCall(CoarseBoxInterpolation(t->system, t->grid, t->fixed, &t->interpolation, &motions));
-  PetscCall(MatPtAP(A, t->interpolation, MAT_INITIAL_MATRIX, 1, &t->coarse));
-  PetscCall(MatSetBlockSize(t->coarse, 3));
+  PetscCall(StillHolds(t, &holds));
+  if (!holds) PetscCall(CreateCoarse(t));
+  PetscCall(MatPtAP(A, t->interpolation, t->coarse ? MAT_REUSE_MATRIX : MAT_INITIAL_MATRIX, 1, &t->coarse));
+  PetscCall(MatSetBlockSize(t->coarse, t->system->dim));
   PetscCall(CloseCoarse(t->coarse));
   if (t->symmetric) PetscCall(MatSetOption(t->coarse, MAT_SYMMETRIC, PETSC_TRUE));
-  PetscCall(MatSetNearNullSpace(t->coarse, motions));
-  PetscCall(MatNullSpaceDestroy(&motions));
-  PetscCall(MatCreateVecs(t->interpolation, &t->rest, &t->fine));
-  PetscCall(VecDuplicate(t->rest, &t->correction));
+  PetscCall(MatSetNearNullSpace(t->coarse, t->motions));
   PetscCall(CreateSolver(t, pc));
   PetscFunctionReturn(0);
 }
 
 /* r = -S^-1 (U + O) x: what a sweep forward from nothing leaves. */
-static PetscErrorCode LeftBySweep(const TwoLevels *t, const float *x, PetscReal *r)
+KERNEL void left_by_sweep(const int dim, const TwoLevels *t, const float *x, PetscReal *r)
 {
   const Blocks *m = t->blocks;
   PetscInt outer = 0;
-
-  PetscFunctionBeginUser;
   for (PetscInt k = 0; k < m->n; ++k) {
-    Lanes v = row_add(3, &m->upper, k, x, (Lanes){0, 0, 0, 0});
-    if (outer < m->n_outer && m->outer_row[outer] == k) v = row_add(3, &m->outer, outer++, x, v);
-    const PetscReal *S = t->inverse + 9 * k;
-    for (int i = 0; i < 3; ++i)
-      r[3 * k + i] = -(S[3 * i] * (PetscReal)v[0] + S[3 * i + 1] * (PetscReal)v[1] + S[3 * i + 2] * (PetscReal)v[2]);
+    Lanes v = row_add(dim, &m->upper, k, x, (Lanes){0, 0, 0, 0});
+    if (outer < m->n_outer && m->outer_row[outer] == k) v = row_add(dim, &m->outer, outer++, x, v);
+    const PetscReal *S = t->inverse + dim * dim * k;
+    for (int i = 0; i < dim; ++i) {
+      PetscReal sum = 0;
+      for (int j = 0; j < dim; ++j) sum -= S[dim * i + j] * (PetscReal)v[j];
+      r[dim * k + i] = sum;
+    }
   }
-  PetscFunctionReturn(0);
 }
 
 /* x += T^-1 e */
-static void add_correction(const TwoLevels *t, const PetscReal *e, float *x)
+KERNEL void add_correction(const int dim, const TwoLevels *t, const PetscReal *e, float *x)
 {
   for (PetscInt k = 0; k < t->blocks->n; ++k)
-    for (int i = 0; i < 3; ++i) {
-      PetscReal sum = t->symmetric ? 0 : e[3 * k + i];
-      for (int j = 0; t->symmetric && j < 3; ++j) sum += t->inverse[9 * k + 3 * j + i] * e[3 * k + j];
-      x[4 * k + i] += (float)sum;
+    for (int i = 0; i < dim; ++i) {
+      PetscReal sum = t->symmetric ? 0 : e[dim * k + i];
+      for (int j = 0; t->symmetric && j < dim; ++j) sum += t->inverse[(dim * k + j) * dim + i] * e[dim * k + j];
+      x[block_stride(dim) * k + i] += (float)sum;
     }
 }
 
 /* v = S b factor - (L + O) x: what a sweep back begins with. */
-static void right_side(const Blocks *m, const PetscReal *b, PetscReal factor, const float *x, float *v)
+KERNEL void right_side(const int dim, const Blocks *m, const PetscReal *b, PetscReal factor, const float *x, float *v)
 {
   PetscInt outer = 0;
   for (PetscInt k = 0; k < m->n; ++k) {
-    const float *S = m->scale + 9 * k;
+    const float *S = m->scale + dim * dim * k;
     PetscReal sum[3] = {0, 0, 0};
-    for (int i = 0; i < 3; ++i)
-      for (int j = 0; j < 3; ++j) sum[i] += (PetscReal)S[3 * i + j] * b[3 * k + j];
-    Lanes from = row_forward(3, &m->lower, k, x, node_from_doubles(3, sum, factor));
-    if (outer < m->n_outer && m->outer_row[outer] == k) from = row_forward(3, &m->outer, outer++, x, from);
-    node_store(3, from, v + 4 * k);
+    for (int i = 0; i < dim; ++i)
+      for (int j = 0; j < dim; ++j) sum[i] += (PetscReal)S[dim * i + j] * b[dim * k + j];
+    Lanes from = row_forward(dim, &m->lower, k, x, node_from_doubles(dim, sum, factor));
+    if (outer < m->n_outer && m->outer_row[outer] == k) from = row_forward(dim, &m->outer, outer++, x, from);
+    node_store(dim, from, v + block_stride(dim) * k);
   }
 }
 
@@ -184,13 +227,15 @@ static PetscErrorCode Correct(const TwoLevels *t, float *x)
 
   PetscFunctionBeginUser;
   PetscCall(VecGetArrayWrite(t->fine, &r));
-  PetscCall(LeftBySweep(t, x, r));
+  if (t->system->dim == 2) left_by_sweep(2, t, x, r);
+  else left_by_sweep(3, t, x, r);
   PetscCall(VecRestoreArrayWrite(t->fine, &r));
   PetscCall(MatMultTranspose(t->interpolation, t->fine, t->rest));
   PetscCall(KSPSolve(t->solver, t->rest, t->correction));
   PetscCall(MatMult(t->interpolation, t->correction, t->fine));
   PetscCall(VecGetArrayRead(t->fine, &e));
-  add_correction(t, e, x);
+  if (t->system->dim == 2) add_correction(2, t, e, x);
+  else add_correction(3, t, e, x);
   PetscCall(VecRestoreArrayRead(t->fine, &e));
   PetscFunctionReturn(0);
 }
@@ -204,7 +249,8 @@ static PetscErrorCode Apply(PC pc, Vec b, Vec y)
 
   PetscFunctionBeginUser;
   PetscCall(PCShellGetContext(pc, &t));
-  const BlockSweeps *sweeps = block_sweeps(3);
+  const PetscInt dim = t->system->dim;
+  const BlockSweeps *sweeps = block_sweeps(dim);
   PetscCall(BlocksWork(t->blocks, WORK_X, &x));
   PetscCall(BlocksWork(t->blocks, WORK_V, &v));
   PetscCall(BlocksWork(t->blocks, WORK_T, &w));
@@ -215,7 +261,8 @@ static PetscErrorCode Apply(PC pc, Vec b, Vec y)
   PetscCall(BlocksExchange(t->blocks, x));
   PetscCall(Correct(t, x));
   PetscCall(BlocksExchange(t->blocks, x));
-  right_side(t->blocks, in, 1 / size, x, v);
+  if (dim == 2) right_side(2, t->blocks, in, 1 / size, x, v);
+  else right_side(3, t->blocks, in, 1 / size, x, v);
   PetscCall(VecRestoreArrayRead(b, &in));
   PetscCall(VecGetArrayWrite(y, &out));
   sweeps->finish(t->blocks, v, size, w, out);
@@ -229,7 +276,8 @@ static PetscErrorCode Destroy(PC pc)
 
   PetscFunctionBeginUser;
   PetscCall(PCShellGetContext(pc, &t));
-  PetscCall(Clear(t));
+  PetscCall(ClearFine(t));
+  PetscCall(ClearCoarse(t));
   PetscCall(PetscFree(t));
   PetscFunctionReturn(0);
 }

@@ -55,14 +55,14 @@ static PetscErrorCode TellRigidMotions(const StepProblem *p)
   PetscFunctionReturn(0);
 }
 
-/* Statics: two levels of the box where functions reach beyond their cells, else algebraic multigrid. */
+/* Statics: two levels of the box where there is one, else algebraic multigrid. */
 static PetscErrorCode UseLevels(StepProblem *p, const LinearProblem *linear, KSP ksp, const char **what)
 {
   PC pc;
 
   PetscFunctionBeginUser;
   PetscCall(TellRigidMotions(p));
-  if (!linear->wide || !coarse_box_fits(p->grid)) PetscFunctionReturn(0);
+  if (!linear->levels) PetscFunctionReturn(0);
   PetscCall(KSPGetPC(ksp, &pc));
   PetscCall(TwoLevelsConfigure(pc, p->system, p->grid, p->fixed, linear->symmetric));
   *what = linear->symmetric ? "conjugate gradients, two levels of the box" : "GMRES, two levels of the box";

@@ -150,12 +150,14 @@ static PetscReal iterate_below(const LinearProblem *p)
   return p->symmetric ? ITERATE_BELOW_2D : ITERATE_BELOW_SOIL;
 }
 
-/* Unknowns below which a factorisation is cheaper than multigrid, in statics. Fill-in makes it costly much earlier
- * in space than in the plane, where the tangents of soil are left to it: near failure multigrid may not find their
- * solution (docs/experiments/linear-solvers.md). */
+/* Unknowns below which a factorisation is cheaper than multigrid, in statics, and below which it is cheaper than two
+ * levels of a box. Fill-in makes it costly much earlier in space than in the plane, where the tangents of soil are left
+ * to it: near failure multigrid may not find their solution (docs/experiments/linear-solvers.md). */
 #define FACTORISE_BELOW_3D 5000
 #define FACTORISE_BELOW_3D_SOIL 10000
-#define FACTORISE_BELOW_3D_WIDE 1000
+#define FACTORISE_BELOW_3D_LEVELS 1000
+#define FACTORISE_BELOW_3D_SOIL_LEVELS 5000
+#define FACTORISE_BELOW_2D_LEVELS 10000
 #define FACTORISE_BELOW_2D 150000
 #define FACTORISE_BELOW_2D_SOIL 1000000
 #define FACTORISE_BELOW_3D_MIXED 20000
@@ -164,8 +166,9 @@ static PetscReal iterate_below(const LinearProblem *p)
 static PetscInt factorise_below(const LinearProblem *p)
 {
   if (p->mixed) return p->dim == 2 ? FACTORISE_BELOW_2D_MIXED : FACTORISE_BELOW_3D_MIXED;
-  if (p->dim == 2) return p->symmetric ? FACTORISE_BELOW_2D : FACTORISE_BELOW_2D_SOIL;
-  if (p->wide && p->symmetric) return FACTORISE_BELOW_3D_WIDE;
+  if (p->dim == 2 && !p->symmetric) return FACTORISE_BELOW_2D_SOIL;
+  if (p->dim == 2) return p->levels ? FACTORISE_BELOW_2D_LEVELS : FACTORISE_BELOW_2D;
+  if (p->levels) return p->symmetric ? FACTORISE_BELOW_3D_LEVELS : FACTORISE_BELOW_3D_SOIL_LEVELS;
   return p->symmetric ? FACTORISE_BELOW_3D : FACTORISE_BELOW_3D_SOIL;
 }
 

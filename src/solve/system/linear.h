@@ -12,7 +12,7 @@ typedef struct {
   LinearChoice choice;
   PetscInt dim, unknowns;
   PetscBool symmetric, dynamic;
-  PetscBool wide;         /* do points of a grid see nodes beyond those of their cells? */
+  PetscBool levels;       /* has the grid coarse nodes (solve/levels)? */
   PetscBool mixed;        /* is the last unknown of every block a pressure? */
   PetscBool undetermined; /* mixed without stabilisation: some pressures may be anything */
   PetscBool idle_ranks;   /* does a rank hold no unknowns? */
