@@ -336,7 +336,8 @@ static PetscInt layers_beyond(const Model *m)
   const Case *c = m->c;
   const PetscInt lap = c->analysis.type == ANALYSIS_EXPLICIT; /* points cross cells before they change ranks */
   /* coarse nodes beside a node (solve/levels) */
-  const PetscInt levels = case_is_static(&c->analysis) && !m->method->clouds && !m->formulation->pressure;
+  const PetscBool box = (PetscBool)(c->grid.kind == GRID_BOX && !m->method->clouds);
+  const PetscInt levels = box && case_is_static(&c->analysis) && !m->formulation->pressure;
   return PetscMax(basis_find(c->basis.kind)->halo, levels) + lap + (c->n_interfaces ? CONTACT_HALO : 0);
 }
 
