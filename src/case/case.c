@@ -205,6 +205,12 @@ PetscBool case_is_static(const AnalysisSpec *analysis)
   return analysis->type != ANALYSIS_DYNAMIC && analysis->type != ANALYSIS_EXPLICIT;
 }
 
+PetscReal case_courant(const AnalysisSpec *analysis)
+{
+  if (analysis->courant > 0) return analysis->courant;
+  return analysis->update == EXPLICIT_USL ? 0.6 : 0.8;
+}
+
 PetscBool case_seeks(const AnalysisSpec *analysis)
 {
   return analysis->type == ANALYSIS_FACTOR || analysis->type == ANALYSIS_LIMIT;

@@ -509,6 +509,9 @@ PetscBool case_load_follows(const Case *c);
 PetscBool case_is_mixed(const Case *c);
 /* Equilibrium at every step, no inertia: a factor of safety is found so, too. Else there is inertia. */
 PetscBool case_is_static(const AnalysisSpec *analysis);
+/* Explicit dynamics: share of the critical step that is taken. musl bears all of it, usl two thirds (docs/theory.md,
+ * "Explicit dynamics"). */
+PetscReal case_courant(const AnalysisSpec *analysis);
 /* Is something sought after `end`, when all loads are on: a factor of safety, a limit load? */
 PetscBool case_seeks(const AnalysisSpec *analysis);
 /* Is that one of the fields of states? */

@@ -6,7 +6,6 @@
 #include "case/relief.h"
 #include "base/formula.h"
 #include "input/schema/schema.h"
-#include "model/explicit/critical.h"
 
 /* --- analysis --- */
 static void resolve_steps(SchemaReader *r, const YamlNode *mapping, AnalysisSpec *a)
@@ -78,7 +77,7 @@ PetscErrorCode SchemaCheckAnalysis(SchemaReader *r, const YamlNode *mapping, voi
   resolve_steps(r, mapping, target);
   resolve_bounds(r, mapping, target);
   resolve_newmark(r, mapping, target);
-  ((AnalysisSpec *)target)->courant = explicit_courant(a);
+  ((AnalysisSpec *)target)->courant = case_courant(a);
   PetscFunctionReturn(0);
 }
 

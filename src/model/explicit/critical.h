@@ -5,11 +5,5 @@
 /* Collective. The longest substep in which no wave crosses a cell, s, and the speed of the fastest point, m/s:
  * with moduli and stress of the points as they are now. */
 PetscErrorCode ExplicitCritical(const Model *model, PetscReal *critical, PetscReal *fastest);
-/* Share of it that the case takes. musl bears all of it, usl two thirds (docs/theory.md, "Explicit dynamics"). */
-static inline PetscReal explicit_courant(const AnalysisSpec *a)
-{
-  if (a->courant > 0) return a->courant;
-  return a->update == EXPLICIT_USL ? 0.6 : 0.8;
-}
 /* Do points find their functions by arithmetic, and are sorted once for many substeps? A substep costs a third then. */
 PetscBool explicit_by_arithmetic(const Model *model);

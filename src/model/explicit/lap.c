@@ -161,7 +161,7 @@ static PetscErrorCode See(Model *m, const Explicit *e)
 
 static void choose_substeps(const Model *m, PetscReal left, Explicit *e)
 {
-  const PetscReal courant = explicit_courant(&m->c->analysis);
+  const PetscReal courant = case_courant(&m->c->analysis);
   const PetscReal all = PetscCeilReal(left / (courant * heavy_substep(e)) * (1 - 1e-9));
   e->dt = left / PetscMax(all, 1);
   const PetscReal travel = LAP_TRAVEL * m->grid->smallest;

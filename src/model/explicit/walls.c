@@ -45,7 +45,7 @@ static PetscReal beside_spring(const Explicit *e, const ContactPoint *c)
 static PetscReal stiffness(const Model *m, const ContactLaw *law)
 {
   if (law->kind != CONTACT_BONDED) return 1;
-  return PetscMax(1, 0.8 * (2 / PetscSqr(explicit_courant(&m->c->analysis)) - 1));
+  return PetscMax(1, 0.8 * (2 / PetscSqr(case_courant(&m->c->analysis)) - 1));
 }
 
 /* Force of one wall on one point. Between substeps it keeps what its law starts from. */

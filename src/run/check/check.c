@@ -209,7 +209,7 @@ static PetscErrorCode ReportSubsteps(const Model *m, FILE *out)
   PetscFunctionBeginUser;
   if (!m->scheme->inertia || !m->method->restores_grid || m->formulation->pressure) PetscFunctionReturn(0);
   PetscCall(ExplicitCritical(m, &critical, &fastest));
-  const PetscReal substep = explicit_courant(&m->c->analysis) * critical, n = PetscCeilReal(m->control.next / substep);
+  const PetscReal substep = case_courant(&m->c->analysis) * critical, n = PetscCeilReal(m->control.next / substep);
   say(m, out, "#   explicit: %.3g s a substep, %.0f %s in a step of %g s: %s than an implicit step\n", (double)substep,
       (double)n, explicit ? "of them" : "with `type: explicit`", (double)m->control.next,
       n <= (PetscReal)substeps_of_a_step(m) ? "cheaper" : "dearer");
