@@ -7,7 +7,7 @@
 #include "material/pressure.h"
 #include "model/model_private.h"
 
-/* Sum of two nodal arrays with factors. */
+/* Sum of two nodal arrays with factors: one pass over the points then serves two products. */
 typedef struct {
   const PetscReal *x[2];
   PetscReal factor[2];
@@ -29,26 +29,28 @@ UNROLLED PetscReal tied_product(const PetscInt dim, const PetscInt nn, const Pet
   return sum;
 }
 
-/* u and w: n_nodes x dim */
 UNROLLED PetscReal product_sized(const PetscInt dim, const PetscInt fixed_nn, const SupportRun *run, const Model *m,
-                                 const PetscReal *u, const PetscReal *w)
+                                 const NodalField *u, const NodalField *w)
 {
   const Support *support = m->space->support;
   PetscReal sum = 0;
   for (PetscInt g = run->first; g < run->end; ++g) {
     const PetscInt nn = fixed_nn ? fixed_nn : support_nodes(support, g), *node = support->node + support->node_start[g];
     const PetscReal lumped = m->space->lumping ? m->space->lumping[g] : 0;
-    PetscReal un[3 * CLOUD_MAX_NODES], wn[3 * CLOUD_MAX_NODES];
-    for (PetscInt I = 0; I < nn; ++I)
-      for (PetscInt d = 0; d < dim; ++d) {
-        un[I * dim + d] = u[node[I] * dim + d];
-        wn[I * dim + d] = w[node[I] * dim + d];
+    PetscReal at_node[CLOUD_MAX_NODES], un[3 * CLOUD_MAX_NODES], wn[3 * CLOUD_MAX_NODES];
+    for (PetscInt I = 0; I < nn; ++I) {
+      at_node[I] = 0;
+      for (PetscInt d = 0, k = I * dim, i = node[I] * dim; d < dim; ++d, ++k, ++i) {
+        un[k] = u->factor[0] * u->x[0][i] + u->factor[1] * u->x[1][i];
+        wn[k] = w->factor[0] * w->x[0][i] + w->factor[1] * w->x[1][i];
+        at_node[I] += un[k] * wn[k];
       }
+    }
     if (m->space->tie && m->space->tie[g] > 0) sum += m->space->tie[g] * tied_product(dim, nn, un, wn);
     for (PetscInt p = support->point_start[g]; p < support->point_start[g + 1]; ++p) {
       const PetscReal *N = support->N + support->value_start[g] + (p - support->point_start[g]) * nn;
       PetscReal uh[3] = {0, 0, 0}, wh[3] = {0, 0, 0}, nodes = 0;
-      for (PetscInt i = 0; lumped > 0 && i < nn * dim; ++i) nodes += N[i / dim] * un[i] * wn[i];
+      for (PetscInt I = 0; lumped > 0 && I < nn; ++I) nodes += N[I] * at_node[I];
       for (PetscInt I = 0; I < nn; ++I)
         for (PetscInt d = 0; d < dim; ++d) {
           uh[d] += N[I] * un[I * dim + d];
@@ -61,38 +63,22 @@ UNROLLED PetscReal product_sized(const PetscInt dim, const PetscInt fixed_nn, co
   return sum;
 }
 
-static PetscReal product_of_runs(const Model *m, const PetscReal *u, const PetscReal *w)
+/* The sum u M w over this rank's points, with the mass matrix of the step: cells that are not full
+ * have part of it lumped, and are tied. */
+static PetscReal mass_product(const Model *m, NodalField u, NodalField w)
 {
   const Support *support = m->space->support;
   const SupportRun all = {.first = 0, .end = support->n_groups};
   PetscReal sum = 0;
-  if (!support->n_runs && m->dim == 2) return product_sized(2, 0, &all, m, u, w);
-  if (!support->n_runs) return product_sized(3, 0, &all, m, u, w);
+  if (!support->n_runs && m->dim == 2) return product_sized(2, 0, &all, m, &u, &w);
+  if (!support->n_runs) return product_sized(3, 0, &all, m, &u, &w);
   for (const SupportRun *run = support->run; run < support->run + support->n_runs; ++run) {
-    if (m->dim == 2 && run->nodes == 3) sum += product_sized(2, 3, run, m, u, w);
-    else if (m->dim == 2 && run->nodes == 4) sum += product_sized(2, 4, run, m, u, w);
-    else if (m->dim == 3 && run->nodes == 8) sum += product_sized(3, 8, run, m, u, w);
-    else sum += product_sized(m->dim, run->nodes, run, m, u, w);
+    if (m->dim == 2 && run->nodes == 3) sum += product_sized(2, 3, run, m, &u, &w);
+    else if (m->dim == 2 && run->nodes == 4) sum += product_sized(2, 4, run, m, &u, &w);
+    else if (m->dim == 3 && run->nodes == 8) sum += product_sized(3, 8, run, m, &u, &w);
+    else sum += product_sized(m->dim, run->nodes, run, m, &u, &w);
   }
   return sum;
-}
-
-/* The sum u M w over this rank's points, with the mass matrix of the step: cells that are not full
- * have part of it lumped, and are tied. */
-static PetscErrorCode MassProduct(const Model *m, NodalField u, NodalField w, PetscReal *sum)
-{
-  const PetscInt dofs = m->grid->n_nodes * m->dim;
-  PetscReal *un, *wn;
-
-  PetscFunctionBeginUser;
-  PetscCall(PetscMalloc2(dofs, &un, dofs, &wn));
-  for (PetscInt i = 0; i < dofs; ++i) {
-    un[i] = u.factor[0] * u.x[0][i] + u.factor[1] * u.x[1][i];
-    wn[i] = w.factor[0] * w.x[0][i] + w.factor[1] * w.x[1][i];
-  }
-  *sum = product_of_runs(m, un, wn);
-  PetscCall(PetscFree2(un, wn));
-  PetscFunctionReturn(0);
 }
 
 static PetscReal points_kinetic(const Model *m)
@@ -197,25 +183,13 @@ static PetscReal impulse_work(const Model *m, PetscInt i, PetscReal dt)
 }
 
 /* Work of inertia, with the acceleration that balances the forces at both ends. */
-static PetscErrorCode InertiaWork(const Model *m, PetscReal dt, PetscReal *work)
+static PetscReal inertia_work(const Model *m, PetscReal dt)
 {
   const NodalFields *n = m->nodes;
   const PetscReal lag = m->scheme->weights(&m->c->analysis, dt).lag;
   const PetscReal end = share_of_end(m);
   const NodalField du = {{n->du, n->du}, {1, 0}}, a = {{n->a, n->a1}, {1 - end + 0.5 * lag, end - 0.5 * lag}};
-  PetscFunctionBeginUser;
-  PetscCall(MassProduct(m, du, a, work));
-  PetscFunctionReturn(0);
-}
-
-/* |v1|^2 / 2 - |v|^2 / 2 of the nodes. */
-static PetscErrorCode GainOfMotion(const Model *m, PetscReal *gained)
-{
-  const NodalFields *n = m->nodes;
-  const NodalField mean = {{n->v, n->v1}, {0.5, 0.5}}, gain = {{n->v1, n->v}, {1, -1}};
-  PetscFunctionBeginUser;
-  PetscCall(MassProduct(m, mean, gain, gained));
-  PetscFunctionReturn(0);
+  return mass_product(m, du, a);
 }
 
 static PetscBool is_twin(const Model *m, PetscInt node) { return m->method->clouds && cloud_is_twin(m->grid, node); }
@@ -251,52 +225,34 @@ static PetscErrorCode OutOfBalance(const Model *m, const PetscReal *g, const Pet
   PetscFunctionReturn(0);
 }
 
-static PetscBool scheme_damps(const Model *m, PetscReal dt)
-{
-  const AnalysisSpec *a = &m->c->analysis;
-  if (!m->scheme->inertia || m->scheme->middle) return PETSC_FALSE;
-  return a->beta != 0.25 || a->gamma != 0.5 || m->scheme->weights(a, dt).lag != 0;
-}
-
 /* What the scheme's own damping takes: work of the inertia that the forces at both ends balance, less what
  * motion gains. With Newmark's beta = 1/4, gamma = 1/2 it is nothing. mpm's nodes know of no step before. */
-static PetscErrorCode NumericalDamping(const Model *m, PetscReal dt, PetscReal *taken)
+static PetscReal numerical_damping(const Model *m, PetscReal dt)
 {
+  const AnalysisSpec *a = &m->c->analysis;
   const NodalFields *n = m->nodes;
   const NodalField du = {{n->du, n->du}, {1, 0}}, echo = {{n->echo, n->echo}, {0.5, 0}};
-  PetscReal work, before = 0, gained;
-
-  PetscFunctionBeginUser;
-  *taken = 0;
-  if (!scheme_damps(m, dt)) PetscFunctionReturn(0);
-  PetscCall(InertiaWork(m, dt, &work));
-  if (!m->method->restores_grid) PetscCall(MassProduct(m, du, echo, &before));
-  PetscCall(GainOfMotion(m, &gained));
-  *taken = work - before - gained;
-  PetscFunctionReturn(0);
+  const NodalField mean = {{n->v, n->v1}, {0.5, 0.5}}, gain = {{n->v1, n->v}, {1, -1}};
+  if (!m->scheme->inertia || m->scheme->middle) return 0;
+  if (a->beta == 0.25 && a->gamma == 0.5 && m->scheme->weights(a, dt).lag == 0) return 0;
+  const PetscReal before = m->method->restores_grid ? 0 : mass_product(m, du, echo);
+  return inertia_work(m, dt) - before - mass_product(m, mean, gain);
 }
 
 /* Nodes that gather their motion from points start neither with the energy of the points nor with
  * the acceleration that balances the forces there. What the first takes is a difference of kinetic
  * energies; the second adds or takes the work of the forces out of balance, which is what the work
  * of all forces leaves over. `held`: work of the boundary without impulses. */
-static PetscErrorCode TransferOfNodes(const Model *m, PetscReal dt, const EnergyStep *e, PetscReal held, PetscReal *sum)
+static PetscReal transfer_of_nodes(const Model *m, PetscReal dt, const EnergyStep *e, PetscReal held)
 {
-  PetscReal gained, work;
-
-  PetscFunctionBeginUser;
-  *sum = 0;
-  if (m->scheme->inertia) {
-    PetscCall(GainOfMotion(m, &gained));
-    *sum = points_kinetic(m) + gained;
-  }
-  if (!m->method->restores_grid) PetscFunctionReturn(0);
-  if (m->scheme->inertia) {
-    PetscCall(InertiaWork(m, dt, &work));
-    *sum -= work;
-  }
-  *sum += e->external + held - e->friction - e->damped + points_work(m);
-  PetscFunctionReturn(0);
+  const NodalFields *n = m->nodes;
+  const NodalField mean = {{n->v, n->v1}, {0.5, 0.5}}, gain = {{n->v1, n->v}, {1, -1}};
+  PetscReal sum = 0;
+  /* |v1|^2 / 2 - |v|^2 / 2 */
+  if (m->scheme->inertia) sum = points_kinetic(m) + mass_product(m, mean, gain);
+  if (!m->method->restores_grid) return sum;
+  if (m->scheme->inertia) sum -= inertia_work(m, dt);
+  return sum + e->external + held - e->friction - e->damped + points_work(m);
 }
 
 /* What damping takes from the velocity of points beyond that of the nodes: mpm's points fade
@@ -358,18 +314,15 @@ PetscErrorCode EnergyOfNodes(Model *m, PetscReal dt, EnergyStep *e)
   PetscCall(PetscFree2(before, after));
   if (damping > 0) {
     const NodalField du = {{n->du, n->du}, {1, 0}}, mean = {{n->v, n->v1}, {0.5, 0.5}};
-    PetscCall(MassProduct(m, du, mean, &e->damped));
-    e->damped *= damping;
+    e->damped = damping * mass_product(m, du, mean);
   }
   e->held = held_work(m);
   e->friction = contact.sliding;
   held += contact.moving;
   e->boundary = held + impulse - contact.rigid;
-  PetscCall(TransferOfNodes(m, dt, e, held, &e->transfer));
-  e->transfer += impulse - unbalanced;
+  e->transfer = impulse - unbalanced + transfer_of_nodes(m, dt, e, held);
   e->transfer -= m->method->restores_grid ? contact.more : contact.closing;
-  PetscCall(NumericalDamping(m, dt, &e->numerical));
-  e->numerical += contact.more;
+  e->numerical = numerical_damping(m, dt) + contact.more;
   if (m->method->restores_grid && m->space->fade > 0) {
     const PetscReal more = faded(m);
     e->damped += more;
