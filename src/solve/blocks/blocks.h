@@ -66,6 +66,8 @@ typedef struct {
                  PetscReal *u); /* u = factor T (1 + U)^-1 x */
 } BlockSweeps;
 const BlockSweeps *block_sweeps(PetscInt dim);
+/* S^-1 of each row, in double precision: n x dim x dim. */
+void blocks_invert_scales(const Blocks *blocks, PetscReal *inverse);
 
 /* Products right after the sweeps start() and finish() where the result z of the latter has been
  * changed in some places (blocks_product.c). */

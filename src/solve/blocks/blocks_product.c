@@ -6,8 +6,7 @@
 #include "base/math/tensor.h"
 #include "solve/blocks/blocks.h"
 
-/* S^-1 */
-static void invert_scales(const Blocks *m, PetscReal *inverse)
+void blocks_invert_scales(const Blocks *m, PetscReal *inverse)
 {
   const PetscInt dim = m->dim, size = dim * dim;
   for (PetscInt r = 0; r < m->n; ++r) {
@@ -33,7 +32,7 @@ PetscErrorCode BlocksProductCreate(Blocks *m, PetscInt n_changed, const PetscInt
   PetscFunctionBeginUser;
   *p = (BlocksProduct){.m = m, .n_changed = n_changed, .changed = changed};
   PetscCall(PetscMalloc2(m->n, &p->whole, m->n * m->dim * m->dim, &p->inverse));
-  invert_scales(m, p->inverse);
+  blocks_invert_scales(m, p->inverse);
   PetscCall(BlocksWork(m, BLOCKS_PRODUCT_WORK, &mark));
   for (PetscInt i = 0; i < n_changed; ++i)
     if (changed[i] >= 0) mark[changed[i] / m->dim * stride] = 1;

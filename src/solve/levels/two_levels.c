@@ -1,5 +1,4 @@
 #include "solve/levels/two_levels.h"
-#include "base/math/tensor.h"
 #include "solve/blocks/blocks.h"
 #include "solve/system/linear.h"
 
@@ -48,21 +47,11 @@ static PetscErrorCode ClearFine(TwoLevels *t)
   PetscFunctionReturn(0);
 }
 
-static void invert(PetscInt dim, const float *S, PetscReal *inverse)
-{
-  PetscReal full[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1}, all[9];
-  for (PetscInt i = 0; i < dim; ++i)
-    for (PetscInt j = 0; j < dim; ++j) full[3 * i + j] = (PetscReal)S[i * dim + j];
-  (void)tensor_inverse(full, all);
-  for (PetscInt i = 0; i < dim; ++i)
-    for (PetscInt j = 0; j < dim; ++j) inverse[i * dim + j] = all[3 * i + j];
-}
-
 /* The tangent as it is now, cut and closed, in blocks. */
 static PetscErrorCode FillBlocks(TwoLevels *t)
 {
   System s = *t->system;
-  const PetscInt dim = s.dim, size = dim * dim, n = s.row_start[s.n_rows] * size;
+  const PetscInt size = s.dim * s.dim, n = s.row_start[s.n_rows] * size;
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(n, &t->singles));
@@ -72,8 +61,7 @@ static PetscErrorCode FillBlocks(TwoLevels *t)
   PetscCall(BlocksFill(t->blocks, &s));
   PetscCall(PetscFree(t->singles));
   PetscCall(PetscMalloc1(size * t->blocks->n, &t->inverse));
-  for (PetscInt r = 0; r < t->blocks->n && !t->blocks->singular; ++r)
-    invert(dim, t->blocks->scale + size * r, t->inverse + size * r);
+  if (!t->blocks->singular) blocks_invert_scales(t->blocks, t->inverse);
   PetscFunctionReturn(0);
 }
 
