@@ -1,6 +1,7 @@
 /* Walls with mass in explicit dynamics, against mechanics of rigid bodies: free flight, momentum and energy of
  * collisions, what implicit dynamics gives, rest under their own weight; on any number of ranks, after a resumed run. */
 #include "model/explicit/explicit.h"
+#include "heavy.h"
 #include "resumed.h"
 
 typedef struct {
@@ -8,11 +9,6 @@ typedef struct {
   CellType cell;
   PetscReal friction, density;
 } Hit;
-
-static PetscReal of_ball(Model *m, const char *kind, PetscInt component)
-{
-  return model_wall(m, "ball", kind, NULL, component);
-}
 
 /* Tests of what ranks have no part in. */
 static PetscBool alone(void)
@@ -41,21 +37,7 @@ static void below_ball(Bench *b, const Hit *h, PetscReal size, WallSpec *wall)
   b->c.analysis.courant = 0.6;
   b->c.analysis.transfer = (char *)h->transfer;
   b->c.basis.kind = h->basis;
-  *wall = (WallSpec){.name = (char *)"ball",
-                     .shape = {.kind = SHAPE_BALL, .radius = 0.3, .centre = {0.93, up == 2 ? 0.27 : 0, 0}},
-                     .contact = h->friction > 0 ? CONTACT_FRICTION : CONTACT_FRICTIONLESS,
-                     .friction = h->friction,
-                     .has_mass = PETSC_TRUE};
-  wall->shape.centre[up] = 0.81;
-  wall->mass = (WallMassSpec){.has_density = PETSC_TRUE,
-                              .density = h->density,
-                              .gravity = PETSC_TRUE,
-                              .free = {PETSC_TRUE, PETSC_TRUE, up == 2, PETSC_TRUE},
-                              .velocity = {0.5, 0, 0},
-                              .spin = {0, 0, up == 2 ? 0 : 2}};
-  wall->mass.velocity[up] = -2;
-  b->c.n_walls = 1;
-  b->c.walls = wall;
+  heavy_ball(b, up == 2, h->density, h->friction, wall);
 }
 
 static const Hit hits[] = {
@@ -142,22 +124,15 @@ static void test_as_implicit(void **state)
 static void test_flies(void **state)
 {
   static const Hit far = {"cell", "thesis", CELL_HEXAHEDRON, 0, 2000};
-  const PetscReal spin[3] = {1, 5, 0.3}, side[3] = {0.2, 0.4, 0.7}, mass = 2000 * 0.2 * 0.4 * 0.7;
   PetscReal off[2];
   (void)state;
   for (int fine = 0; fine < 2; ++fine) {
-    PetscReal energy = 0, L[3], now = 0;
+    PetscReal L[3], now = 0;
     Bench b;
     WallSpec wall;
     below_ball(&b, &far, 0.125, &wall);
     b.c.analysis.courant = fine ? 0.3 : 0.6;
-    wall.shape = (Shape){.kind = SHAPE_BOX};
-    for (int d = 0; d < 3; ++d) {
-      wall.shape.min[d] = 2 - side[d] / 2 + (d == 2), wall.shape.max[d] = 2 + side[d] / 2 + (d == 2);
-      wall.mass.spin[d] = spin[d];
-      L[d] = mass / 12 * spin[d] * (PetscSqr(side[(d + 1) % 3]) + PetscSqr(side[(d + 2) % 3]));
-      energy += 0.5 * (L[d] * spin[d] + mass * PetscSqr(wall.mass.velocity[d]));
-    }
+    const PetscReal energy = spinning_box(&wall, L);
     b.c.gravity[2] = -9.81;
     Model *m = bench_model(&b, PETSC_COMM_WORLD);
     for (PetscInt k = 0; m->time < 0.28; ++k) model_step(m, k % 3 == 1 ? 0.02 : 0.05);
@@ -169,9 +144,9 @@ static void test_flies(void **state)
     for (int d = 0; d < 3; ++d) {
       const PetscReal v = of_ball(m, "wall_velocity", d);
       CHECK_CLOSE(ball->now.L[d], L[d], 1e-12 * L[1]);
-      now += 0.5 * (of_ball(m, "wall_spin", d) * ball->now.L[d] + mass * v * v);
+      now += 0.5 * (of_ball(m, "wall_spin", d) * ball->now.L[d] + BOX_MASS * v * v);
     }
-    off[fine] = PetscAbsReal(now - energy + mass * 9.81 * fallen) / energy;
+    off[fine] = PetscAbsReal(now - energy + BOX_MASS * 9.81 * fallen) / energy;
     CHECK(PetscAbsReal(of_ball(m, "wall_spin", 0) - 1) > 0.1, "it does not tumble");
     CALL(ModelDestroy(&m));
   }

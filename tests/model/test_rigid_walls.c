@@ -1,6 +1,6 @@
 /* Walls that move by what acts on them, against mechanics of rigid bodies: free flight, momentum and energy of
  * collisions in every method, equilibrium under load. */
-#include "case_builder.h"
+#include "heavy.h"
 
 typedef struct {
   const char *method, *basis, *scheme;
@@ -10,16 +10,10 @@ typedef struct {
   PetscReal size, step; /* of cells and steps, m, s; 0: some */
 } Hit;
 
-static PetscReal of_ball(Model *m, const char *kind, PetscInt component)
-{
-  return model_wall(m, "ball", kind, NULL, component);
-}
-
 /* A block of rubber, 1 x 0.5 (x 0.5) m, and a ball above its top. */
 static void below_ball(Bench *b, const Hit *h, PetscBool dynamic, WallSpec *wall)
 {
   const PetscBool space = h->cell == CELL_HEXAHEDRON;
-  const int up = space ? 2 : 1;
   bench_init(b, h->method, h->cell, 0);
   bench_grid(b, (PetscReal[]){-1, space ? -0.5 : -1, -0.5}, (PetscReal[]){3, 2, 1},
              h->size > 0                ? h->size
@@ -39,21 +33,7 @@ static void below_ball(Bench *b, const Hit *h, PetscBool dynamic, WallSpec *wall
   b->c.linear = LINEAR_AUTO;
   b->c.newton = (NewtonSpec){.residual = 1e-11, .increment = 1e-12, .max_iterations = 25, .ease = 6};
   b->c.stabilisation.curvature = 0.1;
-  *wall = (WallSpec){.name = (char *)"ball",
-                     .shape = {.kind = SHAPE_BALL, .radius = 0.3, .centre = {0.93, space ? 0.27 : 0, 0}},
-                     .contact = h->friction > 0 ? CONTACT_FRICTION : CONTACT_FRICTIONLESS,
-                     .friction = h->friction,
-                     .has_mass = PETSC_TRUE};
-  wall->shape.centre[up] = 0.81;
-  wall->mass = (WallMassSpec){.has_density = PETSC_TRUE,
-                              .density = 2000,
-                              .gravity = PETSC_TRUE,
-                              .free = {PETSC_TRUE, PETSC_TRUE, space, PETSC_TRUE},
-                              .velocity = {0.5, 0, 0},
-                              .spin = {0, 0, space ? 0 : 2}};
-  wall->mass.velocity[up] = -2;
-  b->c.n_walls = 1;
-  b->c.walls = wall;
+  heavy_ball(b, space, 2000, h->friction, wall);
 }
 
 /* What the ball loses the block gets, in steps of changing length, and no energy is unaccounted for. */
@@ -170,19 +150,12 @@ static void test_several(void **state)
 static void test_flies(void **state)
 {
   static const Hit far = {"mpm", "cell", NULL, CELL_HEXAHEDRON, 0, PETSC_FALSE, 0, 0};
-  const PetscReal spin[3] = {1, 5, 0.3}, side[3] = {0.2, 0.4, 0.7}, mass = 2000 * 0.2 * 0.4 * 0.7;
-  PetscReal energy = 0, L[3], found[3], v[3];
+  PetscReal L[3], found[3], v[3];
   Bench b;
   WallSpec wall;
   (void)state;
   below_ball(&b, &far, PETSC_TRUE, &wall);
-  wall.shape = (Shape){.kind = SHAPE_BOX};
-  for (int d = 0; d < 3; ++d) {
-    wall.shape.min[d] = 2 - side[d] / 2 + (d == 2), wall.shape.max[d] = 2 + side[d] / 2 + (d == 2);
-    wall.mass.spin[d] = spin[d];
-    L[d] = mass / 12 * spin[d] * (PetscSqr(side[(d + 1) % 3]) + PetscSqr(side[(d + 2) % 3]));
-    energy += 0.5 * (L[d] * spin[d] + mass * PetscSqr(wall.mass.velocity[d]));
-  }
+  const PetscReal energy = spinning_box(&wall, L);
   b.c.gravity[2] = -9.81;
   Model *m = bench_model(&b, PETSC_COMM_WORLD);
   for (PetscInt k = 0; m->time < 0.28; ++k) model_step(m, k % 3 == 1 ? 0.02 : 0.05);
@@ -194,10 +167,10 @@ static void test_flies(void **state)
   for (int d = 0; d < 3; ++d) CHECK_CLOSE(ball->now.L[d], L[d], 1e-12 * L[1]);
   for (int d = 0; d < 3; ++d) found[d] = of_ball(m, "wall_spin", d), v[d] = of_ball(m, "wall_velocity", d);
   PetscReal now = 0;
-  for (int d = 0; d < 3; ++d) now += 0.5 * (found[d] * ball->now.L[d] + mass * v[d] * v[d]);
+  for (int d = 0; d < 3; ++d) now += 0.5 * (found[d] * ball->now.L[d] + BOX_MASS * v[d] * v[d]);
   PetscPrintf(PETSC_COMM_WORLD, "it has turned by %.4g, energy off by %.2g of %.6g J\n", (double)turned,
-              (double)(now - energy + mass * 9.81 * fallen), (double)energy);
-  CHECK_CLOSE(now, energy - mass * 9.81 * fallen, 1e-10 * energy);
+              (double)(now - energy + BOX_MASS * 9.81 * fallen), (double)energy);
+  CHECK_CLOSE(now, energy - BOX_MASS * 9.81 * fallen, 1e-10 * energy);
   CHECK(PetscAbsReal(found[0] - 1) > 0.1, "it does not tumble");
   CALL(ModelDestroy(&m));
 }
