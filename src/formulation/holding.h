@@ -1,4 +1,5 @@
-/* What holds nodes that points hardly reach, apart from all other forces. `in` needs support, soft, du, x and lattice. */
+/* What holds nodes that points hardly reach, apart from all other forces. `in` needs support, soft, du, x and
+ * lattice. */
 #pragma once
 #include "formulation/formulation.h"
 

@@ -52,8 +52,8 @@ PetscErrorCode DiscretisationPressure(Discretisation *space);
 /* Of a basis whose points are groups of their own in a grid: soft and pressure_tie of points with a node that is hardly
  * reached and follows no others, or, where none can, is less than half full; after DiscretisationExtend. */
 PetscErrorCode DiscretisationCuts(Discretisation *space);
-/* Of each node, on all copies: the volume of the material around it (as it is now, else as it was at the start; n_nodes),
- * and in `whole` that of its share of the cells. */
+/* Of each node, on all copies: the volume of the material around it (as it is now, else as it was at the start;
+ * n_nodes), and in `whole` that of its share of the cells. */
 PetscErrorCode DiscretisationVolumes(Discretisation *space, PetscBool now, PetscReal *volume);
 /* Of a method that restores its grid: no point remembers more of an opening, and has a larger J, than its surroundings
  * have room for (docs/theory.md, "The room that points have"); between initialise and the solve. */

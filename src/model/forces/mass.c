@@ -28,7 +28,8 @@ UNROLLED void group_matrix(const PetscInt nn, const Discretisation *s, PetscInt 
   }
 }
 
-/* out = M in, of a cell, M by columns. A column is a vector of the compiler's, which would make sums of what it is left. */
+/* out = M in, of a cell, M by columns. A column is a vector of the compiler's, which would make sums of what it is
+ * left. */
 UNROLLED void cell_product(const PetscInt nn, const PetscReal *M, const PetscReal *in, PetscReal *out)
 {
   if (nn == 8) {
