@@ -100,8 +100,8 @@ static void test_multigrid(void **state)
   CALL(ModelDestroy(&m));
 }
 
-/* The same for a matrix in space, to eight digits: multigrid that knows rigid motions, and takes no zeros of empty cells
- * for couplings, needs some 16 iterations, otherwise 80. */
+/* A matrix in space, of a body that leaves cells empty, to eight digits: 8 iterations with the rigid motions that
+ * Newton's method has told it, 24 without. */
 static void test_empty_cells(void **state)
 {
   PetscInt linear;
@@ -128,7 +128,7 @@ static void test_empty_cells(void **state)
   CALL(VecSetRandom(f, NULL));
   CALL(KSPSolve(ksp, f, x));
   CALL(KSPGetIterationNumber(ksp, &linear));
-  CHECK(linear <= 22, "%d linear iterations", (int)linear);
+  CHECK(linear <= 12, "%d linear iterations", (int)linear);
   CALL(VecDestroy(&x));
   CALL(VecDestroy(&f));
   CALL(KSPDestroy(&ksp));
