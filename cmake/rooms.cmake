@@ -19,6 +19,23 @@ if(TALUS_SANITIZE)
   target_link_options(talus_flags INTERFACE -fsanitize=address,undefined)
 endif()
 
+# Half of the time that a small source takes to compile is for PETSc's headers: gcc compiles them once for the rooms and once
+# for their tests. Under sanitizers and by other compilers every source includes what it needs by itself.
+if(CMAKE_C_COMPILER_ID STREQUAL "GNU" AND NOT TALUS_SANITIZE)
+  set(TALUS_HEADERS <math.h> <stdlib.h> <string.h> <petscdmplex.h>)
+endif()
+
+# talus_precompile(KEY TARGET): the first target of a KEY compiles the headers, all others with the same flags reuse them.
+function(talus_precompile key target)
+  get_property(first GLOBAL PROPERTY TALUS_HEADERS_${key})
+  if(first)
+    target_precompile_headers(${target} REUSE_FROM ${first})
+  elseif(TALUS_HEADERS)
+    target_precompile_headers(${target} PRIVATE ${TALUS_HEADERS})
+    set_property(GLOBAL PROPERTY TALUS_HEADERS_${key} ${target})
+  endif()
+endfunction()
+
 # One object library a room; a test links the rooms up to its own and no further, so that a room
 # that reaches upward does not link.
 macro(talus_rooms)
@@ -28,6 +45,7 @@ macro(talus_rooms)
     if(sources)
       add_library(talus_${room} OBJECT ${sources})
       target_link_libraries(talus_${room} PRIVATE talus_flags)
+      talus_precompile(rooms talus_${room})
       add_dependencies(talus_${room} talus_version)
       list(APPEND TALUS_ROOMS ${room})
     endif()
@@ -119,6 +137,7 @@ function(talus_test path)
   # What a test itself does takes longer to compile than to run; but those of the ground floor try what its headers inline.
   if(NOT room STREQUAL "base")
     target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O1>)
+    talus_precompile(tests ${target})
   endif()
   target_compile_definitions(${target} PRIVATE TALUS_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
   set_target_properties(${target} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/tests/bin)

@@ -147,15 +147,13 @@ static void all_the_way(Bench *b, PetscInt steps)
 
 static void test_sliding(void **state)
 {
-  Bench b;
   (void)state;
-  sliding(&b, CELL_QUADRILATERAL, 0.125);
-  all_the_way(&b, 20);
-  sliding(&b, CELL_TRIANGLE, 0.25);
-  all_the_way(&b, 16);
-  sliding(&b, CELL_QUADRILATERAL, 0.125);
-  b.c.basis.kind = "gimp";
-  all_the_way(&b, 20);
+  EACH_VARIANT (k, 3) {
+    Bench b;
+    sliding(&b, k == 2 ? CELL_TRIANGLE : CELL_QUADRILATERAL, k == 2 ? 0.25 : 0.125);
+    if (k == 1) b.c.basis.kind = "gimp";
+    all_the_way(&b, k == 2 ? 16 : 20);
+  }
 }
 
 static void test_sliding_3d(void **state)
@@ -193,7 +191,7 @@ static void test_sliding_mesh(void **state)
   } meshes[] = {{CELL_QUADRILATERAL, 0.125, 16}, {CELL_TRIANGLE, 0.25, 16}, {CELL_HEXAHEDRON, 0.25, 8}};
   Bench b;
   (void)state;
-  for (size_t k = 0; k < sizeof meshes / sizeof *meshes; ++k) {
+  EACH_OF (k, meshes) {
     sliding(&b, meshes[k].cell, meshes[k].size);
     on_mesh(&b);
     all_the_way(&b, meshes[k].steps);

@@ -119,10 +119,8 @@ static void test_hang(void **state)
   BasisSpec lme = usual_lme;
   (void)state;
   lme.essential = ESSENTIAL_CONSTRAINTS;
-  for (CellType cell = CELL_TRIANGLE; cell <= CELL_HEXAHEDRON; ++cell) {
-    hang(&usual_mls, cell);
-    hang(&usual_lme, cell);
-  }
+  for (CellType cell = CELL_TRIANGLE; cell <= CELL_HEXAHEDRON; ++cell)
+    EACH_VARIANT (k, 2) hang(k ? &usual_mls : &usual_lme, cell);
   hang(&lme, CELL_QUADRILATERAL);
 }
 
@@ -331,8 +329,7 @@ static void heap(const BasisSpec *basis)
 static void test_heap(void **state)
 {
   (void)state;
-  heap(&usual_lme);
-  heap(&usual_mls);
+  EACH_VARIANT (k, 2) heap(k ? &usual_mls : &usual_lme);
 }
 
 /* --- ranks --- */
@@ -411,12 +408,12 @@ static void thrown(const BasisSpec *basis, LinearChoice linear)
 static void test_ranks(void **state)
 {
   (void)state;
-  bar(&usual_lme, CELL_QUADRILATERAL, 0.25);
-  bar(&usual_mls, CELL_TRIANGLE, 0.25);
-  bar(&usual_lme, CELL_HEXAHEDRON, 0.5);
-  bar(&usual_mls, CELL_TETRAHEDRON, 0.5);
-  thrown(&usual_lme, LINEAR_DIRECT);
-  thrown(&usual_mls, LINEAR_AUTO);
+  EACH_VARIANT (k, 2) {
+    bar(k ? &usual_mls : &usual_lme, CELL_QUADRILATERAL, 0.25);
+    bar(k ? &usual_lme : &usual_mls, CELL_TRIANGLE, 0.25);
+    bar(k ? &usual_lme : &usual_mls, k ? CELL_HEXAHEDRON : CELL_TETRAHEDRON, 0.5);
+    thrown(k ? &usual_mls : &usual_lme, k ? LINEAR_AUTO : LINEAR_DIRECT);
+  }
 }
 
 /* --- linear solvers --- */
@@ -462,8 +459,7 @@ static void solvers(PetscBool sand)
 static void test_solvers(void **state)
 {
   (void)state;
-  solvers(PETSC_FALSE);
-  solvers(PETSC_TRUE);
+  EACH_VARIANT (k, 2) solvers(k);
 }
 
 int main(int argc, char **argv)

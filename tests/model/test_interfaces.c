@@ -114,7 +114,7 @@ static void test_slides(void **state)
     {"fem", "cell", CELL_QUADRILATERAL, 0.2, NULL, "thesis"},
   };
   (void)state;
-  for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(pairs); ++k) slide(&pairs[k]);
+  EACH_OF (k, pairs) slide(&pairs[k]);
 }
 
 /* Steeper friction than the slope, statics: the lower block bears the weight of the upper one. */
@@ -127,7 +127,7 @@ static void test_rests(void **state)
   };
   const PetscReal weight = 500 * 9.81;
   (void)state;
-  for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(pairs); ++k) {
+  EACH_OF (k, pairs) {
     Bench b;
     InterfaceSpec joint;
     Model *m = standing(&b, &pairs[k], SLOPE, PETSC_FALSE, &joint);
@@ -177,7 +177,7 @@ static void test_collides(void **state)
   static const Pair pairs[] = {{"mpm", "cell", CELL_QUADRILATERAL, 0, NULL, "thesis"},
                                {"mpm", "gimp", CELL_QUADRILATERAL, 0, "midpoint", "consistent"}};
   (void)state;
-  for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(pairs); ++k) {
+  EACH_OF (k, pairs) {
     const PetscReal wall = rebound(&pairs[k], PETSC_TRUE), bar = rebound(&pairs[k], PETSC_FALSE);
     CHECK_CLOSE(bar, wall, 1e-3 * PetscAbsReal(wall));
     CHECK(bar < -80, "it leaves with %g kg m/s of 100", (double)bar);

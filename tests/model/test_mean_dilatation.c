@@ -47,7 +47,7 @@ static PetscReal quadrilateral(const PetscInt *node, const PetscReal *x, PetscBo
 static void test_volume(void **state)
 {
   (void)state;
-  for (int rings = 0; rings < 2; ++rings) {
+  EACH_VARIANT (rings, 2) {
     PetscReal force[3];
     static const PetscInt steps[3] = {10, 20, 30};
     for (int k = 0; k < 3; ++k) {

@@ -118,7 +118,7 @@ static void test_press(void **state)
     {"fem", "mixed", CELL_TETRAHEDRON, &kinematics_3d, 0.4999, 0.1, PETSC_FALSE},
   };
   (void)state;
-  for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(presses); ++k) press(&presses[k]);
+  EACH_OF (k, presses) press(&presses[k]);
 }
 
 /* --- by their weight --- */
@@ -161,7 +161,7 @@ static const Cylinder cylinders[] = {
 static void test_stands(void **state)
 {
   (void)state;
-  for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(cylinders); ++k) {
+  EACH_OF (k, cylinders) {
     Bench b;
     WallSpec wall;
     const Cylinder *t = &cylinders[k];
@@ -180,7 +180,7 @@ static void test_stands(void **state)
 static void test_falls(void **state)
 {
   (void)state;
-  for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(cylinders); ++k) {
+  EACH_OF (k, cylinders) {
     Bench b;
     WallSpec wall;
     Energies e;

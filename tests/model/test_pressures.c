@@ -80,7 +80,7 @@ static void test_shrinks(void **state)
     {"fem", "cell", CELL_TETRAHEDRON, space, PETSC_TRUE},
   };
   (void)state;
-  for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(blocks); ++k) shrink(&blocks[k]);
+  EACH_OF (k, blocks) shrink(&blocks[k]);
 }
 
 /* Forces of the pressures with increments du. */
@@ -143,7 +143,7 @@ static void test_tangent(void **state)
     {"fem", "cell", CELL_HEXAHEDRON, &kinematics_3d, PETSC_FALSE},
   };
   (void)state;
-  for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(blocks); ++k) differences(&blocks[k]);
+  EACH_OF (k, blocks) differences(&blocks[k]);
 }
 
 /* A free block that turns, under the same pressure on all of its surface: no resultant, no torque, once round. */
@@ -222,7 +222,7 @@ static void test_sinks(void **state)
                           {"mpm", "cell", CELL_TRIANGLE, &kinematics_axisymmetric, PETSC_FALSE},
                           {"gmm", "lme", CELL_QUADRILATERAL, &kinematics_plane_strain, PETSC_TRUE}};
   (void)state;
-  for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(blocks); ++k) sink(&blocks[k]);
+  EACH_OF (k, blocks) sink(&blocks[k]);
 }
 
 /* Tractions and forces know where the material was, and the time. */

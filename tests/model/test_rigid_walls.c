@@ -94,7 +94,7 @@ static void test_hits(void **state)
     {"fem", "cell", "bossak", CELL_QUADRILATERAL, 0.3, PETSC_FALSE, 0.25, 1e-3},
   };
   (void)state;
-  for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(hits); ++k) hit(&hits[k]);
+  EACH_OF (k, hits) hit(&hits[k]);
 }
 
 /* A ball from above, a box whose corners go into the block from below, and a union whose inertia is given: what they
@@ -104,7 +104,7 @@ static void test_several(void **state)
   static const Hit ways[] = {{"fem", "cell", NULL, CELL_QUADRILATERAL, 0.3, PETSC_FALSE, 0.125, 2e-3},
                              {"mpm", "gimp", NULL, CELL_QUADRILATERAL, 0.3, PETSC_FALSE, 0.125, 5e-3}};
   (void)state;
-  for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(ways); ++k) {
+  EACH_OF (k, ways) {
     const PetscReal mass[3] = {2000 * PETSC_PI * 0.09, 2000 * 0.05, 200};
     PetscReal off = 0, before[2] = {0, 0};
     Bench b;
@@ -183,7 +183,7 @@ static void test_stands(void **state)
                              {"fem", "cell", NULL, CELL_QUADRILATERAL, 0.5, PETSC_FALSE, 0, 0},
                              {"gmm", "lme", NULL, CELL_QUADRILATERAL, 0.5, PETSC_FALSE, 0, 0}};
   (void)state;
-  for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(ways); ++k) {
+  EACH_OF (k, ways) {
     Bench b;
     WallSpec wall;
     below_ball(&b, &ways[k], PETSC_FALSE, &wall);

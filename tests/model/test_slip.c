@@ -185,16 +185,16 @@ static void test_turned(void **state)
 {
   (void)state;
   for (CellType cell = CELL_TRIANGLE; cell <= CELL_HEXAHEDRON; ++cell)
-    for (int dynamic = 0; dynamic < 2; ++dynamic)
-      for (int mpm = 0; mpm < 2; ++mpm) {
-        Kind k = {mpm ? "mpm" : "fem", "displacement", cell, dynamic, dynamic && mpm && cell % 2, LINEAR_DIRECT};
-        copy_of(&k);
-        k.formulation = "mixed";
-        if (!dynamic) copy_of(&k);
-        k.linear = LINEAR_ITERATIVE;
-        k.formulation = mpm ? "displacement" : "mixed";
-        if (dynamic) copy_of(&k);
-      }
+    EACH_VARIANT (variant, 4) {
+      const PetscBool mpm = (variant ^ cell) & 1, dynamic = variant >> 1;
+      Kind k = {mpm ? "mpm" : "fem", "displacement", cell, dynamic, dynamic && mpm && cell % 2, LINEAR_DIRECT};
+      copy_of(&k);
+      k.formulation = "mixed";
+      if (!dynamic) copy_of(&k);
+      k.linear = LINEAR_ITERATIVE;
+      k.formulation = mpm ? "displacement" : "mixed";
+      if (dynamic) copy_of(&k);
+    }
 }
 
 /* Mean place and velocity of all points in the frame of the slope, and the lowest of them. */
@@ -274,8 +274,8 @@ static void place_in_funnel(void *context, PetscInt dim, PetscReal size, PetscRe
 static void test_funnel(void **state)
 {
   (void)state;
-  for (int k = 0; k < 8; ++k) {
-    const PetscBool is_round = k & 1, dynamic = k >> 2;
+  EACH_VARIANT (k, 8) {
+    const PetscBool dynamic = k & 1, is_round = k >> 2;
     const PetscReal top = 0.2 + tan(FUNNEL);
     PetscReal vertices[8] = {is_round ? 0 : -0.2, 0, 0.2, 0, top, 1, is_round ? 0 : -top, 1}, R[3];
     Bench b;
@@ -335,7 +335,7 @@ static void fill_ring(Bench *b, PetscReal offset)
 static void test_pressure(void **state)
 {
   (void)state;
-  for (int k = 0; k < 5; ++k) {
+  EACH_VARIANT (k, 5) {
     static const CellType cell[] = {CELL_TRIANGLE, CELL_QUADRILATERAL, CELL_TRIANGLE, CELL_QUADRILATERAL,
                                     CELL_HEXAHEDRON};
     const PetscBool is_round = k == 2 || k == 3;

@@ -126,7 +126,7 @@ static void test_slides(void **state)
     {"gmm", "lme", CELL_QUADRILATERAL, 0.2, "bossak", "thesis", PETSC_FALSE, PETSC_FALSE, 0},
   };
   (void)state;
-  for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(blocks); ++k) slide(&blocks[k]);
+  EACH_OF (k, blocks) slide(&blocks[k]);
 }
 
 /* A floor that lifts the block at once with half a metre a second, and rubs it on its slope: its work is its velocity
@@ -141,7 +141,8 @@ static void test_lifts(void **state)
     {"fem", "cell", CELL_QUADRILATERAL, 0.2, NULL, "thesis", PETSC_FALSE, PETSC_FALSE, 0},
   };
   (void)state;
-  for (const Block *r = blocks; r < blocks + PETSC_STATIC_ARRAY_LENGTH(blocks); ++r) {
+  EACH_OF (k, blocks) {
+    const Block *r = &blocks[k];
     Bench b;
     WallSpec wall;
     Energies e;
@@ -200,7 +201,7 @@ static void test_rests(void **state)
     {"gmm", "lme", CELL_QUADRILATERAL, 0.8, NULL, "thesis", PETSC_FALSE, PETSC_FALSE, 0},
   };
   (void)state;
-  for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(blocks); ++k) rest(&blocks[k]);
+  EACH_OF (k, blocks) rest(&blocks[k]);
 }
 
 /* Grains run out over a floor: gaps are measured by what moves (solve/contact), up to 5e-4 of a cell, and what the wall
@@ -213,7 +214,7 @@ static void test_flows(void **state)
     {"mpm", "gimp", CELL_QUADRILATERAL, 0.6, "newmark", "thesis", PETSC_TRUE, PETSC_TRUE, 0},
   };
   (void)state;
-  for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(heaps); ++k) {
+  EACH_OF (k, heaps) {
     PetscReal given = 0, off = 0, deepest = 0;
     Bench b;
     WallSpec wall;

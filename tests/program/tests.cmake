@@ -60,7 +60,7 @@ if(TARGET talus)
   talus_program_test(stages_explicit)
   talus_program_test(limit)
   # several ranks in most of it; those that are killed wait more than they work
-  foreach(name ranks same_command vanish lost walls until factor stages stages_explicit limit resume resume_disk axisymmetric sweep calibrate split)
+  foreach(name plugin equilibrium ranks same_command vanish lost walls until factor stages stages_explicit limit resume resume_disk axisymmetric sweep calibrate split)
     set_tests_properties(program/${name} PROPERTIES PROCESSORS 2)
   endforeach()
 endif()
