@@ -114,21 +114,27 @@ static PetscBool keeps_all(const Case *c)
   return c->analysis.type == ANALYSIS_DYNAMIC && transfer && transfer->slopes && basis && basis->domains;
 }
 
+/* Statics in which nodes follow others, and no stage comes before or after. */
+static PetscBool stands_alone(const Case *c)
+{
+  const PetscBool moves = c->analysis.type == ANALYSIS_DYNAMIC || c->analysis.type == ANALYSIS_EXPLICIT;
+  return !moves && !c->spec && !case_is_mixed(c);
+}
+
 /* Measured (docs/theory.md, section 9): elastic bodies keep angular momentum and energy best
  * with a tenth of the mass lumped and no tie, while at the front of a flow, where yielded points
  * carry next to nothing, only both keep Newton's method alive. Where points have domains,
  * curvature is held instead, and without lumped mass the transfer loses no angular momentum at
- * all (section 16). Where nodes follow others Newton's method takes up to a third more iterations
- * for what swings or yields; but what has come to rest in a stage before must find the same nodes
- * (section 62). */
+ * all (section 16). Where nodes follow others Newton's method takes up to a fifth more iterations
+ * for what swings; but what has come to rest in a stage before must find the same nodes. Where statics
+ * yields those follow, too, that are reached a little more (section 62). */
 static void resolve_stabilisation(const YamlNode *given, Case *c)
 {
-  const PetscBool yields = anything_yields(c), exact = keeps_all(c);
-  const PetscBool moves = yields || c->analysis.type == ANALYSIS_DYNAMIC ? PETSC_TRUE : PETSC_FALSE;
+  const PetscBool yields = anything_yields(c), exact = keeps_all(c), stands = stands_alone(c);
   if (!yaml_find(given, "mass")) c->stabilisation.mass = yields ? 1 : exact ? 0 : 0.1;
   if (!yaml_find(given, "inertia")) c->stabilisation.inertia = yields ? 0.01 : 0;
-  if (!yaml_find(given, "curvature")) c->stabilisation.curvature = exact ? 0.1 : 0.01;
-  if (!yaml_find(given, "follow")) c->stabilisation.follow = moves && !c->spec ? 0 : 0.02;
+  if (!yaml_find(given, "curvature")) c->stabilisation.curvature = exact ? 0.1 : !stands ? 0.01 : yields ? 1e-4 : 1e-3;
+  if (!yaml_find(given, "follow")) c->stabilisation.follow = c->spec ? 0.02 : !stands ? 0 : yields ? 0.1 : 0.02;
 }
 
 /* Explicit steps lose half of an elastic disk's spin in a revolution without the gradients that points carry, and
@@ -286,8 +292,8 @@ static PetscErrorCode ReadDocument(const char *file, YamlDocument *document, Dia
   peek_kinematics(document->root, &reader);
   PetscCall(SchemaReadTable(&reader, &schema_case, document->root, *c));
   PetscCall(ResolveTransfer(*c));
-  resolve_stabilisation(yaml_find(document->root, "stabilisation"), *c);
   PetscCall(ResolveFormulation(document->root, *c));
+  resolve_stabilisation(yaml_find(document->root, "stabilisation"), *c);
   PetscCall(ResolveScheme(*c));
   resolve_equilibrium(yaml_find(document->root, "initial"), *c);
   const YamlNode *analysis = yaml_find(document->root, "analysis");

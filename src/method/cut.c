@@ -5,6 +5,10 @@
 /* Of half its share of the cells, what such a node has at most. */
 #define HARDLY_REACHED 0.02
 
+/* Points of equal volume that do not fix a node by themselves, and how much it is held then. */
+#define FEW 1.5
+#define LONELY 0.01
+
 /* A node's share of the cells, all of which stand still: once for all steps. */
 static PetscErrorCode WholeVolumes(Discretisation *s)
 {
@@ -53,21 +57,50 @@ static PetscReal held_below(const Discretisation *s)
   return PetscMin(HARDLY_REACHED, s->c->stabilisation.follow);
 }
 
+/* Nodes beside each other that see the same one point could move so that it does not strain: a node whose volume is
+ * that of FEW points or less has at most 1 - LONELY of what is enough, and so is held a little. */
+static PetscErrorCode TakeFromLonely(const Discretisation *s, PetscReal *reached)
+{
+  const Support *w = s->support;
+  PetscReal *sum; /* of volumes, of their squares */
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(2 * s->grid->n_nodes, &sum));
+  for (PetscInt g = 0; g < w->n_groups; ++g)
+    for (PetscInt p = w->point_start[g]; p < w->point_start[g + 1]; ++p)
+      for (PetscInt I = 0; I < support_nodes(w, g); ++I) {
+        const PetscReal V = support_N(w, g, p)[I] * s->points->real[POINT_VOLUME][p];
+        PetscReal *at = sum + 2 * w->node[w->node_start[g] + I];
+        at[0] += V, at[1] += V * V;
+      }
+  PetscCall(GridSumToOwners(s->grid, 2, sum));
+  PetscCall(GridToGhosts(s->grid, 2, sum));
+  for (PetscInt i = 0; i < s->grid->n_nodes; ++i)
+    if (PetscSqr(sum[2 * i]) < FEW * sum[2 * i + 1]) reached[i] = PetscMin(reached[i], 1 - LONELY);
+  PetscCall(PetscFree(sum));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode DiscretisationCuts(Discretisation *s)
 {
   const Support *w = s->support;
-  const PetscReal *fill = s->extension->fill, enough = held_below(s);
+  const PetscReal enough = held_below(s);
+  PetscReal *reached; /* what a node has of it */
 
   PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(s->grid->n_nodes, &reached));
+  for (PetscInt i = 0; i < s->grid->n_nodes; ++i) reached[i] = s->extension->fill[i] / enough;
+  if (enough < 1) PetscCall(TakeFromLonely(s, reached));
   for (PetscInt g = 0; g < w->n_groups; ++g) {
     const PetscInt p = w->point_start[g], nn = support_nodes(w, g), *node = w->node + w->node_start[g];
     PetscReal filled = 1, square = 0;
-    for (PetscInt I = 0; I < nn; ++I) filled = PetscMin(filled, fill[node[I]] / enough);
+    for (PetscInt I = 0; I < nn; ++I) filled = PetscMin(filled, reached[node[I]]);
     for (PetscInt i = 0; i < nn * s->grid->dim; ++i) square += PetscSqr((w->dN + w->value_start[g] * s->grid->dim)[i]);
     const Material *material = &s->materials[s->points->material[p]];
     const PetscReal share = s->c->stabilisation.curvature * (1 - filled) * s->points->real[POINT_VOLUME][p];
     s->soft[g] = share * material->wave_modulus * square / (PetscReal)nn;
     if (s->pressure_tie) s->pressure_tie[g] = share / material->elastic.shear;
   }
+  PetscCall(PetscFree(reached));
   PetscFunctionReturn(0);
 }

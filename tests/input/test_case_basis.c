@@ -111,12 +111,23 @@ static void Midpoint(void **state)
   assert_int_equal(CaseDestroy(&c), 0);
 }
 
-/* Nodes follow others in statics, and in all stages of a case, that they belong to the same nodes. */
+#define SOIL_PLAIN                                                                                            \
+  PLAIN_TOP PLAIN_GRID PLAIN_BODIES                                                                           \
+    "materials:\n  rubber: {law: mohr-coulomb, density: 2000, young: 1e7, poisson: 0.3, friction_angle: 30, " \
+    "dilatancy_angle: 0, cohesion: 1e3}\n"
+
+/* Nodes follow others in statics, more of them where a law yields, and in all stages of a case, that they belong to the
+ * same nodes. */
 static void Followers(void **state)
 {
   Case *c = read_good(PLAIN);
   (void)state;
   ASSERT_NEAR(c->stabilisation.follow, 0.02, 0);
+  ASSERT_NEAR(c->stabilisation.curvature, 1e-3, 0);
+  assert_int_equal(CaseDestroy(&c), 0);
+  c = read_good(SOIL_PLAIN);
+  ASSERT_NEAR(c->stabilisation.follow, 0.1, 0);
+  ASSERT_NEAR(c->stabilisation.curvature, 1e-4, 0);
   assert_int_equal(CaseDestroy(&c), 0);
   c = read_good(MOVING("mpm", ""));
   ASSERT_NEAR(c->stabilisation.follow, 0, 0);

@@ -212,12 +212,14 @@ static const SchemaEntry stabilisation_entries[] = {
   KEY("curvature", NUMBER, NULL,
       "basis gimp, in place of `stiffness`: share of the material's stiffness against curvature where points hardly "
       "reach a node",
-      .note = "0.01; in dynamics 0.1 with transfer consistent", AT_LEAST(0), AT(StabilisationSpec, curvature)),
+      .note = "0.01; in dynamics 0.1 with transfer consistent; in statics without stages and pressures 1e-3, 1e-4 if a "
+              "law yields",
+      AT_LEAST(0), AT(StabilisationSpec, curvature)),
   KEY(
     "follow", NUMBER, NULL,
     "basis gimp and bspline: a node with less than this of half its share of the cells follows those inside the body, "
     "as a linear function does; where it cannot, `curvature` holds it",
-    .note = "0.02; in a case without stages that is dynamic or has a law that yields 0", BETWEEN(0, 1),
+    .note = "0.02; in a case without stages 0 in dynamics, 0.1 in statics if a law yields", BETWEEN(0, 1),
     AT(StabilisationSpec, follow)),
   KEY("mass", NUMBER, NULL, "share of the mass that is lumped at the nodes, times the empty part of the cell",
       .note = "1 if a law of the case yields; else 0.1, with basis gimp and transfer consistent 0", BETWEEN(0, 1),
