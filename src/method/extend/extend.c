@@ -3,6 +3,8 @@
 #include "method/extend/row.h"
 #include "support/products.h"
 
+#define ALL -1
+
 static PetscErrorCode ExtensionCreate(const Discretisation *s, Extension **extension)
 {
   const GridBox *box = s->grid->box;
@@ -69,9 +71,9 @@ static PetscBool sees_follower(const Discretisation *s, PetscInt p)
   return PETSC_FALSE;
 }
 
-/* What point p sees once followers are gone; PETSC_FALSE if these nodes are farther apart than those of a point may be,
- * or not all known to this rank. */
-static PetscBool find_row(const Discretisation *s, PetscInt p, Row *row)
+/* What point p sees once followers are gone, or `only` that one, and the others are not there; PETSC_FALSE if these nodes
+ * are farther apart than those of a point may be, or not all known to this rank. */
+static PetscBool find_row(const Discretisation *s, PetscInt p, PetscInt only, Row *row)
 {
   const Support *w = s->support;
   const PetscInt dim = s->grid->dim, *node = w->node + w->node_start[p];
@@ -80,12 +82,27 @@ static PetscBool find_row(const Discretisation *s, PetscInt p, Row *row)
   row->n = 0;
   for (PetscInt I = 0; I < support_nodes(w, p); ++I) {
     const PetscInt ways = (PetscInt)s->extension->ways[node[I]];
+    if (ways && only != ALL && only != node[I]) continue;
     place_of(s->grid->box, s->extension, node[I], at);
     if (!ways) row_add(row, dim, node[I], 1, N[I], dN + I * dim);
     else if (!row_add_follower(row, s->grid->box, at, ways, N[I], dN + I * dim)) return PETSC_FALSE;
   }
   box_voxel_of(s->grid, s->points->cell[p], at);
   return stand_around(s, at, row);
+}
+
+/* Marks the followers that point p cannot do without: each whose leaders alone are too far away, all if none is. */
+static void mark_seen(const Discretisation *s, PetscInt p, PetscReal *needed)
+{
+  const Support *w = s->support;
+  PetscBool found = PETSC_FALSE;
+  Row row;
+  for (PetscInt I = w->node_start[p]; I < w->node_start[p + 1]; ++I) {
+    if (s->extension->ways[w->node[I]] == 0 || find_row(s, p, w->node[I], &row)) continue;
+    needed[w->node[I]] = 1;
+    found = PETSC_TRUE;
+  }
+  for (PetscInt I = w->node_start[p]; I < w->node_start[p + 1] && !found; ++I) needed[w->node[I]] = 1;
 }
 
 /* Marks nodes that must stay: those of points that would see others too far away, and those that loads act on. */
@@ -95,10 +112,8 @@ static void mark_needed(const Discretisation *s, PetscReal *needed)
   const Points *carriers = s->loads->carriers;
   const PetscInt nn = s->grid->nodes_per_cell;
   Row row;
-  for (PetscInt p = 0; p < w->n_groups; ++p) {
-    if (!sees_follower(s, p) || find_row(s, p, &row)) continue;
-    for (PetscInt I = w->node_start[p]; I < w->node_start[p + 1]; ++I) needed[w->node[I]] = 1;
-  }
+  for (PetscInt p = 0; p < w->n_groups; ++p)
+    if (sees_follower(s, p) && !find_row(s, p, ALL, &row)) mark_seen(s, p, needed);
   for (PetscInt p = 0; p < carriers->n; ++p)
     for (PetscInt I = 0; carriers->cell[p] >= 0 && I < nn; ++I)
       needed[s->grid->cell_node[carriers->cell[p] * nn + I]] = 1;
@@ -161,7 +176,7 @@ static PetscErrorCode Rewrite(Discretisation *s)
     const PetscInt from = old->node_start[p], nn = support_nodes(old, p);
     const PetscBool changes = sees_follower(s, p);
     product_group(out, p, n);
-    if (changes) (void)find_row(s, p, &row);
+    if (changes) (void)find_row(s, p, ALL, &row);
     if (changes) PetscCall(CopyRow(out, dim, row.n, n, row.node, row.N, row.dN));
     else PetscCall(CopyRow(out, dim, nn, n, old->node + from, old->N + from, old->dN + from * dim));
     n += changes ? row.n : nn;
