@@ -2,6 +2,10 @@
 #include <string.h>
 #include "picture/gnuplot.h"
 
+#define WIDTH 900
+#define HEIGHT 600
+#define LETTER 11 /* width of one in the title, about */
+
 /* Colours that stay apart in print and for the colour-blind, and marks of different shape: the
  * first is filled, the others are hollow and larger, so that curves that coincide can be told
  * apart. */
@@ -66,6 +70,33 @@ static void write_label(FILE *out, const char *what, const char *text)
   fprintf(out, "set %s ", what);
   gnuplot_quote(out, text);
   fputc('\n', out);
+}
+
+/* The space next to the middle of a text, NULL if it has none. */
+static const char *middle_space(const char *text)
+{
+  const char *middle = text + strlen(text) / 2, *before = middle, *after = strchr(middle, ' ');
+  while (before > text && *before != ' ') --before;
+  if (before == text) return after;
+  return after && after - middle < middle - before ? after : before;
+}
+
+/* In two lines, if it is wider than the picture. */
+static void write_title(FILE *out, const Figure *figure)
+{
+  const PetscInt fits = (figure->width ? figure->width : WIDTH) / LETTER;
+  const char *middle = figure->title && (PetscInt)strlen(figure->title) > fits ? middle_space(figure->title) : NULL;
+  char *first;
+  if (!middle || !(first = strndup(figure->title, (size_t)(middle - figure->title)))) {
+    write_label(out, "title", figure->title);
+    return;
+  }
+  fputs("set title ", out);
+  gnuplot_quote(out, first);
+  fputs(" . \"\\n\" . ", out);
+  gnuplot_quote(out, middle + 1);
+  fputc('\n', out);
+  free(first);
 }
 
 static PetscReal share(PetscBool logarithmic, PetscReal min, PetscReal max, PetscReal value)
@@ -152,7 +183,7 @@ static void write_right_axis(FILE *out, const Figure *figure, const PetscReal *m
 
 static void write_axes(FILE *out, const Figure *figure, const PetscReal *min, const PetscReal *max)
 {
-  write_label(out, "title", figure->title);
+  write_title(out, figure);
   write_label(out, "xlabel", figure->x_label);
   write_label(out, "ylabel", figure->y_label);
   fputs("set format '%g'\n", out); /* gnuplot's own has five decimals, in which small numbers are the same */
@@ -306,7 +337,8 @@ PetscErrorCode FigureWrite(const Figure *figure, const char *png, Diag *diag, Pe
     diag_error(diag, NULL, "there is nothing to draw in '%s'", png);
     PetscFunctionReturn(0);
   }
-  PetscCall(GnuplotBegin(&script, png, figure->width ? figure->width : 900, figure->height ? figure->height : 600));
+  PetscCall(
+    GnuplotBegin(&script, png, figure->width ? figure->width : WIDTH, figure->height ? figure->height : HEIGHT));
   write_figure(script.out, figure, min, max);
   PetscCall(GnuplotEnd(&script, png, diag, done));
   PetscFunctionReturn(0);

@@ -259,6 +259,39 @@ static void test_tick_names(void **state)
   TestRemove(folder);
 }
 
+/* A title wider than the picture stands in two lines, both of them whole. */
+static void test_long_title(void **state)
+{
+  const char *title =
+    "What the flow of all bars together has cost until they rest, error against time of computing, "
+    "friction that grows with the rate of shear";
+  const PetscReal x[] = {0, 1};
+  const FigureSeries series = {.style = FIGURE_LINE, .n = 2, .x = x, .y = x};
+  const Figure figure = {.title = title, .x_label = "x", .n_series = 1, .series = &series};
+  char folder[64], text[128], png[128], line[256], *paths = strdup(getenv("PATH"));
+  PetscBool done;
+  Diag *diag;
+  int halves = 0;
+  (void)state;
+  TestFolder(folder);
+  LetterGnuplot(folder, paths);
+  setenv("PATH", folder, 1);
+  snprintf(png, sizeof png, "%s/figure.png", folder);
+  snprintf(text, sizeof text, "%s/text", folder);
+  assert_int_equal(DiagCreate(&diag), 0);
+  assert_int_equal(FigureWrite(&figure, png, diag, &done), 0);
+  assert_int_equal(DiagDestroy(&diag), 0);
+  FILE *in = fopen(text, "r");
+  assert_non_null(in);
+  while (fgets(line, sizeof line, in))
+    halves += (strstr(line, "What the flow") && strstr(line, "error")) || strstr(line, "rate of shear") != NULL;
+  fclose(in);
+  assert_int_equal(halves, 2);
+  setenv("PATH", paths, 1);
+  free(paths);
+  TestRemove(folder);
+}
+
 /* Width, height and length of a PNG file; it must be a whole one. */
 static long CheckPng(const char *path, int *width, int *height)
 {
@@ -699,25 +732,16 @@ static void test_convergence(void **state)
 
 static int Tests(void)
 {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_spacing),
-                                     cmocka_unit_test(test_quantile),
-                                     cmocka_unit_test(test_raster),
-                                     cmocka_unit_test(test_raster_depth),
-                                     cmocka_unit_test(test_raster_planes),
-                                     cmocka_unit_test(test_raster_gap),
-                                     cmocka_unit_test(test_several_states),
-                                     cmocka_unit_test(test_scalars),
-                                     cmocka_unit_test(test_units),
-                                     cmocka_unit_test(test_tick_names),
-                                     cmocka_unit_test(test_state_in_the_plane),
-                                     cmocka_unit_test(test_state_in_space),
-                                     cmocka_unit_test(test_body_of_revolution),
-                                     cmocka_unit_test(test_histories),
-                                     cmocka_unit_test(test_mistakes),
-                                     cmocka_unit_test(test_no_gnuplot),
-                                     cmocka_unit_test(test_animation),
-                                     cmocka_unit_test(test_names_and_cells),
-                                     cmocka_unit_test(test_convergence)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_spacing),         cmocka_unit_test(test_quantile),
+                                     cmocka_unit_test(test_raster),          cmocka_unit_test(test_raster_depth),
+                                     cmocka_unit_test(test_raster_planes),   cmocka_unit_test(test_raster_gap),
+                                     cmocka_unit_test(test_several_states),  cmocka_unit_test(test_scalars),
+                                     cmocka_unit_test(test_units),           cmocka_unit_test(test_tick_names),
+                                     cmocka_unit_test(test_long_title),      cmocka_unit_test(test_state_in_the_plane),
+                                     cmocka_unit_test(test_state_in_space),  cmocka_unit_test(test_body_of_revolution),
+                                     cmocka_unit_test(test_histories),       cmocka_unit_test(test_mistakes),
+                                     cmocka_unit_test(test_no_gnuplot),      cmocka_unit_test(test_animation),
+                                     cmocka_unit_test(test_names_and_cells), cmocka_unit_test(test_convergence)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
 
