@@ -49,8 +49,8 @@ done
 expect "a slope in statics" 0 "$talus" run case.yaml --out run --force --quiet
 says run/case.yaml "gravity_amplitude: [[0, 1]]"
 says run/log.txt "gravity = from the start"
-# what k0 lacks was taken away before the first step, which moves nothing
-awk -v u="$(last 5)" -v d="$(last 6)" 'BEGIN { exit !(u <= 0 && u > -1e-6 && d >= 0) }' || fail "$name: the crest moves by $(last 5) m, dissipated $(last 6) J"
+# what k0 lacks was taken away before the first step, which moves nothing and dissipates nothing but round-off
+awk -v u="$(last 5)" -v d="$(last 6)" 'BEGIN { exit !(u <= 0 && u > -1e-6 && d > -1e-9 && d < 1e-9) }' || fail "$name: the crest moves by $(last 5) m, dissipated $(last 6) J"
 warned "a surface where it is" -- --set 'bodies[0].surface=20'
 warned "a surface that is not there" "warning: the highest material above 'soil' ends at a height of 20 m, not at 30 m" \
   "loads.tractions" -- --set 'bodies[0].surface=30'
