@@ -71,8 +71,8 @@ static PetscBool sees_follower(const Discretisation *s, PetscInt p)
   return PETSC_FALSE;
 }
 
-/* What point p sees once followers are gone, or `only` that one, and the others are not there; PETSC_FALSE if these nodes
- * are farther apart than those of a point may be, or not all known to this rank. */
+/* What point p sees once followers are gone, or `only` that one, and the others are not there; PETSC_FALSE if these
+ * nodes are farther apart than those of a point may be, or not all known to this rank. */
 static PetscBool find_row(const Discretisation *s, PetscInt p, PetscInt only, Row *row)
 {
   const Support *w = s->support;

@@ -1,5 +1,5 @@
-/* Contours of bodies of whole cells. The cells are those that seeding takes: of a region, and those whose middle is in the
- * body's shape. */
+/* Contours of bodies of whole cells. The cells are those that seeding takes: of a region, and those whose middle is
+ * in the body's shape. */
 #include "picture/body/contours.h"
 #include <math.h>
 #include "grid/grid.h"

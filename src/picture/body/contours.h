@@ -24,7 +24,7 @@ PetscBool contour_holds(const Contour *contour, const PetscReal *x);
 /* Is there an edge nearer to x than this, m? */
 PetscBool contour_near(const Contour *contour, const PetscReal *x, PetscReal distance);
 
-/* Find the cells that bodies of a case in the plane are made of; gmsh runs where meshes are .geo files. Bodies of a file
- * that cannot be read any more have no edges. One process. NULL without a case, and in space. */
+/* Find the cells that bodies of a case in the plane are made of; gmsh runs where meshes are .geo files. Bodies of a
+ * file that cannot be read any more have no edges. One process. NULL without a case, and in space. */
 PetscErrorCode PlotContoursCreate(const Case *c, PlotContours **contours);
 PetscErrorCode PlotContoursDestroy(PlotContours **contours);

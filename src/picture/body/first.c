@@ -107,8 +107,8 @@ static PetscReal edge_at(const unsigned char *rgba, int w, int h, int column, in
   return PetscMin(hypot(across, up) / 255., 1) * 0.6;
 }
 
-/* Where points have left the grid, those that are there began in a part of their body: the whole of it, in an image with
- * samples as the rasters' are. */
+/* Where points have left the grid, those that are there began in a part of their body: the whole of it, in an image
+ * with samples as the rasters' are. */
 static void fill_whole(const PlotOutline *outline, const RasterScene *raster, unsigned char *rgba)
 {
   enum { FINE = 3 };

@@ -1,6 +1,6 @@
-/* The outline of bodies whose shapes or meshes the case tells: a place on the page belongs to one if the place where its
- * material began lies in the shape, or in the mesh. Points next to the surface know where that is from those around
- * them. */
+/* The outline of bodies whose shapes or meshes the case tells: a place on the page belongs to one if the place where
+ * its material began lies in the shape, or in the mesh. Points next to the surface know where that is from those
+ * around them. */
 #include <math.h>
 #include "base/math/tensor.h"
 #include "grid/search/neighbours.h"
@@ -61,8 +61,8 @@ static PetscInt body_of(const Case *c, const PlotContours *contours, const unsig
   return -1;
 }
 
-/* Where places around point p began: X = X_p + B (x - x_p), from its neighbours by least squares. In the plane all third
- * coordinates are 0. PETSC_FALSE where they moved in other ways. */
+/* Where places around point p began: X = X_p + B (x - x_p), from its neighbours by least squares. In the plane all
+ * third coordinates are 0. PETSC_FALSE where they moved in other ways. */
 static PetscBool fit(const PlotFrame *f, PetscInt dim, PetscInt p, PetscInt n, const PetscInt *item,
                      const PetscReal *square, PetscReal most, PetscReal *B)
 {

@@ -41,9 +41,9 @@ typedef struct {
   const unsigned char
     *solid; /* in the plane, width x height: is a wall there? What touches it is not drawn back from it;
                                * NULL: there is none */
-  /* with a gap, n: which points know the outline next to them, and does the body hold a place next to such a point? Of
-   * the outermost their own and all that balls cover is shown there, of others what is drawn back; in space balls that know are
-   * cut by it. NULL: none knows */
+  /* with a gap, n: which points know the outline next to them, and does the body hold a place next to such a point?
+   * Of the outermost their own and all that balls cover is shown there, of others what is drawn back; in space balls
+   * that know are cut by it. NULL: none knows */
   const unsigned char *knows;
   RasterHeld (*holds)(const void *of, PetscInt p, const PetscReal *x);
   const void *of;

@@ -1,5 +1,5 @@
-/* The surface that balls in space make together: how far in front it is, without the bumps of single balls, and the light
- * on it. What is far behind a place is another surface, and has no part in it. */
+/* The surface that balls in space make together: how far in front it is, without the bumps of single balls, and the
+ * light on it. What is far behind a place is another surface, and has no part in it. */
 #include <math.h>
 #include "picture/raster/raster_private.h"
 #include "picture/raster/spacing.h"

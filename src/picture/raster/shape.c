@@ -52,8 +52,8 @@ static PetscErrorCode Grow(PetscReal gap, Room *room)
   PetscFunctionReturn(0);
 }
 
-/* Where points know the outline: is a sample shown that is drawn back, `in`, or not? Where others than the outermost have
- * come to a surface, flow has made it. */
+/* Where points know the outline: is a sample shown that is drawn back, `in`, or not? Where others than the outermost
+ * have come to a surface, flow has made it. */
 static PetscBool shows(const RasterScene *scene, const Canvas *canvas, PetscInt p, int i, int j, PetscBool in)
 {
   const PetscReal x[3] = {(i + 0.5) / canvas->scale + scene->min[0], (j + 0.5) / canvas->scale + scene->min[1], 0};

@@ -1,5 +1,5 @@
-/* All states one after the other, in one set of colours and on one page. Each is read twice, so that no more than one is
- * in memory: first for the range of its values and the room that it takes, then to be drawn. */
+/* All states one after the other, in one set of colours and on one page. Each is read twice, so that no more than one
+ * is in memory: first for the range of its values and the room that it takes, then to be drawn. */
 #include <string.h>
 #include "output/directory/run_dir_files.h"
 #include "picture/gnuplot.h"

@@ -145,8 +145,8 @@ static inline PetscBool plot_has_place(const PetscReal *x)
 {
   return (PetscBool)(fabs(x[0]) < 1e30 && fabs(x[1]) < 1e30 && fabs(x[2]) < 1e30);
 }
-/* smooth.c: data (n x components) of points at x (n x 3) become means of what is around in the same body (n; NULL: there
- * is one), in about a cell. */
+/* smooth.c: data (n x components) of points at x (n x 3) become means of what is around in the same body (n; NULL:
+ * there is one), in about a cell. */
 PetscErrorCode PlotSmooth(PetscInt dim, PetscInt n, const PetscReal *x, const PetscReal *body, PetscInt components,
                           PetscReal *data);
 /* body/mesh.c: let the cells of a mesh, which moves with its body, stand for the points of the frame. */

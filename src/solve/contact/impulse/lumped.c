@@ -80,7 +80,8 @@ static PetscErrorCode Norms(const Projection *w, const PetscReal *r, const Petsc
   PetscFunctionReturn(0);
 }
 
-/* Of what is held: impulses, their product, what is lacking, the same preconditioned, the direction; and room for all. */
+/* Of what is held: impulses, their product, what is lacking, the same preconditioned, the direction; and room for
+ * all. */
 typedef struct {
   PetscReal *p, *q, *r, *s, *z, *all;
 } Work;
