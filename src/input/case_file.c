@@ -115,11 +115,7 @@ static PetscBool keeps_all(const Case *c)
 }
 
 /* Statics in which nodes follow others, and no stage comes before or after. */
-static PetscBool stands_alone(const Case *c)
-{
-  const PetscBool moves = c->analysis.type == ANALYSIS_DYNAMIC || c->analysis.type == ANALYSIS_EXPLICIT;
-  return !moves && !c->spec && !case_is_mixed(c);
-}
+static PetscBool stands_alone(const Case *c) { return case_is_static(&c->analysis) && !c->spec && !case_is_mixed(c); }
 
 /* Measured (docs/theory.md, section 9): elastic bodies keep angular momentum and energy best
  * with a tenth of the mass lumped and no tie, while at the front of a flow, where yielded points
