@@ -58,27 +58,27 @@ static PetscReal held_below(const Discretisation *s)
 }
 
 /* Nodes beside each other that see the same one point could move so that it does not strain: a node whose volume is
- * that of FEW points or less has at most 1 - LONELY of what is enough, and so is held a little. */
+ * that of FEW points or less has at most 1 - LONELY of what is enough, and so is held a little. The volume is that
+ * of what the points see now: `fill` has it from before nodes followed others. */
 static PetscErrorCode TakeFromLonely(const Discretisation *s, PetscReal *reached)
 {
   const Support *w = s->support;
-  PetscReal *square; /* of what each point is of a node's volume */
+  PetscReal *sum; /* of what each point is of a node's volume, and of its square */
 
   PetscFunctionBeginUser;
-  PetscCall(PetscCalloc1(s->grid->n_nodes, &square));
+  PetscCall(PetscCalloc1(2 * s->grid->n_nodes, &sum));
   for (PetscInt g = 0; g < w->n_groups; ++g)
-    for (PetscInt p = w->point_start[g]; p < w->point_start[g + 1]; ++p) {
-      const PetscReal V = s->points->real[POINT_J][p] * s->points->real[POINT_VOLUME][p];
-      for (PetscInt I = 0; I < support_nodes(w, g); ++I)
-        square[w->node[w->node_start[g] + I]] += PetscSqr(support_N(w, g, p)[I] * V);
-    }
-  PetscCall(GridSumToOwners(s->grid, 1, square));
-  PetscCall(GridToGhosts(s->grid, 1, square));
-  for (PetscInt i = 0; i < s->grid->n_nodes; ++i) {
-    const PetscReal volume = s->extension->fill[i] * s->whole[i] / 2;
-    if (PetscSqr(volume) < FEW * square[i]) reached[i] = PetscMin(reached[i], 1 - LONELY);
-  }
-  PetscCall(PetscFree(square));
+    for (PetscInt p = w->point_start[g]; p < w->point_start[g + 1]; ++p)
+      for (PetscInt I = 0; I < support_nodes(w, g); ++I) {
+        const PetscReal V = support_N(w, g, p)[I] * s->points->real[POINT_VOLUME][p];
+        PetscReal *at = sum + 2 * w->node[w->node_start[g] + I];
+        at[0] += V, at[1] += V * V;
+      }
+  PetscCall(GridSumToOwners(s->grid, 2, sum));
+  PetscCall(GridToGhosts(s->grid, 2, sum));
+  for (PetscInt i = 0; i < s->grid->n_nodes; ++i)
+    if (PetscSqr(sum[2 * i]) < FEW * sum[2 * i + 1]) reached[i] = PetscMin(reached[i], 1 - LONELY);
+  PetscCall(PetscFree(sum));
   PetscFunctionReturn(0);
 }
 
