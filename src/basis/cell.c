@@ -136,6 +136,19 @@ PetscReal cell_volume(CellType type, const PetscReal *x)
   return volume;
 }
 
+/* Of a triangle half the product of two edges, of a quadrilateral that of its diagonals. */
+void cell_side_area(CellType type, PetscInt side, const PetscReal *x, PetscReal area[3])
+{
+  const Cell *cell = cells + type;
+  const PetscInt dim = cell->dim, *face = cell->face[side], quadrilateral = cell->face_nodes == 4;
+  PetscReal e[3] = {0, 0, 0}, f[3] = {0, 0, 2};
+  for (PetscInt d = 0; d < dim; ++d) {
+    e[d] = x[face[dim == 2 ? 1 : quadrilateral ? 2 : 1] * dim + d] - x[face[0] * dim + d];
+    if (dim == 3) f[d] = x[face[quadrilateral ? 3 : 2] * dim + d] - x[face[quadrilateral ? 1 : 0] * dim + d];
+  }
+  for (int d = 0; d < 3; ++d) area[d] = 0.5 * (e[(d + 1) % 3] * f[(d + 2) % 3] - e[(d + 2) % 3] * f[(d + 1) % 3]);
+}
+
 /* r det dx/dxi is linear in a triangle, at most quadratic in each direction in a quadrilateral:
  * these rules are exact, too. */
 PetscReal cell_volume_in(const Kinematics *kinematics, CellType type, const PetscReal *x)

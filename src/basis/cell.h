@@ -39,6 +39,8 @@ PetscBool cell_inverse_map(CellType type, const PetscReal *x, const PetscReal *p
 PetscReal cell_outside(CellType type, const PetscReal *xi);
 
 PetscReal cell_volume(CellType type, const PetscReal *x);
+/* Area of a side as a vector outwards, m2; in the plane its length, m. */
+void cell_side_area(CellType type, PetscInt side, const PetscReal *x, PetscReal area[3]);
 /* The volume that a cell stands for, m3: its area times the unit thickness, or all round the
  * circle. */
 PetscReal cell_volume_in(const Kinematics *kinematics, CellType type, const PetscReal *x);

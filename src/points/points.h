@@ -40,6 +40,10 @@ typedef enum {
   /* distance from the nearest side of the cell that it was seeded in, at the start, m: 1 where
    * there are walls, otherwise 0 components */
   POINT_REACH,
+  /* the part of its body's surface that it stands for, at the start, as a vector outwards, m2 (in rings m, of the
+   * section); nothing where whole cells of the grid say it: dim where there are walls and cells do not go with the
+   * material, otherwise 0 components */
+  POINT_FACE,
   /* of each wall, what it did to the point in the last step: state and forces (solve/contact), N; 0
    * components where there are none */
   POINT_CONTACT,

@@ -8,6 +8,7 @@ typedef struct {
   CellType cell;
   const Kinematics *kinematics;
   PetscInt points;
+  PetscReal off; /* by so much it stands beside the grid's lines, m */
 } Block;
 
 #define PRESSURE (1000 * 9.81 * 0.5)
@@ -21,8 +22,8 @@ static void standing(Bench *b, const Block *r, WallSpec *wall)
   bench_grid(b, (PetscReal[]){0.125, up == 2 ? 0 : 0.3125, 0.3125}, (PetscReal[]){2.125, up == 2 ? 1 : 1.3125, 1.3125},
              0.25);
   b->c.grid.counts[up] *= 2;
-  bench_box(b, 0, (PetscReal[]){0.625, up == 2 ? 0.25 : 0.4375, 0.4375},
-            (PetscReal[]){1.625, up == 2 ? 0.75 : 0.9375, 0.9375});
+  bench_box(b, 0, (PetscReal[]){0.625 + r->off, up == 2 ? 0.25 : 0.4375 + r->off, 0.4375 + r->off},
+            (PetscReal[]){1.625 + r->off, up == 2 ? 0.75 : 0.9375 + r->off, 0.9375 + r->off});
   b->body[0].points_per_cell = r->points;
   b->constants[0].value = 1e8;
   b->constants[1].value = 0;
@@ -32,7 +33,7 @@ static void standing(Bench *b, const Block *r, WallSpec *wall)
   b->c.gravity[up] = -9.81;
   *wall = (WallSpec){
     .name = (char *)"floor", .shape = {.kind = SHAPE_HALF_SPACE}, .contact = CONTACT_FRICTION, .friction = 0.8};
-  wall->shape.point[up] = 0.4375;
+  wall->shape.point[up] = 0.4375 + r->off;
   wall->shape.normal[up] = 1;
   b->c.n_walls = 1;
   b->c.walls = wall;
@@ -60,22 +61,27 @@ static void press(const Block *r)
   WallSpec wall;
   standing(&b, r, &wall);
   add_measure(&b, "pressure", 0);
-  add_measure(&b, "pressure", 1.125);
+  add_measure(&b, "pressure", 1.125 + r->off);
   add_measure(&b, "peak_pressure", 0);
   add_measure(&b, "shear", 0);
   add_measure(&b, "area", 0);
   Model *m = bench_model(&b, PETSC_COMM_WORLD);
   CHECK(number(m, 0) == 0, "it presses before the first step");
   while (m->time < 1 - 1e-9) model_step(m, 0.5);
-  const PetscReal area = r->kinematics->hoop ? PETSC_PI * (1.625 * 1.625 - 0.625 * 0.625) : m->dim == 3 ? 0.5 : 1;
+  const PetscReal inner = 0.625 + r->off, outer = 1.625 + r->off;
+  const PetscReal area = r->kinematics->hoop ? PETSC_PI * (outer * outer - inner * inner) : m->dim == 3 ? 0.5 : 1;
   PetscPrintf(PETSC_COMM_WORLD,
               "%s %s %s cell %d, %d points: %.9g, half %.9g, peak %.9g of %g Pa, shear %.3g, area %g\n", r->method,
               r->basis, r->kinematics->name, (int)r->cell, (int)r->points, (double)number(m, 0), (double)number(m, 1),
               (double)number(m, 2), PRESSURE, (double)number(m, 3), (double)number(m, 4));
+  /* beside the lines a point at an edge may hang, and that of a triangle that stands on a corner counts for little, not
+   * for nothing; a single one has the force of its nodes' whole surroundings */
+  const PetscReal off = r->off == 0 && r->cell != CELL_TRIANGLE ? 1e-4 : 0.02;
   for (PetscInt k = 0; k < 3; ++k)
-    CHECK(PetscAbsReal(number(m, k) - PRESSURE) < 1e-4 * PRESSURE, "%d: %g Pa", (int)k, (double)number(m, k));
-  CHECK(number(m, 3) < 1e-4 * PRESSURE, "shear %g Pa", (double)number(m, 3));
-  CHECK(PetscAbsReal(number(m, 4) - area) < 1e-4 * area, "area %g, not %g", (double)number(m, 4), (double)area);
+    CHECK(PetscAbsReal(number(m, k) - PRESSURE) < (k == 2 && off > 1e-3 ? 4 : 1) * off * PRESSURE, "%d: %g Pa", (int)k,
+          (double)number(m, k));
+  CHECK(number(m, 3) < (off > 1e-3 ? 1e-3 : 1e-4) * PRESSURE, "shear %g Pa", (double)number(m, 3));
+  CHECK(PetscAbsReal(number(m, 4) - area) < off * area, "area %g, not %g", (double)number(m, 4), (double)area);
   CALL(ModelDestroy(&m));
 }
 
@@ -83,18 +89,20 @@ static void test_presses(void **state)
 {
   const Kinematics *plane = &kinematics_plane_strain, *space = &kinematics_3d, *ring = &kinematics_axisymmetric;
   const Block blocks[] = {
-    {"mpm", "cell", CELL_QUADRILATERAL, plane, 4}, {"mpm", "gimp", CELL_QUADRILATERAL, plane, 4},
-    {"mpm", "cell", CELL_QUADRILATERAL, ring, 4},  {"mpm", "cell", CELL_HEXAHEDRON, space, 8},
-    {"fem", "cell", CELL_QUADRILATERAL, plane, 4},
+    {"mpm", "cell", CELL_QUADRILATERAL, plane, 4, 0},     {"mpm", "gimp", CELL_QUADRILATERAL, plane, 4, 0},
+    {"mpm", "cell", CELL_QUADRILATERAL, ring, 4, 0},      {"mpm", "cell", CELL_HEXAHEDRON, space, 8, 0},
+    {"fem", "cell", CELL_QUADRILATERAL, plane, 4, 0},     {"mpm", "cell", CELL_QUADRILATERAL, plane, 4, 0.03},
+    {"mpm", "gimp", CELL_QUADRILATERAL, plane, 9, 0.053}, {"mpm", "gimp", CELL_QUADRILATERAL, ring, 4, 0.118},
+    {"mpm", "gimp", CELL_HEXAHEDRON, space, 8, 0.045},    {"gmm", "mls", CELL_TRIANGLE, plane, 3, 0},
   };
   (void)state;
-  for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(blocks); ++k) press(&blocks[k]);
+  EACH_OF (k, blocks) press(&blocks[k]);
 }
 
 /* Mean tractions times the surface are the force. */
 static void test_shears(void **state)
 {
-  const Block block = {"mpm", "cell", CELL_QUADRILATERAL, &kinematics_plane_strain, 4};
+  const Block block = {"mpm", "cell", CELL_QUADRILATERAL, &kinematics_plane_strain, 4, 0};
   Bench b;
   WallSpec wall;
   PetscReal force[2];
@@ -119,7 +127,7 @@ static void test_shears(void **state)
 /* A body so stiff that the gap that a step may leave would lift it off: the next step finds its floor again. */
 static void test_stiff(void **state)
 {
-  const Block block = {"mpm", "cell", CELL_QUADRILATERAL, &kinematics_plane_strain, 4};
+  const Block block = {"mpm", "cell", CELL_QUADRILATERAL, &kinematics_plane_strain, 4, 0};
   Bench b;
   WallSpec wall;
   (void)state;
@@ -136,7 +144,7 @@ static void test_stiff(void **state)
 /* The floor of a block vanishes between two steps: one ends just then, and from then on the block falls. */
 static void test_gate(void **state)
 {
-  const Block block = {"mpm", "cell", CELL_QUADRILATERAL, &kinematics_plane_strain, 4};
+  const Block block = {"mpm", "cell", CELL_QUADRILATERAL, &kinematics_plane_strain, 4, 0};
   const PetscReal until = 0.0137;
   PetscReal last = 0, at_until = NAN;
   Bench b;
@@ -163,7 +171,7 @@ static void test_gate(void **state)
 /* A wall appears under a block that falls on it in the step after: it does not fall through. */
 static void test_appears(void **state)
 {
-  const Block block = {"mpm", "cell", CELL_QUADRILATERAL, &kinematics_plane_strain, 4};
+  const Block block = {"mpm", "cell", CELL_QUADRILATERAL, &kinematics_plane_strain, 4, 0};
   const PetscReal from = 0.0171;
   const MeasureSpec depth = {.kind = (char *)"contact", .word = (char *)"penetration", .wall = (char *)"floor"};
   PetscReal at_from = NAN, deep;
@@ -189,7 +197,7 @@ static void test_appears(void **state)
 /* What is said of a wall below the grid. */
 static void say(const char *method, ShapeKind shape, const char *expected)
 {
-  const Block block = {method, "cell", CELL_QUADRILATERAL, &kinematics_plane_strain, 4};
+  const Block block = {method, "cell", CELL_QUADRILATERAL, &kinematics_plane_strain, 4, 0};
   Bench b;
   WallSpec wall;
   Diag *diag;

@@ -109,9 +109,8 @@ static inline Points *make_points(const TestCase *t)
 }
 
 /* Seed without an error. */
-static inline Points *seed_points(const TestCase *t, const Grid *grid)
+static inline void seed_into(const TestCase *t, const Grid *grid, Points *points)
 {
-  Points *points = make_points(t);
   Diag *diag = NULL;
   PetscInt errors = 0;
   CALL(DiagCreate(&diag));
@@ -120,6 +119,12 @@ static inline Points *seed_points(const TestCase *t, const Grid *grid)
   if (errors) CALL(DiagFlush(diag, stderr));
   CHECK(errors == 0);
   CALL(DiagDestroy(&diag));
+}
+
+static inline Points *seed_points(const TestCase *t, const Grid *grid)
+{
+  Points *points = make_points(t);
+  seed_into(t, grid, points);
   return points;
 }
 

@@ -420,6 +420,54 @@ static void planes_are_exact(void **state)
   }
 }
 
+/* What of the surface that cuts cells looks along each axis, forth and back. */
+static void check_faces(const TestCase *t, const Grid *grid, const PetscReal *wanted, PetscReal tolerance)
+{
+  PetscReal looks[3][2] = {{0}};
+  Points *points = make_points(t);
+  points->components[POINT_REACH] = 1;
+  points->components[POINT_FACE] = grid->dim;
+  seed_into(t, grid, points);
+  for (PetscInt p = 0; p < points->n; ++p)
+    for (PetscInt d = 0; d < grid->dim; ++d) {
+      const PetscReal face = point_real(points, POINT_FACE, p)[d];
+      looks[d][face < 0] += PetscAbsReal(face);
+    }
+  for (PetscInt d = 0; d < grid->dim; ++d)
+    for (int back = 0; back < 2; ++back) {
+      const PetscReal found = sum_over_ranks(looks[d][back]);
+      CHECK_CLOSE(found, wanted[d], tolerance * wanted[d]);
+    }
+  CALL(PointsDestroy(&points));
+}
+
+/* Points of a body know its surface: the shadows of a ball, and of a box whose sides lie on lines of the grid or
+ * beside them (of cells that are whole nobody asks: there is no more to know). */
+static void surfaces_are_shared_out(void **state)
+{
+  const Shape ball = {.kind = SHAPE_BALL, .centre = {1.37, 0.96, 1.04}, .radius = 0.83};
+  (void)state;
+  for (int type = 0; type < 4; ++type) {
+    const PetscBool flat = type < CELL_TETRAHEDRON;
+    const PetscReal shadow = flat ? 2 * ball.radius : PETSC_PI * PetscSqr(ball.radius);
+    TestCase *t = test_case((CellType)type, flat ? 12 : 6, flat ? 8 : 4, 4);
+    Grid *grid = make_grid(PETSC_COMM_WORLD, &t->c);
+    t->body[0].has_shape = PETSC_TRUE;
+    t->body[0].shape = ball;
+    /* parts that look both ways count for what is left */
+    check_faces(t, grid, (PetscReal[]){shadow, shadow, shadow}, flat ? 2e-3 : 0.035);
+    free_all(t, grid, NULL);
+  }
+  TestCase *t = test_case(CELL_QUADRILATERAL, 12, 8, 1);
+  Grid *grid = make_grid(PETSC_COMM_WORLD, &t->c);
+  t->body[0].has_shape = PETSC_TRUE;
+  t->body[0].shape = box_shape(0.5625, 0.3125, 0, 0.6875, 1.4375, 0); /* one column of cells */
+  check_faces(t, grid, (PetscReal[]){1.125, 0.125}, 1e-6);
+  t->body[0].shape = box_shape(0.5, 0.3125, 0, 0.75, 0.4375, 0); /* one cell, both its sides along lines */
+  check_faces(t, grid, (PetscReal[]){0.125, 0.25}, 1e-6);
+  free_all(t, grid, NULL);
+}
+
 /* Where its surface follows the cells it is seeded as ever. */
 static void aligned_shape_is_the_same(void **state)
 {
@@ -449,6 +497,7 @@ int main(int argc, char **argv)
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(shape_is_filled),
     cmocka_unit_test(planes_are_exact),
+    cmocka_unit_test(surfaces_are_shared_out),
     cmocka_unit_test(aligned_shape_is_the_same),
     cmocka_unit_test(every_rule_fills_the_volume),
     cmocka_unit_test(method_chooses_the_weights),

@@ -16,6 +16,7 @@ static const PetscInt trusted[4] = {0, 0, 6, 6}, most[4] = {0, 0, 10, 9};
 
 typedef struct {
   PetscReal volume, moment[3]; /* of the reference cell, times det dx/dxi */
+  PetscReal face[3];           /* the body's surface as a vector outwards, m2 */
 } Sum;
 
 typedef struct {
@@ -24,6 +25,7 @@ typedef struct {
   CellType type;
   PetscInt dim;
   const PetscReal *x; /* nodes of the cell */
+  PetscBool faces;    /* is the surface asked for? */
   PetscReal slack;    /* m: corners on the surface shall be inside, whatever round-off says */
   Sum whole[SEED_MAX_RULE], fine[SEED_MAX_RULE], coarse[SEED_MAX_RULE]; /* coarse: edges twice as long */
 } Measure;
@@ -100,6 +102,7 @@ static void join_slivers(SeedPart *part, PetscInt n, PetscInt dim)
     const PetscInt to = neighbour_of(part, n, dim, q);
     if (to < 0) return;
     const PetscReal sum = part[to].share + part[q].share;
+    for (PetscInt d = 0; d < dim; ++d) part[to].face[d] += part[q].face[d];
     for (PetscInt d = 0; d < dim; ++d)
       part[to].xi[d] = (part[to].share * part[to].xi[d] + part[q].share * part[q].xi[d]) / sum;
     part[to].share = sum;
@@ -205,6 +208,44 @@ static void add_inside(const Measure *m, Simplex *s, PetscInt n_inside, Sum *sum
   add(m, corner, one ? 1 : -1, sum);
 }
 
+/* Where the surface crosses the edges of a simplex, one after the other around it; returns how many. */
+static PetscInt crossings(const Measure *m, const Simplex *s, PetscReal at[4][3])
+{
+  PetscInt n = 0;
+  PetscReal xi[3];
+  for (PetscInt i = 0, turn = 0; i <= m->dim; ++i) {
+    if (!s->inside[i]) continue;
+    for (PetscInt k = 0; k <= m->dim; ++k) {
+      const PetscInt j = turn ? m->dim - k : k; /* back and forth: a quadrilateral's corners follow each other */
+      if (s->inside[j]) continue;
+      cross(m, s->xi[i], s->xi[j], xi);
+      cell_position(m->type, m->x, xi, at[n++]);
+    }
+    turn = !turn;
+  }
+  return n;
+}
+
+/* The part of the surface in a simplex that it crosses. */
+static void add_face(const Measure *m, const Simplex *s, Sum *sum)
+{
+  PetscReal at[4][3] = {{0}}, out[3] = {0, 0, 0}, area[3] = {0, 0, 0}, position[3], along = 0;
+  const PetscInt n = crossings(m, s, at);
+  for (PetscInt i = 0; i <= m->dim; ++i) {
+    cell_position(m->type, m->x, s->xi[i], position);
+    for (PetscInt d = 0; d < m->dim; ++d) out[d] += (s->inside[i] ? -1 : 1) * (position[d] - at[0][d]);
+  }
+  if (m->dim == 2) area[0] = at[1][1] - at[0][1], area[1] = at[0][0] - at[1][0];
+  for (PetscInt k = 1; k + 1 < n && m->dim == 3; ++k)
+    for (int d = 0; d < 3; ++d) {
+      const int i = (d + 1) % 3, j = (d + 2) % 3;
+      area[d] +=
+        0.5 * ((at[k][i] - at[0][i]) * (at[k + 1][j] - at[0][j]) - (at[k][j] - at[0][j]) * (at[k + 1][i] - at[0][i]));
+    }
+  for (PetscInt d = 0; d < m->dim; ++d) along += area[d] * out[d];
+  for (PetscInt d = 0; d < m->dim; ++d) sum->face[d] += along < 0 ? -area[d] : area[d];
+}
+
 /* Halves a simplex at its longest edge. */
 static void halve(const Measure *m, const Simplex *s, Simplex half[2])
 {
@@ -240,6 +281,7 @@ static void measure(Measure *m, Simplex *s, PetscInt depth)
   if (ends) {
     add(m, s->xi, 1, m->whole + q);
     if (n_inside) add_inside(m, s, n_inside, m->fine + q);
+    if (mixed && m->faces) add_face(m, s, m->fine + q);
     return;
   }
   halve(m, s, half);
@@ -281,7 +323,12 @@ SeedFill seed_parts(const Seeding *s, PetscInt cell, const SeedRule *rule, SeedP
 {
   PetscReal x[CELL_MAX_NODES * 3], whole = 0, inside = 0;
   const PetscInt dim = s->source->dim;
-  Measure m = {.shape = &s->body->shape, .rule = rule, .type = grid_cell_type(s->source, cell), .dim = dim, .x = x};
+  Measure m = {.shape = &s->body->shape,
+               .rule = rule,
+               .type = grid_cell_type(s->source, cell),
+               .dim = dim,
+               .x = x,
+               .faces = s->faces};
   grid_cell_x(s->source, cell, x);
   m.slack = 1e-10 * PetscPowReal(cell_volume(m.type, x), 1 / (PetscReal)dim);
   measure_cell(&m);
@@ -292,6 +339,7 @@ SeedFill seed_parts(const Seeding *s, PetscInt cell, const SeedRule *rule, SeedP
     part[q] = (SeedPart){.share = (is_whole(&m, q) ? 1 : factor) * sum->volume / whole, .whole = is_whole(&m, q)};
     if (part[q].share < NOTHING) part[q].share = 0;
     inside += part[q].share;
+    for (PetscInt d = 0; d < dim; ++d) part[q].face[d] = sum->face[d];
     for (PetscInt d = 0; d < dim && part[q].share > 0; ++d) part[q].xi[d] = sum->moment[d] / sum->volume;
   }
   join_slivers(part, rule->n, dim);

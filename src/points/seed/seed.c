@@ -2,6 +2,8 @@
 #include "points/fields.h"
 #include "points/seed/seed.h"
 
+#define AHEAD 0.1 /* of the side of a point's part: so far a surface is looked for in front of it */
+
 void seed_path(PetscInt body, const char *key, size_t size, char *path)
 {
   snprintf(path, size, "bodies[%d]%s%s", (int)body, *key ? "." : "", key);
@@ -228,15 +230,33 @@ static PetscBool shares_equally(const Seeding *s, CellType type)
   return s->equal && (!s->c->kinematics->hoop || type == CELL_TRIANGLE);
 }
 
-/* Distance from the body's surface; where that cuts the cell, what the shape says of it. */
+/* Where the surface cuts a cell: what the shape says of it. Beyond what a whole part has (usual) only who was given the
+ * surface that is so near knows it, which comes nearer towards that: nobody else stands before it. side: of a whole part. */
+static PetscReal depth_of(const Seeding *s, const SeedPart *part, const PetscReal *position, PetscReal usual,
+                          PetscReal side)
+{
+  const PetscInt dim = s->source->dim;
+  const PetscReal depth = shape_depth(&s->body->shape, dim, position, side);
+  PetscReal square = 0, ahead[3];
+  for (PetscInt d = 0; d < dim; ++d) square += part->face[d] * part->face[d];
+  if (depth <= usual || square == 0) return PetscMin(depth, usual);
+  for (PetscInt d = 0; d < dim; ++d) ahead[d] = position[d] + AHEAD * side * part->face[d] / PetscSqrtReal(square);
+  const PetscReal nearer = depth - shape_depth(&s->body->shape, dim, ahead, side);
+  return nearer > 0.5 * AHEAD * side ? depth : usual;
+}
+
+/* Distance from the body's surface. */
 static PetscReal reach_of(const Seeding *s, PetscInt k, const PetscReal *x, PetscInt q, const PetscReal *position,
                           PetscReal section, PetscReal whole)
 {
+  static const unsigned char inside[CELL_MOST_SIDES] = {0};
   const CellType type = grid_cell_type(s->source, s->cells[k]);
-  if (s->cut && s->cut[k] >= 0)
-    return shape_depth(&s->body->shape, s->source->dim, position,
-                       0.5 * PetscPowReal(whole, 1 / (PetscReal)s->source->dim));
-  return seed_reach(type, x, position, section, seed_rule(s, s->cells[k]), q, s->outer + k * CELL_MOST_SIDES);
+  const SeedRule *rule = seed_rule(s, s->cells[k]);
+  PetscReal at[3];
+  if (!s->cut || s->cut[k] < 0) return seed_reach(type, x, position, section, rule, q, s->outer + k * CELL_MOST_SIDES);
+  cell_position(type, x, rule->xi + q * s->source->dim, at);
+  return depth_of(s, s->part + s->cut[k] + q, position, seed_reach(type, x, at, whole, rule, q, inside),
+                  PetscPowReal(whole, 1 / (PetscReal)s->source->dim));
 }
 
 /* The q-th point of the k-th cell, with nodes at x. share: its part of the section, or of the
@@ -262,6 +282,8 @@ static PetscErrorCode SeedPoint(const Seeding *s, Points *points, PetscInt k, co
     seed_domain(grid_cell_type(s->source, cell), x, xi, part && !part->whole ? 0 : rule->side, section,
                 point_real(points, POINT_DOMAIN, p));
   if (s->outer) *point_real(points, POINT_REACH, p) = reach_of(s, k, x, q, position, section, whole);
+  if (s->faces && (part || s->source != s->grid || !s->equal))
+    seed_face(s, cell, x, q, part, s->outer + k * CELL_MOST_SIDES, point_real(points, POINT_FACE, p));
   if (points->components[POINT_SLOPE]) seed_slope(s->body, dim, point_real(points, POINT_SLOPE, p));
   if (seed->n_state) PetscCall(PetscArraycpy(point_real(points, POINT_STATE, p), seed->initial, seed->n_state));
   points->id[p] = s->first_id + (PetscInt64)s->source->global_cell[cell] * s->rule.n + q;
@@ -404,6 +426,7 @@ PetscErrorCode PointsSeedOutlined(Points *points, const Grid *grid, const Case *
                  .body = c->bodies + b,
                  .first_id = next,
                  .domains = points->components[POINT_DOMAIN] > 0,
+                 .faces = points->components[POINT_FACE] > 0,
                  .equal = equal,
                  .outline = outline};
     if (!s.body->absent) PetscCall(SeedBody(&s, points, taken, per_material, &next));

@@ -15,7 +15,8 @@ typedef struct {
  * middle of that is. */
 typedef struct {
   PetscReal share, xi[3];
-  PetscBool whole; /* all of the part does */
+  PetscReal face[3]; /* the body's surface in it, where that is asked for, as a vector outwards, m2 */
+  PetscBool whole;   /* all of the part does */
 } SeedPart;
 
 typedef enum { SEED_NONE, SEED_CUT, SEED_WHOLE } SeedFill;
@@ -35,6 +36,7 @@ typedef struct {
   unsigned char *outer;      /* n_cells x CELL_MOST_SIDES: is it the body's surface? NULL: nobody asks */
   SeedRule rule, first_rule; /* for cells of the source's type, and of its first_type */
   PetscBool domains;         /* do the points have some? */
+  PetscBool faces;           /* are they to know the part of the body's surface that they stand for? */
   PetscBool equal;           /* `weights: auto` shares cells equally */
   PetscInt64 first_id;
   Outline *outline; /* gets the surface of these cells; NULL: nobody wants it */
@@ -62,6 +64,11 @@ void seed_domain(CellType type, const PetscReal *x, const PetscReal *xi, PetscIn
  * part of the section, or of the volume in space. */
 PetscReal seed_reach(CellType type, const PetscReal *x, const PetscReal *position, PetscReal section,
                      const SeedRule *rule, PetscInt q, const unsigned char *outer);
+
+/* The surface of the q-th point of the cell's rule, with nodes at x: that of its part (NULL: it has all of it), and the
+ * sides that are `outer` and that it lies along, as far as they belong to the body. */
+void seed_face(const Seeding *s, PetscInt cell, const PetscReal *x, PetscInt q, const SeedPart *part,
+               const unsigned char *outer, PetscReal *face);
 
 /* Collective. After the cells were chosen: errors for a body without a cell, warnings where whole
  * cells represent the shape badly, or have a single point that leaves them soft. */

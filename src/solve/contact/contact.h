@@ -19,7 +19,8 @@ typedef struct {
   PetscInt owner; /* the material point, or the node */
   PetscInt wall;  /* or the number of walls + the interface */
   int side;
-  PetscInt first, n;   /* nodes that carry it: node[first] .. of Contact, */
+  PetscInt first, n;   /* nodes that carry it: node[first] .. of Contact; the first of them, */
+  PetscInt own;        /* so many, are of its own body, others of the other one, */
   PetscInt slot;       /* and the first of their n x n pairs */
   PetscReal reach;     /* from the material point to its surface, at the start of the step, m */
   PetscReal x[3];      /* at the start of the step, m */
@@ -126,6 +127,9 @@ PetscBool contact_passes(const Contact *contact, ContactPoint *c, PetscReal gap,
 PetscErrorCode ContactFindBodies(Contact *contact, const NodalScene *scene);
 /* contact_section.c. Surface that material point p stands for before a wall with the normal n, m2. */
 PetscReal contact_section(const NodalScene *scene, PetscInt p, const PetscReal n[3]);
+/* Of the surface of its body that material point p was given (POINT_FACE) what looks at a wall with the normal n, as the
+ * body is now, m2 (in rings m); 0: none. */
+PetscReal contact_face(const Points *points, PetscInt p, const PetscReal n[3]);
 /* Position of a contact point with the field's increments, times `whole`. */
 void contact_place(const Contact *contact, const ContactPoint *c, const PetscReal *du, PetscReal whole, PetscReal x[3]);
 
