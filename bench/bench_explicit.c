@@ -1,11 +1,11 @@
 /* What a substep of explicit dynamics costs: 0.5 s of collapse of the column of cases/granular-collapse with a
  * row every 10 ms, and blocks of Mohr-Coulomb material that slide, in the plane and in space.
  *
- *   build/bench/bench_explicit [-only column|plane|space|gimp|walls] [-cells N] [-steps N] [-anew]
+ *   build/bench/bench_explicit [-only column|plane|space|gimp|walls|loads] [-cells N] [-steps N] [-anew]
  *                              [-case cases/granular-collapse/case.yaml] [-bound PROGRAM]
  *
  * Blocks of about 100,000 points, or of N cells along each side (500 in the plane and 50 in space: a million
- * points), for so many steps of the run; over nodes that are held or over a wall with friction. -anew: points find
+ * points), for so many steps of the run; over nodes that are held or over a wall with friction, or under a pressure. -anew: points find
  * their functions anew in every substep, as they do where there is no faster way. PROGRAM: explicit_bound or another, to be run between two columns with
  * arguments "1e-4 0.5 20 1 1 1.5"; it prints its own time. Seconds are those in which a core worked for this
  * process, of the slowest rank. */
@@ -71,12 +71,14 @@ static double nanoseconds(const Model *m, const Outcome *o)
 typedef struct {
   const char *word, *basis;
   PetscInt dim;
-  PetscBool wall;
+  PetscBool wall, pressed;
 } Block;
 
-static const Block blocks[] = {{"plane", "cell", 2, PETSC_FALSE}, {"gimp", "gimp", 2, PETSC_FALSE},
-                               {"space", "cell", 3, PETSC_FALSE}, {"walls", "cell", 2, PETSC_TRUE},
-                               {"walls", "gimp", 2, PETSC_TRUE},  {"walls", "cell", 3, PETSC_TRUE}};
+static const Block blocks[] = {
+  {"plane", "cell", 2, PETSC_FALSE, PETSC_FALSE}, {"gimp", "gimp", 2, PETSC_FALSE, PETSC_FALSE},
+  {"space", "cell", 3, PETSC_FALSE, PETSC_FALSE}, {"walls", "cell", 2, PETSC_TRUE, PETSC_FALSE},
+  {"walls", "gimp", 2, PETSC_TRUE, PETSC_FALSE},  {"walls", "cell", 3, PETSC_TRUE, PETSC_FALSE},
+  {"loads", "cell", 2, PETSC_FALSE, PETSC_TRUE},  {"loads", "cell", 3, PETSC_FALSE, PETSC_TRUE}};
 
 static void block_case(const Block *block, PetscInt cells_of_side, BenchCase *b, WallSpec *wall)
 {
@@ -98,6 +100,15 @@ static void block_case(const Block *block, PetscInt cells_of_side, BenchCase *b,
   b->motion.on.has[1] = PETSC_TRUE;
   b->c.gravity[block->dim - 1] = 0;
   b->c.gravity[1] = -9.81;
+  if (block->pressed) {
+    static LoadSpec load;
+    load = (LoadSpec){.kind = LOAD_PRESSURE, .value = {1000}};
+    load.on.body = b->body.name;
+    load.on.has[1] = PETSC_TRUE;
+    load.on.min[1] = load.on.max[1] = 1;
+    b->c.loads = &load;
+    b->c.n_loads = 1;
+  }
   if (!block->wall) return;
   *wall = (WallSpec){
     .name = (char *)"floor", .shape = {.kind = SHAPE_HALF_SPACE}, .contact = CONTACT_FRICTION, .friction = 0.3};
@@ -128,8 +139,10 @@ static PetscErrorCode Slide(const Block *block, PetscInt cells_of_side, PetscInt
   PetscCall(PetscPrintf(PETSC_COMM_WORLD,
                         "%dD, %s, %s: %d points, %d substeps, %.1f ns a point and substep, %d bytes a point\n",
                         (int)block->dim, strcmp(block->basis, "cell") ? block->basis : "linear",
-                        block->wall ? "over a wall" : "over held nodes", (int)o.points, (int)o.substeps,
-                        nanoseconds(m, &o), (int)points_bytes(m->points)));
+                        block->pressed ? "pressed on held nodes"
+                        : block->wall  ? "over a wall"
+                                       : "over held nodes",
+                        (int)o.points, (int)o.substeps, nanoseconds(m, &o), (int)points_bytes(m->points)));
   PetscCall(ModelDestroy(&m));
   PetscFunctionReturn(0);
 }

@@ -239,7 +239,7 @@ typedef struct {
   const char *transfer, *basis;
 } Walk;
 
-static void layers(Bench *b, MaterialSpec materials[2], const Walk *walk)
+static void layers(Bench *b, MaterialSpec materials[2], const Walk *walk, int loads)
 {
   static NamedValue grains[] = {
     {"young", 1e6}, {"poisson", 0.3}, {"friction_angle", 30}, {"dilatancy_angle", 5}, {"cohesion", 0}};
@@ -265,6 +265,8 @@ static void layers(Bench *b, MaterialSpec materials[2], const Walk *walk)
   b->body[1].material = "grains";
   bench_box(b, 0, (PetscReal[]){start, 4 * h, 0}, (PetscReal[]){end, 5 * h, 3 * h});
   bench_box(b, 1, (PetscReal[]){start, 0, 0}, (PetscReal[]){end, 4 * h, 3 * h});
+  for (int k = 0; k < loads; ++k)
+    bench_traction(b, 1, 5 * h, "body", 300, -1000, 0)->kind = k ? LOAD_PRESSURE : LOAD_TRACTION;
 }
 
 static void test_walks(void **state)
@@ -290,7 +292,7 @@ static void test_walks(void **state)
   for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(walks); ++k) {
     MaterialSpec materials[2];
     Bench b;
-    layers(&b, materials, &walks[k]);
+    layers(&b, materials, &walks[k], (int)k % 3); /* none, a traction, a traction and a pressure */
     Model *fast = bench_model(&b, PETSC_COMM_WORLD), *plain = bench_model(&b, PETSC_COMM_WORLD);
     CALL(ExplicitCreate(plain, &plain->explicit));
     plain->explicit->box = PETSC_FALSE;
@@ -327,6 +329,31 @@ static void test_resumed(void **state)
   CALL(ModelDestroy(&again));
 }
 
+/* A block that turns under a pressure on one of its sides: the push turns with it. */
+static void test_pressed(void **state)
+{
+  static const CellType cell[] = {CELL_QUADRILATERAL, CELL_TRIANGLE};
+  const PetscReal rate = 0.5 * PETSC_PI / 0.4, push = 1000;
+  (void)state;
+  for (int k = 0; k < 2; ++k) {
+    Bench b;
+    bench_init(&b, "mpm", cell[k], 0);
+    bench_grid(&b, (PetscReal[]){-1, -1, 0}, (PetscReal[]){2, 2, 0}, 0.125);
+    bench_box(&b, 0, (PetscReal[]){0, 0, 0}, (PetscReal[]){1, 1, 0});
+    explicit_case(&b, 1, 5e-3);
+    b.c.analysis.transfer = (char *)"consistent";
+    b.body[0].spin[2] = rate;
+    b.body[0].spin_centre[0] = b.body[0].spin_centre[1] = 0.5;
+    bench_traction(&b, 0, 1, "body", push, 0, 0)->kind = LOAD_PRESSURE;
+    Model *m = bench_model(&b, PETSC_COMM_WORLD);
+    while (m->time < 0.4 - 1e-9) model_step(m, PETSC_MAX_REAL);
+    for (PetscInt d = 0; d < 2; ++d) CHECK_CLOSE(model_sum(m, "momentum", d), -push / rate, 0.02 * push / rate);
+    CHECK(m->explicit->box == (cell[k] == CELL_QUADRILATERAL), "in laps");
+    CHECK(PetscAbsReal(model_sum(m, "energy: balance", 0)) < 1e-12, "open");
+    CALL(ModelDestroy(&m));
+  }
+}
+
 static void test_refused(void **state)
 {
   Bench b;
@@ -347,10 +374,10 @@ static void test_refused(void **state)
 
 int main(int argc, char **argv)
 {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_flight), cmocka_unit_test(test_turns),
-                                     cmocka_unit_test(test_bounce), cmocka_unit_test(test_ranks),
-                                     cmocka_unit_test(test_walks),  cmocka_unit_test(test_resumed),
-                                     cmocka_unit_test(test_ages),   cmocka_unit_test(test_refused)};
+  const struct CMUnitTest tests[] = {
+    cmocka_unit_test(test_flight), cmocka_unit_test(test_turns),   cmocka_unit_test(test_bounce),
+    cmocka_unit_test(test_ranks),  cmocka_unit_test(test_walks),   cmocka_unit_test(test_resumed),
+    cmocka_unit_test(test_ages),   cmocka_unit_test(test_pressed), cmocka_unit_test(test_refused)};
   if (PetscInitialize(&argc, &argv, NULL, NULL)) return 1;
   const int failed = cmocka_run_group_tests(tests, NULL, NULL);
   return PetscFinalize() || failed;

@@ -119,6 +119,29 @@ static void test_circles(void **state)
   assert_true(turned < 0.04 && PetscAbsReal(least - 0.02) < 0.005 * size);
 }
 
+/* Blocks that have sunk into each other by less than a point still meet along the normal of their sides. */
+static void test_sunk(void **state)
+{
+  static Body upper, lower;
+  const PetscReal gap = -0.04;
+  (void)state;
+  for (int k = 0; k < 24; ++k) {
+    const PetscReal angle = 0.27 * k, c = PetscCosReal(angle), s = PetscSinReal(angle);
+    int met = 0;
+    block(&lower, angle, -1.5, 1.5, -0.5, 0, 0.125);
+    block(&upper, angle, -0.57 + 0.01 * k, 0.5, gap, 0.5, 0.1);
+    for (const SurfacePoint *p = upper.point; p < upper.point + upper.surface.n; ++p) {
+      SurfacePair pair;
+      if (-s * p->x[0] + c * p->x[1] > gap + 0.1 || !surface_meet(&upper.surface, p, &lower.surface, 0.25, &pair))
+        continue;
+      ++met;
+      assert_true(PetscAbsReal(pair.normal[0] + s) < 1e-9 && PetscAbsReal(pair.normal[1] - c) < 1e-9);
+      assert_true(PetscAbsReal(pair.gap - p->reach - gap) < 1e-9);
+    }
+    assert_true(met >= 8);
+  }
+}
+
 /* Beside the other body there is nothing to meet, and where bodies overlap there is still an answer. */
 static void test_edges(void **state)
 {
@@ -139,10 +162,8 @@ static void test_edges(void **state)
 int main(void)
 {
   const struct CMUnitTest tests[] = {
-    cmocka_unit_test(test_planes),
-    cmocka_unit_test(test_corner),
-    cmocka_unit_test(test_circles),
-    cmocka_unit_test(test_edges),
+    cmocka_unit_test(test_planes), cmocka_unit_test(test_corner), cmocka_unit_test(test_circles),
+    cmocka_unit_test(test_sunk),   cmocka_unit_test(test_edges),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

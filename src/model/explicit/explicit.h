@@ -39,6 +39,7 @@ typedef struct Explicit {
   PetscBool box;    /* do points find their nodes by arithmetic? */
   PetscBool smooth; /* and are their functions those of gimp? */
   PetscBool loaded; /* does anything act on nodes but stress, weight and walls? */
+  PetscBool shared; /* do points of a cell share their change of volume (formulation mean-dilatation)? */
   Lattice lattice;
   PetscInt width;             /* 1 + 2 dim */
   PetscReal *sum;             /* n_nodes x width: mass, kg, momentum, kg m/s, and force, N */

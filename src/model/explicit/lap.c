@@ -12,7 +12,20 @@
 /* Are there walks for gimp? In space sixty-four nodes around a cell would be no gain. */
 static PetscBool is_smooth(const Model *m) { return m->dim == 2 && m->space->basis == basis_find("gimp"); }
 
-/* Does anything but walls have to be found anew in every substep? */
+/* Does anything act that asks for the nodes of all points? Walls ask for those near them, and carriers of loads look
+ * for their own; loads on sides of cells want to know which of these are filled. */
+static PetscBool asks_for_all(const Model *m)
+{
+  for (PetscInt i = 0; i < m->forces.n; ++i) {
+    const NodalForce *kind = m->forces.one[i].kind;
+    if (m->forces.one[i].data != m->contact && kind != &nodal_force_loads && kind != &nodal_force_pressures)
+      return PETSC_TRUE;
+  }
+  for (PetscInt k = 0; k < m->c->n_loads; ++k)
+    if (m->loads->faces[k].used) return PETSC_TRUE;
+  return PETSC_FALSE;
+}
+
 static PetscBool is_loaded(const Model *m)
 {
   for (PetscInt i = 0; i < m->forces.n; ++i)
@@ -24,7 +37,7 @@ static PetscBool is_loaded(const Model *m)
 PetscBool explicit_by_arithmetic(const Model *m)
 {
   const GridBox *box = m->grid->box;
-  if (!box || is_loaded(m)) return PETSC_FALSE;
+  if (!box || asks_for_all(m) || m->formulation->cells || m->c->n_interfaces) return PETSC_FALSE;
   if (m->space->basis->nodes != BASIS_OF_CELLS && !is_smooth(m)) return PETSC_FALSE;
   if (m->grid->nodes_per_cell != (m->dim == 2 ? 4 : 8)) return PETSC_FALSE;
   for (PetscInt d = 0; d < m->dim; ++d)
@@ -67,6 +80,7 @@ PetscErrorCode ExplicitCreate(const Model *m, Explicit **explicit)
   e->width = 1 + 2 * dim;
   e->box = explicit_by_arithmetic(m);
   e->smooth = is_smooth(m);
+  e->shared = m->formulation->cells;
   PetscCall(SupportCreate(&e->near.support));
   e->slopes = m->points->components[POINT_SLOPE] > 0;
   if (e->box) lattice_of(m, &e->lattice);
@@ -125,6 +139,7 @@ static PetscErrorCode ListActive(Model *m, Explicit *e)
 
   PetscFunctionBeginUser;
   PetscCall(PetscArrayzero(e->mark, n));
+  if (e->box) PetscCall(PetscArrayzero(m->nodes->touched, n)); /* each substep says it of the active ones */
   for (PetscInt p = 0, last = -1; e->box && p < m->points->n; ++p) {
     if (m->points->cell[p] >= 0 && m->points->cell[p] != last) mark_around(m, m->points->cell[p], e->mark);
     last = m->points->cell[p];
@@ -185,7 +200,7 @@ PetscErrorCode LapBegin(Model *m, Explicit *e, PetscReal left)
   PetscFunctionBeginUser;
   PetscCall(PetscTime(&clock));
   e->loaded = is_loaded(m);
-  e->box = e->box && !e->loaded; /* a body force may have come since */
+  e->box = e->box && !asks_for_all(m); /* a body force may have come since */
   PetscCall(See(m, e));
   if (e->critical == 0 || e->since >= LAP_MOST) {
     PetscCall(NonlocalStep(m));

@@ -10,6 +10,18 @@ PetscErrorCode NodesShare(const Model *m, PetscInt components, PetscReal *values
   PetscFunctionReturn(0);
 }
 
+/* Contact alone, or all others. */
+static PetscErrorCode Begin(const Model *m, const NodalScene *scene, PetscBool contact)
+{
+  PetscFunctionBeginUser;
+  for (PetscInt k = 0; k < m->forces.n; ++k) {
+    const NodalForce *kind = m->forces.one[k].kind;
+    if (kind->begin && (m->forces.one[k].data == m->contact) == contact)
+      PetscCall(kind->begin(m->forces.one[k].data, scene));
+  }
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode ForcesBegin(Model *m, Explicit *e)
 {
   PetscFunctionBeginUser;
@@ -21,9 +33,15 @@ PetscErrorCode ForcesBegin(Model *m, Explicit *e)
     scene.support = e->near.support;
     scene.seen = e->near.point;
   }
-  PetscCall(NodalForcesBegin(&m->forces, &scene));
+  PetscCall(Begin(m, &scene, PETSC_TRUE));
   PetscCall(WallsPush(m, e));
   PetscFunctionReturn(0);
+}
+
+/* Which nodes do points reach now? */
+static void touch(const Model *m, const Explicit *e)
+{
+  for (PetscInt k = 0; k < e->n_active; ++k) m->nodes->touched[e->active[k]] = e->sum[e->active[k] * e->width] > 0;
 }
 
 /* Forces of loads, summed over the ranks, go to those that the points gave. */
@@ -33,7 +51,9 @@ static PetscErrorCode AddLoads(Model *m, Explicit *e)
 
   PetscFunctionBeginUser;
   if (!e->loaded) PetscFunctionReturn(0);
+  if (e->box) touch(m, e);
   const NodalScene scene = nodal_scene(m, e->time, n->du);
+  PetscCall(Begin(m, &scene, PETSC_FALSE));
   PetscCall(NodalForcesExternal(&m->forces, &scene, PETSC_TRUE, n->external));
   PetscCall(GridToGhosts(m->grid, m->dim, n->external));
   PetscFunctionReturn(0);
@@ -143,6 +163,18 @@ static PetscErrorCode Follow(Model *m, Points *followers)
   PetscFunctionReturn(0);
 }
 
+/* Pressures stay along the normal of their surface. */
+static PetscErrorCode Turn(Model *m, const Explicit *e)
+{
+  const NodalScene scene = nodal_scene(m, e->time, m->nodes->du);
+
+  PetscFunctionBeginUser;
+  for (PetscInt k = 0; k < m->forces.n; ++k)
+    if (m->forces.one[k].kind == &nodal_force_pressures)
+      PetscCall(nodal_force_pressures.commit(m->forces.one[k].data, &scene));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode NodesCarry(Model *m, Explicit *e)
 {
   const PetscInt dim = m->dim;
@@ -151,15 +183,16 @@ PetscErrorCode NodesCarry(Model *m, Explicit *e)
 
   PetscFunctionBeginUser;
   for (PetscInt k = 0; k < m->c->n_measures; ++k) tracers = tracers || measure_has_tracer(&m->c->measures[k]);
+  if (tracers || m->c->n_loads) touch(m, e);
   for (PetscInt k = 0; (tracers || m->c->n_loads) && k < e->n_active; ++k) {
     const PetscInt node = e->active[k];
-    n->touched[node] = e->sum[node * e->width] > 0;
     for (PetscInt d = 0, i = node * dim; d < dim; ++d, ++i) {
       n->v1[i] = e->motion[node * 2 * dim + d];
       n->a1[i] = e->motion[node * 2 * dim + dim + d] / e->kick;
       n->du[i] = e->dt * n->v1[i];
     }
   }
+  PetscCall(Turn(m, e));
   if (tracers) PetscCall(Follow(m, m->tracers));
   if (m->c->n_loads) PetscCall(Follow(m, m->loads->carriers));
   for (PetscInt k = 0; k < e->n_active; ++k)

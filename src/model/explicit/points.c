@@ -1,5 +1,6 @@
 /* The three walks over the points of a substep, for any grid and basis. Boxes where points find their nodes by
  * arithmetic have walks of their own, in the plane (plane.c) and in space (space.c). */
+#include <math.h>
 #include <string.h>
 #include "base/math/tensor.h"
 #include "model/explicit/explicit.h"
@@ -30,18 +31,40 @@ KERNEL void lean(const int dim, const Model *m, PetscInt p, PetscInt node, Petsc
     for (int j = 0; j < dim; ++j) momentum[i] += share * G[i * dim + j] * (m->grid->x[node * dim + j] - x[j]);
 }
 
+/* Of the plane strain that cannot change, not of the third direction. */
+KERNEL PetscReal mean_of(const int dim, const PetscBool hoop, const PetscReal *tau)
+{
+  return dim == 2 && !hoop ? 0.5 * (tau[0] + tau[1]) : (tau[0] + tau[1] + tau[2]) / 3;
+}
+
+/* Mean of Cauchy's mean stress over the points of a group: what force has in place of each one's own where they share
+ * their change of volume (docs/theory.md, "Mean dilatation": P / sum v). */
+KERNEL PetscReal shared_mean(const int dim, const PetscBool hoop, const Points *points, const PetscInt range[2])
+{
+  PetscReal all = 0, volume = 0;
+  for (PetscInt p = range[0]; p < range[1]; ++p) {
+    all += points->real[POINT_VOLUME][p] * mean_of(dim, hoop, point_real(points, POINT_TAU, p));
+    volume += points->real[POINT_VOLUME][p] * points->real[POINT_J][p];
+  }
+  return all / volume;
+}
+
 /* f_I = - V_0 tau grad N_I, with gradients where the point is now. */
 KERNEL void gather(const int dim, const PetscBool hoop, const Model *m, Explicit *e)
 {
   const Points *points = m->points;
-  const PetscInt width = 1 + 2 * dim;
+  const PetscInt width = 1 + 2 * dim, *start = m->space->support->point_start;
   Sight s = {0};
+  PetscReal mean = 0;
   for (PetscInt p = 0; p < points->n; ++p) {
     const PetscReal *v = point_real(points, POINT_V, p), mass = points->real[POINT_MASS][p];
     const PetscReal volume = points->real[POINT_VOLUME][p], *stress = point_real(points, POINT_TAU, p);
     PetscReal tau[6];
-    for (int k = 0; k < 6; ++k) tau[k] = k < (dim == 2 ? 4 : 6) ? -volume * stress[k] : 0;
     look(dim, m->space->support, p, &s);
+    if (e->shared && p == start[s.group]) mean = shared_mean(dim, hoop, points, start + s.group);
+    const PetscReal more = e->shared ? points->real[POINT_J][p] * mean - mean_of(dim, hoop, stress) : 0;
+    for (int k = 0; k < 6; ++k)
+      tau[k] = k < (dim == 2 ? 4 : 6) ? -volume * (stress[k] + (k < (dim == 2 && !hoop ? 2 : 3)) * more) : 0;
     const PetscReal ring = hoop ? tau[2] / *point_real(points, POINT_X, p) : 0;
     for (PetscInt k = 0; k < s.nn; ++k) {
       PetscReal *sum = e->sum + s.node[k] * width;
@@ -104,9 +127,25 @@ KERNEL void strain_point(const int dim, const PetscBool hoop, const Model *m, co
   for (int d = 0; d < dim; ++d) move[d] *= e->dt;
 }
 
-/* One call of the law's. */
+/* theta of a group: what its points' volumes grow by together. */
+KERNEL PetscReal shared_growth(const int dim, const PetscBool hoop, const Model *m, const Explicit *e,
+                               const PetscInt range[2], Sight s)
+{
+  PetscReal before = 0, after = 0, dF[9], move[3];
+  for (PetscInt p = range[0]; p < range[1]; ++p) {
+    const PetscReal volume = m->points->real[POINT_VOLUME][p] * m->points->real[POINT_J][p];
+    look(dim, m->space->support, p, &s);
+    strain_point(dim, hoop, m, e, &s, p, dF, move);
+    before += volume;
+    after += volume * tensor_det(dF);
+  }
+  return after / before;
+}
+
+/* One call of the law's. dF: of the points; given: what the law gets, other than that where they share their change of
+ * volume, growth. */
 typedef struct {
-  PetscReal dF[9 * LAW_BATCH], move[3 * LAW_BATCH];
+  PetscReal dF[9 * LAW_BATCH], given[9 * LAW_BATCH], growth[LAW_BATCH], move[3 * LAW_BATCH];
   PetscReal old[LAW_MAX_STATE * LAW_BATCH], state[LAW_MAX_STATE * LAW_BATCH], tau[6 * LAW_BATCH];
 } Strained;
 
@@ -121,7 +160,7 @@ static LawStatus points_stress(const Model *m, PetscInt first, PetscInt n, Strai
     old = b->old;
   }
   const LawUpdate update = law_update_in(material->law, m->c->kinematics);
-  const LawStatus status = update(material->parameters, n, b->dF, old, b->state, b->tau, NULL);
+  const LawStatus status = update(material->parameters, n, b->given, old, b->state, b->tau, NULL);
   if (stride == n_state) memcpy(state, b->state, (size_t)(n * n_state) * sizeof *state);
   else
     for (PetscInt k = 0; k < n * n_state; ++k) state[k / n_state * stride + k % n_state] = b->state[k];
@@ -130,17 +169,18 @@ static LawStatus points_stress(const Model *m, PetscInt first, PetscInt n, Strai
 
 /* F, J, stress and its work, with A = dF - 1 and A - A^2 for 1 - dF^-1 in the trapezoidal rule of stress_work
  * (formulation/walk.h): a substep is so short that A^3 is beyond the digits of the work. */
-KERNEL void keep(const int dim, Points *points, PetscInt p, const PetscReal *dF, const PetscReal *tau)
+KERNEL void keep(const int dim, Points *points, PetscInt p, const Strained *b, PetscInt at)
 {
   const int n = dim == 2 ? 4 : 6;
+  const PetscReal *dF = b->dF + 9 * at, *given = b->given + 9 * at, *tau = b->tau + 6 * at;
   PetscReal *F = point_real(points, POINT_F, p), *old = point_real(points, POINT_TAU, p), A[9], new_F[9], work = 0;
-  for (int i = 0; i < 9; ++i) A[i] = dF[i] - (i % 4 == 0);
+  for (int i = 0; i < 9; ++i) A[i] = given[i] - (i % 4 == 0);
   for (int i = 0; i < dim; ++i)
     for (int j = 0; j < dim; ++j) {
-      PetscReal square = 0, sum = F[dim * i + j];
+      PetscReal square = 0, sum = 0;
       for (int k = 0; k < dim; ++k) {
         square += A[3 * i + k] * A[3 * k + j];
-        sum += A[3 * i + k] * F[dim * k + j];
+        sum += dF[3 * i + k] * F[dim * k + j];
       }
       const int voigt = voigt_of[i][j];
       work += old[voigt] * A[3 * i + j] + tau[voigt] * (A[3 * i + j] - square);
@@ -148,9 +188,9 @@ KERNEL void keep(const int dim, Points *points, PetscInt p, const PetscReal *dF,
     }
   if (dim == 2) {
     work += old[2] * A[8] + tau[2] * (A[8] - A[8] * A[8]);
-    new_F[4] = F[4] + A[8] * F[4];
-    points->real[POINT_J][p] *= (dF[0] * dF[4] - dF[1] * dF[3]) * dF[8];
-  } else points->real[POINT_J][p] *= tensor_det(dF);
+    new_F[4] = dF[8] * F[4];
+  }
+  points->real[POINT_J][p] *= b->growth[at];
   for (int i = 0; i < (dim == 2 ? 5 : 9); ++i) F[i] = new_F[i];
   for (int k = 0; k < n; ++k) old[k] = tau[k];
   points->real[POINT_WORK][p] += 0.5 * points->real[POINT_VOLUME][p] * work;
@@ -163,9 +203,22 @@ KERNEL void follow(const int dim, const Explicit *e, Points *points, PetscInt p,
   slope_follow(dim, e, A, point_real(points, POINT_SLOPE, p));
 }
 
+/* What the law gets for point p, the k-th of the batch: of its group it is told the change of volume. */
+KERNEL void give(const int dim, const PetscBool hoop, const Explicit *e, PetscReal growth, Strained *b, PetscInt k)
+{
+  const PetscReal *dF = b->dF + 9 * k, own = tensor_det(dF);
+  const PetscBool flat = dim == 2 && !hoop;
+  PetscReal *given = b->given + 9 * k, by = 1;
+  if (e->shared && own > 0) by = flat ? PetscSqrtReal(growth / own) : cbrt(growth / own);
+  for (int i = 0; i < 9; ++i) given[i] = (flat && i == 8 ? 1 : by) * dF[i];
+  b->growth[k] = e->shared ? growth : own;
+}
+
 KERNEL void strain(const int dim, const PetscBool hoop, const Model *m, Explicit *e)
 {
   Points *points = m->points;
+  const PetscInt *start = m->space->support->point_start;
+  PetscReal growth = 1;
   Sight s = {0};
   Strained b;
   for (PetscInt first = 0, n; first < points->n; first += n) {
@@ -173,11 +226,13 @@ KERNEL void strain(const int dim, const PetscBool hoop, const Model *m, Explicit
       if (points->material[first + n] != points->material[first]) break;
       look(dim, m->space->support, first + n, &s);
       strain_point(dim, hoop, m, e, &s, first + n, b.dF + 9 * n, b.move + 3 * n);
+      if (e->shared && first + n == start[s.group]) growth = shared_growth(dim, hoop, m, e, start + s.group, s);
+      give(dim, hoop, e, growth, &b, n);
     }
     const LawStatus status = points_stress(m, first, n, &b);
     e->status = PetscMax(e->status, status);
     for (PetscInt k = 0, p = first; k < n; ++k, ++p) {
-      keep(dim, points, p, b.dF + 9 * k, b.tau + 6 * k);
+      keep(dim, points, p, &b, k);
       for (int d = 0; d < dim; ++d) {
         point_real(points, POINT_X, p)[d] += b.move[3 * k + d];
         point_real(points, POINT_U, p)[d] += b.move[3 * k + d];

@@ -15,7 +15,6 @@ void explicit_check(const Model *m, Diag *diag)
   if (c->analysis.type != ANALYSIS_EXPLICIT) return;
   refuse(!m->method || !m->method->restores_grid, "method", "methods other than mpm", diag);
   refuse(case_is_mixed(c), "formulation", "the mixed formulation", diag);
-  refuse(m->formulation && m->formulation->cells, "formulation", "the mean dilatation of cells", diag);
   const Transfer *transfer = transfer_find(c->analysis.transfer);
   refuse(transfer && transfer != transfers[0] && !transfer->slopes, "analysis.transfer",
          "transfers other than thesis and consistent", diag);
@@ -24,10 +23,13 @@ void explicit_check(const Model *m, Diag *diag)
   refuse(c->analysis.keep_velocity, "analysis.keep_velocity", "this", diag);
   refuse(c->stabilisation.room, "stabilisation.room", "this", diag);
   refuse(c->basis.split > 0, "basis.gimp.split", "points that are split", diag);
-  refuse(c->n_interfaces > 0, "interfaces", "interfaces", diag);
-  for (PetscInt i = 0; i < c->n_materials; ++i) {
-    const Law *law = law_find(c->materials[i].law);
-    refuse(law && law->rate, "materials", "laws whose stress depends on the rate of strain", diag);
+  for (PetscInt k = 0; k < c->n_interfaces; ++k) {
+    char path[64];
+    if (c->interfaces[k].contact != CONTACT_BONDED) continue;
+    snprintf(path, sizeof path, "interfaces[%d]", (int)k);
+    diag_error(diag, path, "`type: explicit` does not take interfaces that are bonded");
+    diag_hint(diag,
+              "bodies without an interface share the nodes where they meet, and stay together; `stick` lets them part");
   }
   if (c->analysis.scheme || c->analysis.bossak != 0)
     diag_warning(diag, c->analysis.scheme ? "analysis.scheme" : "analysis.bossak",

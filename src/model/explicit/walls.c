@@ -1,4 +1,4 @@
-/* Rigid walls in explicit dynamics: springs between their surface and that of the material.
+/* Rigid walls and interfaces in explicit dynamics: springs between a surface of the material and theirs.
  *
  * Contact points are those of implicit dynamics (solve/contact), and so is the law; but nothing is
  * solved for. What has gone into a wall is pushed by
@@ -6,6 +6,7 @@
  *   p = - r g - d dg/dt >= 0,    t = t of the substep before - r s, at most friction p + min(bond, 20 p),
  *   r = A M / h,    d = A sqrt(rho M) / 2,
  *
+ * of two bodies, the second of which is to the first what a wall is, one spring and dashpot behind the other;
  * g < 0 the gap, s the slip since then, A the surface that the point stands for. So a wall is as stiff as a
  * cell of the material before it: the critical substep stays as it is, material sinks in by a cell's
  * strain, and nothing drifts that sticks. Of waves that the grid resolves the dashpot takes a share
@@ -36,7 +37,7 @@ static void take_over(ContactPoint *c)
 static PetscReal beside_spring(const Explicit *e, const ContactPoint *c)
 {
   const PetscReal kept = dot(c->last, c->normal);
-  if (e->before > 0) return kept;
+  if (e->before > 0) return c->open > 0 ? PetscMin(kept, 0) : kept;
   return c->before == CONTACT_OPEN ? 0 : kept + c->law.penalty * c->open;
 }
 
@@ -46,6 +47,16 @@ static PetscReal stiffness(const Model *m, const ContactLaw *law)
 {
   if (law->kind != CONTACT_BONDED) return 1;
   return PetscMax(1, 0.8 * (2 / PetscSqr(case_courant(&m->c->analysis)) - 1));
+}
+
+/* One behind the other; 0: a wall, which does not give. */
+static PetscReal behind(PetscReal own, PetscReal other) { return other > 0 ? own * other / (own + other) : own; }
+
+static PetscReal modulus_of(const ContactPoint *c) { return behind(c->modulus[0], c->modulus[1]); }
+
+static PetscReal impedance_of(const ContactPoint *c)
+{
+  return behind(PetscSqrtReal(c->modulus[0] * c->density[0]), PetscSqrtReal(c->modulus[1] * c->density[1]));
 }
 
 /* Force of one wall on one point. Between substeps it keeps what its law starts from. */
@@ -60,7 +71,8 @@ static void push(const Model *m, const Explicit *e, ContactPoint *c)
   c->state = CONTACT_OPEN;
   c->now = (ContactForce){0};
   c->gap = place.gap;
-  if (e->dt > 0) wall_motion(m->walls, c->wall, e->time, e->time + e->dt, c->x, c->swept);
+  if (e->dt > 0 && c->wall < m->contact->n_walls)
+    wall_motion(m->walls, c->wall, e->time, e->time + e->dt, c->x, c->swept);
   if (c->gone && e->dt > 0) return;
   c->state = contact_law(&c->law, &place, nowhere, &before, &c->now, NULL);
 }
@@ -75,7 +87,7 @@ PetscErrorCode WallsPush(Model *m, Explicit *e)
   if (!s) PetscFunctionReturn(0);
   for (ContactPoint *c = s->point; c < s->point + s->n; ++c) {
     const RigidWall *heavy = contact_rigid(s, c);
-    c->law.penalty = stiffness(m, &c->law) * c->section * c->modulus[0] / s->length;
+    c->law.penalty = stiffness(m, &c->law) * c->section * modulus_of(c) / s->length;
     if (heavy) c->law.penalty *= e->ease[heavy - s->rigid];
     if (!contact_is_sprung(*kept_of(m, c))) take_over(c);
     push(m, e, c);
@@ -90,8 +102,8 @@ PetscErrorCode WallsPush(Model *m, Explicit *e)
   PetscFunctionReturn(0);
 }
 
-/* What its place on the surface moves by: with its point, and beyond that with what strains it. lead: along
- * the normal, of that alone. */
+/* What its place on the surface moves by (against the other body): with its point, and beyond that with what strains it.
+ * lead: along the normal, of that alone, in its own body. */
 static void move_of(const Model *m, const Explicit *e, const ContactPoint *c, PetscReal move[3], PetscReal *lead)
 {
   const Contact *s = m->contact;
@@ -100,7 +112,7 @@ static void move_of(const Model *m, const Explicit *e, const ContactPoint *c, Pe
     for (PetscInt d = 0; d < m->dim; ++d) {
       const PetscReal beyond = e->dt * s->lead[k] * e->straining[s->node[k] * m->dim + d];
       move[d] += e->dt * (s->N[k] - s->lead[k]) * e->motion[s->node[k] * 2 * m->dim + d] + beyond;
-      *lead += c->normal[d] * beyond;
+      if (k < c->first + c->own) *lead += c->normal[d] * beyond;
     }
 }
 
@@ -110,8 +122,7 @@ static void keep(const Model *m, Explicit *e, const ContactPoint *c, const Petsc
 {
   const PetscReal closing = dot(move, c->normal), rubs = c->law.kind != CONTACT_FRICTIONLESS;
   const PetscBool heavy = contact_rigid(m->contact, c) != NULL;
-  const PetscReal dashpot =
-    DASHPOT * c->section * PetscSqrtReal(c->modulus[0] * c->density[0]) * (heavy ? heavy_substep(e) / e->critical : 1);
+  const PetscReal dashpot = DASHPOT * c->section * impedance_of(c) * (heavy ? heavy_substep(e) / e->critical : 1);
   const PetscReal along = e->dt > 0 ? -dashpot * closing / e->dt : c->now.pressure;
   for (PetscInt d = 0; d < m->dim; ++d) {
     const PetscReal slip = move[d] - closing * c->normal[d];

@@ -370,7 +370,7 @@ static PetscReal reach_at_end(const Contact *s, const ContactPoint *c, const Nod
 {
   const PetscReal first = scene->points->real[POINT_REACH][c->owner];
   PetscReal reach = c->reach;
-  for (PetscInt e = c->first; e < c->first + c->n; ++e)
+  for (PetscInt e = c->first; e < c->first + c->own; ++e)
     for (PetscInt d = 0; d < s->dim; ++d) reach -= c->normal[d] * s->lead[e] * scene->du[s->node[e] * s->dim + d];
   return PetscMax(THINNEST * first, PetscMin(THICKEST * first, reach));
 }

@@ -57,7 +57,7 @@ static PetscErrorCode Carry(Contact *s, ContactPoint *c, const NodeFinder *f, co
     s->node[e] = local_node(f, p->node[I]);
     PetscCheck(s->node[e] >= 0, PETSC_COMM_SELF, PETSC_ERR_PLIB, "a body meets another one on an unknown node");
     s->N[e] = sign * (p->N[I] + change);
-    s->lead[e] = sign > 0 ? change : 0;
+    s->lead[e] = sign * change;
   }
   PetscFunctionReturn(0);
 }
@@ -88,6 +88,7 @@ static PetscErrorCode Meet(Contact *s, const NodalScene *scene, const NodeFinder
   }
   for (PetscInt d = 0; d < s->dim; ++d) c->x[d] = p->x[d] - c->reach * pair->normal[d];
   PetscCall(ContactAddNodes(s, c, p->n + pair->other->n));
+  c->own = p->n;
   PetscCall(Carry(s, c, f, p, 1, 0));
   PetscCall(Carry(s, c, f, pair->other, -1, p->n));
   PetscFunctionReturn(0);

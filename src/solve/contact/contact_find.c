@@ -40,7 +40,7 @@ PetscErrorCode ContactAddNodes(Contact *s, ContactPoint *c, PetscInt n)
     s->capacity_slots += s->capacity_slots / 2 + n * n + 1024;
     PetscCall(PetscRealloc((size_t)s->capacity_slots * sizeof *s->slot, &s->slot));
   }
-  c->n = n;
+  c->n = c->own = n;
   s->n_nodes += n;
   s->n_slots += n * n;
   PetscFunctionReturn(0);

@@ -9,6 +9,7 @@
 #define MOST_POINTS 512
 #define MOST_SWEEPS 50
 #define FLAT 1e-12
+#define WAYS 32          /* in which hulls that overlap are asked how far they are from being apart */
 #define OUTSTANDING 0.05 /* of a point's size: how much farther out makes up for standing that far aside */
 
 /* Points around a place; disks are so much wider than the smallest. */
@@ -30,9 +31,10 @@ static PetscInt first_at(const Surface *s, PetscReal x)
   return lo;
 }
 
-static PetscReal distance(const PetscReal *a, const PetscReal *b)
+/* Of the distance: asked for of every pair, without its root. */
+static PetscReal square(const PetscReal *a, const PetscReal *b)
 {
-  return PetscSqrtReal(PetscSqr(a[0] - b[0]) + PetscSqr(a[1] - b[1]));
+  return PetscSqr(a[0] - b[0]) + PetscSqr(a[1] - b[1]);
 }
 
 static void part_around(const Surface *s, const PetscReal *x, PetscReal radius, Part *part)
@@ -40,7 +42,7 @@ static void part_around(const Surface *s, const PetscReal *x, PetscReal radius, 
   part->n = 0;
   part->least = PETSC_MAX_REAL;
   for (PetscInt k = first_at(s, x[0] - radius); k < s->n && s->point[k].x[0] <= x[0] + radius; ++k) {
-    if (distance(s->point[k].x, x) > radius || part->n == MOST_POINTS) continue;
+    if (square(s->point[k].x, x) > radius * radius || part->n == MOST_POINTS) continue;
     part->point[part->n++] = s->point + k;
     part->least = PetscMin(part->least, s->point[k].reach);
   }
@@ -117,13 +119,62 @@ static PetscBool separate(const Part *a, const Part *b, PetscReal n[2])
   return PETSC_TRUE;
 }
 
+/* How far a has to go along n to be out of b, m. */
+static PetscReal overlap(const Part *a, const Part *b, const PetscReal n[2])
+{
+  const PetscReal back[2] = {-n[0], -n[1]};
+  PetscReal here[2], there[2];
+  farthest(a, back, here);
+  farthest(b, n, there);
+  return (there[0] - here[0]) * n[0] + (there[1] - here[1]) * n[1];
+}
+
+static PetscReal overlap_at(const Part *a, const Part *b, PetscReal angle)
+{
+  const PetscReal n[2] = {PetscCosReal(angle), PetscSinReal(angle)};
+  return overlap(a, b, n);
+}
+
+/* The shortest way out for hulls that overlap, and how long it is: across a side of one of them, of which some are
+ * looked at all round, and the best is followed to its end. */
+static PetscReal escape(const Part *a, const Part *b, PetscReal n[2])
+{
+  const PetscReal turn = 2 * PETSC_PI / WAYS, golden = 0.5 * (PetscSqrtReal(5) - 1);
+  PetscReal best = 0, least = PETSC_MAX_REAL;
+  for (int k = 0; k < WAYS; ++k) {
+    const PetscReal far = overlap_at(a, b, k * turn);
+    if (far < least) least = far, best = k * turn;
+  }
+  PetscReal low = best - turn, high = best + turn;
+  while (high - low > FLAT) {
+    const PetscReal wide = golden * (high - low);
+    if (overlap_at(a, b, high - wide) < overlap_at(a, b, low + wide)) high = low + wide;
+    else low = high - wide;
+  }
+  n[0] = PetscCosReal(0.5 * (low + high));
+  n[1] = PetscSinReal(0.5 * (low + high));
+  return overlap(a, b, n);
+}
+
+/* The way from b to a, unit: of bodies that have sunk into each other the shortest way out. Hulls of grains that stand
+ * round another body overlap without touching it: there it is the one from the nearest point. */
+static void face_each_other(const Part *a, const Part *b, PetscReal deepest, PetscReal n[2])
+{
+  const PetscReal first[2] = {n[0], n[1]};
+  if (separate(a, b, n) || escape(a, b, n) <= deepest) return;
+  for (int i = 0; i < 2; ++i) n[i] = first[i];
+}
+
 static const SurfacePoint *nearest_of(const Surface *b, const PetscReal *x, PetscReal within, PetscReal *least)
 {
   const SurfacePoint *best = NULL;
+  PetscReal nearest = within * within;
   *least = within;
   for (PetscInt k = first_at(b, x[0] - within); k < b->n && b->point[k].x[0] <= x[0] + *least; ++k) {
-    const PetscReal now = distance(b->point[k].x, x);
-    if (now < *least) *least = now, best = b->point + k;
+    const PetscReal now = square(b->point[k].x, x);
+    if (now >= nearest) continue;
+    nearest = now, best = b->point + k;
+    *least = PetscSqrtReal(now);
   }
   return best;
 }
@@ -175,10 +226,10 @@ PetscBool surface_meet(const Surface *a, const SurfacePoint *p, const Surface *b
   part_around(a, q->x, least + h, &mine);
   part_around(b, p->x, least + h, &theirs);
   const PetscReal scale = least > 0 ? 1 / least : 0; /* 0: one lies on the other, and any way will do */
-  const PetscReal first[2] = {scale > 0 ? scale * (p->x[0] - q->x[0]) : 1, scale * (p->x[1] - q->x[1])};
-  PetscReal n[2] = {first[0], first[1]};
-  const PetscBool apart = separate(&mine, &theirs, n);
-  for (int i = 0; i < 2; ++i) pair->normal[i] = apart ? n[i] : first[i];
-  pair->normal[2] = 0;
+  PetscReal *n = pair->normal;
+  n[0] = scale > 0 ? scale * (p->x[0] - q->x[0]) : 1;
+  n[1] = scale * (p->x[1] - q->x[1]);
+  n[2] = 0;
+  face_each_other(&mine, &theirs, 0.5 * (p->size + q->size), n);
   return !is_behind(&mine, p, pair->normal) && choose(&theirs, p, pair);
 }
