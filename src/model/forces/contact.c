@@ -11,7 +11,8 @@
 #define LUMPED_SHARE 0.1 /* between the mass matrix and the lumped one */
 
 #define THROUGH 1e-9 /* of a cell: material that reaches deeper into a wall at the start is a mistake */
-#define FITS 0.1     /* of the distance of a wall: so near to it ends what stands on it */
+#define FITS 1e-3    /* of the distance of a wall: so near to it ends what stands on it */
+#define PART 0.1     /* likewise, as its volume and its share of the surface tell it */
 #define DENT 0.01    /* of a cell: a surface that is taken back by more to fit a wall may be one, too */
 
 static PetscBool rubs(ContactKind kind) { return kind == CONTACT_FRICTION || kind == CONTACT_STICK; }
@@ -55,14 +56,30 @@ static PetscErrorCode FindWorst(const Model *m, Worst *worst)
   PetscFunctionReturn(0);
 }
 
-/* At an edge of a body its surface is elsewhere for each wall: does the part of its volume that the point stands for
- * end at the wall, although it is nearer to another side? */
-static PetscBool stands_on(const Model *m, PetscInt p, const WallPlace *place)
+/* Does the part that the point stands for end there? */
+static PetscBool reaches_wall(const Model *m, PetscInt p, const WallPlace *place)
 {
   const PetscReal weight = kinematics_weight(m->c->kinematics, point_real(m->points, POINT_X, p)[0]);
   const PetscReal face = contact_face(m->points, p, place->normal);
   const PetscReal half = face > 0 ? 0.5 * m->points->real[POINT_VOLUME][p] / (weight * face) : 0;
-  return place->gap > m->points->real[POINT_REACH][p] && PetscAbsReal(place->gap - half) < FITS * half;
+  return (PetscBool)(PetscAbsReal(place->gap - half) < PART * half);
+}
+
+/* At an edge of a body its surface is elsewhere for each wall: does the body end at this one straight before the point,
+ * although that is nearer to another side? */
+static PetscBool stands_on(const Model *m, PetscInt p, const WallPlace *place)
+{
+  const BodySpec *body = m->c->bodies + m->points->body[p];
+  const PetscReal *x = point_real(m->points, POINT_X, p);
+  PetscReal within[3], beyond[3];
+  if (!body->has_shape || body->mesh || place->gap <= m->points->real[POINT_REACH][p]) return PETSC_FALSE;
+  if (!reaches_wall(m, p, place)) return PETSC_FALSE;
+  for (PetscInt d = 0; d < m->dim; ++d) {
+    within[d] = x[d] - (1 - FITS) * place->gap * place->normal[d];
+    beyond[d] = x[d] - (1 + FITS) * place->gap * place->normal[d];
+  }
+  return (PetscBool)(shape_contains(&body->shape, m->dim, within, 0) &&
+                     !shape_contains(&body->shape, m->dim, beyond, 0));
 }
 
 /* What stands nearer to a wall than its cell's side does touches it: the body was made to fit, and its surface is taken
@@ -75,7 +92,7 @@ static void look_at_wall(Model *m, PetscInt k, PetscBool fits, Worst *inside, Wo
     PetscReal *reach = point_real(m->points, POINT_REACH, p);
     const int side = wall_side(m->walls, k, m->time, x);
     if (!wall_near(m->walls, k, m->time, x, fits ? THICKEST * *reach : *reach, side, &place)) continue;
-    if (fits && stands_on(m, p, &place))
+    if (fits && !m->c->stage && stands_on(m, p, &place))
       point_real(m->points, POINT_CONTACT, p)[k * CONTACT_KEPT(m->dim) + 1] = place.gap;
     take_worse(m, -place.gap, x, inside);
     if (!fits || place.gap <= THROUGH * m->grid->smallest || place.gap >= *reach) continue;
