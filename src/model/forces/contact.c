@@ -12,7 +12,7 @@
 
 #define THROUGH 1e-9 /* of a cell: material that reaches deeper into a wall at the start is a mistake */
 #define FITS 1e-3    /* of the distance of a wall: so near to it ends what stands on it */
-#define PART 0.1     /* likewise, as its volume and its share of the surface tell it */
+#define PART 0.5     /* likewise, as its volume and its share of the surface tell it */
 #define DENT 0.01    /* of a cell: a surface that is taken back by more to fit a wall may be one, too */
 
 static PetscBool rubs(ContactKind kind) { return kind == CONTACT_FRICTION || kind == CONTACT_STICK; }
