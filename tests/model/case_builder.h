@@ -40,6 +40,9 @@ static inline PetscMPIInt ranks_of_world(void)
  * spoil they spoil in each of them, and a rank that waits costs more than one that works. */
 #define EACH_VARIANT(k, n) for (size_t k = ranks_of_world() == 3; k<(size_t)(n); k += ranks_of_world()> 1 ? 2 : 1)
 #define EACH_OF(k, list) EACH_VARIANT (k, PETSC_STATIC_ARRAY_LENGTH(list))
+/* Triangles, quadrilaterals, tetrahedra, hexahedra up to `last`: the plane and space for any number of ranks. */
+#define EACH_CELL(cell, last) \
+  for (CellType cell = (CellType)(ranks_of_world() == 3); cell <= (last); cell += ranks_of_world() > 1 ? 2 : 1)
 
 /* A failed check on one rank ends all: the others would wait for it in a collective call for
  * ever. */

@@ -44,17 +44,17 @@ static void fall(const char *method, CellType cell, const PetscReal v[3], const 
 static void test_free_fall(void **state)
 {
   (void)state;
-  for (CellType cell = CELL_TRIANGLE; cell <= CELL_HEXAHEDRON; ++cell)
-    for (int fem = 0; fem < 2; ++fem)
-      fall(fem ? "fem" : "mpm", cell, (PetscReal[]){0.7, 1.3, -0.4}, (PetscReal[]){0, -9.81, 0}, 0.01, 20);
+  EACH_CELL(cell, CELL_HEXAHEDRON)
+  for (int fem = 0; fem < 2; ++fem)
+    fall(fem ? "fem" : "mpm", cell, (PetscReal[]){0.7, 1.3, -0.4}, (PetscReal[]){0, -9.81, 0}, 0.01, 20);
 }
 
 /* Twenty cells and more in all, with steps that put points into other cells all the time. */
 static void test_rigid_flight(void **state)
 {
   (void)state;
-  for (CellType cell = CELL_TRIANGLE; cell <= CELL_HEXAHEDRON; ++cell)
-    fall("mpm", cell, (PetscReal[]){1.9, -1.1, 0.6}, (PetscReal[]){0, 0, 0}, 0.0071, 50);
+  EACH_CELL(cell, CELL_HEXAHEDRON)
+  fall("mpm", cell, (PetscReal[]){1.9, -1.1, 0.6}, (PetscReal[]){0, 0, 0}, 0.0071, 50);
 }
 
 /* Several ranks take the longer step alone: how drifts fall with the step does not hang on them. */
@@ -131,7 +131,8 @@ static void test_fem_drift(void **state)
 {
   PetscReal angular[2], energy[2];
   (void)state;
-  for (CellType cell = CELL_TRIANGLE; cell <= CELL_HEXAHEDRON; ++cell) {
+  EACH_CELL(cell, CELL_HEXAHEDRON)
+  {
     const int steps = steps_tried(2);
     for (int k = 0; k < steps; ++k)
       fly("fem", cell, cell >= CELL_TETRAHEDRON ? 0.25 : 0.125, 0, k ? 1e-3 : 2e-3, 0, &angular[k], &energy[k]);
@@ -153,7 +154,8 @@ static void test_mpm_drift(void **state)
 {
   PetscReal angular[2], energy[2];
   (void)state;
-  for (CellType cell = CELL_TRIANGLE; cell <= CELL_HEXAHEDRON; ++cell) {
+  EACH_CELL(cell, CELL_HEXAHEDRON)
+  {
     const int flat = cell <= CELL_QUADRILATERAL;
     for (int k = 0; k <= flat; ++k)
       fly("mpm", cell, (flat ? 0.125 : 0.25) / (1 << k), 0, 2e-3, 0, &angular[k], &energy[k]);
@@ -174,7 +176,8 @@ static void test_consistent_drift(void **state)
 {
   PetscReal angular[2], energy[2];
   (void)state;
-  for (CellType cell = CELL_TRIANGLE; cell <= CELL_HEXAHEDRON; ++cell) {
+  EACH_CELL(cell, CELL_HEXAHEDRON)
+  {
     const int steps = steps_tried(2);
     for (int k = 0; k < steps; ++k)
       fly("consistent", cell, cell <= CELL_QUADRILATERAL ? 0.125 : 0.25, 0, k ? 1e-3 : 2e-3, 0, &angular[k],
@@ -221,7 +224,8 @@ static void test_tied(void **state)
 {
   PetscReal angular, energy;
   (void)state;
-  for (CellType cell = CELL_TRIANGLE; cell <= CELL_QUADRILATERAL; ++cell) {
+  EACH_CELL(cell, CELL_QUADRILATERAL)
+  {
     fly("mpm", cell, 0.125, 0, 2e-3, 0.01, &angular, &energy);
     CHECK(PetscAbsReal(angular) < 0.01 && PetscAbsReal(energy) < 0.03, "drifts %g and %g", (double)angular,
           (double)energy);

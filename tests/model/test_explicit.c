@@ -46,7 +46,7 @@ static const struct {
 static void test_flight(void **state)
 {
   (void)state;
-  for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(flights); ++k) {
+  EACH_OF (k, flights) {
     Bench b;
     Energies e;
     PetscReal before[3], off = 0;
@@ -74,7 +74,7 @@ static void test_flight(void **state)
 static void test_turns(void **state)
 {
   (void)state;
-  for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(flights); ++k) {
+  EACH_OF (k, flights) {
     Bench b;
     Energies e;
     if (flights[k].kinematics->hoop) continue;
@@ -289,7 +289,7 @@ static void test_walks(void **state)
   } fields[] = {{POINT_X, 1e-14}, {POINT_U, 1e-14},  {POINT_V, 1e-12},    {POINT_A, 1e-9},      {POINT_F, 1e-13},
                 {POINT_J, 1e-13}, {POINT_TAU, 1e-7}, {POINT_WORK, 1e-11}, {POINT_STATE, 1e-13}, {POINT_SLOPE, 1e-11}};
   (void)state;
-  for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(walks); ++k) {
+  EACH_OF (k, walks) {
     MaterialSpec materials[2];
     Bench b;
     layers(&b, materials, &walks[k], (int)k % 3); /* none, a traction, a traction and a pressure */

@@ -55,7 +55,8 @@ static const Block blocks[] = {{"cell", CELL_QUADRILATERAL, &kinematics_plane_st
 static void test_slides(void **state)
 {
   (void)state;
-  for (const Block *r = blocks; r < blocks + PETSC_STATIC_ARRAY_LENGTH(blocks); ++r) {
+  EACH_OF (i, blocks) {
+    const Block *r = blocks + i;
     Bench b;
     WallSpec wall;
     Energies e;
@@ -102,7 +103,8 @@ static void test_rests(void **state)
                                {"cell", CELL_QUADRILATERAL, &kinematics_axisymmetric, 0.7},
                                {"gimp", CELL_QUADRILATERAL, &kinematics_axisymmetric, 0.7}};
   (void)state;
-  for (const Block *r = rest; r < rest + PETSC_STATIC_ARRAY_LENGTH(rest); ++r) {
+  EACH_OF (i, rest) {
+    const Block *r = rest + i;
     Bench b;
     WallSpec wall;
     const PetscReal slope = r->kinematics->hoop ? 0 : SLOPE, mass = r->kinematics->hoop ? 500 * PETSC_PI : 500;
@@ -175,7 +177,8 @@ static void test_hangs(void **state)
   Bench b;
   WallSpec wall;
   (void)state;
-  for (const Block *r = blocks; r < blocks + 4; ++r) {
+  EACH_VARIANT (i, 4) {
+    const Block *r = blocks + i;
     const int up = r->cell == CELL_HEXAHEDRON ? 2 : 1;
     const PetscReal mass = up == 2 ? 250 : 500;
     standing(&b, r, PETSC_PI - SLOPE, &wall);
@@ -193,7 +196,8 @@ static void test_ranks(void **state)
 {
   static const PointReal fields[] = {POINT_X, POINT_V, POINT_F, POINT_CONTACT};
   (void)state;
-  for (const Block *r = blocks; r < blocks + 4; ++r) {
+  EACH_VARIANT (i, 4) {
+    const Block *r = blocks + i;
     Bench b;
     WallSpec wall;
     standing(&b, r, SLOPE, &wall);
@@ -247,7 +251,8 @@ static void test_laps(void **state)
                               {"cell", CELL_TRIANGLE, &kinematics_plane_strain, 0.2},
                               {"cell", CELL_HEXAHEDRON, &kinematics_3d, 0.2}};
   (void)state;
-  for (const Block *r = met; r < met + PETSC_STATIC_ARRAY_LENGTH(met); ++r) {
+  EACH_OF (i, met) {
+    const Block *r = met + i;
     Bench b;
     WallSpec wall;
     const int up = r->cell == CELL_HEXAHEDRON ? 2 : 1;

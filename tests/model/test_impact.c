@@ -109,7 +109,7 @@ static void test_impulse(void **state)
   PetscMPIInt size;
   (void)state;
   CALL(MPI_Comm_size(PETSC_COMM_WORLD, &size));
-  for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(falls); ++k)
+  EACH_OF (k, falls)
     if (size == 1 || tells_of_ranks(&falls[k])) impact(&falls[k]);
 }
 
