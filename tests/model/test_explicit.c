@@ -354,6 +354,43 @@ static void test_pressed(void **state)
   }
 }
 
+/* A cylinder is pulled at its side, which lies on a line of the grid and is drawn into cells that points do not reach
+ * yet: forces stay with it, and its motion is that of implicit steps. */
+static void test_pulled(void **state)
+{
+  static const char *const bases[] = {"cell", "gimp"};
+  (void)state;
+  for (int k = 0; k < 2; ++k) {
+    PetscReal far[2], work[2];
+    for (int implicit = 0; implicit < 2; ++implicit) {
+      Bench b;
+      Energies e;
+      bench_init(&b, "mpm", CELL_QUADRILATERAL, 0);
+      b.c.kinematics = &kinematics_axisymmetric;
+      bench_grid(&b, (PetscReal[]){0, 0, 0}, (PetscReal[]){1.5, 1.5, 0}, 0.125);
+      bench_box(&b, 0, (PetscReal[]){0, 0, 0}, (PetscReal[]){1, 1, 0});
+      explicit_case(&b, 1, implicit ? 1e-3 : 4e-3);
+      if (implicit) b.c.analysis.type = ANALYSIS_DYNAMIC, b.c.analysis.scheme = (char *)"midpoint";
+      b.c.basis.kind = bases[k];
+      b.c.analysis.transfer = (char *)"consistent";
+      bench_motion(&b, 1, 0, MOTION_FIXED, 2);
+      bench_motion(&b, 0, 0, MOTION_FIXED, 1);
+      bench_traction(&b, 0, 1, "body", 2e4, 0, 0);
+      bench_tracer(&b, "displacement", 0, 0.9, 0.6, 0);
+      Model *m = bench_model(&b, PETSC_COMM_WORLD);
+      while (m->time < 0.04 - 1e-9) model_step(m, PETSC_MAX_REAL);
+      CALL(ModelMeasure(m, &b.measure[0], 0, &far[implicit]));
+      CALL(ModelEnergies(m, &e));
+      work[implicit] = e.external;
+      CALL(ModelDestroy(&m));
+    }
+    PetscPrintf(PETSC_COMM_WORLD, "%s: pulled by %.5g m with %.5g J, implicitly %.5g m, %.5g J\n", bases[k],
+                (double)far[0], (double)work[0], (double)far[1], (double)work[1]);
+    CHECK_CLOSE(far[0], far[1], 0.05 * far[1]);
+    CHECK(work[0] > 0.9 * work[1] && work[0] < 1.5 * work[1], "%g J of work, not %g", (double)work[0], (double)work[1]);
+  }
+}
+
 static void test_refused(void **state)
 {
   Bench b;
@@ -374,10 +411,11 @@ static void test_refused(void **state)
 
 int main(int argc, char **argv)
 {
-  const struct CMUnitTest tests[] = {
-    cmocka_unit_test(test_flight), cmocka_unit_test(test_turns),   cmocka_unit_test(test_bounce),
-    cmocka_unit_test(test_ranks),  cmocka_unit_test(test_walks),   cmocka_unit_test(test_resumed),
-    cmocka_unit_test(test_ages),   cmocka_unit_test(test_pressed), cmocka_unit_test(test_refused)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_flight), cmocka_unit_test(test_turns),
+                                     cmocka_unit_test(test_bounce), cmocka_unit_test(test_ranks),
+                                     cmocka_unit_test(test_walks),  cmocka_unit_test(test_resumed),
+                                     cmocka_unit_test(test_ages),   cmocka_unit_test(test_pressed),
+                                     cmocka_unit_test(test_pulled), cmocka_unit_test(test_refused)};
   if (PetscInitialize(&argc, &argv, NULL, NULL)) return 1;
   const int failed = cmocka_run_group_tests(tests, NULL, NULL);
   return PetscFinalize() || failed;

@@ -2,6 +2,8 @@
 #include "model/explicit/explicit.h"
 #include "model/measure/measure.h"
 
+#define HARDLY 0.003 /* of the heaviest node of a cell: less carries nothing there */
+
 PetscErrorCode NodesShare(const Model *m, PetscInt components, PetscReal *values)
 {
   PetscFunctionBeginUser;
@@ -38,10 +40,28 @@ PetscErrorCode ForcesBegin(Model *m, Explicit *e)
   PetscFunctionReturn(0);
 }
 
-/* Which nodes do points reach now? */
+static PetscReal mass_of(const Explicit *e, PetscInt node) { return e->sum[node * e->width]; }
+
+/* A force on a node that points hardly reach throws it away, and whoever goes with it. */
+static void leave_out(const Model *m, const Explicit *e, const Points *followers)
+{
+  const PetscInt nn = m->grid->nodes_per_cell;
+  for (PetscInt p = 0; p < followers->n; ++p) {
+    if (followers->cell[p] < 0) continue;
+    const PetscInt *node = m->grid->cell_node + followers->cell[p] * nn;
+    PetscReal most = 0;
+    for (PetscInt I = 0; I < nn; ++I) most = PetscMax(most, mass_of(e, node[I]));
+    for (PetscInt I = 0; I < nn; ++I)
+      if (mass_of(e, node[I]) < HARDLY * most) m->nodes->touched[node[I]] = 0;
+  }
+}
+
+/* Which nodes carry loads and tracers now? */
 static void touch(const Model *m, const Explicit *e)
 {
-  for (PetscInt k = 0; k < e->n_active; ++k) m->nodes->touched[e->active[k]] = e->sum[e->active[k] * e->width] > 0;
+  for (PetscInt k = 0; k < e->n_active; ++k) m->nodes->touched[e->active[k]] = mass_of(e, e->active[k]) > 0;
+  leave_out(m, e, m->loads->carriers);
+  leave_out(m, e, m->tracers);
 }
 
 /* Forces of loads, summed over the ranks, go to those that the points gave. */
@@ -51,7 +71,7 @@ static PetscErrorCode AddLoads(Model *m, Explicit *e)
 
   PetscFunctionBeginUser;
   if (!e->loaded) PetscFunctionReturn(0);
-  if (e->box) touch(m, e);
+  touch(m, e);
   const NodalScene scene = nodal_scene(m, e->time, n->du);
   PetscCall(Begin(m, &scene, PETSC_FALSE));
   PetscCall(NodalForcesExternal(&m->forces, &scene, PETSC_TRUE, n->external));
