@@ -138,6 +138,7 @@ static PetscErrorCode UseMultigrid(KSP ksp, const LinearProblem *p, const char *
   PetscCall(KSPGetPC(ksp, &pc));
   PetscCall(KSPSetType(ksp, p->symmetric ? KSPCG : KSPGMRES));
   PetscCall(LinearMultigrid(pc));
+  if (!p->symmetric) PetscCall(KSPSetPCSide(ksp, PC_RIGHT)); /* what falls is the residual itself */
   PetscCall(KSPGMRESSetRestart(ksp, 100));
   PetscCall(KSPSetTolerances(ksp, 1e-8, PETSC_DEFAULT, PETSC_DEFAULT, MOST_CYCLES));
   *what = p->symmetric ? "conjugate gradients, algebraic multigrid" : "GMRES, algebraic multigrid";
