@@ -49,6 +49,17 @@ KERNEL PetscReal shared_mean(const int dim, const PetscBool hoop, const Points *
   return all / volume;
 }
 
+/* - V_0 tau of a point; mean: what its group shares in place of its own mean stress. */
+KERNEL void load(const int dim, const PetscBool hoop, const Points *points, PetscInt p, const PetscReal *mean,
+                 PetscReal tau[6])
+{
+  const PetscReal volume = points->real[POINT_VOLUME][p], *stress = point_real(points, POINT_TAU, p);
+  const PetscReal more = mean ? points->real[POINT_J][p] * *mean - mean_of(dim, hoop, stress) : 0;
+  const int n = dim == 2 ? 4 : 6, axes = dim == 2 && !hoop ? 2 : 3;
+  for (int k = 0; k < 6; ++k) tau[k] = k < n ? -volume * stress[k] : 0;
+  for (int k = 0; k < axes; ++k) tau[k] -= volume * more;
+}
+
 /* f_I = - V_0 tau grad N_I, with gradients where the point is now. */
 KERNEL void gather(const int dim, const PetscBool hoop, const Model *m, Explicit *e)
 {
@@ -58,13 +69,10 @@ KERNEL void gather(const int dim, const PetscBool hoop, const Model *m, Explicit
   PetscReal mean = 0;
   for (PetscInt p = 0; p < points->n; ++p) {
     const PetscReal *v = point_real(points, POINT_V, p), mass = points->real[POINT_MASS][p];
-    const PetscReal volume = points->real[POINT_VOLUME][p], *stress = point_real(points, POINT_TAU, p);
     PetscReal tau[6];
     look(dim, m->space->support, p, &s);
     if (e->shared && p == start[s.group]) mean = shared_mean(dim, hoop, points, start + s.group);
-    const PetscReal more = e->shared ? points->real[POINT_J][p] * mean - mean_of(dim, hoop, stress) : 0;
-    for (int k = 0; k < 6; ++k)
-      tau[k] = k < (dim == 2 ? 4 : 6) ? -volume * (stress[k] + (k < (dim == 2 && !hoop ? 2 : 3)) * more) : 0;
+    load(dim, hoop, points, p, e->shared ? &mean : NULL, tau);
     const PetscReal ring = hoop ? tau[2] / *point_real(points, POINT_X, p) : 0;
     for (PetscInt k = 0; k < s.nn; ++k) {
       PetscReal *sum = e->sum + s.node[k] * width;
