@@ -239,11 +239,51 @@ static void test_explicit(void **state)
   }
 }
 
+/* A block under its own weight whose sides are let go: pressures differ within cells, and the first kick is that of the
+ * implicit force, which shares them. */
+static void test_kick(void **state)
+{
+  (void)state;
+  EACH_VARIANT (rings, 2) {
+    Model *m[2];
+    PetscReal fastest = 0;
+    for (int implicit = 0; implicit < 2; ++implicit) {
+      Bench b;
+      bench_init(&b, "mpm", CELL_QUADRILATERAL, 0);
+      if (rings) b.c.kinematics = &kinematics_axisymmetric;
+      b.c.formulation = "mean-dilatation";
+      bench_grid(&b, (PetscReal[]){0, 0, 0}, (PetscReal[]){1.5, 1.5, 0}, 0.25);
+      bench_box(&b, 0, (PetscReal[]){0, 0, 0}, (PetscReal[]){1, 1, 0});
+      bench_dynamic(&b, 1, 1e-6);
+      b.c.basis.kind = "cell";
+      b.c.analysis.mass = MASS_LUMPED;
+      b.c.analysis.courant = 0.5;
+      if (!implicit) b.c.analysis.type = ANALYSIS_EXPLICIT;
+      b.c.analysis.transfer = (char *)"thesis";
+      b.body[0].has_k0 = PETSC_TRUE;
+      b.body[0].k0 = 1;
+      b.c.gravity[1] = -9.81;
+      bench_motion(&b, 1, 0, MOTION_FIXED, 2);
+      bench_motion(&b, 0, 0, MOTION_FIXED, 1);
+      m[implicit] = bench_model(&b, PETSC_COMM_WORLD);
+      model_step(m[implicit], PETSC_MAX_REAL);
+    }
+    for (PetscInt i = 0; i < 2 * m[0]->points->n; ++i)
+      fastest = PetscMax(fastest, PetscAbsReal(m[0]->points->real[POINT_V][i]));
+    fastest = model_max(m[0], fastest);
+    for (PetscInt i = 0; i < 2 * m[0]->points->n; ++i)
+      CHECK_CLOSE(m[0]->points->real[POINT_V][i], m[1]->points->real[POINT_V][i], 1e-4 * fastest);
+    CHECK(fastest > 1e-6, "nothing pushes");
+    CALL(ModelDestroy(&m[0]));
+    CALL(ModelDestroy(&m[1]));
+  }
+}
+
 int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(test_volume), cmocka_unit_test(test_steps),    cmocka_unit_test(test_energy),
-    cmocka_unit_test(test_bar),    cmocka_unit_test(test_explicit),
+    cmocka_unit_test(test_bar),    cmocka_unit_test(test_explicit), cmocka_unit_test(test_kick),
   };
   return run_model_tests(argc, argv, tests);
 }
