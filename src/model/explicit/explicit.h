@@ -41,12 +41,14 @@ typedef struct Explicit {
   PetscBool loaded; /* does anything act on nodes but stress, weight and walls? */
   PetscBool shared; /* do points of a cell share their change of volume (formulation mean-dilatation)? */
   Lattice lattice;
-  PetscInt width;             /* 1 + 2 dim */
-  PetscReal *sum;             /* n_nodes x width: mass, kg, momentum, kg m/s, and force, N */
-  PetscReal *motion;          /* n_nodes x 2 dim: velocity at the end of the substep, and what points gain, m/s */
-  PetscReal *straining;       /* n_nodes x dim: the velocity that strains the points, m/s */
-  PetscReal *mark;            /* n_nodes: > 0 where points of some rank can come in the lap */
-  PetscInt n_active, *active; /* these */
+  PetscInt width;       /* 1 + 2 dim */
+  PetscReal *sum;       /* n_nodes x width: mass, kg, momentum, kg m/s, and force, N */
+  PetscReal *motion;    /* n_nodes x 2 dim: velocity at the end of the substep, and what points gain, m/s */
+  PetscReal *straining; /* n_nodes x dim: the velocity that strains the points, m/s */
+  /* n_nodes: > 0 where points of some rank can come in the lap; then, in each substep, at nodes that carry neither
+   * loads nor tracers */
+  PetscReal *mark;
+  PetscInt n_active, *active; /* nodes where points can come in the lap */
   PetscInt n_held;
   Held *held;
   PetscBool moved;   /* do prescribed velocities change? */

@@ -52,16 +52,31 @@ static void leave_out(const Model *m, const Explicit *e, const Points *followers
     PetscReal most = 0;
     for (PetscInt I = 0; I < nn; ++I) most = PetscMax(most, mass_of(e, node[I]));
     for (PetscInt I = 0; I < nn; ++I)
-      if (mass_of(e, node[I]) < HARDLY * most) m->nodes->touched[node[I]] = 0;
+      if (mass_of(e, node[I]) < HARDLY * most) e->mark[node[I]] = 1;
   }
 }
 
-/* Which nodes carry loads and tracers now? */
-static void touch(const Model *m, const Explicit *e)
+static PetscBool has_tracers(const Case *c)
 {
-  for (PetscInt k = 0; k < e->n_active; ++k) m->nodes->touched[e->active[k]] = mass_of(e, e->active[k]) > 0;
+  for (PetscInt k = 0; k < c->n_measures; ++k)
+    if (measure_has_tracer(&c->measures[k])) return PETSC_TRUE;
+  return PETSC_FALSE;
+}
+
+/* Which nodes carry loads and tracers in this substep? All ranks say the same of a node. */
+static PetscErrorCode Touch(const Model *m, const Explicit *e)
+{
+  PetscFunctionBeginUser;
+  if (!m->c->n_loads && !has_tracers(m->c)) PetscFunctionReturn(0);
+  for (PetscInt k = 0; k < e->n_active; ++k) e->mark[e->active[k]] = 0;
   leave_out(m, e, m->loads->carriers);
   leave_out(m, e, m->tracers);
+  PetscCall(NodesShare(m, 1, e->mark));
+  for (PetscInt k = 0; k < e->n_active; ++k) {
+    const PetscInt node = e->active[k];
+    m->nodes->touched[node] = mass_of(e, node) > 0 && !(e->mark[node] > 0);
+  }
+  PetscFunctionReturn(0);
 }
 
 /* Forces of loads, summed over the ranks, go to those that the points gave. */
@@ -71,7 +86,6 @@ static PetscErrorCode AddLoads(Model *m, Explicit *e)
 
   PetscFunctionBeginUser;
   if (!e->loaded) PetscFunctionReturn(0);
-  touch(m, e);
   const NodalScene scene = nodal_scene(m, e->time, n->du);
   PetscCall(Begin(m, &scene, PETSC_FALSE));
   PetscCall(NodalForcesExternal(&m->forces, &scene, PETSC_TRUE, n->external));
@@ -85,6 +99,7 @@ PetscErrorCode NodesMove(Model *m, Explicit *e)
 
   PetscFunctionBeginUser;
   gravity_at(m->c, e->time, e->g);
+  PetscCall(Touch(m, e));
   PetscCall(AddLoads(m, e));
   for (PetscInt k = 0; k < e->n_active; ++k) {
     const PetscInt node = e->active[k];
@@ -199,11 +214,9 @@ PetscErrorCode NodesCarry(Model *m, Explicit *e)
 {
   const PetscInt dim = m->dim;
   NodalFields *n = m->nodes;
-  PetscBool tracers = PETSC_FALSE;
+  const PetscBool tracers = has_tracers(m->c);
 
   PetscFunctionBeginUser;
-  for (PetscInt k = 0; k < m->c->n_measures; ++k) tracers = tracers || measure_has_tracer(&m->c->measures[k]);
-  if (tracers || m->c->n_loads) touch(m, e);
   for (PetscInt k = 0; (tracers || m->c->n_loads) && k < e->n_active; ++k) {
     const PetscInt node = e->active[k];
     for (PetscInt d = 0, i = node * dim; d < dim; ++d, ++i) {

@@ -102,8 +102,8 @@ PetscErrorCode WallsPush(Model *m, Explicit *e)
   PetscFunctionReturn(0);
 }
 
-/* What its place on the surface moves by (against the other body): with its point, and beyond that with what strains it.
- * lead: along the normal, of that alone, in its own body. */
+/* What its place on the surface moves by (against the other body): with its point, and beyond that with what strains
+ * it. lead: along the normal, of that alone, in its own body. */
 static void move_of(const Model *m, const Explicit *e, const ContactPoint *c, PetscReal move[3], PetscReal *lead)
 {
   const Contact *s = m->contact;

@@ -231,7 +231,8 @@ static PetscBool shares_equally(const Seeding *s, CellType type)
 }
 
 /* Where the surface cuts a cell: what the shape says of it. Beyond what a whole part has (usual) only who was given the
- * surface that is so near knows it, which comes nearer towards that: nobody else stands before it. side: of a whole part. */
+ * surface that is so near knows it, which comes nearer towards that: nobody else stands before it. side: of a whole
+ * part. */
 static PetscReal depth_of(const Seeding *s, const SeedPart *part, const PetscReal *position, PetscReal usual,
                           PetscReal side)
 {

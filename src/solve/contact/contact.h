@@ -127,8 +127,8 @@ PetscBool contact_passes(const Contact *contact, ContactPoint *c, PetscReal gap,
 PetscErrorCode ContactFindBodies(Contact *contact, const NodalScene *scene);
 /* contact_section.c. Surface that material point p stands for before a wall with the normal n, m2. */
 PetscReal contact_section(const NodalScene *scene, PetscInt p, const PetscReal n[3]);
-/* Of the surface of its body that material point p was given (POINT_FACE) what looks at a wall with the normal n, as the
- * body is now, m2 (in rings m); 0: none. */
+/* Of the surface of its body that material point p was given (POINT_FACE) what looks at a wall with the normal n, as
+ * the body is now, m2 (in rings m); 0: none. */
 PetscReal contact_face(const Points *points, PetscInt p, const PetscReal n[3]);
 /* Position of a contact point with the field's increments, times `whole`. */
 void contact_place(const Contact *contact, const ContactPoint *c, const PetscReal *du, PetscReal whole, PetscReal x[3]);
