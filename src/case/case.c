@@ -1,6 +1,6 @@
 #include "case/case.h"
 #include <string.h>
-#include "case/relief.h"
+#include "case/terrain/relief.h"
 
 static PetscErrorCode AmplitudeClear(Amplitude *amplitude)
 {

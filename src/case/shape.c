@@ -1,5 +1,5 @@
 #include "case/case.h"
-#include "case/relief.h"
+#include "case/terrain/relief.h"
 
 static PetscBool box_contains(const Shape *s, PetscInt dim, const PetscReal *x, PetscReal tolerance)
 {

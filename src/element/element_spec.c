@@ -1,7 +1,7 @@
 #include "element/element_spec.h"
 #include <string.h>
 #include "input/case_file.h"
-#include "input/schema/schema_keys.h"
+#include "input/schema/keys/schema_keys.h"
 
 static const SchemaEntry material_entries[] = {
   KEY("law", WORD_TEXT, NULL, "the constitutive law, see `talus list laws`", .registry = (const void *const *)laws,

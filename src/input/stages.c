@@ -2,7 +2,7 @@
 #include <string.h>
 #include "base/text.h"
 #include "input/case_file.h"
-#include "input/schema/schema_keys.h"
+#include "input/schema/keys/schema_keys.h"
 
 /* Lays the words of one stage. */
 typedef struct {

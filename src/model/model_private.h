@@ -59,7 +59,7 @@ PetscErrorCode EquilibriumPrepare(Model *model, StepProblem *problem);
 /* Acceleration now from the balance of momentum with lumped mass, so that a body in free fall
  * falls from the first step on. */
 PetscErrorCode InitialAcceleration(Model *model);
-/* forces/mass.c. Collective. The mass matrix that motion changes by in contact; nothing where that is the
+/* contact/mass.c. Collective. The mass matrix that motion changes by in contact; nothing where that is the
  * lumped one. */
 PetscErrorCode ContactMassCreate(const Model *model, ContactMass *mass);
 PetscErrorCode ContactMassDestroy(ContactMass *mass);
@@ -165,14 +165,14 @@ PetscErrorCode ConvectStep(Model *model, PetscReal dt, EnergyStep *energy, StepR
 /* Collective. shortened: was it the caller who made the accepted step that short? */
 PetscErrorCode ChooseNextStep(Model *model, PetscBool shortened, const StepReport *report);
 
-/* contact.c. Collective. Walls of the case, and what of the material touches them at the start. */
+/* contact/start.c. Collective. Walls of the case, and what of the material touches them at the start. */
 PetscErrorCode WallsStart(Model *model, Diag *diag);
 /* Collective. Walls that a stage brings, or puts elsewhere, stand where no material is. */
 PetscErrorCode WallsCome(Model *model, const Case *from, Diag *diag);
-/* start/interfaces.c. Collective. What no interfaces can be made of, and bodies that go through each
+/* contact/interfaces.c. Collective. What no interfaces can be made of, and bodies that go through each
  * other at the start. */
 PetscErrorCode InterfacesStart(Model *model, Diag *diag);
-/* rigid.c. What walls with mass cannot do; energies of theirs, J, the same on all ranks: of motion, and work of
+/* contact/rigid.c. What walls with mass cannot do; energies of theirs, J, the same on all ranks: of motion, and work of
  * weight and loads since the start. */
 void rigid_check(const Model *model, Diag *diag);
 PetscReal rigid_motion(const Model *model);
@@ -192,6 +192,13 @@ PetscBool contact_rubs(const Case *c);
 PetscErrorCode ContactHold(Model *model, PetscReal dt, PetscReal inertia);
 /* Collective. Likewise ends it, once v1 and a1 are known. */
 PetscErrorCode ContactEnd(Model *model, PetscReal dt, struct EnergyStep *energy);
+/* Does the scheme remember forces? One that balances them in the middle of the step does not, and lets nothing ring. */
+PetscBool contact_holds(const Model *model);
+/* Collective. Does anything touch, or has anything touched at the start of the step? */
+PetscErrorCode ContactTouches(const Contact *contact, MPI_Comm comm, PetscBool *any);
+/* release.c. Collective. After a step of dt: what walls' forces gave the acceleration beyond what stays is taken out
+ * of what nodes remember. */
+PetscErrorCode ContactRelease(Model *model, PetscReal dt);
 /* Work of walls on the material in a step, J: of their motion; lost in sliding along them; of closing the
  * gap to them; half of that of the forces at the step's start; what of all this is more than the
  * trapezoidal rule gives. */

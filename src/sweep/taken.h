@@ -1,7 +1,7 @@
 /* A number that is taken from the history of a run: a measure at the end, or what it was over a
  * while. */
 #pragma once
-#include "input/schema/schema_keys.h"
+#include "input/schema/keys/schema_keys.h"
 #include "output/history.h"
 
 typedef enum { TAKE_END, TAKE_MAX, TAKE_MIN, TAKE_MEAN, TAKE_SLOPE } Take;

@@ -1,7 +1,7 @@
 /* The language of reference.yaml, read through the same tables as a case file. */
 #include "verify/verify_reference.h"
 #include "input/case_file.h"
-#include "input/schema/schema_keys.h"
+#include "input/schema/keys/schema_keys.h"
 
 const char *const confidence_words[] = {"", "given", "recovered", "verified", "assumed"};
 const char *const report_numbers[] = {"iterations", "iterations-per-step", "steps", "halvings", "seconds", NULL};

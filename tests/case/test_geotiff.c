@@ -10,7 +10,7 @@
 #include <string.h>
 #include <unistd.h>
 #include <cmocka.h>
-#include "case/relief.h"
+#include "case/terrain/relief.h"
 #include "case/terrain/geotiff.h"
 
 enum { COLUMNS = 5, ROWS = 4, MOST = 4096 };

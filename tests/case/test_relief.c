@@ -10,7 +10,7 @@
 #include <unistd.h>
 #include <cmocka.h>
 #include "case/case.h"
-#include "case/relief.h"
+#include "case/terrain/relief.h"
 
 static char file[] = "/tmp/talus_relief_XXXXXX";
 static char message[1024];

@@ -1,5 +1,5 @@
 /* Surfaces from files: the same as the shapes that they are made of. */
-#include "case/relief.h"
+#include "case/terrain/relief.h"
 #include "samples.h"
 #include "stl_files.h"
 

@@ -6,7 +6,7 @@
  * (gather.c). */
 #pragma once
 #include "boundary/faces.h"
-#include "case/relief.h"
+#include "case/terrain/relief.h"
 
 typedef enum { SURFACE_PLANE, SURFACE_BALL, SURFACE_CONE, SURFACE_RELIEF } SurfaceKind;
 

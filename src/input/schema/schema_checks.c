@@ -3,7 +3,7 @@
 #include <math.h>
 #include <string.h>
 #include "basis/cell.h"
-#include "case/relief.h"
+#include "case/terrain/relief.h"
 #include "base/formula.h"
 #include "input/schema/schema.h"
 

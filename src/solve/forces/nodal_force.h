@@ -52,7 +52,7 @@ typedef struct {
   const char *name, *help;
   /* the same whatever du is: gathered once in a step, and its norm scales the residual */
   PetscBool dead;
-  PetscBool apart; /* their work has an account of its own (model/forces/contact.c) */
+  PetscBool apart; /* their work has an account of its own (model/contact/contact.c) */
   /* Collective. *data stays NULL where the case asks for nothing of the kind; the user's mistakes
    * go to diag (NULL: sought before). */
   PetscErrorCode (*create)(const NodalScene *scene, Diag *diag, void **data);

@@ -1,6 +1,6 @@
 /* Triangles of the solid below terrain. */
 #include <math.h>
-#include "case/relief.h"
+#include "case/terrain/relief.h"
 #include "wall/surface/triangles.h"
 
 typedef PetscReal Corners[3][3];
@@ -12,7 +12,7 @@ static void post(const Relief *r, PetscInt i, PetscInt j, PetscReal x[3])
   x[2] = relief_post(r, i, j);
 }
 
-/* Two for each square, seen from above counter-clockwise, cut as case/relief.h says. */
+/* Two for each square, seen from above counter-clockwise, cut as case/terrain/relief.h says. */
 static Corners *add_top(const Relief *r, Corners *t)
 {
   for (PetscInt j = 0; j + 1 < r->n[1]; ++j)

@@ -1,7 +1,7 @@
 /* The walks of points.c in space, over boxes whose points find their nodes by arithmetic: as those of the plane
  * (plane.c), but with three components of one node or point in a register. Sums over the eight nodes go along the
  * four sides of a cell in each direction: a gradient along x is made of what the two ends of four sides differ by. */
-#include "model/explicit/four.h"
+#include "model/explicit/kernels/four.h"
 
 /* Where points stand, N at each node, and the shape function of each side along x, y and z. */
 typedef struct {

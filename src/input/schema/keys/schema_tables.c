@@ -1,7 +1,7 @@
 /* The keys at the top of the case file, and those of the smaller blocks. The order of the lines is
  * the order of reading, writing and of the reference. */
 #include "formulation/formulation.h"
-#include "input/schema/schema_keys.h"
+#include "input/schema/keys/schema_keys.h"
 #include "material/law.h"
 #include "method/method.h"
 #include "method/transfer/transfer.h"

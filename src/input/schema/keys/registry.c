@@ -1,5 +1,5 @@
 /* What the case file may name because a registry lists it: the bases of support/bases.inc. */
-#include "input/schema/schema_keys.h"
+#include "input/schema/keys/schema_keys.h"
 
 const SchemaEntry schema_bases[] = {
 #define BASIS(x, keys, text) KEY(#x, TABLE, NULL, text, .table = &schema_keys_##keys),

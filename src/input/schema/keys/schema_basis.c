@@ -1,5 +1,5 @@
 /* Keys of the bases. Which basis takes which of these tables says support/bases.inc. */
-#include "input/schema/schema_keys.h"
+#include "input/schema/keys/schema_keys.h"
 #include "method/method.h"
 
 static const SchemaWord order_words[] = {

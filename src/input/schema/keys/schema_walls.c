@@ -1,5 +1,5 @@
 /* Keys of rigid walls, and of interfaces between bodies. */
-#include "input/schema/schema_keys.h"
+#include "input/schema/keys/schema_keys.h"
 
 /* The law of what meets, of walls and interfaces alike. */
 #define CONTACT_KEYS(spec, law_words)                                                                            \

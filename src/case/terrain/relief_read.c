@@ -5,7 +5,7 @@
 #include <string.h>
 #include <strings.h>
 #include "base/file.h"
-#include "case/relief.h"
+#include "case/terrain/relief.h"
 #include "case/terrain/geotiff.h"
 
 #define MOST_POSTS 50000000

@@ -7,7 +7,7 @@
  * with l and the distance s in cells. So points of a cell see four lines along each axis, whose numbers are one
  * register, and sixteen nodes, of which most have nothing: they are fetched once for all points of the cell, and
  * what these give is summed before it is brought there. */
-#include "model/explicit/plane.h"
+#include "model/explicit/kernels/plane.h"
 
 #define WINDOW 16
 /* A line nearer to the domain's end than this part of a cell counts as outside, as in support/gimp.c. */

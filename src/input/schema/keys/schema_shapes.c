@@ -1,5 +1,5 @@
 /* Keys of shapes and selectors. */
-#include "input/schema/schema_keys.h"
+#include "input/schema/keys/schema_keys.h"
 
 static const SchemaEntry shape_box_entries[] = {
   KEY("min", VECTOR, "m", "lower corner", REQUIRED, AT(Shape, min)),

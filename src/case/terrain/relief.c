@@ -1,4 +1,4 @@
-#include "case/relief.h"
+#include "case/terrain/relief.h"
 #include <math.h>
 
 PetscErrorCode ReliefDestroy(Relief **relief)

@@ -2,7 +2,7 @@
  * alone is done for four points at a time; what is between points and nodes, for the four nodes of a cell: points
  * of a cell follow each other between laps, so that its nodes are fetched once for all of them, and what they give
  * to the nodes is summed before it is brought there. */
-#include "model/explicit/plane.h"
+#include "model/explicit/kernels/plane.h"
 
 static const Four slope[2] = {{-1, 1, -1, 1}, {-1, -1, 1, 1}}, begin[2] = {{1, 0, 1, 0}, {1, 1, 0, 0}};
 

@@ -1,6 +1,6 @@
 /* Keys of the measures: those of the registry, and what stands behind and beside them. */
 #include "base/formula.h"
-#include "input/schema/schema_keys.h"
+#include "input/schema/keys/schema_keys.h"
 #include "model/measure/measure.h"
 
 static const SchemaWord front_words[] = {{"points", FRONT_POINTS, "the farthest material point"},

@@ -1,6 +1,6 @@
 /* Keys of the grid and of the bodies in it. */
 #include "base/formula.h"
-#include "input/schema/schema_keys.h"
+#include "input/schema/keys/schema_keys.h"
 
 static const SchemaWord cell_words[] = {
   {"triangle", CELL_TRIANGLE, "2D"},

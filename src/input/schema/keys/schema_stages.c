@@ -1,5 +1,5 @@
 /* Keys of stages, and of strength that is divided. */
-#include "input/schema/schema_keys.h"
+#include "input/schema/keys/schema_keys.h"
 
 static const SchemaWord reset_words[] = {
   {"displacement", 0, "displacements are measured from here"},

@@ -1,6 +1,6 @@
 /* Keys of what acts on the material: prescribed motion and loads. */
 #include "base/formula.h"
-#include "input/schema/schema_keys.h"
+#include "input/schema/keys/schema_keys.h"
 
 /* --- prescribed motion --- */
 static const SchemaEntry component_entries[] = {

@@ -1,7 +1,7 @@
 /* What each point does alone in the plane, four points at a time: for the walks over boxes whose functions are linear
  * (plane.c) and for those of gimp (smooth.c). */
 #pragma once
-#include "model/explicit/four.h"
+#include "model/explicit/kernels/four.h"
 
 /* x and y of four points from two registers in which they follow each other. */
 KERNEL void part(const Four pair[2], Four xy[2])

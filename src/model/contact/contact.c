@@ -1,0 +1,280 @@
+/* Walls and interfaces in a step: what they do to motion, momentum and energy. */
+#include "model/model_private.h"
+
+#define SUM_NUMBERS ((PetscInt)(sizeof(ContactSum) / sizeof(PetscReal)))
+
+static PetscBool rubs(ContactKind kind) { return kind == CONTACT_FRICTION || kind == CONTACT_STICK; }
+
+PetscBool contact_rubs(const Case *c)
+{
+  for (PetscInt k = 0; k < c->n_walls; ++k)
+    if (rubs(c->walls[k].contact)) return PETSC_TRUE;
+  for (PetscInt k = 0; k < c->n_interfaces; ++k)
+    if (rubs(c->interfaces[k].contact)) return PETSC_TRUE;
+  return PETSC_FALSE;
+}
+
+static ContactMotion motion_of(const Model *m, const ContactMass *whole, PetscReal *motion, PetscReal dt,
+                               PetscBool start)
+{
+  return (ContactMotion){.grid = m->grid,
+                         .mass = m->nodes->mass,
+                         .whole = whole->multiply ? whole : NULL,
+                         .frames = &m->boundary->frames,
+                         .fixed = m->nodes->fixed,
+                         .motion = motion,
+                         .du = m->nodes->du,
+                         .rate = 1 / dt,
+                         .pulls = !start,
+                         .start = start};
+}
+
+PetscBool contact_holds(const Model *m) { return m->scheme->inertia && !m->scheme->middle; }
+
+/* With inertia a wall's force acts over the whole step, and Newmark's formulas would weigh it as that of one end:
+ * so it is asked for as much larger, and what they remember of the last step's is taken back, or it would push what
+ * leaves. What rests asks for just the force that is remembered (docs/theory.md 18). */
+static ContactShare share_of_force(const Model *m)
+{
+  const TimeWeights w = m->scheme->weights(&m->c->analysis, 1);
+  if (!contact_holds(m)) return (ContactShare){.mean = 1};
+  return (ContactShare){.inertia = PETSC_TRUE,
+                        .flows = materials_yield(m->c->n_materials, m->materials),
+                        .mean = w.mean / (1 - w.lag),
+                        .back = (1 - w.lag) * (1 - w.mean) / w.mean - w.lag,
+                        .lag = w.lag};
+}
+
+static void forget(Model *m, const ContactPoint *c)
+{
+  PetscReal *kept = point_real(m->points, POINT_CONTACT, c->owner) + c->wall * CONTACT_KEPT(m->dim);
+  for (PetscInt d = 0; d < m->dim; ++d) kept[2 + d] = 0;
+}
+
+PetscErrorCode ContactGoOn(Model *m, PetscReal *external)
+{
+  const PetscInt dim = m->dim;
+  Contact *s = m->contact;
+  PetscReal *force;
+
+  PetscFunctionBeginUser;
+  if (!s) PetscFunctionReturn(0);
+  const NodalScene scene = nodal_scene(m, m->time, m->nodes->du);
+  PetscCall(ContactFind(s, &scene));
+  PetscCall(PetscCalloc1(m->grid->n_nodes * dim, &force));
+  for (const ContactPoint *c = s->point; c < s->point + s->n; ++c) {
+    for (PetscInt e = c->first; e < c->first + c->n && c->before != CONTACT_OPEN && !c->gone; ++e)
+      for (PetscInt d = 0; d < dim; ++d) force[s->node[e] * dim + d] += s->N[e] * c->last[d];
+    if (c->gone) forget(m, c);
+  }
+  PetscCall(GridSumToOwners(m->grid, dim, force));
+  for (PetscInt i = 0; i < m->grid->n_owned * dim; ++i) external[i] += force[i];
+  PetscCall(PetscFree(force));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ContactTouches(const Contact *s, MPI_Comm comm, PetscBool *any)
+{
+  PetscBool here = PETSC_FALSE;
+
+  PetscFunctionBeginUser;
+  for (const ContactPoint *c = s->point; c < s->point + s->n; ++c)
+    here |= c->touches || c->before != CONTACT_OPEN || c->state != CONTACT_OPEN;
+  PetscCallMPI(MPI_Allreduce(&here, any, 1, MPIU_BOOL, MPI_LOR, comm));
+  PetscFunctionReturn(0);
+}
+
+/* Sets the velocity of what is in contact to its wall's. */
+static PetscErrorCode Project(const Model *m, PetscReal *v, PetscReal dt, PetscBool start)
+{
+  ContactMass whole;
+  PetscBool any;
+
+  PetscFunctionBeginUser;
+  PetscCall(ContactTouches(m->contact, m->comm, &any));
+  if (!any) PetscFunctionReturn(0);
+  PetscCall(ContactMassCreate(m, &whole));
+  const ContactMotion motion = motion_of(m, &whole, v, dt, start);
+  PetscCall(ContactProject(m->contact, &motion, m->contact->impulse));
+  PetscCall(ContactMassDestroy(&whole));
+  PetscFunctionReturn(0);
+}
+
+/* What was in contact starts with its wall's velocity, as a prescribed node does. */
+PetscErrorCode ContactHold(Model *m, PetscReal dt, PetscReal inertia)
+{
+  PetscFunctionBeginUser;
+  if (!m->contact) PetscFunctionReturn(0);
+  contact_prepare(m->contact, m->time, dt, inertia, share_of_force(m));
+  for (RigidWall *b = m->contact->rigid; b < m->contact->rigid + m->contact->n_rigid; ++b)
+    rigid_begin(b, m->walls, m->c, m->time, dt, share_of_force(m).mean, m->scheme->middle);
+  if (!contact_holds(m)) PetscFunctionReturn(0);
+  PetscCall(Project(m, m->nodes->v, dt, PETSC_TRUE));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ContactEnd(Model *m, PetscReal dt, EnergyStep *energy)
+{
+  Contact *s = m->contact;
+
+  PetscFunctionBeginUser;
+  for (PetscInt k = 0; s && k < s->n_rigid; ++k) rigid_end(s->rigid + k);
+  if (!s || !contact_holds(m)) PetscFunctionReturn(0);
+  PetscCall(Project(m, m->nodes->v1, dt, PETSC_FALSE));
+  for (PetscInt k = 0; k < s->n_partners; ++k) {
+    energy->friction += s->impulse[k].sliding;
+    energy->transfer -= s->impulse[k].sliding;
+  }
+  energy->boundary += s->driven;
+  energy->transfer += s->driven;
+  PetscFunctionReturn(0);
+}
+
+/* Of the mean force in the step. */
+static ContactWork point_work(const Model *m, const ContactPoint *c)
+{
+  const PetscReal end = m->scheme->inertia ? share_of_force(m).mean : 0.5, first = m->scheme->inertia ? 0 : 0.5;
+  PetscReal f[3], balance[3], x[3], pressure = 0, closing = 0;
+  ContactWork work = {0};
+  contact_force(c, f);
+  contact_balance(m->contact, c, balance);
+  contact_place(m->contact, c, m->nodes->du, 1, x);
+  for (int d = 0; d < 3; ++d) {
+    f[d] = first * c->last[d] + end * f[d];
+    pressure += f[d] * c->normal[d];
+    closing += (x[d] - c->x[d] - c->swept[d]) * c->normal[d];
+  }
+  for (int d = 0; d < 3; ++d) {
+    const PetscReal start = c->stays * c->last[d];
+    work.start += 0.5 * start * (x[d] - c->x[d]);
+    work.more += (f[d] - 0.5 * (start + balance[d])) * (x[d] - c->x[d]);
+    work.moving += f[d] * c->passes[d];
+    work.closing += f[d] * (c->swept[d] - c->passes[d]);
+    work.sliding -= (f[d] - pressure * c->normal[d]) * (x[d] - c->x[d] - c->swept[d]);
+  }
+  work.closing += pressure * closing;
+  if (!m->scheme->inertia || m->scheme->middle) work.more = 0; /* the balance has all of it */
+  return work;
+}
+
+ContactWork contact_work(const Model *m)
+{
+  const Contact *s = m->contact;
+  ContactWork sum = {0};
+  for (PetscInt k = 0; s && k < s->n; ++k) {
+    const ContactWork work = point_work(m, s->point + k);
+    if (contact_rigid(s, s->point + k)) sum.rigid += work.moving;
+    sum.start += work.start;
+    sum.moving += work.moving;
+    sum.sliding += work.sliding;
+    sum.closing += work.closing;
+    sum.more += work.more;
+  }
+  return sum;
+}
+
+/* What measures ask of each wall after the step. */
+static PetscErrorCode Survey(const Model *m)
+{
+  const Contact *s = m->contact;
+  const PetscInt n = s->n_partners;
+  PetscReal *sums, *deepest;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc2(2 * n, &sums, n, &deepest));
+  for (const ContactPoint *c = s->point; c < s->point + s->n; ++c) {
+    sums[c->wall] += point_work(m, c).sliding;
+    if (c->state == CONTACT_OPEN) continue;
+    sums[n + c->wall] += c->section;
+    deepest[c->wall] = PetscMax(deepest[c->wall], -c->gap);
+  }
+  PetscCall(MPIU_Allreduce(MPI_IN_PLACE, sums, (PetscMPIInt)(2 * n), MPIU_REAL, MPI_SUM, m->comm));
+  PetscCall(MPIU_Allreduce(MPI_IN_PLACE, deepest, (PetscMPIInt)n, MPIU_REAL, MPI_MAX, m->comm));
+  for (PetscInt k = 0; k < n; ++k) {
+    s->wall[k].friction += sums[k];
+    s->wall[k].area = sums[n + k];
+    s->wall[k].deepest = deepest[k];
+  }
+  PetscCall(PetscFree2(sums, deepest));
+  PetscFunctionReturn(0);
+}
+
+/* sum += factor x */
+static void add(ContactSum *sum, PetscReal factor, const ContactSum *x)
+{
+  for (int d = 0; d < 3; ++d) {
+    sum->force[d] += factor * x->force[d];
+    sum->torque[d] += factor * x->torque[d];
+  }
+}
+
+/* A wall with mass has lost what the material got, to the last bit: also where that got it by the force of
+ * the last step on what has gone away since. */
+static void settle(Model *m, PetscReal dt)
+{
+  for (RigidWall *b = m->contact->rigid; b < m->contact->rigid + m->contact->n_rigid; ++b) {
+    PetscReal p[RIGID] = {0, 0, 0, 0, 0, 0};
+    for (int d = 0; d < 3; ++d) p[d] = b->given[d] - dt * m->contact->wall[b->wall].mean.force[d];
+    if (m->scheme->inertia) rigid_push(b, p);
+  }
+}
+
+/* As reactions of the boundary (accept.c): over the step the scheme weighs the forces of both ends,
+ * and impulses count besides. */
+PetscErrorCode ContactForces(Model *m, PetscReal dt)
+{
+  const TimeWeights w = m->scheme->weights(&m->c->analysis, dt);
+  Contact *s = m->contact;
+  const PetscInt n = s ? s->n_partners : 0;
+  ContactSum *now;
+
+  PetscFunctionBeginUser;
+  if (!s) PetscFunctionReturn(0);
+  PetscCall(PetscCalloc1(3 * n, &now)); /* forces at the end, impulses, what is taken out of the first */
+  for (PetscInt k = 0; k < s->n; ++k) {
+    ContactPoint *c = s->point + k;
+    PetscReal f[3];
+    contact_balance(s, c, f);
+    contact_add(c, m->dim, f, now + c->wall);
+    contact_excess(s, c, f);
+    contact_add(c, m->dim, f, now + 2 * n + c->wall);
+  }
+  PetscCall(PetscArraycpy(now + n, s->impulse, n));
+  PetscCall(MPIU_Allreduce(MPI_IN_PLACE, now, (PetscMPIInt)(3 * n * SUM_NUMBERS), MPIU_REAL, MPI_SUM, m->comm));
+  for (PetscInt k = 0; k < n; ++k) {
+    WallState *wall = s->wall + k;
+    const ContactSum before = wall->rate;
+    wall->mean = wall->rate = (ContactSum){0};
+    add(&wall->rate, 1 / (1 - w.lag), now + k);
+    add(&wall->rate, -w.lag / (1 - w.lag), &before);
+    wall->friction += now[n + k].sliding;
+    if (m->scheme->inertia) {
+      add(&wall->mean, 1 - w.mean, &before);
+      add(&wall->mean, w.mean, &wall->rate);
+      add(&wall->mean, 1 / dt, now + n + k);
+    } else add(&wall->mean, 1, now + k);
+    add(&wall->rate, -1, now + 2 * n + k);
+  }
+  PetscCall(PetscFree(now));
+  settle(m, dt);
+  PetscCall(Survey(m));
+  PetscCall(ContactRelease(m, dt));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ModelTractions(const Model *m, PetscInt wall, PetscInt *n, ContactTraction **tractions)
+{
+  PetscFunctionBeginUser;
+  *n = 0, *tractions = NULL;
+  if (!m->contact) PetscFunctionReturn(0);
+  PetscCall(ContactTractions(m->contact, m->grid, wall, m->nodes->du, share_of_force(m).mean, n, tractions));
+  PetscFunctionReturn(0);
+}
+
+void contact_force_on(const Model *m, PetscInt p, PetscReal force[3])
+{
+  const PetscReal *kept = point_real(m->points, POINT_CONTACT, p);
+  force[0] = force[1] = force[2] = 0;
+  for (PetscInt k = 0; k < m->c->n_walls + m->c->n_interfaces; ++k, kept += CONTACT_KEPT(m->dim))
+    for (PetscInt d = 0; d < m->dim && (int)(kept[0] + 0.5) != CONTACT_OPEN; ++d) force[d] += kept[2 + d];
+}

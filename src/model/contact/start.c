@@ -1,0 +1,168 @@
+/* Walls at the start of a model, and those that a stage brings: what of the material touches them. */
+#include <string.h>
+#include "model/model_private.h"
+
+#define THROUGH 1e-9 /* of a cell: material that reaches deeper into a wall at the start is a mistake */
+#define FITS 1e-3    /* of the distance of a wall: so near to it ends what stands on it */
+#define PART 0.5     /* likewise, as its volume and its share of the surface tell it */
+#define DENT 0.01    /* of a cell: a surface that is taken back by more to fit a wall may be one, too */
+
+/* The worst of something over points: how much, 0 if there is none, and where. */
+typedef struct {
+  PetscReal depth, x[3];
+} Worst;
+
+static void take_worse(const Model *m, PetscReal depth, const PetscReal *x, Worst *worst)
+{
+  if (depth <= worst->depth) return;
+  worst->depth = depth;
+  for (PetscInt d = 0; d < m->dim; ++d) worst->x[d] = x[d];
+}
+
+/* Collective. Of all ranks. */
+static PetscErrorCode FindWorst(const Model *m, Worst *worst)
+{
+  struct {
+    double depth;
+    int rank;
+  } local, all;
+  PetscMPIInt rank;
+
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_rank(m->comm, &rank));
+  local.depth = (double)worst->depth, local.rank = rank;
+  PetscCallMPI(MPI_Allreduce(&local, &all, 1, MPI_DOUBLE_INT, MPI_MAXLOC, m->comm));
+  worst->depth = (PetscReal)all.depth;
+  PetscCallMPI(MPI_Bcast(worst->x, 3, MPIU_REAL, all.rank, m->comm));
+  PetscFunctionReturn(0);
+}
+
+/* Does the part that the point stands for end there? */
+static PetscBool reaches_wall(const Model *m, PetscInt p, const WallPlace *place)
+{
+  const PetscReal weight = kinematics_weight(m->c->kinematics, point_real(m->points, POINT_X, p)[0]);
+  const PetscReal face = contact_face(m->points, p, place->normal);
+  const PetscReal half = face > 0 ? 0.5 * m->points->real[POINT_VOLUME][p] / (weight * face) : 0;
+  return (PetscBool)(PetscAbsReal(place->gap - half) < PART * half);
+}
+
+/* At an edge of a body its surface is elsewhere for each wall: does the body end at this one straight before the point,
+ * although that is nearer to another side? */
+static PetscBool stands_on(const Model *m, PetscInt p, const WallPlace *place)
+{
+  const BodySpec *body = m->c->bodies + m->points->body[p];
+  const PetscReal *x = point_real(m->points, POINT_X, p);
+  PetscReal within[3], beyond[3];
+  if (!body->has_shape || body->mesh || place->gap <= m->points->real[POINT_REACH][p]) return PETSC_FALSE;
+  if (!reaches_wall(m, p, place)) return PETSC_FALSE;
+  for (PetscInt d = 0; d < m->dim; ++d) {
+    within[d] = x[d] - (1 - FITS) * place->gap * place->normal[d];
+    beyond[d] = x[d] - (1 + FITS) * place->gap * place->normal[d];
+  }
+  return (PetscBool)(shape_contains(&body->shape, m->dim, within, 0) &&
+                     !shape_contains(&body->shape, m->dim, beyond, 0));
+}
+
+/* What stands nearer to a wall than its cell's side does touches it: the body was made to fit, and its surface is taken
+ * back (dent) to the wall. A point inside the wall is a mistake (inside). */
+static void look_at_wall(Model *m, PetscInt k, PetscBool fits, Worst *inside, Worst *dent)
+{
+  WallPlace place;
+  for (PetscInt p = 0; p < m->points->n; ++p) {
+    const PetscReal *x = point_real(m->points, POINT_X, p);
+    PetscReal *reach = point_real(m->points, POINT_REACH, p);
+    const int side = wall_side(m->walls, k, m->time, x);
+    if (!wall_near(m->walls, k, m->time, x, fits ? THICKEST * *reach : *reach, side, &place)) continue;
+    if (fits && !m->c->stage && stands_on(m, p, &place))
+      point_real(m->points, POINT_CONTACT, p)[k * CONTACT_KEPT(m->dim) + 1] = place.gap;
+    take_worse(m, -place.gap, x, inside);
+    if (!fits || place.gap <= THROUGH * m->grid->smallest || place.gap >= *reach) continue;
+    take_worse(m, *reach - place.gap, x, dent);
+    *reach = place.gap;
+  }
+}
+
+static PetscErrorCode TellThrough(const Model *m, PetscInt k, Worst *inside, Diag *diag)
+{
+  char path[64];
+
+  PetscFunctionBeginUser;
+  PetscCall(FindWorst(m, inside));
+  if (inside->depth <= 0) PetscFunctionReturn(0);
+  PetscCall(PetscSNPrintf(path, sizeof path, "walls[%d]", (int)k));
+  diag_error(diag, path, "wall '%s' goes through a body at the start: the point at (%g, %g, %g) m is %.3g m inside it",
+             m->c->walls[k].name, (double)inside->x[0], (double)inside->x[1], (double)inside->x[2],
+             (double)inside->depth);
+  PetscFunctionReturn(0);
+}
+
+/* How deep nodes of bodies are in the wall. */
+static void look_at_nodes(const Model *m, PetscInt k, Worst *inside)
+{
+  WallPlace place;
+  for (PetscInt node = 0; node < m->grid->n_owned; ++node) {
+    const PetscReal *x = m->grid->x + node * m->dim;
+    if (wall_near(m->walls, k, m->time, x, 0, 0, &place)) take_worse(m, -place.gap, x, inside);
+  }
+}
+
+/* Meshes that move with their body know where that ends. (In a corner one side of a point's cell is nearer to it than
+ * the other: only where nodes are in the wall, too, is there a dent.) */
+static PetscErrorCode TellDent(const Model *m, PetscInt k, Worst *dent, Diag *diag)
+{
+  Worst inside = {0};
+  char path[64];
+
+  PetscFunctionBeginUser;
+  if (m->method->restores_grid) PetscFunctionReturn(0);
+  look_at_nodes(m, k, &inside);
+  PetscCall(FindWorst(m, dent));
+  PetscCall(FindWorst(m, &inside));
+  if (PetscMin(dent->depth, inside.depth) <= DENT * m->grid->smallest) PetscFunctionReturn(0);
+  PetscCall(PetscSNPrintf(path, sizeof path, "walls[%d]", (int)k));
+  diag_warning(
+    diag, path,
+    "wall '%s' cuts into a body at the start, by %.3g m near (%g, %g, %g) m, %.2g of a cell: its surface there "
+    "is taken to be made to fit, with a dent of that depth",
+    m->c->walls[k].name, (double)dent->depth, (double)dent->x[0], (double)dent->x[1], (double)dent->x[2],
+    (double)(dent->depth / m->grid->smallest));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode WallsStart(Model *m, Diag *diag)
+{
+  PetscFunctionBeginUser;
+  if (!m->c->n_walls && !m->c->n_interfaces) PetscFunctionReturn(0);
+  PetscCall(WallsCreate(m->c, diag, &m->walls));
+  PetscCall(ContactCreate(m->c, m->walls, diag, &m->contact));
+  rigid_check(m, diag);
+  PetscCall(InterfacesStart(m, diag));
+  for (PetscInt k = 0; k < m->c->n_walls; ++k) {
+    Worst inside = {0}, dent = {0};
+    look_at_wall(m, k, PETSC_TRUE, &inside, &dent);
+    if (m->c->stage) continue; /* bodies are elsewhere */
+    PetscCall(TellThrough(m, k, &inside, diag));
+    PetscCall(TellDent(m, k, &dent, diag));
+  }
+  PetscFunctionReturn(0);
+}
+
+/* Was the wall there before, as it is now? */
+static PetscBool stood(const WallSpec *wall, const Case *c, const Case *from)
+{
+  for (const WallSpec *w = from->walls; w < from->walls + from->n_walls; ++w)
+    if (!strcmp(w->name, wall->name)) return !w->absent && wall->since < c->stage;
+  return PETSC_FALSE;
+}
+
+PetscErrorCode WallsCome(Model *m, const Case *from, Diag *diag)
+{
+  PetscFunctionBeginUser;
+  for (PetscInt k = 0; k < m->c->n_walls; ++k) {
+    Worst inside = {0}, dent = {0};
+    if (m->c->walls[k].absent || stood(&m->c->walls[k], m->c, from)) continue;
+    look_at_wall(m, k, PETSC_FALSE, &inside, &dent);
+    PetscCall(TellThrough(m, k, &inside, diag));
+  }
+  PetscFunctionReturn(0);
+}
