@@ -2,6 +2,7 @@
  * where cells are not full; the momentum of the nodes by the mass matrix, written down again here, is
  * that of the points; the impulse of prescribed nodes is all that these take. */
 #include "case_builder.h"
+#include "method/transfer/mass.h"
 
 enum { CELLS = 6, SIDE = CELLS + 1 };
 
@@ -38,13 +39,20 @@ static PetscReal linear_at(PetscInt motion, PetscInt d, const PetscReal *x, Pets
 }
 
 /* Masses of their own, and cells half empty. */
-static void set_linear(Model *m)
+static void set_masses(Model *m)
 {
-  const PetscReal none[3] = {0, 0, 0};
   for (PetscInt p = 0; p < m->points->n; ++p) {
     Random random = {(uint64_t)m->points->id[p] + 3};
     m->points->real[POINT_MASS][p] *= random_real(&random, 0.5, 1.5);
     m->points->real[POINT_J][p] = random_real(&random, 0.3, 0.9);
+  }
+}
+
+static void set_linear(Model *m)
+{
+  const PetscReal none[3] = {0, 0, 0};
+  set_masses(m);
+  for (PetscInt p = 0; p < m->points->n; ++p)
     for (PetscInt k = 0; k < 2; ++k)
       for (PetscInt d = 0; d < m->dim; ++d) {
         PetscReal *slope = point_real(m->points, POINT_SLOPE, p) + (k * m->dim + d) * m->dim;
@@ -54,7 +62,6 @@ static void set_linear(Model *m)
           slope[j] = linear_at(k, d, one, m->dim) - linear_at(k, d, none, m->dim);
         }
       }
-  }
 }
 
 /* To the tolerance of the solve, 1e-6 of the motion, over the least eigenvalue, some per cent. */
@@ -193,10 +200,45 @@ static void test_refused(void **state)
   bench_refused(&b, PETSC_COMM_WORLD, "analysis.scheme", "displacements alone");
 }
 
+/* The mass matrix summed up row by row, as long solves do, is that of the sums over points of their first products:
+ * lumped and tied as cells are full. */
+static void test_rows(void **state)
+{
+  (void)state;
+  const char *const bases[] = {"cell", "gimp", "bspline"};
+  EACH_OF (k, bases) {
+    PetscReal largest = 0, *by_points;
+    MassSolve c;
+    Bench b;
+    Model *m;
+    bench_init(&b, "mpm", CELL_QUADRILATERAL, CELLS);
+    bench_box(&b, 0, (PetscReal[]){1. / 3, 0, 0}, (PetscReal[]){0.8, 5. / 6, 0});
+    bench_dynamic(&b, 1, 1e-3);
+    b.c.basis.kind = bases[k], b.c.analysis.transfer = (char *)"consistent", b.c.analysis.scheme = (char *)"midpoint";
+    b.c.stabilisation = (StabilisationSpec){.stiffness = 1e-6, .mass = 1, .inertia = 0.05};
+    m = bench_model(&b, PETSC_COMM_WORLD);
+    set_masses(m);
+    CALL(m->method->initialise(m->space));
+    CALL(MassSolveCreate(m->space, &c));
+    for (PetscInt i = 0; i < c.size; ++i)
+      c.x[i] = sin((PetscReal)m->grid->global_node[i / c.width] + 7. * (PetscReal)(i % c.width));
+    CALL(c.multiply(&c, c.x));
+    CALL(PetscMalloc1(c.size, &by_points));
+    CALL(PetscArraycpy(by_points, c.product, c.size));
+    while (!c.rows) CALL(c.multiply(&c, c.x));
+    for (PetscInt i = 0; i < m->grid->n_owned * c.width; ++i) largest = PetscMax(largest, PetscAbsReal(by_points[i]));
+    for (PetscInt i = 0; i < m->grid->n_owned * c.width; ++i) CHECK_CLOSE(c.product[i], by_points[i], 1e-14 * largest);
+    CHECK(sum_over(m, largest) > 0, "no mass");
+    CALL(PetscFree(by_points));
+    CALL(MassSolveDestroy(&c));
+    CALL(ModelDestroy(&m));
+  }
+}
+
 int main(int argc, char **argv)
 {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_linear), cmocka_unit_test(test_yields),
-                                     cmocka_unit_test(test_unseen), cmocka_unit_test(test_momentum),
-                                     cmocka_unit_test(test_refused)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_linear),  cmocka_unit_test(test_yields),
+                                     cmocka_unit_test(test_unseen),  cmocka_unit_test(test_momentum),
+                                     cmocka_unit_test(test_refused), cmocka_unit_test(test_rows)};
   return run_model_tests(argc, argv, tests);
 }

@@ -1,51 +1,71 @@
 #include "method/transfer/mass.h"
 #include "method/transfer/loops.h"
 
+/* Products by points before the matrix is summed up: short solves are not worth it. */
+#define FEW_PRODUCTS 4
+
 /* Meshes of fem have cells that are full. */
-static PetscReal lumping_of(const Discretisation *s, PetscInt g) { return s->lumping ? s->lumping[g] : 0; }
-static PetscReal tie_of(const Discretisation *s, PetscInt g) { return s->tie ? s->tie[g] : 0; }
+PetscReal mass_lumping(const Discretisation *s, PetscInt g) { return s->lumping ? s->lumping[g] : 0; }
+PetscReal mass_tie(const Discretisation *s, PetscInt g) { return s->tie ? s->tie[g] : 0; }
+
+/* Four numbers of a node, which are one register: velocity and acceleration in the plane; in space it has two of
+ * them, of which the second is half empty. */
+typedef PetscReal Four __attribute__((vector_size(4 * sizeof(PetscReal)), aligned(sizeof(PetscReal)), may_alias));
+
+UNROLLED Four take(const PetscInt part, const PetscInt width, const PetscReal *x)
+{
+  if (4 * part + 4 <= width) return *(const Four *)(x + 4 * part);
+  return (Four){x[4 * part], x[4 * part + 1], 0, 0};
+}
+
+UNROLLED void give(const PetscInt part, const PetscInt width, Four more, PetscReal *x)
+{
+  if (4 * part + 4 <= width) *(Four *)(x + 4 * part) += more;
+  else x[4 * part] += more[0], x[4 * part + 1] += more[1];
+}
 
 /* out += N m (1 - l) N x of a point; weight += N m l. */
-UNROLLED void multiply_point(const PetscInt nn, const PetscInt width, PetscReal m, PetscReal lumped, const PetscReal *N,
-                             const PetscReal *in, PetscReal *weight, PetscReal *out)
+UNROLLED void multiply_point(const PetscInt nn, PetscReal m, PetscReal lumped, const PetscReal *N, const Four *in,
+                             PetscReal *weight, Four *out)
 {
-  PetscReal at[6] = {0, 0, 0, 0, 0, 0};
+  Four at = {0, 0, 0, 0};
+  for (PetscInt I = 0; I < nn; ++I) at += N[I] * in[I];
+  at *= (1 - lumped) * m;
+  for (PetscInt I = 0; I < nn; ++I) out[I] += N[I] * at;
+  for (PetscInt I = 0; weight && I < nn; ++I) weight[I] += lumped * m * N[I];
+}
+
+/* sum += M x over the points of a group, of four numbers of its nodes. */
+UNROLLED void multiply_part(const PetscInt part, const PetscInt width, const PetscInt nn, const Discretisation *s,
+                            PetscInt g, const PetscReal *x, PetscReal *sum)
+{
+  const Support *w = s->support;
+  const PetscInt *node = w->node + w->node_start[g];
+  const PetscReal tie = mass_tie(s, g), lumping = mass_lumping(s, g);
+  Four in[CLOUD_MAX_NODES], out[CLOUD_MAX_NODES], mean = {0, 0, 0, 0}, any = {0, 0, 0, 0};
+  PetscReal weight[CLOUD_MAX_NODES];
   for (PetscInt I = 0; I < nn; ++I) {
-    weight[I] += lumped * m * N[I];
-    for (PetscInt k = 0; k < width; ++k) at[k] += N[I] * in[I * width + k];
+    in[I] = take(part, width, x + node[I] * width);
+    any += in[I] * in[I];
+    mean -= tie / (PetscReal)nn * in[I];
+    weight[I] = tie;
   }
-  for (PetscInt k = 0; k < width; ++k) at[k] *= (1 - lumped) * m;
-  for (PetscInt I = 0; I < nn; ++I)
-    for (PetscInt k = 0; k < width; ++k) out[I * width + k] += N[I] * at[k];
+  if (any[0] + any[1] + any[2] + any[3] == 0) return; /* what walls gave too much is lacking near them alone */
+  for (PetscInt I = 0; I < nn; ++I) out[I] = mean;
+  for (PetscInt p = w->point_start[g]; p < w->point_start[g + 1]; ++p)
+    multiply_point(nn, s->points->real[POINT_MASS][p], lumping, w->N + w->value_start[g] + (p - w->point_start[g]) * nn,
+                   in, lumping > 0 ? weight : NULL, out);
+  for (PetscInt I = 0; I < nn; ++I) give(part, width, out[I] + weight[I] * in[I], sum + node[I] * width);
 }
 
 /* sum += M x over the points of a run. */
 UNROLLED void multiply(const PetscInt dim, const PetscInt fixed_nn, const SupportRun *run, const Discretisation *s,
                        const PetscReal *x, PetscReal *sum)
 {
-  const Support *w = s->support;
-  const PetscInt width = 2 * dim;
   for (PetscInt g = run->first; g < run->end; ++g) {
-    const PetscInt nn = fixed_nn ? fixed_nn : support_nodes(w, g), *node = w->node + w->node_start[g];
-    const PetscReal tie = tie_of(s, g), lumping = lumping_of(s, g);
-    PetscReal in[6 * CLOUD_MAX_NODES], out[6 * CLOUD_MAX_NODES], weight[CLOUD_MAX_NODES];
-    PetscReal mean[6] = {0, 0, 0, 0, 0, 0};
-    PetscReal any = 0;
-    for (PetscInt I = 0; I < nn; ++I) {
-      weight[I] = tie;
-      for (PetscInt k = 0; k < width; ++k) {
-        in[I * width + k] = x[node[I] * width + k];
-        mean[k] -= tie / (PetscReal)nn * in[I * width + k];
-        any += PetscAbsReal(in[I * width + k]);
-      }
-    }
-    if (any == 0) continue; /* what walls gave too much is lacking near them alone */
-    for (PetscInt i = 0; i < nn * width; ++i) out[i] = mean[i % width];
-    for (PetscInt p = w->point_start[g]; p < w->point_start[g + 1]; ++p)
-      multiply_point(nn, width, s->points->real[POINT_MASS][p], lumping,
-                     w->N + w->value_start[g] + (p - w->point_start[g]) * nn, in, weight, out);
-    for (PetscInt i = 0; i < nn * width; ++i)
-      sum[node[i / width] * width + i % width] += out[i] + weight[i / width] * in[i];
+    const PetscInt nn = fixed_nn ? fixed_nn : support_nodes(s->support, g);
+    multiply_part(0, 2 * dim, nn, s, g, x, sum);
+    if (dim == 3) multiply_part(1, 2 * dim, nn, s, g, x, sum);
   }
 }
 
@@ -57,7 +77,7 @@ UNROLLED void add_diagonal(const PetscInt dim, const PetscInt fixed_nn, const Su
   (void)dim;
   for (PetscInt g = run->first; g < run->end; ++g) {
     const PetscInt nn = fixed_nn ? fixed_nn : support_nodes(w, g), *node = w->node + w->node_start[g];
-    const PetscReal tie = tie_of(s, g), lumping = lumping_of(s, g);
+    const PetscReal tie = mass_tie(s, g), lumping = mass_lumping(s, g);
     for (PetscInt I = 0; I < nn; ++I) sum[node[I]] += tie * (1 - 1 / (PetscReal)nn);
     for (PetscInt p = w->point_start[g]; p < w->point_start[g + 1]; ++p) {
       const PetscReal *N = w->N + w->value_start[g] + (p - w->point_start[g]) * nn;
@@ -79,9 +99,13 @@ void mass_turn(const MassSolve *c, PetscReal *x)
 static PetscErrorCode Multiply(MassSolve *c, PetscReal *x)
 {
   PetscFunctionBeginUser;
-  PetscCall(PetscArrayzero(c->product, c->size));
+  if (++c->products == FEW_PRODUCTS) PetscCall(MassRowsCreate(c->s, &c->rows));
   mass_turn(c, x);
-  WITH_SIZES(multiply, c->s, c->s, x, c->product);
+  if (c->rows) mass_rows_multiply(c->rows, c->width, c->s->grid->n_nodes, x, c->product);
+  else {
+    PetscCall(PetscArrayzero(c->product, c->size));
+    WITH_SIZES(multiply, c->s, c->s, x, c->product);
+  }
   mass_turn(c, x);
   PetscCall(GridSumToOwners(c->s->grid, c->width, c->product));
   mass_turn(c, c->product);

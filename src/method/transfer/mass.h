@@ -12,6 +12,7 @@
 enum { VELOCITY, ACCELERATION, MOTIONS };
 
 typedef struct MassSolve MassSolve;
+typedef struct MassRows MassRows;
 /* Collective. product = M x, on owners; x is right on all copies. */
 typedef PetscErrorCode (*MassMultiply)(MassSolve *solve, PetscReal *x);
 
@@ -26,6 +27,8 @@ struct MassSolve {
   PetscReal *direction, *product;
   PetscInt n_reached, n_reached_owned, *reached; /* local nodes that sweeps go over, owned ones first */
   PetscBool framed;                              /* are components those in the frames of nodes that slide? */
+  PetscInt products;                             /* how many there were */
+  MassRows *rows;                                /* NULL: not worth it yet */
 };
 
 /* All arrays 0, `inverse` too: for another matrix than this one. */
@@ -43,6 +46,14 @@ PetscErrorCode MassSolveRun(MassSolve *solve, const PetscReal enough[MOTIONS], i
 /* Collective. What is lacking goes to the nodes by mass where `inverse` is not 0: then the sum of M x is that of
  * the right-hand side to round-off. x is right on all copies after that. */
 PetscErrorCode MassSolveClose(MassSolve *solve);
+/* Share of a group's mass that is lumped, and its tie, kg. */
+PetscReal mass_lumping(const Discretisation *space, PetscInt group);
+PetscReal mass_tie(const Discretisation *space, PetscInt group);
+/* mass_matrix.c. M of this rank's points, row by row. */
+PetscErrorCode MassRowsCreate(const Discretisation *space, MassRows **rows);
+PetscErrorCode MassRowsDestroy(MassRows **rows);
+/* product = M x, n_nodes x width, before ranks add theirs up. */
+void mass_rows_multiply(const MassRows *rows, PetscInt width, PetscInt n_nodes, const PetscReal *x, PetscReal *product);
 /* Between components along the axes and those in the frames, if these are used. */
 void mass_turn(const MassSolve *solve, PetscReal *x);
 /* Two fields of n_nodes x dim to such an array, and back. */

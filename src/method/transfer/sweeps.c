@@ -1,5 +1,13 @@
 /* Conjugate gradients for two motions of the nodes at a time. */
+#include "method/transfer/loops.h"
 #include "method/transfer/mass.h"
+
+/* loop(dim, ...) with the dimension known to the compiler. */
+#define WITH_DIM(loop, dim, ...)          \
+  do {                                    \
+    if ((dim) == 2) loop(2, __VA_ARGS__); \
+    else loop(3, __VA_ARGS__);            \
+  } while (0)
 
 PetscErrorCode MassSolveAllocate(const Discretisation *s, MassMultiply multiply, MassSolve *c)
 {
@@ -16,6 +24,7 @@ PetscErrorCode MassSolveDestroy(MassSolve *c)
   PetscFunctionBeginUser;
   PetscCall(PetscFree5(c->x, c->lack, c->inverse, c->direction, c->product));
   PetscCall(PetscFree(c->reached));
+  PetscCall(MassRowsDestroy(&c->rows));
   PetscFunctionReturn(0);
 }
 
@@ -38,16 +47,26 @@ static PetscErrorCode FindReached(MassSolve *c)
   PetscFunctionReturn(0);
 }
 
-/* Sums over owned nodes of x y z, of velocity and acceleration apart. */
+/* += sums over owned nodes of x y z, of velocity and acceleration apart; z NULL: 1. */
+UNROLLED void add_products(const PetscInt dim, const MassSolve *c, const PetscReal *x, const PetscReal *y,
+                           const PetscReal *z, PetscReal sum[MOTIONS])
+{
+  PetscReal part[2 * 3] = {0, 0, 0, 0, 0, 0};
+  for (PetscInt k = 0; k < c->n_reached_owned; ++k) {
+    const PetscInt first = c->reached[k] * 2 * dim;
+    for (PetscInt i = 0; i < 2 * dim; ++i) part[i] += x[first + i] * y[first + i] * (z ? z[first + i] : 1);
+  }
+  for (PetscInt i = 0; i < 2 * dim; ++i) sum[i / dim] += part[i];
+}
+
 static PetscErrorCode Products(const MassSolve *c, const PetscReal *x, const PetscReal *y, const PetscReal *z,
                                PetscReal sum[MOTIONS])
 {
   PetscReal local[MOTIONS] = {0, 0};
 
   PetscFunctionBeginUser;
-  for (PetscInt k = 0; k < c->n_reached_owned; ++k)
-    for (PetscInt f = 0, i = c->reached[k] * c->width; f < MOTIONS; ++f)
-      for (PetscInt d = 0; d < c->dim; ++d, ++i) local[f] += x[i] * y[i] * (z ? z[i] : 1);
+  if (z) WITH_DIM(add_products, c->dim, c, x, y, z, local);
+  else WITH_DIM(add_products, c->dim, c, x, y, NULL, local);
   PetscCall(MPIU_Allreduce(local, sum, MOTIONS, MPIU_REAL, MPI_SUM, c->s->grid->comm));
   PetscFunctionReturn(0);
 }
@@ -60,6 +79,27 @@ PetscErrorCode MassLack(MassSolve *c, PetscReal square[MOTIONS])
   PetscFunctionReturn(0);
 }
 
+/* direction = lack over the diagonal + grow times itself. */
+UNROLLED void aim(const PetscInt dim, MassSolve *c, const PetscReal grow[MOTIONS])
+{
+  for (PetscInt k = 0; k < c->n_reached_owned; ++k) {
+    const PetscInt first = c->reached[k] * 2 * dim;
+    for (PetscInt i = 0; i < 2 * dim; ++i)
+      c->direction[first + i] = c->inverse[first + i] * c->lack[first + i] + grow[i / dim] * c->direction[first + i];
+  }
+}
+
+UNROLLED void go(const PetscInt dim, MassSolve *c, const PetscReal length[MOTIONS])
+{
+  for (PetscInt k = 0; k < c->n_reached; ++k) {
+    const PetscInt first = c->reached[k] * 2 * dim;
+    for (PetscInt i = 0; i < 2 * dim; ++i) {
+      c->x[first + i] += length[i / dim] * c->direction[first + i];
+      c->lack[first + i] -= length[i / dim] * c->product[first + i];
+    }
+  }
+}
+
 /* One sweep; lengths of 0 leave a motion alone. */
 static PetscErrorCode Sweep(MassSolve *c, const PetscBool done[MOTIONS], PetscReal now[MOTIONS],
                             PetscReal grow[MOTIONS])
@@ -67,20 +107,12 @@ static PetscErrorCode Sweep(MassSolve *c, const PetscBool done[MOTIONS], PetscRe
   PetscReal curvature[MOTIONS], length[MOTIONS], before[MOTIONS];
 
   PetscFunctionBeginUser;
-  for (PetscInt k = 0; k < c->n_reached_owned; ++k)
-    for (PetscInt f = 0, i = c->reached[k] * c->width; f < MOTIONS; ++f)
-      for (PetscInt d = 0; d < c->dim; ++d, ++i)
-        c->direction[i] = c->inverse[i] * c->lack[i] + grow[f] * c->direction[i];
+  WITH_DIM(aim, c->dim, c, grow);
   PetscCall(GridToGhosts(c->s->grid, c->width, c->direction));
   PetscCall(c->multiply(c, c->direction));
   PetscCall(Products(c, c->direction, c->product, NULL, curvature));
   for (int f = 0; f < MOTIONS; ++f) length[f] = !done[f] && curvature[f] > 0 ? now[f] / curvature[f] : 0;
-  for (PetscInt k = 0; k < c->n_reached; ++k)
-    for (PetscInt f = 0, i = c->reached[k] * c->width; f < MOTIONS; ++f)
-      for (PetscInt d = 0; d < c->dim; ++d, ++i) {
-        c->x[i] += length[f] * c->direction[i];
-        c->lack[i] -= length[f] * c->product[i];
-      }
+  WITH_DIM(go, c->dim, c, length);
   PetscCall(PetscArraycpy(before, now, MOTIONS));
   PetscCall(Products(c, c->lack, c->lack, c->inverse, now));
   for (int f = 0; f < MOTIONS; ++f) grow[f] = before[f] > 0 ? now[f] / before[f] : 0;
