@@ -220,8 +220,8 @@ static void test_rows(void **state)
     set_masses(m);
     CALL(m->method->initialise(m->space));
     CALL(MassSolveCreate(m->space, &c));
-    for (PetscInt i = 0; i < c.size; ++i)
-      c.x[i] = sin((PetscReal)m->grid->global_node[i / c.width] + 7. * (PetscReal)(i % c.width));
+    for (PetscInt node = 0, i = 0; node < m->grid->n_nodes; ++node)
+      for (PetscInt d = 0; d < c.width; ++d, ++i) c.x[i] = sin((PetscReal)(m->grid->global_node[node] + 7 * d));
     CALL(c.multiply(&c, c.x));
     CALL(PetscMalloc1(c.size, &by_points));
     CALL(PetscArraycpy(by_points, c.product, c.size));
