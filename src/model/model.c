@@ -246,13 +246,33 @@ static PetscErrorCode CreatePoints(Model *m, Outline *outline, Diag *diag)
   PetscFunctionReturn(0);
 }
 
+/* Collective. The body whose point is nearest to x. */
+static PetscErrorCode NearestBody(const Model *m, const PetscReal *x, PetscInt *body)
+{
+  struct {
+    double square;
+    int rank;
+  } local, all;
+  PetscReal square;
+  PetscMPIInt rank;
+
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_rank(m->comm, &rank));
+  const PetscInt p = points_near(m->points, x, &square);
+  local.square = (double)square, local.rank = rank;
+  PetscCallMPI(MPI_Allreduce(&local, &all, 1, MPI_DOUBLE_INT, MPI_MINLOC, m->comm));
+  *body = p >= 0 ? m->points->body[p] : 0;
+  PetscCallMPI(MPI_Bcast(body, 1, MPIU_INT, all.rank, m->comm));
+  PetscFunctionReturn(0);
+}
+
 /* One tracer per measure that follows one; the lowest rank whose cells hold it keeps it. */
 static PetscErrorCode CreateTracers(Model *m, Diag *diag)
 {
   PetscMPIInt rank, size, mine, first;
   PetscReal xi[3];
   char path[256];
-  PetscInt i;
+  PetscInt i, body;
 
   PetscFunctionBeginUser;
   PetscCallMPI(MPI_Comm_rank(m->comm, &rank));
@@ -270,6 +290,7 @@ static PetscErrorCode CreateTracers(Model *m, Diag *diag)
       PetscCall(PetscSNPrintf(path, sizeof path, "measures.%s.of.tracer", s->name));
       diag_error(diag, path, "the tracer starts outside the grid");
     }
+    PetscCall(NearestBody(m, s->tracer, &body));
     if (first != rank) continue;
     PetscCall(PointsAppend(m->tracers, &i));
     m->tracers->cell[i] = cell;
@@ -280,6 +301,7 @@ static PetscErrorCode CreateTracers(Model *m, Diag *diag)
       point_real(m->tracers, POINT_X, i)[d] = s->tracer[d];
       point_real(m->tracers, POINT_XI, i)[d] = xi[d];
     }
+    if (m->c->n_bodies) body_velocity(m->c->bodies + body, m->dim, s->tracer, point_real(m->tracers, POINT_V, i));
   }
   PetscFunctionReturn(0);
 }

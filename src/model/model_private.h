@@ -167,6 +167,8 @@ PetscErrorCode ChooseNextStep(Model *model, PetscBool shortened, const StepRepor
 
 /* contact/start.c. Collective. Walls of the case, and what of the material touches them at the start. */
 PetscErrorCode WallsStart(Model *model, Diag *diag);
+/* Was the wall there before the stage, as it is now? */
+PetscBool wall_stood(const WallSpec *wall, const Case *c, const Case *from);
 /* Collective. Walls that a stage brings, or puts elsewhere, stand where no material is. */
 PetscErrorCode WallsCome(Model *model, const Case *from, Diag *diag);
 /* contact/interfaces.c. Collective. What no interfaces can be made of, and bodies that go through each
@@ -181,6 +183,8 @@ PetscReal rigid_work(const Model *model);
 PetscReal rigid_lost(const Model *model);
 /* Back to the step's start. */
 void rigid_back(Model *model);
+/* Those that were there before stand still: the energy of motion that this takes, J. */
+PetscReal rigid_halt(Model *model, const Case *from);
 /* Fastest of their centres, m/s. */
 PetscReal rigid_fastest(const Model *model);
 /* Collective. external += the forces of contact that material remembers, on owners: walls go on pressing as they did,

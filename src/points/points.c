@@ -70,18 +70,25 @@ PetscErrorCode FollowersCreate(PetscInt dim, PetscInt n_force, Points **points)
   PetscFunctionReturn(0);
 }
 
+PetscInt points_near(const Points *points, const PetscReal *x, PetscReal *square)
+{
+  PetscInt near = -1;
+  *square = PETSC_MAX_REAL;
+  for (PetscInt p = 0; p < points->n; ++p) {
+    PetscReal sum = 0;
+    for (PetscInt d = 0; d < points->dim; ++d) sum += PetscSqr(point_real(points, POINT_X, p)[d] - x[d]);
+    if (sum >= *square) continue;
+    *square = sum;
+    near = p;
+  }
+  return near;
+}
+
 PetscInt points_field_near(const Points *points, const PetscReal *x)
 {
-  PetscReal nearest = PETSC_MAX_REAL;
-  PetscInt field = 0;
-  for (PetscInt p = 0; p < points->n && points->components[POINT_FIELD]; ++p) {
-    PetscReal square = 0;
-    for (PetscInt d = 0; d < points->dim; ++d) square += PetscSqr(point_real(points, POINT_X, p)[d] - x[d]);
-    if (square >= nearest) continue;
-    nearest = square;
-    field = point_field(points, p);
-  }
-  return field;
+  PetscReal square;
+  const PetscInt near = points->components[POINT_FIELD] ? points_near(points, x, &square) : -1;
+  return near >= 0 ? point_field(points, near) : 0;
 }
 
 PetscErrorCode PointsDestroy(Points **points)

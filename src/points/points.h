@@ -117,6 +117,8 @@ static inline PetscInt point_locate(const Points *points, PetscInt p, const Grid
   return grid_cell_in(grid, cell, point_field(points, p));
 }
 
+/* The point of this rank that is nearest to x, and the square of its distance, m2; -1: there is none. */
+PetscInt points_near(const Points *points, const PetscReal *x, PetscReal *square);
 /* The velocity field of the point nearest to x on this rank. */
 PetscInt points_field_near(const Points *points, const PetscReal *x);
 

@@ -42,6 +42,17 @@ void rigid_back(Model *m)
   for (PetscInt k = 0; k < count(m); ++k) rigid_restore(m->contact->rigid + k, m->walls);
 }
 
+PetscReal rigid_halt(Model *m, const Case *from)
+{
+  PetscReal taken = 0;
+  for (PetscInt k = 0; k < count(m); ++k) {
+    if (!wall_stood(&m->c->walls[m->contact->rigid[k].wall], m->c, from)) continue;
+    taken += rigid_kinetic(m->contact->rigid + k);
+    rigid_stop(m->contact->rigid + k);
+  }
+  return taken;
+}
+
 PetscReal rigid_fastest(const Model *m)
 {
   PetscReal fastest = 0;

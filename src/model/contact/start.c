@@ -147,8 +147,7 @@ PetscErrorCode WallsStart(Model *m, Diag *diag)
   PetscFunctionReturn(0);
 }
 
-/* Was the wall there before, as it is now? */
-static PetscBool stood(const WallSpec *wall, const Case *c, const Case *from)
+PetscBool wall_stood(const WallSpec *wall, const Case *c, const Case *from)
 {
   for (const WallSpec *w = from->walls; w < from->walls + from->n_walls; ++w)
     if (!strcmp(w->name, wall->name)) return !w->absent && wall->since < c->stage;
@@ -160,7 +159,7 @@ PetscErrorCode WallsCome(Model *m, const Case *from, Diag *diag)
   PetscFunctionBeginUser;
   for (PetscInt k = 0; k < m->c->n_walls; ++k) {
     Worst inside = {0}, dent = {0};
-    if (m->c->walls[k].absent || stood(&m->c->walls[k], m->c, from)) continue;
+    if (m->c->walls[k].absent || wall_stood(&m->c->walls[k], m->c, from)) continue;
     look_at_wall(m, k, PETSC_FALSE, &inside, &dent);
     PetscCall(TellThrough(m, k, &inside, diag));
   }

@@ -73,7 +73,7 @@ PetscErrorCode HoldImbalance(Model *m, Imbalance *imbalance)
 }
 
 /* Where the state before had no inertia, accelerations are those of the balance. */
-PetscErrorCode ResetMotion(Model *m, const Case *from, PetscBool next)
+PetscErrorCode ResetMotion(Model *m, const Case *from, PetscBool next, PetscReal *taken)
 {
   const ResetSpec reset = m->c->spec ? m->c->spec->reset : (ResetSpec){0};
   const PetscBool stands = !m->scheme->inertia || reset.velocity, anew = reset.displacement || !next;
@@ -85,6 +85,7 @@ PetscErrorCode ResetMotion(Model *m, const Case *from, PetscBool next)
   if (anew) PetscCall(PetscArrayzero(m->tracers->real[POINT_U], m->tracers->n * m->dim));
   if (stands && !m->method->restores_grid) PetscCall(PetscArrayzero(n->v, dofs));
   if (stands) PetscCall(PetscArrayzero(m->points->real[POINT_V], numbers));
+  *taken = stands ? rigid_halt(m, from) : 0;
   if (!stands && !case_is_static(&from->analysis)) PetscFunctionReturn(0);
   if (m->points->components[POINT_SLOPE])
     PetscCall(PetscArrayzero(m->points->real[POINT_SLOPE], m->points->n * m->points->components[POINT_SLOPE]));

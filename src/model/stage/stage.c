@@ -86,14 +86,14 @@ static PetscReal stored_before(const Tables *tables, PetscInt dim, char reason[2
   return sum;
 }
 
-/* What comes and goes with bodies, and with motion that ends, is none of the work of the run. */
-static PetscErrorCode KeepAccount(Model *m, PetscReal before, PetscBool next)
+/* What comes and goes with bodies, and with motion that ends (taken: of walls), is none of the work of the run. */
+static PetscErrorCode KeepAccount(Model *m, PetscReal before, PetscReal taken, PetscBool next)
 {
   PetscReal local[2] = {before, stored(m)}, sum[2];
 
   PetscFunctionBeginUser;
   PetscCall(MPIU_Allreduce(local, sum, 2, MPIU_REAL, MPI_SUM, m->comm));
-  if (next) m->start_energy += sum[1] - sum[0];
+  if (next) m->start_energy += sum[1] - sum[0] - taken;
   else m->start_energy = sum[1];
   m->most_energy = PetscMax(next ? m->most_energy : 0, m->start_energy + m->external_work + m->boundary_work);
   PetscFunctionReturn(0);
@@ -106,6 +106,7 @@ static PetscErrorCode Take(Model *m, Tables *tables, const Case *from, PetscBool
   const PetscReal before = stored_before(tables, m->dim, reason);
   const PetscInt errors = diag_errors(diag);
   PetscBool home = PETSC_TRUE; /* a cloud on other ranks is cut anew */
+  PetscReal taken;
 
   PetscFunctionBeginUser;
   PetscCall(ReasonShare(m->comm, reason));
@@ -118,8 +119,8 @@ static PetscErrorCode Take(Model *m, Tables *tables, const Case *from, PetscBool
   if (!reason[0]) PetscCall(TakeNodes(m, tables, next, home, reason));
   PetscCall(ReasonShare(m->comm, reason));
   if (reason[0] || diag_errors(diag) > errors) PetscFunctionReturn(0);
-  PetscCall(ResetMotion(m, from, next));
-  PetscCall(KeepAccount(m, before, next));
+  PetscCall(ResetMotion(m, from, next, &taken));
+  PetscCall(KeepAccount(m, before, taken, next));
   PetscFunctionReturn(0);
 }
 

@@ -26,6 +26,6 @@ PetscBool material_as_stiff(const Material *a, const Material *b);
  * shape; PETSC_FALSE: there is no such state. */
 PetscBool point_swap(Points *points, PetscInt p, const Material *was, const Material *is);
 /* Collective. Velocities end where the case says so, or where they mean nothing: in statics. */
-PetscErrorCode ResetMotion(Model *model, const Case *from, PetscBool next);
+PetscErrorCode ResetMotion(Model *model, const Case *from, PetscBool next, PetscReal *taken);
 /* Collective. What is out of balance now; where the case releases it over time, it is held. */
 PetscErrorCode HoldImbalance(Model *model, Imbalance *imbalance);

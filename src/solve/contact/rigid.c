@@ -285,6 +285,13 @@ void rigid_end(RigidWall *b)
   go(b);
 }
 
+void rigid_stop(RigidWall *b)
+{
+  for (int d = 0; d < 3; ++d) b->now.v[d] = b->now.L[d] = 0;
+  for (int i = 0; i < RIGID; ++i) b->now.last[i] = 0;
+  b->start = b->now;
+}
+
 void rigid_restore(RigidWall *b, Walls *walls)
 {
   b->now = b->start;

@@ -91,5 +91,7 @@ PetscReal rigid_softness(const RigidWall *b, PetscReal lever);
 void rigid_kick(RigidWall *b, const Case *c, PetscReal t, PetscReal kick);
 void rigid_drift(RigidWall *b, PetscReal dt);
 void rigid_go(RigidWall *b, Walls *walls);
+/* It stands still, where it is. */
+void rigid_stop(RigidWall *b);
 /* As the step began. */
 void rigid_restore(RigidWall *b, Walls *walls);
