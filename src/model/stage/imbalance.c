@@ -15,6 +15,7 @@ static PetscErrorCode Residual(Model *m, PetscReal *residual)
   PetscCall(PetscArrayzero(n->du, dofs));
   for (PetscInt i = 0; i < dofs; ++i) n->history[i] = -g[i % dim];
   const NodalScene scene = nodal_scene(m, m->time, n->du);
+  PetscCall(NodalForcesBegin(&m->forces, &scene)); /* what carries them has moved since it was made */
   PetscCall(NodalForcesExternal(&m->forces, &scene, PETSC_TRUE, n->external));
   PetscCall(ContactGoOn(m, n->external));
   PetscCall(PetscArrayzero(residual, dofs));
