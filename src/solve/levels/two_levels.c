@@ -237,6 +237,8 @@ static PetscErrorCode Apply(PC pc, Vec b, Vec y)
 
   PetscFunctionBeginUser;
   PetscCall(PCShellGetContext(pc, &t));
+  if (t->blocks->singular) PetscCall(VecSetInf(y)); /* some methods ask although the set-up has failed */
+  if (t->blocks->singular) PetscFunctionReturn(0);
   const PetscInt dim = t->system->dim;
   const BlockSweeps *sweeps = block_sweeps(dim);
   PetscCall(BlocksWork(t->blocks, WORK_X, &x));
