@@ -45,6 +45,7 @@ PetscInt carrier_shape(const Loads *l, const Grid *grid, PetscInt p, const unsig
   PetscReal x[CELL_MAX_NODES * 3];
   PetscInt nn;
   if (l->support) {
+    if (p >= l->support->n_groups) return 0;
     nn = support_nodes(l->support, p);
     *node = l->support->node + l->support->node_start[p];
     for (PetscInt I = 0; I < nn; ++I) N[I] = support_N(l->support, p, p)[I];
@@ -344,6 +345,7 @@ static void push_carrier(const Loads *l, const Grid *grid, PetscInt p, PetscReal
   PetscInt nn = grid->nodes_per_cell;
   PetscReal N[CLOUD_MAX_NODES];
   if (l->support) {
+    if (p >= l->support->n_groups) return;
     nn = support_nodes(l->support, p);
     node = l->support->node + l->support->node_start[p];
     if (!support_touched(l->support, p, touched, N)) return;

@@ -24,6 +24,7 @@ PetscErrorCode DiscretisationDestroy(Discretisation **space)
 
   PetscFunctionBeginUser;
   if (!s) PetscFunctionReturn(0);
+  s->loads->support = NULL; /* a method's, or the extension's */
   PetscCall(NodalFieldsDestroy(&s->nodes));
   PetscCall(SupportDestroy(&s->support));
   PetscCall(ConstraintsDestroy(&s->constraints));

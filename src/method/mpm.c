@@ -110,7 +110,7 @@ static PetscErrorCode Stabilise(Discretisation *s)
   PetscFunctionReturn(0);
 }
 
-/* Nodes, N and dN of the points. */
+/* Nodes, N and dN of the points; which of them follow others. */
 static PetscErrorCode See(Discretisation *s)
 {
   BasisInput basis = {.spec = &s->c->basis, .grid = s->grid, .hoop = s->c->kinematics->hoop};
@@ -123,6 +123,7 @@ static PetscErrorCode See(Discretisation *s)
     basis.rim = rim;
   }
   PetscCall(s->basis->support(&basis, s->points, s->support));
+  if (s->basis->domains) PetscCall(DiscretisationExtend(s, &basis));
   PetscCall(PetscFree(rim));
   PetscFunctionReturn(0);
 }
@@ -132,7 +133,6 @@ static PetscErrorCode MpmInitialise(Discretisation *s)
   PetscFunctionBeginUser;
   PetscCall(PointsSort(s->points));
   PetscCall(See(s));
-  if (s->basis->domains) PetscCall(DiscretisationExtend(s));
   PetscCall(DiscretisationTouch(s));
   PetscCall(DiscretisationMass(s));
   PetscCall(Stabilise(s));

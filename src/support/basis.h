@@ -44,6 +44,8 @@ typedef struct {
   /* do functions of inner nodes vanish on the hull, so that what is prescribed at its nodes holds
    * on it? */
   PetscBool holds_boundary;
+  /* are loads on a surface those of its functions there? else of the cell's */
+  PetscBool carries;
   /* What the basis lacks in this grid, in words that go on behind its name; NULL: nothing. NULL for
    * the function: it takes every grid. */
   const char *(*misfit)(const GridSpec *grid);

@@ -83,6 +83,7 @@ const Basis basis_bspline = {
   .domains = PETSC_TRUE,
   .ends_at_held = PETSC_TRUE,
   .holds_boundary = PETSC_TRUE,
+  .carries = PETSC_TRUE,
   .misfit = bspline_misfit,
   .support = BsplineSupport,
   .couplings = ProductsCouplings,

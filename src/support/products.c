@@ -71,7 +71,6 @@ PetscErrorCode ProductsReserve(const Points *points, PetscInt dim, Support *supp
 {
   const PetscInt most = dim == 2 ? 9 : PRODUCT_MOST_NODES;
   PetscFunctionBeginUser;
-  PetscCheck(points->components[POINT_DOMAIN] == dim, PETSC_COMM_SELF, PETSC_ERR_ARG_WRONG, "points without domains");
   PetscCall(SupportReserve(support, points->n, most * points->n, most * points->n, dim));
   PetscFunctionReturn(0);
 }

@@ -193,12 +193,44 @@ static void test_refused(void **state)
   bench_refused(&b, PETSC_COMM_WORLD, "basis", "method fem does not take the basis 'gimp'");
 }
 
+/* A column that a dead load on its end presses bears it alike everywhere, wherever between two lines the end stands:
+ * splines are pushed by their own functions, also where the last node follows. */
+static void test_loaded(void **state)
+{
+  const PetscReal ends[] = {0, 0.02, 0.1, 0.3, 0.6, 0.95}, h = 0.125;
+  (void)state;
+  for (int follows = 0; follows < 2; ++follows)
+    EACH_OF (k, ends) {
+      const PetscReal top = 1 + ends[k] * h;
+      PetscReal sigma[6];
+      Bench b;
+      bench_init(&b, "mpm", CELL_QUADRILATERAL, 1);
+      bench_grid(&b, (PetscReal[3]){0, 0, 0}, (PetscReal[3]){h, 1 + 3 * h, 0}, h);
+      bench_box(&b, 0, (PetscReal[3]){0, 0, 0}, (PetscReal[3]){h, top, 0});
+      b.c.basis.kind = "bspline";
+      b.c.stabilisation.follow = follows ? 0.1 : 0.01;
+      b.c.newton.residual = 1e-10;
+      bench_motion(&b, 0, 0, MOTION_FIXED, 1);
+      bench_motion(&b, 0, h, MOTION_FIXED, 1);
+      bench_motion(&b, 1, 0, MOTION_FIXED, 2);
+      bench_traction(&b, 1, top, "body", 0, -1e4, 0);
+      Model *m = bench_model(&b, PETSC_COMM_WORLD);
+      (void)run_through(m);
+      for (PetscInt p = 0; p < m->points->n; ++p) {
+        CALL(ModelPointStress(m, p, sigma));
+        CHECK_CLOSE(sigma[1] / 1e4, -1, 1e-8);
+      }
+      CALL(ModelDestroy(&m));
+      bench_end(&b);
+    }
+}
+
 int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(test_filled), cmocka_unit_test(test_pressed), cmocka_unit_test(test_rings),
     cmocka_unit_test(test_column), cmocka_unit_test(test_flight),  cmocka_unit_test(test_refused),
-    cmocka_unit_test(test_middle),
+    cmocka_unit_test(test_middle), cmocka_unit_test(test_loaded),
   };
   return run_model_tests(argc, argv, tests);
 }

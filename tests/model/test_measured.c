@@ -37,6 +37,26 @@ static void test_spin(void **state)
   }
 }
 
+/* Two boxes that turn as one about an axis that is none of their own: the spin is that of their motion. */
+static void test_spin_of_any_shape(void **state)
+{
+  const PetscReal spin[3] = {1, -2, 3};
+  (void)state;
+  Bench b;
+  bench_init(&b, "mpm", CELL_HEXAHEDRON, 4);
+  bench_box(&b, 0, (PetscReal[]){0, 0, 0}, (PetscReal[]){0.75, 0.25, 0.5});
+  b.body[1] = b.body[0];
+  b.body[1].name = (char *)"other";
+  bench_box(&b, 1, (PetscReal[]){0.75, 0, 0}, (PetscReal[]){1, 0.75, 0.25});
+  b.c.n_bodies = 2;
+  bench_dynamic(&b, 1, 0.01);
+  for (int d = 0; d < 3; ++d)
+    for (int k = 0; k < 2; ++k) b.body[k].spin[d] = spin[d], b.body[k].velocity[d] = 5 - d;
+  Model *m = bench_model(&b, PETSC_COMM_WORLD);
+  for (PetscInt d = 0; d < 3; ++d) CHECK_CLOSE(model_sum(m, "spin", d), spin[d], 1e-12);
+  CALL(ModelDestroy(&m));
+}
+
 /* The height of a surface is that of its material: what has come apart is no higher, what is
  * pressed together is lower. */
 static void test_surface(void **state)
@@ -115,7 +135,8 @@ static void test_mean_stress(void **state)
 
 int main(int argc, char **argv)
 {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_spin), cmocka_unit_test(test_surface),
-                                     cmocka_unit_test(test_stress), cmocka_unit_test(test_mean_stress)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_spin), cmocka_unit_test(test_spin_of_any_shape),
+                                     cmocka_unit_test(test_surface), cmocka_unit_test(test_stress),
+                                     cmocka_unit_test(test_mean_stress)};
   return run_model_tests(argc, argv, tests);
 }

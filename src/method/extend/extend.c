@@ -17,6 +17,8 @@ static PetscErrorCode ExtensionCreate(const Discretisation *s, Extension **exten
   PetscCall(PetscCalloc4(n, &e->fill, n, &e->leads, n, &e->ways, n, &e->place));
   for (PetscInt k = 0; k < known; ++k) e->place[box->lattice[k]] = k;
   PetscCall(SupportCreate(&e->spare));
+  PetscCall(SupportCreate(&e->carried));
+  PetscCall(SupportCreate(&e->spare_carried));
   PetscFunctionReturn(0);
 }
 
@@ -28,6 +30,8 @@ PetscErrorCode ExtensionDestroy(Extension **extension)
   if (!e) PetscFunctionReturn(0);
   PetscCall(PetscFree4(e->fill, e->leads, e->ways, e->place));
   PetscCall(SupportDestroy(&e->spare));
+  PetscCall(SupportDestroy(&e->carried));
+  PetscCall(SupportDestroy(&e->spare_carried));
   PetscCall(PetscFree(*extension));
   PetscFunctionReturn(0);
 }
@@ -63,9 +67,17 @@ static PetscBool stand_around(const Discretisation *s, const PetscInt cell[3], c
   return PETSC_TRUE;
 }
 
-static PetscBool sees_follower(const Discretisation *s, PetscInt p)
+/* Points, or carriers of loads, and what they see. */
+typedef struct {
+  const Points *points;
+  const Support *support;
+} Seen;
+
+static Seen points_of(const Discretisation *s) { return (Seen){s->points, s->support}; }
+static Seen carriers_of(const Discretisation *s) { return (Seen){s->loads->carriers, s->extension->carried}; }
+
+static PetscBool sees_follower(const Discretisation *s, const Support *w, PetscInt p)
 {
-  const Support *w = s->support;
   for (PetscInt I = w->node_start[p]; I < w->node_start[p + 1]; ++I)
     if (s->extension->ways[w->node[I]] > 0) return PETSC_TRUE;
   return PETSC_FALSE;
@@ -73,9 +85,9 @@ static PetscBool sees_follower(const Discretisation *s, PetscInt p)
 
 /* What point p sees once followers are gone, or `only` that one, and the others are not there; PETSC_FALSE if these
  * nodes are farther apart than those of a point may be, or not all known to this rank. */
-static PetscBool find_row(const Discretisation *s, PetscInt p, PetscInt only, Row *row)
+static PetscBool find_row(const Discretisation *s, const Seen *seen, PetscInt p, PetscInt only, Row *row)
 {
-  const Support *w = s->support;
+  const Support *w = seen->support;
   const PetscInt dim = s->grid->dim, *node = w->node + w->node_start[p];
   const PetscReal *N = w->N + w->value_start[p], *dN = w->dN + w->value_start[p] * dim;
   PetscInt at[3];
@@ -87,36 +99,48 @@ static PetscBool find_row(const Discretisation *s, PetscInt p, PetscInt only, Ro
     if (!ways) row_add(row, dim, node[I], 1, N[I], dN + I * dim);
     else if (!row_add_follower(row, s->grid->box, at, ways, N[I], dN + I * dim)) return PETSC_FALSE;
   }
-  box_voxel_of(s->grid, s->points->cell[p], at);
+  box_voxel_of(s->grid, seen->points->cell[p], at);
   return stand_around(s, at, row);
 }
 
 /* Marks the followers that point p cannot do without: each whose leaders alone are too far away, all if none is. */
-static void mark_seen(const Discretisation *s, PetscInt p, PetscReal *needed)
+static void mark_seen(const Discretisation *s, const Seen *seen, PetscInt p, PetscReal *needed)
 {
-  const Support *w = s->support;
+  const Support *w = seen->support;
   PetscBool found = PETSC_FALSE;
   Row row;
   for (PetscInt I = w->node_start[p]; I < w->node_start[p + 1]; ++I) {
-    if (s->extension->ways[w->node[I]] == 0 || find_row(s, p, w->node[I], &row)) continue;
+    if (s->extension->ways[w->node[I]] == 0 || find_row(s, seen, p, w->node[I], &row)) continue;
     needed[w->node[I]] = 1;
     found = PETSC_TRUE;
   }
   for (PetscInt I = w->node_start[p]; I < w->node_start[p + 1] && !found; ++I) needed[w->node[I]] = 1;
 }
 
-/* Marks nodes that must stay: those of points that would see others too far away, and those that loads act on. */
-static void mark_needed(const Discretisation *s, PetscReal *needed)
+/* Marks nodes that must stay: those of points that would see others too far away. */
+static void mark_lookers(const Discretisation *s, const Seen *seen, PetscReal *needed)
 {
-  const Support *w = s->support;
+  Row row;
+  for (PetscInt p = 0; p < seen->support->n_groups; ++p)
+    if (sees_follower(s, seen->support, p) && !find_row(s, seen, p, ALL, &row)) mark_seen(s, seen, p, needed);
+}
+
+/* And those that loads act on by functions of their cells. */
+static void mark_loaded(const Discretisation *s, PetscReal *needed)
+{
   const Points *carriers = s->loads->carriers;
   const PetscInt nn = s->grid->nodes_per_cell;
-  Row row;
-  for (PetscInt p = 0; p < w->n_groups; ++p)
-    if (sees_follower(s, p) && !find_row(s, p, ALL, &row)) mark_seen(s, p, needed);
   for (PetscInt p = 0; p < carriers->n; ++p)
     for (PetscInt I = 0; carriers->cell[p] >= 0 && I < nn; ++I)
       needed[s->grid->cell_node[carriers->cell[p] * nn + I]] = 1;
+}
+
+static void mark_needed(const Discretisation *s, PetscReal *needed)
+{
+  const Seen points = points_of(s), carriers = carriers_of(s);
+  mark_lookers(s, &points, needed);
+  if (s->basis->carries) mark_lookers(s, &carriers, needed);
+  else mark_loaded(s, needed);
 }
 
 /* *again: have any that were to follow been kept, so that points see others than was thought? */
@@ -161,40 +185,74 @@ static PetscErrorCode CopyRow(Support *out, PetscInt dim, PetscInt n, PetscInt f
   PetscFunctionReturn(0);
 }
 
-/* The support without the nodes that follow takes the place of the other. */
-static PetscErrorCode Rewrite(Discretisation *s)
+/* What they see without the nodes that follow. */
+static PetscErrorCode Rewrite(const Discretisation *s, const Seen *seen, Support *out)
 {
   const PetscInt dim = s->grid->dim;
-  Support *old = s->support, *out = s->extension->spare, kept;
+  const Support *old = seen->support;
   PetscInt room = old->node_start[old->n_groups], n = 0;
   Row row;
 
   PetscFunctionBeginUser;
-  for (PetscInt p = 0; p < old->n_groups; ++p) room += sees_follower(s, p) ? WAYS : 0;
+  for (PetscInt p = 0; p < old->n_groups; ++p) room += sees_follower(s, old, p) ? WAYS : 0;
   PetscCall(SupportReserve(out, old->n_groups, room, room, dim));
   for (PetscInt p = 0; p < old->n_groups; ++p) {
     const PetscInt from = old->node_start[p], nn = support_nodes(old, p);
-    const PetscBool changes = sees_follower(s, p);
+    const PetscBool changes = sees_follower(s, old, p);
     product_group(out, p, n);
-    if (changes) (void)find_row(s, p, ALL, &row);
+    if (changes) (void)find_row(s, seen, p, ALL, &row);
     if (changes) PetscCall(CopyRow(out, dim, row.n, n, row.node, row.N, row.dN));
     else PetscCall(CopyRow(out, dim, nn, n, old->node + from, old->N + from, old->dN + from * dim));
     n += changes ? row.n : nn;
   }
   products_end(out, old->n_groups, n);
-  kept = *old;
-  *old = *out;
-  *out = kept;
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode DiscretisationExtend(Discretisation *s)
+static void swap(Support *a, Support *b)
+{
+  const Support kept = *a;
+  *a = *b;
+  *b = kept;
+}
+
+/* The supports without the nodes that follow take the place of the others. */
+static PetscErrorCode RewriteAll(Discretisation *s)
+{
+  const Seen points = points_of(s), carriers = carriers_of(s);
+  Extension *e = s->extension;
+
+  PetscFunctionBeginUser;
+  PetscCall(Rewrite(s, &points, e->spare));
+  swap(s->support, e->spare);
+  if (!s->basis->carries) PetscFunctionReturn(0);
+  PetscCall(Rewrite(s, &carriers, e->spare_carried));
+  swap(e->carried, e->spare_carried);
+  PetscFunctionReturn(0);
+}
+
+/* What carriers of loads see, where that is not their cell's nodes. */
+static PetscErrorCode Carry(Discretisation *s, const BasisInput *in)
+{
+  const BasisInput plain = {.spec = in->spec, .grid = in->grid, .rim = in->rim};
+  const PetscBool carries = s->basis->carries && s->c->analysis.type != ANALYSIS_EXPLICIT;
+
+  PetscFunctionBeginUser;
+  s->loads->support = carries ? s->extension->carried : NULL;
+  if (!carries) PetscFunctionReturn(0);
+  PetscCall(PointsSort(s->loads->carriers));
+  PetscCall(s->basis->support(&plain, s->loads->carriers, s->extension->carried));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode DiscretisationExtend(Discretisation *s, const BasisInput *in)
 {
   PetscBool again = PETSC_TRUE, here = PETSC_FALSE;
 
   PetscFunctionBeginUser;
   if (!s->extension) PetscCall(ExtensionCreate(s, &s->extension));
   Extension *e = s->extension;
+  PetscCall(Carry(s, in));
   PetscCall(Fill(s));
   PetscCall(PetscArrayzero(e->ways, s->grid->n_nodes));
   e->any = PETSC_FALSE;
@@ -203,7 +261,7 @@ PetscErrorCode DiscretisationExtend(Discretisation *s)
   while (again) PetscCall(KeepNeeded(s, &again));
   for (PetscInt i = 0; i < s->grid->n_nodes; ++i) here = here || e->ways[i] > 0;
   PetscCallMPI(MPI_Allreduce(&here, &e->any, 1, MPIU_BOOL, MPI_LOR, s->grid->comm));
-  if (here) PetscCall(Rewrite(s));
+  if (here) PetscCall(RewriteAll(s));
   PetscFunctionReturn(0);
 }
 

@@ -4,19 +4,21 @@
 #include "method/discretisation.h"
 
 typedef struct Extension {
-  PetscReal *fill;  /* n_nodes: volume of the material around the node, of half its share of the cells */
-  PetscReal *leads; /* n_nodes: bits of leads_bit */
-  PetscReal *ways;  /* n_nodes: bits of the ways on which the node follows; 0: it does not */
-  PetscInt *place;  /* n_nodes: in the block of the nodes that this rank knows */
-  Support *spare;   /* the support as the basis left it, in the last step in which nodes followed */
-  PetscBool any;    /* does a node follow, on any rank? */
+  PetscReal *fill;        /* n_nodes: volume of the material around the node, of half its share of the cells */
+  PetscReal *leads;       /* n_nodes: bits of leads_bit */
+  PetscReal *ways;        /* n_nodes: bits of the ways on which the node follows; 0: it does not */
+  PetscInt *place;        /* n_nodes: in the block of the nodes that this rank knows */
+  Support *spare;         /* the support as the basis left it, in the last step in which nodes followed */
+  Support *carried;       /* what carriers of loads see, where they push by the basis's functions, */
+  Support *spare_carried; /* and the same as the basis left it */
+  PetscBool any;          /* does a node follow, on any rank? */
 } Extension;
 
 PetscErrorCode ExtensionDestroy(Extension **extension);
 /* May nodes follow? Not in the mixed formulation and in explicit dynamics. */
 PetscBool extension_works(const Discretisation *space);
-/* Collective. Of a support that the basis has just filled: what each node has; those with less than
+/* Collective. Of a support that the basis has just filled, with `in`: what each node has; those with less than
  * stabilisation.follow follow others, if these stand near enough, and vanish from it. */
-PetscErrorCode DiscretisationExtend(Discretisation *space);
+PetscErrorCode DiscretisationExtend(Discretisation *space, const BasisInput *in);
 /* Collective. du, v1 and a1 of nodes that follow, for tracers. */
 PetscErrorCode DiscretisationFollow(Discretisation *space);
