@@ -94,6 +94,29 @@ static void test_turns(void **state)
   }
 }
 
+/* Damping takes turning as it takes flight. */
+static void test_turns_damped(void **state)
+{
+  (void)state;
+  EACH_OF (k, flights) {
+    Bench b;
+    if (flights[k].kinematics->hoop) continue;
+    flying(&b, flights[k].cell, flights[k].basis, flights[k].kinematics);
+    b.c.analysis.transfer = (char *)"consistent";
+    b.c.analysis.damping = 5;
+    Model *m = bench_model(&b, PETSC_COMM_WORLD);
+    const PetscReal spin = model_sum(m, "spin", 2), momentum = model_sum(m, "momentum", 0);
+    while (m->time < 0.2) model_step(m, 0.02);
+    const PetscReal left = PetscExpReal(-5 * m->time);
+    PetscPrintf(PETSC_COMM_WORLD, "%s %s: %.5g of its spin is left, %.5g of momentum, of %.5g\n", b.c.kinematics->name,
+                flights[k].basis, (double)(model_sum(m, "spin", 2) / spin),
+                (double)(model_sum(m, "momentum", 0) / momentum), (double)left);
+    CHECK_CLOSE(model_sum(m, "momentum", 0), left * momentum, 1e-9 * PetscAbsReal(momentum));
+    CHECK_CLOSE(model_sum(m, "spin", 2), left * spin, 0.03 * left * spin);
+    CALL(ModelDestroy(&m));
+  }
+}
+
 /* An elastic bar of length 1 m between smooth walls runs into its floor: it stays there for 2 L / c, which
  * presses with rho c v, and leaves with -v. The grid's lines are not the bar's. */
 typedef struct {
@@ -411,11 +434,11 @@ static void test_refused(void **state)
 
 int main(int argc, char **argv)
 {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_flight), cmocka_unit_test(test_turns),
-                                     cmocka_unit_test(test_bounce), cmocka_unit_test(test_ranks),
-                                     cmocka_unit_test(test_walks),  cmocka_unit_test(test_resumed),
-                                     cmocka_unit_test(test_ages),   cmocka_unit_test(test_pressed),
-                                     cmocka_unit_test(test_pulled), cmocka_unit_test(test_refused)};
+  const struct CMUnitTest tests[] = {
+    cmocka_unit_test(test_flight),  cmocka_unit_test(test_turns),  cmocka_unit_test(test_turns_damped),
+    cmocka_unit_test(test_bounce),  cmocka_unit_test(test_ranks),  cmocka_unit_test(test_walks),
+    cmocka_unit_test(test_resumed), cmocka_unit_test(test_ages),   cmocka_unit_test(test_pressed),
+    cmocka_unit_test(test_pulled),  cmocka_unit_test(test_refused)};
   if (PetscInitialize(&argc, &argv, NULL, NULL)) return 1;
   const int failed = cmocka_run_group_tests(tests, NULL, NULL);
   return PetscFinalize() || failed;

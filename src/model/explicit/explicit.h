@@ -136,15 +136,15 @@ void points_gain(const Model *model, Explicit *e);
  * substep of the lap. */
 void points_strain(const Model *model, Explicit *e);
 
-/* G goes after the gradient A (1 - A / 2) / dt, A = dF - 1, of the middle between the motion that has brought the point
- * here and that which goes on: it serves both. */
+/* G is damped as the velocity is, and goes after the gradient A (1 - A / 2) / dt, A = dF - 1, of the middle between the
+ * motion that has brought the point here and that which goes on: it serves both. */
 static inline void slope_follow(const int dim, const Explicit *e, const PetscReal A[3][3], PetscReal *G)
 {
   for (int i = 0; i < dim; ++i)
     for (int j = 0; j < dim; ++j) {
       PetscReal square = 0;
       for (int k = 0; k < dim; ++k) square += A[i][k] * A[k][j];
-      G[i * dim + j] += e->follow * ((A[i][j] - 0.5 * square) / e->dt - G[i * dim + j]);
+      G[i * dim + j] += e->follow * ((A[i][j] - 0.5 * square) / e->dt - G[i * dim + j]) - e->fade * G[i * dim + j];
     }
 }
 
