@@ -14,3 +14,5 @@ void slopes_gather(const Discretisation *space, PetscReal *sum);
  *
  * v~: as the nodes gathered it. */
 void slopes_give(Discretisation *space);
+/* Collective. G of points that had none, of their velocities. linear: did a transfer keep these linear over cells? */
+PetscErrorCode SlopesStart(Discretisation *space, PetscBool linear);

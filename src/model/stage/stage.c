@@ -1,3 +1,5 @@
+#include "method/transfer/slopes.h"
+#include "method/transfer/transfer.h"
 #include "model/stage/stage_private.h"
 #include "grid/search/directory.h"
 #include "model/state/state.h"
@@ -172,6 +174,8 @@ PetscErrorCode ModelTake(Model *m, Tables *tables, const Case *from, PetscBool n
   if (errors) PetscFunctionReturn(0);
   if (!m->method->clouds) m->space->present = PETSC_FALSE;
   PetscCall(ModelInitialise(m));
+  if (m->points->components[POINT_SLOPE] && !table_has(tables_find(tables, "points"), "slope"))
+    PetscCall(SlopesStart(m->space, transfer_find(from->analysis.transfer)->slopes));
   settle_stress(m);
   if (next) PetscCall(WallsCome(m, from, diag));
   if (next) PetscCall(BeginMeasures(m, from, diag));
