@@ -1,0 +1,75 @@
+#!/bin/sh
+# What a stage takes over of loads and motion: pressures that go on where the surface now is, the spin of what flies, and
+# walls with mass that statics or a reset bring to rest.
+. "$(dirname "$0")/library.sh"
+
+# A column under a constant pressure, pressed through several cells in the first stage: nothing is out of balance later.
+cat >pressed.yaml <<'END'
+kinematics: plane-strain
+method: mpm
+analysis: {type: static, steps: 4}
+grid: {box: {min: [0, 0], max: [0.5, 1.25]}, size: 0.125}
+bodies: [{name: column, shape: {box: {min: [0, 0], max: [0.5, 0.97]}}, points_per_cell: 4, material: rubber}]
+materials: {rubber: {law: neo-hookean, density: 1000, young: 2e5, poisson: 0}}
+boundary:
+  - {name: floor, on: {y: 0}, fix: [y]}
+  - {name: left, on: {x: 0}, fix: [x]}
+  - {name: right, on: {x: 0.5}, fix: [x]}
+loads: {pressures: [{on: {body: column, y: 0.97}, value: 5e4, amplitude: [[0, 0], [1, 1]]}]}
+measures: {stress: {stress: yy, of: {tracer: [0.25, 0.5]}}, reaction: {reaction: y, of: {boundary: floor}}}
+stages:
+  - name: pressed
+  - {name: goes-on, analysis: {type: static, steps: 4}}
+  - {name: still, analysis: {type: static, steps: 4}}
+END
+for ranks in 1 2 3; do
+  expect "pressures go on, on $ranks" 0 on_ranks $ranks "$talus" run pressed.yaml --out pressed --force --quiet
+  awk -F, 'NR > 1 && $3 > 1 { n += 1; if (!($4 > -50005 && $4 < -49995 && $5 > 24999.9 && $5 < 25000.1)) { bad = 1; print } }
+    END { exit bad || n < 8 }' pressed/history.csv >out.txt || { fail "$name: the pressure is another"; head -n 3 out.txt; }
+done
+
+# A square that flies and turns keeps its spin when explicit steps take it from implicit ones.
+cat >turns.yaml <<'END'
+kinematics: plane-strain
+method: mpm
+analysis: {type: dynamic, end: 0.02, step: 2e-3, transfer: consistent}
+grid: {box: {min: [-0.5, -0.5], max: [4, 1.5]}, size: 0.125}
+bodies:
+  - {name: square, shape: {box: {min: [0, 0], max: [1, 1]}}, points_per_cell: 4, material: rubber, velocity: [15, 0], spin: 3, spin_centre: [0.5, 0.5]}
+materials: {rubber: {law: neo-hookean, density: 1000, young: 1e6, poisson: 0.3}}
+measures: {spin: {spin: z, of: {body: square}}}
+stages:
+  - name: implicit
+  - {name: explicit, analysis: {type: explicit, end: 0.15, step: 2e-3, transfer: consistent}}
+END
+for ranks in 1 2; do
+  expect "a spin goes on, on $ranks" 0 on_ranks $ranks "$talus" run turns.yaml --out turns --force --quiet
+  awk -F, 'END { exit !($3 == 2 && $4 > 2.99 && $4 < 3.01) }' turns/history.csv || fail "$name: $(tail -n 1 turns/history.csv)"
+done
+
+# A wall with mass that falls stands still in statics, and goes on from rest.
+cat >falls.yaml <<'END'
+kinematics: plane-strain
+method: fem
+analysis: {type: dynamic, end: 0.01, step: 1e-3}
+grid: {box: {min: [0, 0], max: [1, 1]}, size: 0.25}
+bodies: [{name: block, shape: {box: {min: [0, 0], max: [1, 1]}}, material: rubber}]
+materials: {rubber: {law: neo-hookean, density: 1000, young: 1e6, poisson: 0.3}}
+boundary: [{name: floor, on: {y: 0}, fix: [x, y]}]
+loads: {gravity: [0, -10]}
+walls: [{name: plate, shape: {box: {min: [0, 1], max: [1, 1.5]}}, contact: frictionless, mass: {density: 2000, velocity: [0, -1], free: [y]}}]
+measures: {speed: {wall_velocity: y, of: {wall: plate}}, force: {wall_force: y, of: {wall: plate}}}
+stages:
+  - name: falls
+  - {name: rests, analysis: {type: static, steps: 2}}
+  - {name: waits, analysis: {type: dynamic, end: 0.02, step: 1e-3}}
+END
+for ranks in 1 3; do
+  expect "a wall with mass comes to rest, on $ranks" 0 on_ranks $ranks "$talus" run falls.yaml --out falls --force --quiet
+  awk -F, 'NR > 1 && $3 == 1 { fell = $4 } NR > 1 && $3 == 2 && $4 != 0 { bad = 1 }
+    NR > 1 && $3 == 3 { n += 1; if ($4 * $4 > 1e-12 || $5 < -10001 || $5 > -9999) bad = 1 }
+    END { exit bad || n != 20 || fell > -0.1 }' falls/history.csv || fail "$name"
+done
+expect "and is reset" 0 "$talus" run falls.yaml --out falls --force --quiet --set 'stages[1]={name: reset, reset: [velocity], analysis: {type: dynamic, end: 0.001, step: 1e-3}}' --set 'loads={gravity: [0, 0]}'
+awk -F, '$3 == 2 { exit !($4 * $4 < 0.0025) }' falls/history.csv || fail "$name: $(grep ',2,' falls/history.csv)"
+finish
