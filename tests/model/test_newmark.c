@@ -160,11 +160,33 @@ static void test_rayleigh(void **state)
   }
 }
 
+/* A load that is there from the start: the nodes of fem begin with the accelerations of their mass matrix, and the first
+ * step loses nothing. */
+static void test_sudden(void **state)
+{
+  (void)state;
+  EACH_CELL(cell, CELL_HEXAHEDRON)
+  {
+    Bench b;
+    bench_init(&b, "fem", cell, 4);
+    bench_dynamic(&b, 1, 1e-3);
+    b.c.newton.residual = 1e-10;
+    bench_motion(&b, 1, 0, MOTION_FIXED, 7);
+    bench_traction(&b, 1, 1, NULL, 300, -1000, 0);
+    Model *m = bench_model(&b, PETSC_COMM_WORLD);
+    model_step(m, 1e-3);
+    const PetscReal balance = model_sum(m, "energy: balance", 0);
+    CHECK(PetscAbsReal(balance) <= 1e-7, "the first step lost %g of the energy", (double)balance);
+    CALL(ModelDestroy(&m));
+  }
+}
+
 int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(test_second_order), cmocka_unit_test(test_exact_phase),  cmocka_unit_test(test_energy),
     cmocka_unit_test(test_bossak),       cmocka_unit_test(test_bossak_order), cmocka_unit_test(test_rayleigh),
+    cmocka_unit_test(test_sudden),
   };
   return run_model_tests(argc, argv, tests);
 }

@@ -1,10 +1,53 @@
 /* The first acceleration, and gravity from the start on. */
+#include "method/transfer/mass.h"
 #include "model/model_private.h"
+
+#define BALANCED 1e-12 /* of the forces, what accelerations by the consistent mass may leave */
+#define MOST_SWEEPS 500
 
 void gravity_at(const Case *c, PetscReal t, PetscReal g[3])
 {
   const PetscReal factor = case_factor(c, &c->gravity_amplitude, t);
   for (PetscInt d = 0; d < 3; ++d) g[d] = factor * c->gravity[d];
+}
+
+/* Accelerations by the lumped mass, of a method whose nodes are those of this step alone. Both are components in the
+ * frames. */
+static void accelerate_lumped(const Model *m, const PetscReal *left)
+{
+  const NodalFields *n = m->nodes;
+  for (PetscInt i = 0; i < m->grid->n_owned * m->dim; ++i) {
+    const PetscReal mass = n->mass[i / m->dim];
+    n->a[i] = mass > 1e-300 && !m->boundary->fixed[i] ? left[i] / mass : 0;
+  }
+}
+
+/* The same by the mass matrix that the steps have, `left` then: what is not balanced, as at held dofs. Else nodes that go on would swing against each other, and the first step
+ * would lose energy. */
+static PetscErrorCode AccelerateByMatrix(const Model *m, PetscReal *left)
+{
+  const PetscInt dim = m->dim;
+  PetscReal enough[MOTIONS];
+  MassSolve c;
+
+  PetscFunctionBeginUser;
+  PetscCall(MassSolveCreate(m->space, &c));
+  c.framed = PETSC_TRUE;
+  for (PetscInt i = 0; i < m->grid->n_owned * dim; ++i) {
+    const PetscInt at = i / dim * c.width + ACCELERATION * dim + i % dim;
+    c.lack[at] = left[i];
+    if (m->boundary->fixed[i]) c.inverse[at] = 0;
+  }
+  PetscCall(MassLack(&c, enough));
+  enough[ACCELERATION] *= PetscSqr(BALANCED);
+  PetscCall(MassSolveRun(&c, enough, MOST_SWEEPS));
+  for (PetscInt i = 0; i < m->grid->n_owned * dim; ++i) {
+    const PetscInt at = i / dim * c.width + ACCELERATION * dim + i % dim;
+    m->nodes->a[i] = m->boundary->fixed[i] ? 0 : c.x[at];
+    left[i] = c.lack[at];
+  }
+  PetscCall(MassSolveDestroy(&c));
+  PetscFunctionReturn(0);
 }
 
 PetscErrorCode InitialAcceleration(Model *m)
@@ -29,12 +72,11 @@ PetscErrorCode InitialAcceleration(Model *m)
   PetscCall(GridSumToOwners(m->grid, dim, n->force));
   frames_turn(&m->boundary->frames, dim, n->external);
   frames_turn(&m->boundary->frames, dim, n->force);
-  for (PetscInt i = 0; i < m->grid->n_owned * dim; ++i) {
-    const PetscReal mass = n->mass[i / dim];
-    const PetscReal free = n->external[i] - n->force[i];
-    n->a[i] = mass > 1e-300 && !m->boundary->fixed[i] ? free / mass : 0;
-    n->held[i] = n->rate[i] = m->boundary->fixed[i] ? -free : 0;
-  }
+  for (PetscInt i = 0; i < m->grid->n_owned * dim; ++i) n->force[i] = n->external[i] - n->force[i];
+  if (m->method->restores_grid || m->method->clouds) accelerate_lumped(m, n->force);
+  else PetscCall(AccelerateByMatrix(m, n->force));
+  for (PetscInt i = 0; i < m->grid->n_owned * dim; ++i)
+    n->held[i] = n->rate[i] = m->boundary->fixed[i] ? -n->force[i] : 0;
   frames_turn(&m->boundary->frames, dim, n->a);
   frames_turn(&m->boundary->frames, dim, n->held);
   frames_turn(&m->boundary->frames, dim, n->rate);
