@@ -1,6 +1,7 @@
 /* Updated Lagrangian finite elements: the mesh moves with the material, points are the Gauss points
  * of their cell. */
 #include "method/method.h"
+#include "method/transfer/transfer.h"
 #include "solve/forces/weight.h"
 
 static PetscErrorCode FemStart(Discretisation *s)
@@ -49,12 +50,21 @@ static PetscErrorCode FemConvect(Discretisation *s)
   PetscFunctionReturn(0);
 }
 
+/* Free nodes feel no impulse when what is prescribed jumps. */
+static PetscErrorCode FemHold(Discretisation *s)
+{
+  PetscFunctionBeginUser;
+  PetscCall(transfer_find("consistent")->hold(s));
+  PetscFunctionReturn(0);
+}
+
 const Method method_fem = {
   .name = "fem",
   .help = "updated Lagrangian finite elements: the grid moves with the material",
   .bases = {"cell"},
   .takes_pressure = PETSC_TRUE,
   .initialise = FemInitialise,
+  .hold = FemHold,
   .convect = FemConvect,
   .carries = cell_carries,
 };

@@ -67,14 +67,38 @@ PetscErrorCode PrepareUnknowns(Model *m, StepStart *start, StepReport *report)
   PetscFunctionReturn(0);
 }
 
+/* Of the larger speed: what is prescribed jumps by more, and not by what Newmark's formulas are off. */
+#define JUMP 1e-2
+
+/* A mesh that moves with the body keeps its own history, but where what is prescribed jumps, which would ring for ever:
+ * there it goes on as the parabola through the middle and the end of the step begins. */
+static PetscErrorCode SetJumps(Model *m, PetscReal dt)
+{
+  NodalFields *n = m->nodes;
+  PetscReal *half, *motion[] = {n->v, n->a};
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(m->grid->n_nodes * m->dim, &half));
+  boundary_increments(m->boundary, m->grid, m->time, m->time + dt / 2, half);
+  for (int k = 0; k < 2; ++k) frames_turn(&m->boundary->frames, m->dim, motion[k]);
+  for (PetscInt i = 0; i < m->grid->n_nodes * m->dim; ++i) {
+    if (!m->boundary->fixed[i] || !n->fixed[i]) continue;
+    const PetscReal v = (4 * half[i] - n->prescribed[i]) / dt;
+    if (PetscAbsReal(v - n->v[i]) <= JUMP * PetscMax(PetscAbsReal(v), PetscAbsReal(n->v[i]))) continue;
+    n->v[i] = v;
+    n->a[i] = 4 * (n->prescribed[i] - 2 * half[i]) / PetscSqr(dt);
+  }
+  for (int k = 0; k < 2; ++k) frames_turn(&m->boundary->frames, m->dim, motion[k]);
+  PetscCall(PetscFree(half));
+  PetscFunctionReturn(0);
+}
+
 /* A prescribed node moves as prescribed from the start of the step on: where the grid is restored
- * its velocity comes from the points that hit it, which would ring for ever in Newmark's formulas.
- * A mesh that moves with the body keeps its own history. */
+ * its velocity comes from the points that hit it, which would ring for ever in Newmark's formulas. */
 static void set_boundary_kinematics(Model *m, PetscReal dt)
 {
   NodalFields *n = m->nodes;
   PetscReal *motion[] = {n->v, n->a, n->v_points};
-  if (!m->method->restores_grid && m->step > 0) return;
   for (int k = 0; k < 3; ++k) frames_turn(&m->boundary->frames, m->dim, motion[k]);
   for (PetscInt i = 0; i < m->grid->n_nodes * m->dim; ++i) {
     if (!m->boundary->fixed[i] || !n->fixed[i]) continue;
@@ -207,9 +231,12 @@ PetscErrorCode PrepareStep(Model *m, PetscReal dt, StepProblem *p)
   PetscCall(MaterialsAt(m, m->time + passes));
   PetscCall(PetscArrayzero(m->nodes->prescribed, dofs));
   boundary_increments(m->boundary, m->grid, m->time, m->time + passes, m->nodes->prescribed);
-  if (m->scheme->inertia) set_boundary_kinematics(m, dt);
+  const PetscBool anew = (PetscBool)(m->method->restores_grid || m->step == 0);
+  if (m->scheme->inertia && anew) set_boundary_kinematics(m, dt);
+  else if (m->scheme->inertia) PetscCall(SetJumps(m, dt));
   if (m->scheme->inertia) PetscCall(HoldConstraints(m, dt));
-  if (m->scheme->inertia && m->method->hold) PetscCall(m->method->hold(m->space));
+  if (m->scheme->inertia && m->method->hold && (m->method->restores_grid || !anew))
+    PetscCall(m->method->hold(m->space));
   else discretisation_impulses(m->space);
   PetscCall(ContactHold(m, dt, inertia));
   set_history(m, dt, g);

@@ -181,12 +181,40 @@ static void test_sudden(void **state)
   }
 }
 
+/* What is moved at a steady speed and then held still stands still, and the account closes: fem with both masses. */
+static void test_stopped(void **state)
+{
+  static PetscReal time[] = {0, 0.1, 1}, way[] = {0, 1, 1};
+  (void)state;
+  for (int lumped = 0; lumped < 2; ++lumped) EACH_CELL(cell, CELL_HEXAHEDRON)
+    {
+      Bench b;
+      bench_init(&b, "fem", cell, 4);
+      bench_dynamic(&b, 0.2, 0.01);
+      b.c.newton.residual = 1e-10;
+      b.c.analysis.mass = lumped ? MASS_LUMPED : MASS_CONSISTENT;
+      MotionSpec *end = bench_motion(&b, 0, 0, MOTION_DISPLACEMENT, 7);
+      end->value[0] = 0.02;
+      end->amplitude = (Amplitude){.n = 3, .time = time, .value = way};
+      Model *m = bench_model(&b, PETSC_COMM_WORLD);
+      while (m->time < 0.2 - 1e-9) {
+        model_step(m, 0.01);
+        for (PetscInt node = 0; node < m->grid->n_nodes; ++node) {
+          const PetscInt i = node * m->dim;
+          if (m->boundary->fixed[i]) CHECK_CLOSE(m->nodes->v[i], m->time < 0.1 + 1e-9 ? 0.2 : 0, 1e-12);
+        }
+      }
+      CHECK_CLOSE(model_sum(m, "energy: balance", 0), 0, 1e-7);
+      CALL(ModelDestroy(&m));
+    }
+}
+
 int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(test_second_order), cmocka_unit_test(test_exact_phase),  cmocka_unit_test(test_energy),
     cmocka_unit_test(test_bossak),       cmocka_unit_test(test_bossak_order), cmocka_unit_test(test_rayleigh),
-    cmocka_unit_test(test_sudden),
+    cmocka_unit_test(test_sudden),       cmocka_unit_test(test_stopped),
   };
   return run_model_tests(argc, argv, tests);
 }
