@@ -60,4 +60,30 @@ expect "without" 0 "$talus" run case.yaml --out without --quiet --set output.wal
 [ ! -e without/walls.hdf.series ] && [ ! -e without/contact.hdf.series ] || fail "$name: files of walls"
 expect "no profile" 2 "$talus" plot without --profile floor
 says err.txt "no contact.hdf.series"
+
+# With pressures as unknowns the account of a body on a wall closes, in one step and in several.
+cat >pressed.yaml <<'END'
+kinematics: plane-strain
+method: fem
+formulation: mixed
+analysis: {type: static, steps: 1}
+grid: {box: {min: [0, 0], max: [1, 1]}, size: 0.25}
+bodies: [{name: block, shape: {box: {min: [0, 0], max: [1, 1]}}, material: rubber}]
+materials: {rubber: {law: neo-hookean, density: 1000, young: 1e6, poisson: 0.3}}
+walls: [{name: floor, shape: {half-space: {point: [0, 0], normal: [0, 1]}}, contact: bonded}]
+loads: {gravity: [0, -10]}
+measures: {transfer: {energy: transfer}, balance: {energy: balance}}
+END
+for steps in 1 3; do
+  expect "mixed on a wall, $steps" 0 "$talus" run pressed.yaml --out pressed --force --quiet --set analysis.steps=$steps
+  awk -F, 'END { exit !($3 * $3 < 1e-4 && $4 * $4 < 1e-20) }' pressed/history.csv || fail "$name: $(tail -n 1 pressed/history.csv)"
+done
+
+# A wall that jumps at the start is told of, one that starts to move is not.
+sed 's/^formulation.*//; s/^method: fem/method: mpm/; s/^analysis.*/analysis: {type: explicit, end: 0.1, step: 1e-3}/
+  s/contact: bonded/motion: [{displacement: {y: 0.1}}]/; s/^grid.*/grid: {box: {min: [-1, -1], max: [2, 2]}, size: 0.25}/' pressed.yaml >jumps.yaml
+expect "a wall jumps" 0 "$talus" check jumps.yaml
+says err.txt "wall 'floor' jumps by 0.1 m at the start"
+expect "a wall starts" 0 "$talus" check jumps.yaml --set 'walls[0].motion[0].amplitude=[[0, 0], [0.1, 1]]'
+! grep -q jumps err.txt || fail "$name: $(cat err.txt)"
 finish

@@ -196,17 +196,20 @@ static PetscBool is_twin(const Model *m, PetscInt node) { return m->method->clou
 
 /* Where clouds are new in every step, what balanced the forces at the end of the last one no longer
  * does in these: the work of what is out of balance, by the trapezoidal rule. `external`: of nodes
- * at the step's start. */
+ * at the step's start, whose pressures they still have beside those of its end. */
 static PetscErrorCode OutOfBalance(const Model *m, const PetscReal *g, const PetscReal *external, PetscReal *work)
 {
   const PetscInt dofs = m->grid->n_nodes * m->dim;
   const PetscReal damping = m->c->analysis.damping;
   const NodalFields *n = m->nodes;
   WeakFormInput in = weak_form_of(m, 0);
-  PetscReal *zero, *force, *history;
+  PetscReal *zero, *force, *history, *pressure;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscCalloc3(dofs, &zero, dofs, &force, dofs, &history));
+  PetscCall(PetscCalloc4(dofs, &zero, dofs, &force, dofs, &history, m->grid->n_nodes, &pressure));
+  for (PetscInt node = 0; n->pressure && node < m->grid->n_nodes; ++node)
+    pressure[node] = n->pressure[node] / m->pressure_scale;
+  in.pressure = n->pressure ? pressure : NULL;
   for (PetscInt i = 0; i < m->grid->n_owned * m->dim; ++i)
     if (n->touched[i / m->dim] && !is_twin(m, i / m->dim))
       history[i] = (m->scheme->inertia ? n->a[i] - n->echo[i] + damping * n->v[i] : 0) - g[i % m->dim];
@@ -221,7 +224,7 @@ static PetscErrorCode OutOfBalance(const Model *m, const PetscReal *g, const Pet
     if (!is_twin(m, i / m->dim)) *work += 0.5 * m->nodes->du[i] * (force[i] - (external ? external[i] : 0));
     if (m->boundary->fixed[i]) *work -= 0.5 * m->nodes->prescribed[i] * m->nodes->held[i];
   }
-  PetscCall(PetscFree3(zero, force, history));
+  PetscCall(PetscFree4(zero, force, history, pressure));
   PetscFunctionReturn(0);
 }
 
