@@ -24,7 +24,9 @@ static const SchemaEntry stage_entries[] = {
   PART_OF("boundary",
           "entries take the place of those of their name, or come behind them; {name: ..., absent: true} "
           "takes one away"),
-  PART_OF("walls", "likewise; walls that come later are `absent` at the top"),
+  PART_OF("walls",
+          "likewise; walls that come later are `absent` at the top. A wall that is given anew begins where its shape "
+          "is, not where its motion has brought it"),
   PART_OF("interfaces", "likewise, of another law; which bodies meet stays"),
   PART_OF("loads", "single keys; a list takes the place of the one before"),
   PART_OF("measures",
