@@ -381,9 +381,9 @@ static void test_pressed(void **state)
  * yet: forces stay with it, and its motion is that of implicit steps. */
 static void test_pulled(void **state)
 {
-  static const char *const bases[] = {"cell", "gimp"};
+  static const char *const bases[] = {"cell", "gimp", "bspline"};
   (void)state;
-  for (int k = 0; k < 2; ++k) {
+  for (int k = 0; k < 3; ++k) {
     PetscReal far[2], work[2];
     for (int implicit = 0; implicit < 2; ++implicit) {
       Bench b;

@@ -231,15 +231,13 @@ static PetscErrorCode RewriteAll(Discretisation *s)
   PetscFunctionReturn(0);
 }
 
-/* What carriers of loads see, where that is not their cell's nodes. */
-static PetscErrorCode Carry(Discretisation *s, const BasisInput *in)
+PetscErrorCode DiscretisationCarry(Discretisation *s, const BasisInput *in)
 {
   const BasisInput plain = {.spec = in->spec, .grid = in->grid, .rim = in->rim};
-  const PetscBool carries = s->basis->carries && s->c->analysis.type != ANALYSIS_EXPLICIT;
 
   PetscFunctionBeginUser;
-  s->loads->support = carries ? s->extension->carried : NULL;
-  if (!carries) PetscFunctionReturn(0);
+  if (!s->basis->carries) PetscFunctionReturn(0);
+  s->loads->support = s->extension->carried;
   PetscCall(PointsSort(s->loads->carriers));
   PetscCall(s->basis->support(&plain, s->loads->carriers, s->extension->carried));
   PetscFunctionReturn(0);
@@ -252,7 +250,7 @@ PetscErrorCode DiscretisationExtend(Discretisation *s, const BasisInput *in)
   PetscFunctionBeginUser;
   if (!s->extension) PetscCall(ExtensionCreate(s, &s->extension));
   Extension *e = s->extension;
-  PetscCall(Carry(s, in));
+  PetscCall(DiscretisationCarry(s, in));
   PetscCall(Fill(s));
   PetscCall(PetscArrayzero(e->ways, s->grid->n_nodes));
   e->any = PETSC_FALSE;

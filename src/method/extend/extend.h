@@ -20,5 +20,8 @@ PetscBool extension_works(const Discretisation *space);
 /* Collective. Of a support that the basis has just filled, with `in`: what each node has; those with less than
  * stabilisation.follow follow others, if these stand near enough, and vanish from it. */
 PetscErrorCode DiscretisationExtend(Discretisation *space, const BasisInput *in);
+/* What carriers of loads see where they are now, of a basis whose functions are those of loads, too; nothing of others.
+ * Once points have been extended. */
+PetscErrorCode DiscretisationCarry(Discretisation *space, const BasisInput *in);
 /* Collective. du, v1 and a1 of nodes that follow, for tracers. */
 PetscErrorCode DiscretisationFollow(Discretisation *space);

@@ -1,6 +1,7 @@
 /* What happens only between laps: points find their cells and ranks, nodes within their reach are listed, and
  * the next substeps get their length. */
 #include "grid/box/box.h"
+#include "method/extend/extend.h"
 #include "model/explicit/explicit.h"
 
 /* The fastest point may cross this part of a cell in a lap: the others ranks' nodes that it
@@ -170,6 +171,7 @@ static PetscErrorCode See(Model *m, const Explicit *e)
   if (e->box) PetscFunctionReturn(0);
   PetscCall(BoundaryMove(m->boundary, m->grid, e->time));
   PetscCall(m->space->basis->support(&basis, m->points, m->space->support));
+  PetscCall(DiscretisationCarry(m->space, &basis));
   PetscCall(DiscretisationTouch(m->space));
   PetscFunctionReturn(0);
 }

@@ -42,13 +42,15 @@ PetscErrorCode ForcesBegin(Model *m, Explicit *e)
 
 static PetscReal mass_of(const Explicit *e, PetscInt node) { return e->sum[node * e->width]; }
 
-/* A force on a node that points hardly reach throws it away, and whoever goes with it. */
-static void leave_out(const Model *m, const Explicit *e, const Points *followers)
+/* A force on a node that points hardly reach throws it away, and whoever goes with it. seen: nodes of followers, NULL:
+ * those of their cells. */
+static void leave_out(const Model *m, const Explicit *e, const Points *followers, const Support *seen)
 {
-  const PetscInt nn = m->grid->nodes_per_cell;
-  for (PetscInt p = 0; p < followers->n; ++p) {
+  for (PetscInt p = 0; p < followers->n && (!seen || p < seen->n_groups); ++p) {
     if (followers->cell[p] < 0) continue;
-    const PetscInt *node = m->grid->cell_node + followers->cell[p] * nn;
+    const PetscInt nn = seen ? support_nodes(seen, p) : m->grid->nodes_per_cell;
+    const PetscInt *node =
+      seen ? seen->node + seen->node_start[p] : m->grid->cell_node + followers->cell[p] * m->grid->nodes_per_cell;
     PetscReal most = 0;
     for (PetscInt I = 0; I < nn; ++I) most = PetscMax(most, mass_of(e, node[I]));
     for (PetscInt I = 0; I < nn; ++I)
@@ -69,8 +71,8 @@ static PetscErrorCode Touch(const Model *m, const Explicit *e)
   PetscFunctionBeginUser;
   if (!m->c->n_loads && !has_tracers(m->c)) PetscFunctionReturn(0);
   for (PetscInt k = 0; k < e->n_active; ++k) e->mark[e->active[k]] = 0;
-  leave_out(m, e, m->loads->carriers);
-  leave_out(m, e, m->tracers);
+  leave_out(m, e, m->loads->carriers, m->loads->support);
+  leave_out(m, e, m->tracers, NULL);
   PetscCall(NodesShare(m, 1, e->mark));
   for (PetscInt k = 0; k < e->n_active; ++k) {
     const PetscInt node = e->active[k];
