@@ -13,6 +13,7 @@ static const ReductionSpec usual = {.from = 1, .step = 0.1, .tolerance = 0.005, 
 typedef struct {
   PetscReal fails, low, high, stride;
   TryOutcome how;
+  PetscBool hard; /* many iterations: steps do not grow */
 } Body;
 
 static TryOutcome try_it(const Body *b, PetscReal stable, PetscReal factor)
@@ -26,8 +27,8 @@ static Search run(const ReductionSpec *spec, const Body *b, int *tries)
   Search s = search_begin(spec);
   PetscReal next;
   for (*tries = 0; (next = search_next(&s, spec)) > 0 && *tries < 1000; ++*tries) {
-    assert_true(next > s.stable);
-    search_tell(&s, spec, next, try_it(b, s.stable, next), PETSC_TRUE);
+    assert_true(next - s.stable > spec->tolerance / 64 * s.stable);
+    search_tell(&s, spec, next, try_it(b, s.stable, next), (PetscBool)!b->hard);
   }
   return s;
 }
@@ -79,6 +80,31 @@ static void test_most(void **state)
   assert_true(s.stable == 1.5 && s.failed == 0 && tries == 3);
 }
 
+/* Steps add up to the end exactly, though 0.1 is no sum of powers of 2; nothing is tried a round-off before it. */
+static void test_exact_end(void **state)
+{
+  const Body body = {.fails = 1e9};
+  int tries;
+  (void)state;
+  const Search s = run(&usual, &body, &tries);
+  assert_true(s.stable == 10 && s.failed == 0 && tries == 91);
+}
+
+/* Newton's method loses its way beyond `low` in all steps but short ones: what failed from afar is met again from near
+ * by, and nothing is tried a round-off before it. */
+static void test_met_again(void **state)
+{
+  (void)state;
+  for (PetscReal low = 1; low < 1.55; low += 0.0503)
+    for (PetscReal stride = 0.0008; stride < 0.05; stride *= 1.3) {
+      int tries;
+      const Body body = {
+        .fails = 1.6, .low = low, .high = 1.6, .stride = stride, .how = TRY_SLIDES, .hard = PETSC_TRUE};
+      const Search s = run(&usual, &body, &tries);
+      assert_true(s.stable < 1.6 && s.failed - s.stable >= usual.tolerance / 64 * s.stable);
+    }
+}
+
 /* Nothing stands: that is said after a while. */
 static void test_nothing(void **state)
 {
@@ -92,8 +118,9 @@ static void test_nothing(void **state)
 int main(void)
 {
   const struct CMUnitTest tests[] = {
-    cmocka_unit_test(test_slides), cmocka_unit_test(test_below),   cmocka_unit_test(test_lost_on_the_way),
-    cmocka_unit_test(test_most),   cmocka_unit_test(test_nothing),
+    cmocka_unit_test(test_slides),  cmocka_unit_test(test_below),     cmocka_unit_test(test_lost_on_the_way),
+    cmocka_unit_test(test_most),    cmocka_unit_test(test_exact_end), cmocka_unit_test(test_met_again),
+    cmocka_unit_test(test_nothing),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
