@@ -119,6 +119,8 @@ void strength_start(Model *model, Diag *diag);
 void strength_go_on(Model *model, const Model *before, Diag *diag);
 /* Materials, and the factor in force, as they are when the strength is divided by it. */
 void strength_set(Model *model, PetscReal factor);
+/* Friction and adhesion of walls and interfaces likewise. */
+void strength_of_contact(Model *model);
 /* Collective. The largest increment of a node in the last step, or its last try, m. */
 PetscErrorCode LargestIncrement(const Model *model, PetscReal *largest);
 /* Collective. Forces balance: but is it a body that stands, or one that has slid? */

@@ -59,6 +59,39 @@ says out.txt "factor of safety > 1.2"
 expect "displacements alone" 0 "$talus" run block.yaml --out run --force --set formulation=displacement
 says err.txt "formulation=displacement: warning: " "locks: the factor of" "formulation: mixed"
 
+# A block on a plane of 20 degrees that bears 30 by friction, tan 30 / tan 20; by adhesion alone, c A / (W sin 20)
+cat >plane.yaml <<'END'
+kinematics: plane-strain
+method: mpm
+analysis: {type: factor-of-safety, reduction: {step: 0.5, tolerance: 1e-3, most: 3}}
+grid: {box: {min: [0, 0], max: [3, 2]}, size: 0.5}
+bodies:
+  - {name: block, shape: {box: {min: [0.5, 0.5], max: [2, 1.5]}}, material: rock}
+materials:
+  rock: {law: mohr-coulomb, density: 2000, young: 1e8, poisson: 0.2, friction_angle: 30, cohesion: 1e6}
+walls:
+  - {name: plane, shape: {half-space: {point: [0, 0.5], normal: [0, 1]}}, friction_angle: 30}
+loads: {gravity: [3.420201433, -9.396926208]}
+measures:
+  F: {factor_of_safety: value}
+  lower: {factor_of_safety: lower}
+  upper: {factor_of_safety: upper}
+END
+sed '/^walls:/,/half-space/d; s/^bodies:/&\n  - {name: ground, shape: {box: {min: [0, 0], max: [3, 0.5]}}, material: stone}/; s/^loads:/  stone: {law: neo-hookean, density: 2000, young: 1e8, poisson: 0.2}\nboundary: [{on: {boundary: bottom}, fix: [x, y]}]\ninterfaces: [{name: joint, between: [block, ground], friction_angle: 30}]\n&/; s,method: mpm,method: fem,' plane.yaml >joint.yaml
+for ranks in 1 2 3; do
+  expect "a block on a wall on $ranks" 0 on_ranks $ranks "$talus" run plane.yaml --out run --force
+  near 1.58626
+  expect "a block on a body that keeps its strength, on $ranks" 0 on_ranks $ranks "$talus" run joint.yaml --out run --force --set 'analysis.reduction.bodies=[block]'
+  near 1.58626
+done
+expect "adhesion" 0 "$talus" run plane.yaml --out run --force --set 'walls[0].friction_angle=0' --set 'walls[0].adhesion=1e4'
+near 1.46190
+sed 's/^materials:/  - {name: other, shape: {box: {min: [2.5, 1.5], max: [3, 2]}}, material: soil}\n&\n  soil: {law: mohr-coulomb, density: 2000, young: 1e8, poisson: 0.2, friction_angle: 30, cohesion: 1e6}/; s/^loads:/boundary: [{on: {boundary: right}, fix: [x, y]}]\n&/' plane.yaml >other.yaml
+expect "a block that keeps its strength on a wall" 0 "$talus" run other.yaml --out run --force --set 'analysis.reduction.bodies=[other]'
+says out.txt "factor of safety > 3"
+expect "a divided strength that is enough" 0 "$talus" run plane.yaml --out run --force --set analysis='{type: static}' --set strength.factor=1.55 --set measures='{}'
+expect "a divided strength that is not" 1 "$talus" run plane.yaml --out run --force --set analysis='{type: static}' --set strength.factor=1.6 --set measures='{}'
+
 # Resumed anywhere: the same bits; and its end is an end
 expect "whole" 0 "$talus" run block.yaml --out whole --quiet --set checkpoint.steps=3 --set checkpoint.keep=99
 cp -r whole cut

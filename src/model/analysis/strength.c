@@ -1,5 +1,5 @@
-/* Strength divided by a factor (docs/theory.md, "Factor of safety"): which materials take part, and a
- * step to the equilibrium with another factor. */
+/* Strength divided by a factor (docs/theory.md, "Factor of safety"): which materials, walls and interfaces take part,
+ * and a step to the equilibrium with another factor. */
 #include "model/model_private.h"
 
 static PetscBool is_reduced(const Case *c, const BodySpec *body)
@@ -22,9 +22,28 @@ static PetscBool material_is_reduced(const Model *m, PetscInt i)
   return PETSC_FALSE;
 }
 
+/* Is the friction of body b on a wall, or in an interface, divided? Of a joint, too, of which one side keeps its own
+ * strength: a pile's, or a wall's, in soil that may fail. */
+static PetscBool contact_is_reduced(const Model *m, PetscInt partner, PetscInt b)
+{
+  const Case *c = m->c;
+  if (partner < c->n_walls) return is_reduced(c, &c->bodies[b]);
+  const InterfaceSpec *s = &c->interfaces[partner - c->n_walls];
+  return (PetscBool)(is_reduced(c, &c->bodies[case_body(c, s->between[0])]) ||
+                     is_reduced(c, &c->bodies[case_body(c, s->between[1])]));
+}
+
+void strength_of_contact(Model *m)
+{
+  const PetscInt n = m->c->n_bodies;
+  for (PetscInt i = 0; m->contact && i < m->contact->n_partners * n; ++i)
+    m->contact->divisor[i] = contact_is_reduced(m, i / n, i % n) ? m->strength.factor : 1;
+}
+
 void strength_set(Model *m, PetscReal factor)
 {
   m->strength.factor = factor;
+  strength_of_contact(m);
   for (PetscInt i = 0; i < m->c->n_materials; ++i)
     if (material_is_reduced(m, i)) material_reduce(&m->materials[i], factor);
 }

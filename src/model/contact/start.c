@@ -135,6 +135,7 @@ PetscErrorCode WallsStart(Model *m, Diag *diag)
   if (!m->c->n_walls && !m->c->n_interfaces) PetscFunctionReturn(0);
   PetscCall(WallsCreate(m->c, diag, &m->walls));
   PetscCall(ContactCreate(m->c, m->walls, diag, &m->contact));
+  strength_of_contact(m);
   rigid_check(m, diag);
   PetscCall(InterfacesStart(m, diag));
   for (PetscInt k = 0; k < m->c->n_walls; ++k) {

@@ -50,7 +50,7 @@ static PetscErrorCode Look(Model *m, Try *try)
   PetscFunctionBeginUser;
   PetscCall(LargestDisplacement(m, &try->displacement));
   PetscCall(ModelEnergies(m, &energies));
-  try->dissipated = energies.dissipated;
+  try->dissipated = energies.dissipated + energies.friction;
   try->work = energies.external;
   PetscFunctionReturn(0);
 }

@@ -12,7 +12,7 @@ typedef struct {
   PetscReal iterations;
   PetscReal moved;        /* largest increment of a node; where Newton gave up, its last one, m */
   PetscReal displacement; /* the largest of a point since the start, in the last stable state, m */
-  PetscReal dissipated;   /* by plastic flow since the start, there, J */
+  PetscReal dissipated;   /* by plastic flow and friction since the start, there, J */
   PetscReal work;         /* of loads and gravity since the start, there, J */
 } Try;
 #define TRY_NUMBERS 7

@@ -39,6 +39,8 @@ PetscErrorCode ContactCreate(const Case *c, Walls *walls, Diag *diag, Contact **
   PetscCall(RigidCreate(c, walls, diag, &(*contact)->n_rigid, &(*contact)->rigid));
   PetscCall(PetscCalloc1((*contact)->n_partners, &(*contact)->wall));
   PetscCall(PetscCalloc1((*contact)->n_partners, &(*contact)->impulse));
+  PetscCall(PetscMalloc1((*contact)->n_partners * c->n_bodies, &(*contact)->divisor));
+  for (PetscInt i = 0; i < (*contact)->n_partners * c->n_bodies; ++i) (*contact)->divisor[i] = 1;
   (*contact)->share = (ContactShare){.mean = 1};
   PetscFunctionReturn(0);
 }
@@ -54,6 +56,7 @@ PetscErrorCode ContactDestroy(Contact **contact)
   PetscCall(PetscFree(s->N));
   PetscCall(PetscFree(s->lead));
   PetscCall(PetscFree(s->slot));
+  PetscCall(PetscFree(s->divisor));
   PetscCall(PetscFree(s->wall));
   PetscCall(PetscFree(s->rigid));
   PetscCall(PetscFree(s->impulse));

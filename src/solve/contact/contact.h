@@ -88,6 +88,8 @@ typedef struct Contact {
   PetscReal near;   /* m: what is farther away cannot be reached in a step */
   PetscReal length; /* of a cell, m: scale of gaps */
   ContactShare share;
+  /* n_partners x n_bodies: of friction and adhesion where that body meets this partner; 0: it does not slide */
+  PetscReal *divisor;
   WallState *wall;
   /* of this rank and step, of each wall: momentum that setting what is in contact to its velocity took */
   ContactSum *impulse;
@@ -120,7 +122,8 @@ PetscErrorCode ContactAddNodes(Contact *contact, ContactPoint *c, PetscInt n);
 PetscReal contact_reach(const PetscReal F[9], const PetscReal n[3], PetscReal first);
 /* What the carrier kept of its contact with a partner. */
 void contact_remember(ContactPoint *c, PetscInt dim, const PetscReal *kept, const PetscReal normal[3]);
-ContactLaw contact_law_of(ContactKind kind, PetscReal friction);
+/* Its law, with what that lets it bear along the partner. */
+void contact_take_law(const Contact *contact, const NodalScene *scene, ContactPoint *c);
 /* Is a contact point with this gap at the start of the step none? Says whether it touches. */
 PetscBool contact_passes(const Contact *contact, ContactPoint *c, PetscReal gap, PetscBool first);
 /* Collective. Those between bodies. */

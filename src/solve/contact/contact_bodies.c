@@ -65,7 +65,6 @@ static PetscErrorCode Carry(Contact *s, ContactPoint *c, const NodeFinder *f, co
 static PetscErrorCode Meet(Contact *s, const NodalScene *scene, const NodeFinder *f, PetscInt interface,
                            const SurfacePoint *p, const SurfacePair *pair)
 {
-  const InterfaceSpec *spec = scene->c->interfaces + interface;
   const PetscInt partner = s->n_walls + interface;
   const PetscReal *kept = point_real(scene->points, POINT_CONTACT, p->owner) + partner * CONTACT_KEPT(s->dim);
   ContactPoint *c = NULL;
@@ -78,8 +77,7 @@ static PetscErrorCode Meet(Contact *s, const NodalScene *scene, const NodeFinder
   c->modulus[0] = p->modulus, c->density[0] = p->density;
   c->stiffer = PetscMax(p->stiffer, pair->other->stiffer);
   c->modulus[1] = pair->other->modulus, c->density[1] = pair->other->density;
-  c->law = contact_law_of(spec->contact, spec->friction);
-  c->bond = spec->adhesion * c->section;
+  contact_take_law(s, scene, c);
   contact_remember(c, s->dim, kept, pair->normal);
   c->open = pair->gap - c->reach;
   if (contact_passes(s, c, c->open, scene->first)) {

@@ -55,9 +55,15 @@ void contact_remember(ContactPoint *c, PetscInt dim, const PetscReal *kept, cons
   for (int d = 0; d < 3; ++d) c->normal[d] = c->facing[d] = normal[d];
 }
 
-ContactLaw contact_law_of(ContactKind kind, PetscReal friction)
+void contact_take_law(const Contact *s, const NodalScene *scene, ContactPoint *c)
 {
-  return (ContactLaw){.kind = kind, .friction = kind == CONTACT_STICK ? CONTACT_STICKING : friction};
+  const WallSpec *w = c->wall < s->n_walls ? scene->c->walls + c->wall : NULL;
+  const InterfaceSpec *i = w ? NULL : scene->c->interfaces + (c->wall - s->n_walls);
+  const PetscReal friction = w ? w->friction : i->friction, adhesion = w ? w->adhesion : i->adhesion;
+  const PetscReal divisor = s->divisor[c->wall * scene->c->n_bodies + scene->points->body[c->owner]];
+  c->law = (ContactLaw){.kind = w ? w->contact : i->contact};
+  c->law.friction = c->law.kind == CONTACT_STICK || divisor == 0 ? CONTACT_STICKING : friction / divisor;
+  c->bond = divisor > 0 ? adhesion / divisor * c->section : 0;
 }
 
 /* A bonded interface holds what touches at the start, and nothing that comes later. */
@@ -116,8 +122,7 @@ static PetscErrorCode MeetPoint(Contact *s, const NodalScene *scene, PetscInt g,
   c->section = contact_section(scene, p, place.normal);
   c->modulus[0] = material->wave_modulus, c->density[0] = material->density;
   c->stiffer = material_confined(material) / material->wave_modulus;
-  c->law = contact_law_of(scene->c->walls[k].contact, scene->c->walls[k].friction);
-  c->bond = scene->c->walls[k].adhesion * c->section;
+  contact_take_law(s, scene, c);
   contact_remember(c, dim, kept + k * CONTACT_KEPT(dim), place.normal);
   place.gap -= reach;
   if (contact_passes(s, c, place.gap, scene->first)) {

@@ -69,8 +69,9 @@ static const SchemaEntry strength_entries[] = {
   KEY("beyond_failure", NUMBER, NULL,
       "instead: so many times the smallest factor for which the stage before, a search, found no equilibrium",
       AT_LEAST(1), AT(StrengthSpec, beyond_failure)),
-  KEY("bodies", REFERENCES, NULL, "bodies whose strength is divided", .note = "all", .target = "bodies",
-      AT(StrengthSpec, bodies), .count = offsetof(StrengthSpec, n_bodies)),
+  KEY("bodies", REFERENCES, NULL,
+      "bodies whose strength is divided, with the friction and adhesion of what they meet: walls and other bodies",
+      .note = "all", .target = "bodies", AT(StrengthSpec, bodies), .count = offsetof(StrengthSpec, n_bodies)),
   {.key = NULL},
 };
 static const SchemaGroup strength_groups[] = {{GROUP_ONE, {"factor", "beyond_failure", NULL}}, {GROUP_NONE, {NULL}}};

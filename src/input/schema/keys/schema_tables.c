@@ -70,8 +70,9 @@ static const SchemaEntry reduction_entries[] = {
       .bounded = PETSC_TRUE, .min = 0, .min_open = PETSC_TRUE, .max = 0.5, AT(ReductionSpec, tolerance)),
   KEY("most", NUMBER, NULL, "what stands with this factor is not tried any further", .fallback = "10", ABOVE(0),
       AT(ReductionSpec, most)),
-  KEY("bodies", REFERENCES, NULL, "bodies whose strength is divided", .note = "all", .target = "bodies",
-      AT(ReductionSpec, bodies), .count = offsetof(ReductionSpec, n_bodies)),
+  KEY("bodies", REFERENCES, NULL,
+      "bodies whose strength is divided, with the friction and adhesion of what they meet: walls and other bodies",
+      .note = "all", .target = "bodies", AT(ReductionSpec, bodies), .count = offsetof(ReductionSpec, n_bodies)),
   {.key = NULL},
 };
 static const SchemaTable reduction = {.name = "reduction",
