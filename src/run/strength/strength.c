@@ -105,6 +105,23 @@ static void know_bracket(const StrengthRun *s, Model *m)
   m->strength.upper = s->search.failed > 0 ? s->search.failed : NAN;
 }
 
+/* What yields first moves at once as far as it has to, in a body that stands, too. So the first factor is tried from
+ * where nothing yields, and if the body goes far then a larger one as well: does it go farther by what slides? */
+static PetscErrorCode TryLarger(const StrengthRun *s, Model *m, Try *try, StepReport *report)
+{
+  const PetscReal more = m->c->analysis.reduction.tolerance * try->factor;
+  const StepReport first = *report;
+  Try larger = *try;
+
+  PetscFunctionBeginUser;
+  larger.factor += more;
+  m->strength.reach = try->moved + SLIDES * s->height * more;
+  PetscCall(ModelTryFactor(m, larger.factor, report, &larger.moved));
+  if (report->outcome == STEP_ACCEPTED) *try = larger;
+  else if (report->outcome == STEP_TOO_SMALL) *report = first;
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode StrengthTry(StrengthRun *s, Model *m, RunDir *dir, StepReport *report)
 {
   const ReductionSpec *spec = &m->c->analysis.reduction;
@@ -113,6 +130,7 @@ PetscErrorCode StrengthTry(StrengthRun *s, Model *m, RunDir *dir, StepReport *re
   PetscFunctionBeginUser;
   m->strength.reach = SLIDES * s->height * PetscMin(try.factor - s->search.stable, spec->tolerance * try.factor);
   PetscCall(ModelTryFactor(m, try.factor, report, &try.moved));
+  if (report->leap[0] && s->search.stable == 0) PetscCall(TryLarger(s, m, &try, report));
   if (report->outcome == STEP_INTERRUPTED || report->outcome == STEP_POINTS_LOST) PetscFunctionReturn(0);
   const TryOutcome outcome = report->outcome == STEP_ACCEPTED ? TRY_STANDS
                              : report->leap[0]                ? TRY_SLIDES
