@@ -200,6 +200,15 @@ PetscErrorCode CaseDestroy(Case **c)
 
 PetscBool case_is_mixed(const Case *c) { return c->formulation && !strcmp(c->formulation, "mixed"); }
 
+PetscBool case_dilates(const Case *c)
+{
+  for (PetscInt m = 0; m < c->n_materials; ++m)
+    for (PetscInt k = 0; k < c->materials[m].n_parameters; ++k)
+      if (strstr(c->materials[m].parameters[k].name, "dilatancy") && c->materials[m].parameters[k].value > 0)
+        return PETSC_TRUE;
+  return PETSC_FALSE;
+}
+
 PetscBool case_is_static(const AnalysisSpec *analysis)
 {
   return analysis->type != ANALYSIS_DYNAMIC && analysis->type != ANALYSIS_EXPLICIT;

@@ -507,6 +507,7 @@ const char *case_load_path(const Case *c, PetscInt k, char path[64]);
 PetscBool case_load_follows(const Case *c);
 /* Is the pressure an unknown beside the displacements? */
 PetscBool case_is_mixed(const Case *c);
+PetscBool case_dilates(const Case *c); /* has any material a dilatancy angle? */
 /* Equilibrium at every step, no inertia: a factor of safety is found so, too. Else there is inertia. */
 PetscBool case_is_static(const AnalysisSpec *analysis);
 /* Explicit dynamics: share of the critical step that is taken. musl bears all of it, usl two thirds (docs/theory.md,

@@ -155,17 +155,29 @@ static PetscErrorCode ResolveScheme(Case *c)
   PetscFunctionReturn(0);
 }
 
+/* Could the points of each cell share its change of volume? The cells of a mesh are not known yet. */
+static PetscBool cells_share(const Case *c)
+{
+  const PetscBool several = c->grid.cell == CELL_QUADRILATERAL || c->grid.cell == CELL_HEXAHEDRON;
+  const Basis *basis = basis_find(c->basis.kind);
+  return (PetscBool)(c->grid.kind == GRID_BOX && several && (c->basis.by_default || basis->nodes == BASIS_OF_CELLS));
+}
+
 /* What yields without a change of volume locks with displacements alone, and nothing fails: who asks
- * for a factor of safety or a limit load and names no formulation gets one that does not. */
-static PetscErrorCode ResolveFormulation(const YamlNode *root, Case *c)
+ * for a factor of safety or a limit load and names no formulation gets one that does not. With dilatancy Newton's
+ * method loses its way in the mixed one long before anything fails (docs/decisions.md, 263). Stages have that of the
+ * whole. */
+static PetscErrorCode ResolveFormulation(const YamlNode *root, const Case *whole, Case *c)
 {
   const Method *method = c->method ? method_find(c->method) : NULL;
   const PetscBool seeks = case_seeks(&c->analysis) || c->seeks;
 
   PetscFunctionBeginUser;
   if (yaml_find(root, "formulation") || !seeks || !method || !method->takes_pressure) PetscFunctionReturn(0);
+  const PetscBool shared = whole ? !strcmp(whole->formulation, "mean-dilatation") : case_dilates(c) && cells_share(c);
   PetscCall(PetscFree(c->formulation));
-  PetscCall(PetscStrallocpy("mixed", &c->formulation));
+  PetscCall(PetscStrallocpy(shared ? "mean-dilatation" : "mixed", &c->formulation));
+  if (shared && c->basis.by_default) c->basis.kind = method_basis(method, c);
   PetscFunctionReturn(0);
 }
 
@@ -288,7 +300,7 @@ static PetscErrorCode ReadDocument(const char *file, YamlDocument *document, Dia
   peek_kinematics(document->root, &reader);
   PetscCall(SchemaReadTable(&reader, &schema_case, document->root, *c));
   PetscCall(ResolveTransfer(*c));
-  PetscCall(ResolveFormulation(document->root, *c));
+  PetscCall(ResolveFormulation(document->root, whole, *c));
   resolve_stabilisation(yaml_find(document->root, "stabilisation"), *c);
   PetscCall(ResolveScheme(*c));
   resolve_equilibrium(yaml_find(document->root, "initial"), *c);

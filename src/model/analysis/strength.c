@@ -80,8 +80,9 @@ static void warn_of_locking(const Model *m, Diag *diag)
                "with displacements as the only unknowns what yields without a change of volume locks: the factor of "
                "safety comes out too large, or nothing fails at all");
   diag_hint(diag, "%s",
-            m->method->takes_pressure ? "`formulation: mixed` does not lock; it is the default of factor-of-safety"
-                                      : "mpm and fem take `formulation: mixed`, which does not lock");
+            !m->method->takes_pressure ? "mpm and fem take `formulation: mixed`, which does not lock"
+            : case_dilates(m->c)       ? "with a dilatancy angle `formulation: mean-dilatation` does not lock"
+                                       : "`formulation: mixed` does not lock; it is the default of factor-of-safety");
 }
 
 void strength_start(Model *m, Diag *diag)

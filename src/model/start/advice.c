@@ -200,6 +200,20 @@ static void advise_jump(const Model *m, PetscInt k, Diag *diag)
             (double)(m->c->analysis.end / 10));
 }
 
+/* The pressure of the second equation is that before the flow, which dilatancy takes away again at each point by itself:
+ * changes of volume inside a cell are not held (docs/decisions.md, 263). */
+static void advise_dilatancy(const Model *m, Diag *diag)
+{
+  if (!case_seeks(&m->c->analysis) || !m->formulation->pressure || !case_dilates(m->c)) return;
+  diag_warning(diag, "formulation",
+               "with a dilatancy angle Newton's method may lose its way in the mixed formulation long before anything "
+               "fails: a factor of safety or a limit load of half and less");
+  diag_hint(diag, "take `formulation: mean-dilatation`%s, or `dilatancy_angle: 0`",
+            !only_simplices(m) ? ""
+            : m->dim == 2      ? " and quadrilaterals (of Gmsh: `Mesh.RecombineAll = 1;`)"
+                               : " and hexahedra");
+}
+
 PetscErrorCode ModelAdvise(const Model *m, Diag *diag)
 {
   PetscFunctionBeginUser;
@@ -211,5 +225,6 @@ PetscErrorCode ModelAdvise(const Model *m, Diag *diag)
   PetscCall(AdviseSharing(m, diag));
   PetscCall(AdviseThin(m, diag));
   advise_floor(m, diag);
+  advise_dilatancy(m, diag);
   PetscFunctionReturn(0);
 }

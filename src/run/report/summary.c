@@ -39,6 +39,9 @@ PetscErrorCode SummaryBegin(Model *m, RunDir *dir)
   PetscCall(RunDirLog(dir, "method = %s", m->method->name));
   method_tell_basis(m->method, m->c, sizeof told, told);
   PetscCall(RunDirLog(dir, "basis = %s", told));
+  if (case_seeks(&m->c->analysis))
+    PetscCall(RunDirLog(dir, "formulation = %s%s", m->formulation->name,
+                        m->formulation->cells && case_dilates(m->c) ? ", the default with a dilatancy angle" : ""));
   for (const char *const *law = plugin_words(); *law; ++law) PetscCall(RunDirLog(dir, "law = %s", *law));
   PetscCall(RunDirLog(dir, "cells = %d nodes = %d points = %d ranks = %d", (int)m->grid->n_cells_global,
                       (int)m->grid->n_nodes_global, (int)points, (int)size));

@@ -229,15 +229,20 @@ static PetscErrorCode TellBracket(const StrengthRun *s, const char *by, Says yes
   PetscFunctionReturn(0);
 }
 
-/* Newton's method gave up in the smallest step, but what stood before did not move as if it were to
- * slide. */
+/* Newton's method gave up where nothing ran away, and what stood before neither moved as if it were to slide nor
+ * dissipated all work. What is lost by itself may run away, or move, in the smallest of steps. */
 static PetscBool is_doubtful(const StrengthRun *s)
 {
   const PetscInt last = stood_before(s, s->n - 1);
-  if (s->tries[s->n - 1].outcome != TRY_LOST || last == 0) return PETSC_FALSE;
+  PetscBool lost = PETSC_FALSE, flows = PETSC_FALSE;
+  for (PetscInt i = 1; i < s->n; ++i) {
+    if (s->tries[i].outcome == TRY_LOST && s->tries[i].factor >= s->search.failed) lost = PETSC_TRUE;
+    if (stands(s, i)) flows = stores_nothing(s, i);
+  }
+  if (!lost || last == 0) return PETSC_FALSE;
   const PetscInt before = stood_before(s, last);
   const PetscReal taken = s->tries[last].factor - s->tries[before].factor;
-  return s->tries[last].moved < 0.1 * SLIDES * s->height * taken;
+  return (PetscBool)(!flows || s->tries[last].moved < 0.1 * SLIDES * s->height * taken);
 }
 
 static PetscErrorCode TellAnswer(const StrengthRun *s, const Model *m, RunDir *dir)
@@ -256,7 +261,7 @@ static PetscErrorCode TellAnswer(const StrengthRun *s, const Model *m, RunDir *d
   if (is_doubtful(s))
     PetscCall(RunDirLog(dir,
                         "warning = Newton's method lost its way before anything slid: the factor may be larger "
-                        "(another mesh, or a small dilatancy angle, tells)"));
+                        "(another mesh, formulation or dilatancy angle tells)"));
   PetscCall(RunDirLog(dir, "factor of safety = %.*f (%.*f ... %.*f)", digits, (double)m->strength.value, digits,
                       (double)stable, digits, (double)failed));
   PetscFunctionReturn(0);
