@@ -56,6 +56,8 @@ near 0.6
 says out.txt "warning = it does not stand with a factor of 1: sought downwards"
 expect "more than asked for" 0 "$talus" run block.yaml --out run --force --set analysis.reduction.most=1.2
 says out.txt "factor of safety > 1.2"
+expect "a search that is ended" 0 "$talus" run block.yaml --out run --force --set 'analysis.until=[{measure: lower, above: 1.05}]'
+says out.txt "factor of safety > 1.1: the search was ended before it was over"
 expect "displacements alone" 0 "$talus" run block.yaml --out run --force --set formulation=displacement
 says err.txt "formulation=displacement: warning: " "locks: the factor of" "formulation: mixed"
 

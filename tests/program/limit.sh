@@ -41,6 +41,18 @@ says out.txt "N along the displacement of 'plate'"
 expect "not far enough" 0 "$talus" run plate.yaml --out run --force --set analysis.limit='{raise: plate, most: 0.01}'
 says out.txt "warning = no limit was found"
 
+expect "a search that is ended" 0 "$talus" run block.yaml --out run --force --set 'analysis.until=[{measure: load, above: 30}]'
+says out.txt "by load = it still rises" "warning = no limit was found"
+rm -rf run
+"$talus" run block.yaml --out run --quiet --set grid.size=0.02 --set analysis.limit.step=1e-3 >out.txt 2>err.txt </dev/null &
+name="a search that is cut off"
+for i in $(seq 400); do
+  [ -s run/history.csv ] && [ "$(wc -l <run/history.csv)" -gt 2 ] && break
+  sleep 0.05
+done
+kill -INT $! && wait $!
+says err.txt "'limit' is empty (nan) at the end: the search for it was not over"
+
 # A smooth footing on sand, whose free surface bears nothing: cells at its edge open and close, and are settled in patches.
 # Exact is N_gamma = 7.85 (cases/footing-on-sand/bearing.py); squares of B/8 bear a sixth more, on any number of ranks.
 cat >sand.yaml <<'END'

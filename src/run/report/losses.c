@@ -195,6 +195,14 @@ static void warn_of_followers(const Model *m, Diag *diag)
         text_position(m->dim, m->load_memory[k].where, at));
 }
 
+static const char *why_empty(const MeasureSpec *measure)
+{
+  if (!strcmp(measure->kind, "limit_load")) return "the search for it was not over";
+  if (measure_has_window(measure)) return "fewer than two steps with a value lie in its window";
+  if (measure_find(measure->kind)->events) return "none of what it counts is over";
+  return "no point is left of what it measures";
+}
+
 PetscErrorCode LossesWarn(Model *m, const PetscReal *values, Diag *diag)
 {
   char path[256];
@@ -207,9 +215,7 @@ PetscErrorCode LossesWarn(Model *m, const PetscReal *values, Diag *diag)
     if (!strcmp(m->c->measures[k].kind, "factor_of_safety")) continue; /* the log says why it has none */
     snprintf(path, sizeof path, "measures.%s", m->c->measures[k].name);
     diag_warning(diag, path, "'%s' is empty (nan) at the end: %s", m->c->measures[k].name,
-                 measure_has_window(m->c->measures + k)         ? "fewer than two steps with a value lie in its window"
-                 : measure_find(m->c->measures[k].kind)->events ? "none of what it counts is over"
-                                                                : "no point is left of what it measures");
+                 why_empty(m->c->measures + k));
   }
   if (o->removed > 0)
     diag_warning(diag, "grid.outside", "%.0f points of %.4g kg left the grid and were removed", (double)o->removed,

@@ -163,7 +163,7 @@ PetscErrorCode LimitEnd(const LimitRun *s, Model *m, RunDir *dir)
   PetscCall(RunDirLog(dir, "by load = %s: it grew by %.2g %% while the displacement doubled", why[outcome],
                       100 * (double)growth(s)));
   PetscCall(RunDirLog(dir, "by energy = %.1f %% of the load's last work was stored", 100 * (double)share_stored(s)));
-  if (outcome == LIMIT_MOST || outcome == LIMIT_LOST)
+  if (outcome != LIMIT_HOLDS && outcome != LIMIT_FALLS)
     PetscCall(RunDirLog(dir, "warning = no limit was found: the load is the largest that was reached"));
   if (case_raises_displacement(m->c))
     PetscCall(

@@ -7,6 +7,7 @@
 #define ALL_DISSIPATED 0.99
 #define EASY 8 /* Newton's iterations after which the next step is larger */
 
+static const char unfinished[] = "the search was ended before it was over";
 static const char *const outcome_words[TRY_N] = {"stands", "slides", "runs", "lost"};
 
 PetscErrorCode StrengthRunDestroy(StrengthRun *s)
@@ -270,14 +271,16 @@ static PetscErrorCode TellAnswer(const StrengthRun *s, const Model *m, RunDir *d
 PetscErrorCode StrengthEnd(const StrengthRun *s, Model *m, RunDir *dir)
 {
   const PetscReal stable = s->search.stable, failed = s->search.failed;
+  const PetscBool over = search_next(&s->search, &m->c->analysis.reduction) == 0;
 
   PetscFunctionBeginUser;
   know_bracket(s, m);
   if (failed == 0)
-    PetscCall(
-      RunDirLog(dir, "factor of safety > %.4g: it stands with the largest factor that was asked for", (double)stable));
+    PetscCall(RunDirLog(dir, "factor of safety > %.4g: %s", (double)stable,
+                        over ? "it stands with the largest factor that was asked for" : unfinished));
   else if (stable == 0)
-    PetscCall(RunDirLog(dir, "factor of safety < %.4g: it does not stand, however strong", (double)failed));
+    PetscCall(RunDirLog(dir, "factor of safety < %.4g: %s", (double)failed,
+                        over ? "it does not stand, however strong" : unfinished));
   else {
     m->strength.value = 0.5 * (stable + failed);
     PetscCall(TellAnswer(s, m, dir));
