@@ -146,6 +146,9 @@ expect "a law without strength" 2 "$talus" run elastic.yaml --out bad
 says err.txt "elastic.yaml:8:15: error:" "the law neo-hookean of 'block' has no strength" "bodies: [...]"
 expect "no such body" 2 "$talus" run block.yaml --out bad --set 'analysis.reduction.bodies=[blok]'
 says err.txt "did you mean 'block'"
+sed '/^loads:/d' block.yaml >unloaded.yaml
+expect "nothing to bear" 2 "$talus" check unloaded.yaml
+says err.txt "unloaded.yaml:3:18: error: nothing is there that strength would have to bear: no gravity, no load" "hint: loads: {gravity: [0, -9.81]}"
 expect "nothing to look for" 2 "$talus" run block.yaml --out bad --set analysis.reduction.most=0.5
 says err.txt "analysis.reduction.most must be larger than the first factor (1)"
 sed 's/type: factor-of-safety/type: static/' block.yaml >static.yaml

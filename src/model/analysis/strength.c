@@ -72,6 +72,33 @@ static void check_body(const Model *m, PetscInt b, Diag *diag)
   }
 }
 
+static PetscBool any_moves(PetscInt n, const MotionSpec *motions)
+{
+  for (PetscInt k = 0; k < n; ++k)
+    if (!motions[k].absent && motions[k].kind != MOTION_FIXED) return PETSC_TRUE;
+  return PETSC_FALSE;
+}
+
+/* Is there anything that strength has to bear? What a stage or a run before has left counts, too. */
+static PetscBool is_loaded(const Case *c)
+{
+  PetscBool loaded = c->n_loads > 0 || case_has_stress(c) || c->initial.run || c->stage > 0;
+  for (PetscInt d = 0; d < 3; ++d)
+    if (c->gravity[d] != 0) loaded = PETSC_TRUE;
+  for (PetscInt k = 0; k < c->n_walls; ++k)
+    if (c->walls[k].has_mass || any_moves(c->walls[k].n_motions, c->walls[k].motions)) loaded = PETSC_TRUE;
+  return (PetscBool)(loaded || any_moves(c->n_boundary, c->boundary));
+}
+
+static void check_loaded(const Case *c, Diag *diag)
+{
+  if (is_loaded(c)) return;
+  diag_error(diag, "analysis.type",
+             "nothing is there that strength would have to bear: no gravity, no load, no prescribed motion, no initial "
+             "stress");
+  diag_hint(diag, "loads: {gravity: [0, -9.81%s]}", c->kinematics->dim == 2 ? "" : ", 0");
+}
+
 /* Measured (docs/theory.md): the first slope of cases/factor-of-safety stands with 1.5 and more. */
 static void warn_of_locking(const Model *m, Diag *diag)
 {
@@ -94,6 +121,7 @@ void strength_start(Model *m, Diag *diag)
   const PetscInt before = diag_errors(diag);
   if (!seeks && !divides) return;
   if (seeks) warn_of_locking(m, diag);
+  if (seeks) check_loaded(m->c, diag);
   if (seeks && divides)
     diag_error(diag, "strength", "a search for the factor of safety divides the strength itself: it takes no other");
   for (PetscInt b = 0; b < m->c->n_bodies; ++b)
