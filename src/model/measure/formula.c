@@ -5,31 +5,56 @@
 
 typedef struct {
   Model *m;
-  PetscInt before; /* those before it count: none can need itself */
+  PetscInt before;     /* those before it count: none can need itself */
+  PetscBool over_step; /* is one of them the mean over the last step? */
 } Lookup;
+
+static PetscErrorCode Evaluate(Model *m, const MeasureSpec *s, PetscInt index, PetscReal *value, PetscBool *over_step);
 
 static PetscErrorCode Other(void *context, const char *name, PetscBool *known, PetscReal *value)
 {
-  const Lookup *l = context;
+  Lookup *l = context;
 
   PetscFunctionBeginUser;
   *known = PETSC_FALSE;
   for (PetscInt k = 0; k < l->before && !*known; ++k) {
     const MeasureSpec *s = &l->m->c->measures[k];
+    PetscBool over_step = measure_number(s)->over_step;
     if (strcmp(s->name, name) != 0) continue;
     *known = PETSC_TRUE;
-    PetscCall(ModelMeasure(l->m, s, k, value));
+    if (measure_has_window(s) || strcmp(s->kind, "formula") != 0) PetscCall(ModelMeasure(l->m, s, k, value));
+    else PetscCall(Evaluate(l->m, s, k, value, &over_step));
+    l->over_step |= over_step && !measure_has_window(s);
   }
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode Value(Model *m, const MeasureSpec *s, PetscInt index, PetscReal *value)
+static PetscErrorCode Evaluate(Model *m, const MeasureSpec *s, PetscInt index, PetscReal *value, PetscBool *over_step)
 {
   Lookup lookup = {.m = m, .before = index};
   Formula formula = {.value = Other, .context = &lookup, .at = s->word};
 
   PetscFunctionBeginUser;
   PetscCall(FormulaValue(&formula, value));
+  *over_step = lookup.over_step;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode FormulaOverStep(Model *m, const MeasureSpec *s, PetscBool *is)
+{
+  PetscReal value;
+
+  PetscFunctionBeginUser;
+  PetscCall(Evaluate(m, s, (PetscInt)(s - m->c->measures), &value, is));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode Value(Model *m, const MeasureSpec *s, PetscInt index, PetscReal *value)
+{
+  PetscBool over_step;
+
+  PetscFunctionBeginUser;
+  PetscCall(Evaluate(m, s, index, value, &over_step));
   PetscFunctionReturn(0);
 }
 

@@ -33,6 +33,7 @@ typedef struct {
   PetscBool may_trace; /* may it be that at a tracer, in place of a body's? */
   PetscBool middle;    /* is it fitted to the `middle` of something? */
   PetscBool in;        /* may it be that of the points `in` a shape alone? Every sum may */
+  PetscBool over_step; /* in dynamics it is the mean over the last step, else what it is now */
   /* Collective. index: of the spec among the measures of the case. */
   PetscErrorCode (*value)(Model *m, const MeasureSpec *s, PetscInt index, PetscReal *value);
   /* This rank's share of a sum over the points of a body (< 0: of all). A body that is gone has
@@ -119,10 +120,13 @@ PetscErrorCode MassAngle(const Model *m, const MeasureSpec *s, PetscReal *angle)
 PetscErrorCode SurfaceFit(const Model *m, const MeasureSpec *s, PetscReal *inclination, PetscReal *deviation);
 
 /* A measure that is asked for its rate or its mean in a window (powder/rate.c): its value at the end
- * of an accepted step, and what comes of the values kept. */
+ * of an accepted step of dt (0: at the start), and what comes of the values kept. */
 static inline PetscBool measure_has_window(const MeasureSpec *s) { return s->has_rate || s->has_mean; }
-PetscErrorCode WindowRemember(Model *m, const MeasureSpec *s, MeasureMemory *memory, PetscReal value);
+PetscErrorCode WindowRemember(Model *m, const MeasureSpec *s, MeasureMemory *memory, PetscReal dt, PetscReal value);
 PetscReal window_value(const MeasureSpec *s, const MeasureMemory *memory);
+PetscBool window_list_fits(PetscInt64 length);
+/* Collective. Does a formula take a number that is the mean over the last step (formula.c)? */
+PetscErrorCode FormulaOverStep(Model *m, const MeasureSpec *s, PetscBool *is);
 /* "kg/s" of "kg". */
 const char *rate_unit(const char *unit);
 

@@ -79,7 +79,7 @@ PetscBool measure_list_fits(const Model *m, PetscInt k, PetscInt64 length)
 {
   const MeasureEvents *events = measure_find(m->c->measures[k].kind)->events;
   if (events) return length >= events->header && (length - events->header) % events->n == 0;
-  return measure_has_window(m->c->measures + k) ? length >= 0 && length % 2 == 0 : length == 0;
+  return measure_has_window(m->c->measures + k) ? window_list_fits(length) : length == 0;
 }
 
 PetscInt measure_n_events(const Model *m, PetscInt k)
@@ -112,7 +112,7 @@ static PetscErrorCode Remember(Model *m, PetscInt k, PetscReal dt)
   if (measure->remember) PetscCall(measure->remember(m, s, dt, m->memory[k].kept));
   if (!measure_has_window(s)) PetscFunctionReturn(0);
   PetscCall(Value(m, s, k, &value));
-  PetscCall(WindowRemember(m, s, &m->memory[k], value));
+  PetscCall(WindowRemember(m, s, &m->memory[k], dt, value));
   PetscFunctionReturn(0);
 }
 

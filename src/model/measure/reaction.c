@@ -21,4 +21,5 @@ const Measure measure_reaction = {
       "in axisymmetry y is the whole axial force, x the radial one added up round the circle, which has no "
       "resultant but does the work",
     .of = OF_BOUNDARY,
+    .over_step = PETSC_TRUE,
     .value = Reaction}};

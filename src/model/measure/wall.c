@@ -151,8 +151,9 @@ static PetscErrorCode Traction(Model *m, const MeasureSpec *s, PetscInt index, P
   PetscFunctionReturn(0);
 }
 
-#define TRACTION(word, what, number) \
-  WORD(word, what, .unit = "Pa", .of = OF_WALL, .value = Traction, .which = number, .in = PETSC_TRUE)
+#define TRACTION(word, what, number)                                                                  \
+  WORD(word, what, .unit = "Pa", .of = OF_WALL, .value = Traction, .which = number, .in = PETSC_TRUE, \
+       .over_step = PETSC_TRUE)
 
 static const MeasureNumber *const words[] = {
   WORD("penetration", "how deep material is in the wall, at most", .unit = "m", .of = OF_WALL, .value = Contacts,
@@ -184,6 +185,7 @@ const Measure measure_interface_force = {
              .help = "force of the second body of an interface on the first; in dynamics its mean over the step, so "
                      "that times the step it is the impulse",
              .of = OF_INTERFACE,
+             .over_step = PETSC_TRUE,
              .value = Force}};
 const Measure measure_interface = {
   .key = "interface", .takes = MEASURE_WORD, .number = {.help = "contact between two bodies"}, .words = between};
@@ -193,6 +195,7 @@ const Measure measure_wall_force = {
              .help = "force of a wall on the material; in dynamics its mean over the step, so that times the step it "
                      "is the impulse",
              .of = OF_WALL,
+             .over_step = PETSC_TRUE,
              .value = Force}};
 const Measure measure_wall_torque = {
   .key = "wall_torque",
@@ -202,6 +205,7 @@ const Measure measure_wall_torque = {
                      "the force",
              .of = OF_WALL,
              .may_about = PETSC_TRUE,
+             .over_step = PETSC_TRUE,
              .value = Torque}};
 const Measure measure_contact = {.key = "contact",
                                  .takes = MEASURE_WORD,

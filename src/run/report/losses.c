@@ -198,7 +198,7 @@ static void warn_of_followers(const Model *m, Diag *diag)
 static const char *why_empty(const MeasureSpec *measure)
 {
   if (!strcmp(measure->kind, "limit_load")) return "the search for it was not over";
-  if (measure_has_window(measure)) return "fewer than two steps with a value lie in its window";
+  if (measure_has_window(measure)) return "too few steps with a value reach into its window";
   if (measure_find(measure->kind)->events) return "none of what it counts is over";
   return "no point is left of what it measures";
 }
