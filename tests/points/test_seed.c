@@ -295,6 +295,7 @@ static void overlap_is_told(void **state)
 
 static void bad_volume_is_told(void **state)
 {
+  static const Kinematics rings = {.name = "rings", .dim = 2, .hoop = PETSC_TRUE};
   char text[4096];
   PetscInt warnings;
   PetscMPIInt rank;
@@ -312,6 +313,11 @@ static void bad_volume_is_told(void **state)
   CHECK(messages(t, sizeof text, text, &warnings) == 0 && warnings == 1);
   CHECK(rank || strstr(text, "its shape 0.502655 m2"));
   set_box(t->body, 0, 0, 3, 1);
+  CHECK(messages(t, sizeof text, text, &warnings) == 0 && warnings == 0);
+  /* a part of a cell at the rim of a cylinder turns with its own radius, not with that of the cell */
+  t->c.kinematics = &rings;
+  set_box(t->body, 0, 0, 1.1, 1);
+  t->body[0].fill = FILL_SHAPE;
   CHECK(messages(t, sizeof text, text, &warnings) == 0 && warnings == 0);
   CALL(PetscFree(t));
 }

@@ -135,15 +135,20 @@ PetscErrorCode SeedCheckRoom(const Seeding *s, const Points *points, PetscBool *
   PetscFunctionReturn(0);
 }
 
-/* Of the k-th cell that which its points will have. */
+/* Of the k-th cell that which its points will have: parts turn about the axis with their own radii. */
 static PetscReal volume_in(const Seeding *s, PetscInt k)
 {
-  const PetscReal whole = seed_cell_volume(s, s->cells[k]);
-  const SeedRule *rule = seed_rule(s, s->cells[k]);
-  PetscReal share = 0;
-  if (!s->cut || s->cut[k] < 0) return whole;
-  for (PetscInt q = 0; q < rule->n; ++q) share += s->part[s->cut[k] + q].share;
-  return share * whole;
+  const PetscInt cell = s->cells[k];
+  const CellType type = grid_cell_type(s->source, cell);
+  PetscReal x[CELL_MAX_NODES * 3], at[3], share = 0;
+  if (!s->cut || s->cut[k] < 0) return seed_cell_volume(s, cell);
+  grid_cell_x(s->source, cell, x);
+  for (const SeedPart *part = s->part + s->cut[k]; part < s->part + s->cut[k] + seed_rule(s, cell)->n; ++part) {
+    if (part->share <= 0) continue;
+    cell_position(type, x, part->xi, at);
+    share += part->share * kinematics_weight(s->c->kinematics, at[0]);
+  }
+  return share * cell_volume(type, x);
 }
 
 PetscErrorCode SeedCheckVolume(const Seeding *s)
