@@ -137,6 +137,7 @@ static PetscErrorCode SelectNodes(Boundary *b, const Grid *grid, Diag *diag)
     mark_entry(b, grid, k, diag);
   }
   PetscCall(WallNormals(grid, b->c, &b->n_walls, &b->walls));
+  PetscCall(WallSides(grid, b->c, &b->n_sides, &b->sides));
   PetscCall(SlipMark(b, grid, diag));
   if (diag) PetscCall(SlipCheck(b, grid, diag));
   PetscFunctionReturn(0);
@@ -228,6 +229,7 @@ PetscErrorCode BoundaryDestroy(Boundary **boundary)
   PetscCall(PetscFree(b->fixed));
   PetscCall(PetscFree(b->entry));
   PetscCall(PetscFree(b->walls));
+  PetscCall(PetscFree(b->sides));
   PetscCall(FramesDestroy(&b->frames));
   PetscCall(PetscFree(*boundary));
   PetscFunctionReturn(0);
@@ -258,21 +260,5 @@ PetscErrorCode BoundaryMove(Boundary *b, const Grid *grid, PetscReal t)
     mark_entry(b, grid, k, NULL);
   }
   PetscCall(SlipMark(b, grid, NULL));
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode BoundarySum(const Boundary *b, const Grid *grid, PetscInt entry, const PetscReal *force,
-                           PetscReal sum[3])
-{
-  PetscReal local[3] = {0, 0, 0};
-
-  PetscFunctionBeginUser;
-  for (PetscInt k = 0; k < b->motion[entry].n; ++k) {
-    const PetscInt node = b->motion[entry].node[k];
-    if (node >= grid->n_owned) continue;
-    for (PetscInt d = 0; d < b->dim; ++d)
-      if (boundary_holds(b, node, d)) local[d] += force[node * b->dim + d];
-  }
-  PetscCall(MPIU_Allreduce(local, sum, 3, MPIU_REAL, MPI_SUM, grid->comm));
   PetscFunctionReturn(0);
 }

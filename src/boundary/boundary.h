@@ -30,6 +30,8 @@ typedef struct Boundary {
   PetscInt *entry;      /* n_nodes x dim: the entry that prescribes the dof, -1 if none */
   PetscInt n_walls;     /* nodes that slide */
   WallNode *walls;
+  PetscInt n_sides; /* of those at which several entries meet */
+  WallSide *sides;
   Frames frames; /* of those that need one */
   /* of a cloud: n_nodes x entries, 1 where the entry took the node at the start; follows the
    * nodes */
@@ -78,6 +80,9 @@ static inline PetscBool boundary_holds(const Boundary *boundary, PetscInt node, 
 /* (x, y) or (x, y, z) */
 void boundary_place(PetscInt dim, const PetscReal *x, char text[64]);
 
-/* Collective. Sum over the nodes of one entry of nodal forces (n_nodes x dim, owners count), N. */
+/* Collective. Sum over the nodes of one entry of nodal forces (n_nodes x dim, owners count), N. A component that
+ * several entries prescribe is that of the first of them alone. */
 PetscErrorCode BoundarySum(const Boundary *boundary, const Grid *grid, PetscInt entry, const PetscReal *force,
                            PetscReal sum[3]);
+/* Collective. Does the entry prescribe anything that none before it does? */
+PetscErrorCode BoundaryHasOwn(const Boundary *boundary, const Grid *grid, PetscInt entry, PetscBool *has);

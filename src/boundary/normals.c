@@ -7,8 +7,10 @@ typedef struct {
   PetscInt n, *cell, *side;
 } Walls;
 
-/* Sides that several entries take count once. */
-static PetscErrorCode CollectSides(const Grid *grid, const Case *c, Walls *walls)
+static PetscBool slides(const MotionSpec *entry) { return (PetscBool)(entry->component[NORMAL] && !entry->absent); }
+
+/* Of one entry, or of all (< 0): sides that several of them take count once. */
+static PetscErrorCode CollectSides(const Grid *grid, const Case *c, PetscInt only, Walls *walls)
 {
   unsigned char *seen;
   PetscInt n, *cell, *side;
@@ -17,7 +19,7 @@ static PetscErrorCode CollectSides(const Grid *grid, const Case *c, Walls *walls
   *walls = (Walls){0};
   PetscCall(PetscCalloc1(grid->n_cells * SIDES, &seen));
   for (PetscInt k = 0; k < c->n_boundary; ++k) {
-    if (!c->boundary[k].component[NORMAL] || c->boundary[k].absent) continue;
+    if (!slides(c->boundary + k) || (only >= 0 && k != only)) continue;
     PetscCall(GridSelectFaces(grid, &c->boundary[k].on, &n, &cell, &side));
     PetscCall(PetscRealloc((size_t)(walls->n + n) * sizeof(PetscInt), &walls->cell));
     PetscCall(PetscRealloc((size_t)(walls->n + n) * sizeof(PetscInt), &walls->side));
@@ -194,7 +196,7 @@ PetscErrorCode WallNormals(const Grid *grid, const Case *c, PetscInt *n, WallNod
   for (PetscInt k = 0; k < c->n_boundary; ++k) any |= c->boundary[k].component[NORMAL];
   if (!any) PetscFunctionReturn(0);
   PetscCall(ListNodes(grid, c, n, nodes));
-  PetscCall(CollectSides(grid, c, &walls));
+  PetscCall(CollectSides(grid, c, -1, &walls));
   PetscCall(PetscCalloc2(grid->n_nodes * 7, &spread, grid->n_nodes * 3, &normal));
   PetscCall(GatherSpread(grid, c, &walls, spread));
   PetscCall(GatherNormals(grid, c, &walls, spread, normal));
@@ -205,5 +207,63 @@ PetscErrorCode WallNormals(const Grid *grid, const Case *c, PetscInt *n, WallNod
   PetscCall(PetscFree2(spread, normal));
   PetscCall(PetscFree(walls.cell));
   PetscCall(PetscFree(walls.side));
+  PetscFunctionReturn(0);
+}
+
+/* Of one entry at the nodes that it shares with others. Appends. */
+static PetscErrorCode AddSides(const Grid *grid, const Case *c, PetscInt entry, const PetscInt *shared, PetscInt *n,
+                               WallSide **sides)
+{
+  PetscReal *spread, *normal;
+  PetscInt n_selected, *node;
+  Walls walls;
+
+  PetscFunctionBeginUser;
+  PetscCall(CollectSides(grid, c, entry, &walls));
+  PetscCall(PetscCalloc2(grid->n_nodes * 7, &spread, grid->n_nodes * 3, &normal));
+  PetscCall(GatherSpread(grid, c, &walls, spread));
+  PetscCall(GatherNormals(grid, c, &walls, spread, normal));
+  PetscCall(GridSelectNodes(grid, &c->boundary[entry].on, &n_selected, &node));
+  PetscCall(PetscRealloc((size_t)(*n + n_selected) * sizeof **sides, sides));
+  for (PetscInt k = 0; k < n_selected; ++k) {
+    PetscReal *at = normal + node[k] * 3;
+    if (shared[node[k]] < 2 || product(at, at) == 0) continue;
+    make_unit(at);
+    (*sides)[(*n)++] = (WallSide){.node = node[k], .entry = entry, .normal = {at[0], at[1], at[2]}};
+  }
+  PetscCall(PetscFree2(spread, normal));
+  PetscCall(PetscFree(node));
+  PetscCall(PetscFree(walls.cell));
+  PetscCall(PetscFree(walls.side));
+  PetscFunctionReturn(0);
+}
+
+static int compare_sides(const void *a, const void *b)
+{
+  const WallSide *x = a, *y = b;
+  if (x->node != y->node) return x->node < y->node ? -1 : 1;
+  return x->entry < y->entry ? -1 : x->entry > y->entry;
+}
+
+PetscErrorCode WallSides(const Grid *grid, const Case *c, PetscInt *n, WallSide **sides)
+{
+  PetscInt n_entries = 0, n_selected, *node, *shared;
+
+  PetscFunctionBeginUser;
+  *n = 0;
+  *sides = NULL;
+  for (PetscInt k = 0; k < c->n_boundary; ++k) n_entries += slides(c->boundary + k);
+  if (n_entries < 2) PetscFunctionReturn(0);
+  PetscCall(PetscCalloc1(grid->n_nodes, &shared));
+  for (PetscInt k = 0; k < c->n_boundary; ++k) {
+    if (!slides(c->boundary + k)) continue;
+    PetscCall(GridSelectNodes(grid, &c->boundary[k].on, &n_selected, &node));
+    for (PetscInt i = 0; i < n_selected; ++i) ++shared[node[i]];
+    PetscCall(PetscFree(node));
+  }
+  for (PetscInt k = 0; k < c->n_boundary; ++k)
+    if (slides(c->boundary + k)) PetscCall(AddSides(grid, c, k, shared, n, sides));
+  if (*n) qsort(*sides, (size_t)*n, sizeof **sides, compare_sides);
+  PetscCall(PetscFree(shared));
   PetscFunctionReturn(0);
 }

@@ -10,6 +10,12 @@ typedef struct {
   PetscReal direction[9]; /* n x 3, orthonormal */
 } WallNode;
 
+/* Of a node at which several entries meet, each with the normal of its own sides. */
+typedef struct {
+  PetscInt node, entry;
+  PetscReal normal[3];
+} WallSide;
+
 /* Walls whose normals differ by more than this angle hold the node along both, rad. */
 #define WALL_CORNER (40 * PETSC_PI / 180)
 
@@ -18,3 +24,7 @@ typedef struct {
  * which nothing flows: n_I = integral of N_I n over the wall, around the circle where rings
  * strain. To be freed with PetscFree. */
 PetscErrorCode WallNormals(const Grid *grid, const Case *c, PetscInt *n, WallNode **nodes);
+
+/* Collective. The sides of the nodes that several entries with `fix: [normal]` select, ascending by node and entry. To
+ * be freed with PetscFree. */
+PetscErrorCode WallSides(const Grid *grid, const Case *c, PetscInt *n, WallSide **sides);

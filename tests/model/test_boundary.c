@@ -33,6 +33,36 @@ static void balance(const char *method, CellType cell)
   CALL(ModelDestroy(&m));
 }
 
+/* A block in a box: entries share its corners, and each bears what it holds. What the floor holds along x, too, the
+ * side does not, and one that comes last has nothing left. */
+static void test_shared_corners(void **state)
+{
+  (void)state;
+  for (int rough = 0; rough < 2; ++rough) {
+    Bench b;
+    bench_init(&b, rough ? "mpm" : "fem", CELL_QUADRILATERAL, 4);
+    b.c.gravity[0] = 2;
+    b.c.gravity[1] = -10;
+    bench_motion(&b, 1, 0, MOTION_FIXED, rough ? 3 : 2);
+    bench_motion(&b, 0, 0, MOTION_FIXED, 1);
+    bench_motion(&b, 0, 1, MOTION_FIXED, 1);
+    bench_motion(&b, 1, 0, MOTION_FIXED, 2);
+    Model *m = bench_model(&b, PETSC_COMM_WORLD);
+    model_step(m, 1);
+    CHECK_CLOSE(reaction(m, 0, 1), 10000, 1e-6);
+    CHECK_CLOSE(reaction(m, 0, 0) + reaction(m, 1, 0) + reaction(m, 2, 0), -2000, 1e-6);
+    if (!rough) CHECK_CLOSE(reaction(m, 0, 0), 0, 0);
+    for (PetscInt side = 1; side < 3; ++side) CHECK_CLOSE(reaction(m, side, 1), 0, 0);
+    CHECK_CLOSE(reaction(m, 3, 1), 0, 0);
+    CALL(ModelDestroy(&m));
+    b.c.n_measures = 1;
+    b.measure[0] = (MeasureSpec){.name = "last", .kind = "reaction", .component = 1, .boundary = 3};
+    bench_warned(&b, PETSC_COMM_WORLD, "measures.last.of.boundary", "its reaction is 0");
+    b.measure[0].boundary = 0;
+    bench_warned(&b, PETSC_COMM_WORLD, "measures.", NULL);
+  }
+}
+
 static void test_balance(void **state)
 {
   (void)state;
@@ -319,9 +349,10 @@ static void test_refused(void **state)
 int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {
-    cmocka_unit_test(test_balance),     cmocka_unit_test(test_impulse),   cmocka_unit_test(test_turned_frame),
-    cmocka_unit_test(test_turned_body), cmocka_unit_test(test_rotation),  cmocka_unit_test(test_velocity_table),
-    cmocka_unit_test(test_load_moves),  cmocka_unit_test(test_geostatic), cmocka_unit_test(test_refused),
+    cmocka_unit_test(test_balance),        cmocka_unit_test(test_impulse),    cmocka_unit_test(test_turned_frame),
+    cmocka_unit_test(test_turned_body),    cmocka_unit_test(test_rotation),   cmocka_unit_test(test_velocity_table),
+    cmocka_unit_test(test_shared_corners), cmocka_unit_test(test_load_moves), cmocka_unit_test(test_geostatic),
+    cmocka_unit_test(test_refused),
   };
   return run_model_tests(argc, argv, tests);
 }

@@ -214,6 +214,25 @@ static void advise_dilatancy(const Model *m, Diag *diag)
                                : " and hexahedra");
 }
 
+/* --- reactions of nothing --- */
+/* What several entries prescribe counts to the first of them. */
+static PetscErrorCode AdviseReaction(const Model *m, const MeasureSpec *s, Diag *diag)
+{
+  PetscBool has;
+  char path[256];
+
+  PetscFunctionBeginUser;
+  if (strcmp(s->kind, "reaction") != 0 || m->c->boundary[s->boundary].absent) PetscFunctionReturn(0);
+  PetscCall(BoundaryHasOwn(m->boundary, m->grid, s->boundary, &has));
+  if (has) PetscFunctionReturn(0);
+  snprintf(path, sizeof path, "measures.%s.of.boundary", s->name);
+  diag_warning(diag, path,
+               "all that boundary[%d] prescribes is prescribed by entries before it, too: its reaction is 0",
+               (int)s->boundary);
+  diag_hint(diag, "what several entries prescribe counts to the first of them: write this one before the others");
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode ModelAdvise(const Model *m, Diag *diag)
 {
   PetscFunctionBeginUser;
@@ -226,5 +245,6 @@ PetscErrorCode ModelAdvise(const Model *m, Diag *diag)
   PetscCall(AdviseThin(m, diag));
   advise_floor(m, diag);
   advise_dilatancy(m, diag);
+  for (PetscInt k = 0; k < m->c->n_measures; ++k) PetscCall(AdviseReaction(m, m->c->measures + k, diag));
   PetscFunctionReturn(0);
 }
