@@ -1,4 +1,5 @@
 #include "boundary/faces.h"
+#include "boundary/cut_sides.h"
 
 /* Position on a face from its own coordinates: edges s in [-1, 1], triangles (s, t) barycentric,
  * quadrilaterals [-1, 1]^2. */
@@ -127,8 +128,8 @@ static PetscInt count_key(PetscInt n, const PetscInt *all, const PetscInt key[4]
   return count;
 }
 
-PetscErrorCode BodyFaces(const Grid *grid, const Points *points, PetscInt body, const Selector *on, PetscInt *n,
-                         PetscInt **cell, PetscInt **side)
+PetscErrorCode BodyFaces(const Grid *grid, const Points *points, PetscInt body, const Selector *on, PetscBool cut,
+                         PetscInt *n, PetscInt **cell, PetscInt **side)
 {
   PetscBool *inside;
   PetscInt size = 0, n_all, *keys, *all;
@@ -148,7 +149,8 @@ PetscErrorCode BodyFaces(const Grid *grid, const Points *points, PetscInt body, 
     const Cell *type = grid_cell(grid, c);
     const PetscInt *node = grid->cell_node + c * grid->nodes_per_cell;
     for (PetscInt s = 0; inside[c] && s < type->faces; ++s) {
-      if (!face_selected(grid, on, node, type->face_nodes, type->face[s])) continue;
+      if (face_selected(grid, on, node, type->face_nodes, type->face[s]) == cut) continue;
+      if (cut && side_share(grid, on, c, s) == 0) continue;
       face_key(grid, node, type->face_nodes, type->face[s], keys + 4 * *n);
       (*cell)[*n] = c;
       (*side)[(*n)++] = s;

@@ -15,6 +15,6 @@ typedef struct {
 PetscInt face_quadrature(const Kinematics *kinematics, const Grid *grid, PetscInt cell, PetscInt side, FacePoint *q);
 
 /* Collective. Faces between the cells that hold points of the body and all others, as far as the
- * selector's coordinates and shape take all their nodes. */
-PetscErrorCode BodyFaces(const Grid *grid, const Points *points, PetscInt body, const Selector *on, PetscInt *n,
-                         PetscInt **cell, PetscInt **side);
+ * selector's coordinates and shape take all their nodes; cut: those that they take in part (cut_sides.h). */
+PetscErrorCode BodyFaces(const Grid *grid, const Points *points, PetscInt body, const Selector *on, PetscBool cut,
+                         PetscInt *n, PetscInt **cell, PetscInt **side);

@@ -1,5 +1,6 @@
 #include "boundary/loads.h"
 #include "boundary/faces.h"
+#include "boundary/load_sides.h"
 #include "boundary/surface/surface.h"
 
 PetscBool touched_shape(const Grid *grid, PetscInt cell, const PetscReal *xi, const unsigned char *touched,
@@ -201,7 +202,7 @@ static PetscErrorCode BodyTraction(Loads *loads, const Grid *grid, const Points 
     PetscCall(MPIU_Allreduce(&n, n_faces, 1, MPIU_INT, MPI_SUM, grid->comm));
     PetscFunctionReturn(0);
   }
-  PetscCall(BodyFaces(grid, points, body, &spec->on, &n, &cell, &side));
+  PetscCall(BodyFaces(grid, points, body, &spec->on, PETSC_FALSE, &n, &cell, &side));
   PetscCall(CarryFaces(loads, grid, load, n, cell, side));
   PetscCall(MPIU_Allreduce(&n, n_faces, 1, MPIU_INT, MPI_SUM, grid->comm));
   PetscCall(PetscFree(cell));
@@ -213,37 +214,14 @@ static PetscErrorCode BodyTraction(Loads *loads, const Grid *grid, const Points 
 static PetscErrorCode CarryBoundary(Loads *loads, const Grid *grid, const Points *points, PetscInt load,
                                     PetscInt *n_faces)
 {
-  PetscBool *filled;
-  PetscInt n, kept = 0, *cell, *side;
+  PetscInt n, *cell, *side;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscCalloc1(grid->n_cells, &filled));
-  for (PetscInt p = 0; p < points->n; ++p)
-    if (points->cell[p] >= 0) filled[points->cell[p]] = PETSC_TRUE;
-  PetscCall(GridSelectFaces(grid, &loads->c->loads[load].on, &n, &cell, &side));
-  for (PetscInt f = 0; f < n; ++f)
-    if (filled[cell[f]]) cell[kept] = cell[f], side[kept++] = side[f];
-  PetscCall(CarryFaces(loads, grid, load, kept, cell, side));
-  PetscCall(MPIU_Allreduce(&kept, n_faces, 1, MPIU_INT, MPI_SUM, grid->comm));
-  PetscCall(PetscFree(filled));
+  PetscCall(FilledSides(grid, points, &loads->c->loads[load].on, &n, &cell, &side));
+  PetscCall(CarryFaces(loads, grid, load, n, cell, side));
+  PetscCall(MPIU_Allreduce(&n, n_faces, 1, MPIU_INT, MPI_SUM, grid->comm));
   PetscCall(PetscFree(cell));
   PetscCall(PetscFree(side));
-  PetscFunctionReturn(0);
-}
-
-static PetscErrorCode TellNoFace(const Grid *grid, const Selector *on, const char *path, Diag *diag)
-{
-  char key[96];
-  const char **names;
-
-  PetscFunctionBeginUser;
-  if (on->boundary && !on->body && !grid_find_set(grid, on->boundary)) {
-    PetscCall(PetscSNPrintf(key, sizeof key, "%s.boundary", path));
-    PetscCall(GridSetNames(grid, &names));
-    diag_error(diag, key, "the grid has no boundary or region named '%s'", on->boundary);
-    diag_hint_names(diag, on->boundary, names);
-    PetscCall(PetscFree(names));
-  } else diag_error(diag, path, "selects no face%s", on->body ? " of the body's boundary" : " of the grid's boundary");
   PetscFunctionReturn(0);
 }
 
@@ -273,7 +251,7 @@ PetscErrorCode LoadsCreate(const Grid *grid, const Case *c, const Points *points
     if (c->loads[k].on.body) PetscCall(BodyTraction(l, grid, points, k, fills, &faces));
     else if (kind == LOAD_PRESSURE) PetscCall(CarryBoundary(l, grid, points, k, &faces));
     else PetscCall(GridTraction(l, grid, k, &faces));
-    if (!faces) PetscCall(TellNoFace(grid, &c->loads[k].on, path, diag));
+    PetscCall(LoadSidesTell(grid, c, points, k, fills, faces, path, diag));
   }
   PetscCall(PointsSort(l->carriers));
   PetscCall(LoadFactorsCheck(l, grid->comm, diag));
