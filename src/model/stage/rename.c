@@ -58,7 +58,7 @@ static PetscErrorCode Pick(Column *column, PetscInt64 rows, size_t bytes, PetscI
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode PickRows(Table *table, PetscInt n, const PetscInt *was)
+PetscErrorCode PickRows(Table *table, PetscInt n, const PetscInt *was)
 {
   PetscFunctionBeginUser;
   for (PetscInt i = 0; table && i < table->n; ++i) {
@@ -136,6 +136,7 @@ PetscErrorCode RenameTables(const Model *m, const Case *from, const Tables *tabl
   PetscFunctionBeginUser;
   PetscCall(RenameMeasures(m->c, from, tables));
   PetscCall(RenamePartners(m->c, from, m->dim, tables));
+  PetscCall(RenameLoads(m->c, from, tables_find(tables, "ended_loads")));
   PetscFunctionReturn(0);
 }
 
@@ -191,17 +192,21 @@ static void check_events(const Case *c, const Case *from, Diag *diag)
   }
 }
 
-void rename_check(const Case *c, const Case *from, PetscBool next, Diag *diag)
+PetscErrorCode RenameCheck(const Case *c, const Case *from, PetscBool next, Diag *diag)
 {
   const Method *method = method_find(c->method);
+
+  PetscFunctionBeginUser;
+  PetscCall(LoadsCheck(c, from, next, diag));
   if (method && method->clouds) clouds_check(c, from, diag);
   if (next) check_walls(c, from, diag);
   if (next) check_interfaces(c, from, diag);
   if (next) check_events(c, from, diag);
-  if (next || (c->n_walls == from->n_walls && c->n_interfaces == from->n_interfaces)) return;
+  if (next || (c->n_walls == from->n_walls && c->n_interfaces == from->n_interfaces)) PetscFunctionReturn(0);
   diag_error(diag, c->n_walls != from->n_walls ? "walls" : "interfaces",
              "the state is one of %d walls and %d interfaces, here are %d and %d", (int)from->n_walls,
              (int)from->n_interfaces, (int)c->n_walls, (int)c->n_interfaces);
   if (c->n_walls != from->n_walls)
     diag_hint(diag, "name a wall that comes later at the top of the file, with absent: true");
+  PetscFunctionReturn(0);
 }

@@ -6,9 +6,11 @@
 #include "model/state/state_private.h"
 
 /* What no state can be made of, by its name. */
-static void check_cases(const Model *m, const Case *from, PetscBool next, Diag *diag)
+static PetscErrorCode CheckCases(const Model *m, const Case *from, PetscBool next, Diag *diag)
 {
   const Case *c = m->c;
+
+  PetscFunctionBeginUser;
   if (strcmp(c->method, from->method))
     diag_error(diag, "method", "the state is one of method %s, and cannot go on with %s", from->method, c->method);
   if (c->kinematics != from->kinematics)
@@ -16,36 +18,7 @@ static void check_cases(const Model *m, const Case *from, PetscBool next, Diag *
   if (!m->method->restores_grid && case_is_mixed(c) != case_is_mixed(from))
     diag_error(diag, "formulation", "nodes of fem carry their pressures or have none: the state is one of `%s`",
                from->formulation);
-  rename_check(c, from, next, diag);
-}
-
-/* A load that bodies carry needs a place in the undeformed body. */
-static PetscBool is_carried(const LoadSpec *load)
-{
-  return load->kind != LOAD_TRACTION || load->on.body ? PETSC_TRUE : PETSC_FALSE;
-}
-
-static PetscErrorCode TakeCarriers(Model *m, const Tables *tables, const Case *from, PetscBool next, Diag *diag,
-                                   char reason[256])
-{
-  const Case *c = m->c;
-  PetscBool any = PETSC_FALSE, same = next && c->n_loads == from->n_loads;
-  char path[64];
-
-  PetscFunctionBeginUser;
-  for (PetscInt k = 0; k < c->n_loads; ++k) {
-    any |= is_carried(&c->loads[k]);
-    same &= c->loads[k].amplitude.since < c->stage;
-  }
-  if (same && any)
-    PetscCall(PointsFromTable(m->loads->carriers, m->grid, tables_find(tables, "carriers"), c->n_loads, c->n_materials,
-                              reason));
-  for (PetscInt k = 0; k < c->n_loads && !same; ++k) {
-    if (!is_carried(&c->loads[k])) continue;
-    diag_error(diag, case_load_path(c, k, path),
-               "a load that the material carries can begin only with the undeformed body, in the first stage");
-    diag_hint(diag, "give all of them there, with amplitudes that are 0 until they come");
-  }
+  PetscCall(RenameCheck(c, from, next, diag));
   PetscFunctionReturn(0);
 }
 
@@ -117,7 +90,7 @@ static PetscErrorCode Take(Model *m, Tables *tables, const Case *from, PetscBool
   if (!reason[0] && next) PetscCall(StateGoOn(m, tables, reason));
   if (!reason[0]) PetscCall(TakePoints(m, tables, from, onto, diag, reason));
   if (!reason[0] && next) PetscCall(TakeTracers(m, tables, from, reason));
-  if (!reason[0]) PetscCall(TakeCarriers(m, tables, from, next, diag, reason));
+  if (!reason[0] && next) PetscCall(TakeCarriers(m, tables, from, reason));
   if (!reason[0]) PetscCall(TakeNodes(m, tables, next, home, reason));
   PetscCall(ReasonShare(m->comm, reason));
   if (reason[0] || diag_errors(diag) > errors) PetscFunctionReturn(0);
@@ -164,7 +137,7 @@ PetscErrorCode ModelTake(Model *m, Tables *tables, const Case *from, PetscBool n
 
   PetscFunctionBeginUser;
   const PetscInt before = diag_errors(diag);
-  check_cases(m, from, next, diag);
+  PetscCall(CheckCases(m, from, next, diag));
   if (m->method->clouds && diag_errors(diag) == before) PetscCall(CheckCloud(m, tables, diag, reason));
   state_check_grid(m, tables, other);
   const PetscBool onto = other[0] && diag_errors(diag) == before && takes_another_grid(m, next, diag);

@@ -15,7 +15,7 @@ typedef struct {
 } Imbalance;
 
 /* Which measures, walls and interfaces cannot come or go; next: with a stage, else with the state of another run. */
-void rename_check(const Case *c, const Case *from, PetscBool next, Diag *diag);
+PetscErrorCode RenameCheck(const Case *c, const Case *from, PetscBool next, Diag *diag);
 /* Collective. Take the state of `from`, as tables, into a model that was just created. next: it goes on in
  * time, with its account of energies, measures and carried loads; else everything begins now. What
  * does not fit goes to diag. */

@@ -16,6 +16,13 @@ PetscErrorCode CheckCloud(const Model *model, const Tables *tables, Diag *diag, 
 PetscInt measure_before(const Case *c, PetscInt k, const Case *from);
 /* Tables of a state of `from` under the names of the model's case. */
 PetscErrorCode RenameTables(const Model *model, const Case *from, const Tables *tables);
+/* Row k of the table becomes row was[k], n of them; < 0: zeros. NULL: there is no such table. */
+PetscErrorCode PickRows(Table *table, PetscInt n, const PetscInt *was);
+/* loads.c. Loads that the material would have to carry from now on. */
+PetscErrorCode LoadsCheck(const Case *c, const Case *from, PetscBool next, Diag *diag);
+/* Collective. Carriers of the tables, of loads that are still there. */
+PetscErrorCode TakeCarriers(Model *model, const Tables *tables, const Case *from, char reason[256]);
+PetscErrorCode RenameLoads(const Case *c, const Case *from, Table *ended);
 /* begin.c. Collective. Followers of measures in the tables, and those of measures that begin with the stage. */
 PetscErrorCode TakeTracers(Model *model, const Tables *tables, const Case *from, char reason[256]);
 /* Collective. Measures that begin with the stage begin where the model now stands. */

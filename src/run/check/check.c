@@ -335,7 +335,7 @@ PetscErrorCode CheckModel(MPI_Comm comm, const Case *c, Diag *diag, FILE *out)
   for (PetscInt k = 0; k < case_stages(c) && !errors; ++k) {
     if (c->n_stages) c->stage_case[k]->grid.trusted = c->grid.trusted;
     if (c->n_stages) diag_of_stage(diag, k, c->stages[k].name);
-    if (k > 0) rename_check(case_stage(c, k), case_stage(c, k - 1), PETSC_TRUE, diag);
+    if (k > 0) PetscCall(RenameCheck(case_stage(c, k), case_stage(c, k - 1), PETSC_TRUE, diag));
     PetscCall(CheckOne(comm, case_stage(c, k), diag, out));
     PetscCall(DiagReduce(comm, diag, &errors));
   }

@@ -143,7 +143,7 @@ PetscErrorCode RunCheckStages(MPI_Comm comm, const Case *whole, Diag *diag)
   for (PetscInt k = 1; k < whole->n_stages && !errors; ++k) {
     whole->stage_case[k]->grid.trusted = whole->grid.trusted;
     diag_of_stage(diag, k, whole->stages[k].name);
-    rename_check(whole->stage_case[k], whole->stage_case[k - 1], PETSC_TRUE, diag);
+    PetscCall(RenameCheck(whole->stage_case[k], whole->stage_case[k - 1], PETSC_TRUE, diag));
     PetscCall(ModelCreate(comm, whole->stage_case[k], diag, &m));
     PetscCall(ModelDestroy(&m));
     PetscCall(DiagReduce(comm, diag, &errors));

@@ -1,0 +1,159 @@
+/* Loads that the material carries, through stages that change some and drop others. Their carriers know the places
+ * that the load had in the undeformed body, and no other: what is new has none. */
+#include <string.h>
+#include "model/stage/stage_private.h"
+
+static PetscBool same_text(const char *a, const char *b) { return (PetscBool)(a && b ? !strcmp(a, b) : a == b); }
+
+static PetscBool same_numbers(const PetscReal *a, const PetscReal *b, PetscInt n)
+{
+  for (PetscInt i = 0; i < n; ++i)
+    if (a[i] != b[i]) return PETSC_FALSE;
+  return PETSC_TRUE;
+}
+
+static PetscBool same_shape(const Shape *a, const Shape *b)
+{
+  if (a->kind != b->kind || a->n_vertices != b->n_vertices || a->n_children != b->n_children || a->open != b->open ||
+      !same_text(a->file, b->file) || !same_text(a->group, b->group))
+    return PETSC_FALSE;
+  if (!same_numbers(a->min, b->min, 3) || !same_numbers(a->max, b->max, 3) || !same_numbers(a->centre, b->centre, 3) ||
+      !same_numbers(a->point, b->point, 3) || !same_numbers(a->normal, b->normal, 3) ||
+      !same_numbers(a->radii, b->radii, 2) || !same_numbers(a->angle, b->angle, 2) ||
+      !same_numbers(a->offset, b->offset, 3) || a->radius != b->radius || a->length != b->length ||
+      a->scale != b->scale || !same_numbers(a->vertices, b->vertices, 2 * a->n_vertices))
+    return PETSC_FALSE;
+  for (PetscInt i = 0; i < a->n_children; ++i)
+    if (!same_shape(a->children + i, b->children + i)) return PETSC_FALSE;
+  return PETSC_TRUE;
+}
+
+/* Do they act at the same place? */
+static PetscBool same_place(const LoadSpec *a, const LoadSpec *b)
+{
+  if (a->kind != b->kind) return PETSC_FALSE;
+  if (a->kind == LOAD_POINT) return same_numbers(a->at, b->at, 3);
+  if (!same_text(a->on.body, b->on.body) || !same_text(a->on.boundary, b->on.boundary)) return PETSC_FALSE;
+  for (int d = 0; d < 3; ++d) {
+    if (a->on.has[d] != b->on.has[d]) return PETSC_FALSE;
+    if (a->on.has[d] && (a->on.min[d] != b->on.min[d] || a->on.max[d] != b->on.max[d])) return PETSC_FALSE;
+  }
+  return (PetscBool)(a->on.has_shape == b->on.has_shape &&
+                     (!a->on.has_shape || same_shape(&a->on.shape, &b->on.shape)));
+}
+
+/* How alike loads of the same place must be to be one, from sure to possible. */
+enum { NAME_AND_VALUE, NAME, PLACE, LIKENESSES };
+
+static PetscBool are_alike(const LoadSpec *a, const LoadSpec *b, int likeness)
+{
+  if (!same_place(a, b)) return PETSC_FALSE;
+  if (likeness < PLACE && !same_text(a->name, b->name)) return PETSC_FALSE;
+  return (PetscBool)(likeness > NAME_AND_VALUE || same_numbers(a->value, b->value, 3));
+}
+
+/* now[i]: which load of the case load i of the one before goes on as, -1: none; was[k]: the other way. */
+static void map_loads(const Case *c, const Case *from, PetscInt *now, PetscInt *was)
+{
+  for (PetscInt i = 0; i < from->n_loads; ++i) now[i] = -1;
+  for (PetscInt k = 0; k < c->n_loads; ++k) was[k] = -1;
+  for (int likeness = 0; likeness < LIKENESSES; ++likeness)
+    for (PetscInt k = 0; k < c->n_loads; ++k)
+      for (PetscInt i = 0; i < from->n_loads && was[k] < 0; ++i)
+        if (now[i] < 0 && are_alike(c->loads + k, from->loads + i, likeness)) now[i] = k, was[k] = i;
+}
+
+/* In a cloud all of them are. */
+static PetscBool is_carried(const Case *c, const LoadSpec *load)
+{
+  const Method *method = method_find(c->method);
+  return (PetscBool)(load->kind != LOAD_TRACTION || load->on.body || (method && method->clouds));
+}
+
+/* The component of a value that is largest. */
+static PetscInt largest_of(const LoadSpec *load)
+{
+  PetscInt d = 0;
+  for (PetscInt i = 1; i < 3; ++i)
+    if (PetscAbsReal(load->value[i]) > PetscAbsReal(load->value[d])) d = i;
+  return d;
+}
+
+static PetscBool is_zero(const LoadSpec *load) { return (PetscBool)(load->value[largest_of(load)] == 0); }
+
+static void check_load(const Case *c, PetscInt k, const LoadSpec *before, Diag *diag)
+{
+  const LoadSpec *load = c->loads + k;
+  char path[64], key[96];
+  case_load_path(c, k, path);
+  if (!before) {
+    diag_error(diag, path,
+               "a load that the material carries can begin only with the undeformed body, in the first stage");
+    diag_hint(diag, "give it there, with an amplitude that is 0 until it comes");
+  } else if (load->kind != LOAD_POINT && is_zero(before) && !is_zero(load)) {
+    snprintf(key, sizeof key, "%s.value", path);
+    diag_error(diag, key,
+               "it was 0 before, and the carriers of the load know no more of the surface that they stand for");
+    diag_hint(diag, "give it a value there, with an amplitude that is 0");
+  }
+}
+
+PetscErrorCode LoadsCheck(const Case *c, const Case *from, PetscBool next, Diag *diag)
+{
+  PetscInt *now, *was;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc2(from->n_loads, &now, c->n_loads, &was));
+  map_loads(c, from, now, was);
+  for (PetscInt k = 0; k < c->n_loads; ++k)
+    if (is_carried(c, c->loads + k)) check_load(c, k, next && was[k] >= 0 ? from->loads + was[k] : NULL, diag);
+  PetscCall(PetscFree2(now, was));
+  PetscFunctionReturn(0);
+}
+
+/* A traction acts on undeformed surface, of which the carrier's force was `before` times as much; a pressure on the
+ * present one. */
+static void change_force(const LoadSpec *load, const LoadSpec *before, PetscInt dim, PetscReal *force)
+{
+  const PetscInt d = largest_of(before);
+  const PetscReal area = is_zero(before) ? 0 : force[d] / before->value[d];
+  for (PetscInt i = 0; i < dim; ++i)
+    force[i] = load->kind == LOAD_PRESSURE ? (is_zero(before) ? 0 : force[i] / before->value[0] * load->value[0])
+                                           : (load->kind == LOAD_POINT ? 1 : area) * load->value[i];
+}
+
+PetscErrorCode TakeCarriers(Model *m, const Tables *tables, const Case *from, char reason[256])
+{
+  const Case *c = m->c;
+  Points *carriers = m->loads->carriers;
+  PetscInt *now, *was;
+  PetscBool any = PETSC_FALSE;
+
+  PetscFunctionBeginUser;
+  for (PetscInt k = 0; k < c->n_loads; ++k) any |= is_carried(c, c->loads + k);
+  if (!any) PetscFunctionReturn(0);
+  PetscCall(PetscMalloc2(from->n_loads, &now, c->n_loads, &was));
+  map_loads(c, from, now, was);
+  const PointsChange change = {.n_bodies = from->n_loads, .n_materials = PetscMax(1, from->n_materials), .body = now};
+  PetscCall(PointsTake(carriers, m->grid, tables_find(tables, "carriers"), &change, reason));
+  for (PetscInt p = 0; p < carriers->n && !reason[0]; ++p) {
+    const PetscInt k = carriers->body[p];
+    const LoadSpec *before = from->loads + was[k];
+    PetscReal *force = point_real(carriers, POINT_FORCE, p);
+    if (!same_numbers(c->loads[k].value, before->value, 3)) change_force(c->loads + k, before, m->dim, force);
+  }
+  PetscCall(PetscFree2(now, was));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode RenameLoads(const Case *c, const Case *from, Table *ended)
+{
+  PetscInt *now, *was;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc2(from->n_loads, &now, c->n_loads, &was));
+  map_loads(c, from, now, was);
+  PetscCall(PickRows(ended, c->n_loads, was));
+  PetscCall(PetscFree2(now, was));
+  PetscFunctionReturn(0);
+}

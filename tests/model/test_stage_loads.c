@@ -1,0 +1,147 @@
+/* Loads that the material carries, in stages that change some of them and drop others: the foot bears what is there at
+ * the end. What no stage can bring is refused beforehand. */
+#include "case_builder.h"
+#include "model/stage/stage.h"
+
+static void block(Bench *b, const char *method)
+{
+  bench_init(b, method, !strcmp(method, "gmm") ? CELL_TRIANGLE : CELL_QUADRILATERAL, 4);
+  bench_motion(b, 1, 0, MOTION_FIXED, 3);
+  if (!strcmp(method, "gmm"))
+    b->c.basis = (BasisSpec){.kind = "lme", .gamma = 1.8, .radius = 2, .max_radius = 3.5, .condition = 50, .gap = 2};
+}
+
+/* The same case a stage later. */
+static void go_on(const Bench *first, Bench *then)
+{
+  block(then, first->c.method);
+  then->c.stage = 1;
+  then->c.start = first->c.analysis.end;
+  then->c.analysis.end = 2 * then->c.start;
+}
+
+/* A load that the stage brings or changes. */
+static LoadSpec *changed(Bench *b, LoadSpec load)
+{
+  load.amplitude.since = 1;
+  b->load[b->c.n_loads] = load;
+  return &b->load[b->c.n_loads++];
+}
+
+static LoadSpec point(PetscReal y, PetscReal force)
+{
+  return (LoadSpec){.kind = LOAD_POINT, .at = {0.4, y}, .value = {0, force}};
+}
+
+static Model *both_stages(Bench *first, Bench *then)
+{
+  Model *m = bench_model(first, PETSC_COMM_WORLD);
+  Imbalance imbalance;
+  PetscInt errors;
+  Diag *diag;
+  model_step(m, 1);
+  CALL(DiagCreate(&diag));
+  CALL(ModelSucceed(&then->c, diag, &m, &imbalance));
+  CALL(DiagReduce(PETSC_COMM_WORLD, diag, &errors));
+  CALL(DiagFlush(diag, stderr));
+  CALL(DiagDestroy(&diag));
+  CHECK(m, "the stage was refused");
+  model_step(m, then->c.analysis.end - m->time);
+  return m;
+}
+
+static PetscReal foot(Model *m, PetscInt component)
+{
+  const MeasureSpec measure = {.kind = "reaction", .component = component};
+  PetscReal value;
+  CALL(ModelMeasure(m, &measure, 0, &value));
+  return value;
+}
+
+/* Of two tractions on the same side one goes, one changes, and so does a point force, whose neighbour stays. */
+static void test_tractions(void **state)
+{
+  static const char *const kinds[] = {"fem", "mpm", "gmm"};
+  (void)state;
+  EACH_OF (k, kinds) {
+    Bench first, then;
+    block(&first, kinds[k]);
+    bench_traction(&first, 1, 1, "body", 0, -1000, 0)->name = "a";
+    bench_traction(&first, 1, 1, "body", 300, 0, 0)->name = "b";
+    first.load[first.c.n_loads++] = point(0.5, -300);
+    first.load[first.c.n_loads++] = point(0.7, -20);
+    go_on(&first, &then);
+    LoadSpec load = first.load[1];
+    load.value[0] = 100, load.value[1] = -700;
+    changed(&then, load);
+    changed(&then, point(0.5, -50));
+    then.load[then.c.n_loads++] = point(0.7, -20);
+    Model *m = both_stages(&first, &then);
+    CHECK_CLOSE(foot(m, 0), -100, 1e-6 * 1000);
+    CHECK_CLOSE(foot(m, 1), 770, 1e-6 * 1000);
+    CALL(ModelDestroy(&m));
+  }
+}
+
+/* Pressures on both sides, of which one goes and the other doubles. */
+static void test_pressures(void **state)
+{
+  static const char *const kinds[] = {"fem", "mpm"};
+  (void)state;
+  EACH_OF (k, kinds) {
+    Bench first, then;
+    block(&first, kinds[k]);
+    bench_traction(&first, 0, 0, "body", 900, 0, 0)->kind = LOAD_PRESSURE;
+    bench_traction(&first, 0, 1, "body", 200, 0, 0)->kind = LOAD_PRESSURE;
+    go_on(&first, &then);
+    LoadSpec load = first.load[1];
+    load.value[0] = 400;
+    changed(&then, load);
+    Model *m = both_stages(&first, &then);
+    CHECK_CLOSE(foot(m, 0), 400, 1e-3 * 400);
+    CALL(ModelDestroy(&m));
+  }
+}
+
+static void refused(const Bench *first, const Bench *then, const char *words)
+{
+  char *text = NULL;
+  size_t size;
+  PetscMPIInt rank;
+  FILE *out = open_memstream(&text, &size);
+  Diag *diag;
+  CALL(DiagCreate(&diag));
+  CALL(RenameCheck(&then->c, &first->c, PETSC_TRUE, diag));
+  CHECK(diag_errors(diag) == (words ? 1 : 0), "%d errors", (int)diag_errors(diag));
+  CALL(DiagFlush(diag, out));
+  fclose(out);
+  MPI_Comm_rank(PETSC_COMM_WORLD, &rank);
+  if (!rank && words) CHECK(strstr(text, words), "no '%s' in: %s", words, text);
+  free(text);
+  CALL(DiagDestroy(&diag));
+}
+
+/* A load at a new place, and one whose carriers forgot their surface. */
+static void test_refused(void **state)
+{
+  Bench first, then;
+  (void)state;
+  block(&first, "fem");
+  bench_traction(&first, 1, 1, "body", 0, 0, 0);
+  go_on(&first, &then);
+  bench_traction(&then, 1, 1, "body", 0, 0, 0);
+  refused(&first, &then, NULL);
+  then.load[0].value[1] = -5;
+  refused(&first, &then, "it was 0 before");
+  first.load[0].value[1] = -1;
+  refused(&first, &then, NULL);
+  then.load[0].on.has[0] = PETSC_TRUE;
+  refused(&first, &then, "can begin only with the undeformed body");
+}
+
+int main(int argc, char **argv)
+{
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_tractions), cmocka_unit_test(test_pressures),
+                                     cmocka_unit_test(test_refused)};
+  return run_model_tests(argc, argv, tests);
+}
