@@ -257,6 +257,8 @@ PetscErrorCode LimitDescribe(const Model *model, StepReport *report);
 PetscErrorCode ModelAdvise(const Model *model, Diag *diag);
 /* Collective. The same of layers that share their cells, where strength is sought: start/thin.c. */
 PetscErrorCode AdviseThin(const Model *model, Diag *diag);
+/* Collective. The same of amplitudes that do more within a step than at its ends: start/pulse.c. */
+PetscErrorCode AdvisePulses(const Model *model, Diag *diag);
 /* Collective. The same of a drum that is not closed: start/drum.c. */
 PetscErrorCode AdviseOpenDrum(const Model *model, Diag *diag);
 /* Rayleigh damping, where there is inertia, 1/s. */

@@ -243,6 +243,7 @@ PetscErrorCode ModelAdvise(const Model *m, Diag *diag)
       if (!strcmp(m->c->bodies[b].material, m->c->materials[i].name)) advise_locking(m, &m->c->bodies[b], i, diag);
   PetscCall(AdviseSharing(m, diag));
   PetscCall(AdviseThin(m, diag));
+  PetscCall(AdvisePulses(m, diag));
   advise_floor(m, diag);
   advise_dilatancy(m, diag);
   for (PetscInt k = 0; k < m->c->n_measures; ++k) PetscCall(AdviseReaction(m, m->c->measures + k, diag));

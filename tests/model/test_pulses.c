@@ -1,0 +1,68 @@
+/* Amplitudes that do more within a step than steps see: told before the first one, and nothing else is. */
+#include "case_builder.h"
+
+#define STEP 2e-3
+
+typedef struct {
+  PetscInt n;
+  PetscReal time[6], value[6];
+  const char *words; /* NULL: nothing is lost */
+} Kind;
+
+static const Kind kinds[] = {
+  {5, {0, 0.0993, 0.0996, 0.0999, 1}, {0, 0, 1, 0, 0}, "its integral is 0.0003 s, and steps take 0 s for it"},
+  {5, {0, 0.0997, 0.1, 0.1003, 1}, {0, 0, 1, 0, 0}, "its integral is 0.0003 s, and steps take 0.002 s for it"},
+  {6, {0, 0.0981, 0.0982, 0.0991, 0.0992, 1}, {0, 0, 1, 1, 0, 0}, "steps take 0 s for it"},
+  {5, {0, 0.097, 0.099, 0.101, 1}, {0, 0, 1, 0, 0}, NULL},             /* sides as long as a step */
+  {4, {0, 0.0993, 0.0994, 1}, {0, 0, 1, 1}, NULL},                     /* a jump */
+  {5, {0, 0.05, 0.0503, 0.0506, 0.1}, {0, 0.5, 0.503, 0.506, 1}, NULL} /* on a line */
+};
+
+/* A block with a traction of that amplitude. */
+static void block(Bench *b, const char *method, const Kind *k)
+{
+  bench_init(b, method, CELL_QUADRILATERAL, 2);
+  bench_dynamic(b, 0.2, STEP);
+  bench_motion(b, 1, 0, MOTION_FIXED, 3);
+  LoadSpec *load = bench_traction(b, 1, 1, "body", 0, -1000, 0);
+  load->amplitude = (Amplitude){.n = k->n, .time = (PetscReal *)k->time, .value = (PetscReal *)k->value};
+}
+
+static void test_loads(void **state)
+{
+  (void)state;
+  EACH_OF (k, kinds) {
+    Bench b;
+    block(&b, k % 2 ? "fem" : "mpm", kinds + k);
+    bench_warned(&b, PETSC_COMM_WORLD, "loads.tractions[0].amplitude", kinds[k].words);
+    b.c.analysis.type = ANALYSIS_STATIC;
+    bench_warned(&b, PETSC_COMM_WORLD, "loads.tractions[0].amplitude", NULL);
+  }
+}
+
+/* Displacements are asked for at the ends of steps, velocities are integrated; substeps see what steps do not. */
+static void test_motions(void **state)
+{
+  Bench b;
+  (void)state;
+  block(&b, "mpm", kinds);
+  const Amplitude amplitude = b.load[0].amplitude;
+  b.c.n_loads = 0;
+  MotionSpec *top = bench_motion(&b, 1, 1, MOTION_DISPLACEMENT, 2);
+  top->value[1] = -0.01;
+  top->amplitude = amplitude;
+  bench_warned(&b, PETSC_COMM_WORLD, "boundary[1].amplitude", "it goes to 1 at t = 0.0996 s and back");
+  top->kind = MOTION_VELOCITY;
+  bench_warned(&b, PETSC_COMM_WORLD, "boundary[1].amplitude", NULL);
+  block(&b, "mpm", kinds);
+  b.c.analysis.type = ANALYSIS_EXPLICIT;
+  bench_warned(&b, PETSC_COMM_WORLD, "loads.tractions[0].amplitude", "the step of 0.002 s");
+  b.constants[0].value = 1e10;
+  bench_warned(&b, PETSC_COMM_WORLD, "loads.tractions[0].amplitude", NULL);
+}
+
+int main(int argc, char **argv)
+{
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_loads), cmocka_unit_test(test_motions)};
+  return run_model_tests(argc, argv, tests);
+}
