@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
+#include "input/idle_keys.h"
 #include "input/schema/schema.h"
 #include "input/stages.h"
 #include "material/law.h"
@@ -411,6 +412,7 @@ PetscErrorCode CaseReadText(const char *file, size_t size, const char *text, Pet
   if (document->root) PetscCall(ReadDocument(file, document, diag, NULL, 0, c));
   if (*c) check_beyond(NULL, *c, diag);
   if (diag_errors(diag) == before && *c && (*c)->n_stages) PetscCall(ReadStages(file, document, diag, *c));
+  if (diag_errors(diag) == before && *c) PetscCall(TellIdleKeys(document, *c, diag));
   if (diag_errors(diag) > before) PetscCall(CaseDestroy(c));
   PetscFunctionReturn(0);
 }

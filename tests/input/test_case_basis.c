@@ -138,10 +138,40 @@ static void Followers(void **state)
   assert_int_equal(CaseDestroy(&c), 0);
 }
 
+/* Keys of dynamics in statics are named, those that say what is so anyway are not; a dynamic stage wants them all. */
+static void Idle(void **state)
+{
+#define BEAM(more)                                                                                       \
+  PLAIN_GRID "bodies:\n  - {name: beam, shape: {box: {min: [0, 0], max: [2, 1]}}, material: rubber" more \
+             "}\n" PLAIN_MATERIALS
+#define HEAD(more) "kinematics: plane-strain\nmethod: mpm\nanalysis: {type: static, end: 1, step: 0.1" more "}\n"
+  static const struct {
+    const char *text, *words;
+  } idle[] = {
+    {HEAD(", damping: 2, scheme: bossak, bossak: -0.1, mass: lumped") BEAM(", velocity: [1, 0]"),
+     "nothing here is dynamic: analysis.damping, analysis.bossak, analysis.scheme, analysis.mass, bodies[0].velocity"},
+    {HEAD(", beta: 0.3, gamma: 0.6, transfer: consistent, keep_velocity: true") BEAM(", spin: 2"),
+     "analysis.beta, analysis.gamma, analysis.transfer, analysis.keep_velocity, bodies[0].spin"},
+    {HEAD(", damping: 0, beta: 0.25, mass: consistent, transfer: thesis") BEAM(", velocity: [0, 0]"), NULL},
+    {HEAD(", damping: 2")
+       BEAM(", velocity: [1, 0]") "stages: [{name: a}, {name: b, analysis: {type: dynamic, end: 1, step: 0.1}}]\n",
+     NULL},
+  };
+  (void)state;
+  for (size_t k = 0; k < sizeof idle / sizeof idle[0]; ++k) {
+    char *said;
+    Case *c = read_text(idle[k].text, &said);
+    if (!c) fail_msg("%s", said);
+    if (idle[k].words ? !strstr(said, idle[k].words) : !!strstr(said, "dynamic")) fail_msg("case %d: %s", (int)k, said);
+    free(said);
+    CaseDestroy(&c);
+  }
+}
+
 int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {cmocka_unit_test(Chosen), cmocka_unit_test(Written), cmocka_unit_test(Midpoint),
-                                     cmocka_unit_test(Followers)};
+                                     cmocka_unit_test(Followers), cmocka_unit_test(Idle)};
   if (PetscInitialize(&argc, &argv, NULL, NULL)) return 1;
   const int failed = cmocka_run_group_tests(tests, NULL, NULL);
   return PetscFinalize() || failed;
