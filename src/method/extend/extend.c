@@ -165,10 +165,8 @@ static PetscErrorCode KeepNeeded(const Discretisation *s, PetscBool *again)
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode Fill(Discretisation *s)
+static PetscErrorCode Fill(Discretisation *s, PetscReal *fill)
 {
-  PetscReal *fill = s->extension->fill;
-
   PetscFunctionBeginUser;
   PetscCall(DiscretisationVolumes(s, PETSC_TRUE, fill));
   for (PetscInt i = 0; i < s->grid->n_nodes; ++i) fill[i] = fill[i] > 0 ? 2 * fill[i] / s->whole[i] : 0;
@@ -251,7 +249,7 @@ PetscErrorCode DiscretisationExtend(Discretisation *s, const BasisInput *in)
   if (!s->extension) PetscCall(ExtensionCreate(s, &s->extension));
   Extension *e = s->extension;
   PetscCall(DiscretisationCarry(s, in));
-  PetscCall(Fill(s));
+  PetscCall(Fill(s, e->fill));
   PetscCall(PetscArrayzero(e->ways, s->grid->n_nodes));
   e->any = PETSC_FALSE;
   if (!extension_works(s)) PetscFunctionReturn(0);
