@@ -1,6 +1,6 @@
 #include "boundary/loads.h"
-#include "boundary/faces.h"
-#include "boundary/load_sides.h"
+#include "boundary/sides/faces.h"
+#include "boundary/sides/load_sides.h"
 #include "boundary/surface/surface.h"
 
 PetscBool touched_shape(const Grid *grid, PetscInt cell, const PetscReal *xi, const unsigned char *touched,

@@ -5,7 +5,7 @@
  * all that one surface has in a cell becomes two points, four in space, with the same area, middle and second moment
  * (gather.c). */
 #pragma once
-#include "boundary/faces.h"
+#include "boundary/sides/faces.h"
 #include "case/terrain/relief.h"
 
 typedef enum { SURFACE_PLANE, SURFACE_BALL, SURFACE_CONE, SURFACE_RELIEF } SurfaceKind;

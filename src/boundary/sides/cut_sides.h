@@ -1,6 +1,6 @@
 /* Loads act on whole sides of cells: what of a range or shape that ends within a side goes without. */
 #pragma once
-#include "boundary/faces.h"
+#include "boundary/sides/faces.h"
 
 /* How much of a side, 0 to 1, the selector's coordinates and shape take: 1 where they take all its nodes, and else what
  * of a raster of it. */

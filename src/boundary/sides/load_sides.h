@@ -1,6 +1,6 @@
 /* The sides of cells under a load, and what a user should know of them. */
 #pragma once
-#include "boundary/faces.h"
+#include "boundary/sides/faces.h"
 
 /* Sides of the grid that the selector takes, of cells that hold points. To be freed with PetscFree. */
 PetscErrorCode FilledSides(const Grid *grid, const Points *points, const Selector *on, PetscInt *n, PetscInt **cell,

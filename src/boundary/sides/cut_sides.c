@@ -1,4 +1,4 @@
-#include "boundary/cut_sides.h"
+#include "boundary/sides/cut_sides.h"
 
 #define RASTER 1024 /* along an edge; a face in space has so many squares */
 #define ACROSS 32   /* of these along each side */

@@ -1,5 +1,5 @@
-#include "boundary/faces.h"
-#include "boundary/cut_sides.h"
+#include "boundary/sides/faces.h"
+#include "boundary/sides/cut_sides.h"
 
 /* Position on a face from its own coordinates: edges s in [-1, 1], triangles (s, t) barycentric,
  * quadrilaterals [-1, 1]^2. */

@@ -1,5 +1,5 @@
-#include "boundary/load_sides.h"
-#include "boundary/cut_sides.h"
+#include "boundary/sides/load_sides.h"
+#include "boundary/sides/cut_sides.h"
 #include "points/seed/seed.h"
 
 #define LITTLE 0.01 /* of what a load asks for: so much may go without */
