@@ -12,13 +12,13 @@ static PetscErrorCode ExtensionCreate(const Discretisation *s, Extension **exten
   Extension *e;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscNew(extension));
-  e = *extension;
+  PetscCall(PetscNew(&e));
   PetscCall(PetscCalloc4(n, &e->fill, n, &e->leads, n, &e->ways, n, &e->place));
   for (PetscInt k = 0; k < known; ++k) e->place[box->lattice[k]] = k;
   PetscCall(SupportCreate(&e->spare));
   PetscCall(SupportCreate(&e->carried));
   PetscCall(SupportCreate(&e->spare_carried));
+  *extension = e;
   PetscFunctionReturn(0);
 }
 
@@ -229,15 +229,22 @@ static PetscErrorCode RewriteAll(Discretisation *s)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode DiscretisationCarry(Discretisation *s, const BasisInput *in)
+static PetscErrorCode Carry(Discretisation *s, const BasisInput *in, Support *carried)
 {
   const BasisInput plain = {.spec = in->spec, .grid = in->grid, .rim = in->rim};
 
   PetscFunctionBeginUser;
   if (!s->basis->carries) PetscFunctionReturn(0);
-  s->loads->support = s->extension->carried;
+  s->loads->support = carried;
   PetscCall(PointsSort(s->loads->carriers));
-  PetscCall(s->basis->support(&plain, s->loads->carriers, s->extension->carried));
+  PetscCall(s->basis->support(&plain, s->loads->carriers, carried));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode DiscretisationCarry(Discretisation *s, const BasisInput *in)
+{
+  PetscFunctionBeginUser;
+  PetscCall(Carry(s, in, s->extension->carried));
   PetscFunctionReturn(0);
 }
 
@@ -248,7 +255,8 @@ PetscErrorCode DiscretisationExtend(Discretisation *s, const BasisInput *in)
   PetscFunctionBeginUser;
   if (!s->extension) PetscCall(ExtensionCreate(s, &s->extension));
   Extension *e = s->extension;
-  PetscCall(DiscretisationCarry(s, in));
+  PetscCheck(e, PETSC_COMM_SELF, PETSC_ERR_PLIB, "no extension");
+  PetscCall(Carry(s, in, e->carried));
   PetscCall(Fill(s, e->fill));
   PetscCall(PetscArrayzero(e->ways, s->grid->n_nodes));
   e->any = PETSC_FALSE;
