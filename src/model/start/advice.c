@@ -200,8 +200,8 @@ static void advise_jump(const Model *m, PetscInt k, Diag *diag)
             (double)(m->c->analysis.end / 10));
 }
 
-/* The pressure of the second equation is that before the flow, which dilatancy takes away again at each point by itself:
- * changes of volume inside a cell are not held (docs/decisions.md, 263). */
+/* The pressure of the second equation is that before the flow, of which dilatancy takes something away at each point by
+ * itself: changes of volume inside a cell are not held (docs/decisions.md, 263). */
 static void advise_dilatancy(const Model *m, Diag *diag)
 {
   if (!case_seeks(&m->c->analysis) || !m->formulation->pressure || !case_dilates(m->c)) return;
