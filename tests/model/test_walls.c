@@ -285,11 +285,39 @@ static void test_dent(void **state)
   CHECK(!tells_dent(&mpm, 0.02), "mpm has no such dents");
 }
 
+/* Along a ball that does not rub no work is lost, whichever way it looks at what it pushes aside. */
+static void test_smooth(void **state)
+{
+  MotionSpec aside = {.kind = MOTION_DISPLACEMENT, .component = {1, 1, 1}, .value = {0.1, -0.1, 0}};
+  WallSpec wall = {.name = (char *)"floor",
+                   .shape = {.kind = SHAPE_BALL, .centre = {0.5, 1.4, 0}, .radius = 0.4},
+                   .n_motions = 1,
+                   .motions = &aside};
+  Energies e;
+  Bench b;
+  (void)state;
+  bench_init(&b, "fem", CELL_QUADRILATERAL, 8);
+  bench_motion(&b, 1, 0, MOTION_FIXED, 3);
+  b.c.newton.increment = 1e-9;
+  b.c.n_walls = 1;
+  b.c.walls = &wall;
+  Model *m = bench_model(&b, PETSC_COMM_WORLD);
+  while (m->time < 1 - 1e-9) model_step(m, 0.25);
+  CALL(ModelEnergies(m, &e));
+  PetscPrintf(PETSC_COMM_WORLD, "smooth ball: %.6g J of work, %.3g of friction, %.3g of transfer\n", (double)e.boundary,
+              (double)e.friction, (double)e.transfer);
+  CHECK_CLOSE(measure(m, "contact", "sliding", 0), 0, 0);
+  CHECK_CLOSE(e.friction, 0, 0);
+  CHECK(PetscAbsReal(e.transfer) < 5e-3 * e.boundary, "%g J of %g", (double)e.transfer, (double)e.boundary);
+  CALL(ModelDestroy(&m));
+}
+
 int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(test_slides), cmocka_unit_test(test_lifts),   cmocka_unit_test(test_rests),
     cmocka_unit_test(test_flows),  cmocka_unit_test(test_through), cmocka_unit_test(test_dent),
+    cmocka_unit_test(test_smooth),
   };
   return run_model_group(argc, argv, tests, PETSC_STATIC_ARRAY_LENGTH(tests));
 }

@@ -153,6 +153,10 @@ static ContactWork point_work(const Model *m, const ContactPoint *c)
     work.sliding -= (f[d] - pressure * c->normal[d]) * (x[d] - c->x[d] - c->swept[d]);
   }
   work.closing += pressure * closing;
+  if (!rubs(c->law.kind)) { /* along a wall that does not rub only a force does work that had another normal before */
+    work.closing -= work.sliding;
+    work.sliding = 0;
+  }
   if (!m->scheme->inertia || m->scheme->middle) work.more = 0; /* the balance has all of it */
   return work;
 }
