@@ -237,11 +237,12 @@ PetscErrorCode ContactForces(Model *m, PetscReal dt)
   PetscCall(PetscCalloc1(3 * n, &now)); /* forces at the end, impulses, what is taken out of the first */
   for (PetscInt k = 0; k < s->n; ++k) {
     ContactPoint *c = s->point + k;
-    PetscReal f[3];
+    PetscReal f[3], x[3];
+    contact_place(s, c, m->nodes->du, m->scheme->inertia ? 0 : 1, x); /* in statics it is the force at the end */
     contact_balance(s, c, f);
-    contact_add(c, m->dim, f, now + c->wall);
+    contact_add(x, m->dim, f, now + c->wall);
     contact_excess(s, c, f);
-    contact_add(c, m->dim, f, now + 2 * n + c->wall);
+    contact_add(x, m->dim, f, now + 2 * n + c->wall);
   }
   PetscCall(PetscArraycpy(now + n, s->impulse, n));
   PetscCall(MPIU_Allreduce(MPI_IN_PLACE, now, (PetscMPIInt)(3 * n * SUM_NUMBERS), MPIU_REAL, MPI_SUM, m->comm));

@@ -96,7 +96,7 @@ PetscErrorCode WallsPush(Model *m, Explicit *e)
     for (PetscInt k = c->first; k < c->first + c->n; ++k)
       for (PetscInt d = 0; d < dim; ++d) e->sum[s->node[k] * e->width + 1 + dim + d] += s->N[k] * f[d];
     for (int d = 0; d < 3; ++d) f[d] *= e->kick / e->step;
-    contact_add(c, dim, f, e->pushed + c->wall);
+    contact_add(c->x, dim, f, e->pushed + c->wall);
   }
   PetscCall(HeavyMove(m, e));
   PetscFunctionReturn(0);

@@ -199,4 +199,5 @@ void contact_excess(const Contact *contact, const ContactPoint *c, PetscReal f[3
 PetscErrorCode ContactMoves(const Contact *contact, MPI_Comm comm, PetscBool *moves);
 /* Of all forces of this rank at the last assembly, N2; contact may be NULL. */
 PetscReal contact_square(const Contact *contact);
-void contact_add(const ContactPoint *c, PetscInt dim, const PetscReal force[3], ContactSum *sum);
+/* x: where it acts, m. */
+void contact_add(const PetscReal x[3], PetscInt dim, const PetscReal force[3], ContactSum *sum);

@@ -106,10 +106,10 @@ static PetscReal driven(const Projection *w)
   return sum;
 }
 
-void contact_add(const ContactPoint *c, PetscInt dim, const PetscReal f[3], ContactSum *sum)
+void contact_add(const PetscReal x[3], PetscInt dim, const PetscReal f[3], ContactSum *sum)
 {
   for (PetscInt d = 0; d < dim; ++d) sum->force[d] += f[d];
-  for (int d = 0; d < 3; ++d) sum->torque[d] += c->x[(d + 1) % 3] * f[(d + 2) % 3] - c->x[(d + 2) % 3] * f[(d + 1) % 3];
+  for (int d = 0; d < 3; ++d) sum->torque[d] += x[(d + 1) % 3] * f[(d + 2) % 3] - x[(d + 2) % 3] * f[(d + 1) % 3];
 }
 
 /* What contact point k lacks of the motion of its wall. */
@@ -206,7 +206,7 @@ PetscErrorCode ContactProject(Contact *s, const ContactMotion *m, ContactSum *su
   lose(&w, sum);
   s->driven += driven(&w);
   for (PetscInt j = 0; j < w.n_held; ++j)
-    contact_add(s->point + w.list[j], s->dim, w.p + 3 * w.list[j], sum + s->point[w.list[j]].wall);
+    contact_add(s->point[w.list[j]].x, s->dim, w.p + 3 * w.list[j], sum + s->point[w.list[j]].wall);
   PetscCall(Destroy(&w));
   PetscFunctionReturn(0);
 }
