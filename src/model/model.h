@@ -264,6 +264,8 @@ void contact_force_on(const Model *model, PetscInt p, PetscReal force[3]);
 /* Collective. Tractions of a wall on the material after the step that was taken last, on this rank: none
  * before the first one and in a model just resumed; PetscFree them. */
 PetscErrorCode ModelTractions(const Model *model, PetscInt wall, PetscInt *n, ContactTraction **tractions);
+/* Collective. After the last step of statics: which bodies have left all that held them. */
+PetscErrorCode ModelWarnLoose(Model *model, Diag *diag);
 /* Stored energy of one point per undeformed volume, J/m3. */
 PetscReal model_point_energy(const Model *model, PetscInt p);
 /* First number of a named field of the point's state, or NULL if its law has none. */

@@ -319,6 +319,7 @@ static PetscErrorCode RunModel(Run *r, const RunOptions *options, Diag *diag, Pe
     PetscCall(RunStages(r, diag));
     PetscCall(Close(r, measures));
     PetscCall(LossesWarn(r->model, r->values, diag));
+    if (!r->failed) PetscCall(ModelWarnLoose(r->model, diag));
     PetscCall(ModelUnusedOptions(r->model, diag));
     *result = r->failed ? RUN_GAVE_UP : RUN_DONE;
     if (options->summary) *options->summary = r->summary;

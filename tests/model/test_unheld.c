@@ -220,11 +220,48 @@ static void test_refused(void **state)
   bench_refused(&b, PETSC_COMM_WORLD, "bodies[0]", "analysis: {unheld: hold}");
 }
 
+/* Warnings after a block of rubber has settled by its weight on a floor that does not rub, at one or two such walls. */
+static PetscInt settle(const char *method, PetscInt sides)
+{
+  WallSpec walls[3] = {{.name = (char *)"floor", .shape = {.kind = SHAPE_HALF_SPACE, .normal = {0, 1}}},
+                       {.name = (char *)"left", .shape = {.kind = SHAPE_HALF_SPACE, .normal = {1}}},
+                       {.name = (char *)"right", .shape = {.kind = SHAPE_HALF_SPACE, .point = {1}, .normal = {-1}}}};
+  Bench b;
+  Diag *diag;
+  StepReport report;
+  block(&b, method, CELL_QUADRILATERAL);
+  if (!strcmp(method, "fem")) bench_grid(&b, (PetscReal[]){0, 0, 0}, (PetscReal[]){1, 0.5, 0}, 0.125);
+  b.c.gravity[1] = -40;
+  b.c.n_walls = 1 + sides;
+  b.c.walls = walls;
+  Model *m = bench_model(&b, PETSC_COMM_WORLD);
+  do CALL(ModelStep(m, 0.25, &report));
+  while (report.outcome == STEP_ACCEPTED && m->time < 1 - 1e-9);
+  CALL(DiagCreate(&diag));
+  if (report.outcome == STEP_ACCEPTED) CALL(ModelWarnLoose(m, diag));
+  const PetscInt found = report.outcome == STEP_ACCEPTED ? diag_warnings(diag) : -1;
+  CALL(DiagDestroy(&diag));
+  CALL(ModelDestroy(&m));
+  return found;
+}
+
+/* A wall that only pushes counts as one that holds; what it has pushed away is told. */
+static void test_leaves(void **state)
+{
+  PetscMPIInt rank;
+  (void)state;
+  MPI_Comm_rank(PETSC_COMM_WORLD, &rank);
+  const PetscInt one = settle("fem", 1), two = settle("fem", 2), grid = settle("mpm", 2);
+  CHECK(one == 1 || rank, "%d warnings", (int)one);
+  CHECK(two == 0 && grid == 0, "%d and %d warnings", (int)two, (int)grid);
+}
+
 int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(test_pulled), cmocka_unit_test(test_bent),  cmocka_unit_test(test_turns),
     cmocka_unit_test(test_held),   cmocka_unit_test(test_parts), cmocka_unit_test(test_refused),
+    cmocka_unit_test(test_leaves),
   };
   return run_model_group(argc, argv, tests, PETSC_STATIC_ARRAY_LENGTH(tests));
 }

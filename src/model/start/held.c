@@ -101,10 +101,25 @@ static void name_directions(PetscInt dim, const PetscInt *held, char text[32])
   }
 }
 
+/* Of each body the directions in which something holds it. */
+static PetscErrorCode FindHeld(const Model *m, PetscInt *held)
+{
+  const PetscInt n = m->c->n_bodies;
+  PetscInt *joined;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(n * n, &joined));
+  PetscCall(Touches(m, joined, held));
+  for (PetscInt b = 0; b < n && m->c->kinematics->hoop; ++b) held[b * m->dim] = 1; /* a ring by its hoop */
+  spread(n, m->dim, joined, held);
+  PetscCall(PetscFree(joined));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode CheckHeld(Model *m, Diag *diag)
 {
   const PetscInt n = m->c->n_bodies, dim = m->dim;
-  PetscInt *joined, *held, points;
+  PetscInt *held, points;
   char path[64], directions[32];
 
   PetscFunctionBeginUser;
@@ -114,10 +129,8 @@ PetscErrorCode CheckHeld(Model *m, Diag *diag)
   }
   PetscCall(ModelCountPoints(m, &points));
   if ((m->scheme->inertia && m->c->initial.equilibrium <= EQUILIBRIUM_NONE) || !points) PetscFunctionReturn(0);
-  PetscCall(PetscCalloc2(n * n, &joined, n * dim, &held));
-  PetscCall(Touches(m, joined, held));
-  for (PetscInt b = 0; b < n && m->c->kinematics->hoop; ++b) held[b * dim] = 1; /* a ring by its hoop */
-  spread(n, dim, joined, held);
+  PetscCall(PetscCalloc1(n * dim, &held));
+  PetscCall(FindHeld(m, held));
   for (PetscInt b = 0; b < n; ++b) {
     name_directions(dim, held + b * dim, directions);
     if (!directions[0] || m->c->bodies[b].absent) continue;
@@ -129,6 +142,33 @@ PetscErrorCode CheckHeld(Model *m, Diag *diag)
               "in balance: analysis: {unheld: hold}",
               directions);
   }
-  PetscCall(PetscFree2(joined, held));
+  PetscCall(PetscFree(held));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ModelWarnLoose(Model *m, Diag *diag)
+{
+  const PetscInt n = m->c->n_bodies, dim = m->dim;
+  PetscInt *held;
+  char path[64], directions[32];
+
+  PetscFunctionBeginUser;
+  if (!m->contact || m->c->analysis.type != ANALYSIS_STATIC || m->c->analysis.unheld == UNHELD_HOLD || !m->step)
+    PetscFunctionReturn(0);
+  PetscCall(ModelInitialise(m));
+  PetscCall(PetscCalloc1(n * dim, &held));
+  PetscCall(FindHeld(m, held));
+  for (PetscInt b = 0; b < n; ++b) {
+    name_directions(dim, held + b * dim, directions);
+    if (!directions[0] || m->c->bodies[b].absent) continue;
+    snprintf(path, sizeof path, "bodies[%d]", (int)b);
+    diag_warning(diag, path,
+                 "nothing holds '%s' in %s any more: it has left the walls or bodies that it was pressed against, and "
+                 "where a static analysis has put it means nothing",
+                 m->c->bodies[b].name, directions);
+    diag_hint(diag, "walls push and do not pull: fix a boundary in %s, put a wall on the other side, or let it stick",
+              directions);
+  }
+  PetscCall(PetscFree(held));
   PetscFunctionReturn(0);
 }

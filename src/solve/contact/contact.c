@@ -326,13 +326,16 @@ static PetscErrorCode Begin(void *data, const NodalScene *scene)
   PetscFunctionReturn(0);
 }
 
-/* What touches a wall at the start cannot leave through it, nor along it if it rubs. */
+static PetscBool meets(const ContactPoint *c) { return (PetscBool)(c->touches || c->before != CONTACT_OPEN); }
+
+/* What touches a wall cannot leave through it, nor along it if it rubs. A wall that only pushes may turn out to hold
+ * one way alone: whoever asks looks again after the run (ModelWarnLoose). */
 static void hold(const void *data, const NodalScene *scene, unsigned char *held)
 {
   const Contact *s = data;
   (void)scene;
   for (const ContactPoint *c = s->point; c < s->point + s->n; ++c)
-    for (PetscInt e = c->first; e < c->first + c->n && c->touches && !contact_rigid(s, c); ++e)
+    for (PetscInt e = c->first; e < c->first + c->n && meets(c) && !contact_rigid(s, c); ++e)
       for (PetscInt d = 0; d < s->dim; ++d)
         if (c->law.kind != CONTACT_FRICTIONLESS || PetscAbsReal(c->normal[d]) > LEANS)
           held[s->node[e] * s->dim + d] = 1;
