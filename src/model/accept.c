@@ -102,6 +102,7 @@ PetscErrorCode CommitStep(Model *m, PetscReal dt, EnergyStep *energy)
     m->nodes->pressure[node] = m->pressure_scale * m->nodes->scaled_pressure[node];
   const NodalScene scene = nodal_scene(m, m->time + dt, m->nodes->du);
   PetscCall(NodalForcesCommit(&m->forces, &scene));
+  PetscCall(ContactSurvey(m));
   PetscCall(PhaseEnd(m->seconds, PHASE_COMMIT, &clock));
   PetscFunctionReturn(0);
 }

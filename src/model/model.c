@@ -233,8 +233,8 @@ static PetscErrorCode CreatePoints(Model *m, Outline *outline, Diag *diag)
   const PetscBool lumps = !basis_find(c->basis.kind)->domains || c->analysis.type == ANALYSIS_EXPLICIT;
   if (transfer_find(c->analysis.transfer)->slopes && lumps) m->points->components[POINT_SLOPE] = 2 * m->dim * m->dim;
   if (c->n_walls + c->n_interfaces) m->points->components[POINT_REACH] = 1;
-  if (m->points->components[POINT_REACH] && (m->method->restores_grid || m->method->clouds))
-    m->points->components[POINT_FACE] = m->dim;
+  if (m->points->components[POINT_REACH]) m->points->components[POINT_CORNER] = m->dim;
+  if (m->points->components[POINT_REACH]) m->points->components[POINT_FACE] = m->dim;
   m->points->components[POINT_CONTACT] = (c->n_walls + c->n_interfaces) * CONTACT_KEPT(m->dim);
   if (m->grid->n_fields > 1) m->points->components[POINT_FIELD] = 1;
   m->points->components[POINT_FLOW] = case_writes(c, "plastic_increment");

@@ -217,6 +217,8 @@ typedef struct {
 ContactWork contact_work(const Model *model);
 /* Collective, before the step is committed: mean forces of the step, and what is remembered. */
 PetscErrorCode ContactForces(Model *model, PetscReal dt);
+/* Collective. After the points' strain was committed: what measures ask of each wall. */
+PetscErrorCode ContactSurvey(Model *model);
 
 /* Collective. The nodes know the step's end (force, v1, a1), the points still stand at its
  * start. */

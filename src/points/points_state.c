@@ -28,6 +28,7 @@ static const struct {
   [POINT_DOMAIN] = {"domain", "m"},
   [POINT_SLOPE] = {"slope", NULL},
   [POINT_REACH] = {"reach", "m"},
+  [POINT_CORNER] = {"corner", "m"},
   [POINT_FACE] = {"face", "m2"},
   [POINT_CONTACT] = {"contact", "N"},
   [POINT_FIELD] = {"velocity_field", NULL},

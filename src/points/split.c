@@ -103,9 +103,11 @@ static void halve(Points *points, PetscInt p, PetscInt side, PetscInt k, const P
   points->real[POINT_MASS][p] *= share;
   points->real[POINT_VOLUME][p] *= share;
   points->real[POINT_WORK][p] *= share;
+  const PetscReal length = PetscPowReal(0.5, 1 / (PetscReal)points->dim);
   for (PetscInt d = 0; d < points->components[POINT_FACE]; ++d)
     point_real(points, POINT_FACE, p)[d] *= PetscPowReal(0.5, (PetscReal)(points->dim - 1) / (PetscReal)points->dim);
-  if (points->components[POINT_REACH]) points->real[POINT_REACH][p] *= PetscPowReal(0.5, 1 / (PetscReal)points->dim);
+  for (PetscInt d = 0; d < points->components[POINT_CORNER]; ++d) point_real(points, POINT_CORNER, p)[d] *= length;
+  if (points->components[POINT_REACH]) points->real[POINT_REACH][p] *= length;
   points->id[p] = point_half_id(points->id[p], side);
 }
 

@@ -7,6 +7,7 @@
 #define YOUNG 1e6
 /* m: gaps of 1e-5 of a cell of 0.25 m remain at each wall, and forces rise a little faster than the way. */
 #define GAPS 1e-5
+#define AREA 1e-3 /* likewise, of surfaces, where points hang at none of their edges */
 
 /* --- pressed evenly --- */
 typedef struct {
@@ -45,6 +46,18 @@ static void add_wall(WallSpec *wall, const char *name, int axis, PetscReal at, P
   *wall = (WallSpec){.name = (char *)name, .shape = {.kind = SHAPE_HALF_SPACE}};
   wall->shape.point[axis] = at;
   wall->shape.normal[axis] = normal;
+}
+
+/* Surfaces and torques are those of the end of the step. */
+static void check_surfaces(Model *m, const Press *t, PetscReal area, PetscReal height)
+{
+  const PetscReal round = t->kinematics->hoop ? 2 * PETSC_PI : 1, off = t->cell == CELL_TRIANGLE ? 0.05 : AREA;
+  CHECK_CLOSE(model_wall(m, "floor", "contact", "area", 0), area, off * area);
+  CHECK_CLOSE(model_wall(m, "plate", "contact", "area", 0), area, off * area);
+  if (t->confined) CHECK_CLOSE(model_wall(m, "side", "contact", "area", 0), round * height, off * round * height);
+  if (!t->confined || t->kinematics->hoop) return;
+  const PetscReal torque = -model_wall(m, "side", "wall_force", NULL, 0) * height / 2;
+  CHECK_CLOSE(model_wall(m, "side", "wall_torque", NULL, 2), torque, 1e-3 * torque);
 }
 
 /* Both walls bear stress times area, in axisymmetry of full circles, and what confines bears the rest. */
@@ -89,6 +102,7 @@ static void press(const Press *t)
   CHECK_CLOSE(plate, -floor, 1e-9 * floor);
   CHECK_CLOSE(side, around, gaps * -around);
   CHECK(iterations <= 14, "%d iterations", (int)iterations);
+  check_surfaces(m, t, area, stretch[1]);
   CALL(ModelDestroy(&m));
 }
 
@@ -119,6 +133,60 @@ static void test_press(void **state)
   };
   (void)state;
   EACH_OF (k, presses) press(&presses[k]);
+}
+
+/* --- between walls on all sides --- */
+typedef struct {
+  const char *method;
+  CellType cell;
+  PetscInt counts[3]; /* cells of the unit square or cube */
+  PetscReal grading;
+} Boxed;
+
+/* Cells of any shape stand on all walls: the plate's is the stress of confined compression. */
+static void box(const Boxed *t)
+{
+  const char *const names[] = {"left", "right", "floor", "plate", "front", "back"};
+  MotionSpec down = {.kind = MOTION_DISPLACEMENT};
+  PetscReal stretch[3] = {1, 1, 1}, sigma[3];
+  WallSpec walls[6];
+  Bench b;
+  bench_init(&b, t->method, t->cell, 0);
+  const PetscInt dim = kinematics_dim(b.c.kinematics);
+  const PetscBool is_mpm = !strcmp(t->method, "mpm");
+  for (PetscInt d = 0; d < dim; ++d) b.c.grid.counts[d] = t->counts[d] * (is_mpm ? 2 : 1);
+  for (PetscInt d = 0; d < dim; ++d) b.c.grid.min[d] = is_mpm ? -0.5 : 0, b.c.grid.max[d] = is_mpm ? 1.5 : 1;
+  b.c.grid.grading[0] = t->grading;
+  for (int k = 0; k < 2 * (int)dim; ++k) add_wall(&walls[k], names[k], k / 2, k % 2, k % 2 ? -1 : 1);
+  down.value[1] = -0.01;
+  walls[3].n_motions = 1, walls[3].motions = &down;
+  b.c.n_walls = 2 * dim;
+  b.c.walls = walls;
+  Model *m = bench_model(&b, PETSC_COMM_WORLD);
+  run_through(m);
+  stretch[1] = 0.99;
+  stress_of(0.3, stretch, sigma);
+  const PetscReal plate = model_wall(m, "plate", "wall_force", NULL, 1),
+                  side = model_wall(m, "right", "wall_force", NULL, 0),
+                  area = model_wall(m, "right", "contact", "area", 0);
+  PetscPrintf(PETSC_COMM_WORLD, "%s cell %d between walls: plate %.9g of %.9g N, side %.9g of %.9g, area %.9g\n",
+              t->method, (int)t->cell, (double)plate, (double)sigma[1], (double)side, (double)(0.99 * sigma[0]),
+              (double)area);
+  CHECK_CLOSE(plate, sigma[1], -2e-3 * sigma[1]);
+  CHECK_CLOSE(side, 0.99 * sigma[0], -2e-3 * sigma[0]);
+  CHECK_CLOSE(area, 0.99, AREA);
+  CALL(ModelDestroy(&m));
+}
+
+static void test_boxed(void **state)
+{
+  static const Boxed cases[] = {
+    {"fem", CELL_QUADRILATERAL, {4, 8}, 1},  {"fem", CELL_QUADRILATERAL, {4, 3}, 3},
+    {"mpm", CELL_QUADRILATERAL, {4, 10}, 1}, {"fem", CELL_HEXAHEDRON, {4, 2, 3}, 2},
+    {"mpm", CELL_HEXAHEDRON, {4, 2, 2}, 1},
+  };
+  (void)state;
+  EACH_OF (k, cases) box(&cases[k]);
 }
 
 /* --- by their weight --- */
@@ -294,10 +362,8 @@ static void test_tangent(void **state)
 int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {
-    cmocka_unit_test(test_press),
-    cmocka_unit_test(test_stands),
-    cmocka_unit_test(test_falls),
-    cmocka_unit_test(test_tangent),
+    cmocka_unit_test(test_press), cmocka_unit_test(test_boxed),   cmocka_unit_test(test_stands),
+    cmocka_unit_test(test_falls), cmocka_unit_test(test_tangent),
   };
   return run_model_group(argc, argv, tests, PETSC_STATIC_ARRAY_LENGTH(tests));
 }

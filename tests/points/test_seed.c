@@ -432,7 +432,7 @@ static void check_faces(const TestCase *t, const Grid *grid, const PetscReal *wa
   PetscReal looks[3][2] = {{0}};
   Points *points = make_points(t);
   points->components[POINT_REACH] = 1;
-  points->components[POINT_FACE] = grid->dim;
+  points->components[POINT_FACE] = points->components[POINT_CORNER] = grid->dim;
   seed_into(t, grid, points);
   for (PetscInt p = 0; p < points->n; ++p)
     for (PetscInt d = 0; d < grid->dim; ++d) {

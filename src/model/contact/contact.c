@@ -177,18 +177,31 @@ ContactWork contact_work(const Model *m)
   return sum;
 }
 
-/* What measures ask of each wall after the step. */
-static PetscErrorCode Survey(const Model *m)
+/* That of the end of the step: strained it is, but not yet moved. */
+static void take_section(const Model *m, const NodalScene *scene, ContactPoint *c)
 {
   const Contact *s = m->contact;
-  const PetscInt n = s->n_partners;
+  PetscReal x[3], r = point_real(m->points, POINT_X, c->owner)[0];
+  contact_place(s, c, m->nodes->du, 1, x);
+  for (PetscInt e = c->first; e < c->first + c->own; ++e)
+    r += (s->N[e] - s->lead[e]) * m->nodes->du[s->node[e] * m->dim];
+  c->section = contact_section(scene, c->owner, c->normal, (PetscReal[]){r, x[0]});
+}
+
+PetscErrorCode ContactSurvey(Model *m)
+{
+  const NodalScene scene = nodal_scene(m, m->time, m->nodes->du);
+  const Contact *s = m->contact;
   PetscReal *sums, *deepest;
 
   PetscFunctionBeginUser;
+  if (!s) PetscFunctionReturn(0);
+  const PetscInt n = s->n_partners;
   PetscCall(PetscCalloc2(2 * n, &sums, n, &deepest));
-  for (const ContactPoint *c = s->point; c < s->point + s->n; ++c) {
+  for (ContactPoint *c = s->point; c < s->point + s->n; ++c) {
     sums[c->wall] += point_work(m, c).sliding;
     if (c->state == CONTACT_OPEN) continue;
+    take_section(m, &scene, c);
     sums[n + c->wall] += c->section;
     deepest[c->wall] = PetscMax(deepest[c->wall], -c->gap);
   }
@@ -262,7 +275,6 @@ PetscErrorCode ContactForces(Model *m, PetscReal dt)
   }
   PetscCall(PetscFree(now));
   settle(m, dt);
-  PetscCall(Survey(m));
   PetscCall(ContactRelease(m, dt));
   PetscFunctionReturn(0);
 }

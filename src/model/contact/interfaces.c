@@ -82,10 +82,9 @@ static void fit(Model *m, const Surface *first, const Surface *second, LostPoint
   MPI_Comm_rank(m->comm, &rank);
   for (const SurfacePoint *p = first->point; p < first->point + first->n; ++p) {
     if (p->rank != rank || !surface_meet(first, p, second, m->grid->smallest, &pair)) continue;
-    PetscReal *reach = m->points->real[POINT_REACH] + p->owner;
-    const PetscReal gap = pair.gap - *reach;
+    const PetscReal reach = contact_reach_of(m->points, p->owner, pair.normal), gap = pair.gap - reach;
     if (gap >= 0) continue;
-    if (gap > -THROUGH * *reach) *reach += gap;
+    if (gap > -THROUGH * reach) contact_take_back(m->points, p->owner, pair.normal, pair.gap);
     else if (gap < *deepest) {
       *deepest = gap;
       PetscCallAbort(m->comm, PetscArraycpy(worst->x, p->x, 3));

@@ -53,7 +53,7 @@ static PetscBool stands_on(const Model *m, PetscInt p, const WallPlace *place)
   const BodySpec *body = m->c->bodies + m->points->body[p];
   const PetscReal *x = point_real(m->points, POINT_X, p);
   PetscReal within[3], beyond[3];
-  if (!body->has_shape || body->mesh || place->gap <= m->points->real[POINT_REACH][p]) return PETSC_FALSE;
+  if (!body->has_shape || body->mesh || place->gap <= contact_reach_of(m->points, p, place->normal)) return PETSC_FALSE;
   if (!reaches_wall(m, p, place)) return PETSC_FALSE;
   for (PetscInt d = 0; d < m->dim; ++d) {
     within[d] = x[d] - (1 - FITS) * place->gap * place->normal[d];
@@ -70,15 +70,15 @@ static void look_at_wall(Model *m, PetscInt k, PetscBool fits, Worst *inside, Wo
   WallPlace place;
   for (PetscInt p = 0; p < m->points->n; ++p) {
     const PetscReal *x = point_real(m->points, POINT_X, p);
-    PetscReal *reach = point_real(m->points, POINT_REACH, p);
     const int side = wall_side(m->walls, k, m->time, x);
-    if (!wall_near(m->walls, k, m->time, x, fits ? THICKEST * *reach : *reach, side, &place)) continue;
+    if (!wall_near(m->walls, k, m->time, x, contact_farthest(m->points, p), side, &place)) continue;
     if (fits && !m->c->stage && stands_on(m, p, &place))
       point_real(m->points, POINT_CONTACT, p)[k * CONTACT_KEPT(m->dim) + 1] = place.gap;
     take_worse(m, -place.gap, x, inside);
-    if (!fits || place.gap <= THROUGH * m->grid->smallest || place.gap >= *reach) continue;
-    take_worse(m, *reach - place.gap, x, dent);
-    *reach = place.gap;
+    const PetscReal reach = contact_reach_of(m->points, p, place.normal);
+    if (!fits || place.gap <= THROUGH * m->grid->smallest || place.gap >= reach) continue;
+    take_worse(m, reach - place.gap, x, dent);
+    contact_take_back(m->points, p, place.normal, place.gap);
   }
 }
 

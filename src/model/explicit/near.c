@@ -26,7 +26,7 @@ static PetscReal travel_of_wall(const Model *m, const Explicit *e, PetscInt k)
 static PetscBool comes_near(const Model *m, const Explicit *e, PetscInt p, const PetscReal *travel)
 {
   const PetscReal *x = point_real(m->points, POINT_X, p), cell = m->grid->smallest;
-  const PetscReal within = cell + THICKEST * m->points->real[POINT_REACH][p] + APPROACH * cell;
+  const PetscReal within = cell + contact_farthest(m->points, p) + APPROACH * cell;
   WallPlace place;
   for (PetscInt k = 0; k < m->c->n_walls; ++k)
     if (wall_near(m->walls, k, e->time, x, within + travel[k], wall_side(m->walls, k, e->time, x), &place))

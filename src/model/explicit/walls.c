@@ -146,7 +146,7 @@ void walls_follow(Model *m, Explicit *e)
     move_of(m, e, c, move, &lead);
     for (int d = 0; d < 3; ++d) move[d] -= c->swept[d];
     kept[0] = (PetscReal)c->state + CONTACT_SPRING;
-    kept[1] = PetscMax(THINNEST * first, PetscMin(THICKEST * first, c->reach - lead));
+    kept[1] = PetscMax(THINNEST * first, PetscMin(contact_farthest(m->points, c->owner), c->reach - lead));
     keep(m, e, c, move, kept + 2);
     kept[2 + m->dim] = 1;
   }

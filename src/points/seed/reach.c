@@ -3,6 +3,7 @@
 
 #define NEXT 1.5    /* times the distance of the nearest points: layers of a rule are farther apart */
 #define WITHIN 1e-3 /* of the cell: so far inside a side the body is asked for */
+#define ALONG 1e-6  /* square of the sine between sides: these are parallel */
 
 /* From the line or plane of a side: through its first nodes. */
 static PetscReal distance_to_side(const Cell *cell, PetscInt side, const PetscReal *x, const PetscReal *position)
@@ -33,13 +34,53 @@ PetscReal seed_reach(CellType type, const PetscReal *x, const PetscReal *positio
                      const SeedRule *rule, PetscInt q, const unsigned char *outer)
 {
   const Cell *cell = cells + type;
-  PetscReal reach = 0.5 * PetscPowReal(section, 1 / (PetscReal)cell->dim), surface = PETSC_MAX_REAL;
+  const PetscReal half = 0.5 * PetscPowReal(section, 1 / (PetscReal)cell->dim);
+  const PetscBool simplex = (PetscBool)(cell->nodes == cell->dim + 1);
+  PetscReal reach = half, surface = PETSC_MAX_REAL;
   for (PetscInt side = 0; side < cell->faces; ++side) {
     const PetscReal distance = distance_to_side(cell, side, x, position);
     reach = PetscMin(reach, distance);
     if (outer[side] && is_next_to(cell, side, rule, q)) surface = PetscMin(surface, distance);
   }
+  if (!simplex && surface < PETSC_MAX_REAL) return PetscMin(surface, half);
   return surface < PETSC_MAX_REAL ? surface : reach;
+}
+
+/* corner: the nearest place in n planes; `across` are unit vectors, each along all planes before it. It goes on to the
+ * nearest one in another plane, too, which is `away` along its normal; PETSC_FALSE: that is parallel to them. */
+static PetscBool meet_plane(PetscInt dim, PetscInt n, PetscReal across[3][3], const PetscReal *normal, PetscReal away,
+                            PetscReal *corner)
+{
+  PetscReal *next = across[n], square = 0;
+  for (PetscInt d = 0; d < dim; ++d) next[d] = normal[d], away -= normal[d] * corner[d];
+  for (PetscInt k = 0; k < n; ++k) {
+    PetscReal along = 0;
+    for (PetscInt d = 0; d < dim; ++d) along += normal[d] * across[k][d];
+    for (PetscInt d = 0; d < dim; ++d) next[d] -= along * across[k][d];
+  }
+  for (PetscInt d = 0; d < dim; ++d) square += next[d] * next[d];
+  if (square < ALONG) return PETSC_FALSE;
+  for (PetscInt d = 0; d < dim; ++d) corner[d] += away / square * next[d];
+  for (PetscInt d = 0; d < dim; ++d) next[d] /= PetscSqrtReal(square);
+  return PETSC_TRUE;
+}
+
+void seed_corner(CellType type, const PetscReal *x, const PetscReal *position, const SeedRule *rule, PetscInt q,
+                 const unsigned char *outer, PetscReal *corner)
+{
+  const Cell *cell = cells + type;
+  PetscReal across[3][3] = {{0}}, normal[3], at[3] = {0, 0, 0};
+  PetscInt n = 0;
+  for (PetscInt side = 0; side < cell->faces; ++side) {
+    PetscReal square = 0;
+    if (!outer[side] || !is_next_to(cell, side, rule, q)) continue;
+    cell_side_area(type, side, x, normal);
+    for (PetscInt d = 0; d < cell->dim; ++d) square += normal[d] * normal[d];
+    for (PetscInt d = 0; d < cell->dim; ++d) normal[d] /= PetscSqrtReal(square);
+    if (n == cell->dim) return;
+    if (!meet_plane(cell->dim, n++, across, normal, distance_to_side(cell, side, x, position), at)) return;
+  }
+  for (PetscInt d = 0; d < cell->dim; ++d) corner[d] = at[d];
 }
 
 /* Does the body reach side `side` beside a place xi of the cell? */

@@ -283,6 +283,9 @@ static PetscErrorCode SeedPoint(const Seeding *s, Points *points, PetscInt k, co
     seed_domain(grid_cell_type(s->source, cell), x, xi, part && !part->whole ? 0 : rule->side, section,
                 point_real(points, POINT_DOMAIN, p));
   if (s->outer) *point_real(points, POINT_REACH, p) = reach_of(s, k, x, q, position, section, whole);
+  if (points->components[POINT_CORNER] && !part)
+    seed_corner(grid_cell_type(s->source, cell), x, position, rule, q, s->outer + k * CELL_MOST_SIDES,
+                point_real(points, POINT_CORNER, p));
   if (s->faces && (part || s->source != s->grid || !s->equal))
     seed_face(s, cell, x, q, part, s->outer + k * CELL_MOST_SIDES, point_real(points, POINT_FACE, p));
   if (points->components[POINT_SLOPE]) seed_slope(s->body, dim, point_real(points, POINT_SLOPE, p));

@@ -60,10 +60,16 @@ void seed_domain(CellType type, const PetscReal *x, const PetscReal *xi, PetscIn
 
 /* Distance of the q-th point of the rule, at `position` in a cell with nodes at x, from the
  * body's surface: of points next to sides that are `outer` (faces of the cell) the nearest of
- * these. Of others that from the nearest side, at most half the side of a square or cube of its
- * part of the section, or of the volume in space. */
+ * these, where beside a far side of a flat cell is not as near to its others. Of others that from the nearest side. Of
+ * both, but in a simplex of these alone, at most half the side of a square or cube of its part of the section, or of
+ * the volume in space. */
 PetscReal seed_reach(CellType type, const PetscReal *x, const PetscReal *position, PetscReal section,
                      const SeedRule *rule, PetscInt q, const unsigned char *outer);
+
+/* From the same point to these sides, or to the corner or edge where several of them meet; unchanged inside, and where
+ * two of them face each other. */
+void seed_corner(CellType type, const PetscReal *x, const PetscReal *position, const SeedRule *rule, PetscInt q,
+                 const unsigned char *outer, PetscReal *corner);
 
 /* The surface of the q-th point of the cell's rule, with nodes at x: that of its part (NULL: it has all of it), and the
  * sides that are `outer` and that it lies along, as far as they belong to the body. */

@@ -378,7 +378,7 @@ static PetscReal reach_at_end(const Contact *s, const ContactPoint *c, const Nod
   PetscReal reach = c->reach;
   for (PetscInt e = c->first; e < c->first + c->own; ++e)
     for (PetscInt d = 0; d < s->dim; ++d) reach -= c->normal[d] * s->lead[e] * scene->du[s->node[e] * s->dim + d];
-  return PetscMax(THINNEST * first, PetscMin(THICKEST * first, reach));
+  return PetscMax(THINNEST * first, PetscMin(contact_farthest(scene->points, c->owner), reach));
 }
 
 static void mark(const void *data, unsigned char *node)

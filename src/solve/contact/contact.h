@@ -119,19 +119,27 @@ void contact_prepare(Contact *contact, PetscReal t, PetscReal dt, PetscReal iner
 /* What else the room finds: contact points with nodes, and the surface of a part of a body. */
 PetscErrorCode ContactAdd(Contact *contact, ContactPoint **c);
 PetscErrorCode ContactAddNodes(Contact *contact, ContactPoint *c, PetscInt n);
-PetscReal contact_reach(const PetscReal F[9], const PetscReal n[3], PetscReal first);
+PetscReal contact_reach(const PetscReal F[9], const PetscReal n[3], PetscReal first, const PetscReal *corner,
+                        PetscInt dim);
+/* Of material point p, as it is now, and at most, m. */
+PetscReal contact_reach_of(const Points *points, PetscInt p, const PetscReal n[3]);
+PetscReal contact_farthest(const Points *points, PetscInt p);
+/* At the start: it is made to fit, and reaches no farther towards n. */
+void contact_take_back(Points *points, PetscInt p, const PetscReal n[3], PetscReal reach);
 /* What the carrier kept of its contact with a partner. */
 void contact_remember(ContactPoint *c, PetscInt dim, const PetscReal *kept, const PetscReal normal[3]);
-/* Its law, with what that lets it bear along the partner. */
+/* Its law; then its section, m2, and what adheres on that. */
 void contact_take_law(const Contact *contact, const NodalScene *scene, ContactPoint *c);
+void contact_take_section(const Contact *contact, const NodalScene *scene, PetscReal section, ContactPoint *c);
 /* Is a contact point with this gap at the start of the step none? Says whether it touches. */
 PetscBool contact_passes(const Contact *contact, ContactPoint *c, PetscReal gap, PetscBool first);
 /* Collective. Those between bodies. */
 PetscErrorCode ContactFindBodies(Contact *contact, const NodalScene *scene);
-/* contact_section.c. Surface that material point p stands for before a wall with the normal n, m2. */
-PetscReal contact_section(const NodalScene *scene, PetscInt p, const PetscReal n[3]);
-/* Of the surface of its body that material point p was given (POINT_FACE) what looks at a wall with the normal n, as
- * the body is now, m2 (in rings m); 0: none. */
+/* contact_section.c. Surface that material point p stands for before a wall with the normal n, as the point is now, m2.
+ * radius: of the point and of that surface, m. */
+PetscReal contact_section(const NodalScene *scene, PetscInt p, const PetscReal n[3], const PetscReal radius[2]);
+/* Of the surface of its body that material point p was given (POINT_FACE) what looks at a wall with the normal n now,
+ * as large as it was at the start, m2 (in rings m); 0: none. */
 PetscReal contact_face(const Points *points, PetscInt p, const PetscReal n[3]);
 /* Position of a contact point with the field's increments, times `whole`. */
 void contact_place(const Contact *contact, const ContactPoint *c, const PetscReal *du, PetscReal whole, PetscReal x[3]);

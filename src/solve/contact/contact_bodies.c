@@ -72,8 +72,7 @@ static PetscErrorCode Meet(Contact *s, const NodalScene *scene, const NodeFinder
   PetscFunctionBeginUser;
   PetscCall(ContactAdd(s, &c));
   c->owner = p->owner, c->wall = partner;
-  c->reach = kept[1] > 0 ? kept[1] : contact_reach(p->F, pair->normal, p->reach);
-  c->section = contact_section(scene, p->owner, pair->normal);
+  c->reach = kept[1] > 0 ? kept[1] : contact_reach(p->F, pair->normal, p->first, p->corner, 2);
   c->modulus[0] = p->modulus, c->density[0] = p->density;
   c->stiffer = PetscMax(p->stiffer, pair->other->stiffer);
   c->modulus[1] = pair->other->modulus, c->density[1] = pair->other->density;
@@ -85,6 +84,7 @@ static PetscErrorCode Meet(Contact *s, const NodalScene *scene, const NodeFinder
     PetscFunctionReturn(0);
   }
   for (PetscInt d = 0; d < s->dim; ++d) c->x[d] = p->x[d] - c->reach * pair->normal[d];
+  contact_take_section(s, scene, contact_section(scene, p->owner, pair->normal, (PetscReal[]){p->x[0], c->x[0]}), c);
   PetscCall(ContactAddNodes(s, c, p->n + pair->other->n));
   c->own = p->n;
   PetscCall(Carry(s, c, f, p, 1, 0));

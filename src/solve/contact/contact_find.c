@@ -6,13 +6,44 @@
 #define TOUCHES 1e-6
 
 /* Thickness of the material point's part of the body towards n: planes of the undeformed body along
- * its surface, of which those r apart are r |F^T n| apart now. */
-PetscReal contact_reach(const PetscReal F[9], const PetscReal n[3], PetscReal first)
+ * its surface, of which those r apart are r |F^T n| apart now; or as far as the place on that which it stands beside. */
+PetscReal contact_reach(const PetscReal F[9], const PetscReal n[3], PetscReal first, const PetscReal *corner,
+                        PetscInt dim)
 {
-  PetscReal square = 0;
-  for (int j = 0; j < 3; ++j) square += PetscSqr(F[j] * n[0] + F[3 + j] * n[1] + F[6 + j] * n[2]);
+  PetscReal square = 0, ahead = 0, away = 0;
+  for (int j = 0; j < 3; ++j) {
+    const PetscReal pulled = F[j] * n[0] + F[3 + j] * n[1] + F[6 + j] * n[2];
+    square += PetscSqr(pulled);
+    if (j < dim) ahead -= corner[j] * pulled, away += PetscSqr(corner[j]);
+  }
   const PetscReal stretch = PetscMax(THINNEST, PetscMin(THICKEST, PetscSqrtReal(square)));
-  return stretch * first;
+  return PetscMax(stretch * first, PetscMin(THICKEST * PetscSqrtReal(away), ahead));
+}
+
+PetscReal contact_reach_of(const Points *points, PetscInt p, const PetscReal n[3])
+{
+  PetscReal F[9];
+  point_F(points, p, F);
+  return contact_reach(F, n, points->real[POINT_REACH][p], point_real(points, POINT_CORNER, p), points->dim);
+}
+
+/* Nothing has sheared yet. */
+void contact_take_back(Points *points, PetscInt p, const PetscReal n[3], PetscReal reach)
+{
+  PetscReal F[9], *corner = point_real(points, POINT_CORNER, p), ahead = 0;
+  point_F(points, p, F);
+  reach /= F[0];
+  for (PetscInt d = 0; d < points->dim; ++d) ahead -= corner[d] * n[d];
+  for (PetscInt d = 0; d < points->dim && ahead > reach; ++d) corner[d] += (ahead - reach) * n[d];
+  points->real[POINT_REACH][p] = PetscMin(points->real[POINT_REACH][p], reach);
+}
+
+PetscReal contact_farthest(const Points *points, PetscInt p)
+{
+  const PetscReal *corner = point_real(points, POINT_CORNER, p);
+  PetscReal square = 0;
+  for (PetscInt d = 0; d < points->dim; ++d) square += PetscSqr(corner[d]);
+  return THICKEST * PetscMax(points->real[POINT_REACH][p], PetscSqrtReal(square));
 }
 
 PetscErrorCode ContactAdd(Contact *s, ContactPoint **c)
@@ -55,15 +86,29 @@ void contact_remember(ContactPoint *c, PetscInt dim, const PetscReal *kept, cons
   for (int d = 0; d < 3; ++d) c->normal[d] = c->facing[d] = normal[d];
 }
 
+/* By what the strength of the contact is divided; 0: of what sticks until it yields. */
+static PetscReal divisor_of(const Contact *s, const NodalScene *scene, const ContactPoint *c)
+{
+  return s->divisor[c->wall * scene->c->n_bodies + scene->points->body[c->owner]];
+}
+
 void contact_take_law(const Contact *s, const NodalScene *scene, ContactPoint *c)
 {
   const WallSpec *w = c->wall < s->n_walls ? scene->c->walls + c->wall : NULL;
   const InterfaceSpec *i = w ? NULL : scene->c->interfaces + (c->wall - s->n_walls);
-  const PetscReal friction = w ? w->friction : i->friction, adhesion = w ? w->adhesion : i->adhesion;
-  const PetscReal divisor = s->divisor[c->wall * scene->c->n_bodies + scene->points->body[c->owner]];
+  const PetscReal friction = w ? w->friction : i->friction, divisor = divisor_of(s, scene, c);
   c->law = (ContactLaw){.kind = w ? w->contact : i->contact};
   c->law.friction = c->law.kind == CONTACT_STICK || divisor == 0 ? CONTACT_STICKING : friction / divisor;
-  c->bond = divisor > 0 ? adhesion / divisor * c->section : 0;
+}
+
+void contact_take_section(const Contact *s, const NodalScene *scene, PetscReal section, ContactPoint *c)
+{
+  const PetscBool wall = c->wall < s->n_walls;
+  const PetscReal divisor = divisor_of(s, scene, c);
+  const PetscReal adhesion =
+    wall ? scene->c->walls[c->wall].adhesion : scene->c->interfaces[c->wall - s->n_walls].adhesion;
+  c->section = section;
+  c->bond = divisor > 0 ? adhesion / divisor * section : 0;
 }
 
 /* A bonded interface holds what touches at the start, and nothing that comes later. */
@@ -92,10 +137,8 @@ static PetscBool meets_body(const Case *c, PetscInt k, PetscInt body)
 static PetscReal present_reach(const NodalScene *scene, PetscInt p, const PetscReal *kept, const WallPlace *place)
 {
   const PetscBool sprung = contact_is_sprung(kept[0]) && scene->c->analysis.type != ANALYSIS_EXPLICIT;
-  PetscReal F[9];
   if (kept[1] > 0) return sprung ? PetscMin(kept[1], place->gap) : kept[1];
-  point_F(scene->points, p, F);
-  return contact_reach(F, place->normal, scene->points->real[POINT_REACH][p]);
+  return contact_reach_of(scene->points, p, place->normal);
 }
 
 /* The surface of a point, `at` in group g of the support, before wall k. */
@@ -111,15 +154,13 @@ static PetscErrorCode MeetPoint(Contact *s, const NodalScene *scene, PetscInt g,
 
   PetscFunctionBeginUser;
   if (!meets_body(scene->c, k, points->body[p])) PetscFunctionReturn(0);
-  if (!wall_near(s->walls, k, scene->t, x, s->near + THICKEST * points->real[POINT_REACH][p], side, &place))
-    PetscFunctionReturn(0);
+  if (!wall_near(s->walls, k, scene->t, x, s->near + contact_farthest(points, p), side, &place)) PetscFunctionReturn(0);
   const PetscReal reach = present_reach(scene, p, kept + k * CONTACT_KEPT(dim), &place);
   const PetscInt nn = support_nodes(scene->support, g), *node = scene->support->node + scene->support->node_start[g];
   const PetscReal *N = support_N(scene->support, g, at), *dN = support_dN(scene->support, g, at, dim);
   PetscCall(ContactAdd(s, &c));
   c->owner = p, c->wall = k, c->side = side;
   c->reach = reach;
-  c->section = contact_section(scene, p, place.normal);
   c->modulus[0] = material->wave_modulus, c->density[0] = material->density;
   c->stiffer = material_confined(material) / material->wave_modulus;
   contact_take_law(s, scene, c);
@@ -134,6 +175,7 @@ static PetscErrorCode MeetPoint(Contact *s, const NodalScene *scene, PetscInt g,
   c->touches = c->touches && !c->gone;
   PetscCall(ContactAddNodes(s, c, nn));
   for (PetscInt d = 0; d < dim; ++d) c->x[d] = x[d] - reach * place.normal[d];
+  contact_take_section(s, scene, contact_section(scene, p, place.normal, (PetscReal[]){x[0], c->x[0]}), c);
   for (PetscInt I = 0; I < nn; ++I) {
     PetscReal change = 0;
     for (PetscInt d = 0; d < dim; ++d) change -= dN[I * dim + d] * reach * place.normal[d];

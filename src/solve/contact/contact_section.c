@@ -26,6 +26,12 @@ static PetscReal shadow(CellType type, const PetscReal *x, const PetscReal n[3])
   return sum;
 }
 
+/* F^T n: across planes of the undeformed body that look at n now, and as much longer as they are nearer now. */
+static void pull_back(const PetscReal F[9], const PetscReal n[3], PetscReal N[3])
+{
+  for (int i = 0; i < 3; ++i) N[i] = F[i] * n[0] + F[3 + i] * n[1] + F[6 + i] * n[2];
+}
+
 PetscReal contact_face(const Points *points, PetscInt p, const PetscReal n[3])
 {
   const PetscInt dim = points->components[POINT_FACE];
@@ -33,50 +39,73 @@ PetscReal contact_face(const Points *points, PetscInt p, const PetscReal n[3])
   if (!dim) return 0;
   const PetscReal *face = point_real(points, POINT_FACE, p);
   point_F(points, p, F);
-  for (int i = 0; i < 3; ++i) {
-    N[i] = F[i] * n[0] + F[3 + i] * n[1] + F[6 + i] * n[2];
-    length += N[i] * N[i];
-  }
+  pull_back(F, n, N);
+  for (int i = 0; i < 3; ++i) length += N[i] * N[i];
   for (PetscInt d = 0; d < dim; ++d) along -= N[d] * face[d];
-  const PetscReal grown = PetscPowReal(points->real[POINT_J][p], (PetscReal)(dim - 1) / (PetscReal)dim);
-  return PetscMax(0, along / PetscSqrtReal(length) * grown);
+  return PetscMax(0, along / PetscSqrtReal(length));
 }
 
-/* Was the point given some of its body's surface, and is that where it was? */
-static PetscBool knows_its_face(const Points *points, PetscInt p)
+/* Has its matter flowed? Then nobody knows where a surface looks that it had. */
+static PetscBool is_torn(const NodalScene *scene, PetscInt p)
 {
-  const PetscInt dim = points->components[POINT_FACE];
-  PetscReal F[9], given = 0, most = 0;
-  if (!dim) return PETSC_FALSE;
+  const Points *points = scene->points;
+  PetscReal F[9], most = 0;
+  if (!scene->passes || !scene->materials[points->material[p]].law->yields) return PETSC_FALSE;
   point_F(points, p, F);
-  for (PetscInt d = 0; d < dim; ++d) given += PetscAbsReal(point_real(points, POINT_FACE, p)[d]);
   for (int i = 0; i < 3; ++i)
     for (int j = i; j < 3; ++j) {
       PetscReal C = i == j ? -1 : 0;
       for (int k = 0; k < 3; ++k) C += F[3 * k + i] * F[3 * k + j];
       most = PetscMax(most, PetscAbsReal(C));
     }
-  return (PetscBool)(given > 0 && most < TORN);
+  return (PetscBool)(most >= TORN);
+}
+
+/* Was the point given some of its body's surface? */
+static PetscBool knows_its_face(const Points *points, PetscInt p)
+{
+  PetscReal given = 0;
+  for (PetscInt d = 0; d < points->components[POINT_FACE]; ++d)
+    given += PetscAbsReal(point_real(points, POINT_FACE, p)[d]);
+  return (PetscBool)(given > 0);
+}
+
+/* A piece of matter in the section (in space: of it), of the volume of the point, and by how much more a surface of it
+ * that looks at n is than such a piece has: Nanson's J |F^-T N|, N along F^T n, of a piece as it was at the start. In
+ * the plane that is a length, whatever the thickness, or the circle, has grown by. Of what has flowed it is one that
+ * has no shape, as it is now. */
+static PetscReal piece_of(const Points *points, PetscInt p, const PetscReal n[3], PetscBool torn, PetscReal *grown)
+{
+  static const PetscReal none[3] = {0, 0, 0};
+  const PetscReal J = points->real[POINT_J][p], volume = points->real[POINT_VOLUME][p];
+  PetscReal F[9];
+  *grown = 1;
+  if (torn) return J * volume;
+  point_F(points, p, F);
+  const PetscReal thicker = points->dim == 2 ? F[8] : 1;
+  *grown = J / (thicker * contact_reach(F, n, 1, none, 0));
+  return thicker * volume;
 }
 
 /* What of its body's surface the point was given, if it was. Else a part of the point's volume
  * that has the shape of its cell; without one, of a square or cube. */
-PetscReal contact_section(const NodalScene *scene, PetscInt p, const PetscReal n[3])
+PetscReal contact_section(const NodalScene *scene, PetscInt p, const PetscReal n[3], const PetscReal radius[2])
 {
   const Grid *grid = scene->grid;
   const Points *points = scene->points;
   const BodySpec *body = scene->c->bodies + points->body[p];
-  const PetscReal round = kinematics_weight(scene->c->kinematics, point_real(points, POINT_X, p)[0]); /* of the ring */
-  const PetscReal volume = points->real[POINT_J][p] * points->real[POINT_VOLUME][p] / round;
   const PetscReal power = (PetscReal)(grid->dim - 1) / (PetscReal)grid->dim;
+  const PetscBool torn = is_torn(scene, p);
+  PetscReal x[CELL_MAX_NODES * 3], grown;
+  const PetscReal volume = piece_of(points, p, n, torn, &grown) / kinematics_weight(scene->c->kinematics, radius[0]);
   const PetscReal square = PetscPowReal(volume, power), face = contact_face(points, p, n);
-  PetscReal x[CELL_MAX_NODES * 3];
-  if (face > 0 || knows_its_face(points, p)) return PetscMax(face, LEAST * square) * round;
-  if (grid->cloud || points->cell[p] < 0 || body->mesh) return square * round;
+  grown *= kinematics_weight(scene->c->kinematics, PetscMax(radius[1], LEAST * radius[0]));
+  if (face > 0 || (knows_its_face(points, p) && !torn)) return PetscMax(face, LEAST * square) * grown;
+  if (grid->cloud || points->cell[p] < 0 || body->mesh) return square * grown;
   const Cell *cell = grid_cell(grid, points->cell[p]);
   grid_cell_x(grid, points->cell[p], x);
   const PetscReal whole = cell_volume(grid_cell_type(grid, points->cell[p]), x);
   const PetscReal share = (PetscReal)body->points_per_cell * volume / whole;
   return shadow(grid_cell_type(grid, points->cell[p]), x, n) / points_at_side(cell, body->points_per_cell) *
-         PetscPowReal(share, power) * round;
+         PetscPowReal(share, power) * grown;
 }

@@ -12,7 +12,8 @@ typedef struct {
   PetscInt64 id;
   PetscInt rank, owner; /* its rank, and its index there */
   PetscReal x[3], F[9];
-  PetscReal reach;            /* POINT_REACH, m */
+  PetscReal first, corner[2]; /* POINT_REACH, POINT_CORNER, m */
+  PetscReal reach;            /* what strain has made of the first on the whole, m */
   PetscReal size;             /* side of a square of its part of the section, m */
   PetscReal modulus, density; /* of its material, Pa, kg/m3 */
   PetscReal stiffer;          /* see ContactPoint */

@@ -28,21 +28,22 @@ static PetscBool is_near(const PetscReal *x, PetscInt dim, const PetscReal *box,
 static void describe(const SurfaceInput *in, PetscInt p, SurfacePoint *s)
 {
   const Points *points = in->points;
-  const PetscReal *x = point_real(points, POINT_X, p);
+  const PetscReal *x = point_real(points, POINT_X, p), weight = kinematics_weight(in->kinematics, x[0]);
   const Material *material = in->materials + points->material[p];
   PetscMPIInt rank;
   MPI_Comm_rank(in->comm, &rank);
   *s = (SurfacePoint){.id = points->id[p],
                       .rank = rank,
                       .owner = p,
-                      .reach = points->real[POINT_REACH][p],
+                      .first = points->real[POINT_REACH][p],
                       .modulus = material->wave_modulus,
                       .stiffer = material_confined(material) / material->wave_modulus,
                       .density = material->density};
   for (PetscInt d = 0; d < points->dim; ++d) s->x[d] = x[d];
+  for (PetscInt d = 0; d < 2; ++d) s->corner[d] = point_real(points, POINT_CORNER, p)[d];
   point_F(points, p, s->F);
-  s->size =
-    PetscSqrtReal(points->real[POINT_J][p] * points->real[POINT_VOLUME][p] / kinematics_weight(in->kinematics, x[0]));
+  s->reach = s->first * PetscSqrtReal(points->real[POINT_J][p] / s->F[8]);
+  s->size = PetscSqrtReal(points->real[POINT_J][p] * points->real[POINT_VOLUME][p] / weight);
 }
 
 static PetscErrorCode Carriers(const SurfaceInput *in, PetscInt g, SurfacePoint *s)

@@ -207,7 +207,7 @@ static PetscBool choose(const Part *b, const SurfacePoint *p, SurfacePair *pair)
     const SurfacePoint *q = b->point[k];
     offset(p, q, pair->normal, &along, &across);
     if (across > 0.5 * (p->size + q->size)) continue;
-    const PetscReal gap = along - contact_reach(q->F, pair->normal, q->reach);
+    const PetscReal gap = along - contact_reach(q->F, pair->normal, q->first, q->corner, 2);
     const PetscReal key = gap + OUTSTANDING * across * across / q->size;
     if (key >= least) continue;
     least = key;

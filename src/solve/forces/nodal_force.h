@@ -30,7 +30,8 @@ typedef struct {
   PetscReal t;           /* with these increments, s */
   /* increments of the whole step over du, and its end, s: of schemes that balance in the middle */
   PetscReal whole, end;
-  PetscBool first; /* is it the first step of all? */
+  PetscBool first;  /* is it the first step of all? */
+  PetscBool passes; /* does matter go through cells, or points of a cloud, that stay? */
   const Material *materials;
   struct Contact *contact; /* NULL: there are no walls */
   const Loads *loads;
