@@ -268,6 +268,68 @@ static void test_slope(void **state)
     }
 }
 
+/* --- beside walls --- */
+typedef struct {
+  const char *method, *basis;
+  const Kinematics *kinematics;
+  AnalysisType type;
+  PetscBool floor; /* is it a wall that bears the weight, too? */
+} Walled;
+
+/* What is given is in balance: walls bear what the boundary would, and nothing moves. */
+static void stand_between(const Walled *r)
+{
+  Bench b;
+  WallSpec walls[2] = {{.name = (char *)"side", .shape = {.kind = SHAPE_HALF_SPACE, .point = {1}, .normal = {-1}}},
+                       {.name = (char *)"floor",
+                        .shape = {.kind = SHAPE_HALF_SPACE, .normal = {0, 1}},
+                        .contact = CONTACT_FRICTION,
+                        .friction = 0.5}};
+  const PetscReal round = r->kinematics->hoop ? 2 * PETSC_PI : 1;
+  PetscReal moved = 0, start[1] = {0}, whole[1] = {1};
+  ground(&b, r->method, CELL_QUADRILATERAL, 0.25, (PetscReal[]){1.5, 1.5, 0});
+  b.c.kinematics = r->kinematics;
+  b.c.analysis.type = r->type;
+  b.c.analysis.step = b.c.analysis.largest = r->type == ANALYSIS_STATIC ? 1 : 5e-3;
+  b.c.gravity_amplitude = (Amplitude){.n = 1, .time = start, .value = whole};
+  b.c.basis.kind = r->basis;
+  b.constants[0].value = 1e5; /* it is shorter by a tenth than without its weight */
+  b.body[0].shape = (Shape){.kind = SHAPE_BOX, .max = {1, 1, 0}};
+  if (!strcmp(r->method, "mpm")) b.c.grid.min[1] = -0.5, b.c.grid.counts[1] += 2;
+  bench_motion(&b, 0, 0, MOTION_FIXED, 1);
+  if (!r->floor) bench_motion(&b, 1, 0, MOTION_FIXED, 2);
+  b.c.n_walls = r->floor ? 2 : 1;
+  b.c.walls = walls;
+  Model *m = bench_model(&b, PETSC_COMM_WORLD);
+  const PetscReal weight = 10 * model_sum(m, "mass: total", 0), thrust = -round * 2500;
+  for (int k = 0; k < 3 && m->time < 1; ++k) model_step(m, 1);
+  const PetscReal side = model_wall(m, "side", "wall_force", NULL, 0),
+                  floor = r->floor ? model_wall(m, "floor", "wall_force", NULL, 1) : weight;
+  for (PetscInt k = 0; k < m->points->n * 2; ++k) moved = PetscMax(moved, PetscAbsReal(m->points->real[POINT_U][k]));
+  moved = model_max(m, moved);
+  PetscPrintf(PETSC_COMM_WORLD, "%s %s %s %d: thrust %.9g of %.9g N, floor %.9g of %.9g, moved %.2g m\n", r->method,
+              r->basis, r->kinematics->name, (int)r->type, (double)side, (double)thrust, (double)floor, (double)weight,
+              (double)moved);
+  CHECK_CLOSE(side, thrust, -1e-6 * thrust);
+  CHECK_CLOSE(floor, weight, 1e-6 * weight);
+  CHECK(moved < 1e-9, "moved by %g m", (double)moved);
+  CALL(ModelDestroy(&m));
+}
+
+static void test_walls(void **state)
+{
+  const Kinematics *plane = &kinematics_plane_strain, *ring = &kinematics_axisymmetric;
+  const Walled cases[] = {
+    {"fem", "cell", plane, ANALYSIS_STATIC, PETSC_FALSE},  {"mpm", "gimp", plane, ANALYSIS_STATIC, PETSC_FALSE},
+    {"fem", "cell", plane, ANALYSIS_STATIC, PETSC_TRUE},   {"mpm", "cell", plane, ANALYSIS_STATIC, PETSC_TRUE},
+    {"mpm", "gimp", plane, ANALYSIS_DYNAMIC, PETSC_TRUE},  {"fem", "cell", plane, ANALYSIS_DYNAMIC, PETSC_TRUE},
+    {"mpm", "cell", plane, ANALYSIS_DYNAMIC, PETSC_FALSE}, {"fem", "cell", ring, ANALYSIS_STATIC, PETSC_FALSE},
+    {"mpm", "cell", ring, ANALYSIS_STATIC, PETSC_TRUE},
+  };
+  (void)state;
+  EACH_OF (k, cases) stand_between(&cases[k]);
+}
+
 int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {
@@ -279,6 +341,7 @@ int main(int argc, char **argv)
     cmocka_unit_test(test_oblique),
     cmocka_unit_test(test_gravity_at_the_start),
     cmocka_unit_test(test_slope),
+    cmocka_unit_test(test_walls),
   };
   return run_model_tests(argc, argv, tests);
 }

@@ -48,6 +48,15 @@ PetscErrorCode EquilibriumPrepare(Model *m, StepProblem *p)
 
 PetscBool equilibrium_stays(const Model *m) { return m->initial.seeking && m->c->initial.reset; }
 
+/* The surface of what stays where it is stays, too. */
+static void keep_surface(Model *m)
+{
+  const Contact *s = m->contact;
+  for (PetscInt k = 0; s && k < s->n; ++k)
+    point_real(m->points, POINT_CONTACT, s->point[k].owner)[s->point[k].wall * CONTACT_KEPT(m->dim) + 1] =
+      s->point[k].reach;
+}
+
 /* Points that stay where they are keep their volume: the J of their strain belongs to a smaller or larger
  * undeformed one. The largest increment is what the round has moved. */
 static PetscErrorCode Close(Model *m, const PetscReal *J)
@@ -57,6 +66,7 @@ static PetscErrorCode Close(Model *m, const PetscReal *J)
   PetscFunctionBeginUser;
   for (PetscInt p = 0; p < m->points->n && m->c->initial.reset; ++p)
     point_compress(m->points, p, J[p], m->points->real[POINT_J][p]);
+  if (m->c->initial.reset) keep_surface(m);
   PetscCall(LargestIncrement(m, &moved));
   m->initial.moved += moved;
   m->initial.parts += 1;

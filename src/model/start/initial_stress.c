@@ -79,11 +79,14 @@ static StressOutcome carry(const Material *material, PetscBool shape, const Pets
 void point_compress(Points *points, PetscInt p, PetscReal before, PetscReal J)
 {
   const PetscReal stretch = PetscPowReal(J, 1.0 / 3.0), F[9] = {stretch, 0, 0, 0, stretch, 0, 0, 0, stretch};
+  const PetscReal longer = PetscPowReal(before / J, 1.0 / 3.0), wider = points->dim == 2 ? longer : longer * longer;
   point_set_F(points, p, F);
   points->real[POINT_J][p] = J;
   points->real[POINT_VOLUME][p] *= before / J;
-  for (PetscInt d = 0; d < points->components[POINT_DOMAIN]; ++d)
-    point_real(points, POINT_DOMAIN, p)[d] *= PetscPowReal(before / J, 1.0 / 3.0);
+  for (PetscInt d = 0; d < points->components[POINT_DOMAIN]; ++d) point_real(points, POINT_DOMAIN, p)[d] *= longer;
+  for (PetscInt d = 0; d < points->components[POINT_FACE]; ++d) point_real(points, POINT_FACE, p)[d] *= wider;
+  for (PetscInt d = 0; d < points->components[POINT_CORNER]; ++d) point_real(points, POINT_CORNER, p)[d] *= longer;
+  if (points->components[POINT_REACH]) points->real[POINT_REACH][p] *= longer;
 }
 
 /* Shape alone carries the deviator, the pressure the mean: nothing is compressed. */
@@ -95,7 +98,10 @@ static StressOutcome stress_incompressible(Points *points, PetscInt p, const Mat
   PetscReal deviator[6];
   for (int k = 0; k < 6; ++k) deviator[k] = sigma[k] - (k < 3 ? mean : 0);
   points->real[POINT_PRESSURE][p] = mean;
-  return carry(material, PETSC_TRUE, deviator, &c);
+  const StressOutcome outcome = carry(material, PETSC_TRUE, deviator, &c);
+  for (int k = 0; k < 3; ++k) c.tau[k] += mean;
+  point_set_tau(points, p, c.tau);
+  return outcome;
 }
 
 StressOutcome stress_point(Points *points, PetscInt p, const Material *material, const PetscReal sigma[6])
@@ -109,6 +115,7 @@ StressOutcome stress_point(Points *points, PetscInt p, const Material *material,
   const StressOutcome outcome = carry(material, PETSC_FALSE, sigma, &c);
   if (outcome == STRESS_REFUSED || product(sigma, sigma) == 0) return outcome;
   if (points->components[POINT_PRESSURE]) points->real[POINT_PRESSURE][p] = pressure_of_state(material, c.state, c.tau);
+  point_set_tau(points, p, c.tau);
   point_compress(points, p, 1, c.J);
   return outcome;
 }

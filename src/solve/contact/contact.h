@@ -131,6 +131,8 @@ void contact_remember(ContactPoint *c, PetscInt dim, const PetscReal *kept, cons
 /* Its law; then its section, m2, and what adheres on that. */
 void contact_take_law(const Contact *contact, const NodalScene *scene, ContactPoint *c);
 void contact_take_section(const Contact *contact, const NodalScene *scene, PetscReal section, ContactPoint *c);
+/* What touches at the start is pressed by the stress that the material was given; of carriers that kept nothing. */
+void contact_start(const NodalScene *scene, ContactPoint *c);
 /* Is a contact point with this gap at the start of the step none? Says whether it touches. */
 PetscBool contact_passes(const Contact *contact, ContactPoint *c, PetscReal gap, PetscBool first);
 /* Collective. Those between bodies. */

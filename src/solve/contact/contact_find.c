@@ -124,6 +124,42 @@ PetscBool contact_passes(const Contact *s, ContactPoint *c, PetscReal gap, Petsc
   return gap > s->near || is_let_go(c, first);
 }
 
+/* Force on the material before the contact point by the stress that it has, and by its weight beyond that. */
+static void force_of_stress(const NodalScene *scene, const ContactPoint *c, PetscReal f[3])
+{
+  const Points *points = scene->points;
+  const PetscInt p = c->owner;
+  const PetscReal J = points->real[POINT_J][p], density = points->real[POINT_MASS][p] / points->real[POINT_VOLUME][p];
+  const PetscReal factor = case_factor(scene->c, &scene->c->gravity_amplitude, scene->t);
+  PetscReal tau[6], beyond = 0;
+  point_tau(points, p, tau);
+  for (int d = 0; d < 3; ++d) beyond -= density * c->reach * factor * scene->c->gravity[d] * c->normal[d];
+  for (int d = 0; d < 3; ++d) f[d] = beyond * c->normal[d];
+  for (int k = 0; k < 6; ++k) {
+    const int i = voigt_row[k], j = voigt_column[k];
+    f[i] -= tau[k] * c->normal[j];
+    if (i != j) f[j] -= tau[k] * c->normal[i];
+  }
+  for (int d = 0; d < 3; ++d) f[d] *= c->section / J;
+}
+
+void contact_start(const NodalScene *scene, ContactPoint *c)
+{
+  const BodySpec *body = scene->c->bodies + scene->points->body[c->owner];
+  const PetscBool rubs = c->law.kind != CONTACT_FRICTIONLESS;
+  PetscReal f[3], pressure = 0, square = 0;
+  if (!scene->first || !c->touches || c->before != CONTACT_OPEN || !body_has_stress(body)) return;
+  force_of_stress(scene, c, f);
+  for (int d = 0; d < 3; ++d) pressure += f[d] * c->normal[d];
+  if (pressure <= 0) return;
+  for (int d = 0; d < 3; ++d) f[d] -= pressure * c->normal[d], square += f[d] * f[d];
+  const PetscReal most = c->law.kind == CONTACT_FRICTION ? c->law.friction * pressure : CONTACT_STICKING * pressure;
+  const PetscReal part = rubs && square > 0 ? PetscMin(1, most / PetscSqrtReal(square)) : 0;
+  for (int d = 0; d < 3; ++d) c->last[d] = pressure * c->normal[d] + part * f[d];
+  c->before = c->state = rubs ? CONTACT_STICKS : CONTACT_SLIDES;
+  c->stays = 1;
+}
+
 static PetscBool meets_body(const Case *c, PetscInt k, PetscInt body)
 {
   const WallSpec *w = c->walls + k;
@@ -176,6 +212,7 @@ static PetscErrorCode MeetPoint(Contact *s, const NodalScene *scene, PetscInt g,
   PetscCall(ContactAddNodes(s, c, nn));
   for (PetscInt d = 0; d < dim; ++d) c->x[d] = x[d] - reach * place.normal[d];
   contact_take_section(s, scene, contact_section(scene, p, place.normal, (PetscReal[]){x[0], c->x[0]}), c);
+  if (kept[k * CONTACT_KEPT(dim)] == 0 && !c->gone) contact_start(scene, c);
   for (PetscInt I = 0; I < nn; ++I) {
     PetscReal change = 0;
     for (PetscInt d = 0; d < dim; ++d) change -= dN[I * dim + d] * reach * place.normal[d];
