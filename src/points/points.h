@@ -44,8 +44,8 @@ typedef enum {
    * m; nothing inside, and where the surface cuts cells: dim where there are walls, otherwise 0 components */
   POINT_CORNER,
   /* the part of its body's surface that it stands for, at the start, as a vector outwards, m2 (in rings m, of the
-   * section); nothing where whole cells of the grid say it: dim where there are walls and cells do not go with the
-   * material, otherwise 0 components */
+   * section); nothing where whole cells of the grid say it, which the material goes through: dim where there are walls,
+   * otherwise 0 components */
   POINT_FACE,
   /* of each wall, what it did to the point in the last step: state and forces (solve/contact), N; 0
    * components where there are none */
