@@ -234,7 +234,6 @@ static PetscErrorCode Carry(Discretisation *s, const BasisInput *in, Support *ca
   const BasisInput plain = {.spec = in->spec, .grid = in->grid, .rim = in->rim};
 
   PetscFunctionBeginUser;
-  if (!s->basis->carries) PetscFunctionReturn(0);
   s->loads->support = carried;
   PetscCall(PointsSort(s->loads->carriers));
   PetscCall(s->basis->support(&plain, s->loads->carriers, carried));
@@ -244,7 +243,7 @@ static PetscErrorCode Carry(Discretisation *s, const BasisInput *in, Support *ca
 PetscErrorCode DiscretisationCarry(Discretisation *s, const BasisInput *in)
 {
   PetscFunctionBeginUser;
-  PetscCall(Carry(s, in, s->extension->carried));
+  if (s->basis->carries) PetscCall(Carry(s, in, s->extension->carried));
   PetscFunctionReturn(0);
 }
 
@@ -256,7 +255,7 @@ PetscErrorCode DiscretisationExtend(Discretisation *s, const BasisInput *in)
   if (!s->extension) PetscCall(ExtensionCreate(s, &s->extension));
   Extension *e = s->extension;
   PetscCheck(e, PETSC_COMM_SELF, PETSC_ERR_PLIB, "no extension");
-  PetscCall(Carry(s, in, e->carried));
+  if (s->basis->carries) PetscCall(Carry(s, in, e->carried));
   PetscCall(Fill(s, e->fill));
   PetscCall(PetscArrayzero(e->ways, s->grid->n_nodes));
   e->any = PETSC_FALSE;
