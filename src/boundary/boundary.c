@@ -74,6 +74,15 @@ static void report_contradiction(const Boundary *b, const Grid *grid, PetscInt n
   diag_hint(diag, "leave the node out of one of the two selections");
 }
 
+/* Does the entry take a dof over from the one that has it? Sides push along their normals: a floor that holds x and y,
+ * and a side that does, share the nodes of their edge so. */
+static PetscBool takes_over(const Boundary *b, const Grid *grid, PetscInt entry, PetscInt node, PetscInt d)
+{
+  const PetscInt has = b->entry[node * b->dim + d];
+  if (entry == boundary_axis(b) || b->motion[entry].faces != d || b->motion[has].faces == d) return PETSC_FALSE;
+  return motions_agree(b->c, entry_of(b, entry), entry_of(b, has), grid->x + node * b->dim, d);
+}
+
 /* Mark the dofs of one entry; the first contradiction with an earlier entry is reported (diag NULL:
  * they were sought before). */
 static void mark_entry(Boundary *b, const Grid *grid, PetscInt entry, Diag *diag)
@@ -90,7 +99,7 @@ static void mark_entry(Boundary *b, const Grid *grid, PetscInt entry, Diag *diag
         report_contradiction(b, grid, node, d, entry, diag);
         reported = PETSC_TRUE;
       }
-      if (!b->fixed[i]) b->entry[i] = entry;
+      if (!b->fixed[i] || takes_over(b, grid, entry, node, d)) b->entry[i] = entry;
       b->fixed[i] = 1;
     }
   }
@@ -120,6 +129,32 @@ static PetscErrorCode CheckSelection(const Boundary *b, const Grid *grid, PetscI
   PetscFunctionReturn(0);
 }
 
+#define FLAT 1e-9 /* of the grid's size */
+
+/* Collective. Which way its nodes face. */
+static PetscErrorCode FindFaces(const Grid *grid, MotionNodes *motion)
+{
+  PetscReal low[6], all[6];
+  PetscInt flat = 0;
+
+  PetscFunctionBeginUser;
+  for (int i = 0; i < 6; ++i) low[i] = PETSC_MAX_REAL; /* of x, and of -x */
+  for (PetscInt k = 0; k < motion->n; ++k)
+    for (PetscInt d = 0; d < grid->dim; ++d) {
+      const PetscReal x = grid->x[motion->node[k] * grid->dim + d];
+      low[d] = PetscMin(low[d], x), low[3 + d] = PetscMin(low[3 + d], -x);
+    }
+  PetscCall(MPIU_Allreduce(low, all, 6, MPIU_REAL, MPIU_MIN, grid->comm));
+  motion->faces = -1;
+  for (PetscInt d = 0; d < grid->dim; ++d) {
+    if (-all[3 + d] - all[d] > FLAT * (grid->max[d] - grid->min[d])) continue;
+    motion->faces = d;
+    ++flat;
+  }
+  if (flat != 1) motion->faces = -1;
+  PetscFunctionReturn(0);
+}
+
 /* Mistakes in the selections go to diag; NULL: they were sought before. */
 static PetscErrorCode SelectNodes(Boundary *b, const Grid *grid, Diag *diag)
 {
@@ -134,6 +169,7 @@ static PetscErrorCode SelectNodes(Boundary *b, const Grid *grid, Diag *diag)
     if (entry_of(b, k)->absent) continue;
     PetscCall(GridSelectNodes(grid, &entry_of(b, k)->on, &b->motion[k].n, &b->motion[k].node));
     if (diag && k < b->c->n_boundary) PetscCall(CheckSelection(b, grid, k, diag));
+    PetscCall(FindFaces(grid, &b->motion[k]));
     mark_entry(b, grid, k, diag);
   }
   PetscCall(WallNormals(grid, b->c, &b->n_walls, &b->walls));
@@ -182,6 +218,7 @@ PetscErrorCode BoundaryToCloud(const Boundary *of_mesh, const Grid *mesh, const 
   PetscCall(PetscCalloc1(cloud->n_nodes * n_entries, &b->member));
   PetscCall(PetscMalloc1(mesh->n_owned, &local));
   for (PetscInt i = 0, n = 0; i < mesh->n_owned; ++i) local[i] = marked[i] ? n++ : -1;
+  for (PetscInt k = 0; k < n_entries; ++k) b->motion[k].faces = of_mesh->motion[k].faces;
   for (PetscInt k = 0; k < n_entries; ++k)
     for (PetscInt i = 0; i < of_mesh->motion[k].n; ++i) {
       const PetscInt node = of_mesh->motion[k].node[i];

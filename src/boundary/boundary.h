@@ -15,6 +15,7 @@
 
 typedef struct {
   PetscInt n, *node; /* local nodes, ghosts too */
+  PetscInt faces; /* the axis across the plane in which all of them stand at the start, -1: there is none, or several */
 } MotionNodes;
 
 /* Increment over [t0, t1] of a node that stands at x (dim) at t0, m, in place of what the case
@@ -27,8 +28,10 @@ typedef struct Boundary {
   PetscInt dim, n_nodes;
   MotionNodes *motion;  /* one per entry of the case's boundary; in axisymmetry the axis behind them */
   unsigned char *fixed; /* n_nodes x dim */
-  PetscInt *entry;      /* n_nodes x dim: the entry that prescribes the dof, -1 if none */
-  PetscInt n_walls;     /* nodes that slide */
+  /* n_nodes x dim: the entry that prescribes the dof, -1 if none; of several the first one that faces along it, or the
+   * first of all */
+  PetscInt *entry;
+  PetscInt n_walls; /* nodes that slide */
   WallNode *walls;
   PetscInt n_sides; /* of those at which several entries meet */
   WallSide *sides;
@@ -81,7 +84,7 @@ static inline PetscBool boundary_holds(const Boundary *boundary, PetscInt node, 
 void boundary_place(PetscInt dim, const PetscReal *x, char text[64]);
 
 /* Collective. Sum over the nodes of one entry of nodal forces (n_nodes x dim, owners count), N. A component that
- * several entries prescribe is that of the first of them alone. */
+ * several entries prescribe is that of one of them alone (Boundary.entry). */
 PetscErrorCode BoundarySum(const Boundary *boundary, const Grid *grid, PetscInt entry, const PetscReal *force,
                            PetscReal sum[3]);
 /* Collective. Does the entry prescribe anything that none before it does? */

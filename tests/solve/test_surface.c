@@ -25,8 +25,12 @@ static void add(Body *b, PetscReal x, PetscReal y, PetscReal size)
 {
   SurfacePoint *p = b->point + b->surface.n++;
   assert_true(b->surface.n <= MOST);
-  *p = (SurfacePoint){
-    .id = b->surface.n, .x = {x, y}, .F = {1, 0, 0, 0, 1, 0, 0, 0, 1}, .reach = 0.5 * size, .size = size};
+  *p = (SurfacePoint){.id = b->surface.n,
+                      .x = {x, y},
+                      .F = {1, 0, 0, 0, 1, 0, 0, 0, 1},
+                      .first = 0.5 * size,
+                      .reach = 0.5 * size,
+                      .size = size};
 }
 
 static void close_body(Body *b)

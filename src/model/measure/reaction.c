@@ -18,7 +18,8 @@ const Measure measure_reaction = {
     .unit = "N",
     .help =
       "force that holds a boundary, of the components that it prescribes; one that several entries prescribe at a node "
-      "they share is that of the first of them, so that entries add up; in dynamics its mean over the step, so that "
+      "they share is that of the plane side across its axis, else of the first of them, so that entries add up; in "
+      "dynamics its mean over the step, so that "
       "times the step it is the impulse; "
       "in axisymmetry y is the whole axial force, x the radial one added up round the circle, which has no "
       "resultant but does the work",
