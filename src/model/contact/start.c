@@ -5,7 +5,9 @@
 #define THROUGH 1e-9 /* of a cell: material that reaches deeper into a wall at the start is a mistake */
 #define FITS 1e-3    /* of the distance of a wall: so near to it ends what stands on it */
 #define PART 0.5     /* likewise, as its volume and its share of the surface tell it */
-#define DENT 0.01    /* of a cell: a surface that is taken back by more to fit a wall may be one, too */
+#define SHARP \
+  0.9 /* distance of a wall over the radius of the level surface there: 1 before an edge, 2 before a corner */
+#define DENT 0.01 /* of a cell: a surface that is taken back by more to fit a wall may be one, too */
 
 /* The worst of something over points: how much, 0 if there is none, and where. */
 typedef struct {
@@ -46,15 +48,22 @@ static PetscBool reaches_wall(const Model *m, PetscInt p, const WallPlace *place
   return (PetscBool)(PetscAbsReal(place->gap - half) < PART * half);
 }
 
+/* Is it an edge or a corner of the wall that is nearest? Around these distances are those of circles and balls. */
+static PetscBool is_sharp(const WallPlace *place)
+{
+  const PetscReal *c = place->curvature;
+  return (PetscBool)((c[0] + c[4] + c[8]) * place->gap > SHARP);
+}
+
 /* At an edge of a body its surface is elsewhere for each wall: does the body end at this one straight before the point,
- * although that is nearer to another side? */
+ * although that is nearer to another side? Nothing stands on a wall's own edge. */
 static PetscBool stands_on(const Model *m, PetscInt p, const WallPlace *place)
 {
   const BodySpec *body = m->c->bodies + m->points->body[p];
   const PetscReal *x = point_real(m->points, POINT_X, p);
   PetscReal within[3], beyond[3];
   if (!body->has_shape || body->mesh || place->gap <= contact_reach_of(m->points, p, place->normal)) return PETSC_FALSE;
-  if (!reaches_wall(m, p, place)) return PETSC_FALSE;
+  if (is_sharp(place) || !reaches_wall(m, p, place)) return PETSC_FALSE;
   for (PetscInt d = 0; d < m->dim; ++d) {
     within[d] = x[d] - (1 - FITS) * place->gap * place->normal[d];
     beyond[d] = x[d] - (1 + FITS) * place->gap * place->normal[d];

@@ -3,7 +3,7 @@
 
 #define NEXT 1.5    /* times the distance of the nearest points: layers of a rule are farther apart */
 #define WITHIN 1e-3 /* of the cell: so far inside a side the body is asked for */
-#define ALONG 1e-6  /* square of the sine between sides: these are parallel */
+#define ALONG 1e-6  /* cosine between normals of sides: these are not at right angles */
 
 /* From the line or plane of a side: through its first nodes. */
 static PetscReal distance_to_side(const Cell *cell, PetscInt side, const PetscReal *x, const PetscReal *position)
@@ -46,41 +46,35 @@ PetscReal seed_reach(CellType type, const PetscReal *x, const PetscReal *positio
   return surface < PETSC_MAX_REAL ? surface : reach;
 }
 
-/* corner: the nearest place in n planes; `across` are unit vectors, each along all planes before it. It goes on to the
- * nearest one in another plane, too, which is `away` along its normal; PETSC_FALSE: that is parallel to them. */
-static PetscBool meet_plane(PetscInt dim, PetscInt n, PetscReal across[3][3], const PetscReal *normal, PetscReal away,
-                            PetscReal *corner)
-{
-  PetscReal *next = across[n], square = 0;
-  for (PetscInt d = 0; d < dim; ++d) next[d] = normal[d], away -= normal[d] * corner[d];
-  for (PetscInt k = 0; k < n; ++k) {
-    PetscReal along = 0;
-    for (PetscInt d = 0; d < dim; ++d) along += normal[d] * across[k][d];
-    for (PetscInt d = 0; d < dim; ++d) next[d] -= along * across[k][d];
-  }
-  for (PetscInt d = 0; d < dim; ++d) square += next[d] * next[d];
-  if (square < ALONG) return PETSC_FALSE;
-  for (PetscInt d = 0; d < dim; ++d) corner[d] += away / square * next[d];
-  for (PetscInt d = 0; d < dim; ++d) next[d] /= PetscSqrtReal(square);
-  return PETSC_TRUE;
-}
-
+/* Sides that are not at right angles, as where a curved surface ends at a plane of symmetry, have no corner that counts:
+ * towards a wall between their normals it would be farther ahead than the surface of the points beside is, which know of
+ * none, by the angle; the nearest side is enough there. */
 void seed_corner(CellType type, const PetscReal *x, const PetscReal *position, const SeedRule *rule, PetscInt q,
                  const unsigned char *outer, PetscReal *corner)
 {
   const Cell *cell = cells + type;
-  PetscReal across[3][3] = {{0}}, normal[3], at[3] = {0, 0, 0};
-  PetscInt n = 0;
+  PetscReal normal[3][3] = {{0}}, away[3], square, along;
+  PetscInt n = 0, nearest = 0;
+  PetscBool square_on = PETSC_TRUE;
   for (PetscInt side = 0; side < cell->faces; ++side) {
-    PetscReal square = 0;
     if (!outer[side] || !is_next_to(cell, side, rule, q)) continue;
-    cell_side_area(type, side, x, normal);
-    for (PetscInt d = 0; d < cell->dim; ++d) square += normal[d] * normal[d];
-    for (PetscInt d = 0; d < cell->dim; ++d) normal[d] /= PetscSqrtReal(square);
     if (n == cell->dim) return;
-    if (!meet_plane(cell->dim, n++, across, normal, distance_to_side(cell, side, x, position), at)) return;
+    cell_side_area(type, side, x, normal[n]);
+    square = 0;
+    for (PetscInt d = 0; d < cell->dim; ++d) square += normal[n][d] * normal[n][d];
+    for (PetscInt d = 0; d < cell->dim; ++d) normal[n][d] /= PetscSqrtReal(square);
+    away[n] = distance_to_side(cell, side, x, position);
+    for (PetscInt k = 0; k < n; ++k) {
+      along = 0;
+      for (PetscInt d = 0; d < cell->dim; ++d) along += normal[n][d] * normal[k][d];
+      if (PetscAbsReal(along) > ALONG) square_on = PETSC_FALSE;
+    }
+    if (away[n] < away[nearest]) nearest = n;
+    ++n;
   }
-  for (PetscInt d = 0; d < cell->dim; ++d) corner[d] = at[d];
+  for (PetscInt d = 0; d < cell->dim; ++d) corner[d] = 0;
+  for (PetscInt k = 0; k < n; ++k)
+    for (PetscInt d = 0; d < cell->dim && (square_on || k == nearest); ++d) corner[d] += away[k] * normal[k][d];
 }
 
 /* Does the body reach side `side` beside a place xi of the cell? */

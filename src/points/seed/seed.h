@@ -66,8 +66,8 @@ void seed_domain(CellType type, const PetscReal *x, const PetscReal *xi, PetscIn
 PetscReal seed_reach(CellType type, const PetscReal *x, const PetscReal *position, PetscReal section,
                      const SeedRule *rule, PetscInt q, const unsigned char *outer);
 
-/* From the same point to these sides, or to the corner or edge where several of them meet; unchanged inside, and where
- * two of them face each other. */
+/* From the same point to these sides, or to the corner or edge where several of them meet at right angles; of others to
+ * the nearest; 0 inside. */
 void seed_corner(CellType type, const PetscReal *x, const PetscReal *position, const SeedRule *rule, PetscInt q,
                  const unsigned char *outer, PetscReal *corner);
 
