@@ -21,7 +21,8 @@ static void raster_place(PetscInt n, PetscInt dim, PetscInt k, PetscReal x[4][3]
 {
   PetscReal s = (0.5 + (PetscReal)(n == 2 ? k : k % ACROSS)) / (n == 2 ? RASTER : ACROSS), t = 0,
             N[4] = {1 - s, s, 0, 0};
-  if (n > 2) t = (0.5 + (PetscReal)(k / ACROSS)) / ACROSS;
+  const PetscInt row = k / ACROSS;
+  if (n > 2) t = (0.5 + (PetscReal)row) / ACROSS;
   if (n == 3) {
     if (s + t > 1) s = 1 - s, t = 1 - t;
     N[0] = 1 - s - t, N[1] = s, N[2] = t;
