@@ -40,8 +40,8 @@ typedef enum {
   /* distance from the nearest side of the cell that it was seeded in, at the start, m: 1 where
    * there are walls, otherwise 0 components */
   POINT_REACH,
-  /* from there to the side of its body that it stands beside, or the corner or edge where such sides meet, at the start,
-   * m; nothing inside, and where the surface cuts cells: dim where there are walls, otherwise 0 components */
+  /* from there to the side of its body that it stands beside, or the corner or edge where such sides meet, at the
+   * start, m; nothing inside, and where the surface cuts cells: dim where there are walls, otherwise 0 components */
   POINT_CORNER,
   /* the part of its body's surface that it stands for, at the start, as a vector outwards, m2 (in rings m, of the
    * section); nothing where whole cells of the grid say it, which the material goes through: dim where there are walls,

@@ -49,8 +49,8 @@ static void tell_empty(const Case *c, PetscBool may_come, const char *path, Diag
   diag_hint(diag, "a load on the surface of a body is `on: {body: name, ...}`, here of '%s'", c->bodies[0].name);
 }
 
-/* A traction asks for its cells' material at every step, a pressure at the start; nothing comes to a mesh that goes with
- * its body. */
+/* A traction asks for its cells' material at every step, a pressure at the start; nothing comes to a mesh that goes
+ * with its body. */
 static PetscBool material_may_come(const Case *c, const LoadSpec *load, PetscBool fills)
 {
   for (PetscInt b = 0; b < c->n_bodies; ++b) fills |= c->bodies[b].absent;

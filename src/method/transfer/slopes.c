@@ -84,8 +84,8 @@ UNROLLED void gather_means(const PetscInt dim, const PetscInt fixed_nn, const Su
 
 #define FLATTEST 1e-3 /* of the means' stretch: of what is flatter the gradient is not asked */
 
-/* A node's mean velocity is that of its mean place: where motion is linear G = grad v (grad x)^-1. Points that nodes see
- * only in the mean (transfer thesis) move linearly nowhere, and that would be their noise: they get grad v. */
+/* A node's mean velocity is that of its mean place: where motion is linear G = grad v (grad x)^-1. Points that nodes
+ * see only in the mean (transfer thesis) move linearly nowhere, and that would be their noise: they get grad v. */
 UNROLLED void start_slopes(const PetscInt dim, const PetscInt fixed_nn, const SupportRun *run, Discretisation *s,
                            PetscBool linear, const PetscReal *mean)
 {

@@ -215,7 +215,7 @@ static void advise_dilatancy(const Model *m, Diag *diag)
 }
 
 /* --- reactions of nothing --- */
-/* What several entries prescribe counts to the first of them. */
+/* What several entries prescribe counts to one of them (boundary/sum.c). */
 static PetscErrorCode AdviseReaction(const Model *m, const MeasureSpec *s, Diag *diag)
 {
   PetscBool has;
@@ -227,9 +227,12 @@ static PetscErrorCode AdviseReaction(const Model *m, const MeasureSpec *s, Diag 
   if (has) PetscFunctionReturn(0);
   snprintf(path, sizeof path, "measures.%s.of.boundary", s->name);
   diag_warning(diag, path,
-               "all that boundary[%d] prescribes is prescribed by entries before it, too: its reaction is 0",
+               "all that boundary[%d] prescribes is prescribed by other entries, too, which bear it: its reaction is 0",
                (int)s->boundary);
-  diag_hint(diag, "what several entries prescribe counts to the first of them: write this one before the others");
+  diag_hint(
+    diag,
+    "what several entries prescribe counts to the plane side across it, else to the first of them: write this one "
+    "before the others");
   PetscFunctionReturn(0);
 }
 

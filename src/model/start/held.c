@@ -116,11 +116,44 @@ static PetscErrorCode FindHeld(const Model *m, PetscInt *held)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode CheckHeld(Model *m, Diag *diag)
+/* What nothing holds: a mistake at the start, a warning at the end. */
+static PetscErrorCode TellLoose(const Model *m, PetscBool ends, Diag *diag)
 {
   const PetscInt n = m->c->n_bodies, dim = m->dim;
-  PetscInt *held, points;
+  PetscInt *held;
   char path[64], directions[32];
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(n * dim, &held));
+  PetscCall(FindHeld(m, held));
+  for (PetscInt b = 0; b < n; ++b) {
+    const char *name = m->c->bodies[b].name;
+    name_directions(dim, held + b * dim, directions);
+    if (!directions[0] || m->c->bodies[b].absent) continue;
+    snprintf(path, sizeof path, "bodies[%d]", (int)b);
+    if (ends) {
+      diag_warning(
+        diag, path,
+        "nothing holds '%s' in %s any more: it has left the walls or bodies that it was pressed against, and "
+        "where a static analysis has put it means nothing",
+        name, directions);
+      diag_hint(diag, "walls push and do not pull: fix a boundary in %s, put a wall on the other side, or let it stick",
+                directions);
+    } else {
+      diag_error(diag, path, "nothing holds '%s' in %s: a static analysis has no answer", name, directions);
+      diag_hint(diag,
+                "fix a boundary that the body touches in %s, or let it move: analysis: {type: dynamic}; if its loads "
+                "are in balance: analysis: {unheld: hold}",
+                directions);
+    }
+  }
+  PetscCall(PetscFree(held));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode CheckHeld(Model *m, Diag *diag)
+{
+  PetscInt points;
 
   PetscFunctionBeginUser;
   if (m->c->analysis.unheld == UNHELD_HOLD) {
@@ -129,46 +162,16 @@ PetscErrorCode CheckHeld(Model *m, Diag *diag)
   }
   PetscCall(ModelCountPoints(m, &points));
   if ((m->scheme->inertia && m->c->initial.equilibrium <= EQUILIBRIUM_NONE) || !points) PetscFunctionReturn(0);
-  PetscCall(PetscCalloc1(n * dim, &held));
-  PetscCall(FindHeld(m, held));
-  for (PetscInt b = 0; b < n; ++b) {
-    name_directions(dim, held + b * dim, directions);
-    if (!directions[0] || m->c->bodies[b].absent) continue;
-    snprintf(path, sizeof path, "bodies[%d]", (int)b);
-    diag_error(diag, path, "nothing holds '%s' in %s: a static analysis has no answer", m->c->bodies[b].name,
-               directions);
-    diag_hint(diag,
-              "fix a boundary that the body touches in %s, or let it move: analysis: {type: dynamic}; if its loads are "
-              "in balance: analysis: {unheld: hold}",
-              directions);
-  }
-  PetscCall(PetscFree(held));
+  PetscCall(TellLoose(m, PETSC_FALSE, diag));
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode ModelWarnLoose(Model *m, Diag *diag)
 {
-  const PetscInt n = m->c->n_bodies, dim = m->dim;
-  PetscInt *held;
-  char path[64], directions[32];
-
   PetscFunctionBeginUser;
   if (!m->contact || m->c->analysis.type != ANALYSIS_STATIC || m->c->analysis.unheld == UNHELD_HOLD || !m->step)
     PetscFunctionReturn(0);
   PetscCall(ModelInitialise(m));
-  PetscCall(PetscCalloc1(n * dim, &held));
-  PetscCall(FindHeld(m, held));
-  for (PetscInt b = 0; b < n; ++b) {
-    name_directions(dim, held + b * dim, directions);
-    if (!directions[0] || m->c->bodies[b].absent) continue;
-    snprintf(path, sizeof path, "bodies[%d]", (int)b);
-    diag_warning(diag, path,
-                 "nothing holds '%s' in %s any more: it has left the walls or bodies that it was pressed against, and "
-                 "where a static analysis has put it means nothing",
-                 m->c->bodies[b].name, directions);
-    diag_hint(diag, "walls push and do not pull: fix a boundary in %s, put a wall on the other side, or let it stick",
-              directions);
-  }
-  PetscCall(PetscFree(held));
+  PetscCall(TellLoose(m, PETSC_TRUE, diag));
   PetscFunctionReturn(0);
 }

@@ -22,8 +22,8 @@ static void accelerate_lumped(const Model *m, const PetscReal *left)
   }
 }
 
-/* The same by the mass matrix that the steps have, `left` then: what is not balanced, as at held dofs. Else nodes that go on would swing against each other, and the first step
- * would lose energy. */
+/* The same by the mass matrix that the steps have, `left` then: what is not balanced, as at held dofs. Else nodes that
+ * go on would swing against each other, and the first step would lose energy. */
 static PetscErrorCode AccelerateByMatrix(const Model *m, PetscReal *left)
 {
   const PetscInt dim = m->dim;

@@ -46,9 +46,9 @@ PetscReal seed_reach(CellType type, const PetscReal *x, const PetscReal *positio
   return surface < PETSC_MAX_REAL ? surface : reach;
 }
 
-/* Sides that are not at right angles, as where a curved surface ends at a plane of symmetry, have no corner that counts:
- * towards a wall between their normals it would be farther ahead than the surface of the points beside is, which know of
- * none, by the angle; the nearest side is enough there. */
+/* Sides that are not at right angles, as where a curved surface ends at a plane of symmetry, have no corner that
+ * counts: towards a wall between their normals it would be farther ahead than the surface of the points beside is,
+ * which know of none, by the angle; the nearest side is enough there. */
 void seed_corner(CellType type, const PetscReal *x, const PetscReal *position, const SeedRule *rule, PetscInt q,
                  const unsigned char *outer, PetscReal *corner)
 {

@@ -6,7 +6,8 @@
 #define TOUCHES 1e-6
 
 /* Thickness of the material point's part of the body towards n: planes of the undeformed body along
- * its surface, of which those r apart are r |F^T n| apart now; or as far as the place on that which it stands beside. */
+ * its surface, of which those r apart are r |F^T n| apart now; or as far as the place on that which it stands
+ * beside. */
 PetscReal contact_reach(const PetscReal F[9], const PetscReal n[3], PetscReal first, const PetscReal *corner,
                         PetscInt dim)
 {

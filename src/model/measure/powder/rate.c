@@ -1,8 +1,8 @@
 /* How fast any measure changes in a window: the slope of the line through its values by least
  * squares; and their mean.
  *
- * A difference of two values would be all noise. Between two values the measure is taken to go along a line, and what is
- * the mean over a step to be it all the step; ends of the window cut both. So means are exact for what is linear in
+ * A difference of two values would be all noise. Between two values the measure is taken to go along a line, and what
+ * is the mean over a step to be it all the step; ends of the window cut both. So means are exact for what is linear in
  * time, those of forces are the impulse over the window's length, and short steps do not count more than long ones. */
 #include "model/measure/measure.h"
 #include <string.h>
