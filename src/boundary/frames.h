@@ -33,6 +33,20 @@ static inline void frame_turn(PetscInt dim, const PetscReal *w, PetscReal *v)
   for (PetscInt d = 0; d < dim; ++d) v[d] -= 2 * along * w[d];
 }
 
+/* H_row a H_column of a block whose rows begin `stride` numbers apart; NULL: along the axes. Behind the displacements
+ * of a block (stride > dim) stand pressures, which have no direction. */
+static inline void frame_turn_block(PetscInt dim, PetscInt stride, const PetscReal *row, const PetscReal *column,
+                                    PetscReal *a)
+{
+  PetscReal v[3];
+  for (PetscInt j = 0; row && j < stride; ++j) {
+    for (PetscInt d = 0; d < dim; ++d) v[d] = a[d * stride + j];
+    frame_turn(dim, row, v);
+    for (PetscInt d = 0; d < dim; ++d) a[d * stride + j] = v[d];
+  }
+  for (PetscInt i = 0; column && i < stride; ++i) frame_turn(dim, column, a + i * stride);
+}
+
 /* The vectors (n_nodes x dim) of all nodes that have a frame. */
 static inline void frames_turn(const Frames *frames, PetscInt dim, PetscReal *vectors)
 {

@@ -2,7 +2,7 @@
  * of a symmetric tangent, whose rows of empty nodes are left alone. */
 #include "case_builder.h"
 #include "model/model_private.h"
-#include "solve/levels/two_levels.h"
+#include "solve/levels/coarse_box.h"
 #include "solve/newton/newton_private.h"
 #include "solve/system/rigid_motions.h"
 
@@ -26,33 +26,32 @@ static Model *beam(Bench *b, int dim, const char *basis, PetscReal size, PetscRe
 /* Rigid motions of the coarse nodes become those of all nodes: odd and even numbers of cells, graded ones. */
 static void rigid(int dim, const char *basis, PetscReal size, PetscReal grading)
 {
-  MatNullSpace coarse, fine;
+  MatNullSpace fine;
   const Vec *motion;
   unsigned char *none;
+  CoarseBox *box;
   PetscInt n;
-  Mat P;
   Vec v;
   Bench b;
   Model *m = beam(&b, dim, basis, size, grading, 0.02, LINEAR_ITERATIVE);
   CHECK(coarse_box_fits(m->grid), "no coarse nodes");
   model_step(m, 1);
   CALL(PetscCalloc1(m->grid->n_nodes * dim, &none));
-  CALL(CoarseBoxInterpolation(m->system, m->grid, none, &P, &coarse));
+  CALL(CoarseBoxCreate(m->system, m->grid, none, &box));
   CALL(RigidMotions(m->system, m->grid, &fine));
-  CALL(MatNullSpaceGetVecs(coarse, NULL, &n, &motion));
+  CALL(MatNullSpaceGetVecs(box->motions, NULL, &n, &motion));
   assert_int_equal(n, dim == 2 ? 3 : 6);
-  CALL(MatCreateVecs(P, NULL, &v));
+  CALL(MatCreateVecs(box->interpolation, NULL, &v));
   for (PetscInt k = 0; k < n; ++k) {
     PetscReal all, rest;
-    CALL(MatMult(P, motion[k], v));
+    CALL(MatMult(box->interpolation, motion[k], v));
     CALL(VecNorm(v, NORM_2, &all));
     CALL(MatNullSpaceRemove(fine, v));
     CALL(VecNorm(v, NORM_2, &rest));
     CHECK(all > 0.5 && rest <= 1e-13 * all, "motion %d: %g of %g is not rigid", (int)k, (double)rest, (double)all);
   }
   CALL(VecDestroy(&v));
-  CALL(MatDestroy(&P));
-  CALL(MatNullSpaceDestroy(&coarse));
+  CALL(CoarseBoxDestroy(&box));
   CALL(MatNullSpaceDestroy(&fine));
   CALL(PetscFree(none));
   CALL(ModelDestroy(&m));

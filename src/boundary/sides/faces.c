@@ -113,14 +113,14 @@ static PetscErrorCode GatherKeys(MPI_Comm comm, PetscInt n, const PetscInt *keys
   *n_all = start[size] / 4;
   PetscCall(PetscMalloc1(4 * *n_all, all));
   PetscCallMPI(MPI_Allgatherv(keys, mine, MPIU_INT, *all, count, start, MPIU_INT, comm));
-  qsort(*all, (size_t)*n_all, 4 * sizeof(PetscInt), compare_keys);
+  if (*n_all) qsort(*all, (size_t)*n_all, 4 * sizeof(PetscInt), compare_keys);
   PetscCall(PetscFree2(count, start));
   PetscFunctionReturn(0);
 }
 
 static PetscInt count_key(PetscInt n, const PetscInt *all, const PetscInt key[4])
 {
-  const PetscInt *found = bsearch(key, all, (size_t)n, 4 * sizeof(PetscInt), compare_keys);
+  const PetscInt *found = n == 0 ? NULL : bsearch(key, all, (size_t)n, 4 * sizeof(PetscInt), compare_keys);
   if (!found) return 0;
   PetscInt i = (PetscInt)(found - all) / 4, count = 0;
   while (i > 0 && !compare_keys(all + 4 * (i - 1), key)) --i;

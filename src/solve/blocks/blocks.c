@@ -3,6 +3,8 @@
 #include "base/math/tensor.h"
 #include "solve/blocks/blocks.h"
 
+#define BLOCK_COPY 9 /* numbers of the largest block */
+
 /* One row of the summed matrix while it is walked: a row that only this rank assembles comes
  * straight from the system. */
 typedef struct {
@@ -13,12 +15,14 @@ typedef struct {
   PetscBool shared;
   const PetscInt *column; /* of a shared row; else the nodes of the columns */
   const float *values;
+  const PetscReal *doubles; /* instead of values; NULL: values */
 } Row;
 
 static inline void row_take(Row *row, PetscInt r)
 {
   const BlocksHalo *h = row->halo;
   const PetscInt bs = row->s->dim * row->s->dim;
+  row->doubles = NULL;
   if (row->next < h->n_shared && h->shared_row[row->next] == r) {
     const PetscInt first = h->start[row->next++];
     row->n = h->start[row->next] - first;
@@ -30,8 +34,18 @@ static inline void row_take(Row *row, PetscInt r)
     row->n = row->s->row_start[r + 1] - first;
     row->shared = PETSC_FALSE;
     row->column = row->s->column + first;
-    row->values = row->s->singles + first * bs;
+    if (row->s->singles) row->values = row->s->singles + first * bs;
+    else row->doubles = row->s->values + first * bs;
   }
+}
+
+/* Numbers of block k, here or in `copy`. */
+KERNEL const float *row_block(const int dim, const Row *row, PetscInt k, float copy[BLOCK_COPY])
+{
+  const PetscInt first = k * dim * dim;
+  if (!row->doubles) return row->values + first;
+  for (int i = 0; i < dim * dim; ++i) copy[i] = (float)row->doubles[first + i];
+  return copy;
 }
 
 static inline PetscInt row_column(const Row *row, PetscInt k)
@@ -197,8 +211,10 @@ KERNEL PetscBool find_scales(const int dim, Blocks *m, const System *s)
   PetscBool regular = PETSC_TRUE;
   for (PetscInt r = 0; r < m->n; ++r) {
     PetscReal D[9];
+    float copy[BLOCK_COPY];
     row_take(&row, r);
-    for (int i = 0; i < dim * dim; ++i) D[i] = (PetscReal)row.values[m->parts[r].before * dim * dim + i];
+    const float *values = row_block(dim, &row, m->parts[r].before, copy);
+    for (int i = 0; i < dim * dim; ++i) D[i] = (PetscReal)values[i];
     float *S = m->scale + r * dim * dim;
     if (m->symmetric ? scale_symmetric(dim, D, S) : scale_unsymmetric(dim, D, S)) continue;
     regular = PETSC_FALSE;
@@ -283,8 +299,9 @@ KERNEL void take_blocks(const int dim, const Blocks *m, const Row *row, PetscInt
 {
   const RowScale scale = row_scale(dim, m, r);
   PetscInt e = rows->start[r];
+  float copy[BLOCK_COPY];
   for (PetscInt k = first; k < last; ++k) {
-    const float *values = row->values + k * dim * dim;
+    const float *values = row_block(dim, row, k, copy);
     if (is_zero(dim, values)) continue;
     const PetscInt c = row_column(row, k);
     scale_block(dim, &scale, m->scale + c * dim * dim, values, symmetric, rows->block + e * dim * dim);
@@ -319,6 +336,7 @@ KERNEL void transpose_upper(const int dim, Blocks *m)
 KERNEL void fill_rows(const int dim, Blocks *m, const System *s, PetscBool symmetric)
 {
   Row row = {.s = s, .halo = m->halo};
+  float copy[BLOCK_COPY];
   PetscInt outer = 0;
   for (PetscInt r = 0; r < m->n; ++r) {
     row_take(&row, r);
@@ -335,7 +353,7 @@ KERNEL void fill_rows(const int dim, Blocks *m, const System *s, PetscBool symme
     const PetscInt first = m->outer.start[outer++];
     for (PetscInt k = parts.own; k < row.n; ++k) {
       const PetscInt e = first + k - parts.own;
-      scale_block(dim, &scale, m->scale + m->outer.column[e] * dim * dim, row.values + k * dim * dim, symmetric,
+      scale_block(dim, &scale, m->scale + m->outer.column[e] * dim * dim, row_block(dim, &row, k, copy), symmetric,
                   m->outer.block + e * dim * dim);
     }
   }

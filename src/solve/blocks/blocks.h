@@ -44,7 +44,7 @@ typedef struct Blocks {
  * or 3 x 3. */
 PetscErrorCode BlocksCreate(const System *system, PetscBool symmetric, Blocks **blocks);
 PetscErrorCode BlocksDestroy(Blocks **blocks);
-/* Collective. Take the singles of the system. */
+/* Collective. Take the singles of the system, or its values where there are none. */
 PetscErrorCode BlocksFill(Blocks *blocks, const System *system);
 /* Collective. y = A x, for a Mat of type shell. */
 PetscErrorCode BlocksMultiply(Blocks *blocks, Vec x, Vec y);

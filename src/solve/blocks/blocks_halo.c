@@ -1,6 +1,6 @@
 /* Rows that several ranks assemble, and columns that other ranks own. */
 #include "solve/blocks/blocks.h"
-#include "solve/system/shared_rows.h"
+#include "solve/system/forms/shared_rows.h"
 
 /* Global numbers -> columns: owned rows, then ghost rows, then nodes that no cell of this rank
  * holds. The numbers of all columns of others are returned in their order. */
@@ -139,20 +139,27 @@ PetscErrorCode BlocksHaloDestroy(BlocksHalo **halo)
   PetscFunctionReturn(0);
 }
 
+static inline float number_at(const System *s, PetscInt i) { return s->singles ? s->singles[i] : (float)s->values[i]; }
+
 PetscErrorCode BlocksHaloSum(BlocksHalo *h, const System *s)
 {
-  const PetscInt bs = s->dim * s->dim;
-  const float *ghosts = s->singles + s->row_start[s->n_active] * bs;
+  const PetscInt bs = s->dim * s->dim, first = s->row_start[s->n_active] * bs, n = s->row_start[s->n_rows] * bs - first;
+  const float *ghosts = s->singles ? s->singles + first : NULL;
+  float *copy = NULL;
 
   PetscFunctionBeginUser;
+  if (!ghosts) PetscCall(PetscMalloc1(n, &copy));
+  for (PetscInt i = 0; i < n && copy; ++i) copy[i] = (float)s->values[first + i];
+  if (!ghosts) ghosts = copy;
   PetscCall(PetscSFReduceBegin(h->pairs, h->block, ghosts, h->incoming, MPI_REPLACE));
   PetscCall(PetscArrayzero(h->values, h->start[h->n_shared] * bs));
   for (PetscInt k = 0; k < h->n_shared; ++k) {
-    const float *own = s->singles + s->row_start[h->shared_row[k]] * bs;
+    PetscInt own = s->row_start[h->shared_row[k]] * bs;
     for (PetscInt j = h->own_start[k]; j < h->own_start[k + 1]; ++j)
-      for (PetscInt i = 0; i < bs; ++i) h->values[h->own[j] * bs + i] += *own++;
+      for (PetscInt i = 0; i < bs; ++i) h->values[h->own[j] * bs + i] += number_at(s, own++);
   }
   PetscCall(PetscSFReduceEnd(h->pairs, h->block, ghosts, h->incoming, MPI_REPLACE));
+  PetscCall(PetscFree(copy));
   for (PetscInt k = 0; k < h->n_incoming; ++k)
     for (PetscInt i = 0; i < bs; ++i) h->values[h->come[k] * bs + i] += h->incoming[k * bs + i];
   PetscFunctionReturn(0);

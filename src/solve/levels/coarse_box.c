@@ -1,5 +1,6 @@
 #include "solve/levels/coarse_box.h"
 #include "grid/box/box.h"
+#include "solve/system/forms/shared_rows.h"
 
 /* Along an axis: the coarse lines beside a line, and their weights. */
 typedef struct {
@@ -92,49 +93,111 @@ static PetscErrorCode CoarseMotions(MPI_Comm comm, const Grid *grid, const Petsc
   PetscFunctionReturn(0);
 }
 
-/* Rows of one node: a coarse displacement's components in the frame of the node. What is prescribed gets
- * zeros, which keep the pattern. */
-static PetscErrorCode FillRows(const System *s, PetscInt a, const Parents *p, const unsigned char *held,
-                               const PetscReal *number, PetscInt first, Mat matrix)
+/* Rows of one node: a coarse displacement's components in the frame of the node, and nothing where it is held. */
+static PetscErrorCode FillRows(const System *s, PetscInt a, const CoarseBox *c, const unsigned char *held,
+                               PetscInt first)
 {
   const PetscReal *w = s->frames ? frame_of(s->frames, s->active[a]) : NULL;
   const PetscInt dim = s->dim;
 
   PetscFunctionBeginUser;
-  for (PetscInt i = 0; i < p->n; ++i) {
-    if (number[p->node[i]] < 0) continue;
+  for (PetscInt i = a * c->width; i < (a + 1) * c->width; ++i) {
+    if (c->parent[i] < 0) continue;
     for (PetscInt b = 0; b < dim; ++b) {
       PetscReal v[3] = {0, 0, 0};
-      const PetscInt column = dim * (PetscInt)number[p->node[i]] + b;
-      v[b] = p->weight[i];
+      v[b] = c->weight[i];
       if (w) frame_turn(dim, w, v);
       for (PetscInt d = 0; d < dim; ++d)
-        if (d == b || w) PetscCall(MatSetValue(matrix, first + dim * a + d, column, held[d] ? 0 : v[d], INSERT_VALUES));
+        if ((d == b || w) && !held[d])
+          PetscCall(MatSetValue(c->interpolation, first + dim * a + d, dim * c->parent[i] + b, v[d], INSERT_VALUES));
     }
   }
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode CoarseBoxInterpolation(const System *s, const Grid *grid, const unsigned char *fixed, Mat *interpolation,
-                                      MatNullSpace *motions)
+/* Coarse nodes of each owned row: global numbers, -1: none; and their weights. */
+static void find_parents(const System *s, const Grid *grid, const unsigned char *fixed, const PetscReal *number,
+                         CoarseBox *c)
 {
-  const PetscInt dim = s->dim, most = dim * (1 << dim); /* entries of a row, where a frame turns */
-  PetscReal *number;
-  PetscInt n, first;
-
-  PetscFunctionBeginUser;
-  PetscCall(PetscCalloc1(grid->n_nodes, &number));
-  PetscCall(NumberCoarse(s, grid, fixed, number, &n));
-  PetscCall(MatCreateAIJ(s->comm, dim * s->n_active, dim * n, PETSC_DETERMINE, PETSC_DETERMINE, most, NULL, most, NULL,
-                         interpolation));
-  PetscCall(MatGetOwnershipRange(*interpolation, &first, NULL));
   for (PetscInt a = 0; a < s->n_active; ++a) {
     const Parents p = parents_of(grid->box, s->active[a]);
-    PetscCall(FillRows(s, a, &p, fixed + dim * s->active[a], number, first, *interpolation));
+    const PetscBool still = all_held(s->dim, fixed + s->active[a] * s->dim);
+    for (PetscInt i = 0; i < c->width; ++i) {
+      const PetscBool counts = (PetscBool)(i < p.n && !still);
+      c->parent[a * c->width + i] = counts ? (PetscInt)number[p.node[i]] : -1;
+      c->weight[a * c->width + i] = counts ? p.weight[i] : 0;
+    }
   }
-  PetscCall(MatAssemblyBegin(*interpolation, MAT_FINAL_ASSEMBLY));
-  PetscCall(MatAssemblyEnd(*interpolation, MAT_FINAL_ASSEMBLY));
-  PetscCall(CoarseMotions(s->comm, grid, number, n, motions));
+}
+
+/* The owners of ghost rows tell their coarse nodes. */
+static PetscErrorCode TellParents(const System *s, CoarseBox *c)
+{
+  const PetscInt first = s->n_active * c->width;
+  MPI_Datatype parents, weights;
+  PetscSF rows;
+
+  PetscFunctionBeginUser;
+  PetscCall(GhostRows(s, &rows));
+  if (!rows) PetscFunctionReturn(0);
+  PetscCallMPI(MPI_Type_contiguous((PetscMPIInt)c->width, MPIU_INT, &parents));
+  PetscCallMPI(MPI_Type_contiguous((PetscMPIInt)c->width, MPIU_REAL, &weights));
+  PetscCallMPI(MPI_Type_commit(&parents));
+  PetscCallMPI(MPI_Type_commit(&weights));
+  PetscCall(PetscSFBcastBegin(rows, parents, c->parent, c->parent + first, MPI_REPLACE));
+  PetscCall(PetscSFBcastEnd(rows, parents, c->parent, c->parent + first, MPI_REPLACE));
+  PetscCall(PetscSFBcastBegin(rows, weights, c->weight, c->weight + first, MPI_REPLACE));
+  PetscCall(PetscSFBcastEnd(rows, weights, c->weight, c->weight + first, MPI_REPLACE));
+  PetscCallMPI(MPI_Type_free(&parents));
+  PetscCallMPI(MPI_Type_free(&weights));
+  PetscCall(PetscSFDestroy(&rows));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode Interpolation(const System *s, const unsigned char *fixed, CoarseBox *c)
+{
+  const PetscInt dim = s->dim, most = dim * c->width; /* entries of a row, where a frame turns */
+  PetscInt first;
+
+  PetscFunctionBeginUser;
+  PetscCall(MatCreateAIJ(s->comm, dim * s->n_active, dim * c->n, PETSC_DETERMINE, PETSC_DETERMINE, most, NULL, most,
+                         NULL, &c->interpolation));
+  PetscCall(MatGetOwnershipRange(c->interpolation, &first, NULL));
+  for (PetscInt a = 0; a < s->n_active; ++a) PetscCall(FillRows(s, a, c, fixed + dim * s->active[a], first));
+  PetscCall(MatAssemblyBegin(c->interpolation, MAT_FINAL_ASSEMBLY));
+  PetscCall(MatAssemblyEnd(c->interpolation, MAT_FINAL_ASSEMBLY));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode CoarseBoxCreate(const System *s, const Grid *grid, const unsigned char *fixed, CoarseBox **box)
+{
+  PetscReal *number;
+  CoarseBox *c;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscNew(&c));
+  c->width = 1 << s->dim;
+  PetscCall(PetscMalloc2(s->n_rows * c->width, &c->parent, s->n_rows * c->width, &c->weight));
+  PetscCall(PetscCalloc1(grid->n_nodes, &number));
+  PetscCall(NumberCoarse(s, grid, fixed, number, &c->n));
+  find_parents(s, grid, fixed, number, c);
+  PetscCall(TellParents(s, c));
+  PetscCall(Interpolation(s, fixed, c));
+  PetscCall(CoarseMotions(s->comm, grid, number, c->n, &c->motions));
   PetscCall(PetscFree(number));
+  *box = c;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode CoarseBoxDestroy(CoarseBox **box)
+{
+  CoarseBox *c = *box;
+
+  PetscFunctionBeginUser;
+  if (!c) PetscFunctionReturn(0);
+  PetscCall(MatDestroy(&c->interpolation));
+  PetscCall(MatNullSpaceDestroy(&c->motions));
+  PetscCall(PetscFree2(c->parent, c->weight));
+  PetscCall(PetscFree(*box));
   PetscFunctionReturn(0);
 }

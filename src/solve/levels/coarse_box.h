@@ -3,10 +3,17 @@
 #include "grid/grid.h"
 #include "solve/system/system.h"
 
-/* Collective. Interpolation from displacements of the coarse nodes, along the axes, to the unknowns of a
- * system: linear along each axis, and nothing where something is prescribed (fixed, n_nodes x
- * dim). Coarse nodes that no unknown needs are left out. motions: rigid ones of the coarse nodes. */
-PetscErrorCode CoarseBoxInterpolation(const System *system, const Grid *grid, const unsigned char *fixed,
-                                      Mat *interpolation, MatNullSpace *motions);
+typedef struct {
+  PetscInt n;           /* coarse nodes of this rank; those that no unknown needs are left out */
+  PetscInt width;       /* the most that a node has beside it: 4 or 8 */
+  PetscInt *parent;     /* rows of the system x width, ghost rows too: global numbers of coarse nodes, -1: none */
+  PetscReal *weight;    /* and their weights: linear along each axis */
+  Mat interpolation;    /* from their displacements, along the axes, to the unknowns; nothing where one is prescribed */
+  MatNullSpace motions; /* rigid ones of the coarse nodes */
+} CoarseBox;
+
+/* Collective. For a system of displacements, of which fixed (n_nodes x dim) are prescribed. */
+PetscErrorCode CoarseBoxCreate(const System *system, const Grid *grid, const unsigned char *fixed, CoarseBox **box);
+PetscErrorCode CoarseBoxDestroy(CoarseBox **box);
 /* Has the grid such nodes, and does every rank know those that it needs? */
 PetscBool coarse_box_fits(const Grid *grid);

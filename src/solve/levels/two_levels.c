@@ -1,5 +1,6 @@
 #include "solve/levels/two_levels.h"
 #include "solve/blocks/blocks.h"
+#include "solve/levels/coarse_product.h"
 #include "solve/system/linear.h"
 
 /* unknowns of the coarse nodes up to which they are factorised */
@@ -13,11 +14,10 @@ typedef struct {
   const unsigned char *fixed;
   PetscBool symmetric;
   Blocks *blocks;
-  float *singles;
   PetscReal *inverse;  /* of each row's scale */
-  unsigned char *held; /* fixed as it was when the interpolation was made */
-  Mat interpolation, coarse;
-  MatNullSpace motions;
+  unsigned char *held; /* fixed as it was when the box was made */
+  CoarseBox *box;
+  Mat coarse;
   KSP solver;
   Vec fine, rest, correction; /* of the unknowns; of the coarse ones */
 } TwoLevels;
@@ -27,9 +27,7 @@ static PetscErrorCode ClearCoarse(TwoLevels *t)
 {
   PetscFunctionBeginUser;
   PetscCall(PetscFree(t->held));
-  PetscCall(MatDestroy(&t->interpolation));
-  PetscCall(MatNullSpaceDestroy(&t->motions));
-  PetscCall(MatDestroy(&t->coarse));
+  PetscCall(CoarseBoxDestroy(&t->box));
   PetscCall(VecDestroy(&t->fine));
   PetscCall(VecDestroy(&t->rest));
   PetscCall(VecDestroy(&t->correction));
@@ -41,9 +39,9 @@ static PetscErrorCode ClearFine(TwoLevels *t)
 {
   PetscFunctionBeginUser;
   PetscCall(BlocksDestroy(&t->blocks));
-  PetscCall(PetscFree(t->singles));
   PetscCall(PetscFree(t->inverse));
   PetscCall(KSPDestroy(&t->solver));
+  PetscCall(MatDestroy(&t->coarse));
   PetscFunctionReturn(0);
 }
 
@@ -51,38 +49,13 @@ static PetscErrorCode ClearFine(TwoLevels *t)
 static PetscErrorCode FillBlocks(TwoLevels *t)
 {
   System s = *t->system;
-  const PetscInt size = s.dim * s.dim, n = s.row_start[s.n_rows] * size;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(n, &t->singles));
-  for (PetscInt i = 0; i < n; ++i) t->singles[i] = (float)s.values[i];
-  s.singles = t->singles;
+  s.singles = NULL; /* of values in double precision */
   PetscCall(BlocksCreate(&s, t->symmetric, &t->blocks));
   PetscCall(BlocksFill(t->blocks, &s));
-  PetscCall(PetscFree(t->singles));
-  PetscCall(PetscMalloc1(size * t->blocks->n, &t->inverse));
+  PetscCall(PetscMalloc1(s.dim * s.dim * t->blocks->n, &t->inverse));
   if (!t->blocks->singular) blocks_invert_scales(t->blocks, t->inverse);
-  PetscFunctionReturn(0);
-}
-
-/* Displacements of coarse nodes that no unknown follows stand alone. */
-static PetscErrorCode CloseCoarse(Mat coarse)
-{
-  PetscReal *d, largest = 0, all;
-  PetscInt n;
-  Vec diagonal;
-
-  PetscFunctionBeginUser;
-  PetscCall(MatCreateVecs(coarse, &diagonal, NULL));
-  PetscCall(MatGetDiagonal(coarse, diagonal));
-  PetscCall(VecGetLocalSize(diagonal, &n));
-  PetscCall(VecGetArray(diagonal, &d));
-  for (PetscInt i = 0; i < n; ++i) largest = PetscMax(largest, d[i]);
-  PetscCall(MPIU_Allreduce(&largest, &all, 1, MPIU_REAL, MPIU_MAX, PetscObjectComm((PetscObject)coarse)));
-  for (PetscInt i = 0; i < n; ++i) d[i] = d[i] == 0 ? all : d[i];
-  PetscCall(VecRestoreArray(diagonal, &d));
-  PetscCall(MatDiagonalSet(coarse, diagonal, INSERT_VALUES));
-  PetscCall(VecDestroy(&diagonal));
   PetscFunctionReturn(0);
 }
 
@@ -119,7 +92,7 @@ static PetscErrorCode CreateSolver(TwoLevels *t, PC outer)
 static PetscErrorCode StillHolds(const TwoLevels *t, PetscBool *holds)
 {
   const PetscInt n = t->grid->n_nodes * t->system->dim;
-  PetscBool own = (PetscBool)(t->interpolation && !t->system->frames);
+  PetscBool own = (PetscBool)(t->box && !t->system->frames);
 
   PetscFunctionBeginUser;
   if (own && n) PetscCall(PetscMemcmp(t->held, t->fixed, (size_t)n, &own));
@@ -135,8 +108,8 @@ static PetscErrorCode CreateCoarse(TwoLevels *t)
   PetscCall(ClearCoarse(t));
   PetscCall(PetscMalloc1(n, &t->held));
   PetscCall(PetscArraycpy(t->held, t->fixed, n));
-  PetscCall(CoarseBoxInterpolation(t->system, t->grid, t->fixed, &t->interpolation, &t->motions));
-  PetscCall(MatCreateVecs(t->interpolation, &t->rest, &t->fine));
+  PetscCall(CoarseBoxCreate(t->system, t->grid, t->fixed, &t->box));
+  PetscCall(MatCreateVecs(t->box->interpolation, &t->rest, &t->fine));
   PetscCall(VecDuplicate(t->rest, &t->correction));
   PetscFunctionReturn(0);
 }
@@ -145,22 +118,18 @@ static PetscErrorCode SetUp(PC pc)
 {
   PetscBool holds;
   TwoLevels *t;
-  Mat A;
 
   PetscFunctionBeginUser;
   PetscCall(PCShellGetContext(pc, &t));
-  PetscCall(PCGetOperators(pc, NULL, &A));
   PetscCall(ClearFine(t));
   PetscCall(FillBlocks(t));
   if (t->blocks->singular) PetscCall(PCSetFailedReason(pc, PC_SUBPC_ERROR));
   if (t->blocks->singular) PetscFunctionReturn(0);
   PetscCall(StillHolds(t, &holds));
   if (!holds) PetscCall(CreateCoarse(t));
-  PetscCall(MatPtAP(A, t->interpolation, t->coarse ? MAT_REUSE_MATRIX : MAT_INITIAL_MATRIX, 1, &t->coarse));
-  PetscCall(MatSetBlockSize(t->coarse, t->system->dim));
-  PetscCall(CloseCoarse(t->coarse));
+  PetscCall(CoarseProduct(t->system->gathered, t->box, t->fixed, &t->coarse));
   if (t->symmetric) PetscCall(MatSetOption(t->coarse, MAT_SYMMETRIC, PETSC_TRUE));
-  PetscCall(MatSetNearNullSpace(t->coarse, t->motions));
+  PetscCall(MatSetNearNullSpace(t->coarse, t->box->motions));
   PetscCall(CreateSolver(t, pc));
   PetscFunctionReturn(0);
 }
@@ -218,9 +187,9 @@ static PetscErrorCode Correct(const TwoLevels *t, float *x)
   if (t->system->dim == 2) left_by_sweep(2, t, x, r);
   else left_by_sweep(3, t, x, r);
   PetscCall(VecRestoreArrayWrite(t->fine, &r));
-  PetscCall(MatMultTranspose(t->interpolation, t->fine, t->rest));
+  PetscCall(MatMultTranspose(t->box->interpolation, t->fine, t->rest));
   PetscCall(KSPSolve(t->solver, t->rest, t->correction));
-  PetscCall(MatMult(t->interpolation, t->correction, t->fine));
+  PetscCall(MatMult(t->box->interpolation, t->correction, t->fine));
   PetscCall(VecGetArrayRead(t->fine, &e));
   if (t->system->dim == 2) add_correction(2, t, e, x);
   else add_correction(3, t, e, x);

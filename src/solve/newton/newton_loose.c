@@ -76,7 +76,7 @@ PetscErrorCode NewtonLooseReason(Newton *n, const char **reason)
 
   PetscFunctionBeginUser;
   *reason = NULL;
-  if (p->in.inertia > 0 || p->system->form != SYSTEM_ASSEMBLED) PetscFunctionReturn(0);
+  if (p->in.inertia > 0 || p->system->form == SYSTEM_BLOCKS) PetscFunctionReturn(0);
   PetscCall(PetscCalloc2(p->grid->n_nodes * p->grid->dim, &diagonal, p->grid->n_nodes, &loose));
   PetscCall(Diagonals(n, diagonal, &largest));
   for (PetscInt i = 0; i < p->grid->n_nodes; ++i) loose[i] = is_loose(p, i, diagonal, NO_STIFFNESS * largest);

@@ -44,7 +44,7 @@ PetscErrorCode NewtonWeigh(Newton *n)
 static PetscInt whole_from(const Newton *n)
 {
   const System *s = n->problem->system;
-  return !n->lift && s->single ? s->n_active : 0;
+  return !n->lift && (s->single || s->form == SYSTEM_GATHERED) ? s->n_active : 0;
 }
 
 PetscErrorCode NewtonAssemble(Newton *n, PetscBool tangent)

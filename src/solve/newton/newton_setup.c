@@ -61,8 +61,10 @@ static PetscErrorCode UseLevels(StepProblem *p, const LinearProblem *linear, KSP
   PC pc;
 
   PetscFunctionBeginUser;
-  PetscCall(TellRigidMotions(p));
-  if (!linear->levels) PetscFunctionReturn(0);
+  if (p->system->form != SYSTEM_GATHERED) {
+    PetscCall(TellRigidMotions(p));
+    PetscFunctionReturn(0);
+  }
   PetscCall(KSPGetPC(ksp, &pc));
   PetscCall(TwoLevelsConfigure(pc, p->system, p->grid, p->fixed, linear->symmetric));
   *what = linear->symmetric ? "conjugate gradients, two levels of the box" : "GMRES, two levels of the box";

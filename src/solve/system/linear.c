@@ -206,8 +206,10 @@ PetscErrorCode LinearForm(const LinearProblem *p, SystemForm *form)
   PetscCall(PetscOptionsHasName(NULL, NULL, "-ksp_type", &method));
   PetscCall(PetscOptionsHasName(NULL, NULL, "-pc_type", &preconditioner));
   const PetscBool usable = !p->multipliers || p->symmetric || p->courant < PROJECT_BELOW;
-  *form = p->dynamic && usable && !p->mixed && !linear_factorises(p) && !method && !preconditioner ? SYSTEM_BLOCKS
-                                                                                                   : SYSTEM_ASSEMBLED;
+  *form = SYSTEM_ASSEMBLED;
+  if (p->mixed || preconditioner || linear_factorises(p)) PetscFunctionReturn(0);
+  if (p->dynamic && usable && !method) *form = SYSTEM_BLOCKS;
+  if (!p->dynamic && p->levels && !p->multipliers) *form = SYSTEM_GATHERED;
   PetscFunctionReturn(0);
 }
 

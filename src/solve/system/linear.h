@@ -28,8 +28,8 @@ PetscReal linear_factor_bytes(const LinearProblem *problem);
 PetscBool linear_factor_fits(const LinearProblem *problem);
 /* Is that a factorisation? */
 PetscBool linear_factorises(const LinearProblem *problem);
-/* What that solver works on: blocks where our own conjugate gradients or BiCGStab run, unless
- * options ask PETSc for a solver of its own. */
+/* What that solver works on: blocks where our own conjugate gradients or BiCGStab run, values as they were gathered
+ * where two levels of a box precondition, unless options ask PETSc for a solver of its own. */
 PetscErrorCode LinearForm(const LinearProblem *problem, SystemForm *form);
 /* Choose a solver, set it on ksp, whose operators are known (the options database still overrides
  * it); `what` gets a short name for the log. */

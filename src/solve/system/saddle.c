@@ -1,5 +1,5 @@
 #include "solve/system/saddle.h"
-#include "solve/system/assembled.h"
+#include "solve/system/forms/assembled.h"
 #include "solve/system/rigid_motions.h"
 
 /* Global numbers of components first .. first + n - 1 of every active node. */

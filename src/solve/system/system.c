@@ -1,6 +1,7 @@
 #include "solve/blocks/blocks.h"
 #include "solve/blocks/projection.h"
-#include "solve/system/assembled.h"
+#include "solve/system/forms/assembled.h"
+#include "solve/system/forms/gathered.h"
 
 PetscErrorCode SystemCreate(MPI_Comm comm, PetscInt dim, PetscInt block, System **system)
 {
@@ -9,6 +10,16 @@ PetscErrorCode SystemCreate(MPI_Comm comm, PetscInt dim, PetscInt block, System 
   (*system)->comm = comm;
   (*system)->dim = dim;
   (*system)->block = block;
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode SystemFreeMatrix(System *s)
+{
+  PetscFunctionBeginUser;
+  PetscCall(MatDestroy(&s->matrix));
+  PetscCall(BlocksDestroy(&s->blocks));
+  PetscCall(AssembledDestroy(&s->assembled));
+  PetscCall(GatheredDestroy(&s->gathered));
   PetscFunctionReturn(0);
 }
 
@@ -26,9 +37,7 @@ static PetscErrorCode SystemFreePattern(System *s)
   PetscCall(PetscFree(s->singles));
   s->single = PETSC_FALSE;
   s->n_cuts = 0;
-  PetscCall(MatDestroy(&s->matrix));
-  PetscCall(BlocksDestroy(&s->blocks));
-  PetscCall(AssembledDestroy(&s->assembled));
+  PetscCall(SystemFreeMatrix(s));
   PetscFunctionReturn(0);
 }
 
@@ -142,7 +151,7 @@ static PetscErrorCode SystemPattern(System *s, const NodeGroups *groups)
   }
   s->row_start[s->n_rows] = size;
   PetscCall(PetscRealloc((size_t)size * sizeof(PetscInt), &s->column));
-  PetscCall(PetscCalloc1(size * s->block * s->block, &s->values));
+  PetscCall(PetscCalloc1(size * s->block * s->block + SYSTEM_PADDING, &s->values));
   PetscCall(PetscFree(start));
   PetscCall(PetscFree(group));
   PetscCall(PetscFree(mark));
@@ -173,15 +182,47 @@ static PetscErrorCode BlockMatrix(System *s, PetscBool symmetric)
   PetscFunctionReturn(0);
 }
 
+static PetscErrorCode MultiplyGathered(Mat matrix, Vec x, Vec y)
+{
+  Gathered *gathered;
+
+  PetscFunctionBeginUser;
+  PetscCall(MatShellGetContext(matrix, &gathered));
+  PetscCall(GatheredMultiply(gathered, x, y));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode DiagonalGathered(Mat matrix, Vec diagonal)
+{
+  Gathered *gathered;
+
+  PetscFunctionBeginUser;
+  PetscCall(MatShellGetContext(matrix, &gathered));
+  PetscCall(GatheredDiagonal(gathered, diagonal));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode GatheredMatrix(System *s, PetscBool symmetric)
+{
+  const PetscInt n = s->n_active * s->dim;
+
+  PetscFunctionBeginUser;
+  PetscCall(GatheredCreate(s, symmetric, &s->gathered));
+  PetscCall(MatCreateShell(s->comm, n, n, PETSC_DETERMINE, PETSC_DETERMINE, s->gathered, &s->matrix));
+  PetscCall(MatShellSetOperation(s->matrix, MATOP_MULT, (void (*)(void))MultiplyGathered));
+  PetscCall(MatShellSetOperation(s->matrix, MATOP_GET_DIAGONAL, (void (*)(void))DiagonalGathered));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode SystemUse(System *s, SystemForm form, PetscBool symmetric)
 {
   PetscFunctionBeginUser;
-  if (!s->matrix || s->form != form || (s->blocks && s->blocks->symmetric != symmetric)) {
-    PetscCall(MatDestroy(&s->matrix));
-    PetscCall(BlocksDestroy(&s->blocks));
-    PetscCall(AssembledDestroy(&s->assembled));
+  if (!s->matrix || s->form != form || (s->blocks && s->blocks->symmetric != symmetric) ||
+      (s->gathered && s->gathered->symmetric != symmetric)) {
+    PetscCall(SystemFreeMatrix(s));
     s->form = form;
     if (form == SYSTEM_BLOCKS) PetscCall(BlockMatrix(s, symmetric));
+    else if (form == SYSTEM_GATHERED) PetscCall(GatheredMatrix(s, symmetric));
     else PetscCall(AssembledCreate(s, &s->assembled, &s->matrix));
     PetscCall(SystemGather(s, PETSC_FALSE));
   }
@@ -195,7 +236,7 @@ PetscErrorCode SystemGather(System *s, PetscBool single)
   for (PetscInt r = 0; s->matter && r < s->n_rows; ++r) s->matter[r] = PetscMin(s->matter[r], ROW_LEFT);
   s->single = single && s->blocks;
   if (s->single) PetscCall(PetscFree(s->values));
-  else if (!s->values) PetscCall(PetscCalloc1(system_numbers(s), &s->values));
+  else if (!s->values) PetscCall(PetscCalloc1(system_numbers(s) + SYSTEM_PADDING, &s->values));
   if (s->blocks && !s->singles) PetscCall(PetscCalloc1(system_numbers(s), &s->singles));
   PetscFunctionReturn(0);
 }
@@ -303,6 +344,7 @@ PetscErrorCode SystemToMatrix(System *s)
   }
   PetscCall(SystemCloseCuts(s));
   if (s->blocks) PetscCall(BlocksFill(s->blocks, s));
+  else if (s->gathered) PetscCall(GatheredFill(s->gathered, s->matrix));
   else PetscCall(AssembledFill(s->assembled, s, s->matrix));
   PetscFunctionReturn(0);
 }

@@ -9,9 +9,12 @@
 #include "boundary/frames.h"
 #include "support/support.h"
 
-/* What the linear solver works on: a matrix of PETSc, or blocks in single precision for
- * symmetric Gauss-Seidel (solve/blocks/blocks.h). */
-typedef enum { SYSTEM_ASSEMBLED, SYSTEM_BLOCKS } SystemForm;
+/* What the linear solver works on: a matrix of PETSc; blocks in single precision for symmetric Gauss-Seidel
+ * (solve/blocks/blocks.h); or the values themselves, where nothing but products is asked for (gathered.h). */
+typedef enum { SYSTEM_ASSEMBLED, SYSTEM_BLOCKS, SYSTEM_GATHERED } SystemForm;
+
+/* Numbers behind the last block, which registers read and nobody counts. */
+#define SYSTEM_PADDING 3
 
 /* The clouds that the slots were last looked up for: most are the same in the next step. */
 typedef struct {
@@ -69,10 +72,11 @@ typedef struct System {
   SystemPair *turned;
   CloudsBefore before;
   SystemForm form;
-  /* what the linear solver gets: assembled, or a shell over blocks; made by SystemUse */
+  /* what the linear solver gets: assembled, or a shell; made by SystemUse */
   Mat matrix;
-  struct Blocks *blocks;       /* of that shell */
-  struct Assembled *assembled; /* where pairs go in the other */
+  struct Blocks *blocks;       /* of a shell over blocks */
+  struct Assembled *assembled; /* where pairs go in PETSc's matrix */
+  struct Gathered *gathered;   /* of a shell over the values */
   PetscInt builds;             /* how often the pattern was made */
 } System;
 

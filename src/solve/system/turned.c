@@ -37,18 +37,6 @@ PetscErrorCode SystemFindTurned(System *s)
   PetscFunctionReturn(0);
 }
 
-/* The rows of a block, then its columns; a pressure has no direction. */
-static void turn_block(PetscInt dim, PetscInt block, const PetscReal *row, const PetscReal *column, PetscReal *a)
-{
-  PetscReal v[3];
-  for (PetscInt j = 0; row && j < block; ++j) {
-    for (PetscInt d = 0; d < dim; ++d) v[d] = a[d * block + j];
-    frame_turn(dim, row, v);
-    for (PetscInt d = 0; d < dim; ++d) a[d * block + j] = v[d];
-  }
-  for (PetscInt i = 0; column && i < block; ++i) frame_turn(dim, column, a + i * block);
-}
-
 void system_turn(System *s)
 {
   const PetscInt size = s->block * s->block;
@@ -57,7 +45,7 @@ void system_turn(System *s)
     const PetscInt first = t->pair * size;
     const PetscReal *row = frame_of(s->frames, t->row), *column = frame_of(s->frames, s->column[t->pair]);
     for (PetscInt e = 0; e < size; ++e) a[e] = s->single ? (PetscReal)s->singles[first + e] : s->values[first + e];
-    turn_block(s->dim, s->block, row, column, a);
+    frame_turn_block(s->dim, s->block, row, column, a);
     for (PetscInt e = 0; e < size; ++e) {
       if (s->single) s->singles[first + e] = (float)a[e];
       else s->values[first + e] = a[e];

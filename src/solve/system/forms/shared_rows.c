@@ -1,4 +1,4 @@
-#include "solve/system/shared_rows.h"
+#include "solve/system/forms/shared_rows.h"
 
 /* Ghost rows stand behind the owned ones: row n + g. Which node is theirs, as a global number? */
 static PetscErrorCode GhostNumbers(const System *s, PetscInt **number)
@@ -121,5 +121,25 @@ PetscErrorCode SharedRowsDestroy(SharedRows *h)
   PetscCall(PetscSFDestroy(&h->pairs));
   PetscCall(PetscFree(h->start));
   PetscCall(PetscFree(h->number));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode GhostRows(const System *s, PetscSF *rows)
+{
+  PetscMPIInt ranks;
+  PetscLayout layout;
+  PetscInt *number;
+
+  PetscFunctionBeginUser;
+  *rows = NULL;
+  PetscCallMPI(MPI_Comm_size(s->comm, &ranks));
+  if (ranks == 1) PetscFunctionReturn(0);
+  PetscCall(GhostNumbers(s, &number));
+  PetscCall(PetscLayoutCreateFromSizes(s->comm, s->n_active, PETSC_DETERMINE, 1, &layout));
+  PetscCall(PetscSFCreate(s->comm, rows));
+  PetscCall(PetscSFSetRankOrder(*rows, PETSC_TRUE)); /* the same sums in every run */
+  PetscCall(PetscSFSetGraphLayout(*rows, layout, s->n_rows - s->n_active, NULL, PETSC_COPY_VALUES, number));
+  PetscCall(PetscLayoutDestroy(&layout));
+  PetscCall(PetscFree(number));
   PetscFunctionReturn(0);
 }

@@ -16,3 +16,6 @@ typedef struct {
  * the ghost rows, for the caller to free; NULL: not wanted. */
 PetscErrorCode SharedRowsCreate(const System *system, SharedRows *shared, PetscInt **ghost);
 PetscErrorCode SharedRowsDestroy(SharedRows *shared);
+
+/* Collective. From the owned rows (roots) to this rank's ghost rows (leaves, from 0 on); NULL on one rank. */
+PetscErrorCode GhostRows(const System *system, PetscSF *rows);

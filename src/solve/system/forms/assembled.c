@@ -1,4 +1,4 @@
-#include "solve/system/assembled.h"
+#include "solve/system/forms/assembled.h"
 
 /* Global numbers of the column nodes of an owned row: those of its own pairs and those that arrive, ascending. */
 static PetscErrorCode ColumnsOf(const System *s, const SharedRows *h, PetscInt r, PetscInt *n, PetscInt *column)

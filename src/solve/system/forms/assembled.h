@@ -1,7 +1,7 @@
 /* PETSc's matrix of a System, row by row. Its pattern is that of node pairs, so one place says where all numbers of
  * a pair go: 4 bytes a pair, where a list of single numbers (MatSetValuesCOO) keeps 16 for each of them. */
 #pragma once
-#include "solve/system/shared_rows.h"
+#include "solve/system/forms/shared_rows.h"
 
 typedef struct Assembled {
   Mat own, others;   /* of this rank's rows: columns that it owns, and those of others (NULL on one rank) */
