@@ -116,6 +116,7 @@ static LinearProblem linear_problem(const Model *m, PetscReal dt)
     .dim = m->dim,
     .unknowns = m->system->n_active_global * m->system->block,
     .symmetric = m->symmetric,
+    .failing = case_seeks(&m->c->analysis),
     .levels = coarse_box_fits(m->grid),
     .mixed = m->formulation->pressure,
     .undetermined = m->c->mixed.stabilisation == 0,

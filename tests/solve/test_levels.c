@@ -2,6 +2,7 @@
  * products: symmetric and not, half of it alone, prescribed dofs, nodes with axes of their own, 1 to 3 ranks. */
 #include "made_system.h"
 #include "solve/levels/coarse_product.h"
+#include "solve/system/linear.h"
 
 typedef struct {
   CellType type;
@@ -136,8 +137,26 @@ static void test_products(void **state)
         check_kind(&(Kind){solid ? CELL_HEXAHEDRON : CELL_QUADRILATERAL, kind > 0, kind > 1, frames});
 }
 
+/* No matrix where two levels work; a factorisation, and a matrix for it, near failure. */
+static void test_choice(void **state)
+{
+  SystemForm form;
+  LinearProblem problem = {.choice = LINEAR_AUTO, .dim = 3, .unknowns = 9000, .levels = PETSC_TRUE};
+  (void)state;
+  CALL(LinearForm(&problem, &form));
+  CHECK(form == SYSTEM_GATHERED, "a matrix");
+  problem.failing = PETSC_TRUE;
+  CALL(LinearForm(&problem, &form));
+  CHECK(form == SYSTEM_ASSEMBLED && linear_factorises(&problem), "no factorisation");
+  problem.failing = PETSC_FALSE;
+  problem.levels = PETSC_FALSE;
+  problem.choice = LINEAR_ITERATIVE;
+  CALL(LinearForm(&problem, &form));
+  CHECK(form == SYSTEM_ASSEMBLED, "nothing for algebraic multigrid");
+}
+
 int main(int argc, char **argv)
 {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_products)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_products), cmocka_unit_test(test_choice)};
   return run_model_tests(argc, argv, tests);
 }

@@ -149,6 +149,7 @@ static PetscReal solver_memory(const Model *m, PetscInt unknowns, PetscReal matr
                                  .dim = m->dim,
                                  .unknowns = unknowns,
                                  .symmetric = m->symmetric,
+                                 .failing = case_seeks(&m->c->analysis),
                                  .levels = coarse_box_fits(m->grid),
                                  .mixed = m->formulation->pressure,
                                  .memory = m->machine_memory};

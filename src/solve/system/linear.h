@@ -12,6 +12,7 @@ typedef struct {
   LinearChoice choice;
   PetscInt dim, unknowns;
   PetscBool symmetric, dynamic;
+  PetscBool failing;      /* is it asked for the load, or the strength, at which material fails? */
   PetscBool levels;       /* has the grid coarse nodes (solve/levels)? */
   PetscBool mixed;        /* is the last unknown of every block a pressure? */
   PetscBool undetermined; /* mixed without stabilisation: some pressures may be anything */
