@@ -5,6 +5,8 @@
 
 #define KERNEL static inline __attribute__((always_inline))
 
+#define AHEAD 24 /* pairs */
+
 typedef double Four __attribute__((vector_size(32), aligned(8), may_alias));
 typedef double Two __attribute__((vector_size(16), aligned(8), may_alias));
 
@@ -21,7 +23,7 @@ PetscErrorCode GatheredCreate(const System *s, PetscBool symmetric, Gathered **g
   PetscCall(GhostRows(s, &g->ghosts));
   PetscCallMPI(MPI_Type_contiguous((PetscMPIInt)stride, MPIU_REAL, &g->vector));
   PetscCallMPI(MPI_Type_commit(&g->vector));
-  PetscCall(PetscMalloc3(s->n_rows + 1, &g->start, pairs, &g->pair, pairs, &g->column));
+  PetscCall(PetscMalloc3(s->n_rows + 1, &g->start, pairs + AHEAD, &g->pair, pairs, &g->column));
   PetscCall(PetscCalloc2(s->n_rows * stride, &g->x, s->n_rows * stride, &g->y));
   g->start[0] = 0;
   *gathered = g;
@@ -65,6 +67,7 @@ KERNEL void find_pairs(const int size, Gathered *g)
     }
     g->start[r + 1] = n;
   }
+  for (int k = 0; k < AHEAD; ++k) g->pair[n + k] = 0; /* fetched, not read */
 }
 
 PetscErrorCode GatheredFill(Gathered *g, Mat matrix)
@@ -75,6 +78,14 @@ PetscErrorCode GatheredFill(Gathered *g, Mat matrix)
   PetscCall(MatAssemblyBegin(matrix, MAT_FINAL_ASSEMBLY));
   PetscCall(MatAssemblyEnd(matrix, MAT_FINAL_ASSEMBLY));
   PetscFunctionReturn(0);
+}
+
+/* Of a row half the values are read, or fewer: what comes next is fetched, since no stream of addresses tells. */
+KERNEL void fetch(const Gathered *g, const int size, PetscInt e)
+{
+  const PetscReal *next = g->s->values + size * (size_t)g->pair[e + AHEAD];
+  __builtin_prefetch(next);
+  if (size > 8) __builtin_prefetch(next + size - 1);
 }
 
 /* y += A x; the half behind the diagonals counts twice. Registers read a number too many, of the next block: it meets
@@ -88,6 +99,7 @@ KERNEL void add_product_3d(const Gathered *g, const PetscBool symmetric)
     Four sum[3] = {{0, 0, 0, 0}, {0, 0, 0, 0}, {0, 0, 0, 0}};
     for (PetscInt e = g->start[r]; e < g->start[r + 1]; ++e) {
       const PetscReal *K = values + 9 * (size_t)g->pair[e];
+      fetch(g, 9, e);
       const Four row[3] = {*(const Four *)K, *(const Four *)(K + 3), *(const Four *)(K + 6)};
       const Four other = *(const Four *)(x + 4 * g->column[e]);
       for (int i = 0; i < 3; ++i) sum[i] += row[i] * other;
@@ -107,6 +119,7 @@ KERNEL void add_product_2d(const Gathered *g, const PetscBool symmetric)
     Four sum = {0, 0, 0, 0};
     for (PetscInt e = g->start[r]; e < g->start[r + 1]; ++e) {
       const Four K = *(const Four *)(values + 4 * (size_t)g->pair[e]);
+      fetch(g, 4, e);
       const Two other = *(const Two *)(x + 2 * g->column[e]);
       sum += K * __builtin_shufflevector(other, other, 0, 1, 0, 1);
       if (!symmetric || e == g->start[r]) continue;
