@@ -73,7 +73,7 @@ static PetscErrorCode Replace(const Layer *l, YamlNode *node, const YamlNode *by
 static const char *name_of(const YamlNode *entry)
 {
   const YamlNode *name = yaml_find(entry, "name");
-  return name && name->kind == YAML_SCALAR ? name->text : NULL;
+  return name && name->kind == YAML_SCALAR && !yaml_is_null(name) ? name->text : NULL;
 }
 
 /* A list of things, not of numbers. */

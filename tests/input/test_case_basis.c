@@ -26,7 +26,7 @@ static const struct {
   const char *text, *kind, *told;
 } cases[] = {
   {PLAIN, "gimp", "gimp, the default of mpm; basis: {cell: {}} is the thesis's"},
-  {PLAIN "basis:\n", "gimp", "gimp, the default of mpm;"},
+  {PLAIN "basis: {}\n", "gimp", "gimp, the default of mpm;"},
   {PLAIN "formulation: mixed\n", "gimp", "gimp, the default of mpm;"},
   {SPACE(""), "gimp", "gimp, the default of mpm;"},
   {SPACE("") "formulation: mixed\n", "cell", "cell, since gimp, the default of mpm, takes 2 to 5 times"},

@@ -32,12 +32,13 @@ static PetscBool fits(const SchemaReader *r, const SchemaEntry *entry)
   return !((entry->only_2d && r->dim == 3) || (entry->only_3d && r->dim == 2) || (entry->turns && r->hoop));
 }
 
-/* A key with nothing behind it counts as absent where a mapping or a list may be absent. */
-static const YamlNode *given(const SchemaEntry *entry, const YamlNode *mapping)
+/* A key with nothing behind it would count as given for the groups and as absent for the rest, so it is a mistake. Whoever
+ * has commented out what stood there wants the key out, too. */
+static void hint_empty(SchemaReader *r, const SchemaEntry *entry, const YamlNode *node)
 {
-  const YamlNode *node = yaml_find(mapping, entry->key);
   const PetscBool nested = entry->type == TYPE_TABLE || entry->type == TYPE_LIST || entry->type == TYPE_NAMED;
-  return node && nested && !entry->required && !entry->tagged && yaml_is_null(node) ? NULL : node;
+  if (nested && !entry->required && !entry->tagged && yaml_is_null(node))
+    diag_hint(r->diag, "leave '%s' out if nothing is meant", entry->key);
 }
 
 void schema_hint_words(SchemaReader *r, const char *word, PetscInt n, const char *const *words)
@@ -136,7 +137,7 @@ static PetscErrorCode SetTag(const SchemaTable *table, const SchemaEntry *entry,
 static PetscErrorCode ReadKey(SchemaReader *r, const SchemaTable *table, const SchemaEntry *entry,
                               const YamlNode *mapping, void *target)
 {
-  const YamlNode *node = given(entry, mapping);
+  const YamlNode *node = yaml_find(mapping, entry->key);
   char path[512];
 
   PetscFunctionBeginUser;
@@ -148,6 +149,7 @@ static PetscErrorCode ReadKey(SchemaReader *r, const SchemaTable *table, const S
     if (entry->tagged) PetscCall(SetTag(table, entry, target));
     if (entry->present) *(PetscBool *)((char *)target + entry->present - 1) = PETSC_TRUE;
     PetscCall(SchemaReadEntry(r, entry, node, target));
+    hint_empty(r, entry, node);
   } else if (entry->required) read_missing(r, entry, mapping);
   else if (entry->always || (entry->fallback && !in_group(table, entry->key))) PetscCall(ReadDefault(r, entry, target));
   PetscFunctionReturn(0);
@@ -192,9 +194,14 @@ PetscErrorCode SchemaReadTable(SchemaReader *r, const SchemaTable *table, const 
 
 PetscBool schema_is(SchemaReader *r, const SchemaEntry *entry, const YamlNode *node, YamlKind kind, PetscInt least)
 {
-  const PetscBool is = node->kind == kind && node->n >= least;
-  if (!is) schema_mismatch(r, entry, node);
-  return is;
+  char path[512], expected[300];
+  if (node->kind == kind && node->n >= least) return PETSC_TRUE;
+  if (node->kind == kind && node->n) /* too short, but of the right kind */
+    SchemaError(r, node, "%s must be %s, not a %s of %d", yaml_path(node, path, sizeof(path)),
+                schema_expected(entry, r->dim, expected, sizeof(expected)), kind == YAML_SEQUENCE ? "list" : "mapping",
+                (int)node->n);
+  else schema_mismatch(r, entry, node);
+  return PETSC_FALSE;
 }
 
 static PetscErrorCode ReadNested(SchemaReader *r, const SchemaEntry *entry, const YamlNode *node, void *target)
@@ -234,6 +241,9 @@ static PetscErrorCode CheckNameTwice(SchemaReader *r, const YamlNode *list, Pets
   PetscFunctionReturn(0);
 }
 
+/* What stands in lists and under names. */
+static const SchemaEntry item_entry = {.type = TYPE_TABLE};
+
 static PetscErrorCode ReadList(SchemaReader *r, const SchemaEntry *entry, const YamlNode *node, void *target)
 {
   const SchemaTable *table = entry->table;
@@ -250,10 +260,8 @@ static PetscErrorCode ReadList(SchemaReader *r, const SchemaEntry *entry, const 
     *count += 1;
     if (entry->items_tagged) *(int *)(item + table->tag_offset) = entry->tag;
     PetscCall(CheckNameTwice(r, node, i, &names));
-    if (node->child[i]->kind == YAML_MAPPING) PetscCall(SchemaReadTable(r, table, node->child[i], item));
-    else
-      SchemaError(r, node->child[i], "%s must be a mapping {key: value, ...}",
-                  yaml_path(node->child[i], path, sizeof(path)));
+    if (schema_is(r, &item_entry, node->child[i], YAML_MAPPING, 0))
+      PetscCall(SchemaReadTable(r, table, node->child[i], item));
   }
   PetscCall(NamesFree(&names));
   PetscFunctionReturn(0);
@@ -313,8 +321,7 @@ static PetscErrorCode ReadNamed(SchemaReader *r, const SchemaEntry *entry, const
     schema_check_name(r, child, child->key, PETSC_TRUE);
     PetscCall(NotThere(r, entry->table, child, &not_there));
     if (not_there) continue;
-    if (child->kind == YAML_MAPPING) PetscCall(SchemaReadTable(r, entry->table, child, item));
-    else SchemaError(r, child, "%s must be a mapping {key: value, ...}", yaml_path(child, path, sizeof(path)));
+    if (schema_is(r, &item_entry, child, YAML_MAPPING, 0)) PetscCall(SchemaReadTable(r, entry->table, child, item));
   }
   PetscFunctionReturn(0);
 }

@@ -51,8 +51,9 @@ static PetscBool in_range(const SchemaEntry *e, PetscReal v)
 
 static const char *describe(const YamlNode *node, char *buffer, size_t size)
 {
-  if (node->kind == YAML_SEQUENCE) snprintf(buffer, size, "a list");
-  else if (node->kind == YAML_MAPPING) snprintf(buffer, size, "a mapping");
+  const char *article = node->kind != YAML_SCALAR && !node->n ? "an empty" : "a";
+  if (node->kind == YAML_SEQUENCE) snprintf(buffer, size, "%s list", article);
+  else if (node->kind == YAML_MAPPING) snprintf(buffer, size, "%s mapping", article);
   else if (yaml_is_null(node)) snprintf(buffer, size, "empty");
   else
     snprintf(buffer, size, node->plain ? "%s'%.60s'" : "%s'%.60s' in quotes", node->plain ? "" : "the text ",

@@ -235,15 +235,18 @@ PetscErrorCode SchemaReadPolygon(SchemaReader *r, const SchemaEntry *e, const Ya
 
 PetscErrorCode SchemaReadEvery(SchemaReader *r, const SchemaEntry *e, const YamlNode *node, void *target)
 {
+  const SchemaEntry count = {.type = TYPE_INTEGER, .bounded = PETSC_TRUE, .min = 1, .max = PETSC_MAX_REAL};
   PetscReal *every = (PetscReal *)((char *)target + e->offset), seconds;
   const YamlNode *steps = yaml_find(node, "steps");
-  PetscInt n;
+  PetscInt n = 0;
 
   PetscFunctionBeginUser;
   if (node->kind == YAML_SCALAR && !strcmp(node->text, "end")) *every = 0;
   else if (schema_parse_number(node, &seconds) && seconds > 0) *every = seconds;
-  else if (steps && node->n == 1 && schema_parse_integer(steps, &n) && n > 0) *every = -(PetscReal)n;
-  else schema_mismatch(r, e, node);
+  else if (steps && node->n == 1) {
+    PetscCall(SchemaReadInteger(r, &count, steps, &n));
+    *every = -(PetscReal)n;
+  } else schema_mismatch(r, e, node);
   PetscFunctionReturn(0);
 }
 
