@@ -302,6 +302,42 @@ static void bad_meshes(void **state)
   refuse(in_folder("second.msh"), 2, "second-order");
 }
 
+#define SIDE_BY_SIDE(x, y)                                                                        \
+  HEAD "$Nodes\n8\n1 0 0 0\n2 1 0 0\n3 1 1 0\n4 0 1 0\n5 " x " 0 0\n6 2 0 0\n7 2 1 0\n8 " x " " y \
+       " 0\n$EndNodes\n"                                                                          \
+       "$Elements\n2\n1 3 2 0 1 1 2 3 4\n2 3 2 0 2 5 6 7 8\n$EndElements\n"
+
+/* Cells that touch and share no node are a mesh, of which one is told. */
+static void torn(void **state)
+{
+  static const struct {
+    const char *text, *said;
+  } meshes_of[] = {{SIDE_BY_SIDE("1", "1"), "2 pairs of nodes stand at one place, as at (1, 0)"},
+                   {SIDE_BY_SIDE("1.00001", "1"), "2 pairs of nodes"},
+                   {SIDE_BY_SIDE("1", "1.2"), "1 pair of nodes stands at one place, as at (1, 0)"},
+                   {SIDE_BY_SIDE("1.01", "1"), NULL}};
+  (void)state;
+  for (int k = 0; k < 4; ++k) {
+    char *printed = NULL;
+    size_t size;
+    Diag *diag;
+    Grid *grid;
+    write_file("torn.msh", meshes_of[k].text, strlen(meshes_of[k].text));
+    const Case c = mesh_case(in_folder("torn.msh"), 2);
+    CALL(DiagCreate(&diag));
+    CALL(GridCreate(PETSC_COMM_WORLD, &c, NULL, NULL, diag, &grid));
+    assert_non_null(grid);
+    FILE *out = open_memstream(&printed, &size);
+    CALL(DiagFlush(diag, out));
+    (void)fclose(out);
+    if (!my_rank() && meshes_of[k].said) assert_non_null(strstr(printed, meshes_of[k].said));
+    else assert_string_equal(printed, "");
+    free(printed);
+    CALL(DiagDestroy(&diag));
+    CALL(GridDestroy(&grid));
+  }
+}
+
 static void bad_geo(void **state)
 {
   static const char text[] = "Point(1) = {0, 0, 0};\nLine(1) = {1, 2\n";
@@ -392,11 +428,22 @@ static void damaged_files(void **state)
 int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {
-    cmocka_unit_test(formats_agree), cmocka_unit_test(quadrilaterals),     cmocka_unit_test(mixed),
-    cmocka_unit_test(solids),        cmocka_unit_test(location),           cmocka_unit_test(inside_and_outside),
-    cmocka_unit_test(clamp_solid),   cmocka_unit_test(weighted_partition), cmocka_unit_test(two_triangles),
-    cmocka_unit_test(through_gmsh),  cmocka_unit_test(bad_files),          cmocka_unit_test(bad_meshes),
-    cmocka_unit_test(bad_geo),       cmocka_unit_test(gmsh_is_missing),    cmocka_unit_test(truncated_files),
+    cmocka_unit_test(formats_agree),
+    cmocka_unit_test(quadrilaterals),
+    cmocka_unit_test(mixed),
+    cmocka_unit_test(solids),
+    cmocka_unit_test(location),
+    cmocka_unit_test(inside_and_outside),
+    cmocka_unit_test(clamp_solid),
+    cmocka_unit_test(weighted_partition),
+    cmocka_unit_test(two_triangles),
+    cmocka_unit_test(through_gmsh),
+    cmocka_unit_test(bad_files),
+    cmocka_unit_test(bad_meshes),
+    cmocka_unit_test(torn),
+    cmocka_unit_test(bad_geo),
+    cmocka_unit_test(gmsh_is_missing),
+    cmocka_unit_test(truncated_files),
     cmocka_unit_test(damaged_files),
   };
   return run_grid_tests(argc, argv, tests, sizeof tests / sizeof *tests, setup, teardown);
