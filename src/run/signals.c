@@ -1,5 +1,6 @@
 #include "run/signals.h"
 #include <signal.h>
+#include <time.h>
 
 /* What asks a run to leave. A person who sends one of the first twice insists; the others come
  * again by themselves: a batch system's warnings, SIGXCPU every second, SIGHUP from shell and
@@ -20,6 +21,18 @@ static volatile sig_atomic_t asked_by;
 /* Signals are the process's: what was there, to be put back. */
 static struct sigaction before[N_WATCHED];
 
+static struct timespec first_term;
+
+/* Linux tells of a parent's death once for each of its threads, so that SIGTERM comes two or three times at once: within a
+ * second it is the same ask. */
+static PetscBool is_echo(void)
+{
+  struct timespec now;
+  clock_gettime(CLOCK_MONOTONIC, &now);
+  if (!first_term.tv_sec && !first_term.tv_nsec) first_term = now;
+  return (PetscReal)(now.tv_sec - first_term.tv_sec) + 1e-9 * (PetscReal)(now.tv_nsec - first_term.tv_nsec) < 1;
+}
+
 static void on_signal(int number)
 {
   asked_by = number;
@@ -27,16 +40,28 @@ static void on_signal(int number)
     if (watched[k].number == number && watched[k].insists) signal(number, SIG_DFL);
 }
 
+static void on_term(int number)
+{
+  asked_by = number;
+  if (is_echo()) return;
+  signal(number, SIG_DFL);
+  raise(number);
+}
+
+static void (*handler(size_t k))(int) { return watched[k].number == SIGTERM ? on_term : on_signal; }
+
 /* Is the signal left to whoever had it? */
 static PetscBool is_left(size_t k) { return watched[k].optional && before[k].sa_handler == SIG_IGN; }
 
 void signals_watch(void)
 {
-  struct sigaction action = {.sa_handler = on_signal, .sa_flags = SA_RESTART};
+  struct sigaction action = {.sa_flags = SA_RESTART};
   sigemptyset(&action.sa_mask);
   asked_by = 0;
+  first_term = (struct timespec){0};
   for (size_t k = 0; k < N_WATCHED; ++k) {
     sigaction(watched[k].number, NULL, &before[k]);
+    action.sa_handler = handler(k);
     if (!is_left(k)) sigaction(watched[k].number, &action, NULL);
   }
 }
@@ -50,7 +75,7 @@ void signals_forget(void)
   struct sigaction now;
   for (size_t k = 0; k < N_WATCHED; ++k) {
     sigaction(watched[k].number, NULL, &now);
-    if (now.sa_handler == on_signal) sigaction(watched[k].number, &before[k], NULL);
+    if (now.sa_handler == handler(k)) sigaction(watched[k].number, &before[k], NULL);
   }
 }
 

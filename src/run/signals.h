@@ -3,7 +3,8 @@
 #pragma once
 #include <petscsys.h>
 
-/* Watch from now on; a second SIGINT, SIGTERM or SIGQUIT ends the program at once. */
+/* Watch from now on; a second SIGINT, SIGTERM or SIGQUIT ends the program at once, but
+ * for a SIGTERM within a second of the first: that is the same ask. */
 void signals_watch(void);
 void signals_forget(void);
 /* Has one come to this rank? */

@@ -70,6 +70,20 @@ for i in $(seq 100); do
   sleep 0.1
 done
 if pgrep -f -- "--resume b/young" >/dev/null; then fail "$name: members go on without the sweep"; fi
+name="killed at first"
+"$talus" sweep block.yaml --over materials.rubber.young=2e5,3e5 --set analysis.end=1000 --measure low --jobs 2 --out k >out.txt 2>err.txt </dev/null &
+sweep=$!
+for i in $(seq 400); do
+  [ -s k/young=2e5/history.csv ] && [ -s k/young=3e5/history.csv ] && [ "$(wc -l <k/young=3e5/history.csv)" -gt 5 ] && break
+  sleep 0.05
+done
+kill -KILL "$sweep"
+wait 2>/dev/null
+for i in $(seq 100); do
+  pgrep -f -- "--out k/young" >/dev/null || break
+  sleep 0.1
+done
+ls k/young=2e5/checkpoint_*.h5 k/young=3e5/checkpoint_*.h5 >/dev/null || fail "$name: a member without a checkpoint"
 expect "goes on" 0 sweep_block
 says out.txt "to go on from their checkpoints"
 expect "in one go" 0 "$talus" run block.yaml --set materials.rubber.young=3e5 --out whole --quiet
