@@ -3,6 +3,7 @@
 #include "../output/test_output.h"
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 #include "output/vtk/vtk.h"
 #include "picture/scene/scene.h"
 #include "picture/raster/distance.h"
@@ -123,6 +124,42 @@ static void test_seen_from_above(void **state)
   assert_true(first > 0.5);
 }
 
+/* Cells of fem, which have no gaps: a ring of radius 0.5 to 1, and nothing beside, above and below it. */
+static void test_cells_are_turned(void **state)
+{
+  PetscReal corner[2][2][3][3] = {{{{0.5, 0, 0}, {1, 0, 0}, {1, 1, 0}}, {{0.5, 0, 0}, {1, 1, 0}, {0.5, 1, 0}}}},
+            value[12] = {0};
+  unsigned char side[4] = {0}, *rgba;
+  PlotScene scene = {.dim = 3,
+                     .n_frames = 1,
+                     .up = 1,
+                     .high = 1,
+                     .revolution = PETSC_TRUE,
+                     .mirrored = PETSC_TRUE,
+                     .turned = PETSC_TRUE,
+                     .box_min = {-1, 0, -1},
+                     .box_max = {1, 1, 1}};
+  PlotFrame *f = &scene.frames[0];
+  PlotPage page;
+  (void)state;
+  memcpy(corner[1], corner[0], sizeof corner[0]);
+  for (int k = 0; k < 6; ++k) corner[1][k / 3][k % 3][0] *= -1;
+  f->n_triangles = 4, f->corner = &corner[0][0][0][0], f->corner_value = value, f->side = side;
+  plot_lay_out(&scene, 600, 400, &page);
+  const size_t n = (size_t)page.w * (size_t)page.h;
+  assert_non_null(rgba = calloc(n, 4));
+  assert_int_equal(PlotImage(&scene, f, &page, rgba), 0);
+  PetscInt full = 0, edge = 0;
+  for (size_t i = 0; i < n; ++i) {
+    const int column = (int)(i % (size_t)page.w), row = (int)(i / (size_t)page.w);
+    full += rgba[4 * i + 3] == 255;
+    edge += rgba[4 * i + 3] && (!column || !row || column == page.w - 1 || row == page.h - 1);
+  }
+  assert_true(full > (PetscInt)n / 5 && full < (PetscInt)(4 * n / 5));
+  assert_int_equal(edge, 0);
+  free(rgba);
+}
+
 /* Of what a file holds both sides are taken, in the plane and in space. */
 static void test_both_sides(void **state)
 {
@@ -201,9 +238,9 @@ static void test_kinds_of_runs(void **state)
 
 static int Tests(void)
 {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_distances), cmocka_unit_test(test_seen_from_the_front),
-                                     cmocka_unit_test(test_seen_from_above), cmocka_unit_test(test_both_sides),
-                                     cmocka_unit_test(test_kinds_of_runs)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_distances),       cmocka_unit_test(test_seen_from_the_front),
+                                     cmocka_unit_test(test_seen_from_above), cmocka_unit_test(test_cells_are_turned),
+                                     cmocka_unit_test(test_both_sides),      cmocka_unit_test(test_kinds_of_runs)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
 

@@ -7,6 +7,7 @@
 
 /* Pixels along a section that is turned: more are of no use. */
 #define SECTION_PIXELS 2000
+#define AIR 0.06 /* of the radius: cells of fem have no gap, and rays must come from outside of the body */
 #define BLUR 0.8 /* of the distance from point to point, where fields are smoothed */
 
 void plot_blend(unsigned char *rgba, PetscReal grey, PetscReal alpha)
@@ -46,7 +47,7 @@ static PetscErrorCode Balls(const PlotScene *scene, const PlotFrame *f, RasterSc
 /* The section as a flat image with air around it, then turned. */
 static PetscErrorCode Turned(const PlotScene *scene, const PlotFrame *f, const PlotPage *page, unsigned char *rgba)
 {
-  const PetscReal *min = scene->box_min, *max = scene->box_max, air = scene->gap;
+  const PetscReal *min = scene->box_min, *max = scene->box_max, air = PetscMax(scene->gap, AIR * max[0]);
   const PetscReal wide = max[0] - min[0] + 2 * air, high = max[1] - min[1] + 2 * air;
   const PetscReal pixel = PetscMax((page->max[0] - page->min[0]) / page->w, PetscMax(wide, high) / SECTION_PIXELS);
   RasterScene flat = {.min = {min[0] - air, min[1] - air},
