@@ -1,10 +1,13 @@
 #include "picture/figure.h"
 #include <string.h>
 #include "picture/gnuplot.h"
+#include "picture/label.h"
 
 #define WIDTH 900
 #define HEIGHT 600
-#define LETTER 11 /* width of one in the title, about */
+#define LETTER 11 /* pixels of one in a label, about */
+#define SHEET_WIDTH 640
+#define SHEET_HEIGHT 460
 
 /* Colours that stay apart in print and for the colour-blind, and marks of different shape: the
  * first is filled, the others are hollow and larger, so that curves that coincide can be told
@@ -64,11 +67,18 @@ static void write_range(FILE *out, const char *axis, PetscBool logarithmic, Pets
   }
 }
 
-static void write_label(FILE *out, const char *what, const char *text)
+/* How many letters have room beside the figure, or above and below it. */
+static PetscInt letters(const Figure *figure, PetscBool beside)
+{
+  const int width = figure->width ? figure->width : WIDTH, height = figure->height ? figure->height : HEIGHT;
+  return (PetscInt)((beside ? height : width) / (LETTER * label_scale(width, height)));
+}
+
+static void write_label(FILE *out, const char *what, const char *text, PetscInt most)
 {
   if (!text) return;
   fprintf(out, "set %s ", what);
-  gnuplot_quote(out, text);
+  label_write(out, text, most);
   fputc('\n', out);
 }
 
@@ -84,17 +94,17 @@ static const char *middle_space(const char *text)
 /* In two lines, if it is wider than the picture. */
 static void write_title(FILE *out, const Figure *figure)
 {
-  const PetscInt fits = (figure->width ? figure->width : WIDTH) / LETTER;
+  const PetscInt fits = letters(figure, PETSC_FALSE);
   const char *middle = figure->title && (PetscInt)strlen(figure->title) > fits ? middle_space(figure->title) : NULL;
   char *first;
   if (!middle || !(first = strndup(figure->title, (size_t)(middle - figure->title)))) {
-    write_label(out, "title", figure->title);
+    write_label(out, "title", figure->title, fits);
     return;
   }
   fputs("set title ", out);
-  gnuplot_quote(out, first);
+  label_write(out, first, fits);
   fputs(" . \"\\n\" . ", out);
-  gnuplot_quote(out, middle + 1);
+  label_write(out, middle + 1, fits);
   fputc('\n', out);
   free(first);
 }
@@ -176,7 +186,7 @@ static void write_key(FILE *out, const Figure *figure, const PetscReal *min, con
 static void write_right_axis(FILE *out, const Figure *figure, const PetscReal *min, const PetscReal *max)
 {
   if (!figure->right_label) return;
-  write_label(out, "y2label", figure->right_label);
+  write_label(out, "y2label", figure->right_label, letters(figure, PETSC_TRUE));
   write_range(out, "y2", PETSC_FALSE, min[AXIS_RIGHT], max[AXIS_RIGHT], 0.06);
   fputs("set y2tics\n", out);
 }
@@ -184,8 +194,8 @@ static void write_right_axis(FILE *out, const Figure *figure, const PetscReal *m
 static void write_axes(FILE *out, const Figure *figure, const PetscReal *min, const PetscReal *max)
 {
   write_title(out, figure);
-  write_label(out, "xlabel", figure->x_label);
-  write_label(out, "ylabel", figure->y_label);
+  write_label(out, "xlabel", figure->x_label, letters(figure, PETSC_FALSE));
+  write_label(out, "ylabel", figure->y_label, letters(figure, PETSC_TRUE));
   fputs("set format '%g'\n", out); /* gnuplot's own has five decimals, in which small numbers are the same */
   if (figure->log_x) fputs("set logscale x\nset format x '%g'\n", out);
   if (figure->log_y) fputs("set logscale y\nset format y '%.0e'\n", out);
@@ -351,14 +361,16 @@ PetscErrorCode FigureSheet(const char *title, PetscInt n, const Figure *figures,
   GnuplotScript script;
 
   PetscFunctionBeginUser;
-  PetscCall(GnuplotBegin(&script, png, 640 * (int)columns, 460 * rows));
+  PetscCall(GnuplotBegin(&script, png, SHEET_WIDTH * (int)columns, SHEET_HEIGHT * rows));
   fprintf(script.out, "set multiplot layout %d,%d", rows, (int)columns);
   if (title && title[0]) fputs(" title ", script.out), gnuplot_quote(script.out, title);
   fputc('\n', script.out);
   for (PetscInt k = 0; k < n; ++k) {
     PetscReal min[N_AXES] = {0}, max[N_AXES] = {0};
+    Figure figure = figures[k];
+    figure.width = SHEET_WIDTH, figure.height = SHEET_HEIGHT;
     fputs("reset\n", script.out);
-    if (bounds(&figures[k], min, max)) write_figure(script.out, &figures[k], min, max);
+    if (bounds(&figure, min, max)) write_figure(script.out, &figure, min, max);
     else fputs("set multiplot next\n", script.out);
   }
   fputs("unset multiplot\n", script.out);

@@ -7,6 +7,7 @@
 #include <unistd.h>
 #include "base/process/child.h"
 #include "output/directory/run_dir_files.h"
+#include "picture/label.h"
 
 /* Terminals by the ending of the file; fonts have the size that they have in a PNG. */
 static const struct Format {
@@ -37,8 +38,9 @@ PetscErrorCode GnuplotBegin(GnuplotScript *script, const char *path, int width, 
   PetscFunctionBeginUser;
   script->out = tmpfile();
   PetscCheck(script->out, PETSC_COMM_SELF, PETSC_ERR_FILE_OPEN, "Cannot make a temporary file: %s", strerror(errno));
-  fprintf(script->out, "set encoding utf8\nset terminal %s noenhanced size %g,%g font 'DejaVu Sans,%d'\n",
-          format->terminal, width / format->unit, height / format->unit, height >= 600 ? 13 : 12);
+  fprintf(script->out, "set encoding utf8\nset terminal %s noenhanced size %g,%g font 'DejaVu Sans,%g'\n",
+          format->terminal, width / format->unit, height / format->unit,
+          (height >= 600 ? 13 : 12) * label_scale(width, height));
   PetscCall(PetscSNPrintf(unfinished, sizeof unfinished, "%s" FILE_UNFINISHED, path));
   (void)unlink(unfinished); /* a link would be written through */
   fputs("set output ", script->out);

@@ -4,6 +4,7 @@
 #include <math.h>
 #include <sys/stat.h>
 #include "picture/figure.h"
+#include "picture/label.h"
 #include "picture/plot.h"
 #include "picture/scene/field.h"
 #include "picture/raster/raster.h"
@@ -285,6 +286,64 @@ static void test_long_title(void **state)
   assert_true(first && second && first < second);
   assert_non_null(memchr(first, '\n', (size_t)(second - first)));
   free(letters);
+}
+
+static char *Label(const char *text, PetscInt most)
+{
+  char *written;
+  size_t size;
+  FILE *out = open_memstream(&written, &size);
+  label_write(out, text, most);
+  fclose(out);
+  return written;
+}
+
+/* Of a name that is too long the unit stays. */
+static void test_long_label(void **state)
+{
+  static const struct {
+    const char *text, *label;
+    PetscInt most;
+  } labels[] = {{"tip [mm]", "\"tip [mm]\"", 8},
+                {"a_very_long_name [mm]", "\"a_very_l… [mm]\"", 14},
+                {"Wärmeströme über Grenzflächen [µm]", "\"Wärmeströme ü… [µm]\"", 19},
+                {"a_title_of_more_than_twenty_letters", "\"a_title_of_mor…tters\"", 20}};
+  (void)state;
+  for (size_t k = 0; k < sizeof labels / sizeof *labels; ++k) {
+    char *label = Label(labels[k].text, labels[k].most);
+    assert_string_equal(label, labels[k].label);
+    free(label);
+  }
+}
+
+/* Names of ticks along a flat body, and in a small picture, do not run into one another. */
+static void test_flat_and_small(void **state)
+{
+  PlotScene scene = {.dim = 2, .n_frames = 1, .high = 1, .box_min = {-2.4, -0.05}, .box_max = {2.4, 0.3}};
+  const int sizes[3][2] = {{0, 0}, {300, 200}, {1200, 800}};
+  (void)state;
+  for (int k = 0; k < 3; ++k) {
+    char *script, *ticks;
+    size_t size;
+    PlotPage page;
+    PetscReal step = 0;
+    plot_lay_out(&scene, sizes[k][0], sizes[k][1], &page);
+    assert_true(page.left > 0 && page.bottom > 0 && page.left + page.w <= page.width &&
+                page.bottom + page.h <= page.height);
+    assert_true(k == 1 ? page.scale < 0.9 : page.scale == 1);
+    unsigned char *rgba = calloc((size_t)page.w * (size_t)page.h, 4);
+    FILE *out = open_memstream(&script, &size);
+    assert_int_equal(PlotDrawFrame(out, &scene, 0, &page, rgba), 0);
+    fclose(out);
+    ticks = strstr(script, "set ytics ");
+    if (page.h < 160) assert_non_null(ticks);
+    if (ticks) {
+      assert_int_equal(sscanf(ticks, "set ytics %lf", &step), 1);
+      assert_true(step * page.h / (page.max[1] - page.min[1]) > 25 * page.scale);
+    }
+    free(script);
+    free(rgba);
+  }
 }
 
 /* Width, height and length of a PNG file; it must be a whole one. */
@@ -732,7 +791,8 @@ static int Tests(void)
                                      cmocka_unit_test(test_raster_planes),   cmocka_unit_test(test_raster_gap),
                                      cmocka_unit_test(test_several_states),  cmocka_unit_test(test_scalars),
                                      cmocka_unit_test(test_units),           cmocka_unit_test(test_tick_names),
-                                     cmocka_unit_test(test_long_title),      cmocka_unit_test(test_state_in_the_plane),
+                                     cmocka_unit_test(test_long_title),      cmocka_unit_test(test_long_label),
+                                     cmocka_unit_test(test_flat_and_small),  cmocka_unit_test(test_state_in_the_plane),
                                      cmocka_unit_test(test_state_in_space),  cmocka_unit_test(test_body_of_revolution),
                                      cmocka_unit_test(test_histories),       cmocka_unit_test(test_mistakes),
                                      cmocka_unit_test(test_no_gnuplot),      cmocka_unit_test(test_animation),

@@ -1,10 +1,16 @@
 #include <math.h>
 #include "picture/gnuplot.h"
+#include "picture/label.h"
 #include "picture/raster/raster.h"
 #include "picture/scene/scene.h"
 #include "picture/walls/walls.h"
 
 #define NARROW 450 /* pixels */
+#define LOW 160
+#define LETTER 9 /* pixels of one, about */
+
+/* How many of them have room. */
+static PetscInt letters(const PlotPage *page, int pixels) { return (PetscInt)(pixels / (LETTER * page->scale)); }
 
 /* Digits that tell neighbouring numbers of the bar apart. */
 static int bar_digits(PetscReal low, PetscReal high)
@@ -13,7 +19,7 @@ static int bar_digits(PetscReal low, PetscReal high)
   return most > across && across > 0 ? PetscMin(PetscMax(4, 2 + (int)ceil(log10(most / across))), 6) : 4;
 }
 
-static void write_palette(FILE *out, const PlotScene *scene)
+static void write_palette(FILE *out, const PlotScene *scene, const PlotPage *page)
 {
   fputs("set palette defined (", out);
   for (int i = 0; i < PALETTE_STOPS; ++i)
@@ -21,7 +27,7 @@ static void write_palette(FILE *out, const PlotScene *scene)
             palette_stops[i][2]);
   fprintf(out, ") maxcolors 0\nset cbrange [%.15g:%.15g]\nset format cb '%%.%dg'\nset cblabel ", (double)scene->low,
           (double)scene->high, bar_digits(scene->low, scene->high));
-  gnuplot_quote(out, scene->label);
+  label_write(out, scene->label, letters(page, page->bar_below ? page->width : page->height));
 }
 
 /* The legend of names stands where the bar does; entries only for those that are drawn. */
@@ -31,7 +37,7 @@ static void write_names(FILE *out, const PlotScene *scene, const PlotPage *page)
   if (page->bar_below) {
     const double all = page->w + (page->columns - 1) * page->step_x;
     fprintf(out, "set key at screen %.6f,%.6f center top horizontal", (page->left + 0.5 * all) / w,
-            (page->bottom - (scene->dim == 3 ? 15 : 65)) / h);
+            (page->bottom - page->scale * (scene->dim == 3 ? 15 : 65)) / h);
   } else
     fprintf(out, "set key at screen %.6f,%.6f left top vertical", (page->left + page->w + 10) / w,
             (page->bottom + page->h) / h);
@@ -55,17 +61,17 @@ static void write_entries(FILE *out, const PlotScene *scene)
 /* The bar is as long as the field is wide or high, within reason. */
 static void write_colour_bar(FILE *out, const PlotScene *scene, const PlotPage *page)
 {
-  const double w = page->width, h = page->height, middle = page->bottom + 0.5 * page->h;
-  write_palette(out, scene);
+  const double w = page->width, h = page->height, middle = page->bottom + 0.5 * page->h, s = page->scale;
+  write_palette(out, scene, page);
   if (page->bar_below) {
     const double all = page->w + (page->columns - 1) * page->step_x, length = PetscMin(all, 620),
-                 left = page->left + 0.5 * (all - length), top = page->bottom - (scene->dim == 3 ? 15 : 75);
+                 left = page->left + 0.5 * (all - length), top = page->bottom - s * (scene->dim == 3 ? 15 : 75);
     fprintf(out, "\nset colorbox horizontal user origin screen %.6f,%.6f size screen %.6f,%.6f\n", left / w,
-            (top - 16) / h, length / w, 16 / h);
+            (top - s * 16) / h, length / w, s * 16 / h);
   } else {
-    const double length = PetscMin(PetscMax(page->h, 160), page->height - 80), right = page->left + page->w;
+    const double length = PetscMin(PetscMax(page->h, s * 160), page->height - s * 80), right = page->left + page->w;
     fprintf(out, " offset 1,0\nset colorbox vertical user origin screen %.6f,%.6f size screen %.6f,%.6f\n",
-            (right + 20) / w, (middle - 0.5 * length) / h, 18 / w, length / h);
+            (right + s * 20) / w, (middle - 0.5 * length) / h, s * 18 / w, length / h);
   }
 }
 
@@ -90,6 +96,17 @@ static void write_radii(FILE *out, const PlotPage *page, double step, PetscBool 
   fputs(")\nset arrow from 0, graph 0 to 0, graph 1 nohead front dt '_._' lw 1 lc rgb '#707070'\n", out);
 }
 
+/* gnuplot's own are for a page, and would run into one another beside a flat body and below a slender one. */
+static void write_tick_steps(FILE *out, const PlotScene *scene, const PlotPage *page)
+{
+  const PetscBool several = scene->n_frames > 1;
+  if (several || page->w < NARROW)
+    fprintf(out, "set xtics %.6g\n",
+            plot_tick_step(page->max[0] - page->min[0], page->w, page->scale * (several ? 45 : 60)));
+  if (several || page->h < LOW)
+    fprintf(out, "set ytics %.6g\n", plot_tick_step(page->max[1] - page->min[1], page->h, page->scale * LEAST_TICK_Y));
+}
+
 /* Names of the axes where they are nobody else's: at the left, and where no field lies below. */
 static void write_axes(FILE *out, const PlotScene *scene, const PlotPage *page, PetscInt frame)
 {
@@ -106,17 +123,18 @@ static void write_axes(FILE *out, const PlotScene *scene, const PlotPage *page, 
           : scene->revolution ? "radius x [m]"
                               : "x [m]",
           left ? "y [m]" : "", last ? "%g" : "", left ? "%g" : "");
-  if (scene->n_frames > 1)
-    fprintf(out, "set xtics %.6g\nset ytics %.6g\n", plot_tick_step(page->max[0] - page->min[0], page->w, 45),
-            plot_tick_step(page->max[1] - page->min[1], page->h, LEAST_TICK_Y));
-  else if (page->h < 160)
-    fprintf(out, "set ytics %.3g\n",
-            pow(10, floor(log10((double)(page->max[1] - page->min[1])))) * (page->h < 80 ? 1 : 0.5));
-  /* gnuplot's own are for a page, and would run into one another below a slender body */
-  if (scene->n_frames == 1 && page->w < NARROW)
-    fprintf(out, "set xtics %.6g\n", plot_tick_step(page->max[0] - page->min[0], page->w, 60));
+  write_tick_steps(out, scene, page);
   if (scene->mirrored)
-    write_radii(out, page, plot_tick_step(page->max[0] - page->min[0], page->w, scene->n_frames > 1 ? 45 : 70), last);
+    write_radii(out, page,
+                plot_tick_step(page->max[0] - page->min[0], page->w, page->scale * (scene->n_frames > 1 ? 45 : 70)),
+                last);
+}
+
+/* A title stands over the middle of its field, and may be wider. */
+static int title_room(const PlotScene *scene, const PlotPage *page)
+{
+  const int middle = page->left + page->w / 2;
+  return scene->n_frames > 1 ? PetscMax(page->step_x, page->w) : 2 * PetscMin(middle, page->width - middle);
 }
 
 static void write_field(FILE *out, const PlotScene *scene, const PlotPage *page, PetscInt frame)
@@ -130,7 +148,7 @@ static void write_field(FILE *out, const PlotScene *scene, const PlotPage *page,
     left / w, (left + page->w) / w, bottom / h, (bottom + page->h) / h);
   fprintf(out, "set xrange [%.15g:%.15g]\nset yrange [%.15g:%.15g]\nset title ", (double)page->min[0],
           (double)page->max[0], (double)page->min[1], (double)page->max[1]);
-  gnuplot_quote(out, scene->frames[frame].title);
+  label_write(out, scene->frames[frame].title, letters(page, title_room(scene, page)));
   fprintf(out, " offset 0,%g\nunset key\n", scene->n_frames > 1 ? -0.5 : 0.);
   if (scene->named && frame == 0) write_names(out, scene, page);
   write_axes(out, scene, page, frame);

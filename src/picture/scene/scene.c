@@ -1,5 +1,6 @@
 #include "picture/scene/scene.h"
 #include <math.h>
+#include "picture/label.h"
 
 /* The eye looks down from the front right: azimuth -55 degrees, elevation 22 degrees. */
 void plot_project(const PlotScene *scene, const PetscReal *x, PetscReal shown[3])
@@ -55,11 +56,16 @@ static void margins(const PlotPage *page, PetscBool space, int margin[4])
   margin[1] = page->bar_below ? 40 : 165;                      /* right */
   margin[2] = (space ? 15 : 80) + (page->bar_below ? 105 : 0); /* bottom */
   margin[3] = several ? 45 : 55;                               /* top */
+  for (int k = 0; k < 4; ++k) margin[k] = (int)lround(page->scale * margin[k]);
 }
 
 /* Between fields; above each stands its title. */
-#define GAP_Y 42
-static int gap_x(const PlotScene *scene) { return scene->dim == 3 ? 50 : 25; }
+static int gap_x(const PlotScene *scene, const PlotPage *page)
+{
+  return (int)lround(page->scale * (scene->dim == 3 ? 50 : 25));
+}
+
+static int gap_y(const PlotPage *page) { return (int)lround(page->scale * 42); }
 
 /* Columns that make a page of several fields about as wide as a screen. */
 static int choose_columns(PetscInt n, PetscReal aspect)
@@ -80,14 +86,14 @@ static void place_fields(PlotPage *page, const int margin[4], int gap)
 {
   const PetscReal wide = page->max[0] - page->min[0], high = page->max[1] - page->min[1];
   const int room_w = PetscMax(page->width - margin[0] - margin[1] - (page->columns - 1) * gap, 50 * page->columns),
-            room_h = PetscMax(page->height - margin[2] - margin[3] - (page->rows - 1) * GAP_Y, 30 * page->rows);
+            room_h = PetscMax(page->height - margin[2] - margin[3] - (page->rows - 1) * gap_y(page), 30 * page->rows);
   const PetscReal scale = PetscMin(room_w / (page->columns * wide), room_h / (page->rows * high));
   page->w = PetscMax((int)floor(wide * scale + 0.5 / page->columns), 2);
   page->h = PetscMax((int)floor(high * scale + 0.5 / page->rows), 2);
   page->left = margin[0] + (room_w - page->columns * page->w) / 2;
   page->bottom = margin[2] + (room_h - page->rows * page->h) / 2;
   page->step_x = page->w + gap;
-  page->step_y = page->h + GAP_Y;
+  page->step_y = page->h + gap_y(page);
   /* whole pixels: the upper bounds follow the field */
   page->max[0] = page->min[0] + page->w / scale;
   page->max[1] = page->min[1] + page->h / scale;
@@ -96,12 +102,12 @@ static void place_fields(PlotPage *page, const int margin[4], int gap)
 /* Pixels by which the longest number along y is wider than four figures. */
 static int wide_numbers(const PlotScene *scene, const PlotPage *page)
 {
-  const double step = plot_tick_step(page->max[1] - page->min[1], page->h, LEAST_TICK_Y);
+  const double step = plot_tick_step(page->max[1] - page->min[1], page->h, page->scale * LEAST_TICK_Y);
   int most = 4;
   if (scene->dim == 3 || scene->n_frames == 1) return 0;
   for (double k = ceil((double)page->min[1] / step); k * step <= (double)page->max[1]; ++k)
     most = PetscMax(most, snprintf(NULL, 0, "%g", k * step));
-  return 10 * (most - 4);
+  return (int)lround(10 * page->scale) * (most - 4);
 }
 
 void plot_lay_out(const PlotScene *scene, int width, int height, PlotPage *page)
@@ -117,15 +123,16 @@ void plot_lay_out(const PlotScene *scene, int width, int height, PlotPage *page)
   page->bar_below = aspect > 2.2 || scene->n_frames > 1;
   page->width = width ? width : 1200;
   page->height = height;
+  page->scale = label_scale(page->width, height ? height : page->width);
   margins(page, scene->dim == 3, margin);
-  const int beside_w = margin[0] + margin[1] + (page->columns - 1) * gap_x(scene),
-            beside_h = margin[2] + margin[3] + (page->rows - 1) * GAP_Y;
+  const int beside_w = margin[0] + margin[1] + (page->columns - 1) * gap_x(scene, page),
+            beside_h = margin[2] + margin[3] + (page->rows - 1) * gap_y(page);
   if (!height) {
     const PetscReal high = (page->width - beside_w) / aspect, most = scene->n_frames > 1 ? 1200 : 800;
     page->height = PetscMin(PetscMax((int)lround(high), 60), (int)most) + beside_h;
     if (!width && high > most) page->width = PetscMax((int)lround(most * aspect), 300) + beside_w;
   }
-  place_fields(page, margin, gap_x(scene));
+  place_fields(page, margin, gap_x(scene, page));
   margin[0] += wide_numbers(scene, page);
-  place_fields(page, margin, gap_x(scene));
+  place_fields(page, margin, gap_x(scene, page));
 }

@@ -88,6 +88,7 @@ typedef struct {
  * the same size. */
 typedef struct {
   int width, height;
+  double scale; /* of letters and what they need, see label_scale */
   int columns, rows;
   int left, bottom, w, h;   /* the field in the lower left */
   int step_x, step_y;       /* from one field to the next */
