@@ -27,6 +27,11 @@ expect "a foreign table" 2 "$talus" sweep case.yaml --over grid.size=0.5 --out f
 says err.txt "that talus has not written"
 [ "$(cat foreign/sweep.csv)" = mine ] || fail "$name: it is gone"
 
+expect "compare members" 0 "$talus" compare s/young=60000000,size=0.5 s/young=90000000,size=0.5 --out compared
+says out.txt " young=60000000 " " young=90000000"
+expect "compare more members" 0 "$talus" compare s/young=60000000,size=0.5 s/young=60000000,size=0.25 s/young=90000000,size=0.5 --out compared
+says out.txt " young=60000000,size=0.5 " " young=60000000,size=0.25 " " young=90000000,size=0.5"
+
 # Pairs, words, members that give up
 expect "pairs" 0 "$talus" sweep case.yaml --over grid.size=0.5,0.25 --along materials.rubber.young=60e6,90e6 --measure tip --out pairs
 [ "$(wc -l <pairs/sweep.csv)" -eq 3 ] || fail "$name: not two members"

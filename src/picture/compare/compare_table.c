@@ -8,6 +8,47 @@
 /* Keys that the terminal shows; keys.csv has all. */
 enum { SHOWN_KEYS = 20 };
 
+enum { NARROW = 16, WIDE = 48 }; /* columns of runs */
+
+/* How many characters all names have in common at their begin, or at their end; parts of them, as the names of members of
+ * sweeps have them, stay whole. */
+static size_t common(const Comparison *c, PetscBool at_end)
+{
+  const PetscInt n = c->options->n_runs;
+  size_t same = 0, whole = 0;
+  for (PetscBool differ = PETSC_FALSE; !differ; same += !differ) {
+    char letter = 0;
+    for (PetscInt r = 0; r < n && !differ; ++r) {
+      const size_t length = strlen(c->runs[r].name);
+      const char its = same >= length ? '\0' : c->runs[r].name[at_end ? length - 1 - same : same];
+      differ = !its || (r && its != letter) ? PETSC_TRUE : PETSC_FALSE;
+      letter = its;
+    }
+    if (!differ && letter == ',') whole = same + 1;
+  }
+  return whole;
+}
+
+/* What tells a run from the others, at most WIDE characters of it, and how many. */
+static const char *label_of(const Comparison *c, PetscInt run, int *length)
+{
+  const char *name = c->runs[run].name;
+  const size_t all = strlen(name), from = common(c, PETSC_FALSE), behind = common(c, PETSC_TRUE);
+  *length = (int)(from + behind < all ? all - from - behind : all - from);
+  return name + from;
+}
+
+/* Of the column that holds the labels. */
+static int label_width(const Comparison *c)
+{
+  int width = NARROW, length;
+  for (PetscInt r = 0; r < c->options->n_runs; ++r) {
+    (void)label_of(c, r, &length);
+    width = PetscMax(width, PetscMin(length, WIDE));
+  }
+  return width;
+}
+
 static const char *value_of(const DifferingKeys *keys, PetscInt key, PetscInt run)
 {
   const char *value = keys->value[key * keys->n_runs + run];
@@ -17,14 +58,19 @@ static const char *value_of(const DifferingKeys *keys, PetscInt key, PetscInt ru
 static void print_keys(FILE *out, const Comparison *c)
 {
   const DifferingKeys *keys = &c->keys;
+  const int width = label_width(c);
+  int length;
   if (!keys->n) fputs("The cases do not differ in any key that changes numbers.\n", out);
   else fprintf(out, "%-44s", "key");
-  for (PetscInt r = 0; r < keys->n_runs && keys->n; ++r) fprintf(out, " %16.16s", c->runs[r].name);
+  for (PetscInt r = 0; r < keys->n_runs && keys->n; ++r) {
+    const char *label = label_of(c, r, &length);
+    fprintf(out, " %*.*s", width, PetscMin(length, WIDE), label);
+  }
   if (keys->n) fputc('\n', out);
   for (PetscInt k = 0; k < PetscMin(keys->n, SHOWN_KEYS); ++k) {
     const char *unit = schema_unit(keys->key[k]);
     fprintf(out, "%-44s", keys->key[k]);
-    for (PetscInt r = 0; r < keys->n_runs; ++r) fprintf(out, " %16.40s", value_of(keys, k, r));
+    for (PetscInt r = 0; r < keys->n_runs; ++r) fprintf(out, " %*.40s", width, value_of(keys, k, r));
     fprintf(out, "%s%s\n", unit ? "  " : "", unit ? unit : "");
   }
   if (keys->n > SHOWN_KEYS) fprintf(out, "... and %d more (keys.csv)\n", (int)keys->n - SHOWN_KEYS);
@@ -33,15 +79,18 @@ static void print_keys(FILE *out, const Comparison *c)
 
 void compare_print(FILE *out, const Comparison *c)
 {
+  const int width = label_width(c);
   char label[TEXT_LABEL];
+  int length;
   print_keys(out, c);
   fprintf(out, "Differences from %s:\n", c->runs[0].folder);
-  fprintf(out, "%-28s %-16s %13s %13s %11s %9s %13s\n", "measure", "run", "largest value", "difference", "at [s]",
+  fprintf(out, "%-28s %-*s %13s %13s %11s %9s %13s\n", "measure", width, "run", "largest value", "difference", "at [s]",
           "relative", "at the end");
   for (PetscInt i = 0; i < c->n_rows; ++i) {
     const CompareRow *row = &c->rows[i];
     const Difference *d = &row->difference;
-    fprintf(out, "%-28s %-16.16s", text_with_unit(row->measure, row->unit, label), c->runs[row->run].name);
+    const char *run = label_of(c, row->run, &length);
+    fprintf(out, "%-28s %-*.*s", text_with_unit(row->measure, row->unit, label), width, PetscMin(length, WIDE), run);
     if (row->met)
       fprintf(out, " %13.6g %13.6g %11.6g %9.2e %13.6g\n", (double)d->size, (double)d->largest, (double)d->at,
               (double)d->relative, (double)d->last);
