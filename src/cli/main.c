@@ -1,6 +1,7 @@
 /* talus: dispatch to the subcommands. PETSc's options (single dash) go to PETSc, the rest to the
  * subcommand. */
 #include <ctype.h>
+#include <errno.h>
 #include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -140,6 +141,27 @@ static void warn_of_options_file(int n, char **petsc)
           path, path);
 }
 
+/* What is said is all that most commands give. Runs have their directories, and go on where nobody listens. */
+static PetscBool says_its_result(int n_own, char **own)
+{
+  static const char *const long_ones[] = {"run", "sweep", "calibrate"};
+  for (int i = 1; i < n_own; ++i)
+    if (!strcmp(own[i], "--help") || !strcmp(own[i], "-h")) return PETSC_TRUE;
+  for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(long_ones) && n_own > 1; ++k)
+    if (!strcmp(own[1], long_ones[k])) return PETSC_FALSE;
+  return PETSC_TRUE;
+}
+
+/* A full disk shows when the last of it is written. */
+static int check_output(int n_own, char **own, int exit_code)
+{
+  errno = 0;
+  if (!cli_prints() || (!fflush(stdout) && !ferror(stdout))) return exit_code;
+  fprintf(stderr, "%s: what is printed could not be written%s%s\n", says_its_result(n_own, own) ? "error" : "warning",
+          errno ? ": " : "", errno ? strerror(errno) : "");
+  return exit_code == CLI_DONE && says_its_result(n_own, own) ? CLI_GAVE_UP : exit_code;
+}
+
 /* own and petsc: room for argc + 1 words each. */
 static int run_program(int argc, char **argv, char **own, char **petsc)
 {
@@ -154,6 +176,7 @@ static int run_program(int argc, char **argv, char **own, char **petsc)
   signal(SIGPIPE, SIG_DFL); /* `talus ... | head` ends quietly */
   /* An internal error on one rank must not leave the others waiting. */
   if (Main(argc, argv, n_own, own, mistake, &exit_code)) MPI_Abort(PETSC_COMM_WORLD, CLI_GAVE_UP);
+  exit_code = check_output(n_own, own, exit_code);
   if (PetscFinalize()) exit_code = CLI_GAVE_UP;
   return exit_code;
 }

@@ -133,6 +133,19 @@ says err.txt "left the grid: point" "with velocity" "outside: remove"
 name="a pipe that closes"
 [ ! -s err.txt ] || fail "$name: it complains"
 
+# What cannot be written was not said
+if [ -c /dev/full ]; then
+  for words in "schema" "list laws" "check case.yaml" "help" "--help" "run --help" "completion bash" "version"; do
+    name="$words on a full disk"
+    "$talus" $words >/dev/full 2>err.txt
+    [ $? -eq 1 ] || fail "$name: exit code"
+    says err.txt "error: what is printed could not be written"
+  done
+  name="a run on a full terminal"
+  "$talus" run case.yaml --out full >/dev/full 2>err.txt || fail "$name: exit code $?"
+  says err.txt "warning: what is printed could not be written"
+fi
+
 # A process that no launcher started begins no daemon and keeps no folder of MPI's.
 name="alone"
 mkdir for_mpi
