@@ -377,9 +377,12 @@ static PetscErrorCode ReadStages(const char *file, YamlDocument *document, Diag 
 
   PetscFunctionBeginUser;
   const PetscInt before = diag_errors(diag);
-  PetscCall(StagesLay(document, diag));
   PetscCall(PetscCalloc1(whole->n_stages, &whole->stage_case));
-  for (PetscInt k = 0; k < whole->n_stages && diag_errors(diag) == before; ++k) {
+  for (PetscInt k = 0; k < whole->n_stages; ++k) {
+    document->root = root;
+    diag_of_stage(diag, -1, NULL);
+    PetscCall(StageLay(document, k, diag));
+    if (diag_errors(diag) > before) break; /* what later stages lack because of it is no mistake of theirs */
     document->root = document->stage[k];
     diag_of_stage(diag, k, whole->stages[k].name);
     PetscCall(ReadDocument(file, document, diag, whole, k, &whole->stage_case[k]));

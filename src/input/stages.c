@@ -216,25 +216,20 @@ static PetscErrorCode Bare(const Layer *l, const YamlNode *root, YamlNode **bare
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode StagesLay(YamlDocument *document, Diag *diag)
+PetscErrorCode StageLay(YamlDocument *document, PetscInt k, Diag *diag)
 {
   const YamlNode *stages = yaml_find(document->root, "stages");
-  Layer l = {.document = document, .diag = diag};
+  const Layer l = {.document = document, .stage = k, .diag = diag};
 
   PetscFunctionBeginUser;
-  PetscCall(PetscCalloc1(stages->n, &document->stage));
-  for (; l.stage < stages->n; ++l.stage) {
-    YamlNode **tree = document->stage + l.stage;
-    if (l.stage == 0) PetscCall(Bare(&l, document->root, tree));
-    else PetscCall(Clone(&l, document->stage[l.stage - 1], -1, tree));
-    document->n_stages = l.stage + 1;
-    PetscCall(LayKeys(&l, *tree, stages->child[l.stage], not_laid));
-    if (document->n_nodes > YAML_MAX_NODES) {
-      yaml_error(document, diag, stages->child[l.stage], PETSC_FALSE,
-                 "so many stages of a file as large as this are too much");
-      break;
-    }
-  }
+  if (k == 0) {
+    PetscCall(PetscCalloc1(stages->n, &document->stage));
+    PetscCall(Bare(&l, document->root, document->stage));
+  } else PetscCall(Clone(&l, document->stage[k - 1], -1, document->stage + k));
+  document->n_stages = k + 1;
+  PetscCall(LayKeys(&l, document->stage[k], stages->child[k], not_laid));
+  if (document->n_nodes > YAML_MAX_NODES)
+    yaml_error(document, diag, stages->child[k], PETSC_FALSE, "so many stages of a file as large as this are too much");
   PetscFunctionReturn(0);
 }
 

@@ -87,7 +87,9 @@ static const Bad bads[] = {
    "title: a\n",
    {"F: error: key 'kinematics' of the file is missing", "key 'bodies' of the file is missing", "key 'materials'",
     "key 'grid'"}},
-  {"merge key", PLAIN "newton: {<<: 1}\n", {"key '<<' of newton is not known"}},
+  {"merge key",
+   PLAIN "newton: {<<: 1}\n",
+   {"F:9:10: error: merge keys (<<) are not supported", "hint: write the keys out"}},
   {"empty key", PLAIN "newton: {residual: }\n", {"newton.residual must be a number >= 0, not empty"}},
   /* options of PETSc that act */
   {"a viewer that writes",
@@ -213,9 +215,18 @@ static const Bad bads[] = {
   {"flat polygon",
    WITH_BODY("{name: a, shape: {polygon: [[0, 0], [1, 1], [2, 2]]}, material: rubber}"),
    {"the polygon has no area"}},
+  {"sides that cross",
+   WITH_BODY("{name: a, shape: {polygon: [[0, 0], [1, 1], [1, 0], [0, 1.5]]}, material: rubber}"),
+   {"F:5:54: error: bodies[0].shape.polygon: sides 1 and 3 cross", "corners stand in their order around the shape"}},
+  {"sides of a bow tie, which has no area either",
+   PLAIN "boundary: [{on: {shape: {polygon: [[0, 0], [1, 1], [1, 0], [0, 1]]}}, fix: [x]}]\n",
+   {"boundary[0].on.shape.polygon: sides 1 and 3 cross"}},
+  {"a closed line that crosses itself",
+   WITH_WALL("shape: {line: [[0, 0], [1, 1], [1, 0], [0, 1], [0, 0]]}"),
+   {"walls[0].shape.line: sides 1 and 3 cross"}},
   {"two corners",
    WITH_BODY("{name: a, shape: {polygon: [[0, 0], [1, 1]]}, material: rubber}"),
-   {"bodies[0].shape.polygon must be a list of three corners or more"}},
+   {"bodies[0].shape.polygon must be a list of three corners or more [[x, y], ...] in m, not a list of 2"}},
   {"unknown material",
    WITH_BODY("{name: a, " SQUARE ", material: ruber}"),
    {"there is no 'ruber' in materials", "did you mean 'rubber'?"}},
@@ -351,11 +362,20 @@ static const Bad bads[] = {
   {"amplitude stands still",
    PLAIN "loads: {gravity: [0, -1], gravity_amplitude: [[0, 0], [1, 1], [1, 2]]}\n",
    {"times must grow from pair to pair"}},
+  {"an empty amplitude",
+   PLAIN "loads: {gravity: [0, -1], gravity_amplitude: []}\n",
+   {"must be a list of pairs [[time, factor], ...], not an empty list"}},
   {"amplitude no pair",
    PLAIN "loads: {gravity_amplitude: [[1, 0, 3]]}\n",
    {"loads.gravity_amplitude[0] must be a pair"}},
   {"displacement of nothing", PLAIN "boundary: [{on: {x: 0}, displacement: {}}]\n", {"needs at least one of"}},
   /* measures, output */
+  {"columns of the history",
+   PLAIN "measures: {time: {mass: total}, step: {volume: current}, stage: {mass: total}}\n",
+   {"F:9:12: error: history.csv has a column 'time' by itself", "F:9:33: error: history.csv has a column 'step'"}},
+  {"a column of cases with stages",
+   PLAIN "measures: {stage: {mass: total}}\nstages: [{name: one}]\n",
+   {"history.csv has a column 'stage' by itself"}},
   {"measure of nothing",
    PLAIN "measures: {tip: {displacement: y}}\n",
    {"key 'of' of measures.tip is missing", "of: {tracer: [x, y]}"}},
@@ -446,6 +466,59 @@ static void Table(void **state)
       if (!strstr(said, bads[i].said[k])) fail_msg("%s: no '%s' in:\n%s", bads[i].name, bads[i].said[k], said);
     free(said);
   }
+}
+
+/* What is wrong in a stage is told, and not what later ones lack because of it. */
+static void FirstStage(void **state)
+{
+  static const char *const wrong[] = {"bodies: {a: 1}", "materials: [rubber]", "bodies: [{name: c}]", "loads: 3",
+                                      "materials: {rubber: 3}"};
+  static const char *const says[] = {"stages[0].bodies must be a list of mappings, not a mapping",
+                                     "stages[0].materials must be a mapping {name: {...}, ...}, not a list",
+                                     "there is no 'c' in bodies that the stage could change",
+                                     "stages[0].loads must be a mapping {key: value, ...}, not '3'",
+                                     "materials.rubber must be a mapping"};
+  char text[2000], *said;
+  (void)state;
+  for (size_t k = 0; k < sizeof wrong / sizeof *wrong; ++k) {
+    snprintf(text, sizeof text,
+             PLAIN
+             "stages:\n  - {name: one, %s}\n  - {name: two, materials: {rubber: {young: 1}}}\n"
+             "  - {name: three, bodies: [{name: beam, absent: true}]}\n",
+             wrong[k]);
+    assert_null(read_text(text, &said));
+    if (!strstr(said, says[k])) fail_msg("no '%s' in:\n%s", says[k], said);
+    assert_non_null(strstr(said, "F:10:"));
+    assert_null(strstr(strstr(said, ": error: ") + 1, ": error: "));
+    free(said);
+  }
+}
+
+/* A grid that cannot be read says nothing of what would fit into its cells. */
+static void NoGrid(void **state)
+{
+  static const char *const grids[] = {"grid: 3\n",
+                                      "grid: {box: {min: [0, 0], max: [4, 2]}, size: 0.5, cell: hexagon}\n"};
+  char text[2000], *said;
+  (void)state;
+  for (int k = 0; k < 2; ++k) {
+    snprintf(text, sizeof text,
+             PLAIN_TOP "%sbodies: [{name: a, " SQUARE ", material: rubber, points_per_cell: 4}]\n" PLAIN_MATERIALS,
+             grids[k]);
+    assert_null(read_text(text, &said));
+    assert_null(strstr(strstr(said, ": error: ") + 1, ": error: "));
+    free(said);
+  }
+}
+
+/* Corners may touch sides, and lines that are open cross themselves: nothing is between. */
+static void Touching(void **state)
+{
+  Case *c = read_good(PLAIN
+                      "walls:\n  - {name: a, shape: {line: [[0, 0], [1, 1], [1, 0], [0, 1]]}}\n  - {name: b, shape: "
+                      "{polygon: [[0, 0], [2, 0], [2, 1], [1, 0], [0, 1]]}}\n");
+  (void)state;
+  assert_int_equal(CaseDestroy(&c), 0);
 }
 
 static int Count(const char *text, const char *word)
@@ -614,11 +687,12 @@ static void NoFile(void **state)
 
 int main(int argc, char **argv)
 {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(Table),       cmocka_unit_test(AllAtOnce),
-                                     cmocka_unit_test(Deep),        cmocka_unit_test(Bomb),
-                                     cmocka_unit_test(TextBomb),    cmocka_unit_test(ManyUnknownKeys),
-                                     cmocka_unit_test(ManyAnchors), cmocka_unit_test(NulBytes),
-                                     cmocka_unit_test(Truncated),   cmocka_unit_test(NoFile)};
+  const struct CMUnitTest tests[] = {
+    cmocka_unit_test(Table),       cmocka_unit_test(AllAtOnce), cmocka_unit_test(FirstStage),
+    cmocka_unit_test(NoGrid),      cmocka_unit_test(Touching),  cmocka_unit_test(Deep),
+    cmocka_unit_test(Bomb),        cmocka_unit_test(TextBomb),  cmocka_unit_test(ManyUnknownKeys),
+    cmocka_unit_test(ManyAnchors), cmocka_unit_test(NulBytes),  cmocka_unit_test(Truncated),
+    cmocka_unit_test(NoFile)};
   if (PetscInitialize(&argc, &argv, NULL, NULL)) return 1;
   const int failed = cmocka_run_group_tests(tests, NULL, NULL);
   return PetscFinalize() || failed;

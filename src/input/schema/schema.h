@@ -97,8 +97,9 @@ typedef struct SchemaReader {
   YamlDocument *document;
   Diag *diag;
   Case *c;
-  PetscInt dim;   /* 0: kinematics could not be read, lengths are not checked */
-  PetscBool hoop; /* do the kinematics have one? */
+  PetscInt dim;       /* 0: kinematics could not be read, lengths are not checked */
+  PetscBool hoop;     /* do the kinematics have one? */
+  PetscBool has_grid; /* has the grid been read without a mistake? */
 } SchemaReader;
 
 struct SchemaTable {
@@ -212,6 +213,8 @@ extern SchemaCheck SchemaCheckAnalysis, SchemaCheckReduction, SchemaCheckUntil, 
   SchemaCheckShapeBox, SchemaCheckShape, SchemaCheckHalfSpace, SchemaCheckCylinder, SchemaCheckCone, SchemaCheckDisk,
   SchemaCheckTerrain, SchemaCheckArc, SchemaCheckBody, SchemaCheckSelector, SchemaCheckMotion, SchemaCheckLoad,
   SchemaCheckWall, SchemaCheckWallMotion, SchemaCheckWallMass, SchemaCheckInterface, SchemaCheckLoads;
+/* schema_polygon.c: a mistake if sides of a closed polygon (n x 2) cross; `polygon` is its list. */
+PetscErrorCode SchemaCheckCrossing(SchemaReader *r, const YamlNode *polygon, PetscInt n, const PetscReal *vertices);
 /* Materials take the parameters of their law (schema_material.c). */
 PetscErrorCode SchemaOpenMaterial(SchemaReader *r, const YamlNode *mapping, void *target);
 PetscErrorCode SchemaWriteMaterial(FILE *out, int indent, const Case *c, const void *source);

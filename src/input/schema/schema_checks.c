@@ -160,6 +160,7 @@ static void resolve_cell(SchemaReader *r, const YamlNode *mapping, GridSpec *g)
 PetscErrorCode SchemaCheckGrid(SchemaReader *r, const YamlNode *mapping, void *target)
 {
   GridSpec *g = target;
+  const PetscInt before = diag_errors(r->diag);
 
   PetscFunctionBeginUser;
   if (r->dim == 0) PetscFunctionReturn(0);
@@ -168,6 +169,7 @@ PetscErrorCode SchemaCheckGrid(SchemaReader *r, const YamlNode *mapping, void *t
     g->grading[d] = 1;
   }
   resolve_cell(r, mapping, g);
+  r->has_grid = diag_errors(r->diag) == before;
   if (g->kind == GRID_MESH) PetscFunctionReturn(0);
   if (!yaml_find(mapping, "size") && !yaml_find(mapping, "counts")) {
     SchemaKeyError(r, mapping, "key 'size' of grid is missing: cell size in m (or `counts`: cells along each axis)");
@@ -190,14 +192,27 @@ static PetscReal polygon_area(const Shape *s)
   return fabs(area);
 }
 
+/* The list of corners of what is closed, also of a line whose last corner is its first one; NULL: there is none. */
+static const YamlNode *closed_corners(const YamlNode *mapping, const Shape *s)
+{
+  const PetscReal *first = s->vertices, *last = s->vertices + 2 * (s->n_vertices - 1);
+  if (s->kind == SHAPE_POLYGON) return yaml_find(mapping, "polygon");
+  if (s->kind == SHAPE_REVOLVED && !s->open) return yaml_find(yaml_find(mapping, "revolved"), "polygon");
+  if (s->kind != SHAPE_LINE || first[0] != last[0] || first[1] != last[1]) return NULL;
+  return yaml_find(mapping, "line");
+}
+
 PetscErrorCode SchemaCheckShape(SchemaReader *r, const YamlNode *mapping, void *target)
 {
   const Shape *s = target;
+  const YamlNode *corners = closed_corners(mapping, s);
+  const PetscInt before = diag_errors(r->diag);
   char path[512];
 
   PetscFunctionBeginUser;
   yaml_path(mapping, path, sizeof(path));
-  if ((s->kind == SHAPE_POLYGON || (s->kind == SHAPE_REVOLVED && !s->open)) && !(polygon_area(s) > 0))
+  if (corners) PetscCall(SchemaCheckCrossing(r, corners, s->n_vertices, s->vertices));
+  if (corners && s->kind != SHAPE_LINE && diag_errors(r->diag) == before && !(polygon_area(s) > 0))
     SchemaKeyError(r, mapping, "%s: the polygon has no area", path);
   if (s->kind == SHAPE_DIFFERENCE && s->n_children < 2)
     SchemaKeyError(r, mapping, "%s: a difference needs two shapes or more", path);
@@ -310,7 +325,7 @@ PetscErrorCode SchemaCheckBody(SchemaReader *r, const YamlNode *mapping, void *t
 
   PetscFunctionBeginUser;
   yaml_path(mapping, path, sizeof(path));
-  if (r->dim) check_points(r, mapping, b);
+  if (r->dim && r->has_grid) check_points(r, mapping, b);
   if (b->region && !b->mesh && r->c->grid.kind == GRID_BOX && yaml_find(yaml_find(r->document->root, "grid"), "box"))
     SchemaError(r, yaml_find(mapping, "region"),
                 "%s.region: a box grid has no regions; give a shape, or a mesh with physical groups", path);

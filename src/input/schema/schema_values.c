@@ -116,12 +116,17 @@ PetscErrorCode SchemaReadFlags(SchemaReader *r, const SchemaEntry *e, const Yaml
   PetscFunctionReturn(0);
 }
 
-/* Its keys are read, and its mistakes found, with the case of which it becomes a part. */
+/* Its keys are read, and its mistakes found, with the case of which it becomes a part. What is no mapping or list where
+ * there is one cannot be laid over it. */
 PetscErrorCode SchemaReadPart(SchemaReader *r, const SchemaEntry *e, const YamlNode *node, void *target)
 {
+  const SchemaEntry *whole = schema_case.entries;
+
   (void)target;
   PetscFunctionBeginUser;
-  if (node->kind == YAML_SCALAR && strcmp(e->key, "linear")) schema_mismatch(r, e, node);
+  while (strcmp(whole->key, e->key) != 0) ++whole;
+  if (whole->type == TYPE_LIST) (void)schema_is(r, whole, node, YAML_SEQUENCE, 0);
+  else if (whole->type == TYPE_TABLE || whole->type == TYPE_NAMED) (void)schema_is(r, whole, node, YAML_MAPPING, 0);
   PetscFunctionReturn(0);
 }
 

@@ -148,6 +148,10 @@ static PetscErrorCode TakeScalar(Builder *b, struct fy_event *event)
   if (wants_key(b)) {
     b->pending_key = node;
     if (yaml_is_null(node)) fail(b, node, "here a key is missing before ':'");
+    if (node->plain && !strcmp(node->text, "<<")) {
+      fail(b, node, "merge keys (<<) are not supported");
+      diag_hint(b->diag, "write the keys out: an alias stands for a whole value");
+    }
     check_twice(b, node);
     PetscFunctionReturn(0);
   }

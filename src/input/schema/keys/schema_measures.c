@@ -303,12 +303,23 @@ static PetscErrorCode CheckFormula(SchemaReader *r, const YamlNode *mapping, con
   PetscFunctionReturn(0);
 }
 
+/* Columns that the history has before those of measures. */
+static void check_column(SchemaReader *r, const YamlNode *mapping)
+{
+  static const char *const taken[] = {"time", "step", "stage"}; /* the last one of cases with stages */
+  for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(taken); ++k) {
+    if (strcmp(mapping->key, taken[k]) != 0 || (k == 2 && !r->c->staged)) continue;
+    SchemaKeyError(r, mapping, "history.csv has a column '%s' by itself: the measure needs another name", taken[k]);
+  }
+}
+
 static PetscErrorCode CheckMeasure(SchemaReader *r, const YamlNode *mapping, void *target)
 {
   char path[512];
 
   PetscFunctionBeginUser;
   yaml_path(mapping, path, sizeof(path));
+  check_column(r, mapping);
   check_beside(r, mapping, target, path);
   check_window(r, mapping, target, path);
   check_front(r, mapping, target, path);
