@@ -30,12 +30,12 @@ static void find_out(const Element *e, char out[PETSC_MAX_PATH_LEN])
                   o->test ? e->spec->material.name : "", o->test ? "-" : "", o->test ? o->test : "");
 }
 
-static PetscBool prepare_folder(const char *path, Diag *diag)
+static PetscBool prepare_folder(const char *path, PetscBool force, Diag *diag)
 {
   int error = file_make_folders(path);
-  if (!error && !run_dir_is_signed(path) && file_exists(path, "element.csv")) {
+  if (!error && !force && !run_dir_is_signed(path) && file_exists(path, "element.csv")) {
     diag_error(diag, NULL, "'%s' holds an element.csv that talus has not written: it would be overwritten", path);
-    diag_hint(diag, "name another directory with --out");
+    diag_hint(diag, "name another directory with --out, or overwrite it with --force");
     return PETSC_FALSE;
   }
   if (!error && access(path, W_OK | X_OK)) error = errno;
@@ -164,7 +164,7 @@ PetscErrorCode ElementRun(const ElementOptions *options, FILE *out, Diag *diag, 
   PetscCall(ElementRead(options, diag, &e.spec));
   if (e.spec) {
     find_out(&e, folder);
-    if (start(&e) && prepare_folder(folder, diag)) PetscCall(FollowAll(&e, folder, out, outcome));
+    if (start(&e) && prepare_folder(folder, options->force, diag)) PetscCall(FollowAll(&e, folder, out, outcome));
   }
   if (summary) *summary = e.summary;
   PetscCall(PetscFree(e.table.values));

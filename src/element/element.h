@@ -14,6 +14,7 @@ typedef struct {
   PetscInt n_set; /* path=value */
   const char *const *set;
   const char *out; /* directory; NULL: runs/element/<name of the file> */
+  PetscBool force; /* write there whatever it holds */
 } ElementOptions;
 
 /* The same numbers as the exit codes of the program. ELEMENT_STUCK: the path could not be followed to

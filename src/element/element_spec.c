@@ -80,6 +80,14 @@ static const SchemaTable start_table = {.name = "start",
                                         .groups = start_groups,
                                         .check = CheckStart};
 
+/* Nothing prescribed takes time, or is no part of a path. */
+static PetscBool does_nothing(const ElementStage *s)
+{
+  for (int k = 0; k < 6; ++k)
+    if (s->strain.given[k] || s->stress.given[k]) return PETSC_FALSE;
+  return !s->test && s->seconds == 0;
+}
+
 static PetscErrorCode CheckStage(SchemaReader *r, const YamlNode *mapping, void *target)
 {
   const ElementStage *s = target;
@@ -92,6 +100,10 @@ static PetscErrorCode CheckStage(SchemaReader *r, const YamlNode *mapping, void 
     if (other) SchemaKeyError(r, other, "%s: the test says which components are prescribed", path);
   }
   if (s->test && !s->has_to) SchemaKeyError(r, mapping, "key 'to' of %s is missing: %s", path, s->test->help);
+  if (does_nothing(s)) {
+    SchemaKeyError(r, mapping, "%s changes nothing: no component is prescribed", path);
+    diag_hint(r->diag, "strain: {yy: -0.01}; to wait, as laws with rates can, give `seconds`");
+  }
   for (int k = 0; k < 6; ++k)
     if (s->strain.given[k] && s->stress.given[k])
       SchemaKeyError(r, yaml_find(mapping, "stress"), "%s prescribes strain and stress of one component", path);
@@ -149,15 +161,16 @@ static void resolve(void *document, const char *path, DiagPlace *place)
 
 static PetscErrorCode ReadFile(const ElementOptions *o, Diag *diag, ElementSpec *spec)
 {
-  const DiagPlace whole = {.file = o->file, .width = 1};
   Case c = {.n_materials = 1, .materials = &spec->own};
-  char *bytes, reason[256];
+  char *bytes, reason[256], file[PETSC_MAX_PATH_LEN];
+  const DiagPlace whole = {.file = file, .width = 1};
   size_t size = 0;
 
   PetscFunctionBeginUser;
-  PetscCall(FileReadEverywhere(PETSC_COMM_SELF, o->file, &size, &bytes, reason));
+  case_file_path(o->file, file); /* of a folder the case, which then is told from a path */
+  PetscCall(FileReadEverywhere(PETSC_COMM_SELF, file, &size, &bytes, reason));
   if (reason[0]) diag_at(diag, DIAG_ERROR, &whole, "%s", reason);
-  else PetscCall(YamlCreate(o->file, bytes, size, diag, &spec->document));
+  else PetscCall(YamlCreate(file, bytes, size, diag, &spec->document));
   PetscCall(PetscFree(bytes));
   if (!spec->document) PetscFunctionReturn(0);
   PetscCall(DiagSetResolver(diag, resolve, spec->document));
@@ -175,6 +188,28 @@ static PetscErrorCode ReadFile(const ElementOptions *o, Diag *diag, ElementSpec 
   spec->own.name = (char *)"material";
   if (!diag_errors(diag)) PetscCall(MaterialResolve(&c, 0, diag, &spec->material));
   PetscCall(DiagSetResolver(diag, NULL, NULL));
+  PetscFunctionReturn(0);
+}
+
+/* Does a file tell its path, as no case does? Whatever is wrong with it is told by who reads it. */
+static PetscErrorCode TellsPath(const char *file, PetscBool *tells)
+{
+  YamlDocument *document = NULL;
+  char *bytes, reason[256];
+  Diag *ignored;
+  size_t size;
+
+  PetscFunctionBeginUser;
+  *tells = PETSC_FALSE;
+  PetscCall(FileReadEverywhere(PETSC_COMM_SELF, file, &size, &bytes, reason));
+  if (!reason[0]) {
+    PetscCall(DiagCreate(&ignored));
+    PetscCall(YamlCreate(file, bytes, size, ignored, &document));
+    *tells = yaml_find(document->root, "path") && !yaml_find(document->root, "bodies") ? PETSC_TRUE : PETSC_FALSE;
+    PetscCall(YamlDestroy(&document));
+    PetscCall(DiagDestroy(&ignored));
+  }
+  PetscCall(PetscFree(bytes));
   PetscFunctionReturn(0);
 }
 
@@ -197,6 +232,26 @@ static PetscErrorCode ChooseMaterial(const ElementOptions *o, Diag *diag, Elemen
     diag_hint_names(diag, o->material ? o->material : "", names);
   }
   PetscCall(PetscFree(names));
+  PetscFunctionReturn(0);
+}
+
+/* One of the materials of a case, in a test. */
+static PetscErrorCode ReadCase(const ElementOptions *o, Diag *diag, ElementSpec *s)
+{
+  char file[PETSC_MAX_PATH_LEN];
+  PetscBool path;
+
+  PetscFunctionBeginUser;
+  PetscCall(ElementWords(o, diag, s));
+  case_file_path(o->file, file);
+  PetscCall(TellsPath(file, &path));
+  if (path) {
+    const DiagPlace whole = {.file = file, .width = 1};
+    diag_at(diag, DIAG_ERROR, &whole, "this file tells its path by itself: --test is for the material of a case");
+    diag_hint(diag, "leave --test out, and what belongs to it");
+  }
+  if (!diag_errors(diag)) PetscCall(CaseRead(PETSC_COMM_SELF, file, o->n_set, o->set, diag, &s->c));
+  if (s->c) PetscCall(ChooseMaterial(o, diag, s));
   PetscFunctionReturn(0);
 }
 
@@ -227,18 +282,13 @@ static PetscErrorCode NameIt(const ElementOptions *o, ElementSpec *s)
 
 PetscErrorCode ElementRead(const ElementOptions *o, Diag *diag, ElementSpec **spec)
 {
-  char file[PETSC_MAX_PATH_LEN];
   ElementSpec *s;
 
   PetscFunctionBeginUser;
   PetscCall(PetscNew(&s));
   *spec = s;
-  if (o->test) {
-    PetscCall(ElementWords(o, diag, s));
-    case_file_path(o->file, file);
-    if (!diag_errors(diag)) PetscCall(CaseRead(PETSC_COMM_SELF, file, o->n_set, o->set, diag, &s->c));
-    if (s->c) PetscCall(ChooseMaterial(o, diag, s));
-  } else PetscCall(ReadFile(o, diag, s));
+  if (o->test) PetscCall(ReadCase(o, diag, s));
+  else PetscCall(ReadFile(o, diag, s));
   check_bulk(s, diag);
   if (!diag_errors(diag)) PetscCall(NameIt(o, s));
   if (diag_errors(diag)) PetscCall(ElementSpecDestroy(spec));

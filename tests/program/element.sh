@@ -57,6 +57,11 @@ says err.txt "needs --test"
 expect "a case without a test" 2 "$talus" element case.yaml
 says err.txt "this is a case" "--test triaxial"
 
+expect "a folder without a test" 2 "$talus" element .
+says err.txt "./case.yaml:1:1: error: this is a case" "--test triaxial"
+expect "a path with a test" 2 "$talus" element sand.yaml --test triaxial --to 0.1
+says err.txt "sand.yaml: error: this file tells its path by itself"
+
 # Grains sheared at 100 / s, at 10 / s and without any rate: arcsin mu(I)
 cat >grains.yaml <<'END'
 material: {law: mu-i, young: 1e8, poisson: 0.2, static_friction: 0.38, limit_friction: 0.64, grain_size: 1e-3, grain_density: 2500}
@@ -82,6 +87,7 @@ mistake "a key" 's/relative/realtive/' "bad.yaml:6:" "did you mean 'relative'?"
 mistake "no end" 's/to: 0.02, //' "key 'to' of path[0] is missing"
 mistake "both" 's/{zz: 0}/{zz: 0, yy: 0}/' "strain and stress of one component"
 mistake "nothing" 's/strain: {zz: 0}, stress: {yy: -150e3}, //' "path[2] needs at least one of"
+mistake "no component" 's/strain: {zz: 0}, stress: {yy: -150e3}, /strain: {}, stress: {}, /' "bad.yaml:7:" "path[2] changes nothing"
 mistake "a constant" 's/cohesion: 0/cohesion: -1/' "cohesion"
 mistake "an angle" 's/cohesion: 0/cohesion: 0, dilatancy_angle: 40/' "bad.yaml:2:" "must not be larger than the friction angle"
 mistake "two pressures" 's/pressure: 100e3/pressure: 100e3, stress: {xx: 1}/' "both 'pressure' and 'stress'"
@@ -90,4 +96,6 @@ mkdir e && echo mine >e/element.csv
 expect "somebody's table" 2 "$talus" element sand.yaml --out e
 says err.txt "talus has not written"
 [ "$(cat e/element.csv)" = mine ] || fail "$name: it is gone"
+expect "by force" 0 "$talus" element sand.yaml --out e --force
+[ "$(wc -l <e/element.csv)" -eq 22 ] || fail "$name: no table"
 finish

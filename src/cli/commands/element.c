@@ -13,6 +13,7 @@ static const CliOption options_known[] = {
   CLI_LAW_OPTIONS,
   {"set", "PATH=VALUE", "change a value of the file; may be given often"},
   {"out", "DIR", "where the table and the picture go; default: runs/element/<name of the file>"},
+  {"force", NULL, "write there even if an element.csv is in DIR that talus has not written"},
   {NULL, NULL, NULL},
 };
 
@@ -70,6 +71,7 @@ PetscErrorCode CliElement(int argc, char **argv, int *exit_code)
     .n_set = cli_values(&arguments, "set", set),
     .set = set,
     .out = cli_value(&arguments, "out"),
+    .force = cli_flag(&arguments, "force"),
   };
   /* a point is one rank's work */
   if (cli_prints()) {
