@@ -1,4 +1,5 @@
 #include "calibrate/calibrate_spec.h"
+#include <ctype.h>
 #include <string.h>
 #include "input/case_file.h"
 
@@ -76,11 +77,50 @@ static PetscErrorCode IsUsed(const SettingList *set, const char *name, PetscBool
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode CheckUse(const Calibration *c, Diag *diag)
+static PetscBool is_parameter(const Calibration *c, const char *name, size_t length)
 {
-  const YamlNode *parameters = yaml_find(c->document->root, "parameters");
+  for (PetscInt p = 0; p < c->n_parameters; ++p)
+    if (strlen(c->parameters[p].name) == length && !strncmp(c->parameters[p].name, name, length)) return PETSC_TRUE;
+  return PETSC_FALSE;
+}
+
+/* $mu where there is no mu: what a case is told would be the text. */
+static PetscErrorCode CheckNames(const Calibration *c, const YamlNode *node, Diag *diag)
+{
+  const char **names;
 
   PetscFunctionBeginUser;
+  for (PetscInt i = 0; node && i < node->n; ++i) PetscCall(CheckNames(c, node->child[i], diag));
+  for (const char *at = node && node->text ? strchr(node->text, '$') : NULL; at; at = strchr(at + 1, '$')) {
+    size_t length = 0;
+    while (isalnum((unsigned char)at[1 + length]) || at[1 + length] == '_') ++length;
+    if (!length || is_parameter(c, at + 1, length)) continue;
+    PetscCall(PetscCalloc1(c->n_parameters + 1, &names));
+    for (PetscInt p = 0; p < c->n_parameters; ++p) names[p] = c->parameters[p].name;
+    yaml_error(c->document, diag, node, PETSC_FALSE, "there is no parameter '%.*s'", (int)length, at + 1);
+    diag_hint_names(diag, "", names);
+    PetscCall(PetscFree(names));
+  }
+  PetscFunctionReturn(0);
+}
+
+/* What is set for all instruments, or for one. */
+static PetscErrorCode CheckSettings(const Calibration *c, const YamlNode *of, Diag *diag)
+{
+  PetscFunctionBeginUser;
+  PetscCall(CheckNames(c, yaml_find(of, "set"), diag));
+  PetscCall(CheckNames(c, yaml_find(of, "quick"), diag));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode CheckUse(const Calibration *c, Diag *diag)
+{
+  const YamlNode *parameters = yaml_find(c->document->root, "parameters"),
+                 *instruments = yaml_find(c->document->root, "instruments");
+
+  PetscFunctionBeginUser;
+  PetscCall(CheckSettings(c, c->document->root, diag));
+  for (PetscInt i = 0; i < instruments->n; ++i) PetscCall(CheckSettings(c, instruments->child[i], diag));
   if (c->n_parameters > SURROGATE_MOST)
     yaml_error(c->document, diag, parameters, PETSC_TRUE, "there are more than %d parameters", SURROGATE_MOST);
   for (PetscInt p = 0; p < c->n_parameters; ++p) {

@@ -81,6 +81,7 @@ mistake() {
   says err.txt "$message"
 }
 mistake "the parameter nu changes nothing" -e 's/, materials.rubber.poisson: $nu//'
+mistake "bad.yaml:5:31: error: there is no parameter 'mu'" -e 's/young: $E/young: $mu/'
 mistake "key 'instrument' of the file is not known" -e 's/^instruments/instrument/'
 mistake "did you mean 'young'?" -e 's/rubber.young/rubber.yung/'
 mistake "bad.yaml:7:3: error: the case of oedometer/E=500000,nu=0.1 cannot be run" -e 's/rubber.young/rubber.yung/'

@@ -150,6 +150,7 @@ mistake "case.yaml has no measure 'tup'" --over grid.size=0.5 --measure tup
 mistake "has 3 values, grid.size along which it varies has 2" --over grid.size=0.5,1 --along materials.rubber.young=1,2,3
 mistake "this is no NAME=lowest:highest" --over grid.size=0.5 --measure tip --band x=3:1
 mistake "there is no --measure before it" --over grid.size=0.5 --band x=1:3
+mistake "the window of 'tip' begins at 5 s, when the run is over" --over grid.size=0.5 --measure tip:mean:5:6
 mistake "--jobs is a number" --over grid.size=0.5 --jobs many
 mistake "--quick is told by a sweep" --over grid.size=0.5 --quick
 finish

@@ -97,6 +97,17 @@ static void check_measures(Member *m, const Case *c, Diag *diag)
   }
 }
 
+/* What is taken from a time after the end would be nan, after all the runs. */
+static void check_windows(const Member *m, const Case *c, Diag *diag)
+{
+  for (PetscInt k = 0; k < m->n_taken && !c->n_stages; ++k) {
+    const Taken *taken = &m->taken[k];
+    if (!taken->has_window || taken->from <= c->analysis.end) continue;
+    diag_error(diag, NULL, "the window of '%s' begins at %g s, when the run is over: it ends at %g s", taken->measure,
+               (double)taken->from, (double)c->analysis.end);
+  }
+}
+
 PetscErrorCode MemberPlan(const Members *members, Member *m, Diag *diag)
 {
   const PetscInt before = diag_errors(diag);
@@ -106,6 +117,7 @@ PetscErrorCode MemberPlan(const Members *members, Member *m, Diag *diag)
   PetscCall(CaseRead(PETSC_COMM_SELF, m->file, m->set.n, (const char *const *)m->set.text, diag, &c));
   PetscCall(DiagSetResolver(diag, NULL, NULL)); /* what follows is about no line of a case */
   if (c) check_measures(m, c, diag);
+  if (c) check_windows(m, c, diag);
   if (c) m->end = c->analysis.end;
   if (c && diag_errors(diag) == before) PetscCall(LookForRun(members, m, c, diag));
   PetscCall(CaseDestroy(&c));
