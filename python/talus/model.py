@@ -127,12 +127,12 @@ class Model:
     def __init__(self, case):
         lib = library()
         self._callbacks, self._hook = Callbacks(lib.header), None
-        self.handle, messages = ctypes.c_void_p(), ctypes.c_void_p()
+        self._handle, messages = ctypes.c_void_p(), ctypes.c_void_p()
         self._stack = contextlib.ExitStack()
         opened = self._stack.enter_context(case.opened())
         try:
             self._loads, self._load_hooks = dict(case.loads), case.vary(lib, self._callbacks, opened)
-            code = lib.code("TalusModelCreate", opened, ctypes.byref(self.handle), ctypes.byref(messages))
+            code = lib.code("TalusModelCreate", opened, ctypes.byref(self._handle), ctypes.byref(messages))
             case.tell(lib, code, messages)
             self._callbacks.raise_kept()
         except BaseException:
@@ -146,9 +146,16 @@ class Model:
 
     def close(self):
         """Give the model back; its views mean nothing any more. Collective."""
-        if self.handle.value:
-            library().call("TalusModelDestroy", ctypes.byref(self.handle))
+        if self._handle.value:
+            library().call("TalusModelDestroy", ctypes.byref(self._handle))
         self._stack.close()
+
+    @property
+    def handle(self):
+        """The TalusModel of the C library."""
+        if not self._handle.value:
+            raise TalusError("the model is closed: there is nothing left of it")
+        return self._handle
 
     def __enter__(self):
         return self
@@ -242,4 +249,4 @@ class Model:
         return self._times()[1]
 
     def __repr__(self):
-        return f"<talus.Model at {self.time:g} of {self.end:g} s>" if self.handle.value else "<talus.Model, closed>"
+        return f"<talus.Model at {self.time:g} of {self.end:g} s>" if self._handle.value else "<talus.Model, closed>"

@@ -357,6 +357,10 @@ class Stepping(InFolder):
         model.close()
         model.close()
         self.assertIn("closed", repr(model))
+        for use in (model.step, lambda: model.time, lambda: model.points["position"], lambda: model.points["stress"],
+                    lambda: model.measures["top"], lambda: setattr(model, "body_force", None)):
+            with self.assertRaisesRegex(talus.TalusError, "the model is closed"):
+                use()
         code = ("import talus, sys; case = talus.Case(sys.argv[1]); model = case.model(); model.step(); print('left open')")
         done = subprocess.run([sys.executable, "-c", code, str(BLOCK)], capture_output=True, text=True, env=dict(os.environ))
         self.assertEqual((done.returncode, done.stdout, done.stderr), (0, "left open\n", ""))
