@@ -166,6 +166,6 @@ PetscErrorCode FormulaValue(Formula *f, PetscReal *value)
   PetscCall(Sum(f, value));
   skip(f);
   if (*f->at) fail(f, f->at);
-  if (f->wrong) *value = NAN;
+  if (f->wrong || isnan(*value)) *value = NAN; /* machines make some with a sign */
   PetscFunctionReturn(0);
 }

@@ -85,8 +85,9 @@ void progress_bar(const RunProgress *p, PetscReal elapsed, PetscReal left, int w
 
 PetscBool progress_on_terminal(void)
 {
+  const char *terminal = getenv("TERM");
   char link[64], target[16] = "";
-  if (!isatty(STDOUT_FILENO)) return PETSC_FALSE;
+  if (!isatty(STDOUT_FILENO) || (terminal && !strcmp(terminal, "dumb"))) return PETSC_FALSE;
   if (!getenv("OMPI_COMM_WORLD_SIZE")) return PETSC_TRUE;
   snprintf(link, sizeof link, "/proc/%d/fd/1", (int)getppid());
   if (readlink(link, target, sizeof target - 1) < 0) return PETSC_FALSE;

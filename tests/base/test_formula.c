@@ -47,6 +47,20 @@ static void test_values(void **state)
   }
 }
 
+/* What has no value is nan, which has no sign. */
+static void test_no_value(void **state)
+{
+  static const char *const texts[] = {"sqrt(-1)", "-sqrt(0-1)", "log(-2)", "0/0", "-(0/0)"};
+  (void)state;
+  for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(texts); ++k) {
+    Formula formula = {.value = TwoNames, .at = texts[k]};
+    PetscReal value;
+    OK(FormulaValue(&formula, &value));
+    assert_null(formula.wrong);
+    assert_true(isnan(value) && !signbit(value));
+  }
+}
+
 /* Where they make no sense, and which name is not known. */
 static void test_mistakes(void **state)
 {
@@ -80,7 +94,8 @@ static void test_mistakes(void **state)
 
 int main(int argc, char **argv)
 {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_values), cmocka_unit_test(test_mistakes)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_values), cmocka_unit_test(test_no_value),
+                                     cmocka_unit_test(test_mistakes)};
   if (PetscInitialize(&argc, &argv, NULL, NULL)) return 1;
   const int failed = cmocka_run_group_tests(tests, NULL, NULL);
   return PetscFinalize() ? 1 : failed;

@@ -103,6 +103,11 @@ static void NotANumber(void **state)
     assert_non_null(r);
     assert_true(isnan(relief_post(r, 2, 0)) && relief_post(r, 1, 0) == 5);
     assert_int_equal(ReliefDestroy(&r), 0);
+    snprintf(text, sizeof text, "ncols 3\nnrows 2\nxllcenter 0\nyllcenter 0\ncellsize 1\n%sNaN 2 3\n4 5 6\n", heads[k]);
+    r = read_text(text, 1, zero);
+    assert_non_null(r);
+    assert_true(isnan(relief_post(r, 0, 1)) && relief_post(r, 1, 1) == 2);
+    assert_int_equal(ReliefDestroy(&r), 0);
   }
 }
 

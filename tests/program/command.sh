@@ -120,6 +120,9 @@ expect "an idle option in the case" 0 "$talus" run case.yaml --out monitor --qui
 says err.txt "petsc.pc_gamg_threshold=0.1: warning: nothing in this run asked for the PETSc option -pc_gamg_threshold"
 expect "the command line wins" 2 "$talus" run case.yaml --out monitor --quiet --force --set petsc.ksp_type=preonly -ksp_type nonsense
 says err.txt "nonsense"
+expect "a formula without a value" 0 "$talus" run case.yaml --out none --quiet --set 'measures.none={formula: sqrt(-1)}'
+says err.txt "'none' is empty (nan) at the end: its formula has no value there"
+lacks none/history.csv "-nan"
 expect "solver gives up" 1 "$talus" run case.yaml --out soft --quiet --set newton.max_iterations=1
 says err.txt "case.yaml: error: the run gave up: Newton did not converge" "is kept in soft"
 says soft/log.txt "gave up = Newton did not converge"

@@ -121,6 +121,8 @@ name="every line of the first case is explained"
 grep -v -e '^ *#' -e '^$' begin/case.yaml | grep -v '#' | grep -v -e ':$' -e 'poisson:' -e '- name: sand' && fail "$name"
 expect "run of the first case" 0 "$talus" run begin/case.yaml --set grid.size=0.125 --set analysis.end=0.5
 says runs/begin/log.txt "front = " "balance = "
+expect "init of two words" 0 "$talus" init "two words"
+says out.txt "talus check 'two words/case.yaml'" "talus plot 'runs/two words'"
 expect "init twice" 2 "$talus" init begin
 says err.txt "'begin' is there already"
 expect "init over a file" 2 "$talus" init notes.txt

@@ -83,6 +83,7 @@ sed 's/end: 0.08/end: 0.12/' block.yaml >later.yaml
 expect "short" 0 "$talus" run block.yaml --out short --quiet
 expect "complete, with its checkpoint" 0 "$talus" run --resume short --quiet
 says err.txt "warning: the run in 'short' is complete at t = 0.08 s: there is nothing left to do" "--set analysis.end=..."
+lacks short/log.txt "linear =  unknowns"
 expect "short goes on" 0 "$talus" run --resume short --quiet --set analysis.end=0.12
 [ ! -s err.txt ] || fail "$name: it complains"
 expect "later from the start" 0 "$talus" run later.yaml --out later --quiet

@@ -16,6 +16,9 @@ if grep -q '^step = ' screen.txt; then fail "plain lines besides the bar"; fi
 says screen.txt "method = mpm" "corner = "
 [ "$(grep -c '^step = ' run/log.txt)" -eq 200 ] || fail "log: not every step"
 if grep -q "$carriage" run/log.txt; then fail "log: a carriage return"; fi
+TERM=dumb script -qec "'$talus' run block.yaml --out run --force --set analysis.end=0.1" typescript.txt >/dev/null </dev/null || fail "dumb: exit code $?"
+if grep -q "$(printf '\033')" typescript.txt; then fail "dumb: an escape sequence"; fi
+grep -q '^step = ' typescript.txt || fail "dumb: no plain lines"
 script -qec "'$talus' run block.yaml --out run --force --quiet --set analysis.end=0.1" typescript.txt >/dev/null </dev/null || fail "quiet: exit code $?"
 if grep -q -e '%' -e 'step' typescript.txt; then fail "quiet: it speaks"; fi
 finish

@@ -51,9 +51,15 @@ static PetscBool take_number(AscText *s, const char *of, PetscReal *value)
   return PETSC_FALSE;
 }
 
+/* The first height may be none, "nan". */
+static PetscBool is_key(const AscText *s, size_t n)
+{
+  return isalpha((unsigned char)*s->at) && !(n == 3 && !strncasecmp(s->at, "nan", 3));
+}
+
 static PetscBool take_head(AscText *s)
 {
-  for (size_t n = next_word(s); isalpha((unsigned char)*s->at); n = next_word(s)) {
+  for (size_t n = next_word(s); is_key(s, n); n = next_word(s)) {
     int k = 0;
     while (keys[k] && (strlen(keys[k]) != n || strncasecmp(s->at, keys[k], n))) ++k;
     if (!keys[k]) {

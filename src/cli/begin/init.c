@@ -90,6 +90,14 @@ static PetscErrorCode CopyFolder(const char *from, const char *to, char file[PET
   PetscFunctionReturn(0);
 }
 
+/* What a shell would take apart stands in quotes. */
+static const char *shell_quote(const char *path)
+{
+  static const char *const plain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-+=./,:@%";
+  if (!path[strspn(path, plain)]) return "";
+  return strchr(path, '\'') ? "\"" : "'";
+}
+
 static PetscErrorCode Fill(const char *name, const char *like, int *exit_code)
 {
   char folder[PETSC_MAX_PATH_LEN], from[PETSC_MAX_PATH_LEN], file[PETSC_MAX_PATH_LEN], title[160];
@@ -108,8 +116,9 @@ static PetscErrorCode Fill(const char *name, const char *like, int *exit_code)
   }
   snprintf(file, sizeof file, "%.4000s/case.yaml", name);
   read_title(file, title);
-  printf("%s: %s\n  talus check %s\n  talus run %s\n  talus plot runs/%s\n", file, title, file, file,
-         strrchr(name, '/') ? strrchr(name, '/') + 1 : name);
+  const char *last = strrchr(name, '/') ? strrchr(name, '/') + 1 : name, *quote = shell_quote(name);
+  printf("%s: %s\n  talus check %s%s%s\n  talus run %s%s%s\n  talus plot %sruns/%s%s\n", file, title, quote, file,
+         quote, quote, file, quote, quote, last, quote);
   PetscFunctionReturn(0);
 }
 

@@ -200,6 +200,7 @@ static const char *why_empty(const MeasureSpec *measure)
   if (!strcmp(measure->kind, "limit_load")) return "the search for it was not over";
   if (measure_has_window(measure)) return "too few steps with a value reach into its window";
   if (measure_find(measure->kind)->events) return "none of what it counts is over";
+  if (!strcmp(measure->kind, "formula")) return "its formula has no value there, or a measure in it has none";
   return "no point is left of what it measures";
 }
 

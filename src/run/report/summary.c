@@ -110,8 +110,10 @@ PetscErrorCode SummaryEnd(Model *m, RunDir *dir, const RunSummary *summary, cons
 
   PetscFunctionBeginUser;
   model_times(m, phase);
-  PetscCall(RunDirLog(dir, "linear = %s unknowns = %d", newton_linear_name(m->newton),
-                      (int)(m->system->n_active_global * m->system->block)));
+  const char *linear = newton_linear_name(m->newton);
+  if (linear[0]) /* a run that was whole when it was resumed has solved nothing */
+    PetscCall(
+      RunDirLog(dir, "linear = %s unknowns = %d", linear, (int)(m->system->n_active_global * m->system->block)));
   for (PetscInt k = 0; k < m->c->n_measures; ++k)
     PetscCall(
       RunDirLog(dir, "%s = %.10g %s", m->c->measures[k].name, (double)values[k], measure_unit(&m->c->measures[k])));
