@@ -141,7 +141,8 @@ static void warn_of_options_file(int n, char **petsc)
           path, path);
 }
 
-/* What is said is all that most commands give. Runs have their directories, and go on where nobody listens. */
+/* What is said is all that most commands give. Runs have their directories, and go on where nobody
+ * listens. */
 static PetscBool says_its_result(int n_own, char **own)
 {
   static const char *const long_ones[] = {"run", "sweep", "calibrate"};

@@ -3,13 +3,15 @@
 #include "case/case.h"
 #include "input/yaml/yaml.h"
 
-/* The tree of stage k in document->stage, after that of the stage before: that of the stage before (of the first: the file's)
- * with its words laid over it, without the list of stages. Every node keeps its place in the file.
+/* Make the tree of stage k in document->stage, in the order of stages: that of the stage before (of
+ * the first: the file's) with its words laid over it, without the list of stages. Every node keeps
+ * its place in the file.
  *
- * A mapping is changed key by key, but one that says what it is (law, type) stands for itself. Of lists of
- * things that have names an entry takes the place of that of its name, or comes behind the others; entries
- * of `bodies`, and those that say no more than whether they are there, change that one key by key. Any
- * other value is replaced. What is repeated word for word is as old as it was. */
+ * A mapping is changed key by key, but one that says what it is (law, type) stands for itself. Of
+ * lists of things that have names an entry takes the place of that of its name, or comes behind the
+ * others; entries of `bodies`, and those that say no more than whether they are there, change that
+ * one key by key. Any other value is replaced. What is repeated word for word is as old as it
+ * was. */
 PetscErrorCode StageLay(YamlDocument *document, PetscInt k, Diag *diag);
 /* What a stage changes of the case before it: those keys that differ, resolved, in full. */
 PetscErrorCode StageText(const Case *before, const Case *stage, char **text);

@@ -23,8 +23,8 @@ static struct sigaction before[N_WATCHED];
 
 static struct timespec first_term;
 
-/* Linux tells of a parent's death once for each of its threads, so that SIGTERM comes two or three times at once: within a
- * second it is the same ask. */
+/* Linux tells of a parent's death once for each of its threads, so that SIGTERM comes two or three
+ * times at once: within a second it is the same ask. */
 static PetscBool is_echo(void)
 {
   struct timespec now;

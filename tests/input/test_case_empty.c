@@ -1,5 +1,5 @@
-/* A key with nothing behind it is a mistake, whichever it is: every key of the cases that come with talus, one after the
- * other. */
+/* A key with nothing behind it is a mistake, whichever it is: every key of the cases that come with
+ * talus, one after the other. */
 #include "test_case.h"
 #include <glob.h>
 #include "input/yaml/yaml.h"

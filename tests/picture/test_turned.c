@@ -124,7 +124,8 @@ static void test_seen_from_above(void **state)
   assert_true(first > 0.5);
 }
 
-/* Cells of fem, which have no gaps: a ring of radius 0.5 to 1, and nothing beside, above and below it. */
+/* Cells of fem, which have no gaps: a ring of radius 0.5 to 1, and nothing beside, above and below
+ * it. */
 static void test_cells_are_turned(void **state)
 {
   PetscReal corner[2][2][3][3] = {{{{0.5, 0, 0}, {1, 0, 0}, {1, 1, 0}}, {{0.5, 0, 0}, {1, 1, 0}, {0.5, 1, 0}}}},

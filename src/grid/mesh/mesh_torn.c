@@ -1,5 +1,5 @@
-/* Cells that lie side by side and share no nodes, as from two surfaces that were drawn beside each other: nothing joins
- * them. A slit may be meant, so it is a warning. On rank 0. */
+/* Cells that lie side by side and share no nodes, as from two surfaces that were drawn beside each
+ * other: nothing joins them. A slit may be meant, so it is a warning. On rank 0. */
 #include "grid/mesh/file_mesh.h"
 
 #define ONE_PLACE 1e-4 /* of the smallest edge: who wants a gap makes a wider one */
@@ -17,8 +17,8 @@ static PetscBool at_one_place(const Grid *grid, PetscInt a, PetscInt b)
   return square <= PetscSqr(ONE_PLACE * grid->smallest);
 }
 
-/* Nodes in their order along a line that hardly any two of them share a plane across: only neighbours there can be near
- * each other. */
+/* Nodes in their order along a line that hardly any two of them share a plane across: only
+ * neighbours there can be near each other. */
 static PetscErrorCode SortAlongLine(const Grid *grid, PetscInt n, PetscReal *along, PetscInt *node)
 {
   static const PetscReal line[3] = {0.7548776662, 0.5698402910, 0.3247179572};

@@ -192,7 +192,8 @@ static PetscReal polygon_area(const Shape *s)
   return fabs(area);
 }
 
-/* The list of corners of what is closed, also of a line whose last corner is its first one; NULL: there is none. */
+/* The list of corners of what is closed, also of a line whose last corner is its first one; NULL:
+ * there is none. */
 static const YamlNode *closed_corners(const YamlNode *mapping, const Shape *s)
 {
   const PetscReal *first = s->vertices, *last = s->vertices + 2 * (s->n_vertices - 1);

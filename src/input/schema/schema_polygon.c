@@ -1,5 +1,6 @@
-/* Sides of a polygon that cross: what lies between them is inside by one way of counting and outside by another, and none
- * is what was meant. A side that only touches another one is no mistake. */
+/* Sides of a polygon that cross: what lies between them is inside by one way of counting and
+ * outside by another, and none is what was meant. A side that only touches another one is no
+ * mistake. */
 #include "input/schema/schema.h"
 
 typedef struct {

@@ -32,8 +32,8 @@ static PetscBool fits(const SchemaReader *r, const SchemaEntry *entry)
   return !((entry->only_2d && r->dim == 3) || (entry->only_3d && r->dim == 2) || (entry->turns && r->hoop));
 }
 
-/* A key with nothing behind it would count as given for the groups and as absent for the rest, so it is a mistake. Whoever
- * has commented out what stood there wants the key out, too. */
+/* A key with nothing behind it would count as given for the groups and as absent for the rest, so
+ * it is a mistake. Whoever has commented out what stood there wants the key out, too. */
 static void hint_empty(SchemaReader *r, const SchemaEntry *entry, const YamlNode *node)
 {
   const PetscBool nested = entry->type == TYPE_TABLE || entry->type == TYPE_LIST || entry->type == TYPE_NAMED;

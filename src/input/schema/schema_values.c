@@ -116,8 +116,8 @@ PetscErrorCode SchemaReadFlags(SchemaReader *r, const SchemaEntry *e, const Yaml
   PetscFunctionReturn(0);
 }
 
-/* Its keys are read, and its mistakes found, with the case of which it becomes a part. What is no mapping or list where
- * there is one cannot be laid over it. */
+/* Its keys are read, and its mistakes found, with the case of which it becomes a part. What is no
+ * mapping or list where there is one cannot be laid over it. */
 PetscErrorCode SchemaReadPart(SchemaReader *r, const SchemaEntry *e, const YamlNode *node, void *target)
 {
   const SchemaEntry *whole = schema_case.entries;

@@ -10,8 +10,8 @@ enum { SHOWN_KEYS = 20 };
 
 enum { NARROW = 16, WIDE = 48 }; /* columns of runs */
 
-/* How many characters all names have in common at their begin, or at their end; parts of them, as the names of members of
- * sweeps have them, stay whole. */
+/* How many characters all names have in common at their begin, or at their end; parts of them, as
+ * the names of members of sweeps have them, stay whole. */
 static size_t common(const Comparison *c, PetscBool at_end)
 {
   const PetscInt n = c->options->n_runs;

@@ -96,7 +96,8 @@ static void write_radii(FILE *out, const PlotPage *page, double step, PetscBool 
   fputs(")\nset arrow from 0, graph 0 to 0, graph 1 nohead front dt '_._' lw 1 lc rgb '#707070'\n", out);
 }
 
-/* gnuplot's own are for a page, and would run into one another beside a flat body and below a slender one. */
+/* gnuplot's own are for a page, and would run into one another beside a flat body and below a
+ * slender one. */
 static void write_tick_steps(FILE *out, const PlotScene *scene, const PlotPage *page)
 {
   const PetscBool several = scene->n_frames > 1;
