@@ -196,11 +196,11 @@ static PetscReal polygon_area(const Shape *s)
  * there is none. */
 static const YamlNode *closed_corners(const YamlNode *mapping, const Shape *s)
 {
-  const PetscReal *first = s->vertices, *last = s->vertices + 2 * (s->n_vertices - 1);
   if (s->kind == SHAPE_POLYGON) return yaml_find(mapping, "polygon");
   if (s->kind == SHAPE_REVOLVED && !s->open) return yaml_find(yaml_find(mapping, "revolved"), "polygon");
-  if (s->kind != SHAPE_LINE || first[0] != last[0] || first[1] != last[1]) return NULL;
-  return yaml_find(mapping, "line");
+  if (s->kind != SHAPE_LINE) return NULL;
+  const PetscReal *first = s->vertices, *last = s->vertices + 2 * (s->n_vertices - 1);
+  return first[0] == last[0] && first[1] == last[1] ? yaml_find(mapping, "line") : NULL;
 }
 
 PetscErrorCode SchemaCheckShape(SchemaReader *r, const YamlNode *mapping, void *target)
