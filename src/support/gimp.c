@@ -17,21 +17,32 @@
  * a node, as those of whole cells do, must not reach beyond it by a last digit. */
 #define SLIVER 1e-10
 
-/* At x in cell i of n, with half length l. moment: mean of (x - x_p) dN over the domain, so that over a
- * ring dN is that of r dN / r_p and uniform stress is balanced. */
-static LineFunctions line_functions(const PetscReal *line, PetscInt i, PetscInt n, PetscReal x, PetscReal l)
+/* Of the cell alone. */
+static LineFunctions line_in_cell(const PetscReal *line, PetscInt i, PetscReal x, PetscReal l)
+{
+  LineFunctions f = linear_functions(line, i, x);
+  for (PetscInt k = 0; k < 2; ++k) f.lean[k] = f.dN[k] * l * l / 3;
+  return f;
+}
+
+/* At x in cell i of n, with half length l. moment and lean: means of (x - x_p) dN and (x - x_p) S over the domain, so
+ * that over a ring slopes are those of r dN / r_p and uniform stress is balanced. */
+static LineFunctions gimp_line(const PetscReal *line, PetscInt i, PetscInt n, PetscReal x, PetscReal l)
 {
   const PetscInt j = nearest_line(line, i, x);
   const PetscReal s = x - line[j];
-  if (j == 0 || j == n || PetscAbsReal(s) > l - SLIVER * (line[i + 1] - line[i])) return linear_functions(line, i, x);
+  if (j == 0 || j == n || PetscAbsReal(s) > l - SLIVER * (line[i + 1] - line[i])) return line_in_cell(line, i, x, l);
   const PetscReal below = line[j] - line[j - 1], above = line[j + 1] - line[j];
   const PetscReal first = (l - s) / (2 * l), last = (l + s) / (2 * l), moment = (l * l - s * s) / (4 * l);
   const PetscReal a = 0.5 * first * (l - s) / below, b = 0.5 * last * (l + s) / above;
+  const PetscReal odd = l * l / 6, even = (s * l - s * s * s / (3 * l)) / 4;
+  const PetscReal low = (even - odd) / below, high = (even + odd) / above;
   return (LineFunctions){.first = j - 1,
                          .n = 3,
                          .N = {a, 1 - a - b, b},
                          .dN = {-first / below, first / below - last / above, last / above},
-                         .moment = {moment / below, -moment / below - moment / above, moment / above}};
+                         .moment = {moment / below, -moment / below - moment / above, moment / above},
+                         .lean = {low, -low - high, high}};
 }
 
 PetscInt gimp_functions(const GridBox *box, PetscBool hoop, const Points *points, PetscInt p, const ProductPlace *place,
@@ -41,8 +52,7 @@ PetscInt gimp_functions(const GridBox *box, PetscBool hoop, const Points *points
   PetscReal l[3] = {0};
   LineFunctions f[3];
   product_domain(points, p, place->size, l);
-  for (PetscInt d = 0; d < box->dim; ++d)
-    f[d] = line_functions(box->line[d], place->ijk[d], box->counts[d], x[d], l[d]);
+  for (PetscInt d = 0; d < box->dim; ++d) f[d] = gimp_line(box->line[d], place->ijk[d], box->counts[d], x[d], l[d]);
   return product_functions(box, place, hoop ? x[0] : 0, f, node, N, dN);
 }
 

@@ -33,7 +33,11 @@ UNROLLED PetscInt functions_of(const PetscInt dim, const GridBox *box, const Pro
                                LineFunctions *f, PetscInt *node, PetscReal *N, PetscReal *dN)
 {
   PetscInt n = 1, at[3] = {0, 0, 0};
-  for (PetscInt i = 0; radius > 0 && i < f[0].n; ++i) f[0].dN[i] += f[0].moment[i] / radius;
+  PetscReal leaning[3] = {f[0].N[0], f[0].N[1], f[0].N[2]};
+  for (PetscInt i = 0; radius > 0 && i < f[0].n; ++i) {
+    f[0].dN[i] += f[0].moment[i] / radius;
+    leaning[i] += f[0].lean[i] / radius;
+  }
   for (PetscInt d = 0; d < dim; ++d) n *= f[d].n;
   for (PetscInt q = 0; q < n; ++q) {
     PetscInt ijk[3] = {0, 0, dim == 2 ? place->ijk[2] : 0}, k = q;
@@ -44,7 +48,7 @@ UNROLLED PetscInt functions_of(const PetscInt dim, const GridBox *box, const Pro
     }
     for (PetscInt d = 0; d < dim; ++d) {
       gradient[d] = f[d].dN[at[d]];
-      for (PetscInt e = 0; e < dim; ++e) gradient[d] *= e == d ? 1 : f[e].N[at[e]];
+      for (PetscInt e = 0; e < dim; ++e) gradient[d] *= e == d ? 1 : e == 0 ? leaning[at[0]] : f[e].N[at[e]];
     }
     const PetscInt here = box_node(box, ijk);
     for (; k > 0 && node[k - 1] > here; --k) {

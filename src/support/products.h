@@ -6,10 +6,11 @@
 
 #define PRODUCT_MOST_NODES 27
 
-/* Nodes first .. first + n - 1 along an axis. moment: what rings add to dN, times the radius. */
+/* Nodes first .. first + n - 1 along an axis. What rings add, times the radius: moment to dN, lean to the N that slopes
+ * along the other axis have as a factor. */
 typedef struct {
   PetscInt first, n;
-  PetscReal N[3], dN[3], moment[3];
+  PetscReal N[3], dN[3], moment[3], lean[3];
 } LineFunctions;
 
 /* Where a point is: the voxel of its cell (in the plane ijk[2] is its field), and the cell's lengths. */
@@ -36,7 +37,7 @@ ProductPlace product_place(const Grid *grid, PetscInt cell);
  * parallelogram of the one at the start: l_d^2 = sum_k F_dk^2 L_k^2. No more than half a cell. */
 void product_domain(const Points *points, PetscInt p, const PetscReal *size, PetscReal *l);
 /* The nodes of a point, ascending, with N and dN, nn x dim; returns how many. A ring weighs what lies
- * farther out more: at radius > 0, dN = dN + moment / radius along x. */
+ * farther out more: at radius > 0, dN = dN + moment / radius along x, and along y N = N + lean / radius counts. */
 PetscInt product_functions(const GridBox *box, const ProductPlace *place, PetscReal radius, LineFunctions *f,
                            PetscInt *node, PetscReal *N, PetscReal *dN);
 /* gimp.c. Those of point p, wherever its cell has been left. */

@@ -19,10 +19,12 @@ static const Four begin = {0, 1, 0, 0}, slope = {0, -1, 1, 0}, bend = {1, -2, 1,
 static const Four steps = {-1, 0, 1, 2};
 
 /* Where points are: their cells and places in them, 0 to 1, and q and p; upper: is the second line the nearer one?
- * ring: what is added to dN along x beside p / h, (l^2 - s^2) / (4 l r). */
+ * ring: what is added to dN along x beside p / h, (l^2 - s^2) / (4 l r); lean, curl: to N, where slopes along y have it
+ * as a factor, beside x and q. */
 typedef struct {
   int32_t cell[LAW_BATCH];
   PetscReal at[2][LAW_BATCH], q[2][LAW_BATCH], p[2][LAW_BATCH], upper[2][LAW_BATCH], ring[LAW_BATCH];
+  PetscReal lean[LAW_BATCH], curl[LAW_BATCH];
 } SmoothPlace;
 
 KERNEL void root(Four *x)
@@ -69,6 +71,11 @@ KERNEL void smooth_along(const PetscBool ring, const Lattice *lattice, const int
   if (ring) {
     const Four more = half * (l * l - off * off) * per / *x;
     FOUR(place->ring + k) = (Four)(in & (FourBits)more);
+    const Four scale = lattice->size[d] / *x, square = l * l * (one / 3);
+    const Four even = off * (l * l - off * off * (one / 3)) * per, curl = half * (even - square) * scale;
+    const Four signed_curl = (Four)((right & (FourBits)curl) | (~right & (FourBits)-curl));
+    FOUR(place->lean + k) = square * scale;
+    FOUR(place->curl + k) = (Four)(in & (FourBits)signed_curl);
   }
 }
 
@@ -101,6 +108,12 @@ KERNEL void along(const PetscBool hoop, const Lattice *l, const SmoothPlace *pla
   if (!dN) return;
   *dN = l->per_length[d] * (slope + place->p[d][k] * curve);
   if (hoop && d == 0) *dN += place->ring[k] * curve;
+}
+
+/* N along x as slopes along y have it: of rings the mean by the radius. */
+KERNEL Four leaning(const PetscBool hoop, const SmoothPlace *place, PetscInt k, Four N)
+{
+  return hoop ? N + place->lean[k] * slope + place->curl[k] * (bend + place->upper[0][k] * next) : N;
 }
 
 /* Local nodes on the four lines of each axis around a cell, x fastest. Beyond what there is come the last ones: all
@@ -174,7 +187,7 @@ KERNEL void give(const PetscBool hoop, const Points *points, PetscInt first, Pet
     along(hoop, l, place, k, 1, &y, &dy);
     const Four mass = g->mass[k] * x, momentum[2] = {g->momentum[2 * k] * x, g->momentum[2 * k + 1] * x};
     Four over[2] = {g->tau[0][k] * dx, g->tau[3][k] * dx};
-    const Four up[2] = {g->tau[3][k] * x, g->tau[1][k] * x};
+    const Four beside = leaning(hoop, place, k, x), up[2] = {g->tau[3][k] * beside, g->tau[1][k] * beside};
     if (hoop) over[0] += g->tau[2][k] / *point_real(points, POINT_X, first + k) * x;
     for (int b = 0; b < 4; ++b) {
       w->sum[0][b] += y[b] * mass;
@@ -284,6 +297,7 @@ KERNEL void flow_past(const PetscBool hoop, const Points *points, PetscInt first
     along(hoop, &e->lattice, place, k, 1, &y, &dy);
     felt_at(&x, &y, flow, &here);
     felt_at(&dx, &y, flow, &over);
+    x = leaning(hoop, place, k, x);
     felt_at(&x, &dy, flow, &up);
     s->A[k] = e->dt * __builtin_shufflevector(over, up, 2, 3, 6, 7);
     s->move[k] = here;
