@@ -2,6 +2,7 @@
 #include "boundary/sides/faces.h"
 #include "boundary/sides/load_sides.h"
 #include "boundary/surface/surface.h"
+#include "support/basis.h"
 
 PetscBool touched_shape(const Grid *grid, PetscInt cell, const PetscReal *xi, const unsigned char *touched,
                         PetscReal *N)
@@ -18,51 +19,73 @@ PetscBool touched_shape(const Grid *grid, PetscInt cell, const PetscReal *xi, co
   return PETSC_TRUE;
 }
 
-/* N and dN (nn x dim) of nodes that are touched, scaled to sum to one; returns PETSC_FALSE if there is none. */
-static PetscBool among_touched(PetscInt dim, PetscInt nn, const PetscInt *node, const unsigned char *touched,
-                               PetscReal *N, PetscReal *dN)
+/* At the ends of a piece the functions are others than their means over it. */
+static void scale_middle(const unsigned char *touched, CarrierShape *s)
+{
+  PetscReal sum = 0;
+  for (PetscInt I = 0; I < s->n; ++I) sum += s->M[I] = touched[s->node[I]] ? s->M[I] : 0;
+  for (PetscInt I = 0; I < s->n; ++I) s->M[I] = sum > 1e-12 ? s->M[I] / sum : s->N[I];
+}
+
+/* Scaled to sum to one. */
+static void among_touched(const unsigned char *touched, CarrierShape *s)
 {
   PetscReal sum = 0, slope[3] = {0, 0, 0};
-  for (PetscInt I = 0; I < nn; ++I) {
-    if (!touched[node[I]]) N[I] = 0;
-    for (PetscInt d = 0; d < dim; ++d) {
-      if (!touched[node[I]]) dN[I * dim + d] = 0;
-      slope[d] += dN[I * dim + d];
+  for (PetscInt I = 0; I < s->n; ++I) {
+    if (!touched[s->node[I]]) s->N[I] = 0;
+    for (PetscInt d = 0; d < 3; ++d) {
+      if (!touched[s->node[I]]) s->dN[3 * I + d] = 0;
+      slope[d] += s->dN[3 * I + d];
     }
-    sum += N[I];
+    sum += s->N[I];
   }
-  if (sum <= 1e-12) return PETSC_FALSE;
-  for (PetscInt I = 0; I < nn; ++I) {
-    N[I] /= sum;
-    for (PetscInt d = 0; d < dim; ++d) dN[I * dim + d] = (dN[I * dim + d] - N[I] * slope[d]) / sum;
+  if (sum <= 1e-12) s->n = 0;
+  for (PetscInt I = 0; I < s->n; ++I) {
+    s->N[I] /= sum;
+    for (PetscInt d = 0; d < 3; ++d) s->dN[3 * I + d] = (s->dN[3 * I + d] - s->N[I] * slope[d]) / sum;
   }
-  return PETSC_TRUE;
+  scale_middle(touched, s);
 }
 
-PetscInt carrier_shape(const Loads *l, const Grid *grid, PetscInt p, const unsigned char *touched,
-                       const PetscInt **node, PetscReal *N, PetscReal *dN)
+static void shape_of_support(const Loads *l, PetscInt p, CarrierShape *s)
 {
-  const PetscInt dim = l->dim, cell = l->carriers->cell[p];
-  PetscReal x[CELL_MAX_NODES * 3];
-  PetscInt nn;
-  if (l->support) {
-    if (p >= l->support->n_groups) return 0;
-    nn = support_nodes(l->support, p);
-    *node = l->support->node + l->support->node_start[p];
-    for (PetscInt I = 0; I < nn; ++I) N[I] = support_N(l->support, p, p)[I];
-    for (PetscInt i = 0; i < nn * dim; ++i) dN[i] = support_dN(l->support, p, p, dim)[i];
-  } else {
-    if (cell < 0) return 0;
-    nn = grid_cell(grid, cell)->nodes;
-    *node = grid->cell_node + cell * grid->nodes_per_cell;
-    grid_cell_x(grid, cell, x);
-    (void)cell_gradients(grid_cell_type(grid, cell), x, point_real(l->carriers, POINT_XI, p), N, dN);
+  const Support *w = l->support;
+  if (p >= w->n_groups) return;
+  s->n = support_nodes(w, p);
+  s->node = w->node + w->node_start[p];
+  for (PetscInt I = 0; I < s->n; ++I) {
+    const PetscReal *dN = support_dN(w, p, p, l->slopes) + l->slopes * I;
+    s->N[I] = support_N(w, p, p)[I];
+    s->M[I] = l->slopes > l->dim ? dN[l->dim] : s->N[I];
+    for (PetscInt d = 0; d < 3; ++d) s->dN[3 * I + d] = d < l->dim ? dN[d] : 0;
   }
-  return among_touched(dim, nn, *node, touched, N, dN) ? nn : 0;
 }
 
-static PetscErrorCode AddCarrier(Loads *loads, const Grid *grid, PetscInt load, PetscInt cell, const PetscReal *x,
-                                 const PetscReal *xi, const PetscReal *force)
+static void shape_of_cell(const Loads *l, const Grid *grid, PetscInt p, CarrierShape *s)
+{
+  const PetscInt cell = l->carriers->cell[p], dim = l->dim;
+  PetscReal x[CELL_MAX_NODES * 3], dN[3 * CELL_MAX_NODES];
+  if (cell < 0) return;
+  s->n = grid_cell(grid, cell)->nodes;
+  s->node = grid->cell_node + cell * grid->nodes_per_cell;
+  grid_cell_x(grid, cell, x);
+  (void)cell_gradients(grid_cell_type(grid, cell), x, point_real(l->carriers, POINT_XI, p), s->N, dN);
+  for (PetscInt I = 0; I < s->n; ++I) {
+    s->M[I] = s->N[I];
+    for (PetscInt d = 0; d < 3; ++d) s->dN[3 * I + d] = d < dim ? dN[dim * I + d] : 0;
+  }
+}
+
+void carrier_shape(const Loads *l, const Grid *grid, PetscInt p, const unsigned char *touched, CarrierShape *shape)
+{
+  shape->n = 0;
+  if (l->support) shape_of_support(l, p, shape);
+  else shape_of_cell(l, grid, p, shape);
+  among_touched(touched, shape);
+}
+
+static PetscErrorCode AddCarrier(Loads *loads, const Grid *grid, PetscInt load, PetscInt cell, const FacePoint *at,
+                                 const PetscReal *force)
 {
   Points *p = loads->carriers;
   PetscInt i;
@@ -74,10 +97,12 @@ static PetscErrorCode AddCarrier(Loads *loads, const Grid *grid, PetscInt load, 
   p->id[i] = ((PetscInt64)load << 40) + i;
   if (p->components[POINT_FIELD]) p->real[POINT_FIELD][i] = (PetscReal)grid_field_of(grid, cell);
   for (PetscInt d = 0; d < loads->dim; ++d) {
-    point_real(p, POINT_X, i)[d] = x[d];
-    point_real(p, POINT_XI, i)[d] = xi[d];
+    point_real(p, POINT_X, i)[d] = at->x[d];
+    point_real(p, POINT_XI, i)[d] = at->xi[d];
     point_real(p, POINT_FORCE, i)[d] = force[d];
   }
+  for (PetscInt k = 0; k < p->components[POINT_EDGE]; ++k)
+    point_real(p, POINT_EDGE, i)[k] = at->edge[k / loads->dim][k % loads->dim];
   PetscFunctionReturn(0);
 }
 
@@ -86,16 +111,16 @@ static PetscErrorCode PointLoad(Loads *loads, const Grid *grid, const Points *po
                                 Diag *diag)
 {
   const LoadSpec *spec = &loads->c->loads[load];
-  PetscReal xi[3];
+  FacePoint at = {.x = {spec->at[0], spec->at[1], spec->at[2]}};
   PetscMPIInt rank, mine, first, size;
 
   PetscFunctionBeginUser;
   PetscCallMPI(MPI_Comm_rank(grid->comm, &rank));
   PetscCallMPI(MPI_Comm_size(grid->comm, &size));
-  const PetscInt cell = grid_cell_in(grid, grid_locate(grid, spec->at, -1, xi), points_field_near(points, spec->at));
+  const PetscInt cell = grid_cell_in(grid, grid_locate(grid, spec->at, -1, at.xi), points_field_near(points, spec->at));
   mine = cell >= 0 ? rank : size;
   PetscCallMPI(MPI_Allreduce(&mine, &first, 1, MPI_INT, MPI_MIN, grid->comm));
-  if (first == rank) PetscCall(AddCarrier(loads, grid, load, cell, spec->at, xi, spec->value));
+  if (first == rank) PetscCall(AddCarrier(loads, grid, load, cell, &at, spec->value));
   if (first == size) diag_error(diag, path, "the force acts at a position outside the grid");
   PetscFunctionReturn(0);
 }
@@ -160,10 +185,11 @@ static PetscErrorCode CarryFaces(Loads *loads, const Grid *grid, PetscInt load, 
 
   PetscFunctionBeginUser;
   for (PetscInt f = 0; f < n; ++f) {
-    const PetscInt nq = face_quadrature(loads->c->kinematics, grid, cell[f], side[f], q);
+    const PetscInt nq = loads_have_pieces(loads) ? face_pieces(loads->c->kinematics, grid, cell[f], side[f], q)
+                                                 : face_quadrature(loads->c->kinematics, grid, cell[f], side[f], q);
     for (PetscInt k = 0; k < nq; ++k) {
       force_on(&loads->c->loads[load], &q[k], force);
-      PetscCall(AddCarrier(loads, grid, load, cell[f], q[k].x, q[k].xi, force));
+      PetscCall(AddCarrier(loads, grid, load, cell[f], &q[k], force));
     }
   }
   PetscFunctionReturn(0);
@@ -178,10 +204,10 @@ static PetscErrorCode CarrySurface(Loads *loads, const Grid *grid, PetscInt load
   PetscReal force[3];
 
   PetscFunctionBeginUser;
-  PetscCall(BodySurfacePoints(grid, loads->c, body, &spec->on, n, &cell, &q));
+  PetscCall(BodySurfacePoints(grid, loads->c, body, &spec->on, loads_have_pieces(loads), n, &cell, &q));
   for (PetscInt k = 0; k < *n; ++k) {
     force_on(spec, &q[k], force);
-    PetscCall(AddCarrier(loads, grid, load, cell[k], q[k].x, q[k].xi, force));
+    PetscCall(AddCarrier(loads, grid, load, cell[k], &q[k], force));
   }
   PetscCall(PetscFree(cell));
   PetscCall(PetscFree(q));
@@ -237,10 +263,12 @@ PetscErrorCode LoadsCreate(const Grid *grid, const Case *c, const Points *points
   l->c = c;
   l->dim = grid->dim;
   l->n_nodes = grid->n_nodes;
+  l->slopes = grid->dim;
   PetscCall(PetscCalloc1(c->n_loads, &l->faces));
   PetscCall(PetscCalloc1(c->n_loads, &l->asked));
   PetscCall(FollowersCreate(l->dim, l->dim, &l->carriers));
   l->carriers->components[POINT_FIELD] = points->components[POINT_FIELD];
+  if (basis_find(c->basis.kind)->carry) l->carriers->components[POINT_EDGE] = l->dim * (l->dim - 1);
   for (PetscInt k = 0; k < c->n_loads; ++k) {
     const LoadKind kind = c->loads[k].kind;
     PetscCall(PetscSNPrintf(path, sizeof path, "%s.%s", case_load_path(c, k, list), kind == LOAD_POINT ? "at" : "on"));

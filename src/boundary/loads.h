@@ -25,7 +25,16 @@ typedef struct Loads {
    * of the load */
   Points *carriers;
   const Support *support; /* nodes that carriers push; NULL: those of their cells */
+  PetscInt slopes;        /* numbers of its dN a node: dim, and behind these the middle's N where carriers are pieces */
 } Loads;
+
+/* What a carrier sees, among nodes that are touched: N and M sum to one, M gives the motion of its middle (N that of
+ * what its force works on), dN, 3 numbers a node, the stretch and turn of its surface. */
+typedef struct {
+  PetscInt n; /* 0: there is no such node */
+  const PetscInt *node;
+  PetscReal N[CLOUD_MAX_NODES], M[CLOUD_MAX_NODES], dN[3 * CLOUD_MAX_NODES];
+} CarrierShape;
 
 /* Collective. `points` tells which cells each body fills, at the start; fills: do bodies fill their shapes, if they
  * leave that to the method? Loads on these act on the surface of the shape, on others on that of their cells. */
@@ -46,10 +55,12 @@ PetscErrorCode LoadsRegrid(Loads *loads, const Grid *old, const Grid *grid);
 PetscErrorCode LoadsPush(const Loads *loads, const Grid *grid, PetscReal t, const unsigned char *filled,
                          const unsigned char *touched, PetscReal *residual);
 
-/* Nodes of a carrier, and its shape functions among those that are touched, scaled to sum to one, with
- * their gradients (room for CLOUD_MAX_NODES); 0 if there is none. */
-PetscInt carrier_shape(const Loads *loads, const Grid *grid, PetscInt p, const unsigned char *touched,
-                       const PetscInt **node, PetscReal *N, PetscReal *dN);
+void carrier_shape(const Loads *loads, const Grid *grid, PetscInt p, const unsigned char *touched, CarrierShape *shape);
+/* Are carriers pieces of a surface, with edges that go with it? */
+static inline PetscBool loads_have_pieces(const Loads *loads)
+{
+  return (PetscBool)(loads->carriers->components[POINT_EDGE] > 0);
+}
 
 /* Shape functions of a carrier or tracer among touched nodes only, scaled to sum to one;
  * PETSC_FALSE if there is none. */

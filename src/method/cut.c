@@ -52,7 +52,7 @@ PetscErrorCode DiscretisationVolumes(Discretisation *s, PetscBool now, PetscReal
  * without. */
 static PetscReal held_below(const Discretisation *s)
 {
-  if (!extension_works(s) || s->c->analysis.type == ANALYSIS_DYNAMIC) return 1;
+  if (!extension_works(s) || s->c->stabilisation.follow == 0 || s->c->analysis.type == ANALYSIS_DYNAMIC) return 1;
   if (materials_yield(s->c->n_materials, s->materials)) return 1;
   return PetscMin(HARDLY_REACHED, s->c->stabilisation.follow);
 }

@@ -188,6 +188,23 @@ PetscErrorCode DiscretisationMoveClouds(Discretisation *s, Points *carried, cons
   PetscFunctionReturn(0);
 }
 
+/* The ends of its edges, which pieces beside it have too, move with the field; it stays in their middle. */
+static void move_piece(const Discretisation *s, Points *carriers, PetscInt p)
+{
+  const PetscInt dim = s->grid->dim;
+  CarrierShape shape;
+  PetscReal grown[6] = {0};
+  carrier_shape(s->loads, s->grid, p, reached_nodes(s), &shape);
+  if (!shape.n) return;
+  move_carried(s, carriers, p, shape.n, shape.node, shape.M);
+  for (PetscInt I = 0; I < shape.n; ++I)
+    for (PetscInt k = 0; k < carriers->components[POINT_EDGE]; ++k) {
+      const PetscReal *e = point_real(carriers, POINT_EDGE, p) + k / dim * dim, *dN = shape.dN + 3 * I;
+      for (PetscInt d = 0; d < dim; ++d) grown[k] += dN[d] * e[d] * s->nodes->du[shape.node[I] * dim + k % dim];
+    }
+  for (PetscInt k = 0; k < carriers->components[POINT_EDGE]; ++k) point_real(carriers, POINT_EDGE, p)[k] += grown[k];
+}
+
 PetscErrorCode DiscretisationMoveCarried(Discretisation *s, Points *carried)
 {
   const Grid *grid = s->grid;
@@ -195,6 +212,10 @@ PetscErrorCode DiscretisationMoveCarried(Discretisation *s, Points *carried)
   PetscReal N[CELL_MAX_NODES];
 
   PetscFunctionBeginUser;
+  if (carried->components[POINT_EDGE] && s->loads->support) {
+    for (PetscInt p = 0; p < carried->n; ++p) move_piece(s, carried, p);
+    PetscFunctionReturn(0);
+  }
   for (PetscInt p = 0; p < carried->n; ++p) {
     const PetscInt cell = carried->cell[p];
     if (cell >= 0 && touched_shape(grid, cell, point_real(carried, POINT_XI, p), reached_nodes(s), N))

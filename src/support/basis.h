@@ -46,6 +46,9 @@ typedef struct {
   PetscBool holds_boundary;
   /* are loads on a surface those of its functions there? else of the cell's */
   PetscBool carries;
+  /* The same averaged over pieces of a surface (POINT_EDGE), with dim + 1 numbers of dN (Loads.slopes); NULL: carriers
+   * are points, and see what points do. */
+  PetscErrorCode (*carry)(const BasisInput *in, const Points *carriers, Support *support);
   /* What the basis lacks in this grid, in words that go on behind its name; NULL: nothing. NULL for
    * the function: it takes every grid. */
   const char *(*misfit)(const GridSpec *grid);

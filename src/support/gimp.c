@@ -27,7 +27,7 @@ static LineFunctions line_in_cell(const PetscReal *line, PetscInt i, PetscReal x
 
 /* At x in cell i of n, with half length l. moment and lean: means of (x - x_p) dN and (x - x_p) S over the domain, so
  * that over a ring slopes are those of r dN / r_p and uniform stress is balanced. */
-static LineFunctions gimp_line(const PetscReal *line, PetscInt i, PetscInt n, PetscReal x, PetscReal l)
+LineFunctions gimp_line(const PetscReal *line, PetscInt i, PetscInt n, PetscReal x, PetscReal l)
 {
   const PetscInt j = nearest_line(line, i, x);
   const PetscReal s = x - line[j];
@@ -99,6 +99,8 @@ const Basis basis_gimp = {
   .domains = PETSC_TRUE,
   .holds_boundary = PETSC_TRUE,
   .misfit = gimp_misfit,
+  .carries = PETSC_TRUE,
   .support = GimpSupport,
+  .carry = PiecesSupport,
   .couplings = ProductsCouplings,
 };

@@ -43,6 +43,10 @@ PetscInt product_functions(const GridBox *box, const ProductPlace *place, PetscR
 /* gimp.c. Those of point p, wherever its cell has been left. */
 PetscInt gimp_functions(const GridBox *box, PetscBool hoop, const Points *points, PetscInt p, const ProductPlace *place,
                         PetscInt *node, PetscReal *N, PetscReal *dN);
+/* gimp.c. The linear functions of a box along axis line, averaged over so much to both sides of x, in cell i of n. */
+LineFunctions gimp_line(const PetscReal *line, PetscInt i, PetscInt n, PetscReal x, PetscReal l);
+/* pieces.c; Basis.carry. */
+PetscErrorCode PiecesSupport(const BasisInput *in, const Points *carriers, Support *support);
 /* Room for groups of single points, which then come one after the other. */
 PetscErrorCode ProductsReserve(const Points *points, PetscInt dim, Support *support);
 /* Point p, whose functions stand behind the n numbers that there are, has nn of them. */

@@ -77,7 +77,8 @@ static void test_shrinks(void **state)
     {"fem", "cell", CELL_QUADRILATERAL, plane, PETSC_FALSE}, {"fem", "cell", CELL_TRIANGLE, plane, PETSC_TRUE},
     {"mpm", "cell", CELL_QUADRILATERAL, plane, PETSC_TRUE},  {"mpm", "cell", CELL_QUADRILATERAL, plane, PETSC_FALSE},
     {"fem", "cell", CELL_QUADRILATERAL, ring, PETSC_FALSE},  {"fem", "cell", CELL_HEXAHEDRON, space, PETSC_FALSE},
-    {"fem", "cell", CELL_TETRAHEDRON, space, PETSC_TRUE},
+    {"fem", "cell", CELL_TETRAHEDRON, space, PETSC_TRUE},    {"mpm", "gimp", CELL_QUADRILATERAL, plane, PETSC_TRUE},
+    {"mpm", "gimp", CELL_QUADRILATERAL, ring, PETSC_FALSE},  {"mpm", "gimp", CELL_HEXAHEDRON, space, PETSC_TRUE},
   };
   (void)state;
   EACH_OF (k, blocks) shrink(&blocks[k]);
@@ -100,6 +101,7 @@ static void differences(const Block *r)
   Bench b;
   bench_init(&b, r->method, r->cell, 2);
   b.c.kinematics = r->kinematics;
+  b.c.basis.kind = r->basis;
   for (int d = 0; d < r->kinematics->dim; ++d) {
     bench_motion(&b, d, 0, MOTION_FIXED, 1u << d);
     bench_pressure(&b, d, 1, NULL, 1e4);
@@ -141,6 +143,9 @@ static void test_tangent(void **state)
     {"fem", "cell", CELL_QUADRILATERAL, &kinematics_axisymmetric, PETSC_FALSE},
     {"mpm", "cell", CELL_TRIANGLE, &kinematics_plane_strain, PETSC_FALSE},
     {"fem", "cell", CELL_HEXAHEDRON, &kinematics_3d, PETSC_FALSE},
+    {"mpm", "gimp", CELL_QUADRILATERAL, &kinematics_plane_strain, PETSC_FALSE},
+    {"mpm", "gimp", CELL_QUADRILATERAL, &kinematics_axisymmetric, PETSC_FALSE},
+    {"mpm", "gimp", CELL_HEXAHEDRON, &kinematics_3d, PETSC_FALSE},
   };
   (void)state;
   EACH_OF (k, blocks) differences(&blocks[k]);

@@ -73,7 +73,7 @@ static void whole(const Solid *s, CellType cell)
   CALL(DiagCreate(&diag));
   CALL(GridCreate(PETSC_COMM_WORLD, &b.c, NULL, NULL, diag, &grid));
   CHECK(grid, "no grid");
-  CALL(BodySurfacePoints(grid, &b.c, 0, &all, &n, &where, &point));
+  CALL(BodySurfacePoints(grid, &b.c, 0, &all, PETSC_FALSE, &n, &where, &point));
   for (PetscInt i = 0; i < n; ++i) {
     add_acting(&a, point[i].x, point[i].vector);
     local += point[i].area;

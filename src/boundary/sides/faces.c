@@ -35,10 +35,11 @@ static void face_normal(PetscInt dim, PetscInt nf, PetscReal x[4][3], const Pets
   for (int d = 0; d < 3; ++d) n[d] = u[(d + 1) % 3] * v[(d + 2) % 3] - u[(d + 2) % 3] * v[(d + 1) % 3];
 }
 
-PetscInt face_quadrature(const Kinematics *kinematics, const Grid *grid, PetscInt cell, PetscInt side, FacePoint *q)
+/* Points at g to both sides of the middle, in the face's own coordinates. */
+static PetscInt face_points(const Kinematics *kinematics, const Grid *grid, PetscInt cell, PetscInt side, PetscReal g,
+                            FacePoint *q)
 {
   static const PetscReal third[3][2] = {{1. / 6, 1. / 6}, {2. / 3, 1. / 6}, {1. / 6, 2. / 3}};
-  const PetscReal g = 0.57735026918962576451;
   const PetscReal square[4][2] = {{-g, -g}, {g, -g}, {g, g}, {-g, g}};
   const Cell *type = grid_cell(grid, cell);
   const PetscInt nf = type->face_nodes, *node = grid->cell_node + cell * grid->nodes_per_cell;
@@ -60,11 +61,29 @@ PetscInt face_quadrature(const Kinematics *kinematics, const Grid *grid, PetscIn
     }
     const PetscReal weight = (nf == 3 ? 1. / 6 : 1) * kinematics_weight(kinematics, q[k].x[0]);
     PetscReal *n = q[k].vector;
+    for (PetscInt j = 0; j < 2; ++j)
+      for (int d = 0; d < 3; ++d) {
+        q[k].edge[j][d] = 0;
+        for (PetscInt i = 0; d < grid->dim && i < nf; ++i) q[k].edge[j][d] += (1 - g) * dN[j * nf + i] * x[i][d];
+      }
     face_normal(grid->dim, nf, x, dN, n);
     for (int d = 0; d < 3; ++d) n[d] *= weight;
     q[k].area = PetscSqrtReal(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
   }
   return nf;
+}
+
+PetscInt face_quadrature(const Kinematics *kinematics, const Grid *grid, PetscInt cell, PetscInt side, FacePoint *q)
+{
+  const PetscInt n = face_points(kinematics, grid, cell, side, 0.57735026918962576451, q);
+  for (PetscInt k = 0; k < n; ++k)
+    for (int d = 0; d < 3; ++d) q[k].edge[0][d] = q[k].edge[1][d] = 0;
+  return n;
+}
+
+PetscInt face_pieces(const Kinematics *kinematics, const Grid *grid, PetscInt cell, PetscInt side, FacePoint *q)
+{
+  return face_points(kinematics, grid, cell, side, 0.5, q);
 }
 
 static PetscBool face_selected(const Grid *grid, const Selector *on, const PetscInt *node, PetscInt nf,

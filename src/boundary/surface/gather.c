@@ -9,8 +9,13 @@
 #define ROUNDED 4e-16 /* of a coordinate */
 #define NOTHING 1e-14 /* of a cell's side */
 
+/* Of the middles of two equal halves of a straight piece from its middle, over its deviation. */
+#define HALVES (0.5 * PetscSqrtReal(3))
+
 typedef struct {
   const BodySurface *body;
+  const Kinematics
+    *pieces; /* of the case, where pieces are asked for: these are summed as in the plane; NULL: points */
   PetscInt n, capacity, *cell;
   FacePoint *point;
 } Gather;
@@ -25,38 +30,96 @@ static PetscErrorCode Reserve(Gather *g)
   PetscFunctionReturn(0);
 }
 
-/* The middle of the piece, and how far it spreads along its axes: falling. */
-static void spread_of(const PieceSum *sum, PetscReal mid[3], PetscReal axis[3][3], PetscReal deviation[3])
+/* How positions on it spread about the middle. */
+static void spread_of(const PieceSum *sum, PetscReal mid[3], PetscReal C[6])
 {
-  PetscReal C[6], value[3], v[9];
   for (int d = 0; d < 3; ++d) mid[d] = sum->first[d] / sum->area;
   for (int i = 0; i < 3; ++i)
     for (int j = i; j < 3; ++j) C[voigt_of[i][j]] = sum->second[i][j] / sum->area - mid[i] * mid[j];
+}
+
+/* Deviations along the axes of the spread, falling. */
+static void find_deviations(const PetscReal C[6], PetscReal along[2][3])
+{
+  PetscReal value[3], v[9];
   sym_eigen(C, value, v);
-  for (int k = 0; k < 3; ++k) {
-    deviation[k] = PetscSqrtReal(PetscMax(0, value[k]));
-    for (int d = 0; d < 3; ++d) axis[k][d] = v[3 * d + k];
+  for (int k = 0; k < 2; ++k)
+    for (int d = 0; d < 3; ++d) along[k][d] = PetscSqrtReal(PetscMax(0, value[k])) * v[3 * d + k];
+}
+
+/* From the middle of the parallelogram of this spread to those of its quarters. Of all such parallelograms it is the
+ * one of which an edge stands across the axis along which the spread is largest: a rectangle along axes is itself, be
+ * it a square or not. */
+static void find_edges(const PetscReal C[6], PetscReal along[2][3])
+{
+  PetscReal rest[3][3];
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) rest[i][j] = C[voigt_of[i][j]];
+  for (int k = 0; k < 2; ++k) {
+    int most = 0;
+    for (int d = 1; d < 3; ++d) most = rest[d][d] > rest[most][most] ? d : most;
+    const PetscReal root = PetscSqrtReal(PetscMax(0, rest[most][most]));
+    for (int d = 0; d < 3; ++d) along[k][d] = root > 0 ? rest[d][most] / root : 0;
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 3; ++j) rest[i][j] -= along[k][i] * along[k][j];
+  }
+  for (int i = 0; i < 6; ++i) along[i / 3][i % 3] *= HALVES;
+}
+
+/* dual[k] . along[k] is 1, dual[k] of the other direction 0; no direction, no dual. */
+static void find_duals(PetscReal along[2][3], PetscReal nothing, PetscReal dual[2][3])
+{
+  PetscReal square[2] = {0, 0}, both = 0;
+  for (int d = 0; d < 3; ++d) {
+    for (int k = 0; k < 2; ++k) square[k] += PetscSqr(along[k][d]);
+    both += along[0][d] * along[1][d];
+  }
+  for (int k = 0; k < 2; ++k) {
+    const PetscBool alone = (PetscBool) !(square[1 - k] > nothing * nothing);
+    const PetscReal part = alone ? 0 : both / square[1 - k], rest = square[k] - part * both;
+    for (int d = 0; d < 3; ++d)
+      dual[k][d] = square[k] > nothing * nothing ? (along[k][d] - part * along[1 - k][d]) / rest : 0;
   }
 }
 
-/* The sum as points: equal areas, a deviation to both sides of the middle; vectors differ as much as their moments
- * along the piece say. */
+/* By how much vectors change along each direction, as the sum's moment of x and the normal has it. */
+static void find_turns(const PieceSum *sum, const PetscReal mid[3], PetscReal dual[2][3], PetscReal turn[2][3])
+{
+  for (int k = 0; k < 2; ++k)
+    for (int j = 0; j < 3; ++j) {
+      turn[k][j] = 0;
+      for (int i = 0; i < 3; ++i) turn[k][j] += dual[k][i] * (sum->turn[i][j] - mid[i] * sum->vector[j]);
+    }
+}
+
+/* A piece has edges, and a weight in a ring. */
+static void make_piece(const Gather *g, PetscReal along[2][3], FacePoint *p)
+{
+  const PetscReal weight = kinematics_weight(g->pieces, p->x[0]);
+  p->area *= weight;
+  for (int d = 0; d < 3; ++d) p->vector[d] *= weight;
+  for (PetscInt k = 0; k < (g->body->grid->dim == 3 ? 2 : 1); ++k)
+    for (int d = 0; d < 3; ++d) p->edge[k][d] = along[k][d];
+}
+
+/* The sum as points: equal areas, a deviation to both sides of the middle, or so far that pieces beside each other have
+ * that; vectors differ as much as their moments along the piece say. */
 static PetscErrorCode Emit(Gather *g, PetscInt cell, PetscReal size, const PieceSum *sum)
 {
   const Grid *grid = g->body->grid;
   const PetscInt along = grid->dim - 1, n = along == 1 ? 2 : 4;
-  PetscReal mid[3], axis[3][3], deviation[3], turn[2][3] = {{0}}, x[CELL_MAX_NODES * 3];
+  PetscReal mid[3], C[6], to[2][3], dual[2][3], turn[2][3], x[CELL_MAX_NODES * 3];
 
   PetscFunctionBeginUser;
   /* the end of a surface of the next cell, as wide as round-off or the selector's tolerance */
   if (!(sum->area > STEP * PetscPowReal(size, (PetscReal)along))) PetscFunctionReturn(0);
   PetscCall(Reserve(g));
-  spread_of(sum, mid, axis, deviation);
-  for (PetscInt k = 0; k < along; ++k)
-    for (int j = 0; j < 3 && deviation[k] > NOTHING * size; ++j) {
-      for (int i = 0; i < 3; ++i) turn[k][j] += axis[k][i] * (sum->turn[i][j] - mid[i] * sum->vector[j]);
-      turn[k][j] /= deviation[k];
-    }
+  spread_of(sum, mid, C);
+  if (g->pieces) find_edges(C, to);
+  else find_deviations(C, to);
+  for (int d = 0; d < 3 && along == 1; ++d) to[1][d] = 0;
+  find_duals(to, NOTHING * size, dual);
+  find_turns(sum, mid, dual, turn);
   grid_cell_x(grid, cell, x);
   for (PetscInt q = 0; q < n; ++q) {
     const PetscReal side[2] = {q % 2 ? 1 : -1, q / 2 ? 1 : -1};
@@ -66,10 +129,11 @@ static PetscErrorCode Emit(Gather *g, PetscInt cell, PetscReal size, const Piece
       p->x[d] = sum->origin[d] + mid[d];
       p->vector[d] = sum->vector[d] / (PetscReal)n;
       for (PetscInt k = 0; k < along; ++k) {
-        p->x[d] += side[k] * deviation[k] * axis[k][d];
+        p->x[d] += side[k] * to[k][d];
         p->vector[d] += side[k] * turn[k][d] / (PetscReal)n;
       }
     }
+    if (g->pieces) make_piece(g, to, p);
     (void)cell_inverse_map(grid_cell_type(grid, cell), x, p->x, p->xi);
     g->cell[g->n++] = cell;
   }
@@ -184,11 +248,12 @@ static PetscErrorCode CellsNear(const Grid *grid, const BodySpec *body, PetscInt
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode BodySurfacePoints(const Grid *grid, const Case *c, PetscInt body, const Selector *on, PetscInt *n,
-                                 PetscInt **cell, FacePoint **point)
+PetscErrorCode BodySurfacePoints(const Grid *grid, const Case *c, PetscInt body, const Selector *on, PetscBool pieces,
+                                 PetscInt *n, PetscInt **cell, FacePoint **point)
 {
-  BodySurface surface = {.grid = grid, .kinematics = c->kinematics, .shape = &c->bodies[body].shape, .on = on};
-  Gather gather = {.body = &surface};
+  BodySurface surface = {
+    .grid = grid, .kinematics = pieces ? &kinematics_3d : c->kinematics, .shape = &c->bodies[body].shape, .on = on};
+  Gather gather = {.body = &surface, .pieces = pieces ? c->kinematics : NULL};
   PetscInt n_cells, *list;
   unsigned char *outer;
 

@@ -3,7 +3,7 @@
  * The shape is bounded by a few simple surfaces (surfaces.c). In each cell each of them is a
  * few segments or triangles (march.c); of these counts what bounds the whole shape and is selected (trim.c);
  * all that one surface has in a cell becomes two points, four in space, with the same area, middle and second moment
- * (gather.c). */
+ * (gather.c), or as many pieces, that have these together. */
 #pragma once
 #include "boundary/sides/faces.h"
 #include "case/terrain/relief.h"
@@ -30,7 +30,7 @@ PetscReal surface_distance(const Surface *surface, PetscInt dim, const PetscReal
 /* What a body's surface is, and which part of it is asked for. */
 typedef struct {
   const Grid *grid;
-  const Kinematics *kinematics;
+  const Kinematics *kinematics; /* by which pieces are weighed, where they are summed */
   const Shape *shape;
   PetscInt n_surfaces;
   Surface *surfaces;
@@ -62,6 +62,6 @@ void surface_march(const Trim *trim, CellType type, const PetscReal *x, PieceSum
 void surface_trim(const Trim *trim, Facet facet, const PetscReal *outward, PieceSum *sum);
 
 /* Collective. Points on the surface of a body that fills its shape, as far as the selector takes them, in the grid as
- * it is at the start. Arrays for PetscFree. */
-PetscErrorCode BodySurfacePoints(const Grid *grid, const Case *c, PetscInt body, const Selector *on, PetscInt *n,
-                                 PetscInt **cell, FacePoint **point);
+ * it is at the start; pieces: with edges, over which functions are to be averaged. Arrays for PetscFree. */
+PetscErrorCode BodySurfacePoints(const Grid *grid, const Case *c, PetscInt body, const Selector *on, PetscBool pieces,
+                                 PetscInt *n, PetscInt **cell, FacePoint **point);

@@ -60,11 +60,20 @@ static PetscBool is_led(const Discretisation *s, const Extension *e, PetscInt no
   return PETSC_TRUE;
 }
 
+/* Does a node with so little follow, if others lead it? Where a load acts more is asked for: a node has to have stiffness
+ * for what it bears, and that it has no material at all is no hindrance. */
+static PetscBool wants_lead(const Discretisation *s, const Extension *e, PetscInt node)
+{
+  const PetscReal least = s->c->stabilisation.follow;
+  if (e->loaded[node] > 0) return (PetscBool)(e->fill[node] < PetscMax(LEADS, least));
+  return (PetscBool)(e->fill[node] > 0 && e->fill[node] < least);
+}
+
 static PetscReal find_ways(const Discretisation *s, const Extension *e, PetscInt node, const PetscInt at[3])
 {
   const PetscInt dim = s->grid->dim;
   PetscInt bits = 0, step[3];
-  if (!(e->fill[node] > 0 && e->fill[node] < s->c->stabilisation.follow)) return 0;
+  if (!wants_lead(s, e, node)) return 0;
   for (PetscInt axes = 1; axes <= dim && !bits; ++axes)
     for (PetscInt way = 0; way < WAYS; ++way) {
       way_of(way, step);

@@ -13,7 +13,7 @@ static PetscErrorCode ExtensionCreate(const Discretisation *s, Extension **exten
 
   PetscFunctionBeginUser;
   PetscCall(PetscNew(&e));
-  PetscCall(PetscCalloc4(n, &e->fill, n, &e->leads, n, &e->ways, n, &e->place));
+  PetscCall(PetscCalloc5(n, &e->fill, n, &e->loaded, n, &e->leads, n, &e->ways, n, &e->place));
   for (PetscInt k = 0; k < known; ++k) e->place[box->lattice[k]] = k;
   PetscCall(SupportCreate(&e->spare));
   PetscCall(SupportCreate(&e->carried));
@@ -28,7 +28,7 @@ PetscErrorCode ExtensionDestroy(Extension **extension)
 
   PetscFunctionBeginUser;
   if (!e) PetscFunctionReturn(0);
-  PetscCall(PetscFree4(e->fill, e->leads, e->ways, e->place));
+  PetscCall(PetscFree5(e->fill, e->loaded, e->leads, e->ways, e->place));
   PetscCall(SupportDestroy(&e->spare));
   PetscCall(SupportDestroy(&e->carried));
   PetscCall(SupportDestroy(&e->spare_carried));
@@ -39,7 +39,8 @@ PetscErrorCode ExtensionDestroy(Extension **extension)
 PetscBool extension_works(const Discretisation *s)
 {
   const PetscBool implicit = s->c->analysis.type != ANALYSIS_EXPLICIT;
-  return implicit && s->grid->box && !s->nodes->pressure && s->c->stabilisation.follow > 0 ? PETSC_TRUE : PETSC_FALSE;
+  const PetscBool asked = s->c->stabilisation.follow > 0 || (s->c->n_loads && loads_have_pieces(s->loads));
+  return implicit && s->grid->box && !s->nodes->pressure && asked ? PETSC_TRUE : PETSC_FALSE;
 }
 
 static void place_of(const GridBox *box, const Extension *e, PetscInt node, PetscInt at[3])
@@ -71,10 +72,14 @@ static PetscBool stand_around(const Discretisation *s, const PetscInt cell[3], c
 typedef struct {
   const Points *points;
   const Support *support;
+  PetscInt slopes; /* numbers of dN a node */
 } Seen;
 
-static Seen points_of(const Discretisation *s) { return (Seen){s->points, s->support}; }
-static Seen carriers_of(const Discretisation *s) { return (Seen){s->loads->carriers, s->extension->carried}; }
+static Seen points_of(const Discretisation *s) { return (Seen){s->points, s->support, s->grid->dim}; }
+static Seen carriers_of(const Discretisation *s)
+{
+  return (Seen){s->loads->carriers, s->extension->carried, s->loads->slopes};
+}
 
 static PetscBool sees_follower(const Discretisation *s, const Support *w, PetscInt p)
 {
@@ -88,16 +93,16 @@ static PetscBool sees_follower(const Discretisation *s, const Support *w, PetscI
 static PetscBool find_row(const Discretisation *s, const Seen *seen, PetscInt p, PetscInt only, Row *row)
 {
   const Support *w = seen->support;
-  const PetscInt dim = s->grid->dim, *node = w->node + w->node_start[p];
-  const PetscReal *N = w->N + w->value_start[p], *dN = w->dN + w->value_start[p] * dim;
+  const PetscInt slopes = seen->slopes, *node = w->node + w->node_start[p];
+  const PetscReal *N = w->N + w->value_start[p], *dN = w->dN + w->value_start[p] * slopes;
   PetscInt at[3];
   row->n = 0;
   for (PetscInt I = 0; I < support_nodes(w, p); ++I) {
     const PetscInt ways = (PetscInt)s->extension->ways[node[I]];
     if (ways && only != ALL && only != node[I]) continue;
     place_of(s->grid->box, s->extension, node[I], at);
-    if (!ways) row_add(row, dim, node[I], 1, N[I], dN + I * dim);
-    else if (!row_add_follower(row, s->grid->box, at, ways, N[I], dN + I * dim)) return PETSC_FALSE;
+    if (!ways) row_add(row, slopes, node[I], 1, N[I], dN + I * slopes);
+    else if (!row_add_follower(row, slopes, s->grid->box, at, ways, N[I], dN + I * slopes)) return PETSC_FALSE;
   }
   box_voxel_of(s->grid, seen->points->cell[p], at);
   return stand_around(s, at, row);
@@ -173,34 +178,34 @@ static PetscErrorCode Fill(Discretisation *s, PetscReal *fill)
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode CopyRow(Support *out, PetscInt dim, PetscInt n, PetscInt first, const PetscInt *node,
+static PetscErrorCode CopyRow(Support *out, PetscInt slopes, PetscInt n, PetscInt first, const PetscInt *node,
                               const PetscReal *N, const PetscReal *dN)
 {
   PetscFunctionBeginUser;
   PetscCall(PetscArraycpy(out->node + first, node, n));
   PetscCall(PetscArraycpy(out->N + first, N, n));
-  PetscCall(PetscArraycpy(out->dN + first * dim, dN, n * dim));
+  PetscCall(PetscArraycpy(out->dN + first * slopes, dN, n * slopes));
   PetscFunctionReturn(0);
 }
 
 /* What they see without the nodes that follow. */
 static PetscErrorCode Rewrite(const Discretisation *s, const Seen *seen, Support *out)
 {
-  const PetscInt dim = s->grid->dim;
+  const PetscInt slopes = seen->slopes;
   const Support *old = seen->support;
   PetscInt room = old->node_start[old->n_groups], n = 0;
   Row row;
 
   PetscFunctionBeginUser;
   for (PetscInt p = 0; p < old->n_groups; ++p) room += sees_follower(s, old, p) ? WAYS : 0;
-  PetscCall(SupportReserve(out, old->n_groups, room, room, dim));
+  PetscCall(SupportReserve(out, old->n_groups, room, room, slopes));
   for (PetscInt p = 0; p < old->n_groups; ++p) {
     const PetscInt from = old->node_start[p], nn = support_nodes(old, p);
     const PetscBool changes = sees_follower(s, old, p);
     product_group(out, p, n);
     if (changes) (void)find_row(s, seen, p, ALL, &row);
-    if (changes) PetscCall(CopyRow(out, dim, row.n, n, row.node, row.N, row.dN));
-    else PetscCall(CopyRow(out, dim, nn, n, old->node + from, old->N + from, old->dN + from * dim));
+    if (changes) PetscCall(CopyRow(out, slopes, row.n, n, row.node, row.N, row.dN));
+    else PetscCall(CopyRow(out, slopes, nn, n, old->node + from, old->N + from, old->dN + from * slopes));
     n += changes ? row.n : nn;
   }
   products_end(out, old->n_groups, n);
@@ -235,8 +240,24 @@ static PetscErrorCode Carry(Discretisation *s, const BasisInput *in, Support *ca
 
   PetscFunctionBeginUser;
   s->loads->support = carried;
+  s->loads->slopes = s->basis->carry ? s->grid->dim + 1 : s->grid->dim;
   PetscCall(PointsSort(s->loads->carriers));
-  PetscCall(s->basis->support(&plain, s->loads->carriers, carried));
+  if (s->basis->carry) PetscCall(s->basis->carry(in, s->loads->carriers, carried));
+  else PetscCall(s->basis->support(&plain, s->loads->carriers, carried));
+  PetscFunctionReturn(0);
+}
+
+/* The nodes that pieces of a loaded surface see; ghosts too. */
+static PetscErrorCode FindLoaded(const Discretisation *s, Extension *e)
+{
+  const Support *w = e->carried;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscArrayzero(e->loaded, s->grid->n_nodes));
+  if (!s->basis->carry) PetscFunctionReturn(0);
+  for (PetscInt i = 0; w->n_groups && i < w->node_start[w->n_groups]; ++i) e->loaded[w->node[i]] = 1;
+  PetscCall(GridSumToOwners(s->grid, 1, e->loaded));
+  PetscCall(GridToGhosts(s->grid, 1, e->loaded));
   PetscFunctionReturn(0);
 }
 
@@ -260,6 +281,7 @@ PetscErrorCode DiscretisationExtend(Discretisation *s, const BasisInput *in)
   PetscCall(PetscArrayzero(e->ways, s->grid->n_nodes));
   e->any = PETSC_FALSE;
   if (!extension_works(s)) PetscFunctionReturn(0);
+  PetscCall(FindLoaded(s, e));
   PetscCall(ChooseWays(s, e));
   while (again) PetscCall(KeepNeeded(s, &again));
   for (PetscInt i = 0; i < s->grid->n_nodes; ++i) here = here || e->ways[i] > 0;
@@ -280,7 +302,7 @@ static void follow(const Discretisation *s, const PetscReal *field, PetscReal *s
     if (!ways) continue;
     row.n = 0;
     place_of(s->grid->box, s->extension, node, at);
-    if (!row_add_follower(&row, s->grid->box, at, ways, 1, none)) continue;
+    if (!row_add_follower(&row, dim, s->grid->box, at, ways, 1, none)) continue;
     known[node] = 1;
     for (PetscInt I = 0; I < row.n; ++I)
       for (PetscInt d = 0; d < dim; ++d) sum[node * dim + d] += row.N[I] * field[row.node[I] * dim + d];

@@ -5,6 +5,7 @@
 
 typedef struct Extension {
   PetscReal *fill;        /* n_nodes: volume of the material around the node, of half its share of the cells */
+  PetscReal *loaded;      /* n_nodes: does a piece of a loaded surface see it? */
   PetscReal *leads;       /* n_nodes: bits of leads_bit */
   PetscReal *ways;        /* n_nodes: bits of the ways on which the node follows; 0: it does not */
   PetscInt *place;        /* n_nodes: in the block of the nodes that this rank knows */
@@ -15,10 +16,11 @@ typedef struct Extension {
 } Extension;
 
 PetscErrorCode ExtensionDestroy(Extension **extension);
-/* May nodes follow? Not in the mixed formulation and in explicit dynamics. */
+/* May nodes follow? Not in the mixed formulation and in explicit dynamics; where nobody asks for it
+ * (stabilisation.follow), those alone that loads on a surface act on. */
 PetscBool extension_works(const Discretisation *space);
 /* Collective. Of a support that the basis has just filled, with `in`: what each node has; those with less than
- * stabilisation.follow follow others, if these stand near enough, and vanish from it. */
+ * stabilisation.follow (a tenth where loads act) follow others, if these stand near enough, and vanish from it. */
 PetscErrorCode DiscretisationExtend(Discretisation *space, const BasisInput *in);
 /* What carriers of loads see where they are now, of a basis whose functions are those of loads, too; nothing of others.
  * Once points have been extended. */

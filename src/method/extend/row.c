@@ -14,31 +14,31 @@ PetscInt node_beside(const GridBox *box, const PetscInt at[3], const PetscInt st
 }
 
 /* Room for a node at k, before those that stand there. */
-static void insert(Row *row, PetscInt dim, PetscInt k, PetscInt node)
+static void insert(Row *row, PetscInt slopes, PetscInt k, PetscInt node)
 {
   for (PetscInt q = row->n++; q > k; --q) {
     row->node[q] = row->node[q - 1];
     row->N[q] = row->N[q - 1];
-    for (PetscInt d = 0; d < dim; ++d) row->dN[q * dim + d] = row->dN[(q - 1) * dim + d];
+    for (PetscInt d = 0; d < slopes; ++d) row->dN[q * slopes + d] = row->dN[(q - 1) * slopes + d];
   }
   row->node[k] = node;
   row->N[k] = 0;
-  for (PetscInt d = 0; d < dim; ++d) row->dN[k * dim + d] = 0;
+  for (PetscInt d = 0; d < slopes; ++d) row->dN[k * slopes + d] = 0;
 }
 
-void row_add(Row *row, PetscInt dim, PetscInt node, PetscReal share, PetscReal N, const PetscReal *dN)
+void row_add(Row *row, PetscInt slopes, PetscInt node, PetscReal share, PetscReal N, const PetscReal *dN)
 {
   PetscInt k = row->n;
   while (k > 0 && row->node[k - 1] >= node) --k;
-  if (k == row->n || row->node[k] != node) insert(row, dim, k, node);
+  if (k == row->n || row->node[k] != node) insert(row, slopes, k, node);
   row->N[k] += share * N;
-  for (PetscInt d = 0; d < dim; ++d) row->dN[k * dim + d] += share * dN[d];
+  for (PetscInt d = 0; d < slopes; ++d) row->dN[k * slopes + d] += share * dN[d];
 }
 
 /* With B one step on the way, u = u_B + sum_d r_d (u_(B + d) - u_B) over the axes of the way: the linear function of
  * these nodes. */
-static PetscBool add_way(Row *row, const GridBox *box, const PetscInt at[3], const PetscInt step[3], PetscReal share,
-                         PetscReal N, const PetscReal *dN)
+static PetscBool add_way(Row *row, PetscInt slopes, const GridBox *box, const PetscInt at[3], const PetscInt step[3],
+                         PetscReal share, PetscReal N, const PetscReal *dN)
 {
   const PetscInt base[3] = {at[0] + step[0], at[1] + step[1], at[2] + step[2]};
   PetscReal rest = share;
@@ -50,22 +50,23 @@ static PetscBool add_way(Row *row, const GridBox *box, const PetscInt at[3], con
     const PetscReal r = share * (line[at[d]] - line[base[d]]) / (line[base[d] + step[d]] - line[base[d]]);
     const PetscInt behind = node_beside(box, base, along);
     if (behind < 0) return PETSC_FALSE;
-    row_add(row, box->dim, behind, r, N, dN);
+    row_add(row, slopes, behind, r, N, dN);
     rest -= r;
   }
-  row_add(row, box->dim, box_node(box, base), rest, N, dN);
+  row_add(row, slopes, box_node(box, base), rest, N, dN);
   return PETSC_TRUE;
 }
 
-PetscBool row_add_follower(Row *row, const GridBox *box, const PetscInt at[3], PetscInt ways, PetscReal N,
-                           const PetscReal *dN)
+PetscBool row_add_follower(Row *row, PetscInt slopes, const GridBox *box, const PetscInt at[3], PetscInt ways,
+                           PetscReal N, const PetscReal *dN)
 {
   PetscInt n = 0, step[3];
   for (PetscInt bits = ways; bits; bits &= bits - 1) ++n;
   for (PetscInt way = 0; way < WAYS; ++way) {
     if (!(ways >> way & 1)) continue;
     way_of(way, step);
-    if (node_beside(box, at, step) < 0 || !add_way(row, box, at, step, 1 / (PetscReal)n, N, dN)) return PETSC_FALSE;
+    if (node_beside(box, at, step) < 0 || !add_way(row, slopes, box, at, step, 1 / (PetscReal)n, N, dN))
+      return PETSC_FALSE;
   }
   return PETSC_TRUE;
 }

@@ -8,15 +8,15 @@
 /* Nodes ascend, as in groups of single points. */
 typedef struct {
   PetscInt n, node[CLOUD_MAX_NODES];
-  PetscReal N[CLOUD_MAX_NODES], dN[3 * CLOUD_MAX_NODES];
+  PetscReal N[CLOUD_MAX_NODES], dN[4 * CLOUD_MAX_NODES];
 } Row;
 
 void way_of(PetscInt way, PetscInt step[3]);
 /* The local node one step from here, -1 if this rank knows none there. */
 PetscInt node_beside(const GridBox *box, const PetscInt at[3], const PetscInt step[3]);
-/* share times N and dN (dim) more of a node. */
-void row_add(Row *row, PetscInt dim, PetscInt node, PetscReal share, PetscReal N, const PetscReal *dN);
+/* share times N and dN (so many slopes) more of a node. */
+void row_add(Row *row, PetscInt slopes, PetscInt node, PetscReal share, PetscReal N, const PetscReal *dN);
 /* The same of a node at this place that follows on these ways (bits), from all of them alike; PETSC_FALSE where this
  * rank does not know all nodes that it follows. */
-PetscBool row_add_follower(Row *row, const GridBox *box, const PetscInt at[3], PetscInt ways, PetscReal N,
-                           const PetscReal *dN);
+PetscBool row_add_follower(Row *row, PetscInt slopes, const GridBox *box, const PetscInt at[3], PetscInt ways,
+                           PetscReal N, const PetscReal *dN);

@@ -1,4 +1,5 @@
 /* What nodes do in a substep: balance of momentum with lumped mass, and prescribed motion. */
+#include "method/extend/extend.h"
 #include "model/explicit/explicit.h"
 #include "model/measure/measure.h"
 
@@ -81,6 +82,16 @@ static PetscErrorCode Touch(const Model *m, const Explicit *e)
   PetscFunctionReturn(0);
 }
 
+/* What carriers of loads see where they have come to; in laps points look for themselves. */
+static PetscErrorCode Carry(Model *m)
+{
+  const BasisInput basis = {.spec = &m->c->basis, .grid = m->grid, .hoop = m->c->kinematics->hoop};
+
+  PetscFunctionBeginUser;
+  PetscCall(DiscretisationCarry(m->space, &basis));
+  PetscFunctionReturn(0);
+}
+
 /* Forces of loads, summed over the ranks, go to those that the points gave. */
 static PetscErrorCode AddLoads(Model *m, Explicit *e)
 {
@@ -101,6 +112,7 @@ PetscErrorCode NodesMove(Model *m, Explicit *e)
 
   PetscFunctionBeginUser;
   gravity_at(m->c, e->time, e->g);
+  if (e->box && m->c->n_loads) PetscCall(Carry(m));
   PetscCall(Touch(m, e));
   PetscCall(AddLoads(m, e));
   for (PetscInt k = 0; k < e->n_active; ++k) {

@@ -22,10 +22,10 @@ typedef struct {
   PetscInt capacity, capacity_nodes, capacity_slots;
   Pushed *pushed;
   PetscInt *node, *slot;
-  PetscReal *N, *dN; /* n_nodes, n_nodes x 3 */
-  PetscBool asked;   /* for factors in this step */
-  PetscReal t;       /* when, s */
-  PetscReal *factor; /* those that a caller gives, a carrier 3, the first counts; NULL: none */
+  PetscReal *N, *M, *dN; /* n_nodes, n_nodes x 3: those of CarrierShape */
+  PetscBool asked;       /* for factors in this step */
+  PetscReal t;           /* when, s */
+  PetscReal *factor;     /* those that a caller gives, a carrier 3, the first counts; NULL: none */
 } Pressures;
 
 static PetscErrorCode Reserve(Pressures *s, PetscInt nodes)
@@ -39,6 +39,7 @@ static PetscErrorCode Reserve(Pressures *s, PetscInt nodes)
     s->capacity_nodes += s->capacity_nodes / 2 + nodes + 256;
     PetscCall(PetscRealloc((size_t)s->capacity_nodes * sizeof *s->node, &s->node));
     PetscCall(PetscRealloc((size_t)s->capacity_nodes * sizeof *s->N, &s->N));
+    PetscCall(PetscRealloc((size_t)s->capacity_nodes * sizeof *s->M, &s->M));
     PetscCall(PetscRealloc((size_t)s->capacity_nodes * 3 * sizeof *s->dN, &s->dN));
   }
   if (s->n_slots + nodes * nodes > s->capacity_slots) {
@@ -50,18 +51,19 @@ static PetscErrorCode Reserve(Pressures *s, PetscInt nodes)
 
 static PetscErrorCode Add(Pressures *s, const NodalScene *scene, PetscInt p)
 {
-  const PetscInt dim = s->loads->dim, *node;
-  PetscReal N[CLOUD_MAX_NODES], dN[3 * CLOUD_MAX_NODES];
+  CarrierShape shape;
 
   PetscFunctionBeginUser;
-  const PetscInt nn = carrier_shape(s->loads, scene->grid, p, scene->touched, &node, N, dN);
+  carrier_shape(s->loads, scene->grid, p, scene->touched, &shape);
+  const PetscInt nn = shape.n;
   if (!nn) PetscFunctionReturn(0);
   PetscCall(Reserve(s, nn));
   s->pushed[s->n++] = (Pushed){.carrier = p, .first = s->n_nodes, .n = nn, .slot = s->n_slots};
   for (PetscInt I = 0, e = s->n_nodes; I < nn; ++I, ++e) {
-    s->node[e] = node[I];
-    s->N[e] = N[I];
-    for (PetscInt d = 0; d < 3; ++d) s->dN[3 * e + d] = d < dim ? dN[I * dim + d] : 0;
+    s->node[e] = shape.node[I];
+    s->N[e] = shape.N[I];
+    s->M[e] = shape.M[I];
+    for (PetscInt d = 0; d < 3; ++d) s->dN[3 * e + d] = shape.dN[3 * I + d];
   }
   s->n_nodes += nn;
   s->n_slots += nn * nn;
@@ -106,6 +108,7 @@ static PetscErrorCode Destroy(void **data)
   PetscCall(PetscFree(s->node));
   PetscCall(PetscFree(s->slot));
   PetscCall(PetscFree(s->N));
+  PetscCall(PetscFree(s->M));
   PetscCall(PetscFree(s->dN));
   PetscCall(PetscFree(s->factor));
   PetscCall(PetscFree(*data));
@@ -145,7 +148,7 @@ static void follow(const Pressures *s, const Pushed *c, const PetscReal *du, Pet
     const PetscReal *u = du + s->node[e] * dim;
     for (PetscInt i = 0; i < dim; ++i)
       for (PetscInt j = 0; j < dim; ++j) F[3 * i + j] += u[i] * s->dN[3 * e + j];
-    *radius += s->N[e] * u[0];
+    *radius += s->M[e] * u[0];
   }
   if (s->hoop) F[8] = *radius / x[0];
   const PetscReal J = tensor_inverse(F, inverse);
@@ -161,7 +164,7 @@ static void add_tangent(const Pressures *s, const Pushed *c, const PetscReal f[3
   const PetscInt dim = s->loads->dim;
   for (PetscInt J = 0; J < c->n; ++J) {
     const PetscReal *dN = s->dN + 3 * (c->first + J);
-    PetscReal g[3], ring[3] = {s->hoop ? s->N[c->first + J] / radius : 0, 0, 0};
+    PetscReal g[3], ring[3] = {s->hoop ? s->M[c->first + J] / radius : 0, 0, 0};
     for (int i = 0; i < 3; ++i) g[i] = inverse[i] * dN[0] + inverse[3 + i] * dN[1] + inverse[6 + i] * dN[2];
     for (PetscInt I = 0; I < c->n; ++I) {
       const PetscInt slot = s->slot[c->slot + I * c->n + J], row = s->node[c->first + I] * dim,
