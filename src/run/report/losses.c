@@ -8,6 +8,8 @@
 #define TRANSFER_ALLOWED 0.05
 /* share of the volume: unevenness of points that have moved through many cells is 0.1 to 0.2 */
 #define CROWD_ALLOWED 0.3
+/* cells that a loaded surface may move: until points beside it cross to the next one */
+#define WAY_ALLOWED 0.5
 
 /* Has a count that grew by `more` at least doubled, or passed a power of two? So a thousand points
  * take ten lines, not a thousand. */
@@ -174,6 +176,38 @@ static PetscErrorCode WarnOfCrowd(const Model *m, Diag *diag)
   PetscFunctionReturn(0);
 }
 
+/* Of the carriers of surfaces that are points, and see what points of no extent do: how far the farthest has come, in
+ * cells. */
+static PetscReal way_of_points(const Model *m)
+{
+  const Points *carriers = m->loads->carriers;
+  PetscReal most = 0;
+  for (PetscInt p = 0; p < carriers->n && !loads_have_pieces(m->loads); ++p)
+    for (PetscInt d = 0; d < m->dim && m->c->loads[carriers->body[p]].kind != LOAD_POINT; ++d)
+      most = PetscMax(most, PetscAbsReal(point_real(carriers, POINT_U, p)[d]) / m->grid->smallest);
+  return most;
+}
+
+/* Where functions are not averaged over points and pieces of the surface loads are not where the stress that bears
+ * them is (docs/theory.md, "Pieces of a loaded surface"). */
+static PetscErrorCode WarnOfMovedLoads(const Model *m, Diag *diag)
+{
+  PetscReal local, most;
+
+  PetscFunctionBeginUser;
+  if (!m->method->restores_grid) PetscFunctionReturn(0);
+  local = way_of_points(m);
+  PetscCall(MPIU_Allreduce(&local, &most, 1, MPIU_REAL, MPIU_MAX, m->comm));
+  if (!(most > WAY_ALLOWED)) PetscFunctionReturn(0);
+  diag_warning(
+    diag, "loads",
+    "a loaded surface has moved by %.2g cells: with these shape functions corners and stresses beside it may be "
+    "wrong by several per cent, with linear ones by any amount",
+    (double)most);
+  diag_hint(diag, "`basis: {gimp: {}}` on a box, or compare with fem (docs/theory.md, section 67)");
+  PetscFunctionReturn(0);
+}
+
 static void warn_of_followers(const Model *m, Diag *diag)
 {
   char path[256], at[80];
@@ -228,5 +262,6 @@ PetscErrorCode LossesWarn(Model *m, const PetscReal *values, Diag *diag)
   warn_of_transfer(m, diag);
   PetscCall(WarnOfGain(m, diag));
   PetscCall(WarnOfCrowd(m, diag));
+  PetscCall(WarnOfMovedLoads(m, diag));
   PetscFunctionReturn(0);
 }
