@@ -187,7 +187,7 @@ static void test_swings(void **state)
   check(&b, "swings", (PetscReal[]){across, along, across}, traction, 1e-3);
 }
 
-/* Off the lines of the grid domains are not the parts of cells (section 40), and what they are off by counts. */
+/* Off the lines of the grid: parts of cells lack a little at corners (section 40). */
 static void test_off_the_lines(void **state)
 {
   const PetscReal traction = -3e5, along = stretch_along(traction, 1), across = stretch_across(along, 1);
@@ -196,7 +196,7 @@ static void test_off_the_lines(void **state)
   block(&b, &kinematics_plane_strain, (PetscReal[]){1.03, 0.97, 1}, 0.1);
   load_side(&b, LOAD_TRACTION, 1, 0.97, (PetscReal[]){0, traction, 0});
   in_steps(&b, 40);
-  check(&b, "off the lines", (PetscReal[]){across, along, across}, 1.03 * traction, 1e-2);
+  check(&b, "off the lines", (PetscReal[]){across, along, across}, 1.03 * traction, 1e-4);
 }
 
 /* A ring under pressure from within, R_a = 1, R_b = 2: to 0.48077 at 150 kPa by the equilibrium of thin rings one

@@ -15,8 +15,8 @@ static const PetscInt trusted[4] = {0, 0, 6, 6}, most[4] = {0, 0, 10, 9};
 #define CROSSINGS 40
 
 typedef struct {
-  PetscReal volume, moment[3]; /* of the reference cell, times det dx/dxi */
-  PetscReal face[3];           /* the body's surface as a vector outwards, m2 */
+  PetscReal volume, moment[3], second[3]; /* of the reference cell, times det dx/dxi */
+  PetscReal face[3];                      /* the body's surface as a vector outwards, m2 */
 } Sum;
 
 typedef struct {
@@ -101,7 +101,10 @@ static void join_slivers(SeedPart *part, PetscInt n, PetscInt dim)
   for (PetscInt q = sliver_of(part, n); q >= 0; q = sliver_of(part, n)) {
     const PetscInt to = neighbour_of(part, n, dim, q);
     if (to < 0) return;
-    const PetscReal sum = part[to].share + part[q].share;
+    const PetscReal sum = part[to].share + part[q].share, a = part[to].share / sum, b = part[q].share / sum;
+    for (PetscInt d = 0; d < dim; ++d)
+      part[to].spread[d] =
+        a * part[to].spread[d] + b * part[q].spread[d] + a * b * PetscSqr(part[to].xi[d] - part[q].xi[d]);
     for (PetscInt d = 0; d < dim; ++d) part[to].face[d] += part[q].face[d];
     for (PetscInt d = 0; d < dim; ++d)
       part[to].xi[d] = (part[to].share * part[to].xi[d] + part[q].share * part[q].xi[d]) / sum;
@@ -144,7 +147,12 @@ static void add(const Measure *m, PetscReal corner[4][3], PetscReal sign, Sum *s
   const PetscReal stretch = PetscAbsReal(cell_map(m->type, m->x, centre, position));
   const PetscReal volume = sign * PetscAbsReal(det) / (m->dim == 2 ? 2 : 6) * stretch;
   sum->volume += volume;
-  for (PetscInt d = 0; d < m->dim; ++d) sum->moment[d] += volume * centre[d];
+  for (PetscInt d = 0; d < m->dim; ++d) {
+    PetscReal square = 0;
+    for (PetscInt i = 0; i <= m->dim; ++i) square += PetscSqr(corner[i][d] - centre[d]);
+    sum->moment[d] += volume * centre[d];
+    sum->second[d] += volume * (PetscSqr(centre[d]) + square / (PetscReal)((m->dim + 1) * (m->dim + 2)));
+  }
 }
 
 /* Where the surface crosses an edge from inside to outside. */
@@ -340,7 +348,10 @@ SeedFill seed_parts(const Seeding *s, PetscInt cell, const SeedRule *rule, SeedP
     if (part[q].share < NOTHING) part[q].share = 0;
     inside += part[q].share;
     for (PetscInt d = 0; d < dim; ++d) part[q].face[d] = sum->face[d];
-    for (PetscInt d = 0; d < dim && part[q].share > 0; ++d) part[q].xi[d] = sum->moment[d] / sum->volume;
+    for (PetscInt d = 0; d < dim && part[q].share > 0; ++d) {
+      part[q].xi[d] = sum->moment[d] / sum->volume;
+      part[q].spread[d] = PetscMax(0, sum->second[d] / sum->volume - PetscSqr(part[q].xi[d]));
+    }
   }
   join_slivers(part, rule->n, dim);
   return inside <= 0 ? SEED_NONE : inside >= 1 - NOTHING ? SEED_WHOLE : SEED_CUT;

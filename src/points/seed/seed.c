@@ -280,7 +280,7 @@ static PetscErrorCode SeedPoint(const Seeding *s, Points *points, PetscInt k, co
   *point_real(points, POINT_MASS, p) = seed->density * volume;
   body_velocity(s->body, dim, position, point_real(points, POINT_V, p));
   if (s->domains)
-    seed_domain(grid_cell_type(s->source, cell), x, xi, part && !part->whole ? 0 : rule->side, section,
+    seed_domain(grid_cell_type(s->source, cell), x, xi, rule->side, part && !part->whole ? part->spread : NULL, section,
                 point_real(points, POINT_DOMAIN, p));
   if (s->outer) *point_real(points, POINT_REACH, p) = reach_of(s, k, x, q, position, section, whole);
   if (points->components[POINT_CORNER] && !part)

@@ -14,9 +14,9 @@ typedef struct {
 /* What of a point's part of its cell lies in the body: its share of the cell, and where the
  * middle of that is. */
 typedef struct {
-  PetscReal share, xi[3];
-  PetscReal face[3]; /* the body's surface in it, where that is asked for, as a vector outwards, m2 */
-  PetscBool whole;   /* all of the part does */
+  PetscReal share, xi[3], spread[3]; /* spread: mean square of xi about that */
+  PetscReal face[3];                 /* the body's surface in it, where that is asked for, as a vector outwards, m2 */
+  PetscBool whole;                   /* all of the part does */
 } SeedPart;
 
 typedef enum { SEED_NONE, SEED_CUT, SEED_WHOLE } SeedFill;
@@ -55,8 +55,8 @@ SeedFill seed_parts(const Seeding *s, PetscInt cell, const SeedRule *rule, SeedP
 
 /* Half lengths l of the domain of a point at xi, in a cell with nodes at x whose lattice has `side`
  * points a direction; 0: it stands for this part of the section, or of the volume in space. */
-void seed_domain(CellType type, const PetscReal *x, const PetscReal *xi, PetscInt side, PetscReal section,
-                 PetscReal *l);
+void seed_domain(CellType type, const PetscReal *x, const PetscReal *xi, PetscInt side, const PetscReal *spread,
+                 PetscReal section, PetscReal *l);
 
 /* Distance of the q-th point of the rule, at `position` in a cell with nodes at x, from the
  * body's surface: of points next to sides that are `outer` (faces of the cell) the nearest of
