@@ -41,10 +41,17 @@ const MotionSpec *case_raised_motion(const Case *c)
   return limit->kind == RAISE_WALL ? c->walls[limit->index].motions : &c->boundary[limit->index];
 }
 
+/* Loads of statics do, without a word of the user. What an earlier stage has brought is there, and stress that carries
+ * the weight means that the weight is there. */
+static PetscBool grows_by_itself(const Case *c, const Amplitude *amplitude)
+{
+  if (amplitude == &c->gravity_amplitude && case_starts_with_gravity(c)) return PETSC_FALSE;
+  return (PetscBool)(case_is_static(&c->analysis) && amplitude->since == c->stage);
+}
+
 PetscReal case_factor(const Case *c, const Amplitude *amplitude, PetscReal t)
 {
-  /* what an earlier stage has brought is there */
-  const PetscBool grows = case_is_static(&c->analysis) && amplitude->since == c->stage;
+  const PetscBool grows = grows_by_itself(c, amplitude);
   /* what is sought when all loads are on: time goes on then, and they stay but for what is raised */
   if (case_raises(c, amplitude)) return PetscMax(0, t - c->analysis.end);
   if (case_seeks(&c->analysis)) t = PetscMin(t, c->analysis.end);

@@ -193,21 +193,6 @@ static void resolve_equilibrium(const YamlNode *given, Case *c)
   c->initial.equilibrium = due ? EQUILIBRIUM_DIRECT : EQUILIBRIUM_NONE;
 }
 
-/* Stress that carries the weight means that the weight is there: without a word of the user gravity
- * does not grow. */
-static PetscErrorCode ResolveGravity(Case *c)
-{
-  Amplitude *a = &c->gravity_amplitude;
-
-  PetscFunctionBeginUser;
-  if (a->n || !case_is_static(&c->analysis) || !case_starts_with_gravity(c)) PetscFunctionReturn(0);
-  a->n = 1;
-  PetscCall(PetscCalloc1(1, &a->time));
-  PetscCall(PetscMalloc1(1, &a->value));
-  a->value[0] = 1;
-  PetscFunctionReturn(0);
-}
-
 /* Does any of the stages seek something? Formulations are of all of them. */
 static PetscBool stages_seek(const YamlNode *stages)
 {
@@ -307,7 +292,6 @@ static PetscErrorCode ReadDocument(const char *file, YamlDocument *document, Dia
   resolve_equilibrium(yaml_find(document->root, "initial"), *c);
   const YamlNode *analysis = yaml_find(document->root, "analysis");
   PetscCall(ResolveRaised(analysis ? yaml_find(analysis, "limit") : NULL, diag, *c));
-  PetscCall(ResolveGravity(*c));
   resolve_release(*c, (*c)->spec);
   PetscFunctionReturn(0);
 }

@@ -375,6 +375,38 @@ for way in "fem 0.02" "mpm 0.002"; do
     END {exit !(n > 4 && !bad && force > 25505 && force < 25507)}' footing/history.csv || fail "$name: it jerks"
 done
 
+# Stress that carries the weight, and dynamics after it: resumed from within any stage.
+cat >carried.yaml <<'END'
+kinematics: plane-strain
+method: fem
+analysis: {type: static, steps: 2}
+grid: {box: {min: [0, 0], max: [1, 1]}, size: 0.25}
+bodies:
+  - {name: b, shape: {box: {min: [0, 0], max: [1, 1]}}, material: m, k0: 0.5}
+materials:
+  m: {law: neo-hookean, density: 1000, young: 1e5, poisson: 0.3}
+boundary:
+  - {name: floor, on: {y: 0}, fix: [x, y]}
+  - {name: left, on: {x: 0}, fix: [x]}
+  - {name: right, on: {x: 1}, fix: [x]}
+loads: {gravity: [0, -9]}
+measures: {weight: {reaction: y, of: {boundary: floor}}, top: {displacement: y, of: {tracer: [0.4, 0.9]}}, balance: {energy: balance}}
+output: {fields: [displacement, stress], history: {steps: 1}}
+checkpoint: {steps: 1, keep: 99}
+stages:
+  - name: rests
+  - {name: shaken, analysis: {type: dynamic, end: 0.03, step: 0.01}}
+  - {name: heavier, analysis: {type: static, steps: 2}, loads: {gravity: [0, -12]}}
+END
+for ranks in 1 2 3; do
+  expect "weight that is carried on $ranks" 0 on_ranks $ranks "$talus" run carried.yaml --out carried --force --quiet
+  for step in $(seq 1 $(awk -F, 'END { print $2 - 1 }' carried/history.csv)); do
+    rm -rf cut && cp -r carried cut && forget cut "$step"
+    expect "weight that is carried on $ranks, resumed at $step" 0 on_ranks $ranks "$talus" run --resume cut --quiet
+    if [ $ranks = 1 ]; then same_bits "$name" carried cut; else same_answer "$name" carried cut; fi
+  done
+done
+
 # What is refused: refused NAME TEXT OPTION...
 refused() {
   title=$1 text=$2
