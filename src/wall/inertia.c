@@ -2,6 +2,7 @@
  * integrals over its surface, which are exact for corners, triangles and sections. */
 #include "wall/wall_private.h"
 #include <math.h>
+#include <string.h>
 #include "base/math/tensor.h"
 
 /* Volume, and of density 1: integrals of x and of x x^T about the origin. */
@@ -146,6 +147,14 @@ PetscBool wall_volume(const Walls *walls, PetscInt k, WallInertia *inertia)
   return PETSC_TRUE;
 }
 
+/* Does anybody ask where the centre of mass is? What only goes along needs none. */
+static PetscBool needs_centre(const Case *c, const WallSpec *w)
+{
+  for (const MeasureSpec *s = c->measures; s < c->measures + c->n_measures; ++s)
+    if (!strcmp(s->kind, "wall_position") && s->wall && !strcmp(s->wall, w->name)) return PETSC_TRUE;
+  return PETSC_FALSE;
+}
+
 static void lacks(const WallSpec *w, PetscInt k, const char *what, Diag *diag)
 {
   char path[64];
@@ -153,6 +162,7 @@ static void lacks(const WallSpec *w, PetscInt k, const char *what, Diag *diag)
   diag_error(diag, path, "the %s of wall '%s' cannot be computed from its shape", what, w->name);
   diag_hint(diag, w->mass.has_density ? "give mass: {mass: .., centre: .., inertia: ..}, or a shape with a volume: "
                                         "box, circle, polygon, sphere, cylinder, cone, closed surface"
+                  : !w->mass.free[3]  ? "give `centre`: `wall_position` is where that goes"
                                       : "give `centre` and `inertia`, or leave rotation out of `free`");
 }
 
@@ -163,6 +173,7 @@ void wall_inertia(const Walls *walls, PetscInt k, Diag *diag, WallInertia *inert
   if (!walls->wall[k].form) return; /* told already */
   if (!known && w->mass.has_density) lacks(w, k, "volume", diag);
   else if (!known && w->mass.free[3] && !(w->mass.has_inertia && w->mass.has_centre)) lacks(w, k, "inertia", diag);
+  else if (!known && !w->mass.has_centre && needs_centre(walls->c, w)) lacks(w, k, "centre of mass", diag);
   const PetscReal density = w->mass.has_density ? w->mass.density : known ? w->mass.total / inertia->mass : 0;
   inertia->mass = w->mass.has_density ? density * inertia->mass : w->mass.total;
   for (int i = 0; i < 9; ++i) {

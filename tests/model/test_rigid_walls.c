@@ -241,11 +241,34 @@ static void test_endless(void **state)
   bench_refused(&b, PETSC_COMM_WORLD, "walls[0].mass", "cannot be computed from its shape");
 }
 
+/* Of a union nobody knows the centre: where one asks for its position it is to be given. */
+static void test_centreless(void **state)
+{
+  static const Hit any = {"mpm", "cell", NULL, CELL_QUADRILATERAL, 0, PETSC_FALSE, 0, 0};
+  Bench b;
+  WallSpec wall;
+  (void)state;
+  below_ball(&b, &any, PETSC_TRUE, &wall);
+  Shape parts[2] = {wall.shape, wall.shape};
+  parts[0].centre[0] += 0.2;
+  wall.shape = (Shape){.kind = SHAPE_UNION, .n_children = 2, .children = parts};
+  wall.mass.free[3] = PETSC_FALSE;
+  wall.mass.has_density = PETSC_FALSE, wall.mass.has_total = PETSC_TRUE, wall.mass.total = 10;
+  b.measure[b.c.n_measures++] = (MeasureSpec){.name = "y", .kind = (char *)"wall_position", .wall = wall.name};
+  bench_refused(&b, PETSC_COMM_WORLD, "walls[0].mass", "the centre of mass of wall 'ball' cannot be computed");
+  wall.mass.has_centre = PETSC_TRUE, wall.mass.centre[0] = 1.1, wall.mass.centre[1] = 0.9;
+  Model *m = bench_model(&b, PETSC_COMM_WORLD);
+  CHECK_CLOSE(of_ball(m, "wall_position", 0), 1.1, 1e-14);
+  CHECK_CLOSE(of_ball(m, "wall_position", 1), 0.9, 1e-14);
+  CALL(ModelDestroy(&m));
+}
+
 int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {
-    cmocka_unit_test(test_hits),   cmocka_unit_test(test_several), cmocka_unit_test(test_flies),
-    cmocka_unit_test(test_stands), cmocka_unit_test(test_floats),  cmocka_unit_test(test_endless),
+    cmocka_unit_test(test_hits),       cmocka_unit_test(test_several), cmocka_unit_test(test_flies),
+    cmocka_unit_test(test_stands),     cmocka_unit_test(test_floats),  cmocka_unit_test(test_endless),
+    cmocka_unit_test(test_centreless),
   };
   return run_model_group(argc, argv, tests, PETSC_STATIC_ARRAY_LENGTH(tests));
 }
