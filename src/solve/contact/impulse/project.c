@@ -62,7 +62,8 @@ static void slip_of(const Projection *w, PetscInt k, PetscReal v[3])
 }
 
 /* Of a wall that rubs: what slides is rubbed against its way by the impulse along the normal, or gets
- * back what the solve has taken too much; what sticks is held by no more than friction can. */
+ * back what the solve has taken too much, but by no more than what stops it: of what goes with its wall the way is
+ * nothing but round-off. What sticks is held by no more than friction can. */
 static void rub(const Projection *w, PetscInt k, PetscReal *p)
 {
   const ContactPoint *c = w->s->point + k;
@@ -80,7 +81,9 @@ static void rub(const Projection *w, PetscInt k, PetscReal *p)
   }
   slip_of(w, k, v);
   const PetscReal speed = PetscSqrtReal(impulse_dot(3, v, v));
-  for (int d = 0; d < 3 && speed > 0; ++d) p[d] -= friction * normal * v[d] / speed;
+  const PetscReal stops = w->own[k] > 0 ? speed / w->own[k] : 0;
+  const PetscReal rubs = PetscMax(-stops, PetscMin(stops, friction * normal));
+  for (int d = 0; d < 3 && speed > 0; ++d) p[d] -= rubs * v[d] / speed;
 }
 
 /* Half of the work that impulses take from sliding: by the motion before them, or after. */
