@@ -27,6 +27,11 @@
  * matter is locked in it feels its volume, and gaps fall slowly: then the penalty rises until they fall
  * by about so much, up to what volume opposes. */
 #define FALLS 10
+/* Of what rubs it rises so many times where it must: a slip that stays of what sticks does work. Where nothing but a
+ * gap stays it is left as it is: which of more points than nodes can follow bear the force is nobody's choice, and a
+ * higher penalty takes some of them away; what is bonded all points would lock. */
+#define RUBS 10
+#define HIGHER 1.01 /* a penalty that could rise by less has risen: moduli that are alike differ by round-off */
 
 PetscErrorCode ContactCreate(const Case *c, Walls *walls, Diag *diag, Contact **contact)
 {
@@ -95,12 +100,19 @@ static void sweep(const Contact *s, ContactPoint *c, PetscReal t, PetscReal dt)
   wall_motion(s->walls, c->wall, t, t + dt, x, c->passes);
 }
 
+/* Grains that flow have gaps of their own (FLOWING). */
+static PetscReal stiffest_of(const Contact *s, const ContactPoint *c)
+{
+  const PetscBool rubs = c->law.kind == CONTACT_FRICTION || c->law.kind == CONTACT_STICK;
+  return PetscMax(c->stiffer, rubs && !s->share.flows ? RUBS : 1) * c->law.penalty;
+}
+
 void contact_prepare(Contact *s, PetscReal t, PetscReal dt, PetscReal inertia, ContactShare share)
 {
   s->share = share;
   for (ContactPoint *c = s->point; c < s->point + s->n; ++c) {
     c->law.penalty = STIFFER * c->section * stiffness_of(c, s->length, inertia);
-    c->stiffest = c->stiffer * c->law.penalty;
+    c->stiffest = stiffest_of(s, c);
     c->left = 0;
     for (int d = 0; d < 3 && c->before == CONTACT_OPEN; ++d) c->last[d] = 0; /* explicit dynamics keeps slips there */
     c->law.bond = c->bond / share.mean;
@@ -206,6 +218,16 @@ void contact_excess(const Contact *s, const ContactPoint *c, PetscReal f[3])
   for (int d = 0; d < 3; ++d) f[d] = (balance[d] - lag * c->stays * c->last[d]) / (1 - lag) - stays * f[d];
 }
 
+PetscReal contact_unresolved(const Contact *s, PetscReal size)
+{
+  PetscReal sum = 0;
+  for (PetscInt k = 0; s && k < s->n_partners; ++k) {
+    const PetscReal *f = s->wall[k].mean.force;
+    sum += CLOSED * size * PetscSqrtReal(f[0] * f[0] + f[1] * f[1] + f[2] * f[2]);
+  }
+  return sum;
+}
+
 PetscReal contact_square(const Contact *s)
 {
   PetscReal sum = 0;
@@ -261,10 +283,10 @@ static PetscReal left_of(const ContactPoint *c)
   return left / c->law.penalty;
 }
 
-/* Does what is left fall slowly, although a higher penalty would be no more than volume opposes? */
+/* Does what is left fall slowly, although the penalty may rise? */
 static PetscBool is_soft(const ContactPoint *c, PetscReal left)
 {
-  return c->left > 0 && left > STALLS * c->left && c->law.penalty < c->stiffest;
+  return c->left > 0 && left > STALLS * c->left && HIGHER * c->law.penalty < c->stiffest;
 }
 
 /* Gaps fall by 1 + penalty / stiffness of what is pressed: what is measured says which that is. */

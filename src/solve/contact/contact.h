@@ -126,6 +126,8 @@ PetscReal contact_reach_of(const Points *points, PetscInt p, const PetscReal n[3
 PetscReal contact_farthest(const Points *points, PetscInt p);
 /* At the start: it is made to fit, and reaches no farther towards n. */
 void contact_take_back(Points *points, PetscInt p, const PetscReal n[3], PetscReal reach);
+/* At the start: it stands on what is ahead of it, beside a nearer side, and reaches as far towards n. */
+void contact_let_reach(Points *points, PetscInt p, const PetscReal n[3], PetscReal reach);
 /* What the carrier kept of its contact with a partner. */
 void contact_remember(ContactPoint *c, PetscInt dim, const PetscReal *kept, const PetscReal normal[3]);
 /* Its law; then its section, m2, and what adheres on that. */
@@ -207,6 +209,8 @@ PetscReal contact_stays(const Contact *contact, const ContactPoint *c);
 void contact_excess(const Contact *contact, const ContactPoint *c, PetscReal f[3]);
 /* Collective. Does anything in contact move along its wall by more than what rests may, at the last assembly? */
 PetscErrorCode ContactMoves(const Contact *contact, MPI_Comm comm, PetscBool *moves);
+/* Work of the last step's forces over the gaps and slips that may stay, J; contact may be NULL. size: of a cell, m. */
+PetscReal contact_unresolved(const Contact *contact, PetscReal size);
 /* Of all forces of this rank at the last assembly, N2; contact may be NULL. */
 PetscReal contact_square(const Contact *contact);
 /* x: where it acts, m. */
