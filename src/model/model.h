@@ -166,7 +166,7 @@ typedef struct Model {
   PetscReal start_energy;
   /* that had come in, by the start, loads, gravity and prescribed motion, at any time, J */
   PetscReal most_energy;
-  PetscReal least_energy; /* that is more than round-off, J */
+  PetscReal least_energy; /* of strains that steps can tell from none, J */
   Outside outside;
   MeasureMemory *memory;   /* one per measure */
   LoadMemory *load_memory; /* one per load */

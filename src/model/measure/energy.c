@@ -107,7 +107,15 @@ static PetscReal points_work(const Model *m)
   return sum;
 }
 
+/* Strain that no step can tell from none: forces out of balance, up to what Newton's method may leave, over the
+ * stiffness. */
 #define STRAIN_OF_ROUND_OFF 1e-11
+#define STRAIN_TOO_LARGE 1e-6
+
+static PetscReal strain_unresolved(const Model *m)
+{
+  return PetscMax(STRAIN_OF_ROUND_OFF, PetscMin(STRAIN_TOO_LARGE, m->c->newton.residual));
+}
 
 void energy_stress(Model *m, PetscInt p)
 {
@@ -136,7 +144,7 @@ PetscErrorCode EnergyStart(Model *m)
     energy_stress(m, p);
     m->points->real[POINT_WORK][p] =
       material->law->energy ? m->points->real[POINT_VOLUME][p] * model_point_energy(m, p) : 0;
-    local[1] += PetscSqr(STRAIN_OF_ROUND_OFF) * m->points->real[POINT_VOLUME][p] * material->elastic.shear;
+    local[1] += PetscSqr(strain_unresolved(m)) * m->points->real[POINT_VOLUME][p] * material->elastic.shear;
   }
   local[0] = points_kinetic(m) + points_work(m);
   PetscCall(MPIU_Allreduce(local, sum, 2, MPIU_REAL, MPI_SUM, m->comm));

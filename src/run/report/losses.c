@@ -71,9 +71,16 @@ PetscErrorCode LossesLogStep(Model *m, RunDir *dir, const StepReport *report)
   PetscFunctionReturn(0);
 }
 
-static PetscReal transfer_share(const Model *m)
+/* Is it, or what came in, more than steps leave open? */
+static PetscBool counts(const Model *m, PetscReal energy)
 {
-  return m->most_energy > m->least_energy ? m->transfer_energy / m->most_energy : 0;
+  const PetscReal open = m->least_energy + contact_unresolved(m->contact, m->grid->smallest);
+  return (PetscBool)(m->most_energy > 0 && PetscMax(m->most_energy, PetscAbsReal(energy)) > open);
+}
+
+static PetscReal share_of_input(const Model *m, PetscReal energy)
+{
+  return counts(m, energy) ? energy / m->most_energy : 0;
 }
 
 PetscErrorCode LossesLogEnd(const Model *m, RunDir *dir)
@@ -95,18 +102,18 @@ PetscErrorCode LossesLogEnd(const Model *m, RunDir *dir)
                 "%.0f of %.6g kg in a step; that took %.6g J and momentum (%.6g, %.6g, %.6g) kg m/s",
                 (double)o->held, (double)o->first, (double)o->last, (double)o->held_most, (double)o->held_most_mass,
                 (double)o->energy, (double)o->momentum[0], (double)o->momentum[1], (double)o->momentum[2]));
-  if (m->most_energy > m->least_energy)
-    PetscCall(
-      RunDirLog(dir,
-                "transfer = %.6g J between points and grid, %.2g %% of the %.6g J that came in (start, loads, gravity, "
-                "prescribed motion)",
-                (double)m->transfer_energy, (double)(100 * transfer_share(m)), (double)m->most_energy));
+  if (counts(m, m->transfer_energy))
+    PetscCall(RunDirLog(
+      dir,
+      "transfer = %.6g J between points and grid, %.2g %% of the %.6g J that came in (start, loads, gravity, "
+      "prescribed motion)",
+      (double)m->transfer_energy, (double)(100 * share_of_input(m, m->transfer_energy)), (double)m->most_energy));
   PetscFunctionReturn(0);
 }
 
 static void warn_of_transfer(const Model *m, Diag *diag)
 {
-  const PetscReal share = transfer_share(m);
+  const PetscReal share = share_of_input(m, m->transfer_energy);
   if (PetscAbsReal(share) <= TRANSFER_ALLOWED) return;
   diag_warning(diag, NULL,
                "the transfer between points and grid %s %.2g %% of the energy that came in (%.4g of %.4g J): an energy "
@@ -126,7 +133,7 @@ static PetscErrorCode WarnOfGain(Model *m, Diag *diag)
 
   PetscFunctionBeginUser;
   PetscCall(ModelEnergies(m, &e));
-  const PetscReal share = m->most_energy > m->least_energy ? -e.dissipated / m->most_energy : 0;
+  const PetscReal share = share_of_input(m, -e.dissipated);
   if (case_is_static(&m->c->analysis) || !(share > TRANSFER_ALLOWED)) PetscFunctionReturn(0);
   diag_warning(diag, NULL, "stresses gave %.4g J more than had been put into them, %.2g %% of the %.4g J that came in",
                (double)-e.dissipated, (double)(100 * share), (double)m->most_energy);
