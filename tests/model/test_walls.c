@@ -312,12 +312,36 @@ static void test_smooth(void **state)
   CALL(ModelDestroy(&m));
 }
 
+/* What of a body is left of a cell at its edge, far narrower than a row of points is high, stands on the floor like
+ * all others, wherever the edge is. */
+static void test_narrow(void **state)
+{
+  static const PetscReal edges[] = {0.53, 0.51, 0.6};
+  (void)state;
+  EACH_OF (k, edges) {
+    Bench b;
+    WallSpec wall = {.name = (char *)"floor", .shape = {.kind = SHAPE_HALF_SPACE, .normal = {0, 1}}};
+    bench_init(&b, "mpm", CELL_QUADRILATERAL, 0);
+    bench_grid(&b, (PetscReal[]){0, 0, 0}, (PetscReal[]){3, 1, 0}, 0.125);
+    bench_box(&b, 0, (PetscReal[]){edges[k], 0, 0}, (PetscReal[]){edges[k] + 2, 0.5, 0});
+    bench_motion(&b, 0, 1.5, MOTION_FIXED, 1);
+    b.constants[0].value = 1e9, b.constants[1].value = 0;
+    b.c.gravity[1] = -10;
+    b.c.n_walls = 1;
+    b.c.walls = &wall;
+    Model *m = bench_model(&b, PETSC_COMM_WORLD);
+    for (int step = 0; step < 3; ++step) model_step(m, 1. / 3);
+    CHECK_CLOSE(measure(m, "contact", "area", 0), 2, 1e-4);
+    CALL(ModelDestroy(&m));
+  }
+}
+
 int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(test_slides), cmocka_unit_test(test_lifts),   cmocka_unit_test(test_rests),
     cmocka_unit_test(test_flows),  cmocka_unit_test(test_through), cmocka_unit_test(test_dent),
-    cmocka_unit_test(test_smooth),
+    cmocka_unit_test(test_smooth), cmocka_unit_test(test_narrow),
   };
   return run_model_group(argc, argv, tests, PETSC_STATIC_ARRAY_LENGTH(tests));
 }

@@ -80,9 +80,12 @@ static void look_at_wall(Model *m, PetscInt k, PetscBool fits, Worst *inside, Wo
   for (PetscInt p = 0; p < m->points->n; ++p) {
     const PetscReal *x = point_real(m->points, POINT_X, p);
     const int side = wall_side(m->walls, k, m->time, x);
-    if (!wall_near(m->walls, k, m->time, x, contact_farthest(m->points, p), side, &place)) continue;
-    if (fits && !m->c->stage && stands_on(m, p, &place))
+    const PetscReal far = PetscMax(contact_farthest(m->points, p), fits ? m->grid->smallest : 0);
+    if (!wall_near(m->walls, k, m->time, x, far, side, &place)) continue;
+    if (fits && !m->c->stage && stands_on(m, p, &place)) {
       point_real(m->points, POINT_CONTACT, p)[k * CONTACT_KEPT(m->dim) + 1] = place.gap;
+      contact_let_reach(m->points, p, place.normal, place.gap);
+    }
     take_worse(m, -place.gap, x, inside);
     const PetscReal reach = contact_reach_of(m->points, p, place.normal);
     if (!fits || place.gap <= THROUGH * m->grid->smallest || place.gap >= reach) continue;

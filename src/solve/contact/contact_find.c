@@ -39,6 +39,16 @@ void contact_take_back(Points *points, PetscInt p, const PetscReal n[3], PetscRe
   points->real[POINT_REACH][p] = PetscMin(points->real[POINT_REACH][p], reach);
 }
 
+/* Nothing has sheared yet. */
+void contact_let_reach(Points *points, PetscInt p, const PetscReal n[3], PetscReal reach)
+{
+  PetscReal F[9], *corner = point_real(points, POINT_CORNER, p), ahead = 0;
+  if (reach <= contact_farthest(points, p)) return;
+  point_F(points, p, F);
+  for (PetscInt d = 0; d < points->dim; ++d) ahead -= corner[d] * n[d];
+  for (PetscInt d = 0; d < points->dim; ++d) corner[d] -= (reach / F[0] - ahead) * n[d];
+}
+
 PetscReal contact_farthest(const Points *points, PetscInt p)
 {
   const PetscReal *corner = point_real(points, POINT_CORNER, p);
