@@ -183,7 +183,7 @@ PetscErrorCode DiscretisationMoveClouds(Discretisation *s, Points *carried, cons
 
   PetscFunctionBeginUser;
   for (PetscInt p = 0; p < carried->n; ++p)
-    if (support_touched(support, p, s->nodes->touched, N))
+    if (p < support->n_groups && support_touched(support, p, reached_nodes(s), N))
       move_carried(s, carried, p, support_nodes(support, p), support->node + support->node_start[p], N);
   PetscFunctionReturn(0);
 }
@@ -209,11 +209,16 @@ PetscErrorCode DiscretisationMoveCarried(Discretisation *s, Points *carried)
 {
   const Grid *grid = s->grid;
   const PetscInt nn = grid->nodes_per_cell;
+  const Support *seen = followers_see(s, carried);
   PetscReal N[CELL_MAX_NODES];
 
   PetscFunctionBeginUser;
   if (carried->components[POINT_EDGE] && s->loads->support) {
     for (PetscInt p = 0; p < carried->n; ++p) move_piece(s, carried, p);
+    PetscFunctionReturn(0);
+  }
+  if (seen) {
+    PetscCall(DiscretisationMoveClouds(s, carried, seen));
     PetscFunctionReturn(0);
   }
   for (PetscInt p = 0; p < carried->n; ++p) {

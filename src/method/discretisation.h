@@ -63,7 +63,8 @@ PetscErrorCode DiscretisationRoom(Discretisation *space);
 PetscErrorCode DiscretisationBodyVelocity(Discretisation *space);
 /* impulse and lost_force where prescribed motion changes v and a of its nodes alone. */
 void discretisation_impulses(Discretisation *space);
-/* Points, tracers or carriers follow the field: in their cells, and the same with clouds. */
+/* Points, tracers or carriers follow the field: by the basis where it is that of places, else in their cells, and the
+ * same with clouds. */
 PetscErrorCode DiscretisationMoveCarried(Discretisation *space, Points *carried);
 PetscErrorCode DiscretisationMoveClouds(Discretisation *space, Points *carried, const Support *support);
 /* Method.carries of grids of cells: until a cell beyond the grid's edge. */

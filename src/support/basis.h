@@ -49,6 +49,8 @@ typedef struct {
   /* The same averaged over pieces of a surface (POINT_EDGE), with dim + 1 numbers of dN (Loads.slopes); NULL: carriers
    * are points, and see what points do. */
   PetscErrorCode (*carry)(const BasisInput *in, const Points *carriers, Support *support);
+  /* is the field at a place the sum of its functions there, as tracers and carriers see it? else that of the cell's */
+  PetscBool has_places;
   /* What the basis lacks in this grid, in words that go on behind its name; NULL: nothing. NULL for
    * the function: it takes every grid. */
   const char *(*misfit)(const GridSpec *grid);

@@ -88,3 +88,4 @@ const Basis basis_bspline = {
   .support = BsplineSupport,
   .couplings = ProductsCouplings,
 };
+  .has_places = PETSC_TRUE,

@@ -18,6 +18,7 @@ static PetscErrorCode ExtensionCreate(const Discretisation *s, Extension **exten
   PetscCall(SupportCreate(&e->spare));
   PetscCall(SupportCreate(&e->carried));
   PetscCall(SupportCreate(&e->spare_carried));
+  PetscCall(SupportCreate(&e->traced));
   *extension = e;
   PetscFunctionReturn(0);
 }
@@ -32,6 +33,7 @@ PetscErrorCode ExtensionDestroy(Extension **extension)
   PetscCall(SupportDestroy(&e->spare));
   PetscCall(SupportDestroy(&e->carried));
   PetscCall(SupportDestroy(&e->spare_carried));
+  PetscCall(SupportDestroy(&e->traced));
   PetscCall(PetscFree(*extension));
   PetscFunctionReturn(0);
 }
@@ -234,16 +236,29 @@ static PetscErrorCode RewriteAll(Discretisation *s)
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode Carry(Discretisation *s, const BasisInput *in, Support *carried)
+/* They have no domain, in rings neither. */
+static PetscErrorCode SeeAt(const Discretisation *s, const BasisInput *in, Points *places, Support *seen)
 {
   const BasisInput plain = {.spec = in->spec, .grid = in->grid, .rim = in->rim};
 
   PetscFunctionBeginUser;
-  s->loads->support = carried;
+  PetscCall(PointsSort(places));
+  PetscCall(s->basis->support(&plain, places, seen));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode DiscretisationCarry(Discretisation *s, const BasisInput *in)
+{
+  PetscFunctionBeginUser;
+  if (s->basis->has_places) PetscCall(SeeAt(s, in, s->tracers, s->extension->traced));
+  if (!s->basis->carries) PetscFunctionReturn(0);
+  s->loads->support = s->extension->carried;
   s->loads->slopes = s->basis->carry ? s->grid->dim + 1 : s->grid->dim;
-  PetscCall(PointsSort(s->loads->carriers));
-  if (s->basis->carry) PetscCall(s->basis->carry(in, s->loads->carriers, carried));
-  else PetscCall(s->basis->support(&plain, s->loads->carriers, carried));
+  if (!s->basis->carry) PetscCall(SeeAt(s, in, s->loads->carriers, s->extension->carried));
+  else {
+    PetscCall(PointsSort(s->loads->carriers));
+    PetscCall(s->basis->carry(in, s->loads->carriers, s->extension->carried));
+  }
   PetscFunctionReturn(0);
 }
 
@@ -261,11 +276,10 @@ static PetscErrorCode FindLoaded(const Discretisation *s, Extension *e)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode DiscretisationCarry(Discretisation *s, const BasisInput *in)
+const Support *followers_see(const Discretisation *s, const Points *followers)
 {
-  PetscFunctionBeginUser;
-  if (s->basis->carries) PetscCall(Carry(s, in, s->extension->carried));
-  PetscFunctionReturn(0);
+  if (!s->extension || !s->basis->has_places) return NULL;
+  return followers == s->tracers ? s->extension->traced : followers == s->loads->carriers ? s->loads->support : NULL;
 }
 
 PetscErrorCode DiscretisationExtend(Discretisation *s, const BasisInput *in)
@@ -276,7 +290,7 @@ PetscErrorCode DiscretisationExtend(Discretisation *s, const BasisInput *in)
   if (!s->extension) PetscCall(ExtensionCreate(s, &s->extension));
   Extension *e = s->extension;
   PetscCheck(e, PETSC_COMM_SELF, PETSC_ERR_PLIB, "no extension");
-  if (s->basis->carries) PetscCall(Carry(s, in, e->carried));
+  PetscCall(DiscretisationCarry(s, in));
   PetscCall(Fill(s, e->fill));
   PetscCall(PetscArrayzero(e->ways, s->grid->n_nodes));
   e->any = PETSC_FALSE;

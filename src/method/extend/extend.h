@@ -12,6 +12,7 @@ typedef struct Extension {
   Support *spare;         /* the support as the basis left it, in the last step in which nodes followed */
   Support *carried;       /* what carriers of loads see, where they push by the basis's functions, */
   Support *spare_carried; /* and the same as the basis left it */
+  Support *traced;        /* what tracers see, of a basis whose functions are those of places; followers among it */
   PetscBool any;          /* does a node follow, on any rank? */
 } Extension;
 
@@ -22,8 +23,10 @@ PetscBool extension_works(const Discretisation *space);
 /* Collective. Of a support that the basis has just filled, with `in`: what each node has; those with less than
  * stabilisation.follow (a tenth where loads act) follow others, if these stand near enough, and vanish from it. */
 PetscErrorCode DiscretisationExtend(Discretisation *space, const BasisInput *in);
-/* What carriers of loads see where they are now, of a basis whose functions are those of loads, too; nothing of others.
- * Once points have been extended. */
+/* What carriers of loads and tracers see where they are now, of a basis whose functions are theirs, too; nothing of
+ * others. Once points have been extended. */
 PetscErrorCode DiscretisationCarry(Discretisation *space, const BasisInput *in);
+/* The functions by which the field moves these: tracers or carriers, of such a basis; NULL: those of their cells. */
+const Support *followers_see(const Discretisation *space, const Points *followers);
 /* Collective. du, v1 and a1 of nodes that follow, for tracers. */
 PetscErrorCode DiscretisationFollow(Discretisation *space);

@@ -73,7 +73,7 @@ static PetscErrorCode Touch(const Model *m, const Explicit *e)
   if (!m->c->n_loads && !has_tracers(m->c)) PetscFunctionReturn(0);
   for (PetscInt k = 0; k < e->n_active; ++k) e->mark[e->active[k]] = 0;
   leave_out(m, e, m->loads->carriers, m->loads->support);
-  leave_out(m, e, m->tracers, NULL);
+  leave_out(m, e, m->tracers, followers_see(m->space, m->tracers));
   PetscCall(NodesShare(m, 1, e->mark));
   for (PetscInt k = 0; k < e->n_active; ++k) {
     const PetscInt node = e->active[k];
