@@ -403,6 +403,67 @@ static void shape_is_filled(void **state)
   }
 }
 
+/* Numbers that tell any two sets of points apart, whichever order these have, and whatever was mirrored about the middle
+ * of the grid, or two axes changed. */
+static void look_at(const Points *points, const Grid *grid, unsigned mirror, PetscReal *print)
+{
+  PetscReal local[6] = {0};
+  for (PetscInt p = 0; p < points->n; ++p) {
+    const PetscReal V = *point_real(points, POINT_VOLUME, p);
+    PetscReal x[3] = {0, 0, 0};
+    for (PetscInt d = 0; d < points->dim; ++d) {
+      const PetscReal from = point_real(points, POINT_X, p)[d] - 0.5 * (grid->min[d] + grid->max[d]);
+      x[d] = mirror >> d & 1 ? -from : from;
+    }
+    const PetscReal terms[6] = {1, x[0], x[1] * x[1] * x[1], x[0] * x[1] * x[1], x[2] * x[0], 1 / V};
+    for (int k = 0; k < 6; ++k) local[k] += V * V * terms[k];
+  }
+  CALL(MPI_Allreduce(local, print, 6, MPIU_REAL, MPIU_SUM, PETSC_COMM_WORLD));
+}
+
+/* The image of a box or a ball. */
+static Shape image_of(const Shape *shape, const Grid *grid, unsigned mirror)
+{
+  Shape image = *shape;
+  for (PetscInt d = 0; d < grid->dim; ++d) {
+    const PetscReal twice = grid->min[d] + grid->max[d];
+    if (!(mirror >> d & 1)) continue;
+    image.min[d] = twice - shape->max[d];
+    image.max[d] = twice - shape->min[d];
+    image.centre[d] = twice - shape->centre[d];
+  }
+  return image;
+}
+
+/* A body and its image in a mirror have the same points, whatever part of a cell is theirs. */
+static void mirrors_do_not_matter(void **state)
+{
+  const PetscInt rules[2][5] = {{1, 4, 9, 16, 25}, {1, 8, 27, 64}};
+  const Shape shapes[4] = {box_shape(0.13, 0.31, 0.07, 1.43, 1.08, 1.7),
+                           box_shape(0.5, 0.5, 0.4, 1.51, 1.262, 1.515),
+                           box_shape(0.24, 0.5, 0.4, 1.01, 1.01, 1.51),
+                           {.kind = SHAPE_BALL, .centre = {1.37, 0.96, 1.04}, .radius = 0.83}};
+  (void)state;
+  for (int k = 0; k < 9; ++k)
+    for (int shape = 0; shape < 4; ++shape) {
+      PetscReal first[6], print[6];
+      const PetscBool flat = k < 5;
+      TestCase *t = test_case(flat ? CELL_QUADRILATERAL : CELL_HEXAHEDRON, flat ? 12 : 6, flat ? 8 : 4, 4);
+      Grid *grid = make_grid(PETSC_COMM_WORLD, &t->c);
+      t->body[0].has_shape = PETSC_TRUE;
+      t->body[0].points_per_cell = rules[!flat][flat ? k : k - 5];
+      for (unsigned mirror = 0; mirror < (flat ? 4 : 8); ++mirror) {
+        t->body[0].shape = image_of(shapes + shape, grid, mirror);
+        Points *points = seed_points(t, grid);
+        look_at(points, grid, mirror, mirror ? print : first);
+        for (int i = 0; mirror && i < 6; ++i)
+          CHECK_CLOSE(print[i], first[i], 1e-9 * PetscMax(first[0], PetscAbsReal(first[i])));
+        CALL(PointsDestroy(&points));
+      }
+      free_all(t, grid, NULL);
+    }
+}
+
 /* A plane that cuts the cells askew leaves every cell its exact part, and no point a sliver:
  * trapezoid of the section, and what it is as a ring. */
 static void planes_are_exact(void **state)
@@ -502,6 +563,7 @@ int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(shape_is_filled),
+    cmocka_unit_test(mirrors_do_not_matter),
     cmocka_unit_test(planes_are_exact),
     cmocka_unit_test(surfaces_are_shared_out),
     cmocka_unit_test(aligned_shape_is_the_same),

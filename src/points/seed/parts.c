@@ -14,6 +14,11 @@ enum { LOOK = 5, LOOK_TETRAHEDRON = 8 }; /* samples along an axis: is the cell c
 static const PetscInt trusted[4] = {0, 0, 6, 6}, most[4] = {0, 0, 10, 9};
 #define CROSSINGS 40
 
+/* Ends of parts along an axis, where an odd number of points stands their middles, too: of six points at most in the
+ * plane, four in space. */
+#define MOST_LINES 11
+#define MOST_CROSSINGS 343
+
 typedef struct {
   PetscReal volume, moment[3], second[3]; /* of the reference cell, times det dx/dxi */
   PetscReal face[3];                      /* the body's surface as a vector outwards, m2 */
@@ -25,6 +30,7 @@ typedef struct {
   CellType type;
   PetscInt dim;
   const PetscReal *x; /* nodes of the cell */
+  PetscInt owner;     /* whose part is measured; -1: pieces go to the nearest point of the rule */
   PetscBool faces;    /* is the surface asked for? */
   PetscReal slack;    /* m: corners on the surface shall be inside, whatever round-off says */
   Sum whole[SEED_MAX_RULE], fine[SEED_MAX_RULE], coarse[SEED_MAX_RULE]; /* coarse: edges twice as long */
@@ -70,47 +76,59 @@ static PetscInt nearest_of(const SeedRule *rule, PetscInt dim, const PetscReal *
   return nearest;
 }
 
-/* Which of the other parts has its middle next to that of this one; -1: there is none. */
-static PetscInt neighbour_of(const SeedPart *part, PetscInt n, PetscInt dim, PetscInt of)
+static PetscBool is_sliver(const SeedPart *part, PetscInt n)
 {
-  PetscInt nearest = -1;
+  return (PetscBool)(part->share > 0 && part->share < SLIVER / (PetscReal)n);
+}
+
+static PetscReal square_between(const SeedPart *a, const SeedPart *b, PetscInt dim)
+{
+  PetscReal square = 0;
+  for (PetscInt d = 0; d < dim; ++d) square += PetscSqr(a->xi[d] - b->xi[d]);
+  return square;
+}
+
+/* Parts that are no slivers and have their middles nearest to that of this one, all that are as near; returns how
+ * many. */
+static PetscInt neighbours_of(const SeedPart *part, PetscInt n, PetscInt dim, PetscInt of, PetscInt *near)
+{
   PetscReal least = PETSC_MAX_REAL;
-  for (PetscInt q = 0; q < n; ++q) {
-    PetscReal square = 0;
-    if (q == of || part[q].share <= 0) continue;
-    for (PetscInt d = 0; d < dim; ++d) square += PetscSqr(part[q].xi[d] - part[of].xi[d]);
-    if (square < least) least = square, nearest = q;
-  }
-  return nearest;
-}
-
-/* The smallest part that is a sliver; -1: none is. */
-static PetscInt sliver_of(const SeedPart *part, PetscInt n)
-{
-  PetscInt smallest = -1;
+  PetscInt n_near = 0;
   for (PetscInt q = 0; q < n; ++q)
-    if (part[q].share > 0 && part[q].share < SLIVER / (PetscReal)n &&
-        (smallest < 0 || part[q].share < part[smallest].share))
-      smallest = q;
-  return smallest;
+    if (part[q].share > 0 && !is_sliver(part + q, n)) least = PetscMin(least, square_between(part + q, part + of, dim));
+  for (PetscInt q = 0; q < n; ++q)
+    if (part[q].share > 0 && !is_sliver(part + q, n) && square_between(part + q, part + of, dim) < least + NOTHING)
+      near[n_near++] = q;
+  return n_near;
 }
 
-/* A point that is next to nothing goes to the one beside it, with its volume and its moment. */
+/* A share of what `from` was before it goes to `to`, with its moment. */
+static void give(const SeedPart *from, PetscReal share, PetscInt dim, SeedPart *to)
+{
+  const PetscReal volume = share * from->share, sum = to->share + volume, a = to->share / sum, b = volume / sum;
+  for (PetscInt d = 0; d < dim; ++d) {
+    to->spread[d] = a * to->spread[d] + b * from->spread[d] + a * b * PetscSqr(to->xi[d] - from->xi[d]);
+    to->face[d] += share * from->face[d];
+    to->xi[d] = (to->share * to->xi[d] + volume * from->xi[d]) / sum;
+  }
+  to->share = sum;
+  to->whole = PETSC_FALSE;
+}
+
+/* Points that are next to nothing go to those beside them, or, where a cell has no others, are one: whatever comes
+ * first, so that a body and its image in a mirror have the same points. */
 static void join_slivers(SeedPart *part, PetscInt n, PetscInt dim)
 {
-  for (PetscInt q = sliver_of(part, n); q >= 0; q = sliver_of(part, n)) {
-    const PetscInt to = neighbour_of(part, n, dim, q);
-    if (to < 0) return;
-    const PetscReal sum = part[to].share + part[q].share, a = part[to].share / sum, b = part[q].share / sum;
-    for (PetscInt d = 0; d < dim; ++d)
-      part[to].spread[d] =
-        a * part[to].spread[d] + b * part[q].spread[d] + a * b * PetscSqr(part[to].xi[d] - part[q].xi[d]);
-    for (PetscInt d = 0; d < dim; ++d) part[to].face[d] += part[q].face[d];
-    for (PetscInt d = 0; d < dim; ++d)
-      part[to].xi[d] = (part[to].share * part[to].xi[d] + part[q].share * part[q].xi[d]) / sum;
-    part[to].share = sum;
-    part[to].whole = PETSC_FALSE;
-    part[q].share = 0;
+  SeedPart before[SEED_MAX_RULE];
+  PetscInt near[SEED_MAX_RULE], first = -1;
+  for (PetscInt q = 0; q < n; ++q) before[q] = part[q];
+  for (PetscInt q = 0; q < n; ++q) {
+    if (!is_sliver(before + q, n)) continue;
+    const PetscInt n_near = neighbours_of(before, n, dim, q, near);
+    for (PetscInt k = 0; k < n_near; ++k) give(before + q, 1 / (PetscReal)n_near, dim, part + near[k]);
+    if (!n_near && first >= 0) give(before + q, 1, dim, part + first);
+    if (n_near || first >= 0) part[q].share = 0;
+    else first = q;
   }
 }
 
@@ -283,7 +301,7 @@ static void measure(Measure *m, Simplex *s, PetscInt depth)
   const PetscBool mixed = n_inside > 0 && n_inside <= m->dim;
   const PetscBool ends = depth == most[m->dim] || (depth >= trusted[m->dim] && !mixed);
   centre_of(m->dim, s->xi, centre);
-  const PetscInt q = nearest_of(m->rule, m->dim, centre);
+  const PetscInt q = m->owner >= 0 ? m->owner : nearest_of(m->rule, m->dim, centre);
   if (n_inside && (ends ? depth <= most[m->dim] - m->dim : depth == most[m->dim] - m->dim))
     add_inside(m, s, n_inside, m->coarse + q);
   if (ends) {
@@ -296,22 +314,90 @@ static void measure(Measure *m, Simplex *s, PetscInt depth)
   for (int k = 0; k < 2; ++k) measure(m, half + k, depth + 1);
 }
 
-/* Simplices of a cell: itself, or one for each order in which a way along the axes goes from
- * corner to corner. */
-static void measure_cell(Measure *m)
+static void measure_simplex(Measure *m)
+{
+  Simplex s = {.xi = {{0}}};
+  m->owner = -1;
+  for (PetscInt i = 0; i <= m->dim; ++i) {
+    if (i) s.xi[i][i - 1] = 1;
+    s.inside[i] = is_inside(m, s.xi[i]);
+  }
+  measure(m, &s, 0);
+}
+
+/* Ends of the parts of a square or cube along an axis, one after the other; if these are odd their middles, too, so
+ * that the cell's is among them. Returns how many lines there are. */
+static PetscInt find_lines(const Measure *m, PetscReal line[MOST_LINES])
+{
+  PetscReal at[MOST_LINES], end[MOST_LINES];
+  PetscInt n = 0;
+  for (PetscInt q = 0; q < m->rule->n; ++q) {
+    PetscInt k = n;
+    while (k > 0 && at[k - 1] > m->rule->xi[q * m->dim] - NOTHING) --k;
+    if (k < n && at[k] < m->rule->xi[q * m->dim] + NOTHING) continue;
+    for (PetscInt i = n++; i > k; --i) at[i] = at[i - 1];
+    at[k] = m->rule->xi[q * m->dim];
+  }
+  const PetscInt each = n % 2 ? 2 : 1;
+  for (PetscInt k = 0; k <= n; ++k) end[k] = k == 0 ? -1 : k == n ? 1 : 0.5 * (at[k - 1] + at[k]);
+  for (PetscInt k = 0; k < each * n; ++k)
+    line[k] = k % each ? 0.5 * (end[k / each] + end[k / each + 1]) : end[k / each];
+  line[each * n] = 1;
+  return each * n + 1;
+}
+
+/* The places where lines cross. */
+typedef struct {
+  PetscInt n; /* lines along an axis */
+  PetscReal line[MOST_LINES];
+  PetscBool inside[MOST_CROSSINGS];
+} Lattice;
+
+static PetscInt crossing_at(const Measure *m, const Lattice *l, const PetscInt ijk[3], PetscReal *xi)
+{
+  for (PetscInt d = 0; d < m->dim; ++d) xi[d] = l->line[ijk[d]];
+  return ijk[0] + l->n * (ijk[1] + (m->dim == 3 ? l->n * ijk[2] : 0));
+}
+
+/* The simplices of a box between lines, one for each order in which a way along the axes goes from the corner next to
+ * the middle of the cell to the one across: those of its image in a mirror are their images. */
+static void measure_box(Measure *m, const Lattice *l, const PetscInt box[3], PetscInt depth)
 {
   static const int order[6][3] = {{0, 1, 2}, {1, 0, 2}, {0, 2, 1}, {1, 2, 0}, {2, 0, 1}, {2, 1, 0}};
-  const PetscInt n = is_simplex(m->type) ? 1 : m->dim == 2 ? 2 : 6;
-  for (PetscInt k = 0; k < n; ++k) {
+  PetscReal middle[3];
+  for (PetscInt d = 0; d < m->dim; ++d) middle[d] = 0.5 * (l->line[box[d]] + l->line[box[d] + 1]);
+  m->owner = nearest_of(m->rule, m->dim, middle);
+  for (PetscInt k = 0; k < (m->dim == 2 ? 2 : 6); ++k) {
     Simplex s = {.xi = {{0}}};
+    PetscInt at[3] = {0};
+    for (PetscInt d = 0; d < m->dim; ++d) at[d] = box[d] + (2 * box[d] + 1 < l->n ? 1 : 0);
     for (PetscInt i = 0; i <= m->dim; ++i) {
-      for (PetscInt d = 0; d < m->dim; ++d) s.xi[i][d] = is_simplex(m->type) ? 0 : -1;
-      if (is_simplex(m->type) && i) s.xi[i][i - 1] = 1;
-      for (PetscInt j = 0; j < i && !is_simplex(m->type); ++j) s.xi[i][order[k][j]] = 1;
-      s.inside[i] = is_inside(m, s.xi[i]);
+      if (i) at[order[k][i - 1]] += at[order[k][i - 1]] > box[order[k][i - 1]] ? -1 : 1;
+      s.inside[i] = l->inside[crossing_at(m, l, at, s.xi[i])];
     }
-    measure(m, &s, 0);
+    measure(m, &s, depth);
   }
+}
+
+/* Part by part: pieces that reach beyond the side of one would give its neighbours of it by the way in which the cell
+ * was cut. */
+static void measure_parts(Measure *m)
+{
+  Lattice l;
+  PetscReal xi[3];
+  PetscInt halved = 0, ijk[3] = {0, 0, 0};
+  l.n = find_lines(m, l.line);
+  const PetscInt n = l.n - 1, n_z = m->dim == 3 ? n : 0;
+  for (ijk[2] = 0; ijk[2] <= n_z; ++ijk[2])
+    for (ijk[1] = 0; ijk[1] <= n; ++ijk[1])
+      for (ijk[0] = 0; ijk[0] <= n; ++ijk[0]) {
+        const PetscInt k = crossing_at(m, &l, ijk, xi);
+        l.inside[k] = is_inside(m, xi);
+      }
+  while (2 << halved <= n && (halved + 2) * m->dim <= most[m->dim]) ++halved;
+  for (ijk[2] = 0; ijk[2] < PetscMax(1, n_z); ++ijk[2])
+    for (ijk[1] = 0; ijk[1] < n; ++ijk[1])
+      for (ijk[0] = 0; ijk[0] < n; ++ijk[0]) measure_box(m, &l, ijk, halved * m->dim);
 }
 
 /* What planes leave out goes with the square of their size: by how much the parts that are cut
@@ -339,7 +425,8 @@ SeedFill seed_parts(const Seeding *s, PetscInt cell, const SeedRule *rule, SeedP
                .faces = s->faces};
   grid_cell_x(s->source, cell, x);
   m.slack = 1e-10 * PetscPowReal(cell_volume(m.type, x), 1 / (PetscReal)dim);
-  measure_cell(&m);
+  if (is_simplex(m.type)) measure_simplex(&m);
+  else measure_parts(&m);
   const PetscReal factor = growth(&m);
   for (PetscInt q = 0; q < rule->n; ++q) whole += m.whole[q].volume;
   for (PetscInt q = 0; q < rule->n; ++q) {
