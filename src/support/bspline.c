@@ -11,6 +11,11 @@
  * is held, on both sides of the line of nodes at which it ends. */
 #include "support/products.h"
 
+/* So near a knot, of a cell, a point stands on it, as the middle of three in a cell does, whatever round-off says: it
+ * sees two nodes, since one more on either side has nothing there. In rings these have second derivatives, which jump
+ * at knots, and it belongs to the node before it. */
+#define ON_KNOT 1e-10
+
 /* Do splines end along axis d at the node with these voxel lines? */
 static PetscBool ends_here(const BasisInput *in, const PetscInt at[3], PetscInt d)
 {
@@ -39,11 +44,15 @@ static void axis_functions(const BasisInput *in, const Points *points, PetscInt 
   const PetscReal *x = point_real(points, POINT_X, p);
   PetscReal l[3] = {0};
   PetscInt at[3] = {0, 0, box->dim == 2 ? place->ijk[2] : 0};
-  for (PetscInt d = 0; d < box->dim; ++d) at[d] = nearest_line(box->line[d], place->ijk[d], x[d]);
-  if (in->hoop) product_domain(points, p, place->size, l);
   for (PetscInt d = 0; d < box->dim; ++d)
-    f[d] = ends_here(in, at, d) ? linear_functions(box->line[d], place->ijk[d], x[d])
-                                : spline_functions(box->line[d], at[d], x[d], l[d]);
+    at[d] = nearest_line(box->line[d], place->ijk[d], x[d] - ON_KNOT * place->size[d]);
+  if (in->hoop) product_domain(points, p, place->size, l);
+  for (PetscInt d = 0; d < box->dim; ++d) {
+    const PetscReal beyond = x[d] - box->line[d][at[d]] - 0.5 * place->size[d];
+    const PetscBool bends = (in->hoop && d == 0) || beyond < -ON_KNOT * place->size[d];
+    f[d] = bends && !ends_here(in, at, d) ? spline_functions(box->line[d], at[d], x[d], l[d])
+                                          : linear_functions(box->line[d], place->ijk[d], x[d]);
+  }
 }
 
 static PetscErrorCode BsplineSupport(const BasisInput *in, const Points *points, Support *s)
@@ -84,8 +93,8 @@ const Basis basis_bspline = {
   .ends_at_held = PETSC_TRUE,
   .holds_boundary = PETSC_TRUE,
   .carries = PETSC_TRUE,
+  .has_places = PETSC_TRUE,
   .misfit = bspline_misfit,
   .support = BsplineSupport,
   .couplings = ProductsCouplings,
 };
-  .has_places = PETSC_TRUE,

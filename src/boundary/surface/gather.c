@@ -8,6 +8,7 @@
 #define STEP 1e-8
 #define ROUNDED 4e-16 /* of a coordinate */
 #define NOTHING 1e-14 /* of a cell's side */
+#define EVEN 1e-6     /* of the variance: by so much the axes of a piece must differ to be its own */
 
 /* Of the middles of two equal halves of a straight piece from its middle, over its deviation. */
 #define HALVES (0.5 * PetscSqrtReal(3))
@@ -30,6 +31,20 @@ static PetscErrorCode Reserve(Gather *g)
   PetscFunctionReturn(0);
 }
 
+/* A square spreads alike along all axes of its plane, and round-off would choose among them: the first becomes the
+ * grid's that lies nearest to the plane, of several as near the first. */
+static void level_axes(PetscReal axis[3][3])
+{
+  const PetscReal *n = axis[2];
+  PetscReal *u = axis[0], *v = axis[1];
+  int flat = 0;
+  for (int d = 1; d < 3; ++d)
+    if (PetscSqr(n[d]) < PetscSqr(n[flat]) - EVEN) flat = d;
+  const PetscReal length = PetscSqrtReal(1 - PetscSqr(n[flat]));
+  for (int d = 0; d < 3; ++d) u[d] = ((d == flat ? 1 : 0) - n[flat] * n[d]) / length;
+  for (int d = 0; d < 3; ++d) v[d] = n[(d + 1) % 3] * u[(d + 2) % 3] - n[(d + 2) % 3] * u[(d + 1) % 3];
+}
+
 /* How positions on it spread about the middle. */
 static void spread_of(const PieceSum *sum, PetscReal mid[3], PetscReal C[6])
 {
@@ -41,10 +56,13 @@ static void spread_of(const PieceSum *sum, PetscReal mid[3], PetscReal C[6])
 /* Deviations along the axes of the spread, falling. */
 static void find_deviations(const PetscReal C[6], PetscReal along[2][3])
 {
-  PetscReal value[3], v[9];
+  PetscReal value[3], v[9], axis[3][3];
   sym_eigen(C, value, v);
+  for (int k = 0; k < 3; ++k)
+    for (int d = 0; d < 3; ++d) axis[k][d] = v[3 * d + k];
+  if (value[0] - value[1] < EVEN * value[0]) level_axes(axis);
   for (int k = 0; k < 2; ++k)
-    for (int d = 0; d < 3; ++d) along[k][d] = PetscSqrtReal(PetscMax(0, value[k])) * v[3 * d + k];
+    for (int d = 0; d < 3; ++d) along[k][d] = PetscSqrtReal(PetscMax(0, value[k])) * axis[k][d];
 }
 
 /* From the middle of the parallelogram of this spread to those of its quarters. Of all such parallelograms it is the
