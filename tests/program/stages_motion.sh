@@ -42,6 +42,8 @@ stages:
   - name: implicit
   - {name: explicit, analysis: {type: explicit, end: 0.15, step: 2e-3, transfer: consistent}}
 END
+expect "stages of dynamics say who follows" 0 "$talus" check turns.yaml
+says out.txt "stabilisation: follow = 0.02; a case of dynamics without stages has 0 unless it says so"
 for ranks in 1 2; do
   expect "a spin goes on, on $ranks" 0 on_ranks $ranks "$talus" run turns.yaml --out turns --force --quiet
   awk -F, 'END { exit !($3 == 2 && $4 > 2.99 && $4 < 3.01) }' turns/history.csv || fail "$name: $(tail -n 1 turns/history.csv)"

@@ -217,6 +217,16 @@ static PetscErrorCode ReportSubsteps(const Model *m, FILE *out)
   PetscFunctionReturn(0);
 }
 
+/* A run that is cut into stages finds the nodes that statics before or after it would: its answer is not that of the
+ * whole, unless the case says so. */
+static void report_followers(const Model *m, FILE *out)
+{
+  const PetscReal follow = m->c->stabilisation.follow;
+  if (m->c->spec && m->c->analysis.type == ANALYSIS_DYNAMIC && m->space->basis->domains && follow > 0)
+    say(m, out, "#   stabilisation: follow = %g; a case of dynamics without stages has 0 unless it says so\n",
+        (double)follow);
+}
+
 static PetscErrorCode ReportSizes(Model *m, Diag *diag, FILE *out)
 {
   PetscInt points, pairs, all_pairs;
@@ -235,6 +245,7 @@ static PetscErrorCode ReportSizes(Model *m, Diag *diag, FILE *out)
       text_position(m->dim, m->grid->min, from), text_position(m->dim, m->grid->max, to));
   method_tell_basis(m->method, m->c, sizeof told, told);
   say(m, out, "#   basis: %s\n", told);
+  report_followers(m, out);
   say(m, out, "#   points: %d; unknowns at the start: %d\n", (int)points, (int)unknowns);
   report_memory(m, estimated_memory(m, points, unknowns, all_pairs), diag, out);
   if (m->scheme->inertia)
