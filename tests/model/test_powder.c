@@ -43,6 +43,34 @@ static void test_half_planes(void **state)
   CALL(ModelDestroy(&m));
 }
 
+/* What lies in a disc or a ball off the middle of a symmetric body is what lies in its image, in mirrors and where axes
+ * are changed. */
+static void test_images(void **state)
+{
+  (void)state;
+  for (int dim = 2; dim <= 3; ++dim) {
+    Bench b;
+    bench_init(&b, "mpm", dim == 3 ? CELL_HEXAHEDRON : CELL_QUADRILATERAL, 0);
+    bench_grid(&b, (PetscReal[]){-1, -1, -1}, (PetscReal[]){1, 1, 1}, 0.2);
+    bench_box(&b, 0, (PetscReal[]){-1, -1, -1}, (PetscReal[]){1, 1, 1});
+    bench_motion(&b, -1, 0, MOTION_FIXED, 7);
+    Model *m = bench_model(&b, PETSC_COMM_WORLD);
+    PetscReal first = 0;
+    for (int image = 0; image < 6 << dim; ++image) {
+      static const int order[6][3] = {{0, 1, 2}, {1, 0, 2}, {0, 2, 1}, {1, 2, 0}, {2, 0, 1}, {2, 1, 0}};
+      const PetscReal centre[3] = {0.113, -0.077, 0.051};
+      MeasureSpec in = {.kind = "volume", .word = "undeformed", .has_in = PETSC_TRUE};
+      if (dim == 2 && image % 6 > 1) continue; /* others move z */
+      in.in = (Shape){.kind = SHAPE_BALL, .radius = 0.63};
+      for (int d = 0; d < dim; ++d) in.in.centre[order[image % 6][d]] = (image / 6 >> d & 1 ? -1 : 1) * centre[d];
+      const PetscReal volume = measure(m, &in, 0);
+      if (!image) first = volume;
+      CHECK_CLOSE(volume, first, 1e-12);
+    }
+    CALL(ModelDestroy(&m));
+  }
+}
+
 /* Mass of a disc, its momentum and energy in a body that moves with (3, 4) m/s; a body by name. */
 static void test_disc(void **state)
 {
@@ -301,9 +329,9 @@ static void test_nowhere(void **state)
 
 int main(int argc, char **argv)
 {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_half_planes), cmocka_unit_test(test_disc),
-                                     cmocka_unit_test(test_balls),       cmocka_unit_test(test_rate),
-                                     cmocka_unit_test(test_inclination), cmocka_unit_test(test_elevation),
-                                     cmocka_unit_test(test_avalanches),  cmocka_unit_test(test_nowhere)};
+  const struct CMUnitTest tests[] = {
+    cmocka_unit_test(test_half_planes), cmocka_unit_test(test_images),     cmocka_unit_test(test_disc),
+    cmocka_unit_test(test_balls),       cmocka_unit_test(test_rate),       cmocka_unit_test(test_inclination),
+    cmocka_unit_test(test_elevation),   cmocka_unit_test(test_avalanches), cmocka_unit_test(test_nowhere)};
   return run_model_tests(argc, argv, tests);
 }
