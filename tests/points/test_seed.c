@@ -452,7 +452,7 @@ static void mirrors_do_not_matter(void **state)
       Grid *grid = make_grid(PETSC_COMM_WORLD, &t->c);
       t->body[0].has_shape = PETSC_TRUE;
       t->body[0].points_per_cell = rules[!flat][flat ? k : k - 5];
-      for (unsigned mirror = 0; mirror < (flat ? 4 : 8); ++mirror) {
+      for (unsigned mirror = 0; mirror < (flat ? 4 : 8); mirror += flat ? 1 : 5) {
         t->body[0].shape = image_of(shapes + shape, grid, mirror);
         Points *points = seed_points(t, grid);
         look_at(points, grid, mirror, mirror ? print : first);
