@@ -4,7 +4,7 @@
  *   build/bench/bench_bases [-repeat 3] [-case FILE]
  *
  * The bases take turns in one run and the best of several rounds counts, in seconds that a core worked for this
- * process; ratios are to linear functions. Nodes, blocks: those that a point sees, and their pairs in half a tangent. */
+ * process; ratios are to linear functions. Nodes, blocks: what a point sees, and pairs in half a tangent. */
 #include "bench.h"
 #include "input/case_file.h"
 

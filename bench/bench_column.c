@@ -5,8 +5,8 @@
  *
  *   build/bench/bench_column [-full] [-case cases/granular-collapse/case.yaml]
  *
- * `pass`: residual and tangent at the end, ns a point. Seconds are those in which a core worked for this process. Steps of 0.1 ms go to 0.05 s, with
- * -full to 0.5 s. */
+ * `pass`: residual and tangent at the end, ns a point. Seconds are those in which a core worked for this process.
+ * Steps of 0.1 ms go to 0.05 s, with -full to 0.5 s. */
 #include "bench.h"
 #include "input/case_file.h"
 

@@ -5,10 +5,10 @@
  *                              [-case cases/granular-collapse/case.yaml] [-bound PROGRAM]
  *
  * Blocks of about 100,000 points, or of N cells along each side (500 in the plane and 50 in space: a million
- * points), for so many steps of the run; over nodes that are held or over a wall with friction, or under a pressure. -anew: points find
- * their functions anew in every substep, as they do where there is no faster way. PROGRAM: explicit_bound or another, to be run between two columns with
- * arguments "1e-4 0.5 20 1 1 1.5"; it prints its own time. Seconds are those in which a core worked for this
- * process, of the slowest rank. */
+ * points), for so many steps of the run; over nodes that are held or over a wall with friction, or under a pressure.
+ * -anew: points find their functions anew in every substep, as they do where there is no faster way. PROGRAM:
+ * explicit_bound or another, to be run between two columns with arguments "1e-4 0.5 20 1 1 1.5"; it prints its own
+ * time. Seconds are those in which a core worked for this process, of the slowest rank. */
 #include "bench.h"
 #include "input/case_file.h"
 #include "model/explicit/explicit.h"

@@ -25,7 +25,7 @@ typedef struct {
   PetscBool measures;      /* are all measures of the case taken at the end of every step of the run? */
 } Row;
 
-/* The first of a case is what its ratios are to. Grains a hundred times as stiff ask for a tenth of the bound's step. */
+/* The first of a case is what its ratios are to. Grains a hundred times as stiff ask for a tenth of its step. */
 static const Row rows[] = {
   {SOFT, "bound", "explicit", "single", NULL, "$BENCH/explicit_bound 1e-4 0.5", 0},
   {SOFT, "bound", "explicit", "double", NULL, "$BENCH/explicit_bound_double 1e-4 0.5", 0},

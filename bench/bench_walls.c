@@ -3,9 +3,9 @@
  *
  *   build/bench/bench_walls [-steps 150] [-friction 0.6] [-case cases/dry-column/case.yaml]
  *
- * Both take turns, ten steps at a time, in seconds that a core worked for this process. Iterations and assemblies (passes
- * over all points) are counts, the same on every machine: those of the wall may be 1.3 times those of the nodes, and a
- * step 1.2 times as long. */
+ * Both take turns, ten steps at a time, in seconds that a core worked for this process. Iterations and assemblies
+ * (passes over all points) are counts, the same on every machine: those of the wall may be 1.3 times those of the
+ * nodes, and a step 1.2 times as long. */
 #include "bench.h"
 #include "input/case_file.h"
 

@@ -110,7 +110,9 @@ static PetscErrorCode TellMissing(const Layer *l, const YamlNode *list, const Ya
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc1(list->n + 1, &names));
   for (PetscInt i = 0, n = 0; i < list->n; ++i) {
-    const char *other = list->kind == YAML_MAPPING ? list->child[i]->key : name_of(list->child[i]);
+    const YamlNode *child = list->child[i];
+    PetscCheck(child, PETSC_COMM_SELF, PETSC_ERR_PLIB, "a list without an entry");
+    const char *other = list->kind == YAML_MAPPING ? child->key : name_of(child);
     if (other) names[n++] = other;
   }
   yaml_error(l->document, l->diag, entry, PETSC_TRUE, "there is no '%s' in %s that the stage could change", name,

@@ -28,8 +28,8 @@ typedef enum {
    * components */
   POINT_PRESSURE,
   POINT_FORCE, /* dead force of a load carrier, N: dim (0 components for material points) */
-  /* of load carriers that stand for a piece of a surface: half its edges, m; the piece is x + s e (+ t e'), |s|, |t| <= 1:
-   * dim (dim - 1) where the basis averages over pieces (Basis.carry), otherwise 0 components */
+  /* of load carriers that stand for a piece of a surface: half its edges, m; the piece is x + s e (+ t e'), |s|, |t|
+   * <= 1: dim (dim - 1) where the basis averages over pieces (Basis.carry), otherwise 0 components */
   POINT_EDGE,
   /* of followers: from their position, the nearest in the grid, to where they really are, m: dim
    * (others: 0 components) */

@@ -27,20 +27,37 @@ void product_domain(const Points *points, PetscInt p, const PetscReal *size, Pet
   }
 }
 
-/* The nodes of a rank do not count as they stand in space: they are put in order by insertion, as
- * groups of single points want them. */
+/* In rings: slopes along the radius with those of its own weight, and what functions are in slopes along the others. */
+UNROLLED void lean(PetscReal radius, LineFunctions *f, PetscReal leaning[3])
+{
+  for (PetscInt i = 0; i < 3; ++i) leaning[i] = f->N[i];
+  for (PetscInt i = 0; radius > 0 && i < f->n; ++i) {
+    f->dN[i] += f->moment[i] / radius;
+    leaning[i] += f->lean[i] / radius;
+  }
+}
+
+/* The nodes of a rank do not count as they stand in space: they are put in order by insertion, as groups of single
+ * points want them. Returns the place of the k-th to come. */
+UNROLLED PetscInt make_room(const PetscInt dim, PetscInt k, PetscInt here, PetscInt *node, PetscReal *N, PetscReal *dN)
+{
+  for (; k > 0 && node[k - 1] > here; --k) {
+    node[k] = node[k - 1];
+    N[k] = N[k - 1];
+    for (PetscInt d = 0; d < dim; ++d) dN[k * dim + d] = dN[(k - 1) * dim + d];
+  }
+  return k;
+}
+
 UNROLLED PetscInt functions_of(const PetscInt dim, const GridBox *box, const ProductPlace *place, PetscReal radius,
                                LineFunctions *f, PetscInt *node, PetscReal *N, PetscReal *dN)
 {
   PetscInt n = 1, at[3] = {0, 0, 0};
-  PetscReal leaning[3] = {f[0].N[0], f[0].N[1], f[0].N[2]};
-  for (PetscInt i = 0; radius > 0 && i < f[0].n; ++i) {
-    f[0].dN[i] += f[0].moment[i] / radius;
-    leaning[i] += f[0].lean[i] / radius;
-  }
+  PetscReal leaning[3];
+  lean(radius, f, leaning);
   for (PetscInt d = 0; d < dim; ++d) n *= f[d].n;
   for (PetscInt q = 0; q < n; ++q) {
-    PetscInt ijk[3] = {0, 0, dim == 2 ? place->ijk[2] : 0}, k = q;
+    PetscInt ijk[3] = {0, 0, dim == 2 ? place->ijk[2] : 0};
     PetscReal product = 1, gradient[3];
     for (PetscInt d = 0; d < dim; ++d) {
       ijk[d] = f[d].first + at[d];
@@ -50,12 +67,7 @@ UNROLLED PetscInt functions_of(const PetscInt dim, const GridBox *box, const Pro
       gradient[d] = f[d].dN[at[d]];
       for (PetscInt e = 0; e < dim; ++e) gradient[d] *= e == d ? 1 : e == 0 ? leaning[at[0]] : f[e].N[at[e]];
     }
-    const PetscInt here = box_node(box, ijk);
-    for (; k > 0 && node[k - 1] > here; --k) {
-      node[k] = node[k - 1];
-      N[k] = N[k - 1];
-      for (PetscInt d = 0; d < dim; ++d) dN[k * dim + d] = dN[(k - 1) * dim + d];
-    }
+    const PetscInt here = box_node(box, ijk), k = make_room(dim, q, here, node, N, dN);
     node[k] = here;
     N[k] = product;
     for (PetscInt d = 0; d < dim; ++d) dN[k * dim + d] = gradient[d];

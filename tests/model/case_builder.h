@@ -36,8 +36,8 @@ static inline PetscMPIInt ranks_of_world(void)
   return ranks;
 }
 
-/* Walks through variants. On several ranks they take turns, those at even places on two, the others on three: what ranks
- * spoil they spoil in each of them, and a rank that waits costs more than one that works. */
+/* Walks through variants. On several ranks they take turns, those at even places on two, the others on three: what
+ * ranks spoil they spoil in each of them, and a rank that waits costs more than one that works. */
 #define EACH_VARIANT(k, n) for (size_t k = ranks_of_world() == 3; k<(size_t)(n); k += ranks_of_world()> 1 ? 2 : 1)
 #define EACH_OF(k, list) EACH_VARIANT (k, PETSC_STATIC_ARRAY_LENGTH(list))
 /* Triangles, quadrilaterals, tetrahedra, hexahedra up to `last`: the plane and space for any number of ranks. */

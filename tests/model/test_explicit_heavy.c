@@ -1,5 +1,5 @@
 /* Walls with mass in explicit dynamics, against mechanics of rigid bodies: free flight, momentum and energy of
- * collisions, what implicit dynamics gives, rest under their own weight; on any number of ranks, after a resumed run. */
+ * collisions, what implicit dynamics gives, rest under their own weight; on any number of ranks, resumed too. */
 #include "model/explicit/explicit.h"
 #include "heavy.h"
 #include "resumed.h"

@@ -3,8 +3,8 @@
 #include "method/extend/extend.h"
 #include "smooth.h"
 
-/* A beam of 4 m x 1 m, held at x = 0, whose upper side lies `cut` of a cell beyond a line of the grid, as its end does. It
- * bends under its weight in ten static steps. */
+/* A beam of 4 m x 1 m, held at x = 0, whose upper side lies `cut` of a cell beyond a line of the grid, as its end
+ * does. It bends under its weight in ten static steps. */
 static void beam(Bench *b, PetscReal cut, PetscReal follow)
 {
   const PetscReal h = 0.25;

@@ -192,8 +192,8 @@ static void of_height(void *context, PetscInt n, const PetscReal *X, const Petsc
   }
 }
 
-/* The left side of a block from y = 1/4 to 1 under a traction of (30, -20, 7) or a pressure of 30 that varies so: carried
- * by the body's surface, or on faces of the grid. */
+/* The left side of a block from y = 1/4 to 1 under a traction of (30, -20, 7) or a pressure of 30 that varies so:
+ * carried by the body's surface, or on faces of the grid. */
 static void check_factors(const char *method, CellType cell, LoadKind kind, PetscBool on_body)
 {
   const PetscReal t = 0.3, deep = is_space(cell) ? 0.5 : 1;

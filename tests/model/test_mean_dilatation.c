@@ -215,8 +215,8 @@ static PetscReal pushed(const char *method, const char *formulation, CellType ce
   return value;
 }
 
-/* Against implicit finite elements of the same formulation, which share no line with it but the laws: what is left falls
- * with the square of the cells, and displacements alone are farther off. */
+/* Against implicit finite elements of the same formulation, which share no line with it but the laws: what is left
+ * falls with the square of the cells, and displacements alone are farther off. */
 static void test_explicit(void **state)
 {
   static const struct {

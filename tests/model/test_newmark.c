@@ -160,8 +160,8 @@ static void test_rayleigh(void **state)
   }
 }
 
-/* A load that is there from the start: the nodes of fem begin with the accelerations of their mass matrix, and the first
- * step loses nothing. */
+/* A load that is there from the start: the nodes of fem begin with the accelerations of their mass matrix, and the
+ * first step loses nothing. */
 static void test_sudden(void **state)
 {
   (void)state;

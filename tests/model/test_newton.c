@@ -269,8 +269,8 @@ static void forget_flight(Model *m)
   CALL(NewtonCreate(m->comm, &m->c->newton, &m->newton));
 }
 
-/* Nobody asks for a tangent in flight; and when a blow asks for one after all, the step is the same, to the last bit, as
- * that of a solver which begins with one. */
+/* Nobody asks for a tangent in flight; and when a blow asks for one after all, the step is the same, to the last bit,
+ * as that of a solver which begins with one. */
 static void test_no_iteration(void **state)
 {
   static const char *const bases[] = {"cell", "gimp"};

@@ -1,5 +1,5 @@
-/* What points of a nonlocal law hear of the strains around them: against sums over all pairs of points, on any ranks, in
- * the plane and in space; and that they hear it in every step. */
+/* What points of a nonlocal law hear of the strains around them: against sums over all pairs of points, on any ranks,
+ * in the plane and in space; and that they hear it in every step. */
 #include "case_builder.h"
 #include "model/model_private.h"
 

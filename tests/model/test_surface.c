@@ -306,8 +306,8 @@ static void test_selected(void **state)
   bench_refused(&b, PETSC_COMM_WORLD, "loads.tractions[0].on", "selects no face of the body's boundary");
 }
 
-/* A ring that is blown up at once, and turns: the same on all ranks as on one; pieces that turn and stretch on their own
- * keep the surface closed as well as the cells follow it. */
+/* A ring that is blown up at once, and turns: the same on all ranks as on one; pieces that turn and stretch on their
+ * own keep the surface closed as well as the cells follow it. */
 static void test_blown(void **state)
 {
   Bench b;

@@ -112,8 +112,8 @@ static void test_bent(void **state)
   }
 }
 
-/* A bar with a lump at one of its corners turns under loads that do not turn with it: it is let go. Elastic, it does not
- * know in how many steps it was pulled; single points of mpm do, by the cells that they come to lie in. */
+/* A bar with a lump at one of its corners turns under loads that do not turn with it: it is let go. Elastic, it does
+ * not know in how many steps it was pulled; single points of mpm do, by the cells that they come to lie in. */
 static void test_turns(void **state)
 {
   (void)state;

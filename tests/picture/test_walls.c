@@ -194,7 +194,7 @@ static PetscReal seen_box(const Picture *p, PetscReal sign, PetscReal height)
          seen_area(p, 0, -sign, 0, 2 * height) + seen_area(p, 0, 0, sign, 2);
 }
 
-/* What turns to the eye, as far as the picture goes: of a container what is behind its matter, of a thin wall nothing. */
+/* What turns to the eye, as far as the picture goes: of a container what is behind its matter, of a thin wall none. */
 static void FacesInSpace(void **state)
 {
   static Picture p;
@@ -254,8 +254,8 @@ static void FacesHide(void **state)
   assert_true(rgba[LEFT] == 68 && rgba[RIGHT] == 68 && rgba[CORNER] == 235);
 }
 
-/* Empty pixels between a square of points (its side 1 m, its lower one at 0) and a wall whose surface is so far below it,
- * in columns well within. */
+/* Empty pixels between a square of points (its side 1 m, its lower one at 0) and a wall whose surface is so far below
+ * it, in columns well within. */
 static PetscInt empty_above(PetscReal below, PetscBool told)
 {
   enum { N = 16, PIXELS = 240 };

@@ -403,8 +403,8 @@ static void shape_is_filled(void **state)
   }
 }
 
-/* Numbers that tell any two sets of points apart, whichever order these have, and whatever was mirrored about the middle
- * of the grid, or two axes changed. */
+/* Numbers that tell any two sets of points apart, whichever order these have, and whatever was mirrored about the
+ * middle of the grid, or two axes changed. */
 static void look_at(const Points *points, const Grid *grid, unsigned mirror, PetscReal *print)
 {
   PetscReal local[6] = {0};

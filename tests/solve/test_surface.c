@@ -49,8 +49,8 @@ static void block(Body *b, PetscReal angle, PetscReal u0, PetscReal u1, PetscRea
   close_body(b);
 }
 
-/* A block over another one, their points in lattices that do not fit, at any angle: the first row of the upper block, and
- * `alone` that, meets the lower one, with the gap and the normal of the plane between them. */
+/* A block over another one, their points in lattices that do not fit, at any angle: the first row of the upper block,
+ * and `alone` that, meets the lower one, with the gap and the normal of the plane between them. */
 static void face(PetscReal gap, int alone)
 {
   static Body upper, lower;

@@ -35,6 +35,17 @@ static void face_normal(PetscInt dim, PetscInt nf, PetscReal x[4][3], const Pets
   for (int d = 0; d < 3; ++d) n[d] = u[(d + 1) % 3] * v[(d + 2) % 3] - u[(d + 2) % 3] * v[(d + 1) % 3];
 }
 
+/* Of a piece `part` of the face's own coordinates long, from its middle. */
+static void face_edges(PetscInt dim, PetscInt nf, PetscReal x[4][3], const PetscReal *dN, PetscReal part,
+                       PetscReal edge[2][3])
+{
+  for (PetscInt j = 0; j < 2; ++j)
+    for (int d = 0; d < 3; ++d) {
+      edge[j][d] = 0;
+      for (PetscInt i = 0; d < dim && i < nf; ++i) edge[j][d] += part * dN[j * nf + i] * x[i][d];
+    }
+}
+
 /* Points at g to both sides of the middle, in the face's own coordinates. */
 static PetscInt face_points(const Kinematics *kinematics, const Grid *grid, PetscInt cell, PetscInt side, PetscReal g,
                             FacePoint *q)
@@ -61,11 +72,7 @@ static PetscInt face_points(const Kinematics *kinematics, const Grid *grid, Pets
     }
     const PetscReal weight = (nf == 3 ? 1. / 6 : 1) * kinematics_weight(kinematics, q[k].x[0]);
     PetscReal *n = q[k].vector;
-    for (PetscInt j = 0; j < 2; ++j)
-      for (int d = 0; d < 3; ++d) {
-        q[k].edge[j][d] = 0;
-        for (PetscInt i = 0; d < grid->dim && i < nf; ++i) q[k].edge[j][d] += (1 - g) * dN[j * nf + i] * x[i][d];
-      }
+    face_edges(grid->dim, nf, x, dN, 1 - g, q[k].edge);
     face_normal(grid->dim, nf, x, dN, n);
     for (int d = 0; d < 3; ++d) n[d] *= weight;
     q[k].area = PetscSqrtReal(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);

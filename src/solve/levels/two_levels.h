@@ -3,7 +3,7 @@
 #pragma once
 #include "solve/levels/coarse_box.h"
 
-/* Collective. For the matrix of a system of displacements that is gathered, on a grid that coarse_box_fits. System, grid
- * and fixed (n_nodes x dim) must live on; they are read whenever the preconditioner is set up. */
+/* Collective. For the matrix of a system of displacements that is gathered, on a grid that coarse_box_fits. System,
+ * grid and fixed (n_nodes x dim) must live on; they are read whenever the preconditioner is set up. */
 PetscErrorCode TwoLevelsConfigure(PC pc, const System *system, const Grid *grid, const unsigned char *fixed,
                                   PetscBool symmetric);

@@ -157,7 +157,6 @@ static PetscReal iterate_below(const LinearProblem *p)
 #define FACTORISE_BELOW_3D 5000
 #define FACTORISE_BELOW_3D_SOIL 10000
 #define FACTORISE_BELOW_3D_LEVELS 1000
-#define FACTORISE_BELOW_3D_SOIL_LEVELS 1000
 #define FACTORISE_BELOW_2D_LEVELS 5000
 /* near failure tangents have modes that hardly anything resists, and iterations become many */
 #define FACTORISE_BELOW_3D_FAILING 25000
@@ -172,7 +171,7 @@ static PetscInt factorise_below(const LinearProblem *p)
   if (p->dim == 2 && (p->failing || !p->symmetric)) return FACTORISE_BELOW_2D_SOIL;
   if (p->dim == 2) return p->levels ? FACTORISE_BELOW_2D_LEVELS : FACTORISE_BELOW_2D;
   if (p->failing) return FACTORISE_BELOW_3D_FAILING;
-  if (p->levels) return p->symmetric ? FACTORISE_BELOW_3D_LEVELS : FACTORISE_BELOW_3D_SOIL_LEVELS;
+  if (p->levels) return FACTORISE_BELOW_3D_LEVELS;
   return p->symmetric ? FACTORISE_BELOW_3D : FACTORISE_BELOW_3D_SOIL;
 }
 
