@@ -75,6 +75,9 @@ says small/log.txt "linear = conjugate gradients, two levels of the box"
 block >block.yaml
 expect "an iteration that gets nowhere gives way to a factorisation" 0 timeout 60 "$talus" run block.yaml --set petsc.ksp_atol=1e300 --set analysis.end=0.01 --out block --quiet
 says block/log.txt "halvings = 0"
+expect "a key left out on the command line" 0 "$talus" check case.yaml --set 'basis={bspline: {}}' --set basis=null
+expect "one that must be there" 2 "$talus" check case.yaml --set materials=null
+says err.txt "key 'materials'" "is missing"
 expect "check of a mistake" 2 "$talus" check case.yaml --set materials.rubber.yung=1
 says err.txt "--set materials.rubber.yung=1: error: key 'yung' of materials.rubber is not known"
 [ ! -e runs ] || fail "check wrote something"

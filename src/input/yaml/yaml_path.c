@@ -159,6 +159,12 @@ static void bad_path(YamlDocument *document, PetscInt argument, Diag *diag, cons
             "write --set path.to.key=value, for example --set grid.size=0.25 or --set 'bodies[0].points_per_cell=9'");
 }
 
+/* --set key=null: as if the key was not there. Nothing behind '=' is an option of PETSc's without a value. */
+static PetscBool leaves_out(const YamlNode *node, const YamlNode *value)
+{
+  return (PetscBool)(node->parent && node->key && yaml_is_null(value) && value->text[0]);
+}
+
 static PetscErrorCode SetAt(YamlDocument *document, const char *path, YamlNode **value, PetscInt argument, Diag *diag)
 {
   YamlNode *node = document->root;
@@ -173,6 +179,10 @@ static PetscErrorCode SetAt(YamlDocument *document, const char *path, YamlNode *
     }
     PetscCall(Descend(document, node, &step, argument, diag, &node));
     if (!node) PetscFunctionReturn(0);
+  }
+  if (leaves_out(node, *value)) {
+    PetscCall(YamlNodeRemove(node->parent, node->index));
+    PetscFunctionReturn(0);
   }
   PetscCall(Replace(document, node, *value));
   *value = NULL;
