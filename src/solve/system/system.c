@@ -171,14 +171,22 @@ static PetscErrorCode MultiplyBlocks(Mat matrix, Vec x, Vec y)
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode BlockMatrix(System *s, PetscBool symmetric)
+/* A matrix that is nothing but what it does. */
+static PetscErrorCode ShellMatrix(System *s, void *context, void (*multiply)(void))
 {
   const PetscInt n = s->n_active * s->dim;
 
   PetscFunctionBeginUser;
+  PetscCall(MatCreateShell(s->comm, n, n, PETSC_DETERMINE, PETSC_DETERMINE, context, &s->matrix));
+  PetscCall(MatShellSetOperation(s->matrix, MATOP_MULT, multiply));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode BlockMatrix(System *s, PetscBool symmetric)
+{
+  PetscFunctionBeginUser;
   PetscCall(BlocksCreate(s, symmetric, &s->blocks));
-  PetscCall(MatCreateShell(s->comm, n, n, PETSC_DETERMINE, PETSC_DETERMINE, s->blocks, &s->matrix));
-  PetscCall(MatShellSetOperation(s->matrix, MATOP_MULT, (void (*)(void))MultiplyBlocks));
+  PetscCall(ShellMatrix(s, s->blocks, (void (*)(void))MultiplyBlocks));
   PetscFunctionReturn(0);
 }
 
@@ -204,12 +212,9 @@ static PetscErrorCode DiagonalGathered(Mat matrix, Vec diagonal)
 
 static PetscErrorCode GatheredMatrix(System *s, PetscBool symmetric)
 {
-  const PetscInt n = s->n_active * s->dim;
-
   PetscFunctionBeginUser;
   PetscCall(GatheredCreate(s, symmetric, &s->gathered));
-  PetscCall(MatCreateShell(s->comm, n, n, PETSC_DETERMINE, PETSC_DETERMINE, s->gathered, &s->matrix));
-  PetscCall(MatShellSetOperation(s->matrix, MATOP_MULT, (void (*)(void))MultiplyGathered));
+  PetscCall(ShellMatrix(s, s->gathered, (void (*)(void))MultiplyGathered));
   PetscCall(MatShellSetOperation(s->matrix, MATOP_GET_DIAGONAL, (void (*)(void))DiagonalGathered));
   PetscFunctionReturn(0);
 }
