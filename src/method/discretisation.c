@@ -31,6 +31,7 @@ PetscErrorCode DiscretisationDestroy(Discretisation **space)
   PetscCall(PetscFree(s->filled));
   PetscCall(PetscFree(s->volume));
   PetscCall(PetscFree(s->whole));
+  PetscCall(PetscFree(s->rim));
   PetscCall(PetscFree(s->reached));
   PetscCall(ExtensionDestroy(&s->extension));
   PetscCall(PetscFree(s->lumping));

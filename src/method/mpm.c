@@ -114,17 +114,15 @@ static PetscErrorCode Stabilise(Discretisation *s)
 static PetscErrorCode See(Discretisation *s)
 {
   BasisInput basis = {.spec = &s->c->basis, .grid = s->grid, .hoop = s->c->kinematics->hoop};
-  unsigned char *rim = NULL;
 
   PetscFunctionBeginUser;
   if (s->basis->ends_at_held) {
-    PetscCall(PetscMalloc1(s->grid->n_nodes, &rim));
-    PetscCall(BoundaryRims(s->boundary, s->grid, rim));
-    basis.rim = rim;
+    if (!s->rim) PetscCall(PetscMalloc1(s->grid->n_nodes, &s->rim));
+    PetscCall(BoundaryRims(s->boundary, s->grid, s->rim));
+    basis.rim = s->rim;
   }
   PetscCall(s->basis->support(&basis, s->points, s->support));
   if (s->basis->domains) PetscCall(DiscretisationExtend(s, &basis));
-  PetscCall(PetscFree(rim));
   PetscFunctionReturn(0);
 }
 

@@ -1,4 +1,5 @@
 /* The list of nodal forces over the life of a model. */
+#include "method/extend/extend.h"
 #include "model/model_private.h"
 
 NodalScene nodal_scene(const Model *m, PetscReal t, const PetscReal *du)
@@ -20,6 +21,8 @@ NodalScene nodal_scene(const Model *m, PetscReal t, const PetscReal *du)
     .first = (PetscBool)(m->step == 0 && m->initial.parts == 0),
     .passes = (PetscBool)(m->method->restores_grid || m->method->clouds),
     .materials = m->materials,
+    .bends = m->space->basis->bends ? extension_bends : NULL,
+    .bends_context = m->space,
     .contact = m->contact,
     .loads = m->loads,
     .constraints = m->method->clouds ? m->space->constraints : NULL,

@@ -57,6 +57,10 @@ typedef struct {
   /* Nodes, N and dN of all points. In a grid they are located (xi known) and sorted by cell, lost
    * ones last, which get nothing; grid->x counts. In a cloud nodes get the numbers of in->nodes. */
   PetscErrorCode (*support)(const BasisInput *in, const Points *points, Support *support);
+  /* How the functions of point p bend along each axis, nodes x dim: half the square of a way along an axis times this,
+   * more than N and the way times dN, is what they are beyond it; means over a domain so become those at its ends.
+   * Nodes as support lists them; returns how many. NULL: they do not bend. */
+  PetscInt (*bends)(const BasisInput *in, const Points *points, PetscInt p, PetscInt *node, PetscReal *bend);
   /* Groups of local nodes that points at these sites may couple, added to those that are there. */
   PetscErrorCode (*couplings)(const BasisInput *in, const BasisSites *sites, NodeGroups *groups);
 } Basis;

@@ -75,6 +75,17 @@ static PetscErrorCode BsplineSupport(const BasisInput *in, const Points *points,
   PetscFunctionReturn(0);
 }
 
+static PetscInt bspline_bends(const BasisInput *in, const Points *points, PetscInt p, PetscInt *node, PetscReal *bend)
+{
+  const ProductPlace place = product_place(in->grid, points->cell[p]);
+  LineFunctions f[3];
+  PetscReal along[3][3] = {{0}};
+  axis_functions(in, points, p, &place, f);
+  for (PetscInt d = 0; d < in->grid->dim; ++d)
+    for (int k = 0; k < 3 && f[d].n == 3; ++k) along[d][k] = (k == 1 ? -2 : 1) / PetscSqr(place.size[d]);
+  return product_bends(in->grid->box, &place, f, along, node, bend);
+}
+
 static const char *bspline_misfit(const GridSpec *grid)
 {
   const PetscInt dim = cells[grid->cell].dim;
@@ -96,5 +107,6 @@ const Basis basis_bspline = {
   .has_places = PETSC_TRUE,
   .misfit = bspline_misfit,
   .support = BsplineSupport,
+  .bends = bspline_bends,
   .couplings = ProductsCouplings,
 };

@@ -56,6 +56,47 @@ PetscInt gimp_functions(const GridBox *box, PetscBool hoop, const Points *points
   return product_functions(box, place, hoop ? x[0] : 0, f, node, N, dN);
 }
 
+/* Of means whose domain has a kink of the linear functions in it: second differences of these between its ends. */
+static void line_bends(const LineFunctions *f, const PetscReal *line, PetscReal x, PetscReal l, PetscReal bend[3])
+{
+  const PetscReal up = (x + l - line[f->first + 1]) / (line[f->first + 2] - line[f->first + 1]),
+                  down = (line[f->first + 1] - x + l) / (line[f->first + 1] - line[f->first]);
+  const PetscReal ends[3] = {down, 2 - up - down, up};
+  for (int k = 0; k < 3; ++k) bend[k] = (ends[k] - 2 * f->N[k]) / (l * l);
+}
+
+/* Of rings, the means at the upper and lower end are those over circles. */
+static void lean_ends(const GridBox *box, const ProductPlace *place, const LineFunctions *f, PetscReal radius,
+                      PetscReal l, const PetscReal along[3], PetscReal *bend)
+{
+  PetscReal ends[2 * PRODUCT_MOST_NODES], whole[3][3] = {{0}};
+  PetscInt node[PRODUCT_MOST_NODES];
+  LineFunctions leans[2] = {f[0], f[1]};
+  for (int k = 0; k < 3; ++k) {
+    leans[0].N[k] = f[0].lean[k] / radius;
+    whole[1][k] = along[k] + 2 * f[1].N[k] / (l * l);
+  }
+  const PetscInt n = product_bends(box, place, leans, whole, node, ends);
+  for (PetscInt k = 0; k < n; ++k) bend[2 * k + 1] += ends[2 * k + 1];
+}
+
+static PetscInt gimp_bends(const BasisInput *in, const Points *points, PetscInt p, PetscInt *node, PetscReal *bend)
+{
+  const GridBox *box = in->grid->box;
+  const ProductPlace place = product_place(in->grid, points->cell[p]);
+  const PetscReal *x = point_real(points, POINT_X, p);
+  PetscReal l[3] = {0}, along[3][3] = {{0}};
+  LineFunctions f[3];
+  product_domain(points, p, place.size, l);
+  for (PetscInt d = 0; d < box->dim; ++d) {
+    f[d] = gimp_line(box->line[d], place.ijk[d], box->counts[d], x[d], l[d]);
+    if (f[d].n == 3) line_bends(&f[d], box->line[d], x[d], l[d], along[d]);
+  }
+  const PetscInt n = product_bends(box, &place, f, along, node, bend);
+  if (in->hoop) lean_ends(box, &place, f, x[0], l[1], along[1], bend);
+  return n;
+}
+
 static PetscErrorCode GimpSupport(const BasisInput *in, const Points *points, Support *s)
 {
   const GridBox *box = in->grid->box;
@@ -101,6 +142,7 @@ const Basis basis_gimp = {
   .misfit = gimp_misfit,
   .carries = PETSC_TRUE,
   .support = GimpSupport,
+  .bends = gimp_bends,
   .carry = PiecesSupport,
   .couplings = ProductsCouplings,
 };

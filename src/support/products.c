@@ -83,6 +83,20 @@ PetscInt product_functions(const GridBox *box, const ProductPlace *place, PetscR
   return functions_of(3, box, place, radius, f, node, N, dN);
 }
 
+PetscInt product_bends(const GridBox *box, const ProductPlace *place, const LineFunctions *f,
+                       const PetscReal along[3][3], PetscInt *node, PetscReal *bend)
+{
+  PetscReal N[PRODUCT_MOST_NODES], dN[3 * PRODUCT_MOST_NODES];
+  PetscInt n = 0;
+  for (PetscInt d = 0; d < box->dim; ++d) {
+    LineFunctions bent[3] = {f[0], f[1], box->dim == 3 ? f[2] : f[1]};
+    for (int k = 0; k < 3; ++k) bent[d].N[k] = along[d][k];
+    n = product_functions(box, place, 0, bent, node, N, dN);
+    for (PetscInt k = 0; k < n; ++k) bend[k * box->dim + d] = N[k];
+  }
+  return n;
+}
+
 PetscErrorCode ProductsReserve(const Points *points, PetscInt dim, Support *support)
 {
   const PetscInt most = dim == 2 ? 9 : PRODUCT_MOST_NODES;

@@ -40,6 +40,9 @@ void product_domain(const Points *points, PetscInt p, const PetscReal *size, Pet
  * farther out more: at radius > 0, dN = dN + moment / radius along x, and along y N = N + lean / radius counts. */
 PetscInt product_functions(const GridBox *box, const ProductPlace *place, PetscReal radius, LineFunctions *f,
                            PetscInt *node, PetscReal *N, PetscReal *dN);
+/* Basis.bends of products: `along` are second derivatives along each axis of what its functions are. */
+PetscInt product_bends(const GridBox *box, const ProductPlace *place, const LineFunctions *f,
+                       const PetscReal along[3][3], PetscInt *node, PetscReal *bend);
 /* gimp.c. Those of point p, wherever its cell has been left. */
 PetscInt gimp_functions(const GridBox *box, PetscBool hoop, const Points *points, PetscInt p, const ProductPlace *place,
                         PetscInt *node, PetscReal *N, PetscReal *dN);

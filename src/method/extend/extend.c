@@ -90,22 +90,30 @@ static PetscBool sees_follower(const Discretisation *s, const Support *w, PetscI
   return PETSC_FALSE;
 }
 
-/* What point p sees once followers are gone, or `only` that one, and the others are not there; PETSC_FALSE if these
- * nodes are farther apart than those of a point may be, or not all known to this rank. */
-static PetscBool find_row(const Discretisation *s, const Seen *seen, PetscInt p, PetscInt only, Row *row)
+/* A sum over n nodes once followers are gone, or `only` that one, and the others are not there; PETSC_FALSE: not all
+ * nodes are known to this rank. */
+static PetscBool sum_row(const Discretisation *s, PetscInt slopes, PetscInt n, const PetscInt *node, const PetscReal *N,
+                         const PetscReal *dN, PetscInt only, Row *row)
 {
-  const Support *w = seen->support;
-  const PetscInt slopes = seen->slopes, *node = w->node + w->node_start[p];
-  const PetscReal *N = w->N + w->value_start[p], *dN = w->dN + w->value_start[p] * slopes;
   PetscInt at[3];
   row->n = 0;
-  for (PetscInt I = 0; I < support_nodes(w, p); ++I) {
+  for (PetscInt I = 0; I < n; ++I) {
     const PetscInt ways = (PetscInt)s->extension->ways[node[I]];
     if (ways && only != ALL && only != node[I]) continue;
     place_of(s->grid->box, s->extension, node[I], at);
     if (!ways) row_add(row, slopes, node[I], 1, N[I], dN + I * slopes);
     else if (!row_add_follower(row, slopes, s->grid->box, at, ways, N[I], dN + I * slopes)) return PETSC_FALSE;
   }
+  return PETSC_TRUE;
+}
+
+/* What point p sees then; PETSC_FALSE if these nodes are farther apart than those of a point may be, too. */
+static PetscBool find_row(const Discretisation *s, const Seen *seen, PetscInt p, PetscInt only, Row *row)
+{
+  const Support *w = seen->support;
+  const PetscReal *N = w->N + w->value_start[p], *dN = w->dN + w->value_start[p] * seen->slopes;
+  PetscInt at[3];
+  if (!sum_row(s, seen->slopes, support_nodes(w, p), w->node + w->node_start[p], N, dN, only, row)) return PETSC_FALSE;
   box_voxel_of(s->grid, seen->points->cell[p], at);
   return stand_around(s, at, row);
 }
@@ -274,6 +282,25 @@ static PetscErrorCode FindLoaded(const Discretisation *s, Extension *e)
   PetscCall(GridSumToOwners(s->grid, 1, e->loaded));
   PetscCall(GridToGhosts(s->grid, 1, e->loaded));
   PetscFunctionReturn(0);
+}
+
+PetscBool extension_bends(const void *space, PetscInt p, PetscInt n, PetscReal *bend)
+{
+  const Discretisation *s = space;
+  const BasisInput in = {.grid = s->grid, .hoop = s->c->kinematics->hoop, .rim = s->rim};
+  const PetscReal none[PRODUCT_MOST_NODES] = {0};
+  PetscReal raw[3 * PRODUCT_MOST_NODES];
+  PetscInt node[PRODUCT_MOST_NODES];
+  Row row;
+  if (!s->basis->bends || !s->grid->box || s->points->cell[p] < 0) return PETSC_FALSE;
+  const PetscInt seen = s->basis->bends(&in, s->points, p, node, raw);
+  if (!s->extension->any) {
+    for (PetscInt k = 0; k < n * s->grid->dim; ++k) bend[k] = raw[k];
+    return (PetscBool)(seen == n);
+  }
+  if (!sum_row(s, s->grid->dim, seen, node, none, raw, ALL, &row) || row.n != n) return PETSC_FALSE;
+  for (PetscInt k = 0; k < n * s->grid->dim; ++k) bend[k] = row.dN[k];
+  return PETSC_TRUE;
 }
 
 const Support *followers_see(const Discretisation *s, const Points *followers)

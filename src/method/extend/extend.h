@@ -26,6 +26,9 @@ PetscErrorCode DiscretisationExtend(Discretisation *space, const BasisInput *in)
 /* What carriers of loads and tracers see where they are now, of a basis whose functions are theirs, too; nothing of
  * others. Once points have been extended. */
 PetscErrorCode DiscretisationCarry(Discretisation *space, const BasisInput *in);
+/* Basis.bends of a point on the n nodes that it sees, n x dim; PETSC_FALSE: its functions do not bend. space: a
+ * Discretisation. */
+PetscBool extension_bends(const void *space, PetscInt p, PetscInt n, PetscReal *bend);
 /* The functions by which the field moves these: tracers or carriers, of such a basis; NULL: those of their cells. */
 const Support *followers_see(const Discretisation *space, const Points *followers);
 /* Collective. du, v1 and a1 of nodes that follow, for tracers. */

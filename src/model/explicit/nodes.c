@@ -31,6 +31,7 @@ PetscErrorCode ForcesBegin(Model *m, Explicit *e)
   if (!m->forces.n) PetscFunctionReturn(0);
   PetscCall(PetscArrayzero(m->nodes->du, m->grid->n_nodes * m->dim));
   NodalScene scene = nodal_scene(m, e->time, m->nodes->du);
+  scene.bends = NULL; /* springs give more than that */
   if (e->box) {
     PetscCall(NearSee(m, e));
     scene.support = e->near.support;

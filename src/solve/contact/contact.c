@@ -23,6 +23,10 @@
  * against each other for ever: a gap that falls no faster may stay, up to so much of a cell. */
 #define STALLS 0.5
 #define ALLOWED 1e-3
+/* Of what is bonded that happens where strains change from point to point, at ends of a clamped edge, and the whole run
+ * would end there: after so many changes so many times as much may stay. */
+#define PATIENCE 8
+#define BONDED_ALLOWED 10
 /* Of a mixed formulation the penalty is measured by shear, which is what a free surface feels; where
  * matter is locked in it feels its volume, and gaps fall slowly: then the penalty rises until they fall
  * by about so much, up to what volume opposes. */
@@ -304,12 +308,18 @@ static PetscReal allowed(const Contact *s, PetscReal moved)
   return PetscMax(closed, PetscMin(MOVED * moved, FLOWING * s->length));
 }
 
+/* What counts against ALLOWED where gaps stall. */
+static PetscReal stalled_of(const ContactPoint *c, PetscInt change, PetscReal left)
+{
+  return c->law.kind == CONTACT_BONDED && change >= PATIENCE ? left / BONDED_ALLOWED : left;
+}
+
 /* Multipliers become the forces that there are, and the balance is sought again, unless gaps and
  * slips of what is in contact have all but vanished. */
 static PetscErrorCode Augment(void *data, const NodalScene *scene, PetscInt change, PetscBool *again)
 {
   Contact *s = data;
-  PetscReal worst[3] = {0, 0, 0}, of_all[3]; /* left of all points, of those that may be stiffened; motion */
+  PetscReal worst[4] = {0}, of_all[4]; /* left of all points, of those that may be stiffened; motion; stalled_of */
 
   PetscFunctionBeginUser;
   for (const ContactPoint *c = s->point; c < s->point + s->n; ++c) {
@@ -317,10 +327,11 @@ static PetscErrorCode Augment(void *data, const NodalScene *scene, PetscInt chan
     worst[0] = PetscMax(worst[0], left);
     if (is_soft(c, left)) worst[1] = PetscMax(worst[1], left);
     worst[2] = PetscMax(worst[2], motion_of(c));
+    worst[3] = PetscMax(worst[3], stalled_of(c, change, left));
   }
-  PetscCall(MPIU_Allreduce(worst, of_all, 3, MPIU_REAL, MPIU_MAX, scene->grid->comm));
+  PetscCall(MPIU_Allreduce(worst, of_all, 4, MPIU_REAL, MPIU_MAX, scene->grid->comm));
   const PetscBool slow = change > 0 && of_all[0] > STALLS * s->worst, soft = of_all[1] > CLOSED * s->length;
-  const PetscBool stalls = slow && !soft && of_all[0] <= ALLOWED * s->length;
+  const PetscBool stalls = slow && !soft && of_all[3] <= ALLOWED * s->length;
   *again = of_all[0] > allowed(s, of_all[2]) && change < MOST_CHANGES && !stalls;
   s->worst = of_all[0];
   if (!*again) PetscFunctionReturn(0);

@@ -45,7 +45,7 @@ static PetscInt local_node(const NodeFinder *f, PetscInt number)
   return found ? found->node : -1;
 }
 
-/* Nodes of one body's point with their part of the place x, its field taken on from there by first order. */
+/* Nodes of one body's point with their part of the place x, its field taken on from there. */
 static PetscErrorCode Carry(Contact *s, ContactPoint *c, const NodeFinder *f, const SurfacePoint *p, PetscReal sign,
                             PetscInt first)
 {
@@ -53,7 +53,10 @@ static PetscErrorCode Carry(Contact *s, ContactPoint *c, const NodeFinder *f, co
   for (PetscInt I = 0; I < p->n; ++I) {
     const PetscInt e = c->first + first + I;
     PetscReal change = 0;
-    for (PetscInt d = 0; d < s->dim; ++d) change += p->dN[I * s->dim + d] * (c->x[d] - p->x[d]);
+    for (PetscInt d = 0; d < s->dim; ++d) {
+      const PetscReal way = c->x[d] - p->x[d];
+      change += (p->dN[I * s->dim + d] + 0.5 * p->bend[I * s->dim + d] * way) * way;
+    }
     s->node[e] = local_node(f, p->node[I]);
     PetscCheck(s->node[e] >= 0, PETSC_COMM_SELF, PETSC_ERR_PLIB, "a body meets another one on an unknown node");
     s->N[e] = sign * (p->N[I] + change);
@@ -101,7 +104,9 @@ PetscErrorCode ContactFindBodies(Contact *s, const NodalScene *scene)
                            .grid = scene->grid,
                            .points = scene->points,
                            .materials = scene->materials,
-                           .support = scene->support};
+                           .support = scene->support,
+                           .bends = scene->bends,
+                           .bends_context = scene->bends_context};
   NodeFinder finder;
   PetscReal *bounds;
   PetscMPIInt rank;

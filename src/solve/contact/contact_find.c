@@ -3,6 +3,8 @@
 #include "solve/contact/spring.h"
 
 /* Share of a cell within which what had no force at the start of the step counts as touching. */
+#define BENDING 27 /* most nodes of a point whose functions bend */
+
 #define TOUCHES 1e-6
 
 /* Thickness of the material point's part of the body towards n: planes of the undeformed body along
@@ -188,6 +190,23 @@ static PetscReal present_reach(const NodalScene *scene, PetscInt p, const PetscR
   return contact_reach_of(scene->points, p, place->normal);
 }
 
+/* What the functions of the point are `reach` beyond it along -n, more than N there; means over a domain become those
+ * over its side. */
+static void take_lead(const NodalScene *scene, PetscInt p, PetscInt nn, const PetscReal *dN, const PetscReal n[3],
+                      PetscReal reach, PetscReal *lead)
+{
+  const PetscInt dim = scene->grid->dim;
+  PetscReal bend[3 * BENDING];
+  const PetscBool bends = scene->bends && scene->bends(scene->bends_context, p, nn, bend);
+  for (PetscInt I = 0; I < nn; ++I) {
+    lead[I] = 0;
+    for (PetscInt d = 0; d < dim; ++d) {
+      lead[I] -= dN[I * dim + d] * reach * n[d];
+      if (bends) lead[I] += 0.5 * bend[I * dim + d] * PetscSqr(reach * n[d]);
+    }
+  }
+}
+
 /* The surface of a point, `at` in group g of the support, before wall k. */
 static PetscErrorCode MeetPoint(Contact *s, const NodalScene *scene, PetscInt g, PetscInt at, PetscInt k)
 {
@@ -224,12 +243,10 @@ static PetscErrorCode MeetPoint(Contact *s, const NodalScene *scene, PetscInt g,
   for (PetscInt d = 0; d < dim; ++d) c->x[d] = x[d] - reach * place.normal[d];
   contact_take_section(s, scene, contact_section(scene, p, place.normal, (PetscReal[]){x[0], c->x[0]}), c);
   if (kept[k * CONTACT_KEPT(dim)] == 0 && !c->gone) contact_start(scene, c);
+  take_lead(scene, p, nn, dN, place.normal, reach, s->lead + c->first);
   for (PetscInt I = 0; I < nn; ++I) {
-    PetscReal change = 0;
-    for (PetscInt d = 0; d < dim; ++d) change -= dN[I * dim + d] * reach * place.normal[d];
     s->node[c->first + I] = node[I];
-    s->N[c->first + I] = N[I] + change;
-    s->lead[c->first + I] = change;
+    s->N[c->first + I] = N[I] + s->lead[c->first + I];
   }
   PetscFunctionReturn(0);
 }

@@ -20,6 +20,7 @@ typedef struct {
   PetscInt n;                 /* its nodes, by their numbers in the whole grid; 0: not asked for */
   PetscInt node[SURFACE_NODES];
   PetscReal N[SURFACE_NODES], dN[2 * SURFACE_NODES];
+  PetscReal bend[2 * SURFACE_NODES]; /* Basis.bends; 0: not */
 } SurfacePoint;
 
 /* Those of one body that are near another one, of all ranks on each, ascending along x. */
@@ -34,7 +35,9 @@ typedef struct {
   const Grid *grid;
   const Points *points;
   const Material *materials;
-  const Support *support; /* NULL: nodes are not wanted */
+  const Support *support;                                                           /* NULL: nodes are not wanted */
+  PetscBool (*bends)(const void *context, PetscInt p, PetscInt n, PetscReal *bend); /* see NodalScene */
+  const void *bends_context;
 } SurfaceInput;
 
 /* Collective. Boxes around all bodies: n_bodies x 6, min and then minus max. */

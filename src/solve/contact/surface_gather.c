@@ -56,6 +56,7 @@ static PetscErrorCode Carriers(const SurfaceInput *in, PetscInt g, SurfacePoint 
   for (PetscInt I = 0; I < nn; ++I) s->node[I] = in->grid->global_node[node[I]];
   PetscCall(PetscArraycpy(s->N, support_N(in->support, g, s->owner), nn));
   PetscCall(PetscArraycpy(s->dN, support_dN(in->support, g, s->owner, 2), 2 * nn));
+  if (!in->bends || !in->bends(in->bends_context, s->owner, nn, s->bend)) PetscCall(PetscArrayzero(s->bend, 2 * nn));
   PetscFunctionReturn(0);
 }
 

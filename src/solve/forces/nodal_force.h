@@ -33,6 +33,9 @@ typedef struct {
   PetscBool first;  /* is it the first step of all? */
   PetscBool passes; /* does matter go through cells, or points of a cloud, that stay? */
   const Material *materials;
+  /* Basis.bends of point p, on its n nodes in the support, n x dim; PETSC_FALSE: they do not. NULL: nor do others. */
+  PetscBool (*bends)(const void *context, PetscInt p, PetscInt n, PetscReal *bend);
+  const void *bends_context;
   struct Contact *contact; /* NULL: there are no walls */
   const Loads *loads;
   Constraints *constraints; /* NULL: prescribed motion is that of the nodes themselves */
