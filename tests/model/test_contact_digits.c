@@ -88,8 +88,44 @@ static void test_goes_along(void **state)
   }
 }
 
+/* A modulus that changes in its last digits in every step is one that does not: how far a point is from its surface, and
+ * how much of it it stands for, are those of the strain that there is, not of all that the stress was given anew. */
+static void settle(const char *method, const char *basis, PetscBool changes, PetscReal found[2])
+{
+  PetscReal time[] = {0, 1}, value[] = {1, 1 + 1e-6};
+  NamedAmplitude amplitude = {.name = (char *)"young", .amplitude = {.n = 2, .time = time, .value = value}};
+  Bench b;
+  WallSpec floor;
+  on_floor(&b, method, basis, &floor);
+  b.constants[0].value = 3e5;
+  b.c.gravity[1] = -10;
+  if (changes) b.material.n_amplitudes = 1, b.material.amplitudes = &amplitude;
+  b.c.analysis.step = b.c.analysis.largest = 0.025;
+  bench_tracer(&b, "displacement", 1, 0.5, 0.7, 0);
+  Model *m = bench_model(&b, PETSC_COMM_WORLD);
+  while (m->time < 1 - 1e-9) model_step(m, 1 - m->time);
+  CALL(ModelMeasure(m, m->c->measures, 0, found));
+  found[1] = measure(m, "contact", "area", 0);
+  CALL(ModelDestroy(&m));
+}
+
+static void test_ages(void **state)
+{
+  static const char *const ways[][2] = {{"fem", "cell"}, {"mpm", "gimp"}};
+  (void)state;
+  EACH_OF (k, ways) {
+    PetscReal kept[2], changed[2];
+    settle(ways[k][0], ways[k][1], PETSC_FALSE, kept);
+    settle(ways[k][0], ways[k][1], PETSC_TRUE, changed);
+    PetscPrintf(PETSC_COMM_WORLD, "%s: settles by %.9g and %.9g m, area %.9g and %.9g m\n", ways[k][0], (double)kept[0],
+                (double)changed[0], (double)kept[1], (double)changed[1]);
+    for (int i = 0; i < 2; ++i) CHECK_CLOSE(changed[i], kept[i], 1e-5 * PetscAbsReal(kept[i]));
+  }
+}
+
 int main(int argc, char **argv)
 {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_pushed), cmocka_unit_test(test_goes_along)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_pushed), cmocka_unit_test(test_goes_along),
+                                     cmocka_unit_test(test_ages)};
   return run_model_group(argc, argv, tests, PETSC_STATIC_ARRAY_LENGTH(tests));
 }

@@ -34,8 +34,6 @@ PetscBool point_swap(Points *points, PetscInt p, const Material *was, const Mate
   keep_history(was->law, before, is->law, state);
   const PetscReal stretch = PetscPowReal(*J / J_was, 1.0 / 3.0);
   for (PetscInt i = 0; i < points->components[POINT_F]; ++i) point_real(points, POINT_F, p)[i] = stretch * F[i];
-  /* the new stress has taken its own J out of the domain */
-  for (PetscInt d = 0; d < points->components[POINT_DOMAIN]; ++d)
-    point_real(points, POINT_DOMAIN, p)[d] *= PetscPowReal(J_was, 1.0 / 3.0);
+  point_lengthen(points, p, PetscPowReal(J_was, 1.0 / 3.0)); /* the new stress has taken out its own J alone */
   return PETSC_TRUE;
 }

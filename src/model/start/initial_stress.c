@@ -76,17 +76,22 @@ static StressOutcome carry(const Material *material, PetscBool shape, const Pets
   return is_carried(material, shape, sigma, c) ? STRESS_CARRIED : project(material, shape, sigma, c);
 }
 
-void point_compress(Points *points, PetscInt p, PetscReal before, PetscReal J)
+void point_lengthen(Points *points, PetscInt p, PetscReal longer)
 {
-  const PetscReal stretch = PetscPowReal(J, 1.0 / 3.0), F[9] = {stretch, 0, 0, 0, stretch, 0, 0, 0, stretch};
-  const PetscReal longer = PetscPowReal(before / J, 1.0 / 3.0), wider = points->dim == 2 ? longer : longer * longer;
-  point_set_F(points, p, F);
-  points->real[POINT_J][p] = J;
-  points->real[POINT_VOLUME][p] *= before / J;
+  const PetscReal wider = points->dim == 2 ? longer : longer * longer;
   for (PetscInt d = 0; d < points->components[POINT_DOMAIN]; ++d) point_real(points, POINT_DOMAIN, p)[d] *= longer;
   for (PetscInt d = 0; d < points->components[POINT_FACE]; ++d) point_real(points, POINT_FACE, p)[d] *= wider;
   for (PetscInt d = 0; d < points->components[POINT_CORNER]; ++d) point_real(points, POINT_CORNER, p)[d] *= longer;
   if (points->components[POINT_REACH]) points->real[POINT_REACH][p] *= longer;
+}
+
+void point_compress(Points *points, PetscInt p, PetscReal before, PetscReal J)
+{
+  const PetscReal stretch = PetscPowReal(J, 1.0 / 3.0), F[9] = {stretch, 0, 0, 0, stretch, 0, 0, 0, stretch};
+  point_set_F(points, p, F);
+  points->real[POINT_J][p] = J;
+  points->real[POINT_VOLUME][p] *= before / J;
+  point_lengthen(points, p, PetscPowReal(before / J, 1.0 / 3.0));
 }
 
 /* Shape alone carries the deviator, the pressure the mean: nothing is compressed. */

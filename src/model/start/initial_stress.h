@@ -11,3 +11,5 @@ StressOutcome stress_point(Points *points, PetscInt p, const Material *material,
  * its F and undeformed volume take that J, its undeformed domain, reach and face, too, so that it keeps the
  * volume, the domain and the surface that it has. */
 void point_compress(Points *points, PetscInt p, PetscReal before, PetscReal J);
+/* What the point knows of lengths in its undeformed state: domain, reach, corner, and face (in space by the square). */
+void point_lengthen(Points *points, PetscInt p, PetscReal longer);
