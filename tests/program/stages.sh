@@ -28,6 +28,7 @@ measures:
   balance: {energy: balance}
   weight: {reaction: y, of: {boundary: floor}}
   F: {factor_of_safety: upper}
+  mass: {mass: total}
 output: {fields: [displacement, stress], history: {steps: 1}}
 checkpoint: {steps: 1, keep: 99}
 stages:
@@ -88,9 +89,12 @@ for method in mpm fem; do
   expect "$method from two ranks to three" 0 on_ranks 3 "$talus" run --resume cut --quiet
   same_answer "$name" ${method}1 cut
   name="$method, the floor bears all that is there"
-  awk -v a="$(last 1 7 ${method}1)" -v b="$(last 2 7 ${method}1)" -v c="$(last 3 7 ${method}1)" -v d="$(last 4 7 ${method}1)" 'function off(x, y) { return x > y * (1 + 1e-6) || x < y * (1 - 1e-6) }
-    BEGIN { if (off(a, 2.5 * 2000 * 9.81) || off(b, 2 * 2000 * 9.81) || off(c, (2 * 1800 + 0.5 * 1500) * 9.81) || off(d, (2 * 2000 + 0.5 * 1500) * 12)) exit 1 }' ||
-    fail "$name: $(last 1 7 ${method}1) $(last 2 7 ${method}1) $(last 3 7 ${method}1) $(last 4 7 ${method}1)"
+  # fill beside a column that has bulged has less room in cells of fem
+  awk -F, -v bulged=$([ $method = fem ] && echo 0.01 || echo 1e-9) 'function off(x, y, by) { return x > y * (1 + by) || x < y * (1 - by) }
+    { w[$3] = $7; m[$3] = $9 }
+    END { exit off(m[1], 5000, 1e-9) || off(m[2], 4000, 1e-9) || off(m[3], 4350, bulged) || off(m[4], 4750, bulged) ||
+      off(w[1], m[1] * 9.81, 1e-6) || off(w[2], m[2] * 9.81, 1e-6) || off(w[3], m[3] * 9.81, 1e-6) || off(w[4], m[4] * 12, 1e-6) }' ${method}1/history.csv ||
+    fail "$name: $(cut -d, -f3,7,9 ${method}1/history.csv)"
   name="$method, the account of energies closes"
   # dynamics begin with lumped accelerations, which the consistent mass does not balance to the last digit
   awk -F, 'NR > 1 && $6 * $6 > ($3 < 6 ? 1e-16 : 1e-8) { exit 1 }' ${method}1/history.csv || fail "$name"

@@ -22,13 +22,30 @@ static PetscErrorCode CheckCases(const Model *m, const Case *from, PetscBool nex
   PetscFunctionReturn(0);
 }
 
+/* Nodes of fem go where they were, and bodies that come find them there. */
+static PetscErrorCode TakeMesh(Model *m, const Tables *tables, const Case *from, Diag *diag, char reason[256])
+{
+  const PetscInt dofs = m->grid->n_nodes * m->dim;
+  PetscReal *drawn;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(dofs, &drawn));
+  PetscCall(PetscArraycpy(drawn, m->grid->x, dofs));
+  PetscCall(NodalFieldsFromTables(m->nodes, PETSC_TRUE, tables, reason));
+  PetscCall(ReasonShare(m->comm, reason));
+  if (!reason[0]) PetscCall(BodiesArrive(m, from, drawn, diag));
+  PetscCall(PetscFree(drawn));
+  PetscFunctionReturn(0);
+}
+
 /* Nodes of a cloud came with its parts; home: to the ranks that had them. */
-static PetscErrorCode TakeNodes(Model *m, const Tables *tables, PetscBool next, PetscBool home, char reason[256])
+static PetscErrorCode TakeNodes(Model *m, const Tables *tables, const Case *from, PetscBool next, PetscBool home,
+                                Diag *diag, char reason[256])
 {
   PetscFunctionBeginUser;
   if (m->method->clouds) PetscCall(StateCloudSettle(m, tables, home, reason));
-  else if (!m->method->restores_grid || next)
-    PetscCall(NodalFieldsFromTables(m->nodes, !m->method->restores_grid, tables, reason));
+  else if (!m->method->restores_grid) PetscCall(TakeMesh(m, tables, from, diag, reason));
+  else if (next) PetscCall(NodalFieldsFromTables(m->nodes, PETSC_FALSE, tables, reason));
   m->guess = (Guess){0};
   if (next && !reason[0]) PetscCall(ForcesFromTables(m, tables, reason));
   PetscFunctionReturn(0);
@@ -91,9 +108,10 @@ static PetscErrorCode Take(Model *m, Tables *tables, const Case *from, PetscBool
   if (!reason[0]) PetscCall(TakePoints(m, tables, from, onto, diag, reason));
   if (!reason[0] && next) PetscCall(TakeTracers(m, tables, from, reason));
   if (!reason[0] && next) PetscCall(TakeCarriers(m, tables, from, reason));
-  if (!reason[0]) PetscCall(TakeNodes(m, tables, next, home, reason));
+  if (!reason[0]) PetscCall(TakeNodes(m, tables, from, next, home, diag, reason));
   PetscCall(ReasonShare(m->comm, reason));
   if (reason[0] || diag_errors(diag) > errors) PetscFunctionReturn(0);
+  if (m->method->restores_grid || m->grid->n_fields > 1) PetscCall(BodiesStand(m, from, diag));
   PetscCall(ResetMotion(m, from, next, &taken));
   PetscCall(KeepAccount(m, before, taken, next));
   PetscFunctionReturn(0);
@@ -147,6 +165,7 @@ PetscErrorCode ModelTake(Model *m, Tables *tables, const Case *from, PetscBool n
   if (errors) PetscFunctionReturn(0);
   if (!m->method->clouds) m->space->present = PETSC_FALSE;
   PetscCall(ModelInitialise(m));
+  if (!m->method->restores_grid && !m->method->clouds) PetscCall(DiscretisationMass(m->space)); /* of points taken */
   if (m->points->components[POINT_SLOPE] && !table_has(tables_find(tables, "points"), "slope"))
     PetscCall(SlopesStart(m->space, transfer_find(from->analysis.transfer)->slopes));
   settle_stress(m);

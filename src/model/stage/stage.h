@@ -1,9 +1,9 @@
 /* One state goes on as that of another case: of the next stage, or of a case that names another run.
  *
- * Points keep what they know; bodies that are gone lose theirs, new ones bring what they are seeded with. A body
- * of another law, or of other elastic constants, keeps its stress, and of its history what the new law calls by
- * the same names; its F and undeformed volume become those of the new elastic strain, and its mass goes with the
- * density. Nodes of fem keep their places. */
+ * Points keep what they know; bodies that are gone lose theirs, new ones bring what they are seeded with, in cells of
+ * fem as these are now. A body of another law, or of other elastic constants, keeps its stress, and of its history what
+ * the new law calls by the same names; its F and undeformed volume become those of the new elastic strain, and its mass
+ * goes with the density. Nodes of fem keep their places. */
 #pragma once
 #include "base/table/table.h"
 #include "model/model.h"

@@ -7,6 +7,14 @@
  * changed. onto: they come from another grid. */
 PetscErrorCode TakePoints(Model *model, const Tables *tables, const Case *from, PetscBool onto, Diag *diag,
                           char reason[256]);
+/* Was body b of the case not there in `from`? */
+PetscBool body_comes(const Case *c, const Case *from, PetscInt b);
+/* arrive.c. Collective. Points of such bodies, in a mesh whose nodes stood at `drawn` (n_nodes x dim) when they were
+ * seeded, fill their cells as they are now; cells that have no room for them are mistakes. */
+PetscErrorCode BodiesArrive(Model *model, const Case *from, const PetscReal *drawn, Diag *diag);
+/* gaps.c. Collective. Warns of such bodies that begin above what they stand on, or in it: it has moved since it was
+ * drawn. For grids whose nodes do not move, or do not join bodies. */
+PetscErrorCode BodiesStand(const Model *model, const Case *from, Diag *diag);
 /* clouds.c. Bodies, tracers and prescribed nodes that a cloud would have to take in or let go: as far as cases
  * tell. */
 void clouds_check(const Case *c, const Case *from, Diag *diag);

@@ -12,6 +12,13 @@ static PetscInt body_here(const Case *c, const BodySpec *other)
   return -1;
 }
 
+PetscBool body_comes(const Case *c, const Case *from, PetscInt b)
+{
+  for (PetscInt k = 0; k < from->n_bodies; ++k)
+    if (body_here(c, from->bodies + k) == b) return PETSC_FALSE;
+  return PETSC_TRUE;
+}
+
 static PetscInt material_of(const Case *c, PetscInt body)
 {
   PetscInt i = 0;
@@ -80,11 +87,7 @@ static PetscErrorCode SetAside(const Model *m, const Case *from, Points **placed
   PetscCall(PointsCreate(m->dim, 0, 0, placed));
   PetscCall(PetscArraycpy((*placed)->components, points->components, POINT_N_REAL));
   PetscCall(PetscMalloc1(points->n, &take));
-  for (PetscInt p = 0; p < points->n; ++p) {
-    take[p] = PETSC_TRUE;
-    for (PetscInt b = 0; b < from->n_bodies; ++b)
-      if (body_here(m->c, from->bodies + b) == points->body[p]) take[p] = PETSC_FALSE;
-  }
+  for (PetscInt p = 0; p < points->n; ++p) take[p] = body_comes(m->c, from, points->body[p]);
   PetscCall(PointsCopy(points, take, *placed));
   PetscCall(PetscFree(take));
   PetscFunctionReturn(0);

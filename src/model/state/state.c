@@ -418,6 +418,8 @@ PetscErrorCode ModelFromTables(Model *m, Tables *tables, char reason[256])
   PetscCall(ReasonShare(m->comm, reason));
   m->space->present = PETSC_FALSE;
   if (!reason[0]) PetscCall(ModelInitialise(m));
+  if (!reason[0] && !m->method->restores_grid)
+    PetscCall(DiscretisationMass(m->space)); /* of the points that came back */
   PetscFunctionReturn(0);
 }
 
