@@ -74,4 +74,31 @@ for ranks in 1 3; do
 done
 expect "and is reset" 0 "$talus" run falls.yaml --out falls --force --quiet --set 'stages[1]={name: reset, reset: [velocity], analysis: {type: dynamic, end: 0.001, step: 1e-3}}' --set 'loads={gravity: [0, 0]}'
 awk -F, '$3 == 2 { exit !($4 * $4 < 0.0025) }' falls/history.csv || fail "$name: $(grep ',2,' falls/history.csv)"
+
+# What the state before the first step was like is so in later stages, too, and in a run that is resumed in one of them.
+cat >given.yaml <<'END'
+kinematics: plane-strain
+method: fem
+analysis: {type: static, steps: 2}
+grid: {box: {min: [0, 0], max: [6, 3]}, size: 0.5}
+bodies:
+  - {name: ground, shape: {polygon: [[0, 0], [6, 0], [6, 2], [3, 2], [3, 3], [0, 3]]}, material: soil, k0: 0.5}
+  - {name: cut, shape: {box: {min: [3, 2], max: [4, 3]}}, material: soil, k0: 0.5}
+materials:
+  soil: {law: mohr-coulomb, density: 2000, young: 2e7, poisson: 0.3, friction_angle: 30, cohesion: 5e3, dilatancy_angle: 5}
+boundary: [{on: {y: 0}, fix: [x, y]}, {on: {x: 0}, fix: [x]}, {on: {x: 6}, fix: [x]}]
+loads: {gravity: [0, -10]}
+measures: {moved: {initial: moved}, lacked: {initial: lacked}, beyond: {initial: beyond}, left: {initial: left}}
+checkpoint: {steps: 1, keep: 9}
+stages: [{name: rest}, {name: dig, bodies: [{name: cut, absent: true}]}, {name: wait}]
+END
+for ranks in 1 2 3; do
+  expect "the given state on $ranks" 0 on_ranks $ranks "$talus" run given.yaml --out given$ranks
+  awk -F, 'NR == 2 { first = $4 $5 $6 $7; moved = $4 } NR > 1 && $4 $5 $6 $7 != first { exit 1 } END { exit !(moved > 1e-5 && NR > 6) }' given$ranks/history.csv ||
+    fail "$name: $(cut -d, -f3- given$ranks/history.csv)"
+done
+cp given1/history.csv whole.csv
+rm given1/timings.txt given1/checkpoint_*5.h5 given1/checkpoint_*6.h5
+expect "the given state, resumed" 0 "$talus" run --resume given1 --quiet
+cmp -s whole.csv given1/history.csv || fail "$name: $(cut -d, -f3- given1/history.csv)"
 finish

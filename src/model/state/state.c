@@ -139,7 +139,7 @@ static PetscErrorCode InitialToTables(const Model *m, Tables *tables)
   Table *table;
 
   PetscFunctionBeginUser;
-  if (m->c->initial.equilibrium <= EQUILIBRIUM_NONE) PetscFunctionReturn(0);
+  if (m->c->initial.equilibrium <= EQUILIBRIUM_NONE && !m->c->stage) PetscFunctionReturn(0);
   PetscCall(TablesAdd(tables, "initial", PETSC_TRUE, 1, &table));
   PetscCall(TableAdd(table, "kept", NULL, COLUMN_REAL, INITIAL_KEPT, (void *)&m->initial, NULL));
   PetscFunctionReturn(0);
@@ -446,6 +446,7 @@ PetscErrorCode StateGoOn(Model *m, const Tables *tables, char reason[256])
   for (PetscInt k = 0; kept && k < m->c->n_measures * MEASURE_KEPT; ++k)
     m->memory[k / MEASURE_KEPT].kept[k % MEASURE_KEPT] = kept[k];
   tries_from_table(m, tables_find(tables, "tries"), reason);
+  initial_from_table(m, tables_find(tables, "initial"), reason);
   state_lost_from_tables(m, tables, reason);
   PetscCall(StateListsFromTables(m, tables, reason));
   PetscFunctionReturn(0);
