@@ -148,6 +148,31 @@ static void test_rests(void **state)
   }
 }
 
+/* The blocks meet over the length of the upper one, whichever is named first. */
+static void test_area(void **state)
+{
+  static const Pair pairs[] = {
+    {"fem", "cell", CELL_QUADRILATERAL, 0.8, NULL, "thesis"}, {"mpm", "gimp", CELL_QUADRILATERAL, 0.8, NULL, "thesis"},
+    {"fem", "cell", CELL_TRIANGLE, 0.8, NULL, "thesis"},      {"mpm", "cell", CELL_QUADRILATERAL, 0.8, NULL, "thesis"},
+    {"mpm", "cell", CELL_TRIANGLE, 0.8, NULL, "thesis"},
+  };
+  (void)state;
+  EACH_OF (k, pairs)
+    for (int order = 0; order < 2; ++order) {
+      Bench b;
+      InterfaceSpec joint;
+      char *const first = between[0];
+      between[0] = between[1], between[1] = first;
+      Model *m = standing(&b, &pairs[k], SLOPE, PETSC_FALSE, &joint);
+      while (m->time < 1 - 1e-9) model_step(m, 0.25);
+      const PetscReal area = measure(m, "interface", "area", 0);
+      PetscPrintf(PETSC_COMM_WORLD, "%s %s cell %d, '%s' first: %.6g m\n", pairs[k].method, pairs[k].basis,
+                  (int)pairs[k].cell, between[0], (double)area);
+      CHECK_CLOSE(area, 1, 2e-3);
+      CALL(ModelDestroy(&m));
+    }
+}
+
 /* A bar of 1 x 0.1 m flies against another one, or against a wall between them: its momentum behind. */
 static PetscReal rebound(const Pair *r, PetscBool wall)
 {
@@ -260,7 +285,7 @@ int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(test_slides),   cmocka_unit_test(test_rests),   cmocka_unit_test(test_collides),
-    cmocka_unit_test(test_explicit), cmocka_unit_test(test_refused),
+    cmocka_unit_test(test_explicit), cmocka_unit_test(test_refused), cmocka_unit_test(test_area),
   };
   return run_model_group(argc, argv, tests, PETSC_STATIC_ARRAY_LENGTH(tests));
 }

@@ -152,11 +152,36 @@ static void test_edges(void **state)
   assert_true(deepest < -0.1);
 }
 
+/* The lengths over which two rows of points meet, as each of them counts: the first from 0 to 1, the other shifted by
+ * `shift` and of its own length, in lattices that do not fit, at any angle. */
+static PetscReal met_by(const Body *a, const Body *b)
+{
+  PetscReal sum = 0;
+  SurfacePair pair;
+  for (const SurfacePoint *p = a->point; p < a->point + a->surface.n; ++p)
+    if (surface_meet(&a->surface, p, &b->surface, 0.25, &pair)) sum += pair.cover * p->size;
+  return sum;
+}
+
+static void test_cover(void **state)
+{
+  static Body upper, lower;
+  (void)state;
+  for (int k = 0; k < 24; ++k) {
+    const PetscReal angle = 0.27 * k, shift = 0.04 * k - 0.4, length = 0.6, size = 0.1;
+    const PetscReal both = PetscMin(1, shift + length) - PetscMax(0, shift);
+    block(&lower, angle, 0, 1, -0.5, 0, 0.125);
+    block(&upper, angle, shift, shift + length - 1e-9, 0.001, 0.5, size);
+    assert_true(PetscAbsReal(met_by(&upper, &lower) - both) < 0.02 * size + 1e-6);
+    assert_true(PetscAbsReal(met_by(&lower, &upper) - both) < 0.02 * 0.125 + 1e-6);
+  }
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(test_planes), cmocka_unit_test(test_corner), cmocka_unit_test(test_circles),
-    cmocka_unit_test(test_sunk),   cmocka_unit_test(test_edges),
+    cmocka_unit_test(test_sunk),   cmocka_unit_test(test_edges),  cmocka_unit_test(test_cover),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

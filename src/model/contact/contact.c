@@ -185,7 +185,7 @@ static void take_section(const Model *m, const NodalScene *scene, ContactPoint *
   contact_place(s, c, m->nodes->du, 1, x);
   for (PetscInt e = c->first; e < c->first + c->own; ++e)
     r += (s->N[e] - s->lead[e]) * m->nodes->du[s->node[e] * m->dim];
-  c->section = contact_section(scene, c->owner, c->normal, (PetscReal[]){r, x[0]});
+  c->section = c->cover * contact_section(scene, c->owner, c->normal, (PetscReal[]){r, x[0]});
 }
 
 PetscErrorCode ContactSurvey(Model *m)

@@ -26,7 +26,8 @@ typedef struct {
   PetscReal x[3];      /* at the start of the step, m */
   PetscReal swept[3];  /* what the wall's matter there moves by in the step, m; */
   PetscReal passes[3]; /* and that which is there in its middle: forces times it are work, torques times angles alike */
-  PetscReal section;   /* of the surface that it stands for, m2 */
+  PetscReal section;   /* of the surface that it stands for, m2; */
+  PetscReal cover;     /* the share of it that the other body stands before; 1: a wall */
   /* of its material, and of that of the other body (0: a wall), Pa, kg/m3 */
   PetscReal modulus[2], density[2];
   PetscReal stiffer; /* by so much does it oppose a change of volume more than `modulus` says */

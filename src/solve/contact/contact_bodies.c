@@ -87,6 +87,7 @@ static PetscErrorCode Meet(Contact *s, const NodalScene *scene, const NodeFinder
     PetscFunctionReturn(0);
   }
   for (PetscInt d = 0; d < s->dim; ++d) c->x[d] = p->x[d] - c->reach * pair->normal[d];
+  c->cover = pair->cover;
   contact_take_section(s, scene, contact_section(scene, p->owner, pair->normal, (PetscReal[]){p->x[0], c->x[0]}), c);
   if (kept[0] == 0) contact_start(scene, c);
   PetscCall(ContactAddNodes(s, c, p->n + pair->other->n));

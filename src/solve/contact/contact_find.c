@@ -67,7 +67,7 @@ PetscErrorCode ContactAdd(Contact *s, ContactPoint **c)
     PetscCall(PetscRealloc((size_t)s->capacity * sizeof *s->point, &s->point));
   }
   *c = s->point + s->n++;
-  **c = (ContactPoint){.first = s->n_nodes, .slot = s->n_slots};
+  **c = (ContactPoint){.first = s->n_nodes, .slot = s->n_slots, .cover = 1};
   PetscFunctionReturn(0);
 }
 
@@ -120,8 +120,8 @@ void contact_take_section(const Contact *s, const NodalScene *scene, PetscReal s
   const PetscReal divisor = divisor_of(s, scene, c);
   const PetscReal adhesion =
     wall ? scene->c->walls[c->wall].adhesion : scene->c->interfaces[c->wall - s->n_walls].adhesion;
-  c->section = section;
-  c->bond = divisor > 0 ? adhesion / divisor * section : 0;
+  c->section = c->cover * section;
+  c->bond = divisor > 0 ? adhesion / divisor * c->section : 0;
 }
 
 /* A bonded interface holds what touches at the start, and nothing that comes later. */

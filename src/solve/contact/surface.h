@@ -52,7 +52,13 @@ typedef struct {
   const SurfacePoint *other;
   PetscReal normal[3]; /* unit, out of the other body */
   PetscReal gap;       /* from the point itself to the other one's surface, m */
+  PetscReal cover;     /* share of the point's surface that the other body stands before */
 } SurfacePair;
+
+/* Index of the first point that is at least at x. */
+PetscInt surface_first_at(const Surface *s, PetscReal x);
+/* surface_cover.c. SurfacePair.cover of what was found; 0: too little to count. */
+PetscReal surface_cover(const Surface *a, const SurfacePoint *p, const Surface *b, const SurfacePair *pair);
 
 /* What of b is before point p of a, on a's surface; PETSC_FALSE: nothing within h, the length of a cell. */
 PetscBool surface_meet(const Surface *a, const SurfacePoint *p, const Surface *b, PetscReal h, SurfacePair *pair);

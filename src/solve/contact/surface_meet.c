@@ -19,8 +19,7 @@ typedef struct {
   PetscReal least;
 } Part;
 
-/* Place of the first point of the surface that is at least at x. */
-static PetscInt first_at(const Surface *s, PetscReal x)
+PetscInt surface_first_at(const Surface *s, PetscReal x)
 {
   PetscInt lo = 0, hi = s->n;
   while (lo < hi) {
@@ -41,7 +40,7 @@ static void part_around(const Surface *s, const PetscReal *x, PetscReal radius, 
 {
   part->n = 0;
   part->least = PETSC_MAX_REAL;
-  for (PetscInt k = first_at(s, x[0] - radius); k < s->n && s->point[k].x[0] <= x[0] + radius; ++k) {
+  for (PetscInt k = surface_first_at(s, x[0] - radius); k < s->n && s->point[k].x[0] <= x[0] + radius; ++k) {
     if (square(s->point[k].x, x) > radius * radius || part->n == MOST_POINTS) continue;
     part->point[part->n++] = s->point + k;
     part->least = PetscMin(part->least, s->point[k].reach);
@@ -170,7 +169,7 @@ static const SurfacePoint *nearest_of(const Surface *b, const PetscReal *x, Pets
   const SurfacePoint *best = NULL;
   PetscReal nearest = within * within;
   *least = within;
-  for (PetscInt k = first_at(b, x[0] - within); k < b->n && b->point[k].x[0] <= x[0] + *least; ++k) {
+  for (PetscInt k = surface_first_at(b, x[0] - within); k < b->n && b->point[k].x[0] <= x[0] + *least; ++k) {
     const PetscReal now = square(b->point[k].x, x);
     if (now >= nearest) continue;
     nearest = now, best = b->point + k;
@@ -231,5 +230,7 @@ PetscBool surface_meet(const Surface *a, const SurfacePoint *p, const Surface *b
   n[1] = scale * (p->x[1] - q->x[1]);
   n[2] = 0;
   face_each_other(&mine, &theirs, 0.5 * (p->size + q->size), n);
-  return !is_behind(&mine, p, pair->normal) && choose(&theirs, p, pair);
+  if (is_behind(&mine, p, pair->normal) || !choose(&theirs, p, pair)) return PETSC_FALSE;
+  pair->cover = surface_cover(a, p, b, pair);
+  return pair->cover > 0;
 }
