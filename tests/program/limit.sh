@@ -107,6 +107,36 @@ for ranks in 1 2 3; do
   awk -F, 'END { exit !($3 > 13.862 && $3 < 13.883) }' run/history.csv || fail "$name: $(tail -1 run/history.csv)"
 done
 
+# A thick sphere of the same soil: all of its stresses stand on edges, and steps become tiny at the limit, 4 c ln(b / a) = 4.3944 and 5 % more on
+# these cells. With a law that has no edges they do not
+cat >sphere.geo <<'END'
+Point(1)={0,0,0};Point(2)={1,0,0};Point(3)={3,0,0};Point(4)={0,3,0};Point(5)={0,1,0};
+Line(1)={2,3};Circle(2)={3,1,4};Line(3)={4,5};Circle(4)={5,1,2};
+Line Loop(1)={1,2,3,4};Plane Surface(1)={1};
+Physical Surface("ring")={1};Physical Curve("axis")={3};Physical Curve("foot")={1};Physical Curve("in")={4};
+Transfinite Curve{1,3}=5;Transfinite Curve{2,4}=7;Transfinite Surface{1};Recombine Surface{1};
+END
+cat >sphere.yaml <<'END'
+kinematics: axisymmetric
+method: fem
+formulation: mean-dilatation
+analysis: {type: limit-load, limit: {raise: p, step: 0.1}}
+grid: {mesh: sphere.geo}
+bodies: [{name: ball, region: ring, points_per_cell: 4, material: clay}]
+materials: {clay: {law: mohr-coulomb, density: 1, young: 1e9, poisson: 0.3, friction_angle: 0, cohesion: 1e5}}
+boundary: [{on: {boundary: foot}, fix: [y]}, {on: {boundary: axis}, fix: [x]}]
+loads: {pressures: [{name: p, on: {boundary: in}, value: 1e5}]}
+measures: {limit: {limit_load: value}, load: {limit_load: load}}
+END
+for ranks in 1 2; do
+  expect "a sphere on $ranks" 0 on_ranks $ranks timeout 120 "$talus" run sphere.yaml --out run --force
+  says out.txt "by load = it holds: as in the last 50 steps, which are tiny, it would grow by" "limit load = 4."
+  lacks out.txt "no limit was found"
+  awk -F, 'END { exit !($3 > 4.6 && $3 < 4.62 && NR < 250) }' run/history.csv || fail "$name: $(tail -1 run/history.csv)"
+done
+expect "a sphere without edges" 0 "$talus" run sphere.yaml --out run --force --set 'materials.clay={law: j2, density: 1, young: 1e9, poisson: 0.3, yield_stress: 2e5}'
+says out.txt "by load = it holds: it grew by"
+
 # Resumed anywhere: the same bits
 expect "whole" 0 "$talus" run block.yaml --out whole --quiet --set checkpoint.steps=3 --set checkpoint.keep=99
 cp -r whole cut

@@ -8,6 +8,11 @@
 #define SHARE 0.15
 /* a load that has fallen so many tolerances below its largest does not come back */
 #define FALLEN 4
+/* Steps that have become so small, of the way that lies behind, will not double it; after so many of them it is asked
+ * whether a mechanism flows already, which stores no more than this share of the load's work. */
+#define TINY 1e-3
+#define CREPT 50
+#define STORED 0.1
 
 PetscErrorCode LimitRunDestroy(LimitRun *s)
 {
@@ -78,12 +83,25 @@ static PetscReal growth(const LimitRun *s)
   return i > 0 && most > 0 ? (most - s->rows[i].load) / most : 1;
 }
 
+/* Where steps are tiny: what the load would grow by, over the largest, while the displacement doubles, if it went on as
+ * in the last of them. It will grow by less, since what yields more and more gets no stiffer. 1: no answer. */
+static PetscReal creep(const LimitRun *s)
+{
+  if (s->n <= CREPT) return 1;
+  const LimitRow *b = &s->rows[s->n - 1], *a = b - CREPT;
+  const PetscReal way = b->displacement - a->displacement, work = b->work - a->work, most = largest_load(s);
+  if (b->control - a->control > CREPT * TINY * b->control || way <= 0 || work <= 0 || most <= 0) return 1;
+  if (PetscAbsReal(b->stored - a->stored) > STORED * work) return 1;
+  return (b->load - a->load) / way * b->displacement / most;
+}
+
 static LimitOutcome judge(const LimitRun *s, const LimitSpec *spec, PetscBool forces)
 {
   const LimitRow *last = &s->rows[s->n - 1];
   const PetscReal most = largest_load(s);
   if (growth(s) <= spec->tolerance) return LIMIT_HOLDS;
   if (last->load < (1 - FALLEN * spec->tolerance) * most) return LIMIT_FALLS;
+  if (creep(s) <= spec->tolerance) return LIMIT_FLOWS;
   return (forces ? most : last->control * (1 + 1e-9)) >= spec->most ? LIMIT_MOST : LIMIT_RISES;
 }
 
@@ -139,6 +157,28 @@ PetscErrorCode LimitWrite(const LimitRun *s, const Model *m, RunDir *dir)
   PetscFunctionReturn(status);
 }
 
+static PetscErrorCode TellLoad(const LimitRun *s, RunDir *dir)
+{
+  static const char *const why[LIMIT_N] = {
+    [LIMIT_RISES] = "it still rises",
+    [LIMIT_HOLDS] = "it holds",
+    [LIMIT_FALLS] = "it falls",
+    [LIMIT_MOST] = "it still rises where the search was to end (analysis.limit.most)",
+    [LIMIT_LOST] = "Newton's method lost its way",
+  };
+
+  PetscFunctionBeginUser;
+  if ((LimitOutcome)s->outcome == LIMIT_FLOWS)
+    PetscCall(RunDirLog(dir,
+                        "by load = it holds: as in the last %d steps, which are tiny, it would grow by %.2g %% while "
+                        "the displacement doubles",
+                        CREPT, 100 * (double)creep(s)));
+  else
+    PetscCall(RunDirLog(dir, "by load = %s: it grew by %.2g %% while the displacement doubled",
+                        why[(LimitOutcome)s->outcome], 100 * (double)growth(s)));
+  PetscFunctionReturn(0);
+}
+
 /* Share of the load's work in the last step that was stored: nothing where a mechanism has formed. */
 static PetscReal share_stored(const LimitRun *s)
 {
@@ -148,22 +188,14 @@ static PetscReal share_stored(const LimitRun *s)
 
 PetscErrorCode LimitEnd(const LimitRun *s, Model *m, RunDir *dir)
 {
-  static const char *const why[LIMIT_N] = {
-    [LIMIT_RISES] = "it still rises",
-    [LIMIT_HOLDS] = "it holds",
-    [LIMIT_FALLS] = "it falls",
-    [LIMIT_MOST] = "it still rises where the search was to end (analysis.limit.most)",
-    [LIMIT_LOST] = "Newton's method lost its way",
-  };
   const LimitSpec *spec = &m->c->analysis.limit;
   const LimitOutcome outcome = (LimitOutcome)s->outcome;
 
   PetscFunctionBeginUser;
   m->raised.value = largest_load(s);
-  PetscCall(RunDirLog(dir, "by load = %s: it grew by %.2g %% while the displacement doubled", why[outcome],
-                      100 * (double)growth(s)));
+  PetscCall(TellLoad(s, dir));
   PetscCall(RunDirLog(dir, "by energy = %.1f %% of the load's last work was stored", 100 * (double)share_stored(s)));
-  if (outcome != LIMIT_HOLDS && outcome != LIMIT_FALLS)
+  if (outcome != LIMIT_HOLDS && outcome != LIMIT_FALLS && outcome != LIMIT_FLOWS)
     PetscCall(RunDirLog(dir, "warning = no limit was found: the load is the largest that was reached"));
   if (case_raises_displacement(m->c))
     PetscCall(
