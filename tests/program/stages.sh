@@ -154,6 +154,9 @@ sed '/^stages:/,$d; /^  settle:/d' cloud.yaml >clouds-later.yaml
 expect "clouds from another run" 0 on_ranks 2 "$talus" run clouds-later.yaml --out later-cloud --set initial.run=lme3 --set initial.stage=same
 says later-cloud/log.txt "initial = " "/lme3"
 awk '/out of balance/ { if ($5 > 0.02 * 49050) exit 1 }' later-cloud/log.txt || fail "$name: $(grep balance later-cloud/log.txt)"
+sed '/^stages:/,$d' cloud.yaml >clouds-traced.yaml
+expect "a tracer of clouds from another run" 2 "$talus" run clouds-traced.yaml --out traced-cloud --set initial.run=lme3 --set initial.stage=same
+says err.txt "tracers of method gmm begin where the body does" "make it a stage of that run, or leave the measure out"
 
 # From a stage of another run: with fem, whose nodes keep their places, nothing is out of balance where nothing has changed
 sed '/^stages:/,$d' column.yaml | sed 's/name: top/name: top, absent: true/; s/name: prop/name: prop, absent: true/; /^  F:/d' >later.yaml

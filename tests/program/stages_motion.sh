@@ -101,4 +101,30 @@ cp given1/history.csv whole.csv
 rm given1/timings.txt given1/checkpoint_*5.h5 given1/checkpoint_*6.h5
 expect "the given state, resumed" 0 "$talus" run --resume given1 --quiet
 cmp -s whole.csv given1/history.csv || fail "$name: $(cut -d, -f3- given1/history.csv)"
+
+# A law that has no state without stress begins with the stresses of another run, which need not be given once more; a body that comes needs its own
+cat >clay.yaml <<'END'
+kinematics: plane-strain
+method: fem
+formulation: mean-dilatation
+analysis: {type: static, steps: 2}
+grid: {box: {min: [0, 0], max: [2, 3]}, size: 0.5}
+bodies:
+  - {name: clay, shape: {box: {min: [0, 0], max: [2, 2]}}, material: clay, k0: 0.6}
+materials: {clay: {law: modified-cam-clay, density: 2000, lambda: 0.1, kappa: 0.02, critical_stress_ratio: 1, specific_volume: 2, shear_modulus: 1e6, ocr: 2}}
+boundary: [{on: {y: 0}, fix: [x, y]}, {on: {x: 0}, fix: [x]}, {on: {x: 2}, fix: [x]}]
+loads: {gravity: [0, -10]}
+measures: {weight: {reaction: y, of: {boundary: 0}}, stress: {stress: yy}}
+END
+sed 's/, k0: 0.6//; s/^analysis.*/&\ninitial: {run: clay}/' clay.yaml >later.yaml
+for method in fem mpm; do
+  expect "clay, $method" 0 "$talus" run clay.yaml --out clay --force --set method=$method
+  for ranks in 1 2 3; do
+    expect "clay from another run, $method on $ranks" 0 on_ranks $ranks "$talus" run later.yaml --out later --force --set method=$method
+    awk -F, 'NR > 2 && ($3 > 80001 || $3 < 79999 || $4 > -19999 || $4 < -20001) { exit 1 }' later/history.csv || fail "$name: $(cat later/history.csv)"
+  done
+done
+sed 's/^  - {name: clay.*/&\n  - {name: more, shape: {box: {min: [0, 2], max: [2, 2.5]}}, material: clay}/' later.yaml >more.yaml
+expect "clay that comes" 2 "$talus" run more.yaml --out more --set method=mpm
+says err.txt "'more' is of modified-cam-clay, which has no state without stress"
 finish

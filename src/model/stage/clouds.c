@@ -76,7 +76,9 @@ static void check_tracers(const Case *c, const Case *from, Diag *diag)
     if (!c->measures[k].has_tracer || measure_before(c, k, from) >= 0) continue;
     snprintf(path, sizeof path, "measures.%s.of.tracer", c->measures[k].name);
     diag_error(diag, path, "tracers of method gmm begin where the body does, in the first stage");
-    diag_hint(diag, "name the measure at the top of the file");
+    diag_hint(diag, c->stage ? "name the measure at the top of the file"
+                             : "a run that begins with the state of another one has none: make it a stage of that run, "
+                               "or leave the measure out");
   }
 }
 
