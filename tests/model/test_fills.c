@@ -197,17 +197,44 @@ static void says(PetscReal g, PetscReal by, const char *words)
 static void test_gaps(void **state)
 {
   (void)state;
-  says(150, 0, "warning: 'fill' begins up to 0.03");
-  says(150, 0, "above what it stands on, near (");
-  says(150, 0, "let its shape begin where that is now, at y = 0.72");
+  says(150, 0, "warning: 'fill' begins 0.03");
+  says(150, 0, "above what it stands on, in the middle of its foot");
+  says(150, 0, "let its shape begin where the ground is now, at y = 0.72");
   says(150, -0.03, NULL);
   says(20, 0, NULL);
   says(-150, 0, "inside what it stands on");
 }
 
+/* A wedge on a slope, and a block beside a face, of stiff ground that does not move: nothing is said, whatever the cells. */
+static void test_slopes(void **state)
+{
+  static const CellType types[] = {CELL_QUADRILATERAL, CELL_TRIANGLE};
+  (void)state;
+  EACH_OF (k, types)
+    for (int face = 0; face < 2; ++face) {
+      PetscReal ground[] = {0, 0, 1, 0, 1, 0.1, 0.55, 0.1, 0.2, 0.9, 0, 0.9};
+      PetscReal fill[] = {1, 0.1, 1, 0.9, 0.2, 0.9, 0.55, 0.1};
+      Bench first, then;
+      if (face) ground[6] = fill[6] = ground[8] = fill[4] = 0.43;
+      both(&first, &then, "mpm", types[k], &kinematics_plane_strain, "displacement", -0.1);
+      for (int side = 0; side < 2; ++side) {
+        Bench *b = side ? &then : &first;
+        b->c.grid.counts[0] = b->c.grid.counts[1] = 12;
+        b->body[0].shape = (Shape){.kind = SHAPE_POLYGON, .n_vertices = 6, .vertices = ground};
+        b->body[1].shape = (Shape){.kind = SHAPE_POLYGON, .n_vertices = 4, .vertices = fill};
+      }
+      Model *m = bench_model(&first, PETSC_COMM_WORLD);
+      model_step(m, 1);
+      char *said = go_on(&then, PETSC_TRUE, &m);
+      CHECK(m && !said[0], "it says %s", said);
+      free(said);
+      CALL(ModelDestroy(&m));
+    }
+}
+
 int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {cmocka_unit_test(test_moved), cmocka_unit_test(test_heaved),
-                                     cmocka_unit_test(test_gaps)};
+                                     cmocka_unit_test(test_gaps), cmocka_unit_test(test_slopes)};
   return run_model_tests(argc, argv, tests);
 }

@@ -3,9 +3,11 @@
  * Heights are compared in columns along gravity, as wide as the parts of points are. All ranks know all columns. */
 #include "model/stage/stage_private.h"
 
-#define FARTHEST 3         /* cells: what is farther apart was not drawn to touch */
-#define WIDE 0.1           /* cells, of the mean over the foot: less is what points know of where a surface is; */
-#define WIDE_SOMEWHERE 0.5 /* and in one column */
+#define FARTHEST 3 /* cells: what is farther apart was not drawn to touch */
+/* Cells, of the middle one of all gaps of a foot: less is what points know of where a surface is; those of triangles
+ * and tetrahedra, which stand in no rows, know less. */
+#define WIDE 0.1
+#define WIDE_ASKEW 0.25
 #define MOST_COLUMNS 4000000
 
 typedef struct {
@@ -18,13 +20,6 @@ typedef struct {
   PetscInt *body;       /* the one that stands lowest */
 } Columns;
 
-/* Of one body, over the columns of its foot. */
-typedef struct {
-  PetscInt n;
-  PetscReal gap, high;       /* their sums, m */
-  PetscReal worst, where[3]; /* the widest gap, or the deepest overlap (< 0), m */
-} Foot;
-
 static void choose_axis(const Model *m, Columns *s)
 {
   s->axis = m->dim - 1;
@@ -34,13 +29,22 @@ static void choose_axis(const Model *m, Columns *s)
   if (m->c->gravity[s->axis] > 0) s->sign = -1;
 }
 
+/* Of the parts of points: no column of a body may be without any. */
+static PetscReal width_of(const Model *m)
+{
+  PetscReal width = 0.5;
+  for (PetscInt b = 0; b < m->c->n_bodies; ++b)
+    if (m->c->bodies[b].points_per_cell < (m->dim == 2 ? 4 : 8)) width = 1;
+  return width * m->grid->smallest;
+}
+
 static PetscErrorCode ColumnsCreate(const Model *m, Columns *s)
 {
   const Grid *grid = m->grid;
 
   PetscFunctionBeginUser;
   choose_axis(m, s);
-  for (s->width = 0.5 * grid->smallest, s->n = MOST_COLUMNS + 1; s->n > MOST_COLUMNS; s->width *= 2) {
+  for (s->width = width_of(m), s->n = MOST_COLUMNS + 1; s->n > MOST_COLUMNS; s->width *= 2) {
     s->n = 1;
     for (PetscInt d = 0; d < m->dim; ++d) {
       s->count[d] = d == s->axis ? 1 : 1 + (PetscInt)((grid->max[d] - grid->min[d]) / s->width);
@@ -138,67 +142,62 @@ static PetscErrorCode LookBelow(const Model *m, const Case *from, Columns *s)
   PetscFunctionReturn(0);
 }
 
-/* The middle of a column at that height. */
-static void place_in(const Columns *s, const Grid *grid, PetscInt k, PetscReal height, PetscReal x[3])
+/* Of a body, in as many columns as it stands in: gaps, and heights at which the ground ends. */
+static PetscInt foot_of(const Model *m, const Columns *s, PetscInt body, PetscReal *gap, PetscReal *ground)
 {
-  for (PetscInt d = 0; d < grid->dim; ++d) {
-    x[d] = grid->min[d] + ((PetscReal)(k % s->count[d]) + 0.5) * s->width;
-    k /= s->count[d];
-  }
-  x[s->axis] = s->sign * height;
-}
-
-static void sum_up(const Model *m, const Columns *s, Foot *foot)
-{
+  PetscInt n = 0;
   for (PetscInt k = 0; k < s->n; ++k) {
-    const PetscReal gap = s->low[k] - s->high[k];
-    if (s->body[k] < 0 || s->high[k] == -PETSC_MAX_REAL || gap > FARTHEST * m->grid->smallest) continue;
-    Foot *f = foot + s->body[k];
-    ++f->n;
-    f->gap += gap;
-    f->high += s->sign * s->high[k];
-    if (PetscAbsReal(gap) <= PetscAbsReal(f->worst)) continue;
-    f->worst = gap;
-    place_in(s, m->grid, k, s->low[k], f->where);
+    const PetscReal way = s->low[k] - s->high[k];
+    if (s->body[k] != body || s->high[k] == -PETSC_MAX_REAL || way > FARTHEST * m->grid->smallest) continue;
+    ground[n] = s->sign * s->high[k];
+    gap[n++] = way;
   }
+  return n;
 }
 
-static void tell(const Model *m, const Columns *s, PetscInt b, const Foot *f, Diag *diag)
+static void tell(const Model *m, const Columns *s, PetscInt b, PetscReal gap, PetscReal ground, Diag *diag)
 {
-  const PetscReal gap = f->worst, cell = m->grid->smallest, mean = f->gap / (PetscReal)f->n, *x = f->where;
-  const char *name = m->c->bodies[b].name;
-  char path[64], place[96];
+  char path[64];
   snprintf(path, sizeof path, "bodies[%d].shape", (int)b);
-  if (m->dim == 2) snprintf(place, sizeof place, "(%.4g, %.4g)", (double)x[0], (double)x[1]);
-  else snprintf(place, sizeof place, "(%.4g, %.4g, %.4g)", (double)x[0], (double)x[1], (double)x[2]);
-  diag_warning(diag, path, "'%s' begins up to %.3g m (%.2g cells) %s what it stands on, near %s m; %.3g m on the mean",
-               name, (double)PetscAbsReal(gap), (double)(PetscAbsReal(gap) / cell), gap > 0 ? "above" : "inside", place,
-               (double)PetscAbsReal(mean));
-  diag_hint(diag, "%s: let its shape begin where that is now, at %c = %.6g on the mean",
-            gap > 0 ? "its lowest cells bear too much" : "matter is there twice", "xyz"[s->axis],
-            (double)(f->high / (PetscReal)f->n));
+  diag_warning(diag, path, "'%s' begins %.3g m (%.2g cells) %s what it stands on, in the middle of its foot",
+               m->c->bodies[b].name, (double)PetscAbsReal(gap), (double)(PetscAbsReal(gap) / m->grid->smallest),
+               gap > 0 ? "above" : "inside");
+  diag_hint(diag, "%s: let its shape begin where the ground is now, at %c = %.6g in the middle",
+            gap > 0 ? "its lowest cells bear too much" : "matter is there twice", "xyz"[s->axis], (double)ground);
+}
+
+/* Middle ones, since columns through a side that two bodies share say nothing. */
+static PetscErrorCode LookAtFeet(const Model *m, const Columns *s, Diag *diag)
+{
+  const PetscBool rows = m->grid->nodes_per_cell > m->dim + 1;
+  const PetscReal wide = (rows ? WIDE : WIDE_ASKEW) * m->grid->smallest;
+  PetscReal *gap, *ground;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc2(s->n, &gap, s->n, &ground));
+  for (PetscInt b = 0; b < m->c->n_bodies; ++b) {
+    const PetscInt n = foot_of(m, s, b, gap, ground);
+    if (!n) continue;
+    PetscCall(PetscSortReal(n, gap));
+    PetscCall(PetscSortReal(n, ground));
+    if (PetscAbsReal(gap[n / 2]) > wide) tell(m, s, b, gap[n / 2], ground[n / 2], diag);
+  }
+  PetscCall(PetscFree2(gap, ground));
+  PetscFunctionReturn(0);
 }
 
 PetscErrorCode BodiesStand(const Model *m, const Case *from, Diag *diag)
 {
   PetscBool any = PETSC_FALSE;
   Columns s = {0};
-  Foot *foot;
 
   PetscFunctionBeginUser;
   for (PetscInt b = 0; b < m->c->n_bodies; ++b) any |= !m->c->bodies[b].absent && body_comes(m->c, from, b);
   if (!any) PetscFunctionReturn(0);
   PetscCall(ColumnsCreate(m, &s));
-  PetscCall(PetscCalloc1(m->c->n_bodies, &foot));
   PetscCall(LookAbove(m, from, &s));
   PetscCall(LookBelow(m, from, &s));
-  sum_up(m, &s, foot);
-  for (PetscInt b = 0; b < m->c->n_bodies; ++b) {
-    const PetscReal cell = m->grid->smallest, mean = foot[b].n ? foot[b].gap / (PetscReal)foot[b].n : 0;
-    if (PetscAbsReal(mean) > WIDE * cell || PetscAbsReal(foot[b].worst) > WIDE_SOMEWHERE * cell)
-      tell(m, &s, b, foot + b, diag);
-  }
-  PetscCall(PetscFree(foot));
+  PetscCall(LookAtFeet(m, &s, diag));
   PetscCall(PetscFree4(s.low, s.top, s.high, s.body));
   PetscFunctionReturn(0);
 }
