@@ -36,6 +36,8 @@ static const FieldKind kinds[] = {
   SCRATCH(v_start),
   SCRATCH(a_start),
   SCRATCH(echo_start),
+  SCRATCH(v_first),
+  SCRATCH(a_first),
   SCRATCH(v1),
   SCRATCH(a1),
   SCRATCH(du),

@@ -29,6 +29,7 @@ typedef struct NodalFields {
    * kg m/s, N */
   PetscReal *impulse, *lost_force;
   PetscReal *v_start, *a_start, *echo_start; /* v, a and echo before the step changed them */
+  PetscReal *v_first, *a_first;              /* v and a that each try of the step begins with */
   PetscReal *v1, *a1;                        /* at t_(n+1), of an accepted step */
   PetscReal *du;                             /* increments of the step, m */
   PetscReal *previous;                       /* those of the last step where they were solved for, else 0 */

@@ -192,6 +192,8 @@ PetscReal rigid_fastest(const Model *model);
 /* Collective. external += the forces of contact that material remembers, on owners: walls go on pressing as they did,
  * but for those that are gone. */
 PetscErrorCode ContactGoOn(Model *model, PetscReal *external);
+/* Collective, after it: these forces are what walls give to the first acceleration. */
+PetscErrorCode ContactBegin(Model *model);
 /* Does a wall or an interface of the case rub? Then tangents are not symmetric. */
 PetscBool contact_rubs(const Case *c);
 /* Collective, in PrepareStep: what is in contact starts the step with the motion of its wall. */

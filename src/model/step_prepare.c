@@ -63,6 +63,8 @@ PetscErrorCode PrepareUnknowns(Model *m, StepStart *start, StepReport *report)
   PetscCall(UnheldHold(m));
   PetscCall(StepStartKeep(m, start));
   if (m->method->begin && m->scheme->inertia) PetscCall(m->method->begin(m->space));
+  PetscCall(PetscArraycpy(m->nodes->v_first, m->nodes->v, m->grid->n_nodes * m->dim));
+  PetscCall(PetscArraycpy(m->nodes->a_first, m->nodes->a, m->grid->n_nodes * m->dim));
   PetscCall(PhaseEnd(m->seconds, PHASE_PATTERN, &clock));
   PetscFunctionReturn(0);
 }
@@ -226,7 +228,9 @@ PetscErrorCode PrepareStep(Model *m, PetscReal dt, StepProblem *p)
   PetscReal g[3];
 
   PetscFunctionBeginUser;
-  m->raised.border.factor = m->raised.factor; /* a try that failed has left another one */
+  m->raised.border.factor = m->raised.factor; /* a try that failed has left another one, and other velocities */
+  PetscCall(PetscArraycpy(m->nodes->v, m->nodes->v_first, dofs));
+  PetscCall(PetscArraycpy(m->nodes->a, m->nodes->a_first, dofs));
   gravity_at(m->c, raised_time(m, t), g);
   PetscCall(MaterialsAt(m, m->time + passes));
   PetscCall(PetscArrayzero(m->nodes->prescribed, dofs));

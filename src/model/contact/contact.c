@@ -73,6 +73,23 @@ PetscErrorCode ContactGoOn(Model *m, PetscReal *external)
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode ContactBegin(Model *m)
+{
+  Contact *s = m->contact;
+  const PetscInt n = s ? s->n_partners : 0;
+  ContactSum *sum;
+
+  PetscFunctionBeginUser;
+  if (!s) PetscFunctionReturn(0);
+  PetscCall(PetscCalloc1(n, &sum));
+  for (const ContactPoint *c = s->point; c < s->point + s->n; ++c)
+    if (c->before != CONTACT_OPEN && !c->gone) contact_add(c->x, m->dim, c->last, sum + c->wall);
+  PetscCall(MPIU_Allreduce(MPI_IN_PLACE, sum, (PetscMPIInt)(n * SUM_NUMBERS), MPIU_REAL, MPI_SUM, m->comm));
+  for (PetscInt k = 0; k < n; ++k) s->wall[k].rate = sum[k];
+  PetscCall(PetscFree(sum));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode ContactTouches(const Contact *s, MPI_Comm comm, PetscBool *any)
 {
   PetscBool here = PETSC_FALSE;
@@ -105,6 +122,7 @@ PetscErrorCode ContactHold(Model *m, PetscReal dt, PetscReal inertia)
 {
   PetscFunctionBeginUser;
   if (!m->contact) PetscFunctionReturn(0);
+  contact_again(m->contact);
   contact_prepare(m->contact, m->time, dt, inertia, share_of_force(m));
   for (RigidWall *b = m->contact->rigid; b < m->contact->rigid + m->contact->n_rigid; ++b)
     rigid_begin(b, m->walls, m->c, m->time, dt, share_of_force(m).mean, m->scheme->middle);
@@ -136,7 +154,7 @@ static ContactWork point_work(const Model *m, const ContactPoint *c)
   const PetscReal end = m->scheme->inertia ? share_of_force(m).mean : 0.5, first = m->scheme->inertia ? 0 : 0.5;
   PetscReal f[3], balance[3], x[3], pressure = 0, closing = 0;
   ContactWork work = {0};
-  contact_force(c, f);
+  contact_acts(c, f);
   contact_balance(m->contact, c, balance);
   contact_place(m->contact, c, m->nodes->du, 1, x);
   for (int d = 0; d < 3; ++d) {

@@ -64,6 +64,7 @@ PetscErrorCode InitialAcceleration(Model *m)
   const NodalScene scene = nodal_scene(m, m->time, n->du);
   PetscCall(NodalForcesExternal(&m->forces, &scene, PETSC_TRUE, n->external));
   PetscCall(ContactGoOn(m, n->external));
+  PetscCall(ContactBegin(m));
   PetscCall(PetscArrayzero(n->force, dofs));
   pressure_guess(m);
   WeakFormInput in = weak_form_of(m, 0);

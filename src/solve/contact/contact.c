@@ -118,6 +118,7 @@ void contact_prepare(Contact *s, PetscReal t, PetscReal dt, PetscReal inertia, C
     c->law.penalty = STIFFER * c->section * stiffness_of(c, s->length, inertia);
     c->stiffest = stiffest_of(s, c);
     c->left = 0;
+    for (int d = 0; d < 3; ++d) c->struck[d] = c->lent[d] = 0;
     for (int d = 0; d < 3 && c->before == CONTACT_OPEN; ++d) c->last[d] = 0; /* explicit dynamics keeps slips there */
     c->law.bond = c->bond / share.mean;
     if (c->wall < s->n_walls && !contact_rigid(s, c)) sweep(s, c, t, dt);
@@ -181,9 +182,15 @@ void contact_force(const ContactPoint *c, PetscReal f[3])
   for (int d = 0; d < 3; ++d) f[d] = c->now.pressure * c->normal[d] + c->now.shear[d];
 }
 
-void contact_balance(const Contact *s, const ContactPoint *c, PetscReal f[3])
+void contact_acts(const ContactPoint *c, PetscReal f[3])
 {
   contact_force(c, f);
+  for (int d = 0; d < 3; ++d) f[d] -= c->lent[d];
+}
+
+void contact_balance(const Contact *s, const ContactPoint *c, PetscReal f[3])
+{
+  contact_acts(c, f);
   for (int d = 0; d < 3; ++d) f[d] -= s->share.back * c->stays * c->last[d];
 }
 
@@ -344,17 +351,24 @@ static PetscErrorCode Augment(void *data, const NodalScene *scene, PetscInt chan
   PetscFunctionReturn(0);
 }
 
+void contact_again(Contact *s)
+{
+  (void)memset(s->impulse, 0, (size_t)s->n_partners * sizeof *s->impulse);
+  s->driven = 0;
+  for (RigidWall *b = s->rigid; b < s->rigid + s->n_rigid; ++b) {
+    b->lost = 0;
+    for (int d = 0; d < 3; ++d) b->given[d] = 0;
+    rigid_restore(b, s->walls);
+  }
+}
+
 static PetscErrorCode Begin(void *data, const NodalScene *scene)
 {
   Contact *s = data;
 
   PetscFunctionBeginUser;
-  for (RigidWall *b = s->rigid; b < s->rigid + s->n_rigid; ++b) {
-    b->start = b->now;
-    b->lost = 0;
-    for (int d = 0; d < 3; ++d) b->given[d] = 0;
-    rigid_restore(b, s->walls);
-  }
+  for (RigidWall *b = s->rigid; b < s->rigid + s->n_rigid; ++b) b->start = b->now;
+  contact_again(s);
   PetscCall(ContactFind(s, scene));
   PetscFunctionReturn(0);
 }

@@ -47,6 +47,9 @@ typedef struct {
   PetscReal slip[3];   /* likewise: motion against the wall, m */
   PetscReal last[3];   /* force of the last step, its mean if matter has inertia, N */
   PetscReal stays;     /* share of it that nodes remember as acceleration */
+  /* of the impulse at the start of the step: what an impact gives for good, N s; and what the motion along the wall is
+   * lent on account of the step's friction, as the force that the balance takes back for it, N */
+  PetscReal struck[3], lent[3];
 } ContactPoint;
 
 /* Resultants of one wall on the material: force, N, and torque about the origin, N m. */
@@ -117,6 +120,8 @@ PetscErrorCode ContactDestroy(Contact **contact);
 PetscErrorCode ContactFind(Contact *contact, const NodalScene *scene);
 /* Before the solve of a step of dt: penalties, and how walls move. inertia: see WeakFormInput. */
 void contact_prepare(Contact *contact, PetscReal t, PetscReal dt, PetscReal inertia, ContactShare share);
+/* Forget what impulses have done in a step, or in a try of it that has failed: a try begins. */
+void contact_again(Contact *contact);
 /* What else the room finds: contact points with nodes, and the surface of a part of a body. */
 PetscErrorCode ContactAdd(Contact *contact, ContactPoint **c);
 PetscErrorCode ContactAddNodes(Contact *contact, ContactPoint *c, PetscInt n);
@@ -202,6 +207,8 @@ static inline RigidWall *contact_rigid(const Contact *contact, const ContactPoin
   return rigid_of(contact->rigid, contact->n_rigid, c->wall);
 }
 void contact_force(const ContactPoint *c, PetscReal f[3]); /* of the last assembly */
+/* Likewise, without what the start of the step was lent of it. */
+void contact_acts(const ContactPoint *c, PetscReal f[3]);
 /* Likewise, what of it stands in the balance at the end of the step. */
 void contact_balance(const Contact *contact, const ContactPoint *c, PetscReal f[3]);
 /* Share of the force that nodes are to remember: what of it pressed in the last step, too. */

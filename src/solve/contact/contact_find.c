@@ -257,8 +257,6 @@ PetscErrorCode ContactFind(Contact *s, const NodalScene *scene)
 
   PetscFunctionBeginUser;
   s->n = s->n_nodes = s->n_slots = 0;
-  PetscCall(PetscArrayzero(s->impulse, s->n_partners));
-  s->driven = 0;
   s->length = s->near = scene->grid->smallest;
   for (PetscInt g = 0; g < w->n_groups; ++g)
     for (PetscInt p = w->point_start[g]; p < w->point_start[g + 1]; ++p)

@@ -34,6 +34,12 @@ static PetscReal bound_of(const ContactLaw *law, PetscReal pressure, PetscReal *
   return law->friction * pressure + (adheres ? law->bond : CONTACT_STICKING * pressure);
 }
 
+PetscReal contact_most(const ContactLaw *law, PetscReal pressure)
+{
+  PetscReal slope;
+  return pressure > 0 ? bound_of(law, pressure, &slope) : 0;
+}
+
 /* Where it slides along `way`, with a force `bound` that was to be `size`. */
 static void slide(const ContactLaw *law, const PetscReal n[3], const PetscReal way[3], PetscReal bound, PetscReal slope,
                   PetscReal size, PetscReal *K)

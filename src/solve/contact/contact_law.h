@@ -30,6 +30,9 @@ typedef struct {
   PetscReal shear[3]; /* across it */
 } ContactForce;
 
+/* The largest tangential force beside a pressure, N. */
+PetscReal contact_most(const ContactLaw *law, PetscReal pressure);
+
 /* `now`, from the multipliers and where the point is against the wall. stiffness: 3 x 3, minus the
  * derivative of p n + t by the position, N/m; NULL: not wanted. */
 ContactState contact_law(const ContactLaw *law, const WallPlace *place, const PetscReal slip[3],

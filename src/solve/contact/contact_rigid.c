@@ -31,7 +31,7 @@ PetscErrorCode RigidSums(Contact *s, const NodalScene *scene)
     PetscReal f[3], x[3], lever[3], motion[3], force = 0, torque = 0;
     if (!b) continue;
     PetscReal *own = sum + SUMS * (b - s->rigid);
-    contact_force(c, f);
+    contact_acts(c, f);
     contact_place(s, c, scene->du, scene->whole, x);
     rigid_lever(b, c->x, x, lever);
     own[RIGID + 2] += c->law.penalty;

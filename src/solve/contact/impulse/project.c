@@ -61,29 +61,64 @@ static void slip_of(const Projection *w, PetscInt k, PetscReal v[3])
   for (int d = 0; d < 3; ++d) v[d] -= along * c->normal[d];
 }
 
-/* Of a wall that rubs: what slides is rubbed against its way by the impulse along the normal, or gets
- * back what the solve has taken too much, but by no more than what stops it: of what goes with its wall the way is
- * nothing but round-off. What sticks is held by no more than friction can. */
-static void rub(const Projection *w, PetscInt k, PetscReal *p)
+/* Of a wall that rubs: what slides is rubbed against its way by the impulse along the normal, or gets back what the
+ * solve has taken too much, but by no more than what stops it: of what goes with its wall the way is nothing but
+ * round-off. */
+static void rub_sliding(const Projection *w, PetscInt k, PetscReal normal, PetscReal shear[3])
 {
-  const ContactPoint *c = w->s->point + k;
-  PetscReal v[3], shear[3];
-  if (c->law.friction == 0 || c->law.kind == CONTACT_BONDED) return;
-  const PetscReal normal = impulse_dot(3, p, c->normal), friction = c->law.friction;
-  const PetscReal pressing =
-    (1 / w->m->rate) * (w->m->start ? impulse_dot(3, c->last, c->normal) / w->s->share.mean : c->now.pressure);
-  for (int d = 0; d < 3; ++d) shear[d] = p[d] - normal * c->normal[d];
-  if (w->held[k] == 3) {
-    const PetscReal size = PetscSqrtReal(impulse_dot(3, shear, shear)),
-                    most = friction * (PetscAbsReal(normal) + pressing);
-    for (int d = 0; d < 3 && size > most; ++d) p[d] -= (1 - most / size) * shear[d];
-    return;
-  }
+  PetscReal v[3];
   slip_of(w, k, v);
   const PetscReal speed = PetscSqrtReal(impulse_dot(3, v, v));
   const PetscReal stops = w->own[k] > 0 ? speed / w->own[k] : 0;
-  const PetscReal rubs = PetscMax(-stops, PetscMin(stops, friction * normal));
-  for (int d = 0; d < 3 && speed > 0; ++d) p[d] -= rubs * v[d] / speed;
+  const PetscReal rubs = PetscMax(-stops, PetscMin(stops, w->s->point[k].law.friction * normal));
+  for (int d = 0; d < 3; ++d) shear[d] = speed > 0 ? -rubs * v[d] / speed : 0;
+}
+
+/* Largest impulse that friction beside a pressure of the solve gives over the step, N s. */
+static PetscReal most_of_step(const Projection *w, const ContactPoint *c, PetscReal pressure)
+{
+  return w->s->share.mean / w->m->rate * contact_most(&c->law, pressure);
+}
+
+/* What sticks starts with its wall's motion along it. Beyond what the impulse along the normal bears that is lent, on
+ * account of the friction of the step, whose force takes it back: or the step would have both. What even that
+ * cannot bear has begun to slide. */
+static void lend(const Projection *w, ContactPoint *c, PetscReal normal, PetscReal shear[3])
+{
+  const PetscReal size = PetscSqrtReal(impulse_dot(3, shear, shear)), pressed = impulse_dot(3, c->last, c->normal);
+  const PetscReal struck = PetscMax(0, c->law.friction * normal);
+  const PetscReal most = struck + most_of_step(w, c, pressed / w->s->share.mean);
+  if (size <= struck) return;
+  for (int d = 0; d < 3 && size <= most; ++d)
+    c->lent[d] = (1 - struck / size) * shear[d] * w->m->rate / w->s->share.mean;
+  for (int d = 0; d < 3 && size > most; ++d) shear[d] *= struck / size;
+}
+
+/* The wall has given no more along itself, in all of the step, than friction bears of what it has given along the
+ * normal. */
+static void bound_all(const Projection *w, const ContactPoint *c, PetscReal normal, PetscReal shear[3])
+{
+  PetscReal all[3], struck = impulse_dot(3, c->struck, c->normal);
+  const PetscReal step = w->s->share.mean / w->m->rate;
+  for (int d = 0; d < 3; ++d) all[d] = step * c->now.shear[d] + c->struck[d] - struck * c->normal[d] + shear[d];
+  const PetscReal size = PetscSqrtReal(impulse_dot(3, all, all));
+  const PetscReal most = PetscMax(0, most_of_step(w, c, c->now.pressure) + c->law.friction * (struck + normal));
+  for (int d = 0; d < 3 && size > most; ++d) shear[d] -= (1 - most / size) * all[d];
+}
+
+/* The impulse p at contact point k is one that friction bears. */
+static void rub(const Projection *w, PetscInt k, PetscReal *p)
+{
+  ContactPoint *c = w->s->point + k;
+  const PetscReal normal = impulse_dot(3, p, c->normal);
+  PetscReal shear[3];
+  if (c->law.kind != CONTACT_FRICTION && c->law.kind != CONTACT_STICK) return;
+  for (int d = 0; d < 3; ++d) shear[d] = p[d] - normal * c->normal[d];
+  if (w->held[k] != 3) rub_sliding(w, k, normal, shear);
+  else if (w->m->start) lend(w, c, normal, shear);
+  if (!w->m->start) bound_all(w, c, normal, shear);
+  for (int d = 0; d < 3; ++d) p[d] = normal * c->normal[d] + shear[d];
+  for (int d = 0; d < 3 && w->m->start; ++d) c->struck[d] = p[d] - w->s->share.mean / w->m->rate * c->lent[d];
 }
 
 /* Half of the work that impulses take from sliding: by the motion before them, or after. */
