@@ -34,6 +34,7 @@ static void store_reactions(Model *m, PetscReal dt)
     n->reaction[i] = (1 - w.mean) * before + w.mean * n->rate[i] + n->impulse[i] / dt;
   }
   for (int k = 0; k < 6; ++k) frames_turn(frames, m->dim, vectors[k]);
+  let_go_settle(m, &w);
 }
 
 /* Velocities and accelerations of the nodes at the end of the step. */

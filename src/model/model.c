@@ -454,6 +454,7 @@ PetscErrorCode ModelDestroy(Model **model)
   if (m->tracers) PetscCall(PointsDestroy(&m->tracers));
   if (m->points) PetscCall(PointsDestroy(&m->points));
   if (m->grid) PetscCall(GridDestroy(&m->grid));
+  PetscCall(PetscFree(m->let_go));
   PetscCall(PetscFree(m->raised.nodal));
   PetscCall(PetscFree2(m->unheld.dof, m->unheld.turns));
   PetscCall(PetscFree(m->materials));

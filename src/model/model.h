@@ -123,6 +123,13 @@ typedef struct {
 } InitialState;
 #define INITIAL_KEPT 7
 
+/* What an entry of the boundary whose place moves gave the nodes that it has let go, N: over the last step (reaction),
+ * and what of it the scheme remembers (rate). */
+typedef struct {
+  PetscReal reaction[3], rate[3];
+} LetGo;
+#define LET_GO_NUMBERS 6
+
 typedef struct Model {
   MPI_Comm comm;
   const Case *c;
@@ -135,6 +142,7 @@ typedef struct Model {
   Points *points;
   Points *tracers; /* body = index of the measure */
   Boundary *boundary;
+  LetGo *let_go; /* one per entry of the boundary; NULL: no place moves */
   Loads *loads;
   NodalForces forces;
   Walls *walls;     /* NULL: the case has none */

@@ -32,6 +32,14 @@ void guess_make(const Model *model, FirstGuess guess, PetscReal dt, PetscReal *d
 /* Collective. A step of dt is accepted: which guess would have been nearer? Before points move. */
 PetscErrorCode GuessLearn(Model *model, PetscReal dt);
 PetscErrorCode GuessToTables(Model *model, Tables *tables);
+/* let_go.c. Collective. Choose anew at time t the nodes of places that move, of a grid that is restored. */
+PetscErrorCode ModelMovePlaces(Model *model, PetscReal t);
+/* A step is accepted: what the scheme remembered has acted in it on nodes let go, and echoes (accept.c). */
+void let_go_settle(Model *model, const TimeWeights *weights);
+/* Collective. The force of an entry of the boundary over the last step, N. */
+PetscErrorCode ModelReaction(const Model *model, PetscInt entry, PetscReal sum[3]);
+PetscErrorCode LetGoToTables(const Model *model, Tables *tables);
+PetscErrorCode LetGoFromTables(Model *model, const Tables *tables, char reason[256]);
 void guess_from_tables(Model *model, const Tables *tables, char reason[256]);
 /* Collective. The system for the cells that are enabled, or for a cloud as it is now. */
 PetscErrorCode ModelEnable(Model *model);

@@ -44,7 +44,7 @@ PetscErrorCode ModelInitialise(Model *m)
   if (m->space->present) PetscFunctionReturn(0);
   PetscCall(PetscTime(&clock));
   /* who follows whom hangs on who is held now */
-  if (m->method->restores_grid) PetscCall(BoundaryMove(m->boundary, m->grid, m->time));
+  if (m->method->restores_grid) PetscCall(ModelMovePlaces(m, m->time));
   PetscCall(m->method->initialise(m->space));
   m->space->present = PETSC_TRUE;
   if (m->step > 0) PetscCall(FollowersEnd(m));

@@ -114,7 +114,7 @@ static PetscErrorCode LookAtMotion(Model *m)
 
   PetscFunctionBeginUser;
   if (limit->kind == RAISE_WALL) PetscCall(PetscArraycpy(sum, m->contact->wall[limit->index].mean.force, 3));
-  else PetscCall(BoundarySum(m->boundary, m->grid, limit->index, m->nodes->reaction, sum));
+  else PetscCall(ModelReaction(m, limit->index, sum));
   for (PetscInt d = 0; d < m->dim; ++d) square += PetscSqr(motion->value[d]);
   m->raised.load = 0;
   for (PetscInt d = 0; d < m->dim && square > 0; ++d)

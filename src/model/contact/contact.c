@@ -14,8 +14,8 @@ PetscBool contact_rubs(const Case *c)
   return PETSC_FALSE;
 }
 
-static ContactMotion motion_of(const Model *m, const ContactMass *whole, PetscReal *motion, PetscReal dt,
-                               PetscBool start)
+static ContactMotion motion_of(const Model *m, const ContactMass *whole, PetscReal *motion, PetscReal *given,
+                               PetscReal dt, PetscBool start)
 {
   return (ContactMotion){.grid = m->grid,
                          .mass = m->nodes->mass,
@@ -23,6 +23,7 @@ static ContactMotion motion_of(const Model *m, const ContactMass *whole, PetscRe
                          .frames = &m->boundary->frames,
                          .fixed = m->nodes->fixed,
                          .motion = motion,
+                         .given = given,
                          .du = m->nodes->du,
                          .rate = 1 / dt,
                          .pulls = !start,
@@ -102,7 +103,7 @@ PetscErrorCode ContactTouches(const Contact *s, MPI_Comm comm, PetscBool *any)
 }
 
 /* Sets the velocity of what is in contact to its wall's. */
-static PetscErrorCode Project(const Model *m, PetscReal *v, PetscReal dt, PetscBool start)
+static PetscErrorCode Project(const Model *m, PetscReal *v, PetscReal *given, PetscReal dt, PetscBool start)
 {
   ContactMass whole;
   PetscBool any;
@@ -111,7 +112,7 @@ static PetscErrorCode Project(const Model *m, PetscReal *v, PetscReal dt, PetscB
   PetscCall(ContactTouches(m->contact, m->comm, &any));
   if (!any) PetscFunctionReturn(0);
   PetscCall(ContactMassCreate(m, &whole));
-  const ContactMotion motion = motion_of(m, &whole, v, dt, start);
+  const ContactMotion motion = motion_of(m, &whole, v, given, dt, start);
   PetscCall(ContactProject(m->contact, &motion, m->contact->impulse));
   PetscCall(ContactMassDestroy(&whole));
   PetscFunctionReturn(0);
@@ -127,7 +128,26 @@ PetscErrorCode ContactHold(Model *m, PetscReal dt, PetscReal inertia)
   for (RigidWall *b = m->contact->rigid; b < m->contact->rigid + m->contact->n_rigid; ++b)
     rigid_begin(b, m->walls, m->c, m->time, dt, share_of_force(m).mean, m->scheme->middle);
   if (!contact_holds(m)) PetscFunctionReturn(0);
-  PetscCall(Project(m, m->nodes->v, dt, PETSC_TRUE));
+  PetscCall(Project(m, m->nodes->v, m->nodes->impulse, dt, PETSC_TRUE));
+  PetscFunctionReturn(0);
+}
+
+/* Impulses at the end of the step, which prescribed nodes do not feel: they are the boundary's. */
+static PetscErrorCode ProjectEnd(Model *m, PetscReal dt, EnergyStep *energy)
+{
+  NodalFields *n = m->nodes;
+  PetscReal *given;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(m->grid->n_nodes * m->dim, &given));
+  PetscCall(Project(m, n->v1, given, dt, PETSC_FALSE));
+  for (PetscInt i = 0; i < m->grid->n_owned * m->dim; ++i) {
+    const PetscReal work = given[i] * n->prescribed[i] / dt;
+    n->impulse[i] += given[i];
+    energy->boundary += work;
+    energy->transfer += work;
+  }
+  PetscCall(PetscFree(given));
   PetscFunctionReturn(0);
 }
 
@@ -138,7 +158,7 @@ PetscErrorCode ContactEnd(Model *m, PetscReal dt, EnergyStep *energy)
   PetscFunctionBeginUser;
   for (PetscInt k = 0; s && k < s->n_rigid; ++k) rigid_end(s->rigid + k);
   if (!s || !contact_holds(m)) PetscFunctionReturn(0);
-  PetscCall(Project(m, m->nodes->v1, dt, PETSC_FALSE));
+  PetscCall(ProjectEnd(m, dt, energy));
   for (PetscInt k = 0; k < s->n_partners; ++k) {
     energy->friction += s->impulse[k].sliding;
     energy->transfer -= s->impulse[k].sliding;

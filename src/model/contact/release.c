@@ -8,7 +8,7 @@
 #define LUMPED_SHARE 0.1 /* between the mass matrix and the lumped one */
 
 /* lack = what of walls' forces the acceleration at the end of the step has more than their mean, in rates of
- * momentum of free dofs. */
+ * momentum; accelerations of prescribed dofs stay. */
 static PetscErrorCode SumExcess(const Model *m, MassSolve *c)
 {
   const Contact *s = m->contact;
@@ -24,7 +24,7 @@ static PetscErrorCode SumExcess(const Model *m, MassSolve *c)
   PetscCall(GridSumToOwners(m->grid, c->width, c->lack));
   mass_turn(c, c->lack);
   for (PetscInt i = 0; i < m->grid->n_owned * c->width; ++i)
-    if (m->nodes->fixed[i / c->width * dim + i % dim]) c->lack[i] = c->inverse[i] = 0;
+    if (m->nodes->fixed[i / c->width * dim + i % dim]) c->inverse[i] = 0;
   PetscFunctionReturn(0);
 }
 
@@ -42,6 +42,21 @@ static PetscErrorCode MassOfExcess(const Model *m, Discretisation *space, PetscR
   for (PetscInt g = 0; g < n; ++g) (*lumping)[g] = space->lumping[g] + LUMPED_SHARE * (1 - space->lumping[g]);
   space->lumping = *lumping;
   PetscFunctionReturn(0);
+}
+
+/* What prescribed dofs do not let go of walls' forces, and what the other nodes let go there, the boundary bears. */
+static void release_boundary(Model *m, MassSolve *c, PetscReal lag)
+{
+  NodalFields *n = m->nodes;
+  const PetscInt dim = m->dim;
+  for (PetscInt i = 0; i < m->grid->n_owned * c->width; ++i)
+    if (!n->fixed[i / c->width * dim + i % dim]) c->lack[i] = 0;
+  mass_turn(c, c->lack);
+  for (PetscInt i = 0; i < m->grid->n_owned * dim; ++i) {
+    const PetscReal more = c->lack[i / dim * c->width + ACCELERATION * dim + i % dim];
+    n->rate[i] += more;
+    n->held[i] += (1 - lag) * more;
+  }
 }
 
 PetscErrorCode ContactRelease(Model *m, PetscReal dt)
@@ -64,6 +79,7 @@ PetscErrorCode ContactRelease(Model *m, PetscReal dt)
   enough[ACCELERATION] *= PetscSqr(RELEASED);
   PetscCall(MassSolveRun(&c, enough, MOST_SWEEPS));
   PetscCall(MassSolveClose(&c));
+  release_boundary(m, &c, lag);
   mass_turn(&c, c.x);
   for (PetscInt i = 0; i < m->grid->n_nodes * m->dim; ++i) {
     const PetscReal excess = c.x[i / m->dim * c.width + ACCELERATION * m->dim + i % m->dim];

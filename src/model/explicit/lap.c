@@ -169,7 +169,7 @@ static PetscErrorCode See(Model *m, const Explicit *e)
   PetscFunctionBeginUser;
   PetscCall(PointsSort(m->points));
   if (e->box) PetscFunctionReturn(0);
-  PetscCall(BoundaryMove(m->boundary, m->grid, e->time));
+  PetscCall(ModelMovePlaces(m, e->time));
   PetscCall(m->space->basis->support(&basis, m->points, m->space->support));
   PetscCall(DiscretisationCarry(m->space, &basis));
   PetscCall(DiscretisationTouch(m->space));

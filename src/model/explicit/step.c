@@ -145,6 +145,7 @@ static PetscErrorCode Begin(Model *m, PetscReal step, Explicit *e, PetscReal bef
   if (m->contact) PetscCall(PetscArrayzero(e->pushed, m->contact->n_partners));
   if (m->contact) PetscCall(PetscArrayzero(e->rubbed, m->contact->n_partners));
   PetscCall(PetscArrayzero(m->nodes->reaction, m->grid->n_nodes * m->dim));
+  let_go_settle(m, &(TimeWeights){.mean = 1});
   energy_of_points(m, before);
   note_flow(m, -1);
   report->outcome = STEP_ACCEPTED;

@@ -313,6 +313,8 @@ PetscErrorCode EnergyOfNodes(Model *m, PetscReal dt, EnergyStep *e)
     for (PetscInt d = 0; d < m->dim; ++d, ++i) {
       const PetscReal more = before ? before[i] + after[i] : 0;
       e->external += 0.5 * (n->mass[node] * (g0[d] + g1[d]) + more) * n->du[i];
+      /* what a place that moves has let go it held at the start (let_go.c) */
+      if (!m->boundary->fixed[i]) held += (1 - end) * n->held[i] * n->du[i];
       if (!m->boundary->fixed[i]) continue;
       held += ((1 - end) * n->held[i] + end * n->force[i]) * n->prescribed[i];
       impulse += impulse_work(m, i, dt);

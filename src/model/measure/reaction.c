@@ -1,5 +1,6 @@
 /* What holds a boundary. */
 #include "model/measure/measure.h"
+#include "model/model_private.h"
 
 static PetscErrorCode Reaction(Model *m, const MeasureSpec *s, PetscInt index, PetscReal *value)
 {
@@ -7,7 +8,7 @@ static PetscErrorCode Reaction(Model *m, const MeasureSpec *s, PetscInt index, P
 
   (void)index;
   PetscFunctionBeginUser;
-  PetscCall(BoundarySum(m->boundary, m->grid, s->boundary, m->nodes->reaction, sum));
+  PetscCall(ModelReaction(m, s->boundary, sum));
   *value = sum[s->component];
   PetscFunctionReturn(0);
 }

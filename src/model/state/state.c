@@ -211,6 +211,7 @@ PetscErrorCode ModelToTables(Model *m, Tables *tables)
   const PetscBool increments = m->method->restores_grid || guess_follows(m);
   PetscCall(NodalFieldsToTables(m->nodes, !m->method->restores_grid, increments, tables));
   PetscCall(GuessToTables(m, tables));
+  PetscCall(LetGoToTables(m, tables));
   PetscCall(BalanceToTables(m, tables));
   PetscCall(CellsToTable(m->grid, m->enabled, "pattern", tables));
   PetscFunctionReturn(0);
@@ -288,6 +289,7 @@ static PetscErrorCode NodesBack(Model *m, const Tables *tables, char reason[256]
   PetscFunctionBeginUser;
   PetscCall(NodalFieldsFromTables(m->nodes, !m->method->restores_grid, tables, reason));
   guess_from_tables(m, tables, reason);
+  PetscCall(LetGoFromTables(m, tables, reason));
   if (!reason[0]) PetscCall(ForcesFromTables(m, tables, reason));
   if (!reason[0]) PetscCall(CellsFromTable(m->grid, m->enabled, tables_find(tables, "pattern"), reason));
   PetscFunctionReturn(0);

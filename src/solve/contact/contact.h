@@ -182,6 +182,7 @@ typedef struct {
   const unsigned char *fixed; /* n_nodes x dim: dofs that do not take part, in the frames of nodes that slide */
   const Frames *frames;
   PetscReal *motion;   /* n_nodes x dim: velocity or acceleration, changed */
+  PetscReal *given;    /* n_nodes x dim: what that takes from the boundary at prescribed dofs is added, on owners */
   const PetscReal *du; /* increments of the step */
   PetscReal rate;      /* times `swept` (work: `passes`) it is the velocity of the wall */
   PetscBool pulls;     /* may the wall pull? Else only what moves into it is stopped */

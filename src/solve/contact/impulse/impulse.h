@@ -45,3 +45,5 @@ PetscErrorCode ImpulsesLumpedSpread(Projection *w, const PetscReal *p);
 /* Likewise by the whole matrix; nodes and answer go on from what they are. */
 PetscErrorCode ImpulsesWhole(Projection *w);
 PetscErrorCode ImpulsesWholeSpread(Projection *w, const PetscReal *p);
+/* Collective. After it: what the boundary gives prescribed nodes against them, to w->m->given. */
+PetscErrorCode ImpulsesHeld(const Projection *w);

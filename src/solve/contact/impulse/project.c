@@ -236,6 +236,7 @@ PetscErrorCode ContactProject(Contact *s, const ContactMotion *m, ContactSum *su
   for (PetscInt j = 0; j < w.n_held; ++j) rub(&w, w.list[j], w.p + 3 * w.list[j]);
   lose(&w, sum);
   PetscCall(m->whole ? ImpulsesWholeSpread(&w, w.p) : ImpulsesLumpedSpread(&w, w.p));
+  PetscCall(ImpulsesHeld(&w));
   for (PetscInt i = 0; i < w.n_moved * s->dim; ++i) {
     const PetscInt dof = w.moved[i / s->dim] * s->dim + i % s->dim;
     m->motion[dof] += w.nodes[dof];
