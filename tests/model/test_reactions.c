@@ -126,6 +126,39 @@ static void test_moves(void **state)
   }
 }
 
+/* The work of a floor that moves is its reaction times its motion, whatever points bring to its nodes. */
+static void test_works(void **state)
+{
+  static const Kind kinds[] = {{"mpm", "gimp", NULL, PETSC_FALSE},       {"mpm", "cell", NULL, PETSC_FALSE},
+                               {"gmm", "lme", NULL, PETSC_FALSE},        {"fem", "cell", NULL, PETSC_FALSE},
+                               {"mpm", "gimp", "midpoint", PETSC_FALSE}, {"mpm", "cell", "explicit", PETSC_FALSE}};
+  (void)state;
+  EACH_OF (k, kinds) {
+    const PetscBool grid = !strcmp(kinds[k].method, "mpm");
+    PetscReal work = 0;
+    Energies e;
+    Bench b;
+    bench_init(&b, kinds[k].method, CELL_QUADRILATERAL, 0);
+    bench_grid(&b, (PetscReal[]){0, grid ? -1 : 0, 0}, (PetscReal[]){1, grid ? 2 : 1, 0}, 0.125);
+    bench_box(&b, 0, (PetscReal[]){0, 0, 0}, (PetscReal[]){1, 1, 0});
+    settings(&b, kinds + k, 1e-3);
+    MotionSpec *floor = bench_motion(&b, 1, 0, MOTION_VELOCITY, 2);
+    if (grid) floor->on.min[1] = -1, floor->on.max[1] = 0.13;
+    floor->value[1] = -1;
+    Model *m = bench_model(&b, PETSC_COMM_WORLD);
+    while (m->time < 0.05) {
+      const PetscReal before = m->time;
+      model_step(m, 1e-3);
+      work -= (m->time - before) * reaction(m, 0);
+    }
+    CALL(ModelEnergies(m, &e));
+    CHECK(work > 100, "no work is done");
+    CHECK_CLOSE(e.boundary, work, 1e-9 * work);
+    CHECK(PetscAbsReal(model_sum(m, "energy: balance", 0)) < 1e-6, "the balance is open");
+    CALL(ModelDestroy(&m));
+  }
+}
+
 /* What nodes that were let go gave is not forgotten by a run that is put away just then. */
 static void test_resumed(void **state)
 {
@@ -148,6 +181,6 @@ static void test_resumed(void **state)
 int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {cmocka_unit_test(test_contact), cmocka_unit_test(test_moves),
-                                     cmocka_unit_test(test_resumed)};
+                                     cmocka_unit_test(test_works), cmocka_unit_test(test_resumed)};
   return run_model_group(argc, argv, tests, PETSC_STATIC_ARRAY_LENGTH(tests));
 }

@@ -139,9 +139,44 @@ static void test_refused(void **state)
   refused(&first, &then, "can begin only with the undeformed body");
 }
 
+/* While what was there fades and what the stage brings grows, the foot bears what acts: in proportion, as the whole of
+ * the material, its own nodes too. */
+static void test_fades(void **state)
+{
+  static const char *const kinds[] = {"fem", "mpm", "gmm"};
+  (void)state;
+  EACH_OF (k, kinds) {
+    Bench first, then;
+    Imbalance imbalance;
+    Diag *diag;
+    block(&first, kinds[k]);
+    bench_traction(&first, 1, 1, "body", 300, -1000, 0);
+    first.c.gravity[1] = -1;
+    go_on(&first, &then);
+    then.load[then.c.n_loads++] = first.load[0];
+    then.c.gravity[1] = -3;
+    then.c.gravity_amplitude.since = 1;
+    then.c.release = 1;
+    then.c.analysis.step = then.c.analysis.largest = 0.25;
+    Model *m = bench_model(&first, PETSC_COMM_WORLD);
+    model_step(m, 1);
+    CALL(DiagCreate(&diag));
+    CALL(ModelSucceed(&then.c, diag, &m, &imbalance));
+    CALL(DiagFlush(diag, stderr));
+    CALL(DiagDestroy(&diag));
+    CHECK(m, "the stage was refused");
+    for (int step = 1; step <= 4; ++step) {
+      model_step(m, 0.25);
+      CHECK_CLOSE(foot(m, 0), -300, 1e-3);
+      CHECK_CLOSE(foot(m, 1), 2000 + 0.25 * step * 2000, 1e-3);
+    }
+    CALL(ModelDestroy(&m));
+  }
+}
+
 int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {cmocka_unit_test(test_tractions), cmocka_unit_test(test_pressures),
-                                     cmocka_unit_test(test_refused)};
+                                     cmocka_unit_test(test_refused), cmocka_unit_test(test_fades)};
   return run_model_tests(argc, argv, tests);
 }

@@ -190,6 +190,14 @@ static PetscReal impulse_work(const Model *m, PetscInt i, PetscReal dt)
   return n->impulse[i] * n->prescribed[i] / dt;
 }
 
+/* Likewise what the acceleration that points gave a prescribed node would have been in the rate of momentum at the
+ * start of the step: the boundary bears it (accept.c). */
+static PetscReal lost_work(const Model *m, PetscInt i)
+{
+  if (!m->scheme->inertia) return 0;
+  return (1 - share_of_end(m)) * m->nodes->lost_force[i] * m->nodes->prescribed[i];
+}
+
 /* Work of inertia, with the acceleration that balances the forces at both ends. */
 static PetscReal inertia_work(const Model *m, PetscReal dt)
 {
@@ -314,10 +322,10 @@ PetscErrorCode EnergyOfNodes(Model *m, PetscReal dt, EnergyStep *e)
       const PetscReal more = before ? before[i] + after[i] : 0;
       e->external += 0.5 * (n->mass[node] * (g0[d] + g1[d]) + more) * n->du[i];
       /* what a place that moves has let go it held at the start (let_go.c) */
-      if (!m->boundary->fixed[i]) held += (1 - end) * n->held[i] * n->du[i];
+      if (!m->boundary->fixed[i] && m->let_go && m->scheme->inertia) held += (1 - end) * n->held[i] * n->du[i];
       if (!m->boundary->fixed[i]) continue;
       held += ((1 - end) * n->held[i] + end * n->force[i]) * n->prescribed[i];
-      impulse += impulse_work(m, i, dt);
+      impulse += impulse_work(m, i, dt) + lost_work(m, i);
     }
   const PetscBool jumps = m->method->begin || (m->contact && !m->method->restores_grid);
   if (jumps) PetscCall(MaterialsAt(m, m->time)); /* as strong as they were at the start */

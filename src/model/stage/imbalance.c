@@ -53,22 +53,50 @@ static PetscErrorCode Report(const Model *m, const PetscReal *residual, Imbalanc
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode HoldImbalance(Model *m, Imbalance *imbalance)
+/* Forces fade at held nodes, too: at the start the boundary bears what it bore, and h is what the state lacks to it.
+ * Where no node knows of a reaction (points of another grid) there is nothing to go on from. */
+static PetscErrorCode HoldReactions(const Model *m, const Case *from, const PetscReal *residual, PetscReal *held)
+{
+  const PetscReal *bore = from->analysis.type == ANALYSIS_EXPLICIT ? m->nodes->reaction : m->nodes->held;
+  const PetscInt owned = m->grid->n_owned * m->dim;
+  PetscBool any = PETSC_FALSE;
+  PetscReal *lacks;
+
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < owned; ++i) any |= bore[i] != 0;
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &any, 1, MPIU_BOOL, MPI_LOR, m->comm));
+  if (!any) PetscFunctionReturn(0);
+  PetscCall(PetscCalloc1(m->grid->n_nodes * m->dim, &lacks));
+  for (PetscInt i = 0; i < owned; ++i) lacks[i] = residual[i] - bore[i];
+  frames_turn(&m->boundary->frames, m->dim, lacks);
+  for (PetscInt i = 0; i < owned; ++i)
+    if (!m->boundary->fixed[i] || !m->nodes->fixed[i] || m->nodes->idle[i / m->dim]) lacks[i] = 0;
+  frames_turn(&m->boundary->frames, m->dim, lacks);
+  for (PetscInt i = 0; i < owned; ++i) held[i] += lacks[i];
+  PetscCall(PetscFree(lacks));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode HoldImbalance(Model *m, const Case *from, Imbalance *imbalance)
 {
   const PetscInt dofs = m->grid->n_nodes * m->dim;
-  PetscReal *residual, *held = release_forces(&m->forces);
+  PetscReal *residual, *lacks, *held = release_forces(&m->forces);
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(dofs, &residual));
   if (held) PetscCall(PetscArrayzero(held, dofs)); /* that of the stage before is over */
   mark_fixed(m);
   PetscCall(Residual(m, residual));
+  PetscCall(PetscMalloc1(dofs, &lacks));
+  PetscCall(PetscArraycpy(lacks, residual, dofs));
   frames_turn(&m->boundary->frames, m->dim, residual);
   for (PetscInt i = 0; i < dofs; ++i)
     if (i >= m->grid->n_owned * m->dim || m->boundary->fixed[i] || m->nodes->fixed[i]) residual[i] = 0;
   frames_turn(&m->boundary->frames, m->dim, residual);
   PetscCall(Report(m, residual, imbalance));
   if (held) PetscCall(PetscArraycpy(held, residual, dofs));
+  if (held) PetscCall(HoldReactions(m, from, lacks, held));
+  PetscCall(PetscFree(lacks));
   PetscCall(PetscFree(residual));
   PetscFunctionReturn(0);
 }

@@ -174,7 +174,7 @@ PetscErrorCode ModelTake(Model *m, Tables *tables, const Case *from, PetscBool n
   if (next) PetscCall(BeginMeasures(m, from, diag));
   PetscCall(DiagReduce(m->comm, diag, &errors));
   if (errors) PetscFunctionReturn(0);
-  PetscCall(HoldImbalance(m, imbalance));
+  PetscCall(HoldImbalance(m, from, imbalance));
   if (m->scheme->inertia && case_is_static(&from->analysis)) PetscCall(InitialAcceleration(m));
   PetscFunctionReturn(0);
 }

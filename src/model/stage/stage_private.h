@@ -43,4 +43,4 @@ PetscBool point_swap(Points *points, PetscInt p, const Material *was, const Mate
 /* Collective. Velocities end where the case says so, or where they mean nothing: in statics. */
 PetscErrorCode ResetMotion(Model *model, const Case *from, PetscBool next, PetscReal *taken);
 /* Collective. What is out of balance now; where the case releases it over time, it is held. */
-PetscErrorCode HoldImbalance(Model *model, Imbalance *imbalance);
+PetscErrorCode HoldImbalance(Model *model, const Case *from, Imbalance *imbalance);
