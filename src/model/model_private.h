@@ -271,6 +271,8 @@ PetscErrorCode ModelAdvise(const Model *model, Diag *diag);
 PetscErrorCode AdviseThin(const Model *model, Diag *diag);
 /* Collective. The same of amplitudes that do more within a step than at its ends: start/pulse.c. */
 PetscErrorCode AdvisePulses(const Model *model, Diag *diag);
+/* The same of walls and held nodes that jump when dynamics begin: start/jumps.c. */
+void advise_jumps(const Model *model, Diag *diag);
 /* Collective. The same of a drum that is not closed: start/drum.c. */
 PetscErrorCode AdviseOpenDrum(const Model *model, Diag *diag);
 /* Rayleigh damping, where there is inertia, 1/s. */

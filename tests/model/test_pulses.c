@@ -61,8 +61,41 @@ static void test_motions(void **state)
   bench_warned(&b, PETSC_COMM_WORLD, "loads.tractions[0].amplitude", NULL);
 }
 
+/* What stands at a place from the start on is there at once in dynamics, and told; what grows, turns or flows is not. */
+static void test_jumps(void **state)
+{
+  static const struct {
+    MotionKind kind;
+    PetscReal first; /* value of an amplitude at the start; < 0: there is none */
+    AnalysisType type;
+    const char *path, *words;
+  } jumps[] = {
+    {MOTION_DISPLACEMENT, -1, ANALYSIS_DYNAMIC, "boundary[1].displacement", "jumps by 0.01 m at the start"},
+    {MOTION_DISPLACEMENT, -1, ANALYSIS_EXPLICIT, "boundary[1].displacement", "jumps by 0.01 m at the start"},
+    {MOTION_DISPLACEMENT, 0.5, ANALYSIS_DYNAMIC, "boundary[1].amplitude", "jumps by 0.005 m at the start"},
+    {MOTION_DISPLACEMENT, 0, ANALYSIS_DYNAMIC, "boundary[1]", NULL},
+    {MOTION_DISPLACEMENT, -1, ANALYSIS_STATIC, "boundary[1]", NULL},
+    {MOTION_VELOCITY, -1, ANALYSIS_DYNAMIC, "boundary[1]", NULL},
+  };
+  PetscReal time[2] = {0, 0.2}, value[2] = {0, 1};
+  (void)state;
+  EACH_OF (k, jumps) {
+    Bench b;
+    bench_init(&b, jumps[k].type == ANALYSIS_EXPLICIT ? "mpm" : "fem", CELL_QUADRILATERAL, 2);
+    bench_dynamic(&b, 0.2, STEP);
+    b.c.analysis.type = jumps[k].type;
+    bench_motion(&b, 1, 0, MOTION_FIXED, 3);
+    MotionSpec *top = bench_motion(&b, 1, 1, jumps[k].kind, 2);
+    top->value[1] = -0.01;
+    value[0] = jumps[k].first;
+    if (jumps[k].first >= 0) top->amplitude = (Amplitude){.n = 2, .time = time, .value = value};
+    bench_warned(&b, PETSC_COMM_WORLD, jumps[k].path, jumps[k].words);
+  }
+}
+
 int main(int argc, char **argv)
 {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_loads), cmocka_unit_test(test_motions)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_loads), cmocka_unit_test(test_motions),
+                                     cmocka_unit_test(test_jumps)};
   return run_model_tests(argc, argv, tests);
 }

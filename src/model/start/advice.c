@@ -175,31 +175,6 @@ static void advise_wall(const Model *m, PetscInt k, Diag *diag)
                extent_of(m->dim, min, max, walls), extent_of(m->dim, m->grid->min, m->grid->max, grid));
 }
 
-#define INSTANT 1e-9 /* of a step */
-
-/* A wall that jumps hits what is near at any speed. */
-static void advise_jump(const Model *m, PetscInt k, Diag *diag)
-{
-  const WallSpec *wall = m->c->walls + k;
-  const PetscReal t = m->time, next = t + INSTANT * m->c->analysis.step;
-  PetscReal min[3], max[3], x[3] = {0, 0, 0}, way[3] = {0, 0, 0}, far = 0;
-  char path[64];
-  if (!m->scheme->inertia || !wall->n_motions || wall->has_mass) return;
-  wall_bounds(m->walls, k, t, min, max);
-  for (int corner = 0; corner < 2; ++corner) {
-    for (PetscInt d = 0; d < m->dim; ++d)
-      x[d] = PetscMin(PetscMax(corner ? max[d] : min[d], m->grid->min[d]), m->grid->max[d]);
-    wall_motion(m->walls, k, t, next, x, way);
-    far = PetscMax(far, PetscSqrtReal(way[0] * way[0] + way[1] * way[1] + way[2] * way[2]));
-  }
-  if (far <= 1e-6 * m->grid->smallest) return;
-  PetscSNPrintf(path, sizeof path, "walls[%d].motion", (int)k);
-  diag_warning(diag, path, "wall '%s' jumps by %g m at the start: what it meets there is hit at any speed", wall->name,
-               (double)far);
-  diag_hint(diag, "an amplitude that begins with 0 lets it start smoothly: amplitude: [[0, 0], [%g, 1]]",
-            (double)(m->c->analysis.end / 10));
-}
-
 /* The pressure of the second equation is that before the flow, of which dilatancy takes something away at each point by
  * itself: changes of volume inside a cell are not held (docs/decisions.md, 263). */
 static void advise_dilatancy(const Model *m, Diag *diag)
@@ -240,7 +215,7 @@ PetscErrorCode ModelAdvise(const Model *m, Diag *diag)
 {
   PetscFunctionBeginUser;
   for (PetscInt k = 0; m->walls && k < m->c->n_walls; ++k) advise_wall(m, k, diag);
-  for (PetscInt k = 0; m->walls && k < m->c->n_walls; ++k) advise_jump(m, k, diag);
+  advise_jumps(m, diag);
   for (PetscInt b = 0; b < m->c->n_bodies; ++b)
     for (PetscInt i = 0; i < m->c->n_materials; ++i)
       if (!strcmp(m->c->bodies[b].material, m->c->materials[i].name)) advise_locking(m, &m->c->bodies[b], i, diag);

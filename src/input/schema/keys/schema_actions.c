@@ -36,7 +36,7 @@ static const SchemaEntry motion_entries[] = {
   KEY("velocity", TABLE, NULL, "prescribed velocity", .table = &schema_components, TAG(MOTION_VELOCITY)),
   KEY("rotation", TABLE, NULL, "rigid rotation about a point", .table = &schema_rotation, TAG(MOTION_ROTATION), TURNS),
   KEY("amplitude", AMPLITUDE, NULL, "factor over time: [[time, factor], ...], linear between",
-      .note = "1, or time / end for a displacement", AT(MotionSpec, amplitude)),
+      .note = "1, or time / end for a displacement in statics", AT(MotionSpec, amplitude)),
   KEY("moves", BOOLEAN, NULL,
       "on a grid that is restored every step (mpm): does the place `on` take part in the motion, so that it is a rigid "
       "body that goes through the grid? Let it reach a cell into the material, so that it holds the nodes of the cells "
