@@ -175,6 +175,35 @@ static void test_flies(void **state)
   CALL(ModelDestroy(&m));
 }
 
+/* A ball that nothing touches turns by its spin times the time, in the plane and about any axis, however far in a
+ * step. */
+static void test_turns(void **state)
+{
+  static const Hit ways[] = {{"mpm", "cell", NULL, CELL_QUADRILATERAL, 0, PETSC_FALSE, 0, 0},
+                             {"mpm", "gimp", "midpoint", CELL_QUADRILATERAL, 0, PETSC_FALSE, 0, 0},
+                             {"mpm", "cell", NULL, CELL_HEXAHEDRON, 0, PETSC_FALSE, 0, 0}};
+  (void)state;
+  EACH_OF (k, ways) {
+    const PetscBool space = ways[k].cell == CELL_HEXAHEDRON;
+    const PetscReal spin[3] = {space ? 2 : 0, space ? 10 : 0, space ? -5 : 10};
+    Bench b;
+    WallSpec wall;
+    below_ball(&b, &ways[k], PETSC_TRUE, &wall);
+    wall.shape.centre[space ? 2 : 1] = 1.5;
+    for (int d = 0; d < 3; ++d) wall.mass.velocity[d] = 0, wall.mass.spin[d] = spin[d];
+    Model *m = bench_model(&b, PETSC_COMM_WORLD);
+    while (m->time < 0.4) model_step(m, m->time > 0.15 ? 0.12 : 0.04);
+    const RigidState *now = &m->contact->rigid->now;
+    PetscReal along = 0, square = 0;
+    for (int d = 0; d < 3; ++d) {
+      CHECK_CLOSE(now->turned[d], spin[d] * m->time, 1e-12);
+      along += now->R[4 * d], square += PetscSqr(spin[d]);
+    }
+    CHECK_CLOSE(along, 1 + 2 * PetscCosReal(PetscSqrtReal(square) * m->time), 1e-12);
+    CALL(ModelDestroy(&m));
+  }
+}
+
 /* In statics a footing, with an inclined load at its centre, stands on the block: forces in balance, and their
  * moment. */
 static void test_stands(void **state)
@@ -266,9 +295,9 @@ static void test_centreless(void **state)
 int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {
-    cmocka_unit_test(test_hits),       cmocka_unit_test(test_several), cmocka_unit_test(test_flies),
-    cmocka_unit_test(test_stands),     cmocka_unit_test(test_floats),  cmocka_unit_test(test_endless),
-    cmocka_unit_test(test_centreless),
+    cmocka_unit_test(test_hits),    cmocka_unit_test(test_several),    cmocka_unit_test(test_flies),
+    cmocka_unit_test(test_turns),   cmocka_unit_test(test_stands),     cmocka_unit_test(test_floats),
+    cmocka_unit_test(test_endless), cmocka_unit_test(test_centreless),
   };
   return run_model_group(argc, argv, tests, PETSC_STATIC_ARRAY_LENGTH(tests));
 }

@@ -17,6 +17,11 @@ static void motion_of(int i, const PetscReal arm[3], PetscReal motion[3])
   else cross_axis(i - 3, arm, motion);
 }
 
+static void cross(const PetscReal a[3], const PetscReal b[3], PetscReal c[3])
+{
+  for (int i = 0, j = 1, k = 2; i < 3; ++i, j = (j + 1) % 3, k = (k + 1) % 3) c[i] = a[j] * b[k] - a[k] * b[j];
+}
+
 static PetscReal dot(const PetscReal a[3], const PetscReal b[3]) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
 PetscErrorCode RigidSums(Contact *s, const NodalScene *scene)
@@ -72,10 +77,12 @@ static PetscBool touch_of(const Contact *s, ContactPoint *c, const RigidWall *b,
   rigid_arm(b, PETSC_FALSE, x, at);
   rigid_lever(b, c->x, x, lever);
   for (int i = 0; i < RIGID; ++i) {
-    motion_of(i, at, t->motion[i]);
+    PetscReal axis[3] = {0, 0, 0};
+    if (i > 2) rigid_turns(b, i - 3, axis);
+    cross(axis, at, t->motion[i]);
+    if (i < 3) t->motion[i][i] = 1;
     motion_of(i, lever, t->arm[i]);
-    if (i < 3) t->change[i][0] = t->change[i][1] = t->change[i][2] = 0;
-    else cross_axis(i - 3, t->f, t->change[i]); /* the force turns with its wall */
+    cross(axis, t->f, t->change[i]); /* the force turns with its wall */
     for (int d = 0; d < 3; ++d) t->change[i][d] += dot(t->K + 3 * d, t->motion[i]);
   }
   return PETSC_TRUE;

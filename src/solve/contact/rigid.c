@@ -22,22 +22,32 @@ static void turn_back(const PetscReal R[9], const PetscReal v[3], PetscReal V[3]
   for (int d = 0; d < 3; ++d) V[d] = r[d];
 }
 
-/* (1 - t/2)^-1 (1 + t/2), t the matrix of the cross product by theta: a rotation by 2 atan(|theta| / 2), with
- * cay(theta) r - r = theta x (r + cay(theta) r) / 2. */
-static void cayley(const PetscReal theta[3], const PetscReal r[3], PetscReal turned[3])
+/* sin(a) / a and (1 - cos(a)) / a^2, which digits survive of however small an angle. */
+static void turn_factors(PetscReal angle, PetscReal *once, PetscReal *twice)
 {
-  PetscReal once[3], twice[3];
-  const PetscReal square = theta[0] * theta[0] + theta[1] * theta[1] + theta[2] * theta[2];
+  const PetscReal half = angle > 0 ? PetscSinReal(angle / 2) / (angle / 2) : 1;
+  *once = angle > 0 ? PetscSinReal(angle) / angle : 1;
+  *twice = half * half / 2;
+}
+
+static PetscReal size_of(const PetscReal v[3]) { return PetscSqrtReal(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]); }
+
+/* exp(t), t the matrix of the cross product by theta: a turn about theta by its size, so that a constant spin turns by
+ * what it makes of the time, however long the steps are. */
+static void turn_by(const PetscReal theta[3], const PetscReal r[3], PetscReal turned[3])
+{
+  PetscReal once[3], twice[3], f[2];
+  turn_factors(size_of(theta), f, f + 1);
   cross(theta, r, once);
   cross(theta, once, twice);
-  for (int d = 0; d < 3; ++d) turned[d] = r[d] + (once[d] + twice[d] / 2) / (1 + square / 4);
+  for (int d = 0; d < 3; ++d) turned[d] = r[d] + f[0] * once[d] + f[1] * twice[d];
 }
 
 static void turn_matrix(const PetscReal theta[3], const PetscReal R[9], PetscReal turned[9])
 {
   for (int j = 0; j < 3; ++j) {
     PetscReal column[3] = {R[j], R[3 + j], R[6 + j]};
-    cayley(theta, column, column);
+    turn_by(theta, column, column);
     for (int i = 0; i < 3; ++i) turned[3 * i + j] = column[i];
   }
 }
@@ -92,6 +102,19 @@ static void own_lever(const RigidWall *b, PetscReal part, const PetscReal x[3], 
 void rigid_arm(const RigidWall *b, PetscBool start, const PetscReal x[3], PetscReal arm[3])
 {
   own_lever(b, start ? 0 : 1, x, arm);
+}
+
+/* exp(theta + e) = exp(a) exp(theta): a = e + (1 - cos) / |theta|^2 theta x e + (1 - sin / |theta|) / |theta|^2 theta x
+ * (theta x e), to first order of e. */
+void rigid_turns(const RigidWall *b, int axis, PetscReal a[3])
+{
+  const PetscReal *theta = b->q + 3, size = size_of(theta), unit[3] = {axis == 0, axis == 1, axis == 2};
+  PetscReal once[3], twice[3], f[2];
+  turn_factors(size, f, f + 1);
+  const PetscReal third = size > 1e-3 ? (1 - f[0]) / (size * size) : 1. / 6 - size * size / 120;
+  cross(theta, unit, once);
+  cross(theta, once, twice);
+  for (int d = 0; d < 3; ++d) a[d] = unit[d] + f[1] * once[d] + third * twice[d];
 }
 
 void rigid_lever(const RigidWall *b, const PetscReal x0[3], const PetscReal x1[3], PetscReal lever[3])
@@ -196,7 +219,7 @@ static void moment_change(const RigidWall *b, PetscReal rate[3])
   turn_matrix(b->q + 3, b->now.R, R1);
   spin_of(b, b->now.R, b->now.L, w);
   /* what turns with the wall: W1 = 2 theta / dt - W, and theta is the same before and after */
-  cayley(b->q + 3, w, w1);
+  turn_by(b->q + 3, w, w1);
   for (int d = 0; d < 3; ++d) w1[d] = 2 * b->q[3 + d] / b->dt - w1[d];
   moment_of(b, R1, w1, L1);
   for (int d = 0; d < 3; ++d) rate[d] = (L1[d] - b->now.L[d]) / b->dt;
@@ -253,15 +276,12 @@ PetscBool rigid_balances(const RigidWall *b, PetscReal tolerance, PetscReal digi
 /* Its increments become part of where it is. */
 static void go(RigidWall *b)
 {
-  const PetscReal *theta = b->q + 3,
-                  size = PetscSqrtReal(theta[0] * theta[0] + theta[1] * theta[1] + theta[2] * theta[2]);
-  const PetscReal angle = size > 0 ? 2 * atan(size / 2) / size : 1;
   PetscReal R[9];
-  turn_matrix(theta, b->now.R, R);
+  turn_matrix(b->q + 3, b->now.R, R);
   for (int i = 0; i < 9; ++i) b->now.R[i] = R[i];
   for (int d = 0; d < 3; ++d) {
     b->now.moved[d] += b->q[d];
-    b->now.turned[d] += angle * theta[d];
+    b->now.turned[d] += b->q[3 + d];
   }
   for (int i = 0; i < RIGID; ++i) {
     b->now.last[i] = b->q[i];

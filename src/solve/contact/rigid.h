@@ -3,7 +3,7 @@
  *
  * With impulses dt F of all forces, where contact counts with its mean over the step,
  *
- *   M (v1 - v) = dt F,  d = dt (v + v1) / 2;   R1 J W1 - R J W = dt T,  R1 = R cay(dt (W + W1) / 2),
+ *   M (v1 - v) = dt F,  d = dt (v + v1) / 2;   R1 J W1 - R J W = dt T,  R1 = R exp(dt (W + W1) / 2),
  *
  * the torque T about the centre where forces act, at the step's end or in its middle: momentum and energy are exact
  * for any dt, its moment with the midpoint rule (Simo and Wong 1991). In statics forces and
@@ -34,7 +34,7 @@ typedef struct {
   PetscReal dt, share;      /* dt 0: statics; share: the mean of contact over what the balance asks for */
   PetscReal part;           /* of the step at which forces act: 1, in the midpoint rule 1/2 */
   PetscReal load[2][RIGID]; /* weight, force and torque at the step's start and end */
-  PetscReal q[RIGID];       /* increments: translation d, and theta of cay(theta), m, rad */
+  PetscReal q[RIGID];       /* increments: translation d, and theta of exp(theta), m, rad */
   /* of contact on the material at the last assembly, over all ranks: forces and torques, and the sums of their
    * sizes; penalties of what is near, N/m */
   PetscReal contact[RIGID], size[2], stiff;
@@ -66,6 +66,8 @@ static inline PetscBool rigid_has(const RigidWall *b, int i) { return b->stands 
  * moves by there: the work of contact is that of forces on d and of torques on theta. */
 void rigid_lever(const RigidWall *b, const PetscReal x0[3], const PetscReal x1[3], PetscReal lever[3]);
 void rigid_sweep(const RigidWall *b, const PetscReal x0[3], const PetscReal x1[3], PetscReal swept[3]);
+/* About which axis, and how far, it turns at the end of the step for a unit of theta. */
+void rigid_turns(const RigidWall *b, int axis, PetscReal a[3]);
 /* Position against the centre at the start, or at the end of the step, and velocity there. */
 void rigid_arm(const RigidWall *b, PetscBool start, const PetscReal x[3], PetscReal arm[3]);
 void rigid_velocity(const RigidWall *b, const PetscReal arm[3], PetscReal v[3]);
