@@ -384,6 +384,17 @@ static PetscErrorCode ReadStages(const char *file, YamlDocument *document, Diag 
   PetscFunctionReturn(0);
 }
 
+/* Words that stand for a mapping: before anything looks into it. */
+static PetscErrorCode SpellOut(YamlDocument *document)
+{
+  PetscFunctionBeginUser;
+  for (const SchemaEntry *e = schema_case.entries; e->key; ++e) {
+    YamlNode *node = e->spelled ? yaml_find(document->root, e->key) : NULL;
+    if (node) PetscCall(YamlSpellOut(document, node));
+  }
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode CaseReadText(const char *file, size_t size, const char *text, PetscInt n_set, const char *const *set,
                             Diag *diag, Case **c)
 {
@@ -395,7 +406,11 @@ PetscErrorCode CaseReadText(const char *file, size_t size, const char *text, Pet
   PetscCall(YamlCreate(file, text, size, diag, &document));
   PetscCall(DiagSetResolver(diag, yaml_resolve, document));
   PetscCall(DiagOwnContext(diag, destroy_document));
-  for (PetscInt i = 0; i < n_set; ++i) PetscCall(YamlSet(document, set[i], diag));
+  PetscCall(SpellOut(document));
+  for (PetscInt i = 0; i < n_set; ++i) {
+    PetscCall(YamlSet(document, set[i], diag));
+    PetscCall(SpellOut(document));
+  }
   if (document->root) PetscCall(ReadDocument(file, document, diag, NULL, 0, c));
   if (*c) check_beyond(NULL, *c, diag);
   if (diag_errors(diag) == before && *c && (*c)->n_stages) PetscCall(ReadStages(file, document, diag, *c));

@@ -35,6 +35,9 @@ static const struct {
   {RINGS, "gimp", "gimp, the default of mpm;"},
   {PLAIN "basis: {cell: {}}\n", "cell", "cell"},
   {PLAIN "basis: {gimp: {}}\n", "gimp", "gimp"},
+  {PLAIN "basis: gimp\n", "gimp", "gimp"},
+  {PLAIN "basis: 'cell'\n", "cell", "cell"},
+  {PLAIN "basis: gimp\nstages: [{name: one}]\n", "gimp", "gimp"},
   /* grids */
   {PLANE(", cell: triangle"), "cell", "cell, since gimp, the default of mpm, needs a box of quadrilaterals"},
   {SPACE(", cell: tetrahedron"), "cell", "cell, since gimp, the default of mpm, needs a box of quadrilaterals"},

@@ -53,6 +53,23 @@ static void Create(void **state)
   CaseDestroy(&c);
 }
 
+/* A word is the mapping that it stands for, wherever it comes from, and takes keys as that does. */
+static void Spelled(void **state)
+{
+  const char text[] = PLAIN "basis: cell\n", *const set[] = {"basis=gimp", "basis.gimp.split=0.5"};
+  char *said;
+  Case *c = Good("basis=bspline");
+  (void)state;
+  assert_string_equal(c->basis.kind, "bspline");
+  CaseDestroy(&c);
+  c = read_bytes(text, strlen(text), 2, set, &said);
+  if (!c) fail_msg("%s", said);
+  assert_string_equal(c->basis.kind, "gimp");
+  ASSERT_NEAR(c->basis.split, 0.5, 0);
+  free(said);
+  CaseDestroy(&c);
+}
+
 /* Later ones win, and see what earlier ones made. */
 static void InOrder(void **state)
 {
@@ -96,8 +113,16 @@ static void Mistakes(void **state)
     {"newton", "there is no '='"},
     {"=3", "there is no key before '='"},
     {"bodies[4].name=x", "--set bodies[4].name=x: error: bodies has 1 entries, so there is no [4]"},
-    {"bodies.name=x", "bodies is a list, it has no keys"},
-    {"materials[0]=x", "materials is a mapping of keys, it has no numbered entries"},
+    {"bodies.name=x",
+     "bodies is a list, it has no keys\n  hint: name an entry of the list by its number: bodies[0] is "
+     "'beam'"},
+    {"bodies.beam.shape.box.max=[1, 1]",
+     "bodies is a list, it has no keys\n  hint: bodies is a list, and 'beam' is "
+     "bodies[0]"},
+    {"materials[0]=x",
+     "materials is a mapping of keys, it has no numbered entries\n  hint: name one of its keys: "
+     "materials.rubber"},
+    {"basis=gmp", "--set basis=gmp: error: key 'gmp' of basis is not known\n  hint: did you mean 'gimp'?"},
     {"method.x=1", "method is a single value, it has no keys"},
     {"a..b=1", "this is no path to a key"},
     {"a[x]=1", "this is no path to a key"},
@@ -151,8 +176,9 @@ static void Resolve(void **state)
 
 int main(int argc, char **argv)
 {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(Replace), cmocka_unit_test(Create),   cmocka_unit_test(InOrder),
-                                     cmocka_unit_test(Repairs), cmocka_unit_test(Mistakes), cmocka_unit_test(Resolve)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(Replace), cmocka_unit_test(Create),  cmocka_unit_test(InOrder),
+                                     cmocka_unit_test(Spelled), cmocka_unit_test(Repairs), cmocka_unit_test(Mistakes),
+                                     cmocka_unit_test(Resolve)};
   if (PetscInitialize(&argc, &argv, NULL, NULL)) return 1;
   const int failed = cmocka_run_group_tests(tests, NULL, NULL);
   return PetscFinalize() || failed;

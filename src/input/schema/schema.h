@@ -72,6 +72,7 @@ struct SchemaEntry {
   PetscBool endless;    /* a number beyond what its unit can mean has a meaning: none */
   PetscBool always;     /* a mapping that is read even if absent: its keys have defaults */
   PetscBool input_only; /* resolved to another key, never written */
+  PetscBool spelled;    /* a mapping of one key may be that key alone: basis: gimp for basis: {gimp: {}} */
   PetscBool staged;     /* a PetscBool that is written only where it is true or the case has stages */
   const SchemaWord *words;
   /* instead of words: structs that begin with their word and its help, ended by NULL */

@@ -57,6 +57,18 @@ static void json_reference(FILE *out, const SchemaTable *table)
   fputc('"', out);
 }
 
+/* The keys of a table: one of them may stand for {it: {}}. */
+static void json_keys(FILE *out, const SchemaTable *table)
+{
+  SchemaEntry e;
+  fputs("{\"enum\": [", out);
+  for (PetscInt i = 0; (e = schema_entry(table, i)).key; ++i) {
+    fputs(i ? ", " : "", out);
+    json_string(out, e.key);
+  }
+  fputs("]}", out);
+}
+
 /* What the value may be, without braces around it. */
 static void json_value(FILE *out, const SchemaEntry *e)
 {
@@ -78,7 +90,15 @@ static void json_value(FILE *out, const SchemaEntry *e)
     enumerate(out, e);
     fputc('}', out);
     break;
-  case TYPE_TABLE: json_reference(out, e->table); break;
+  case TYPE_TABLE:
+    if (e->spelled) {
+      fputs("\"anyOf\": [", out);
+      json_keys(out, e->table);
+      fputs(", {", out);
+    }
+    json_reference(out, e->table);
+    if (e->spelled) fputs("}]", out);
+    break;
   case TYPE_LIST:
     fputs("\"type\": \"array\", \"items\": {", out);
     json_reference(out, e->table);

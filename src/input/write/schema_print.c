@@ -37,7 +37,7 @@ static const char *print_kind(const SchemaEntry *e, PetscBool markdown, char *bu
 {
   char range[80];
   schema_range(e, range, sizeof(range));
-  snprintf(buffer, size, "%s%s%s", schema_types[e->type].short_name,
+  snprintf(buffer, size, "%s%s%s%s", e->spelled ? "word or " : "", schema_types[e->type].short_name,
            range[0] && e->type != TYPE_SIZE && e->type != TYPE_COUNTS ? " " : "",
            e->type != TYPE_SIZE && e->type != TYPE_COUNTS ? range : "");
   const size_t used = strlen(buffer);

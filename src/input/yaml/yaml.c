@@ -66,6 +66,23 @@ PetscErrorCode YamlNodeAppend(YamlNode *parent, YamlNode *child)
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode YamlSpellOut(YamlDocument *document, YamlNode *node)
+{
+  YamlNode *value;
+
+  PetscFunctionBeginUser;
+  if (node->kind != YAML_SCALAR || !node->text[0] || yaml_is_null(node)) PetscFunctionReturn(0);
+  PetscCall(YamlNodeCreate(document, YAML_MAPPING, &value));
+  value->place = value->key_place = node->place;
+  value->argument = node->argument;
+  value->stage = node->stage;
+  value->key = node->text;
+  node->text = NULL;
+  node->kind = YAML_MAPPING;
+  PetscCall(YamlNodeAppend(node, value));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode YamlNodeRemove(YamlNode *parent, PetscInt index)
 {
   PetscFunctionBeginUser;

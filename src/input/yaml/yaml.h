@@ -59,6 +59,8 @@ PetscErrorCode YamlParseInto(YamlDocument *document, const char *text, size_t si
 PetscErrorCode YamlNodeCreate(YamlDocument *document, YamlKind kind, YamlNode **node);
 PetscErrorCode YamlNodeDestroy(YamlNode **node);
 PetscErrorCode YamlNodeAppend(YamlNode *parent, YamlNode *child);
+/* A scalar becomes the mapping {its text: {}}; an empty one, or another node, stays what it is. */
+PetscErrorCode YamlSpellOut(YamlDocument *document, YamlNode *node);
 /* Destroy a child; those behind it move up. */
 PetscErrorCode YamlNodeRemove(YamlNode *parent, PetscInt index);
 

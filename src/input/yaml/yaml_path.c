@@ -78,6 +78,24 @@ void yaml_resolve(void *context, const char *path, DiagPlace *place)
   document->resolved = line;
 }
 
+/* A list has numbers where a mapping has keys. Whoever knows the name of an entry learns its number. */
+static void hint_entry(const YamlNode *node, const PathStep *step, const char *path, Diag *diag)
+{
+  const YamlNode *name = NULL;
+  for (PetscInt i = 0; i < node->n && node->kind == YAML_SEQUENCE; ++i) {
+    name = yaml_find(node->child[i], "name");
+    if (!name || !name->text || step->index >= 0 || strcmp(name->text, step->key)) continue;
+    diag_hint(diag, "%s is a list, and '%s' is %s[%d]", path, step->key, path, (int)i);
+    return;
+  }
+  if (node->kind == YAML_SEQUENCE) {
+    name = node->n ? yaml_find(node->child[0], "name") : NULL;
+    if (name && name->text) diag_hint(diag, "name an entry of the list by its number: %s[0] is '%s'", path, name->text);
+    else diag_hint(diag, "name an entry of the list: %s[0]", path);
+  } else if (node->kind == YAML_MAPPING && node->n)
+    diag_hint(diag, "name one of its keys: %s.%s", path, node->child[0]->key);
+}
+
 static PetscErrorCode MakeKind(YamlDocument *document, YamlNode *node, const PathStep *step, PetscInt argument,
                                Diag *diag, PetscBool *ok)
 {
@@ -98,7 +116,7 @@ static PetscErrorCode MakeKind(YamlDocument *document, YamlNode *node, const Pat
                : node->kind == YAML_MAPPING ? "a mapping of keys"
                                             : "a list",
                kind == YAML_MAPPING ? "keys" : "numbered entries");
-    if (node->kind == YAML_SEQUENCE) diag_hint(diag, "name an entry of the list: %s[0]", path);
+    hint_entry(node, step, path, diag);
     *ok = PETSC_FALSE;
   }
   PetscFunctionReturn(0);

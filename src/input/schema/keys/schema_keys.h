@@ -26,6 +26,7 @@
 #define ONLY_3D .only_3d = PETSC_TRUE
 #define TURNS .turns = PETSC_TRUE
 #define INPUT_ONLY .input_only = PETSC_TRUE
+#define SPELLED .spelled = PETSC_TRUE
 #define STAGED .staged = PETSC_TRUE
 /* Of a stage, and of a case that starts from another run. */
 #define RELEASE(type, ...)                                                                                         \
