@@ -3,12 +3,12 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
+#include "input/defaults.h"
 #include "input/idle_keys.h"
 #include "input/schema/schema.h"
 #include "input/stages.h"
-#include "material/law.h"
 #include "method/method.h"
-#include "method/transfer/transfer.h"
+#include "method/time/time_scheme.h"
 #include "model/model.h"
 
 static void destroy_document(void *document)
@@ -96,64 +96,6 @@ static void peek_kinematics(const YamlNode *root, SchemaReader *r)
   const Kinematics *kinematics = node && node->kind == YAML_SCALAR ? kinematics_find(node->text) : NULL;
   r->dim = kinematics ? kinematics->dim : 0;
   r->hoop = kinematics ? kinematics->hoop : PETSC_FALSE;
-}
-
-static PetscBool anything_yields(const Case *c)
-{
-  for (PetscInt m = 0; m < c->n_materials; ++m) {
-    const Law *law = c->materials[m].law ? law_find(c->materials[m].law) : NULL;
-    if (law && law->yields) return PETSC_TRUE;
-  }
-  return PETSC_FALSE;
-}
-
-/* Do points hand over all that they have? */
-static PetscBool keeps_all(const Case *c)
-{
-  const Transfer *transfer = transfer_find(c->analysis.transfer);
-  const Basis *basis = basis_find(c->basis.kind);
-  return c->analysis.type == ANALYSIS_DYNAMIC && transfer && transfer->slopes && basis && basis->domains;
-}
-
-/* Statics in which nodes follow others, and no stage comes before or after. */
-static PetscBool stands_alone(const Case *c) { return case_is_static(&c->analysis) && !c->spec && !case_is_mixed(c); }
-
-/* Measured (docs/theory.md, section 9): elastic bodies keep angular momentum and energy best
- * with a tenth of the mass lumped and no tie, while at the front of a flow, where yielded points
- * carry next to nothing, only both keep Newton's method alive. Where points have domains,
- * curvature is held instead, and without lumped mass the transfer loses no angular momentum at
- * all (section 16). Where nodes follow others Newton's method takes up to a fifth more iterations
- * for what swings; but what has come to rest in a stage before must find the same nodes. Where statics
- * yields those follow, too, that are reached a little more (section 62). */
-static void resolve_stabilisation(const YamlNode *given, Case *c)
-{
-  const PetscBool yields = anything_yields(c), exact = keeps_all(c), stands = stands_alone(c);
-  if (!yaml_find(given, "mass")) c->stabilisation.mass = yields ? 1 : exact ? 0 : 0.1;
-  if (!yaml_find(given, "inertia")) c->stabilisation.inertia = yields ? 0.01 : 0;
-  if (!yaml_find(given, "curvature")) c->stabilisation.curvature = exact ? 0.1 : !stands ? 0.01 : yields ? 1e-4 : 1e-3;
-  if (!yaml_find(given, "follow")) c->stabilisation.follow = c->spec ? 0.02 : !stands ? 0 : yields ? 0.1 : 0.02;
-}
-
-/* Explicit steps lose half of an elastic disk's spin in a revolution without the gradients that points carry, and
- * what flows goes too far with them (docs/theory.md, "Gradients that points carry"). */
-static PetscErrorCode ResolveTransfer(Case *c)
-{
-  const AnalysisSpec *a = &c->analysis;
-  const PetscBool turns = a->type == ANALYSIS_EXPLICIT && a->update == EXPLICIT_MUSL && !anything_yields(c);
-
-  PetscFunctionBeginUser;
-  if (!a->transfer) PetscCall(PetscStrallocpy(turns ? "consistent" : "thesis", &c->analysis.transfer));
-  PetscFunctionReturn(0);
-}
-
-/* An acceleration that points carry is out of balance on the next grid (docs/theory.md, "The
- * midpoint rule"). */
-static PetscErrorCode ResolveScheme(Case *c)
-{
-  PetscFunctionBeginUser;
-  if (keeps_all(c) && !c->analysis.scheme && c->analysis.bossak == 0)
-    PetscCall(PetscStrallocpy("midpoint", &c->analysis.scheme));
-  PetscFunctionReturn(0);
 }
 
 /* Could the points of each cell share its change of volume? The cells of a mesh are not known yet. */
@@ -268,6 +210,18 @@ static PetscErrorCode ResolveRaised(const YamlNode *given, Diag *diag, Case *c)
   PetscFunctionReturn(0);
 }
 
+/* Of schemes that know beta and gamma. */
+static void check_newmark(const Case *c, Diag *diag)
+{
+  const AnalysisSpec *a = &c->analysis;
+  const TimeScheme *scheme = time_scheme_of(a);
+  if (a->type != ANALYSIS_DYNAMIC || !scheme || scheme->middle) return;
+  if (a->gamma < 0.5 - a->bossak - 1e-12)
+    diag_warning(diag, "analysis.gamma", "gamma < 0.5 - bossak: the time integration gains energy and is not stable");
+  else if (a->beta < 0.5 * a->gamma - 1e-12)
+    diag_warning(diag, "analysis.beta", "beta < gamma / 2: stable for small enough steps only");
+}
+
 /* whole: NULL, or the case of which it is stage k. */
 static PetscErrorCode ReadDocument(const char *file, YamlDocument *document, Diag *diag, const Case *whole, PetscInt k,
                                    Case **c)
@@ -285,10 +239,11 @@ static PetscErrorCode ReadDocument(const char *file, YamlDocument *document, Dia
   reader.c = *c;
   peek_kinematics(document->root, &reader);
   PetscCall(SchemaReadTable(&reader, &schema_case, document->root, *c));
-  PetscCall(ResolveTransfer(*c));
+  PetscCall(DefaultTransfer(*c));
   PetscCall(ResolveFormulation(document->root, whole, *c));
-  resolve_stabilisation(yaml_find(document->root, "stabilisation"), *c);
-  PetscCall(ResolveScheme(*c));
+  default_stabilisation(yaml_find(document->root, "stabilisation"), *c);
+  PetscCall(DefaultScheme(*c));
+  check_newmark(*c, diag);
   resolve_equilibrium(yaml_find(document->root, "initial"), *c);
   const YamlNode *analysis = yaml_find(document->root, "analysis");
   PetscCall(ResolveRaised(analysis ? yaml_find(analysis, "limit") : NULL, diag, *c));

@@ -3,5 +3,6 @@
 #include "case/case.h"
 #include "input/yaml/yaml.h"
 
-/* One warning that names keys of dynamics, as the top of the file has them, where no stage is dynamic. */
+/* A warning for each key that has no effect in this case, in any of its stages that have the key, unless it says what
+ * is so anyway. The document is laid for all stages. */
 PetscErrorCode TellIdleKeys(const YamlDocument *document, const Case *c, Diag *diag);

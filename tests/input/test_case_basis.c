@@ -141,40 +141,114 @@ static void Followers(void **state)
   assert_int_equal(CaseDestroy(&c), 0);
 }
 
-/* Keys of dynamics in statics are named, those that say what is so anyway are not; a dynamic stage wants them all. */
+/* Keys that have no effect are named, each where it stands, those that say what is so anyway are not; a stage that
+ * takes them over wants them all. */
 static void Idle(void **state)
 {
 #define BEAM(more)                                                                                       \
   PLAIN_GRID "bodies:\n  - {name: beam, shape: {box: {min: [0, 0], max: [2, 1]}}, material: rubber" more \
              "}\n" PLAIN_MATERIALS
-#define HEAD(more) "kinematics: plane-strain\nmethod: mpm\nanalysis: {type: static, end: 1, step: 0.1" more "}\n"
+#define HEAD(method, type, more) \
+  "kinematics: plane-strain\nmethod: " method "\nanalysis: {type: " type ", end: 1, step: 0.1" more "}\n"
+#define STILL(more) HEAD("mpm", "static", more)
+#define SWING(more) HEAD("mpm", "dynamic", more)
+#define QUICK(more) HEAD("mpm", "explicit", more)
+#define FOLLOWS "kinematics: plane-strain\nmethod: fem\nanalysis: {type: dynamic, end: 1, step: 0.1}\n"
+#define STABLE "stabilisation: {stiffness: 1e-5, curvature: 0.3, follow: 0.3, mass: 0.3, inertia: 0.3}\n"
   static const struct {
-    const char *text, *words;
+    const char *text, *set, *keys[8];
   } idle[] = {
-    {HEAD(", damping: 2, scheme: bossak, bossak: -0.1, mass: lumped") BEAM(", velocity: [1, 0]"),
-     "nothing here is dynamic: analysis.damping, analysis.bossak, analysis.scheme, analysis.mass, bodies[0].velocity"},
-    {HEAD(", beta: 0.3, gamma: 0.6, transfer: consistent, keep_velocity: true") BEAM(", spin: 2"),
-     "analysis.beta, analysis.gamma, analysis.transfer, analysis.keep_velocity, bodies[0].spin"},
-    {HEAD(", damping: 0, beta: 0.25, mass: consistent, transfer: thesis") BEAM(", velocity: [0, 0]"), NULL},
-    {HEAD(", damping: 2")
-       BEAM(", velocity: [1, 0]") "stages: [{name: a}, {name: b, analysis: {type: dynamic, end: 1, step: 0.1}}]\n",
-     NULL},
+    {STILL(", damping: 2, scheme: bossak, bossak: -0.1, mass: lumped") BEAM(", velocity: [1, 0]"),
+     NULL,
+     {"analysis.damping", "analysis.scheme", "analysis.bossak", "analysis.mass", "bodies[0].velocity"}},
+    {STILL(", beta: 0.3, gamma: 0.6, transfer: consistent, keep_velocity: true") BEAM(", spin: 2"),
+     NULL,
+     {"analysis.beta", "analysis.gamma", "analysis.transfer", "analysis.keep_velocity", "bodies[0].spin"}},
+    {STILL(", damping: 0, beta: 0.25, mass: consistent, transfer: thesis") BEAM(", velocity: [0, 0]"), NULL, {NULL}},
+    {STILL(", courant: 0.5, update: usl") BEAM(""), NULL, {"analysis.courant", "analysis.update"}},
+    {STILL("") BEAM("") STABLE, NULL, {"stabilisation.stiffness", "stabilisation.mass", "stabilisation.inertia"}},
+    {STILL("") BEAM("") "boundary: [{on: {x: 0}, fix: [x, y], amplitude: [[0, 1], [1, 0]]}]\n"
+                        "initial: {reset_displacement: true}\nmixed: {stabilisation: 3}\n",
+     NULL,
+     {"boundary[0].amplitude", "initial.reset_displacement", "mixed.stabilisation"}},
+    {SWING(", beta: 0.3, gamma: 0.6, transfer: consistent") BEAM(""), NULL, {"analysis.beta", "analysis.gamma"}},
+    {SWING(", beta: 0.3, gamma: 0.6") BEAM(", velocity: [1, 0]") STABLE "newton: {ease: 3}\n",
+     NULL,
+     {"stabilisation.stiffness", "stabilisation.inertia"}},
+    {SWING("") BEAM("") "basis: cell\n" STABLE, NULL, {"stabilisation.curvature", "stabilisation.follow"}},
+    {FOLLOWS BEAM("") STABLE,
+     NULL,
+     {"stabilisation.stiffness", "stabilisation.curvature", "stabilisation.follow", "stabilisation.mass",
+      "stabilisation.inertia"}},
+    {QUICK(", beta: 0.3, gamma: 0.8, mass: lumped, travel: 0.1, smallest: 1e-3, largest: 0.2") BEAM(""),
+     NULL,
+     {"analysis.beta", "analysis.gamma", "analysis.mass", "analysis.travel", "analysis.smallest", "analysis.largest"}},
+    {QUICK("") BEAM("") STABLE "newton: {residual: 1e-3, ease: 6}\nlinear: direct\n",
+     NULL,
+     {"newton.residual", "linear", "stabilisation.stiffness", "stabilisation.curvature", "stabilisation.follow",
+      "stabilisation.mass", "stabilisation.inertia"}},
+    {QUICK(", courant: 0.5, update: usl, transfer: thesis, damping: 1") BEAM(""), NULL, {NULL}},
+    /* what was written for another choice than a series made; and what comes with that choice, or after it */
+    {STILL(", courant: 0.5") BEAM("") "newton: {residual: 1e-3}\n", "analysis.type=explicit", {NULL}},
+    {QUICK("") BEAM("") "newton: {residual: 1e-3}\n", "newton.increment=1e-3", {"newton.residual", "newton.increment"}},
+    /* a stage that says its type says all of its analysis */
+    {STILL("") BEAM(", velocity: [1, 0]") STABLE
+     "stages: [{name: a}, {name: b, analysis: {type: dynamic, end: 1, step: 0.1}}]\n",
+     NULL,
+     {"stabilisation.stiffness", "stabilisation.inertia"}},
+    {STILL(", damping: 2") BEAM(
+       "") "stages: [{name: a}, {name: b, analysis: {type: dynamic, end: 1, step: 0.1, damping: 2, courant: 0.5}}]\n",
+     NULL,
+     {"analysis.damping", "analysis.courant"}},
   };
   (void)state;
   for (size_t k = 0; k < sizeof idle / sizeof idle[0]; ++k) {
-    char *said;
-    Case *c = read_text(idle[k].text, &said);
+    char *said, line[128];
+    int n = 0, told = 0;
+    Case *c = read_bytes(idle[k].text, strlen(idle[k].text), idle[k].set != NULL, &idle[k].set, &said);
     if (!c) fail_msg("%s", said);
-    if (idle[k].words ? !strstr(said, idle[k].words) : !!strstr(said, "dynamic")) fail_msg("case %d: %s", (int)k, said);
+    for (const char *const *key = idle[k].keys; *key; ++key, ++n) {
+      snprintf(line, sizeof line, " warning: %s has no effect here: ", *key);
+      if (!strstr(said, line)) fail_msg("case %d: no %s in: %s", (int)k, *key, said);
+    }
+    for (const char *at = said; (at = strstr(at, "has no effect here")); ++at) ++told;
+    if (told != n || strstr(said, "small enough steps")) fail_msg("case %d, %d for %d: %s", (int)k, told, n, said);
+    if (!k && !strstr(said, "F:3:54: warning: analysis.damping has no effect here: statics has no inertia"))
+      fail_msg("%s", said);
     free(said);
     CaseDestroy(&c);
   }
 }
 
+/* A resolved case, which has all keys, says what is so anyway. */
+static void Resolved(void **state)
+{
+  static const char *const texts[] = {PLAIN,
+                                      PLAIN "basis: cell\n",
+                                      QUICK("") BEAM(""),
+                                      SWING("") BEAM(", spin: 2"),
+                                      SWING(", transfer: consistent") BEAM(""),
+                                      FOLLOWS BEAM(""),
+                                      STILL("") BEAM(", k0: 0.5") "loads: {gravity: [0, -10]}\n"};
+  (void)state;
+  for (size_t k = 0; k < sizeof texts / sizeof texts[0]; ++k) {
+    char *said, *resolved;
+    Case *c = read_good(texts[k]);
+    assert_int_equal(CaseToYaml(c, &resolved), 0);
+    assert_int_equal(CaseDestroy(&c), 0);
+    c = read_text(resolved, &said);
+    if (!c || strstr(said, "has no effect")) fail_msg("case %d: %s", (int)k, said);
+    free(said);
+    assert_int_equal(PetscFree(resolved), 0);
+    assert_int_equal(CaseDestroy(&c), 0);
+  }
+}
+
 int main(int argc, char **argv)
 {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(Chosen), cmocka_unit_test(Written), cmocka_unit_test(Midpoint),
-                                     cmocka_unit_test(Followers), cmocka_unit_test(Idle)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(Chosen),   cmocka_unit_test(Written),
+                                     cmocka_unit_test(Midpoint), cmocka_unit_test(Followers),
+                                     cmocka_unit_test(Idle),     cmocka_unit_test(Resolved)};
   if (PetscInitialize(&argc, &argv, NULL, NULL)) return 1;
   const int failed = cmocka_run_group_tests(tests, NULL, NULL);
   return PetscFinalize() || failed;

@@ -1,5 +1,6 @@
 talus_test(verify/test_verify_reference)
 talus_test(verify/test_verify RANKS 1 2 3)
+talus_test(verify/test_idle)
 if(COMMAND talus_cli)
   talus_cli(verify 0 "8 of 8 rows pass" verify ${PROJECT_SOURCE_DIR}/cases/cantilever --out ${PROJECT_BINARY_DIR}/tests/verify)
   talus_cli(verify_help 0 "usage: talus verify CASE_DIR" verify --help)

@@ -38,17 +38,11 @@ static void resolve_bounds(SchemaReader *r, const YamlNode *mapping, AnalysisSpe
     SchemaError(r, largest, "analysis.largest is smaller than the step (%g s)", (double)a->step);
 }
 
-static void resolve_newmark(SchemaReader *r, const YamlNode *mapping, AnalysisSpec *a)
+static void resolve_newmark(const YamlNode *mapping, AnalysisSpec *a)
 {
   const YamlNode *beta = yaml_find(mapping, "beta"), *gamma = yaml_find(mapping, "gamma");
   if (!beta) a->beta = 0.25 * (1 - a->bossak) * (1 - a->bossak);
   if (!gamma) a->gamma = 0.5 - a->bossak;
-  if (case_is_static(a)) return;
-  if (a->gamma < 0.5 - a->bossak - 1e-12)
-    diag_warning(r->diag, "analysis.gamma",
-                 "gamma < 0.5 - bossak: the time integration gains energy and is not stable");
-  else if (a->beta < 0.5 * a->gamma - 1e-12)
-    diag_warning(r->diag, "analysis.beta", "beta < gamma / 2: stable for small enough steps only");
 }
 
 PetscErrorCode SchemaCheckReduction(SchemaReader *r, const YamlNode *mapping, void *target)
@@ -76,7 +70,7 @@ PetscErrorCode SchemaCheckAnalysis(SchemaReader *r, const YamlNode *mapping, voi
     SchemaKeyError(r, mapping, "key 'limit' of analysis is missing: what is to be raised? limit: {raise: ...}");
   resolve_steps(r, mapping, target);
   resolve_bounds(r, mapping, target);
-  resolve_newmark(r, mapping, target);
+  resolve_newmark(mapping, target);
   ((AnalysisSpec *)target)->courant = case_courant(a);
   PetscFunctionReturn(0);
 }

@@ -31,9 +31,6 @@ void explicit_check(const Model *m, Diag *diag)
     diag_hint(diag,
               "bodies without an interface share the nodes where they meet, and stay together; `stick` lets them part");
   }
-  if (c->analysis.scheme || c->analysis.bossak != 0)
-    diag_warning(diag, c->analysis.scheme ? "analysis.scheme" : "analysis.bossak",
-                 "is of implicit dynamics, and means nothing to `type: explicit`");
 }
 
 PetscErrorCode ExplicitBalance(Model *m, StepReport *report)
