@@ -65,6 +65,10 @@ static PetscErrorCode Ask(const Loads *l, PetscInt load, PetscReal t, PetscReal 
       x[3 * n + d] = point_real(carriers, POINT_X, p)[d];
       X[3 * n + d] = x[3 * n + d] - point_real(carriers, POINT_U, p)[d];
     }
+    for (PetscInt d = 0; d < carriers->components[POINT_LEAN]; ++d) {
+      x[3 * n + d] += load_lean(point_real(carriers, POINT_X, p), point_real(carriers, POINT_EDGE, p), d);
+      X[3 * n + d] += point_real(carriers, POINT_LEAN, p)[d];
+    }
     ++n;
   }
   PetscCall(Evaluate(l, load, n, X, x, t, one));

@@ -18,6 +18,13 @@ typedef struct {
   void *context;
 } LoadAsked;
 
+/* Of a ring that a piece x + s edge, |s| <= 1, makes: from x to the mean of its places by their radius. A load that
+ * varies as the places do has its mean there. */
+static inline PetscReal load_lean(const PetscReal *x, const PetscReal *edge, PetscInt d)
+{
+  return x[0] > 0 ? edge[0] / (3 * x[0]) * edge[d] : 0;
+}
+
 /* Not collective, but functions are asked on every rank. Factors of a load on faces of the grid,
  * at their quadrature points, at time t; *f is NULL if there are none, else to be freed. */
 PetscErrorCode LoadFactorsOfFaces(const struct Loads *loads, PetscInt load, PetscReal t, PetscReal **f);

@@ -103,6 +103,8 @@ static PetscErrorCode AddCarrier(Loads *loads, const Grid *grid, PetscInt load, 
   }
   for (PetscInt k = 0; k < p->components[POINT_EDGE]; ++k)
     point_real(p, POINT_EDGE, i)[k] = at->edge[k / loads->dim][k % loads->dim];
+  for (PetscInt d = 0; d < p->components[POINT_LEAN]; ++d)
+    point_real(p, POINT_LEAN, i)[d] = load_lean(at->x, at->edge[0], d);
   PetscFunctionReturn(0);
 }
 
@@ -269,6 +271,7 @@ PetscErrorCode LoadsCreate(const Grid *grid, const Case *c, const Points *points
   PetscCall(FollowersCreate(l->dim, l->dim, &l->carriers));
   l->carriers->components[POINT_FIELD] = points->components[POINT_FIELD];
   if (basis_find(c->basis.kind)->carry) l->carriers->components[POINT_EDGE] = l->dim * (l->dim - 1);
+  if (l->carriers->components[POINT_EDGE] && c->kinematics->hoop) l->carriers->components[POINT_LEAN] = l->dim;
   for (PetscInt k = 0; k < c->n_loads; ++k) {
     const LoadKind kind = c->loads[k].kind;
     PetscCall(PetscSNPrintf(path, sizeof path, "%s.%s", case_load_path(c, k, list), kind == LOAD_POINT ? "at" : "on"));

@@ -49,6 +49,7 @@ PetscErrorCode PointsCreate(PetscInt dim, PetscInt n_state, PetscInt n_force, Po
   new->components[POINT_PRESSURE] = 0;
   new->components[POINT_FORCE] = n_force;
   new->components[POINT_EDGE] = 0;
+  new->components[POINT_LEAN] = 0;
   new->components[POINT_OVERHANG] = 0;
   new->components[POINT_DOMAIN] = 0;
   new->components[POINT_SLOPE] = 0;

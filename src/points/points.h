@@ -31,6 +31,9 @@ typedef enum {
   /* of load carriers that stand for a piece of a surface: half its edges, m; the piece is x + s e (+ t e'), |s|, |t|
    * <= 1: dim (dim - 1) where the basis averages over pieces (Basis.carry), otherwise 0 components */
   POINT_EDGE,
+  /* of such carriers in rings: from the middle of the undeformed piece to the mean of places by their radius, m: dim
+   * there, otherwise 0 components */
+  POINT_LEAN,
   /* of followers: from their position, the nearest in the grid, to where they really are, m: dim
    * (others: 0 components) */
   POINT_OVERHANG,

@@ -25,6 +25,7 @@ static const struct {
   [POINT_PRESSURE] = {"pressure", "Pa"},
   [POINT_FORCE] = {"force", "N"},
   [POINT_EDGE] = {"edge", "m"},
+  [POINT_LEAN] = {"lean", "m"},
   [POINT_OVERHANG] = {"overhang", "m"},
   [POINT_DOMAIN] = {"domain", "m"},
   [POINT_SLOPE] = {"slope", NULL},

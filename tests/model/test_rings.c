@@ -502,6 +502,34 @@ static void test_cloud(void **state)
   }
 }
 
+/* A dead load that grows with the radius, or with the height, has its integral in rings of any width, and keeps it when
+ * they are strained. */
+static void test_varying(void **state)
+{
+  static const struct {
+    const char *basis, *factor;
+    PetscReal total; /* over 2 pi */
+  } loads[] = {{"gimp", "X", 1. / 3}, {"gimp", "2 * X - 3 * Y", 2. / 3 - 3. / 2}, {"cell", "X", 1. / 3}};
+  (void)state;
+  EACH_OF (k, loads) {
+    Bench b;
+    tube(&b, "mpm", CELL_QUADRILATERAL, 0, 1, 1, 4);
+    b.c.grid.max[1] = 1.25, b.c.grid.counts[1] = 5;
+    b.c.basis.kind = loads[k].basis;
+    tube_moved(&b, 0, 0, 0, 0);
+    tube_moved(&b, 1, 0, 1, 0);
+    LoadSpec *load = bench_traction(&b, 1, 1, "body", 0, -1e-2 * b.constants[0].value, 0);
+    load->factor = (char *)loads[k].factor;
+    b.c.analysis.step = b.c.analysis.largest = 0.5;
+    Model *m = bench_model(&b, PETSC_COMM_WORLD);
+    run_through(m);
+    const PetscReal total = 2 * PETSC_PI * loads[k].total * 1e-2 * b.constants[0].value;
+    CHECK_CLOSE(reaction(m, 1, 1), total, 1e-8 * PetscAbsReal(total));
+    CALL(ModelDestroy(&m));
+    bench_end(&b);
+  }
+}
+
 int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {cmocka_unit_test(test_sphere),
@@ -514,6 +542,7 @@ int main(int argc, char **argv)
                                      cmocka_unit_test(test_quadratic),
                                      cmocka_unit_test(test_space),
                                      cmocka_unit_test(test_surface),
-                                     cmocka_unit_test(test_cloud)};
+                                     cmocka_unit_test(test_cloud),
+                                     cmocka_unit_test(test_varying)};
   return run_model_tests(argc, argv, tests);
 }
