@@ -6,6 +6,9 @@
 
 /* Of half its share of the cells: what a node has at least that leads. */
 #define LEADS 0.1
+/* The same in explicit steps, whose nodes have lumped masses: of less, more runs away from the body in each substep than
+ * points bring back; of more, the node behind would have to give more mass than it has. */
+#define LEADS_BY_MASS 0.4
 
 /* Is what holds the first held in the same way in the second, too, so that the first can follow it? */
 static PetscBool is_held_as(const Boundary *b, PetscInt one, PetscInt other)
@@ -32,9 +35,24 @@ static PetscInt leads_bit(PetscInt d, PetscBool above, PetscBool held)
   return 1 << (4 * d + (above ? 2 : 0) + (held ? 1 : 0));
 }
 
+/* What `fill` is where half of a node's share of the cells is full. Mass says only how it is to that of the nodes
+ * around: of these the fullest counts as full. */
+static PetscReal half_full(const Discretisation *s, const Extension *e, const PetscInt at[3])
+{
+  PetscReal most = 0;
+  PetscInt step[3];
+  for (PetscInt way = 0; e->by_mass && way < WAYS; ++way) {
+    way_of(way, step);
+    const PetscInt beside = s->grid->dim == 3 || !step[2] ? node_beside(s->grid->box, at, step) : -1;
+    if (beside >= 0) most = PetscMax(most, e->fill[beside]);
+  }
+  return e->by_mass ? 0.5 * most : 1;
+}
+
 static PetscReal find_leads(const Discretisation *s, const Extension *e, PetscInt node, const PetscInt at[3])
 {
-  const PetscReal enough = PetscMax(LEADS, s->c->stabilisation.follow);
+  const PetscReal least = e->by_mass ? LEADS_BY_MASS : PetscMax(LEADS, s->c->stabilisation.follow);
+  const PetscReal enough = least * half_full(s, e, at);
   PetscInt bits = 0;
   for (PetscInt k = 0; k < 2 * s->grid->dim && e->fill[node] >= enough; ++k) {
     PetscInt step[3] = {0, 0, 0};
@@ -62,9 +80,10 @@ static PetscBool is_led(const Discretisation *s, const Extension *e, PetscInt no
 
 /* Does a node with so little follow, if others lead it? Where a load acts more is asked for: a node has to have
  * stiffness for what it bears, and that it has no material at all is no hindrance. */
-static PetscBool wants_lead(const Discretisation *s, const Extension *e, PetscInt node)
+static PetscBool wants_lead(const Discretisation *s, const Extension *e, PetscInt node, const PetscInt at[3])
 {
   const PetscReal least = s->c->stabilisation.follow;
+  if (e->by_mass) return (PetscBool)(e->loaded[node] > 0 && e->fill[node] < LEADS_BY_MASS * half_full(s, e, at));
   if (e->loaded[node] > 0) return (PetscBool)(e->fill[node] < PetscMax(LEADS, least));
   return (PetscBool)(e->fill[node] > 0 && e->fill[node] < least);
 }
@@ -73,7 +92,7 @@ static PetscReal find_ways(const Discretisation *s, const Extension *e, PetscInt
 {
   const PetscInt dim = s->grid->dim;
   PetscInt bits = 0, step[3];
-  if (!wants_lead(s, e, node)) return 0;
+  if (!wants_lead(s, e, node, at)) return 0;
   for (PetscInt axes = 1; axes <= dim && !bits; ++axes)
     for (PetscInt way = 0; way < WAYS; ++way) {
       way_of(way, step);
@@ -83,23 +102,21 @@ static PetscReal find_ways(const Discretisation *s, const Extension *e, PetscInt
   return (PetscReal)bits;
 }
 
-/* What `find` says of each node that this rank owns; others are told. */
-static PetscErrorCode Find(const Discretisation *s, const Extension *e,
+/* What `find` says of each node of a list (NULL: the first n) that this rank owns; others are told. */
+static PetscErrorCode Find(const Discretisation *s, const Extension *e, PetscInt n, const PetscInt *list,
                            PetscReal (*find)(const Discretisation *s, const Extension *e, PetscInt node,
                                              const PetscInt at[3]),
                            PetscReal *value)
 {
-  const GridBox *box = s->grid->box;
-  const VoxelBlock *all = &box->nodes;
   PetscInt at[3];
 
   PetscFunctionBeginUser;
-  for (at[2] = all->lo[2]; at[2] < all->hi[2]; ++at[2])
-    for (at[1] = all->lo[1]; at[1] < all->hi[1]; ++at[1])
-      for (at[0] = all->lo[0]; at[0] < all->hi[0]; ++at[0]) {
-        const PetscInt node = box_node(box, at);
-        if (node < s->grid->n_owned) value[node] = find(s, e, node, at);
-      }
+  for (PetscInt k = 0; k < n; ++k) {
+    const PetscInt node = list ? list[k] : k;
+    if (node >= s->grid->n_owned) continue;
+    place_of(s->grid->box, e, node, at);
+    value[node] = find(s, e, node, at);
+  }
   PetscCall(GridToGhosts(s->grid, 1, value));
   PetscFunctionReturn(0);
 }
@@ -107,7 +124,16 @@ static PetscErrorCode Find(const Discretisation *s, const Extension *e,
 PetscErrorCode ChooseWays(const Discretisation *s, Extension *e)
 {
   PetscFunctionBeginUser;
-  PetscCall(Find(s, e, find_leads, e->leads));
-  PetscCall(Find(s, e, find_ways, e->ways));
+  PetscCall(Find(s, e, s->grid->n_owned, NULL, find_leads, e->leads));
+  PetscCall(Find(s, e, s->grid->n_owned, NULL, find_ways, e->ways));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ChooseWaysAmong(const Discretisation *s, Extension *e, PetscInt n_leaders, const PetscInt *leader,
+                               PetscInt n, const PetscInt *node)
+{
+  PetscFunctionBeginUser;
+  PetscCall(Find(s, e, n_leaders, leader, find_leads, e->leads));
+  PetscCall(Find(s, e, n, node, find_ways, e->ways));
   PetscFunctionReturn(0);
 }

@@ -14,6 +14,7 @@ static PetscErrorCode ExtensionCreate(const Discretisation *s, Extension **exten
   PetscFunctionBeginUser;
   PetscCall(PetscNew(&e));
   PetscCall(PetscCalloc5(n, &e->fill, n, &e->loaded, n, &e->leads, n, &e->ways, n, &e->place));
+  PetscCall(PetscMalloc3(n, &e->follower, n, &e->listed, n, &e->beside));
   for (PetscInt k = 0; k < known; ++k) e->place[box->lattice[k]] = k;
   PetscCall(SupportCreate(&e->spare));
   PetscCall(SupportCreate(&e->carried));
@@ -34,6 +35,7 @@ PetscErrorCode ExtensionDestroy(Extension **extension)
   PetscCall(SupportDestroy(&e->carried));
   PetscCall(SupportDestroy(&e->spare_carried));
   PetscCall(SupportDestroy(&e->traced));
+  PetscCall(PetscFree3(e->follower, e->listed, e->beside));
   PetscCall(PetscFree(*extension));
   PetscFunctionReturn(0);
 }
@@ -45,7 +47,7 @@ PetscBool extension_works(const Discretisation *s)
   return implicit && s->grid->box && !s->nodes->pressure && asked ? PETSC_TRUE : PETSC_FALSE;
 }
 
-static void place_of(const GridBox *box, const Extension *e, PetscInt node, PetscInt at[3])
+void place_of(const GridBox *box, const Extension *e, PetscInt node, PetscInt at[3])
 {
   const VoxelBlock *all = &box->nodes;
   const PetscInt k = e->place[node], nx = all->hi[0] - all->lo[0], ny = all->hi[1] - all->lo[1];
@@ -270,9 +272,9 @@ PetscErrorCode DiscretisationCarry(Discretisation *s, const BasisInput *in)
   PetscFunctionReturn(0);
 }
 
-/* The nodes that pieces of a loaded surface see; ghosts too. */
-static PetscErrorCode FindLoaded(const Discretisation *s, Extension *e)
+PetscErrorCode ExtensionLoaded(const Discretisation *s)
 {
+  Extension *e = s->extension;
   const Support *w = e->carried;
 
   PetscFunctionBeginUser;
@@ -311,7 +313,7 @@ const Support *followers_see(const Discretisation *s, const Points *followers)
 
 PetscErrorCode DiscretisationExtend(Discretisation *s, const BasisInput *in)
 {
-  PetscBool again = PETSC_TRUE, here = PETSC_FALSE;
+  PetscBool again = PETSC_TRUE;
 
   PetscFunctionBeginUser;
   if (!s->extension) PetscCall(ExtensionCreate(s, &s->extension));
@@ -322,50 +324,11 @@ PetscErrorCode DiscretisationExtend(Discretisation *s, const BasisInput *in)
   PetscCall(PetscArrayzero(e->ways, s->grid->n_nodes));
   e->any = PETSC_FALSE;
   if (!extension_works(s)) PetscFunctionReturn(0);
-  PetscCall(FindLoaded(s, e));
+  PetscCall(ExtensionLoaded(s));
   PetscCall(ChooseWays(s, e));
   while (again) PetscCall(KeepNeeded(s, &again));
-  for (PetscInt i = 0; i < s->grid->n_nodes; ++i) here = here || e->ways[i] > 0;
-  PetscCallMPI(MPI_Allreduce(&here, &e->any, 1, MPIU_BOOL, MPI_LOR, s->grid->comm));
-  if (here) PetscCall(RewriteAll(s));
-  PetscFunctionReturn(0);
-}
-
-/* Followers of this rank with all that they follow: their part of the field, and that it is known. */
-static void follow(const Discretisation *s, const PetscReal *field, PetscReal *sum, PetscReal *known)
-{
-  const PetscReal none[3] = {0, 0, 0};
-  const PetscInt dim = s->grid->dim;
-  PetscInt at[3];
-  Row row;
-  for (PetscInt node = 0; node < s->grid->n_nodes; ++node) {
-    const PetscInt ways = (PetscInt)s->extension->ways[node];
-    if (!ways) continue;
-    row.n = 0;
-    place_of(s->grid->box, s->extension, node, at);
-    if (!row_add_follower(&row, dim, s->grid->box, at, ways, 1, none)) continue;
-    known[node] = 1;
-    for (PetscInt I = 0; I < row.n; ++I)
-      for (PetscInt d = 0; d < dim; ++d) sum[node * dim + d] += row.N[I] * field[row.node[I] * dim + d];
-  }
-}
-
-/* Who knows all nodes that one follows tells the others: the ranks of points near it do. */
-static PetscErrorCode FollowField(const Discretisation *s, PetscReal *field)
-{
-  const PetscInt dim = s->grid->dim, n = s->grid->n_nodes;
-  PetscReal *sum, *known;
-
-  PetscFunctionBeginUser;
-  PetscCall(PetscCalloc2(n * dim, &sum, n, &known));
-  follow(s, field, sum, known);
-  PetscCall(GridSumToOwners(s->grid, dim, sum));
-  PetscCall(GridSumToOwners(s->grid, 1, known));
-  PetscCall(GridToGhosts(s->grid, dim, sum));
-  PetscCall(GridToGhosts(s->grid, 1, known));
-  for (PetscInt i = 0; i < n * dim; ++i)
-    if (s->extension->ways[i / dim] > 0) field[i] = sum[i] / known[i / dim];
-  PetscCall(PetscFree2(sum, known));
+  PetscCall(ExtensionList(s, s->grid->n_nodes, NULL, &e->any));
+  if (e->n_followers) PetscCall(RewriteAll(s));
   PetscFunctionReturn(0);
 }
 
@@ -373,8 +336,8 @@ PetscErrorCode DiscretisationFollow(Discretisation *s)
 {
   PetscFunctionBeginUser;
   if (!s->extension || !s->extension->any) PetscFunctionReturn(0);
-  PetscCall(FollowField(s, s->nodes->du));
-  PetscCall(FollowField(s, s->nodes->v1));
-  PetscCall(FollowField(s, s->nodes->a1));
+  PetscCall(ExtensionTake(s, s->grid->dim, s->nodes->du));
+  PetscCall(ExtensionTake(s, s->grid->dim, s->nodes->v1));
+  PetscCall(ExtensionTake(s, s->grid->dim, s->nodes->a1));
   PetscFunctionReturn(0);
 }

@@ -7,6 +7,13 @@ void way_of(PetscInt way, PetscInt step[3])
   step[2] = way / 9 - 1;
 }
 
+PetscInt ways_many(PetscInt ways)
+{
+  PetscInt n = 0;
+  for (; ways; ways &= ways - 1) ++n;
+  return n;
+}
+
 PetscInt node_beside(const GridBox *box, const PetscInt at[3], const PetscInt step[3])
 {
   const PetscInt there[3] = {at[0] + step[0], at[1] + step[1], at[2] + step[2]};
@@ -37,8 +44,8 @@ void row_add(Row *row, PetscInt slopes, PetscInt node, PetscReal share, PetscRea
 
 /* With B one step on the way, u = u_B + sum_d r_d (u_(B + d) - u_B) over the axes of the way: the linear function of
  * these nodes. */
-static PetscBool add_way(Row *row, PetscInt slopes, const GridBox *box, const PetscInt at[3], const PetscInt step[3],
-                         PetscReal share, PetscReal N, const PetscReal *dN)
+PetscBool row_add_way(Row *row, PetscInt slopes, const GridBox *box, const PetscInt at[3], const PetscInt step[3],
+                      PetscReal share, PetscReal N, const PetscReal *dN)
 {
   const PetscInt base[3] = {at[0] + step[0], at[1] + step[1], at[2] + step[2]};
   PetscReal rest = share;
@@ -60,12 +67,12 @@ static PetscBool add_way(Row *row, PetscInt slopes, const GridBox *box, const Pe
 PetscBool row_add_follower(Row *row, PetscInt slopes, const GridBox *box, const PetscInt at[3], PetscInt ways,
                            PetscReal N, const PetscReal *dN)
 {
-  PetscInt n = 0, step[3];
-  for (PetscInt bits = ways; bits; bits &= bits - 1) ++n;
+  const PetscInt n = ways_many(ways);
+  PetscInt step[3];
   for (PetscInt way = 0; way < WAYS; ++way) {
     if (!(ways >> way & 1)) continue;
     way_of(way, step);
-    if (node_beside(box, at, step) < 0 || !add_way(row, slopes, box, at, step, 1 / (PetscReal)n, N, dN))
+    if (node_beside(box, at, step) < 0 || !row_add_way(row, slopes, box, at, step, 1 / (PetscReal)n, N, dN))
       return PETSC_FALSE;
   }
   return PETSC_TRUE;

@@ -49,6 +49,8 @@ typedef struct Explicit {
    * loads nor tracers */
   PetscReal *mark;
   PetscInt n_active, *active; /* nodes where points can come in the lap */
+  PetscBool led;              /* do nodes follow others in the substep, on any rank? */
+  PetscReal *bare;            /* n_nodes: then, masses before followers hand theirs on, kg */
   PetscInt n_held;
   Held *held;
   PetscBool moved;   /* do prescribed velocities change? */
@@ -121,8 +123,17 @@ PetscErrorCode NodesMove(Model *model, Explicit *e);
 void nodes_hold(Model *model, Explicit *e);
 /* Collective. Copies on other ranks. */
 PetscErrorCode NodesShare(const Model *model, PetscInt components, PetscReal *values);
-/* Momentum in `straining` becomes velocity, held where that is prescribed. */
-void nodes_strain(const Model *model, Explicit *e);
+/* lead.c. Collective. Who follows in the substep, by the masses in `sum`; is this node among them? */
+PetscErrorCode Lead(Model *model, Explicit *e);
+PetscBool is_led(const Model *model, const Explicit *e, PetscInt node);
+/* Collective, on all copies: where nodes follow, what they have goes to those that lead, of `sum` once the substep has
+ * begun, of momentum (n_nodes x dim) after that, of others; and they take what those have. */
+PetscErrorCode SumsGive(const Model *model, Explicit *e);
+PetscErrorCode MomentumGive(const Model *model, const Explicit *e, PetscReal *momentum);
+PetscErrorCode NodesGive(const Model *model, const Explicit *e, PetscInt components, PetscReal *sum);
+PetscErrorCode NodesTake(const Model *model, const Explicit *e, PetscInt components, PetscReal *field);
+/* Collective. Momentum in `straining`, summed over the ranks, becomes velocity, held where that is prescribed. */
+PetscErrorCode NodesStrain(const Model *model, Explicit *e);
 /* Tracers and carriers of loads go with the nodes, whose sums start anew. Collective. */
 PetscErrorCode NodesCarry(Model *model, Explicit *e);
 /* `straining` starts anew. */

@@ -89,7 +89,7 @@ PetscErrorCode ExplicitCreate(const Model *m, Explicit **explicit)
   PetscCall(PetscCalloc1(n * e->width + 4, &e->sum));
   PetscCall(PetscCalloc1(n * 2 * dim + 4, &e->motion));
   PetscCall(PetscCalloc1(n * dim + 4, &e->straining));
-  PetscCall(PetscCalloc1(n, &e->mark));
+  PetscCall(PetscCalloc2(n, &e->mark, n, &e->bare));
   PetscCall(PetscMalloc1(n, &e->active));
   if (m->contact) PetscCall(PetscCalloc2(m->contact->n_partners, &e->pushed, m->contact->n_partners, &e->rubbed));
   if (m->contact) PetscCall(PetscMalloc1(m->contact->n_rigid, &e->ease));
@@ -107,7 +107,7 @@ PetscErrorCode ExplicitDestroy(Explicit **explicit)
   PetscCall(PetscFree(e->sum));
   PetscCall(PetscFree(e->motion));
   PetscCall(PetscFree(e->straining));
-  PetscCall(PetscFree(e->mark));
+  PetscCall(PetscFree2(e->mark, e->bare));
   PetscCall(PetscFree(e->active));
   PetscCall(PetscFree(e->held));
   PetscCall(PetscFree(e->near.point));
@@ -134,6 +134,13 @@ static void mark_around(const Model *m, PetscInt cell, PetscReal *mark)
       for (ijk[0] = lo[0]; ijk[0] < hi[0]; ++ijk[0]) mark[box_node(box, ijk)] = 1;
 }
 
+/* And those that pieces of a loaded surface see. */
+static void mark_carried(const Model *m, PetscReal *mark)
+{
+  const Support *w = m->loads->support;
+  for (PetscInt i = 0; w && w->n_groups && i < w->node_start[w->n_groups]; ++i) mark[w->node[i]] = 1;
+}
+
 static PetscErrorCode ListActive(Model *m, Explicit *e)
 {
   const PetscInt n = m->grid->n_nodes;
@@ -146,6 +153,7 @@ static PetscErrorCode ListActive(Model *m, Explicit *e)
     last = m->points->cell[p];
   }
   for (PetscInt i = 0; i < n && !e->box; ++i) e->mark[i] = m->nodes->touched[i];
+  if (!e->box && loads_have_pieces(m->loads)) mark_carried(m, e->mark);
   PetscCall(NodesShare(m, 1, e->mark));
   e->n_active = 0;
   for (PetscInt i = 0; i < n; ++i)

@@ -68,9 +68,10 @@ static PetscBool has_tracers(const Case *c)
 }
 
 /* Which nodes carry loads and tracers in this substep? All ranks say the same of a node. */
-static PetscErrorCode Touch(const Model *m, const Explicit *e)
+static PetscErrorCode Touch(Model *m, Explicit *e)
 {
   PetscFunctionBeginUser;
+  PetscCall(Lead(m, e));
   if (!m->c->n_loads && !has_tracers(m->c)) PetscFunctionReturn(0);
   for (PetscInt k = 0; k < e->n_active; ++k) e->mark[e->active[k]] = 0;
   leave_out(m, e, m->loads->carriers, m->loads->support);
@@ -78,7 +79,7 @@ static PetscErrorCode Touch(const Model *m, const Explicit *e)
   PetscCall(NodesShare(m, 1, e->mark));
   for (PetscInt k = 0; k < e->n_active; ++k) {
     const PetscInt node = e->active[k];
-    m->nodes->touched[node] = mass_of(e, node) > 0 && !(e->mark[node] > 0);
+    m->nodes->touched[node] = is_led(m, e, node) || (mass_of(e, node) > 0 && !(e->mark[node] > 0));
   }
   PetscFunctionReturn(0);
 }
@@ -116,6 +117,8 @@ PetscErrorCode NodesMove(Model *m, Explicit *e)
   if (e->box && m->c->n_loads) PetscCall(Carry(m));
   PetscCall(Touch(m, e));
   PetscCall(AddLoads(m, e));
+  PetscCall(SumsGive(m, e));
+  if (e->loaded) PetscCall(NodesGive(m, e, dim, m->nodes->external));
   for (PetscInt k = 0; k < e->n_active; ++k) {
     const PetscInt node = e->active[k];
     const PetscReal *s = e->sum + node * e->width, mass = s[0], inverse = mass > 1e-300 ? 1 / mass : 0;
@@ -185,10 +188,14 @@ static PetscReal work_of_loads(const Model *m, const Explicit *e, PetscInt node)
   return e->dt * work;
 }
 
-void nodes_strain(const Model *m, Explicit *e)
+PetscErrorCode NodesStrain(const Model *m, Explicit *e)
 {
   const PetscInt dim = m->dim;
   const PetscBool again = m->c->analysis.update == EXPLICIT_MUSL;
+
+  PetscFunctionBeginUser;
+  if (again) PetscCall(NodesShare(m, dim, e->straining));
+  if (again) PetscCall(MomentumGive(m, e, e->straining));
   for (PetscInt k = 0; k < e->n_active; ++k) {
     const PetscInt node = e->active[k];
     const PetscReal mass = e->sum[node * e->width], inverse = mass > 1e-300 ? 1 / mass : 0;
@@ -199,6 +206,8 @@ void nodes_strain(const Model *m, Explicit *e)
   PetscReal change[3];
   for (const Held *h = e->held; again && h < e->held + e->n_held; ++h)
     (void)hold(m, h, e->straining + h->node * dim, change);
+  if (again) PetscCall(NodesTake(m, e, dim, e->straining));
+  PetscFunctionReturn(0);
 }
 
 static PetscErrorCode Follow(Model *m, Points *followers)

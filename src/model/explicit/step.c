@@ -22,7 +22,8 @@ static PetscErrorCode Kick(Model *m, Explicit *e)
   PetscCall(NodesShare(m, e->width, e->sum));
   PetscCall(NodesMove(m, e)); /* their velocities before and after */
   nodes_hold(m, e);           /* the boundary's are given */
-  points_gain(m, e);          /* points take the change, and give nodes their momentum anew */
+  PetscCall(NodesTake(m, e, 2 * m->dim, e->motion));
+  points_gain(m, e); /* points take the change, and give nodes their momentum anew */
   PetscFunctionReturn(0);
 }
 
@@ -30,8 +31,7 @@ static PetscErrorCode Substep(Model *m, Explicit *e)
 {
   PetscFunctionBeginUser;
   PetscCall(Kick(m, e));
-  if (m->c->analysis.update == EXPLICIT_MUSL) PetscCall(NodesShare(m, m->dim, e->straining));
-  nodes_strain(m, e);
+  PetscCall(NodesStrain(m, e));
   walls_follow(m, e);
   PetscCall(NodesCarry(m, e));
   materials_step(m->c->n_materials, m->materials, e->time, e->dt, PETSC_TRUE);

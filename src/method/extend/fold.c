@@ -1,0 +1,135 @@
+/* Followers of nodes whose points go on to see them: what is summed there is handed to those that lead, and the motion
+ * of these is handed back. N + E N of a point is linear in N, so sums over points are those of functions without
+ * followers (extend.c) to round-off, and no walk over points knows of it: explicit dynamics, where a node has a lumped
+ * mass and no row of a matrix. */
+#include "method/extend/choose.h"
+#include "method/extend/row.h"
+
+/* Numbers of the rows of all followers whose first leader this rank owns: it alone knows all of a row. back: from
+ * leaders to followers (`at`, in the order of the list), else the other way. */
+static void pass(const Discretisation *s, PetscBool back, PetscInt n, PetscReal *at, PetscReal *field)
+{
+  const Extension *e = s->extension;
+  const GridBox *box = s->grid->box;
+  const PetscReal none = 0;
+  PetscInt here[3], step[3];
+  Row row;
+  for (PetscInt k = 0; k < e->n_followers; ++k) {
+    const PetscInt ways = (PetscInt)e->ways[e->follower[k]];
+    place_of(box, e, e->follower[k], here);
+    for (PetscInt way = 0; way < WAYS; ++way) {
+      row.n = 0;
+      way_of(way, step);
+      const PetscInt base = ways >> way & 1 ? node_beside(box, here, step) : -1;
+      if (base < 0 || base >= s->grid->n_owned) continue;
+      if (!row_add_way(&row, 0, box, here, step, 1 / (PetscReal)ways_many(ways), 1, &none)) continue;
+      for (PetscInt I = 0; I < row.n; ++I)
+        for (PetscInt d = 0; d < n; ++d)
+          if (back) at[k * n + d] += row.N[I] * field[row.node[I] * n + d];
+          else field[row.node[I] * n + d] += row.N[I] * at[k * n + d];
+    }
+  }
+}
+
+/* What ranks have added to the sums that owners know, and what these then know, on all copies. */
+static PetscErrorCode Exchange(const Grid *grid, PetscInt n, PetscReal *field)
+{
+  PetscFunctionBeginUser;
+  PetscCall(GridSumToOwners(grid, n, field));
+  PetscCall(GridToGhosts(grid, n, field));
+  PetscFunctionReturn(0);
+}
+
+static void clear_ghosts(const Grid *grid, PetscInt n, PetscReal *field)
+{
+  for (PetscInt i = grid->n_owned * n; i < grid->n_nodes * n; ++i) field[i] = 0;
+}
+
+PetscErrorCode ExtensionGive(const Discretisation *s, PetscInt n, PetscReal *sum)
+{
+  const Extension *e = s->extension;
+  PetscReal *given;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(e->n_followers * n, &given));
+  for (PetscInt k = 0; k < e->n_followers; ++k)
+    for (PetscInt d = 0; d < n; ++d) {
+      given[k * n + d] = sum[e->follower[k] * n + d];
+      sum[e->follower[k] * n + d] = 0;
+    }
+  clear_ghosts(s->grid, n, sum);
+  pass(s, PETSC_FALSE, n, given, sum);
+  PetscCall(Exchange(s->grid, n, sum));
+  PetscCall(PetscFree(given));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ExtensionTake(const Discretisation *s, PetscInt n, PetscReal *field)
+{
+  const Extension *e = s->extension;
+  PetscReal *taken;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(e->n_followers * n, &taken));
+  pass(s, PETSC_TRUE, n, taken, field);
+  clear_ghosts(s->grid, n, field);
+  for (PetscInt k = 0; k < e->n_followers; ++k)
+    for (PetscInt d = 0; d < n; ++d) field[e->follower[k] * n + d] = taken[k * n + d];
+  PetscCall(Exchange(s->grid, n, field));
+  PetscCall(PetscFree(taken));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ExtensionList(const Discretisation *s, PetscInt n, const PetscInt *among, PetscBool *any)
+{
+  Extension *e = s->extension;
+
+  PetscFunctionBeginUser;
+  e->n_followers = 0;
+  for (PetscInt k = 0; k < n; ++k) {
+    const PetscInt node = among ? among[k] : k;
+    if (e->ways[node] > 0) e->follower[e->n_followers++] = node;
+  }
+  const PetscBool here = (PetscBool)(e->n_followers > 0);
+  PetscCallMPI(MPI_Allreduce(&here, any, 1, MPIU_BOOL, MPI_LOR, s->grid->comm));
+  PetscFunctionReturn(0);
+}
+
+/* Of the nodes of a list, those that loads act on, and all around these once, marked in `leads` meanwhile. */
+static PetscInt list_around(const Discretisation *s, Extension *e, PetscInt n, const PetscInt *active, PetscInt *beside)
+{
+  PetscInt at[3], step[3], found = 0;
+  e->n_listed = 0;
+  for (PetscInt k = 0; k < n; ++k) {
+    if (!(e->loaded[active[k]] > 0)) continue;
+    e->listed[e->n_listed++] = active[k];
+    place_of(s->grid->box, e, active[k], at);
+    for (PetscInt way = 0; way < WAYS; ++way) {
+      way_of(way, step);
+      const PetscInt node = s->grid->dim == 3 || !step[2] ? node_beside(s->grid->box, at, step) : -1;
+      if (node < 0 || e->leads[node] != 0) continue;
+      e->leads[node] = -1;
+      beside[found++] = node;
+    }
+  }
+  for (PetscInt k = 0; k < found; ++k) e->leads[beside[k]] = 0;
+  return found;
+}
+
+PetscErrorCode ExtensionByMass(Discretisation *s, PetscInt n, const PetscInt *active, PetscInt stride,
+                               const PetscReal *mass, PetscBool *any)
+{
+  Extension *e = s->extension;
+
+  PetscFunctionBeginUser;
+  e->by_mass = PETSC_TRUE;
+  PetscCall(PetscArrayzero(e->leads, s->grid->n_nodes));
+  PetscCall(PetscArrayzero(e->ways, s->grid->n_nodes));
+  PetscCall(PetscArrayzero(e->fill, s->grid->n_nodes));
+  for (PetscInt k = 0; k < n; ++k) e->fill[active[k]] = mass[active[k] * stride] / s->whole[active[k]];
+  PetscCall(ExtensionLoaded(s));
+  const PetscInt leaders = list_around(s, e, n, active, e->beside);
+  PetscCall(ChooseWaysAmong(s, e, leaders, e->beside, e->n_listed, e->listed));
+  PetscCall(ExtensionList(s, e->n_listed, e->listed, any));
+  PetscFunctionReturn(0);
+}
