@@ -88,6 +88,31 @@ static void test_inner_extent(void **state)
   CALL(ModelDestroy(&m));
 }
 
+/* A square of 16 x 16 equal points, of which 2.56 may lie beyond: its outermost row on every side, which round-off may
+ * neither part nor take for two, wherever the grid ends. */
+static void test_mirrored_extent(void **state)
+{
+  (void)state;
+  for (int k = 0; k < 3; ++k) {
+    Bench b;
+    bench_init(&b, "mpm", CELL_QUADRILATERAL, 0);
+    bench_grid(&b, (PetscReal[]){-1, -1 - k, 0}, (PetscReal[]){2 + k, 2, 0}, 0.125);
+    bench_box(&b, 0, (PetscReal[]){0, 0, 0}, (PetscReal[]){1, 1, 0});
+    b.body[0].points_per_cell = 4;
+    b.c.basis.kind = "gimp";
+    bench_dynamic(&b, 0.01, 0.01);
+    Model *m = bench_model(&b, PETSC_COMM_WORLD);
+    model_step(m, 0.01);
+    for (int axis = 0; axis < 2; ++axis) {
+      const MeasureSpec high = {.kind = "extent", .component = axis, .maximum = PETSC_TRUE, .beyond = 0.01};
+      const MeasureSpec low = {.kind = "extent", .component = axis, .beyond = 0.01};
+      CHECK_CLOSE(measure(m, &high, 0), 1 - 0.03125, 1e-12);
+      CHECK_CLOSE(measure(m, &low, 0), 0.03125, 1e-12);
+    }
+    CALL(ModelDestroy(&m));
+  }
+}
+
 /* The same square, stretched by hand: outermost points advance by what they move, inner ones by less. */
 static void test_advance(void **state)
 {
@@ -497,6 +522,7 @@ int main(int argc, char **argv)
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(test_surface_of_a_triangle),
     cmocka_unit_test(test_inner_extent),
+    cmocka_unit_test(test_mirrored_extent),
     cmocka_unit_test(test_advance),
     cmocka_unit_test(test_inner_extent_of_rings),
     cmocka_unit_test(test_run_out_time),

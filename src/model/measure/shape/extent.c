@@ -2,6 +2,8 @@
 #include "model/measure/measure.h"
 
 #define EXTENT_PARTS 64
+/* Sums of masses of the same points are no farther apart than this part of them, in whatever order. */
+#define NOTHING 1e-9
 
 /* Points of a body: where they are along an axis, counted outwards, m, and their mass. */
 typedef struct {
@@ -27,47 +29,62 @@ static PetscErrorCode FindPlaces(const Model *m, const MeasureSpec *s, PetscBool
   PetscFunctionReturn(0);
 }
 
-/* Mass in equal parts of [low, high]. What is less than `low` counts to the first, what is more than `high` to none:
- * they are in no later round, whose part lies within this one and whose first part is not asked for. */
-static PetscErrorCode MassAlong(MPI_Comm comm, PetscReal low, PetscReal high, Places *places,
+/* In which of equal parts of [low, high] a place lies. */
+static int part_of(PetscReal low, PetscReal high, PetscReal at)
+{
+  const PetscReal part = (at - low) / (high - low) * EXTENT_PARTS;
+  return PetscMin(EXTENT_PARTS - 1, (int)PetscMax(0, part));
+}
+
+static PetscErrorCode MassAlong(MPI_Comm comm, PetscReal low, PetscReal high, const Places *places,
                                 PetscReal mass[EXTENT_PARTS])
 {
   PetscReal local[EXTENT_PARTS] = {0};
-  PetscInt kept = 0;
 
   PetscFunctionBeginUser;
-  for (PetscInt p = 0; p < places->n; ++p) {
-    const PetscReal at = (places->at[p] - low) / (high - low) * EXTENT_PARTS;
-    if (at > EXTENT_PARTS) continue;
-    local[PetscMin(EXTENT_PARTS - 1, (int)PetscMax(0, at))] += places->mass[p];
-    if (at < 0) continue;
-    places->at[kept] = places->at[p];
-    places->mass[kept++] = places->mass[p];
-  }
-  places->n = kept;
+  for (PetscInt p = 0; p < places->n; ++p) local[part_of(low, high, places->at[p])] += places->mass[p];
   PetscCall(MPIU_Allreduce(local, mass, EXTENT_PARTS, MPIU_REAL, MPIU_SUM, comm));
   PetscFunctionReturn(0);
 }
 
-/* The place within which all but a share of the mass lies: as good as the farthest point for a
- * front, without its chance. Each round finds the part that holds it. */
-static PetscErrorCode InnerExtent(const Model *m, const MeasureSpec *s, PetscBool start, Places *places,
-                                  PetscReal *farthest)
+/* Those of one part alone; [low, high] becomes what they take of it. */
+static PetscErrorCode KeepPart(MPI_Comm comm, int part, Places *places, PetscReal *low, PetscReal *high)
 {
-  const PetscReal *min = m->grid->min, *max = m->grid->max;
-  PetscReal low = s->maximum ? min[s->component] : -max[s->component], high = *farthest;
-  PetscReal mass[EXTENT_PARTS], total = 0, outside = 0;
+  PetscReal local[2] = {-PETSC_MAX_REAL, -PETSC_MAX_REAL}, ends[2]; /* less the lowest, and the highest */
+  PetscInt kept = 0;
 
   PetscFunctionBeginUser;
-  if (start) low -= max[s->component] - min[s->component]; /* a mesh has gone on since */
+  for (PetscInt p = 0; p < places->n; ++p) {
+    if (part >= 0 && part_of(*low, *high, places->at[p]) != part) continue;
+    places->at[kept] = places->at[p];
+    places->mass[kept++] = places->mass[p];
+  }
+  places->n = kept;
+  for (PetscInt p = 0; p < kept; ++p) {
+    local[0] = PetscMax(local[0], -places->at[p]);
+    local[1] = PetscMax(local[1], places->at[p]);
+  }
+  PetscCall(MPIU_Allreduce(local, ends, 2, MPIU_REAL, MPIU_MAX, comm));
+  *low = -ends[0];
+  *high = ends[1];
+  PetscFunctionReturn(0);
+}
+
+/* The place of the farthest point beyond which no more than a share of the mass lies: as good as the farthest of all for
+ * a front, without its chance. Each round keeps the part that holds it, and points that round-off alone parts stay
+ * together to the end. */
+static PetscErrorCode InnerExtent(const Model *m, const MeasureSpec *s, Places *places, PetscReal *farthest)
+{
+  PetscReal mass[EXTENT_PARTS], total = 0, outside = 0, low = 0, high = 0;
+
+  PetscFunctionBeginUser;
+  PetscCall(KeepPart(m->comm, -1, places, &low, &high));
   for (int round = 0; round < 6 && high > low; ++round) {
-    const PetscReal part = (high - low) / EXTENT_PARTS;
     int k = EXTENT_PARTS - 1;
     PetscCall(MassAlong(m->comm, low, high, places, mass));
     for (int i = 0; i < EXTENT_PARTS && !round; ++i) total += mass[i];
-    while (k > 0 && outside + mass[k] <= s->beyond * total * (1 + 1e-12)) outside += mass[k--];
-    high = low + (PetscReal)(k + 1) * part;
-    low += (PetscReal)k * part;
+    while (k > 0 && outside + mass[k] <= s->beyond * total * (1 + NOTHING)) outside += mass[k--];
+    PetscCall(KeepPart(m->comm, k, places, &low, &high));
   }
   *farthest = high;
   PetscFunctionReturn(0);
@@ -84,7 +101,7 @@ static PetscErrorCode Farthest(const Model *m, const MeasureSpec *s, PetscBool s
   for (PetscInt p = 0; p < places.n; ++p) local = PetscMax(local, places.at[p]);
   PetscCall(MPIU_Allreduce(&local, farthest, 1, MPIU_REAL, MPIU_MAX, m->comm));
   if (*farthest == -PETSC_MAX_REAL) *farthest = NAN;
-  else if (s->beyond > 0) PetscCall(InnerExtent(m, s, start, &places, farthest));
+  else if (s->beyond > 0) PetscCall(InnerExtent(m, s, &places, farthest));
   PetscCall(PetscFree2(places.at, places.mass));
   PetscFunctionReturn(0);
 }
