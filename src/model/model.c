@@ -408,6 +408,7 @@ static PetscErrorCode Build(Model *m, Diag *diag)
   if (m->method->clouds) PetscCall(ModelWarnOfObstacles(m, diag));
   PetscCall(CheckHeld(m, diag));
   if (m->scheme->inertia) PetscCall(InitialAcceleration(m));
+  else PetscCall(InitialReactions(m));
   PetscCall(EnergyStart(m));
   PetscCall(MeasuresStart(m));
   PetscCall(FollowersStart(m, diag));

@@ -67,6 +67,8 @@ PetscErrorCode EquilibriumPrepare(Model *model, StepProblem *problem);
 /* Acceleration now from the balance of momentum with lumped mass, so that a body in free fall
  * falls from the first step on. */
 PetscErrorCode InitialAcceleration(Model *model);
+/* In statics: what holds a given stress before the first step, where no equilibrium is sought. */
+PetscErrorCode InitialReactions(Model *model);
 /* contact/mass.c. Collective. The mass matrix that motion changes by in contact; nothing where that is the
  * lumped one. */
 PetscErrorCode ContactMassCreate(const Model *model, ContactMass *mass);

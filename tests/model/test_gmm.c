@@ -462,12 +462,53 @@ static void test_solvers(void **state)
   EACH_VARIANT (k, 2) solvers(k);
 }
 
+/* --- a given stress --- */
+/* A block between rollers, with a stress that these hold, is pressed by a twentieth in two steps: what comes in is
+ * what it stores, from the force on that it begins with. */
+static void test_given_stress(void **state)
+{
+  static PetscReal time[] = {0, 1}, value[] = {0, 1};
+  const BasisSpec *const bases[] = {&usual_lme, &usual_mls};
+  (void)state;
+  EACH_VARIANT (k, 2) {
+    Energies e;
+    PetscReal reaction[3], held[3], work = 0;
+    Bench b;
+    gmm_init(&b, bases[k], CELL_QUADRILATERAL, 0.25);
+    b.body[0].has_stress = PETSC_TRUE;
+    b.body[0].stress[0] = b.body[0].stress[2] = (char *)"-3e4";
+    b.body[0].stress[1] = (char *)"-5e4";
+    for (int d = 0; d < 2; ++d) bench_motion(&b, d, 0, MOTION_FIXED, 1u << d);
+    bench_motion(&b, 0, 1, MOTION_FIXED, 1);
+    MotionSpec *top = bench_motion(&b, 1, 1, MOTION_DISPLACEMENT, 2);
+    top->value[1] = -0.05;
+    top->amplitude = (Amplitude){.n = 2, .time = time, .value = value};
+    b.c.analysis.step = b.c.analysis.largest = 0.5;
+    Model *m = bench_model(&b, PETSC_COMM_WORLD);
+    for (int step = 0; step <= 2; ++step) {
+      if (step) model_step(m, 1);
+      CALL(BoundarySum(m->boundary, m->grid, 3, m->nodes->reaction, reaction));
+      held[step] = reaction[1];
+      work -= step ? 0.5 * (held[step - 1] + held[step]) * 0.025 : 0;
+    }
+    CALL(ModelEnergies(m, &e));
+    PetscPrintf(PETSC_COMM_WORLD, "%s: begins with %.9g N, work %.9g of %.9g J, transfer %.2g\n", bases[k]->kind,
+                (double)held[0], (double)e.boundary, (double)work, (double)e.transfer);
+    /* as well as points integrate a uniform stress */
+    CHECK_CLOSE(held[0], -5e4, (k ? 1e-2 : 2e-4) * 5e4);
+    CHECK_CLOSE(e.boundary, work, 1e-9 * work);
+    CHECK(fabs(e.transfer) < (k ? 2e-3 : 2e-4) * work, "%g J lost", (double)e.transfer);
+    CALL(ModelDestroy(&m));
+  }
+}
+
 int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {
-    cmocka_unit_test(test_patch),     cmocka_unit_test(test_hang),    cmocka_unit_test(test_options),
-    cmocka_unit_test(test_fly),       cmocka_unit_test(test_contact), cmocka_unit_test(test_ranks),
-    cmocka_unit_test(test_obstacles), cmocka_unit_test(test_solvers), cmocka_unit_test(test_heap),
+    cmocka_unit_test(test_patch),        cmocka_unit_test(test_hang),    cmocka_unit_test(test_options),
+    cmocka_unit_test(test_fly),          cmocka_unit_test(test_contact), cmocka_unit_test(test_ranks),
+    cmocka_unit_test(test_obstacles),    cmocka_unit_test(test_solvers), cmocka_unit_test(test_heap),
+    cmocka_unit_test(test_given_stress),
   };
   return run_model_tests(argc, argv, tests);
 }

@@ -1,4 +1,4 @@
-/* The first acceleration, and gravity from the start on. */
+/* The first acceleration, or what holds a given stress before the first step, and gravity from the start on. */
 #include "method/transfer/mass.h"
 #include "model/model_private.h"
 
@@ -50,11 +50,12 @@ static PetscErrorCode AccelerateByMatrix(const Model *m, PetscReal *left)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode InitialAcceleration(Model *m)
+/* What acts on nodes as they begin less what the stress of points needs there, components in the frames: what
+ * accelerates them, or what holds them the other way. */
+static PetscErrorCode Unbalanced(Model *m)
 {
   NodalFields *n = m->nodes;
   const PetscInt dim = m->dim, dofs = m->grid->n_nodes * dim;
-  Discretisation *s = m->space;
   PetscReal g[3];
 
   PetscFunctionBeginUser;
@@ -74,6 +75,32 @@ PetscErrorCode InitialAcceleration(Model *m)
   frames_turn(&m->boundary->frames, dim, n->external);
   frames_turn(&m->boundary->frames, dim, n->force);
   for (PetscInt i = 0; i < m->grid->n_owned * dim; ++i) n->force[i] = n->external[i] - n->force[i];
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode InitialReactions(Model *m)
+{
+  NodalFields *n = m->nodes;
+
+  PetscFunctionBeginUser;
+  if (m->c->stage > 0 || !case_has_stress(m->c)) PetscFunctionReturn(0);
+  if (m->c->initial.equilibrium > EQUILIBRIUM_NONE) PetscFunctionReturn(0); /* which tells them */
+  PetscCall(Unbalanced(m));
+  for (PetscInt i = 0; i < m->grid->n_owned * m->dim; ++i)
+    n->held[i] = n->reaction[i] = m->boundary->fixed[i] ? -n->force[i] : 0;
+  frames_turn(&m->boundary->frames, m->dim, n->held);
+  frames_turn(&m->boundary->frames, m->dim, n->reaction);
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode InitialAcceleration(Model *m)
+{
+  NodalFields *n = m->nodes;
+  const PetscInt dim = m->dim, dofs = m->grid->n_nodes * dim;
+  Discretisation *s = m->space;
+
+  PetscFunctionBeginUser;
+  PetscCall(Unbalanced(m));
   if (m->method->restores_grid || m->method->clouds) accelerate_lumped(m, n->force);
   else PetscCall(AccelerateByMatrix(m, n->force));
   for (PetscInt i = 0; i < m->grid->n_owned * dim; ++i)
