@@ -102,7 +102,7 @@ static PetscErrorCode Atom(Formula *f, PetscReal *value)
   else if (*f->at == '.' || (*f->at >= '0' && *f->at <= '9')) {
     char *end;
     *value = strtod(f->at, &end);
-    if (end == f->at) fail(f, f->at);
+    if (end == f->at || f->at[strspn(f->at, ".0123456789")] == 'x') fail(f, f->at); /* 0x10 is not what C reads */
     f->at = end;
   } else PetscCall(Name(f, value));
   PetscFunctionReturn(0);
@@ -119,7 +119,8 @@ static PetscErrorCode Power(Formula *f, PetscReal *value)
   else if (takes(f, '-')) {
     PetscCall(Power(f, value));
     *value = -*value;
-  } else {
+  } else if (takes(f, '+')) PetscCall(Power(f, value));
+  else {
     PetscCall(Atom(f, value));
     if (takes(f, '^')) {
       PetscCall(Power(f, &exponent));

@@ -27,6 +27,14 @@ static void check_crossing(const Shape *s, PetscBool closed, const char *path, D
     }
 }
 
+static void check_length(const Shape *s, const char *path, Diag *diag)
+{
+  for (PetscInt i = 1; i < s->n_vertices; ++i)
+    for (int d = 0; d < 2; ++d)
+      if (s->vertices[2 * i + d] != s->vertices[d]) return;
+  diag_error(diag, path, "all corners of the line are one place: it has no length");
+}
+
 /* --- axisymmetry --- */
 /* What of a shape is beyond the axis, or NULL. What is cut by the axis must be symmetric. */
 static const char *beyond_axis(const Shape *s)
@@ -59,6 +67,7 @@ static void check_shape(const Shape *s, PetscBool axis, const char *path, Diag *
     diag_error(diag, path, "%s beyond the axis, where the radius is negative", what);
     diag_hint(diag, "give the half on the right of the axis; it is the whole wall");
   }
+  if (s->kind == SHAPE_LINE || (s->kind == SHAPE_REVOLVED && s->open)) check_length(s, path, diag);
   if (s->n_vertices) check_crossing(s, s->kind == SHAPE_POLYGON || (s->kind == SHAPE_REVOLVED && !s->open), path, diag);
   for (PetscInt i = 0; i < s->n_children; ++i) check_shape(s->children + i, axis, path, diag);
 }

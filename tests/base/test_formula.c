@@ -27,6 +27,8 @@ static void test_values(void **state)
     const char *text;
     double value;
   } cases[] = {
+    {"+3", 3},
+    {"2 * +3 - +1", 5},
     {"1", 1},
     {" 2 + 3*4 - 6/2/3 ", 2 + 3 * 4 - 1},
     {"(2+3)*(4-1)", 15},
@@ -67,10 +69,11 @@ static void test_mistakes(void **state)
   const struct {
     const char *text, *rest, *name;
   } cases[] = {
-    {"", "", ""},         {"1 + ", "", ""},      {"1 2", "2", ""},
-    {"(1", "", ""},       {"max(1", "", ""},     {"min(1 2)", "2)", ""},
-    {"1)", ")", ""},      {"a + b", "b", "b"},   {"sqrt 4", "sqrt 4", "sqrt"},
-    {"a # a", "# a", ""}, {"2 ** 3", "* 3", ""}, {"sinh(a)", "sinh(a)", "sinh"},
+    {"", "", ""},         {"1 + ", "", ""},       {"1 2", "2", ""},
+    {"(1", "", ""},       {"max(1", "", ""},      {"min(1 2)", "2)", ""},
+    {"1)", ")", ""},      {"a + b", "b", "b"},    {"sqrt 4", "sqrt 4", "sqrt"},
+    {"a # a", "# a", ""}, {"2 ** 3", "* 3", ""},  {"sinh(a)", "sinh(a)", "sinh"},
+    {"0x10", "0x10", ""}, {"1 + 0x1", "0x1", ""},
   };
   char deep[4096];
   (void)state;

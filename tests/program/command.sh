@@ -126,6 +126,8 @@ says err.txt "nonsense"
 expect "a formula without a value" 0 "$talus" run case.yaml --out none --quiet --set 'measures.none={formula: sqrt(-1)}'
 says err.txt "'none' is empty (nan) at the end: its formula has no value there"
 lacks none/history.csv "-nan"
+expect "a formula without bounds" 0 "$talus" run case.yaml --out infinite --quiet --set 'measures.most={formula: -log(0)}'
+says err.txt "'most' is infinite at the end: its formula divides by nothing"
 expect "solver gives up" 1 "$talus" run case.yaml --out soft --quiet --set newton.max_iterations=1
 says err.txt "case.yaml: error: the run gave up: Newton did not converge" "is kept in soft"
 says soft/log.txt "gave up = Newton did not converge"

@@ -207,7 +207,7 @@ static void Sizes(void **state)
 
 static void Lines(void **state)
 {
-  double bow[] = {0, 0, 1, 1, 1, 0, 0, 1}, left[] = {-0.1, 0, 1, 0, 1, 1};
+  double bow[] = {0, 0, 1, 1, 1, 0, 0, 1}, left[] = {-0.1, 0, 1, 0, 1, 1}, point[] = {0, 0.4, 0, 0.4};
   const Shape polygon = {.kind = SHAPE_POLYGON, .n_vertices = 4, .vertices = bow};
   Shape both[2] = {{.kind = SHAPE_BALL, .centre = {0.5, 0.5}, .radius = 0.2}, polygon};
   (void)state;
@@ -217,6 +217,8 @@ static void Lines(void **state)
          "the polygon crosses itself", NULL);
   expect((WallSpec){.shape = {.kind = SHAPE_LINE, .n_vertices = 4, .vertices = bow}}, &kinematics_plane_strain,
          "the line crosses itself", NULL);
+  expect((WallSpec){.shape = {.kind = SHAPE_LINE, .n_vertices = 2, .vertices = point}}, &kinematics_plane_strain,
+         "all corners of the line are one place", NULL);
   expect((WallSpec){.shape = {.kind = SHAPE_REVOLVED, .n_vertices = 3, .vertices = left, .normal = {0, 0, 1}}},
          &kinematics_3d, "a corner lies beyond the axis", NULL);
 }

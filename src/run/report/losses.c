@@ -242,7 +242,17 @@ static const char *why_empty(const MeasureSpec *measure)
   if (measure_has_window(measure)) return "too few steps with a value reach into its window";
   if (measure_find(measure->kind)->events) return "none of what it counts is over";
   if (!strcmp(measure->kind, "formula")) return "its formula has no value there, or a measure in it has none";
+  if (!strncmp(measure->kind, "wall_", 5)) return "a wall without `mass` has no motion of its own";
   return "no point is left of what it measures";
+}
+
+static void warn_of_infinite(const MeasureSpec *measure, PetscReal value, Diag *diag)
+{
+  char path[256];
+  if (!PetscIsInfReal(value)) return;
+  snprintf(path, sizeof path, "measures.%s", measure->name);
+  diag_warning(diag, path, "'%s' is infinite at the end: its formula divides by nothing, or grows beyond all numbers",
+               measure->name);
 }
 
 PetscErrorCode LossesWarn(Model *m, const PetscReal *values, Diag *diag)
@@ -253,6 +263,7 @@ PetscErrorCode LossesWarn(Model *m, const PetscReal *values, Diag *diag)
   PetscFunctionBeginUser;
   warn_of_followers(m, diag);
   for (PetscInt k = 0; k < m->c->n_measures; ++k) {
+    warn_of_infinite(m->c->measures + k, values[k], diag);
     if (!PetscIsNanReal(values[k]) || m->memory[k].ended > 0) continue;
     if (!strcmp(m->c->measures[k].kind, "factor_of_safety")) continue; /* the log says why it has none */
     snprintf(path, sizeof path, "measures.%s", m->c->measures[k].name);

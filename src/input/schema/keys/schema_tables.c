@@ -54,8 +54,8 @@ static const SchemaEntry until_entries[] = {
 static const SchemaTable until = {
   .name = "until",
   .help =
-    "What ends a run before `end`. A value falls below another only if it was not below before: what starts from "
-    "rest is not over at once.",
+    "What ends a run before `end`. A value falls below another, or rises above it, only if it was not there before: "
+    "what starts from rest is not over at once.",
   .entries = until_entries,
   .groups = schema_one_tag,
   .size = sizeof(UntilSpec),
