@@ -106,7 +106,7 @@ static void go(Model *m, const Begins *r, PetscReal end, PetscBool slides)
     CHECK_CLOSE(momentum_of(m, 1) - before[1], dt * (bears - WEIGHT), 1e-7 * dt * WEIGHT);
     CHECK(along <= (FRICTION + 1e-6) * bears, "%s %s %s rubs with %g of %g at %g s", r->method, r->basis,
           r->scheme ? r->scheme : "", (double)along, (double)bears, (double)m->time);
-  CHECK(!slides || along >= (FRICTION - 1e-4) * bears, "%s %s %s rubs with %g of %g at %g s", r->method, r->basis,
+    CHECK(!slides || along >= (FRICTION - 1e-4) * bears, "%s %s %s rubs with %g of %g at %g s", r->method, r->basis,
           r->scheme ? r->scheme : "", (double)along, (double)bears, (double)m->time);
   }
 }
