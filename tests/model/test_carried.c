@@ -194,7 +194,8 @@ static void test_swings(void **state)
 }
 
 /* The same in explicit steps: mass of what is drawn into new cells begins with nothing. To 1 % of the stretch, and the
- * load stays on the body; work is that of the spring that the body is, and what is lost in the transfer next to none. */
+ * load stays on the body; work is that of the spring that the body is, and what is lost in the transfer next to none.
+ * */
 static void explicitly(const Kinematics *kinematics, PetscReal h, LoadKind kind, PetscReal load, ExplicitUpdate update)
 {
   static PetscReal time[] = {0, 1, 2}, value[] = {0, 1, 1};
@@ -240,8 +241,8 @@ static void test_explicit(void **state)
   explicitly(&kinematics_3d, 0.25, LOAD_PRESSURE, -1e5, EXPLICIT_USL);
 }
 
-/* What turns under a load keeps its spin as it does without: nodes that follow hand on the motion of a field, not that of
- * one place. The load is next to nothing. */
+/* What turns under a load keeps its spin as it does without: nodes that follow hand on the motion of a field, not that
+ * of one place. The load is next to nothing. */
 static void test_turns(void **state)
 {
   Bench b;

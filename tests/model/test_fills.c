@@ -205,7 +205,8 @@ static void test_gaps(void **state)
   says(-150, 0, "inside what it stands on");
 }
 
-/* A wedge on a slope, and a block beside a face, of stiff ground that does not move: nothing is said, whatever the cells. */
+/* A wedge on a slope, and a block beside a face, of stiff ground that does not move: nothing is said, whatever the
+ * cells. */
 static void test_slopes(void **state)
 {
   static const CellType types[] = {CELL_QUADRILATERAL, CELL_TRIANGLE};

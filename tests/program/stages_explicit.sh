@@ -38,4 +38,14 @@ for ranks in 2 3; do
   awk -F, '{ print $1, $4, $5 }' on$ranks/history.csv | paste -d ' ' one.txt - |
     awk 'NR > 1 { d = $2 - $5; f = $3 - $6; if (d * d > 1e-16 || f * f > 1e-2) exit 1 }' || fail "on $ranks ranks otherwise"
 done
+
+# What presses on walls sinks in, and the run says so where that is much.
+falls() {
+  expect "explicit of $1" 0 "$talus" run block.yaml --out "of$1" --set stages=null --set "materials.rubber.young=$1" \
+    --set 'analysis={type: explicit, end: 0.4, step: 0.02, damping: 20}'
+}
+falls 1e5
+says err.txt "of a cell deep in wall 'floor'"
+falls 1e7
+! grep -q "of a cell deep" err.txt || fail "tells of a hundredth of a per cent"
 finish

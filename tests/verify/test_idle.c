@@ -1,5 +1,5 @@
-/* No case of the collection, and no row of its studies, has a key that has no effect: what a series leaves idle that the
- * case, or the study, wrote for another choice is no mistake of anybody. */
+/* No case of the collection, and no row of its studies, has a key that has no effect: what a series leaves idle that
+ * the case, or the study, wrote for another choice is no mistake of anybody. */
 #include <dirent.h>
 #include <setjmp.h>
 #include <stdarg.h>

@@ -6,7 +6,8 @@
 
 /* Of half its share of the cells: what a node has at least that leads. */
 #define LEADS 0.1
-/* The same in explicit steps, whose nodes have lumped masses: of less, more runs away from the body in each substep than
+/* The same in explicit steps, whose nodes have lumped masses: of less, more runs away from the body in each
+ * substep than
  * points bring back; of more, the node behind would have to give more mass than it has. */
 #define LEADS_BY_MASS 0.4
 

@@ -34,13 +34,13 @@ PetscErrorCode DiscretisationCarry(Discretisation *space, const BasisInput *in);
 /* Basis.bends of a point on the n nodes that it sees, n x dim; PETSC_FALSE: its functions do not bend. space: a
  * Discretisation. */
 PetscBool extension_bends(const void *space, PetscInt p, PetscInt n, PetscReal *bend);
-/* Collective. fold.c: explicit dynamics. Among the nodes that points can reach (active, ghosts too, those around the same
- * on all ranks) those that pieces of a loaded surface see and that have next to no mass follow; mass: with `stride`
- * numbers a node, on all copies. *any: on any rank. */
+/* Collective. fold.c: explicit dynamics. Among the nodes that points can reach (active, ghosts too, those around the
+ * same on all ranks) those that pieces of a loaded surface see and that have next to no mass follow; mass: with
+ * `stride` numbers a node, on all copies. *any: on any rank. */
 PetscErrorCode ExtensionByMass(Discretisation *space, PetscInt n, const PetscInt *active, PetscInt stride,
                                const PetscReal *mass, PetscBool *any);
-/* Collective. n numbers a node, on all copies before and after: those of followers go to the nodes that they follow, and
- * are 0; followers take what these have. */
+/* Collective. n numbers a node, on all copies before and after: those of followers go to the nodes that they follow,
+ * and are 0; followers take what these have. */
 PetscErrorCode ExtensionGive(const Discretisation *space, PetscInt n, PetscReal *sum);
 PetscErrorCode ExtensionTake(const Discretisation *space, PetscInt n, PetscReal *field);
 /* Collective. Lists nodes with ways, of n nodes (NULL: the first). *any: is there one, on any rank? */

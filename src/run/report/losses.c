@@ -3,6 +3,7 @@
 #include "run/report/losses.h"
 #include "base/text.h"
 #include "model/measure/measure.h"
+#include "run/report/sunk.h"
 
 /* share of the energy that came in: about what granular flows lose on usual grids */
 #define TRANSFER_ALLOWED 0.05
@@ -281,5 +282,6 @@ PetscErrorCode LossesWarn(Model *m, const PetscReal *values, Diag *diag)
   PetscCall(WarnOfGain(m, diag));
   PetscCall(WarnOfCrowd(m, diag));
   PetscCall(WarnOfMovedLoads(m, diag));
+  warn_of_sunk(m, diag);
   PetscFunctionReturn(0);
 }

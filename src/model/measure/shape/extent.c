@@ -70,8 +70,8 @@ static PetscErrorCode KeepPart(MPI_Comm comm, int part, Places *places, PetscRea
   PetscFunctionReturn(0);
 }
 
-/* The place of the farthest point beyond which no more than a share of the mass lies: as good as the farthest of all for
- * a front, without its chance. Each round keeps the part that holds it, and points that round-off alone parts stay
+/* The place of the farthest point beyond which no more than a share of the mass lies: as good as the farthest of all
+ * for a front, without its chance. Each round keeps the part that holds it, and points that round-off alone parts stay
  * together to the end. */
 static PetscErrorCode InnerExtent(const Model *m, const MeasureSpec *s, Places *places, PetscReal *farthest)
 {

@@ -1,0 +1,28 @@
+/* What has sunk into walls and other bodies: contact of explicit dynamics is a spring as stiff as a cell. */
+#include "run/report/sunk.h"
+
+#define SUNK_ALLOWED 0.01 /* of a cell, where the run ends: by so much of a cell too much does the body give way */
+
+static void warn_of_partner(const Case *c, PetscInt k, PetscReal deep, Diag *diag)
+{
+  const PetscBool wall = k < c->n_walls;
+  char path[32];
+  snprintf(path, sizeof path, wall ? "walls[%d]" : "interfaces[%d]", (int)(wall ? k : k - c->n_walls));
+  diag_warning(diag, path,
+               "at the end material is %.2g of a cell deep in %s '%s': contact of explicit dynamics is as soft as a "
+               "cell, and what is pressed there gives way by so much more",
+               (double)deep, wall ? "wall" : "interface", wall ? c->walls[k].name : c->interfaces[k - c->n_walls].name);
+  diag_hint(diag,
+            "smaller cells lessen it as they are smaller, shorter steps do not; implicit dynamics has none of it "
+            "(docs/theory.md, section 34)");
+}
+
+void warn_of_sunk(const Model *m, Diag *diag)
+{
+  const Contact *s = m->contact;
+  if (m->c->analysis.type != ANALYSIS_EXPLICIT) return;
+  for (PetscInt k = 0; s && k < s->n_partners; ++k) {
+    const PetscReal deep = s->wall[k].deepest / m->grid->smallest;
+    if (deep > SUNK_ALLOWED) warn_of_partner(m->c, k, deep, diag);
+  }
+}
