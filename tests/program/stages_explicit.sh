@@ -39,6 +39,18 @@ for ranks in 2 3; do
     awk 'NR > 1 { d = $2 - $5; f = $3 - $6; if (d * d > 1e-16 || f * f > 1e-2) exit 1 }' || fail "on $ranks ranks otherwise"
 done
 
+# On another body, and bonded to a wall that it hangs from: what bears it does so through all stages.
+sed -e 's/^bodies:/&\n  - {name: base, shape: {box: {min: [0.25, 0], max: [1.75, 0.5]}}, points_per_cell: 4, material: rubber}/' \
+  -e 's/^walls:/boundary: [{name: ground, on: {y: 0}, fix: [x, y]}]\ninterfaces:/' -e 's/wall_force: y, of: {wall: floor}/interface_force: y, of: {interface: floor}/' \
+  -e 's/shape: {half-space: .*, contact/between: [block, base], contact/' block.yaml >pair.yaml
+sed -e 's/contact: friction, friction: 0.5/contact: bonded/' -e 's/gravity: \[0, -9.81\]/gravity: [0, 9.81]/' block.yaml >hangs.yaml
+for case in pair hangs; do
+  expect "$case" 0 "$talus" run $case.yaml --out $case
+  # The force stays within 1 %, the top within one of its way.
+  awk -F, 'NR == 3 { top = $4; push = $5 } NR > 3 && ($5 / push < 0.99 || $5 / push > 1.01 || $4 / top < 0.99 || $4 / top > 1.01) { bad = 1; print }
+    END { exit bad || push * push < 9800 * 9800 || NR != 14 }' $case/history.csv >out.txt || fail "$case is let go"
+done
+
 # What presses on walls sinks in, and the run says so where that is much.
 falls() {
   expect "explicit of $1" 0 "$talus" run block.yaml --out "of$1" --set stages=null --set "materials.rubber.young=$1" \

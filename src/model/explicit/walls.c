@@ -27,7 +27,7 @@ static PetscReal *kept_of(const Model *m, const ContactPoint *c)
 static void take_over(ContactPoint *c)
 {
   const PetscReal pressure = dot(c->last, c->normal), off = pressure / c->law.penalty + c->open;
-  if (c->before == CONTACT_OPEN || pressure <= 0) return;
+  if (c->before == CONTACT_OPEN || (pressure <= 0 && c->law.kind != CONTACT_BONDED)) return;
   c->reach += off;
   c->open -= off;
 }

@@ -122,6 +122,10 @@ PetscErrorCode ContactFind(Contact *contact, const NodalScene *scene);
 void contact_prepare(Contact *contact, PetscReal t, PetscReal dt, PetscReal inertia, ContactShare share);
 /* Forget what impulses have done in a step, or in a try of it that has failed: a try begins. */
 void contact_again(Contact *contact);
+/* How far the surface is from a point at a distance `gap` from the wall, as the last step has left it, m: a spring of
+ * explicit dynamics that held it is gone, and it stands where it stood; what pulled it, too, where it is bonded. 0: not
+ * known. */
+PetscReal contact_kept_reach(const NodalScene *scene, ContactKind kind, const PetscReal *kept, PetscReal gap);
 /* What else the room finds: contact points with nodes, and the surface of a part of a body. */
 PetscErrorCode ContactAdd(Contact *contact, ContactPoint **c);
 PetscErrorCode ContactAddNodes(Contact *contact, ContactPoint *c, PetscInt n);

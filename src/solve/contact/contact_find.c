@@ -181,13 +181,11 @@ static PetscBool meets_body(const Case *c, PetscInt k, PetscInt body)
   return !w->n_bodies;
 }
 
-/* How far the surface is from the point, at a distance `gap` from the wall, as the last step has left it: a spring that
- * held it is gone, and it stands where it stood. */
-static PetscReal present_reach(const NodalScene *scene, PetscInt p, const PetscReal *kept, const WallPlace *place)
+PetscReal contact_kept_reach(const NodalScene *scene, ContactKind kind, const PetscReal *kept, PetscReal gap)
 {
   const PetscBool sprung = contact_is_sprung(kept[0]) && scene->c->analysis.type != ANALYSIS_EXPLICIT;
-  if (kept[1] > 0) return sprung ? PetscMin(kept[1], place->gap) : kept[1];
-  return contact_reach_of(scene->points, p, place->normal);
+  if (!sprung) return kept[1];
+  return kind == CONTACT_BONDED ? gap : PetscMin(kept[1], gap);
 }
 
 /* What the functions of the point are `reach` beyond it along -n, more than N there; means over a domain become those
@@ -221,7 +219,8 @@ static PetscErrorCode MeetPoint(Contact *s, const NodalScene *scene, PetscInt g,
   PetscFunctionBeginUser;
   if (!meets_body(scene->c, k, points->body[p])) PetscFunctionReturn(0);
   if (!wall_near(s->walls, k, scene->t, x, s->near + contact_farthest(points, p), side, &place)) PetscFunctionReturn(0);
-  const PetscReal reach = present_reach(scene, p, kept + k * CONTACT_KEPT(dim), &place);
+  const PetscReal held = contact_kept_reach(scene, scene->c->walls[k].contact, kept + k * CONTACT_KEPT(dim), place.gap),
+                  reach = held > 0 ? held : contact_reach_of(points, p, place.normal);
   const PetscInt nn = support_nodes(scene->support, g), *node = scene->support->node + scene->support->node_start[g];
   const PetscReal *N = support_N(scene->support, g, at), *dN = support_dN(scene->support, g, at, dim);
   PetscCall(ContactAdd(s, &c));
