@@ -194,10 +194,22 @@ static void test_swings(void **state)
 }
 
 /* The same in explicit steps: mass of what is drawn into new cells begins with nothing. To 1 % of the stretch, and the
- * load stays on the body; work is that of the spring that the body is, and what is lost in the transfer next to none.
- * */
-static void explicitly(const Kinematics *kinematics, PetscReal h, LoadKind kind, PetscReal load, ExplicitUpdate update)
+ * load stays on the body; work is that of the spring that the body is, and what is lost in the transfer next to
+ * none. */
+typedef struct {
+  const Kinematics *kinematics;
+  PetscReal h; /* of a cell */
+  LoadKind kind;
+  PetscReal load; /* Pa */
+  ExplicitUpdate update;
+} Explicitly;
+
+static void explicitly(const Explicitly *t)
 {
+  const Kinematics *kinematics = t->kinematics;
+  const PetscReal h = t->h, load = t->load;
+  const LoadKind kind = t->kind;
+  const ExplicitUpdate update = t->update;
   static PetscReal time[] = {0, 1, 2}, value[] = {0, 1, 1};
   const PetscInt dim = kinematics->dim, sides = kinematics->hoop ? 2 : dim - 1, axes = kinematics->hoop ? 3 : dim;
   const PetscBool pulled = (PetscBool)(kind == LOAD_TRACTION);
@@ -229,16 +241,19 @@ static void explicitly(const Kinematics *kinematics, PetscReal h, LoadKind kind,
 
 static void test_explicit(void **state)
 {
+  static const Explicitly runs[] = {
+    {&kinematics_plane_strain, 0.0625, LOAD_TRACTION, 8e3, EXPLICIT_MUSL},
+    {&kinematics_plane_strain, 0.1, LOAD_TRACTION, 1e5, EXPLICIT_MUSL},
+    {&kinematics_plane_strain, 0.1, LOAD_TRACTION, 3e5, EXPLICIT_USL},
+    {&kinematics_plane_strain, 0.1, LOAD_TRACTION, -1e5, EXPLICIT_MUSL},
+    {&kinematics_plane_strain, 0.1, LOAD_PRESSURE, -1e5, EXPLICIT_MUSL},
+    {&kinematics_axisymmetric, 0.1, LOAD_TRACTION, 1e5, EXPLICIT_MUSL},
+    {&kinematics_axisymmetric, 0.1, LOAD_PRESSURE, -1e5, EXPLICIT_MUSL},
+    {&kinematics_3d, 0.25, LOAD_TRACTION, 1e5, EXPLICIT_MUSL},
+    {&kinematics_3d, 0.25, LOAD_PRESSURE, -1e5, EXPLICIT_USL},
+  };
   (void)state;
-  explicitly(&kinematics_plane_strain, 0.0625, LOAD_TRACTION, 8e3, EXPLICIT_MUSL);
-  explicitly(&kinematics_plane_strain, 0.1, LOAD_TRACTION, 1e5, EXPLICIT_MUSL);
-  explicitly(&kinematics_plane_strain, 0.1, LOAD_TRACTION, 3e5, EXPLICIT_USL);
-  explicitly(&kinematics_plane_strain, 0.1, LOAD_TRACTION, -1e5, EXPLICIT_MUSL);
-  explicitly(&kinematics_plane_strain, 0.1, LOAD_PRESSURE, -1e5, EXPLICIT_MUSL);
-  explicitly(&kinematics_axisymmetric, 0.1, LOAD_TRACTION, 1e5, EXPLICIT_MUSL);
-  explicitly(&kinematics_axisymmetric, 0.1, LOAD_PRESSURE, -1e5, EXPLICIT_MUSL);
-  explicitly(&kinematics_3d, 0.25, LOAD_TRACTION, 1e5, EXPLICIT_MUSL);
-  explicitly(&kinematics_3d, 0.25, LOAD_PRESSURE, -1e5, EXPLICIT_USL);
+  EACH_OF (k, runs) explicitly(runs + k);
 }
 
 /* What turns under a load keeps its spin as it does without: nodes that follow hand on the motion of a field, not that

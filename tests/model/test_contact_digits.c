@@ -89,8 +89,8 @@ static void test_goes_along(void **state)
 }
 
 /* A modulus that changes in its last digits in every step is one that does not: how far a point is from its surface,
- * and how much of it it stands for, are those of the strain that there is, not of all that the stress was given anew.
- * */
+ * and how much of it it stands for, are those of the strain that there is, not of all that the stress was given
+ * anew. */
 static void settle(const char *method, const char *basis, PetscBool changes, PetscReal found[2])
 {
   PetscReal time[] = {0, 1}, value[] = {1, 1 + 1e-6};

@@ -61,8 +61,8 @@ static void test_motions(void **state)
   bench_warned(&b, PETSC_COMM_WORLD, "loads.tractions[0].amplitude", NULL);
 }
 
-/* What stands at a place from the start on is there at once in dynamics, and told; what grows, turns or flows is not.
- * */
+/* What stands at a place from the start on is there at once in dynamics, and told; what grows, turns or flows is
+ * not. */
 static void test_jumps(void **state)
 {
   static const struct {
