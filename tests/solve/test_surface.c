@@ -6,7 +6,7 @@
 #include <stdint.h>
 #include <stdlib.h>
 #include <cmocka.h>
-#include "solve/contact/surface.h"
+#include "solve/contact/surface/surface.h"
 
 #define MOST 600
 

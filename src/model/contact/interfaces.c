@@ -1,6 +1,6 @@
 /* Interfaces between bodies: what none can be made of, and how bodies stand at the start. */
 #include "model/model_private.h"
-#include "solve/contact/surface.h"
+#include "solve/contact/surface/surface.h"
 
 /* Of its reach: a part of a body that reaches deeper into another body at the start is a mistake; what
  * reaches less was made to fit. */

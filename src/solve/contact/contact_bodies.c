@@ -3,7 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include "solve/contact/contact.h"
-#include "solve/contact/surface.h"
+#include "solve/contact/surface/surface.h"
 
 /* Local nodes by their numbers in the whole grid: owned ones follow each other, ghosts are sorted. */
 typedef struct {

@@ -1,6 +1,6 @@
 /* The points of a body that another one may reach, on all ranks. */
 #include <stdlib.h>
-#include "solve/contact/surface.h"
+#include "solve/contact/surface/surface.h"
 
 PetscErrorCode SurfaceBounds(const SurfaceInput *in, PetscInt n_bodies, PetscReal *bounds)
 {

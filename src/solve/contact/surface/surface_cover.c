@@ -1,6 +1,6 @@
 /* How much of its surface a material point turns to another body that stands before it: not that beyond where the other
  * one ends, so that an area of contact is that of both, whichever body comes first. */
-#include "solve/contact/surface.h"
+#include "solve/contact/surface/surface.h"
 
 #define ROW 0.5     /* of a point's size: no farther behind, others stand in its row */
 #define BESIDE 0.25 /* at least so far aside, and */

@@ -4,7 +4,7 @@
  * way along which the convex hulls of the parts of both bodies around the place are farthest apart:
  * across the flatter of both surfaces, exactly where one is plane, whatever lattice its points stand in. */
 #include "solve/contact/contact.h"
-#include "solve/contact/surface.h"
+#include "solve/contact/surface/surface.h"
 
 #define MOST_POINTS 512
 #define MOST_SWEEPS 50
