@@ -10,12 +10,12 @@ static PetscBool has_moving_places(const Case *c)
   return PETSC_FALSE;
 }
 
-/* Of owned dofs that `entry` prescribed until now. */
-static void take(Model *m, const PetscInt *entry, PetscReal *force, size_t which, LetGo *sum)
+/* Of owned dofs that `entry` prescribed until now, to three numbers of each entry, that of the first one being `sum`. */
+static void take(Model *m, const PetscInt *entry, PetscReal *force, PetscReal *sum)
 {
   for (PetscInt i = 0; i < m->grid->n_owned * m->dim; ++i) {
     if (entry[i] < 0 || entry[i] >= m->c->n_boundary || m->boundary->fixed[i]) continue;
-    ((PetscReal *)(void *)((char *)(sum + entry[i]) + which))[i % m->dim] += force[i];
+    sum[entry[i] * LET_GO_NUMBERS + i % m->dim] += force[i];
     force[i] = 0;
   }
 }
@@ -33,8 +33,8 @@ PetscErrorCode ModelMovePlaces(Model *m, PetscReal t)
   PetscCall(PetscCalloc1(n, &sum));
   PetscCall(PetscArraycpy(entry, m->boundary->entry, dofs));
   PetscCall(BoundaryMove(m->boundary, m->grid, t));
-  take(m, entry, m->nodes->reaction, offsetof(LetGo, reaction), sum);
-  take(m, entry, m->nodes->rate, offsetof(LetGo, rate), sum);
+  take(m, entry, m->nodes->reaction, sum->reaction);
+  take(m, entry, m->nodes->rate, sum->rate);
   PetscCall(MPIU_Allreduce(MPI_IN_PLACE, sum, (PetscMPIInt)(n * LET_GO_NUMBERS), MPIU_REAL, MPI_SUM, m->comm));
   for (PetscInt k = 0; k < n; ++k)
     for (int d = 0; d < 3; ++d) {

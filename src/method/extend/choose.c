@@ -6,9 +6,8 @@
 
 /* Of half its share of the cells: what a node has at least that leads. */
 #define LEADS 0.1
-/* The same in explicit steps, whose nodes have lumped masses: of less, more runs away from the body in each
- * substep than
- * points bring back; of more, the node behind would have to give more mass than it has. */
+/* The same in explicit steps, whose nodes have lumped masses: of less, more runs away from the body in each substep
+ * than points bring back; of more, the node behind would have to give more mass than it has. */
 #define LEADS_BY_MASS 0.4
 
 /* Is what holds the first held in the same way in the second, too, so that the first can follow it? */

@@ -51,6 +51,7 @@ typedef struct Explicit {
   PetscInt n_active, *active; /* nodes where points can come in the lap */
   PetscBool led;              /* do nodes follow others in the substep, on any rank? */
   PetscReal *bare;            /* n_nodes: then, masses before followers hand theirs on, kg */
+  PetscReal *apart;           /* n_nodes x 3 dim: momentum and velocities meanwhile */
   PetscInt n_held;
   Held *held;
   PetscBool moved;   /* do prescribed velocities change? */

@@ -89,7 +89,7 @@ PetscErrorCode ExplicitCreate(const Model *m, Explicit **explicit)
   PetscCall(PetscCalloc1(n * e->width + 4, &e->sum));
   PetscCall(PetscCalloc1(n * 2 * dim + 4, &e->motion));
   PetscCall(PetscCalloc1(n * dim + 4, &e->straining));
-  PetscCall(PetscCalloc2(n, &e->mark, n, &e->bare));
+  PetscCall(PetscCalloc3(n, &e->mark, n, &e->bare, m->c->n_loads ? 3 * n * dim : 0, &e->apart));
   PetscCall(PetscMalloc1(n, &e->active));
   if (m->contact) PetscCall(PetscCalloc2(m->contact->n_partners, &e->pushed, m->contact->n_partners, &e->rubbed));
   if (m->contact) PetscCall(PetscMalloc1(m->contact->n_rigid, &e->ease));
@@ -107,7 +107,7 @@ PetscErrorCode ExplicitDestroy(Explicit **explicit)
   PetscCall(PetscFree(e->sum));
   PetscCall(PetscFree(e->motion));
   PetscCall(PetscFree(e->straining));
-  PetscCall(PetscFree2(e->mark, e->bare));
+  PetscCall(PetscFree3(e->mark, e->bare, e->apart));
   PetscCall(PetscFree(e->active));
   PetscCall(PetscFree(e->held));
   PetscCall(PetscFree(e->near.point));

@@ -43,10 +43,9 @@ static PetscReal velocity(const Explicit *e, PetscInt node, PetscReal momentum)
 static PetscErrorCode GiveLeaning(const Model *m, const Explicit *e, PetscReal *momentum)
 {
   const PetscInt dim = m->dim;
-  PetscReal *v, *of;
+  PetscReal *v = e->apart + m->grid->n_nodes * dim, *of = v + m->grid->n_nodes * dim;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscCalloc2(m->grid->n_nodes * dim, &v, m->grid->n_nodes * dim, &of));
   for (PetscInt k = 0; k < e->n_active; ++k)
     for (PetscInt d = 0, i = e->active[k] * dim; d < dim; ++d, ++i) of[i] = v[i] = velocity(e, i / dim, momentum[i]);
   PetscCall(ExtensionTake(m->space, dim, of));
@@ -57,7 +56,6 @@ static PetscErrorCode GiveLeaning(const Model *m, const Explicit *e, PetscReal *
   for (PetscInt k = 0; k < e->n_active; ++k)
     for (PetscInt d = 0, i = e->active[k] * dim; d < dim; ++d, ++i)
       if (!is_led(m, e, i / dim)) momentum[i] += (e->sum[i / dim * e->width] - e->bare[i / dim]) * v[i];
-  PetscCall(PetscFree2(v, of));
   PetscFunctionReturn(0);
 }
 
@@ -81,15 +79,11 @@ static void part(const Model *m, const Explicit *e, PetscBool back, PetscReal *a
 
 PetscErrorCode SumsGive(const Model *m, Explicit *e)
 {
-  PetscReal *momentum;
-
   PetscFunctionBeginUser;
   if (!e->led) PetscFunctionReturn(0);
-  PetscCall(PetscCalloc1(m->grid->n_nodes * m->dim, &momentum));
-  part(m, e, PETSC_FALSE, momentum);
+  part(m, e, PETSC_FALSE, e->apart);
   PetscCall(NodesGive(m, e, e->width, e->sum));
-  PetscCall(MomentumGive(m, e, momentum));
-  part(m, e, PETSC_TRUE, momentum);
-  PetscCall(PetscFree(momentum));
+  PetscCall(MomentumGive(m, e, e->apart));
+  part(m, e, PETSC_TRUE, e->apart);
   PetscFunctionReturn(0);
 }
