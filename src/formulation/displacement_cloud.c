@@ -29,14 +29,13 @@ KERNEL void cloud_matrix(const int dim, const PetscBool hoop, const PetscBool ha
 KERNEL void cloud_point(const int dim, const PetscBool hoop, const WeakFormInput *in, const Batch *b, PetscInt k,
                         PetscInt slot, CloudWork *w, WeakFormOutput *out)
 {
-  const Support *s = in->support;
   const PetscInt p = b->first + k;
   const PetscReal volume = in->points->real[POINT_VOLUME][p];
-  cloud_load(in, p, w);
-  cloud_gradients(dim, hoop, s->dN + s->value_start[p] * dim, *point_real(in->points, POINT_X, p), b->dF + 9 * k, w);
+  cloud_load(dim, hoop, in, p, b->dF + 9 * k, w);
   cloud_force(dim, hoop, in, b->s.tau + 6 * k, volume, w, out->force);
   if (w->soft > 0) cloud_hold(dim, in, w, out->force);
   if (!wants_tangent(out)) return;
+  cloud_gradients(dim, hoop, w);
   for (int j = 0; j < gradient_rows(dim, hoop); ++j)
     cloud_moduli(dim, gradient_rows(dim, hoop), j, b->s.tau + 6 * k, b->s.c + 36 * k, volume, w->modulus[j]);
   if (in->half) cloud_matrix(dim, hoop, PETSC_TRUE, out->slot + slot, w, out);

@@ -26,16 +26,10 @@ void holding_forces(const WeakFormInput *in, PetscInt dim, PetscReal *force)
 KERNEL PetscReal sum_work(const int dim, const WeakFormInput *in)
 {
   CloudWork work;
-  CloudRow held[3];
   PetscReal sum = 0;
   for (PetscInt p = 0; p < in->support->n_groups; ++p) {
     if (!load(in, p, &work)) continue;
-    cloud_held(dim, in, &work, held);
-    for (int d = 0; d < dim; ++d) {
-      PetscReal square;
-      hold_products(1, work.nn, held[d], held + d, &square);
-      sum += 0.5 * work.soft * square;
-    }
+    sum += 0.5 * work.soft * (in->lattice ? held_square(dim, dim, in, &work) : held_square(0, dim, in, &work));
   }
   return sum;
 }

@@ -108,14 +108,13 @@ static void hold_cut(const int dim, const WeakFormInput *in, PetscReal hold, con
 KERNEL void mixed_point(const int dim, const PetscBool hoop, const WeakFormInput *in, const Batch *b, PetscInt k,
                         PetscInt slot, MixedPoint *w, WeakFormOutput *out)
 {
-  const Support *s = in->support;
   const PetscInt p = b->first + k;
   const Material *material = batch_material(in, b);
   const PetscReal volume = in->points->real[POINT_VOLUME][p], scale = in->pressure_scale, scaled = scale * volume;
   const PetscReal tie = in->pressure_tie ? in->pressure_tie[p] : 0;
   CloudWork *u = &w->u;
-  cloud_load(in, p, u);
-  cloud_gradients(dim, hoop, s->dN + s->value_start[p] * dim, *point_real(in->points, POINT_X, p), b->dF + 9 * k, u);
+  cloud_load(dim, hoop, in, p, b->dF + 9 * k, u);
+  cloud_gradients(dim, hoop, u);
   cloud_force(dim, hoop, in, b->s.tau + 6 * k, volume, u, out->force);
   for (PetscInt I = 0; out->volume && I < u->nn; ++I)
     out->volume[u->node[I]] += scaled * (b->s.theta[k] - b->p[k] * material->compliance) * u->N[I];

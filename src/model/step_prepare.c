@@ -265,6 +265,7 @@ PetscErrorCode PrepareStep(Model *m, PetscReal dt, StepProblem *p)
     .idle = m->nodes->idle,
     .asked = m->asked,
     .stiff = is_stiff(m, dt),
+    .wide = m->space->basis->nodes != BASIS_OF_CELLS,
   };
   p->in.half = m->symmetric && !m->space->support->n_runs;
   p->round_off = round_off_of(m, inertia);

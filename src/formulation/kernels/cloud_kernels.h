@@ -13,7 +13,8 @@ typedef PetscReal CloudRow[CLOUD_MAX_NODES + 4];
 typedef struct {
   PetscInt nn;
   const PetscInt *node;
-  const PetscReal *N;
+  const PetscReal *N, *dN;
+  PetscReal radius, inverse[9];           /* of rings, at the start of the step; dF^-1 */
   PetscReal mass, inertia, lumping, soft; /* inertia: mass times c0 */
   /* gradients at x_(n+1), as many rows as they have beside each other */
   PetscReal g[3 * CLOUD_MAX_NODES];
@@ -28,32 +29,41 @@ KERNEL void cloud_increment(const int dim, const PetscBool hoop, const WeakFormI
   const PetscInt first = s->node_start[p], nn = s->node_start[p + 1] - first, *node = s->node + first;
   const PetscReal *dN = s->dN + s->value_start[p] * dim;
   const PetscReal *N = s->N + s->value_start[p];
-  PetscReal H[9] = {0}, outward = 0;
+  Row4 H[3] = {{0}};
+  PetscReal outward = 0;
   for (PetscInt I = 0; I < nn; ++I) {
-    const PetscReal *du = in->du + node[I] * dim;
+    const Row4 du = node_row(dim, in->du + node[I] * dim);
     if (hoop) outward += N[I] * du[0];
-    for (int i = 0; i < dim; ++i)
-      for (int j = 0; j < dim; ++j) H[i * dim + j] += du[i] * dN[I * dim + j];
+    for (int j = 0; j < dim; ++j) H[j] += dN[I * dim + j] * du;
   }
   for (int i = 0; i < 9; ++i) dF[i] = i % 4 == 0;
   for (int i = 0; i < dim; ++i)
-    for (int j = 0; j < dim; ++j) dF[3 * i + j] += H[i * dim + j];
+    for (int j = 0; j < dim; ++j) dF[3 * i + j] += H[j][i];
   if (hoop) dF[8] += outward / *point_real(in->points, POINT_X, p);
 }
 
-KERNEL void cloud_gradients(const int dim, const PetscBool hoop, const PetscReal *restrict dN, PetscReal radius,
-                            const PetscReal *dF, CloudWork *w)
+KERNEL void cloud_gradients(const int dim, const PetscBool hoop, CloudWork *w)
 {
   const int rows = gradient_rows(dim, hoop);
-  PetscReal inverse[9];
-  tensor_inverse(dF, inverse);
   for (PetscInt I = 0; I < w->nn; ++I) {
     for (int j = 0; j < dim; ++j) {
       PetscReal g = 0;
-      for (int i = 0; i < dim; ++i) g += inverse[3 * i + j] * dN[I * dim + i];
+      for (int i = 0; i < dim; ++i) g += w->inverse[3 * i + j] * w->dN[I * dim + i];
       w->g[I * rows + j] = g;
     }
-    if (hoop) w->g[I * rows + dim] = inverse[8] / radius * w->N[I];
+    if (hoop) w->g[I * rows + dim] = w->inverse[8] / w->radius * w->N[I];
+  }
+}
+
+/* V0 tau dF^-T, column by column: what dN along each axis makes of it is the force of a node. */
+KERNEL void cloud_stress(const int dim, const PetscReal *tau, PetscReal volume, const CloudWork *w, Row4 column[3])
+{
+  for (int i = 0; i < dim; ++i) {
+    column[i] = (Row4){0, 0, 0, 0};
+    for (int j = 0; j < dim; ++j) {
+      const Row4 stress = {tau[voigt_of[0][j]], tau[voigt_of[1][j]], dim > 2 ? tau[voigt_of[2][j]] : 0, 0};
+      column[i] += volume * w->inverse[3 * i + j] * stress;
+    }
   }
 }
 
@@ -61,22 +71,25 @@ KERNEL void cloud_gradients(const int dim, const PetscBool hoop, const PetscReal
 KERNEL void cloud_force(const int dim, const PetscBool hoop, const WeakFormInput *in, const PetscReal *tau,
                         PetscReal volume, const CloudWork *w, PetscReal *force)
 {
-  const int rows = gradient_rows(dim, hoop);
-  PetscReal mean_a[3] = {0, 0, 0};
-  for (PetscInt I = 0; I < w->nn; ++I)
-    for (int d = 0; d < dim; ++d) {
-      const PetscInt k = w->node[I] * dim + d;
-      mean_a[d] += w->N[I] * (in->inertia * in->du[k] + in->history[k]);
+  const PetscReal outward = hoop ? volume * tau[2] * w->inverse[8] / w->radius : 0;
+  Row4 mean = {0, 0, 0, 0}, column[3];
+  cloud_stress(dim, tau, volume, w, column);
+  for (PetscInt I = 0; I < w->nn; ++I) {
+    const PetscInt k = w->node[I] * dim;
+    mean += w->N[I] * (in->inertia * node_row(dim, in->du + k) + node_row(dim, in->history + k));
+  }
+  mean *= w->mass * (1 - w->lumping);
+  if (hoop) mean[0] += outward;
+  for (PetscInt I = 0; I < w->nn; ++I) {
+    const PetscInt k = w->node[I] * dim;
+    Row4 f = w->N[I] * mean;
+    for (int i = 0; i < dim; ++i) f += w->dN[I * dim + i] * column[i];
+    if (w->lumping > 0) {
+      const Row4 a = in->inertia * node_row(dim, in->du + k) + node_row(dim, in->history + k);
+      f += w->mass * w->lumping * w->N[I] * a;
     }
-  for (PetscInt I = 0; I < w->nn; ++I)
-    for (int d = 0; d < dim; ++d) {
-      const PetscInt k = w->node[I] * dim + d;
-      const PetscReal a = in->inertia * in->du[k] + in->history[k];
-      PetscReal f = w->mass * w->N[I] * ((1 - w->lumping) * mean_a[d] + w->lumping * a);
-      for (int j = 0; j < rows; ++j)
-        if (is_felt(dim, d, j)) f += volume * tau[strain_of(dim, d, j)] * w->g[I * rows + j];
-      force[k] += f;
-    }
+    node_add(dim, f, force + k);
+  }
 }
 
 /* V0 (c_ajbl + delta_ab tau_jl) of one j: a block of dim x dim for each row l of the gradients. */
@@ -91,12 +104,16 @@ KERNEL void cloud_moduli(const int dim, const int rows, const int j, const Petsc
 }
 
 /* What is known of point p before its stress. */
-KERNEL void cloud_load(const WeakFormInput *in, PetscInt p, CloudWork *w)
+KERNEL void cloud_load(const int dim, const PetscBool hoop, const WeakFormInput *in, PetscInt p, const PetscReal *dF,
+                       CloudWork *w)
 {
   const Support *s = in->support;
   w->nn = s->node_start[p + 1] - s->node_start[p];
   w->node = s->node + s->node_start[p];
   w->N = s->N + s->value_start[p];
+  w->dN = s->dN + s->value_start[p] * dim;
+  w->radius = hoop ? *point_real(in->points, POINT_X, p) : 0;
+  tensor_inverse(dF, w->inverse);
   w->mass = in->points->real[POINT_MASS][p];
   w->inertia = w->mass * in->inertia;
   w->lumping = in->lumping ? in->lumping[p] : 0;
@@ -105,11 +122,13 @@ KERNEL void cloud_load(const WeakFormInput *in, PetscInt p, CloudWork *w)
 
 #define SAME 1e-12 /* share of a motion's square that is none */
 
-/* One component of what nodes have, less `from`, in a row that ends with zeros. */
-KERNEL void hold_gather(const int dim, int d, const CloudWork *w, const PetscReal *x, PetscReal from, PetscReal *row)
+/* Where nodes are, from the first of them on, in rows that end with zeros. */
+KERNEL void hold_places(const int dim, const CloudWork *w, const PetscReal *x, CloudRow *row)
 {
-  *(Row4 *)(row + w->nn) = (Row4){0, 0, 0, 0};
-  for (PetscInt I = 0; I < w->nn; ++I) row[I] = x[w->node[I] * dim + d] - from;
+  const PetscReal *origin = x + w->node[0] * dim;
+  for (int d = 0; d < dim; ++d) *(Row4 *)(row[d] + w->nn) = (Row4){0, 0, 0, 0};
+  for (PetscInt I = 0; I < w->nn; ++I)
+    for (int d = 0; d < dim; ++d) row[d][I] = x[w->node[I] * dim + d] - origin[d];
 }
 
 /* Products of a row with n parts, by registers and all at once, so that no sum waits for another. */
@@ -118,17 +137,17 @@ KERNEL void hold_products(const int n, PetscInt nn, const PetscReal *row, const 
   Row4 sum[4] = {{0, 0, 0, 0}, {0, 0, 0, 0}, {0, 0, 0, 0}, {0, 0, 0, 0}};
   for (PetscInt I = 0; I < nn; I += 4)
     for (int k = 0; k < n; ++k) sum[k] += *(const Row4 *)(row + I) * *(const Row4 *)(part[k] + I);
-  for (int k = 0; k < n; ++k) product[k] = (sum[k][0] + sum[k][1]) + (sum[k][2] + sum[k][3]);
+  for (int k = 0; k < n; ++k) product[k] = row_sum(sum[k]);
 }
 
-/* row = scale (row - what n parts have of it) */
+/* rest = scale (row - what n parts have of it) */
 KERNEL void hold_without(const int n, PetscInt nn, PetscReal scale, const PetscReal *product, const CloudRow *part,
-                         PetscReal *row)
+                         const PetscReal *row, PetscReal *rest)
 {
   for (PetscInt I = 0; I < nn; I += 4) {
     Row4 left = *(const Row4 *)(row + I);
     for (int k = 0; k < n; ++k) left -= product[k] * *(const Row4 *)(part[k] + I);
-    *(Row4 *)(row + I) = scale * left;
+    *(Row4 *)(rest + I) = scale * left;
   }
 }
 
@@ -137,21 +156,21 @@ KERNEL void hold_without(const int n, PetscInt nn, PetscReal scale, const PetscR
 KERNEL int free_parts(const int axes, const int dim, const CloudWork *w, const PetscReal *x, CloudRow *part)
 {
   const PetscReal one = 1 / PetscSqrtReal((PetscReal)w->nn);
+  CloudRow place[3];
   int n = 1;
   for (PetscInt I = 0; I <= w->nn; I += 4)
     for (int k = 0; k <= axes; ++k) *(Row4 *)(part[k] + I) = (Row4){0, 0, 0, 0};
   for (PetscInt I = 0; I < w->nn; ++I) part[0][I] = one;
+  if (axes) hold_places(dim, w, x, place);
   for (int k = 0; k < axes; ++k) {
-    PetscReal *row = part[n], product[4];
-    hold_gather(dim, k, w, x, x[w->node[0] * dim + k], row);
-    hold_products(axes + 1, w->nn, row, part, product); /* that with itself, too */
-    const PetscReal square = product[n] - PetscSqr(product[0]);
+    PetscReal product[4] = {0}, square;
+    hold_products(axes, w->nn, place[k], part, product); /* rows from n on are zero */
+    hold_products(1, w->nn, place[k], place + k, &square);
+    square -= PetscSqr(product[0]);
     PetscReal left = square;
     for (int other = 1; other < n; ++other) left -= PetscSqr(product[other]);
-    const PetscBool is_new = left > SAME * square;
-    for (int other = n; other <= axes; ++other) product[other] = 0;
-    hold_without(axes + 1, w->nn, is_new ? 1 / PetscSqrtReal(left) : 0, product, part, row);
-    n += is_new;
+    if (left <= SAME * square) continue;
+    hold_without(axes, w->nn, 1 / PetscSqrtReal(left), product, part, place[k], part[n++]);
   }
   return n;
 }
@@ -164,30 +183,50 @@ static inline PetscReal held_part(int n, const CloudRow *part, PetscInt I, Petsc
   return s;
 }
 
-KERNEL void held_beside(const int axes, const int dim, const WeakFormInput *in, CloudWork *w, CloudRow *held)
+/* The free parts of a point's nodes, in w, and what these do in each: sum_I b_kI du_I. */
+KERNEL void held_parts(const int axes, const int dim, const WeakFormInput *in, CloudWork *w, Row4 *done)
 {
   w->n_free = free_parts(axes, dim, w, in->x, w->free);
-  for (int d = 0; d < dim; ++d) {
-    PetscReal product[4];
-    hold_gather(dim, d, w, in->du, 0, held[d]);
-    hold_products(axes + 1, w->nn, held[d], w->free, product);
-    hold_without(axes + 1, w->nn, 1, product, w->free, held[d]);
+  for (int k = 0; k <= axes; ++k) done[k] = (Row4){0, 0, 0, 0};
+  for (PetscInt I = 0; I < w->nn; ++I) {
+    const Row4 du = node_row(dim, in->du + w->node[I] * dim);
+    for (int k = 0; k <= axes; ++k) done[k] += w->free[k][I] * du;
   }
 }
 
-/* What a point's nodes do beside the free parts of their motion, component by component: du_I - sum_k b_kI b_k . du. */
-KERNEL void cloud_held(const int dim, const WeakFormInput *in, CloudWork *w, CloudRow *held)
+/* What node I of a point does beside the free parts: du_I - sum_k b_kI b_k . du. */
+KERNEL Row4 held_rest(const int axes, const int dim, const WeakFormInput *in, const CloudWork *w, const Row4 *done,
+                      PetscInt I)
 {
-  if (in->lattice) held_beside(dim, dim, in, w, held);
-  else held_beside(0, dim, in, w, held);
+  Row4 rest = node_row(dim, in->du + w->node[I] * dim);
+  for (int k = 0; k <= axes; ++k) rest -= w->free[k][I] * done[k];
+  return rest;
+}
+
+KERNEL void hold_beside(const int axes, const int dim, const WeakFormInput *in, CloudWork *w, PetscReal *force)
+{
+  Row4 done[4];
+  held_parts(axes, dim, in, w, done);
+  for (PetscInt I = 0; I < w->nn; ++I)
+    node_add(dim, w->soft * held_rest(axes, dim, in, w, done, I), force + w->node[I] * dim);
 }
 
 /* Holds a point's nodes to the free parts of their motion: f_I += soft (du_I - sum_k b_kI b_k . du). What
  * that adds to the tangent stands on the diagonals of the blocks: soft (delta_IJ - sum_k b_kI b_kJ). */
 KERNEL void cloud_hold(const int dim, const WeakFormInput *in, CloudWork *w, PetscReal *force)
 {
-  CloudRow held[3];
-  cloud_held(dim, in, w, held);
-  for (PetscInt I = 0; I < w->nn; ++I)
-    for (int d = 0; d < dim; ++d) force[w->node[I] * dim + d] += w->soft * held[d][I];
+  if (in->lattice) hold_beside(dim, dim, in, w, force);
+  else hold_beside(0, dim, in, w, force);
+}
+
+/* Twice the work of that over `soft`. */
+KERNEL PetscReal held_square(const int axes, const int dim, const WeakFormInput *in, CloudWork *w)
+{
+  Row4 done[4], sum = {0, 0, 0, 0};
+  held_parts(axes, dim, in, w, done);
+  for (PetscInt I = 0; I < w->nn; ++I) {
+    const Row4 rest = held_rest(axes, dim, in, w, done, I);
+    sum += rest * rest;
+  }
+  return row_sum(sum);
 }

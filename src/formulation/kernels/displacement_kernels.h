@@ -10,13 +10,11 @@
  * length scalar. g is dim rows, the cell force dim rows, the cell matrix nn x dim x dim rows. */
 #pragma once
 #include "base/math/lanes.h"
+#include "base/math/rows.h"
 #include "base/math/tensor.h"
 #include "formulation/formulation.h"
 
 #define KERNEL static inline __attribute__((always_inline))
-
-typedef PetscReal Row4 __attribute__((vector_size(4 * sizeof(PetscReal)), aligned(sizeof(PetscReal)), may_alias));
-typedef PetscReal Row8 __attribute__((vector_size(8 * sizeof(PetscReal)), aligned(sizeof(PetscReal)), may_alias));
 
 typedef float Single4 __attribute__((vector_size(4 * sizeof(float)), aligned(sizeof(float)), may_alias));
 typedef float Single8 __attribute__((vector_size(8 * sizeof(float)), aligned(sizeof(float)), may_alias));

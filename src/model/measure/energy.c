@@ -5,81 +5,8 @@
  * the middle of the step, that of loads and reactions is theirs there. */
 #include "formulation/holding.h"
 #include "material/pressure.h"
+#include "model/measure/mass_product.h"
 #include "model/model_private.h"
-
-/* Sum of two nodal arrays with factors: one pass over the points then serves two products. */
-typedef struct {
-  const PetscReal *x[2];
-  PetscReal factor[2];
-} NodalField;
-
-/* Sizes are constants at the calls below that matter, so that the inner loops unroll; without
- * fixed_nn each group has its own number of nodes. */
-#define UNROLLED static inline __attribute__((always_inline))
-
-/* The part of u M w that ties the nodes of one cell together: their deviations from the mean. */
-UNROLLED PetscReal tied_product(const PetscInt dim, const PetscInt nn, const PetscReal *u, const PetscReal *w)
-{
-  PetscReal sum = 0;
-  for (PetscInt d = 0; d < dim; ++d) {
-    PetscReal u_mean = 0;
-    for (PetscInt I = 0; I < nn; ++I) u_mean += u[I * dim + d] / (PetscReal)nn;
-    for (PetscInt I = 0; I < nn; ++I) sum += (u[I * dim + d] - u_mean) * w[I * dim + d];
-  }
-  return sum;
-}
-
-UNROLLED PetscReal product_sized(const PetscInt dim, const PetscInt fixed_nn, const SupportRun *run, const Model *m,
-                                 const NodalField *u, const NodalField *w)
-{
-  const Support *support = m->space->support;
-  PetscReal sum = 0;
-  for (PetscInt g = run->first; g < run->end; ++g) {
-    const PetscInt nn = fixed_nn ? fixed_nn : support_nodes(support, g), *node = support->node + support->node_start[g];
-    const PetscReal lumped = m->space->lumping ? m->space->lumping[g] : 0;
-    PetscReal at_node[CLOUD_MAX_NODES], un[3 * CLOUD_MAX_NODES], wn[3 * CLOUD_MAX_NODES];
-    for (PetscInt I = 0; I < nn; ++I) {
-      at_node[I] = 0;
-      for (PetscInt d = 0, k = I * dim, i = node[I] * dim; d < dim; ++d, ++k, ++i) {
-        un[k] = u->factor[0] * u->x[0][i] + u->factor[1] * u->x[1][i];
-        wn[k] = w->factor[0] * w->x[0][i] + w->factor[1] * w->x[1][i];
-        at_node[I] += un[k] * wn[k];
-      }
-    }
-    if (m->space->tie && m->space->tie[g] > 0) sum += m->space->tie[g] * tied_product(dim, nn, un, wn);
-    for (PetscInt p = support->point_start[g]; p < support->point_start[g + 1]; ++p) {
-      const PetscReal *N = support->N + support->value_start[g] + (p - support->point_start[g]) * nn;
-      PetscReal uh[3] = {0, 0, 0}, wh[3] = {0, 0, 0}, nodes = 0;
-      for (PetscInt I = 0; lumped > 0 && I < nn; ++I) nodes += N[I] * at_node[I];
-      for (PetscInt I = 0; I < nn; ++I)
-        for (PetscInt d = 0; d < dim; ++d) {
-          uh[d] += N[I] * un[I * dim + d];
-          wh[d] += N[I] * wn[I * dim + d];
-        }
-      sum += m->points->real[POINT_MASS][p] *
-             ((1 - lumped) * (uh[0] * wh[0] + uh[1] * wh[1] + uh[2] * wh[2]) + lumped * nodes);
-    }
-  }
-  return sum;
-}
-
-/* The sum u M w over this rank's points, with the mass matrix of the step: cells that are not full
- * have part of it lumped, and are tied. */
-static PetscReal mass_product(const Model *m, NodalField u, NodalField w)
-{
-  const Support *support = m->space->support;
-  const SupportRun all = {.first = 0, .end = support->n_groups};
-  PetscReal sum = 0;
-  if (!support->n_runs && m->dim == 2) return product_sized(2, 0, &all, m, &u, &w);
-  if (!support->n_runs) return product_sized(3, 0, &all, m, &u, &w);
-  for (const SupportRun *run = support->run; run < support->run + support->n_runs; ++run) {
-    if (m->dim == 2 && run->nodes == 3) sum += product_sized(2, 3, run, m, &u, &w);
-    else if (m->dim == 2 && run->nodes == 4) sum += product_sized(2, 4, run, m, &u, &w);
-    else if (m->dim == 3 && run->nodes == 8) sum += product_sized(3, 8, run, m, &u, &w);
-    else sum += product_sized(m->dim, run->nodes, run, m, &u, &w);
-  }
-  return sum;
-}
 
 static PetscReal points_kinetic(const Model *m)
 {

@@ -68,6 +68,8 @@ static PetscErrorCode WholeToTables(Model *m, Tables *tables)
   *(PetscInt64 *)column->data = newton.failures;
   PetscCall(TableAdd(table, "solver_steps_since", NULL, COLUMN_INT64, 1, NULL, &column));
   *(PetscInt64 *)column->data = newton.since;
+  PetscCall(TableAdd(table, "solver_calm", NULL, COLUMN_INT64, 1, NULL, &column));
+  *(PetscInt64 *)column->data = newton.calm;
   PetscCall(TablesAdd(tables, "measures", PETSC_TRUE, m->c->n_measures, &table));
   PetscCall(TableAdd(table, "kept", NULL, COLUMN_REAL, MEASURE_KEPT, NULL, &column));
   for (PetscInt k = 0; k < m->c->n_measures; ++k)
@@ -314,7 +316,8 @@ static NewtonMemory newton_memory(const Table *table, char reason[256])
 {
   return (NewtonMemory){.courant = real_of(table, "solver_courant", reason),
                         .failures = count_of(table, "solver_failures", reason),
-                        .since = count_of(table, "solver_steps_since", reason)};
+                        .since = count_of(table, "solver_steps_since", reason),
+                        .calm = (PetscBool)(count_of(table, "solver_calm", reason) != 0)};
 }
 
 /* The partition as it was, where the ranks are as many; others share the grid as a new run does,

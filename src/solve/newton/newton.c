@@ -47,12 +47,14 @@ void newton_get_memory(const Newton *n, const System *system, NewtonMemory *memo
   memory->courant = system->builds > 0 && n->built == system->builds && !n->learns ? n->courant : -1;
   memory->failures = n->failures;
   memory->since = n->since;
+  memory->calm = n->calm;
 }
 
 void newton_set_memory(Newton *n, const System *system, const NewtonMemory *memory)
 {
   n->failures = memory->failures;
   n->since = memory->since;
+  n->calm = memory->calm;
   n->courant = memory->courant;
   n->remembered = system->builds > 0 && memory->courant >= 0 ? system->builds : -1;
 }
@@ -61,6 +63,7 @@ void newton_forget(Newton *n, const System *system, const NewtonMemory *memory)
 {
   n->failures = memory->failures;
   n->since = memory->since;
+  n->calm = memory->calm;
   n->courant = memory->courant;
   n->built = memory->courant >= 0 ? system->builds : -1;
 }

@@ -57,6 +57,8 @@ typedef struct {
    * two iterations, and none shortens the step of all (docs/theory.md, "Stiff matter that yields"). So is what is
    * pressed to its limit. */
   PetscBool stiff;
+  /* Do points see more nodes than those of a cell? Then a tangent takes many times as long as a residual. */
+  PetscBool wide;
   /* what the last digit of a coordinate makes of the force at a node, N */
   PetscReal round_off;
   /* Norms of nodal gravity, of the inertia that would stop the motion and of the present one, N:
@@ -68,6 +70,7 @@ typedef struct {
   PetscBool converged;
   PetscBool interrupted; /* somebody asked, on any rank, before it converged */
   PetscInt iterations, linear_iterations;
+  PetscInt tangents; /* that were made for them: one may stay for several (newton_keep.c) */
   /* iterations before them, until the iterative linear solver failed */
   PetscInt lost;
   /* |R| / reference after each iteration; [0] at the first guess */
@@ -87,10 +90,11 @@ PetscErrorCode NewtonSolve(Newton *newton, StepProblem *problem, const LinearPro
 /* Collective. |R| over all unknowns at problem->du, N; PETSC_MAX_REAL where a law fails. */
 PetscErrorCode NewtonMiss(Newton *newton, StepProblem *problem, PetscReal *norm);
 /* What Newton's method remembers from step to step: which linear solver it chose when the pattern
- * was made, and how often the iterative one failed. */
+ * was made, how often the iterative one failed, and whether the first iteration left next to nothing. */
 typedef struct {
   PetscReal courant;        /* that the choice was made with; < 0: the next step chooses anew */
   PetscInt failures, since; /* of the iterative solver, and steps since the last */
+  PetscBool calm;           /* newton_keep.c */
 } NewtonMemory;
 
 void newton_get_memory(const Newton *newton, const System *system, NewtonMemory *memory);

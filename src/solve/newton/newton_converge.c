@@ -149,6 +149,7 @@ PetscErrorCode NewtonConverged(SNES snes, PetscInt it, PetscReal xnorm, PetscRea
   else if (is_stuck(r->residual, n->changed, k)) *reason = SNES_DIVERGED_LOCAL_MIN;
   n->before = it > 0 ? n->last : 0;
   n->last = fnorm;
+  if (it == 1) n->calm = newton_fell(n);
   PetscCall(MayAugment(n, it, relative, *reason, &may));
   if (may) PetscCall(AugmentForces(n, k, reason));
   PetscFunctionReturn(0);

@@ -61,6 +61,7 @@ PetscErrorCode NewtonAssemble(Newton *n, PetscBool tangent)
   if (tangent && p->in.half) PetscCall(SystemZeroHalf(p->system));
   else if (tangent) PetscCall(SystemZero(p->system));
   n->tangent = tangent;
+  n->report->tangents += tangent;
   WeakFormOutput out = {.force = p->force,
                         .volume = p->volume,
                         .values = tangent && !p->system->single ? p->system->values : NULL,
@@ -163,7 +164,7 @@ PetscErrorCode NewtonFunction(SNES snes, Vec x, Vec f, void *context)
   (void)snes;
   PetscFunctionBeginUser;
   PetscCall(NewtonSetIncrements(n, x));
-  PetscCall(NewtonAssemble(n, !newton_is_last(n)));
+  PetscCall(NewtonAssemble(n, !newton_is_last(n) && !newton_will_keep(n)));
   PetscCall(NewtonGetResidual(n, f));
   PetscCall(PetscTime(&n->solving)); /* for a solve that asks for no tangent: -snes_lag_jacobian */
   PetscFunctionReturn(0);
@@ -185,10 +186,11 @@ PetscErrorCode NewtonJacobian(SNES snes, Vec x, Mat matrix, Mat preconditioner, 
 
   (void)snes, (void)matrix, (void)preconditioner;
   PetscFunctionBeginUser;
+  const PetscBool keeps = newton_keeps(n);
   /* du is still where the residual was taken */
-  if (!n->tangent) PetscCall(NewtonAssemble(n, PETSC_TRUE));
+  if (!n->tangent && !keeps) PetscCall(NewtonAssemble(n, PETSC_TRUE));
   PetscCall(PetscTime(&start));
-  PetscCall(NewtonFillMatrix(n));
+  if (!keeps) PetscCall(NewtonFillMatrix(n));
   PetscCall(NewtonForcing(n));
   PetscCall(PetscTime(&end));
   n->t_matrix += end - start;
