@@ -105,6 +105,7 @@ static PetscErrorCode Rewind(Run *r, PetscInt step, Diag *diag)
   PetscCall(DiagReduce(r->comm, diag, &errors));
   if (errors || r->failed) PetscFunctionReturn(0);
   PetscCall(RunWritten(r, RunDirRewind(r->dir, states, step)));
+  output_resumed_at(r->output, r->model->step);
   if (!r->failed) PetscCall(WriteCase(r));
   if (!r->failed) PetscCall(RunWriteStages(r));
   if (!r->failed) PetscCall(RunWritten(r, EventsWatch(r->model, r->dir, PETSC_TRUE, r->events)));

@@ -40,6 +40,14 @@ for kind in walls contact; do
   cmp -s whole/$kind.hdf.series cut/$kind.hdf.series || fail "$name: another series of $kind"
 done
 
+# A run that is complete goes on with nothing: what touched its walls at the end stays
+expect "at its end" 0 "$talus" run case.yaml --out ended --quiet --set output.every=end
+cp -r ended again
+expect "complete" 0 "$talus" run --resume again --quiet
+for file in ended/*.hdf ended/contact.hdf.series; do
+  cmp -s "$file" "again/$(basename "$file")" || fail "$name: $(basename "$file") differs"
+done
+
 for ranks in 2 3; do
   expect "$ranks ranks" 0 on_ranks $ranks "$talus" run case.yaml --out ranks --force --quiet
   [ "$(ls ranks/contact_*.hdf | wc -l)" -eq 5 ] || fail "$name: files of contact"

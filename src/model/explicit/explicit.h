@@ -41,10 +41,11 @@ typedef struct Explicit {
   PetscBool loaded; /* does anything act on nodes but stress, weight and walls? */
   PetscBool shared; /* do points of a cell share their change of volume (formulation mean-dilatation)? */
   Lattice lattice;
-  PetscInt width;       /* 1 + 2 dim */
-  PetscReal *sum;       /* n_nodes x width: mass, kg, momentum, kg m/s, and force, N */
-  PetscReal *motion;    /* n_nodes x 2 dim: velocity at the end of the substep, and what points gain, m/s */
-  PetscReal *straining; /* n_nodes x dim: the velocity that strains the points, m/s */
+  PetscInt width;        /* 1 + 2 dim */
+  PetscReal *sum;        /* n_nodes x width: mass, kg, momentum, kg m/s, and force, N */
+  PetscReal *motion;     /* n_nodes x 2 dim: velocity at the end of the substep, and what points gain, m/s */
+  PetscReal *straining;  /* n_nodes x dim: the velocity that strains the points, m/s */
+  PetscBool as_strained; /* do points move by it, too, as those with gimp and splines must (explicit_way)? */
   /* n_nodes: > 0 where points of some rank can come in the lap; then, in each substep, at nodes that carry neither
    * loads nor tracers */
   PetscReal *mark;
@@ -140,6 +141,13 @@ PetscErrorCode NodesCarry(Model *model, Explicit *e);
 /* `straining` starts anew. */
 void nodes_forget(const Model *model, Explicit *e);
 
+/* The velocity of a node that points, tracers and loads move by. What has other ways than its strain tells is pulled
+ * apart by tension, motion that nodes do not see first (docs/theory.md, section 64); cells have none so smooth. */
+static inline const PetscReal *explicit_way(const Explicit *e, PetscInt dim, PetscInt node)
+{
+  return e->as_strained ? e->straining + node * dim : e->motion + node * 2 * dim;
+}
+
 /* points.c. Nodes get mass, momentum and forces. */
 void points_gather(const Model *model, Explicit *e);
 /* Points gain velocity, and give their momentum to `straining` where that is asked for. */
@@ -157,6 +165,21 @@ static inline void slope_follow(const int dim, const Explicit *e, const PetscRea
       PetscReal square = 0;
       for (int k = 0; k < dim; ++k) square += A[i][k] * A[k][j];
       G[i * dim + j] += e->follow * ((A[i][j] - 0.5 * square) / e->dt - G[i * dim + j]) - e->fade * G[i * dim + j];
+    }
+}
+
+/* Half a substep, s, where points move as they are strained; 0 with cells, whose two maps serve one gradient. */
+static inline PetscReal explicit_half(const Explicit *e) { return e->as_strained ? 0.5 * e->dt : 0; }
+
+/* G of the middle as it is `ahead` seconds later for the motion that it has, G (1 + ahead G): velocities half a substep
+ * before where points stand lean by it with -dt / 2, those half a substep after with dt / 2. */
+static inline void slope_at(const int dim, const PetscReal *G, PetscReal ahead, PetscReal *now)
+{
+  for (int i = 0; i < dim; ++i)
+    for (int j = 0; j < dim; ++j) {
+      PetscReal square = 0;
+      for (int k = 0; k < dim; ++k) square += G[i * dim + k] * G[k * dim + j];
+      now[i * dim + j] = G[i * dim + j] + ahead * square;
     }
 }
 

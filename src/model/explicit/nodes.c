@@ -181,7 +181,7 @@ void nodes_hold(Model *m, Explicit *e)
 /* Of gravity and loads, along the way that points go. */
 static PetscReal work_of_loads(const Model *m, const Explicit *e, PetscInt node)
 {
-  const PetscReal mass = e->sum[node * e->width], *v = e->motion + node * 2 * m->dim;
+  const PetscReal mass = e->sum[node * e->width], *v = explicit_way(e, m->dim, node);
   PetscReal work = 0;
   for (PetscInt d = 0; d < m->dim; ++d)
     work += (mass * e->g[d] + (e->loaded ? m->nodes->external[node * m->dim + d] : 0)) * v[d];
@@ -200,13 +200,14 @@ PetscErrorCode NodesStrain(const Model *m, Explicit *e)
     const PetscInt node = e->active[k];
     const PetscReal mass = e->sum[node * e->width], inverse = mass > 1e-300 ? 1 / mass : 0;
     PetscReal *v = e->straining + node * dim;
-    if (node < m->grid->n_owned) e->external += work_of_loads(m, e, node);
     for (PetscInt d = 0; d < dim; ++d) v[d] = again ? v[d] * inverse : e->motion[node * 2 * dim + d];
   }
   PetscReal change[3];
   for (const Held *h = e->held; again && h < e->held + e->n_held; ++h)
     (void)hold(m, h, e->straining + h->node * dim, change);
   if (again) PetscCall(NodesTake(m, e, dim, e->straining));
+  for (PetscInt k = 0; k < e->n_active; ++k)
+    if (e->active[k] < m->grid->n_owned) e->external += work_of_loads(m, e, e->active[k]);
   PetscFunctionReturn(0);
 }
 
@@ -246,7 +247,7 @@ PetscErrorCode NodesCarry(Model *m, Explicit *e)
     for (PetscInt d = 0, i = node * dim; d < dim; ++d, ++i) {
       n->v1[i] = e->motion[node * 2 * dim + d];
       n->a1[i] = e->motion[node * 2 * dim + dim + d] / e->kick;
-      n->du[i] = e->dt * n->v1[i];
+      n->du[i] = e->dt * explicit_way(e, dim, node)[d];
     }
   }
   PetscCall(Turn(m, e));

@@ -24,9 +24,10 @@ KERNEL void look(const int dim, const Support *w, PetscInt p, Sight *s)
 }
 
 /* What the gradient that a point carries adds to the momentum of a node: m N G (x_I - x_p). */
-KERNEL void lean(const int dim, const Model *m, PetscInt p, PetscInt node, PetscReal share, PetscReal *momentum)
+KERNEL void lean(const int dim, const Model *m, PetscInt p, const PetscReal *G, PetscInt node, PetscReal share,
+                 PetscReal *momentum)
 {
-  const PetscReal *G = point_real(m->points, POINT_SLOPE, p), *x = point_real(m->points, POINT_X, p);
+  const PetscReal *x = point_real(m->points, POINT_X, p);
   for (int i = 0; i < dim; ++i)
     for (int j = 0; j < dim; ++j) momentum[i] += share * G[i * dim + j] * (m->grid->x[node * dim + j] - x[j]);
 }
@@ -69,8 +70,9 @@ KERNEL void gather(const int dim, const PetscBool hoop, const Model *m, Explicit
   PetscReal mean = 0;
   for (PetscInt p = 0; p < points->n; ++p) {
     const PetscReal *v = point_real(points, POINT_V, p), mass = points->real[POINT_MASS][p];
-    PetscReal tau[6];
+    PetscReal tau[6], G[9] = {0};
     look(dim, m->space->support, p, &s);
+    if (e->slopes) slope_at(dim, point_real(points, POINT_SLOPE, p), -explicit_half(e), G);
     if (e->shared && p == start[s.group]) mean = shared_mean(dim, hoop, points, start + s.group);
     load(dim, hoop, points, p, e->shared ? &mean : NULL, tau);
     const PetscReal ring = hoop ? tau[2] / *point_real(points, POINT_X, p) : 0;
@@ -78,7 +80,7 @@ KERNEL void gather(const int dim, const PetscBool hoop, const Model *m, Explicit
       PetscReal *sum = e->sum + s.node[k] * width;
       const PetscReal share = mass * s.N[k];
       sum[0] += share;
-      if (e->slopes) lean(dim, m, p, s.node[k], share, sum + 1);
+      if (e->slopes) lean(dim, m, p, G, s.node[k], share, sum + 1);
       for (int d = 0; d < dim; ++d) {
         PetscReal force = hoop && d == 0 ? ring * s.N[k] : 0;
         for (int j = 0; j < dim; ++j) force += tau[voigt_of[d][j]] * s.dN[k * dim + j];
@@ -99,7 +101,9 @@ KERNEL void gain(const int dim, const Model *m, Explicit *e)
   for (PetscInt p = 0; p < points->n; ++p) {
     PetscReal *v = point_real(points, POINT_V, p), *a = point_real(points, POINT_A, p), felt[6] = {0};
     const PetscReal mass = points->real[POINT_MASS][p], *gained = felt + dim;
+    PetscReal G[9] = {0};
     look(dim, m->space->support, p, &s);
+    if (again && e->slopes) slope_at(dim, point_real(points, POINT_SLOPE, p), explicit_half(e), G);
     for (PetscInt k = 0; k < s.nn; ++k)
       for (int d = 0; d < 2 * dim; ++d) felt[d] += s.N[k] * e->motion[s.node[k] * 2 * dim + d];
     for (int d = 0; d < dim; ++d) {
@@ -111,7 +115,7 @@ KERNEL void gain(const int dim, const Model *m, Explicit *e)
     for (PetscInt k = 0; again && k < s.nn; ++k) {
       PetscReal *momentum = e->straining + s.node[k] * dim;
       for (int d = 0; d < dim; ++d) momentum[d] += mass * s.N[k] * v[d];
-      if (e->slopes) lean(dim, m, p, s.node[k], mass * s.N[k], momentum);
+      if (e->slopes) lean(dim, m, p, G, s.node[k], mass * s.N[k], momentum);
     }
   }
   e->damped += damped;
@@ -123,7 +127,7 @@ KERNEL void strain_point(const int dim, const PetscBool hoop, const Model *m, co
   PetscReal L[9] = {0}, ring = 0;
   for (int d = 0; d < dim; ++d) move[d] = 0;
   for (PetscInt k = 0; k < s->nn; ++k) {
-    const PetscReal *v = e->straining + s->node[k] * dim, *now = e->motion + s->node[k] * 2 * dim;
+    const PetscReal *v = e->straining + s->node[k] * dim, *now = explicit_way(e, dim, s->node[k]);
     for (int d = 0; d < dim; ++d) {
       for (int j = 0; j < dim; ++j) L[3 * d + j] += v[d] * s->dN[k * dim + j];
       move[d] += s->N[k] * now[d];

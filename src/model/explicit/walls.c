@@ -111,7 +111,7 @@ static void move_of(const Model *m, const Explicit *e, const ContactPoint *c, Pe
   for (PetscInt k = c->first; k < c->first + c->n; ++k)
     for (PetscInt d = 0; d < m->dim; ++d) {
       const PetscReal beyond = e->dt * s->lead[k] * e->straining[s->node[k] * m->dim + d];
-      move[d] += e->dt * (s->N[k] - s->lead[k]) * e->motion[s->node[k] * 2 * m->dim + d] + beyond;
+      move[d] += e->dt * (s->N[k] - s->lead[k]) * explicit_way(e, m->dim, s->node[k])[d] + beyond;
       if (k < c->first + c->own) *lead += c->normal[d] * beyond;
     }
 }

@@ -108,7 +108,7 @@ PetscErrorCode RunDirKeepCheckpoints(RunDir *dir, PetscInt keep)
 }
 
 /* What a file of the directory is to a run that goes back to `step` and the first `states`
- * states. */
+ * states. Contact of the state after them stays: it may be that of `step` itself, and is known after a step alone. */
 static int rewind_files(const RunDir *dir, const char *name, PetscInt states, PetscInt step)
 {
   static const char *const kinds[] = {"points_", "grid_", "walls_", "contact_"};
@@ -118,7 +118,8 @@ static int rewind_files(const RunDir *dir, const char *name, PetscInt states, Pe
   for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(kinds); ++k)
     number = PetscMax(number, number_of(name, kinds[k], ".hdf"));
   snprintf(path, sizeof path, "%s/%s", dir->path, name);
-  if ((n > tail && !strcmp(name + n - tail, FILE_UNFINISHED)) || number >= states)
+  const PetscBool later = number >= states && number_of(name, "contact_", ".hdf") != states;
+  if ((n > tail && !strcmp(name + n - tail, FILE_UNFINISHED)) || later)
     return unlink(path) && errno != ENOENT ? errno : 0;
   if (checkpoint_step(name) <= step) return 0;
   snprintf(aside, sizeof aside, "%s.damaged", path);

@@ -20,6 +20,7 @@ struct Output {
   StateSeals *seals;        /* of each */
   PetscBool grid;           /* do states have files of the grid? */
   PetscReal *x0;            /* node positions at the start */
+  PetscInt resumed;         /* step at which a resumed run began; -1: none */
 };
 
 PetscErrorCode OutputCreate(const Model *m, const char *folder, Output **output)
@@ -28,12 +29,36 @@ PetscErrorCode OutputCreate(const Model *m, const char *folder, Output **output)
   PetscCall(PetscNew(output));
   (*output)->folder = folder;
   (*output)->grid = m->c->output.grid;
+  (*output)->resumed = -1;
   PetscCall(PetscMalloc1(count_numbers(m->grid->n_nodes, m->dim), &(*output)->x0));
   PetscCall(PetscArraycpy((*output)->x0, m->grid->x, count_numbers(m->grid->n_nodes, m->dim)));
   PetscFunctionReturn(0);
 }
 
 void output_set_folder(Output *output, const char *folder) { output->folder = folder; }
+
+void output_resumed_at(Output *output, PetscInt step) { output->resumed = step; }
+
+static void state_file(const char *name, PetscInt number, char file[64])
+{
+  snprintf(file, 64, "%s_%06d.hdf", name, (int)number);
+}
+
+PetscErrorCode OutputKeep(const Output *o, const Model *m, const char *name, PetscBool *kept, PetscBool *ok,
+                          char reason[256])
+{
+  char file[64], path[PETSC_MAX_PATH_LEN];
+  PetscInt there;
+
+  PetscFunctionBeginUser;
+  state_file(name, o->count, file);
+  PetscCall(PetscSNPrintf(path, sizeof path, "%s/%s", o->folder, file));
+  there = m->step == o->resumed && !access(path, R_OK);
+  PetscCallMPI(MPI_Bcast(&there, 1, MPIU_INT, 0, m->comm));
+  *kept = (PetscBool)there;
+  if (there && VtkSeriesAppend(m->comm, o->folder, name, file, m->time, reason)) *ok = PETSC_FALSE;
+  PetscFunctionReturn(0);
+}
 
 PetscErrorCode OutputDestroy(Output **output)
 {
@@ -119,11 +144,6 @@ PetscErrorCode OutputPointField(const Model *m, const OutputField *field, PetscR
   else
     for (PetscInt p = 0; p < n; ++p) PetscCall(PointValue(m, p, field->name, data + count_numbers(p, k)));
   PetscFunctionReturn(0);
-}
-
-static void state_file(const char *name, PetscInt number, char file[64])
-{
-  snprintf(file, 64, "%s_%06d.hdf", name, (int)number);
 }
 
 /* Rank 0 looks at the file that has just been written, all know its seal. */

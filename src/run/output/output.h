@@ -10,6 +10,8 @@ PetscErrorCode OutputCreate(const Model *model, const char *folder, Output **out
 /* For who creates it before there is a directory. */
 void output_set_folder(Output *output, const char *folder);
 PetscErrorCode OutputDestroy(Output **output);
+/* A resumed run stands at this step of the model: the files of contact that it had written there stay. */
+void output_resumed_at(Output *output, PetscInt step);
 /* Collective. points_NNNNNN.hdf (and grid_NNNNNN.hdf if the case asks) of the present state, and
  * their series. If the file system refuses, *ok is false and reason says why; files written before
  * stay whole. */

@@ -74,8 +74,11 @@ PetscErrorCode OutputContact(Output *o, const Model *m, PetscBool *ok, char reas
 {
   PetscReal *numbers[NUMBERS], *vectors[VECTORS];
   PetscInt n = 0;
+  PetscBool kept;
 
   PetscFunctionBeginUser;
+  PetscCall(OutputKeep(o, m, "contact", &kept, ok, reason));
+  if (kept) PetscFunctionReturn(0);
   PetscCall(Gather(m, &n, numbers, vectors));
   const VtkField fields[] = {
     {.name = "pressure", .unit = "Pa", .components = 1, .data = numbers[0]},

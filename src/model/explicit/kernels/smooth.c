@@ -162,11 +162,13 @@ KERNEL void pass_on(const int n, const Lattice *l, int32_t cell, Window *w, Pets
   window(l, cell, w->node);
 }
 
-/* What the gradient that point p, the k-th, carries adds to the momentum of the nodes: m N G (x_I - x_p). */
-KERNEL void lean(const Lattice *l, const Points *points, PetscInt p, const SmoothPlace *place, PetscInt k,
-                 const Four *mass_x, const Four *y, Four (*momentum)[4])
+/* What the gradient that point p, the k-th, carries adds to the momentum of the nodes: m N G (x_I - x_p). ahead: see
+ * slope_at. */
+KERNEL void lean(const Lattice *l, const Points *points, PetscInt p, PetscReal ahead, const SmoothPlace *place,
+                 PetscInt k, const Four *mass_x, const Four *y, Four (*momentum)[4])
 {
-  const PetscReal *G = point_real(points, POINT_SLOPE, p);
+  PetscReal G[4];
+  slope_at(2, point_real(points, POINT_SLOPE, p), ahead, G);
   const Four over = l->size[0] * (steps - place->at[0][k]) * *mass_x;
   for (int b = 0; b < 4; ++b) {
     const PetscReal up = l->size[1] * ((PetscReal)(b - 1) - place->at[1][k]);
@@ -196,7 +198,7 @@ KERNEL void give(const PetscBool hoop, const Points *points, PetscInt first, Pet
         w->sum[3 + d][b] += y[b] * over[d] + dy[b] * up[d];
       }
     }
-    if (e->slopes) lean(l, points, first + k, place, k, &mass, &y, w->sum + 1);
+    if (e->slopes) lean(l, points, first + k, -explicit_half(e), place, k, &mass, &y, w->sum + 1);
   }
 }
 
@@ -267,21 +269,21 @@ void smooth_gain(const Model *m, Explicit *e)
       for (int d = 0; d < 2; ++d)
         for (int b = 0; b < 4; ++b) w.sum[d][b] += y[b] * momentum[2 * k + d] * x;
       const Four mass = points->real[POINT_MASS][first + k] * x;
-      if (e->slopes) lean(&e->lattice, points, first + k, &place, k, &mass, &y, w.sum);
+      if (e->slopes) lean(&e->lattice, points, first + k, explicit_half(e), &place, k, &mass, &y, w.sum);
     }
   }
   if (w.cell >= 0) bring(2, w.node, w.sum, e->straining);
   e->damped += 0.5 * e->fade * (2 - e->fade) * ((damped[0] + damped[1]) + (damped[2] + damped[3]));
 }
 
-/* Of the window: velocity, and that which strains. */
+/* Of the window: the velocity, twice. */
 KERNEL void fetch_flow(const Explicit *e, int32_t cell, Four flow[WINDOW])
 {
   PetscInt node[WINDOW];
   window(&e->lattice, cell, node);
   for (int i = 0; i < WINDOW; ++i) {
-    const PetscReal *v = e->motion + node[i] * 4, *strains = e->straining + node[i] * 2;
-    flow[i] = (Four){v[0], v[1], strains[0], strains[1]};
+    const PetscReal *v = e->straining + node[i] * 2;
+    flow[i] = (Four){v[0], v[1], v[0], v[1]};
   }
 }
 
@@ -301,7 +303,7 @@ KERNEL void flow_past(const PetscBool hoop, const Points *points, PetscInt first
     felt_at(&x, &dy, flow, &up);
     s->A[k] = e->dt * __builtin_shufflevector(over, up, 2, 3, 6, 7);
     s->move[k] = here;
-    s->ring[k] = hoop ? e->dt * here[2] / *point_real(points, POINT_X, first + k) : 0;
+    s->ring[k] = hoop ? e->dt * here[0] / *point_real(points, POINT_X, first + k) : 0;
   }
   rest_of_batch(n, s);
 }
