@@ -100,6 +100,11 @@ class Case:
         with self.opened() as handle:
             return self._resolved_text(handle)
 
+    def functions(self):
+        """What functions of this process act on: ["body_force", "loads.tractions[0]"]."""
+        loads = [f"loads.{place}" for place, function in self.loads.items() if function is not None]
+        return ["body_force"] * (self.body_force is not None) + loads
+
     def settings(self):
         """The changes to a file as `--set` takes them: ["analysis.end=0.02"]."""
         return [f"{path}={_yaml.one_line(value)}" for path, value in self.changes.items()]

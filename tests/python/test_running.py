@@ -201,8 +201,17 @@ class Running(InFolder):
         light.body_force = lambda X, x, t: np.tile([0, -9.81, 0], (len(X), 1))
         by_force, heavy = light.run("force").history, block().run("weight").history
         np.testing.assert_allclose(by_force["top"], heavy["top"], rtol=1e-9)
-        with self.assertRaisesRegex(talus.TalusError, "a function of this process"):
+        with self.assertRaisesRegex(talus.TalusError, "body_force: a function of this process"):
             talus.run(light, "force-program")
+
+    def test_the_program_takes_no_functions(self):
+        case = block(**{"loads.tractions": [{"on": {"body": "block", "y": 1}, "value": [0, 1]}]})
+        case.loads["tractions[0]"] = lambda X, x, t: X[:, 0]
+        for act in (lambda: talus.run(case, "factors"), lambda: talus.sweep(case, {"analysis.end": [0.004]}, out="swept")):
+            with self.assertRaisesRegex(talus.TalusError, r"loads.tractions\[0\]: a function of this process"):
+                act()
+        case.loads["tractions[0]"] = None  # none at all
+        self.assertEqual(talus.run(case, "factors").outcome, "done")
 
     def test_body_force_goes_through_stages(self):
         """Gravity as a function, in two stages, cut off in the second and resumed."""
