@@ -193,6 +193,7 @@ class Case:
         then the one of that directory (`talus.Case("runs/x")`). `quiet=False` prints what the program would.
         `progress(step, time, end)` is called after every step (times in s); if it returns True the run ends
         there, with its state and a checkpoint, and so it does on what progress or a body force raises.
+        A run in which functions acted (`body_force`, `loads`) goes on with them alone: give them to the case again.
         A solver that gives up is a RunError, whose `run` holds what there is; a signal (Ctrl-C) ends the run in the
         same way with a checkpoint, and is a KeyboardInterrupt. Collective.
 

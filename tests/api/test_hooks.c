@@ -154,6 +154,9 @@ static void test_run(void **state)
   CALL(TalusRunDestroy(&run));
   CALL(TalusCaseClose(&light));
   CALL(TalusCaseOpen(MPI_COMM_WORLD, file, 1, none, &light, NULL));
+  CHECK_ERROR(TalusRunCase(light, out, TALUS_RUN_QUIET | TALUS_RUN_RESUME, &run, &messages), TALUS_ERROR_INPUT);
+  CHECK(messages && strstr(messages, "functions of its caller for: body_force; now there are: none"));
+  TalusTextFree(&messages);
   CALL(TalusCaseSetBodyForces(light, weigh, &travel));
   CALL(TalusRunCase(light, out, TALUS_RUN_QUIET | TALUS_RUN_RESUME, &run, NULL));
   CALL(TalusRunMeasure(run, "top", &value));

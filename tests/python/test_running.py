@@ -213,6 +213,32 @@ class Running(InFolder):
         case.loads["tractions[0]"] = None  # none at all
         self.assertEqual(talus.run(case, "factors").outcome, "done")
 
+    def test_a_run_goes_on_with_its_functions_alone(self):
+        case = block(**{"loads.tractions": [{"on": {"body": "block", "y": 1}, "value": [0, -100]}]})
+        case.body_force = lambda X, x, t: np.stack([100 * t + X[:, 1], -x[:, 0]], axis=1)
+        case.loads["tractions[0]"] = lambda X, x, t: 1 + X[:, 0] + 100 * t + x[:, 1]
+        whole = case.run("whole")
+        functions = {"body_force": case.body_force, "loads": case.loads}
+        for steps in (2, 0):  # from a checkpoint; from none: the run starts again
+            case.run("cut", force=True, progress=lambda step, time, end: step == 2)
+            if not steps:
+                [file.unlink() for file in Path("cut").glob("checkpoint_*.h5")]
+            before = sorted((file.name, file.stat().st_size) for file in Path("cut").iterdir() if file.name != "log.txt")
+            for lacking in ({}, {"body_force": case.body_force}, {"loads": case.loads}):
+                with self.assertRaisesRegex(talus.CaseError, r"has functions of its caller for: body_force, loads.tractions\[0\]"):
+                    talus.Case("cut", **lacking).run("cut", resume=True)
+            with self.assertRaisesRegex(talus.CaseError, "now there are: none"):
+                talus.run("cut", "cut", resume=True)
+            self.assertEqual(before, sorted((file.name, file.stat().st_size) for file in Path("cut").iterdir() if file.name != "log.txt"))
+            talus.Case("cut", **functions).run("cut", resume=True)
+            self.assertEqual((whole.path / "history.csv").read_text(), Path("cut/history.csv").read_text())
+            last, first = (talus.open(run).states[-1].points["displacement"] for run in ("cut", "whole"))
+            np.testing.assert_array_equal(last, first)
+        block().run("cut", force=True, progress=lambda step, time, end: step == 2)  # none this time
+        with self.assertRaisesRegex(talus.CaseError, "for: none; now there are: body_force"):
+            talus.Case("cut", body_force=case.body_force).run("cut", resume=True)
+        self.assertEqual(talus.Case("cut").run("cut", resume=True).outcome, "done")
+
     def test_body_force_goes_through_stages(self):
         """Gravity as a function, in two stages, cut off in the second and resumed."""
         stages = [{"name": "falls"}, {"name": "stiffens", "materials": {"hard": {
