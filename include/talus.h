@@ -48,8 +48,10 @@ typedef enum TalusError {
   TALUS_ERROR_UNKNOWN = 4, /**< There is no measure or field of this name. */
   /** A result could not be written; log.txt in the run directory says why. */
   TALUS_ERROR_OUTPUT = 5,
-  TALUS_ERROR_MEMORY = 6,  /**< No memory. */
-  TALUS_ERROR_INTERNAL = 7 /**< A fault of talus or of a library; PETSc has printed where. */
+  TALUS_ERROR_MEMORY = 6,   /**< No memory. */
+  TALUS_ERROR_INTERNAL = 7, /**< A fault of talus or of a library; PETSc has printed where. */
+  /** A model or a run is at work: a function that it asks cannot step, change or close it. */
+  TALUS_ERROR_BUSY = 8
 } TalusError;
 
 /** How a run ended. */

@@ -51,7 +51,7 @@ class Case:
 
     def __init__(self, source, folder=None, comm=None, body_force=None, loads=None):
         self.comm, self.body_force, self.loads = comm, body_force, dict(loads or {})
-        self.trusted = False
+        self.trusted, self._running = False, False
         self.document = None
         self.changes = {}
         if isinstance(source, dict):
@@ -203,6 +203,15 @@ class Case:
         >>> talus.Case("runs/three").run("runs/three", resume=True).history.time[-1]
         0.01
         """
+        if self._running:
+            raise TalusError("the case is being run: a function that its run asks cannot run it again")
+        self._running = True
+        try:
+            return self._run(out, force, resume, quiet, progress)
+        finally:
+            self._running = False
+
+    def _run(self, out, force, resume, quiet, progress):
         lib = library()
         constants, callbacks = lib.constants, Callbacks(lib.header)
         flags = (constants["TALUS_RUN_FORCE"] * bool(force) | constants["TALUS_RUN_QUIET"] * bool(quiet)

@@ -239,6 +239,15 @@ class Running(InFolder):
             talus.Case("cut", body_force=case.body_force).run("cut", resume=True)
         self.assertEqual(talus.Case("cut").run("cut", resume=True).outcome, "done")
 
+    def test_a_run_is_not_run_from_within(self):
+        case = block()
+        case.body_force = lambda X, x, t: case.run("inner")
+        with self.assertRaisesRegex(talus.TalusError, "the case is being run"):
+            case.run("outer")
+        self.assertFalse(Path("inner").exists())
+        case.body_force = None
+        case.run("outer", force=True)
+
     def test_body_force_goes_through_stages(self):
         """Gravity as a function, in two stages, cut off in the second and resumed."""
         stages = [{"name": "falls"}, {"name": "stiffens", "materials": {"hard": {
@@ -388,6 +397,28 @@ class Stepping(InFolder):
         case["stages"] = [{"name": "one"}, {"name": "two", "analysis": {"end": 0.02}}]
         with self.assertRaisesRegex(talus.CaseError, "not for cases with stages"):
             case.run("runs/stages")
+
+    def test_what_a_step_asks_leaves_its_model_alone(self):
+        with block().model() as model:
+            for meddle in (model.step, model.close, lambda: setattr(model, "body_force", None),
+                           lambda: model.vary("tractions[0]", None)):
+                model.body_force = None
+                with self.assertRaisesRegex(talus.TalusError, "a model or a run is at work"):
+                    model.body_force = lambda X, x, t: meddle()
+                    model.step()
+            model.body_force = None
+            self.assertTrue(model.step())
+
+    def test_a_function_that_forgets_its_return(self):
+        case = block(**{"loads.tractions": [{"on": {"body": "block", "y": 1}, "value": [0, 1]}]})
+        with case.model() as model:
+            with self.assertRaisesRegex(talus.TalusError, "the function of body_force returned None"):
+                model.body_force = lambda X, x, t: None
+                model.step()
+            model.body_force = None
+            with self.assertRaisesRegex(talus.TalusError, "the function of a load returned None"):
+                model.vary("tractions[0]", lambda X, x, t: None)
+                model.step()
 
     def test_closing(self):
         model = block().model()
