@@ -48,8 +48,10 @@ typedef enum TalusError {
   TALUS_ERROR_UNKNOWN = 4, /**< There is no measure or field of this name. */
   /** A result could not be written; log.txt in the run directory says why. */
   TALUS_ERROR_OUTPUT = 5,
-  TALUS_ERROR_MEMORY = 6,  /**< No memory. */
-  TALUS_ERROR_INTERNAL = 7 /**< A fault of talus or of a library; PETSc has printed where. */
+  TALUS_ERROR_MEMORY = 6,   /**< No memory. */
+  TALUS_ERROR_INTERNAL = 7, /**< A fault of talus or of a library; PETSc has printed where. */
+  /** A model or a run is at work: a function that it asks cannot step, change or close it. */
+  TALUS_ERROR_BUSY = 8
 } TalusError;
 
 /** How a run ended. */
@@ -223,7 +225,8 @@ int TalusCaseText(const TalusCase *c, char **text);
  * @brief Body forces besides gravity, of the runs and models of the case made from now on. Not
  * collective, but the same on every rank.
  *
- * When they are asked for, TalusModelSetBodyForce() tells. A run that is resumed needs them again.
+ * When they are asked for, TalusModelSetBodyForce() tells. A run that is resumed needs them again,
+ * and is refused without them.
  * @param c        the case
  * @param force    the function, called on every rank for its points, or NULL for none
  * @param context  handed to it
@@ -237,7 +240,8 @@ int TalusCaseSetBodyForces(TalusCase *c, TalusBodyForces force, void *context);
  * What the function returns multiplies `value` and `amplitude` of the case file: with a value of 1
  * it is the load itself, in N/m2 of undeformed surface (tractions), in Pa of the present one
  * (pressures), or in N (points). When it is asked, TalusModelSetBodyForce() tells. A run that is
- * resumed needs it again; a case with stages is refused by TalusRunCase().
+ * resumed needs it again, and is refused without it; a case with stages is refused by
+ * TalusRunCase().
  * @param c        the case
  * @param load     "tractions[0]", "pressures[1]", "points[0]": the load's place in `loads`
  * @param factors  the function, or NULL for none

@@ -5,10 +5,19 @@ import contextlib
 
 import numpy as np
 
+from .errors import TalusError
+
 
 def _view(pointer, n):
     """n x 3 numbers of C as an array, not copied."""
     return np.ctypeslib.as_array(pointer, (n, 3)) if n else np.zeros((0, 3))
+
+
+def _numbers(what, answer):
+    """What a function has returned, as an array."""
+    if answer is None:
+        raise TalusError(f"the function of {what} returned None: a `return` is missing")
+    return np.asarray(answer, dtype=float)
 
 
 class Callbacks:
@@ -37,7 +46,7 @@ class Callbacks:
         def ask(_, n, X, x, t, b):
             with self._kept():
                 wanted = _view(b, n)
-                force = np.asarray(function(_view(X, n), _view(x, n), t), dtype=float)
+                force = _numbers("body_force", function(_view(X, n), _view(x, n), t))
                 wanted[:, :force.shape[-1] if force.ndim else 3] = force
 
         return self._types["TalusBodyForces"](ask)
@@ -50,7 +59,7 @@ class Callbacks:
         def ask(_, n, X, x, t, f):
             with self._kept():
                 wanted = _view(f, n)
-                factor = np.asarray(function(_view(X, n), _view(x, n), t), dtype=float)
+                factor = _numbers("a load", function(_view(X, n), _view(x, n), t))
                 if factor.ndim == 1 and factor.shape == (n,):
                     factor = factor[:, None]  # a number for each place, not for each component
                 wanted[:, :factor.shape[-1] if factor.ndim and factor.shape[-1] > 1 else 3] = factor

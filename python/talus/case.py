@@ -51,7 +51,7 @@ class Case:
 
     def __init__(self, source, folder=None, comm=None, body_force=None, loads=None):
         self.comm, self.body_force, self.loads = comm, body_force, dict(loads or {})
-        self.trusted = False
+        self.trusted, self._running = False, False
         self.document = None
         self.changes = {}
         if isinstance(source, dict):
@@ -99,6 +99,11 @@ class Case:
             return _yaml.dumps(self.document)[0] + "\n"
         with self.opened() as handle:
             return self._resolved_text(handle)
+
+    def functions(self):
+        """What functions of this process act on: ["body_force", "loads.tractions[0]"]."""
+        loads = [f"loads.{place}" for place, function in self.loads.items() if function is not None]
+        return ["body_force"] * (self.body_force is not None) + loads
 
     def settings(self):
         """The changes to a file as `--set` takes them: ["analysis.end=0.02"]."""
@@ -188,6 +193,7 @@ class Case:
         then the one of that directory (`talus.Case("runs/x")`). `quiet=False` prints what the program would.
         `progress(step, time, end)` is called after every step (times in s); if it returns True the run ends
         there, with its state and a checkpoint, and so it does on what progress or a body force raises.
+        A run in which functions acted (`body_force`, `loads`) goes on with them alone: give them to the case again.
         A solver that gives up is a RunError, whose `run` holds what there is; a signal (Ctrl-C) ends the run in the
         same way with a checkpoint, and is a KeyboardInterrupt. Collective.
 
@@ -197,6 +203,15 @@ class Case:
         >>> talus.Case("runs/three").run("runs/three", resume=True).history.time[-1]
         0.01
         """
+        if self._running:
+            raise TalusError("the case is being run: a function that its run asks cannot run it again")
+        self._running = True
+        try:
+            return self._run(out, force, resume, quiet, progress)
+        finally:
+            self._running = False
+
+    def _run(self, out, force, resume, quiet, progress):
         lib = library()
         constants, callbacks = lib.constants, Callbacks(lib.header)
         flags = (constants["TALUS_RUN_FORCE"] * bool(force) | constants["TALUS_RUN_QUIET"] * bool(quiet)

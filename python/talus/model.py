@@ -145,7 +145,7 @@ class Model:
             self.body_force = case.body_force
 
     def close(self):
-        """Give the model back; its views mean nothing any more. Collective."""
+        """Give the model back; its views mean nothing any more. Not from a function that its step asks. Collective."""
         if self._handle.value:
             library().call("TalusModelDestroy", ctypes.byref(self._handle))
         self._stack.close()

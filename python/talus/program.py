@@ -52,8 +52,10 @@ def _environment():
 def _as_file(case):
     """The case as arguments of the program; a dict as a file in its folder for the time being."""
     case = case if isinstance(case, Case) else Case(case)
-    if case.body_force is not None:
-        raise TalusError("a body force is a function of this process: case.run() knows it, the program does not")
+    functions = case.functions()
+    if functions:
+        raise TalusError(f"{', '.join(functions)}: a function of this process acts there, which case.run() knows and "
+                         "the program does not")
     if case.document is None:
         yield [str(case.file)] + [word for change in case.settings() for word in ("--set", change)], None
         return

@@ -27,7 +27,8 @@ void talus_ask_factors(void *factors, PetscInt n, const PetscReal *X, const Pets
 PetscInt talus_load_index(const Case *c, const char *load);
 
 struct TalusCase {
-  MPI_Comm comm; /* PETSc's copy of the user's, for no other messages than talus's */
+  PetscBool busy; /* runs, or becomes a model: what functions of the caller are asked then must not close it */
+  MPI_Comm comm;  /* PETSc's copy of the user's, for no other messages than talus's */
   Case *c;
   Diag *diag;             /* knows where in the file each value stands */
   TalusForce force;       /* of runs and models made from now on; force NULL: none */

@@ -61,7 +61,8 @@ int TalusCaseParse(MPI_Comm comm, const char *file, const char *text, int n_set,
 int TalusCaseClose(TalusCase **c)
 {
   if (!c || !*c) return TALUS_OK;
-  return talus_is_running() ? talus_code(Close(c)) : TALUS_ERROR_STATE;
+  if (!talus_is_running()) return TALUS_ERROR_STATE;
+  return (*c)->busy ? TALUS_ERROR_BUSY : talus_code(Close(c));
 }
 
 int TalusCaseTrust(TalusCase *c)

@@ -8,6 +8,7 @@
 struct TalusModel {
   Model *model;
   StepReport report;
+  PetscBool busy; /* where functions of the caller may be asked, which must not change the model then */
   TalusForce force;
   TalusFactors *factors; /* of each load */
   TalusBodyForce single; /* asked for one point at a time */
@@ -42,6 +43,13 @@ static PetscErrorCode SetFactors(TalusModel *m, PetscInt load, TalusFactors fact
   PetscFunctionReturn(0);
 }
 
+/* What was done while the model was busy has ended so. */
+static int done(TalusModel *model, PetscErrorCode code)
+{
+  model->busy = PETSC_FALSE;
+  return talus_code(code);
+}
+
 static PetscErrorCode Destroy(TalusModel **model)
 {
   PetscFunctionBeginUser;
@@ -54,7 +62,8 @@ static PetscErrorCode Destroy(TalusModel **model)
 int TalusModelDestroy(TalusModel **model)
 {
   if (!model || !*model) return TALUS_OK;
-  return talus_is_running() ? talus_code(Destroy(model)) : TALUS_ERROR_STATE;
+  if (!talus_is_running()) return TALUS_ERROR_STATE;
+  return (*model)->busy ? TALUS_ERROR_BUSY : talus_code(Destroy(model));
 }
 
 static PetscErrorCode Equilibrate(TalusCase *c, TalusModel *made)
@@ -97,7 +106,10 @@ int TalusModelCreate(TalusCase *c, TalusModel **model, char **messages)
   *model = NULL;
   if (!talus_is_running()) return TALUS_ERROR_STATE;
   if (!c) return TALUS_ERROR_ARGUMENT;
+  if (c->busy) return TALUS_ERROR_BUSY;
+  c->busy = PETSC_TRUE;
   const int error = talus_code(Create(c, model, messages));
+  c->busy = PETSC_FALSE;
   if (error) return error;
   return *model ? TALUS_OK : TALUS_ERROR_INPUT;
 }
@@ -112,22 +124,29 @@ static void point_by_point(void *context, int n, const double *X, const double *
 int TalusModelSetBodyForce(TalusModel *model, TalusBodyForce force, void *context)
 {
   if (!model) return TALUS_ERROR_ARGUMENT;
+  if (model->busy) return TALUS_ERROR_BUSY;
+  model->busy = PETSC_TRUE;
   model->single = force;
   model->single_context = context;
-  return talus_code(SetForce(model, force ? point_by_point : NULL, model));
+  return done(model, SetForce(model, force ? point_by_point : NULL, model));
 }
 
 int TalusModelSetBodyForces(TalusModel *model, TalusBodyForces force, void *context)
 {
   if (!model) return TALUS_ERROR_ARGUMENT;
-  return talus_code(SetForce(model, force, context));
+  if (model->busy) return TALUS_ERROR_BUSY;
+  model->busy = PETSC_TRUE;
+  return done(model, SetForce(model, force, context));
 }
 
 int TalusModelSetLoadFactors(TalusModel *model, const char *load, TalusLoadFactors factors, void *context)
 {
   if (!model || !load) return TALUS_ERROR_ARGUMENT;
+  if (model->busy) return TALUS_ERROR_BUSY;
   const PetscInt k = talus_load_index(model->model->c, load);
-  return k < 0 ? TALUS_ERROR_UNKNOWN : talus_code(SetFactors(model, k, (TalusFactors){factors, context}));
+  if (k < 0) return TALUS_ERROR_UNKNOWN;
+  model->busy = PETSC_TRUE;
+  return done(model, SetFactors(model, k, (TalusFactors){factors, context}));
 }
 
 static TalusStep step_of(StepOutcome outcome)
@@ -153,13 +172,15 @@ static PetscErrorCode Step(TalusModel *model, PetscReal limit)
 int TalusModelStep(TalusModel *model, double limit, TalusStep *step)
 {
   if (!model || !step || !(limit >= 0)) return TALUS_ERROR_ARGUMENT;
+  if (model->busy) return TALUS_ERROR_BUSY;
   const PetscReal end = model->model->c->analysis.end;
   if (limit == 0 && model->model->time >= end * (1 - 1e-12)) {
     model->report.reason[0] = '\0';
     *step = TALUS_STEP_AT_END;
     return TALUS_OK;
   }
-  const int error = talus_code(Step(model, limit > 0 ? limit : end - model->model->time));
+  model->busy = PETSC_TRUE;
+  const int error = done(model, Step(model, limit > 0 ? limit : end - model->model->time));
   if (!error) *step = step_of(model->report.outcome);
   return error;
 }
@@ -256,5 +277,8 @@ int TalusModelArray(const TalusModel *model, const char *name, double **data, in
 
 int TalusModelChanged(TalusModel *model)
 {
-  return model ? talus_code(ModelPointsChanged(model->model)) : TALUS_ERROR_ARGUMENT;
+  if (!model) return TALUS_ERROR_ARGUMENT;
+  if (model->busy) return TALUS_ERROR_BUSY;
+  model->busy = PETSC_TRUE;
+  return done(model, ModelPointsChanged(model->model));
 }

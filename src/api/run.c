@@ -102,9 +102,12 @@ int TalusRunCase(TalusCase *c, const char *out, unsigned flags, TalusRun **run, 
   if (!c || !out || !*out || (flags & ~(unsigned)(TALUS_RUN_FORCE | TALUS_RUN_QUIET | TALUS_RUN_RESUME)) ||
       (options.force && options.resume))
     return TALUS_ERROR_ARGUMENT;
+  if (c->busy) return TALUS_ERROR_BUSY;
   TalusRun *made = create_run(c->c);
   if (!made) return TALUS_ERROR_MEMORY;
+  c->busy = PETSC_TRUE;
   int error = talus_code(Run(c, &options, made, &result, messages));
+  c->busy = PETSC_FALSE;
   if (!error && result == RUN_BAD_INPUT) error = TALUS_ERROR_INPUT;
   made->outcome = result == RUN_DONE ? TALUS_DONE : TALUS_GAVE_UP;
   if (error) TalusRunDestroy(&made);

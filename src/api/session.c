@@ -21,6 +21,7 @@ const char *talus_error_string(int error)
   case TALUS_ERROR_OUTPUT: return "a result could not be written";
   case TALUS_ERROR_MEMORY: return "no memory";
   case TALUS_ERROR_INTERNAL: return "a fault of talus or of a library";
+  case TALUS_ERROR_BUSY: return "a model or a run is at work: a function that it asks cannot step, change or close it";
   default: return "no error code of talus";
   }
 }

@@ -227,6 +227,7 @@ static PetscErrorCode ReadDocument(const char *file, YamlDocument *document, Dia
                                    Case **c)
 {
   SchemaReader reader = {.document = document, .diag = diag};
+  const PetscInt before = diag_errors(diag);
 
   PetscFunctionBeginUser;
   PetscCall(PetscNew(c));
@@ -243,7 +244,7 @@ static PetscErrorCode ReadDocument(const char *file, YamlDocument *document, Dia
   PetscCall(ResolveFormulation(document->root, whole, *c));
   default_stabilisation(yaml_find(document->root, "stabilisation"), *c);
   PetscCall(DefaultScheme(*c));
-  check_newmark(*c, diag);
+  if (diag_errors(diag) == before) check_newmark(*c, diag); /* what was not read has no numbers yet */
   resolve_equilibrium(yaml_find(document->root, "initial"), *c);
   const YamlNode *analysis = yaml_find(document->root, "analysis");
   PetscCall(ResolveRaised(analysis ? yaml_find(analysis, "limit") : NULL, diag, *c));

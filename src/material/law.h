@@ -13,6 +13,8 @@
 #define LAW_MAX_LOADED 8
 
 typedef enum { LAW_OK = 0, LAW_INVERTED, LAW_NOT_CONVERGED, LAW_NOT_FINITE } LawStatus;
+/* "a point was turned inside out"; NULL: all is well. */
+const char *law_status_text(LawStatus status);
 
 typedef struct {
   const char *word, *help;

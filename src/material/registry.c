@@ -26,6 +26,17 @@ const Law *law_find(const char *name)
   return NULL;
 }
 
+const char *law_status_text(LawStatus status)
+{
+  switch (status) {
+  case LAW_OK: break;
+  case LAW_INVERTED: return "a point was turned inside out";
+  case LAW_NOT_CONVERGED: return "the law of a point did not converge";
+  case LAW_NOT_FINITE: return "the stress of a point was not finite";
+  }
+  return NULL;
+}
+
 void law_register(const Law *law)
 {
   int n = 0;

@@ -49,7 +49,8 @@ PetscErrorCode RunOpen(Run *r, const RunOptions *options, Diag *diag)
   if (!spares) PetscFunctionReturn(0);
   PetscCall(RunDirCreate(r->comm, options->out, options->force, options->quiet, options->log, diag, &r->dir));
   if (!r->dir) PetscFunctionReturn(0);
-  PetscCall(WriteCase(r));
+  PetscCall(FunctionsWrite(r, options)); /* before the case, without which nobody resumes the run */
+  if (!r->failed) PetscCall(WriteCase(r));
   if (!r->failed) PetscCall(OpenHistory(r, NULL));
   if (r->failed) PetscFunctionReturn(0);
   if (r->output) output_set_folder(r->output, run_dir_path(r->dir));
@@ -154,17 +155,18 @@ PetscErrorCode RunResume(Run *r, const RunOptions *options, Diag *diag, PetscBoo
 {
   PetscMPIInt size;
   PetscInt step = -1, errors;
-  PetscBool fits = PETSC_FALSE;
+  PetscBool fits = PETSC_FALSE, same;
   Extension extension;
 
   PetscFunctionBeginUser;
   PetscCall(RunDirOpen(r->comm, options->out, options->quiet, options->log, diag, &r->dir));
   if (!r->dir) PetscFunctionReturn(0);
+  PetscCall(FunctionsCheck(r, options, diag, &same));
   PetscCall(ExtensionBegin(r, &extension));
   /* node positions at the start */
   if (r->output) output_set_folder(r->output, run_dir_path(r->dir));
   else PetscCall(OutputCreate(r->model, run_dir_path(r->dir), &r->output));
-  if (extension_allowed(r, &extension, diag)) PetscCall(CheckpointLoad(r, diag, &step, &fits));
+  if (same && extension_allowed(r, &extension, diag)) PetscCall(CheckpointLoad(r, diag, &step, &fits));
   if (fits && step < 0) PetscCall(StartAgain(r, options, &extension, diag, complete));
   if (fits && step >= 0) extension_from_checkpoint(r, &extension, diag);
   PetscCall(DiagReduce(r->comm, diag, &errors));

@@ -96,6 +96,11 @@ PetscErrorCode RunTellImbalance(const Run *r, const Imbalance *imbalance);
 /* Collective. Into another file than that of the newest state; a refusal is a warning in the log. */
 PetscErrorCode CheckpointSaveAs(Run *r, const char *path);
 
+/* functions.c. Collective. The run is begun with functions of the caller: its directory says for what. */
+PetscErrorCode FunctionsWrite(Run *r, const RunOptions *options);
+/* Collective. Has the run that is resumed the functions that it was begun with? An error if not. */
+PetscErrorCode FunctionsCheck(const Run *r, const RunOptions *options, Diag *diag, PetscBool *same);
+
 /* Ends of a run that is resumed, s: that of the case kept in its directory, and the one that is
  * asked for. */
 typedef struct {

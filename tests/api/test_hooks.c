@@ -154,6 +154,9 @@ static void test_run(void **state)
   CALL(TalusRunDestroy(&run));
   CALL(TalusCaseClose(&light));
   CALL(TalusCaseOpen(MPI_COMM_WORLD, file, 1, none, &light, NULL));
+  CHECK_ERROR(TalusRunCase(light, out, TALUS_RUN_QUIET | TALUS_RUN_RESUME, &run, &messages), TALUS_ERROR_INPUT);
+  CHECK(messages && strstr(messages, "functions of its caller for: body_force; now there are: none"));
+  TalusTextFree(&messages);
   CALL(TalusCaseSetBodyForces(light, weigh, &travel));
   CALL(TalusRunCase(light, out, TALUS_RUN_QUIET | TALUS_RUN_RESUME, &run, NULL));
   CALL(TalusRunMeasure(run, "top", &value));
@@ -166,11 +169,78 @@ static void test_run(void **state)
   remove_folder(folder);
 }
 
+/* What a function that a step asks may not do to its model, and still the step is one. */
+typedef struct {
+  TalusModel *model;
+  int calls;
+} Meddler;
+
+static void meddle(void *context, int n, const double *X, const double *x, double t, double *b)
+{
+  Meddler *m = context;
+  TalusModel *model = m->model;
+  TalusStep step;
+  (void)n, (void)X, (void)x, (void)t, (void)b;
+  ++m->calls;
+  CHECK_ERROR(TalusModelStep(model, 0, &step), TALUS_ERROR_BUSY);
+  CHECK_ERROR(TalusModelSetBodyForces(model, NULL, NULL), TALUS_ERROR_BUSY);
+  CHECK_ERROR(TalusModelSetBodyForce(model, NULL, NULL), TALUS_ERROR_BUSY);
+  CHECK_ERROR(TalusModelSetLoadFactors(model, "tractions[0]", NULL, NULL), TALUS_ERROR_BUSY);
+  CHECK_ERROR(TalusModelChanged(model), TALUS_ERROR_BUSY);
+  CHECK_ERROR(TalusModelDestroy(&model), TALUS_ERROR_BUSY);
+  CHECK(model == m->model);
+}
+
+static void test_busy(void **state)
+{
+  double whole;
+  (void)state;
+  TalusCase *c = open_block(0, NULL);
+  Meddler m = {create_model(c), 0};
+  run_to_end(m.model);
+  whole = measure(m.model, "top");
+  CALL(TalusModelDestroy(&m.model));
+  m.model = create_model(c);
+  CALL(TalusModelSetBodyForces(m.model, meddle, &m));
+  run_to_end(m.model);
+  CHECK(m.calls >= 5 && measure(m.model, "top") == whole);
+  CALL(TalusModelDestroy(&m.model));
+  CALL(TalusCaseClose(&c));
+}
+
+/* Likewise of a run and its case. */
+static int close_case(void *context, int step, double time, double end)
+{
+  TalusCase *c = context, *same = c;
+  TalusRun *run;
+  (void)step, (void)time, (void)end;
+  CHECK_ERROR(TalusRunCase(c, "nowhere", 0, &run, NULL), TALUS_ERROR_BUSY);
+  CHECK_ERROR(TalusCaseClose(&same), TALUS_ERROR_BUSY);
+  CHECK(run == NULL && same == c);
+  return 0;
+}
+
+static void test_busy_case(void **state)
+{
+  char folder[FOLDER], out[FOLDER + 8];
+  TalusRun *run;
+  (void)state;
+  make_folder(folder);
+  snprintf(out, sizeof out, "%s/run", folder);
+  TalusCase *c = open_block(0, NULL);
+  CALL(TalusCaseSetProgress(c, close_case, c));
+  CALL(TalusRunCase(c, out, TALUS_RUN_QUIET, &run, NULL));
+  CALL(TalusRunDestroy(&run));
+  CALL(TalusCaseClose(&c));
+  remove_folder(folder);
+}
+
 int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(test_fields),        cmocka_unit_test(test_text), cmocka_unit_test(test_arrays),
-    cmocka_unit_test(test_arrays_of_fem), cmocka_unit_test(test_run),
+    cmocka_unit_test(test_arrays_of_fem), cmocka_unit_test(test_run),  cmocka_unit_test(test_busy),
+    cmocka_unit_test(test_busy_case),
   };
   CALL(TalusInitialize(&argc, &argv));
   const int failed = cmocka_run_group_tests(tests, NULL, NULL);

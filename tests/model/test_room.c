@@ -123,7 +123,7 @@ static void test_refused(void **state)
   bench_refused(&b, PETSC_COMM_WORLD, "stabilisation.room", "no material of the case remembers what is open");
   ground(&b, &kinematics_plane_strain, "cell");
   b.c.analysis.type = ANALYSIS_EXPLICIT;
-  bench_refused(&b, PETSC_COMM_WORLD, "stabilisation.room", "`type: explicit` does not take this");
+  bench_refused(&b, PETSC_COMM_WORLD, "stabilisation.room", "`type: explicit` does not take `room`");
 }
 
 int main(int argc, char **argv)

@@ -58,6 +58,9 @@ for density in .nan .inf -1000 0 nan; do
 done
 changed "incompressible" 's/poisson: 0/poisson: 0.5/' "case.yaml:9:67: error: " "Poisson's ratio 0.5"
 
+changed "no warning of what was not read" 's/type: static, steps: 1/type: dynamic, end: abc, step: 0.1/' "case.yaml:4:32: error: analysis.end must be a number"
+lacks err.txt "gamma"
+
 # Names, places
 changed "unknown material" 's/material: rubber/material: ruber/' "case.yaml:7:90: error: " "'ruber'" "did you mean 'rubber'?"
 changed "unknown side" 's/{x: 0}/{boundary: lefd}/' "case.yaml:11:21: error: " "'lefd'" "did you mean 'left'?"

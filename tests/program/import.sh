@@ -142,6 +142,23 @@ says varying/case.yaml 'value: [1, 0], amplitude: [[0, 1], [3, 1]], factor: "x^2
 expect "it pulls as much" 0 "$talus" run varying/case.yaml
 says out.txt "4 of 4 within what is allowed"
 
+# A formula of time is of Kratos's time, which begins with start_time: 1 where 100 t - 50 acts at t = 0.51, and so are the times of
+# results and of intervals.
+sed 's/"start_time": 0.0/"start_time": 0.5/; s/"end_time": 2.0/"end_time": 0.51/; s/"time_step": 1.5/"time_step": 0.01/
+  s/"interval": \[0.0,/"interval": [0.5,/; s/"modulus": "x\*\*2 - 3"/"modulus": "100*t - 50 + 0*sqrt(X)"/' formula/ProjectParameters.json >formula/late.json
+sed 's/\[1.5, 3.0\]/[0.505, 0.51]/; s/\[2e-6, 2e-6\]/[1e-6, 2e-6]/; s/\[1e-6, 1e-6\]/[5e-7, 1e-6]/' formula/results.json >formula/late_results.json
+sed -i 's/results.json/late_results.json/' formula/late.json
+expect "a start that is not 0" 0 "$talus" import kratos formula/late.json --out late
+says late/case.yaml 'end: 0.01, steps: 1}' 'factor: "100*(t + 0.5) - 50 + 0*sqrt(X)"'
+says late/reference.yaml "at: 0.01, reference: 2e-06"
+expect "it pulls as much" 0 "$talus" run late/case.yaml
+sed 's/"interval": \[0.5,/"interval": [0.505,/' formula/late.json >formula/later.json
+expect "what begins within the run" 2 "$talus" import kratos formula/later.json --out none
+says err.txt "what begins or ends within the run is not read"
+sed "s/100\*t - 50/$(printf '1*%.0s' $(seq 130))1/" formula/late.json >formula/long.json
+expect "a long formula" 2 "$talus" import kratos formula/long.json --out none
+says err.txt "a formula of so many letters is not read"
+
 # Pushed by 2 mm over 2 m along x, and nothing holds it along y: E times the strain; and gravity would take it away.
 cp -r pulled pushed
 along() { # PART VALUE
@@ -185,6 +202,16 @@ expect "a bar that falls" 0 "$talus" import kratos falling/fall.json --out fall
 says fall/case.yaml "type: dynamic, end: 0.05, step: 0.01, mass: lumped}" "law: mohr-coulomb" "friction_angle: 30" "gravity: [0, -10]"
 expect "it falls" 0 "$talus" run fall/case.yaml
 says out.txt "4 of 4 within what is allowed"
+
+# What moves in dynamics moves by as much in each step: half of it after half of the time.
+both="$(along Wall 0.0), $(along Right-hand.End -0.001)"
+{ settings Dynamic 0.01 0.04
+  echo "\"processes\": {\"a\": [$both], \"b\": [$(checks particle_from_json_check_result_process '"MP_DISPLACEMENT"')]}}"
+} >falling/moved.json
+expect "a bar that is pushed in dynamics" 0 "$talus" import kratos falling/moved.json --out moved
+says moved/case.yaml "displacement: {x: -0.004}, amplitude: [[0, 0], [0.04, 1]]}"
+expect "no jump" 0 "$talus" check moved/case.yaml
+lacks err.txt "jumps"
 
 # Kratos's default in dynamics is Bossak's scheme.
 sed 's/"scheme_type": "newmark"/"echo_level": 0/' falling/fall.json >falling/bossak.json

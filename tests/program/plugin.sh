@@ -46,6 +46,47 @@ awk -F, 'NR > 1 {tau = $19 * exp($2 + $3 + $4); a = $NF}
   END {k = 4e8 - 2e8 * exp(-8 * a); e = tau / 2e11 + a; exit !(a > 0.04 && tau > k * (1 - 1e-9) && tau < k * (1 + 1e-9) && e > 0.05 - 1e-11 && e < 0.05 + 1e-11)}' \
   element/element.csv || fail "$name: not on the curve of hardening"
 
+# Without its energy, and one that finds no stress: each is told as what it is
+cat >less.c <<END
+#define talus_law talus_law_that_gives
+#include "$source/docs/example/law/voce.c"
+#undef talus_law
+#ifdef FAILS
+static int give_up(const double *p, const TalusLawStep *step, const double strain[6], const double *old, double *state,
+                   double tau[6], double elastic[6], double *D)
+{
+  return step->dt > 0 ? TALUS_LAW_NOT_CONVERGED : update(p, step, strain, old, state, tau, elastic, D);
+}
+#endif
+const TalusLaw *talus_law(void)
+{
+  static TalusLaw less;
+  less = law;
+  less.energy = NULL;
+#ifdef FAILS
+  less.update_strain = give_up;
+#endif
+  return &less;
+}
+END
+build less.so less.c
+build fails.so -DFAILS less.c
+expect "no energy" 0 "$talus" run bar.yaml --law voce=less.so --out less --quiet --set analysis.end=0.2 --set analysis.steps=2 --set 'measures.stored={energy: elastic}'
+says err.txt "'stored' is empty (nan) at the end: the law of a material tells no energy"
+cat >falls.yaml <<'END'
+kinematics: plane-strain
+method: mpm
+analysis: {type: explicit, end: 1e-3, step: 1e-4}
+grid: {box: {min: [0, 0], max: [4, 2]}, size: 0.5}
+bodies: [{name: bar, shape: {box: {min: [1, 0.5], max: [3, 1.5]}}, material: metal}]
+materials: {metal: {law: voce, density: 7800, young: 200e9, poisson: 0.3, yield_stress: 200e6, saturation: 400e6}}
+loads: {gravity: [0, -10]}
+END
+expect "explicit" 0 "$talus" run falls.yaml --law voce=less.so --out falls --quiet
+expect "no stress" 1 "$talus" run falls.yaml --law voce=fails.so --out fails --quiet
+says err.txt "the law of a point did not converge near t ="
+lacks err.txt "inside out"
+
 # A subroutine UMAT, with stress and strain in closed form: Cauchy = C ln V
 build elastic.so "$source/tests/material/plugins/umat_elastic.c"
 cat >sand.yaml <<'END'

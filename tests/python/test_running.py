@@ -201,8 +201,52 @@ class Running(InFolder):
         light.body_force = lambda X, x, t: np.tile([0, -9.81, 0], (len(X), 1))
         by_force, heavy = light.run("force").history, block().run("weight").history
         np.testing.assert_allclose(by_force["top"], heavy["top"], rtol=1e-9)
-        with self.assertRaisesRegex(talus.TalusError, "a function of this process"):
+        with self.assertRaisesRegex(talus.TalusError, "body_force: a function of this process"):
             talus.run(light, "force-program")
+
+    def test_the_program_takes_no_functions(self):
+        case = block(**{"loads.tractions": [{"on": {"body": "block", "y": 1}, "value": [0, 1]}]})
+        case.loads["tractions[0]"] = lambda X, x, t: X[:, 0]
+        for act in (lambda: talus.run(case, "factors"), lambda: talus.sweep(case, {"analysis.end": [0.004]}, out="swept")):
+            with self.assertRaisesRegex(talus.TalusError, r"loads.tractions\[0\]: a function of this process"):
+                act()
+        case.loads["tractions[0]"] = None  # none at all
+        self.assertEqual(talus.run(case, "factors").outcome, "done")
+
+    def test_a_run_goes_on_with_its_functions_alone(self):
+        case = block(**{"loads.tractions": [{"on": {"body": "block", "y": 1}, "value": [0, -100]}]})
+        case.body_force = lambda X, x, t: np.stack([100 * t + X[:, 1], -x[:, 0]], axis=1)
+        case.loads["tractions[0]"] = lambda X, x, t: 1 + X[:, 0] + 100 * t + x[:, 1]
+        whole = case.run("whole")
+        functions = {"body_force": case.body_force, "loads": case.loads}
+        for steps in (2, 0):  # from a checkpoint; from none: the run starts again
+            case.run("cut", force=True, progress=lambda step, time, end: step == 2)
+            if not steps:
+                [file.unlink() for file in Path("cut").glob("checkpoint_*.h5")]
+            before = sorted((file.name, file.stat().st_size) for file in Path("cut").iterdir() if file.name != "log.txt")
+            for lacking in ({}, {"body_force": case.body_force}, {"loads": case.loads}):
+                with self.assertRaisesRegex(talus.CaseError, r"has functions of its caller for: body_force, loads.tractions\[0\]"):
+                    talus.Case("cut", **lacking).run("cut", resume=True)
+            with self.assertRaisesRegex(talus.CaseError, "now there are: none"):
+                talus.run("cut", "cut", resume=True)
+            self.assertEqual(before, sorted((file.name, file.stat().st_size) for file in Path("cut").iterdir() if file.name != "log.txt"))
+            talus.Case("cut", **functions).run("cut", resume=True)
+            self.assertEqual((whole.path / "history.csv").read_text(), Path("cut/history.csv").read_text())
+            last, first = (talus.open(run).states[-1].points["displacement"] for run in ("cut", "whole"))
+            np.testing.assert_array_equal(last, first)
+        block().run("cut", force=True, progress=lambda step, time, end: step == 2)  # none this time
+        with self.assertRaisesRegex(talus.CaseError, "for: none; now there are: body_force"):
+            talus.Case("cut", body_force=case.body_force).run("cut", resume=True)
+        self.assertEqual(talus.Case("cut").run("cut", resume=True).outcome, "done")
+
+    def test_a_run_is_not_run_from_within(self):
+        case = block()
+        case.body_force = lambda X, x, t: case.run("inner")
+        with self.assertRaisesRegex(talus.TalusError, "the case is being run"):
+            case.run("outer")
+        self.assertFalse(Path("inner").exists())
+        case.body_force = None
+        case.run("outer", force=True)
 
     def test_body_force_goes_through_stages(self):
         """Gravity as a function, in two stages, cut off in the second and resumed."""
@@ -353,6 +397,28 @@ class Stepping(InFolder):
         case["stages"] = [{"name": "one"}, {"name": "two", "analysis": {"end": 0.02}}]
         with self.assertRaisesRegex(talus.CaseError, "not for cases with stages"):
             case.run("runs/stages")
+
+    def test_what_a_step_asks_leaves_its_model_alone(self):
+        with block().model() as model:
+            for meddle in (model.step, model.close, lambda: setattr(model, "body_force", None),
+                           lambda: model.vary("tractions[0]", None)):
+                model.body_force = None
+                with self.assertRaisesRegex(talus.TalusError, "a model or a run is at work"):
+                    model.body_force = lambda X, x, t: meddle()
+                    model.step()
+            model.body_force = None
+            self.assertTrue(model.step())
+
+    def test_a_function_that_forgets_its_return(self):
+        case = block(**{"loads.tractions": [{"on": {"body": "block", "y": 1}, "value": [0, 1]}]})
+        with case.model() as model:
+            with self.assertRaisesRegex(talus.TalusError, "the function of body_force returned None"):
+                model.body_force = lambda X, x, t: None
+                model.step()
+            model.body_force = None
+            with self.assertRaisesRegex(talus.TalusError, "the function of a load returned None"):
+                model.vary("tractions[0]", lambda X, x, t: None)
+                model.step()
 
     def test_closing(self):
         model = block().model()

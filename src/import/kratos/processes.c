@@ -1,4 +1,5 @@
 /* The processes of ProjectParameters.json: what holds, pushes and starts the material. */
+#include <ctype.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -25,14 +26,14 @@ static PetscErrorCode Add(KratosProject *p, KratosKind kind, const YamlNode *par
   PetscFunctionReturn(0);
 }
 
-/* Only what acts all the time is read: from 0, or before, to "End", or beyond. */
+/* Only what acts all the time is read: from the start, or before, to "End", or beyond. */
 static void check_interval(KratosProject *p, const YamlNode *parameters)
 {
   const YamlNode *interval = yaml_find(parameters, "interval");
   if (!interval || interval->kind != YAML_SEQUENCE || interval->n != 2) return;
   const char *from = interval->child[0]->text, *to = interval->child[1]->text;
-  const PetscBool ends = to && strcmp(to, "End") && strtod(to, NULL) < p->end;
-  if (ends || !from || strtod(from, NULL) > 0)
+  const PetscBool ends = to && strcmp(to, "End") && strtod(to, NULL) < p->start + p->end * (1 - 1e-12);
+  if (ends || !from || strtod(from, NULL) > p->start)
     kratos_refuse(&p->parameters, interval, "what begins or ends within the run is not read");
 }
 
@@ -60,7 +61,25 @@ static PetscErrorCode ReadHeld(KratosProject *p, const YamlNode *process, const 
   PetscFunctionReturn(0);
 }
 
-/* A modulus that is a formula, as one of talus: a power is ^ for **. Does nothing with a number. */
+static PetscBool is_of_name(char c) { return (PetscBool)(isalnum((unsigned char)c) || c == '_'); }
+
+/* A formula of Kratos as one of talus: a power is ^ for **, and the time t, which begins with 0, is less by the start.
+ * PETSC_FALSE: it is too long. */
+static PetscBool translate(const KratosProject *p, const char *text, char factor[KRATOS_NAME])
+{
+  char time[40] = "t";
+  size_t n = 0;
+  if (p->start != 0) snprintf(time, sizeof time, "(t + %.15g)", (double)p->start);
+  for (const char *c = text; *c && n < KRATOS_NAME; ++c) {
+    const PetscBool power = c[0] == '*' && c[1] == '*';
+    const PetscBool now = *c == 't' && !is_of_name(c[1]) && (c == text || !is_of_name(c[-1]));
+    n += (size_t)snprintf(factor + n, KRATOS_NAME - n, "%.*s", now ? 39 : 1, now ? time : power ? "^" : c);
+    c += power;
+  }
+  return n < KRATOS_NAME;
+}
+
+/* A modulus that is a formula. Does nothing with a number. */
 static PetscErrorCode ReadFormula(KratosProject *p, const YamlNode *modulus, char factor[KRATOS_NAME])
 {
   const PetscReal origin[3] = {0, 0, 0};
@@ -68,20 +87,16 @@ static PetscErrorCode ReadFormula(KratosProject *p, const YamlNode *modulus, cha
   Formula formula = {.value = LoadPlaceValue, .context = &place, .at = factor};
   PetscReal value;
   char *end;
-  size_t n = 0;
 
   PetscFunctionBeginUser;
   factor[0] = '\0';
   if (!modulus || modulus->kind != YAML_SCALAR || (strtod(modulus->text, &end), !*end)) PetscFunctionReturn(0);
-  for (const char *c = modulus->text; *c && n + 1 < KRATOS_NAME; ++c) {
-    const PetscBool power = c[0] == '*' && c[1] == '*';
-    factor[n++] = power ? '^' : *c;
-    c += power;
-  }
-  factor[n] = '\0';
-  PetscCall(FormulaValue(&formula, &value));
-  if (!formula.wrong) PetscFunctionReturn(0);
-  kratos_refuse(&p->parameters, modulus, "the formula '%s' is not read from '%s' on", modulus->text, formula.wrong);
+  const PetscBool fits = translate(p, modulus->text, factor);
+  if (fits) PetscCall(FormulaValue(&formula, &value));
+  if (fits && !formula.wrong) PetscFunctionReturn(0);
+  if (!fits) kratos_refuse(&p->parameters, modulus, "a formula of so many letters is not read");
+  else
+    kratos_refuse(&p->parameters, modulus, "the formula '%s' is not read from '%s' on", modulus->text, formula.wrong);
   strcpy(factor, "1"); /* told */
   PetscFunctionReturn(0);
 }

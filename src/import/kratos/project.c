@@ -71,15 +71,15 @@ static PetscInt steps_until(PetscReal start, PetscReal end, PetscReal step)
 
 static void read_times(KratosProject *p, const YamlNode *problem, const YamlNode *settings)
 {
-  const PetscReal start = kratos_number(&p->parameters, problem, "start_time", 0);
   const YamlNode *stepping = yaml_find(settings, "time_stepping");
-  p->end = kratos_number(&p->parameters, problem, "end_time", 1) - start;
+  p->start = kratos_number(&p->parameters, problem, "start_time", 0);
+  p->end = kratos_number(&p->parameters, problem, "end_time", 1) - p->start;
   p->step = kratos_number(&p->parameters, stepping, "time_step", 0);
   if (!(p->step > 0) || !(p->end > 0) || p->end / p->step > 1e9) {
     kratos_refuse(&p->parameters, settings, "a time_step > 0 and an end_time behind the start_time are expected");
     p->step = p->end = 1;
   }
-  p->n_steps = steps_until(start, start + p->end, p->step);
+  p->n_steps = steps_until(p->start, p->start + p->end, p->step);
   p->end = p->step * (PetscReal)p->n_steps;
 }
 

@@ -46,7 +46,8 @@ typedef struct {
   KratosFile parameters, materials;
   Mdpa *grid, *body;
   PetscInt dim, n_steps;
-  PetscReal step, end;
+  PetscReal start;     /* Kratos's time when the case begins, s; the case's own is 0 */
+  PetscReal step, end; /* of the case's time */
   PetscBool dynamic, axisymmetric, mixed;
   PetscBool consistent; /* mass; else all of it at the nodes */
   PetscReal beta, gamma, bossak;

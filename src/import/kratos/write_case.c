@@ -67,9 +67,19 @@ static void write_bodies(const KratosProject *p, FILE *out)
   }
 }
 
+/* From `from` when the case begins to 1 at its end. */
+static void write_ramp(const char *key, int from, PetscReal end, FILE *out)
+{
+  fprintf(out, ", %s: [[0, %d], [", key, from);
+  schema_write_real(out, end);
+  fputs(", 1]]", out);
+}
+
 /* The grid starts anew in every step: what Kratos prescribes is the displacement of each step. */
 static void write_held(const KratosProject *p, const KratosAction *a, PetscBool moves, FILE *out)
 {
+  const PetscBool grows =
+    moves && p->dynamic; /* without amplitude it comes at once in dynamics, by and by in statics */
   PetscBool first = PETSC_TRUE;
   for (PetscInt d = 0; d < p->dim; ++d) {
     if (!a->set[d] || (a->value[d] != 0) != moves) continue;
@@ -83,7 +93,10 @@ static void write_held(const KratosProject *p, const KratosAction *a, PetscBool 
     }
     first = PETSC_FALSE;
   }
-  if (!first) fputs(moves ? "}}\n" : "]}\n", out);
+  if (first) return;
+  fputs(moves ? "}" : "]", out);
+  if (grows) write_ramp("amplitude", 0, p->end, out);
+  fputs("}\n", out);
 }
 
 static void write_boundary(const KratosProject *p, FILE *out)
@@ -104,10 +117,7 @@ static void write_boundary(const KratosProject *p, FILE *out)
 
 static void write_amplitude(const KratosProject *p, const char *key, FILE *out)
 {
-  if (p->dynamic || p->n_steps == 1) return; /* all of it at once is what both do */
-  fprintf(out, ", %s: [[0, 1], [", key);
-  schema_write_real(out, p->end);
-  fputs(", 1]]", out);
+  if (!p->dynamic && p->n_steps > 1) write_ramp(key, 1, p->end, out); /* else all of it at once is what both do */
 }
 
 static void write_factor(const KratosAction *a, FILE *out)

@@ -98,10 +98,11 @@ static void begin_study(const Writer *w, const char *name, const char *title)
     strrchr(w->file->document->file, '/') ? strrchr(w->file->document->file, '/') + 1 : w->file->document->file);
 }
 
-/* Kratos adds up steps: 0.30000000000000004. */
+/* Kratos adds up steps: 0.30000000000000004. The case's time begins with 0. */
 static void write_row(const Writer *w, PetscInt i, PetscReal value)
 {
-  fprintf(w->reference, "      - {at: %.12g, reference: %.12g}\n", (double)real(w->times->child[i]), (double)value);
+  const PetscReal time = real(w->times->child[i]) - w->project->start;
+  fprintf(w->reference, "      - {at: %.12g, reference: %.12g}\n", (double)time, (double)value);
 }
 
 /* The entry that has the most of a component at the end, NULL if all is rounding beside `scale`. */

@@ -20,8 +20,8 @@ void explicit_check(const Model *m, Diag *diag)
          "transfers other than thesis and consistent", diag);
   if (transfer && transfer->slopes && c->analysis.update == EXPLICIT_USL)
     diag_error(diag, "analysis.update", "`usl` does not take transfer consistent: `musl` does");
-  refuse(c->analysis.keep_velocity, "analysis.keep_velocity", "this", diag);
-  refuse(c->stabilisation.room, "stabilisation.room", "this", diag);
+  refuse(c->analysis.keep_velocity, "analysis.keep_velocity", "`keep_velocity`", diag);
+  refuse(c->stabilisation.room, "stabilisation.room", "`room`", diag);
   refuse(c->basis.split > 0, "basis.gimp.split", "points that are split", diag);
   for (PetscInt k = 0; k < c->n_interfaces; ++k) {
     char path[64];

@@ -85,9 +85,8 @@ static PetscErrorCode Judge(Model *m, const Explicit *e, StepReport *report)
   if (status == (PetscInt)LAW_OK) PetscFunctionReturn(0);
   report->outcome = STEP_POINTS_LOST;
   snprintf(report->reason, sizeof report->reason,
-           "a point was turned inside out, or its stress is no number, near t = %g s in a substep of %g s: make "
-           "analysis.courant smaller than %g",
-           (double)e->time, (double)e->dt, (double)m->c->analysis.courant);
+           "%s near t = %g s in a substep of %g s: make analysis.courant smaller than %g",
+           law_status_text((LawStatus)status), (double)e->time, (double)e->dt, (double)m->c->analysis.courant);
   PetscFunctionReturn(0);
 }
 

@@ -237,13 +237,22 @@ static void warn_of_followers(const Model *m, Diag *diag)
         text_position(m->dim, m->load_memory[k].where, at));
 }
 
-static const char *why_empty(const MeasureSpec *measure)
+/* Of a law from a library. */
+static PetscBool lacks_energy(const Model *m)
+{
+  for (PetscInt i = 0; i < m->c->n_materials; ++i)
+    if (!m->materials[i].law->energy) return PETSC_TRUE;
+  return PETSC_FALSE;
+}
+
+static const char *why_empty(const Model *m, const MeasureSpec *measure)
 {
   if (!strcmp(measure->kind, "limit_load")) return "the search for it was not over";
   if (measure_has_window(measure)) return "too few steps with a value reach into its window";
   if (measure_find(measure->kind)->events) return "none of what it counts is over";
   if (!strcmp(measure->kind, "formula")) return "its formula has no value there, or a measure in it has none";
   if (!strncmp(measure->kind, "wall_", 5)) return "a wall without `mass` has no motion of its own";
+  if (!strcmp(measure->kind, "energy") && lacks_energy(m)) return "the law of a material tells no energy";
   return "no point is left of what it measures";
 }
 
@@ -269,7 +278,7 @@ PetscErrorCode LossesWarn(Model *m, const PetscReal *values, Diag *diag)
     if (!strcmp(m->c->measures[k].kind, "factor_of_safety")) continue; /* the log says why it has none */
     snprintf(path, sizeof path, "measures.%s", m->c->measures[k].name);
     diag_warning(diag, path, "'%s' is empty (nan) at the end: %s", m->c->measures[k].name,
-                 why_empty(m->c->measures + k));
+                 why_empty(m, m->c->measures + k));
   }
   if (o->removed > 0)
     diag_warning(diag, "grid.outside", "%.0f points of %.4g kg left the grid and were removed", (double)o->removed,

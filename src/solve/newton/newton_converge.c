@@ -171,10 +171,5 @@ const char *newton_reason(SNESConvergedReason reason, LawStatus status)
   case SNES_DIVERGED_DTOL: return "the residual grew without bound";
   default: break;
   }
-  switch (status) {
-  case LAW_INVERTED: return "a point was turned inside out";
-  case LAW_NOT_CONVERGED: return "a return mapping did not converge";
-  case LAW_NOT_FINITE: return "a stress was not finite";
-  default: return "no convergence";
-  }
+  return status == LAW_OK ? "no convergence" : law_status_text(status);
 }

@@ -229,11 +229,11 @@ static const SchemaEntry stabilisation_entries[] = {
   KEY("inertia", NUMBER, NULL,
       "share of the mass that resists what moves the nodes of a cell apart, times its empty part",
       .note = "0.01 if a law of the case yields, 0 if all are elastic", BETWEEN(0, 1), AT(StabilisationSpec, inertia)),
-  KEY(
-    "room", BOOLEAN, NULL,
-    "mpm, with `opening_memory`: grains are no farther apart, and J no larger, than the room that the grid has around "
-    "their points allows, so that flows that go on for long neither shrink nor swell",
-    .fallback = "false", AT(StabilisationSpec, room)),
+  KEY("room", BOOLEAN, NULL,
+      "mpm, with `opening_memory`, not with `type: explicit`: grains are no farther apart, and J no larger, than the "
+      "room that the grid has around "
+      "their points allows, so that flows that go on for long neither shrink nor swell",
+      .fallback = "false", AT(StabilisationSpec, room)),
   {.key = NULL},
 };
 static const SchemaTable stabilisation = {
