@@ -30,7 +30,7 @@ LANES_INLINE void flow(const PetscReal *q, const Lanes *P, const Lanes *R, Flow 
 {
   const PetscReal G = q[MU_SHEAR], k = q[MU_RATE];
   const Lanes tiny = (Lanes){0} + 1e-300, excess = *R - q[MU_STATIC] * *P;
-  Lanes root, square, slope;
+  Lanes root = {0}, square = {0}, slope; /* set, as compilers want to see that elements are */
   lanes_sqrt(P, &root);
   const Lanes still = q[MU_NUMBER] * root, b = G * still + k * (q[MU_MORE] * *P - excess);
   const Lanes inside = b * b + 4.0 * G * k * excess * still;
