@@ -10,7 +10,7 @@ static PetscBool has_moving_places(const Case *c)
   return PETSC_FALSE;
 }
 
-/* Of owned dofs that `entry` prescribed until now, to three numbers of each entry, that of the first one being `sum`. */
+/* Of owned dofs that `entry` prescribed until now, to three numbers of each entry, those of the first one at `sum`. */
 static void take(Model *m, const PetscInt *entry, PetscReal *force, PetscReal *sum)
 {
   for (PetscInt i = 0; i < m->grid->n_owned * m->dim; ++i) {

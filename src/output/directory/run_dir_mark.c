@@ -20,7 +20,7 @@ static const char unfinished[] = "*" FILE_UNFINISHED;
 #define STATE_FILES                                                                                      \
   "points_[0-9]*.hdf", "grid_[0-9]*.hdf", "walls_[0-9]*.hdf", "contact_[0-9]*.hdf", "points.hdf.series", \
     "grid.hdf.series", "walls.hdf.series", "contact.hdf.series"
-#define TABLES "history.csv", "events.csv", "factor.csv", "stages.csv"
+#define TABLES "history.csv", "events.csv", "factor.csv", "limit.csv", "stages.csv"
 #define CHECKPOINTS "checkpoint_[0-9]*.h5", "stage_[0-9]*.h5", "checkpoint_[0-9]*.h5.damaged"
 /* What a run leaves behind, and what `--force` removes. */
 static const char *const run_files[] = {"case.yaml", "functions.txt", "log.txt",   "version.txt", "timings.txt",

@@ -70,7 +70,7 @@ typedef struct {
   PetscBool converged;
   PetscBool interrupted; /* somebody asked, on any rank, before it converged */
   PetscInt iterations, linear_iterations;
-  PetscInt tangents; /* that were made for them: one may stay for several (newton_keep.c) */
+  PetscInt tangents; /* that were made for them: one may stay for several (docs/theory.md, section 70) */
   /* iterations before them, until the iterative linear solver failed */
   PetscInt lost;
   /* |R| / reference after each iteration; [0] at the first guess */
@@ -94,7 +94,7 @@ PetscErrorCode NewtonMiss(Newton *newton, StepProblem *problem, PetscReal *norm)
 typedef struct {
   PetscReal courant;        /* that the choice was made with; < 0: the next step chooses anew */
   PetscInt failures, since; /* of the iterative solver, and steps since the last */
-  PetscBool calm;           /* newton_keep.c */
+  PetscBool calm;           /* did the first iteration of the last solve leave next to nothing? */
 } NewtonMemory;
 
 void newton_get_memory(const Newton *newton, const System *system, NewtonMemory *memory);

@@ -1,5 +1,6 @@
-/* How exactly a direction is computed where the linear solver iterates, and with which preconditioner. Both depend
- * on this step alone, and on counts, never on a clock: a resumed run does the same. */
+/* How exactly a direction is computed where the linear solver iterates, and what of earlier ones it is computed with:
+ * preconditioner and tangent. All depends on this step alone, on counts, and on what checkpoints hold (`calm`), never
+ * on a clock: a resumed run does the same. */
 #include "solve/contact/contact.h"
 #include "solve/newton/newton_private.h"
 
@@ -11,6 +12,8 @@
 #define UNSEEN 1e-3
 /* linear iterations that a set-up of multigrid costs */
 #define SETUP_COSTS 20
+/* share of the residual that an iteration leaves whose tangent is good for one more (docs/theory.md, section 70) */
+#define KEPT 1e-2
 
 /* Newton's method at its best leaves (last / before)^2 of the residual: a tenth of that, and no more than what its
  * tolerance would not see. */
@@ -27,6 +30,23 @@ static PetscBool is_bordered(const Newton *n)
   const StepProblem *p = n->problem;
   return p->border || (p->scene.contact && p->scene.contact->n_rigid > 0);
 }
+
+/* In dynamics inertia rules the tangent, and with wide functions making one takes longer than several iterations. What
+ * is eliminated reads tangents. */
+static PetscBool may_stay(const Newton *n)
+{
+  const StepProblem *p = n->problem;
+  return p->wide && p->in.inertia > 0 && !is_bordered(n) && !n->elimination.any && !n->lift;
+}
+
+PetscBool newton_fell(const Newton *n) { return n->before > 0 && n->last <= KEPT * n->before; }
+
+PetscBool newton_will_keep(const Newton *n)
+{
+  return may_stay(n) && n->last > 0 && (n->before > 0 ? newton_fell(n) : n->calm);
+}
+
+PetscBool newton_keeps(const Newton *n) { return !n->tangent && may_stay(n) && newton_fell(n); }
 
 /* A preconditioner stays until a solve has taken so many iterations more than the first as another costs. */
 static PetscErrorCode KeepPreconditioner(Newton *n, KSP ksp)

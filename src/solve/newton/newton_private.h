@@ -38,7 +38,7 @@ struct Newton {
   PetscInt failures; /* of the iterative solver, not yet forgiven */
   PetscInt since;    /* steps since the last of them */
   PetscBool retry;   /* this try takes the direct solver */
-  PetscBool calm;    /* did the first iteration of the last solve leave next to nothing (newton_keep.c)? */
+  PetscBool calm;    /* did the first iteration of the last solve leave next to nothing (newton_fell)? */
   PetscBool idle;    /* was the last first guess the solution? */
   PetscInt room;     /* what LinearProblem calls so */
   const char *linear;
@@ -125,7 +125,7 @@ PetscReal newton_tolerance(const Newton *n);
  * far below the tolerance: no tangent will be asked for. The first one is if the step before took no
  * iteration. */
 PetscBool newton_is_last(const Newton *n);
-/* newton_keep.c. Did the last iteration leave so little that its tangent is good for another? Will the next one
+/* newton_forcing.c. Did the last iteration leave so little that its tangent is good for another? Will the next one
  * leave so, so that no tangent need be made along with its residual? Does the tangent that there is stay? */
 PetscBool newton_fell(const Newton *n);
 PetscBool newton_will_keep(const Newton *n);
