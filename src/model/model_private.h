@@ -19,7 +19,7 @@ PetscErrorCode ModelBalance(Model *model, StepReport *report);
 PetscErrorCode ModelRegrid(Model *model, Grid *grid, PetscInt *moved);
 /* Is it a case of what a prescribed displacement presses down until the ground gives way? */
 PetscBool model_is_pressed(const Model *model);
-/* guess.c. From where Newton may start: as inertia alone would bring, like the step before, from
+/* step/guess.c. From where Newton may start: as inertia alone would bring, like the step before, from
  * rest. */
 typedef enum { GUESS_INERTIA, GUESS_PREVIOUS, GUESS_REST, GUESS_N } FirstGuess;
 
@@ -152,10 +152,10 @@ typedef struct {
 /* A step that is not accepted leaves nodes as they were; one that was interrupted never was. */
 PetscErrorCode StepStartKeep(Model *model, StepStart *start);
 PetscErrorCode StepStartRestore(Model *model, const StepStart *start, StepReport *report);
-/* step_prepare.c. Collective. Which nodes have unknowns, on which ranks, and which are held; then
+/* step/prepare.c. Collective. Which nodes have unknowns, on which ranks, and which are held; then
  * what a step changes before its solve. */
 PetscErrorCode PrepareUnknowns(Model *model, StepStart *start, StepReport *report);
-/* solve.c. Collective. The increments of a step of dt, or of halves of it: until Newton converges,
+/* step/solve.c. Collective. The increments of a step of dt, or of halves of it: until Newton converges,
  * somebody interrupts it, or the step is too small. */
 PetscErrorCode SolveStep(Model *model, PetscReal *dt, StepReport *report);
 /* explicit/step.c. Collective. The whole step of explicit dynamics, of `limit` s at most. A step that fails
@@ -168,9 +168,9 @@ void explicit_check(const Model *model, Diag *diag);
 PetscErrorCode ExplicitBalance(Model *model, StepReport *report);
 /* Kinetic energy of this rank's points, and work of their stress, J. */
 void energy_of_points(const Model *model, PetscReal energy[2]);
-/* accept.c. Before the new state is there (sign -1) and after: what it has more of plastic strain. */
+/* step/accept.c. Before the new state is there (sign -1) and after: what it has more of plastic strain. */
 void note_flow(Model *model, PetscReal sign);
-/* accept.c. Collective. Points take over stress and history, and the boundary its forces. */
+/* step/accept.c. Collective. Points take over stress and history, and the boundary its forces. */
 PetscErrorCode CommitStep(Model *model, PetscReal dt, EnergyStep *energy);
 /* Collective. Points and nodes go where the solution leads them. */
 PetscErrorCode ConvectStep(Model *model, PetscReal dt, EnergyStep *energy, StepReport *report);
