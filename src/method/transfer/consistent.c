@@ -58,13 +58,13 @@ static void changes_of_prescribed(MassSolve *c)
   const NodalFields *n = c->s->nodes;
   const unsigned char *fixed = c->s->boundary->fixed;
   mass_pack(c, n->v, n->a, c->x);
-  mass_pack(c, n->v_points, n->a_points, c->direction);
-  for (PetscInt i = 0; i < c->size; ++i) c->x[i] -= c->direction[i];
+  mass_pack(c, n->v_points, n->a_points, c->product);
+  for (PetscInt i = 0; i < c->size; ++i) c->x[i] -= c->product[i];
   mass_turn(c, c->x);
-  for (PetscInt i = 0; i < c->size; ++i) {
-    if (fixed[i / c->width * c->dim + i % c->dim]) c->inverse[i] = 0;
-    else c->x[i] = 0;
-  }
+  for (PetscInt node = 0; node < c->s->grid->n_nodes; ++node)
+    for (PetscInt d = 0; d < c->dim; ++d)
+      for (PetscInt f = 0; f < MOTIONS; ++f)
+        *(fixed[node * c->dim + d] ? c->inverse + mass_at(c, node, f, d) : c->x + mass_at(c, node, f, d)) = 0;
 }
 
 /* Has prescribed motion changed any node, on any rank? In flight it has not. */
@@ -123,8 +123,9 @@ static PetscErrorCode ConsistentHold(Discretisation *s)
   PetscCall(WhatMayLack(&c, enough));
   PetscCall(MassSolveRun(&c, enough, MAX_SWEEPS));
   PetscCall(MassSolveClose(&c));
-  for (PetscInt i = 0; i < s->grid->n_owned * c.width; ++i)
-    c.lack[i] = s->boundary->fixed[i / c.width * c.dim + i % c.dim] ? -c.lack[i] : 0;
+  for (PetscInt i = 0; i < s->grid->n_owned; ++i)
+    for (PetscInt k = 0; k < c.width; ++k)
+      c.lack[i * c.width + k] = s->boundary->fixed[i * c.dim + k % c.dim] ? -c.lack[i * c.width + k] : 0;
   mass_turn(&c, c.x);
   mass_turn(&c, c.lack);
   mass_pack(&c, n->v_points, n->a_points, c.direction);

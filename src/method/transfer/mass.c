@@ -101,9 +101,9 @@ static PetscErrorCode Multiply(MassSolve *c, PetscReal *x)
   PetscFunctionBeginUser;
   if (++c->products == FEW_PRODUCTS) PetscCall(MassRowsCreate(c->s, &c->rows));
   mass_turn(c, x);
-  if (c->rows) mass_rows_multiply(c->rows, c->width, c->s->grid->n_nodes, x, c->product);
+  if (c->rows) mass_rows_multiply(c, x);
   else {
-    PetscCall(PetscArrayzero(c->product, c->size));
+    mass_clear(c, c->product);
     WITH_SIZES(multiply, c->s, c->s, x, c->product);
   }
   mass_turn(c, x);
@@ -118,8 +118,11 @@ PetscErrorCode MassSolveCreate(const Discretisation *s, MassSolve *c)
   PetscCall(MassSolveAllocate(s, Multiply, c));
   WITH_SIZES(add_diagonal, s, s, c->product);
   PetscCall(GridSumToOwners(s->grid, 1, c->product));
-  for (PetscInt i = 0; i < s->grid->n_owned * c->width; ++i)
-    c->inverse[i] = c->product[i / c->width] > 1e-300 ? 1 / c->product[i / c->width] : 0;
+  for (PetscInt node = 0; node < s->grid->n_owned; ++node) {
+    const PetscReal inverse = c->product[node] > 1e-300 ? 1 / c->product[node] : 0;
+    for (PetscInt i = node * c->width; inverse > 0 && i < (node + 1) * c->width; ++i) c->inverse[i] = inverse;
+  }
+  PetscCall(MassSolveReach(c));
   PetscFunctionReturn(0);
 }
 
@@ -127,15 +130,17 @@ PetscErrorCode MassSubtract(MassSolve *c)
 {
   PetscFunctionBeginUser;
   PetscCall(Multiply(c, c->x));
-  for (PetscInt i = 0; i < c->s->grid->n_owned * c->width; ++i) c->lack[i] -= c->product[i];
+  for (PetscInt k = 0; k < c->n_reached_owned; ++k)
+    for (PetscInt i = c->reached[k] * c->width; i < (c->reached[k] + 1) * c->width; ++i) c->lack[i] -= c->product[i];
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode MassSolveClose(MassSolve *c)
 {
   PetscFunctionBeginUser;
-  for (PetscInt i = 0; i < c->s->grid->n_owned * c->width; ++i)
-    if (c->inverse[i] > 0) c->x[i] += c->lack[i] / c->s->nodes->mass[i / c->width];
+  for (PetscInt k = 0; k < c->n_reached_owned; ++k)
+    for (PetscInt i = c->reached[k] * c->width; i < (c->reached[k] + 1) * c->width; ++i)
+      if (c->inverse[i] > 0) c->x[i] += c->lack[i] / c->s->nodes->mass[c->reached[k]];
   PetscCall(GridToGhosts(c->s->grid, c->width, c->x));
   PetscFunctionReturn(0);
 }

@@ -25,17 +25,28 @@ struct MassSolve {
   PetscReal *lack;    /* right-hand side - M x, on owners, kg m/s, N */
   PetscReal *inverse; /* of M's diagonal, 0 where x is given or nothing has mass, on owners, 1/kg */
   PetscReal *direction, *product;
-  PetscInt n_reached, n_reached_owned, *reached; /* local nodes that sweeps go over, owned ones first */
-  PetscBool framed;                              /* are components those in the frames of nodes that slide? */
-  PetscInt products;                             /* how many there were */
-  MassRows *rows;                                /* NULL: not worth it yet */
+  /* local nodes that sweeps go over, owned ones first; of the others nothing is read of a product */
+  PetscInt n_reached, n_reached_owned, *reached;
+  PetscBool framed;  /* are components those in the frames of nodes that slide? */
+  PetscInt products; /* how many there were */
+  MassRows *rows;    /* NULL: not worth it yet */
 };
+
+/* Where a nodal array has component d of a motion of a node. */
+static inline PetscInt mass_at(const MassSolve *solve, PetscInt node, PetscInt motion, PetscInt d)
+{
+  return node * solve->width + motion * solve->dim + d;
+}
 
 /* All arrays 0, `inverse` too: for another matrix than this one. */
 PetscErrorCode MassSolveAllocate(const Discretisation *space, MassMultiply multiply, MassSolve *solve);
 /* Collective. x and lack are 0. */
 PetscErrorCode MassSolveCreate(const Discretisation *space, MassSolve *solve);
 PetscErrorCode MassSolveDestroy(MassSolve *solve);
+/* What the sweeps go over is found, if it is not known. */
+PetscErrorCode MassSolveReach(MassSolve *solve);
+/* x is 0 there. */
+void mass_clear(const MassSolve *solve, PetscReal *x);
 /* Collective. lack -= M x; x is right on all copies. */
 PetscErrorCode MassSubtract(MassSolve *solve);
 /* Collective. |lack|^2 of each motion, in the norm of the inverse diagonal. */
@@ -52,8 +63,8 @@ PetscReal mass_tie(const Discretisation *space, PetscInt group);
 /* mass_matrix.c. M of this rank's points, row by row. */
 PetscErrorCode MassRowsCreate(const Discretisation *space, MassRows **rows);
 PetscErrorCode MassRowsDestroy(MassRows **rows);
-/* product = M x, n_nodes x width, before ranks add theirs up. */
-void mass_rows_multiply(const MassRows *rows, PetscInt width, PetscInt n_nodes, const PetscReal *x, PetscReal *product);
+/* product = M x at the nodes that are reached, before ranks add theirs up. */
+void mass_rows_multiply(const MassSolve *solve, const PetscReal *x);
 /* Between components along the axes and those in the frames, if these are used. */
 void mass_turn(const MassSolve *solve, PetscReal *x);
 /* Two fields of n_nodes x dim to such an array, and back. */

@@ -126,18 +126,20 @@ PetscErrorCode MassRowsDestroy(MassRows **rows)
   PetscFunctionReturn(0);
 }
 
-UNROLLED void multiply(const PetscInt width, PetscInt n, const MassRows *rows, const PetscReal *x, PetscReal *product)
+UNROLLED void multiply(const PetscInt width, const MassSolve *c, const PetscReal *x)
 {
-  for (PetscInt node = 0; node < n; ++node) {
+  const MassRows *rows = c->rows;
+  for (PetscInt i = 0; i < c->n_reached; ++i) {
+    const PetscInt node = c->reached[i];
     PetscReal sum[2 * 3] = {0, 0, 0, 0, 0, 0};
     for (PetscInt k = rows->start[node]; k < rows->start[node + 1]; ++k)
-      for (PetscInt i = 0; i < width; ++i) sum[i] += rows->entry[k] * x[rows->column[k] * width + i];
-    for (PetscInt i = 0; i < width; ++i) product[node * width + i] = sum[i];
+      for (PetscInt d = 0; d < width; ++d) sum[d] += rows->entry[k] * x[rows->column[k] * width + d];
+    for (PetscInt d = 0; d < width; ++d) c->product[node * width + d] = sum[d];
   }
 }
 
-void mass_rows_multiply(const MassRows *rows, PetscInt width, PetscInt n_nodes, const PetscReal *x, PetscReal *product)
+void mass_rows_multiply(const MassSolve *c, const PetscReal *x)
 {
-  if (width == 4) multiply(4, n_nodes, rows, x, product);
-  else multiply(6, n_nodes, rows, x, product);
+  if (c->width == 4) multiply(4, c, x);
+  else multiply(6, c, x);
 }

@@ -30,7 +30,7 @@ PetscErrorCode MassSolveDestroy(MassSolve *c)
 
 /* Most of a grid is often empty: nodes that have mass or an equation, and all that other ranks own. Found once:
  * equations only vanish later. */
-static PetscErrorCode FindReached(MassSolve *c)
+PetscErrorCode MassSolveReach(MassSolve *c)
 {
   const Grid *grid = c->s->grid;
   const PetscReal *mass = c->s->nodes->mass;
@@ -45,6 +45,12 @@ static PetscErrorCode FindReached(MassSolve *c)
     if (node < grid->n_owned) c->n_reached_owned = c->n_reached;
   }
   PetscFunctionReturn(0);
+}
+
+void mass_clear(const MassSolve *c, PetscReal *x)
+{
+  for (PetscInt k = 0; k < c->n_reached; ++k)
+    for (PetscInt i = c->reached[k] * c->width; i < (c->reached[k] + 1) * c->width; ++i) x[i] = 0;
 }
 
 /* += sums over owned nodes of x y z, of velocity and acceleration apart; z NULL: 1. */
@@ -74,7 +80,7 @@ static PetscErrorCode Products(const MassSolve *c, const PetscReal *x, const Pet
 PetscErrorCode MassLack(MassSolve *c, PetscReal square[MOTIONS])
 {
   PetscFunctionBeginUser;
-  PetscCall(FindReached(c));
+  PetscCall(MassSolveReach(c));
   PetscCall(Products(c, c->lack, c->lack, c->inverse, square));
   PetscFunctionReturn(0);
 }
@@ -126,7 +132,7 @@ PetscErrorCode MassSolveRun(MassSolve *c, const PetscReal enough[MOTIONS], int s
 
   PetscFunctionBeginUser;
   PetscCall(MassLack(c, now));
-  PetscCall(PetscArrayzero(c->direction, c->size));
+  mass_clear(c, c->direction);
   for (int sweep = 0; sweep < sweeps; ++sweep) {
     for (int f = 0; f < MOTIONS; ++f) done[f] = now[f] <= enough[f];
     if (done[VELOCITY] && done[ACCELERATION]) break;

@@ -88,9 +88,11 @@ static PetscErrorCode MultiplyPoints(void *context, const PetscReal *x, PetscRea
   const PetscInt dim = c->dim;
 
   PetscFunctionBeginUser;
-  for (PetscInt i = 0; i < c->s->grid->n_nodes * dim; ++i) c->x[i / dim * c->width + i % dim] = x[i];
+  for (PetscInt i = 0; i < c->s->grid->n_nodes; ++i)
+    for (PetscInt d = 0; d < dim; ++d) c->x[mass_at(c, i, VELOCITY, d)] = x[i * dim + d];
   PetscCall(c->multiply(c, c->x));
-  for (PetscInt i = 0; i < c->s->grid->n_owned * dim; ++i) product[i] = c->product[i / dim * c->width + i % dim];
+  for (PetscInt i = 0; i < c->s->grid->n_owned; ++i)
+    for (PetscInt d = 0; d < dim; ++d) product[i * dim + d] = c->product[mass_at(c, i, VELOCITY, d)];
   PetscFunctionReturn(0);
 }
 

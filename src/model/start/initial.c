@@ -34,7 +34,7 @@ static PetscErrorCode AccelerateByMatrix(const Model *m, PetscReal *left)
   PetscCall(MassSolveCreate(m->space, &c));
   c.framed = PETSC_TRUE;
   for (PetscInt i = 0; i < m->grid->n_owned * dim; ++i) {
-    const PetscInt at = i / dim * c.width + ACCELERATION * dim + i % dim;
+    const PetscInt at = mass_at(&c, i / dim, ACCELERATION, i % dim);
     c.lack[at] = left[i];
     if (m->boundary->fixed[i]) c.inverse[at] = 0;
   }
@@ -42,7 +42,7 @@ static PetscErrorCode AccelerateByMatrix(const Model *m, PetscReal *left)
   enough[ACCELERATION] *= PetscSqr(BALANCED);
   PetscCall(MassSolveRun(&c, enough, MOST_SWEEPS));
   for (PetscInt i = 0; i < m->grid->n_owned * dim; ++i) {
-    const PetscInt at = i / dim * c.width + ACCELERATION * dim + i % dim;
+    const PetscInt at = mass_at(&c, i / dim, ACCELERATION, i % dim);
     m->nodes->a[i] = m->boundary->fixed[i] ? 0 : c.x[at];
     left[i] = c.lack[at];
   }
