@@ -142,6 +142,7 @@ static PetscErrorCode ProjectEnd(Model *m, PetscReal dt, EnergyStep *energy)
   PetscCall(PetscCalloc1(m->grid->n_nodes * m->dim, &given));
   PetscCall(Project(m, n->v1, given, dt, PETSC_FALSE));
   for (PetscInt i = 0; i < m->grid->n_owned * m->dim; ++i) {
+    if (given[i] == 0) continue; /* all but everywhere */
     const PetscReal work = given[i] * n->prescribed[i] / dt;
     n->impulse[i] += given[i];
     energy->boundary += work;

@@ -8,8 +8,8 @@
 #define LUMPED_SHARE 0.1 /* between the mass matrix and the lumped one */
 
 /* lack = what of walls' forces the acceleration at the end of the step has more than their mean, in rates of
- * momentum; accelerations of prescribed dofs stay. */
-static PetscErrorCode SumExcess(const Model *m, MassSolve *c)
+ * momentum, on owners and in the frames. */
+static PetscErrorCode SumExcess(const Model *m, PetscReal *lack)
 {
   const Contact *s = m->contact;
   const PetscInt dim = m->dim;
@@ -19,12 +19,10 @@ static PetscErrorCode SumExcess(const Model *m, MassSolve *c)
     PetscReal f[3];
     contact_excess(s, p, f);
     for (PetscInt e = p->first; e < p->first + p->n; ++e)
-      for (PetscInt d = 0; d < dim; ++d) c->lack[s->node[e] * c->width + ACCELERATION * dim + d] += s->N[e] * f[d];
+      for (PetscInt d = 0; d < dim; ++d) lack[s->node[e] * dim + d] += s->N[e] * f[d];
   }
-  PetscCall(GridSumToOwners(m->grid, c->width, c->lack));
-  mass_turn(c, c->lack);
-  for (PetscInt i = 0; i < m->grid->n_owned * c->width; ++i)
-    if (m->nodes->fixed[i / c->width * dim + i % dim]) c->inverse[i] = 0;
+  PetscCall(GridSumToOwners(m->grid, dim, lack));
+  frames_turn(&m->boundary->frames, dim, lack);
   PetscFunctionReturn(0);
 }
 
@@ -44,49 +42,79 @@ static PetscErrorCode MassOfExcess(const Model *m, Discretisation *space, PetscR
   PetscFunctionReturn(0);
 }
 
-/* What prescribed dofs do not let go of walls' forces, and what the other nodes let go there, the boundary bears. */
-static void release_boundary(Model *m, MassSolve *c, PetscReal lag)
+/* excess = M^-1 lack where nothing is prescribed, in the frames; what is lacking elsewhere stays. */
+static PetscErrorCode LetGoByMatrix(const Model *m, PetscReal *lack, PetscReal *excess)
 {
-  NodalFields *n = m->nodes;
   const PetscInt dim = m->dim;
-  for (PetscInt i = 0; i < m->grid->n_owned * c->width; ++i)
-    if (!n->fixed[i / c->width * dim + i % dim]) c->lack[i] = 0;
-  mass_turn(c, c->lack);
-  for (PetscInt i = 0; i < m->grid->n_owned * dim; ++i) {
-    const PetscReal more = c->lack[i / dim * c->width + ACCELERATION * dim + i % dim];
-    n->rate[i] += more;
-    n->held[i] += (1 - lag) * more;
-  }
+  PetscReal enough[MOTIONS], *lumping;
+  Discretisation space;
+  MassSolve c;
+
+  PetscFunctionBeginUser;
+  PetscCall(MassOfExcess(m, &space, &lumping));
+  PetscCall(MassSolveCreate(&space, &c));
+  c.framed = PETSC_TRUE;
+  for (PetscInt k = 0; k < c.n_reached_owned; ++k)
+    for (PetscInt d = 0, i = c.reached[k] * dim; d < dim; ++d, ++i) {
+      const PetscInt at = mass_at(&c, c.reached[k], ACCELERATION, d);
+      c.lack[at] = lack[i];
+      if (m->nodes->fixed[i]) c.inverse[at] = 0;
+    }
+  PetscCall(MassLack(&c, enough));
+  enough[ACCELERATION] *= PetscSqr(RELEASED);
+  PetscCall(MassSolveRun(&c, enough, MOST_SWEEPS));
+  PetscCall(MassSolveClose(&c));
+  for (PetscInt k = 0; k < c.n_reached; ++k)
+    for (PetscInt d = 0, i = c.reached[k] * dim; d < dim; ++d, ++i) {
+      excess[i] = c.x[mass_at(&c, c.reached[k], ACCELERATION, d)];
+      lack[i] = m->nodes->fixed[i] ? c.lack[mass_at(&c, c.reached[k], ACCELERATION, d)] : 0;
+    }
+  PetscCall(MassSolveDestroy(&c));
+  PetscCall(PetscFree(lumping));
+  PetscFunctionReturn(0);
 }
 
+/* The same by the lumped mass. */
+static PetscErrorCode LetGoByNodes(const Model *m, PetscReal *lack, PetscReal *excess)
+{
+  PetscFunctionBeginUser;
+  for (PetscInt node = 0; node < m->grid->n_owned; ++node)
+    for (PetscInt i = node * m->dim; i < (node + 1) * m->dim; ++i) {
+      if (lack[i] == 0 || m->nodes->fixed[i]) continue;
+      excess[i] = lack[i] / m->nodes->mass[node];
+      lack[i] = 0;
+    }
+  PetscCall(GridToGhosts(m->grid, m->dim, excess));
+  PetscFunctionReturn(0);
+}
+
+/* What prescribed dofs do not let go of walls' forces, and what the other nodes let go there, the boundary bears. */
 PetscErrorCode ContactRelease(Model *m, PetscReal dt)
 {
   const PetscReal lag = m->scheme->weights(&m->c->analysis, dt).lag;
-  PetscReal enough[MOTIONS], *lumping;
-  Discretisation space;
+  const PetscInt nodes = m->grid->n_nodes, dofs = nodes * m->dim;
+  PetscReal *lack, *excess;
   PetscBool any;
-  MassSolve c;
 
   PetscFunctionBeginUser;
   if (!contact_holds(m)) PetscFunctionReturn(0);
   PetscCall(ContactTouches(m->contact, m->comm, &any));
   if (!any) PetscFunctionReturn(0);
-  PetscCall(MassOfExcess(m, &space, &lumping));
-  PetscCall(MassSolveCreate(&space, &c));
-  c.framed = PETSC_TRUE;
-  PetscCall(SumExcess(m, &c));
-  PetscCall(MassLack(&c, enough));
-  enough[ACCELERATION] *= PetscSqr(RELEASED);
-  PetscCall(MassSolveRun(&c, enough, MOST_SWEEPS));
-  PetscCall(MassSolveClose(&c));
-  release_boundary(m, &c, lag);
-  mass_turn(&c, c.x);
-  for (PetscInt i = 0; i < m->grid->n_nodes * m->dim; ++i) {
-    const PetscReal excess = c.x[i / m->dim * c.width + ACCELERATION * m->dim + i % m->dim];
-    m->nodes->a1[i] -= excess;
-    m->nodes->echo[i] -= lag * excess;
+  PetscCall(PetscCalloc2(dofs, &lack, dofs, &excess));
+  PetscCall(SumExcess(m, lack));
+  if (m->c->analysis.mass == MASS_LUMPED) PetscCall(LetGoByNodes(m, lack, excess));
+  else PetscCall(LetGoByMatrix(m, lack, excess));
+  frames_turn(&m->boundary->frames, m->dim, lack);
+  frames_turn(&m->boundary->frames, m->dim, excess);
+  for (PetscInt i = 0; i < dofs; ++i) { /* both are 0 at most nodes */
+    if (lack[i] != 0 && i < m->grid->n_owned * m->dim) {
+      m->nodes->rate[i] += lack[i];
+      m->nodes->held[i] += (1 - lag) * lack[i];
+    }
+    if (excess[i] == 0) continue;
+    m->nodes->a1[i] -= excess[i];
+    m->nodes->echo[i] -= lag * excess[i];
   }
-  PetscCall(MassSolveDestroy(&c));
-  PetscCall(PetscFree(lumping));
+  PetscCall(PetscFree2(lack, excess));
   PetscFunctionReturn(0);
 }
