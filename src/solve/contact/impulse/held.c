@@ -25,17 +25,20 @@ static PetscErrorCode Lacking(const Projection *w, PetscReal *rows)
 
 PetscErrorCode ImpulsesHeld(const Projection *w)
 {
-  const PetscInt dim = w->s->dim, owned = w->m->grid->n_owned * dim;
+  const PetscInt dim = w->s->dim;
   PetscReal *rows;
 
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc1(w->m->grid->n_nodes * dim, &rows));
   PetscCall(Lacking(w, rows));
   frames_turn(w->m->frames, dim, rows);
-  for (PetscInt i = 0; i < owned; ++i)
-    if (!w->m->fixed[i]) rows[i] = 0;
+  for (PetscInt k = 0; k < w->n_moved; ++k)
+    for (PetscInt i = w->moved[k] * dim; i < (w->moved[k] + 1) * dim; ++i)
+      if (!w->m->fixed[i]) rows[i] = 0;
   frames_turn(w->m->frames, dim, rows);
-  for (PetscInt i = 0; i < owned; ++i) w->m->given[i] -= rows[i];
+  for (PetscInt k = 0; k < w->n_moved; ++k)
+    for (PetscInt i = w->moved[k] * dim; i < (w->moved[k] + 1) * dim && w->moved[k] < w->m->grid->n_owned; ++i)
+      w->m->given[i] -= rows[i];
   PetscCall(PetscFree(rows));
   PetscFunctionReturn(0);
 }

@@ -13,6 +13,7 @@ typedef struct {
   PetscReal *own;           /* 1 per contact point: what a unit impulse moves itself */
   unsigned char *held;      /* 0: not at all, 1: along the normal, 3: in all directions */
   PetscInt n_held, *list;   /* contact points that are held: often a third of those that are near */
+  PetscInt rounds;          /* how often p has been sought */
   PetscReal *arm;           /* 3 per contact point: against the centre of a wall with mass */
   PetscReal *push, *answer; /* RIGID per wall with mass: momentum, and what it changes */
   PetscReal *nodes;         /* n_nodes x dim: changes of motion; zero but for these: */

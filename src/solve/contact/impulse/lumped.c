@@ -17,7 +17,11 @@ PetscErrorCode ImpulsesLumpedSpread(Projection *w, const PetscReal *p)
   const Grid *grid = w->m->grid;
 
   PetscFunctionBeginUser;
-  for (PetscInt i = 0; i < w->n_moved * dim; ++i) w->nodes[w->moved[i / dim] * dim + i % dim] = 0;
+  for (PetscInt i = 0; i < w->n_moved; ++i) {
+    PetscReal *node = w->nodes + w->moved[i] * dim;
+    node[0] = node[1] = 0;
+    if (dim == 3) node[2] = 0;
+  }
   for (PetscInt j = 0; j < w->n_held; ++j) {
     const ContactPoint *c = s->point + w->list[j];
     for (PetscInt e = c->first; e < c->first + c->n; ++e)
@@ -25,10 +29,9 @@ PetscErrorCode ImpulsesLumpedSpread(Projection *w, const PetscReal *p)
   }
   PetscCall(GridSumToOwners(grid, dim, w->nodes));
   frames_turn(w->m->frames, dim, w->nodes);
-  for (PetscInt i = 0; i < w->n_moved * dim; ++i) {
-    const PetscInt node = w->moved[i / dim];
-    if (node < grid->n_owned) w->nodes[node * dim + i % dim] *= inverse_mass(w->m, dim, node, i % dim);
-  }
+  for (PetscInt i = 0; i < w->n_moved; ++i)
+    for (PetscInt d = 0; d < dim && w->moved[i] < grid->n_owned; ++d)
+      w->nodes[w->moved[i] * dim + d] *= inverse_mass(w->m, dim, w->moved[i], d);
   frames_turn(w->m->frames, dim, w->nodes);
   PetscCall(GridToGhosts(grid, dim, w->nodes));
   PetscCall(ImpulsesToWalls(w, p));
@@ -86,6 +89,22 @@ typedef struct {
   PetscReal *p, *q, *r, *s, *z, *all;
 } Work;
 
+/* From the impulses of an earlier round, after some have been let go. */
+static PetscErrorCode GoOn(Projection *w, Work *x)
+{
+  const PetscInt n = 3 * w->n_held;
+
+  PetscFunctionBeginUser;
+  if (w->rounds++ > 0) {
+    pack(w, w->p, x->p);
+    PetscCall(Apply(w, x->p, x->all, x->q));
+    for (PetscInt i = 0; i < n; ++i) x->r[i] -= x->q[i];
+    precondition(w, x->r, x->s);
+  }
+  PetscCall(PetscArraycpy(x->z, x->s, n));
+  PetscFunctionReturn(0);
+}
+
 static PetscErrorCode Sweeps(Projection *w, Work *x)
 {
   const PetscInt n = 3 * w->n_held;
@@ -94,6 +113,8 @@ static PetscErrorCode Sweeps(Projection *w, Work *x)
   PetscFunctionBeginUser;
   PetscCall(Norms(w, x->r, x->s, rs));
   enough = ENOUGH * ENOUGH * rs[1];
+  PetscCall(GoOn(w, x));
+  PetscCall(Norms(w, x->r, x->s, rs));
   for (int sweep = 0; sweep < MOST_SWEEPS && rs[1] > enough; ++sweep) {
     PetscCall(Apply(w, x->z, x->all, x->q));
     local = impulse_dot(n, x->z, x->q);
@@ -122,7 +143,6 @@ PetscErrorCode ImpulsesLumped(Projection *w)
   pack(w, w->lack, x.r);
   for (PetscInt j = 0; j < w->n_held; ++j) impulse_hold(w, w->list[j], x.r + 3 * j);
   precondition(w, x.r, x.s);
-  PetscCall(PetscArraycpy(x.z, x.s, n));
   PetscCall(Sweeps(w, &x));
   PetscCall(PetscArrayzero(w->p, 3 * w->s->n));
   unpack(w, x.p, w->p);

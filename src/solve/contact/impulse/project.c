@@ -167,7 +167,8 @@ static PetscErrorCode ListMoved(Projection *w)
   PetscReal *used;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscCalloc1(grid->n_nodes, &used));
+  PetscCall(PetscCalloc1(grid->n_nodes * s->dim, &w->nodes));
+  used = w->nodes; /* until they are known */
   for (PetscInt k = 0; k < s->n; ++k)
     for (PetscInt e = s->point[k].first; e < s->point[k].first + s->point[k].n && w->held[k]; ++e) used[s->node[e]] = 1;
   PetscCall(GridSumToOwners(grid, 1, used));
@@ -175,8 +176,7 @@ static PetscErrorCode ListMoved(Projection *w)
   PetscCall(PetscMalloc1(grid->n_nodes, &w->moved));
   for (PetscInt i = 0; i < grid->n_nodes; ++i)
     if (used[i] > 0 || w->m->whole) w->moved[w->n_moved++] = i;
-  PetscCall(PetscFree(used));
-  PetscCall(PetscCalloc1(grid->n_nodes * s->dim, &w->nodes));
+  PetscCall(PetscArrayzero(used, grid->n_nodes));
   PetscFunctionReturn(0);
 }
 
@@ -237,10 +237,8 @@ PetscErrorCode ContactProject(Contact *s, const ContactMotion *m, ContactSum *su
   lose(&w, sum);
   PetscCall(m->whole ? ImpulsesWholeSpread(&w, w.p) : ImpulsesLumpedSpread(&w, w.p));
   PetscCall(ImpulsesHeld(&w));
-  for (PetscInt i = 0; i < w.n_moved * s->dim; ++i) {
-    const PetscInt dof = w.moved[i / s->dim] * s->dim + i % s->dim;
-    m->motion[dof] += w.nodes[dof];
-  }
+  for (PetscInt i = 0; i < w.n_moved; ++i)
+    for (PetscInt dof = w.moved[i] * s->dim; dof < (w.moved[i] + 1) * s->dim; ++dof) m->motion[dof] += w.nodes[dof];
   for (PetscInt k = 0; k < s->n_rigid; ++k) rigid_push(s->rigid + k, w.push + RIGID * k);
   lose(&w, sum);
   s->driven += driven(&w);
