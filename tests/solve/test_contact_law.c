@@ -87,7 +87,8 @@ static void test_tangent(void **state)
     const ContactLaw law = {.kind = w.sphere ? CONTACT_FRICTIONLESS : CONTACT_FRICTION,
                             .friction = w.sphere ? 0 : 0.4,
                             .bond = k % 2 ? 0 : 3,
-                            .penalty = 100};
+                            .penalty = 100,
+                            .along = 40};
     const ContactForce multiplier = {.pressure = 20 * size * (1 + number(&seed)),
                                      .shear = {number(&seed), number(&seed), 2}};
     const PetscReal far = 0.2 * size, x[3] = {far * number(&seed), far * number(&seed), far * number(&seed)};
@@ -104,7 +105,7 @@ static void test_cone(void **state)
   for (int k = 0; k < 2000; ++k) {
     Wall w = {.sphere = PETSC_FALSE};
     unit(&seed, w.n);
-    const ContactLaw law = {.kind = CONTACT_FRICTION, .friction = 0.3, .bond = 1, .penalty = 50};
+    const ContactLaw law = {.kind = CONTACT_FRICTION, .friction = 0.3, .bond = 1, .penalty = 50, .along = 50};
     const ContactForce none = {.pressure = 5};
     const PetscReal x[3] = {number(&seed), number(&seed), number(&seed)};
     const WallPlace place = place_of(&w, x);
@@ -126,7 +127,7 @@ static void test_cone(void **state)
 static void test_adhesion(void **state)
 {
   const Wall w = {.n = {0, 1, 0}};
-  const ContactLaw law = {.kind = CONTACT_FRICTION, .friction = 0.5, .bond = 8, .penalty = 10};
+  const ContactLaw law = {.kind = CONTACT_FRICTION, .friction = 0.5, .bond = 8, .penalty = 10, .along = 10};
   const PetscReal at[5] = {100, 1, 0.4, 0.1, 1e-9}, shear[5] = {58, 8.5, 8.2, 2.05, 20.5e-9}, x[3] = {-50, 0, 0};
   PetscReal f[3];
   (void)state;
@@ -141,7 +142,7 @@ static void test_adhesion(void **state)
 static void test_turned(void **state)
 {
   const Wall w = {.n = {0.6, 0.8, 0}}, turned = {.n = {-0.8, 0.6, 0}};
-  const ContactLaw law = {.kind = CONTACT_FRICTION, .friction = 0.5, .penalty = 10};
+  const ContactLaw law = {.kind = CONTACT_FRICTION, .friction = 0.5, .penalty = 10, .along = 10};
   const ContactForce m = {.pressure = 4, .shear = {0.8, -0.6, 0.1}}, mt = {.pressure = 4, .shear = {0.6, 0.8, 0.1}};
   const PetscReal x[3] = {0.3, -0.4, 0.2}, xt[3] = {0.4, 0.3, 0.2};
   PetscReal f[3], ft[3];
@@ -155,7 +156,7 @@ static void test_turned(void **state)
 static void test_bonded(void **state)
 {
   const Wall w = {.n = {0, 1, 0}};
-  const ContactLaw law = {.kind = CONTACT_BONDED, .penalty = 10};
+  const ContactLaw law = {.kind = CONTACT_BONDED, .penalty = 10, .along = 10};
   const ContactForce none = {0};
   const PetscReal x[3] = {2, 0.5, -1};
   PetscReal f[3];

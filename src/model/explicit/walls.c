@@ -89,6 +89,7 @@ PetscErrorCode WallsPush(Model *m, Explicit *e)
     const RigidWall *heavy = contact_rigid(s, c);
     c->law.penalty = stiffness(m, &c->law) * c->section * modulus_of(c) / s->length;
     if (heavy) c->law.penalty *= e->ease[heavy - s->rigid];
+    c->law.along = c->law.penalty;
     if (!contact_is_sprung(*kept_of(m, c))) take_over(c);
     push(m, e, c);
     if (c->state == CONTACT_OPEN) continue;
@@ -126,7 +127,7 @@ static void keep(const Model *m, Explicit *e, const ContactPoint *c, const Petsc
   const PetscReal along = e->dt > 0 ? -dashpot * closing / e->dt : c->now.pressure;
   for (PetscInt d = 0; d < m->dim; ++d) {
     const PetscReal slip = move[d] - closing * c->normal[d];
-    kept[d] = along * c->normal[d] + rubs * (c->now.shear[d] - c->law.penalty * slip);
+    kept[d] = along * c->normal[d] + rubs * (c->now.shear[d] - c->law.along * slip);
     e->rubbed[c->wall] -= c->now.shear[d] * slip;
     if (!heavy) e->boundary += (c->now.pressure * c->normal[d] + c->now.shear[d]) * c->swept[d];
   }

@@ -22,6 +22,7 @@ typedef struct {
   PetscInt first, n;   /* nodes that carry it: node[first] .. of Contact; the first of them, */
   PetscInt own;        /* so many, are of its own body, others of the other one, */
   PetscInt slot;       /* and the first of their n x n pairs */
+  PetscReal spread;    /* sum of their |N|: it moves by no more than that times what the nodes do */
   PetscReal reach;     /* from the material point to its surface, at the start of the step, m */
   PetscReal x[3];      /* at the start of the step, m */
   PetscReal swept[3];  /* what the wall's matter there moves by in the step, m; */
@@ -206,6 +207,9 @@ PetscErrorCode RigidTangent(Contact *contact, const NodalScene *scene, PetscReal
 /* The law at the present increments; K: minus its derivative by the motion of the contact point, or NULL.
  * PETSC_FALSE where there is no contact. */
 PetscBool contact_meets(const Contact *contact, ContactPoint *c, const NodalScene *scene, PetscReal *K);
+/* contact_force.c, contact_multiplier.c: what the nodal force does. */
+PetscErrorCode ContactAssemble(void *contact, const NodalScene *scene, const NodalOutput *out);
+PetscErrorCode ContactAugment(void *contact, const NodalScene *scene, PetscInt change, PetscBool *again);
 /* The wall with mass that it meets, or NULL. */
 static inline RigidWall *contact_rigid(const Contact *contact, const ContactPoint *c)
 {

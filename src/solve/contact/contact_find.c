@@ -250,6 +250,38 @@ static PetscErrorCode MeetPoint(Contact *s, const NodalScene *scene, PetscInt g,
   PetscFunctionReturn(0);
 }
 
+/* How far the points of a group are from its first, and from their surfaces, m. */
+static PetscReal extent_of(const Points *points, PetscInt first, PetscInt end)
+{
+  const PetscReal *x = point_real(points, POINT_X, first);
+  PetscReal square = 0, farthest = 0;
+  for (PetscInt p = first; p < end; ++p) {
+    const PetscReal *y = point_real(points, POINT_X, p);
+    PetscReal apart = 0;
+    for (PetscInt d = 0; d < points->dim; ++d) apart += PetscSqr(y[d] - x[d]);
+    square = PetscMax(square, apart);
+    farthest = PetscMax(farthest, contact_farthest(points, p));
+  }
+  return PetscSqrtReal(square) + farthest;
+}
+
+/* Points of a cell stand close to each other: where their first is far from the wall, all are. */
+static PetscErrorCode MeetGroup(Contact *s, const NodalScene *scene, PetscInt g)
+{
+  const PetscInt first = scene->support->point_start[g], end = scene->support->point_start[g + 1];
+  const PetscReal *x = point_real(scene->points, POINT_X, first);
+  const PetscReal within = end > first + 1 ? s->near + extent_of(scene->points, first, end) : 0;
+  WallPlace place;
+
+  PetscFunctionBeginUser;
+  for (PetscInt k = 0; k < s->n_walls; ++k) {
+    const int side = within > 0 ? wall_side(s->walls, k, scene->t, x) : 0;
+    if (within > 0 && !wall_near(s->walls, k, scene->t, x, within, side, &place)) continue;
+    for (PetscInt p = first; p < end; ++p) PetscCall(MeetPoint(s, scene, g, p, k));
+  }
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode ContactFind(Contact *s, const NodalScene *scene)
 {
   const Support *w = scene->support;
@@ -257,9 +289,7 @@ PetscErrorCode ContactFind(Contact *s, const NodalScene *scene)
   PetscFunctionBeginUser;
   s->n = s->n_nodes = s->n_slots = 0;
   s->length = s->near = scene->grid->smallest;
-  for (PetscInt g = 0; g < w->n_groups; ++g)
-    for (PetscInt p = w->point_start[g]; p < w->point_start[g + 1]; ++p)
-      for (PetscInt k = 0; k < s->n_walls; ++k) PetscCall(MeetPoint(s, scene, g, p, k));
+  for (PetscInt g = 0; g < w->n_groups && s->n_walls; ++g) PetscCall(MeetGroup(s, scene, g));
   if (s->n_partners > s->n_walls) PetscCall(ContactFindBodies(s, scene));
   PetscFunctionReturn(0);
 }

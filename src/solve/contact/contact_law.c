@@ -21,7 +21,7 @@ static void normal_stiffness(const ContactLaw *law, const WallPlace *place, Pets
 static void stick(const ContactLaw *law, const PetscReal n[3], PetscReal *K)
 {
   for (int i = 0; i < 3; ++i)
-    for (int j = 0; j < 3; ++j) K[3 * i + j] += law->penalty * ((i == j) - n[i] * n[j]);
+    for (int j = 0; j < 3; ++j) K[3 * i + j] += law->along * ((i == j) - n[i] * n[j]);
 }
 
 /* The largest tangential force, and its derivative by the pressure. Adhesion is no more than so many times the
@@ -47,7 +47,7 @@ static void slide(const ContactLaw *law, const PetscReal n[3], const PetscReal w
   for (int i = 0; i < 3; ++i)
     for (int j = 0; j < 3; ++j)
       K[3 * i + j] +=
-        law->penalty * (slope * way[i] * n[j] + bound / size * ((i == j) - n[i] * n[j] - way[i] * way[j]));
+        law->penalty * slope * way[i] * n[j] + law->along * bound / size * ((i == j) - n[i] * n[j] - way[i] * way[j]);
 }
 
 ContactState contact_law(const ContactLaw *law, const WallPlace *place, const PetscReal slip[3],
@@ -63,7 +63,7 @@ ContactState contact_law(const ContactLaw *law, const WallPlace *place, const Pe
   }
   if (K) normal_stiffness(law, place, now->pressure, K);
   if (law->kind == CONTACT_FRICTIONLESS) return CONTACT_SLIDES;
-  for (int i = 0; i < 3; ++i) trial[i] = multiplier->shear[i] - law->penalty * slip[i];
+  for (int i = 0; i < 3; ++i) trial[i] = multiplier->shear[i] - law->along * slip[i];
   across(n, trial, now->shear);
   const PetscReal size = PetscSqrtReal(dot(now->shear, now->shear));
   const PetscReal bound = bound_of(law, now->pressure, &slope);

@@ -3,11 +3,11 @@
  * With the gap g along the normal n and the slip s, the motion against the wall since the start of
  * the step, forces are those of an augmented Lagrangian (Alart and Curnier 1991):
  *
- *   p = max(0, p_k - r g),    t = t_k - r s, but no longer than friction p + min(bond, 20 p),    f = p n + t.
+ *   p = max(0, p_k - r g),    t = t_k - r_t s, but no longer than friction p + min(bond, 20 p),    f = p n + t.
  *
  * p_k, t_k are multipliers that Newton's method keeps while it iterates, and which become p, t when
  * it is about to converge (contact.c): with them g and s of what is in contact and does not slide go to
- * zero, whatever r is. */
+ * zero, whatever r and r_t are. */
 #pragma once
 #include "wall/wall.h"
 
@@ -22,6 +22,7 @@ typedef struct {
   PetscReal friction; /* tangent of the angle */
   PetscReal bond;     /* tangential force beside friction, N */
   PetscReal penalty;  /* r, N/m */
+  PetscReal along;    /* r_t, N/m */
 } ContactLaw;
 
 /* What the wall does to the material, N. */

@@ -116,6 +116,20 @@ static inline void nodal_add_tangent(const NodalOutput *out, PetscInt dim, Petsc
   else out->system->values[place] += value;
 }
 
+/* The same for all components of the pair of nodes at `slot`: `weight` times K, 3 numbers a row. */
+static inline void nodal_add_tangents(const NodalOutput *out, PetscInt dim, PetscInt slot, PetscReal weight,
+                                      const PetscReal *K)
+{
+  const System *system = out->system;
+  if (!system) return;
+  const PetscInt block = system->block, place = slot * block * block;
+  if (out->away) weight = -weight;
+  for (PetscInt k = 0; system->single && k < dim * dim; ++k)
+    system->singles[place + k / dim * block + k % dim] += (float)(weight * K[3 * (k / dim) + k % dim]);
+  for (PetscInt k = 0; !system->single && k < dim * dim; ++k)
+    system->values[place + k / dim * block + k % dim] += weight * K[3 * (k / dim) + k % dim];
+}
+
 /* The forces of constraints; a component whose twin is fixed is none. */
 void constraints_assemble(const Constraints *constraints, const NodalScene *scene, const NodalOutput *out);
 

@@ -7,9 +7,8 @@
 PetscErrorCode NewtonAugment(Newton *n, PetscBool *again)
 {
   const StepProblem *p = n->problem;
-  const PetscInt dim = p->grid->dim;
+  const PetscInt dim = p->grid->dim, owned = p->grid->n_owned * dim;
   const PetscBool stays = n->tangent && p->scene.contact && !p->system->n_turned && n->report->status == LAW_OK;
-  PetscReal *change;
   double start, end;
 
   PetscFunctionBeginUser;
@@ -19,16 +18,13 @@ PetscErrorCode NewtonAugment(Newton *n, PetscBool *again)
     PetscFunctionReturn(0);
   }
   PetscCall(PetscTime(&start));
-  PetscCall(PetscCalloc1(p->grid->n_nodes * dim, &change));
-  NodalOutput out = {.force = change, .system = p->system, .away = PETSC_TRUE};
+  PetscCall(PetscArrayzero(p->force + owned, p->grid->n_nodes * dim - owned)); /* owners have had them */
+  NodalOutput out = {.force = p->force, .system = p->system, .away = PETSC_TRUE};
   PetscCall(NodalForcesAssembleAugmented(p->forces, &p->scene, &out));
   PetscCall(NodalForcesAugment(p->forces, &p->scene, n->changes, again));
   out.away = PETSC_FALSE;
   PetscCall(NodalForcesAssembleAugmented(p->forces, &p->scene, &out));
-  PetscCall(GridSumToOwners(p->grid, dim, change));
-  for (PetscInt k = 0; k < p->system->n_active; ++k)
-    for (PetscInt i = p->system->active[k] * dim; i < (p->system->active[k] + 1) * dim; ++i) p->force[i] += change[i];
-  PetscCall(PetscFree(change));
+  PetscCall(GridSumToOwners(p->grid, dim, p->force));
   PetscCall(NewtonWeigh(n));
   PetscCall(PetscTime(&end));
   n->t_points += end - start;

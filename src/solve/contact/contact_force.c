@@ -1,0 +1,169 @@
+/* The law at contact points, and what it puts into forces and tangent of nodes. */
+#include "solve/contact/contact.h"
+
+#define ROUND_CORNER 0.9 /* cosine: a normal that has turned by more in a step belongs to another face */
+
+void contact_place(const Contact *s, const ContactPoint *c, const PetscReal *du, PetscReal whole, PetscReal x[3])
+{
+  for (int d = 0; d < 3; ++d) x[d] = c->x[d];
+  for (PetscInt I = 0; I < c->n; ++I)
+    for (PetscInt d = 0; d < s->dim; ++d) x[d] += whole * s->N[c->first + I] * du[s->node[c->first + I] * s->dim + d];
+}
+
+/* A place in the wall, beside a corner, may be nearer to another face than that which the material came to: it would be
+ * pushed out there, in every step anew. Then the owner, which stands outside, sees the wall for it. */
+static PetscBool see_wall(const Contact *s, const ContactPoint *c, PetscReal t, const PetscReal x[3], WallPlace *place)
+{
+  PetscReal along = 0, owner[3];
+  if (!wall_near(s->walls, c->wall, t, x, 2 * s->near, c->side, place)) return PETSC_FALSE;
+  for (int d = 0; d < 3; ++d) along += place->normal[d] * c->facing[d];
+  if (along > ROUND_CORNER) return PETSC_TRUE;
+  for (int d = 0; d < 3; ++d) owner[d] = x[d] + c->reach * c->facing[d];
+  if (!wall_near(s->walls, c->wall, t, owner, 2 * s->near + c->reach, c->side, place)) return PETSC_FALSE;
+  place->gap -= c->reach;
+  return PETSC_TRUE;
+}
+
+/* The wall as the contact point sees it at x, or the other body: a plane that goes with it. */
+static PetscBool place_of(const Contact *s, const ContactPoint *c, PetscReal t, const PetscReal x[3], WallPlace *place)
+{
+  if (c->wall < s->n_walls) return see_wall(s, c, t, x, place);
+  *place = (WallPlace){.gap = c->open};
+  for (int d = 0; d < 3; ++d) {
+    place->normal[d] = c->normal[d];
+    place->gap += (x[d] - c->x[d]) * c->normal[d];
+  }
+  return PETSC_TRUE;
+}
+
+static void stay_open(ContactPoint *c)
+{
+  c->state = CONTACT_OPEN;
+  c->now = (ContactForce){0};
+  c->gap = PETSC_MAX_REAL;
+}
+
+PetscBool contact_meets(const Contact *s, ContactPoint *c, const NodalScene *scene, PetscReal *K)
+{
+  const RigidWall *rigid = contact_rigid(s, c);
+  PetscReal x[3];
+  WallPlace place;
+  contact_place(s, c, scene->du, scene->whole, x);
+  if (rigid) rigid_sweep(rigid, c->x, x, c->swept);
+  for (int d = 0; d < 3 && rigid; ++d) c->passes[d] = c->swept[d];
+  stay_open(c);
+  if (!place_of(s, c, scene->end, x, &place)) return PETSC_FALSE;
+  for (int d = 0; d < 3; ++d) c->slip[d] = x[d] - c->x[d] - c->swept[d], c->normal[d] = place.normal[d];
+  c->gap = place.gap;
+  c->state = contact_law(&c->law, &place, c->slip, &c->multiplier, &c->now, K);
+  return c->state != CONTACT_OPEN;
+}
+
+void contact_force(const ContactPoint *c, PetscReal f[3])
+{
+  for (int d = 0; d < 3; ++d) f[d] = c->now.pressure * c->normal[d] + c->now.shear[d];
+}
+
+void contact_acts(const ContactPoint *c, PetscReal f[3])
+{
+  contact_force(c, f);
+  for (int d = 0; d < 3; ++d) f[d] -= c->lent[d];
+}
+
+void contact_balance(const Contact *s, const ContactPoint *c, PetscReal f[3])
+{
+  contact_acts(c, f);
+  for (int d = 0; d < 3; ++d) f[d] -= s->share.back * c->stays * c->last[d];
+}
+
+PetscReal contact_stays(const Contact *s, const ContactPoint *c)
+{
+  const PetscReal now = s->share.mean * c->now.pressure;
+  PetscReal before = 0;
+  for (int d = 0; d < 3; ++d) before += c->last[d] * c->normal[d];
+  if (!s->share.inertia) return 1;
+  return now == 0 ? 0 : PetscMax(0, PetscMin(1, before / now));
+}
+
+void contact_excess(const Contact *s, const ContactPoint *c, PetscReal f[3])
+{
+  const PetscReal stays = s->share.mean * contact_stays(s, c), lag = s->share.lag;
+  PetscReal balance[3];
+  contact_force(c, f);
+  contact_balance(s, c, balance);
+  for (int d = 0; d < 3; ++d) f[d] = (balance[d] - lag * c->stays * c->last[d]) / (1 - lag) - stays * f[d];
+}
+
+PetscReal contact_square(const Contact *s)
+{
+  PetscReal sum = 0;
+  for (PetscInt k = 0; s && k < s->n; ++k) {
+    PetscReal f[3];
+    contact_force(s->point + k, f);
+    for (PetscInt d = 0; d < s->dim; ++d) sum += f[d] * f[d];
+  }
+  return sum;
+}
+
+static void add_tangent(const Contact *s, const ContactPoint *c, const NodalScene *scene, const PetscReal *K,
+                        const NodalOutput *out)
+{
+  const PetscReal *N = s->N + c->first;
+  for (PetscInt I = 0; I < c->n; ++I)
+    for (PetscInt J = 0; J < c->n; ++J) {
+      const PetscReal weight = scene->whole * N[I] * N[J];
+      const PetscInt slot = s->slot[c->slot + I * c->n + J];
+      if (s->dim == 2) nodal_add_tangents(out, 2, slot, weight, K); /* a number that the compiler knows */
+      else nodal_add_tangents(out, 3, slot, weight, K);
+    }
+}
+
+static void add_force(const Contact *s, const ContactPoint *c, PetscReal sign, PetscReal *force)
+{
+  PetscReal f[3];
+  contact_balance(s, c, f);
+  if (f[0] == 0 && f[1] == 0 && f[2] == 0) return; /* most that is near a wall has not met it */
+  for (PetscInt e = c->first; e < c->first + c->n; ++e)
+    for (PetscInt d = 0; d < s->dim; ++d) force[s->node[e] * s->dim + d] -= sign * s->N[e] * f[d];
+}
+
+/* Largest motion of a node that carries contact, m. */
+static PetscReal largest_motion(const Contact *s, const NodalScene *scene)
+{
+  PetscReal largest = 0;
+  for (PetscInt e = 0; e < s->n_nodes; ++e) {
+    const PetscReal *du = scene->du + s->node[e] * s->dim;
+    const PetscReal square = PetscSqr(du[0]) + PetscSqr(du[1]) + (s->dim == 3 ? PetscSqr(du[2]) : 0);
+    largest = PetscMax(largest, square);
+  }
+  return scene->whole * PetscSqrtReal(largest);
+}
+
+/* Is it too far from a wall that rests to have come there? Most points near one are: a gap changes by no more than what
+ * the place moves. */
+static PetscBool is_out_of_reach(const Contact *s, const ContactPoint *c, PetscReal motion)
+{
+  if (c->touches || c->open <= c->spread * motion || c->before != CONTACT_OPEN || contact_rigid(s, c))
+    return PETSC_FALSE;
+  return c->swept[0] == 0 && c->swept[1] == 0 && c->swept[2] == 0;
+}
+
+PetscErrorCode ContactAssemble(void *data, const NodalScene *scene, const NodalOutput *out)
+{
+  const Contact *s = data;
+  const PetscReal motion = largest_motion(s, scene);
+  PetscReal K[9];
+
+  PetscFunctionBeginUser;
+  for (ContactPoint *c = s->point; c < s->point + s->n; ++c) {
+    if (is_out_of_reach(s, c, motion)) {
+      stay_open(c);
+      continue;
+    }
+    const PetscBool meets = contact_meets(s, c, scene, out->system ? K : NULL);
+    add_force(s, c, out->away ? -1 : 1, out->force);
+    if (out->system && meets) add_tangent(s, c, scene, K, out);
+  }
+  PetscCall(RigidSums(data, scene));
+  PetscFunctionReturn(0);
+}

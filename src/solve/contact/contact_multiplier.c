@@ -1,0 +1,214 @@
+/* Penalties and multipliers of contact points: those that a step begins with, and when Newton's method gets others. */
+#include "solve/contact/contact.h"
+
+/* Penalty of a contact point, over the stiffness and inertia that a cell opposes to it. Gaps fall by
+ * about this factor with every change of the multipliers. With 100 the sides of the law hand Newton's
+ * iteration back and forth (docs/decisions.md, 106). */
+#define STIFFER 5
+/* The same along the wall where grains flow, and points come to stick or begin to slide in every step: what is wrongly
+ * held there throws the iteration back by as much as it is held (docs/theory.md, section 71). */
+#define ALONG_FLOWS 2
+
+#define CLOSED 1e-5 /* of a cell: gaps and slips that remain of contact */
+/* Where grains flow, that share of what the surface moves in the step, up to so much of a cell. */
+#define MOVED 3e-3
+#define FLOWING 5e-4
+#define SLIPS 5    /* slips that stay there, over such gaps */
+#define RESTS 1e-3 /* of a cell: what moves by no more along its wall in a step may be at rest */
+#define MOST_CHANGES 40
+/* Where more points touch than nodes can follow, gaps of some stay, and their multipliers would grow
+ * against each other for ever: a gap that falls no faster may stay, up to so much of a cell. */
+#define STALLS 0.5
+#define ALLOWED 1e-3
+/* Of what is bonded that happens where strains change from point to point, at ends of a clamped edge, and the whole run
+ * would end there: after so many changes so many times as much may stay. */
+#define PATIENCE 8
+#define BONDED_ALLOWED 10
+/* Of a mixed formulation the penalty is measured by shear, which is what a free surface feels; where
+ * matter is locked in it feels its volume, and gaps fall slowly: then the penalty rises until they fall
+ * by about so much, up to what volume opposes. */
+#define FALLS 10
+/* Of what rubs it rises so many times where it must: a slip that stays of what sticks does work. Where nothing but a
+ * gap stays it is left as it is: which of more points than nodes can follow bear the force is nobody's choice, and a
+ * higher penalty takes some of them away; what is bonded all points would lock. */
+#define RUBS 10
+#define HIGHER 1.01 /* a penalty that could rise by less has risen: moduli that are alike differ by round-off */
+
+/* Those of the last step, and as much more or less as the gap that it left takes away: of a stiff body that
+ * is no little force, and if it let go everywhere at once nothing would hold it; and what rests is to stay
+ * where it is. What had none and touches the wall gets one so small that it counts for nothing: it is in
+ * contact from the first iteration on. */
+static void first_multiplier(const Contact *s, ContactPoint *c)
+{
+  const PetscReal whole = 1 / s->share.mean;
+  c->multiplier = (ContactForce){0};
+  for (int d = 0; d < 3; ++d) c->multiplier.pressure += whole * c->last[d] * c->normal[d];
+  for (int d = 0; d < 3; ++d) c->multiplier.shear[d] = whole * c->last[d] - c->multiplier.pressure * c->normal[d];
+  if (c->before != CONTACT_OPEN && c->open > -CLOSED * s->length) c->multiplier.pressure += c->law.penalty * c->open;
+  if (c->touches && c->before == CONTACT_OPEN) c->multiplier.pressure = 0.1 * CLOSED * s->length * c->law.penalty;
+}
+
+/* What a cell of one material opposes to a pressure, N/m3; of two that stand behind each other. */
+static PetscReal stiffness_of(const ContactPoint *c, PetscReal h, PetscReal inertia)
+{
+  const PetscReal k = c->modulus[0] / h + inertia * c->density[0] * h;
+  const PetscReal other = c->modulus[1] / h + inertia * c->density[1] * h;
+  return other > 0 ? k * other / (k + other) : k;
+}
+
+/* A chord of what turns leads inwards, where forces would do work that no torque does. */
+static void sweep(const Contact *s, ContactPoint *c, PetscReal t, PetscReal dt)
+{
+  PetscReal x[3];
+  wall_motion(s->walls, c->wall, t, t + dt, c->x, c->swept);
+  for (int d = 0; d < 3; ++d) x[d] = c->x[d] - c->swept[d] / 2;
+  wall_motion(s->walls, c->wall, t, t + dt, x, c->passes);
+}
+
+/* Grains that flow have gaps of their own (FLOWING). */
+static PetscReal stiffest_of(const Contact *s, const ContactPoint *c)
+{
+  const PetscBool rubs = c->law.kind == CONTACT_FRICTION || c->law.kind == CONTACT_STICK;
+  return PetscMax(c->stiffer, rubs && !s->share.flows ? RUBS : 1) * c->law.penalty;
+}
+
+static PetscReal spread_of(const Contact *s, const ContactPoint *c)
+{
+  PetscReal sum = 0;
+  for (PetscInt e = c->first; e < c->first + c->n; ++e) sum += PetscAbsReal(s->N[e]);
+  return sum;
+}
+
+void contact_prepare(Contact *s, PetscReal t, PetscReal dt, PetscReal inertia, ContactShare share)
+{
+  s->share = share;
+  for (ContactPoint *c = s->point; c < s->point + s->n; ++c) {
+    const PetscReal cell = c->section * stiffness_of(c, s->length, inertia);
+    c->law.penalty = STIFFER * cell;
+    c->law.along = (share.flows ? ALONG_FLOWS : STIFFER) * cell;
+    c->stiffest = stiffest_of(s, c);
+    c->left = 0;
+    c->spread = spread_of(s, c);
+    for (int d = 0; d < 3; ++d) c->struck[d] = c->lent[d] = 0;
+    for (int d = 0; d < 3 && c->before == CONTACT_OPEN; ++d) c->last[d] = 0; /* explicit dynamics keeps slips there */
+    c->law.bond = c->bond / share.mean;
+    if (c->wall < s->n_walls && !contact_rigid(s, c)) sweep(s, c, t, dt);
+    first_multiplier(s, c);
+  }
+}
+
+/* Motion of what is in contact against its wall. */
+static PetscReal motion_of(const ContactPoint *c)
+{
+  if (c->state == CONTACT_OPEN) return 0;
+  return PetscSqrtReal(PetscSqr(c->slip[0]) + PetscSqr(c->slip[1]) + PetscSqr(c->slip[2]));
+}
+
+PetscErrorCode ContactMoves(const Contact *s, MPI_Comm comm, PetscBool *moves)
+{
+  PetscBool here = PETSC_FALSE;
+
+  PetscFunctionBeginUser;
+  for (const ContactPoint *c = s->point; c < s->point + s->n; ++c) here |= motion_of(c) > RESTS * s->length;
+  PetscCallMPI(MPI_Allreduce(&here, moves, 1, MPIU_BOOL, MPI_LOR, comm));
+  PetscFunctionReturn(0);
+}
+
+PetscReal contact_unresolved(const Contact *s, PetscReal size)
+{
+  PetscReal sum = 0;
+  for (PetscInt k = 0; s && k < s->n_partners; ++k) {
+    const PetscReal *f = s->wall[k].mean.force;
+    sum += CLOSED * size * PetscSqrtReal(f[0] * f[0] + f[1] * f[1] + f[2] * f[2]);
+  }
+  return sum;
+}
+
+/* What its forces leave of a gap, m, */
+static PetscReal gap_of(const ContactPoint *c)
+{
+  if (c->state == CONTACT_OPEN) return 0;
+  return PetscAbsReal(c->now.pressure - c->multiplier.pressure) / c->law.penalty;
+}
+
+/* and of a slip: what the law would make of them once more, less what they are, over its stiffness. Where nothing
+ * slides that is the slip; of what slides it is that against the way that friction acts, or across it. */
+static PetscReal slip_of(const ContactPoint *c)
+{
+  PetscReal again[3], away = 0, square = 0, left = 0;
+  if (c->state == CONTACT_OPEN || c->law.kind == CONTACT_FRICTIONLESS) return 0;
+  for (int d = 0; d < 3; ++d) away += c->slip[d] * c->normal[d];
+  for (int d = 0; d < 3; ++d) {
+    again[d] = c->now.shear[d] - c->law.along * (c->slip[d] - away * c->normal[d]);
+    square += PetscSqr(again[d]);
+  }
+  const PetscReal most = c->law.kind == CONTACT_BONDED ? PETSC_MAX_REAL : contact_most(&c->law, c->now.pressure);
+  const PetscReal part = PetscSqrtReal(square) > most ? most / PetscSqrtReal(square) : 1;
+  for (int d = 0; d < 3; ++d) left = PetscMax(left, PetscAbsReal(part * again[d] - c->now.shear[d]));
+  return left / c->law.along;
+}
+
+static PetscReal left_of(const ContactPoint *c) { return PetscMax(gap_of(c), slip_of(c)); }
+
+/* Does what is left fall slowly, although the penalty may rise? */
+static PetscBool is_soft(const ContactPoint *c, PetscReal left)
+{
+  return c->left > 0 && left > STALLS * c->left && HIGHER * c->law.penalty < c->stiffest;
+}
+
+/* Gaps fall by 1 + penalty / stiffness of what is pressed: what is measured says which that is. */
+static void stiffen(ContactPoint *c, PetscReal left)
+{
+  const PetscReal rate = PetscMin(left / c->left, 0.9), before = c->law.penalty;
+  c->law.penalty = PetscMin(c->stiffest, before * (FALLS - 1) * rate / (1 - rate));
+  c->law.along *= c->law.penalty / before;
+}
+
+/* What may stay of gaps, or of slips, which `times` as much may. */
+static PetscReal allowed(const Contact *s, PetscReal moved, PetscReal times)
+{
+  const PetscReal closed = CLOSED * s->length;
+  if (!s->share.flows) return closed;
+  return PetscMax(closed, times * PetscMin(MOVED * moved, FLOWING * s->length));
+}
+
+/* What counts against ALLOWED where gaps stall. */
+static PetscReal stalled_of(const ContactPoint *c, PetscInt change, PetscReal left)
+{
+  return c->law.kind == CONTACT_BONDED && change >= PATIENCE ? left / BONDED_ALLOWED : left;
+}
+
+/* Multipliers become the forces that there are, and the balance is sought again, unless gaps and
+ * slips of what is in contact have all but vanished. */
+PetscErrorCode ContactAugment(void *data, const NodalScene *scene, PetscInt change, PetscBool *again)
+{
+  Contact *s = data;
+  PetscReal worst[5] = {0},
+            of_all[5]; /* left, of all, of what may be stiffened; motion; stalled_of; slips of friction */
+
+  PetscFunctionBeginUser;
+  for (const ContactPoint *c = s->point; c < s->point + s->n; ++c) {
+    const PetscReal left = left_of(c);
+    const PetscBool rubs = c->law.kind == CONTACT_FRICTION;
+    worst[0] = PetscMax(worst[0], rubs ? gap_of(c) : left);
+    worst[4] = PetscMax(worst[4], rubs ? slip_of(c) : 0);
+    if (is_soft(c, left)) worst[1] = PetscMax(worst[1], left);
+    worst[2] = PetscMax(worst[2], motion_of(c));
+    worst[3] = PetscMax(worst[3], stalled_of(c, change, left));
+  }
+  PetscCall(MPIU_Allreduce(worst, of_all, 5, MPIU_REAL, MPIU_MAX, scene->grid->comm));
+  const PetscReal all = PetscMax(of_all[0], of_all[4]);
+  const PetscBool slow = change > 0 && all > STALLS * s->worst, soft = of_all[1] > CLOSED * s->length;
+  const PetscBool stalls = slow && !soft && of_all[3] <= ALLOWED * s->length;
+  const PetscBool stay = of_all[0] <= allowed(s, of_all[2], 1) && of_all[4] <= allowed(s, of_all[2], SLIPS);
+  *again = !stay && change < MOST_CHANGES && !stalls;
+  s->worst = all;
+  if (!*again) PetscFunctionReturn(0);
+  for (ContactPoint *c = s->point; c < s->point + s->n; ++c) {
+    const PetscReal left = left_of(c);
+    if (is_soft(c, left)) stiffen(c, left);
+    c->multiplier = c->now;
+    c->left = left;
+  }
+  PetscFunctionReturn(0);
+}
